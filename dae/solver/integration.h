@@ -1,0 +1,62 @@
+#pragma once
+// What every integrator takes and gives, whatever its method.
+
+#include <momenta/dae/solver/system.h>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace momenta {
+
+struct IntegrationOptions {
+  double rtol = 1e-8;
+  double atol = 1e-8;       ///< times the system's scale(i)
+  double step = 0;          ///< fixed step [s]; needed by rk4, ignored by the others
+  double initial_step = 0;  ///< 0: chosen by the method
+  double max_step = 0;      ///< 0: none
+  int max_order = 0;        ///< multistep; 0: the method's own limit
+  long max_steps = 50'000'000;
+  double max_cpu_seconds = 0;  ///< 0: none; a run beyond it stops with status "time limit"
+};
+
+struct Counters {
+  long steps = 0, rejected = 0, evaluations = 0, jacobians = 0, factorizations = 0, newton_iterations = 0;
+};
+
+/// Interpolates the last accepted step: y (size of the system) at any t in [t0, t1].
+using Interpolant = std::function<void(double t, double* y)>;
+
+/// Looks on while a run goes; return false to stop the run. Either may be empty.
+struct Observer {
+  /// At each requested output time, in order: the state there (step end where it coincides, else dense output).
+  /// `ydot` is null for ODE systems.
+  std::function<bool(double t, const double* y, const double* ydot)> sample;
+  /// After each accepted step over [t0, t1] (before any after_step change is seen by the interpolant).
+  std::function<bool(double t0, double t1, const Interpolant& between)> step;
+};
+
+struct IntegrationResult {
+  bool done = false;
+  std::string reason;       ///< one sentence when not done: what failed, at which time, why
+  double end_time = 0;      ///< where the run stopped [s]
+  std::vector<double> y;    ///< the state there
+  Counters counters;
+  std::string linear_solver;  ///< implicit methods: "dense LU", "KLU"; else empty
+  std::string jacobian;       ///< implicit methods: "dual numbers", "difference quotient"; else empty
+};
+
+/// Integrates from y0 at t0 through output_times (ascending, the last is the end). Names: rk4 dp5 dop853.
+/// Hot loop allocates nothing. @throws std::invalid_argument for a name it does not know.
+IntegrationResult integrate_explicit(const std::string& method, OdeSystem&, double t0, const std::vector<double>& y0,
+                                     const std::vector<double>& output_times, const IntegrationOptions&, const Observer&);
+
+/// CVODE; names: adams bdf. Newton with difference-quotient dense Jacobian for bdf, fixed-point for adams.
+IntegrationResult integrate_cvode(const std::string& method, OdeSystem&, double t0, const std::vector<double>& y0,
+                                  const std::vector<double>& output_times, const IntegrationOptions&, const Observer&);
+
+/// IDA, started by system.start(t0); dense LU or KLU by the system's pattern, always with the system's exact Jacobian.
+IntegrationResult integrate_ida(DaeSystem&, double t0, const std::vector<double>& output_times,
+                                const IntegrationOptions&, const Observer&);
+
+}  // namespace momenta
