@@ -1,0 +1,287 @@
+// y' = f(t, y) by explicit Runge-Kutta methods: one loop over steps for every tableau, with PI step
+// control or with fixed steps. All memory is taken before the loop.
+//
+// One step, in order: stages and y_new; local error; observer.step with the interpolant of this
+// very step; output times inside it; after_step on y_new; output times at its end; begin_step and
+// the first stage of the next. What is looked at does not change what is computed: the stages of
+// dense output are extra, and f at the end serves the next step only when y was not altered in
+// between. Source: Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I, II.4-II.6,
+// II.10.
+
+#include <momenta/dae/solver/explicit_step.h>
+#include <momenta/dae/solver/first_step.h>
+#include <momenta/dae/solver/integration.h>
+#include <momenta/dae/solver/output_cursor.h>
+#include <momenta/dae/solver/step_control.h>
+#include <momenta/dae/solver/stopping.h>
+#include <momenta/dae/solver/tableau_dop853.h>
+#include <momenta/dae/solver/tableau_dp5.h>
+#include <momenta/dae/solver/tableau_rk4.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace momenta {
+namespace {
+
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+
+void require(bool condition, const char* sentence) {
+  if (!condition) throw std::invalid_argument(sentence);
+}
+
+void check(const OdeSystem& system, double t0, const std::vector<double>& y0,
+           const IntegrationOptions& options, bool has_error_estimate) {
+  require(std::isfinite(t0), "the start time must be finite");
+  require(y0.size() == static_cast<std::size_t>(system.size()),
+          "the start state must have the size of the system");
+  require(std::isfinite(options.step) && options.step >= 0, "a fixed step must be positive");
+  require(options.step > 0 || has_error_estimate,
+          "rk4 has no error estimate and needs a fixed step > 0");
+  require(options.step > 0 ||
+              (options.rtol >= 0 && options.atol >= 0 && options.rtol + options.atol > 0),
+          "rtol and atol must not be negative, nor both zero");
+}
+
+template <class Tableau>
+class ExplicitRun {
+ public:
+  ExplicitRun(OdeSystem& system, double t0, const std::vector<double>& y0,
+              const std::vector<double>& output_times, const IntegrationOptions& options,
+              const Observer& observer)
+      : system_(system),
+        options_(options),
+        observer_(observer),
+        outputs_(t0, output_times),
+        step_(system, options.rtol, options.atol, y0.data()),
+        cpu_(options.max_cpu_seconds),
+        t0_(t0),
+        t_(t0),
+        end_(outputs_.end()),
+        fixed_(options.step > 0),
+        sample_(y0.size()),
+        corrected_(system.has_after_step()) {
+    if (corrected_) unaltered_.resize(y0.size());
+    if (observer.step) between_ = [this](double t, double* y) { step_.interpolate(t, y); };
+  }
+
+  IntegrationResult run() {
+    result_.done = sample_until(t_) && (t_ == end_ || (start() && steps()));
+    if (!stopped_elsewhere_) {
+      result_.end_time = t_;
+      result_.y.assign(step_.y(), step_.y() + sample_.size());
+    }
+    result_.counters.evaluations = step_.evaluations();
+    return std::move(result_);
+  }
+
+ private:
+  /// First stage and first step.
+  bool start() {
+    system_.begin_step(t_, step_.y());
+    if (!step_.begin(t_)) return stop(evaluation_cause(system_.failure()));
+    if (fixed_) {
+      h_ = options_.step;
+      return true;
+    }
+    if constexpr (Tableau::estimates > 0) {
+      const double longest = longest_step();
+      h_ = options_.initial_step > 0
+               ? std::min(options_.initial_step, longest)
+               : first_step(Tableau::order, t_, step_.y(), step_.first_derivative(),
+                            step_.absolute_tolerance(), options_.rtol, sample_.size(), longest,
+                            step_.workspace(), step_.y_new(),
+                            [this](double t, const double* y, double* ydot) {
+                              return step_.evaluate(t, y, ydot);
+                            });
+    }
+    return true;
+  }
+
+  bool steps() {
+    while (true) {
+      const long attempts = result_.counters.steps + result_.counters.rejected;
+      if (attempts >= options_.max_steps)
+        return stop("the limit of " + std::to_string(options_.max_steps) + " steps is reached");
+      if (cpu_.exceeded()) {
+        result_.reason = time_limit_sentence(Tableau::name, cpu_.seconds(), t_);
+        return false;
+      }
+      const double t1 = step_end();
+      if (!attempt(t1)) {
+        if (!result_.reason.empty()) return false;
+        continue;
+      }
+      ++result_.counters.steps;
+      bool altered = false;
+      if (!observe(t1) || !correct(t1, altered)) return false;
+      // Without a correction f at the end is the next first stage wherever it is there; with one,
+      // only for methods that always have it, so that observing a run does not change it.
+      const bool keep_end = corrected_ ? Tableau::end_derivative_always && !altered : true;
+      const bool kept = step_.advance(keep_end);
+      t_ = t1;
+      if (!sample_until(t1 + time_tolerance(t1))) return false;
+      if (t_ >= end_) return true;
+      system_.begin_step(t_, step_.y());
+      if (!kept && !step_.begin(t_)) return stop(evaluation_cause(system_.failure()));
+    }
+  }
+
+  /// Where the step to be tried ends; sets h_ to the distance.
+  double step_end() {
+    if (fixed_) {
+      // On the grid t0 + k h, without summed rounding; the end takes the place of a point 1e-9 h
+      // off.
+      const double grid = t0_ + static_cast<double>(result_.counters.steps + 1) * options_.step;
+      const bool last = grid > end_ - 1e-9 * options_.step;
+      h_ = last ? end_ - t_ : options_.step;
+      return last ? end_ : grid;
+    }
+    // A remainder of 1 % is not worth a step of its own.
+    const double t1 = t_ + 1.01 * h_ >= end_ ? end_ : t_ + h_;
+    h_ = t1 - t_;
+    return t1;
+  }
+
+  /// One trial of a step to t1. False: repeat with the new h_, or, with a reason set, stop.
+  bool attempt(double t1) {
+    StageFailure failure = step_.attempt(t_, t1, h_);
+    double error_squared = 0;
+    if constexpr (Tableau::estimates > 0)
+      if (!fixed_ && failure == StageFailure::none) {
+        error_squared = step_.error_squared();
+        if (!std::isfinite(error_squared)) failure = StageFailure::not_finite;
+      }
+    if (failure == StageFailure::none && error_squared <= 1) {
+      if constexpr (Tableau::estimates > 0)
+        if (!fixed_) h_ = std::min(h_ * control_.accepted(error_squared), longest_step());
+      return true;
+    }
+    ++result_.counters.rejected;
+    if constexpr (Tableau::estimates > 0)
+      if (!fixed_) {
+        h_ *= failure == StageFailure::none ? control_.rejected(error_squared) : control_.failed();
+        if (h_ >= shortest_step()) return false;
+      }
+    return stop(failure_cause(failure));
+  }
+
+  std::string failure_cause(StageFailure failure) const {
+    const std::string cause = failure == StageFailure::rhs ? evaluation_cause(system_.failure())
+                              : failure == StageFailure::not_finite
+                                  ? "a value that is not a finite number came up"
+                                  : "the local error stayed above its tolerance";
+    if (fixed_) return cause;
+    return cause + ", also with a step of " + in_words(h_) + " s";
+  }
+
+  /// Shows the step, then the output times inside it.
+  bool observe(double t1) {
+    if (observer_.step) {
+      const bool go_on = observer_.step(t_, t1, between_);
+      if (step_.interpolation_failed()) return stop_at_interpolation(t1);
+      if (!go_on) return stop_here(t1, step_.y_new(), "the observer ended the run");
+    }
+    const double inside = t1 - time_tolerance(t1);
+    while (!outputs_.done() && outputs_.time() < inside) {
+      const double t = outputs_.time();
+      outputs_.advance();
+      if (!observer_.sample) continue;
+      if (!step_.interpolate(t, sample_.data())) return stop_at_interpolation(t1);
+      if (!observer_.sample(t, sample_.data(), nullptr))
+        return stop_here(t, sample_.data(), "the observer ended the run");
+    }
+    return true;
+  }
+
+  bool correct(double t1, bool& altered) {
+    if (!corrected_) return true;
+    std::copy_n(step_.y_new(), unaltered_.size(), unaltered_.data());
+    if (system_.after_step(t1, step_.y_new(), altered)) return true;
+    return stop_here(t1, unaltered_.data(), evaluation_cause(system_.failure()));
+  }
+
+  /// Output times at or before t, from the state at the step's end.
+  bool sample_until(double t) {
+    for (; outputs_.due(t); outputs_.advance())
+      if (observer_.sample && !observer_.sample(outputs_.time(), step_.y(), nullptr)) {
+        outputs_.advance();
+        return stop("the observer ended the run");
+      }
+    return true;
+  }
+
+  /// An output time this near a step's end is that end: rounding of the times, no more. On a fixed
+  /// grid both are meant as multiples of the step, and 1e-9 of it is the same thing.
+  double time_tolerance(double t1) const {
+    return fixed_ ? 1e-9 * options_.step : 4 * epsilon * std::abs(t1);
+  }
+  double longest_step() const {
+    const double span = end_ - t0_;
+    return options_.max_step > 0 ? std::min(options_.max_step, span) : span;
+  }
+  /// Below this a stage's time differs from t in its last digits only; near t = 0 the span counts.
+  double shortest_step() const {
+    return 16 * epsilon * std::max(std::abs(t_), 1e-6 * (end_ - t0_));
+  }
+
+  bool stop(const std::string& cause) {
+    result_.reason = stop_sentence(Tableau::name, t_, cause);
+    return false;
+  }
+  bool stop_here(double t, const double* y, const std::string& cause) {
+    result_.reason = stop_sentence(Tableau::name, t, cause);
+    result_.y.assign(y, y + sample_.size());
+    result_.end_time = t;
+    stopped_elsewhere_ = true;
+    return false;
+  }
+  bool stop_at_interpolation(double t1) {
+    return stop_here(
+        t1, step_.y_new(),
+        "dense output of the last step failed: " + evaluation_cause(system_.failure()));
+  }
+
+  OdeSystem& system_;
+  const IntegrationOptions& options_;
+  const Observer& observer_;
+  OutputCursor outputs_;
+  ExplicitStep<Tableau> step_;
+  StepControl<Tableau> control_;
+  CpuLimit cpu_;
+  Interpolant between_;
+  double t0_, t_, end_;  ///< start, current step's start, end [s]
+  double h_ = 0;         ///< step tried next [s]
+  bool fixed_;           ///< steps of options.step, no error control
+  std::vector<double> sample_, unaltered_;
+  bool corrected_;                  ///< the system alters accepted states
+  bool stopped_elsewhere_ = false;  ///< result_ has a time and state that are no step's start
+  IntegrationResult result_;
+};
+
+template <class Tableau>
+IntegrationResult integrate(OdeSystem& system, double t0, const std::vector<double>& y0,
+                            const std::vector<double>& output_times,
+                            const IntegrationOptions& options, const Observer& observer) {
+  check(system, t0, y0, options, Tableau::estimates > 0);
+  return ExplicitRun<Tableau>(system, t0, y0, output_times, options, observer).run();
+}
+
+}  // namespace
+
+IntegrationResult integrate_explicit(const std::string& method, OdeSystem& system, double t0,
+                                     const std::vector<double>& y0,
+                                     const std::vector<double>& output_times,
+                                     const IntegrationOptions& options, const Observer& observer) {
+  if (method == "rk4")
+    return integrate<TableauRk4>(system, t0, y0, output_times, options, observer);
+  if (method == "dp5")
+    return integrate<TableauDp5>(system, t0, y0, output_times, options, observer);
+  if (method == "dop853")
+    return integrate<TableauDop853>(system, t0, y0, output_times, options, observer);
+  throw std::invalid_argument("no explicit method \"" + method + "\": rk4, dp5, dop853 are known");
+}
+
+}  // namespace momenta

@@ -1,0 +1,216 @@
+#pragma once
+// One step of an explicit Runge-Kutta method, its error and its dense output, for any tableau:
+//
+//   k_i = f(t + c_i h, y + h Σ_{j<i} a_ij k_j),   y_new = y + h Σ_j b_j k_j.
+//
+// Stages 0 … s-1 make y_new; stage s is f at the end (t + h, y_new); further ones serve dense
+// output alone and are evaluated only when somebody interpolates. With Δ = y_new - y, θ = (t' -
+// t)/h:
+//
+//   y(θ) = r_0 + θ(r_1 + (1-θ)(r_2 + θ(r_3 + (1-θ)(r_4 + …)))),
+//   r_0 = y, r_1 = Δ, r_2 = h k_0 - Δ, r_3 = Δ - h k_s - r_2, r_{4+i} = h Σ_j d_ij k_j;
+//
+// the first four terms are the Hermite cubic. Source: Hairer, Norsett, Wanner, Solving Ordinary
+// Differential Equations I, II.4 (error norm), II.6 (dense output), II.10 (the norm of DOP853).
+
+#include <momenta/dae/solver/aligned_array.h>
+#include <momenta/dae/solver/integration.h>
+#include <momenta/dae/solver/stage_sum.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+namespace momenta {
+
+enum class StageFailure { none, rhs, not_finite };
+
+template <class Tableau>
+class ExplicitStep {
+  static constexpr std::size_t s = Tableau::stages;
+  static constexpr std::size_t stored = s + 1 + Tableau::dense_stages;
+  static constexpr std::size_t terms = 4 + Tableau::dense_rows;
+
+ public:
+  ExplicitStep(OdeSystem& system, double rtol, double atol, const double* y0)
+      : system_(system),
+        n_(static_cast<std::size_t>(system.size())),
+        stride_(padded(n_)),
+        rtol_(rtol),
+        atol_(stride_),
+        y_(stride_),
+        y_new_(stride_),
+        argument_(stride_),
+        k_(stored * stride_),
+        r_(terms * stride_) {
+    std::copy_n(y0, n_, y_.data());
+    // Padding weighs 1, and no weight is zero: a component at rest at 0 with atol 0 then passes.
+    std::fill_n(atol_.data(), stride_, 1.0);
+    for (std::size_t i = 0; i < n_; ++i) {
+      const double scale = system.scale(static_cast<int>(i));
+      atol_[i] =
+          std::isinf(scale) ? scale : std::max(atol * scale, std::numeric_limits<double>::min());
+    }
+  }
+
+  double* y() { return y_.data(); }
+  double* y_new() { return y_new_.data(); }
+  const double* first_derivative() const { return stage(0); }
+  const double* absolute_tolerance() const { return atol_.data(); }
+  double* workspace() { return argument_.data(); }
+  long evaluations() const { return evaluations_; }
+
+  /// k_0 = f(t, y).
+  bool begin(double t) { return evaluate(t, y_.data(), stage(0)); }
+
+  /// f at any (t, y), counted.
+  bool evaluate(double t, const double* y, double* ydot) {
+    ++evaluations_;
+    return system_.rhs(t, y, ydot);
+  }
+
+  /// Stages, y_new, and the end derivative where the method always has it. t1 is t + h.
+  StageFailure attempt(double t, double t1, double h) {
+    t_ = t, t1_ = t1, h_ = h;
+    have_end_ = have_dense_ = false;
+    if (!stages(std::make_index_sequence<s - 1>{})) return StageFailure::rhs;
+    stage_state<Tableau::a, s>(y_.data(), h, k_.data(), stride_, y_new_.data());
+    if constexpr (Tableau::end_derivative_always)
+      if (!have_end_derivative()) return StageFailure::rhs;
+    const bool good = finite(y_new_.data(), stride_) &&
+                      (!Tableau::end_derivative_always || finite(stage(s), stride_));
+    return good ? StageFailure::none : StageFailure::not_finite;
+  }
+
+  /// Square of the local error over its tolerance, RMS over the unknowns; at most 1 passes. Not
+  /// finite when a stage was not.
+  double error_squared() const {
+    const double* k = k_.data();
+    std::array<double, lanes> sum{}, sum_low{};
+    for (std::size_t block = 0; block < stride_; block += lanes)
+      for (std::size_t lane = 0; lane < lanes; ++lane) {
+        const std::size_t i = block + lane;
+        const double weight =
+            1 / (atol_[i] + rtol_ * std::max(std::abs(y_[i]), std::abs(y_new_[i])));
+        const double e = weight * stage_sum<Tableau::e, 0>(k + i, stride_);
+        sum[lane] += e * e;
+        if constexpr (Tableau::estimates == 2) {
+          const double low = weight * stage_sum<Tableau::e, 1>(k + i, stride_);
+          sum_low[lane] += low * low;
+        }
+      }
+    const double n = static_cast<double>(std::max<std::size_t>(n_, 1));
+    const double high = total(sum);
+    if constexpr (Tableau::estimates == 1) return h_ * h_ * high / n;
+    // |e_5|⁴ / (|e_5|² + |e_3|²/100): DOP853's combination, squared.
+    const double both = high + 0.01 * total(sum_low);
+    return both == 0 ? 0 : h_ * h_ * high * high / (both * n);
+  }
+
+  /// y at t in [t, t1] into out, n values; NaN throughout when a stage for it cannot be had.
+  bool interpolate(double t, double* out) {
+    if (!have_dense_ && !prepare_dense()) {
+      std::fill_n(out, n_, std::numeric_limits<double>::quiet_NaN());
+      return false;
+    }
+    const double theta = (t - t_) / h_, rest = 1 - theta;
+    for (std::size_t i = 0; i < n_; ++i) {
+      double value = r_[(terms - 1) * stride_ + i];
+      for (std::size_t j = terms - 1; j-- > 0;)
+        value = r_[j * stride_ + i] + (j % 2 == 0 ? theta : rest) * value;
+      out[i] = value;
+    }
+    return true;
+  }
+  bool interpolation_failed() const { return interpolation_failed_; }
+
+  /// Takes the step. With `keep_end` f at its end, if there, becomes the next first stage; returns
+  /// whether it did.
+  bool advance(bool keep_end) {
+    y_.swap(y_new_);
+    if (!keep_end || !have_end_) return false;
+    std::memcpy(stage(0), stage(s), n_ * sizeof(double));
+    return true;
+  }
+
+ private:
+  double* stage(std::size_t i) { return k_.data() + i * stride_; }
+  const double* stage(std::size_t i) const { return k_.data() + i * stride_; }
+
+  /// Stage `row` by its own abscissa; c = 1 means the step's end to the last bit.
+  template <std::size_t row>
+  bool run_stage() {
+    stage_state<Tableau::a, row>(y_.data(), h_, k_.data(), stride_, argument_.data());
+    const double t = Tableau::c[row] == 1 ? t1_ : t_ + Tableau::c[row] * h_;
+    return evaluate(t, argument_.data(), stage(row));
+  }
+  template <std::size_t... i>
+  bool stages(std::index_sequence<i...>) {
+    return (run_stage<i + 1>() && ...);
+  }
+  template <std::size_t... i>
+  bool dense_stages(std::index_sequence<i...>) {
+    return (run_stage<s + 1 + i>() && ...);
+  }
+
+  bool have_end_derivative() {
+    if (!have_end_) have_end_ = evaluate(t1_, y_new_.data(), stage(s));
+    return have_end_;
+  }
+
+  bool prepare_dense() {
+    if (interpolation_failed_) return false;
+    if (!have_end_derivative() ||
+        !dense_stages(std::make_index_sequence<Tableau::dense_stages>{})) {
+      interpolation_failed_ = true;
+      return false;
+    }
+    for (std::size_t i = 0; i < stride_; ++i) {
+      const double delta = y_new_[i] - y_[i];
+      const double bend = h_ * stage(0)[i] - delta;
+      r_[i] = y_[i];
+      r_[stride_ + i] = delta;
+      r_[2 * stride_ + i] = bend;
+      r_[3 * stride_ + i] = delta - h_ * stage(s)[i] - bend;
+    }
+    dense_terms(std::make_index_sequence<Tableau::dense_rows>{});
+    have_dense_ = finite(r_.data(), terms * stride_);
+    interpolation_failed_ = !have_dense_;
+    return have_dense_;
+  }
+  template <std::size_t... row>
+  void dense_terms(std::index_sequence<row...>) {
+    (dense_term<row>(), ...);
+  }
+  template <std::size_t row>
+  void dense_term() {
+    for (std::size_t i = 0; i < stride_; ++i)
+      r_[(4 + row) * stride_ + i] = h_ * stage_sum<Tableau::d, row>(k_.data() + i, stride_);
+  }
+
+  static double total(const std::array<double, lanes>& v) {
+    double sum = 0;
+    for (const double x : v) sum += x;
+    return sum;
+  }
+
+  /// 0 · x is 0 for a finite x and NaN for any other.
+  static bool finite(const double* x, std::size_t size) {
+    std::array<double, lanes> probe{};
+    for (std::size_t block = 0; block < size; block += lanes)
+      for (std::size_t lane = 0; lane < lanes; ++lane) probe[lane] += 0 * x[block + lane];
+    return total(probe) == 0;
+  }
+
+  OdeSystem& system_;
+  std::size_t n_, stride_;  ///< unknowns; rounded up to whole cache lines, the padding always zero
+  double rtol_;
+  AlignedArray atol_, y_, y_new_, argument_;  ///< stride_ each
+  AlignedArray k_;                            ///< stages, stored × stride_
+  AlignedArray r_;                            ///< dense output, terms × stride_
+  double t_ = 0, t1_ = 0, h_ = 0;
+  long evaluations_ = 0;
+  bool have_end_ = false, have_dense_ = false, interpolation_failed_ = false;
+};
+
+}  // namespace momenta
