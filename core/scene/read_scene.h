@@ -6,16 +6,18 @@
 
 namespace momenta {
 
-/// Reads a scene from a TOML file. @throws SceneError: one sentence with file, line and column, the key or name at
-/// fault, what was found and what was expected. Cost O(size of file); files over 64 MiB are refused unread.
+/// Reads a scene from a TOML file. @throws SceneError: one sentence with file, line and column, the
+/// key or name at fault, what was found and what was expected. Cost O(size of file); files over 64
+/// MiB are refused unread.
 Scene read_scene(const std::filesystem::path& file);
 
 /// The same from text; `file` only names it in messages.
 Scene parse_scene(std::string_view text, const std::string& file = "scene");
 
-/// Everything that can be told from the scene alone: names unique and known, masses, inertias (triangle inequality),
-/// finite numbers, sizes of position and velocity, every body the child of exactly one joint, no cycle among the
-/// joints, drives and torques on joints that can take them. Called by the reader; call it for scenes built by hand.
+/// Everything that can be told from the scene alone: names unique and known, masses, inertias
+/// (triangle inequality), finite numbers, sizes of position and velocity, every body the child of
+/// exactly one joint, no cycle among the joints, drives and torques on joints that can take them.
+/// Called by the reader; call it for scenes built by hand.
 /// @throws SceneError
 void validate(const Scene& scene);
 

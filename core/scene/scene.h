@@ -1,6 +1,8 @@
 #pragma once
-// A scene: the mechanism as its author wrote it, before any analysis. Plain data, SI units, angles in rad.
-// The reader (read_scene) fills it from TOML; programs may fill it by hand.
+// A scene: the mechanism as its author wrote it, before any analysis. Plain data, SI units, angles
+// in rad. The reader (read_scene) fills it from TOML; programs may fill it by hand.
+
+#include <momenta/core/tree/joint_kind.h>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -15,8 +17,8 @@ namespace momenta {
 
 /// Where a thing stands in its file; line 0 means it did not come from a file.
 struct Location {
-  int line = 0;
-  int column = 0;
+  int line = 0;    ///< from 1
+  int column = 0;  ///< from 1, in characters
 };
 
 /// Bad input. what() is one sentence: "file:line:column: what was found, what was expected".
@@ -25,30 +27,49 @@ class SceneError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// How a body is drawn; `rod`, `box`, `cylinder`, `sphere` and `point` also give com and inertia.
+/// A solid of uniform density: how a body is drawn and, where com or inertia are not written out,
+/// what gives them. A rod is slender and reaches from the body origin along its axis, com half way.
+/// The others are centred on the body origin, or on `com` where that is given. A point has no
+/// inertia. `com` and `inertia` written out win, each for itself.
 struct Shape {
-  std::string kind;                                ///< rod box cylinder sphere point, or empty
-  Eigen::Vector3d size = Eigen::Vector3d::Zero();  ///< rod: length, 0, 0; box: x, y, z; cylinder: length, radius, 0; sphere: radius [m]
-  Eigen::Vector3d axis = Eigen::Vector3d::UnitX(); ///< rod, cylinder: direction in body axes
+  std::string kind;  ///< rod box cylinder sphere point, or empty
+  /// rod: length, 0, 0; box: x, y, z; cylinder: length, radius, 0; sphere: radius, 0, 0 [m]
+  Eigen::Vector3d size = Eigen::Vector3d::Zero();
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitX();  ///< rod, cylinder: direction in body axes
 };
 
+/// In a file, inertia is [xx, yy, zz, xy, xz, yz], or [xx, yy, zz], or one number: the moment about
+/// z of a planar body, stored as diag(Izz/2, Izz/2, Izz), a thin plate. (diag(0, 0, Izz) belongs to
+/// no mass whatever: no principal moment exceeds the sum of the other two. Motion in the plane does
+/// not feel Ixx and Iyy.) A body with a mass has a shape or an inertia; mass 0 is a massless body.
 struct BodySpec {
-  std::string name;
-  double mass = 0;                                       ///< [kg]
-  Eigen::Vector3d com = Eigen::Vector3d::Zero();         ///< centre of mass in body axes [m]
-  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();     ///< about the centre of mass, body axes [kg m²]
+  std::string name;                               ///< not "ground", which is what does not move
+  double mass = 0;                                ///< [kg]
+  Eigen::Vector3d com = Eigen::Vector3d::Zero();  ///< centre of mass in body axes [m]
+  /// About the centre of mass, body axes [kg m²]; its principal moments a <= b <= c satisfy
+  /// 0 <= a and c <= a + b.
+  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();
   Shape shape;
   Location at;
 };
 
-enum class JointKind { revolute, prismatic, spherical, free, weld };
-
-/// A joint of the tree. The joint frame sits in the parent body at `origin_parent`, turned by `rotation`; in the child
-/// body at `origin_child`, parallel to the child's axes. At q = 0 the two frames coincide.
-/// q: revolute [rad], prismatic [m]; spherical: quaternion w x y z of the child axes in the joint frame;
-/// free: position x y z [m] of the child point in the joint frame, then that quaternion; weld: none.
-/// u: revolute [rad/s], prismatic [m/s]; spherical: angular velocity in child axes [rad/s];
-/// free: velocity of the child point [m/s], then angular velocity [rad/s], both in child axes.
+/// A joint of the tree; its child is a body, its parent a body or "ground".
+/// The joint frame sits in the parent at `origin_parent`, turned by `rotation`; in the child at
+/// `origin_child`, parallel to the child's axes. At q = 0 (quaternion 1, 0, 0, 0) the two coincide.
+///
+/// q, by kind:
+///   - revolute [rad], prismatic [m]; weld: none
+///   - spherical: quaternion w x y z of the child axes in the joint frame
+///   - free: position x y z [m] of the child point in the joint frame, then that quaternion
+///
+/// u, by kind:
+///   - revolute [rad/s], prismatic [m/s]; weld: none
+///   - spherical: angular velocity [rad/s], child axes
+///   - free: velocity of the child point [m/s], then angular velocity [rad/s], both in child axes
+///
+/// In a file, rotation is { rpy = [r, p, y] }, meaning Rz(y) Ry(p) Rx(r), or
+/// { quaternion = [w, x, y, z] }, or { axis = .., angle = .. }; an axis is three numbers, which are
+/// normalised, or "x", "-x", "y", ...
 struct JointSpec {
   std::string name;
   JointKind kind = JointKind::revolute;
@@ -58,16 +79,20 @@ struct JointSpec {
   Eigen::Vector3d origin_child = Eigen::Vector3d::Zero();        ///< in child axes [m]
   Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();  ///< joint frame in parent axes
   Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();               ///< unit vector in the joint frame
-  std::vector<double> position;                                  ///< start value or first guess, size nq (empty: zero)
-  std::vector<double> velocity;                                  ///< start value or first guess, size nv (empty: zero)
-  double stiffness = 0, rest = 0, damping = 0;                   ///< revolute, prismatic: [N m/rad], [rad], [N m s/rad] or [N/m], [m], [N s/m]
+  std::vector<double> position;  ///< start value or first guess, size nq (empty: q = 0)
+  std::vector<double> velocity;  ///< start value or first guess, size nv (empty: zero)
+  double stiffness = 0;          ///< revolute [N m/rad], prismatic [N/m]; else 0
+  double rest = 0;               ///< revolute [rad], prismatic [m]; else 0
+  double damping = 0;            ///< revolute [N m s/rad], prismatic [N s/m]; else 0
   Location at;
 };
 
 enum class LoopKind { point, revolute, spherical, weld, prismatic, distance };
 
-/// A joint that closes a loop; the same keys as a joint. `point` and `spherical` are the same three equations.
-/// `distance` keeps |origin_parent − origin_child| = length.
+/// A joint that closes a loop; the same keys as a joint, without coordinates and what acts on them.
+/// Its child is a body, its parent another one or "ground".
+///   - `point` and `spherical` are the same three equations
+///   - `distance` keeps |origin_parent − origin_child| = length
 struct LoopSpec {
   std::string name;
   LoopKind kind = LoopKind::point;
@@ -82,10 +107,11 @@ struct LoopSpec {
 };
 
 /// A joint coordinate as a function of time. Applies to revolute and prismatic joints.
-///   polynomial  f = Σ c_i tⁱ                         coefficients = [c0, c1, ...]
-///   harmonic    f = offset + amplitude sin(ω t + φ)   offset, amplitude, frequency [rad/s], phase [rad]
-///   step        from → to between start and start + duration, by the quintic 10x³ − 15x⁴ + 6x⁵
-///   table       natural cubic spline through (times, values); constant slope outside
+///   - polynomial: f = Σ cᵢ tⁱ, coefficients = [c0, c1, ...]
+///   - harmonic: f = offset + amplitude sin(ω t + φ), with ω = frequency [rad/s], φ = phase [rad]
+///   - step: `from` → `to` between start and start + duration, by the quintic 10x³ − 15x⁴ + 6x⁵
+///   - table: natural cubic spline through (times, values); constant slope outside
+/// The laws are evaluated by MotionLaw, core/tree/drive.h.
 struct DriveSpec {
   std::string joint;
   std::string kind;
@@ -96,27 +122,30 @@ struct DriveSpec {
   Location at;
 };
 
-/// kind "spring-damper": between a point of `parent` and a point of `child`: k (l − rest) + c dl/dt along the line.
-/// kind "torque": generalised force `value` on a revolute [N m] or prismatic [N] joint.
-/// kind "wrench": constant force at `point` of `body` and torque, in ground axes (`axes = "ground"`, default) or body axes ("body").
+/// What acts on the mechanism; the name is optional.
+///   - "spring-damper": between a point of `parent` and a point of `child`, k (l − rest) + c dl/dt
+///     along the line
+///   - "torque": generalised force `value` on a revolute [N m] or prismatic [N] joint
+///   - "wrench": constant force at `point` of `body`, and torque, in ground axes, the default
+///     (`axes = "ground"`), or in body axes (`axes = "body"`)
 struct ForceSpec {
   std::string name;
   std::string kind;
-  std::string parent = "ground", child;                          ///< spring-damper
-  Eigen::Vector3d origin_parent = Eigen::Vector3d::Zero();       ///< spring-damper, in parent axes [m]
-  Eigen::Vector3d origin_child = Eigen::Vector3d::Zero();        ///< spring-damper, in child axes [m]
-  double stiffness = 0, damping = 0, rest = 0;                   ///< [N/m], [N s/m], [m]
-  std::string joint;                                             ///< torque
-  double value = 0;                                              ///< torque [N m or N]
-  std::string body;                                              ///< wrench
-  Eigen::Vector3d point = Eigen::Vector3d::Zero();               ///< wrench, in body axes [m]
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();               ///< wrench [N]
-  Eigen::Vector3d torque = Eigen::Vector3d::Zero();              ///< wrench [N m]
-  bool in_body_axes = false;                                     ///< wrench
+  std::string parent = "ground", child;                     ///< spring-damper
+  Eigen::Vector3d origin_parent = Eigen::Vector3d::Zero();  ///< spring-damper, in parent axes [m]
+  Eigen::Vector3d origin_child = Eigen::Vector3d::Zero();   ///< spring-damper, in child axes [m]
+  double stiffness = 0, damping = 0, rest = 0;              ///< [N/m], [N s/m], [m]
+  std::string joint;                                        ///< torque
+  double value = 0;                                         ///< torque [N m or N]
+  std::string body;                                         ///< wrench
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();          ///< wrench, in body axes [m]
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();          ///< wrench [N]
+  Eigen::Vector3d torque = Eigen::Vector3d::Zero();         ///< wrench [N m]
+  bool in_body_axes = false;                                ///< wrench
   Location at;
 };
 
-/// A named point of a body (or of "ground") whose position and velocity are reported, in ground axes.
+/// A named point of a body, or of "ground", whose position and velocity are reported, ground axes.
 struct MarkerSpec {
   std::string name;
   std::string body;
@@ -124,12 +153,12 @@ struct MarkerSpec {
   Location at;
 };
 
-/// What a run takes when the command line does not say otherwise; also the values `momenta drift` starts from.
+/// What a run takes where the command line says nothing; `momenta drift` starts from these.
 struct RunDefaults {
-  double end_time = 10;              ///< [s]
-  std::optional<double> step;        ///< fixed-step integrators [s]
-  std::optional<double> leak;        ///< gauge leak κ [1/s]
-  int samples = 1000;                ///< output intervals
+  double end_time = 10;        ///< [s]
+  std::optional<double> step;  ///< fixed-step integrators [s]
+  std::optional<double> leak;  ///< gauge leak κ [1/s]
+  int samples = 1000;          ///< output intervals
 };
 
 struct Scene {
@@ -142,10 +171,11 @@ struct Scene {
   std::vector<DriveSpec> drives;
   std::vector<ForceSpec> forces;
   std::vector<MarkerSpec> markers;
-  std::vector<std::string> held;  ///< joints whose position and velocity assembly must keep: [assembly] hold = [...]
+  std::vector<std::string> held;  ///< [assembly] hold: joints whose q and u assembly must keep
   RunDefaults run;                ///< [run] end, step, leak, samples
 
-  /// The sentence prefix "file:line:column: " of a place in this scene.
+  /// The sentence prefix "file:line:column: " of a place in this scene; without line and column
+  /// for a thing that came from no file, and "scene: " where the scene itself did.
   std::string where(Location at) const;
 };
 

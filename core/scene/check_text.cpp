@@ -1,0 +1,156 @@
+#include <momenta/core/scene/toml_values.h>
+
+namespace momenta::reading {
+namespace {
+
+constexpr int deepest = 16;
+constexpr int most_values = 4'000'000;
+
+/// Length of the UTF-8 sequence at `i`, 0 when there is none (RFC 3629: no overlong forms, no
+/// surrogates).
+std::size_t sequence_length(std::string_view text, std::size_t i) {
+  const auto byte = [&](std::size_t k) -> unsigned {
+    return i + k < text.size() ? static_cast<unsigned char>(text[i + k]) : 0U;
+  };
+  const auto follows = [&](std::size_t k) { return (byte(k) & 0xc0U) == 0x80U; };
+  const unsigned b = byte(0);
+  if (b < 0x80) return 1;
+  if (b >= 0xc2 && b <= 0xdf) return follows(1) ? 2 : 0;
+  if (b >= 0xe0 && b <= 0xef) {
+    if ((b == 0xe0 && byte(1) < 0xa0) || (b == 0xed && byte(1) > 0x9f)) return 0;
+    return follows(1) && follows(2) ? 3 : 0;
+  }
+  if (b >= 0xf0 && b <= 0xf4) {
+    if ((b == 0xf0 && byte(1) < 0x90) || (b == 0xf4 && byte(1) > 0x8f)) return 0;
+    return follows(1) && follows(2) && follows(3) ? 4 : 0;
+  }
+  return 0;
+}
+
+void check_characters(std::string_view text, const std::string& file) {
+  Location at{1, 1};
+  for (std::size_t i = 0; i < text.size();) {
+    const std::size_t length = sequence_length(text, i);
+    if (length == 0) fail(file, at, "a byte that is not UTF-8, expected a scene in UTF-8 text");
+    if (text[i] == '\0') fail(file, at, "a NUL byte, expected a scene in UTF-8 text");
+    if (text[i] == '\n') {
+      ++at.line;
+      at.column = 0;
+    }
+    ++at.column;
+    i += length;
+  }
+}
+
+/// Walks over the text as a TOML lexer does, just far enough to tell strings and comments from the
+/// rest, and counts. Where the text is malformed the walk may end early: the parser stops there
+/// too.
+class Nesting {
+ public:
+  Nesting(std::string_view text, const std::string& file) : text_(text), file_(file) {}
+
+  void check() {
+    while (i_ < text_.size()) {
+      const char c = text_[i_];
+      if (c == '#') {
+        while (i_ < text_.size() && text_[i_] != '\n') ++i_;
+        continue;
+      }
+      if (c == '"' || c == '\'') {
+        if (!skip_string(c)) return;
+        continue;
+      }
+      count(c);
+      ++i_;
+    }
+  }
+
+ private:
+  void count(char c) {
+    switch (c) {
+      case '.':
+        if (++dots_ > deepest) refuse("a key of more than 16 parts");
+        return;
+      case '[':
+      case '{':
+        if (++depth_ > deepest) refuse("brackets nested more than 16 deep");
+        break;
+      case ']':
+      case '}':
+        if (depth_ > 0) --depth_;
+        dots_ = 0;
+        return;
+      case '\n':
+        ++line_;
+        line_begin_ = i_ + 1;
+        dots_ = 0;
+        return;
+      case '=':
+      case ',':
+        break;
+      default:
+        return;
+    }
+    dots_ = 0;
+    if (++values_ > most_values) refuse("more than 4 million values");
+  }
+
+  bool starts_with_three(char quote) const {
+    return text_.substr(i_, 3) == std::string_view(quote == '"' ? "\"\"\"" : "'''");
+  }
+
+  /// Moves behind a string. @return false where it is not closed
+  bool skip_string(char quote) {
+    const bool many_lines = starts_with_three(quote);
+    i_ += many_lines ? 3 : 1;
+    while (i_ < text_.size()) {
+      const char c = text_[i_];
+      if (c == '\\' && quote == '"') {
+        if (i_ + 1 < text_.size() && text_[i_ + 1] == '\n') break_line(i_ + 1);
+        i_ += 2;
+      } else if (c == quote && !many_lines) {
+        ++i_;
+        return true;
+      } else if (c == quote && starts_with_three(quote)) {
+        // up to two quotes may stand before the closing three
+        i_ += 3;
+        for (int more = 0; more < 2 && i_ < text_.size() && text_[i_] == quote; ++more) ++i_;
+        return true;
+      } else {
+        if (c == '\n') {
+          if (!many_lines) return false;
+          break_line(i_);
+        }
+        ++i_;
+      }
+    }
+    return false;
+  }
+
+  void break_line(std::size_t newline) {
+    ++line_;
+    line_begin_ = newline + 1;
+  }
+
+  [[noreturn]] void refuse(const std::string& what) const {
+    fail(file_, {line_, static_cast<int>(i_ - line_begin_) + 1},
+         what + ", expected a scene (which needs 3 levels)");
+  }
+
+  std::string_view text_;
+  const std::string& file_;
+  std::size_t i_ = 0, line_begin_ = 0;
+  int line_ = 1, depth_ = 0, dots_ = 0, values_ = 0;
+};
+
+}  // namespace
+
+void check_text(std::string_view text, const std::string& file) {
+  if (text.empty()) fail(file, {}, "the file is empty, expected a scene");
+  if (text.size() > largest_text)
+    fail(file, {}, "the file is over 64 MiB, expected a scene of at most 64 MiB");
+  check_characters(text, file);
+  Nesting(text, file).check();
+}
+
+}  // namespace momenta::reading

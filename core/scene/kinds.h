@@ -1,0 +1,48 @@
+#pragma once
+// The kinds of joints, loops, drives, forces and shapes, by name.
+
+#include <momenta/core/scene/scene.h>
+
+#include <array>
+#include <cstddef>
+#include <string_view>
+
+namespace momenta::reading {
+
+// In the order of the enumerations.
+inline constexpr std::array<std::string_view, 5> joint_kinds{"revolute", "prismatic", "spherical",
+                                                             "free", "weld"};
+inline constexpr std::array<std::string_view, 6> loop_kinds{"point", "revolute",  "spherical",
+                                                            "weld",  "prismatic", "distance"};
+inline constexpr std::array<std::string_view, 4> drive_kinds{"polynomial", "harmonic", "step",
+                                                             "table"};
+inline constexpr std::array<std::string_view, 3> force_kinds{"spring-damper", "torque", "wrench"};
+inline constexpr std::array<std::string_view, 5> shape_kinds{"rod", "box", "cylinder", "sphere",
+                                                             "point"};
+
+/// Kinds the scene format has a name for, and no equations yet.
+inline constexpr std::array<std::string_view, 5> planned_kinds{"helical", "cylindrical",
+                                                               "universal", "planar", "coupler"};
+
+static_assert(static_cast<std::size_t>(JointKind::weld) + 1 == joint_kinds.size());
+static_assert(static_cast<std::size_t>(LoopKind::distance) + 1 == loop_kinds.size());
+
+inline std::string_view name_of(JointKind kind) {
+  return joint_kinds.at(static_cast<std::size_t>(kind));
+}
+inline std::string_view name_of(LoopKind kind) {
+  return loop_kinds.at(static_cast<std::size_t>(kind));
+}
+
+constexpr bool has_axis(JointKind kind) {
+  return kind == JointKind::revolute || kind == JointKind::prismatic;
+}
+constexpr bool has_axis(LoopKind kind) {
+  return kind == LoopKind::revolute || kind == LoopKind::prismatic;
+}
+
+/// Unit quaternions within this are normalised, or accepted; beyond it they are a mistake of the
+/// author.
+inline constexpr double norm_slack = 1e-6;
+
+}  // namespace momenta::reading

@@ -1,0 +1,88 @@
+#include <momenta/core/scene/near_name.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cstddef>
+#include <vector>
+
+namespace momenta::reading {
+namespace {
+
+constexpr std::size_t longest_name = 60;
+constexpr std::size_t farthest = 2;
+
+/// Levenshtein distance, or farthest + 1 when it is larger.
+std::size_t distance(std::string_view a, std::string_view b) {
+  const std::size_t longer = std::max(a.size(), b.size());
+  if (longer - std::min(a.size(), b.size()) > farthest || longer > 200) return farthest + 1;
+
+  // row[j]: distance between the first i letters of a and the first j letters of b
+  std::vector<std::size_t> row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({replaced, row[j] + 1, row[j - 1] + 1});
+    }
+  }
+  return std::min(row[b.size()], farthest + 1);
+}
+
+}  // namespace
+
+std::string on_one_line(std::string_view text) {
+  constexpr std::string_view hex = "0123456789abcdef";
+  std::string line;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < 0x20 || byte == 0x7f) {
+      line += "\\x";
+      line += hex[byte >> 4];
+      line += hex[byte & 15];
+    } else {
+      line += c;
+    }
+  }
+  return line;
+}
+
+std::string in_quotes(std::string_view name) {
+  if (name.size() <= longest_name) return "'" + on_one_line(name) + "'";
+  std::size_t cut = longest_name;
+  while (cut > 0 && (static_cast<unsigned char>(name[cut]) & 0xc0) == 0x80) --cut;
+  return "'" + on_one_line(name.substr(0, cut)) + "...'";
+}
+
+std::string listed(std::span<const std::string_view> names) {
+  std::string list;
+  for (const std::string_view name : names) {
+    if (!list.empty()) list += ", ";
+    list += name;
+  }
+  return list;
+}
+
+std::string digits(double number) {
+  std::array<char, 40> text{};
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), number).ptr;
+  return {text.data(), end};
+}
+
+std::string did_you_mean(std::string_view word, std::span<const std::string_view> known) {
+  std::string_view nearest;
+  std::size_t least = farthest + 1;
+  for (const std::string_view name : known) {
+    const std::size_t d = distance(word, name);
+    if (d < least && d < std::max(word.size(), name.size())) {
+      least = d;
+      nearest = name;
+    }
+  }
+  return nearest.empty() ? std::string() : "; did you mean " + in_quotes(nearest) + "?";
+}
+
+}  // namespace momenta::reading

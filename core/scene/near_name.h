@@ -1,0 +1,28 @@
+#pragma once
+// Words in error sentences: names in quotes, lists, and "did you mean".
+
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace momenta::reading {
+
+/// 'name', on one line whatever it holds: control characters are written \xNN, long names are cut
+/// with "...".
+std::string in_quotes(std::string_view name);
+
+/// The same text with control characters written \xNN, uncut and without quotes.
+std::string on_one_line(std::string_view text);
+
+/// "a, b, c".
+std::string listed(std::span<const std::string_view> names);
+
+/// The shortest digits that read back as the same number.
+std::string digits(double number);
+
+/// "; did you mean 'name'?" for the known name at Levenshtein distance <= 2 from `word`, the
+/// nearest one; empty when there is none, and when a name so short has nothing in common with the
+/// word. Cost O(names × length).
+std::string did_you_mean(std::string_view word, std::span<const std::string_view> known);
+
+}  // namespace momenta::reading

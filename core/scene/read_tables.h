@@ -1,0 +1,37 @@
+#pragma once
+// One function per table of the scene format. Each checks keys, types and the values which can be
+// judged alone; what concerns several tables is left to validate().
+
+#include <momenta/core/scene/fields.h>
+#include <momenta/core/scene/scene.h>
+
+#include <cstddef>
+#include <span>
+#include <string_view>
+
+namespace momenta::reading {
+
+BodySpec read_body(const Fields& table);
+JointSpec read_joint(const Fields& table);
+LoopSpec read_loop(const Fields& table);
+DriveSpec read_drive(const Fields& table);
+ForceSpec read_force(const Fields& table);
+MarkerSpec read_marker(const Fields& table);
+RunDefaults read_run(const Fields& table);
+
+/// The value of `key`, one of `kinds`; else fails with the kinds there are. @return its index in
+/// `kinds`
+std::size_t read_kind(const Fields& table, std::span<const std::string_view> kinds);
+
+/// origin = { parent = [..], child = [..] }, both zero by default.
+struct Origins {
+  Eigen::Vector3d parent = Eigen::Vector3d::Zero();
+  Eigen::Vector3d child = Eigen::Vector3d::Zero();
+};
+Origins read_origins(const Fields& table);
+
+/// rotation = { rpy = [roll, pitch, yaw] } | { quaternion = [w, x, y, z] } | { axis = .., angle =
+/// .. }; rpy means Rz(yaw) Ry(pitch) Rx(roll).
+Eigen::Quaterniond read_rotation(const Fields& table);
+
+}  // namespace momenta::reading

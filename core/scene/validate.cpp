@@ -1,0 +1,176 @@
+#include <momenta/core/scene/kinds.h>
+#include <momenta/core/scene/near_name.h>
+#include <momenta/core/scene/read_scene.h>
+#include <momenta/core/scene/shapes.h>
+#include <momenta/core/scene/validate_parts.h>
+#include <momenta/core/tree/drive.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace momenta {
+namespace {
+
+using reading::Census;
+using reading::digits;
+using reading::in_quotes;
+using reading::name_of;
+
+bool finite(const std::vector<double>& numbers) {
+  return std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::isfinite(x); });
+}
+
+/// `condition` or SceneError "<place><who>: <sentence>".
+void require(bool condition, const Scene& scene, Location at, const std::string& who,
+             const char* sentence) {
+  if (!condition) throw SceneError(scene.where(at) + who + ": " + sentence);
+}
+
+void check_bodies(const Scene& scene) {
+  for (const BodySpec& body : scene.bodies) {
+    const std::string who = "body " + in_quotes(body.name);
+    require(std::isfinite(body.mass) && body.mass >= 0, scene, body.at, who,
+            "mass must be finite and >= 0 [kg]");
+    require(body.com.allFinite(), scene, body.at, who, "com must be finite [m]");
+    const std::string fault = reading::inertia_fault(body.inertia);
+    require(fault.empty(), scene, body.at, who, ("inertia " + fault).c_str());
+    const auto& kinds = reading::shape_kinds;
+    require(body.shape.kind.empty() ||
+                std::find(kinds.begin(), kinds.end(), body.shape.kind) != kinds.end(),
+            scene, body.at, who, "shape.kind must be rod, box, cylinder, sphere, point or empty");
+    require(body.shape.size.allFinite() && body.shape.size.minCoeff() >= 0 &&
+                body.shape.axis.allFinite(),
+            scene, body.at, who, "shape must have finite sizes >= 0 [m] and a finite axis");
+  }
+}
+
+/// What joints and loops share: bodies, frames, axis.
+template <class Edge>
+void check_edge(const Scene& scene, const Census& census, const Edge& edge,
+                const std::string& who) {
+  census.require_body(edge.parent, true, edge.at, who, "parent");
+  census.require_body(edge.child, false, edge.at, who, "child");
+  require(edge.parent != edge.child, scene, edge.at, who, "parent and child must be two bodies");
+  require(edge.origin_parent.allFinite() && edge.origin_child.allFinite(), scene, edge.at, who,
+          "origin must be finite [m]");
+  require(std::abs(edge.rotation.norm() - 1) <= reading::norm_slack, scene, edge.at, who,
+          "rotation must be a unit quaternion within 1e-6");
+  require(!reading::has_axis(edge.kind) || std::abs(edge.axis.norm() - 1) <= reading::norm_slack,
+          scene, edge.at, who, "axis must be a unit vector within 1e-6");
+}
+
+void check_joints(const Scene& scene, const Census& census) {
+  for (const JointSpec& joint : scene.joints) {
+    const std::string who = "joint " + in_quotes(joint.name);
+    check_edge(scene, census, joint, who);
+    require(joint.position.empty() ||
+                joint.position.size() == static_cast<std::size_t>(coordinates_of(joint.kind)),
+            scene, joint.at, who, "position must be empty or of the size of its kind");
+    require(joint.velocity.empty() ||
+                joint.velocity.size() == static_cast<std::size_t>(rates_of(joint.kind)),
+            scene, joint.at, who, "velocity must be empty or of the size of its kind");
+    require(finite(joint.position) && finite(joint.velocity), scene, joint.at, who,
+            "position and velocity must be finite");
+    if (joint.position.size() >= 4) {
+      const Eigen::Map<const Eigen::Vector4d> quaternion(joint.position.data() +
+                                                         joint.position.size() - 4);
+      require(std::abs(quaternion.norm() - 1) <= reading::norm_slack, scene, joint.at, who,
+              "position must hold a unit quaternion within 1e-6");
+    }
+    require(
+        std::isfinite(joint.stiffness) && std::isfinite(joint.rest) && std::isfinite(joint.damping),
+        scene, joint.at, who, "stiffness, rest and damping must be finite");
+    require(reading::has_axis(joint.kind) ||
+                (joint.stiffness == 0 && joint.rest == 0 && joint.damping == 0),
+            scene, joint.at, who,
+            "stiffness, rest and damping are for revolute and prismatic joints only");
+  }
+}
+
+void check_loops(const Scene& scene, const Census& census) {
+  for (const LoopSpec& loop : scene.loops) {
+    const std::string who = "loop " + in_quotes(loop.name);
+    check_edge(scene, census, loop, who);
+    require(std::isfinite(loop.length) && (loop.kind != LoopKind::distance || loop.length > 0),
+            scene, loop.at, who, "length must be finite and > 0 [m]");
+  }
+}
+
+void check_drives(const Scene& scene, const Census& census) {
+  std::set<std::string> driven;
+  for (const DriveSpec& drive : scene.drives) {
+    const std::string who = "drive of joint " + in_quotes(drive.joint);
+    census.require_axis_joint(drive.joint, drive.at, who);
+    require(driven.insert(drive.joint).second, scene, drive.at, who,
+            "the joint has a drive already, expected one");
+    const std::string fault = law_fault(drive);
+    require(fault.empty(), scene, drive.at, who, fault.c_str());
+  }
+}
+
+void check_forces(const Scene& scene, const Census& census) {
+  for (const ForceSpec& force : scene.forces) {
+    const std::string who = "force" + (force.name.empty() ? " of kind " + in_quotes(force.kind)
+                                                          : " " + in_quotes(force.name));
+    if (force.kind == "spring-damper") {
+      census.require_body(force.parent, true, force.at, who, "parent");
+      census.require_body(force.child, false, force.at, who, "child");
+      require(force.parent != force.child, scene, force.at, who,
+              "parent and child must be two bodies");
+      require(force.origin_parent.allFinite() && force.origin_child.allFinite(), scene, force.at,
+              who, "origin must be finite [m]");
+      require(std::isfinite(force.stiffness) && std::isfinite(force.damping), scene, force.at, who,
+              "stiffness [N/m] and damping [N s/m] must be finite");
+      require(std::isfinite(force.rest) && force.rest >= 0, scene, force.at, who,
+              "rest must be finite and >= 0 [m]");
+    } else if (force.kind == "torque") {
+      census.require_axis_joint(force.joint, force.at, who);
+      require(std::isfinite(force.value), scene, force.at, who, "value must be finite [N m or N]");
+    } else if (force.kind == "wrench") {
+      census.require_body(force.body, false, force.at, who, "body");
+      require(force.point.allFinite() && force.force.allFinite() && force.torque.allFinite(), scene,
+              force.at, who, "point, force and torque must be finite");
+    } else {
+      require(false, scene, force.at, who, "kind must be spring-damper, torque or wrench");
+    }
+  }
+}
+
+void check_rest(const Scene& scene, const Census& census) {
+  for (const MarkerSpec& marker : scene.markers) {
+    const std::string who = "marker " + in_quotes(marker.name);
+    census.require_body(marker.body, true, marker.at, who, "body");
+    require(marker.point.allFinite(), scene, marker.at, who, "point must be finite [m]");
+  }
+  std::set<std::string> held;
+  for (const std::string& joint : scene.held) {
+    census.require_joint(joint, {}, "[assembly] hold");
+    require(held.insert(joint).second, scene, {}, "[assembly] hold",
+            ("names joint " + in_quotes(joint) + " twice").c_str());
+  }
+  require(scene.gravity.allFinite(), scene, {}, "gravity", "must be finite [m/s²]");
+  const RunDefaults& run = scene.run;
+  require(std::isfinite(run.end_time) && run.end_time > 0, scene, {}, "[run]",
+          "end must be finite and > 0 [s]");
+  require(!run.step || (std::isfinite(*run.step) && *run.step > 0), scene, {}, "[run]",
+          "step must be finite and > 0 [s]");
+  require(!run.leak || (std::isfinite(*run.leak) && *run.leak >= 0), scene, {}, "[run]",
+          "leak must be finite and >= 0 [1/s]");
+  require(run.samples > 0, scene, {}, "[run]", "samples must be > 0");
+}
+
+}  // namespace
+
+void validate(const Scene& scene) {
+  const Census census(scene);
+  check_bodies(scene);
+  check_joints(scene, census);
+  check_loops(scene, census);
+  check_drives(scene, census);
+  check_forces(scene, census);
+  check_rest(scene, census);
+  reading::check_tree(scene);
+}
+
+}  // namespace momenta

@@ -1,0 +1,40 @@
+#pragma once
+// The two checks of validate() which look at the scene as a whole: its names and its tree.
+
+#include <momenta/core/scene/scene.h>
+
+#include <map>
+#include <string>
+#include <string_view>
+
+namespace momenta::reading {
+
+/// Who is called what. Construction checks the names themselves: none empty, none twice among
+/// bodies, among joints and loops together, among markers, among named forces; none with control
+/// characters; no body called "ground".
+class Census {
+ public:
+  explicit Census(const Scene& scene);
+
+  /// `name` is a body, or "ground" where that is allowed; else SceneError "<place><who>: <key> is
+  /// ...".
+  void require_body(const std::string& name, bool or_ground, Location at, const std::string& who,
+                    const std::string& key) const;
+
+  /// `name` is a joint of the tree.
+  void require_joint(const std::string& name, Location at, const std::string& who) const;
+
+  /// `name` is a joint which one coordinate along an axis describes: revolute or prismatic.
+  void require_axis_joint(const std::string& name, Location at, const std::string& who) const;
+
+ private:
+  const Scene& scene_;
+  std::map<std::string, const BodySpec*, std::less<>> bodies_;
+  std::map<std::string, const JointSpec*, std::less<>> joints_;
+};
+
+/// Every body is the child of exactly one joint and no joints form a cycle. @pre the names are
+/// known and unique
+void check_tree(const Scene& scene);
+
+}  // namespace momenta::reading

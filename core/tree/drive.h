@@ -1,0 +1,133 @@
+#pragma once
+// Motion laws: a joint coordinate f as a function of time, with its first two derivatives.
+//
+//   polynomial  f = Σ cᵢ tⁱ                          f, ḟ, f̈ by one Horner scheme
+//   harmonic    f = o + a sin(ω t + φ)               ḟ = a ω cos(ω t + φ)     f̈ = −ω² (f − o)
+//   step        f = f₀ + (f₁ − f₀) s(x),  x = (t − t₀)/T in [0, 1], constant outside
+//                   s = 10 x³ − 15 x⁴ + 6 x⁵         s' = 30 x² (1 − x)²      s'' = 60 x (1 − x)(1
+//                   − 2x)
+//               s' and s'' vanish at both ends, so f is twice continuously differentiable.
+//   table       natural cubic spline through (tᵢ, yᵢ): on [tᵢ, tᵢ₊₁], with x = t − tᵢ, h = tᵢ₊₁ −
+//   tᵢ and mᵢ = f̈(tᵢ),
+//                   f = yᵢ + bᵢ x + mᵢ/2 x² + (mᵢ₊₁ − mᵢ)/(6h) x³,   bᵢ = (yᵢ₊₁ − yᵢ)/h − h (2mᵢ +
+//                   mᵢ₊₁)/6
+//               where continuity of ḟ gives hᵢ₋₁ mᵢ₋₁ + 2(hᵢ₋₁ + hᵢ) mᵢ + hᵢ mᵢ₊₁ = 6 Δ(Δy/h) and m
+//               vanishes at both ends; outside, the straight line of the end slope, so f is twice
+//               continuously differentiable there too.
+//
+// Within a branch of step and table all derivatives are exact; a dual number takes the branch of
+// its value.
+
+#include <momenta/core/scene/scene.h>
+
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace momenta {
+
+/// What makes a DriveSpec no motion law, in words, or empty.
+std::string law_fault(const DriveSpec& spec);
+
+class MotionLaw {
+ public:
+  /// Solves the spline of a table. @throws SceneError with the sentence of law_fault
+  explicit MotionLaw(const DriveSpec& spec);
+
+  /// f [rad or m], its rate [1/s] and the rate of that [1/s²] at time t [s]. No allocation. Cost
+  /// O(coefficients), for a table O(log points). S needs +, −, ×, a constructor from double, `S <
+  /// double`, and sin, cos found by its namespace.
+  template <class S>
+  void evaluate(S t, S& f, S& fdot, S& fddot) const {
+    switch (kind_) {
+      case Kind::polynomial:
+        return horner(coefficients_.data(), coefficients_.size(), t, f, fdot, fddot);
+      case Kind::harmonic:
+        return harmonic(t, f, fdot, fddot);
+      case Kind::step:
+        return step(t, f, fdot, fddot);
+      case Kind::table:
+        return table(t, f, fdot, fddot);
+    }
+  }
+
+ private:
+  enum class Kind { polynomial, harmonic, step, table };
+
+  /// A cubic in t − from.
+  struct Segment {
+    double from = 0;
+    double c[4] = {0, 0, 0, 0};
+  };
+
+  /// p, ṗ, p̈ of Σ cᵢ xⁱ. The second derivative is accumulated halved.
+  template <class S>
+  static void horner(const double* c, std::size_t count, const S& x, S& p, S& pdot, S& pddot) {
+    S value(0.0), rate(0.0), half(0.0);
+    for (std::size_t i = count; i-- > 0;) {
+      half = half * x + rate;
+      rate = rate * x + value;
+      value = value * x + S(c[i]);
+    }
+    p = value;
+    pdot = rate;
+    pddot = half + half;
+  }
+
+  template <class S>
+  void harmonic(const S& t, S& f, S& fdot, S& fddot) const {
+    using std::cos;
+    using std::sin;
+    const S angle = S(frequency_) * t + S(phase_);
+    const S wave = S(amplitude_) * sin(angle);
+    f = S(offset_) + wave;
+    fdot = S(amplitude_ * frequency_) * cos(angle);
+    fddot = S(-frequency_ * frequency_) * wave;
+  }
+
+  template <class S>
+  void step(const S& t, S& f, S& fdot, S& fddot) const {
+    const bool early = t < start_, running = t < start_ + duration_;
+    if (early || !running) {
+      f = S(early ? from_ : to_);
+      fdot = S(0.0);
+      fddot = S(0.0);
+      return;
+    }
+    const double rise = to_ - from_;
+    const S x = (t - S(start_)) * S(1 / duration_);
+    const S rest = S(1.0) - x;
+    f = S(from_) + S(rise) * x * x * x * (S(10.0) - x * (S(15.0) - S(6.0) * x));
+    fdot = S(30 * rise / duration_) * x * x * rest * rest;
+    fddot = S(60 * rise / (duration_ * duration_)) * x * rest * (rest - x);
+  }
+
+  template <class S>
+  void table(const S& t, S& f, S& fdot, S& fddot) const {
+    // segments_[k] holds between knots k − 1 and k; find the number k of knots at or before t
+    std::size_t low = 0, high = knots_.size();
+    while (low < high) {
+      const std::size_t middle = (low + high) / 2;
+      if (t < knots_[middle])
+        high = middle;
+      else
+        low = middle + 1;
+    }
+    const Segment& segment = segments_[low];
+    const S x = t - S(segment.from);
+    horner(segment.c, 4, x, f, fdot, fddot);
+  }
+
+  void solve_spline(const std::vector<double>& times, const std::vector<double>& values);
+
+  Kind kind_ = Kind::polynomial;
+  std::vector<double> coefficients_;
+  double offset_ = 0, amplitude_ = 0, frequency_ = 0, phase_ = 0;
+  double from_ = 0, to_ = 0, start_ = 0, duration_ = 1;
+  std::vector<double> knots_;
+  std::vector<Segment>
+      segments_;  ///< one more than knots_: the first and last are the lines outside
+};
+
+}  // namespace momenta
