@@ -1,0 +1,277 @@
+#include <momenta/dae/report/conclusion.h>
+#include <momenta/dae/report/number_text.h>
+#include <momenta/dae/report/run_label.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <optional>
+
+namespace momenta {
+namespace {
+
+struct Named {
+  const RunResult* run;
+  std::string name;  // in backquotes
+};
+
+bool finished(const RunResult& run) {
+  return run.status == "done";
+}
+
+bool same_method(const RunSettings& a, const RunSettings& b) {
+  return a.integrator == b.integrator && a.step == b.step && a.rtol == b.rtol && a.atol == b.atol &&
+         a.end_time == b.end_time;
+}
+
+bool gauged(const RunSettings& s) {
+  return !s.gauge.empty() && s.gauge != "none";
+}
+
+std::string seconds(double t) {
+  return compact(t, 4) + " s";
+}
+
+std::string capitalised(std::string text) {
+  if (!text.empty() && text[0] >= 'a' && text[0] <= 'z')
+    text[0] = static_cast<char>(text[0] - 'a' + 'A');
+  return text;
+}
+
+// A reason is written as a sentence; inside one of ours its full stop goes.
+std::string clause(std::string reason) {
+  while (!reason.empty() && (reason.back() == '.' || reason.back() == ' ')) reason.pop_back();
+  return reason;
+}
+
+// The largest drift is what the loops have opened by only when they still are about that far open
+// at the end.
+bool largest_at_the_end(const RunResult& run) {
+  const auto& drift = run.series.position_drift;
+  return drift.empty() || !(std::abs(drift.back()) < 0.9 * run.position_drift_max);
+}
+
+std::string growth_clause(const RunResult& run) {
+  const Growth& g = run.position_growth;
+  if (!(run.position_drift_max >= rounding_level) || std::isnan(g.exponent)) return "";
+  if (g.half_range > power_law_half_range) {
+    return ", not as a power of t (slopes " + compact(g.exponent - g.half_range, 2) + " to " +
+           compact(g.exponent + g.half_range, 2) + ")";
+  }
+  // 0.05: the half range of a flat noisy maximum; "growing like t^0.02" would be a claim about
+  // noise.
+  if (std::abs(g.exponent) < 0.05) return ", without growing further";
+  return ", growing like t^" + compact(g.exponent, 3);
+}
+
+std::string drift_text(const RunResult& run) {
+  if (run.position_drift_max < rounding_level) {
+    return "rounding level (" + length_text(run.position_drift_max) + ")";
+  }
+  return length_text(run.position_drift_max);
+}
+
+// "After 1000 s the loops of `a` have opened by 0.27 m, growing like t^1.98"
+std::string opening(const Named& n) {
+  const std::string start =
+      "After " + seconds(n.run->settings.end_time) + " the loops of " + n.name;
+  if (n.run->position_drift_max < rounding_level) {
+    return start + " are closed to " + drift_text(*n.run);
+  }
+  return start + " have opened by " + (largest_at_the_end(*n.run) ? "" : "up to ") +
+         length_text(n.run->position_drift_max) + growth_clause(*n.run);
+}
+
+// "`b` 3.5 µm, like t^1.01", in the tail of a sentence that began with opening().
+std::string tail(const Named& n, bool growth_was_said) {
+  std::string growth = growth_clause(*n.run);
+  const std::string said = ", growing like ";
+  if (growth_was_said && growth.rfind(said, 0) == 0)
+    growth = ", like " + growth.substr(said.size());
+  return n.name + ' ' + (n.run->position_drift_max < rounding_level ? "stays at " : "") +
+         drift_text(*n.run) + growth;
+}
+
+// Ratios near one to two decimals, large ones to two digits.
+std::string ratio_text(double ratio) {
+  return compact(ratio, ratio < 10 && ratio >= 1 ? 3 : 2);
+}
+
+std::string cost_clause(const RunResult& a, const RunResult& b) {
+  if (a.cpu_s > 0 && b.cpu_s > 0) {
+    const double ratio = b.cpu_s / a.cpu_s;
+    return (ratio > 1.1 ? ", and is slower: " : ", at ") + ratio_text(ratio) + " times the cost";
+  }
+  if (a.counters.evaluations > 0 && b.counters.evaluations > 0) {
+    const double ratio =
+        static_cast<double>(b.counters.evaluations) / static_cast<double>(a.counters.evaluations);
+    return ", with " + ratio_text(ratio) + " times the evaluations";
+  }
+  return "";
+}
+
+struct Pair {
+  Named acceleration, momentum;
+};
+
+// The pair that the first sentence compares: plain forms (no projection) by one method; a momentum
+// run with its gauge before one without. In a ladder: the tightest tolerance at which both
+// finished.
+std::optional<Pair> compared_pair(const std::vector<Named>& runs) {
+  std::optional<Pair> best;
+  const auto better = [](const Pair& a, const Pair& b) {
+    const bool ga = gauged(a.momentum.run->settings), gb = gauged(b.momentum.run->settings);
+    if (ga != gb) return ga;
+    const RunSettings &sa = a.momentum.run->settings, &sb = b.momentum.run->settings;
+    return sa.step > 0 && sb.step > 0 ? sa.step < sb.step : sa.rtol < sb.rtol;
+  };
+  for (const Named& a : runs) {
+    if (a.run->settings.form != "acceleration" || a.run->settings.project) continue;
+    for (const Named& m : runs) {
+      if (m.run->settings.form != "momentum" || m.run->settings.project) continue;
+      if (!same_method(a.run->settings, m.run->settings)) continue;
+      const Pair pair{a, m};
+      if (!best || better(pair, *best)) best = pair;
+    }
+  }
+  return best;
+}
+
+std::string pair_sentence(const Pair& pair) {
+  const RunResult &a = *pair.acceleration.run, &m = *pair.momentum.run;
+  std::string text =
+      opening(pair.acceleration) + "; " +
+      tail(pair.momentum, growth_clause(a).find("growing like") != std::string::npos);
+  if (!gauged(m.settings)) text += " (no gauge)";
+  const bool above_rounding =
+      std::max(a.position_drift_max, m.position_drift_max) >= rounding_level;
+  if (above_rounding && m.position_drift_max > a.position_drift_max) {
+    text += a.position_drift_max > 0
+                ? ", which is worse, " + ratio_text(m.position_drift_max / a.position_drift_max) +
+                      " times as much"
+                : ", which is worse";
+  }
+  return text + cost_clause(a, m) + ".";
+}
+
+double score(double value, double floor) {
+  return std::isnan(value) ? 0 : std::log10(std::max(value, floor));
+}
+
+std::string first_sentence(const std::vector<Named>& done) {
+  std::vector<Named> drifting;
+  std::copy_if(done.begin(), done.end(), std::back_inserter(drifting),
+               [](const Named& n) { return !std::isnan(n.run->position_drift_max); });
+  if (const auto pair = compared_pair(drifting)) return pair_sentence(*pair);
+  if (drifting.empty()) {
+    return "Position drift was not measured: there is no loop to open.";
+  }
+  const auto less = [](const Named& x, const Named& y) {
+    return x.run->position_drift_max < y.run->position_drift_max;
+  };
+  const Named best = *std::min_element(drifting.begin(), drifting.end(), less);
+  const Named worst = *std::max_element(drifting.begin(), drifting.end(), less);
+  if (drifting.size() == 1) return opening(best) + ".";
+  if (worst.run->position_drift_max < rounding_level) {
+    return "After " + seconds(worst.run->settings.end_time) + " the loops of all " +
+           std::to_string(drifting.size()) + " finished runs are closed to rounding level (" +
+           length_text(worst.run->position_drift_max) + " at most).";
+  }
+  const bool said = growth_clause(*worst.run).find("growing like") != std::string::npos;
+  return opening(worst) + ", the most of " + std::to_string(drifting.size()) + " finished runs; " +
+         tail(best, said) + ", the least.";
+}
+
+std::string time_clause(const RunResult& run) {
+  return std::isnan(run.cpu_s) ? "" : " in " + time_text(run.cpu_s) + " of processor time";
+}
+
+std::string best_sentence(const std::vector<Named>& done) {
+  const auto best_by = [&](auto measure) -> std::optional<Named> {
+    std::optional<Named> best;
+    for (const Named& n : done) {
+      if (std::isnan(measure(*n.run))) continue;
+      if (!best || measure(*n.run) < measure(*best->run)) best = n;
+    }
+    return best;
+  };
+  if (const auto best = best_by([](const RunResult& r) { return r.position_error_max; })) {
+    return (done.size() == 1 ? "Against the reference its error is "
+                             : "Closest to the reference is " + best->name + " with " +
+                                   best->run->settings.integrator + ": error ") +
+           scientific(best->run->position_error_max, 2) + time_clause(*best->run) + ".";
+  }
+  // No reference: drift in m and energy in J have no common unit, so their product is what is
+  // compared.
+  const auto both = best_by([](const RunResult& r) {
+    if (std::isnan(r.position_drift_max) && std::isnan(r.energy_error_max)) return not_measured;
+    return score(r.position_drift_max, 1e-16) + score(r.energy_error_max, 1e-16);
+  });
+  if (!both) return "";
+  const RunResult& r = *both->run;
+  const std::string energy = std::isnan(r.energy_error_max)
+                                 ? ""
+                                 : "energy within " + scientific(r.energy_error_max, 2) + " J";
+  if (done.size() == 1) {
+    if (energy.empty())
+      return std::isnan(r.cpu_s) ? "" : "It took " + time_text(r.cpu_s) + " of processor time.";
+    return "It kept its " + energy + time_clause(r) + "; there is no reference to compare with.";
+  }
+  std::string drift =
+      std::isnan(r.position_drift_max) ? "" : "drift " + length_text(r.position_drift_max);
+  if (!drift.empty() && !energy.empty()) drift += ", ";
+  return "Without a reference, the least drift times energy error is that of " + both->name +
+         " with " + r.settings.integrator + ": " + drift + energy + time_clause(r) + ".";
+}
+
+std::string failed_clause(const Named& n) {
+  return n.name + (n.run->status == "time limit" ? " reached its time limit at " : " stopped at ") +
+         seconds(n.run->stopped_at) +
+         (n.run->reason.empty() || n.run->status == "time limit"
+              ? ""
+              : " (" + clause(n.run->reason) + ")");
+}
+
+std::string failed_sentence(const std::vector<Named>& failed, std::size_t total) {
+  constexpr std::size_t named = 3;  // more make the answer a list; the tables hold them all
+  std::string text;
+  if (total == 1) {
+    text = "The run did not finish: ";
+  } else if (failed.size() == total) {
+    text = "None of the " + std::to_string(total) + " runs finished: ";
+  } else {
+    text =
+        std::to_string(failed.size()) + " of " + std::to_string(total) + " runs did not finish: ";
+  }
+  for (std::size_t i = 0; i < std::min(named, failed.size()); ++i) {
+    if (i > 0) text += "; ";
+    text += failed_clause(failed[i]);
+  }
+  if (failed.size() > named) text += "; and " + std::to_string(failed.size() - named) + " more";
+  return text + ".";
+}
+
+}  // namespace
+
+std::string conclusion(const StudyResult& study) {
+  if (study.runs.empty()) return "No run was made.";
+  const auto labels = run_labels(study);
+  std::vector<Named> done, failed;
+  for (std::size_t i = 0; i < study.runs.size(); ++i) {
+    const RunResult& run = study.runs[i];
+    (finished(run) ? done : failed).push_back({&run, '`' + labels[i] + '`'});
+  }
+  std::string text;
+  if (!done.empty()) {
+    text = first_sentence(done);
+    const std::string best = best_sentence(done);
+    if (!best.empty()) text += ' ' + best;
+  }
+  if (!failed.empty()) {
+    if (!text.empty()) text += ' ';
+    text += capitalised(failed_sentence(failed, study.runs.size()));
+  }
+  return text;
+}
+
+}  // namespace momenta

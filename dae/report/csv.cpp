@@ -1,0 +1,124 @@
+#include <momenta/dae/report/csv.h>
+#include <momenta/dae/report/number_text.h>
+
+#include <cmath>
+
+namespace momenta {
+namespace {
+
+std::string join(const std::vector<std::string>& cells) {
+  std::string line;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    if (i > 0) line += ',';
+    line += cells[i];
+  }
+  return line + "\n";
+}
+
+}  // namespace
+
+std::string csv_cell(std::string_view text) {
+  if (text.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(text);
+  std::string cell = "\"";
+  for (const char c : text) {
+    if (c == '"') cell += '"';
+    cell += c;
+  }
+  return cell + '"';
+}
+
+std::string study_csv(const StudyResult& study) {
+  std::string text = join({"scene",
+                           "form",
+                           "integrator",
+                           "gauge",
+                           "rtol",
+                           "atol",
+                           "step [s]",
+                           "end_time [s]",
+                           "project",
+                           "baumgarte_alpha [1/s]",
+                           "baumgarte_beta [1/s]",
+                           "kkt",
+                           "jacobian",
+                           "linear_solver",
+                           "status",
+                           "stopped_at [s]",
+                           "reason",
+                           "position_drift_max [m]",
+                           "velocity_drift_max [m/s]",
+                           "between_steps_max [m]",
+                           "position_exponent",
+                           "position_exponent_half_range",
+                           "velocity_exponent",
+                           "velocity_exponent_half_range",
+                           "energy_error_max [J]",
+                           "position_error_max",
+                           "velocity_error_max",
+                           "steps",
+                           "rejected",
+                           "evaluations",
+                           "jacobians",
+                           "factorizations",
+                           "newton_iterations",
+                           "cpu [s]",
+                           "wall [s]",
+                           "repeats"});
+  for (const RunResult& run : study.runs) {
+    const RunSettings& s = run.settings;
+    const Counters& c = run.counters;
+    text += join({csv_cell(run.scene),
+                  csv_cell(s.form),
+                  csv_cell(s.integrator),
+                  csv_cell(s.gauge),
+                  round_trip(s.rtol),
+                  round_trip(s.atol),
+                  round_trip(s.step),
+                  round_trip(s.end_time),
+                  s.project ? "true" : "false",
+                  round_trip(s.baumgarte_alpha),
+                  round_trip(s.baumgarte_beta),
+                  csv_cell(s.kkt),
+                  csv_cell(run.jacobian),
+                  csv_cell(run.linear_solver),
+                  csv_cell(run.status),
+                  round_trip(run.stopped_at),
+                  csv_cell(run.reason),
+                  round_trip(run.position_drift_max),
+                  round_trip(run.velocity_drift_max),
+                  round_trip(run.between_steps_max),
+                  round_trip(run.position_growth.exponent),
+                  round_trip(run.position_growth.half_range),
+                  round_trip(run.velocity_growth.exponent),
+                  round_trip(run.velocity_growth.half_range),
+                  round_trip(run.energy_error_max),
+                  round_trip(run.position_error_max),
+                  round_trip(run.velocity_error_max),
+                  std::to_string(c.steps),
+                  std::to_string(c.rejected),
+                  std::to_string(c.evaluations),
+                  std::to_string(c.jacobians),
+                  std::to_string(c.factorizations),
+                  std::to_string(c.newton_iterations),
+                  round_trip(run.cpu_s),
+                  round_trip(run.wall_s),
+                  std::to_string(run.repeats)});
+  }
+  return text;
+}
+
+std::string trajectory_csv(const Trajectory& trajectory) {
+  std::vector<std::string> cells;
+  for (const std::string& column : trajectory.columns) cells.push_back(csv_cell(column));
+  std::string text = join(cells);
+  for (const auto& row : trajectory.rows) {
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      if (i > 0) text += ',';
+      text += round_trip(row[i]);
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+}  // namespace momenta

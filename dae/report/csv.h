@@ -1,0 +1,21 @@
+#pragma once
+// Results as CSV (RFC 4180 quoting, lines end in LF): header `name [unit]`, round-trip digits, an
+// empty cell where nothing was measured.
+
+#include <momenta/dae/study/run_result.h>
+
+#include <string>
+#include <string_view>
+
+namespace momenta {
+
+/// One row per run: settings, status, drift, energy, error, counters, times.
+std::string study_csv(const StudyResult&);
+
+/// Header from the columns, one row per output time.
+std::string trajectory_csv(const Trajectory&);
+
+/// The text as one cell: quoted when it holds a comma, a quote or a line break, its quotes doubled.
+std::string csv_cell(std::string_view text);
+
+}  // namespace momenta

@@ -1,0 +1,67 @@
+#include <momenta/dae/report/json.h>
+
+#include <cmath>
+
+namespace momenta {
+
+using Json = nlohmann::ordered_json;
+
+Json number_or_null(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+Json environment_json(const Environment& environment) {
+  Json versions = Json::object();
+  for (const auto& [name, version] : environment.versions) versions[name] = version;
+  return {{"cpu", environment.cpu},     {"compiler", environment.compiler},
+          {"flags", environment.flags}, {"build_type", environment.build_type},
+          {"date", environment.date},   {"versions", versions}};
+}
+
+Json summary_json(const RunResult& run, const Environment& environment) {
+  const RunSettings& s = run.settings;
+  const Counters& c = run.counters;
+  Json json;
+  json["scene"] = run.scene;
+  json["form"] = s.form;
+  json["integrator"] = s.integrator;
+  json["gauge"] = s.gauge;
+  json["rtol"] = number_or_null(s.rtol);
+  json["atol"] = number_or_null(s.atol);
+  json["step"] = number_or_null(s.step);
+  json["end_time"] = number_or_null(s.end_time);
+  json["status"] = run.status;
+  json["reason"] = run.reason;
+  json["stopped_at"] = number_or_null(run.stopped_at);
+  json["project"] = s.project;
+  json["jacobian"] = run.jacobian;
+  json["linear_solver"] = run.linear_solver;
+  json["kkt"] = s.kkt;
+  json["counters"] = {{"steps", c.steps},
+                      {"rejected", c.rejected},
+                      {"evaluations", c.evaluations},
+                      {"jacobians", c.jacobians},
+                      {"factorizations", c.factorizations},
+                      {"newton_iterations", c.newton_iterations}};
+  json["time"] = {{"cpu_s", number_or_null(run.cpu_s)},
+                  {"wall_s", number_or_null(run.wall_s)},
+                  {"repeats", run.repeats}};
+  json["drift"] = {{"position_max", number_or_null(run.position_drift_max)},
+                   {"velocity_max", number_or_null(run.velocity_drift_max)},
+                   {"between_steps_max", number_or_null(run.between_steps_max)},
+                   {"position_exponent", number_or_null(run.position_growth.exponent)},
+                   {"velocity_exponent", number_or_null(run.velocity_growth.exponent)}};
+  json["energy"] = {{"error_max", number_or_null(run.energy_error_max)}};
+  json["error"] = {{"position_max", number_or_null(run.position_error_max)},
+                   {"velocity_max", number_or_null(run.velocity_error_max)}};
+  json["environment"] = environment_json(environment);
+  return json;
+}
+
+Json study_json(const StudyResult& study) {
+  Json runs = Json::array();
+  for (const RunResult& run : study.runs) runs.push_back(summary_json(run, study.environment));
+  return runs;
+}
+
+}  // namespace momenta

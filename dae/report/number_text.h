@@ -1,0 +1,27 @@
+#pragma once
+// Numbers as text. Everything goes through std::to_chars, so no locale can change a digit or a
+// decimal point.
+
+#include <string>
+
+namespace momenta {
+
+/// The fewest digits that read back to the same double: "0.1", "1e-08". NaN gives "" and infinities
+/// "inf", "-inf".
+std::string round_trip(double value);
+
+/// `digits` significant digits without padding zeros in the exponent: "0.27", "2.7e-5", "1.2e+4" as
+/// "1.2e4". Plain notation between 1e-3 and 1e4; NaN gives "-".
+std::string compact(double value, int digits);
+
+/// Always an exponent, for columns to be compared by eye: "2.7e-1", "0", "-" for NaN.
+std::string scientific(double value, int digits);
+
+/// A length with its SI prefix: "0.27 m", "27 mm", "3.5 µm", "12 nm"; below 1 pm in powers of ten:
+/// "4.4e-14 m".
+std::string length_text(double metres);
+
+/// The same for a time: "12 s", "0.31 s", "31 ms", "4.2 µs".
+std::string time_text(double seconds);
+
+}  // namespace momenta

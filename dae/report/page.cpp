@@ -1,0 +1,128 @@
+#include <momenta/dae/report/conclusion.h>
+#include <momenta/dae/report/embedded.h>
+#include <momenta/dae/report/page.h>
+#include <momenta/dae/report/page_data.h>
+
+#include <utility>
+#include <vector>
+
+namespace momenta {
+namespace {
+
+using Replacements = std::vector<std::pair<std::string_view, std::string>>;
+
+// One pass over the template, so that braces inside a replacement are never taken for a name.
+std::string filled(std::string_view page, const Replacements& replacements) {
+  std::string text;
+  while (true) {
+    const auto open = page.find("{{");
+    text += page.substr(0, open);
+    if (open == std::string_view::npos) return text;
+    const auto close = page.find("}}", open);
+    const auto name = page.substr(open + 2, close - open - 2);
+    for (const auto& [key, value] : replacements) {
+      if (key == name) text += value;
+    }
+    page.remove_prefix(close + 2);
+  }
+}
+
+// "</script" inside a JSON string would end the island; "<\/" is the same string to every JSON
+// reader. "<!--" would start a state of the HTML reader in which the end tag is not found.
+std::string island(const nlohmann::ordered_json& data) {
+  const std::string json =
+      data.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  std::string text;
+  text.reserve(json.size());
+  for (std::size_t i = 0; i < json.size(); ++i) {
+    const char next = i + 1 < json.size() ? json[i + 1] : '\0';
+    if (json[i] == '<' && next == '/') {
+      text += "<\\";
+    } else if (json[i] == '<' && next == '!') {
+      text += "\\u003c";
+    } else {
+      text += json[i];
+    }
+  }
+  return text;
+}
+
+// `name` as code, t^1.98 with its exponent raised.
+std::string marked_up(const std::string& sentence) {
+  const std::string text = escape_html(sentence);
+  std::string html;
+  bool code = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] == '`') {
+      html += code ? "</code>" : "<code>";
+      code = !code;
+    } else if (text[i] == '^' && i > 0 && text[i - 1] == 't') {
+      const auto from = i + 1;
+      auto end = text.find_first_not_of("-0123456789.", from);
+      if (end == std::string::npos) end = text.size();
+      while (end > from && text[end - 1] == '.') --end;  // the full stop of the sentence
+      html += "<sup>" + text.substr(from, end - from) + "</sup>";
+      i = end - 1;
+    } else {
+      html += text[i];
+    }
+  }
+  return html + (code ? "</code>" : "");
+}
+
+// The scripts share one scope, in the order in which each uses what stands before it.
+std::string script() {
+  std::string text;
+  for (const std::string_view part :
+       {embedded::text_js(), embedded::signs_js(), embedded::table_js(), embedded::chart_js(),
+        embedded::history_js(), embedded::scatter_js(), embedded::mechanism_js(),
+        embedded::page_js()}) {
+    text += part;
+    text += '\n';
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string escape_html(std::string_view text) {
+  std::string html;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        html += "&amp;";
+        break;
+      case '<':
+        html += "&lt;";
+        break;
+      case '>':
+        html += "&gt;";
+        break;
+      case '"':
+        html += "&quot;";
+        break;
+      case '\'':
+        html += "&#39;";
+        break;
+      default:
+        html += c;
+    }
+  }
+  return html;
+}
+
+std::string drift_page(const StudyResult& study) {
+  const std::string sentences = conclusion(study);
+  return filled(embedded::page_html(),
+                {{"scene", escape_html(study.scene)},
+                 {"kind", study.drift_study ? "Drift of the loops" : "Error against time"},
+                 {"conclusion", marked_up(sentences)},
+                 {"uplot_license", std::string(embedded::uplot_license())},
+                 {"uplot_css", std::string(embedded::uplot_css())},
+                 {"page_css", std::string(embedded::page_css())},
+                 {"study", island(page_data(study))},
+                 {"uplot_js", std::string(embedded::uplot_js())},
+                 {"page_js", script()}});
+}
+
+}  // namespace momenta

@@ -1,0 +1,166 @@
+// The page, section by section: charts with their tables, the mechanism, how it was made.
+
+function section(title, caption, ...content) {
+  return element("section", {}, element("h2", {}, title), element("p", { class: "caption" }, caption), ...content);
+}
+
+const numeric = (name, unit, get, best = true, digits = 2) =>
+  ({ name, unit, get, best, text: (value) => number(value, digits) });
+const counted = (name, get) => ({ name, get, best: true, optional: true, text: count });
+const optional = (column) => ({ ...column, optional: true });
+
+const largest = (what) => `${what}; strong lines are the largest value so far, faint lines the value itself`;
+const anyFailed = runs.some((run) => run.status !== "done");
+const withReference = runs.some((run) => measured(run.error.position_max));
+
+const histories = [
+  {
+    key: "position_drift", title: "Position drift", yTitle: "position drift |Φ| [m]", unit: "m", slopes: [1, 2],
+    caption: largest("How far the loops are open"),
+    columns: [
+      numeric("largest drift", "m", (run) => run.drift.position_max),
+      optional(numeric("between steps", "m", (run) => run.drift.between_steps_max)),
+      numeric("grows as t to the", "", (run) => run.growth.position.exponent, true, 3),
+      numeric("± half range", "", (run) => run.growth.position.half_range, false),
+    ],
+  },
+  {
+    key: "velocity_drift", title: "Velocity drift", yTitle: "velocity drift |Φ̇| [m/s]", unit: "m/s", slopes: [1, 2],
+    caption: largest("How fast the loops open"),
+    columns: [
+      numeric("largest drift", "m/s", (run) => run.drift.velocity_max),
+      numeric("grows as t to the", "", (run) => run.growth.velocity.exponent, true, 3),
+      numeric("± half range", "", (run) => run.growth.velocity.half_range, false),
+    ],
+  },
+  {
+    key: "energy_error", title: "Energy error", yTitle: "energy error |E − E₀| [J]", unit: "J", slopes: [1],
+    caption: largest("Energy, less the work done on the mechanism, against its value at the start"),
+    columns: [numeric("largest energy error", "J", (run) => run.energy.error_max)],
+  },
+  {
+    key: "position_error", title: "Error against the reference", yTitle: "error of positions max |err|/(1+|ref|)", unit: "1",
+    caption: largest(`Distance from ${study.reference || "the reference"}`),
+    columns: [
+      numeric("largest position error", "", (run) => run.error.position_max),
+      optional(numeric("largest velocity error", "", (run) => run.error.velocity_max)),
+    ],
+  },
+  {
+    key: "impulse", title: "Loop impulses", yTitle: "loop impulses |σ| [N s]", unit: "N s", slopes: [1],
+    caption: largest("What a gauge keeps from growing: the multipliers σ of momentum forms"),
+    columns: [],
+  },
+];
+
+const costs = {
+  title: "Error against processor time",
+  caption: withReference
+    ? "Left and low is better. Largest position error against the reference; time of the integration alone."
+    : "Left and low is better. Without a reference the largest position drift stands for the error; time of the integration alone.",
+  yTitle: withReference ? "error of positions max |err|/(1+|ref|)" : "largest position drift |Φ| [m]",
+  unit: withReference ? "1" : "m",
+  value: (run) => (withReference ? run.error.position_max : run.drift.position_max),
+  columns: [
+    optional(numeric("position error", "", (run) => run.error.position_max)),
+    optional(numeric("velocity error", "", (run) => run.error.velocity_max)),
+    optional(numeric("largest drift", "m", (run) => run.drift.position_max)),
+    numeric("processor time", "s", (run) => run.time.cpu_s, true, 3),
+    optional(numeric("wall time", "s", (run) => run.time.wall_s, true, 3)),
+    counted("steps", (run) => run.counters.steps),
+    counted("rejected", (run) => run.counters.rejected),
+    counted("evaluations", (run) => run.counters.evaluations),
+    { ...counted("Jacobians", (run) => run.counters.jacobians), best: false },
+    { ...counted("factorizations", (run) => run.counters.factorizations), best: false },
+    { ...counted("Newton iterations", (run) => run.counters.newton_iterations), best: false },
+    { ...counted("repeats", (run) => run.time.repeats), best: false },
+  ],
+};
+
+function chartSection(spec, chart, curves) {
+  const notes = element("div", { class: "notes" });
+  const tail = [];
+  if (spec.columns.length) {
+    const table = runTable(spec.title, chart.shown, spec.columns);
+    tail.push(table.frame);
+    notes.append(download("Table as CSV", `${fileName}-${spec.title.toLowerCase().replaceAll(" ", "-")}.csv`, table.csv));
+  }
+  if (curves) notes.append(download("Curves as CSV", `${fileName}-${spec.key.replaceAll("_", "-")}-curves.csv`, chart.csv));
+  const cross = anyFailed ? " A cross marks where a run failed." : "";
+  return section(spec.title, curves ? spec.caption + "." + cross : spec.caption + cross, chart.figure, ...tail, notes);
+}
+
+function failedSection() {
+  const list = element("dl");
+  for (const run of runs.filter((one) => one.status !== "done")) {
+    list.append(element("dt", {}, run.label),
+      element("dd", {}, `${run.status} at ${number(run.stopped_at, 4)} s${run.reason ? ": " + run.reason : ""}`));
+  }
+  return section("Runs that did not finish", "Their curves and numbers go up to where they stopped.", list);
+}
+
+function makingSection() {
+  const { environment } = study;
+  const repeats = [...new Set(runs.map((run) => run.time.repeats))].sort((a, b) => a - b);
+  const span = [...new Set(runs.map((run) => run.end_time))].map((t) => `${number(t, 4)} s`).join(", ");
+  const list = element("dl");
+  const line = (name, value, code = false) => {
+    if (value) list.append(element("dt", {}, name), element("dd", {}, code ? element("code", {}, value) : value));
+  };
+  line("command", study.command, true);
+  line("scene", [study.scene, study.scene_file].filter(Boolean).join(", "));
+  line("hash of the scene", study.scene_hash, true);
+  line("simulated time", span);
+  for (const [name, value] of study.plan) line(`plan: ${name}`, value);
+  line("reference", study.reference || "none");
+  line("repeats", repeats.some((n) => n > 0) ? `${repeats.join(", ")}; times are their median` : "");
+  line("versions", Object.entries(environment.versions).map(([name, version]) => `${name} ${version}`).join(", "));
+  line("compiler", environment.compiler);
+  line("flags", environment.flags, true);
+  line("build", environment.build_type);
+  line("processor", environment.cpu);
+  line("date", environment.date);
+  const all = download("All numbers of all runs as CSV", `${fileName}.csv`, () => study.csv);
+  return section("How it was made", "", list, element("p", { class: "notes" }, all));
+}
+
+{
+  const main = document.getElementById("main");
+  const add = (node) => node && main.append(node);
+  let costsShown = false;
+  const addCosts = () => {
+    const chart = costsShown ? null : scatterChart(costs);
+    costsShown = true;
+    if (chart) add(chartSection(costs, chart, false));
+  };
+
+  // A ladder is made for this chart; a drift study shows it after what drifts.
+  if (!study.drift_study) addCosts();
+  let explained = false;
+  for (const spec of histories) {
+    if (spec.key === "position_error") addCosts();
+    const chart = historyChart(spec);
+    if (!chart) continue;
+    if (!explained) {
+      spec.caption += ". Click a name to hide or show its run everywhere, twice to see it alone; drag across a chart to " +
+        "zoom, double-click for the whole";
+      explained = true;
+    }
+    // The error has its table with the costs.
+    if (spec.key === "position_error" && runs.some((run) => measured(run.time.cpu_s))) spec.columns = [];
+    add(chartSection(spec, chart, true));
+  }
+  if (anyFailed) add(failedSection());
+  add(mechanismSection());
+  add(makingSection());
+
+  // Charts take their colours when they are drawn: again when the theme changes, and in ink on paper.
+  const redraw = () => charts.forEach((chart) => chart.redraw());
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", redraw);
+  const paper = (on) => () => {
+    document.documentElement.classList.toggle("paper", on);
+    redraw();
+  };
+  addEventListener("beforeprint", paper(true));
+  addEventListener("afterprint", paper(false));
+}

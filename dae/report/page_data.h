@@ -1,0 +1,18 @@
+#pragma once
+// The data island of a page: everything its script draws, and nothing else.
+
+#include <momenta/dae/study/run_result.h>
+
+#include <nlohmann/json.hpp>
+
+namespace momenta {
+
+/// Most points that one curve of a page has.
+inline constexpr std::size_t points_per_curve = 400;
+
+/// {scene, scene_file, scene_hash, command, reference, drift_study, plan, environment, sketch, csv,
+/// runs}; each run is its summary_json with label, tolerance, ladder, growth with half ranges and,
+/// where its history is drawn, series {name: {t, y}} of thinned curves to five digits.
+nlohmann::ordered_json page_data(const StudyResult&);
+
+}  // namespace momenta
