@@ -1,0 +1,101 @@
+#pragma once
+// The acceleration route: Newton-Euler inward for joint forces and reactions, and the articulated
+// recursion for u̇, the equally equipped opponent of the momentum recursion (Featherstone's
+// algorithm in these frames).
+//
+//   A_K = 𝒯ⱽ A_L + E u̇ + c_K,  c_K: velocity products and prescribed accelerations       derivative
+//   of (23) F_K = M_K A_K + b_K − T_K + Σ 𝒯ᶠ F_child,  b_K = Ω_K × (M_K Ω_K) (17), (21) τ_K = Eᵀ
+//   F_K
+// F_K is the whole wrench through joint K about O_K: the reaction T_r of (28) plus what acts along
+// the joint.
+
+#include <momenta/core/kernel/articulated.h>
+#include <momenta/core/kernel/forces.h>
+
+namespace momenta {
+
+/// c_K; needs poses and velocities.
+template <class Space, class S>
+typename Space::template Motion<S> prescribed_acceleration(const Workspace<Space, S>& w,
+                                                           std::size_t k, const S* u) {
+  const auto& b = w.model->bodies[k];
+  const auto& s = w.body[k];
+  typename Space::template Motion<S> joint{};
+  if (b.drive >= 0)
+    Joint<Space>::add_motion(b, s.edge, &s.drive_rate, joint);
+  else if (b.nv > 0)
+    Joint<Space>::add_motion(b, s.edge, u + b.u, joint);
+  auto c = Space::velocity_product(
+      s.edge, b.parent < 0 ? nullptr : &w.body[static_cast<std::size_t>(b.parent)].V, s.V, joint);
+  if (b.drive >= 0) Joint<Space>::add_motion(b, s.edge, &s.drive_acceleration, c);
+  return c;
+}
+
+/// A_K of all bodies; udot null means zero.
+template <class Space, class S>
+void accelerations_outward(Workspace<Space, S>& w, const S* u, const S* udot) {
+  for (std::size_t k = 0; k < w.body.size(); ++k) {
+    const auto& b = w.model->bodies[k];
+    auto& s = w.body[k];
+    s.A = b.parent < 0 ? typename Space::template Motion<S>{}
+                       : Space::to_child(b.edge, b.kind, s.edge,
+                                         w.body[static_cast<std::size_t>(b.parent)].A);
+    s.A += prescribed_acceleration(w, k, u);
+    if (b.nv > 0 && udot) Joint<Space>::add_motion(b, s.edge, udot + b.u, s.A);
+  }
+}
+
+/// τ = M u̇ + bias − applied − joint forces (nv): the residual of (1a) without λ. On entry body[k].T
+/// holds the applied wrenches (apply_forces) and the accelerations are current; on exit body[k].P
+/// holds F_K.
+template <class Space, class S>
+void newton_euler_inward(Workspace<Space, S>& w, const S* q, const S* u, S* tau) {
+  const auto& model = *w.model;
+  for (std::size_t k = 0; k < w.body.size(); ++k) {
+    auto& s = w.body[k];
+    s.P = Space::momentum(w.inertia(k), s.A);
+    s.P += Space::velocity_wrench(w.inertia(k), s.V);
+    s.P -= s.T;
+  }
+  momenta_inward(w, tau);
+  if (model.has_joint_forces)
+    for (const auto& b : model.bodies)
+      if (b.nv == 1) tau[b.u] -= joint_force(b, q[b.q], u[b.u]);
+}
+
+/// u̇ (nv) from (q, u, t) by the articulated recursion. False when a joint's articulated inertia is
+/// not positive.
+template <class Space, class S>
+bool acceleration_recursion(Workspace<Space, S>& w, const S& t, const S* q, const S* u, S* udot) {
+  const auto& model = *w.model;
+  poses_outward(w, t, q, model.has_body_forces());
+  velocities_outward(w, u);
+  articulated_masses_inward(w);
+  if (w.singular >= 0) return false;
+  if (model.has_gravity) gravity_outward(w);
+  apply_forces(w, model.has_body_forces());
+  for (std::size_t k = 0; k < w.body.size(); ++k) {
+    auto& s = w.body[k];
+    s.A = prescribed_acceleration(w, k, u);
+    s.D = Space::velocity_wrench(w.inertia(k), s.V);
+    s.D -= s.T;
+  }
+  for (const auto& b : model.bodies) {
+    for (int i = 0; i < b.nv; ++i) udot[b.u + i] = S(0.0);
+    if (b.nv == 1 && model.has_joint_forces) udot[b.u] = joint_force(b, q[b.q], u[b.u]);
+  }
+  // D' takes M' c: with M' = M* − U hᵀ for a one-dof joint; a free joint passes nothing on, a
+  // spherical one M' = A'.
+  remainders_inward(w, udot,
+                    [&](std::size_t k, auto& D) { add_reduced_momentum(w, k, w.body[k].A, D); });
+  for (std::size_t k = 0; k < w.body.size(); ++k) {
+    const auto& b = model.bodies[k];
+    auto& s = w.body[k];
+    if (b.parent >= 0)
+      s.A += Space::to_child(b.edge, b.kind, s.edge, w.body[static_cast<std::size_t>(b.parent)].A);
+    solve_joint(w, k, s.A, udot);
+  }
+  return true;
+}
+
+}  // namespace momenta

@@ -1,0 +1,188 @@
+// The plane of a scene, and its tree cast into the planar algebra. Frames are parallel to the
+// plane's basis when every joint is at zero, so all constants are read off the zero configuration.
+
+#include <momenta/core/kernel/model.h>
+
+#include <cmath>
+
+namespace momenta {
+namespace {
+
+constexpr double angle_tolerance = 1e-10;  // of axes given by hand to some ten digits [rad]
+
+bool parallel(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return a.cross(b).norm() < angle_tolerance;
+}
+bool perpendicular(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return std::abs(a.dot(b)) < angle_tolerance;
+}
+
+/// A right-handed basis with `normal` last; ground's own axes where the normal is one of them.
+Eigen::Matrix3d basis_about(Eigen::Vector3d normal) {
+  Eigen::Index largest;
+  normal.cwiseAbs().maxCoeff(&largest);
+  if (normal[largest] < 0) normal = -normal;
+  Eigen::Matrix3d basis;
+  if (parallel(normal, Eigen::Vector3d::Unit(largest))) {
+    const Eigen::Index next = (largest + 1) % 3;
+    basis << Eigen::Vector3d::Unit(next), Eigen::Vector3d::Unit((next + 1) % 3),
+        Eigen::Vector3d::Unit(largest);
+    return basis;
+  }
+  normal.normalize();
+  const Eigen::Vector3d e1 = Eigen::Vector3d::Unit((largest + 1) % 3).cross(normal).normalized();
+  basis << e1, normal.cross(e1), normal;
+  return basis;
+}
+
+Vec2<double> vec2(const Eigen::Vector3d& v) {
+  return {{v.x(), v.y()}};
+}
+
+}  // namespace
+
+PlaneFinding find_plane(const Tree& tree, const Scene& scene) {
+  const auto poses = tree.zero_poses();
+  std::optional<Eigen::Vector3d> normal;
+  std::vector<Eigen::Vector3d> slides;
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    const Tree::Body& b = tree.bodies[k];
+    const Eigen::Vector3d z = poses[k].linear().col(2);
+    if (b.kind == JointKind::spherical || b.kind == JointKind::free)
+      return {{}, "joint '" + b.joint + "' moves in space"};
+    if (b.kind == JointKind::revolute && !normal) normal = z;
+    if (b.kind == JointKind::prismatic) slides.push_back(z);
+  }
+  if (!normal)
+    for (const auto& slide : slides)
+      if (!parallel(slide, slides.front())) normal = slides.front().cross(slide).normalized();
+  if (!normal) {
+    // Slides along one line only: any plane through it; take the one that holds gravity.
+    const Eigen::Vector3d line = slides.empty() ? Eigen::Vector3d::UnitX() : slides.front();
+    Eigen::Vector3d other = scene.gravity;
+    if (other.norm() == 0 || parallel(line, other.normalized())) other = line.unitOrthogonal();
+    normal = line.cross(other).normalized();
+  }
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    const Tree::Body& b = tree.bodies[k];
+    const Eigen::Vector3d z = poses[k].linear().col(2);
+    if (b.kind == JointKind::revolute && !parallel(z, *normal))
+      return {{}, "the axis of joint '" + b.joint + "' is not normal to one common plane"};
+    if (b.kind == JointKind::prismatic && !perpendicular(z, *normal))
+      return {{}, "joint '" + b.joint + "' slides out of the plane of the others"};
+  }
+  return {basis_about(*normal), ""};
+}
+
+Model<Planar> build_planar_model(const Tree& tree, const Scene& scene,
+                                 const Eigen::Matrix3d& basis) {
+  Model<Planar> model;
+  const std::size_t n = tree.bodies.size();
+  model.basis = basis;
+  model.bodies.resize(n);
+  model.frames.resize(n);
+  model.nq = tree.nq;
+  model.nv = tree.nv;
+  model.drives = tree.drives;
+  const Eigen::Vector3d gravity = basis.transpose() * tree.gravity;
+  model.gravity = vec2(gravity);
+  model.has_gravity = gravity.head<2>().norm() > 0;
+
+  const auto poses = tree.zero_poses();
+  for (std::size_t k = 0; k < n; ++k) {
+    const Tree::Body& b = tree.bodies[k];
+    auto& m = model.bodies[k];
+    m.kind = b.kind;
+    m.parent = b.parent;
+    m.drive = b.drive;
+    m.q = b.q;
+    m.nq = b.nq;
+    m.u = b.u;
+    m.nv = b.nv;
+    const Eigen::Vector3d here = poses[k].translation();
+    const Eigen::Vector3d from =
+        b.parent < 0 ? Eigen::Vector3d(Eigen::Vector3d::Zero())
+                     : Eigen::Vector3d(poses[static_cast<std::size_t>(b.parent)].translation());
+    const Eigen::Vector3d r = basis.transpose() * (here - from);
+    m.edge.x = r.x();
+    m.edge.y = r.y();
+    const Eigen::Vector3d axis = basis.transpose() * poses[k].linear().col(2);
+    m.edge.sign = axis.z() < 0 ? -1 : 1;
+    m.edge.slide_x = axis.x();
+    m.edge.slide_y = axis.y();
+    model.frames[k] = Eigen::Isometry3d::Identity();
+    model.frames[k].linear() = basis.transpose() * poses[k].linear();
+    model.frames[k].translation().z() = basis.col(2).dot(here);
+    const Eigen::Vector3d c = model.frames[k].linear() * b.com;
+    const Eigen::Matrix3d about_com =
+        model.frames[k].linear() * b.inertia * model.frames[k].linear().transpose();
+    m.inertia.m = b.mass;
+    m.inertia.mc = vec2(b.mass * c);
+    m.inertia.J = about_com(2, 2) + b.mass * c.head<2>().squaredNorm();
+    m.stiffness = b.stiffness;
+    m.rest = b.rest;
+    m.damping = b.damping;
+    m.torque = b.torque;
+    model.has_joint_forces |= m.stiffness != 0 || m.damping != 0 || m.torque != 0;
+  }
+  for (std::size_t k = n; k-- > 0;) {
+    auto& m = model.bodies[k];
+    m.subtree_mass += m.inertia.m;
+    if (m.parent >= 0)
+      model.bodies[static_cast<std::size_t>(m.parent)].subtree_mass += m.subtree_mass;
+  }
+  const auto height = [&](int body, const Eigen::Vector3d& p) {
+    return body < 0 ? basis.col(2).dot(p) : (model.frames[static_cast<std::size_t>(body)] * p).z();
+  };
+  for (const ForceSpec& f : scene.forces) {
+    if (f.kind == "spring-damper") {
+      Model<Planar>::Spring spring;
+      spring.parent = tree.body(f.parent);
+      spring.child = tree.body(f.child);
+      const Eigen::Vector3d at_parent = tree.point(spring.parent, f.origin_parent);
+      const Eigen::Vector3d at_child = tree.point(spring.child, f.origin_child);
+      spring.at_parent = model.point(spring.parent, at_parent);
+      spring.at_child = model.point(spring.child, at_child);
+      const double across = height(spring.child, at_child) - height(spring.parent, at_parent);
+      spring.offset2 = across * across;
+      spring.stiffness = f.stiffness;
+      spring.damping = f.damping;
+      spring.rest = f.rest;
+      model.springs.push_back(spring);
+    } else if (f.kind == "wrench") {
+      Model<Planar>::Wrench wrench;
+      wrench.body = tree.body(f.body);
+      wrench.at = model.point(wrench.body, tree.point(wrench.body, f.point));
+      wrench.in_body_axes = f.in_body_axes;
+      const int axes_of = f.in_body_axes ? wrench.body : -1;
+      wrench.force = model.direction(axes_of, tree.direction(axes_of, f.force));
+      const Eigen::Vector3d torque = tree.direction(axes_of, f.torque);
+      wrench.normal_torque =
+          axes_of < 0 ? basis.col(2).dot(torque)
+                      : (model.frames[static_cast<std::size_t>(axes_of)].linear() * torque).z();
+      model.wrenches.push_back(wrench);
+    }
+  }
+  return model;
+}
+
+template <>
+Vec2<double> Model<Planar>::point(int body, const Eigen::Vector3d& p) const {
+  return vec2(body < 0 ? Eigen::Vector3d(basis.transpose() * p)
+                       : Eigen::Vector3d(frames[static_cast<std::size_t>(body)] * p));
+}
+template <>
+Vec2<double> Model<Planar>::direction(int body, const Eigen::Vector3d& d) const {
+  return vec2(body < 0 ? Eigen::Vector3d(basis.transpose() * d)
+                       : Eigen::Vector3d(frames[static_cast<std::size_t>(body)].linear() * d));
+}
+template <>
+Eigen::Vector3d Model<Planar>::ground_point(const Vec2<double>& v, double height) const {
+  return basis * Eigen::Vector3d(v[0], v[1], height);
+}
+template <>
+Eigen::Vector3d Model<Planar>::ground_direction(const Vec2<double>& v) const {
+  return basis * Eigen::Vector3d(v[0], v[1], 0);
+}
+
+}  // namespace momenta

@@ -1,0 +1,114 @@
+#pragma once
+// Applied wrenches T_K of (17): weights, point-to-point spring-dampers, constant wrenches; and the
+// energies they store.
+
+#include <momenta/core/kernel/points.h>
+#include <momenta/core/kernel/sweeps.h>
+#include <momenta/core/scalar/dual.h>
+
+namespace momenta {
+
+/// The line of a spring: end points, D = x_child − x_parent and its length (across the plane too,
+/// where offset).
+template <class Space, class S>
+struct SpringLine {
+  typename Space::template Vector<S> parent, child, D;
+  S length;
+  SpringLine(const Workspace<Space, S>& w, const typename Model<Space>::Spring& spring)
+      : parent(point_position(w, spring.parent, spring.at_parent)),
+        child(point_position(w, spring.child, spring.at_child)),
+        D(child - parent) {
+    using std::sqrt;
+    length = sqrt(dot(D, D) + spring.offset2);
+  }
+};
+
+/// Adds springs and constant wrenches to body[k].T. Needs poses and velocities.
+template <class Space, class S>
+void add_body_forces(Workspace<Space, S>& w) {
+  for (const auto& spring : w.model->springs) {
+    const SpringLine<Space, S> line(w, spring);
+    if (value_of(line.length) == 0)
+      continue;  // direction undefined; a spring of zero length pulls nowhere
+    const S rate = dot(line.D, point_velocity(w, spring.child, line.child) -
+                                   point_velocity(w, spring.parent, line.parent)) /
+                   line.length;
+    const S tension = spring.stiffness * (line.length - spring.rest) + spring.damping * rate;
+    const auto f = (tension / line.length) * line.D;
+    if (spring.child >= 0)
+      add_force(w, spring.child, line.child, -f, w.body[static_cast<std::size_t>(spring.child)].T);
+    if (spring.parent >= 0)
+      add_force(w, spring.parent, line.parent, f,
+                w.body[static_cast<std::size_t>(spring.parent)].T);
+  }
+  for (const auto& wrench : w.model->wrenches) {
+    const int k = wrench.body;
+    auto& T = w.body[static_cast<std::size_t>(k)].T;
+    const auto in_ground = [&](const auto& v) {
+      return wrench.in_body_axes ? to_ground(w, k, v) : to_ground(w, -1, v);
+    };
+    add_force(w, k, point_position(w, k, wrench.at), in_ground(wrench.force), T);
+    if constexpr (Space::dimension == 3)
+      add_couple(w, k, S(wrench.normal_torque), T);
+    else
+      add_couple(w, k, in_ground(wrench.torque), T);
+  }
+}
+
+/// body[k].T = weight; needs gravity_outward. With `also_body_forces` springs and wrenches are
+/// added.
+template <class Space, class S>
+void apply_forces(Workspace<Space, S>& w, bool also_body_forces) {
+  const auto& model = *w.model;
+  for (std::size_t k = 0; k < w.body.size(); ++k) {
+    auto& s = w.body[k];
+    s.T = {};
+    if (model.has_gravity) {
+      const auto& inertia = w.inertia(k);
+      typename Space::template Vector<S> mc;
+      for (int i = 0; i < static_cast<int>(std::size(mc.x)); ++i) mc[i] = S(inertia.mc[i]);
+      s.T = Space::weight(S(inertia.m), mc, s.g);
+    }
+  }
+  if (also_body_forces) add_body_forces(w);
+}
+
+/// T = ½ Σ Ω·(M Ω) [J]. Needs velocities.
+template <class Space, class S>
+S kinetic_energy(const Workspace<Space, S>& w) {
+  S twice{};
+  for (std::size_t k = 0; k < w.body.size(); ++k)
+    twice += Space::power(Space::momentum(w.inertia(k), w.body[k].V), w.body[k].V);
+  return 0.5 * twice;
+}
+
+/// V [J]: gravity, springs, joint springs; constant joint torques and constant ground-axes forces
+/// count as potentials −τ q and −F·x. Needs poses with ground positions.
+template <class Space, class S>
+S potential_energy(const Workspace<Space, S>& w, const S* q) {
+  const auto& model = *w.model;
+  S energy{};
+  for (std::size_t k = 0; k < w.body.size(); ++k) {
+    const auto& b = model.bodies[k];
+    const int body = static_cast<int>(k);
+    if (model.has_gravity) {
+      const auto moment = S(b.inertia.m) * origin(w, body) + to_ground(w, body, b.inertia.mc);
+      for (int i = 0; i < static_cast<int>(std::size(moment.x)); ++i)
+        energy -= model.gravity[i] * moment[i];
+    }
+    if (b.nv == 1) {
+      const S stretch = q[b.q] - b.rest;
+      energy += 0.5 * b.stiffness * (stretch * stretch) - b.torque * q[b.q];
+    }
+  }
+  for (const auto& spring : model.springs) {
+    const S stretch = SpringLine<Space, S>(w, spring).length - spring.rest;
+    energy += 0.5 * spring.stiffness * (stretch * stretch);
+  }
+  for (const auto& wrench : model.wrenches)
+    if (!wrench.in_body_axes)
+      energy -= dot(to_ground(w, -1, wrench.force), point_position(w, wrench.body, wrench.at));
+  return energy;
+}
+
+}  // namespace momenta

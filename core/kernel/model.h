@@ -1,0 +1,98 @@
+#pragma once
+// A tree cast into one algebra: canonical constants of every edge, inertias in canonical frames,
+// the forces that act, gravity. Built once, shared by all evaluations, never changed.
+
+#include <momenta/core/kernel/planar.h>
+#include <momenta/core/kernel/spatial.h>
+#include <momenta/core/tree/tree.h>
+
+#include <optional>
+#include <vector>
+
+namespace momenta {
+
+template <class Space>
+struct Model {
+  using Vector = typename Space::template Vector<double>;
+
+  struct Body {
+    JointKind kind = JointKind::revolute;
+    int parent = -1;
+    int drive = -1;
+    int q = 0, nq = 0, u = 0, nv = 0;
+    typename Space::EdgeConstants edge;
+    double theta0 = 0, d0 = 0;  ///< joint screw at position zero [rad], [m]
+    typename Space::template RigidInertia<double> inertia;
+    double subtree_mass = 0;  ///< of the body and all it carries [kg]
+    double stiffness = 0, rest = 0, damping = 0, torque = 0;
+  };
+  /// Spring-damper between two points; offset2 is the squared distance across the plane of a planar
+  /// scene.
+  struct Spring {
+    int parent = -1, child = -1;
+    Vector at_parent, at_child;
+    double offset2 = 0, stiffness = 0, damping = 0, rest = 0;
+  };
+  /// Constant wrench. `torque` in space; in a plane only its normal component `normal_torque`.
+  struct Wrench {
+    int body = 0;
+    Vector at, force, torque;
+    double normal_torque = 0;
+    bool in_body_axes = false;
+  };
+
+  std::vector<Body> bodies;
+  std::vector<Spring> springs;
+  std::vector<Wrench> wrenches;
+  std::vector<MotionLaw> drives;
+  Vector gravity;
+  int nq = 0, nv = 0;
+  bool has_gravity = false, has_joint_forces = false;
+
+  bool has_body_forces() const { return !springs.empty() || !wrenches.empty(); }
+
+  /// A point of a body, given in the tree's body frame (−1: ground axes), in this model's frame of
+  /// the body.
+  Vector point(int body, const Eigen::Vector3d& tree_point) const;
+  Vector direction(int body, const Eigen::Vector3d& tree_direction) const;
+  /// A point in ground axes [m] from this model's components; `height` across the plane of a planar
+  /// scene.
+  Eigen::Vector3d ground_point(const Vector& v, double height = 0) const;
+  Eigen::Vector3d ground_direction(const Vector& v) const;
+
+  /// Per body: the tree's frame in this model's frame. Planar: at zero configuration, in the
+  /// plane's basis.
+  std::vector<Eigen::Isometry3d> frames;
+  Eigen::Matrix3d basis =
+      Eigen::Matrix3d::Identity();  ///< planar: columns e1, e2, normal in ground axes
+};
+template <>
+Vec3<double> Model<Spatial>::point(int, const Eigen::Vector3d&) const;
+template <>
+Vec3<double> Model<Spatial>::direction(int, const Eigen::Vector3d&) const;
+template <>
+Eigen::Vector3d Model<Spatial>::ground_point(const Vec3<double>&, double) const;
+template <>
+Eigen::Vector3d Model<Spatial>::ground_direction(const Vec3<double>&) const;
+template <>
+Vec2<double> Model<Planar>::point(int, const Eigen::Vector3d&) const;
+template <>
+Vec2<double> Model<Planar>::direction(int, const Eigen::Vector3d&) const;
+template <>
+Eigen::Vector3d Model<Planar>::ground_point(const Vec2<double>&, double) const;
+template <>
+Eigen::Vector3d Model<Planar>::ground_direction(const Vec2<double>&) const;
+
+/// The plane a scene moves in: its normal, found from the joint axes; empty when the scene is not
+/// planar, with the reason in `why`. Loops are judged by their owner.
+struct PlaneFinding {
+  std::optional<Eigen::Matrix3d> basis;
+  std::string why;
+};
+PlaneFinding find_plane(const Tree& tree, const Scene& scene);
+
+Model<Spatial> build_spatial_model(const Tree& tree, const Scene& scene);
+Model<Planar> build_planar_model(const Tree& tree, const Scene& scene,
+                                 const Eigen::Matrix3d& basis);
+
+}  // namespace momenta

@@ -1,0 +1,128 @@
+#pragma once
+// The sweeps shared by every algorithm: poses, velocities and momenta. "Outward" visits parents
+// first, "inward" children first; depth-first numbering makes both a plain loop.
+//
+//   Ω_K = 𝒯ⱽ Ω_L + E u + Ω_t                                (23)
+//   P*_K = M_K Ω_K + w_K + Σ 𝒯ᶠ P*_child,  p_K = Eᵀ P*_K     (26), (34); w: loop impulses on the
+//   body, if any ṗ_K = Eᵀ (T*_K − Ω_K × P*_K) + Q_joint                   (35); Ė = 0 for all
+//   joints here
+
+#include <momenta/core/kernel/joint.h>
+#include <momenta/core/kernel/workspace.h>
+
+namespace momenta {
+
+/// Edges at (q, t); poses in ground axes too when asked. Cost O(bodies), one sine and cosine per
+/// revolute joint.
+template <class Space, class S>
+void poses_outward(Workspace<Space, S>& w, const S& t, const S* q, bool with_poses) {
+  const auto& model = *w.model;
+  for (std::size_t k = 0; k < w.body.size(); ++k) {
+    const auto& b = model.bodies[k];
+    auto& s = w.body[k];
+    if (b.drive >= 0)
+      model.drives[static_cast<std::size_t>(b.drive)].evaluate(t, s.drive, s.drive_rate,
+                                                               s.drive_acceleration);
+    const auto* parent = b.parent < 0 ? nullptr : &w.body[static_cast<std::size_t>(b.parent)];
+    const S value = b.drive >= 0 ? s.drive : (b.nq == 1 ? q[b.q] : S(0.0));
+    Joint<Space>::template place<S>(b, parent ? &parent->edge : nullptr, value, q + b.q, s.edge);
+    if constexpr (Space::dimension == 3) s.inertia = Planar::turned(b.inertia, s.edge);
+    if (with_poses) {
+      typename Space::template Pose<S> ground;
+      if constexpr (Space::dimension == 6) ground.axes = identity3<S>();
+      s.pose = Space::pose_outward(b.edge, b.kind, s.edge, parent ? parent->pose : ground);
+    }
+  }
+}
+
+/// Ω_t of (13): prescribed joint motion, added to V.
+template <class Space, class S>
+void add_drive(const typename Model<Space>::Body& b, const typename Workspace<Space, S>::Body& s,
+               typename Space::template Motion<S>& v) {
+  if (b.drive >= 0) Joint<Space>::add_motion(b, s.edge, &s.drive_rate, v);
+}
+
+/// Ω_K of all bodies from the joint rates, eq. (23).
+template <class Space, class S>
+void velocities_outward(Workspace<Space, S>& w, const S* u) {
+  const auto& model = *w.model;
+  for (std::size_t k = 0; k < w.body.size(); ++k) {
+    const auto& b = model.bodies[k];
+    auto& s = w.body[k];
+    s.V = b.parent < 0 ? typename Space::template Motion<S>{}
+                       : Space::to_child(b.edge, b.kind, s.edge,
+                                         w.body[static_cast<std::size_t>(b.parent)].V);
+    if (b.drive >= 0)
+      add_drive<Space, S>(b, s, s.V);
+    else
+      Joint<Space>::add_motion(b, s.edge, u + b.u, s.V);
+  }
+}
+
+/// Gravity in the axes of every body.
+template <class Space, class S>
+void gravity_outward(Workspace<Space, S>& w) {
+  const auto& model = *w.model;
+  typename Space::template Vector<S> ground;
+  for (int i = 0; i < (Space::dimension == 3 ? 2 : 3); ++i) ground[i] = S(model.gravity[i]);
+  for (std::size_t k = 0; k < w.body.size(); ++k) {
+    const auto& b = model.bodies[k];
+    w.body[k].g = Space::direction_to_child(
+        b.edge, b.kind, w.body[k].edge,
+        b.parent < 0 ? ground : w.body[static_cast<std::size_t>(b.parent)].g);
+  }
+}
+
+/// body[k].P = M_K Ω_K: the start of (26), before loop impulses are added.
+template <class Space, class S>
+void body_momenta(Workspace<Space, S>& w) {
+  for (std::size_t k = 0; k < w.body.size(); ++k)
+    w.body[k].P = Space::momentum(w.inertia(k), w.body[k].V);
+}
+
+/// Accumulates P*_K, eq. (26), and projects: p = Eᵀ P*, eq. (34).
+template <class Space, class S>
+void momenta_inward(Workspace<Space, S>& w, S* p) {
+  const auto& model = *w.model;
+  for (std::size_t k = w.body.size(); k-- > 0;) {
+    const auto& b = model.bodies[k];
+    auto& s = w.body[k];
+    if (b.drive < 0 && p) Joint<Space>::project(b, s.edge, s.P, p + b.u);
+    if (b.parent >= 0)
+      w.body[static_cast<std::size_t>(b.parent)].P += Space::to_parent(b.edge, b.kind, s.edge, s.P);
+  }
+}
+
+/// Generalised force of a joint's own spring, damper and torque.
+template <class Body, class S>
+S joint_force(const Body& b, const S& q, const S& u) {
+  return b.torque - b.stiffness * (q - b.rest) - b.damping * u;
+}
+
+/// Accumulates T*_K, eq. (27), from body[k].T and writes ṗ, eq. (35), with body[k].P = P*_K and the
+/// velocities current.
+template <class Space, class S>
+void momentum_rates_inward(Workspace<Space, S>& w, const S* q, const S* u, S* pdot) {
+  const auto& model = *w.model;
+  for (std::size_t k = w.body.size(); k-- > 0;) {
+    const auto& b = model.bodies[k];
+    auto& s = w.body[k];
+    if (b.nv > 0) {
+      auto net = s.T;
+      net -= Space::cross_force(s.V, s.P);
+      Joint<Space>::project(b, s.edge, net, pdot + b.u);
+      if (b.nv == 1) pdot[b.u] += joint_force(b, q[b.q], u[b.u]);
+    }
+    if (b.parent >= 0)
+      w.body[static_cast<std::size_t>(b.parent)].T += Space::to_parent(b.edge, b.kind, s.edge, s.T);
+  }
+}
+
+/// q̇ of the whole tree from its rates.
+template <class Space, class S>
+void coordinate_rates(const Model<Space>& model, const S* q, const S* u, S* qdot) {
+  for (const auto& b : model.bodies)
+    if (b.nv > 0) coordinate_rates(b.kind, q + b.q, u + b.u, qdot + b.q);
+}
+
+}  // namespace momenta

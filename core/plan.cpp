@@ -1,0 +1,48 @@
+#include <momenta/core/plan.h>
+
+#include <cstdio>
+
+namespace momenta {
+
+Plan make_plan(const Tree& tree, const Scene& scene, Algebra algebra) {
+  Plan plan;
+  if (algebra == Algebra::spatial) {
+    plan.planar_reason = "asked for";
+  } else {
+    const PlaneFinding plane = find_plane(tree, scene);
+    if (plane.basis) {
+      plan.planar = true;
+      plan.basis = *plane.basis;
+    } else if (algebra == Algebra::planar) {
+      throw SceneError(scene.where({}) + "the planar kernel was asked for, but " + plane.why);
+    } else {
+      plan.planar_reason = plane.why;
+    }
+  }
+  const Eigen::Vector3d in_plane = plan.basis.transpose() * tree.gravity;
+  plan.gravity = plan.planar ? in_plane.head<2>().norm() > 0 : tree.gravity.norm() > 0;
+  plan.drives = !tree.drives.empty();
+  for (const auto& b : tree.bodies) {
+    plan.quasi_velocities |= b.nv > 1;
+    plan.joint_forces |= b.stiffness != 0 || b.damping != 0 || b.torque != 0;
+  }
+  for (const auto& force : scene.forces) plan.third_sweep |= force.kind != "torque";
+  return plan;
+}
+
+std::vector<std::pair<std::string, std::string>> Plan::lines() const {
+  char normal[96];
+  std::snprintf(normal, sizeof normal, "planar, normal (%.4g, %.4g, %.4g)", basis(0, 2),
+                basis(1, 2), basis(2, 2));
+  return {
+      {"kernel", planar ? normal : "spatial (" + planar_reason + ")"},
+      {"gravity", gravity ? "carried as first moments" : "none, left out"},
+      {"drives", drives ? "rheonomic terms Ω_t evaluated" : "none, Ω_t left out"},
+      {"quasi-velocities",
+       quasi_velocities ? "spherical or free joints: quaternions in q" : "none, q̇ = u"},
+      {"joint forces", joint_forces ? "springs, dampers, torques on joints" : "none, left out"},
+      {"third sweep", third_sweep ? "forces between points of bodies" : "none, left out"},
+  };
+}
+
+}  // namespace momenta

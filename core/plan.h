@@ -1,0 +1,32 @@
+#pragma once
+// What a scene needs, and so what every evaluation of it does: decided once, printed by `momenta
+// check`.
+
+#include <momenta/core/kernel/model.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace momenta {
+
+enum class Algebra { automatic, planar, spatial };
+
+struct Plan {
+  bool planar = false;        ///< 3-component algebra
+  std::string planar_reason;  ///< why not, when spatial
+  bool gravity = false;
+  bool drives = false;            ///< rheonomic: Ω_t
+  bool quasi_velocities = false;  ///< spherical or free joints: quaternions, p not canonical
+  bool third_sweep = false;       ///< springs, dampers or wrenches on bodies
+  bool joint_forces = false;
+  Eigen::Matrix3d basis = Eigen::Matrix3d::Identity();  ///< of the plane
+
+  /// "kernel: planar, plane normal to z", … one pair a decision.
+  std::vector<std::pair<std::string, std::string>> lines() const;
+};
+
+/// @throws SceneError when the planar algebra is asked for and the scene is not planar.
+Plan make_plan(const Tree& tree, const Scene& scene, Algebra algebra = Algebra::automatic);
+
+}  // namespace momenta
