@@ -6,14 +6,14 @@
 #include <memory>
 #include <new>
 
-namespace momenta {
+namespace momenta::explicit_rk {
 
-inline constexpr std::size_t cache_line = 64;                      ///< bytes
-inline constexpr std::size_t lanes = cache_line / sizeof(double);  ///< doubles in one
+inline constexpr std::size_t cache_line = 64;  ///< bytes
 
-/// n rounded up to whole cache lines, so that loops over padded arrays need no remainder.
+/// n doubles rounded up to whole cache lines: loops over padded arrays need no remainder.
 constexpr std::size_t padded(std::size_t n) {
-  return (n + lanes - 1) / lanes * lanes;
+  constexpr std::size_t line = cache_line / sizeof(double);
+  return (n + line - 1) / line * line;
 }
 
 class AlignedArray {
@@ -36,4 +36,4 @@ class AlignedArray {
   std::unique_ptr<double[], Release> data_;
 };
 
-}  // namespace momenta
+}  // namespace momenta::explicit_rk

@@ -26,6 +26,8 @@
 namespace momenta {
 namespace {
 
+using namespace explicit_rk;
+
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
 void require(bool condition, const char* sentence) {

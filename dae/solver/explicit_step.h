@@ -21,7 +21,7 @@
 #include <cstring>
 #include <limits>
 
-namespace momenta {
+namespace momenta::explicit_rk {
 
 enum class StageFailure { none, rhs, not_finite };
 
@@ -86,19 +86,17 @@ class ExplicitStep {
   /// finite when a stage was not.
   double error_squared() const {
     const double* k = k_.data();
-    std::array<double, lanes> sum{}, sum_low{};
-    for (std::size_t block = 0; block < stride_; block += lanes)
-      for (std::size_t lane = 0; lane < lanes; ++lane) {
-        const std::size_t i = block + lane;
-        const double weight =
-            1 / (atol_[i] + rtol_ * std::max(std::abs(y_[i]), std::abs(y_new_[i])));
-        const double e = weight * stage_sum<Tableau::e, 0>(k + i, stride_);
-        sum[lane] += e * e;
-        if constexpr (Tableau::estimates == 2) {
-          const double low = weight * stage_sum<Tableau::e, 1>(k + i, stride_);
-          sum_low[lane] += low * low;
-        }
+    Pack sum{}, sum_low{};
+    for (std::size_t i = 0; i < stride_; i += width) {
+      const Pack size = max(abs(load(y_.data() + i)), abs(load(y_new_.data() + i)));
+      const Pack weight = 1 / (load(atol_.data() + i) + rtol_ * size);
+      const Pack e = weight * stage_sum<Tableau::e, 0>(k + i, stride_);
+      sum += e * e;
+      if constexpr (Tableau::estimates == 2) {
+        const Pack low = weight * stage_sum<Tableau::e, 1>(k + i, stride_);
+        sum_low += low * low;
       }
+    }
     const double n = static_cast<double>(std::max<std::size_t>(n_, 1));
     const double high = total(sum);
     if constexpr (Tableau::estimates == 1) return h_ * h_ * high / n;
@@ -184,21 +182,21 @@ class ExplicitStep {
   }
   template <std::size_t row>
   void dense_term() {
-    for (std::size_t i = 0; i < stride_; ++i)
-      r_[(4 + row) * stride_ + i] = h_ * stage_sum<Tableau::d, row>(k_.data() + i, stride_);
+    for (std::size_t i = 0; i < stride_; i += width)
+      store(r_.data() + (4 + row) * stride_ + i,
+            h_ * stage_sum<Tableau::d, row>(k_.data() + i, stride_));
   }
 
-  static double total(const std::array<double, lanes>& v) {
+  static double total(Pack v) {
     double sum = 0;
-    for (const double x : v) sum += x;
+    for (std::size_t lane = 0; lane < width; ++lane) sum += v[lane];
     return sum;
   }
 
   /// 0 · x is 0 for a finite x and NaN for any other.
   static bool finite(const double* x, std::size_t size) {
-    std::array<double, lanes> probe{};
-    for (std::size_t block = 0; block < size; block += lanes)
-      for (std::size_t lane = 0; lane < lanes; ++lane) probe[lane] += 0 * x[block + lane];
+    Pack probe{};
+    for (std::size_t i = 0; i < size; i += width) probe += 0 * load(x + i);
     return total(probe) == 0;
   }
 
@@ -213,4 +211,4 @@ class ExplicitStep {
   bool have_end_ = false, have_dense_ = false, interpolation_failed_ = false;
 };
 
-}  // namespace momenta
+}  // namespace momenta::explicit_rk

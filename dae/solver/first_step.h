@@ -12,7 +12,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace momenta {
+namespace momenta::explicit_rk {
 
 /// RMS of x over the tolerances at y; size n.
 inline double weighted_norm(const double* x, const double* y, const double* atol, double rtol,
@@ -51,4 +51,4 @@ double first_step(int order, double t, const double* y, const double* f0, const 
   return std::min({100 * h, by_error, longest});
 }
 
-}  // namespace momenta
+}  // namespace momenta::explicit_rk

@@ -12,7 +12,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace momenta {
+namespace momenta::explicit_rk {
 
 template <class Tableau>
 class StepControl {
@@ -50,4 +50,4 @@ class StepControl {
   bool rejected_ = false;
 };
 
-}  // namespace momenta
+}  // namespace momenta::explicit_rk

@@ -10,7 +10,7 @@
 
 #include <array>
 
-namespace momenta {
+namespace momenta::explicit_rk {
 
 /// A rational coefficient, divided in extended precision and rounded once more.
 constexpr double ratio(long numerator, long denominator) {
@@ -55,4 +55,4 @@ struct TableauDp5 {
   }};
 };
 
-}  // namespace momenta
+}  // namespace momenta::explicit_rk

@@ -14,7 +14,7 @@
 
 #include <array>
 
-namespace momenta {
+namespace momenta::explicit_rk {
 
 /// Row `stages` of a is b: that stage is f at the end of the step, whoever needs it.
 struct TableauRk4 {
@@ -39,4 +39,4 @@ struct TableauRk4 {
   static constexpr std::array<std::array<double, 5>, 0> d{};
 };
 
-}  // namespace momenta
+}  // namespace momenta::explicit_rk

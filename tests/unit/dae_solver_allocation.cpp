@@ -1,0 +1,117 @@
+// The loop over steps of the explicit integrators takes no memory: every call of the global
+// operator new from the tenth step on is counted. The operators here are weak, so that another file
+// of the same program may bring its own; the test then finds its counter still and skips, as it
+// does where a sanitizer owns the heap.
+
+#include <gtest/gtest.h>
+#include <momenta/dae/solver/integration.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <new>
+
+#if !defined(__SANITIZE_ADDRESS__)
+
+namespace {
+long allocations = 0;
+
+void* counted(std::size_t size, std::size_t alignment) {
+  ++allocations;
+  void* p = alignment > alignof(std::max_align_t)
+                ? std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment)
+                : std::malloc(size > 0 ? size : 1);
+  if (p == nullptr) throw std::bad_alloc();
+  return p;
+}
+}  // namespace
+
+__attribute__((weak)) void* operator new(std::size_t size) {
+  return counted(size, 0);
+}
+__attribute__((weak)) void* operator new[](std::size_t size) {
+  return counted(size, 0);
+}
+__attribute__((weak)) void* operator new(std::size_t size, std::align_val_t alignment) {
+  return counted(size, static_cast<std::size_t>(alignment));
+}
+__attribute__((weak)) void* operator new[](std::size_t size, std::align_val_t alignment) {
+  return counted(size, static_cast<std::size_t>(alignment));
+}
+__attribute__((weak)) void operator delete(void* p) noexcept {
+  std::free(p);
+}
+__attribute__((weak)) void operator delete[](void* p) noexcept {
+  std::free(p);
+}
+__attribute__((weak)) void operator delete(void* p, std::size_t) noexcept {
+  std::free(p);
+}
+__attribute__((weak)) void operator delete[](void* p, std::size_t) noexcept {
+  std::free(p);
+}
+__attribute__((weak)) void operator delete(void* p, std::align_val_t) noexcept {
+  std::free(p);
+}
+__attribute__((weak)) void operator delete[](void* p, std::align_val_t) noexcept {
+  std::free(p);
+}
+__attribute__((weak)) void operator delete(void* p, std::size_t, std::align_val_t) noexcept {
+  std::free(p);
+}
+__attribute__((weak)) void operator delete[](void* p, std::size_t, std::align_val_t) noexcept {
+  std::free(p);
+}
+
+namespace {
+
+using namespace momenta;
+
+class Pendulums : public OdeSystem {
+ public:
+  int size() const override { return 14; }
+  bool rhs(double, const double* y, double* ydot) override {
+    for (int i = 0; i < 7; ++i) {
+      ydot[i] = y[7 + i];
+      ydot[7 + i] = -std::sin(y[i]);
+    }
+    return true;
+  }
+  bool has_after_step() const override { return true; }
+  bool after_step(double, double*, bool& changed) override { return changed = true; }
+};
+
+TEST(Allocation, NoneAfterTheTenthStep) {
+  const long before = allocations;
+  delete[] new double[1000];
+  if (allocations == before) GTEST_SKIP() << "another operator new is linked in";
+
+  for (const char* method : {"rk4", "dp5", "dop853"}) {
+    Pendulums system;
+    IntegrationOptions options;
+    if (method[0] == 'r') options.step = 0.01;
+    const std::vector<double> y0(14, 1.0);
+    std::vector<double> times;
+    for (int i = 1; i <= 400; ++i) times.push_back(0.0503 * i);
+    long steps = 0, at_tenth = 0, at_last = 0;
+    double between_sum = 0;
+    Observer observer;
+    observer.step = [&](double t0, double t1, const Interpolant& between) {
+      double y[14];
+      between(0.3 * t0 + 0.7 * t1, y);
+      between_sum += y[0];
+      if (++steps == 10) at_tenth = allocations;
+      at_last = allocations;
+      return true;
+    };
+    observer.sample = [&](double, const double* y, const double*) { return std::isfinite(y[0]); };
+    const IntegrationResult r = integrate_explicit(method, system, 0, y0, times, options, observer);
+    EXPECT_TRUE(r.done) << r.reason;
+    EXPECT_GT(steps, 20);
+    EXPECT_EQ(at_last, at_tenth) << method;
+    EXPECT_TRUE(std::isfinite(between_sum));
+  }
+}
+
+}  // namespace
+
+#endif
