@@ -57,9 +57,12 @@ class Nesting {
         continue;
       }
       if (c == '"' || c == '\'') {
+        begins_line_ = false;
         if (!skip_string(c)) return;
         continue;
       }
+      if (c == '[' && begins_line_ && depth_ == 0) check_header();
+      if (c != ' ' && c != '\t') begins_line_ = false;
       count(c);
       ++i_;
     }
@@ -83,6 +86,7 @@ class Nesting {
       case '\n':
         ++line_;
         line_begin_ = i_ + 1;
+        begins_line_ = true;
         dots_ = 0;
         return;
       case '=':
@@ -93,6 +97,19 @@ class Nesting {
     }
     dots_ = 0;
     if (++values_ > most_values) refuse("more than 4 million values");
+  }
+
+  /// After [ or [[ of a table header toml++ takes for granted that a name follows.
+  void check_header() const {
+    std::size_t k = i_ + 1;
+    if (k < text_.size() && text_[k] == '[') ++k;
+    while (k < text_.size() && (text_[k] == ' ' || text_[k] == '\t')) ++k;
+    if (k == text_.size()) return;
+    const char c = text_[k];
+    const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+    if (!letter && std::string_view("_-\"']").find(c) == std::string_view::npos)
+      fail(file_, {line_, static_cast<int>(k - line_begin_) + 1},
+           "not valid TOML: expected the name of a table after '['");
   }
 
   bool starts_with_three(char quote) const {
@@ -140,6 +157,7 @@ class Nesting {
   std::string_view text_;
   const std::string& file_;
   std::size_t i_ = 0, line_begin_ = 0;
+  bool begins_line_ = true;
   int line_ = 1, depth_ = 0, dots_ = 0, values_ = 0;
 };
 

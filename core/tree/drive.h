@@ -1,21 +1,24 @@
 #pragma once
 // Motion laws: a joint coordinate f as a function of time, with its first two derivatives.
 //
-//   polynomial  f = Σ cᵢ tⁱ                          f, ḟ, f̈ by one Horner scheme
-//   harmonic    f = o + a sin(ω t + φ)               ḟ = a ω cos(ω t + φ)     f̈ = −ω² (f − o)
-//   step        f = f₀ + (f₁ − f₀) s(x),  x = (t − t₀)/T in [0, 1], constant outside
-//                   s = 10 x³ − 15 x⁴ + 6 x⁵         s' = 30 x² (1 − x)²      s'' = 60 x (1 − x)(1
-//                   − 2x)
-//               s' and s'' vanish at both ends, so f is twice continuously differentiable.
-//   table       natural cubic spline through (tᵢ, yᵢ): on [tᵢ, tᵢ₊₁], with x = t − tᵢ, h = tᵢ₊₁ −
-//   tᵢ and mᵢ = f̈(tᵢ),
-//                   f = yᵢ + bᵢ x + mᵢ/2 x² + (mᵢ₊₁ − mᵢ)/(6h) x³,   bᵢ = (yᵢ₊₁ − yᵢ)/h − h (2mᵢ +
-//                   mᵢ₊₁)/6
-//               where continuity of ḟ gives hᵢ₋₁ mᵢ₋₁ + 2(hᵢ₋₁ + hᵢ) mᵢ + hᵢ mᵢ₊₁ = 6 Δ(Δy/h) and m
-//               vanishes at both ends; outside, the straight line of the end slope, so f is twice
-//               continuously differentiable there too.
+// polynomial
+//   f = Σ cᵢ tⁱ;  f, ḟ, f̈ by one Horner scheme
 //
-// Within a branch of step and table all derivatives are exact; a dual number takes the branch of
+// harmonic
+//   f = o + a sin(ω t + φ),  ḟ = a ω cos(ω t + φ),  f̈ = −ω² (f − o)
+//
+// step
+//   f = f₀ + (f₁ − f₀) s(x) with x = (t − t₀)/T in [0, 1], constant outside
+//   s = 10 x³ − 15 x⁴ + 6 x⁵,  s' = 30 x² (1 − x)²,  s" = 60 x (1 − x) (1 − 2x)
+//   s' and s" vanish at both ends: f is twice continuously differentiable.
+//
+// table
+//   Natural cubic spline through (tᵢ, yᵢ). With x = t − tᵢ, h = tᵢ₊₁ − tᵢ, mᵢ = f̈(tᵢ), in each gap
+//   f = yᵢ + bᵢ x + mᵢ/2 x² + (mᵢ₊₁ − mᵢ)/(6h) x³,  bᵢ = (yᵢ₊₁ − yᵢ)/h − h (2mᵢ + mᵢ₊₁)/6
+//   Continuity of ḟ: hᵢ₋₁ mᵢ₋₁ + 2 (hᵢ₋₁ + hᵢ) mᵢ + hᵢ mᵢ₊₁ = 6 (Δyᵢ/hᵢ − Δyᵢ₋₁/hᵢ₋₁);
+//   m = 0 at both ends. Outside, the straight line of the end slope; f̈ is continuous there too.
+//
+// Within a branch of step and table the derivatives are exact; a dual number takes the branch of
 // its value.
 
 #include <momenta/core/scene/scene.h>
@@ -35,9 +38,9 @@ class MotionLaw {
   /// Solves the spline of a table. @throws SceneError with the sentence of law_fault
   explicit MotionLaw(const DriveSpec& spec);
 
-  /// f [rad or m], its rate [1/s] and the rate of that [1/s²] at time t [s]. No allocation. Cost
-  /// O(coefficients), for a table O(log points). S needs +, −, ×, a constructor from double, `S <
-  /// double`, and sin, cos found by its namespace.
+  /// f [rad or m], its rate [1/s] and the rate of that [1/s²] at time t [s]. No allocation.
+  /// Cost O(coefficients); for a table O(log points).
+  /// S needs + − ×, a constructor from double, S < double, and sin and cos in its namespace.
   template <class S>
   void evaluate(S t, S& f, S& fdot, S& fddot) const {
     switch (kind_) {

@@ -1,0 +1,266 @@
+// Scenes that are wrong: one line, where, what was found, what was expected. Each file of
+// broken_scenes/ opens with "# expect: " lines, the parts its sentence must contain.
+
+#include <gtest/gtest.h>
+#include <momenta/core/scene/read_scene.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <regex>
+#include <string>
+#include <vector>
+
+namespace momenta {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The sentence `action` fails with. Fails the test when it does not, or fails with anything else.
+std::string sentence_of(const std::function<void()>& action) {
+  try {
+    action();
+  } catch (const SceneError& error) {
+    const std::string sentence = error.what();
+    EXPECT_EQ(sentence.find('\n'), std::string::npos) << sentence;
+    return sentence;
+  } catch (const std::exception& error) {
+    ADD_FAILURE() << "not a SceneError: " << error.what();
+    return "";
+  }
+  ADD_FAILURE() << "nothing was refused";
+  return "";
+}
+
+void expect_contains(const std::string& sentence, const std::string& part) {
+  EXPECT_NE(sentence.find(part), std::string::npos)
+      << "sentence: " << sentence << "\nmissing:  " << part;
+}
+
+std::vector<fs::path> broken_scenes() {
+  std::vector<fs::path> files;
+  for (const auto& entry :
+       fs::directory_iterator(fs::path(MOMENTA_SOURCE_DIR) / "tests/unit/broken_scenes"))
+    if (entry.path().extension() == ".toml") files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+class BrokenScene : public testing::TestWithParam<fs::path> {};
+
+TEST_P(BrokenScene, IsRefusedWithTheExpectedSentence) {
+  const std::string sentence = sentence_of([&] { read_scene(GetParam()); });
+
+  // file:line: first, and the rest as the file asks
+  const std::string name = GetParam().string();
+  ASSERT_TRUE(sentence.starts_with(name)) << sentence;
+  EXPECT_TRUE(
+      std::regex_search(sentence.substr(name.size()), std::regex("^(:[1-9][0-9]*:[1-9][0-9]*)?: ")))
+      << sentence;
+  std::ifstream stream(GetParam());
+  const std::string mark = "# expect: ";
+  int expected = 0;
+  for (std::string line; std::getline(stream, line) && line.starts_with(mark); ++expected)
+    expect_contains(sentence, line.substr(mark.size()));
+  EXPECT_GT(expected, 0) << "the file opens with no '# expect: '";
+}
+
+INSTANTIATE_TEST_SUITE_P(Core, BrokenScene, testing::ValuesIn(broken_scenes()),
+                         [](const auto& scene) { return scene.param.stem().string(); });
+
+TEST(BrokenScenes, ThereAreManyOfThem) {
+  EXPECT_GE(broken_scenes().size(), 50U);
+}
+
+/// A directory for generated files, removed at the end.
+class BrokenFile : public testing::Test {
+ protected:
+  void SetUp() override {
+    directory_ =
+        fs::temp_directory_path() /
+        ("momenta_broken_" + std::to_string(::testing::UnitTest::GetInstance()->random_seed()) +
+         testing::UnitTest::GetInstance()->current_test_info()->name());
+    fs::create_directories(directory_);
+  }
+  void TearDown() override { fs::remove_all(directory_); }
+
+  fs::path file(const std::string& content) const {
+    const fs::path path = directory_ / "scene.toml";
+    std::ofstream(path, std::ios::binary) << content;
+    return path;
+  }
+
+  fs::path directory_;
+};
+
+TEST_F(BrokenFile, Missing) {
+  expect_contains(sentence_of([&] { read_scene(directory_ / "none.toml"); }),
+                  "none.toml: no such file");
+}
+
+TEST_F(BrokenFile, Directory) {
+  expect_contains(sentence_of([&] { read_scene(directory_); }),
+                  "a directory, expected a scene file");
+}
+
+TEST_F(BrokenFile, BelowAFile) {
+  expect_contains(sentence_of([&] { read_scene(file("x = 1") / "below"); }), "no such file");
+}
+
+TEST_F(BrokenFile, NameTooLong) {
+  expect_contains(sentence_of([&] { read_scene(std::string(10000, 'a')); }), "expected a scene");
+}
+
+TEST_F(BrokenFile, NameOnTwoLines) {
+  expect_contains(sentence_of([&] { read_scene("a\nb.toml"); }), "a\\x0ab.toml: no such file");
+}
+
+TEST_F(BrokenFile, Empty) {
+  expect_contains(sentence_of([&] { read_scene(file("")); }), "scene.toml: the file is empty");
+}
+
+TEST_F(BrokenFile, Nul) {
+  expect_contains(sentence_of([&] { read_scene(file(std::string("name = \"a\"\nx\0", 13))); }),
+                  "scene.toml:2:2: a NUL byte");
+}
+
+TEST_F(BrokenFile, NotUtf8) {
+  const char* sequences[] = {
+      "\xff",         "\x80",         "\xc0\x80",         "\xc3",
+      "\xe0\x80\x80", "\xed\xa0\x80", "\xf0\x80\x80\x80", "\xf4\x90\x80\x80"};
+  for (const char* bytes : sequences)
+    expect_contains(sentence_of([&] { read_scene(file(std::string("# ü ") + bytes)); }),
+                    "scene.toml:1:5: a byte that is not UTF-8");
+}
+
+TEST_F(BrokenFile, HundredMegabytesAreRefusedUnread) {
+  const fs::path path = file("nonsense");
+  fs::resize_file(path, 100'000'000);
+  const auto start = std::chrono::steady_clock::now();
+  expect_contains(sentence_of([&] { read_scene(path); }), "over 64 MiB");
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::milliseconds(100));
+  expect_contains(sentence_of([&] { parse_scene(std::string(100'000'000, '[')); }), "over 64 MiB");
+}
+
+TEST_F(BrokenFile, DepthIsBounded) {
+  const auto repeated = [](const std::string& part, int n) {
+    std::string text;
+    for (int i = 0; i < n; ++i) text += part;
+    return text;
+  };
+  const int n = 1'000'000;
+  expect_contains(sentence_of([&] { parse_scene("a = " + repeated("[", n)); }),
+                  "nested more than 16 deep");
+  expect_contains(sentence_of([&] { parse_scene("a = " + repeated("{b=", n)); }),
+                  "nested more than 16 deep");
+  expect_contains(sentence_of([&] { parse_scene(repeated("a.", n) + "b = 1"); }),
+                  "more than 16 parts");
+  expect_contains(sentence_of([&] { parse_scene("[" + repeated("a . ", n) + "b]"); }),
+                  "more than 16 parts");
+  expect_contains(sentence_of([&] { parse_scene(repeated("'a'.", n) + "b = 1"); }),
+                  "more than 16 parts");
+  expect_contains(sentence_of([&] { parse_scene("a = [" + repeated("1,", 4 * n) + "]"); }),
+                  "more than 4 million");
+  // brackets and dots inside strings and comments are text
+  const std::string text = repeated("[.", 20);
+  expect_contains(sentence_of([&] {
+                    parse_scene("# " + text + "\nname = \"\\\"" + text + "\" # " + text +
+                                "\nx = '" + text + "'\ny = \"\"\"\n" + text +
+                                "\"\"\"\"\"\nz = '''\n''" + text + "'''\n");
+                  }),
+                  "unknown key 'x'");
+}
+
+TEST(BrokenHandmade, ScenesBuiltByHandAreChecked) {
+  const auto good = [] {
+    Scene scene;
+    scene.bodies.resize(2);
+    scene.bodies[0].name = "a";
+    scene.bodies[1].name = "b";
+    scene.joints.resize(2);
+    scene.joints[0].name = "j";
+    scene.joints[0].child = "a";
+    scene.joints[1].name = "k";
+    scene.joints[1].parent = "a";
+    scene.joints[1].child = "b";
+    scene.loops.resize(1);
+    scene.loops[0].name = "c";
+    scene.loops[0].child = "b";
+    scene.drives.resize(1);
+    scene.drives[0].joint = "j";
+    scene.drives[0].kind = "step";
+    scene.drives[0].duration = 1;
+    scene.forces.resize(1);
+    scene.forces[0].kind = "wrench";
+    scene.forces[0].body = "a";
+    scene.markers.resize(1);
+    scene.markers[0].name = "m";
+    scene.markers[0].body = "ground";
+    return scene;
+  };
+  EXPECT_NO_THROW(validate(good()));
+
+  const double nan = std::nan("");
+  const std::pair<const char*, std::function<void(Scene&)>> mistakes[] = {
+      {"mass must be", [&](Scene& s) { s.bodies[0].mass = nan; }},
+      {"mass must be", [&](Scene& s) { s.bodies[0].mass = -1; }},
+      {"com must be", [&](Scene& s) { s.bodies[0].com.x() = nan; }},
+      {"inertia is not finite", [&](Scene& s) { s.bodies[0].inertia(1, 2) = nan; }},
+      {"inertia is not symmetric",
+       [&](Scene& s) { s.bodies[0].inertia << 1, 0.1, 0, 0, 1, 0, 0, 0, 1; }},
+      {"shape.kind", [&](Scene& s) { s.bodies[0].shape.kind = "cone"; }},
+      {"shape must", [&](Scene& s) { s.bodies[0].shape.size.x() = -1; }},
+      {"the name is taken", [&](Scene& s) { s.bodies[1].name = "a"; }},
+      {"rotation must", [&](Scene& s) { s.joints[0].rotation.w() = 2; }},
+      {"axis must", [&](Scene& s) { s.joints[0].axis.setZero(); }},
+      {"origin must", [&](Scene& s) { s.joints[0].origin_child.x() = nan; }},
+      {"position must be empty",
+       [&](Scene& s) {
+         s.joints[0].position = {1, 2};
+       }},
+      {"velocity must be empty",
+       [&](Scene& s) {
+         s.joints[0].velocity = {1, 2};
+       }},
+      {"must be finite", [&](Scene& s) { s.joints[0].velocity = {nan}; }},
+      {"stiffness, rest and damping must be finite", [&](Scene& s) { s.joints[0].rest = nan; }},
+      {"for revolute and prismatic joints only",
+       [&](Scene& s) {
+         s.joints[1].kind = JointKind::weld;
+         s.joints[1].damping = 1;
+       }},
+      {"a unit quaternion",
+       [&](Scene& s) {
+         s.joints[1].kind = JointKind::spherical;
+         s.joints[1].position = {0, 0, 0, 0};
+       }},
+      {"length must", [&](Scene& s) { s.loops[0].kind = LoopKind::distance; }},
+      {"the name is taken", [&](Scene& s) { s.loops[0].name = "j"; }},
+      {"duration must", [&](Scene& s) { s.drives[0].duration = 0; }},
+      {"kind must be", [&](Scene& s) { s.drives[0].kind = "jump"; }},
+      {"kind must be", [&](Scene& s) { s.forces[0].kind = "push"; }},
+      {"must be finite", [&](Scene& s) { s.forces[0].force.x() = nan; }},
+      {"point must", [&](Scene& s) { s.markers[0].point.x() = nan; }},
+      {"is no joint", [&](Scene& s) { s.held = {"c"}; }},
+      {"gravity: must be finite", [&](Scene& s) { s.gravity.x() = nan; }},
+      {"end must", [&](Scene& s) { s.run.end_time = 0; }},
+      {"step must", [&](Scene& s) { s.run.step = -1; }},
+      {"leak must", [&](Scene& s) { s.run.leak = nan; }},
+      {"samples must", [&](Scene& s) { s.run.samples = 0; }},
+      {"the child of no joint", [&](Scene& s) { s.joints.pop_back(); }},
+      {"form a cycle", [&](Scene& s) { s.joints[0].parent = "b"; }},
+  };
+  for (const auto& [part, make] : mistakes) {
+    Scene scene = good();
+    make(scene);
+    const std::string sentence = sentence_of([&] { validate(scene); });
+    expect_contains(sentence, part);
+    EXPECT_TRUE(sentence.starts_with("scene: ")) << sentence;
+  }
+}
+
+}  // namespace
+}  // namespace momenta

@@ -1,0 +1,115 @@
+// Damaged text: whatever arrives, the reader returns a scene or throws SceneError with one line.
+
+#include <gtest/gtest.h>
+#include <momenta/core/scene/read_scene.h>
+
+#include <random>
+#include <string>
+
+namespace momenta {
+namespace {
+
+const std::string valid = R"(# ü
+name = "all keys"
+gravity = [0.0, -9.81, 0]
+[[body]]
+name = "a"
+mass = 1e0
+shape = { kind = "rod", length = 0.5, axis = "-x" }
+[[body]]
+name = 'b'
+mass = 2
+com = [1, 0, 0]
+inertia = [1, 2, 2.5, 0.1, 0.2, 0.3]
+[[joint]]
+name = "O"
+kind = "revolute"
+child = "a"
+origin = { parent = [1, 2, 3], child = [4, 5, 6] }
+rotation = { rpy = [0, 0, 1] }
+position = 1.5
+stiffness = 3.5
+[[joint]]
+name = "A"
+kind = "spherical"
+parent = "a"
+child = "b"
+position = [1, 0, 0, 0]
+[[loop]]
+name = "C"
+kind = "distance"
+child = "b"
+length = 2
+[[drive]]
+joint = "O"
+kind = "table"
+times = [0, 1, 3]
+values = [0, 1, 0.5]
+[[force]]
+kind = "wrench"
+body = "b"
+force = [4, 5, 6]
+axes = "body"
+[[marker]]
+name = """tip"""
+body = "a"
+[assembly]
+hold = ["O"]
+[run]
+end = 5
+samples = 200
+)";
+
+/// @return whether the text is a scene
+bool survives(const std::string& text) {
+  try {
+    parse_scene(text);
+    return true;
+  } catch (const SceneError& error) {
+    EXPECT_EQ(std::string(error.what()).find_first_of("\r\n"), std::string::npos) << error.what();
+  } catch (const std::exception& error) {
+    ADD_FAILURE() << "not a SceneError: " << error.what() << "\n" << text;
+  }
+  return false;
+}
+
+TEST(DamagedScene, TruncatedAtEveryByte) {
+  ASSERT_TRUE(survives(valid));
+  for (std::size_t size = 0; size < valid.size(); ++size) survives(valid.substr(0, size));
+}
+
+TEST(DamagedScene, EveryByteLeftOut) {
+  for (std::size_t i = 0; i < valid.size(); ++i) survives(valid.substr(0, i) + valid.substr(i + 1));
+}
+
+TEST(DamagedScene, BytesFlippedAtRandom) {
+  std::mt19937 random(20'000);
+  int scenes = 0;
+  for (int round = 0; round < 20'000; ++round) {
+    std::string text = valid;
+    const std::size_t flips = 1 + random() % 3;
+    for (std::size_t k = 0; k < flips; ++k) {
+      char& byte = text[random() % text.size()];
+      byte = static_cast<char>(static_cast<unsigned char>(byte) ^ (1U << random() % 8));
+    }
+    scenes += survives(text);
+  }
+  EXPECT_GT(scenes, 0);  // some flips change a digit only
+}
+
+TEST(DamagedScene, PiecesShuffled) {
+  const std::string pieces[] = {
+      "[",    "]",    "{",  "}",  "=",          ".",   ",",  "\"", "'", "\n",      "\\",  "#",
+      "name", "body", "1",  "-",  "inf",        "nan", "0x", "1e", "_", "\"\"\"",  "'''", "[[",
+      "]]",   " ",    "\r", "\t", "1979-05-27", "T",   ":",  "+",  "u", "\xc3\xbc"};
+  std::mt19937 random(7);
+  for (int round = 0; round < 20'000; ++round) {
+    std::string text;
+    const std::size_t count = 1 + random() % 12;
+    for (std::size_t k = 0; k < count; ++k) text += pieces[random() % std::size(pieces)];
+    survives(text);
+  }
+}
+
+}  // namespace
+}  // namespace momenta
