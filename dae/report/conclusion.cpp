@@ -32,12 +32,6 @@ std::string seconds(double t) {
   return compact(t, 4) + " s";
 }
 
-std::string capitalised(std::string text) {
-  if (!text.empty() && text[0] >= 'a' && text[0] <= 'z')
-    text[0] = static_cast<char>(text[0] - 'a' + 'A');
-  return text;
-}
-
 // A reason is written as a sentence; inside one of ours its full stop goes.
 std::string clause(std::string reason) {
   while (!reason.empty() && (reason.back() == '.' || reason.back() == ' ')) reason.pop_back();
@@ -61,7 +55,7 @@ std::string growth_clause(const RunResult& run) {
   // 0.05: the half range of a flat noisy maximum; "growing like t^0.02" would be a claim about
   // noise.
   if (std::abs(g.exponent) < 0.05) return ", without growing further";
-  return ", growing like t^" + compact(g.exponent, 3);
+  return ", growing like t^" + fixed(g.exponent, 2);
 }
 
 std::string drift_text(const RunResult& run) {
@@ -92,14 +86,15 @@ std::string tail(const Named& n, bool growth_was_said) {
          drift_text(*n.run) + growth;
 }
 
-// Ratios near one to two decimals, large ones to two digits.
+// Two decimals near one, two digits away from it.
 std::string ratio_text(double ratio) {
-  return compact(ratio, ratio < 10 && ratio >= 1 ? 3 : 2);
+  return ratio >= 0.1 && ratio < 10 ? fixed(ratio, 2) : compact(ratio, 2);
 }
 
 std::string cost_clause(const RunResult& a, const RunResult& b) {
   if (a.cpu_s > 0 && b.cpu_s > 0) {
     const double ratio = b.cpu_s / a.cpu_s;
+    if (std::abs(ratio - 1) < 0.005) return ", at equal cost";
     return (ratio > 1.1 ? ", and is slower: " : ", at ") + ratio_text(ratio) + " times the cost";
   }
   if (a.counters.evaluations > 0 && b.counters.evaluations > 0) {
@@ -186,6 +181,12 @@ std::string time_clause(const RunResult& run) {
   return std::isnan(run.cpu_s) ? "" : " in " + time_text(run.cpu_s) + " of processor time";
 }
 
+// " with dop853", unless the name says so already.
+std::string with_integrator(const Named& n) {
+  const std::string& integrator = n.run->settings.integrator;
+  return n.name.find(", " + integrator) == std::string::npos ? " with " + integrator : "";
+}
+
 std::string best_sentence(const std::vector<Named>& done) {
   const auto best_by = [&](auto measure) -> std::optional<Named> {
     std::optional<Named> best;
@@ -197,8 +198,8 @@ std::string best_sentence(const std::vector<Named>& done) {
   };
   if (const auto best = best_by([](const RunResult& r) { return r.position_error_max; })) {
     return (done.size() == 1 ? "Against the reference its error is "
-                             : "Closest to the reference is " + best->name + " with " +
-                                   best->run->settings.integrator + ": error ") +
+                             : "Closest to the reference is " + best->name +
+                                   with_integrator(*best) + ": error ") +
            scientific(best->run->position_error_max, 2) + time_clause(*best->run) + ".";
   }
   // No reference: drift in m and energy in J have no common unit, so their product is what is
@@ -221,7 +222,7 @@ std::string best_sentence(const std::vector<Named>& done) {
       std::isnan(r.position_drift_max) ? "" : "drift " + length_text(r.position_drift_max);
   if (!drift.empty() && !energy.empty()) drift += ", ";
   return "Without a reference, the least drift times energy error is that of " + both->name +
-         " with " + r.settings.integrator + ": " + drift + energy + time_clause(r) + ".";
+         with_integrator(*both) + ": " + drift + energy + time_clause(r) + ".";
 }
 
 std::string failed_clause(const Named& n) {
@@ -251,27 +252,33 @@ std::string failed_sentence(const std::vector<Named>& failed, std::size_t total)
   return text + ".";
 }
 
+std::vector<Named> runs_where(const StudyResult& study, bool done) {
+  const auto labels = run_labels(study);
+  std::vector<Named> runs;
+  for (std::size_t i = 0; i < study.runs.size(); ++i) {
+    if (finished(study.runs[i]) == done) runs.push_back({&study.runs[i], '`' + labels[i] + '`'});
+  }
+  return runs;
+}
+
 }  // namespace
 
-std::string conclusion(const StudyResult& study) {
+std::string answer(const StudyResult& study) {
   if (study.runs.empty()) return "No run was made.";
-  const auto labels = run_labels(study);
-  std::vector<Named> done, failed;
-  for (std::size_t i = 0; i < study.runs.size(); ++i) {
-    const RunResult& run = study.runs[i];
-    (finished(run) ? done : failed).push_back({&run, '`' + labels[i] + '`'});
-  }
-  std::string text;
-  if (!done.empty()) {
-    text = first_sentence(done);
-    const std::string best = best_sentence(done);
-    if (!best.empty()) text += ' ' + best;
-  }
-  if (!failed.empty()) {
-    if (!text.empty()) text += ' ';
-    text += capitalised(failed_sentence(failed, study.runs.size()));
-  }
-  return text;
+  const auto done = runs_where(study, true);
+  if (done.empty()) return "";
+  const std::string best = best_sentence(done);
+  return first_sentence(done) + (best.empty() ? "" : ' ' + best);
+}
+
+std::string failures(const StudyResult& study) {
+  const auto failed = runs_where(study, false);
+  return failed.empty() ? "" : failed_sentence(failed, study.runs.size());
+}
+
+std::string conclusion(const StudyResult& study) {
+  const std::string first = answer(study), last = failures(study);
+  return first + (first.empty() || last.empty() ? "" : " ") + last;
 }
 
 }  // namespace momenta

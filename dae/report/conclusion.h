@@ -20,4 +20,10 @@ inline constexpr double power_law_half_range = 0.3;
 /// otherwise.
 std::string conclusion(const StudyResult&);
 
+/// Its first two sentences, what came out: empty when no run finished.
+std::string answer(const StudyResult&);
+
+/// Its last sentence: empty when every run finished.
+std::string failures(const StudyResult&);
+
 }  // namespace momenta

@@ -79,6 +79,15 @@ std::string compact(double value, int digits) {
   return tidy(format(kept, std::chars_format::fixed, std::max(0, digits - 1 - exponent)));
 }
 
+std::string fixed(double value, int decimals) {
+  if (!std::isfinite(value)) return scientific(value, 1);
+  const std::string text = format(value, std::chars_format::fixed, decimals);
+  // -0.00 is no number anyone means.
+  return text.find_first_of("123456789") == std::string::npos && text.front() == '-'
+             ? text.substr(1)
+             : text;
+}
+
 std::string length_text(double metres) {
   return with_prefix(metres, "m", prefixes, 0.1);
 }

@@ -17,6 +17,9 @@ std::string compact(double value, int digits);
 /// Always an exponent, for columns to be compared by eye: "2.7e-1", "0", "-" for NaN.
 std::string scientific(double value, int digits);
 
+/// Exactly `decimals` decimals: "1.00"; "-" for NaN.
+std::string fixed(double value, int decimals);
+
 /// A length with its SI prefix: "0.27 m", "27 mm", "3.5 µm", "12 nm"; below 1 pm in powers of ten:
 /// "4.4e-14 m".
 std::string length_text(double metres);

@@ -3,6 +3,7 @@
 #include <momenta/dae/report/page.h>
 #include <momenta/dae/report/page_data.h>
 
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -47,7 +48,11 @@ std::string island(const nlohmann::ordered_json& data) {
   return text;
 }
 
-// `name` as code, t^1.98 with its exponent raised.
+bool digit(char c) {
+  return c >= '0' && c <= '9';
+}
+
+// `name` as code, t^1.98 with its exponent raised, 3.5e-7 as 3.5×10 to the −7; code keeps its text.
 std::string marked_up(const std::string& sentence) {
   const std::string text = escape_html(sentence);
   std::string html;
@@ -56,13 +61,24 @@ std::string marked_up(const std::string& sentence) {
     if (text[i] == '`') {
       html += code ? "</code>" : "<code>";
       code = !code;
-    } else if (text[i] == '^' && i > 0 && text[i - 1] == 't') {
+    } else if (!code && text[i] == '^' && i > 0 && text[i - 1] == 't') {
       const auto from = i + 1;
       auto end = text.find_first_not_of("-0123456789.", from);
       if (end == std::string::npos) end = text.size();
       while (end > from && text[end - 1] == '.') --end;  // the full stop of the sentence
       html += "<sup>" + text.substr(from, end - from) + "</sup>";
       i = end - 1;
+    } else if (!code && text[i] == 'e' && i > 0 && digit(text[i - 1])) {
+      const bool negative = text.compare(i + 1, 1, "-") == 0;
+      const auto from = i + (negative ? 2 : 1);
+      const auto end = std::min(text.find_first_not_of("0123456789", from), text.size());
+      if (end > from) {
+        html += "×10<sup>" + std::string(negative ? "−" : "") + text.substr(from, end - from) +
+                "</sup>";
+        i = end - 1;
+      } else {
+        html += 'e';
+      }
     } else {
       html += text[i];
     }
@@ -112,17 +128,20 @@ std::string escape_html(std::string_view text) {
 }
 
 std::string drift_page(const StudyResult& study) {
-  const std::string sentences = conclusion(study);
-  return filled(embedded::page_html(),
-                {{"scene", escape_html(study.scene)},
-                 {"kind", study.drift_study ? "Drift of the loops" : "Error against time"},
-                 {"conclusion", marked_up(sentences)},
-                 {"uplot_license", std::string(embedded::uplot_license())},
-                 {"uplot_css", std::string(embedded::uplot_css())},
-                 {"page_css", std::string(embedded::page_css())},
-                 {"study", island(page_data(study))},
-                 {"uplot_js", std::string(embedded::uplot_js())},
-                 {"page_js", script()}});
+  const std::string stopped = failures(study);
+  return filled(
+      embedded::page_html(),
+      {{"scene", escape_html(study.scene)},
+       {"kind", study.drift_study ? "Drift of the loops" : "Error against time"},
+       {"answer", marked_up(answer(study))},
+       {"failures",
+        stopped.empty() ? "" : "<p class=\"answer failures\">" + marked_up(stopped) + "</p>"},
+       {"uplot_license", std::string(embedded::uplot_license())},
+       {"uplot_css", std::string(embedded::uplot_css())},
+       {"page_css", std::string(embedded::page_css())},
+       {"study", island(page_data(study))},
+       {"uplot_js", std::string(embedded::uplot_js())},
+       {"page_js", script()}});
 }
 
 }  // namespace momenta

@@ -76,7 +76,7 @@ Json sketch_json(const Sketch& sketch) {
 }  // namespace
 
 Json page_data(const StudyResult& study) {
-  const auto labels = run_labels(study);
+  const auto labels = run_labels(study), ladder_labels = run_labels(study, false);
   const auto ladder = ladders(study);
   const auto curves = runs_with_curves(study);
 
@@ -86,6 +86,7 @@ Json page_data(const StudyResult& study) {
     Json json = summary_json(run, study.environment);
     json.erase("environment");
     json["label"] = labels[i];
+    json["ladder_label"] = ladder_labels[i];
     json["tolerance"] = tolerance_text(run.settings);
     json["ladder"] = ladder[i];
     json["baumgarte"] = {run.settings.baumgarte_alpha, run.settings.baumgarte_beta};

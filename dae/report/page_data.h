@@ -11,8 +11,9 @@ namespace momenta {
 inline constexpr std::size_t points_per_curve = 400;
 
 /// {scene, scene_file, scene_hash, command, reference, drift_study, plan, environment, sketch, csv,
-/// runs}; each run is its summary_json with label, tolerance, ladder, growth with half ranges and,
-/// where its history is drawn, series {name: {t, y}} of thinned curves to five digits.
+/// runs}; each run is its summary_json with label, ladder_label, tolerance, ladder, growth with
+/// half ranges and, where its history is drawn, series {name: {t, y}} of thinned curves to five
+/// digits.
 nlohmann::ordered_json page_data(const StudyResult&);
 
 }  // namespace momenta

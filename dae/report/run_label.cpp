@@ -20,7 +20,7 @@ std::string tolerance_text(const RunSettings& s) {
   return s.rtol == s.atol ? relative : relative + '/' + scientific(s.atol, 3);
 }
 
-std::vector<std::string> run_labels(const StudyResult& study) {
+std::vector<std::string> run_labels(const StudyResult& study, bool with_tolerance) {
   const auto& runs = study.runs;
   std::vector<std::string> labels;
   for (const RunResult& run : runs) {
@@ -30,7 +30,7 @@ std::vector<std::string> run_labels(const StudyResult& study) {
       const bool differs = std::any_of(runs.begin(), runs.end(), [&](const RunResult& other) {
         return other.settings.form == run.settings.form && details(other.settings)[k] != own[k];
       });
-      if (differs && !own[k].empty()) {
+      if (differs && !own[k].empty() && (with_tolerance || k != 2)) {
         label += ", ";
         if (k == 1 && own[k] == "none") label += "gauge ";
         label += own[k];

@@ -12,7 +12,8 @@ namespace momenta {
 /// One label per run: the form, then those settings (integrator, gauge, tolerance or step,
 /// projection, way of solving (7)) in which runs of that form differ: "momentum", "momentum,
 /// dop853, leak:10", "acceleration, 1e-6".
-std::vector<std::string> run_labels(const StudyResult&);
+/// Without the tolerance it is the name of a ladder.
+std::vector<std::string> run_labels(const StudyResult&, bool with_tolerance = true);
 
 /// "1e-8" where rtol = atol, "1e-8/1e-10" where not, "h = 0.005 s" of a fixed step.
 std::string tolerance_text(const RunSettings&);

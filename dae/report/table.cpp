@@ -22,8 +22,8 @@ std::size_t width(const std::string& text) {
 
 std::string growth(const Growth& g) {
   if (std::isnan(g.exponent)) return "-";
-  if (std::isnan(g.half_range)) return compact(g.exponent, 3);
-  return compact(g.exponent, 3) + "±" + compact(g.half_range, 1);
+  if (std::isnan(g.half_range)) return fixed(g.exponent, 2);
+  return fixed(g.exponent, 2) + "±" + fixed(g.half_range, 2);
 }
 
 std::string count(long n) {

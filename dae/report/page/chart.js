@@ -24,14 +24,14 @@ function nearSteps(u, low, high) {
   return [from, Math.max(to, 2 * from)];
 }
 
-/** Powers of ten as far apart as the room asks; 1-2-5 where the axis spans less than two decades. */
+/** Powers of ten as far apart as the room asks; 1-2-5 where the axis spans few decades. */
 function powersOfTen(u, axis, low, high, increment, space) {
   const side = u.axes[axis].side % 2;
   const length = side ? u.bbox.height : u.bbox.width;
   const room = Math.max(2, Math.floor(length / uPlot.pxRatio / (side ? 40 : 64)));
   const first = Math.round(Math.log10(decadeFloor(low))), last = Math.round(Math.log10(decadeCeil(high)));
   const apart = Math.ceil((last - first) / room) || 1;
-  const mantissas = Math.log10(high / low) < 2 ? [1, 2, 5] : [1];
+  const mantissas = Math.log10(high / low) < 2.5 && apart === 1 && room > 3 * (last - first) ? [1, 2, 5] : [1];
   const ticks = [];
   for (let k = Math.ceil(first / apart) * apart; k <= last; k += apart) {
     for (const m of mantissas) {
@@ -117,7 +117,7 @@ function powerLine(u, x, y, slope, name) {
   ctx.lineTo(px(high), py(at(high)));
   ctx.stroke();
   ctx.restore();
-  // The name stands where the line is inside the plot: at a third of its visible part.
+  // The name stands over the middle of what is to be seen of the line.
   const yLow = u.scales.y.min, yHigh = u.scales.y.max;
   const inside = [];
   for (let k = 0; k <= 40; ++k) {
@@ -125,8 +125,8 @@ function powerLine(u, x, y, slope, name) {
     if (at(value) > yLow && at(value) < yHigh) inside.push(value);
   }
   if (inside.length < 6) return;
-  const value = inside[Math.floor(inside.length * 0.3)];
-  canvasText(ctx, name, px(value), py(at(value)), { align: "center", colour: theme("--muted") });
+  const value = inside[Math.floor(inside.length * 0.55)];
+  canvasText(ctx, name, px(value), py(at(value)) - 11 * uPlot.pxRatio, { align: "center", colour: theme("--muted") });
 }
 
 /** The line under which everything is rounding; only where the axis reaches it. */
@@ -204,13 +204,13 @@ function labelRoom(width, shown) {
 }
 
 /** Names, signs and read values of the curves; a click shows or hides a run in every chart. */
-function legend(shown, near) {
+function legend(shown, near, nameOf) {
   const list = element("ul", { class: "legend" });
   const items = new Map();
   for (const i of shown) {
     const value = element("span", { class: "value" });
     const button = element("button", { type: "button", "aria-pressed": "true" },
-      swatch(i), element("span", { class: "name" }, runs[i].label), value);
+      swatch(i), element("span", { class: "name" }, nameOf(i)), value);
     button.addEventListener("click", () => toggle(i));
     button.addEventListener("dblclick", () => only(i));
     for (const [event, run] of [["mouseenter", i], ["focus", i], ["mouseleave", null], ["blur", null]]) {
@@ -237,10 +237,10 @@ function only(run) {
 }
 
 /** A figure: axis title, plot (an image with a text alternative; arrow keys move its cursor), reading, legend. */
-function frameOf(spec, alternative, shown, near) {
+function frameOf(spec, alternative, shown, near, nameOf = (i) => runs[i].label) {
   const plot = element("div", { class: "plot", tabindex: "0", role: "img", "aria-label": alternative });
   const reading = element("p", { class: "reading" });
-  const names = legend(shown, near);
+  const names = legend(shown, near, nameOf);
   const figure = element("div", {}, element("p", { class: "axis-title" }, `↑ ${spec.yTitle}`), plot, reading, names.list);
   return { figure, plot, reading, names };
 }
@@ -266,8 +266,9 @@ function steerable(u, plot) {
 
 /** Keeps a chart as wide as its place. */
 function fitted(u, plot) {
-  new ResizeObserver(() => {
+  // In the next frame: a chart that changes its height while sizes are being reported would be reported itself.
+  new ResizeObserver(() => requestAnimationFrame(() => {
     const width = plot.clientWidth;
     if (width > 0 && width !== u.width) u.setSize({ width, height: plotHeight(width) });
-  }).observe(plot);
+  })).observe(plot);
 }

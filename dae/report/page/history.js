@@ -37,6 +37,8 @@ function historyChart(spec) {
   }
   const data = uPlot.join(lines.map((line) => [line.curve.t, line.y]));
 
+  const faintness = curves.length > 6 ? 0.2 : 0.4;  // many oscillations over one another would hide the lines
+
   const worst = curves.reduce((a, b) => (b.top.at(-1) > a.top.at(-1) ? b : a));
   const least = curves.reduce((a, b) => (b.top.at(-1) < a.top.at(-1) ? b : a));
   const alternative = `${spec.yTitle} over time, ${curves.length} ${curves.length === 1 ? "curve" : "curves"}. ` +
@@ -46,6 +48,7 @@ function historyChart(spec) {
   const { figure, plot, reading, names } = frameOf(spec, alternative, shown, (run) => near(run));
   const width = plot.clientWidth || document.getElementById("main").clientWidth - 32;
   const room = () => labelRoom(u?.width ?? width, shown);
+  let times = [0, Infinity];  // what the horizontal axis spans; known before the vertical one is asked for
   let u;
   u = new uPlot({
     width,
@@ -58,8 +61,8 @@ function historyChart(spec) {
       points: { show: (plotted, s) => (lines[s - 1].kind === "strong" ? dot(lines[s - 1].curve.run) : null) },
     },
     scales: {
-      x: { time: false, distr: 3, log: 10, range: (plotted, low, high) => [low, high > low ? high : low * 10] },
-      y: { distr: 3, log: 10, range: wholeDecades },
+      x: { time: false, distr: 3, log: 10, range: (plotted, low, high) => (times = [low, high > low ? high : low * 10]) },
+      y: { distr: 3, log: 10, range: (plotted) => wholeDecades(plotted, ...extent(...times)) },
     },
     axes: [
       { ...axisStyle, label: "time t [s]", labelSize: 22, size: 34 },
@@ -69,7 +72,7 @@ function historyChart(spec) {
       stroke: () => (kind === "outline" ? theme("--outline") : inkOf(signs[curve.run])),
       width: { faint: 0.75, outline: 5, strong: 2.5 }[kind],
       dash: kind === "faint" ? [] : signs[curve.run].dash,
-      alpha: kind === "faint" ? 0.35 : 1,
+      alpha: kind === "faint" ? faintness : 1,
       cap: kind === "faint" ? "butt" : "round",
       spanGaps: true,
       points: { show: false },
@@ -81,14 +84,28 @@ function historyChart(spec) {
     return curves.filter((curve) => !hidden.has(curve.run));
   }
 
-  // Lines of slope n end at the largest curve's end, the others start where the steepest does.
+  // What the vertical axis has to hold: the strong lines, and of the faint ones what reaches two decades below them.
+  function extent(min, max) {
+    let low = Infinity, faint = Infinity, high = 0;
+    for (const curve of visible()) {
+      curve.t.forEach((t, k) => {
+        if (t < min || t > max) return;
+        low = Math.min(low, curve.top[k]);
+        faint = Math.min(faint, curve.y[k]);
+        high = Math.max(high, curve.top[k]);
+      });
+    }
+    return high > 0 ? [Math.max(faint, low / 100), high] : [null, null];
+  }
+
+  // The steepest line runs three times above the largest curve's end; the others start where it does.
   function under() {
     floorLine(u);
     if (!spec.slopes || !visible().length) return;
     const largest = visible().reduce((a, b) => (b.top.at(-1) > a.top.at(-1) ? b : a));
     const steepest = Math.max(...spec.slopes);
     const start = largest.t[0], end = largest.t.at(-1);
-    const y = Math.max(largest.top.at(-1) * (start / end) ** steepest, u.scales.y.min);
+    const y = Math.max(3 * largest.top.at(-1) * (start / end) ** steepest, u.scales.y.min);
     for (const slope of spec.slopes) powerLine(u, start, y, slope, slope === 1 ? "∝ t" : `∝ t${raised(slope)}`);
   }
 
@@ -122,7 +139,7 @@ function historyChart(spec) {
 
   function near(run) {
     lines.forEach((line, k) => {
-      const base = line.kind === "faint" ? 0.35 : 1;
+      const base = line.kind !== "faint" ? 1 : run === line.curve.run ? 0.7 : faintness;
       u.series[k + 1].alpha = run === null || run === line.curve.run ? base : 0.15 * base;
     });
     u.redraw(false);

@@ -16,7 +16,8 @@ function mechanismSvg(width) {
   const svg = drawing("svg", { width, height, viewBox: `0 0 ${width} ${height}`, role: "img",
     "aria-label": `The mechanism at the start. Bodies: ${lines.map((l) => l.body).join(", ")}. ` +
       points.map((p) => `${p.kind} ${p.name}`).join(", ") + "." });
-  const taken = [];
+  const taken = [];   // boxes of signs and names
+  const bodies = [];  // small boxes along the bodies
 
   for (const line of lines) {
     const placed = line.points.map(place);
@@ -26,6 +27,13 @@ function mechanismSvg(width) {
       points: placed.map((p) => p.map((v) => v.toFixed(1)).join(",")).join(" "),
       fill: closed ? "var(--surface)" : "none", stroke: "var(--muted)",
       "stroke-width": closed ? 2.5 : 6, "stroke-linejoin": "round", "stroke-linecap": "round" }));
+    placed.slice(1).forEach((end, k) => {
+      const start = placed[k], pieces = Math.ceil(Math.hypot(end[0] - start[0], end[1] - start[1]) / 6) || 1;
+      for (let i = 0; i <= pieces; ++i) {
+        const at = (axis) => start[axis] + ((end[axis] - start[axis]) * i) / pieces;
+        bodies.push({ x: at(0) - 4, y: at(1) - 4, w: 8, h: 8 });
+      }
+    });
   }
 
   for (const { kind, at, name } of points) {
@@ -47,20 +55,20 @@ function mechanismSvg(width) {
     }
   }
 
-  // Names where they cross neither a sign nor one another, nearest place first.
+  // Names stand in the nearest place where they cross neither a sign, nor a body, nor one another.
+  const crossed = (box, weight, others) => weight * others.filter((other) =>
+    box.x < other.x + other.w && box.x + box.w > other.x && box.y < other.y + other.h && box.y + box.h > other.y).length;
   const name = (text, [x, y], distance, quiet) => {
     if (!text) return;
     const w = textWidth(text) + 4, h = 18;
     let best = null;
     for (const d of [distance, 1.7 * distance, 2.6 * distance]) {
-      for (let k = 0; k < 8; ++k) {
-        const angle = (Math.PI * (2 * k - 1)) / 4 / 1 + (k >= 4 ? Math.PI / 4 : 0);
-        const cx = x + Math.cos(angle) * (d + w / 2 * Math.abs(Math.cos(angle)));
-        const cy = y + Math.sin(angle) * (d + h / 2 * Math.abs(Math.sin(angle)));
+      for (let k = 0; k < 12; ++k) {
+        const angle = (Math.PI * k) / 6;
+        const cx = x + Math.cos(angle) * (d + w / 2), cy = y - Math.sin(angle) * (d + h / 2);
         const box = { x: cx - w / 2, y: cy - h / 2, w, h };
         const outside = box.x < 0 || box.x + w > width || box.y < 0 || box.y + h > height - 44;
-        const clashes = taken.filter((o) => box.x < o.x + o.w && box.x + w > o.x && box.y < o.y + o.h && box.y + h > o.y).length;
-        const cost = clashes * 100 + (outside ? 1000 : 0) + d + k / 100;
+        const cost = crossed(box, 100, taken) + crossed(box, 10, bodies) + (outside ? 1000 : 0) + d + k / 100;
         if (!best || cost < best.cost) best = { box, cost, cx, cy };
       }
     }
@@ -89,10 +97,10 @@ function mechanismSvg(width) {
 function mechanismSection() {
   if (!study.sketch.lines.length && !study.sketch.points.length) return null;
   const frame = element("div", { class: "mechanism" });
-  new ResizeObserver(() => {
+  new ResizeObserver(() => requestAnimationFrame(() => {
     const width = Math.min(frame.clientWidth, 900);
     if (width > 0 && frame.firstChild?.getAttribute("width") !== String(width)) frame.replaceChildren(mechanismSvg(width));
-  }).observe(frame);
+  })).observe(frame);
   const kinds = new Set(study.sketch.points.map((point) => point.kind));
   const words = [["joint", "joints are circles"], ["loop", "loop closures double circles"], ["ground", "ground is hatched"],
     ["marker", "markers are crosses"]].filter(([kind]) => kinds.has(kind)).map(([, text]) => text).join(", ");

@@ -6,10 +6,14 @@ function section(title, caption, ...content) {
 
 const numeric = (name, unit, get, best = true, digits = 2) =>
   ({ name, unit, get, best, text: (value) => number(value, digits) });
+const fixed = (name, get, best) => ({ name, get, best, text: (value) => (measured(value) ? value.toFixed(2) : "–") });
+const growth = (of) => [fixed("exponent of growth", (run) => of(run).exponent, true),
+  fixed("± half range", (run) => of(run).half_range, false)];
 const counted = (name, get) => ({ name, get, best: true, optional: true, text: count });
 const optional = (column) => ({ ...column, optional: true });
 
-const largest = (what) => `${what}; strong lines are the largest value so far, faint lines the value itself`;
+const rung = study.drift_study ? "" : "; of each ladder its first rung";
+const largest = (what) => `${what}; strong lines are the largest value so far, faint lines the value itself${rung}`;
 const anyFailed = runs.some((run) => run.status !== "done");
 const withReference = runs.some((run) => measured(run.error.position_max));
 
@@ -20,8 +24,7 @@ const histories = [
     columns: [
       numeric("largest drift", "m", (run) => run.drift.position_max),
       optional(numeric("between steps", "m", (run) => run.drift.between_steps_max)),
-      numeric("grows as t to the", "", (run) => run.growth.position.exponent, true, 3),
-      numeric("± half range", "", (run) => run.growth.position.half_range, false),
+      ...growth((run) => run.growth.position),
     ],
   },
   {
@@ -29,12 +32,11 @@ const histories = [
     caption: largest("How fast the loops open"),
     columns: [
       numeric("largest drift", "m/s", (run) => run.drift.velocity_max),
-      numeric("grows as t to the", "", (run) => run.growth.velocity.exponent, true, 3),
-      numeric("± half range", "", (run) => run.growth.velocity.half_range, false),
+      ...growth((run) => run.growth.velocity),
     ],
   },
   {
-    key: "energy_error", title: "Energy error", yTitle: "energy error |E − E₀| [J]", unit: "J", slopes: [1],
+    key: "energy_error", title: "Energy error", yTitle: "energy error |E − E₀| [J]", unit: "J",
     caption: largest("Energy, less the work done on the mechanism, against its value at the start"),
     columns: [numeric("largest energy error", "J", (run) => run.energy.error_max)],
   },
@@ -47,7 +49,7 @@ const histories = [
     ],
   },
   {
-    key: "impulse", title: "Loop impulses", yTitle: "loop impulses |σ| [N s]", unit: "N s", slopes: [1],
+    key: "impulse", title: "Loop impulses", yTitle: "loop impulses |σ| [N s]", unit: "N s",
     caption: largest("What a gauge keeps from growing: the multipliers σ of momentum forms"),
     columns: [],
   },

@@ -17,8 +17,10 @@ function scatterChart(spec) {
   const alternative = `${spec.yTitle} against processor time, ${points.length} runs. ` +
     (best ? `Smallest: ${runs[best.run].label}, ${number(best.y)} ${spec.unit} in ${number(best.x)} s. ` : "") +
     "The table below has the numbers.";
-  const { figure, plot, reading, names } = frameOf(spec, alternative, shown, (run) => near(run));
+  const { figure, plot, reading, names } = frameOf(spec, alternative, shown, (run) => near(run),
+    (i) => (study.drift_study ? runs[i].label : runs[i].ladder_label));
   const width = plot.clientWidth || document.getElementById("main").clientWidth - 32;
+  names.list.classList.add("wide");
   let highlighted = null;  // a ladder, from its legend entry
   let read = null;         // the point under the cursor
 
@@ -47,7 +49,9 @@ function scatterChart(spec) {
     floorLine(u);
     if (study.drift_study) return;
     const orders = [...new Set(visible().map((p) => methodOrder[runs[p.run].integrator]).filter(Boolean))];
-    const x = Math.sqrt(u.scales.x.min * u.scales.x.max), y = Math.sqrt(u.scales.y.min * u.scales.y.max);
+    // Through a place where a ladder seldom is: right of the middle, high.
+    const between = (scale, part) => scale.min ** (1 - part) * scale.max ** part;
+    const x = between(u.scales.x, 0.6), y = between(u.scales.y, 0.75);
     for (const order of orders) powerLine(u, x, y, -order, `order ${order}`);
   }
 
@@ -81,7 +85,7 @@ function scatterChart(spec) {
   function nameLadders() {
     namePoints(shown.filter((ladder) => !hidden.has(ladder)).map((ladder) => {
       const last = ladders.get(ladder).reduce((a, b) => (b.y < a.y ? b : a));
-      return { ...at(last), name: ladderName(ladder) };
+      return { ...at(last), name: runs[ladder].ladder_label };
     }));
   }
 
@@ -157,5 +161,3 @@ function grouped(points) {
   }
   return ladders;
 }
-
-const ladderName = (i) => runs[i].form + (manyIntegrators ? `, ${runs[i].integrator}` : "");

@@ -30,7 +30,7 @@ function runTable(title, shown, columns) {
   const head = element("tr");
   const body = element("tbody");
   const headers = [{ name: "form", get: (run) => run.label }, ...all].map((column, c) => {
-    const button = element("button", { type: "button" }, column.name);
+    const button = element("button", { type: "button" }, element("span", { class: "title" }, column.name));
     if (column.unit) button.append(element("span", { class: "unit" }, `[${column.unit}]`));
     const header = element("th", { scope: "col", class: column.text ? "" : "text" }, button);
     button.addEventListener("click", () => {
@@ -47,7 +47,8 @@ function runTable(title, shown, columns) {
   const best = all.map((column) => {
     if (!column.best) return null;
     const values = shown.filter((i) => runs[i].status === "done").map((i) => column.get(runs[i])).filter(measured);
-    return values.length > 1 ? Math.min(...values) : null;
+    const least = Math.min(...values);
+    return values.some((value) => value > least) ? least : null;  // where all are equal none is best
   });
   const rows = shown.map((i) => {
     const name = element("th", { scope: "row" }, swatch(i), " ", runs[i].label);

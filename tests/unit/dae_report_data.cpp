@@ -1,0 +1,92 @@
+// Results for other programs: JSON keys and nulls, CSV cells and digits.
+#include <gtest/gtest.h>
+#include <momenta/dae/report/csv.h>
+#include <momenta/dae/report/json.h>
+#include <unit/page/synthetic_study.h>
+
+#include <algorithm>
+#include <limits>
+#include <sstream>
+
+namespace momenta {
+namespace {
+
+std::vector<std::string> keys(const nlohmann::ordered_json& json) {
+  std::vector<std::string> names;
+  for (const auto& [name, value] : json.items()) names.push_back(name);
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+using Names = std::vector<std::string>;
+
+TEST(SummaryJson, HasThePublicKeys) {
+  const auto json = summary_json(synthetic::run_of({}), synthetic::study_of({}).environment);
+  Names expected{"scene", "form",     "integrator", "gauge",       "rtol",     "atol",
+                 "step",  "end_time", "status",     "reason",      "counters", "time",
+                 "drift", "energy",   "error",      "environment", "jacobian", "linear_solver",
+                 "kkt",   "project",  "stopped_at"};
+  std::sort(expected.begin(), expected.end());
+  EXPECT_EQ(keys(json), expected);
+  EXPECT_EQ(keys(json["counters"]), (Names{"evaluations", "factorizations", "jacobians",
+                                           "newton_iterations", "rejected", "steps"}));
+  EXPECT_EQ(keys(json["time"]), (Names{"cpu_s", "repeats", "wall_s"}));
+  EXPECT_EQ(keys(json["drift"]), (Names{"between_steps_max", "position_exponent", "position_max",
+                                        "velocity_exponent", "velocity_max"}));
+  EXPECT_EQ(keys(json["energy"]), (Names{"error_max"}));
+  EXPECT_EQ(keys(json["error"]), (Names{"position_max", "velocity_max"}));
+  EXPECT_EQ(json["environment"]["versions"]["SUNDIALS"], "6.4.1");
+  EXPECT_EQ(json["counters"]["steps"], 43000);
+}
+
+TEST(SummaryJson, NotMeasuredIsNull) {
+  RunResult run;
+  run.energy_error_max = std::numeric_limits<double>::infinity();
+  const auto json = summary_json(run, {});
+  EXPECT_TRUE(json["drift"]["position_max"].is_null());
+  EXPECT_TRUE(json["error"]["velocity_max"].is_null());
+  EXPECT_TRUE(json["time"]["cpu_s"].is_null());
+  EXPECT_TRUE(json["energy"]["error_max"].is_null());
+  EXPECT_TRUE(json["rtol"].is_number());
+}
+
+TEST(StudyJson, IsAnArrayOfSummariesThatParsesBack) {
+  const auto json = nlohmann::ordered_json::parse(study_json(synthetic::all_forms()).dump());
+  ASSERT_EQ(json.size(), 14u);
+  EXPECT_EQ(json[5]["form"], "acceleration");
+  EXPECT_EQ(json[8]["status"], "failed");
+}
+
+TEST(Csv, QuotesOnlyWhereACellNeedsIt) {
+  EXPECT_EQ(csv_cell("plain text"), "plain text");
+  EXPECT_EQ(csv_cell("a,b"), "\"a,b\"");
+  EXPECT_EQ(csv_cell("say \"no\""), "\"say \"\"no\"\"\"");
+  EXPECT_EQ(csv_cell("two\nlines"), "\"two\nlines\"");
+}
+
+TEST(Csv, TrajectoryKeepsEveryDigitAndLeavesNanEmpty) {
+  const Trajectory trajectory{{"t [s]", "O.q [rad]", "x, y"},
+                              {{0, 1.0 / 3.0, not_measured}, {0.1, -2e-300, 4}}};
+  EXPECT_EQ(trajectory_csv(trajectory),
+            "t [s],O.q [rad],\"x, y\"\n0,0.3333333333333333,\n0.1,-2e-300,4\n");
+}
+
+TEST(Csv, StudyHasOneRowPerRunAndAsManyCellsAsNames) {
+  StudyResult study = synthetic::study_of({synthetic::run_of({}, 1, 10), RunResult{}});
+  const std::string text = study_csv(study);
+  std::istringstream lines(text);
+  std::vector<std::string> rows;
+  for (std::string line; std::getline(lines, line);) rows.push_back(line);
+  ASSERT_EQ(rows.size(), 3u);
+  for (const auto& row : rows) {
+    EXPECT_EQ(std::count(row.begin(), row.end(), ','),
+              std::count(rows[0].begin(), rows[0].end(), ','))
+        << row;
+  }
+  EXPECT_NE(rows[0].find("position_drift_max [m],velocity_drift_max [m/s]"), std::string::npos);
+  EXPECT_NE(rows[0].find("cpu [s]"), std::string::npos);
+  EXPECT_NE(rows[2].find(",,,,"), std::string::npos) << rows[2];
+}
+
+}  // namespace
+}  // namespace momenta
