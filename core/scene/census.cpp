@@ -86,8 +86,11 @@ void Census::require_body(const std::string& name, bool or_ground, Location at,
 
 void Census::require_joint(const std::string& name, Location at, const std::string& who) const {
   if (joints_.contains(name)) return;
+  const bool is_loop = std::any_of(scene_.loops.begin(), scene_.loops.end(),
+                                   [&](const LoopSpec& loop) { return loop.name == name; });
   throw SceneError(scene_.where(at) + who + ": " + in_quotes(name) +
-                   " is no joint, expected the name of a [[joint]]" + near_key(name, joints_));
+                   (is_loop ? " is a loop" : " is no joint") +
+                   ", expected the name of a [[joint]]" + near_key(name, joints_));
 }
 
 void Census::require_axis_joint(const std::string& name, Location at,

@@ -70,6 +70,7 @@ Scene parse_scene(std::string_view text, const std::string& file) try {
   if (const auto assembly = table.table("assembly")) {
     assembly->allow({"hold"});
     scene.held = assembly->texts("hold");
+    if (const reading::Value* hold = assembly->find("hold")) scene.held_at = hold->at;
   }
   if (const auto run = table.table("run")) scene.run = reading::read_run(*run);
 

@@ -172,6 +172,7 @@ struct Scene {
   std::vector<ForceSpec> forces;
   std::vector<MarkerSpec> markers;
   std::vector<std::string> held;  ///< [assembly] hold: joints whose q and u assembly must keep
+  Location held_at;               ///< of that list
   RunDefaults run;                ///< [run] end, step, leak, samples
 
   /// The sentence prefix "file:line:column: " of a place in this scene; without line and column

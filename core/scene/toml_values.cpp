@@ -94,7 +94,7 @@ std::string_view described(Value::Type type) {
     case Value::Type::number:
       return "a number";
     case Value::Type::boolean:
-      return "true or false";
+      return "a boolean";
     case Value::Type::date:
       return "a date";
     case Value::Type::time:

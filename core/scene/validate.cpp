@@ -145,8 +145,8 @@ void check_rest(const Scene& scene, const Census& census) {
   }
   std::set<std::string> held;
   for (const std::string& joint : scene.held) {
-    census.require_joint(joint, {}, "[assembly] hold");
-    require(held.insert(joint).second, scene, {}, "[assembly] hold",
+    census.require_joint(joint, scene.held_at, "[assembly] hold");
+    require(held.insert(joint).second, scene, scene.held_at, "[assembly] hold",
             ("names joint " + in_quotes(joint) + " twice").c_str());
   }
   require(scene.gravity.allFinite(), scene, {}, "gravity", "must be finite [m/s²]");

@@ -58,7 +58,7 @@ TEST_P(BrokenScene, IsRefusedWithTheExpectedSentence) {
   const std::string name = GetParam().string();
   ASSERT_TRUE(sentence.starts_with(name)) << sentence;
   EXPECT_TRUE(
-      std::regex_search(sentence.substr(name.size()), std::regex("^(:[1-9][0-9]*:[1-9][0-9]*)?: ")))
+      std::regex_search(sentence.substr(name.size()), std::regex("^:[1-9][0-9]*:[1-9][0-9]*: ")))
       << sentence;
   std::ifstream stream(GetParam());
   const std::string mark = "# expect: ";
