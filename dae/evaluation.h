@@ -1,0 +1,61 @@
+#pragma once
+// Everything a form needs of a mechanism at one state, computed by sweeps: no call assembles M or Φ_q unless it is asked
+// to. S is double, or a dual number for exact derivatives. Calls are in order: place, move, then the rest; each leaves
+// its results in the workspace for the next. One object serves one thread; no call allocates.
+
+#include <momenta/core/scalar/dual.h>
+
+#include <memory>
+
+namespace momenta {
+
+template <class S>
+class Evaluation {
+ public:
+  virtual ~Evaluation() = default;
+
+  /// Configuration q (nq) at time t.
+  virtual void place(double t, const S* q) = 0;
+  /// Φ (m), eq. (1b).
+  virtual void positions(S* phi) = 0;
+
+  /// Rates u (nv): velocities of all bodies. Null: zero rates, so that only prescribed motion is left.
+  virtual void move(const S* u) = 0;
+  /// Φ̇ = Φ_q u + Φ_t (m).
+  virtual void velocities(S* rate) = 0;
+  /// M u + Φ_qᵀσ + prescribed part (nv): row 1 of (7). `sigma` (m) null: no loops' impulses.
+  virtual void momenta(const S* sigma, S* p) = 0;
+  /// ṗ (nv), eq. (8), with the leak −κ Φ_qᵀσ. After momenta(sigma, …).
+  virtual void momentum_rates(const S* q, const S* u, const S* sigma, double leak, S* pdot) = 0;
+
+  /// M u̇ + bias − Q + Φ_qᵀλ (nv): the residual of (1a). `udot`, `lambda` null: zero. After move(u).
+  virtual void joint_forces(const S* q, const S* u, const S* udot, const S* lambda, S* tau) = 0;
+  /// Φ̈ (m), eq. (2), with the accelerations of the last joint_forces().
+  virtual void accelerations(S* rate) = 0;
+
+  /// Φ_qᵀ x (nv).
+  virtual void constraint_forces(const S* x, S* result) = 0;
+
+  /// q̇ (nq) from u, and back. After place().
+  virtual void coordinate_rates(const S* q, const S* u, S* qdot) const = 0;
+  virtual void joint_rates(const S* q, const S* qdot, S* u) const = 0;
+
+  /// Values of M (upper triangle) and Φ_q in the order of the mechanism's KKT pattern. After place().
+  virtual void mass_entries(S* values) = 0;
+  virtual void constraint_entries(S* values) = 0;
+
+  /// (q, p, t) → (u, ṗ) by the recursion of the paper: mechanisms without loops only. False when a joint has no inertia.
+  virtual bool open_momentum_rates(double t, const S* q, const S* p, S* u, S* pdot) = 0;
+  /// (q, u, t) → u̇ by the articulated recursion: mechanisms without loops only.
+  virtual bool open_accelerations(double t, const S* q, const S* u, S* udot) = 0;
+
+  /// T and V [J]; after place() and move().
+  virtual S kinetic() = 0;
+  virtual S potential(const S* q) = 0;
+  /// Power of everything the energy does not hold [W]: dampers, wrenches that have no potential. After move(u).
+  virtual S lost_power(const S* u) = 0;
+  /// Per marker x y z [m] and its velocity [m/s], ground axes; after move().
+  virtual void markers(S* values) = 0;
+};
+
+}  // namespace momenta

@@ -1,0 +1,125 @@
+#include <momenta/dae/mechanism.h>
+#include <momenta/dae/sweep_evaluation.h>
+
+namespace momenta {
+namespace {
+
+// Below this size a dense Cholesky of M and a pivoted LDLᵀ of the loops' small matrix beat sparse bookkeeping, and the
+// pivots can be filtered one by one.
+constexpr int dense_limit = 60;
+
+Plan plan_with_loops(const Tree& tree, const Scene& scene, Algebra algebra) {
+  Plan plan = make_plan(tree, scene, algebra);
+  if (!plan.planar) return plan;
+  const std::string why = loops_leave_plane(scene, tree, plan.basis);
+  if (why.empty()) return plan;
+  if (algebra == Algebra::planar)
+    throw SceneError(scene.where({}) + "the planar kernel was asked for, but " + why);
+  plan = make_plan(tree, scene, Algebra::spatial);
+  plan.planar_reason = why;
+  return plan;
+}
+
+}  // namespace
+
+Mechanism::Mechanism(Scene scene, MechanismOptions options)
+    : scene_(std::move(scene)), tree_(build_tree(scene_)), plan_(plan_with_loops(tree_, scene_, options.algebra)) {
+  if (plan_.planar) {
+    Cast<Planar> cast{build_planar_model(tree_, scene_, plan_.basis), {}};
+    cast.loops = build_loops(scene_, tree_, cast.model);
+    cast_ = std::move(cast);
+  } else {
+    Cast<Spatial> cast{build_spatial_model(tree_, scene_), {}};
+    cast.loops = build_loops(scene_, tree_, cast.model);
+    cast_ = std::move(cast);
+  }
+  row_names_ = row_names(scene_, plan_.planar);
+  rows_ = static_cast<int>(row_names_.size());
+  dense_ = options.kkt == KktChoice::dense ||
+           (options.kkt == KktChoice::automatic && tree_.nv + rows_ <= dense_limit);
+
+  const auto group = [&](const auto& cast) {
+    int index = 0;
+    for (const auto& l : cast.loops.loops) {
+      const int points = l.length > 0 ? 1 : l.n_points;
+      for (int i = 0; i < points; ++i) row_groups_.push_back(index);
+      for (int i = points; i < l.rows; ++i) row_groups_.push_back(index + 1);
+      index += 2;
+    }
+  };
+  const auto analyse = [&]<class Space>(const Cast<Space>& cast) {
+    SweepEvaluation<Space, double> e(*this, cast);
+    e.place(0, tree_.q0.data());
+    e.each_mass_entry([&](int i, int j, double) { pattern_.mass.push_back({i, j}); });
+    e.each_constraint_entry([&](int i, int j, double) { pattern_.constraint.push_back({i, j}); });
+  };
+  if (plan_.planar) {
+    group(std::get<0>(cast_));
+    analyse(std::get<0>(cast_));
+  } else {
+    group(std::get<1>(cast_));
+    analyse(std::get<1>(cast_));
+  }
+}
+
+Mechanism::~Mechanism() = default;
+
+template <class S>
+std::unique_ptr<Evaluation<S>> Mechanism::evaluation() const {
+  if (plan_.planar) return std::make_unique<SweepEvaluation<Planar, S>>(*this, std::get<0>(cast_));
+  return std::make_unique<SweepEvaluation<Spatial, S>>(*this, std::get<1>(cast_));
+}
+template std::unique_ptr<Evaluation<double>> Mechanism::evaluation<double>() const;
+template std::unique_ptr<Evaluation<Dual8>> Mechanism::evaluation<Dual8>() const;
+
+std::vector<Column> Mechanism::coordinate_columns() const {
+  std::vector<Column> columns;
+  for (const auto& b : tree_.bodies) {
+    if (b.nq == 1) columns.push_back({b.joint + ".q", b.kind == JointKind::revolute ? "rad" : "m"});
+    if (b.nq == 7)
+      for (const char* axis : {".x", ".y", ".z"}) columns.push_back({b.joint + axis, "m"});
+    if (b.nq >= 4)
+      for (const char* part : {".qw", ".qx", ".qy", ".qz"}) columns.push_back({b.joint + part, "1"});
+  }
+  return columns;
+}
+
+std::vector<Column> Mechanism::rate_columns() const {
+  std::vector<Column> columns;
+  for (const auto& b : tree_.bodies) {
+    if (b.nv == 1) columns.push_back({b.joint + ".u", b.kind == JointKind::revolute ? "rad/s" : "m/s"});
+    if (b.nv == 6)
+      for (const char* axis : {".vx", ".vy", ".vz"}) columns.push_back({b.joint + axis, "m/s"});
+    if (b.nv >= 3)
+      for (const char* axis : {".wx", ".wy", ".wz"}) columns.push_back({b.joint + axis, "rad/s"});
+  }
+  return columns;
+}
+
+std::vector<Column> Mechanism::marker_columns() const {
+  std::vector<Column> columns;
+  for (const auto& marker : scene_.markers) {
+    for (const char* axis : {".x", ".y", ".z"}) columns.push_back({marker.name + axis, "m"});
+    for (const char* axis : {".vx", ".vy", ".vz"}) columns.push_back({marker.name + axis, "m/s"});
+  }
+  return columns;
+}
+
+std::vector<std::pair<std::string, std::string>> Mechanism::plan_lines() const {
+  auto lines = plan_.lines();
+  if (rows_ == 0) {
+    lines.emplace_back("loops", "none: no KKT system, no σ, forward dynamics by the two sweeps");
+    return lines;
+  }
+  lines.emplace_back("loops", std::to_string(scene_.loops.size()) + " with " + std::to_string(rows_) + " equations");
+  lines.emplace_back("solving (7)", std::string(dense_ ? "dense: Cholesky of M, pivoted and filtered LDLᵀ of the loops"
+                                                       : "sparse: KLU on a pattern analysed once") +
+                                        ", " + std::to_string(tree_.nv + rows_) + " unknowns");
+  return lines;
+}
+
+std::string Mechanism::no_inertia() const {
+  return "a joint has no inertia to move: the mass matrix is not positive definite";
+}
+
+}  // namespace momenta

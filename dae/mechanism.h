@@ -1,0 +1,93 @@
+#pragma once
+// A scene made ready to move: its tree, its loops, and the plan that says what every evaluation does. Immutable; every
+// form, solver and measure takes it by const reference.
+
+#include <momenta/core/open_chain.h>
+#include <momenta/dae/evaluation.h>
+#include <momenta/dae/loop/loop_model.h>
+
+#include <memory>
+#include <variant>
+
+namespace momenta {
+
+enum class KktChoice { automatic, dense, sparse };
+
+struct MechanismOptions {
+  Algebra algebra = Algebra::automatic;
+  KktChoice kkt = KktChoice::automatic;
+};
+
+/// Nonzeros of the two blocks of (7): M (upper triangle) and Φ_q, in the order in which an evaluation writes them.
+struct KktPattern {
+  struct Entry {
+    int row, column;
+  };
+  std::vector<Entry> mass;        ///< row ≤ column < nv
+  std::vector<Entry> constraint;  ///< row < m, column < nv
+};
+
+struct Column {
+  std::string name, unit;
+  std::string label() const { return name + " [" + unit + "]"; }
+};
+
+class Mechanism {
+ public:
+  /// @throws SceneError
+  explicit Mechanism(Scene scene, MechanismOptions options = {});
+  ~Mechanism();
+  Mechanism(const Mechanism&) = delete;
+  Mechanism& operator=(const Mechanism&) = delete;
+
+  const Scene& scene() const { return scene_; }
+  const Tree& tree() const { return tree_; }
+  const Plan& plan() const { return plan_; }
+  int nq() const { return tree_.nq; }        ///< coordinates
+  int nv() const { return tree_.nv; }        ///< rates, momenta
+  int m() const { return rows_; }            ///< loop equations
+  bool dense_kkt() const { return dense_; }  ///< how (7) is solved, when there are loops
+  const KktPattern& kkt_pattern() const { return pattern_; }
+  const std::vector<RowName>& rows() const { return row_names_; }
+  /// Rows of one loop and one kind (points, axes or distance) share a unit and so a scale: group index of each row.
+  const std::vector<int>& row_groups() const { return row_groups_; }
+
+  /// A workspace for one thread; S is double or Dual8.
+  template <class S>
+  std::unique_ptr<Evaluation<S>> evaluation() const;
+
+  /// Names and units of q, u and of marker columns, in the order of trajectory.csv.
+  std::vector<Column> coordinate_columns() const;
+  std::vector<Column> rate_columns() const;
+  std::vector<Column> marker_columns() const;
+
+  /// Lines of the plan, core's and those of the loops.
+  std::vector<std::pair<std::string, std::string>> plan_lines() const;
+
+  /// The sentence for a joint whose articulated inertia vanished (open chains).
+  std::string no_inertia() const;
+
+ private:
+  template <class Space>
+  struct Cast {
+    Model<Space> model;
+    LoopModel<Space> loops;
+  };
+  template <class Space, class S>
+  class SweepEvaluation;
+
+  Scene scene_;
+  Tree tree_;
+  Plan plan_;
+  std::variant<Cast<Planar>, Cast<Spatial>> cast_;
+  int rows_ = 0;
+  bool dense_ = true;
+  KktPattern pattern_;
+  std::vector<RowName> row_names_;
+  std::vector<int> row_groups_;
+};
+
+extern template std::unique_ptr<Evaluation<double>> Mechanism::evaluation<double>() const;
+extern template std::unique_ptr<Evaluation<Dual8>> Mechanism::evaluation<Dual8>() const;
+
+}  // namespace momenta
