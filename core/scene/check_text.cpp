@@ -45,11 +45,12 @@ void check_characters(std::string_view text, const std::string& file) {
 /// Walks over the text as a TOML lexer does, just far enough to tell strings and comments from the
 /// rest, and counts. Where the text is malformed the walk may end early: the parser stops there
 /// too.
-class Nesting {
+class TextWalk {
  public:
-  Nesting(std::string_view text, const std::string& file) : text_(text), file_(file) {}
+  TextWalk(std::string_view text, const std::string& file) : text_(text), file_(file) {}
 
   void check() {
+    if (text_.starts_with("\xef\xbb\xbf")) i_ = line_begin_ = 3;  // byte order mark
     while (i_ < text_.size()) {
       const char c = text_[i_];
       if (c == '#') {
@@ -61,6 +62,7 @@ class Nesting {
         if (!skip_string(c)) return;
         continue;
       }
+      require_ascii("outside strings and comments");
       if (c == '[' && begins_line_ && depth_ == 0) check_header();
       if (c != ' ' && c != '\t') begins_line_ = false;
       count(c);
@@ -96,7 +98,7 @@ class Nesting {
         return;
     }
     dots_ = 0;
-    if (++values_ > most_values) refuse("more than 4 million values");
+    if (++values_ > most_values) refuse("more than 4 million values", "a scene of fewer");
   }
 
   /// After [ or [[ of a table header toml++ takes for granted that a name follows.
@@ -123,8 +125,7 @@ class Nesting {
     while (i_ < text_.size()) {
       const char c = text_[i_];
       if (c == '\\' && quote == '"') {
-        if (i_ + 1 < text_.size() && text_[i_ + 1] == '\n') break_line(i_ + 1);
-        i_ += 2;
+        skip_escape(many_lines);
       } else if (c == quote && !many_lines) {
         ++i_;
         return true;
@@ -144,14 +145,39 @@ class Nesting {
     return false;
   }
 
+  /// Moves behind a backslash and the character after it or, at the end of a line, all white space.
+  void skip_escape(bool many_lines) {
+    const auto is_white = [&] {
+      return i_ < text_.size() &&
+             std::string_view(" \t\r\n").find(text_[i_]) != std::string_view::npos;
+    };
+    ++i_;
+    if (!many_lines || !is_white()) {
+      require_ascii("after a backslash");
+      if (i_ < text_.size() && text_[i_] != '\n') ++i_;
+      return;
+    }
+    for (; is_white(); ++i_)
+      if (text_[i_] == '\n') break_line(i_);
+    require_ascii("after a backslash at the end of a line");
+  }
+
+  /// toml++ has undefined behaviour wherever it asks whether a character outside ASCII is white
+  /// space. That is never within a comment, nor within a string but for the places asked here.
+  void require_ascii(const std::string& where) const {
+    if (i_ < text_.size() && static_cast<unsigned char>(text_[i_]) >= 0x80)
+      refuse("not valid TOML: a character outside ASCII " + where,
+             "such characters in strings and comments only");
+  }
+
   void break_line(std::size_t newline) {
     ++line_;
     line_begin_ = newline + 1;
   }
 
-  [[noreturn]] void refuse(const std::string& what) const {
-    fail(file_, {line_, static_cast<int>(i_ - line_begin_) + 1},
-         what + ", expected a scene (which needs 3 levels)");
+  [[noreturn]] void refuse(const std::string& what,
+                           const std::string& expected = "a scene (which needs 3 levels)") const {
+    fail(file_, {line_, static_cast<int>(i_ - line_begin_) + 1}, what + ", expected " + expected);
   }
 
   std::string_view text_;
@@ -168,7 +194,7 @@ void check_text(std::string_view text, const std::string& file) {
   if (text.size() > largest_text)
     fail(file, {}, "the file is over 64 MiB, expected a scene of at most 64 MiB");
   check_characters(text, file);
-  Nesting(text, file).check();
+  TextWalk(text, file).check();
 }
 
 }  // namespace momenta::reading

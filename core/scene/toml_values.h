@@ -37,9 +37,14 @@ std::string_view described(Value::Type type);
 Value parse_toml(std::string_view text, const std::string& file);
 
 /// Refuses, before any parser sees it, text that is no scene whatever it says:
-/// empty, over 64 MiB, not UTF-8, holding NUL; brackets nested, or keys dotted, more than 16 deep
-/// (a scene needs 3; parser and destructors recurse over this depth); more than 4 million values
-/// (which bounds memory at about 1 GiB). Cost O(size). @throws SceneError
+///   - empty, over 64 MiB, not UTF-8, or holding NUL
+///   - brackets nested, or keys dotted, more than 16 deep (a scene needs 3; the parser and the
+///     destructors recurse over this depth)
+///   - more than 4 million values, which bounds memory
+///   - malformed in a way toml++ 3.3 meets with undefined behaviour: characters outside ASCII
+///     outside strings and comments, table headers without a name
+///
+/// Cost O(size). @throws SceneError
 void check_text(std::string_view text, const std::string& file);
 
 inline constexpr std::size_t largest_text = std::size_t{64} << 20;  ///< [byte]

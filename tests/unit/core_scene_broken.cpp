@@ -175,6 +175,29 @@ TEST_F(BrokenFile, DepthIsBounded) {
                   "unknown key 'x'");
 }
 
+TEST_F(BrokenFile, OutsideAsciiOnlyInStringsAndComments) {
+  for (const char* character : {"\u00fc", "\u00a0", "\u2003", "\u2028", "\ufeff", "\U0001f600"}) {
+    const std::string c = character, what = "a character outside ASCII";
+    expect_contains(sentence_of([&] { parse_scene(c); }), c == "\ufeff" ? "no body" : what);
+    expect_contains(sentence_of([&] { parse_scene("a = 1" + c); }),
+                    "scene:1:6: not valid TOML: " + what);
+    expect_contains(sentence_of([&] { parse_scene(c + c + " = 1"); }), what);
+    expect_contains(sentence_of([&] { parse_scene("[" + c + "]"); }), "not valid TOML");
+    expect_contains(sentence_of([&] { parse_scene("a = [" + c + "]"); }), what);
+    expect_contains(sentence_of([&] { parse_scene("a = \"\\" + c + "\""); }), what);
+    expect_contains(sentence_of([&] { parse_scene("a = \"\"\"\\" + c + "\"\"\""); }), what);
+    expect_contains(sentence_of([&] { parse_scene("a = \"\"\"\\ \n\n " + c + "\"\"\""); }),
+                    "scene:3:2: ");
+    const std::string text = c + "x\\n" + c;
+    expect_contains(sentence_of([&] {
+                      parse_scene("# " + c + "\n'" + c + "' = \"" + text + "\" #" + c +
+                                  "\nb = \"\"\"\n" + text + " \\\n   x" + c + "\"\"\"\nc = '''" +
+                                  c + "\\" + c + "'''");
+                    }),
+                    "unknown key");
+  }
+}
+
 TEST(BrokenHandmade, ScenesBuiltByHandAreChecked) {
   const auto good = [] {
     Scene scene;
