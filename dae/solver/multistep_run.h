@@ -1,0 +1,110 @@
+#pragma once
+// What runs of CVODE and IDA share: one internal step at a time up to a stop time, the observer
+// after each, output times by the method's own interpolation polynomial, limits, and where the run
+// ended.
+
+#include <momenta/dae/solver/integration.h>
+#include <momenta/dae/solver/output_cursor.h>
+#include <momenta/dae/solver/stopping.h>
+
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace momenta {
+
+/// `Method` provides
+///   const char* name();  double* y();  double* ydot() (null for an ODE), both at the step's end;
+///   bool step(double& t, double end, std::string& cause);   one accepted step, t becomes its end;
+///   bool at(double t, double* y, double* ydot);             within the last step, ydot may be
+///   null.
+template <class Method>
+class MultistepRun {
+ public:
+  MultistepRun(Method& method, int size, double t0, const std::vector<double>& output_times,
+               const IntegrationOptions& options, const Observer& observer)
+      : method_(method),
+        options_(options),
+        observer_(observer),
+        outputs_(t0, output_times),
+        cpu_(options.max_cpu_seconds),
+        t_(t0),
+        y_(static_cast<std::size_t>(size)),
+        ydot_(static_cast<std::size_t>(size)) {}
+
+  double end() const { return outputs_.end(); }
+
+  /// Steps to the end. Fills everything of the result but the counters.
+  void run(IntegrationResult& result) {
+    stop_time_ = t_;
+    result.done = sample_start(result) && steps(result);
+    result.end_time = stop_time_;
+    if (result.y.empty()) result.y.assign(method_.y(), method_.y() + y_.size());
+  }
+
+ private:
+  bool steps(IntegrationResult& result) {
+    const Interpolant between = [this](double t, double* y) {
+      if (!method_.at(t, y, nullptr)) interpolation_failed_ = true;
+    };
+    for (long count = 0; t_ < end(); ++count) {
+      if (count >= options_.max_steps)
+        return stop(result,
+                    "the limit of " + std::to_string(options_.max_steps) + " steps is reached");
+      if (cpu_.exceeded()) {
+        result.reason = time_limit_sentence(method_.name(), cpu_.seconds(), t_);
+        return false;
+      }
+      const double t0 = t_;
+      std::string cause;
+      if (!method_.step(t_, end(), cause)) {
+        t_ = t0;
+        return stop(result, cause);
+      }
+      stop_time_ = t_;
+      if (observer_.step) {
+        const bool go_on = observer_.step(t0, t_, between);
+        if (interpolation_failed_) return stop(result, "dense output of the last step failed");
+        if (!go_on) return stop(result, "the observer ended the run");
+      }
+      for (; outputs_.due(t_); outputs_.advance())
+        if (!sample(outputs_.time(), result)) return false;
+    }
+    return true;
+  }
+
+  bool sample_start(IntegrationResult& result) {
+    for (; outputs_.due(t_); outputs_.advance())
+      if (observer_.sample && !observer_.sample(outputs_.time(), method_.y(), method_.ydot()))
+        return stop(result, "the observer ended the run");
+    return true;
+  }
+
+  bool sample(double t, IntegrationResult& result) {
+    if (!observer_.sample) return true;
+    const bool has_rates = method_.ydot() != nullptr;
+    if (!method_.at(t, y_.data(), has_rates ? ydot_.data() : nullptr))
+      return stop(result, "dense output of the last step failed");
+    if (observer_.sample(t, y_.data(), has_rates ? ydot_.data() : nullptr)) return true;
+    stop_time_ = t;
+    result.y = y_;
+    return stop(result, "the observer ended the run");
+  }
+
+  bool stop(IntegrationResult& result, const std::string& cause) {
+    result.reason = stop_sentence(method_.name(), stop_time_, cause);
+    return false;
+  }
+
+  Method& method_;
+  const IntegrationOptions& options_;
+  const Observer& observer_;
+  OutputCursor outputs_;
+  CpuLimit cpu_;
+  double t_, stop_time_ = 0;
+  bool interpolation_failed_ = false;
+  std::vector<double> y_, ydot_;
+};
+
+}  // namespace momenta
