@@ -8,7 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include <regex>
+#include <string>
 
 namespace momenta {
 namespace {
@@ -34,12 +34,12 @@ TEST(Page, LoadsNothingFromElsewhere) {
     EXPECT_EQ(count(page, loads), 0u) << loads;
   }
   // What is left are the name of a namespace and uPlot's own comment.
-  const std::regex address("https?://[^\\s\"')]+");
-  for (auto it = std::sregex_iterator(page.begin(), page.end(), address);
-       it != std::sregex_iterator(); ++it) {
-    EXPECT_TRUE(it->str() == "http://www.w3.org/2000/svg" ||
-                it->str() == "https://github.com/leeoniya/uPlot")
-        << it->str();
+  for (auto at = page.find("://"); at != std::string::npos; at = page.find("://", at + 1)) {
+    const auto from = page.find_last_of(" \"'(<>", at) + 1;
+    const std::string address = page.substr(from, page.find_first_of(" \"')<>", at) - from);
+    EXPECT_TRUE(address == "http://www.w3.org/2000/svg" ||
+                address == "https://github.com/leeoniya/uPlot")
+        << address;
   }
 }
 

@@ -264,11 +264,13 @@ function steerable(u, plot) {
   u.over.addEventListener("pointermove", follow);
 }
 
-/** Keeps a chart as wide as its place. */
+/** Keeps a chart as wide as its place: at once when the window changes, in the next frame when something else does (a
+ * chart that changes its height while sizes are being reported would be reported itself). */
 function fitted(u, plot) {
-  // In the next frame: a chart that changes its height while sizes are being reported would be reported itself.
-  new ResizeObserver(() => requestAnimationFrame(() => {
+  const fit = () => {
     const width = plot.clientWidth;
     if (width > 0 && width !== u.width) u.setSize({ width, height: plotHeight(width) });
-  })).observe(plot);
+  };
+  addEventListener("resize", fit);
+  new ResizeObserver(() => requestAnimationFrame(fit)).observe(plot);
 }
