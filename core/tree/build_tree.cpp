@@ -6,10 +6,19 @@
 namespace momenta {
 namespace {
 
-/// A rotation that takes z to `axis`; the identity when it is z already, so that planar scenes keep
-/// clean numbers.
+/// A rotation that takes z to `axis` a: with z × a = (−a_y, a_x, 0) = k,
+///   R = 1 + k~ + k~² / (1 + a_z).
+/// Where a_z < 0 the sum 1 + a_z cancels: there the half turn about x is taken out first. The
+/// identity when the axis is z already, so that planar scenes keep clean numbers.
 Eigen::Matrix3d frame_with_z(const Eigen::Vector3d& axis) {
-  return Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), axis).toRotationMatrix();
+  Eigen::Vector3d a = axis.normalized();
+  const bool flipped = a.z() < 0;
+  if (flipped) a = {a.x(), -a.y(), -a.z()};
+  const double x = a.x(), y = a.y(), s = 1 / (1 + a.z());
+  Eigen::Matrix3d r;
+  r << 1 - s * x * x, -s * x * y, x, -s * x * y, 1 - s * y * y, y, -x, -y, a.z();
+  if (flipped) r.bottomRows<2>() = -r.bottomRows<2>();
+  return r;
 }
 
 Eigen::Isometry3d isometry(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& translation) {
@@ -98,8 +107,9 @@ class TreeBuilder {
     const Eigen::Isometry3d parent_axes =
         parent < 0 ? Eigen::Isometry3d::Identity()
                    : tree_.bodies[static_cast<std::size_t>(parent)].scene_axes;
-    b.placement = parent_axes *
-                  isometry(joint.rotation.toRotationMatrix() * z_along_axis, joint.origin_parent);
+    b.placement =
+        parent_axes * isometry(joint.rotation.normalized().toRotationMatrix() * z_along_axis,
+                               joint.origin_parent);
     b.scene_axes = isometry(z_along_axis, joint.origin_child).inverse();
     b.mass = spec.mass;
     b.com = b.scene_axes * spec.com;
