@@ -13,8 +13,9 @@
 namespace momenta {
 namespace {
 
-constexpr double nearly_parallel =
-    0.05;  // sine of the inclination below which the common normal is too far away
+/// Sine of the inclination below which two axes count as parallel: the foot of their common normal
+/// lies up to (length of the edge) / sine away, and inertias about it lose the square of that.
+constexpr double nearly_parallel = 0.3;
 
 struct Screws {
   double gamma = 0, delta = 0, alpha = 0, a = 0, beta = 0, theta = 0, d = 0;
