@@ -19,9 +19,12 @@ namespace momenta {
 template <class S>
 bool eliminate_wide(JointKind kind, typename Workspace<Spatial, S>::Inertia& m,
                     typename Workspace<Spatial, S>::Wide& x) {
-  S det;
-  x.I = inverse(m.I, det);
-  if (!(value_of(det) > 0)) return false;
+  const auto positive = [](const Vec3<S>& d) {
+    return value_of(d[0]) > 0 && value_of(d[1]) > 0 && value_of(d[2]) > 0;
+  };
+  Vec3<S> pivots;
+  x.I = inverse(m.I, pivots);
+  if (!positive(pivots)) return false;
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j)
       x.h(i, j) = m.H(i, 0) * x.I(0, j) + m.H(i, 1) * x.I(1, j) + m.H(i, 2) * x.I(2, j);
@@ -31,8 +34,8 @@ bool eliminate_wide(JointKind kind, typename Workspace<Spatial, S>::Inertia& m,
   m.H = {};
   m.I = {};
   if (kind == JointKind::free) {
-    x.A = inverse(m.A, det);
-    if (!(value_of(det) > 0)) return false;
+    x.A = inverse(m.A, pivots);
+    if (!positive(pivots)) return false;
     m.A = {};
   }
   return true;

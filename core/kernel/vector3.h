@@ -107,20 +107,28 @@ Vec3<S> operator*(const Sym3<S>& m, const Vec3<S>& v) {
            m.x[2] * v[0] + m.x[4] * v[1] + m.x[5] * v[2]}};
 }
 
-/// Inverse by cofactors; the caller checks the determinant it returns in `det`.
+/// Inverse by m = L D Lᵀ: backward stable, where cofactors lose the square of the condition number.
+/// m is positive definite when all three `pivots` D are positive; the caller checks.
 template <class S>
-Sym3<S> inverse(const Sym3<S>& m, S& det) {
-  Sym3<S> c;
-  c.x[0] = m.x[3] * m.x[5] - m.x[4] * m.x[4];
-  c.x[1] = m.x[2] * m.x[4] - m.x[1] * m.x[5];
-  c.x[2] = m.x[1] * m.x[4] - m.x[2] * m.x[3];
-  c.x[3] = m.x[0] * m.x[5] - m.x[2] * m.x[2];
-  c.x[4] = m.x[1] * m.x[2] - m.x[0] * m.x[4];
-  c.x[5] = m.x[0] * m.x[3] - m.x[1] * m.x[1];
-  det = m.x[0] * c.x[0] + m.x[1] * c.x[1] + m.x[2] * c.x[2];
-  const S scale = S(1.0) / det;
-  for (int i = 0; i < 6; ++i) c.x[i] = scale * c.x[i];
-  return c;
+Sym3<S> inverse(const Sym3<S>& m, Vec3<S>& pivots) {
+  const S i0 = S(1.0) / m.x[0];
+  const S l10 = i0 * m.x[1], l20 = i0 * m.x[2];
+  const S d1 = m.x[3] - l10 * m.x[1], below = m.x[4] - l20 * m.x[1];
+  const S i1 = S(1.0) / d1;
+  const S l21 = i1 * below;
+  const S d2 = m.x[5] - l20 * m.x[2] - l21 * below;
+  const S i2 = S(1.0) / d2;
+  pivots = {{m.x[0], d1, d2}};
+  // L⁻¹ = (1; −l10 1; n20 −l21 1), m⁻¹ = L⁻ᵀ D⁻¹ L⁻¹
+  const S n20 = l10 * l21 - l20;
+  Sym3<S> r;
+  r.x[5] = i2;
+  r.x[4] = -(l21 * i2);
+  r.x[2] = n20 * i2;
+  r.x[3] = i1 - l21 * r.x[4];
+  r.x[1] = -(l10 * i1) - l21 * r.x[2];
+  r.x[0] = i0 + l10 * (l10 * i1) + n20 * r.x[2];
+  return r;
 }
 
 // Turning about coordinate axis X by the angle with cosine c and sine s; Y, Z are the next axes in
