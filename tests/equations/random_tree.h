@@ -1,0 +1,239 @@
+#pragma once
+// Random scenes without loops: what shape the tree has, which joints, where they sit, what drives
+// and pulls them. A recipe and a seed give the same scene on every machine.
+
+#include <momenta/core/scene/scene.h>
+#include <momenta/core/tree/tree.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <random>
+#include <string>
+#include <vector>
+
+namespace momenta::equations {
+
+enum class Branching { serial, star, random };
+/// How a joint lies in its parent: anyhow, at right angles, or with an axis 1e-3 ... 1e-12 rad from
+/// parallel or antiparallel to that of the parent's own joint.
+enum class Placing { general, right_angles, degenerate };
+
+struct TreeRecipe {
+  int bodies = 6;
+  Branching branching = Branching::random;
+  Placing placing = Placing::general;
+  std::vector<JointKind> kinds = {JointKind::revolute, JointKind::prismatic, JointKind::spherical,
+                                  JointKind::free, JointKind::weld};
+  bool gravity = true;
+  bool drives = true;        ///< every fourth one-dof joint or so
+  bool joint_forces = true;  ///< springs, dampers, torques
+  bool body_forces = true;   ///< spring-dampers between points, wrenches
+};
+
+struct TreeState {
+  double t = 0;
+  Eigen::VectorXd q, u;
+};
+
+class RandomTree {
+ public:
+  explicit RandomTree(unsigned seed) : bits_(seed) {}
+
+  double uniform(double low, double high) {
+    return low + (high - low) * (static_cast<double>(bits_() >> 11) / 9007199254740992.0);
+  }
+  int below(int count) { return static_cast<int>(bits_() % static_cast<unsigned>(count)); }
+  bool chance(double p) { return uniform(0, 1) < p; }
+
+  Eigen::Vector3d vector(double size) {
+    const double x = uniform(-size, size), y = uniform(-size, size);
+    return {x, y, uniform(-size, size)};
+  }
+  Eigen::Vector3d direction() {
+    for (;;)
+      if (const Eigen::Vector3d v = vector(1); v.norm() > 0.1 && v.norm() < 1)
+        return v.normalized();
+  }
+  Eigen::Quaterniond turn() {
+    return Eigen::Quaterniond(Eigen::AngleAxisd(uniform(-3.1, 3.1), direction()));
+  }
+
+  /// Principal moments of a box of this mass, edges 0.2 to 1 m, anyhow turned: the triangle
+  /// inequality holds with room.
+  Eigen::Matrix3d inertia(double mass) {
+    Eigen::Vector3d edge(uniform(0.2, 1), uniform(0.2, 1), uniform(0.2, 1));
+    edge = edge.cwiseAbs2();
+    const Eigen::Vector3d moments =
+        mass / 12 * Eigen::Vector3d(edge.y() + edge.z(), edge.z() + edge.x(), edge.x() + edge.y());
+    const Eigen::Matrix3d r = turn().toRotationMatrix();
+    const Eigen::Matrix3d j = r * moments.asDiagonal() * r.transpose();
+    return 0.5 * (j + j.transpose());
+  }
+
+  Scene scene(const TreeRecipe& recipe) {
+    Scene s;
+    s.name = "random tree";
+    if (recipe.gravity) s.gravity = 9.81 * direction();
+    for (int k = 0; k < recipe.bodies; ++k) {
+      s.bodies.push_back(body(k));
+      s.joints.push_back(joint(recipe, k));
+      effects(recipe, s, k);
+    }
+    return s;
+  }
+
+  /// A state whose quaternions are of unit length to rounding.
+  TreeState state(const Tree& tree) {
+    TreeState s;
+    s.t = uniform(0, 1);
+    s.q = Eigen::VectorXd::Zero(tree.nq);
+    s.u = Eigen::VectorXd::Zero(tree.nv);
+    for (const Tree::Body& b : tree.bodies) {
+      const double reach = b.kind == JointKind::revolute ? 3 : 0.5;
+      for (int i = 0; i < b.nq; ++i) s.q[b.q + i] = uniform(-reach, reach);
+      for (int i = 0; i < b.nv; ++i) s.u[b.u + i] = uniform(-1.5, 1.5);
+      if (b.nq < 4) continue;
+      const Eigen::Quaterniond turned = turn();
+      s.q.segment<4>(b.q + b.nq - 4) << turned.w(), turned.x(), turned.y(), turned.z();
+    }
+    return s;
+  }
+
+ private:
+  static std::string body_name(int k) { return k < 0 ? "ground" : "body" + std::to_string(k); }
+
+  BodySpec body(int k) {
+    BodySpec b;
+    b.name = body_name(k);
+    b.mass = uniform(0.5, 2);
+    b.com = vector(0.4);
+    b.inertia = inertia(b.mass);
+    return b;
+  }
+
+  JointSpec joint(const TreeRecipe& recipe, int k) {
+    JointSpec j;
+    j.name = "joint" + std::to_string(k);
+    j.child = body_name(k);
+    j.kind = recipe.kinds[static_cast<std::size_t>(below(static_cast<int>(recipe.kinds.size())))];
+    switch (recipe.branching) {
+      case Branching::serial:
+        j.parent = body_name(k - 1);
+        break;
+      case Branching::star:
+        j.parent = body_name(k == 0 ? -1 : 0);
+        break;
+      case Branching::random:
+        j.parent = body_name(below(k + 1) - 1);
+        break;
+    }
+    switch (recipe.placing) {
+      case Placing::general:
+        j.origin_parent = vector(0.7);
+        j.origin_child = vector(0.4);
+        j.rotation = turn();
+        j.axis = direction();
+        break;
+      case Placing::right_angles:
+        for (int i = 0; i < 3; ++i) j.origin_parent[i] = below(3) - 1;
+        j.rotation = Eigen::Quaterniond(
+            Eigen::AngleAxisd(below(4) * std::acos(0.0), Eigen::Vector3d::Unit(below(3))));
+        j.axis = (chance(0.5) ? 1 : -1) * Eigen::Vector3d::Unit(below(3));
+        break;
+      case Placing::degenerate:
+        // The scene's axes stay nearly parallel, so axes do too; offsets along them, across, none.
+        j.rotation = Eigen::Quaterniond(Eigen::AngleAxisd(tilt(), direction()));
+        if (chance(0.3)) j.rotation = Eigen::Quaterniond(0, 1, 0, 0) * j.rotation;
+        j.axis = (Eigen::AngleAxisd(tilt(), direction()) * Eigen::Vector3d::UnitZ()).normalized();
+        if (chance(0.5)) j.axis = -j.axis;
+        if (chance(0.7)) j.origin_parent = vector(0.7);
+        if (chance(0.3)) j.origin_parent.head<2>().setZero();
+        if (chance(0.3)) j.origin_parent *= 1e-9;
+        if (chance(0.3)) j.origin_child = vector(0.4);
+        break;
+    }
+    return j;
+  }
+
+  /// 0, or 1e-3 to 1e-12 rad, or around the border where the frames change their form.
+  double tilt() {
+    switch (below(4)) {
+      case 0:
+        return 0;
+      case 1:
+        return uniform(0.04, 0.06);
+      default:
+        return std::pow(10.0, uniform(-12, -3));
+    }
+  }
+
+  DriveSpec drive(const std::string& joint) {
+    DriveSpec d;
+    d.joint = joint;
+    switch (below(3)) {
+      case 0:
+        d.kind = "polynomial";
+        for (int i = 0; i < 4; ++i) d.coefficients.push_back(uniform(-1, 1));
+        break;
+      case 1:
+        d.kind = "harmonic";
+        d.offset = uniform(-1, 1);
+        d.amplitude = uniform(-1, 1);
+        d.frequency = uniform(0.5, 3);
+        d.phase = uniform(-3, 3);
+        break;
+      case 2:
+        d.kind = "step";
+        d.from = uniform(-1, 1);
+        d.to = uniform(-1, 1);
+        d.start = -0.5;
+        d.duration = 2;
+        break;
+    }
+    return d;
+  }
+
+  void effects(const TreeRecipe& recipe, Scene& s, int k) {
+    JointSpec& j = s.joints.back();
+    const bool one_dof = j.kind == JointKind::revolute || j.kind == JointKind::prismatic;
+    if (one_dof && recipe.drives && chance(0.25)) {
+      s.drives.push_back(drive(j.name));
+    } else if (one_dof && recipe.joint_forces && chance(0.5)) {
+      j.stiffness = uniform(0, 10);
+      j.rest = uniform(-1, 1);
+      j.damping = uniform(0, 2);
+      ForceSpec torque;
+      torque.kind = "torque";
+      torque.joint = j.name;
+      torque.value = uniform(-3, 3);
+      s.forces.push_back(torque);
+    }
+    if (!recipe.body_forces) return;
+    if (chance(0.3)) {
+      ForceSpec spring;
+      spring.kind = "spring-damper";
+      spring.child = body_name(k);
+      spring.parent = body_name(below(k + 1) - 1);
+      spring.origin_parent = vector(1);
+      spring.origin_child = vector(1);
+      spring.stiffness = uniform(0, 20);
+      spring.damping = uniform(0, 3);
+      spring.rest = uniform(0, 1);
+      s.forces.push_back(spring);
+    }
+    if (chance(0.3)) {
+      ForceSpec wrench;
+      wrench.kind = "wrench";
+      wrench.body = body_name(k);
+      wrench.point = vector(0.5);
+      wrench.force = vector(5);
+      wrench.torque = vector(2);
+      wrench.in_body_axes = chance(0.5);
+      s.forces.push_back(wrench);
+    }
+  }
+
+  std::mt19937_64 bits_;
+};
+
+}  // namespace momenta::equations

@@ -1,0 +1,33 @@
+#pragma once
+// The two tolerances of the tests. algebra_tol(n) is what arithmetic promises: a multiple of
+// rounding that grows with the size of the problem. promise_tol(h, order) is what an integrator
+// promises.
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace momenta::equations {
+
+/// 16 roundings for each of n bodies; 1.4e-14 for a tree of four, 4.3e-14 for twelve.
+inline double algebra_tol(int n) {
+  return 16 * std::numeric_limits<double>::epsilon() * std::max(n, 1);
+}
+
+/// Error of an integrator of this order with step h, up to a constant of the problem.
+inline double promise_tol(double h, int order, double constant = 1) {
+  return constant * std::pow(h, order);
+}
+
+/// max |a − b| relative to max |b|, and to `floor` where b is small or empty.
+template <class A, class B>
+double relative_error(const A& a, const B& b, double floor = 1) {
+  if (b.size() == 0) return a.size() == 0 ? 0 : std::numeric_limits<double>::infinity();
+  const double error = (a - b).cwiseAbs().maxCoeff();
+  const double scale = std::max(floor, static_cast<double>(b.cwiseAbs().maxCoeff()));
+  // NaN must not pass for small
+  return std::isfinite(error) ? error / scale : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace momenta::equations
