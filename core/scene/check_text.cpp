@@ -1,9 +1,11 @@
 #include <momenta/core/scene/toml_values.h>
 
+#include <array>
+
 namespace momenta::reading {
 namespace {
 
-constexpr int deepest = 16;
+constexpr std::size_t deepest = 16;
 constexpr int most_values = 4'000'000;
 
 /// Length of the UTF-8 sequence at `i`, 0 when there is none (RFC 3629: no overlong forms, no
@@ -74,15 +76,17 @@ class TextWalk {
   void count(char c) {
     switch (c) {
       case '.':
-        if (++dots_ > deepest) refuse("a key of more than 16 parts");
+        if (++dots_ > static_cast<int>(deepest)) refuse("a key of more than 16 parts");
         return;
       case '[':
       case '{':
-        if (++depth_ > deepest) refuse("brackets nested more than 16 deep");
+        if (depth_ == deepest) refuse("brackets nested more than 16 deep");
+        closing_[depth_++] = c == '[' ? ']' : '}';
         break;
       case ']':
       case '}':
-        if (depth_ > 0) --depth_;
+        if (depth_ > 0 && closing_[--depth_] != c)
+          refuse(std::string("not valid TOML: a ") + c, std::string(1, closing_[depth_]));
         dots_ = 0;
         return;
       case '\n':
@@ -184,7 +188,9 @@ class TextWalk {
   const std::string& file_;
   std::size_t i_ = 0, line_begin_ = 0;
   bool begins_line_ = true;
-  int line_ = 1, depth_ = 0, dots_ = 0, values_ = 0;
+  std::array<char, deepest> closing_{};  // of the brackets open here
+  std::size_t depth_ = 0;
+  int line_ = 1, dots_ = 0, values_ = 0;
 };
 
 }  // namespace

@@ -42,7 +42,7 @@ Value parse_toml(std::string_view text, const std::string& file);
 ///     destructors recurse over this depth)
 ///   - more than 4 million values, which bounds memory
 ///   - malformed in a way toml++ 3.3 meets with undefined behaviour: characters outside ASCII
-///     outside strings and comments, table headers without a name
+///     outside strings and comments, table headers without a name, brackets that do not match
 ///
 /// Cost O(size). @throws SceneError
 void check_text(std::string_view text, const std::string& file);

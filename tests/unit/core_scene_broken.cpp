@@ -198,6 +198,12 @@ TEST_F(BrokenFile, OutsideAsciiOnlyInStringsAndComments) {
   }
 }
 
+TEST_F(BrokenFile, WhatFailsAssertionsOfTheParser) {
+  for (const char* text :
+       {"[&", "[[[1]]]", "[[=", "a = [1, }", "a = [}", "a = { b = [1, } }", "a = 1979-05-27 0]"})
+    expect_contains(sentence_of([&] { parse_scene(text); }), "not valid TOML");
+}
+
 TEST(BrokenHandmade, ScenesBuiltByHandAreChecked) {
   const auto good = [] {
     Scene scene;
