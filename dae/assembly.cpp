@@ -1,0 +1,206 @@
+#include <momenta/dae/assembly.h>
+#include <momenta/dae/kkt/kkt.h>
+
+#include <Eigen/QR>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace momenta {
+namespace {
+
+constexpr int most_iterations = 200;
+constexpr double largest_step = 0.4;       // [rad or m]: stay on the branch of the guess
+constexpr double closed = 1e-12;           // |Φ|∞, times 1 + size
+constexpr double rank_tolerance = 1e-9;    // of singular values, against the largest
+
+class Assembler {
+ public:
+  explicit Assembler(const Mechanism& mechanism)
+      : mechanism_(mechanism), e_(mechanism.evaluation<double>()), free_(static_cast<std::size_t>(mechanism.nv()), true) {
+    for (const auto& name : mechanism.scene().held) {
+      const int body = mechanism.tree().carried_by(name);
+      if (body < 0) continue;
+      const auto& b = mechanism.tree().bodies[static_cast<std::size_t>(body)];
+      for (int i = 0; i < b.nv; ++i) free_[static_cast<std::size_t>(b.u + i)] = false;
+    }
+  }
+
+  Assembly run() {
+    Assembly a;
+    a.start.q = mechanism_.tree().q0;
+    a.start.u = mechanism_.tree().u0;
+    if (mechanism_.m() > 0) {
+      close_positions(a);
+      close_velocities(a);
+      judge_rank(a);
+    }
+    a.mobility = mechanism_.nv() - a.rank;
+    accelerations(a);
+    return a;
+  }
+
+ private:
+  Eigen::MatrixXd jacobian() {
+    const auto& pattern = mechanism_.kkt_pattern().constraint;
+    std::vector<double> values(pattern.size());
+    e_->constraint_entries(values.data());
+    Eigen::MatrixXd j = Eigen::MatrixXd::Zero(mechanism_.m(), mechanism_.nv());
+    for (std::size_t i = 0; i < values.size(); ++i) j(pattern[i].row, pattern[i].column) = values[i];
+    return j;
+  }
+  Eigen::MatrixXd free_columns(Eigen::MatrixXd j) const {
+    for (int i = 0; i < mechanism_.nv(); ++i)
+      if (!free_[static_cast<std::size_t>(i)]) j.col(i).setZero();
+    return j;
+  }
+  Eigen::VectorXd gap(const Eigen::VectorXd& q) {
+    Eigen::VectorXd phi(mechanism_.m());
+    e_->place(0, q.data());
+    e_->positions(phi.data());
+    return phi;
+  }
+
+  void close_positions(Assembly& a) {
+    Eigen::VectorXd& q = a.start.q;
+    double size = 1;
+    for (const auto& loop : mechanism_.scene().loops)
+      size = std::max({size, loop.origin_child.norm(), loop.origin_parent.norm()});
+    const Eigen::VectorXd guess = q;
+    Eigen::VectorXd phi = gap(q), qdot = Eigen::VectorXd::Zero(mechanism_.nq());
+    double norm = phi.norm();
+    int stalled = 0;
+    for (; a.iterations < most_iterations && norm > 1e-16 * size && stalled < 2; ++a.iterations) {
+      Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposition;
+      decomposition.setThreshold(rank_tolerance);
+      decomposition.compute(free_columns(jacobian()));
+      Eigen::VectorXd step = -decomposition.solve(phi);
+      if (!step.allFinite()) break;
+      const double length = step.size() > 0 ? step.cwiseAbs().maxCoeff() : 0;
+      if (length > largest_step) step *= largest_step / length;
+      // Halve until the loops close further; near rounding level they no longer do.
+      double fraction = 1;
+      Eigen::VectorXd next_phi;
+      Eigen::VectorXd next;
+      for (int halving = 0; halving < 12; ++halving, fraction *= 0.5) {
+        const Eigen::VectorXd trial = fraction * step;
+        e_->coordinate_rates(q.data(), trial.data(), qdot.data());
+        next = q + qdot;
+        normalise(next);
+        next_phi = gap(next);
+        if (next_phi.norm() < norm) break;
+      }
+      const double next_norm = next_phi.norm();
+      if (!(next_norm < norm)) {
+        gap(q);
+        break;
+      }
+      stalled = next_norm > 0.5 * norm && norm < closed * size ? stalled + 1 : 0;
+      q = next;
+      phi = next_phi;
+      norm = next_norm;
+    }
+    phi = gap(q);
+    a.position_residual = phi.cwiseAbs().maxCoeff();
+    a.moved = (q - guess).cwiseAbs().maxCoeff();
+    if (!(a.position_residual <= closed * size)) refuse(phi);
+  }
+
+  [[noreturn]] void refuse(const Eigen::VectorXd& phi) const {
+    const Scene& scene = mechanism_.scene();
+    std::string open;
+    Location at;
+    int row = 0;
+    for (const auto& loop : scene.loops) {
+      double largest = 0;
+      for (; row < mechanism_.m() && mechanism_.rows()[static_cast<std::size_t>(row)].loop == loop.name; ++row)
+        largest = std::max(largest, std::abs(phi[row]));
+      if (largest <= closed) continue;
+      char text[32];
+      std::snprintf(text, sizeof text, "%.3g", largest);
+      if (open.empty()) at = loop.at;
+      open += (open.empty() ? "loop '" : ", loop '") + loop.name + "' stays open by " + text;
+    }
+    throw SceneError(scene.where(at) + "the mechanism cannot be assembled from these positions: " + open +
+                     (scene.held.empty() ? "" : " while joints are held") + "; expected loops that close");
+  }
+
+  void close_velocities(Assembly& a) {
+    Eigen::VectorXd& u = a.start.u;
+    Eigen::VectorXd rate(mechanism_.m());
+    const Eigen::MatrixXd j = free_columns(jacobian());
+    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposition;
+    decomposition.setThreshold(rank_tolerance);
+    decomposition.compute(j);
+    for (int pass = 0; pass < 2; ++pass) {
+      e_->move(u.data());
+      e_->velocities(rate.data());
+      u -= decomposition.solve(rate);
+    }
+    e_->move(u.data());
+    e_->velocities(rate.data());
+    a.velocity_residual = rate.cwiseAbs().maxCoeff();
+    const double scale = 1 + (u.size() > 0 ? u.cwiseAbs().maxCoeff() : 0) * (1 + j.cwiseAbs().maxCoeff());
+    if (a.velocity_residual <= 1e-10 * scale) return;
+    Eigen::Index worst;
+    rate.cwiseAbs().maxCoeff(&worst);
+    const auto& name = mechanism_.rows()[static_cast<std::size_t>(worst)].loop;
+    char text[32];
+    std::snprintf(text, sizeof text, "%.3g", a.velocity_residual);
+    throw SceneError(mechanism_.scene().where({}) + "the velocities of the held joints tear loop '" + name +
+                     "' apart at a rate of " + text + "; expected rates that the loops allow");
+  }
+
+  void judge_rank(Assembly& a) {
+    const Eigen::VectorXd s = Eigen::BDCSVD<Eigen::MatrixXd>(jacobian()).singularValues();
+    for (Eigen::Index i = 0; i < s.size(); ++i) {
+      if (s[i] > rank_tolerance * s[0]) {
+        ++a.rank;
+        a.smallest_singular = s[i];
+      } else {
+        a.largest_neglected = std::max(a.largest_neglected, s[i]);
+      }
+    }
+  }
+
+  void accelerations(Assembly& a) {
+    Start& s = a.start;
+    s.udot = Eigen::VectorXd::Zero(mechanism_.nv());
+    s.lambda = Eigen::VectorXd::Zero(mechanism_.m());
+    if (mechanism_.nv() == 0) return;
+    e_->place(s.t, s.q.data());
+    if (mechanism_.m() == 0) {
+      if (!e_->open_accelerations(s.t, s.q.data(), s.u.data(), s.udot.data())) no_inertia();
+      return;
+    }
+    const auto kkt = make_kkt(mechanism_);
+    if (!kkt->factor(*e_, fade_evaluation)) no_inertia();
+    e_->move(s.u.data());
+    Eigen::VectorXd r(mechanism_.nv()), g(mechanism_.m());
+    e_->joint_forces(s.q.data(), s.u.data(), nullptr, nullptr, r.data());
+    e_->accelerations(g.data());
+    r = -r;
+    g = -g;
+    if (!kkt->solve(r.data(), g.data(), nullptr, s.udot.data(), s.lambda.data())) no_inertia();
+  }
+
+  [[noreturn]] void no_inertia() const {
+    throw SceneError(mechanism_.scene().where({}) + "the mechanism cannot move at its start: " + mechanism_.no_inertia());
+  }
+
+  void normalise(Eigen::VectorXd& q) const {
+    for (const auto& b : mechanism_.tree().bodies)
+      if (b.nq >= 4) q.segment<4>(b.q + b.nq - 4).normalize();
+  }
+
+  const Mechanism& mechanism_;
+  std::unique_ptr<Evaluation<double>> e_;
+  std::vector<bool> free_;
+};
+
+}  // namespace
+
+Assembly assemble(const Mechanism& mechanism) { return Assembler(mechanism).run(); }
+
+}  // namespace momenta

@@ -1,0 +1,30 @@
+#pragma once
+// A consistent start from the scene's guess: positions, then velocities, then accelerations and multipliers.
+
+#include <momenta/dae/form/form.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace momenta {
+
+struct Assembly {
+  Start start;
+  double position_residual = 0;  ///< |Φ|∞ reached
+  double velocity_residual = 0;  ///< |Φ̇|∞ reached
+  double moved = 0;              ///< largest change of a joint coordinate against the guess [rad or m]
+  int iterations = 0;
+  int rank = 0;                  ///< of Φ_q at the start, by singular values
+  double smallest_singular = 0;  ///< of Φ_q, the smallest that counts
+  double largest_neglected = 0;  ///< of Φ_q, the largest that does not (0 when the rows are independent)
+  int mobility = 0;              ///< nv − rank
+};
+
+/// Damped Gauss-Newton from the scene's positions, joints of `held` unmoved; steps of minimal change; then the rates
+/// nearest to the scene's with Φ_q u + Φ_t = 0, held ones kept. |Φ|∞ ≤ 1e-12 (1 + size of the scene), or as low as
+/// rounding allows.
+/// @throws SceneError naming the loops that stay open and by how much, or the held rates that cannot be met.
+Assembly assemble(const Mechanism& mechanism);
+
+}  // namespace momenta

@@ -1,0 +1,117 @@
+// acceleration
+//
+// Unknowns      q, u
+// Equations     (3): M u̇ + Φ_qᵀλ = Q + L_q − Ṁ u,  Φ_q u̇ = −Φ̇_q u − Φ̇_t;  q̇ = u
+// Index         an ODE
+// Hidden        Φ(q, t) = 0 and Φ_q u + Φ_t = 0
+// Multipliers   λ, a force
+// Drifts        Φ̇ like t, Φ like t²: Φ̈ = 0 is integrated twice
+// Projection    with --project, one mass-metric correction of q and then of u after each step
+// Source        paper, eqs. (2), (3).
+//
+// baumgarte
+//
+// Equations     the same with Φ̈ + 2α Φ̇ + β² Φ = 0 in the second row
+// Drifts        Φ and Φ̇ stay bounded, at a level set by α, β and the step; energy is not conserved by the correction
+// Gains         α = β = 1/T unless given, critically damped, T the mechanism's own time scale (default_leak's): larger
+//               gains make an explicit method stiff, smaller ones let the loops open
+// Source        Baumgarte, Comput. Methods Appl. Mech. Eng. 1 (1972).
+
+#include <momenta/dae/form/ode_form.h>
+
+#include <algorithm>
+
+namespace momenta {
+namespace {
+
+class Acceleration final : public OdeForm {
+ public:
+  Acceleration(std::string name, const Mechanism& mechanism, const FormOptions& options, double alpha, double beta)
+      : OdeForm(std::move(name), mechanism, options), alpha_(alpha), beta_(beta), rate_(g_.size()) {}
+
+  bool momentum_like() const override { return false; }
+
+  std::vector<double> initial(const Start& start) override {
+    std::vector<double> y(start.q.begin(), start.q.end());
+    y.insert(y.end(), start.u.begin(), start.u.end());
+    for (std::size_t i = 0; i < multipliers_.size(); ++i) multipliers_[i] = start.lambda[static_cast<Eigen::Index>(i)];
+    centre_ = multipliers_;
+    return y;
+  }
+
+  bool rhs(double t, const double* y, double* ydot) override {
+    const double *q = y, *u = y + mechanism_.nq();
+    double* udot = ydot + mechanism_.nq();
+    if (!has_loops()) {
+      if (!e_->open_accelerations(t, q, u, udot)) return fail_at(t, mechanism_.no_inertia());
+      e_->coordinate_rates(q, u, ydot);
+      return true;
+    }
+    if (!factor_at(t, q, fade_evaluation)) return false;
+    e_->move(u);
+    e_->joint_forces(q, u, nullptr, nullptr, r_.data());
+    for (double& r : r_) r = -r;
+    e_->accelerations(g_.data());
+    if (alpha_ != 0 || beta_ != 0) {
+      e_->velocities(rate_.data());
+      e_->positions(phi_.data());
+    }
+    for (std::size_t i = 0; i < g_.size(); ++i)
+      g_[i] = -g_[i] - (alpha_ != 0 || beta_ != 0 ? 2 * alpha_ * rate_[i] + beta_ * beta_ * phi_[i] : 0.0);
+    if (!kkt_->solve(r_.data(), g_.data(), centre_.data(), udot, multipliers_.data()))
+      return fail_at(t, "the solution of (3) is not finite");
+    e_->coordinate_rates(q, u, ydot);
+    return true;
+  }
+
+  bool has_after_step() const override {
+    return (has_loops() && options_.project) || mechanism_.plan().quasi_velocities;
+  }
+  bool after_step(double t, double* y, bool&) override {
+    double *q = y, *u = y + mechanism_.nq();
+    if (has_loops() && options_.project) {
+      if (!correct_position(t, q) || !factor_at(t, q, fade_projection)) return false;
+      // M v + Φ_qᵀν = M u, Φ_q v = −Φ_t: the nearest consistent velocity in the mass metric.
+      e_->move(u);
+      e_->momenta(nullptr, r_.data());
+      rheonomic_terms();
+      if (!kkt_->solve(r_.data(), g_.data(), nullptr, u_.data(), rate_.data()))
+        return fail_at(t, "the velocity correction is not finite");
+      std::copy(u_.begin(), u_.end(), u);
+    }
+    normalise(q);
+    return true;
+  }
+  void begin_step(double, const double*) override { centre_ = multipliers_; }
+
+  bool read(double t, const double* y, const double*, Snapshot& out) override {
+    const std::vector<double> kept = multipliers_;
+    std::vector<double> rates(static_cast<std::size_t>(size()));
+    if (!rhs(t, y, rates.data())) return false;
+    out.q = Eigen::Map<const Eigen::VectorXd>(y, mechanism_.nq());
+    out.u = Eigen::Map<const Eigen::VectorXd>(y + mechanism_.nq(), mechanism_.nv());
+    out.multipliers = Eigen::Map<const Eigen::VectorXd>(multipliers_.data(), mechanism_.m());
+    multipliers_ = kept;  // looking on must not move the centre of later steps
+    return true;
+  }
+  std::pair<double, double> baumgarte_gains() const override { return {alpha_, beta_}; }
+
+ private:
+  double alpha_, beta_;
+  std::vector<double> rate_;
+};
+
+}  // namespace
+
+std::unique_ptr<OdeForm> make_acceleration(const Mechanism& mechanism, const FormOptions& options, const Start&) {
+  return std::make_unique<Acceleration>("acceleration", mechanism, options, 0, 0);
+}
+
+std::unique_ptr<OdeForm> make_baumgarte(const Mechanism& mechanism, const FormOptions& options, const Start& start) {
+  const double own = default_leak(mechanism, start);
+  return std::make_unique<Acceleration>("baumgarte", mechanism, options,
+                                        options.baumgarte_alpha > 0 ? options.baumgarte_alpha : own,
+                                        options.baumgarte_beta > 0 ? options.baumgarte_beta : own);
+}
+
+}  // namespace momenta

@@ -1,0 +1,40 @@
+// acceleration-index2
+//
+// Unknowns      q, v; λ
+// Equations     q̇ = v,  (1a): M v̇ + Φ_qᵀλ = Q + L_q − Ṁ v,  Φ̇ = Φ_q v + Φ_t = 0
+// Index         2
+// Hidden        Φ = 0 and Φ̈ = 0
+// Multipliers   λ, a force
+// Drifts        Φ like t; Φ̇ at the Newton tolerance
+// Source        paper, eqs. (1)-(3); Brenan, Campbell, Petzold, Numerical Solution of Initial-Value Problems in DAEs
+
+#include <momenta/dae/form/dae_form.h>
+
+namespace momenta {
+namespace {
+
+class AccelerationIndex2 final : public DaeFormOf<AccelerationIndex2> {
+ public:
+  AccelerationIndex2(const Mechanism& mechanism, const FormOptions& options, const Start& start)
+      : DaeFormOf("acceleration-index2", mechanism, {mechanism.nq(), mechanism.nv(), mechanism.m()}, options, start, false) {}
+
+  template <class S>
+  void rows(DaeScratch<S>& s, double t, const S* y, const S* ydot, S* r) {
+    const S *q = y, *v = y + layout_.v(), *lambda = y + layout_.s(), *vdot = ydot + layout_.v();
+    s.e->place(t, q);
+    s.e->joint_rates(q, ydot, s.u.data());
+    for (int i = 0; i < layout_.nv; ++i) *r++ = s.u[static_cast<std::size_t>(i)] - v[i];
+    r = quaternion_rows(q, ydot, r);
+    s.e->move(v);
+    s.e->joint_forces(q, v, vdot, lambda, r);
+    s.e->velocities(r + layout_.nv);
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<Form> make_acceleration_index2(const Mechanism& mechanism, const FormOptions& o, const Start& s) {
+  return std::make_unique<AccelerationIndex2>(mechanism, o, s);
+}
+
+}  // namespace momenta

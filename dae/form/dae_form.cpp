@@ -1,0 +1,265 @@
+#include <momenta/dae/form/dae_form.h>
+#include <momenta/dae/kkt/kkt.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <set>
+
+namespace momenta {
+namespace {
+
+constexpr int dense_limit = 60;  // unknowns below which a dense Newton matrix is faster than KLU's bookkeeping
+
+template <class S>
+DaeScratch<S> make_scratch(const Mechanism& mechanism, int size) {
+  DaeScratch<S> s;
+  s.e = mechanism.evaluation<S>();
+  const auto nv = static_cast<std::size_t>(mechanism.nv());
+  s.u.resize(nv);
+  s.a.resize(std::max(nv, static_cast<std::size_t>(mechanism.m())));
+  s.b.resize(nv);
+  for (auto* v : {&s.y, &s.ydot, &s.r}) v->resize(static_cast<std::size_t>(size));
+  return s;
+}
+
+}  // namespace
+
+DaeForm::DaeForm(std::string name, const Mechanism& mechanism, DaeLayout layout, const FormOptions& options,
+                 const Start& start, bool momentum_like)
+    : layout_(layout),
+      mechanism_(mechanism),
+      name_(std::move(name)),
+      momentum_like_(momentum_like),
+      start_(start),
+      scale_(static_cast<std::size_t>(layout.size()), 1.0),
+      plain_(make_scratch<double>(mechanism, layout.size())),
+      dual_(make_scratch<Dual8>(mechanism, layout.size())) {
+  std::vector<double> values(mechanism.kkt_pattern().mass.size());
+  plain_.e->place(start.t, start.q.data());
+  plain_.e->mass_entries(values.data());
+  inertia_.resize(static_cast<std::size_t>(layout.nv));
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const auto& entry = mechanism.kkt_pattern().mass[i];
+    if (entry.row == entry.column) inertia_[static_cast<std::size_t>(entry.row)] = values[i];
+  }
+  if (momentum_like) {
+    gauge_ = options.gauge;
+    if (gauge_.kind == Gauge::Kind::reset)
+      throw std::invalid_argument("gauge reset needs a one-step method; '" + name_ +
+                                  "' is integrated by IDA: expected none or leak");
+    if (gauge_.kind == Gauge::Kind::leak && gauge_.kappa == 0) gauge_.kappa = default_leak(mechanism, start);
+    std::copy(inertia_.begin(), inertia_.end(), scale_.begin() + layout_.x());
+  }
+  if (layout.m > 0) find_redundancy(start);
+  for (int i = layout_.s(); i < layout_.size(); ++i)
+    scale_[static_cast<std::size_t>(i)] = std::numeric_limits<double>::infinity();
+}
+
+void DaeForm::find_redundancy(const Start& start) {
+  const auto kkt = make_dense_kkt(mechanism_);
+  plain_.e->place(start.t, start.q.data());
+  if (!kkt->factor(*plain_.e, fade_evaluation) || kkt->faded() == 0) return;
+  // ε = 10⁻⁹ of the scale of Φ_q M⁻¹ Φ_qᵀ, row by row.
+  std::vector<double> entries(mechanism_.kkt_pattern().constraint.size());
+  plain_.e->constraint_entries(entries.data());
+  epsilon_.assign(static_cast<std::size_t>(layout_.m), 0.0);
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    const auto& entry = mechanism_.kkt_pattern().constraint[i];
+    epsilon_[static_cast<std::size_t>(entry.row)] += 1e-9 * entries[i] * entries[i] / inertia_[static_cast<std::size_t>(entry.column)];
+  }
+}
+
+double DaeForm::scale(int i) const { return scale_[static_cast<std::size_t>(i)]; }
+
+bool DaeForm::differential(int i) const {
+  if (i < layout_.x()) return true;
+  if (i < layout_.x() + layout_.nv) return rate_is_tested();
+  return false;  // v beside p, and every multiplier
+}
+
+std::vector<double> DaeForm::initial(const Start& start) {
+  std::vector<double> y(static_cast<std::size_t>(size()), 0.0);
+  std::copy(start.q.begin(), start.q.end(), y.begin());
+  std::copy(start.u.begin(), start.u.end(), y.begin() + layout_.v());
+  if (!momentum_like_) {
+    std::copy(start.lambda.begin(), start.lambda.end(), y.begin() + layout_.s());
+    return y;
+  }
+  double* sigma = y.data() + layout_.s();
+  if (leak() > 0)
+    for (int i = 0; i < layout_.m; ++i) sigma[i] = start.lambda[i] / leak();  // σ(0) = λ(0)/κ: no transient
+  plain_.e->place(start.t, start.q.data());
+  plain_.e->move(start.u.data());
+  plain_.e->momenta(sigma, y.data() + layout_.x());
+  return y;
+}
+
+bool DaeForm::start(double t, double* y, double* ydot) {
+  const auto y0 = initial(start_);
+  std::copy(y0.begin(), y0.end(), y);
+  std::fill(ydot, ydot + size(), 0.0);
+  auto& e = *plain_.e;
+  e.place(t, y);
+  e.move(start_.u.data());
+  e.coordinate_rates(y, start_.u.data(), ydot);
+  if (momentum_like_) {
+    e.momenta(y + layout_.s(), plain_.b.data());
+    e.momentum_rates(y, start_.u.data(), y + layout_.s(), leak(), ydot + layout_.x());
+    if (leak() == 0)  // σ̇ = λ − κσ
+      for (int i = 0; i < layout_.m; ++i) ydot[layout_.s() + i] = start_.lambda[i];
+  }
+  if (!momentum_like_ || layout_.explicit_velocity)
+    std::copy(start_.udot.begin(), start_.udot.end(), ydot + layout_.v());
+  for (int i = 0; i < size(); ++i)
+    if (!std::isfinite(y[i]) || !std::isfinite(ydot[i])) return fail("the start is not finite");
+  analyse_pattern();
+  return true;
+}
+
+bool DaeForm::residual(double t, const double* y, const double* ydot, double* r) {
+  equations(plain_, t, y, ydot, r);
+  regularise(y, r);
+  for (int i = 0; i < size(); ++i)
+    if (!std::isfinite(r[i])) return fail("the residual is not finite");
+  return true;
+}
+
+bool DaeForm::evaluate_columns(double t, const double* y, const double* ydot, double c,
+                               const std::vector<int>& direction_of) {
+  for (int i = 0; i < size(); ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    dual_.y[at] = Dual8(y[i]);
+    dual_.ydot[at] = Dual8(ydot[i]);
+    if (const int direction = direction_of[at]; direction >= 0) {
+      dual_.y[at].b[static_cast<std::size_t>(direction)] = 1;
+      dual_.ydot[at].b[static_cast<std::size_t>(direction)] = c;
+    }
+  }
+  equations(dual_, t, dual_.y.data(), dual_.ydot.data(), dual_.r.data());
+  regularise(dual_.y.data(), dual_.r.data());
+  return true;
+}
+
+bool DaeForm::jacobian(double t, const double* y, const double* ydot, double c, double* values) {
+  const auto n = static_cast<std::size_t>(size());
+  bool finite = true;
+  for (std::size_t batch = 0; batch < batches_.size(); ++batch) {
+    evaluate_columns(t, y, ydot, c, batches_[batch]);
+    for (std::size_t direction = 0; direction < groups_[batch].size(); ++direction)
+      for (int column : groups_[batch][direction]) {
+        if (pattern_.column_start.empty()) {
+          for (std::size_t i = 0; i < n; ++i) {
+            const double value = dual_.r[i].b[direction];
+            finite &= std::isfinite(value);
+            values[static_cast<std::size_t>(column) * n + i] = value;
+          }
+        } else {
+          const auto at = static_cast<std::size_t>(column);
+          for (auto k = static_cast<std::size_t>(pattern_.column_start[at]);
+               k < static_cast<std::size_t>(pattern_.column_start[at + 1]); ++k) {
+            const double value = dual_.r[static_cast<std::size_t>(pattern_.row[k])].b[direction];
+            finite &= std::isfinite(value);
+            values[k] = value;
+          }
+        }
+      }
+  }
+  return finite || fail("the Jacobian is not finite");
+}
+
+/// Dense below the limit: column i goes in batch i/8. Above it the pattern is read off exact derivatives at random
+/// states, where a structural nonzero vanishes with probability zero, and columns that share no row are evaluated along
+/// one direction (Curtis, Powell, Reid 1974).
+void DaeForm::analyse_pattern() {
+  const int n = size();
+  batches_.clear();
+  groups_.clear();
+  const auto add_groups = [&](const std::vector<std::vector<int>>& groups) {
+    for (std::size_t first = 0; first < groups.size(); first += 8) {
+      std::vector<int> direction_of(static_cast<std::size_t>(n), -1);
+      std::vector<std::vector<int>> batch;
+      for (std::size_t k = first; k < std::min(first + 8, groups.size()); ++k) {
+        for (int column : groups[k]) direction_of[static_cast<std::size_t>(column)] = static_cast<int>(k - first);
+        batch.push_back(groups[k]);
+      }
+      batches_.push_back(std::move(direction_of));
+      groups_.push_back(std::move(batch));
+    }
+  };
+  std::vector<std::vector<int>> single;
+  for (int i = 0; i < n; ++i) single.push_back({i});
+  pattern_ = {};
+  if (n <= dense_limit) {
+    add_groups(single);
+    return;
+  }
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> any(-1.0, 1.0);
+  std::vector<std::set<long>> rows(static_cast<std::size_t>(n));
+  std::vector<double> y(static_cast<std::size_t>(n)), ydot(y.size());
+  for (int probe = 0; probe < 3; ++probe) {
+    for (std::size_t i = 0; i < y.size(); ++i) {
+      y[i] = any(random) + (i < static_cast<std::size_t>(layout_.nq) ? start_.q[static_cast<Eigen::Index>(i)] : 0.0);
+      ydot[i] = any(random);
+    }
+    for (int first = 0; first < n; first += 8) {
+      std::vector<int> direction_of(static_cast<std::size_t>(n), -1);
+      for (int i = first; i < std::min(first + 8, n); ++i) direction_of[static_cast<std::size_t>(i)] = i - first;
+      evaluate_columns(start_.t, y.data(), ydot.data(), 1.234, direction_of);
+      for (int i = 0; i < n; ++i)
+        for (int column = first; column < std::min(first + 8, n); ++column)
+          if (dual_.r[static_cast<std::size_t>(i)].b[static_cast<std::size_t>(column - first)] != 0)
+            rows[static_cast<std::size_t>(column)].insert(i);
+    }
+  }
+  pattern_.column_start.push_back(0);
+  for (const auto& column : rows) {
+    pattern_.row.insert(pattern_.row.end(), column.begin(), column.end());
+    pattern_.column_start.push_back(static_cast<long>(pattern_.row.size()));
+  }
+  std::vector<std::vector<int>> groups;
+  std::vector<std::vector<bool>> taken;
+  for (int column = 0; column < n; ++column) {
+    const auto& mine = rows[static_cast<std::size_t>(column)];
+    std::size_t colour = 0;
+    for (; colour < groups.size(); ++colour)
+      if (std::none_of(mine.begin(), mine.end(), [&](long row) { return taken[colour][static_cast<std::size_t>(row)]; }))
+        break;
+    if (colour == groups.size()) {
+      groups.emplace_back();
+      taken.emplace_back(static_cast<std::size_t>(n), false);
+    }
+    groups[colour].push_back(column);
+    for (long row : mine) taken[colour][static_cast<std::size_t>(row)] = true;
+  }
+  add_groups(groups);
+}
+
+bool DaeForm::read(double t, const double* y, const double*, Snapshot& out) {
+  out.q = Eigen::Map<const Eigen::VectorXd>(y, layout_.nq);
+  out.multipliers = Eigen::Map<const Eigen::VectorXd>(y + layout_.s(), layout_.m);
+  if (!momentum_like_ || layout_.m == 0) {
+    out.u = Eigen::Map<const Eigen::VectorXd>(y + layout_.v(), layout_.nv);
+    if (!momentum_like_) return true;
+  }
+  // u from (7) at (q, p): the velocity that belongs to the state, whatever the integrator's last Newton residual.
+  auto& e = *plain_.e;
+  e.place(t, y);
+  Eigen::VectorXd r = Eigen::Map<const Eigen::VectorXd>(y + layout_.x(), layout_.nv), g(layout_.m), sigma(layout_.m);
+  out.u.resize(layout_.nv);
+  if (layout_.m == 0) return e.open_momentum_rates(t, y, y + layout_.x(), out.u.data(), plain_.b.data());
+  g.setZero();
+  if (mechanism_.plan().drives) {
+    Eigen::VectorXd prescribed(layout_.nv);
+    e.move(nullptr);
+    e.momenta(nullptr, prescribed.data());
+    r -= prescribed;
+    e.velocities(g.data());
+    g = -g;
+  }
+  if (!kkt_) kkt_ = make_kkt(mechanism_);
+  return kkt_->factor(e, fade_evaluation) && kkt_->solve(r.data(), g.data(), y + layout_.s(), out.u.data(), sigma.data());
+}
+
+}  // namespace momenta

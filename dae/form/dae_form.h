@@ -1,0 +1,133 @@
+#pragma once
+// What the DAE forms share: the layout of their unknowns, the rows every form has, exact Jacobians by dual numbers.
+//
+//   y = ( q | x | v | s | μ ),  x = p or v; v, s, μ only where the form has them; s = σ or λ
+// Rows: nv kinematic or momentum rows; one row q·q̇ + (|q|² − 1)/2 = 0 per quaternion; nv dynamic rows; then the form's
+// other rows. A form writes its equations once, as a template on the scalar: with double they are the residual, with dual
+// numbers eight columns of ∂F/∂y + c ∂F/∂y' at a time.
+
+#include <momenta/dae/form/form.h>
+#include <momenta/dae/kkt/kkt.h>
+
+namespace momenta {
+
+struct DaeLayout {
+  int nq = 0, nv = 0, m = 0;
+  bool explicit_velocity = false;    ///< v beside p
+  bool position_multiplier = false;  ///< μ
+  int x() const { return nq; }
+  int v() const { return explicit_velocity ? nq + nv : nq; }
+  int s() const { return nq + nv + (explicit_velocity ? nv : 0); }
+  int mu() const { return s() + m; }
+  int size() const { return s() + m + (position_multiplier ? m : 0); }
+};
+
+/// Buffers of one scalar type.
+template <class S>
+struct DaeScratch {
+  std::unique_ptr<Evaluation<S>> e;
+  std::vector<S> u, a, b, y, ydot, r;
+};
+
+class DaeForm : public Form, public DaeSystem {
+ public:
+  DaeForm(std::string name, const Mechanism& mechanism, DaeLayout layout, const FormOptions& options,
+          const Start& start, bool momentum_like);
+
+  const std::string& name() const override { return name_; }
+  bool is_dae() const override { return true; }
+  bool momentum_like() const override { return momentum_like_; }
+  DaeSystem* dae() override { return this; }
+  Gauge gauge() const override { return gauge_; }
+  std::vector<double> initial(const Start& start) override;
+  bool read(double t, const double* y, const double* ydot, Snapshot& out) override;
+
+  int size() const override { return layout_.size(); }
+  bool residual(double t, const double* y, const double* ydot, double* r) override;
+  bool jacobian(double t, const double* y, const double* ydot, double c, double* values) override;
+  const JacobianPattern& pattern() const override { return pattern_; }
+  bool start(double t, double* y, double* ydot) override;
+  bool differential(int i) const override;
+  double scale(int i) const override;
+
+ protected:
+  virtual void equations(DaeScratch<double>& s, double t, const double* y, const double* ydot, double* r) = 0;
+  virtual void equations(DaeScratch<Dual8>& s, double t, const Dual8* y, const Dual8* ydot, Dual8* r) = 0;
+  /// Whether x takes part in the error test: not in index-3 forms, whose x is one derivative rougher than q.
+  virtual bool rate_is_tested() const { return true; }
+
+  double leak() const { return gauge_.kappa; }
+
+  DaeLayout layout_;
+  const Mechanism& mechanism_;
+
+ private:
+  /// Redundant or singular loops at the start: −ε s on the rows that determine s (and −10⁻³ ε μ), so that the Newton
+  /// matrix stays regular. The bias on u is ε s, which the gauge keeps small.
+  template <class S>
+  void regularise(const S* y, S* r) const {
+    if (epsilon_.empty()) return;
+    const int rows = layout_.position_multiplier ? 2 * layout_.m : layout_.m;
+    for (int i = 0; i < layout_.m; ++i) {
+      const double epsilon = epsilon_[static_cast<std::size_t>(i)];
+      r[layout_.size() - rows + i] -= epsilon * y[layout_.s() + i];
+      if (layout_.position_multiplier) r[layout_.size() - layout_.m + i] -= (1e-3 * epsilon) * y[layout_.mu() + i];
+    }
+  }
+  bool evaluate_columns(double t, const double* y, const double* ydot, double c, const std::vector<int>& direction_of);
+  void find_redundancy(const Start& start);
+  void analyse_pattern();
+
+  std::string name_;
+  bool momentum_like_;
+  Gauge gauge_;
+  Start start_;
+  std::vector<double> scale_;
+  std::vector<double> inertia_;  ///< diagonal of M at the start
+  DaeScratch<double> plain_;
+  DaeScratch<Dual8> dual_;
+  std::vector<double> epsilon_;  ///< per row of Φ; empty when the loops are independent at the start
+  std::unique_ptr<Kkt> kkt_;     ///< for reading momentum states back
+  JacobianPattern pattern_;
+  std::vector<std::vector<int>> batches_;  ///< per dual evaluation: the direction of each column, −1: none
+  std::vector<std::vector<std::vector<int>>> groups_;  ///< per dual evaluation and direction: its columns
+};
+
+/// Writes the equations of `Derived::rows<S>` for both scalars.
+template <class Derived>
+class DaeFormOf : public DaeForm {
+ public:
+  using DaeForm::DaeForm;
+
+ protected:
+  void equations(DaeScratch<double>& s, double t, const double* y, const double* ydot, double* r) override {
+    static_cast<Derived*>(this)->rows(s, t, y, ydot, r);
+  }
+  void equations(DaeScratch<Dual8>& s, double t, const Dual8* y, const Dual8* ydot, Dual8* r) override {
+    static_cast<Derived*>(this)->rows(s, t, y, ydot, r);
+  }
+
+  /// One row per quaternion: its length returns to 1 within a second, without touching the motion.
+  template <class S>
+  S* quaternion_rows(const S* q, const S* qdot, S* r) const {
+    if (!mechanism_.plan().quasi_velocities) return r;
+    for (const auto& b : mechanism_.tree().bodies) {
+      if (b.nq < 4) continue;
+      const int first = b.q + b.nq - 4;
+      S row = S(-0.5);
+      for (int i = first; i < first + 4; ++i) row += q[i] * qdot[i] + 0.5 * (q[i] * q[i]);
+      *r++ = row;
+    }
+    return r;
+  }
+};
+
+std::unique_ptr<Form> make_momentum_index1(const Mechanism&, const FormOptions&, const Start&);
+std::unique_ptr<Form> make_momentum_index2(const Mechanism&, const FormOptions&, const Start&);
+std::unique_ptr<Form> make_momentum_stabilised(const Mechanism&, const FormOptions&, const Start&);
+std::unique_ptr<Form> make_acceleration_index1(const Mechanism&, const FormOptions&, const Start&);
+std::unique_ptr<Form> make_acceleration_index2(const Mechanism&, const FormOptions&, const Start&);
+std::unique_ptr<Form> make_acceleration_index3(const Mechanism&, const FormOptions&, const Start&);
+std::unique_ptr<Form> make_stabilised_index2(const Mechanism&, const FormOptions&, const Start&);
+
+}  // namespace momenta

@@ -1,0 +1,107 @@
+#include <momenta/dae/form/dae_form.h>
+#include <momenta/dae/form/ode_form.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <functional>
+#include <stdexcept>
+
+namespace momenta {
+namespace {
+
+using Maker = std::function<std::unique_ptr<Form>(const Mechanism&, const FormOptions&, const Start&)>;
+struct Entry {
+  std::string name;
+  bool dae;
+  Maker make;
+};
+
+const std::vector<Entry>& registry() {
+  static const std::vector<Entry> entries{
+      {"momentum", false, make_momentum},
+      {"momentum-index1", true, make_momentum_index1},
+      {"momentum-index2", true, make_momentum_index2},
+      {"momentum-stabilised", true, make_momentum_stabilised},
+      {"acceleration", false, make_acceleration},
+      {"baumgarte", false, make_baumgarte},
+      {"acceleration-index1", true, make_acceleration_index1},
+      {"acceleration-index2", true, make_acceleration_index2},
+      {"acceleration-index3", true, make_acceleration_index3},
+      {"stabilised-index2", true, make_stabilised_index2},
+  };
+  return entries;
+}
+
+const Entry& entry(const std::string& name) {
+  for (const auto& e : registry())
+    if (e.name == name) return e;
+  std::string all;
+  for (const auto& e : registry()) all += (all.empty() ? "" : ", ") + e.name;
+  throw std::invalid_argument("form '" + name + "' is not known; expected one of " + all);
+}
+
+}  // namespace
+
+std::string Gauge::text() const {
+  if (kind == Kind::none) return "none";
+  if (kind == Kind::reset) return "reset";
+  char digits[32];
+  const auto end = std::to_chars(digits, digits + sizeof digits, kappa, std::chars_format::general, 4).ptr;
+  return "leak:" + std::string(digits, end);
+}
+
+Gauge parse_gauge(const std::string& text) {
+  if (text == "none") return {Gauge::Kind::none, 0};
+  if (text == "reset") return {Gauge::Kind::reset, 0};
+  if (text == "leak") return {Gauge::Kind::leak, 0};
+  if (text.rfind("leak:", 0) == 0) {
+    double kappa = 0;
+    const char* end = text.data() + text.size();
+    const auto [stop, error] = std::from_chars(text.data() + 5, end, kappa);
+    if (error == std::errc() && stop == end && std::isfinite(kappa) && kappa > 0)
+      return {Gauge::Kind::leak, kappa};
+  }
+  throw std::invalid_argument("gauge '" + text + "' is not known; expected none, reset, leak or leak:κ with κ > 0 in 1/s");
+}
+
+const std::vector<std::string>& form_names() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> all;
+    for (const auto& e : registry()) all.push_back(e.name);
+    return all;
+  }();
+  return names;
+}
+
+bool is_dae_form(const std::string& name) { return entry(name).dae; }
+
+std::unique_ptr<Form> make_form(const std::string& name, const Mechanism& mechanism, const FormOptions& options,
+                                const Start& start) {
+  const Entry& e = entry(name);
+  if (e.dae && options.project)
+    throw std::invalid_argument("position correction after steps needs a one-step method; '" + name +
+                                "' is integrated by IDA");
+  return e.make(mechanism, options, start);
+}
+
+double default_leak(const Mechanism& mechanism, const Start& start) {
+  if (mechanism.m() == 0) return 0;
+  const auto e = mechanism.evaluation<double>();
+  const auto nv = static_cast<std::size_t>(mechanism.nv());
+  std::vector<double> force(nv), values(mechanism.kkt_pattern().mass.size());
+  e->place(start.t, start.q.data());
+  e->mass_entries(values.data());
+  e->constraint_forces(start.lambda.data(), force.data());
+  double acceleration = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const auto& at = mechanism.kkt_pattern().mass[i];
+    if (at.row == at.column && values[i] > 0)
+      acceleration = std::max(acceleration, std::abs(force[static_cast<std::size_t>(at.row)]) / values[i]);
+  }
+  const double rate = start.u.size() > 0 ? start.u.cwiseAbs().maxCoeff() : 0;
+  const double kappa = std::max(std::sqrt(acceleration), rate);
+  return kappa > 0 && std::isfinite(kappa) ? kappa : 1.0;
+}
+
+}  // namespace momenta

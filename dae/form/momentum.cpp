@@ -1,0 +1,132 @@
+// momentum
+//
+// Unknowns      q, p
+// Equations     (7) solved for u and σ at every evaluation, then (8):
+//                 M u + Φ_qᵀσ = p,  Φ_q u = −Φ_t;  q̇ = u,  ṗ = L_q + Q + Φ̇_qᵀσ − κ Φ_qᵀσ
+//               Here p = ∂L*/∂u of the augmented Lagrangian (6): (34) plus Φ_qᵀσ, not the p of (4).
+// Index         an ODE on all of R²ⁿ: any p is consistent
+// Hidden        Φ(q, t) = 0
+// Multipliers   σ, an impulse; the constraint force is λ = σ̇ + κ σ
+// Drifts        Φ like t, because Φ̇ = 0 holds to rounding at every evaluation and only its integral errs. Without a
+//               gauge σ grows like t under a mean load, the local error with it, and Φ like t².
+// Gauge         none; leak κ; reset (p ← M u, σ ← 0 after each step: exact, since the gauge is a symmetry)
+// Without loops there is no σ: (q, p) → (q̇, ṗ) is the recursion (35)-(48), momentum_recursion.h.
+// Source        Naudet, Lefeber, Terze, eqs. (6)-(8); Bayo, Avello, Nonlinear Dynamics 5 (1994).
+
+#include <momenta/dae/form/ode_form.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace momenta {
+namespace {
+
+class Momentum final : public OdeForm {
+ public:
+  Momentum(const Mechanism& mechanism, const FormOptions& options, const Start& start)
+      : OdeForm("momentum", mechanism, options) {
+    gauge_ = options.gauge;
+    if (!has_loops()) gauge_ = {};
+    if (gauge_.kind == Gauge::Kind::leak && gauge_.kappa == 0) gauge_.kappa = default_leak(mechanism, start);
+    // A momentum is as large as its own inertia times a rate of 1 rad/s or 1 m/s.
+    e_->place(start.t, start.q.data());
+    std::vector<double> values(mechanism.kkt_pattern().mass.size());
+    e_->mass_entries(values.data());
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const auto& entry = mechanism.kkt_pattern().mass[i];
+      if (entry.row == entry.column) scale_[static_cast<std::size_t>(mechanism.nq() + entry.row)] = values[i];
+    }
+  }
+
+  bool momentum_like() const override { return true; }
+  Gauge gauge() const override { return gauge_; }
+
+  std::vector<double> initial(const Start& start) override {
+    std::vector<double> y(static_cast<std::size_t>(size()));
+    std::copy(start.q.begin(), start.q.end(), y.begin());
+    if (gauge_.kind == Gauge::Kind::leak)  // σ(0) = λ(0)/κ: no transient
+      for (std::size_t i = 0; i < multipliers_.size(); ++i)
+        multipliers_[i] = start.lambda[static_cast<Eigen::Index>(i)] / gauge_.kappa;
+    centre_ = multipliers_;
+    e_->place(start.t, start.q.data());
+    e_->move(start.u.data());
+    e_->momenta(has_loops() ? multipliers_.data() : nullptr, y.data() + mechanism_.nq());
+    return y;
+  }
+
+  bool rhs(double t, const double* y, double* ydot) override {
+    const double *q = y, *p = y + mechanism_.nq();
+    double* pdot = ydot + mechanism_.nq();
+    if (!has_loops()) {
+      if (!e_->open_momentum_rates(t, q, p, u_.data(), pdot)) return fail_at(t, mechanism_.no_inertia());
+    } else {
+      if (!solve(t, q, p, fade_evaluation)) return false;
+      e_->move(u_.data());
+      e_->momenta(multipliers_.data(), work_.data());
+      e_->momentum_rates(q, u_.data(), multipliers_.data(), leak(), pdot);
+    }
+    e_->coordinate_rates(q, u_.data(), ydot);
+    return true;
+  }
+
+  bool has_after_step() const override {
+    return (has_loops() && (options_.project || gauge_.kind == Gauge::Kind::reset)) ||
+           mechanism_.plan().quasi_velocities;
+  }
+  bool after_step(double t, double* y, bool& changed) override {
+    double *q = y, *p = y + mechanism_.nq();
+    if (has_loops() && options_.project && !correct_position(t, q)) return false;
+    normalise(q);
+    if (has_loops() && gauge_.kind == Gauge::Kind::reset) {
+      if (!solve(t, q, p, fade_evaluation)) return false;
+      e_->move(u_.data());
+      e_->momenta(nullptr, p);
+      changed = true;
+    }
+    return true;
+  }
+  void begin_step(double, const double*) override {
+    if (gauge_.kind == Gauge::Kind::reset)
+      std::fill(centre_.begin(), centre_.end(), 0.0);
+    else
+      centre_ = multipliers_;
+  }
+
+  bool read(double t, const double* y, const double*, Snapshot& out) override {
+    const double *q = y, *p = y + mechanism_.nq();
+    const std::vector<double> kept = multipliers_;
+    if (!has_loops()) {
+      if (!e_->open_momentum_rates(t, q, p, u_.data(), work_.data())) return false;
+    } else if (!solve(t, q, p, fade_evaluation)) {
+      return false;
+    }
+    out.q = Eigen::Map<const Eigen::VectorXd>(q, mechanism_.nq());
+    out.u = Eigen::Map<const Eigen::VectorXd>(u_.data(), mechanism_.nv());
+    out.multipliers = Eigen::Map<const Eigen::VectorXd>(multipliers_.data(), mechanism_.m());
+    multipliers_ = kept;  // looking on must not move the centre of later steps
+    return true;
+  }
+
+ private:
+  double leak() const { return gauge_.kind == Gauge::Kind::leak ? gauge_.kappa : 0.0; }
+
+  /// (7): u_ and multipliers_.
+  bool solve(double t, const double* q, const double* p, double fade) {
+    if (!factor_at(t, q, fade)) return false;
+    std::copy(p, p + mechanism_.nv(), r_.begin());
+    rheonomic_terms();
+    if (!kkt_->solve(r_.data(), g_.data(), centre_.data(), u_.data(), multipliers_.data()))
+      return fail_at(t, "the solution of (7) is not finite");
+    return true;
+  }
+
+  Gauge gauge_;
+};
+
+}  // namespace
+
+std::unique_ptr<OdeForm> make_momentum(const Mechanism& mechanism, const FormOptions& options, const Start& start) {
+  return std::make_unique<Momentum>(mechanism, options, start);
+}
+
+}  // namespace momenta

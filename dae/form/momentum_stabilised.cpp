@@ -1,0 +1,50 @@
+// momentum-stabilised
+//
+// Unknowns      q, p; v, σ, μ
+// Equations     q̇ = v − Φ_qᵀμ,  M v + Φ_qᵀσ = p,  ṗ as (8) at v,  Φ_q v + Φ_t = 0,  Φ = 0
+// Index         2; both levels of the constraint stand in the equations
+// Hidden        none at position or velocity level
+// Multipliers   σ, an impulse; μ, the position correction per time, zero in exact arithmetic
+// Drifts        nothing: Φ and Φ̇ at the Newton tolerance
+// Source        (7)-(8) with the extra multiplier of Gear, Gupta, Leimkuhler, J. Comput. Appl. Math. 12 (1985)
+
+#include <momenta/dae/form/dae_form.h>
+
+namespace momenta {
+namespace {
+
+class MomentumStabilised final : public DaeFormOf<MomentumStabilised> {
+ public:
+  MomentumStabilised(const Mechanism& mechanism, const FormOptions& options, const Start& start)
+      : DaeFormOf("momentum-stabilised", mechanism, {mechanism.nq(), mechanism.nv(), mechanism.m(), true, true},
+                  options, start, true) {}
+
+  template <class S>
+  void rows(DaeScratch<S>& s, double t, const S* y, const S* ydot, S* r) {
+    const S *q = y, *p = y + layout_.x(), *v = y + layout_.v(), *sigma = y + layout_.s(), *mu = y + layout_.mu();
+    const S* pdot = ydot + layout_.x();
+    s.e->place(t, q);
+    s.e->constraint_forces(mu, s.a.data());
+    s.e->joint_rates(q, ydot, s.u.data());
+    for (int i = 0; i < layout_.nv; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      *r++ = s.u[at] - v[i] + s.a[at];
+    }
+    r = quaternion_rows(q, ydot, r);
+    s.e->move(v);
+    s.e->momenta(sigma, s.a.data());
+    s.e->momentum_rates(q, v, sigma, leak(), s.b.data());
+    for (int i = 0; i < layout_.nv; ++i) *r++ = pdot[i] - s.b[static_cast<std::size_t>(i)];
+    for (int i = 0; i < layout_.nv; ++i) *r++ = s.a[static_cast<std::size_t>(i)] - p[i];
+    s.e->velocities(r);
+    s.e->positions(r + layout_.m);
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<Form> make_momentum_stabilised(const Mechanism& mechanism, const FormOptions& o, const Start& s) {
+  return std::make_unique<MomentumStabilised>(mechanism, o, s);
+}
+
+}  // namespace momenta

@@ -1,0 +1,46 @@
+#pragma once
+// What the ODE forms share: state y = (q, x) with x = p or u, the loops' linear system, position correction.
+
+#include <momenta/dae/form/form.h>
+#include <momenta/dae/kkt/kkt.h>
+
+namespace momenta {
+
+class OdeForm : public Form, public OdeSystem {
+ public:
+  OdeForm(std::string name, const Mechanism& mechanism, const FormOptions& options);
+
+  const std::string& name() const override { return name_; }
+  bool is_dae() const override { return false; }
+  OdeSystem* ode() override { return this; }
+  int size() const override { return mechanism_.nq() + mechanism_.nv(); }
+  double scale(int i) const override { return scale_[static_cast<std::size_t>(i)]; }
+  long factorizations() const { return kkt_ ? kkt_->factorizations() : 0; }
+
+ protected:
+  bool has_loops() const { return mechanism_.m() > 0; }
+  /// Places the evaluation at q and factorises (7) there. Fails with the cause by name.
+  bool factor_at(double t, const double* q, double fade);
+  /// One Newton step on q in the mass metric: δ of M δ + Φ_qᵀν = 0, Φ_q δ = −Φ. Leaves (7) factorised for projection.
+  bool correct_position(double t, double* q);
+  /// Quaternions of q back to unit length.
+  void normalise(double* q) const;
+  /// r ← r − prescribed part of M u, g ← −Φ_t: the right-hand side of (7). Leaves the evaluation moved by drives only.
+  void rheonomic_terms();
+  /// The sentence "at t = …: why".
+  bool fail_at(double t, const std::string& why);
+
+  std::string name_;
+  const Mechanism& mechanism_;
+  FormOptions options_;
+  std::unique_ptr<Evaluation<double>> e_;
+  std::unique_ptr<Kkt> kkt_;
+  std::vector<double> u_, r_, g_, multipliers_, centre_, phi_, delta_, work_, correction_;
+  std::vector<double> scale_;
+};
+
+std::unique_ptr<OdeForm> make_momentum(const Mechanism&, const FormOptions&, const Start&);
+std::unique_ptr<OdeForm> make_acceleration(const Mechanism&, const FormOptions&, const Start&);
+std::unique_ptr<OdeForm> make_baumgarte(const Mechanism&, const FormOptions&, const Start&);
+
+}  // namespace momenta

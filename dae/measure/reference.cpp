@@ -1,0 +1,98 @@
+#include <momenta/core/scene/scene.h>
+#include <momenta/dae/measure/reference.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <string_view>
+
+namespace momenta {
+namespace {
+
+std::vector<std::string> split(std::string_view line) {
+  std::vector<std::string> cells;
+  while (true) {
+    const auto comma = line.find(',');
+    std::string_view cell = line.substr(0, comma);
+    while (!cell.empty() && (cell.front() == ' ' || cell.front() == '"')) cell.remove_prefix(1);
+    while (!cell.empty() && (cell.back() == ' ' || cell.back() == '\r' || cell.back() == '"')) cell.remove_suffix(1);
+    cells.emplace_back(cell);
+    if (comma == std::string_view::npos) return cells;
+    line.remove_prefix(comma + 1);
+  }
+}
+
+std::string unit_of(const std::string& column) {
+  const auto open = column.rfind('['), close = column.rfind(']');
+  return open == std::string::npos || close == std::string::npos || close < open ? ""
+                                                                                  : column.substr(open + 1, close - open - 1);
+}
+
+}  // namespace
+
+Reference::Reference(const std::filesystem::path& file) : file_(file.string()) {
+  std::ifstream in(file);
+  if (!in) throw SceneError(file_ + ": cannot be read; expected a reference solution in CSV");
+  std::string line;
+  int number = 1;
+  const auto refuse = [&](const std::string& what) {
+    throw SceneError(file_ + ":" + std::to_string(number) + ": " + what);
+  };
+  if (!std::getline(in, line)) refuse("the file is empty; expected a header row starting with t [s]");
+  columns_ = split(line);
+  if (columns_.front() != "t [s]")
+    refuse("found '" + columns_.front().substr(0, 40) + "' as first column; expected t [s]");
+  for (const auto& column : columns_)
+    if (unit_of(column).empty()) refuse("column '" + column.substr(0, 40) + "' has no unit; expected name [unit]");
+  columns_.erase(columns_.begin());
+  while (std::getline(in, line)) {
+    ++number;
+    if (line.empty() || line == "\r") continue;
+    const auto cells = split(line);
+    if (cells.size() != columns_.size() + 1)
+      refuse("found " + std::to_string(cells.size()) + " cells; expected " + std::to_string(columns_.size() + 1));
+    std::vector<double> row;
+    for (const auto& cell : cells) {
+      double value = 0;
+      const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
+      // Numbers below the smallest double are zero for every purpose here.
+      if (error == std::errc::result_out_of_range && cell.find("e-") != std::string::npos) value = 0;
+      else if (error != std::errc() || end != cell.data() + cell.size() || !std::isfinite(value))
+        refuse("found '" + cell.substr(0, 40) + "'; expected a finite number");
+      row.push_back(value);
+    }
+    if (!times_.empty() && !(row.front() > times_.back())) refuse("time does not increase");
+    times_.push_back(row.front());
+    row.erase(row.begin());
+    values_.push_back(std::move(row));
+  }
+  if (times_.empty()) refuse("there are no rows; expected at least one time");
+}
+
+void Reference::bind(const std::vector<std::string>& trajectory_columns) {
+  place_.clear();
+  is_rate_.clear();
+  for (const auto& column : columns_) {
+    const auto found = std::find(trajectory_columns.begin(), trajectory_columns.end(), column);
+    if (found == trajectory_columns.end())
+      throw SceneError(file_ + ":1: column '" + column + "' is not one of the trajectory's; expected for instance '" +
+                       (trajectory_columns.size() > 1 ? trajectory_columns[1] : "") + "'");
+    place_.push_back(static_cast<std::size_t>(found - trajectory_columns.begin()));
+    const std::string unit = unit_of(column);
+    is_rate_.push_back(unit.size() > 2 && unit.substr(unit.size() - 2) == "/s");
+  }
+}
+
+Reference::Error Reference::error(std::size_t row, const std::vector<double>& trajectory_row) const {
+  Error e;
+  for (std::size_t i = 0; i < place_.size(); ++i) {
+    const double reference = values_[row][i];
+    const double difference = std::abs(trajectory_row[place_[i]] - reference) / (1 + std::abs(reference));
+    double& largest = is_rate_[i] ? e.velocity : e.position;
+    if (!(difference <= largest)) largest = difference;  // NaN too
+  }
+  return e;
+}
+
+}  // namespace momenta

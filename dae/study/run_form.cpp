@@ -1,0 +1,312 @@
+#include <momenta/dae/form/ode_form.h>
+#include <momenta/dae/measure/growth.h>
+#include <momenta/dae/study/run_form.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <ctime>
+#include <stdexcept>
+
+namespace momenta {
+namespace {
+
+double cpu_now() {
+  timespec t{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+bool is_multistep(const std::string& integrator) { return integrator == "adams" || integrator == "bdf"; }
+
+/// Uniform samples and the reference's own times, ascending, without the start.
+std::vector<double> output_times(const RunSettings& s, const Reference* reference) {
+  std::vector<double> times;
+  for (int i = 1; i <= s.samples; ++i) times.push_back(s.end_time * i / s.samples);
+  if (reference)
+    for (double t : reference->times())
+      if (t > 0 && t <= s.end_time * (1 + 1e-12)) times.push_back(std::min(t, s.end_time));
+  std::sort(times.begin(), times.end());
+  const double apart = 1e-12 * s.end_time;
+  // Of two times that are one, keep the reference's: it comes with its own digits.
+  times.erase(std::unique(times.begin(), times.end(), [&](double a, double b) { return b - a < apart; }), times.end());
+  times.back() = s.end_time;
+  return times;
+}
+
+/// Looks at states of a form: drifts, energy, errors.
+class Looker {
+ public:
+  Looker(const Mechanism& mechanism, Form& form, const RunRequest& request, RunResult& result)
+      : mechanism_(mechanism),
+        form_(form),
+        request_(request),
+        result_(result),
+        e_(mechanism.evaluation<double>()),
+        phi_(mechanism.m()),
+        markers_(static_cast<std::size_t>(6 * static_cast<int>(mechanism.scene().markers.size()))),
+        loses_energy_(loses_energy(mechanism.scene())) {
+    if (request.keep_trajectory) {
+      result.trajectory.columns = trajectory_columns(mechanism);
+      kkt_ = mechanism.m() > 0 ? make_kkt(mechanism) : nullptr;
+    }
+  }
+
+  bool sample(double t, const double* y, const double* ydot) {
+    if (!form_.read(t, y, ydot, now_)) {
+      trouble_ = "at t = " + std::to_string(t) + " s the velocities cannot be read back";
+      return false;
+    }
+    e_->place(t, now_.q.data());
+    e_->positions(phi_.data());
+    const double position = phi_.norm();
+    e_->move(now_.u.data());
+    e_->velocities(phi_.data());
+    const double velocity = phi_.norm();
+    const double energy =
+        mechanism_.plan().drives ? not_measured : e_->kinetic() + e_->potential(now_.q.data()) - work_;
+    if (!std::isfinite(position) || !std::isfinite(velocity)) {
+      trouble_ = "at t = " + std::to_string(t) + " s the state is not finite";
+      return false;
+    }
+    Series& s = result_.series;
+    if (s.t.empty()) energy_at_start_ = energy;
+    s.t.push_back(t);
+    s.position_drift.push_back(position);
+    s.velocity_drift.push_back(velocity);
+    s.energy.push_back(energy);
+    s.energy_error.push_back(energy - energy_at_start_);
+    s.impulse.push_back(now_.multipliers.norm());
+    const bool row_wanted = request_.keep_trajectory || request_.reference;
+    if (row_wanted) row(t, energy, position, velocity);
+    if (request_.reference) compare(t);
+    if (request_.keep_trajectory) result_.trajectory.rows.push_back(row_);
+    return !request_.progress || request_.progress(t);
+  }
+
+  bool step(double t0, double t1, const Interpolant& between) {
+    state_.resize(static_cast<std::size_t>(form_.is_dae() ? form_.dae()->size() : form_.ode()->size()));
+    const double middle = 0.5 * (t0 + t1);
+    if (mechanism_.m() > 0) {
+      between(middle, state_.data());
+      e_->place(middle, state_.data());
+      e_->positions(phi_.data());
+      const double drift = phi_.norm();
+      if (!(drift <= between_)) between_ = drift;
+    }
+    if (loses_energy_) {
+      // Three-point Gauss rule for the work of dampers and of wrenches without potential.
+      static constexpr double node[3] = {-0.7745966692414834, 0, 0.7745966692414834};
+      static constexpr double weight[3] = {5.0 / 18, 8.0 / 18, 5.0 / 18};
+      for (int i = 0; i < 3; ++i) {
+        const double t = middle + 0.5 * (t1 - t0) * node[i];
+        between(t, state_.data());
+        if (!form_.read(t, state_.data(), nullptr, now_)) return true;
+        e_->place(t, now_.q.data());
+        e_->move(now_.u.data());
+        work_ += weight[i] * (t1 - t0) * e_->lost_power(now_.u.data());
+      }
+    }
+    return true;
+  }
+
+  void finish() {
+    const Series& s = result_.series;
+    const auto largest = [](const std::vector<double>& v) {
+      double m = v.empty() ? not_measured : 0;
+      for (double x : v)
+        if (!(std::abs(x) <= m)) m = std::abs(x);
+      return m;
+    };
+    result_.energy_error_max = largest(s.energy_error);
+    if (mechanism_.m() > 0) {
+      result_.position_drift_max = largest(s.position_drift);
+      result_.velocity_drift_max = largest(s.velocity_drift);
+      result_.between_steps_max = between_;
+      result_.position_growth = fit_growth(s.t, s.position_drift);
+      result_.velocity_growth = fit_growth(s.t, s.velocity_drift);
+    }
+    if (request_.reference && result_.status == "done" && compared_ > 0) {
+      result_.position_error_max = largest(s.position_error);
+      result_.velocity_error_max = largest(s.velocity_error);
+    }
+  }
+
+  const std::string& trouble() const { return trouble_; }
+
+ private:
+  static bool loses_energy(const Scene& scene) {
+    for (const auto& joint : scene.joints)
+      if (joint.damping != 0) return true;
+    for (const auto& f : scene.forces)
+      if ((f.kind == "spring-damper" && f.damping != 0) ||
+          (f.kind == "wrench" && (f.in_body_axes || f.torque.norm() > 0)))
+        return true;
+    return false;
+  }
+
+  void row(double t, double energy, double position, double velocity) {
+    row_.clear();
+    row_.push_back(t);
+    row_.insert(row_.end(), now_.q.begin(), now_.q.end());
+    row_.insert(row_.end(), now_.u.begin(), now_.u.end());
+    e_->markers(markers_.data());
+    row_.insert(row_.end(), markers_.begin(), markers_.end());
+    row_.push_back(energy);
+    if (mechanism_.m() == 0) return;
+    row_.push_back(position);
+    row_.push_back(velocity);
+    if (kkt_) {
+      Eigen::VectorXd r(mechanism_.nv()), g(mechanism_.m()), udot(mechanism_.nv()), lambda(mechanism_.m());
+      lambda.setConstant(not_measured);
+      if (kkt_->factor(*e_, fade_evaluation)) {
+        e_->joint_forces(now_.q.data(), now_.u.data(), nullptr, nullptr, r.data());
+        e_->accelerations(g.data());
+        r = -r;
+        g = -g;
+        kkt_->solve(r.data(), g.data(), nullptr, udot.data(), lambda.data());
+      }
+      row_.insert(row_.end(), lambda.begin(), lambda.end());
+    }
+  }
+
+  void compare(double t) {
+    const auto& times = request_.reference->times();
+    const double apart = 1e-9 * result_.settings.end_time;
+    const auto at = std::lower_bound(times.begin(), times.end(), t - apart);
+    const bool hit = at != times.end() && *at <= t + apart;
+    Series& s = result_.series;
+    s.position_error.push_back(not_measured);
+    s.velocity_error.push_back(not_measured);
+    if (!hit) return;
+    const auto error = request_.reference->error(static_cast<std::size_t>(at - times.begin()), row_);
+    s.position_error.back() = error.position;
+    s.velocity_error.back() = error.velocity;
+    ++compared_;
+  }
+
+  const Mechanism& mechanism_;
+  Form& form_;
+  const RunRequest& request_;
+  RunResult& result_;
+  std::unique_ptr<Evaluation<double>> e_;
+  std::unique_ptr<Kkt> kkt_;
+  Eigen::VectorXd phi_;
+  std::vector<double> markers_, row_, state_;
+  Snapshot now_;
+  bool loses_energy_;
+  double energy_at_start_ = 0, work_ = 0, between_ = 0;
+  int compared_ = 0;
+  std::string trouble_;
+};
+
+}  // namespace
+
+std::string default_integrator(const std::string& form) { return is_dae_form(form) ? "ida" : "dop853"; }
+
+std::vector<std::string> trajectory_columns(const Mechanism& mechanism) {
+  std::vector<std::string> columns{"t [s]"};
+  const auto add = [&](const std::vector<Column>& more) {
+    for (const auto& c : more) columns.push_back(c.label());
+  };
+  add(mechanism.coordinate_columns());
+  add(mechanism.rate_columns());
+  add(mechanism.marker_columns());
+  columns.emplace_back("energy [J]");
+  if (mechanism.m() == 0) return columns;
+  columns.emplace_back("position_drift [m]");
+  columns.emplace_back("velocity_drift [m/s]");
+  std::string loop;
+  int number = 0;
+  for (const auto& row : mechanism.rows()) {
+    number = row.loop == loop ? number + 1 : 1;
+    loop = row.loop;
+    const bool couple = row.what.rfind("axis", 0) == 0 || row.what == "angle";
+    columns.push_back(loop + ".lambda" + std::to_string(number) + (couple ? " [N m]" : " [N]"));
+  }
+  return columns;
+}
+
+RunResult run_form(const Mechanism& mechanism, const Start& start, const RunRequest& request) {
+  RunResult result;
+  result.scene = mechanism.scene().name;
+  result.settings = request.settings;
+  RunSettings& s = result.settings;
+  const bool dae = is_dae_form(s.form);
+  if (s.integrator.empty()) s.integrator = default_integrator(s.form);
+  if (dae != (s.integrator == "ida"))
+    throw std::invalid_argument("form '" + s.form + "' is " + (dae ? "a DAE: expected integrator ida" : "an ODE: expected rk4, dp5, dop853, adams or bdf") +
+                                ", found '" + s.integrator + "'");
+  if (is_multistep(s.integrator) && (s.project || s.gauge == "reset"))
+    throw std::invalid_argument("'" + s.integrator + "' is a multistep method: a state altered after each step would " +
+                                "spoil its history; use gauge leak and no position correction");
+  if (!(s.end_time > 0) || !std::isfinite(s.end_time))
+    throw std::invalid_argument("the end time must be positive and finite");
+  if (s.samples < 1) throw std::invalid_argument("expected at least one sample");
+
+  FormOptions options;
+  options.gauge = parse_gauge(s.gauge.empty() ? "none" : s.gauge);
+  options.project = s.project;
+  options.baumgarte_alpha = s.baumgarte_alpha;
+  options.baumgarte_beta = s.baumgarte_beta;
+  const auto form = make_form(s.form, mechanism, options, start);
+  s.gauge = form->momentum_like() ? form->gauge().text() : "";
+  std::tie(s.baumgarte_alpha, s.baumgarte_beta) = form->baumgarte_gains();
+  s.kkt = mechanism.m() == 0 || dae ? "" : (mechanism.dense_kkt() ? "dense" : "sparse");
+  if (s.integrator != "rk4") s.step = 0;
+
+  IntegrationOptions io;
+  io.rtol = s.rtol;
+  io.atol = s.atol;
+  io.step = s.step;
+  io.max_cpu_seconds = request.max_cpu_seconds;
+  const auto integrate = [&](const std::vector<double>& times, const Observer& observer) {
+    if (dae) return integrate_ida(*form->dae(), start.t, times, io, observer);
+    const auto y0 = form->initial(start);
+    if (is_multistep(s.integrator)) return integrate_cvode(s.integrator, *form->ode(), start.t, y0, times, io, observer);
+    return integrate_explicit(s.integrator, *form->ode(), start.t, y0, times, io, observer);
+  };
+
+  const auto wall_start = std::chrono::steady_clock::now();
+  double cpu_start = cpu_now();
+  Looker looker(mechanism, *form, request, result);
+  const auto y0 = form->initial(start);
+  looker.sample(start.t, y0.data(), nullptr);
+  const IntegrationResult run = integrate(
+      output_times(s, request.reference),
+      Observer{[&](double t, const double* y, const double* ydot) { return looker.sample(t, y, ydot); },
+               [&](double t0, double t1, const Interpolant& between) { return looker.step(t0, t1, between); }});
+  double cpu = cpu_now() - cpu_start;
+  result.status = run.done ? "done" : (run.reason.rfind("time limit", 0) == 0 ? "time limit" : "failed");
+  result.reason = run.done ? "" : (looker.trouble().empty() ? run.reason : looker.trouble());
+  result.stopped_at = run.end_time;
+  result.counters = run.counters;
+  result.jacobian = run.jacobian;
+  result.linear_solver = run.linear_solver;
+  looker.finish();
+
+  std::vector<double> cpus, walls;
+  for (int i = 0; i < request.repeats && run.done && cpu < request.repeat_budget; ++i) {
+    const auto wall0 = std::chrono::steady_clock::now();
+    cpu_start = cpu_now();
+    integrate({s.end_time}, {});
+    cpus.push_back(cpu_now() - cpu_start);
+    walls.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - wall0).count());
+    cpu += cpus.back();
+  }
+  result.repeats = static_cast<int>(cpus.size());
+  if (cpus.empty()) {
+    cpus.push_back(cpu);
+    walls.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - wall_start).count());
+  }
+  const auto median = [](std::vector<double> v) {
+    std::sort(v.begin(), v.end());
+    return v[v.size() / 2];
+  };
+  result.cpu_s = median(cpus);
+  result.wall_s = median(walls);
+  if (auto* ode = dynamic_cast<OdeForm*>(form.get())) result.counters.factorizations += ode->factorizations();
+  return result;
+}
+
+}  // namespace momenta
