@@ -25,10 +25,9 @@ constexpr std::size_t first_nonzero(const std::array<double, N>& w) {
   return j;
 }
 
-/// As many doubles as one register of the target holds; arithmetic on it is elementwise.
-#if defined(__AVX512F__)
-inline constexpr std::size_t width = 8;
-#elif defined(__AVX__)
+/// Doubles in a register of the target; arithmetic on a pack is elementwise. Eight (AVX-512) lose
+/// at a dozen unknowns: a load as wide as that waits for all the narrow stores f has just made.
+#if defined(__AVX__)
 inline constexpr std::size_t width = 4;
 #else
 inline constexpr std::size_t width = 2;
