@@ -7,6 +7,7 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <map>
 #include <random>
 #include <string>
 #include <vector>
@@ -78,6 +79,30 @@ class RandomTree {
       s.bodies.push_back(body(k));
       s.joints.push_back(joint(recipe, k));
       effects(recipe, s, k);
+    }
+    return s;
+  }
+
+  /// A scene that moves in one plane, any plane, axes along the normal or against it; bodies are
+  /// offset across it and turned anyhow. Of the recipe's kinds, revolute, prismatic and weld
+  /// remain.
+  Scene planar_scene(const TreeRecipe& recipe) {
+    TreeRecipe flat = recipe;
+    flat.kinds.clear();
+    for (const JointKind kind : recipe.kinds)
+      if (kind != JointKind::spherical && kind != JointKind::free) flat.kinds.push_back(kind);
+    Eigen::Vector3d normal = chance(0.5) ? direction() : Eigen::Vector3d::Unit(below(3));
+    if (chance(0.5)) normal = -normal;
+    const Eigen::Vector3d across = normal.unitOrthogonal();
+    Scene s = scene(flat);
+    std::map<std::string, Eigen::Quaterniond> axes{{"ground", Eigen::Quaterniond::Identity()}};
+    for (JointSpec& j : s.joints) {
+      const Eigen::Quaterniond joint_axes = axes.at(j.parent) * j.rotation;
+      axes[j.child] = joint_axes;  // at q = 0
+      const Eigen::Vector3d axis = j.kind == JointKind::revolute
+                                       ? Eigen::Vector3d((chance(0.5) ? 1 : -1) * normal)
+                                       : Eigen::AngleAxisd(uniform(-3, 3), normal) * across;
+      j.axis = (joint_axes.conjugate() * axis).normalized();
     }
     return s;
   }

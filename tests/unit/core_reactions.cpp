@@ -1,0 +1,172 @@
+// Joint reactions, eq. (28), three ways: OpenChain::reactions (Newton-Euler inward), the balance of
+// the carried subtree in ground axes from positions alone, and one dual-number pass of the momentum
+// kernel, T_r = d/dt P* + Ω × P* − T* in the direction (q̇, ṗ, 1).
+
+#include "equations/dense_lagrangian.h"
+#include "equations/random_tree.h"
+#include "equations/tolerance.h"
+
+#include <gtest/gtest.h>
+#include <momenta/core/kernel/accelerations.h>
+#include <momenta/core/kernel/momentum_recursion.h>
+#include <momenta/core/open_chain.h>
+
+namespace momenta {
+namespace {
+
+using namespace equations;
+
+/// Errors of accelerations enter reactions: see core_accelerations.cpp for the growth of rounding.
+double growth_of(const DenseLagrangian& twin, const TreeState& s) {
+  if (twin.nv() == 0) return 1;
+  const RealMatrix m = twin.mass_matrix(s.t, s.q);
+  const RealVector udot = twin.accelerations(s.t, s.q, s.u);
+  const RealVector moved = m.inverse().cwiseAbs() * (m.cwiseAbs() * udot.cwiseAbs());
+  const Real size = std::max(Real(1), udot.cwiseAbs().maxCoeff());
+  return std::max(1.0, static_cast<double>(moved.maxCoeff() / size));
+}
+
+/// Worst error of all reactions of a random tree against the twin, relative to the greatest.
+double error_against_balance(const Scene& scene, RandomTree& random) {
+  OpenChain chain(scene, Algebra::spatial);
+  const DenseLagrangian twin(scene, chain.tree());
+  const TreeState s = random.state(chain.tree());
+  const auto expected = twin.reactions(s.t, s.q, s.u);
+  const auto found = chain.reactions(s.t, s.q, s.u);
+  Eigen::VectorXd all(6 * static_cast<Eigen::Index>(scene.joints.size())), twins(all.size());
+  for (const Reaction& r : found)
+    for (std::size_t k = 0; k < scene.joints.size(); ++k)
+      if (scene.joints[k].name == r.joint) {
+        const auto at = 6 * static_cast<Eigen::Index>(k);
+        all.segment<3>(at) = r.force;
+        all.segment<3>(at + 3) = r.torque;
+        twins.segment<6>(at) = expected[k];
+      }
+  EXPECT_EQ(found.size(), scene.joints.size());
+  return relative_error(all, twins) / growth_of(twin, s);
+}
+
+void sweep(const TreeRecipe& recipe, int trees, unsigned seed) {
+  double worst = 0;
+  for (int i = 0; i < trees; ++i) {
+    RandomTree random(seed + static_cast<unsigned>(i));
+    const Scene scene = random.scene(recipe);
+    worst = std::max(worst, error_against_balance(scene, random));
+  }
+  EXPECT_LT(worst, algebra_tol(2 * recipe.bodies));
+  testing::Test::RecordProperty("worst", std::to_string(worst * 1e16) + "e-16");
+}
+
+TEST(Reactions, BalanceRevoluteAndPrismatic) {
+  sweep({.kinds = {JointKind::revolute, JointKind::prismatic}, .drives = false}, 40, 100);
+}
+TEST(Reactions, BalanceWithDrives) {
+  sweep({.kinds = {JointKind::revolute, JointKind::prismatic}}, 60, 200);
+}
+TEST(Reactions, BalanceMixedTrees) {
+  sweep({}, 80, 300);
+}
+TEST(Reactions, BalanceNearlyParallelAxes) {
+  sweep({.placing = Placing::degenerate}, 40, 500);
+}
+
+/// F_K of Newton-Euler and T_r of the dual pass, in the kernel's own frames.
+TEST(Reactions, RateOfArticulatedMomentum) {
+  using D = Dual<double, 1>;
+  double worst = 0;
+  for (unsigned seed = 700; seed < 800; ++seed) {
+    RandomTree random(seed);
+    const Scene scene = random.scene({});
+    const Tree tree = build_tree(scene);
+    const Model<Spatial> model = build_spatial_model(tree, scene);
+    const DenseLagrangian twin(scene, tree);
+    const TreeState s = random.state(tree);
+
+    Workspace<Spatial, double> w(model);
+    Eigen::VectorXd p(tree.nv), u(tree.nv), pdot(tree.nv), udot(tree.nv), tau(tree.nv);
+    Eigen::VectorXd qdot(tree.nq);
+    momenta_from_rates(w, s.t, s.q.data(), s.u.data(), p.data());
+    ASSERT_TRUE(momentum_recursion(w, s.t, s.q.data(), p.data(), u.data(), pdot.data()));
+    coordinate_rates(model, s.q.data(), s.u.data(), qdot.data());
+    ASSERT_TRUE(acceleration_recursion(w, s.t, s.q.data(), s.u.data(), udot.data()));
+    accelerations_outward(w, s.u.data(), udot.data());
+    apply_forces(w, model.has_body_forces());
+    newton_euler_inward(w, s.q.data(), s.u.data(), tau.data());  // body[k].P is F_K now
+
+    const auto along = [](const Eigen::VectorXd& x, const Eigen::VectorXd& rate) {
+      std::vector<D> d(static_cast<std::size_t>(x.size()));
+      for (std::size_t i = 0; i < d.size(); ++i) {
+        d[i] = D(x[static_cast<Eigen::Index>(i)]);
+        d[i].b[0] = rate[static_cast<Eigen::Index>(i)];
+      }
+      return d;
+    };
+    Workspace<Spatial, D> dual(model);
+    const std::vector<D> q_along = along(s.q, qdot), p_along = along(p, pdot);
+    std::vector<D> u_along(p_along.size()), pdot_along(p_along.size());
+    ASSERT_TRUE(momentum_recursion(dual, D::variable(s.t, 0), q_along.data(), p_along.data(),
+                                   u_along.data(), pdot_along.data()));
+    // T*: the sweep that carries weights as first moments leaves it out
+    auto articulated = dual.body;
+    poses_outward(dual, D::variable(s.t, 0), q_along.data(), true);
+    velocities_outward(dual, u_along.data());
+    gravity_outward(dual);
+    apply_forces(dual, model.has_body_forces());
+    momentum_rates_inward(dual, q_along.data(), u_along.data(), pdot_along.data());
+
+    const double growth = growth_of(twin, s);
+    double size = 1, error = 0;
+    for (std::size_t k = 0; k < tree.bodies.size(); ++k) {
+      const auto turning = Spatial::cross_force(articulated[k].V, articulated[k].P);
+      for (int i = 0; i < 6; ++i) {
+        const double reaction = articulated[k].P[i].b[0] + turning[i].a - dual.body[k].T[i].a;
+        size = std::max(size, std::abs(w.body[k].P[i]));
+        error = std::max(error, std::abs(reaction - w.body[k].P[i]));
+      }
+      // udot comes out of the same pass
+      const auto& b = tree.bodies[k];
+      for (int i = 0; i < b.nv; ++i)
+        EXPECT_NEAR(u_along[static_cast<std::size_t>(b.u + i)].b[0], udot[b.u + i],
+                    algebra_tol(12) * growth * std::max(1.0, udot.cwiseAbs().maxCoeff()));
+    }
+    worst = std::max(worst, error / size / growth);
+  }
+  EXPECT_LT(worst, algebra_tol(12));
+  RecordProperty("worst", std::to_string(worst * 1e16) + "e-16");
+}
+
+/// Eᵀ T_r: what acts along a joint is its own spring, damper and torque; nothing acts along a
+/// spherical or free joint. A driven joint transmits what its drive takes (BalanceWithDrives).
+TEST(Reactions, AlongTheJoint) {
+  for (unsigned seed = 900; seed < 960; ++seed) {
+    RandomTree random(seed);
+    const Scene scene = random.scene({});
+    OpenChain chain(scene, Algebra::spatial);
+    const DenseLagrangian twin(scene, chain.tree());
+    const TreeState s = random.state(chain.tree());
+    const auto reactions = chain.reactions(s.t, s.q, s.u);
+    double size = 1;
+    for (const Reaction& r : reactions)
+      size = std::max({size, r.force.cwiseAbs().maxCoeff(), r.torque.cwiseAbs().maxCoeff()});
+    const double tolerance = algebra_tol(12) * size * growth_of(twin, s);
+    for (const Reaction& r : reactions) {
+      const int k = chain.tree().carried_by(r.joint);
+      const Tree::Body& b = chain.tree().bodies[static_cast<std::size_t>(k)];
+      if (b.drive >= 0) continue;
+      if (b.nv == 1) {
+        const Eigen::Vector3d axis = b.scene_axes.linear().transpose().col(2);
+        const double force = b.torque - b.stiffness * (s.q[b.q] - b.rest) - b.damping * s.u[b.u];
+        EXPECT_NEAR(axis.dot(b.kind == JointKind::revolute ? r.torque : r.force), force, tolerance);
+      }
+      if (b.nv >= 3) {
+        EXPECT_LT(r.torque.norm(), tolerance);
+      }
+      if (b.nv == 6) {
+        EXPECT_LT(r.force.norm(), tolerance);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace momenta
