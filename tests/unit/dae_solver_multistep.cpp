@@ -336,6 +336,22 @@ TEST(Ida, StartsAlsoWithTooLongAFirstStep) {
   EXPECT_NEAR(r.y[0], pendulum_by_angle(1)[0], 1e-6);
 }
 
+TEST(Ida, TriesAgainWithShorterFirstSteps) {
+  // More failures in a row than one attempt may have; they count as rejected steps.
+  class Stubborn : public GivenDae {
+   public:
+    int calls = 0;
+    bool residual(double t, const double* y, const double* ydot, double* r) override {
+      return ++calls > 25 ? GivenDae::residual(t, y, ydot, r) : fail("not yet");
+    }
+  } system;
+  static_cast<GivenDae&>(system) = pendulum();
+  const auto r = integrate_ida(system, 0, {1.0}, tolerance(1e-6), {});
+  EXPECT_TRUE(r.done) << r.reason;
+  EXPECT_GE(r.counters.rejected, 25);
+  EXPECT_NEAR(r.y[0], pendulum_by_angle(1)[0], 1e-3);
+}
+
 TEST(Ida, SamplesCarryRates) {
   GivenDae system = pendulum();
   std::vector<double> times, seen;
