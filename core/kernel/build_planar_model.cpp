@@ -53,9 +53,14 @@ PlaneFinding find_plane(const Tree& tree, const Scene& scene) {
     if (b.kind == JointKind::revolute && !normal) normal = z;
     if (b.kind == JointKind::prismatic) slides.push_back(z);
   }
-  if (!normal)
+  if (!normal) {
+    // The slide most inclined to the first one gives the sharpest normal.
+    Eigen::Vector3d sharpest = Eigen::Vector3d::Zero();
     for (const auto& slide : slides)
-      if (!parallel(slide, slides.front())) normal = slides.front().cross(slide).normalized();
+      if (const Eigen::Vector3d n = slides.front().cross(slide); n.norm() > sharpest.norm())
+        sharpest = n;
+    if (sharpest.norm() >= angle_tolerance) normal = sharpest.normalized();
+  }
   if (!normal) {
     // Slides along one line only: any plane through it; take the one that holds gravity.
     const Eigen::Vector3d line = slides.empty() ? Eigen::Vector3d::UnitX() : slides.front();

@@ -17,11 +17,11 @@ struct Worst {
          reactions = 0;
 };
 
-Eigen::VectorXd energies_of(OpenChain& chain, const TreeState& a, const TreeState& b) {
+/// T, H − V, and V against another state: the plane's own height is no coordinate of the planar
+/// kernel, so that V is known to it up to a constant.
+Eigen::Vector3d energies_of(OpenChain& chain, const TreeState& a, const TreeState& b) {
   const Energies at_a = chain.energies(a.t, a.q, a.u), at_b = chain.energies(b.t, b.q, b.u);
-  // The plane's own height is no coordinate of the planar kernel: V is compared by differences.
-  return Eigen::Vector3d(at_a.kinetic, at_a.potential - at_b.potential,
-                         at_a.hamiltonian - at_a.potential);
+  return {at_a.kinetic, at_a.hamiltonian - at_a.potential, at_a.potential - at_b.potential};
 }
 
 void compare(const Scene& scene, RandomTree& random, Worst& worst) {
@@ -57,8 +57,10 @@ void compare(const Scene& scene, RandomTree& random, Worst& worst) {
         std::max(1.0, qdot_spatial.cwiseAbs().maxCoeff());
   note(worst.accelerations, relative_error(qdot, qdot_spatial) / acceleration_growth);
 
-  note(worst.energies,
-       relative_error(energies_of(planar, s, other), energies_of(spatial, s, other)));
+  const double size = std::abs(spatial.energies(s.t, s.q, s.u).hamiltonian) +
+                      std::abs(spatial.energies(other.t, other.q, other.u).hamiltonian);
+  note(worst.energies, relative_error(energies_of(planar, s, other), energies_of(spatial, s, other),
+                                      std::max(1.0, size)));
 
   const auto poses = planar.poses(s.t, s.q), poses_spatial = spatial.poses(s.t, s.q);
   for (std::size_t k = 0; k < poses.size(); ++k)
