@@ -15,9 +15,9 @@ struct Assembly {
   double velocity_residual = 0;  ///< |Φ̇|∞ reached
   double moved = 0;              ///< largest change of a joint coordinate against the guess [rad or m]
   int iterations = 0;
-  int rank = 0;                  ///< of Φ_q at the start, by singular values
-  double smallest_singular = 0;  ///< of Φ_q, the smallest that counts
-  double largest_neglected = 0;  ///< of Φ_q, the largest that does not (0 when the rows are independent)
+  int rank = 0;                  ///< of Φ_q at the start
+  double smallest_pivot = 0;     ///< of the pivoted QR of Φ_q, the smallest that counts
+  double largest_neglected = 0;  ///< and the largest that does not (0 when the rows are independent)
   int mobility = 0;              ///< nv − rank
 };
 
