@@ -5,9 +5,10 @@
 //
 // with err the local error over its tolerance and α = 1/k - (a fraction of β), k the order of the
 // error's leading term. The integral part alone (β = 0) oscillates when stability bounds the step.
-// After a rejection the step does not grow at once. Squares and logarithms: one log, one exp a
-// step. Source: Gustafsson, ACM TOMS 17 (1991) 533-554; Hairer, Norsett, Wanner I, II.4, and their
-// codes.
+// After a rejection the step does not grow at once. One log and one exp a step.
+//
+// Source: Gustafsson, ACM TOMS 17 (1991) 533-554; Hairer, Wanner, Solving Ordinary Differential
+// Equations II, IV.2; the bounds and the treatment of rejections: I, II.4.
 
 #include <algorithm>
 #include <cmath>
