@@ -157,11 +157,15 @@ class Assembler {
 
   /// Rank by column-pivoted QR; its pivots bound the singular values to a factor of about √nv.
   void judge_rank(Assembly& a) {
-    const auto decomposition = decompose(jacobian());
+    // Pivoting on the columns of Φ_qᵀ orders the rows: those beyond the rank depend on the ones before.
+    const auto decomposition = decompose(jacobian().transpose());
     const Eigen::VectorXd pivots = decomposition.matrixQTZ().diagonal().cwiseAbs();
     a.rank = static_cast<int>(decomposition.rank());
     a.smallest_pivot = a.rank > 0 ? pivots[a.rank - 1] : 0;
     a.largest_neglected = a.rank < pivots.size() ? pivots.tail(pivots.size() - a.rank).maxCoeff() : 0;
+    const auto& order = decomposition.colsPermutation().indices();
+    for (int i = a.rank; i < mechanism_.m(); ++i) a.dependent_rows.push_back(order[i]);
+    std::sort(a.dependent_rows.begin(), a.dependent_rows.end());
   }
 
   void accelerations(Assembly& a) {

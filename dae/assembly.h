@@ -18,6 +18,7 @@ struct Assembly {
   int rank = 0;                  ///< of Φ_q at the start
   double smallest_pivot = 0;     ///< of the pivoted QR of Φ_q, the smallest that counts
   double largest_neglected = 0;  ///< and the largest that does not (0 when the rows are independent)
+  std::vector<int> dependent_rows;  ///< rows of Φ that follow from the others at the start
   int mobility = 0;              ///< nv − rank
 };
 

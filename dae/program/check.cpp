@@ -1,0 +1,109 @@
+#include <cstdio>
+
+#include "options.h"
+
+namespace momenta::program {
+namespace {
+
+struct FormIndex {
+  const char *form, *index;
+};
+constexpr FormIndex indices[] = {
+    {"momentum", "ODE"},          {"momentum-index1", "1"},     {"momentum-index2", "2"},
+    {"momentum-stabilised", "2"}, {"acceleration", "ODE"},      {"baumgarte", "ODE"},
+    {"acceleration-index1", "1"}, {"acceleration-index2", "2"}, {"acceleration-index3", "3"},
+    {"stabilised-index2", "2"},
+};
+
+}  // namespace
+
+int check(const Options& o) {
+  const auto mechanism = load(o);
+  const Assembly a = assemble(*mechanism);
+  const Tree& tree = mechanism->tree();
+  if (o.json) {
+    nlohmann::ordered_json j;
+    j["scene"] = tree.name;
+    j["bodies"] = tree.bodies.size();
+    j["coordinates"] = mechanism->nq();
+    j["rates"] = mechanism->nv();
+    j["loop_equations"] = mechanism->m();
+    j["rank"] = a.rank;
+    j["mobility"] = a.mobility;
+    for (const auto& [what, how] : mechanism->plan_lines()) j["plan"][what] = how;
+    j["dependent_rows"] = nlohmann::json::array();
+    for (int row : a.dependent_rows) {
+      const auto& name = mechanism->rows()[static_cast<std::size_t>(row)];
+      j["dependent_rows"].push_back({{"loop", name.loop}, {"row", name.what}});
+    }
+    std::printf("%s\n", j.dump(2).c_str());
+    return done;
+  }
+  if (o.quiet) return done;
+  std::printf("%s\n\nTree\n", tree.name.c_str());
+  for (const auto& b : tree.bodies) {
+    int depth = 0;
+    for (int k = b.parent; k >= 0; k = tree.bodies[static_cast<std::size_t>(k)].parent) ++depth;
+    static constexpr const char* kinds[] = {"revolute", "prismatic", "spherical", "free", "weld"};
+    if (depth > 12) continue;  // long chains: the first bodies tell the pattern
+    std::printf("  %*s%s (%s%s) %s, %.4g kg\n", 2 * depth, "", b.joint.c_str(), b.drive >= 0 ? "driven " : "",
+                kinds[static_cast<int>(b.kind)], b.name.c_str(), b.mass);
+  }
+  for (const auto& loop : mechanism->scene().loops)
+    std::printf("  loop %s: %s - %s\n", loop.name.c_str(), loop.parent.c_str(), loop.child.c_str());
+  std::printf("\n  %zu bodies, %d coordinates, %d rates, %d loop equations of rank %d: mobility %d\n", tree.bodies.size(),
+              mechanism->nq(), mechanism->nv(), mechanism->m(), a.rank, a.mobility);
+  for (int row : a.dependent_rows) {
+    const auto& name = mechanism->rows()[static_cast<std::size_t>(row)];
+    std::printf("  redundant at the start: loop '%s', %s\n", name.loop.c_str(), name.what.c_str());
+  }
+  if (mechanism->m() > 0 && a.dependent_rows.empty())
+    std::printf("  loop equations independent: smallest pivot of Φ_q %.3g\n", a.smallest_pivot);
+  std::printf("\nPlan\n");
+  for (const auto& [what, how] : mechanism->plan_lines()) std::printf("  %-17s %s\n", what.c_str(), how.c_str());
+  std::printf("\nForms\n");
+  for (const auto& form : indices)
+    std::printf("  %-20s %s%s\n", form.form, form.index[0] == 'O' ? "" : "index ",
+                mechanism->m() > 0 ? form.index : "ODE (no loops)");
+  return done;
+}
+
+int assemble_verb(const Options& o) {
+  const auto mechanism = load(o);
+  const Assembly a = assemble(*mechanism);
+  nlohmann::ordered_json j;
+  j["scene"] = mechanism->scene().name;
+  j["position_residual"] = a.position_residual;
+  j["velocity_residual"] = a.velocity_residual;
+  j["moved"] = a.moved;
+  j["iterations"] = a.iterations;
+  j["mobility"] = a.mobility;
+  for (const auto& b : mechanism->tree().bodies) {
+    for (int i = 0; i < b.nq; ++i) j["q"][b.joint].push_back(a.start.q[b.q + i]);
+    for (int i = 0; i < b.nv; ++i) {
+      j["u"][b.joint].push_back(a.start.u[b.u + i]);
+      j["udot"][b.joint].push_back(a.start.udot[b.u + i]);
+    }
+  }
+  for (int i = 0; i < mechanism->m(); ++i)
+    j["lambda"][mechanism->rows()[static_cast<std::size_t>(i)].loop].push_back(a.start.lambda[i]);
+  if (o.json) {
+    std::printf("%s\n", j.dump(2).c_str());
+    return done;
+  }
+  if (o.quiet) return done;
+  std::printf("%s: assembled in %d iterations, |Φ| %.2g, |Φ̇| %.2g, joints moved by at most %.3g from the guess\n",
+              mechanism->scene().name.c_str(), a.iterations, a.position_residual, a.velocity_residual, a.moved);
+  for (const auto& b : mechanism->tree().bodies) {
+    std::printf("  %-16s", b.joint.c_str());
+    for (int i = 0; i < b.nq; ++i) std::printf(" %.15g", a.start.q[b.q + i]);
+    if (b.nv > 0) std::printf("   rate");
+    for (int i = 0; i < b.nv; ++i) std::printf(" %.15g", a.start.u[b.u + i]);
+    if (b.nv > 0) std::printf("   acceleration");
+    for (int i = 0; i < b.nv; ++i) std::printf(" %.15g", a.start.udot[b.u + i]);
+    std::printf("\n");
+  }
+  return done;
+}
+
+}  // namespace momenta::program

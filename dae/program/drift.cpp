@@ -1,0 +1,76 @@
+#include <momenta/dae/report/conclusion.h>
+#include <momenta/dae/report/csv.h>
+#include <momenta/dae/report/page.h>
+#include <momenta/dae/report/table.h>
+#include <momenta/dae/study/drift_study.h>
+#include <momenta/dae/study/environment.h>
+#include <momenta/dae/study/sketch.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+
+#include "options.h"
+
+namespace momenta::program {
+
+int drift(const Options& o, const DriftOptions& d) {
+  const auto mechanism = load(o);
+  const auto reference = load_reference(o, *mechanism);
+  const Assembly a = assemble(*mechanism);
+  const RunDefaults& defaults = mechanism->scene().run;
+  DriftRequest request;
+  std::stringstream forms(d.forms);
+  for (std::string form; std::getline(forms, form, ',');) {
+    is_dae_form(form);  // an unknown name is told before anything runs
+    request.forms.push_back(form);
+  }
+  if (o.integrator == "ida")
+    throw std::invalid_argument("--integrator chooses the method of the ODE forms; the DAE forms run on ida anyway");
+  request.integrator = o.integrator;
+  if (!o.gauge.empty()) request.gauge = parse_gauge(o.gauge).text();
+  request.rtol = o.rtol;
+  request.atol = o.atol.value_or(o.rtol);
+  request.step = o.step.value_or(o.integrator.empty() || o.integrator == "rk4" ? defaults.step.value_or(0) : 0);
+  request.end_time = o.end.value_or(defaults.end_time);
+  request.samples = o.samples.value_or(defaults.samples);
+  request.project = o.project;
+  request.reference = reference.get();
+  request.max_cpu_seconds = o.cpu_limit;
+  StudyResult study;
+  {
+    ProgressLine line(o.quiet);
+    request.progress = [&](int number, int total, const std::string& label, double fraction) {
+      line.show("[" + std::to_string(number) + "/" + std::to_string(total) + "] " + label + "  " +
+                std::to_string(static_cast<int>(100 * fraction)) + " %");
+      return !interrupted();
+    };
+    study.runs = run_drift_study(*mechanism, a.start, request);
+  }
+  study.scene = mechanism->scene().name;
+  study.scene_file = o.scene.string();
+  std::ifstream in(o.scene, std::ios::binary);
+  study.scene_hash = digest(std::string(std::istreambuf_iterator<char>(in), {}));
+  study.command = o.command;
+  study.reference = o.reference.string();
+  study.plan = mechanism->plan_lines();
+  study.sketch = sketch(*mechanism, a.start.t, a.start.q);
+  study.environment = environment();
+  if (interrupted() && !study.runs.empty()) study.runs.back().reason = "interrupted";
+  const std::string json = study_json(study).dump(2) + "\n";
+  if (!o.out.empty() &&
+      (!write_result(o.out / "summary.json", json) || !write_result(o.out / "study.csv", study_csv(study)) ||
+       !write_result(o.out / "index.html", drift_page(study))))
+    return run_failed;
+  if (o.json)
+    std::fputs(json.c_str(), stdout);
+  else if (!o.quiet)
+    std::printf("%s\n%s\n", drift_table(study).c_str(), conclusion(study).c_str());
+  if (!o.out.empty() && !o.quiet) std::fprintf(stderr, "momenta: wrote %s\n", (o.out / "index.html").c_str());
+  const bool any = std::any_of(study.runs.begin(), study.runs.end(), [](const auto& r) { return r.status == "done"; });
+  return any && !interrupted() ? done : run_failed;
+}
+
+}  // namespace momenta::program

@@ -1,0 +1,66 @@
+// The program: one verb a file.
+
+#include <momenta/core/scene/scene.h>
+
+#include <cstdio>
+#include <exception>
+#include <new>
+#include <stdexcept>
+
+#include "options.h"
+
+using namespace momenta::program;
+
+int main(int argc, char** argv) {
+  watch_signals();
+  Options o;
+  for (int i = 0; i < argc; ++i) o.command += (i == 0 ? "momenta" : std::string(" ") + argv[i]);
+  DriftOptions d;
+  std::string family;
+  int n = 10;
+  CLI::App app("Constrained multibody systems on canonical momenta: open chains, closed loops, and how far they drift.");
+  app.require_subcommand(1);
+  app.set_version_flag("--version", "momenta 0.1.0");
+  app.footer("Example: momenta drift examples/four_bar/scene.toml --out results");
+
+  CLI::App* check_verb = app.add_subcommand("check", "Topology, mobility, redundant equations, the plan");
+  add_scene(*check_verb, o);
+  CLI::App* assemble_app = app.add_subcommand("assemble", "A consistent start: positions, rates, accelerations, λ");
+  add_scene(*assemble_app, o);
+  CLI::App* run_verb = app.add_subcommand("run", "One form, one integrator");
+  add_scene(*run_verb, o);
+  run_verb->add_option("--form", o.form, "Which equations (see momenta check)")->capture_default_str();
+  add_run_options(*run_verb, o);
+  CLI::App* drift_verb = app.add_subcommand("drift", "Every form side by side: drift, energy, error against run time");
+  add_scene(*drift_verb, o);
+  drift_verb->add_option("--forms", d.forms, "Comma-separated (default: all)");
+  add_run_options(*drift_verb, o);
+  CLI::App* make_verb = app.add_subcommand("make", "Prints a scene of a family");
+  make_verb->add_option("family", family, "chain or n-four-bar")
+      ->required()
+      ->check(CLI::IsMember({"chain", "n-four-bar"}));
+  make_verb->add_option("--n", n, "Size")->check(CLI::Range(1, 1'000'000))->capture_default_str();
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    if (e.get_exit_code() == 0) return app.exit(e);
+    std::fprintf(stderr, "momenta: %s\n", e.what());
+    return bad_input;
+  }
+  try {
+    if (*check_verb) return check(o);
+    if (*assemble_app) return assemble_verb(o);
+    if (*run_verb) return run(o);
+    if (*drift_verb) return drift(o, d);
+    return make(family, n);
+  } catch (const momenta::SceneError& e) {
+    std::fprintf(stderr, "momenta: %s\n", e.what());
+  } catch (const std::invalid_argument& e) {
+    std::fprintf(stderr, "momenta: %s\n", e.what());
+  } catch (const std::bad_alloc&) {
+    std::fprintf(stderr, "momenta: not enough memory for this scene\n");
+    return run_failed;
+  }
+  return bad_input;
+}

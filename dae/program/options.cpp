@@ -1,0 +1,83 @@
+#include "options.h"
+
+#include <momenta/core/scene/read_scene.h>
+#include <momenta/dae/report/atomic_write.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdio>
+
+namespace momenta::program {
+namespace {
+
+volatile std::sig_atomic_t signal_came = 0;
+extern "C" void take_signal(int) { signal_came = 1; }
+
+}  // namespace
+
+void add_scene(CLI::App& verb, Options& o) {
+  verb.add_option("scene", o.scene, "Scene file (TOML)")->required();
+  verb.add_option("--algebra", o.algebra, "Kernel: auto, planar or spatial")
+      ->check(CLI::IsMember({"auto", "planar", "spatial"}));
+  verb.add_option("--kkt", o.kkt, "How (7) is solved: auto, dense or sparse")
+      ->check(CLI::IsMember({"auto", "dense", "sparse"}));
+  verb.add_flag("--json", o.json, "One JSON document on standard output");
+  verb.add_flag("--quiet", o.quiet, "No progress, no table");
+}
+
+void add_run_options(CLI::App& verb, Options& o) {
+  const auto positive = CLI::PositiveNumber;
+  verb.add_option("--integrator", o.integrator, "rk4, dp5, dop853, adams, bdf or ida (default: by form)")
+      ->check(CLI::IsMember({"rk4", "dp5", "dop853", "adams", "bdf", "ida"}));
+  verb.add_option("--gauge", o.gauge, "Momentum forms: none, reset, leak or leak:RATE [1/s]");
+  verb.add_option("--rtol", o.rtol, "Relative tolerance")->check(positive)->capture_default_str();
+  verb.add_option("--atol", o.atol, "Absolute tolerance, times each unknown's scale (default: rtol)")->check(positive);
+  verb.add_option("--step", o.step, "Step of rk4 [s]")->check(positive);
+  verb.add_option("--end", o.end, "End time [s]")->check(positive);
+  verb.add_option("--samples", o.samples, "Output intervals")->check(CLI::Range(1, 10'000'000));
+  verb.add_flag("--project", o.project, "Correct positions after each step (one-step methods)");
+  verb.add_option("--baumgarte-alpha", o.baumgarte_alpha, "α of Φ̈ + 2αΦ̇ + β²Φ = 0 [1/s]")->check(positive);
+  verb.add_option("--baumgarte-beta", o.baumgarte_beta, "β [1/s]")->check(positive);
+  verb.add_option("--cpu-limit", o.cpu_limit, "Stop a run after this much CPU time [s]")->check(positive);
+  verb.add_option("--reference", o.reference, "CSV with a reference solution");
+  verb.add_option("--out", o.out, "Directory for results");
+}
+
+std::unique_ptr<Mechanism> load(const Options& o) {
+  MechanismOptions options;
+  options.algebra = o.algebra == "planar"    ? Algebra::planar
+                    : o.algebra == "spatial" ? Algebra::spatial
+                                             : Algebra::automatic;
+  options.kkt = o.kkt == "dense" ? KktChoice::dense : o.kkt == "sparse" ? KktChoice::sparse : KktChoice::automatic;
+  return std::make_unique<Mechanism>(read_scene(o.scene), options);
+}
+
+std::unique_ptr<Reference> load_reference(const Options& o, const Mechanism& mechanism) {
+  if (o.reference.empty()) return nullptr;
+  auto reference = std::make_unique<Reference>(o.reference);
+  reference->bind(trajectory_columns(mechanism));
+  return reference;
+}
+
+bool write_result(const std::filesystem::path& file, std::string_view content) {
+  const auto problem = atomic_write(file, content);
+  if (problem) std::fprintf(stderr, "momenta: %s\n", problem->c_str());
+  return !problem;
+}
+
+bool interrupted() { return signal_came != 0; }
+
+void watch_signals() {
+  std::signal(SIGINT, take_signal);
+  std::signal(SIGTERM, take_signal);
+}
+
+ProgressLine::ProgressLine(bool quiet) : active_(!quiet && isatty(STDERR_FILENO) != 0) {}
+ProgressLine::~ProgressLine() {
+  if (active_) std::fputs("\r\x1b[K", stderr);
+}
+void ProgressLine::show(const std::string& text) {
+  if (active_) std::fprintf(stderr, "\r%.100s\x1b[K", text.c_str());
+}
+
+}  // namespace momenta::program

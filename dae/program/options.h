@@ -1,0 +1,67 @@
+#pragma once
+// What the verbs share: the scene and common options, messages, exit status.
+
+#include <momenta/dae/assembly.h>
+#include <momenta/dae/report/json.h>
+#include <momenta/dae/study/run_form.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace momenta::program {
+
+inline constexpr int done = 0, run_failed = 1, bad_input = 2;
+
+struct Options {
+  std::string command;  ///< as typed
+  std::filesystem::path scene;
+  std::string algebra = "auto", kkt = "auto";
+  std::string form = "momentum", integrator, gauge;
+  double rtol = 1e-8;
+  std::optional<double> atol, step, end;
+  std::optional<int> samples;
+  double baumgarte_alpha = 0, baumgarte_beta = 0;
+  bool project = false;
+  double cpu_limit = 0;
+  std::filesystem::path reference, out;
+  bool json = false, quiet = false;
+  int repeats = 3;
+};
+
+void add_scene(CLI::App& verb, Options& o);
+void add_run_options(CLI::App& verb, Options& o);
+
+std::unique_ptr<Mechanism> load(const Options& o);
+/// The reference, bound to the mechanism's columns; empty when none is asked for.
+std::unique_ptr<Reference> load_reference(const Options& o, const Mechanism& mechanism);
+
+/// Writes a result file; on failure prints the sentence and returns false.
+bool write_result(const std::filesystem::path& file, std::string_view content);
+
+/// True once SIGINT or SIGTERM came: runs stop at their next sample and keep what they have.
+bool interrupted();
+void watch_signals();
+
+/// One line on standard error that rewrites itself on a terminal, and stays silent elsewhere.
+class ProgressLine {
+ public:
+  explicit ProgressLine(bool quiet);
+  ~ProgressLine();
+  void show(const std::string& text);
+
+ private:
+  bool active_;
+};
+
+int check(const Options& o);
+int assemble_verb(const Options& o);
+int run(const Options& o);
+struct DriftOptions {
+  std::string forms;  ///< comma-separated; empty: all
+};
+int drift(const Options& o, const DriftOptions& d);
+int make(const std::string& family, int n);
+
+}  // namespace momenta::program

@@ -1,0 +1,63 @@
+#include <momenta/dae/report/csv.h>
+#include <momenta/dae/report/table.h>
+#include <momenta/dae/study/environment.h>
+
+#include <cstdio>
+
+#include "options.h"
+
+namespace momenta::program {
+
+int run(const Options& o) {
+  const auto mechanism = load(o);
+  const auto reference = load_reference(o, *mechanism);
+  const Assembly a = assemble(*mechanism);
+  const RunDefaults& defaults = mechanism->scene().run;
+  RunRequest request;
+  RunSettings& s = request.settings;
+  s.form = o.form;
+  s.integrator = o.integrator.empty() ? default_integrator(o.form) : o.integrator;
+  s.gauge = !o.gauge.empty() ? o.gauge
+            : defaults.leak  ? "leak:" + std::to_string(*defaults.leak)
+                             : "leak";
+  s.rtol = o.rtol;
+  s.atol = o.atol.value_or(o.rtol);
+  s.step = o.step.value_or(defaults.step.value_or(0));
+  s.end_time = o.end.value_or(defaults.end_time);
+  s.samples = o.samples.value_or(defaults.samples);
+  s.project = o.project;
+  s.baumgarte_alpha = o.baumgarte_alpha;
+  s.baumgarte_beta = o.baumgarte_beta;
+  request.reference = reference.get();
+  request.keep_trajectory = true;
+  request.repeats = o.repeats;
+  request.max_cpu_seconds = o.cpu_limit;
+  ProgressLine line(o.quiet);
+  request.progress = [&](double t) {
+    line.show(s.form + "  t = " + std::to_string(t) + " s");
+    return !interrupted();
+  };
+  StudyResult study;
+  study.scene = mechanism->scene().name;
+  study.scene_file = o.scene.string();
+  study.command = o.command;
+  study.environment = environment();
+  study.runs.push_back(run_form(*mechanism, a.start, request));
+  line.show("");
+  const RunResult& result = study.runs.front();
+  if (interrupted()) study.runs.front().reason = "interrupted at t = " + std::to_string(result.stopped_at) + " s";
+  const std::string summary = summary_json(result, study.environment).dump(2) + "\n";
+  if (!o.out.empty() && (!write_result(o.out / "trajectory.csv", trajectory_csv(result.trajectory)) ||
+                         !write_result(o.out / "summary.json", summary)))
+    return run_failed;
+  if (o.json) {
+    std::fputs(summary.c_str(), stdout);
+  } else if (!o.quiet) {
+    std::fputs(drift_table(study).c_str(), stdout);
+  }
+  if (result.status == "done") return done;
+  std::fprintf(stderr, "momenta: the run stopped: %s\n", result.reason.c_str());
+  return run_failed;
+}
+
+}  // namespace momenta::program

@@ -1,0 +1,55 @@
+#include <momenta/dae/study/environment.h>
+#include <suitesparse/SuiteSparse_config.h>
+#include <sundials/sundials_config.h>
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <cstdio>
+#include <ctime>
+#include <fstream>
+
+namespace momenta {
+
+Environment environment() {
+  Environment e;
+  std::ifstream info("/proc/cpuinfo");
+  for (std::string line; std::getline(info, line);)
+    if (line.rfind("model name", 0) == 0) {
+      e.cpu = line.substr(line.find(':') + 2);
+      break;
+    }
+#ifdef __clang__
+  e.compiler = "clang " __clang_version__;
+#else
+  e.compiler = "g++ " __VERSION__;
+#endif
+  e.flags = MOMENTA_FLAGS;
+  e.build_type = MOMENTA_BUILD_TYPE;
+  const auto dotted = [](int a, int b, int c) {
+    return std::to_string(a) + "." + std::to_string(b) + "." + std::to_string(c);
+  };
+  e.versions = {{"momenta", MOMENTA_VERSION},
+                {"SUNDIALS", SUNDIALS_VERSION},
+                {"SuiteSparse", dotted(SUITESPARSE_MAIN_VERSION, SUITESPARSE_SUB_VERSION, SUITESPARSE_SUBSUB_VERSION)},
+                {"Eigen", dotted(EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION)}};
+  const std::time_t now = std::time(nullptr);
+  std::tm utc{};
+  gmtime_r(&now, &utc);
+  char text[32];
+  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
+  e.date = text;
+  return e;
+}
+
+std::string digest(std::string_view text) {
+  std::uint64_t h = 14695981039346656037ull;
+  for (const char c : text) {
+    h ^= static_cast<unsigned char>(c);
+    h *= 1099511628211ull;
+  }
+  char hex[17];
+  std::snprintf(hex, sizeof hex, "%016llx", static_cast<unsigned long long>(h));
+  return hex;
+}
+
+}  // namespace momenta

@@ -1,0 +1,14 @@
+#pragma once
+#include <momenta/dae/study/run_result.h>
+
+#include <string_view>
+
+namespace momenta {
+
+/// Processor, compiler, flags, versions of the libraries, date: what stands beside every figure.
+Environment environment();
+
+/// 64-bit FNV-1a digest of a text, in hexadecimal: tells one scene from another, nothing more.
+std::string digest(std::string_view text);
+
+}  // namespace momenta
