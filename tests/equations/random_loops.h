@@ -1,0 +1,48 @@
+#pragma once
+// Random loops for random trees: any kind, between any two bodies or the ground, closed or not.
+
+#include "equations/random_tree.h"
+
+namespace momenta::equations {
+
+inline constexpr std::array loop_kinds{LoopKind::point, LoopKind::revolute,  LoopKind::spherical,
+                                       LoopKind::weld,  LoopKind::prismatic, LoopKind::distance};
+
+inline LoopSpec random_loop(RandomTree& random, const Scene& scene, LoopKind kind) {
+  LoopSpec l;
+  l.name = "loop" + std::to_string(scene.loops.size());
+  l.kind = kind;
+  const int bodies = static_cast<int>(scene.bodies.size());
+  const int child = random.below(bodies);
+  const int parent = (child + 1 + random.below(bodies)) % (bodies + 1);  // the last one: ground
+  l.child = scene.bodies[static_cast<std::size_t>(child)].name;
+  l.parent = parent == bodies ? "ground" : scene.bodies[static_cast<std::size_t>(parent)].name;
+  l.origin_child = random.vector(0.6);
+  l.origin_parent = random.vector(0.6);
+  l.rotation = random.turn();
+  l.axis = random.direction();
+  if (kind == LoopKind::distance) l.length = random.uniform(0.8, 1.5);
+  return l;
+}
+
+/// Rotation of every body's axes with all joints at zero.
+inline std::map<std::string, Eigen::Quaterniond> axes_at_zero(const Scene& scene) {
+  std::map<std::string, Eigen::Quaterniond> axes{{"ground", Eigen::Quaterniond::Identity()}};
+  for (const JointSpec& j : scene.joints)  // random trees list parents first
+    axes[j.child] = axes.at(j.parent) * j.rotation;
+  return axes;
+}
+
+/// Turns a random loop so that it stays in the plane with this normal: its hinge along the normal,
+/// its slide across it, its frame turned about the normal alone. Points are left at their heights.
+inline LoopSpec into_plane(RandomTree& random, const Scene& scene, LoopSpec l,
+                           const Eigen::Vector3d& normal) {
+  const auto axes = axes_at_zero(scene);
+  const Eigen::Quaterniond a = axes.at(l.child), b = axes.at(l.parent);
+  l.rotation = b.conjugate() * Eigen::AngleAxisd(random.uniform(-3, 3), normal) * a;
+  l.axis = a.conjugate() *
+           (l.kind == LoopKind::prismatic ? Eigen::Vector3d(normal.unitOrthogonal()) : normal);
+  return l;
+}
+
+}  // namespace momenta::equations

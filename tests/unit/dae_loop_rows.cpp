@@ -1,0 +1,190 @@
+// Loops by sweeps against Φ of positions alone, off the manifold, at random states of random trees.
+
+#include "equations/dense_loops.h"
+#include "equations/random_loops.h"
+#include "equations/tolerance.h"
+
+#include <gtest/gtest.h>
+#include <momenta/dae/mechanism.h>
+
+namespace momenta {
+namespace {
+
+using namespace equations;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+struct Worst {
+  std::map<std::string, double> error;
+  void note(const std::string& what, double e) { error[what] = std::max(error[what], e); }
+  void expect_below(double tolerance) const {
+    for (const auto& [what, e] : error) {
+      EXPECT_LT(e, tolerance) << what;
+      testing::Test::RecordProperty(what, std::to_string(e * 1e16) + "e-16");
+    }
+  }
+};
+
+/// Everything an evaluation says of loops, at one random state.
+void compare(const Mechanism& mechanism, RandomTree& random, Worst& worst) {
+  const DenseLagrangian motion(mechanism.scene(), mechanism.tree());
+  const DenseLoops twin(
+      mechanism.scene(), motion,
+      mechanism.plan().planar ? std::optional(mechanism.plan().basis) : std::nullopt);
+  const TreeState s = random.state(mechanism.tree());
+  const int nv = mechanism.nv(), m = mechanism.m();
+  ASSERT_EQ(m, twin.rows());
+  VectorXd sigma(m), udot(nv);
+  for (double& x : sigma) x = random.uniform(-2, 2);
+  for (double& x : udot) x = random.uniform(-2, 2);
+  const double leak = random.uniform(0, 3);
+  const auto [jacobian, jacobian_rate] = twin.jacobian_at(s.t, s.q, s.u);
+  const RealVector load = jacobian.transpose() * sigma.cast<Real>();
+
+  const auto e = mechanism.evaluation<double>();
+  VectorXd phi(m), rate(m), bias(m), acceleration(m), unloaded(nv), p(nv), pdot(nv), tau(nv),
+      force(nv);
+  e->place(s.t, s.q.data());
+  e->positions(phi.data());
+  worst.note("positions", relative_error(phi, twin.positions_at(s.t, s.q).cast<double>()));
+
+  MatrixXd entries = MatrixXd::Zero(m, nv);
+  const auto& pattern = mechanism.kkt_pattern().constraint;
+  std::vector<double> values(pattern.size());
+  e->constraint_entries(values.data());
+  for (std::size_t i = 0; i < values.size(); ++i)
+    entries(pattern[i].row, pattern[i].column) += values[i];
+  worst.note("constraint entries", relative_error(entries, jacobian.cast<double>()));
+
+  MatrixXd mass = MatrixXd::Zero(nv, nv);
+  const auto& mass_pattern = mechanism.kkt_pattern().mass;
+  values.resize(mass_pattern.size());
+  e->mass_entries(values.data());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    ASSERT_LE(mass_pattern[i].row, mass_pattern[i].column);
+    mass(mass_pattern[i].row, mass_pattern[i].column) = values[i];
+    mass(mass_pattern[i].column, mass_pattern[i].row) = values[i];
+  }
+  const RealMatrix mass_twin = motion.mass_matrix(s.t, s.q);
+  worst.note("mass entries", relative_error(mass, mass_twin.cast<double>()));
+
+  e->constraint_forces(sigma.data(), force.data());
+  worst.note("constraint forces", relative_error(force, load.cast<double>()));
+
+  e->move(s.u.data());
+  e->velocities(rate.data());
+  worst.note("velocities", relative_error(rate, twin.velocities_at(s.t, s.q, s.u).cast<double>()));
+
+  e->momenta(nullptr, unloaded.data());
+  e->momenta(sigma.data(), p.data());
+  const RealVector p_twin = motion.momenta_at(s.t, s.q, s.u);
+  worst.note("momenta", relative_error(unloaded, p_twin.cast<double>()));
+  worst.note("loaded momenta", relative_error(p, RealVector(p_twin + load).cast<double>()));
+
+  // ṗ with σ: d/dt of p at fixed σ under λ = κσ
+  e->momentum_rates(s.q.data(), s.u.data(), sigma.data(), leak, pdot.data());
+  const RealVector free_rates = motion.momentum_rates(s.t, s.q, s.u);
+  const RealVector pdot_twin =
+      free_rates + jacobian_rate.transpose() * sigma.cast<Real>() - Real(leak) * load;
+  worst.note("momentum rates", relative_error(pdot, pdot_twin.cast<double>()));
+  if (mechanism.nq() == nv) {  // and as ∂L*/∂q + Q
+    const RealVector gradient = motion.lagrange_rates(s.t, s.q, s.u) +
+                                twin.impulse_gradient(s.t, s.q, s.u, sigma) - Real(leak) * load;
+    worst.note("gradient of L*", relative_error(pdot, gradient.cast<double>()));
+  }
+
+  e->joint_forces(s.q.data(), s.u.data(), nullptr, nullptr, tau.data());
+  e->accelerations(bias.data());
+  const VectorXd still = VectorXd::Zero(nv);
+  worst.note("acceleration bias",
+             relative_error(bias, twin.accelerations_at(s.t, s.q, s.u, still).cast<double>()));
+  e->joint_forces(s.q.data(), s.u.data(), udot.data(), sigma.data(), tau.data());
+  e->accelerations(acceleration.data());
+  worst.note(
+      "accelerations",
+      relative_error(acceleration, twin.accelerations_at(s.t, s.q, s.u, udot).cast<double>()));
+  const RealVector free_udot = motion.accelerations(s.t, s.q, s.u);
+  const RealVector tau_twin = mass_twin * (udot.cast<Real>() - free_udot) + load;
+  worst.note("joint forces", relative_error(tau, tau_twin.cast<double>(),
+                                            std::max(1.0, mass.norm() * udot.norm())));
+}
+
+void sweep(const TreeRecipe& recipe, LoopKind kind, int trees, unsigned seed) {
+  Worst worst;
+  for (int i = 0; i < trees; ++i) {
+    RandomTree random(seed + static_cast<unsigned>(i));
+    Scene scene = random.scene(recipe);
+    scene.loops.push_back(random_loop(random, scene, kind));
+    scene.loops.push_back(random_loop(random, scene, loop_kinds[static_cast<std::size_t>(i) % 6]));
+    const Mechanism mechanism(scene, {.algebra = Algebra::spatial});
+    compare(mechanism, random, worst);
+    if (testing::Test::HasFatalFailure()) return;
+  }
+  worst.expect_below(algebra_tol(4 * recipe.bodies));
+}
+
+class LoopRows : public testing::TestWithParam<LoopKind> {};
+TEST_P(LoopRows, TreesOfAllJoints) {
+  sweep({}, GetParam(), 25, 100);
+}
+TEST_P(LoopRows, Chains) {
+  sweep({.branching = Branching::serial}, GetParam(), 15, 200);
+}
+TEST_P(LoopRows, HingesAndSlides) {
+  sweep({.kinds = {JointKind::revolute, JointKind::prismatic}}, GetParam(), 25, 300);
+}
+TEST_P(LoopRows, RightAngles) {
+  sweep({.placing = Placing::right_angles}, GetParam(), 15, 400);
+}
+TEST_P(LoopRows, NearlyParallelAxes) {
+  sweep({.placing = Placing::degenerate}, GetParam(), 15, 500);
+}
+
+/// Moves the parent's point along the normal until both sides lie at one height.
+void level(LoopSpec& l, const Scene& scene, const Tree& tree, const Eigen::Vector3d& normal) {
+  const DenseLagrangian motion(scene, tree);
+  const auto poses = motion.poses(0, tree.q0);
+  const auto pose = [&](const std::string& name) -> Eigen::Isometry3d {
+    for (std::size_t k = 0; k < scene.bodies.size(); ++k)
+      if (scene.bodies[k].name == name) return poses[k];
+    return Eigen::Isometry3d::Identity();
+  };
+  const Eigen::Isometry3d a = pose(l.child), b = pose(l.parent);
+  const double apart = normal.dot(a * l.origin_child - b * l.origin_parent);
+  l.origin_parent += apart * (b.linear().transpose() * normal);
+}
+
+class PlanarLoopRows : public testing::TestWithParam<LoopKind> {};
+TEST_P(PlanarLoopRows, AnyPlane) {
+  Worst worst;
+  for (unsigned i = 0; i < 40; ++i) {
+    RandomTree random(700 + i);
+    const TreeRecipe recipe{.drives = i % 2 == 0};
+    Scene scene = random.planar_scene(recipe);
+    const Tree tree = build_tree(scene);
+    const auto found = find_plane(tree, scene);
+    if (!found.basis) continue;  // a tree of welds moves in no plane
+    const Eigen::Vector3d normal = found.basis->col(2);
+    LoopSpec l = into_plane(random, scene, random_loop(random, scene, GetParam()), normal);
+    if (l.kind != LoopKind::distance || i % 3 == 0)
+      level(l, scene, tree, normal);
+    else
+      l.length = 3;
+    scene.loops.push_back(l);
+    const Mechanism mechanism(scene);
+    EXPECT_TRUE(mechanism.plan().planar) << mechanism.plan().planar_reason;
+    compare(mechanism, random, worst);
+    if (HasFatalFailure()) return;
+  }
+  worst.expect_below(algebra_tol(24));
+}
+
+std::string kind_name(const testing::TestParamInfo<LoopKind>& info) {
+  constexpr std::array names{"point", "revolute", "spherical", "weld", "prismatic", "distance"};
+  return names[static_cast<std::size_t>(info.index)];
+}
+INSTANTIATE_TEST_SUITE_P(Kinds, LoopRows, testing::ValuesIn(loop_kinds), kind_name);
+INSTANTIATE_TEST_SUITE_P(Kinds, PlanarLoopRows, testing::ValuesIn(loop_kinds), kind_name);
+
+}  // namespace
+}  // namespace momenta
