@@ -12,6 +12,9 @@
 #include <momenta/core/kernel/sweeps.h>
 #include <momenta/core/scalar/dual.h>
 
+#include <algorithm>
+#include <limits>
+
 namespace momenta {
 
 /// Spherical and free joints: eliminate ω by its 3 × 3 block, then (free) v by the Schur
@@ -19,12 +22,26 @@ namespace momenta {
 template <class S>
 bool eliminate_wide(JointKind kind, typename Workspace<Spatial, S>::Inertia& m,
                     typename Workspace<Spatial, S>::Wide& x) {
-  const auto positive = [](const Vec3<S>& d) {
-    return value_of(d[0]) > 0 && value_of(d[1]) > 0 && value_of(d[2]) > 0;
+  // Positive, and more than rounding: a slender rod on a ball joint has no inertia about itself,
+  // however it lies. Entries are as exact as the largest, so the determinant is as exact as the
+  // product of the two largest diagonals with the largest.
+  const auto positive = [](const Vec3<S>& d, const Sym3<S>& from) {
+    constexpr double rounding = 16 * std::numeric_limits<double>::epsilon();
+    double determinant = 1, product = 1, least = 0, largest = 0;
+    for (int i = 0; i < 3; ++i) {
+      if (!(value_of(d[i]) > 0)) return false;
+      const double diagonal = value_of(from(i, i));
+      determinant *= value_of(d[i]);
+      product *= diagonal;
+      least = i == 0 ? diagonal : std::min(least, diagonal);
+      largest = std::max(largest, diagonal);
+    }
+    return determinant > rounding * (product / least * largest);
   };
+  const Sym3<S> A = m.A;
   Vec3<S> pivots;
   x.I = inverse(m.I, pivots);
-  if (!positive(pivots)) return false;
+  if (!positive(pivots, m.I)) return false;
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j)
       x.h(i, j) = m.H(i, 0) * x.I(0, j) + m.H(i, 1) * x.I(1, j) + m.H(i, 2) * x.I(2, j);
@@ -35,14 +52,14 @@ bool eliminate_wide(JointKind kind, typename Workspace<Spatial, S>::Inertia& m,
   m.I = {};
   if (kind == JointKind::free) {
     x.A = inverse(m.A, pivots);
-    if (!positive(pivots)) return false;
+    if (!positive(pivots, A)) return false;
     m.A = {};
   }
   return true;
 }
 
-/// M*, M_j⁻¹ and h of every joint; sets w.singular to the first joint (from the tips) whose M_j is
-/// not positive.
+/// M*, M_j⁻¹ and h of every joint; stops at the first joint (from the tips) whose M_j is not
+/// positive and sets w.singular to it.
 template <class Space, class S>
 void articulated_masses_inward(Workspace<Space, S>& w) {
   const auto& model = *w.model;
@@ -58,16 +75,22 @@ void articulated_masses_inward(Workspace<Space, S>& w) {
     if (b.nv == 1) {
       const auto U = Joint<Space>::column(b, s.edge, s.M);
       const S joint_mass = Joint<Space>::along(b, s.edge, U);  // M_j, (46)
-      if (!(value_of(joint_mass) > 0)) w.singular = static_cast<int>(k);
+      if (!(value_of(joint_mass) > 0)) {
+        w.singular = static_cast<int>(k);
+        return;
+      }
       s.pivot = S(1.0) / joint_mass;
       s.h = U;
       for (int i = 0; i < Space::dimension; ++i) s.h[i] = s.pivot * U[i];
-      Joint<Space>::reduce(reduced, U, s.h);
+      Joint<Space>::reduce(b, reduced, U, s.h);
     } else if (b.drive >= 0) {
       s.h = Joint<Space>::column(b, s.edge, s.M);
     } else if constexpr (Space::dimension == 6) {
-      if (b.nv > 1 && !eliminate_wide<S>(b.kind, reduced, w.wide[static_cast<std::size_t>(s.wide)]))
+      if (b.nv > 1 &&
+          !eliminate_wide<S>(b.kind, reduced, w.wide[static_cast<std::size_t>(s.wide)])) {
         w.singular = static_cast<int>(k);
+        return;
+      }
     }
     if (b.parent >= 0)
       w.body[static_cast<std::size_t>(b.parent)].M +=

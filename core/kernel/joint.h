@@ -114,9 +114,10 @@ struct Joint<Spatial> {
     return {{{m.A(0, 2), m.A(1, 2), m.A(2, 2)}}, {{m.H(2, 0), m.H(2, 1), m.H(2, 2)}}};
   }
 
-  /// M* − U hᵀ with h = U / M_j, eq. (47).
+  /// M* − U hᵀ with h = U / M_j, eq. (47). The joint's own row and column vanish exactly: dust left
+  /// there would pass for the inertia of a joint that has none.
   template <class S>
-  static void reduce(Spatial::ArticulatedInertia<S>& m, const Spatial::Force<S>& u,
+  static void reduce(const Body& b, Spatial::ArticulatedInertia<S>& m, const Spatial::Force<S>& u,
                      const Spatial::Force<S>& h) {
     for (int i = 0; i < 3; ++i)
       for (int j = i; j < 3; ++j) {
@@ -125,6 +126,11 @@ struct Joint<Spatial> {
       }
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) m.H(i, j) -= u.f[i] * h.n[j];
+    for (int i = 0; i < 3; ++i)
+      if (b.kind == JointKind::revolute)
+        m.H(i, 2) = m.I(i, 2) = S(0.0);
+      else
+        m.H(2, i) = m.A(i, 2) = S(0.0);
   }
 };
 
@@ -191,7 +197,7 @@ struct Joint<Planar> {
   }
 
   template <class S>
-  static void reduce(Planar::ArticulatedInertia<S>& m, const Planar::Force<S>& u,
+  static void reduce(const Body& b, Planar::ArticulatedInertia<S>& m, const Planar::Force<S>& u,
                      const Planar::Force<S>& h) {
     m.xx -= u.f[0] * h.f[0];
     m.xy -= u.f[0] * h.f[1];
@@ -199,6 +205,10 @@ struct Joint<Planar> {
     m.H[0] -= u.f[0] * h.n;
     m.H[1] -= u.f[1] * h.n;
     m.I -= u.n * h.n;
+    if (b.kind == JointKind::revolute) {
+      m.H = {};
+      m.I = S(0.0);
+    }
   }
 };
 
