@@ -1,0 +1,191 @@
+// One kernel for every scalar: long double, dual numbers, dual numbers of long double; joints
+// without inertia; what a call may allocate.
+
+#include "equations/dense_lagrangian.h"
+#include "equations/random_tree.h"
+#include "equations/tolerance.h"
+
+#include <gtest/gtest.h>
+#include <momenta/core/kernel/accelerations.h>
+#include <momenta/core/kernel/momentum_recursion.h>
+#include <momenta/core/open_chain.h>
+
+#include <cstdlib>
+
+#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__)
+#define MOMENTA_COUNTS_MALLOC
+namespace {
+long allocations = 0;
+}
+extern "C" void* __libc_malloc(std::size_t);  // NOLINT: glibc's own
+/// Takes the place of the library's for the whole program; operator new and Eigen end here.
+extern "C" void* malloc(std::size_t size) noexcept {
+  ++allocations;
+  return __libc_malloc(size);
+}
+#endif
+
+namespace momenta {
+namespace {
+
+using namespace equations;
+
+template <class S>
+std::vector<S> lifted(const Eigen::VectorXd& x) {
+  std::vector<S> r;
+  for (const double value : x) r.push_back(S(value));
+  return r;
+}
+
+/// q̇ and ṗ of scalar S, as plain numbers.
+template <class Space, class S>
+Eigen::VectorXd rates_with(const Model<Space>& model, const TreeState& s,
+                           const Eigen::VectorXd& p) {
+  Workspace<Space, S> w(model);
+  const auto q = lifted<S>(s.q), momenta = lifted<S>(p);
+  std::vector<S> u(momenta.size()), pdot(momenta.size());
+  EXPECT_TRUE(momentum_recursion(w, S(s.t), q.data(), momenta.data(), u.data(), pdot.data()));
+  Eigen::VectorXd all(2 * p.size());
+  for (Eigen::Index i = 0; i < p.size(); ++i) {
+    all[i] = value_of(u[static_cast<std::size_t>(i)]);
+    all[p.size() + i] = value_of(pdot[static_cast<std::size_t>(i)]);
+  }
+  return all;
+}
+
+template <class Space>
+void compare_scalars(const Model<Space>& model, const TreeState& s) {
+  Workspace<Space, double> w(model);
+  Eigen::VectorXd p(s.u.size());
+  momenta_from_rates(w, s.t, s.q.data(), s.u.data(), p.data());
+  const Eigen::VectorXd plain = rates_with<Space, double>(model, s, p);
+  // the value of a dual number goes through the same operations up to the order of a division
+  EXPECT_LT(relative_error(rates_with<Space, Dual8>(model, s, p), plain), 100 * algebra_tol(5));
+  const Eigen::VectorXd longer = rates_with<Space, long double>(model, s, p);
+  EXPECT_LT(relative_error(longer, plain), 100 * algebra_tol(5));
+  const Eigen::VectorXd dual = rates_with<Space, Dual<long double, 1>>(model, s, p);
+  EXPECT_LT(relative_error(dual, longer), algebra_tol(1));
+}
+
+TEST(KernelScalars, AgreeInSpaceAndPlane) {
+  for (unsigned seed = 0; seed < 40; ++seed) {
+    RandomTree random(seed);
+    const Scene scene = random.scene({.bodies = 5});
+    const Tree tree = build_tree(scene);
+    compare_scalars(build_spatial_model(tree, scene), random.state(tree));
+    const Scene flat = random.planar_scene({.bodies = 5});
+    const Tree flat_tree = build_tree(flat);
+    compare_scalars(build_planar_model(flat_tree, flat, *find_plane(flat_tree, flat).basis),
+                    random.state(flat_tree));
+  }
+}
+
+/// Two pins through a massless body make a universal joint: nothing is singular, and the twin
+/// agrees.
+TEST(Kernel, MasslessBodyBetweenPins) {
+  RandomTree random(5);
+  Scene scene = random.scene({.bodies = 4,
+                              .branching = Branching::serial,
+                              .kinds = {JointKind::revolute},
+                              .drives = false});
+  scene.bodies[1].mass = 0;
+  scene.bodies[1].inertia.setZero();
+  OpenChain chain(scene, Algebra::spatial);
+  const DenseLagrangian twin(scene, chain.tree());
+  const TreeState s = random.state(chain.tree());
+  Eigen::VectorXd qdot(4), pdot(4);
+  ASSERT_TRUE(chain.rates(s.t, s.q, twin.momenta_at(s.t, s.q, s.u).cast<double>(), qdot, pdot));
+  EXPECT_LT(relative_error(qdot, s.u), 100 * algebra_tol(4));
+  EXPECT_LT(relative_error(pdot, twin.momentum_rates(s.t, s.q, s.u).cast<double>()),
+            100 * algebra_tol(4));
+}
+
+TEST(Kernel, JointWithoutInertiaIsNamed) {
+  for (const JointKind kind :
+       {JointKind::revolute, JointKind::prismatic, JointKind::spherical, JointKind::free}) {
+    RandomTree random(6);
+    Scene scene = random.scene({.bodies = 2,
+                                .branching = Branching::serial,
+                                .kinds = {kind},
+                                .drives = false,
+                                .joint_forces = false,
+                                .body_forces = false});
+    scene.bodies[1].mass = 0;
+    scene.bodies[1].inertia.setZero();
+    OpenChain chain(scene, Algebra::spatial);
+    const TreeState s = random.state(chain.tree());
+    Eigen::VectorXd qdot(chain.nq()), pdot(chain.nv());
+    EXPECT_FALSE(chain.rates(s.t, s.q, s.u, qdot, pdot));
+    EXPECT_NE(chain.failure().find("'joint1'"), std::string::npos) << chain.failure();
+    EXPECT_FALSE(chain.accelerations(s.t, s.q, s.u, pdot));
+    EXPECT_TRUE(chain.reactions(s.t, s.q, s.u).empty());
+  }
+}
+
+/// Two coaxial pins with nothing between them: the inner one has no inertia, and rounding must not
+/// lend it any. The same with a point mass or a slender rod on a ball joint: no inertia about the
+/// line.
+TEST(Kernel, RoundingIsNoInertia) {
+  for (unsigned seed = 0; seed < 500; ++seed) {
+    RandomTree random(seed);
+    Scene scene = random.scene({.bodies = 2,
+                                .branching = Branching::serial,
+                                .kinds = {JointKind::revolute},
+                                .drives = false,
+                                .joint_forces = false,
+                                .body_forces = false});
+    scene.bodies[0].mass = 0;
+    scene.bodies[0].inertia.setZero();
+    scene.joints[1].rotation = Eigen::Quaterniond::Identity();
+    scene.joints[1].axis = scene.joints[0].axis;
+    scene.joints[1].origin_parent = scene.joints[0].origin_child;
+    for (const Algebra algebra : {Algebra::planar, Algebra::spatial}) {
+      OpenChain chain(scene, algebra);
+      const TreeState s = random.state(chain.tree());
+      Eigen::VectorXd qdot(2), pdot(2);
+      EXPECT_FALSE(chain.rates(s.t, s.q, s.u, qdot, pdot)) << "seed " << seed;
+      EXPECT_NE(chain.failure().find("'joint0'"), std::string::npos) << chain.failure();
+    }
+    Scene ball = random.scene({.bodies = 1,
+                               .kinds = {JointKind::spherical},
+                               .joint_forces = false,
+                               .body_forces = false});
+    ball.bodies[0].inertia.setZero();
+    if (seed % 2 == 0) {  // a slender rod along com instead
+      const Eigen::Vector3d n = ball.bodies[0].com.normalized();
+      ball.bodies[0].inertia = 0.3 * (Eigen::Matrix3d::Identity() - n * n.transpose());
+      ball.joints[0].origin_child.setZero();
+    }
+    OpenChain chain(ball);
+    const TreeState s = random.state(chain.tree());
+    Eigen::VectorXd qdot(4), pdot(3);
+    EXPECT_FALSE(chain.rates(s.t, s.q, s.u, qdot, pdot)) << "seed " << seed;
+  }
+}
+
+#ifdef MOMENTA_COUNTS_MALLOC
+TEST(Kernel, NoCallAllocates) {
+  for (const bool flat : {false, true}) {
+    RandomTree random(7);
+    const TreeRecipe recipe{.bodies = 10};
+    OpenChain chain(flat ? random.planar_scene(recipe) : random.scene(recipe));
+    const TreeState s = random.state(chain.tree());
+    Eigen::VectorXd qdot(chain.nq()), pdot(chain.nv()), p(chain.nv()), u(chain.nv());
+    const long before = allocations;
+    for (int i = 0; i < 1000; ++i) {
+      chain.momenta(s.t, s.q, s.u, p);
+      chain.rates(s.t, s.q, p, qdot, pdot);
+      chain.velocities(s.t, s.q, p, u);
+      chain.accelerations(s.t, s.q, s.u, u);
+      chain.coordinate_rates(s.q, s.u, qdot);
+      chain.energies(s.t, s.q, s.u);
+    }
+    EXPECT_EQ(allocations, before);
+    const auto list = chain.poses(s.t, s.q);  // returns a list: the counter must see it
+    EXPECT_GT(allocations, before);
+  }
+}
+#endif
+
+}  // namespace
+}  // namespace momenta
