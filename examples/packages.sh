@@ -1,0 +1,31 @@
+# Debian packages the project needs, in one place; sourced by examples/run and tests/run.
+# shellcheck shell=bash disable=SC2034
+
+packages_to_build=(cmake make g++ libeigen3-dev libtomlplusplus-dev
+                   libsundials-dev libsuitesparse-dev nlohmann-json3-dev libcli11-dev)
+packages_to_test=(libgtest-dev libbenchmark-dev)
+
+# Installs those of its arguments that are missing: as root, or through a sudo that asks nothing;
+# otherwise prints the one line to type and ends the script.
+install_missing() {
+  local package missing=() as_root=()
+  if ! command -v dpkg-query >/dev/null; then
+    echo "Not a Debian system: expecting the equivalents of $*" >&2
+    return
+  fi
+  for package in "$@"; do
+    [[ $(dpkg-query -W -f='${db:Status-Abbrev}' "$package" 2>/dev/null) == ii* ]] || missing+=("$package")
+  done
+  ((${#missing[@]})) || return 0
+  if ((EUID != 0)); then
+    if ! sudo -n true 2>/dev/null; then
+      echo "Missing packages. Please type:" >&2
+      echo "  sudo apt-get install --no-install-recommends ${missing[*]}" >&2
+      exit 1
+    fi
+    as_root=(sudo -n)
+  fi
+  export DEBIAN_FRONTEND=noninteractive
+  "${as_root[@]}" apt-get update -qq </dev/null
+  "${as_root[@]}" apt-get install -qq --yes --no-install-recommends "${missing[@]}" </dev/null
+}
