@@ -10,9 +10,9 @@ namespace momenta {
 namespace {
 
 constexpr int most_iterations = 200;
-constexpr double largest_step = 0.4;       // [rad or m]: stay on the branch of the guess
-constexpr double closed = 1e-12;           // |Φ|∞, times 1 + size
-constexpr double rank_tolerance = 1e-9;    // of pivots, against the largest
+constexpr double largest_step = 0.4;     // [rad or m]: stay on the branch of the guess
+constexpr double closed = 1e-12;         // |Φ|∞, times 1 + size
+constexpr double rank_tolerance = 1e-9;  // of pivots, against the largest
 
 using Decomposition = Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>;
 
@@ -26,7 +26,9 @@ Decomposition decompose(const Eigen::MatrixXd& j) {
 class Assembler {
  public:
   explicit Assembler(const Mechanism& mechanism)
-      : mechanism_(mechanism), e_(mechanism.evaluation<double>()), free_(static_cast<std::size_t>(mechanism.nv()), true) {
+      : mechanism_(mechanism),
+        e_(mechanism.evaluation<double>()),
+        free_(static_cast<std::size_t>(mechanism.nv()), true) {
     for (const auto& name : mechanism.scene().held) {
       const int body = mechanism.tree().carried_by(name);
       if (body < 0) continue;
@@ -55,7 +57,8 @@ class Assembler {
     std::vector<double> values(pattern.size());
     e_->constraint_entries(values.data());
     Eigen::MatrixXd j = Eigen::MatrixXd::Zero(mechanism_.m(), mechanism_.nv());
-    for (std::size_t i = 0; i < values.size(); ++i) j(pattern[i].row, pattern[i].column) = values[i];
+    for (std::size_t i = 0; i < values.size(); ++i)
+      j(pattern[i].row, pattern[i].column) = values[i];
     return j;
   }
   Eigen::MatrixXd free_columns(Eigen::MatrixXd j) const {
@@ -119,7 +122,9 @@ class Assembler {
     int row = 0;
     for (const auto& loop : scene.loops) {
       double largest = 0;
-      for (; row < mechanism_.m() && mechanism_.rows()[static_cast<std::size_t>(row)].loop == loop.name; ++row)
+      for (; row < mechanism_.m() &&
+             mechanism_.rows()[static_cast<std::size_t>(row)].loop == loop.name;
+           ++row)
         largest = std::max(largest, std::abs(phi[row]));
       if (largest <= closed) continue;
       char text[32];
@@ -127,8 +132,9 @@ class Assembler {
       if (open.empty()) at = loop.at;
       open += (open.empty() ? "loop '" : ", loop '") + loop.name + "' stays open by " + text;
     }
-    throw SceneError(scene.where(at) + "the mechanism cannot be assembled from these positions: " + open +
-                     (scene.held.empty() ? "" : " while joints are held") + "; expected loops that close");
+    throw SceneError(
+        scene.where(at) + "the mechanism cannot be assembled from these positions: " + open +
+        (scene.held.empty() ? "" : " while joints are held") + "; expected loops that close");
   }
 
   void close_velocities(Assembly& a) {
@@ -144,25 +150,29 @@ class Assembler {
     e_->move(u.data());
     e_->velocities(rate.data());
     a.velocity_residual = rate.cwiseAbs().maxCoeff();
-    const double scale = 1 + (u.size() > 0 ? u.cwiseAbs().maxCoeff() : 0) * (1 + j.cwiseAbs().maxCoeff());
+    const double scale =
+        1 + (u.size() > 0 ? u.cwiseAbs().maxCoeff() : 0) * (1 + j.cwiseAbs().maxCoeff());
     if (a.velocity_residual <= 1e-10 * scale) return;
     Eigen::Index worst;
     rate.cwiseAbs().maxCoeff(&worst);
     const auto& name = mechanism_.rows()[static_cast<std::size_t>(worst)].loop;
     char text[32];
     std::snprintf(text, sizeof text, "%.3g", a.velocity_residual);
-    throw SceneError(mechanism_.scene().where({}) + "the velocities of the held joints tear loop '" + name +
+    throw SceneError(mechanism_.scene().where({}) +
+                     "the velocities of the held joints tear loop '" + name +
                      "' apart at a rate of " + text + "; expected rates that the loops allow");
   }
 
   /// Rank by column-pivoted QR; its pivots bound the singular values to a factor of about √nv.
   void judge_rank(Assembly& a) {
-    // Pivoting on the columns of Φ_qᵀ orders the rows: those beyond the rank depend on the ones before.
+    // Pivoting on the columns of Φ_qᵀ orders the rows: those beyond the rank depend on the ones
+    // before.
     const auto decomposition = decompose(jacobian().transpose());
     const Eigen::VectorXd pivots = decomposition.matrixQTZ().diagonal().cwiseAbs();
     a.rank = static_cast<int>(decomposition.rank());
     a.smallest_pivot = a.rank > 0 ? pivots[a.rank - 1] : 0;
-    a.largest_neglected = a.rank < pivots.size() ? pivots.tail(pivots.size() - a.rank).maxCoeff() : 0;
+    a.largest_neglected =
+        a.rank < pivots.size() ? pivots.tail(pivots.size() - a.rank).maxCoeff() : 0;
     const auto& order = decomposition.colsPermutation().indices();
     for (int i = a.rank; i < mechanism_.m(); ++i) a.dependent_rows.push_back(order[i]);
     std::sort(a.dependent_rows.begin(), a.dependent_rows.end());
@@ -190,7 +200,8 @@ class Assembler {
   }
 
   [[noreturn]] void no_inertia() const {
-    throw SceneError(mechanism_.scene().where({}) + "the mechanism cannot move at its start: " + mechanism_.no_inertia());
+    throw SceneError(mechanism_.scene().where({}) +
+                     "the mechanism cannot move at its start: " + mechanism_.no_inertia());
   }
 
   void normalise(Eigen::VectorXd& q) const {
@@ -205,6 +216,8 @@ class Assembler {
 
 }  // namespace
 
-Assembly assemble(const Mechanism& mechanism) { return Assembler(mechanism).run(); }
+Assembly assemble(const Mechanism& mechanism) {
+  return Assembler(mechanism).run();
+}
 
 }  // namespace momenta

@@ -1,5 +1,6 @@
 #pragma once
-// A consistent start from the scene's guess: positions, then velocities, then accelerations and multipliers.
+// A consistent start from the scene's guess: positions, then velocities, then accelerations and
+// multipliers.
 
 #include <momenta/dae/form/form.h>
 
@@ -13,19 +14,21 @@ struct Assembly {
   Start start;
   double position_residual = 0;  ///< |Φ|∞ reached
   double velocity_residual = 0;  ///< |Φ̇|∞ reached
-  double moved = 0;              ///< largest change of a joint coordinate against the guess [rad or m]
+  double moved = 0;  ///< largest change of a joint coordinate against the guess [rad or m]
   int iterations = 0;
-  int rank = 0;                  ///< of Φ_q at the start
-  double smallest_pivot = 0;     ///< of the pivoted QR of Φ_q, the smallest that counts
-  double largest_neglected = 0;  ///< and the largest that does not (0 when the rows are independent)
+  int rank = 0;               ///< of Φ_q at the start
+  double smallest_pivot = 0;  ///< of the pivoted QR of Φ_q, the smallest that counts
+  double largest_neglected =
+      0;  ///< and the largest that does not (0 when the rows are independent)
   std::vector<int> dependent_rows;  ///< rows of Φ that follow from the others at the start
-  int mobility = 0;              ///< nv − rank
+  int mobility = 0;                 ///< nv − rank
 };
 
-/// Damped Gauss-Newton from the scene's positions, joints of `held` unmoved; steps of minimal change; then the rates
-/// nearest to the scene's with Φ_q u + Φ_t = 0, held ones kept. |Φ|∞ ≤ 1e-12 (1 + size of the scene), or as low as
-/// rounding allows.
-/// @throws SceneError naming the loops that stay open and by how much, or the held rates that cannot be met.
+/// Damped Gauss-Newton from the scene's positions, joints of `held` unmoved; steps of minimal
+/// change; then the rates nearest to the scene's with Φ_q u + Φ_t = 0, held ones kept. |Φ|∞ ≤ 1e-12
+/// (1 + size of the scene), or as low as rounding allows.
+/// @throws SceneError naming the loops that stay open and by how much, or the held rates that
+/// cannot be met.
 Assembly assemble(const Mechanism& mechanism);
 
 }  // namespace momenta

@@ -1,7 +1,8 @@
 #pragma once
-// Everything a form needs of a mechanism at one state, computed by sweeps: no call assembles M or Φ_q unless it is asked
-// to. S is double, or a dual number for exact derivatives. Calls are in order: place, move, then the rest; each leaves
-// its results in the workspace for the next. One object serves one thread; no call allocates.
+// Everything a form needs of a mechanism at one state, computed by sweeps: no call assembles M or
+// Φ_q unless it is asked to. S is double, or a dual number for exact derivatives. Calls are in
+// order: place, move, then the rest; each leaves its results in the workspace for the next. One
+// object serves one thread; no call allocates.
 
 #include <momenta/core/scalar/dual.h>
 
@@ -19,7 +20,8 @@ class Evaluation {
   /// Φ (m), eq. (1b).
   virtual void positions(S* phi) = 0;
 
-  /// Rates u (nv): velocities of all bodies. Null: zero rates, so that only prescribed motion is left.
+  /// Rates u (nv): velocities of all bodies. Null: zero rates, so that only prescribed motion is
+  /// left.
   virtual void move(const S* u) = 0;
   /// Φ̇ = Φ_q u + Φ_t (m).
   virtual void velocities(S* rate) = 0;
@@ -40,11 +42,13 @@ class Evaluation {
   virtual void coordinate_rates(const S* q, const S* u, S* qdot) const = 0;
   virtual void joint_rates(const S* q, const S* qdot, S* u) const = 0;
 
-  /// Values of M (upper triangle) and Φ_q in the order of the mechanism's KKT pattern. After place().
+  /// Values of M (upper triangle) and Φ_q in the order of the mechanism's KKT pattern. After
+  /// place().
   virtual void mass_entries(S* values) = 0;
   virtual void constraint_entries(S* values) = 0;
 
-  /// (q, p, t) → (u, ṗ) by the recursion of the paper: mechanisms without loops only. False when a joint has no inertia.
+  /// (q, p, t) → (u, ṗ) by the recursion of the paper: mechanisms without loops only. False when a
+  /// joint has no inertia.
   virtual bool open_momentum_rates(double t, const S* q, const S* p, S* u, S* pdot) = 0;
   /// (q, u, t) → u̇ by the articulated recursion: mechanisms without loops only.
   virtual bool open_accelerations(double t, const S* q, const S* u, S* udot) = 0;
@@ -52,7 +56,8 @@ class Evaluation {
   /// T and V [J]; after place() and move().
   virtual S kinetic() = 0;
   virtual S potential(const S* q) = 0;
-  /// Power of everything the energy does not hold [W]: dampers, wrenches that have no potential. After move(u).
+  /// Power of everything the energy does not hold [W]: dampers, wrenches that have no potential.
+  /// After move(u).
   virtual S lost_power(const S* u) = 0;
   /// Per marker x y z [m] and its velocity [m/s], ground axes; after move().
   virtual void markers(S* values) = 0;

@@ -4,8 +4,8 @@
 namespace momenta {
 namespace {
 
-// Below this size a dense Cholesky of M and a pivoted LDLᵀ of the loops' small matrix beat sparse bookkeeping, and the
-// pivots can be filtered one by one.
+// Below this size a dense Cholesky of M and a pivoted LDLᵀ of the loops' small matrix beat sparse
+// bookkeeping, and the pivots can be filtered one by one.
 constexpr int dense_limit = 60;
 
 Plan plan_with_loops(const Tree& tree, const Scene& scene, Algebra algebra) {
@@ -23,7 +23,9 @@ Plan plan_with_loops(const Tree& tree, const Scene& scene, Algebra algebra) {
 }  // namespace
 
 Mechanism::Mechanism(Scene scene, MechanismOptions options)
-    : scene_(std::move(scene)), tree_(build_tree(scene_)), plan_(plan_with_loops(tree_, scene_, options.algebra)) {
+    : scene_(std::move(scene)),
+      tree_(build_tree(scene_)),
+      plan_(plan_with_loops(tree_, scene_, options.algebra)) {
   if (plan_.planar) {
     Cast<Planar> cast{build_planar_model(tree_, scene_, plan_.basis), {}};
     cast.loops = build_loops(scene_, tree_, cast.model);
@@ -79,7 +81,8 @@ std::vector<Column> Mechanism::coordinate_columns() const {
     if (b.nq == 7)
       for (const char* axis : {".x", ".y", ".z"}) columns.push_back({b.joint + axis, "m"});
     if (b.nq >= 4)
-      for (const char* part : {".qw", ".qx", ".qy", ".qz"}) columns.push_back({b.joint + part, "1"});
+      for (const char* part : {".qw", ".qx", ".qy", ".qz"})
+        columns.push_back({b.joint + part, "1"});
   }
   return columns;
 }
@@ -87,7 +90,8 @@ std::vector<Column> Mechanism::coordinate_columns() const {
 std::vector<Column> Mechanism::rate_columns() const {
   std::vector<Column> columns;
   for (const auto& b : tree_.bodies) {
-    if (b.nv == 1) columns.push_back({b.joint + ".u", b.kind == JointKind::revolute ? "rad/s" : "m/s"});
+    if (b.nv == 1)
+      columns.push_back({b.joint + ".u", b.kind == JointKind::revolute ? "rad/s" : "m/s"});
     if (b.nv == 6)
       for (const char* axis : {".vx", ".vy", ".vz"}) columns.push_back({b.joint + axis, "m/s"});
     if (b.nv >= 3)
@@ -111,10 +115,13 @@ std::vector<std::pair<std::string, std::string>> Mechanism::plan_lines() const {
     lines.emplace_back("loops", "none: no KKT system, no σ, forward dynamics by the two sweeps");
     return lines;
   }
-  lines.emplace_back("loops", std::to_string(scene_.loops.size()) + " with " + std::to_string(rows_) + " equations");
-  lines.emplace_back("solving (7)", std::string(dense_ ? "dense: Cholesky of M, pivoted and filtered LDLᵀ of the loops"
-                                                       : "sparse: KLU on a pattern analysed once") +
-                                        ", " + std::to_string(tree_.nv + rows_) + " unknowns");
+  lines.emplace_back("loops", std::to_string(scene_.loops.size()) + " with " +
+                                  std::to_string(rows_) + " equations");
+  lines.emplace_back(
+      "solving (7)",
+      std::string(dense_ ? "dense: Cholesky of M, pivoted and filtered LDLᵀ of the loops"
+                         : "sparse: KLU on a pattern analysed once") +
+          ", " + std::to_string(tree_.nv + rows_) + " unknowns");
   return lines;
 }
 

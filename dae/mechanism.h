@@ -1,6 +1,6 @@
 #pragma once
-// A scene made ready to move: its tree, its loops, and the plan that says what every evaluation does. Immutable; every
-// form, solver and measure takes it by const reference.
+// A scene made ready to move: its tree, its loops, and the plan that says what every evaluation
+// does. Immutable; every form, solver and measure takes it by const reference.
 
 #include <momenta/core/open_chain.h>
 #include <momenta/dae/evaluation.h>
@@ -18,7 +18,8 @@ struct MechanismOptions {
   KktChoice kkt = KktChoice::automatic;
 };
 
-/// Nonzeros of the two blocks of (7): M (upper triangle) and Φ_q, in the order in which an evaluation writes them.
+/// Nonzeros of the two blocks of (7): M (upper triangle) and Φ_q, in the order in which an
+/// evaluation writes them.
 struct KktPattern {
   struct Entry {
     int row, column;
@@ -49,7 +50,8 @@ class Mechanism {
   bool dense_kkt() const { return dense_; }  ///< how (7) is solved, when there are loops
   const KktPattern& kkt_pattern() const { return pattern_; }
   const std::vector<RowName>& rows() const { return row_names_; }
-  /// Rows of one loop and one kind (points, axes or distance) share a unit and so a scale: group index of each row.
+  /// Rows of one loop and one kind (points, axes or distance) share a unit and so a scale: group
+  /// index of each row.
   const std::vector<int>& row_groups() const { return row_groups_; }
 
   /// A workspace for one thread; S is double or Dual8.

@@ -1,5 +1,6 @@
 #pragma once
-// The evaluation of a mechanism by sweeps, for one algebra and one scalar. Included only where it is instantiated.
+// The evaluation of a mechanism by sweeps, for one algebra and one scalar. Included only where it
+// is instantiated.
 
 #include <momenta/core/kernel/accelerations.h>
 #include <momenta/core/kernel/mass_matrix.h>
@@ -23,7 +24,8 @@ class Mechanism::SweepEvaluation final : public Evaluation<S> {
       const Eigen::Vector3d at = tree.point(body, marker.point);
       double height = 0;
       if constexpr (Space::dimension == 3)
-        height = body < 0 ? model_.basis.col(2).dot(at) : (model_.frames[static_cast<std::size_t>(body)] * at).z();
+        height = body < 0 ? model_.basis.col(2).dot(at)
+                          : (model_.frames[static_cast<std::size_t>(body)] * at).z();
       markers_.push_back({body, model_.point(body, at), height});
     }
   }
@@ -85,8 +87,8 @@ class Mechanism::SweepEvaluation final : public Evaluation<S> {
   void constraint_entries(S* values) override {
     each_constraint_entry([&](int, int, const S& value) { *values++ = value; });
   }
-  /// Calls entry(row, column, value) for the structural nonzeros of Φ_q: the joints between each end of a loop and the
-  /// lowest common ancestor of its bodies; above it the two ends cancel.
+  /// Calls entry(row, column, value) for the structural nonzeros of Φ_q: the joints between each
+  /// end of a loop and the lowest common ancestor of its bodies; above it the two ends cancel.
   template <class Entry>
   void each_constraint_entry(Entry&& entry) {
     for (std::size_t i = 0; i < loops_.model().loops.size(); ++i) {
@@ -134,7 +136,8 @@ class Mechanism::SweepEvaluation final : public Evaluation<S> {
       const SpringLine<Space, S> line(w_, spring);
       if (value_of(line.length) == 0) continue;
       const S rate = dot(line.D, point_velocity(w_, spring.child, line.child) -
-                                     point_velocity(w_, spring.parent, line.parent)) / line.length;
+                                     point_velocity(w_, spring.parent, line.parent)) /
+                     line.length;
       power -= spring.damping * (rate * rate);
     }
     for (const auto& wrench : model_.wrenches) {
@@ -144,7 +147,8 @@ class Mechanism::SweepEvaluation final : public Evaluation<S> {
         return wrench.in_body_axes ? to_ground(w_, k, v) : to_ground(w_, -1, v);
       };
       if (wrench.in_body_axes)
-        power += dot(in_ground(wrench.force), point_velocity(w_, k, point_position(w_, k, wrench.at)));
+        power +=
+            dot(in_ground(wrench.force), point_velocity(w_, k, point_position(w_, k, wrench.at)));
       if constexpr (Space::dimension == 3)
         power += wrench.normal_torque * omega;
       else
@@ -160,7 +164,8 @@ class Mechanism::SweepEvaluation final : public Evaluation<S> {
       for (int i = 0; i < 3; ++i) {
         S position{}, velocity{};
         if constexpr (Space::dimension == 3) {
-          position = model_.basis(i, 0) * x[0] + model_.basis(i, 1) * x[1] + S(model_.basis(i, 2) * marker.height);
+          position = model_.basis(i, 0) * x[0] + model_.basis(i, 1) * x[1] +
+                     S(model_.basis(i, 2) * marker.height);
           velocity = model_.basis(i, 0) * v[0] + model_.basis(i, 1) * v[1];
         } else {
           position = x[i];

@@ -12,8 +12,9 @@
 // baumgarte
 //
 // Equations     the same with Φ̈ + 2α Φ̇ + β² Φ = 0 in the second row
-// Drifts        Φ and Φ̇ stay bounded, at a level set by α, β and the step; energy is not conserved by the correction
-// Gains         α = β = 1/T unless given, critically damped, T the mechanism's own time scale (default_leak's): larger
+// Drifts        Φ and Φ̇ stay bounded, at a level set by α, β and the step; energy is not conserved
+// by the correction Gains         α = β = 1/T unless given, critically damped, T the mechanism's
+// own time scale (default_leak's): larger
 //               gains make an explicit method stiff, smaller ones let the loops open
 // Source        Baumgarte, Comput. Methods Appl. Mech. Eng. 1 (1972).
 
@@ -26,15 +27,20 @@ namespace {
 
 class Acceleration final : public OdeForm {
  public:
-  Acceleration(std::string name, const Mechanism& mechanism, const FormOptions& options, double alpha, double beta)
-      : OdeForm(std::move(name), mechanism, options), alpha_(alpha), beta_(beta), rate_(g_.size()) {}
+  Acceleration(std::string name, const Mechanism& mechanism, const FormOptions& options,
+               double alpha, double beta)
+      : OdeForm(std::move(name), mechanism, options),
+        alpha_(alpha),
+        beta_(beta),
+        rate_(g_.size()) {}
 
   bool momentum_like() const override { return false; }
 
   std::vector<double> initial(const Start& start) override {
     std::vector<double> y(start.q.begin(), start.q.end());
     y.insert(y.end(), start.u.begin(), start.u.end());
-    for (std::size_t i = 0; i < multipliers_.size(); ++i) multipliers_[i] = start.lambda[static_cast<Eigen::Index>(i)];
+    for (std::size_t i = 0; i < multipliers_.size(); ++i)
+      multipliers_[i] = start.lambda[static_cast<Eigen::Index>(i)];
     centre_ = multipliers_;
     return y;
   }
@@ -57,7 +63,8 @@ class Acceleration final : public OdeForm {
       e_->positions(phi_.data());
     }
     for (std::size_t i = 0; i < g_.size(); ++i)
-      g_[i] = -g_[i] - (alpha_ != 0 || beta_ != 0 ? 2 * alpha_ * rate_[i] + beta_ * beta_ * phi_[i] : 0.0);
+      g_[i] = -g_[i] -
+              (alpha_ != 0 || beta_ != 0 ? 2 * alpha_ * rate_[i] + beta_ * beta_ * phi_[i] : 0.0);
     if (!kkt_->solve(r_.data(), g_.data(), centre_.data(), udot, multipliers_.data()))
       return fail_at(t, "the solution of (3) is not finite");
     e_->coordinate_rates(q, u, ydot);
@@ -103,11 +110,13 @@ class Acceleration final : public OdeForm {
 
 }  // namespace
 
-std::unique_ptr<OdeForm> make_acceleration(const Mechanism& mechanism, const FormOptions& options, const Start&) {
+std::unique_ptr<OdeForm> make_acceleration(const Mechanism& mechanism, const FormOptions& options,
+                                           const Start&) {
   return std::make_unique<Acceleration>("acceleration", mechanism, options, 0, 0);
 }
 
-std::unique_ptr<OdeForm> make_baumgarte(const Mechanism& mechanism, const FormOptions& options, const Start& start) {
+std::unique_ptr<OdeForm> make_baumgarte(const Mechanism& mechanism, const FormOptions& options,
+                                        const Start& start) {
   const double own = default_leak(mechanism, start);
   return std::make_unique<Acceleration>("baumgarte", mechanism, options,
                                         options.baumgarte_alpha > 0 ? options.baumgarte_alpha : own,

@@ -6,7 +6,8 @@
 // Hidden        Φ = 0 and Φ̈ = 0
 // Multipliers   λ, a force
 // Drifts        Φ like t; Φ̇ at the Newton tolerance
-// Source        paper, eqs. (1)-(3); Brenan, Campbell, Petzold, Numerical Solution of Initial-Value Problems in DAEs
+// Source        paper, eqs. (1)-(3); Brenan, Campbell, Petzold, Numerical Solution of Initial-Value
+// Problems in DAEs
 
 #include <momenta/dae/form/dae_form.h>
 
@@ -16,7 +17,8 @@ namespace {
 class AccelerationIndex2 final : public DaeFormOf<AccelerationIndex2> {
  public:
   AccelerationIndex2(const Mechanism& mechanism, const FormOptions& options, const Start& start)
-      : DaeFormOf("acceleration-index2", mechanism, {mechanism.nq(), mechanism.nv(), mechanism.m()}, options, start, false) {}
+      : DaeFormOf("acceleration-index2", mechanism, {mechanism.nq(), mechanism.nv(), mechanism.m()},
+                  options, start, false) {}
 
   template <class S>
   void rows(DaeScratch<S>& s, double t, const S* y, const S* ydot, S* r) {
@@ -33,7 +35,8 @@ class AccelerationIndex2 final : public DaeFormOf<AccelerationIndex2> {
 
 }  // namespace
 
-std::unique_ptr<Form> make_acceleration_index2(const Mechanism& mechanism, const FormOptions& o, const Start& s) {
+std::unique_ptr<Form> make_acceleration_index2(const Mechanism& mechanism, const FormOptions& o,
+                                               const Start& s) {
   return std::make_unique<AccelerationIndex2>(mechanism, o, s);
 }
 

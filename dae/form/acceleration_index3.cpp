@@ -6,7 +6,8 @@
 // Hidden        Φ̇ = 0 and Φ̈ = 0
 // Multipliers   λ, a force
 // Drifts        Φ at the Newton tolerance; Φ̇ at the local error of v, one power of the step worse
-// Source        paper, eqs. (1)-(3); Brenan, Campbell, Petzold, Numerical Solution of Initial-Value Problems in DAEs
+// Source        paper, eqs. (1)-(3); Brenan, Campbell, Petzold, Numerical Solution of Initial-Value
+// Problems in DAEs
 
 #include <momenta/dae/form/dae_form.h>
 
@@ -16,7 +17,8 @@ namespace {
 class AccelerationIndex3 final : public DaeFormOf<AccelerationIndex3> {
  public:
   AccelerationIndex3(const Mechanism& mechanism, const FormOptions& options, const Start& start)
-      : DaeFormOf("acceleration-index3", mechanism, {mechanism.nq(), mechanism.nv(), mechanism.m()}, options, start, false) {}
+      : DaeFormOf("acceleration-index3", mechanism, {mechanism.nq(), mechanism.nv(), mechanism.m()},
+                  options, start, false) {}
 
   template <class S>
   void rows(DaeScratch<S>& s, double t, const S* y, const S* ydot, S* r) {
@@ -36,7 +38,8 @@ class AccelerationIndex3 final : public DaeFormOf<AccelerationIndex3> {
 
 }  // namespace
 
-std::unique_ptr<Form> make_acceleration_index3(const Mechanism& mechanism, const FormOptions& o, const Start& s) {
+std::unique_ptr<Form> make_acceleration_index3(const Mechanism& mechanism, const FormOptions& o,
+                                               const Start& s) {
   return std::make_unique<AccelerationIndex3>(mechanism, o, s);
 }
 

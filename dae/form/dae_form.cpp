@@ -9,7 +9,8 @@
 namespace momenta {
 namespace {
 
-constexpr int dense_limit = 60;  // unknowns below which a dense Newton matrix is faster than KLU's bookkeeping
+constexpr int dense_limit =
+    60;  // unknowns below which a dense Newton matrix is faster than KLU's bookkeeping
 
 template <class S>
 DaeScratch<S> make_scratch(const Mechanism& mechanism, int size) {
@@ -25,8 +26,8 @@ DaeScratch<S> make_scratch(const Mechanism& mechanism, int size) {
 
 }  // namespace
 
-DaeForm::DaeForm(std::string name, const Mechanism& mechanism, DaeLayout layout, const FormOptions& options,
-                 const Start& start, bool momentum_like)
+DaeForm::DaeForm(std::string name, const Mechanism& mechanism, DaeLayout layout,
+                 const FormOptions& options, const Start& start, bool momentum_like)
     : layout_(layout),
       mechanism_(mechanism),
       name_(std::move(name)),
@@ -48,7 +49,8 @@ DaeForm::DaeForm(std::string name, const Mechanism& mechanism, DaeLayout layout,
     if (gauge_.kind == Gauge::Kind::reset)
       throw std::invalid_argument("gauge reset needs a one-step method; '" + name_ +
                                   "' is integrated by IDA: expected none or leak");
-    if (gauge_.kind == Gauge::Kind::leak && gauge_.kappa == 0) gauge_.kappa = default_leak(mechanism, start);
+    if (gauge_.kind == Gauge::Kind::leak && gauge_.kappa == 0)
+      gauge_.kappa = default_leak(mechanism, start);
     std::copy(inertia_.begin(), inertia_.end(), scale_.begin() + layout_.x());
   }
   if (layout.m > 0) find_redundancy(start);
@@ -66,11 +68,14 @@ void DaeForm::find_redundancy(const Start& start) {
   epsilon_.assign(static_cast<std::size_t>(layout_.m), 0.0);
   for (std::size_t i = 0; i < entries.size(); ++i) {
     const auto& entry = mechanism_.kkt_pattern().constraint[i];
-    epsilon_[static_cast<std::size_t>(entry.row)] += 1e-9 * entries[i] * entries[i] / inertia_[static_cast<std::size_t>(entry.column)];
+    epsilon_[static_cast<std::size_t>(entry.row)] +=
+        1e-9 * entries[i] * entries[i] / inertia_[static_cast<std::size_t>(entry.column)];
   }
 }
 
-double DaeForm::scale(int i) const { return scale_[static_cast<std::size_t>(i)]; }
+double DaeForm::scale(int i) const {
+  return scale_[static_cast<std::size_t>(i)];
+}
 
 bool DaeForm::differential(int i) const {
   if (i < layout_.x()) return true;
@@ -88,7 +93,8 @@ std::vector<double> DaeForm::initial(const Start& start) {
   }
   double* sigma = y.data() + layout_.s();
   if (leak() > 0)
-    for (int i = 0; i < layout_.m; ++i) sigma[i] = start.lambda[i] / leak();  // σ(0) = λ(0)/κ: no transient
+    for (int i = 0; i < layout_.m; ++i)
+      sigma[i] = start.lambda[i] / leak();  // σ(0) = λ(0)/κ: no transient
   plain_.e->place(start.t, start.q.data());
   plain_.e->move(start.u.data());
   plain_.e->momenta(sigma, y.data() + layout_.x());
@@ -168,9 +174,9 @@ bool DaeForm::jacobian(double t, const double* y, const double* ydot, double c, 
   return finite || fail("the Jacobian is not finite");
 }
 
-/// Dense below the limit: column i goes in batch i/8. Above it the pattern is read off exact derivatives at random
-/// states, where a structural nonzero vanishes with probability zero, and columns that share no row are evaluated along
-/// one direction (Curtis, Powell, Reid 1974).
+/// Dense below the limit: column i goes in batch i/8. Above it the pattern is read off exact
+/// derivatives at random states, where a structural nonzero vanishes with probability zero, and
+/// columns that share no row are evaluated along one direction (Curtis, Powell, Reid 1974).
 void DaeForm::analyse_pattern() {
   const int n = size();
   batches_.clear();
@@ -180,7 +186,8 @@ void DaeForm::analyse_pattern() {
       std::vector<int> direction_of(static_cast<std::size_t>(n), -1);
       std::vector<std::vector<int>> batch;
       for (std::size_t k = first; k < std::min(first + 8, groups.size()); ++k) {
-        for (int column : groups[k]) direction_of[static_cast<std::size_t>(column)] = static_cast<int>(k - first);
+        for (int column : groups[k])
+          direction_of[static_cast<std::size_t>(column)] = static_cast<int>(k - first);
         batch.push_back(groups[k]);
       }
       batches_.push_back(std::move(direction_of));
@@ -200,12 +207,15 @@ void DaeForm::analyse_pattern() {
   std::vector<double> y(static_cast<std::size_t>(n)), ydot(y.size());
   for (int probe = 0; probe < 3; ++probe) {
     for (std::size_t i = 0; i < y.size(); ++i) {
-      y[i] = any(random) + (i < static_cast<std::size_t>(layout_.nq) ? start_.q[static_cast<Eigen::Index>(i)] : 0.0);
+      y[i] =
+          any(random) +
+          (i < static_cast<std::size_t>(layout_.nq) ? start_.q[static_cast<Eigen::Index>(i)] : 0.0);
       ydot[i] = any(random);
     }
     for (int first = 0; first < n; first += 8) {
       std::vector<int> direction_of(static_cast<std::size_t>(n), -1);
-      for (int i = first; i < std::min(first + 8, n); ++i) direction_of[static_cast<std::size_t>(i)] = i - first;
+      for (int i = first; i < std::min(first + 8, n); ++i)
+        direction_of[static_cast<std::size_t>(i)] = i - first;
       evaluate_columns(start_.t, y.data(), ydot.data(), 1.234, direction_of);
       for (int i = 0; i < n; ++i)
         for (int column = first; column < std::min(first + 8, n); ++column)
@@ -224,7 +234,8 @@ void DaeForm::analyse_pattern() {
     const auto& mine = rows[static_cast<std::size_t>(column)];
     std::size_t colour = 0;
     for (; colour < groups.size(); ++colour)
-      if (std::none_of(mine.begin(), mine.end(), [&](long row) { return taken[colour][static_cast<std::size_t>(row)]; }))
+      if (std::none_of(mine.begin(), mine.end(),
+                       [&](long row) { return taken[colour][static_cast<std::size_t>(row)]; }))
         break;
     if (colour == groups.size()) {
       groups.emplace_back();
@@ -243,12 +254,15 @@ bool DaeForm::read(double t, const double* y, const double*, Snapshot& out) {
     out.u = Eigen::Map<const Eigen::VectorXd>(y + layout_.v(), layout_.nv);
     if (!momentum_like_) return true;
   }
-  // u from (7) at (q, p): the velocity that belongs to the state, whatever the integrator's last Newton residual.
+  // u from (7) at (q, p): the velocity that belongs to the state, whatever the integrator's last
+  // Newton residual.
   auto& e = *plain_.e;
   e.place(t, y);
-  Eigen::VectorXd r = Eigen::Map<const Eigen::VectorXd>(y + layout_.x(), layout_.nv), g(layout_.m), sigma(layout_.m);
+  Eigen::VectorXd r = Eigen::Map<const Eigen::VectorXd>(y + layout_.x(), layout_.nv), g(layout_.m),
+                  sigma(layout_.m);
   out.u.resize(layout_.nv);
-  if (layout_.m == 0) return e.open_momentum_rates(t, y, y + layout_.x(), out.u.data(), plain_.b.data());
+  if (layout_.m == 0)
+    return e.open_momentum_rates(t, y, y + layout_.x(), out.u.data(), plain_.b.data());
   g.setZero();
   if (mechanism_.plan().drives) {
     Eigen::VectorXd prescribed(layout_.nv);
@@ -259,7 +273,8 @@ bool DaeForm::read(double t, const double* y, const double*, Snapshot& out) {
     g = -g;
   }
   if (!kkt_) kkt_ = make_kkt(mechanism_);
-  return kkt_->factor(e, fade_evaluation) && kkt_->solve(r.data(), g.data(), y + layout_.s(), out.u.data(), sigma.data());
+  return kkt_->factor(e, fade_evaluation) &&
+         kkt_->solve(r.data(), g.data(), y + layout_.s(), out.u.data(), sigma.data());
 }
 
 }  // namespace momenta

@@ -1,10 +1,11 @@
 #pragma once
-// What the DAE forms share: the layout of their unknowns, the rows every form has, exact Jacobians by dual numbers.
+// What the DAE forms share: the layout of their unknowns, the rows every form has, exact Jacobians
+// by dual numbers.
 //
 //   y = ( q | x | v | s | μ ),  x = p or v; v, s, μ only where the form has them; s = σ or λ
-// Rows: nv kinematic or momentum rows; one row q·q̇ + (|q|² − 1)/2 = 0 per quaternion; nv dynamic rows; then the form's
-// other rows. A form writes its equations once, as a template on the scalar: with double they are the residual, with dual
-// numbers eight columns of ∂F/∂y + c ∂F/∂y' at a time.
+// Rows: nv kinematic or momentum rows; one row q·q̇ + (|q|² − 1)/2 = 0 per quaternion; nv dynamic
+// rows; then the form's other rows. A form writes its equations once, as a template on the scalar:
+// with double they are the residual, with dual numbers eight columns of ∂F/∂y + c ∂F/∂y' at a time.
 
 #include <momenta/dae/form/form.h>
 #include <momenta/dae/kkt/kkt.h>
@@ -31,8 +32,8 @@ struct DaeScratch {
 
 class DaeForm : public Form, public DaeSystem {
  public:
-  DaeForm(std::string name, const Mechanism& mechanism, DaeLayout layout, const FormOptions& options,
-          const Start& start, bool momentum_like);
+  DaeForm(std::string name, const Mechanism& mechanism, DaeLayout layout,
+          const FormOptions& options, const Start& start, bool momentum_like);
 
   const std::string& name() const override { return name_; }
   bool is_dae() const override { return true; }
@@ -51,9 +52,12 @@ class DaeForm : public Form, public DaeSystem {
   double scale(int i) const override;
 
  protected:
-  virtual void equations(DaeScratch<double>& s, double t, const double* y, const double* ydot, double* r) = 0;
-  virtual void equations(DaeScratch<Dual8>& s, double t, const Dual8* y, const Dual8* ydot, Dual8* r) = 0;
-  /// Whether x takes part in the error test: not in index-3 forms, whose x is one derivative rougher than q.
+  virtual void equations(DaeScratch<double>& s, double t, const double* y, const double* ydot,
+                         double* r) = 0;
+  virtual void equations(DaeScratch<Dual8>& s, double t, const Dual8* y, const Dual8* ydot,
+                         Dual8* r) = 0;
+  /// Whether x takes part in the error test: not in index-3 forms, whose x is one derivative
+  /// rougher than q.
   virtual bool rate_is_tested() const { return true; }
 
   double leak() const { return gauge_.kappa; }
@@ -62,8 +66,8 @@ class DaeForm : public Form, public DaeSystem {
   const Mechanism& mechanism_;
 
  private:
-  /// Redundant or singular loops at the start: −ε s on the rows that determine s (and −10⁻³ ε μ), so that the Newton
-  /// matrix stays regular. The bias on u is ε s, which the gauge keeps small.
+  /// Redundant or singular loops at the start: −ε s on the rows that determine s (and −10⁻³ ε μ),
+  /// so that the Newton matrix stays regular. The bias on u is ε s, which the gauge keeps small.
   template <class S>
   void regularise(const S* y, S* r) const {
     if (epsilon_.empty()) return;
@@ -71,10 +75,12 @@ class DaeForm : public Form, public DaeSystem {
     for (int i = 0; i < layout_.m; ++i) {
       const double epsilon = epsilon_[static_cast<std::size_t>(i)];
       r[layout_.size() - rows + i] -= epsilon * y[layout_.s() + i];
-      if (layout_.position_multiplier) r[layout_.size() - layout_.m + i] -= (1e-3 * epsilon) * y[layout_.mu() + i];
+      if (layout_.position_multiplier)
+        r[layout_.size() - layout_.m + i] -= (1e-3 * epsilon) * y[layout_.mu() + i];
     }
   }
-  bool evaluate_columns(double t, const double* y, const double* ydot, double c, const std::vector<int>& direction_of);
+  bool evaluate_columns(double t, const double* y, const double* ydot, double c,
+                        const std::vector<int>& direction_of);
   void find_redundancy(const Start& start);
   void analyse_pattern();
 
@@ -86,11 +92,14 @@ class DaeForm : public Form, public DaeSystem {
   std::vector<double> inertia_;  ///< diagonal of M at the start
   DaeScratch<double> plain_;
   DaeScratch<Dual8> dual_;
-  std::vector<double> epsilon_;  ///< per row of Φ; empty when the loops are independent at the start
-  std::unique_ptr<Kkt> kkt_;     ///< for reading momentum states back
+  std::vector<double>
+      epsilon_;               ///< per row of Φ; empty when the loops are independent at the start
+  std::unique_ptr<Kkt> kkt_;  ///< for reading momentum states back
   JacobianPattern pattern_;
-  std::vector<std::vector<int>> batches_;  ///< per dual evaluation: the direction of each column, −1: none
-  std::vector<std::vector<std::vector<int>>> groups_;  ///< per dual evaluation and direction: its columns
+  std::vector<std::vector<int>>
+      batches_;  ///< per dual evaluation: the direction of each column, −1: none
+  std::vector<std::vector<std::vector<int>>>
+      groups_;  ///< per dual evaluation and direction: its columns
 };
 
 /// Writes the equations of `Derived::rows<S>` for both scalars.
@@ -100,10 +109,12 @@ class DaeFormOf : public DaeForm {
   using DaeForm::DaeForm;
 
  protected:
-  void equations(DaeScratch<double>& s, double t, const double* y, const double* ydot, double* r) override {
+  void equations(DaeScratch<double>& s, double t, const double* y, const double* ydot,
+                 double* r) override {
     static_cast<Derived*>(this)->rows(s, t, y, ydot, r);
   }
-  void equations(DaeScratch<Dual8>& s, double t, const Dual8* y, const Dual8* ydot, Dual8* r) override {
+  void equations(DaeScratch<Dual8>& s, double t, const Dual8* y, const Dual8* ydot,
+                 Dual8* r) override {
     static_cast<Derived*>(this)->rows(s, t, y, ydot, r);
   }
 

@@ -10,7 +10,8 @@
 namespace momenta {
 namespace {
 
-using Maker = std::function<std::unique_ptr<Form>(const Mechanism&, const FormOptions&, const Start&)>;
+using Maker =
+    std::function<std::unique_ptr<Form>(const Mechanism&, const FormOptions&, const Start&)>;
 struct Entry {
   std::string name;
   bool dae;
@@ -47,7 +48,8 @@ std::string Gauge::text() const {
   if (kind == Kind::none) return "none";
   if (kind == Kind::reset) return "reset";
   char digits[32];
-  const auto end = std::to_chars(digits, digits + sizeof digits, kappa, std::chars_format::general, 4).ptr;
+  const auto end =
+      std::to_chars(digits, digits + sizeof digits, kappa, std::chars_format::general, 4).ptr;
   return "leak:" + std::string(digits, end);
 }
 
@@ -62,7 +64,8 @@ Gauge parse_gauge(const std::string& text) {
     if (error == std::errc() && stop == end && std::isfinite(kappa) && kappa > 0)
       return {Gauge::Kind::leak, kappa};
   }
-  throw std::invalid_argument("gauge '" + text + "' is not known; expected none, reset, leak or leak:κ with κ > 0 in 1/s");
+  throw std::invalid_argument(
+      "gauge '" + text + "' is not known; expected none, reset, leak or leak:κ with κ > 0 in 1/s");
 }
 
 const std::vector<std::string>& form_names() {
@@ -74,14 +77,16 @@ const std::vector<std::string>& form_names() {
   return names;
 }
 
-bool is_dae_form(const std::string& name) { return entry(name).dae; }
+bool is_dae_form(const std::string& name) {
+  return entry(name).dae;
+}
 
-std::unique_ptr<Form> make_form(const std::string& name, const Mechanism& mechanism, const FormOptions& options,
-                                const Start& start) {
+std::unique_ptr<Form> make_form(const std::string& name, const Mechanism& mechanism,
+                                const FormOptions& options, const Start& start) {
   const Entry& e = entry(name);
   if (e.dae && options.project)
-    throw std::invalid_argument("position correction after steps needs a one-step method; '" + name +
-                                "' is integrated by IDA");
+    throw std::invalid_argument("position correction after steps needs a one-step method; '" +
+                                name + "' is integrated by IDA");
   return e.make(mechanism, options, start);
 }
 
@@ -97,7 +102,8 @@ double default_leak(const Mechanism& mechanism, const Start& start) {
   for (std::size_t i = 0; i < values.size(); ++i) {
     const auto& at = mechanism.kkt_pattern().mass[i];
     if (at.row == at.column && values[i] > 0)
-      acceleration = std::max(acceleration, std::abs(force[static_cast<std::size_t>(at.row)]) / values[i]);
+      acceleration =
+          std::max(acceleration, std::abs(force[static_cast<std::size_t>(at.row)]) / values[i]);
   }
   const double rate = start.u.size() > 0 ? start.u.cwiseAbs().maxCoeff() : 0;
   const double kappa = std::max(std::sqrt(acceleration), rate);

@@ -1,6 +1,7 @@
 #pragma once
-// A form: one way to write the equations of motion of a mechanism for an integrator. This is what all forms share:
-// options, the start they take, and how a state of theirs is read back as q, u and impulses for the measures.
+// A form: one way to write the equations of motion of a mechanism for an integrator. This is what
+// all forms share: options, the start they take, and how a state of theirs is read back as q, u and
+// impulses for the measures.
 
 #include <momenta/dae/mechanism.h>
 #include <momenta/dae/solver/system.h>
@@ -12,12 +13,14 @@
 
 namespace momenta {
 
-/// What is done about the free part of σ. (p, σ) → (p + Φ_qᵀc, σ + c) leaves q(t) unchanged for constant c, so σ may be
-/// kept small at will; left alone it grows like t under a mean load, and the local error with it.
+/// What is done about the free part of σ. (p, σ) → (p + Φ_qᵀc, σ + c) leaves q(t) unchanged for
+/// constant c, so σ may be kept small at will; left alone it grows like t under a mean load, and
+/// the local error with it.
 struct Gauge {
   enum class Kind { none, leak, reset };
   Kind kind = Kind::none;
-  double kappa = 0;  ///< leak [1/s]: ṗ −= κ Φ_qᵀσ, λ = σ̇ + κσ; 0: chosen from the start (see default_leak)
+  double kappa =
+      0;  ///< leak [1/s]: ṗ −= κ Φ_qᵀσ, λ = σ̇ + κσ; 0: chosen from the start (see default_leak)
   std::string text() const;
 };
 /// "none", "leak", "leak:3", "reset". @throws std::invalid_argument with a sentence
@@ -25,19 +28,21 @@ Gauge parse_gauge(const std::string& text);
 
 struct FormOptions {
   Gauge gauge;
-  bool project = false;          ///< one mass-metric position correction after accepted steps (one-step methods)
-  double baumgarte_alpha = 0;    ///< [1/s]; 0: chosen by the form
-  double baumgarte_beta = 0;     ///< [1/s]
+  bool project =
+      false;  ///< one mass-metric position correction after accepted steps (one-step methods)
+  double baumgarte_alpha = 0;  ///< [1/s]; 0: chosen by the form
+  double baumgarte_beta = 0;   ///< [1/s]
 };
 
 /// A consistent start: Φ(q, t) = 0, Φ_q u + Φ_t = 0.
 struct Start {
   double t = 0;
-  Eigen::VectorXd q, u;        ///< nq, nv
+  Eigen::VectorXd q, u;          ///< nq, nv
   Eigen::VectorXd udot, lambda;  ///< accelerations and force multipliers there: nv, m
 };
 
-/// q, u and the impulse (σ of momentum forms) or force (λ) multipliers read back from a form's state.
+/// q, u and the impulse (σ of momentum forms) or force (λ) multipliers read back from a form's
+/// state.
 struct Snapshot {
   Eigen::VectorXd q, u, multipliers;
 };
@@ -50,7 +55,8 @@ class Form {
   virtual bool is_dae() const = 0;
   /// The state the form starts from.
   virtual std::vector<double> initial(const Start& start) = 0;
-  /// Reads a state back. Momentum forms recompute u from (7), so Φ̇ of theirs is that of an algebraic solve.
+  /// Reads a state back. Momentum forms recompute u from (7), so Φ̇ of theirs is that of an
+  /// algebraic solve.
   virtual bool read(double t, const double* y, const double* ydot, Snapshot& out) = 0;
   /// The gauge in force, with its κ.
   virtual Gauge gauge() const { return {}; }
@@ -62,14 +68,16 @@ class Form {
 
 /// Names, in the order tables list them.
 const std::vector<std::string>& form_names();
-/// Whether the named form is integrated as a DAE by IDA. @throws std::invalid_argument for an unknown name.
+/// Whether the named form is integrated as a DAE by IDA. @throws std::invalid_argument for an
+/// unknown name.
 bool is_dae_form(const std::string& name);
-/// @throws std::invalid_argument with a sentence for an unknown name or an option the form does not take.
-std::unique_ptr<Form> make_form(const std::string& name, const Mechanism& mechanism, const FormOptions& options,
-                                const Start& start);
+/// @throws std::invalid_argument with a sentence for an unknown name or an option the form does not
+/// take.
+std::unique_ptr<Form> make_form(const std::string& name, const Mechanism& mechanism,
+                                const FormOptions& options, const Start& start);
 
-/// A leak rate that fits the mechanism: the root of the largest acceleration the loops cause at the start, [1/s]. The
-/// optimum is flat over a decade on either side.
+/// A leak rate that fits the mechanism: the root of the largest acceleration the loops cause at the
+/// start, [1/s]. The optimum is flat over a decade on either side.
 double default_leak(const Mechanism& mechanism, const Start& start);
 
 }  // namespace momenta

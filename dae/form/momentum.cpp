@@ -7,11 +7,13 @@
 // Index         an ODE on all of R²ⁿ: any p is consistent
 // Hidden        Φ(q, t) = 0
 // Multipliers   σ, an impulse; the constraint force is λ = σ̇ + κ σ
-// Drifts        Φ like t, because Φ̇ = 0 holds to rounding at every evaluation and only its integral errs. Without a
+// Drifts        Φ like t, because Φ̇ = 0 holds to rounding at every evaluation and only its integral
+// errs. Without a
 //               gauge σ grows like t under a mean load, the local error with it, and Φ like t².
-// Gauge         none; leak κ; reset (p ← M u, σ ← 0 after each step: exact, since the gauge is a symmetry)
-// Without loops there is no σ: (q, p) → (q̇, ṗ) is the recursion (35)-(48), momentum_recursion.h.
-// Source        Naudet, Lefeber, Terze, eqs. (6)-(8); Bayo, Avello, Nonlinear Dynamics 5 (1994).
+// Gauge         none; leak κ; reset (p ← M u, σ ← 0 after each step: exact, since the gauge is a
+// symmetry) Without loops there is no σ: (q, p) → (q̇, ṗ) is the recursion (35)-(48),
+// momentum_recursion.h. Source        Naudet, Lefeber, Terze, eqs. (6)-(8); Bayo, Avello, Nonlinear
+// Dynamics 5 (1994).
 
 #include <momenta/dae/form/ode_form.h>
 
@@ -27,14 +29,16 @@ class Momentum final : public OdeForm {
       : OdeForm("momentum", mechanism, options) {
     gauge_ = options.gauge;
     if (!has_loops()) gauge_ = {};
-    if (gauge_.kind == Gauge::Kind::leak && gauge_.kappa == 0) gauge_.kappa = default_leak(mechanism, start);
+    if (gauge_.kind == Gauge::Kind::leak && gauge_.kappa == 0)
+      gauge_.kappa = default_leak(mechanism, start);
     // A momentum is as large as its own inertia times a rate of 1 rad/s or 1 m/s.
     e_->place(start.t, start.q.data());
     std::vector<double> values(mechanism.kkt_pattern().mass.size());
     e_->mass_entries(values.data());
     for (std::size_t i = 0; i < values.size(); ++i) {
       const auto& entry = mechanism.kkt_pattern().mass[i];
-      if (entry.row == entry.column) scale_[static_cast<std::size_t>(mechanism.nq() + entry.row)] = values[i];
+      if (entry.row == entry.column)
+        scale_[static_cast<std::size_t>(mechanism.nq() + entry.row)] = values[i];
     }
   }
 
@@ -58,7 +62,8 @@ class Momentum final : public OdeForm {
     const double *q = y, *p = y + mechanism_.nq();
     double* pdot = ydot + mechanism_.nq();
     if (!has_loops()) {
-      if (!e_->open_momentum_rates(t, q, p, u_.data(), pdot)) return fail_at(t, mechanism_.no_inertia());
+      if (!e_->open_momentum_rates(t, q, p, u_.data(), pdot))
+        return fail_at(t, mechanism_.no_inertia());
     } else {
       if (!solve(t, q, p, fade_evaluation)) return false;
       e_->move(u_.data());
@@ -125,7 +130,8 @@ class Momentum final : public OdeForm {
 
 }  // namespace
 
-std::unique_ptr<OdeForm> make_momentum(const Mechanism& mechanism, const FormOptions& options, const Start& start) {
+std::unique_ptr<OdeForm> make_momentum(const Mechanism& mechanism, const FormOptions& options,
+                                       const Start& start) {
   return std::make_unique<Momentum>(mechanism, options, start);
 }
 

@@ -16,7 +16,8 @@ namespace {
 class MomentumIndex1 final : public DaeFormOf<MomentumIndex1> {
  public:
   MomentumIndex1(const Mechanism& mechanism, const FormOptions& options, const Start& start)
-      : DaeFormOf("momentum-index1", mechanism, {mechanism.nq(), mechanism.nv(), mechanism.m()}, options, start, true) {}
+      : DaeFormOf("momentum-index1", mechanism, {mechanism.nq(), mechanism.nv(), mechanism.m()},
+                  options, start, true) {}
 
   template <class S>
   void rows(DaeScratch<S>& s, double t, const S* y, const S* ydot, S* r) {
@@ -35,7 +36,8 @@ class MomentumIndex1 final : public DaeFormOf<MomentumIndex1> {
 
 }  // namespace
 
-std::unique_ptr<Form> make_momentum_index1(const Mechanism& mechanism, const FormOptions& o, const Start& s) {
+std::unique_ptr<Form> make_momentum_index1(const Mechanism& mechanism, const FormOptions& o,
+                                           const Start& s) {
   return std::make_unique<MomentumIndex1>(mechanism, o, s);
 }
 

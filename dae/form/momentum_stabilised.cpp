@@ -6,7 +6,8 @@
 // Hidden        none at position or velocity level
 // Multipliers   σ, an impulse; μ, the position correction per time, zero in exact arithmetic
 // Drifts        nothing: Φ and Φ̇ at the Newton tolerance
-// Source        (7)-(8) with the extra multiplier of Gear, Gupta, Leimkuhler, J. Comput. Appl. Math. 12 (1985)
+// Source        (7)-(8) with the extra multiplier of Gear, Gupta, Leimkuhler, J. Comput. Appl.
+// Math. 12 (1985)
 
 #include <momenta/dae/form/dae_form.h>
 
@@ -16,12 +17,14 @@ namespace {
 class MomentumStabilised final : public DaeFormOf<MomentumStabilised> {
  public:
   MomentumStabilised(const Mechanism& mechanism, const FormOptions& options, const Start& start)
-      : DaeFormOf("momentum-stabilised", mechanism, {mechanism.nq(), mechanism.nv(), mechanism.m(), true, true},
-                  options, start, true) {}
+      : DaeFormOf("momentum-stabilised", mechanism,
+                  {mechanism.nq(), mechanism.nv(), mechanism.m(), true, true}, options, start,
+                  true) {}
 
   template <class S>
   void rows(DaeScratch<S>& s, double t, const S* y, const S* ydot, S* r) {
-    const S *q = y, *p = y + layout_.x(), *v = y + layout_.v(), *sigma = y + layout_.s(), *mu = y + layout_.mu();
+    const S *q = y, *p = y + layout_.x(), *v = y + layout_.v(), *sigma = y + layout_.s(),
+            *mu = y + layout_.mu();
     const S* pdot = ydot + layout_.x();
     s.e->place(t, q);
     s.e->constraint_forces(mu, s.a.data());
@@ -43,7 +46,8 @@ class MomentumStabilised final : public DaeFormOf<MomentumStabilised> {
 
 }  // namespace
 
-std::unique_ptr<Form> make_momentum_stabilised(const Mechanism& mechanism, const FormOptions& o, const Start& s) {
+std::unique_ptr<Form> make_momentum_stabilised(const Mechanism& mechanism, const FormOptions& o,
+                                               const Start& s) {
   return std::make_unique<MomentumStabilised>(mechanism, o, s);
 }
 

@@ -7,8 +7,12 @@
 namespace momenta {
 
 OdeForm::OdeForm(std::string name, const Mechanism& mechanism, const FormOptions& options)
-    : name_(std::move(name)), mechanism_(mechanism), options_(options), e_(mechanism.evaluation<double>()) {
-  const auto nv = static_cast<std::size_t>(mechanism.nv()), m = static_cast<std::size_t>(mechanism.m());
+    : name_(std::move(name)),
+      mechanism_(mechanism),
+      options_(options),
+      e_(mechanism.evaluation<double>()) {
+  const auto nv = static_cast<std::size_t>(mechanism.nv()),
+             m = static_cast<std::size_t>(mechanism.m());
   if (has_loops()) kkt_ = make_kkt(mechanism);
   u_.resize(nv);
   r_.resize(nv);

@@ -1,5 +1,6 @@
 #pragma once
-// What the ODE forms share: state y = (q, x) with x = p or u, the loops' linear system, position correction.
+// What the ODE forms share: state y = (q, x) with x = p or u, the loops' linear system, position
+// correction.
 
 #include <momenta/dae/form/form.h>
 #include <momenta/dae/kkt/kkt.h>
@@ -21,11 +22,13 @@ class OdeForm : public Form, public OdeSystem {
   bool has_loops() const { return mechanism_.m() > 0; }
   /// Places the evaluation at q and factorises (7) there. Fails with the cause by name.
   bool factor_at(double t, const double* q, double fade);
-  /// One Newton step on q in the mass metric: δ of M δ + Φ_qᵀν = 0, Φ_q δ = −Φ. Leaves (7) factorised for projection.
+  /// One Newton step on q in the mass metric: δ of M δ + Φ_qᵀν = 0, Φ_q δ = −Φ. Leaves (7)
+  /// factorised for projection.
   bool correct_position(double t, double* q);
   /// Quaternions of q back to unit length.
   void normalise(double* q) const;
-  /// r ← r − prescribed part of M u, g ← −Φ_t: the right-hand side of (7). Leaves the evaluation moved by drives only.
+  /// r ← r − prescribed part of M u, g ← −Φ_t: the right-hand side of (7). Leaves the evaluation
+  /// moved by drives only.
   void rheonomic_terms();
   /// The sentence "at t = …: why".
   bool fail_at(double t, const std::string& why);

@@ -16,8 +16,9 @@ namespace {
 class StabilisedIndex2 final : public DaeFormOf<StabilisedIndex2> {
  public:
   StabilisedIndex2(const Mechanism& mechanism, const FormOptions& options, const Start& start)
-      : DaeFormOf("stabilised-index2", mechanism, {mechanism.nq(), mechanism.nv(), mechanism.m(), false, true},
-                  options, start, false) {}
+      : DaeFormOf("stabilised-index2", mechanism,
+                  {mechanism.nq(), mechanism.nv(), mechanism.m(), false, true}, options, start,
+                  false) {}
 
   template <class S>
   void rows(DaeScratch<S>& s, double t, const S* y, const S* ydot, S* r) {
@@ -40,7 +41,8 @@ class StabilisedIndex2 final : public DaeFormOf<StabilisedIndex2> {
 
 }  // namespace
 
-std::unique_ptr<Form> make_stabilised_index2(const Mechanism& mechanism, const FormOptions& o, const Start& s) {
+std::unique_ptr<Form> make_stabilised_index2(const Mechanism& mechanism, const FormOptions& o,
+                                             const Start& s) {
   return std::make_unique<StabilisedIndex2>(mechanism, o, s);
 }
 

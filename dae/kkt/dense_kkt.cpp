@@ -1,10 +1,11 @@
-// Small systems. u is eliminated before σ: M = L Lᵀ, G = L⁻¹Φ_qᵀ, W = GᵀG = Φ_q M⁻¹ Φ_qᵀ, then W = Σ l_k d_k l_kᵀ by
-// scalar eliminations, largest remaining diagonal first. In this order and form the error of u is about ε/δ near a pose
-// where a singular value δ of Φ_q M^(−1/2) vanishes, as small as any algorithm can make it: W squares the condition of
-// σ, not of u.
+// Small systems. u is eliminated before σ: M = L Lᵀ, G = L⁻¹Φ_qᵀ, W = GᵀG = Φ_q M⁻¹ Φ_qᵀ, then W =
+// Σ l_k d_k l_kᵀ by scalar eliminations, largest remaining diagonal first. In this order and form
+// the error of u is about ε/δ near a pose where a singular value δ of Φ_q M^(−1/2) vanishes, as
+// small as any algorithm can make it: W squares the condition of σ, not of u.
 //
-// Each pivot is inverted as f(d) = d³/(d⁴ + τ⁴), zero for d ≤ 0: exact to (τ/d)⁴ above τ, fading to zero below. With
-// σ = centre + σ' only σ' fades, so a faded row keeps the impulse it had at the step's start.
+// Each pivot is inverted as f(d) = d³/(d⁴ + τ⁴), zero for d ≤ 0: exact to (τ/d)⁴ above τ, fading to
+// zero below. With σ = centre + σ' only σ' fades, so a faded row keeps the impulse it had at the
+// step's start.
 
 #include <momenta/dae/kkt/kkt.h>
 
@@ -31,7 +32,9 @@ class DenseKkt final : public Kkt {
         y_(size(n_, 1)),
         d_(size(m_, 1)),
         tau_(size(m_, 1)),
-        group_sum_(groups_.empty() ? 0 : static_cast<std::size_t>(*std::max_element(groups_.begin(), groups_.end()) + 1)),
+        group_sum_(groups_.empty() ? 0
+                                   : static_cast<std::size_t>(
+                                         *std::max_element(groups_.begin(), groups_.end()) + 1)),
         group_rows_(group_sum_.size()) {
     for (int group : groups_) ++group_rows_[static_cast<std::size_t>(group)];
   }
@@ -42,13 +45,15 @@ class DenseKkt final : public Kkt {
     e.constraint_entries(constraint_.data());
     std::fill(l_.begin(), l_.end(), 0.0);
     std::fill(g_.begin(), g_.end(), 0.0);
-    for (std::size_t i = 0; i < mass_.size(); ++i) l_[at(pattern_.mass[i].column, pattern_.mass[i].row, n_)] = mass_[i];
+    for (std::size_t i = 0; i < mass_.size(); ++i)
+      l_[at(pattern_.mass[i].column, pattern_.mass[i].row, n_)] = mass_[i];
     for (std::size_t i = 0; i < constraint_.size(); ++i)
       g_[at(pattern_.constraint[i].row, pattern_.constraint[i].column, n_)] = constraint_[i];
     return cholesky() && eliminate_loops(fade);
   }
 
-  bool solve(const double* r, const double* g, const double* centre, double* u, double* sigma) override {
+  bool solve(const double* r, const double* g, const double* centre, double* u,
+             double* sigma) override {
     for (int i = 0; i < n_; ++i) y_[idx(i)] = r[i];
     forward(y_.data());
     if (centre)
@@ -61,7 +66,9 @@ class DenseKkt final : public Kkt {
     }
     for (int k = 0; k < m_; ++k) {
       const int row = order_[idx(k)];
-      for (int i = k + 1; i < m_; ++i) d_[idx(order_[idx(i)])] -= w_[at(order_[idx(i)], row, m_)] * inverse_[idx(k)] * d_[idx(row)];
+      for (int i = k + 1; i < m_; ++i)
+        d_[idx(order_[idx(i)])] -=
+            w_[at(order_[idx(i)], row, m_)] * inverse_[idx(k)] * d_[idx(row)];
     }
     for (int k = m_; k-- > 0;) {
       const int row = order_[idx(k)];
@@ -86,7 +93,9 @@ class DenseKkt final : public Kkt {
   }
 
  private:
-  static std::size_t size(int a, int b) { return static_cast<std::size_t>(a) * static_cast<std::size_t>(b); }
+  static std::size_t size(int a, int b) {
+    return static_cast<std::size_t>(a) * static_cast<std::size_t>(b);
+  }
   static std::size_t idx(int i) { return static_cast<std::size_t>(i); }
   static std::size_t at(int i, int j, int columns) { return size(i, columns) + idx(j); }
 
@@ -137,7 +146,9 @@ class DenseKkt final : public Kkt {
     for (int k = 0; k < m_; ++k) {
       int best = k;
       for (int i = k + 1; i < m_; ++i)
-        if (w_[at(order_[idx(i)], order_[idx(i)], m_)] > w_[at(order_[idx(best)], order_[idx(best)], m_)]) best = i;
+        if (w_[at(order_[idx(i)], order_[idx(i)], m_)] >
+            w_[at(order_[idx(best)], order_[idx(best)], m_)])
+          best = i;
       std::swap(order_[idx(k)], order_[idx(best)]);
       const int row = order_[idx(k)];
       const double d = w_[at(row, row, m_)], tau = tau_[idx(row)];
@@ -177,7 +188,9 @@ class DenseKkt final : public Kkt {
 
 }  // namespace
 
-std::unique_ptr<Kkt> make_dense_kkt(const Mechanism& mechanism) { return std::make_unique<DenseKkt>(mechanism); }
+std::unique_ptr<Kkt> make_dense_kkt(const Mechanism& mechanism) {
+  return std::make_unique<DenseKkt>(mechanism);
+}
 
 std::unique_ptr<Kkt> make_kkt(const Mechanism& mechanism) {
   return mechanism.dense_kkt() ? make_dense_kkt(mechanism) : make_sparse_kkt(mechanism);

@@ -4,8 +4,9 @@
 //   ( M    Φ_qᵀ ) ( u )   ( r )
 //   ( Φ_q  0    ) ( σ ) = ( g )
 //
-// Redundant loop equations and singular poses make Φ_q lose rank; u stays well defined, σ does not. Weak directions of σ
-// are therefore faded out, towards `centre` (the σ of the step's start): see dense_kkt.cpp and sparse_kkt.cpp.
+// Redundant loop equations and singular poses make Φ_q lose rank; u stays well defined, σ does not.
+// Weak directions of σ are therefore faded out, towards `centre` (the σ of the step's start): see
+// dense_kkt.cpp and sparse_kkt.cpp.
 
 #include <momenta/dae/mechanism.h>
 
@@ -14,18 +15,22 @@
 namespace momenta {
 
 /// How weak a pivot may be, relative to its group's scale, before it fades.
-inline constexpr double fade_evaluation = 1e-8;   ///< in (7) and (3), recentred
-inline constexpr double fade_projection = 1e-13;  ///< in projections, which must remove what is there
+inline constexpr double fade_evaluation = 1e-8;  ///< in (7) and (3), recentred
+inline constexpr double fade_projection =
+    1e-13;  ///< in projections, which must remove what is there
 
 class Kkt {
  public:
   virtual ~Kkt() = default;
 
-  /// Assembles and factorises at the configuration placed in `e`. False when M is not positive definite, or when an
-  /// entry is not finite. Cost: dense O((nv + m)³); sparse O(fill) on a pattern analysed once.
+  /// Assembles and factorises at the configuration placed in `e`. False when M is not positive
+  /// definite, or when an entry is not finite. Cost: dense O((nv + m)³); sparse O(fill) on a
+  /// pattern analysed once.
   virtual bool factor(Evaluation<double>& e, double fade) = 0;
-  /// Solves for u (nv) and σ (m); r (nv), g (m), centre (m, null: zero). False when the result is not finite.
-  virtual bool solve(const double* r, const double* g, const double* centre, double* u, double* sigma) = 0;
+  /// Solves for u (nv) and σ (m); r (nv), g (m), centre (m, null: zero). False when the result is
+  /// not finite.
+  virtual bool solve(const double* r, const double* g, const double* centre, double* u,
+                     double* sigma) = 0;
 
   /// Pivots that were faded at the last factor(): rows that are redundant or singular here.
   int faded() const { return faded_; }

@@ -1,9 +1,10 @@
-// Large systems: the assembled matrix of (7), factorised by KLU on a pattern analysed once; values travel through index
-// maps. The loops' block is −ε instead of 0, with ε about fade times the scale of Φ_q M⁻¹ Φ_qᵀ, and the right-hand side
-// recentred,
+// Large systems: the assembled matrix of (7), factorised by KLU on a pattern analysed once; values
+// travel through index maps. The loops' block is −ε instead of 0, with ε about fade times the scale
+// of Φ_q M⁻¹ Φ_qᵀ, and the right-hand side recentred,
 //   Φ_q u − ε (σ − centre) = g,
-// so that a regular row is off by ε (σ − centre) only, and a redundant or vanishing row keeps its impulse. KLU chooses
-// its pivots once and then refactorises; when the residual of a solution tells that they no longer fit, it chooses anew.
+// so that a regular row is off by ε (σ − centre) only, and a redundant or vanishing row keeps its
+// impulse. KLU chooses its pivots once and then refactorises; when the residual of a solution tells
+// that they no longer fit, it chooses anew.
 
 #include <momenta/dae/kkt/kkt.h>
 #include <suitesparse/klu.h>
@@ -15,7 +16,8 @@
 namespace momenta {
 namespace {
 
-// Fading by an added block costs ε/W on every row, so it must be weaker than the filter of the dense form.
+// Fading by an added block costs ε/W on every row, so it must be weaker than the filter of the
+// dense form.
 constexpr double weaker = 1e-4;
 
 class SparseKkt final : public Kkt {
@@ -58,16 +60,20 @@ class SparseKkt final : public Kkt {
     regularise(fade);
     for (double v : value_)
       if (!std::isfinite(v)) return false;
-    if (numeric_ && klu_refactor(start_.data(), row_.data(), value_.data(), symbolic_, numeric_, &common_) == 1 &&
+    if (numeric_ &&
+        klu_refactor(start_.data(), row_.data(), value_.data(), symbolic_, numeric_, &common_) ==
+            1 &&
         common_.status == KLU_OK)
       return true;
     return factor_anew();
   }
 
-  bool solve(const double* r, const double* g, const double* centre, double* u, double* sigma) override {
+  bool solve(const double* r, const double* g, const double* centre, double* u,
+             double* sigma) override {
     std::copy(r, r + n_, b_.begin());
     for (int i = 0; i < m_; ++i)
-      b_[static_cast<std::size_t>(n_ + i)] = g[i] - (centre ? epsilon_[static_cast<std::size_t>(i)] * centre[i] : 0.0);
+      b_[static_cast<std::size_t>(n_ + i)] =
+          g[i] - (centre ? epsilon_[static_cast<std::size_t>(i)] * centre[i] : 0.0);
     if (!solve_refined() && !(factor_anew() && solve_refined())) return false;
     std::copy(x_.begin(), x_.begin() + n_, u);
     std::copy(x_.begin() + n_, x_.end(), sigma);
@@ -77,7 +83,9 @@ class SparseKkt final : public Kkt {
  private:
   bool factor_anew() {
     if (numeric_) klu_free_numeric(&numeric_, &common_);
-    numeric_ = symbolic_ ? klu_factor(start_.data(), row_.data(), value_.data(), symbolic_, &common_) : nullptr;
+    numeric_ = symbolic_
+                   ? klu_factor(start_.data(), row_.data(), value_.data(), symbolic_, &common_)
+                   : nullptr;
     return numeric_ && common_.status == KLU_OK;
   }
 
@@ -96,7 +104,8 @@ class SparseKkt final : public Kkt {
     std::fill(size_.begin(), size_.end(), 0.0);
     r_ = b_;
     for (int j = 0; j < n_ + m_; ++j)
-      for (int k = start_[static_cast<std::size_t>(j)]; k < start_[static_cast<std::size_t>(j) + 1]; ++k) {
+      for (int k = start_[static_cast<std::size_t>(j)]; k < start_[static_cast<std::size_t>(j) + 1];
+           ++k) {
         const auto i = static_cast<std::size_t>(row_[static_cast<std::size_t>(k)]);
         const double term = value_[static_cast<std::size_t>(k)] * x_[static_cast<std::size_t>(j)];
         r_[i] -= term;
@@ -117,7 +126,8 @@ class SparseKkt final : public Kkt {
     for (std::size_t i = 0; i < constraint_.size(); ++i) {
       const auto& entry = pattern_.constraint[i];
       const double mass = value_[diagonal_[static_cast<std::size_t>(entry.column)]];
-      if (mass > 0) row_scale_[static_cast<std::size_t>(entry.row)] += constraint_[i] * constraint_[i] / mass;
+      if (mass > 0)
+        row_scale_[static_cast<std::size_t>(entry.row)] += constraint_[i] * constraint_[i] / mass;
     }
     for (std::size_t first = 0; first < groups_.size();) {
       std::size_t last = first;
@@ -150,9 +160,11 @@ class SparseKkt final : public Kkt {
     for (std::size_t j = 1; j < start_.size(); ++j) start_[j] += start_[j - 1];
     value_.assign(row_.size(), 0.0);
     size_.assign(static_cast<std::size_t>(n_ + m_), 0.0);
-    for (const auto& e : pattern_.mass) mass_at_.push_back({place.at({e.column, e.row}), place.at({e.row, e.column})});
+    for (const auto& e : pattern_.mass)
+      mass_at_.push_back({place.at({e.column, e.row}), place.at({e.row, e.column})});
     for (const auto& e : pattern_.constraint)
-      constraint_at_.push_back({place.at({e.column, n_ + e.row}), place.at({n_ + e.row, e.column})});
+      constraint_at_.push_back(
+          {place.at({e.column, n_ + e.row}), place.at({n_ + e.row, e.column})});
     for (int i = 0; i < n_ + m_; ++i) diagonal_.push_back(place.at({i, i}));
   }
 
@@ -172,6 +184,8 @@ class SparseKkt final : public Kkt {
 
 }  // namespace
 
-std::unique_ptr<Kkt> make_sparse_kkt(const Mechanism& mechanism) { return std::make_unique<SparseKkt>(mechanism); }
+std::unique_ptr<Kkt> make_sparse_kkt(const Mechanism& mechanism) {
+  return std::make_unique<SparseKkt>(mechanism);
+}
 
 }  // namespace momenta

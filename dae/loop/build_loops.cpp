@@ -28,7 +28,8 @@ void choose_rows(LoopKind kind, Loop& l) {
   l.rows = l.n_points + l.n_axes;
 }
 
-Eigen::Matrix3d zero_rotation(const Tree& tree, const std::vector<Eigen::Isometry3d>& poses, int body) {
+Eigen::Matrix3d zero_rotation(const Tree& tree, const std::vector<Eigen::Isometry3d>& poses,
+                              int body) {
   if (body < 0) return Eigen::Matrix3d::Identity();
   const auto k = static_cast<std::size_t>(body);
   return (poses[k] * tree.bodies[k].scene_axes).linear();
@@ -71,7 +72,8 @@ LoopModel<Planar> build_loops(const Scene& scene, const Tree& tree, const Model<
     LoopModel<Planar>::Loop l;
     l.a = tree.body(spec.child);
     l.b = tree.body(spec.parent);
-    const Eigen::Vector3d point_a = tree.point(l.a, spec.origin_child), point_b = tree.point(l.b, spec.origin_parent);
+    const Eigen::Vector3d point_a = tree.point(l.a, spec.origin_child),
+                          point_b = tree.point(l.b, spec.origin_parent);
     l.at_a = model.point(l.a, point_a);
     l.at_b = model.point(l.b, point_b);
     const auto height = [&](int body, const Eigen::Vector3d& p) {
@@ -83,23 +85,28 @@ LoopModel<Planar> build_loops(const Scene& scene, const Tree& tree, const Model<
       l.across2 = across * across;
       l.rows = 1;
       if (std::abs(across) > spec.length)
-        throw SceneError(scene.where(spec.at) + "loop '" + spec.name + "' cannot close: its points lie " +
-                         std::to_string(std::abs(across)) + " m apart across the plane, more than its length " +
+        throw SceneError(scene.where(spec.at) + "loop '" + spec.name +
+                         "' cannot close: its points lie " + std::to_string(std::abs(across)) +
+                         " m apart across the plane, more than its length " +
                          std::to_string(spec.length) + " m");
     } else {
       const double size = 1 + point_a.norm() + point_b.norm();
       if (std::abs(across) > 1e-9 * size)
-        throw SceneError(scene.where(spec.at) + "loop '" + spec.name + "' cannot close: its two sides lie " +
-                         std::to_string(std::abs(across)) +
-                         " m apart across the plane in which the scene moves; expected the same height");
+        throw SceneError(
+            scene.where(spec.at) + "loop '" + spec.name + "' cannot close: its two sides lie " +
+            std::to_string(std::abs(across)) +
+            " m apart across the plane in which the scene moves; expected the same height");
       const bool slides = spec.kind == LoopKind::prismatic;
       const bool turns_locked = slides || spec.kind == LoopKind::weld;
       // Axes in the plane: for a slide, 1 along it and 2 across; else the plane's own.
-      const Eigen::Matrix3d in_joint = zero_rotation(tree, poses, l.b) * spec.rotation.toRotationMatrix();
-      Eigen::Vector3d first = slides ? Eigen::Vector3d(in_joint * spec.axis) : Eigen::Vector3d(model.basis.col(0));
+      const Eigen::Matrix3d in_joint =
+          zero_rotation(tree, poses, l.b) * spec.rotation.toRotationMatrix();
+      Eigen::Vector3d first =
+          slides ? Eigen::Vector3d(in_joint * spec.axis) : Eigen::Vector3d(model.basis.col(0));
       first.normalize();
       const Eigen::Vector3d second = normal.cross(first);
-      const Eigen::Matrix3d child_from_joint = zero_rotation(tree, poses, l.a) * in_joint.transpose();
+      const Eigen::Matrix3d child_from_joint =
+          zero_rotation(tree, poses, l.a) * in_joint.transpose();
       const auto in_plane = [&](const Eigen::Vector3d& v) {
         const Eigen::Vector3d w = model.basis.transpose() * v;
         return Vec2<double>{{w.x(), w.y()}};
@@ -124,25 +131,36 @@ std::string loops_leave_plane(const Scene& scene, const Tree& tree, const Eigen:
   const Eigen::Vector3d normal = basis.col(2);
   constexpr double angle_tolerance = 1e-10;
   for (const LoopSpec& spec : scene.loops) {
-    const Eigen::Matrix3d in_b = zero_rotation(tree, poses, tree.body(spec.parent)) * spec.rotation.toRotationMatrix();
+    const Eigen::Matrix3d in_b =
+        zero_rotation(tree, poses, tree.body(spec.parent)) * spec.rotation.toRotationMatrix();
     const Eigen::Matrix3d in_a = zero_rotation(tree, poses, tree.body(spec.child));
-    // Normal of the plane seen from both sides of the joint: equal, or the loop would have to turn out of the plane.
-    const bool sides_differ = (in_a.transpose() * normal - in_b.transpose() * normal).norm() > angle_tolerance;
+    // Normal of the plane seen from both sides of the joint: equal, or the loop would have to turn
+    // out of the plane.
+    const bool sides_differ =
+        (in_a.transpose() * normal - in_b.transpose() * normal).norm() > angle_tolerance;
     const Eigen::Vector3d axis_a = in_a * spec.axis, axis_b = in_b * spec.axis;
-    const auto off_normal = [&](const Eigen::Vector3d& v) { return v.cross(normal).norm() > angle_tolerance; };
-    const auto off_plane = [&](const Eigen::Vector3d& v) { return std::abs(v.dot(normal)) > angle_tolerance; };
-    if (spec.kind == LoopKind::revolute && (off_normal(axis_a) || off_normal(axis_b) || axis_a.dot(axis_b) < 0))
+    const auto off_normal = [&](const Eigen::Vector3d& v) {
+      return v.cross(normal).norm() > angle_tolerance;
+    };
+    const auto off_plane = [&](const Eigen::Vector3d& v) {
+      return std::abs(v.dot(normal)) > angle_tolerance;
+    };
+    if (spec.kind == LoopKind::revolute &&
+        (off_normal(axis_a) || off_normal(axis_b) || axis_a.dot(axis_b) < 0))
       return "the axis of loop '" + spec.name + "' is not normal to the plane of the joints";
-    if (spec.kind == LoopKind::prismatic && (off_plane(axis_a) || off_plane(axis_b) || sides_differ))
+    if (spec.kind == LoopKind::prismatic &&
+        (off_plane(axis_a) || off_plane(axis_b) || sides_differ))
       return "loop '" + spec.name + "' slides out of the plane of the joints";
-    if (spec.kind == LoopKind::weld && sides_differ) return "loop '" + spec.name + "' is welded out of the plane";
+    if (spec.kind == LoopKind::weld && sides_differ)
+      return "loop '" + spec.name + "' is welded out of the plane";
   }
   return "";
 }
 
 std::vector<RowName> row_names(const Scene& scene, bool planar) {
   std::vector<RowName> names;
-  const std::array<const char*, 3> point{"point along axis 1", "point along axis 2", "point along axis 3"};
+  const std::array<const char*, 3> point{"point along axis 1", "point along axis 2",
+                                         "point along axis 3"};
   for (const LoopSpec& spec : scene.loops) {
     const auto add = [&](const std::string& what) { names.push_back({spec.name, what}); };
     if (spec.kind == LoopKind::distance) {

@@ -1,7 +1,9 @@
 #pragma once
-// Loops cast into one algebra: for every loop its two bodies, the points and axes it ties together, and which rows.
+// Loops cast into one algebra: for every loop its two bodies, the points and axes it ties together,
+// and which rows.
 //
-// Body A is the loop's child, B its parent; b_j are axes fixed in B, a_i axes fixed in A; D = x_A − x_B.
+// Body A is the loop's child, B its parent; b_j are axes fixed in B, a_i axes fixed in A; D = x_A −
+// x_B.
 //   D_j    b_j · D                      point on a plane through x_B
 //   O_ij   a_i · b_j                    two axes at a right angle
 //   L      (D · D − l²) / (2 l)         distance, in metres
@@ -9,7 +11,8 @@
 //   point, spherical  D1 D2 D3          revolute about axis 3   D1 D2 D3, O31 O32
 //   weld              D1 D2 D3, O12 O23 O31      prismatic along axis 3   D1 D2, O12 O23 O31
 //   distance          L
-// In a plane: point, spherical, revolute D1 D2; weld D1 D2 O12; prismatic D (across), O12; distance L.
+// In a plane: point, spherical, revolute D1 D2; weld D1 D2 O12; prismatic D (across), O12; distance
+// L.
 
 #include <momenta/core/kernel/model.h>
 
@@ -24,16 +27,16 @@ struct LoopModel {
   using Vector = typename Space::template Vector<double>;
 
   struct Loop {
-    int a = -1, b = -1;             ///< bodies, −1: ground
-    int row = 0, rows = 0;          ///< place in Φ
-    Vector at_a, at_b;              ///< points, body axes
+    int a = -1, b = -1;                    ///< bodies, −1: ground
+    int row = 0, rows = 0;                 ///< place in Φ
+    Vector at_a, at_b;                     ///< points, body axes
     std::array<Vector, 3> axis_a, axis_b;  ///< axes, body axes
-    std::array<int, 3> points{};    ///< j of the D_j rows
+    std::array<int, 3> points{};           ///< j of the D_j rows
     int n_points = 0;
     std::array<std::pair<int, int>, 3> axes{};  ///< (i, j) of the O_ij rows
     int n_axes = 0;
-    double length = 0;    ///< distance loops; then the only row
-    double across2 = 0;   ///< squared distance across the plane of a planar scene
+    double length = 0;   ///< distance loops; then the only row
+    double across2 = 0;  ///< squared distance across the plane of a planar scene
   };
 
   std::vector<Loop> loops;

@@ -1,14 +1,17 @@
 #pragma once
-// The loop equations at three levels, their impulses and the inertial rates of those, for one algebra and one scalar.
-// u_A, u_B: velocities of the two points; ω_a, ω_b: angular velocities; s: the impulse σ of the row.
+// The loop equations at three levels, their impulses and the inertial rates of those, for one
+// algebra and one scalar. u_A, u_B: velocities of the two points; ω_a, ω_b: angular velocities; s:
+// the impulse σ of the row.
 //
-//          Φ̇                                      wrench on A          inertial rate N on A at fixed σ
-//   D_j    b·(u_A − u_B) + (ω_b × b)·D            force b s at x_A     force (ω_b × b) s at x_A, couple u_A × b s
-//   O_ij   (a × b)·(ω_a − ω_b)                    couple (a × b) s     couple [(ω_a × a) × b + a × (ω_b × b)] s
-//   L      D·(u_A − u_B)/l                        force D s/l at x_A   force (u_A − u_B) s/l at x_A, couple u_A × D s/l
-// On B act the exact negatives, with the same line of action. N = (d/dt Jᵀ)σ + Ω × w: it is added to the applied
-// wrenches T, because Ω × P* in (35) takes the part Ω × w away again. With this, p = EᵀP*_aug is row 1 of (7) and (35)
-// is (8), without M or Φ_q.
+//          Φ̇                                      wrench on A          inertial rate N on A at
+//          fixed σ
+//   D_j    b·(u_A − u_B) + (ω_b × b)·D            force b s at x_A     force (ω_b × b) s at x_A,
+//   couple u_A × b s O_ij   (a × b)·(ω_a − ω_b)                    couple (a × b) s     couple
+//   [(ω_a × a) × b + a × (ω_b × b)] s L      D·(u_A − u_B)/l                        force D s/l at
+//   x_A   force (u_A − u_B) s/l at x_A, couple u_A × D s/l
+// On B act the exact negatives, with the same line of action. N = (d/dt Jᵀ)σ + Ω × w: it is added
+// to the applied wrenches T, because Ω × P* in (35) takes the part Ω × w away again. With this, p =
+// EᵀP*_aug is row 1 of (7) and (35) is (8), without M or Φ_q.
 
 #include <momenta/core/kernel/points.h>
 #include <momenta/core/scalar/dual.h>
@@ -33,7 +36,8 @@ class LoopRows {
   using Force = typename Space::template Force<S>;
   using Angular = decltype(cross(Vector{}, Vector{}));  ///< Vec3 in space, S in the plane
 
-  LoopRows(const LoopModel<Space>& model, Workspace<Space, S>& w) : model_(model), w_(w), at_(model.loops.size()) {}
+  LoopRows(const LoopModel<Space>& model, Workspace<Space, S>& w)
+      : model_(model), w_(w), at_(model.loops.size()) {}
 
   /// Points and axes in ground components; needs poses.
   void place() {
@@ -65,7 +69,9 @@ class LoopRows {
   /// Φ (m)
   void positions(S* phi) const {
     each_row([&](int row, const auto&, const At& s, const Vector& b) { phi[row] = dot(b, s.D); },
-             [&](int row, const auto&, const At&, const Vector& a, const Vector& b) { phi[row] = dot(a, b); },
+             [&](int row, const auto&, const At&, const Vector& a, const Vector& b) {
+               phi[row] = dot(a, b);
+             },
              [&](int row, const auto& l, const At& s) {
                phi[row] = (dot(s.D, s.D) + (l.across2 - l.length * l.length)) * (0.5 / l.length);
              });
@@ -73,13 +79,16 @@ class LoopRows {
 
   /// Φ̇ (m) for the velocities of the last move().
   void velocities(S* rate) const {
-    each_row([&](int row, const auto&, const At& s, const Vector& b) {
-               rate[row] = dot(b, s.u_a - s.u_b) + dot(cross(s.w_b, b), s.D);
-             },
-             [&](int row, const auto&, const At& s, const Vector& a, const Vector& b) {
-               rate[row] = inner(cross(a, b), s.w_a - s.w_b);
-             },
-             [&](int row, const auto& l, const At& s) { rate[row] = dot(s.D, s.u_a - s.u_b) * (1.0 / l.length); });
+    each_row(
+        [&](int row, const auto&, const At& s, const Vector& b) {
+          rate[row] = dot(b, s.u_a - s.u_b) + dot(cross(s.w_b, b), s.D);
+        },
+        [&](int row, const auto&, const At& s, const Vector& a, const Vector& b) {
+          rate[row] = inner(cross(a, b), s.w_a - s.w_b);
+        },
+        [&](int row, const auto& l, const At& s) {
+          rate[row] = dot(s.D, s.u_a - s.u_b) * (1.0 / l.length);
+        });
   }
 
   /// Φ̈ (m) for the accelerations body[k].A: with u̇ = 0 the bias (d/dt Φ_q) u + d/dt Φ_t.
@@ -87,28 +96,33 @@ class LoopRows {
     const auto accelerate = [&](const auto& l, const At& s) -> Vector {
       return point_acceleration(w_, l.a, s.x_a) - point_acceleration(w_, l.b, s.x_b);
     };
-    each_row([&](int row, const auto& l, const At& s, const Vector& b) {
-               const Vector bdot = cross(s.w_b, b);
-               const Vector bddot = cross(s.w_b, bdot) + cross(angular_acceleration(w_, l.b), b);
-               rate[row] = dot(b, accelerate(l, s)) + 2.0 * dot(bdot, s.u_a - s.u_b) + dot(bddot, s.D);
-             },
-             [&](int row, const auto& l, const At& s, const Vector& a, const Vector& b) {
-               const Vector adot = cross(s.w_a, a), bdot = cross(s.w_b, b);
-               rate[row] = inner(cross(a, b), angular_acceleration(w_, l.a) - angular_acceleration(w_, l.b)) +
-                           dot(cross(s.w_a, adot), b) + 2.0 * dot(adot, bdot) + dot(a, cross(s.w_b, bdot));
-             },
-             [&](int row, const auto& l, const At& s) {
-               const Vector rel = s.u_a - s.u_b;
-               rate[row] = (dot(s.D, accelerate(l, s)) + dot(rel, rel)) * (1.0 / l.length);
-             });
+    each_row(
+        [&](int row, const auto& l, const At& s, const Vector& b) {
+          const Vector bdot = cross(s.w_b, b);
+          const Vector bddot = cross(s.w_b, bdot) + cross(angular_acceleration(w_, l.b), b);
+          rate[row] = dot(b, accelerate(l, s)) + 2.0 * dot(bdot, s.u_a - s.u_b) + dot(bddot, s.D);
+        },
+        [&](int row, const auto& l, const At& s, const Vector& a, const Vector& b) {
+          const Vector adot = cross(s.w_a, a), bdot = cross(s.w_b, b);
+          rate[row] =
+              inner(cross(a, b), angular_acceleration(w_, l.a) - angular_acceleration(w_, l.b)) +
+              dot(cross(s.w_a, adot), b) + 2.0 * dot(adot, bdot) + dot(a, cross(s.w_b, bdot));
+        },
+        [&](int row, const auto& l, const At& s) {
+          const Vector rel = s.u_a - s.u_b;
+          rate[row] = (dot(s.D, accelerate(l, s)) + dot(rel, rel)) * (1.0 / l.length);
+        });
   }
 
-  /// Adds the wrenches of the impulses `sigma`, times `factor`, to the bodies' forces chosen by `field`.
+  /// Adds the wrenches of the impulses `sigma`, times `factor`, to the bodies' forces chosen by
+  /// `field`.
   template <class Field>
   void add_wrenches(const S* sigma, double factor, Field field) {
     each_loop_wrench(
         sigma, factor, field,
-        [](const At&, const Vector& b) { return std::pair<Vector, Vector>{b, Vector{}}; },
+        [](const At&, const Vector& b) {
+          return std::pair<Vector, Vector>{b, Vector{}};
+        },
         [](const At&, const Vector& a, const Vector& b) { return cross(a, b); }, false);
   }
 
@@ -116,7 +130,9 @@ class LoopRows {
   void add_inertial_rates(const S* sigma) {
     each_loop_wrench(
         sigma, 1.0, [](auto& body) -> Force& { return body.T; },
-        [](const At& s, const Vector& b) { return std::pair<Vector, Vector>{cross(s.w_b, b), b}; },
+        [](const At& s, const Vector& b) {
+          return std::pair<Vector, Vector>{cross(s.w_b, b), b};
+        },
         [](const At& s, const Vector& a, const Vector& b) {
           return cross(cross(s.w_a, a), b) + cross(a, cross(s.w_b, b));
         },
@@ -173,9 +189,11 @@ class LoopRows {
     }
   }
 
-  /// Sums the rows of each loop into one force at x_A and one couple, then acts on A and, negated, on B.
+  /// Sums the rows of each loop into one force at x_A and one couple, then acts on A and, negated,
+  /// on B.
   template <class Field, class Point, class Axes>
-  void each_loop_wrench(const S* sigma, double factor, Field field, Point&& point, Axes&& axes, bool rate) {
+  void each_loop_wrench(const S* sigma, double factor, Field field, Point&& point, Axes&& axes,
+                        bool rate) {
     for (std::size_t i = 0; i < at_.size(); ++i) {
       const auto& l = model_.loops[i];
       const At& s = at_[i];
@@ -192,14 +210,16 @@ class LoopRows {
         }
       } else {
         for (int j = 0; j < l.n_points; ++j, ++row) {
-          const auto [f, w] = point(s, s.b[static_cast<std::size_t>(l.points[static_cast<std::size_t>(j)])]);
+          const auto [f, w] =
+              point(s, s.b[static_cast<std::size_t>(l.points[static_cast<std::size_t>(j)])]);
           const S scaled = factor * sigma[row];
           force += scaled * f;
           if (rate) impulse += scaled * w;
         }
         for (int j = 0; j < l.n_axes; ++j, ++row) {
           const auto [x, y] = l.axes[static_cast<std::size_t>(j)];
-          couple += S(factor * sigma[row]) * axes(s, s.a[static_cast<std::size_t>(x)], s.b[static_cast<std::size_t>(y)]);
+          couple += S(factor * sigma[row]) *
+                    axes(s, s.a[static_cast<std::size_t>(x)], s.b[static_cast<std::size_t>(y)]);
         }
       }
       if (rate) couple += cross(s.u_a, impulse);

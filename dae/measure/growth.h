@@ -7,9 +7,10 @@
 
 namespace momenta {
 
-/// Fits running_max(t) ~ t^exponent over the last factor 20 in t, on logarithmically spaced times, by least squares.
-/// The half-range is half the spread of the slopes of the two halves of that range and of the whole. All NaN when there
-/// are too few samples or the maximum vanishes somewhere in the range. `t` ascending [s], `drift` ≥ 0.
+/// Fits running_max(t) ~ t^exponent over the last factor 20 in t, on logarithmically spaced times,
+/// by least squares. The half-range is half the spread of the slopes of the two halves of that
+/// range and of the whole. All NaN when there are too few samples or the maximum vanishes somewhere
+/// in the range. `t` ascending [s], `drift` ≥ 0.
 Growth fit_growth(const std::vector<double>& t, const std::vector<double>& drift);
 
 }  // namespace momenta

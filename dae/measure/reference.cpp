@@ -16,7 +16,8 @@ std::vector<std::string> split(std::string_view line) {
     const auto comma = line.find(',');
     std::string_view cell = line.substr(0, comma);
     while (!cell.empty() && (cell.front() == ' ' || cell.front() == '"')) cell.remove_prefix(1);
-    while (!cell.empty() && (cell.back() == ' ' || cell.back() == '\r' || cell.back() == '"')) cell.remove_suffix(1);
+    while (!cell.empty() && (cell.back() == ' ' || cell.back() == '\r' || cell.back() == '"'))
+      cell.remove_suffix(1);
     cells.emplace_back(cell);
     if (comma == std::string_view::npos) return cells;
     line.remove_prefix(comma + 1);
@@ -25,8 +26,9 @@ std::vector<std::string> split(std::string_view line) {
 
 std::string unit_of(const std::string& column) {
   const auto open = column.rfind('['), close = column.rfind(']');
-  return open == std::string::npos || close == std::string::npos || close < open ? ""
-                                                                                  : column.substr(open + 1, close - open - 1);
+  return open == std::string::npos || close == std::string::npos || close < open
+             ? ""
+             : column.substr(open + 1, close - open - 1);
 }
 
 }  // namespace
@@ -39,25 +41,29 @@ Reference::Reference(const std::filesystem::path& file) : file_(file.string()) {
   const auto refuse = [&](const std::string& what) {
     throw SceneError(file_ + ":" + std::to_string(number) + ": " + what);
   };
-  if (!std::getline(in, line)) refuse("the file is empty; expected a header row starting with t [s]");
+  if (!std::getline(in, line))
+    refuse("the file is empty; expected a header row starting with t [s]");
   columns_ = split(line);
   if (columns_.front() != "t [s]")
     refuse("found '" + columns_.front().substr(0, 40) + "' as first column; expected t [s]");
   for (const auto& column : columns_)
-    if (unit_of(column).empty()) refuse("column '" + column.substr(0, 40) + "' has no unit; expected name [unit]");
+    if (unit_of(column).empty())
+      refuse("column '" + column.substr(0, 40) + "' has no unit; expected name [unit]");
   columns_.erase(columns_.begin());
   while (std::getline(in, line)) {
     ++number;
     if (line.empty() || line == "\r") continue;
     const auto cells = split(line);
     if (cells.size() != columns_.size() + 1)
-      refuse("found " + std::to_string(cells.size()) + " cells; expected " + std::to_string(columns_.size() + 1));
+      refuse("found " + std::to_string(cells.size()) + " cells; expected " +
+             std::to_string(columns_.size() + 1));
     std::vector<double> row;
     for (const auto& cell : cells) {
       double value = 0;
       const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
       // Numbers below the smallest double are zero for every purpose here.
-      if (error == std::errc::result_out_of_range && cell.find("e-") != std::string::npos) value = 0;
+      if (error == std::errc::result_out_of_range && cell.find("e-") != std::string::npos)
+        value = 0;
       else if (error != std::errc() || end != cell.data() + cell.size() || !std::isfinite(value))
         refuse("found '" + cell.substr(0, 40) + "'; expected a finite number");
       row.push_back(value);
@@ -76,7 +82,8 @@ void Reference::bind(const std::vector<std::string>& trajectory_columns) {
   for (const auto& column : columns_) {
     const auto found = std::find(trajectory_columns.begin(), trajectory_columns.end(), column);
     if (found == trajectory_columns.end())
-      throw SceneError(file_ + ":1: column '" + column + "' is not one of the trajectory's; expected for instance '" +
+      throw SceneError(file_ + ":1: column '" + column +
+                       "' is not one of the trajectory's; expected for instance '" +
                        (trajectory_columns.size() > 1 ? trajectory_columns[1] : "") + "'");
     place_.push_back(static_cast<std::size_t>(found - trajectory_columns.begin()));
     const std::string unit = unit_of(column);
@@ -84,11 +91,13 @@ void Reference::bind(const std::vector<std::string>& trajectory_columns) {
   }
 }
 
-Reference::Error Reference::error(std::size_t row, const std::vector<double>& trajectory_row) const {
+Reference::Error Reference::error(std::size_t row,
+                                  const std::vector<double>& trajectory_row) const {
   Error e;
   for (std::size_t i = 0; i < place_.size(); ++i) {
     const double reference = values_[row][i];
-    const double difference = std::abs(trajectory_row[place_[i]] - reference) / (1 + std::abs(reference));
+    const double difference =
+        std::abs(trajectory_row[place_[i]] - reference) / (1 + std::abs(reference));
     double& largest = is_rate_[i] ? e.velocity : e.position;
     if (!(difference <= largest)) largest = difference;  // NaN too
   }

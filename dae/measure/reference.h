@@ -1,5 +1,6 @@
 #pragma once
-// A reference solution: a CSV whose first column is `t [s]` and whose other columns are named like trajectory columns.
+// A reference solution: a CSV whose first column is `t [s]` and whose other columns are named like
+// trajectory columns.
 
 #include <filesystem>
 #include <string>
@@ -13,15 +14,18 @@ class Reference {
   explicit Reference(const std::filesystem::path& file);
 
   const std::string& file() const { return file_; }
-  const std::vector<double>& times() const { return times_; }          ///< ascending [s]
-  const std::vector<std::string>& columns() const { return columns_; }  ///< without t, "name [unit]"
+  const std::vector<double>& times() const { return times_; }  ///< ascending [s]
+  const std::vector<std::string>& columns() const {
+    return columns_;
+  }  ///< without t, "name [unit]"
 
-  /// Matches the columns with those of a trajectory ("t [s]" first). @throws SceneError naming a column that the
-  /// trajectory does not have.
+  /// Matches the columns with those of a trajectory ("t [s]" first). @throws SceneError naming a
+  /// column that the trajectory does not have.
   void bind(const std::vector<std::string>& trajectory_columns);
 
   struct Error {
-    double position = 0, velocity = 0;  ///< max |value − ref| / (1 + |ref|) over columns in rad, m and rad/s, m/s
+    double position = 0,
+           velocity = 0;  ///< max |value − ref| / (1 + |ref|) over columns in rad, m and rad/s, m/s
   };
   /// Error of a trajectory row at reference time number `row`. After bind().
   Error error(std::size_t row, const std::vector<double>& trajectory_row) const;

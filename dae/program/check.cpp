@@ -46,13 +46,15 @@ int check(const Options& o) {
     for (int k = b.parent; k >= 0; k = tree.bodies[static_cast<std::size_t>(k)].parent) ++depth;
     static constexpr const char* kinds[] = {"revolute", "prismatic", "spherical", "free", "weld"};
     if (depth > 12) continue;  // long chains: the first bodies tell the pattern
-    std::printf("  %*s%s (%s%s) %s, %.4g kg\n", 2 * depth, "", b.joint.c_str(), b.drive >= 0 ? "driven " : "",
-                kinds[static_cast<int>(b.kind)], b.name.c_str(), b.mass);
+    std::printf("  %*s%s (%s%s) %s, %.4g kg\n", 2 * depth, "", b.joint.c_str(),
+                b.drive >= 0 ? "driven " : "", kinds[static_cast<int>(b.kind)], b.name.c_str(),
+                b.mass);
   }
   for (const auto& loop : mechanism->scene().loops)
     std::printf("  loop %s: %s - %s\n", loop.name.c_str(), loop.parent.c_str(), loop.child.c_str());
-  std::printf("\n  %zu bodies, %d coordinates, %d rates, %d loop equations of rank %d: mobility %d\n", tree.bodies.size(),
-              mechanism->nq(), mechanism->nv(), mechanism->m(), a.rank, a.mobility);
+  std::printf(
+      "\n  %zu bodies, %d coordinates, %d rates, %d loop equations of rank %d: mobility %d\n",
+      tree.bodies.size(), mechanism->nq(), mechanism->nv(), mechanism->m(), a.rank, a.mobility);
   for (int row : a.dependent_rows) {
     const auto& name = mechanism->rows()[static_cast<std::size_t>(row)];
     std::printf("  redundant at the start: loop '%s', %s\n", name.loop.c_str(), name.what.c_str());
@@ -60,7 +62,8 @@ int check(const Options& o) {
   if (mechanism->m() > 0 && a.dependent_rows.empty())
     std::printf("  loop equations independent: smallest pivot of Φ_q %.3g\n", a.smallest_pivot);
   std::printf("\nPlan\n");
-  for (const auto& [what, how] : mechanism->plan_lines()) std::printf("  %-17s %s\n", what.c_str(), how.c_str());
+  for (const auto& [what, how] : mechanism->plan_lines())
+    std::printf("  %-17s %s\n", what.c_str(), how.c_str());
   std::printf("\nForms\n");
   for (const auto& form : indices)
     std::printf("  %-20s %s%s\n", form.form, form.index[0] == 'O' ? "" : "index ",
@@ -92,8 +95,11 @@ int assemble_verb(const Options& o) {
     return done;
   }
   if (o.quiet) return done;
-  std::printf("%s: assembled in %d iterations, |Φ| %.2g, |Φ̇| %.2g, joints moved by at most %.3g from the guess\n",
-              mechanism->scene().name.c_str(), a.iterations, a.position_residual, a.velocity_residual, a.moved);
+  std::printf(
+      "%s: assembled in %d iterations, |Φ| %.2g, |Φ̇| %.2g, joints moved by at most %.3g from the "
+      "guess\n",
+      mechanism->scene().name.c_str(), a.iterations, a.position_residual, a.velocity_residual,
+      a.moved);
   for (const auto& b : mechanism->tree().bodies) {
     std::printf("  %-16s", b.joint.c_str());
     for (int i = 0; i < b.nq; ++i) std::printf(" %.15g", a.start.q[b.q + i]);

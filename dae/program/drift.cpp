@@ -28,12 +28,14 @@ int drift(const Options& o, const DriftOptions& d) {
     request.forms.push_back(form);
   }
   if (o.integrator == "ida")
-    throw std::invalid_argument("--integrator chooses the method of the ODE forms; the DAE forms run on ida anyway");
+    throw std::invalid_argument(
+        "--integrator chooses the method of the ODE forms; the DAE forms run on ida anyway");
   request.integrator = o.integrator;
   if (!o.gauge.empty()) request.gauge = parse_gauge(o.gauge).text();
   request.rtol = o.rtol;
   request.atol = o.atol.value_or(o.rtol);
-  request.step = o.step.value_or(o.integrator.empty() || o.integrator == "rk4" ? defaults.step.value_or(0) : 0);
+  request.step = o.step.value_or(
+      o.integrator.empty() || o.integrator == "rk4" ? defaults.step.value_or(0) : 0);
   request.end_time = o.end.value_or(defaults.end_time);
   request.samples = o.samples.value_or(defaults.samples);
   request.project = o.project;
@@ -60,16 +62,18 @@ int drift(const Options& o, const DriftOptions& d) {
   study.environment = environment();
   if (interrupted() && !study.runs.empty()) study.runs.back().reason = "interrupted";
   const std::string json = study_json(study).dump(2) + "\n";
-  if (!o.out.empty() &&
-      (!write_result(o.out / "summary.json", json) || !write_result(o.out / "study.csv", study_csv(study)) ||
-       !write_result(o.out / "index.html", drift_page(study))))
+  if (!o.out.empty() && (!write_result(o.out / "summary.json", json) ||
+                         !write_result(o.out / "study.csv", study_csv(study)) ||
+                         !write_result(o.out / "index.html", drift_page(study))))
     return run_failed;
   if (o.json)
     std::fputs(json.c_str(), stdout);
   else if (!o.quiet)
     std::printf("%s\n%s\n", drift_table(study).c_str(), conclusion(study).c_str());
-  if (!o.out.empty() && !o.quiet) std::fprintf(stderr, "momenta: wrote %s\n", (o.out / "index.html").c_str());
-  const bool any = std::any_of(study.runs.begin(), study.runs.end(), [](const auto& r) { return r.status == "done"; });
+  if (!o.out.empty() && !o.quiet)
+    std::fprintf(stderr, "momenta: wrote %s\n", (o.out / "index.html").c_str());
+  const bool any = std::any_of(study.runs.begin(), study.runs.end(),
+                               [](const auto& r) { return r.status == "done"; });
   return any && !interrupted() ? done : run_failed;
 }
 

@@ -18,20 +18,26 @@ int main(int argc, char** argv) {
   DriftOptions d;
   std::string family;
   int n = 10;
-  CLI::App app("Constrained multibody systems on canonical momenta: open chains, closed loops, and how far they drift.");
+  CLI::App app(
+      "Constrained multibody systems on canonical momenta: open chains, closed loops, and how far "
+      "they drift.");
   app.require_subcommand(1);
   app.set_version_flag("--version", "momenta 0.1.0");
   app.footer("Example: momenta drift examples/four_bar/scene.toml --out results");
 
-  CLI::App* check_verb = app.add_subcommand("check", "Topology, mobility, redundant equations, the plan");
+  CLI::App* check_verb =
+      app.add_subcommand("check", "Topology, mobility, redundant equations, the plan");
   add_scene(*check_verb, o);
-  CLI::App* assemble_app = app.add_subcommand("assemble", "A consistent start: positions, rates, accelerations, λ");
+  CLI::App* assemble_app =
+      app.add_subcommand("assemble", "A consistent start: positions, rates, accelerations, λ");
   add_scene(*assemble_app, o);
   CLI::App* run_verb = app.add_subcommand("run", "One form, one integrator");
   add_scene(*run_verb, o);
-  run_verb->add_option("--form", o.form, "Which equations (see momenta check)")->capture_default_str();
+  run_verb->add_option("--form", o.form, "Which equations (see momenta check)")
+      ->capture_default_str();
   add_run_options(*run_verb, o);
-  CLI::App* drift_verb = app.add_subcommand("drift", "Every form side by side: drift, energy, error against run time");
+  CLI::App* drift_verb =
+      app.add_subcommand("drift", "Every form side by side: drift, energy, error against run time");
   add_scene(*drift_verb, o);
   drift_verb->add_option("--forms", d.forms, "Comma-separated (default: all)");
   add_run_options(*drift_verb, o);

@@ -11,7 +11,9 @@ namespace momenta::program {
 namespace {
 
 volatile std::sig_atomic_t signal_came = 0;
-extern "C" void take_signal(int) { signal_came = 1; }
+extern "C" void take_signal(int) {
+  signal_came = 1;
+}
 
 }  // namespace
 
@@ -27,18 +29,23 @@ void add_scene(CLI::App& verb, Options& o) {
 
 void add_run_options(CLI::App& verb, Options& o) {
   const auto positive = CLI::PositiveNumber;
-  verb.add_option("--integrator", o.integrator, "rk4, dp5, dop853, adams, bdf or ida (default: by form)")
+  verb.add_option("--integrator", o.integrator,
+                  "rk4, dp5, dop853, adams, bdf or ida (default: by form)")
       ->check(CLI::IsMember({"rk4", "dp5", "dop853", "adams", "bdf", "ida"}));
   verb.add_option("--gauge", o.gauge, "Momentum forms: none, reset, leak or leak:RATE [1/s]");
   verb.add_option("--rtol", o.rtol, "Relative tolerance")->check(positive)->capture_default_str();
-  verb.add_option("--atol", o.atol, "Absolute tolerance, times each unknown's scale (default: rtol)")->check(positive);
+  verb.add_option("--atol", o.atol,
+                  "Absolute tolerance, times each unknown's scale (default: rtol)")
+      ->check(positive);
   verb.add_option("--step", o.step, "Step of rk4 [s]")->check(positive);
   verb.add_option("--end", o.end, "End time [s]")->check(positive);
   verb.add_option("--samples", o.samples, "Output intervals")->check(CLI::Range(1, 10'000'000));
   verb.add_flag("--project", o.project, "Correct positions after each step (one-step methods)");
-  verb.add_option("--baumgarte-alpha", o.baumgarte_alpha, "α of Φ̈ + 2αΦ̇ + β²Φ = 0 [1/s]")->check(positive);
+  verb.add_option("--baumgarte-alpha", o.baumgarte_alpha, "α of Φ̈ + 2αΦ̇ + β²Φ = 0 [1/s]")
+      ->check(positive);
   verb.add_option("--baumgarte-beta", o.baumgarte_beta, "β [1/s]")->check(positive);
-  verb.add_option("--cpu-limit", o.cpu_limit, "Stop a run after this much CPU time [s]")->check(positive);
+  verb.add_option("--cpu-limit", o.cpu_limit, "Stop a run after this much CPU time [s]")
+      ->check(positive);
   verb.add_option("--reference", o.reference, "CSV with a reference solution");
   verb.add_option("--out", o.out, "Directory for results");
 }
@@ -48,7 +55,9 @@ std::unique_ptr<Mechanism> load(const Options& o) {
   options.algebra = o.algebra == "planar"    ? Algebra::planar
                     : o.algebra == "spatial" ? Algebra::spatial
                                              : Algebra::automatic;
-  options.kkt = o.kkt == "dense" ? KktChoice::dense : o.kkt == "sparse" ? KktChoice::sparse : KktChoice::automatic;
+  options.kkt = o.kkt == "dense"    ? KktChoice::dense
+                : o.kkt == "sparse" ? KktChoice::sparse
+                                    : KktChoice::automatic;
   return std::make_unique<Mechanism>(read_scene(o.scene), options);
 }
 
@@ -65,7 +74,9 @@ bool write_result(const std::filesystem::path& file, std::string_view content) {
   return !problem;
 }
 
-bool interrupted() { return signal_came != 0; }
+bool interrupted() {
+  return signal_came != 0;
+}
 
 void watch_signals() {
   std::signal(SIGINT, take_signal);

@@ -45,10 +45,12 @@ int run(const Options& o) {
   study.runs.push_back(run_form(*mechanism, a.start, request));
   line.show("");
   const RunResult& result = study.runs.front();
-  if (interrupted()) study.runs.front().reason = "interrupted at t = " + std::to_string(result.stopped_at) + " s";
+  if (interrupted())
+    study.runs.front().reason = "interrupted at t = " + std::to_string(result.stopped_at) + " s";
   const std::string summary = summary_json(result, study.environment).dump(2) + "\n";
-  if (!o.out.empty() && (!write_result(o.out / "trajectory.csv", trajectory_csv(result.trajectory)) ||
-                         !write_result(o.out / "summary.json", summary)))
+  if (!o.out.empty() &&
+      (!write_result(o.out / "trajectory.csv", trajectory_csv(result.trajectory)) ||
+       !write_result(o.out / "summary.json", summary)))
     return run_failed;
   if (o.json) {
     std::fputs(summary.c_str(), stdout);

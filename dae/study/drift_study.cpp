@@ -32,7 +32,8 @@ std::vector<RunSettings> plan_runs(const Mechanism& mechanism, const DriftReques
     const bool momentum = form.rfind("momentum", 0) == 0;
     if (is_dae_form(form)) {
       // Without loops every DAE form is the same ODE.
-      if (loops || !request.forms.empty()) add(form, momentum ? (request.gauge.empty() ? leak : request.gauge) : "", false);
+      if (loops || !request.forms.empty())
+        add(form, momentum ? (request.gauge.empty() ? leak : request.gauge) : "", false);
       continue;
     }
     if (form == "baumgarte" && !loops && request.forms.empty()) continue;
@@ -52,7 +53,8 @@ std::vector<RunSettings> plan_runs(const Mechanism& mechanism, const DriftReques
 
 }  // namespace
 
-std::vector<RunResult> run_drift_study(const Mechanism& mechanism, const Start& start, const DriftRequest& request) {
+std::vector<RunResult> run_drift_study(const Mechanism& mechanism, const Start& start,
+                                       const DriftRequest& request) {
   const auto runs = plan_runs(mechanism, request);
   std::vector<RunResult> results;
   bool going = true;
@@ -65,7 +67,8 @@ std::vector<RunResult> run_drift_study(const Mechanism& mechanism, const Start& 
                               (runs[i].project ? " projected" : "");
     if (request.progress)
       run.progress = [&](double t) {
-        going = request.progress(static_cast<int>(i) + 1, static_cast<int>(runs.size()), label, t / request.end_time);
+        going = request.progress(static_cast<int>(i) + 1, static_cast<int>(runs.size()), label,
+                                 t / request.end_time);
         return going;
       };
     results.push_back(run_form(mechanism, start, run));

@@ -11,20 +11,23 @@ namespace momenta {
 
 struct DriftRequest {
   std::vector<std::string> forms;  ///< empty: all
-  std::string integrator;          ///< of the ODE forms; empty: rk4 when there is a step, else dop853
-  std::string gauge;               ///< of the momentum forms; empty: every one that makes sense is shown
+  std::string integrator;  ///< of the ODE forms; empty: rk4 when there is a step, else dop853
+  std::string gauge;       ///< of the momentum forms; empty: every one that makes sense is shown
   double rtol = 1e-8, atol = 1e-8;
-  double step = 0;                 ///< [s]
-  double end_time = 10;            ///< [s]
+  double step = 0;       ///< [s]
+  double end_time = 10;  ///< [s]
   int samples = 1000;
-  bool project = false;            ///< correct positions in the ODE forms; false: one projected run of each kind is added
+  bool project = false;  ///< correct positions in the ODE forms; false: one projected run of each
+                         ///< kind is added
   const Reference* reference = nullptr;
   double max_cpu_seconds = 0;
-  /// Before each run (number, of how many, label) and during it (fraction done); false stops the study.
+  /// Before each run (number, of how many, label) and during it (fraction done); false stops the
+  /// study.
   std::function<bool(int, int, const std::string&, double)> progress;
 };
 
 /// The runs in the order of the tables. Failed ones are among them with their reason.
-std::vector<RunResult> run_drift_study(const Mechanism& mechanism, const Start& start, const DriftRequest& request);
+std::vector<RunResult> run_drift_study(const Mechanism& mechanism, const Start& start,
+                                       const DriftRequest& request);
 
 }  // namespace momenta

@@ -30,7 +30,8 @@ Environment environment() {
   };
   e.versions = {{"momenta", MOMENTA_VERSION},
                 {"SUNDIALS", SUNDIALS_VERSION},
-                {"SuiteSparse", dotted(SUITESPARSE_MAIN_VERSION, SUITESPARSE_SUB_VERSION, SUITESPARSE_SUBSUB_VERSION)},
+                {"SuiteSparse", dotted(SUITESPARSE_MAIN_VERSION, SUITESPARSE_SUB_VERSION,
+                                       SUITESPARSE_SUBSUB_VERSION)},
                 {"Eigen", dotted(EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION)}};
   const std::time_t now = std::time(nullptr);
   std::tm utc{};

@@ -17,7 +17,9 @@ double cpu_now() {
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
-bool is_multistep(const std::string& integrator) { return integrator == "adams" || integrator == "bdf"; }
+bool is_multistep(const std::string& integrator) {
+  return integrator == "adams" || integrator == "bdf";
+}
 
 /// Uniform samples and the reference's own times, ascending, without the start.
 std::vector<double> output_times(const RunSettings& s, const Reference* reference) {
@@ -29,7 +31,9 @@ std::vector<double> output_times(const RunSettings& s, const Reference* referenc
   std::sort(times.begin(), times.end());
   const double apart = 1e-12 * s.end_time;
   // Of two times that are one, keep the reference's: it comes with its own digits.
-  times.erase(std::unique(times.begin(), times.end(), [&](double a, double b) { return b - a < apart; }), times.end());
+  times.erase(
+      std::unique(times.begin(), times.end(), [&](double a, double b) { return b - a < apart; }),
+      times.end());
   times.back() = s.end_time;
   return times;
 }
@@ -63,8 +67,9 @@ class Looker {
     e_->move(now_.u.data());
     e_->velocities(phi_.data());
     const double velocity = phi_.norm();
-    const double energy =
-        mechanism_.plan().drives ? not_measured : e_->kinetic() + e_->potential(now_.q.data()) - work_;
+    const double energy = mechanism_.plan().drives
+                              ? not_measured
+                              : e_->kinetic() + e_->potential(now_.q.data()) - work_;
     if (!std::isfinite(position) || !std::isfinite(velocity)) {
       trouble_ = "at t = " + std::to_string(t) + " s the state is not finite";
       return false;
@@ -85,7 +90,8 @@ class Looker {
   }
 
   bool step(double t0, double t1, const Interpolant& between) {
-    state_.resize(static_cast<std::size_t>(form_.is_dae() ? form_.dae()->size() : form_.ode()->size()));
+    state_.resize(
+        static_cast<std::size_t>(form_.is_dae() ? form_.dae()->size() : form_.ode()->size()));
     const double middle = 0.5 * (t0 + t1);
     if (mechanism_.m() > 0) {
       between(middle, state_.data());
@@ -157,7 +163,8 @@ class Looker {
     row_.push_back(position);
     row_.push_back(velocity);
     if (kkt_) {
-      Eigen::VectorXd r(mechanism_.nv()), g(mechanism_.m()), udot(mechanism_.nv()), lambda(mechanism_.m());
+      Eigen::VectorXd r(mechanism_.nv()), g(mechanism_.m()), udot(mechanism_.nv()),
+          lambda(mechanism_.m());
       lambda.setConstant(not_measured);
       if (kkt_->factor(*e_, fade_evaluation)) {
         e_->joint_forces(now_.q.data(), now_.u.data(), nullptr, nullptr, r.data());
@@ -179,7 +186,8 @@ class Looker {
     s.position_error.push_back(not_measured);
     s.velocity_error.push_back(not_measured);
     if (!hit) return;
-    const auto error = request_.reference->error(static_cast<std::size_t>(at - times.begin()), row_);
+    const auto error =
+        request_.reference->error(static_cast<std::size_t>(at - times.begin()), row_);
     s.position_error.back() = error.position;
     s.velocity_error.back() = error.velocity;
     ++compared_;
@@ -202,7 +210,9 @@ class Looker {
 
 }  // namespace
 
-std::string default_integrator(const std::string& form) { return is_dae_form(form) ? "ida" : "dop853"; }
+std::string default_integrator(const std::string& form) {
+  return is_dae_form(form) ? "ida" : "dop853";
+}
 
 std::vector<std::string> trajectory_columns(const Mechanism& mechanism) {
   std::vector<std::string> columns{"t [s]"};
@@ -235,10 +245,13 @@ RunResult run_form(const Mechanism& mechanism, const Start& start, const RunRequ
   const bool dae = is_dae_form(s.form);
   if (s.integrator.empty()) s.integrator = default_integrator(s.form);
   if (dae != (s.integrator == "ida"))
-    throw std::invalid_argument("form '" + s.form + "' is " + (dae ? "a DAE: expected integrator ida" : "an ODE: expected rk4, dp5, dop853, adams or bdf") +
+    throw std::invalid_argument("form '" + s.form + "' is " +
+                                (dae ? "a DAE: expected integrator ida"
+                                     : "an ODE: expected rk4, dp5, dop853, adams or bdf") +
                                 ", found '" + s.integrator + "'");
   if (is_multistep(s.integrator) && (s.project || s.gauge == "reset"))
-    throw std::invalid_argument("'" + s.integrator + "' is a multistep method: a state altered after each step would " +
+    throw std::invalid_argument("'" + s.integrator +
+                                "' is a multistep method: a state altered after each step would " +
                                 "spoil its history; use gauge leak and no position correction");
   if (!(s.end_time > 0) || !std::isfinite(s.end_time))
     throw std::invalid_argument("the end time must be positive and finite");
@@ -263,7 +276,8 @@ RunResult run_form(const Mechanism& mechanism, const Start& start, const RunRequ
   const auto integrate = [&](const std::vector<double>& times, const Observer& observer) {
     if (dae) return integrate_ida(*form->dae(), start.t, times, io, observer);
     const auto y0 = form->initial(start);
-    if (is_multistep(s.integrator)) return integrate_cvode(s.integrator, *form->ode(), start.t, y0, times, io, observer);
+    if (is_multistep(s.integrator))
+      return integrate_cvode(s.integrator, *form->ode(), start.t, y0, times, io, observer);
     return integrate_explicit(s.integrator, *form->ode(), start.t, y0, times, io, observer);
   };
 
@@ -274,10 +288,14 @@ RunResult run_form(const Mechanism& mechanism, const Start& start, const RunRequ
   looker.sample(start.t, y0.data(), nullptr);
   const IntegrationResult run = integrate(
       output_times(s, request.reference),
-      Observer{[&](double t, const double* y, const double* ydot) { return looker.sample(t, y, ydot); },
-               [&](double t0, double t1, const Interpolant& between) { return looker.step(t0, t1, between); }});
+      Observer{
+          [&](double t, const double* y, const double* ydot) { return looker.sample(t, y, ydot); },
+          [&](double t0, double t1, const Interpolant& between) {
+            return looker.step(t0, t1, between);
+          }});
   double cpu = cpu_now() - cpu_start;
-  result.status = run.done ? "done" : (run.reason.rfind("time limit", 0) == 0 ? "time limit" : "failed");
+  result.status =
+      run.done ? "done" : (run.reason.rfind("time limit", 0) == 0 ? "time limit" : "failed");
   result.reason = run.done ? "" : (looker.trouble().empty() ? run.reason : looker.trouble());
   result.stopped_at = run.end_time;
   result.counters = run.counters;
@@ -291,13 +309,15 @@ RunResult run_form(const Mechanism& mechanism, const Start& start, const RunRequ
     cpu_start = cpu_now();
     integrate({s.end_time}, {});
     cpus.push_back(cpu_now() - cpu_start);
-    walls.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - wall0).count());
+    walls.push_back(
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - wall0).count());
     cpu += cpus.back();
   }
   result.repeats = static_cast<int>(cpus.size());
   if (cpus.empty()) {
     cpus.push_back(cpu);
-    walls.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - wall_start).count());
+    walls.push_back(
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - wall_start).count());
   }
   const auto median = [](std::vector<double> v) {
     std::sort(v.begin(), v.end());
@@ -305,7 +325,8 @@ RunResult run_form(const Mechanism& mechanism, const Start& start, const RunRequ
   };
   result.cpu_s = median(cpus);
   result.wall_s = median(walls);
-  if (auto* ode = dynamic_cast<OdeForm*>(form.get())) result.counters.factorizations += ode->factorizations();
+  if (auto* ode = dynamic_cast<OdeForm*>(form.get()))
+    result.counters.factorizations += ode->factorizations();
   return result;
 }
 

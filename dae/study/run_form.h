@@ -23,8 +23,9 @@ struct RunRequest {
 /// Columns of trajectory.csv: t, q, u, markers, energy, drifts, loop forces.
 std::vector<std::string> trajectory_columns(const Mechanism& mechanism);
 
-/// Runs once with every sample looked at, then `repeats` times with nobody looking, for the CPU time. Failures are in
-/// the result: status, reason and all samples up to there. @throws std::invalid_argument for settings that don't fit.
+/// Runs once with every sample looked at, then `repeats` times with nobody looking, for the CPU
+/// time. Failures are in the result: status, reason and all samples up to there. @throws
+/// std::invalid_argument for settings that don't fit.
 RunResult run_form(const Mechanism& mechanism, const Start& start, const RunRequest& request);
 
 /// The integrator a form takes when none is named: dop853, or ida for DAE forms.

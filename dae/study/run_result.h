@@ -1,5 +1,6 @@
 #pragma once
-// One run of one form by one integrator: what was asked, what came out. The rows of every table, CSV, JSON and page.
+// One run of one form by one integrator: what was asked, what came out. The rows of every table,
+// CSV, JSON and page.
 
 #include <momenta/dae/solver/integration.h>
 
@@ -11,44 +12,49 @@
 
 namespace momenta {
 
-inline constexpr double not_measured = std::numeric_limits<double>::quiet_NaN();  ///< JSON null, empty CSV cell
+inline constexpr double not_measured =
+    std::numeric_limits<double>::quiet_NaN();  ///< JSON null, empty CSV cell
 
 struct RunSettings {
   std::string form = "momentum";
   std::string integrator = "dop853";
-  std::string gauge = "none";   ///< none, leak:κ, reset; empty for acceleration forms
+  std::string gauge = "none";  ///< none, leak:κ, reset; empty for acceleration forms
   double rtol = 1e-8, atol = 1e-8;
-  double step = 0;              ///< [s], 0 for adaptive integrators
-  double end_time = 10;         ///< [s]
-  int samples = 1000;           ///< output intervals
-  bool project = false;         ///< one mass-metric position correction after each accepted step
+  double step = 0;       ///< [s], 0 for adaptive integrators
+  double end_time = 10;  ///< [s]
+  int samples = 1000;    ///< output intervals
+  bool project = false;  ///< one mass-metric position correction after each accepted step
   double baumgarte_alpha = 0, baumgarte_beta = 0;  ///< [1/s]: Φ̈ + 2αΦ̇ + β²Φ = 0
-  std::string kkt;              ///< how (7) is solved: dense, sparse, or empty (no loops, or solved inside IDA's Newton matrix)
+  std::string kkt;  ///< how (7) is solved: dense, sparse, or empty (no loops, or solved inside
+                    ///< IDA's Newton matrix)
 };
 
 /// A fitted power law running_max(t) ~ t^exponent (measure/growth.h).
 struct Growth {
   double exponent = not_measured;
-  double half_range = not_measured;   ///< half the spread of the slopes of sub-ranges
-  double from = 0, to = 0;            ///< fitted range of t [s]
+  double half_range = not_measured;  ///< half the spread of the slopes of sub-ranges
+  double from = 0, to = 0;           ///< fitted range of t [s]
 };
 
-/// Time series at the output times, all of one length; what the charts draw and trajectory.csv holds.
+/// Time series at the output times, all of one length; what the charts draw and trajectory.csv
+/// holds.
 struct Series {
   std::vector<double> t;               ///< [s]
   std::vector<double> position_drift;  ///< |Φ(q, t)|₂
   std::vector<double> velocity_drift;  ///< |Φ̇(q, q̇, t)|₂
-  std::vector<double> energy;          ///< H balance: T + V minus the work done by drives, dampers and torques [J]
-  std::vector<double> energy_error;    ///< energy − energy(0) [J]
-  std::vector<double> impulse;         ///< |σ|₂ of momentum forms, |λ|₂ of the others
-  std::vector<double> position_error;  ///< against the reference, max |err|/(1+|ref|); empty without one
+  std::vector<double>
+      energy;  ///< H balance: T + V minus the work done by drives, dampers and torques [J]
+  std::vector<double> energy_error;  ///< energy − energy(0) [J]
+  std::vector<double> impulse;       ///< |σ|₂ of momentum forms, |λ|₂ of the others
+  std::vector<double>
+      position_error;  ///< against the reference, max |err|/(1+|ref|); empty without one
   std::vector<double> velocity_error;
 };
 
 /// trajectory.csv: one column per quantity, rows at the output times.
 struct Trajectory {
-  std::vector<std::string> columns;        ///< "t [s]", "O.q [rad]", …
-  std::vector<std::vector<double>> rows;   ///< each of columns.size()
+  std::vector<std::string> columns;       ///< "t [s]", "O.q [rad]", …
+  std::vector<std::vector<double>> rows;  ///< each of columns.size()
 };
 
 struct RunResult {
@@ -61,7 +67,8 @@ struct RunResult {
   std::string jacobian, linear_solver;
   double cpu_s = not_measured, wall_s = not_measured;  ///< median of repeats, integration alone
   int repeats = 0;
-  double position_drift_max = not_measured, velocity_drift_max = not_measured, between_steps_max = not_measured;
+  double position_drift_max = not_measured, velocity_drift_max = not_measured,
+         between_steps_max = not_measured;
   Growth position_growth, velocity_growth;
   double energy_error_max = not_measured;
   double position_error_max = not_measured, velocity_error_max = not_measured;
@@ -69,28 +76,38 @@ struct RunResult {
   Trajectory trajectory;
 };
 
-/// The mechanism at the start, for the drawing on a page: ground axes projected onto the plane shown.
+/// The mechanism at the start, for the drawing on a page: ground axes projected onto the plane
+/// shown.
 struct Sketch {
-  struct Line { std::string body; std::vector<std::array<double, 2>> points; };  ///< one polyline or polygon per body [m]
-  struct Point { std::string name; std::string kind; std::array<double, 2> at; };  ///< kind: joint, loop, marker, ground
+  struct Line {
+    std::string body;
+    std::vector<std::array<double, 2>> points;
+  };  ///< one polyline or polygon per body [m]
+  struct Point {
+    std::string name;
+    std::string kind;
+    std::array<double, 2> at;
+  };  ///< kind: joint, loop, marker, ground
   std::vector<Line> lines;
   std::vector<Point> points;
 };
 
 struct Environment {
   std::string cpu, compiler, flags, build_type;
-  std::vector<std::pair<std::string, std::string>> versions;  ///< momenta, SUNDIALS, SuiteSparse, Eigen
+  std::vector<std::pair<std::string, std::string>>
+      versions;      ///< momenta, SUNDIALS, SuiteSparse, Eigen
   std::string date;  ///< ISO 8601
 };
 
 /// What `momenta drift` and `momenta work` produce.
 struct StudyResult {
-  std::string scene;        ///< its name
+  std::string scene;  ///< its name
   std::string scene_file;
-  std::string scene_hash;   ///< hex digest of the scene text
-  std::string command;      ///< as typed
-  std::string reference;    ///< file name of the reference, or empty
-  std::vector<std::pair<std::string, std::string>> plan;  ///< lines of the plan, as `momenta check` prints them
+  std::string scene_hash;  ///< hex digest of the scene text
+  std::string command;     ///< as typed
+  std::string reference;   ///< file name of the reference, or empty
+  std::vector<std::pair<std::string, std::string>>
+      plan;  ///< lines of the plan, as `momenta check` prints them
   Sketch sketch;
   Environment environment;
   std::vector<RunResult> runs;  ///< the drift runs, one per form, then (work) further rungs

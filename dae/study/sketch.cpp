@@ -5,7 +5,8 @@
 namespace momenta {
 namespace {
 
-/// Rows take ground points to the page. In a plane: its basis. In space: x to the right, z up, y going back at an angle.
+/// Rows take ground points to the page. In a plane: its basis. In space: x to the right, z up, y
+/// going back at an angle.
 Eigen::Matrix<double, 2, 3> view(const Mechanism& mechanism) {
   Eigen::Matrix<double, 2, 3> v;
   if (mechanism.plan().planar)
@@ -24,7 +25,8 @@ Sketch sketch(const Mechanism& mechanism, double t, const Eigen::VectorXd& q) {
   const auto poses = chain.poses(t, q);
   const auto page = view(mechanism);
   const Scene& scene = mechanism.scene();
-  const auto place = [&](const std::string& body, const Eigen::Vector3d& at) -> std::array<double, 2> {
+  const auto place = [&](const std::string& body,
+                         const Eigen::Vector3d& at) -> std::array<double, 2> {
     const int k = mechanism.tree().body(body);
     const Eigen::Vector3d x = k < 0 ? at : Eigen::Vector3d(poses[static_cast<std::size_t>(k)] * at);
     const Eigen::Vector2d p = page * x;
@@ -53,9 +55,12 @@ Sketch sketch(const Mechanism& mechanism, double t, const Eigen::VectorXd& q) {
     s.lines.push_back(std::move(line));
   }
   for (const auto& joint : scene.joints)
-    s.points.push_back({joint.name, joint.parent == "ground" ? "ground" : "joint", place(joint.parent, joint.origin_parent)});
-  for (const auto& loop : scene.loops) s.points.push_back({loop.name, "loop", place(loop.child, loop.origin_child)});
-  for (const auto& marker : scene.markers) s.points.push_back({marker.name, "marker", place(marker.body, marker.point)});
+    s.points.push_back({joint.name, joint.parent == "ground" ? "ground" : "joint",
+                        place(joint.parent, joint.origin_parent)});
+  for (const auto& loop : scene.loops)
+    s.points.push_back({loop.name, "loop", place(loop.child, loop.origin_child)});
+  for (const auto& marker : scene.markers)
+    s.points.push_back({marker.name, "marker", place(marker.body, marker.point)});
   return s;
 }
 
