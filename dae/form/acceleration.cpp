@@ -76,16 +76,8 @@ class Acceleration final : public OdeForm {
   }
   bool after_step(double t, double* y, bool&) override {
     double *q = y, *u = y + mechanism_.nq();
-    if (has_loops() && options_.project) {
-      if (!correct_position(t, q) || !factor_at(t, q, fade_projection)) return false;
-      // M v + Φ_qᵀν = M u, Φ_q v = −Φ_t: the nearest consistent velocity in the mass metric.
-      e_->move(u);
-      e_->momenta(nullptr, r_.data());
-      rheonomic_terms();
-      if (!kkt_->solve(r_.data(), g_.data(), nullptr, u_.data(), rate_.data()))
-        return fail_at(t, "the velocity correction is not finite");
-      std::copy(u_.begin(), u_.end(), u);
-    }
+    if (has_loops() && options_.project && !(correct_position(t, q) && correct_velocity(t, q, u)))
+      return false;
     normalise(q);
     return true;
   }
@@ -93,10 +85,14 @@ class Acceleration final : public OdeForm {
 
   bool read(double t, const double* y, const double*, Snapshot& out) override {
     const std::vector<double> kept = multipliers_;
-    std::vector<double> rates(static_cast<std::size_t>(size()));
-    if (!rhs(t, y, rates.data())) return false;
-    out.q = Eigen::Map<const Eigen::VectorXd>(y, mechanism_.nq());
-    out.u = Eigen::Map<const Eigen::VectorXd>(y + mechanism_.nq(), mechanism_.nv());
+    std::vector<double> state(y, y + size()), rates(state.size());
+    double *q = state.data(), *u = q + mechanism_.nq();
+    // The correction belongs to the method, so it is applied to interpolated states too.
+    if (has_loops() && options_.project && !(correct_position(t, q) && correct_velocity(t, q, u)))
+      return false;
+    if (!rhs(t, state.data(), rates.data())) return false;
+    out.q = Eigen::Map<const Eigen::VectorXd>(q, mechanism_.nq());
+    out.u = Eigen::Map<const Eigen::VectorXd>(u, mechanism_.nv());
     out.multipliers = Eigen::Map<const Eigen::VectorXd>(multipliers_.data(), mechanism_.m());
     multipliers_ = kept;  // looking on must not move the centre of later steps
     return true;
@@ -104,6 +100,18 @@ class Acceleration final : public OdeForm {
   std::pair<double, double> baumgarte_gains() const override { return {alpha_, beta_}; }
 
  private:
+  /// M v + Φ_qᵀν = M u, Φ_q v = −Φ_t: the nearest consistent velocity in the mass metric.
+  bool correct_velocity(double t, const double* q, double* u) {
+    if (!factor_at(t, q, fade_projection)) return false;
+    e_->move(u);
+    e_->momenta(nullptr, r_.data());
+    rheonomic_terms();
+    if (!kkt_->solve(r_.data(), g_.data(), nullptr, u_.data(), rate_.data()))
+      return fail_at(t, "the velocity correction is not finite");
+    std::copy(u_.begin(), u_.end(), u);
+    return true;
+  }
+
   double alpha_, beta_;
   std::vector<double> rate_;
 };

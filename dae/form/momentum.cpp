@@ -98,14 +98,17 @@ class Momentum final : public OdeForm {
   }
 
   bool read(double t, const double* y, const double*, Snapshot& out) override {
-    const double *q = y, *p = y + mechanism_.nq();
+    const double* p = y + mechanism_.nq();
     const std::vector<double> kept = multipliers_;
+    out.q = Eigen::Map<const Eigen::VectorXd>(y, mechanism_.nq());
+    const double* q = out.q.data();
+    // The correction belongs to the method, so it is applied to interpolated states too.
+    if (has_loops() && options_.project && !correct_position(t, out.q.data())) return false;
     if (!has_loops()) {
       if (!e_->open_momentum_rates(t, q, p, u_.data(), work_.data())) return false;
     } else if (!solve(t, q, p, fade_evaluation)) {
       return false;
     }
-    out.q = Eigen::Map<const Eigen::VectorXd>(q, mechanism_.nq());
     out.u = Eigen::Map<const Eigen::VectorXd>(u_.data(), mechanism_.nv());
     out.multipliers = Eigen::Map<const Eigen::VectorXd>(multipliers_.data(), mechanism_.m());
     multipliers_ = kept;  // looking on must not move the centre of later steps

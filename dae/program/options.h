@@ -27,7 +27,6 @@ struct Options {
   double cpu_limit = 0;
   std::filesystem::path reference, out;
   bool json = false, quiet = false;
-  int repeats = 3;
 };
 
 void add_scene(CLI::App& verb, Options& o);

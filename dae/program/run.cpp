@@ -30,7 +30,6 @@ int run(const Options& o) {
   s.baumgarte_beta = o.baumgarte_beta;
   request.reference = reference.get();
   request.keep_trajectory = true;
-  request.repeats = o.repeats;
   request.max_cpu_seconds = o.cpu_limit;
   ProgressLine line(o.quiet);
   request.progress = [&](double t) {
@@ -43,6 +42,7 @@ int run(const Options& o) {
   study.command = o.command;
   study.environment = environment();
   study.runs.push_back(run_form(*mechanism, a.start, request));
+  if (!interrupted()) time_runs(*mechanism, a.start, study.runs, 3);
   line.show("");
   const RunResult& result = study.runs.front();
   if (interrupted())

@@ -73,6 +73,12 @@ std::vector<RunResult> run_drift_study(const Mechanism& mechanism, const Start& 
       };
     results.push_back(run_form(mechanism, start, run));
   }
+  if (going)
+    time_runs(mechanism, start, results, 5, 3, [&](std::size_t i) {
+      return !request.progress ||
+             request.progress(static_cast<int>(i) + 1, static_cast<int>(results.size()),
+                              "timing " + results[i].settings.form, 1);
+    });
   return results;
 }
 

@@ -38,6 +38,8 @@ std::vector<double> output_times(const RunSettings& s, const Reference* referenc
   return times;
 }
 
+constexpr double rounding_level = 1e-13;  // of |Φ| and |Φ̇| in mechanisms of metres and seconds
+
 /// Looks at states of a form: drifts, energy, errors.
 class Looker {
  public:
@@ -129,8 +131,11 @@ class Looker {
       result_.position_drift_max = largest(s.position_drift);
       result_.velocity_drift_max = largest(s.velocity_drift);
       result_.between_steps_max = between_;
-      result_.position_growth = fit_growth(s.t, s.position_drift);
-      result_.velocity_growth = fit_growth(s.t, s.velocity_drift);
+      // What stays at rounding level has no growth law.
+      if (result_.position_drift_max > rounding_level)
+        result_.position_growth = fit_growth(s.t, s.position_drift);
+      if (result_.velocity_drift_max > rounding_level)
+        result_.velocity_growth = fit_growth(s.t, s.velocity_drift);
     }
     if (request_.reference && result_.status == "done" && compared_ > 0) {
       result_.position_error_max = largest(s.position_error);
@@ -237,63 +242,87 @@ std::vector<std::string> trajectory_columns(const Mechanism& mechanism) {
   return columns;
 }
 
+namespace {
+
+/// A form with its integrator, ready to go; shared by the watched run and the timed ones.
+class Runner {
+ public:
+  /// Completes the settings: default integrator, the gauge in force, gains, how (7) is solved.
+  Runner(const Mechanism& mechanism, const Start& start, RunSettings& s, double max_cpu_seconds)
+      : start_(start) {
+    const bool dae = is_dae_form(s.form);
+    if (s.integrator.empty()) s.integrator = default_integrator(s.form);
+    if (dae != (s.integrator == "ida"))
+      throw std::invalid_argument("form '" + s.form + "' is " +
+                                  (dae ? "a DAE: expected integrator ida"
+                                       : "an ODE: expected rk4, dp5, dop853, adams or bdf") +
+                                  ", found '" + s.integrator + "'");
+    if (is_multistep(s.integrator) && (s.project || s.gauge == "reset"))
+      throw std::invalid_argument(
+          "'" + s.integrator +
+          "' is a multistep method: a state altered after each step would spoil its history; "
+          "use gauge leak or none and no position correction");
+    if (!(s.end_time > 0) || !std::isfinite(s.end_time))
+      throw std::invalid_argument("the end time must be positive and finite");
+    if (s.samples < 1) throw std::invalid_argument("expected at least one sample");
+    FormOptions options;
+    options.gauge = parse_gauge(s.gauge.empty() ? "none" : s.gauge);
+    options.project = s.project;
+    options.baumgarte_alpha = s.baumgarte_alpha;
+    options.baumgarte_beta = s.baumgarte_beta;
+    form_ = make_form(s.form, mechanism, options, start);
+    s.gauge = form_->momentum_like() && mechanism.m() > 0 ? form_->gauge().text() : "";
+    std::tie(s.baumgarte_alpha, s.baumgarte_beta) = form_->baumgarte_gains();
+    s.kkt = mechanism.m() == 0 || dae ? "" : (mechanism.dense_kkt() ? "dense" : "sparse");
+    if (s.integrator != "rk4") s.step = 0;
+    integrator_ = s.integrator;
+    options_.rtol = s.rtol;
+    options_.atol = s.atol;
+    options_.step = s.step;
+    options_.max_cpu_seconds = max_cpu_seconds;
+  }
+
+  Form& form() { return *form_; }
+
+  IntegrationResult integrate(const std::vector<double>& times, const Observer& observer) {
+    if (form_->is_dae()) return integrate_ida(*form_->dae(), start_.t, times, options_, observer);
+    const auto y0 = form_->initial(start_);
+    if (is_multistep(integrator_))
+      return integrate_cvode(integrator_, *form_->ode(), start_.t, y0, times, options_, observer);
+    return integrate_explicit(integrator_, *form_->ode(), start_.t, y0, times, options_, observer);
+  }
+
+ private:
+  const Start& start_;
+  std::unique_ptr<Form> form_;
+  std::string integrator_;
+  IntegrationOptions options_;
+};
+
+double wall_now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+}  // namespace
+
 RunResult run_form(const Mechanism& mechanism, const Start& start, const RunRequest& request) {
   RunResult result;
   result.scene = mechanism.scene().name;
   result.settings = request.settings;
-  RunSettings& s = result.settings;
-  const bool dae = is_dae_form(s.form);
-  if (s.integrator.empty()) s.integrator = default_integrator(s.form);
-  if (dae != (s.integrator == "ida"))
-    throw std::invalid_argument("form '" + s.form + "' is " +
-                                (dae ? "a DAE: expected integrator ida"
-                                     : "an ODE: expected rk4, dp5, dop853, adams or bdf") +
-                                ", found '" + s.integrator + "'");
-  if (is_multistep(s.integrator) && (s.project || s.gauge == "reset"))
-    throw std::invalid_argument("'" + s.integrator +
-                                "' is a multistep method: a state altered after each step would " +
-                                "spoil its history; use gauge leak and no position correction");
-  if (!(s.end_time > 0) || !std::isfinite(s.end_time))
-    throw std::invalid_argument("the end time must be positive and finite");
-  if (s.samples < 1) throw std::invalid_argument("expected at least one sample");
-
-  FormOptions options;
-  options.gauge = parse_gauge(s.gauge.empty() ? "none" : s.gauge);
-  options.project = s.project;
-  options.baumgarte_alpha = s.baumgarte_alpha;
-  options.baumgarte_beta = s.baumgarte_beta;
-  const auto form = make_form(s.form, mechanism, options, start);
-  s.gauge = form->momentum_like() ? form->gauge().text() : "";
-  std::tie(s.baumgarte_alpha, s.baumgarte_beta) = form->baumgarte_gains();
-  s.kkt = mechanism.m() == 0 || dae ? "" : (mechanism.dense_kkt() ? "dense" : "sparse");
-  if (s.integrator != "rk4") s.step = 0;
-
-  IntegrationOptions io;
-  io.rtol = s.rtol;
-  io.atol = s.atol;
-  io.step = s.step;
-  io.max_cpu_seconds = request.max_cpu_seconds;
-  const auto integrate = [&](const std::vector<double>& times, const Observer& observer) {
-    if (dae) return integrate_ida(*form->dae(), start.t, times, io, observer);
-    const auto y0 = form->initial(start);
-    if (is_multistep(s.integrator))
-      return integrate_cvode(s.integrator, *form->ode(), start.t, y0, times, io, observer);
-    return integrate_explicit(s.integrator, *form->ode(), start.t, y0, times, io, observer);
-  };
-
-  const auto wall_start = std::chrono::steady_clock::now();
-  double cpu_start = cpu_now();
-  Looker looker(mechanism, *form, request, result);
-  const auto y0 = form->initial(start);
+  Runner runner(mechanism, start, result.settings, request.max_cpu_seconds);
+  const double wall_start = wall_now(), cpu_start = cpu_now();
+  Looker looker(mechanism, runner.form(), request, result);
+  const auto y0 = runner.form().initial(start);
   looker.sample(start.t, y0.data(), nullptr);
-  const IntegrationResult run = integrate(
-      output_times(s, request.reference),
+  const IntegrationResult run = runner.integrate(
+      output_times(result.settings, request.reference),
       Observer{
           [&](double t, const double* y, const double* ydot) { return looker.sample(t, y, ydot); },
           [&](double t0, double t1, const Interpolant& between) {
             return looker.step(t0, t1, between);
           }});
-  double cpu = cpu_now() - cpu_start;
+  result.cpu_s = cpu_now() - cpu_start;
+  result.wall_s = wall_now() - wall_start;
   result.status =
       run.done ? "done" : (run.reason.rfind("time limit", 0) == 0 ? "time limit" : "failed");
   result.reason = run.done ? "" : (looker.trouble().empty() ? run.reason : looker.trouble());
@@ -301,33 +330,38 @@ RunResult run_form(const Mechanism& mechanism, const Start& start, const RunRequ
   result.counters = run.counters;
   result.jacobian = run.jacobian;
   result.linear_solver = run.linear_solver;
+  if (auto* ode = dynamic_cast<OdeForm*>(&runner.form()))
+    result.counters.factorizations += ode->factorizations();
   looker.finish();
+  return result;
+}
 
-  std::vector<double> cpus, walls;
-  for (int i = 0; i < request.repeats && run.done && cpu < request.repeat_budget; ++i) {
-    const auto wall0 = std::chrono::steady_clock::now();
-    cpu_start = cpu_now();
-    integrate({s.end_time}, {});
-    cpus.push_back(cpu_now() - cpu_start);
-    walls.push_back(
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - wall0).count());
-    cpu += cpus.back();
-  }
-  result.repeats = static_cast<int>(cpus.size());
-  if (cpus.empty()) {
-    cpus.push_back(cpu);
-    walls.push_back(
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - wall_start).count());
-  }
-  const auto median = [](std::vector<double> v) {
+void time_runs(const Mechanism& mechanism, const Start& start, std::vector<RunResult>& runs,
+               int rounds, double budget, const std::function<bool(std::size_t)>& going_on) {
+  std::vector<std::vector<double>> cpu(runs.size()), wall(runs.size());
+  std::vector<double> spent(runs.size(), 0.0);
+  for (int round = 0; round < rounds; ++round)
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+      if (runs[i].status != "done" || spent[i] > budget) continue;
+      if (going_on && !going_on(i)) return;
+      RunSettings settings = runs[i].settings;
+      Runner runner(mechanism, start, settings, 0);
+      const double wall_start = wall_now(), cpu_start = cpu_now();
+      runner.integrate({settings.end_time}, {});
+      cpu[i].push_back(cpu_now() - cpu_start);
+      wall[i].push_back(wall_now() - wall_start);
+      spent[i] += cpu[i].back();
+    }
+  const auto median = [](std::vector<double>& v) {
     std::sort(v.begin(), v.end());
     return v[v.size() / 2];
   };
-  result.cpu_s = median(cpus);
-  result.wall_s = median(walls);
-  if (auto* ode = dynamic_cast<OdeForm*>(form.get()))
-    result.counters.factorizations += ode->factorizations();
-  return result;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    if (cpu[i].empty()) continue;
+    runs[i].repeats = static_cast<int>(cpu[i].size());
+    runs[i].cpu_s = median(cpu[i]);
+    runs[i].wall_s = median(wall[i]);
+  }
 }
 
 }  // namespace momenta

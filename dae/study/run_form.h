@@ -13,8 +13,6 @@ struct RunRequest {
   RunSettings settings;
   const Reference* reference = nullptr;  ///< bound to trajectory_columns(mechanism)
   bool keep_trajectory = false;
-  int repeats = 3;             ///< timed runs after the measured one; 0: time the measured one
-  double repeat_budget = 3;    ///< [s]: no further repeat once this much CPU time is spent
   double max_cpu_seconds = 0;  ///< 0: none
   /// Called now and then with the simulated time; return false to stop the run.
   std::function<bool(double t)> progress;
@@ -23,10 +21,17 @@ struct RunRequest {
 /// Columns of trajectory.csv: t, q, u, markers, energy, drifts, loop forces.
 std::vector<std::string> trajectory_columns(const Mechanism& mechanism);
 
-/// Runs once with every sample looked at, then `repeats` times with nobody looking, for the CPU
-/// time. Failures are in the result: status, reason and all samples up to there. @throws
-/// std::invalid_argument for settings that don't fit.
+/// Runs once, every sample looked at. Failures are in the result: status, reason and all samples up
+/// to there; cpu_s is that of the watched run. @throws std::invalid_argument for settings that do
+/// not fit together.
 RunResult run_form(const Mechanism& mechanism, const Start& start, const RunRequest& request);
+
+/// Times finished runs with nobody looking: rounds over all of them, so that a drifting clock hurts
+/// all alike, and medians in cpu_s, wall_s. A run is left out of further rounds once its own time
+/// passes `budget` seconds of CPU.
+void time_runs(const Mechanism& mechanism, const Start& start, std::vector<RunResult>& runs,
+               int rounds = 5, double budget = 3,
+               const std::function<bool(std::size_t)>& going_on = {});
 
 /// The integrator a form takes when none is named: dop853, or ida for DAE forms.
 std::string default_integrator(const std::string& form);
