@@ -27,7 +27,6 @@ RunResult run_against_reference(const std::string& example, const std::string& f
   request.settings.end_time = end;
   request.settings.samples = 10;
   request.reference = &reference;
-  request.repeats = 0;
   const RunResult run = run_form(mechanism, assemble(mechanism).start, request);
   EXPECT_EQ(run.status, "done") << run.reason;
   return run;
