@@ -120,10 +120,11 @@ class Looker {
 
   void finish() {
     const Series& s = result_.series;
+    // Of what was measured: errors are, at the reference's times alone.
     const auto largest = [](const std::vector<double>& v) {
-      double m = v.empty() ? not_measured : 0;
+      double m = not_measured;
       for (double x : v)
-        if (!(std::abs(x) <= m)) m = std::abs(x);
+        if (!std::isnan(x) && !(std::abs(x) <= m)) m = std::abs(x);
       return m;
     };
     result_.energy_error_max = largest(s.energy_error);
