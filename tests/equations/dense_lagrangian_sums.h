@@ -1,11 +1,12 @@
 #pragma once
-// The sums over bodies of dense_lagrangian.h.
+// The sums over bodies of dense_lagrangian.h. Nested dual numbers are slow to compile: one file of
+// a test program includes this, for core tests unit/core_dense_lagrangian.cpp.
 
 #include "equations/dense_lagrangian.h"
 
 namespace momenta::equations {
 
-inline DenseLagrangian::DenseLagrangian(const Scene& scene, const Tree& tree)
+DenseLagrangian::DenseLagrangian(const Scene& scene, const Tree& tree)
     : scene_(scene), places_(scene.bodies.size()), nq_(tree.nq), nv_(tree.nv) {
   for (std::size_t k = 0; k < scene.bodies.size(); ++k)
     bodies_[scene.bodies[k].name] = static_cast<int>(k);
@@ -206,7 +207,7 @@ S DenseLagrangian::potential_energy(const S& t, const List<S>& q) const {
   return v;
 }
 
-inline auto DenseLagrangian::applied(const List<Moving<Real>>& bodies) const -> List<Wrench<Real>> {
+auto DenseLagrangian::applied(const List<Moving<Real>>& bodies) const -> List<Wrench<Real>> {
   using V = Triple<Real>;
   List<Wrench<Real>> sum(bodies.size());
   const auto push = [&](int k, const V& x, const V& f) {
@@ -251,8 +252,8 @@ inline auto DenseLagrangian::applied(const List<Moving<Real>>& bodies) const -> 
   return sum;
 }
 
-inline auto DenseLagrangian::momentum_changes(Real t, const List<Real>& q, const List<Real>& u,
-                                              const List<Real>& udot) const -> List<Wrench<Real>> {
+auto DenseLagrangian::momentum_changes(Real t, const List<Real>& q, const List<Real>& u,
+                                       const List<Real>& udot) const -> List<Wrench<Real>> {
   using D = Dual<Real, 1>;
   const List<Real> qdot = coordinate_rates(q, u);
   List<D> q_along(q.size()), u_along(u.size());
@@ -274,8 +275,8 @@ inline auto DenseLagrangian::momentum_changes(Real t, const List<Real>& q, const
   return rates;
 }
 
-inline RealVector DenseLagrangian::generalised_forces(Real t, const Eigen::VectorXd& q,
-                                                      const Eigen::VectorXd& u) const {
+RealVector DenseLagrangian::generalised_forces(Real t, const Eigen::VectorXd& q,
+                                               const Eigen::VectorXd& u) const {
   const List<Real> coordinates = real(q);
   const List<Real> sums = projected(t, coordinates, applied(moving(t, coordinates, real(u), true)));
   RealVector forces = Eigen::Map<const RealVector>(sums.data(), nv_);
@@ -289,7 +290,7 @@ inline RealVector DenseLagrangian::generalised_forces(Real t, const Eigen::Vecto
   return forces;
 }
 
-inline RealMatrix DenseLagrangian::mass_matrix(Real t, const Eigen::VectorXd& q) const {
+RealMatrix DenseLagrangian::mass_matrix(Real t, const Eigen::VectorXd& q) const {
   const List<Real> at = real(q);
   RealMatrix m(nv_, nv_);
   for (int j = 0; j < nv_; ++j) {
@@ -301,22 +302,22 @@ inline RealMatrix DenseLagrangian::mass_matrix(Real t, const Eigen::VectorXd& q)
   return m;
 }
 
-inline RealVector DenseLagrangian::momenta_at(Real t, const Eigen::VectorXd& q,
-                                              const Eigen::VectorXd& u) const {
+RealVector DenseLagrangian::momenta_at(Real t, const Eigen::VectorXd& q,
+                                       const Eigen::VectorXd& u) const {
   const List<Real> p = momenta(t, real(q), real(u));
   return Eigen::Map<const RealVector>(p.data(), nv_);
 }
 
-inline RealVector DenseLagrangian::accelerations(Real t, const Eigen::VectorXd& q,
-                                                 const Eigen::VectorXd& u) const {
+RealVector DenseLagrangian::accelerations(Real t, const Eigen::VectorXd& q,
+                                          const Eigen::VectorXd& u) const {
   const List<Real> at = real(q), still(static_cast<std::size_t>(nv_));
   const List<Real> bias = projected(t, at, momentum_changes(t, at, real(u), still));
   return mass_matrix(t, q).ldlt().solve(generalised_forces(t, q, u) -
                                         Eigen::Map<const RealVector>(bias.data(), nv_));
 }
 
-inline RealVector DenseLagrangian::momentum_rates(Real t, const Eigen::VectorXd& q,
-                                                  const Eigen::VectorXd& u) const {
+RealVector DenseLagrangian::momentum_rates(Real t, const Eigen::VectorXd& q,
+                                           const Eigen::VectorXd& u) const {
   using D = Dual<Real, 1>;
   const RealVector udot = accelerations(t, q, u), qdot = coordinate_rates_at(q, u);
   List<D> q_along(static_cast<std::size_t>(nq_)), u_along(static_cast<std::size_t>(nv_));
@@ -334,8 +335,8 @@ inline RealVector DenseLagrangian::momentum_rates(Real t, const Eigen::VectorXd&
   return rates;
 }
 
-inline RealVector DenseLagrangian::lagrange_rates(Real t, const Eigen::VectorXd& q,
-                                                  const Eigen::VectorXd& u) const {
+RealVector DenseLagrangian::lagrange_rates(Real t, const Eigen::VectorXd& q,
+                                           const Eigen::VectorXd& u) const {
   using D = Dual<Real, 1>;
   RealVector rates = generalised_forces(t, q, u);
   for (int i = 0; i < nv_; ++i) {
@@ -350,14 +351,13 @@ inline RealVector DenseLagrangian::lagrange_rates(Real t, const Eigen::VectorXd&
   return rates;
 }
 
-inline RealVector DenseLagrangian::coordinate_rates_at(const Eigen::VectorXd& q,
-                                                       const Eigen::VectorXd& u) const {
+RealVector DenseLagrangian::coordinate_rates_at(const Eigen::VectorXd& q,
+                                                const Eigen::VectorXd& u) const {
   const List<Real> rates = coordinate_rates(real(q), real(u));
   return Eigen::Map<const RealVector>(rates.data(), nq_);
 }
 
-inline auto DenseLagrangian::reactions(Real t, const Eigen::VectorXd& q,
-                                       const Eigen::VectorXd& u) const
+auto DenseLagrangian::reactions(Real t, const Eigen::VectorXd& q, const Eigen::VectorXd& u) const
     -> List<Eigen::Matrix<double, 6, 1>> {
   const RealVector udot = accelerations(t, q, u);
   const auto bodies = moving(t, real(q), real(u), true);
@@ -389,8 +389,7 @@ inline auto DenseLagrangian::reactions(Real t, const Eigen::VectorXd& q,
   return all;
 }
 
-inline auto DenseLagrangian::poses(Real t, const Eigen::VectorXd& q) const
-    -> List<Eigen::Isometry3d> {
+auto DenseLagrangian::poses(Real t, const Eigen::VectorXd& q) const -> List<Eigen::Isometry3d> {
   List<Eigen::Isometry3d> all;
   for (const Frame<Real>& f : frames(t, real(q))) {
     Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
