@@ -1,4 +1,5 @@
 #include <momenta/dae/form/dae_form.h>
+#include <momenta/dae/kkt/axis_scale.h>
 #include <momenta/dae/kkt/kkt.h>
 
 #include <algorithm>
@@ -62,10 +63,14 @@ void DaeForm::find_redundancy(const Start& start) {
   const auto kkt = make_dense_kkt(mechanism_);
   plain_.e->place(start.t, start.q.data());
   if (!kkt->factor(*plain_.e, fade_evaluation) || kkt->faded() == 0) return;
-  // ε = 10⁻⁹ of the scale of Φ_q M⁻¹ Φ_qᵀ, row by row.
-  std::vector<double> entries(mechanism_.kkt_pattern().constraint.size());
+  // ε = 10⁻⁹ of the scale of Φ_q M⁻¹ Φ_qᵀ, row by row, or of what is natural for an axis row that vanishes.
+  const auto& pattern = mechanism_.kkt_pattern();
+  std::vector<double> entries(pattern.constraint.size()), masses(pattern.mass.size());
   plain_.e->constraint_entries(entries.data());
-  epsilon_.assign(static_cast<std::size_t>(layout_.m), 0.0);
+  plain_.e->mass_entries(masses.data());
+  std::vector<double> natural(static_cast<std::size_t>(layout_.m));
+  AxisScale(mechanism_).measure(masses, natural);
+  epsilon_.assign(natural.size(), 0.0);
   for (std::size_t i = 0; i < entries.size(); ++i) {
     const auto& entry = mechanism_.kkt_pattern().constraint[i];
     epsilon_[static_cast<std::size_t>(entry.row)] +=

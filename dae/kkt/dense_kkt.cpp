@@ -7,6 +7,7 @@
 // zero below. With σ = centre + σ' only σ' fades, so a faded row keeps the impulse it had at the
 // step's start.
 
+#include <momenta/dae/kkt/axis_scale.h>
 #include <momenta/dae/kkt/kkt.h>
 
 #include <algorithm>
@@ -20,6 +21,7 @@ class DenseKkt final : public Kkt {
   explicit DenseKkt(const Mechanism& mechanism)
       : pattern_(mechanism.kkt_pattern()),
         groups_(mechanism.row_groups()),
+        axis_scale_(mechanism),
         n_(mechanism.nv()),
         m_(mechanism.m()),
         mass_(pattern_.mass.size()),
@@ -32,6 +34,7 @@ class DenseKkt final : public Kkt {
         y_(size(n_, 1)),
         d_(size(m_, 1)),
         tau_(size(m_, 1)),
+        natural_(size(m_, 1)),
         group_sum_(groups_.empty() ? 0
                                    : static_cast<std::size_t>(
                                          *std::max_element(groups_.begin(), groups_.end()) + 1)),
@@ -128,13 +131,14 @@ class DenseKkt final : public Kkt {
 
   bool eliminate_loops(double fade) {
     std::fill(group_sum_.begin(), group_sum_.end(), 0.0);
+    axis_scale_.measure(mass_, natural_);
     for (int i = 0; i < m_; ++i) {
       for (int j = 0; j <= i; ++j) {
         double s = 0;
         for (int k = 0; k < n_; ++k) s += g_[at(i, k, n_)] * g_[at(j, k, n_)];
         w_[at(i, j, m_)] = w_[at(j, i, m_)] = s;
       }
-      group_sum_[idx(groups_[idx(i)])] += w_[at(i, i, m_)];
+      group_sum_[idx(groups_[idx(i)])] += std::max(w_[at(i, i, m_)], natural_[idx(i)]);
       order_[idx(i)] = i;
     }
     for (int i = 0; i < m_; ++i) {
@@ -153,7 +157,7 @@ class DenseKkt final : public Kkt {
       const int row = order_[idx(k)];
       const double d = w_[at(row, row, m_)], tau = tau_[idx(row)];
       inverse_[idx(k)] = d > 0 ? inverse_faded(d, tau) : 0;
-      if (d < 10 * tau) ++faded_;
+      if (!(d > 10 * tau)) ++faded_;
       for (int i = k + 1; i < m_; ++i) {
         const int a = order_[idx(i)];
         const double l = w_[at(a, row, m_)] * inverse_[idx(k)];
@@ -175,6 +179,7 @@ class DenseKkt final : public Kkt {
 
   const KktPattern& pattern_;
   const std::vector<int>& groups_;
+  AxisScale axis_scale_;
   int n_, m_;
   std::vector<double> mass_, constraint_;
   std::vector<double> l_;  ///< n × n, row-major: L
@@ -182,7 +187,7 @@ class DenseKkt final : public Kkt {
   std::vector<double> w_;  ///< m × m: W, its columns as they stood when eliminated
   std::vector<double> inverse_;
   std::vector<int> order_;
-  std::vector<double> y_, d_, tau_, group_sum_;
+  std::vector<double> y_, d_, tau_, natural_, group_sum_;
   std::vector<int> group_rows_;
 };
 

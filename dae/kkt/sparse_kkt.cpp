@@ -6,6 +6,7 @@
 // impulse. KLU chooses its pivots once and then refactorises; when the residual of a solution tells
 // that they no longer fit, it chooses anew.
 
+#include <momenta/dae/kkt/axis_scale.h>
 #include <momenta/dae/kkt/kkt.h>
 #include <suitesparse/klu.h>
 
@@ -25,12 +26,14 @@ class SparseKkt final : public Kkt {
   explicit SparseKkt(const Mechanism& mechanism)
       : pattern_(mechanism.kkt_pattern()),
         groups_(mechanism.row_groups()),
+        axis_scale_(mechanism),
         n_(mechanism.nv()),
         m_(mechanism.m()),
         mass_(pattern_.mass.size()),
         constraint_(pattern_.constraint.size()),
         epsilon_(static_cast<std::size_t>(m_)),
         row_scale_(static_cast<std::size_t>(m_)),
+        natural_(static_cast<std::size_t>(m_)),
         x_(static_cast<std::size_t>(n_ + m_)),
         b_(x_.size()),
         r_(x_.size()) {
@@ -120,7 +123,7 @@ class SparseKkt final : public Kkt {
     return largest;
   }
 
-  /// ε of each row: fade times the mean of Σ_j Φ_ij²/M_jj over the rows of its group.
+  /// ε of each row: fade times the mean of Σ_j Φ_ij²/M_jj over the rows of its group, no less than is natural for axes.
   void regularise(double fade) {
     std::fill(row_scale_.begin(), row_scale_.end(), 0.0);
     for (std::size_t i = 0; i < constraint_.size(); ++i) {
@@ -129,12 +132,13 @@ class SparseKkt final : public Kkt {
       if (mass > 0)
         row_scale_[static_cast<std::size_t>(entry.row)] += constraint_[i] * constraint_[i] / mass;
     }
+    axis_scale_.measure(mass_, natural_);
+    for (std::size_t i = 0; i < natural_.size(); ++i) row_scale_[i] = std::max(row_scale_[i], natural_[i]);
     for (std::size_t first = 0; first < groups_.size();) {
       std::size_t last = first;
       double sum = 0;
       while (last < groups_.size() && groups_[last] == groups_[first]) sum += row_scale_[last++];
       const double epsilon = weaker * fade * sum / static_cast<double>(last - first);
-      faded_ = 0;
       for (; first < last; ++first) {
         epsilon_[first] = epsilon;
         value_[diagonal_[static_cast<std::size_t>(n_) + first]] = -epsilon;
@@ -170,8 +174,9 @@ class SparseKkt final : public Kkt {
 
   const KktPattern& pattern_;
   const std::vector<int>& groups_;
+  AxisScale axis_scale_;
   int n_, m_;
-  std::vector<double> mass_, constraint_, epsilon_, row_scale_;
+  std::vector<double> mass_, constraint_, epsilon_, row_scale_, natural_;
   std::vector<double> x_, b_, r_, size_;
   std::vector<int> start_, row_;
   std::vector<double> value_;

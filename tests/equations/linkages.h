@@ -1,0 +1,115 @@
+#pragma once
+// Linkages of the tests, written by hand: N four-bars in a row, Bricard's, and how any scene is
+// turned as a whole.
+
+#include <momenta/core/scene/scene.h>
+
+#include <cmath>
+#include <string>
+
+namespace momenta::equations {
+
+/// The same scene in a turned room.
+inline Scene turned(Scene s, const Eigen::Quaterniond& r) {
+  s.gravity = r * s.gravity;
+  const auto turn = [&](auto& joint) {
+    if (joint.parent != "ground") return;
+    joint.origin_parent = r * joint.origin_parent;
+    joint.rotation = r * joint.rotation;
+  };
+  for (auto& j : s.joints) turn(j);
+  for (auto& l : s.loops) turn(l);
+  for (auto& f : s.forces) {
+    if (f.parent == "ground") f.origin_parent = r * f.origin_parent;
+    if (f.in_body_axes) continue;
+    f.force = r * f.force;
+    f.torque = r * f.torque;
+  }
+  return s;
+}
+
+/// A uniform rod of 1 m and 1 kg along x from its origin; `width` [m] of its square section.
+inline BodySpec rod(const std::string& name, double width = 0) {
+  BodySpec b;
+  b.name = name;
+  b.mass = 1;
+  b.com = {0.5, 0, 0};
+  const double across = (1 + width * width) / 12, along = width * width / 6;
+  b.inertia = Eigen::Vector3d(along, across, across).asDiagonal();
+  return b;
+}
+
+inline JointSpec hinge(const std::string& name, const std::string& parent, const std::string& child,
+                       const Eigen::Vector3d& origin_parent, double angle) {
+  JointSpec j;
+  j.name = name;
+  j.parent = parent;
+  j.child = child;
+  j.origin_parent = origin_parent;
+  j.position = {angle};
+  return j;
+}
+
+/// N + 1 rods hinged at (i, 0), their tips joined by N level rods; `angle` of the hinged rods from
+/// the x axis. Flat, and singular, at 0 and π.
+inline Scene row_of_four_bars(int n, double angle, double rate = 0) {
+  Scene s;
+  s.name = "row of four-bars";
+  s.gravity = {0, -9.81, 0};
+  const Eigen::Vector3d tip(1, 0, 0);
+  for (int i = 0; i <= n; ++i) {
+    const std::string upright = "upright" + std::to_string(i);
+    s.bodies.push_back(rod(upright));
+    s.joints.push_back(hinge("O" + std::to_string(i), "ground", upright, i * tip, angle));
+    s.joints.back().velocity = {rate};
+    if (i == n) break;
+    const std::string level = "level" + std::to_string(i);
+    s.bodies.push_back(rod(level));
+    s.joints.push_back(hinge("B" + std::to_string(i), upright, level, tip, -angle));
+    s.joints.back().velocity = {-rate};
+    LoopSpec l;
+    l.name = "C" + std::to_string(i);
+    l.kind = LoopKind::revolute;
+    l.parent = level;
+    l.child = "upright" + std::to_string(i + 1);
+    l.origin_parent = l.origin_child = tip;
+    s.loops.push_back(l);
+  }
+  return s;
+}
+
+/// Bricard's linkage of five rods and six hinges at right angles: five loop equations of rank four.
+inline Scene bricard() {
+  Scene s;
+  s.name = "Bricard";
+  s.gravity = {0, -9.81, 0};
+  const Eigen::Vector3d x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
+  const Eigen::Vector3d along[] = {x, -y, z, -x, y};  // from each centre to the next
+  const Eigen::Vector3d axes[] = {y, z, x, y, z, x};
+  Eigen::Quaterniond before = Eigen::Quaterniond::Identity();  // axes of the rod before
+  std::string parent = "ground";
+  for (int i = 0; i < 5; ++i) {
+    const auto name = "rod" + std::to_string(i + 1);
+    const Eigen::Quaterniond own = Eigen::Quaterniond::FromTwoVectors(x, along[i]);
+    s.bodies.push_back(rod(name, 0.1));
+    JointSpec j =
+        hinge("P" + std::to_string(i + 1), parent, name, i == 0 ? Eigen::Vector3d(0, 0, 0) : x, 0);
+    j.rotation = before.conjugate() * own;
+    j.axis = own.conjugate() * axes[i];
+    s.joints.push_back(j);
+    parent = name;
+    before = own;
+  }
+  LoopSpec l;
+  l.name = "P6";
+  l.kind = LoopKind::revolute;
+  l.child = parent;
+  l.origin_child = x;
+  l.origin_parent = z;
+  l.rotation = before;
+  l.axis = before.conjugate() * axes[5];
+  s.loops.push_back(l);
+  return s;
+}
+
+}  // namespace momenta::equations
