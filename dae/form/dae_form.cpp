@@ -63,18 +63,27 @@ void DaeForm::find_redundancy(const Start& start) {
   const auto kkt = make_dense_kkt(mechanism_);
   plain_.e->place(start.t, start.q.data());
   if (!kkt->factor(*plain_.e, fade_evaluation) || kkt->faded() == 0) return;
-  // ε = 10⁻⁹ of the scale of Φ_q M⁻¹ Φ_qᵀ, row by row, or of what is natural for an axis row that vanishes.
+  // ε = 10⁻⁹ of the scale of Φ_q M⁻¹ Φ_qᵀ, one for all rows of a group: a row may vanish in every
+  // entry; where a whole group of axis rows does, of what is natural for them.
   const auto& pattern = mechanism_.kkt_pattern();
+  const auto& groups = mechanism_.row_groups();
   std::vector<double> entries(pattern.constraint.size()), masses(pattern.mass.size());
   plain_.e->constraint_entries(entries.data());
   plain_.e->mass_entries(masses.data());
-  std::vector<double> natural(static_cast<std::size_t>(layout_.m));
+  std::vector<double> natural(groups.size()), own(groups.size(), 0.0);
   AxisScale(mechanism_).measure(masses, natural);
-  epsilon_.assign(natural.size(), 0.0);
   for (std::size_t i = 0; i < entries.size(); ++i) {
-    const auto& entry = mechanism_.kkt_pattern().constraint[i];
-    epsilon_[static_cast<std::size_t>(entry.row)] +=
-        1e-9 * entries[i] * entries[i] / inertia_[static_cast<std::size_t>(entry.column)];
+    const auto& entry = pattern.constraint[i];
+    own[static_cast<std::size_t>(entry.row)] +=
+        entries[i] * entries[i] / inertia_[static_cast<std::size_t>(entry.column)];
+  }
+  for (std::size_t first = 0; first < groups.size();) {
+    std::size_t last = first;
+    double sum = 0;
+    for (; last < groups.size() && groups[last] == groups[first]; ++last)
+      sum += std::max(own[last], natural[last]);
+    epsilon_.insert(epsilon_.end(), last - first, 1e-9 * sum / static_cast<double>(last - first));
+    first = last;
   }
 }
 
