@@ -51,7 +51,14 @@ int main(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() == 0) return app.exit(e);
-    std::fprintf(stderr, "momenta: %s\n", e.what());
+    const bool unknown = argc > 1 && argv[1][0] != '-' && app.get_subcommands().empty();
+    if (unknown)
+      std::fprintf(
+          stderr,
+          "momenta: verb '%.60s' is not known; expected check, assemble, run, drift or make\n",
+          argv[1]);
+    else
+      std::fprintf(stderr, "momenta: %s\n", e.what());
     return bad_input;
   }
   try {
