@@ -1,0 +1,15 @@
+#include <benchmark/benchmark.h>
+
+namespace momenta {
+void register_open_chains();
+void register_closed_loops();
+}  // namespace momenta
+
+int main(int argc, char** argv) {
+  momenta::register_open_chains();
+  momenta::register_closed_loops();
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
+  benchmark::RunSpecifiedBenchmarks();
+  benchmark::Shutdown();
+}

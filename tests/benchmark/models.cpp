@@ -1,0 +1,161 @@
+#include "models.h"
+
+#include <cmath>
+#include <random>
+
+namespace momenta::benchmark_models {
+namespace {
+
+constexpr double right_angle = 1.5707963267948966;
+
+BodySpec rod(const std::string& name) {
+  BodySpec b;
+  b.name = name;
+  b.mass = 1;
+  b.com = {0.5, 0, 0};
+  b.inertia = Eigen::Vector3d(0, 1.0 / 12, 1.0 / 12).asDiagonal();
+  b.shape = {"rod", {1, 0, 0}, {1, 0, 0}};
+  return b;
+}
+
+/// A solid block with its com off every axis.
+BodySpec block(const std::string& name, std::mt19937& random) {
+  std::uniform_real_distribution<double> any(0.1, 0.3);
+  BodySpec b;
+  b.name = name;
+  b.mass = 1 + any(random);
+  b.com = {any(random), -any(random), any(random)};
+  const double x = any(random), y = any(random), z = any(random);
+  b.inertia = Eigen::Vector3d(y * y + z * z, x * x + z * z, x * x + y * y).asDiagonal();
+  return b;
+}
+
+JointSpec joint(const std::string& name, JointKind kind, const std::string& parent,
+                const std::string& child) {
+  JointSpec j;
+  j.name = name;
+  j.kind = kind;
+  j.parent = parent;
+  j.child = child;
+  return j;
+}
+
+std::string number(const char* what, int i) {
+  return what + std::to_string(i);
+}
+
+template <class Shape>
+Scene serial(int n, JointKind kind, Shape&& shape) {
+  Scene s;
+  s.name = "chain";
+  s.gravity = {0, 0, -9.81};
+  for (int i = 0; i < n; ++i) {
+    JointSpec j =
+        joint(number("J", i), kind, i == 0 ? "ground" : number("b", i - 1), number("b", i));
+    shape(i, j, s);
+    s.joints.push_back(j);
+  }
+  return s;
+}
+
+}  // namespace
+
+Scene random_chain(int n) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> any(-1, 1);
+  return serial(n, JointKind::revolute, [&](int i, JointSpec& j, Scene& s) {
+    s.bodies.push_back(block(number("b", i), random));
+    if (i > 0) j.origin_parent = {0.4 * any(random), 0.4 * any(random), 0.4};
+    j.axis = Eigen::Vector3d(any(random), any(random), any(random)).normalized();
+    j.position = {any(random)};
+  });
+}
+
+Scene right_angle_chain(int n) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> any(-1, 1);
+  return serial(n, JointKind::revolute, [&](int i, JointSpec& j, Scene& s) {
+    s.bodies.push_back(block(number("b", i), random));
+    if (i > 0) j.origin_parent = {0.4, 0, 0};
+    j.axis = i % 2 == 0 ? Eigen::Vector3d::UnitZ() : Eigen::Vector3d::UnitY();
+    j.position = {any(random)};
+  });
+}
+
+Scene planar_chain(int n) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> any(-1, 1);
+  Scene s = serial(n, JointKind::revolute, [&](int i, JointSpec& j, Scene& scene) {
+    scene.bodies.push_back(rod(number("b", i)));
+    if (i > 0) j.origin_parent = {1, 0, 0};
+    j.position = {any(random)};
+  });
+  s.gravity = {0, -9.81, 0};
+  return s;
+}
+
+Scene binary_tree(int n) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> any(-1, 1);
+  Scene s = serial(n, JointKind::revolute, [&](int i, JointSpec& j, Scene& scene) {
+    scene.bodies.push_back(block(number("b", i), random));
+    j.axis = Eigen::Vector3d(any(random), any(random), any(random)).normalized();
+    j.position = {any(random)};
+    if (i > 0) {
+      j.parent = number("b", (i - 1) / 2);
+      j.origin_parent = {0.4 * any(random), 0.4 * any(random), 0.4};
+    }
+  });
+  return s;
+}
+
+Scene spherical_chain(int n) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> any(-1, 1);
+  return serial(n, JointKind::spherical, [&](int i, JointSpec& j, Scene& s) {
+    s.bodies.push_back(block(number("b", i), random));
+    if (i > 0) j.origin_parent = {0.4 * any(random), 0.4 * any(random), 0.4};
+    const Eigen::Quaterniond q =
+        Eigen::Quaterniond(1, any(random), any(random), any(random)).normalized();
+    j.position = {q.w(), q.x(), q.y(), q.z()};
+  });
+}
+
+Scene four_bar() {
+  Scene s = n_four_bar(1);
+  s.name = "four-bar";
+  return s;
+}
+
+Scene n_four_bar(int n) {
+  Scene s;
+  s.name = "N-four-bar";
+  s.gravity = {0, -9.81, 0};
+  // Away from the flat pose: every vertical leans by 0.3 rad, horizontals stay level.
+  const double lean = right_angle - 0.3;
+  for (int i = 0; i <= n; ++i) {
+    s.bodies.push_back(rod(number("v", i)));
+    JointSpec o = joint(number("O", i), JointKind::revolute, "ground", number("v", i));
+    o.origin_parent = {static_cast<double>(i), 0, 0};
+    o.position = {lean};
+    o.velocity = {-1};
+    s.joints.push_back(o);
+    if (i == n) break;
+    s.bodies.push_back(rod(number("h", i + 1)));
+    JointSpec b = joint(number("B", i), JointKind::revolute, number("v", i), number("h", i + 1));
+    b.origin_parent = {1, 0, 0};
+    b.position = {-lean};
+    b.velocity = {1};
+    s.joints.push_back(b);
+    LoopSpec c;
+    c.name = number("C", i + 1);
+    c.kind = LoopKind::revolute;
+    c.parent = number("v", i + 1);
+    c.child = number("h", i + 1);
+    c.origin_parent = c.origin_child = {1, 0, 0};
+    s.loops.push_back(c);
+  }
+  return s;
+}
+
+}  // namespace momenta::benchmark_models
