@@ -3,6 +3,7 @@
 #include <momenta/dae/study/run_form.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <ctime>
@@ -40,6 +41,13 @@ std::vector<double> output_times(const RunSettings& s, const Reference* referenc
 
 constexpr double rounding_level = 1e-13;  // of |Φ| and |Φ̇| in mechanisms of metres and seconds
 
+// Five-point Gauss rule on [0, 1].
+constexpr std::array<double, 5> gauss_points{0.046910077030668004, 0.23076534494715845, 0.5,
+                                             0.76923465505284155, 0.95308992296933200};
+constexpr std::array<double, 5> gauss_weights{0.11846344252809454, 0.23931433524968324,
+                                              0.28444444444444444, 0.23931433524968324,
+                                              0.11846344252809454};
+
 /// Looks at states of a form: drifts, energy, errors.
 class Looker {
  public:
@@ -71,7 +79,7 @@ class Looker {
     const double velocity = phi_.norm();
     const double energy = mechanism_.plan().drives
                               ? not_measured
-                              : e_->kinetic() + e_->potential(now_.q.data()) - work_;
+                              : e_->kinetic() + e_->potential(now_.q.data()) - work_until(t);
     if (!std::isfinite(position) || !std::isfinite(velocity)) {
       trouble_ = "at t = " + std::to_string(t) + " s the state is not finite";
       return false;
@@ -103,16 +111,18 @@ class Looker {
       if (!(drift <= between_)) between_ = drift;
     }
     if (loses_energy_) {
-      // Three-point Gauss rule for the work of dampers and of wrenches without potential.
-      static constexpr double node[3] = {-0.7745966692414834, 0, 0.7745966692414834};
-      static constexpr double weight[3] = {5.0 / 18, 8.0 / 18, 5.0 / 18};
-      for (int i = 0; i < 3; ++i) {
-        const double t = middle + 0.5 * (t1 - t0) * node[i];
+      // Power at the Gauss points of the step; the polynomial through them gives the work up to any
+      // sample inside it.
+      work_ = work_until(step_end_);
+      step_from_ = t0;
+      step_end_ = t1;
+      for (std::size_t i = 0; i < gauss_points.size(); ++i) {
+        const double t = t0 + gauss_points[i] * (t1 - t0);
         between(t, state_.data());
         if (!form_.read(t, state_.data(), nullptr, now_)) return true;
         e_->place(t, now_.q.data());
         e_->move(now_.u.data());
-        work_ += weight[i] * (t1 - t0) * e_->lost_power(now_.u.data());
+        power_[i] = e_->lost_power(now_.u.data());
       }
     }
     return true;
@@ -155,6 +165,27 @@ class Looker {
           (f.kind == "wrench" && (f.in_body_axes || f.torque.norm() > 0)))
         return true;
     return false;
+  }
+
+  /// Work done by what the energy does not hold, up to a time in the last step [J].
+  double work_until(double t) const {
+    if (!(step_end_ > step_from_)) return work_;
+    const double part = (t - step_from_) / (step_end_ - step_from_);
+    double mean = 0;  // of the power from step_from_ to t
+    for (std::size_t i = 0; i < gauss_points.size(); ++i)
+      mean += gauss_weights[i] * power_at(part * gauss_points[i]);
+    return work_ + mean * (t - step_from_);
+  }
+  /// The polynomial through the powers, at a fraction of the step.
+  double power_at(double x) const {
+    double sum = 0;
+    for (std::size_t i = 0; i < power_.size(); ++i) {
+      double term = power_[i];
+      for (std::size_t j = 0; j < power_.size(); ++j)
+        if (j != i) term *= (x - gauss_points[j]) / (gauss_points[i] - gauss_points[j]);
+      sum += term;
+    }
+    return sum;
   }
 
   void row(double t, double energy, double position, double velocity) {
@@ -209,7 +240,10 @@ class Looker {
   std::vector<double> markers_, row_, state_;
   Snapshot now_;
   bool loses_energy_;
-  double energy_at_start_ = 0, work_ = 0, between_ = 0;
+  double energy_at_start_ = 0, between_ = 0;
+  double work_ = 0;  ///< up to step_from_ [J]
+  double step_from_ = 0, step_end_ = 0;
+  std::array<double, 5> power_{};  ///< at the Gauss points of the last step [W]
   int compared_ = 0;
   std::string trouble_;
 };
