@@ -1,0 +1,171 @@
+// A joint and a loop are interchangeable, and the room has no preferred direction: the same motion
+// wherever the loops are cut, however the scene is turned, in the plane or in space.
+
+#include "equations/dense_lagrangian.h"
+#include "equations/linkages.h"
+#include "equations/tolerance.h"
+
+#include <gtest/gtest.h>
+#include <momenta/core/scene/read_scene.h>
+#include <momenta/dae/study/run_form.h>
+
+#include <filesystem>
+#include <set>
+
+namespace momenta {
+namespace {
+
+using namespace equations;
+
+Scene example(const std::string& name) {
+  return read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples" / name / "scene.toml");
+}
+
+/// The hinge seen from its child: same angle, axis reversed.
+JointSpec reversed(const JointSpec& j) {
+  JointSpec r = j;
+  std::swap(r.parent, r.child);
+  std::swap(r.origin_parent, r.origin_child);
+  r.rotation = j.rotation.conjugate();
+  r.axis = -(j.rotation * j.axis);
+  return r;
+}
+
+/// The scene with loop `closed` made a joint and joint `cut` made a loop, at the poses of `q`.
+Scene recut(const Scene& scene, const Tree& tree, const Eigen::VectorXd& q, const std::string& cut,
+            const std::string& closed) {
+  const auto poses = DenseLagrangian(scene, tree).poses(0, q);
+  std::map<std::string, Eigen::Quaterniond> axes{{"ground", Eigen::Quaterniond::Identity()}};
+  for (std::size_t k = 0; k < poses.size(); ++k)
+    axes[scene.bodies[k].name] = Eigen::Quaterniond(poses[k].linear());
+
+  Scene s = scene;
+  s.joints.clear();
+  s.loops.clear();
+  std::vector<JointSpec> edges;
+  for (const LoopSpec& l : scene.loops) {
+    if (l.name != closed) {
+      s.loops.push_back(l);
+      continue;
+    }
+    JointSpec j;
+    j.name = l.name;
+    j.parent = l.parent;
+    j.child = l.child;
+    j.origin_parent = l.origin_parent;
+    j.origin_child = l.origin_child;
+    j.rotation = l.rotation;
+    j.axis = l.axis;
+    edges.push_back(j);
+  }
+  for (const JointSpec& j : scene.joints) {
+    if (j.name != cut) {
+      edges.push_back(j);
+      continue;
+    }
+    LoopSpec l;
+    l.name = j.name;
+    l.kind = LoopKind::revolute;
+    l.parent = j.parent;
+    l.child = j.child;
+    l.origin_parent = j.origin_parent;
+    l.origin_child = j.origin_child;
+    l.rotation = j.rotation;
+    l.axis = j.axis;
+    s.loops.push_back(l);
+  }
+  std::set<std::string> reached{"ground"};
+  while (!edges.empty()) {
+    const auto next = std::find_if(edges.begin(), edges.end(), [&](const JointSpec& j) {
+      return reached.contains(j.parent) || reached.contains(j.child);
+    });
+    if (next == edges.end()) break;
+    JointSpec j = reached.contains(next->parent) ? *next : reversed(*next);
+    edges.erase(next);
+    const Eigen::AngleAxisd turn((axes[j.parent] * j.rotation).conjugate() * axes[j.child]);
+    j.position = {turn.angle() * (turn.axis().dot(j.axis) < 0 ? -1 : 1)};
+    reached.insert(j.child);
+    s.joints.push_back(j);
+  }
+  s.held.clear();
+  return s;
+}
+
+/// How far each hinge has turned since the start, by name, at the end of a run.
+std::map<std::string, double> turns(const Scene& scene, Algebra algebra, double end) {
+  const Mechanism mechanism(scene, {.algebra = algebra});
+  RunRequest request;
+  request.settings.gauge = "leak";
+  request.settings.rtol = request.settings.atol = 1e-11;
+  request.settings.end_time = end;
+  request.settings.samples = 1;
+  request.keep_trajectory = true;
+  const RunResult run = run_form(mechanism, assemble(mechanism).start, request);
+  EXPECT_EQ(run.status, "done") << run.reason;
+  std::map<std::string, double> by_name;
+  for (std::size_t i = 0; i < run.trajectory.columns.size(); ++i)
+    if (run.trajectory.columns[i].find(".q [") != std::string::npos)
+      by_name[run.trajectory.columns[i]] =
+          run.trajectory.rows.back()[i] - run.trajectory.rows.front()[i];
+  return by_name;
+}
+
+void expect_same(const std::map<std::string, double>& found,
+                 const std::map<std::string, double>& expected, const std::string& what) {
+  int common = 0;
+  for (const auto& [name, value] : found) {
+    const auto at = expected.find(name);
+    if (at == expected.end()) continue;
+    ++common;
+    EXPECT_NEAR(value, at->second, 2e-8 * (1 + std::abs(at->second))) << what << ": " << name;
+  }
+  EXPECT_GE(common, 2) << what;
+}
+
+TEST(SameMotion, FourBarCutAnywhere) {
+  const Scene scene = example("four_bar");
+  const Mechanism mechanism(scene);
+  const auto expected = turns(scene, Algebra::automatic, 2);
+  for (const auto& cut : {"O", "A", "C"}) {
+    const Scene other = recut(scene, mechanism.tree(), assemble(mechanism).start.q, cut, "B");
+    EXPECT_EQ(other.joints.size(), 3u);
+    expect_same(turns(other, Algebra::automatic, 2), expected, cut);
+    expect_same(turns(other, Algebra::spatial, 2), expected, std::string("in space ") + cut);
+  }
+}
+
+TEST(SameMotion, SqueezerCutElsewhere) {
+  const Scene scene = example("andrews");
+  const Mechanism mechanism(scene);
+  const auto expected = turns(scene, Algebra::automatic, 0.02);
+  EXPECT_GT(std::abs(expected.at("O.q [rad]")), 5);
+  for (const auto& [cut, closed] :
+       {std::pair{"F", "E2"}, std::pair{"B", "E2"}, std::pair{"A5", "E4"}, std::pair{"H", "E6"}})
+    expect_same(turns(recut(scene, mechanism.tree(), assemble(mechanism).start.q, cut, closed),
+                      Algebra::automatic, 0.02),
+                expected, cut);
+}
+
+TEST(SameMotion, TurnedRoomPlaneOrSpace) {
+  for (const auto& [name, end] : {std::pair{"four_bar", 2.0}, std::pair{"andrews", 0.02}}) {
+    const Scene scene = example(name);
+    const auto expected = turns(scene, Algebra::automatic, end);
+    for (const Eigen::Vector3d& axis :
+         {Eigen::Vector3d(0, 0, 1), Eigen::Vector3d(1, 2, -1), Eigen::Vector3d(-1, 0.1, 3)}) {
+      const Eigen::Quaterniond r(Eigen::AngleAxisd(1.3, axis.normalized()));
+      const Scene other = turned(scene, r);
+      EXPECT_TRUE(Mechanism(other).plan().planar);
+      expect_same(turns(other, Algebra::automatic, end), expected, "turned in the plane");
+      expect_same(turns(other, Algebra::spatial, end), expected, "turned in space");
+    }
+  }
+}
+
+TEST(SameMotion, TurnedBricard) {
+  const auto expected = turns(bricard(), Algebra::spatial, 3);
+  const Eigen::Quaterniond r(Eigen::AngleAxisd(0.9, Eigen::Vector3d(1, 2, -1).normalized()));
+  expect_same(turns(turned(bricard(), r), Algebra::spatial, 3), expected, "turned");
+}
+
+}  // namespace
+}  // namespace momenta
