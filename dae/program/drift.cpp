@@ -40,7 +40,8 @@ int drift(const Options& o, const DriftOptions& d) {
   request.samples = o.samples.value_or(defaults.samples);
   request.project = o.project;
   request.reference = reference.get();
-  request.max_cpu_seconds = o.cpu_limit;
+  // One form that grinds to a halt must not keep the others' results from the user.
+  request.max_cpu_seconds = o.cpu_limit.value_or(60);
   StudyResult study;
   {
     ProgressLine line(o.quiet);

@@ -44,7 +44,8 @@ void add_run_options(CLI::App& verb, Options& o) {
   verb.add_option("--baumgarte-alpha", o.baumgarte_alpha, "α of Φ̈ + 2αΦ̇ + β²Φ = 0 [1/s]")
       ->check(positive);
   verb.add_option("--baumgarte-beta", o.baumgarte_beta, "β [1/s]")->check(positive);
-  verb.add_option("--cpu-limit", o.cpu_limit, "Stop a run after this much CPU time [s]")
+  verb.add_option("--cpu-limit", o.cpu_limit,
+                  "Stop a run after this much CPU time [s] (run: none; drift: 60 for each run)")
       ->check(positive);
   verb.add_option("--reference", o.reference, "CSV with a reference solution");
   verb.add_option("--out", o.out, "Directory for results");

@@ -24,7 +24,7 @@ struct Options {
   std::optional<int> samples;
   double baumgarte_alpha = 0, baumgarte_beta = 0;
   bool project = false;
-  double cpu_limit = 0;
+  std::optional<double> cpu_limit;
   std::filesystem::path reference, out;
   bool json = false, quiet = false;
 };

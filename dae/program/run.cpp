@@ -30,7 +30,7 @@ int run(const Options& o) {
   s.baumgarte_beta = o.baumgarte_beta;
   request.reference = reference.get();
   request.keep_trajectory = true;
-  request.max_cpu_seconds = o.cpu_limit;
+  request.max_cpu_seconds = o.cpu_limit.value_or(0);
   ProgressLine line(o.quiet);
   request.progress = [&](double t) {
     line.show(s.form + "  t = " + std::to_string(t) + " s");
