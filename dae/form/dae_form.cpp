@@ -87,7 +87,11 @@ void DaeForm::find_redundancy(const Start& start) {
   }
 }
 
+/// Where x is not tested it does not stop Newton's method either: what rounding of q leaves in it, ε/h,
+/// grows as the step shrinks, so that at tight tolerances no first step would be short enough.
 double DaeForm::scale(int i) const {
+  const bool is_rate = i >= layout_.x() && i < layout_.x() + layout_.nv;
+  if (is_rate && !rate_is_tested()) return std::numeric_limits<double>::infinity();
   return scale_[static_cast<std::size_t>(i)];
 }
 
