@@ -44,8 +44,9 @@ TEST(Examples, EverySceneAssembles) {
       const Assembly a = assemble(mechanism);
       EXPECT_LE(a.position_residual, 1e-12);
       EXPECT_LE(a.velocity_residual, 1e-11);
-      if (const auto csv = folder.path() / "reference.csv"; std::filesystem::exists(csv))
+      if (const auto csv = folder.path() / "reference.csv"; std::filesystem::exists(csv)) {
         EXPECT_NO_THROW(Reference(csv).bind(trajectory_columns(mechanism)));
+      }
     }
   }
   EXPECT_GE(scenes, 8);
