@@ -47,11 +47,11 @@ def running_max(folder):
     return points
 
 
-def is_power(points):
-    """Whether it grows, and equally fast in the last half decade and in the one before."""
+def is_power(points, exponent):
+    """Whether it grows by this power in the last half decade and hardly otherwise in the one before."""
     at = [next(v for t, v in points if t >= T) for T in (100, 316, T1)]
     earlier, later = (2 * math.log10(at[i + 1] / at[i]) for i in (0, 1))
-    return later > 0.5 and abs(later - earlier) < 0.4
+    return abs(later - exponent) < 0.2 and abs(later - earlier) < 0.4 and exponent > 0.5
 
 
 def told(v):
@@ -98,7 +98,8 @@ def main(data):
                    + (f' stroke-dasharray="{dash}"' if dash else "") + "/>")
         with open(data / folder / "summary.json", encoding="utf-8") as f:
             drift = json.load(f)["drift"]
-        law = f", ∝ t^{drift['position_exponent']:.2f}" if is_power(points) else ""
+        exponent = drift["position_exponent"] or 0
+        law = f", ∝ t^{exponent:.2f}" if is_power(points, exponent) else ""
         ends.append((y_of(points[-1][1]), f"{label}: {told(points[-1][1])}" + law, colour))
     ends.sort()
     places = [y for y, _, _ in ends]
