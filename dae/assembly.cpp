@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 
 namespace momenta {
 namespace {
@@ -73,40 +74,63 @@ class Assembler {
     return phi;
   }
 
+  /// Where a step leads, shortened until the loops close further; near rounding level they no
+  /// longer do, and the norm stays at infinity.
+  struct Trial {
+    Eigen::VectorXd q;
+    double norm = std::numeric_limits<double>::infinity();
+  };
+  Trial along(const Eigen::VectorXd& q, double norm, Eigen::VectorXd step) {
+    Trial best;
+    if (!step.allFinite()) return best;
+    const double length = step.size() > 0 ? step.cwiseAbs().maxCoeff() : 0;
+    if (length > largest_step) step *= largest_step / length;
+    Eigen::VectorXd qdot = Eigen::VectorXd::Zero(mechanism_.nq());
+    for (int halving = 0; halving < 12; ++halving, step *= 0.5) {
+      e_->place(0, q.data());
+      e_->coordinate_rates(q.data(), step.data(), qdot.data());
+      Eigen::VectorXd next = q + qdot;
+      normalise(next);
+      if (const double reached = gap(next).norm(); reached < norm) {
+        best.q = std::move(next);
+        best.norm = reached;
+        break;
+      }
+    }
+    return best;
+  }
+  /// Minimises |J δ + Φ|² + |Φ|² |δ|².
+  static Eigen::VectorXd damped_step(const Eigen::MatrixXd& j, const Eigen::VectorXd& phi) {
+    Eigen::MatrixXd stacked(j.rows() + j.cols(), j.cols());
+    stacked << j, phi.norm() * Eigen::MatrixXd::Identity(j.cols(), j.cols());
+    Eigen::VectorXd right = Eigen::VectorXd::Zero(stacked.rows());
+    right.head(phi.size()) = -phi;
+    return stacked.householderQr().solve(right);
+  }
+
   void close_positions(Assembly& a) {
     Eigen::VectorXd& q = a.start.q;
     double size = 1;
     for (const auto& loop : mechanism_.scene().loops)
       size = std::max({size, loop.origin_child.norm(), loop.origin_parent.norm()});
     const Eigen::VectorXd guess = q;
-    Eigen::VectorXd phi = gap(q), qdot = Eigen::VectorXd::Zero(mechanism_.nq());
+    Eigen::VectorXd phi = gap(q);
     double norm = phi.norm();
     int stalled = 0;
     for (; a.iterations < most_iterations && norm > 1e-16 * size && stalled < 2; ++a.iterations) {
-      Eigen::VectorXd step = -decompose(free_columns(jacobian())).solve(phi);
-      if (!step.allFinite()) break;
-      const double length = step.size() > 0 ? step.cwiseAbs().maxCoeff() : 0;
-      if (length > largest_step) step *= largest_step / length;
-      // Halve until the loops close further; near rounding level they no longer do.
-      double fraction = 1;
-      Eigen::VectorXd next_phi;
-      Eigen::VectorXd next;
-      for (int halving = 0; halving < 12; ++halving, fraction *= 0.5) {
-        const Eigen::VectorXd trial = fraction * step;
-        e_->coordinate_rates(q.data(), trial.data(), qdot.data());
-        next = q + qdot;
-        normalise(next);
-        next_phi = gap(next);
-        if (next_phi.norm() < norm) break;
-      }
-      const double next_norm = next_phi.norm();
-      if (!(next_norm < norm)) {
-        gap(q);
-        break;
-      }
+      const Eigen::MatrixXd j = free_columns(jacobian());
+      Trial next = along(q, norm, -decompose(j).solve(phi));
+      // Redundant rows are redundant only where the loops are closed: off it they ask, through
+      // pivots as small as the gap, for steps that lead nowhere. Damping by the gap is harmless
+      // near the end, where it vanishes faster than what is left to do.
+      if (!(next.norm < 0.5 * norm))
+        if (Trial damped = along(q, norm, damped_step(j, phi)); damped.norm < next.norm)
+          next = std::move(damped);
+      const double next_norm = next.norm;
+      if (!(next_norm < norm)) break;
       stalled = next_norm > 0.5 * norm && norm < closed * size ? stalled + 1 : 0;
-      q = next;
-      phi = next_phi;
+      q = next.q;
+      phi = gap(q);
       norm = next_norm;
     }
     phi = gap(q);

@@ -1,0 +1,156 @@
+// A consistent start from a guess: positions close, held joints stay, what cannot close is said.
+
+#include "equations/linkages.h"
+#include "equations/tolerance.h"
+
+#include <gtest/gtest.h>
+#include <momenta/core/scene/read_scene.h>
+#include <momenta/dae/assembly.h>
+
+#include <filesystem>
+
+namespace momenta {
+namespace {
+
+using namespace equations;
+using Eigen::VectorXd;
+
+Scene example(const std::string& name) {
+  return read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples" / name / "scene.toml");
+}
+
+std::string complaint(const Scene& scene) {
+  const Mechanism mechanism(scene);
+  try {
+    assemble(mechanism);
+  } catch (const SceneError& e) {
+    return e.what();
+  }
+  return "";
+}
+
+/// Φ, Φ̇, Φ̈ and (1a) at the start, all zero.
+void expect_consistent(const Mechanism& mechanism, const Assembly& a) {
+  const auto e = mechanism.evaluation<double>();
+  const Start& s = a.start;
+  VectorXd row(mechanism.m()), tau(mechanism.nv());
+  e->place(s.t, s.q.data());
+  e->positions(row.data());
+  EXPECT_LT(row.cwiseAbs().maxCoeff(), 1e-14);
+  e->move(s.u.data());
+  e->velocities(row.data());
+  const double speed = 1 + s.u.cwiseAbs().maxCoeff();
+  EXPECT_LT(row.cwiseAbs().maxCoeff(), 1e-13 * speed);
+  e->joint_forces(s.q.data(), s.u.data(), s.udot.data(), s.lambda.data(), tau.data());
+  e->accelerations(row.data());
+  const double strength = 1 + s.udot.cwiseAbs().maxCoeff();
+  EXPECT_LT(row.cwiseAbs().maxCoeff(), 1e-11 * strength);
+  EXPECT_LT(tau.cwiseAbs().maxCoeff(), 1e-11 * (1 + s.lambda.cwiseAbs().maxCoeff()));
+}
+
+TEST(Assembly, FourBarClosesFromBadGuesses) {
+  // Angles of the reference solution at t = 0.
+  const double crank = 1.5707963267948966, coupler = 0.51099074729704354,
+               rocker = 1.7419501646378182;
+  for (const double off : {0.0, 0.1, -0.3, 0.5}) {
+    Scene scene = example("four_bar");
+    scene.joints[1].position = {coupler - crank + off};
+    scene.joints[2].position = {rocker + off};
+    const Mechanism mechanism(scene);
+    const Assembly a = assemble(mechanism);
+    EXPECT_EQ(a.start.q[0], crank) << "a held joint moved";
+    EXPECT_NEAR(a.start.q[0] + a.start.q[1], coupler, 1e-14) << off;
+    EXPECT_NEAR(a.start.q[2], rocker, 1e-14) << off;
+    EXPECT_NEAR(a.moved, std::abs(off), 1e-14);
+    EXPECT_EQ(a.rank, 2);
+    EXPECT_EQ(a.mobility, 1);
+    EXPECT_LT(a.position_residual, 1e-15);
+    expect_consistent(mechanism, a);
+  }
+}
+
+TEST(Assembly, RatesFollowTheHeldOne) {
+  Scene scene = example("four_bar");
+  scene.joints[0].velocity = {3};
+  const Mechanism mechanism(scene);
+  const Assembly a = assemble(mechanism);
+  EXPECT_EQ(a.start.u[0], 3);
+  EXPECT_GT(a.start.u.tail(2).cwiseAbs().minCoeff(), 0.01);
+  expect_consistent(mechanism, a);
+}
+
+TEST(Assembly, RedundantLoopsClose) {
+  for (unsigned seed = 0; seed < 10; ++seed) {
+    const Eigen::Quaterniond r =
+        seed == 0 ? Eigen::Quaterniond::Identity()
+                  : Eigen::Quaterniond(Eigen::AngleAxisd(
+                        0.3 * seed, Eigen::Vector3d(1, -2, 0.1 * seed).normalized()));
+    Scene scene = turned(bricard(), r);
+    for (std::size_t i = 0; i < scene.joints.size(); ++i)
+      scene.joints[i].position = {0.1 * std::sin(3.0 * static_cast<double>(i) + seed)};
+    const Mechanism mechanism(scene);
+    const Assembly a = assemble(mechanism);
+    EXPECT_EQ(a.rank, 4);
+    EXPECT_EQ(a.mobility, 1);
+    EXPECT_EQ(a.dependent_rows.size(), 1u);
+    EXPECT_LT(a.largest_neglected, 1e-7 * a.smallest_pivot);
+    expect_consistent(mechanism, a);
+
+    const Mechanism flat(turned(row_of_four_bars(3, 1.1, 1), r), {.algebra = Algebra::spatial});
+    const Assembly b = assemble(flat);
+    EXPECT_EQ(b.rank, 6);
+    EXPECT_EQ(b.mobility, 1);
+    EXPECT_EQ(b.dependent_rows.size(), 9u);
+    expect_consistent(flat, b);
+  }
+}
+
+TEST(Assembly, SingularPoseIsSeen) {
+  const Mechanism mechanism(row_of_four_bars(3, 0, 1));
+  const Assembly a = assemble(mechanism);
+  EXPECT_EQ(a.rank, 3);
+  EXPECT_EQ(a.mobility, 4);
+  EXPECT_EQ(a.iterations, 0);
+}
+
+TEST(Assembly, WhatStaysOpenIsNamedWithItsGap) {
+  Scene scene = example("four_bar");
+  scene.joints[2].origin_parent = {9, 0, 0};  // 9 m from O: links of 0.5, 2 and 1.5 m cannot reach
+  scene.held.clear();
+  const std::string what = complaint(scene);
+  EXPECT_NE(what.find("scene.toml:"), std::string::npos) << what;
+  EXPECT_NE(what.find("cannot be assembled"), std::string::npos) << what;
+  EXPECT_NE(what.find("loop 'B' stays open by"), std::string::npos) << what;
+  const auto number = what.find("open by ") + 8;
+  EXPECT_NEAR(std::stod(what.substr(number)), 5, 0.1) << what;  // 9 − 4 m
+}
+
+TEST(Assembly, HeldJointsThatForbidClosingAreSaid) {
+  Scene scene = example("four_bar");
+  scene.held = {"O", "A", "C"};
+  scene.joints[2].position = {1.0};
+  EXPECT_NE(complaint(scene).find("while joints are held"), std::string::npos) << complaint(scene);
+}
+
+TEST(Assembly, HeldRatesThatTearALoopAreSaid) {
+  Scene scene = example("four_bar");
+  scene.held = {"O", "C"};
+  scene.joints[0].velocity = {1};
+  scene.joints[2].velocity = {5};
+  scene.joints[2].position = {1.7419501646378182};
+  const std::string what = complaint(scene);
+  EXPECT_NE(what.find("loop 'B'"), std::string::npos) << what;
+  EXPECT_NE(what.find("rates that the loops allow"), std::string::npos) << what;
+}
+
+TEST(Assembly, WithoutLoopsTheGuessStays) {
+  const Mechanism mechanism(example("chain"));
+  const Assembly a = assemble(mechanism);
+  EXPECT_EQ(a.rank, 0);
+  EXPECT_EQ(a.mobility, mechanism.nv());
+  EXPECT_EQ(a.start.q, mechanism.tree().q0);
+  EXPECT_EQ(a.start.u, mechanism.tree().u0);
+}
+
+}  // namespace
+}  // namespace momenta
