@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 #include <string>
+#include <utility>
 
 namespace momenta {
 namespace {
@@ -15,7 +16,8 @@ const std::filesystem::path examples = std::filesystem::path(MOMENTA_SOURCE_DIR)
 
 RunResult run_against_reference(const std::string& example, const std::string& form,
                                 const std::string& gauge, double tol, double end,
-                                const std::string& scene = "scene.toml", int samples = 10) {
+                                const std::string& scene = "scene.toml", int samples = 10,
+                                bool project = false) {
   const Mechanism mechanism(read_scene(examples / example / scene));
   Reference reference(examples / example / "reference.csv");
   reference.bind(trajectory_columns(mechanism));
@@ -26,6 +28,7 @@ RunResult run_against_reference(const std::string& example, const std::string& f
   request.settings.rtol = request.settings.atol = tol;
   request.settings.end_time = end;
   request.settings.samples = samples;
+  request.settings.project = project;
   request.reference = &reference;
   const RunResult run = run_form(mechanism, assemble(mechanism).start, request);
   EXPECT_EQ(run.status, "done") << run.reason;
@@ -88,6 +91,18 @@ TEST(Examples, FourBarMeetsItsReference) {
   EXPECT_LE(run.position_error_max, 1e-8);
   EXPECT_LE(run.velocity_error_max, 1e-7);
   EXPECT_LE(run.position_drift_max, 1e-10);
+}
+
+// Through seven bifurcations in ten seconds, on the wanted branch.
+TEST(Examples, SliderCrankKeepsItsBranch) {
+  for (const auto& [form, gauge] :
+       {std::pair("momentum", "reset"), std::pair("acceleration", "")}) {
+    SCOPED_TRACE(form);
+    const RunResult run =
+        run_against_reference("slider_crank", form, gauge, 1e-10, 10, "scene.toml", 10, true);
+    EXPECT_LE(run.position_error_max, 1e-6);
+    EXPECT_LE(run.energy_error_max, 1e-6);
+  }
 }
 
 TEST(Examples, PendulumMeetsItsReference) {
