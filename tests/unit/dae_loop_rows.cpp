@@ -6,7 +6,7 @@
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
-#include <momenta/dae/mechanism.h>
+#include <momenta/dae/form/form.h>
 
 namespace momenta {
 namespace {
@@ -178,6 +178,55 @@ TEST_P(PlanarLoopRows, AnyPlane) {
     if (HasFatalFailure()) return;
   }
   worst.expect_below(algebra_tol(24));
+}
+
+/// u and ṗ of the momentum form, the planar kernel against the spatial one with its redundant rows.
+TEST_P(PlanarLoopRows, AgreeWithSpace) {
+  double worst = 0;
+  int compared = 0;
+  for (unsigned i = 0; i < 80; ++i) {
+    RandomTree random(900 + i);
+    Scene scene = random.planar_scene({.bodies = 7, .drives = i % 2 == 0});
+    const Tree tree = build_tree(scene);
+    const auto found = find_plane(tree, scene);
+    if (!found.basis || tree.nv < 4) continue;
+    LoopSpec l = random_loop(random, scene, GetParam());
+    l = into_plane(random, scene, l, found.basis->col(2));
+    level(l, scene, tree, found.basis->col(2));
+    scene.loops.push_back(l);
+    const TreeState s = random.state(tree);
+    std::vector<double> p(s.u.data(), s.u.data() + s.u.size());
+    std::vector<VectorXd> rates;
+    double condition = 1;
+    for (const Algebra algebra : {Algebra::planar, Algebra::spatial}) {
+      const Mechanism mechanism(scene, {.algebra = algebra});
+      const auto e = mechanism.evaluation<double>();
+      e->place(s.t, s.q.data());
+      MatrixXd j = MatrixXd::Zero(mechanism.m(), mechanism.nv());
+      const auto& pattern = mechanism.kkt_pattern().constraint;
+      std::vector<double> values(pattern.size());
+      e->constraint_entries(values.data());
+      for (std::size_t k = 0; k < values.size(); ++k)
+        j(pattern[k].row, pattern[k].column) = values[k];
+      const VectorXd sv = j.jacobiSvd().singularValues();
+      if (algebra == Algebra::planar) condition = sv[0] / sv[sv.size() - 1];
+      const Start start{s.t, s.q, s.u, VectorXd::Zero(mechanism.nv()), VectorXd::Zero(j.rows())};
+      FormOptions options;
+      options.gauge = {Gauge::Kind::leak, 1.3};
+      const auto form = make_form("momentum", mechanism, options, start);
+      std::vector<double> y(s.q.data(), s.q.data() + s.q.size());
+      y.insert(y.end(), p.begin(), p.end());
+      VectorXd ydot(static_cast<Eigen::Index>(y.size()));
+      ASSERT_TRUE(form->ode()->rhs(s.t, y.data(), ydot.data()));
+      rates.push_back(ydot);
+    }
+    if (!(condition < 30)) continue;  // the loop hardly moves what it closes
+    ++compared;
+    worst = std::max(worst, relative_error(rates[1], rates[0]) / (condition * condition));
+  }
+  EXPECT_GT(compared, 8);
+  EXPECT_LT(worst, algebra_tol(28));
+  RecordProperty("planar against spatial", std::to_string(worst * 1e16) + "e-16");
 }
 
 std::string kind_name(const testing::TestParamInfo<LoopKind>& info) {
