@@ -103,6 +103,43 @@ TEST(AllForms, DrivenCrank) {
   expect_all_forms_agree(scene, Algebra::automatic, 2, 1e-7, 3e-5);
 }
 
+TEST(AllForms, BallJointsAFlyingRodAndALinkBetween) {
+  Scene scene;
+  scene.name = "two rods and a flying one";
+  scene.gravity = {0, -9.81, 0};
+  for (const char* name : {"left", "right", "flying"}) scene.bodies.push_back(rod(name, 0.2));
+  for (int i = 0; i < 3; ++i) {
+    JointSpec j;
+    j.name = "J" + std::to_string(i);
+    j.child = scene.bodies[static_cast<std::size_t>(i)].name;
+    j.kind = i < 2 ? JointKind::spherical : JointKind::free;
+    j.origin_parent = {1.5 * i, 0, 0};
+    j.position = {std::cos(0.3 * i), 0, std::sin(0.3 * i), 0};
+    j.velocity = {0.5, 1.0 - i, 0.3};
+    if (i == 2) {
+      j.position.insert(j.position.begin(), {0, 1, 0.5});
+      j.velocity.insert(j.velocity.begin(), {0, 0, 0});
+    }
+    scene.joints.push_back(j);
+  }
+  LoopSpec link;
+  link.name = "link";
+  link.kind = LoopKind::distance;
+  link.child = "right";
+  link.parent = "left";
+  link.origin_child = link.origin_parent = {1, 0, 0};
+  link.length = 1.6;
+  scene.loops.push_back(link);
+  LoopSpec ball = link;
+  ball.name = "ball";
+  ball.kind = LoopKind::point;
+  ball.child = "flying";
+  ball.parent = "right";
+  ball.origin_child = {0, 0, 0};
+  scene.loops.push_back(ball);
+  expect_all_forms_agree(scene, Algebra::automatic, 1.5, 1e-6, 1e-4);
+}
+
 /// ∂F/∂y + c ∂F/∂y' against central differences of F, at random points near the start.
 void expect_exact_jacobians(const Mechanism& mechanism, const Start& start, unsigned seed) {
   for (const std::string& name : form_names()) {
