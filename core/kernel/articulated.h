@@ -9,6 +9,7 @@
 // r is p in the momentum form; in the acceleration form r is the joint force, D starts as the bias
 // wrench and the prescribed part is the velocity product instead of Ω_t.
 
+#include <momenta/core/kernel/revolute_carry.h>
 #include <momenta/core/kernel/sweeps.h>
 #include <momenta/core/scalar/dual.h>
 
@@ -82,6 +83,14 @@ void articulated_masses_inward(Workspace<Space, S>& w) {
       s.pivot = S(1.0) / joint_mass;
       s.h = U;
       for (int i = 0; i < Space::dimension; ++i) s.h[i] = s.pivot * U[i];
+      if constexpr (Space::dimension == 6) {
+        if (b.kind == JointKind::revolute) {
+          if (b.parent >= 0)
+            w.body[static_cast<std::size_t>(b.parent)].M +=
+                carry_revolute(b.edge, s.edge, s.M, U, s.h);
+          continue;
+        }
+      }
       Joint<Space>::reduce(b, reduced, U, s.h);
     } else if (b.drive >= 0) {
       s.h = Joint<Space>::column(b, s.edge, s.M);
