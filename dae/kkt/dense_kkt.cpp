@@ -1,7 +1,7 @@
-// Small systems. u is eliminated before σ: M = L Lᵀ, G = L⁻¹Φ_qᵀ, W = GᵀG = Φ_q M⁻¹ Φ_qᵀ, then W =
-// Σ l_k d_k l_kᵀ by scalar eliminations, largest remaining diagonal first. In this order and form
-// the error of u is about ε/δ near a pose where a singular value δ of Φ_q M^(−1/2) vanishes, as
-// small as any algorithm can make it: W squares the condition of σ, not of u.
+// Small systems. u is eliminated before σ: M = Lᵀ D L along the tree, G = L⁻ᵀΦ_qᵀ, W = Gᵀ D⁻¹ G =
+// Φ_q M⁻¹ Φ_qᵀ, then W = Σ l_k d_k l_kᵀ by scalar eliminations, largest remaining diagonal first.
+// In this order and form the error of u is about ε/δ near a pose where a singular value δ of Φ_q
+// M^(−1/2) vanishes, as small as any algorithm can make it: W squares the condition of σ, not of u.
 //
 // Each pivot is inverted as f(d) = d³/(d⁴ + τ⁴), zero for d ≤ 0: exact to (τ/d)⁴ above τ, fading to
 // zero below. With σ = centre + σ' only σ' fades, so a faded row keeps the impulse it had at the
@@ -9,6 +9,7 @@
 
 #include <momenta/dae/kkt/axis_scale.h>
 #include <momenta/dae/kkt/kkt.h>
+#include <momenta/dae/kkt/tree_factor.h>
 
 #include <algorithm>
 #include <cmath>
@@ -26,8 +27,9 @@ class DenseKkt final : public Kkt {
         m_(mechanism.m()),
         mass_(pattern_.mass.size()),
         constraint_(pattern_.constraint.size()),
-        l_(size(n_, n_)),
+        factor_(pattern_, n_),
         g_(size(m_, n_)),
+        scaled_(size(m_, n_)),
         w_(size(m_, m_)),
         inverse_(size(m_, 1)),
         order_(size(m_, 1)),
@@ -46,25 +48,29 @@ class DenseKkt final : public Kkt {
     ++factorizations_;
     e.mass_entries(mass_.data());
     e.constraint_entries(constraint_.data());
-    std::fill(l_.begin(), l_.end(), 0.0);
+    if (!factor_.factor(mass_)) return false;
     std::fill(g_.begin(), g_.end(), 0.0);
-    for (std::size_t i = 0; i < mass_.size(); ++i)
-      l_[at(pattern_.mass[i].column, pattern_.mass[i].row, n_)] = mass_[i];
     for (std::size_t i = 0; i < constraint_.size(); ++i)
       g_[at(pattern_.constraint[i].row, pattern_.constraint[i].column, n_)] = constraint_[i];
-    return cholesky() && eliminate_loops(fade);
+    const double* inverse_pivot = factor_.inverse_pivots().data();
+    for (int i = 0; i < m_; ++i) {
+      double *g = &g_[at(i, 0, n_)], *scaled = &scaled_[at(i, 0, n_)];
+      factor_.inward(g);
+      for (int j = 0; j < n_; ++j) scaled[j] = inverse_pivot[j] * g[j];
+    }
+    return eliminate_loops(fade);
   }
 
   bool solve(const double* r, const double* g, const double* centre, double* u,
              double* sigma) override {
-    for (int i = 0; i < n_; ++i) y_[idx(i)] = r[i];
-    forward(y_.data());
+    std::copy(r, r + n_, y_.begin());
+    factor_.inward(y_.data());
     if (centre)
       for (int i = 0; i < m_; ++i)
         for (int j = 0; j < n_; ++j) y_[idx(j)] -= g_[at(i, j, n_)] * centre[i];
     for (int i = 0; i < m_; ++i) {
       double d = -g[i];
-      for (int j = 0; j < n_; ++j) d += g_[at(i, j, n_)] * y_[idx(j)];
+      for (int j = 0; j < n_; ++j) d += scaled_[at(i, j, n_)] * y_[idx(j)];
       d_[idx(i)] = d;
     }
     for (int k = 0; k < m_; ++k) {
@@ -81,13 +87,10 @@ class DenseKkt final : public Kkt {
     }
     for (int i = 0; i < m_; ++i)
       for (int j = 0; j < n_; ++j) y_[idx(j)] -= g_[at(i, j, n_)] * sigma[i];
+    for (int j = 0; j < n_; ++j) u[j] = factor_.inverse_pivots()[idx(j)] * y_[idx(j)];
+    factor_.outward(u);
     bool finite = true;
-    for (int i = n_; i-- > 0;) {
-      double s = y_[idx(i)];
-      for (int j = i + 1; j < n_; ++j) s -= l_[at(j, i, n_)] * u[j];
-      u[i] = s / l_[at(i, i, n_)];
-      finite &= std::isfinite(u[i]);
-    }
+    for (int j = 0; j < n_; ++j) finite &= std::isfinite(u[j]);
     for (int i = 0; i < m_; ++i) {
       if (centre) sigma[i] += centre[i];
       finite &= std::isfinite(sigma[i]);
@@ -102,40 +105,13 @@ class DenseKkt final : public Kkt {
   static std::size_t idx(int i) { return static_cast<std::size_t>(i); }
   static std::size_t at(int i, int j, int columns) { return size(i, columns) + idx(j); }
 
-  /// M = L Lᵀ in the lower triangle of l_; rows of g_ become L⁻¹Φ_qᵀ.
-  bool cholesky() {
-    for (int i = 0; i < n_; ++i) {
-      double* row = &l_[at(i, 0, n_)];
-      for (int j = 0; j < i; ++j) {
-        const double* other = &l_[at(j, 0, n_)];
-        double s = row[j];
-        for (int k = 0; k < j; ++k) s -= row[k] * other[k];
-        row[j] = s / other[j];
-      }
-      double s = row[i];
-      for (int k = 0; k < i; ++k) s -= row[k] * row[k];
-      if (!(s > 0)) return false;
-      row[i] = std::sqrt(s);
-    }
-    for (int i = 0; i < m_; ++i) forward(&g_[at(i, 0, n_)]);
-    return true;
-  }
-  void forward(double* x) const {
-    for (int i = 0; i < n_; ++i) {
-      const double* row = &l_[at(i, 0, n_)];
-      double s = x[i];
-      for (int k = 0; k < i; ++k) s -= row[k] * x[k];
-      x[i] = s / row[i];
-    }
-  }
-
   bool eliminate_loops(double fade) {
     std::fill(group_sum_.begin(), group_sum_.end(), 0.0);
     axis_scale_.measure(mass_, natural_);
     for (int i = 0; i < m_; ++i) {
       for (int j = 0; j <= i; ++j) {
         double s = 0;
-        for (int k = 0; k < n_; ++k) s += g_[at(i, k, n_)] * g_[at(j, k, n_)];
+        for (int k = 0; k < n_; ++k) s += g_[at(i, k, n_)] * scaled_[at(j, k, n_)];
         w_[at(i, j, m_)] = w_[at(j, i, m_)] = s;
       }
       group_sum_[idx(groups_[idx(i)])] += std::max(w_[at(i, i, m_)], natural_[idx(i)]);
@@ -182,9 +158,10 @@ class DenseKkt final : public Kkt {
   AxisScale axis_scale_;
   int n_, m_;
   std::vector<double> mass_, constraint_;
-  std::vector<double> l_;  ///< n × n, row-major: L
-  std::vector<double> g_;  ///< m × n: rows L⁻¹ of the columns of Φ_qᵀ
-  std::vector<double> w_;  ///< m × m: W, its columns as they stood when eliminated
+  TreeFactor factor_;
+  std::vector<double> g_;       ///< m × n: row i is L⁻ᵀ times column i of Φ_qᵀ
+  std::vector<double> scaled_;  ///< m × n: the same times D⁻¹
+  std::vector<double> w_;       ///< m × m: W, its columns as they stood when eliminated
   std::vector<double> inverse_;
   std::vector<int> order_;
   std::vector<double> y_, d_, tau_, natural_, group_sum_;

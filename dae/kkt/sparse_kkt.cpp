@@ -123,7 +123,8 @@ class SparseKkt final : public Kkt {
     return largest;
   }
 
-  /// ε of each row: fade times the mean of Σ_j Φ_ij²/M_jj over the rows of its group, no less than is natural for axes.
+  /// ε of each row: fade times the mean of Σ_j Φ_ij²/M_jj over the rows of its group, no less than
+  /// is natural for axes.
   void regularise(double fade) {
     std::fill(row_scale_.begin(), row_scale_.end(), 0.0);
     for (std::size_t i = 0; i < constraint_.size(); ++i) {
@@ -133,7 +134,8 @@ class SparseKkt final : public Kkt {
         row_scale_[static_cast<std::size_t>(entry.row)] += constraint_[i] * constraint_[i] / mass;
     }
     axis_scale_.measure(mass_, natural_);
-    for (std::size_t i = 0; i < natural_.size(); ++i) row_scale_[i] = std::max(row_scale_[i], natural_[i]);
+    for (std::size_t i = 0; i < natural_.size(); ++i)
+      row_scale_[i] = std::max(row_scale_[i], natural_[i]);
     for (std::size_t first = 0; first < groups_.size();) {
       std::size_t last = first;
       double sum = 0;
