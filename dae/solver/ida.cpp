@@ -56,7 +56,6 @@ class Ida {
   Ida(DaeSystem& system, const IntegrationOptions& options, double span)
       : system_(system),
         options_(options),
-        sparse_(!system.pattern().column_start.empty()),
         span_(span),
         y_(system.size(), context_),
         ydot_(system.size(), context_),
@@ -79,8 +78,9 @@ class Ida {
 
   bool start(double t0) {
     t0_ = t0;
-    return system_.start(t0, y_.data(), ydot_.data()) &&
-           sundials::all_finite(y_.data(), y_.size()) &&
+    if (!system_.start(t0, y_.data(), ydot_.data())) return false;
+    sparse_ = !system_.pattern().column_start.empty();  // known once the system has started
+    return sundials::all_finite(y_.data(), y_.size()) &&
            sundials::all_finite(ydot_.data(), ydot_.size());
   }
 
@@ -272,7 +272,7 @@ class Ida {
 
   DaeSystem& system_;
   const IntegrationOptions& options_;
-  bool sparse_;
+  bool sparse_ = false;
   double span_, t0_ = 0;
   double first_step_ = 0;
   sundials::Context context_;  // before everything made with it
@@ -294,10 +294,11 @@ IntegrationResult integrate_ida(DaeSystem& system, double t0,
   const OutputCursor outputs(t0, output_times);
   Ida ida(system, options, outputs.end() - t0);
   IntegrationResult result;
-  result.linear_solver = ida.linear_solver();
   result.jacobian = "dual numbers";
   result.end_time = t0;
-  if (!ida.start(t0)) {
+  const bool started = ida.start(t0);
+  result.linear_solver = ida.linear_solver();
+  if (!started) {
     result.reason = stop_sentence("ida", t0, evaluation_cause(system.failure()));
     result.y.assign(ida.y(), ida.y() + system.size());
     return result;
