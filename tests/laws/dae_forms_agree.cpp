@@ -88,6 +88,9 @@ TEST(AllForms, FourBarInSpaceWithRedundantRows) {
   // the regularisation of the DAE forms leaves 1e-9 of the impulses
   expect_all_forms_agree(turned(example("four_bar"), r), Algebra::spatial, 2, 1e-7, 1e-4);
 }
+TEST(AllForms, LongRowBySparseMatrices) {
+  expect_all_forms_agree(row_of_four_bars(15, 1.5, -1), Algebra::automatic, 0.5, 1e-7, 3e-5);
+}
 TEST(AllForms, DrivenCrank) {
   Scene scene = example("four_bar");
   DriveSpec d;
