@@ -36,12 +36,16 @@ std::vector<std::pair<std::string, std::string>> Plan::lines() const {
                 basis(1, 2), basis(2, 2));
   return {
       {"kernel", planar ? normal : "spatial (" + planar_reason + ")"},
-      {"gravity", gravity ? "carried as first moments" : "none, left out"},
+      {"gravity", !gravity ? "none, left out"
+                  : loops  ? "weights on bodies"
+                           : "carried as first moments"},
       {"drives", drives ? "rheonomic terms Ω_t evaluated" : "none, Ω_t left out"},
       {"quasi-velocities",
        quasi_velocities ? "spherical or free joints: quaternions in q" : "none, q̇ = u"},
       {"joint forces", joint_forces ? "springs, dampers, torques on joints" : "none, left out"},
-      {"third sweep", third_sweep ? "forces between points of bodies" : "none, left out"},
+      {"third sweep", loops         ? "wrenches of loops and forces, inward"
+                      : third_sweep ? "forces between points of bodies"
+                                    : "none, left out"},
   };
 }
 

@@ -20,6 +20,8 @@ struct Plan {
   bool quasi_velocities = false;  ///< spherical or free joints: quaternions, p not canonical
   bool third_sweep = false;       ///< springs, dampers or wrenches on bodies
   bool joint_forces = false;
+  bool loops =
+      false;  ///< set by whoever closes the tree: velocities come from (7), not from the sweeps
   Eigen::Matrix3d basis = Eigen::Matrix3d::Identity();  ///< of the plane
 
   /// "kernel: planar, plane normal to z", … one pair a decision.

@@ -209,23 +209,24 @@ class Assembler {
     if (mechanism_.nv() == 0) return;
     e_->place(s.t, s.q.data());
     if (mechanism_.m() == 0) {
-      if (!e_->open_accelerations(s.t, s.q.data(), s.u.data(), s.udot.data())) no_inertia();
+      if (!e_->open_accelerations(s.t, s.q.data(), s.u.data(), s.udot.data()))
+        no_inertia(e_->stuck());
       return;
     }
     const auto kkt = make_kkt(mechanism_);
-    if (!kkt->factor(*e_, fade_evaluation)) no_inertia();
+    if (!kkt->factor(*e_, fade_evaluation)) no_inertia(kkt->stuck());
     e_->move(s.u.data());
     Eigen::VectorXd r(mechanism_.nv()), g(mechanism_.m());
     e_->joint_forces(s.q.data(), s.u.data(), nullptr, nullptr, r.data());
     e_->accelerations(g.data());
     r = -r;
     g = -g;
-    if (!kkt->solve(r.data(), g.data(), nullptr, s.udot.data(), s.lambda.data())) no_inertia();
+    if (!kkt->solve(r.data(), g.data(), nullptr, s.udot.data(), s.lambda.data())) no_inertia(-1);
   }
 
-  [[noreturn]] void no_inertia() const {
+  [[noreturn]] void no_inertia(int rate) const {
     throw SceneError(mechanism_.scene().where({}) +
-                     "the mechanism cannot move at its start: " + mechanism_.no_inertia());
+                     "the mechanism cannot move at its start: " + mechanism_.no_inertia(rate));
   }
 
   void normalise(Eigen::VectorXd& q) const {

@@ -53,6 +53,9 @@ class Evaluation {
   /// (q, u, t) → u̇ by the articulated recursion: mechanisms without loops only.
   virtual bool open_accelerations(double t, const S* q, const S* u, S* udot) = 0;
 
+  /// Place in u of the joint at which one of these two failed.
+  virtual int stuck() const = 0;
+
   /// T and V [J]; after place() and move().
   virtual S kinetic() = 0;
   virtual S potential(const S* q) = 0;

@@ -37,6 +37,7 @@ Mechanism::Mechanism(Scene scene, MechanismOptions options)
   }
   row_names_ = row_names(scene_, plan_.planar);
   rows_ = static_cast<int>(row_names_.size());
+  plan_.loops = rows_ > 0;
   dense_ = options.kkt == KktChoice::dense ||
            (options.kkt == KktChoice::automatic && tree_.nv + rows_ <= dense_limit);
 
@@ -125,8 +126,12 @@ std::vector<std::pair<std::string, std::string>> Mechanism::plan_lines() const {
   return lines;
 }
 
-std::string Mechanism::no_inertia() const {
-  return "a joint has no inertia to move: the mass matrix is not positive definite";
+std::string Mechanism::no_inertia(int rate) const {
+  for (const auto& b : tree_.bodies)
+    if (rate >= b.u && rate < b.u + b.nv)
+      return "joint '" + b.joint + "' has no inertia to move: body '" + b.name +
+             "' and what it carries weigh nothing along it";
+  return "the mass matrix is not finite";
 }
 
 }  // namespace momenta

@@ -66,8 +66,8 @@ class Mechanism {
   /// Lines of the plan, core's and those of the loops.
   std::vector<std::pair<std::string, std::string>> plan_lines() const;
 
-  /// The sentence for a joint whose articulated inertia vanished (open chains).
-  std::string no_inertia() const;
+  /// The sentence for the joint of a rate (place in u) along which nothing has mass.
+  std::string no_inertia(int rate) const;
 
  private:
   template <class Space>

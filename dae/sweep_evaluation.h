@@ -124,6 +124,10 @@ class Mechanism::SweepEvaluation final : public Evaluation<S> {
     return acceleration_recursion(w_, S(t), q, u, udot);
   }
 
+  int stuck() const override {
+    return w_.singular < 0 ? -1 : model_.bodies[static_cast<std::size_t>(w_.singular)].u;
+  }
+
   S kinetic() override { return kinetic_energy(w_); }
   S potential(const S* q) override { return potential_energy(w_, q); }
   S lost_power(const S* u) override {

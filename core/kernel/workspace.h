@@ -23,7 +23,7 @@ struct Workspace {
     S drive{}, drive_rate{}, drive_acceleration{};  ///< prescribed joint motion
     // velocities_outward, rates_outward
     Motion V;  ///< Ω_K
-    Motion A;  ///< dΩ_K/dt in body axes, with −g of the base
+    Motion A;  ///< dΩ_K/dt: derivative in body axes; in the plane, of ground components
     Vector g;  ///< gravity in body axes
     // articulated_masses_inward
     Inertia M;      ///< M*_K, eq. (43)

@@ -190,7 +190,7 @@ RunDefaults read_run(const Fields& table) {
   RunDefaults run;
   run.end_time = table.number("end", {"s", Bound::positive}, run.end_time);
   if (table.has("step")) run.step = table.number("step", {"s", Bound::positive});
-  if (table.has("leak")) run.leak = table.number("leak", {"1/s", Bound::not_negative});
+  if (table.has("leak")) run.leak = table.number("leak", {"1/s", Bound::positive});
   run.samples = table.count("samples", run.samples);
   return run;
 }

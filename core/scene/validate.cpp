@@ -155,8 +155,8 @@ void check_rest(const Scene& scene, const Census& census) {
           "end must be finite and > 0 [s]");
   require(!run.step || (std::isfinite(*run.step) && *run.step > 0), scene, {}, "[run]",
           "step must be finite and > 0 [s]");
-  require(!run.leak || (std::isfinite(*run.leak) && *run.leak >= 0), scene, {}, "[run]",
-          "leak must be finite and >= 0 [1/s]");
+  require(!run.leak || (std::isfinite(*run.leak) && *run.leak > 0), scene, {}, "[run]",
+          "leak must be finite and > 0 [1/s]");
   require(run.samples > 0, scene, {}, "[run]", "samples must be > 0");
 }
 

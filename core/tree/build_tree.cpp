@@ -94,6 +94,7 @@ class TreeBuilder {
       if (drive.joint == joint.name) {
         b.drive = static_cast<int>(tree_.drives.size());
         tree_.drives.emplace_back(drive);
+        refuse_forces(joint);
         b.nq = b.nv = 0;
       }
     b.q = tree_.nq;
@@ -120,6 +121,17 @@ class TreeBuilder {
     tree_.bodies.push_back(std::move(b));
     joints_.push_back(&joint);
     return static_cast<int>(tree_.bodies.size()) - 1;
+  }
+
+  /// A driven joint moves as it is told; a force along it would change nothing but the drive.
+  void refuse_forces(const JointSpec& joint) const {
+    bool forced = joint.stiffness != 0 || joint.damping != 0;
+    for (const auto& force : scene_.forces)
+      forced |= force.kind == "torque" && force.joint == joint.name;
+    if (forced)
+      throw SceneError(
+          scene_.where(joint.at) + "joint '" + joint.name +
+          "' is driven, so a spring, damper or torque on it has no effect; expected none");
   }
 
   const Scene& scene_;

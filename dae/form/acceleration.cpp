@@ -49,7 +49,8 @@ class Acceleration final : public OdeForm {
     const double *q = y, *u = y + mechanism_.nq();
     double* udot = ydot + mechanism_.nq();
     if (!has_loops()) {
-      if (!e_->open_accelerations(t, q, u, udot)) return fail_at(t, mechanism_.no_inertia());
+      if (!e_->open_accelerations(t, q, u, udot))
+        return fail_at(t, mechanism_.no_inertia(e_->stuck()));
       e_->coordinate_rates(q, u, ydot);
       return true;
     }
@@ -84,6 +85,7 @@ class Acceleration final : public OdeForm {
   void begin_step(double, const double*) override { centre_ = multipliers_; }
 
   bool read(double t, const double* y, const double*, Snapshot& out) override {
+    const Looking looking(*this);
     const std::vector<double> kept = multipliers_;
     std::vector<double> state(y, y + size()), rates(state.size());
     double *q = state.data(), *u = q + mechanism_.nq();

@@ -87,8 +87,8 @@ void DaeForm::find_redundancy(const Start& start) {
   }
 }
 
-/// Where x is not tested it does not stop Newton's method either: what rounding of q leaves in it, ε/h,
-/// grows as the step shrinks, so that at tight tolerances no first step would be short enough.
+/// Where x is not tested it does not stop Newton's method either: what rounding of q leaves in it,
+/// ε/h, grows as the step shrinks, so that at tight tolerances no first step would be short enough.
 double DaeForm::scale(int i) const {
   const bool is_rate = i >= layout_.x() && i < layout_.x() + layout_.nv;
   if (is_rate && !rate_is_tested()) return std::numeric_limits<double>::infinity();
@@ -137,7 +137,7 @@ bool DaeForm::start(double t, double* y, double* ydot) {
     std::copy(start_.udot.begin(), start_.udot.end(), ydot + layout_.v());
   for (int i = 0; i < size(); ++i)
     if (!std::isfinite(y[i]) || !std::isfinite(ydot[i])) return fail("the start is not finite");
-  analyse_pattern();
+  if (batches_.empty()) analyse_pattern();
   return true;
 }
 

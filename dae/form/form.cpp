@@ -48,8 +48,7 @@ std::string Gauge::text() const {
   if (kind == Kind::none) return "none";
   if (kind == Kind::reset) return "reset";
   char digits[32];
-  const auto end =
-      std::to_chars(digits, digits + sizeof digits, kappa, std::chars_format::general, 4).ptr;
+  const auto end = std::to_chars(digits, digits + sizeof digits, kappa).ptr;
   return "leak:" + std::string(digits, end);
 }
 
@@ -107,7 +106,10 @@ double default_leak(const Mechanism& mechanism, const Start& start) {
   }
   const double rate = start.u.size() > 0 ? start.u.cwiseAbs().maxCoeff() : 0;
   const double kappa = std::max(std::sqrt(acceleration), rate);
-  return kappa > 0 && std::isfinite(kappa) ? kappa : 1.0;
+  if (!(kappa > 0) || !std::isfinite(kappa)) return 1.0;
+  // Two digits are more than the choice deserves, and make a rate that can be typed again.
+  const double unit = std::pow(10.0, std::floor(std::log10(kappa)) - 1);
+  return std::round(kappa / unit) * unit;
 }
 
 }  // namespace momenta

@@ -63,7 +63,7 @@ class Momentum final : public OdeForm {
     double* pdot = ydot + mechanism_.nq();
     if (!has_loops()) {
       if (!e_->open_momentum_rates(t, q, p, u_.data(), pdot))
-        return fail_at(t, mechanism_.no_inertia());
+        return fail_at(t, mechanism_.no_inertia(e_->stuck()));
     } else {
       if (!solve(t, q, p, fade_evaluation)) return false;
       e_->move(u_.data());
@@ -99,6 +99,7 @@ class Momentum final : public OdeForm {
 
   bool read(double t, const double* y, const double*, Snapshot& out) override {
     const double* p = y + mechanism_.nq();
+    const Looking looking(*this);
     const std::vector<double> kept = multipliers_;
     out.q = Eigen::Map<const Eigen::VectorXd>(y, mechanism_.nq());
     const double* q = out.q.data();

@@ -37,7 +37,7 @@ bool OdeForm::factor_at(double t, const double* q, double fade) {
   if (kkt_->factor(*e_, fade)) return true;
   for (int i = 0; i < mechanism_.nq(); ++i)
     if (!std::isfinite(q[i])) return fail_at(t, "a joint coordinate is not finite");
-  return fail_at(t, mechanism_.no_inertia());
+  return fail_at(t, mechanism_.no_inertia(kkt_->stuck()));
 }
 
 void OdeForm::rheonomic_terms() {

@@ -16,7 +16,8 @@ class OdeForm : public Form, public OdeSystem {
   OdeSystem* ode() override { return this; }
   int size() const override { return mechanism_.nq() + mechanism_.nv(); }
   double scale(int i) const override { return scale_[static_cast<std::size_t>(i)]; }
-  long factorizations() const { return kkt_ ? kkt_->factorizations() : 0; }
+  /// Of the run itself; those made for looking at samples are not counted.
+  long factorizations() const { return kkt_ ? kkt_->factorizations() - looked_ : 0; }
 
  protected:
   bool has_loops() const { return mechanism_.m() > 0; }
@@ -33,6 +34,23 @@ class OdeForm : public Form, public OdeSystem {
   /// The sentence "at t = …: why".
   bool fail_at(double t, const std::string& why);
 
+  /// Counts what happens while it lives as looking, not running.
+  class Looking {
+   public:
+    explicit Looking(OdeForm& form)
+        : form_(form), before_(form.kkt_ ? form.kkt_->factorizations() : 0) {}
+    ~Looking() {
+      if (form_.kkt_) form_.looked_ += form_.kkt_->factorizations() - before_;
+    }
+    Looking(const Looking&) = delete;
+    Looking& operator=(const Looking&) = delete;
+
+   private:
+    OdeForm& form_;
+    long before_;
+  };
+
+  long looked_ = 0;
   std::string name_;
   const Mechanism& mechanism_;
   FormOptions options_;

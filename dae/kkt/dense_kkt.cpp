@@ -48,7 +48,8 @@ class DenseKkt final : public Kkt {
     ++factorizations_;
     e.mass_entries(mass_.data());
     e.constraint_entries(constraint_.data());
-    if (!factor_.factor(mass_)) return false;
+    stuck_ = factor_.factor(mass_);
+    if (stuck_ >= 0) return false;
     std::fill(g_.begin(), g_.end(), 0.0);
     for (std::size_t i = 0; i < constraint_.size(); ++i)
       g_[at(pattern_.constraint[i].row, pattern_.constraint[i].column, n_)] = constraint_[i];

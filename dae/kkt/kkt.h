@@ -35,10 +35,13 @@ class Kkt {
   /// Pivots that were faded at the last factor(): rows that are redundant or singular here.
   int faded() const { return faded_; }
   long factorizations() const { return factorizations_; }
+  /// Place in u of the joint at which the last factor() failed, or −1: something is not finite.
+  int stuck() const { return stuck_; }
 
  protected:
   int faded_ = 0;
   long factorizations_ = 0;
+  int stuck_ = -1;
 };
 
 /// Dense or sparse, as the mechanism's plan says. Needs loops (m > 0).

@@ -27,12 +27,12 @@ TreeFactor::TreeFactor(const KktPattern& pattern, int nv)
   std::partial_sum(start_.begin(), start_.end(), start_.begin());
 }
 
-bool TreeFactor::factor(const std::vector<double>& mass) {
+int TreeFactor::factor(const std::vector<double>& mass) {
   for (std::size_t i = 0; i < mass.size(); ++i) value_[place_[i]] = mass[i];
   for (std::size_t k = inverse_.size(); k-- > 0;) {
     const std::size_t first = start_[k], last = start_[k + 1];
     const double pivot = value_[first];
-    if (!(pivot > 0)) return false;
+    if (!(pivot > 0)) return static_cast<int>(k);
     inverse_[k] = 1 / pivot;
     for (std::size_t i = first + 1; i < last; ++i) {
       const double l = value_[i] * inverse_[k];
@@ -41,7 +41,7 @@ bool TreeFactor::factor(const std::vector<double>& mass) {
       value_[i] = l;
     }
   }
-  return true;
+  return -1;
 }
 
 }  // namespace momenta

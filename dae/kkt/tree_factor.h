@@ -13,8 +13,9 @@ class TreeFactor {
  public:
   TreeFactor(const KktPattern& pattern, int nv);
 
-  /// From the values of M in the order of the pattern. False when M is not positive definite.
-  bool factor(const std::vector<double>& mass);
+  /// From the values of M in the order of the pattern. Returns −1, or the place in u at which M is
+  /// not positive.
+  int factor(const std::vector<double>& mass);
 
   /// x ← L⁻ᵀ x (nv): momenta inward, tips to root. Zeros at the tips cost nothing.
   void inward(double* x) const {

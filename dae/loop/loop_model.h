@@ -46,7 +46,7 @@ struct LoopModel {
 /// One row of Φ by name: what a rank report or a failure message calls it.
 struct RowName {
   std::string loop;
-  std::string what;  ///< "point x", "axis 3·1", "distance"
+  std::string what;  ///< "point along axis 1", "axis 3 against axis 1", "distance"
 };
 
 LoopModel<Spatial> build_loops(const Scene& scene, const Tree& tree, const Model<Spatial>& model);

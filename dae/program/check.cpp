@@ -66,8 +66,9 @@ int check(const Options& o) {
     std::printf("  %-17s %s\n", what.c_str(), how.c_str());
   std::printf("\nForms\n");
   for (const auto& form : indices)
-    std::printf("  %-20s %s%s\n", form.form, form.index[0] == 'O' ? "" : "index ",
-                mechanism->m() > 0 ? form.index : "ODE (no loops)");
+    std::printf("  %-20s %s%s\n", form.form,
+                mechanism->m() == 0 || form.index[0] == 'O' ? "" : "index ",
+                mechanism->m() > 0 ? form.index : "ODE: no loops");
   return done;
 }
 

@@ -39,6 +39,8 @@ int drift(const Options& o, const DriftOptions& d) {
   request.end_time = o.end.value_or(defaults.end_time);
   request.samples = o.samples.value_or(defaults.samples);
   request.project = o.project;
+  request.baumgarte_alpha = o.baumgarte_alpha;
+  request.baumgarte_beta = o.baumgarte_beta;
   request.reference = reference.get();
   // One form that grinds to a halt must not keep the others' results from the user.
   request.max_cpu_seconds = o.cpu_limit.value_or(60);

@@ -18,7 +18,7 @@ int run(const Options& o) {
   s.form = o.form;
   s.integrator = o.integrator.empty() ? default_integrator(o.form) : o.integrator;
   s.gauge = !o.gauge.empty() ? o.gauge
-            : defaults.leak  ? "leak:" + std::to_string(*defaults.leak)
+            : defaults.leak  ? Gauge{Gauge::Kind::leak, *defaults.leak}.text()
                              : "leak";
   s.rtol = o.rtol;
   s.atol = o.atol.value_or(o.rtol);

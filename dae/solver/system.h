@@ -57,6 +57,7 @@ class DaeSystem {
 
   /// J = ∂F/∂y + c ∂F/∂y', exact. Dense: column-major size() × size(). Sparse: the values in the order of pattern().
   virtual bool jacobian(double t, const double* y, const double* ydot, double c, double* values) = 0;
+  /// Valid from start() on.
   virtual const JacobianPattern& pattern() const = 0;
 
   /// Consistent start: y and y' with F(t, y, y') = 0.

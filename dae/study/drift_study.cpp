@@ -12,11 +12,14 @@ std::vector<RunSettings> plan_runs(const Mechanism& mechanism, const DriftReques
   common.step = request.step;
   common.end_time = request.end_time;
   common.samples = request.samples;
+  common.baumgarte_alpha = request.baumgarte_alpha;
+  common.baumgarte_beta = request.baumgarte_beta;
   const std::string explicit_method =
       !request.integrator.empty() ? request.integrator : (request.step > 0 ? "rk4" : "dop853");
   const bool one_step = explicit_method != "adams" && explicit_method != "bdf";
-  const std::string leak =
-      mechanism.scene().run.leak ? "leak:" + std::to_string(*mechanism.scene().run.leak) : "leak";
+  const std::string leak = mechanism.scene().run.leak
+                               ? Gauge{Gauge::Kind::leak, *mechanism.scene().run.leak}.text()
+                               : "leak";
 
   std::vector<RunSettings> runs;
   const auto add = [&](const std::string& form, const std::string& gauge, bool project) {

@@ -17,6 +17,7 @@ struct DriftRequest {
   double step = 0;       ///< [s]
   double end_time = 10;  ///< [s]
   int samples = 1000;
+  double baumgarte_alpha = 0, baumgarte_beta = 0;  ///< [1/s]; 0: the form's own
   bool project = false;  ///< correct positions in the ODE forms; false: one projected run of each
                          ///< kind is added
   const Reference* reference = nullptr;

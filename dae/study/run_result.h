@@ -42,8 +42,8 @@ struct Series {
   std::vector<double> t;               ///< [s]
   std::vector<double> position_drift;  ///< |Φ(q, t)|₂
   std::vector<double> velocity_drift;  ///< |Φ̇(q, q̇, t)|₂
-  std::vector<double>
-      energy;  ///< H balance: T + V minus the work done by drives, dampers and torques [J]
+  std::vector<double> energy;  ///< T + V less the work of dampers and of wrenches without potential
+                               ///< [J]; NaN with drives
   std::vector<double> energy_error;  ///< energy − energy(0) [J]
   std::vector<double> impulse;       ///< |σ|₂ of momentum forms, |λ|₂ of the others
   std::vector<double>
