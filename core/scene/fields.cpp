@@ -111,6 +111,13 @@ int Fields::count(std::string_view key, int otherwise) const {
   return static_cast<int>(value->number);
 }
 
+bool Fields::flag(std::string_view key, bool otherwise) const {
+  const Value* value = find(key);
+  if (value == nullptr) return otherwise;
+  if (value->type != Value::Type::boolean) mismatch(*value, std::string(key), "true or false");
+  return value->truth;
+}
+
 std::string Fields::text(std::string_view key) const {
   const Value& value = required(key, "a string");
   if (value.type != Value::Type::text) mismatch(value, std::string(key), "a string");

@@ -40,6 +40,7 @@ class Fields {
   double number(std::string_view key, Quantity quantity) const;
   double number(std::string_view key, Quantity quantity, double otherwise) const;
   int count(std::string_view key, int otherwise) const;  ///< a whole number > 0
+  bool flag(std::string_view key, bool otherwise) const;
   std::string text(std::string_view key) const;
   std::string text(std::string_view key, const std::string& otherwise) const;
   std::vector<double> numbers(std::string_view key, Quantity quantity) const;

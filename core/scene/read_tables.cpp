@@ -186,12 +186,13 @@ MarkerSpec read_marker(const Fields& table) {
 }
 
 RunDefaults read_run(const Fields& table) {
-  table.allow({"end", "step", "leak", "samples"});
+  table.allow({"end", "step", "leak", "samples", "project"});
   RunDefaults run;
   run.end_time = table.number("end", {"s", Bound::positive}, run.end_time);
   if (table.has("step")) run.step = table.number("step", {"s", Bound::positive});
   if (table.has("leak")) run.leak = table.number("leak", {"1/s", Bound::positive});
   run.samples = table.count("samples", run.samples);
+  run.project = table.flag("project", run.project);
   return run;
 }
 

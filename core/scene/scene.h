@@ -159,6 +159,7 @@ struct RunDefaults {
   std::optional<double> step;  ///< fixed-step integrators [s]
   std::optional<double> leak;  ///< gauge leak κ [1/s]
   int samples = 1000;          ///< output intervals
+  bool project = false;  ///< correct positions after each step: scenes that pass singular poses
 };
 
 struct Scene {

@@ -78,6 +78,7 @@ Value copied(const toml::node& node, Location otherwise) {
       break;
     default:
       value.type = Value::Type::boolean;
+      value.truth = node.value_or(false);
       break;
   }
   return value;

@@ -19,6 +19,7 @@ struct Value {
   Location at;
   std::string text;            ///< text
   double number = 0;           ///< integer, number
+  bool truth = false;          ///< boolean
   std::vector<Value> items;    ///< array
   std::vector<Entry> entries;  ///< table, in the order of the file
 };

@@ -19,7 +19,7 @@ namespace {
 
 // Fading by an added block costs ε/W on every row, so it must be weaker than the filter of the
 // dense form.
-constexpr double weaker = 1e-4;
+constexpr double weaker = 1e-2;
 
 class SparseKkt final : public Kkt {
  public:

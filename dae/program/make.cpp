@@ -45,7 +45,9 @@ int n_four_bar(int n) {
       "# %d four-bars in a row: %d rods of 1 m and 1 kg. All rods lie on one line twice a turn.\n",
       n, 2 * n + 1);
   std::printf("name = \"N-four-bar, N = %d\"\ngravity = [0.0, -9.81, 0.0]\n", n);
-  std::printf("\n[run]\nend = 10.0\nleak = 3.0\nsamples = 1000\n");
+  std::printf(
+      "\n[run]\nend = 10.0\nleak = 3.0\nsamples = 1000\nproject = true   # passes singular "
+      "poses\n");
   for (int i = 0; i <= n; ++i) {
     rod("vertical" + std::to_string(i));
     if (i > 0) rod("horizontal" + std::to_string(i));

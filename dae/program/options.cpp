@@ -40,7 +40,10 @@ void add_run_options(CLI::App& verb, Options& o) {
   verb.add_option("--step", o.step, "Step of rk4 [s]")->check(positive);
   verb.add_option("--end", o.end, "End time [s]")->check(positive);
   verb.add_option("--samples", o.samples, "Output intervals")->check(CLI::Range(1, 10'000'000));
-  verb.add_flag("--project", o.project, "Correct positions after each step (one-step methods)");
+  auto* project =
+      verb.add_flag("--project", o.project, "Correct positions after each step (one-step methods)");
+  verb.add_flag("--no-project", o.no_project, "Do not, even if the scene asks for it")
+      ->excludes(project);
   verb.add_option("--baumgarte-alpha", o.baumgarte_alpha, "α of Φ̈ + 2αΦ̇ + β²Φ = 0 [1/s]")
       ->check(positive);
   verb.add_option("--baumgarte-beta", o.baumgarte_beta, "β [1/s]")->check(positive);

@@ -86,6 +86,7 @@ end     = 5
 step    = 1e-3
 leak    = 10
 samples = 200
+project = true
 )",
                                   "crank.toml");
   EXPECT_EQ(scene.file, "crank.toml");
@@ -148,6 +149,7 @@ samples = 200
   EXPECT_EQ(scene.run.step, 1e-3);
   EXPECT_EQ(scene.run.leak, 10);
   EXPECT_EQ(scene.run.samples, 200);
+  EXPECT_TRUE(scene.run.project);
 }
 
 TEST(Scene, DefaultsAreThoseOfTheHeader) {
