@@ -8,7 +8,7 @@
 namespace momenta {
 namespace {
 
-using Model = Scene (*)(int);
+using MakeScene = Scene (*)(int);
 
 /// 64 states in turn, so that no branch or value is learned by heart.
 class States {
@@ -25,7 +25,6 @@ class States {
     }
   }
   std::vector<Eigen::VectorXd> q_, u_, p_;
-
 };
 
 void finish(benchmark::State& state, int bodies) {
@@ -34,7 +33,7 @@ void finish(benchmark::State& state, int bodies) {
                          benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 
-void momentum(benchmark::State& state, Model model, Algebra algebra) {
+void momentum(benchmark::State& state, MakeScene model, Algebra algebra) {
   OpenChain chain(model(static_cast<int>(state.range(0))), algebra);
   const States states(chain);
   Eigen::VectorXd qdot(chain.nq()), pdot(chain.nv());
@@ -47,7 +46,7 @@ void momentum(benchmark::State& state, Model model, Algebra algebra) {
   finish(state, static_cast<int>(chain.tree().bodies.size()));
 }
 
-void acceleration(benchmark::State& state, Model model, Algebra algebra) {
+void acceleration(benchmark::State& state, MakeScene model, Algebra algebra) {
   OpenChain chain(model(static_cast<int>(state.range(0))), algebra);
   const States states(chain);
   Eigen::VectorXd udot(chain.nv());
@@ -71,7 +70,7 @@ Scene without_gravity(int n) {
 void register_open_chains() {
   struct Row {
     const char* name;
-    Model model;
+    MakeScene model;
     Algebra algebra;
   };
   using namespace benchmark_models;
