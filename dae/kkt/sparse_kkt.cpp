@@ -17,9 +17,11 @@
 namespace momenta {
 namespace {
 
-// Fading by an added block costs ε/W on every row, so it must be weaker than the filter of the
-// dense form.
+// Fading by an added block, once refined, costs (ε/W)² on every row, so it must be weaker than the
+// filter of the dense form, which costs (τ/W)⁴.
 constexpr double weaker = 1e-2;
+constexpr int refinements = 3;      // one does, two where a pivot is as small as ε
+constexpr double rounding = 1e-11;  // of the residual, row by row
 
 class SparseKkt final : public Kkt {
  public:
@@ -73,11 +75,14 @@ class SparseKkt final : public Kkt {
 
   bool solve(const double* r, const double* g, const double* centre, double* u,
              double* sigma) override {
-    std::copy(r, r + n_, b_.begin());
-    for (int i = 0; i < m_; ++i)
-      b_[static_cast<std::size_t>(n_ + i)] =
-          g[i] - (centre ? epsilon_[static_cast<std::size_t>(i)] * centre[i] : 0.0);
-    if (!solve_refined() && !(factor_anew() && solve_refined())) return false;
+    const auto attempt = [&] {
+      std::copy(r, r + n_, b_.begin());
+      for (int i = 0; i < m_; ++i)
+        b_[static_cast<std::size_t>(n_ + i)] =
+            g[i] - (centre ? epsilon_[static_cast<std::size_t>(i)] * centre[i] : 0.0);
+      return solve_refined(centre);
+    };
+    if (!attempt() && !(factor_anew() && attempt())) return false;
     std::copy(x_.begin(), x_.begin() + n_, u);
     std::copy(x_.begin() + n_, x_.end(), sigma);
     return true;
@@ -92,14 +97,23 @@ class SparseKkt final : public Kkt {
     return numeric_ && common_.status == KLU_OK;
   }
 
-  /// x = A⁻¹ b with one step of refinement; false when the residual is not at rounding level.
-  bool solve_refined() {
+  /// x = A⁻¹ b, then refinement against the same equations centred on the σ just found: it removes
+  /// rounding and takes the block's bias from ε/W to (ε/W)². False when the residual does not reach
+  /// rounding level.
+  bool solve_refined(const double* centre) {
     x_ = b_;
     if (klu_solve(symbolic_, numeric_, n_ + m_, 1, x_.data(), &common_) != 1) return false;
+    for (std::size_t i = 0; i < epsilon_.size(); ++i) {
+      const std::size_t row = static_cast<std::size_t>(n_) + i;
+      b_[row] -= epsilon_[i] * (x_[row] - (centre ? centre[i] : 0.0));
+    }
     residual();
-    if (klu_solve(symbolic_, numeric_, n_ + m_, 1, r_.data(), &common_) != 1) return false;
-    for (std::size_t i = 0; i < x_.size(); ++i) x_[i] += r_[i];
-    return residual() < 1e-11;
+    for (int step = 0; step < refinements; ++step) {
+      if (klu_solve(symbolic_, numeric_, n_ + m_, 1, r_.data(), &common_) != 1) return false;
+      for (std::size_t i = 0; i < x_.size(); ++i) x_[i] += r_[i];
+      if (residual() < rounding) return true;
+    }
+    return false;
   }
 
   /// r = b − A x; returns its largest entry relative to Σ |A| |x| + |b| of its row.
