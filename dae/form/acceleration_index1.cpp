@@ -22,14 +22,7 @@ class AccelerationIndex1 final : public DaeFormOf<AccelerationIndex1> {
 
   template <class S>
   void rows(DaeScratch<S>& s, double t, const S* y, const S* ydot, S* r) {
-    const S *q = y, *v = y + layout_.v(), *lambda = y + layout_.s(), *vdot = ydot + layout_.v();
-    s.e->place(t, q);
-    s.e->joint_rates(q, ydot, s.u.data());
-    for (int i = 0; i < layout_.nv; ++i) *r++ = s.u[static_cast<std::size_t>(i)] - v[i];
-    r = quaternion_rows(q, ydot, r);
-    s.e->move(v);
-    s.e->joint_forces(q, v, vdot, lambda, r);
-    s.e->accelerations(r + layout_.nv);
+    s.e->accelerations(acceleration_rows(s, t, y, ydot, r));
   }
 };
 

@@ -118,6 +118,47 @@ class DaeFormOf : public DaeForm {
     static_cast<Derived*>(this)->rows(s, t, y, ydot, r);
   }
 
+  /// The rows of (7) and (8) with u the rates of q̇, for forms in q, p; σ. Returns the place of the
+  /// loops' rows; the evaluation is moved at u.
+  template <class S>
+  S* momentum_rows(DaeScratch<S>& s, double t, const S* y, const S* ydot, S* r) const {
+    const S *q = y, *p = y + layout_.x(), *sigma = y + layout_.s(), *pdot = ydot + layout_.x();
+    s.e->place(t, q);
+    s.e->joint_rates(q, ydot, s.u.data());
+    s.e->move(s.u.data());
+    s.e->momenta(sigma, r);
+    for (int i = 0; i < layout_.nv; ++i) *r++ -= p[i];
+    r = quaternion_rows(q, ydot, r);
+    s.e->momentum_rates(q, s.u.data(), sigma, leak(), s.b.data());
+    for (int i = 0; i < layout_.nv; ++i) *r++ = pdot[i] - s.b[static_cast<std::size_t>(i)];
+    return r;
+  }
+
+  /// q̇ = v − Φ_qᵀμ, μ where the form has it. The evaluation is placed, and moved at v.
+  template <class S>
+  S* kinematic_rows(DaeScratch<S>& s, double t, const S* y, const S* ydot, S* r) const {
+    const S *q = y, *v = y + layout_.v();
+    s.e->place(t, q);
+    s.e->joint_rates(q, ydot, s.u.data());
+    for (int i = 0; i < layout_.nv; ++i) r[i] = s.u[static_cast<std::size_t>(i)] - v[i];
+    if (layout_.position_multiplier) {
+      s.e->constraint_forces(y + layout_.mu(), s.a.data());
+      for (int i = 0; i < layout_.nv; ++i) r[i] += s.a[static_cast<std::size_t>(i)];
+    }
+    r = quaternion_rows(q, ydot, r + layout_.nv);
+    s.e->move(v);
+    return r;
+  }
+
+  /// The kinematic rows and (1a), for forms in q, v; λ. Returns the place of the loops' rows.
+  template <class S>
+  S* acceleration_rows(DaeScratch<S>& s, double t, const S* y, const S* ydot, S* r) const {
+    r = kinematic_rows(s, t, y, ydot, r);
+    s.e->joint_forces(y, y + layout_.v(), ydot + layout_.v(), y + layout_.s(), r);
+    return r + layout_.nv;
+  }
+
+ private:
   /// One row per quaternion: its length returns to 1 within a second, without touching the motion.
   template <class S>
   S* quaternion_rows(const S* q, const S* qdot, S* r) const {

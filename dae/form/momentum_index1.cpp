@@ -21,16 +21,7 @@ class MomentumIndex1 final : public DaeFormOf<MomentumIndex1> {
 
   template <class S>
   void rows(DaeScratch<S>& s, double t, const S* y, const S* ydot, S* r) {
-    const S *q = y, *p = y + layout_.x(), *sigma = y + layout_.s(), *pdot = ydot + layout_.x();
-    s.e->place(t, q);
-    s.e->joint_rates(q, ydot, s.u.data());
-    s.e->move(s.u.data());
-    s.e->momenta(sigma, r);
-    for (int i = 0; i < layout_.nv; ++i) *r++ -= p[i];
-    r = quaternion_rows(q, ydot, r);
-    s.e->momentum_rates(q, s.u.data(), sigma, leak(), s.b.data());
-    for (int i = 0; i < layout_.nv; ++i) *r++ = pdot[i] - s.b[static_cast<std::size_t>(i)];
-    s.e->velocities(r);
+    s.e->velocities(momentum_rows(s, t, y, ydot, r));
   }
 };
 

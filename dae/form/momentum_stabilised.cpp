@@ -23,18 +23,9 @@ class MomentumStabilised final : public DaeFormOf<MomentumStabilised> {
 
   template <class S>
   void rows(DaeScratch<S>& s, double t, const S* y, const S* ydot, S* r) {
-    const S *q = y, *p = y + layout_.x(), *v = y + layout_.v(), *sigma = y + layout_.s(),
-            *mu = y + layout_.mu();
+    const S *q = y, *p = y + layout_.x(), *v = y + layout_.v(), *sigma = y + layout_.s();
     const S* pdot = ydot + layout_.x();
-    s.e->place(t, q);
-    s.e->constraint_forces(mu, s.a.data());
-    s.e->joint_rates(q, ydot, s.u.data());
-    for (int i = 0; i < layout_.nv; ++i) {
-      const auto at = static_cast<std::size_t>(i);
-      *r++ = s.u[at] - v[i] + s.a[at];
-    }
-    r = quaternion_rows(q, ydot, r);
-    s.e->move(v);
+    r = kinematic_rows(s, t, y, ydot, r);
     s.e->momenta(sigma, s.a.data());
     s.e->momentum_rates(q, v, sigma, leak(), s.b.data());
     for (int i = 0; i < layout_.nv; ++i) *r++ = pdot[i] - s.b[static_cast<std::size_t>(i)];

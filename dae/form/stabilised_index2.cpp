@@ -22,20 +22,9 @@ class StabilisedIndex2 final : public DaeFormOf<StabilisedIndex2> {
 
   template <class S>
   void rows(DaeScratch<S>& s, double t, const S* y, const S* ydot, S* r) {
-    const S *q = y, *v = y + layout_.v(), *lambda = y + layout_.s(), *mu = y + layout_.mu();
-    const S* vdot = ydot + layout_.v();
-    s.e->place(t, q);
-    s.e->constraint_forces(mu, s.a.data());
-    s.e->joint_rates(q, ydot, s.u.data());
-    for (int i = 0; i < layout_.nv; ++i) {
-      const auto at = static_cast<std::size_t>(i);
-      *r++ = s.u[at] - v[i] + s.a[at];
-    }
-    r = quaternion_rows(q, ydot, r);
-    s.e->move(v);
-    s.e->joint_forces(q, v, vdot, lambda, r);
-    s.e->velocities(r + layout_.nv);
-    s.e->positions(r + layout_.nv + layout_.m);
+    r = acceleration_rows(s, t, y, ydot, r);
+    s.e->velocities(r);
+    s.e->positions(r + layout_.m);
   }
 };
 
