@@ -1,7 +1,7 @@
 // The plane of a scene, and its tree cast into the planar algebra. Frames are parallel to the
 // plane's basis when every joint is at zero, so all constants are read off the zero configuration.
 
-#include <momenta/core/kernel/model.h>
+#include <momenta/core/kernel/take_tree.h>
 
 #include <cmath>
 
@@ -84,11 +84,7 @@ Model<Planar> build_planar_model(const Tree& tree, const Scene& scene,
   Model<Planar> model;
   const std::size_t n = tree.bodies.size();
   model.basis = basis;
-  model.bodies.resize(n);
-  model.frames.resize(n);
-  model.nq = tree.nq;
-  model.nv = tree.nv;
-  model.drives = tree.drives;
+  take_joints(tree, model);
   const Eigen::Vector3d gravity = basis.transpose() * tree.gravity;
   model.gravity = vec2(gravity);
   model.has_gravity = gravity.head<2>().norm() > 0;
@@ -97,13 +93,6 @@ Model<Planar> build_planar_model(const Tree& tree, const Scene& scene,
   for (std::size_t k = 0; k < n; ++k) {
     const Tree::Body& b = tree.bodies[k];
     auto& m = model.bodies[k];
-    m.kind = b.kind;
-    m.parent = b.parent;
-    m.drive = b.drive;
-    m.q = b.q;
-    m.nq = b.nq;
-    m.u = b.u;
-    m.nv = b.nv;
     const Eigen::Vector3d here = poses[k].translation();
     const Eigen::Vector3d from =
         b.parent < 0 ? Eigen::Vector3d(Eigen::Vector3d::Zero())
@@ -124,50 +113,8 @@ Model<Planar> build_planar_model(const Tree& tree, const Scene& scene,
     m.inertia.m = b.mass;
     m.inertia.mc = vec2(b.mass * c);
     m.inertia.J = about_com(2, 2) + b.mass * c.head<2>().squaredNorm();
-    m.stiffness = b.stiffness;
-    m.rest = b.rest;
-    m.damping = b.damping;
-    m.torque = b.torque;
-    model.has_joint_forces |= m.stiffness != 0 || m.damping != 0 || m.torque != 0;
   }
-  for (std::size_t k = n; k-- > 0;) {
-    auto& m = model.bodies[k];
-    m.subtree_mass += m.inertia.m;
-    if (m.parent >= 0)
-      model.bodies[static_cast<std::size_t>(m.parent)].subtree_mass += m.subtree_mass;
-  }
-  const auto height = [&](int body, const Eigen::Vector3d& p) {
-    return body < 0 ? basis.col(2).dot(p) : (model.frames[static_cast<std::size_t>(body)] * p).z();
-  };
-  for (const ForceSpec& f : scene.forces) {
-    if (f.kind == "spring-damper") {
-      Model<Planar>::Spring spring;
-      spring.parent = tree.body(f.parent);
-      spring.child = tree.body(f.child);
-      const Eigen::Vector3d at_parent = tree.point(spring.parent, f.origin_parent);
-      const Eigen::Vector3d at_child = tree.point(spring.child, f.origin_child);
-      spring.at_parent = model.point(spring.parent, at_parent);
-      spring.at_child = model.point(spring.child, at_child);
-      const double across = height(spring.child, at_child) - height(spring.parent, at_parent);
-      spring.offset2 = across * across;
-      spring.stiffness = f.stiffness;
-      spring.damping = f.damping;
-      spring.rest = f.rest;
-      model.springs.push_back(spring);
-    } else if (f.kind == "wrench") {
-      Model<Planar>::Wrench wrench;
-      wrench.body = tree.body(f.body);
-      wrench.at = model.point(wrench.body, tree.point(wrench.body, f.point));
-      wrench.in_body_axes = f.in_body_axes;
-      const int axes_of = f.in_body_axes ? wrench.body : -1;
-      wrench.force = model.direction(axes_of, tree.direction(axes_of, f.force));
-      const Eigen::Vector3d torque = tree.direction(axes_of, f.torque);
-      wrench.normal_torque =
-          axes_of < 0 ? basis.col(2).dot(torque)
-                      : (model.frames[static_cast<std::size_t>(axes_of)].linear() * torque).z();
-      model.wrenches.push_back(wrench);
-    }
-  }
+  take_forces(tree, scene, model);
   return model;
 }
 

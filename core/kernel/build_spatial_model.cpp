@@ -6,7 +6,7 @@
 // freely; that freedom makes γ = δ = 0 for its first child. Spherical and free bodies keep the
 // scene's axes: their quaternion is the scene's.
 
-#include <momenta/core/kernel/model.h>
+#include <momenta/core/kernel/take_tree.h>
 
 #include <cmath>
 
@@ -103,11 +103,7 @@ Spatial::RigidInertia<double> inertia_in(const Tree::Body& b, const Eigen::Isome
 Model<Spatial> build_spatial_model(const Tree& tree, const Scene& scene) {
   Model<Spatial> model;
   const std::size_t n = tree.bodies.size();
-  model.bodies.resize(n);
-  model.frames.resize(n, Eigen::Isometry3d::Identity());
-  model.nq = tree.nq;
-  model.nv = tree.nv;
-  model.drives = tree.drives;
+  take_joints(tree, model);
   model.gravity = vec3(tree.gravity);
   model.has_gravity = tree.gravity.norm() > 0;
 
@@ -128,13 +124,6 @@ Model<Spatial> build_spatial_model(const Tree& tree, const Scene& scene) {
   for (std::size_t k = 0; k < n; ++k) {
     const Tree::Body& b = tree.bodies[k];
     auto& m = model.bodies[k];
-    m.kind = b.kind;
-    m.parent = b.parent;
-    m.drive = b.drive;
-    m.q = b.q;
-    m.nq = b.nq;
-    m.u = b.u;
-    m.nv = b.nv;
     const Eigen::Isometry3d parent_frame = b.parent < 0
                                                ? Eigen::Isometry3d::Identity()
                                                : model.frames[static_cast<std::size_t>(b.parent)];
@@ -145,43 +134,8 @@ Model<Spatial> build_spatial_model(const Tree& tree, const Scene& scene) {
     m.theta0 = s.theta + turn[k];
     m.d0 = s.d + shift[k];
     m.inertia = inertia_in(b, model.frames[k]);
-    m.stiffness = b.stiffness;
-    m.rest = b.rest;
-    m.damping = b.damping;
-    m.torque = b.torque;
-    model.has_joint_forces |= m.stiffness != 0 || m.damping != 0 || m.torque != 0;
   }
-  for (std::size_t k = n; k-- > 0;) {
-    auto& m = model.bodies[k];
-    m.subtree_mass += m.inertia.m;
-    if (m.parent >= 0)
-      model.bodies[static_cast<std::size_t>(m.parent)].subtree_mass += m.subtree_mass;
-  }
-  for (const ForceSpec& f : scene.forces) {
-    if (f.kind == "spring-damper") {
-      Model<Spatial>::Spring spring;
-      spring.parent = tree.body(f.parent);
-      spring.child = tree.body(f.child);
-      spring.at_parent = model.point(spring.parent, tree.point(spring.parent, f.origin_parent));
-      spring.at_child = model.point(spring.child, tree.point(spring.child, f.origin_child));
-      spring.stiffness = f.stiffness;
-      spring.damping = f.damping;
-      spring.rest = f.rest;
-      model.springs.push_back(spring);
-    } else if (f.kind == "wrench") {
-      Model<Spatial>::Wrench wrench;
-      wrench.body = tree.body(f.body);
-      wrench.at = model.point(wrench.body, tree.point(wrench.body, f.point));
-      wrench.in_body_axes = f.in_body_axes;
-      const auto direction = [&](const Eigen::Vector3d& v) {
-        return f.in_body_axes ? model.direction(wrench.body, tree.direction(wrench.body, v))
-                              : vec3(v);
-      };
-      wrench.force = direction(f.force);
-      wrench.torque = direction(f.torque);
-      model.wrenches.push_back(wrench);
-    }
-  }
+  take_forces(tree, scene, model);
   return model;
 }
 

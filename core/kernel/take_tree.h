@@ -1,0 +1,83 @@
+#pragma once
+// What a model takes over from the tree and the scene as it stands, whatever its algebra: joints,
+// masses and forces. Included only where models are built.
+
+#include <momenta/core/kernel/model.h>
+
+namespace momenta {
+
+/// Joints, drives, sizes and the mass of every subtree. Frames and edges are the builder's.
+template <class Space>
+void take_joints(const Tree& tree, Model<Space>& model) {
+  const std::size_t n = tree.bodies.size();
+  model.bodies.resize(n);
+  model.frames.resize(n, Eigen::Isometry3d::Identity());
+  model.nq = tree.nq;
+  model.nv = tree.nv;
+  model.drives = tree.drives;
+  for (std::size_t k = n; k-- > 0;) {
+    const Tree::Body& b = tree.bodies[k];
+    auto& m = model.bodies[k];
+    m.kind = b.kind;
+    m.parent = b.parent;
+    m.drive = b.drive;
+    m.q = b.q;
+    m.nq = b.nq;
+    m.u = b.u;
+    m.nv = b.nv;
+    m.stiffness = b.stiffness;
+    m.rest = b.rest;
+    m.damping = b.damping;
+    m.torque = b.torque;
+    model.has_joint_forces |= m.stiffness != 0 || m.damping != 0 || m.torque != 0;
+    m.subtree_mass += b.mass;
+    if (m.parent >= 0)
+      model.bodies[static_cast<std::size_t>(m.parent)].subtree_mass += m.subtree_mass;
+  }
+}
+
+/// Springs and wrenches; needs the frames of all bodies.
+template <class Space>
+void take_forces(const Tree& tree, const Scene& scene, Model<Space>& model) {
+  constexpr bool in_plane = Space::dimension == 3;
+  const auto across = [&](int body, const Eigen::Vector3d& v, bool is_point) {
+    if (body < 0) return model.basis.col(2).dot(v);
+    const Eigen::Isometry3d& frame = model.frames[static_cast<std::size_t>(body)];
+    return is_point ? (frame * v).z() : (frame.linear() * v).z();
+  };
+  for (const ForceSpec& f : scene.forces) {
+    if (f.kind == "spring-damper") {
+      typename Model<Space>::Spring spring;
+      spring.parent = tree.body(f.parent);
+      spring.child = tree.body(f.child);
+      const Eigen::Vector3d at_parent = tree.point(spring.parent, f.origin_parent);
+      const Eigen::Vector3d at_child = tree.point(spring.child, f.origin_child);
+      spring.at_parent = model.point(spring.parent, at_parent);
+      spring.at_child = model.point(spring.child, at_child);
+      spring.stiffness = f.stiffness;
+      spring.damping = f.damping;
+      spring.rest = f.rest;
+      if constexpr (in_plane) {
+        const double offset =
+            across(spring.child, at_child, true) - across(spring.parent, at_parent, true);
+        spring.offset2 = offset * offset;
+      }
+      model.springs.push_back(spring);
+    } else if (f.kind == "wrench") {
+      typename Model<Space>::Wrench wrench;
+      wrench.body = tree.body(f.body);
+      wrench.at = model.point(wrench.body, tree.point(wrench.body, f.point));
+      wrench.in_body_axes = f.in_body_axes;
+      const int axes_of = f.in_body_axes ? wrench.body : -1;
+      const Eigen::Vector3d torque = tree.direction(axes_of, f.torque);
+      wrench.force = model.direction(axes_of, tree.direction(axes_of, f.force));
+      if constexpr (in_plane)
+        wrench.normal_torque = across(axes_of, torque, false);
+      else
+        wrench.torque = model.direction(axes_of, torque);
+      model.wrenches.push_back(wrench);
+    }
+  }
+}
+
+}  // namespace momenta
