@@ -39,6 +39,9 @@ std::vector<double> output_times(const RunSettings& s, const Reference* referenc
   return times;
 }
 
+constexpr int most_rounds = 40;  // of timing: runs of a millisecond need many for a steady median
+constexpr double enough =
+    0.15;  // [s] of CPU time, with which a run needs no more rounds than asked for
 constexpr double rounding_level = 1e-13;  // of |Φ| and |Φ̇| in mechanisms of metres and seconds
 
 // Five-point Gauss rule on [0, 1].
@@ -375,9 +378,10 @@ void time_runs(const Mechanism& mechanism, const Start& start, std::vector<RunRe
                int rounds, double budget, const std::function<bool(std::size_t)>& going_on) {
   std::vector<std::vector<double>> cpu(runs.size()), wall(runs.size());
   std::vector<double> spent(runs.size(), 0.0);
-  for (int round = 0; round < rounds; ++round)
+  for (int round = 0; round < most_rounds; ++round)
     for (std::size_t i = 0; i < runs.size(); ++i) {
       if (runs[i].status != "done" || spent[i] > budget) continue;
+      if (round >= rounds && spent[i] > enough) continue;
       if (going_on && !going_on(i)) return;
       RunSettings settings = runs[i].settings;
       Runner runner(mechanism, start, settings, 0);
