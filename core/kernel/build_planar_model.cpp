@@ -128,13 +128,5 @@ Vec2<double> Model<Planar>::direction(int body, const Eigen::Vector3d& d) const 
   return vec2(body < 0 ? Eigen::Vector3d(basis.transpose() * d)
                        : Eigen::Vector3d(frames[static_cast<std::size_t>(body)].linear() * d));
 }
-template <>
-Eigen::Vector3d Model<Planar>::ground_point(const Vec2<double>& v, double height) const {
-  return basis * Eigen::Vector3d(v[0], v[1], height);
-}
-template <>
-Eigen::Vector3d Model<Planar>::ground_direction(const Vec2<double>& v) const {
-  return basis * Eigen::Vector3d(v[0], v[1], 0);
-}
 
 }  // namespace momenta

@@ -147,13 +147,5 @@ template <>
 Vec3<double> Model<Spatial>::direction(int body, const Eigen::Vector3d& d) const {
   return vec3(body < 0 ? d : Eigen::Vector3d(frames[static_cast<std::size_t>(body)].linear() * d));
 }
-template <>
-Eigen::Vector3d Model<Spatial>::ground_point(const Vec3<double>& v, double) const {
-  return {v[0], v[1], v[2]};
-}
-template <>
-Eigen::Vector3d Model<Spatial>::ground_direction(const Vec3<double>& v) const {
-  return {v[0], v[1], v[2]};
-}
 
 }  // namespace momenta

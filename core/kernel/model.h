@@ -55,11 +55,6 @@ struct Model {
   /// the body.
   Vector point(int body, const Eigen::Vector3d& tree_point) const;
   Vector direction(int body, const Eigen::Vector3d& tree_direction) const;
-  /// A point in ground axes [m] from this model's components; `height` across the plane of a planar
-  /// scene.
-  Eigen::Vector3d ground_point(const Vector& v, double height = 0) const;
-  Eigen::Vector3d ground_direction(const Vector& v) const;
-
   /// Per body: the tree's frame in this model's frame. Planar: at zero configuration, in the
   /// plane's basis.
   std::vector<Eigen::Isometry3d> frames;
@@ -71,17 +66,9 @@ Vec3<double> Model<Spatial>::point(int, const Eigen::Vector3d&) const;
 template <>
 Vec3<double> Model<Spatial>::direction(int, const Eigen::Vector3d&) const;
 template <>
-Eigen::Vector3d Model<Spatial>::ground_point(const Vec3<double>&, double) const;
-template <>
-Eigen::Vector3d Model<Spatial>::ground_direction(const Vec3<double>&) const;
-template <>
 Vec2<double> Model<Planar>::point(int, const Eigen::Vector3d&) const;
 template <>
 Vec2<double> Model<Planar>::direction(int, const Eigen::Vector3d&) const;
-template <>
-Eigen::Vector3d Model<Planar>::ground_point(const Vec2<double>&, double) const;
-template <>
-Eigen::Vector3d Model<Planar>::ground_direction(const Vec2<double>&) const;
 
 /// The plane a scene moves in: its normal, found from the joint axes; empty when the scene is not
 /// planar, with the reason in `why`. Loops are judged by their owner.
