@@ -16,7 +16,7 @@ int main(int argc, char** argv) {
   Options o;
   for (int i = 0; i < argc; ++i) o.command += (i == 0 ? "momenta" : std::string(" ") + argv[i]);
   DriftOptions d;
-  std::string family;
+  std::string family, state = "{}";
   int n = 10;
   CLI::App app(
       "Constrained multibody systems on canonical momenta: open chains, closed loops, and how far "
@@ -41,6 +41,15 @@ int main(int argc, char** argv) {
   add_scene(*drift_verb, o);
   drift_verb->add_option("--forms", d.forms, "Comma-separated (default: all)");
   add_run_options(*drift_verb, o);
+  CLI::App* evaluate_verb =
+      app.add_subcommand("evaluate", "Everything at one state, as one JSON document");
+  add_scene(*evaluate_verb, o);
+  evaluate_verb
+      ->add_option("--at", state,
+                   "State by joint name, {\"t\": 0, \"q\": {..}, \"v\" or \"p\": {..}, \"tau\": "
+                   "{..}}: a JSON file, -, or the text itself (what is left out is the start)")
+      ->type_name("STATE");
+  evaluate_verb->add_option("--out", o.out, "Directory for evaluate.json");
   CLI::App* make_verb = app.add_subcommand("make", "Prints a scene of a family");
   make_verb->add_option("family", family, "chain or n-four-bar")
       ->required()
@@ -55,7 +64,8 @@ int main(int argc, char** argv) {
     if (unknown)
       std::fprintf(
           stderr,
-          "momenta: verb '%.60s' is not known; expected check, assemble, run, drift or make\n",
+          "momenta: verb '%.60s' is not known; expected check, assemble, evaluate, run, drift or "
+          "make\n",
           argv[1]);
     else
       std::fprintf(stderr, "momenta: %s\n", e.what());
@@ -66,6 +76,7 @@ int main(int argc, char** argv) {
     if (*assemble_app) return assemble_verb(o);
     if (*run_verb) return run(o);
     if (*drift_verb) return drift(o, d);
+    if (*evaluate_verb) return evaluate(o, state);
     return make(family, n);
   } catch (const momenta::SceneError& e) {
     std::fprintf(stderr, "momenta: %s\n", e.what());

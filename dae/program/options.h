@@ -61,6 +61,8 @@ struct DriftOptions {
   std::string forms;  ///< comma-separated; empty: all
 };
 int drift(const Options& o, const DriftOptions& d);
+/// `state`: a JSON file, "-" for standard input, or text that starts with "{".
+int evaluate(const Options& o, const std::string& state);
 int make(const std::string& family, int n);
 
 }  // namespace momenta::program

@@ -1,0 +1,24 @@
+#include <momenta/dae/joint_places.h>
+
+#include <map>
+
+namespace momenta {
+
+std::vector<JointPlace> joint_places(const Tree& tree) {
+  std::vector<JointPlace> places;
+  std::map<std::string, std::size_t> index;
+  for (std::size_t k = 0; k < tree.bodies.size(); ++k) {
+    const Tree::Body& b = tree.bodies[k];
+    const auto [found, fresh] = index.try_emplace(b.joint, places.size());
+    if (fresh) places.push_back({b.joint, {}, {}, {}, -1, -1});
+    JointPlace& place = places[found->second];
+    for (int i = 0; i < b.nq; ++i) place.q.push_back(b.q + i);
+    for (int i = 0; i < b.nv; ++i) place.u.push_back(b.u + i);
+    if (b.nq >= 4) place.quaternions.push_back(b.q + b.nq - 4);
+    if (b.drive >= 0) place.drive = b.drive;
+    place.body = static_cast<int>(k);
+  }
+  return places;
+}
+
+}  // namespace momenta

@@ -1,0 +1,24 @@
+#pragma once
+// The joints of a tree by name, with the places of their numbers in q and u. A joint may be carried
+// by several bodies of the tree that share its name; its numbers are theirs in tree order.
+
+#include <momenta/core/tree/tree.h>
+
+#include <string>
+#include <vector>
+
+namespace momenta {
+
+struct JointPlace {
+  std::string name;
+  std::vector<int> q;            ///< places in q
+  std::vector<int> u;            ///< places in u, p and all that goes with them
+  std::vector<int> quaternions;  ///< places in q where a quaternion w x y z starts
+  int drive = -1;                ///< index into Tree::drives; −1: not driven
+  int body = -1;                 ///< the last body of the joint, the one the scene's joint carries
+};
+
+/// In tree order of their first bodies. Cost O(bodies log joints).
+std::vector<JointPlace> joint_places(const Tree& tree);
+
+}  // namespace momenta

@@ -1,0 +1,170 @@
+#include <momenta/dae/kkt/kkt.h>
+#include <momenta/dae/study/state_values.h>
+
+#include <Eigen/SVD>
+
+namespace momenta {
+namespace {
+
+using Eigen::VectorXd;
+
+constexpr double rank_tolerance = 1e-9;  // of singular values, against the largest
+
+class StateEvaluator {
+ public:
+  StateEvaluator(const Mechanism& mechanism, const GivenState& given)
+      : mechanism_(mechanism), given_(given), e_(mechanism.evaluation<double>()) {}
+
+  StateValues run() {
+    const int nv = mechanism_.nv(), m = mechanism_.m();
+    for (VectorXd* x : {&s_.v, &s_.p, &s_.pdot, &s_.bias, &s_.free}) x->setZero(nv);
+    for (VectorXd* x : {&s_.phi, &s_.phidot, &s_.sigma, &s_.lambda}) x->setZero(m);
+    s_.qdot.setZero(mechanism_.nq());
+    if (m > 0) {
+      kkt_ = make_kkt(mechanism_);
+      e_->place(given_.t, given_.q.data());
+      if (nv > 0 && !kkt_->factor(*e_, fade_evaluation)) refuse(kkt_->stuck());
+      s_.faded = kkt_->faded();
+    }
+    rates_and_momenta();
+    forces();
+    free_acceleration();
+    if (m > 0) constrained_acceleration();
+    s_.whole = whole(mechanism_.tree(), mechanism_.scene(), given_.t, given_.q, s_.v);
+    s_.reactions = reactions(mechanism_, given_.t, given_.q, s_.v, m > 0 ? s_.constrained : s_.free,
+                             s_.lambda);
+    if (nv + m <= dense_state_limit) dense_parts();
+    return std::move(s_);
+  }
+
+ private:
+  [[noreturn]] void refuse(int rate) const {
+    throw SceneError(mechanism_.scene().where({}) +
+                     "the mechanism cannot move at this state: " + mechanism_.no_inertia(rate));
+  }
+
+  /// v, p, σ, and the evaluation placed and moved there.
+  void rates_and_momenta() {
+    const double* q = given_.q.data();
+    e_->place(given_.t, q);
+    s_.v = given_.v;
+    if (given_.of_momenta) {
+      e_->move(given_.v.data());
+      e_->momenta(nullptr, s_.p.data());
+      for (int i = 0; i < mechanism_.nv(); ++i)
+        if (given_.p_given[static_cast<std::size_t>(i)]) s_.p[i] = given_.p[i];
+      solve_for_rates();
+    }
+    e_->place(given_.t, q);
+    e_->move(s_.v.data());
+    if (!given_.of_momenta) e_->momenta(nullptr, s_.p.data());
+    e_->coordinate_rates(q, s_.v.data(), s_.qdot.data());
+  }
+  void solve_for_rates() {
+    if (mechanism_.nv() == 0) return;
+    if (mechanism_.m() == 0) {
+      if (!e_->open_momentum_rates(given_.t, given_.q.data(), s_.p.data(), s_.v.data(),
+                                   s_.pdot.data()))
+        refuse(e_->stuck());
+      return;
+    }
+    // Prescribed parts of M u and Φ̇ go to the right.
+    VectorXd r(mechanism_.nv()), g(mechanism_.m());
+    e_->move(nullptr);
+    e_->momenta(nullptr, r.data());
+    e_->velocities(g.data());
+    r = s_.p - r;
+    g = -g;
+    if (!kkt_->solve(r.data(), g.data(), nullptr, s_.v.data(), s_.sigma.data())) refuse(-1);
+  }
+
+  /// What needs poses and velocities alone, and ṗ.
+  void forces() {
+    const double *q = given_.q.data(), *v = s_.v.data();
+    const bool loops = mechanism_.m() > 0;
+    if (loops) {
+      e_->positions(s_.phi.data());
+      e_->velocities(s_.phidot.data());
+    }
+    s_.kinetic = e_->kinetic();
+    s_.potential = e_->potential(q);
+    s_.hamiltonian = s_.p.dot(s_.v) - s_.kinetic + s_.potential;
+    s_.markers.resize(6 * mechanism_.scene().markers.size());
+    e_->markers(s_.markers.data());
+    const double* sigma = loops ? s_.sigma.data() : nullptr;
+    VectorXd again(mechanism_.nv());
+    e_->momenta(sigma, again.data());
+    e_->momentum_rates(q, v, sigma, 0, s_.pdot.data());
+    s_.pdot += given_.tau;
+    e_->joint_forces(q, v, nullptr, nullptr, s_.bias.data());
+    s_.bias -= given_.tau;
+  }
+
+  void constrained_acceleration() {
+    e_->place(given_.t, given_.q.data());
+    e_->move(s_.v.data());
+    VectorXd r(mechanism_.nv()), g(mechanism_.m());
+    e_->joint_forces(given_.q.data(), s_.v.data(), nullptr, nullptr, r.data());
+    e_->accelerations(g.data());
+    r = given_.tau - r;
+    g = -g;
+    s_.constrained.setZero(mechanism_.nv());
+    if (mechanism_.nv() == 0) return;
+    if (!kkt_->solve(r.data(), g.data(), nullptr, s_.constrained.data(), s_.lambda.data()))
+      refuse(-1);
+  }
+
+  /// By the recursions, which see the tree alone. M⁻¹τ is what τ as a momentum gives beyond zero
+  /// momentum.
+  void free_acceleration() {
+    if (mechanism_.nv() == 0) return;
+    const double *q = given_.q.data(), t = given_.t;
+    if (!e_->open_accelerations(t, q, s_.v.data(), s_.free.data())) refuse(e_->stuck());
+    if (given_.tau.isZero(0)) return;
+    VectorXd with(mechanism_.nv()), without = VectorXd::Zero(mechanism_.nv());
+    VectorXd unused(mechanism_.nv());
+    if (!e_->open_momentum_rates(t, q, given_.tau.data(), with.data(), unused.data()))
+      refuse(e_->stuck());
+    if (mechanism_.plan().drives) {
+      const VectorXd zero = VectorXd::Zero(mechanism_.nv());
+      e_->open_momentum_rates(t, q, zero.data(), without.data(), unused.data());
+    }
+    s_.free += with - without;
+  }
+
+  void dense_parts() {
+    s_.dense = true;
+    const auto& pattern = mechanism_.kkt_pattern();
+    e_->place(given_.t, given_.q.data());
+    std::vector<double> values(pattern.mass.size());
+    e_->mass_entries(values.data());
+    s_.mass.setZero(mechanism_.nv(), mechanism_.nv());
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const auto [row, column] = pattern.mass[i];
+      s_.mass(row, column) = s_.mass(column, row) = values[i];
+    }
+    if (mechanism_.m() == 0 || mechanism_.nv() == 0) return;
+    values.resize(pattern.constraint.size());
+    e_->constraint_entries(values.data());
+    Eigen::MatrixXd j = Eigen::MatrixXd::Zero(mechanism_.m(), mechanism_.nv());
+    for (std::size_t i = 0; i < values.size(); ++i)
+      j(pattern.constraint[i].row, pattern.constraint[i].column) = values[i];
+    s_.singular_values = Eigen::JacobiSVD<Eigen::MatrixXd>(j).singularValues();
+    const double least = rank_tolerance * s_.singular_values[0];
+    for (double value : s_.singular_values) s_.rank += value > least;
+  }
+
+  const Mechanism& mechanism_;
+  const GivenState& given_;
+  std::unique_ptr<Evaluation<double>> e_;
+  std::unique_ptr<Kkt> kkt_;
+  StateValues s_;
+};
+
+}  // namespace
+
+StateValues evaluate_state(const Mechanism& mechanism, const GivenState& given) {
+  return StateEvaluator(mechanism, given).run();
+}
+
+}  // namespace momenta

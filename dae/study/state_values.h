@@ -1,0 +1,54 @@
+#pragma once
+// Everything there is to know of a mechanism at one state: what each equation of the paper gives
+// there, energies and whole momenta, and what joints and loops transmit.
+//
+//   given v     p = M v (34), σ = 0 (the gauge in which p has no loop impulses)
+//   given p     without loops v by (45); with loops v and σ solve (7): M v + Φ_qᵀσ = p,
+//               Φ_q v = −Φ_t. p then has Φ_qᵀσ in it
+//   both        ṗ by (35), with loops by (8) without a leak;
+//               bias:       M u̇ + bias = 0 moves the tree without loops: what must be added along
+//                           the joints to hold u̇ = 0
+//               free:       M u̇ = −bias, as if no loop were there
+//               constrained: (3), M u̇ + Φ_qᵀλ = −bias, Φ_q u̇ = −(Φ̈ at u̇ = 0)
+//
+// τ is a further generalised force along the joints; it counts among the applied ones everywhere.
+// Without loops everything but M is O(bodies), and no system of loops is built.
+
+#include <momenta/dae/measure/reactions.h>
+#include <momenta/dae/measure/whole.h>
+
+namespace momenta {
+
+struct GivenState {
+  double t = 0;       ///< [s]
+  Eigen::VectorXd q;  ///< nq, quaternions of unit length
+  Eigen::VectorXd v;  ///< nv: rates; where `of_momenta` is true, where p starts from: p = M v
+  bool of_momenta = false;
+  Eigen::VectorXd p;          ///< nv, entries with `p_given` count, the others are those of M v
+  std::vector<bool> p_given;  ///< nv, when of_momenta
+  Eigen::VectorXd tau;        ///< nv
+};
+
+struct StateValues {
+  Eigen::VectorXd v, p, qdot, pdot, bias;
+  Eigen::VectorXd free, constrained;  ///< u̇; constrained: with loops only
+  Eigen::VectorXd phi, phidot, sigma, lambda;
+  int faded = 0;  ///< rows that the solution of (7) found dependent or nearly so: σ, λ not unique
+  double kinetic = 0, potential = 0, hamiltonian = 0;  ///< H = p·v − T + V
+  Whole whole;
+  Reactions reactions;
+  std::vector<double> markers;  ///< per marker x y z and velocity
+
+  bool dense = false;  ///< the rest is there: nv + m within `dense_state_limit`
+  Eigen::MatrixXd mass;
+  int rank = 0;                     ///< of Φ_q: singular values above 1e-9 of the largest
+  Eigen::VectorXd singular_values;  ///< of Φ_q, descending
+};
+
+inline constexpr int dense_state_limit = 300;  ///< unknowns, nv + m
+
+/// @throws SceneError when the mechanism cannot move there: a joint without inertia, or numbers
+/// that overflow.
+StateValues evaluate_state(const Mechanism& mechanism, const GivenState& given);
+
+}  // namespace momenta
