@@ -10,12 +10,12 @@ std::vector<JointPlace> joint_places(const Tree& tree) {
   for (std::size_t k = 0; k < tree.bodies.size(); ++k) {
     const Tree::Body& b = tree.bodies[k];
     const auto [found, fresh] = index.try_emplace(b.joint, places.size());
-    if (fresh) places.push_back({b.joint, {}, {}, {}, -1, -1});
+    if (fresh) places.push_back({b.joint, {}, {}, {}, {}, -1});
     JointPlace& place = places[found->second];
     for (int i = 0; i < b.nq; ++i) place.q.push_back(b.q + i);
     for (int i = 0; i < b.nv; ++i) place.u.push_back(b.u + i);
     if (b.nq >= 4) place.quaternions.push_back(b.q + b.nq - 4);
-    if (b.drive >= 0) place.drive = b.drive;
+    if (b.drive >= 0) place.drives.push_back(b.drive);
     place.body = static_cast<int>(k);
   }
   return places;

@@ -104,15 +104,16 @@ class Document {
   }
 
   void driven(Json& j) const {
-    for (const JointPlace& joint : places_) {
-      if (joint.drive < 0) continue;
-      double f, rate, acceleration;
-      mechanism_.tree().drives[static_cast<std::size_t>(joint.drive)].evaluate(given_.t, f, rate,
-                                                                               acceleration);
-      j["driven"][joint.name] = {{"q", number_or_null(f)},
-                                 {"v", number_or_null(rate)},
-                                 {"acceleration", number_or_null(acceleration)}};
-    }
+    for (const JointPlace& joint : places_)
+      for (const int drive : joint.drives) {
+        double f, rate, acceleration;
+        mechanism_.tree().drives[static_cast<std::size_t>(drive)].evaluate(given_.t, f, rate,
+                                                                           acceleration);
+        Json& table = j["driven"][joint.name];
+        table["q"].push_back(number_or_null(f));
+        table["v"].push_back(number_or_null(rate));
+        table["acceleration"].push_back(number_or_null(acceleration));
+      }
   }
 
   const RowName& row(int i) const { return mechanism_.rows()[static_cast<std::size_t>(i)]; }

@@ -178,8 +178,10 @@ class StateReader {
       const JointPlace& place = joint(name, key);
       const std::string where = "key '" + key + "', joint " + in_quotes(name);
       const std::vector<int>& to = coordinates ? place.q : place.u;
-      if (place.drive >= 0)
-        fail(where + ": the joint is driven, expected no value, since t alone moves it");
+      if (to.empty())
+        fail(where + (place.drives.empty() ? ": the joint has no coordinates, expected no value"
+                                           : ": the joint is driven, expected no value: t alone "
+                                             "moves it"));
       const std::string expected =
           to.size() == 1 ? "1 number" : std::to_string(to.size()) + " numbers";
       const bool array = value.is_array();

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -39,10 +40,11 @@ class Program : public testing::Test {
   }
   ~Program() override { fs::remove_all(folder_); }
 
-  Outcome call(const std::string& arguments) const {
+  Outcome call(const std::string& arguments, const fs::path& input = "/dev/null") const {
     const fs::path out = folder_ / "stdout", err = folder_ / "stderr";
     const std::string command = std::string(MOMENTA_BINARY_DIR) + "/dae/momenta " + arguments +
-                                " >'" + out.string() + "' 2>'" + err.string() + "' </dev/null";
+                                " >'" + out.string() + "' 2>'" + err.string() + "' <'" +
+                                input.string() + "'";
     const int raw = std::system(command.c_str());  // NOLINT: the command is this test's own
     return {WIFEXITED(raw) ? WEXITSTATUS(raw) : -WTERMSIG(raw), text_of(out), text_of(err)};
   }
@@ -162,6 +164,140 @@ TEST_F(Program, DriftWritesPageTableAndJson) {
   EXPECT_NE(text_of(results / "index.html").find("<!doctype html>"), std::string::npos);
   const std::string csv = text_of(results / "study.csv");
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 15);
+}
+
+TEST_F(Program, EvaluateGivesThePendulumByHand) {
+  // A point mass of 1 kg at 1 m, θ from the x axis, gravity along −y; τ = 0.5 N m.
+  const double angle = 0.4, rate = 1.7, g = 9.81;
+  const std::string scene = "'" + example("pendulum") + "'";
+  const Outcome o = call("evaluate " + scene +
+                         R"( --at '{"q": {"O": 0.4}, "v": {"O": [1.7]}, "tau": {"O": 0.5}}')");
+  ASSERT_EQ(o.status, 0) << o.err;
+  const auto j = nlohmann::json::parse(o.out);
+  const auto of = [&](const char* key) { return j.at(key).at("O").at(0).get<double>(); };
+  const double push = -g * std::cos(angle) + 0.5;
+  EXPECT_EQ(j.at("given"), "v");
+  EXPECT_EQ(of("q"), angle);
+  EXPECT_EQ(of("v"), rate);
+  EXPECT_NEAR(of("p"), rate, 1e-15);
+  EXPECT_EQ(of("qdot"), rate);
+  EXPECT_NEAR(of("pdot"), push, 1e-14);
+  EXPECT_NEAR(of("bias"), -push, 1e-14);
+  EXPECT_NEAR(j.at("acceleration").at("free").at("O").at(0).get<double>(), push, 1e-14);
+  EXPECT_FALSE(j.at("acceleration").contains("constrained"));
+  EXPECT_FALSE(j.contains("loops"));
+  EXPECT_EQ(j.at("dofs"), nlohmann::json({"O"}));
+  EXPECT_NEAR(j.at("M").at(0).at(0).get<double>(), 1, 1e-15);
+  const double kinetic = 0.5 * rate * rate, potential = g * std::sin(angle);
+  EXPECT_NEAR(j.at("energy").at("T").get<double>(), kinetic, 1e-14);
+  EXPECT_NEAR(j.at("energy").at("V").get<double>(), potential, 1e-14);
+  EXPECT_NEAR(j.at("energy").at("H").get<double>(), kinetic + potential, 1e-14);
+  const auto expect_vector = [](const nlohmann::json& found, double x, double y, double z) {
+    const double expected[] = {x, y, z};
+    for (std::size_t i = 0; i < 3; ++i)
+      EXPECT_NEAR(found.at(i).get<double>(), expected[i], 1e-13) << found;
+  };
+  const double c = std::cos(angle), s = std::sin(angle);
+  const auto& all = j.at("whole");
+  expect_vector(all.at("centre_of_mass"), c, s, 0);
+  expect_vector(all.at("linear_momentum"), -rate * s, rate * c, 0);
+  expect_vector(all.at("angular_momentum"), 0, 0, rate);
+  // The hinge carries m a − m g, and the moment that τ puts on the bob.
+  const auto& hinge = j.at("reactions").at("O");
+  expect_vector(hinge.at("force"), -rate * rate * c - push * s, -rate * rate * s + push * c + g, 0);
+  expect_vector(hinge.at("torque"), 0, 0, 0.5);
+  expect_vector(hinge.at("at"), 0, 0, 0);
+  expect_vector(j.at("markers").at("P").at("position"), c, s, 0);
+  expect_vector(j.at("markers").at("P").at("velocity"), -rate * s, rate * c, 0);
+
+  // The same from its momentum, from a file and from standard input.
+  const fs::path state = write("state.json", R"({"q": {"O": 0.4}, "p": {"O": 1.7}})");
+  const Outcome file = call("evaluate " + scene + " --at '" + state.string() + "'");
+  const Outcome piped = call("evaluate " + scene + " --at -", state);
+  ASSERT_EQ(file.status, 0) << file.err;
+  EXPECT_EQ(file.out, piped.out);
+  const auto back = nlohmann::json::parse(file.out);
+  EXPECT_EQ(back.at("given"), "p");
+  EXPECT_NEAR(back.at("v").at("O").at(0).get<double>(), rate, 1e-15);
+}
+
+TEST_F(Program, EvaluateOfLoopsSolvesSevenForGivenMomenta) {
+  const std::string scene = "'" + example("four_bar") + "'";
+  const auto at = [&](const std::string& state) {
+    const Outcome o = call("evaluate " + scene + " --at '" + state + "'");
+    EXPECT_EQ(o.status, 0) << o.err;
+    return nlohmann::json::parse(o.out);
+  };
+  const auto start = at("{}");
+  const auto& loop = start.at("loops").at("B");
+  EXPECT_EQ(loop.at("lambda").size(), 2u);
+  for (double sigma : loop.at("sigma")) EXPECT_EQ(sigma, 0);
+  for (double phi : loop.at("phi")) EXPECT_LT(std::abs(phi), 1e-14);
+  EXPECT_EQ(start.at("rank"), 2);
+  EXPECT_EQ(start.at("mobility"), 1);
+  EXPECT_EQ(start.at("singular_values").size(), 2u);
+
+  const auto moving = at(R"({"t": 1, "p": {"O": 1, "A": 0, "C": 0}, "tau": {"O": 3}})");
+  EXPECT_EQ(moving.at("t"), 1);
+  for (double rate : moving.at("loops").at("B").at("phidot")) EXPECT_LT(std::abs(rate), 1e-14);
+  EXPECT_GT(std::abs(moving.at("loops").at("B").at("sigma").at(0).get<double>()), 1e-3);
+  // Back by v: the same motion, another gauge.
+  const auto again = at(R"({"v": )" + moving.at("v").dump() + R"(, "tau": {"O": [3]}})");
+  for (const char* joint : {"O", "A", "C"})
+    EXPECT_NEAR(again.at("acceleration").at("constrained").at(joint).at(0).get<double>(),
+                moving.at("acceleration").at("constrained").at(joint).at(0).get<double>(), 1e-11);
+  const double kinetic = again.at("energy").at("T").get<double>();
+  EXPECT_NEAR(kinetic, moving.at("energy").at("T").get<double>(), 1e-14);
+  EXPECT_NEAR(moving.at("energy").at("H").get<double>(),
+              kinetic + moving.at("energy").at("V").get<double>(), 1e-13);
+}
+
+TEST_F(Program, EvaluateWritesWholeFilesAndLeavesOutWhatIsLarge) {
+  const Outcome made = call("make n-four-bar --n 80");
+  const std::string large = write("large.toml", made.out).string();
+  const Outcome o = call("evaluate '" + large + "' --out '" + (folder_ / "results").string() + "'");
+  ASSERT_EQ(o.status, 0) << o.err;
+  EXPECT_TRUE(o.out.empty());
+  const auto j = nlohmann::json::parse(text_of(folder_ / "results" / "evaluate.json"));
+  EXPECT_FALSE(j.contains("M"));
+  EXPECT_FALSE(j.contains("rank"));
+  EXPECT_NE(j.at("left_out").get<std::string>().find("300"), std::string::npos);
+  EXPECT_EQ(j.at("loops").size(), 80u);
+}
+
+TEST_F(Program, EvaluateRefusesBadStates) {
+  const std::string four_bar =
+      "evaluate '" + example("four_bar") + "' --out '" + (folder_ / "results").string() + "' --at ";
+  const std::pair<const char*, const char*> states[] = {
+      {R"('{"q": {"B1": 1}}')", "joint 'B1' is not in the scene"},
+      {R"('{"tau": {"crank": 1}}')", "key 'tau': joint 'crank' is not in the scene"},
+      {R"('{"q": {"O": [1, 2]}}')", "joint 'O': found an array of 2, expected 1 number"},
+      {R"('{"v": {"O": []}}')", "joint 'O': found an array of 0, expected 1 number"},
+      {R"('{"v": {"O": "1"}}')", "joint 'O': found the string '1', expected 1 number"},
+      {R"('{"v": {"O": [null]}}')", "joint 'O': found null, expected 1 number"},
+      {R"('{"v": {}, "p": {}}')", "found both 'v' and 'p'"},
+      {R"('{"vel": {}}')", "key 'vel' is not known"},
+      {R"('{"taus": {}}')", "did you mean 'tau'?"},
+      {R"('{"t": "now"}')", "key 't': found the string 'now', expected a time [s]"},
+      {R"('{"t": 1e999}')", "too large"},
+      {R"('{"t": NaN}')", "--at:1:7: the text is not JSON"},
+      {R"('{"q": [1, 2, 3]}')", "key 'q': found an array of 3, expected an object"},
+      {R"('{"q": {"O": 1, "O": 2}}')", "key 'O' stands twice"},
+      {R"('{"q": {"O": [[[[1]]]]}}')", "nested deeper"},
+      {"'{'", "not JSON"},
+      {"''", "--at: found nothing"},
+      {"-", "standard input:1:1: the text is not JSON"},
+      {"missing.json", "missing.json: the file cannot be opened"},
+      {"/", "found a directory"},
+  };
+  for (const auto& [state, mentions] : states) expect_refused(four_bar + state, mentions);
+  const fs::path list = write("list.json", "[1, 2]");
+  expect_refused(four_bar + "'" + list.string() + "'", "list.json: found an array of 2, expected");
+  const fs::path broken = write("broken.json", "{\n  \"q\": {\n    \"O\": }\n}\n");
+  expect_refused(four_bar + "'" + broken.string() + "'", "broken.json:3:10: the text is not JSON");
+  expect_refused("evaluate '" + example("free_body") + R"(' --at '{"q": {"S": [1, 1, 0, 0]}}')",
+                 "norm");
+  EXPECT_FALSE(fs::exists(folder_ / "results"));
 }
 
 TEST_F(Program, FamiliesItMakesAreScenesItReads) {
