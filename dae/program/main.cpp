@@ -7,6 +7,7 @@
 #include <new>
 #include <stdexcept>
 
+#include "families.h"
 #include "options.h"
 
 using namespace momenta::program;
@@ -17,7 +18,7 @@ int main(int argc, char** argv) {
   for (int i = 0; i < argc; ++i) o.command += (i == 0 ? "momenta" : std::string(" ") + argv[i]);
   DriftOptions d;
   std::string family, state = "{}";
-  int n = 10;
+  std::optional<int> n;
   CLI::App app(
       "Constrained multibody systems on canonical momenta: open chains, closed loops, and how far "
       "they drift.");
@@ -51,10 +52,10 @@ int main(int argc, char** argv) {
       ->type_name("STATE");
   evaluate_verb->add_option("--out", o.out, "Directory for evaluate.json");
   CLI::App* make_verb = app.add_subcommand("make", "Prints a scene of a family");
-  make_verb->add_option("family", family, "chain or n-four-bar")
-      ->required()
-      ->check(CLI::IsMember({"chain", "n-four-bar"}));
-  make_verb->add_option("--n", n, "Size")->check(CLI::Range(1, 1'000'000))->capture_default_str();
+  std::string all_families;
+  for (const Family& f : families()) all_families += "\n  " + std::string(f.name) + ": " + f.what;
+  make_verb->add_option("family", family, "One of:" + all_families)->required();
+  make_verb->add_option("--n", n, "Size N (default 10; humanoid: 30 alone)");
 
   try {
     app.parse(argc, argv);

@@ -1,8 +1,11 @@
-// Families of scenes, printed as TOML.
+// Families of scenes, printed as TOML: which there are, and those in a plane.
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 
+#include "families.h"
 #include "options.h"
 
 namespace momenta::program {
@@ -22,7 +25,9 @@ void rod(const std::string& name) {
       name.c_str());
 }
 
-int chain(int n) {
+}  // namespace
+
+void print_chain(int n) {
   std::printf("# A chain of %d uniform rods of 1 m and 1 kg, horizontal, at rest.\n", n);
   std::printf(
       "name = \"Chain of %d rods\"\ngravity = [0.0, -9.81, 0.0]\n\n[run]\nend = 5.0\nsamples = "
@@ -33,13 +38,12 @@ int chain(int n) {
     revolute("joint", "J", i, i == 1 ? "ground" : "rod" + std::to_string(i - 1),
              "rod" + std::to_string(i), i == 1 ? 0 : 1, 0);
   std::printf("\n[[marker]]\nname = \"tip\"\nbody = \"rod%d\"\npoint = [1.0, 0.0, 0.0]\n", n);
-  return done;
 }
 
 /// 2N + 1 rods: verticals hinged to ground at (i, 0), horizontals joining their tops. Tree: ground
 /// - vertical 0 - horizontal 1, and every other vertical on the ground, carrying the next
 /// horizontal; N loops close at the far ends.
-int n_four_bar(int n) {
+void print_n_four_bar(int n) {
   const double up = std::acos(0.0);
   std::printf(
       "# %d four-bars in a row: %d rods of 1 m and 1 kg. All rods lie on one line twice a turn.\n",
@@ -67,13 +71,44 @@ int n_four_bar(int n) {
         "origin = { parent = [1.0, 0.0, 0.0], child = [1.0, 0.0, 0.0] }\naxis = [0, 0, 1]\n",
         i, i, i);
   std::printf("\n[[marker]]\nname = \"B0\"\nbody = \"vertical0\"\npoint = [1.0, 0.0, 0.0]\n");
-  return done;
 }
 
-}  // namespace
+std::span<const Family> families() {
+  // A scene file holds at most 4 million values.
+  constexpr int many = 100'000, more = 1'000'000;
+  static constexpr std::array all{
+      Family{"chain", "N rods of 1 m in a plane, level", 1, more, 10, print_chain},
+      Family{"random-chain", "N blocks on pins at random", 1, many, 10, print_random_chain},
+      Family{"rope", "N links of 0.1 m, pinned across by turns", 1, many, 10, print_rope},
+      Family{"spherical-chain", "N links on ball joints", 1, many, 10, print_spherical_chain},
+      Family{"tree", "binary, N bodies on pins", 1, many, 10, print_tree},
+      Family{"star", "a free ball with N legs of six pins", 1, many / 5, 10, print_star},
+      Family{"humanoid", "a free pelvis and 30 hinges", 30, 30, 30, print_humanoid},
+      Family{"n-four-bar", "N four-bars in a row", 1, more, 10, print_n_four_bar},
+  };
+  return all;
+}
 
-int make(const std::string& family, int n) {
-  return family == "chain" ? chain(n) : n_four_bar(n);
+int make(const std::string& family, std::optional<int> n) {
+  const auto all = families();
+  const auto found =
+      std::find_if(all.begin(), all.end(), [&](const Family& f) { return family == f.name; });
+  if (found == all.end()) {
+    std::string names;
+    for (const Family& f : all) names += (names.empty() ? "" : ", ") + std::string(f.name);
+    throw std::invalid_argument("family '" + family.substr(0, 60) + "' is not known; expected " +
+                                names);
+  }
+  const int size = n.value_or(found->usual);
+  if (size < found->least || size > found->most)
+    throw std::invalid_argument(
+        "family '" + family + "' (" + found->what + "): found --n " + std::to_string(size) +
+        ", expected " +
+        (found->least == found->most
+             ? std::to_string(found->least) + ", its number of hinges, or no --n"
+             : std::to_string(found->least) + " to " + std::to_string(found->most)));
+  found->print(size);
+  return done;
 }
 
 }  // namespace momenta::program

@@ -63,6 +63,7 @@ struct DriftOptions {
 int drift(const Options& o, const DriftOptions& d);
 /// `state`: a JSON file, "-" for standard input, or text that starts with "{".
 int evaluate(const Options& o, const std::string& state);
-int make(const std::string& family, int n);
+/// Prints a scene; `n` empty: the usual size of the family. @throws std::invalid_argument
+int make(const std::string& family, std::optional<int> n);
 
 }  // namespace momenta::program

@@ -295,20 +295,71 @@ TEST_F(Program, EvaluateRefusesBadStates) {
   expect_refused(four_bar + "'" + list.string() + "'", "list.json: found an array of 2, expected");
   const fs::path broken = write("broken.json", "{\n  \"q\": {\n    \"O\": }\n}\n");
   expect_refused(four_bar + "'" + broken.string() + "'", "broken.json:3:10: the text is not JSON");
-  expect_refused("evaluate '" + example("free_body") + R"(' --at '{"q": {"S": [1, 1, 0, 0]}}')",
-                 "norm");
+  expect_refused(
+      "evaluate '" + example("free_body") + R"(' --at '{"q": {"S": [0, 0, 0, 1, 1, 0, 0]}}')",
+      "norm");
   EXPECT_FALSE(fs::exists(folder_ / "results"));
 }
 
-TEST_F(Program, FamiliesItMakesAreScenesItReads) {
-  for (const std::string family : {"chain --n 5", "n-four-bar --n 3"}) {
-    const Outcome made = call("make " + family);
+TEST_F(Program, FamiliesItMakesAreScenesItReadsAndRuns) {
+  const std::pair<const char*, int> mobilities[] = {
+      {"chain --n 5", 5},
+      {"chain --n 1", 1},
+      {"random-chain --n 1", 1},
+      {"random-chain --n 30", 30},
+      {"rope --n 1", 1},
+      {"rope --n 20", 20},
+      {"spherical-chain --n 1", 3},
+      {"tree --n 1", 1},
+      {"spherical-chain --n 5", 15},
+      {"tree --n 40", 40},
+      {"star --n 1", 12},
+      {"star --n 5", 36},
+      {"humanoid", 36},
+      {"rope", 10},
+      {"n-four-bar --n 1", 1},
+      {"n-four-bar --n 3", 1},
+      {"humanoid --n 30", 36},
+  };
+  for (const auto& [family, mobility] : mobilities) {
+    SCOPED_TRACE(family);
+    const Outcome made = call(std::string("make ") + family);
     ASSERT_EQ(made.status, 0) << made.err;
-    const Outcome checked = call("check --json '" + write("made.toml", made.out).string() + "'");
+    EXPECT_EQ(call(std::string("make ") + family).out, made.out);
+    const std::string scene = "'" + write("made.toml", made.out).string() + "'";
+    const Outcome checked = call("check --json " + scene);
     ASSERT_EQ(checked.status, 0) << checked.err;
-    const auto check = nlohmann::json::parse(checked.out);
-    EXPECT_EQ(check.at("mobility"), family[0] == 'c' ? 5 : 1);
+    EXPECT_EQ(nlohmann::json::parse(checked.out).at("mobility"), mobility);
+    const Outcome ran = call("run --json " + scene + " --integrator dop853 --end 1");
+    ASSERT_EQ(ran.status, 0) << ran.err;
+    EXPECT_LT(nlohmann::json::parse(ran.out).at("energy").at("error_max").get<double>(), 1e-3);
   }
+}
+
+TEST_F(Program, FamiliesAreWhatTheirNamesSay) {
+  const auto start = [&](const std::string& family) {
+    const std::string scene = write("made.toml", call("make " + family).out).string();
+    return nlohmann::json::parse(call("evaluate '" + scene + "'").out);
+  };
+  const auto rope = start("rope --n 50");
+  EXPECT_NEAR(rope.at("whole").at("mass").get<double>(), 0.5, 1e-14);
+  EXPECT_GT(rope.at("markers").at("end").at("position").at(0).get<double>(), 4.9);
+  const auto person = start("humanoid");
+  EXPECT_NEAR(person.at("whole").at("mass").get<double>(), 75, 1e-12);
+  EXPECT_EQ(person.at("dofs").size(), 36u);
+  const double crown = person.at("markers").at("crown").at("position").at(2).get<double>();
+  const double sole = person.at("markers").at("left_sole").at("position").at(2).get<double>();
+  EXPECT_NEAR(crown - sole, 1.75, 0.06);  // knees bent
+}
+
+TEST_F(Program, LargeFamiliesAreWrittenQuicklyAndImpossibleOnesRefused) {
+  const Outcome tree = call("make tree --n 100000");
+  ASSERT_EQ(tree.status, 0);
+  EXPECT_NE(tree.out.find("\"branch100000\""), std::string::npos);
+  expect_refused("make robe", "family 'robe' is not known; expected chain, random-chain, rope");
+  expect_refused("make rope --n 0", "found --n 0, expected 1 to 100000");
+  expect_refused("make star --n 100000", "expected 1 to 20000");
+  expect_refused("make humanoid --n 12", "expected 30, its number of hinges");
 }
 
 }  // namespace

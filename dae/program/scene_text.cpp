@@ -1,0 +1,92 @@
+#include "scene_text.h"
+
+#include <momenta/core/scene/near_name.h>
+
+#include <cmath>
+#include <cstdio>
+
+namespace momenta::program {
+namespace {
+
+void put(const std::string& text) {
+  std::fputs(text.c_str(), stdout);
+}
+
+bool zero(const Triple& v) {
+  return v[0] == 0 && v[1] == 0 && v[2] == 0;
+}
+
+void open_body(const std::string& name, double mass) {
+  put("\n[[body]]\nname = \"" + name + "\"\nmass = " + number_text(mass) + "\n");
+}
+
+}  // namespace
+
+std::string number_text(double value) {
+  return reading::digits(value);
+}
+
+std::string triple_text(const Triple& v) {
+  return "[" + number_text(v[0]) + ", " + number_text(v[1]) + ", " + number_text(v[2]) + "]";
+}
+
+std::string numbered(const char* word, int number) {
+  return word + std::to_string(number);
+}
+
+void print_head(const std::string& comment, const std::string& name, const Triple& gravity,
+                double end) {
+  put("# " + comment + "\nname = \"" + name + "\"\ngravity = " + triple_text(gravity) +
+      "\n\n[run]\nend = " + number_text(end) + "\nsamples = 500\n");
+}
+
+void print_cylinder(const std::string& name, double mass, double length, double radius,
+                    const std::string& axis) {
+  const auto along = static_cast<std::size_t>(axis.back() - 'x');
+  Triple com{};
+  com[along] = (axis.front() == '-' ? -0.5 : 0.5) * length;
+  open_body(name, mass);
+  put("com = " + triple_text(com) + "\nshape = { kind = \"cylinder\", length = " +
+      number_text(length) + ", radius = " + number_text(radius) + ", axis = \"" + axis + "\" }\n");
+}
+
+void print_box(const std::string& name, double mass, const Triple& size, const Triple& com) {
+  open_body(name, mass);
+  put("com = " + triple_text(com) + "\nshape = { kind = \"box\", size = " + triple_text(size) +
+      " }\n");
+}
+
+void print_ball(const std::string& name, double mass, double radius, const Triple& com) {
+  open_body(name, mass);
+  if (!zero(com)) put("com = " + triple_text(com) + "\n");
+  put("shape = { kind = \"sphere\", radius = " + number_text(radius) + " }\n");
+}
+
+void print_joint(const JointText& joint) {
+  put("\n[[joint]]\nname = \"" + joint.name + "\"\nkind = \"" + joint.kind + "\"\nparent = \"" +
+      joint.parent + "\"\nchild = \"" + joint.child + "\"\n");
+  if (!zero(joint.origin_parent))
+    put("origin = { parent = " + triple_text(joint.origin_parent) + " }\n");
+  if (!zero(joint.rpy)) put("rotation = { rpy = " + triple_text(joint.rpy) + " }\n");
+  if (!joint.axis.empty())
+    put("axis = " + (joint.axis.front() == '[' ? joint.axis : "\"" + joint.axis + "\"") + "\n");
+  if (!joint.position.empty()) put("position = " + joint.position + "\n");
+  if (!joint.velocity.empty()) put("velocity = " + joint.velocity + "\n");
+  if (joint.stiffness != 0) put("stiffness = " + number_text(joint.stiffness) + "\n");
+  if (joint.damping != 0) put("damping = " + number_text(joint.damping) + "\n");
+}
+
+void print_marker(const std::string& name, const std::string& body, const Triple& point) {
+  put("\n[[marker]]\nname = \"" + name + "\"\nbody = \"" + body +
+      "\"\npoint = " + triple_text(point) + "\n");
+}
+
+Triple Draw::direction() {
+  for (;;) {
+    const double x = between(-1, 1), y = between(-1, 1), z = between(-1, 1);
+    const double length = std::sqrt(x * x + y * y + z * z);
+    if (length > 0.1 && length < 1) return {x / length, y / length, z / length};
+  }
+}
+
+}  // namespace momenta::program

@@ -1,0 +1,58 @@
+#pragma once
+// Scenes as TOML, table by table on standard output, so that a scene of any size costs no memory.
+// Numbers have the shortest digits that read back as the same double.
+
+#include <array>
+#include <cstdint>
+#include <random>
+#include <string>
+
+namespace momenta::program {
+
+using Triple = std::array<double, 3>;
+
+/// The comment on top, name, gravity and [run].
+void print_head(const std::string& comment, const std::string& name, const Triple& gravity,
+                double end);
+
+/// A cylinder that reaches from the body origin along `axis` ("x", "-z", …).
+void print_cylinder(const std::string& name, double mass, double length, double radius,
+                    const std::string& axis);
+/// A box of these edges about `com`, body axes.
+void print_box(const std::string& name, double mass, const Triple& size, const Triple& com);
+/// A solid ball about `com`.
+void print_ball(const std::string& name, double mass, double radius, const Triple& com);
+
+struct JointText {
+  std::string name, kind = "revolute", parent = "ground", child;
+  Triple origin_parent{}, rpy{};
+  std::string axis;                ///< as in a file: "z", "-x" or "[…]"; empty: none
+  std::string position, velocity;  ///< likewise; empty: none
+  double stiffness = 0, damping = 0;
+};
+void print_joint(const JointText& joint);
+
+void print_marker(const std::string& name, const std::string& body, const Triple& point);
+
+std::string number_text(double value);
+std::string triple_text(const Triple& v);
+
+/// "word" and a number.
+std::string numbered(const char* word, int number);
+
+/// Numbers that are the same on every machine.
+class Draw {
+ public:
+  explicit Draw(std::uint64_t seed) : bits_(seed) {}
+  /// In [low, high).
+  double between(double low, double high) {
+    return low + (high - low) * (static_cast<double>(bits_() >> 11) / 9007199254740992.0);
+  }
+  /// Of unit length.
+  Triple direction();
+
+ private:
+  std::mt19937_64 bits_;
+};
+
+}  // namespace momenta::program
