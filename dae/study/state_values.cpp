@@ -39,8 +39,9 @@ class StateEvaluator {
 
  private:
   [[noreturn]] void refuse(int rate) const {
-    throw SceneError(mechanism_.scene().where({}) +
-                     "the mechanism cannot move at this state: " + mechanism_.no_inertia(rate));
+    throw SceneError(mechanism_.scene().where({}) + "the mechanism cannot move at this state: " +
+                     (rate < 0 ? "its equations overflow; expected smaller numbers"
+                               : mechanism_.no_inertia(rate)));
   }
 
   /// v, p, σ, and the evaluation placed and moved there.
@@ -149,6 +150,7 @@ class StateEvaluator {
     Eigen::MatrixXd j = Eigen::MatrixXd::Zero(mechanism_.m(), mechanism_.nv());
     for (std::size_t i = 0; i < values.size(); ++i)
       j(pattern.constraint[i].row, pattern.constraint[i].column) = values[i];
+    if (!j.allFinite()) refuse(-1);
     s_.singular_values = Eigen::JacobiSVD<Eigen::MatrixXd>(j).singularValues();
     const double least = rank_tolerance * s_.singular_values[0];
     for (double value : s_.singular_values) s_.rank += value > least;

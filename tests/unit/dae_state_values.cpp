@@ -41,7 +41,7 @@ GivenState rates(double t, const VectorXd& q, const VectorXd& v) {
   return given;
 }
 
-GivenState momenta(GivenState given, const VectorXd& p) {
+GivenState by_momenta(GivenState given, const VectorXd& p) {
   given.of_momenta = true;
   given.p = p;
   given.p_given.assign(static_cast<std::size_t>(p.size()), true);
@@ -91,7 +91,7 @@ void expect_agrees_with_chain(const Scene& scene, RandomTree& random) {
   expect_same_reactions(chain.reactions(at.t, at.q, at.u), chain.poses(at.t, at.q), s.reactions,
                         tolerance);
 
-  const StateValues back = evaluate_state(mechanism, momenta(rates(at.t, at.q, at.u), p));
+  const StateValues back = evaluate_state(mechanism, by_momenta(rates(at.t, at.q, at.u), p));
   EXPECT_LT(relative_error(back.v, at.u), tolerance);
   EXPECT_LT(relative_error(back.pdot, pdot), tolerance);
 
@@ -233,7 +233,7 @@ void expect_loop_equations(const Scene& scene, double speed, unsigned seed) {
   // p with impulses in it gives back the rates; σ and (8) where σ is unique.
   const VectorXd sigma = any(random, m, 3);
   const VectorXd p = s.p + jacobian.transpose() * sigma;
-  const StateValues from_p = evaluate_state(mechanism, momenta(given, p));
+  const StateValues from_p = evaluate_state(mechanism, by_momenta(given, p));
   EXPECT_LT((from_p.v - v).norm(), tolerance * (1 + v.norm() + p.norm()));
   EXPECT_LT((from_p.constrained - s.constrained).norm(), tolerance * (1 + s.constrained.norm()));
   EXPECT_NEAR(from_p.hamiltonian, from_p.kinetic + from_p.potential, 1e-9 * (1 + p.norm()));
