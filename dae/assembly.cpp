@@ -31,10 +31,12 @@ class Assembler {
         e_(mechanism.evaluation<double>()),
         free_(static_cast<std::size_t>(mechanism.nv()), true) {
     for (const auto& name : mechanism.scene().held) {
-      const int body = mechanism.tree().carried_by(name);
-      if (body < 0) continue;
-      const auto& b = mechanism.tree().bodies[static_cast<std::size_t>(body)];
-      for (int i = 0; i < b.nv; ++i) free_[static_cast<std::size_t>(b.u + i)] = false;
+      const Tree& tree = mechanism.tree();
+      const int last = tree.carried_by(name);
+      for (int k = last < 0 ? 0 : tree.first_part(last); k <= last; ++k) {
+        const auto& b = tree.bodies[static_cast<std::size_t>(k)];
+        for (int i = 0; i < b.nv; ++i) free_[static_cast<std::size_t>(b.u + i)] = false;
+      }
     }
   }
 

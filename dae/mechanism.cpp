@@ -75,10 +75,21 @@ std::unique_ptr<Evaluation<S>> Mechanism::evaluation() const {
 template std::unique_ptr<Evaluation<double>> Mechanism::evaluation<double>() const;
 template std::unique_ptr<Evaluation<Dual8>> Mechanism::evaluation<Dual8>() const;
 
+namespace {
+
+/// What a one-dof joint adds to the name of its scene joint: "q", or the number of its coordinate
+/// behind it where the scene's joint has several.
+std::string one_dof_column(const Tree::Body& b, const char* letter) {
+  return b.joint + "." + letter + (b.parts > 1 ? std::to_string(b.coordinate) : "");
+}
+
+}  // namespace
+
 std::vector<Column> Mechanism::coordinate_columns() const {
   std::vector<Column> columns;
   for (const auto& b : tree_.bodies) {
-    if (b.nq == 1) columns.push_back({b.joint + ".q", b.kind == JointKind::revolute ? "rad" : "m"});
+    if (b.nq == 1)
+      columns.push_back({one_dof_column(b, "q"), b.kind == JointKind::prismatic ? "m" : "rad"});
     if (b.nq == 7)
       for (const char* axis : {".x", ".y", ".z"}) columns.push_back({b.joint + axis, "m"});
     if (b.nq >= 4)
@@ -92,7 +103,7 @@ std::vector<Column> Mechanism::rate_columns() const {
   std::vector<Column> columns;
   for (const auto& b : tree_.bodies) {
     if (b.nv == 1)
-      columns.push_back({b.joint + ".u", b.kind == JointKind::revolute ? "rad/s" : "m/s"});
+      columns.push_back({one_dof_column(b, "u"), b.kind == JointKind::prismatic ? "m/s" : "rad/s"});
     if (b.nv == 6)
       for (const char* axis : {".vx", ".vy", ".vz"}) columns.push_back({b.joint + axis, "m/s"});
     if (b.nv >= 3)
@@ -127,10 +138,13 @@ std::vector<std::pair<std::string, std::string>> Mechanism::plan_lines() const {
 }
 
 std::string Mechanism::no_inertia(int rate) const {
-  for (const auto& b : tree_.bodies)
-    if (rate >= b.u && rate < b.u + b.nv)
-      return "joint '" + b.joint + "' has no inertia to move: body '" + b.name +
-             "' and what it carries weigh nothing along it";
+  for (std::size_t k = 0; k < tree_.bodies.size(); ++k) {
+    const Tree::Body& b = tree_.bodies[k];
+    if (rate < b.u || rate >= b.u + b.nv) continue;
+    const auto carried = static_cast<std::size_t>(tree_.carried_by(b.joint));
+    return tree_.joint_in_words(static_cast<int>(k)) + " has no inertia to move: body '" +
+           tree_.bodies[carried].name + "' and what it carries weigh nothing along it";
+  }
   return "the mass matrix is not finite";
 }
 

@@ -1,9 +1,11 @@
 #pragma once
 // What a joint does in each algebra: its place at q, its motion E u, and the projection Eᵀ F. All E
-// are constant in body axes (revolute, prismatic: z; spherical, free: unit matrices), so Ė of eq.
-// (35) vanishes.
+// are constant in body axes (revolute, prismatic: z; helical: z twice, E = (0, 0, pitch; 0, 0, 1);
+// spherical, free: unit matrices), so Ė of eq. (35) vanishes. Other kinds are chains of these.
 
 #include <momenta/core/kernel/model.h>
+
+#include <limits>
 
 namespace momenta {
 
@@ -33,6 +35,13 @@ struct Joint<Spatial> {
         e.sin_theta = S(std::sin(b.theta0));
         e.d = value + b.d0;
         break;
+      case JointKind::helical: {
+        const S theta = value + b.theta0;
+        e.cos_theta = cos(theta);
+        e.sin_theta = sin(theta);
+        e.d = b.pitch * value + b.d0;
+        break;
+      }
       case JointKind::weld:
         e.cos_theta = S(std::cos(b.theta0));
         e.sin_theta = S(std::sin(b.theta0));
@@ -54,6 +63,8 @@ struct Joint<Spatial> {
           }
         break;
       }
+      default:
+        break;
     }
   }
 
@@ -68,13 +79,17 @@ struct Joint<Spatial> {
       case JointKind::prismatic:
         v.v[2] += u[0];
         break;
+      case JointKind::helical:
+        v.v[2] += b.pitch * u[0];
+        v.w[2] += u[0];
+        break;
       case JointKind::spherical:
         for (int i = 0; i < 3; ++i) v.w[i] += u[i];
         break;
       case JointKind::free:
         for (int i = 0; i < 6; ++i) v[i] += u[i];
         break;
-      case JointKind::weld:
+      default:  // weld
         break;
     }
   }
@@ -89,13 +104,16 @@ struct Joint<Spatial> {
       case JointKind::prismatic:
         p[0] = f.f[2];
         break;
+      case JointKind::helical:
+        p[0] = b.pitch * f.f[2] + f.n[2];
+        break;
       case JointKind::spherical:
         for (int i = 0; i < 3; ++i) p[i] = f.n[i];
         break;
       case JointKind::free:
         for (int i = 0; i < 6; ++i) p[i] = f[i];
         break;
-      case JointKind::weld:
+      default:  // weld
         break;
     }
   }
@@ -103,6 +121,7 @@ struct Joint<Spatial> {
   /// Eᵀ F of a one-dof joint.
   template <class S>
   static S along(const Body& b, const Spatial::Edge<S>&, const Spatial::Force<S>& f) {
+    if (b.kind == JointKind::helical) return b.pitch * f.f[2] + f.n[2];
     return b.kind == JointKind::revolute ? f.n[2] : f.f[2];
   }
 
@@ -110,12 +129,30 @@ struct Joint<Spatial> {
   template <class S>
   static Spatial::Force<S> column(const Body& b, const Spatial::Edge<S>&,
                                   const Spatial::ArticulatedInertia<S>& m) {
-    if (b.kind == JointKind::revolute) return {m.H.column(2), {{m.I(0, 2), m.I(1, 2), m.I(2, 2)}}};
-    return {{{m.A(0, 2), m.A(1, 2), m.A(2, 2)}}, {{m.H(2, 0), m.H(2, 1), m.H(2, 2)}}};
+    const Spatial::Force<S> turning{m.H.column(2), {{m.I(0, 2), m.I(1, 2), m.I(2, 2)}}};
+    if (b.kind == JointKind::revolute) return turning;
+    Spatial::Force<S> U{{{m.A(0, 2), m.A(1, 2), m.A(2, 2)}}, {{m.H(2, 0), m.H(2, 1), m.H(2, 2)}}};
+    if (b.kind == JointKind::helical)
+      for (int i = 0; i < 6; ++i) U[i] = b.pitch * U[i] + turning[i];
+    return U;
+  }
+
+  /// Positive where a one-dof joint has inertia to move. M_j itself for a pin, whose M' is free of
+  /// dust; less what rounding may leave of all the mass carried where a slide or a screw is
+  /// eliminated: behind two slides there is no mass along a third in their plane, but for rounding.
+  template <class S>
+  static S inertia_margin(const Body& b, const Spatial::ArticulatedInertia<S>& m,
+                          const S& joint_mass) {
+    constexpr double rounding = 16 * std::numeric_limits<double>::epsilon();
+    if (b.kind == JointKind::revolute) return joint_mass;
+    const S least(rounding * b.subtree_mass);
+    if (b.kind == JointKind::prismatic) return joint_mass - least;
+    const S turning = m.I(0, 0) + m.I(1, 1) + m.I(2, 2);
+    return joint_mass - (b.pitch * b.pitch * least + rounding * turning);
   }
 
   /// M* − U hᵀ with h = U / M_j, eq. (47). The joint's own row and column vanish exactly: dust left
-  /// there would pass for the inertia of a joint that has none.
+  /// there would pass for the inertia of a joint that has none. See reduce_screw for helical ones.
   template <class S>
   static void reduce(const Body& b, Spatial::ArticulatedInertia<S>& m, const Spatial::Force<S>& u,
                      const Spatial::Force<S>& h) {
@@ -126,11 +163,30 @@ struct Joint<Spatial> {
       }
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) m.H(i, j) -= u.f[i] * h.n[j];
+    if (b.kind == JointKind::helical) return reduce_screw(b.pitch, m);
     for (int i = 0; i < 3; ++i)
       if (b.kind == JointKind::revolute)
         m.H(i, 2) = m.I(i, 2) = S(0.0);
       else
         m.H(2, i) = m.A(i, 2) = S(0.0);
+  }
+
+ private:
+  /// M' E = 0 ties two rows and columns of M' together: pitch M'(·, v_z) + M'(·, ω_z) = 0. One of
+  /// them is made from the other, so that this holds as written and M' stays symmetric; the one
+  /// that is then multiplied by a number below one.
+  template <class S>
+  static void reduce_screw(double pitch, Spatial::ArticulatedInertia<S>& m) {
+    if (std::abs(pitch) <= 1) {
+      for (int i = 0; i < 3; ++i) m.H(i, 2) = -pitch * m.A(i, 2);
+      for (int i = 0; i < 2; ++i) m.I(i, 2) = -pitch * m.H(2, i);
+      m.I(2, 2) = -pitch * m.H(2, 2);
+    } else {
+      const double inverse = 1 / pitch;
+      for (int i = 0; i < 3; ++i) m.H(2, i) = -inverse * m.I(i, 2);
+      for (int i = 0; i < 2; ++i) m.A(i, 2) = -inverse * m.H(i, 2);
+      m.A(2, 2) = -inverse * m.H(2, 2);
+    }
   }
 };
 
@@ -197,6 +253,13 @@ struct Joint<Planar> {
   }
 
   template <class S>
+  static S inertia_margin(const Body& b, const Planar::ArticulatedInertia<S>&,
+                          const S& joint_mass) {
+    constexpr double rounding = 16 * std::numeric_limits<double>::epsilon();
+    return b.kind == JointKind::revolute ? joint_mass : joint_mass - S(rounding * b.subtree_mass);
+  }
+
+  template <class S>
   static void reduce(const Body& b, Planar::ArticulatedInertia<S>& m, const Planar::Force<S>& u,
                      const Planar::Force<S>& h) {
     m.xx -= u.f[0] * h.f[0];
@@ -219,9 +282,10 @@ void coordinate_rates(JointKind kind, const S* q, const S* u, S* qdot) {
   switch (kind) {
     case JointKind::revolute:
     case JointKind::prismatic:
+    case JointKind::helical:
       qdot[0] = u[0];
       return;
-    case JointKind::weld:
+    default:  // weld
       return;
     case JointKind::free: {
       const Vec3<S> v = rotation_of(q + 3) * Vec3<S>{{u[0], u[1], u[2]}};
@@ -246,9 +310,10 @@ void joint_rates(JointKind kind, const S* q, const S* qdot, S* u) {
   switch (kind) {
     case JointKind::revolute:
     case JointKind::prismatic:
+    case JointKind::helical:
       u[0] = qdot[0];
       return;
-    case JointKind::weld:
+    default:  // weld
       return;
     case JointKind::free: {
       const Vec3<S> v = transpose_times(rotation_of(q + 3), Vec3<S>{{qdot[0], qdot[1], qdot[2]}});

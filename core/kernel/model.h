@@ -22,6 +22,7 @@ struct Model {
     int q = 0, nq = 0, u = 0, nv = 0;
     typename Space::EdgeConstants edge;
     double theta0 = 0, d0 = 0;  ///< joint screw at position zero [rad], [m]
+    double pitch = 0;           ///< helical [m/rad]
     typename Space::template RigidInertia<double> inertia;
     double subtree_mass = 0;  ///< of the body and all it carries [kg]
     double stiffness = 0, rest = 0, damping = 0, torque = 0;

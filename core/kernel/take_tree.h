@@ -25,6 +25,7 @@ void take_joints(const Tree& tree, Model<Space>& model) {
     m.nq = b.nq;
     m.u = b.u;
     m.nv = b.nv;
+    m.pitch = b.pitch;
     m.stiffness = b.stiffness;
     m.rest = b.rest;
     m.damping = b.damping;

@@ -84,8 +84,9 @@ void Census::require_body(const std::string& name, bool or_ground, Location at,
                    ", which is no body" + expected + near_key(name, bodies_));
 }
 
-void Census::require_joint(const std::string& name, Location at, const std::string& who) const {
-  if (joints_.contains(name)) return;
+const JointSpec& Census::require_joint(const std::string& name, Location at,
+                                       const std::string& who) const {
+  if (const auto found = joints_.find(name); found != joints_.end()) return *found->second;
   const bool is_loop = std::any_of(scene_.loops.begin(), scene_.loops.end(),
                                    [&](const LoopSpec& loop) { return loop.name == name; });
   throw SceneError(scene_.where(at) + who + ": " + in_quotes(name) +
@@ -93,13 +94,13 @@ void Census::require_joint(const std::string& name, Location at, const std::stri
                    ", expected the name of a [[joint]]" + near_key(name, joints_));
 }
 
-void Census::require_axis_joint(const std::string& name, Location at,
-                                const std::string& who) const {
-  require_joint(name, at, who);
-  const JointKind kind = joints_.find(name)->second->kind;
-  if (!has_axis(kind))
+void Census::require_one_coordinate(const std::string& name, Location at,
+                                    const std::string& who) const {
+  const JointKind kind = require_joint(name, at, who).kind;
+  if (!has_one_coordinate(kind))
     throw SceneError(scene_.where(at) + who + ": joint " + in_quotes(name) + " is " +
-                     std::string(name_of(kind)) + ", expected a revolute or prismatic joint");
+                     std::string(name_of(kind)) +
+                     ", expected a revolute, prismatic or helical joint");
 }
 
 }  // namespace momenta::reading

@@ -101,14 +101,22 @@ double Fields::number(std::string_view key, Quantity quantity, double otherwise)
   return has(key) ? number(key, quantity) : otherwise;
 }
 
-int Fields::count(std::string_view key, int otherwise) const {
+int Fields::whole(std::string_view key, int otherwise, int least) const {
   const Value* value = find(key);
   if (value == nullptr) return otherwise;
-  const std::string expected = "a whole number > 0";
+  const std::string expected = least > 0 ? "a whole number > 0" : "a whole number >= 0";
   if (value->type != Value::Type::integer) mismatch(*value, std::string(key), expected);
-  if (value->number < 1 || value->number > std::numeric_limits<int>::max())
+  if (value->number < least || value->number > std::numeric_limits<int>::max())
     fail_key(key, "is " + digits(value->number) + ", expected " + expected + " and below 2^31");
   return static_cast<int>(value->number);
+}
+
+int Fields::count(std::string_view key, int otherwise) const {
+  return whole(key, otherwise, 1);
+}
+
+int Fields::index(std::string_view key, int otherwise) const {
+  return whole(key, otherwise, 0);
 }
 
 bool Fields::flag(std::string_view key, bool otherwise) const {

@@ -40,6 +40,7 @@ class Fields {
   double number(std::string_view key, Quantity quantity) const;
   double number(std::string_view key, Quantity quantity, double otherwise) const;
   int count(std::string_view key, int otherwise) const;  ///< a whole number > 0
+  int index(std::string_view key, int otherwise) const;  ///< a whole number >= 0
   bool flag(std::string_view key, bool otherwise) const;
   std::string text(std::string_view key) const;
   std::string text(std::string_view key, const std::string& otherwise) const;
@@ -65,6 +66,7 @@ class Fields {
   const Value& required(std::string_view key, const std::string& expected) const;
   [[noreturn]] void mismatch(const Value& found, const std::string& key,
                              const std::string& expected) const;
+  int whole(std::string_view key, int otherwise, int least) const;
   double number_of(const Value& value, const std::string& key, Quantity quantity) const;
 
   const Value& value_;

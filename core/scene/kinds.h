@@ -10,8 +10,9 @@
 namespace momenta::reading {
 
 // In the order of the enumerations.
-inline constexpr std::array<std::string_view, 5> joint_kinds{"revolute", "prismatic", "spherical",
-                                                             "free", "weld"};
+inline constexpr std::array<std::string_view, 9> joint_kinds{
+    "revolute",  "prismatic", "helical", "cylindrical", "universal",
+    "spherical", "planar",    "free",    "weld"};
 inline constexpr std::array<std::string_view, 6> loop_kinds{"point", "revolute",  "spherical",
                                                             "weld",  "prismatic", "distance"};
 inline constexpr std::array<std::string_view, 4> drive_kinds{"polynomial", "harmonic", "step",
@@ -20,7 +21,7 @@ inline constexpr std::array<std::string_view, 3> force_kinds{"spring-damper", "t
 inline constexpr std::array<std::string_view, 5> shape_kinds{"rod", "box", "cylinder", "sphere",
                                                              "point"};
 
-/// Kinds the scene format has a name for, and no equations yet.
+/// Kinds the scene format has a name for, and no equations yet: the first four as loops only.
 inline constexpr std::array<std::string_view, 5> planned_kinds{"helical", "cylindrical",
                                                                "universal", "planar", "coupler"};
 
@@ -35,11 +36,18 @@ inline std::string_view name_of(LoopKind kind) {
 }
 
 constexpr bool has_axis(JointKind kind) {
-  return kind == JointKind::revolute || kind == JointKind::prismatic;
+  return kind != JointKind::spherical && kind != JointKind::free && kind != JointKind::weld;
 }
 constexpr bool has_axis(LoopKind kind) {
   return kind == LoopKind::revolute || kind == LoopKind::prismatic;
 }
+
+/// What drives prescribe, coordinate by coordinate, where all of them must be driven or none.
+inline constexpr std::array<std::string_view, 6> pose_coordinates{"x",    "y",     "z",
+                                                                  "roll", "pitch", "yaw"};
+
+/// The sine of the angle below which a second direction counts as parallel to the axis.
+inline constexpr double parallel_slack = 1e-6;
 
 /// Unit quaternions within this are normalised, or accepted; beyond it they are a mistake of the
 /// author.

@@ -14,23 +14,24 @@ DriveSpec read_drive(const Fields& table) {
 
   // the unit is that of the joint coordinate, rad or m, which is not known here
   constexpr Quantity coordinate{};
+  drive.coordinate = table.index("coordinate", 0);
   if (drive.kind == "polynomial") {
-    table.allow({"joint", "kind", "coefficients"});
+    table.allow({"joint", "coordinate", "kind", "coefficients"});
     drive.coefficients = table.numbers("coefficients", coordinate);
   } else if (drive.kind == "harmonic") {
-    table.allow({"joint", "kind", "offset", "amplitude", "frequency", "phase"});
+    table.allow({"joint", "coordinate", "kind", "offset", "amplitude", "frequency", "phase"});
     drive.offset = table.number("offset", coordinate, 0);
     drive.amplitude = table.number("amplitude", coordinate);
     drive.frequency = table.number("frequency", {"rad/s"});
     drive.phase = table.number("phase", {"rad"}, 0);
   } else if (drive.kind == "step") {
-    table.allow({"joint", "kind", "from", "to", "start", "duration"});
+    table.allow({"joint", "coordinate", "kind", "from", "to", "start", "duration"});
     drive.from = table.number("from", coordinate, 0);
     drive.to = table.number("to", coordinate);
     drive.start = table.number("start", {"s"}, 0);
     drive.duration = table.number("duration", {"s", Bound::positive});
   } else {
-    table.allow({"joint", "kind", "times", "values"});
+    table.allow({"joint", "coordinate", "kind", "times", "values"});
     drive.times = table.numbers("times", {"s"});
     drive.values = table.numbers("values", coordinate);
   }

@@ -118,12 +118,24 @@ JointSpec read_joint(const Fields& table) {
   joint.kind = static_cast<JointKind>(read_kind(table, joint_kinds));
   const std::string kind(name_of(joint.kind));
   if (!has_axis(joint.kind))
-    for (const std::string_view key : {"axis", "stiffness", "rest", "damping"})
-      table.refuse(
-          key, "has no meaning for a " + kind + " joint, expected on revolute and prismatic only");
+    table.refuse("axis", "has no meaning for a " + kind +
+                             " joint, expected on revolute, prismatic, helical, cylindrical, "
+                             "universal and planar only");
+  if (!has_one_coordinate(joint.kind))
+    for (const std::string_view key : {"stiffness", "rest", "damping"})
+      table.refuse(key, "has no meaning for a " + kind +
+                            " joint, expected on revolute, prismatic and helical only");
+  const auto only = [&](std::string_view key, JointKind owner) {
+    if (joint.kind != owner)
+      table.refuse(key, "has no meaning for a " + kind + " joint, expected on " +
+                            std::string(name_of(owner)) + " only");
+  };
+  only("pitch", JointKind::helical);
+  only("axis2", JointKind::universal);
+  only("direction", JointKind::planar);
   table.refuse("length", "belongs to a [[loop]] of kind distance, expected none on a joint");
-  table.allow({"name", "kind", "parent", "child", "origin", "rotation", "axis", "position",
-               "velocity", "stiffness", "rest", "damping"});
+  table.allow({"name", "kind", "parent", "child", "origin", "rotation", "axis", "axis2",
+               "direction", "pitch", "position", "velocity", "stiffness", "rest", "damping"});
 
   joint.name = table.text("name");
   joint.parent = table.text("parent", joint.parent);
@@ -133,8 +145,14 @@ JointSpec read_joint(const Fields& table) {
   joint.origin_child = origins.child;
   joint.rotation = read_rotation(table);
   joint.axis = table.direction("axis", joint.axis);
+  joint.axis2 = table.direction("axis2", joint.axis2);
+  joint.direction = table.direction("direction", joint.direction);
+  for (const char* key : {"axis2", "direction"})
+    if (table.has(key) && joint.axis.cross(table.direction(key, {})).norm() < parallel_slack)
+      table.fail_key(key, "is parallel to axis, expected another direction");
+  if (joint.kind == JointKind::helical) joint.pitch = table.number("pitch", {"m/rad"});
 
-  const bool turns = joint.kind == JointKind::revolute;
+  const bool turns = joint.kind != JointKind::prismatic;
   joint.position =
       read_state(table, "position", static_cast<std::size_t>(coordinates_of(joint.kind)), kind,
                  {turns ? "rad" : "m"});

@@ -58,12 +58,17 @@ struct BodySpec {
 /// `origin_child`, parallel to the child's axes. At q = 0 (quaternion 1, 0, 0, 0) the two coincide.
 ///
 /// q, by kind:
-///   - revolute [rad], prismatic [m]; weld: none
+///   - revolute, helical [rad], prismatic [m]; weld: none
+///   - cylindrical: displacement along `axis` [m], then angle about it [rad]
+///   - universal: angle about `axis`, which the joint frame holds, then about `axis2`, which the
+///     child holds [rad]: child axes = R(axis, q1) R(axis2, q2) in the joint frame
+///   - planar: displacements along `direction` and along axis × direction [m], then angle about
+///     `axis` [rad]
 ///   - spherical: quaternion w x y z of the child axes in the joint frame
 ///   - free: position x y z [m] of the child point in the joint frame, then that quaternion
 ///
 /// u, by kind:
-///   - revolute [rad/s], prismatic [m/s]; weld: none
+///   - q̇ where no quaternion is in q; weld: none
 ///   - spherical: angular velocity [rad/s], child axes
 ///   - free: velocity of the child point [m/s], then angular velocity [rad/s], both in child axes
 ///
@@ -79,13 +84,25 @@ struct JointSpec {
   Eigen::Vector3d origin_child = Eigen::Vector3d::Zero();        ///< in child axes [m]
   Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();  ///< joint frame in parent axes
   Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();               ///< unit vector in the joint frame
+  /// Universal: the second axis, a unit vector not parallel to `axis`; zero means
+  /// perpendicular_to(axis).
+  Eigen::Vector3d axis2 = Eigen::Vector3d::Zero();
+  /// Planar: q1 counts along the part of this that is perpendicular to `axis`; zero means
+  /// perpendicular_to(axis). A unit vector in the joint frame, not parallel to `axis`.
+  Eigen::Vector3d direction = Eigen::Vector3d::Zero();
+  double pitch = 0;              ///< helical: way along `axis` [m] per angle about it [rad]
   std::vector<double> position;  ///< start value or first guess, size nq (empty: q = 0)
   std::vector<double> velocity;  ///< start value or first guess, size nv (empty: zero)
-  double stiffness = 0;          ///< revolute [N m/rad], prismatic [N/m]; else 0
-  double rest = 0;               ///< revolute [rad], prismatic [m]; else 0
-  double damping = 0;            ///< revolute [N m s/rad], prismatic [N s/m]; else 0
+  double stiffness = 0;          ///< revolute, helical [N m/rad], prismatic [N/m]; else 0
+  double rest = 0;               ///< revolute, helical [rad], prismatic [m]; else 0
+  double damping = 0;            ///< revolute, helical [N m s/rad], prismatic [N s/m]; else 0
   Location at;
 };
+
+/// The direction a joint takes where none is given: the coordinate axis that follows, in the order
+/// x y z x, the one nearest to `axis` (the first of equally near ones), made perpendicular to it.
+/// So x for an axis along z, y for one along x, z for one along y.
+Eigen::Vector3d perpendicular_to(const Eigen::Vector3d& axis);
 
 enum class LoopKind { point, revolute, spherical, weld, prismatic, distance };
 
@@ -106,7 +123,11 @@ struct LoopSpec {
   Location at;
 };
 
-/// A joint coordinate as a function of time. Applies to revolute and prismatic joints.
+/// One coordinate of a joint as a function of time, counted from 0 as in the joint's q.
+/// Cylindrical, universal and planar joints: any of them, each by its own drive. Spherical joints
+/// are driven in all of roll, pitch, yaw, which are coordinates 0, 1, 2: child axes = Rz(yaw)
+/// Ry(pitch) Rx(roll) in the joint frame; free joints in all of x, y, z, roll, pitch, yaw. A driven
+/// free joint on a body without mass is a moving base.
 ///   - polynomial: f = Σ cᵢ tⁱ, coefficients = [c0, c1, ...]
 ///   - harmonic: f = offset + amplitude sin(ω t + φ), with ω = frequency [rad/s], φ = phase [rad]
 ///   - step: `from` → `to` between start and start + duration, by the quintic 10x³ − 15x⁴ + 6x⁵
@@ -114,6 +135,7 @@ struct LoopSpec {
 /// The laws are evaluated by MotionLaw, core/tree/drive.h.
 struct DriveSpec {
   std::string joint;
+  int coordinate = 0;
   std::string kind;
   std::vector<double> coefficients;
   double offset = 0, amplitude = 0, frequency = 0, phase = 0;
@@ -125,7 +147,7 @@ struct DriveSpec {
 /// What acts on the mechanism; the name is optional.
 ///   - "spring-damper": between a point of `parent` and a point of `child`, k (l − rest) + c dl/dt
 ///     along the line
-///   - "torque": generalised force `value` on a revolute [N m] or prismatic [N] joint
+///   - "torque": generalised force `value` on a revolute or helical [N m] or prismatic [N] joint
 ///   - "wrench": constant force at `point` of `body`, and torque, in ground axes, the default
 ///     (`axes = "ground"`), or in body axes (`axes = "body"`)
 struct ForceSpec {

@@ -8,6 +8,9 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <span>
+#include <string_view>
+#include <utility>
 
 namespace momenta {
 namespace {
@@ -60,6 +63,22 @@ void check_edge(const Scene& scene, const Census& census, const Edge& edge,
           scene, edge.at, who, "axis must be a unit vector within 1e-6");
 }
 
+/// `second` may be zero: not given. Sentences open with `what`.
+void check_second_direction(const Scene& scene, const JointSpec& joint,
+                            const Eigen::Vector3d& second, JointKind owner,
+                            const std::string& what) {
+  if (second == Eigen::Vector3d::Zero()) return;
+  if (joint.kind != owner)
+    throw SceneError(scene.where(joint.at) + what + " is for " + std::string(name_of(owner)) +
+                     " joints only");
+  if (!(std::abs(second.norm() - 1) <= reading::norm_slack))
+    throw SceneError(scene.where(joint.at) + what +
+                     " must be a unit vector within 1e-6, or zero for the default");
+  if (joint.axis.cross(second).norm() < reading::parallel_slack)
+    throw SceneError(scene.where(joint.at) + what +
+                     " is parallel to axis, expected another direction");
+}
+
 void check_joints(const Scene& scene, const Census& census) {
   for (const JointSpec& joint : scene.joints) {
     const std::string who = "joint " + in_quotes(joint.name);
@@ -81,10 +100,15 @@ void check_joints(const Scene& scene, const Census& census) {
     require(
         std::isfinite(joint.stiffness) && std::isfinite(joint.rest) && std::isfinite(joint.damping),
         scene, joint.at, who, "stiffness, rest and damping must be finite");
-    require(reading::has_axis(joint.kind) ||
+    require(has_one_coordinate(joint.kind) ||
                 (joint.stiffness == 0 && joint.rest == 0 && joint.damping == 0),
             scene, joint.at, who,
-            "stiffness, rest and damping are for revolute and prismatic joints only");
+            "stiffness, rest and damping are for revolute, prismatic and helical joints only");
+    require(std::isfinite(joint.pitch), scene, joint.at, who, "pitch must be finite [m/rad]");
+    require(joint.kind == JointKind::helical || joint.pitch == 0, scene, joint.at, who,
+            "pitch is for helical joints only");
+    check_second_direction(scene, joint, joint.axis2, JointKind::universal, who + ": axis2");
+    check_second_direction(scene, joint, joint.direction, JointKind::planar, who + ": direction");
   }
 }
 
@@ -97,16 +121,52 @@ void check_loops(const Scene& scene, const Census& census) {
   }
 }
 
+/// Spherical and free joints are driven in all coordinates or in none.
+void check_full_drive(const Scene& scene, const JointSpec& joint, const DriveSpec& drive,
+                      const std::set<std::pair<std::string, int>>& driven, const std::string& who) {
+  if (joint.kind != JointKind::spherical && joint.kind != JointKind::free) return;
+  const std::span<const std::string_view> all(reading::pose_coordinates);
+  const auto names = joint.kind == JointKind::free ? all : all.subspan(3);
+  std::string missing;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    if (!driven.contains({joint.name, static_cast<int>(i)}))
+      missing +=
+          (missing.empty() ? "" : ", ") + std::to_string(i) + " (" + std::string(names[i]) + ")";
+  if (!missing.empty())
+    throw SceneError(scene.where(drive.at) + who + ": coordinate " + missing +
+                     " has no drive, expected drives of all " + std::to_string(names.size()) +
+                     " coordinates of a " + std::string(name_of(joint.kind)) + " joint (" +
+                     reading::listed(names) + ") or of none");
+}
+
 void check_drives(const Scene& scene, const Census& census) {
-  std::set<std::string> driven;
+  std::set<std::pair<std::string, int>> driven;
+  const auto owner = [](const DriveSpec& drive) {
+    return "drive of joint " + in_quotes(drive.joint);
+  };
   for (const DriveSpec& drive : scene.drives) {
-    const std::string who = "drive of joint " + in_quotes(drive.joint);
-    census.require_axis_joint(drive.joint, drive.at, who);
-    require(driven.insert(drive.joint).second, scene, drive.at, who,
-            "the joint has a drive already, expected one");
+    const std::string who = owner(drive);
+    const JointSpec& joint = census.require_joint(drive.joint, drive.at, who);
+    const int count = rates_of(joint.kind);
+    if (count == 0)
+      throw SceneError(scene.where(drive.at) + who + ": joint " + in_quotes(joint.name) + " is " +
+                       std::string(name_of(joint.kind)) + ", expected a joint that moves");
+    if (drive.coordinate < 0 || drive.coordinate >= count)
+      throw SceneError(scene.where(drive.at) + who + ": coordinate is " +
+                       std::to_string(drive.coordinate) + ", expected " +
+                       (count == 1 ? std::string("0") : "0 to " + std::to_string(count - 1)) +
+                       " for a " + std::string(name_of(joint.kind)) + " joint");
+    if (!driven.emplace(drive.joint, drive.coordinate).second)
+      throw SceneError(scene.where(drive.at) + who + ": " +
+                       (count == 1 ? std::string("the joint")
+                                   : "coordinate " + std::to_string(drive.coordinate)) +
+                       " has a drive already, expected one");
     const std::string fault = law_fault(drive);
     require(fault.empty(), scene, drive.at, who, fault.c_str());
   }
+  for (const DriveSpec& drive : scene.drives)
+    check_full_drive(scene, census.require_joint(drive.joint, drive.at, owner(drive)), drive,
+                     driven, owner(drive));
 }
 
 void check_forces(const Scene& scene, const Census& census) {
@@ -125,7 +185,7 @@ void check_forces(const Scene& scene, const Census& census) {
       require(std::isfinite(force.rest) && force.rest >= 0, scene, force.at, who,
               "rest must be finite and >= 0 [m]");
     } else if (force.kind == "torque") {
-      census.require_axis_joint(force.joint, force.at, who);
+      census.require_one_coordinate(force.joint, force.at, who);
       require(std::isfinite(force.value), scene, force.at, who, "value must be finite [N m or N]");
     } else if (force.kind == "wrench") {
       census.require_body(force.body, false, force.at, who, "body");

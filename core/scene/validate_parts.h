@@ -22,10 +22,11 @@ class Census {
                     const std::string& key) const;
 
   /// `name` is a joint of the tree.
-  void require_joint(const std::string& name, Location at, const std::string& who) const;
+  const JointSpec& require_joint(const std::string& name, Location at,
+                                 const std::string& who) const;
 
-  /// `name` is a joint which one coordinate along an axis describes: revolute or prismatic.
-  void require_axis_joint(const std::string& name, Location at, const std::string& who) const;
+  /// `name` is a joint of one coordinate: revolute, prismatic or helical.
+  void require_one_coordinate(const std::string& name, Location at, const std::string& who) const;
 
  private:
   const Scene& scene_;

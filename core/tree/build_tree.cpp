@@ -28,17 +28,67 @@ Eigen::Isometry3d isometry(const Eigen::Matrix3d& rotation, const Eigen::Vector3
   return t;
 }
 
+/// One joint of the tree: a joint of the scene, or one of the chain that stands for it.
+struct Part {
+  JointKind kind;
+  int coordinate = 0;
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< in the joint frame with all parts at zero
+};
+
+/// The chain of a joint. `driven`: by drives in all its coordinates, so that a spherical or free
+/// joint needs no quaternion.
+std::vector<Part> parts_of(const JointSpec& joint, bool driven) {
+  using Kind = JointKind;
+  const Eigen::Vector3d axis = joint.axis.normalized();
+  switch (joint.kind) {
+    case Kind::helical:  // without pitch it stays in a plane, as a pin does
+      return {{joint.pitch == 0 ? Kind::revolute : Kind::helical, 0, axis}};
+    case Kind::cylindrical:
+      return {{Kind::prismatic, 0, axis}, {Kind::revolute, 1, axis}};
+    case Kind::universal: {
+      const bool given = joint.axis2 != Eigen::Vector3d::Zero();
+      return {{Kind::revolute, 0, axis},
+              {Kind::revolute, 1, given ? joint.axis2.normalized() : perpendicular_to(axis)}};
+    }
+    case Kind::planar: {
+      const bool given = joint.direction != Eigen::Vector3d::Zero();
+      const Eigen::Vector3d first =
+          given ? (joint.direction - joint.direction.dot(axis) * axis).normalized()
+                : perpendicular_to(axis);
+      return {{Kind::prismatic, 0, first},
+              {Kind::prismatic, 1, axis.cross(first)},
+              {Kind::revolute, 2, axis}};
+    }
+    case Kind::spherical:
+    case Kind::free: {
+      if (!driven) break;
+      std::vector<Part> parts;
+      const bool slides = joint.kind == Kind::free;
+      for (int i = 0; slides && i < 3; ++i)
+        parts.push_back({Kind::prismatic, i, Eigen::Vector3d::Unit(i)});
+      for (int i = 2; i >= 0; --i)  // Rz(yaw) Ry(pitch) Rx(roll)
+        parts.push_back({Kind::revolute, i + (slides ? 3 : 0), Eigen::Vector3d::Unit(i)});
+      return parts;
+    }
+    default:
+      break;
+  }
+  return {{joint.kind, 0, axis}};
+}
+
 /// Start values of one joint appended to q0 and u0; a quaternion without a start is the identity.
 void append_start(const JointSpec& joint, const Tree::Body& body, Tree& tree) {
+  const auto first = static_cast<std::size_t>(body.coordinate);
   for (int i = 0; i < body.nq; ++i) {
     const bool unit =
         (body.kind == JointKind::spherical && i == 0) || (body.kind == JointKind::free && i == 3);
-    tree.q0[body.q + i] =
-        joint.position.empty() ? (unit ? 1.0 : 0.0) : joint.position[static_cast<std::size_t>(i)];
+    tree.q0[body.q + i] = joint.position.empty()
+                              ? (unit ? 1.0 : 0.0)
+                              : joint.position[first + static_cast<std::size_t>(i)];
   }
   for (int i = 0; i < body.nv; ++i)
     tree.u0[body.u + i] =
-        joint.velocity.empty() ? 0.0 : joint.velocity[static_cast<std::size_t>(i)];
+        joint.velocity.empty() ? 0.0 : joint.velocity[first + static_cast<std::size_t>(i)];
 }
 
 class TreeBuilder {
@@ -46,6 +96,7 @@ class TreeBuilder {
   explicit TreeBuilder(const Scene& scene) : scene_(scene) {
     for (const auto& body : scene.bodies) bodies_[body.name] = &body;
     for (const auto& joint : scene.joints) children_[joint.parent].push_back(&joint);
+    for (const auto& drive : scene.drives) drives_[drive.joint].push_back(&drive);
     tree_.name = scene.name;
     tree_.gravity = scene.gravity;
   }
@@ -81,46 +132,73 @@ class TreeBuilder {
   }
 
  private:
+  /// Adds the parts of a joint. @return the index of the last, which carries the scene's body
   int add(const JointSpec& joint, int parent) {
-    const BodySpec& spec = *bodies_.at(joint.child);
-    Tree::Body b;
-    b.name = spec.name;
-    b.joint = joint.name;
-    b.parent = parent;
-    b.kind = joint.kind;
-    b.nq = coordinates_of(joint.kind);
-    b.nv = rates_of(joint.kind);
-    for (const auto& drive : scene_.drives)
-      if (drive.joint == joint.name) {
-        b.drive = static_cast<int>(tree_.drives.size());
-        tree_.drives.emplace_back(drive);
-        refuse_forces(joint);
-        b.nq = b.nv = 0;
-      }
-    b.q = tree_.nq;
-    b.u = tree_.nv;
-    tree_.nq += b.nq;
-    tree_.nv += b.nv;
+    const auto found = drives_.find(joint.name);
+    const std::vector<const DriveSpec*> none;
+    const auto& drives = found == drives_.end() ? none : found->second;
+    if (!drives.empty()) refuse_forces(joint);
+    const std::vector<Part> parts = parts_of(joint, !drives.empty());
 
-    const bool has_axis = joint.kind == JointKind::revolute || joint.kind == JointKind::prismatic;
-    const Eigen::Matrix3d z_along_axis =
-        has_axis ? frame_with_z(joint.axis) : Eigen::Matrix3d(Eigen::Matrix3d::Identity());
-    const Eigen::Isometry3d parent_axes =
-        parent < 0 ? Eigen::Isometry3d::Identity()
-                   : tree_.bodies[static_cast<std::size_t>(parent)].scene_axes;
-    b.placement =
-        parent_axes * isometry(joint.rotation.normalized().toRotationMatrix() * z_along_axis,
-                               joint.origin_parent);
-    b.scene_axes = isometry(z_along_axis, joint.origin_child).inverse();
-    b.mass = spec.mass;
-    b.com = b.scene_axes * spec.com;
-    b.inertia = b.scene_axes.linear() * spec.inertia * b.scene_axes.linear().transpose();
-    b.stiffness = joint.stiffness;
-    b.rest = joint.rest;
-    b.damping = joint.damping;
-    tree_.bodies.push_back(std::move(b));
-    joints_.push_back(&joint);
-    return static_cast<int>(tree_.bodies.size()) - 1;
+    Eigen::Matrix3d z_before = Eigen::Matrix3d::Identity();  // joint axes seen from the part before
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      const Part& part = parts[i];
+      Tree::Body b;
+      b.joint = joint.name;
+      b.part = static_cast<int>(i);
+      b.parts = static_cast<int>(parts.size());
+      b.coordinate = part.coordinate;
+      b.parent = parent;
+      b.kind = part.kind;
+      b.nq = coordinates_of(part.kind);
+      b.nv = rates_of(part.kind);
+      for (const DriveSpec* drive : drives)
+        if (drive->coordinate == part.coordinate) {
+          b.drive = static_cast<int>(tree_.drives.size());
+          tree_.drives.emplace_back(*drive);
+          b.nq = b.nv = 0;
+        }
+      b.q = tree_.nq;
+      b.u = tree_.nv;
+      tree_.nq += b.nq;
+      tree_.nv += b.nv;
+
+      const Eigen::Matrix3d z_along_axis = b.kind == JointKind::weld || coordinates_of(b.kind) > 1
+                                               ? Eigen::Matrix3d(Eigen::Matrix3d::Identity())
+                                               : frame_with_z(part.axis);
+      if (i == 0) {
+        const Eigen::Isometry3d parent_axes =
+            parent < 0 ? Eigen::Isometry3d::Identity()
+                       : tree_.bodies[static_cast<std::size_t>(parent)].scene_axes;
+        b.placement =
+            parent_axes * isometry(joint.rotation.normalized().toRotationMatrix() * z_along_axis,
+                                   joint.origin_parent);
+      } else {
+        b.placement = isometry(z_before.transpose() * z_along_axis, Eigen::Vector3d::Zero());
+      }
+      z_before = z_along_axis;
+      b.pitch = b.kind == JointKind::helical ? joint.pitch : 0;
+      b.stiffness = joint.stiffness;
+      b.rest = joint.rest;
+      b.damping = joint.damping;
+
+      const bool last = i + 1 == parts.size();
+      b.scene_axes =
+          isometry(z_along_axis, last ? joint.origin_child : Eigen::Vector3d(0, 0, 0)).inverse();
+      b.com.setZero();
+      b.inertia.setZero();
+      if (last) {
+        const BodySpec& spec = *bodies_.at(joint.child);
+        b.name = spec.name;
+        b.mass = spec.mass;
+        b.com = b.scene_axes * spec.com;
+        b.inertia = b.scene_axes.linear() * spec.inertia * b.scene_axes.linear().transpose();
+      }
+      parent = static_cast<int>(tree_.bodies.size());
+      tree_.bodies.push_back(std::move(b));
+      joints_.push_back(&joint);
+    }
+    return parent;
   }
 
   /// A driven joint moves as it is told; a force along it would change nothing but the drive.
@@ -138,6 +216,7 @@ class TreeBuilder {
   Tree tree_;
   std::map<std::string, const BodySpec*> bodies_;
   std::map<std::string, std::vector<const JointSpec*>> children_;
+  std::map<std::string, std::vector<const DriveSpec*>> drives_;
   std::vector<const JointSpec*> joints_;
 };
 
@@ -150,14 +229,22 @@ Tree build_tree(const Scene& scene) {
 
 int Tree::body(const std::string& scene_name) const {
   for (std::size_t k = 0; k < bodies.size(); ++k)
-    if (bodies[k].name == scene_name) return static_cast<int>(k);
+    if (bodies[k].name == scene_name && carries_scene_body(static_cast<int>(k)))
+      return static_cast<int>(k);
   return -1;
 }
 
 int Tree::carried_by(const std::string& joint_name) const {
   for (std::size_t k = 0; k < bodies.size(); ++k)
-    if (bodies[k].joint == joint_name) return static_cast<int>(k);
+    if (bodies[k].joint == joint_name && carries_scene_body(static_cast<int>(k)))
+      return static_cast<int>(k);
   return -1;
+}
+
+std::string Tree::joint_in_words(int k) const {
+  const Body& b = bodies[static_cast<std::size_t>(k)];
+  const std::string joint = "joint '" + b.joint + "'";
+  return b.parts == 1 ? joint : "coordinate " + std::to_string(b.coordinate) + " of " + joint;
 }
 
 std::vector<Eigen::Isometry3d> Tree::zero_poses() const {

@@ -14,10 +14,17 @@ namespace momenta {
 
 struct Tree {
   /// A body and the joint that carries it. Body frame: origin at the joint, on its axis; z along
-  /// the axis of a revolute or prismatic joint, else the axes of the scene's body.
+  /// the axis of a revolute, prismatic or helical joint, else the axes of the scene's body.
+  ///
+  /// A joint of the scene may be a chain of `parts` such joints, one below the other, with
+  /// consecutive indices. The last part carries the scene's body; those before it carry bodies
+  /// without name, mass or extent, with scene axes that are the part's joint axes.
   struct Body {
-    std::string name, joint;
-    int parent = -1;  ///< −1: ground
+    std::string name;  ///< of the scene's body; empty before the last part
+    std::string joint;
+    int part = 0, parts = 1;  ///< this is part 0, 1, … of its joint
+    int coordinate = 0;       ///< which coordinate of its joint a part moves; 0 with quaternions
+    int parent = -1;          ///< −1: ground
     JointKind kind = JointKind::revolute;
     int drive = -1;  ///< index into drives; then q and u of the joint are prescribed, nq = nv = 0
     int q = 0, nq = 0;            ///< place and number of coordinates in q
@@ -27,6 +34,7 @@ struct Tree {
     double mass = 0;                              ///< [kg]
     Eigen::Vector3d com;                          ///< in the body frame [m]
     Eigen::Matrix3d inertia;                      ///< about the com, body frame [kg m²]
+    double pitch = 0;                             ///< of a helical joint [m/rad]
     double stiffness = 0, rest = 0, damping = 0;  ///< of a one-dof joint
     double torque = 0;                            ///< constant generalised force on a one-dof joint
   };
@@ -41,8 +49,17 @@ struct Tree {
 
   /// Index of a body by its scene name; −1 for "ground".
   int body(const std::string& scene_name) const;
-  /// Index of the body carried by the joint of this name, or −1.
+  /// Index of the scene's body carried by the joint of this name: of its last part; or −1.
   int carried_by(const std::string& joint_name) const;
+  /// Index of the first part of the joint that body `k` belongs to: k where joints have one part.
+  int first_part(int k) const { return k - bodies[static_cast<std::size_t>(k)].part; }
+  /// True for the last part of a joint, which carries the scene's body.
+  bool carries_scene_body(int k) const {
+    const Body& b = bodies[static_cast<std::size_t>(k)];
+    return b.part + 1 == b.parts;
+  }
+  /// "joint 'O'", and "coordinate 1 of joint 'O'" for a part of several. For messages.
+  std::string joint_in_words(int k) const;
   /// Every body frame in ground axes with all joints at zero (drives too).
   std::vector<Eigen::Isometry3d> zero_poses() const;
   /// A point given in the scene's axes of a body (−1: ground), in the body frame.

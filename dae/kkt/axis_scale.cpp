@@ -13,7 +13,7 @@ AxisScale::AxisScale(const Mechanism& mechanism) {
   std::vector<bool> turns(diagonal.size(), false);
   for (const auto& b : mechanism.tree().bodies) {
     const int angular = b.nv == 6 ? 3 : 0;
-    if (b.nv == 1 && b.kind != JointKind::revolute) continue;
+    if (b.nv == 1 && b.kind == JointKind::prismatic) continue;
     for (int i = angular; i < b.nv; ++i) turns[static_cast<std::size_t>(b.u + i)] = true;
   }
   for (const auto& entry : pattern.constraint) {

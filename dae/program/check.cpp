@@ -1,4 +1,7 @@
+#include <momenta/core/scene/kinds.h>
+
 #include <cstdio>
+#include <map>
 
 #include "options.h"
 
@@ -24,7 +27,7 @@ int check(const Options& o) {
   if (o.json) {
     nlohmann::ordered_json j;
     j["scene"] = tree.name;
-    j["bodies"] = tree.bodies.size();
+    j["bodies"] = mechanism->scene().bodies.size();
     j["coordinates"] = mechanism->nq();
     j["rates"] = mechanism->nv();
     j["loop_equations"] = mechanism->m();
@@ -41,20 +44,30 @@ int check(const Options& o) {
   }
   if (o.quiet) return done;
   std::printf("%s\n\nTree\n", tree.name.c_str());
-  for (const auto& b : tree.bodies) {
-    int depth = 0;
-    for (int k = b.parent; k >= 0; k = tree.bodies[static_cast<std::size_t>(k)].parent) ++depth;
-    static constexpr const char* kinds[] = {"revolute", "prismatic", "spherical", "free", "weld"};
+  std::map<std::string, JointKind> kinds;
+  for (const auto& joint : mechanism->scene().joints) kinds[joint.name] = joint.kind;
+  const int count = static_cast<int>(tree.bodies.size());
+  for (int last = 0; last < count; ++last) {
+    if (!tree.carries_scene_body(last)) continue;
+    const auto& b = tree.bodies[static_cast<std::size_t>(last)];
+    int depth = -1, drives = 0;
+    for (int k = last; k >= 0; k = tree.bodies[static_cast<std::size_t>(k)].parent)
+      depth += tree.carries_scene_body(k);
+    for (int k = tree.first_part(last); k <= last; ++k)
+      drives += tree.bodies[static_cast<std::size_t>(k)].drive >= 0;
     if (depth > 12) continue;  // long chains: the first bodies tell the pattern
     std::printf("  %*s%s (%s%s) %s, %.4g kg\n", 2 * depth, "", b.joint.c_str(),
-                b.drive >= 0 ? "driven " : "", kinds[static_cast<int>(b.kind)], b.name.c_str(),
-                b.mass);
+                drives == 0         ? ""
+                : drives == b.parts ? "driven "
+                                    : "partly driven ",
+                std::string(reading::name_of(kinds.at(b.joint))).c_str(), b.name.c_str(), b.mass);
   }
   for (const auto& loop : mechanism->scene().loops)
     std::printf("  loop %s: %s - %s\n", loop.name.c_str(), loop.parent.c_str(), loop.child.c_str());
   std::printf(
       "\n  %zu bodies, %d coordinates, %d rates, %d loop equations of rank %d: mobility %d\n",
-      tree.bodies.size(), mechanism->nq(), mechanism->nv(), mechanism->m(), a.rank, a.mobility);
+      mechanism->scene().bodies.size(), mechanism->nq(), mechanism->nv(), mechanism->m(), a.rank,
+      a.mobility);
   for (int row : a.dependent_rows) {
     const auto& name = mechanism->rows()[static_cast<std::size_t>(row)];
     std::printf("  redundant at the start: loop '%s', %s\n", name.loop.c_str(), name.what.c_str());
@@ -101,13 +114,18 @@ int assemble_verb(const Options& o) {
       "guess\n",
       mechanism->scene().name.c_str(), a.iterations, a.position_residual, a.velocity_residual,
       a.moved);
-  for (const auto& b : mechanism->tree().bodies) {
+  const Tree& tree = mechanism->tree();
+  for (int last = 0; last < static_cast<int>(tree.bodies.size()); ++last) {
+    if (!tree.carries_scene_body(last)) continue;
+    const auto& b = tree.bodies[static_cast<std::size_t>(last)];
+    const auto& first = tree.bodies[static_cast<std::size_t>(tree.first_part(last))];
     std::printf("  %-16s", b.joint.c_str());
-    for (int i = 0; i < b.nq; ++i) std::printf(" %.15g", a.start.q[b.q + i]);
-    if (b.nv > 0) std::printf("   rate");
-    for (int i = 0; i < b.nv; ++i) std::printf(" %.15g", a.start.u[b.u + i]);
-    if (b.nv > 0) std::printf("   acceleration");
-    for (int i = 0; i < b.nv; ++i) std::printf(" %.15g", a.start.udot[b.u + i]);
+    const int u_end = b.u + b.nv;
+    for (int i = first.q; i < b.q + b.nq; ++i) std::printf(" %.15g", a.start.q[i]);
+    if (first.u < u_end) std::printf("   rate");
+    for (int i = first.u; i < u_end; ++i) std::printf(" %.15g", a.start.u[i]);
+    if (first.u < u_end) std::printf("   acceleration");
+    for (int i = first.u; i < u_end; ++i) std::printf(" %.15g", a.start.udot[i]);
     std::printf("\n");
   }
   return done;

@@ -119,6 +119,33 @@ Rotation<S> about_axis(const Triple<S>& a, const S& angle) {
   return transposed(columns);
 }
 
+/// The cubic of the gap that t is in, from the second derivatives m at the points: in a gap of
+/// width h, x = (t − t₀)/h,  f = (1 − x) y₀ + x y₁ + h²/6 ((1 − x)³ − (1 − x)) m₀ + h²/6 (x³ − x)
+/// m₁, and equal slopes at the points make m.
+template <class S>
+S natural_spline(const DriveSpec& d, const S& t) {
+  const auto n = static_cast<Eigen::Index>(d.times.size());
+  const auto time = [&](Eigen::Index i) { return Real(d.times[static_cast<std::size_t>(i)]); };
+  const auto at = [&](Eigen::Index i) { return Real(d.values[static_cast<std::size_t>(i)]); };
+  RealMatrix slopes = RealMatrix::Identity(n, n);
+  RealVector right = RealVector::Zero(n);
+  for (Eigen::Index i = 1; i + 1 < n; ++i) {
+    const Real before = time(i) - time(i - 1), after = time(i + 1) - time(i);
+    slopes(i, i - 1) = before / 6;
+    slopes(i, i) = (before + after) / 3;
+    slopes(i, i + 1) = after / 6;
+    right[i] = (at(i + 1) - at(i)) / after - (at(i) - at(i - 1)) / before;
+  }
+  const RealVector m = slopes.fullPivLu().solve(right);
+  Eigen::Index gap = 0;
+  while (gap + 2 < n && value_of(t) >= d.times[static_cast<std::size_t>(gap + 1)]) ++gap;
+  const Real h = time(gap + 1) - time(gap);
+  const S x = (t - lift<S>(time(gap))) / lift<S>(h), z = lift<S>(1) - x;
+  return z * lift<S>(at(gap)) + x * lift<S>(at(gap + 1)) +
+         lift<S>(h * h / 6 * m[gap]) * (z * z * z - z) +
+         lift<S>(h * h / 6 * m[gap + 1]) * (x * x * x - x);
+}
+
 /// f(t) of a drive; its derivatives are left to dual numbers.
 template <class S>
 S drive_position(const DriveSpec& d, const S& t) {
@@ -134,6 +161,7 @@ S drive_position(const DriveSpec& d, const S& t) {
   if (d.kind == "harmonic")
     return lift<S>(d.offset) +
            lift<S>(d.amplitude) * sin(lift<S>(d.frequency) * t + lift<S>(d.phase));
+  if (d.kind == "table") return natural_spline(d, t);
   const S x = (t - lift<S>(d.start)) / lift<S>(d.duration);  // step, between its ends
   return lift<S>(d.from) + (lift<S>(d.to) - lift<S>(d.from)) * x * x * x *
                                (lift<S>(10) - lift<S>(15) * x + lift<S>(6) * x * x);
@@ -206,8 +234,12 @@ class DenseLagrangian {
   struct Place {
     int parent = -1;  ///< body in the scene's order
     const JointSpec* joint = nullptr;
-    const DriveSpec* drive = nullptr;
-    int q = 0, nq = 0, u = 0, nv = 0;
+    std::map<int, const DriveSpec*> drives;  ///< by coordinate
+    int q = 0, u = 0, nv = 0;
+    bool quaternion = false;  ///< in q
+
+    /// One number of q, and a spring, a damper or a torque may act along it.
+    bool has_joint_forces() const { return nv == 1 && rates_of(joint->kind) == 1; }
   };
   static List<Real> real(const Eigen::VectorXd& x) { return {x.data(), x.data() + x.size()}; }
   int body(const std::string& name) const { return name == "ground" ? -1 : bodies_.at(name); }

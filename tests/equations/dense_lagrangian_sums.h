@@ -15,12 +15,14 @@ DenseLagrangian::DenseLagrangian(const Scene& scene, const Tree& tree)
     p.joint = &joint;
     p.parent = body(joint.parent);
     for (const DriveSpec& d : scene.drives)
-      if (d.joint == joint.name) p.drive = &d;
-    const auto& layout = tree.bodies[static_cast<std::size_t>(tree.carried_by(joint.name))];
+      if (d.joint == joint.name) p.drives[d.coordinate] = &d;
+    const int first = tree.first_part(tree.carried_by(joint.name));
+    const auto& layout = tree.bodies[static_cast<std::size_t>(first)];
     p.q = layout.q;
     p.u = layout.u;
-    p.nq = p.drive ? 0 : coordinates_of(joint.kind);
-    p.nv = p.drive ? 0 : rates_of(joint.kind);
+    p.nv = rates_of(joint.kind) - static_cast<int>(p.drives.size());
+    p.quaternion =
+        p.nv > 0 && (joint.kind == JointKind::spherical || joint.kind == JointKind::free);
   }
   std::vector<bool> placed(places_.size(), false);
   while (order_.size() < places_.size())
@@ -47,24 +49,70 @@ auto DenseLagrangian::frames(const S& t, const List<S>& q) const -> List<Frame<S
     const Triple<S> joint_origin = parent.origin + parent.axes * triple<S>(j.origin_parent);
     // the child in the joint frame
     const S* own = q.data() + p.q;
+    const auto coordinate = [&](int i) {  // q has no place for those that are driven
+      const auto drive = p.drives.find(i);
+      if (drive != p.drives.end()) return drive_position(*drive->second, t);
+      const S* at = own;
+      for (const auto& [driven, law] : p.drives) at -= driven < i;
+      return at[i];
+    };
+    const auto unit = [](const Eigen::Vector3d& v) {
+      using std::sqrt;
+      const Triple<S> along = triple<S>(v);
+      return (lift<S>(1) / sqrt(inner(along, along))) * along;
+    };
+    const auto about = [&](int x, const S& angle) {
+      return about_axis(triple<S>(Eigen::Vector3d::Unit(x)), angle);
+    };
+    const Triple<S> axis = unit(j.axis);
     Rotation<S> turned = upright;
     Triple<S> moved{};
-    if (j.kind == JointKind::revolute || j.kind == JointKind::prismatic) {
-      using std::sqrt;
-      const Triple<S> along = triple<S>(j.axis);
-      const Triple<S> axis = (lift<S>(1) / sqrt(inner(along, along))) * along;
-      const S value = p.drive ? drive_position(*p.drive, t) : own[0];
-      if (j.kind == JointKind::revolute)
-        turned = about_axis(axis, value);
-      else
-        moved = value * axis;
+    switch (j.kind) {
+      case JointKind::revolute:
+        turned = about_axis(axis, coordinate(0));
+        break;
+      case JointKind::prismatic:
+        moved = coordinate(0) * axis;
+        break;
+      case JointKind::helical:
+        turned = about_axis(axis, coordinate(0));
+        moved = lift<S>(j.pitch) * coordinate(0) * axis;
+        break;
+      case JointKind::cylindrical:
+        moved = coordinate(0) * axis;
+        turned = about_axis(axis, coordinate(1));
+        break;
+      case JointKind::universal: {
+        const Triple<S> second = unit(j.axis2.isZero(0) ? perpendicular_to(j.axis) : j.axis2);
+        turned = product(about_axis(axis, coordinate(0)), about_axis(second, coordinate(1)));
+        break;
+      }
+      case JointKind::planar: {
+        const Triple<S> given =
+            triple<S>(j.direction.isZero(0) ? perpendicular_to(j.axis) : j.direction);
+        using std::sqrt;
+        const Triple<S> flat = given - inner(given, axis) * axis;
+        const Triple<S> first = (lift<S>(1) / sqrt(inner(flat, flat))) * flat;
+        moved = coordinate(0) * first + coordinate(1) * outer(axis, first);
+        turned = about_axis(axis, coordinate(2));
+        break;
+      }
+      case JointKind::spherical:
+      case JointKind::free: {
+        const int angles = j.kind == JointKind::free ? 3 : 0;
+        if (angles > 0) moved = {coordinate(0), coordinate(1), coordinate(2)};
+        if (p.quaternion) {
+          own += angles;
+          turned = from_quaternion(own[0], Triple<S>{own[1], own[2], own[3]});
+        } else {
+          turned = product(about(2, coordinate(angles + 2)),
+                           product(about(1, coordinate(angles + 1)), about(0, coordinate(angles))));
+        }
+        break;
+      }
+      case JointKind::weld:
+        break;
     }
-    if (j.kind == JointKind::free) {
-      moved = {own[0], own[1], own[2]};
-      own += 3;
-    }
-    if (j.kind == JointKind::free || j.kind == JointKind::spherical)
-      turned = from_quaternion(own[0], Triple<S>{own[1], own[2], own[3]});
     all[k].axes = product(joint_axes, turned);
     all[k].origin = joint_origin + joint_axes * moved - all[k].axes * triple<S>(j.origin_child);
   }
@@ -77,8 +125,10 @@ auto DenseLagrangian::coordinate_rates(const List<S>& q, const List<S>& u) const
   for (const Place& p : places_) {
     auto at = static_cast<std::size_t>(p.q);
     auto from = static_cast<std::size_t>(p.u);
-    if (p.nv == 1) rates[at] = u[from];
-    if (p.nv < 3) continue;
+    if (!p.quaternion) {
+      for (int i = 0; i < p.nv; ++i) rates[at++] = u[from++];
+      continue;
+    }
     const std::size_t quaternion = p.nv == 6 ? at + 3 : at;
     const S w = q[quaternion];
     const Triple<S> e{q[quaternion + 1], q[quaternion + 2], q[quaternion + 3]};
@@ -187,7 +237,7 @@ S DenseLagrangian::potential_energy(const S& t, const List<S>& q) const {
   for (const BodySpec& b : scene_.bodies)
     v -= lift<S>(b.mass) * inner(triple<S>(scene_.gravity), point(b.name, b.com));
   for (const Place& p : places_)
-    if (p.nv == 1) {
+    if (p.has_joint_forces()) {
       const S stretch = q[static_cast<std::size_t>(p.q)] - lift<S>(p.joint->rest);
       v += lift<S>(0.5L * p.joint->stiffness) * stretch * stretch;
     }
@@ -198,7 +248,7 @@ S DenseLagrangian::potential_energy(const S& t, const List<S>& q) const {
       v += lift<S>(0.5L * f.stiffness) * stretch * stretch;
     } else if (f.kind == "torque") {
       for (const Place& p : places_)
-        if (p.joint->name == f.joint && p.nv == 1)
+        if (p.joint->name == f.joint && p.has_joint_forces())
           v -= lift<S>(f.value) * q[static_cast<std::size_t>(p.q)];
     } else if (!f.in_body_axes) {
       v -= inner(triple<S>(f.force), point(f.body, f.point));
@@ -281,7 +331,7 @@ RealVector DenseLagrangian::generalised_forces(Real t, const Eigen::VectorXd& q,
   const List<Real> sums = projected(t, coordinates, applied(moving(t, coordinates, real(u), true)));
   RealVector forces = Eigen::Map<const RealVector>(sums.data(), nv_);
   for (const Place& p : places_)
-    if (p.nv == 1) {
+    if (p.has_joint_forces()) {
       const JointSpec& j = *p.joint;
       forces[p.u] -= Real(j.stiffness) * (Real(q[p.q]) - j.rest) + Real(j.damping) * u[p.u];
       for (const ForceSpec& f : scene_.forces)

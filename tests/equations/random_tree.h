@@ -23,13 +23,20 @@ struct TreeRecipe {
   int bodies = 6;
   Branching branching = Branching::random;
   Placing placing = Placing::general;
-  std::vector<JointKind> kinds = {JointKind::revolute, JointKind::prismatic, JointKind::spherical,
-                                  JointKind::free, JointKind::weld};
+  std::vector<JointKind> kinds = {
+      JointKind::revolute,    JointKind::prismatic, JointKind::helical,
+      JointKind::cylindrical, JointKind::universal, JointKind::spherical,
+      JointKind::planar,      JointKind::free,      JointKind::weld};
   bool gravity = true;
-  bool drives = true;        ///< every fourth one-dof joint or so
+  bool drives = true;        ///< every fourth coordinate or so; of balls and free joints, all
   bool joint_forces = true;  ///< springs, dampers, torques
   bool body_forces = true;   ///< spring-dampers between points, wrenches
 };
+
+/// The kinds without quaternions: q̇ = u, and p is canonical.
+inline const std::vector<JointKind> canonical_kinds{
+    JointKind::revolute,  JointKind::prismatic, JointKind::helical, JointKind::cylindrical,
+    JointKind::universal, JointKind::planar,    JointKind::weld};
 
 struct TreeState {
   double t = 0;
@@ -84,13 +91,15 @@ class RandomTree {
   }
 
   /// A scene that moves in one plane, any plane, axes along the normal or against it; bodies are
-  /// offset across it and turned anyhow. Of the recipe's kinds, revolute, prismatic and weld
-  /// remain.
+  /// offset across it and turned anyhow. Of the recipe's kinds, revolute, prismatic, planar and
+  /// weld remain.
   Scene planar_scene(const TreeRecipe& recipe) {
     TreeRecipe flat = recipe;
     flat.kinds.clear();
     for (const JointKind kind : recipe.kinds)
-      if (kind != JointKind::spherical && kind != JointKind::free) flat.kinds.push_back(kind);
+      if (kind == JointKind::revolute || kind == JointKind::prismatic ||
+          kind == JointKind::planar || kind == JointKind::weld)
+        flat.kinds.push_back(kind);
     Eigen::Vector3d normal = chance(0.5) ? direction() : Eigen::Vector3d::Unit(below(3));
     if (chance(0.5)) normal = -normal;
     const Eigen::Vector3d across = normal.unitOrthogonal();
@@ -99,10 +108,13 @@ class RandomTree {
     for (JointSpec& j : s.joints) {
       const Eigen::Quaterniond joint_axes = axes.at(j.parent) * j.rotation;
       axes[j.child] = joint_axes;  // at q = 0
-      const Eigen::Vector3d axis = j.kind == JointKind::revolute
+      const bool across_plane = j.kind == JointKind::revolute || j.kind == JointKind::planar;
+      const Eigen::Vector3d axis = across_plane
                                        ? Eigen::Vector3d((chance(0.5) ? 1 : -1) * normal)
                                        : Eigen::AngleAxisd(uniform(-3, 3), normal) * across;
       j.axis = (joint_axes.conjugate() * axis).normalized();
+      if (j.kind == JointKind::planar && j.direction != Eigen::Vector3d::Zero())
+        j.direction = inclined(j.axis);
     }
     return s;
   }
@@ -114,7 +126,8 @@ class RandomTree {
     s.q = Eigen::VectorXd::Zero(tree.nq);
     s.u = Eigen::VectorXd::Zero(tree.nv);
     for (const Tree::Body& b : tree.bodies) {
-      const double reach = b.kind == JointKind::revolute ? 3 : 0.5;
+      const bool turns = b.kind == JointKind::revolute || b.kind == JointKind::helical;
+      const double reach = turns ? 3 : 0.5;
       for (int i = 0; i < b.nq; ++i) s.q[b.q + i] = uniform(-reach, reach);
       for (int i = 0; i < b.nv; ++i) s.u[b.u + i] = uniform(-1.5, 1.5);
       if (b.nq < 4) continue;
@@ -177,7 +190,16 @@ class RandomTree {
         if (chance(0.3)) j.origin_child = vector(0.4);
         break;
     }
+    if (j.kind == JointKind::helical) j.pitch = uniform(-0.5, 0.5);
+    if (j.kind == JointKind::universal && chance(0.7)) j.axis2 = inclined(j.axis);
+    if (j.kind == JointKind::planar && chance(0.7)) j.direction = inclined(j.axis);
     return j;
+  }
+
+  /// Any direction at least 0.3 rad or so from the line of `axis`.
+  Eigen::Vector3d inclined(const Eigen::Vector3d& axis) {
+    for (;;)
+      if (const Eigen::Vector3d v = direction(); v.cross(axis).norm() > 0.3) return v;
   }
 
   /// 0, or 1e-3 to 1e-12 rad, or around the border where the frames change their form.
@@ -192,10 +214,11 @@ class RandomTree {
     }
   }
 
-  DriveSpec drive(const std::string& joint) {
+  DriveSpec drive(const std::string& joint, int coordinate) {
     DriveSpec d;
     d.joint = joint;
-    switch (below(3)) {
+    d.coordinate = coordinate;
+    switch (below(4)) {
       case 0:
         d.kind = "polynomial";
         for (int i = 0; i < 4; ++i) d.coefficients.push_back(uniform(-1, 1));
@@ -214,16 +237,26 @@ class RandomTree {
         d.start = -0.5;
         d.duration = 2;
         break;
+      case 3:  // states are between 0 and 1
+        d.kind = "table";
+        d.times = {-0.3, 0.2, 0.45, 0.9, 1.2};
+        for (std::size_t i = 0; i < d.times.size(); ++i) d.values.push_back(uniform(-1, 1));
+        break;
     }
     return d;
   }
 
   void effects(const TreeRecipe& recipe, Scene& s, int k) {
     JointSpec& j = s.joints.back();
-    const bool one_dof = j.kind == JointKind::revolute || j.kind == JointKind::prismatic;
-    if (one_dof && recipe.drives && chance(0.25)) {
-      s.drives.push_back(drive(j.name));
-    } else if (one_dof && recipe.joint_forces && chance(0.5)) {
+    const bool together = j.kind == JointKind::spherical || j.kind == JointKind::free;
+    const bool all = together && chance(0.2);
+    bool driven = false;
+    for (int i = 0; recipe.drives && i < rates_of(j.kind); ++i)
+      if (together ? all : chance(0.25)) {
+        s.drives.push_back(drive(j.name, i));
+        driven = true;
+      }
+    if (has_one_coordinate(j.kind) && !driven && recipe.joint_forces && chance(0.5)) {
       j.stiffness = uniform(0, 10);
       j.rest = uniform(-1, 1);
       j.damping = uniform(0, 2);

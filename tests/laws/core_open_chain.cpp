@@ -6,6 +6,7 @@
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
+#include <momenta/core/kernel/accelerations.h>
 #include <momenta/core/kernel/mass_matrix.h>
 #include <momenta/core/kernel/momentum_recursion.h>
 #include <momenta/core/open_chain.h>
@@ -59,15 +60,18 @@ TEST(Laws, EnergyRateIsPower) {
       power += term;
       size += std::abs(term);
     };
-    const auto reactions = chain.reactions(s.t, s.q, s.u);
+    Workspace<Spatial, double> plain(model);
+    Eigen::VectorXd again(tree.nv), tau(tree.nv);
+    ASSERT_TRUE(equations::acceleration_recursion(plain, s.t, s.q.data(), s.u.data(), again.data()));
+    accelerations_outward(plain, s.u.data(), again.data());
+    apply_forces(plain, model.has_body_forces());
+    newton_euler_inward(plain, s.q.data(), s.u.data(), tau.data());  // body[k].P is F_K now
     for (std::size_t k = 0; k < tree.bodies.size(); ++k) {
       const Tree::Body& b = tree.bodies[k];
       if (b.nv == 1) add(-b.damping * s.u[b.u] * s.u[b.u]);
       if (b.drive < 0) continue;
-      const Eigen::Vector3d axis = b.scene_axes.linear().transpose().col(2);
-      const Eigen::Vector3d along =
-          b.kind == JointKind::revolute ? reactions[k].torque : reactions[k].force;
-      add(axis.dot(along) * w.body[k].drive_rate.a);
+      const auto& moved = plain.body[k];
+      add(Joint<Spatial>::along(model.bodies[k], moved.edge, moved.P) * moved.drive_rate);
     }
     const DenseLagrangian twin(scene, tree);
     const auto bodies = twin.moving(Real(s.t), std::vector<Real>(s.q.begin(), s.q.end()),
@@ -119,15 +123,16 @@ TEST(Laws, InverseMassTimesIsTheInverse) {
     const Tree& tree = chain.tree();
     const TreeState s = random.state(tree);
     const Model<Spatial> model = build_spatial_model(tree, scene);
-    Workspace<Spatial, double> w(model);
-    poses_outward(w, s.t, s.q.data(), false);
-    articulated_masses_inward(w);
+    const auto links = build_links(model);
+    MomentumSweeps<Spatial, double> sweeps(links);
+    Eigen::VectorXd u(tree.nv), pdot(tree.nv);
+    ASSERT_TRUE(sweeps(s.t, s.q.data(), s.u.data(), u.data(), pdot.data()));
     const Eigen::MatrixXd m = chain.mass_matrix(s.t, s.q);
     Eigen::MatrixXd inverse(tree.nv, tree.nv);
     for (int j = 0; j < tree.nv; ++j) {
       const Eigen::VectorXd unit = Eigen::VectorXd::Unit(tree.nv, j);
       Eigen::VectorXd column(tree.nv);
-      inverse_mass_times(w, unit.data(), column.data());
+      sweeps.inverse_mass_times(unit.data(), column.data());
       inverse.col(j) = column;
     }
     const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(tree.nv, tree.nv);
@@ -142,11 +147,12 @@ TEST(Laws, InverseMassTimesIsTheInverse) {
 /// and ∂ṗ/∂p = −(∂q̇/∂q)ᵀ. By dual numbers through the kernel, with drives.
 template <class Space>
 void hamiltonian_symmetry(bool flat) {
+  constexpr int most = 18;  // six planar joints
+  using D = Dual<double, most>;
   double worst = 0;
   for (unsigned seed = 0; seed < 100; ++seed) {
     RandomTree random(seed);
-    const TreeRecipe recipe{.bodies = 8,
-                            .kinds = {JointKind::revolute, JointKind::prismatic, JointKind::weld}};
+    const TreeRecipe recipe{.bodies = 6, .kinds = canonical_kinds};
     Scene scene = flat ? random.planar_scene(recipe) : random.scene(recipe);
     for (JointSpec& joint : scene.joints) joint.damping = 0;
     for (ForceSpec& force : scene.forces) {
@@ -163,24 +169,23 @@ void hamiltonian_symmetry(bool flat) {
       model = build_planar_model(tree, scene, *find_plane(tree, scene).basis);
     Workspace<Space, double> plain(model);
     const int n = tree.nv;
-    ASSERT_LE(n, 8);
+    ASSERT_LE(n, most);
     if (n == 0) continue;
     Eigen::VectorXd p(n);
     momenta_from_rates(plain, s.t, s.q.data(), s.u.data(), p.data());
 
     // rows q̇, ṗ; columns along q, then along p
     Eigen::MatrixXd jacobian(2 * n, 2 * n);
-    Workspace<Space, Dual8> w(model);
+    Workspace<Space, D> w(model);
     for (int half = 0; half < 2; ++half) {
       const auto size = static_cast<std::size_t>(n);
-      std::vector<Dual8> q(size), momenta(size), u(size), pdot(size);
+      std::vector<D> q(size), momenta(size), u(size), pdot(size);
       for (int i = 0; i < n; ++i) {
         const auto at = static_cast<std::size_t>(i);
-        q[at] = half == 0 ? Dual8::variable(s.q[i], i) : Dual8(s.q[i]);
-        momenta[at] = half == 1 ? Dual8::variable(p[i], i) : Dual8(p[i]);
+        q[at] = half == 0 ? D::variable(s.q[i], i) : D(s.q[i]);
+        momenta[at] = half == 1 ? D::variable(p[i], i) : D(p[i]);
       }
-      ASSERT_TRUE(
-          momentum_recursion(w, Dual8(s.t), q.data(), momenta.data(), u.data(), pdot.data()));
+      ASSERT_TRUE(equations::momentum_recursion(w, D(s.t), q.data(), momenta.data(), u.data(), pdot.data()));
       for (int i = 0; i < n; ++i)
         for (int j = 0; j < n; ++j) {
           jacobian(i, half * n + j) = u[static_cast<std::size_t>(i)].b[static_cast<std::size_t>(j)];
@@ -216,8 +221,7 @@ TEST(Laws, LagrangesEquations) {
   double worst = 0;
   for (unsigned seed = 200; seed < 260; ++seed) {
     RandomTree random(seed);
-    const Scene scene =
-        random.scene({.kinds = {JointKind::revolute, JointKind::prismatic, JointKind::weld}});
+    const Scene scene = random.scene({.kinds = canonical_kinds});
     OpenChain chain(scene, Algebra::spatial);
     const DenseLagrangian twin(scene, chain.tree());
     const TreeState s = random.state(chain.tree());

@@ -39,7 +39,7 @@ void compare(const Scene& scene, RandomTree& random, Worst& worst) {
   const auto note = [](double& most, double error) { most = std::max(most, error); };
 
   Eigen::VectorXd udot(tree.nv), tau(tree.nv);
-  ASSERT_TRUE(acceleration_recursion(w, s.t, q, u, udot.data()));
+  ASSERT_TRUE(equations::acceleration_recursion(w, s.t, q, u, udot.data()));
   const RealVector expected = twin.accelerations(s.t, s.q, s.u);
   // Forces of size |Q| and |M u̇| cancel in M u̇ = Q − bias: the rounding of either moves u̇ by up to
   // |M⁻¹| |M u̇| ε.
@@ -81,7 +81,7 @@ void compare(const Scene& scene, RandomTree& random, Worst& worst) {
     p[i] = p_along[static_cast<std::size_t>(i)].a;
     pdot_along[i] = p_along[static_cast<std::size_t>(i)].b[0];
   }
-  ASSERT_TRUE(momentum_recursion(w, s.t, q, p.data(), again.data(), pdot.data()));
+  ASSERT_TRUE(equations::momentum_recursion(w, s.t, q, p.data(), again.data(), pdot.data()));
   note(worst.momentum_rates, relative_error(pdot, pdot_along, std::max(1.0, size)) / growth);
 }
 
@@ -118,6 +118,16 @@ TEST(Accelerations, Free) {
 }
 TEST(Accelerations, Drives) {
   sweep<Spatial>({.kinds = {JointKind::revolute, JointKind::prismatic}}, 60, 500);
+}
+TEST(Accelerations, Helical) {
+  sweep<Spatial>({.kinds = {JointKind::helical}}, 30, 520);
+}
+TEST(Accelerations, ChainsForJoints) {
+  sweep<Spatial>({.kinds = {JointKind::cylindrical, JointKind::universal, JointKind::planar}}, 40,
+                 560);
+}
+TEST(Accelerations, DrivenBallsAndFreeJoints) {
+  sweep<Spatial>({.kinds = {JointKind::revolute, JointKind::spherical, JointKind::free}}, 40, 5600);
 }
 TEST(Accelerations, MixedTrees) {
   sweep<Spatial>({}, 100, 600);

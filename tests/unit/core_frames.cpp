@@ -26,7 +26,7 @@ double error_of_poses(const Scene& scene, RandomTree& random, Algebra algebra) {
   double reach = 1, error = 0;
   for (const auto& pose : expected)
     reach = std::max(reach, pose.translation().cwiseAbs().maxCoeff());
-  for (std::size_t k = 0; k < found.size(); ++k) {
+  for (std::size_t k = 0; k < expected.size(); ++k) {
     const int at = chain.tree().body(scene.bodies[k].name);
     const auto& pose = found[static_cast<std::size_t>(at)];
     error = std::max(error, relative_error(pose.linear(), expected[k].linear()));

@@ -110,6 +110,19 @@ TEST(MomentumRecursion, Spherical) {
 TEST(MomentumRecursion, Free) {
   sweep({.bodies = 4, .kinds = {JointKind::free}, .drives = false, .body_forces = false}, 20, 500);
 }
+TEST(MomentumRecursion, Helical) {
+  sweep({.kinds = {JointKind::helical}, .drives = false, .body_forces = false}, 40, 510);
+}
+TEST(MomentumRecursion, Cylindrical) {
+  sweep({.kinds = {JointKind::cylindrical}, .drives = false, .body_forces = false}, 30, 560);
+}
+TEST(MomentumRecursion, Universal) {
+  sweep({.kinds = {JointKind::universal}, .drives = false, .body_forces = false}, 30, 5600);
+}
+TEST(MomentumRecursion, PlanarJoints) {
+  sweep({.bodies = 4, .kinds = {JointKind::planar}, .drives = false, .body_forces = false}, 30,
+        5650);
+}
 TEST(MomentumRecursion, Welds) {
   sweep({.kinds = {JointKind::revolute, JointKind::spherical, JointKind::weld},
          .drives = false,
@@ -118,6 +131,17 @@ TEST(MomentumRecursion, Welds) {
 }
 TEST(MomentumRecursion, Drives) {
   sweep({.kinds = {JointKind::revolute, JointKind::prismatic}, .body_forces = false}, 60, 700);
+}
+TEST(MomentumRecursion, DrivesOfSomeCoordinates) {
+  sweep({.kinds = {JointKind::helical, JointKind::cylindrical, JointKind::universal,
+                   JointKind::planar},
+         .body_forces = false},
+        60, 7000);
+}
+TEST(MomentumRecursion, DrivesOfBallsAndFreeJoints) {
+  sweep(
+      {.kinds = {JointKind::revolute, JointKind::spherical, JointKind::free}, .body_forces = false},
+      60, 7100);
 }
 TEST(MomentumRecursion, BodyForces) {
   sweep({.kinds = {JointKind::revolute, JointKind::prismatic}, .drives = false}, 40, 800);
@@ -150,7 +174,7 @@ TEST(MomentumRecursion, NearlyParallelPins) {
         100, 6000);
 }
 TEST(MomentumRecursion, OneBody) {
-  sweep({.bodies = 1}, 60, 7000);
+  sweep({.bodies = 1}, 100, 7200);
 }
 
 }  // namespace

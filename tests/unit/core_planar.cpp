@@ -69,10 +69,15 @@ void compare(const Scene& scene, RandomTree& random, Worst& worst) {
   // In the plane's axes: two components of each force, one of each torque. The normal torque about
   // the child's own origin needs no lever across the plane.
   const auto found = planar.reactions(s.t, s.q, s.u), expected = spatial.reactions(s.t, s.q, s.u);
+  ASSERT_EQ(found.size(), expected.size());
   const Eigen::Matrix3d in_plane = planar.plan().basis.transpose();
   Eigen::VectorXd all(3 * found.size()), twins(3 * found.size());
+  all.setZero();
+  twins.setZero();
   for (std::size_t k = 0; k < found.size(); ++k) {
-    const Eigen::Matrix3d turned = in_plane * poses_spatial[k].linear();
+    if (k + 1 < found.size() && found[k + 1].joint == found[k].joint) continue;  // not a scene body
+    const auto body = static_cast<std::size_t>(tree.carried_by(found[k].joint));
+    const Eigen::Matrix3d turned = in_plane * poses_spatial[body].linear();
     const Eigen::Vector3d f = turned * found[k].force, n_found = turned * found[k].torque;
     const Eigen::Vector3d g = turned * expected[k].force, n_twin = turned * expected[k].torque;
     const auto at = 3 * static_cast<Eigen::Index>(k);
@@ -112,6 +117,9 @@ TEST(Planar, Slides) {
 }
 TEST(Planar, PinsAndSlides) {
   sweep({.kinds = {JointKind::revolute, JointKind::prismatic}, .drives = false}, 300, 400);
+}
+TEST(Planar, PlanarJoints) {
+  sweep({.bodies = 4, .kinds = {JointKind::planar}}, 200, 700);
 }
 TEST(Planar, MixedTrees) {
   sweep({}, 400, 800);

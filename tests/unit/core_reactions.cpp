@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 #include <momenta/core/kernel/accelerations.h>
-#include <momenta/core/kernel/momentum_recursion.h>
+#include <momenta/core/kernel/reactions.h>
 #include <momenta/core/open_chain.h>
 
 namespace momenta {
@@ -26,13 +26,24 @@ double growth_of(const DenseLagrangian& twin, const TreeState& s) {
   return std::max(1.0, static_cast<double>(moved.maxCoeff() / size));
 }
 
+/// A joint of several parts acts on the scene's body through the last one.
+std::vector<Reaction> last_of_each_joint(const std::vector<Reaction>& all) {
+  std::vector<Reaction> last;
+  for (const Reaction& r : all)
+    if (!last.empty() && last.back().joint == r.joint)
+      last.back() = r;
+    else
+      last.push_back(r);
+  return last;
+}
+
 /// Worst error of all reactions of a random tree against the twin, relative to the greatest.
 double error_against_balance(const Scene& scene, RandomTree& random) {
   OpenChain chain(scene, Algebra::spatial);
   const DenseLagrangian twin(scene, chain.tree());
   const TreeState s = random.state(chain.tree());
   const auto expected = twin.reactions(s.t, s.q, s.u);
-  const auto found = chain.reactions(s.t, s.q, s.u);
+  const auto found = last_of_each_joint(chain.reactions(s.t, s.q, s.u));
   Eigen::VectorXd all(6 * static_cast<Eigen::Index>(scene.joints.size())), twins(all.size());
   for (const Reaction& r : found)
     for (std::size_t k = 0; k < scene.joints.size(); ++k)
@@ -63,6 +74,9 @@ TEST(Reactions, BalanceRevoluteAndPrismatic) {
 TEST(Reactions, BalanceWithDrives) {
   sweep({.kinds = {JointKind::revolute, JointKind::prismatic}}, 60, 200);
 }
+TEST(Reactions, BalanceOfChainsForJoints) {
+  sweep({.kinds = {JointKind::cylindrical, JointKind::universal, JointKind::planar}}, 40, 250);
+}
 TEST(Reactions, BalanceMixedTrees) {
   sweep({}, 80, 300);
 }
@@ -72,7 +86,6 @@ TEST(Reactions, BalanceNearlyParallelAxes) {
 
 /// F_K of Newton-Euler and T_r of the dual pass, in the kernel's own frames.
 TEST(Reactions, RateOfArticulatedMomentum) {
-  using D = Dual<double, 1>;
   double worst = 0;
   for (unsigned seed = 700; seed < 800; ++seed) {
     RandomTree random(seed);
@@ -86,47 +99,29 @@ TEST(Reactions, RateOfArticulatedMomentum) {
     Eigen::VectorXd p(tree.nv), u(tree.nv), pdot(tree.nv), udot(tree.nv), tau(tree.nv);
     Eigen::VectorXd qdot(tree.nq);
     momenta_from_rates(w, s.t, s.q.data(), s.u.data(), p.data());
-    ASSERT_TRUE(momentum_recursion(w, s.t, s.q.data(), p.data(), u.data(), pdot.data()));
+    ASSERT_TRUE(equations::momentum_recursion(w, s.t, s.q.data(), p.data(), u.data(), pdot.data()));
     coordinate_rates(model, s.q.data(), s.u.data(), qdot.data());
-    ASSERT_TRUE(acceleration_recursion(w, s.t, s.q.data(), s.u.data(), udot.data()));
+    ASSERT_TRUE(equations::acceleration_recursion(w, s.t, s.q.data(), s.u.data(), udot.data()));
     accelerations_outward(w, s.u.data(), udot.data());
     apply_forces(w, model.has_body_forces());
     newton_euler_inward(w, s.q.data(), s.u.data(), tau.data());  // body[k].P is F_K now
 
-    const auto along = [](const Eigen::VectorXd& x, const Eigen::VectorXd& rate) {
-      std::vector<D> d(static_cast<std::size_t>(x.size()));
-      for (std::size_t i = 0; i < d.size(); ++i) {
-        d[i] = D(x[static_cast<Eigen::Index>(i)]);
-        d[i].b[0] = rate[static_cast<Eigen::Index>(i)];
-      }
-      return d;
-    };
-    Workspace<Spatial, D> dual(model);
-    const std::vector<D> q_along = along(s.q, qdot), p_along = along(p, pdot);
-    std::vector<D> u_along(p_along.size()), pdot_along(p_along.size());
-    ASSERT_TRUE(momentum_recursion(dual, D::variable(s.t, 0), q_along.data(), p_along.data(),
-                                   u_along.data(), pdot_along.data()));
-    // T*: the sweep that carries weights as first moments leaves it out
-    auto articulated = dual.body;
-    poses_outward(dual, D::variable(s.t, 0), q_along.data(), true);
-    velocities_outward(dual, u_along.data());
-    gravity_outward(dual);
-    apply_forces(dual, model.has_body_forces());
-    momentum_rates_inward(dual, q_along.data(), u_along.data(), pdot_along.data());
+    const auto links = build_links(model);
+    ReactionPass<Spatial> pass(links);
+    ASSERT_TRUE(pass(s.t, s.q.data(), qdot.data(), p.data(), pdot.data()));
 
     const double growth = growth_of(twin, s);
     double size = 1, error = 0;
     for (std::size_t k = 0; k < tree.bodies.size(); ++k) {
-      const auto turning = Spatial::cross_force(articulated[k].V, articulated[k].P);
+      const auto reaction = pass.reaction(k);
       for (int i = 0; i < 6; ++i) {
-        const double reaction = articulated[k].P[i].b[0] + turning[i].a - dual.body[k].T[i].a;
         size = std::max(size, std::abs(w.body[k].P[i]));
-        error = std::max(error, std::abs(reaction - w.body[k].P[i]));
+        error = std::max(error, std::abs(reaction[i] - w.body[k].P[i]));
       }
       // udot comes out of the same pass
-      const auto& b = tree.bodies[k];
-      for (int i = 0; i < b.nv; ++i)
-        EXPECT_NEAR(u_along[static_cast<std::size_t>(b.u + i)].b[0], udot[b.u + i],
+      const auto& body = tree.bodies[k];
+      for (int i = 0; i < body.nv; ++i)
+        EXPECT_NEAR(pass.acceleration(static_cast<std::size_t>(body.u + i)), udot[body.u + i],
                     algebra_tol(12) * growth * std::max(1.0, udot.cwiseAbs().maxCoeff()));
     }
     worst = std::max(worst, error / size / growth);
@@ -136,7 +131,8 @@ TEST(Reactions, RateOfArticulatedMomentum) {
 }
 
 /// Eᵀ T_r: what acts along a joint is its own spring, damper and torque; nothing acts along a
-/// spherical or free joint. A driven joint transmits what its drive takes (BalanceWithDrives).
+/// spherical or free joint, nor along the last part of one of several. A driven joint transmits
+/// what its drive takes (BalanceWithDrives).
 TEST(Reactions, AlongTheJoint) {
   for (unsigned seed = 900; seed < 960; ++seed) {
     RandomTree random(seed);
@@ -144,7 +140,7 @@ TEST(Reactions, AlongTheJoint) {
     OpenChain chain(scene, Algebra::spatial);
     const DenseLagrangian twin(scene, chain.tree());
     const TreeState s = random.state(chain.tree());
-    const auto reactions = chain.reactions(s.t, s.q, s.u);
+    const auto reactions = last_of_each_joint(chain.reactions(s.t, s.q, s.u));
     double size = 1;
     for (const Reaction& r : reactions)
       size = std::max({size, r.force.cwiseAbs().maxCoeff(), r.torque.cwiseAbs().maxCoeff()});
@@ -156,7 +152,10 @@ TEST(Reactions, AlongTheJoint) {
       if (b.nv == 1) {
         const Eigen::Vector3d axis = b.scene_axes.linear().transpose().col(2);
         const double force = b.torque - b.stiffness * (s.q[b.q] - b.rest) - b.damping * s.u[b.u];
-        EXPECT_NEAR(axis.dot(b.kind == JointKind::revolute ? r.torque : r.force), force, tolerance);
+        const double along = b.kind == JointKind::prismatic
+                                 ? axis.dot(r.force)
+                                 : axis.dot(r.torque + b.pitch * r.force);
+        EXPECT_NEAR(along, force, tolerance);
       }
       if (b.nv >= 3) {
         EXPECT_LT(r.torque.norm(), tolerance);

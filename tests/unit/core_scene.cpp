@@ -290,6 +290,65 @@ TEST(Scene, StatesOfManyNumbers) {
   EXPECT_EQ(loose.velocity.size(), 6U);
 }
 
+TEST(Scene, AllJointKinds) {
+  const std::pair<const char*, JointKind> kinds[] = {
+      {"revolute", JointKind::revolute},
+      {"prismatic", JointKind::prismatic},
+      {"cylindrical", JointKind::cylindrical},
+      {"universal", JointKind::universal},
+      {"spherical", JointKind::spherical},
+      {"planar", JointKind::planar},
+      {"free", JointKind::free},
+      {"weld", JointKind::weld},
+  };
+  for (const auto& [name, kind] : kinds) EXPECT_EQ(with(point, "", name).joints[0].kind, kind);
+
+  const JointSpec screw =
+      with(point, "pitch = -0.25\nposition = 1.5\nstiffness = 2", "helical").joints[0];
+  EXPECT_EQ(screw.kind, JointKind::helical);
+  EXPECT_EQ(screw.pitch, -0.25);
+  EXPECT_EQ(screw.position, std::vector<double>{1.5});
+  EXPECT_EQ(screw.stiffness, 2);
+
+  const JointSpec cross =
+      with(point, "axis = \"x\"\naxis2 = [0, 3, 4]\nposition = [1, 2]", "universal").joints[0];
+  EXPECT_LT((cross.axis2 - Vector3d(0, 0.6, 0.8)).norm(), algebra_tol);
+  EXPECT_EQ(cross.position, (std::vector<double>{1, 2}));
+  EXPECT_EQ(with(point, "", "universal").joints[0].axis2, Vector3d::Zero());
+
+  const JointSpec table =
+      with(point, "direction = [1, 0, 1]\nposition = [1, 2, 3]\nvelocity = [4, 5, 6]", "planar")
+          .joints[0];
+  EXPECT_LT((table.direction - Vector3d(1, 0, 1).normalized()).norm(), algebra_tol);
+  EXPECT_EQ(table.position, (std::vector<double>{1, 2, 3}));
+  EXPECT_EQ(table.velocity, (std::vector<double>{4, 5, 6}));
+}
+
+TEST(Scene, PerpendicularByHand) {
+  EXPECT_EQ(perpendicular_to(Vector3d::UnitX()), Vector3d::UnitY());
+  EXPECT_EQ(perpendicular_to(Vector3d::UnitY()), Vector3d::UnitZ());
+  EXPECT_EQ(perpendicular_to(Vector3d::UnitZ()), Vector3d::UnitX());
+  EXPECT_EQ(perpendicular_to(-2 * Vector3d::UnitZ()), Vector3d::UnitX());
+  // x and y equally near: the first, x, so along y, less its part along the axis
+  EXPECT_LT((perpendicular_to({1, -1, 0}) - Vector3d(1, 1, 0).normalized()).norm(), algebra_tol);
+  EXPECT_LT((perpendicular_to({1 - 1e-15, 1, 0}) - Vector3d(-1, 1, 0).normalized()).norm(), 1e-14);
+}
+
+TEST(Scene, DrivesOfCoordinates) {
+  const auto drive = [](int coordinate) {
+    return "[[drive]]\njoint = \"j\"\ncoordinate = " + std::to_string(coordinate) +
+           "\nkind = \"polynomial\"\ncoefficients = [1]\n";
+  };
+  const Scene scene = with(point, drive(2) + drive(0), "planar");
+  ASSERT_EQ(scene.drives.size(), 2U);
+  EXPECT_EQ(scene.drives[0].coordinate, 2);
+  EXPECT_EQ(scene.drives[1].coordinate, 0);
+  EXPECT_NO_THROW(with(point, drive(1) + drive(2) + drive(0), "spherical"));
+  std::string all;
+  for (int i = 0; i < 6; ++i) all += drive(i);
+  EXPECT_NO_THROW(with(point, all, "free"));
+}
+
 TEST(Scene, LoopKinds) {
   const std::pair<const char*, LoopKind> kinds[] = {
       {"point", LoopKind::point},         {"revolute", LoopKind::revolute},

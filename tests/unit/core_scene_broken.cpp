@@ -257,7 +257,39 @@ TEST(BrokenHandmade, ScenesBuiltByHandAreChecked) {
        }},
       {"must be finite", [&](Scene& s) { s.joints[0].velocity = {nan}; }},
       {"stiffness, rest and damping must be finite", [&](Scene& s) { s.joints[0].rest = nan; }},
-      {"for revolute and prismatic joints only",
+      {"pitch is for helical joints only", [&](Scene& s) { s.joints[0].pitch = 1; }},
+      {"pitch must be finite",
+       [&](Scene& s) {
+         s.joints[0].kind = JointKind::helical;
+         s.joints[0].pitch = nan;
+       }},
+      {"axis2 is for universal joints only",
+       [&](Scene& s) { s.joints[0].axis2 = Eigen::Vector3d::UnitX(); }},
+      {"axis2 must be a unit vector",
+       [&](Scene& s) {
+         s.joints[1].kind = JointKind::universal;
+         s.joints[1].axis2 = {2, 0, 0};
+       }},
+      {"axis2 is parallel to axis",
+       [&](Scene& s) {
+         s.joints[1].kind = JointKind::universal;
+         s.joints[1].axis2 = -s.joints[1].axis;
+       }},
+      {"direction is for planar joints only",
+       [&](Scene& s) { s.joints[0].direction = Eigen::Vector3d::UnitX(); }},
+      {"direction must be a unit vector",
+       [&](Scene& s) {
+         s.joints[1].kind = JointKind::planar;
+         s.joints[1].direction = {nan, 0, 0};
+       }},
+      {"direction is parallel to axis",
+       [&](Scene& s) {
+         s.joints[1].kind = JointKind::planar;
+         s.joints[1].direction = s.joints[1].axis;
+       }},
+      {"coordinate is 1, expected 0", [&](Scene& s) { s.drives[0].coordinate = 1; }},
+      {"coordinate is -1, expected 0", [&](Scene& s) { s.drives[0].coordinate = -1; }},
+      {"for revolute, prismatic and helical joints only",
        [&](Scene& s) {
          s.joints[1].kind = JointKind::weld;
          s.joints[1].damping = 1;

@@ -35,6 +35,42 @@ kind = "spherical"
 parent = "a"
 child = "b"
 position = [1, 0, 0, 0]
+[[body]]
+name = "c"
+mass = 0
+[[joint]]
+name = "D"
+kind = "planar"
+parent = "b"
+child = "c"
+axis = "y"
+direction = [1, 0, 1]
+position = [0.1, 0.2, 0.3]
+[[body]]
+name = "d"
+mass = 0
+[[joint]]
+name = "E"
+kind = "universal"
+parent = "c"
+child = "d"
+axis2 = "-x"
+[[body]]
+name = "e"
+mass = 1
+shape = { kind = "sphere", radius = 0.1 }
+[[joint]]
+name = "F"
+kind = "helical"
+parent = "d"
+child = "e"
+pitch = 0.01
+[[drive]]
+joint = "D"
+coordinate = 2
+kind = "step"
+to = 1
+duration = 2
 [[loop]]
 name = "C"
 kind = "distance"
