@@ -1,5 +1,6 @@
 #include <momenta/dae/joint_places.h>
 
+#include <algorithm>
 #include <map>
 
 namespace momenta {
@@ -7,6 +8,7 @@ namespace momenta {
 std::vector<JointPlace> joint_places(const Tree& tree) {
   std::vector<JointPlace> places;
   std::map<std::string, std::size_t> index;
+  std::vector<int> coordinate(tree.drives.size());  // that a drive prescribes
   for (std::size_t k = 0; k < tree.bodies.size(); ++k) {
     const Tree::Body& b = tree.bodies[k];
     const auto [found, fresh] = index.try_emplace(b.joint, places.size());
@@ -15,9 +17,16 @@ std::vector<JointPlace> joint_places(const Tree& tree) {
     for (int i = 0; i < b.nq; ++i) place.q.push_back(b.q + i);
     for (int i = 0; i < b.nv; ++i) place.u.push_back(b.u + i);
     if (b.nq >= 4) place.quaternions.push_back(b.q + b.nq - 4);
-    if (b.drive >= 0) place.drives.push_back(b.drive);
+    if (b.drive >= 0) {
+      place.drives.push_back(b.drive);
+      coordinate[static_cast<std::size_t>(b.drive)] = b.coordinate;
+    }
     place.body = static_cast<int>(k);
   }
+  for (JointPlace& place : places)
+    std::sort(place.drives.begin(), place.drives.end(), [&](int a, int b) {
+      return coordinate[static_cast<std::size_t>(a)] < coordinate[static_cast<std::size_t>(b)];
+    });
   return places;
 }
 

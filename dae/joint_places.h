@@ -14,7 +14,7 @@ struct JointPlace {
   std::vector<int> q;            ///< places in q
   std::vector<int> u;            ///< places in u, p and all that goes with them
   std::vector<int> quaternions;  ///< places in q where a quaternion w x y z starts
-  std::vector<int> drives;       ///< indices into Tree::drives of what is prescribed
+  std::vector<int> drives;       ///< indices into Tree::drives, by coordinate of the joint
   int body = -1;                 ///< the last body of the joint, the one the scene's joint carries
 };
 
