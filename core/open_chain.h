@@ -20,6 +20,11 @@ namespace momenta {
 using ConstVectorRef = Eigen::Ref<const Eigen::VectorXd>;
 using VectorRef = Eigen::Ref<Eigen::VectorXd>;
 
+/// Many states side by side: one row a coordinate, one column a state, rows contiguous.
+using StateMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+using ConstStatesRef = Eigen::Ref<const StateMatrix>;
+using StatesRef = Eigen::Ref<StateMatrix>;
+
 struct Energies {
   double kinetic = 0;  ///< T [J]
   double potential =
@@ -37,7 +42,9 @@ struct Reaction {
 
 class OpenChain {
  public:
-  explicit OpenChain(const Scene& scene, Algebra algebra = Algebra::automatic);
+  /// `level`: x86-64 level of the compiled recursion, 1, 3 (AVX2) or 4 (AVX-512); 0 takes the best
+  /// this machine has, and none above that is taken.
+  explicit OpenChain(const Scene& scene, Algebra algebra = Algebra::automatic, int level = 0);
   ~OpenChain();
   OpenChain(OpenChain&&) noexcept;
   OpenChain& operator=(OpenChain&&) noexcept;
@@ -46,11 +53,22 @@ class OpenChain {
   const Plan& plan() const;
   int nq() const { return tree().nq; }
   int nv() const { return tree().nv; }
+  /// x86-64 level of the recursions in use.
+  int level() const;
 
   /// q̇ (nq) and ṗ (nv) from (t, q, p): eqs. (35), (45). False when a joint has no inertia to move:
   /// see failure().
   bool rates(double t, const ConstVectorRef& q, const ConstVectorRef& p, VectorRef qdot,
              VectorRef pdot);
+  /// The same for many states at one time t: q (nq × states), p (nv × states), side by side in the
+  /// lanes of vector registers. Where forces act between points of bodies, state by state. False
+  /// when a state has no rates: its columns are NaN, those of all others are right; failure() names
+  /// the first.
+  bool rates_of_states(double t, const ConstStatesRef& q, const ConstStatesRef& p, StatesRef qdot,
+                       StatesRef pdot);
+  /// M⁻¹ x (nv), prescribed motion left out: eqs. (44), (45) without Ω_t. False as rates().
+  bool inverse_mass_times(double t, const ConstVectorRef& q, const ConstVectorRef& x,
+                          VectorRef result);
   /// u (nv) from p: eq. (45). False as rates().
   bool velocities(double t, const ConstVectorRef& q, const ConstVectorRef& p, VectorRef u);
   /// p (nv) from u: eq. (34), O(bodies).

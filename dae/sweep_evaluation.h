@@ -8,6 +8,8 @@
 #include <momenta/dae/loop/loop_rows.h>
 #include <momenta/dae/mechanism.h>
 
+#include <optional>
+
 namespace momenta {
 
 template <class Space, class S>
@@ -17,7 +19,12 @@ class Mechanism::SweepEvaluation final : public Evaluation<S> {
       : model_(cast.model),
         w_(cast.model),
         loops_(cast.loops, w_),
+        links_(build_links(cast.model)),
         still_(static_cast<std::size_t>(mechanism.nv())) {
+    if (cast.loops.loops.empty()) {
+      momentum_.emplace(links_);
+      acceleration_.emplace(links_);
+    }
     for (const auto& marker : mechanism.scene().markers) {
       const Tree& tree = mechanism.tree();
       const int body = tree.body(marker.body);
@@ -118,14 +125,18 @@ class Mechanism::SweepEvaluation final : public Evaluation<S> {
   }
 
   bool open_momentum_rates(double t, const S* q, const S* p, S* u, S* pdot) override {
-    return momentum_recursion(w_, S(t), q, p, u, pdot);
+    const bool ok = momentum_recursion(*momentum_, w_, S(t), q, p, u, pdot);
+    stuck_ = ok ? -1 : momentum_->stuck();
+    return ok;
   }
   bool open_accelerations(double t, const S* q, const S* u, S* udot) override {
-    return acceleration_recursion(w_, S(t), q, u, udot);
+    const bool ok = acceleration_recursion(*acceleration_, w_, S(t), q, u, udot);
+    stuck_ = ok ? -1 : acceleration_->stuck();
+    return ok;
   }
 
   int stuck() const override {
-    return w_.singular < 0 ? -1 : model_.bodies[static_cast<std::size_t>(w_.singular)].u;
+    return stuck_ < 0 ? -1 : model_.bodies[static_cast<std::size_t>(stuck_)].u;
   }
 
   S kinetic() override { return kinetic_energy(w_); }
@@ -201,6 +212,10 @@ class Mechanism::SweepEvaluation final : public Evaluation<S> {
   const Model<Space>& model_;
   Workspace<Space, S> w_;
   LoopRows<Space, S> loops_;
+  decltype(build_links(std::declval<const Model<Space>&>())) links_;
+  std::optional<MomentumSweeps<Space, S>> momentum_;  ///< mechanisms without loops
+  std::optional<AccelerationSweeps<Space, S>> acceleration_;
+  int stuck_ = -1;
   std::vector<S> still_;
   std::vector<Marker> markers_;
   bool gravity_current_ = false;

@@ -1,7 +1,6 @@
 #pragma once
 // The acceleration route: Newton-Euler inward for joint forces and reactions, and the articulated
-// recursion for u̇, the equally equipped opponent of the momentum recursion (Featherstone's
-// algorithm in these frames).
+// recursion for u̇ (acceleration_sweeps.h, planar_sweeps.h) with all forces of the scene.
 //
 //   A_K = 𝒯ⱽ A_L + E u̇ + c_K,  c_K: velocity products and prescribed accelerations       derivative
 //   of (23) F_K = M_K A_K + b_K − T_K + Σ 𝒯ᶠ F_child,  b_K = Ω_K × (M_K Ω_K) (17), (21) τ_K = Eᵀ
@@ -9,8 +8,9 @@
 // F_K is the whole wrench through joint K about O_K: the reaction T_r of (28) plus what acts along
 // the joint.
 
-#include <momenta/core/kernel/articulated.h>
-#include <momenta/core/kernel/forces.h>
+#include <momenta/core/kernel/acceleration_sweeps.h>
+#include <momenta/core/kernel/body_forces.h>
+#include <momenta/core/kernel/planar_sweeps.h>
 
 namespace momenta {
 
@@ -64,38 +64,12 @@ void newton_euler_inward(Workspace<Space, S>& w, const S* q, const S* u, S* tau)
 }
 
 /// u̇ (nv) from (q, u, t) by the articulated recursion. False when a joint's articulated inertia is
-/// not positive.
+/// not positive (sweeps.stuck()). O(bodies).
 template <class Space, class S>
-bool acceleration_recursion(Workspace<Space, S>& w, const S& t, const S* q, const S* u, S* udot) {
-  const auto& model = *w.model;
-  poses_outward(w, t, q, model.has_body_forces());
-  velocities_outward(w, u);
-  articulated_masses_inward(w);
-  if (w.singular >= 0) return false;
-  if (model.has_gravity) gravity_outward(w);
-  apply_forces(w, model.has_body_forces());
-  for (std::size_t k = 0; k < w.body.size(); ++k) {
-    auto& s = w.body[k];
-    s.A = prescribed_acceleration(w, k, u);
-    s.D = Space::velocity_wrench(w.inertia(k), s.V);
-    s.D -= s.T;
-  }
-  for (const auto& b : model.bodies) {
-    for (int i = 0; i < b.nv; ++i) udot[b.u + i] = S(0.0);
-    if (b.nv == 1 && model.has_joint_forces) udot[b.u] = joint_force(b, q[b.q], u[b.u]);
-  }
-  // D' takes M' c: with M' = M* − U hᵀ for a one-dof joint; a free joint passes nothing on, a
-  // spherical one M' = A'.
-  remainders_inward(w, udot,
-                    [&](std::size_t k, auto& D) { add_reduced_momentum(w, k, w.body[k].A, D); });
-  for (std::size_t k = 0; k < w.body.size(); ++k) {
-    const auto& b = model.bodies[k];
-    auto& s = w.body[k];
-    if (b.parent >= 0)
-      s.A += Space::to_child(b.edge, b.kind, s.edge, w.body[static_cast<std::size_t>(b.parent)].A);
-    solve_joint(w, k, s.A, udot);
-  }
-  return true;
+bool acceleration_recursion(AccelerationSweeps<Space, S>& sweeps, Workspace<Space, S>& w,
+                            const S& t, const S* q, const S* u, S* udot) {
+  applied_forces(w, t, q, u);
+  return sweeps(t, q, u, static_cast<const S*>(w.generalised.data()), udot);
 }
 
 }  // namespace momenta

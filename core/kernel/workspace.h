@@ -26,39 +26,17 @@ struct Workspace {
     Motion A;  ///< dΩ_K/dt: derivative in body axes; in the plane, of ground components
     Vector g;  ///< gravity in body axes
     // articulated_masses_inward
-    Inertia M;      ///< M*_K, eq. (43)
-    Force h;        ///< M*E M_j⁻¹ of a one-dof joint; M*E of a driven one
-    int wide = -1;  ///< index into `wide` of a spherical or free joint
-    // remainders_inward
-    Force D;    ///< eqs. (44), (48)
-    S e{};      ///< p_K − Eᵀ D of a one-dof joint
-    S pivot{};  ///< M_j⁻¹ of a one-dof joint, eq. (46)
+    Inertia M;  ///< composite inertia of the subtree: mass_matrix_inward
     // momenta_inward, wrenches
-    Force P;    ///< P*_K, eq. (26)
-    Force T;    ///< T*_K, eq. (27)
-    Vector mc;  ///< first moment of the subtree about O_K
+    Force P;  ///< P*_K, eq. (26)
+    Force T;  ///< T*_K, eq. (27)
   };
-  /// Pivots of spherical and free joints: M_j⁻¹ by blocks, ω after v.
-  struct Wide {
-    Mat3<S> h;     ///< H I⁻¹
-    Sym3<S> I;     ///< I⁻¹
-    Sym3<S> A;     ///< free: (A − H I⁻¹ Hᵀ)⁻¹
-    Vec3<S> x, y;  ///< I⁻¹ e_ω; free: e_v − h e_ω
-  };
-
-  explicit Workspace(const Model<Space>& m) : model(&m), body(m.bodies.size()) {
-    for (std::size_t k = 0; k < body.size(); ++k)
-      if (m.bodies[k].nv > 1) {
-        body[k].wide = static_cast<int>(wide.size());
-        wide.emplace_back();
-      }
-  }
+  explicit Workspace(const Model<Space>& m)
+      : model(&m), body(m.bodies.size()), generalised(static_cast<std::size_t>(m.nv)) {}
 
   const Model<Space>* model;
   std::vector<Body> body;
-  std::vector<Wide> wide;
-  int singular =
-      -1;  ///< joint whose M_j was not positive at the last articulated_masses_inward, or −1
+  std::vector<S> generalised;  ///< scratch, nv: generalised forces
 
   /// The rigid inertia of body k in the axes the sweeps work in.
   const auto& inertia(std::size_t k) const {

@@ -106,6 +106,12 @@ double value_of(const Dual<S, N>& x) {
   return value_of(x.a);
 }
 
+/// True when a pivot can be divided by; packs of states ask every lane.
+template <class S>
+bool all_positive(const S& x) {
+  return value_of(x) > 0;
+}
+
 /// Eight directions at once: one vector register of tangents on wide machines.
 using Dual8 = Dual<double, 8>;
 

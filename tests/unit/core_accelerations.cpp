@@ -3,6 +3,7 @@
 
 #include "equations/dense_lagrangian.h"
 #include "equations/random_tree.h"
+#include "equations/recursions.h"
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>

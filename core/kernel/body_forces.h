@@ -1,0 +1,40 @@
+#pragma once
+// What wrenches between points of bodies do to the joints: Q = Eᵀ T*, T* gathered inward over the
+// subtree, eq. (27).
+
+#include <momenta/core/kernel/forces.h>
+
+namespace momenta {
+
+/// w.generalised (nv) = Eᵀ T* of springs, dampers and wrenches at (q, u, t). One outward sweep for
+/// poses and velocities, one inward. O(bodies).
+template <class Space, class S>
+void body_force_rates(Workspace<Space, S>& w, const S& t, const S* q, const S* u) {
+  poses_outward(w, t, q, true);
+  velocities_outward(w, u);
+  for (auto& s : w.body) s.T = {};
+  add_body_forces(w);
+  for (std::size_t k = w.body.size(); k-- > 0;) {
+    const auto& b = w.model->bodies[k];
+    auto& s = w.body[k];
+    if (b.nv > 0) Joint<Space>::project(b, s.edge, s.T, w.generalised.data() + b.u);
+    if (b.parent >= 0)
+      w.body[static_cast<std::size_t>(b.parent)].T += Space::to_parent(b.edge, b.kind, s.edge, s.T);
+  }
+}
+
+/// w.generalised (nv) = every generalised force but the weights': the joints' own springs, dampers
+/// and torques, and what wrenches between bodies do to them.
+template <class Space, class S>
+void applied_forces(Workspace<Space, S>& w, const S& t, const S* q, const S* u) {
+  const auto& model = *w.model;
+  if (model.has_body_forces())
+    body_force_rates(w, t, q, u);
+  else
+    for (auto& value : w.generalised) value = S(0.0);
+  if (model.has_joint_forces)
+    for (const auto& b : model.bodies)
+      if (b.nv == 1) w.generalised[static_cast<std::size_t>(b.u)] += joint_force(b, q[b.q], u[b.u]);
+}
+
+}  // namespace momenta

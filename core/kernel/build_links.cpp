@@ -1,0 +1,111 @@
+#include <momenta/core/kernel/link.h>
+
+namespace momenta {
+namespace {
+
+Turn turn_of(const Spatial::EdgeConstants& e) {
+  if (e.about_y) return Turn::tilted;
+  if (e.sin_alpha == 0) return Turn::parallel;
+  // A right angle to the left is one to the right seen along the other direction of the common
+  // normal; the model builder chooses that direction.
+  if (e.cos_alpha == 0 && e.sin_alpha > 0) return Turn::right;
+  return Turn::general;
+}
+
+/// Origin of the child in the parent's frame; constant for every joint that only turns.
+Vec3<double> place_of(const Model<Spatial>::Body& b) {
+  Spatial::Edge<double> e;
+  e.d = b.d0;
+  e.position = {{0, 0, b.d0}};
+  return Spatial::moment_to_parent(b.edge, JointKind::weld, e, Vec3<double>{}, 1.0);
+}
+
+BallPlace ball_of(const Model<Spatial>::Body& b) {
+  Spatial::Edge<double> e;
+  e.cos_theta = std::cos(b.theta0);
+  e.sin_theta = std::sin(b.theta0);
+  e.d = b.d0;
+  Spatial::Pose<double> ground;
+  ground.axes = identity3<double>();
+  const auto at = Spatial::pose_outward(b.edge, JointKind::weld, e, ground);
+  return {at.axes, at.origin};
+}
+
+Tip tip_of(const Link& l) {
+  Full<double> m;
+  set_body(m, l);
+  Tip t;
+  t.inverse = 1 / m.Izz;
+  PinColumn<double> h;
+  eliminate_pin(m, t.inverse, h, t.M);
+  t.h[0] = h.fx;
+  t.h[1] = h.fy;
+  t.h[2] = h.fz;
+  t.h[3] = h.nx;
+  t.h[4] = h.ny;
+  return t;
+}
+
+}  // namespace
+
+LinkTree build_links(const Model<Spatial>& model) {
+  LinkTree tree;
+  tree.model = &model;
+  const std::size_t n = model.bodies.size();
+  tree.links.resize(n);
+  tree.theta0.resize(n);
+  tree.weight.resize(n);
+  for (std::size_t k = 0; k < n; ++k) {
+    const auto& b = model.bodies[k];
+    Link& l = tree.links[k];
+    l.kind = b.kind == JointKind::revolute && b.drive < 0 ? LinkKind::pin
+             : b.kind == JointKind::spherical             ? LinkKind::ball
+                                                          : LinkKind::general;
+    l.turn = turn_of(b.edge);
+    l.ca = b.edge.cos_alpha;
+    l.sa = b.edge.sin_alpha;
+    l.a = b.edge.a;
+    l.d = b.d0;
+    l.screwed = b.edge.about_z;
+    l.m = b.inertia.m;
+    for (int i = 0; i < 3; ++i) l.c[i] = b.inertia.mc[i];
+    for (int i = 0; i < 3; ++i) l.moment[i] += b.inertia.mc[i];
+    for (int i = 0; i < 6; ++i) l.J[i] = b.inertia.J.x[i];
+    l.q = b.q;
+    l.u = b.u;
+    l.parent = b.parent;
+    l.first = b.parent >= 0 && b.parent + 1 == static_cast<int>(k);
+    l.tip = k + 1 == n || model.bodies[k + 1].parent != static_cast<int>(k);
+    l.has_force = b.nv == 1 && (b.stiffness != 0 || b.damping != 0 || b.torque != 0);
+    tree.theta0[k] = b.theta0;
+    if (l.kind == LinkKind::general) l.record = tree.records++;
+    if (l.kind == LinkKind::ball) {
+      l.record = static_cast<int>(tree.balls.size());
+      tree.balls.push_back(ball_of(b));
+    }
+    if (b.parent >= 0) {
+      Link& parent = tree.links[static_cast<std::size_t>(b.parent)];
+      if (!l.first && parent.slot < 0) parent.slot = tree.slots++;
+      if (l.kind != LinkKind::general) {
+        const Vec3<double> r = place_of(b);
+        for (int i = 0; i < 3; ++i) parent.moment[i] += b.subtree_mass * r[i];
+      }
+    } else {
+      Spatial::Edge<double> at_zero;
+      tree.weight[k] = Spatial::direction_to_child(b.edge, JointKind::weld, at_zero, model.gravity);
+    }
+  }
+  for (std::size_t k = n; k-- > 0;) {
+    Link& l = tree.links[k];
+    if (l.kind == LinkKind::pin && l.first && !l.tip && l.slot < 0 && !l.screwed &&
+        l.turn != Turn::tilted)
+      l.path = static_cast<Path>(l.turn);
+    if (!l.tip || l.kind != LinkKind::pin) continue;
+    l.record = static_cast<int>(tree.tips.size());
+    tree.tips.push_back(tip_of(l));
+    if (!(l.J[5] > 0) && tree.stuck < 0) tree.stuck = static_cast<int>(k);
+  }
+  return tree;
+}
+
+}  // namespace momenta

@@ -1,0 +1,74 @@
+#include <momenta/core/kernel/planar_link.h>
+
+#include <cmath>
+
+namespace momenta {
+namespace {
+
+void turn_by(double c, double s, double& x, double& y) {
+  const double turned = c * x - s * y;
+  y = s * x + c * y;
+  x = turned;
+}
+
+}  // namespace
+
+PlanarTree build_links(const Model<Planar>& model) {
+  PlanarTree tree;
+  tree.model = &model;
+  const std::size_t n = model.bodies.size();
+  tree.links.resize(n);
+  tree.theta0.resize(n);
+  // φ: the frame used here in the model's frame of the body.
+  std::vector<double> phi(n, 0.0);
+  for (std::size_t k = 0; k + 1 < n; ++k) {
+    const auto& child = model.bodies[k + 1];
+    if (child.parent == static_cast<int>(k) && std::hypot(child.edge.x, child.edge.y) > 0)
+      phi[k] = std::atan2(child.edge.y, child.edge.x);
+  }
+  const double gx = model.gravity[0], gy = model.gravity[1];
+  for (std::size_t k = 0; k < n; ++k) {
+    const auto& b = model.bodies[k];
+    PlanarLink& l = tree.links[k];
+    l.first = b.parent >= 0 && b.parent + 1 == static_cast<int>(k);
+    l.tip = k + 1 == n || model.bodies[k + 1].parent != static_cast<int>(k);
+    l.pin = b.kind == JointKind::revolute && b.drive < 0;
+    l.has_force = b.nv == 1 && (b.stiffness != 0 || b.damping != 0 || b.torque != 0);
+    l.sign = b.edge.sign;
+    l.q = b.q;
+    l.u = b.u;
+    l.parent = b.parent;
+    l.m = b.inertia.m;
+    l.J = b.inertia.J;
+    const double c = std::cos(phi[k]), s = std::sin(phi[k]);
+    l.cx = b.inertia.mc[0];
+    l.cy = b.inertia.mc[1];
+    turn_by(c, -s, l.cx, l.cy);
+    l.wx += l.cx * gy - l.cy * gx;  // (R m c) × g = wx cos + wy sin
+    l.wy -= l.cy * gy + l.cx * gx;
+    const double from = b.parent < 0 ? 0.0 : phi[static_cast<std::size_t>(b.parent)];
+    tree.theta0[k] = phi[k] - from;
+    const double cp = std::cos(from), sp = std::sin(from);
+    l.x = b.edge.x;
+    l.y = b.edge.y;
+    turn_by(cp, -sp, l.x, l.y);
+    l.slide_x = b.edge.slide_x;
+    l.slide_y = b.edge.slide_y;
+    turn_by(cp, -sp, l.slide_x, l.slide_y);
+    if (l.first) {
+      l.x = std::hypot(b.edge.x, b.edge.y);
+      l.y = 0;
+    }
+    if (!l.pin) l.record = tree.records++;
+    if (b.parent < 0) continue;
+    PlanarLink& parent = tree.links[static_cast<std::size_t>(b.parent)];
+    if (!l.first && parent.slot < 0) parent.slot = tree.slots++;
+    if (l.pin) {
+      parent.wx += b.subtree_mass * (l.x * gy - l.y * gx);
+      parent.wy -= b.subtree_mass * (l.y * gy + l.x * gx);
+    }
+  }
+  return tree;
+}
+
+}  // namespace momenta

@@ -1,0 +1,192 @@
+#pragma once
+// The elimination of one joint of any kind, one record a joint: what both recursions do wherever
+// the fast path for pins does not apply.
+//
+//   M_j = Eᵀ M* E,  M' = M* − M*E M_j⁻¹ EᵀM*                 (46), (47)
+//   e = r − Eᵀ D,   D' = D + M*E M_j⁻¹ e                     (48)
+//   u = M_j⁻¹ (e − EᵀM* W),  Ω = W + E u                     (45)
+//
+// r is p in the momentum form and the joint force in the acceleration form; W is the motion the
+// joint would leave its body without u. A driven or welded joint has no u: M' = M*, D' = D.
+
+#include <momenta/core/kernel/joint.h>
+#include <momenta/core/scalar/dual.h>
+#include <momenta/core/scalar/sine_cosine.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace momenta {
+
+template <class Space, class S>
+struct JointRecord;
+
+template <class S>
+struct JointRecord<Spatial, S> {
+  Spatial::Edge<S> edge;
+  S drive{}, drive_rate{}, drive_acceleration{};  ///< prescribed motion
+  Spatial::ArticulatedInertia<S> M;               ///< M*_K
+  Spatial::Force<S> D;                            ///< D_K, (44)
+  Spatial::Force<S> h;                            ///< one dof: M*E M_j⁻¹
+  S pivot{}, e{};                                 ///< one dof: M_j⁻¹, r − Eᵀ D
+  Vec3<S> moment;                                 ///< first moment of the subtree about O_K
+  Mat3<S> H;                                      ///< several dofs: H I⁻¹ …
+  Sym3<S> I, A;          ///< … I⁻¹, and of a free joint (A − H I⁻¹Hᵀ)⁻¹
+  Vec3<S> x, y;          ///< … I⁻¹ e_ω, and of a free joint e_v − H I⁻¹ e_ω
+  Spatial::Motion<S> c;  ///< acceleration form: what W has beside 𝒯ⱽ A_L
+};
+template <class S>
+struct JointRecord<Planar, S> {
+  Planar::Edge<S> edge;
+  S drive{}, drive_rate{}, drive_acceleration{};
+  Planar::ArticulatedInertia<S> M;
+  Planar::Force<S> D, h;
+  S pivot{}, e{};
+  S value{};   ///< position of the joint
+  S moment{};  ///< of the subtree's weight about O_K
+  Planar::Motion<S> c;
+};
+
+/// Prescribed position, rate and acceleration of a driven joint.
+template <class S>
+void prescribe(const MotionLaw& law, const S& t, S& f, S& fdot, S& fddot) {
+  law.evaluate(t, f, fdot, fddot);
+}
+/// The same in doubles, compiled for any machine.
+void prescribed_motion(const MotionLaw& law, double t, double& f, double& fdot, double& fddot);
+template <int W, int L>
+void prescribe(const MotionLaw& law, const Pack<W, L>& t, Pack<W, L>& f, Pack<W, L>& fdot,
+               Pack<W, L>& fddot) {
+  for (int i = 0; i < W; ++i) {
+    double x, xdot, xddot;
+    prescribed_motion(law, t.lane(i), x, xdot, xddot);
+    f.set_lane(i, x);
+    fdot.set_lane(i, xdot);
+    fddot.set_lane(i, xddot);
+  }
+}
+
+/// All three pivots positive, and more than rounding: a slender rod on a ball joint has no inertia
+/// about itself, however it lies. Entries are as exact as the largest, so the determinant is as
+/// exact as the product of the two largest diagonals with the largest.
+template <class S>
+bool pivots_positive(const Vec3<S>& d, const Sym3<S>& from) {
+  constexpr double rounding = 16 * std::numeric_limits<double>::epsilon();
+  double determinant = 1, product = 1, least = 0, largest = 0;
+  for (int i = 0; i < 3; ++i) {
+    if (!all_positive(d[i])) return false;
+    const double diagonal = value_of(from(i, i));
+    determinant *= value_of(d[i]);
+    product *= diagonal;
+    least = i == 0 ? diagonal : std::min(least, diagonal);
+    largest = std::max(largest, diagonal);
+  }
+  return determinant > rounding * (product / least * largest);
+}
+
+/// I⁻¹ and h = H I⁻¹ of a joint that leaves ω free.
+template <class S>
+bool eliminate_angular(const Spatial::ArticulatedInertia<S>& m, Sym3<S>& inverse_I, Mat3<S>& h) {
+  Vec3<S> pivots;
+  inverse_I = inverse(m.I, pivots);
+  if (!pivots_positive(pivots, m.I)) return false;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      h(i, j) =
+          m.H(i, 0) * inverse_I(0, j) + m.H(i, 1) * inverse_I(1, j) + m.H(i, 2) * inverse_I(2, j);
+  return true;
+}
+
+/// Free joints: ω by its 3 × 3 block, then v by the Schur complement; nothing is left, M' = 0.
+template <class S>
+bool eliminate_free(Spatial::ArticulatedInertia<S>& m, JointRecord<Spatial, S>& x) {
+  if (!eliminate_angular(m, x.I, x.H)) return false;
+  Sym3<S> A = m.A;
+  for (int i = 0; i < 3; ++i)
+    for (int j = i; j < 3; ++j)
+      A(i, j) -= x.H(i, 0) * m.H(j, 0) + x.H(i, 1) * m.H(j, 1) + x.H(i, 2) * m.H(j, 2);
+  Vec3<S> pivots;
+  x.A = inverse(A, pivots);
+  if (!pivots_positive(pivots, m.A)) return false;
+  m = {};
+  return true;
+}
+
+/// M' from x.M; false when M_j is not positive.
+template <class Space, class S>
+bool eliminate(const typename Model<Space>::Body& b, JointRecord<Space, S>& x,
+               typename Space::template ArticulatedInertia<S>& reduced) {
+  reduced = x.M;
+  if (b.nv == 0) return true;
+  if (b.nv == 1) {
+    const auto U = Joint<Space>::column(b, x.edge, x.M);
+    const S joint_mass = Joint<Space>::along(b, x.edge, U);  // M_j, (46)
+    if (!all_positive(Joint<Space>::inertia_margin(b, x.M, joint_mass))) return false;
+    x.pivot = S(1.0) / joint_mass;
+    for (int i = 0; i < Space::dimension; ++i) x.h[i] = x.pivot * U[i];
+    Joint<Space>::reduce(b, reduced, U, x.h);
+    return true;
+  }
+  if constexpr (Space::dimension == 6)
+    return eliminate_free<S>(reduced, x);
+  else
+    return false;
+}
+
+/// D' from x.D for the right-hand side r of this joint (nv numbers).
+template <class Space, class S>
+typename Space::template Force<S> remainder(const typename Model<Space>::Body& b,
+                                            JointRecord<Space, S>& x, const S* r) {
+  auto D = x.D;
+  if (b.nv == 1) {
+    x.e = r[0] - Joint<Space>::along(b, x.edge, x.D);
+    for (int i = 0; i < Space::dimension; ++i) D[i] += x.h[i] * x.e;
+  } else if constexpr (Space::dimension == 6) {
+    if (b.nv == 6) {
+      Vec3<S> e;
+      for (int i = 0; i < 3; ++i) e[i] = r[3 + i] - x.D.n[i];
+      x.x = x.I * e;
+      const Vec3<S> he = x.H * e;
+      for (int i = 0; i < 3; ++i) x.y[i] = r[i] - x.D.f[i] - he[i];
+      for (int i = 0; i < 6; ++i) D[i] = r[i];
+    }
+  }
+  return D;
+}
+
+/// M'_K c: the reduced mass matrix (47) times a motion c.
+template <class Space, class S>
+typename Space::template Force<S> reduced_momentum(const typename Model<Space>::Body& b,
+                                                   const JointRecord<Space, S>& x,
+                                                   const typename Space::template Motion<S>& c) {
+  if constexpr (Space::dimension == 6) {
+    if (b.nv == 6) return {};                                                     // M' = 0
+    if (b.nv == 3) return {x.M.A * c.v - x.H * transpose_times(x.M.H, c.v), {}};  // A' for v alone
+  }
+  auto P = Space::momentum(x.M, c);
+  if (b.nv == 1) {
+    const S along = Space::power(x.h, c) / x.pivot;  // M*E M_j⁻¹ EᵀM* c = h (hᵀ c) M_j
+    for (int i = 0; i < Space::dimension; ++i) P[i] -= x.h[i] * along;
+  }
+  return P;
+}
+
+/// u (nv) of this joint; W becomes W + E u.
+template <class Space, class S>
+void solve_joint(const typename Model<Space>::Body& b, const JointRecord<Space, S>& x,
+                 typename Space::template Motion<S>& W, S* u) {
+  if (b.nv == 1) {
+    u[0] = x.pivot * x.e - Space::power(x.h, W);
+    Joint<Space>::add_motion(b, x.edge, u, W);
+  } else if constexpr (Space::dimension == 6) {
+    if (b.nv < 6) return;
+    const Vec3<S> v = x.A * x.y, omega = x.x - transpose_times(x.H, v);
+    for (int i = 0; i < 3; ++i) {
+      u[i] = v[i] - W.v[i];
+      u[3 + i] = omega[i] - W.w[i];
+    }
+    W = {v, omega};
+  }
+}
+
+}  // namespace momenta

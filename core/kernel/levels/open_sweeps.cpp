@@ -1,0 +1,42 @@
+#include <momenta/core/kernel/levels/open_sweeps.h>
+
+namespace momenta {
+
+template <int Level>
+std::unique_ptr<OpenSweeps> sweeps_at(const LinkTree& tree);
+template <int Level>
+std::unique_ptr<OpenSweeps> sweeps_at(const PlanarTree& tree);
+
+int best_level() {
+#ifdef MOMENTA_LEVELS
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+      __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw") &&
+      __builtin_cpu_supports("avx512cd"))
+    return 4;
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
+      __builtin_cpu_supports("bmi2"))
+    return 3;
+#endif
+  return 1;
+}
+
+template <class Tree>
+std::unique_ptr<OpenSweeps> make(const Tree& tree, [[maybe_unused]] int level) {
+#ifdef MOMENTA_LEVELS
+  if (level >= 4) return sweeps_at<4>(tree);
+  if (level >= 3) return sweeps_at<3>(tree);
+#endif
+  return sweeps_at<1>(tree);
+}
+std::unique_ptr<OpenSweeps> make_sweeps(const LinkTree& tree, int level) {
+  return make(tree, level);
+}
+std::unique_ptr<OpenSweeps> make_sweeps(const PlanarTree& tree, int level) {
+  return make(tree, level);
+}
+
+void prescribed_motion(const MotionLaw& law, double t, double& f, double& fdot, double& fddot) {
+  law.evaluate(t, f, fdot, fddot);
+}
+
+}  // namespace momenta

@@ -1,0 +1,53 @@
+#pragma once
+// The two recursions compiled for several x86-64 levels in one library, and chosen when a chain is
+// made: a packaged binary is fast on every machine. Level 1 is plain x86-64 (and any other
+// architecture), 3 has AVX2 and fused multiply-add, 4 has AVX-512.
+
+#include <momenta/core/kernel/link.h>
+#include <momenta/core/kernel/planar_link.h>
+
+#include <cstddef>
+#include <memory>
+
+namespace momenta {
+
+/// States side by side: coordinate i of state s is at base[i * stride + s].
+struct States {
+  const double *q, *p;
+  double *qdot, *pdot;
+  std::ptrdiff_t stride;
+  std::size_t count;
+};
+
+class OpenSweeps {
+ public:
+  virtual ~OpenSweeps() = default;
+
+  /// q̇ or, with `qdot` null, only u (nv) and ṗ (nv); forces between points of bodies left out.
+  virtual bool momentum(double t, const double* q, const double* p, double* u, double* pdot) = 0;
+  /// M⁻¹ x (nv) at the configuration of the last momentum().
+  virtual void inverse_mass_times(const double* x, double* result) = 0;
+  /// u̇ (nv) from all generalised forces τ (nv) but the weights'.
+  virtual bool acceleration(double t, const double* q, const double* u, const double* tau,
+                            double* udot) = 0;
+  /// q̇ and ṗ of many states, `width()` at a time. False when some state has a joint without
+  /// inertia: its index is in failed_state(), its results are NaN, those of all others are right.
+  virtual bool momentum(double t, const States& states) = 0;
+  /// u̇ of many states; p holds u, and the weights are the only forces. As momentum().
+  virtual bool acceleration(double t, const States& states) = 0;
+
+  virtual int width() const = 0;
+  virtual int level() const = 0;
+  /// Body whose joint had no inertia in the last failed call.
+  virtual int stuck() const = 0;
+  virtual std::size_t failed_state() const = 0;
+};
+
+/// The highest level this machine and this library have.
+int best_level();
+
+/// @pre level ≤ best_level(), one of 1, 3, 4; the tree stays where it is.
+std::unique_ptr<OpenSweeps> make_sweeps(const LinkTree& tree, int level);
+std::unique_ptr<OpenSweeps> make_sweeps(const PlanarTree& tree, int level);
+
+}  // namespace momenta

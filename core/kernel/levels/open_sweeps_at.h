@@ -1,0 +1,216 @@
+#pragma once
+// OpenSweeps at one level; included by the files that are compiled for it, and nowhere else.
+// Whatever code they emit must carry the level in its types (Pack<W, L>): a function they shared
+// with the rest of the library could be linked in from here and stop on a lesser machine. A test
+// looks for such.
+
+#include <momenta/core/kernel/acceleration_sweeps.h>
+#include <momenta/core/kernel/levels/open_sweeps.h>
+#include <momenta/core/kernel/momentum_sweeps.h>
+#include <momenta/core/kernel/planar_sweeps.h>
+
+#include <limits>
+
+namespace momenta {
+
+/// Coordinates of the pack of states that starts at `base`, loaded and stored by index.
+template <class S>
+struct StridedIn {
+  const double* base;
+  std::ptrdiff_t stride;
+  MOMENTA_INLINE S operator[](int i) const { return S::load(base + i * stride); }
+};
+template <class S>
+struct StridedOut {
+  double* base;
+  std::ptrdiff_t stride;
+  struct Place {
+    double* at;
+    MOMENTA_INLINE void operator=(const S& x) const { x.store(at); }
+  };
+  MOMENTA_INLINE Place operator[](int i) const { return {base + i * stride}; }
+};
+
+template <class Tree, class Space, int Level>
+class OpenSweepsAt final : public OpenSweeps {
+  static constexpr int lanes = native_width<Level>;
+  using One = Pack<1, Level>;
+  using Many = Pack<lanes, Level>;
+
+ public:
+  explicit OpenSweepsAt(const Tree& tree)
+      : tree_(tree),
+        momentum_(tree),
+        acceleration_(tree),
+        many_momenta_(tree),
+        many_accelerations_(tree) {}
+
+  bool momentum(double t, const double* q, const double* p, double* u, double* pdot) override {
+    const bool ok = momentum_(One(t), StridedIn<One>{q, 1}, StridedIn<One>{p, 1},
+                              StridedOut<One>{u, 1}, StridedOut<One>{pdot, 1});
+    if (!ok) stuck_ = momentum_.stuck();
+    return ok;
+  }
+  void inverse_mass_times(const double* x, double* result) override {
+    momentum_.inverse_mass_times(StridedIn<One>{x, 1}, StridedOut<One>{result, 1});
+  }
+  bool acceleration(double t, const double* q, const double* u, const double* tau,
+                    double* udot) override {
+    const bool ok = acceleration_(One(t), StridedIn<One>{q, 1}, StridedIn<One>{u, 1},
+                                  StridedIn<One>{tau, 1}, StridedOut<One>{udot, 1});
+    if (!ok) stuck_ = acceleration_.stuck();
+    return ok;
+  }
+
+  bool momentum(double t, const States& s) override {
+    return each_pack(s, [&](const double* q, const double* p, double* qdot, double* pdot,
+                            std::ptrdiff_t stride) {
+      const StridedOut<Many> u{pdot_scratch(), lanes};
+      if (!many_momenta_.get()(Many(t), StridedIn<Many>{q, stride}, StridedIn<Many>{p, stride}, u,
+                               StridedOut<Many>{pdot, stride})) {
+        stuck_ = many_momenta_.get().stuck();
+        return false;
+      }
+      coordinate_rates(q, qdot, stride);
+      return true;
+    });
+  }
+  bool acceleration(double t, const States& s) override {
+    return each_pack(
+        s, [&](const double* q, const double* u, double*, double* udot, std::ptrdiff_t stride) {
+          const bool ok = many_accelerations_.get()(Many(t), StridedIn<Many>{q, stride},
+                                                    StridedIn<Many>{u, stride}, Nothing{},
+                                                    StridedOut<Many>{udot, stride});
+          if (!ok) stuck_ = many_accelerations_.get().stuck();
+          return ok;
+        });
+  }
+
+  int width() const override { return lanes; }
+  int level() const override { return Level; }
+  int stuck() const override { return stuck_; }
+  std::size_t failed_state() const override { return failed_state_; }
+
+ private:
+  struct Nothing {
+    MOMENTA_INLINE Many operator[](int) const { return Many(0.0); }
+  };
+  /// Workspaces of packs are large: made when a batch first asks for them.
+  template <class Sweeps>
+  class WhenAsked {
+   public:
+    explicit WhenAsked(const Tree& tree) : tree_(&tree) {}
+    Sweeps& get() {
+      if (!sweeps_) sweeps_ = std::make_unique<Sweeps>(*tree_);
+      return *sweeps_;
+    }
+
+   private:
+    const Tree* tree_;
+    std::unique_ptr<Sweeps> sweeps_;
+  };
+
+  double* pdot_scratch() { return rates_.data(); }
+
+  void coordinate_rates(const double* q, double* qdot, std::ptrdiff_t stride) {
+    for (const auto& b : tree_.model->bodies) {
+      if (b.nv == 0) continue;
+      Many at[7], rate[6], out[7];
+      for (int i = 0; i < b.nq; ++i) at[i] = Many::load(q + (b.q + i) * stride);
+      for (int i = 0; i < b.nv; ++i) rate[i] = Many::load(rates_.data() + (b.u + i) * lanes);
+      momenta::coordinate_rates(b.kind, static_cast<const Many*>(at),
+                                static_cast<const Many*>(rate), out);
+      for (int i = 0; i < b.nq; ++i) out[i].store(qdot + (b.q + i) * stride);
+    }
+  }
+
+  /// Calls f on every full pack in place, and on the rest in a padded copy. A pack that fails is
+  /// repeated state by state, so that one bad state spoils no other.
+  template <class F>
+  bool each_pack(const States& s, F&& f) {
+    const auto nq = static_cast<std::size_t>(tree_.model->nq);
+    const auto nv = static_cast<std::size_t>(tree_.model->nv);
+    rates_.resize(nv * lanes);
+    bool all = true;
+    std::size_t first = 0;
+    for (; first + lanes <= s.count; first += lanes)
+      if (!f(s.q + first, s.p + first, s.qdot ? s.qdot + first : nullptr, s.pdot + first, s.stride))
+        all &= one_by_one(s, first, lanes, nq, nv, f, all);
+    if (first < s.count && !copied(s, first, s.count - first, nq, nv, f))
+      all &= one_by_one(s, first, s.count - first, nq, nv, f, all);
+    return all;
+  }
+
+  /// `count` states from `first` on copied into one pack, the last repeated.
+  template <class F>
+  bool copied(const States& s, std::size_t first, std::size_t count, std::size_t nq, std::size_t nv,
+              F&& f) {
+    padded_.resize((2 * nq + 2 * nv) * lanes);
+    double* const q = padded_.data();
+    double* const p = q + nq * lanes;
+    double* const qdot = p + nv * lanes;
+    double* const pdot = qdot + nq * lanes;
+    const auto at = [&](std::size_t i, std::size_t state) {
+      return static_cast<std::ptrdiff_t>(i) * s.stride + static_cast<std::ptrdiff_t>(state);
+    };
+    for (std::size_t lane = 0; lane < lanes; ++lane) {
+      const std::size_t state = first + (lane < count ? lane : count - 1);
+      for (std::size_t i = 0; i < nq; ++i) q[i * lanes + lane] = s.q[at(i, state)];
+      for (std::size_t i = 0; i < nv; ++i) p[i * lanes + lane] = s.p[at(i, state)];
+    }
+    if (!f(q, p, qdot, pdot, lanes)) return false;
+    for (std::size_t lane = 0; lane < count; ++lane) {
+      if (s.qdot)
+        for (std::size_t i = 0; i < nq; ++i) s.qdot[at(i, first + lane)] = qdot[i * lanes + lane];
+      for (std::size_t i = 0; i < nv; ++i) s.pdot[at(i, first + lane)] = pdot[i * lanes + lane];
+    }
+    return true;
+  }
+  template <class F>
+  bool one_by_one(const States& s, std::size_t first, std::size_t count, std::size_t nq,
+                  std::size_t nv, F&& f, bool none_failed_yet) {
+    bool all = true;
+    for (std::size_t state = first; state < first + count; ++state) {
+      if (copied(s, state, 1, nq, nv, f)) continue;
+      if (none_failed_yet && all) failed_state_ = state;
+      all = false;
+      const double nothing = __builtin_nan("");
+      const auto place = static_cast<std::ptrdiff_t>(state);
+      if (s.qdot)
+        for (std::size_t i = 0; i < nq; ++i)
+          s.qdot[static_cast<std::ptrdiff_t>(i) * s.stride + place] = nothing;
+      for (std::size_t i = 0; i < nv; ++i)
+        s.pdot[static_cast<std::ptrdiff_t>(i) * s.stride + place] = nothing;
+    }
+    return all;
+  }
+
+  /// Memory of the level's own type, so that no level shares the code of a vector of doubles.
+  struct Buffer {
+    std::vector<One> x;
+    void resize(std::size_t n) {
+      if (x.size() < n) x.resize(n);
+    }
+    double* data() { return &x.data()->v; }
+  };
+
+  const Tree& tree_;
+  MomentumSweeps<Space, One> momentum_;
+  AccelerationSweeps<Space, One> acceleration_;
+  WhenAsked<MomentumSweeps<Space, Many>> many_momenta_;
+  WhenAsked<AccelerationSweeps<Space, Many>> many_accelerations_;
+  Buffer rates_, padded_;
+  int stuck_ = -1;
+  std::size_t failed_state_ = 0;
+};
+
+template <int Level>
+std::unique_ptr<OpenSweeps> sweeps_at(const LinkTree& tree) {
+  return std::make_unique<OpenSweepsAt<LinkTree, Spatial, Level>>(tree);
+}
+template <int Level>
+std::unique_ptr<OpenSweeps> sweeps_at(const PlanarTree& tree) {
+  return std::make_unique<OpenSweepsAt<PlanarTree, Planar, Level>>(tree);
+}
+
+}  // namespace momenta

@@ -1,0 +1,85 @@
+#pragma once
+// A body of the tree as the fused sweeps want it: the constants of its edge, its inertia and its
+// place in the arrays in one flat record, bodies in depth-first order.
+//
+// Pins (undriven revolute joints) are what nearly all trees are made of: they have the fast path
+// and their own compact records. Every other joint takes the general path, which knows all kinds.
+//
+// Two things never change while the tree moves and are put in here once:
+//   - The first moment of a subtree about O: children on pins stay where their joint is, so their
+//     masses act there; `moment` holds the body's own m c and those masses.
+//   - A pin at the tip of the tree: its M*, its reduced mass matrix (47) and M*E M_j⁻¹ are
+//   constants
+//     (`Tip`).
+
+#include <momenta/core/kernel/model.h>
+#include <momenta/core/kernel/reduced_inertia.h>
+
+#include <cstdint>
+#include <vector>
+
+namespace momenta {
+
+enum class LinkKind : std::uint8_t { pin, ball, general };
+
+/// The turn and shift about x between the parent's z axis and the pin's, cases by the work they
+/// need. `tilted`: nearly parallel axes, a turn about y besides.
+enum class Turn : std::uint8_t { general, right, parallel, tilted };
+
+/// How the inward sweep takes a link. Most lie inside a chain: a pin with one child, itself the
+/// first of its parent, without a screw about the parent's z. Neighbours of one kind of turn run
+/// through a loop without branches; the others go one by one.
+enum class Path : std::uint8_t { chain_general, chain_right, chain_parallel, any };
+
+struct Link {
+  double ca = 1, sa = 0, a = 0;  ///< cosine and sine of α, shift along x [m]
+  double d = 0;                  ///< of a pin: shift along its axis [m]
+  double m = 0;                  ///< [kg]
+  double moment[3]{};            ///< constant part of the subtree's first moment about O [kg m]
+  double c[3]{};                 ///< the body's own first moment m OG [kg m]
+  double J[6]{};                 ///< about O: xx xy xz yy yz zz [kg m²]
+  int q = 0, u = 0;
+  int parent = -1;
+  int slot = -1;    ///< where children beside the first leave what they carry; −1: none do
+  int record = -1;  ///< general links: index of their record; balls, tips: of their constants
+  LinkKind kind = LinkKind::pin;
+  Turn turn = Turn::general;
+  bool first = false;      ///< its parent is the body before it
+  bool tip = false;        ///< carries nothing
+  bool screwed = false;    ///< a screw about the parent's z comes first
+  bool has_force = false;  ///< spring, damper or torque on the joint
+  Path path = Path::any;
+};
+
+/// What is constant of a pin that carries nothing.
+struct Tip {
+  double inverse = 0;  ///< M_j⁻¹
+  double h[5]{};       ///< M*E M_j⁻¹ without its last entry, 1
+  Reduced<double> M;   ///< (47)
+};
+
+/// The constant way to a ball joint as one rotation and one step.
+struct BallPlace {
+  Mat3<double> axes;    ///< axes of the joint frame in the parent's
+  Vec3<double> origin;  ///< of the joint in the parent's frame [m]
+};
+
+/// The tree in that form.
+struct LinkTree {
+  const Model<Spatial>* model = nullptr;
+  std::vector<Link> links;
+  std::vector<Tip> tips;
+  std::vector<BallPlace> balls;
+  std::vector<double> theta0;  ///< by link: of a pin, the angle of its frame at q = 0 [rad]
+  std::vector<Vec3<double>>
+      weight;  ///< by link: for pins on the ground, gravity in their frame before the turn [m/s²]
+  int slots = 0, records = 0;
+  /// Joint whose reduced or joint inertia is not positive although constant: a tip without inertia
+  /// about its pin; −1: none.
+  int stuck = -1;
+};
+
+/// @pre the model stays where it is for as long as the tree is used.
+LinkTree build_links(const Model<Spatial>& model);
+
+}  // namespace momenta

@@ -1,0 +1,344 @@
+#pragma once
+// How pins and ball joints pass mass matrices and remainders to their parents: shared by the
+// momentum and the acceleration recursion.
+
+#include <momenta/core/kernel/general_joint.h>
+#include <momenta/core/kernel/link.h>
+
+namespace momenta {
+
+/// What bodies pass on inward: M*, D, G; outward: Ω, g.
+template <class S>
+struct Cargo {
+  Full<S> M;
+  S Dfx, Dfy, Dfz, Dnx, Dny, Dnz, Gx, Gy, Gz;
+};
+template <class S>
+struct OutwardCargo {
+  S vx, vy, vz, ox, oy, oz, gx, gy, gz;
+};
+
+/// What is left of a body once its pin is eliminated: M', and D' and G in its frame.
+template <class S>
+struct Eliminated {
+  Reduced<S> M;
+  S fx, fy, fz, nx, ny, nz, Gx, Gy, Gz;
+};
+
+template <bool Gravity, class S>
+MOMENTA_INLINE void add(Cargo<S>& a, const Cargo<S>& b) {
+  add(a.M, b.M);
+  a.Dfx = a.Dfx + b.Dfx;
+  a.Dfy = a.Dfy + b.Dfy;
+  a.Dfz = a.Dfz + b.Dfz;
+  a.Dnx = a.Dnx + b.Dnx;
+  a.Dny = a.Dny + b.Dny;
+  a.Dnz = a.Dnz + b.Dnz;
+  if constexpr (Gravity) {
+    a.Gx = a.Gx + b.Gx;
+    a.Gy = a.Gy + b.Gy;
+    a.Gz = a.Gz + b.Gz;
+  }
+}
+
+template <class S>
+MOMENTA_INLINE void set_tip(const Tip& tip, PinColumn<S>& h, Reduced<S>& m) {
+  m = {S(tip.M.Axx), S(tip.M.Axy), S(tip.M.Axz), S(tip.M.Ayy), S(tip.M.Ayz),
+       S(tip.M.Azz), S(tip.M.Hxx), S(tip.M.Hxy), S(tip.M.Hyx), S(tip.M.Hyy),
+       S(tip.M.Hzx), S(tip.M.Hzy), S(tip.M.Ixx), S(tip.M.Ixy), S(tip.M.Iyy)};
+  h = {S(tip.h[0]), S(tip.h[1]), S(tip.h[2]), S(tip.h[3]), S(tip.h[4])};
+}
+
+/// The screw about the parent's z.
+template <bool Gravity, class S>
+MOMENTA_INLINE void screw_inward(const Spatial::EdgeConstants& e, Cargo<S>& cargo) {
+  const double c = e.cos_gamma, s = e.sin_gamma, d = e.delta;
+  turn_and_shift_z(cargo.M, c, s, d);
+  S x = c * cargo.Dfx - s * cargo.Dfy;
+  cargo.Dfy = s * cargo.Dfx + c * cargo.Dfy;
+  cargo.Dfx = x;
+  x = c * cargo.Dnx - s * cargo.Dny;
+  cargo.Dny = s * cargo.Dnx + c * cargo.Dny + d * cargo.Dfx;
+  cargo.Dnx = x - d * cargo.Dfy;
+  if constexpr (Gravity) {
+    x = c * cargo.Gx - s * cargo.Gy;
+    cargo.Gy = s * cargo.Gx + c * cargo.Gy;
+    cargo.Gx = x;
+  }
+}
+
+/// The screw about x to the parent.
+template <Turn turn, bool Gravity, class S>
+MOMENTA_INLINE void carry(const Eliminated<S>& r, double ca, double sa, double a, Cargo<S>& cargo) {
+  cargo.Dfx = r.fx;
+  cargo.Dnx = r.nx;
+  if constexpr (Gravity) cargo.Gx = r.Gx;
+  if constexpr (turn == Turn::general) {
+    turn_x(r.M, ca, sa, cargo.M);
+    shift_x(cargo.M, a);
+    cargo.Dfy = ca * r.fy - sa * r.fz;
+    cargo.Dfz = sa * r.fy + ca * r.fz;
+    cargo.Dny = ca * r.ny - sa * r.nz - a * cargo.Dfz;
+    cargo.Dnz = sa * r.ny + ca * r.nz + a * cargo.Dfy;
+    if constexpr (Gravity) {
+      cargo.Gy = ca * r.Gy - sa * r.Gz;
+      cargo.Gz = sa * r.Gy + ca * r.Gz;
+    }
+  } else if constexpr (turn == Turn::right) {
+    right_turn_and_shift_x(r.M, a, cargo.M);
+    cargo.Dfy = -r.fz;
+    cargo.Dfz = r.fy;
+    cargo.Dny = -(r.nz + a * r.fy);
+    cargo.Dnz = r.ny - a * r.fz;
+    if constexpr (Gravity) {
+      cargo.Gy = -r.Gz;
+      cargo.Gz = r.Gy;
+    }
+  } else {
+    parallel_turn_and_shift_x(r.M, ca, a, cargo.M);
+    cargo.Dfy = ca * r.fy;
+    cargo.Dfz = ca * r.fz;
+    cargo.Dny = ca * r.ny - a * cargo.Dfz;
+    cargo.Dnz = ca * r.nz + a * cargo.Dfy;
+    if constexpr (Gravity) {
+      cargo.Gy = ca * r.Gy;
+      cargo.Gz = ca * r.Gz;
+    }
+  }
+}
+
+template <class S>
+Spatial::Force<S> remainder_of(const Cargo<S>& c) {
+  return {{{c.Dfx, c.Dfy, c.Dfz}}, {{c.Dnx, c.Dny, c.Dnz}}};
+}
+template <class S>
+void set_cargo(Cargo<S>& c, const Spatial::ArticulatedInertia<S>& M, const Spatial::Force<S>& D,
+               const Vec3<S>& G) {
+  c = {full(M), D.f[0], D.f[1], D.f[2], D.n[0], D.n[1], D.n[2], G[0], G[1], G[2]};
+}
+template <class S>
+void set_cargo(OutwardCargo<S>& c, const Spatial::Motion<S>& V, const Vec3<S>& g) {
+  c = {V.v[0], V.v[1], V.v[2], V.w[0], V.w[1], V.w[2], g[0], g[1], g[2]};
+}
+
+/// Nearly parallel axes: a turn about y and the screw about x.
+template <class S>
+__attribute__((noinline)) void tilt_inward(const Spatial::EdgeConstants& e, const Eliminated<S>& r,
+                                           Cargo<S>& cargo) {
+  const S zero(0.0);
+  const Reduced<S>& m = r.M;
+  Spatial::ArticulatedInertia<S> M{{{m.Axx, m.Axy, m.Axz, m.Ayy, m.Ayz, m.Azz}},
+                                   {{m.Hxx, m.Hxy, zero, m.Hyx, m.Hyy, zero, m.Hzx, m.Hzy, zero}},
+                                   {{m.Ixx, m.Ixy, zero, m.Iyy, zero, zero}}};
+  Spatial::Force<S> D{{{r.fx, r.fy, r.fz}}, {{r.nx, r.ny, r.nz}}};
+  Vec3<S> G{{r.Gx, r.Gy, r.Gz}};
+  if (e.about_y) {
+    Spatial::inertia_inward<1>(M, e.cos_beta, e.sin_beta, 0.0);
+    Spatial::force_inward<1>(D, e.cos_beta, e.sin_beta, 0.0);
+    momenta::turn<1>(G, e.cos_beta, e.sin_beta);
+  }
+  if (e.about_x) {
+    Spatial::inertia_inward<0>(M, e.cos_alpha, e.sin_alpha, e.a);
+    Spatial::force_inward<0>(D, e.cos_alpha, e.sin_alpha, e.a);
+    momenta::turn<0>(G, e.cos_alpha, e.sin_alpha);
+  }
+  set_cargo(cargo, M, D, G);
+}
+
+/// All constant screws of a pin, in order.
+template <bool Gravity, class S>
+MOMENTA_INLINE void carry_any(const Link& l, const Spatial::EdgeConstants& e,
+                              const Eliminated<S>& r, Cargo<S>& cargo) {
+  switch (l.turn) {
+    case Turn::general:
+      carry<Turn::general, Gravity>(r, l.ca, l.sa, l.a, cargo);
+      break;
+    case Turn::right:
+      carry<Turn::right, Gravity>(r, l.ca, l.sa, l.a, cargo);
+      break;
+    case Turn::parallel:
+      carry<Turn::parallel, Gravity>(r, l.ca, l.sa, l.a, cargo);
+      break;
+    case Turn::tilted:
+      tilt_inward(e, r, cargo);
+      break;
+  }
+  if (l.screwed) screw_inward<Gravity>(e, cargo);
+}
+
+/// (46), (47) of a ball joint: I⁻¹, h = H I⁻¹ and A' = A − h Hᵀ, the whole of M'.
+template <class S>
+MOMENTA_INLINE bool eliminate_ball(const Full<S>& full, Sym3<S>& inverse_I, Mat3<S>& h,
+                                   Sym3<S>& A) {
+  const auto m = blocks(full);
+  if (!eliminate_angular(m, inverse_I, h)) return false;
+  A = m.A;
+  for (int i = 0; i < 3; ++i)
+    for (int j = i; j < 3; ++j)
+      A(i, j) -= h(i, 0) * m.H(j, 0) + h(i, 1) * m.H(j, 1) + h(i, 2) * m.H(j, 2);
+  return true;
+}
+
+/// M' = (A, 0; 0, 0) and D' = (f, n) of a ball joint in the parent's frame: A turned by R, and what
+/// the step r makes of it, H = −A r̃, I = r̃ H.
+template <class S>
+MOMENTA_INLINE void carry_ball(const Vec3<double>& r, const Mat3<S>& R, const Sym3<S>& A,
+                               const Vec3<S>& force, const Vec3<S>& moment, Cargo<S>& cargo) {
+  const S rx(r[0]), ry(r[1]), rz(r[2]);
+  Mat3<S> RA;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      RA(i, j) = R(i, 0) * A(0, j) + R(i, 1) * A(1, j) + R(i, 2) * A(2, j);
+  const auto entry = [&](int i, int j) {
+    return RA(i, 0) * R(j, 0) + RA(i, 1) * R(j, 1) + RA(i, 2) * R(j, 2);
+  };
+  Full<S>& m = cargo.M;
+  m.Axx = entry(0, 0);
+  m.Axy = entry(0, 1);
+  m.Axz = entry(0, 2);
+  m.Ayy = entry(1, 1);
+  m.Ayz = entry(1, 2);
+  m.Azz = entry(2, 2);
+  m.Hxx = m.Axz * ry - m.Axy * rz;
+  m.Hxy = m.Axx * rz - m.Axz * rx;
+  m.Hxz = m.Axy * rx - m.Axx * ry;
+  m.Hyx = m.Ayz * ry - m.Ayy * rz;
+  m.Hyy = m.Axy * rz - m.Ayz * rx;
+  m.Hyz = m.Ayy * rx - m.Axy * ry;
+  m.Hzx = m.Azz * ry - m.Ayz * rz;
+  m.Hzy = m.Axz * rz - m.Azz * rx;
+  m.Hzz = m.Ayz * rx - m.Axz * ry;
+  m.Ixx = ry * m.Hzx - rz * m.Hyx;
+  m.Ixy = ry * m.Hzy - rz * m.Hyy;
+  m.Ixz = ry * m.Hzz - rz * m.Hyz;
+  m.Iyy = rz * m.Hxy - rx * m.Hzy;
+  m.Iyz = rz * m.Hxz - rx * m.Hzz;
+  m.Izz = rx * m.Hyz - ry * m.Hxz;
+  const Vec3<S> f = R * force, n = R * moment;
+  cargo.Dfx = f[0];
+  cargo.Dfy = f[1];
+  cargo.Dfz = f[2];
+  cargo.Dnx = n[0] + ry * f[2] - rz * f[1];
+  cargo.Dny = n[1] + rz * f[0] - rx * f[2];
+  cargo.Dnz = n[2] + rx * f[1] - ry * f[0];
+}
+
+// The constant screws outward, for a direction and for a motion; nearly parallel axes out of line.
+template <class S>
+__attribute__((noinline)) void tilt_outward(const Spatial::EdgeConstants& e, Vec3<S>& g) {
+  g = Spatial::direction_to_child(e, JointKind::weld, Spatial::Edge<S>{}, g);
+}
+template <class S>
+__attribute__((noinline)) void tilt_outward(const Spatial::EdgeConstants& e,
+                                            Spatial::Motion<S>& m) {
+  m = Spatial::to_child(e, JointKind::weld, Spatial::Edge<S>{}, m);
+}
+template <class S>
+MOMENTA_INLINE void constants_outward(const Link& l, const Spatial::EdgeConstants& e, S& gx, S& gy,
+                                      S& gz) {
+  S x;
+  if (l.turn == Turn::tilted) {
+    Vec3<S> g{{gx, gy, gz}};
+    tilt_outward(e, g);
+    gx = g[0];
+    gy = g[1];
+    gz = g[2];
+    return;
+  }
+  if (l.screwed) {
+    x = e.cos_gamma * gx + e.sin_gamma * gy;
+    gy = e.cos_gamma * gy - e.sin_gamma * gx;
+    gx = x;
+  }
+  if (l.turn == Turn::right) {
+    x = gz;
+    gz = -gy;
+    gy = x;
+  } else {
+    x = l.ca * gy + l.sa * gz;
+    gz = l.ca * gz - l.sa * gy;
+    gy = x;
+  }
+}
+template <class S>
+MOMENTA_INLINE void constants_outward(const Link& l, const Spatial::EdgeConstants& e, S& vx, S& vy,
+                                      S& vz, S& ox, S& oy, S& oz) {
+  if (l.turn == Turn::tilted) {
+    Spatial::Motion<S> m{{{vx, vy, vz}}, {{ox, oy, oz}}};
+    tilt_outward(e, m);
+    vx = m.v[0];
+    vy = m.v[1];
+    vz = m.v[2];
+    ox = m.w[0];
+    oy = m.w[1];
+    oz = m.w[2];
+    return;
+  }
+  S x;
+  if (l.screwed) {
+    vx = vx + e.delta * oy;
+    vy = vy - e.delta * ox;
+    x = e.cos_gamma * vx + e.sin_gamma * vy;
+    vy = e.cos_gamma * vy - e.sin_gamma * vx;
+    vx = x;
+    x = e.cos_gamma * ox + e.sin_gamma * oy;
+    oy = e.cos_gamma * oy - e.sin_gamma * ox;
+    ox = x;
+  }
+  vy = vy + l.a * oz;
+  vz = vz - l.a * oy;
+  if (l.turn == Turn::right) {
+    x = vz;
+    vz = -vy;
+    vy = x;
+    x = oz;
+    oz = -oy;
+    oy = x;
+  } else {
+    x = l.ca * vy + l.sa * vz;
+    vz = l.ca * vz - l.sa * vy;
+    vy = x;
+    x = l.ca * oy + l.sa * oz;
+    oz = l.ca * oz - l.sa * oy;
+    oy = x;
+  }
+}
+
+/// Sines and cosines of all pins, turned axes of ball joints (`axes(record)`), edges of the others.
+template <class S, class In, class Axes>
+void place_links(const LinkTree& tree, const S& t, const In& q, std::vector<S>& angle,
+                 std::vector<S>& sine, std::vector<S>& cosine,
+                 std::vector<JointRecord<Spatial, S>>& joints, Axes&& axes) {
+  const Link* links = tree.links.data();
+  const double* theta0 = tree.theta0.data();
+  const std::size_t n = angle.size();
+  for (std::size_t k = 0; k < n; ++k)
+    angle[k] = links[k].kind == LinkKind::pin ? q[links[k].q] + theta0[k] : S(0.0);
+  sines_and_cosines(angle.data(), sine.data(), cosine.data(), n);
+  if (joints.empty() && tree.balls.empty()) return;
+  for (std::size_t k = 0; k < n; ++k) {
+    if (links[k].kind == LinkKind::pin) continue;
+    const auto& b = tree.model->bodies[k];
+    const auto record = static_cast<std::size_t>(links[k].record);
+    if (links[k].kind == LinkKind::ball) {
+      const S at[4] = {q[b.q], q[b.q + 1], q[b.q + 2], q[b.q + 3]};
+      const auto& constant = tree.balls[record].axes;
+      const Mat3<S> own = rotation_of(at);
+      auto& R = axes(record);
+      for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j)
+          R(i, j) =
+              constant(i, 0) * own(0, j) + constant(i, 1) * own(1, j) + constant(i, 2) * own(2, j);
+      continue;
+    }
+    auto& x = joints[record];
+    S at[7]{};
+    for (int i = 0; i < b.nq; ++i) at[i] = q[b.q + i];
+    if (b.drive >= 0)
+      prescribe(tree.model->drives[static_cast<std::size_t>(b.drive)], t, x.drive, x.drive_rate,
+                x.drive_acceleration);
+    Joint<Spatial>::place<S>(b, nullptr, b.drive >= 0 ? x.drive : at[0], at, x.edge);
+  }
+}
+
+}  // namespace momenta

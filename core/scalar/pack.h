@@ -1,0 +1,102 @@
+#pragma once
+// Several states in one scalar: lane i of every number belongs to state i, so any kernel written
+// for one state evaluates Width of them at once. Widths follow the machine's registers: 2 doubles
+// on x86-64, 4 with AVX2 (level 3), 8 with AVX-512 (level 4); a wider pack than the target has is
+// slower than single states.
+//
+// `Level` is the x86-64 level the code is compiled for. It is part of the type, so that kernels
+// compiled for several levels in one library never share a symbol; Pack<1, Level> is a plain double
+// with that mark.
+
+#include <cmath>
+
+#define MOMENTA_INLINE inline __attribute__((always_inline))
+
+namespace momenta {
+
+/// Registers of the compiler: doubles, and integers of the same width for comparisons.
+template <int Width>
+struct Register;
+template <>
+struct Register<1> {
+  typedef double Doubles;
+  typedef long long Integers;
+};
+template <>
+struct Register<2> {
+  typedef double Doubles __attribute__((vector_size(16)));
+  typedef long long Integers __attribute__((vector_size(16)));
+};
+template <>
+struct Register<4> {
+  typedef double Doubles __attribute__((vector_size(32)));
+  typedef long long Integers __attribute__((vector_size(32)));
+};
+template <>
+struct Register<8> {
+  typedef double Doubles __attribute__((vector_size(64)));
+  typedef long long Integers __attribute__((vector_size(64)));
+};
+
+template <int Width, int Level>
+struct Pack {
+  using Lanes = typename Register<Width>::Doubles;
+  Lanes v{};
+
+  Pack() = default;
+  MOMENTA_INLINE Pack(double x) : v(Lanes{} + x) {}  // NOLINT: constants mix freely
+  static MOMENTA_INLINE Pack of(Lanes x) {
+    Pack p;
+    p.v = x;
+    return p;
+  }
+  MOMENTA_INLINE double lane(int i) const {
+    if constexpr (Width == 1)
+      return v;
+    else
+      return v[i];
+  }
+  MOMENTA_INLINE void set_lane(int i, double x) {
+    if constexpr (Width == 1)
+      v = x;
+    else
+      v[i] = x;
+  }
+  static MOMENTA_INLINE Pack load(const double* at) {
+    Pack x;
+    __builtin_memcpy(&x.v, at, sizeof(Lanes));
+    return x;
+  }
+  MOMENTA_INLINE void store(double* at) const { __builtin_memcpy(at, &v, sizeof(Lanes)); }
+
+  friend MOMENTA_INLINE Pack operator+(const Pack& a, const Pack& b) { return of(a.v + b.v); }
+  friend MOMENTA_INLINE Pack operator-(const Pack& a, const Pack& b) { return of(a.v - b.v); }
+  friend MOMENTA_INLINE Pack operator*(const Pack& a, const Pack& b) { return of(a.v * b.v); }
+  friend MOMENTA_INLINE Pack operator/(const Pack& a, const Pack& b) { return of(a.v / b.v); }
+  friend MOMENTA_INLINE Pack operator-(const Pack& a) { return of(-a.v); }
+  MOMENTA_INLINE Pack& operator+=(const Pack& b) { return *this = *this + b; }
+  MOMENTA_INLINE Pack& operator-=(const Pack& b) { return *this = *this - b; }
+};
+
+/// The least of the lanes, NaN when one of them is: what a test for positive pivots has to look at.
+template <int W, int L>
+MOMENTA_INLINE double value_of(const Pack<W, L>& x) {
+  double least = x.lane(0);
+  for (int i = 1; i < W; ++i)
+    if (!(x.lane(i) >= least)) least = x.lane(i);
+  return least;
+}
+/// True when every lane is positive.
+template <int W, int L>
+MOMENTA_INLINE bool all_positive(const Pack<W, L>& x) {
+  if constexpr (W == 1) {
+    return x.v > 0;
+  } else {
+    const auto good = x.v > 0;
+    long long all = -1;
+    for (int i = 0; i < W; ++i) all &= good[i];
+    return all != 0;
+  }
+}
+
+}  // namespace momenta
