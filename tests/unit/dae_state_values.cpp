@@ -130,19 +130,24 @@ TEST(StateValues, WholeMomentaOfAFloatingTreeAreThoseOfItsFreeJoint) {
     recipe.branching = Branching::serial;  // all of it hangs on the first joint
     recipe.joint_forces = recipe.body_forces = false;
     Scene scene = random.scene(recipe);
-    scene.joints[0].kind = JointKind::free;
-    scene.joints[0].position = scene.joints[0].velocity = {};
-    std::erase_if(scene.drives,
-                  [&](const DriveSpec& d) { return d.joint == scene.joints[0].name; });
+    JointSpec root;
+    root.name = scene.joints[0].name;
+    root.kind = JointKind::free;
+    root.child = scene.joints[0].child;
+    root.origin_parent = random.vector(1);
+    root.origin_child = random.vector(1);
+    root.rotation = random.turn();
+    scene.joints[0] = root;
+    std::erase_if(scene.drives, [&](const DriveSpec& d) { return d.joint == root.name; });
     OpenChain chain(scene);
     TreeState at = random.state(chain.tree());
     VectorXd p(chain.nv());
     chain.momenta(at.t, at.q, at.u, p);
     const Whole all = whole(chain.tree(), scene, at.t, at.q, at.u);
-    const Eigen::Isometry3d root = chain.poses(at.t, at.q)[0];
-    const Vector3d point = root * scene.joints[0].origin_child;
-    const Vector3d linear = root.linear() * p.head<3>();
-    const Vector3d angular = root.linear() * p.segment<3>(3) + point.cross(linear);
+    const Eigen::Isometry3d pose = chain.poses(at.t, at.q)[0];
+    const Vector3d point = pose * root.origin_child;
+    const Vector3d linear = pose.linear() * p.head<3>();
+    const Vector3d angular = pose.linear() * p.segment<3>(3) + point.cross(linear);
     const double size = 1 + linear.norm() + angular.norm();
     EXPECT_LT((all.linear_momentum - linear).norm(), 1e-13 * size);
     EXPECT_LT((all.angular_momentum - angular).norm(), 1e-13 * size);
