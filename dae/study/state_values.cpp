@@ -1,4 +1,5 @@
 #include <momenta/dae/kkt/kkt.h>
+#include <momenta/dae/kkt/tree_factor.h>
 #include <momenta/dae/study/state_values.h>
 
 #include <Eigen/SVD>
@@ -115,10 +116,10 @@ class StateEvaluator {
       refuse(-1);
   }
 
-  /// By the recursions, which see the tree alone. M⁻¹τ is what τ as a momentum gives beyond zero
-  /// momentum.
+  /// Without loops by the recursion; M⁻¹τ is what τ as a momentum gives beyond zero momentum.
   void free_acceleration() {
     if (mechanism_.nv() == 0) return;
+    if (mechanism_.m() > 0) return free_of_loops();
     const double *q = given_.q.data(), t = given_.t;
     if (!e_->open_accelerations(t, q, s_.v.data(), s_.free.data())) refuse(e_->stuck());
     if (given_.tau.isZero(0)) return;
@@ -131,6 +132,20 @@ class StateEvaluator {
       e_->open_momentum_rates(t, q, zero.data(), without.data(), unused.data());
     }
     s_.free += with - without;
+  }
+
+  /// M = Lᵀ D L along the tree.
+  void free_of_loops() {
+    const auto& pattern = mechanism_.kkt_pattern();
+    std::vector<double> values(pattern.mass.size());
+    e_->mass_entries(values.data());
+    TreeFactor factor(pattern, mechanism_.nv());
+    if (const int stuck = factor.factor(values); stuck >= 0) refuse(stuck);
+    s_.free = -s_.bias;
+    factor.inward(s_.free.data());
+    for (int i = 0; i < mechanism_.nv(); ++i)
+      s_.free[i] *= factor.inverse_pivots()[static_cast<std::size_t>(i)];
+    factor.outward(s_.free.data());
   }
 
   void dense_parts() {
