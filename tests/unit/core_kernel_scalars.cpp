@@ -94,7 +94,6 @@ TEST(Kernel, MasslessBodiesBetweenAllKinds) {
   unsigned seed = 0;
   for (const JointKind inner : kinds)
     for (const JointKind outer : kinds) {
-      if (inner == JointKind::planar && outer == JointKind::planar) continue;  // loose but for dust
       RandomTree random(++seed);
       Scene scene = random.scene({.bodies = 3,
                                   .branching = Branching::serial,
