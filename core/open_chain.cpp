@@ -1,4 +1,5 @@
 #include <momenta/core/kernel/accelerations.h>
+#include <momenta/core/kernel/jacobian_pass.h>
 #include <momenta/core/kernel/levels/open_sweeps.h>
 #include <momenta/core/kernel/mass_matrix.h>
 #include <momenta/core/kernel/reactions.h>
@@ -10,6 +11,20 @@
 
 namespace momenta {
 namespace {
+
+/// Workspaces of dual numbers, made when a call first needs them.
+template <class Pass>
+class WhenAsked {
+ public:
+  template <class Links>
+  Pass& get(const Links& links) {
+    if (!pass_) pass_ = std::make_unique<Pass>(links);
+    return *pass_;
+  }
+
+ private:
+  std::unique_ptr<Pass> pass_;
+};
 
 template <class Space>
 struct Kernel {
@@ -23,10 +38,13 @@ struct Kernel {
   std::unique_ptr<Model<Space>> model;
   std::unique_ptr<Links> links;
   std::unique_ptr<OpenSweeps> sweeps;
-  using Pass = ReactionPass<Space>;
-  std::unique_ptr<Pass> reactions;  ///< made when first asked for
+  WhenAsked<ReactionPass<Space>> reactions;
+  WhenAsked<DirectionalPass<Space, 1>> along;
+  WhenAsked<DirectionalPass<Space, 8>> eight;
   Workspace<Space, double> w;
 };
+
+constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 
 Eigen::Vector3d vector(const Vec3<double>& v) {
   return {v[0], v[1], v[2]};
@@ -104,6 +122,7 @@ struct OpenChain::Inside {
       return false;
     }
     singular = -1;
+    failed_state = -1;
     if (k.model->has_body_forces()) {
       body_force_rates(k.w, t, q, static_cast<const double*>(rates));
       for (int i = 0; i < tree.nv; ++i) pdot[i] += k.w.generalised[static_cast<std::size_t>(i)];
@@ -116,6 +135,28 @@ struct OpenChain::Inside {
     const bool ok = k.sweeps->acceleration(t, q, rates, k.w.generalised.data(), udot);
     singular = ok ? -1 : k.sweeps->stuck();
     return ok;
+  }
+
+  /// What a batch left behind.
+  template <class K>
+  bool noted(K& k, bool ok) {
+    singular = ok ? -1 : k.sweeps->stuck();
+    failed_state = ok ? -1 : static_cast<Eigen::Index>(k.sweeps->failed_state());
+    return ok;
+  }
+  /// Forces between bodies: state by state.
+  template <class F>
+  bool one_by_one(Eigen::Index count, F&& f) {
+    Eigen::Index failed = -1;
+    int stuck = -1;
+    for (Eigen::Index i = 0; i < count; ++i)
+      if (!f(i) && failed < 0) {
+        failed = i;
+        stuck = singular;
+      }
+    failed_state = failed;
+    singular = stuck;
+    return failed < 0;
   }
 
   template <class F>
@@ -170,31 +211,68 @@ bool OpenChain::rates(double t, const ConstVectorRef& q, const ConstVectorRef& p
 bool OpenChain::rates_of_states(double t, const ConstStatesRef& q, const ConstStatesRef& p,
                                 StatesRef qdot, StatesRef pdot) {
   return inside_->visit([&](auto& kernel) {
-    const auto count = static_cast<std::size_t>(q.cols());
-    inside_->failed_state = -1;
-    if (!kernel.model->has_body_forces() && q.outerStride() == p.outerStride() &&
-        q.outerStride() == qdot.outerStride() && q.outerStride() == pdot.outerStride()) {
-      const bool ok = kernel.sweeps->momentum(
-          t, States{q.data(), p.data(), qdot.data(), pdot.data(), q.outerStride(), count});
-      inside_->singular = ok ? -1 : kernel.sweeps->stuck();
-      if (!ok) inside_->failed_state = static_cast<Eigen::Index>(kernel.sweeps->failed_state());
-      return ok;
-    }
-    // Forces between bodies: state by state.
-    bool all = true;
+    const auto stride = q.outerStride();
+    if (!kernel.model->has_body_forces() && stride == p.outerStride() &&
+        stride == qdot.outerStride() && stride == pdot.outerStride())
+      return inside_->noted(
+          kernel, kernel.sweeps->momentum(t, {q.data(), p.data(), qdot.data(), pdot.data(), stride,
+                                              static_cast<std::size_t>(q.cols())}));
     Eigen::VectorXd one_qdot(nq()), one_pdot(nv());
-    for (Eigen::Index i = 0; i < q.cols(); ++i) {
-      const Eigen::VectorXd one_q = q.col(i), one_p = p.col(i);
-      if (!rates(t, one_q, one_p, one_qdot, one_pdot)) {
-        if (all) inside_->failed_state = i;
-        all = false;
-        one_qdot.setConstant(std::numeric_limits<double>::quiet_NaN());
-        one_pdot.setConstant(std::numeric_limits<double>::quiet_NaN());
-      }
+    return inside_->one_by_one(q.cols(), [&](Eigen::Index i) {
+      const bool ok = rates(t, q.col(i), p.col(i), one_qdot, one_pdot);
+      if (!ok) one_qdot.setConstant(nothing), one_pdot.setConstant(nothing);
       qdot.col(i) = one_qdot;
       pdot.col(i) = one_pdot;
-    }
-    return all;
+      return ok;
+    });
+  });
+}
+
+bool OpenChain::accelerations_of_states(double t, const ConstStatesRef& q, const ConstStatesRef& u,
+                                        StatesRef udot) {
+  return inside_->visit([&](auto& kernel) {
+    const auto stride = q.outerStride();
+    if (!kernel.model->has_body_forces() && !kernel.model->has_joint_forces &&
+        stride == u.outerStride() && stride == udot.outerStride())
+      return inside_->noted(
+          kernel, kernel.sweeps->acceleration(t, {q.data(), u.data(), nullptr, udot.data(), stride,
+                                                  static_cast<std::size_t>(q.cols())}));
+    Eigen::VectorXd one(nv());
+    return inside_->one_by_one(q.cols(), [&](Eigen::Index i) {
+      const bool ok = accelerations(t, q.col(i), u.col(i), one);
+      if (!ok) one.setConstant(nothing);
+      udot.col(i) = one;
+      return ok;
+    });
+  });
+}
+
+bool OpenChain::jacobian_times(double t, const ConstVectorRef& q, const ConstVectorRef& p,
+                               const ConstVectorRef& dq, const ConstVectorRef& dp, VectorRef dqdot,
+                               VectorRef dpdot) {
+  return inside_->visit([&](auto& kernel) {
+    auto& pass = kernel.along.get(*kernel.links);
+    pass.set(q.data(), p.data());
+    for (std::size_t i = 0; i < pass.q.size(); ++i) pass.q[i].b[0] = dq.data()[i];
+    for (std::size_t i = 0; i < pass.p.size(); ++i) pass.p[i].b[0] = dp.data()[i];
+    const bool ok = pass(t);
+    inside_->singular = ok ? -1 : pass.stuck();
+    if (!ok) return false;
+    for (std::size_t i = 0; i < pass.q.size(); ++i) dqdot.data()[i] = pass.qdot[i].b[0];
+    for (std::size_t i = 0; i < pass.p.size(); ++i) dpdot.data()[i] = pass.pdot[i].b[0];
+    return true;
+  });
+}
+
+Eigen::MatrixXd OpenChain::jacobian(double t, const ConstVectorRef& q, const ConstVectorRef& p) {
+  return inside_->visit([&](auto& kernel) {
+    Eigen::MatrixXd J = Eigen::MatrixXd::Zero(nq() + nv(), nq() + nv());
+    if (!inside_->momentum(kernel, t, q.data(), p.data(), inside_->u.data(), inside_->p.data()))
+      return Eigen::MatrixXd();
+    momenta::jacobian(
+        kernel.eight.get(*kernel.links), *kernel.model, t, q.data(), p.data(),
+        [&](const double* x, double* y) { kernel.sweeps->inverse_mass_times(x, y); }, J);
+    return J;
   });
 }
 
@@ -258,15 +336,13 @@ std::vector<Reaction> OpenChain::reactions(double t, const ConstVectorRef& q,
     momenta_from_rates(kernel.w, t, q.data(), u.data(), p.data());
     if (!inside_->momentum(kernel, t, q.data(), p.data(), rates.data(), pdot.data())) return all;
     momenta::coordinate_rates(*kernel.model, q.data(), u.data(), qdot.data());
-    if (!kernel.reactions)
-      kernel.reactions =
-          std::make_unique<typename std::decay_t<decltype(kernel)>::Pass>(*kernel.links);
-    (*kernel.reactions)(t, q.data(), qdot.data(), p.data(), pdot.data());
+    auto& pass = kernel.reactions.get(*kernel.links);
+    pass(t, q.data(), qdot.data(), p.data(), pdot.data());
     poses_outward(kernel.w, t, q.data(), true);
     all.reserve(tree().bodies.size());
     for (std::size_t k = 0; k < tree().bodies.size(); ++k)
-      all.push_back(
-          reaction_of(tree().bodies[k], *kernel.model, kernel.w, k, kernel.reactions->reaction(k)));
+      if (tree().carries_scene_body(static_cast<int>(k)))
+        all.push_back(reaction_of(tree().bodies[k], *kernel.model, kernel.w, k, pass.reaction(k)));
     return all;
   });
 }
@@ -292,11 +368,13 @@ std::vector<Eigen::Isometry3d> OpenChain::poses(double t, const ConstVectorRef& 
 
 std::string OpenChain::failure() const {
   if (inside_->singular < 0) return "";
-  const auto& b = inside_->tree.bodies[static_cast<std::size_t>(inside_->singular)];
+  const Tree& t = inside_->tree;
+  const auto& b = t.bodies[static_cast<std::size_t>(inside_->singular)];
+  const auto& carried = t.bodies[static_cast<std::size_t>(t.carried_by(b.joint))];
   const std::string state =
       inside_->failed_state < 0 ? "" : "state " + std::to_string(inside_->failed_state) + ": ";
-  return state + "joint '" + b.joint +
-         "' has no inertia to move: the articulated inertia of body '" + b.name +
+  return state + t.joint_in_words(inside_->singular) +
+         " has no inertia to move: the articulated inertia of body '" + carried.name +
          "' along it is not positive";
 }
 

@@ -66,9 +66,20 @@ class OpenChain {
   /// the first.
   bool rates_of_states(double t, const ConstStatesRef& q, const ConstStatesRef& p, StatesRef qdot,
                        StatesRef pdot);
+  /// u̇ of many states at one time: as rates_of_states, by the acceleration recursion.
+  bool accelerations_of_states(double t, const ConstStatesRef& q, const ConstStatesRef& u,
+                               StatesRef udot);
   /// M⁻¹ x (nv), prescribed motion left out: eqs. (44), (45) without Ω_t. False as rates().
   bool inverse_mass_times(double t, const ConstVectorRef& q, const ConstVectorRef& x,
                           VectorRef result);
+  /// Derivative of (q̇, ṗ) along (δq, δp): one evaluation on dual numbers, about the cost of two
+  /// plain ones. False as rates().
+  bool jacobian_times(double t, const ConstVectorRef& q, const ConstVectorRef& p,
+                      const ConstVectorRef& dq, const ConstVectorRef& dp, VectorRef dqdot,
+                      VectorRef dpdot);
+  /// ∂(q̇, ṗ)/∂(q, p), (nq + nv)², exact to rounding; made of M⁻¹ and half the derivatives where
+  /// Hamilton's equations hold. Empty where rates() would be false.
+  Eigen::MatrixXd jacobian(double t, const ConstVectorRef& q, const ConstVectorRef& p);
   /// u (nv) from p: eq. (45). False as rates().
   bool velocities(double t, const ConstVectorRef& q, const ConstVectorRef& p, VectorRef u);
   /// p (nv) from u: eq. (34), O(bodies).

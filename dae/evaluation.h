@@ -45,6 +45,8 @@ class Evaluation {
   /// Values of M (upper triangle) and Φ_q in the order of the mechanism's KKT pattern. After
   /// place().
   virtual void mass_entries(S* values) = 0;
+  /// Diagonal of M (nv), O(bodies). After place().
+  virtual void mass_diagonal(S* values) = 0;
   virtual void constraint_entries(S* values) = 0;
 
   /// (q, p, t) → (u, ṗ) by the recursion of the paper: mechanisms without loops only. False when a

@@ -7,6 +7,7 @@
 #include <momenta/dae/loop/loop_model.h>
 
 #include <memory>
+#include <mutex>
 #include <variant>
 
 namespace momenta {
@@ -48,7 +49,8 @@ class Mechanism {
   int nv() const { return tree_.nv; }        ///< rates, momenta
   int m() const { return rows_; }            ///< loop equations
   bool dense_kkt() const { return dense_; }  ///< how (7) is solved, when there are loops
-  const KktPattern& kkt_pattern() const { return pattern_; }
+  /// Found when first asked for: a long open chain never fills its M.
+  const KktPattern& kkt_pattern() const;
   const std::vector<RowName>& rows() const { return row_names_; }
   /// Rows of one loop and one kind (points, axes or distance) share a unit and so a scale: group
   /// index of each row.
@@ -84,7 +86,8 @@ class Mechanism {
   std::variant<Cast<Planar>, Cast<Spatial>> cast_;
   int rows_ = 0;
   bool dense_ = true;
-  KktPattern pattern_;
+  mutable KktPattern pattern_;
+  mutable std::once_flag pattern_known_;
   std::vector<RowName> row_names_;
   std::vector<int> row_groups_;
 };

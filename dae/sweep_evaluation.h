@@ -91,6 +91,7 @@ class Mechanism::SweepEvaluation final : public Evaluation<S> {
   void mass_entries(S* values) override {
     mass_matrix_inward(w_, [&](int, int, const S& value) { *values++ = value; });
   }
+  void mass_diagonal(S* values) override { mass_diagonal_inward(w_, values); }
   void constraint_entries(S* values) override {
     each_constraint_entry([&](int, int, const S& value) { *values++ = value; });
   }

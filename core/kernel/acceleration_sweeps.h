@@ -38,9 +38,7 @@ class AccelerationSweeps<Spatial, S> {
   using Space = Spatial;
   explicit AccelerationSweeps(const LinkTree& tree)
       : tree_(&tree),
-        angle_(tree.links.size()),
-        sine_(tree.links.size()),
-        cosine_(tree.links.size()),
+        angles_(tree.links.size()),
         pins_(tree.links.size()),
         balls_(tree.balls.size()),
         joints_(static_cast<std::size_t>(tree.records)),
@@ -53,7 +51,7 @@ class AccelerationSweeps<Spatial, S> {
   template <class In, class InTau, class Out>
   bool operator()(const S& t, const In& q, const In& u, const InTau& tau, Out udot) {
     place_links(
-        *tree_, t, q, angle_, sine_, cosine_,
+        *tree_, t, q, angles_,
         joints_, [&](std::size_t record) -> auto& { return balls_[record].R; });
     stuck_ = tree_->stuck;
     if (stuck_ >= 0) return false;
@@ -92,7 +90,7 @@ class AccelerationSweeps<Spatial, S> {
   }
 
   const LinkTree* tree_;
-  std::vector<S> angle_, sine_, cosine_;
+  Angles<S> angles_;
   std::vector<PinAcceleration<S>> pins_;
   std::vector<BallAcceleration<S>> balls_;
   std::vector<JointRecord<Spatial, S>> joints_;
@@ -125,7 +123,7 @@ void AccelerationSweeps<Spatial, S>::velocities(const In& u) {
   const Link* links = tree_->links.data();
   const S zero(0.0);
   S ox = zero, oy = zero, oz = zero, x;
-  for (std::size_t k = 0; k < angle_.size(); ++k) {
+  for (std::size_t k = 0; k < angles_.size(); ++k) {
     const Link& l = links[k];
     if (l.parent >= 0 && !l.first) {
       const auto& from =
@@ -170,7 +168,7 @@ void AccelerationSweeps<Spatial, S>::velocities(const In& u) {
         w.clz = pz - (dx * ox + dy * oy);
         w.cox = oy * own;
         w.coy = -(ox * own);
-        const S c = cosine_[k], s = sine_[k];
+        const S c = angles_.cosine(k), s = angles_.sine(k);
         x = c * ox + s * oy;
         oy = c * oy - s * ox;
         ox = x;
@@ -210,7 +208,7 @@ void AccelerationSweeps<Spatial, S>::any_velocity(std::size_t k, const In& u,
       w.clz = p[2] - (dx * W.w[0] + dy * W.w[1]);
       w.cox = W.w[1] * own;
       w.coy = -(W.w[0] * own);
-      momenta::turn_back<2>(W.w, cosine_[k], sine_[k]);
+      momenta::turn_back<2>(W.w, angles_.cosine(k), angles_.sine(k));
     }
     omega = W.w;
     omega[2] += u[l.u];
@@ -251,10 +249,9 @@ void AccelerationSweeps<Spatial, S>::any_velocity(std::size_t k, const In& u,
 template <class S>
 template <class InTau>
 bool AccelerationSweeps<Spatial, S>::inward(const InTau& tau) {
-  for (auto& slot : slots_) slot = {};
   const Link* links = tree_->links.data();
   Cargo<S> cargo{};
-  for (std::size_t k = angle_.size(); k > 0;) {
+  for (std::size_t k = angles_.size(); k > 0;) {
     switch (links[k - 1].path) {
       case Path::chain_general:
         k = chain_inward<Turn::general>(k, tau, cargo);
@@ -344,8 +341,8 @@ std::size_t AccelerationSweeps<Spatial, S>::chain_inward(std::size_t end, const 
     eliminate_pin(cargo.M, inverse, h, r.M);
     w.h = h;
     eliminate_bias(cargo, S(tau[l.u]), inverse, w, r);
-    turn_pin(r, cosine_[k], sine_[k], l.d, w);
-    carry<turn, false>(r, l.ca, l.sa, l.a, cargo);
+    turn_pin(r, angles_.cosine(k), angles_.sine(k), l.d, w);
+    carry<turn, false>(r, l, cargo);
   } while (links[k - 1].path == static_cast<Path>(turn));
   from = cargo;
   return k;
@@ -374,9 +371,9 @@ bool AccelerationSweeps<Spatial, S>::pin_inward(std::size_t k, const InTau& tau,
   }
   eliminate_bias(cargo, S(tau[l.u]), inverse, w, r);
   if (l.parent < 0) return true;
-  turn_pin(r, cosine_[k], sine_[k], l.d, w);
+  turn_pin(r, angles_.cosine(k), angles_.sine(k), l.d, w);
   carry_any<false>(l, body(k).edge, r, cargo);
-  if (!l.first) add<false>(slot_of_parent(l), cargo);
+  if (!l.first) leave<false>(l, slot_of_parent(l), cargo);
   return true;
 }
 
@@ -396,7 +393,7 @@ bool AccelerationSweeps<Spatial, S>::ball_inward(std::size_t k, const InTau& tau
   if (l.parent < 0) return true;
   const Vec3<S> f = w.bf + Vec3<S>{{cargo.Dfx, cargo.Dfy, cargo.Dfz}} + w.h * e + A * w.cl;
   carry_ball(tree_->balls[static_cast<std::size_t>(l.record)].origin, w.R, A, f, forces, cargo);
-  if (!l.first) add<false>(slot_of_parent(l), cargo);
+  if (!l.first) leave<false>(l, slot_of_parent(l), cargo);
   return true;
 }
 
@@ -421,7 +418,7 @@ bool AccelerationSweeps<Spatial, S>::general_inward(std::size_t k, const InTau& 
   D += reduced_momentum<Spatial>(b, x, x.c);
   set_cargo(cargo, Spatial::to_parent(b.edge, b.kind, x.edge, M),
             Spatial::to_parent(b.edge, b.kind, x.edge, D), Vec3<S>{});
-  if (!l.first) add<false>(slot_of_parent(l), cargo);
+  if (!l.first) leave<false>(l, slot_of_parent(l), cargo);
   return true;
 }
 
@@ -432,7 +429,7 @@ void AccelerationSweeps<Spatial, S>::outward(Out udot) {
   const auto& gravity = tree_->model->gravity;
   const S zero(0.0);
   S vx = zero, vy = zero, vz = zero, ox = zero, oy = zero, oz = zero, x;
-  for (std::size_t k = 0; k < angle_.size(); ++k) {
+  for (std::size_t k = 0; k < angles_.size(); ++k) {
     const Link& l = links[k];
     if (l.parent >= 0 && !l.first) {
       const auto& from =
@@ -460,7 +457,7 @@ void AccelerationSweeps<Spatial, S>::outward(Out udot) {
       oz = here.oz;
     } else {
       const PinAcceleration<S>& w = pins_[k];
-      const S c = cosine_[k], s = sine_[k];
+      const S c = angles_.cosine(k), s = angles_.sine(k);
       if (l.parent < 0) {
         const Vec3<double>& at = tree_->weight[k];
         vx = -(c * at[0] + s * at[1]);

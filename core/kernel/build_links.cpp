@@ -64,6 +64,11 @@ LinkTree build_links(const Model<Spatial>& model) {
     l.turn = turn_of(b.edge);
     l.ca = b.edge.cos_alpha;
     l.sa = b.edge.sin_alpha;
+    l.cc = l.ca * l.ca;
+    l.cs = l.ca * l.sa;
+    l.ss = l.sa * l.sa;
+    l.cs2 = 2 * l.cs;
+    l.ss2 = 2 * l.ss;
     l.a = b.edge.a;
     l.d = b.d0;
     l.screwed = b.edge.about_z;
@@ -104,6 +109,14 @@ LinkTree build_links(const Model<Spatial>& model) {
     l.record = static_cast<int>(tree.tips.size());
     tree.tips.push_back(tip_of(l));
     if (!(l.J[5] > 0) && tree.stuck < 0) tree.stuck = static_cast<int>(k);
+  }
+  std::vector<bool> met(n, false);
+  for (std::size_t k = n; k-- > 0;) {
+    auto& l = tree.links[k];
+    if (l.first || l.parent < 0) continue;
+    const auto parent = static_cast<std::size_t>(l.parent);
+    l.opens = !met[parent];
+    met[parent] = true;
   }
   return tree;
 }

@@ -33,11 +33,13 @@ enum class Path : std::uint8_t { chain_general, chain_right, chain_parallel, any
 
 struct Link {
   double ca = 1, sa = 0, a = 0;  ///< cosine and sine of α, shift along x [m]
-  double d = 0;                  ///< of a pin: shift along its axis [m]
-  double m = 0;                  ///< [kg]
-  double moment[3]{};            ///< constant part of the subtree's first moment about O [kg m]
-  double c[3]{};                 ///< the body's own first moment m OG [kg m]
-  double J[6]{};                 ///< about O: xx xy xz yy yz zz [kg m²]
+  double cc = 1, cs = 0, ss = 0, cs2 = 0,
+         ss2 = 0;      ///< cos²α, cos α sin α, sin²α; the last two twice
+  double d = 0;        ///< of a pin: shift along its axis [m]
+  double m = 0;        ///< [kg]
+  double moment[3]{};  ///< constant part of the subtree's first moment about O [kg m]
+  double c[3]{};       ///< the body's own first moment m OG [kg m]
+  double J[6]{};       ///< about O: xx xy xz yy yz zz [kg m²]
   int q = 0, u = 0;
   int parent = -1;
   int slot = -1;    ///< where children beside the first leave what they carry; −1: none do
@@ -46,6 +48,7 @@ struct Link {
   Turn turn = Turn::general;
   bool first = false;      ///< its parent is the body before it
   bool tip = false;        ///< carries nothing
+  bool opens = false;      ///< the last child of its parent, which the inward sweep meets first
   bool screwed = false;    ///< a screw about the parent's z comes first
   bool has_force = false;  ///< spring, damper or torque on the joint
   Path path = Path::any;

@@ -52,9 +52,7 @@ class MomentumSweeps<Spatial, S> {
   using Space = Spatial;
   explicit MomentumSweeps(const LinkTree& tree)
       : tree_(&tree),
-        angle_(tree.links.size()),
-        sine_(tree.links.size()),
-        cosine_(tree.links.size()),
+        angles_(tree.links.size()),
         pins_(tree.links.size()),
         balls_(tree.balls.size()),
         joints_(static_cast<std::size_t>(tree.records)),
@@ -66,7 +64,7 @@ class MomentumSweeps<Spatial, S> {
   template <class In, class Out>
   bool operator()(const S& t, const In& q, const In& p, Out u, Out pdot) {
     place_links(
-        *tree_, t, q, angle_, sine_, cosine_,
+        *tree_, t, q, angles_,
         joints_, [&](std::size_t record) -> auto& { return balls_[record].R; });
     stuck_ = tree_->stuck;
     if (stuck_ >= 0) return false;
@@ -102,9 +100,12 @@ class MomentumSweeps<Spatial, S> {
   __attribute__((noinline)) void general_outward(std::size_t k, const In& q, Out u, Out pdot,
                                                  OutwardCargo<S>& cargo);
   const Model<Spatial>::Body& body(std::size_t k) const { return tree_->model->bodies[k]; }
+  Cargo<S>& slot_of_parent(const Link& l) {
+    return slots_[static_cast<std::size_t>(tree_->links[static_cast<std::size_t>(l.parent)].slot)];
+  }
 
   const LinkTree* tree_;
-  std::vector<S> angle_, sine_, cosine_;
+  Angles<S> angles_;
   std::vector<PinRecord<S>> pins_;
   std::vector<BallRecord<S>> balls_;
   std::vector<JointRecord<Spatial, S>> joints_;
@@ -162,10 +163,9 @@ MOMENTA_INLINE void turn_pin(Eliminated<S>& r, const S& c, const S& s, double d,
 template <class S>
 template <bool Gravity, class In>
 bool MomentumSweeps<Spatial, S>::inward(const In& p) {
-  for (auto& slot : slots_) slot = {};
   const Link* links = tree_->links.data();
   Cargo<S> cargo{};  // of the body after the next one
-  for (std::size_t k = angle_.size(); k > 0;) {
+  for (std::size_t k = angles_.size(); k > 0;) {
     switch (links[k - 1].path) {
       case Path::chain_general:
         k = chain_inward<Turn::general, Gravity>(k, p, cargo);
@@ -213,8 +213,8 @@ std::size_t MomentumSweeps<Spatial, S>::chain_inward(std::size_t end, const In& 
     }
     Eliminated<S> r;
     eliminate_pin<Gravity>(cargo, p[l.u], S(1.0) / cargo.M.Izz, w, r);
-    turn_pin<Gravity>(r, cosine_[k], sine_[k], l.d, w);
-    carry<turn, Gravity>(r, l.ca, l.sa, l.a, cargo);
+    turn_pin<Gravity>(r, angles_.cosine(k), angles_.sine(k), l.d, w);
+    carry<turn, Gravity>(r, l, cargo);
   } while (links[k - 1].path == static_cast<Path>(turn));
   from = cargo;
   return k;
@@ -266,12 +266,9 @@ bool MomentumSweeps<Spatial, S>::pin_inward(std::size_t k, const In& p, Cargo<S>
     }
     eliminate_pin<Gravity>(cargo, pk, inverse, w, r);
   }
-  turn_pin<Gravity>(r, cosine_[k], sine_[k], l.d, w);
+  turn_pin<Gravity>(r, angles_.cosine(k), angles_.sine(k), l.d, w);
   carry_any<Gravity>(l, body(k).edge, r, cargo);
-  if (!l.first)
-    add<Gravity>(
-        slots_[static_cast<std::size_t>(tree_->links[static_cast<std::size_t>(l.parent)].slot)],
-        cargo);
+  if (!l.first) leave<Gravity>(l, slot_of_parent(l), cargo);
   return true;
 }
 
@@ -279,7 +276,7 @@ template <class S>
 template <bool Gravity, class In, class Out>
 bool MomentumSweeps<Spatial, S>::outward(const In& q, Out u, Out pdot) {
   const Link* links = tree_->links.data();
-  const std::size_t n = angle_.size();
+  const std::size_t n = angles_.size();
   // Velocity of O, angular velocity, gravity: of the body before, then of this one.
   const S zero(0.0);
   S vx = zero, vy = zero, vz = zero, ox = zero, oy = zero, oz = zero, gx = zero, gy = zero,
@@ -320,7 +317,7 @@ bool MomentumSweeps<Spatial, S>::outward(const In& q, Out u, Out pdot) {
       }
     } else {
       const PinRecord<S>& w = pins_[k];
-      const S c = cosine_[k], s = sine_[k];
+      const S c = angles_.cosine(k), s = angles_.sine(k);
       S x, wz, own, rate;
       if (l.parent < 0) {
         rate = zero;
@@ -407,10 +404,7 @@ bool MomentumSweeps<Spatial, S>::ball_inward(std::size_t k, const In& p, Cargo<S
     cargo.Gy = G[1];
     cargo.Gz = G[2];
   }
-  if (!l.first)
-    add<Gravity>(
-        slots_[static_cast<std::size_t>(tree_->links[static_cast<std::size_t>(l.parent)].slot)],
-        cargo);
+  if (!l.first) leave<Gravity>(l, slot_of_parent(l), cargo);
   return true;
 }
 
@@ -473,10 +467,7 @@ bool MomentumSweeps<Spatial, S>::general_inward(std::size_t k, const In& p, Carg
     G = Spatial::moment_to_parent(b.edge, b.kind, x.edge, x.moment, b.subtree_mass);
   set_cargo(cargo, Spatial::to_parent(b.edge, b.kind, x.edge, M),
             Spatial::to_parent(b.edge, b.kind, x.edge, D), G);
-  if (!l.first)
-    add<Gravity>(
-        slots_[static_cast<std::size_t>(tree_->links[static_cast<std::size_t>(l.parent)].slot)],
-        cargo);
+  if (!l.first) leave<Gravity>(l, slot_of_parent(l), cargo);
   return true;
 }
 
@@ -520,10 +511,9 @@ template <class S>
 template <class In, class Out>
 void MomentumSweeps<Spatial, S>::inverse_mass_times(const In& x, Out result) {
   // The same two sweeps without what M* cost: D alone inward, rates outward.
-  for (auto& slot : slots_) slot = {};
   const Link* links = tree_->links.data();
   Spatial::Force<S> D;
-  for (std::size_t k = angle_.size(); k-- > 0;) {
+  for (std::size_t k = angles_.size(); k-- > 0;) {
     const Link& l = links[k];
     if (l.tip) D = {};
     if (l.slot >= 0) D += remainder_of(slots_[static_cast<std::size_t>(l.slot)]);
@@ -535,7 +525,7 @@ void MomentumSweeps<Spatial, S>::inverse_mass_times(const In& x, Out result) {
       if (l.parent < 0) continue;
       D.f += Vec3<S>{{w.h.fx * e, w.h.fy * e, w.h.fz * e}};
       D.n += Vec3<S>{{w.h.nx * e, w.h.ny * e, e}};
-      Spatial::force_inward<2>(D, cosine_[k], sine_[k], S(l.d));
+      Spatial::force_inward<2>(D, angles_.cosine(k), angles_.sine(k), S(l.d));
       Spatial::Edge<S> constant;
       D = Spatial::to_parent(b.edge, JointKind::weld, constant, D);
     } else if (l.kind == LinkKind::ball) {
@@ -558,12 +548,11 @@ void MomentumSweeps<Spatial, S>::inverse_mass_times(const In& x, Out result) {
     if (!l.first) {
       Cargo<S> here{};
       set_cargo(here, {}, D, {});
-      add<false>(slots_[static_cast<std::size_t>(links[static_cast<std::size_t>(l.parent)].slot)],
-                 here);
+      leave<false>(l, slot_of_parent(l), here);
     }
   }
   Spatial::Motion<S> V;
-  for (std::size_t k = 0; k < angle_.size(); ++k) {
+  for (std::size_t k = 0; k < angles_.size(); ++k) {
     const Link& l = links[k];
     const auto& b = body(k);
     if (l.parent < 0) {
@@ -578,7 +567,7 @@ void MomentumSweeps<Spatial, S>::inverse_mass_times(const In& x, Out result) {
       if (l.parent >= 0) {
         Spatial::Edge<S> constant;
         V = Spatial::to_child(b.edge, JointKind::weld, constant, V);
-        Spatial::motion_outward<2>(V, cosine_[k], sine_[k], S(l.d));
+        Spatial::motion_outward<2>(V, angles_.cosine(k), angles_.sine(k), S(l.d));
         const S wz = w.y0 - (w.h.fx * V.v[0] + w.h.fy * V.v[1] + w.h.fz * V.v[2] + w.h.nx * V.w[0] +
                              w.h.ny * V.w[1]);
         result[l.u] = wz - V.w[2];

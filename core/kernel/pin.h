@@ -41,6 +41,15 @@ MOMENTA_INLINE void add(Cargo<S>& a, const Cargo<S>& b) {
   }
 }
 
+/// What a child beside the first leaves in its parent's slot.
+template <bool Gravity, class S>
+MOMENTA_INLINE void leave(const Link& l, Cargo<S>& slot, const Cargo<S>& cargo) {
+  if (l.opens)
+    slot = cargo;
+  else
+    add<Gravity>(slot, cargo);
+}
+
 template <class S>
 MOMENTA_INLINE void set_tip(const Tip& tip, PinColumn<S>& h, Reduced<S>& m) {
   m = {S(tip.M.Axx), S(tip.M.Axy), S(tip.M.Axz), S(tip.M.Ayy), S(tip.M.Ayz),
@@ -69,12 +78,13 @@ MOMENTA_INLINE void screw_inward(const Spatial::EdgeConstants& e, Cargo<S>& carg
 
 /// The screw about x to the parent.
 template <Turn turn, bool Gravity, class S>
-MOMENTA_INLINE void carry(const Eliminated<S>& r, double ca, double sa, double a, Cargo<S>& cargo) {
+MOMENTA_INLINE void carry(const Eliminated<S>& r, const Link& l, Cargo<S>& cargo) {
+  const double ca = l.ca, sa = l.sa, a = l.a;
   cargo.Dfx = r.fx;
   cargo.Dnx = r.nx;
   if constexpr (Gravity) cargo.Gx = r.Gx;
   if constexpr (turn == Turn::general) {
-    turn_x(r.M, ca, sa, cargo.M);
+    turn_x(r.M, l, cargo.M);
     shift_x(cargo.M, a);
     cargo.Dfy = ca * r.fy - sa * r.fz;
     cargo.Dfz = sa * r.fy + ca * r.fz;
@@ -151,13 +161,13 @@ MOMENTA_INLINE void carry_any(const Link& l, const Spatial::EdgeConstants& e,
                               const Eliminated<S>& r, Cargo<S>& cargo) {
   switch (l.turn) {
     case Turn::general:
-      carry<Turn::general, Gravity>(r, l.ca, l.sa, l.a, cargo);
+      carry<Turn::general, Gravity>(r, l, cargo);
       break;
     case Turn::right:
-      carry<Turn::right, Gravity>(r, l.ca, l.sa, l.a, cargo);
+      carry<Turn::right, Gravity>(r, l, cargo);
       break;
     case Turn::parallel:
-      carry<Turn::parallel, Gravity>(r, l.ca, l.sa, l.a, cargo);
+      carry<Turn::parallel, Gravity>(r, l, cargo);
       break;
     case Turn::tilted:
       tilt_inward(e, r, cargo);
@@ -306,15 +316,14 @@ MOMENTA_INLINE void constants_outward(const Link& l, const Spatial::EdgeConstant
 
 /// Sines and cosines of all pins, turned axes of ball joints (`axes(record)`), edges of the others.
 template <class S, class In, class Axes>
-void place_links(const LinkTree& tree, const S& t, const In& q, std::vector<S>& angle,
-                 std::vector<S>& sine, std::vector<S>& cosine,
+void place_links(const LinkTree& tree, const S& t, const In& q, Angles<S>& angles,
                  std::vector<JointRecord<Spatial, S>>& joints, Axes&& axes) {
   const Link* links = tree.links.data();
   const double* theta0 = tree.theta0.data();
-  const std::size_t n = angle.size();
+  const std::size_t n = angles.size();
   for (std::size_t k = 0; k < n; ++k)
-    angle[k] = links[k].kind == LinkKind::pin ? q[links[k].q] + theta0[k] : S(0.0);
-  sines_and_cosines(angle.data(), sine.data(), cosine.data(), n);
+    angles.set(k, links[k].kind == LinkKind::pin ? q[links[k].q] + theta0[k] : S(0.0));
+  angles.turn();
   if (joints.empty() && tree.balls.empty()) return;
   for (std::size_t k = 0; k < n; ++k) {
     if (links[k].kind == LinkKind::pin) continue;

@@ -48,9 +48,7 @@ class PlanarPlaces {
  public:
   explicit PlanarPlaces(const PlanarTree& tree)
       : tree_(&tree),
-        angle_(tree.links.size()),
-        sine_(tree.links.size()),
-        cosine_(tree.links.size()),
+        angles_(tree.links.size()),
         pins_(tree.links.size()),
         joints_(static_cast<std::size_t>(tree.records)),
         slots_(static_cast<std::size_t>(tree.slots)),
@@ -61,13 +59,13 @@ class PlanarPlaces {
   template <class In>
   void place(const S& t, const In& q) {
     const PlanarLink* links = tree_->links.data();
-    const std::size_t n = angle_.size();
+    const std::size_t n = angles_.size();
     for (std::size_t k = 0; k < n; ++k) {
       const PlanarLink& l = links[k];
       S angle(tree_->theta0[k]);
-      if (l.parent >= 0) angle += angle_[static_cast<std::size_t>(l.parent)];
+      if (l.parent >= 0) angle += angles_[static_cast<std::size_t>(l.parent)];
       if (l.pin) {
-        angle_[k] = angle + l.sign * q[l.q];
+        angles_.set(k, angle + l.sign * q[l.q]);
         continue;
       }
       const auto& b = body(k);
@@ -77,9 +75,9 @@ class PlanarPlaces {
                   x.drive_acceleration);
       x.value = b.drive >= 0 ? x.drive : b.nq == 1 ? S(q[b.q]) : S(0.0);
       if (b.kind == JointKind::revolute) angle += l.sign * x.value;
-      angle_[k] = angle;
+      angles_.set(k, angle);
     }
-    sines_and_cosines(angle_.data(), sine_.data(), cosine_.data(), n);
+    angles_.turn();
     if (joints_.empty()) return;
     for (std::size_t k = 0; k < n; ++k) {
       const PlanarLink& l = links[k];
@@ -97,13 +95,14 @@ class PlanarPlaces {
   Vec2<S> turned(int parent, double x, double y) const {
     if (parent < 0) return {{S(x), S(y)}};
     const auto k = static_cast<std::size_t>(parent);
-    return {{cosine_[k] * x - sine_[k] * y, sine_[k] * x + cosine_[k] * y}};
+    return {
+        {angles_.cosine(k) * x - angles_.sine(k) * y, angles_.sine(k) * x + angles_.cosine(k) * y}};
   }
   /// O_K − O_L while the joint rests at zero.
   MOMENTA_INLINE Vec2<S> step(const PlanarLink& l) const {
     if (!l.first) return turned(l.parent, l.x, l.y);
     const auto k = static_cast<std::size_t>(l.parent);
-    return {{l.x * cosine_[k], l.x * sine_[k]}};
+    return {{l.x * angles_.cosine(k), l.x * angles_.sine(k)}};
   }
   const Model<Planar>::Body& body(std::size_t k) const { return tree_->model->bodies[k]; }
   PlanarCargo<S>& slot_of_parent(const PlanarLink& l) {
@@ -126,6 +125,14 @@ class PlanarPlaces {
     a.Dy = a.Dy + b.Dy;
     a.Dn = a.Dn + b.Dn;
     a.G = a.G + b.G;
+  }
+  /// What a child beside the first leaves in its parent's slot.
+  static MOMENTA_INLINE void leave(const PlanarLink& l, PlanarCargo<S>& slot,
+                                   const PlanarCargo<S>& a) {
+    if (l.opens)
+      slot = a;
+    else
+      add(slot, a);
   }
   static MOMENTA_INLINE void add_body(PlanarCargo<S>& a, const PlanarLink& l, const S& kx,
                                       const S& ky) {
@@ -155,7 +162,7 @@ class PlanarPlaces {
   }
 
   const PlanarTree* tree_;
-  std::vector<S> angle_, sine_, cosine_;
+  Angles<S> angles_;
   std::vector<PlanarPin<S>> pins_;
   std::vector<JointRecord<Planar, S>> joints_;
   std::vector<PlanarCargo<S>> slots_;
@@ -200,7 +207,6 @@ class MomentumSweeps<Planar, S> : PlanarPlaces<S> {
 template <class S>
 template <class In>
 bool MomentumSweeps<Planar, S>::inward(const In& p) {
-  for (auto& slot : slots_) slot = {};
   const PlanarLink* links = tree_->links.data();
   PlanarCargo<S> a{};
   for (std::size_t k = pins_.size(); k-- > 0;) {
@@ -215,7 +221,7 @@ bool MomentumSweeps<Planar, S>::inward(const In& p) {
       continue;
     }
     PlanarPin<S>& w = pins_[k];
-    const S c = Base::cosine_[k], s = Base::sine_[k];
+    const S c = Base::angles_.cosine(k), s = Base::angles_.sine(k);
     const S kx = l.cx * c - l.cy * s, ky = l.cx * s + l.cy * c;
     if (l.tip) a = {};
     Base::add_body(a, l, kx, ky);
@@ -247,7 +253,7 @@ bool MomentumSweeps<Planar, S>::inward(const In& p) {
     w.rx = r[0];
     w.ry = r[1];
     Base::carry(a, w.rx, w.ry, pk);
-    if (!l.first) Base::add(Base::slot_of_parent(l), a);
+    if (!l.first) Base::leave(l, Base::slot_of_parent(l), a);
   }
   return true;
 }
@@ -258,7 +264,7 @@ bool MomentumSweeps<Planar, S>::general_inward(std::size_t k, const In& p, Plana
   const PlanarLink& l = tree_->links[k];
   const auto& b = Base::body(k);
   auto& x = joints_[static_cast<std::size_t>(l.record)];
-  const S c = Base::cosine_[k], s = Base::sine_[k];
+  const S c = Base::angles_.cosine(k), s = Base::angles_.sine(k);
   if (l.tip) a = {};
   Base::add_body(a, l, l.cx * c - l.cy * s, l.cx * s + l.cy * c);
   a.G += l.wx * c + l.wy * s;
@@ -280,7 +286,7 @@ bool MomentumSweeps<Planar, S>::general_inward(std::size_t k, const In& p, Plana
   // The subtree's weight acts at the parent wherever this joint has moved to.
   const auto& g = tree_->model->gravity;
   a.G += b.subtree_mass * (x.edge.r[0] * g[1] - x.edge.r[1] * g[0]);
-  if (!l.first) Base::add(Base::slot_of_parent(l), a);
+  if (!l.first) Base::leave(l, Base::slot_of_parent(l), a);
   return true;
 }
 
@@ -358,7 +364,6 @@ void MomentumSweeps<Planar, S>::general_outward(std::size_t k, const In& q, Out 
 template <class S>
 template <class In, class Out>
 void MomentumSweeps<Planar, S>::inverse_mass_times(const In& x, Out result) {
-  for (auto& slot : slots_) slot = {};
   const PlanarLink* links = tree_->links.data();
   Planar::Force<S> D;
   for (std::size_t k = pins_.size(); k-- > 0;) {
@@ -385,10 +390,11 @@ void MomentumSweeps<Planar, S>::inverse_mass_times(const In& x, Out result) {
       D = Planar::to_parent({}, b.kind, joint.edge, D);
     }
     if (l.first) continue;
-    auto& slot = Base::slot_of_parent(l);
-    slot.Dx += D.f[0];
-    slot.Dy += D.f[1];
-    slot.Dn += D.n;
+    PlanarCargo<S> here{};
+    here.Dx = D.f[0];
+    here.Dy = D.f[1];
+    here.Dn = D.n;
+    Base::leave(l, Base::slot_of_parent(l), here);
   }
   Planar::Motion<S> V;
   for (std::size_t k = 0; k < pins_.size(); ++k) {
@@ -466,7 +472,7 @@ void AccelerationSweeps<Planar, S>::velocities(const In& u) {
     else if (!l.first)
       omega = Base::motion_of_parent(l).omega;
     PlanarPin<S>& w = pins_[k];
-    const S c = Base::cosine_[k], s = Base::sine_[k], parent_squared = omega * omega;
+    const S c = Base::angles_.cosine(k), s = Base::angles_.sine(k), parent_squared = omega * omega;
     if (l.pin) {
       const Vec2<S> r = Base::step(l);
       w.rx = r[0];
@@ -498,7 +504,6 @@ void AccelerationSweeps<Planar, S>::velocities(const In& u) {
 template <class S>
 template <class InTau>
 bool AccelerationSweeps<Planar, S>::inward(const InTau& tau) {
-  for (auto& slot : slots_) slot = {};
   const PlanarLink* links = tree_->links.data();
   PlanarCargo<S> a{};
   for (std::size_t k = pins_.size(); k-- > 0;) {
@@ -542,7 +547,7 @@ bool AccelerationSweeps<Planar, S>::inward(const InTau& tau) {
       D += reduced_momentum<Planar>(b, x, x.c);
       Base::carry(a, x, M, D);
     }
-    if (!l.first) Base::add(Base::slot_of_parent(l), a);
+    if (!l.first) Base::leave(l, Base::slot_of_parent(l), a);
   }
   return true;
 }
@@ -552,7 +557,7 @@ template <class Out>
 void AccelerationSweeps<Planar, S>::outward(Out udot) {
   const PlanarLink* links = tree_->links.data();
   const auto& g = tree_->model->gravity;
-  S vx, vy, alpha;
+  S vx{}, vy{}, alpha{};
   for (std::size_t k = 0; k < pins_.size(); ++k) {
     const PlanarLink& l = links[k];
     if (l.parent < 0) {

@@ -4,12 +4,12 @@
 //   T_r,K = d/dt P*_K + Ω_K × P*_K − T*_K
 //
 // P*_K is known as a function of (q, p, t), so its rate is its derivative along (q̇, ṗ, 1): the
-// momentum recursion on numbers a + b ε gives u and u̇ at once, P* = Σ M Ω gives P* and its rate. The
-// accelerations of drives come in through t. No acceleration-level equation is written anywhere; the
-// Newton-Euler recursion of accelerations.h is the check.
+// momentum recursion on numbers a + b ε gives u and u̇ at once, P* = Σ M Ω gives P* and its rate.
+// The accelerations of drives come in through t. No acceleration-level equation is written
+// anywhere; the Newton-Euler recursion of accelerations.h is the check.
 //
-// T_r,K acts at O_K from the parent on body K and holds what acts along the joint too: Eᵀ T_r is its
-// spring, damper and torque, or the force of its drive.
+// T_r,K acts at O_K from the parent on body K and holds what acts along the joint too: Eᵀ T_r is
+// its spring, damper and torque, or the force of its drive.
 
 #include <momenta/core/kernel/momentum_recursion.h>
 

@@ -142,12 +142,12 @@ MOMENTA_INLINE void turn_and_shift_z(Reduced<S>& r, const S& c, const S& s, doub
   r.Ixy = r.Ixy + d * (hxx - r.Hyy);
 }
 
-/// Turn about x by any α.
-template <class S>
-MOMENTA_INLINE void turn_x(const Reduced<S>& r, double ca, double sa, Full<S>& m) {
-  const double cc = ca * ca, cs = ca * sa, ss = sa * sa;
+/// Turn about x by the link's α.
+template <class Link, class S>
+MOMENTA_INLINE void turn_x(const Reduced<S>& r, const Link& l, Full<S>& m) {
+  const double ca = l.ca, sa = l.sa;
   const S difference = r.Ayy - r.Azz;
-  const S t = ss * difference + (cs + cs) * r.Ayz, u = cs * difference - (ss + ss) * r.Ayz;
+  const S t = l.ss * difference + l.cs2 * r.Ayz, u = l.cs * difference - l.ss2 * r.Ayz;
   m.Axx = r.Axx;
   m.Ayy = r.Ayy - t;
   m.Azz = r.Azz + t;
@@ -159,7 +159,7 @@ MOMENTA_INLINE void turn_x(const Reduced<S>& r, double ca, double sa, Full<S>& m
   m.Hzx = sa * r.Hyx + ca * r.Hzx;
   m.Hxy = ca * r.Hxy;
   m.Hxz = sa * r.Hxy;
-  const S yy = cc * r.Hyy, yz = cs * r.Hyy, zy = cs * r.Hzy, zz = cc * r.Hzy;
+  const S yy = l.cc * r.Hyy, yz = l.cs * r.Hyy, zy = l.cs * r.Hzy, zz = l.cc * r.Hzy;
   m.Hyy = yy - zy;
   m.Hzz = r.Hyy - m.Hyy;
   m.Hzy = yz + zz;
@@ -167,8 +167,8 @@ MOMENTA_INLINE void turn_x(const Reduced<S>& r, double ca, double sa, Full<S>& m
   m.Ixx = r.Ixx;
   m.Ixy = ca * r.Ixy;
   m.Ixz = sa * r.Ixy;
-  m.Iyy = cc * r.Iyy;
-  m.Iyz = cs * r.Iyy;
+  m.Iyy = l.cc * r.Iyy;
+  m.Iyz = l.cs * r.Iyy;
   m.Izz = r.Iyy - m.Iyy;
 }
 

@@ -7,6 +7,7 @@
 #include <momenta/core/scalar/pack.h>
 
 #include <cstddef>
+#include <vector>
 
 namespace momenta {
 
@@ -87,33 +88,53 @@ constexpr int native_width = Level >= 4   ? 8
                              : Level >= 3 ? 4
                                           : 2;
 
-/// cosine[i], sine[i] of angle[i], i < n. For a single state at a level the joints fill the lanes.
+/// Angles of one sweep and their sines and cosines, padded to whole registers: for a single state
+/// at a level the joints fill the lanes, and the padding is computed along.
 template <class S>
-MOMENTA_INLINE void sines_and_cosines(const S* angle, S* sine, S* cosine, std::size_t n) {
-  for (std::size_t i = 0; i < n; ++i) sine_cosine(angle[i], sine[i], cosine[i]);
-}
+class Angles {
+ public:
+  explicit Angles(std::size_t n) : size_(n), angle_(n), sine_(n), cosine_(n) {}
+  MOMENTA_INLINE void set(std::size_t i, const S& x) { angle_[i] = x; }
+  MOMENTA_INLINE const S& operator[](std::size_t i) const { return angle_[i]; }
+  MOMENTA_INLINE const S& sine(std::size_t i) const { return sine_[i]; }
+  MOMENTA_INLINE const S& cosine(std::size_t i) const { return cosine_[i]; }
+  std::size_t size() const { return size_; }
+  MOMENTA_INLINE void turn() {
+    for (std::size_t i = 0; i < size_; ++i) sine_cosine(angle_[i], sine_[i], cosine_[i]);
+  }
+
+ private:
+  std::size_t size_;
+  std::vector<S> angle_, sine_, cosine_;
+};
 template <int L>
-MOMENTA_INLINE void sines_and_cosines(const Pack<1, L>* angle, Pack<1, L>* sine, Pack<1, L>* cosine,
-                                      std::size_t n) {
-  constexpr int width = native_width<L>;
+class Angles<Pack<1, L>> {
+  static constexpr int width = native_width<L>;
+  using One = Pack<1, L>;
   using Wide = Pack<width, L>;
-  Wide s, c;
-  std::size_t i = 0;
-  for (; i + width <= n; i += width) {
-    sine_cosine(Wide::load(&angle[i].v), s, c);
-    s.store(&sine[i].v);
-    c.store(&cosine[i].v);
+
+ public:
+  explicit Angles(std::size_t n)
+      : size_(n), angle_((n + width - 1) / width), sine_(angle_.size()), cosine_(angle_.size()) {}
+  MOMENTA_INLINE void set(std::size_t i, const One& x) {
+    __builtin_memcpy(reinterpret_cast<char*>(angle_.data()) + 8 * i, &x, 8);
   }
-  if (i == n) return;
-  double rest[width]{}, rest_s[width], rest_c[width];
-  for (std::size_t j = 0; i + j < n; ++j) rest[j] = angle[i + j].v;
-  sine_cosine(Wide::load(rest), s, c);
-  s.store(rest_s);
-  c.store(rest_c);
-  for (std::size_t j = 0; i + j < n; ++j) {
-    sine[i + j] = rest_s[j];
-    cosine[i + j] = rest_c[j];
+  MOMENTA_INLINE One operator[](std::size_t i) const { return at(angle_, i); }
+  MOMENTA_INLINE One sine(std::size_t i) const { return at(sine_, i); }
+  MOMENTA_INLINE One cosine(std::size_t i) const { return at(cosine_, i); }
+  std::size_t size() const { return size_; }
+  MOMENTA_INLINE void turn() {
+    for (std::size_t i = 0; i < angle_.size(); ++i) sine_cosine(angle_[i], sine_[i], cosine_[i]);
   }
-}
+
+ private:
+  static MOMENTA_INLINE One at(const std::vector<Wide>& packs, std::size_t i) {
+    One x;
+    __builtin_memcpy(&x, reinterpret_cast<const char*>(packs.data()) + 8 * i, 8);
+    return x;
+  }
+  std::size_t size_;
+  std::vector<Wide> angle_, sine_, cosine_;
+};
 
 }  // namespace momenta

@@ -37,14 +37,9 @@ DaeForm::DaeForm(std::string name, const Mechanism& mechanism, DaeLayout layout,
       scale_(static_cast<std::size_t>(layout.size()), 1.0),
       plain_(make_scratch<double>(mechanism, layout.size())),
       dual_(make_scratch<Dual8>(mechanism, layout.size())) {
-  std::vector<double> values(mechanism.kkt_pattern().mass.size());
   plain_.e->place(start.t, start.q.data());
-  plain_.e->mass_entries(values.data());
   inertia_.resize(static_cast<std::size_t>(layout.nv));
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    const auto& entry = mechanism.kkt_pattern().mass[i];
-    if (entry.row == entry.column) inertia_[static_cast<std::size_t>(entry.row)] = values[i];
-  }
+  plain_.e->mass_diagonal(inertia_.data());
   if (momentum_like) {
     gauge_ = options.gauge;
     if (gauge_.kind == Gauge::Kind::reset)

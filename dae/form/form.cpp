@@ -93,17 +93,13 @@ double default_leak(const Mechanism& mechanism, const Start& start) {
   if (mechanism.m() == 0) return 0;
   const auto e = mechanism.evaluation<double>();
   const auto nv = static_cast<std::size_t>(mechanism.nv());
-  std::vector<double> force(nv), values(mechanism.kkt_pattern().mass.size());
+  std::vector<double> force(nv), inertia(nv);
   e->place(start.t, start.q.data());
-  e->mass_entries(values.data());
+  e->mass_diagonal(inertia.data());
   e->constraint_forces(start.lambda.data(), force.data());
   double acceleration = 0;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    const auto& at = mechanism.kkt_pattern().mass[i];
-    if (at.row == at.column && values[i] > 0)
-      acceleration =
-          std::max(acceleration, std::abs(force[static_cast<std::size_t>(at.row)]) / values[i]);
-  }
+  for (std::size_t i = 0; i < nv; ++i)
+    if (inertia[i] > 0) acceleration = std::max(acceleration, std::abs(force[i]) / inertia[i]);
   const double rate = start.u.size() > 0 ? start.u.cwiseAbs().maxCoeff() : 0;
   const double kappa = std::max(std::sqrt(acceleration), rate);
   if (!(kappa > 0) || !std::isfinite(kappa)) return 1.0;

@@ -33,13 +33,7 @@ class Momentum final : public OdeForm {
       gauge_.kappa = default_leak(mechanism, start);
     // A momentum is as large as its own inertia times a rate of 1 rad/s or 1 m/s.
     e_->place(start.t, start.q.data());
-    std::vector<double> values(mechanism.kkt_pattern().mass.size());
-    e_->mass_entries(values.data());
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      const auto& entry = mechanism.kkt_pattern().mass[i];
-      if (entry.row == entry.column)
-        scale_[static_cast<std::size_t>(mechanism.nq() + entry.row)] = values[i];
-    }
+    e_->mass_diagonal(scale_.data() + mechanism.nq());
   }
 
   bool momentum_like() const override { return true; }

@@ -66,7 +66,11 @@ Scene random_chain(int n) {
   return serial(n, JointKind::revolute, [&](int i, JointSpec& j, Scene& s) {
     s.bodies.push_back(block(number("b", i), random));
     if (i > 0) j.origin_parent = {0.4 * any(random), 0.4 * any(random), 0.4};
-    j.axis = Eigen::Vector3d(any(random), any(random), any(random)).normalized();
+    // Body axes stay parallel to the last axis as z; the next leans by 17° to 163°.
+    const double lean = right_angle * (1 + 0.81 * any(random)),
+                 around = 2 * right_angle * any(random);
+    j.rotation = Eigen::AngleAxisd(around, Eigen::Vector3d::UnitZ()) *
+                 Eigen::AngleAxisd(lean, Eigen::Vector3d::UnitX());
     j.position = {any(random)};
   });
 }
@@ -106,6 +110,79 @@ Scene binary_tree(int n) {
       j.origin_parent = {0.4 * any(random), 0.4 * any(random), 0.4};
     }
   });
+  return s;
+}
+
+Scene rope(int n) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> any(-1, 1);
+  return serial(n, JointKind::revolute, [&](int i, JointSpec& j, Scene& s) {
+    BodySpec b = rod(number("b", i));
+    b.com /= 10;
+    b.mass /= 10;
+    b.inertia = Eigen::Vector3d(1e-6, 1e-4, 1e-4).asDiagonal();
+    s.bodies.push_back(b);
+    if (i > 0) j.origin_parent = {0.1, 0, 0};
+    j.axis = i % 2 == 0 ? Eigen::Vector3d::UnitZ() : Eigen::Vector3d::UnitY();
+    j.position = {0.02 * any(random)};
+  });
+}
+
+Scene star(int n) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> any(-1, 1);
+  return serial(n, JointKind::revolute, [&](int i, JointSpec& j, Scene& s) {
+    s.bodies.push_back(block(number("b", i), random));
+    if (i == 0) {
+      j.kind = JointKind::free;
+      return;
+    }
+    if (i % 6 == 1) j.parent = "b0";
+    j.origin_parent = {0.4 * any(random), 0.4 * any(random), 0.4};
+    j.axis = Eigen::Vector3d(any(random), any(random), any(random)).normalized();
+    j.position = {any(random)};
+  });
+}
+
+Scene humanoid(int) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> any(-1, 1);
+  Scene s;
+  s.name = "humanoid";
+  s.gravity = {0, 0, -9.81};
+  const auto add = [&](const std::string& parent, const std::string& name, JointKind kind,
+                       const Eigen::Vector3d& axis, const Eigen::Vector3d& at) {
+    s.bodies.push_back(block(name, random));
+    JointSpec j = joint("to_" + name, kind, parent, name);
+    j.axis = axis;
+    j.origin_parent = at;
+    if (kind == JointKind::revolute) j.position = {0.3 * any(random)};
+    s.joints.push_back(j);
+  };
+  const Eigen::Vector3d x(1, 0, 0), y(0, 1, 0), z(0, 0, 1), here(0, 0, 0), down(0, 0, -0.4);
+  add("ground", "trunk", JointKind::free, z, here);
+  const auto limb = [&](const std::string& name, const std::string& parent,
+                        const Eigen::Vector3d& at, std::initializer_list<Eigen::Vector3d> axes,
+                        std::initializer_list<int> lengths) {
+    std::string last = parent;
+    int i = 0;
+    auto step = lengths.begin();
+    for (const auto& axis : axes) {
+      const std::string body = name + std::to_string(i);
+      add(last, body, JointKind::revolute, axis,
+          i == 0 ? at : Eigen::Vector3d(static_cast<double>(*step) * down));
+      last = body;
+      if (i++ > 0) ++step;
+    }
+    return last;
+  };
+  const std::string chest = limb("torso", "trunk", {0, 0, 0.1}, {z, x, y}, {0, -1});
+  limb("neck", chest, {0, 0, 0.4}, {y}, {});
+  for (const double side : {1.0, -1.0}) {
+    const std::string name = side > 0 ? "left_" : "right_";
+    limb(name + "leg", "trunk", {0, 0.1 * side, 0}, {z, x, y, y, y, x}, {0, 0, 1, 1, 0});
+    limb(name + "arm", chest, {0, 0.2 * side, 0.3}, {y, x, z, y, z, y, x}, {0, 0, 1, 0, 1, 0});
+  }
   return s;
 }
 

@@ -1,7 +1,13 @@
-// Rows open/<algorithm>/<model>/<n>: one evaluation of an open chain, counter ns_per_body.
+// Rows open/<algorithm>/<model>/<n>: one evaluation of an open chain, counter ns_per_body; with
+// /batch<width> states side by side, ns per body and state. 64 states in turn, so that no branch or
+// value is learned by heart.
 
 #include <benchmark/benchmark.h>
+#include <momenta/core/kernel/levels/open_sweeps.h>
 #include <momenta/core/open_chain.h>
+
+#include <algorithm>
+#include <vector>
 
 #include "models.h"
 
@@ -10,53 +16,76 @@ namespace {
 
 using MakeScene = Scene (*)(int);
 
-/// 64 states in turn, so that no branch or value is learned by heart.
-class States {
- public:
-  explicit States(OpenChain& chain) {
-    for (int i = 0; i < 64; ++i) {
-      Eigen::VectorXd q = chain.tree().q0, u = Eigen::VectorXd::Random(chain.nv()), p(chain.nv());
-      for (const auto& b : chain.tree().bodies)
-        if (b.nq == 1) q[b.q] += 0.02 * i;
-      chain.momenta(0, q, u, p);
-      q_.push_back(q);
-      u_.push_back(u);
-      p_.push_back(p);
-    }
-  }
-  std::vector<Eigen::VectorXd> q_, u_, p_;
+struct Row {
+  const char* name;
+  MakeScene model;
+  Algebra algebra = Algebra::automatic;
+  int level = 0;  ///< 0: the machine's best
 };
 
-void finish(benchmark::State& state, int bodies) {
+constexpr int states_in_turn = 64;
+
+/// States as columns.
+struct States64 {
+  StateMatrix q, u, p;
+  explicit States64(OpenChain& chain)
+      : q(chain.nq(), states_in_turn),
+        u(chain.nv(), states_in_turn),
+        p(chain.nv(), states_in_turn) {
+    for (int i = 0; i < states_in_turn; ++i) {
+      Eigen::VectorXd position = chain.tree().q0, rate = Eigen::VectorXd::Random(chain.nv());
+      Eigen::VectorXd momentum(chain.nv());
+      for (const auto& b : chain.tree().bodies)
+        if (b.nq == 1) position[b.q] += 0.02 * i;
+      chain.momenta(0, position, rate, momentum);
+      q.col(i) = position;
+      u.col(i) = rate;
+      p.col(i) = momentum;
+    }
+  }
+};
+
+void finish(benchmark::State& state, double bodies) {
   state.counters["ns_per_body"] =
       benchmark::Counter(static_cast<double>(state.iterations()) * bodies * 1e-9,
                          benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 
-void momentum(benchmark::State& state, MakeScene model, Algebra algebra) {
-  OpenChain chain(model(static_cast<int>(state.range(0))), algebra);
-  const States states(chain);
-  Eigen::VectorXd qdot(chain.nq()), pdot(chain.nv());
+enum class Algorithm { momentum, acceleration };
+
+void single(benchmark::State& state, Row row, Algorithm algorithm) {
+  OpenChain chain(row.model(static_cast<int>(state.range(0))), row.algebra, row.level);
+  const States64 states(chain);
+  std::vector<Eigen::VectorXd> q, x;
+  for (int i = 0; i < states_in_turn; ++i) {
+    q.emplace_back(states.q.col(i));
+    x.emplace_back(algorithm == Algorithm::momentum ? states.p.col(i) : states.u.col(i));
+  }
+  Eigen::VectorXd qdot(chain.nq()), rate(chain.nv());
   std::size_t i = 0;
   for (auto _ : state) {
-    chain.rates(0, states.q_[i & 63], states.p_[i & 63], qdot, pdot);
-    benchmark::DoNotOptimize(pdot.data());
-    ++i;
+    const std::size_t k = i++ % states_in_turn;
+    if (algorithm == Algorithm::momentum)
+      chain.rates(0, q[k], x[k], qdot, rate);
+    else
+      chain.accelerations(0, q[k], x[k], rate);
+    benchmark::DoNotOptimize(rate.data());
   }
-  finish(state, static_cast<int>(chain.tree().bodies.size()));
+  finish(state, static_cast<double>(chain.tree().bodies.size()));
 }
 
-void acceleration(benchmark::State& state, MakeScene model, Algebra algebra) {
-  OpenChain chain(model(static_cast<int>(state.range(0))), algebra);
-  const States states(chain);
-  Eigen::VectorXd udot(chain.nv());
-  std::size_t i = 0;
+void batch(benchmark::State& state, Row row, Algorithm algorithm) {
+  OpenChain chain(row.model(static_cast<int>(state.range(0))), row.algebra, row.level);
+  const States64 states(chain);
+  StateMatrix qdot(chain.nq(), states_in_turn), rate(chain.nv(), states_in_turn);
   for (auto _ : state) {
-    chain.accelerations(0, states.q_[i & 63], states.u_[i & 63], udot);
-    benchmark::DoNotOptimize(udot.data());
-    ++i;
+    if (algorithm == Algorithm::momentum)
+      chain.rates_of_states(0, states.q, states.p, qdot, rate);
+    else
+      chain.accelerations_of_states(0, states.q, states.u, rate);
+    benchmark::DoNotOptimize(rate.data());
   }
-  finish(state, static_cast<int>(chain.tree().bodies.size()));
+  finish(state, static_cast<double>(chain.tree().bodies.size()) * states_in_turn);
 }
 
 Scene without_gravity(int n) {
@@ -64,32 +93,70 @@ Scene without_gravity(int n) {
   s.gravity.setZero();
   return s;
 }
+/// Every tenth joint driven.
+Scene with_drives(int n) {
+  Scene s = benchmark_models::random_chain(n);
+  for (std::size_t i = 5; i < s.joints.size(); i += 10) {
+    DriveSpec d;
+    d.joint = s.joints[i].name;
+    d.kind = "harmonic";
+    d.amplitude = 0.3;
+    d.frequency = 2;
+    s.drives.push_back(d);
+  }
+  return s;
+}
+
+int batch_width() {
+  const int level = best_level();
+  return level >= 4 ? 8 : level >= 3 ? 4 : 2;
+}
+
+void add(const char* name, const Row& row, Algorithm algorithm, std::vector<int> sizes) {
+  const std::string head = std::string("open/") +
+                           (algorithm == Algorithm::momentum ? "momentum/" : "acceleration/") +
+                           name;
+  for (const int n : sizes)
+    benchmark::RegisterBenchmark(head.c_str(), single, row, algorithm)->Arg(n);
+}
+void add_batches(const char* name, const Row& row, Algorithm algorithm, std::vector<int> sizes) {
+  const std::string head = std::string("open/") +
+                           (algorithm == Algorithm::momentum ? "momentum/" : "acceleration/") +
+                           name;
+  for (const int n : sizes)
+    benchmark::RegisterBenchmark(
+        (head + "/" + std::to_string(n) + "/batch" + std::to_string(batch_width())).c_str(), batch,
+        row, algorithm)
+        ->Arg(n);
+}
 
 }  // namespace
 
 void register_open_chains() {
-  struct Row {
-    const char* name;
-    MakeScene model;
-    Algebra algebra;
-  };
   using namespace benchmark_models;
-  const Row rows[] = {{"random_chain", random_chain, Algebra::automatic},
-                      {"random_chain_without_gravity", without_gravity, Algebra::automatic},
-                      {"right_angle_chain", right_angle_chain, Algebra::automatic},
-                      {"planar_chain", planar_chain, Algebra::automatic},
-                      {"planar_chain_in_space", planar_chain, Algebra::spatial},
-                      {"binary_tree", binary_tree, Algebra::automatic},
-                      {"spherical_chain", spherical_chain, Algebra::automatic}};
-  for (const Row& row : rows)
-    for (const int n : {7, 63, 1000}) {
-      benchmark::RegisterBenchmark((std::string("open/momentum/") + row.name).c_str(), momentum,
-                                   row.model, row.algebra)
-          ->Arg(n);
-      benchmark::RegisterBenchmark((std::string("open/acceleration/") + row.name).c_str(),
-                                   acceleration, row.model, row.algebra)
-          ->Arg(n);
+  const std::vector<int> all = {1, 2, 4, 7, 16, 63, 1000, 10000, 100000}, some = {7, 63, 1000};
+  const Row rows[] = {{"random_chain", random_chain},      {"right_angle_chain", right_angle_chain},
+                      {"planar_chain", planar_chain},      {"rope", rope},
+                      {"binary_tree", binary_tree},        {"star", star},
+                      {"spherical_chain", spherical_chain}};
+  for (const auto algorithm : {Algorithm::momentum, Algorithm::acceleration}) {
+    for (const Row& row : rows) {
+      add(row.name, row, algorithm, row.model == random_chain ? all : some);
+      add_batches(row.name, row, algorithm, some);
     }
+    const Row person{"humanoid", humanoid};
+    add(person.name, person, algorithm, {31});
+    add_batches(person.name, person, algorithm, {31});
+  }
+  // What the plan leaves out, and what a level brings.
+  const Row omissions[] = {
+      {"random_chain_without_gravity", without_gravity},
+      {"random_chain_with_drives", with_drives},
+      {"planar_chain_in_space", planar_chain, Algebra::spatial},
+      {"random_chain_level1", random_chain, Algebra::automatic, 1},
+      {"random_chain_level3", random_chain, Algebra::automatic, 3},
+  };
+  for (const Row& row : omissions) add(row.name, row, Algorithm::momentum, some);
 }
 
 }  // namespace momenta

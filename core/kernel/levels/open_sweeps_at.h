@@ -43,7 +43,9 @@ class OpenSweepsAt final : public OpenSweeps {
         momentum_(tree),
         acceleration_(tree),
         many_momenta_(tree),
-        many_accelerations_(tree) {}
+        many_accelerations_(tree) {
+    for (const auto& b : tree.model->bodies) quasi_velocities_ |= b.nq != b.nv;
+  }
 
   bool momentum(double t, const double* q, const double* p, double* u, double* pdot) override {
     const bool ok = momentum_(One(t), StridedIn<One>{q, 1}, StridedIn<One>{p, 1},
@@ -65,13 +67,14 @@ class OpenSweepsAt final : public OpenSweeps {
   bool momentum(double t, const States& s) override {
     return each_pack(s, [&](const double* q, const double* p, double* qdot, double* pdot,
                             std::ptrdiff_t stride) {
-      const StridedOut<Many> u{pdot_scratch(), lanes};
+      const bool direct = !quasi_velocities_;  // q̇ = u
+      const StridedOut<Many> u{direct ? qdot : rates_.data(), direct ? stride : lanes};
       if (!many_momenta_.get()(Many(t), StridedIn<Many>{q, stride}, StridedIn<Many>{p, stride}, u,
                                StridedOut<Many>{pdot, stride})) {
         stuck_ = many_momenta_.get().stuck();
         return false;
       }
-      coordinate_rates(q, qdot, stride);
+      if (!direct) coordinate_rates(q, qdot, stride);
       return true;
     });
   }
@@ -110,11 +113,14 @@ class OpenSweepsAt final : public OpenSweeps {
     std::unique_ptr<Sweeps> sweeps_;
   };
 
-  double* pdot_scratch() { return rates_.data(); }
-
   void coordinate_rates(const double* q, double* qdot, std::ptrdiff_t stride) {
     for (const auto& b : tree_.model->bodies) {
       if (b.nv == 0) continue;
+      if (b.nq == b.nv) {
+        for (int i = 0; i < b.nv; ++i)
+          Many::load(rates_.data() + (b.u + i) * lanes).store(qdot + (b.q + i) * stride);
+        continue;
+      }
       Many at[7], rate[6], out[7];
       for (int i = 0; i < b.nq; ++i) at[i] = Many::load(q + (b.q + i) * stride);
       for (int i = 0; i < b.nv; ++i) rate[i] = Many::load(rates_.data() + (b.u + i) * lanes);
@@ -202,6 +208,7 @@ class OpenSweepsAt final : public OpenSweeps {
   Buffer rates_, padded_;
   int stuck_ = -1;
   std::size_t failed_state_ = 0;
+  bool quasi_velocities_ = false;
 };
 
 template <int Level>

@@ -1,0 +1,95 @@
+#pragma once
+// A number that counts what is done with it, twice:
+//   executed  every addition, multiplication and division the code performs
+//   needed    the same after constants are folded: an operation of two constants costs nothing, nor
+//             does one with a constant 0 or ±1; what straight-line code for this very model would
+//             do
+// Signs are free, subtractions are additions; sines and cosines are counted apart. One count a
+// thread.
+
+#include <cmath>
+
+namespace momenta {
+
+struct Operations {
+  long adds = 0, multiplications = 0, divisions = 0, angles = 0;  ///< angles: a sine and a cosine
+  long total() const { return adds + multiplications + divisions; }
+};
+
+struct OperationCount {
+  Operations executed, needed;
+};
+
+class Counted {
+ public:
+  Counted() = default;
+  Counted(double value) : value_(value) {}  // NOLINT: a constant of the model
+  /// A number that changes from state to state.
+  static Counted variable(double value) {
+    Counted x(value);
+    x.constant_ = false;
+    return x;
+  }
+
+  double value() const { return value_; }
+
+  friend Counted operator+(const Counted& a, const Counted& b) {
+    ++count.executed.adds;
+    if (!free(a, b) && !zero(a) && !zero(b)) ++count.needed.adds;
+    return result(a.value_ + b.value_, a, b);
+  }
+  friend Counted operator-(const Counted& a, const Counted& b) {
+    ++count.executed.adds;
+    if (!free(a, b) && !zero(a) && !zero(b)) ++count.needed.adds;
+    return result(a.value_ - b.value_, a, b);
+  }
+  friend Counted operator-(const Counted& a) {
+    Counted r = a;
+    r.value_ = -a.value_;
+    return r;
+  }
+  friend Counted operator*(const Counted& a, const Counted& b) {
+    ++count.executed.multiplications;
+    if (!free(a, b) && !zero(a) && !zero(b) && !unit(a) && !unit(b)) ++count.needed.multiplications;
+    if (zero(a) || zero(b)) return Counted(0.0);
+    return result(a.value_ * b.value_, a, b);
+  }
+  friend Counted operator/(const Counted& a, const Counted& b) {
+    ++count.executed.divisions;
+    if (!free(a, b) && !zero(a) && !unit(b)) ++count.needed.divisions;
+    return result(a.value_ / b.value_, a, b);
+  }
+  Counted& operator+=(const Counted& b) { return *this = *this + b; }
+  Counted& operator-=(const Counted& b) { return *this = *this - b; }
+  friend bool operator<(const Counted& a, const Counted& b) { return a.value_ < b.value_; }
+  friend bool operator>(const Counted& a, const Counted& b) { return a.value_ > b.value_; }
+  /// The pair is counted once, with the sine.
+  friend Counted sin(const Counted& a) {
+    ++count.executed.angles;
+    if (!a.constant_) ++count.needed.angles;
+    return result(std::sin(a.value_), a, a);
+  }
+  friend Counted cos(const Counted& a) { return result(std::cos(a.value_), a, a); }
+  friend Counted sqrt(const Counted& a) { return result(std::sqrt(a.value_), a, a); }
+
+  static inline thread_local OperationCount count;
+
+ private:
+  static bool free(const Counted& a, const Counted& b) { return a.constant_ && b.constant_; }
+  static bool zero(const Counted& a) { return a.constant_ && a.value_ == 0; }
+  static bool unit(const Counted& a) { return a.constant_ && std::abs(a.value_) == 1; }
+  static Counted result(double value, const Counted& a, const Counted& b) {
+    Counted r(value);
+    r.constant_ = free(a, b);
+    return r;
+  }
+
+  double value_ = 0;
+  bool constant_ = true;
+};
+
+inline double value_of(const Counted& x) {
+  return x.value();
+}
+
+}  // namespace momenta

@@ -1,0 +1,188 @@
+// The recursions compiled for every x86-64 level agree with each other and with the plain double
+// kernel, single states and batches of any size; the code of a level stays its own.
+#include <gtest/gtest.h>
+#include <momenta/core/kernel/levels/open_sweeps.h>
+#include <momenta/core/kernel/momentum_recursion.h>
+#include <momenta/core/open_chain.h>
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <random>
+
+#include "equations/random_tree.h"
+#include "equations/tolerance.h"
+
+namespace momenta {
+namespace {
+
+using namespace equations;
+
+std::vector<int> levels() {
+  std::vector<int> all;
+  for (const int level : {1, 3, 4})
+    if (level <= best_level()) all.push_back(level);
+  return all;
+}
+
+struct Batch {
+  StateMatrix q, u, p, qdot, pdot, udot;
+  Batch(OpenChain& chain, RandomTree& random, Eigen::Index count)
+      : q(chain.nq(), count),
+        u(chain.nv(), count),
+        p(chain.nv(), count),
+        qdot(chain.nq(), count),
+        pdot(chain.nv(), count),
+        udot(chain.nv(), count) {
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const TreeState s = random.state(chain.tree());
+      Eigen::VectorXd momenta(chain.nv());
+      chain.momenta(0.3, s.q, s.u, momenta);
+      q.col(i) = s.q;
+      u.col(i) = s.u;
+      p.col(i) = momenta;
+    }
+  }
+};
+
+double growth_of(OpenChain& chain, const Eigen::VectorXd& q) {
+  if (chain.nv() == 0) return 1;
+  const Eigen::VectorXd s = chain.mass_matrix(0.3, q).jacobiSvd().singularValues();
+  return s[0] / s[s.size() - 1];
+}
+
+/// Every state of a batch against the same state alone at level 1.
+void compare(const Scene& scene, unsigned seed, Algebra algebra) {
+  RandomTree random(seed);
+  OpenChain plain(scene, algebra, 1);
+  ASSERT_EQ(plain.level(), 1);
+  const Eigen::Index count = 1 + static_cast<Eigen::Index>(seed % 19);
+  Batch b(plain, random, count);
+  Eigen::VectorXd qdot(plain.nq()), pdot(plain.nv()), udot(plain.nv());
+  for (const int level : levels()) {
+    OpenChain chain(scene, algebra, level);
+    EXPECT_EQ(chain.level(), level);
+    ASSERT_TRUE(chain.rates_of_states(0.3, b.q, b.p, b.qdot, b.pdot)) << chain.failure();
+    ASSERT_TRUE(chain.accelerations_of_states(0.3, b.q, b.u, b.udot)) << chain.failure();
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const Eigen::VectorXd q = b.q.col(i), p = b.p.col(i), u = b.u.col(i);
+      ASSERT_TRUE(plain.rates(0.3, q, p, qdot, pdot));
+      ASSERT_TRUE(plain.accelerations(0.3, q, u, udot));
+      const double tolerance = algebra_tol(12) * growth_of(plain, q);
+      EXPECT_LT(relative_error(Eigen::VectorXd(b.qdot.col(i)), qdot), tolerance)
+          << "level " << level;
+      EXPECT_LT(relative_error(Eigen::VectorXd(b.pdot.col(i)), pdot), tolerance)
+          << "level " << level;
+      EXPECT_LT(relative_error(Eigen::VectorXd(b.udot.col(i)), udot), tolerance)
+          << "level " << level;
+      Eigen::VectorXd one_qdot(plain.nq()), one_pdot(plain.nv());
+      ASSERT_TRUE(chain.rates(0.3, q, p, one_qdot, one_pdot));
+      EXPECT_LT(relative_error(one_qdot, qdot), tolerance) << "level " << level;
+      EXPECT_LT(relative_error(one_pdot, pdot), tolerance) << "level " << level;
+    }
+  }
+}
+
+TEST(Levels, AgreeOnTreesOfEveryJoint) {
+  for (unsigned seed = 0; seed < 60; ++seed)
+    compare(RandomTree(seed).scene({.body_forces = seed % 4 == 0}), seed, Algebra::spatial);
+}
+TEST(Levels, AgreeOnTreesWithoutForces) {
+  for (unsigned seed = 100; seed < 140; ++seed)
+    compare(RandomTree(seed).scene({.joint_forces = false, .body_forces = false}), seed,
+            Algebra::spatial);
+}
+
+Scene pendulums(int n) {
+  Scene s;
+  s.gravity = {0, -9.81, 0};
+  for (int i = 0; i < n; ++i) {
+    BodySpec b;
+    b.name = "b" + std::to_string(i);
+    b.mass = 1;
+    b.com = {0.5, 0.1, 0};
+    b.inertia = Eigen::Vector3d(0.1, 0.1, 0.1).asDiagonal();
+    s.bodies.push_back(b);
+    JointSpec j;
+    j.name = "J" + std::to_string(i);
+    j.parent = i == 0 ? "ground" : "b" + std::to_string((i - 1) / 2);
+    j.child = b.name;
+    j.kind = i % 3 == 2 ? JointKind::prismatic : JointKind::revolute;
+    if (i % 3 == 2) j.axis = {1, 0, 0};
+    j.origin_parent = {0.7, 0.2, 0};
+    s.joints.push_back(j);
+  }
+  return s;
+}
+TEST(Levels, AgreeInThePlane) {
+  for (unsigned seed = 1; seed < 12; ++seed)
+    compare(pendulums(static_cast<int>(seed)), seed, Algebra::planar);
+}
+
+TEST(Levels, OneBadStateSpoilsNoOther) {
+  Scene s = pendulums(2);  // a body without inertia at the tip: no state has rates
+  s.bodies[1].mass = 0;
+  s.bodies[1].inertia.setZero();
+  OpenChain chain(s, Algebra::spatial);
+  StateMatrix q = StateMatrix::Zero(2, 5), p = q, qdot = q, pdot = q;
+  EXPECT_FALSE(chain.rates_of_states(0, q, p, qdot, pdot));
+  EXPECT_NE(chain.failure().find("state 0: joint 'J1'"), std::string::npos) << chain.failure();
+  EXPECT_TRUE(qdot.array().isNaN().all());
+
+  Scene good = pendulums(2);
+  OpenChain other(good, Algebra::spatial);
+  q(1, 3) = std::numeric_limits<double>::quiet_NaN();  // an inertia of NaN is not positive
+  EXPECT_FALSE(other.rates_of_states(0, q, p, qdot, pdot));
+  EXPECT_NE(other.failure().find("state 3"), std::string::npos) << other.failure();
+  for (Eigen::Index i = 0; i < 5; ++i)
+    EXPECT_EQ(qdot.col(i).array().isNaN().any(), i == 3) << "state " << i;
+}
+
+TEST(Levels, SinesOfLargeAnglesAndNone) {
+  Scene s = pendulums(1);
+  OpenChain chain(s, Algebra::spatial);
+  StateMatrix q(1, 11), p = StateMatrix::Ones(1, 11), qdot(1, 11), pdot(1, 11);
+  q << 0, 1e-300, -0.75, 1.5707963267948966, 3e3, -59999, 9.9e5, -1.1e6, 1e15, 1e300, 42;
+  ASSERT_TRUE(chain.rates_of_states(0, q, p, qdot, pdot));
+  for (Eigen::Index i = 0; i < 11; ++i) {
+    // Torque of the weight about the pin. The frame's constant angle is added to q first: that sum
+    // is as exact as q is.
+    const double angle = q(0, i);
+    const double torque = -9.81 * (0.5 * std::cos(angle) - 0.1 * std::sin(angle));
+    if (std::abs(angle) < 1e7)
+      EXPECT_NEAR(pdot(0, i), torque, 4e-15 * std::max(1.0, std::abs(angle))) << angle;
+    else
+      EXPECT_LE(std::abs(pdot(0, i)), 9.81 * std::hypot(0.5, 0.1) * (1 + 1e-15)) << angle;
+  }
+}
+
+TEST(Levels, CodeOfALevelIsItsOwn) {
+  // Whatever a level's object file defines for others to share carries the level in its name:
+  // Pack<W, L> or OpenSweepsAt<…, L>.
+  const std::string folder = std::string(MOMENTA_BINARY_DIR) + "/core";
+  const std::string command = "for f in $(find '" + folder +
+                              "' -name 'level[134].cpp.o'); do nm -C \"$f\"; done 2>/dev/null";
+  FILE* pipe = popen(command.c_str(), "r");
+  ASSERT_NE(pipe, nullptr);
+  std::array<char, 8192> line{};
+  int symbols = 0;
+  while (std::fgets(line.data(), line.size(), pipe)) {
+    const std::string text = line.data();
+    if (text.size() < 20 || (text[17] != 'W' && text[17] != 'V' && text[17] != 'u')) continue;
+    ++symbols;
+    const bool own = text.find("Pack<") != std::string::npos ||
+                     text.find("OpenSweepsAt<") != std::string::npos ||
+                     text.find("sweeps_at<") != std::string::npos;
+    const bool data =
+        text.find("typeinfo") != std::string::npos || text.find("DW.ref") != std::string::npos ||
+        text.find("__asan") != std::string::npos || text.find("__odr") != std::string::npos;
+    EXPECT_TRUE(own || data) << text;
+  }
+  pclose(pipe);
+#if defined(__OPTIMIZE__) && !defined(__SANITIZE_ADDRESS__)
+  EXPECT_GT(symbols, 20);
+#endif
+}
+
+}  // namespace
+}  // namespace momenta
