@@ -130,6 +130,8 @@ std::vector<Column> Mechanism::marker_columns() const {
 
 std::vector<std::pair<std::string, std::string>> Mechanism::plan_lines() const {
   auto lines = plan_.lines();
+  if (!plan_.planar)
+    lines.emplace_back("joints", links_in_words(build_links(std::get<Cast<Spatial>>(cast_).model)));
   if (rows_ == 0) {
     lines.emplace_back("loops", "none: no KKT system, no σ, forward dynamics by the two sweeps");
     return lines;

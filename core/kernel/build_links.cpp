@@ -121,4 +121,28 @@ LinkTree build_links(const Model<Spatial>& model) {
   return tree;
 }
 
+std::string links_in_words(const LinkTree& tree) {
+  int right = 0, parallel = 0, general = 0, tilted = 0, balls = 0, others = 0;
+  for (const Link& l : tree.links) {
+    if (l.kind == LinkKind::ball) ++balls;
+    if (l.kind == LinkKind::general) ++others;
+    if (l.kind != LinkKind::pin) continue;
+    right += l.turn == Turn::right;
+    parallel += l.turn == Turn::parallel;
+    general += l.turn == Turn::general;
+    tilted += l.turn == Turn::tilted;
+  }
+  std::string words;
+  const auto add = [&](int count, const char* what) {
+    if (count > 0) words += (words.empty() ? "" : ", ") + std::to_string(count) + " " + what;
+  };
+  add(right, "pins at right angles");
+  add(parallel, "pins parallel");
+  add(general, "pins at other angles");
+  add(tilted, "pins nearly parallel");
+  add(balls, "ball joints");
+  add(others, "of other kinds");
+  return words;
+}
+
 }  // namespace momenta

@@ -16,6 +16,7 @@
 #include <momenta/core/kernel/reduced_inertia.h>
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace momenta {
@@ -84,5 +85,8 @@ struct LinkTree {
 
 /// @pre the model stays where it is for as long as the tree is used.
 LinkTree build_links(const Model<Spatial>& model);
+
+/// How many links take which way: "12 pins at right angles, 3 parallel, 1 of another kind".
+std::string links_in_words(const LinkTree& tree);
 
 }  // namespace momenta

@@ -1,7 +1,9 @@
+#include <momenta/core/operations.h>
 #include <momenta/core/scene/kinds.h>
 
 #include <cstdio>
 #include <map>
+#include <vector>
 
 #include "options.h"
 
@@ -34,6 +36,18 @@ int check(const Options& o) {
     j["rank"] = a.rank;
     j["mobility"] = a.mobility;
     for (const auto& [what, how] : mechanism->plan_lines()) j["plan"][what] = how;
+    if (mechanism->m() == 0) {
+      const auto counted = [&](Recursion recursion) {
+        const Operations n =
+            count_operations(tree, mechanism->scene(), mechanism->plan(), recursion).executed;
+        return nlohmann::ordered_json{{"additions", n.adds},
+                                      {"multiplications", n.multiplications},
+                                      {"divisions", n.divisions},
+                                      {"sines_and_cosines", n.angles}};
+      };
+      j["operations"]["momentum"] = counted(Recursion::momentum);
+      j["operations"]["acceleration"] = counted(Recursion::acceleration);
+    }
     j["dependent_rows"] = nlohmann::json::array();
     for (int row : a.dependent_rows) {
       const auto& name = mechanism->rows()[static_cast<std::size_t>(row)];
@@ -47,12 +61,15 @@ int check(const Options& o) {
   std::map<std::string, JointKind> kinds;
   for (const auto& joint : mechanism->scene().joints) kinds[joint.name] = joint.kind;
   const int count = static_cast<int>(tree.bodies.size());
+  std::vector<int> depths(tree.bodies.size());
   for (int last = 0; last < count; ++last) {
-    if (!tree.carries_scene_body(last)) continue;
     const auto& b = tree.bodies[static_cast<std::size_t>(last)];
-    int depth = -1, drives = 0;
-    for (int k = last; k >= 0; k = tree.bodies[static_cast<std::size_t>(k)].parent)
-      depth += tree.carries_scene_body(k);
+    const int depth = b.parent < 0 ? 0
+                                   : depths[static_cast<std::size_t>(b.parent)] +
+                                         tree.carries_scene_body(b.parent);
+    depths[static_cast<std::size_t>(last)] = depth;
+    if (!tree.carries_scene_body(last)) continue;
+    int drives = 0;
     for (int k = tree.first_part(last); k <= last; ++k)
       drives += tree.bodies[static_cast<std::size_t>(k)].drive >= 0;
     if (depth > 12) continue;  // long chains: the first bodies tell the pattern
@@ -77,6 +94,20 @@ int check(const Options& o) {
   std::printf("\nPlan\n");
   for (const auto& [what, how] : mechanism->plan_lines())
     std::printf("  %-17s %s\n", what.c_str(), how.c_str());
+  if (mechanism->m() == 0) {
+    std::printf("\nOperations of one evaluation\n");
+    const auto print = [&](const char* name, Recursion recursion) {
+      const OperationCount n =
+          count_operations(tree, mechanism->scene(), mechanism->plan(), recursion);
+      std::printf(
+          "  %-17s %ld additions, %ld multiplications, %ld divisions, %ld sines and cosines; %ld "
+          "needed once the scene's zeros and ones are folded\n",
+          name, n.executed.adds, n.executed.multiplications, n.executed.divisions,
+          n.executed.angles, n.needed.total());
+    };
+    print("momentum", Recursion::momentum);
+    print("acceleration", Recursion::acceleration);
+  }
   std::printf("\nForms\n");
   for (const auto& form : indices)
     std::printf("  %-20s %s%s\n", form.form,
