@@ -25,8 +25,9 @@ struct PinAcceleration {
 };
 template <class S>
 struct BallAcceleration {
-  Mat3<S> R, h;
-  Vec3<S> y, bf, bn, cl, co;
+  Mat3<S> R;
+  BallPivot<S> pivot;
+  Vec3<S> bf, bn, cl, co;
 };
 
 template <class Space, class S>
@@ -385,13 +386,13 @@ bool AccelerationSweeps<Spatial, S>::ball_inward(std::size_t k, const InTau& tau
   if (l.tip) cargo = {};
   add_body(cargo.M, l);
   if (l.slot >= 0) add<false>(cargo, slots_[static_cast<std::size_t>(l.slot)]);
-  Sym3<S> A, inverse;
-  if (!eliminate_ball(cargo.M, inverse, w.h, A)) return false;
+  Sym3<S> A;
+  if (!w.pivot.eliminate(cargo.M, A)) return false;
   const Vec3<S> forces{{S(tau[l.u]), S(tau[l.u + 1]), S(tau[l.u + 2])}};
   const Vec3<S> e = forces - w.bn - Vec3<S>{{cargo.Dnx, cargo.Dny, cargo.Dnz}};
-  w.y = inverse * e;
+  const Vec3<S> reaction = w.pivot.remainder(e);
   if (l.parent < 0) return true;
-  const Vec3<S> f = w.bf + Vec3<S>{{cargo.Dfx, cargo.Dfy, cargo.Dfz}} + w.h * e + A * w.cl;
+  const Vec3<S> f = w.bf + Vec3<S>{{cargo.Dfx, cargo.Dfy, cargo.Dfz}} + reaction + A * w.cl;
   carry_ball(tree_->balls[static_cast<std::size_t>(l.record)].origin, w.R, A, f, forces, cargo);
   if (!l.first) leave<false>(l, slot_of_parent(l), cargo);
   return true;
@@ -503,7 +504,7 @@ void AccelerationSweeps<Spatial, S>::general_outward(std::size_t k, Out udot, Ou
     V = {transpose_times(w.R, V.v), transpose_times(w.R, V.w)};
     V.v += w.cl;
     V.w += w.co;
-    const Vec3<S> alpha = w.y - transpose_times(w.h, V.v);
+    const Vec3<S> alpha = w.pivot.omega(V.v);
     for (int i = 0; i < 3; ++i) udot[l.u + i] = alpha[i] - V.w[i];
     V.w = alpha;
   } else {

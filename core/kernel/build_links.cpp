@@ -28,7 +28,11 @@ BallPlace ball_of(const Model<Spatial>::Body& b) {
   Spatial::Pose<double> ground;
   ground.axes = identity3<double>();
   const auto at = Spatial::pose_outward(b.edge, JointKind::weld, e, ground);
-  return {at.axes, at.origin};
+  Eigen::Matrix3d axes;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) axes(i, j) = at.axes(i, j);
+  const Eigen::Quaterniond turn(axes);
+  return {{turn.w(), turn.x(), turn.y(), turn.z()}, at.origin};
 }
 
 Tip tip_of(const Link& l) {

@@ -13,7 +13,6 @@
 #include <momenta/core/scalar/dual.h>
 #include <momenta/core/scalar/sine_cosine.h>
 
-#include <algorithm>
 #include <limits>
 
 namespace momenta {
@@ -66,22 +65,21 @@ void prescribe(const MotionLaw& law, const Pack<W, L>& t, Pack<W, L>& f, Pack<W,
   }
 }
 
-/// All three pivots positive, and more than rounding: a slender rod on a ball joint has no inertia
-/// about itself, however it lies. Entries are as exact as the largest, so the determinant is as
-/// exact as the product of the two largest diagonals with the largest.
+/// Pivots d of L Δ Lᵀ with diagonal a, b, c: all positive, and their product more than rounding. A
+/// slender rod on a ball joint has no inertia about itself, however it lies. Entries are as exact
+/// as the largest, so the determinant is as exact as the product of the two largest diagonals with
+/// the largest.
+template <class S>
+MOMENTA_INLINE bool pivots_positive(const S& d0, const S& d1, const S& d2, const S& a, const S& b,
+                                    const S& c) {
+  constexpr double rounding = 4 * std::numeric_limits<double>::epsilon();
+  const S bound = rounding * ((a * b + (b * c + c * a)) * (a + (b + c)));
+  return all_positive(d0) && all_positive(d1) && all_positive(d2) &&
+         all_positive(d0 * d1 * d2 - bound);
+}
 template <class S>
 bool pivots_positive(const Vec3<S>& d, const Sym3<S>& from) {
-  constexpr double rounding = 16 * std::numeric_limits<double>::epsilon();
-  double determinant = 1, product = 1, least = 0, largest = 0;
-  for (int i = 0; i < 3; ++i) {
-    if (!all_positive(d[i])) return false;
-    const double diagonal = value_of(from(i, i));
-    determinant *= value_of(d[i]);
-    product *= diagonal;
-    least = i == 0 ? diagonal : std::min(least, diagonal);
-    largest = std::max(largest, diagonal);
-  }
-  return determinant > rounding * (product / least * largest);
+  return pivots_positive(d[0], d[1], d[2], from.x[0], from.x[3], from.x[5]);
 }
 
 /// I⁻¹ and h = H I⁻¹ of a joint that leaves ω free.

@@ -64,8 +64,8 @@ struct Tip {
 
 /// The constant way to a ball joint as one rotation and one step.
 struct BallPlace {
-  Mat3<double> axes;    ///< axes of the joint frame in the parent's
-  Vec3<double> origin;  ///< of the joint in the parent's frame [m]
+  double turn[4]{1, 0, 0, 0};  ///< joint frame in the parent's axes, quaternion w x y z
+  Vec3<double> origin;         ///< of the joint in the parent's frame [m]
 };
 
 /// The tree in that form.

@@ -38,9 +38,10 @@ struct PinRecord {
 /// What it needs of a ball joint. R: child components to the parent's.
 template <class S>
 struct BallRecord {
-  Mat3<S> R, h;         ///< h = H I⁻¹
-  Sym3<S> A, I;         ///< M' = (A, 0; 0, 0); I⁻¹
-  Vec3<S> Df, p, y, G;  ///< D' = (Df, p); y = I⁻¹ e
+  Mat3<S> R;
+  BallPivot<S> pivot;
+  Sym3<S> A;         ///< M' = (A, 0; 0, 0)
+  Vec3<S> Df, p, G;  ///< D' = (Df, p); first moment of the subtree
 };
 
 template <class Space, class S>
@@ -391,10 +392,9 @@ bool MomentumSweeps<Spatial, S>::ball_inward(std::size_t k, const In& p, Cargo<S
     if constexpr (Gravity) w.G = {{cargo.Gx, cargo.Gy, cargo.Gz}};
   }
   w.p = {{p[l.u], p[l.u + 1], p[l.u + 2]}};
-  if (!eliminate_ball(cargo.M, w.I, w.h, w.A)) return false;
+  if (!w.pivot.eliminate(cargo.M, w.A)) return false;
   const Vec3<S> e{{w.p[0] - cargo.Dnx, w.p[1] - cargo.Dny, w.p[2] - cargo.Dnz}};
-  w.y = w.I * e;
-  w.Df = Vec3<S>{{cargo.Dfx, cargo.Dfy, cargo.Dfz}} + w.h * e;
+  w.Df = Vec3<S>{{cargo.Dfx, cargo.Dfy, cargo.Dfz}} + w.pivot.remainder(e);
   if (l.parent < 0) return true;
 
   carry_ball(tree_->balls[static_cast<std::size_t>(l.record)].origin, w.R, w.A, w.Df, w.p, cargo);
@@ -425,7 +425,7 @@ void MomentumSweeps<Spatial, S>::ball_outward(std::size_t k, Out u, Out pdot, Ou
     const auto& at = tree_->model->gravity;
     g = transpose_times(w.R, Vec3<S>{{S(at[0]), S(at[1]), S(at[2])}});
   }
-  const Vec3<S> omega = w.y - transpose_times(w.h, v);
+  const Vec3<S> omega = w.pivot.omega(v);
   const Vec3<S> Pf = w.A * v + w.Df;
   Vec3<S> net = -(cross(v, Pf) + cross(omega, w.p));
   if constexpr (Gravity) net += cross(w.G, g);
@@ -531,10 +531,10 @@ void MomentumSweeps<Spatial, S>::inverse_mass_times(const In& x, Out result) {
     } else if (l.kind == LinkKind::ball) {
       BallRecord<S>& w = balls_[static_cast<std::size_t>(l.record)];
       const Vec3<S> n{{x[l.u], x[l.u + 1], x[l.u + 2]}}, e = n - D.n;
-      w.y = w.I * e;
+      const Vec3<S> force = D.f + w.pivot.remainder(e);
       if (l.parent < 0) continue;
       const auto& r = tree_->balls[static_cast<std::size_t>(l.record)].origin;
-      D = {w.R * (D.f + w.h * e), w.R * n};
+      D = {w.R * force, w.R * n};
       D.n += cross(Vec3<S>{{S(r[0]), S(r[1]), S(r[2])}}, D.f);
     } else {
       auto& joint = joints_[static_cast<std::size_t>(l.record)];
@@ -581,7 +581,7 @@ void MomentumSweeps<Spatial, S>::inverse_mass_times(const In& x, Out result) {
       const auto& r = tree_->balls[static_cast<std::size_t>(l.record)].origin;
       V.v += cross(V.w, Vec3<S>{{S(r[0]), S(r[1]), S(r[2])}});
       V = {transpose_times(w.R, V.v), transpose_times(w.R, V.w)};
-      const Vec3<S> omega = w.y - transpose_times(w.h, V.v);
+      const Vec3<S> omega = w.pivot.omega(V.v);
       for (int i = 0; i < 3; ++i) result[l.u + i] = omega[i] - V.w[i];
       V.w = omega;
     } else {

@@ -176,18 +176,53 @@ MOMENTA_INLINE void carry_any(const Link& l, const Spatial::EdgeConstants& e,
   if (l.screwed) screw_inward<Gravity>(e, cargo);
 }
 
-/// (46), (47) of a ball joint: I⁻¹, h = H I⁻¹ and A' = A − h Hᵀ, the whole of M'.
+/// (46)-(48) of a ball joint by I = L Δ Lᵀ, which leaves A' = A − Z Δ⁻¹ Zᵀ with Z = H L⁻ᵀ, the
+/// whole of M', and D'_f = D_f + Z Δ⁻¹ L⁻¹ e. No inverse is formed: shorter, and backward stable.
 template <class S>
-MOMENTA_INLINE bool eliminate_ball(const Full<S>& full, Sym3<S>& inverse_I, Mat3<S>& h,
-                                   Sym3<S>& A) {
-  const auto m = blocks(full);
-  if (!eliminate_angular(m, inverse_I, h)) return false;
-  A = m.A;
-  for (int i = 0; i < 3; ++i)
-    for (int j = i; j < 3; ++j)
-      A(i, j) -= h(i, 0) * m.H(j, 0) + h(i, 1) * m.H(j, 1) + h(i, 2) * m.H(j, 2);
-  return true;
-}
+struct BallPivot {
+  S l10, l20, l21, i0, i1, i2;  ///< L, Δ⁻¹
+  Mat3<S> s;                    ///< Z Δ⁻¹
+  Vec3<S> e;                    ///< L⁻¹ e
+
+  /// False when I is not positive.
+  MOMENTA_INLINE bool eliminate(const Full<S>& m, Sym3<S>& A) {
+    i0 = S(1.0) / m.Ixx;
+    l10 = m.Ixy * i0;
+    l20 = m.Ixz * i0;
+    const S d1 = m.Iyy - l10 * m.Ixy, below = m.Iyz - l20 * m.Ixy;
+    i1 = S(1.0) / d1;
+    l21 = below * i1;
+    const S d2 = m.Izz - l20 * m.Ixz - l21 * below;
+    i2 = S(1.0) / d2;
+    if (!pivots_positive(m.Ixx, d1, d2, m.Ixx, m.Iyy, m.Izz)) return false;
+    const S zx0 = m.Hxx, zx1 = m.Hxy - l10 * zx0, zx2 = m.Hxz - l20 * zx0 - l21 * zx1;
+    const S zy0 = m.Hyx, zy1 = m.Hyy - l10 * zy0, zy2 = m.Hyz - l20 * zy0 - l21 * zy1;
+    const S zz0 = m.Hzx, zz1 = m.Hzy - l10 * zz0, zz2 = m.Hzz - l20 * zz0 - l21 * zz1;
+    s = {
+        {zx0 * i0, zx1 * i1, zx2 * i2, zy0 * i0, zy1 * i1, zy2 * i2, zz0 * i0, zz1 * i1, zz2 * i2}};
+    A.x[0] = m.Axx - (s.x[0] * zx0 + s.x[1] * zx1 + s.x[2] * zx2);
+    A.x[1] = m.Axy - (s.x[0] * zy0 + s.x[1] * zy1 + s.x[2] * zy2);
+    A.x[2] = m.Axz - (s.x[0] * zz0 + s.x[1] * zz1 + s.x[2] * zz2);
+    A.x[3] = m.Ayy - (s.x[3] * zy0 + s.x[4] * zy1 + s.x[5] * zy2);
+    A.x[4] = m.Ayz - (s.x[3] * zz0 + s.x[4] * zz1 + s.x[5] * zz2);
+    A.x[5] = m.Azz - (s.x[6] * zz0 + s.x[7] * zz1 + s.x[8] * zz2);
+    return true;
+  }
+  /// D'_f − D_f from e = r − D_n.
+  MOMENTA_INLINE Vec3<S> remainder(const Vec3<S>& right) {
+    e[0] = right[0];
+    e[1] = right[1] - l10 * e[0];
+    e[2] = right[2] - l20 * e[0] - l21 * e[1];
+    return s * e;
+  }
+  /// ω = L⁻ᵀ (Δ⁻¹ L⁻¹ e − (Z Δ⁻¹)ᵀ v) of the body, v the velocity of its origin.
+  MOMENTA_INLINE Vec3<S> omega(const Vec3<S>& v) const {
+    const Vec3<S> g = transpose_times(s, v);
+    const S z = e[2] * i2 - g[2];
+    const S y = e[1] * i1 - g[1] - l21 * z;
+    return {{e[0] * i0 - g[0] - l10 * y - l20 * z, y, z}};
+  }
+};
 
 /// M' = (A, 0; 0, 0) and D' = (f, n) of a ball joint in the parent's frame: A turned by R, and what
 /// the step r makes of it, H = −A r̃, I = r̃ H.
@@ -331,13 +366,13 @@ void place_links(const LinkTree& tree, const S& t, const In& q, Angles<S>& angle
     const auto record = static_cast<std::size_t>(links[k].record);
     if (links[k].kind == LinkKind::ball) {
       const S at[4] = {q[b.q], q[b.q + 1], q[b.q + 2], q[b.q + 3]};
-      const auto& constant = tree.balls[record].axes;
-      const Mat3<S> own = rotation_of(at);
-      auto& R = axes(record);
-      for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j)
-          R(i, j) =
-              constant(i, 0) * own(0, j) + constant(i, 1) * own(1, j) + constant(i, 2) * own(2, j);
+      // c ∘ q, the constant turn and the joint's own as one quaternion
+      const double* c = tree.balls[record].turn;
+      const S both[4] = {c[0] * at[0] - c[1] * at[1] - c[2] * at[2] - c[3] * at[3],
+                         c[0] * at[1] + c[1] * at[0] + c[2] * at[3] - c[3] * at[2],
+                         c[0] * at[2] + c[2] * at[0] + c[3] * at[1] - c[1] * at[3],
+                         c[0] * at[3] + c[3] * at[0] + c[1] * at[2] - c[2] * at[1]};
+      axes(record) = rotation_of(both);
       continue;
     }
     auto& x = joints[record];

@@ -86,16 +86,28 @@ MOMENTA_INLINE double value_of(const Pack<W, L>& x) {
     if (!(x.lane(i) >= least)) least = x.lane(i);
   return least;
 }
-/// True when every lane is positive.
+/// True when every lane is positive: one comparison and its mask where the target has them.
 template <int W, int L>
 MOMENTA_INLINE bool all_positive(const Pack<W, L>& x) {
   if constexpr (W == 1) {
     return x.v > 0;
   } else {
-    const auto good = x.v > 0;
-    long long all = -1;
-    for (int i = 0; i < W; ++i) all &= good[i];
-    return all != 0;
+    using Lanes = typename Pack<W, L>::Lanes;
+#if defined(__AVX512F__)
+    if constexpr (W == 8) {
+      constexpr int greater = 30, current_rounding = 4;
+      return __builtin_ia32_cmppd512_mask(x.v, Lanes{}, greater, -1, current_rounding) == 0xff;
+    }
+#endif
+#if defined(__AVX__)
+    if constexpr (W == 4) return __builtin_ia32_movmskpd256((Lanes)(x.v > 0)) == 0xf;
+#endif
+#if defined(__SSE2__)
+    if constexpr (W == 2) return __builtin_ia32_movmskpd((Lanes)(x.v > 0)) == 0x3;
+#endif
+    for (int i = 0; i < W; ++i)
+      if (!(x.v[i] > 0)) return false;
+    return true;
   }
 }
 

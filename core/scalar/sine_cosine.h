@@ -53,10 +53,8 @@ MOMENTA_INLINE void sine_cosine(const Pack<W, L>& x, Pack<W, L>& sine, Pack<W, L
     sine = Pack<W, L>(std::sin(x.v));
     cosine = Pack<W, L>(std::cos(x.v));
   } else {
-    const auto near = (x.v < reducible) & (x.v > -reducible);
-    long long all = -1;
-    for (int i = 0; i < W; ++i) all &= near[i];
-    if (__builtin_expect(all != 0, 1)) return sine_cosine_reduced(x, sine, cosine);
+    const Pack<W, L> room = Pack<W, L>(reducible * reducible) - x * x;  // NaN has none
+    if (__builtin_expect(all_positive(room), 1)) return sine_cosine_reduced(x, sine, cosine);
     for (int i = 0; i < W; ++i) {
       sine.set_lane(i, std::sin(x.lane(i)));
       cosine.set_lane(i, std::cos(x.lane(i)));
