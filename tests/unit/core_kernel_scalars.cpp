@@ -24,6 +24,11 @@ extern "C" void* malloc(std::size_t size) noexcept {
   ++allocations;
   return __libc_malloc(size);
 }
+extern "C" void* __libc_memalign(std::size_t, std::size_t);  // NOLINT
+extern "C" void* aligned_alloc(std::size_t alignment, std::size_t size) noexcept {
+  ++allocations;
+  return __libc_memalign(alignment, size);
+}
 #endif
 
 namespace momenta {
@@ -45,7 +50,8 @@ Eigen::VectorXd rates_with(const Model<Space>& model, const TreeState& s,
   Workspace<Space, S> w(model);
   const auto q = lifted<S>(s.q), momenta = lifted<S>(p);
   std::vector<S> u(momenta.size()), pdot(momenta.size());
-  EXPECT_TRUE(equations::momentum_recursion(w, S(s.t), q.data(), momenta.data(), u.data(), pdot.data()));
+  EXPECT_TRUE(
+      equations::momentum_recursion(w, S(s.t), q.data(), momenta.data(), u.data(), pdot.data()));
   Eigen::VectorXd all(2 * p.size());
   for (Eigen::Index i = 0; i < p.size(); ++i) {
     all[i] = value_of(u[static_cast<std::size_t>(i)]);
@@ -254,15 +260,30 @@ TEST(Kernel, RoundingIsNoInertia) {
 
 #ifdef MOMENTA_COUNTS_MALLOC
 TEST(Kernel, NoCallAllocates) {
-  for (const bool flat : {false, true}) {
+  for (const int run : {0, 1, 2}) {
+    const bool flat = run == 1,
+               batches = run == 2;  // with forces between bodies batches copy states
     RandomTree random(7);
-    const TreeRecipe recipe{.bodies = 10};
+    const TreeRecipe recipe{.bodies = 10, .body_forces = !batches};
     OpenChain chain(flat ? random.planar_scene(recipe) : random.scene(recipe));
     const TreeState s = random.state(chain.tree());
     Eigen::VectorXd qdot(chain.nq()), pdot(chain.nv()), p(chain.nv()), u(chain.nv());
+    StateMatrix many_q(chain.nq(), 11), many_p(chain.nv(), 11), many_qdot(many_q),
+        many_pdot(many_p);
+    chain.momenta(s.t, s.q, s.u, p);
+    many_q.colwise() = s.q;
+    many_p.colwise() = p;
+    const Eigen::VectorXd dq = s.q, dp = p;
+    const auto lazy = [&] {  // workspaces of packs and of dual numbers are made by the first call
+      if (batches) chain.rates_of_states(s.t, many_q, many_p, many_qdot, many_pdot);
+      chain.jacobian_times(s.t, s.q, p, dq, dp, qdot, pdot);
+    };
+    lazy();
     const long before = allocations;
     for (int i = 0; i < 1000; ++i) {
+      lazy();
       chain.momenta(s.t, s.q, s.u, p);
+      chain.inverse_mass_times(s.t, s.q, p, u);
       chain.rates(s.t, s.q, p, qdot, pdot);
       chain.velocities(s.t, s.q, p, u);
       chain.accelerations(s.t, s.q, s.u, u);
