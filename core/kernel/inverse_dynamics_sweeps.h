@@ -1,0 +1,457 @@
+#pragma once
+// Inverse dynamics (recursive Newton-Euler) in space, (q, u, u̇, t) → τ, in the frames of the other
+// recursions: the forces a motion takes, and the bias of composite_sweeps.h.
+//
+//   outward   ω, α of every body, a: acceleration of O. A point r of the body has a + K r,
+//               K = α~ + ω~ ω~
+//             so O of the child at r has R (a_L + K_L r). Own wrench about O, with c = ∫ r dm and
+//             Σ = ∫ r rᵀ dm:
+//               f = K c (and m a),  n = ∫ r × (a + K r) dm = c × a + axial(K Σ)
+//             Σ = ½ tr(J) 1 − J stands for J: axial(K Σ) = J α + ω × J ω in one product.
+//   inward    F_L += 𝒯ᶠ F,  τ = Eᵀ F
+//
+// Accelerations are those of points, not derivatives in body axes: linear velocities drop out.
+// Gravity is an acceleration −g of the ground.
+//
+// Mass on the axis of a pin moves with the parent as well as with the child, wherever the pin
+// stands. All the mass a pin carries, taken at O, and c_z and Σ_zz of its body are therefore given
+// to the parent once and for all; m a and whatever c_z and Σ_zz cost are saved. A ball joint gives
+// all its mass, at O. Torques are not touched: what is given away has no moment about the joint.
+//   parent:  c += m r + c_z z,  Σ += m r rᵀ + c_z (r zᵀ + z rᵀ) + Σ_zz z zᵀ
+
+#include <momenta/core/kernel/pin.h>
+
+#include <vector>
+
+namespace momenta {
+
+/// c and Σ (xx xy xz yy yz zz) about O of what moves with a body, other kinds of joints beyond pins
+/// and balls excepted.
+template <class S>
+struct MassMoments {
+  double c[3]{}, s[6]{};
+};
+
+template <class S>
+std::vector<MassMoments<S>> regrouped(const LinkTree& tree) {
+  std::vector<MassMoments<S>> all(tree.links.size());
+  for (std::size_t k = all.size(); k-- > 0;) {
+    const Link& l = tree.links[k];
+    const auto& b = tree.model->bodies[k];
+    MassMoments<S>& own = all[k];
+    const double half_trace = 0.5 * (l.J[0] + l.J[3] + l.J[5]);
+    for (int i = 0; i < 3; ++i) own.c[i] += l.c[i];
+    for (int i = 0; i < 6; ++i) own.s[i] += (i == 0 || i == 3 || i == 5 ? half_trace : 0) - l.J[i];
+    if (l.kind == LinkKind::general) continue;
+    double given[2] = {0, 0};
+    if (l.kind == LinkKind::pin) {
+      given[0] = own.c[2];
+      given[1] = own.s[5];
+      own.c[2] = own.s[5] = 0;
+    }
+    if (l.parent < 0) continue;
+    MassMoments<S>& parent = all[static_cast<std::size_t>(l.parent)];
+    Spatial::Pose<S> at;
+    at.axes = identity3<S>();
+    Spatial::Edge<S> e;
+    e.d = S(b.d0);
+    at = Spatial::pose_outward(b.edge, JointKind::weld, e, at);
+    double r[3], z[3];
+    for (int i = 0; i < 3; ++i) {
+      r[i] = value_of(at.origin[i]);
+      z[i] = value_of(at.axes(i, 2));
+    }
+    for (int i = 0, entry = 0; i < 3; ++i) {
+      parent.c[i] += b.subtree_mass * r[i] + given[0] * z[i];
+      for (int j = i; j < 3; ++j)
+        parent.s[entry++] += b.subtree_mass * r[i] * r[j] + given[0] * (r[i] * z[j] + z[i] * r[j]) +
+                             given[1] * z[i] * z[j];
+    }
+  }
+  return all;
+}
+
+/// Entries of K.
+template <class S>
+struct AccelerationField {
+  S xx, xy, xz, yx, yy, yz, zx, zy, zz;
+};
+template <class S>
+MOMENTA_INLINE AccelerationField<S> acceleration_field(const S& ox, const S& oy, const S& oz,
+                                                       const S& ex, const S& ey, const S& ez) {
+  const S x2 = ox * ox, y2 = oy * oy, z2 = oz * oz, xy = ox * oy, xz = ox * oz, yz = oy * oz;
+  return {-(y2 + z2), xy - ez, xz + ey, xy + ez, -(x2 + z2), yz - ex, xz - ey, yz + ex, -(x2 + y2)};
+}
+
+/// f without m a, n about O.
+template <class S>
+struct PlainWrench {
+  S fx, fy, fz, nx, ny, nz;
+};
+/// Of the body itself; on a pin c_z = Σ_zz = 0.
+template <bool pin, class S>
+MOMENTA_INLINE void own_wrench(const MassMoments<S>& b, const AccelerationField<S>& K, const S& ax,
+                               const S& ay, const S& az, PlainWrench<S>& w) {
+  const double *c = b.c, *s = b.s;
+  w.fx = K.xx * c[0] + K.xy * c[1];
+  w.fy = K.yx * c[0] + K.yy * c[1];
+  w.fz = K.zx * c[0] + K.zy * c[1];
+  w.nx = (K.zz - K.yy) * s[4] + K.zy * s[3] + K.zx * s[1] - K.yx * s[2] + c[1] * az;
+  w.ny = (K.xx - K.zz) * s[2] + K.xy * s[4] - K.zx * s[0] - K.zy * s[1] - c[0] * az;
+  w.nz = (K.yy - K.xx) * s[1] + K.yx * s[0] - K.xy * s[3] + K.yz * s[2] - K.xz * s[4] +
+         (c[0] * ay - c[1] * ax);
+  if constexpr (!pin) {
+    w.fx = w.fx + K.xz * c[2];
+    w.fy = w.fy + K.yz * c[2];
+    w.fz = w.fz + K.zz * c[2];
+    w.nx = w.nx - K.yz * s[5] - c[2] * ay;
+    w.ny = w.ny + K.xz * s[5] + c[2] * ax;
+  }
+}
+template <class S>
+MOMENTA_INLINE void add(PlainWrench<S>& a, const PlainWrench<S>& b) {
+  a.fx = a.fx + b.fx;
+  a.fy = a.fy + b.fy;
+  a.fz = a.fz + b.fz;
+  a.nx = a.nx + b.nx;
+  a.ny = a.ny + b.ny;
+  a.nz = a.nz + b.nz;
+}
+
+/// What bodies pass on outward: ω, a, α and the first column of K.
+template <class S>
+struct Spin {
+  S ox, oy, oz, ax, ay, az, ex, ey, ez, kx, ky, kz;
+};
+
+// The turn about x by the link's α: parent components to the child's, and back.
+template <class S>
+MOMENTA_INLINE void turn_outward_x(const Link& l, S& y, S& z) {
+  const S before = y;
+  switch (l.turn) {
+    case Turn::right:
+      y = z;
+      z = -before;
+      break;
+    case Turn::parallel:
+      y = l.ca * y;
+      z = l.ca * z;
+      break;
+    default:
+      y = l.ca * y + l.sa * z;
+      z = l.ca * z - l.sa * before;
+  }
+}
+template <class S>
+MOMENTA_INLINE void turn_inward_x(const Link& l, S& y, S& z) {
+  const S before = y;
+  switch (l.turn) {
+    case Turn::right:
+      y = -z;
+      z = before;
+      break;
+    case Turn::parallel:
+      y = l.ca * y;
+      z = l.ca * z;
+      break;
+    default:
+      y = l.ca * y - l.sa * z;
+      z = l.sa * before + l.ca * z;
+  }
+}
+/// (x, y) = (c x + s y, c y − s x)
+template <class S>
+MOMENTA_INLINE void turn_outward_z(const S& c, const S& s, S& x, S& y) {
+  const S before = x;
+  x = c * x + s * y;
+  y = c * y - s * before;
+}
+template <class S>
+MOMENTA_INLINE void turn_inward_z(const S& c, const S& s, S& x, S& y) {
+  const S before = x;
+  x = c * x - s * y;
+  y = s * before + c * y;
+}
+
+/// A pin on the ground, or one whose way from the parent is a screw about x.
+MOMENTA_INLINE bool is_plain_pin(const Link& l) {
+  return l.kind == LinkKind::pin && (l.parent < 0 || !(l.screwed || l.turn == Turn::tilted));
+}
+
+template <class Space, class S>
+class InverseDynamicsSweeps;
+
+template <class S>
+class InverseDynamicsSweeps<Spatial, S> {
+ public:
+  using Space = Spatial;
+  explicit InverseDynamicsSweeps(const LinkTree& tree)
+      : tree_(&tree),
+        angles_(tree.links.size()),
+        moments_(regrouped<S>(tree)),
+        wrenches_(tree.links.size()),
+        axes_(tree.balls.size()),
+        joints_(static_cast<std::size_t>(tree.records)),
+        origins_(joints_.size()),
+        slots_(static_cast<std::size_t>(tree.slots)),
+        outward_slots_(slots_.size()) {}
+
+  /// τ (nv) = M u̇ + bias − weights from (q, u, u̇, t): every generalised force but the weights'. In
+  /// and Out index like pointers to S. O(bodies).
+  template <class In, class InRate, class Out>
+  void operator()(const S& t, const In& q, const In& u, const InRate& udot, Out tau) {
+    place(t, q);
+    outward<true>(u, udot);
+    inward(tau);
+  }
+
+  /// Sines, cosines and edges at (q, t): for `bias` and for who shares them.
+  template <class In>
+  void place(const S& t, const In& q) {
+    place_links(
+        *tree_, t, q, angles_, joints_, [&](std::size_t record) -> auto& { return axes_[record]; });
+  }
+  /// τ with u̇ = 0. @pre placed.
+  template <class In, class Out>
+  void bias(const In& u, Out tau) {
+    outward<false>(u, u);
+    inward(tau);
+  }
+
+  const Angles<S>& angles() const { return angles_; }
+  const MassMoments<S>& moments(std::size_t k) const { return moments_[k]; }
+  /// Of a ball joint: child components to the parent's.
+  const Mat3<S>& ball_axes(const Link& l) const {
+    return axes_[static_cast<std::size_t>(l.record)];
+  }
+  /// The way to body k at this configuration; not of balls.
+  Spatial::Edge<S> edge(std::size_t k) const {
+    const Link& l = tree_->links[k];
+    if (l.kind == LinkKind::general) return joints_[static_cast<std::size_t>(l.record)].edge;
+    Spatial::Edge<S> e;
+    e.cos_theta = angles_.cosine(k);
+    e.sin_theta = angles_.sine(k);
+    e.d = S(l.d);
+    return e;
+  }
+
+ private:
+  template <bool moving, class In, class InRate>
+  void outward(const In& u, const InRate& udot);
+  template <class Out>
+  void inward(Out tau);
+  template <bool moving, class In, class InRate>
+  __attribute__((noinline)) void any_outward(std::size_t k, const In& u, const InRate& udot,
+                                             Spin<S>& spin);
+  template <class Out>
+  __attribute__((noinline)) void any_inward(std::size_t k, Out tau, PlainWrench<S>& w);
+  std::size_t slot_of_parent(const Link& l) const {
+    return static_cast<std::size_t>(tree_->links[static_cast<std::size_t>(l.parent)].slot);
+  }
+
+  struct Origins {
+    Vec3<S> own, parent;  ///< accelerations of O, of the parent's O, each in its own axes
+  };
+  const LinkTree* tree_;
+  Angles<S> angles_;
+  std::vector<MassMoments<S>> moments_;
+  std::vector<PlainWrench<S>> wrenches_;  ///< of the bodies alone
+  std::vector<Mat3<S>> axes_;
+  std::vector<JointRecord<Spatial, S>> joints_;
+  std::vector<Origins> origins_;
+  std::vector<PlainWrench<S>> slots_;
+  std::vector<Spin<S>> outward_slots_;
+};
+
+template <class S>
+template <bool moving, class In, class InRate>
+void InverseDynamicsSweeps<Spatial, S>::outward(const In& u, const InRate& udot) {
+  const Link* links = tree_->links.data();
+  const S zero(0.0);
+  Spin<S> at{zero, zero, zero, zero, zero, zero, zero, zero, zero, zero, zero, zero};
+  for (std::size_t k = 0; k < angles_.size(); ++k) {
+    const Link& l = links[k];
+    if (l.parent >= 0 && !l.first) at = outward_slots_[slot_of_parent(l)];
+    if (!is_plain_pin(l)) {
+      Spin<S> here = at;
+      any_outward<moving>(k, u, udot, here);
+      at = here;
+    } else {
+      PlainWrench<S>& w = wrenches_[k];
+      const S c = angles_.cosine(k), s = angles_.sine(k), own = u[l.u];
+      if (l.parent < 0) {  // ω and α along the pin, nothing to pass on but its moment
+        const Vec3<double>& weight = tree_->weight[k];
+        const MassMoments<S>& b = moments_[k];
+        at = {zero,
+              zero,
+              own,
+              -(c * weight[0] + s * weight[1]),
+              s * weight[0] - c * weight[1],
+              S(-weight[2]),
+              zero,
+              zero,
+              zero,
+              -(own * own),
+              zero,
+              zero};
+        w.nz = b.c[0] * at.ay - b.c[1] * at.ax;
+        if constexpr (moving) {
+          at.ez = at.ky = udot[l.u];
+          w.nz = w.nz + (b.s[0] + b.s[3]) * at.ez;
+        }
+      } else {
+        at.ax = at.ax + l.a * at.kx;
+        at.ay = at.ay + l.a * at.ky;
+        at.az = at.az + l.a * at.kz;
+        turn_outward_x(l, at.ay, at.az);
+        turn_outward_x(l, at.oy, at.oz);
+        turn_outward_x(l, at.ey, at.ez);
+        // α = Rᵀ (α_L + ω_L × z u) + z u̇
+        at.ex = at.ex + at.oy * own;
+        at.ey = at.ey - at.ox * own;
+        turn_outward_z(c, s, at.ax, at.ay);
+        turn_outward_z(c, s, at.ox, at.oy);
+        turn_outward_z(c, s, at.ex, at.ey);
+        at.oz = at.oz + own;
+        if constexpr (moving) at.ez = at.ez + udot[l.u];
+        // Points on the axis may be taken as the child's.
+        const auto K = acceleration_field(at.ox, at.oy, at.oz, at.ex, at.ey, at.ez);
+        at.ax = at.ax + l.d * K.xz;
+        at.ay = at.ay + l.d * K.yz;
+        at.az = at.az + l.d * K.zz;
+        own_wrench<true>(moments_[k], K, at.ax, at.ay, at.az, w);
+        at.kx = K.xx;
+        at.ky = K.yx;
+        at.kz = K.zx;
+      }
+    }
+    if (l.slot >= 0) outward_slots_[static_cast<std::size_t>(l.slot)] = at;
+  }
+}
+
+// With W = (ω_L × r, ω_L) and A = (a_L + α_L × r, α_L) seen from the child, E u = (v, ω_j):
+//   ω = ω_L + ω_j,  α = α_L + ω_L × ω_j + E u̇,  a = A_v + ω_L × W_v + (ω_L + ω) × v + E u̇
+template <class S>
+template <bool moving, class In, class InRate>
+void InverseDynamicsSweeps<Spatial, S>::any_outward(std::size_t k, const In& u, const InRate& udot,
+                                                    Spin<S>& spin) {
+  const Link& l = tree_->links[k];
+  const auto& b = tree_->model->bodies[k];
+  const auto& g = tree_->model->gravity;
+  Spatial::Motion<S> W{{}, {{spin.ox, spin.oy, spin.oz}}};
+  Spatial::Motion<S> A{{{spin.ax, spin.ay, spin.az}}, {{spin.ex, spin.ey, spin.ez}}};
+  if (l.parent < 0) {
+    W = {};
+    A = {{{S(-g[0]), S(-g[1]), S(-g[2])}}, {}};
+  }
+  const Vec3<S> parent = A.v;
+  Spatial::Motion<S> own{}, rate{};
+  if (l.kind == LinkKind::ball) {
+    const auto& r = tree_->balls[static_cast<std::size_t>(l.record)].origin;
+    const Vec3<S> step{{S(r[0]), S(r[1]), S(r[2])}};
+    const Mat3<S>& R = ball_axes(l);
+    W = {transpose_times(R, cross(W.w, step)), transpose_times(R, W.w)};
+    A = {transpose_times(R, A.v + cross(A.w, step)), transpose_times(R, A.w)};
+  } else {
+    const auto e = edge(k);
+    W = Spatial::to_child(b.edge, b.kind, e, W);
+    A = Spatial::to_child(b.edge, b.kind, e, A);
+  }
+  if (b.drive >= 0) {
+    const auto& x = joints_[static_cast<std::size_t>(l.record)];
+    Joint<Spatial>::add_motion(b, x.edge, &x.drive_rate, own);
+    Joint<Spatial>::add_motion(b, x.edge, &x.drive_acceleration, rate);
+  } else {
+    S rates[6]{};
+    for (int i = 0; i < b.nv; ++i) rates[i] = u[b.u + i];
+    Joint<Spatial>::add_motion(b, Spatial::Edge<S>{}, rates, own);
+    if constexpr (moving) {
+      for (int i = 0; i < b.nv; ++i) rates[i] = udot[b.u + i];
+      Joint<Spatial>::add_motion(b, Spatial::Edge<S>{}, rates, rate);
+    }
+  }
+  const Vec3<S> omega = W.w + own.w;
+  A += {cross(W.w, W.v) + cross(W.w + omega, own.v), cross(W.w, own.w)};
+  A += rate;
+  const auto K = acceleration_field(omega[0], omega[1], omega[2], A.w[0], A.w[1], A.w[2]);
+  own_wrench<false>(moments_[k], K, A.v[0], A.v[1], A.v[2], wrenches_[k]);
+  if (l.kind == LinkKind::general) origins_[static_cast<std::size_t>(l.record)] = {A.v, parent};
+  spin = {omega[0], omega[1], omega[2], A.v[0], A.v[1], A.v[2],
+          A.w[0],   A.w[1],   A.w[2],   K.xx,   K.yx,   K.zx};
+}
+
+template <class S>
+template <class Out>
+void InverseDynamicsSweeps<Spatial, S>::inward(Out tau) {
+  const Link* links = tree_->links.data();
+  PlainWrench<S> F{};
+  for (std::size_t k = angles_.size(); k-- > 0;) {
+    const Link& l = links[k];
+    const PlainWrench<S>& own = wrenches_[k];
+    const bool plain = is_plain_pin(l);
+    if (plain && l.parent < 0) {
+      S moment = l.tip ? own.nz : own.nz + F.nz;
+      if (l.slot >= 0) moment = moment + slots_[static_cast<std::size_t>(l.slot)].nz;
+      tau[l.u] = moment;
+      continue;
+    }
+    if (l.tip)
+      F = own;
+    else
+      add(F, own);
+    if (l.slot >= 0) add(F, slots_[static_cast<std::size_t>(l.slot)]);
+    if (!plain) {
+      PlainWrench<S> here = F;
+      any_inward(k, tau, here);
+      F = here;
+      if (l.parent < 0) continue;
+    } else {
+      tau[l.u] = F.nz;
+      const S c = angles_.cosine(k), s = angles_.sine(k);
+      turn_inward_z(c, s, F.fx, F.fy);
+      turn_inward_z(c, s, F.nx, F.ny);
+      F.nx = F.nx - l.d * F.fy;
+      F.ny = F.ny + l.d * F.fx;
+      turn_inward_x(l, F.fy, F.fz);
+      turn_inward_x(l, F.ny, F.nz);
+      F.ny = F.ny - l.a * F.fz;
+      F.nz = F.nz + l.a * F.fy;
+    }
+    if (l.first) continue;
+    auto& slot = slots_[slot_of_parent(l)];
+    if (l.opens)
+      slot = F;
+    else
+      add(slot, F);
+  }
+}
+
+// Mass on other joints is not the parent's: its force m a is passed on with the rest, less the
+// share m a_L that the parent itself will pass on.
+template <class S>
+template <class Out>
+void InverseDynamicsSweeps<Spatial, S>::any_inward(std::size_t k, Out tau, PlainWrench<S>& w) {
+  const Link& l = tree_->links[k];
+  const auto& b = tree_->model->bodies[k];
+  Spatial::Force<S> F{{{w.fx, w.fy, w.fz}}, {{w.nx, w.ny, w.nz}}};
+  const S mass(b.subtree_mass);
+  const bool general = l.kind == LinkKind::general;
+  if (general) F.f += mass * origins_[static_cast<std::size_t>(l.record)].own;
+  if (b.nv > 0) {
+    S along[6];
+    Joint<Spatial>::project(b, Spatial::Edge<S>{}, F, along);
+    for (int i = 0; i < b.nv; ++i) tau[b.u + i] = along[i];
+  }
+  if (l.parent < 0) return;
+  if (l.kind == LinkKind::ball) {
+    const auto& r = tree_->balls[static_cast<std::size_t>(l.record)].origin;
+    F = {ball_axes(l) * F.f, ball_axes(l) * F.n};
+    F.n += cross(Vec3<S>{{S(r[0]), S(r[1]), S(r[2])}}, F.f);
+  } else {
+    F = Spatial::to_parent(b.edge, b.kind, edge(k), F);
+  }
+  if (general) F.f -= mass * origins_[static_cast<std::size_t>(l.record)].parent;
+  w = {F.f[0], F.f[1], F.f[2], F.n[0], F.n[1], F.n[2]};
+}
+
+}  // namespace momenta
