@@ -74,6 +74,34 @@ void single(benchmark::State& state, Row row, Algorithm algorithm) {
   finish(state, static_cast<double>(chain.tree().bodies.size()));
 }
 
+/// Composite inertias with a sparse factorisation of M, and inverse dynamics: through the levels
+/// directly, as chains offer neither.
+void classical(benchmark::State& state, Row row, bool inverse) {
+  const Scene scene = row.model(static_cast<int>(state.range(0)));
+  OpenChain chain(scene, Algebra::spatial);
+  const States64 states(chain);
+  const Model<Spatial> model = build_spatial_model(chain.tree(), scene);
+  const LinkTree links = build_links(model);
+  const auto sweeps = make_sweeps(links, best_level());
+  const auto nv = static_cast<std::size_t>(chain.nv());
+  std::vector<double> in(nv, 0.0), out(nv);
+  std::vector<Eigen::VectorXd> q, u;
+  for (int i = 0; i < states_in_turn; ++i) {
+    q.emplace_back(states.q.col(i));
+    u.emplace_back(states.u.col(i));
+  }
+  std::size_t i = 0;
+  for (auto _ : state) {
+    const std::size_t k = i++ % states_in_turn;
+    if (inverse)
+      sweeps->inverse_dynamics(0, q[k].data(), u[k].data(), in.data(), out.data());
+    else
+      sweeps->composite_acceleration(0, q[k].data(), u[k].data(), in.data(), out.data());
+    benchmark::DoNotOptimize(out.data());
+  }
+  finish(state, static_cast<double>(chain.tree().bodies.size()));
+}
+
 void batch(benchmark::State& state, Row row, Algorithm algorithm) {
   OpenChain chain(row.model(static_cast<int>(state.range(0))), row.algebra, row.level);
   const States64 states(chain);
@@ -147,6 +175,17 @@ void register_open_chains() {
     const Row person{"humanoid", humanoid};
     add(person.name, person, algorithm, {31});
     add_batches(person.name, person, algorithm, {31});
+  }
+  for (const bool inverse : {false, true}) {
+    const std::string head = inverse ? "open/inverse_dynamics/" : "open/composite/";
+    for (const Row& row :
+         {Row{"random_chain", random_chain}, Row{"right_angle_chain", right_angle_chain},
+          Row{"binary_tree", binary_tree}, Row{"spherical_chain", spherical_chain}})
+      for (const int n : {7, 63})
+        benchmark::RegisterBenchmark((head + row.name).c_str(), classical, row, inverse)->Arg(n);
+    benchmark::RegisterBenchmark((head + "humanoid").c_str(), classical, Row{"humanoid", humanoid},
+                                 inverse)
+        ->Arg(31);
   }
   // What the plan leaves out, and what a level brings.
   const Row omissions[] = {

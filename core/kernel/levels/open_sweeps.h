@@ -30,6 +30,12 @@ class OpenSweeps {
   /// u̇ (nv) from all generalised forces τ (nv) but the weights'.
   virtual bool acceleration(double t, const double* q, const double* u, const double* tau,
                             double* udot) = 0;
+  /// The two other classical algorithms, in space alone (false in a plane): u̇ by composite inertias
+  /// and a sparse factorisation of M, and τ of given accelerations.
+  virtual bool composite_acceleration(double t, const double* q, const double* u, const double* tau,
+                                      double* udot) = 0;
+  virtual bool inverse_dynamics(double t, const double* q, const double* u, const double* udot,
+                                double* tau) = 0;
   /// q̇ and ṗ of many states, `width()` at a time. False when some state has a joint without
   /// inertia: its index is in failed_state(), its results are NaN, those of all others are right.
   virtual bool momentum(double t, const States& states) = 0;

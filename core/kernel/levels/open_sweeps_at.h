@@ -5,6 +5,8 @@
 // looks for such.
 
 #include <momenta/core/kernel/acceleration_sweeps.h>
+#include <momenta/core/kernel/composite_sweeps.h>
+#include <momenta/core/kernel/inverse_dynamics_sweeps.h>
 #include <momenta/core/kernel/levels/open_sweeps.h>
 #include <momenta/core/kernel/momentum_sweeps.h>
 #include <momenta/core/kernel/planar_sweeps.h>
@@ -42,6 +44,8 @@ class OpenSweepsAt final : public OpenSweeps {
       : tree_(tree),
         momentum_(tree),
         acceleration_(tree),
+        composite_(tree),
+        inverse_(tree),
         many_momenta_(tree),
         many_accelerations_(tree) {
     for (const auto& b : tree.model->bodies) quasi_velocities_ |= b.nq != b.nv;
@@ -62,6 +66,25 @@ class OpenSweepsAt final : public OpenSweeps {
                                   StridedIn<One>{tau, 1}, StridedOut<One>{udot, 1});
     if (!ok) stuck_ = acceleration_.stuck();
     return ok;
+  }
+
+  bool composite_acceleration(double t, const double* q, const double* u, const double* tau,
+                              double* udot) override {
+    if constexpr (Space::dimension == 6)
+      return composite_.get()(One(t), StridedIn<One>{q, 1}, StridedIn<One>{u, 1},
+                              StridedIn<One>{tau, 1}, StridedOut<One>{udot, 1});
+    else
+      return false;
+  }
+  bool inverse_dynamics(double t, const double* q, const double* u, const double* udot,
+                        double* tau) override {
+    if constexpr (Space::dimension == 6) {
+      inverse_.get()(One(t), StridedIn<One>{q, 1}, StridedIn<One>{u, 1}, StridedIn<One>{udot, 1},
+                     StridedOut<One>{tau, 1});
+      return true;
+    } else {
+      return false;
+    }
   }
 
   bool momentum(double t, const States& s) override {
@@ -203,6 +226,14 @@ class OpenSweepsAt final : public OpenSweeps {
   const Tree& tree_;
   MomentumSweeps<Space, One> momentum_;
   AccelerationSweeps<Space, One> acceleration_;
+  /// Nothing to ask for in a plane.
+  struct None {
+    explicit None(const Tree&) {}
+  };
+  template <class Sweeps>
+  using InSpace = WhenAsked<std::conditional_t<Space::dimension == 6, Sweeps, None>>;
+  InSpace<CompositeSweeps<Spatial, One>> composite_;
+  InSpace<InverseDynamicsSweeps<Spatial, One>> inverse_;
   WhenAsked<MomentumSweeps<Space, Many>> many_momenta_;
   WhenAsked<AccelerationSweeps<Space, Many>> many_accelerations_;
   Buffer rates_, padded_;
