@@ -23,7 +23,7 @@ Plan make_plan(const Tree& tree, const Scene& scene, Algebra algebra) {
   plan.gravity = plan.planar ? in_plane.head<2>().norm() > 0 : tree.gravity.norm() > 0;
   plan.drives = !tree.drives.empty();
   for (const auto& b : tree.bodies) {
-    plan.quasi_velocities |= b.nv > 1;
+    plan.quasi_velocities |= b.nq != b.nv;
     plan.joint_forces |= b.stiffness != 0 || b.damping != 0 || b.torque != 0;
   }
   for (const auto& force : scene.forces) plan.third_sweep |= force.kind != "torque";

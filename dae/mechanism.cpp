@@ -20,11 +20,20 @@ Plan plan_with_loops(const Tree& tree, const Scene& scene, Algebra algebra) {
   return plan;
 }
 
+/// User joints move in open chains alone.
+Tree open_or_closed(const Scene& scene) {
+  for (const JointSpec& joint : scene.joints)
+    if (joint.kind == JointKind::user)
+      throw SceneError(scene.where(joint.at) + "joint '" + joint.name +
+                       "' is a user joint, which an OpenChain can move but no Mechanism");
+  return build_tree(scene);
+}
+
 }  // namespace
 
 Mechanism::Mechanism(Scene scene, MechanismOptions options)
     : scene_(std::move(scene)),
-      tree_(build_tree(scene_)),
+      tree_(open_or_closed(scene_)),
       plan_(plan_with_loops(tree_, scene_, options.algebra)) {
   if (plan_.planar) {
     Cast<Planar> cast{build_planar_model(tree_, scene_, plan_.basis), {}};

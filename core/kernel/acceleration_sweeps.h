@@ -43,6 +43,7 @@ class AccelerationSweeps<Spatial, S> {
         pins_(tree.links.size()),
         balls_(tree.balls.size()),
         joints_(static_cast<std::size_t>(tree.records)),
+        users_(static_cast<std::size_t>(tree.users)),
         slots_(static_cast<std::size_t>(tree.slots)),
         outward_slots_(static_cast<std::size_t>(tree.slots)) {}
 
@@ -52,8 +53,8 @@ class AccelerationSweeps<Spatial, S> {
   template <class In, class InTau, class Out>
   bool operator()(const S& t, const In& q, const In& u, const InTau& tau, Out udot) {
     place_links(
-        *tree_, t, q, angles_,
-        joints_, [&](std::size_t record) -> auto& { return balls_[record].R; });
+        *tree_, t, q, angles_, joints_,
+        users_, [&](std::size_t record) -> auto& { return balls_[record].R; });
     stuck_ = tree_->stuck;
     if (stuck_ >= 0) return false;
     velocities(u);
@@ -95,6 +96,7 @@ class AccelerationSweeps<Spatial, S> {
   std::vector<PinAcceleration<S>> pins_;
   std::vector<BallAcceleration<S>> balls_;
   std::vector<JointRecord<Spatial, S>> joints_;
+  std::vector<UserRecord<S>> users_;
   std::vector<Cargo<S>> slots_;
   std::vector<OutwardCargo<S>> outward_slots_;
   int stuck_ = -1;
@@ -228,16 +230,21 @@ void AccelerationSweeps<Spatial, S>::any_velocity(std::size_t k, const In& u,
     auto& w = joints_[static_cast<std::size_t>(l.record)];
     if (l.parent >= 0) W = Spatial::to_child(b.edge, b.kind, w.edge, W);
     Spatial::Motion<S> own{};
+    S rates[6]{};
     if (b.drive >= 0) {
       Joint<Spatial>::add_motion(b, w.edge, &w.drive_rate, own);
     } else {
-      S rates[6]{};
       for (int i = 0; i < b.nv; ++i) rates[i] = u[b.u + i];
       Joint<Spatial>::add_motion(b, w.edge, rates, own);
+      if (b.law) {
+        own += w.user->motion.drift;
+        Joint<Spatial>::move(b, w.edge, static_cast<const S*>(rates));
+      }
     }
     omega = W.w + own.w;
     w.c = {cross(W.w, W.v) + cross(W.w + omega, own.v), cross(W.w, own.w)};
     if (b.drive >= 0) Joint<Spatial>::add_motion(b, w.edge, &w.drive_acceleration, w.c);
+    if (b.law) Joint<Spatial>::add_motion_rate(b, w.edge, static_cast<const S*>(rates), w.c);
     w.D = {};
     bias_wrench(l, omega[0], omega[1], omega[2], w.D.f[0], w.D.f[1], w.D.f[2], w.D.n[0], w.D.n[1],
                 w.D.n[2]);

@@ -25,9 +25,15 @@ typename Space::template Motion<S> prescribed_acceleration(const Workspace<Space
     Joint<Space>::add_motion(b, s.edge, &s.drive_rate, joint);
   else if (b.nv > 0)
     Joint<Space>::add_motion(b, s.edge, u + b.u, joint);
+  if (b.law) add_drive<Space, S>(b, s, joint);
   auto c = Space::velocity_product(
       s.edge, b.parent < 0 ? nullptr : &w.body[static_cast<std::size_t>(b.parent)].V, s.V, joint);
   if (b.drive >= 0) Joint<Space>::add_motion(b, s.edge, &s.drive_acceleration, c);
+  if constexpr (Space::dimension == 6)
+    if (b.law) {
+      Joint<Space>::move(b, s.edge, u + b.u);
+      Joint<Space>::add_motion_rate(b, s.edge, u + b.u, c);
+    }
   return c;
 }
 

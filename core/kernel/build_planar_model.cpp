@@ -48,7 +48,7 @@ PlaneFinding find_plane(const Tree& tree, const Scene& scene) {
   for (std::size_t k = 0; k < poses.size(); ++k) {
     const Tree::Body& b = tree.bodies[k];
     const Eigen::Vector3d z = poses[k].linear().col(2);
-    if (b.kind == JointKind::spherical || b.kind == JointKind::free || b.kind == JointKind::helical)
+    if (Spatial::moves_freely(b.kind) || b.kind == JointKind::helical)
       return {{}, "joint '" + b.joint + "' moves in space"};
     if (b.kind == JointKind::revolute && !normal) normal = z;
     if (b.kind == JointKind::prismatic) slides.push_back(z);

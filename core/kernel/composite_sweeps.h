@@ -1,4 +1,6 @@
 #pragma once
+// Not for trees with user joints: rows are gathered along axes that rest in their bodies.
+//
 // Composite rigid bodies in space, (q, u, τ, t) → u̇ by M itself: the opponent of small trees, where
 // it is hard to beat, and of trees that branch early.
 //

@@ -8,8 +8,9 @@
 //
 // r is p in the momentum form and the joint force in the acceleration form; W is the motion the
 // joint would leave its body without u. A driven or welded joint has no u: M' = M*, D' = D.
+// User joints, whose E has up to six columns: user_elimination.h.
 
-#include <momenta/core/kernel/joint.h>
+#include <momenta/core/kernel/user_elimination.h>
 #include <momenta/core/scalar/dual.h>
 #include <momenta/core/scalar/sine_cosine.h>
 
@@ -30,9 +31,10 @@ struct JointRecord<Spatial, S> {
   S pivot{}, e{};                                 ///< one dof: M_j⁻¹, r − Eᵀ D
   Vec3<S> moment;                                 ///< first moment of the subtree about O_K
   Mat3<S> H;                                      ///< several dofs: H I⁻¹ …
-  Sym3<S> I, A;          ///< … I⁻¹, and of a free joint (A − H I⁻¹Hᵀ)⁻¹
-  Vec3<S> x, y;          ///< … I⁻¹ e_ω, and of a free joint e_v − H I⁻¹ e_ω
-  Spatial::Motion<S> c;  ///< acceleration form: what W has beside 𝒯ⱽ A_L
+  Sym3<S> I, A;                   ///< … I⁻¹, and of a free joint (A − H I⁻¹Hᵀ)⁻¹
+  Vec3<S> x, y;                   ///< … I⁻¹ e_ω, and of a free joint e_v − H I⁻¹ e_ω
+  Spatial::Motion<S> c;           ///< acceleration form: what W has beside 𝒯ⱽ A_L
+  UserRecord<S>* user = nullptr;  ///< of a user joint, owned beside the records
 };
 template <class S>
 struct JointRecord<Planar, S> {
@@ -116,6 +118,8 @@ bool eliminate(const typename Model<Space>::Body& b, JointRecord<Space, S>& x,
                typename Space::template ArticulatedInertia<S>& reduced) {
   reduced = x.M;
   if (b.nv == 0) return true;
+  if constexpr (Space::dimension == 6)
+    if (b.law) return eliminate_user<S>(b, *x.user, reduced);
   if (b.nv == 1) {
     const auto U = Joint<Space>::column(b, x.edge, x.M);
     const S joint_mass = Joint<Space>::along(b, x.edge, U);  // M_j, (46)
@@ -136,6 +140,8 @@ template <class Space, class S>
 typename Space::template Force<S> remainder(const typename Model<Space>::Body& b,
                                             JointRecord<Space, S>& x, const S* r) {
   auto D = x.D;
+  if constexpr (Space::dimension == 6)
+    if (b.law) return user_remainder<S>(b, *x.user, D, r);
   if (b.nv == 1) {
     x.e = r[0] - Joint<Space>::along(b, x.edge, x.D);
     for (int i = 0; i < Space::dimension; ++i) D[i] += x.h[i] * x.e;
@@ -158,6 +164,7 @@ typename Space::template Force<S> reduced_momentum(const typename Model<Space>::
                                                    const JointRecord<Space, S>& x,
                                                    const typename Space::template Motion<S>& c) {
   if constexpr (Space::dimension == 6) {
+    if (b.law) return user_reduced_momentum<S>(b, *x.user, x.M, c);
     if (b.nv == 6) return {};                                                     // M' = 0
     if (b.nv == 3) return {x.M.A * c.v - x.H * transpose_times(x.M.H, c.v), {}};  // A' for v alone
   }
@@ -173,6 +180,8 @@ typename Space::template Force<S> reduced_momentum(const typename Model<Space>::
 template <class Space, class S>
 void solve_joint(const typename Model<Space>::Body& b, const JointRecord<Space, S>& x,
                  typename Space::template Motion<S>& W, S* u) {
+  if constexpr (Space::dimension == 6)
+    if (b.law) return solve_user<S>(b, *x.user, W, u);
   if (b.nv == 1) {
     u[0] = x.pivot * x.e - Space::power(x.h, W);
     Joint<Space>::add_motion(b, x.edge, u, W);

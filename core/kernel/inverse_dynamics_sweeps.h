@@ -192,6 +192,7 @@ class InverseDynamicsSweeps<Spatial, S> {
         wrenches_(tree.links.size()),
         axes_(tree.balls.size()),
         joints_(static_cast<std::size_t>(tree.records)),
+        users_(static_cast<std::size_t>(tree.users)),
         origins_(joints_.size()),
         slots_(static_cast<std::size_t>(tree.slots)),
         outward_slots_(slots_.size()) {}
@@ -209,7 +210,8 @@ class InverseDynamicsSweeps<Spatial, S> {
   template <class In>
   void place(const S& t, const In& q) {
     place_links(
-        *tree_, t, q, angles_, joints_, [&](std::size_t record) -> auto& { return axes_[record]; });
+        *tree_, t, q, angles_, joints_,
+        users_, [&](std::size_t record) -> auto& { return axes_[record]; });
   }
   /// τ with u̇ = 0. @pre placed.
   template <class In, class Out>
@@ -258,6 +260,7 @@ class InverseDynamicsSweeps<Spatial, S> {
   std::vector<PlainWrench<S>> wrenches_;  ///< of the bodies alone
   std::vector<Mat3<S>> axes_;
   std::vector<JointRecord<Spatial, S>> joints_;
+  std::vector<UserRecord<S>> users_;
   std::vector<Origins> origins_;
   std::vector<PlainWrench<S>> slots_;
   std::vector<Spin<S>> outward_slots_;
@@ -364,10 +367,16 @@ void InverseDynamicsSweeps<Spatial, S>::any_outward(std::size_t k, const In& u, 
   } else {
     S rates[6]{};
     for (int i = 0; i < b.nv; ++i) rates[i] = u[b.u + i];
-    Joint<Spatial>::add_motion(b, Spatial::Edge<S>{}, rates, own);
+    const auto way = b.law ? edge(k) : Spatial::Edge<S>{};
+    Joint<Spatial>::add_motion(b, way, rates, own);
+    if (b.law) {
+      own += way.own->drift;
+      Joint<Spatial>::move(b, way, static_cast<const S*>(rates));
+      Joint<Spatial>::add_motion_rate(b, way, static_cast<const S*>(rates), rate);
+    }
     if constexpr (moving) {
       for (int i = 0; i < b.nv; ++i) rates[i] = udot[b.u + i];
-      Joint<Spatial>::add_motion(b, Spatial::Edge<S>{}, rates, rate);
+      Joint<Spatial>::add_motion(b, way, rates, rate);
     }
   }
   const Vec3<S> omega = W.w + own.w;
@@ -439,7 +448,7 @@ void InverseDynamicsSweeps<Spatial, S>::any_inward(std::size_t k, Out tau, Plain
   if (general) F.f += mass * origins_[static_cast<std::size_t>(l.record)].own;
   if (b.nv > 0) {
     S along[6];
-    Joint<Spatial>::project(b, Spatial::Edge<S>{}, F, along);
+    Joint<Spatial>::project(b, b.law ? edge(k) : Spatial::Edge<S>{}, F, along);
     for (int i = 0; i < b.nv; ++i) tau[b.u + i] = along[i];
   }
   if (l.parent < 0) return;

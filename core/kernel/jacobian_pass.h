@@ -57,7 +57,7 @@ class DirectionalPass {
 template <class Space>
 bool is_hamiltonian(const Model<Space>& model) {
   for (const auto& b : model.bodies)
-    if (b.nv > 1) return false;
+    if (b.nq != b.nv) return false;
   for (const auto& spring : model.springs)
     if (spring.damping != 0) return false;
   return model.wrenches.empty();  // in body axes, or with a torque, one need not have a potential

@@ -1,9 +1,11 @@
 #pragma once
 // What a joint does in each algebra: its place at q, its motion E u, and the projection Eᵀ F. All E
-// are constant in body axes (revolute, prismatic: z; helical: z twice, E = (0, 0, pitch; 0, 0, 1);
-// spherical, free: unit matrices), so Ė of eq. (35) vanishes. Other kinds are chains of these.
+// but those of user joints are constant in body axes (revolute, prismatic: z; helical: z twice, E =
+// (0, 0, pitch; 0, 0, 1); spherical, free: unit matrices), so Ė of eq. (35) vanishes. A user joint
+// brings E and Ė with its formula. Other kinds are chains of these.
 
 #include <momenta/core/kernel/model.h>
+#include <momenta/core/kernel/user_motion.h>
 
 #include <limits>
 
@@ -68,9 +70,49 @@ struct Joint<Spatial> {
     }
   }
 
+  /// The pose, E and Ω_t of a user joint at (t, q) into `own`, which the edge points to from now
+  /// on.
+  template <class S>
+  static void place(const Body& b, const S& t, const S* q, UserMotion<S>& own,
+                    Spatial::Edge<S>& e) {
+    own.t = t;
+    for (int i = 0; i < b.nq; ++i) own.q[i] = q[i];
+    user_motion(*b.law, static_cast<const S*>(nullptr), own);
+    e.own = &own;
+    const double c = std::cos(b.theta0), s = std::sin(b.theta0);
+    e.rotation = own.rotation;
+    e.position = own.position;
+    turn<2>(e.position, c, s);
+    e.position[2] += S(b.d0);
+    for (int j = 0; j < 3; ++j) {
+      Vec3<S> column = e.rotation.column(j);
+      turn<2>(column, c, s);
+      e.rotation.set_column(j, column);
+    }
+  }
+  /// Ė and dΩ_t/dt along (u, 1) of a user joint that is in its place.
+  template <class S>
+  static void move(const Body& b, const Spatial::Edge<S>& e, const S* u) {
+    user_motion(*b.law, u, *e.own);
+  }
+  /// V += Ė u + dΩ_t/dt; after move.
+  template <class S>
+  static void add_motion_rate(const Body& b, const Spatial::Edge<S>& e, const S* u,
+                              Spatial::Motion<S>& v) {
+    v += e.own->drift_rate;
+    for (int j = 0; j < b.nv; ++j)
+      for (int i = 0; i < 6; ++i) v[i] += e.own->E_rate[j][i] * u[j];
+  }
+  /// ṗ += Ėᵀ P of (35); after move.
+  template <class S>
+  static void add_axis_rate(const Body& b, const Spatial::Edge<S>& e, const Spatial::Force<S>& P,
+                            S* pdot) {
+    for (int j = 0; j < b.nv; ++j) pdot[j] += Spatial::power(P, e.own->E_rate[j]);
+  }
+
   /// V += E u
   template <class S>
-  static void add_motion(const Body& b, const Spatial::Edge<S>&, const S* u,
+  static void add_motion(const Body& b, const Spatial::Edge<S>& e, const S* u,
                          Spatial::Motion<S>& v) {
     switch (b.kind) {
       case JointKind::revolute:
@@ -89,6 +131,10 @@ struct Joint<Spatial> {
       case JointKind::free:
         for (int i = 0; i < 6; ++i) v[i] += u[i];
         break;
+      case JointKind::user:
+        for (int j = 0; j < b.nv; ++j)
+          for (int i = 0; i < 6; ++i) v[i] += e.own->E[j][i] * u[j];
+        break;
       default:  // weld
         break;
     }
@@ -96,7 +142,7 @@ struct Joint<Spatial> {
 
   /// p = Eᵀ F, eq. (34).
   template <class S>
-  static void project(const Body& b, const Spatial::Edge<S>&, const Spatial::Force<S>& f, S* p) {
+  static void project(const Body& b, const Spatial::Edge<S>& e, const Spatial::Force<S>& f, S* p) {
     switch (b.kind) {
       case JointKind::revolute:
         p[0] = f.n[2];
@@ -112,6 +158,9 @@ struct Joint<Spatial> {
         break;
       case JointKind::free:
         for (int i = 0; i < 6; ++i) p[i] = f[i];
+        break;
+      case JointKind::user:
+        for (int j = 0; j < b.nv; ++j) p[j] = Spatial::power(f, e.own->E[j]);
         break;
       default:  // weld
         break;

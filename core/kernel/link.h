@@ -77,7 +77,7 @@ struct LinkTree {
   std::vector<double> theta0;  ///< by link: of a pin, the angle of its frame at q = 0 [rad]
   std::vector<Vec3<double>>
       weight;  ///< by link: for pins on the ground, gravity in their frame before the turn [m/s²]
-  int slots = 0, records = 0;
+  int slots = 0, records = 0, users = 0;
   /// Joint whose reduced or joint inertia is not positive although constant: a tip without inertia
   /// about its pin; −1: none.
   int stuck = -1;

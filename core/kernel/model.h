@@ -6,6 +6,7 @@
 #include <momenta/core/kernel/spatial.h>
 #include <momenta/core/tree/tree.h>
 
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -26,6 +27,8 @@ struct Model {
     typename Space::template RigidInertia<double> inertia;
     double subtree_mass = 0;  ///< of the body and all it carries [kg]
     double stiffness = 0, rest = 0, damping = 0, torque = 0;
+    const UserJoint* law = nullptr;  ///< user joints: one of `laws`
+    int user = -1;                   ///< and its place among them
   };
   /// Spring-damper between two points; offset2 is the squared distance across the plane of a planar
   /// scene.
@@ -46,6 +49,7 @@ struct Model {
   std::vector<Spring> springs;
   std::vector<Wrench> wrenches;
   std::vector<MotionLaw> drives;
+  std::vector<std::shared_ptr<const UserJoint>> laws;
   Vector gravity;
   int nq = 0, nv = 0;
   bool has_gravity = false, has_joint_forces = false;

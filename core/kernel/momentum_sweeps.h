@@ -57,6 +57,7 @@ class MomentumSweeps<Spatial, S> {
         pins_(tree.links.size()),
         balls_(tree.balls.size()),
         joints_(static_cast<std::size_t>(tree.records)),
+        users_(static_cast<std::size_t>(tree.users)),
         slots_(static_cast<std::size_t>(tree.slots)),
         outward_slots_(static_cast<std::size_t>(tree.slots)) {}
 
@@ -65,8 +66,8 @@ class MomentumSweeps<Spatial, S> {
   template <class In, class Out>
   bool operator()(const S& t, const In& q, const In& p, Out u, Out pdot) {
     place_links(
-        *tree_, t, q, angles_,
-        joints_, [&](std::size_t record) -> auto& { return balls_[record].R; });
+        *tree_, t, q, angles_, joints_,
+        users_, [&](std::size_t record) -> auto& { return balls_[record].R; });
     stuck_ = tree_->stuck;
     if (stuck_ >= 0) return false;
     return tree_->model->has_gravity ? inward<true>(p) && outward<true>(q, u, pdot)
@@ -110,6 +111,7 @@ class MomentumSweeps<Spatial, S> {
   std::vector<PinRecord<S>> pins_;
   std::vector<BallRecord<S>> balls_;
   std::vector<JointRecord<Spatial, S>> joints_;
+  std::vector<UserRecord<S>> users_;
   std::vector<Cargo<S>> slots_;
   std::vector<OutwardCargo<S>> outward_slots_;
   int stuck_ = -1;
@@ -461,6 +463,7 @@ bool MomentumSweeps<Spatial, S>::general_inward(std::size_t k, const In& p, Carg
     Joint<Spatial>::add_motion(b, x.edge, &x.drive_rate, prescribed);
     D += Spatial::momentum(x.M, prescribed);
   }
+  if (b.law) D += reduced_momentum<Spatial>(b, x, x.user->motion.drift);
   if (b.parent < 0) return true;
   Vec3<S> G{};
   if constexpr (Gravity)
@@ -488,6 +491,7 @@ void MomentumSweeps<Spatial, S>::general_outward(std::size_t k, const In& q, Out
   }
   if constexpr (Gravity) g = Spatial::direction_to_child(b.edge, b.kind, x.edge, g);
   if (b.drive >= 0) Joint<Spatial>::add_motion(b, x.edge, &x.drive_rate, V);
+  if (b.law) V += x.user->motion.drift;
   if (b.nv > 0) {
     S own[6];
     solve_joint<Spatial>(b, x, V, own);
@@ -498,6 +502,10 @@ void MomentumSweeps<Spatial, S>::general_outward(std::size_t k, const In& q, Out
     net -= Spatial::cross_force(V, P);
     S rate[6];
     Joint<Spatial>::project(b, x.edge, net, rate);  // (35)
+    if (b.law) {
+      Joint<Spatial>::move(b, x.edge, static_cast<const S*>(own));
+      Joint<Spatial>::add_axis_rate(b, x.edge, P, rate);
+    }
     if (b.nv == 1 && tree_->model->has_joint_forces) rate[0] += joint_force(b, S(q[b.q]), own[0]);
     for (int i = 0; i < b.nv; ++i) {
       u[b.u + i] = own[i];

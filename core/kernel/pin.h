@@ -352,7 +352,8 @@ MOMENTA_INLINE void constants_outward(const Link& l, const Spatial::EdgeConstant
 /// Sines and cosines of all pins, turned axes of ball joints (`axes(record)`), edges of the others.
 template <class S, class In, class Axes>
 void place_links(const LinkTree& tree, const S& t, const In& q, Angles<S>& angles,
-                 std::vector<JointRecord<Spatial, S>>& joints, Axes&& axes) {
+                 std::vector<JointRecord<Spatial, S>>& joints, std::vector<UserRecord<S>>& users,
+                 Axes&& axes) {
   const Link* links = tree.links.data();
   const double* theta0 = tree.theta0.data();
   const std::size_t n = angles.size();
@@ -378,6 +379,11 @@ void place_links(const LinkTree& tree, const S& t, const In& q, Angles<S>& angle
     auto& x = joints[record];
     S at[7]{};
     for (int i = 0; i < b.nq; ++i) at[i] = q[b.q + i];
+    if (b.law) {
+      x.user = &users[static_cast<std::size_t>(b.user)];
+      Joint<Spatial>::place(b, t, static_cast<const S*>(at), x.user->motion, x.edge);
+      continue;
+    }
     if (b.drive >= 0)
       prescribe(tree.model->drives[static_cast<std::size_t>(b.drive)], t, x.drive, x.drive_rate,
                 x.drive_acceleration);

@@ -17,6 +17,9 @@
 
 namespace momenta {
 
+template <class S>
+struct UserMotion;
+
 struct Spatial {
   static constexpr int dimension = 6;
 
@@ -88,8 +91,9 @@ struct Spatial {
   template <class S>
   struct Edge {
     S cos_theta{1.0}, sin_theta{}, d{};
-    Mat3<S> rotation;  ///< spherical, free: child components to joint-frame components
-    Vec3<S> position;  ///< spherical, free: child origin after the constant screws
+    Mat3<S> rotation;  ///< spherical, free, user: child components to joint-frame components
+    Vec3<S> position;  ///< spherical, free, user: child origin after the constant screws
+    UserMotion<S>* own = nullptr;  ///< user joints: E and Ω_t here; owned beside the edges
   };
 
   template <class S>
@@ -312,7 +316,7 @@ struct Spatial {
 
   /// True for joints whose own transform is a rotation (and position) instead of a screw about z.
   static constexpr bool moves_freely(JointKind kind) {
-    return kind == JointKind::spherical || kind == JointKind::free;
+    return kind == JointKind::spherical || kind == JointKind::free || kind == JointKind::user;
   }
 
  private:

@@ -3,9 +3,10 @@
 // first, "inward" children first; depth-first numbering makes both a plain loop.
 //
 //   Ω_K = 𝒯ⱽ Ω_L + E u + Ω_t                                (23)
-//   P*_K = M_K Ω_K + w_K + Σ 𝒯ᶠ P*_child,  p_K = Eᵀ P*_K     (26), (34); w: loop impulses on the
-//   body, if any ṗ_K = Eᵀ (T*_K − Ω_K × P*_K) + Q_joint                   (35); Ė = 0 for all
-//   joints here
+//   P*_K = M_K Ω_K + w_K + Σ 𝒯ᶠ P*_child,  p_K = Eᵀ P*_K     (26), (34)
+//   ṗ_K = Eᵀ (T*_K − Ω_K × P*_K) + Ėᵀ P*_K + Q_joint          (35)
+//
+// w: loop impulses on the body, if any. Ė = 0 for all joints but user joints.
 
 #include <momenta/core/kernel/joint.h>
 #include <momenta/core/kernel/workspace.h>
@@ -24,8 +25,12 @@ void poses_outward(Workspace<Space, S>& w, const S& t, const S* q, bool with_pos
       model.drives[static_cast<std::size_t>(b.drive)].evaluate(t, s.drive, s.drive_rate,
                                                                s.drive_acceleration);
     const auto* parent = b.parent < 0 ? nullptr : &w.body[static_cast<std::size_t>(b.parent)];
+    if constexpr (Space::dimension == 6)
+      if (b.law)
+        Joint<Space>::place(b, t, q + b.q, w.users[static_cast<std::size_t>(b.user)], s.edge);
     const S value = b.drive >= 0 ? s.drive : (b.nq == 1 ? q[b.q] : S(0.0));
-    Joint<Space>::template place<S>(b, parent ? &parent->edge : nullptr, value, q + b.q, s.edge);
+    if (!b.law)
+      Joint<Space>::template place<S>(b, parent ? &parent->edge : nullptr, value, q + b.q, s.edge);
     if constexpr (Space::dimension == 3) s.inertia = Planar::turned(b.inertia, s.edge);
     if (with_poses) {
       typename Space::template Pose<S> ground;
@@ -35,11 +40,13 @@ void poses_outward(Workspace<Space, S>& w, const S& t, const S* q, bool with_pos
   }
 }
 
-/// Ω_t of (13): prescribed joint motion, added to V.
+/// Ω_t of (13): prescribed joint motion, or what a user joint moves with t alone, added to V.
 template <class Space, class S>
 void add_drive(const typename Model<Space>::Body& b, const typename Workspace<Space, S>::Body& s,
                typename Space::template Motion<S>& v) {
   if (b.drive >= 0) Joint<Space>::add_motion(b, s.edge, &s.drive_rate, v);
+  if constexpr (Space::dimension == 6)
+    if (b.law) v += s.edge.own->drift;
 }
 
 /// Ω_K of all bodies from the joint rates, eq. (23).
@@ -56,6 +63,7 @@ void velocities_outward(Workspace<Space, S>& w, const S* u) {
       add_drive<Space, S>(b, s, s.V);
     else
       Joint<Space>::add_motion(b, s.edge, u + b.u, s.V);
+    if (b.law) add_drive<Space, S>(b, s, s.V);
   }
 }
 
@@ -111,6 +119,11 @@ void momentum_rates_inward(Workspace<Space, S>& w, const S* q, const S* u, S* pd
       auto net = s.T;
       net -= Space::cross_force(s.V, s.P);
       Joint<Space>::project(b, s.edge, net, pdot + b.u);
+      if constexpr (Space::dimension == 6)
+        if (b.law) {
+          Joint<Space>::move(b, s.edge, u + b.u);
+          Joint<Space>::add_axis_rate(b, s.edge, s.P, pdot + b.u);
+        }
       if (b.nv == 1) pdot[b.u] += joint_force(b, q[b.q], u[b.u]);
     }
     if (b.parent >= 0)
@@ -122,7 +135,10 @@ void momentum_rates_inward(Workspace<Space, S>& w, const S* q, const S* u, S* pd
 template <class Space, class S>
 void coordinate_rates(const Model<Space>& model, const S* q, const S* u, S* qdot) {
   for (const auto& b : model.bodies)
-    if (b.nv > 0) coordinate_rates(b.kind, q + b.q, u + b.u, qdot + b.q);
+    if (b.law)
+      for (int i = 0; i < b.nv; ++i) qdot[b.q + i] = u[b.u + i];
+    else if (b.nv > 0)
+      coordinate_rates(b.kind, q + b.q, u + b.u, qdot + b.q);
 }
 
 }  // namespace momenta

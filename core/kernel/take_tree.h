@@ -30,6 +30,11 @@ void take_joints(const Tree& tree, Model<Space>& model) {
     m.rest = b.rest;
     m.damping = b.damping;
     m.torque = b.torque;
+    if (b.kind == JointKind::user) {
+      m.law = b.law.get();
+      m.user = static_cast<int>(model.laws.size());
+      model.laws.push_back(b.law);
+    }
     model.has_joint_forces |= m.stiffness != 0 || m.damping != 0 || m.torque != 0;
     m.subtree_mass += b.mass;
     if (m.parent >= 0)

@@ -3,6 +3,7 @@
 // sweep allocates.
 
 #include <momenta/core/kernel/model.h>
+#include <momenta/core/kernel/user_motion.h>
 
 #include <vector>
 
@@ -32,11 +33,15 @@ struct Workspace {
     Force T;  ///< T*_K, eq. (27)
   };
   explicit Workspace(const Model<Space>& m)
-      : model(&m), body(m.bodies.size()), generalised(static_cast<std::size_t>(m.nv)) {}
+      : model(&m),
+        body(m.bodies.size()),
+        generalised(static_cast<std::size_t>(m.nv)),
+        users(m.laws.size()) {}
 
   const Model<Space>* model;
   std::vector<Body> body;
-  std::vector<S> generalised;  ///< scratch, nv: generalised forces
+  std::vector<S> generalised;        ///< scratch, nv: generalised forces
+  std::vector<UserMotion<S>> users;  ///< what the edges of user joints point to
 
   /// The rigid inertia of body k in the axes the sweeps work in.
   const auto& inertia(std::size_t k) const {

@@ -9,7 +9,7 @@
 
 namespace momenta::reading {
 
-// In the order of the enumerations.
+// In the order of the enumerations. A file cannot ask for a user joint, the last kind.
 inline constexpr std::array<std::string_view, 9> joint_kinds{
     "revolute",  "prismatic", "helical", "cylindrical", "universal",
     "spherical", "planar",    "free",    "weld"};
@@ -25,18 +25,19 @@ inline constexpr std::array<std::string_view, 5> shape_kinds{"rod", "box", "cyli
 inline constexpr std::array<std::string_view, 5> planned_kinds{"helical", "cylindrical",
                                                                "universal", "planar", "coupler"};
 
-static_assert(static_cast<std::size_t>(JointKind::weld) + 1 == joint_kinds.size());
+static_assert(static_cast<std::size_t>(JointKind::user) == joint_kinds.size());
 static_assert(static_cast<std::size_t>(LoopKind::distance) + 1 == loop_kinds.size());
 
 inline std::string_view name_of(JointKind kind) {
-  return joint_kinds.at(static_cast<std::size_t>(kind));
+  return kind == JointKind::user ? "user" : joint_kinds.at(static_cast<std::size_t>(kind));
 }
 inline std::string_view name_of(LoopKind kind) {
   return loop_kinds.at(static_cast<std::size_t>(kind));
 }
 
 constexpr bool has_axis(JointKind kind) {
-  return kind != JointKind::spherical && kind != JointKind::free && kind != JointKind::weld;
+  return kind != JointKind::spherical && kind != JointKind::free && kind != JointKind::weld &&
+         kind != JointKind::user;
 }
 constexpr bool has_axis(LoopKind kind) {
   return kind == LoopKind::revolute || kind == LoopKind::prismatic;

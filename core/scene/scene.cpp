@@ -1,5 +1,6 @@
 #include <momenta/core/scene/near_name.h>
 #include <momenta/core/scene/scene.h>
+#include <momenta/core/user_joint.h>
 
 #include <cmath>
 
@@ -9,6 +10,14 @@ std::string Scene::where(Location at) const {
   std::string prefix = file.empty() ? std::string("scene") : reading::on_one_line(file);
   if (at.line > 0) prefix += ":" + std::to_string(at.line) + ":" + std::to_string(at.column);
   return prefix + ": ";
+}
+
+int coordinates_of(const JointSpec& joint) {
+  return joint.kind == JointKind::user ? (joint.law ? joint.law->coordinates() : 0)
+                                       : coordinates_of(joint.kind);
+}
+int rates_of(const JointSpec& joint) {
+  return joint.kind == JointKind::user ? coordinates_of(joint) : rates_of(joint.kind);
 }
 
 Eigen::Vector3d perpendicular_to(const Eigen::Vector3d& axis) {

@@ -8,12 +8,15 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <map>
+#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 namespace momenta {
+
+class UserJoint;  // core/user_joint.h
 
 /// Where a thing stands in its file; line 0 means it did not come from a file.
 struct Location {
@@ -66,6 +69,8 @@ struct BodySpec {
 ///     `axis` [rad]
 ///   - spherical: quaternion w x y z of the child axes in the joint frame
 ///   - free: position x y z [m] of the child point in the joint frame, then that quaternion
+///   - user: what the formula in `law` takes; the two frames need not coincide at q = 0. A file has
+///     no such kind. No springs, dampers, torques or drives on it, and no loops in the scene
 ///
 /// u, by kind:
 ///   - q̇ where no quaternion is in q; weld: none
@@ -90,14 +95,19 @@ struct JointSpec {
   /// Planar: q1 counts along the part of this that is perpendicular to `axis`; zero means
   /// perpendicular_to(axis). A unit vector in the joint frame, not parallel to `axis`.
   Eigen::Vector3d direction = Eigen::Vector3d::Zero();
-  double pitch = 0;              ///< helical: way along `axis` [m] per angle about it [rad]
-  std::vector<double> position;  ///< start value or first guess, size nq (empty: q = 0)
-  std::vector<double> velocity;  ///< start value or first guess, size nv (empty: zero)
-  double stiffness = 0;          ///< revolute, helical [N m/rad], prismatic [N/m]; else 0
-  double rest = 0;               ///< revolute, helical [rad], prismatic [m]; else 0
-  double damping = 0;            ///< revolute, helical [N m s/rad], prismatic [N s/m]; else 0
+  double pitch = 0;                      ///< helical: way along `axis` [m] per angle about it [rad]
+  std::shared_ptr<const UserJoint> law;  ///< user: its pose, a formula of t and q
+  std::vector<double> position;          ///< start value or first guess, size nq (empty: q = 0)
+  std::vector<double> velocity;          ///< start value or first guess, size nv (empty: zero)
+  double stiffness = 0;                  ///< revolute, helical [N m/rad], prismatic [N/m]; else 0
+  double rest = 0;                       ///< revolute, helical [rad], prismatic [m]; else 0
+  double damping = 0;  ///< revolute, helical [N m s/rad], prismatic [N s/m]; else 0
   Location at;
 };
+
+/// Sizes of q and u of a joint: of its kind, or of its law.
+int coordinates_of(const JointSpec& joint);
+int rates_of(const JointSpec& joint);
 
 /// The direction a joint takes where none is given: the coordinate axis that follows, in the order
 /// x y z x, the one nearest to `axis` (the first of equally near ones), made perpendicular to it.

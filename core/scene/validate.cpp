@@ -4,6 +4,7 @@
 #include <momenta/core/scene/shapes.h>
 #include <momenta/core/scene/validate_parts.h>
 #include <momenta/core/tree/drive.h>
+#include <momenta/core/user_joint.h>
 
 #include <algorithm>
 #include <cmath>
@@ -79,24 +80,57 @@ void check_second_direction(const Scene& scene, const JointSpec& joint,
                      " is parallel to axis, expected another direction");
 }
 
+/// The law of a user joint, which no other joint has and no loop stands beside.
+void check_law(const Scene& scene, const JointSpec& joint, const std::string& who) {
+  if (joint.kind != JointKind::user)
+    return require(!joint.law, scene, joint.at, who, "law is for user joints only");
+  require(joint.law != nullptr, scene, joint.at, who, "law is missing, expected a UserJoint");
+  const int n = joint.law->coordinates();
+  require(n >= 1 && n <= 6, scene, joint.at, who,
+          ("law has " + std::to_string(n) + " coordinates, expected 1 to 6").c_str());
+  require(scene.loops.empty(), scene, joint.at, who,
+          "a user joint needs an open chain, but the scene has loops");
+}
+
+/// R Rᵀ = 1 and det R > 0 at the start, t = 0. @pre position is finite and of its size
+void check_pose(const Scene& scene, const JointSpec& joint, const std::string& who) {
+  constexpr double slack = 1e-10;
+  double q[6]{};
+  std::copy(joint.position.begin(), joint.position.end(), q);
+  Eigen::Matrix3d r;
+  Eigen::Vector3d step;
+  joint.law->pose(0, q, r.data(), step.data());
+  require(r.allFinite() && step.allFinite(), scene, joint.at, who,
+          "law gives no finite pose at the start");
+  const double fault = (r * r.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
+  require(fault <= slack && r.determinant() > 0, scene, joint.at, who,
+          "law gives a matrix at the start that is no rotation within 1e-10");
+}
+
+void check_quaternion(const Scene& scene, const JointSpec& joint, const std::string& who) {
+  if (joint.position.size() < 4) return;
+  const Eigen::Map<const Eigen::Vector4d> quaternion(joint.position.data() + joint.position.size() -
+                                                     4);
+  require(std::abs(quaternion.norm() - 1) <= reading::norm_slack, scene, joint.at, who,
+          "position must hold a unit quaternion within 1e-6");
+}
+
 void check_joints(const Scene& scene, const Census& census) {
   for (const JointSpec& joint : scene.joints) {
     const std::string who = "joint " + in_quotes(joint.name);
     check_edge(scene, census, joint, who);
+    check_law(scene, joint, who);
     require(joint.position.empty() ||
-                joint.position.size() == static_cast<std::size_t>(coordinates_of(joint.kind)),
+                joint.position.size() == static_cast<std::size_t>(coordinates_of(joint)),
             scene, joint.at, who, "position must be empty or of the size of its kind");
     require(joint.velocity.empty() ||
-                joint.velocity.size() == static_cast<std::size_t>(rates_of(joint.kind)),
+                joint.velocity.size() == static_cast<std::size_t>(rates_of(joint)),
             scene, joint.at, who, "velocity must be empty or of the size of its kind");
     require(finite(joint.position) && finite(joint.velocity), scene, joint.at, who,
             "position and velocity must be finite");
-    if (joint.position.size() >= 4) {
-      const Eigen::Map<const Eigen::Vector4d> quaternion(joint.position.data() +
-                                                         joint.position.size() - 4);
-      require(std::abs(quaternion.norm() - 1) <= reading::norm_slack, scene, joint.at, who,
-              "position must hold a unit quaternion within 1e-6");
-    }
+    if (joint.kind == JointKind::spherical || joint.kind == JointKind::free)
+      check_quaternion(scene, joint, who);
+    if (joint.kind == JointKind::user) check_pose(scene, joint, who);
     require(
         std::isfinite(joint.stiffness) && std::isfinite(joint.rest) && std::isfinite(joint.damping),
         scene, joint.at, who, "stiffness, rest and damping must be finite");
@@ -148,6 +182,9 @@ void check_drives(const Scene& scene, const Census& census) {
     const std::string who = owner(drive);
     const JointSpec& joint = census.require_joint(drive.joint, drive.at, who);
     const int count = rates_of(joint.kind);
+    require(
+        joint.kind != JointKind::user, scene, drive.at, who,
+        ("joint " + in_quotes(joint.name) + " is user, expected what moves it in its law").c_str());
     if (count == 0)
       throw SceneError(scene.where(drive.at) + who + ": joint " + in_quotes(joint.name) + " is " +
                        std::string(name_of(joint.kind)) + ", expected a joint that moves");

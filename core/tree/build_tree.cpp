@@ -150,8 +150,10 @@ class TreeBuilder {
       b.coordinate = part.coordinate;
       b.parent = parent;
       b.kind = part.kind;
-      b.nq = coordinates_of(part.kind);
-      b.nv = rates_of(part.kind);
+      const bool user = part.kind == JointKind::user;
+      b.nq = user ? coordinates_of(joint) : coordinates_of(part.kind);
+      b.nv = user ? rates_of(joint) : rates_of(part.kind);
+      b.law = joint.law;
       for (const DriveSpec* drive : drives)
         if (drive->coordinate == part.coordinate) {
           b.drive = static_cast<int>(tree_.drives.size());
@@ -163,9 +165,10 @@ class TreeBuilder {
       tree_.nq += b.nq;
       tree_.nv += b.nv;
 
-      const Eigen::Matrix3d z_along_axis = b.kind == JointKind::weld || coordinates_of(b.kind) > 1
-                                               ? Eigen::Matrix3d(Eigen::Matrix3d::Identity())
-                                               : frame_with_z(part.axis);
+      const Eigen::Matrix3d z_along_axis =
+          b.kind == JointKind::weld || user || coordinates_of(b.kind) > 1
+              ? Eigen::Matrix3d(Eigen::Matrix3d::Identity())
+              : frame_with_z(part.axis);
       if (i == 0) {
         const Eigen::Isometry3d parent_axes =
             parent < 0 ? Eigen::Isometry3d::Identity()

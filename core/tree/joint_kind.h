@@ -6,7 +6,8 @@
 // A tree knows fewer: cylindrical, universal and planar joints, and fully driven spherical and free
 // ones, become chains of revolute and prismatic joints with massless bodies between them. Then E is
 // constant in body axes for every joint of a tree, and q, p, q̇, ṗ are those of the joint as a
-// whole.
+// whole. A user joint is a formula of a program (core/user_joint.h): its E moves in body axes, and
+// its numbers are those of its formula.
 
 namespace momenta {
 
@@ -19,10 +20,12 @@ enum class JointKind {
   spherical,
   planar,
   free,
-  weld
+  weld,
+  user
 };
 
-/// Size of q: a unit quaternion w x y z for spherical; position, then quaternion for free.
+/// Size of q: a unit quaternion w x y z for spherical; position, then quaternion for free. Of a
+/// user joint the kind alone does not know it: coordinates_of(JointSpec) does.
 constexpr int coordinates_of(JointKind kind) {
   switch (kind) {
     case JointKind::revolute:
@@ -39,6 +42,7 @@ constexpr int coordinates_of(JointKind kind) {
     case JointKind::free:
       return 7;
     case JointKind::weld:
+    case JointKind::user:
       return 0;
   }
   return 0;
@@ -62,6 +66,7 @@ constexpr int rates_of(JointKind kind) {
     case JointKind::free:
       return 6;
     case JointKind::weld:
+    case JointKind::user:
       return 0;
   }
   return 0;

@@ -37,6 +37,7 @@ struct Tree {
     double pitch = 0;                             ///< of a helical joint [m/rad]
     double stiffness = 0, rest = 0, damping = 0;  ///< of a one-dof joint
     double torque = 0;                            ///< constant generalised force on a one-dof joint
+    std::shared_ptr<const UserJoint> law;         ///< of a user joint
   };
 
   std::string name;

@@ -111,6 +111,7 @@ auto DenseLagrangian::frames(const S& t, const List<S>& q) const -> List<Frame<S
         break;
       }
       case JointKind::weld:
+      case JointKind::user:  // tested against the built-in kinds
         break;
     }
     all[k].axes = product(joint_axes, turned);

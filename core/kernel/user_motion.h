@@ -1,0 +1,117 @@
+#pragma once
+// What the formula of a user joint gives at one configuration. From the pose (R, r)(t, q) of the
+// child's joint frame in the parent's, all in child axes:
+//
+//   E_j = (Rᵀ ∂r/∂q_j, vee(Rᵀ ∂R/∂q_j)),   Ω_t = (Rᵀ ∂r/∂t, vee(Rᵀ ∂R/∂t))          (13)
+//   Ė, dΩ_t/dt: the derivatives of these along (q̇, ṫ) = (u, 1)                       (35)
+//
+// The formula is evaluated for double, Dual<double, 1> and Dual8, whose derivatives are exact, one
+// direction at a time for other dual numbers, and lane by lane for packs: out of line, by
+// code compiled once for any machine. Every other scalar goes through double: long double has the
+// digits of a double there, a Counted does not see the operations of the formula.
+
+#include <momenta/core/kernel/spatial.h>
+#include <momenta/core/scalar/dual.h>
+#include <momenta/core/scalar/pack.h>
+
+namespace momenta {
+
+class UserJoint;
+
+template <class S>
+struct UserMotion {
+  S t{};
+  S q[6]{};                                  ///< the configuration, set before user_motion
+  Mat3<S> rotation;                          ///< R
+  Vec3<S> position;                          ///< r
+  Spatial::Motion<S> E[6], drift;            ///< columns of E; Ω_t
+  Spatial::Motion<S> E_rate[6], drift_rate;  ///< Ė, dΩ_t/dt
+};
+
+/// Calls f on every number that user_motion computes, in one order for all S.
+template <class S, class F>
+void each_number(UserMotion<S>& m, F&& f) {
+  for (auto& x : m.rotation.x) f(x);
+  for (auto& x : m.position.x) f(x);
+  const auto motions = [&f](Spatial::Motion<S>& v) {
+    for (int i = 0; i < 6; ++i) f(v[i]);
+  };
+  for (auto& column : m.E) motions(column);
+  motions(m.drift);
+  for (auto& column : m.E_rate) motions(column);
+  motions(m.drift_rate);
+}
+constexpr int user_numbers = 12 + 2 * 7 * 6;
+
+/// R, r, E and Ω_t at (m.t, m.q); with u not null their rates along (u, 1), else zeros there.
+void user_motion(const UserJoint& joint, const double* u, UserMotion<double>& m);
+void user_motion(const UserJoint& joint, const Dual<double, 1>* u, UserMotion<Dual<double, 1>>& m);
+void user_motion(const UserJoint& joint, const Dual8* u, UserMotion<Dual8>& m);
+/// The same in plain arrays: six q and u, and user_numbers results.
+void user_motion(const UserJoint& joint, double t, const double* q, const double* u,
+                 double* numbers);
+
+int coordinates_of(const UserJoint& joint);
+
+template <int W, int L>
+void user_motion(const UserJoint& joint, const Pack<W, L>* u, UserMotion<Pack<W, L>>& m) {
+  for (int lane = 0; lane < W; ++lane) {
+    double q[6], rates[6], numbers[user_numbers];
+    for (int i = 0; i < 6; ++i) {
+      q[i] = m.q[i].lane(lane);
+      rates[i] = u ? u[i].lane(lane) : 0.0;
+    }
+    user_motion(joint, m.t.lane(lane), q, static_cast<const double*>(u ? rates : nullptr), numbers);
+    const double* from = numbers;
+    each_number(m, [&](Pack<W, L>& x) { x.set_lane(lane, *from++); });
+  }
+}
+
+template <class T>
+constexpr bool is_dual = false;
+template <class T, int N>
+constexpr bool is_dual<Dual<T, N>> = true;
+
+template <class T, int N>
+void user_motion(const UserJoint& joint, const Dual<T, N>* u, UserMotion<Dual<T, N>>& m) {
+  static_assert(!is_dual<T>, "a user joint has no second derivatives");
+  using D = Dual<double, 1>;
+  const int n = coordinates_of(joint);
+  for (std::size_t direction = 0; direction < N; ++direction) {
+    const auto along = [direction](const Dual<T, N>& x) {
+      D y(value_of(x.a));
+      y.b[0] = value_of(x.b[direction]);
+      return y;
+    };
+    UserMotion<D> one;
+    one.t = along(m.t);
+    D rates[6];
+    for (int i = 0; i < n; ++i) {
+      one.q[i] = along(m.q[i]);
+      if (u) rates[i] = along(u[i]);
+    }
+    user_motion(joint, static_cast<const D*>(u ? rates : nullptr), one);
+    D numbers[user_numbers], *to = numbers;
+    each_number(one, [&to](const D& x) { *to++ = x; });
+    const D* from = numbers;
+    each_number(m, [&from, direction](Dual<T, N>& x) {
+      x.a = T(from->a);
+      x.b[direction] = T((from++)->b[0]);
+    });
+  }
+}
+
+template <class S>
+void user_motion(const UserJoint& joint, const S* u, UserMotion<S>& m) {
+  const int n = coordinates_of(joint);
+  double q[6]{}, rates[6]{}, numbers[user_numbers];
+  for (int i = 0; i < n; ++i) {
+    q[i] = value_of(m.q[i]);
+    if (u) rates[i] = value_of(u[i]);
+  }
+  user_motion(joint, value_of(m.t), q, static_cast<const double*>(u ? rates : nullptr), numbers);
+  const double* from = numbers;
+  each_number(m, [&](S& x) { x = S(*from++); });
+}
+
+}  // namespace momenta
