@@ -48,7 +48,10 @@ class OpenSweepsAt final : public OpenSweeps {
         inverse_(tree),
         many_momenta_(tree),
         many_accelerations_(tree) {
-    for (const auto& b : tree.model->bodies) quasi_velocities_ |= b.nq != b.nv;
+    for (const auto& b : tree.model->bodies) {
+      quasi_velocities_ |= b.nq != b.nv;
+      has_user_joints_ |= b.kind == JointKind::user;
+    }
   }
 
   bool momentum(double t, const double* q, const double* p, double* u, double* pdot) override {
@@ -71,7 +74,8 @@ class OpenSweepsAt final : public OpenSweeps {
   bool composite_acceleration(double t, const double* q, const double* u, const double* tau,
                               double* udot) override {
     if constexpr (Space::dimension == 6)
-      return composite_.get()(One(t), StridedIn<One>{q, 1}, StridedIn<One>{u, 1},
+      return !has_user_joints_ &&
+             composite_.get()(One(t), StridedIn<One>{q, 1}, StridedIn<One>{u, 1},
                               StridedIn<One>{tau, 1}, StridedOut<One>{udot, 1});
     else
       return false;
@@ -240,6 +244,7 @@ class OpenSweepsAt final : public OpenSweeps {
   int stuck_ = -1;
   std::size_t failed_state_ = 0;
   bool quasi_velocities_ = false;
+  bool has_user_joints_ = false;
 };
 
 template <int Level>
