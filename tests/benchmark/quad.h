@@ -1,0 +1,47 @@
+#pragma once
+// Quadruple precision as a scalar for the kernels: __float128 with the functions they call, 113
+// bits of mantissa. Slow, made for references only. Link with libquadmath.
+
+#include <momenta/core/scalar/dual.h>
+#include <quadmath.h>
+
+namespace momenta {
+
+struct Quad {
+  __float128 v{};
+
+  Quad() = default;
+  Quad(double value) : v(value) {}  // NOLINT: constants mix freely, as with dual numbers
+  static Quad of(__float128 value) {
+    Quad x;
+    x.v = value;
+    return x;
+  }
+
+  Quad& operator+=(const Quad& y) { return *this = *this + y; }
+  Quad& operator-=(const Quad& y) { return *this = *this - y; }
+  Quad& operator*=(const Quad& y) { return *this = *this * y; }
+  Quad& operator/=(const Quad& y) { return *this = *this / y; }
+
+  friend Quad operator+(const Quad& x, const Quad& y) { return of(x.v + y.v); }
+  friend Quad operator-(const Quad& x, const Quad& y) { return of(x.v - y.v); }
+  friend Quad operator*(const Quad& x, const Quad& y) { return of(x.v * y.v); }
+  friend Quad operator/(const Quad& x, const Quad& y) { return of(x.v / y.v); }
+  friend Quad operator-(const Quad& x) { return of(-x.v); }
+
+  friend bool operator<(const Quad& x, const Quad& y) { return x.v < y.v; }
+  friend bool operator>(const Quad& x, const Quad& y) { return x.v > y.v; }
+  friend bool operator<=(const Quad& x, const Quad& y) { return x.v <= y.v; }
+  friend bool operator>=(const Quad& x, const Quad& y) { return x.v >= y.v; }
+
+  friend Quad sin(const Quad& x) { return of(sinq(x.v)); }
+  friend Quad cos(const Quad& x) { return of(cosq(x.v)); }
+  friend Quad sqrt(const Quad& x) { return of(sqrtq(x.v)); }
+  friend Quad abs(const Quad& x) { return of(fabsq(x.v)); }
+};
+
+inline double value_of(const Quad& x) {
+  return static_cast<double>(x.v);
+}
+
+}  // namespace momenta
