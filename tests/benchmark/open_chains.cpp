@@ -102,6 +102,37 @@ void classical(benchmark::State& state, Row row, bool inverse) {
   finish(state, static_cast<double>(chain.tree().bodies.size()));
 }
 
+/// What else the sweeps give, per call.
+enum class Call { velocities_to_momenta, inverse_mass, jacobian_times, jacobian, reactions };
+
+void further(benchmark::State& state, Row row, Call call) {
+  OpenChain chain(row.model(static_cast<int>(state.range(0))), row.algebra);
+  const States64 states(chain);
+  const Eigen::VectorXd q = states.q.col(0), u = states.u.col(0), p = states.p.col(0);
+  Eigen::VectorXd x(chain.nv()), qdot(chain.nq());
+  for (auto _ : state) {
+    switch (call) {
+      case Call::velocities_to_momenta:
+        chain.momenta(0, q, u, x);
+        break;
+      case Call::inverse_mass:
+        chain.inverse_mass_times(0, q, p, x);
+        break;
+      case Call::jacobian_times:
+        chain.jacobian_times(0, q, p, q, p, qdot, x);
+        break;
+      case Call::jacobian:
+        benchmark::DoNotOptimize(chain.jacobian(0, q, p).data());
+        break;
+      case Call::reactions:
+        benchmark::DoNotOptimize(chain.reactions(0, q, u).data());
+        break;
+    }
+    benchmark::DoNotOptimize(x.data());
+  }
+  finish(state, static_cast<double>(chain.tree().bodies.size()));
+}
+
 void batch(benchmark::State& state, Row row, Algorithm algorithm) {
   OpenChain chain(row.model(static_cast<int>(state.range(0))), row.algebra, row.level);
   const States64 states(chain);
@@ -187,6 +218,16 @@ void register_open_chains() {
                                  inverse)
         ->Arg(31);
   }
+  const std::pair<const char*, Call> calls[] = {{"momenta", Call::velocities_to_momenta},
+                                                {"inverse_mass_times", Call::inverse_mass},
+                                                {"jacobian_times", Call::jacobian_times},
+                                                {"jacobian", Call::jacobian},
+                                                {"reactions", Call::reactions}};
+  for (const auto& [name, call] : calls)
+    for (const int n : {7, 32})
+      benchmark::RegisterBenchmark((std::string("open/") + name + "/random_chain").c_str(), further,
+                                   Row{"random_chain", random_chain}, call)
+          ->Arg(n);
   // What the plan leaves out, and what a level brings.
   const Row omissions[] = {
       {"random_chain_without_gravity", without_gravity},
