@@ -22,7 +22,8 @@ struct IntegrationOptions {
 };
 
 struct Counters {
-  long steps = 0, rejected = 0, evaluations = 0, jacobians = 0, factorizations = 0, newton_iterations = 0;
+  long steps = 0, rejected = 0, evaluations = 0, jacobians = 0, factorizations = 0,
+       newton_iterations = 0;
 };
 
 /// Interpolates the last accepted step: y (size of the system) at any t in [t0, t1].
@@ -30,33 +31,40 @@ using Interpolant = std::function<void(double t, double* y)>;
 
 /// Looks on while a run goes; return false to stop the run. Either may be empty.
 struct Observer {
-  /// At each requested output time, in order: the state there (step end where it coincides, else dense output).
-  /// `ydot` is null for ODE systems.
+  /// At each requested output time, in order: the state there (step end where it coincides, else
+  /// dense output). `ydot` is null for ODE systems.
   std::function<bool(double t, const double* y, const double* ydot)> sample;
-  /// After each accepted step over [t0, t1] (before any after_step change is seen by the interpolant).
+  /// After each accepted step over [t0, t1] (before any after_step change is seen by the
+  /// interpolant).
   std::function<bool(double t0, double t1, const Interpolant& between)> step;
 };
 
 struct IntegrationResult {
   bool done = false;
-  std::string reason;       ///< one sentence when not done: what failed, at which time, why
-  double end_time = 0;      ///< where the run stopped [s]
-  std::vector<double> y;    ///< the state there
+  std::string reason;     ///< one sentence when not done: what failed, at which time, why
+  double end_time = 0;    ///< where the run stopped [s]
+  std::vector<double> y;  ///< the state there
   Counters counters;
   std::string linear_solver;  ///< implicit methods: "dense LU", "KLU"; else empty
-  std::string jacobian;       ///< implicit methods: "dual numbers", "difference quotient"; else empty
+  std::string jacobian;  ///< implicit methods: "dual numbers", "difference quotient"; else empty
 };
 
-/// Integrates from y0 at t0 through output_times (ascending, the last is the end). Names: rk4 dp5 dop853.
-/// Hot loop allocates nothing. @throws std::invalid_argument for a name it does not know.
-IntegrationResult integrate_explicit(const std::string& method, OdeSystem&, double t0, const std::vector<double>& y0,
-                                     const std::vector<double>& output_times, const IntegrationOptions&, const Observer&);
+/// Integrates from y0 at t0 through output_times (ascending, the last is the end). Names: rk4 dp5
+/// dop853. Hot loop allocates nothing. @throws std::invalid_argument for a name it does not know.
+IntegrationResult integrate_explicit(const std::string& method, OdeSystem&, double t0,
+                                     const std::vector<double>& y0,
+                                     const std::vector<double>& output_times,
+                                     const IntegrationOptions&, const Observer&);
 
-/// CVODE; names: adams bdf. Newton with difference-quotient dense Jacobian for bdf, fixed-point for adams.
-IntegrationResult integrate_cvode(const std::string& method, OdeSystem&, double t0, const std::vector<double>& y0,
-                                  const std::vector<double>& output_times, const IntegrationOptions&, const Observer&);
+/// CVODE; names: adams bdf. Newton with difference-quotient dense Jacobian for bdf, fixed-point for
+/// adams.
+IntegrationResult integrate_cvode(const std::string& method, OdeSystem&, double t0,
+                                  const std::vector<double>& y0,
+                                  const std::vector<double>& output_times,
+                                  const IntegrationOptions&, const Observer&);
 
-/// IDA, started by system.start(t0); dense LU or KLU by the system's pattern, always with the system's exact Jacobian.
+/// IDA, started by system.start(t0); dense LU or KLU by the system's pattern, always with the
+/// system's exact Jacobian.
 IntegrationResult integrate_ida(DaeSystem&, double t0, const std::vector<double>& output_times,
                                 const IntegrationOptions&, const Observer&);
 

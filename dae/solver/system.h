@@ -1,6 +1,7 @@
 #pragma once
-// What an integrator sees of a form: an ODE y' = f(t, y), or a DAE F(t, y, y') = 0. Failures are values: a call
-// returns false and `failure()` then holds one sentence (which constraint, which time, which cause).
+// What an integrator sees of a form: an ODE y' = f(t, y), or a DAE F(t, y, y') = 0. Failures are
+// values: a call returns false and `failure()` then holds one sentence (which constraint, which
+// time, which cause).
 
 #include <limits>
 #include <string>
@@ -16,18 +17,20 @@ class OdeSystem {
   /// y' at (t, y); both of size().
   virtual bool rhs(double t, const double* y, double* ydot) = 0;
 
-  /// Called once after every accepted step of a one-step method, before the next: gauge reset, position correction,
-  /// quaternion normalisation. `ydot` is f(t, y) at the unchanged y where the method has it (FSAL), else null.
-  /// Sets `changed` when y was altered in a way that makes f(t, y) a different number (a gauge reset does; a position
-  /// correction of the size of the local error does not: the last stage may then still serve as the next first one).
+  /// Called once after every accepted step of a one-step method, before the next: gauge reset,
+  /// position correction, quaternion normalisation. `ydot` is f(t, y) at the unchanged y where the
+  /// method has it (FSAL), else null. Sets `changed` when y was altered in a way that makes f(t, y)
+  /// a different number (a gauge reset does; a position correction of the size of the local error
+  /// does not: the last stage may then still serve as the next first one).
   virtual bool after_step(double /*t*/, double* /*y*/, bool& /*changed*/) { return true; }
   virtual bool has_after_step() const { return false; }
 
-  /// Tells the system that a new step starts at (t, y): the σ_ref of recentred pivots is taken here, so that within a
-  /// step f is a pure function of (t, y).
+  /// Tells the system that a new step starts at (t, y): the σ_ref of recentred pivots is taken
+  /// here, so that within a step f is a pure function of (t, y).
   virtual void begin_step(double /*t*/, const double* /*y*/) {}
 
-  /// Typical size of y_i, for absolute tolerances: the error weight is atol · scale_i + rtol · |y_i|.
+  /// Typical size of y_i, for absolute tolerances: the error weight is atol · scale_i + rtol ·
+  /// |y_i|.
   virtual double scale(int /*i*/) const { return 1.0; }
 
   const std::string& failure() const { return failure_; }
@@ -55,17 +58,21 @@ class DaeSystem {
 
   virtual bool residual(double t, const double* y, const double* ydot, double* r) = 0;
 
-  /// J = ∂F/∂y + c ∂F/∂y', exact. Dense: column-major size() × size(). Sparse: the values in the order of pattern().
-  virtual bool jacobian(double t, const double* y, const double* ydot, double c, double* values) = 0;
+  /// J = ∂F/∂y + c ∂F/∂y', exact. Dense: column-major size() × size(). Sparse: the values in the
+  /// order of pattern().
+  virtual bool jacobian(double t, const double* y, const double* ydot, double c,
+                        double* values) = 0;
   /// Valid from start() on.
   virtual const JacobianPattern& pattern() const = 0;
 
   /// Consistent start: y and y' with F(t, y, y') = 0.
   virtual bool start(double t, double* y, double* ydot) = 0;
 
-  /// Whether y_i takes part in the local error test (differential variables of the form's convergence theory).
+  /// Whether y_i takes part in the local error test (differential variables of the form's
+  /// convergence theory).
   virtual bool differential(int i) const = 0;
-  /// Absolute tolerance of y_i is atol · scale(i); infinity keeps y_i out of the Newton norm too (multipliers).
+  /// Absolute tolerance of y_i is atol · scale(i); infinity keeps y_i out of the Newton norm too
+  /// (multipliers).
   virtual double scale(int i) const = 0;
 
   const std::string& failure() const { return failure_; }

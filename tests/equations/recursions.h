@@ -7,8 +7,7 @@
 namespace momenta::equations {
 
 template <class Space, class S>
-bool momentum_recursion(Workspace<Space, S>& w, const S& t, const S* q, const S* p, S* u,
-                        S* pdot) {
+bool momentum_recursion(Workspace<Space, S>& w, const S& t, const S* q, const S* p, S* u, S* pdot) {
   const auto links = build_links(*w.model);
   MomentumSweeps<Space, S> sweeps(links);
   return momenta::momentum_recursion(sweeps, w, t, q, p, u, pdot);

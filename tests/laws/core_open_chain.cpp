@@ -63,7 +63,8 @@ TEST(Laws, EnergyRateIsPower) {
     };
     Workspace<Spatial, double> plain(model);
     Eigen::VectorXd again(tree.nv), tau(tree.nv);
-    ASSERT_TRUE(equations::acceleration_recursion(plain, s.t, s.q.data(), s.u.data(), again.data()));
+    ASSERT_TRUE(
+        equations::acceleration_recursion(plain, s.t, s.q.data(), s.u.data(), again.data()));
     accelerations_outward(plain, s.u.data(), again.data());
     apply_forces(plain, model.has_body_forces());
     newton_euler_inward(plain, s.q.data(), s.u.data(), tau.data());  // body[k].P is F_K now
@@ -186,7 +187,8 @@ void hamiltonian_symmetry(bool flat) {
         q[at] = half == 0 ? D::variable(s.q[i], i) : D(s.q[i]);
         momenta[at] = half == 1 ? D::variable(p[i], i) : D(p[i]);
       }
-      ASSERT_TRUE(equations::momentum_recursion(w, D(s.t), q.data(), momenta.data(), u.data(), pdot.data()));
+      ASSERT_TRUE(equations::momentum_recursion(w, D(s.t), q.data(), momenta.data(), u.data(),
+                                                pdot.data()));
       for (int i = 0; i < n; ++i)
         for (int j = 0; j < n; ++j) {
           jacobian(i, half * n + j) = u[static_cast<std::size_t>(i)].b[static_cast<std::size_t>(j)];
