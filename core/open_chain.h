@@ -72,7 +72,7 @@ class OpenChain {
   /// M⁻¹ x (nv), prescribed motion left out: eqs. (44), (45) without Ω_t. False as rates().
   bool inverse_mass_times(double t, const ConstVectorRef& q, const ConstVectorRef& x,
                           VectorRef result);
-  /// Derivative of (q̇, ṗ) along (δq, δp): one evaluation on dual numbers, about the cost of two
+  /// Derivative of (q̇, ṗ) along (δq, δp): one evaluation on dual numbers, about the cost of three
   /// plain ones. False as rates().
   bool jacobian_times(double t, const ConstVectorRef& q, const ConstVectorRef& p,
                       const ConstVectorRef& dq, const ConstVectorRef& dp, VectorRef dqdot,
@@ -94,7 +94,7 @@ class OpenChain {
   std::vector<Reaction> reactions(double t, const ConstVectorRef& q, const ConstVectorRef& u);
   /// M (nv × nv), dense, by composite inertias.
   Eigen::MatrixXd mass_matrix(double t, const ConstVectorRef& q);
-  /// Pose of every scene body in ground axes.
+  /// Pose of every body of the tree in ground axes, in the tree's order.
   std::vector<Eigen::Isometry3d> poses(double t, const ConstVectorRef& q);
 
   /// One sentence on the last failed call: which joint has no inertia.

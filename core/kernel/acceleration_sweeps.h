@@ -150,21 +150,8 @@ void AccelerationSweeps<Spatial, S>::velocities(const In& u) {
       } else {
         const S yy = oy * oy, zz = oz * oz;
         S px = -(l.a * (yy + zz)), py = l.a * (ox * oy), pz = l.a * (ox * oz);
-        if (l.turn == Turn::right) {
-          x = oz;
-          oz = -oy;
-          oy = x;
-          x = pz;
-          pz = -py;
-          py = x;
-        } else {
-          x = l.ca * oy + l.sa * oz;
-          oz = l.ca * oz - l.sa * oy;
-          oy = x;
-          x = l.ca * py + l.sa * pz;
-          pz = l.ca * pz - l.sa * py;
-          py = x;
-        }
+        constants_outward(l, body(k).edge, ox, oy, oz);
+        constants_outward(l, body(k).edge, px, py, pz);
         const S wz = oz + own, dx = l.d * ox, dy = l.d * oy;
         w.clx = px + dx * wz;
         w.cly = py + dy * wz;

@@ -1,3 +1,4 @@
+#include <momenta/core/kernel/child_order.h>
 #include <momenta/core/kernel/link.h>
 
 namespace momenta {
@@ -115,14 +116,7 @@ LinkTree build_links(const Model<Spatial>& model) {
     tree.tips.push_back(tip_of(l));
     if (!(l.J[5] > 0) && tree.stuck < 0) tree.stuck = static_cast<int>(k);
   }
-  std::vector<bool> met(n, false);
-  for (std::size_t k = n; k-- > 0;) {
-    auto& l = tree.links[k];
-    if (l.first || l.parent < 0) continue;
-    const auto parent = static_cast<std::size_t>(l.parent);
-    l.opens = !met[parent];
-    met[parent] = true;
-  }
+  mark_openers(tree.links);
   return tree;
 }
 

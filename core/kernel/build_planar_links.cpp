@@ -1,3 +1,4 @@
+#include <momenta/core/kernel/child_order.h>
 #include <momenta/core/kernel/planar_link.h>
 
 #include <cmath>
@@ -68,14 +69,7 @@ PlanarTree build_links(const Model<Planar>& model) {
       parent.wy -= b.subtree_mass * (l.y * gy + l.x * gx);
     }
   }
-  std::vector<bool> met(n, false);
-  for (std::size_t k = n; k-- > 0;) {
-    auto& l = tree.links[k];
-    if (l.first || l.parent < 0) continue;
-    const auto parent = static_cast<std::size_t>(l.parent);
-    l.opens = !met[parent];
-    met[parent] = true;
-  }
+  mark_openers(tree.links);
   return tree;
 }
 

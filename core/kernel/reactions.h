@@ -32,7 +32,7 @@ class ReactionPass {
         pdot_(p_.size()) {}
 
   /// From q, q̇ (nq), p, ṗ (nv) of one state of the motion. False as momentum_recursion. O(bodies),
-  /// about three plain evaluations.
+  /// about ten plain evaluations.
   bool operator()(double t, const double* q, const double* qdot, const double* p,
                   const double* pdot) {
     for (std::size_t i = 0; i < q_.size(); ++i) {
@@ -72,7 +72,6 @@ class ReactionPass {
   }
   /// u̇_i, from the same pass.
   double acceleration(std::size_t i) const { return u_[i].b[0]; }
-  const Workspace<Space, D>& workspace() const { return w_; }
 
  private:
   MomentumSweeps<Space, D> sweeps_;
