@@ -58,6 +58,11 @@ class Evaluation {
   /// Place in u of the joint at which one of these two failed.
   virtual int stuck() const = 0;
 
+  /// Generalised forces (nv) of springs, dampers and wrenches between points of bodies at (t, q,
+  /// u), and all but the weights: those of the joints besides. Both place and move.
+  virtual void body_forces(double t, const S* q, const S* u, S* tau) = 0;
+  virtual void applied_forces(double t, const S* q, const S* u, S* tau) = 0;
+
   /// T and V [J]; after place() and move().
   virtual S kinetic() = 0;
   virtual S potential(const S* q) = 0;

@@ -35,20 +35,20 @@ Mechanism::Mechanism(Scene scene, MechanismOptions options)
     : scene_(std::move(scene)),
       tree_(open_or_closed(scene_)),
       plan_(plan_with_loops(tree_, scene_, options.algebra)) {
-  if (plan_.planar) {
-    Cast<Planar> cast{build_planar_model(tree_, scene_, plan_.basis), {}};
+  const auto cast_into = [&](auto& cast, auto&& model) {
+    cast.model = std::move(model);
     cast.loops = build_loops(scene_, tree_, cast.model);
-    cast_ = std::move(cast);
-  } else {
-    Cast<Spatial> cast{build_spatial_model(tree_, scene_), {}};
-    cast.loops = build_loops(scene_, tree_, cast.model);
-    cast_ = std::move(cast);
-  }
+  };
+  if (plan_.planar)
+    cast_into(cast_.emplace<0>(), build_planar_model(tree_, scene_, plan_.basis));
+  else
+    cast_into(cast_.emplace<1>(), build_spatial_model(tree_, scene_));
   row_names_ = row_names(scene_, plan_.planar);
   rows_ = static_cast<int>(row_names_.size());
   plan_.loops = rows_ > 0;
   dense_ = options.kkt == KktChoice::dense ||
-           (options.kkt == KktChoice::automatic && tree_.nv + rows_ <= dense_limit);
+           (options.kkt != KktChoice::sparse && tree_.nv + rows_ <= dense_limit);
+  if (rows_ > 0) choose_kkt(options.kkt);
 
   const auto group = [&](const auto& cast) {
     int index = 0;
@@ -59,10 +59,71 @@ Mechanism::Mechanism(Scene scene, MechanismOptions options)
       index += 2;
     }
   };
+  visit(group);
+}
+
+const char* name_of(KktChoice choice) {
+  switch (choice) {
+    case KktChoice::sweeps:
+      return "sweeps";
+    case KktChoice::sparse:
+      return "sparse";
+    case KktChoice::dense:
+      return "dense";
+    case KktChoice::automatic:
+      break;
+  }
+  return "auto";
+}
+
+void Mechanism::choose_kkt(KktChoice asked) {
+  kkt_ = dense_ ? KktChoice::dense : KktChoice::sparse;
+  if (asked == KktChoice::dense || asked == KktChoice::sparse) return;
+  const auto plan = [&](auto& cast) {
+    cast.links = build_links(cast.model);
+    std::vector<int> parents;
+    for (const auto& b : cast.model.bodies) parents.push_back(b.parent);
+    std::vector<LoopShape> shapes;
+    for (const auto& l : cast.loops.loops) shapes.push_back({l.a, l.b, l.rows, l.length == 0 && l.n_points == 2 && l.n_axes == 0});
+    cast.plan = plan_loops(parents, shapes);
+    if constexpr (std::is_same_v<decltype(cast.links), PlanarTree>)
+      cast.link_loops = in_link_frames(cast.loops, cast.links);
+    else
+      cast.link_loops = cast.loops;
+    if (!cast.plan.fits())
+      kkt_reason_ = std::to_string(cast.plan.lanes) + " loop equations are open at once, more than " +
+                    std::to_string(LoopPlan::most_lanes);
+  };
   if (plan_.planar)
-    group(std::get<0>(cast_));
+    plan(std::get<0>(cast_));
   else
-    group(std::get<1>(cast_));
+    plan(std::get<1>(cast_));
+  if (kkt_reason_.empty()) {
+    // A joint may have no inertia until a loop closes above it.
+    kkt_ = KktChoice::sweeps;
+    const auto sweeps = looped_sweeps();
+    std::vector<double> zero(static_cast<std::size_t>(tree_.nv)), u(zero), sigma(row_names_.size());
+    if (!sweeps->momentum(0, tree_.q0.data(), zero.data(), {}, u.data(), sigma.data(), nullptr))
+      kkt_reason_ = tree_.joint_in_words(sweeps->stuck()) + " has no inertia before its loops close";
+  }
+  if (kkt_reason_.empty()) return;
+  if (asked == KktChoice::sweeps)
+    throw SceneError(scene_.where({}) + "the sweeps were asked to carry the loops, but " +
+                     kkt_reason_ + "; expected --kkt sparse or dense");
+  kkt_ = KktChoice::sparse;
+  dense_ = false;
+}
+
+std::unique_ptr<LoopedSweeps> Mechanism::looped_sweeps() const {
+  return visit([](const auto& cast) {
+    return make_looped_sweeps(cast.links, cast.link_loops, cast.plan, best_level());
+  });
+}
+bool Mechanism::has_body_forces() const {
+  return visit([](const auto& cast) { return cast.model.has_body_forces(); });
+}
+bool Mechanism::has_joint_forces() const {
+  return visit([](const auto& cast) { return cast.model.has_joint_forces; });
 }
 
 const KktPattern& Mechanism::kkt_pattern() const {
@@ -147,11 +208,15 @@ std::vector<std::pair<std::string, std::string>> Mechanism::plan_lines() const {
   }
   lines.emplace_back("loops", std::to_string(scene_.loops.size()) + " with " +
                                   std::to_string(rows_) + " equations");
-  lines.emplace_back(
-      "solving (7)",
-      std::string(dense_ ? "dense: Cholesky of M, pivoted and filtered LDLᵀ of the loops"
-                         : "sparse: KLU on a pattern analysed once") +
-          ", " + std::to_string(tree_.nv + rows_) + " unknowns");
+  std::string how = "dense: Cholesky of M, pivoted and filtered LDLᵀ of the loops";
+  if (kkt_ == KktChoice::sweeps)
+    how = "loops carried by the sweeps, at most " +
+          std::to_string(visit([](const auto& cast) { return cast.plan.lanes; })) +
+          " equations open at once";
+  else if (kkt_ == KktChoice::sparse)
+    how = "sparse: KLU on a pattern analysed once" +
+          (kkt_reason_.empty() ? "" : " (" + kkt_reason_ + ")");
+  lines.emplace_back("solving (7)", how + ", " + std::to_string(tree_.nv + rows_) + " unknowns");
   return lines;
 }
 

@@ -5,6 +5,7 @@
 #include <momenta/core/open_chain.h>
 #include <momenta/dae/evaluation.h>
 #include <momenta/dae/loop/loop_model.h>
+#include <momenta/dae/sweeps/levels/loop_sweeps.h>
 
 #include <memory>
 #include <mutex>
@@ -12,7 +13,9 @@
 
 namespace momenta {
 
-enum class KktChoice { automatic, dense, sparse };
+/// How (7) is solved: loops carried by the sweeps, or the assembled matrix.
+enum class KktChoice { automatic, sweeps, sparse, dense };
+const char* name_of(KktChoice choice);
 
 struct MechanismOptions {
   Algebra algebra = Algebra::automatic;
@@ -48,7 +51,14 @@ class Mechanism {
   int nq() const { return tree_.nq; }        ///< coordinates
   int nv() const { return tree_.nv; }        ///< rates, momenta
   int m() const { return rows_; }            ///< loop equations
-  bool dense_kkt() const { return dense_; }  ///< how (7) is solved, when there are loops
+  /// How (7) is solved, when there are loops; never automatic.
+  KktChoice kkt() const { return kkt_; }
+  /// Whether an assembled matrix, where one is needed, is dense.
+  bool dense_kkt() const { return dense_; }
+  /// The sweeps that carry this mechanism's loops. @pre kkt() is sweeps
+  std::unique_ptr<LoopedSweeps> looped_sweeps() const;
+  bool has_body_forces() const;   ///< springs, dampers or wrenches between points of bodies
+  bool has_joint_forces() const;  ///< springs, dampers or torques of joints
   /// Found when first asked for: a long open chain never fills its M.
   const KktPattern& kkt_pattern() const;
   const std::vector<RowName>& rows() const { return row_names_; }
@@ -76,7 +86,15 @@ class Mechanism {
   struct Cast {
     Model<Space> model;
     LoopModel<Space> loops;
+    LoopPlan plan;
+    LoopModel<Space> link_loops;  ///< points and axes in the frames of the links
+    decltype(build_links(std::declval<const Model<Space>&>())) links;
   };
+  template <class F>
+  decltype(auto) visit(F&& f) const {
+    return plan_.planar ? f(std::get<0>(cast_)) : f(std::get<1>(cast_));
+  }
+  void choose_kkt(KktChoice asked);
   template <class Space, class S>
   class SweepEvaluation;
 
@@ -86,6 +104,8 @@ class Mechanism {
   std::variant<Cast<Planar>, Cast<Spatial>> cast_;
   int rows_ = 0;
   bool dense_ = true;
+  KktChoice kkt_ = KktChoice::dense;
+  std::string kkt_reason_;  ///< why the sweeps do not carry the loops; empty when they do
   mutable KktPattern pattern_;
   mutable std::once_flag pattern_known_;
   std::vector<RowName> row_names_;

@@ -136,6 +136,15 @@ class Mechanism::SweepEvaluation final : public Evaluation<S> {
     return ok;
   }
 
+  void body_forces(double t, const S* q, const S* u, S* tau) override {
+    body_force_rates(w_, S(t), q, u);
+    std::copy(w_.generalised.begin(), w_.generalised.end(), tau);
+  }
+  void applied_forces(double t, const S* q, const S* u, S* tau) override {
+    momenta::applied_forces(w_, S(t), q, u);
+    std::copy(w_.generalised.begin(), w_.generalised.end(), tau);
+  }
+
   int stuck() const override {
     return stuck_ < 0 ? -1 : model_.bodies[static_cast<std::size_t>(stuck_)].u;
   }

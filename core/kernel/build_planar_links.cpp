@@ -20,8 +20,8 @@ PlanarTree build_links(const Model<Planar>& model) {
   const std::size_t n = model.bodies.size();
   tree.links.resize(n);
   tree.theta0.resize(n);
-  // φ: the frame used here in the model's frame of the body.
-  std::vector<double> phi(n, 0.0);
+  std::vector<double>& phi = tree.frame_turn;
+  phi.assign(n, 0.0);
   for (std::size_t k = 0; k + 1 < n; ++k) {
     const auto& child = model.bodies[k + 1];
     if (child.parent == static_cast<int>(k) && std::hypot(child.edge.x, child.edge.y) > 0)

@@ -29,7 +29,8 @@ struct PlanarLink {
 struct PlanarTree {
   const Model<Planar>* model = nullptr;
   std::vector<PlanarLink> links;
-  std::vector<double> theta0;  ///< angle of the body's frame in its parent's at q = 0 [rad]
+  std::vector<double> theta0;      ///< angle of the body's frame in its parent's at q = 0 [rad]
+  std::vector<double> frame_turn;  ///< of the frame used here in the model's frame [rad]
   int slots = 0, records = 0;
 };
 

@@ -32,7 +32,7 @@ class Acceleration final : public OdeForm {
       : OdeForm(std::move(name), mechanism, options),
         alpha_(alpha),
         beta_(beta),
-        rate_(g_.size()) {}
+        nu_(multipliers_.size()) {}
 
   bool momentum_like() const override { return false; }
 
@@ -54,20 +54,8 @@ class Acceleration final : public OdeForm {
       e_->coordinate_rates(q, u, ydot);
       return true;
     }
-    if (!factor_at(t, q, fade_evaluation)) return false;
-    e_->move(u);
-    e_->joint_forces(q, u, nullptr, nullptr, r_.data());
-    for (double& r : r_) r = -r;
-    e_->accelerations(g_.data());
-    if (alpha_ != 0 || beta_ != 0) {
-      e_->velocities(rate_.data());
-      e_->positions(phi_.data());
-    }
-    for (std::size_t i = 0; i < g_.size(); ++i)
-      g_[i] = -g_[i] -
-              (alpha_ != 0 || beta_ != 0 ? 2 * alpha_ * rate_[i] + beta_ * beta_ * phi_[i] : 0.0);
-    if (!kkt_->solve(r_.data(), g_.data(), centre_.data(), udot, multipliers_.data()))
-      return fail_at(t, "the solution of (3) is not finite");
+    if (!solver_->acceleration(t, q, u, centre_.data(), alpha_, beta_, udot, multipliers_.data()))
+      return solver_failed(t, q, "the solution of (3)");
     e_->coordinate_rates(q, u, ydot);
     return true;
   }
@@ -104,18 +92,18 @@ class Acceleration final : public OdeForm {
  private:
   /// M v + Φ_qᵀν = M u, Φ_q v = −Φ_t: the nearest consistent velocity in the mass metric.
   bool correct_velocity(double t, const double* q, double* u) {
-    if (!factor_at(t, q, fade_projection)) return false;
+    e_->place(t, q);
     e_->move(u);
-    e_->momenta(nullptr, r_.data());
-    rheonomic_terms();
-    if (!kkt_->solve(r_.data(), g_.data(), nullptr, u_.data(), rate_.data()))
-      return fail_at(t, "the velocity correction is not finite");
+    e_->momenta(nullptr, work_.data());
+    if (!solver_->momentum(t, q, work_.data(), nullptr, fade_projection, 0, u_.data(), nu_.data(),
+                           nullptr))
+      return solver_failed(t, q, "the velocity correction");
     std::copy(u_.begin(), u_.end(), u);
     return true;
   }
 
   double alpha_, beta_;
-  std::vector<double> rate_;
+  std::vector<double> nu_;
 };
 
 }  // namespace

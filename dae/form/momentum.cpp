@@ -58,11 +58,8 @@ class Momentum final : public OdeForm {
     if (!has_loops()) {
       if (!e_->open_momentum_rates(t, q, p, u_.data(), pdot))
         return fail_at(t, mechanism_.no_inertia(e_->stuck()));
-    } else {
-      if (!solve(t, q, p, fade_evaluation)) return false;
-      e_->move(u_.data());
-      e_->momenta(multipliers_.data(), work_.data());
-      e_->momentum_rates(q, u_.data(), multipliers_.data(), leak(), pdot);
+    } else if (!solve(t, q, p, pdot)) {
+      return false;
     }
     e_->coordinate_rates(q, u_.data(), ydot);
     return true;
@@ -77,7 +74,8 @@ class Momentum final : public OdeForm {
     if (has_loops() && options_.project && !correct_position(t, q)) return false;
     normalise(q);
     if (has_loops() && gauge_.kind == Gauge::Kind::reset) {
-      if (!solve(t, q, p, fade_evaluation)) return false;
+      if (!solve(t, q, p, nullptr)) return false;
+      e_->place(t, q);
       e_->move(u_.data());
       e_->momenta(nullptr, p);
       changed = true;
@@ -101,7 +99,7 @@ class Momentum final : public OdeForm {
     if (has_loops() && options_.project && !correct_position(t, out.q.data())) return false;
     if (!has_loops()) {
       if (!e_->open_momentum_rates(t, q, p, u_.data(), work_.data())) return false;
-    } else if (!solve(t, q, p, fade_evaluation)) {
+    } else if (!solve(t, q, p, nullptr)) {
       return false;
     }
     out.u = Eigen::Map<const Eigen::VectorXd>(u_.data(), mechanism_.nv());
@@ -113,14 +111,11 @@ class Momentum final : public OdeForm {
  private:
   double leak() const { return gauge_.kind == Gauge::Kind::leak ? gauge_.kappa : 0.0; }
 
-  /// (7): u_ and multipliers_.
-  bool solve(double t, const double* q, const double* p, double fade) {
-    if (!factor_at(t, q, fade)) return false;
-    std::copy(p, p + mechanism_.nv(), r_.begin());
-    rheonomic_terms();
-    if (!kkt_->solve(r_.data(), g_.data(), centre_.data(), u_.data(), multipliers_.data()))
-      return fail_at(t, "the solution of (7) is not finite");
-    return true;
+  /// (7): u_ and multipliers_; with `pdot` (8) too.
+  bool solve(double t, const double* q, const double* p, double* pdot) {
+    return solver_->momentum(t, q, p, centre_.data(), fade_evaluation, leak(), u_.data(),
+                             multipliers_.data(), pdot) ||
+           solver_failed(t, q, "the solution of (7)");
   }
 
   Gauge gauge_;

@@ -3,7 +3,7 @@
 // correction.
 
 #include <momenta/dae/form/form.h>
-#include <momenta/dae/kkt/kkt.h>
+#include <momenta/dae/kkt/loop_solver.h>
 
 namespace momenta {
 
@@ -17,20 +17,16 @@ class OdeForm : public Form, public OdeSystem {
   int size() const override { return mechanism_.nq() + mechanism_.nv(); }
   double scale(int i) const override { return scale_[static_cast<std::size_t>(i)]; }
   /// Of the run itself; those made for looking at samples are not counted.
-  long factorizations() const { return kkt_ ? kkt_->factorizations() - looked_ : 0; }
+  long factorizations() const { return solver_ ? solver_->solutions() - looked_ : 0; }
 
  protected:
   bool has_loops() const { return mechanism_.m() > 0; }
-  /// Places the evaluation at q and factorises (7) there. Fails with the cause by name.
-  bool factor_at(double t, const double* q, double fade);
-  /// One Newton step on q in the mass metric: δ of M δ + Φ_qᵀν = 0, Φ_q δ = −Φ. Leaves (7)
-  /// factorised for projection.
+  /// The cause by name when the solver failed to solve `what` at (t, q).
+  bool solver_failed(double t, const double* q, const std::string& what);
+  /// One Newton step on q in the mass metric: δ of M δ + Φ_qᵀν = 0, Φ_q δ = −Φ.
   bool correct_position(double t, double* q);
   /// Quaternions of q back to unit length.
   void normalise(double* q) const;
-  /// r ← r − prescribed part of M u, g ← −Φ_t: the right-hand side of (7). Leaves the evaluation
-  /// moved by drives only.
-  void rheonomic_terms();
   /// The sentence "at t = …: why".
   bool fail_at(double t, const std::string& why);
 
@@ -38,9 +34,9 @@ class OdeForm : public Form, public OdeSystem {
   class Looking {
    public:
     explicit Looking(OdeForm& form)
-        : form_(form), before_(form.kkt_ ? form.kkt_->factorizations() : 0) {}
+        : form_(form), before_(form.solver_ ? form.solver_->solutions() : 0) {}
     ~Looking() {
-      if (form_.kkt_) form_.looked_ += form_.kkt_->factorizations() - before_;
+      if (form_.solver_) form_.looked_ += form_.solver_->solutions() - before_;
     }
     Looking(const Looking&) = delete;
     Looking& operator=(const Looking&) = delete;
@@ -55,8 +51,8 @@ class OdeForm : public Form, public OdeSystem {
   const Mechanism& mechanism_;
   FormOptions options_;
   std::unique_ptr<Evaluation<double>> e_;
-  std::unique_ptr<Kkt> kkt_;
-  std::vector<double> u_, r_, g_, multipliers_, centre_, phi_, delta_, work_, correction_;
+  std::unique_ptr<LoopSolver> solver_;  ///< null without loops
+  std::vector<double> u_, multipliers_, centre_, delta_, work_, correction_;
   std::vector<double> scale_;
 };
 

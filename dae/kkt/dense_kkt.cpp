@@ -42,6 +42,7 @@ class DenseKkt final : public Kkt {
                                          *std::max_element(groups_.begin(), groups_.end()) + 1)),
         group_rows_(group_sum_.size()) {
     for (int group : groups_) ++group_rows_[static_cast<std::size_t>(group)];
+    faded_rows_.reserve(static_cast<std::size_t>(m_));
   }
 
   bool factor(Evaluation<double>& e, double fade) override {
@@ -123,7 +124,7 @@ class DenseKkt final : public Kkt {
       tau_[idx(i)] = fade * group_sum_[group] / group_rows_[group];
       if (!std::isfinite(tau_[idx(i)])) return false;
     }
-    faded_ = 0;
+    faded_rows_.clear();
     for (int k = 0; k < m_; ++k) {
       int best = k;
       for (int i = k + 1; i < m_; ++i)
@@ -134,7 +135,7 @@ class DenseKkt final : public Kkt {
       const int row = order_[idx(k)];
       const double d = w_[at(row, row, m_)], tau = tau_[idx(row)];
       inverse_[idx(k)] = d > 0 ? inverse_faded(d, tau) : 0;
-      if (!(d > 10 * tau)) ++faded_;
+      if (!(d > 10 * tau)) faded_rows_.push_back(row);
       for (int i = k + 1; i < m_; ++i) {
         const int a = order_[idx(i)];
         const double l = w_[at(a, row, m_)] * inverse_[idx(k)];

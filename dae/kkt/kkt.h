@@ -32,19 +32,21 @@ class Kkt {
   virtual bool solve(const double* r, const double* g, const double* centre, double* u,
                      double* sigma) = 0;
 
-  /// Pivots that were faded at the last factor(): rows that are redundant or singular here.
-  int faded() const { return faded_; }
+  /// Rows of Φ whose pivots faded at the last factor(): redundant or singular here. The sparse
+  /// factorisation can't tell, and lists none.
+  const std::vector<int>& faded_rows() const { return faded_rows_; }
+  int faded() const { return static_cast<int>(faded_rows_.size()); }
   long factorizations() const { return factorizations_; }
   /// Place in u of the joint at which the last factor() failed, or −1: something is not finite.
   int stuck() const { return stuck_; }
 
  protected:
-  int faded_ = 0;
+  std::vector<int> faded_rows_;
   long factorizations_ = 0;
   int stuck_ = -1;
 };
 
-/// Dense or sparse, as the mechanism's plan says. Needs loops (m > 0).
+/// Dense or sparse by size, or as the mechanism's options say. Needs loops (m > 0).
 std::unique_ptr<Kkt> make_kkt(const Mechanism& mechanism);
 std::unique_ptr<Kkt> make_dense_kkt(const Mechanism& mechanism);
 std::unique_ptr<Kkt> make_sparse_kkt(const Mechanism& mechanism);

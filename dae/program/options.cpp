@@ -21,8 +21,8 @@ void add_scene(CLI::App& verb, Options& o) {
   verb.add_option("scene", o.scene, "Scene file (TOML)")->required();
   verb.add_option("--algebra", o.algebra, "Kernel: auto, planar or spatial")
       ->check(CLI::IsMember({"auto", "planar", "spatial"}));
-  verb.add_option("--kkt", o.kkt, "How (7) is solved: auto, dense or sparse")
-      ->check(CLI::IsMember({"auto", "dense", "sparse"}));
+  verb.add_option("--kkt", o.kkt, "How (7) is solved: auto, sweeps, sparse or dense")
+      ->check(CLI::IsMember({"auto", "sweeps", "sparse", "dense"}));
   verb.add_flag("--json", o.json, "One JSON document on standard output");
   verb.add_flag("--quiet", o.quiet, "No progress, no table");
 }
@@ -60,6 +60,7 @@ std::unique_ptr<Mechanism> load(const Options& o) {
                     : o.algebra == "spatial" ? Algebra::spatial
                                              : Algebra::automatic;
   options.kkt = o.kkt == "dense"    ? KktChoice::dense
+                : o.kkt == "sweeps" ? KktChoice::sweeps
                 : o.kkt == "sparse" ? KktChoice::sparse
                                     : KktChoice::automatic;
   return std::make_unique<Mechanism>(read_scene(o.scene), options);

@@ -65,7 +65,7 @@ class Looker {
         loses_energy_(loses_energy(mechanism.scene())) {
     if (request.keep_trajectory) {
       result.trajectory.columns = trajectory_columns(mechanism);
-      kkt_ = mechanism.m() > 0 ? make_kkt(mechanism) : nullptr;
+      if (mechanism.m() > 0) solver_ = make_loop_solver(mechanism, *e_);
     }
   }
 
@@ -202,17 +202,11 @@ class Looker {
     if (mechanism_.m() == 0) return;
     row_.push_back(position);
     row_.push_back(velocity);
-    if (kkt_) {
-      Eigen::VectorXd r(mechanism_.nv()), g(mechanism_.m()), udot(mechanism_.nv()),
-          lambda(mechanism_.m());
-      lambda.setConstant(not_measured);
-      if (kkt_->factor(*e_, fade_evaluation)) {
-        e_->joint_forces(now_.q.data(), now_.u.data(), nullptr, nullptr, r.data());
-        e_->accelerations(g.data());
-        r = -r;
-        g = -g;
-        kkt_->solve(r.data(), g.data(), nullptr, udot.data(), lambda.data());
-      }
+    if (solver_) {
+      Eigen::VectorXd udot(mechanism_.nv()), lambda(mechanism_.m());
+      if (!solver_->acceleration(t, now_.q.data(), now_.u.data(), nullptr, 0, 0, udot.data(),
+                                 lambda.data()))
+        lambda.setConstant(not_measured);
       row_.insert(row_.end(), lambda.begin(), lambda.end());
     }
   }
@@ -238,7 +232,7 @@ class Looker {
   const RunRequest& request_;
   RunResult& result_;
   std::unique_ptr<Evaluation<double>> e_;
-  std::unique_ptr<Kkt> kkt_;
+  std::unique_ptr<LoopSolver> solver_;
   Eigen::VectorXd phi_;
   std::vector<double> markers_, row_, state_;
   Snapshot now_;
@@ -311,7 +305,7 @@ class Runner {
     form_ = make_form(s.form, mechanism, options, start);
     s.gauge = form_->momentum_like() && mechanism.m() > 0 ? form_->gauge().text() : "";
     std::tie(s.baumgarte_alpha, s.baumgarte_beta) = form_->baumgarte_gains();
-    s.kkt = mechanism.m() == 0 || dae ? "" : (mechanism.dense_kkt() ? "dense" : "sparse");
+    s.kkt = mechanism.m() == 0 || dae ? "" : name_of(mechanism.kkt());
     if (s.integrator != "rk4") s.step = 0;
     integrator_ = s.integrator;
     options_.rtol = s.rtol;

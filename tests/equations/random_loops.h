@@ -1,6 +1,7 @@
 #pragma once
 // Random loops for random trees: any kind, between any two bodies or the ground, closed or not.
 
+#include "equations/dense_lagrangian.h"
 #include "equations/random_tree.h"
 
 namespace momenta::equations {
@@ -43,6 +44,20 @@ inline LoopSpec into_plane(RandomTree& random, const Scene& scene, LoopSpec l,
   l.axis = a.conjugate() *
            (l.kind == LoopKind::prismatic ? Eigen::Vector3d(normal.unitOrthogonal()) : normal);
   return l;
+}
+
+/// Moves the parent's point along the normal until both sides lie at one height.
+inline void level(LoopSpec& l, const Scene& scene, const Tree& tree, const Eigen::Vector3d& normal) {
+  const DenseLagrangian motion(scene, tree);
+  const auto poses = motion.poses(0, tree.q0);
+  const auto pose = [&](const std::string& name) -> Eigen::Isometry3d {
+    for (std::size_t k = 0; k < scene.bodies.size(); ++k)
+      if (scene.bodies[k].name == name) return poses[k];
+    return Eigen::Isometry3d::Identity();
+  };
+  const Eigen::Isometry3d a = pose(l.child), b = pose(l.parent);
+  const double apart = normal.dot(a * l.origin_child - b * l.origin_parent);
+  l.origin_parent += apart * (b.linear().transpose() * normal);
 }
 
 }  // namespace momenta::equations

@@ -141,20 +141,6 @@ TEST_P(LoopRows, NearlyParallelAxes) {
   sweep({.placing = Placing::degenerate}, GetParam(), 15, 500);
 }
 
-/// Moves the parent's point along the normal until both sides lie at one height.
-void level(LoopSpec& l, const Scene& scene, const Tree& tree, const Eigen::Vector3d& normal) {
-  const DenseLagrangian motion(scene, tree);
-  const auto poses = motion.poses(0, tree.q0);
-  const auto pose = [&](const std::string& name) -> Eigen::Isometry3d {
-    for (std::size_t k = 0; k < scene.bodies.size(); ++k)
-      if (scene.bodies[k].name == name) return poses[k];
-    return Eigen::Isometry3d::Identity();
-  };
-  const Eigen::Isometry3d a = pose(l.child), b = pose(l.parent);
-  const double apart = normal.dot(a * l.origin_child - b * l.origin_parent);
-  l.origin_parent += apart * (b.linear().transpose() * normal);
-}
-
 class PlanarLoopRows : public testing::TestWithParam<LoopKind> {};
 TEST_P(PlanarLoopRows, AnyPlane) {
   Worst worst;

@@ -1,0 +1,47 @@
+#pragma once
+// What the forms ask of a mechanism with loops, whatever solves it: the right-hand sides of (7)-(8)
+// and (3), and corrections of positions and velocities in the mass metric.
+//
+//   sweeps   the loops' impulses are eliminated inside the recursion           (dae/sweeps)
+//   sparse   the assembled matrix of (7), KLU                                  (sparse_kkt.cpp)
+//   dense    Cholesky of M, pivoted LDLᵀ of the loops' matrix                  (dense_kkt.cpp)
+//
+// Weak rows fade towards `centre`, the σ of the step's start: see kkt.h.
+
+#include <momenta/dae/kkt/kkt.h>
+
+#include <memory>
+#include <vector>
+
+namespace momenta {
+
+class LoopSolver {
+ public:
+  virtual ~LoopSolver() = default;
+
+  /// u (nv) and σ (m) of (7) from p (nv) at (t, q). `centre` (m) null: zero. With `pdot` not null
+  /// also ṗ (nv), eq. (8), −κ Φ_qᵀσ included.
+  virtual bool momentum(double t, const double* q, const double* p, const double* centre,
+                        double fade, double leak, double* u, double* sigma, double* pdot) = 0;
+  /// u̇ (nv) and λ (m) of (3) with Φ̈ + 2α Φ̇ + β² Φ = 0.
+  virtual bool acceleration(double t, const double* q, const double* u, const double* centre,
+                            double alpha, double beta, double* udot, double* lambda) = 0;
+  /// δ (nv) of M δ + Φ_qᵀν = 0, Φ_q δ = −Φ.
+  virtual bool position_correction(double t, const double* q, double* delta) = 0;
+
+  /// Systems solved so far.
+  long solutions() const { return solutions_; }
+  /// Rows of Φ that faded in the last solution: redundant or singular there.
+  virtual const std::vector<int>& faded_rows() = 0;
+  /// Place in u of the joint at which the last call failed, or −1: a result is not finite.
+  int stuck() const { return stuck_; }
+
+ protected:
+  long solutions_ = 0;
+  int stuck_ = -1;
+};
+
+/// As the mechanism's plan says; needs loops. `e` is an evaluation of it, used as a workspace.
+std::unique_ptr<LoopSolver> make_loop_solver(const Mechanism& mechanism, Evaluation<double>& e);
+
+}  // namespace momenta

@@ -1,0 +1,52 @@
+#include <momenta/dae/sweeps/levels/loop_sweeps.h>
+
+#include <cmath>
+
+namespace momenta {
+
+template <int Level, class Space, class Tree>
+std::unique_ptr<LoopedSweeps> looped_sweeps_at(const Tree& tree, const LoopModel<Space>& loops,
+                                               const LoopPlan& plan);
+
+namespace {
+
+template <class Space, class Tree>
+std::unique_ptr<LoopedSweeps> make(const Tree& tree, const LoopModel<Space>& loops,
+                                   const LoopPlan& plan, [[maybe_unused]] int level) {
+#ifdef MOMENTA_LEVELS
+  if (level >= 4) return looped_sweeps_at<4>(tree, loops, plan);
+  if (level >= 3) return looped_sweeps_at<3>(tree, loops, plan);
+#endif
+  return looped_sweeps_at<1>(tree, loops, plan);
+}
+
+}  // namespace
+
+std::unique_ptr<LoopedSweeps> make_looped_sweeps(const PlanarTree& tree,
+                                                 const LoopModel<Planar>& loops,
+                                                 const LoopPlan& plan, int level) {
+  return make(tree, loops, plan, level);
+}
+std::unique_ptr<LoopedSweeps> make_looped_sweeps(const LinkTree& tree,
+                                                 const LoopModel<Spatial>& loops,
+                                                 const LoopPlan& plan, int level) {
+  return make(tree, loops, plan, level);
+}
+
+LoopModel<Planar> in_link_frames(LoopModel<Planar> loops, const PlanarTree& tree) {
+  const auto turn = [&](int body, Vec2<double>& v) {
+    if (body < 0) return;
+    const double angle = tree.frame_turn[static_cast<std::size_t>(body)];
+    const double c = std::cos(angle), s = std::sin(angle);
+    v = {{c * v[0] + s * v[1], c * v[1] - s * v[0]}};
+  };
+  for (auto& l : loops.loops) {
+    turn(l.a, l.at_a);
+    turn(l.b, l.at_b);
+    for (auto& axis : l.axis_a) turn(l.a, axis);
+    for (auto& axis : l.axis_b) turn(l.b, axis);
+  }
+  return loops;
+}
+
+}  // namespace momenta

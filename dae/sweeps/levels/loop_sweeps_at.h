@@ -1,0 +1,163 @@
+#pragma once
+// LoopedSweeps at one level; included by the files that are compiled for it, and nowhere else, as
+// core/kernel/levels/open_sweeps_at.h says why.
+
+#include <momenta/dae/sweeps/levels/loop_sweeps.h>
+#include <momenta/dae/sweeps/planar_loop_sweeps.h>
+#include <momenta/dae/sweeps/spatial_loop_sweeps.h>
+
+namespace momenta {
+
+/// Coordinates of the pack of states that starts at `base`, read and written by index.
+template <class S>
+struct StateIn {
+  const double* base;
+  std::ptrdiff_t stride;
+  MOMENTA_INLINE S operator[](int i) const { return S::load(base + i * stride); }
+};
+template <class S>
+struct StateOut {
+  double* base;
+  std::ptrdiff_t stride;
+  struct Place {
+    double* at;
+    MOMENTA_INLINE void operator=(const S& x) const { x.store(at); }
+    MOMENTA_INLINE operator S() const { return S::load(at); }
+  };
+  MOMENTA_INLINE Place operator[](int i) const { return {base + i * stride}; }
+};
+
+template <class Tree, class Space, int Level, int Rows>
+class LoopedSweepsAt final : public LoopedSweeps {
+  using One = Pack<1, Level>;
+  using Many = Pack<native_width<Level>, Level>;
+
+ public:
+  LoopedSweepsAt(const Tree& tree, const LoopModel<Space>& loops, const LoopPlan& plan)
+      : tree_(tree), loops_(loops), plan_(plan), momentum_(tree, loops, plan) {}
+
+  bool momentum(double t, const double* q, const double* p, const RightSide<double>& right,
+                double* u, double* sigma, double* pdot) override {
+    const bool ok =
+        momentum_(One(t), StateIn<One>{q, 1}, StateIn<One>{p, 1}, StateIn<One>{p, 1}, one(right),
+                  StateOut<One>{u, 1}, StateOut<One>{sigma, 1}, StateOut<One>{pdot, 1});
+    stuck_ = momentum_.stuck();
+    return ok;
+  }
+  bool acceleration(double t, const double* q, const double* u, const double* tau,
+                    const RightSide<double>& right, double* udot, double* lambda) override {
+    auto& sweeps = made(acceleration_);
+    const bool ok =
+        sweeps(One(t), StateIn<One>{q, 1}, StateIn<One>{u, 1}, StateIn<One>{tau, 1}, one(right),
+               StateOut<One>{udot, 1}, StateOut<One>{lambda, 1}, StateOut<One>{udot, 1});
+    stuck_ = sweeps.stuck();
+    return ok;
+  }
+  bool momentum(double t, const LoopedStates& s, double fade, double leak) override {
+    auto& sweeps = made(many_);
+    RightSide<Many> right;
+    right.fade = fade;
+    right.leak = leak;
+    right.rates = true;
+    constexpr std::size_t lanes = native_width<Level>;
+    bool all = true;
+    const auto pack = [&](const double* q, const double* p, double* u, double* sigma, double* pdot,
+                          std::ptrdiff_t stride) {
+      const StateIn<Many> x{p, stride};
+      all &= sweeps(Many(t), StateIn<Many>{q, stride}, x, x, right, StateOut<Many>{u, stride},
+                    StateOut<Many>{sigma, stride}, StateOut<Many>{pdot, stride});
+      if (!all) stuck_ = sweeps.stuck();
+    };
+    std::size_t first = 0;
+    for (; first + lanes <= s.count; first += lanes)
+      pack(s.q + first, s.p + first, s.u + first, s.sigma + first, s.pdot + first, s.stride);
+    if (first < s.count) rest(s, first, pack);
+    return all;
+  }
+
+  std::size_t faded_rows(int* rows, bool of_momentum) const override {
+    std::size_t count = 0;
+    const auto report = [&](int row) { rows[count++] = row; };
+    if (of_momentum)
+      momentum_.each_faded(report);
+    else if (acceleration_)
+      acceleration_->each_faded(report);
+    return count;
+  }
+  int lanes() const override { return Rows; }
+  int width() const override { return native_width<Level>; }
+  int stuck() const override { return stuck_; }
+
+ private:
+  static RightSide<One> one(const RightSide<double>& right) {
+    RightSide<One> r;
+    static_assert(sizeof(One) == sizeof(double));
+    r.centre = reinterpret_cast<const One*>(right.centre);
+    r.fade = right.fade;
+    r.drives = right.drives;
+    r.positions = right.positions;
+    r.rates = right.rates;
+    r.leak = right.leak;
+    r.alpha = right.alpha;
+    r.beta = right.beta;
+    return r;
+  }
+  template <class Sweeps>
+  Sweeps& made(std::unique_ptr<Sweeps>& sweeps) {
+    if (!sweeps) sweeps = std::make_unique<Sweeps>(tree_, loops_, plan_);
+    return *sweeps;
+  }
+
+  /// The states that fill no pack, copied into one; its last lanes repeat the last state.
+  template <class PackOf>
+  void rest(const LoopedStates& s, std::size_t first, PackOf&& pack) {
+    constexpr std::size_t lanes = native_width<Level>;
+    const auto nq = static_cast<std::size_t>(tree_.model->nq),
+               nv = static_cast<std::size_t>(tree_.model->nv),
+               m = static_cast<std::size_t>(loops_.rows);
+    if (padded_.size() < (nq + 3 * nv + m) * lanes) padded_.resize((nq + 3 * nv + m) * lanes);
+    double *q = &padded_.data()->v, *p = q + nq * lanes, *u = p + nv * lanes,
+           *pdot = u + nv * lanes, *sigma = pdot + nv * lanes;
+    const auto at = [&](std::size_t i, std::size_t state) {
+      return static_cast<std::ptrdiff_t>(i) * s.stride + static_cast<std::ptrdiff_t>(state);
+    };
+    const std::size_t count = s.count - first;
+    for (std::size_t lane = 0; lane < lanes; ++lane) {
+      const std::size_t state = first + (lane < count ? lane : count - 1);
+      for (std::size_t i = 0; i < nq; ++i) q[i * lanes + lane] = s.q[at(i, state)];
+      for (std::size_t i = 0; i < nv; ++i) p[i * lanes + lane] = s.p[at(i, state)];
+    }
+    pack(q, p, u, sigma, pdot, static_cast<std::ptrdiff_t>(lanes));
+    for (std::size_t lane = 0; lane < count; ++lane) {
+      for (std::size_t i = 0; i < nv; ++i) {
+        s.u[at(i, first + lane)] = u[i * lanes + lane];
+        s.pdot[at(i, first + lane)] = pdot[i * lanes + lane];
+      }
+      for (std::size_t i = 0; i < m; ++i) s.sigma[at(i, first + lane)] = sigma[i * lanes + lane];
+    }
+  }
+
+  const Tree& tree_;
+  const LoopModel<Space>& loops_;
+  const LoopPlan& plan_;
+  LoopSweeps<Space, One, Rows, true> momentum_;
+  std::unique_ptr<LoopSweeps<Space, One, Rows, false>> acceleration_;
+  std::unique_ptr<LoopSweeps<Space, Many, Rows, true>> many_;
+  std::vector<One> padded_;
+  int stuck_ = -1;
+};
+
+/// The narrowest fronts that hold the plan's lanes.
+template <int Level, class Space, class Tree>
+std::unique_ptr<LoopedSweeps> looped_sweeps_at(const Tree& tree, const LoopModel<Space>& loops,
+                                               const LoopPlan& plan) {
+  const auto make = [&]<int Rows>() -> std::unique_ptr<LoopedSweeps> {
+    return std::make_unique<LoopedSweepsAt<Tree, Space, Level, Rows>>(tree, loops, plan);
+  };
+  if constexpr (Space::dimension == 3)
+    if (plan.lanes <= 2) return make.template operator()<2>();
+  if (plan.lanes <= 4) return make.template operator()<4>();
+  return make.template operator()<8>();
+}
+
+}  // namespace momenta

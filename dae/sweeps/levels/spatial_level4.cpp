@@ -1,0 +1,7 @@
+#include <momenta/dae/sweeps/levels/loop_sweeps_at.h>
+
+namespace momenta {
+template std::unique_ptr<LoopedSweeps> looped_sweeps_at<4>(const LinkTree&,
+                                                           const LoopModel<Spatial>&,
+                                                           const LoopPlan&);
+}  // namespace momenta

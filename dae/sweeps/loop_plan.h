@@ -1,0 +1,50 @@
+#pragma once
+// How the sweeps carry loops: which lanes a loop's equations keep, at which bodies its ends enter,
+// and where it closes: at the lowest common ancestor of its two bodies.
+//
+// Two loops that are open in one front need different lanes: greedy colouring of the fronts, loop
+// by loop in the order of the scene. At the ground, fronts of the tree's roots are gathered one
+// after the other, last root first; a loop between roots is open there from the later root to the
+// earlier one.
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace momenta {
+
+struct LoopPlan {
+  static constexpr int most_lanes = 8;
+
+  struct End {
+    int loop = 0;
+    bool on_a = true;     ///< body A of the loop, the one whose wrench acts as written
+    bool first = true;    ///< the end that brings the loop's right-hand side along
+  };
+  struct Range {
+    int first = 0, last = 0;  ///< [first, last)
+  };
+
+  std::vector<End> ends;         ///< by body
+  std::vector<Range> ends_of;    ///< per body, into ends
+  std::vector<int> closings;     ///< loops, by the body that closes them, in closing order
+  std::vector<Range> closings_of;         ///< per body, into closings
+  std::vector<Range> ground_closings_of;  ///< per body: only roots have some
+  std::vector<int> lane;                  ///< per loop: its first lane
+  std::vector<char> pair;                 ///< per loop: two point rows and no other
+  std::vector<char> posed;                ///< per body: carries an end of a loop, near or far
+  int lanes = 0;                          ///< lanes needed
+  bool fits() const { return lanes <= most_lanes; }
+};
+
+/// A loop's bodies (−1: ground) and how many equations it has.
+struct LoopShape {
+  int a = -1, b = -1, rows = 0;
+  bool pair = false;
+};
+
+/// `parents` in depth-first order, −1 for roots. O(bodies + length of all loops). Where more than
+/// most_lanes are needed, `lanes` says so and no lane is assigned.
+LoopPlan plan_loops(const std::vector<int>& parents, const std::vector<LoopShape>& loops);
+
+}  // namespace momenta

@@ -1,0 +1,19 @@
+#pragma once
+// What a solution of (7), (3) or a projection asks for beside its joint-space right-hand side.
+
+#include <momenta/core/scalar/sine_cosine.h>
+
+namespace momenta {
+
+template <class S>
+struct RightSide {
+  const S* centre = nullptr;  ///< σ (m) towards which weak rows fade; null: zero
+  double fade = 0;            ///< pivots below this, relative to their scale, fade
+  bool drives = true;         ///< prescribed motion moves bodies (not in a correction of positions)
+  bool positions = false;     ///< second row Φ_q u = −Φ instead of −Φ_t
+  bool rates = false;         ///< ṗ too
+  double leak = 0;            ///< κ [1/s]
+  double alpha = 0, beta = 0; ///< Φ̈ + 2α Φ̇ + β² Φ = 0 [1/s]
+};
+
+}  // namespace momenta

@@ -1,0 +1,131 @@
+#pragma once
+// A loop in space at one state, in ground axes: its points and axes, the force F at x_A and the
+// couple c of every row's unit impulse on body A (on B acts the exact negative), and what its
+// equations need of velocities. Rows as in dae/loop/loop_rows.h.
+
+#include <momenta/core/kernel/spatial.h>
+#include <momenta/dae/loop/loop_model.h>
+
+namespace momenta {
+
+/// A body that carries an end of a loop, or lies on the way to one; ground axes.
+template <class S>
+struct LoopBody {
+  Spatial::Pose<S> pose;
+  Vec3<S> v, w;  ///< velocity of O, angular velocity
+};
+
+template <class S>
+struct SpatialLoopPlace {
+  using Loop = LoopModel<Spatial>::Loop;
+  Vec3<S> ra, rb, gap;  ///< x_A − O_A, x_A − O_B, D = x_A − x_B
+  Vec3<S> F[6], c[6];
+  Vec3<S> a[3], b[3];
+
+  void place(const Loop& l, const LoopBody<S>* A, const LoopBody<S>* B) {
+    const auto in_ground = [](const LoopBody<S>* body, const Vec3<double>& v) {
+      Vec3<S> r;
+      for (int i = 0; i < 3; ++i)
+        r[i] = body ? body->pose.axes(i, 0) * v[0] + body->pose.axes(i, 1) * v[1] +
+                          body->pose.axes(i, 2) * v[2]
+                    : S(v[i]);
+      return r;
+    };
+    ra = in_ground(A, l.at_a);
+    const Vec3<S> arm_b = in_ground(B, l.at_b);
+    Vec3<S> between{};
+    if (A) between += A->pose.origin;
+    if (B) between -= B->pose.origin;
+    rb = between + ra;
+    gap = rb - arm_b;
+    if (l.length > 0) {
+      F[0] = S(1.0 / l.length) * gap;
+      c[0] = {};
+      return;
+    }
+    for (std::size_t j = 0; j < 3; ++j) b[j] = in_ground(B, l.axis_b[j]);
+    if (l.n_axes > 0)
+      for (std::size_t j = 0; j < 3; ++j) a[j] = in_ground(A, l.axis_a[j]);
+    for (int j = 0; j < l.n_points; ++j) {
+      F[j] = b[l.points[static_cast<std::size_t>(j)]];
+      c[j] = {};
+    }
+    for (int j = 0; j < l.n_axes; ++j) {
+      const auto [x, y] = l.axes[static_cast<std::size_t>(j)];
+      F[l.n_points + j] = {};
+      c[l.n_points + j] = cross(a[x], b[y]);
+    }
+  }
+
+  S position(const Loop& l, int row) const {
+    if (l.length > 0) return (dot(gap, gap) - S(l.length * l.length)) * (0.5 / l.length);
+    if (row < l.n_points) return dot(F[row], gap);
+    const auto [x, y] = l.axes[static_cast<std::size_t>(row - l.n_points)];
+    return dot(a[x], b[y]);
+  }
+
+  /// Velocities of x_A on A and of the points of B at x_A and at x_B.
+  struct Rates {
+    Vec3<S> wa{}, wb{}, u{}, at_a{}, at_b{}, vb{};
+  };
+  Rates rates(const LoopBody<S>* A, const LoopBody<S>* B) const {
+    Rates r;
+    if (A) {
+      r.wa = A->w;
+      r.u = A->v + cross(A->w, ra);
+    }
+    if (B) {
+      r.wb = B->w;
+      r.vb = B->v;
+      r.at_a = B->v + cross(B->w, rb);
+      r.at_b = B->v + cross(B->w, rb - gap);
+    }
+    return r;
+  }
+
+  S velocity(const Rates& r, int row) const {
+    return dot(F[row], r.u - r.at_a) + dot(c[row], r.wa - r.wb);
+  }
+  /// J̇ V: Φ̈ without the accelerations of the two bodies.
+  S bias(const Loop& l, const Rates& r, int row) const {
+    const Vec3<S> turning = cross(r.wa, cross(r.wa, ra));
+    if (l.length > 0) {
+      const Vec3<S> apart = r.u - r.at_b;
+      return dot(apart, apart) * (1.0 / l.length) +
+             dot(F[row], turning - cross(r.wb, cross(r.wb, rb - gap)));
+    }
+    if (row < l.n_points)
+      return dot(cross(r.wb, F[row]), r.u - r.at_a) +
+             dot(F[row], turning - cross(r.wb, r.u - r.vb));
+    return dot(axis_rate(l, r, row), r.wa - r.wb);
+  }
+  /// d/dt (a_i × b_j)
+  Vec3<S> axis_rate(const Loop& l, const Rates& r, int row) const {
+    const auto [x, y] = l.axes[static_cast<std::size_t>(row - l.n_points)];
+    return cross(cross(r.wa, a[x]), b[y]) + cross(a[x], cross(r.wb, b[y]));
+  }
+
+  /// N − κ w of the impulses σ(row), as force at x_A and couple on A.
+  template <class Sigma>
+  void inertial_rate(const Loop& l, const Rates& r, const Sigma& sigma, double leak, Vec3<S>& force,
+                     Vec3<S>& couple) const {
+    Vec3<S> f{}, n{}, turning{};
+    for (int row = 0; row < l.rows; ++row) {
+      const S s = sigma(row);
+      if (row < l.n_points || l.length > 0) {
+        f += s * F[row];
+      } else {
+        n += s * c[row];
+        turning += s * axis_rate(l, r, row);
+      }
+    }
+    force = l.length > 0 ? (sigma(0) * (1.0 / l.length)) * (r.u - r.at_b) : cross(r.wb, f);
+    couple = turning + cross(r.u, f);
+    if (leak != 0) {
+      force -= S(leak) * f;
+      couple -= S(leak) * n;
+    }
+  }
+};
+
+}  // namespace momenta

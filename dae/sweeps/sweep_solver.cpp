@@ -1,0 +1,102 @@
+// The forms' right-hand sides from the sweeps that carry loops. Springs between points of bodies and
+// wrenches take a sweep of their own, where a scene has some.
+
+#include <momenta/dae/sweeps/levels/loop_sweeps.h>
+#include <momenta/dae/sweeps/sweep_solver.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace momenta {
+namespace {
+
+bool finite(const double* x, std::size_t n) {
+  double sum = 0;
+  for (std::size_t i = 0; i < n; ++i) sum += x[i] * 0.0;
+  return sum == 0;
+}
+
+class SweepSolver final : public LoopSolver {
+ public:
+  SweepSolver(const Mechanism& mechanism, Evaluation<double>& e)
+      : e_(e),
+        sweeps_(mechanism.looped_sweeps()),
+        has_body_forces_(mechanism.has_body_forces()),
+        has_forces_(has_body_forces_ || mechanism.has_joint_forces()),
+        zero_(static_cast<std::size_t>(mechanism.nv())),
+        tau_(zero_.size()),
+        nu_(static_cast<std::size_t>(mechanism.m())) {
+    rows_.reserve(nu_.size());
+    for (const auto& b : mechanism.tree().bodies) place_of_body_.push_back(b.nv > 0 ? b.u : -1);
+  }
+
+  bool momentum(double t, const double* q, const double* p, const double* centre, double fade,
+                double leak, double* u, double* sigma, double* pdot) override {
+    RightSide<double> right;
+    right.centre = centre;
+    right.fade = fade;
+    right.leak = leak;
+    right.rates = pdot != nullptr;
+    if (!noted(sweeps_->momentum(t, q, p, right, u, sigma, pdot))) return false;
+    of_momentum_ = true;
+    if (pdot && has_body_forces_) {
+      e_.body_forces(t, q, u, tau_.data());
+      for (std::size_t i = 0; i < tau_.size(); ++i) pdot[i] += tau_[i];
+    }
+    return finite(u, zero_.size()) && finite(sigma, nu_.size()) &&
+           (!pdot || finite(pdot, zero_.size()));
+  }
+
+  bool acceleration(double t, const double* q, const double* u, const double* centre, double alpha,
+                    double beta, double* udot, double* lambda) override {
+    RightSide<double> right;
+    right.centre = centre;
+    right.fade = fade_evaluation;
+    right.alpha = alpha;
+    right.beta = beta;
+    if (has_forces_) e_.applied_forces(t, q, u, tau_.data());
+    of_momentum_ = false;
+    return noted(sweeps_->acceleration(t, q, u, has_forces_ ? tau_.data() : zero_.data(), right,
+                                       udot, lambda)) &&
+           finite(udot, zero_.size()) && finite(lambda, nu_.size());
+  }
+
+  bool position_correction(double t, const double* q, double* delta) override {
+    RightSide<double> right;
+    right.fade = fade_projection;
+    right.drives = false;
+    right.positions = true;
+    of_momentum_ = true;
+    return noted(sweeps_->momentum(t, q, zero_.data(), right, delta, nu_.data(), nullptr)) &&
+           finite(delta, zero_.size());
+  }
+
+  const std::vector<int>& faded_rows() override {
+    rows_.resize(nu_.size());
+    rows_.resize(sweeps_->faded_rows(rows_.data(), of_momentum_));
+    return rows_;
+  }
+
+ private:
+  bool noted(bool ok) {
+    ++solutions_;
+    stuck_ = -1;
+    if (!ok) stuck_ = place_of_body_[static_cast<std::size_t>(sweeps_->stuck())];
+    return ok;
+  }
+
+  Evaluation<double>& e_;
+  std::unique_ptr<LoopedSweeps> sweeps_;
+  bool has_body_forces_, has_forces_;
+  std::vector<double> zero_, tau_, nu_;
+  std::vector<int> rows_, place_of_body_;
+  bool of_momentum_ = true;
+};
+
+}  // namespace
+
+std::unique_ptr<LoopSolver> make_sweep_solver(const Mechanism& mechanism, Evaluation<double>& e) {
+  return std::make_unique<SweepSolver>(mechanism, e);
+}
+
+}  // namespace momenta
