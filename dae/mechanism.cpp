@@ -81,15 +81,8 @@ void Mechanism::choose_kkt(KktChoice asked) {
   if (asked == KktChoice::dense || asked == KktChoice::sparse) return;
   const auto plan = [&](auto& cast) {
     cast.links = build_links(cast.model);
-    std::vector<int> parents;
-    for (const auto& b : cast.model.bodies) parents.push_back(b.parent);
-    std::vector<LoopShape> shapes;
-    for (const auto& l : cast.loops.loops) shapes.push_back({l.a, l.b, l.rows, l.length == 0 && l.n_points == 2 && l.n_axes == 0});
-    cast.plan = plan_loops(parents, shapes);
-    if constexpr (std::is_same_v<decltype(cast.links), PlanarTree>)
-      cast.link_loops = in_link_frames(cast.loops, cast.links);
-    else
-      cast.link_loops = cast.loops;
+    cast.plan = plan_loops(cast.model, cast.loops);
+    cast.link_loops = in_link_frames(cast.loops, cast.links);
     if (!cast.plan.fits())
       kkt_reason_ = std::to_string(cast.plan.lanes) + " loop equations are open at once, more than " +
                     std::to_string(LoopPlan::most_lanes);
@@ -114,9 +107,10 @@ void Mechanism::choose_kkt(KktChoice asked) {
   dense_ = false;
 }
 
-std::unique_ptr<LoopedSweeps> Mechanism::looped_sweeps() const {
-  return visit([](const auto& cast) {
-    return make_looped_sweeps(cast.links, cast.link_loops, cast.plan, best_level());
+std::unique_ptr<LoopedSweeps> Mechanism::looped_sweeps(int level) const {
+  return visit([&](const auto& cast) {
+    return make_looped_sweeps(cast.links, cast.link_loops, cast.plan,
+                              level > 0 ? level : best_level());
   });
 }
 bool Mechanism::has_body_forces() const {

@@ -55,8 +55,9 @@ class Mechanism {
   KktChoice kkt() const { return kkt_; }
   /// Whether an assembled matrix, where one is needed, is dense.
   bool dense_kkt() const { return dense_; }
-  /// The sweeps that carry this mechanism's loops. @pre kkt() is sweeps
-  std::unique_ptr<LoopedSweeps> looped_sweeps() const;
+  /// The sweeps that carry this mechanism's loops, for one instruction level; 0: the machine's
+  /// best. @pre kkt() is sweeps
+  std::unique_ptr<LoopedSweeps> looped_sweeps(int level = 0) const;
   bool has_body_forces() const;   ///< springs, dampers or wrenches between points of bodies
   bool has_joint_forces() const;  ///< springs, dampers or torques of joints
   /// Found when first asked for: a long open chain never fills its M.

@@ -44,7 +44,13 @@ struct Pack {
   Lanes v{};
 
   Pack() = default;
-  MOMENTA_INLINE Pack(double x) : v(Lanes{} + x) {}  // NOLINT: constants mix freely
+  /// Lane by lane: `Lanes{} + x` would add, because −0 + 0 is 0.
+  MOMENTA_INLINE Pack(double x) {  // NOLINT: constants mix freely
+    if constexpr (Width == 1)
+      v = x;
+    else
+      for (int i = 0; i < Width; ++i) v[i] = x;
+  }
   static MOMENTA_INLINE Pack of(Lanes x) {
     Pack p;
     p.v = x;

@@ -8,6 +8,9 @@
 
 #include <momenta/core/scalar/sine_cosine.h>
 
+/// Of a lambda whose captures must stay in registers.
+#define MOMENTA_INLINED __attribute__((always_inline))
+
 namespace momenta {
 
 template <class S, int Rows>
@@ -53,10 +56,10 @@ struct Lanes<Pack<1, Level>, Rows> {
   MOMENTA_INLINE S operator[](int i) const { return S(v[i / width][i % width]); }
   /// Lanes are chosen by comparison: writing one number into a register would go through memory.
   MOMENTA_INLINE void set(int i, const S& x) {
-    for (int k = 0; k < parts; ++k) v[k] = places(k) == i ? Part{} + x.v : v[k];
+    for (int k = 0; k < parts; ++k) v[k] = places(k) == i ? all(x) : v[k];
   }
   MOMENTA_INLINE void add(int i, const S& x) {
-    for (int k = 0; k < parts; ++k) v[k] += places(k) == i ? Part{} + x.v : Part{};
+    for (int k = 0; k < parts; ++k) v[k] += places(k) == i ? all(x) : Part{};
   }
 
   MOMENTA_INLINE Lanes& operator+=(const Lanes& b) {
@@ -87,6 +90,7 @@ struct Lanes<Pack<1, Level>, Rows> {
   }
 
  private:
+  static MOMENTA_INLINE Part all(const S& x) { return Pack<width, Level>(x.v).v; }
   static MOMENTA_INLINE Places places(int part) {
     Places at{};
     for (int i = 0; i < width; ++i) at[i] = part * width + i;

@@ -56,11 +56,43 @@ std::vector<LoopPlan::Range> ranges(const std::vector<std::vector<T>>& lists,
 
 }  // namespace
 
-LoopPlan plan_loops(const std::vector<int>& parents, const std::vector<LoopShape>& loops) {
+namespace {
+
+int root_of(const std::vector<int>& parents, int k) {
+  while (k >= 0 && parents[static_cast<std::size_t>(k)] >= 0)
+    k = parents[static_cast<std::size_t>(k)];
+  return k;
+}
+
+/// Per body: of a root whose loops to other trees all end on one body before it, that body.
+std::vector<int> foldable_legs(const std::vector<int>& parents,
+                               const std::vector<LoopShape>& loops) {
+  constexpr int none = -1, several = -2;
+  std::vector<int> onto(parents.size(), none);
+  const auto tie = [&](int root, int other) {
+    if (root < 0) return;
+    int& at = onto[static_cast<std::size_t>(root)];
+    at = other < 0 || other > root || (at != none && at != other) ? several : other;
+  };
+  for (const LoopShape& loop : loops) {
+    const int a = root_of(parents, loop.a), b = root_of(parents, loop.b);
+    if (a == b) continue;
+    tie(a, loop.b);
+    tie(b, loop.a);
+  }
+  for (int& k : onto) k = std::max(k, none);
+  return onto;
+}
+
+LoopPlan planned(const std::vector<int>& parents, const std::vector<LoopShape>& loops,
+                 std::vector<int> folded_onto) {
   const std::size_t n = parents.size();
   LoopPlan plan;
   plan.lane.resize(loops.size());
   plan.posed.assign(n, 0);
+  plan.takes_legs.assign(n, 0);
+  for (const int k : folded_onto)
+    if (k >= 0) plan.takes_legs[static_cast<std::size_t>(k)] = 1;
   std::vector<std::uint64_t> used(n, 0), used_at_ground(n, 0);
   std::vector<std::vector<LoopPlan::End>> ends(n);
   std::vector<std::vector<int>> closings(n), ground_closings(n);
@@ -70,7 +102,15 @@ LoopPlan plan_loops(const std::vector<int>& parents, const std::vector<LoopShape
 
   for (std::size_t i = 0; i < loops.size(); ++i) {
     const LoopShape& loop = loops[i];
-    const Way way = way_of(parents, loop);
+    const int root_a = root_of(parents, loop.a), root_b = root_of(parents, loop.b);
+    // The leg of a folded loop: its root; the loop is open in the leg alone.
+    int leg = -1;
+    if (root_a != root_b)
+      for (const int root : {root_a, root_b})
+        if (root >= 0 && folded_onto[static_cast<std::size_t>(root)] >= 0) leg = std::max(leg, root);
+    LoopShape open = loop;
+    if (leg >= 0) (leg == root_a ? open.b : open.a) = -1;
+    const Way way = way_of(parents, open);
     std::vector<int> gathered;
     if (way.closes_at < 0) {
       const int a = way.root_a < 0 ? way.root_b : way.root_a,
@@ -82,6 +122,7 @@ LoopPlan plan_loops(const std::vector<int>& parents, const std::vector<LoopShape
     } else {
       closings[static_cast<std::size_t>(way.closes_at)].push_back(static_cast<int>(i));
     }
+    if (leg >= 0) gathered.clear();
     std::uint64_t taken = 0;
     for (const int k : way.fronts) taken |= used[static_cast<std::size_t>(k)];
     for (const int k : gathered) taken |= used_at_ground[static_cast<std::size_t>(k)];
@@ -98,14 +139,26 @@ LoopPlan plan_loops(const std::vector<int>& parents, const std::vector<LoopShape
       for (int k = end; k >= 0 && !plan.posed[static_cast<std::size_t>(k)];
            k = parents[static_cast<std::size_t>(k)])
         plan.posed[static_cast<std::size_t>(k)] = 1;
-    if (loop.a >= 0) ends[static_cast<std::size_t>(loop.a)].push_back({static_cast<int>(i), true, true});
-    if (loop.b >= 0)
-      ends[static_cast<std::size_t>(loop.b)].push_back({static_cast<int>(i), false, loop.a < 0});
+    // The first end to enter brings the right-hand side along: that of the leg, where there is one.
+    if (open.a >= 0)
+      ends[static_cast<std::size_t>(open.a)].push_back({static_cast<int>(i), true, true});
+    if (open.b >= 0)
+      ends[static_cast<std::size_t>(open.b)].push_back({static_cast<int>(i), false, open.a < 0});
   }
   plan.ends_of = ranges(ends, plan.ends);
   plan.closings_of = ranges(closings, plan.closings);
   plan.ground_closings_of = ranges(ground_closings, plan.closings);
+  plan.folded_onto = std::move(folded_onto);
   return plan;
+}
+
+}  // namespace
+
+LoopPlan plan_loops(const std::vector<int>& parents, const std::vector<LoopShape>& loops,
+                    bool may_fold) {
+  LoopPlan plan = planned(parents, loops, std::vector<int>(parents.size(), -1));
+  if (plan.fits() || !may_fold) return plan;
+  return planned(parents, loops, foldable_legs(parents, loops));
 }
 
 }  // namespace momenta

@@ -6,6 +6,11 @@
 // by loop in the order of the scene. At the ground, fronts of the tree's roots are gathered one
 // after the other, last root first; a loop between roots is open there from the later root to the
 // earlier one.
+//
+// A leg may be folded: a root's subtree that all its open loops tie to one other body L. With the
+// leg's own W the loops close into L at once, M*_L += J W⁻¹ Jᵀ, so that the lanes of all legs of a
+// platform are the same. It needs a W that is regular by itself, in every pose: only where lanes
+// would run out, and watched.
 
 #include <cstdint>
 #include <utility>
@@ -32,6 +37,8 @@ struct LoopPlan {
   std::vector<Range> ground_closings_of;  ///< per body: only roots have some
   std::vector<int> lane;                  ///< per loop: its first lane
   std::vector<char> pair;                 ///< per loop: two point rows and no other
+  std::vector<int> folded_onto;           ///< per body: of a root, the body its leg folds into; or −1
+  std::vector<char> takes_legs;           ///< per body: legs fold into it
   std::vector<char> posed;                ///< per body: carries an end of a loop, near or far
   int lanes = 0;                          ///< lanes needed
   bool fits() const { return lanes <= most_lanes; }
@@ -43,8 +50,10 @@ struct LoopShape {
   bool pair = false;
 };
 
-/// `parents` in depth-first order, −1 for roots. O(bodies + length of all loops). Where more than
-/// most_lanes are needed, `lanes` says so and no lane is assigned.
-LoopPlan plan_loops(const std::vector<int>& parents, const std::vector<LoopShape>& loops);
+/// `parents` in depth-first order, −1 for roots. O(bodies + length of all loops). Legs are folded
+/// where that is allowed (`may_fold`) and lanes run out without. Where more than most_lanes are
+/// needed all the same, `lanes` says so.
+LoopPlan plan_loops(const std::vector<int>& parents, const std::vector<LoopShape>& loops,
+                    bool may_fold);
 
 }  // namespace momenta

@@ -62,6 +62,7 @@ class LoopSweeps<Planar, S, Rows, Momentum> : PlanarPlaces<S> {
                   Out u, Out sigma, Out rate);
 
   using Base::stuck;
+  static bool weak_leg() { return false; }  ///< no leg is folded in a plane
   /// Rows that faded in the last solution, as rows of Φ; calls row(index).
   template <class Report>
   void each_faded(Report&& row) const;
@@ -388,13 +389,13 @@ MOMENTA_INLINE void at_lane(int lane, Pair&& pair) {
 
 template <class S, int Rows, bool Momentum>
 template <bool Moves>
-void LoopSweeps<Planar, S, Rows, Momentum>::close(const LoopPlan::Range& range, PlanarCargo<S>& a,
+MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::close(const LoopPlan::Range& range, PlanarCargo<S>& a,
                                                   Blocks& o, double fade) {
   for (int i = range.first; i < range.last; ++i) {
     const int loop = plan_->closings[static_cast<std::size_t>(i)];
     const auto at = static_cast<std::size_t>(loop);
     if (plan_->pair[at]) {
-      at_lane<Rows>(plan_->lane[at], [&]<int Lane>() {
+      at_lane<Rows>(plan_->lane[at], [&]<int Lane>() MOMENTA_INLINED {
         close_pair<Lane, Moves>(o, fade, pairs_[at], PlanarWeight<S>{a});
       });
     } else {

@@ -41,6 +41,8 @@ class LoopSweeps<Spatial, S, Rows, Momentum> {
                   Out u, Out impulse, Out rate);
 
   int stuck() const { return stuck_; }
+  /// Whether the last solution closed a folded leg on too weak a pivot: it is then wrong.
+  bool weak_leg() const { return weak_leg_; }
   /// Rows of Φ that faded in the last solution; calls report(row).
   template <class Report>
   void each_faded(Report&& report) const;
@@ -87,6 +89,8 @@ class LoopSweeps<Spatial, S, Rows, Momentum> {
   template <class In>
   bool inward(const In& r, const RightSide<S>& right);
   void enter(std::size_t k, const RightSide<S>& right, Carried& a);
+  void enter(std::size_t k, const LoopPlan::End& end, const RightSide<S>& right, Carried& a);
+  __attribute__((noinline)) void fold(std::size_t root, const RightSide<S>& right, Carried& leg);
   __attribute__((noinline)) void close(int loop, Carried& a, double fade);
   template <class In>
   bool pin_inward(std::size_t k, const In& r, Carried& a);
@@ -125,7 +129,10 @@ class LoopSweeps<Spatial, S, Rows, Momentum> {
   std::vector<Carried> slots_;
   std::vector<Moving> outward_slots_;
   std::vector<Row> rows_;
+  std::vector<Cargo<S>> legs_;  ///< by body: what folded legs add to it
+  std::vector<Motion> taken_;   ///< by body: Ω of those that take legs
   int stuck_ = -1;
+  bool weak_leg_ = false;
 };
 
 template <class S, int Rows, bool Momentum>
@@ -146,7 +153,13 @@ LoopSweeps<Spatial, S, Rows, Momentum>::LoopSweeps(const LinkTree& tree,
       places_(loops.loops.size()),
       slots_(static_cast<std::size_t>(tree.slots)),
       outward_slots_(static_cast<std::size_t>(tree.slots)),
-      rows_(static_cast<std::size_t>(loops.rows)) {}
+      rows_(static_cast<std::size_t>(loops.rows)) {
+  for (const char takes : plan.takes_legs)
+    if (takes && legs_.empty()) {
+      legs_.resize(tree.links.size());
+      taken_.resize(tree.links.size());
+    }
+}
 
 template <class S, int Rows, bool Momentum>
 template <class In, class Out>
@@ -157,7 +170,10 @@ bool LoopSweeps<Spatial, S, Rows, Momentum>::operator()(const S& t, const In& q,
       *tree_, t, q, angles_, joints_, users_,
       [&](std::size_t record) -> auto& { return balls_[record].R; });
   stuck_ = tree_->stuck;
+  weak_leg_ = false;
   if (stuck_ >= 0) return false;
+  for (std::size_t k = 0; k < legs_.size(); ++k)
+    if (plan_->takes_legs[k]) legs_[k] = {};
   pose_bodies();
   move_bodies(x, right);
   for (std::size_t i = 0; i < places_.size(); ++i) {
@@ -287,53 +303,81 @@ template <class S, int Rows, bool Momentum>
 void LoopSweeps<Spatial, S, Rows, Momentum>::enter(std::size_t k, const RightSide<S>& right,
                                                    Carried& a) {
   const LoopPlan::Range range = plan_->ends_of[k];
-  for (int i = range.first; i < range.last; ++i) {
-    const LoopPlan::End& end = plan_->ends[static_cast<std::size_t>(i)];
-    const auto loop = static_cast<std::size_t>(end.loop);
-    const Loop& l = loops_->loops[loop];
-    const SpatialLoopPlace<S>& s = places_[loop];
-    const auto& axes = bodies_[k].pose.axes;
-    const int lane = plan_->lane[loop];
-    const S sign(end.on_a ? 1.0 : -1.0);
-    const Vec3<S> arm = transpose_times(axes, end.on_a ? s.ra : s.rb);
-    Vec3<S> centre_force{}, centre_couple{};
-    for (int row = 0; row < l.rows; ++row) {
-      const Vec3<S> f = transpose_times(axes, sign * s.F[row]);
-      const Vec3<S> n = cross(arm, f) + transpose_times(axes, sign * s.c[row]);
-      for (int j = 0; j < 3; ++j) {
-        a.blocks.C[j].add(lane + row, f[j]);
-        a.blocks.C[3 + j].add(lane + row, n[j]);
-      }
-      if (right.centre) {
-        const S centre = right.centre[l.row + row];
-        centre_force += centre * f;
-        centre_couple += centre * n;
-      }
-      if (!end.first) continue;
-      if (right.positions) a.blocks.d.add(lane + row, s.position(l, row));
-      if constexpr (!Momentum) {
-        const auto rates = s.rates(loop_body(l.a), loop_body(l.b));
-        S d = s.bias(l, rates, row);
-        if (right.alpha != 0 || right.beta != 0)
-          d += (2 * right.alpha) * s.velocity(rates, row) +
-               (right.beta * right.beta) * s.position(l, row);
-        // The ground falls upward too: its end of the row accelerates with −g.
-        const auto& g = tree_->model->gravity;
-        const S along = s.F[row][0] * g[0] + s.F[row][1] * g[1] + s.F[row][2] * g[2];
-        if (l.b < 0) d += along;
-        if (l.a < 0) d -= along;
-        a.blocks.d.add(lane + row, d);
-      }
+  for (int i = range.first; i < range.last; ++i)
+    enter(k, plan_->ends[static_cast<std::size_t>(i)], right, a);
+}
+
+template <class S, int Rows, bool Momentum>
+void LoopSweeps<Spatial, S, Rows, Momentum>::enter(std::size_t k, const LoopPlan::End& end,
+                                                   const RightSide<S>& right, Carried& a) {
+  const auto loop = static_cast<std::size_t>(end.loop);
+  const Loop& l = loops_->loops[loop];
+  const SpatialLoopPlace<S>& s = places_[loop];
+  const auto& axes = bodies_[k].pose.axes;
+  const int lane = plan_->lane[loop];
+  const S sign(end.on_a ? 1.0 : -1.0);
+  const Vec3<S> arm = transpose_times(axes, end.on_a ? s.ra : s.rb);
+  Vec3<S> centre_force{}, centre_couple{};
+  for (int row = 0; row < l.rows; ++row) {
+    const Vec3<S> f = transpose_times(axes, sign * s.F[row]);
+    const Vec3<S> n = cross(arm, f) + transpose_times(axes, sign * s.c[row]);
+    for (int j = 0; j < 3; ++j) {
+      a.blocks.C[j].add(lane + row, f[j]);
+      a.blocks.C[3 + j].add(lane + row, n[j]);
     }
     if (right.centre) {
-      a.cargo.Dfx += centre_force[0];
-      a.cargo.Dfy += centre_force[1];
-      a.cargo.Dfz += centre_force[2];
-      a.cargo.Dnx += centre_couple[0];
-      a.cargo.Dny += centre_couple[1];
-      a.cargo.Dnz += centre_couple[2];
+      const S centre = right.centre[l.row + row];
+      centre_force += centre * f;
+      centre_couple += centre * n;
+    }
+    if (!end.first) continue;
+    if (right.positions) a.blocks.d.add(lane + row, s.position(l, row));
+    if constexpr (!Momentum) {
+      const auto rates = s.rates(loop_body(l.a), loop_body(l.b));
+      S d = s.bias(l, rates, row);
+      if (right.alpha != 0 || right.beta != 0)
+        d += (2 * right.alpha) * s.velocity(rates, row) +
+             (right.beta * right.beta) * s.position(l, row);
+      // The ground falls upward too: its end of the row accelerates with −g.
+      const auto& g = tree_->model->gravity;
+      const S along = s.F[row][0] * g[0] + s.F[row][1] * g[1] + s.F[row][2] * g[2];
+      if (l.b < 0) d += along;
+      if (l.a < 0) d -= along;
+      a.blocks.d.add(lane + row, d);
     }
   }
+  if (right.centre) {
+    a.cargo.Dfx += centre_force[0];
+    a.cargo.Dfy += centre_force[1];
+    a.cargo.Dfz += centre_force[2];
+    a.cargo.Dnx += centre_couple[0];
+    a.cargo.Dny += centre_couple[1];
+    a.cargo.Dnz += centre_couple[2];
+  }
+}
+
+/// Closes the loops of a leg that has been eliminated down to the ground into the body they tie it
+/// to: r = JᵀΩ_L − W σ + d with the leg's W and d.
+template <class S, int Rows, bool Momentum>
+void LoopSweeps<Spatial, S, Rows, Momentum>::fold(std::size_t root, const RightSide<S>& right,
+                                                  Carried& leg) {
+  const auto onto = static_cast<std::size_t>(plan_->folded_onto[root]);
+  const LoopPlan::Range range = plan_->ground_closings_of[root];
+  leg.cargo = {};
+  for (Column& c : leg.blocks.C) c = {};
+  for (int i = range.first; i < range.last; ++i) {
+    const int loop = plan_->closings[static_cast<std::size_t>(i)];
+    const bool on_a = loops_->loops[static_cast<std::size_t>(loop)].a == static_cast<int>(onto);
+    enter(onto, {loop, on_a, false}, right, leg);
+  }
+  for (int i = range.first; i < range.last; ++i) {
+    const int loop = plan_->closings[static_cast<std::size_t>(i)];
+    close(loop, leg, right.fade);
+    const Loop& l = loops_->loops[static_cast<std::size_t>(loop)];
+    for (int row = 0; row < l.rows; ++row)
+      weak_leg_ |= has_faded(rows_[static_cast<std::size_t>(l.row + row)].kept);
+  }
+  add<Momentum>(legs_[onto], leg.cargo);
 }
 
 template <class S, int Rows, bool Momentum>
@@ -376,6 +420,7 @@ bool LoopSweeps<Spatial, S, Rows, Momentum>::inward(const In& r, const RightSide
       add<Momentum>(a.cargo, slot.cargo);
       a.blocks.add(slot.blocks);
     }
+    if (plan_->takes_legs[k]) add<Momentum>(a.cargo, legs_[k]);
     enter(k, right, a);
     const LoopPlan::Range closing = plan_->closings_of[k];
     for (int i = closing.first; i < closing.last; ++i)
@@ -386,7 +431,9 @@ bool LoopSweeps<Spatial, S, Rows, Momentum>::inward(const In& r, const RightSide
       stuck_ = static_cast<int>(k);
       return false;
     }
-    if (l.parent < 0) {
+    if (l.parent < 0 && plan_->folded_onto[k] >= 0) {
+      fold(k, right, a);
+    } else if (l.parent < 0) {
       ground.blocks.add_at_ground(a.blocks);
       const LoopPlan::Range last = plan_->ground_closings_of[k];
       for (int i = last.first; i < last.last; ++i)
@@ -634,10 +681,16 @@ void LoopSweeps<Spatial, S, Rows, Momentum>::outward(const In& q, const RightSid
   for (std::size_t k = 0; k < pins_.size(); ++k) {
     const Link& l = links[k];
     if (l.parent < 0) {
-      solve_loops(plan_->ground_closings_of[k], right, nullptr, at_ground, impulse);
       m.V = {};
       for (int i = 0; i < 3; ++i) m.g[i] = S(gravity[i]);
-      m.sigma = at_ground;
+      if (const int onto = plan_->folded_onto[k]; onto >= 0) {
+        m.sigma = {};
+        solve_loops(plan_->ground_closings_of[k], right, &taken_[static_cast<std::size_t>(onto)],
+                    m.sigma, impulse);
+      } else {
+        solve_loops(plan_->ground_closings_of[k], right, nullptr, at_ground, impulse);
+        m.sigma = at_ground;
+      }
     } else if (!l.first) {
       m = outward_slots_[static_cast<std::size_t>(links[static_cast<std::size_t>(l.parent)].slot)];
     }
@@ -649,6 +702,7 @@ void LoopSweeps<Spatial, S, Rows, Momentum>::outward(const In& q, const RightSid
       any_outward(k, q, rates, m, u, rate);
     const LoopPlan::Range closed = plan_->closings_of[k];
     if (closed.first != closed.last) solve_loops(closed, right, &m.V, m.sigma, impulse);
+    if (plan_->takes_legs[k]) taken_[k] = m.V;
     if constexpr (Momentum)
       if (rates && plan_->posed[k]) {
         bodies_[k].v = bodies_[k].pose.axes * m.V.v;

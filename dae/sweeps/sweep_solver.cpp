@@ -1,6 +1,7 @@
 // The forms' right-hand sides from the sweeps that carry loops. Springs between points of bodies and
 // wrenches take a sweep of their own, where a scene has some.
 
+#include <momenta/dae/kkt/assembled_solver.h>
 #include <momenta/dae/sweeps/levels/loop_sweeps.h>
 #include <momenta/dae/sweeps/sweep_solver.h>
 
@@ -19,7 +20,8 @@ bool finite(const double* x, std::size_t n) {
 class SweepSolver final : public LoopSolver {
  public:
   SweepSolver(const Mechanism& mechanism, Evaluation<double>& e)
-      : e_(e),
+      : mechanism_(mechanism),
+        e_(e),
         sweeps_(mechanism.looped_sweeps()),
         has_body_forces_(mechanism.has_body_forces()),
         has_forces_(has_body_forces_ || mechanism.has_joint_forces()),
@@ -37,8 +39,10 @@ class SweepSolver final : public LoopSolver {
     right.fade = fade;
     right.leak = leak;
     right.rates = pdot != nullptr;
-    if (!noted(sweeps_->momentum(t, q, p, right, u, sigma, pdot))) return false;
     of_momentum_ = true;
+    if (!noted(sweeps_->momentum(t, q, p, right, u, sigma, pdot))) return false;
+    if (sweeps_->weak_leg())
+      return by_matrix().momentum(t, q, p, centre, fade, leak, u, sigma, pdot);
     if (pdot && has_body_forces_) {
       e_.body_forces(t, q, u, tau_.data());
       for (std::size_t i = 0; i < tau_.size(); ++i) pdot[i] += tau_[i];
@@ -56,9 +60,12 @@ class SweepSolver final : public LoopSolver {
     right.beta = beta;
     if (has_forces_) e_.applied_forces(t, q, u, tau_.data());
     of_momentum_ = false;
-    return noted(sweeps_->acceleration(t, q, u, has_forces_ ? tau_.data() : zero_.data(), right,
-                                       udot, lambda)) &&
-           finite(udot, zero_.size()) && finite(lambda, nu_.size());
+    if (!noted(sweeps_->acceleration(t, q, u, has_forces_ ? tau_.data() : zero_.data(), right, udot,
+                                     lambda)))
+      return false;
+    if (sweeps_->weak_leg())
+      return by_matrix().acceleration(t, q, u, centre, alpha, beta, udot, lambda);
+    return finite(udot, zero_.size()) && finite(lambda, nu_.size());
   }
 
   bool position_correction(double t, const double* q, double* delta) override {
@@ -67,8 +74,10 @@ class SweepSolver final : public LoopSolver {
     right.drives = false;
     right.positions = true;
     of_momentum_ = true;
-    return noted(sweeps_->momentum(t, q, zero_.data(), right, delta, nu_.data(), nullptr)) &&
-           finite(delta, zero_.size());
+    if (!noted(sweeps_->momentum(t, q, zero_.data(), right, delta, nu_.data(), nullptr)))
+      return false;
+    if (sweeps_->weak_leg()) return by_matrix().position_correction(t, q, delta);
+    return finite(delta, zero_.size());
   }
 
   const std::vector<int>& faded_rows() override {
@@ -78,6 +87,12 @@ class SweepSolver final : public LoopSolver {
   }
 
  private:
+  /// Where a folded leg loses rank its loops cannot close by themselves.
+  LoopSolver& by_matrix() {
+    if (!matrix_) matrix_ = make_assembled_solver(mechanism_, e_);
+    return *matrix_;
+  }
+
   bool noted(bool ok) {
     ++solutions_;
     stuck_ = -1;
@@ -85,7 +100,9 @@ class SweepSolver final : public LoopSolver {
     return ok;
   }
 
+  const Mechanism& mechanism_;
   Evaluation<double>& e_;
+  std::unique_ptr<LoopSolver> matrix_;
   std::unique_ptr<LoopedSweeps> sweeps_;
   bool has_body_forces_, has_forces_;
   std::vector<double> zero_, tau_, nu_;

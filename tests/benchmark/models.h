@@ -27,5 +27,9 @@ Scene spherical_chain(int n);
 Scene four_bar();
 /// N four-bars in a row, 2N + 1 rods, N loops.
 Scene n_four_bar(int n);
+/// A ladder of n pairs of crossed bars, 2n bars, n − 1 loops that reach over two pairs each.
+Scene scissor_ladder(int n);
+/// Six legs, each a universal and a prismatic joint, under a free platform on ball joints.
+Scene stewart(int);
 
 }  // namespace momenta::benchmark_models

@@ -33,6 +33,9 @@ std::unique_ptr<LoopedSweeps> make_looped_sweeps(const LinkTree& tree,
   return make(tree, loops, plan, level);
 }
 
+LoopModel<Spatial> in_link_frames(LoopModel<Spatial> loops, const LinkTree&) {
+  return loops;
+}
 LoopModel<Planar> in_link_frames(LoopModel<Planar> loops, const PlanarTree& tree) {
   const auto turn = [&](int body, Vec2<double>& v) {
     if (body < 0) return;

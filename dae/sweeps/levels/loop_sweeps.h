@@ -42,10 +42,25 @@ class LoopedSweeps {
   virtual int lanes() const = 0;
   virtual int width() const = 0;
   virtual int stuck() const = 0;
+  /// Whether the last solution of one state closed a folded leg on too weak a pivot: it is then
+  /// wrong.
+  virtual bool weak_leg() const = 0;
 };
 
-/// The same loops with points and axes in the frames of the links.
+/// The same loops with points and axes in the frames of the links. In space these are the model's.
 LoopModel<Planar> in_link_frames(LoopModel<Planar> loops, const PlanarTree& tree);
+LoopModel<Spatial> in_link_frames(LoopModel<Spatial> loops, const LinkTree& tree);
+
+/// The plan of a model's loops; in space legs may be folded.
+template <class Space>
+LoopPlan plan_loops(const Model<Space>& model, const LoopModel<Space>& loops) {
+  std::vector<int> parents;
+  for (const auto& b : model.bodies) parents.push_back(b.parent);
+  std::vector<LoopShape> shapes;
+  for (const auto& l : loops.loops)
+    shapes.push_back({l.a, l.b, l.rows, l.length == 0 && l.n_points == 2 && l.n_axes == 0});
+  return plan_loops(parents, shapes, Space::dimension == 6);
+}
 
 /// @pre `loops` in the frames of the links, level ≤ best_level(), plan.fits(); tree and plan stay where they are.
 std::unique_ptr<LoopedSweeps> make_looped_sweeps(const PlanarTree& tree,

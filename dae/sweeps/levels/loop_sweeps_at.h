@@ -42,6 +42,7 @@ class LoopedSweepsAt final : public LoopedSweeps {
         momentum_(One(t), StateIn<One>{q, 1}, StateIn<One>{p, 1}, StateIn<One>{p, 1}, one(right),
                   StateOut<One>{u, 1}, StateOut<One>{sigma, 1}, StateOut<One>{pdot, 1});
     stuck_ = momentum_.stuck();
+    weak_leg_ = momentum_.weak_leg();
     return ok;
   }
   bool acceleration(double t, const double* q, const double* u, const double* tau,
@@ -51,6 +52,7 @@ class LoopedSweepsAt final : public LoopedSweeps {
         sweeps(One(t), StateIn<One>{q, 1}, StateIn<One>{u, 1}, StateIn<One>{tau, 1}, one(right),
                StateOut<One>{udot, 1}, StateOut<One>{lambda, 1}, StateOut<One>{udot, 1});
     stuck_ = sweeps.stuck();
+    weak_leg_ = sweeps.weak_leg();
     return ok;
   }
   bool momentum(double t, const LoopedStates& s, double fade, double leak) override {
@@ -87,6 +89,7 @@ class LoopedSweepsAt final : public LoopedSweeps {
   int lanes() const override { return Rows; }
   int width() const override { return native_width<Level>; }
   int stuck() const override { return stuck_; }
+  bool weak_leg() const override { return weak_leg_; }
 
  private:
   static RightSide<One> one(const RightSide<double>& right) {
@@ -145,6 +148,7 @@ class LoopedSweepsAt final : public LoopedSweeps {
   std::unique_ptr<LoopSweeps<Space, Many, Rows, true>> many_;
   std::vector<One> padded_;
   int stuck_ = -1;
+  bool weak_leg_ = false;
 };
 
 /// The narrowest fronts that hold the plan's lanes.
