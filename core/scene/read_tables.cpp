@@ -176,10 +176,13 @@ LoopSpec read_loop(const Fields& table) {
                  "belongs to a [[joint]], expected none on a loop (a loop has no coordinates)");
   if (!has_axis(loop.kind))
     table.refuse("axis",
-                 "has no meaning for a " + kind + " loop, expected on revolute and prismatic only");
+                 "has no meaning for a " + kind + " loop, expected on revolute, prismatic, "
+                 "universal, cylindrical and planar only");
+  if (loop.kind != LoopKind::universal)
+    table.refuse("axis2", "has no meaning for a " + kind + " loop, expected on universal only");
   if (loop.kind != LoopKind::distance)
     table.refuse("length", "has no meaning for a " + kind + " loop, expected on distance only");
-  table.allow({"name", "kind", "parent", "child", "origin", "rotation", "axis", "length"});
+  table.allow({"name", "kind", "parent", "child", "origin", "rotation", "axis", "axis2", "length"});
 
   loop.name = table.text("name");
   loop.parent = table.text("parent", loop.parent);
@@ -189,6 +192,9 @@ LoopSpec read_loop(const Fields& table) {
   loop.origin_child = origins.child;
   loop.rotation = read_rotation(table);
   loop.axis = table.direction("axis", loop.axis);
+  loop.axis2 = table.direction("axis2", loop.axis2);
+  if (table.has("axis2") && loop.axis.cross(loop.axis2).norm() < parallel_slack)
+    table.fail_key("axis2", "is parallel to axis, expected another direction");
   if (loop.kind == LoopKind::distance) loop.length = table.number("length", {"m", Bound::positive});
   return loop;
 }

@@ -114,12 +114,25 @@ int rates_of(const JointSpec& joint);
 /// So x for an axis along z, y for one along x, z for one along y.
 Eigen::Vector3d perpendicular_to(const Eigen::Vector3d& axis);
 
-enum class LoopKind { point, revolute, spherical, weld, prismatic, distance };
+enum class LoopKind {
+  point,
+  revolute,
+  spherical,
+  weld,
+  prismatic,
+  distance,
+  universal,
+  cylindrical,
+  planar
+};
 
 /// A joint that closes a loop; the same keys as a joint, without coordinates and what acts on them.
 /// Its child is a body, its parent another one or "ground".
 ///   - `point` and `spherical` are the same three equations
 ///   - `distance` keeps |origin_parent − origin_child| = length
+///   - `universal` keeps the points together and `axis`, held by the parent, at its angle to
+///     `axis2`, held by the child
+///   - `planar` keeps the child's point in the plane across `axis`, and `axis` common
 struct LoopSpec {
   std::string name;
   LoopKind kind = LoopKind::point;
@@ -129,6 +142,8 @@ struct LoopSpec {
   Eigen::Vector3d origin_child = Eigen::Vector3d::Zero();
   Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
   Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
+  /// Universal: as of a joint; zero means perpendicular_to(axis).
+  Eigen::Vector3d axis2 = Eigen::Vector3d::Zero();
   double length = 0;  ///< distance [m]
   Location at;
 };

@@ -65,13 +65,13 @@ void check_edge(const Scene& scene, const Census& census, const Edge& edge,
 }
 
 /// `second` may be zero: not given. Sentences open with `what`.
-void check_second_direction(const Scene& scene, const JointSpec& joint,
-                            const Eigen::Vector3d& second, JointKind owner,
-                            const std::string& what) {
+template <class Edge, class Kind>
+void check_second_direction(const Scene& scene, const Edge& joint, const Eigen::Vector3d& second,
+                            Kind owner, const std::string& what) {
   if (second == Eigen::Vector3d::Zero()) return;
   if (joint.kind != owner)
     throw SceneError(scene.where(joint.at) + what + " is for " + std::string(name_of(owner)) +
-                     " joints only");
+                     (std::is_same_v<Kind, LoopKind> ? " loops only" : " joints only"));
   if (!(std::abs(second.norm() - 1) <= reading::norm_slack))
     throw SceneError(scene.where(joint.at) + what +
                      " must be a unit vector within 1e-6, or zero for the default");
@@ -152,6 +152,7 @@ void check_loops(const Scene& scene, const Census& census) {
     check_edge(scene, census, loop, who);
     require(std::isfinite(loop.length) && (loop.kind != LoopKind::distance || loop.length > 0),
             scene, loop.at, who, "length must be finite and > 0 [m]");
+    check_second_direction(scene, loop, loop.axis2, LoopKind::universal, who + ": axis2");
   }
 }
 

@@ -1,3 +1,4 @@
+#include <momenta/core/scene/kinds.h>
 #include <momenta/dae/loop/loop_model.h>
 
 #include <cmath>
@@ -7,23 +8,26 @@ namespace {
 
 /// The loop's frame with `axis` third, in the joint frame of the scene: columns e1, e2, e3.
 Eigen::Matrix3d axes_of(const LoopSpec& loop) {
-  const bool has_axis = loop.kind == LoopKind::revolute || loop.kind == LoopKind::prismatic;
-  if (!has_axis) return Eigen::Matrix3d::Identity();
+  if (!reading::has_axis(loop.kind)) return Eigen::Matrix3d::Identity();
   return Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), loop.axis).toRotationMatrix();
 }
 
 /// The rows of a kind in space.
 template <class Loop>
 void choose_rows(LoopKind kind, Loop& l) {
-  const bool slides = kind == LoopKind::prismatic;
-  l.n_points = slides ? 2 : 3;
-  l.points = {0, 1, 2};
-  if (kind == LoopKind::revolute) {
+  const bool slides = kind == LoopKind::prismatic || kind == LoopKind::cylindrical;
+  const bool floats = kind == LoopKind::planar;
+  l.n_points = floats ? 1 : slides ? 2 : 3;
+  l.points = {floats ? 2 : 0, 1, 2};
+  if (kind == LoopKind::revolute || kind == LoopKind::cylindrical || floats) {
     l.n_axes = 2;
     l.axes = {{{2, 0}, {2, 1}, {0, 0}}};
-  } else if (kind == LoopKind::weld || slides) {
+  } else if (kind == LoopKind::weld || kind == LoopKind::prismatic) {
     l.n_axes = 3;
     l.axes = {{{0, 1}, {1, 2}, {2, 0}}};
+  } else if (kind == LoopKind::universal) {
+    l.n_axes = 1;
+    l.axes = {{{0, 2}, {0, 0}, {0, 0}}};
   }
   l.rows = l.n_points + l.n_axes;
 }
@@ -56,6 +60,13 @@ LoopModel<Spatial> build_loops(const Scene& scene, const Tree& tree, const Model
       l.rows = 1;
     } else {
       choose_rows(spec.kind, l);
+    }
+    if (spec.kind == LoopKind::universal) {
+      const Eigen::Vector3d axis = spec.axis.normalized();
+      const Eigen::Vector3d second =
+          spec.axis2.isZero() ? perpendicular_to(axis) : spec.axis2.normalized();
+      l.axis_a[0] = model.direction(l.a, tree.direction(l.a, second));
+      l.gamma = axis.dot(second);
     }
     l.row = all.rows;
     all.rows += l.rows;
@@ -153,6 +164,9 @@ std::string loops_leave_plane(const Scene& scene, const Tree& tree, const Eigen:
       return "loop '" + spec.name + "' slides out of the plane of the joints";
     if (spec.kind == LoopKind::weld && sides_differ)
       return "loop '" + spec.name + "' is welded out of the plane";
+    if (spec.kind == LoopKind::universal || spec.kind == LoopKind::cylindrical ||
+        spec.kind == LoopKind::planar)
+      return "loop '" + spec.name + "' is of a kind that only space has";
   }
   return "";
 }
@@ -175,8 +189,16 @@ std::vector<RowName> row_names(const Scene& scene, bool planar) {
       if (locked) add("angle");
       continue;
     }
-    for (std::size_t i = 0; i < (slides ? 2u : 3u); ++i) add(point[i]);
-    if (spec.kind == LoopKind::revolute) {
+    if (spec.kind == LoopKind::planar) {
+      add(point[2]);
+    } else {
+      for (std::size_t i = 0; i < (slides || spec.kind == LoopKind::cylindrical ? 2u : 3u); ++i)
+        add(point[i]);
+    }
+    if (spec.kind == LoopKind::universal) {
+      add("second axis against axis 3");
+    } else if (spec.kind == LoopKind::revolute || spec.kind == LoopKind::cylindrical ||
+               spec.kind == LoopKind::planar) {
       add("axis 3 against axis 1");
       add("axis 3 against axis 2");
     } else if (locked) {

@@ -5,12 +5,13 @@
 // Body A is the loop's child, B its parent; b_j are axes fixed in B, a_i axes fixed in A; D = x_A −
 // x_B.
 //   D_j    b_j · D                      point on a plane through x_B
-//   O_ij   a_i · b_j                    two axes at a right angle
+//   O_ij   a_i · b_j − γ                two axes at a fixed angle, mostly a right one
 //   L      (D · D − l²) / (2 l)         distance, in metres
 //
 //   point, spherical  D1 D2 D3          revolute about axis 3   D1 D2 D3, O31 O32
 //   weld              D1 D2 D3, O12 O23 O31      prismatic along axis 3   D1 D2, O12 O23 O31
-//   distance          L
+//   universal, axes b_3, a_1  D1 D2 D3, O13          cylindrical along axis 3   D1 D2, O31 O32
+//   planar across axis 3      D3, O31 O32            distance                   L
 // In a plane: point, spherical, revolute D1 D2; weld D1 D2 O12; prismatic D (across), O12; distance
 // L.
 
@@ -35,6 +36,7 @@ struct LoopModel {
     int n_points = 0;
     std::array<std::pair<int, int>, 3> axes{};  ///< (i, j) of the O_ij rows
     int n_axes = 0;
+    double gamma = 0;    ///< universal: cosine of the angle between the two axes
     double length = 0;   ///< distance loops; then the only row
     double across2 = 0;  ///< squared distance across the plane of a planar scene
   };

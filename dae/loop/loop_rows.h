@@ -69,8 +69,8 @@ class LoopRows {
   /// Φ (m)
   void positions(S* phi) const {
     each_row([&](int row, const auto&, const At& s, const Vector& b) { phi[row] = dot(b, s.D); },
-             [&](int row, const auto&, const At&, const Vector& a, const Vector& b) {
-               phi[row] = dot(a, b);
+             [&](int row, const auto& l, const At&, const Vector& a, const Vector& b) {
+               phi[row] = dot(a, b) - l.gamma;
              },
              [&](int row, const auto& l, const At& s) {
                phi[row] = (dot(s.D, s.D) + (l.across2 - l.length * l.length)) * (0.5 / l.length);

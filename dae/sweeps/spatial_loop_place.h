@@ -61,7 +61,7 @@ struct SpatialLoopPlace {
     if (l.length > 0) return (dot(gap, gap) - S(l.length * l.length)) * (0.5 / l.length);
     if (row < l.n_points) return dot(F[row], gap);
     const auto [x, y] = l.axes[static_cast<std::size_t>(row - l.n_points)];
-    return dot(a[x], b[y]);
+    return dot(a[x], b[y]) - l.gamma;
   }
 
   /// Velocities of x_A on A and of the points of B at x_A and at x_B.

@@ -50,7 +50,8 @@ class DenseLoops {
       }
       for (const std::size_t j : l.points) phi.push_back(inner(axes_b * raised<S>(l.b[j]), gap));
       for (const auto& [i, j] : l.axes)
-        phi.push_back(inner(axes_a * raised<S>(l.a[i]), axes_b * raised<S>(l.b[j])));
+        phi.push_back(inner(axes_a * raised<S>(l.a[i]), axes_b * raised<S>(l.b[j])) -
+                      lift<S>(l.cosine));
     }
     return phi;
   }
@@ -128,6 +129,7 @@ class DenseLoops {
     std::array<Triple<Real>, 3> a, b;  ///< axes in the scene's axes of child and parent
     List<std::size_t> points;
     List<std::pair<std::size_t, std::size_t>> axes;
+    Real cosine = 0;  ///< between the axes of a universal loop
   };
 
   template <class Spec>
@@ -152,9 +154,11 @@ class DenseLoops {
 
   /// Third axis along the joint's, by the shortest turn from z; the child's axes as at zero.
   static Loop spatial(const LoopSpec& spec) {
-    Loop l{&spec, {}, {}, {0, 1, 2}, {}};
+    Loop l{&spec, {}, {}, {0, 1, 2}, {}, 0};
     Rotation<Real> e = from_quaternion(Real(1), Triple<Real>{});
-    if (spec.kind == LoopKind::revolute || spec.kind == LoopKind::prismatic) {
+    if (spec.kind == LoopKind::revolute || spec.kind == LoopKind::prismatic ||
+        spec.kind == LoopKind::universal || spec.kind == LoopKind::cylindrical ||
+        spec.kind == LoopKind::planar) {
       const Triple<Real> axis = unit(spec.axis), z{0, 0, 1};
       e = from_quaternion(1 + inner(z, axis), outer(z, axis));
     }
@@ -163,8 +167,16 @@ class DenseLoops {
       l.a[i] = child[i];
       l.b[i] = parent[i];
     }
-    if (spec.kind == LoopKind::prismatic) l.points = {0, 1};
-    if (spec.kind == LoopKind::revolute) l.axes = {{2, 0}, {2, 1}};
+    if (spec.kind == LoopKind::prismatic || spec.kind == LoopKind::cylindrical) l.points = {0, 1};
+    if (spec.kind == LoopKind::planar) l.points = {2};
+    if (spec.kind == LoopKind::revolute || spec.kind == LoopKind::cylindrical ||
+        spec.kind == LoopKind::planar)
+      l.axes = {{2, 0}, {2, 1}};
+    if (spec.kind == LoopKind::universal) {
+      l.a[0] = unit(spec.axis2);
+      l.axes = {{0, 2}};
+      l.cosine = inner(unit(spec.axis), unit(spec.axis2));
+    }
     if (spec.kind == LoopKind::prismatic || spec.kind == LoopKind::weld)
       l.axes = {{0, 1}, {1, 2}, {2, 0}};
     return l;
@@ -173,7 +185,7 @@ class DenseLoops {
   /// First axis along e1, or along the slide, both bodies at joint position zero.
   static Loop planar(const LoopSpec& spec, const Eigen::Matrix3d& plane,
                      const std::map<std::string, Rotation<Real>>& at_zero) {
-    Loop l{&spec, {}, {}, {0, 1}, {}};
+    Loop l{&spec, {}, {}, {0, 1}, {}, 0};
     const Rotation<Real> parent = at_zero.at(spec.parent);
     const Rotation<Real> joint = product(parent, turn_of(spec));
     const bool slides = spec.kind == LoopKind::prismatic;

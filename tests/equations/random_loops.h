@@ -6,8 +6,14 @@
 
 namespace momenta::equations {
 
-inline constexpr std::array loop_kinds{LoopKind::point, LoopKind::revolute,  LoopKind::spherical,
-                                       LoopKind::weld,  LoopKind::prismatic, LoopKind::distance};
+/// Those a plane knows, and all.
+inline constexpr std::array planar_loop_kinds{LoopKind::point,     LoopKind::revolute,
+                                              LoopKind::spherical, LoopKind::weld,
+                                              LoopKind::prismatic, LoopKind::distance};
+inline constexpr std::array loop_kinds{
+    LoopKind::point,     LoopKind::revolute, LoopKind::spherical, LoopKind::weld,
+    LoopKind::prismatic, LoopKind::distance, LoopKind::universal, LoopKind::cylindrical,
+    LoopKind::planar};
 
 inline LoopSpec random_loop(RandomTree& random, const Scene& scene, LoopKind kind) {
   LoopSpec l;
@@ -22,6 +28,11 @@ inline LoopSpec random_loop(RandomTree& random, const Scene& scene, LoopKind kin
   l.origin_parent = random.vector(0.6);
   l.rotation = random.turn();
   l.axis = random.direction();
+  if (kind == LoopKind::universal) {
+    // At any angle but a small one to the axis.
+    const Eigen::Vector3d across = l.axis.unitOrthogonal();
+    l.axis2 = Eigen::AngleAxisd(random.uniform(-1, 1), across.cross(l.axis)) * across;
+  }
   if (kind == LoopKind::distance) l.length = random.uniform(0.8, 1.5);
   return l;
 }

@@ -353,7 +353,8 @@ TEST(Scene, LoopKinds) {
   const std::pair<const char*, LoopKind> kinds[] = {
       {"point", LoopKind::point},         {"revolute", LoopKind::revolute},
       {"spherical", LoopKind::spherical}, {"weld", LoopKind::weld},
-      {"prismatic", LoopKind::prismatic},
+      {"prismatic", LoopKind::prismatic}, {"universal", LoopKind::universal},
+      {"cylindrical", LoopKind::cylindrical}, {"planar", LoopKind::planar},
   };
   for (const auto& [name, kind] : kinds)
     EXPECT_EQ(

@@ -116,7 +116,8 @@ void sweep(const TreeRecipe& recipe, LoopKind kind, int trees, unsigned seed) {
     RandomTree random(seed + static_cast<unsigned>(i));
     Scene scene = random.scene(recipe);
     scene.loops.push_back(random_loop(random, scene, kind));
-    scene.loops.push_back(random_loop(random, scene, loop_kinds[static_cast<std::size_t>(i) % 6]));
+    scene.loops.push_back(
+        random_loop(random, scene, loop_kinds[static_cast<std::size_t>(i) % loop_kinds.size()]));
     const Mechanism mechanism(scene, {.algebra = Algebra::spatial});
     compare(mechanism, random, worst);
     if (testing::Test::HasFatalFailure()) return;
@@ -216,11 +217,12 @@ TEST_P(PlanarLoopRows, AgreeWithSpace) {
 }
 
 std::string kind_name(const testing::TestParamInfo<LoopKind>& info) {
-  constexpr std::array names{"point", "revolute", "spherical", "weld", "prismatic", "distance"};
+  constexpr std::array names{"point",    "revolute",  "spherical",   "weld",  "prismatic",
+                             "distance", "universal", "cylindrical", "planar"};
   return names[static_cast<std::size_t>(info.index)];
 }
 INSTANTIATE_TEST_SUITE_P(Kinds, LoopRows, testing::ValuesIn(loop_kinds), kind_name);
-INSTANTIATE_TEST_SUITE_P(Kinds, PlanarLoopRows, testing::ValuesIn(loop_kinds), kind_name);
+INSTANTIATE_TEST_SUITE_P(Kinds, PlanarLoopRows, testing::ValuesIn(planar_loop_kinds), kind_name);
 
 }  // namespace
 }  // namespace momenta

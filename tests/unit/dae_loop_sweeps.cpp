@@ -1,6 +1,6 @@
-// Loops carried by the sweeps against the assembled matrix: momentum and acceleration form, position
-// correction, every joint and loop kind, open and closed loops, in the plane and in space, at every
-// instruction level.
+// Loops carried by the sweeps against the assembled matrix: momentum and acceleration form,
+// position correction, every joint and loop kind, open and closed loops, in the plane and in space,
+// at every instruction level.
 
 #include "equations/linkages.h"
 #include "equations/random_loops.h"
@@ -11,6 +11,7 @@
 #include <momenta/dae/sweeps/sweep_solver.h>
 
 #include <Eigen/Dense>
+#include <numbers>
 
 namespace momenta {
 namespace {
@@ -36,7 +37,8 @@ Conditions conditions(const Mechanism& mechanism, Evaluation<double>& e) {
   for (std::size_t i = 0; i < pattern.constraint.size(); ++i)
     J(pattern.constraint[i].row, pattern.constraint[i].column) = values[i];
   const VectorXd masses = M.selfadjointView<Eigen::Lower>().eigenvalues();
-  const VectorXd loops = MatrixXd(M.llt().matrixL().solve(J.transpose())).jacobiSvd().singularValues();
+  const VectorXd loops =
+      MatrixXd(M.llt().matrixL().solve(J.transpose())).jacobiSvd().singularValues();
   return {masses.maxCoeff() / masses.minCoeff(),
           loops.size() > 0 && loops.minCoeff() > 0 ? loops.maxCoeff() / loops.minCoeff() : 1e300};
 }
@@ -44,8 +46,8 @@ Conditions conditions(const Mechanism& mechanism, Evaluation<double>& e) {
 struct Result {
   VectorXd u, sigma, pdot, udot, lambda, delta;
 };
-Result solved(LoopSolver& solver, const Mechanism& mechanism, const TreeState& s,
-              const VectorXd& p, const VectorXd& centre) {
+Result solved(LoopSolver& solver, const Mechanism& mechanism, const TreeState& s, const VectorXd& p,
+              const VectorXd& centre) {
   const int nv = mechanism.nv(), m = mechanism.m();
   Result r{VectorXd(nv), VectorXd(m), VectorXd(nv), VectorXd(nv), VectorXd(m), VectorXd(nv)};
   EXPECT_TRUE(solver.momentum(s.t, s.q.data(), p.data(), centre.data(), fade_evaluation, 0.7,
@@ -81,7 +83,8 @@ void compare(const Scene& scene, RandomTree& random, const MechanismOptions& opt
   const auto own = mechanism.evaluation<double>();
   const auto sweeps = make_sweep_solver(mechanism, *own);
   const auto assembled = make_assembled_solver(twin, *e);
-  const Result a = solved(*sweeps, mechanism, s, p, centre), b = solved(*assembled, twin, s, p, centre);
+  const Result a = solved(*sweeps, mechanism, s, p, centre),
+               b = solved(*assembled, twin, s, p, centre);
   const double growth = std::sqrt(c.of_mass) * c.of_loops * c.of_loops;
   const auto note = [&](double& to, const VectorXd& x, const VectorXd& y) {
     to = std::max(to, relative_error(x, y) / growth);
@@ -96,7 +99,6 @@ void compare(const Scene& scene, RandomTree& random, const MechanismOptions& opt
 
 void expect_rounding(const Worst& w, int bodies) {
   const double tolerance = algebra_tol(bodies);
-  std::cerr << w.tried << " " << w.u << " " << w.sigma << " " << w.pdot << " " << w.udot << " " << w.lambda << " " << w.delta << "\n";
   EXPECT_LT(w.u, tolerance);
   EXPECT_LT(w.sigma, tolerance);
   EXPECT_LT(w.pdot, tolerance);
@@ -130,7 +132,8 @@ TEST(LoopSweeps, AgreeWithTheAssembledMatrixInThePlane) {
     const Eigen::Vector3d normal = plane.basis->col(2);
     for (unsigned i = 0; i < 1 + seed % 3; ++i) {
       LoopSpec l = into_plane(
-          random, scene, random_loop(random, scene, loop_kinds[(seed + i) % loop_kinds.size()]),
+          random, scene,
+          random_loop(random, scene, planar_loop_kinds[(seed + i) % planar_loop_kinds.size()]),
           normal);
       level(l, scene, tree, normal);
       scene.loops.push_back(l);
@@ -139,6 +142,149 @@ TEST(LoopSweeps, AgreeWithTheAssembledMatrixInThePlane) {
   }
   EXPECT_GT(worst.tried, 80);
   expect_rounding(worst, 10);
+}
+
+/// Error of u from p = M u₀ + Φ_qᵀσ with u₀ on the branch: `delta` rad away from the flat pose
+/// where a row of four-bars loses rank, σ of order one.
+double error_near_flat(const Scene& scene, Algebra algebra, double fade, bool centred) {
+  const Mechanism mechanism(scene, {.algebra = algebra, .kkt = KktChoice::sweeps});
+  const auto e = mechanism.evaluation<double>();
+  const VectorXd& q = mechanism.tree().q0;
+  const VectorXd& u0 = mechanism.tree().u0;
+  const VectorXd sigma = VectorXd::LinSpaced(mechanism.m(), 0.6, -0.9);
+  VectorXd p(mechanism.nv()), u(mechanism.nv()), found(mechanism.m());
+  e->place(0, q.data());
+  e->move(u0.data());
+  e->momenta(sigma.data(), p.data());
+  const auto solver = make_sweep_solver(mechanism, *e);
+  EXPECT_TRUE(solver->momentum(0, q.data(), p.data(), centred ? sigma.data() : nullptr, fade, 0,
+                               u.data(), found.data(), nullptr));
+  return (u - u0).cwiseAbs().maxCoeff();
+}
+
+std::vector<double> orientations() {
+  std::vector<double> all{0};
+  for (double small = 1e-8; small < 2e-2; small *= 10) all.push_back(small);
+  for (const double corner : {std::numbers::pi / 4, std::numbers::pi / 2})
+    all.insert(all.end(), {corner - 1e-4, corner, corner + 1e-7});
+  for (int i = 0; i < 11; ++i) all.push_back(0.1 + 0.29 * i);
+  return all;
+}
+
+// Both filters: the sharp one that fades towards zero, and the default one towards the centre.
+TEST(LoopSweeps, NearlyFlatRowsInEveryOrientation) {
+  const auto axis = Eigen::Vector3d::UnitZ();
+  for (const int n : {1, 2, 40})
+    for (const auto& [delta, bound] :
+         {std::pair{1e-2, 1e-12}, std::pair{1e-3, 1e-11}, std::pair{1e-4, 1e-10},
+          std::pair{1e-5, 1e-9}, std::pair{1e-6, 1e-8}, std::pair{1e-7, 1.5e-7},
+          std::pair{1e-8, 1e-7}, std::pair{1e-9, 1e-7}, std::pair{0.0, 1e-12}}) {
+      double sharp = 0, centred = 0;
+      for (const double angle : orientations()) {
+        const Scene scene = turned(row_of_four_bars(n, delta, 1),
+                                   Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis)));
+        sharp = std::max(sharp, error_near_flat(scene, Algebra::planar, 1e-14, false));
+        centred = std::max(centred, error_near_flat(scene, Algebra::planar, fade_evaluation, true));
+      }
+      EXPECT_LT(sharp, bound) << n << " at " << delta;
+      EXPECT_LT(centred, bound) << n << " at " << delta;
+    }
+}
+
+TEST(LoopSweeps, NearlyFlatRowsTurnedInSpace) {
+  for (const int n : {1, 2, 40})
+    for (const auto& [delta, bound] :
+         {std::pair{1e-2, 1e-11}, std::pair{1e-4, 1e-9}, std::pair{1e-5, 1e-8},
+          std::pair{1e-6, 1e-7}, std::pair{1e-8, 1e-7}, std::pair{0.0, 1e-12}}) {
+      double worst = 0;
+      for (unsigned seed = 0; seed < 25; ++seed) {
+        RandomTree random(seed);
+        worst =
+            std::max(worst, error_near_flat(turned(row_of_four_bars(n, delta, 1), random.turn()),
+                                            Algebra::spatial, fade_evaluation, true));
+      }
+      EXPECT_LT(worst, bound) << n << " at " << delta;
+    }
+}
+
+/// Redundant rows: u and the loops' wrenches are those of least squares, the dense twin's.
+TEST(LoopSweeps, RedundantRows) {
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    RandomTree random(seed);
+    const Eigen::Quaterniond r = seed == 0 ? Eigen::Quaterniond::Identity() : random.turn();
+    Scene doubled = row_of_four_bars(2, 1.1);  // two connects on one pair of bodies
+    doubled.loops.push_back(doubled.loops.front());
+    doubled.loops.back().name = "again";
+    for (const Scene& scene : {row_of_four_bars(3, 0.8), bricard(), doubled}) {
+      const Scene there = turned(scene, r);
+      const Mechanism mechanism(there, {.algebra = Algebra::spatial, .kkt = KktChoice::sweeps}),
+          twin(there, {.algebra = Algebra::spatial, .kkt = KktChoice::dense});
+      const auto e = mechanism.evaluation<double>();
+      const VectorXd& q = mechanism.tree().q0;
+      VectorXd p(mechanism.nv()), centre(mechanism.m());
+      for (double& x : p) x = random.uniform(-2, 2);
+      for (double& x : centre) x = random.uniform(-2, 2);
+      const auto sweeps = make_sweep_solver(mechanism, *e), dense = make_assembled_solver(twin, *e);
+      VectorXd u[2], w[2], sigma(mechanism.m());
+      std::size_t faded[2];
+      for (int i = 0; i < 2; ++i) {
+        auto& solver = i == 0 ? *sweeps : *dense;
+        u[i].resize(mechanism.nv());
+        w[i].resize(mechanism.nv());
+        EXPECT_TRUE(solver.momentum(0, q.data(), p.data(), centre.data(), fade_evaluation, 0,
+                                    u[i].data(), sigma.data(), nullptr));
+        EXPECT_LT(sigma.norm(), 1000.0);
+        faded[i] = solver.faded_rows().size();
+        e->place(0, q.data());
+        e->constraint_forces(sigma.data(), w[i].data());
+      }
+      EXPECT_EQ(faded[0], faded[1]) << there.name;
+      EXPECT_LT(relative_error(u[0], u[1]), 1e-13) << there.name;
+      EXPECT_LT(relative_error(w[0], w[1]), 1e-12) << there.name;
+    }
+  }
+}
+
+/// Every level computes the same, and a batch what single states do.
+TEST(LoopSweeps, LevelsAndBatchesAgree) {
+  for (unsigned seed = 0; seed < 40; ++seed) {
+    RandomTree random(seed);
+    const bool planar = seed % 2 == 0;
+    Scene scene =
+        planar ? row_of_four_bars(2, 1.1) : random.scene({.bodies = 6, .body_forces = false});
+    if (!planar) scene.loops.push_back(random_loop(random, scene, LoopKind::point));
+    const Mechanism mechanism(scene);
+    if (mechanism.m() == 0 || mechanism.kkt() != KktChoice::sweeps) continue;
+    const int count = 11, nq = mechanism.nq(), nv = mechanism.nv(), m = mechanism.m();
+    using States = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+    States q(nq, count), p(nv, count), u(nv, count), pdot(nv, count), sigma(m, count);
+    for (int i = 0; i < count; ++i) {
+      q.col(i) = random.state(mechanism.tree()).q;
+      for (int k = 0; k < nv; ++k) p(k, i) = random.uniform(-2, 2);
+    }
+    RightSide<double> right;
+    right.fade = fade_evaluation;
+    right.leak = 0.5;
+    right.rates = true;
+    for (const int level : {1, 3, 4}) {
+      if (level > best_level()) continue;
+      const auto sweeps = mechanism.looped_sweeps(level);
+      EXPECT_TRUE(sweeps->momentum(0,
+                                   {q.data(), p.data(), u.data(), sigma.data(), pdot.data(), count,
+                                    static_cast<std::size_t>(count)},
+                                   right.fade, right.leak));
+      for (int i = 0; i < count; ++i) {
+        const VectorXd qi = q.col(i), pi = p.col(i);
+        VectorXd ui(nv), si(m), ri(nv);
+        EXPECT_TRUE(
+            sweeps->momentum(0, qi.data(), pi.data(), right, ui.data(), si.data(), ri.data()));
+        const double size = 1 + si.cwiseAbs().maxCoeff() + ui.cwiseAbs().maxCoeff();
+        EXPECT_LT(relative_error(VectorXd(u.col(i)), ui), 1e-10 * size) << level;
+        EXPECT_LT(relative_error(VectorXd(sigma.col(i)), si), 1e-9 * size) << level;
+        EXPECT_LT(relative_error(VectorXd(pdot.col(i)), ri), 1e-9 * size) << level;
+      }
+    }
+  }
 }
 
 }  // namespace
