@@ -1,5 +1,4 @@
 #include <momenta/core/kernel/accelerations.h>
-#include <momenta/core/kernel/jacobian_pass.h>
 #include <momenta/core/kernel/levels/open_sweeps.h>
 #include <momenta/core/kernel/mass_matrix.h>
 #include <momenta/core/kernel/reactions.h>
@@ -39,8 +38,6 @@ struct Kernel {
   std::unique_ptr<Links> links;
   std::unique_ptr<OpenSweeps> sweeps;
   WhenAsked<ReactionPass<Space>> reactions;
-  WhenAsked<DirectionalPass<Space, 1>> along;
-  WhenAsked<DirectionalPass<Space, 8>> eight;
   Workspace<Space, double> w;
 };
 
@@ -137,6 +134,13 @@ struct OpenChain::Inside {
     return ok;
   }
 
+  /// What a call on one state left behind.
+  template <class K>
+  bool noted_one(K& k, bool ok) {
+    singular = ok ? -1 : k.sweeps->stuck();
+    failed_state = -1;
+    return ok;
+  }
   /// What a batch left behind.
   template <class K>
   bool noted(K& k, bool ok) {
@@ -251,29 +255,22 @@ bool OpenChain::jacobian_times(double t, const ConstVectorRef& q, const ConstVec
                                const ConstVectorRef& dq, const ConstVectorRef& dp, VectorRef dqdot,
                                VectorRef dpdot) {
   return inside_->visit([&](auto& kernel) {
-    auto& pass = kernel.along.get(*kernel.links);
-    pass.set(q.data(), p.data());
-    for (std::size_t i = 0; i < pass.q.size(); ++i) pass.q[i].b[0] = dq.data()[i];
-    for (std::size_t i = 0; i < pass.p.size(); ++i) pass.p[i].b[0] = dp.data()[i];
-    const bool ok = pass(t);
-    inside_->singular = ok ? -1 : pass.stuck();
-    if (!ok) return false;
-    for (std::size_t i = 0; i < pass.q.size(); ++i) dqdot.data()[i] = pass.qdot[i].b[0];
-    for (std::size_t i = 0; i < pass.p.size(); ++i) dpdot.data()[i] = pass.pdot[i].b[0];
-    return true;
+    return inside_->noted_one(
+        kernel, kernel.sweeps->derivative(t, q.data(), p.data(), dq.data(), dp.data(), dqdot.data(),
+                                          dpdot.data()));
   });
 }
 
-Eigen::MatrixXd OpenChain::jacobian(double t, const ConstVectorRef& q, const ConstVectorRef& p) {
+bool OpenChain::jacobian(double t, const ConstVectorRef& q, const ConstVectorRef& p, MatrixRef J) {
   return inside_->visit([&](auto& kernel) {
-    Eigen::MatrixXd J = Eigen::MatrixXd::Zero(nq() + nv(), nq() + nv());
-    if (!inside_->momentum(kernel, t, q.data(), p.data(), inside_->u.data(), inside_->p.data()))
-      return Eigen::MatrixXd();
-    momenta::jacobian(
-        kernel.eight.get(*kernel.links), *kernel.model, t, q.data(), p.data(),
-        [&](const double* x, double* y) { kernel.sweeps->inverse_mass_times(x, y); }, J);
-    return J;
+    return inside_->noted_one(
+        kernel, kernel.sweeps->jacobian(t, q.data(), p.data(), J.data(), J.outerStride()));
   });
+}
+Eigen::MatrixXd OpenChain::jacobian(double t, const ConstVectorRef& q, const ConstVectorRef& p) {
+  Eigen::MatrixXd J(nq() + nv(), nq() + nv());
+  if (!jacobian(t, q, p, J)) J.resize(0, 0);
+  return J;
 }
 
 bool OpenChain::velocities(double t, const ConstVectorRef& q, const ConstVectorRef& p,

@@ -19,6 +19,7 @@ namespace momenta {
 
 using ConstVectorRef = Eigen::Ref<const Eigen::VectorXd>;
 using VectorRef = Eigen::Ref<Eigen::VectorXd>;
+using MatrixRef = Eigen::Ref<Eigen::MatrixXd>;
 
 /// Many states side by side: one row a coordinate, one column a state, rows contiguous.
 using StateMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -72,13 +73,16 @@ class OpenChain {
   /// M⁻¹ x (nv), prescribed motion left out: eqs. (44), (45) without Ω_t. False as rates().
   bool inverse_mass_times(double t, const ConstVectorRef& q, const ConstVectorRef& x,
                           VectorRef result);
-  /// Derivative of (q̇, ṗ) along (δq, δp): one evaluation on dual numbers, about the cost of three
+  /// Derivative of (q̇, ṗ) along (δq, δp): one evaluation on dual numbers, about the cost of two
   /// plain ones. False as rates().
   bool jacobian_times(double t, const ConstVectorRef& q, const ConstVectorRef& p,
                       const ConstVectorRef& dq, const ConstVectorRef& dp, VectorRef dqdot,
                       VectorRef dpdot);
-  /// ∂(q̇, ṗ)/∂(q, p), (nq + nv)², exact to rounding; made of M⁻¹ and half the derivatives where
-  /// Hamilton's equations hold. Empty where rates() would be false.
+  /// ∂(q̇, ṗ)/∂(q, p) into J, (nq + nv)², exact to rounding: as many directions side by side as the
+  /// level has lanes; made of M⁻¹ and half the derivatives where Hamilton's equations hold on pins.
+  /// False as rates().
+  bool jacobian(double t, const ConstVectorRef& q, const ConstVectorRef& p, MatrixRef J);
+  /// The same as a new matrix, empty where rates() would be false.
   Eigen::MatrixXd jacobian(double t, const ConstVectorRef& q, const ConstVectorRef& p);
   /// u (nv) from p: eq. (45). False as rates().
   bool velocities(double t, const ConstVectorRef& q, const ConstVectorRef& p, VectorRef u);
