@@ -2,10 +2,12 @@
 #include <momenta/core/kernel/levels/open_sweeps.h>
 #include <momenta/core/kernel/mass_matrix.h>
 #include <momenta/core/kernel/reactions.h>
+#include <momenta/core/kernel/whole_sums.h>
 #include <momenta/core/open_chain.h>
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 #include <variant>
 
 namespace momenta {
@@ -96,19 +98,23 @@ struct OpenChain::Inside {
   Tree tree;
   Plan plan;
   std::variant<Kernel<Planar>, Kernel<Spatial>> kernel;
+  std::optional<Scene> flat;  ///< of a planar kernel: `in_space` is made of it when asked for
+  std::unique_ptr<WholeSweep> in_space;
   Eigen::VectorXd u, p;  // scratch, nv
   int singular = -1;
   Eigen::Index failed_state = -1;  ///< of the last batch
 
-  Inside(Tree t, Plan pl, const Scene& scene, int level)
+  Inside(Tree t, Plan pl, const Scene& from, int level)
       : tree(std::move(t)),
         plan(std::move(pl)),
         kernel(plan.planar
                    ? decltype(kernel)(
-                         Kernel<Planar>(build_planar_model(tree, scene, plan.basis), level))
-                   : decltype(kernel)(Kernel<Spatial>(build_spatial_model(tree, scene), level))),
+                         Kernel<Planar>(build_planar_model(tree, from, plan.basis), level))
+                   : decltype(kernel)(Kernel<Spatial>(build_spatial_model(tree, from), level))),
         u(tree.nv),
-        p(tree.nv) {}
+        p(tree.nv) {
+    if (plan.planar) flat = from;
+  }
 
   /// The momentum recursion and its third sweep.
   template <class K>
@@ -323,6 +329,19 @@ Energies OpenChain::energies(double t, const ConstVectorRef& q, const ConstVecto
     e.hamiltonian = inside_->p.dot(u) - e.kinetic + e.potential;
     return e;
   });
+}
+
+bool OpenChain::whole(double t, const ConstVectorRef& q, const ConstVectorRef& p, Whole& all) {
+  const double* u = inside_->u.data();
+  if (!velocities(t, q, p, inside_->u)) return false;
+  if (auto* in_space = std::get_if<Kernel<Spatial>>(&inside_->kernel)) {
+    all = whole_of(whole_sums(in_space->w, t, q.data(), u));
+    return true;
+  }
+  if (!inside_->in_space)
+    inside_->in_space = std::make_unique<WholeSweep>(inside_->tree, *inside_->flat);
+  all = (*inside_->in_space)(t, q.data(), u);
+  return true;
 }
 
 std::vector<Reaction> OpenChain::reactions(double t, const ConstVectorRef& q,

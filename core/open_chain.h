@@ -9,6 +9,7 @@
 // allocates unless it returns a matrix or a list.
 
 #include <momenta/core/plan.h>
+#include <momenta/core/whole.h>
 
 #include <Eigen/Core>
 #include <memory>
@@ -94,6 +95,9 @@ class OpenChain {
   void coordinate_rates(const ConstVectorRef& q, const ConstVectorRef& u, VectorRef qdot) const;
 
   Energies energies(double t, const ConstVectorRef& q, const ConstVectorRef& u);
+  /// Mass, centre of mass, linear and angular momentum of all bodies together, ground axes, from
+  /// (t, q, p): u of (45), then Σ M Ω with what drives prescribe. O(bodies). False as rates().
+  bool whole(double t, const ConstVectorRef& q, const ConstVectorRef& p, Whole& all);
   /// Joint reactions at (t, q, u) with the accelerations the dynamics gives: eq. (28), O(bodies).
   std::vector<Reaction> reactions(double t, const ConstVectorRef& q, const ConstVectorRef& u);
   /// M (nv × nv), dense, by composite inertias.
