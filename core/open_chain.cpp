@@ -1,12 +1,13 @@
 #include <momenta/core/kernel/accelerations.h>
-#include <momenta/core/kernel/jacobian_pass.h>
 #include <momenta/core/kernel/levels/open_sweeps.h>
 #include <momenta/core/kernel/mass_matrix.h>
 #include <momenta/core/kernel/reactions.h>
+#include <momenta/core/kernel/whole_sums.h>
 #include <momenta/core/open_chain.h>
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 #include <variant>
 
 namespace momenta {
@@ -39,8 +40,6 @@ struct Kernel {
   std::unique_ptr<Links> links;
   std::unique_ptr<OpenSweeps> sweeps;
   WhenAsked<ReactionPass<Space>> reactions;
-  WhenAsked<DirectionalPass<Space, 1>> along;
-  WhenAsked<DirectionalPass<Space, 8>> eight;
   Workspace<Space, double> w;
 };
 
@@ -99,19 +98,23 @@ struct OpenChain::Inside {
   Tree tree;
   Plan plan;
   std::variant<Kernel<Planar>, Kernel<Spatial>> kernel;
+  std::optional<Scene> flat;  ///< of a planar kernel: `in_space` is made of it when asked for
+  std::unique_ptr<WholeSweep> in_space;
   Eigen::VectorXd u, p;  // scratch, nv
   int singular = -1;
   Eigen::Index failed_state = -1;  ///< of the last batch
 
-  Inside(Tree t, Plan pl, const Scene& scene, int level)
+  Inside(Tree t, Plan pl, const Scene& from, int level)
       : tree(std::move(t)),
         plan(std::move(pl)),
         kernel(plan.planar
                    ? decltype(kernel)(
-                         Kernel<Planar>(build_planar_model(tree, scene, plan.basis), level))
-                   : decltype(kernel)(Kernel<Spatial>(build_spatial_model(tree, scene), level))),
+                         Kernel<Planar>(build_planar_model(tree, from, plan.basis), level))
+                   : decltype(kernel)(Kernel<Spatial>(build_spatial_model(tree, from), level))),
         u(tree.nv),
-        p(tree.nv) {}
+        p(tree.nv) {
+    if (plan.planar) flat = from;
+  }
 
   /// The momentum recursion and its third sweep.
   template <class K>
@@ -137,6 +140,13 @@ struct OpenChain::Inside {
     return ok;
   }
 
+  /// What a call on one state left behind.
+  template <class K>
+  bool noted_one(K& k, bool ok) {
+    singular = ok ? -1 : k.sweeps->stuck();
+    failed_state = -1;
+    return ok;
+  }
   /// What a batch left behind.
   template <class K>
   bool noted(K& k, bool ok) {
@@ -251,29 +261,22 @@ bool OpenChain::jacobian_times(double t, const ConstVectorRef& q, const ConstVec
                                const ConstVectorRef& dq, const ConstVectorRef& dp, VectorRef dqdot,
                                VectorRef dpdot) {
   return inside_->visit([&](auto& kernel) {
-    auto& pass = kernel.along.get(*kernel.links);
-    pass.set(q.data(), p.data());
-    for (std::size_t i = 0; i < pass.q.size(); ++i) pass.q[i].b[0] = dq.data()[i];
-    for (std::size_t i = 0; i < pass.p.size(); ++i) pass.p[i].b[0] = dp.data()[i];
-    const bool ok = pass(t);
-    inside_->singular = ok ? -1 : pass.stuck();
-    if (!ok) return false;
-    for (std::size_t i = 0; i < pass.q.size(); ++i) dqdot.data()[i] = pass.qdot[i].b[0];
-    for (std::size_t i = 0; i < pass.p.size(); ++i) dpdot.data()[i] = pass.pdot[i].b[0];
-    return true;
+    return inside_->noted_one(
+        kernel, kernel.sweeps->derivative(t, q.data(), p.data(), dq.data(), dp.data(), dqdot.data(),
+                                          dpdot.data()));
   });
 }
 
-Eigen::MatrixXd OpenChain::jacobian(double t, const ConstVectorRef& q, const ConstVectorRef& p) {
+bool OpenChain::jacobian(double t, const ConstVectorRef& q, const ConstVectorRef& p, MatrixRef J) {
   return inside_->visit([&](auto& kernel) {
-    Eigen::MatrixXd J = Eigen::MatrixXd::Zero(nq() + nv(), nq() + nv());
-    if (!inside_->momentum(kernel, t, q.data(), p.data(), inside_->u.data(), inside_->p.data()))
-      return Eigen::MatrixXd();
-    momenta::jacobian(
-        kernel.eight.get(*kernel.links), *kernel.model, t, q.data(), p.data(),
-        [&](const double* x, double* y) { kernel.sweeps->inverse_mass_times(x, y); }, J);
-    return J;
+    return inside_->noted_one(
+        kernel, kernel.sweeps->jacobian(t, q.data(), p.data(), J.data(), J.outerStride()));
   });
+}
+Eigen::MatrixXd OpenChain::jacobian(double t, const ConstVectorRef& q, const ConstVectorRef& p) {
+  Eigen::MatrixXd J(nq() + nv(), nq() + nv());
+  if (!jacobian(t, q, p, J)) J.resize(0, 0);
+  return J;
 }
 
 bool OpenChain::velocities(double t, const ConstVectorRef& q, const ConstVectorRef& p,
@@ -326,6 +329,19 @@ Energies OpenChain::energies(double t, const ConstVectorRef& q, const ConstVecto
     e.hamiltonian = inside_->p.dot(u) - e.kinetic + e.potential;
     return e;
   });
+}
+
+bool OpenChain::whole(double t, const ConstVectorRef& q, const ConstVectorRef& p, Whole& all) {
+  const double* u = inside_->u.data();
+  if (!velocities(t, q, p, inside_->u)) return false;
+  if (auto* in_space = std::get_if<Kernel<Spatial>>(&inside_->kernel)) {
+    all = whole_of(whole_sums(in_space->w, t, q.data(), u));
+    return true;
+  }
+  if (!inside_->in_space)
+    inside_->in_space = std::make_unique<WholeSweep>(inside_->tree, *inside_->flat);
+  all = (*inside_->in_space)(t, q.data(), u);
+  return true;
 }
 
 std::vector<Reaction> OpenChain::reactions(double t, const ConstVectorRef& q,

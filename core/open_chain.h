@@ -9,6 +9,7 @@
 // allocates unless it returns a matrix or a list.
 
 #include <momenta/core/plan.h>
+#include <momenta/core/whole.h>
 
 #include <Eigen/Core>
 #include <memory>
@@ -19,6 +20,7 @@ namespace momenta {
 
 using ConstVectorRef = Eigen::Ref<const Eigen::VectorXd>;
 using VectorRef = Eigen::Ref<Eigen::VectorXd>;
+using MatrixRef = Eigen::Ref<Eigen::MatrixXd>;
 
 /// Many states side by side: one row a coordinate, one column a state, rows contiguous.
 using StateMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -72,13 +74,16 @@ class OpenChain {
   /// M⁻¹ x (nv), prescribed motion left out: eqs. (44), (45) without Ω_t. False as rates().
   bool inverse_mass_times(double t, const ConstVectorRef& q, const ConstVectorRef& x,
                           VectorRef result);
-  /// Derivative of (q̇, ṗ) along (δq, δp): one evaluation on dual numbers, about the cost of three
+  /// Derivative of (q̇, ṗ) along (δq, δp): one evaluation on dual numbers, about the cost of two
   /// plain ones. False as rates().
   bool jacobian_times(double t, const ConstVectorRef& q, const ConstVectorRef& p,
                       const ConstVectorRef& dq, const ConstVectorRef& dp, VectorRef dqdot,
                       VectorRef dpdot);
-  /// ∂(q̇, ṗ)/∂(q, p), (nq + nv)², exact to rounding; made of M⁻¹ and half the derivatives where
-  /// Hamilton's equations hold. Empty where rates() would be false.
+  /// ∂(q̇, ṗ)/∂(q, p) into J, (nq + nv)², exact to rounding: as many directions side by side as the
+  /// level has lanes; made of M⁻¹ and half the derivatives where Hamilton's equations hold on pins.
+  /// False as rates().
+  bool jacobian(double t, const ConstVectorRef& q, const ConstVectorRef& p, MatrixRef J);
+  /// The same as a new matrix, empty where rates() would be false.
   Eigen::MatrixXd jacobian(double t, const ConstVectorRef& q, const ConstVectorRef& p);
   /// u (nv) from p: eq. (45). False as rates().
   bool velocities(double t, const ConstVectorRef& q, const ConstVectorRef& p, VectorRef u);
@@ -90,6 +95,9 @@ class OpenChain {
   void coordinate_rates(const ConstVectorRef& q, const ConstVectorRef& u, VectorRef qdot) const;
 
   Energies energies(double t, const ConstVectorRef& q, const ConstVectorRef& u);
+  /// Mass, centre of mass, linear and angular momentum of all bodies together, ground axes, from
+  /// (t, q, p): u of (45), then Σ M Ω with what drives prescribe. O(bodies). False as rates().
+  bool whole(double t, const ConstVectorRef& q, const ConstVectorRef& p, Whole& all);
   /// Joint reactions at (t, q, u) with the accelerations the dynamics gives: eq. (28), O(bodies).
   std::vector<Reaction> reactions(double t, const ConstVectorRef& q, const ConstVectorRef& u);
   /// M (nv × nv), dense, by composite inertias.

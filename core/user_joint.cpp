@@ -38,4 +38,20 @@ void user_motion(const UserJoint& joint, double t, const double* q, const double
   each_number(m, [&numbers](double x) { *numbers++ = x; });
 }
 
+void user_motion(const UserJoint& joint, const double* t, const double* q, const double* u,
+                 double* numbers) {
+  UserMotion<Dual8> m;
+  gather(t, m.t);
+  Dual8 rates[6];
+  for (int i = 0; i < joint.coordinates(); ++i) {
+    gather(q + i * dual8_numbers, m.q[i]);
+    if (u) gather(u + i * dual8_numbers, rates[i]);
+  }
+  joint.law().move(u ? static_cast<const Dual8*>(rates) : nullptr, m);
+  each_number(m, [&numbers](const Dual8& x) {
+    spread(x, numbers);
+    numbers += dual8_numbers;
+  });
+}
+
 }  // namespace momenta

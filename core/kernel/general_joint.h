@@ -10,6 +10,7 @@
 // joint would leave its body without u. A driven or welded joint has no u: M' = M*, D' = D.
 // User joints, whose E has up to six columns: user_elimination.h.
 
+#include <momenta/core/kernel/prescribe.h>
 #include <momenta/core/kernel/user_elimination.h>
 #include <momenta/core/scalar/dual.h>
 #include <momenta/core/scalar/sine_cosine.h>
@@ -47,25 +48,6 @@ struct JointRecord<Planar, S> {
   S moment{};  ///< of the subtree's weight about O_K
   Planar::Motion<S> c;
 };
-
-/// Prescribed position, rate and acceleration of a driven joint.
-template <class S>
-void prescribe(const MotionLaw& law, const S& t, S& f, S& fdot, S& fddot) {
-  law.evaluate(t, f, fdot, fddot);
-}
-/// The same in doubles, compiled for any machine.
-void prescribed_motion(const MotionLaw& law, double t, double& f, double& fdot, double& fddot);
-template <int W, int L>
-void prescribe(const MotionLaw& law, const Pack<W, L>& t, Pack<W, L>& f, Pack<W, L>& fdot,
-               Pack<W, L>& fddot) {
-  for (int i = 0; i < W; ++i) {
-    double x, xdot, xddot;
-    prescribed_motion(law, t.lane(i), x, xdot, xddot);
-    f.set_lane(i, x);
-    fdot.set_lane(i, xdot);
-    fddot.set_lane(i, xddot);
-  }
-}
 
 /// Pivots d of L Δ Lᵀ with diagonal a, b, c: all positive, and their product more than rounding. A
 /// slender rod on a ball joint has no inertia about itself, however it lies. Entries are as exact

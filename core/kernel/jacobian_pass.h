@@ -4,9 +4,10 @@
 //
 //   ∂q̇/∂p = M⁻¹,  ∂ṗ/∂p = −(∂q̇/∂q)ᵀ + ∂Q/∂p,  ∂Q/∂p = −C M⁻¹ for dampers C on the joints,
 //
-// so only the nq directions of q need dual numbers, eight at a time, and M⁻¹ comes from nv cheap
-// solves with the M* of the recursion. Quasi-velocities (spherical, free joints) and dampers
-// between bodies have no such structure: there all directions are dual.
+// so only the nq directions of q need dual numbers, W of them side by side in the lanes of a
+// register, and on trees of pins M⁻¹ comes from as many solves at once with the M* of that same
+// pass. Quasi-velocities (spherical, free joints) and dampers between bodies have no such
+// structure: there, and where joints of other kinds are among the pins, all directions are dual.
 
 #include <momenta/core/kernel/momentum_recursion.h>
 
@@ -14,11 +15,11 @@
 
 namespace momenta {
 
-/// The recursion along N directions at once.
-template <class Space, int N>
+/// The recursion along N directions at once; S: the number inside the dual ones.
+template <class Space, int N, class S = double>
 class DirectionalPass {
  public:
-  using D = Dual<double, N>;
+  using D = Dual<S, N>;
   using Links = decltype(build_links(std::declval<const Model<Space>&>()));
 
   explicit DirectionalPass(const Links& links)
@@ -43,6 +44,10 @@ class DirectionalPass {
                      qdot.data());
     return true;
   }
+  /// M⁻¹ x at the state of the last pass. @pre pins alone.
+  void inverse_mass_times(MassSolution<Space, S>& solution, const S* x, S* result) {
+    sweeps_.template inverse_mass_times<S>(solution, x, result);
+  }
 
   int stuck() const { return sweeps_.stuck(); }
 
@@ -62,48 +67,90 @@ bool is_hamiltonian(const Model<Space>& model) {
     if (spring.damping != 0) return false;
   return model.wrenches.empty();  // in body axes, or with a torque, one need not have a potential
 }
+/// The same, and all joints are pins. Out of line: compiled for any machine.
+bool is_hamiltonian_on_pins(const LinkTree& tree);
+bool is_hamiltonian_on_pins(const PlanarTree& tree);
 
-/// ∂(q̇, ṗ)/∂(q, p) into a matrix of nq + nv rows and columns, J(row, column). `inverse_mass(x, y)`:
-/// y = M⁻¹ x at (t, q). False as the recursion. Cost ⌈nq/8⌉ dual evaluations and nv solves where
-/// the structure holds, ⌈(nq + nv)/8⌉ evaluations elsewhere.
-template <class Space, class InverseMass, class Matrix>
-bool jacobian(DirectionalPass<Space, 8>& pass, const Model<Space>& model, double t, const double* q,
-              const double* p, InverseMass&& inverse_mass, Matrix& J) {
-  const int nq = model.nq, nv = model.nv;
-  const bool structured = is_hamiltonian(model);
-  const int directions = structured ? nq : nq + nv;
-  for (int first = 0; first < directions; first += 8) {
-    pass.set(q, p);
-    const int here = std::min(8, directions - first);
-    for (int j = 0; j < here; ++j) {
-      const int at = first + j;
-      auto& x = at < nq ? pass.q[static_cast<std::size_t>(at)]
-                        : pass.p[static_cast<std::size_t>(at - nq)];
-      x.b[static_cast<std::size_t>(j)] = 1;
-    }
-    if (!pass(t)) return false;
-    for (int j = 0; j < here; ++j) {
-      const auto lane = static_cast<std::size_t>(j);
-      for (int i = 0; i < nq; ++i) J(i, first + j) = pass.qdot[static_cast<std::size_t>(i)].b[lane];
-      for (int i = 0; i < nv; ++i) {
-        J(nq + i, first + j) = pass.pdot[static_cast<std::size_t>(i)].b[lane];
-        if (structured)  // ∂ṗ/∂p = −(∂q̇/∂q)ᵀ; the dampers' part follows
-          J(nq + first + j, nq + i) = -pass.qdot[static_cast<std::size_t>(i)].b[lane];
+/// ∂(q̇, ṗ)/∂(q, p), W directions a pass. Cost ⌈nq/W⌉ dual evaluations and ⌈nv/W⌉ solves with W
+/// right-hand sides where the structure holds on pins alone, ⌈(nq + nv)/W⌉ evaluations elsewhere.
+template <class Space, class Lanes>
+class JacobianPass;
+
+template <class Space, int W, int L>
+class JacobianPass<Space, Pack<W, L>> {
+  using Lanes = Pack<W, L>;
+  using Pass = DirectionalPass<Space, 1, Lanes>;
+
+ public:
+  explicit JacobianPass(const typename Pass::Links& links)
+      : model_(links.model),
+        structured_(is_hamiltonian_on_pins(links)),
+        pass_(links),
+        solution_(links),
+        x_(pass_.p.size()),
+        result_(x_.size()) {}
+
+  /// Into columns of nq + nv numbers, each `stride` after the one before. False as the recursion.
+  bool operator()(double t, const double* q, const double* p, double* J, std::ptrdiff_t stride) {
+    const int nq = model_->nq, nv = model_->nv;
+    const int directions = structured_ ? nq : nq + nv;
+    for (int first = 0; first < directions; first += W) {
+      const int here = first + W <= directions ? W : directions - first;
+      pass_.set(q, p);
+      for (int lane = 0; lane < here; ++lane) {
+        const int at = first + lane;
+        auto& x = at < nq ? pass_.q[static_cast<std::size_t>(at)]
+                          : pass_.p[static_cast<std::size_t>(at - nq)];
+        x.b[0].set_lane(lane, 1);
       }
+      if (!pass_(t)) return false;
+      double* const block = J + first * stride;
+      for (int i = 0; i < nq; ++i)
+        to_row(pass_.qdot[static_cast<std::size_t>(i)].b[0], here, block + i, stride);
+      for (int i = 0; i < nv; ++i)
+        to_row(pass_.pdot[static_cast<std::size_t>(i)].b[0], here, block + nq + i, stride);
+      if (!structured_) continue;
+      for (int i = 0; i < nv; ++i)  // ∂ṗ/∂p = −(∂q̇/∂q)ᵀ; the dampers' part follows
+        to_column(-pass_.qdot[static_cast<std::size_t>(i)].b[0], here,
+                  J + (nq + i) * stride + nq + first);
+    }
+    if (structured_) inverse_mass(J + nq * stride, stride);
+    return true;
+  }
+  int stuck() const { return pass_.stuck(); }
+
+ private:
+  /// M⁻¹ into the first nv rows of as many columns, −C M⁻¹ onto the next.
+  void inverse_mass(double* J, std::ptrdiff_t stride) {
+    const int nv = model_->nv;
+    for (int first = 0; first < nv; first += W) {
+      const int here = first + W <= nv ? W : nv - first;
+      for (auto& x : x_) x = Lanes();
+      for (int lane = 0; lane < here; ++lane)
+        x_[static_cast<std::size_t>(first + lane)].set_lane(lane, 1);
+      pass_.inverse_mass_times(solution_, x_.data(), result_.data());
+      for (int i = 0; i < nv; ++i)  // M⁻¹ is symmetric: its rows are its columns
+        to_column(result_[static_cast<std::size_t>(i)], here, J + i * stride + first);
+      for (const auto& b : model_->bodies)
+        if (b.damping != 0)
+          for (int lane = 0; lane < here; ++lane)
+            J[(first + lane) * stride + nv + b.u] -=
+                b.damping * result_[static_cast<std::size_t>(b.u)].lane(lane);
     }
   }
-  if (!structured) return true;
-  std::vector<double> unit(static_cast<std::size_t>(nv)), column(unit.size());
-  for (int j = 0; j < nv; ++j) {
-    unit[static_cast<std::size_t>(j)] = 1;
-    inverse_mass(unit.data(), column.data());
-    unit[static_cast<std::size_t>(j)] = 0;
-    for (int i = 0; i < nv; ++i) J(i, nq + j) = column[static_cast<std::size_t>(i)];
-    for (const auto& b : model.bodies)
-      if (b.nv == 1 && b.damping != 0)
-        J(nq + b.u, nq + j) -= b.damping * column[static_cast<std::size_t>(b.u)];
+  static void to_row(const Lanes& x, int count, double* at, std::ptrdiff_t stride) {
+    for (int lane = 0; lane < count; ++lane) at[lane * stride] = x.lane(lane);
   }
-  return true;
-}
+  static void to_column(const Lanes& x, int count, double* at) {
+    if (count == W) return x.store(at);
+    for (int lane = 0; lane < count; ++lane) at[lane] = x.lane(lane);
+  }
+
+  const Model<Space>* model_;
+  bool structured_;
+  Pass pass_;
+  MassSolution<Space, Lanes> solution_;
+  std::vector<Lanes> x_, result_;
+};
 
 }  // namespace momenta

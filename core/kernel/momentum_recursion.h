@@ -5,8 +5,7 @@
 // after them: then, and only then, a third sweep adds Eᵀ T* of those wrenches to ṗ.
 
 #include <momenta/core/kernel/body_forces.h>
-#include <momenta/core/kernel/momentum_sweeps.h>
-#include <momenta/core/kernel/planar_sweeps.h>
+#include <momenta/core/kernel/inverse_mass.h>
 
 namespace momenta {
 

@@ -59,7 +59,8 @@ class MomentumSweeps<Spatial, S> {
         joints_(static_cast<std::size_t>(tree.records)),
         users_(static_cast<std::size_t>(tree.users)),
         slots_(static_cast<std::size_t>(tree.slots)),
-        outward_slots_(static_cast<std::size_t>(tree.slots)) {}
+        outward_slots_(static_cast<std::size_t>(tree.slots)),
+        solution_(tree) {}
 
   /// u (nv) and the open chain's ṗ (nv), forces between points of bodies left out. In and Out index
   /// like pointers to S. False when a joint's articulated inertia is not positive: stuck().
@@ -74,9 +75,14 @@ class MomentumSweeps<Spatial, S> {
                                      : inward<false>(p) && outward<false>(q, u, pdot);
   }
 
-  /// M⁻¹ x (nv) at the configuration of the last evaluation, prescribed motion left out. O(bodies).
+  /// M⁻¹ x (nv) at the configuration of the last evaluation, prescribed motion left out:
+  /// inverse_mass.h. O(bodies).
   template <class In, class Out>
   void inverse_mass_times(const In& x, Out result);
+  /// The same on S or, from sweeps on directions, on packs of right-hand sides.
+  /// @pre S, or pins alone.
+  template <class X, class In, class Out>
+  void inverse_mass_times(MassSolution<Spatial, X>& solution, const In& x, Out result);
 
   int stuck() const { return stuck_; }
 
@@ -114,6 +120,7 @@ class MomentumSweeps<Spatial, S> {
   std::vector<UserRecord<S>> users_;
   std::vector<Cargo<S>> slots_;
   std::vector<OutwardCargo<S>> outward_slots_;
+  MassSolution<Spatial, S> solution_;
   int stuck_ = -1;
 };
 
@@ -513,94 +520,6 @@ void MomentumSweeps<Spatial, S>::general_outward(std::size_t k, const In& q, Out
     }
   }
   set_cargo(c, V, g);
-}
-
-template <class S>
-template <class In, class Out>
-void MomentumSweeps<Spatial, S>::inverse_mass_times(const In& x, Out result) {
-  // The same two sweeps without what M* cost: D alone inward, rates outward.
-  const Link* links = tree_->links.data();
-  Spatial::Force<S> D;
-  for (std::size_t k = angles_.size(); k-- > 0;) {
-    const Link& l = links[k];
-    if (l.tip) D = {};
-    if (l.slot >= 0) D += remainder_of(slots_[static_cast<std::size_t>(l.slot)]);
-    const auto& b = body(k);
-    if (l.kind == LinkKind::pin) {
-      PinRecord<S>& w = pins_[k];
-      const S e = x[l.u] - D.n[2];
-      w.y0 = e * w.inverse;
-      if (l.parent < 0) continue;
-      D.f += Vec3<S>{{w.h.fx * e, w.h.fy * e, w.h.fz * e}};
-      D.n += Vec3<S>{{w.h.nx * e, w.h.ny * e, e}};
-      Spatial::force_inward<2>(D, angles_.cosine(k), angles_.sine(k), S(l.d));
-      Spatial::Edge<S> constant;
-      D = Spatial::to_parent(b.edge, JointKind::weld, constant, D);
-    } else if (l.kind == LinkKind::ball) {
-      BallRecord<S>& w = balls_[static_cast<std::size_t>(l.record)];
-      const Vec3<S> n{{x[l.u], x[l.u + 1], x[l.u + 2]}}, e = n - D.n;
-      const Vec3<S> force = D.f + w.pivot.remainder(e);
-      if (l.parent < 0) continue;
-      const auto& r = tree_->balls[static_cast<std::size_t>(l.record)].origin;
-      D = {w.R * force, w.R * n};
-      D.n += cross(Vec3<S>{{S(r[0]), S(r[1]), S(r[2])}}, D.f);
-    } else {
-      auto& joint = joints_[static_cast<std::size_t>(l.record)];
-      joint.D = D;
-      S r[6]{};
-      for (int i = 0; i < b.nv; ++i) r[i] = x[b.u + i];
-      D = remainder<Spatial>(b, joint, r);
-      if (l.parent < 0) continue;
-      D = Spatial::to_parent(b.edge, b.kind, joint.edge, D);
-    }
-    if (!l.first) {
-      Cargo<S> here{};
-      set_cargo(here, {}, D, {});
-      leave<false>(l, slot_of_parent(l), here);
-    }
-  }
-  Spatial::Motion<S> V;
-  for (std::size_t k = 0; k < angles_.size(); ++k) {
-    const Link& l = links[k];
-    const auto& b = body(k);
-    if (l.parent < 0) {
-      V = {};
-    } else if (!l.first) {
-      const auto& from =
-          outward_slots_[static_cast<std::size_t>(links[static_cast<std::size_t>(l.parent)].slot)];
-      V = {{{from.vx, from.vy, from.vz}}, {{from.ox, from.oy, from.oz}}};
-    }
-    if (l.kind == LinkKind::pin) {
-      const PinRecord<S>& w = pins_[k];
-      if (l.parent >= 0) {
-        Spatial::Edge<S> constant;
-        V = Spatial::to_child(b.edge, JointKind::weld, constant, V);
-        Spatial::motion_outward<2>(V, angles_.cosine(k), angles_.sine(k), S(l.d));
-        const S wz = w.y0 - (w.h.fx * V.v[0] + w.h.fy * V.v[1] + w.h.fz * V.v[2] + w.h.nx * V.w[0] +
-                             w.h.ny * V.w[1]);
-        result[l.u] = wz - V.w[2];
-        V.w[2] = wz;
-      } else {
-        result[l.u] = w.y0;
-        V.w[2] = w.y0;
-      }
-    } else if (l.kind == LinkKind::ball) {
-      const BallRecord<S>& w = balls_[static_cast<std::size_t>(l.record)];
-      const auto& r = tree_->balls[static_cast<std::size_t>(l.record)].origin;
-      V.v += cross(V.w, Vec3<S>{{S(r[0]), S(r[1]), S(r[2])}});
-      V = {transpose_times(w.R, V.v), transpose_times(w.R, V.w)};
-      const Vec3<S> omega = w.pivot.omega(V.v);
-      for (int i = 0; i < 3; ++i) result[l.u + i] = omega[i] - V.w[i];
-      V.w = omega;
-    } else {
-      const auto& joint = joints_[static_cast<std::size_t>(l.record)];
-      if (l.parent >= 0) V = Spatial::to_child(b.edge, b.kind, joint.edge, V);
-      S own[6];
-      solve_joint<Spatial>(b, joint, V, own);
-      for (int i = 0; i < b.nv; ++i) result[b.u + i] = own[i];
-    }
-    if (l.slot >= 0) set_cargo(outward_slots_[static_cast<std::size_t>(l.slot)], V, {});
-  }
 }
 
 }  // namespace momenta

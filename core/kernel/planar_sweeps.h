@@ -177,7 +177,8 @@ class MomentumSweeps<Planar, S> : PlanarPlaces<S> {
 
  public:
   using Space = Planar;
-  using Base::Base, Base::stuck;
+  explicit MomentumSweeps(const PlanarTree& tree) : Base(tree), solution_(tree) {}
+  using Base::stuck;
 
   /// u (nv) and the open chain's ṗ (nv), forces between points of bodies left out. False when a
   /// joint's articulated inertia is not positive: stuck(). O(bodies).
@@ -188,9 +189,14 @@ class MomentumSweeps<Planar, S> : PlanarPlaces<S> {
     return inward(p) && outward(q, u, pdot);
   }
 
-  /// M⁻¹ x (nv) at the configuration of the last evaluation, prescribed motion left out. O(bodies).
+  /// M⁻¹ x (nv) at the configuration of the last evaluation, prescribed motion left out:
+  /// inverse_mass.h. O(bodies).
   template <class In, class Out>
   void inverse_mass_times(const In& x, Out result);
+  /// The same on S or, from sweeps on directions, on packs of right-hand sides.
+  /// @pre S, or pins alone.
+  template <class X, class In, class Out>
+  void inverse_mass_times(MassSolution<Planar, X>& solution, const In& x, Out result);
 
  private:
   template <class In>
@@ -202,6 +208,7 @@ class MomentumSweeps<Planar, S> : PlanarPlaces<S> {
   template <class In, class Out>
   __attribute__((noinline)) void general_outward(std::size_t k, const In& q, Out u, Out pdot,
                                                  PlanarMotion<S>& m);
+  MassSolution<Planar, S> solution_;
 };
 
 template <class S>
@@ -359,74 +366,6 @@ void MomentumSweeps<Planar, S>::general_outward(std::size_t k, const In& q, Out 
     pdot[b.u] = rate + joint_force(b, S(q[b.q]), own);
   }
   m = {V.v[0], V.v[1], V.w};
-}
-
-template <class S>
-template <class In, class Out>
-void MomentumSweeps<Planar, S>::inverse_mass_times(const In& x, Out result) {
-  const PlanarLink* links = tree_->links.data();
-  Planar::Force<S> D;
-  for (std::size_t k = pins_.size(); k-- > 0;) {
-    const PlanarLink& l = links[k];
-    if (l.tip) D = {};
-    if (l.slot >= 0) {
-      const auto& slot = slots_[static_cast<std::size_t>(l.slot)];
-      D += Planar::Force<S>{{{slot.Dx, slot.Dy}}, slot.Dn};
-    }
-    if (l.pin) {
-      PlanarPin<S>& w = pins_[k];
-      const S n = l.sign < 0 ? -x[l.u] : S(x[l.u]), e = n - D.n;
-      w.y0 = e * w.inverse;
-      if (l.parent < 0) continue;
-      D.f += Vec2<S>{{w.hx * e, w.hy * e}};
-      D.n = n + (w.rx * D.f[1] - w.ry * D.f[0]);
-    } else {
-      const auto& b = Base::body(k);
-      auto& joint = joints_[static_cast<std::size_t>(l.record)];
-      joint.D = D;
-      const S r = b.nv == 1 ? S(x[b.u]) : S(0.0);
-      D = remainder<Planar>(b, joint, &r);
-      if (l.parent < 0) continue;
-      D = Planar::to_parent({}, b.kind, joint.edge, D);
-    }
-    if (l.first) continue;
-    PlanarCargo<S> here{};
-    here.Dx = D.f[0];
-    here.Dy = D.f[1];
-    here.Dn = D.n;
-    Base::leave(l, Base::slot_of_parent(l), here);
-  }
-  Planar::Motion<S> V;
-  for (std::size_t k = 0; k < pins_.size(); ++k) {
-    const PlanarLink& l = links[k];
-    if (l.parent < 0) {
-      V = {};
-    } else if (!l.first) {
-      const auto& from = Base::motion_of_parent(l);
-      V = {{{from.vx, from.vy}}, from.omega};
-    }
-    if (l.pin) {
-      const PlanarPin<S>& w = pins_[k];
-      S own = w.y0, turning = w.y0;
-      if (l.parent >= 0) {
-        V.v += cross(V.w, Vec2<S>{{w.rx, w.ry}});
-        turning = w.y0 - (w.hx * V.v[0] + w.hy * V.v[1]);
-        own = turning - V.w;
-      }
-      V.w = turning;
-      result[l.u] = l.sign < 0 ? -own : own;
-    } else {
-      const auto& b = Base::body(k);
-      const auto& joint = joints_[static_cast<std::size_t>(l.record)];
-      if (l.parent >= 0) V = Planar::to_child({}, b.kind, joint.edge, V);
-      if (b.nv == 1) {
-        S own;
-        solve_joint<Planar>(b, joint, V, &own);
-        result[b.u] = own;
-      }
-    }
-    if (l.slot >= 0) outward_slots_[static_cast<std::size_t>(l.slot)] = {V.v[0], V.v[1], V.w};
-  }
 }
 
 template <class S>

@@ -9,6 +9,7 @@
 // w: loop impulses on the body, if any. Ė = 0 for all joints but user joints.
 
 #include <momenta/core/kernel/joint.h>
+#include <momenta/core/kernel/prescribe.h>
 #include <momenta/core/kernel/workspace.h>
 
 namespace momenta {
@@ -22,8 +23,8 @@ void poses_outward(Workspace<Space, S>& w, const S& t, const S* q, bool with_pos
     const auto& b = model.bodies[k];
     auto& s = w.body[k];
     if (b.drive >= 0)
-      model.drives[static_cast<std::size_t>(b.drive)].evaluate(t, s.drive, s.drive_rate,
-                                                               s.drive_acceleration);
+      prescribe(model.drives[static_cast<std::size_t>(b.drive)], t, s.drive, s.drive_rate,
+                s.drive_acceleration);
     const auto* parent = b.parent < 0 ? nullptr : &w.body[static_cast<std::size_t>(b.parent)];
     if constexpr (Space::dimension == 6)
       if (b.law)

@@ -7,8 +7,9 @@
 //
 // The formula is evaluated for double, Dual<double, 1> and Dual8, whose derivatives are exact, one
 // direction at a time for other dual numbers, and lane by lane for packs: out of line, by
-// code compiled once for any machine. Every other scalar goes through double: long double has the
-// digits of a double there, a Counted does not see the operations of the formula.
+// code compiled once for any machine. Directions from one state go through Dual8. Every other
+// scalar goes through double: long double has the digits of a double there, a Counted does not see
+// the operations of the formula.
 
 #include <momenta/core/kernel/spatial.h>
 #include <momenta/core/scalar/dual.h>
@@ -51,7 +52,30 @@ void user_motion(const UserJoint& joint, const Dual8* u, UserMotion<Dual8>& m);
 void user_motion(const UserJoint& joint, double t, const double* q, const double* u,
                  double* numbers);
 
+/// The same on Dual8 in plain arrays: t, six q and u, user_numbers results, each its value and
+/// eight derivatives.
+void user_motion(const UserJoint& joint, const double* t, const double* q, const double* u,
+                 double* numbers);
+
 int coordinates_of(const UserJoint& joint);
+
+template <int W, int L>
+void user_motion(const UserJoint& joint, const Directions<W, L>* u,
+                 UserMotion<Directions<W, L>>& m) {
+  double t[dual8_numbers]{}, q[6 * dual8_numbers]{}, rates[6 * dual8_numbers]{},
+      numbers[user_numbers * dual8_numbers];
+  spread(m.t, t);
+  for (int i = 0; i < 6; ++i) spread(m.q[i], q + i * dual8_numbers);
+  const int n = u ? coordinates_of(joint) : 0;
+  for (int i = 0; i < 6 && i < n; ++i) spread(u[i], rates + i * dual8_numbers);
+  user_motion(joint, static_cast<const double*>(t), static_cast<const double*>(q),
+              static_cast<const double*>(u ? rates : nullptr), numbers);
+  const double* from = numbers;
+  each_number(m, [&from](Directions<W, L>& x) {
+    gather(from, x);
+    from += dual8_numbers;
+  });
+}
 
 template <int W, int L>
 void user_motion(const UserJoint& joint, const Pack<W, L>* u, UserMotion<Pack<W, L>>& m) {

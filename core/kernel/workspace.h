@@ -52,4 +52,18 @@ struct Workspace {
   }
 };
 
+/// Right-hand sides X on their way through a solve with M by the recursion: M_j⁻¹ e of pins, and
+/// what waits at bodies with several children, D inward and Ω outward.
+template <class Space, class X>
+struct MassSolution {
+  template <class Tree>
+  explicit MassSolution(const Tree& tree)
+      : y0(tree.links.size()),
+        inward(static_cast<std::size_t>(tree.slots)),
+        outward(static_cast<std::size_t>(tree.slots)) {}
+  std::vector<X> y0;
+  std::vector<typename Space::template Force<X>> inward;
+  std::vector<typename Space::template Motion<X>> outward;
+};
+
 }  // namespace momenta

@@ -2,8 +2,11 @@
 // Dual numbers a + Σ b_i ε_i, ε_i ε_j = 0: a function evaluated on them gives its value and N
 // directional derivatives, exact to rounding. S may itself be a dual number (second derivatives).
 
+#include <momenta/core/scalar/pack.h>
+
 #include <array>
 #include <cmath>
+#include <concepts>
 #include <type_traits>
 
 namespace momenta {
@@ -63,6 +66,21 @@ struct Dual {
     return r;
   }
   // Mixed with plain numbers: no zero derivatives are carried along.
+  template <std::same_as<double> T>
+  friend Dual operator+(Dual x, T y) {
+    x.a += S(y);
+    return x;
+  }
+  template <std::same_as<double> T>
+  friend Dual operator+(T y, Dual x) {
+    x.a += S(y);
+    return x;
+  }
+  template <std::same_as<double> T>
+  friend Dual operator-(Dual x, T y) {
+    x.a -= S(y);
+    return x;
+  }
   friend Dual operator*(double s, const Dual& x) { return chain(x, S(s) * x.a, S(s)); }
   friend Dual operator*(const Dual& x, double s) { return s * x; }
   friend Dual operator/(const Dual& x, double s) { return (1.0 / s) * x; }
@@ -111,8 +129,40 @@ template <class S>
 bool all_positive(const S& x) {
   return value_of(x) > 0;
 }
+template <class S, int N>
+MOMENTA_INLINE bool all_positive(const Dual<S, N>& x) {
+  return all_positive(x.a);
+}
 
-/// Eight directions at once: one vector register of tangents on wide machines.
+/// Eight directions at once, for code that is compiled for any machine.
 using Dual8 = Dual<double, 8>;
+
+/// W directions from one state in the lanes of a register. The value fills all lanes alike: a
+/// product is then three operations on whole registers and no broadcast.
+template <int W, int L>
+using Directions = Dual<Pack<W, L>, 1>;
+
+/// A Dual8 as plain numbers, its value and its derivatives: how directions pass to code that is
+/// compiled for any machine, and back.
+constexpr int dual8_numbers = 9;
+inline void spread(const Dual8& x, double* to) {
+  to[0] = x.a;
+  for (std::size_t i = 0; i < 8; ++i) to[1 + i] = x.b[i];
+}
+inline void gather(const double* from, Dual8& x) {
+  x.a = from[0];
+  for (std::size_t i = 0; i < 8; ++i) x.b[i] = from[1 + i];
+}
+template <int W, int L>
+MOMENTA_INLINE void spread(const Directions<W, L>& x, double* to) {
+  static_assert(W < dual8_numbers);
+  to[0] = x.a.lane(0);
+  x.b[0].store(to + 1);
+}
+template <int W, int L>
+MOMENTA_INLINE void gather(const double* from, Directions<W, L>& x) {
+  x.a = Pack<W, L>(from[0]);
+  x.b[0] = Pack<W, L>::load(from + 1);
+}
 
 }  // namespace momenta

@@ -84,6 +84,13 @@ struct Pack {
   MOMENTA_INLINE Pack& operator-=(const Pack& b) { return *this = *this - b; }
 };
 
+template <int W, int L>
+MOMENTA_INLINE Pack<W, L> sqrt(const Pack<W, L>& x) {
+  Pack<W, L> root;
+  for (int i = 0; i < W; ++i) root.set_lane(i, std::sqrt(x.lane(i)));
+  return root;
+}
+
 /// The least of the lanes, NaN when one of them is: what a test for positive pivots has to look at.
 template <int W, int L>
 MOMENTA_INLINE double value_of(const Pack<W, L>& x) {

@@ -4,7 +4,7 @@
 // for |x| below `reducible`; a pack that holds a larger angle, or none at all (NaN, infinity), goes
 // to the library lane by lane.
 
-#include <momenta/core/scalar/pack.h>
+#include <momenta/core/scalar/dual.h>
 
 #include <cstddef>
 #include <vector>
@@ -66,6 +66,13 @@ MOMENTA_INLINE void sine_cosine(const S& x, S& sine, S& cosine) {
   using std::cos, std::sin;
   sine = sin(x);
   cosine = cos(x);
+}
+template <class S, int N>
+MOMENTA_INLINE void sine_cosine(const Dual<S, N>& x, Dual<S, N>& sine, Dual<S, N>& cosine) {
+  S s, c;
+  sine_cosine(x.a, s, c);
+  sine = Dual<S, N>::chain(x, s, c);
+  cosine = Dual<S, N>::chain(x, c, -s);
 }
 template <int W, int L>
 MOMENTA_INLINE Pack<W, L> sin(const Pack<W, L>& x) {
@@ -133,6 +140,38 @@ class Angles<Pack<1, L>> {
   }
   std::size_t size_;
   std::vector<Wide> angle_, sine_, cosine_;
+};
+/// Values alike in all lanes are turned once, side by side with those of other joints.
+template <int W, int L>
+class Angles<Directions<W, L>> {
+  using S = Directions<W, L>;
+  using Lanes = Pack<W, L>;
+
+ public:
+  explicit Angles(std::size_t n) : values_(n), slopes_(n) {}
+  MOMENTA_INLINE void set(std::size_t i, const S& x) {
+    values_.set(i, Pack<1, L>(x.a.lane(0)));
+    slopes_[i] = x.b[0];
+  }
+  MOMENTA_INLINE S operator[](std::size_t i) const { return with(values_[i], slopes_[i]); }
+  MOMENTA_INLINE S sine(std::size_t i) const {
+    return with(values_.sine(i), Lanes(values_.cosine(i).v) * slopes_[i]);
+  }
+  MOMENTA_INLINE S cosine(std::size_t i) const {
+    return with(values_.cosine(i), Lanes(-values_.sine(i).v) * slopes_[i]);
+  }
+  std::size_t size() const { return slopes_.size(); }
+  MOMENTA_INLINE void turn() { values_.turn(); }
+
+ private:
+  static MOMENTA_INLINE S with(const Pack<1, L>& value, const Lanes& slope) {
+    S x;
+    x.a = Lanes(value.v);
+    x.b[0] = slope;
+    return x;
+  }
+  Angles<Pack<1, L>> values_;
+  std::vector<Lanes> slopes_;
 };
 
 }  // namespace momenta

@@ -14,8 +14,8 @@
 // τ is a further generalised force along the joints; it counts among the applied ones everywhere.
 // Without loops everything but M is O(bodies), and no system of loops is built.
 
+#include <momenta/core/whole.h>
 #include <momenta/dae/measure/reactions.h>
-#include <momenta/dae/measure/whole.h>
 
 namespace momenta {
 

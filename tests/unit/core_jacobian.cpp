@@ -1,7 +1,8 @@
 // Jacobians of (q̇, ṗ) against dual numbers through the recursion in all directions, with and
-// without the structure of Hamilton's equations; Jacobian-vector products; M⁻¹ x.
+// without the structure of Hamilton's equations, at every level; Jacobian-vector products; M⁻¹ x.
 #include <gtest/gtest.h>
 #include <momenta/core/kernel/jacobian_pass.h>
+#include <momenta/core/kernel/levels/open_sweeps.h>
 #include <momenta/core/open_chain.h>
 
 #include "equations/random_tree.h"
@@ -28,26 +29,33 @@ double condition_of(const Eigen::MatrixXd& m) {
   return s[0] / s[s.size() - 1];
 }
 
+/// One direction after another, dual in q and p alike.
+template <class Space>
+Eigen::MatrixXd twin(const Model<Space>& model, const TreeState& s, const Eigen::VectorXd& p) {
+  const int nq = model.nq, nv = model.nv;
+  const auto links = build_links(model);
+  Eigen::MatrixXd expected(nq + nv, nq + nv);
+  DirectionalPass<Space, 1> pass(links);
+  for (int j = 0; j < nq + nv; ++j) {
+    pass.set(s.q.data(), p.data());
+    (j < nq ? pass.q[static_cast<std::size_t>(j)] : pass.p[static_cast<std::size_t>(j - nq)]).b[0] =
+        1;
+    EXPECT_TRUE(pass(s.t));
+    for (int i = 0; i < nq; ++i) expected(i, j) = pass.qdot[static_cast<std::size_t>(i)].b[0];
+    for (int i = 0; i < nv; ++i) expected(nq + i, j) = pass.pdot[static_cast<std::size_t>(i)].b[0];
+  }
+  return expected;
+}
+
 void compare(const Scene& scene, RandomTree& random, bool& structured, double& worst) {
   Sample x(scene, random);
   OpenChain& chain = x.chain;
   const int nq = chain.nq(), nv = chain.nv();
   const Model<Spatial> model = build_spatial_model(chain.tree(), scene);
-  const auto links = build_links(model);
   structured = is_hamiltonian(model);
   const Eigen::MatrixXd J = chain.jacobian(x.s.t, x.s.q, x.p);
   ASSERT_EQ(J.rows(), nq + nv);
-  // One direction after another, dual in q and p alike.
-  Eigen::MatrixXd expected(nq + nv, nq + nv);
-  DirectionalPass<Spatial, 1> pass(links);
-  for (int j = 0; j < nq + nv; ++j) {
-    pass.set(x.s.q.data(), x.p.data());
-    (j < nq ? pass.q[static_cast<std::size_t>(j)] : pass.p[static_cast<std::size_t>(j - nq)]).b[0] =
-        1;
-    ASSERT_TRUE(pass(x.s.t));
-    for (int i = 0; i < nq; ++i) expected(i, j) = pass.qdot[static_cast<std::size_t>(i)].b[0];
-    for (int i = 0; i < nv; ++i) expected(nq + i, j) = pass.pdot[static_cast<std::size_t>(i)].b[0];
-  }
+  const Eigen::MatrixXd expected = twin(model, x.s, x.p);
   const double growth = condition_of(chain.mass_matrix(x.s.t, x.s.q));
   const double scale = std::max(1.0, expected.cwiseAbs().maxCoeff());
   worst = std::max(worst, (J - expected).cwiseAbs().maxCoeff() / scale / growth);
@@ -83,6 +91,56 @@ TEST(Jacobian, OfQuasiVelocitiesAndDampersBetweenBodies) {
     without += structured ? 0 : 1;
   }
   EXPECT_GT(without, 20);
+  EXPECT_LT(worst, algebra_tol(12));
+}
+
+/// Trees of pins with dampers on them, whose M⁻¹ comes from solves side by side, and of every
+/// joint.
+TEST(Jacobian, OfEveryLevelInSpaceAndInThePlane) {
+  double worst = 0;
+  int on_pins = 0;
+  for (unsigned seed = 200; seed < 260; ++seed) {
+    RandomTree random(seed);
+    TreeRecipe recipe{.bodies = 1 + static_cast<int>(seed % 12)};
+    if (seed % 3 != 0) {
+      recipe.kinds = {JointKind::revolute};
+      recipe.drives = recipe.body_forces = false;
+    }
+    const bool flat = seed % 2 == 0;
+    const Scene scene = flat ? random.planar_scene(recipe) : random.scene(recipe);
+    for (const int level : {1, 3, 4}) {
+      if (level > best_level()) continue;
+      OpenChain chain(scene, flat ? Algebra::planar : Algebra::spatial, level);
+      const TreeState s = random.state(chain.tree());
+      Eigen::VectorXd p(chain.nv());
+      chain.momenta(s.t, s.q, s.u, p);
+      Eigen::MatrixXd expected;
+      if (flat) {
+        const auto model = build_planar_model(chain.tree(), scene, chain.plan().basis);
+        expected = twin(model, s, p);
+        on_pins += is_hamiltonian_on_pins(build_links(model));
+      } else {
+        const auto model = build_spatial_model(chain.tree(), scene);
+        expected = twin(model, s, p);
+        on_pins += is_hamiltonian_on_pins(build_links(model));
+      }
+      Eigen::MatrixXd into = Eigen::MatrixXd::Zero(expected.rows() + 2, expected.cols());
+      ASSERT_TRUE(chain.jacobian(s.t, s.q, p, into.topRows(expected.rows())));
+      const double growth = condition_of(chain.mass_matrix(s.t, s.q));
+      const double scale = std::max(1.0, expected.cwiseAbs().maxCoeff()) * growth;
+      worst =
+          std::max(worst, (into.topRows(expected.rows()) - expected).cwiseAbs().maxCoeff() / scale);
+      EXPECT_TRUE(into.bottomRows(2).isZero(0));
+
+      const Eigen::VectorXd d = Eigen::VectorXd::Random(expected.cols());
+      Eigen::VectorXd dqdot(chain.nq()), dpdot(chain.nv()), along(d.size());
+      ASSERT_TRUE(
+          chain.jacobian_times(s.t, s.q, p, d.head(chain.nq()), d.tail(chain.nv()), dqdot, dpdot));
+      along << dqdot, dpdot;
+      worst = std::max(worst, (expected * d - along).cwiseAbs().maxCoeff() / scale);
+    }
+  }
+  EXPECT_GT(on_pins, 40);
   EXPECT_LT(worst, algebra_tol(12));
 }
 

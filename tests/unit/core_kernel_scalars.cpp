@@ -274,9 +274,13 @@ TEST(Kernel, NoCallAllocates) {
     many_q.colwise() = s.q;
     many_p.colwise() = p;
     const Eigen::VectorXd dq = s.q, dp = p;
+    Eigen::MatrixXd jacobian(chain.nq() + chain.nv(), chain.nq() + chain.nv());
+    Whole all;
     const auto lazy = [&] {  // workspaces of packs and of dual numbers are made by the first call
       if (batches) chain.rates_of_states(s.t, many_q, many_p, many_qdot, many_pdot);
       chain.jacobian_times(s.t, s.q, p, dq, dp, qdot, pdot);
+      chain.jacobian(s.t, s.q, p, jacobian);
+      chain.whole(s.t, s.q, p, all);
     };
     lazy();
     const long before = allocations;

@@ -1,4 +1,7 @@
+#include <momenta/core/kernel/jacobian_pass.h>
 #include <momenta/core/kernel/levels/open_sweeps.h>
+
+#include <algorithm>
 
 namespace momenta {
 
@@ -35,8 +38,24 @@ std::unique_ptr<OpenSweeps> make_sweeps(const PlanarTree& tree, int level) {
   return make(tree, level);
 }
 
+bool is_hamiltonian_on_pins(const LinkTree& tree) {
+  return is_hamiltonian(*tree.model) &&
+         std::all_of(tree.links.begin(), tree.links.end(),
+                     [](const Link& l) { return l.kind == LinkKind::pin; });
+}
+bool is_hamiltonian_on_pins(const PlanarTree& tree) {
+  return is_hamiltonian(*tree.model) && std::all_of(tree.links.begin(), tree.links.end(),
+                                                    [](const PlanarLink& l) { return l.pin; });
+}
+
 void prescribed_motion(const MotionLaw& law, double t, double& f, double& fdot, double& fddot) {
   law.evaluate(t, f, fdot, fddot);
+}
+void prescribed_motion(const MotionLaw& law, const double* t, double* f) {
+  Dual8 time, motion[3];
+  gather(t, time);
+  law.evaluate(time, motion[0], motion[1], motion[2]);
+  for (int i = 0; i < 3; ++i) spread(motion[i], f + i * dual8_numbers);
 }
 
 }  // namespace momenta

@@ -7,9 +7,8 @@
 #include <momenta/core/kernel/acceleration_sweeps.h>
 #include <momenta/core/kernel/composite_sweeps.h>
 #include <momenta/core/kernel/inverse_dynamics_sweeps.h>
+#include <momenta/core/kernel/jacobian_pass.h>
 #include <momenta/core/kernel/levels/open_sweeps.h>
-#include <momenta/core/kernel/momentum_sweeps.h>
-#include <momenta/core/kernel/planar_sweeps.h>
 
 #include <limits>
 
@@ -46,6 +45,8 @@ class OpenSweepsAt final : public OpenSweeps {
         acceleration_(tree),
         composite_(tree),
         inverse_(tree),
+        along_(tree),
+        jacobian_(tree),
         many_momenta_(tree),
         many_accelerations_(tree) {
     for (const auto& b : tree.model->bodies) {
@@ -62,6 +63,26 @@ class OpenSweepsAt final : public OpenSweeps {
   }
   void inverse_mass_times(const double* x, double* result) override {
     momentum_.inverse_mass_times(StridedIn<One>{x, 1}, StridedOut<One>{result, 1});
+  }
+  bool derivative(double t, const double* q, const double* p, const double* dq, const double* dp,
+                  double* dqdot, double* dpdot) override {
+    auto& along = along_.get();
+    along.set(q, p);
+    for (std::size_t i = 0; i < along.q.size(); ++i) along.q[i].b[0] = One(dq[i]);
+    for (std::size_t i = 0; i < along.p.size(); ++i) along.p[i].b[0] = One(dp[i]);
+    if (!along(t)) {
+      stuck_ = along.stuck();
+      return false;
+    }
+    for (std::size_t i = 0; i < along.q.size(); ++i) along.qdot[i].b[0].store(dqdot + i);
+    for (std::size_t i = 0; i < along.p.size(); ++i) along.pdot[i].b[0].store(dpdot + i);
+    return true;
+  }
+  bool jacobian(double t, const double* q, const double* p, double* J,
+                std::ptrdiff_t stride) override {
+    const bool ok = jacobian_.get()(t, q, p, J, stride);
+    if (!ok) stuck_ = jacobian_.get().stuck();
+    return ok;
   }
   bool acceleration(double t, const double* q, const double* u, const double* tau,
                     double* udot) override {
@@ -238,6 +259,8 @@ class OpenSweepsAt final : public OpenSweeps {
   using InSpace = WhenAsked<std::conditional_t<Space::dimension == 6, Sweeps, None>>;
   InSpace<CompositeSweeps<Spatial, One>> composite_;
   InSpace<InverseDynamicsSweeps<Spatial, One>> inverse_;
+  WhenAsked<DirectionalPass<Space, 1, One>> along_;
+  WhenAsked<JacobianPass<Space, Many>> jacobian_;
   WhenAsked<MomentumSweeps<Space, Many>> many_momenta_;
   WhenAsked<AccelerationSweeps<Space, Many>> many_accelerations_;
   Buffer rates_, padded_;

@@ -1,0 +1,40 @@
+#pragma once
+// The mechanism as one body: mass, centre of mass, linear and angular momentum, ground axes. All
+// bodies move as drives and rates say, so prescribed motion counts. The sums: kernel/whole_sums.h.
+
+#include <momenta/core/scene/scene.h>
+#include <momenta/core/tree/tree.h>
+
+#include <memory>
+
+namespace momenta {
+
+struct Whole {
+  double mass = 0;                                             ///< [kg]
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();            ///< [m]; NaN without mass
+  Eigen::Vector3d linear_momentum = Eigen::Vector3d::Zero();   ///< [kg m/s]
+  Eigen::Vector3d angular_momentum = Eigen::Vector3d::Zero();  ///< [kg m²/s], about the origin
+};
+
+/// Always in space: a planar scene whose bodies lie at different heights has angular momentum in
+/// its plane too. Owns its model and workspace; one object serves one thread.
+class WholeSweep {
+ public:
+  WholeSweep(const Tree& tree, const Scene& scene);
+  ~WholeSweep();
+  WholeSweep(WholeSweep&&) noexcept;
+  WholeSweep& operator=(WholeSweep&&) noexcept;
+
+  /// At (t, q, u), nq and nv numbers. O(bodies), no allocation.
+  Whole operator()(double t, const double* q, const double* u);
+
+ private:
+  struct Inside;
+  std::unique_ptr<Inside> inside_;
+};
+
+/// At one state (t, q, u), model and all.
+Whole whole(const Tree& tree, const Scene& scene, double t, const Eigen::VectorXd& q,
+            const Eigen::VectorXd& u);
+
+}  // namespace momenta
