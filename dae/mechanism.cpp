@@ -1,5 +1,4 @@
 #include <momenta/dae/mechanism.h>
-#include <momenta/dae/sweep_evaluation.h>
 
 namespace momenta {
 namespace {
@@ -84,7 +83,8 @@ void Mechanism::choose_kkt(KktChoice asked) {
     cast.plan = plan_loops(cast.model, cast.loops);
     cast.link_loops = in_link_frames(cast.loops, cast.links);
     if (!cast.plan.fits())
-      kkt_reason_ = std::to_string(cast.plan.lanes) + " loop equations are open at once, more than " +
+      kkt_reason_ = std::to_string(cast.plan.lanes) +
+                    " loop equations are open at once, more than " +
                     std::to_string(LoopPlan::most_lanes);
   };
   if (plan_.planar)
@@ -97,7 +97,8 @@ void Mechanism::choose_kkt(KktChoice asked) {
     const auto sweeps = looped_sweeps();
     std::vector<double> zero(static_cast<std::size_t>(tree_.nv)), u(zero), sigma(row_names_.size());
     if (!sweeps->momentum(0, tree_.q0.data(), zero.data(), {}, u.data(), sigma.data(), nullptr))
-      kkt_reason_ = tree_.joint_in_words(sweeps->stuck()) + " has no inertia before its loops close";
+      kkt_reason_ =
+          tree_.joint_in_words(sweeps->stuck()) + " has no inertia before its loops close";
   }
   if (kkt_reason_.empty()) return;
   if (asked == KktChoice::sweeps)
@@ -120,31 +121,7 @@ bool Mechanism::has_joint_forces() const {
   return visit([](const auto& cast) { return cast.model.has_joint_forces; });
 }
 
-const KktPattern& Mechanism::kkt_pattern() const {
-  std::call_once(pattern_known_, [&] {
-    const auto analyse = [&]<class Space>(const Cast<Space>& cast) {
-      SweepEvaluation<Space, double> e(*this, cast);
-      e.place(0, tree_.q0.data());
-      e.each_mass_entry([&](int i, int j, double) { pattern_.mass.push_back({i, j}); });
-      e.each_constraint_entry([&](int i, int j, double) { pattern_.constraint.push_back({i, j}); });
-    };
-    if (plan_.planar)
-      analyse(std::get<0>(cast_));
-    else
-      analyse(std::get<1>(cast_));
-  });
-  return pattern_;
-}
-
 Mechanism::~Mechanism() = default;
-
-template <class S>
-std::unique_ptr<Evaluation<S>> Mechanism::evaluation() const {
-  if (plan_.planar) return std::make_unique<SweepEvaluation<Planar, S>>(*this, std::get<0>(cast_));
-  return std::make_unique<SweepEvaluation<Spatial, S>>(*this, std::get<1>(cast_));
-}
-template std::unique_ptr<Evaluation<double>> Mechanism::evaluation<double>() const;
-template std::unique_ptr<Evaluation<Dual8>> Mechanism::evaluation<Dual8>() const;
 
 namespace {
 

@@ -48,9 +48,9 @@ class Mechanism {
   const Scene& scene() const { return scene_; }
   const Tree& tree() const { return tree_; }
   const Plan& plan() const { return plan_; }
-  int nq() const { return tree_.nq; }        ///< coordinates
-  int nv() const { return tree_.nv; }        ///< rates, momenta
-  int m() const { return rows_; }            ///< loop equations
+  int nq() const { return tree_.nq; }  ///< coordinates
+  int nv() const { return tree_.nv; }  ///< rates, momenta
+  int m() const { return rows_; }      ///< loop equations
   /// How (7) is solved, when there are loops; never automatic.
   KktChoice kkt() const { return kkt_; }
   /// Whether an assembled matrix, where one is needed, is dense.

@@ -231,4 +231,10 @@ class Mechanism::SweepEvaluation final : public Evaluation<S> {
   bool gravity_current_ = false;
 };
 
+template <class S>
+std::unique_ptr<Evaluation<S>> Mechanism::evaluation() const {
+  if (plan_.planar) return std::make_unique<SweepEvaluation<Planar, S>>(*this, std::get<0>(cast_));
+  return std::make_unique<SweepEvaluation<Spatial, S>>(*this, std::get<1>(cast_));
+}
+
 }  // namespace momenta

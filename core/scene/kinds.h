@@ -13,9 +13,9 @@ namespace momenta::reading {
 inline constexpr std::array<std::string_view, 9> joint_kinds{
     "revolute",  "prismatic", "helical", "cylindrical", "universal",
     "spherical", "planar",    "free",    "weld"};
-inline constexpr std::array<std::string_view, 9> loop_kinds{
-    "point",    "revolute",  "spherical",   "weld",  "prismatic",
-    "distance", "universal", "cylindrical", "planar"};
+inline constexpr std::array<std::string_view, 9> loop_kinds{"point",     "revolute",    "spherical",
+                                                            "weld",      "prismatic",   "distance",
+                                                            "universal", "cylindrical", "planar"};
 inline constexpr std::array<std::string_view, 4> drive_kinds{"polynomial", "harmonic", "step",
                                                              "table"};
 inline constexpr std::array<std::string_view, 3> force_kinds{"spring-damper", "torque", "wrench"};
@@ -40,8 +40,8 @@ constexpr bool has_axis(JointKind kind) {
          kind != JointKind::user;
 }
 constexpr bool has_axis(LoopKind kind) {
-  return kind == LoopKind::revolute || kind == LoopKind::prismatic ||
-         kind == LoopKind::universal || kind == LoopKind::cylindrical || kind == LoopKind::planar;
+  return kind == LoopKind::revolute || kind == LoopKind::prismatic || kind == LoopKind::universal ||
+         kind == LoopKind::cylindrical || kind == LoopKind::planar;
 }
 
 /// What drives prescribe, coordinate by coordinate, where all of them must be driven or none.

@@ -175,9 +175,9 @@ LoopSpec read_loop(const Fields& table) {
     table.refuse(key,
                  "belongs to a [[joint]], expected none on a loop (a loop has no coordinates)");
   if (!has_axis(loop.kind))
-    table.refuse("axis",
-                 "has no meaning for a " + kind + " loop, expected on revolute, prismatic, "
-                 "universal, cylindrical and planar only");
+    table.refuse("axis", "has no meaning for a " + kind +
+                             " loop, expected on revolute, prismatic, "
+                             "universal, cylindrical and planar only");
   if (loop.kind != LoopKind::universal)
     table.refuse("axis2", "has no meaning for a " + kind + " loop, expected on universal only");
   if (loop.kind != LoopKind::distance)

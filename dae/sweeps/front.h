@@ -1,6 +1,6 @@
 #pragma once
-// What a front carries of the loops still open at it, and how a loop closes. With P* = M*Ω + C σ + D
-// and the loops' residual r = CᵀΩ − W σ + d, closing a row k, pivot w = W_kk, takes σ_k out by
+// What a front carries of the loops still open at it, and how a loop closes. With P* = M*Ω + C σ +
+// D and the loops' residual r = CᵀΩ − W σ + d, closing a row k, pivot w = W_kk, takes σ_k out by
 // r_k = 0:
 //
 //   σ_k = f(w) (c_kᵀΩ + d_k − W_k· σ)
@@ -158,7 +158,7 @@ template <class S, int Rows, int Columns>
 struct ClosedPair {
   Lanes<S, Rows> Ga, Gb;
   S a[Columns], b[Columns];
-  S da, db, l, swap;      ///< l: W_ab f_a; swap: 1 where the rows changed places
+  S da, db, l, swap;  ///< l: W_ab f_a; swap: 1 where the rows changed places
   S kept_a, kept_b;
 
   template <class Motion>

@@ -20,6 +20,11 @@ struct Lanes {
   MOMENTA_INLINE S operator[](int i) const { return v[i]; }
   MOMENTA_INLINE void set(int i, const S& x) { v[i] = x; }
   MOMENTA_INLINE void add(int i, const S& x) { v[i] = v[i] + x; }
+  /// To lanes i, i + 1; i is even.
+  MOMENTA_INLINE void add_pair(int i, const S& x, const S& y) {
+    v[i] = v[i] + x;
+    v[i + 1] = v[i + 1] + y;
+  }
 
   MOMENTA_INLINE Lanes& operator+=(const Lanes& b) {
     for (int i = 0; i < Rows; ++i) v[i] = v[i] + b.v[i];
@@ -60,6 +65,16 @@ struct Lanes<Pack<1, Level>, Rows> {
   }
   MOMENTA_INLINE void add(int i, const S& x) {
     for (int k = 0; k < parts; ++k) v[k] += places(k) == i ? all(x) : Part{};
+  }
+  MOMENTA_INLINE void add_pair(int i, const S& x, const S& y) {
+    for (int k = 0; k < parts; ++k) {
+      Part both;
+      for (int j = 0; j < width; j += 2) {
+        both[j] = x.v;
+        both[j + 1] = y.v;
+      }
+      v[k] += (places(k) & ~1) == i ? both : Part{};
+    }
   }
 
   MOMENTA_INLINE Lanes& operator+=(const Lanes& b) {

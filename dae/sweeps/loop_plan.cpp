@@ -107,7 +107,8 @@ LoopPlan planned(const std::vector<int>& parents, const std::vector<LoopShape>& 
     int leg = -1;
     if (root_a != root_b)
       for (const int root : {root_a, root_b})
-        if (root >= 0 && folded_onto[static_cast<std::size_t>(root)] >= 0) leg = std::max(leg, root);
+        if (root >= 0 && folded_onto[static_cast<std::size_t>(root)] >= 0)
+          leg = std::max(leg, root);
     LoopShape open = loop;
     if (leg >= 0) (leg == root_a ? open.b : open.a) = -1;
     const Way way = way_of(parents, open);

@@ -19,28 +19,28 @@
 namespace momenta {
 
 struct LoopPlan {
-  static constexpr int most_lanes = 8;
+  static constexpr int most_lanes = 16;
 
   struct End {
     int loop = 0;
-    bool on_a = true;     ///< body A of the loop, the one whose wrench acts as written
-    bool first = true;    ///< the end that brings the loop's right-hand side along
+    bool on_a = true;   ///< body A of the loop, the one whose wrench acts as written
+    bool first = true;  ///< the end that brings the loop's right-hand side along
   };
   struct Range {
     int first = 0, last = 0;  ///< [first, last)
   };
 
-  std::vector<End> ends;         ///< by body
-  std::vector<Range> ends_of;    ///< per body, into ends
-  std::vector<int> closings;     ///< loops, by the body that closes them, in closing order
+  std::vector<End> ends;                  ///< by body
+  std::vector<Range> ends_of;             ///< per body, into ends
+  std::vector<int> closings;              ///< loops, by the body that closes them, in closing order
   std::vector<Range> closings_of;         ///< per body, into closings
   std::vector<Range> ground_closings_of;  ///< per body: only roots have some
   std::vector<int> lane;                  ///< per loop: its first lane
   std::vector<char> pair;                 ///< per loop: two point rows and no other
-  std::vector<int> folded_onto;           ///< per body: of a root, the body its leg folds into; or −1
-  std::vector<char> takes_legs;           ///< per body: legs fold into it
-  std::vector<char> posed;                ///< per body: carries an end of a loop, near or far
-  int lanes = 0;                          ///< lanes needed
+  std::vector<int> folded_onto;  ///< per body: of a root, the body its leg folds into; or −1
+  std::vector<char> takes_legs;  ///< per body: legs fold into it
+  std::vector<char> posed;       ///< per body: carries an end of a loop, near or far
+  int lanes = 0;                 ///< lanes needed
   bool fits() const { return lanes <= most_lanes; }
 };
 

@@ -13,7 +13,7 @@ struct RightSide {
   bool positions = false;     ///< second row Φ_q u = −Φ instead of −Φ_t
   bool rates = false;         ///< ṗ too
   double leak = 0;            ///< κ [1/s]
-  double alpha = 0, beta = 0; ///< Φ̈ + 2α Φ̇ + β² Φ = 0 [1/s]
+  double alpha = 0, beta = 0;  ///< Φ̈ + 2α Φ̇ + β² Φ = 0 [1/s]
 };
 
 }  // namespace momenta

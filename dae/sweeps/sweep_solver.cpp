@@ -1,5 +1,5 @@
-// The forms' right-hand sides from the sweeps that carry loops. Springs between points of bodies and
-// wrenches take a sweep of their own, where a scene has some.
+// The forms' right-hand sides from the sweeps that carry loops. Springs between points of bodies
+// and wrenches take a sweep of their own, where a scene has some.
 
 #include <momenta/dae/kkt/assembled_solver.h>
 #include <momenta/dae/sweeps/levels/loop_sweeps.h>

@@ -11,7 +11,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "quad.h"
+#include "equations/quad.h"
 
 namespace momenta {
 

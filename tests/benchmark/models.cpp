@@ -249,8 +249,8 @@ Scene scissor_ladder(int n) {
   for (int i = 0; i < n; ++i) {
     bar(number("a", i), 1);
     bar(number("b", i), 0);
-    JointSpec a = joint(number("A", i), JointKind::revolute,
-                        i == 0 ? "ground" : number("b", i - 1), number("a", i));
+    JointSpec a = joint(number("A", i), JointKind::revolute, i == 0 ? "ground" : number("b", i - 1),
+                        number("a", i));
     if (i > 0) a.origin_parent = {1, 0, 0};
     a.position = {i == 0 ? tilt : tilt - other};
     a.velocity = {i == 0 ? 0.3 : 0.6};
@@ -269,57 +269,6 @@ Scene scissor_ladder(int n) {
     c.origin_parent = {2, 0, 0};
     c.origin_child = {-1, 0, 0};
     s.loops.push_back(c);
-  }
-  return s;
-}
-
-Scene stewart(int) {
-  Scene s;
-  s.name = "Stewart platform";
-  s.gravity = {0, 0, -9.81};
-  const auto body = [&](const std::string& name, double mass, Eigen::Vector3d com,
-                        Eigen::Vector3d inertia) {
-    BodySpec b;
-    b.name = name;
-    b.mass = mass;
-    b.com = com;
-    b.inertia = inertia.asDiagonal();
-    s.bodies.push_back(b);
-  };
-  const Eigen::Matrix3d turn = (Eigen::AngleAxisd(0.2, Eigen::Vector3d::UnitZ()) *
-                                Eigen::AngleAxisd(0.15, Eigen::Vector3d::UnitX()))
-                                   .toRotationMatrix();
-  const Eigen::Vector3d place(0.05, -0.03, 1.1);
-  body("platform", 10, {0, 0, 0.02}, {0.4, 0.4, 0.8});
-  JointSpec free = joint("P", JointKind::free, "ground", "platform");
-  const Eigen::Quaterniond at(turn);
-  free.position = {place.x(), place.y(), place.z(), at.w(), at.x(), at.y(), at.z()};
-  s.joints.push_back(free);
-  for (int i = 0; i < 6; ++i) {
-    const double side = i % 2 ? 0.25 : -0.25;
-    const double a = i * 2 * right_angle / 3 + side, c = i * 2 * right_angle / 3 - side;
-    const Eigen::Vector3d foot(std::cos(a), std::sin(a), 0),
-        seat(0.5 * std::cos(c), 0.5 * std::sin(c), 0);
-    const Eigen::Vector3d way = place + turn * seat - foot, along = way.normalized();
-    body(number("lower", i), 2, {0, 0, 0.3}, {0.06, 0.06, 0.01});
-    JointSpec u = joint(number("U", i), JointKind::universal, "ground", number("lower", i));
-    u.origin_parent = foot;
-    u.axis = {1, 0, 0};
-    u.axis2 = {0, 1, 0};
-    u.position = {std::atan2(-along.y(), along.z()), std::asin(along.x())};
-    s.joints.push_back(u);
-    body(number("upper", i), 1, {0, 0, -0.3}, {0.03, 0.03, 0.005});
-    JointSpec p = joint(number("S", i), JointKind::prismatic, number("lower", i), number("upper", i));
-    p.axis = {0, 0, 1};
-    p.position = {way.norm()};
-    s.joints.push_back(p);
-    LoopSpec l;
-    l.name = number("B", i);
-    l.kind = LoopKind::spherical;
-    l.parent = "platform";
-    l.child = number("upper", i);
-    l.origin_parent = seat;
-    s.loops.push_back(l);
   }
   return s;
 }

@@ -29,7 +29,5 @@ Scene four_bar();
 Scene n_four_bar(int n);
 /// A ladder of n pairs of crossed bars, 2n bars, n − 1 loops that reach over two pairs each.
 Scene scissor_ladder(int n);
-/// Six legs, each a universal and a prismatic joint, under a free platform on ball joints.
-Scene stewart(int);
 
 }  // namespace momenta::benchmark_models

@@ -112,4 +112,64 @@ inline Scene bricard() {
   return s;
 }
 
+/// A Stewart platform, or one of other than six legs: each a universal and a prismatic joint, under
+/// a free platform on ball joints.
+inline Scene platform(int legs) {
+  Scene s;
+  s.name = "Stewart platform";
+  s.gravity = {0, 0, -9.81};
+  const auto body = [&](const std::string& name, double mass, const Eigen::Vector3d& com,
+                        const Eigen::Vector3d& inertia) {
+    BodySpec b;
+    b.name = name;
+    b.mass = mass;
+    b.com = com;
+    b.inertia = inertia.asDiagonal();
+    s.bodies.push_back(b);
+  };
+  const auto joint = [&](const std::string& name, JointKind kind, const std::string& parent,
+                         const std::string& child) -> JointSpec& {
+    JointSpec j;
+    j.name = name;
+    j.kind = kind;
+    j.parent = parent;
+    j.child = child;
+    s.joints.push_back(j);
+    return s.joints.back();
+  };
+  const Eigen::Matrix3d turn = (Eigen::AngleAxisd(0.2, Eigen::Vector3d::UnitZ()) *
+                                Eigen::AngleAxisd(0.15, Eigen::Vector3d::UnitX()))
+                                   .toRotationMatrix();
+  const Eigen::Vector3d place(0.05, -0.03, 1.1);
+  const Eigen::Quaterniond at(turn);
+  body("platform", 10, {0, 0, 0.02}, {0.4, 0.4, 0.8});
+  joint("P", JointKind::free, "ground", "platform").position = {
+      place.x(), place.y(), place.z(), at.w(), at.x(), at.y(), at.z()};
+  for (int i = 0; i < legs; ++i) {
+    const std::string number = std::to_string(i);
+    const double side = i % 2 ? 0.25 : -0.25, around = i * 2 * std::acos(-1.0) / legs;
+    const Eigen::Vector3d foot(std::cos(around + side), std::sin(around + side), 0),
+        seat(0.5 * std::cos(around - side), 0.5 * std::sin(around - side), 0);
+    const Eigen::Vector3d way = place + turn * seat - foot, along = way.normalized();
+    body("lower" + number, 2, {0, 0, 0.3}, {0.06, 0.06, 0.01});
+    JointSpec& u = joint("U" + number, JointKind::universal, "ground", "lower" + number);
+    u.origin_parent = foot;
+    u.axis = {1, 0, 0};
+    u.axis2 = {0, 1, 0};
+    u.position = {std::atan2(-along.y(), along.z()), std::asin(along.x())};
+    body("upper" + number, 1, {0, 0, -0.3}, {0.03, 0.03, 0.005});
+    JointSpec& p = joint("S" + number, JointKind::prismatic, "lower" + number, "upper" + number);
+    p.axis = {0, 0, 1};
+    p.position = {way.norm()};
+    LoopSpec l;
+    l.name = "B" + number;
+    l.kind = LoopKind::spherical;
+    l.parent = "platform";
+    l.child = "upper" + number;
+    l.origin_parent = seat;
+    s.loops.push_back(l);
+  }
+  return s;
+}
+
 }  // namespace momenta::equations

@@ -11,9 +11,9 @@ inline constexpr std::array planar_loop_kinds{LoopKind::point,     LoopKind::rev
                                               LoopKind::spherical, LoopKind::weld,
                                               LoopKind::prismatic, LoopKind::distance};
 inline constexpr std::array loop_kinds{
-    LoopKind::point,     LoopKind::revolute, LoopKind::spherical, LoopKind::weld,
-    LoopKind::prismatic, LoopKind::distance, LoopKind::universal, LoopKind::cylindrical,
-    LoopKind::planar};
+    LoopKind::point,     LoopKind::revolute,    LoopKind::spherical,
+    LoopKind::weld,      LoopKind::prismatic,   LoopKind::distance,
+    LoopKind::universal, LoopKind::cylindrical, LoopKind::planar};
 
 inline LoopSpec random_loop(RandomTree& random, const Scene& scene, LoopKind kind) {
   LoopSpec l;
@@ -58,7 +58,8 @@ inline LoopSpec into_plane(RandomTree& random, const Scene& scene, LoopSpec l,
 }
 
 /// Moves the parent's point along the normal until both sides lie at one height.
-inline void level(LoopSpec& l, const Scene& scene, const Tree& tree, const Eigen::Vector3d& normal) {
+inline void level(LoopSpec& l, const Scene& scene, const Tree& tree,
+                  const Eigen::Vector3d& normal) {
   const DenseLagrangian motion(scene, tree);
   const auto poses = motion.poses(0, tree.q0);
   const auto pose = [&](const std::string& name) -> Eigen::Isometry3d {

@@ -5,11 +5,10 @@
 #include <momenta/core/kernel/momentum_recursion.h>
 #include <momenta/core/open_chain.h>
 
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <random>
 
+#include "equations/level_symbols.h"
 #include "equations/random_tree.h"
 #include "equations/tolerance.h"
 
@@ -157,31 +156,8 @@ TEST(Levels, SinesOfLargeAnglesAndNone) {
 }
 
 TEST(Levels, CodeOfALevelIsItsOwn) {
-  // Whatever a level's object file defines for others to share carries the level in its name:
-  // Pack<W, L> or OpenSweepsAt<…, L>.
-  const std::string folder = std::string(MOMENTA_BINARY_DIR) + "/core";
-  const std::string command = "for f in $(find '" + folder +
-                              "' -name 'level[134].cpp.o'); do nm -C \"$f\"; done 2>/dev/null";
-  FILE* pipe = popen(command.c_str(), "r");
-  ASSERT_NE(pipe, nullptr);
-  std::array<char, 8192> line{};
-  int symbols = 0;
-  while (std::fgets(line.data(), line.size(), pipe)) {
-    const std::string text = line.data();
-    if (text.size() < 20 || (text[17] != 'W' && text[17] != 'V' && text[17] != 'u')) continue;
-    ++symbols;
-    const bool own = text.find("Pack<") != std::string::npos ||
-                     text.find("OpenSweepsAt<") != std::string::npos ||
-                     text.find("sweeps_at<") != std::string::npos;
-    const bool data =
-        text.find("typeinfo") != std::string::npos || text.find("DW.ref") != std::string::npos ||
-        text.find("__asan") != std::string::npos || text.find("__odr") != std::string::npos;
-    EXPECT_TRUE(own || data) << text;
-  }
-  pclose(pipe);
-#if defined(__OPTIMIZE__) && !defined(__SANITIZE_ADDRESS__)
-  EXPECT_GT(symbols, 20);
-#endif
+  expect_own_symbols(std::string(MOMENTA_BINARY_DIR) + "/core", "level[134].cpp.o",
+                     {"Pack<", "OpenSweepsAt<", "sweeps_at<"});
 }
 
 }  // namespace

@@ -351,10 +351,14 @@ TEST(Scene, DrivesOfCoordinates) {
 
 TEST(Scene, LoopKinds) {
   const std::pair<const char*, LoopKind> kinds[] = {
-      {"point", LoopKind::point},         {"revolute", LoopKind::revolute},
-      {"spherical", LoopKind::spherical}, {"weld", LoopKind::weld},
-      {"prismatic", LoopKind::prismatic}, {"universal", LoopKind::universal},
-      {"cylindrical", LoopKind::cylindrical}, {"planar", LoopKind::planar},
+      {"point", LoopKind::point},
+      {"revolute", LoopKind::revolute},
+      {"spherical", LoopKind::spherical},
+      {"weld", LoopKind::weld},
+      {"prismatic", LoopKind::prismatic},
+      {"universal", LoopKind::universal},
+      {"cylindrical", LoopKind::cylindrical},
+      {"planar", LoopKind::planar},
   };
   for (const auto& [name, kind] : kinds)
     EXPECT_EQ(

@@ -2,8 +2,8 @@
 // The sweeps that carry loops, compiled for several x86-64 levels in one library and for several
 // numbers of lanes, and chosen when a mechanism is made.
 
-#include <momenta/core/kernel/link.h>
 #include <momenta/core/kernel/levels/open_sweeps.h>
+#include <momenta/core/kernel/link.h>
 #include <momenta/core/kernel/planar_link.h>
 #include <momenta/dae/loop/loop_model.h>
 #include <momenta/dae/sweeps/loop_plan.h>
@@ -62,7 +62,8 @@ LoopPlan plan_loops(const Model<Space>& model, const LoopModel<Space>& loops) {
   return plan_loops(parents, shapes, Space::dimension == 6);
 }
 
-/// @pre `loops` in the frames of the links, level ≤ best_level(), plan.fits(); tree and plan stay where they are.
+/// @pre `loops` in the frames of the links, level ≤ best_level(), plan.fits(); tree and plan stay
+/// where they are.
 std::unique_ptr<LoopedSweeps> make_looped_sweeps(const PlanarTree& tree,
                                                  const LoopModel<Planar>& loops,
                                                  const LoopPlan& plan, int level);

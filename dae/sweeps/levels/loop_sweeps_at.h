@@ -30,7 +30,9 @@ struct StateOut {
 template <class Tree, class Space, int Level, int Rows>
 class LoopedSweepsAt final : public LoopedSweeps {
   using One = Pack<1, Level>;
-  using Many = Pack<native_width<Level>, Level>;
+  /// States side by side: one by one in the widest fronts, which fill the registers by themselves.
+  using Many = Pack<(Rows > 8 ? 1 : native_width<Level>), Level>;
+  static constexpr std::size_t abreast = Rows > 8 ? 1 : native_width<Level>;
 
  public:
   LoopedSweepsAt(const Tree& tree, const LoopModel<Space>& loops, const LoopPlan& plan)
@@ -61,7 +63,7 @@ class LoopedSweepsAt final : public LoopedSweeps {
     right.fade = fade;
     right.leak = leak;
     right.rates = true;
-    constexpr std::size_t lanes = native_width<Level>;
+    constexpr std::size_t lanes = abreast;
     bool all = true;
     const auto pack = [&](const double* q, const double* p, double* u, double* sigma, double* pdot,
                           std::ptrdiff_t stride) {
@@ -87,7 +89,7 @@ class LoopedSweepsAt final : public LoopedSweeps {
     return count;
   }
   int lanes() const override { return Rows; }
-  int width() const override { return native_width<Level>; }
+  int width() const override { return static_cast<int>(abreast); }
   int stuck() const override { return stuck_; }
   bool weak_leg() const override { return weak_leg_; }
 
@@ -114,7 +116,7 @@ class LoopedSweepsAt final : public LoopedSweeps {
   /// The states that fill no pack, copied into one; its last lanes repeat the last state.
   template <class PackOf>
   void rest(const LoopedStates& s, std::size_t first, PackOf&& pack) {
-    constexpr std::size_t lanes = native_width<Level>;
+    constexpr std::size_t lanes = abreast;
     const auto nq = static_cast<std::size_t>(tree_.model->nq),
                nv = static_cast<std::size_t>(tree_.model->nv),
                m = static_cast<std::size_t>(loops_.rows);
@@ -161,7 +163,8 @@ std::unique_ptr<LoopedSweeps> looped_sweeps_at(const Tree& tree, const LoopModel
   if constexpr (Space::dimension == 3)
     if (plan.lanes <= 2) return make.template operator()<2>();
   if (plan.lanes <= 4) return make.template operator()<4>();
-  return make.template operator()<8>();
+  if (plan.lanes <= 8) return make.template operator()<8>();
+  return make.template operator()<16>();
 }
 
 }  // namespace momenta

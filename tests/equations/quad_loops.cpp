@@ -1,8 +1,6 @@
-#include "quad_loops.h"
+#include "equations/quad_loops.h"
 
-#include <momenta/dae/kkt/kkt.h>
-
-#include "quad.h"
+#include "equations/quad.h"
 
 namespace momenta {
 
@@ -36,7 +34,7 @@ struct Out {
 template <class Space, class Tree>
 LoopedRates rates_in(const Mechanism& mechanism, const Model<Space>& model, const Tree& tree,
                      const Eigen::VectorXd& q, const Eigen::VectorXd& p, const Eigen::VectorXd& v,
-                     double leak) {
+                     double leak, double fade) {
   const LoopModel<Space> loops =
       in_link_frames(build_loops(mechanism.scene(), mechanism.tree(), model), tree);
   const LoopPlan plan = plan_loops(model, loops);
@@ -45,7 +43,7 @@ LoopedRates rates_in(const Mechanism& mechanism, const Model<Space>& model, cons
   const std::vector<double> zero(nv);
   RightSide<Quad> right;
   right.leak = leak;
-  right.fade = fade_evaluation;
+  right.fade = fade;
   right.rates = true;
   constexpr int lanes = LoopPlan::most_lanes;
   LoopSweeps<Space, Quad, lanes, true> momentum(tree, loops, plan);
@@ -65,14 +63,15 @@ LoopedRates rates_in(const Mechanism& mechanism, const Model<Space>& model, cons
 }  // namespace
 
 LoopedRates quad_rates(const Mechanism& mechanism, const Eigen::VectorXd& q,
-                       const Eigen::VectorXd& p, const Eigen::VectorXd& v, double leak) {
+                       const Eigen::VectorXd& p, const Eigen::VectorXd& v, double leak,
+                       double fade) {
   const Tree& tree = mechanism.tree();
   if (mechanism.plan().planar) {
     const auto model = build_planar_model(tree, mechanism.scene(), mechanism.plan().basis);
-    return rates_in<Planar>(mechanism, model, build_links(model), q, p, v, leak);
+    return rates_in<Planar>(mechanism, model, build_links(model), q, p, v, leak, fade);
   }
   const auto model = build_spatial_model(tree, mechanism.scene());
-  return rates_in<Spatial>(mechanism, model, build_links(model), q, p, v, leak);
+  return rates_in<Spatial>(mechanism, model, build_links(model), q, p, v, leak, fade);
 }
 
 }  // namespace momenta

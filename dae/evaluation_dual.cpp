@@ -1,0 +1,7 @@
+#include <momenta/dae/sweep_evaluation.h>
+
+namespace momenta {
+
+template std::unique_ptr<Evaluation<Dual8>> Mechanism::evaluation<Dual8>() const;
+
+}  // namespace momenta

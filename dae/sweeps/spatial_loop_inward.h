@@ -1,0 +1,359 @@
+#pragma once
+// The inward sweep in space: fronts gathered, loops closed, joints eliminated. Part of
+// spatial_loop_sweeps.h.
+
+#include <momenta/dae/sweeps/spatial_loop_sweeps.h>
+
+namespace momenta {
+
+/// The loop ends on body k.
+template <class S, int Rows, bool Momentum>
+void LoopSweeps<Spatial, S, Rows, Momentum>::enter(std::size_t k, const RightSide<S>& right,
+                                                   Carried& a) {
+  const LoopPlan::Range range = plan_->ends_of[k];
+  for (int i = range.first; i < range.last; ++i)
+    enter(k, plan_->ends[static_cast<std::size_t>(i)], right, a);
+}
+
+template <class S, int Rows, bool Momentum>
+void LoopSweeps<Spatial, S, Rows, Momentum>::enter(std::size_t k, const LoopPlan::End& end,
+                                                   const RightSide<S>& right, Carried& a) {
+  const auto loop = static_cast<std::size_t>(end.loop);
+  const Loop& l = loops_->loops[loop];
+  const SpatialLoopPlace<S>& s = places_[loop];
+  const auto& axes = bodies_[k].pose.axes;
+  const int lane = plan_->lane[loop];
+  const S sign(end.on_a ? 1.0 : -1.0);
+  const Vec3<S> arm = transpose_times(axes, end.on_a ? s.ra : s.rb);
+  Vec3<S> centre_force{}, centre_couple{};
+  for (int row = 0; row < l.rows; ++row) {
+    const Vec3<S> f = transpose_times(axes, sign * s.F[row]);
+    const Vec3<S> n = cross(arm, f) + transpose_times(axes, sign * s.c[row]);
+    for (int j = 0; j < 3; ++j) {
+      a.blocks.C[j].add(lane + row, f[j]);
+      a.blocks.C[3 + j].add(lane + row, n[j]);
+    }
+    if (right.centre) {
+      const S centre = right.centre[l.row + row];
+      centre_force += centre * f;
+      centre_couple += centre * n;
+    }
+    if (!end.first) continue;
+    if (right.positions) a.blocks.d.add(lane + row, s.position(l, row));
+    if constexpr (!Momentum) {
+      const auto rates = s.rates(loop_body(l.a), loop_body(l.b));
+      S d = s.bias(l, rates, row);
+      if (right.alpha != 0 || right.beta != 0)
+        d += (2 * right.alpha) * s.velocity(rates, row) +
+             (right.beta * right.beta) * s.position(l, row);
+      // The ground falls upward too: its end of the row accelerates with −g.
+      const auto& g = tree_->model->gravity;
+      const S along = s.F[row][0] * g[0] + s.F[row][1] * g[1] + s.F[row][2] * g[2];
+      if (l.b < 0) d += along;
+      if (l.a < 0) d -= along;
+      a.blocks.d.add(lane + row, d);
+    }
+  }
+  if (right.centre) {
+    a.cargo.Dfx += centre_force[0];
+    a.cargo.Dfy += centre_force[1];
+    a.cargo.Dfz += centre_force[2];
+    a.cargo.Dnx += centre_couple[0];
+    a.cargo.Dny += centre_couple[1];
+    a.cargo.Dnz += centre_couple[2];
+  }
+}
+
+/// Closes the loops of a leg that has been eliminated down to the ground into the body they tie it
+/// to: r = JᵀΩ_L − W σ + d with the leg's W and d.
+template <class S, int Rows, bool Momentum>
+void LoopSweeps<Spatial, S, Rows, Momentum>::fold(std::size_t root, const RightSide<S>& right,
+                                                  Carried& leg) {
+  const auto onto = static_cast<std::size_t>(plan_->folded_onto[root]);
+  const LoopPlan::Range range = plan_->ground_closings_of[root];
+  leg.cargo = {};
+  for (Column& c : leg.blocks.C) c = {};
+  for (int i = range.first; i < range.last; ++i) {
+    const int loop = plan_->closings[static_cast<std::size_t>(i)];
+    const bool on_a = loops_->loops[static_cast<std::size_t>(loop)].a == static_cast<int>(onto);
+    enter(onto, {loop, on_a, false}, right, leg);
+  }
+  for (int i = range.first; i < range.last; ++i) {
+    const int loop = plan_->closings[static_cast<std::size_t>(i)];
+    close(loop, leg, right.fade);
+    const Loop& l = loops_->loops[static_cast<std::size_t>(loop)];
+    for (int row = 0; row < l.rows; ++row)
+      weak_leg_ |= has_faded(rows_[static_cast<std::size_t>(l.row + row)].kept);
+  }
+  add<Momentum>(legs_[onto], leg.cargo);
+}
+
+template <class S, int Rows, bool Momentum>
+void LoopSweeps<Spatial, S, Rows, Momentum>::close(int loop, Carried& a, double fade) {
+  const Loop& l = loops_->loops[static_cast<std::size_t>(loop)];
+  const int points = l.length > 0 ? 1 : l.n_points;
+  close_loop(a.blocks, plan_->lane[static_cast<std::size_t>(loop)], points, l.rows - points, fade,
+             &rows_[static_cast<std::size_t>(l.row)], SpatialWeight<S, Cargo<S>>{a.cargo});
+}
+
+template <class S, int Rows, bool Momentum>
+template <class In>
+bool LoopSweeps<Spatial, S, Rows, Momentum>::inward(const In& r, const RightSide<S>& right) {
+  const Link* links = tree_->links.data();
+  Carried a{}, ground{};
+  for (std::size_t k = pins_.size(); k-- > 0;) {
+    const Link& l = links[k];
+    if (l.tip) a = {};
+    add_body(a.cargo.M, l);
+    if constexpr (Momentum) {
+      a.cargo.Gx = a.cargo.Gx + l.moment[0];
+      a.cargo.Gy = a.cargo.Gy + l.moment[1];
+      a.cargo.Gz = a.cargo.Gz + l.moment[2];
+    } else {
+      const Vec3<S>& w = wrenches_[k].n;  // ω × (ω × m c), ω × J ω
+      const Vec3<S> mc{{S(l.c[0]), S(l.c[1]), S(l.c[2])}};
+      const Vec3<S> Jw{{l.J[0] * w[0] + l.J[1] * w[1] + l.J[2] * w[2],
+                        l.J[1] * w[0] + l.J[3] * w[1] + l.J[4] * w[2],
+                        l.J[2] * w[0] + l.J[4] * w[1] + l.J[5] * w[2]}};
+      const Vec3<S> f = cross(w, cross(w, mc)), n = cross(w, Jw);
+      a.cargo.Dfx = a.cargo.Dfx + f[0];
+      a.cargo.Dfy = a.cargo.Dfy + f[1];
+      a.cargo.Dfz = a.cargo.Dfz + f[2];
+      a.cargo.Dnx = a.cargo.Dnx + n[0];
+      a.cargo.Dny = a.cargo.Dny + n[1];
+      a.cargo.Dnz = a.cargo.Dnz + n[2];
+    }
+    if (l.slot >= 0) {
+      const Carried& slot = slots_[static_cast<std::size_t>(l.slot)];
+      add<Momentum>(a.cargo, slot.cargo);
+      a.blocks.add(slot.blocks);
+    }
+    if (plan_->takes_legs[k]) add<Momentum>(a.cargo, legs_[k]);
+    enter(k, right, a);
+    const LoopPlan::Range closing = plan_->closings_of[k];
+    for (int i = closing.first; i < closing.last; ++i)
+      close(plan_->closings[static_cast<std::size_t>(i)], a, right.fade);
+    if (!(l.kind == LinkKind::pin    ? pin_inward(k, r, a)
+          : l.kind == LinkKind::ball ? ball_inward(k, r, a)
+                                     : any_inward(k, r, a))) {
+      stuck_ = static_cast<int>(k);
+      return false;
+    }
+    if (l.parent < 0 && plan_->folded_onto[k] >= 0) {
+      fold(k, right, a);
+    } else if (l.parent < 0) {
+      ground.blocks.add_at_ground(a.blocks);
+      const LoopPlan::Range last = plan_->ground_closings_of[k];
+      for (int i = last.first; i < last.last; ++i)
+        close(plan_->closings[static_cast<std::size_t>(i)], ground, right.fade);
+    } else if (!l.first) {
+      Carried& slot =
+          slots_[static_cast<std::size_t>(links[static_cast<std::size_t>(l.parent)].slot)];
+      if (l.opens) {
+        slot = a;
+      } else {
+        add<Momentum>(slot.cargo, a.cargo);
+        slot.blocks.add(a.blocks);
+      }
+    }
+  }
+  return true;
+}
+
+template <class S, int Rows, bool Momentum>
+template <class In>
+bool LoopSweeps<Spatial, S, Rows, Momentum>::pin_inward(std::size_t k, const In& r, Carried& a) {
+  const Link& l = tree_->links[k];
+  PinRecord& w = pins_[k];
+  Cargo<S>& m = a.cargo;
+  Blocks& o = a.blocks;
+  if (!all_positive(m.M.Izz)) return false;
+  const S inverse = S(1.0) / m.M.Izz, e = S(r[l.u]) - m.Dnz;
+  w.y0 = e * inverse;
+  Eliminated<S> left;
+  eliminate_pin(m.M, inverse, w.h, left.M);
+  left.fx = m.Dfx + w.h.fx * e;
+  left.fy = m.Dfy + w.h.fy * e;
+  left.fz = m.Dfz + w.h.fz * e;
+  left.nx = m.Dnx + w.h.nx * e;
+  left.ny = m.Dny + w.h.ny * e;
+  left.nz = S(r[l.u]);
+  left.Gx = w.Gx = m.Gx;
+  left.Gy = w.Gy = m.Gy;
+  left.Gz = m.Gz;
+  // The loops.
+  const Column c = o.C[5];
+  w.g = c * inverse;
+  o.d += c * w.y0;
+  o.scale += (o.C[3] * o.C[3] + o.C[4] * o.C[4] + c * c) * inverse;
+  for (int i = 0; i < Rows; ++i) o.W[i] += w.g * c[i];
+  o.C[0] -= c * w.h.fx;
+  o.C[1] -= c * w.h.fy;
+  o.C[2] -= c * w.h.fz;
+  o.C[3] -= c * w.h.nx;
+  o.C[4] -= c * w.h.ny;
+  o.C[5] = {};
+  // The pin's screw.
+  const S cosine = angles_.cosine(k), sine = angles_.sine(k);
+  turn_and_shift_z(left.M, cosine, sine, l.d);
+  w.M = left.M;
+  S x = cosine * left.fx - sine * left.fy;
+  left.fy = sine * left.fx + cosine * left.fy;
+  left.fx = x;
+  x = cosine * left.nx - sine * left.ny;
+  left.ny = sine * left.nx + cosine * left.ny + l.d * left.fx;
+  left.nx = x - l.d * left.fy;
+  x = cosine * left.Gx - sine * left.Gy;
+  left.Gy = sine * left.Gx + cosine * left.Gy;
+  left.Gx = x;
+  screw_columns<2>(o.C, cosine, sine, S(l.d));
+  if constexpr (Momentum) {
+    w.Dfx = left.fx;
+    w.Dfy = left.fy;
+    w.Dnx = left.nx;
+    w.Dny = left.ny;
+    w.C[0] = o.C[0];
+    w.C[1] = o.C[1];
+    w.C[2] = o.C[3];
+    w.C[3] = o.C[4];
+    if (l.parent < 0) return true;
+  } else {
+    // D' += M'c, d' += C'ᵀc; on the ground c is its fall.
+    if (l.parent < 0) {
+      const Vec3<double>& g = tree_->weight[k];
+      w.c = {{{S(-g[0]), S(-g[1]), S(-g[2])}}, {}};
+    }
+    const Reduced<S>& M = left.M;
+    const Vec3<S>&v = w.c.v, &n = w.c.w;
+    left.fx += M.Axx * v[0] + M.Axy * v[1] + M.Axz * v[2] + M.Hxx * n[0] + M.Hxy * n[1];
+    left.fy += M.Axy * v[0] + M.Ayy * v[1] + M.Ayz * v[2] + M.Hyx * n[0] + M.Hyy * n[1];
+    left.fz += M.Axz * v[0] + M.Ayz * v[1] + M.Azz * v[2] + M.Hzx * n[0] + M.Hzy * n[1];
+    left.nx += M.Hxx * v[0] + M.Hyx * v[1] + M.Hzx * v[2] + M.Ixx * n[0] + M.Ixy * n[1];
+    left.ny += M.Hxy * v[0] + M.Hyy * v[1] + M.Hzy * v[2] + M.Ixy * n[0] + M.Iyy * n[1];
+    o.d += o.C[0] * v[0] + o.C[1] * v[1] + o.C[2] * v[2] + o.C[3] * n[0] + o.C[4] * n[1];
+    if (l.parent < 0) return true;
+  }
+  carry_any<Momentum>(l, body(k).edge, left, m);
+  columns_to_parent<S>(body(k).edge, o.C);
+  return true;
+}
+
+template <class S, int Rows, bool Momentum>
+template <class In>
+bool LoopSweeps<Spatial, S, Rows, Momentum>::ball_inward(std::size_t k, const In& r, Carried& a) {
+  const Link& l = tree_->links[k];
+  const auto record = static_cast<std::size_t>(l.record);
+  BallRecord& w = balls_[record];
+  Cargo<S>& m = a.cargo;
+  Blocks& o = a.blocks;
+  w.p = {{S(r[l.u]), S(r[l.u + 1]), S(r[l.u + 2])}};
+  if (!w.pivot.eliminate(m.M, w.A)) return false;
+  w.G = {{m.Gx, m.Gy, m.Gz}};
+  w.Df = Vec3<S>{{m.Dfx, m.Dfy, m.Dfz}} + w.pivot.remainder(w.p - Vec3<S>{{m.Dnx, m.Dny, m.Dnz}});
+  // L⁻¹ c, then as three pins.
+  Column z[3];
+  z[0] = o.C[3];
+  z[1] = o.C[4] - z[0] * w.pivot.l10;
+  z[2] = o.C[5] - z[0] * w.pivot.l20 - z[1] * w.pivot.l21;
+  const S inverse[3] = {w.pivot.i0, w.pivot.i1, w.pivot.i2};
+  for (int i = 0; i < 3; ++i) {
+    w.g[i] = z[i] * inverse[i];
+    o.d += w.g[i] * w.pivot.e[i];
+    o.scale += z[i] * w.g[i];
+    for (int j = 0; j < Rows; ++j) o.W[j] += w.g[i] * z[i][j];
+    for (int j = 0; j < 3; ++j) o.C[j] -= z[i] * w.pivot.s(j, i);
+    o.C[3 + i] = {};
+  }
+  for (int i = 0; i < 3; ++i) w.C[i] = o.C[i];
+  Vec3<S> force = w.Df;
+  if constexpr (!Momentum) {
+    if (l.parent < 0) {
+      const auto& g = tree_->model->gravity;
+      w.c.v = transpose_times(w.R, Vec3<S>{{S(-g[0]), S(-g[1]), S(-g[2])}});
+    }
+    force += w.A * w.c.v;
+    o.d += o.C[0] * w.c.v[0] + o.C[1] * w.c.v[1] + o.C[2] * w.c.v[2];
+  }
+  if (l.parent < 0) return true;
+  const auto& at = tree_->balls[record].origin;
+  carry_ball(at, w.R, w.A, force, w.p, m);
+  if constexpr (Momentum) {
+    const Vec3<S> G = w.R * w.G;
+    m.Gx = G[0];
+    m.Gy = G[1];
+    m.Gz = G[2];
+  }
+  columns_to_parent(w.R, Vec3<S>{{S(at[0]), S(at[1]), S(at[2])}}, o.C);
+  return true;
+}
+
+/// Sliders, screws, free, driven and welded joints.
+template <class S, int Rows, bool Momentum>
+template <class In>
+bool LoopSweeps<Spatial, S, Rows, Momentum>::any_inward(std::size_t k, const In& r, Carried& a) {
+  const Link& l = tree_->links[k];
+  const auto& b = body(k);
+  auto& x = joints_[static_cast<std::size_t>(l.record)];
+  auto& y = any_[static_cast<std::size_t>(l.record)];
+  Blocks& o = a.blocks;
+  x.M = blocks(a.cargo.M);
+  x.D = remainder_of(a.cargo);
+  x.moment = {{a.cargo.Gx, a.cargo.Gy, a.cargo.Gz}};
+  for (int i = 0; i < 6; ++i) y.C[i] = o.C[i];
+  S right[6]{};
+  for (int i = 0; i < b.nv; ++i) right[i] = S(r[b.u + i]);
+  Spatial::ArticulatedInertia<S> M;
+  if (!eliminate<Spatial>(b, x, M)) return false;
+  auto D = remainder<Spatial>(b, x, right);
+  const auto eliminate_lanes = [&](const Column& c, const Column& g, const S& e) {
+    o.d += g * e;
+    o.scale += c * g;
+    for (int i = 0; i < Rows; ++i) o.W[i] += g * c[i];
+  };
+  if (b.nv == 1) {
+    Motion E{};
+    const S one(1.0);
+    Joint<Spatial>::add_motion(b, x.edge, &one, E);
+    Column c = o.C[0] * E[0];
+    for (int i = 1; i < 6; ++i) c += o.C[i] * E[i];
+    y.g[0] = c * x.pivot;
+    eliminate_lanes(c, y.g[0], x.e);
+    for (int i = 0; i < 6; ++i) o.C[i] -= c * x.h[i];
+  } else if (b.nv == 6) {
+    // Angular: I⁻¹ c_n; then A⁻¹ (c_f − H I⁻¹ c_n).
+    Column left[3];
+    for (int i = 0; i < 3; ++i) {
+      y.g[3 + i] = o.C[3] * x.I(i, 0) + o.C[4] * x.I(i, 1) + o.C[5] * x.I(i, 2);
+      left[i] = o.C[i] - (o.C[3] * x.H(i, 0) + o.C[4] * x.H(i, 1) + o.C[5] * x.H(i, 2));
+    }
+    for (int i = 0; i < 3; ++i) eliminate_lanes(o.C[3 + i], y.g[3 + i], right[3 + i] - x.D.n[i]);
+    for (int i = 0; i < 3; ++i)
+      y.g[i] = left[0] * x.A(i, 0) + left[1] * x.A(i, 1) + left[2] * x.A(i, 2);
+    for (int i = 0; i < 3; ++i) eliminate_lanes(left[i], y.g[i], x.y[i]);
+    for (int i = 0; i < 6; ++i) o.C[i] = {};
+  }
+  if constexpr (!Momentum)
+    if (b.parent < 0) {
+      const auto& g = tree_->model->gravity;
+      y.given.v -=
+          Spatial::direction_to_child(b.edge, b.kind, x.edge, Vec3<S>{{S(g[0]), S(g[1]), S(g[2])}});
+    }
+  if (b.nv != 6) {  // else nothing is left: M' = 0, C' = 0
+    D += Spatial::momentum(M, y.given);
+    for (int i = 0; i < 6; ++i) o.d += o.C[i] * y.given[i];
+  }
+  if (b.parent < 0) return true;
+  Vec3<S> G{};
+  if constexpr (Momentum)
+    G = Spatial::moment_to_parent(b.edge, b.kind, x.edge, x.moment, b.subtree_mass);
+  set_cargo(a.cargo, Spatial::to_parent(b.edge, b.kind, x.edge, M),
+            Spatial::to_parent(b.edge, b.kind, x.edge, D), G);
+  if (Spatial::moves_freely(b.kind))
+    columns_to_parent(x.edge.rotation, x.edge.position, o.C);
+  else
+    screw_columns<2>(o.C, x.edge.cos_theta, x.edge.sin_theta, x.edge.d);
+  columns_to_parent<S>(b.edge, o.C);
+  return true;
+}
+
+}  // namespace momenta

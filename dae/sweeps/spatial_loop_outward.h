@@ -1,0 +1,270 @@
+#pragma once
+// The outward sweep in space, and the last one inward for ṗ. Part of spatial_loop_sweeps.h.
+
+#include <momenta/dae/sweeps/spatial_loop_sweeps.h>
+
+namespace momenta {
+
+/// Impulses of the loops in `range`, last closed first; `motion` null at the ground.
+template <class S, int Rows, bool Momentum>
+template <class Out>
+void LoopSweeps<Spatial, S, Rows, Momentum>::solve_loops(const LoopPlan::Range& range,
+                                                         const RightSide<S>& right,
+                                                         const Motion* motion, Column& sigma,
+                                                         Out& out) {
+  for (int i = range.last; i-- > range.first;) {
+    const auto at = static_cast<std::size_t>(plan_->closings[static_cast<std::size_t>(i)]);
+    const Loop& l = loops_->loops[at];
+    for (int j = l.rows; j-- > 0;) {
+      const Row& row = rows_[static_cast<std::size_t>(l.row + j)];
+      const S x = motion ? row.impulse(*motion, sigma) : row.impulse_at_ground(sigma);
+      sigma.set(row.lane, x);
+      const int place = l.row + row.lane - plan_->lane[at];
+      out[place] = right.centre ? x + right.centre[place] : x;
+    }
+  }
+}
+
+template <class S, int Rows, bool Momentum>
+template <class In, class Out>
+void LoopSweeps<Spatial, S, Rows, Momentum>::outward(const In& q, const RightSide<S>& right, Out u,
+                                                     Out impulse, Out rate) {
+  const Link* links = tree_->links.data();
+  const bool rates = Momentum && right.rates;
+  const auto& gravity = tree_->model->gravity;
+  Moving m{};
+  Column at_ground{};
+  for (std::size_t k = 0; k < pins_.size(); ++k) {
+    const Link& l = links[k];
+    if (l.parent < 0) {
+      m.V = {};
+      for (int i = 0; i < 3; ++i) m.g[i] = S(gravity[i]);
+      if (const int onto = plan_->folded_onto[k]; onto >= 0) {
+        m.sigma = {};
+        solve_loops(plan_->ground_closings_of[k], right, &taken_[static_cast<std::size_t>(onto)],
+                    m.sigma, impulse);
+      } else {
+        solve_loops(plan_->ground_closings_of[k], right, nullptr, at_ground, impulse);
+        m.sigma = at_ground;
+      }
+    } else if (!l.first) {
+      m = outward_slots_[static_cast<std::size_t>(links[static_cast<std::size_t>(l.parent)].slot)];
+    }
+    if (l.kind == LinkKind::pin)
+      pin_outward(k, q, rates, m, u, rate);
+    else if (l.kind == LinkKind::ball)
+      ball_outward(k, rates, m, u, rate);
+    else
+      any_outward(k, q, rates, m, u, rate);
+    const LoopPlan::Range closed = plan_->closings_of[k];
+    if (closed.first != closed.last) solve_loops(closed, right, &m.V, m.sigma, impulse);
+    if (plan_->takes_legs[k]) taken_[k] = m.V;
+    if constexpr (Momentum)
+      if (rates && plan_->posed[k]) {
+        bodies_[k].v = bodies_[k].pose.axes * m.V.v;
+        bodies_[k].w = bodies_[k].pose.axes * m.V.w;
+      }
+    if (l.slot >= 0) outward_slots_[static_cast<std::size_t>(l.slot)] = m;
+  }
+}
+
+template <class S, int Rows, bool Momentum>
+template <class In, class Out>
+void LoopSweeps<Spatial, S, Rows, Momentum>::pin_outward(std::size_t k, const In& q, bool rates,
+                                                         Moving& m, Out u, Out rate) {
+  const Link& l = tree_->links[k];
+  const PinRecord& w = pins_[k];
+  Vec3<S>&v = m.V.v, &o = m.V.w;
+  const S c = angles_.cosine(k), s = angles_.sine(k);
+  S turned(0.0);
+  const bool falls = Momentum && rates && tree_->model->has_gravity;
+  if (l.parent >= 0) {
+    constants_outward(l, body(k).edge, v[0], v[1], v[2], o[0], o[1], o[2]);
+    if constexpr (!Momentum) m.V += w.c;
+    if (falls) constants_outward(l, body(k).edge, m.g[0], m.g[1], m.g[2]);
+    if (rates) {
+      const Reduced<S>& M = w.M;
+      const S Pfx = M.Axx * v[0] + M.Axy * v[1] + M.Axz * v[2] + M.Hxx * o[0] + M.Hxy * o[1] +
+                    w.Dfx + dot(w.C[0], m.sigma);
+      const S Pfy = M.Axy * v[0] + M.Ayy * v[1] + M.Ayz * v[2] + M.Hyx * o[0] + M.Hyy * o[1] +
+                    w.Dfy + dot(w.C[1], m.sigma);
+      const S Pnx = M.Hxx * v[0] + M.Hyx * v[1] + M.Hzx * v[2] + M.Ixx * o[0] + M.Ixy * o[1] +
+                    w.Dnx + dot(w.C[2], m.sigma);
+      const S Pny = M.Hxy * v[0] + M.Hyy * v[1] + M.Hzy * v[2] + M.Ixy * o[0] + M.Iyy * o[1] +
+                    w.Dny + dot(w.C[3], m.sigma);
+      turned = v[1] * Pfx - v[0] * Pfy + o[1] * Pnx - o[0] * Pny;
+    }
+    v[0] = v[0] + l.d * o[1];
+    v[1] = v[1] - l.d * o[0];
+  } else {
+    m.V = {};
+    if constexpr (!Momentum) m.V = w.c;
+    if (falls) {
+      const Vec3<double>& g = tree_->weight[k];
+      m.g = {{S(g[0]), S(g[1]), S(g[2])}};
+    }
+  }
+  momenta::turn_back<2>(v, c, s);
+  momenta::turn_back<2>(o, c, s);
+  if (falls) {
+    momenta::turn_back<2>(m.g, c, s);
+    turned = turned + (w.Gx * m.g[1] - w.Gy * m.g[0]);
+  }
+  const S turning = w.y0 - dot(w.g, m.sigma) -
+                    (w.h.fx * v[0] + w.h.fy * v[1] + w.h.fz * v[2] + w.h.nx * o[0] + w.h.ny * o[1]);
+  const S own = turning - o[2];
+  o[2] = turning;
+  u[l.u] = own;
+  if (rates) rate[l.u] = l.has_force ? turned + joint_force(body(k), S(q[l.q]), own) : turned;
+}
+
+template <class S, int Rows, bool Momentum>
+template <class Out>
+void LoopSweeps<Spatial, S, Rows, Momentum>::ball_outward(std::size_t k, bool rates, Moving& m,
+                                                          Out u, Out rate) {
+  const Link& l = tree_->links[k];
+  const BallRecord& w = balls_[static_cast<std::size_t>(l.record)];
+  Vec3<S>&v = m.V.v, &o = m.V.w;
+  if (l.parent >= 0) {
+    const auto& r = tree_->balls[static_cast<std::size_t>(l.record)].origin;
+    v = transpose_times(w.R, v + cross(o, Vec3<S>{{S(r[0]), S(r[1]), S(r[2])}}));
+    o = transpose_times(w.R, o);
+  }
+  if constexpr (!Momentum) m.V += w.c;
+  m.g = transpose_times(w.R, m.g);
+  // ω = L⁻ᵀ (Δ⁻¹ L⁻¹ e − (Z Δ⁻¹)ᵀ v − g σ)
+  const Vec3<S> along = transpose_times(w.pivot.s, v);
+  const S z = w.pivot.e[2] * w.pivot.i2 - along[2] - dot(w.g[2], m.sigma);
+  const S y = w.pivot.e[1] * w.pivot.i1 - along[1] - dot(w.g[1], m.sigma) - w.pivot.l21 * z;
+  const Vec3<S> omega{{w.pivot.e[0] * w.pivot.i0 - along[0] - dot(w.g[0], m.sigma) -
+                           w.pivot.l10 * y - w.pivot.l20 * z,
+                       y, z}};
+  Vec3<S> net{};
+  if (rates) {
+    Vec3<S> P = w.A * v + w.Df;
+    for (int i = 0; i < 3; ++i) P[i] += dot(w.C[i], m.sigma);
+    net = cross(w.G, m.g) - cross(v, P) - cross(omega, w.p);
+  }
+  for (int i = 0; i < 3; ++i) {
+    u[l.u + i] = omega[i] - o[i];
+    if (rates) rate[l.u + i] = net[i];
+  }
+  o = omega;
+}
+
+template <class S, int Rows, bool Momentum>
+template <class In, class Out>
+void LoopSweeps<Spatial, S, Rows, Momentum>::any_outward(std::size_t k, const In& q, bool rates,
+                                                         Moving& m, Out u, Out rate) {
+  const auto& b = body(k);
+  const auto record = static_cast<std::size_t>(tree_->links[k].record);
+  const auto& x = joints_[record];
+  const auto& y = any_[record];
+  if (b.parent >= 0) m.V = Spatial::to_child(b.edge, b.kind, x.edge, m.V);
+  m.g = Spatial::direction_to_child(b.edge, b.kind, x.edge, m.g);
+  m.V += y.given;
+  S own[6];
+  if (b.nv == 1) {
+    own[0] = x.pivot * x.e - Spatial::power(x.h, m.V) - dot(y.g[0], m.sigma);
+    Joint<Spatial>::add_motion(b, x.edge, own, m.V);
+  } else if (b.nv == 6) {
+    Vec3<S> v = x.A * x.y;
+    for (int i = 0; i < 3; ++i) v[i] -= dot(y.g[i], m.sigma);
+    Vec3<S> omega = x.x - transpose_times(x.H, v);
+    for (int i = 0; i < 3; ++i) omega[i] -= dot(y.g[3 + i], m.sigma);
+    for (int i = 0; i < 3; ++i) {
+      own[i] = v[i] - m.V.v[i];
+      own[3 + i] = omega[i] - m.V.w[i];
+    }
+    m.V = {v, omega};
+  }
+  if (b.nv == 0) return;
+  for (int i = 0; i < b.nv; ++i) u[b.u + i] = own[i];
+  if (!rates) return;
+  Force net = Spatial::weight(S(b.subtree_mass), x.moment, m.g);
+  Force P = Spatial::momentum(x.M, m.V);  // (42)
+  P += x.D;
+  for (int i = 0; i < 6; ++i) P[i] += dot(y.C[i], m.sigma);
+  net -= Spatial::cross_force(m.V, P);
+  S along[6];
+  Joint<Spatial>::project(b, x.edge, net, along);  // (35)
+  if (b.nv == 1 && tree_->model->has_joint_forces) along[0] += joint_force(b, S(q[b.q]), own[0]);
+  for (int i = 0; i < b.nv; ++i) rate[b.u + i] = along[i];
+}
+
+template <class S, int Rows, bool Momentum>
+typename LoopSweeps<Spatial, S, Rows, Momentum>::Force
+LoopSweeps<Spatial, S, Rows, Momentum>::wrench_to_parent(std::size_t k, Force f) const {
+  const Link& l = tree_->links[k];
+  if (l.kind == LinkKind::ball) {
+    const auto record = static_cast<std::size_t>(l.record);
+    const auto& r = tree_->balls[record].origin;
+    const Mat3<S>& R = balls_[record].R;
+    const Vec3<S> force = R * f.f;
+    return {force, R * f.n + cross(Vec3<S>{{S(r[0]), S(r[1]), S(r[2])}}, force)};
+  }
+  if (l.kind == LinkKind::general)
+    return Spatial::to_parent(body(k).edge, body(k).kind,
+                              joints_[static_cast<std::size_t>(l.record)].edge, f);
+  Spatial::Edge<S> e;
+  e.cos_theta = angles_.cosine(k);
+  e.sin_theta = angles_.sine(k);
+  e.d = S(l.d);
+  return Spatial::to_parent(body(k).edge, JointKind::revolute, e, f);
+}
+
+/// ṗ += Eᵀ T*: N − κ w of the loops below.
+template <class S, int Rows, bool Momentum>
+template <class Out>
+void LoopSweeps<Spatial, S, Rows, Momentum>::rates_inward(const RightSide<S>& right,
+                                                          const Out& impulse, Out rate) {
+  for (std::size_t k = 0; k < wrenches_.size(); ++k)
+    if (plan_->posed[k]) wrenches_[k] = {};
+  for (std::size_t i = 0; i < places_.size(); ++i) {
+    const Loop& l = loops_->loops[i];
+    const SpatialLoopPlace<S>& s = places_[i];
+    Vec3<S> force, couple;
+    s.inertial_rate(
+        l, s.rates(loop_body(l.a), loop_body(l.b)),
+        [&](int row) { return S(impulse[l.row + row]); }, right.leak, force, couple);
+    const auto act = [&](int on, const Vec3<S>& arm, const S& sign) {
+      if (on < 0) return;
+      const auto k = static_cast<std::size_t>(on);
+      const auto& axes = bodies_[k].pose.axes;
+      const Vec3<S> n = couple + cross(arm, force);
+      wrenches_[k] += Force{transpose_times(axes, sign * force), transpose_times(axes, sign * n)};
+    };
+    act(l.a, s.ra, S(1.0));
+    act(l.b, s.rb, S(-1.0));
+  }
+  for (std::size_t k = wrenches_.size(); k-- > 0;) {
+    if (!plan_->posed[k]) continue;
+    const Link& l = tree_->links[k];
+    const auto& b = body(k);
+    const Force& T = wrenches_[k];
+    if (l.kind == LinkKind::pin) {
+      rate[l.u] = S(rate[l.u]) + T.n[2];
+    } else if (l.kind == LinkKind::ball) {
+      for (int i = 0; i < 3; ++i) rate[l.u + i] = S(rate[l.u + i]) + T.n[i];
+    } else if (b.nv > 0) {
+      S along[6];
+      Joint<Spatial>::project(b, joints_[static_cast<std::size_t>(l.record)].edge, T, along);
+      for (int i = 0; i < b.nv; ++i) rate[b.u + i] = S(rate[b.u + i]) + along[i];
+    }
+    if (l.parent >= 0) wrenches_[static_cast<std::size_t>(l.parent)] += wrench_to_parent(k, T);
+  }
+}
+
+template <class S, int Rows, bool Momentum>
+template <class Report>
+void LoopSweeps<Spatial, S, Rows, Momentum>::each_faded(Report&& report) const {
+  for (std::size_t i = 0; i < places_.size(); ++i) {
+    const Loop& l = loops_->loops[i];
+    for (int j = 0; j < l.rows; ++j) {
+      const Row& row = rows_[static_cast<std::size_t>(l.row + j)];
+      if (has_faded(row.kept)) report(l.row + row.lane - plan_->lane[i]);
+    }
+  }
+}
+
+}  // namespace momenta

@@ -1,0 +1,40 @@
+#pragma once
+// Code compiled for one instruction level must not be shared with the rest of a program: whatever
+// such an object file defines for others to share has to carry the level in its name.
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdio>
+#include <initializer_list>
+#include <string>
+
+namespace momenta::equations {
+
+/// Every shared symbol of the object files `pattern` below `folder` holds one of `own`, or is plain
+/// data.
+inline void expect_own_symbols(const std::string& folder, const std::string& pattern,
+                               std::initializer_list<const char*> own) {
+  const std::string command = "for f in $(find '" + folder + "' -name '" + pattern +
+                              "'); do nm -C \"$f\"; done 2>/dev/null";
+  FILE* pipe = popen(command.c_str(), "r");
+  ASSERT_NE(pipe, nullptr);
+  std::array<char, 8192> line{};
+  int symbols = 0;
+  while (std::fgets(line.data(), line.size(), pipe)) {
+    const std::string text = line.data();
+    if (text.size() < 20 || (text[17] != 'W' && text[17] != 'V' && text[17] != 'u')) continue;
+    ++symbols;
+    bool fine = false;
+    for (const char* mark : own) fine |= text.find(mark) != std::string::npos;
+    for (const char* data : {"typeinfo", "DW.ref", "__asan", "__odr"})
+      fine |= text.find(data) != std::string::npos;
+    EXPECT_TRUE(fine) << text;
+  }
+  pclose(pipe);
+#if defined(__OPTIMIZE__) && !defined(__SANITIZE_ADDRESS__)
+  EXPECT_GT(symbols, 20);
+#endif
+}
+
+}  // namespace momenta::equations
