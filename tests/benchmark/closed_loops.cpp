@@ -27,7 +27,7 @@ struct Row {
 };
 
 /// States close to the scene's start, assembled where that is cheap (the models of any size start
-/// closed), with momenta of its velocity.
+/// closed), with momenta of its velocity and others besides.
 struct States16 {
   std::vector<Eigen::VectorXd> q, p, v;
   Eigen::VectorXd centre;
@@ -45,6 +45,10 @@ struct States16 {
       e->place(0, at.data());
       e->move(rate.data());
       e->momenta(nullptr, momentum.data());
+      Eigen::VectorXd inertia(mechanism.nv());
+      e->mass_diagonal(inertia.data());
+      for (Eigen::Index k = 0; k < inertia.size(); ++k)  // any p is consistent
+        momentum[k] += inertia[k] * std::sin(static_cast<double>(k + 1));
       q.push_back(at);
       v.push_back(rate);
       p.push_back(momentum);
