@@ -56,6 +56,7 @@ class Acceleration final : public OdeForm {
     }
     if (!solver_->acceleration(t, q, u, centre_.data(), alpha_, beta_, udot, multipliers_.data()))
       return solver_failed(t, q, "the solution of (3)");
+    note_faded();
     e_->coordinate_rates(q, u, ydot);
     return true;
   }

@@ -58,8 +58,9 @@ class Momentum final : public OdeForm {
     if (!has_loops()) {
       if (!e_->open_momentum_rates(t, q, p, u_.data(), pdot))
         return fail_at(t, mechanism_.no_inertia(e_->stuck()));
-    } else if (!solve(t, q, p, pdot)) {
-      return false;
+    } else {
+      if (!solve(t, q, p, pdot)) return false;
+      note_faded();
     }
     e_->coordinate_rates(q, u_.data(), ydot);
     return true;

@@ -18,6 +18,9 @@ class OdeForm : public Form, public OdeSystem {
   double scale(int i) const override { return scale_[static_cast<std::size_t>(i)]; }
   /// Of the run itself; those made for looking at samples are not counted.
   long factorizations() const { return solver_ ? solver_->solutions() - looked_ : 0; }
+  /// Counts in `evaluations` (m), row of Φ by row, the right-hand sides in which it faded; null:
+  /// counts no longer. The sparse matrix can't tell which rows fade.
+  void watch_faded(std::vector<long>* evaluations) { watched_ = evaluations; }
 
  protected:
   bool has_loops() const { return mechanism_.m() > 0; }
@@ -27,6 +30,11 @@ class OdeForm : public Form, public OdeSystem {
   bool correct_position(double t, double* q);
   /// Quaternions of q back to unit length.
   void normalise(double* q) const;
+  /// After the solution of a right-hand side.
+  void note_faded() {
+    if (!watched_) return;
+    for (const int row : solver_->faded_rows()) ++(*watched_)[static_cast<std::size_t>(row)];
+  }
   /// The sentence "at t = …: why".
   bool fail_at(double t, const std::string& why);
 
@@ -47,6 +55,7 @@ class OdeForm : public Form, public OdeSystem {
   };
 
   long looked_ = 0;
+  std::vector<long>* watched_ = nullptr;
   std::string name_;
   const Mechanism& mechanism_;
   FormOptions options_;

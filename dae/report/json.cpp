@@ -54,6 +54,10 @@ Json summary_json(const RunResult& run, const Environment& environment) {
   json["energy"] = {{"error_max", number_or_null(run.energy_error_max)}};
   json["error"] = {{"position_max", number_or_null(run.position_error_max)},
                    {"velocity_max", number_or_null(run.velocity_error_max)}};
+  json["faded_rows"] = Json::array();
+  for (const auto& row : run.faded_rows)
+    json["faded_rows"].push_back(
+        {{"loop", row.loop}, {"row", row.row}, {"evaluations", row.evaluations}});
   json["environment"] = environment_json(environment);
   return json;
 }

@@ -346,6 +346,9 @@ RunResult run_form(const Mechanism& mechanism, const Start& start, const RunRequ
   Looker looker(mechanism, runner.form(), request, result);
   const auto y0 = runner.form().initial(start);
   looker.sample(start.t, y0.data(), nullptr);
+  auto* ode = dynamic_cast<OdeForm*>(&runner.form());
+  std::vector<long> faded(static_cast<std::size_t>(mechanism.m()));
+  if (ode && mechanism.m() > 0) ode->watch_faded(&faded);
   const IntegrationResult run = runner.integrate(
       output_times(result.settings, request.reference),
       Observer{
@@ -362,8 +365,11 @@ RunResult run_form(const Mechanism& mechanism, const Start& start, const RunRequ
   result.counters = run.counters;
   result.jacobian = run.jacobian;
   result.linear_solver = run.linear_solver;
-  if (auto* ode = dynamic_cast<OdeForm*>(&runner.form()))
-    result.counters.factorizations += ode->factorizations();
+  if (ode) result.counters.factorizations += ode->factorizations();
+  for (std::size_t row = 0; row < faded.size(); ++row)
+    if (faded[row] > 0)
+      result.faded_rows.push_back(
+          {mechanism.rows()[row].loop, mechanism.rows()[row].what, faded[row]});
   looker.finish();
   return result;
 }

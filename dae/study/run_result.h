@@ -72,6 +72,13 @@ struct RunResult {
   Growth position_growth, velocity_growth;
   double energy_error_max = not_measured;
   double position_error_max = not_measured, velocity_error_max = not_measured;
+  /// Loop equations that were redundant or nearly so, in how many right-hand sides of the run; ODE
+  /// forms.
+  struct Faded {
+    std::string loop, row;
+    long evaluations = 0;
+  };
+  std::vector<Faded> faded_rows;
   Series series;
   Trajectory trajectory;
 };

@@ -13,10 +13,11 @@ namespace momenta::equations {
 
 /// Every shared symbol of the object files `pattern` below `folder` holds one of `own`, or is plain
 /// data.
-inline void expect_own_symbols(const std::string& folder, const std::string& pattern,
+inline void expect_own_symbols(const char* folder, const char* pattern,
                                std::initializer_list<const char*> own) {
-  const std::string command = "for f in $(find '" + folder + "' -name '" + pattern +
-                              "'); do nm -C \"$f\"; done 2>/dev/null";
+  std::string command = "for f in $(find '";
+  command.append(folder).append("' -name '").append(pattern);
+  command.append("'); do nm -C \"$f\"; done 2>/dev/null");
   FILE* pipe = popen(command.c_str(), "r");
   ASSERT_NE(pipe, nullptr);
   std::array<char, 8192> line{};

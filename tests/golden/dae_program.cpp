@@ -150,6 +150,21 @@ TEST_F(Program, StoppedRunSaysWhyAndKeepsItsSamples) {
   EXPECT_GT(std::count(trajectory.begin(), trajectory.end(), '\n'), 2);
 }
 
+TEST_F(Program, RunNamesRowsThatFade) {
+  const auto faded = [&](const std::string& scene, const std::string& options) {
+    const Outcome o = call("run '" + scene + "' " + options + " --json");
+    EXPECT_EQ(o.status, 0) << o.err;
+    return nlohmann::json::parse(o.out).at("faded_rows");
+  };
+  EXPECT_TRUE(faded(example("four_bar"), "--end 1").empty());
+  // Six poses in ten seconds at which the slider loses a direction.
+  const auto rows = faded(example("slider_crank"), "--integrator rk4 --step 1e-4");
+  ASSERT_FALSE(rows.empty());
+  EXPECT_EQ(rows[0].at("loop"), "B");
+  EXPECT_GT(rows[0].at("evaluations"), 4);
+  EXPECT_LT(rows[0].at("evaluations"), 4000);
+}
+
 TEST_F(Program, DriftWritesPageTableAndJson) {
   const fs::path results = folder_ / "results";
   const Outcome o =

@@ -156,7 +156,7 @@ TEST(Levels, SinesOfLargeAnglesAndNone) {
 }
 
 TEST(Levels, CodeOfALevelIsItsOwn) {
-  expect_own_symbols(std::string(MOMENTA_BINARY_DIR) + "/core", "level[134].cpp.o",
+  expect_own_symbols(MOMENTA_BINARY_DIR "/core", "level[134].cpp.o",
                      {"Pack<", "OpenSweepsAt<", "sweeps_at<"});
 }
 

@@ -322,7 +322,7 @@ TEST(LoopSweeps, LevelsAndBatchesAgree) {
 }
 
 TEST(LoopSweeps, CodeOfALevelIsItsOwn) {
-  expect_own_symbols(std::string(MOMENTA_BINARY_DIR) + "/dae", "*_level[134].cpp.o",
+  expect_own_symbols(MOMENTA_BINARY_DIR "/dae", "*_level[134].cpp.o",
                      {"Pack<", "LoopedSweepsAt<", "looped_sweeps_at<"});
 }
 
