@@ -25,7 +25,7 @@ TEST(SummaryJson, HasThePublicKeys) {
   Names expected{"scene", "form",     "integrator", "gauge",       "rtol",     "atol",
                  "step",  "end_time", "status",     "reason",      "counters", "time",
                  "drift", "energy",   "error",      "environment", "jacobian", "linear_solver",
-                 "kkt",   "project",  "stopped_at"};
+                 "kkt",   "project",  "stopped_at", "faded_rows"};
   std::sort(expected.begin(), expected.end());
   EXPECT_EQ(keys(json), expected);
   EXPECT_EQ(keys(json["counters"]), (Names{"evaluations", "factorizations", "jacobians",
