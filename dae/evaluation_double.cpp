@@ -1,3 +1,5 @@
+// Evaluations in doubles, and the pattern of (7), which they write.
+
 #include <momenta/dae/sweep_evaluation.h>
 
 namespace momenta {

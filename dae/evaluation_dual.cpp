@@ -1,3 +1,5 @@
+// Evaluations in dual numbers: exact Jacobians of the DAE forms.
+
 #include <momenta/dae/sweep_evaluation.h>
 
 namespace momenta {

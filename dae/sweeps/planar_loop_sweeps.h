@@ -7,9 +7,8 @@
 //             M_j⁻¹ = 1/I, h = H/I, c = EᵀC, g = c M_j⁻¹, e = r − EᵀD
 //             M' = M* − h (M*E)ᵀ, D' = D + h e, C' = C − h c,  W' = W + c gᵀ, d' = d + g e
 //             to the parent as (43), (44); C like a force; d' += C'ᵀ Ω_t
-//   outward   V = 𝒯ⱽ Ω_L + Ω_t, u = M_j⁻¹ e − hᵀ V − g σ, Ω = V + E u; then the impulses of the
-//   loops
-//             closed here
+//   outward   V = 𝒯ⱽ Ω_L + Ω_t, u = M_j⁻¹ e − hᵀ V − g σ, Ω = V + E u
+//             then the impulses of the loops closed here
 //   inward    T: weights and, at each end of a loop, N − κ w                          (8)
 //
 // Momentum form: r = p, ṗ = Eᵀ(T* − Ω × P*), P* = M'V + D' + C'σ. N = (d/dt Jᵀ)σ + Ω × w is the
