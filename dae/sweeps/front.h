@@ -61,7 +61,7 @@ struct ClosedRow {
   }
 };
 
-/// f(w) and f(w) w.
+/// f(w)
 template <class S>
 MOMENTA_INLINE S faded_inverse(const S& w, const S& tau) {
   const S zero(0.0), w2 = w * w, t2 = tau * tau;

@@ -74,6 +74,15 @@ void evaluate(benchmark::State& state, Row row) {
   const auto nv = mechanism.nv();
   Eigen::VectorXd u(nv), sigma(mechanism.m()), rate(nv), zero = Eigen::VectorXd::Zero(nv);
   std::size_t i = 0;
+  const auto time = [&](auto&& one) {
+    for (auto _ : state) {
+      one();
+      benchmark::DoNotOptimize(rate.data());
+      i = (i + 1) % states_in_turn;
+    }
+    i = 0;  // leaves the rates of the first state
+    one();
+  };
   if (mechanism.kkt() == KktChoice::sweeps) {
     const auto sweeps = mechanism.looped_sweeps(row.level);
     RightSide<double> right;
@@ -89,13 +98,7 @@ void evaluate(benchmark::State& state, Row row) {
         sweeps->acceleration(0, s.q[i].data(), s.v[i].data(), zero.data(), right, rate.data(),
                              sigma.data());
     };
-    for (auto _ : state) {
-      one();
-      benchmark::DoNotOptimize(rate.data());
-      i = (i + 1) % states_in_turn;
-    }
-    i = 0;
-    one();
+    time(one);
   } else {
     const auto e = mechanism.evaluation<double>();
     const auto solver = make_loop_solver(mechanism, *e);
@@ -107,13 +110,7 @@ void evaluate(benchmark::State& state, Row row) {
         solver->acceleration(0, s.q[i].data(), s.v[i].data(), s.centre.data(), 0, 0, rate.data(),
                              sigma.data());
     };
-    for (auto _ : state) {
-      one();
-      benchmark::DoNotOptimize(rate.data());
-      i = (i + 1) % states_in_turn;
-    }
-    i = 0;
-    one();
+    time(one);
   }
   finish(state, 1);
   if (mechanism.has_body_forces() || mechanism.has_joint_forces()) return;

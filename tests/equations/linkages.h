@@ -5,7 +5,9 @@
 #include <momenta/core/scene/scene.h>
 
 #include <cmath>
+#include <numbers>
 #include <string>
+#include <vector>
 
 namespace momenta::equations {
 
@@ -26,6 +28,17 @@ inline Scene turned(Scene s, const Eigen::Quaterniond& r) {
     f.torque = r * f.torque;
   }
   return s;
+}
+
+/// Angles by which a planar scene is turned to be judged by the worst: none, nearly none, near the
+/// diagonals, and in between [rad].
+inline std::vector<double> orientations() {
+  std::vector<double> all{0};
+  for (double small = 1e-8; small < 2e-2; small *= 10) all.push_back(small);
+  for (const double corner : {std::numbers::pi / 4, std::numbers::pi / 2})
+    all.insert(all.end(), {corner - 1e-4, corner, corner + 1e-7});
+  for (int i = 0; i < 11; ++i) all.push_back(0.1 + 0.29 * i);
+  return all;
 }
 
 /// A uniform rod of 1 m and 1 kg along x from its origin; `width` [m] of its square section.

@@ -10,7 +10,6 @@
 #include <momenta/dae/kkt/kkt.h>
 
 #include <Eigen/Dense>
-#include <numbers>
 
 namespace momenta {
 namespace {
@@ -244,15 +243,6 @@ double error_near_flat(Scene scene, Algebra algebra, double fade, bool centred) 
     worst = std::max(
         worst, std::abs(static_cast<double>(found.u[i] - exact[static_cast<std::size_t>(i)])));
   return worst;
-}
-
-std::vector<double> orientations() {
-  std::vector<double> all{0};
-  for (double small = 1e-8; small < 2e-2; small *= 10) all.push_back(small);
-  for (const double corner : {std::numbers::pi / 4, std::numbers::pi / 2})
-    all.insert(all.end(), {corner - 1e-4, corner, corner + 1e-7});
-  for (int i = 0; i < 11; ++i) all.push_back(0.1 + 0.29 * i);
-  return all;
 }
 
 TEST(Kkt, NearlyFlatRowInEveryOrientation) {

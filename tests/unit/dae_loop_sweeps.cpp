@@ -13,7 +13,6 @@
 #include <momenta/dae/sweeps/sweep_solver.h>
 
 #include <Eigen/Dense>
-#include <numbers>
 
 namespace momenta {
 namespace {
@@ -180,15 +179,6 @@ FlatErrors errors_near_flat(const Scene& scene, Algebra algebra, double fade, bo
   if (with_quad)
     errors.from_quad = (u - quad_rates(mechanism, q, p, u0, 0, 0).u).cwiseAbs().maxCoeff();
   return errors;
-}
-
-std::vector<double> orientations() {
-  std::vector<double> all{0};
-  for (double small = 1e-8; small < 2e-2; small *= 10) all.push_back(small);
-  for (const double corner : {std::numbers::pi / 4, std::numbers::pi / 2})
-    all.insert(all.end(), {corner - 1e-4, corner, corner + 1e-7});
-  for (int i = 0; i < 11; ++i) all.push_back(0.1 + 0.29 * i);
-  return all;
 }
 
 // The sharp filter, fading towards zero, solves the data as they are; it costs at most what a

@@ -9,28 +9,11 @@
 #include <momenta/core/kernel/inverse_dynamics_sweeps.h>
 #include <momenta/core/kernel/jacobian_pass.h>
 #include <momenta/core/kernel/levels/open_sweeps.h>
+#include <momenta/core/kernel/levels/strided.h>
 
 #include <limits>
 
 namespace momenta {
-
-/// Coordinates of the pack of states that starts at `base`, loaded and stored by index.
-template <class S>
-struct StridedIn {
-  const double* base;
-  std::ptrdiff_t stride;
-  MOMENTA_INLINE S operator[](int i) const { return S::load(base + i * stride); }
-};
-template <class S>
-struct StridedOut {
-  double* base;
-  std::ptrdiff_t stride;
-  struct Place {
-    double* at;
-    MOMENTA_INLINE void operator=(const S& x) const { x.store(at); }
-  };
-  MOMENTA_INLINE Place operator[](int i) const { return {base + i * stride}; }
-};
 
 template <class Tree, class Space, int Level>
 class OpenSweepsAt final : public OpenSweeps {

@@ -42,8 +42,8 @@ class LoopedSweeps {
   virtual int lanes() const = 0;
   virtual int width() const = 0;
   virtual int stuck() const = 0;
-  /// Whether the last solution of one state closed a folded leg on too weak a pivot: it is then
-  /// wrong.
+  /// Whether the last call closed a folded leg, of one state or of some of many, on too weak a
+  /// pivot: its solution is then wrong.
   virtual bool weak_leg() const = 0;
 };
 

@@ -2,30 +2,12 @@
 // LoopedSweeps at one level; included by the files that are compiled for it, and nowhere else, as
 // core/kernel/levels/open_sweeps_at.h says why.
 
+#include <momenta/core/kernel/levels/strided.h>
 #include <momenta/dae/sweeps/levels/loop_sweeps.h>
 #include <momenta/dae/sweeps/planar_loop_sweeps.h>
 #include <momenta/dae/sweeps/spatial_loop_sweeps.h>
 
 namespace momenta {
-
-/// Coordinates of the pack of states that starts at `base`, read and written by index.
-template <class S>
-struct StateIn {
-  const double* base;
-  std::ptrdiff_t stride;
-  MOMENTA_INLINE S operator[](int i) const { return S::load(base + i * stride); }
-};
-template <class S>
-struct StateOut {
-  double* base;
-  std::ptrdiff_t stride;
-  struct Place {
-    double* at;
-    MOMENTA_INLINE void operator=(const S& x) const { x.store(at); }
-    MOMENTA_INLINE operator S() const { return S::load(at); }
-  };
-  MOMENTA_INLINE Place operator[](int i) const { return {base + i * stride}; }
-};
 
 template <class Tree, class Space, int Level, int Rows>
 class LoopedSweepsAt final : public LoopedSweeps {
@@ -40,9 +22,9 @@ class LoopedSweepsAt final : public LoopedSweeps {
 
   bool momentum(double t, const double* q, const double* p, const RightSide<double>& right,
                 double* u, double* sigma, double* pdot) override {
-    const bool ok =
-        momentum_(One(t), StateIn<One>{q, 1}, StateIn<One>{p, 1}, StateIn<One>{p, 1}, one(right),
-                  StateOut<One>{u, 1}, StateOut<One>{sigma, 1}, StateOut<One>{pdot, 1});
+    const bool ok = momentum_(One(t), StridedIn<One>{q, 1}, StridedIn<One>{p, 1},
+                              StridedIn<One>{p, 1}, one(right), StridedOut<One>{u, 1},
+                              StridedOut<One>{sigma, 1}, StridedOut<One>{pdot, 1});
     stuck_ = momentum_.stuck();
     weak_leg_ = momentum_.weak_leg();
     return ok;
@@ -50,9 +32,9 @@ class LoopedSweepsAt final : public LoopedSweeps {
   bool acceleration(double t, const double* q, const double* u, const double* tau,
                     const RightSide<double>& right, double* udot, double* lambda) override {
     auto& sweeps = made(acceleration_);
-    const bool ok =
-        sweeps(One(t), StateIn<One>{q, 1}, StateIn<One>{u, 1}, StateIn<One>{tau, 1}, one(right),
-               StateOut<One>{udot, 1}, StateOut<One>{lambda, 1}, StateOut<One>{udot, 1});
+    const bool ok = sweeps(One(t), StridedIn<One>{q, 1}, StridedIn<One>{u, 1},
+                           StridedIn<One>{tau, 1}, one(right), StridedOut<One>{udot, 1},
+                           StridedOut<One>{lambda, 1}, StridedOut<One>{udot, 1});
     stuck_ = sweeps.stuck();
     weak_leg_ = sweeps.weak_leg();
     return ok;
@@ -65,12 +47,14 @@ class LoopedSweepsAt final : public LoopedSweeps {
     right.rates = true;
     constexpr std::size_t lanes = abreast;
     bool all = true;
+    weak_leg_ = false;
     const auto pack = [&](const double* q, const double* p, double* u, double* sigma, double* pdot,
                           std::ptrdiff_t stride) {
-      const StateIn<Many> x{p, stride};
-      all &= sweeps(Many(t), StateIn<Many>{q, stride}, x, x, right, StateOut<Many>{u, stride},
-                    StateOut<Many>{sigma, stride}, StateOut<Many>{pdot, stride});
+      const StridedIn<Many> x{p, stride};
+      all &= sweeps(Many(t), StridedIn<Many>{q, stride}, x, x, right, StridedOut<Many>{u, stride},
+                    StridedOut<Many>{sigma, stride}, StridedOut<Many>{pdot, stride});
       if (!all) stuck_ = sweeps.stuck();
+      weak_leg_ |= sweeps.weak_leg();
     };
     std::size_t first = 0;
     for (; first + lanes <= s.count; first += lanes)
