@@ -56,7 +56,7 @@ class Acceleration final : public OdeForm {
     }
     if (!solver_->acceleration(t, q, u, centre_.data(), alpha_, beta_, udot, multipliers_.data()))
       return solver_failed(t, q, "the solution of (3)");
-    note_faded();
+    note_pivots();
     e_->coordinate_rates(q, u, ydot);
     return true;
   }
@@ -71,7 +71,11 @@ class Acceleration final : public OdeForm {
     normalise(q);
     return true;
   }
-  void begin_step(double, const double*) override { centre_ = multipliers_; }
+  void begin_step(double t, const double* y) override {
+    OdeForm::begin_step(t, y);
+    centre_ = multipliers_;
+  }
+  bool wants_care() const override { return false; }
 
   bool read(double t, const double* y, const double*, Snapshot& out) override {
     const Looking looking(*this);

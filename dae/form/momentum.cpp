@@ -19,6 +19,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace momenta {
 namespace {
@@ -59,8 +60,13 @@ class Momentum final : public OdeForm {
       if (!e_->open_momentum_rates(t, q, p, u_.data(), pdot))
         return fail_at(t, mechanism_.no_inertia(e_->stuck()));
     } else {
+      if (careful_) {
+        place_.assign(q, q + mechanism_.nq());
+        if (!correct_position(t, place_.data())) return false;
+        q = place_.data();
+      }
       if (!solve(t, q, p, pdot)) return false;
-      note_faded();
+      note_pivots();
     }
     e_->coordinate_rates(q, u_.data(), ydot);
     return true;
@@ -79,11 +85,41 @@ class Momentum final : public OdeForm {
       e_->place(t, q);
       e_->move(u_.data());
       e_->momenta(nullptr, p);
-      changed = true;
+      // (7) at the new state gives the same u, and σ = 0.
+      e_->momentum_rates(q, u_.data(), nullptr, 0, work_.data());
+      e_->coordinate_rates(q, u_.data(), correction_.data());
+      changed = reset_ = true;
     }
     return true;
   }
-  void begin_step(double, const double*) override {
+  bool first_derivative(double* ydot) override {
+    if (!reset_) return false;
+    reset_ = false;
+    std::copy(correction_.begin(), correction_.end(), ydot);
+    std::copy(work_.begin(), work_.end(), ydot + mechanism_.nq());
+    return true;
+  }
+
+  void take_care(bool careful) override { careful_ = careful; }
+  double motion_error_squared(double t, const double* y, const double* error, double rtol,
+                              double atol) override {
+    const int nq = mechanism_.nq();
+    if (!solver_->free_velocity(t, y, error + nq, delta_.data()))
+      return std::numeric_limits<double>::quiet_NaN();
+    double sum = 0;
+    for (int i = 0; i < nq; ++i) {
+      const double e = error[i] / (atol + rtol * std::abs(y[i]));
+      sum += e * e;
+    }
+    for (std::size_t i = 0; i < delta_.size(); ++i) {
+      const double e = delta_[i] / (atol + rtol * std::abs(u_[i]));
+      sum += e * e;
+    }
+    return sum / size();
+  }
+
+  void begin_step(double t, const double* y) override {
+    OdeForm::begin_step(t, y);
     if (gauge_.kind == Gauge::Kind::reset)
       std::fill(centre_.begin(), centre_.end(), 0.0);
     else
@@ -120,6 +156,9 @@ class Momentum final : public OdeForm {
   }
 
   Gauge gauge_;
+  bool careful_ = false;
+  bool reset_ = false;  ///< work_ and correction_ hold f after a reset
+  std::vector<double> place_;
 };
 
 }  // namespace

@@ -13,6 +13,7 @@ OdeForm::OdeForm(std::string name, const Mechanism& mechanism, const FormOptions
       e_(mechanism.evaluation<double>()) {
   const auto nv = static_cast<std::size_t>(mechanism.nv()),
              m = static_cast<std::size_t>(mechanism.m());
+  always_faded_ = mechanism.m();
   if (has_loops()) solver_ = make_loop_solver(mechanism, *e_);
   u_.resize(nv);
   delta_.resize(nv);
@@ -34,6 +35,18 @@ bool OdeForm::solver_failed(double t, const double* q, const std::string& what) 
     if (!std::isfinite(q[i])) return fail_at(t, "a joint coordinate is not finite");
   if (solver_->stuck() >= 0) return fail_at(t, mechanism_.no_inertia(solver_->stuck()));
   return fail_at(t, what + " is not finite");
+}
+
+void OdeForm::begin_step(double, const double*) {
+  near_singular_ = false;
+}
+
+void OdeForm::note_pivots() {
+  const LoopSolver::Pivots pivots = solver_->pivots();
+  always_faded_ = std::min(always_faded_, pivots.faded);
+  near_singular_ |= pivots.weakest < near || pivots.faded > always_faded_;
+  if (!watched_ || pivots.faded == 0) return;
+  for (const int row : solver_->faded_rows()) ++(*watched_)[static_cast<std::size_t>(row)];
 }
 
 bool OdeForm::correct_position(double t, double* q) {

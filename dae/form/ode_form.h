@@ -22,6 +22,9 @@ class OdeForm : public Form, public OdeSystem {
   /// counts no longer. The sparse matrix can't tell which rows fade.
   void watch_faded(std::vector<long>* evaluations) { watched_ = evaluations; }
 
+  void begin_step(double t, const double* y) override;
+  bool wants_care() const override { return near_singular_; }
+
  protected:
   bool has_loops() const { return mechanism_.m() > 0; }
   /// The cause by name when the solver failed to solve `what` at (t, q).
@@ -30,11 +33,8 @@ class OdeForm : public Form, public OdeSystem {
   bool correct_position(double t, double* q);
   /// Quaternions of q back to unit length.
   void normalise(double* q) const;
-  /// After the solution of a right-hand side.
-  void note_faded() {
-    if (!watched_) return;
-    for (const int row : solver_->faded_rows()) ++(*watched_)[static_cast<std::size_t>(row)];
-  }
+  /// After the solution of a right-hand side: which rows faded, and whether others are about to.
+  void note_pivots();
   /// The sentence "at t = …: why".
   bool fail_at(double t, const std::string& why);
 
@@ -54,7 +54,14 @@ class OdeForm : public Form, public OdeSystem {
     long before_;
   };
 
+  /// A pivot goes with the square of the distance to the singular pose: within about a tenth of a
+  /// radian. Over ten tolerances around each of 1e-6, 1e-8 and 1e-10 on the N-four-bar, 1e-2 gives
+  /// errors that follow the tolerance; at 1e-5 steps begin to collapse.
+  static constexpr double near = 1e-2;
+
   long looked_ = 0;
+  bool near_singular_ = false;
+  int always_faded_ = 0;  ///< rows that are redundant wherever the mechanism has been
   std::vector<long>* watched_ = nullptr;
   std::string name_;
   const Mechanism& mechanism_;

@@ -58,6 +58,12 @@ class AssembledSolver final : public LoopSolver {
     return kkt_->solve(r_.data(), g_.data(), centre, udot, lambda);
   }
 
+  bool free_velocity(double t, const double* q, const double* p, double* u) override {
+    if (!factor(t, q, fade_evaluation)) return false;
+    std::fill(g_.begin(), g_.end(), 0.0);
+    return kkt_->solve(p, g_.data(), nullptr, u, nu_.data());
+  }
+
   bool position_correction(double t, const double* q, double* delta) override {
     if (!factor(t, q, fade_projection)) return false;
     e_.positions(phi_.data());

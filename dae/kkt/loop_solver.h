@@ -26,6 +26,8 @@ class LoopSolver {
   /// u̇ (nv) and λ (m) of (3) with Φ̈ + 2α Φ̇ + β² Φ = 0.
   virtual bool acceleration(double t, const double* q, const double* u, const double* centre,
                             double alpha, double beta, double* udot, double* lambda) = 0;
+  /// u (nv) of M u + Φ_qᵀσ = p, Φ_q u = 0, where nothing is prescribed: what of a momentum moves.
+  virtual bool free_velocity(double t, const double* q, const double* p, double* u) = 0;
   /// δ (nv) of M δ + Φ_qᵀν = 0, Φ_q δ = −Φ.
   virtual bool position_correction(double t, const double* q, double* delta) = 0;
 
@@ -33,6 +35,13 @@ class LoopSolver {
   long solutions() const { return solutions_; }
   /// Rows of Φ that faded in the last solution: redundant or singular there.
   virtual const std::vector<int>& faded_rows() = 0;
+  /// Of the last solution: its weakest pivot that has not faded, relative to what the row's would
+  /// be without other loops, and how many have faded. Elimination in the sweeps alone can tell.
+  struct Pivots {
+    double weakest = 1;
+    int faded = 0;
+  };
+  virtual Pivots pivots() const { return {}; }
   /// Place in u of the joint at which the last call failed, or −1: a result is not finite.
   int stuck() const { return stuck_; }
 

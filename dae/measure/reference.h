@@ -12,6 +12,13 @@ class Reference {
  public:
   /// Reads the file. @throws SceneError: file, line, what was found, what was expected.
   explicit Reference(const std::filesystem::path& file);
+  /// Values by time, by column (without t), of a solution from elsewhere: `source` names it.
+  Reference(std::string source, std::vector<std::string> columns, std::vector<double> times,
+            std::vector<std::vector<double>> values)
+      : file_(std::move(source)),
+        times_(std::move(times)),
+        columns_(std::move(columns)),
+        values_(std::move(values)) {}
 
   const std::string& file() const { return file_; }
   const std::vector<double>& times() const { return times_; }  ///< ascending [s]

@@ -3,13 +3,9 @@
 #include <momenta/dae/report/page.h>
 #include <momenta/dae/report/table.h>
 #include <momenta/dae/study/drift_study.h>
-#include <momenta/dae/study/environment.h>
-#include <momenta/dae/study/sketch.h>
 
 #include <algorithm>
 #include <cstdio>
-#include <fstream>
-#include <iterator>
 #include <sstream>
 
 #include "options.h"
@@ -54,16 +50,8 @@ int drift(const Options& o, const DriftOptions& d) {
     };
     study.runs = run_drift_study(*mechanism, a.start, request);
   }
-  study.scene = mechanism->scene().name;
-  study.scene_file = o.scene.string();
-  std::ifstream in(o.scene, std::ios::binary);
-  study.scene_hash = digest(std::string(std::istreambuf_iterator<char>(in), {}));
-  study.command = o.command;
   study.reference = o.reference.string();
-  study.plan = mechanism->plan_lines();
-  study.sketch = sketch(*mechanism, a.start.t, a.start.q);
-  study.environment = environment();
-  if (interrupted() && !study.runs.empty()) study.runs.back().reason = "interrupted";
+  describe(study, o, *mechanism, a);
   const std::string json = study_json(study).dump(2) + "\n";
   if (!o.out.empty() && (!write_result(o.out / "summary.json", json) ||
                          !write_result(o.out / "study.csv", study_csv(study)) ||

@@ -17,6 +17,7 @@ int main(int argc, char** argv) {
   Options o;
   for (int i = 0; i < argc; ++i) o.command += (i == 0 ? "momenta" : std::string(" ") + argv[i]);
   DriftOptions d;
+  WorkOptions w;
   std::string family, state = "{}";
   std::optional<int> n;
   CLI::App app(
@@ -42,6 +43,29 @@ int main(int argc, char** argv) {
   add_scene(*drift_verb, o);
   drift_verb->add_option("--forms", d.forms, "Comma-separated (default: all)");
   add_run_options(*drift_verb, o);
+  CLI::App* work_verb = app.add_subcommand(
+      "work", "Error against run time: every form over a ladder of tolerances");
+  add_scene(*work_verb, o);
+  work_verb->add_option("--forms", w.forms, "Comma-separated (default: all)");
+  work_verb->add_option("--integrators", w.integrators,
+                        "Of the ODE forms, comma-separated (default: dop853)");
+  work_verb->add_option("--from", w.loosest, "Loosest tolerance")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  work_verb->add_option("--to", w.tightest, "Tightest tolerance")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  work_verb->add_option("--per-decade", w.per_decade, "Tolerances in a decade")
+      ->check(CLI::Range(0.25, 100.0))
+      ->capture_default_str();
+  work_verb->add_option("--step-rungs", w.step_rungs, "Steps of rk4: twice --step, and halves of it")
+      ->check(CLI::Range(1, 40))
+      ->capture_default_str();
+  work_verb->add_flag("--no-reference", w.no_reference,
+                      "Judge by the largest drift instead of a reference made in quad precision");
+  add_run_options(*work_verb, o);
+  for (const char* unused : {"--integrator", "--rtol", "--atol", "--project", "--no-project"})
+    work_verb->remove_option(work_verb->get_option(unused));
   CLI::App* evaluate_verb =
       app.add_subcommand("evaluate", "Everything at one state, as one JSON document");
   add_scene(*evaluate_verb, o);
@@ -65,8 +89,8 @@ int main(int argc, char** argv) {
     if (unknown)
       std::fprintf(
           stderr,
-          "momenta: verb '%.60s' is not known; expected check, assemble, evaluate, run, drift or "
-          "make\n",
+          "momenta: verb '%.60s' is not known; expected check, assemble, evaluate, run, drift, "
+          "work or make\n",
           argv[1]);
     else
       std::fprintf(stderr, "momenta: %s\n", e.what());
@@ -77,12 +101,16 @@ int main(int argc, char** argv) {
     if (*assemble_app) return assemble_verb(o);
     if (*run_verb) return run(o);
     if (*drift_verb) return drift(o, d);
+    if (*work_verb) return work(o, w);
     if (*evaluate_verb) return evaluate(o, state);
     return make(family, n);
   } catch (const momenta::SceneError& e) {
     std::fprintf(stderr, "momenta: %s\n", e.what());
   } catch (const std::invalid_argument& e) {
     std::fprintf(stderr, "momenta: %s\n", e.what());
+  } catch (const std::runtime_error& e) {
+    std::fprintf(stderr, "momenta: %s\n", e.what());
+    return run_failed;
   } catch (const std::bad_alloc&) {
     std::fprintf(stderr, "momenta: not enough memory for this scene\n");
     return run_failed;

@@ -2,10 +2,14 @@
 
 #include <momenta/core/scene/read_scene.h>
 #include <momenta/dae/report/atomic_write.h>
+#include <momenta/dae/study/environment.h>
+#include <momenta/dae/study/sketch.h>
 #include <unistd.h>
 
 #include <csignal>
 #include <cstdio>
+#include <fstream>
+#include <iterator>
 
 namespace momenta::program {
 namespace {
@@ -71,6 +75,19 @@ std::unique_ptr<Reference> load_reference(const Options& o, const Mechanism& mec
   auto reference = std::make_unique<Reference>(o.reference);
   reference->bind(trajectory_columns(mechanism));
   return reference;
+}
+
+void describe(StudyResult& study, const Options& o, const Mechanism& mechanism,
+              const Assembly& assembly) {
+  study.scene = mechanism.scene().name;
+  study.scene_file = o.scene.string();
+  std::ifstream in(o.scene, std::ios::binary);
+  study.scene_hash = digest(std::string(std::istreambuf_iterator<char>(in), {}));
+  study.command = o.command;
+  study.plan = mechanism.plan_lines();
+  study.sketch = sketch(mechanism, assembly.start.t, assembly.start.q);
+  study.environment = environment();
+  if (interrupted() && !study.runs.empty()) study.runs.back().reason = "interrupted";
 }
 
 bool write_result(const std::filesystem::path& file, std::string_view content) {

@@ -36,6 +36,10 @@ std::unique_ptr<Mechanism> load(const Options& o);
 /// The reference, bound to the mechanism's columns; empty when none is asked for.
 std::unique_ptr<Reference> load_reference(const Options& o, const Mechanism& mechanism);
 
+/// What a study tells of its scene, its command and the machine; and that it was interrupted.
+void describe(StudyResult& study, const Options& o, const Mechanism& mechanism,
+              const Assembly& assembly);
+
 /// Writes a result file; on failure prints the sentence and returns false.
 bool write_result(const std::filesystem::path& file, std::string_view content);
 
@@ -61,6 +65,14 @@ struct DriftOptions {
   std::string forms;  ///< comma-separated; empty: all
 };
 int drift(const Options& o, const DriftOptions& d);
+struct WorkOptions {
+  std::string forms, integrators;  ///< comma-separated; empty: all forms, dop853
+  double loosest = 1e-4, tightest = 1e-12;
+  double per_decade = 1;
+  int step_rungs = 6;         ///< of a ladder of fixed steps, each half of the last
+  bool no_reference = false;  ///< judge by drift alone
+};
+int work(const Options& o, const WorkOptions& w);
 /// `state`: a JSON file, "-" for standard input, or text that starts with "{".
 int evaluate(const Options& o, const std::string& state);
 /// Prints a scene; `n` empty: the usual size of the family. @throws std::invalid_argument

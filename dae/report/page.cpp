@@ -1,9 +1,11 @@
+#include <momenta/dae/report/advice.h>
 #include <momenta/dae/report/conclusion.h>
 #include <momenta/dae/report/embedded.h>
 #include <momenta/dae/report/page.h>
 #include <momenta/dae/report/page_data.h>
 
 #include <algorithm>
+#include <sstream>
 #include <utility>
 #include <vector>
 
@@ -86,6 +88,14 @@ std::string marked_up(const std::string& sentence) {
   return html + (code ? "</code>" : "");
 }
 
+// Lines as lines of one paragraph.
+std::string paragraphs(const std::string& lines) {
+  std::string html, line;
+  std::istringstream in(lines);
+  while (std::getline(in, line)) html += (html.empty() ? "" : "<br>") + marked_up(line);
+  return html;
+}
+
 // The scripts share one scope, in the order in which each uses what stands before it.
 std::string script() {
   std::string text;
@@ -133,7 +143,7 @@ std::string drift_page(const StudyResult& study) {
       embedded::page_html(),
       {{"scene", escape_html(study.scene)},
        {"kind", study.drift_study ? "Drift of the loops" : "Error against time"},
-       {"answer", marked_up(answer(study))},
+       {"answer", study.drift_study ? marked_up(answer(study)) : paragraphs(advice(study))},
        {"failures",
         stopped.empty() ? "" : "<p class=\"answer failures\">" + marked_up(stopped) + "</p>"},
        {"uplot_license", std::string(embedded::uplot_license())},

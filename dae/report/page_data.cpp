@@ -3,6 +3,7 @@
 #include <momenta/dae/report/page_data.h>
 #include <momenta/dae/report/run_label.h>
 #include <momenta/dae/report/thinning.h>
+#include <momenta/dae/study/work_study.h>
 
 #include <algorithm>
 #include <array>
@@ -80,6 +81,10 @@ Json page_data(const StudyResult& study) {
   const auto ladder = ladders(study);
   const auto curves = runs_with_curves(study);
 
+  const bool reference = !study.reference.empty();
+  const auto front = study.drift_study ? std::vector<std::size_t>{}
+                                       : pareto_front(study.runs, reference);
+
   Json runs = Json::array();
   for (std::size_t i = 0; i < study.runs.size(); ++i) {
     const RunResult& run = study.runs[i];
@@ -89,6 +94,7 @@ Json page_data(const StudyResult& study) {
     json["ladder_label"] = ladder_labels[i];
     json["tolerance"] = tolerance_text(run.settings);
     json["ladder"] = ladder[i];
+    json["best"] = std::find(front.begin(), front.end(), i) != front.end();
     json["baumgarte"] = {run.settings.baumgarte_alpha, run.settings.baumgarte_beta};
     json["growth"] = {{"position", growth_json(run.position_growth)},
                       {"velocity", growth_json(run.velocity_growth)}};

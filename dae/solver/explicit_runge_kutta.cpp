@@ -122,7 +122,7 @@ class ExplicitRun {
       // Without a correction f at the end is the next first stage wherever it is there; with one,
       // only for methods that always have it, so that observing a run does not change it.
       const bool keep_end = corrected_ ? Tableau::end_derivative_always && !altered : true;
-      const bool kept = step_.advance(keep_end);
+      const bool kept = step_.advance(keep_end) || step_.take_first_derivative();
       t_ = t1;
       if (!sample_until(t1 + time_tolerance(t1))) return false;
       if (t_ >= end_) return true;
@@ -150,13 +150,19 @@ class ExplicitRun {
   /// One trial of a step to t1. False: repeat with the new h_, or, with a reason set, stop.
   bool attempt(double t1) {
     StageFailure failure = step_.attempt(t_, t1, h_);
+    // Once more with care: f differs there from what these stages were.
+    if (!fixed_ && !careful_ && system_.wants_care()) {
+      care(true);
+      failure = step_.attempt(t_, t1, h_);
+    }
     double error_squared = 0;
     if constexpr (Tableau::estimates > 0)
       if (!fixed_ && failure == StageFailure::none) {
-        error_squared = step_.error_squared();
+        error_squared = careful_ ? step_.motion_error_squared() : step_.error_squared();
         if (!std::isfinite(error_squared)) failure = StageFailure::not_finite;
       }
     if (failure == StageFailure::none && error_squared <= 1) {
+      if (careful_ && !system_.wants_care()) care(false);
       if constexpr (Tableau::estimates > 0)
         if (!fixed_) h_ = std::min(h_ * control_.accepted(error_squared), longest_step());
       return true;
@@ -168,6 +174,11 @@ class ExplicitRun {
         if (h_ >= shortest_step()) return false;
       }
     return stop(failure_cause(failure));
+  }
+
+  void care(bool careful) {
+    careful_ = careful;
+    system_.take_care(careful);
   }
 
   std::string failure_cause(StageFailure failure) const {
@@ -258,6 +269,7 @@ class ExplicitRun {
   double h_ = 0;         ///< step tried next [s]
   bool fixed_;           ///< steps of options.step, no error control
   std::vector<double> sample_, unaltered_;
+  bool careful_ = false;            ///< near a singular pose
   bool corrected_;                  ///< the system alters accepted states
   bool stopped_elsewhere_ = false;  ///< result_ has a time and state that are no step's start
   IntegrationResult result_;

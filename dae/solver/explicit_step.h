@@ -42,7 +42,8 @@ class ExplicitStep {
         y_new_(stride_),
         argument_(stride_),
         k_(stored * stride_),
-        r_(terms * stride_) {
+        r_(terms * stride_),
+        relative_(atol) {
     std::copy_n(y0, n_, y_.data());
     // Padding weighs 1, and no weight is zero: a component at rest at 0 with atol 0 then passes.
     std::fill_n(atol_.data(), stride_, 1.0);
@@ -105,6 +106,19 @@ class ExplicitStep {
     return both == 0 ? 0 : h_ * h_ * high * high / (both * n);
   }
 
+  /// The same in the system's own norm, of what changes the motion alone.
+  double motion_error_squared() {
+    const auto measured = [&]<std::size_t row>() {
+      for (std::size_t i = 0; i < stride_; i += width)
+        store(argument_.data() + i, stage_sum<Tableau::e, row>(k_.data() + i, stride_));
+      return system_.motion_error_squared(t1_, y_new_.data(), argument_.data(), rtol_, relative_);
+    };
+    const double high = measured.template operator()<0>();
+    if constexpr (Tableau::estimates == 1) return h_ * h_ * high;
+    const double both = high + 0.01 * measured.template operator()<Tableau::estimates - 1>();
+    return both == 0 ? 0 : h_ * h_ * high * high / both;
+  }
+
   /// y at t in [t, t1] into out, n values; NaN throughout when a stage for it cannot be had.
   bool interpolate(double t, double* out) {
     if (!have_dense_ && !prepare_dense()) {
@@ -121,6 +135,9 @@ class ExplicitStep {
     return true;
   }
   bool interpolation_failed() const { return interpolation_failed_; }
+
+  /// f at the step's new start, where the system has it at hand.
+  bool take_first_derivative() { return system_.first_derivative(stage(0)); }
 
   /// Takes the step. With `keep_end` f at its end, if there, becomes the next first stage; returns
   /// whether it did.
@@ -206,6 +223,7 @@ class ExplicitStep {
   AlignedArray atol_, y_, y_new_, argument_;  ///< stride_ each
   AlignedArray k_;                            ///< stages, stored × stride_
   AlignedArray r_;                            ///< dense output, terms × stride_
+  double relative_;                           ///< atol of an unknown of scale 1
   double t_ = 0, t1_ = 0, h_ = 0;
   long evaluations_ = 0;
   bool have_end_ = false, have_dense_ = false, interpolation_failed_ = false;

@@ -29,6 +29,23 @@ class OdeSystem {
   /// here, so that within a step f is a pure function of (t, y).
   virtual void begin_step(double /*t*/, const double* /*y*/) {}
 
+  /// f at the state after_step() left, where it came along; false: still to be evaluated.
+  virtual bool first_derivative(double* /*ydot*/) { return false; }
+
+  /// Whether an evaluation since begin_step() met loop equations that are nearly dependent: a stage
+  /// a little off the manifold is then far off in its rates. A method that controls its error
+  /// repeats the step with care.
+  virtual bool wants_care() const { return false; }
+  /// With care: f is taken at the corrected position, and errors have the norm below.
+  virtual void take_care(bool /*careful*/) {}
+  /// Square of a norm of the local error at (t, y), root mean square over the unknowns, of what
+  /// changes the motion alone: not of the gauge of σ. The weight of an unknown is atol · scale +
+  /// rtol · size. Not finite when it cannot be had. In use while there is care.
+  virtual double motion_error_squared(double /*t*/, const double* /*y*/, const double* /*error*/,
+                                      double /*rtol*/, double /*atol*/) {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+
   /// Typical size of y_i, for absolute tolerances: the error weight is atol · scale_i + rtol ·
   /// |y_i|.
   virtual double scale(int /*i*/) const { return 1.0; }

@@ -46,7 +46,7 @@ struct ClosedRow {
   Lanes<S, Rows> G;  ///< f W_k·, zero in the lanes closed before and in its own
   S c[Columns];      ///< f c_k
   S d;               ///< f d_k
-  S kept;            ///< f w: 1, or less where the row has faded
+  S w, tau;          ///< the pivot, and where it fades
   int lane;
 
   /// σ_k for the motion `omega` of the closing body.
@@ -95,15 +95,15 @@ MOMENTA_INLINE void close_row(int lane, Front<S, Rows, Columns>& front, const S&
   front.W[lane] = {};
   row.G = G;
   row.d = f * d;
-  row.kept = f * w;
+  row.w = w;
+  row.tau = tau;
   row.lane = lane;
   weight(c, row.c, row.d);
 }
 
-/// Whether a pivot faded: one of 10 τ keeps all but 1e-4 of itself. Of a pack, the least.
-template <class S>
-bool has_faded(const S& kept) {
-  return !(value_of(kept) > 1 - 1e-4);
+/// Whether a pivot faded: one of 10 τ keeps all but 1e-4 of itself.
+inline bool has_faded(double w, double tau) {
+  return !(w > 10 * tau);
 }
 
 /// What tells the size of a pivot to the choice of the next one: of a pack, all its states.
@@ -159,7 +159,7 @@ struct ClosedPair {
   Lanes<S, Rows> Ga, Gb;
   S a[Columns], b[Columns];
   S da, db, l, swap;  ///< l: W_ab f_a; swap: 1 where the rows changed places
-  S kept_a, kept_b;
+  S w_a, w_b, tau;
 
   template <class Motion>
   MOMENTA_INLINE void impulses(const Motion& omega, const Lanes<S, Rows>& sigma, S& x, S& y) const {
@@ -199,8 +199,9 @@ MOMENTA_INLINE void close_pair(Front<S, Rows, Columns>& front, double fade,
   const S fa = faded_inverse(first, tau), l = coupling * fa, p = second - l * coupling,
           fb = faded_inverse(p, tau);
   pair.l = l;
-  pair.kept_a = fa * first;
-  pair.kept_b = fb * p;
+  pair.w_a = first;
+  pair.w_b = p;
+  pair.tau = tau;
   S da = swapped(front.d[B], front.d[A]), db = swapped(-front.d[A], front.d[B]) - l * da;
   pair.da = fa * da;
   pair.db = fb * db;

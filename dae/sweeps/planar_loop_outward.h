@@ -240,18 +240,18 @@ void LoopSweeps<Planar, S, Rows, Momentum>::rates_inward(const In& q, const Righ
 
 template <class S, int Rows, bool Momentum>
 template <class Report>
-void LoopSweeps<Planar, S, Rows, Momentum>::each_faded(Report&& report) const {
+void LoopSweeps<Planar, S, Rows, Momentum>::each_pivot(Report&& report) const {
   for (std::size_t i = 0; i < places_.size(); ++i) {
     const Loop& l = loops_->loops[i];
     if (pairs_in_registers && plan_->pair[i]) {
       const Pair& p = pairs_[i];
       const bool swapped = value_of(p.swap) > 0.5;
-      if (has_faded(p.kept_a)) report(l.row + (swapped ? 1 : 0));
-      if (has_faded(p.kept_b)) report(l.row + (swapped ? 0 : 1));
+      report(l.row + (swapped ? 1 : 0), value_of(p.w_a), value_of(p.tau));
+      report(l.row + (swapped ? 0 : 1), value_of(p.w_b), value_of(p.tau));
     } else {
       for (int j = 0; j < l.rows; ++j) {
         const Row& row = rows_[static_cast<std::size_t>(l.row + j)];
-        if (has_faded(row.kept)) report(l.row + row.lane - plan_->lane[i]);
+        report(l.row + row.lane - plan_->lane[i], value_of(row.w), value_of(row.tau));
       }
     }
   }

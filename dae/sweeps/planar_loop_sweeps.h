@@ -65,9 +65,9 @@ class LoopSweeps<Planar, S, Rows, Momentum> : PlanarPlaces<S> {
 
   using Base::stuck;
   static bool weak_leg() { return false; }  ///< no leg is folded in a plane
-  /// Rows that faded in the last solution, as rows of Φ; calls row(index).
+  /// Pivots of the last solution: calls report(row of Φ, w, τ).
   template <class Report>
-  void each_faded(Report&& row) const;
+  void each_pivot(Report&& report) const;
 
  private:
   /// Where a loop stands: the points it ties, seen from both bodies, and its rows.

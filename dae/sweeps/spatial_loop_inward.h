@@ -82,8 +82,10 @@ void LoopSweeps<Spatial, S, Rows, Momentum>::fold(std::size_t root, const RightS
     const int loop = plan_->closings[static_cast<std::size_t>(i)];
     close(loop, leg, right.fade);
     const Loop& l = loops_->loops[static_cast<std::size_t>(loop)];
-    for (int row = 0; row < l.rows; ++row)
-      weak_leg_ |= has_faded(rows_[static_cast<std::size_t>(l.row + row)].kept);
+    for (int row = 0; row < l.rows; ++row) {
+      const Row& closed = rows_[static_cast<std::size_t>(l.row + row)];
+      weak_leg_ |= !all_positive(closed.w - S(10.0) * closed.tau);
+    }
   }
   add<Momentum>(legs_[onto], leg.cargo);
 }

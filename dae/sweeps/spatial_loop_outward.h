@@ -257,12 +257,12 @@ void LoopSweeps<Spatial, S, Rows, Momentum>::rates_inward(const RightSide<S>& ri
 
 template <class S, int Rows, bool Momentum>
 template <class Report>
-void LoopSweeps<Spatial, S, Rows, Momentum>::each_faded(Report&& report) const {
+void LoopSweeps<Spatial, S, Rows, Momentum>::each_pivot(Report&& report) const {
   for (std::size_t i = 0; i < places_.size(); ++i) {
     const Loop& l = loops_->loops[i];
     for (int j = 0; j < l.rows; ++j) {
       const Row& row = rows_[static_cast<std::size_t>(l.row + j)];
-      if (has_faded(row.kept)) report(l.row + row.lane - plan_->lane[i]);
+      report(l.row + row.lane - plan_->lane[i], value_of(row.w), value_of(row.tau));
     }
   }
 }

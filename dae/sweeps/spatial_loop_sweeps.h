@@ -43,9 +43,9 @@ class LoopSweeps<Spatial, S, Rows, Momentum> {
   int stuck() const { return stuck_; }
   /// Whether the last solution closed a folded leg on too weak a pivot: it is then wrong.
   bool weak_leg() const { return weak_leg_; }
-  /// Rows of Φ that faded in the last solution; calls report(row).
+  /// Pivots of the last solution: calls report(row of Φ, w, τ).
   template <class Report>
-  void each_faded(Report&& report) const;
+  void each_pivot(Report&& report) const;
 
  private:
   struct Carried {

@@ -68,6 +68,16 @@ class SweepSolver final : public LoopSolver {
     return finite(udot, zero_.size()) && finite(lambda, nu_.size());
   }
 
+  bool free_velocity(double t, const double* q, const double* p, double* u) override {
+    RightSide<double> right;
+    right.fade = fade_evaluation;
+    right.drives = false;
+    of_momentum_ = true;
+    if (!noted(sweeps_->momentum(t, q, p, right, u, nu_.data(), nullptr))) return false;
+    if (sweeps_->weak_leg()) return by_matrix().free_velocity(t, q, p, u);
+    return finite(u, zero_.size());
+  }
+
   bool position_correction(double t, const double* q, double* delta) override {
     RightSide<double> right;
     right.fade = fade_projection;
@@ -84,6 +94,11 @@ class SweepSolver final : public LoopSolver {
     rows_.resize(nu_.size());
     rows_.resize(sweeps_->faded_rows(rows_.data(), of_momentum_));
     return rows_;
+  }
+
+  Pivots pivots() const override {
+    const LoopedSweeps::Pivots p = sweeps_->pivots(of_momentum_);
+    return {p.weakest * fade_evaluation, p.faded};
   }
 
  private:

@@ -6,12 +6,11 @@
 
 #include <momenta/core/kernel/accelerations.h>
 #include <momenta/core/kernel/momentum_recursion.h>
+#include <momenta/core/scalar/quad.h>
 
 #include <cmath>
 #include <stdexcept>
 #include <vector>
-
-#include "equations/quad.h"
 
 namespace momenta {
 

@@ -1,21 +1,6 @@
 #include "equations/quad_loops.h"
 
-#include "equations/quad.h"
-
-namespace momenta {
-
-inline Quad where_greater(const Quad& a, const Quad& b, const Quad& x, const Quad& y) {
-  return a > b ? x : y;
-}
-inline bool all_positive(const Quad& x) {
-  return x.v > 0;
-}
-inline double size_of(const Quad& x) {
-  return x.v > 0 ? value_of(x) : 0;
-}
-
-}  // namespace momenta
-
+#include <momenta/core/scalar/quad.h>
 #include <momenta/dae/sweeps/planar_loop_sweeps.h>
 #include <momenta/dae/sweeps/spatial_loop_sweeps.h>
 

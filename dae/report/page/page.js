@@ -55,11 +55,13 @@ const histories = [
   },
 ];
 
+const time = { xTitle: "processor time", xUnit: "s", cost: (run) => run.time.cpu_s };
 const costs = {
+  ...time,
   title: "Error against processor time",
-  caption: withReference
+  caption: (study.drift_study ? "" : "The wide line joins the runs that no other beats in both. ") + (withReference
     ? "Left and low is better. Largest position error against the reference; time of the integration alone."
-    : "Left and low is better. Without a reference the largest position drift stands for the error; time of the integration alone.",
+    : "Left and low is better. Without a reference the largest position drift stands for the error; time of the integration alone."),
   yTitle: withReference ? "error of positions max |err|/(1+|ref|)" : "largest position drift |Φ| [m]",
   unit: withReference ? "1" : "m",
   value: (run) => (withReference ? run.error.position_max : run.drift.position_max),
@@ -78,6 +80,26 @@ const costs = {
     { ...counted("repeats", (run) => run.time.repeats), best: false },
   ],
 };
+
+// A ladder is judged along three more axes: what it does not see of the machine, and what its error hides.
+const furtherCosts = [
+  {
+    title: "Error against evaluations", xTitle: "evaluations of the right-hand side or the residual", xUnit: "",
+    cost: (run) => run.counters.evaluations,
+    caption: "The same runs without the speed of this machine; an implicit method's Jacobians are not among them.",
+    yTitle: costs.yTitle, unit: costs.unit, value: costs.value, columns: [],
+  },
+  {
+    ...time, title: "Position drift against processor time",
+    caption: "What the loops cost to keep shut: largest opening of the loops.",
+    yTitle: "largest position drift |Φ| [m]", unit: "m", value: (run) => run.drift.position_max, columns: [],
+  },
+  {
+    ...time, title: "Energy error against processor time",
+    caption: "Largest error of the energy, less the work done on the mechanism.",
+    yTitle: "largest energy error |E − E₀| [J]", unit: "J", value: (run) => run.energy.error_max, columns: [],
+  },
+];
 
 function chartSection(spec, chart, curves) {
   const notes = element("div", { class: "notes" });
@@ -134,6 +156,12 @@ function makingSection() {
     const chart = costsShown ? null : scatterChart(costs);
     costsShown = true;
     if (chart) add(chartSection(costs, chart, false));
+    if (study.drift_study) return;
+    for (const spec of furtherCosts) {
+      if (!withReference && spec.value === costs.value && spec.xUnit === "s") continue;
+      const further = scatterChart(spec);
+      if (further) add(chartSection(spec, further, false));
+    }
   };
 
   // A ladder is made for this chart; a drift study shows it after what drifts.

@@ -3,9 +3,12 @@
 /** Order of the one-step methods drawn as a reference: error ∝ (evaluations)^−order. */
 const methodOrder = { rk4: 4, dp5: 5, dop853: 8, vern9: 9 };
 
-/** spec: {yTitle, unit, value(run)}; returns the figure, or null without data. */
+/**
+ * spec: {yTitle, unit, value(run)} and the abscissa {xTitle, xUnit, cost(run)}; returns the figure, or null without
+ * data. In a ladder the runs that no other beats in both are joined: the front.
+ */
 function scatterChart(spec) {
-  const points = runs.map((run, i) => ({ run: i, x: run.time.cpu_s, y: spec.value(run) }))
+  const points = runs.map((run, i) => ({ run: i, x: spec.cost(run), y: spec.value(run) }))
     .filter((point) => measured(point.x) && measured(point.y) && point.x > 0)
     .map((point) => ({ ...point, y: Math.max(point.y, roundingFloor) }));
   if (!points.length) return null;
@@ -14,8 +17,8 @@ function scatterChart(spec) {
   const sorted = [...points].sort((a, b) => a.x - b.x);
 
   const best = points.filter((p) => runs[p.run].status === "done").sort((a, b) => a.y - b.y)[0];
-  const alternative = `${spec.yTitle} against processor time, ${points.length} runs. ` +
-    (best ? `Smallest: ${runs[best.run].label}, ${number(best.y)} ${spec.unit} in ${number(best.x)} s. ` : "") +
+  const alternative = `${spec.yTitle} against ${spec.xTitle}, ${points.length} runs. ` +
+    (best ? `Smallest: ${runs[best.run].label}, ${number(best.y)} ${spec.unit} for ${number(best.x)} ${spec.xUnit}. ` : "") +
     "The table below has the numbers.";
   const { figure, plot, reading, names } = frameOf(spec, alternative, shown, (run) => near(run),
     (i) => (study.drift_study ? runs[i].label : runs[i].ladder_label));
@@ -35,7 +38,7 @@ function scatterChart(spec) {
       y: { distr: 3, log: 10, range: wholeDecades },
     },
     axes: [
-      { ...axisStyle, label: "processor time [s]", labelSize: 22, size: 34 },
+      { ...axisStyle, label: spec.xUnit === "s" ? `${spec.xTitle} [s]` : spec.xTitle, labelSize: 22, size: 34 },
       { ...axisStyle, size: 58 },
     ],
     series: [{}, { paths: () => null, points: { show: false } }],
@@ -45,7 +48,29 @@ function scatterChart(spec) {
   const at = (p) => ({ x: u.valToPos(p.x, "x", true), y: u.valToPos(p.y, "y", true) });
   const visible = () => points.filter((p) => !hidden.has(runs[p.run].ladder));
 
+  // Cheapest first, every next one better.
+  const front = study.drift_study ? [] : sorted.filter((p) => runs[p.run].status === "done")
+    .reduce((best, p) => (best.length && p.y >= best[best.length - 1].y ? best : [...best, p]), []);
+
+  function frontLine() {
+    if (front.length < 2) return;
+    const { ctx } = u;
+    ctx.save();
+    ctx.lineWidth = 8 * uPlot.pxRatio;
+    ctx.strokeStyle = theme("--grid");
+    ctx.lineJoin = "round";
+    ctx.beginPath();
+    front.forEach((p, k) => {
+      const { x, y } = at(p);
+      if (k) ctx.lineTo(x, at(front[k - 1]).y);
+      ctx[k ? "lineTo" : "moveTo"](x, y);
+    });
+    ctx.stroke();
+    ctx.restore();
+  }
+
   function under() {
+    frontLine();
     floorLine(u);
     if (study.drift_study) return;
     const orders = [...new Set(visible().map((p) => methodOrder[runs[p.run].integrator]).filter(Boolean))];
@@ -108,7 +133,7 @@ function scatterChart(spec) {
   }
 
   function describe(p) {
-    return `${number(p.y)} in ${number(p.x)} s`;
+    return spec.xUnit === "s" ? `${number(p.y)} in ${number(p.x)} s` : `${number(p.y)} with ${count(p.x)}`;
   }
 
   function follow() {

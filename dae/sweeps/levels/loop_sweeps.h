@@ -9,6 +9,7 @@
 #include <momenta/dae/sweeps/loop_plan.h>
 #include <momenta/dae/sweeps/right_side.h>
 
+#include <limits>
 #include <memory>
 
 namespace momenta {
@@ -39,6 +40,12 @@ class LoopedSweeps {
   /// Rows of Φ that faded in the last solution of one state: that of momentum(), or acceleration().
   /// Returns their number; `rows` has room for m.
   virtual std::size_t faded_rows(int* rows, bool of_momentum) const = 0;
+  /// The weakest pivot of that solution which has not faded, over τ, and how many have.
+  struct Pivots {
+    double weakest = std::numeric_limits<double>::infinity();
+    int faded = 0;
+  };
+  virtual Pivots pivots(bool of_momentum) const = 0;
   virtual int lanes() const = 0;
   virtual int width() const = 0;
   virtual int stuck() const = 0;

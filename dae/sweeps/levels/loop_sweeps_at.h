@@ -65,12 +65,20 @@ class LoopedSweepsAt final : public LoopedSweeps {
 
   std::size_t faded_rows(int* rows, bool of_momentum) const override {
     std::size_t count = 0;
-    const auto report = [&](int row) { rows[count++] = row; };
-    if (of_momentum)
-      momentum_.each_faded(report);
-    else if (acceleration_)
-      acceleration_->each_faded(report);
+    each_pivot(of_momentum, [&](int row, double w, double tau) {
+      if (has_faded(w, tau)) rows[count++] = row;
+    });
     return count;
+  }
+  Pivots pivots(bool of_momentum) const override {
+    Pivots p;
+    each_pivot(of_momentum, [&](int, double w, double tau) {
+      if (has_faded(w, tau))
+        ++p.faded;
+      else if (w < p.weakest * tau)
+        p.weakest = w / tau;
+    });
+    return p;
   }
   int lanes() const override { return Rows; }
   int width() const override { return static_cast<int>(abreast); }
@@ -90,6 +98,13 @@ class LoopedSweepsAt final : public LoopedSweeps {
     r.alpha = right.alpha;
     r.beta = right.beta;
     return r;
+  }
+  template <class Report>
+  void each_pivot(bool of_momentum, Report&& report) const {
+    if (of_momentum)
+      momentum_.each_pivot(report);
+    else if (acceleration_)
+      acceleration_->each_pivot(report);
   }
   template <class Sweeps>
   Sweeps& made(std::unique_ptr<Sweeps>& sweeps) {

@@ -43,5 +43,16 @@ struct Quad {
 inline double value_of(const Quad& x) {
   return static_cast<double>(x.v);
 }
+inline bool all_positive(const Quad& x) {
+  return x.v > 0;
+}
+/// x where a > b, else y.
+inline Quad where_greater(const Quad& a, const Quad& b, const Quad& x, const Quad& y) {
+  return a > b ? x : y;
+}
+/// What tells the size of a pivot to the choice of the next one.
+inline double size_of(const Quad& x) {
+  return x.v > 0 ? value_of(x) : 0;
+}
 
 }  // namespace momenta

@@ -1,0 +1,10 @@
+// Evaluations in quadruple precision: references made by the program itself.
+
+#include <momenta/core/scalar/quad.h>
+#include <momenta/dae/sweep_evaluation.h>
+
+namespace momenta {
+
+template std::unique_ptr<Evaluation<Quad>> Mechanism::evaluation<Quad>() const;
+
+}  // namespace momenta

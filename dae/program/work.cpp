@@ -1,0 +1,102 @@
+#include <momenta/dae/report/advice.h>
+#include <momenta/dae/report/csv.h>
+#include <momenta/dae/report/number_text.h>
+#include <momenta/dae/report/page.h>
+#include <momenta/dae/report/table.h>
+#include <momenta/dae/study/own_reference.h>
+#include <momenta/dae/study/work_study.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <sstream>
+
+#include "options.h"
+
+namespace momenta::program {
+namespace {
+
+constexpr int own_reference_rows = 100;
+
+std::vector<std::string> names_in(const std::string& list) {
+  std::vector<std::string> names;
+  std::stringstream in(list);
+  for (std::string name; std::getline(in, name, ',');) names.push_back(name);
+  return names;
+}
+
+/// 1e-4, 1e-5, … through the tolerances asked for.
+std::vector<double> rungs(const WorkOptions& w) {
+  if (!(w.tightest <= w.loosest))
+    throw std::invalid_argument("--from " + compact(w.loosest, 3) + " --to " +
+                                compact(w.tightest, 3) +
+                                ": expected the loosest tolerance first, the tightest last");
+  const double decades = std::log10(w.loosest / w.tightest);
+  const int count = static_cast<int>(std::floor(decades * w.per_decade + 1e-9));
+  std::vector<double> tolerances;
+  for (int i = 0; i <= count; ++i)
+    tolerances.push_back(w.loosest * std::pow(10.0, -static_cast<double>(i) / w.per_decade));
+  return tolerances;
+}
+
+}  // namespace
+
+int work(const Options& o, const WorkOptions& w) {
+  const auto mechanism = load(o);
+  auto reference = load_reference(o, *mechanism);
+  const Assembly a = assemble(*mechanism);
+  const RunDefaults& defaults = mechanism->scene().run;
+  WorkRequest request;
+  request.forms = names_in(w.forms);
+  for (const auto& form : request.forms) is_dae_form(form);  // unknown names before anything runs
+  request.integrators = names_in(w.integrators);
+  if (!o.gauge.empty()) request.gauge = parse_gauge(o.gauge).text();
+  request.tolerances = rungs(w);
+  request.end_time = o.end.value_or(defaults.end_time);
+  const double step = o.step.value_or(defaults.step.value_or(request.end_time / 500));
+  for (int i = 0; i < w.step_rungs; ++i) request.steps.push_back(std::ldexp(step, 1 - i));
+  request.samples = o.samples.value_or(own_reference_rows);
+  request.max_cpu_seconds = o.cpu_limit.value_or(10);
+  StudyResult study;
+  study.drift_study = false;
+  study.reference = o.reference.string();
+  {
+    ProgressLine line(o.quiet);
+    if (!reference && !w.no_reference) {
+      auto own = own_reference(*mechanism, a.start, request.end_time, own_reference_rows,
+                               [&](double t) {
+                                 line.show("reference  t = " + compact(t, 4) + " s");
+                                 return !interrupted();
+                               });
+      reference = std::make_unique<Reference>(std::move(own.reference));
+      study.reference =
+          "quadruple precision: acceleration form projected at each step, extrapolation; two "
+          "tolerances agree to " +
+          scientific(own.accuracy, 2);
+    }
+    request.reference = reference.get();
+    request.progress = [&](int number, int total, const std::string& label, double fraction) {
+      line.show("[" + std::to_string(number) + "/" + std::to_string(total) + "] " + label + "  " +
+                std::to_string(static_cast<int>(100 * fraction)) + " %");
+      return !interrupted();
+    };
+    study.runs = run_work_study(*mechanism, a.start, request);
+  }
+  describe(study, o, *mechanism, a);
+  const std::string json = study_json(study).dump(2) + "\n";
+  if (!o.out.empty() && (!write_result(o.out / "summary.json", json) ||
+                         !write_result(o.out / "study.csv", study_csv(study)) ||
+                         !write_result(o.out / "index.html", drift_page(study))))
+    return run_failed;
+  if (o.json)
+    std::fputs(json.c_str(), stdout);
+  else if (!o.quiet)
+    std::printf("%s\n%s", drift_table(study).c_str(), advice(study).c_str());
+  if (!o.out.empty() && !o.quiet)
+    std::fprintf(stderr, "momenta: wrote %s\n", (o.out / "index.html").c_str());
+  const bool any = std::any_of(study.runs.begin(), study.runs.end(),
+                               [](const auto& r) { return r.status == "done"; });
+  return any && !interrupted() ? done : run_failed;
+}
+
+}  // namespace momenta::program

@@ -1,0 +1,68 @@
+#include <momenta/dae/report/advice.h>
+#include <momenta/dae/report/number_text.h>
+#include <momenta/dae/report/run_label.h>
+#include <momenta/dae/study/work_study.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+namespace momenta {
+namespace {
+
+constexpr std::array<double, 5> targets{1e-4, 1e-6, 1e-8, 1e-10, 1e-12};
+constexpr std::size_t others_named = 3;
+
+std::string method(const RunResult& run, const std::string& label) {
+  std::string text = "`" + label + "`";
+  if (label.find(run.settings.integrator) == std::string::npos)
+    text += " with " + run.settings.integrator;
+  return text;
+}
+
+}  // namespace
+
+std::string advice(const StudyResult& study) {
+  const bool reference = !study.reference.empty();
+  const auto labels = run_labels(study, false);
+  std::string text;
+  for (const double target : targets) {
+    const std::string wanted = scientific(target, 1);
+    // The cheapest run of every form that reaches the target.
+    std::vector<std::size_t> best;
+    for (std::size_t i = 0; i < study.runs.size(); ++i) {
+      const RunResult& run = study.runs[i];
+      if (run.status != "done" || !(judged_error(run, reference) <= target) ||
+          !std::isfinite(run.cpu_s))
+        continue;
+      const auto same = std::find_if(best.begin(), best.end(), [&](std::size_t j) {
+        return study.runs[j].settings.form == run.settings.form;
+      });
+      if (same == best.end())
+        best.push_back(i);
+      else if (run.cpu_s < study.runs[*same].cpu_s)
+        *same = i;
+    }
+    if (best.empty()) {
+      text += "No run reaches " + wanted + ".\n";
+      break;
+    }
+    std::sort(best.begin(), best.end(), [&](std::size_t a, std::size_t b) {
+      return study.runs[a].cpu_s < study.runs[b].cpu_s;
+    });
+    const RunResult& first = study.runs[best[0]];
+    text += std::string(reference ? "For an error of " : "For a drift of ") + wanted + " take " +
+            method(first, labels[best[0]]) + " at " + tolerance_text(first.settings) + ": " +
+            time_text(first.cpu_s);
+    for (std::size_t k = 1; k < std::min(best.size(), 1 + others_named); ++k) {
+      const RunResult& other = study.runs[best[k]];
+      text += std::string(k == 1 ? "; then " : ", ") + method(other, labels[best[k]]) + " " +
+              compact(other.cpu_s / first.cpu_s, 2) + (k == 1 ? " times as long" : "");
+    }
+    text += ".\n";
+  }
+  return text;
+}
+
+}  // namespace momenta

@@ -1,0 +1,114 @@
+#include <momenta/dae/study/quad_motion.h>
+#include <momenta/dae/sweeps/planar_loop_sweeps.h>
+#include <momenta/dae/sweeps/spatial_loop_sweeps.h>
+
+#include <algorithm>
+
+namespace momenta {
+namespace {
+
+/// Pivots this far below their scale are those of redundant rows.
+constexpr double fade = 1e-20;
+/// From 1e-16, where starts are, to below 1e-32.
+constexpr int newton_steps = 2;
+
+struct In {
+  const Quad* x;
+  const Quad& operator[](int i) const { return x[i]; }
+};
+struct Out {
+  Quad* x;
+  Quad& operator[](int i) const { return x[i]; }
+};
+
+template <class Space, class Tree>
+class QuadSweeps final : public QuadMotion {
+ public:
+  QuadSweeps(const Mechanism& mechanism, Model<Space> model)
+      : mechanism_(mechanism),
+        model_(std::move(model)),
+        links_(build_links(model_)),
+        loops_(in_link_frames(build_loops(mechanism.scene(), mechanism.tree(), model_), links_)),
+        plan_(plan_loops(model_, loops_)),
+        e_(mechanism.evaluation<Quad>()),
+        accelerations_(links_, loops_, plan_),
+        corrections_(links_, loops_, plan_),
+        tau_(static_cast<std::size_t>(mechanism.nv())),
+        work_(tau_.size()),
+        sigma_(static_cast<std::size_t>(mechanism.m())),
+        delta_(static_cast<std::size_t>(mechanism.nq())) {}
+
+  bool rates(double t, const Quad* y, Quad* ydot) override {
+    const Quad *q = y, *u = y + mechanism_.nq();
+    Quad* udot = ydot + mechanism_.nq();
+    e_->applied_forces(t, q, u, tau_.data());
+    RightSide<Quad> right;
+    right.fade = fade;
+    if (!accelerations_(Quad(t), In{q}, In{u}, In{tau_.data()}, right, Out{udot},
+                        Out{sigma_.data()}, Out{udot}))
+      return false;
+    e_->coordinate_rates(q, u, ydot);
+    return true;
+  }
+
+  bool project(double t, Quad* y) override {
+    Quad *q = y, *u = y + mechanism_.nq();
+    normalise(q);
+    if (mechanism_.m() == 0) return true;
+    RightSide<Quad> right;
+    right.fade = fade;
+    for (int k = 0; k < newton_steps; ++k) {
+      std::fill(tau_.begin(), tau_.end(), Quad(0));
+      right.drives = false;
+      right.positions = true;
+      if (!solve(t, q, tau_.data(), right, work_.data())) return false;
+      e_->place(t, q);
+      e_->coordinate_rates(q, work_.data(), delta_.data());
+      for (std::size_t i = 0; i < delta_.size(); ++i) q[i] += delta_[i];
+    }
+    e_->place(t, q);
+    e_->move(u);
+    e_->momenta(nullptr, tau_.data());
+    right.drives = true;
+    right.positions = false;
+    return solve(t, q, tau_.data(), right, u);
+  }
+
+ private:
+  bool solve(double t, const Quad* q, const Quad* p, const RightSide<Quad>& right, Quad* u) {
+    return corrections_(Quad(t), In{q}, In{p}, In{p}, right, Out{u}, Out{sigma_.data()}, Out{u});
+  }
+  void normalise(Quad* q) const {
+    for (const auto& b : mechanism_.tree().bodies) {
+      if (b.nq < 4) continue;
+      Quad* quaternion = q + b.q + (b.nq - 4);
+      Quad norm = 0;
+      for (int i = 0; i < 4; ++i) norm += quaternion[i] * quaternion[i];
+      norm = sqrt(norm);
+      for (int i = 0; i < 4; ++i) quaternion[i] /= norm;
+    }
+  }
+
+  const Mechanism& mechanism_;
+  Model<Space> model_;
+  Tree links_;
+  LoopModel<Space> loops_;
+  LoopPlan plan_;
+  std::unique_ptr<Evaluation<Quad>> e_;
+  LoopSweeps<Space, Quad, LoopPlan::most_lanes, false> accelerations_;
+  LoopSweeps<Space, Quad, LoopPlan::most_lanes, true> corrections_;
+  std::vector<Quad> tau_, work_, sigma_, delta_;
+};
+
+}  // namespace
+
+std::unique_ptr<QuadMotion> make_quad_motion(const Mechanism& mechanism) {
+  const Tree& tree = mechanism.tree();
+  if (mechanism.plan().planar)
+    return std::make_unique<QuadSweeps<Planar, PlanarTree>>(
+        mechanism, build_planar_model(tree, mechanism.scene(), mechanism.plan().basis));
+  return std::make_unique<QuadSweeps<Spatial, LinkTree>>(
+      mechanism, build_spatial_model(tree, mechanism.scene()));
+}
+
+}  // namespace momenta

@@ -1,0 +1,27 @@
+#pragma once
+// The motion of a mechanism in quadruple precision, for references: the acceleration form (3) with
+// its state (q, u) brought back onto Φ = 0, Φ̇ = 0, by the sweeps on 113 bits. Constants of the
+// model stay what they are in doubles, and so do drives: the motion is that of a mechanism whose
+// lengths and masses differ from the scene's by rounding.
+
+#include <momenta/core/scalar/quad.h>
+#include <momenta/dae/mechanism.h>
+
+#include <memory>
+
+namespace momenta {
+
+class QuadMotion {
+ public:
+  virtual ~QuadMotion() = default;
+  /// (q̇, u̇) at t [s] and y = (q, u), nq + nv each. False when a joint has no inertia.
+  virtual bool rates(double t, const Quad* y, Quad* ydot) = 0;
+  /// y onto Φ = 0, Φ̇ = 0 along the mass metric; quaternions to unit length.
+  virtual bool project(double t, Quad* y) = 0;
+};
+
+/// @pre the mechanism stays where it is, and its loops fit into the sweeps. Cost of a call: about
+/// 100 evaluations in doubles.
+std::unique_ptr<QuadMotion> make_quad_motion(const Mechanism& mechanism);
+
+}  // namespace momenta

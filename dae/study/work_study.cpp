@@ -1,0 +1,100 @@
+#include <momenta/dae/study/work_study.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace momenta {
+namespace {
+
+/// One ladder each: settings but for tolerance and step.
+std::vector<RunSettings> plan_ladders(const Mechanism& mechanism, const WorkRequest& request) {
+  RunSettings common;
+  common.end_time = request.end_time;
+  common.samples = request.samples;
+  const bool loops = mechanism.m() > 0;
+  const std::vector<std::string> methods =
+      request.integrators.empty() ? std::vector<std::string>{"dop853"} : request.integrators;
+  std::vector<RunSettings> ladders;
+  const auto add = [&](const std::string& form, const std::string& integrator, bool one_step) {
+    RunSettings s = common;
+    s.form = form;
+    s.integrator = integrator;
+    const bool momentum = form.rfind("momentum", 0) == 0;
+    // What the theory of each recommends: a one-step method may reset the gauge and correct
+    // positions; baumgarte has its feedback instead.
+    if (momentum && loops)
+      s.gauge = !request.gauge.empty() ? request.gauge : one_step ? "reset" : "leak";
+    s.project = one_step && loops && form != "baumgarte";
+    ladders.push_back(s);
+  };
+  for (const std::string& form : request.forms.empty() ? form_names() : request.forms) {
+    // Without loops every DAE form is the same ODE, and there is nothing to feed back.
+    if (!loops && request.forms.empty() && (is_dae_form(form) || form == "baumgarte")) continue;
+    if (is_dae_form(form)) {
+      add(form, "ida", false);
+      continue;
+    }
+    for (const std::string& method : methods)
+      if (method != "ida") add(form, method, method != "adams" && method != "bdf");
+  }
+  return ladders;
+}
+
+}  // namespace
+
+std::vector<RunResult> run_work_study(const Mechanism& mechanism, const Start& start,
+                                      const WorkRequest& request) {
+  const auto ladders = plan_ladders(mechanism, request);
+  std::vector<RunResult> results;
+  bool going = true;
+  for (std::size_t i = 0; i < ladders.size() && going; ++i) {
+    const bool fixed = ladders[i].integrator == "rk4";
+    for (const double rung : fixed ? request.steps : request.tolerances) {
+      RunRequest run;
+      run.settings = ladders[i];
+      (fixed ? run.settings.step : run.settings.rtol) = rung;
+      if (!fixed) run.settings.atol = rung;
+      run.reference = request.reference;
+      run.max_cpu_seconds = request.max_cpu_seconds;
+      if (request.progress)
+        run.progress = [&](double t) {
+          going = request.progress(static_cast<int>(i) + 1, static_cast<int>(ladders.size()),
+                                   ladders[i].form + " " + ladders[i].integrator,
+                                   t / request.end_time);
+          return going;
+        };
+      results.push_back(run_form(mechanism, start, run));
+      // A tighter rung would need longer still; one that failed may be followed by one that works.
+      if (!going || results.back().status == "time limit") break;
+    }
+  }
+  if (going)
+    time_runs(mechanism, start, results, 5, 1, [&](std::size_t i) {
+      return !request.progress ||
+             request.progress(static_cast<int>(i) + 1, static_cast<int>(results.size()),
+                              "timing " + results[i].settings.form, 1);
+    });
+  return results;
+}
+
+double judged_error(const RunResult& run, bool has_reference) {
+  return has_reference ? run.position_error_max : run.position_drift_max;
+}
+
+std::vector<std::size_t> pareto_front(const std::vector<RunResult>& runs, bool has_reference) {
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < runs.size(); ++i)
+    if (runs[i].status == "done" && std::isfinite(judged_error(runs[i], has_reference)) &&
+        std::isfinite(runs[i].cpu_s))
+      order.push_back(i);
+  const auto error = [&](std::size_t i) { return judged_error(runs[i], has_reference); };
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return runs[a].cpu_s != runs[b].cpu_s ? runs[a].cpu_s < runs[b].cpu_s : error(a) < error(b);
+  });
+  std::vector<std::size_t> front;
+  for (const std::size_t i : order)
+    if (front.empty() || error(i) < error(front.back())) front.push_back(i);
+  return front;
+}
+
+}  // namespace momenta

@@ -1,0 +1,38 @@
+#pragma once
+// Error against run time: every form and integrator asked for, each over a ladder of tolerances, or
+// of steps where a method has no error control.
+
+#include <momenta/dae/study/run_form.h>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace momenta {
+
+struct WorkRequest {
+  std::vector<std::string> forms;        ///< empty: all
+  std::vector<std::string> integrators;  ///< of the ODE forms; empty: dop853
+  std::string gauge;                     ///< of the momentum forms; empty: by form and integrator
+  std::vector<double> tolerances;        ///< rtol = atol, falling
+  std::vector<double> steps;             ///< of rk4 [s], falling
+  double end_time = 10;                  ///< [s]
+  int samples = 100;
+  const Reference* reference = nullptr;  ///< bound; errors are largest over its times
+  double max_cpu_seconds = 10;  ///< of one run; a ladder ends at the first rung that needs more
+  /// Before each run (number, of how many, label) and during it (fraction done); false stops the
+  /// study.
+  std::function<bool(int, int, const std::string&, double)> progress;
+};
+
+/// The runs, ladder by ladder. Times are medians of rounds over all runs of the study.
+std::vector<RunResult> run_work_study(const Mechanism& mechanism, const Start& start,
+                                      const WorkRequest& request);
+
+/// What a run is judged by: its error against the reference, or without one its largest drift.
+double judged_error(const RunResult& run, bool has_reference);
+
+/// Runs that no other beats in both error and CPU time, by falling error.
+std::vector<std::size_t> pareto_front(const std::vector<RunResult>& runs, bool has_reference);
+
+}  // namespace momenta
