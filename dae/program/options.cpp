@@ -34,8 +34,8 @@ void add_scene(CLI::App& verb, Options& o) {
 void add_run_options(CLI::App& verb, Options& o) {
   const auto positive = CLI::PositiveNumber;
   verb.add_option("--integrator", o.integrator,
-                  "rk4, dp5, dop853, adams, bdf or ida (default: by form)")
-      ->check(CLI::IsMember({"rk4", "dp5", "dop853", "adams", "bdf", "ida"}));
+                  "rk4, dp5, dop853, vern9, adams, bdf or ida (default: by form)")
+      ->check(CLI::IsMember({"rk4", "dp5", "dop853", "vern9", "adams", "bdf", "ida"}));
   verb.add_option("--gauge", o.gauge, "Momentum forms: none, reset, leak or leak:RATE [1/s]");
   verb.add_option("--rtol", o.rtol, "Relative tolerance")->check(positive)->capture_default_str();
   verb.add_option("--atol", o.atol,

@@ -17,6 +17,7 @@
 #include <momenta/dae/solver/tableau_dop853.h>
 #include <momenta/dae/solver/tableau_dp5.h>
 #include <momenta/dae/solver/tableau_rk4.h>
+#include <momenta/dae/solver/tableau_vern9.h>
 
 #include <algorithm>
 #include <cmath>
@@ -295,7 +296,10 @@ IntegrationResult integrate_explicit(const std::string& method, OdeSystem& syste
     return integrate<TableauDp5>(system, t0, y0, output_times, options, observer);
   if (method == "dop853")
     return integrate<TableauDop853>(system, t0, y0, output_times, options, observer);
-  throw std::invalid_argument("no explicit method \"" + method + "\": rk4, dp5, dop853 are known");
+  if (method == "vern9")
+    return integrate<TableauVern9>(system, t0, y0, output_times, options, observer);
+  throw std::invalid_argument("no explicit method \"" + method +
+                              "\": rk4, dp5, dop853, vern9 are known");
 }
 
 }  // namespace momenta

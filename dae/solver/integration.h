@@ -12,8 +12,9 @@ namespace momenta {
 struct IntegrationOptions {
   double rtol = 1e-8;
   double atol = 1e-8;       ///< times the system's scale(i)
-  double step = 0;          ///< fixed step [s]; needed by rk4. dp5, dop853: > 0 means steps of this
-                            ///< length without error control. Ignored by the multistep methods
+  double step = 0;          ///< fixed step [s]; needed by rk4. dp5, dop853, vern9: > 0 means steps
+                            ///< of this length without error control. Ignored by the multistep
+                            ///< methods
   double initial_step = 0;  ///< 0: chosen by the method
   double max_step = 0;      ///< 0: none
   int max_order = 0;        ///< multistep; 0: the method's own limit
@@ -50,7 +51,8 @@ struct IntegrationResult {
 };
 
 /// Integrates from y0 at t0 through output_times (ascending, the last is the end). Names: rk4 dp5
-/// dop853. Hot loop allocates nothing. @throws std::invalid_argument for a name it does not know.
+/// dop853 vern9. Hot loop allocates nothing. @throws std::invalid_argument for a name it does not
+/// know.
 IntegrationResult integrate_explicit(const std::string& method, OdeSystem&, double t0,
                                      const std::vector<double>& y0,
                                      const std::vector<double>& output_times,

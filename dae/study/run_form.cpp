@@ -287,7 +287,7 @@ class Runner {
     if (dae != (s.integrator == "ida"))
       throw std::invalid_argument("form '" + s.form + "' is " +
                                   (dae ? "a DAE: expected integrator ida"
-                                       : "an ODE: expected rk4, dp5, dop853, adams or bdf") +
+                                       : "an ODE: expected rk4, dp5, dop853, vern9, adams or bdf") +
                                   ", found '" + s.integrator + "'");
     if (is_multistep(s.integrator) && (s.project || s.gauge == "reset"))
       throw std::invalid_argument(

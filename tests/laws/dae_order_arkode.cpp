@@ -89,7 +89,7 @@ TEST(ExplicitAgainstArkode, SameTableauOnSameStepsGivesTheSameNumbers) {
 TEST(ExplicitAgainstArkode, TightTolerancesMeet) {
   const double promise = 1e-12, end = 10;
   const auto a = arkode(0, promise, end);
-  for (const char* method : {"dp5", "dop853"}) {
+  for (const char* method : {"dp5", "dop853", "vern9"}) {
     const auto b = own(method, 0, promise, end);
     for (std::size_t i = 0; i < 4; ++i)
       EXPECT_NEAR(a[i], b[i], 1000 * promise) << method << " " << i;

@@ -85,7 +85,7 @@ TEST(Allocation, NoneAfterTheTenthStep) {
   delete[] new double[1000];
   if (allocations == before) GTEST_SKIP() << "another operator new is linked in";
 
-  for (const char* method : {"rk4", "dp5", "dop853"}) {
+  for (const char* method : {"rk4", "dp5", "dop853", "vern9"}) {
     Pendulums system;
     IntegrationOptions options;
     if (method[0] == 'r') options.step = 0.01;

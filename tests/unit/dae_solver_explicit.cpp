@@ -85,13 +85,13 @@ class EveryExplicit : public testing::TestWithParam<const char*> {
     return integrate_explicit(GetParam(), system, 0, y0, times, options(), observer);
   }
 };
-INSTANTIATE_TEST_SUITE_P(Methods, EveryExplicit, testing::Values("rk4", "dp5", "dop853"),
+INSTANTIATE_TEST_SUITE_P(Methods, EveryExplicit, testing::Values("rk4", "dp5", "dop853", "vern9"),
                          [](const auto& method) { return std::string(method.param); });
 
 TEST(StepControl, ErrorFollowsTheToleranceOnKepler) {
-  for (const std::string method : {"dp5", "dop853"}) {
+  for (const std::string method : {"dp5", "dop853", "vern9"}) {
     double last = 1;
-    for (const double tol : {1e-4, 1e-6, 1e-8, 1e-10}) {
+    for (const double tol : {1e-4, 1e-6, 1e-8, 1e-10, 1e-12}) {
       Given system = kepler();
       const IntegrationResult r =
           integrate_explicit(method, system, 0, kepler_start, {period}, tolerance(tol), {});
@@ -111,7 +111,7 @@ TEST(StepControl, ClosesTheArenstorfOrbit) {
   // Restricted three-body problem (Hairer, Norsett, Wanner I, II.0): close passages of two poles.
   const double mu = 0.012277471, nu = 1 - mu, end = 17.0652165601579625588917206249;
   const std::vector<double> y0{0.994, 0, 0, -2.00158510637908252240537862224};
-  for (const std::string method : {"dp5", "dop853"}) {
+  for (const std::string method : {"dp5", "dop853", "vern9"}) {
     Given system(4, [=](double, const double* y, double* f) {
       const double d = std::pow(std::hypot(y[0] + mu, y[1]), 3);
       const double e = std::pow(std::hypot(y[0] - nu, y[1]), 3);
@@ -268,6 +268,8 @@ TEST(StageReuse, LastStageIsKeptUnlessTheStateWasChanged) {
     EXPECT_EQ(dp5.counters.evaluations, change ? 10 * 6 + 10 : 10 * 6 + 1);
     const auto dop853 = integrate_explicit("dop853", system, 0, {1}, {1.0}, fixed(0.1), {});
     EXPECT_EQ(dop853.counters.evaluations, 10 * 12);
+    const auto vern9 = integrate_explicit("vern9", system, 0, {1}, {1.0}, fixed(0.1), {});
+    EXPECT_EQ(vern9.counters.evaluations, 10 * 16);
   }
 }
 
@@ -275,15 +277,21 @@ TEST(StageReuse, DenseOutputIsPaidOnlyWhereItIsUsed) {
   Given system = decay();
   Observer observer;
   observer.sample = [](double, const double*, const double*) { return true; };
-  // Outputs at step ends need nothing, 0.55 and 0.57 lie in one step: 1 + 3 stages, of which the
-  // end derivative serves the next step as well.
-  const auto ends = integrate_explicit("dop853", system, 0, {1}, {0.5, 1.0}, fixed(0.1), observer);
-  EXPECT_EQ(ends.counters.evaluations, 10 * 12);
-  const auto inside =
-      integrate_explicit("dop853", system, 0, {1}, {0.55, 0.57, 1.0}, fixed(0.1), observer);
-  EXPECT_EQ(inside.counters.evaluations, 10 * 12 + 3);
-  const auto ignored = integrate_explicit("dop853", system, 0, {1}, {0.55, 1.0}, fixed(0.1), {});
-  EXPECT_EQ(ignored.counters.evaluations, 10 * 12);
+  struct Cost {
+    const char* method;
+    long step, dense;
+  };
+  for (const auto& [method, step, dense] : {Cost{"dop853", 12, 3}, Cost{"vern9", 16, 4}}) {
+    // Outputs at step ends need nothing, 0.55 and 0.57 lie in one step: 1 + `dense` stages, of
+    // which the end derivative serves the next step as well.
+    const auto ends = integrate_explicit(method, system, 0, {1}, {0.5, 1.0}, fixed(0.1), observer);
+    EXPECT_EQ(ends.counters.evaluations, 10 * step);
+    const auto inside =
+        integrate_explicit(method, system, 0, {1}, {0.55, 0.57, 1.0}, fixed(0.1), observer);
+    EXPECT_EQ(inside.counters.evaluations, 10 * step + dense);
+    const auto ignored = integrate_explicit(method, system, 0, {1}, {0.55, 1.0}, fixed(0.1), {});
+    EXPECT_EQ(ignored.counters.evaluations, 10 * step);
+  }
 }
 
 TEST(FixedSteps, GridTimesTakeTheStepValue) {

@@ -1,13 +1,22 @@
 // The coefficients of the explicit methods against the conditions they were solved from: row sums
-// Σ_j a_ij = c_i, the order conditions of rooted trees (Hairer, Norsett, Wanner I, II.2),
-// quadrature conditions Σ b_i c_i^k = 1/(k+1), and the simplifying conditions of the method of
-// order 8.
+// Σ_j a_ij = c_i, and the order conditions of all rooted trees, for the end value, the embedded
+// methods and the dense output.
+//
+// A tree t with the subtrees t_1, …, t_m at its root has
+//
+//   Φ_i(t) = Π_k Σ_j a_ij Φ_j(t_k),   γ(t) = |t| Π_k γ(t_k),
+//
+// and y + h Σ_i w_i k_i is y(t + θh) up to order p when Σ_i w_i Φ_i(t) = θ^|t|/γ(t) for all trees
+// of up to p nodes. Source: Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I,
+// II.2 (theorem 2.13), II.6 (dense output).
 
 #include <gtest/gtest.h>
 #include <momenta/dae/solver/tableau_dop853.h>
 #include <momenta/dae/solver/tableau_dp5.h>
 #include <momenta/dae/solver/tableau_rk4.h>
+#include <momenta/dae/solver/tableau_vern9.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -19,77 +28,133 @@ using Vector = std::vector<long double>;
 // Coefficients up to 40 in size, each rounded to half an ulp, sums of up to 16 of them.
 constexpr double rounding = 2e-14;
 
-template <class Tableau>
-struct Conditions {
-  Vector c, b;
-  std::vector<Vector> a;
-  Conditions() {
-    for (std::size_t i = 0; i < Tableau::stages; ++i) {
-      c.push_back(Tableau::c[i]);
-      b.push_back(Tableau::a[Tableau::stages][i]);
-      a.emplace_back(Tableau::a[i].begin(), Tableau::a[i].begin() + Tableau::stages);
-    }
-  }
-  Vector times_a(const Vector& v) const {
-    Vector r(v.size(), 0);
-    for (std::size_t i = 0; i < v.size(); ++i)
-      for (std::size_t j = 0; j < v.size(); ++j) r[i] += a[i][j] * v[j];
-    return r;
-  }
-};
-
-Vector product(Vector u, const Vector& v) {
-  for (std::size_t i = 0; i < u.size(); ++i) u[i] *= v[i];
+Vector sum(Vector u, long double factor, const Vector& v) {
+  for (std::size_t i = 0; i < v.size(); ++i) u[i] += factor * v[i];
   return u;
 }
-Vector power(const Vector& c, int k) {
-  Vector r(c.size(), 1);
-  while (k-- > 0) r = product(r, c);
-  return r;
-}
-double dot(const Vector& u, const Vector& v) {
-  long double sum = 0;
-  for (std::size_t i = 0; i < u.size(); ++i) sum += u[i] * v[i];
-  return static_cast<double>(sum);
+/// A row of a tableau over all stages.
+template <class Row>
+Vector weights(const Row& row, std::size_t stages) {
+  Vector w(row.begin(), row.end());
+  w.resize(stages, 0);
+  return w;
 }
 
-/// The 17 trees up to order 5; conditions beyond `order` are left out.
+struct Tree {
+  int nodes;
+  long double density;  ///< γ
+  Vector weight;        ///< Φ
+  Vector below;         ///< Σ_j a_ij Φ_j, what it gives as a subtree
+};
+
+/// The rooted trees of up to `order` nodes as a method's stages see them, those for dense output
+/// included.
 template <class Tableau>
-void expect_order(const Vector& b, int order) {
-  const Conditions<Tableau> m;
-  const Vector &c = m.c, one(c.size(), 1);
-  const auto A = [&](const Vector& v) { return m.times_a(v); };
-  const Vector c2 = power(c, 2), c3 = power(c, 3), Ac = A(c);
-  const auto expect = [&](int p, const Vector& tree, double density) {
-    if (p > order) return;
-    EXPECT_NEAR(dot(b, tree), 1 / density, rounding) << "order " << p << ", density " << density;
-  };
-  expect(1, one, 1);
-  expect(2, c, 2);
-  expect(3, c2, 3);
-  expect(3, Ac, 6);
-  expect(4, c3, 4);
-  expect(4, product(c, Ac), 8);
-  expect(4, A(c2), 12);
-  expect(4, A(Ac), 24);
-  expect(5, power(c, 4), 5);
-  expect(5, product(c2, Ac), 10);
-  expect(5, product(Ac, Ac), 20);
-  expect(5, product(c, A(c2)), 15);
-  expect(5, A(c3), 20);
-  expect(5, product(c, A(Ac)), 30);
-  expect(5, A(product(c, Ac)), 40);
-  expect(5, A(A(c2)), 60);
-  expect(5, A(A(Ac)), 120);
+class OrderConditions {
+ public:
+  static constexpr std::size_t stages = Tableau::a.size();
+
+  explicit OrderConditions(int order) {
+    for (int nodes = 1; nodes <= order; ++nodes)
+      graft({nodes, static_cast<long double>(nodes), Vector(stages, 1), {}}, nodes - 1,
+            trees_.size());
+  }
+
+  /// Largest |Σ_i w_i Φ_i - target θ^|t|/γ| over the trees of so many nodes; target is 0 for
+  /// differences of methods.
+  double defect(int nodes, const Vector& w, double target, double theta = 1) const {
+    long double largest = 0;
+    for (const Tree& t : trees_) {
+      if (t.nodes != nodes) continue;
+      long double left = 0;
+      for (std::size_t i = 0; i < stages; ++i) left += w[i] * t.weight[i];
+      const long double right = target * std::pow(theta, nodes) / t.density;
+      largest = std::max(largest, std::abs(left - right));
+    }
+    return static_cast<double>(largest);
+  }
+
+  std::vector<int> counts() const {
+    std::vector<int> n;
+    for (const Tree& t : trees_) {
+      n.resize(static_cast<std::size_t>(t.nodes));
+      ++n.back();
+    }
+    return n;
+  }
+
+ private:
+  /// All ways to hang `rest` more nodes on the root: subtrees from the first `candidates` trees,
+  /// in descending order, so that each tree comes once.
+  void graft(Tree t, int rest, std::size_t candidates) {
+    if (rest == 0) {
+      t.below.assign(stages, 0);
+      for (std::size_t i = 0; i < stages; ++i)
+        for (std::size_t j = 0; j < i; ++j) t.below[i] += Tableau::a[i][j] * t.weight[j];
+      trees_.push_back(std::move(t));
+      return;
+    }
+    for (std::size_t k = candidates; k-- > 0;) {
+      if (trees_[k].nodes > rest) continue;
+      Tree more = t;
+      more.density *= trees_[k].density;
+      for (std::size_t i = 0; i < stages; ++i) more.weight[i] *= trees_[k].below[i];
+      graft(std::move(more), rest - trees_[k].nodes, k + 1);
+    }
+  }
+  std::vector<Tree> trees_;
+};
+
+template <class Tableau>
+Vector end_weights() {
+  return weights(Tableau::a[Tableau::stages], Tableau::a.size());
+}
+
+/// Weights of y(θ), from the form in explicit_step.h.
+template <class Tableau>
+Vector dense_weights(double theta) {
+  const std::size_t s = Tableau::stages, all = Tableau::a.size();
+  const Vector b = end_weights<Tableau>();
+  Vector first(all, 0), last(all, 0);
+  first[0] = last[s] = 1;
+  std::vector<Vector> r{b, sum(first, -1, b)};
+  r.push_back(sum(sum(b, -1, last), -1, r[1]));
+  for (std::size_t row = 0; row < Tableau::dense_rows; ++row)
+    r.push_back(weights(Tableau::d[row], all));
+  Vector w(all, 0);
+  long double factor = 1;
+  for (std::size_t j = 0; j < r.size(); ++j)
+    w = sum(w, factor *= (j % 2 == 0 ? theta : 1 - theta), r[j]);
+  return w;
 }
 
 template <class Tableau>
 void expect_row_sums() {
   for (std::size_t i = 0; i < Tableau::a.size(); ++i) {
-    long double sum = 0;
-    for (const double a : Tableau::a[i]) sum += a;
-    EXPECT_NEAR(static_cast<double>(sum), Tableau::c[i], rounding) << "row " << i;
+    long double row = 0;
+    for (const double a : Tableau::a[i]) row += a;
+    EXPECT_NEAR(static_cast<double>(row), Tableau::c[i], rounding) << "row " << i;
     for (std::size_t j = i; j < Tableau::a[i].size(); ++j) EXPECT_EQ(Tableau::a[i][j], 0);
+  }
+}
+
+/// Order `order` and no more.
+template <class Tableau>
+void expect_order(const Vector& w, int order, double target = 1) {
+  const OrderConditions<Tableau> conditions(order + 1);
+  for (int p = 1; p <= order; ++p)
+    EXPECT_LT(conditions.defect(p, w, target), rounding) << Tableau::name << ", order " << p;
+  EXPECT_GT(conditions.defect(order + 1, w, target), 1e-6) << Tableau::name;
+}
+
+template <class Tableau>
+void expect_dense_order(int order) {
+  const OrderConditions<Tableau> conditions(order + 1);
+  for (const double theta : {0.2, 0.5, 0.9}) {
+    const Vector w = dense_weights<Tableau>(theta);
+    for (int p = 1; p <= order; ++p)
+      EXPECT_LT(conditions.defect(p, w, 1, theta), rounding) << "θ " << theta << ", order " << p;
+    EXPECT_GT(conditions.defect(order + 1, w, 1, theta), 1e-8) << "θ " << theta;
   }
 }
 
@@ -97,72 +162,35 @@ TEST(Tableaux, RowSums) {
   expect_row_sums<TableauRk4>();
   expect_row_sums<TableauDp5>();
   expect_row_sums<TableauDop853>();
+  expect_row_sums<TableauVern9>();
 }
 
-TEST(Tableaux, OrderConditions) {
-  expect_order<TableauRk4>(Conditions<TableauRk4>().b, 4);
-  expect_order<TableauDp5>(Conditions<TableauDp5>().b, 5);
-  expect_order<TableauDop853>(Conditions<TableauDop853>().b, 5);
+TEST(Tableaux, AllTreesAreTried) {
+  EXPECT_EQ(OrderConditions<TableauRk4>(9).counts(),
+            (std::vector<int>{1, 1, 2, 4, 9, 20, 48, 115, 286}));
 }
 
-TEST(Tableaux, EmbeddedOrderOfDp5) {
-  // b^ = b - e has seven stages, the last at c = 1 with row b: quadrature and trees of order 4.
-  const Conditions<TableauDp5> m;
-  Vector b_hat(7), c(7, 1), ac(7, 0);
-  for (std::size_t i = 0; i < 7; ++i) b_hat[i] = (i < 6 ? m.b[i] : 0) - TableauDp5::e[0][i];
-  for (std::size_t i = 0; i < 7; ++i) {
-    c[i] = TableauDp5::c[i];
-    for (std::size_t j = 0; j < 6; ++j) ac[i] += TableauDp5::a[i][j] * TableauDp5::c[j];
-  }
-  for (int k = 0; k < 4; ++k) EXPECT_NEAR(dot(b_hat, power(c, k)), 1.0 / (k + 1), rounding);
-  EXPECT_NEAR(dot(b_hat, ac), 1.0 / 6, rounding);
-  EXPECT_NEAR(dot(b_hat, product(c, ac)), 1.0 / 8, rounding);
-  EXPECT_GT(std::abs(dot(b_hat, power(c, 4)) - 0.2), 1e-4) << "it would be no estimate";
+TEST(Tableaux, OrderOfTheEndValue) {
+  expect_order<TableauRk4>(end_weights<TableauRk4>(), 4);
+  expect_order<TableauDp5>(end_weights<TableauDp5>(), 5);
+  expect_order<TableauDop853>(end_weights<TableauDop853>(), 8);
+  expect_order<TableauVern9>(end_weights<TableauVern9>(), 9);
 }
 
-TEST(Tableaux, QuadratureOfDop853) {
-  const Conditions<TableauDop853> m;
-  for (int k = 0; k < 8; ++k)
-    EXPECT_NEAR(dot(m.b, power(m.c, k)), 1.0 / (k + 1), rounding) << "power " << k;
-  // D(1): Σ_i b_i a_ij = b_j (1 - c_j).
-  for (std::size_t j = 0; j < 12; ++j) {
-    long double sum = 0;
-    for (std::size_t i = 0; i < 12; ++i) sum += m.b[i] * m.a[i][j];
-    EXPECT_NEAR(static_cast<double>(sum), static_cast<double>(m.b[j] * (1 - m.c[j])), rounding);
-  }
-  // C(3) from stage 6 on, the ones b weighs: Σ_j a_ij c_j^k = c_i^(k+1)/(k+1).
-  for (int k = 1; k <= 3; ++k) {
-    const Vector left = m.times_a(power(m.c, k)), right = power(m.c, k + 1);
-    for (std::size_t i = 5; i < 12; ++i)
-      EXPECT_NEAR(static_cast<double>(left[i]), static_cast<double>(right[i]) / (k + 1), rounding);
-  }
+TEST(Tableaux, OrderOfTheErrorEstimates) {
+  // Differences of two methods vanish up to the lower order.
+  const auto e = [](const auto& row, const auto& a) { return weights(row, a.size()); };
+  expect_order<TableauDp5>(e(TableauDp5::e[0], TableauDp5::a), 4, 0);
+  expect_order<TableauDop853>(e(TableauDop853::e[0], TableauDop853::a), 5, 0);
+  expect_order<TableauDop853>(e(TableauDop853::e[1], TableauDop853::a), 3, 0);
+  expect_order<TableauVern9>(e(TableauVern9::e[0], TableauVern9::a), 8, 0);
 }
 
-TEST(Tableaux, EstimatesOfDop853) {
-  Vector high(TableauDop853::e[0].begin(), TableauDop853::e[0].end());
-  Vector low(TableauDop853::e[1].begin(), TableauDop853::e[1].end());
-  Vector c(TableauDop853::c.begin(), TableauDop853::c.begin() + 13);
-  for (int k = 0; k < 5; ++k) EXPECT_NEAR(dot(high, power(c, k)), 0, rounding) << "power " << k;
-  for (int k = 0; k < 3; ++k) EXPECT_NEAR(dot(low, power(c, k)), 0, rounding) << "power " << k;
-  EXPECT_GT(std::abs(dot(high, power(c, 5))), 1e-5);
-  EXPECT_GT(std::abs(dot(low, power(c, 3))), 1e-5);
-}
-
-/// What d adds to the Hermite cubic vanishes where the cubic is exact, for y of degree 3 and below:
-/// Σ_j d_j c_j^k = 0 for k = 0, 1, 2. A wrong digit anywhere in d shows here.
-template <class Tableau>
-void expect_dense_output_above_the_cubic() {
-  for (const auto& row : Tableau::d) {
-    Vector d(row.begin(), row.end()), c(Tableau::c.begin(), Tableau::c.end());
-    for (int k = 0; k < 3; ++k)
-      EXPECT_NEAR(dot(d, power(c, k)), 0, 1e-12) << "power " << k;  // d up to 528, rounded
-    EXPECT_GT(std::abs(dot(d, power(c, 7))), 0.1);
-  }
-}
-
-TEST(Tableaux, DenseOutput) {
-  expect_dense_output_above_the_cubic<TableauDp5>();
-  expect_dense_output_above_the_cubic<TableauDop853>();
+TEST(Tableaux, OrderOfTheDenseOutput) {
+  expect_dense_order<TableauRk4>(3);
+  expect_dense_order<TableauDp5>(4);
+  expect_dense_order<TableauDop853>(7);
+  expect_dense_order<TableauVern9>(8);
 }
 
 }  // namespace
