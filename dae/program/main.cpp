@@ -43,8 +43,8 @@ int main(int argc, char** argv) {
   add_scene(*drift_verb, o);
   drift_verb->add_option("--forms", d.forms, "Comma-separated (default: all)");
   add_run_options(*drift_verb, o);
-  CLI::App* work_verb = app.add_subcommand(
-      "work", "Error against run time: every form over a ladder of tolerances");
+  CLI::App* work_verb =
+      app.add_subcommand("work", "Error against run time: every form over a ladder of tolerances");
   add_scene(*work_verb, o);
   work_verb->add_option("--forms", w.forms, "Comma-separated (default: all)");
   work_verb->add_option("--integrators", w.integrators,
@@ -58,7 +58,8 @@ int main(int argc, char** argv) {
   work_verb->add_option("--per-decade", w.per_decade, "Tolerances in a decade")
       ->check(CLI::Range(0.25, 100.0))
       ->capture_default_str();
-  work_verb->add_option("--step-rungs", w.step_rungs, "Steps of rk4: twice --step, and halves of it")
+  work_verb
+      ->add_option("--step-rungs", w.step_rungs, "Steps of rk4: twice --step, and halves of it")
       ->check(CLI::Range(1, 40))
       ->capture_default_str();
   work_verb->add_flag("--no-reference", w.no_reference,

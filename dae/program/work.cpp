@@ -63,11 +63,11 @@ int work(const Options& o, const WorkOptions& w) {
   {
     ProgressLine line(o.quiet);
     if (!reference && !w.no_reference) {
-      auto own = own_reference(*mechanism, a.start, request.end_time, own_reference_rows,
-                               [&](double t) {
-                                 line.show("reference  t = " + compact(t, 4) + " s");
-                                 return !interrupted();
-                               });
+      auto own =
+          own_reference(*mechanism, a.start, request.end_time, own_reference_rows, [&](double t) {
+            line.show("reference  t = " + compact(t, 4) + " s");
+            return !interrupted();
+          });
       reference = std::make_unique<Reference>(std::move(own.reference));
       study.reference =
           "quadruple precision: acceleration form projected at each step, extrapolation; two "

@@ -57,8 +57,8 @@ std::string advice(const StudyResult& study) {
             time_text(first.cpu_s);
     for (std::size_t k = 1; k < std::min(best.size(), 1 + others_named); ++k) {
       const RunResult& other = study.runs[best[k]];
-      text += std::string(k == 1 ? "; then " : ", ") + method(other, labels[best[k]]) + " " +
-              compact(other.cpu_s / first.cpu_s, 2) + (k == 1 ? " times as long" : "");
+      text += std::string(k == 1 ? "; then " : ", ") + method(other, labels[best[k]]) + " times " +
+              fixed(other.cpu_s / first.cpu_s, other.cpu_s < 10 * first.cpu_s ? 1 : 0);
     }
     text += ".\n";
   }

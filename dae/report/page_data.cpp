@@ -82,8 +82,8 @@ Json page_data(const StudyResult& study) {
   const auto curves = runs_with_curves(study);
 
   const bool reference = !study.reference.empty();
-  const auto front = study.drift_study ? std::vector<std::size_t>{}
-                                       : pareto_front(study.runs, reference);
+  const auto front =
+      study.drift_study ? std::vector<std::size_t>{} : pareto_front(study.runs, reference);
 
   Json runs = Json::array();
   for (std::size_t i = 0; i < study.runs.size(); ++i) {

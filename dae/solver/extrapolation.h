@@ -1,6 +1,6 @@
 #pragma once
-// Gragg's method: the midpoint rule with n = 2, 4, 6, … substeps, extrapolated to n = ∞. Column k is
-// of order 2k; columns are added until two agree. Of any scalar, so that it serves references in
+// Gragg's method: the midpoint rule with n = 2, 4, 6, … substeps, extrapolated to n = ∞. Column k
+// is of order 2k; columns are added until two agree. Of any scalar, so that it serves references in
 // quadruple precision, where tableaux end at 30 digits.
 //
 //   T_{j,1} = midpoint rule with n_j = 2j substeps

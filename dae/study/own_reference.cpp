@@ -1,6 +1,6 @@
+#include <momenta/dae/solver/extrapolation.h>
 #include <momenta/dae/study/own_reference.h>
 #include <momenta/dae/study/quad_motion.h>
-#include <momenta/dae/solver/extrapolation.h>
 #include <momenta/dae/study/run_form.h>
 
 #include <algorithm>
@@ -33,7 +33,8 @@ Rows solve(const Mechanism& mechanism, const Start& start, double end, int count
   Rows rows;
   const auto keep = [&] {
     rows.emplace_back(size);
-    std::transform(y.begin(), y.end(), rows.back().begin(), [](const Quad& x) { return value_of(x); });
+    std::transform(y.begin(), y.end(), rows.back().begin(),
+                   [](const Quad& x) { return value_of(x); });
   };
   const double interval = end / count;
   double t = start.t, h = interval;
@@ -44,8 +45,9 @@ Rows solve(const Mechanism& mechanism, const Start& start, double end, int count
     while (t < next) {
       const bool reaches = t + h >= next * (1 - 1e-14);
       const double step = reaches ? next - t : h;
-      if (method.step(t, step, y, tolerance,
-                      [&](double at, const Quad* x, Quad* rate) { return motion->rates(at, x, rate); })) {
+      if (method.step(t, step, y, tolerance, [&](double at, const Quad* x, Quad* rate) {
+            return motion->rates(at, x, rate);
+          })) {
         t = reaches ? next : t + step;
         if (!motion->project(t, y.data())) give_up(t, "the projection failed");
         h = std::min(2 * step, interval);

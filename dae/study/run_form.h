@@ -27,8 +27,9 @@ std::vector<std::string> trajectory_columns(const Mechanism& mechanism);
 RunResult run_form(const Mechanism& mechanism, const Start& start, const RunRequest& request);
 
 /// Times finished runs with nobody looking: rounds over all of them, so that a drifting clock hurts
-/// all alike, and medians in cpu_s, wall_s. Short runs get up to 40 rounds. A run is left out of
-/// further rounds once its own time passes `budget` seconds of CPU.
+/// all alike, and medians in cpu_s, wall_s; counters become those of such a run. Short runs get up
+/// to 40 rounds. A run is left out of further rounds once its own time passes `budget` seconds of
+/// CPU.
 void time_runs(const Mechanism& mechanism, const Start& start, std::vector<RunResult>& runs,
                int rounds = 5, double budget = 3,
                const std::function<bool(std::size_t)>& going_on = {});

@@ -58,9 +58,9 @@ std::vector<RunResult> run_work_study(const Mechanism& mechanism, const Start& s
       run.max_cpu_seconds = request.max_cpu_seconds;
       if (request.progress)
         run.progress = [&](double t) {
-          going = request.progress(static_cast<int>(i) + 1, static_cast<int>(ladders.size()),
-                                   ladders[i].form + " " + ladders[i].integrator,
-                                   t / request.end_time);
+          going =
+              request.progress(static_cast<int>(i) + 1, static_cast<int>(ladders.size()),
+                               ladders[i].form + " " + ladders[i].integrator, t / request.end_time);
           return going;
         };
       results.push_back(run_form(mechanism, start, run));

@@ -57,7 +57,7 @@ function scatterChart(spec) {
     const { ctx } = u;
     ctx.save();
     ctx.lineWidth = 8 * uPlot.pxRatio;
-    ctx.strokeStyle = theme("--grid");
+    ctx.strokeStyle = theme("--rule");
     ctx.lineJoin = "round";
     ctx.beginPath();
     front.forEach((p, k) => {
