@@ -181,6 +181,29 @@ TEST_F(Program, DriftWritesPageTableAndJson) {
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 15);
 }
 
+TEST_F(Program, WorkMakesItsOwnReferenceAndAdvises) {
+  const fs::path results = folder_ / "results";
+  const std::string command = "work '" + example("four_bar") +
+                              "' --forms momentum,acceleration --from 1e-5 --to 1e-9 "
+                              "--per-decade 0.5 --end 0.5";
+  const Outcome o = call(command + " --json --out '" + results.string() + "'");
+  ASSERT_EQ(o.status, 0) << o.err;
+  const auto runs = nlohmann::json::parse(o.out);
+  ASSERT_EQ(runs.size(), 6u);
+  for (const auto& run : runs) {
+    EXPECT_EQ(run.at("status"), "done") << run.at("reason");
+    EXPECT_LT(run.at("error").at("position_max").get<double>(), 100 * run.at("rtol").get<double>());
+  }
+  const std::string page = text_of(results / "index.html");
+  EXPECT_NE(page.find("quadruple precision"), std::string::npos);
+  EXPECT_NE(page.find("For an error of"), std::string::npos);
+  const Outcome said = call(command);
+  EXPECT_NE(said.out.find("For an error of 1e-6 take"), std::string::npos) << said.out;
+  expect_refused("work '" + example("four_bar") + "' --from 1e-9 --to 1e-5",
+                 "expected the loosest tolerance first");
+  expect_refused("work '" + example("four_bar") + "' --forms acceleraton", "acceleraton");
+}
+
 TEST_F(Program, EvaluateGivesThePendulumByHand) {
   // A point mass of 1 kg at 1 m, θ from the x axis, gravity along −y; τ = 0.5 N m.
   const double angle = 0.4, rate = 1.7, g = 9.81;

@@ -1,0 +1,139 @@
+// Adaptive steps of the momentum form: what their error norm sees, when they take care, and that
+// errors follow the tolerance through singular poses.
+
+#include "equations/linkages.h"
+#include "equations/tolerance.h"
+
+#include <gtest/gtest.h>
+#include <momenta/core/scene/read_scene.h>
+#include <momenta/dae/assembly.h>
+#include <momenta/dae/form/form.h>
+#include <momenta/dae/solver/integration.h>
+
+#include <random>
+
+namespace momenta {
+namespace {
+
+using Eigen::VectorXd;
+
+std::string example(const std::string& name) {
+  return std::string(MOMENTA_SOURCE_DIR) + "/examples/" + name + "/scene.toml";
+}
+
+struct Motion {
+  Motion(const std::string& name, const std::string& gauge)
+      : mechanism(read_scene(example(name))), start(assemble(mechanism).start) {
+    FormOptions options;
+    options.gauge = parse_gauge(gauge);
+    options.project = true;
+    form = make_form("momentum", mechanism, options, start);
+    y = form->initial(start);
+  }
+  Mechanism mechanism;
+  Start start;
+  std::unique_ptr<Form> form;
+  std::vector<double> y;
+};
+
+TEST(Care, ErrorNormDoesNotSeeTheGauge) {
+  for (const char* name : {"four_bar", "andrews", "slider_crank"}) {
+    Motion m(name, "reset");
+    OdeSystem& ode = *m.form->ode();
+    std::vector<double> rates(m.y.size());
+    ode.begin_step(0, m.y.data());
+    ASSERT_TRUE(ode.rhs(0, m.y.data(), rates.data()));
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> uniform(-1, 1);
+    std::vector<double> error(m.y.size());
+    for (double& x : error) x = 1e-6 * uniform(random);
+    const double before = ode.motion_error_squared(0, m.y.data(), error.data(), 1e-6, 1e-6);
+    // e_p + Φ_qᵀ c, as large as e_p is.
+    VectorXd c(m.mechanism.m()), shift(m.mechanism.nv());
+    for (double& x : c) x = uniform(random);
+    const auto e = m.mechanism.evaluation<double>();
+    e->place(0, m.y.data());
+    e->constraint_forces(c.data(), shift.data());
+    shift *= 1e-6 / shift.cwiseAbs().maxCoeff();
+    for (int i = 0; i < m.mechanism.nv(); ++i)
+      error[static_cast<std::size_t>(m.mechanism.nq() + i)] += shift[i];
+    const double after = ode.motion_error_squared(0, m.y.data(), error.data(), 1e-6, 1e-6);
+    EXPECT_GT(before, 0);
+    EXPECT_NEAR(after / before, 1, 1e-7) << name;
+    // What does move is seen.
+    for (double& x : error) x *= 2;
+    EXPECT_NEAR(ode.motion_error_squared(0, m.y.data(), error.data(), 1e-6, 1e-6) / after, 4,
+                1e-12);
+  }
+}
+
+TEST(Care, DerivativeThatComesWithAResetIsF) {
+  for (const char* name : {"four_bar", "andrews"}) {
+    Motion m(name, "reset");
+    OdeSystem& ode = *m.form->ode();
+    std::vector<double> taken(m.y.size()), evaluated(m.y.size());
+    EXPECT_FALSE(ode.first_derivative(taken.data())) << "before any step";
+    // A momentum with a gauge part, off the manifold.
+    for (std::size_t i = 0; i < m.y.size(); ++i)
+      m.y[i] += 1e-5 * std::sin(static_cast<double>(i + 1));
+    bool changed = false;
+    ASSERT_TRUE(ode.after_step(0, m.y.data(), changed));
+    EXPECT_TRUE(changed);
+    ASSERT_TRUE(ode.first_derivative(taken.data()));
+    EXPECT_FALSE(ode.first_derivative(taken.data())) << "once";
+    ode.begin_step(0, m.y.data());
+    ASSERT_TRUE(ode.rhs(0, m.y.data(), evaluated.data()));
+    double largest = 0;
+    for (double x : evaluated) largest = std::max(largest, std::abs(x));
+    for (std::size_t i = 0; i < taken.size(); ++i)
+      EXPECT_NEAR(taken[i], evaluated[i], 1e-12 * largest) << name << " " << i;
+  }
+}
+
+TEST(Care, IsTakenNearSingularPosesOnly) {
+  Motion m("slider_crank", "reset");
+  OdeSystem& ode = *m.form->ode();
+  std::vector<double> rates(m.y.size());
+  ode.begin_step(0, m.y.data());
+  ASSERT_TRUE(ode.rhs(0, m.y.data(), rates.data()));
+  EXPECT_FALSE(ode.wants_care());
+  Observer observer;
+  int careful = 0, steps = 0;
+  observer.step = [&](double, double, const Interpolant&) {
+    ++steps;
+    careful += ode.wants_care() ? 1 : 0;
+    return true;
+  };
+  const auto run =
+      integrate_explicit("dop853", ode, 0, m.y, {10.0}, {.rtol = 1e-9, .atol = 1e-9}, observer);
+  ASSERT_TRUE(run.done) << run.reason;
+  EXPECT_GT(careful, 0);
+  EXPECT_LT(careful, steps / 2);
+}
+
+TEST(Care, ErrorsFollowTheToleranceThroughSingularPoses) {
+  // The row of four-bars: motion of one angle, known to ten digits, through flat poses.
+  Motion m("n_four_bar", "reset");
+  const auto end_of = [&](double tolerance, long& evaluations) {
+    const auto run = integrate_explicit("dop853", *m.form->ode(), 0, m.y, {10.0},
+                                        {.rtol = tolerance, .atol = tolerance}, {});
+    EXPECT_TRUE(run.done) << run.reason;
+    Snapshot end;
+    EXPECT_TRUE(m.form->read(10, run.y.data(), nullptr, end));
+    evaluations = run.counters.evaluations;
+    return end.q[0];
+  };
+  long evaluations = 0;
+  const double exact = end_of(1e-13, evaluations);
+  for (const double around : {1e-7, 1e-9, 1e-11}) {
+    double worst = 0;
+    for (const double factor : {1.0, 0.6, 0.35, 0.2}) {
+      worst = std::max(worst, std::abs(end_of(around * factor, evaluations) - exact));
+      EXPECT_LT(evaluations, 12'000) << around * factor;  // steps do not collapse
+    }
+    EXPECT_LT(worst, 2e4 * around) << around;
+  }
+}
+
+}  // namespace
+}  // namespace momenta

@@ -1,0 +1,148 @@
+// What momenta work rests on: the quad-precision motion and its integrator, the front, the words.
+
+#include "equations/linkages.h"
+
+#include <gtest/gtest.h>
+#include <momenta/core/scene/read_scene.h>
+#include <momenta/dae/kkt/loop_solver.h>
+#include <momenta/dae/report/advice.h>
+#include <momenta/dae/solver/extrapolation.h>
+#include <momenta/dae/study/own_reference.h>
+#include <momenta/dae/study/quad_motion.h>
+#include <momenta/dae/study/work_study.h>
+
+namespace momenta {
+namespace {
+
+std::string example(const std::string& name, const std::string& file) {
+  return std::string(MOMENTA_SOURCE_DIR) + "/examples/" + name + "/" + file;
+}
+
+TEST(Extrapolation, TurnsAnOscillatorToThirtyDigits) {
+  // q'' = −q from (1, 0): after t = 1 q = cos 1.
+  std::vector<Quad> y{1.0, 0.0};
+  Extrapolation<Quad> method(2);
+  const auto rhs = [](double, const Quad* x, Quad* rate) {
+    rate[0] = x[1];
+    rate[1] = -x[0];
+    return true;
+  };
+  for (int i = 0; i < 8; ++i) ASSERT_TRUE(method.step(0, 0.125, y, 1e-29, rhs));
+  EXPECT_LT(std::abs(value_of(y[0] - cos(Quad(1.0)))), 1e-29);
+  EXPECT_LT(std::abs(value_of(y[1] + sin(Quad(1.0)))), 1e-29);
+}
+
+TEST(Extrapolation, RefusesAStepTooLong) {
+  std::vector<double> y{1.0};
+  Extrapolation<double> method(1);
+  const auto stiff = [](double, const double* x, double* rate) {
+    rate[0] = -1e4 * x[0];
+    return true;
+  };
+  EXPECT_FALSE(method.step(0, 1.0, y, 1e-12, stiff));
+  EXPECT_EQ(y[0], 1.0);
+  EXPECT_FALSE(method.step(0, 1.0, y, 1e-12, [](double, const double*, double*) { return false; }));
+}
+
+TEST(QuadMotion, HasTheRatesOfTheAccelerationForm) {
+  for (const char* name : {"four_bar", "andrews", "slider_crank", "free_body", "pendulum"}) {
+    const Mechanism mechanism(read_scene(example(name, "scene.toml")));
+    const Start start = assemble(mechanism).start;
+    const auto n = static_cast<std::size_t>(mechanism.nq() + mechanism.nv());
+    std::vector<Quad> y(start.q.begin(), start.q.end()), rates(n);
+    y.insert(y.end(), start.u.begin(), start.u.end());
+    const auto motion = make_quad_motion(mechanism);
+    ASSERT_TRUE(motion->project(0, y.data()));
+    ASSERT_TRUE(motion->rates(0, y.data(), rates.data()));
+    const double largest = 1 + start.udot.cwiseAbs().maxCoeff();
+    for (int i = 0; i < mechanism.nv(); ++i)
+      EXPECT_NEAR(value_of(rates[static_cast<std::size_t>(mechanism.nq() + i)]), start.udot[i],
+                  1e-11 * largest)
+          << name << " " << i;
+  }
+}
+
+TEST(OwnReference, AgreesWithThoseOfOthers) {
+  // The references of the examples come from other equations, other code and 16 digits or more.
+  for (const auto& [name, end, bound] :
+       {std::tuple{"andrews", 0.03, 1e-12}, std::tuple{"four_bar", 5.0, 1e-10},
+        std::tuple{"pendulum", 2.0, 1e-11}}) {
+    const Mechanism mechanism(read_scene(example(name, "scene.toml")));
+    const Start start = assemble(mechanism).start;
+    const OwnReference own = own_reference(mechanism, start, end, 20);
+    EXPECT_LT(own.accuracy, 1e-14) << name;
+    Reference other(example(name, "reference.csv"));
+    RunRequest request;
+    request.settings.form = "acceleration";
+    request.settings.project = mechanism.m() > 0;
+    request.settings.rtol = request.settings.atol = 1e-13;
+    request.settings.end_time = end;
+    request.settings.samples = 20;
+    request.reference = &own.reference;
+    const RunResult by_own = run_form(mechanism, start, request);
+    other.bind(trajectory_columns(mechanism));
+    request.reference = &other;
+    const RunResult by_other = run_form(mechanism, start, request);
+    EXPECT_LT(by_own.position_error_max, bound) << name;
+    EXPECT_NEAR(by_own.position_error_max, by_other.position_error_max, bound) << name;
+  }
+}
+
+RunResult run(const std::string& form, double rtol, double error, double cpu) {
+  RunResult r;
+  r.settings.form = form;
+  r.settings.rtol = r.settings.atol = rtol;
+  r.position_error_max = error;
+  r.cpu_s = cpu;
+  return r;
+}
+
+TEST(WorkStudy, FrontHoldsWhatNoOtherBeats) {
+  std::vector<RunResult> runs{run("momentum", 1e-4, 1e-3, 1), run("momentum", 1e-6, 1e-6, 3),
+                              run("acceleration", 1e-4, 1e-2, 2),
+                              run("acceleration", 1e-6, 1e-8, 5), run("baumgarte", 1e-6, 1e-9, 4)};
+  EXPECT_EQ(pareto_front(runs, true), (std::vector<std::size_t>{0, 1, 4}));
+  runs[4].status = "failed";
+  EXPECT_EQ(pareto_front(runs, true), (std::vector<std::size_t>{0, 1, 3}));
+}
+
+TEST(WorkStudy, AdviceNamesTheCheapestOfEachForm) {
+  StudyResult study;
+  study.drift_study = false;
+  study.reference = "reference.csv";
+  study.runs = {run("momentum", 1e-4, 1e-5, 1e-3), run("momentum", 1e-6, 1e-7, 3e-3),
+                run("acceleration", 1e-6, 5e-7, 6e-3), run("acceleration", 1e-4, 2e-5, 2e-3)};
+  EXPECT_EQ(advice(study),
+            "For an error of 1e-4 take `momentum` with dop853 at 1e-4: 1 ms; then `acceleration` "
+            "with dop853 times 2.0.\n"
+            "For an error of 1e-6 take `momentum` with dop853 at 1e-6: 3 ms; then `acceleration` "
+            "with dop853 times 2.0.\n"
+            "No run reaches 1e-8.\n");
+  study.reference.clear();
+  study.runs[0].position_drift_max = 1e-5;
+  EXPECT_EQ(advice(study).rfind("For a drift of 1e-4 take `momentum`", 0), 0u);
+}
+
+TEST(WorkStudy, LaddersHaveTheirRungsAndErrorsFollow) {
+  const Mechanism mechanism(read_scene(example("four_bar", "scene.toml")));
+  const Start start = assemble(mechanism).start;
+  const OwnReference own = own_reference(mechanism, start, 1.0, 10);
+  WorkRequest request;
+  request.forms = {"momentum", "acceleration", "momentum-index2"};
+  request.integrators = {"dop853", "rk4"};
+  request.tolerances = {1e-5, 1e-7, 1e-9};
+  request.steps = {0.02, 0.01};
+  request.end_time = 1;
+  request.reference = &own.reference;
+  const auto runs = run_work_study(mechanism, start, request);
+  ASSERT_EQ(runs.size(), 2u * (3 + 2) + 3);
+  for (const auto& r : runs) {
+    EXPECT_EQ(r.status, "done") << r.settings.form << ": " << r.reason;
+    EXPECT_GT(r.repeats, 0);
+  }
+  EXPECT_LT(runs[2].position_error_max, 1e-2 * runs[0].position_error_max);
+  EXPECT_NEAR(std::log2(runs[3].position_error_max / runs[4].position_error_max), 4, 1);  // rk4
+}
+
+}  // namespace
+}  // namespace momenta
