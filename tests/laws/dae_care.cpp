@@ -10,6 +10,7 @@
 #include <momenta/dae/form/form.h>
 #include <momenta/dae/solver/integration.h>
 
+#include <filesystem>
 #include <random>
 
 namespace momenta {
@@ -17,8 +18,8 @@ namespace {
 
 using Eigen::VectorXd;
 
-std::string example(const std::string& name) {
-  return std::string(MOMENTA_SOURCE_DIR) + "/examples/" + name + "/scene.toml";
+std::filesystem::path example(const std::string& name) {
+  return std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples" / name / "scene.toml";
 }
 
 struct Motion {

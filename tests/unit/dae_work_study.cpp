@@ -11,11 +11,13 @@
 #include <momenta/dae/study/quad_motion.h>
 #include <momenta/dae/study/work_study.h>
 
+#include <filesystem>
+
 namespace momenta {
 namespace {
 
-std::string example(const std::string& name, const std::string& file) {
-  return std::string(MOMENTA_SOURCE_DIR) + "/examples/" + name + "/" + file;
+std::filesystem::path example(const std::string& name, const std::string& file) {
+  return std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples" / name / file;
 }
 
 TEST(Extrapolation, TurnsAnOscillatorToThirtyDigits) {
