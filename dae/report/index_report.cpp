@@ -69,13 +69,15 @@ std::string constraint_lines(const FormIndex& f) {
   return text;
 }
 
-std::string details(const FormIndex& f) {
+std::string details(const FormIndex& f, int m) {
   std::string text = "\n" + f.form + ": " + unknowns_text(f) + "\n";
   if (!f.dae) {
+    if (m == 0)
+      return text + "  " + padded("solves", 11) + "nothing but the tree's own recursion\n";
     if (!f.words.solved.empty()) text += "  " + padded("solves", 11) + f.words.solved + "\n";
     return text + constraint_lines(f);
   }
-  text += constraint_lines(f);
+  if (m > 0) text += constraint_lines(f);
   std::string after;
   for (const auto& b : f.blocks)
     after += (after.empty() ? "" : ", ") + b.symbol + "' " +
@@ -111,9 +113,15 @@ std::string lambda_or_sigma(const IndexStudy& study) {
 std::string index_table(const IndexStudy& study) {
   std::string text = study.scene + ": " + std::to_string(study.nq) + " coordinates, " +
                      std::to_string(study.nv) + " rates, " + std::to_string(study.m) +
-                     " loop equations";
+                     (study.m == 1 ? " loop equation" : " loop equations");
   if (study.m > 0) text += " of rank " + std::to_string(study.loops.rank);
-  text += "; at t = " + compact(study.t, 4) + " s\n\n";
+  text += "; at t = " + compact(study.t, 4) + " s\n";
+  if (study.loops.rank < study.m)
+    text +=
+        "Φ_q has less than full rank here. If so everywhere, loops are redundant and multipliers "
+        "never determined; if at this\npose alone, it is singular, and what is found is true of it "
+        "alone.\n";
+  text += "\n";
   std::vector<std::vector<std::string>> table{
       {"form", "index", "y' free", "constraints", "unknowns", "gap"}};
   for (const auto& f : study.forms) {
@@ -136,7 +144,7 @@ std::string index_table(const IndexStudy& study) {
       "open; "
       "the index is the first ν with none.\nconstraints: what they say of the unknowns alone. gap: "
       "smallest singular value that counts over largest that does not, the least of all ranks.\n";
-  for (const auto& f : study.forms) text += details(f);
+  for (const auto& f : study.forms) text += details(f, study.m);
   return text + lambda_or_sigma(study);
 }
 
@@ -158,12 +166,13 @@ nlohmann::ordered_json index_json(const IndexStudy& study) {
   j["forms"] = Json::array();
   for (const auto& f : study.forms) {
     Json form;
+    const bool loops = study.m > 0;
     form["form"] = f.form;
     form["kind"] = f.dae ? "DAE" : "ODE";
     form["unknowns"] = f.unknowns;
     if (!f.dae) {
       form["index"] = nullptr;
-      form["solved"] = f.words.solved;
+      form["solved"] = loops ? f.words.solved : "";
       form["matrix"] = rank_json(f.inner, f.inner_size);
     } else {
       form["index"] = f.found.index < 0 ? Json(nullptr) : Json(f.found.index);
@@ -193,12 +202,13 @@ nlohmann::ordered_json index_json(const IndexStudy& study) {
       form["ida"] = f.ida;
     }
     form["constraints"] = Json::array();
-    for (const Constraint& c : f.words.constraints)
-      form["constraints"].push_back({{"origin", name_of(c.origin)},
-                                     {"equation", c.equation},
-                                     {"differentiations", c.differentiations},
-                                     {"rows", c.per_rate * study.nv + c.per_loop_row * study.m},
-                                     {"gives", c.gives}});
+    if (loops)
+      for (const Constraint& c : f.words.constraints)
+        form["constraints"].push_back({{"origin", name_of(c.origin)},
+                                       {"equation", c.equation},
+                                       {"differentiations", c.differentiations},
+                                       {"rows", c.per_rate * study.nv + c.per_loop_row * study.m},
+                                       {"gives", c.gives}});
     j["forms"].push_back(std::move(form));
   }
   return j;

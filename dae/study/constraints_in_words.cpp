@@ -10,6 +10,7 @@ using Constraints = std::vector<Constraint>;
 
 const std::string positions = "Φ(q, t) = 0";
 const std::string velocities = "Φ̇ = Φ_q v + Φ_t = 0";
+const std::string rates = "Φ̇ = Φ_q u + Φ_t = 0";
 const std::string accelerations = "Φ̈ = Φ_q v̇ + Φ̇_q v + Φ̇_t = 0 with v̇ from (1a)";
 const std::string of_momenta = "Φ̇ = Φ_q M⁻¹(p − Φ_qᵀσ) + Φ_t = 0";
 
@@ -44,28 +45,27 @@ const std::map<std::string, FormInWords>& all() {
          hidden(2, "Φ̈ = Φ_q M⁻¹ṗ + (Φ_q M⁻¹)˙p + Φ̇_t = 0 with ṗ from (5b)", "λ")}}},
       {"augmented-lagrangian-canonical",
        {"p", "σ", "M + Φ_qᵀαΦ_q, regular whatever the rank of Φ_q", {invariant(positions)}}},
-      {"acceleration",
-       {"u", "λ", "(3) for u̇ and λ", {invariant(velocities), invariant(positions)}}},
+      {"acceleration", {"u", "λ", "(3) for u̇ and λ", {invariant(rates), invariant(positions)}}},
       {"projected",
        {"u",
         "λ",
         "(3) for u̇ and λ; Φ and Φ̇ put to zero after each step",
-        {invariant(velocities), invariant(positions)}}},
+        {invariant(rates), invariant(positions)}}},
       {"partitioned",
        {"u",
         "λ",
         "(3) for u̇; dependent q and u from Φ and Φ̇",
-        {invariant(velocities), invariant(positions)}}},
+        {invariant(rates), invariant(positions)}}},
       {"baumgarte",
        {"u",
         "λ",
         "(3) for u̇ and λ, with feedback of Φ and Φ̇",
-        {invariant(velocities), invariant(positions)}}},
+        {invariant(rates), invariant(positions)}}},
       {"augmented-lagrangian",
        {"u",
         "λ",
         "M + Φ_qᵀαΦ_q, regular whatever the rank of Φ_q",
-        {invariant(velocities), invariant(positions)}}},
+        {invariant(rates), invariant(positions)}}},
       {"acceleration-index1",
        {"v", "λ", "", {given(accelerations, "λ"), invariant(velocities), invariant(positions)}}},
       {"acceleration-index2",

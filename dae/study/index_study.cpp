@@ -123,8 +123,7 @@ void judge_ida(FormIndex& f) {
             ": BDF converges if the algebraic unknowns are not error-tested; " + done;
   } else {
     f.ida = "does not hold, index " + std::to_string(index) +
-            ": BDF is proved for index 3 with constant steps only, and its first steps err; " +
-            done;
+            (index == 3 ? ": BDF is proved for index 3 with constant steps only; " : "; ") + done;
   }
 }
 

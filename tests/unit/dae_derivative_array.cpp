@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 #include <momenta/dae/measure/derivative_array.h>
 
+#include <Eigen/LU>
+
 #include <random>
 
 namespace momenta {
@@ -257,7 +259,7 @@ TEST(DerivativeArray, RanksThatAreNotClearAreNotDecided) {
     return index_of(2, vector({0, 0}), vector({0, 0}), 0,
                     [apart](const Jet* y, const Jet* ydot, Jet* r) {
                       r[0] = ydot[0] + ydot[1] - y[0];
-                      r[1] = ydot[0] + (1 + apart) * ydot[1] + y[1];
+                      r[1] = ydot[0] + (1 + apart) * ydot[1] - y[1];
                     });
   };
   EXPECT_EQ(found(1e-3).index, 0);
