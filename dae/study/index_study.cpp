@@ -95,7 +95,7 @@ std::string symbols(const std::vector<UnknownBlock>& blocks, bool UnknownBlock::
 void judge_ida(FormIndex& f) {
   const int appearing =
       static_cast<int>(std::count(f.found.appears.begin(), f.found.appears.end(), true));
-  f.semi_explicit = f.found.levels.front().rank == appearing;
+  f.semi_explicit = f.found.levels.empty() || f.found.levels.front().rank == appearing;
   bool algebraic_tested = false;
   for (const auto& b : f.blocks) algebraic_tested |= b.algebraic && b.tested;
   const std::string done =
