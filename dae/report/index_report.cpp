@@ -128,7 +128,7 @@ std::string index_table(const IndexStudy& study) {
     if (!f.dae) {
       const bool regular = f.inner.rank == f.inner_size;
       table.push_back({f.form, f.text(),
-                       std::string(study.m > 0 ? "(M Φ_qᵀ; Φ_q 0) " : "M ") +
+                       std::string(study.m > 0 && !f.words.penalised ? "(M Φ_qᵀ; Φ_q 0) " : "M ") +
                            (regular ? "regular, rank " : "rank ") + std::to_string(f.inner.rank) +
                            " of " + std::to_string(f.inner_size),
                        "", std::to_string(f.unknowns), scientific(f.inner.gap(), 1)});

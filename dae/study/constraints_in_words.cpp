@@ -24,64 +24,59 @@ Constraint invariant(const std::string& equation) {
   return {Origin::invariant, 0, 0, 1, equation, ""};
 }
 
+FormInWords dae(const std::string& x, const std::string& s, const Constraints& constraints) {
+  FormInWords words;
+  words.x = x;
+  words.s = s;
+  words.constraints = constraints;
+  return words;
+}
+FormInWords ode(const std::string& x, const std::string& solved, const Constraints& constraints) {
+  FormInWords words;
+  words.x = x;
+  words.solved = solved;
+  words.constraints = constraints;
+  return words;
+}
+FormInWords penalised(const std::string& x, const Constraints& constraints) {
+  FormInWords words = ode(x, "M + Φ_qᵀαΦ_q, regular whatever the rank of Φ_q", constraints);
+  words.penalised = true;
+  return words;
+}
+
 const std::map<std::string, FormInWords>& all() {
+  const Constraint of_stabilised =
+      hidden(1, "Φ̇ = Φ_q(v − Φ_qᵀμ) + Φ_t = 0, that is Φ_qΦ_qᵀμ = 0", "μ");
+  const Constraints both{invariant(rates), invariant(positions)};
   static const std::map<std::string, FormInWords> words{
-      {"momentum", {"p", "σ", "(7) for u and σ", Constraints{invariant(positions)}}},
-      {"momentum-index1", {"p", "σ", "", {given(of_momenta, "σ"), invariant(positions)}}},
-      {"momentum-index2", {"p", "σ", "", {given(positions), hidden(1, of_momenta, "σ")}}},
-      {"momentum-stabilised",
-       {"p",
-        "σ",
-        "",
-        {{Origin::given, 0, 1, 0, "M v + Φ_qᵀσ = p", "v"},
-         given(velocities, "σ"),
-         given(positions),
-         hidden(1, "Φ̇ = Φ_q(v − Φ_qᵀμ) + Φ_t = 0, that is Φ_qΦ_qᵀμ = 0", "μ")}}},
+      {"momentum", ode("p", "(7) for u and σ", {invariant(positions)})},
+      {"momentum-index1", dae("p", "σ", {given(of_momenta, "σ"), invariant(positions)})},
+      {"momentum-index2", dae("p", "σ", {given(positions), hidden(1, of_momenta, "σ")})},
+      {"momentum-stabilised", dae("p", "σ",
+                                  {{Origin::given, 0, 1, 0, "M v + Φ_qᵀσ = p", "v"},
+                                   given(velocities, "σ"),
+                                   given(positions),
+                                   of_stabilised})},
       {"momentum-index3",
-       {"p",
-        "λ",
-        "",
-        {given(positions), hidden(1, "Φ̇ = Φ_q M⁻¹p + Φ_t = 0", ""),
-         hidden(2, "Φ̈ = Φ_q M⁻¹ṗ + (Φ_q M⁻¹)˙p + Φ̇_t = 0 with ṗ from (5b)", "λ")}}},
-      {"augmented-lagrangian-canonical",
-       {"p", "σ", "M + Φ_qᵀαΦ_q, regular whatever the rank of Φ_q", {invariant(positions)}}},
-      {"acceleration", {"u", "λ", "(3) for u̇ and λ", {invariant(rates), invariant(positions)}}},
-      {"projected",
-       {"u",
-        "λ",
-        "(3) for u̇ and λ; Φ and Φ̇ put to zero after each step",
-        {invariant(rates), invariant(positions)}}},
-      {"partitioned",
-       {"u",
-        "λ",
-        "(3) for u̇; dependent q and u from Φ and Φ̇",
-        {invariant(rates), invariant(positions)}}},
-      {"baumgarte",
-       {"u",
-        "λ",
-        "(3) for u̇ and λ, with feedback of Φ and Φ̇",
-        {invariant(rates), invariant(positions)}}},
-      {"augmented-lagrangian",
-       {"u",
-        "λ",
-        "M + Φ_qᵀαΦ_q, regular whatever the rank of Φ_q",
-        {invariant(rates), invariant(positions)}}},
+       dae("p", "λ",
+           {given(positions), hidden(1, "Φ̇ = Φ_q M⁻¹p + Φ_t = 0", ""),
+            hidden(2, "Φ̈ = Φ_q M⁻¹ṗ + d/dt(Φ_q M⁻¹) p + Φ̇_t = 0 with ṗ from (5b)", "λ")})},
+      {"augmented-lagrangian-canonical", penalised("p", {invariant(positions)})},
+      {"acceleration", ode("u", "(3) for u̇ and λ", both)},
+      {"baumgarte", ode("u", "(3) for u̇ and λ, with feedback of Φ and Φ̇", both)},
+      {"projected", ode("u", "(3) for u̇ and λ; Φ and Φ̇ put to zero after each step", both)},
+      {"partitioned", ode("u", "(3) for u̇, with independent q and u for unknowns",
+                          {given(positions, "dependent q"), given(rates, "dependent u")})},
+      {"augmented-lagrangian", penalised("u", both)},
       {"acceleration-index1",
-       {"v", "λ", "", {given(accelerations, "λ"), invariant(velocities), invariant(positions)}}},
+       dae("v", "λ", {given(accelerations, "λ"), invariant(velocities), invariant(positions)})},
       {"acceleration-index2",
-       {"v", "λ", "", {given(velocities), hidden(1, accelerations, "λ"), invariant(positions)}}},
+       dae("v", "λ", {given(velocities), hidden(1, accelerations, "λ"), invariant(positions)})},
       {"acceleration-index3",
-       {"v",
-        "λ",
-        "",
-        {given(positions), hidden(1, velocities, ""), hidden(2, accelerations, "λ")}}},
+       dae("v", "λ", {given(positions), hidden(1, velocities, ""), hidden(2, accelerations, "λ")})},
       {"stabilised-index2",
-       {"v",
-        "λ",
-        "",
-        {given(velocities), given(positions),
-         hidden(1, "Φ̇ = Φ_q(v − Φ_qᵀμ) + Φ_t = 0, that is Φ_qΦ_qᵀμ = 0", "μ"),
-         hidden(1, accelerations, "λ")}}},
+       dae("v", "λ",
+           {given(velocities), given(positions), of_stabilised, hidden(1, accelerations, "λ")})},
   };
   return words;
 }

@@ -22,8 +22,9 @@ struct Constraint {
 };
 
 struct FormInWords {
-  std::string x, s;    ///< symbols of the second block of unknowns and of its multipliers
-  std::string solved;  ///< ODE forms: what is solved at each evaluation
+  std::string x, s;        ///< symbols of the second block of unknowns and of its multipliers
+  std::string solved;      ///< ODE forms: what is solved at each evaluation
+  bool penalised = false;  ///< ODE forms: with M + Φ_qᵀαΦ_q in place of (M Φ_qᵀ; Φ_q 0)
   std::vector<Constraint> constraints;
 };
 

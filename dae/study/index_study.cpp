@@ -164,8 +164,9 @@ IndexStudy run_index_study(const Mechanism& mechanism, const Start& start,
     f.words = in_words(name);
     if (!f.dae) {
       f.unknowns = mechanism.nq() + mechanism.nv();
-      f.inner = rank_of(at.kkt);
-      f.inner_size = static_cast<int>(at.kkt.rows());
+      // M + Φ_qᵀαΦ_q is regular where M is.
+      f.inner_size = f.words.penalised ? mechanism.nv() : static_cast<int>(at.kkt.rows());
+      f.inner = rank_of(at.kkt.topLeftCorner(f.inner_size, f.inner_size));
       study.forms.push_back(std::move(f));
       continue;
     }

@@ -28,7 +28,7 @@ struct FormIndex {
   FormInWords words;
 
   // ODE forms: the linear system solved at each evaluation, (7) or (3); both have the matrix
-  // (M Φ_qᵀ; Φ_q 0), without loops M.
+  // (M Φ_qᵀ; Φ_q 0); without loops, and for what decides the rank of penalty forms, M.
   RankFound inner;
   int inner_size = 0;
 
