@@ -3,6 +3,7 @@
 // does. Immutable; every form, solver and measure takes it by const reference.
 
 #include <momenta/core/open_chain.h>
+#include <momenta/core/scalar/power_series.h>
 #include <momenta/dae/evaluation.h>
 #include <momenta/dae/loop/loop_model.h>
 #include <momenta/dae/sweeps/levels/loop_sweeps.h>
@@ -67,7 +68,7 @@ class Mechanism {
   /// index of each row.
   const std::vector<int>& row_groups() const { return row_groups_; }
 
-  /// A workspace for one thread; S is double or Dual8.
+  /// A workspace for one thread; S is double, Dual8 or Jet.
   template <class S>
   std::unique_ptr<Evaluation<S>> evaluation() const;
 
@@ -115,5 +116,6 @@ class Mechanism {
 
 extern template std::unique_ptr<Evaluation<double>> Mechanism::evaluation<double>() const;
 extern template std::unique_ptr<Evaluation<Dual8>> Mechanism::evaluation<Dual8>() const;
+extern template std::unique_ptr<Evaluation<Jet>> Mechanism::evaluation<Jet>() const;
 
 }  // namespace momenta

@@ -5,6 +5,7 @@
 #include <momenta/core/kernel/accelerations.h>
 #include <momenta/core/kernel/mass_matrix.h>
 #include <momenta/core/kernel/momentum_recursion.h>
+#include <momenta/core/scalar/power_series.h>
 #include <momenta/dae/loop/loop_rows.h>
 #include <momenta/dae/mechanism.h>
 
@@ -38,7 +39,7 @@ class Mechanism::SweepEvaluation final : public Evaluation<S> {
   }
 
   void place(double t, const S* q) override {
-    poses_outward(w_, S(t), q, true);
+    poses_outward(w_, Moment<S>::at(t), q, true);
     loops_.place();
     gravity_current_ = false;
   }
@@ -126,22 +127,22 @@ class Mechanism::SweepEvaluation final : public Evaluation<S> {
   }
 
   bool open_momentum_rates(double t, const S* q, const S* p, S* u, S* pdot) override {
-    const bool ok = momentum_recursion(*momentum_, w_, S(t), q, p, u, pdot);
+    const bool ok = momentum_recursion(*momentum_, w_, Moment<S>::at(t), q, p, u, pdot);
     stuck_ = ok ? -1 : momentum_->stuck();
     return ok;
   }
   bool open_accelerations(double t, const S* q, const S* u, S* udot) override {
-    const bool ok = acceleration_recursion(*acceleration_, w_, S(t), q, u, udot);
+    const bool ok = acceleration_recursion(*acceleration_, w_, Moment<S>::at(t), q, u, udot);
     stuck_ = ok ? -1 : acceleration_->stuck();
     return ok;
   }
 
   void body_forces(double t, const S* q, const S* u, S* tau) override {
-    body_force_rates(w_, S(t), q, u);
+    body_force_rates(w_, Moment<S>::at(t), q, u);
     std::copy(w_.generalised.begin(), w_.generalised.end(), tau);
   }
   void applied_forces(double t, const S* q, const S* u, S* tau) override {
-    momenta::applied_forces(w_, S(t), q, u);
+    momenta::applied_forces(w_, Moment<S>::at(t), q, u);
     std::copy(w_.generalised.begin(), w_.generalised.end(), tau);
   }
 

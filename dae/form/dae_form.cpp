@@ -144,6 +144,11 @@ bool DaeForm::residual(double t, const double* y, const double* ydot, double* r)
   return true;
 }
 
+void DaeForm::along(double t, const Jet* y, const Jet* ydot, Jet* r) {
+  if (!jet_.e) jet_ = make_scratch<Jet>(mechanism_, size());
+  equations(jet_, t, y, ydot, r);
+}
+
 bool DaeForm::evaluate_columns(double t, const double* y, const double* ydot, double c,
                                const std::vector<int>& direction_of) {
   for (int i = 0; i < size(); ++i) {

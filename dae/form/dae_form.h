@@ -5,7 +5,8 @@
 //   y = ( q | x | v | s | μ ),  x = p or v; v, s, μ only where the form has them; s = σ or λ
 // Rows: nv kinematic or momentum rows; one row q·q̇ + (|q|² − 1)/2 = 0 per quaternion; nv dynamic
 // rows; then the form's other rows. A form writes its equations once, as a template on the scalar:
-// with double they are the residual, with dual numbers eight columns of ∂F/∂y + c ∂F/∂y' at a time.
+// with double they are the residual, with dual numbers eight columns of ∂F/∂y + c ∂F/∂y' at a time,
+// with series (Jet) their total derivatives, from which the index is found.
 
 #include <momenta/dae/form/form.h>
 #include <momenta/dae/kkt/kkt.h>
@@ -51,11 +52,17 @@ class DaeForm : public Form, public DaeSystem {
   bool differential(int i) const override;
   double scale(int i) const override;
 
+  /// F along a curve, y and y' given as series, with its derivatives along their two directions.
+  /// Without the regularisation of redundant loops: the equations as the form's head has them.
+  void along(double t, const Jet* y, const Jet* ydot, Jet* r);
+  const DaeLayout& layout() const { return layout_; }
+
  protected:
   virtual void equations(DaeScratch<double>& s, double t, const double* y, const double* ydot,
                          double* r) = 0;
   virtual void equations(DaeScratch<Dual8>& s, double t, const Dual8* y, const Dual8* ydot,
                          Dual8* r) = 0;
+  virtual void equations(DaeScratch<Jet>& s, double t, const Jet* y, const Jet* ydot, Jet* r) = 0;
   /// Whether x takes part in the error test: not in index-3 forms, whose x is one derivative
   /// rougher than q.
   virtual bool rate_is_tested() const { return true; }
@@ -92,6 +99,7 @@ class DaeForm : public Form, public DaeSystem {
   std::vector<double> inertia_;  ///< diagonal of M at the start
   DaeScratch<double> plain_;
   DaeScratch<Dual8> dual_;
+  DaeScratch<Jet> jet_;  ///< filled when first asked for
   std::vector<double>
       epsilon_;               ///< per row of Φ; empty when the loops are independent at the start
   std::unique_ptr<Kkt> kkt_;  ///< for reading momentum states back
@@ -102,7 +110,7 @@ class DaeForm : public Form, public DaeSystem {
       groups_;  ///< per dual evaluation and direction: its columns
 };
 
-/// Writes the equations of `Derived::rows<S>` for both scalars.
+/// Writes the equations of `Derived::rows<S>` for all scalars.
 template <class Derived>
 class DaeFormOf : public DaeForm {
  public:
@@ -115,6 +123,9 @@ class DaeFormOf : public DaeForm {
   }
   void equations(DaeScratch<Dual8>& s, double t, const Dual8* y, const Dual8* ydot,
                  Dual8* r) override {
+    static_cast<Derived*>(this)->rows(s, t, y, ydot, r);
+  }
+  void equations(DaeScratch<Jet>& s, double t, const Jet* y, const Jet* ydot, Jet* r) override {
     static_cast<Derived*>(this)->rows(s, t, y, ydot, r);
   }
 

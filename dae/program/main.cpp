@@ -76,6 +76,15 @@ int main(int argc, char** argv) {
                    "{..}}: a JSON file, -, or the text itself (what is left out is the start)")
       ->type_name("STATE");
   evaluate_verb->add_option("--out", o.out, "Directory for evaluate.json");
+  CLI::App* index_app = app.add_subcommand(
+      "index", "The differentiation index of each form, by numbers, and its hidden constraints");
+  add_scene(*index_app, o);
+  std::string index_forms, index_state;
+  index_app->add_option("--forms", index_forms, "Comma-separated (default: all)");
+  index_app
+      ->add_option("--at", index_state, "Consistent state, as for evaluate (default: the start)")
+      ->type_name("STATE");
+  index_app->add_option("--out", o.out, "Directory for index.json");
   CLI::App* make_verb = app.add_subcommand("make", "Prints a scene of a family");
   std::string all_families;
   for (const Family& f : families()) all_families += "\n  " + std::string(f.name) + ": " + f.what;
@@ -88,11 +97,10 @@ int main(int argc, char** argv) {
     if (e.get_exit_code() == 0) return app.exit(e);
     const bool unknown = argc > 1 && argv[1][0] != '-' && app.get_subcommands().empty();
     if (unknown)
-      std::fprintf(
-          stderr,
-          "momenta: verb '%.60s' is not known; expected check, assemble, evaluate, run, drift, "
-          "work or make\n",
-          argv[1]);
+      std::fprintf(stderr,
+                   "momenta: verb '%.60s' is not known; expected check, assemble, evaluate, index, "
+                   "run, drift, work or make\n",
+                   argv[1]);
     else
       std::fprintf(stderr, "momenta: %s\n", e.what());
     return bad_input;
@@ -104,6 +112,7 @@ int main(int argc, char** argv) {
     if (*drift_verb) return drift(o, d);
     if (*work_verb) return work(o, w);
     if (*evaluate_verb) return evaluate(o, state);
+    if (*index_app) return index_verb(o, index_forms, index_state);
     return make(family, n);
   } catch (const momenta::SceneError& e) {
     std::fprintf(stderr, "momenta: %s\n", e.what());

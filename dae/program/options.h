@@ -75,6 +75,8 @@ struct WorkOptions {
 int work(const Options& o, const WorkOptions& w);
 /// `state`: a JSON file, "-" for standard input, or text that starts with "{".
 int evaluate(const Options& o, const std::string& state);
+/// `forms`: comma-separated, empty: all. `state`: as for evaluate; empty: the start.
+int index_verb(const Options& o, const std::string& forms, const std::string& state);
 /// Prints a scene; `n` empty: the usual size of the family. @throws std::invalid_argument
 int make(const std::string& family, std::optional<int> n);
 

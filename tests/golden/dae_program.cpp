@@ -204,6 +204,50 @@ TEST_F(Program, WorkMakesItsOwnReferenceAndAdvises) {
   expect_refused("work '" + example("four_bar") + "' --forms acceleraton", "acceleraton");
 }
 
+TEST_F(Program, IndexAgreesWithCheckAndIsWritten) {
+  const fs::path results = folder_ / "results";
+  const std::string scene = "'" + example("four_bar") + "'";
+  const Outcome o = call("index " + scene + " --json --out '" + results.string() + "'");
+  ASSERT_EQ(o.status, 0) << o.err;
+  const auto j = nlohmann::json::parse(o.out);
+  EXPECT_EQ(nlohmann::json::parse(text_of(results / "index.json")), j);
+  const Outcome checked = call("check " + scene), table = call("index " + scene);
+  EXPECT_GE(j.at("forms").size(), 10u);
+  for (const auto& f : j.at("forms")) {
+    const std::string form = f.at("form");
+    const std::string line = "\n  " + form + " ";
+    const auto at = checked.out.find(line);
+    ASSERT_NE(at, std::string::npos) << form << " is missing in check";
+    const std::string said = checked.out.substr(at, checked.out.find('\n', at + 1) - at);
+    if (f.at("kind") == "ODE")
+      EXPECT_NE(said.find("ODE"), std::string::npos) << said;
+    else
+      EXPECT_NE(said.find("index " + f.at("index").dump()), std::string::npos) << said;
+    EXPECT_NE(table.out.find("\n" + form + ": q, "), std::string::npos) << form;
+  }
+  EXPECT_EQ(call("index " + scene + " --quiet").out, "");
+}
+
+TEST_F(Program, IndexAtAStateAsksForAConsistentOne) {
+  const std::string scene = "'" + example("slider_crank") + "'";
+  expect_refused("index " + scene + R"( --at '{"q": {"O": 1}}')", "loop 'B' is open by");
+  expect_refused("index " + scene + R"( --at '{"v": {"O": 1}}')", "loop 'B' opens at a rate of");
+  expect_refused("index " + scene + " --forms momentum,nonsense", "form 'nonsense' is not known");
+  const Outcome made = call("make n-four-bar --n 150");
+  expect_refused("index '" + write("large.toml", made.out).string() + "'", "expected at most 450");
+  // The crossing: one of two loop equations says nothing new there.
+  const Outcome o = call(
+      "index " + scene +
+      R"( --at '{"q": {"O": 1.5707963267948966, "A": -3.141592653589793, "S": 0}, "p": {}}' --json)");
+  ASSERT_EQ(o.status, 0) << o.err;
+  const auto j = nlohmann::json::parse(o.out);
+  EXPECT_EQ(j.at("loops").at("rank"), 1);
+  for (const auto& f : j.at("forms")) {
+    if (f.at("form") != "momentum-index2") continue;
+    EXPECT_NE(f.at("index"), 2);
+  }
+}
+
 TEST_F(Program, EvaluateGivesThePendulumByHand) {
   // A point mass of 1 kg at 1 m, θ from the x axis, gravity along −y; τ = 0.5 N m.
   const double angle = 0.4, rate = 1.7, g = 9.81;

@@ -1,0 +1,36 @@
+#pragma once
+// What each form's equations say of its unknowns alone, in the order in which differentiation shows
+// it. The numbers beside it come from the derivative array (dae/measure/derivative_array.h), which
+// knows nothing of these words; a test counts one against the other.
+
+#include <string>
+#include <vector>
+
+namespace momenta {
+
+struct Constraint {
+  enum class Origin {
+    given,     ///< stands in the equations, ν = 0
+    hidden,    ///< shown by ν ≥ 1 differentiations
+    invariant  ///< kept by solutions, asked by no equation: the start alone sees to it
+  };
+  Origin origin = Origin::given;
+  int differentiations = 0;            ///< ν at which the array first has it
+  int per_rate = 0, per_loop_row = 0;  ///< equations: per_rate · nv + per_loop_row · m
+  std::string equation;
+  std::string gives;  ///< the unknown it determines; empty: none
+};
+
+struct FormInWords {
+  std::string x, s;        ///< symbols of the second block of unknowns and of its multipliers
+  std::string solved;      ///< ODE forms: what is solved at each evaluation
+  bool penalised = false;  ///< ODE forms: with M + Φ_qᵀαΦ_q in place of (M Φ_qᵀ; Φ_q 0)
+  std::vector<Constraint> constraints;
+};
+
+/// Empty symbols and lists for a form this file does not know.
+FormInWords in_words(const std::string& form);
+
+const char* name_of(Constraint::Origin origin);
+
+}  // namespace momenta

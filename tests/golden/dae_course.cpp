@@ -1,0 +1,93 @@
+// The commands of the course run as they are printed, on shortened spans, and its links lead
+// somewhere.
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <regex>
+#include <string>
+#include <vector>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path top = MOMENTA_SOURCE_DIR, course = top / "docs/index-reduction";
+
+std::string text_of(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+std::vector<fs::path> pages(const fs::path& folder) {
+  std::vector<fs::path> all;
+  for (const auto& entry : fs::directory_iterator(folder))
+    if (entry.path().extension() == ".md") all.push_back(entry.path());
+  return all;
+}
+
+/// Commands of a page: indented or in backquotes, lines that end in \\ joined; of a shell loop its
+/// body with one value for each variable.
+std::vector<std::string> commands_of(const std::string& page) {
+  std::string text = std::regex_replace(page, std::regex("\\\\\n *"), "");
+  const std::map<std::string, std::string> values{
+      {"a", "3"}, {"tol", "1e-6"}, {"form", "momentum"}, {"how", "--project"}};
+  for (const auto& [name, value] : values)
+    text = std::regex_replace(text, std::regex("\\$" + name + "\\b"), value);
+  std::vector<std::string> all;
+  const std::regex command(
+      "(?:\n {4,}|`)(momenta (?:index|check|assemble|evaluate|run|drift) [^\n`]*)");
+  for (std::sregex_iterator it(text.begin(), text.end(), command), end; it != end; ++it)
+    all.push_back((*it)[1]);
+  return all;
+}
+
+/// The same on a short span, with its results in `out`.
+std::string shortened(std::string command, const fs::path& out) {
+  command = std::regex_replace(command, std::regex(" --(end|samples|out|rtol) [^ ]+"), "");
+  const bool integrates =
+      command.rfind("momenta run", 0) == 0 || command.rfind("momenta drift", 0) == 0;
+  if (integrates) command += " --end 0.003 --samples 3 --rtol 1e-6 --quiet";
+  if (command.rfind("momenta check", 0) != 0) command += " --out '" + out.string() + "'";
+  return "'" + (fs::path(MOMENTA_BINARY_DIR) / "dae").string() + "'/" + command;
+}
+
+TEST(Course, CommandsRun) {
+  const fs::path out = fs::temp_directory_path() / ("momenta_course_" + std::to_string(getpid()));
+  fs::create_directories(out);
+  int count = 0;
+  for (const auto& page : pages(course))
+    for (const std::string& command : commands_of(text_of(page))) {
+      if (command.find("SCENE") != std::string::npos) continue;
+      ++count;
+      const std::string line = "cd '" + top.string() + "' && " +
+                               shortened(command, out / "results") + " >'" +
+                               (out / "said").string() + "' 2>&1 </dev/null";
+      const int raw = std::system(line.c_str());  // NOLINT: commands of our own pages
+      EXPECT_TRUE(WIFEXITED(raw) && WEXITSTATUS(raw) == 0)
+          << page.filename() << ": " << command << "\n"
+          << text_of(out / "said");
+    }
+  EXPECT_GE(count, 12);
+  fs::remove_all(out);
+}
+
+TEST(Course, LinksAndFiguresAreThere) {
+  const std::regex link("\\]\\(([^)#:]+)(#[^)]*)?\\)");
+  for (const fs::path& folder :
+       {course, top / "docs", top / "docs/theory", top / "docs/reference", top / "docs/how-to"})
+    for (const auto& page : pages(folder)) {
+      const std::string text = text_of(page);
+      for (std::sregex_iterator it(text.begin(), text.end(), link), end; it != end; ++it)
+        EXPECT_TRUE(fs::exists(page.parent_path() / std::string((*it)[1])))
+            << page << " has a link to " << (*it)[1];
+    }
+}
+
+}  // namespace
