@@ -11,9 +11,11 @@
 // Multipliers   λ, a force
 // Drifts        nothing: Φ at the Newton tolerance, Φ̇ at rounding
 // Partition     by LU with full pivoting of Φ_q, columns weighed by their inertia. After each step
-//               |∂u_d/∂u_i| is looked at; where it has passed 5 (or twice what the best choice had)
-//               the partition is chosen anew and the state loaded from the same q, u. Only methods
-//               without memory can take that.
+//               |∂q_d/∂q_i|, |∂u_d/∂u_i|, weighed likewise, are looked at; where one has passed 1.5
+//               (or 1.5 times what the best choice had) the partition is chosen anew and the state
+//               loaded from the same q, u. Only methods without memory can take that. Later choices
+//               cost accuracy: errors of q_i come back magnified, and grow steeply near dead
+//               points.
 // Newton        starts at the state of the step's start with the block factorised there, whose
 //               first correction is the tangent; a step is too long where the next one is not small
 //               or corrections do not shrink, and a method with step control tries a shorter one.
@@ -26,6 +28,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 namespace momenta {
@@ -34,7 +37,7 @@ namespace {
 constexpr int most_corrections = 12;
 constexpr double last_correction = 1e-8;  // [rad or m]: its square is rounding
 constexpr double off_tangent = 0.3;       // [rad or m]: the second correction, at most
-constexpr double worst_growth = 5;        // of dependent coordinates over independent ones
+constexpr double worst_growth = 1.5;      // of dependent coordinates over independent ones
 constexpr double opened = 1e-6;           // |Φ| of rows that ought to follow from the others
 
 class Partitioned final : public OdeForm {
@@ -108,7 +111,7 @@ class Partitioned final : public OdeForm {
       return fail_at(t, "the loops tie more coordinates than at the start");
     start_q_ = q_;
     evaluate_jacobian();
-    if (at_start_->factor(values_) && at_start_->growth(values_) <= bound_) return true;
+    if (at_start_->factor(values_) && growth() <= bound_) return true;
     if (!choose(t))
       return fail_at(t,
                      "no partition of the coordinates is regular: the loops are "
@@ -161,13 +164,22 @@ class Partitioned final : public OdeForm {
     inside_ = std::make_unique<SplitFactor>(positions());
     if (positions_) of_rates_ = std::make_unique<SplitFactor>(*rates_);
     if (!at_start_->factor(values_)) return false;
-    const double growth = at_start_->growth(values_);
-    if (!std::isfinite(growth)) return false;
-    bound_ = std::max(worst_growth, 2 * growth);
+    const double best = growth();
+    if (!std::isfinite(best)) return false;
+    bound_ = worst_growth * std::max(1.0, best);
     correction_q_.resize(positions().rank());
     correction_u_.resize(rank_);
     ++partitions_;
     return true;
+  }
+
+  /// Of dependent coordinates and rates, at the last evaluate_jacobian() and at_start_'s factors.
+  double growth() {
+    const double of_positions = at_start_->growth(values_);
+    if (!of_rates_) return of_positions;
+    if (!of_rates_->factor(rate_values_)) return std::numeric_limits<double>::infinity();
+    const double of_rates = of_rates_->growth(rate_values_);
+    return of_rates <= of_positions ? of_positions : of_rates;
   }
 
   /// q_ and u_ of the state. Starts at the step's start whatever was evaluated before: a rejected

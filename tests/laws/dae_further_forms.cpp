@@ -12,6 +12,7 @@
 #include <momenta/dae/study/run_form.h>
 
 #include <filesystem>
+#include <numbers>
 
 namespace momenta {
 namespace {
@@ -22,11 +23,32 @@ using Eigen::VectorXd;
 Scene example(const std::string& name) {
   return read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples" / name / "scene.toml");
 }
-/// The four-bar with its crank driven round: 7 rad/s at the start, three turns in two seconds.
+/// The crank-rocker with its crank turning: 7 rad/s at the start, three turns in two seconds.
 Scene turning_four_bar() {
   Scene scene = example("four_bar");
   scene.joints[0].velocity = {7};
   return scene;
+}
+/// Three rods of 1 m over a base of 1.5 m, fast: by Grashof's rule no link turns fully, so that
+/// each of the three angles has dead points against the others.
+Scene triple_rocker() {
+  Scene s;
+  s.name = "triple rocker";
+  s.gravity = {0, -9.81, 0};
+  for (const char* name : {"left", "coupler", "right"}) s.bodies.push_back(rod(name));
+  s.joints.push_back(hinge("O", "ground", "left", {0, 0, 0}, 1.2));
+  s.joints.push_back(hinge("A", "left", "coupler", {1, 0, 0}, -1.15));
+  s.joints.push_back(hinge("C", "ground", "right", {1.5, 0, 0}, 1.7));
+  s.joints[0].velocity = {9};
+  s.held = {"O"};
+  LoopSpec l;
+  l.name = "B";
+  l.kind = LoopKind::revolute;
+  l.parent = "coupler";
+  l.child = "right";
+  l.origin_parent = l.origin_child = {1, 0, 0};
+  s.loops.push_back(l);
+  return s;
 }
 
 RunResult run(const Mechanism& mechanism, RunSettings settings) {
@@ -86,8 +108,11 @@ void expect_agreement(const Scene& scene, double end, double bound) {
 }
 
 // Positions and rates.
-TEST(FurtherForms, AgreeOnATurningFourBar) {
+TEST(FurtherForms, AgreeOnATurningCrankRocker) {
   expect_agreement(turning_four_bar(), 3, 1e-7);
+}
+TEST(FurtherForms, AgreeOnATripleRocker) {
+  expect_agreement(triple_rocker(), 3, 1e-6);
 }
 TEST(FurtherForms, AgreeOnASliderCrank) {
   expect_agreement(example("slider_crank"), 0.4, 1e-7);
@@ -113,7 +138,7 @@ TEST(FurtherForms, AreOfTheMethodsOrder) {
   const RunResult exact = run(mechanism, adaptive("momentum", 1e-13, 1.5, "leak:3"));
   for (const auto& [form, gauge] : further) {
     std::vector<double> errors;
-    for (const double h : {0.002, 0.001}) {
+    for (const double h : {0.001, 0.0005}) {
       const RunResult found = run(mechanism, fixed(form, h, 1.5, gauge));
       ASSERT_EQ(found.status, "done") << form << ": " << found.reason;
       errors.push_back(apart(found, exact, 6));
@@ -165,23 +190,23 @@ TEST(Projected, RepeatsLargeCorrections) {
   }
 }
 
-TEST(Partitioned, ChoosesAnewAsTheCrankTurns) {
-  const Mechanism mechanism(turning_four_bar());
-  const RunResult r = run(mechanism, fixed("partitioned", 0.005, 20));
+TEST(Partitioned, ChoosesAnewWhereNoChoiceServesForLong) {
+  const Mechanism mechanism(triple_rocker());
+  const RunResult r = run(mechanism, fixed("partitioned", 0.0005, 20));
   ASSERT_EQ(r.status, "done") << r.reason;
-  EXPECT_GT(r.partitions, 10);
+  EXPECT_GT(r.partitions, 50);
   EXPECT_LT(r.position_drift_max, 1e-14);
   EXPECT_LT(r.between_steps_max, 1e-14);
-  EXPECT_LT(r.velocity_drift_max, 1e-13);
-  EXPECT_LT(r.energy_error_max, 1e-3);
+  EXPECT_LT(r.velocity_drift_max, 1e-12);
+  EXPECT_LT(r.energy_error_max, 1e-2);  // of 79 J; what a step errs in q_i comes back magnified
   RecordProperty("partitions", static_cast<int>(r.partitions));
 }
 TEST(Partitioned, KeepsOneWhereOneServes) {
-  const Mechanism mechanism(example("andrews"));
-  const RunResult r = run(mechanism, adaptive("partitioned", 1e-8, 0.005));
+  // A crank that turns fully has no dead point.
+  const Mechanism mechanism(turning_four_bar());
+  const RunResult r = run(mechanism, fixed("partitioned", 0.002, 10));
   ASSERT_EQ(r.status, "done") << r.reason;
-  EXPECT_GE(r.partitions, 1);
-  EXPECT_LE(r.partitions, 3);
+  EXPECT_EQ(r.partitions, 1);
 }
 TEST(Partitioned, LooksWithoutTouching) {
   // A state read in between, or a step tried and rejected, leaves no trace.
@@ -203,12 +228,14 @@ TEST(Partitioned, LooksWithoutTouching) {
   EXPECT_EQ(a, b);
 }
 TEST(Partitioned, StopsAtSingularPosesWithTheirTime) {
-  // A row of equal links lies flat after a while: no partition passes.
-  const Mechanism mechanism(row_of_four_bars(3, 1.5, -1));
-  const RunResult r = run(mechanism, adaptive("partitioned", 1e-9, 10));
+  // A row of equal links lies flat after 0.7 s: the closer the steps, the surer no partition
+  // passes.
+  const Mechanism mechanism(row_of_four_bars(5, std::numbers::pi / 2, -1));
+  const RunResult r = run(mechanism, adaptive("partitioned", 1e-11, 10));
   EXPECT_EQ(r.status, "failed");
   EXPECT_NE(r.reason.find("singular"), std::string::npos) << r.reason;
   EXPECT_NE(r.reason.find("t = "), std::string::npos) << r.reason;
+  EXPECT_NEAR(r.stopped_at, 0.72, 0.05);
 }
 TEST(Partitioned, IsRefusedToMethodsWithMemory) {
   const Mechanism mechanism(example("four_bar"));
@@ -253,8 +280,8 @@ TEST(AugmentedLagrangian, CanonicalFormNeedsTheGaugeAsMuch) {
   ASSERT_EQ(leak.status, "done") << leak.reason;
   EXPECT_GT(bare.energy_error_max, 20 * leak.energy_error_max);
   EXPECT_GT(bare.series.impulse.back(), 20 * leak.series.impulse.back());
-  EXPECT_LT(leak.position_drift_max, 1e-7);
-  EXPECT_LT(std::abs(leak.position_growth.exponent), 0.3);
+  const RunResult momentum = run(mechanism, fixed("momentum", 0.005, 100, "leak"));
+  EXPECT_LT(leak.position_drift_max, 0.1 * momentum.position_drift_max);
 }
 
 TEST(PositionFeedback, HoldsMomentaAtALevel) {
