@@ -93,7 +93,7 @@ class Partitioned final : public OdeForm {
 
   bool rhs(double t, const double* y, double* ydot) override {
     if (!close(t, y) || !accelerate(t)) return false;
-    note_faded();
+    note_pivots();
     e_->coordinate_rates(q_.data(), u_.data(), qdot_.data());
     ydot[0] = 0;
     for (int k = 0; k < freedom(); ++k) {
@@ -120,7 +120,11 @@ class Partitioned final : public OdeForm {
     changed = true;
     return true;
   }
-  void begin_step(double, const double*) override { centre_ = multipliers_; }
+  void begin_step(double t, const double* y) override {
+    OdeForm::begin_step(t, y);
+    centre_ = multipliers_;
+  }
+  bool wants_care() const override { return false; }
 
   bool coordinates(double t, const double* y, Eigen::VectorXd& q) override {
     if (!close(t, y)) return false;
