@@ -24,6 +24,7 @@
 //               Mechanical Systems (1988), with Euler parameters.
 
 #include <momenta/dae/form/ode_form.h>
+#include <momenta/dae/kkt/coordinate_jacobian.h>
 #include <momenta/dae/kkt/coordinate_split.h>
 
 #include <algorithm>
@@ -44,28 +45,24 @@ class Partitioned final : public OdeForm {
  public:
   Partitioned(const Mechanism& mechanism, const FormOptions& options, const Start& start)
       : OdeForm("partitioned", mechanism, options),
+        jacobian_(mechanism),
         start_q_(start.q),
         q_(start.q),
         u_(start.u),
         qdot_(mechanism.nq()),
         udot_(mechanism.nv()),
-        rate_(mechanism.m()),
-        rate_values_(has_loops() ? mechanism.kkt_pattern().constraint.size() : 0) {
-    for (const auto& b : mechanism.tree().bodies)
-      if (b.nq >= 4) balls_.push_back({b.q, b.nq, b.u, b.nv, Eigen::MatrixXd(b.nv, b.nq)});
+        rate_(mechanism.m()) {
+    rate_values_.resize(jacobian_.rate_pattern().size());
+    values_.resize(jacobian_.pattern().size());
+    phi_.resize(jacobian_.rows());
     e_->place(start.t, q_.data());
     Eigen::VectorXd weights(mechanism.nv());
     e_->mass_diagonal(weights.data());
     for (double& w : weights) w = w > 0 ? std::sqrt(w) : 1;
-    std::vector<KktPattern::Entry> pattern;
-    if (has_loops()) pattern = mechanism.kkt_pattern().constraint;
-    rates_ = std::make_unique<CoordinateSplit>(pattern, mechanism.m(), weights);
-    if (!balls_.empty())
-      positions_ = std::make_unique<CoordinateSplit>(
-          coordinate_pattern(), mechanism.m() + static_cast<int>(balls_.size()),
-          coordinate_weights(weights));
-    phi_.resize(positions().row_count());
-    values_.resize(positions().pattern().size());
+    rates_ = std::make_unique<CoordinateSplit>(jacobian_.rate_pattern(), mechanism.m(), weights);
+    if (jacobian_.has_balls())
+      positions_ = std::make_unique<CoordinateSplit>(jacobian_.pattern(), jacobian_.rows(),
+                                                     jacobian_.weights(weights));
     if (!choose(start.t))
       throw std::invalid_argument(
           "form 'partitioned': the loops leave no regular partition of the coordinates at the "
@@ -93,7 +90,7 @@ class Partitioned final : public OdeForm {
 
   bool rhs(double t, const double* y, double* ydot) override {
     if (!close(t, y) || !accelerate(t)) return false;
-    note_pivots();
+    if (has_loops()) note_pivots();
     e_->coordinate_rates(q_.data(), u_.data(), qdot_.data());
     ydot[0] = 0;
     for (int k = 0; k < freedom(); ++k) {
@@ -162,8 +159,7 @@ class Partitioned final : public OdeForm {
     evaluate_jacobian();
     if (!rates_->choose(rate_values_, rank_)) return false;
     rank_ = rates_->rank();
-    if (positions_ && !positions_->choose(values_, rank_ + static_cast<int>(balls_.size())))
-      return false;
+    if (positions_ && !positions_->choose(values_, rank_ + jacobian_.balls())) return false;
     at_start_ = std::make_unique<SplitFactor>(positions());
     inside_ = std::make_unique<SplitFactor>(positions());
     if (positions_) of_rates_ = std::make_unique<SplitFactor>(*rates_);
@@ -194,10 +190,7 @@ class Partitioned final : public OdeForm {
     double before = 0;
     for (int k = 0;; ++k) {
       e_->place(t, q_.data());
-      e_->positions(phi_.data());
-      for (std::size_t i = 0; i < balls_.size(); ++i)
-        phi_[mechanism_.m() + static_cast<Eigen::Index>(i)] =
-            0.5 * (q_.segment<4>(balls_[i].quaternion()).squaredNorm() - 1);
+      jacobian_.residual(*e_, q_, phi_);
       if (k > 0) {
         evaluate_jacobian();
         if (!inside_->factor(values_)) return too_long(t);
@@ -246,92 +239,10 @@ class Partitioned final : public OdeForm {
            solver_failed(t, q_.data(), "the solution of (3)");
   }
 
-  /// Entries of Φ_q over rates, and over coordinates with the lengths of quaternions, at the
-  /// placed q_.
-  void evaluate_jacobian() {
-    e_->constraint_entries(rate_values_.data());
-    if (!positions_) {
-      values_ = rate_values_;
-      return;
-    }
-    // u = N(q) q̇: one column of N for each coordinate of a ball.
-    for (int c = 0; c < 7; ++c) {
-      qdot_.setZero();
-      for (const Ball& b : balls_)
-        if (c < b.nq) qdot_[b.q + c] = 1;
-      e_->joint_rates(q_.data(), qdot_.data(), udot_.data());
-      for (Ball& b : balls_)
-        if (c < b.nq) b.N.col(c) = udot_.segment(b.u, b.nv);
-    }
-    double* value = values_.data();
-    for (const Share& share : shares_) {
-      const double* rate = &rate_values_[share.first];
-      if (share.ball < 0) {
-        *value++ = *rate;
-        continue;
-      }
-      const Ball& b = balls_[static_cast<std::size_t>(share.ball)];
-      Eigen::Map<Eigen::RowVectorXd>(value, b.nq).noalias() =
-          Eigen::Map<const Eigen::RowVectorXd>(rate, b.nv) * b.N;
-      value += b.nq;
-    }
-    for (const Ball& b : balls_)
-      for (int i = 0; i < 4; ++i) *value++ = q_[b.quaternion() + i];
-  }
+  /// At the placed q_.
+  void evaluate_jacobian() { jacobian_.evaluate(*e_, q_, rate_values_, values_); }
 
-  /// The joints with quaternions.
-  struct Ball {
-    int q, nq, u, nv;
-    Eigen::MatrixXd N;  ///< nv × nq
-    int quaternion() const { return q + nq - 4; }
-  };
-  /// Entries of Φ_q over rates that become entries over coordinates: one, or those of a row and a
-  /// ball.
-  struct Share {
-    std::size_t first;
-    int ball;
-  };
-
-  std::vector<KktPattern::Entry> coordinate_pattern() {
-    std::vector<int> coordinate(static_cast<std::size_t>(mechanism_.nv())), ball(coordinate.size());
-    for (const auto& b : mechanism_.tree().bodies)
-      for (int i = 0; i < b.nv; ++i) {
-        coordinate[static_cast<std::size_t>(b.u + i)] = b.q;
-        ball[static_cast<std::size_t>(b.u + i)] = -1;
-      }
-    for (std::size_t k = 0; k < balls_.size(); ++k)
-      for (int i = 0; i < balls_[k].nv; ++i)
-        ball[static_cast<std::size_t>(balls_[k].u + i)] = static_cast<int>(k);
-    std::vector<KktPattern::Entry> pattern;
-    const auto& entries = rates_->pattern();
-    for (std::size_t i = 0; i < entries.size(); ++i) {
-      const auto column = static_cast<std::size_t>(entries[i].column);
-      const int of = ball[column];
-      shares_.push_back({i, of});
-      const int width = of < 0 ? 1 : balls_[static_cast<std::size_t>(of)].nq;
-      for (int c = 0; c < width; ++c) pattern.push_back({entries[i].row, coordinate[column] + c});
-      if (of >= 0) i += static_cast<std::size_t>(balls_[static_cast<std::size_t>(of)].nv) - 1;
-    }
-    for (std::size_t k = 0; k < balls_.size(); ++k)
-      for (int c = 0; c < 4; ++c)
-        pattern.push_back({mechanism_.m() + static_cast<int>(k), balls_[k].quaternion() + c});
-    return pattern;
-  }
-  /// Of rates, carried over: ω is twice the rate of a quaternion across it.
-  Eigen::VectorXd coordinate_weights(const Eigen::VectorXd& of_rates) const {
-    Eigen::VectorXd weights(mechanism_.nq());
-    for (const auto& b : mechanism_.tree().bodies)
-      if (b.nv == 1) weights[b.q] = of_rates[b.u];
-    for (const Ball& b : balls_) {
-      weights.segment(b.q, b.nq - 4) = of_rates.segment(b.u, b.nq - 4);
-      weights.segment<4>(b.quaternion())
-          .setConstant(2 * of_rates.segment<3>(b.u + b.nv - 3).mean());
-    }
-    return weights;
-  }
-
-  std::vector<Ball> balls_;
-  std::vector<Share> shares_;
+  CoordinateJacobian jacobian_;
   std::unique_ptr<CoordinateSplit> rates_, positions_;
   std::unique_ptr<SplitFactor> at_start_, inside_, of_rates_;
   int rank_ = -1;  ///< of Φ_q, from the start on

@@ -208,6 +208,15 @@ TEST(Partitioned, KeepsOneWhereOneServes) {
   ASSERT_EQ(r.status, "done") << r.reason;
   EXPECT_EQ(r.partitions, 1);
 }
+TEST(Partitioned, IsTheAccelerationFormWithoutLoops) {
+  for (const char* name : {"pendulum", "free_body"}) {
+    const Mechanism mechanism(example(name));
+    const RunResult a = run(mechanism, adaptive("partitioned", 1e-11, 1)),
+                    b = run(mechanism, adaptive("acceleration", 1e-11, 1));
+    ASSERT_EQ(a.status, "done") << a.reason;
+    EXPECT_LT(apart(a, b, mechanism.nq() + mechanism.nv()), 1e-8) << name;
+  }
+}
 TEST(Partitioned, LooksWithoutTouching) {
   // A state read in between, or a step tried and rejected, leaves no trace.
   const Mechanism mechanism(turning_four_bar());
