@@ -18,7 +18,7 @@ class AccelerationIndex2 final : public DaeFormOf<AccelerationIndex2> {
  public:
   AccelerationIndex2(const Mechanism& mechanism, const FormOptions& options, const Start& start)
       : DaeFormOf("acceleration-index2", mechanism, {mechanism.nq(), mechanism.nv(), mechanism.m()},
-                  options, start, false) {}
+                  options, start, Unknowns::velocities) {}
 
   template <class S>
   void rows(DaeScratch<S>& s, double t, const S* y, const S* ydot, S* r) {

@@ -18,7 +18,7 @@ class AccelerationIndex3 final : public DaeFormOf<AccelerationIndex3> {
  public:
   AccelerationIndex3(const Mechanism& mechanism, const FormOptions& options, const Start& start)
       : DaeFormOf("acceleration-index3", mechanism, {mechanism.nq(), mechanism.nv(), mechanism.m()},
-                  options, start, false) {}
+                  options, start, Unknowns::velocities) {}
 
   template <class S>
   void rows(DaeScratch<S>& s, double t, const S* y, const S* ydot, S* r) {

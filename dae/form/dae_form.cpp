@@ -1,6 +1,7 @@
 #include <momenta/dae/form/dae_form.h>
 #include <momenta/dae/kkt/axis_scale.h>
 #include <momenta/dae/kkt/kkt.h>
+#include <momenta/dae/kkt/tree_factor.h>
 
 #include <algorithm>
 #include <cmath>
@@ -28,11 +29,11 @@ DaeScratch<S> make_scratch(const Mechanism& mechanism, int size) {
 }  // namespace
 
 DaeForm::DaeForm(std::string name, const Mechanism& mechanism, DaeLayout layout,
-                 const FormOptions& options, const Start& start, bool momentum_like)
+                 const FormOptions& options, const Start& start, Unknowns unknowns)
     : layout_(layout),
       mechanism_(mechanism),
       name_(std::move(name)),
-      momentum_like_(momentum_like),
+      unknowns_(unknowns),
       start_(start),
       scale_(static_cast<std::size_t>(layout.size()), 1.0),
       plain_(make_scratch<double>(mechanism, layout.size())),
@@ -40,15 +41,16 @@ DaeForm::DaeForm(std::string name, const Mechanism& mechanism, DaeLayout layout,
   plain_.e->place(start.t, start.q.data());
   inertia_.resize(static_cast<std::size_t>(layout.nv));
   plain_.e->mass_diagonal(inertia_.data());
-  if (momentum_like) {
+  if (momentum_like()) {
     gauge_ = options.gauge;
     if (gauge_.kind == Gauge::Kind::reset)
       throw std::invalid_argument("gauge reset needs a one-step method; '" + name_ +
                                   "' is integrated by IDA: expected none or leak");
     if (gauge_.kind == Gauge::Kind::leak && gauge_.kappa == 0)
       gauge_.kappa = default_leak(mechanism, start);
-    std::copy(inertia_.begin(), inertia_.end(), scale_.begin() + layout_.x());
   }
+  if (unknowns != Unknowns::velocities)
+    std::copy(inertia_.begin(), inertia_.end(), scale_.begin() + layout_.x());
   if (layout.m > 0) find_redundancy(start);
   for (int i = layout_.s(); i < layout_.size(); ++i)
     scale_[static_cast<std::size_t>(i)] = std::numeric_limits<double>::infinity();
@@ -58,28 +60,8 @@ void DaeForm::find_redundancy(const Start& start) {
   const auto kkt = make_dense_kkt(mechanism_);
   plain_.e->place(start.t, start.q.data());
   if (!kkt->factor(*plain_.e, fade_evaluation) || kkt->faded() == 0) return;
-  // ε = 10⁻⁹ of the scale of Φ_q M⁻¹ Φ_qᵀ, one for all rows of a group: a row may vanish in every
-  // entry; where a whole group of axis rows does, of what is natural for them.
-  const auto& pattern = mechanism_.kkt_pattern();
-  const auto& groups = mechanism_.row_groups();
-  std::vector<double> entries(pattern.constraint.size()), masses(pattern.mass.size());
-  plain_.e->constraint_entries(entries.data());
-  plain_.e->mass_entries(masses.data());
-  std::vector<double> natural(groups.size()), own(groups.size(), 0.0);
-  AxisScale(mechanism_).measure(masses, natural);
-  for (std::size_t i = 0; i < entries.size(); ++i) {
-    const auto& entry = pattern.constraint[i];
-    own[static_cast<std::size_t>(entry.row)] +=
-        entries[i] * entries[i] / inertia_[static_cast<std::size_t>(entry.column)];
-  }
-  for (std::size_t first = 0; first < groups.size();) {
-    std::size_t last = first;
-    double sum = 0;
-    for (; last < groups.size() && groups[last] == groups[first]; ++last)
-      sum += std::max(own[last], natural[last]);
-    epsilon_.insert(epsilon_.end(), last - first, 1e-9 * sum / static_cast<double>(last - first));
-    first = last;
-  }
+  epsilon_ = row_scales(mechanism_, *plain_.e);
+  for (double& epsilon : epsilon_) epsilon *= 1e-9;
 }
 
 /// Where x is not tested it does not stop Newton's method either: what rounding of q leaves in it,
@@ -100,17 +82,16 @@ std::vector<double> DaeForm::initial(const Start& start) {
   std::vector<double> y(static_cast<std::size_t>(size()), 0.0);
   std::copy(start.q.begin(), start.q.end(), y.begin());
   std::copy(start.u.begin(), start.u.end(), y.begin() + layout_.v());
-  if (!momentum_like_) {
-    std::copy(start.lambda.begin(), start.lambda.end(), y.begin() + layout_.s());
-    return y;
-  }
-  double* sigma = y.data() + layout_.s();
-  if (leak() > 0)
+  double* multipliers = y.data() + layout_.s();
+  if (!momentum_like())
+    std::copy(start.lambda.begin(), start.lambda.end(), multipliers);
+  else if (leak() > 0)
     for (int i = 0; i < layout_.m; ++i)
-      sigma[i] = start.lambda[i] / leak();  // σ(0) = λ(0)/κ: no transient
+      multipliers[i] = start.lambda[i] / leak();  // σ(0) = λ(0)/κ: no transient
+  if (unknowns_ == Unknowns::velocities) return y;
   plain_.e->place(start.t, start.q.data());
   plain_.e->move(start.u.data());
-  plain_.e->momenta(sigma, y.data() + layout_.x());
+  plain_.e->momenta(momentum_like() ? multipliers : nullptr, y.data() + layout_.x());
   return y;
 }
 
@@ -122,13 +103,20 @@ bool DaeForm::start(double t, double* y, double* ydot) {
   e.place(t, y);
   e.move(start_.u.data());
   e.coordinate_rates(y, start_.u.data(), ydot);
-  if (momentum_like_) {
+  if (unknowns_ == Unknowns::impulses) {
     e.momenta(y + layout_.s(), plain_.b.data());
     e.momentum_rates(y, start_.u.data(), y + layout_.s(), leak(), ydot + layout_.x());
     if (leak() == 0)  // σ̇ = λ − κσ
       for (int i = 0; i < layout_.m; ++i) ydot[layout_.s() + i] = start_.lambda[i];
   }
-  if (!momentum_like_ || layout_.explicit_velocity)
+  if (unknowns_ == Unknowns::momenta) {
+    e.momenta(nullptr, plain_.b.data());
+    e.momentum_rates(y, start_.u.data(), nullptr, 0, ydot + layout_.x());
+    e.constraint_forces(y + layout_.s(), plain_.b.data());
+    for (int i = 0; i < layout_.nv; ++i)
+      ydot[layout_.x() + i] -= plain_.b[static_cast<std::size_t>(i)];
+  }
+  if (unknowns_ == Unknowns::velocities || layout_.explicit_velocity)
     std::copy(start_.udot.begin(), start_.udot.end(), ydot + layout_.v());
   for (int i = 0; i < size(); ++i)
     if (!std::isfinite(y[i]) || !std::isfinite(ydot[i])) return fail("the start is not finite");
@@ -268,17 +256,18 @@ void DaeForm::analyse_pattern() {
 bool DaeForm::read(double t, const double* y, const double*, Snapshot& out) {
   out.q = Eigen::Map<const Eigen::VectorXd>(y, layout_.nq);
   out.multipliers = Eigen::Map<const Eigen::VectorXd>(y + layout_.s(), layout_.m);
-  if (!momentum_like_ || layout_.m == 0) {
-    out.u = Eigen::Map<const Eigen::VectorXd>(y + layout_.v(), layout_.nv);
-    if (!momentum_like_) return true;
+  out.u.resize(layout_.nv);
+  if (unknowns_ == Unknowns::velocities) {
+    std::copy_n(y + layout_.v(), layout_.nv, out.u.begin());
+    return true;
   }
+  if (unknowns_ == Unknowns::momenta && layout_.m > 0) return open_rates(t, y, out.u.data());
   // u from (7) at (q, p): the velocity that belongs to the state, whatever the integrator's last
   // Newton residual.
   auto& e = *plain_.e;
   e.place(t, y);
   Eigen::VectorXd r = Eigen::Map<const Eigen::VectorXd>(y + layout_.x(), layout_.nv), g(layout_.m),
                   sigma(layout_.m);
-  out.u.resize(layout_.nv);
   if (layout_.m == 0)
     return e.open_momentum_rates(t, y, y + layout_.x(), out.u.data(), plain_.b.data());
   g.setZero();
@@ -290,9 +279,32 @@ bool DaeForm::read(double t, const double* y, const double*, Snapshot& out) {
     e.velocities(g.data());
     g = -g;
   }
+  if (beta() > 0) {
+    Eigen::VectorXd phi(layout_.m);
+    e.positions(phi.data());
+    g -= beta() * phi;
+  }
   if (!kkt_) kkt_ = make_kkt(mechanism_);
   return kkt_->factor(e, fade_evaluation) &&
          kkt_->solve(r.data(), g.data(), y + layout_.s(), out.u.data(), sigma.data());
+}
+
+/// By the factors of M along the tree.
+bool DaeForm::open_rates(double t, const double* y, double* u) {
+  auto& e = *plain_.e;
+  const auto& pattern = mechanism_.kkt_pattern();
+  std::vector<double> mass(pattern.mass.size());
+  TreeFactor factor(pattern, layout_.nv);
+  e.place(t, y);
+  e.mass_entries(mass.data());
+  if (factor.factor(mass) >= 0) return false;
+  e.move(nullptr);
+  e.momenta(nullptr, u);  // what drives prescribe
+  for (int i = 0; i < layout_.nv; ++i) u[i] = y[layout_.x() + i] - u[i];
+  factor.inward(u);
+  for (int i = 0; i < layout_.nv; ++i) u[i] *= factor.inverse_pivots()[static_cast<std::size_t>(i)];
+  factor.outward(u);
+  return true;
 }
 
 }  // namespace momenta

@@ -24,6 +24,9 @@ struct DaeLayout {
   int size() const { return s() + m + (position_multiplier ? m : 0); }
 };
 
+/// What x and s are: v with λ; p of (4) with λ; p of (7), Φ_qᵀσ in it, with σ.
+enum class Unknowns { velocities, momenta, impulses };
+
 /// Buffers of one scalar type.
 template <class S>
 struct DaeScratch {
@@ -34,11 +37,11 @@ struct DaeScratch {
 class DaeForm : public Form, public DaeSystem {
  public:
   DaeForm(std::string name, const Mechanism& mechanism, DaeLayout layout,
-          const FormOptions& options, const Start& start, bool momentum_like);
+          const FormOptions& options, const Start& start, Unknowns unknowns);
 
   const std::string& name() const override { return name_; }
   bool is_dae() const override { return true; }
-  bool momentum_like() const override { return momentum_like_; }
+  bool momentum_like() const override { return unknowns_ == Unknowns::impulses; }
   DaeSystem* dae() override { return this; }
   Gauge gauge() const override { return gauge_; }
   std::vector<double> initial(const Start& start) override;
@@ -88,11 +91,13 @@ class DaeForm : public Form, public DaeSystem {
   }
   bool evaluate_columns(double t, const double* y, const double* ydot, double c,
                         const std::vector<int>& direction_of);
+  /// u of M u + prescribed part = p (4).
+  bool open_rates(double t, const double* y, double* u);
   void find_redundancy(const Start& start);
   void analyse_pattern();
 
   std::string name_;
-  bool momentum_like_;
+  Unknowns unknowns_;
   Gauge gauge_;
   Start start_;
   std::vector<double> scale_;
@@ -145,6 +150,23 @@ class DaeFormOf : public DaeForm {
     return r;
   }
 
+  /// M u = p with u the rates of q̇ (5a), (5b): −∂H/∂q = L_q at u, for the form in q, p; λ. Returns
+  /// the place of the loops' rows.
+  template <class S>
+  S* hamilton_rows(DaeScratch<S>& s, double t, const S* y, const S* ydot, S* r) const {
+    const S *q = y, *p = y + layout_.x(), *lambda = y + layout_.s(), *pdot = ydot + layout_.x();
+    s.e->place(t, q);
+    s.e->joint_rates(q, ydot, s.u.data());
+    s.e->move(s.u.data());
+    s.e->momenta(nullptr, r);
+    for (int i = 0; i < layout_.nv; ++i) *r++ -= p[i];
+    r = quaternion_rows(q, ydot, r);
+    s.e->momentum_rates(q, s.u.data(), nullptr, 0, s.b.data());
+    s.e->constraint_forces(lambda, s.a.data());
+    for (std::size_t i = 0; i < s.b.size(); ++i) *r++ = pdot[i] - s.b[i] + s.a[i];
+    return r;
+  }
+
   /// q̇ = v − Φ_qᵀμ, μ where the form has it. The evaluation is placed, and moved at v.
   template <class S>
   S* kinematic_rows(DaeScratch<S>& s, double t, const S* y, const S* ydot, S* r) const {
@@ -188,6 +210,7 @@ class DaeFormOf : public DaeForm {
 std::unique_ptr<Form> make_momentum_index1(const Mechanism&, const FormOptions&, const Start&);
 std::unique_ptr<Form> make_momentum_index2(const Mechanism&, const FormOptions&, const Start&);
 std::unique_ptr<Form> make_momentum_stabilised(const Mechanism&, const FormOptions&, const Start&);
+std::unique_ptr<Form> make_momentum_index3(const Mechanism&, const FormOptions&, const Start&);
 std::unique_ptr<Form> make_acceleration_index1(const Mechanism&, const FormOptions&, const Start&);
 std::unique_ptr<Form> make_acceleration_index2(const Mechanism&, const FormOptions&, const Start&);
 std::unique_ptr<Form> make_acceleration_index3(const Mechanism&, const FormOptions&, const Start&);

@@ -12,24 +12,31 @@ namespace {
 
 using Maker =
     std::function<std::unique_ptr<Form>(const Mechanism&, const FormOptions&, const Start&)>;
+enum class Kind { ode, ode_one_step, dae };
 struct Entry {
   std::string name;
-  bool dae;
+  Kind kind;
+  bool impulses;  ///< σ among its unknowns or solved for: takes a gauge
   Maker make;
 };
 
 const std::vector<Entry>& registry() {
   static const std::vector<Entry> entries{
-      {"momentum", false, make_momentum},
-      {"momentum-index1", true, make_momentum_index1},
-      {"momentum-index2", true, make_momentum_index2},
-      {"momentum-stabilised", true, make_momentum_stabilised},
-      {"acceleration", false, make_acceleration},
-      {"baumgarte", false, make_baumgarte},
-      {"acceleration-index1", true, make_acceleration_index1},
-      {"acceleration-index2", true, make_acceleration_index2},
-      {"acceleration-index3", true, make_acceleration_index3},
-      {"stabilised-index2", true, make_stabilised_index2},
+      {"momentum", Kind::ode, true, make_momentum},
+      {"momentum-index1", Kind::dae, true, make_momentum_index1},
+      {"momentum-index2", Kind::dae, true, make_momentum_index2},
+      {"momentum-stabilised", Kind::dae, true, make_momentum_stabilised},
+      {"momentum-index3", Kind::dae, false, make_momentum_index3},
+      {"augmented-lagrangian-canonical", Kind::ode, true, make_augmented_lagrangian_canonical},
+      {"acceleration", Kind::ode, false, make_acceleration},
+      {"projected", Kind::ode_one_step, false, make_projected},
+      {"partitioned", Kind::ode_one_step, false, make_partitioned},
+      {"baumgarte", Kind::ode, false, make_baumgarte},
+      {"augmented-lagrangian", Kind::ode, false, make_augmented_lagrangian},
+      {"acceleration-index1", Kind::dae, false, make_acceleration_index1},
+      {"acceleration-index2", Kind::dae, false, make_acceleration_index2},
+      {"acceleration-index3", Kind::dae, false, make_acceleration_index3},
+      {"stabilised-index2", Kind::dae, false, make_stabilised_index2},
   };
   return entries;
 }
@@ -77,13 +84,21 @@ const std::vector<std::string>& form_names() {
 }
 
 bool is_dae_form(const std::string& name) {
-  return entry(name).dae;
+  return entry(name).kind == Kind::dae;
+}
+
+bool takes_gauge(const std::string& name) {
+  return entry(name).impulses;
+}
+
+bool needs_one_step_method(const std::string& name) {
+  return entry(name).kind == Kind::ode_one_step;
 }
 
 std::unique_ptr<Form> make_form(const std::string& name, const Mechanism& mechanism,
                                 const FormOptions& options, const Start& start) {
   const Entry& e = entry(name);
-  if (e.dae && options.project)
+  if (e.kind == Kind::dae && options.project)
     throw std::invalid_argument("position correction after steps needs a one-step method; '" +
                                 name + "' is integrated by IDA");
   return e.make(mechanism, options, start);

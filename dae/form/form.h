@@ -7,6 +7,7 @@
 #include <momenta/dae/solver/system.h>
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
@@ -32,6 +33,8 @@ struct FormOptions {
       false;  ///< one mass-metric position correction after accepted steps (one-step methods)
   double baumgarte_alpha = 0;  ///< [1/s]; 0: chosen by the form
   double baumgarte_beta = 0;   ///< [1/s]
+  double beta = 0;     ///< momentum forms: Φ̇ = −βΦ in the second row of (7) [1/s]; 0: none
+  double penalty = 0;  ///< augmented Lagrangians: α in effective masses of the loops; 0: 1e7
 };
 
 /// A consistent start: Φ(q, t) = 0, Φ_q u + Φ_t = 0.
@@ -58,16 +61,33 @@ class Form {
   /// Reads a state back. Momentum forms recompute u from (7), so Φ̇ of theirs is that of an
   /// algebraic solve.
   virtual bool read(double t, const double* y, const double* ydot, Snapshot& out) = 0;
+  /// q alone (nq): what Φ is evaluated at between steps, before any correction.
+  virtual bool coordinates(double /*t*/, const double* y, Eigen::VectorXd& q) {
+    std::copy_n(y, q.size(), q.begin());
+    return true;
+  }
+  /// How often coordinates were chosen, the first time included; zero for forms that choose none.
+  virtual long partitions() const { return 0; }
   /// The gauge in force, with its κ.
   virtual Gauge gauge() const { return {}; }
-  /// α, β of Φ̈ + 2αΦ̇ + β²Φ = 0 [1/s]; zero for all forms but baumgarte.
+  /// α, β of Φ̈ + 2αΦ̇ + β²Φ = 0 [1/s]; zero for all forms but baumgarte and augmented-lagrangian.
   virtual std::pair<double, double> baumgarte_gains() const { return {0, 0}; }
+  /// β of Φ̇ = −βΦ in force [1/s]; zero for forms that do not take it.
+  virtual double beta() const { return 0; }
+  /// The penalty in force, in effective masses of the loops; zero for forms without one.
+  virtual double penalty() const { return 0; }
   virtual OdeSystem* ode() { return nullptr; }
   virtual DaeSystem* dae() { return nullptr; }
 };
 
 /// Names, in the order tables list them.
 const std::vector<std::string>& form_names();
+/// Whether the named form has impulses σ, and so a gauge. @throws std::invalid_argument for an
+/// unknown name.
+bool takes_gauge(const std::string& name);
+/// Whether the named form alters its state after each step, so that only one-step methods take it.
+/// @throws std::invalid_argument for an unknown name.
+bool needs_one_step_method(const std::string& name);
 /// Whether the named form is integrated as a DAE by IDA. @throws std::invalid_argument for an
 /// unknown name.
 bool is_dae_form(const std::string& name);

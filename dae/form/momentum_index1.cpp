@@ -1,11 +1,12 @@
 // momentum-index1
 //
 // Unknowns      q, p; σ
-// Equations     M u + Φ_qᵀσ = p with u the rates of q̇ (7), ṗ = L_q + Q + Φ̇_qᵀσ − κ Φ_qᵀσ (8), Φ̇ = 0
+// Equations     M u + Φ_qᵀσ = p with u the rates of q̇ (7), ṗ = L_q + Q + Φ̇_qᵀσ − κ Φ_qᵀσ (8),
+//               Φ̇ = 0, or with β Φ̇ = −βΦ
 // Index         1: differentiating nothing, σ and q̇ follow from (7) at once
 // Hidden        Φ(q, t) = 0
 // Multipliers   σ, an impulse; λ = σ̇ + κ σ
-// Drifts        Φ like t; Φ̇ at rounding
+// Drifts        Φ like t, with β level; Φ̇ at rounding, with β −βΦ
 // Source        paper, eqs. (6)-(8)
 
 #include <momenta/dae/form/dae_form.h>
@@ -17,12 +18,22 @@ class MomentumIndex1 final : public DaeFormOf<MomentumIndex1> {
  public:
   MomentumIndex1(const Mechanism& mechanism, const FormOptions& options, const Start& start)
       : DaeFormOf("momentum-index1", mechanism, {mechanism.nq(), mechanism.nv(), mechanism.m()},
-                  options, start, true) {}
+                  options, start, Unknowns::impulses),
+        beta_(mechanism.m() > 0 ? options.beta : 0) {}
+
+  double beta() const override { return beta_; }
 
   template <class S>
   void rows(DaeScratch<S>& s, double t, const S* y, const S* ydot, S* r) {
-    s.e->velocities(momentum_rows(s, t, y, ydot, r));
+    r = momentum_rows(s, t, y, ydot, r);
+    s.e->velocities(r);
+    if (beta_ == 0) return;
+    s.e->positions(s.a.data());
+    for (int i = 0; i < layout_.m; ++i) r[i] += beta_ * s.a[static_cast<std::size_t>(i)];
   }
+
+ private:
+  double beta_;
 };
 
 }  // namespace

@@ -17,7 +17,7 @@ class MomentumIndex2 final : public DaeFormOf<MomentumIndex2> {
  public:
   MomentumIndex2(const Mechanism& mechanism, const FormOptions& options, const Start& start)
       : DaeFormOf("momentum-index2", mechanism, {mechanism.nq(), mechanism.nv(), mechanism.m()},
-                  options, start, true) {}
+                  options, start, Unknowns::impulses) {}
 
   template <class S>
   void rows(DaeScratch<S>& s, double t, const S* y, const S* ydot, S* r) {

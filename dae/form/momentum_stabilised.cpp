@@ -19,7 +19,7 @@ class MomentumStabilised final : public DaeFormOf<MomentumStabilised> {
   MomentumStabilised(const Mechanism& mechanism, const FormOptions& options, const Start& start)
       : DaeFormOf("momentum-stabilised", mechanism,
                   {mechanism.nq(), mechanism.nv(), mechanism.m(), true, true}, options, start,
-                  true) {}
+                  Unknowns::impulses) {}
 
   template <class S>
   void rows(DaeScratch<S>& s, double t, const S* y, const S* ydot, S* r) {

@@ -49,13 +49,15 @@ void OdeForm::note_pivots() {
   for (const int row : solver_->faded_rows()) ++(*watched_)[static_cast<std::size_t>(row)];
 }
 
-bool OdeForm::correct_position(double t, double* q) {
-  if (!solver_->position_correction(t, q, delta_.data()))
-    return solver_failed(t, q, "the position correction");
+bool OdeForm::solve_correction(double t, const double* q) {
+  return solver_->position_correction(t, q, delta_.data()) ||
+         solver_failed(t, q, "the position correction");
+}
+
+void OdeForm::take_correction(double* q) {
   // q ← q + q̇(δ): exact for one-dof joints, to second order for quaternions.
   e_->coordinate_rates(q, delta_.data(), correction_.data());
   for (std::size_t i = 0; i < correction_.size(); ++i) q[i] += correction_[i];
-  return true;
 }
 
 void OdeForm::normalise(double* q) const {

@@ -30,7 +30,14 @@ class OdeForm : public Form, public OdeSystem {
   /// The cause by name when the solver failed to solve `what` at (t, q).
   bool solver_failed(double t, const double* q, const std::string& what);
   /// One Newton step on q in the mass metric: δ of M δ + Φ_qᵀν = 0, Φ_q δ = −Φ.
-  bool correct_position(double t, double* q);
+  bool correct_position(double t, double* q) {
+    if (!solve_correction(t, q)) return false;
+    take_correction(q);
+    return true;
+  }
+  /// Its two halves: delta_ at q, q ← q + q̇(delta_).
+  bool solve_correction(double t, const double* q);
+  void take_correction(double* q);
   /// Quaternions of q back to unit length.
   void normalise(double* q) const;
   /// After the solution of a right-hand side: which rows faded, and whether others are about to.
@@ -74,6 +81,12 @@ class OdeForm : public Form, public OdeSystem {
 
 std::unique_ptr<OdeForm> make_momentum(const Mechanism&, const FormOptions&, const Start&);
 std::unique_ptr<OdeForm> make_acceleration(const Mechanism&, const FormOptions&, const Start&);
+std::unique_ptr<OdeForm> make_projected(const Mechanism&, const FormOptions&, const Start&);
+std::unique_ptr<OdeForm> make_partitioned(const Mechanism&, const FormOptions&, const Start&);
 std::unique_ptr<OdeForm> make_baumgarte(const Mechanism&, const FormOptions&, const Start&);
+std::unique_ptr<OdeForm> make_augmented_lagrangian(const Mechanism&, const FormOptions&,
+                                                   const Start&);
+std::unique_ptr<OdeForm> make_augmented_lagrangian_canonical(const Mechanism&, const FormOptions&,
+                                                             const Start&);
 
 }  // namespace momenta

@@ -18,7 +18,7 @@ class StabilisedIndex2 final : public DaeFormOf<StabilisedIndex2> {
   StabilisedIndex2(const Mechanism& mechanism, const FormOptions& options, const Start& start)
       : DaeFormOf("stabilised-index2", mechanism,
                   {mechanism.nq(), mechanism.nv(), mechanism.m(), false, true}, options, start,
-                  false) {}
+                  Unknowns::velocities) {}
 
   template <class S>
   void rows(DaeScratch<S>& s, double t, const S* y, const S* ydot, S* r) {

@@ -20,6 +20,8 @@ class AssembledSolver final : public LoopSolver {
         phi_(g_.size()),
         nu_(g_.size()) {}
 
+  void soften(std::vector<double> compliance) override { compliance_ = std::move(compliance); }
+
   bool momentum(double t, const double* q, const double* p, const double* centre, double fade,
                 double leak, double* u, double* sigma, double* pdot) override {
     if (!factor(t, q, fade)) return false;
@@ -31,6 +33,10 @@ class AssembledSolver final : public LoopSolver {
       for (std::size_t i = 0; i < r_.size(); ++i) r_[i] -= work_[i];
       e_.velocities(g_.data());
       for (double& g : g_) g = -g;
+    }
+    if (beta_ != 0) {
+      e_.positions(phi_.data());
+      for (std::size_t i = 0; i < g_.size(); ++i) g_[i] -= beta_ * phi_[i];
     }
     if (!kkt_->solve(r_.data(), g_.data(), centre, u, sigma)) return false;
     if (pdot) {
@@ -65,7 +71,7 @@ class AssembledSolver final : public LoopSolver {
   }
 
   bool position_correction(double t, const double* q, double* delta) override {
-    if (!factor(t, q, fade_projection)) return false;
+    if (!factor(t, q, fade_projection, false)) return false;
     e_.positions(phi_.data());
     for (double& phi : phi_) phi = -phi;
     std::fill(r_.begin(), r_.end(), 0.0);
@@ -78,8 +84,9 @@ class AssembledSolver final : public LoopSolver {
   }
 
  private:
-  bool factor(double t, const double* q, double fade) {
+  bool factor(double t, const double* q, double fade, bool softens = true) {
     e_.place(t, q);
+    kkt_->soften(softens && !compliance_.empty() ? compliance_.data() : nullptr);
     ++solutions_;
     const bool ok = kkt_->factor(e_, fade);
     stuck_ = ok ? -1 : kkt_->stuck();
@@ -89,7 +96,7 @@ class AssembledSolver final : public LoopSolver {
   bool drives_;
   Evaluation<double>& e_;
   std::unique_ptr<Kkt> kkt_;
-  std::vector<double> r_, work_, g_, phi_, nu_;
+  std::vector<double> r_, work_, g_, phi_, nu_, compliance_;
   std::vector<int> rows_;
 };
 

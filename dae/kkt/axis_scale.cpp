@@ -30,4 +30,30 @@ void AxisScale::measure(const std::vector<double>& mass, std::vector<double>& sc
     if (mass[h.mass] > 0) scale[h.row] += 1 / mass[h.mass];
 }
 
+std::vector<double> row_scales(const Mechanism& mechanism, Evaluation<double>& e) {
+  const auto& pattern = mechanism.kkt_pattern();
+  const auto& groups = mechanism.row_groups();
+  std::vector<double> entries(pattern.constraint.size()), masses(pattern.mass.size()),
+      inertia(static_cast<std::size_t>(mechanism.nv())), natural(groups.size()),
+      own(groups.size(), 0.0), scales;
+  e.constraint_entries(entries.data());
+  e.mass_entries(masses.data());
+  e.mass_diagonal(inertia.data());
+  AxisScale(mechanism).measure(masses, natural);
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    const auto& entry = pattern.constraint[i];
+    const double mass = inertia[static_cast<std::size_t>(entry.column)];
+    if (mass > 0) own[static_cast<std::size_t>(entry.row)] += entries[i] * entries[i] / mass;
+  }
+  for (std::size_t first = 0; first < groups.size();) {
+    std::size_t last = first;
+    double sum = 0;
+    for (; last < groups.size() && groups[last] == groups[first]; ++last)
+      sum += std::max(own[last], natural[last]);
+    scales.insert(scales.end(), last - first, sum / static_cast<double>(last - first));
+    first = last;
+  }
+  return scales;
+}
+
 }  // namespace momenta

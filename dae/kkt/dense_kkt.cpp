@@ -116,6 +116,7 @@ class DenseKkt final : public Kkt {
         for (int k = 0; k < n_; ++k) s += g_[at(i, k, n_)] * scaled_[at(j, k, n_)];
         w_[at(i, j, m_)] = w_[at(j, i, m_)] = s;
       }
+      if (compliance_) w_[at(i, i, m_)] += compliance_[idx(i)];
       group_sum_[idx(groups_[idx(i)])] += std::max(w_[at(i, i, m_)], natural_[idx(i)]);
       order_[idx(i)] = i;
     }
@@ -133,7 +134,7 @@ class DenseKkt final : public Kkt {
           best = i;
       std::swap(order_[idx(k)], order_[idx(best)]);
       const int row = order_[idx(k)];
-      const double d = w_[at(row, row, m_)], tau = tau_[idx(row)];
+      const double d = w_[at(row, row, m_)], tau = compliance_ ? 0 : tau_[idx(row)];
       inverse_[idx(k)] = d > 0 ? inverse_faded(d, tau) : 0;
       if (!(d > 10 * tau)) faded_rows_.push_back(row);
       for (int i = k + 1; i < m_; ++i) {

@@ -11,6 +11,7 @@
 #include <momenta/dae/mechanism.h>
 
 #include <memory>
+#include <vector>
 
 namespace momenta {
 
@@ -27,6 +28,9 @@ class Kkt {
   /// definite, or when an entry is not finite. Cost: dense O((nv + m)³); sparse O(fill) on a
   /// pattern analysed once.
   virtual bool factor(Evaluation<double>& e, double fade) = 0;
+  /// For the factorisations from now on: −compliance (m) in place of the zero block, Φ_q u −
+  /// compliance (σ − centre) = g, and no row fades. Null: as before.
+  void soften(const double* compliance) { compliance_ = compliance; }
   /// Solves for u (nv) and σ (m); r (nv), g (m), centre (m, null: zero). False when the result is
   /// not finite.
   virtual bool solve(const double* r, const double* g, const double* centre, double* u,
@@ -42,6 +46,7 @@ class Kkt {
 
  protected:
   std::vector<int> faded_rows_;
+  const double* compliance_ = nullptr;
   long factorizations_ = 0;
   int stuck_ = -1;
 };

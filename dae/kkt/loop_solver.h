@@ -6,7 +6,8 @@
 //   sparse   the assembled matrix of (7), KLU                                  (sparse_kkt.cpp)
 //   dense    Cholesky of M, pivoted LDLᵀ of the loops' matrix                  (dense_kkt.cpp)
 //
-// Weak rows fade towards `centre`, the σ of the step's start: see kkt.h.
+// Weak rows fade towards `centre`, the σ of the step's start: see kkt.h. In a softened solver no
+// row fades, all give way to their multiplier instead: second row … = (σ − centre) · compliance.
 
 #include <momenta/dae/kkt/kkt.h>
 
@@ -18,6 +19,13 @@ namespace momenta {
 class LoopSolver {
  public:
   virtual ~LoopSolver() = default;
+
+  /// From now on momentum() solves Φ_q u = −Φ_t − βΦ in the second row of (7), β in 1/s.
+  void stabilise(double beta) { beta_ = beta; }
+  /// From now on momentum() and acceleration() solve (M + Φ_qᵀ α Φ_q) x = r − Φ_qᵀ(centre − α g)
+  /// instead of their two rows, α⁻¹ the compliance (m) by row; multipliers are centre + α(Φ_q x −
+  /// g). `fade` is ignored.
+  virtual void soften(std::vector<double> compliance) = 0;
 
   /// u (nv) and σ (m) of (7) from p (nv) at (t, q). `centre` (m) null: zero. With `pdot` not null
   /// also ṗ (nv), eq. (8), −κ Φ_qᵀσ included.
@@ -46,6 +54,7 @@ class LoopSolver {
   int stuck() const { return stuck_; }
 
  protected:
+  double beta_ = 0;
   long solutions_ = 0;
   int stuck_ = -1;
 };

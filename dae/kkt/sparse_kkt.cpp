@@ -103,7 +103,7 @@ class SparseKkt final : public Kkt {
   bool solve_refined(const double* centre) {
     x_ = b_;
     if (klu_solve(symbolic_, numeric_, n_ + m_, 1, x_.data(), &common_) != 1) return false;
-    for (std::size_t i = 0; i < epsilon_.size(); ++i) {
+    for (std::size_t i = 0; i < epsilon_.size() && !compliance_; ++i) {
       const std::size_t row = static_cast<std::size_t>(n_) + i;
       b_[row] -= epsilon_[i] * (x_[row] - (centre ? centre[i] : 0.0));
     }
@@ -140,6 +140,13 @@ class SparseKkt final : public Kkt {
   /// ε of each row: fade times the mean of Σ_j Φ_ij²/M_jj over the rows of its group, no less than
   /// is natural for axes.
   void regularise(double fade) {
+    if (compliance_) {
+      for (std::size_t i = 0; i < epsilon_.size(); ++i) {
+        epsilon_[i] = compliance_[i];
+        value_[diagonal_[static_cast<std::size_t>(n_) + i]] = -compliance_[i];
+      }
+      return;
+    }
     std::fill(row_scale_.begin(), row_scale_.end(), 0.0);
     for (std::size_t i = 0; i < constraint_.size(); ++i) {
       const auto& entry = pattern_.constraint[i];

@@ -14,9 +14,20 @@ struct FormIndex {
   const char *form, *index;
 };
 constexpr FormIndex indices[] = {
-    {"momentum", "ODE"},          {"momentum-index1", "1"},     {"momentum-index2", "2"},
-    {"momentum-stabilised", "2"}, {"acceleration", "ODE"},      {"baumgarte", "ODE"},
-    {"acceleration-index1", "1"}, {"acceleration-index2", "2"}, {"acceleration-index3", "3"},
+    {"momentum", "ODE"},
+    {"momentum-index1", "1"},
+    {"momentum-index2", "2"},
+    {"momentum-stabilised", "2"},
+    {"momentum-index3", "3"},
+    {"augmented-lagrangian-canonical", "ODE"},
+    {"acceleration", "ODE"},
+    {"projected", "ODE"},
+    {"partitioned", "ODE"},
+    {"baumgarte", "ODE"},
+    {"augmented-lagrangian", "ODE"},
+    {"acceleration-index1", "1"},
+    {"acceleration-index2", "2"},
+    {"acceleration-index3", "3"},
     {"stabilised-index2", "2"},
 };
 
@@ -110,7 +121,7 @@ int check(const Options& o) {
   }
   std::printf("\nForms\n");
   for (const auto& form : indices)
-    std::printf("  %-20s %s%s\n", form.form,
+    std::printf("  %-30s %s%s\n", form.form,
                 mechanism->m() == 0 || form.index[0] == 'O' ? "" : "index ",
                 mechanism->m() > 0 ? form.index : "ODE: no loops");
   return done;

@@ -37,6 +37,8 @@ int drift(const Options& o, const DriftOptions& d) {
   request.project = o.project;
   request.baumgarte_alpha = o.baumgarte_alpha;
   request.baumgarte_beta = o.baumgarte_beta;
+  request.beta = o.beta;
+  request.penalty = o.penalty;
   request.reference = reference.get();
   // One form that grinds to a halt must not keep the others' results from the user.
   request.max_cpu_seconds = o.cpu_limit.value_or(60);

@@ -51,6 +51,11 @@ void add_run_options(CLI::App& verb, Options& o) {
   verb.add_option("--baumgarte-alpha", o.baumgarte_alpha, "α of Φ̈ + 2αΦ̇ + β²Φ = 0 [1/s]")
       ->check(positive);
   verb.add_option("--baumgarte-beta", o.baumgarte_beta, "β [1/s]")->check(positive);
+  verb.add_option("--beta", o.beta, "Momentum forms: Φ̇ = −βΦ instead of 0 [1/s] (default: 0)")
+      ->check(positive);
+  verb.add_option("--penalty", o.penalty,
+                  "Augmented Lagrangians: α in effective masses of the loops (default: 1e7)")
+      ->check(positive);
   verb.add_option("--cpu-limit", o.cpu_limit,
                   "Stop a run after this much CPU time [s] (run: none; drift: 60 for each run)")
       ->check(positive);

@@ -23,6 +23,7 @@ struct Options {
   std::optional<double> atol, step, end;
   std::optional<int> samples;
   double baumgarte_alpha = 0, baumgarte_beta = 0;
+  double beta = 0, penalty = 0;
   bool project = false, no_project = false;  ///< neither: as the scene says
   std::optional<double> cpu_limit;
   std::filesystem::path reference, out;

@@ -30,6 +30,8 @@ int run(const Options& o) {
   s.project = o.project || (defaults.project && one_step && !o.no_project);
   s.baumgarte_alpha = o.baumgarte_alpha;
   s.baumgarte_beta = o.baumgarte_beta;
+  s.beta = o.beta;
+  s.penalty = o.penalty;
   request.reference = reference.get();
   request.keep_trajectory = true;
   request.max_cpu_seconds = o.cpu_limit.value_or(0);

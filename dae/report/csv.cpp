@@ -39,6 +39,8 @@ std::string study_csv(const StudyResult& study) {
                            "project",
                            "baumgarte_alpha [1/s]",
                            "baumgarte_beta [1/s]",
+                           "beta [1/s]",
+                           "penalty",
                            "kkt",
                            "jacobian",
                            "linear_solver",
@@ -61,6 +63,7 @@ std::string study_csv(const StudyResult& study) {
                            "jacobians",
                            "factorizations",
                            "newton_iterations",
+                           "partitions",
                            "cpu [s]",
                            "wall [s]",
                            "repeats"});
@@ -78,6 +81,8 @@ std::string study_csv(const StudyResult& study) {
                   s.project ? "true" : "false",
                   round_trip(s.baumgarte_alpha),
                   round_trip(s.baumgarte_beta),
+                  round_trip(s.beta),
+                  round_trip(s.penalty),
                   csv_cell(s.kkt),
                   csv_cell(run.jacobian),
                   csv_cell(run.linear_solver),
@@ -100,6 +105,7 @@ std::string study_csv(const StudyResult& study) {
                   std::to_string(c.jacobians),
                   std::to_string(c.factorizations),
                   std::to_string(c.newton_iterations),
+                  std::to_string(run.partitions),
                   round_trip(run.cpu_s),
                   round_trip(run.wall_s),
                   std::to_string(run.repeats)});

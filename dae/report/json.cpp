@@ -37,6 +37,9 @@ Json summary_json(const RunResult& run, const Environment& environment) {
   json["jacobian"] = run.jacobian;
   json["linear_solver"] = run.linear_solver;
   json["kkt"] = s.kkt;
+  json["beta"] = number_or_null(s.beta);
+  json["penalty"] = number_or_null(s.penalty);
+  json["partitions"] = run.partitions;
   json["counters"] = {{"steps", c.steps},
                       {"rejected", c.rejected},
                       {"evaluations", c.evaluations},

@@ -1,3 +1,4 @@
+#include <momenta/dae/form/form.h>
 #include <momenta/dae/report/csv.h>
 #include <momenta/dae/report/json.h>
 #include <momenta/dae/report/page_data.h>
@@ -45,8 +46,8 @@ Json series_json(const RunResult& run) {
   add("position_drift", s.position_drift);
   add("velocity_drift", s.velocity_drift);
   add("energy_error", s.energy_error);
-  // |λ| is a force and |σ| an impulse: only momentum forms share the axis.
-  if (run.settings.form.rfind("momentum", 0) == 0) add("impulse", s.impulse);
+  // |λ| is a force and |σ| an impulse: only forms with impulses share the axis.
+  if (takes_gauge(run.settings.form)) add("impulse", s.impulse);
   add("position_error", s.position_error);
   return series;
 }

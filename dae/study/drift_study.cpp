@@ -14,6 +14,8 @@ std::vector<RunSettings> plan_runs(const Mechanism& mechanism, const DriftReques
   common.samples = request.samples;
   common.baumgarte_alpha = request.baumgarte_alpha;
   common.baumgarte_beta = request.baumgarte_beta;
+  common.beta = request.beta;
+  common.penalty = request.penalty;
   const std::string explicit_method =
       !request.integrator.empty() ? request.integrator : (request.step > 0 ? "rk4" : "dop853");
   const bool one_step = explicit_method != "adams" && explicit_method != "bdf";
@@ -32,24 +34,28 @@ std::vector<RunSettings> plan_runs(const Mechanism& mechanism, const DriftReques
   };
   const bool loops = mechanism.m() > 0;
   for (const std::string& form : request.forms.empty() ? form_names() : request.forms) {
-    const bool momentum = form.rfind("momentum", 0) == 0;
+    const bool asked = !request.forms.empty();
+    // Without loops all forms are one of two ODEs.
+    if (!loops && !asked && form != "momentum" && form != "acceleration") continue;
+    // What a multistep method cannot take is refused where it was asked for.
+    if (!one_step && !asked && needs_one_step_method(form)) continue;
+    const bool gauged = takes_gauge(form);
     if (is_dae_form(form)) {
-      // Without loops every DAE form is the same ODE.
-      if (loops || !request.forms.empty())
-        add(form, momentum ? (request.gauge.empty() ? leak : request.gauge) : "", false);
-      continue;
-    }
-    if (form == "baumgarte" && !loops && request.forms.empty()) continue;
-    if (momentum && request.gauge.empty() && loops) {
+      add(form, !gauged ? "" : request.gauge.empty() ? leak : request.gauge, false);
+    } else if (form == "momentum" && request.gauge.empty() && loops) {
       add(form, leak, request.project);
       if (one_step) add(form, "reset", request.project);
       add(form, "none", request.project);
-    } else {
-      add(form, momentum ? (request.gauge.empty() ? "none" : request.gauge) : "", request.project);
+    } else if (gauged && loops) {
+      add(form, request.gauge.empty() ? leak : request.gauge, request.project);
+    } else if (form != "acceleration" || !request.project || !loops) {
+      add(form, gauged ? "none" : "", request.project && !needs_one_step_method(form));
+    } else if (asked) {
+      add("projected", "", false);
     }
-    // The projected twin: an opponent's best honest chance, and ours.
-    if (loops && one_step && !request.project && form != "baumgarte")
-      add(form, momentum ? (request.gauge.empty() ? "reset" : request.gauge) : "", true);
+    // The projected twin of `acceleration` is the form `projected`.
+    if (form == "momentum" && loops && one_step && !request.project)
+      add(form, request.gauge.empty() ? "reset" : request.gauge, true);
   }
   return runs;
 }

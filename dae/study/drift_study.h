@@ -18,6 +18,8 @@ struct DriftRequest {
   double end_time = 10;  ///< [s]
   int samples = 1000;
   double baumgarte_alpha = 0, baumgarte_beta = 0;  ///< [1/s]; 0: the form's own
+  double beta = 0;                                 ///< Φ̇ = −βΦ of momentum forms [1/s]
+  double penalty = 0;                              ///< of augmented Lagrangians; 0: their own
   bool project = false;  ///< correct positions in the ODE forms; false: one projected run of each
                          ///< kind is added
   const Reference* reference = nullptr;

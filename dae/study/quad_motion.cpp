@@ -60,7 +60,7 @@ class QuadSweeps final : public QuadMotion {
     for (int k = 0; k < newton_steps; ++k) {
       std::fill(tau_.begin(), tau_.end(), Quad(0));
       right.drives = false;
-      right.positions = true;
+      right.positions = 1;
       if (!solve(t, q, tau_.data(), right, work_.data())) return false;
       e_->place(t, q);
       e_->coordinate_rates(q, work_.data(), delta_.data());
@@ -70,7 +70,7 @@ class QuadSweeps final : public QuadMotion {
     e_->move(u);
     e_->momenta(nullptr, tau_.data());
     right.drives = true;
-    right.positions = false;
+    right.positions = 0;
     return solve(t, q, tau_.data(), right, u);
   }
 

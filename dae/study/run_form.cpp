@@ -61,6 +61,7 @@ class Looker {
         result_(result),
         e_(mechanism.evaluation<double>()),
         phi_(mechanism.m()),
+        middle_(mechanism.nq()),
         markers_(static_cast<std::size_t>(6 * static_cast<int>(mechanism.scene().markers.size()))),
         loses_energy_(loses_energy(mechanism.scene())) {
     if (request.keep_trajectory) {
@@ -108,7 +109,8 @@ class Looker {
     const double middle = 0.5 * (t0 + t1);
     if (mechanism_.m() > 0) {
       between(middle, state_.data());
-      e_->place(middle, state_.data());
+      if (!form_.coordinates(middle, state_.data(), middle_)) return true;
+      e_->place(middle, middle_.data());
       e_->positions(phi_.data());
       const double drift = phi_.norm();
       if (!(drift <= between_)) between_ = drift;
@@ -233,7 +235,7 @@ class Looker {
   RunResult& result_;
   std::unique_ptr<Evaluation<double>> e_;
   std::unique_ptr<LoopSolver> solver_;
-  Eigen::VectorXd phi_;
+  Eigen::VectorXd phi_, middle_;
   std::vector<double> markers_, row_, state_;
   Snapshot now_;
   bool loses_energy_;
@@ -289,6 +291,10 @@ class Runner {
                                   (dae ? "a DAE: expected integrator ida"
                                        : "an ODE: expected rk4, dp5, dop853, vern9, adams or bdf") +
                                   ", found '" + s.integrator + "'");
+    if (is_multistep(s.integrator) && needs_one_step_method(s.form))
+      throw std::invalid_argument("form '" + s.form + "' alters its state after steps, and '" +
+                                  s.integrator +
+                                  "' is a multistep method: expected rk4, dp5, dop853 or vern9");
     if (is_multistep(s.integrator) && (s.project || s.gauge == "reset"))
       throw std::invalid_argument(
           "'" + s.integrator +
@@ -302,9 +308,15 @@ class Runner {
     options.project = s.project;
     options.baumgarte_alpha = s.baumgarte_alpha;
     options.baumgarte_beta = s.baumgarte_beta;
+    options.beta = s.beta;
+    options.penalty = s.penalty;
     form_ = make_form(s.form, mechanism, options, start);
+    s.form = form_->name();
+    if (needs_one_step_method(s.form)) s.project = false;  // it corrects by its nature
     s.gauge = form_->momentum_like() && mechanism.m() > 0 ? form_->gauge().text() : "";
     std::tie(s.baumgarte_alpha, s.baumgarte_beta) = form_->baumgarte_gains();
+    s.beta = form_->beta();
+    s.penalty = form_->penalty();
     s.kkt = mechanism.m() == 0 || dae ? "" : name_of(mechanism.kkt());
     if (s.integrator != "rk4") s.step = 0;
     integrator_ = s.integrator;
@@ -371,6 +383,7 @@ RunResult run_form(const Mechanism& mechanism, const Start& start, const RunRequ
   result.jacobian = run.jacobian;
   result.linear_solver = run.linear_solver;
   result.counters.factorizations += runner.factorizations();
+  result.partitions = runner.form().partitions();
   for (std::size_t row = 0; row < faded.size(); ++row)
     if (faded[row] > 0)
       result.faded_rows.push_back(

@@ -25,8 +25,10 @@ struct RunSettings {
   int samples = 1000;    ///< output intervals
   bool project = false;  ///< one mass-metric position correction after each accepted step
   double baumgarte_alpha = 0, baumgarte_beta = 0;  ///< [1/s]: Φ̈ + 2αΦ̇ + β²Φ = 0
-  std::string kkt;  ///< how (7) is solved: dense, sparse, or empty (no loops, or solved inside
-                    ///< IDA's Newton matrix)
+  double beta = 0;                                 ///< [1/s]: Φ̇ = −βΦ of momentum forms
+  double penalty = 0;  ///< of augmented Lagrangians, in effective masses of the loops
+  std::string kkt;     ///< how (7) is solved: dense, sparse, or empty (no loops, or solved inside
+                       ///< IDA's Newton matrix)
 };
 
 /// A fitted power law running_max(t) ~ t^exponent (measure/growth.h).
@@ -64,6 +66,7 @@ struct RunResult {
   std::string reason;           ///< one sentence when not done
   double stopped_at = 0;        ///< [s]
   Counters counters;
+  long partitions = 0;  ///< how often `partitioned` chose its coordinates, the start included
   std::string jacobian, linear_solver;
   double cpu_s = not_measured, wall_s = not_measured;  ///< median of repeats, integration alone
   int repeats = 0;

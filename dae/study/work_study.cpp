@@ -19,23 +19,29 @@ std::vector<RunSettings> plan_ladders(const Mechanism& mechanism, const WorkRequ
     RunSettings s = common;
     s.form = form;
     s.integrator = integrator;
-    const bool momentum = form.rfind("momentum", 0) == 0;
     // What the theory of each recommends: a one-step method may reset the gauge and correct
-    // positions; baumgarte has its feedback instead.
-    if (momentum && loops)
+    // positions, which makes `projected` of `acceleration`; others have feedback instead.
+    if (takes_gauge(form) && loops)
       s.gauge = !request.gauge.empty() ? request.gauge : one_step ? "reset" : "leak";
-    s.project = one_step && loops && form != "baumgarte";
+    s.project = one_step && loops && (form == "momentum" || form == "acceleration");
     ladders.push_back(s);
   };
   for (const std::string& form : request.forms.empty() ? form_names() : request.forms) {
-    // Without loops every DAE form is the same ODE, and there is nothing to feed back.
-    if (!loops && request.forms.empty() && (is_dae_form(form) || form == "baumgarte")) continue;
+    // Without loops all forms are one of two ODEs.
+    const bool asked = !request.forms.empty();
+    if (!loops && !asked && form != "momentum" && form != "acceleration") continue;
     if (is_dae_form(form)) {
       add(form, "ida", false);
       continue;
     }
-    for (const std::string& method : methods)
-      if (method != "ida") add(form, method, method != "adams" && method != "bdf");
+    for (const std::string& method : methods) {
+      if (method == "ida") continue;
+      const bool one_step = method != "adams" && method != "bdf";
+      // Not twice the same, and not what the method cannot take, unless asked for.
+      if (!asked && loops && form == "acceleration" && one_step) continue;
+      if (!asked && needs_one_step_method(form) && !one_step) continue;
+      add(form, method, one_step);
+    }
   }
   return ladders;
 }

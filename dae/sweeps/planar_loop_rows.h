@@ -66,13 +66,13 @@ void LoopSweeps<Planar, S, Rows, Momentum>::place_loops() {
   }
 }
 
-/// d of a row before the joints' shares: Φ, or in the acceleration form J̇ V and the feedback.
+/// d of a row before the joints' shares: βΦ, or in the acceleration form J̇ V and the feedback.
 template <class S, int Rows, bool Momentum>
 S LoopSweeps<Planar, S, Rows, Momentum>::row_bias(const Loop& l, const Place& s, int row,
                                                   const RightSide<S>& right) const {
   const S Fx = s.Fx[row], Fy = s.Fy[row], c = s.c[row];
   S phi(0.0);
-  if (right.positions || right.beta != 0) {
+  if (right.positions != 0 || right.beta != 0) {
     if (l.length > 0)
       phi = (s.gap_x * s.gap_x + s.gap_y * s.gap_y + (l.across2 - l.length * l.length)) *
             (0.5 / l.length);
@@ -80,7 +80,7 @@ S LoopSweeps<Planar, S, Rows, Momentum>::row_bias(const Loop& l, const Place& s,
       phi = row < l.n_points ? Fx * s.gap_x + Fy * s.gap_y : s.turn[row];
   }
   if constexpr (Momentum) {
-    return phi;
+    return right.positions * phi;
   } else {
     const S zero(0.0);
     const auto velocity = [&](int body, S& vx, S& vy, S& omega) {
@@ -144,8 +144,9 @@ void LoopSweeps<Planar, S, Rows, Momentum>::enter(std::size_t k, const RightSide
         a.Dy = a.Dy + (first * fy + second * fx);
         a.Dn = a.Dn + (first * n0 + second * n1);
       }
-      if (end.first && (!Momentum || right.positions))
+      if (end.first && (!Momentum || right.positions != 0))
         o.d.add_pair(lane, row_bias(l, s, 0, right), row_bias(l, s, 1, right));
+      if (end.first && right.compliance) o = softened(o, lane, 2, right.compliance + l.row);
       continue;
     }
     for (int row = 0; row < l.rows; ++row) {
@@ -160,9 +161,10 @@ void LoopSweeps<Planar, S, Rows, Momentum>::enter(std::size_t k, const RightSide
         a.Dy = a.Dy + centre * fy;
         a.Dn = a.Dn + centre * n;
       }
-      if (end.first && (!Momentum || right.positions))
+      if (end.first && (!Momentum || right.positions != 0))
         o.d.add(lane + row, row_bias(l, s, row, right));
     }
+    if (end.first && right.compliance) o = softened(o, lane, l.rows, right.compliance + l.row);
   }
 }
 

@@ -10,10 +10,11 @@ struct RightSide {
   const S* centre = nullptr;  ///< σ (m) towards which weak rows fade; null: zero
   double fade = 0;            ///< pivots below this, relative to their scale, fade
   bool drives = true;         ///< prescribed motion moves bodies (not in a correction of positions)
-  bool positions = false;     ///< second row Φ_q u = −Φ instead of −Φ_t
+  double positions = 0;       ///< second row Φ_q u = −Φ_t − this · Φ [1/s]
   bool rates = false;         ///< ṗ too
   double leak = 0;            ///< κ [1/s]
-  double alpha = 0, beta = 0;  ///< Φ̈ + 2α Φ̇ + β² Φ = 0 [1/s]
+  double alpha = 0, beta = 0;     ///< Φ̈ + 2α Φ̇ + β² Φ = 0 [1/s]
+  const S* compliance = nullptr;  ///< second row … + (σ − centre) · this (m); null: zero
 };
 
 }  // namespace momenta

@@ -39,7 +39,7 @@ void LoopSweeps<Spatial, S, Rows, Momentum>::enter(std::size_t k, const LoopPlan
       centre_couple += centre * n;
     }
     if (!end.first) continue;
-    if (right.positions) a.blocks.d.add(lane + row, s.position(l, row));
+    if (right.positions != 0) a.blocks.d.add(lane + row, right.positions * s.position(l, row));
     if constexpr (!Momentum) {
       const auto rates = s.rates(loop_body(l.a), loop_body(l.b));
       S d = s.bias(l, rates, row);
@@ -54,6 +54,8 @@ void LoopSweeps<Spatial, S, Rows, Momentum>::enter(std::size_t k, const LoopPlan
       a.blocks.d.add(lane + row, d);
     }
   }
+  if (end.first && right.compliance)
+    a.blocks = softened(a.blocks, lane, l.rows, right.compliance + l.row);
   if (right.centre) {
     a.cargo.Dfx += centre_force[0];
     a.cargo.Dfy += centre_force[1];

@@ -32,11 +32,12 @@ class SweepSolver final : public LoopSolver {
     for (const auto& b : mechanism.tree().bodies) place_of_body_.push_back(b.nv > 0 ? b.u : -1);
   }
 
+  void soften(std::vector<double> compliance) override { compliance_ = std::move(compliance); }
+
   bool momentum(double t, const double* q, const double* p, const double* centre, double fade,
                 double leak, double* u, double* sigma, double* pdot) override {
-    RightSide<double> right;
-    right.centre = centre;
-    right.fade = fade;
+    RightSide<double> right = of_rows(centre, fade);
+    right.positions = beta_;
     right.leak = leak;
     right.rates = pdot != nullptr;
     of_momentum_ = true;
@@ -53,9 +54,7 @@ class SweepSolver final : public LoopSolver {
 
   bool acceleration(double t, const double* q, const double* u, const double* centre, double alpha,
                     double beta, double* udot, double* lambda) override {
-    RightSide<double> right;
-    right.centre = centre;
-    right.fade = fade_evaluation;
+    RightSide<double> right = of_rows(centre, fade_evaluation);
     right.alpha = alpha;
     right.beta = beta;
     if (has_forces_) e_.applied_forces(t, q, u, tau_.data());
@@ -82,7 +81,7 @@ class SweepSolver final : public LoopSolver {
     RightSide<double> right;
     right.fade = fade_projection;
     right.drives = false;
-    right.positions = true;
+    right.positions = 1;
     of_momentum_ = true;
     if (!noted(sweeps_->momentum(t, q, zero_.data(), right, delta, nu_.data(), nullptr)))
       return false;
@@ -102,9 +101,23 @@ class SweepSolver final : public LoopSolver {
   }
 
  private:
+  RightSide<double> of_rows(const double* centre, double fade) const {
+    RightSide<double> right;
+    right.centre = centre;
+    if (compliance_.empty())
+      right.fade = fade;
+    else
+      right.compliance = compliance_.data();
+    return right;
+  }
+
   /// Where a folded leg loses rank its loops cannot close by themselves.
   LoopSolver& by_matrix() {
-    if (!matrix_) matrix_ = make_assembled_solver(mechanism_, e_);
+    if (!matrix_) {
+      matrix_ = make_assembled_solver(mechanism_, e_);
+      matrix_->stabilise(beta_);
+      if (!compliance_.empty()) matrix_->soften(compliance_);
+    }
     return *matrix_;
   }
 
@@ -120,7 +133,7 @@ class SweepSolver final : public LoopSolver {
   std::unique_ptr<LoopSolver> matrix_;
   std::unique_ptr<LoopedSweeps> sweeps_;
   bool has_body_forces_, has_forces_;
-  std::vector<double> zero_, tau_, nu_;
+  std::vector<double> zero_, tau_, nu_, compliance_;
   std::vector<int> rows_, place_of_body_;
   bool of_momentum_ = true;
 };

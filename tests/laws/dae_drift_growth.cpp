@@ -73,7 +73,7 @@ TEST(DriftGrowth, BareImpulsesSpoilTheLaw) {
 
 TEST(DriftGrowth, CorrectedPositionsStayAtRounding) {
   for (const auto& [form, gauge] : {std::pair{"momentum", "leak:3"}, std::pair{"momentum", "reset"},
-                                    std::pair{"acceleration", ""}}) {
+                                    std::pair{"projected", ""}, std::pair{"partitioned", ""}}) {
     const RunResult r = run(long_run(form, gauge, true));
     ASSERT_EQ(r.status, "done") << r.reason;
     EXPECT_LT(r.position_drift_max, 1e-14) << form << gauge;

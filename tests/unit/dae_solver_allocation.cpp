@@ -1,13 +1,16 @@
-// The loop over steps of the explicit integrators takes no memory: every call of the global
-// operator new from the tenth step on is counted. The operators here are weak, so that another file
-// of the same program may bring its own; the test then finds its counter still and skips, as it
-// does where a sanitizer owns the heap.
+// The loop over steps of the explicit integrators and the forms it calls take no memory: every call
+// of the global operator new from the tenth step on is counted. The operators here are weak, so
+// that another file of the same program may bring its own; the test then finds its counter still
+// and skips, as it does where a sanitizer owns the heap.
 
 #include <gtest/gtest.h>
+#include <momenta/core/scene/read_scene.h>
+#include <momenta/dae/assembly.h>
 #include <momenta/dae/solver/integration.h>
 
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
 #include <new>
 
 #if !defined(__SANITIZE_ADDRESS__)
@@ -109,6 +112,37 @@ TEST(Allocation, NoneAfterTheTenthStep) {
     EXPECT_GT(steps, 20);
     EXPECT_EQ(at_last, at_tenth) << method;
     EXPECT_TRUE(std::isfinite(between_sum));
+  }
+}
+
+// Of the heap of C++; what Eigen takes by itself is not seen.
+TEST(Allocation, NoneInStepsOfForms) {
+  const long before = allocations;
+  delete[] new double[1000];
+  if (allocations == before) GTEST_SKIP() << "another operator new is linked in";
+
+  const Mechanism mechanism(
+      read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples/four_bar/scene.toml"));
+  const Start start = assemble(mechanism).start;
+  for (const std::string& name : form_names()) {
+    if (is_dae_form(name)) continue;
+    FormOptions options;
+    options.gauge.kind = Gauge::Kind::reset;
+    options.project = true;
+    const auto form = make_form(name, mechanism, options, start);
+    OdeSystem& ode = *form->ode();
+    auto y = form->initial(start);
+    std::vector<double> ydot(y.size());
+    const auto step = [&] {
+      bool changed = false;
+      bool ok = ode.rhs(0, y.data(), ydot.data()) && ode.after_step(0, y.data(), changed);
+      ode.begin_step(0, y.data());
+      return ok;
+    };
+    ASSERT_TRUE(step() && step()) << name << ode.failure();
+    const long at_second = allocations;
+    for (int i = 0; i < 20; ++i) EXPECT_TRUE(step());
+    EXPECT_EQ(allocations, at_second) << name;
   }
 }
 

@@ -10,7 +10,10 @@ const settingColumns = [
   { name: "KKT", get: (run) => run.kkt },
   { name: "projection", get: (run) => (run.project ? "each step" : "none") },
   { name: "feedback", get: (run) => (run.baumgarte[0] || run.baumgarte[1]
-      ? `α ${number(run.baumgarte[0])}, β ${number(run.baumgarte[1])} 1/s` : ""), optional: true },
+      ? `α ${number(run.baumgarte[0])}, β ${number(run.baumgarte[1])} 1/s`
+      : run.beta ? `β ${number(run.beta)} 1/s` : ""), optional: true },
+  { name: "penalty", get: (run) => (run.penalty ? number(run.penalty) : ""), optional: true },
+  { name: "partitions", get: (run) => (run.partitions ? String(run.partitions) : ""), optional: true },
 ];
 
 const statusColumn = {

@@ -97,6 +97,7 @@ class LoopedSweepsAt final : public LoopedSweeps {
     r.leak = right.leak;
     r.alpha = right.alpha;
     r.beta = right.beta;
+    r.compliance = reinterpret_cast<const One*>(right.compliance);
     return r;
   }
   template <class Report>

@@ -1,0 +1,53 @@
+#pragma once
+// What the ODE forms in q, u share: (3) with feedback of Φ and Φ̇, solved once or, in a softened
+// solver, repeated around the multiplier just found; corrections of q and u after steps.
+
+#include <momenta/dae/form/ode_form.h>
+
+namespace momenta {
+
+/// α, β of Φ̈ + 2αΦ̇ + β²Φ = 0 [1/s].
+struct Feedback {
+  double alpha = 0, beta = 0;
+};
+
+class AccelerationForm : public OdeForm {
+ public:
+  AccelerationForm(std::string name, const Mechanism& mechanism, const FormOptions& options,
+                   Feedback feedback = {}, int solutions = 1);
+
+  bool momentum_like() const override { return false; }
+  std::pair<double, double> baumgarte_gains() const override {
+    return {feedback_.alpha, feedback_.beta};
+  }
+
+  std::vector<double> initial(const Start& start) override;
+  bool rhs(double t, const double* y, double* ydot) override;
+  bool has_after_step() const override { return corrects() || mechanism_.plan().quasi_velocities; }
+  bool after_step(double t, double* y, bool& changed) override;
+  void begin_step(double t, const double* y) override {
+    OdeForm::begin_step(t, y);
+    centre_ = multipliers_;
+  }
+  bool wants_care() const override { return false; }
+  bool read(double t, const double* y, const double*, Snapshot& out) override;
+
+ protected:
+  bool corrects() const { return has_loops() && options_.project; }
+  /// The correction after a step: of q, then of u.
+  virtual bool correct(double t, double* q, double* u) {
+    return correct_position(t, q) && correct_velocity(t, q, u);
+  }
+  /// M v + Φ_qᵀν = M u, Φ_q v = −Φ_t: the nearest consistent velocity in the mass metric.
+  bool correct_velocity(double t, const double* q, double* u);
+
+ private:
+  Feedback feedback_;
+  int solutions_;  ///< of (3) in one evaluation, each around the λ of the one before
+  std::vector<double> nu_;
+};
+
+/// The gains given, or critically damped ones at the mechanism's own rate, default_leak's.
+Feedback feedback_of(const Mechanism& mechanism, const FormOptions& options, const Start& start);
+
+}  // namespace momenta

@@ -1,0 +1,50 @@
+// augmented-lagrangian
+//
+// Unknowns      q, u
+// Equations     (M + Φ_qᵀ α Φ_q) u̇ₖ₊₁ = M u̇ₖ − Φ_qᵀ α (Φ̇_q u + Φ̇_t + 2ξω Φ̇ + ω² Φ), two iterations,
+//               q̇ = u. With M u̇ₖ = Q + L_q − Ṁ u − Φ_qᵀλₖ it is, line for line,
+//                 M u̇ₖ₊₁ + Φ_qᵀλₖ₊₁ = Q + L_q − Ṁ u,  λₖ₊₁ = λₖ + α (Φ̈ₖ₊₁ + 2ξω Φ̇ + ω² Φ),
+//               which is (3) with −α⁻¹ (λₖ₊₁ − λₖ) in its second row. It is solved in this form: no
+//               matrix holds 10⁷ and 1 side by side, and the sweeps take it as they take (3).
+//               λ₀ is the λ of the step's start.
+// Index         an ODE
+// Hidden        Φ(q, t) = 0 and Φ_q u + Φ_t = 0
+// Multipliers   λ, a force, with the correction in it
+// Drifts        as `baumgarte`: Φ, Φ̇ bounded at a level set by ω and the step. An iteration leaves
+//               1/(1 + α W) of what λ lacks, W = Φ_q M⁻¹Φ_qᵀ: 10⁻¹⁴ after two. Where W loses rank
+//               nothing has to be chosen; λ stays what it was in the directions that vanish.
+// Settings      α = penalty / W, W of the start: penalty effective masses, 10⁷ unless given;
+//               ξω = ω = 1/T, T the mechanism's own time scale, where the literature takes ω = 10,
+//               ξ = 1 for motions of a second
+// Left out      the index-3 form with mass-orthogonal projections (Bayo, Ledesma, Nonlinear
+//               Dynamics 9, 1996): a trapezoidal rule of order 2 that belongs to no integrator here
+// Source        Bayo, Avello, Nonlinear Dynamics 5 (1994); Bayo, García de Jalón, Serna, Comput.
+//               Methods Appl. Mech. Eng. 71 (1988).
+
+#include <momenta/dae/form/acceleration_form.h>
+#include <momenta/dae/form/penalty.h>
+
+namespace momenta {
+namespace {
+
+class AugmentedLagrangian final : public AccelerationForm {
+ public:
+  AugmentedLagrangian(const Mechanism& mechanism, const FormOptions& options, const Start& start)
+      : AccelerationForm("augmented-lagrangian", mechanism, options,
+                         feedback_of(mechanism, options, start), penalty_iterations),
+        penalty_(soften(mechanism, *e_, solver_.get(), options, start)) {}
+
+  double penalty() const override { return penalty_; }
+
+ private:
+  double penalty_;
+};
+
+}  // namespace
+
+std::unique_ptr<OdeForm> make_augmented_lagrangian(const Mechanism& mechanism,
+                                                   const FormOptions& options, const Start& start) {
+  return std::make_unique<AugmentedLagrangian>(mechanism, options, start);
+}
+
+}  // namespace momenta

@@ -1,0 +1,46 @@
+#pragma once
+// What the ODE forms in q, p share: (7) solved once or, in a softened solver, repeated around the
+// multiplier just found; (8); gauge and correction of positions after steps.
+
+#include <momenta/dae/form/ode_form.h>
+
+namespace momenta {
+
+class MomentumForm : public OdeForm {
+ public:
+  /// `beta`: feedback Φ̇ = −βΦ [1/s].
+  MomentumForm(std::string name, const Mechanism& mechanism, const FormOptions& options,
+               const Start& start, double beta, int solutions = 1);
+
+  bool momentum_like() const override { return true; }
+  Gauge gauge() const override { return gauge_; }
+  double beta() const override { return beta_; }
+
+  std::vector<double> initial(const Start& start) override;
+  bool rhs(double t, const double* y, double* ydot) override;
+  bool has_after_step() const override {
+    return (has_loops() && (options_.project || gauge_.kind == Gauge::Kind::reset)) ||
+           mechanism_.plan().quasi_velocities;
+  }
+  bool after_step(double t, double* y, bool& changed) override;
+  bool first_derivative(double* ydot) override;
+  void begin_step(double t, const double* y) override;
+  void take_care(bool careful) override { careful_ = careful; }
+  double motion_error_squared(double t, const double* y, const double* error, double rtol,
+                              double atol) override;
+  bool read(double t, const double* y, const double*, Snapshot& out) override;
+
+ private:
+  double leak() const { return gauge_.kind == Gauge::Kind::leak ? gauge_.kappa : 0.0; }
+  /// (7): u_ and multipliers_; with `pdot` (8) too.
+  bool solve(double t, const double* q, const double* p, double* pdot);
+
+  Gauge gauge_;
+  double beta_;
+  int solutions_;  ///< of (7) in one evaluation, each around the σ of the one before
+  bool careful_ = false;
+  bool reset_ = false;  ///< work_ and correction_ hold f after a reset
+  std::vector<double> around_, place_;
+};
+
+}  // namespace momenta

@@ -1,0 +1,42 @@
+// momentum-index3
+//
+// Unknowns      q, p; λ
+// Equations     (5a)-(5c): M u = p with u the rates of q̇,  ṗ = L_q + Q − Φ_qᵀλ,  Φ(q, t) = 0.
+//               Here p = ∂L/∂u (4), without Φ_qᵀσ; −∂H/∂q of (5b) is L_q at u.
+// Index         3: Φ, then Φ̇ = Φ_q M⁻¹p + Φ_t, then λ. The paper gives it 2, which holds with σ in
+//               place of λ: `momentum-index2`.
+// Hidden        Φ̇ = 0 and Φ̈ = 0
+// Multipliers   λ, a force
+// Drifts        Φ at the Newton tolerance; Φ̇ at the local error of p, one power of the step worse.
+//               u is read from M u = p: nothing brings it back to Φ̇ = 0.
+// Source        paper, eqs. (5a)-(5c); Brenan, Campbell, Petzold, Numerical Solution of
+//               Initial-Value Problems in DAEs
+
+#include <momenta/dae/form/dae_form.h>
+
+namespace momenta {
+namespace {
+
+class MomentumIndex3 final : public DaeFormOf<MomentumIndex3> {
+ public:
+  MomentumIndex3(const Mechanism& mechanism, const FormOptions& options, const Start& start)
+      : DaeFormOf("momentum-index3", mechanism, {mechanism.nq(), mechanism.nv(), mechanism.m()},
+                  options, start, Unknowns::momenta) {}
+
+  template <class S>
+  void rows(DaeScratch<S>& s, double t, const S* y, const S* ydot, S* r) {
+    s.e->positions(hamilton_rows(s, t, y, ydot, r));
+  }
+
+ protected:
+  bool rate_is_tested() const override { return false; }  // BDF converges for p one order late
+};
+
+}  // namespace
+
+std::unique_ptr<Form> make_momentum_index3(const Mechanism& mechanism, const FormOptions& o,
+                                           const Start& s) {
+  return std::make_unique<MomentumIndex3>(mechanism, o, s);
+}
+
+}  // namespace momenta

@@ -1,0 +1,263 @@
+// partitioned
+//
+// Unknowns      independent q_i, u_i: as many as the mechanism has degrees of freedom, twice
+// Equations     q̇_i = u_i and u̇_i of (3), at the whole state that belongs to them:
+//                 Φ(q_i, q_d, t) = 0 for q_d,  Φ_d u_d = −Φ_t − Φ_i u_i for u_d,
+//               Φ_d a square block of Φ_q with as many rows and columns as its rank. Balls: q_i and
+//               u_i are chosen apart, q_i among the components of quaternions too, whose lengths
+//               are further equations.
+// Index         an ODE of the least size
+// Hidden        none: Φ = 0 and Φ̇ = 0 at every evaluation
+// Multipliers   λ, a force
+// Drifts        nothing: Φ at the Newton tolerance, Φ̇ at rounding
+// Partition     by LU with full pivoting of Φ_q, columns weighed by their inertia. After each step
+//               |∂q_d/∂q_i|, |∂u_d/∂u_i|, weighed likewise, are looked at; where one has passed 1.5
+//               (or 1.5 times what the best choice had) the partition is chosen anew and the state
+//               loaded from the same q, u. Only methods without memory can take that. Later choices
+//               cost accuracy: errors of q_i come back magnified, and grow steeply near dead
+//               points.
+// Newton        starts at the state of the step's start with the block factorised there, whose
+//               first correction is the tangent; a step is too long where the next one is not small
+//               or corrections do not shrink, and a method with step control tries a shorter one.
+// Fails         where no block is regular: singular poses, which partitions cannot pass
+// Source        Wehage, Haug, J. Mech. Design 104 (1982); Nikravesh, Computer-Aided Analysis of
+//               Mechanical Systems (1988), with Euler parameters.
+
+#include <momenta/dae/form/ode_form.h>
+#include <momenta/dae/kkt/coordinate_jacobian.h>
+#include <momenta/dae/kkt/coordinate_split.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace momenta {
+namespace {
+
+constexpr int most_corrections = 12;
+constexpr double last_correction = 1e-8;  // [rad or m]: its square is rounding
+constexpr double off_tangent = 0.3;       // [rad or m]: the second correction, at most
+constexpr double worst_growth = 1.5;      // of dependent coordinates over independent ones
+constexpr double opened = 1e-6;           // |Φ| of rows that ought to follow from the others
+
+class Partitioned final : public OdeForm {
+ public:
+  Partitioned(const Mechanism& mechanism, const FormOptions& options, const Start& start)
+      : OdeForm("partitioned", mechanism, options),
+        jacobian_(mechanism),
+        start_q_(start.q),
+        q_(start.q),
+        u_(start.u),
+        qdot_(mechanism.nq()),
+        udot_(mechanism.nv()),
+        rate_(mechanism.m()) {
+    rate_values_.resize(jacobian_.rate_pattern().size());
+    values_.resize(jacobian_.pattern().size());
+    phi_.resize(jacobian_.rows());
+    e_->place(start.t, q_.data());
+    Eigen::VectorXd weights(mechanism.nv());
+    e_->mass_diagonal(weights.data());
+    for (double& w : weights) w = w > 0 ? std::sqrt(w) : 1;
+    rates_ = std::make_unique<CoordinateSplit>(jacobian_.rate_pattern(), mechanism.m(), weights);
+    if (jacobian_.has_balls())
+      positions_ = std::make_unique<CoordinateSplit>(jacobian_.pattern(), jacobian_.rows(),
+                                                     jacobian_.weights(weights));
+    if (!choose(start.t))
+      throw std::invalid_argument(
+          "form 'partitioned': the loops leave no regular partition of the coordinates at the "
+          "start");
+  }
+
+  bool momentum_like() const override { return false; }
+  long partitions() const override { return partitions_; }
+  /// Where drives move all there is, one number that stays zero.
+  int size() const override { return std::max(1, 2 * freedom()); }
+  double scale(int) const override { return 1; }
+
+  std::vector<double> initial(const Start& start) override {
+    start_q_ = q_ = start.q;
+    u_ = start.u;
+    std::copy(start.lambda.begin(), start.lambda.end(), multipliers_.begin());
+    centre_ = multipliers_;
+    e_->place(start.t, q_.data());
+    choose(start.t);
+    partitions_ = 1;
+    std::vector<double> y(static_cast<std::size_t>(size()));
+    load(y.data());
+    return y;
+  }
+
+  bool rhs(double t, const double* y, double* ydot) override {
+    if (!close(t, y) || !accelerate(t)) return false;
+    if (has_loops()) note_pivots();
+    e_->coordinate_rates(q_.data(), u_.data(), qdot_.data());
+    ydot[0] = 0;
+    for (int k = 0; k < freedom(); ++k) {
+      ydot[k] = qdot_[independent_q(k)];
+      ydot[freedom() + k] = udot_[independent_u(k)];
+    }
+    return true;
+  }
+
+  bool has_after_step() const override { return true; }
+  bool after_step(double t, double* y, bool& changed) override {
+    if (!close(t, y)) return false;
+    // Rows that were not chosen follow from the others, unless the loops tie more than they did.
+    if (phi_.size() > 0 && !(phi_.cwiseAbs().maxCoeff() < opened))
+      return fail_at(t, "the loops tie more coordinates than at the start");
+    start_q_ = q_;
+    evaluate_jacobian();
+    if (at_start_->factor(values_) && growth() <= bound_) return true;
+    if (!choose(t))
+      return fail_at(t,
+                     "no partition of the coordinates is regular: the loops are "
+                     "singular here");
+    load(y);
+    changed = true;
+    return true;
+  }
+  void begin_step(double t, const double* y) override {
+    OdeForm::begin_step(t, y);
+    centre_ = multipliers_;
+  }
+  bool wants_care() const override { return false; }
+
+  bool coordinates(double t, const double* y, Eigen::VectorXd& q) override {
+    if (!close(t, y)) return false;
+    q = q_;
+    return true;
+  }
+  bool read(double t, const double* y, const double*, Snapshot& out) override {
+    const Looking looking(*this);
+    const std::vector<double> kept = multipliers_;
+    if (!close(t, y) || !accelerate(t)) return false;
+    out.q = q_;
+    out.u = u_;
+    out.multipliers = Eigen::Map<const Eigen::VectorXd>(multipliers_.data(), mechanism_.m());
+    multipliers_ = kept;  // looking on must not move the centre of later steps
+    return true;
+  }
+
+ private:
+  /// Of coordinates; the same as that of rates where there are no balls.
+  CoordinateSplit& positions() const { return positions_ ? *positions_ : *rates_; }
+  int freedom() const { return static_cast<int>(rates_->independent().size()); }
+  int independent_q(int k) const { return positions().independent()[static_cast<std::size_t>(k)]; }
+  int independent_u(int k) const { return rates_->independent()[static_cast<std::size_t>(k)]; }
+  void load(double* y) const {
+    y[0] = 0;
+    for (int k = 0; k < freedom(); ++k) {
+      y[k] = q_[independent_q(k)];
+      y[freedom() + k] = u_[independent_u(k)];
+    }
+  }
+
+  /// Chooses at the placed q_, and factorises there.
+  bool choose(double t) {
+    e_->place(t, q_.data());
+    evaluate_jacobian();
+    if (!rates_->choose(rate_values_, rank_)) return false;
+    rank_ = rates_->rank();
+    if (positions_ && !positions_->choose(values_, rank_ + jacobian_.balls())) return false;
+    at_start_ = std::make_unique<SplitFactor>(positions());
+    inside_ = std::make_unique<SplitFactor>(positions());
+    if (positions_) of_rates_ = std::make_unique<SplitFactor>(*rates_);
+    if (!at_start_->factor(values_)) return false;
+    const double best = growth();
+    if (!std::isfinite(best)) return false;
+    bound_ = worst_growth * std::max(1.0, best);
+    correction_q_.resize(positions().rank());
+    correction_u_.resize(rank_);
+    ++partitions_;
+    return true;
+  }
+
+  /// Of dependent coordinates and rates, at the last evaluate_jacobian() and at_start_'s factors.
+  double growth() {
+    const double of_positions = at_start_->growth(values_);
+    if (!of_rates_) return of_positions;
+    if (!of_rates_->factor(rate_values_)) return std::numeric_limits<double>::infinity();
+    const double of_rates = of_rates_->growth(rate_values_);
+    return of_rates <= of_positions ? of_positions : of_rates;
+  }
+
+  /// q_ and u_ of the state. Starts at the step's start whatever was evaluated before: a rejected
+  /// step leaves no trace.
+  bool close(double t, const double* y) {
+    q_ = start_q_;
+    for (int k = 0; k < freedom(); ++k) q_[independent_q(k)] = y[k];
+    double before = 0;
+    for (int k = 0;; ++k) {
+      e_->place(t, q_.data());
+      jacobian_.residual(*e_, q_, phi_);
+      if (k > 0) {
+        evaluate_jacobian();
+        if (!inside_->factor(values_)) return too_long(t);
+      }
+      (k == 0 ? *at_start_ : *inside_).solve(phi_, correction_q_);
+      double length = 0;
+      for (int i = 0; i < positions().rank(); ++i) {
+        q_[positions().dependent()[static_cast<std::size_t>(i)]] -= correction_q_[i];
+        if (!(std::abs(correction_q_[i]) <= length)) length = std::abs(correction_q_[i]);
+      }
+      if (k > 0 && length <= last_correction) break;
+      const bool shrinks = k == 0 || (k == 1 ? length < off_tangent : length < 0.5 * before);
+      if (!std::isfinite(length) || !shrinks || k == most_corrections) return too_long(t);
+      before = length;
+    }
+    e_->place(t, q_.data());
+    SplitFactor* factor = inside_.get();  // within last_correction of q_
+    if (of_rates_) {
+      e_->constraint_entries(rate_values_.data());
+      factor = of_rates_.get();
+      if (!factor->factor(rate_values_)) return too_long(t);
+    }
+    u_.setZero();
+    for (int k = 0; k < freedom(); ++k) u_[independent_u(k)] = y[freedom() + k];
+    for (int pass = 0; pass < 2; ++pass) {  // the second takes the factor's distance off
+      e_->move(u_.data());
+      e_->velocities(rate_.data());
+      factor->solve(rate_, correction_u_);
+      for (int i = 0; i < rank_; ++i)
+        u_[rates_->dependent()[static_cast<std::size_t>(i)]] -= correction_u_[i];
+    }
+    return u_.allFinite() || too_long(t);
+  }
+  bool too_long(double t) {
+    return fail_at(t,
+                   "the dependent coordinates cannot be followed: the step is too long, or the "
+                   "loops are singular near");
+  }
+
+  bool accelerate(double t) {
+    if (!has_loops())
+      return e_->open_accelerations(t, q_.data(), u_.data(), udot_.data()) ||
+             fail_at(t, mechanism_.no_inertia(e_->stuck()));
+    return solver_->acceleration(t, q_.data(), u_.data(), centre_.data(), 0, 0, udot_.data(),
+                                 multipliers_.data()) ||
+           solver_failed(t, q_.data(), "the solution of (3)");
+  }
+
+  /// At the placed q_.
+  void evaluate_jacobian() { jacobian_.evaluate(*e_, q_, rate_values_, values_); }
+
+  CoordinateJacobian jacobian_;
+  std::unique_ptr<CoordinateSplit> rates_, positions_;
+  std::unique_ptr<SplitFactor> at_start_, inside_, of_rates_;
+  int rank_ = -1;  ///< of Φ_q, from the start on
+  double bound_ = worst_growth;
+  long partitions_ = 0;
+  Eigen::VectorXd start_q_, q_, u_, qdot_, udot_;  ///< start_q_: of the step's start
+  Eigen::VectorXd phi_, rate_, correction_q_, correction_u_;
+  std::vector<double> rate_values_, values_;
+};
+
+}  // namespace
+
+std::unique_ptr<OdeForm> make_partitioned(const Mechanism& mechanism, const FormOptions& options,
+                                          const Start& start) {
+  return std::make_unique<Partitioned>(mechanism, options, start);
+}
+
+}  // namespace momenta

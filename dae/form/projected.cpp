@@ -1,0 +1,66 @@
+// projected
+//
+// Unknowns      q, u
+// Equations     (3) as in `acceleration`; after each step, and wherever a state is read,
+//                 q ← q + δ,  M δ + Φ_qᵀν = 0,  Φ_q δ = −Φ        repeated while the steps count
+//                 u ← v,      M v + Φ_qᵀν = M u,  Φ_q v = −Φ_t     linear: once
+//               the nearest states on the manifold in the mass metric
+// Index         an ODE on the manifold Φ = 0, Φ̇ = 0
+// Hidden        none after a step; inside a step both, for its length
+// Multipliers   λ, a force
+// Drifts        nothing: Φ and Φ̇ at rounding after each step. The order of the method is kept: a
+//               correction is as large as the local error.
+// Iteration     Newton's error after a correction δ is of the order δ²: corrections below 1e-8 rad
+//               or m are the last, larger ones are repeated as long as each is less than half the
+//               one before. At a singular pose they stop being so, and the state stays where it is.
+// Source        Eich, SIAM J. Numer. Anal. 30 (1993), projection until consistent; Blajer,
+//               Multibody System Dynamics 7 (2002), and Terze, Lefeber, Muftić, Multibody System
+//               Dynamics 6 (2001), the mass metric.
+
+#include <momenta/dae/form/acceleration_form.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace momenta {
+namespace {
+
+constexpr double last_correction = 1e-8;  // [rad or m]: its square is rounding
+constexpr int most_corrections = 10;
+
+class Projected final : public AccelerationForm {
+ public:
+  Projected(const Mechanism& mechanism, FormOptions options)
+      : AccelerationForm("projected", mechanism, always(std::move(options))) {}
+
+ protected:
+  bool correct(double t, double* q, double* u) override {
+    double before = std::numeric_limits<double>::infinity();
+    for (int k = 0; k < most_corrections; ++k) {
+      if (!solve_correction(t, q)) return false;
+      double length = 0;
+      for (const double x : delta_) length = std::max(length, std::abs(x));
+      if (k > 0 && !(length < 0.5 * before)) break;
+      take_correction(q);
+      if (length <= last_correction) break;
+      before = length;
+    }
+    return correct_velocity(t, q, u);
+  }
+
+ private:
+  static FormOptions always(FormOptions options) {
+    options.project = true;
+    return options;
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<OdeForm> make_projected(const Mechanism& mechanism, const FormOptions& options,
+                                        const Start&) {
+  return std::make_unique<Projected>(mechanism, options);
+}
+
+}  // namespace momenta
