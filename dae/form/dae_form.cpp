@@ -90,6 +90,12 @@ double DaeForm::scale(int i) const {
   return scale_[static_cast<std::size_t>(i)];
 }
 
+DaeSystem::Weight DaeForm::weight(int i) const {
+  const bool is_rate = i >= layout_.x() && i < layout_.x() + layout_.nv;
+  if (!is_rate && !differential(i)) return {-1, 0};
+  return {is_rate && !rate_is_tested() ? 1 : 0, scale_[static_cast<std::size_t>(i)]};
+}
+
 bool DaeForm::differential(int i) const {
   if (i < layout_.x()) return true;
   if (i < layout_.x() + layout_.nv) return rate_is_tested();

@@ -50,6 +50,7 @@ class DaeForm : public Form, public DaeSystem {
   bool start(double t, double* y, double* ydot) override;
   bool differential(int i) const override;
   double scale(int i) const override;
+  Weight weight(int i) const override;
 
  protected:
   virtual void equations(DaeScratch<double>& s, double t, const double* y, const double* ydot,

@@ -2,6 +2,7 @@
 
 #include <momenta/core/scene/read_scene.h>
 #include <momenta/dae/report/atomic_write.h>
+#include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/study/environment.h>
 #include <momenta/dae/study/sketch.h>
 #include <unistd.h>
@@ -33,15 +34,18 @@ void add_scene(CLI::App& verb, Options& o) {
 
 void add_run_options(CLI::App& verb, Options& o) {
   const auto positive = CLI::PositiveNumber;
+  std::vector<std::string> names;
+  for (const Integrator& i : integrators()) names.push_back(i.name);
   verb.add_option("--integrator", o.integrator,
-                  "rk4, dp5, dop853, vern9, adams, bdf or ida (default: by form)")
-      ->check(CLI::IsMember({"rk4", "dp5", "dop853", "vern9", "adams", "bdf", "ida"}));
+                  "Of ODE forms " + integrator_names(Integrator::Takes::ode) + "; of DAE forms " +
+                      integrator_names(Integrator::Takes::dae) + " (default: by form)")
+      ->check(CLI::IsMember(names));
   verb.add_option("--gauge", o.gauge, "Momentum forms: none, reset, leak or leak:RATE [1/s]");
   verb.add_option("--rtol", o.rtol, "Relative tolerance")->check(positive)->capture_default_str();
   verb.add_option("--atol", o.atol,
                   "Absolute tolerance, times each unknown's scale (default: rtol)")
       ->check(positive);
-  verb.add_option("--step", o.step, "Step of rk4 [s]")->check(positive);
+  verb.add_option("--step", o.step, "Step of the fixed-step integrators [s]")->check(positive);
   verb.add_option("--end", o.end, "End time [s]")->check(positive);
   verb.add_option("--samples", o.samples, "Output intervals")->check(CLI::Range(1, 10'000'000));
   auto* project =

@@ -1,5 +1,6 @@
 #include <momenta/dae/report/csv.h>
 #include <momenta/dae/report/table.h>
+#include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/study/environment.h>
 
 #include <cstdio>
@@ -25,8 +26,8 @@ int run(const Options& o) {
   s.step = o.step.value_or(defaults.step.value_or(0));
   s.end_time = o.end.value_or(defaults.end_time);
   s.samples = o.samples.value_or(defaults.samples);
-  const bool one_step = s.integrator == "rk4" || s.integrator == "dp5" ||
-                        s.integrator == "dop853" || s.integrator == "vern9";
+  const Integrator& method = integrator(s.integrator);
+  const bool one_step = method.takes == Integrator::Takes::ode && !method.multistep;
   s.project = o.project || (defaults.project && one_step && !o.no_project);
   s.baumgarte_alpha = o.baumgarte_alpha;
   s.baumgarte_beta = o.baumgarte_beta;

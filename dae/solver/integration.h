@@ -70,4 +70,8 @@ IntegrationResult integrate_cvode(const std::string& method, OdeSystem&, double 
 IntegrationResult integrate_ida(DaeSystem&, double t0, const std::vector<double>& output_times,
                                 const IntegrationOptions&, const Observer&);
 
+/// Radau IIA of order 5 with step control, started and factorised as IDA is.
+IntegrationResult integrate_radau5(DaeSystem&, double t0, const std::vector<double>& output_times,
+                                   const IntegrationOptions&, const Observer&);
+
 }  // namespace momenta

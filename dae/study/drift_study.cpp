@@ -1,3 +1,4 @@
+#include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/study/drift_study.h>
 
 #include <algorithm>
@@ -16,7 +17,7 @@ std::vector<RunSettings> plan_runs(const Mechanism& mechanism, const DriftReques
   common.baumgarte_beta = request.baumgarte_beta;
   const std::string explicit_method =
       !request.integrator.empty() ? request.integrator : (request.step > 0 ? "rk4" : "dop853");
-  const bool one_step = explicit_method != "adams" && explicit_method != "bdf";
+  const bool one_step = !integrator(explicit_method).multistep;
   const std::string leak = mechanism.scene().run.leak
                                ? Gauge{Gauge::Kind::leak, *mechanism.scene().run.leak}.text()
                                : "leak";

@@ -1,5 +1,6 @@
 #include <momenta/dae/form/ode_form.h>
 #include <momenta/dae/measure/growth.h>
+#include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/study/run_form.h>
 
 #include <algorithm>
@@ -16,10 +17,6 @@ double cpu_now() {
   timespec t{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
-bool is_multistep(const std::string& integrator) {
-  return integrator == "adams" || integrator == "bdf";
 }
 
 /// Uniform samples and the reference's own times, ascending, without the start.
@@ -284,12 +281,13 @@ class Runner {
       : start_(start) {
     const bool dae = is_dae_form(s.form);
     if (s.integrator.empty()) s.integrator = default_integrator(s.form);
-    if (dae != (s.integrator == "ida"))
-      throw std::invalid_argument("form '" + s.form + "' is " +
-                                  (dae ? "a DAE: expected integrator ida"
-                                       : "an ODE: expected rk4, dp5, dop853, vern9, adams or bdf") +
+    const Integrator& method = integrator(s.integrator);
+    const auto wanted = dae ? Integrator::Takes::dae : Integrator::Takes::ode;
+    if (method.takes != wanted)
+      throw std::invalid_argument("form '" + s.form + "' is " + (dae ? "a DAE" : "an ODE") +
+                                  ": expected integrator " + integrator_names(wanted) +
                                   ", found '" + s.integrator + "'");
-    if (is_multistep(s.integrator) && (s.project || s.gauge == "reset"))
+    if (!dae && method.multistep && (s.project || s.gauge == "reset"))
       throw std::invalid_argument(
           "'" + s.integrator +
           "' is a multistep method: a state altered after each step would spoil its history; "
@@ -306,7 +304,7 @@ class Runner {
     s.gauge = form_->momentum_like() && mechanism.m() > 0 ? form_->gauge().text() : "";
     std::tie(s.baumgarte_alpha, s.baumgarte_beta) = form_->baumgarte_gains();
     s.kkt = mechanism.m() == 0 || dae ? "" : name_of(mechanism.kkt());
-    if (s.integrator != "rk4") s.step = 0;
+    if (method.step == Integrator::Step::adaptive) s.step = 0;
     integrator_ = s.integrator;
     options_.rtol = s.rtol;
     options_.atol = s.atol;
@@ -322,11 +320,10 @@ class Runner {
   }
 
   IntegrationResult integrate(const std::vector<double>& times, const Observer& observer) {
-    if (form_->is_dae()) return integrate_ida(*form_->dae(), start_.t, times, options_, observer);
+    if (DaeSystem* dae = form_->dae())
+      return momenta::integrate(integrator_, *dae, start_.t, times, options_, observer);
     const auto y0 = form_->initial(start_);
-    if (is_multistep(integrator_))
-      return integrate_cvode(integrator_, *form_->ode(), start_.t, y0, times, options_, observer);
-    return integrate_explicit(integrator_, *form_->ode(), start_.t, y0, times, options_, observer);
+    return momenta::integrate(integrator_, *form_->ode(), start_.t, y0, times, options_, observer);
   }
 
  private:
