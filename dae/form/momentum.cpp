@@ -11,7 +11,10 @@
 // errs. Without a
 //               gauge σ grows like t under a mean load, the local error with it, and Φ like t².
 // Gauge         none; leak κ; reset (p ← M u, σ ← 0 after each step: exact, since the gauge is a
-// symmetry) Without loops there is no σ: (q, p) → (q̇, ṗ) is the recursion (35)-(48),
+//               symmetry); flip (p −= 2 Φ_qᵀσ, σ ← −σ after each step: σ swings about zero. An
+//               involution R that commutes with reversal of time: a symmetric method stays
+//               reversible, which reset, a projection, spoils. Both keep dq∧dp on Φ_q dq = 0.)
+// Without loops there is no σ: (q, p) → (q̇, ṗ) is the recursion (35)-(48),
 // momentum_recursion.h. Source        Naudet, Lefeber, Terze, eqs. (6)-(8); Bayo, Avello, Nonlinear
 // Dynamics 5 (1994).
 
@@ -73,7 +76,8 @@ class Momentum final : public OdeForm {
   }
 
   bool has_after_step() const override {
-    return (has_loops() && (options_.project || gauge_.kind == Gauge::Kind::reset)) ||
+    return (has_loops() && (options_.project || gauge_.kind == Gauge::Kind::reset ||
+                            gauge_.kind == Gauge::Kind::flip)) ||
            mechanism_.plan().quasi_velocities;
   }
   bool after_step(double t, double* y, bool& changed) override {
@@ -89,6 +93,14 @@ class Momentum final : public OdeForm {
       e_->momentum_rates(q, u_.data(), nullptr, 0, work_.data());
       e_->coordinate_rates(q, u_.data(), correction_.data());
       changed = reset_ = true;
+    }
+    if (has_loops() && gauge_.kind == Gauge::Kind::flip) {
+      if (!solve(t, q, p, nullptr)) return false;
+      e_->place(t, q);
+      e_->constraint_forces(multipliers_.data(), work_.data());
+      for (std::size_t i = 0; i < work_.size(); ++i) p[i] -= 2 * work_[i];
+      for (double& sigma : multipliers_) sigma = -sigma;
+      changed = true;
     }
     return true;
   }

@@ -31,10 +31,10 @@ int drift(const Options& o, const DriftOptions& d) {
   if (!o.gauge.empty()) request.gauge = parse_gauge(o.gauge).text();
   request.rtol = o.rtol;
   request.atol = o.atol.value_or(o.rtol);
-  request.step = o.step.value_or(
-      o.integrator.empty() || integrator(o.integrator).step == Integrator::Step::fixed
-          ? defaults.step.value_or(0)
-          : 0);
+  request.step = o.step.value_or(o.integrator.empty() ||
+                                         integrator(o.integrator).step == Integrator::Step::fixed
+                                     ? defaults.step.value_or(0)
+                                     : 0);
   request.end_time = o.end.value_or(defaults.end_time);
   request.samples = o.samples.value_or(defaults.samples);
   request.project = o.project;

@@ -40,7 +40,7 @@ void add_run_options(CLI::App& verb, Options& o) {
                   "Of ODE forms " + integrator_names(Integrator::Takes::ode) + "; of DAE forms " +
                       integrator_names(Integrator::Takes::dae) + " (default: by form)")
       ->check(CLI::IsMember(names));
-  verb.add_option("--gauge", o.gauge, "Momentum forms: none, reset, leak or leak:RATE [1/s]");
+  verb.add_option("--gauge", o.gauge, "Momentum forms: none, reset, flip, leak or leak:RATE [1/s]");
   verb.add_option("--rtol", o.rtol, "Relative tolerance")->check(positive)->capture_default_str();
   verb.add_option("--atol", o.atol,
                   "Absolute tolerance, times each unknown's scale (default: rtol)")
@@ -48,8 +48,8 @@ void add_run_options(CLI::App& verb, Options& o) {
   verb.add_option("--step", o.step, "Step of the fixed-step integrators [s]")->check(positive);
   verb.add_option("--end", o.end, "End time [s]")->check(positive);
   verb.add_option("--samples", o.samples, "Output intervals")->check(CLI::Range(1, 10'000'000));
-  auto* project =
-      verb.add_flag("--project", o.project, "Correct positions after each step (one-step methods)");
+  auto* project = verb.add_flag("--project", o.project,
+                                "Correct positions after each step (ODE forms; not with adams)");
   verb.add_flag("--no-project", o.no_project, "Do not, even if the scene asks for it")
       ->excludes(project);
   verb.add_option("--baumgarte-alpha", o.baumgarte_alpha, "α of Φ̈ + 2αΦ̇ + β²Φ = 0 [1/s]")

@@ -27,8 +27,7 @@ int run(const Options& o) {
   s.end_time = o.end.value_or(defaults.end_time);
   s.samples = o.samples.value_or(defaults.samples);
   const Integrator& method = integrator(s.integrator);
-  const bool one_step = method.takes == Integrator::Takes::ode && !method.multistep;
-  s.project = o.project || (defaults.project && one_step && !o.no_project);
+  s.project = o.project || (defaults.project && method.projects && !o.no_project);
   s.baumgarte_alpha = o.baumgarte_alpha;
   s.baumgarte_beta = o.baumgarte_beta;
   request.reference = reference.get();

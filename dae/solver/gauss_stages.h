@@ -79,7 +79,10 @@ class Stages {
 
   /// Iterations until corrections are rounding.
   Sweep iterate(double t, double h, const double* y, bool newton) {
-    double last = std::numeric_limits<double>::infinity();
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    double last = infinity, smallest = infinity;
+    std::array<double, 4> before;  // sizes of the last corrections
+    before.fill(infinity);
     const int most = newton ? most_newton : most_fixed_point;
     for (int count = 1; count <= most; ++count) {
       for (int j = 0; j < s; ++j) {
@@ -101,9 +104,13 @@ class Stages {
       if (!std::isfinite(size)) return Sweep::no_contraction;
       if (size <= reached) return Sweep::converged;
       if (size >= last && size <= rounding) return Sweep::converged;
-      if (count > 2 && size > (newton ? 0.9 : 0.7) * last && size > rounding)
+      // Large momenta in a free gauge make corrections grow before they shrink: it is a fall by
+      // four in four iterations that counts.
+      smallest = std::min(smallest, size);
+      double& old = before[static_cast<std::size_t>(count % 4)];
+      if (size > rounding && (size > 1e3 * smallest || (count > 8 && size > 0.25 * old)))
         return Sweep::no_contraction;
-      last = size;
+      old = last = size;
     }
     return last <= rounding ? Sweep::converged : Sweep::no_contraction;
   }

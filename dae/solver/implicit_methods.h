@@ -10,4 +10,11 @@ IntegrationResult integrate_gauss(int stages, OdeSystem&, double t0, const std::
                                   const std::vector<double>& output_times,
                                   const IntegrationOptions&, const Observer&);
 
+/// Generalised-α with steps of options.step and the spectral radius `rho` at infinite frequency,
+/// for systems that are SecondOrder.
+IntegrationResult integrate_generalised_alpha(DaeSystem&, double t0,
+                                              const std::vector<double>& output_times,
+                                              const IntegrationOptions&, const Observer&,
+                                              double rho = 0.8);
+
 }  // namespace momenta

@@ -22,15 +22,17 @@ std::string listed(const std::vector<std::string>& names) {
 
 const std::vector<Integrator>& integrators() {
   static const std::vector<Integrator> all{
-      {"rk4", Takes::ode, Step::fixed, false, "classical Runge-Kutta, order 4"},
-      {"dp5", Takes::ode, Step::adaptive, false, "Dormand-Prince 5(4)"},
-      {"dop853", Takes::ode, Step::adaptive, false, "Dormand-Prince 8(5,3)"},
-      {"adams", Takes::ode, Step::adaptive, true, "CVODE, Adams-Moulton of orders 1 to 12"},
-      {"bdf", Takes::ode, Step::adaptive, true, "CVODE, BDF of orders 1 to 5"},
-      {"gauss4", Takes::ode, Step::fixed, false, "Gauss collocation, 2 stages, order 4"},
-      {"gauss6", Takes::ode, Step::fixed, false, "Gauss collocation, 3 stages, order 6"},
-      {"ida", Takes::dae, Step::adaptive, true, "IDA, BDF of orders 1 to 5"},
-      {"radau5", Takes::dae, Step::adaptive, false, "Radau IIA, order 5"},
+      {"rk4", Takes::ode, Step::fixed, false, true, "classical Runge-Kutta, order 4"},
+      {"dp5", Takes::ode, Step::adaptive, false, true, "Dormand-Prince 5(4)"},
+      {"dop853", Takes::ode, Step::adaptive, false, true, "Dormand-Prince 8(5,3)"},
+      {"adams", Takes::ode, Step::adaptive, true, false, "CVODE, Adams-Moulton of orders 1 to 12"},
+      {"bdf", Takes::ode, Step::adaptive, true, true, "CVODE, BDF of orders 1 to 5"},
+      {"gauss4", Takes::ode, Step::fixed, false, true, "Gauss collocation, 2 stages, order 4"},
+      {"gauss6", Takes::ode, Step::fixed, false, true, "Gauss collocation, 3 stages, order 6"},
+      {"ida", Takes::dae, Step::adaptive, true, false, "IDA, BDF of orders 1 to 5"},
+      {"radau5", Takes::dae, Step::adaptive, false, false, "Radau IIA, order 5"},
+      {"generalised-alpha", Takes::dae, Step::fixed, false, false,
+       "generalised-α, order 2, for acceleration-index3"},
   };
   return all;
 }
@@ -67,6 +69,8 @@ IntegrationResult integrate(const std::string& name, DaeSystem& system, double t
                             const IntegrationOptions& options, const Observer& observer) {
   if (name == "ida") return integrate_ida(system, t0, output_times, options, observer);
   if (name == "radau5") return integrate_radau5(system, t0, output_times, options, observer);
+  if (name == "generalised-alpha")
+    return integrate_generalised_alpha(system, t0, output_times, options, observer);
   throw std::invalid_argument("no method \"" + name +
                               "\" for DAEs: " + integrator_names(Takes::dae) + " are known");
 }

@@ -19,7 +19,8 @@ struct Integrator {
   std::string name;
   Takes takes;
   Step step;
-  bool multistep;      ///< carries a history: a state altered after a step would spoil it
+  bool multistep;      ///< carries a history: a gauge reset or flip would spoil it
+  bool projects;       ///< states may be corrected onto the constraints after each step
   std::string method;  ///< one line
 };
 

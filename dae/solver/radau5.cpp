@@ -7,15 +7,17 @@
 // RADAU5's estimate; ∂F/∂y' has no columns for multipliers, whatever their rate in d. Norms weigh a
 // variable of index 2 by h (DaeSystem::weight); multipliers are in neither norm.
 // Tolerances: error and estimate are of orders 5 and 3, so the estimate is held at 0.1 tol^(2/3).
-// Step: Gustafsson's prediction; kept, with its factors, where it would grow by less than a fifth.
-// Dense output: the collocation cubic between steps; a sample is a step of its own from the last
-// step's start, of full order and on all constraints; where its iteration does not converge, the
-// cubic. Looking on counts nothing and changes nothing.
+// Step: options.step, without error control, where given; else Gustafsson's prediction; kept, with
+// its factors, where it would grow by less than a fifth. Dense output: the collocation cubic
+// between steps; a sample is a step of its own from the last step's start, of full order and on all
+// constraints; where its iteration does not converge, the cubic. Looking on counts nothing and
+// changes nothing.
 //
 // Order on y, on variables of index 2, of index 3: 5, 3 in index-2 systems; 4, 3, 2 in those of
 // index 3. Source: Hairer, Wanner, Solving Ordinary Differential Equations II, IV.8, VII.4, VII.6;
 // Hairer, Lubich, Roche, The Numerical Solution of Differential-Algebraic Systems by RK Methods.
 
+#include <momenta/dae/solver/fixed_grid.h>
 #include <momenta/dae/solver/implicit_methods.h>
 #include <momenta/dae/solver/multistep_run.h>
 #include <momenta/dae/solver/radau5_stages.h>
@@ -33,7 +35,7 @@ constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double first_step_fraction = 1e-4;  ///< of the span, as with IDA
 constexpr double safety = 0.9, shrink = 0.125, grow = 8;
 constexpr int most_iterations = 7;
-constexpr int most_sample_iterations = 40;  ///< no shorter step can be tried
+constexpr int patient_iterations = 40;  ///< no shorter step can be tried
 /// Newton contracts this fast: the derivatives serve another step.
 constexpr double fast = 1e-3;
 constexpr std::array<double, 3> error_weights{gamma0 * (-13 - 7 * root6) / 3,
@@ -60,7 +62,7 @@ class Radau5 {
   const char* linear_solver() const { return linear_solver_name(system_.pattern()); }
 
   bool start(double t0) {
-    t1_ = t0;
+    start_ = t1_ = t0;
     return system_.start(t0, y_.data(), ydot_.data()) &&
            sundials::all_finite(y_.data(), static_cast<long>(n_)) &&
            sundials::all_finite(ydot_.data(), static_cast<long>(n_));
@@ -69,6 +71,10 @@ class Radau5 {
   void initialise() {
     stages_ = std::make_unique<Stages>(system_);
     factors_ = std::make_unique<Factors>(system_.size(), system_.pattern());
+    if (options_.step > 0) {
+      h_ = options_.step;
+      return;
+    }
     h_ = options_.initial_step > 0 ? options_.initial_step : first_step_fraction * span_;
     h_ = std::min(h_, longest());
   }
@@ -79,6 +85,8 @@ class Radau5 {
     norm_set_for_ = 0;
     while (true) {
       const double t1 = step_end(t, end);
+      if (options_.step > 0 && rejected_ && have_derivatives_)
+        return cause = failure_ + ", with a step of " + in_words(options_.step) + " s", false;
       // The floor of the step is met by rounding alone, not where the run ends.
       if (h_ <= 16 * epsilon * std::max(std::abs(t), 1e-6 * span_) && t1 < end)
         return cause = failure_ + ", also with a step of " + in_words(h_) + " s", false;
@@ -120,6 +128,12 @@ class Radau5 {
   double longest() const { return options_.max_step > 0 ? options_.max_step : span_; }
 
   double step_end(double t, double end) {
+    if (options_.step > 0) {
+      const double t1 = FixedGrid(start_, options_.step).next(counters_.steps, end);
+      changed_ |= t1 - t != h_;
+      h_ = t1 - t;
+      return t1;
+    }
     double t1 = t + h_;
     if (t + 1.01 * h_ >= end) t1 = end;
     if (t1 != t + h_) changed_ = true;
@@ -146,8 +160,9 @@ class Radau5 {
     }
     if (norm_set_for_ != h_) norm_.set(y0_.data(), norm_set_for_ = h_);
     guess(trial_, h_, 1);
+    const int most = options_.step > 0 ? patient_iterations : most_iterations;
     const Outcome outcome =
-        stages_->solve(*factors_, t, h_, y0_.data(), norm_, fraction_, most_iterations, trial_);
+        stages_->solve(*factors_, t, h_, y0_.data(), norm_, fraction_, most, trial_);
     switch (outcome) {
       case Outcome::converged:
         break;
@@ -159,7 +174,7 @@ class Radau5 {
       case Outcome::not_finite:
         return fail("a value that is not a finite number came up", 0.25);
     }
-    const double error = local_error();
+    const double error = options_.step > 0 ? 0 : local_error();
     if (!std::isfinite(error)) return fail("a value that is not a finite number came up", 0.25);
     // The more iterations it takes, the more careful the next step.
     const double caution = std::min(
@@ -211,6 +226,10 @@ class Radau5 {
     if (rejected_) factor = std::min(factor, 1.0);
     have_derivatives_ = stages_->theta <= fast;
     derivatives_fresh_ = false;
+    if (options_.step > 0) {
+      first_ = false;
+      return;
+    }
     if (!(have_derivatives_ && factor >= 1 && factor <= 1.2)) {
       h_ = std::min(h_ * factor, longest());
       changed_ = true;
@@ -270,7 +289,7 @@ class Radau5 {
     look_->contraction = 1;
     const bool solved = look_->factor(*look_factors_, h) &&
                         look_->solve(*look_factors_, t0_, h, y0_.data(), norm_, fraction_,
-                                     most_sample_iterations, sample_) == Outcome::converged;
+                                     patient_iterations, sample_) == Outcome::converged;
     for (std::size_t k = 0; k < n_; ++k) y[k] = y0_[k] + sample_[2][k];
     look_->rate(2, h, sample_, ydot);
     return solved;
@@ -279,13 +298,14 @@ class Radau5 {
   DaeSystem& system_;
   const IntegrationOptions& options_;
   double span_, inner_, fraction_ = 0;  ///< tolerance of the estimate; of Newton, relative to it
-  Norm norm_;
+  WeightedNorm norm_;
   std::size_t n_;
   std::unique_ptr<Stages> stages_, look_;  ///< of the run, and of samples
   std::unique_ptr<Factors> factors_, look_factors_;
   double look_derivatives_ = std::numeric_limits<double>::quiet_NaN();  ///< taken at this t [s]
   std::vector<double> y_, ydot_, y0_, ydot0_, error_;  ///< at the step's end and start
   StageValues z_, trial_, sample_;
+  double start_ = 0;                   ///< of the run [s]
   double t0_ = 0, t1_ = 0, done_ = 0;  ///< the last step [s]
   double h_ = 0;                       ///< tried next [s]
   double old_step_ = 0, old_error_ = 1, norm_set_for_ = 0;

@@ -2,8 +2,9 @@
 
 namespace momenta::radau5 {
 
-Outcome Stages::solve(const Factors& f, double t, double h, const double* y, const Norm& norm,
-                      double fraction, int most, std::array<std::vector<double>, 3>& z) {
+Outcome Stages::solve(const Factors& f, double t, double h, const double* y,
+                      const WeightedNorm& norm, double fraction, int most,
+                      std::array<std::vector<double>, 3>& z) {
   for (std::size_t k = 0; k < n_; ++k)
     for (int i = 0; i < 3; ++i)
       w_[static_cast<std::size_t>(i)][k] =

@@ -14,6 +14,7 @@
 
 #include <momenta/dae/solver/newton_matrix.h>
 #include <momenta/dae/solver/sundials_handles.h>
+#include <momenta/dae/solver/weighted_norm.h>
 
 #include <Eigen/Core>
 #include <Eigen/LU>
@@ -62,42 +63,6 @@ inline Eigen::Matrix3d transformation() {
   t.col(2) << -x.imag(), 0.0;
   return t;
 }
-
-/// Weights of the norms: h^power / (atol scale + rtol |y|), zero for what stays out.
-class Norm {
- public:
-  Norm(const DaeSystem& system, double rtol, double atol)
-      : rtol_(rtol), weight_(static_cast<std::size_t>(system.size())) {
-    for (int i = 0; i < system.size(); ++i) {
-      const DaeSystem::Weight w = system.weight(i);
-      const bool kept = w.power >= 0 && std::isfinite(w.scale);
-      power_.push_back(kept ? w.power : -1);
-      atol_.push_back(kept ? atol * w.scale : 0);
-      kept_ += kept;
-    }
-  }
-  void set(const double* y, double h) {
-    for (std::size_t i = 0; i < weight_.size(); ++i)
-      weight_[i] = power_[i] < 0 ? 0 : std::pow(h, power_[i]) / (atol_[i] + rtol_ * std::abs(y[i]));
-  }
-  /// Sum of the squares of the weighted values.
-  double squares(const double* x) const {
-    double sum = 0;
-    for (std::size_t i = 0; i < weight_.size(); ++i)
-      if (power_[i] >= 0) sum += weight_[i] * x[i] * (weight_[i] * x[i]);
-    return sum;
-  }
-  double of(const double* x) const { return std::sqrt(squares(x) / count()); }
-  double count() const { return std::max(kept_, 1); }
-  /// What roundings of y may come to.
-  double rounding() const { return 100 * 2.2e-16 / rtol_; }
-
- private:
-  double rtol_;
-  std::vector<double> weight_, atol_;
-  std::vector<int> power_;
-  int kept_ = 0;
-};
 
 /// J(γ/h) and J((α + iβ)/h), factorised.
 struct Factors {
@@ -151,7 +116,7 @@ class Stages {
 
   /// Newton iterations on z (3 of n values each, a guess on entry). They stop at `fraction` of the
   /// tolerance, or when `most` would not be enough.
-  Outcome solve(const Factors& f, double t, double h, const double* y, const Norm& norm,
+  Outcome solve(const Factors& f, double t, double h, const double* y, const WeightedNorm& norm,
                 double fraction, int most, std::array<std::vector<double>, 3>& z);
 
   /// Y'_i = Σ_j (A⁻¹)_ij Z_j / h.

@@ -18,6 +18,7 @@ std::vector<RunSettings> plan_runs(const Mechanism& mechanism, const DriftReques
   const std::string explicit_method =
       !request.integrator.empty() ? request.integrator : (request.step > 0 ? "rk4" : "dop853");
   const bool one_step = !integrator(explicit_method).multistep;
+  const bool projects = integrator(explicit_method).projects;
   const std::string leak = mechanism.scene().run.leak
                                ? Gauge{Gauge::Kind::leak, *mechanism.scene().run.leak}.text()
                                : "leak";
@@ -27,7 +28,7 @@ std::vector<RunSettings> plan_runs(const Mechanism& mechanism, const DriftReques
     RunSettings s = common;
     s.form = form;
     s.gauge = gauge;
-    s.project = project && one_step;
+    s.project = project && projects;
     s.integrator = is_dae_form(form) ? "ida" : explicit_method;
     runs.push_back(s);
   };
@@ -49,8 +50,10 @@ std::vector<RunSettings> plan_runs(const Mechanism& mechanism, const DriftReques
       add(form, momentum ? (request.gauge.empty() ? "none" : request.gauge) : "", request.project);
     }
     // The projected twin: an opponent's best honest chance, and ours.
-    if (loops && one_step && !request.project && form != "baumgarte")
-      add(form, momentum ? (request.gauge.empty() ? "reset" : request.gauge) : "", true);
+    if (loops && projects && !request.project && form != "baumgarte") {
+      const std::string gauge = one_step ? "reset" : leak;
+      add(form, momentum ? (request.gauge.empty() ? gauge : request.gauge) : "", true);
+    }
   }
   return runs;
 }

@@ -287,11 +287,13 @@ class Runner {
       throw std::invalid_argument("form '" + s.form + "' is " + (dae ? "a DAE" : "an ODE") +
                                   ": expected integrator " + integrator_names(wanted) +
                                   ", found '" + s.integrator + "'");
-    if (!dae && method.multistep && (s.project || s.gauge == "reset"))
-      throw std::invalid_argument(
-          "'" + s.integrator +
-          "' is a multistep method: a state altered after each step would spoil its history; "
-          "use gauge leak or none and no position correction");
+    if (s.project && !dae && !method.projects)
+      throw std::invalid_argument("'" + s.integrator +
+                                  "' keeps a history that a position correction after each step "
+                                  "would spoil; use another integrator or no correction");
+    if (method.multistep && (s.gauge == "reset" || s.gauge == "flip"))
+      throw std::invalid_argument("'" + s.integrator + "' keeps a history that gauge " + s.gauge +
+                                  " would spoil; use gauge leak or none");
     if (!(s.end_time > 0) || !std::isfinite(s.end_time))
       throw std::invalid_argument("the end time must be positive and finite");
     if (s.samples < 1) throw std::invalid_argument("expected at least one sample");

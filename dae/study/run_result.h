@@ -18,7 +18,7 @@ inline constexpr double not_measured =
 struct RunSettings {
   std::string form = "momentum";
   std::string integrator = "dop853";
-  std::string gauge = "none";  ///< none, leak:κ, reset; empty for acceleration forms
+  std::string gauge = "none";  ///< none, leak:κ, reset, flip; empty for acceleration forms
   double rtol = 1e-8, atol = 1e-8;
   double step = 0;       ///< [s], 0 for adaptive integrators
   double end_time = 10;  ///< [s]
