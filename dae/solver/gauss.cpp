@@ -40,7 +40,7 @@ class Gauss {
   double* ydot() { return nullptr; }
 
   bool step(double& t, double end, std::string& cause) {
-    const double t1 = grid_.next(counters_.steps, end), h = t1 - t;
+    const double t1 = grid_.next(counters_.steps, end), h = grid_.length(t, t1);
     system_.begin_step(t, y_.data());
     guess(stages_, h, 1);
     if (!stages_.solve(t, h, y_.data())) {

@@ -97,7 +97,7 @@ class GeneralisedAlpha {
   }
 
   bool step(double& t, double end, std::string& cause) {
-    const double t1 = grid_.next(counters_.steps, end), h = t1 - t;
+    const double t1 = grid_.next(counters_.steps, end), h = grid_.length(t, t1);
     std::swap(old_, now_);
     if (!solve(t, h, now_, run_matrix_, counters_)) {
       std::swap(old_, now_);

@@ -129,9 +129,10 @@ class Radau5 {
 
   double step_end(double t, double end) {
     if (options_.step > 0) {
-      const double t1 = FixedGrid(start_, options_.step).next(counters_.steps, end);
-      changed_ |= t1 - t != h_;
-      h_ = t1 - t;
+      const FixedGrid grid(start_, options_.step);
+      const double t1 = grid.next(counters_.steps, end);
+      changed_ |= grid.length(t, t1) != h_;
+      h_ = grid.length(t, t1);
       return t1;
     }
     double t1 = t + h_;
