@@ -46,6 +46,10 @@ void add_run_options(CLI::App& verb, Options& o) {
                   "Absolute tolerance, times each unknown's scale (default: rtol)")
       ->check(positive);
   verb.add_option("--step", o.step, "Step of the fixed-step integrators [s]")->check(positive);
+  verb.add_option("--spectral-radius", o.spectral_radius,
+                  "Of generalised-alpha at infinite frequency, 0 to below 1")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
   verb.add_option("--end", o.end, "End time [s]")->check(positive);
   verb.add_option("--samples", o.samples, "Output intervals")->check(CLI::Range(1, 10'000'000));
   auto* project = verb.add_flag("--project", o.project,

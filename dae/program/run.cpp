@@ -24,6 +24,7 @@ int run(const Options& o) {
   s.rtol = o.rtol;
   s.atol = o.atol.value_or(o.rtol);
   s.step = o.step.value_or(defaults.step.value_or(0));
+  s.spectral_radius = o.spectral_radius;
   s.end_time = o.end.value_or(defaults.end_time);
   s.samples = o.samples.value_or(defaults.samples);
   const Integrator& method = integrator(s.integrator);

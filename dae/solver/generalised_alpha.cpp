@@ -288,7 +288,7 @@ class GeneralisedAlpha {
 IntegrationResult integrate_generalised_alpha(DaeSystem& system, double t0,
                                               const std::vector<double>& output_times,
                                               const IntegrationOptions& options,
-                                              const Observer& observer, double rho) {
+                                              const Observer& observer) {
   auto* order = dynamic_cast<SecondOrder*>(&system);
   if (order == nullptr)
     throw std::invalid_argument(
@@ -297,6 +297,7 @@ IntegrationResult integrate_generalised_alpha(DaeSystem& system, double t0,
     throw std::invalid_argument("generalised-alpha has fixed steps and needs a step > 0");
   if (!(options.rtol > 0) || !(options.atol > 0))
     throw std::invalid_argument("rtol and atol of generalised-alpha must be positive");
+  const double rho = options.spectral_radius;
   if (!(rho >= 0 && rho < 1))
     throw std::invalid_argument("the spectral radius of generalised-alpha must be in [0, 1)");
   const OutputCursor outputs(t0, output_times);

@@ -5,16 +5,20 @@
 
 namespace momenta {
 
+/// Radau IIA of order 5 with step control; started as IDA is, dense LU or KLU by the system's
+/// pattern, with its exact Jacobian.
+IntegrationResult integrate_radau5(DaeSystem&, double t0, const std::vector<double>& output_times,
+                                   const IntegrationOptions&, const Observer&);
+
 /// Gauss collocation with steps of options.step; `stages` 2 or 3 for orders 4 and 6.
 IntegrationResult integrate_gauss(int stages, OdeSystem&, double t0, const std::vector<double>& y0,
                                   const std::vector<double>& output_times,
                                   const IntegrationOptions&, const Observer&);
 
-/// Generalised-α with steps of options.step and the spectral radius `rho` at infinite frequency,
-/// for systems that are SecondOrder.
+/// Generalised-α with steps of options.step and its spectral radius, for systems that are
+/// SecondOrder.
 IntegrationResult integrate_generalised_alpha(DaeSystem&, double t0,
                                               const std::vector<double>& output_times,
-                                              const IntegrationOptions&, const Observer&,
-                                              double rho = 0.8);
+                                              const IntegrationOptions&, const Observer&);
 
 }  // namespace momenta

@@ -311,6 +311,7 @@ class Runner {
     options_.rtol = s.rtol;
     options_.atol = s.atol;
     options_.step = s.step;
+    options_.spectral_radius = s.spectral_radius;
     options_.max_cpu_seconds = max_cpu_seconds;
   }
 

@@ -25,6 +25,7 @@ struct RunSettings {
   int samples = 1000;    ///< output intervals
   bool project = false;  ///< one mass-metric position correction after each accepted step
   double baumgarte_alpha = 0, baumgarte_beta = 0;  ///< [1/s]: Φ̈ + 2αΦ̇ + β²Φ = 0
+  double spectral_radius = 0.8;                    ///< of generalised-alpha
   std::string kkt;  ///< how (7) is solved: dense, sparse, or empty (no loops, or solved inside
                     ///< IDA's Newton matrix)
 };

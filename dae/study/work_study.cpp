@@ -1,3 +1,4 @@
+#include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/study/work_study.h>
 
 #include <algorithm>
@@ -12,30 +13,33 @@ std::vector<RunSettings> plan_ladders(const Mechanism& mechanism, const WorkRequ
   common.end_time = request.end_time;
   common.samples = request.samples;
   const bool loops = mechanism.m() > 0;
-  const std::vector<std::string> methods =
-      request.integrators.empty() ? std::vector<std::string>{"dop853"} : request.integrators;
+  // Of the methods asked for, those a form takes; its default where there is none among them.
+  const auto methods_of = [&](bool dae) {
+    std::vector<std::string> methods;
+    for (const std::string& method : request.integrators)
+      if ((integrator(method).takes == Integrator::Takes::dae) == dae) methods.push_back(method);
+    if (methods.empty()) methods.push_back(dae ? "ida" : "dop853");
+    return methods;
+  };
   std::vector<RunSettings> ladders;
-  const auto add = [&](const std::string& form, const std::string& integrator, bool one_step) {
+  const auto add = [&](const std::string& form, const std::string& method) {
+    const bool dae = is_dae_form(form), one_step = !dae && !integrator(method).multistep;
     RunSettings s = common;
     s.form = form;
-    s.integrator = integrator;
+    s.integrator = method;
     const bool momentum = form.rfind("momentum", 0) == 0;
     // What the theory of each recommends: a one-step method may reset the gauge and correct
     // positions; baumgarte has its feedback instead.
     if (momentum && loops)
       s.gauge = !request.gauge.empty() ? request.gauge : one_step ? "reset" : "leak";
-    s.project = one_step && loops && form != "baumgarte";
+    s.project = !dae && integrator(method).projects && loops && form != "baumgarte";
     ladders.push_back(s);
   };
   for (const std::string& form : request.forms.empty() ? form_names() : request.forms) {
     // Without loops every DAE form is the same ODE, and there is nothing to feed back.
     if (!loops && request.forms.empty() && (is_dae_form(form) || form == "baumgarte")) continue;
-    if (is_dae_form(form)) {
-      add(form, "ida", false);
-      continue;
-    }
-    for (const std::string& method : methods)
-      if (method != "ida") add(form, method, method != "adams" && method != "bdf");
+    for (const std::string& method : methods_of(is_dae_form(form)))
+      if (method != "generalised-alpha" || form == "acceleration-index3") add(form, method);
   }
   return ladders;
 }
@@ -48,7 +52,7 @@ std::vector<RunResult> run_work_study(const Mechanism& mechanism, const Start& s
   std::vector<RunResult> results;
   bool going = true;
   for (std::size_t i = 0; i < ladders.size() && going; ++i) {
-    const bool fixed = ladders[i].integrator == "rk4";
+    const bool fixed = integrator(ladders[i].integrator).step == Integrator::Step::fixed;
     for (const double rung : fixed ? request.steps : request.tolerances) {
       RunRequest run;
       run.settings = ladders[i];
