@@ -9,10 +9,9 @@
 // Source        paper, eqs. (1)-(3); Brenan, Campbell, Petzold, Numerical Solution of Initial-Value
 // Problems in DAEs
 
+#include <momenta/dae/form/coordinate_motion.h>
 #include <momenta/dae/form/dae_form.h>
 #include <momenta/dae/solver/second_order.h>
-
-#include <array>
 
 namespace momenta {
 namespace {
@@ -34,43 +33,16 @@ class AccelerationIndex3 final : public DaeFormOf<AccelerationIndex3>, public Se
   void coordinate_rates(const double* q, const double* v, double* qdot) override {
     e_->coordinate_rates(q, v, qdot);
   }
-  /// One step of the classical Runge-Kutta method over a unit of time.
   void move(const double* q, const double* delta, double* moved) override {
-    const auto n = static_cast<std::size_t>(layout_.nq);
-    std::copy_n(q, n, moved);
-    if (!mechanism_.plan().quasi_velocities) {
-      e_->coordinate_rates(q, delta, rate_.data());
-      for (std::size_t i = 0; i < n; ++i) moved[i] += rate_[i];
-      return;
-    }
-    std::copy_n(q, n, stage_.data());
-    constexpr std::array<double, 4> ahead{0.5, 0.5, 1, 0},
-        weight{1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6};
-    for (std::size_t k = 0; k < 4; ++k) {
-      e_->coordinate_rates(stage_.data(), delta, rate_.data());
-      for (std::size_t i = 0; i < n; ++i) {
-        moved[i] += weight[k] * rate_[i];
-        stage_[i] = q[i] + ahead[k] * rate_[i];
-      }
-    }
-    normalise(moved);
+    motion_.move(*e_, q, delta, moved);
   }
 
  protected:
   bool rate_is_tested() const override { return false; }  // BDF converges for v one order late
 
  private:
-  void normalise(double* q) const {
-    for (const auto& b : mechanism_.tree().bodies) {
-      if (b.nq < 4) continue;
-      Eigen::Map<Eigen::Vector4d> quaternion(q + b.q + (b.nq - 4));
-      quaternion.normalize();
-    }
-  }
-
   std::unique_ptr<Evaluation<double>> e_ = mechanism_.evaluation<double>();
-  std::vector<double> stage_ = std::vector<double>(static_cast<std::size_t>(layout_.nq)),
-                      rate_ = stage_;
+  CoordinateMotion motion_{mechanism_};
 };
 
 }  // namespace

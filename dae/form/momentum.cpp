@@ -18,6 +18,7 @@
 // momentum_recursion.h. Source        Naudet, Lefeber, Terze, eqs. (6)-(8); Bayo, Avello, Nonlinear
 // Dynamics 5 (1994).
 
+#include <momenta/dae/form/hamiltonian_parts.h>
 #include <momenta/dae/form/ode_form.h>
 
 #include <algorithm>
@@ -27,10 +28,10 @@
 namespace momenta {
 namespace {
 
-class Momentum final : public OdeForm {
+class Momentum final : public OdeForm, public HamiltonianParts {
  public:
   Momentum(const Mechanism& mechanism, const FormOptions& options, const Start& start)
-      : OdeForm("momentum", mechanism, options) {
+      : OdeForm("momentum", mechanism, options), HamiltonianParts(mechanism) {
     gauge_ = options.gauge;
     if (!has_loops()) gauge_ = {};
     if (gauge_.kind == Gauge::Kind::leak && gauge_.kappa == 0)

@@ -15,6 +15,12 @@ IntegrationResult integrate_gauss(int stages, OdeSystem&, double t0, const std::
                                   const std::vector<double>& output_times,
                                   const IntegrationOptions&, const Observer&);
 
+/// RATTLE with steps of options.step, for systems that are ConstrainedHamiltonian; any σ of y0 is
+/// taken out of its p.
+IntegrationResult integrate_rattle(OdeSystem&, double t0, const std::vector<double>& y0,
+                                   const std::vector<double>& output_times,
+                                   const IntegrationOptions&, const Observer&);
+
 /// Generalised-α with steps of options.step and its spectral radius, for systems that are
 /// SecondOrder.
 IntegrationResult integrate_generalised_alpha(DaeSystem&, double t0,

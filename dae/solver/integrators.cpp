@@ -29,6 +29,7 @@ const std::vector<Integrator>& integrators() {
       {"bdf", Takes::ode, Step::adaptive, true, true, "CVODE, BDF of orders 1 to 5"},
       {"gauss4", Takes::ode, Step::fixed, false, true, "Gauss collocation, 2 stages, order 4"},
       {"gauss6", Takes::ode, Step::fixed, false, true, "Gauss collocation, 3 stages, order 6"},
+      {"rattle", Takes::ode, Step::fixed, false, false, "RATTLE, order 2, for momentum"},
       {"ida", Takes::dae, Step::adaptive, true, false, "IDA, BDF of orders 1 to 5"},
       {"radau5", Takes::dae, Step::adaptive, false, false, "Radau IIA, order 5"},
       {"generalised-alpha", Takes::dae, Step::fixed, false, false,
@@ -61,6 +62,7 @@ IntegrationResult integrate(const std::string& name, OdeSystem& system, double t
   if (name == "gauss4" || name == "gauss6")
     return integrate_gauss(name == "gauss4" ? 2 : 3, system, t0, y0, output_times, options,
                            observer);
+  if (name == "rattle") return integrate_rattle(system, t0, y0, output_times, options, observer);
   return integrate_explicit(name, system, t0, y0, output_times, options, observer);
 }
 

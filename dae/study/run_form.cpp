@@ -288,12 +288,13 @@ class Runner {
                                   ": expected integrator " + integrator_names(wanted) +
                                   ", found '" + s.integrator + "'");
     if (s.project && !dae && !method.projects)
-      throw std::invalid_argument("'" + s.integrator +
-                                  "' keeps a history that a position correction after each step "
-                                  "would spoil; use another integrator or no correction");
+      throw std::invalid_argument(
+          "'" + s.integrator + "' takes no correction after each step: expected no --project" +
+          (method.multistep ? ", it would spoil the method's history" : ""));
     if (method.multistep && (s.gauge == "reset" || s.gauge == "flip"))
       throw std::invalid_argument("'" + s.integrator + "' keeps a history that gauge " + s.gauge +
                                   " would spoil; use gauge leak or none");
+    if (s.integrator == "rattle") s.gauge = "reset";  // its last stage does it
     if (!(s.end_time > 0) || !std::isfinite(s.end_time))
       throw std::invalid_argument("the end time must be positive and finite");
     if (s.samples < 1) throw std::invalid_argument("expected at least one sample");

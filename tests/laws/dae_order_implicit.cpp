@@ -3,7 +3,7 @@
 //   gauss4, gauss6      Kepler's orbit, which closes after 2π: 4 and 6 at the steps' ends
 //   radau5              the Cartesian pendulum (q, v; λ) by the constraint it keeps: on q, v, λ
 //                       5, 5, 3 in index 2; at least 4, 3, 2 in index 3 (Hairer, Lubich, Roche)
-//   generalised-alpha   four-bar and a flying rod with ball joints, whose q' is not v: 2
+//   rattle, generalised-alpha   four-bar and a flying rod with ball joints, whose q' is not v: 2
 
 #include <gtest/gtest.h>
 #include <momenta/core/scene/read_scene.h>
@@ -142,7 +142,7 @@ Scene flying_rod() {
   return scene;
 }
 
-TEST(ImplicitOrder, GeneralisedAlphaOnMechanisms) {
+TEST(ImplicitOrder, RattleAndGeneralisedAlphaOnMechanisms) {
   const auto four_bar = read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples" /
                                    "four_bar" / "scene.toml");
   for (const Scene& scene : {four_bar, flying_rod()}) {
@@ -157,21 +157,27 @@ TEST(ImplicitOrder, GeneralisedAlphaOnMechanisms) {
     ASSERT_TRUE(truth.done) << truth.reason;
     Snapshot exact;
     ASSERT_TRUE(momentum->read(end, truth.y.data(), nullptr, exact));
-    const auto errors = [&](int steps) {
-      const auto form = make_form("acceleration-index3", mechanism, {}, start);
+    const auto errors = [&](const std::string& method, int steps) {
+      const auto form =
+          make_form(method == "rattle" ? "momentum" : "acceleration-index3", mechanism, {}, start);
       IntegrationOptions options;
       options.rtol = options.atol = 1e-10;
       options.step = end / steps;
-      const auto run = integrate_generalised_alpha(*form->dae(), 0, {end}, options, {});
+      const auto run =
+          method == "rattle"
+              ? integrate_rattle(*form->ode(), 0, form->initial(start), {end}, options, {})
+              : integrate_generalised_alpha(*form->dae(), 0, {end}, options, {});
       EXPECT_TRUE(run.done) << run.reason;
       Snapshot found;
       EXPECT_TRUE(form->read(end, run.y.data(), nullptr, found));
       return Errors{(found.q - exact.q).cwiseAbs().maxCoeff(),
                     (found.u - exact.u).cwiseAbs().maxCoeff(), 0};
     };
-    const Errors coarse = errors(100), fine = errors(400);
-    EXPECT_NEAR(slope(coarse.q, fine.q, 2), 2, 0.2) << scene.name;
-    EXPECT_NEAR(slope(coarse.v, fine.v, 2), 2, 0.2) << scene.name;
+    for (const std::string method : {"rattle", "generalised-alpha"}) {
+      const Errors coarse = errors(method, 100), fine = errors(method, 400);
+      EXPECT_NEAR(slope(coarse.q, fine.q, 2), 2, 0.2) << scene.name << " " << method;
+      EXPECT_NEAR(slope(coarse.v, fine.v, 2), 2, 0.2) << scene.name << " " << method;
+    }
   }
 }
 

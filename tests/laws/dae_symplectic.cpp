@@ -56,7 +56,8 @@ struct Canonical {
     options.step = h;
     const std::vector<double> end{h * count};
     const auto run =
-        method == "rk4"
+        method == "rattle" ? integrate_rattle(*form->ode(), 0, y, end, options, {})
+        : method == "rk4"
             ? integrate_explicit(method, *form->ode(), 0, y, end, options, {})
             : integrate_gauss(method == "gauss4" ? 2 : 3, *form->ode(), 0, y, end, options, {});
     EXPECT_TRUE(run.done) << run.reason;
@@ -97,6 +98,46 @@ TEST(Symplectic, GaussWithAndWithoutLoops) {
   }
 }
 
+/// A state of the constraint manifold of the four-bar, one degree of freedom: at crank angle and
+/// rate, p = M u.
+std::vector<double> four_bar_state(const std::vector<double>& near, double angle, double rate) {
+  Scene scene = four_bar();
+  const Mechanism shape(scene);
+  for (std::size_t i = 0; i < scene.joints.size(); ++i) scene.joints[i].position = {near[i]};
+  scene.joints[0].position = {angle};
+  scene.joints[0].velocity = {rate};
+  scene.held = {scene.joints[0].name};
+  const Mechanism mechanism(scene);
+  const Start start = assemble(mechanism).start;
+  return make_form("momentum", mechanism, {}, start)->initial(start);
+}
+
+TEST(Symplectic, RattleOnTheConstraintManifold) {
+  Canonical c(four_bar(), "reset");
+  const double h = 0.02, d = 1e-5;
+  const auto middle = c.steps("rattle", c.form->initial(c.start), h, 20);
+  Snapshot now;
+  ASSERT_TRUE(c.form->read(0, middle.data(), nullptr, now));
+  const double angle = now.q[0], rate = now.u[0];
+  const auto difference = [&](double along_angle, double along_rate, int steps) {
+    auto a = four_bar_state(middle, angle + d * along_angle, rate + d * along_rate);
+    auto b = four_bar_state(middle, angle - d * along_angle, rate - d * along_rate);
+    if (steps > 0) a = c.steps("rattle", a, h, steps), b = c.steps("rattle", b, h, steps);
+    Eigen::VectorXd x(static_cast<Eigen::Index>(a.size()));
+    for (std::size_t i = 0; i < a.size(); ++i)
+      x[static_cast<Eigen::Index>(i)] = (a[i] - b[i]) / (2 * d);
+    return x;
+  };
+  const auto form = [](const Eigen::VectorXd& x, const Eigen::VectorXd& y) {
+    const Eigen::Index n = x.size() / 2;
+    return x.head(n).dot(y.tail(n)) - x.tail(n).dot(y.head(n));
+  };
+  const double before = form(difference(1, 0, 0), difference(0, 1, 0));
+  const double after = form(difference(1, 0, 30), difference(0, 1, 30));
+  EXPECT_GT(std::abs(before), 0.1);
+  EXPECT_NEAR(after, before, 1e-6 * std::abs(before));
+}
+
 double far_from_start(const std::string& gauge, const std::string& method, int count) {
   Canonical c(four_bar(), gauge);
   const double h = 0.02;
@@ -119,6 +160,7 @@ double far_from_start(const std::string& gauge, const std::string& method, int c
 TEST(Reversible, GaussWithFlippedGauge) {
   EXPECT_LT(far_from_start("flip", "gauss4", 200), 1e-10);
   EXPECT_LT(far_from_start("flip", "gauss6", 200), 1e-10);
+  EXPECT_LT(far_from_start("none", "rattle", 200), 1e-9);
   EXPECT_GT(far_from_start("reset", "gauss4", 200), 1e-8);
   EXPECT_GT(far_from_start("flip", "rk4", 200), 1e-6);
 }
@@ -149,6 +191,9 @@ TEST(EnergyOverLongTimes, HasNoTrendWithGauss) {
     EXPECT_LT(std::abs(slope), 0.02 * largest) << method;
     EXPECT_LT(largest, 1e-3) << method;
   }
+  const auto [second, second_largest] = trend(four_bar(), "rattle", "reset", 0.005, 100);
+  EXPECT_LT(std::abs(second), 0.02 * second_largest);
+  EXPECT_LT(second_largest, 0.1);
   const auto [rk4, rk4_largest] = trend(four_bar(), "rk4", "flip", 0.02, 400);
   EXPECT_GT(std::abs(rk4), 0.5 * rk4_largest);
   EXPECT_GT(rk4_largest, 0.1);

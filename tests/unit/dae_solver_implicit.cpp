@@ -92,6 +92,9 @@ TEST(Integrators, RefuseWhatDoesNotFitWithASentence) {
   EXPECT_TRUE(says(with("momentum", "bdf", "flip"), "history"));
   EXPECT_TRUE(says(with("momentum-index2", "radau5", "flip"), "expected none or leak"));
   EXPECT_EQ(with("momentum", "bdf", "none", true), "done");
+  EXPECT_TRUE(says(with("acceleration", "rattle", "none", false, 0.01), "expected form momentum"));
+  EXPECT_TRUE(says(with("momentum", "rattle", "none", true, 0.01), "--project"));
+  EXPECT_TRUE(says(with("momentum", "rattle"), "step > 0"));
 }
 
 TEST(Bdf, ProjectedKeepsTheLoopsShut) {
@@ -345,6 +348,27 @@ TEST(GeneralisedAlpha, SamplesBetweenStepsKeepTheLoopsShut) {
   EXPECT_EQ(run.counters.steps, 199);
   EXPECT_LT(run.position_drift_max, 1e-9);
   EXPECT_GT(run.velocity_drift_max, 1e-7);  // order 2, not a constraint of the method
+}
+
+TEST(Rattle, KeepsBothConstraintsEverywhere) {
+  const Mechanism planar(four_bar());
+  const Eigen::Quaterniond turn(Eigen::AngleAxisd(1.3, Eigen::Vector3d(1, 2, -1).normalized()));
+  const Mechanism redundant(turned(four_bar(), turn), {.algebra = Algebra::spatial});
+  for (const Mechanism* mechanism : {&planar, &redundant}) {
+    RunRequest request;
+    request.settings.form = "momentum";
+    request.settings.integrator = "rattle";
+    request.settings.step = 0.0101;
+    request.settings.end_time = 5;
+    request.settings.samples = 77;
+    const RunResult run = run_form(*mechanism, assemble(*mechanism).start, request);
+    ASSERT_EQ(run.status, "done") << run.reason;
+    EXPECT_EQ(run.settings.gauge, "reset");
+    EXPECT_LT(run.position_drift_max, 1e-12);
+    EXPECT_LT(run.velocity_drift_max, 1e-12);
+    EXPECT_LT(*std::max_element(run.series.impulse.begin(), run.series.impulse.end()), 1e-11);
+    EXPECT_LT(run.energy_error_max, 0.5);
+  }
 }
 
 template <class Scalar>
