@@ -22,18 +22,20 @@ std::string listed(const std::vector<std::string>& names) {
 
 const std::vector<Integrator>& integrators() {
   static const std::vector<Integrator> all{
-      {"rk4", Takes::ode, Step::fixed, false, true, "classical Runge-Kutta, order 4"},
-      {"dp5", Takes::ode, Step::adaptive, false, true, "Dormand-Prince 5(4)"},
-      {"dop853", Takes::ode, Step::adaptive, false, true, "Dormand-Prince 8(5,3)"},
-      {"adams", Takes::ode, Step::adaptive, true, false, "CVODE, Adams-Moulton of orders 1 to 12"},
-      {"bdf", Takes::ode, Step::adaptive, true, true, "CVODE, BDF of orders 1 to 5"},
-      {"gauss4", Takes::ode, Step::fixed, false, true, "Gauss collocation, 2 stages, order 4"},
-      {"gauss6", Takes::ode, Step::fixed, false, true, "Gauss collocation, 3 stages, order 6"},
-      {"rattle", Takes::ode, Step::fixed, false, false, "RATTLE, order 2, for momentum"},
-      {"ida", Takes::dae, Step::adaptive, true, false, "IDA, BDF of orders 1 to 5"},
-      {"radau5", Takes::dae, Step::adaptive, false, false, "Radau IIA, order 5"},
-      {"generalised-alpha", Takes::dae, Step::fixed, false, false,
-       "generalised-α, order 2, for acceleration-index3"},
+      {"rk4", Takes::ode, Step::fixed, false, true, "classical Runge-Kutta, order 4", ""},
+      {"dp5", Takes::ode, Step::adaptive, false, true, "Dormand-Prince 5(4)", ""},
+      {"dop853", Takes::ode, Step::adaptive, false, true, "Dormand-Prince 8(5,3)", ""},
+      {"vern9", Takes::ode, Step::adaptive, false, true, "Verner 9(8)", ""},
+      {"adams", Takes::ode, Step::adaptive, true, false, "CVODE, Adams-Moulton of orders 1 to 12",
+       ""},
+      {"bdf", Takes::ode, Step::adaptive, true, true, "CVODE, BDF of orders 1 to 5", ""},
+      {"gauss4", Takes::ode, Step::fixed, false, true, "Gauss collocation, 2 stages, order 4", ""},
+      {"gauss6", Takes::ode, Step::fixed, false, true, "Gauss collocation, 3 stages, order 6", ""},
+      {"rattle", Takes::ode, Step::fixed, false, false, "RATTLE, order 2", "momentum"},
+      {"ida", Takes::dae, Step::adaptive, true, false, "IDA, BDF of orders 1 to 5", ""},
+      {"radau5", Takes::dae, Step::adaptive, false, false, "Radau IIA, order 5", ""},
+      {"generalised-alpha", Takes::dae, Step::fixed, false, false, "generalised-α, order 2",
+       "acceleration-index3"},
   };
   return all;
 }

@@ -22,6 +22,11 @@ struct Integrator {
   bool multistep;      ///< carries a history: a gauge reset or flip would spoil it
   bool projects;       ///< states may be corrected onto the constraints after each step
   std::string method;  ///< one line
+  std::string form;    ///< the one form it is for; empty: all of its kind
+
+  bool takes_form(const std::string& wanted, bool dae) const {
+    return (takes == Takes::dae) == dae && (form.empty() || form == wanted);
+  }
 };
 
 /// All, in the order tables list them.

@@ -33,7 +33,7 @@ using Eigen::VectorXd;
 
 constexpr int most_iterations = 100;
 constexpr double reached = 4 * std::numeric_limits<double>::epsilon();
-constexpr double rounding = 1e-11;        ///< below this, corrections that do not shrink are noise
+constexpr double rounding = 1e-13;        ///< below this, corrections that do not shrink are noise
 constexpr int patience = 3;               ///< times they may not
 constexpr double dependent_rows = 1e-10;  ///< relative pivot of Φ_q M⁻¹ Φ_qᵀ
 

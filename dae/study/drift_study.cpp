@@ -41,6 +41,7 @@ std::vector<RunSettings> plan_runs(const Mechanism& mechanism, const DriftReques
         add(form, momentum ? (request.gauge.empty() ? leak : request.gauge) : "", false);
       continue;
     }
+    if (!integrator(explicit_method).takes_form(form, false)) continue;
     if (form == "baumgarte" && !loops && request.forms.empty()) continue;
     if (momentum && request.gauge.empty() && loops) {
       add(form, leak, request.project);

@@ -287,6 +287,9 @@ class Runner {
       throw std::invalid_argument("form '" + s.form + "' is " + (dae ? "a DAE" : "an ODE") +
                                   ": expected integrator " + integrator_names(wanted) +
                                   ", found '" + s.integrator + "'");
+    if (!method.takes_form(s.form, dae))
+      throw std::invalid_argument("'" + s.integrator + "' is for form " + method.form +
+                                  ", found '" + s.form + "'");
     if (s.project && !dae && !method.projects)
       throw std::invalid_argument(
           "'" + s.integrator + "' takes no correction after each step: expected no --project" +

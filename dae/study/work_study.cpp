@@ -14,11 +14,12 @@ std::vector<RunSettings> plan_ladders(const Mechanism& mechanism, const WorkRequ
   common.samples = request.samples;
   const bool loops = mechanism.m() > 0;
   // Of the methods asked for, those a form takes; its default where there is none among them.
-  const auto methods_of = [&](bool dae) {
+  const auto methods_of = [&](const std::string& form) {
+    const bool dae = is_dae_form(form);
     std::vector<std::string> methods;
     for (const std::string& method : request.integrators)
-      if ((integrator(method).takes == Integrator::Takes::dae) == dae) methods.push_back(method);
-    if (methods.empty()) methods.push_back(dae ? "ida" : "dop853");
+      if (integrator(method).takes_form(form, dae)) methods.push_back(method);
+    if (methods.empty()) methods.push_back(default_integrator(form));
     return methods;
   };
   std::vector<RunSettings> ladders;
@@ -38,8 +39,7 @@ std::vector<RunSettings> plan_ladders(const Mechanism& mechanism, const WorkRequ
   for (const std::string& form : request.forms.empty() ? form_names() : request.forms) {
     // Without loops every DAE form is the same ODE, and there is nothing to feed back.
     if (!loops && request.forms.empty() && (is_dae_form(form) || form == "baumgarte")) continue;
-    for (const std::string& method : methods_of(is_dae_form(form)))
-      if (method != "generalised-alpha" || form == "acceleration-index3") add(form, method);
+    for (const std::string& method : methods_of(form)) add(form, method);
   }
   return ladders;
 }
