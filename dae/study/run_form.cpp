@@ -295,8 +295,8 @@ class Runner {
           "'" + s.integrator + "' takes no correction after each step: expected no --project" +
           (method.multistep ? ", it would spoil the method's history" : ""));
     if (method.multistep && (s.gauge == "reset" || s.gauge == "flip"))
-      throw std::invalid_argument("'" + s.integrator + "' keeps a history that gauge " + s.gauge +
-                                  " would spoil; use gauge leak or none");
+      throw std::invalid_argument("'" + s.integrator + "' is a multistep method: gauge " + s.gauge +
+                                  " after each step would spoil its history; use leak or none");
     if (s.integrator == "rattle") s.gauge = "reset";  // its last stage does it
     if (!(s.end_time > 0) || !std::isfinite(s.end_time))
       throw std::invalid_argument("the end time must be positive and finite");

@@ -87,7 +87,7 @@ TEST(Integrators, RefuseWhatDoesNotFitWithASentence) {
                    "acceleration-index3"));
   EXPECT_TRUE(says(with("acceleration-index3", "generalised-alpha"), "step"));
   EXPECT_TRUE(says(with("momentum", "adams", "none", true), "history"));
-  EXPECT_TRUE(says(with("momentum", "bdf", "reset"), "history"));
+  EXPECT_TRUE(says(with("momentum", "bdf", "reset"), "multistep"));
   EXPECT_TRUE(says(with("momentum", "bdf", "flip"), "history"));
   EXPECT_TRUE(says(with("momentum-index2", "radau5", "flip"), "expected none or leak"));
   EXPECT_EQ(with("momentum", "bdf", "none", true), "done");
