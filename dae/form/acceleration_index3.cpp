@@ -9,12 +9,14 @@
 // Source        paper, eqs. (1)-(3); Brenan, Campbell, Petzold, Numerical Solution of Initial-Value
 // Problems in DAEs
 
+#include <momenta/dae/form/coordinate_motion.h>
 #include <momenta/dae/form/dae_form.h>
+#include <momenta/dae/solver/second_order.h>
 
 namespace momenta {
 namespace {
 
-class AccelerationIndex3 final : public DaeFormOf<AccelerationIndex3> {
+class AccelerationIndex3 final : public DaeFormOf<AccelerationIndex3>, public SecondOrder {
  public:
   AccelerationIndex3(const Mechanism& mechanism, const FormOptions& options, const Start& start)
       : DaeFormOf("acceleration-index3", mechanism, {mechanism.nq(), mechanism.nv(), mechanism.m()},
@@ -25,8 +27,22 @@ class AccelerationIndex3 final : public DaeFormOf<AccelerationIndex3> {
     s.e->positions(acceleration_rows(s, t, y, ydot, r));
   }
 
+  int coordinates() const override { return layout_.nq; }
+  int rates() const override { return layout_.nv; }
+  int multipliers() const override { return layout_.m; }
+  void coordinate_rates(const double* q, const double* v, double* qdot) override {
+    e_->coordinate_rates(q, v, qdot);
+  }
+  void move(const double* q, const double* delta, double* moved) override {
+    motion_.move(*e_, q, delta, moved);
+  }
+
  protected:
   bool rate_is_tested() const override { return false; }  // BDF converges for v one order late
+
+ private:
+  std::unique_ptr<Evaluation<double>> e_ = mechanism_.evaluation<double>();
+  CoordinateMotion motion_{mechanism_};
 };
 
 }  // namespace

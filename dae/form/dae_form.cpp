@@ -43,9 +43,9 @@ DaeForm::DaeForm(std::string name, const Mechanism& mechanism, DaeLayout layout,
   plain_.e->mass_diagonal(inertia_.data());
   if (momentum_like()) {
     gauge_ = options.gauge;
-    if (gauge_.kind == Gauge::Kind::reset)
-      throw std::invalid_argument("gauge reset needs a one-step method; '" + name_ +
-                                  "' is integrated by IDA: expected none or leak");
+    if (gauge_.kind == Gauge::Kind::reset || gauge_.kind == Gauge::Kind::flip)
+      throw std::invalid_argument("gauge " + gauge_.text() + " alters p after each step; '" +
+                                  name_ + "' is integrated as a DAE: expected none or leak");
     if (gauge_.kind == Gauge::Kind::leak && gauge_.kappa == 0)
       gauge_.kappa = default_leak(mechanism, start);
   }
@@ -70,6 +70,12 @@ double DaeForm::scale(int i) const {
   const bool is_rate = i >= layout_.x() && i < layout_.x() + layout_.nv;
   if (is_rate && !rate_is_tested()) return std::numeric_limits<double>::infinity();
   return scale_[static_cast<std::size_t>(i)];
+}
+
+DaeSystem::Weight DaeForm::weight(int i) const {
+  const bool is_rate = i >= layout_.x() && i < layout_.x() + layout_.nv;
+  if (!is_rate && !differential(i)) return {-1, 0};
+  return {is_rate && !rate_is_tested() ? 1 : 0, scale_[static_cast<std::size_t>(i)]};
 }
 
 bool DaeForm::differential(int i) const {

@@ -54,6 +54,7 @@ class DaeForm : public Form, public DaeSystem {
   bool start(double t, double* y, double* ydot) override;
   bool differential(int i) const override;
   double scale(int i) const override;
+  Weight weight(int i) const override;
 
   /// F along a curve, y and y' given as series, with its derivatives along their two directions.
   /// Without the regularisation of redundant loops: the equations as the form's head has them.

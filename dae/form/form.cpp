@@ -54,6 +54,7 @@ const Entry& entry(const std::string& name) {
 std::string Gauge::text() const {
   if (kind == Kind::none) return "none";
   if (kind == Kind::reset) return "reset";
+  if (kind == Kind::flip) return "flip";
   char digits[32];
   const auto end = std::to_chars(digits, digits + sizeof digits, kappa).ptr;
   return "leak:" + std::string(digits, end);
@@ -62,6 +63,7 @@ std::string Gauge::text() const {
 Gauge parse_gauge(const std::string& text) {
   if (text == "none") return {Gauge::Kind::none, 0};
   if (text == "reset") return {Gauge::Kind::reset, 0};
+  if (text == "flip") return {Gauge::Kind::flip, 0};
   if (text == "leak") return {Gauge::Kind::leak, 0};
   if (text.rfind("leak:", 0) == 0) {
     double kappa = 0;
@@ -71,7 +73,8 @@ Gauge parse_gauge(const std::string& text) {
       return {Gauge::Kind::leak, kappa};
   }
   throw std::invalid_argument(
-      "gauge '" + text + "' is not known; expected none, reset, leak or leak:κ with κ > 0 in 1/s");
+      "gauge '" + text +
+      "' is not known; expected none, reset, flip, leak or leak:κ with κ > 0 in 1/s");
 }
 
 const std::vector<std::string>& form_names() {

@@ -18,13 +18,13 @@ namespace momenta {
 /// constant c, so σ may be kept small at will; left alone it grows like t under a mean load, and
 /// the local error with it.
 struct Gauge {
-  enum class Kind { none, leak, reset };
+  enum class Kind { none, leak, reset, flip };
   Kind kind = Kind::none;
   double kappa =
       0;  ///< leak [1/s]: ṗ −= κ Φ_qᵀσ, λ = σ̇ + κσ; 0: chosen from the start (see default_leak)
   std::string text() const;
 };
-/// "none", "leak", "leak:3", "reset". @throws std::invalid_argument with a sentence
+/// "none", "leak", "leak:3", "reset", "flip". @throws std::invalid_argument with a sentence
 Gauge parse_gauge(const std::string& text);
 
 struct FormOptions {

@@ -11,20 +11,33 @@
 //               errs. Without a gauge σ grows like t under a mean load, the local error with it,
 //               and Φ like t².
 // Gauge         none; leak κ; reset (p ← M u, σ ← 0 after each step: exact, since the gauge is a
-//               symmetry)
+//               symmetry); flip (p −= 2 Φ_qᵀσ, σ ← −σ after each step: σ swings about zero. An
+//               involution R that commutes with reversal of time: a symmetric method stays
+//               reversible, which reset, a projection, spoils. Both keep dq∧dp on Φ_q dq = 0.)
 // Stabilised    with β the second row is Φ_q u = −Φ_t − βΦ: Φ decays like e^(−βt) between errors
 //               and stays level, Φ̇ = −βΦ. The motion is that of (7), (8) where Φ = 0; off it u has
 //               a part of the size βΦ that no force made.
 // Without loops there is no σ: (q, p) → (q̇, ṗ) is the recursion (35)-(48), momentum_recursion.h.
 // Source        Naudet, Lefeber, Terze, eqs. (6)-(8); Bayo, Avello, Nonlinear Dynamics 5 (1994).
 
+#include <momenta/dae/form/hamiltonian_parts.h>
 #include <momenta/dae/form/momentum_form.h>
 
 namespace momenta {
+namespace {
+
+class Momentum final : public MomentumForm, public HamiltonianParts {
+ public:
+  Momentum(const Mechanism& mechanism, const FormOptions& options, const Start& start)
+      : MomentumForm("momentum", mechanism, options, start, options.beta),
+        HamiltonianParts(mechanism) {}
+};
+
+}  // namespace
 
 std::unique_ptr<OdeForm> make_momentum(const Mechanism& mechanism, const FormOptions& options,
                                        const Start& start) {
-  return std::make_unique<MomentumForm>("momentum", mechanism, options, start, options.beta);
+  return std::make_unique<Momentum>(mechanism, options, start);
 }
 
 }  // namespace momenta

@@ -66,7 +66,16 @@ bool MomentumForm::after_step(double t, double* y, bool& changed) {
     // (7) at the new state gives the same u, and σ = 0.
     e_->momentum_rates(q, u_.data(), nullptr, 0, work_.data());
     e_->coordinate_rates(q, u_.data(), correction_.data());
-    changed = reset_ = true;
+    changed = true;
+    reset_ = solutions_ == 1;
+  }
+  if (has_loops() && gauge_.kind == Gauge::Kind::flip) {
+    if (!solve(t, q, p, nullptr)) return false;
+    e_->place(t, q);
+    e_->constraint_forces(multipliers_.data(), work_.data());
+    for (std::size_t i = 0; i < work_.size(); ++i) p[i] -= 2 * work_[i];
+    for (double& sigma : multipliers_) sigma = -sigma;
+    changed = true;
   }
   return true;
 }

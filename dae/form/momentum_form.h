@@ -19,7 +19,8 @@ class MomentumForm : public OdeForm {
   std::vector<double> initial(const Start& start) override;
   bool rhs(double t, const double* y, double* ydot) override;
   bool has_after_step() const override {
-    return (has_loops() && (options_.project || gauge_.kind == Gauge::Kind::reset)) ||
+    return (has_loops() && (options_.project || gauge_.kind == Gauge::Kind::reset ||
+                            gauge_.kind == Gauge::Kind::flip)) ||
            mechanism_.plan().quasi_velocities;
   }
   bool after_step(double t, double* y, bool& changed) override;

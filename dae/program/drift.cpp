@@ -2,6 +2,7 @@
 #include <momenta/dae/report/csv.h>
 #include <momenta/dae/report/page.h>
 #include <momenta/dae/report/table.h>
+#include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/study/drift_study.h>
 
 #include <algorithm>
@@ -23,15 +24,17 @@ int drift(const Options& o, const DriftOptions& d) {
     is_dae_form(form);  // an unknown name is told before anything runs
     request.forms.push_back(form);
   }
-  if (o.integrator == "ida")
+  if (!o.integrator.empty() && integrator(o.integrator).takes != Integrator::Takes::ode)
     throw std::invalid_argument(
         "--integrator chooses the method of the ODE forms; the DAE forms run on ida anyway");
   request.integrator = o.integrator;
   if (!o.gauge.empty()) request.gauge = parse_gauge(o.gauge).text();
   request.rtol = o.rtol;
   request.atol = o.atol.value_or(o.rtol);
-  request.step = o.step.value_or(
-      o.integrator.empty() || o.integrator == "rk4" ? defaults.step.value_or(0) : 0);
+  request.step = o.step.value_or(o.integrator.empty() ||
+                                         integrator(o.integrator).step == Integrator::Step::fixed
+                                     ? defaults.step.value_or(0)
+                                     : 0);
   request.end_time = o.end.value_or(defaults.end_time);
   request.samples = o.samples.value_or(defaults.samples);
   request.project = o.project;

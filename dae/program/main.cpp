@@ -48,7 +48,7 @@ int main(int argc, char** argv) {
   add_scene(*work_verb, o);
   work_verb->add_option("--forms", w.forms, "Comma-separated (default: all)");
   work_verb->add_option("--integrators", w.integrators,
-                        "Of the ODE forms, comma-separated (default: dop853)");
+                        "Comma-separated, each for the forms it takes (default: dop853 and ida)");
   work_verb->add_option("--from", w.loosest, "Loosest tolerance")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
@@ -58,8 +58,7 @@ int main(int argc, char** argv) {
   work_verb->add_option("--per-decade", w.per_decade, "Tolerances in a decade")
       ->check(CLI::Range(0.25, 100.0))
       ->capture_default_str();
-  work_verb
-      ->add_option("--step-rungs", w.step_rungs, "Steps of rk4: twice --step, and halves of it")
+  work_verb->add_option("--step-rungs", w.step_rungs, "Fixed steps: twice --step, and halves of it")
       ->check(CLI::Range(1, 40))
       ->capture_default_str();
   work_verb->add_flag("--no-reference", w.no_reference,

@@ -2,6 +2,7 @@
 
 #include <momenta/core/scene/read_scene.h>
 #include <momenta/dae/report/atomic_write.h>
+#include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/study/environment.h>
 #include <momenta/dae/study/sketch.h>
 #include <unistd.h>
@@ -33,19 +34,26 @@ void add_scene(CLI::App& verb, Options& o) {
 
 void add_run_options(CLI::App& verb, Options& o) {
   const auto positive = CLI::PositiveNumber;
+  std::vector<std::string> names;
+  for (const Integrator& i : integrators()) names.push_back(i.name);
   verb.add_option("--integrator", o.integrator,
-                  "rk4, dp5, dop853, vern9, adams, bdf or ida (default: by form)")
-      ->check(CLI::IsMember({"rk4", "dp5", "dop853", "vern9", "adams", "bdf", "ida"}));
-  verb.add_option("--gauge", o.gauge, "Momentum forms: none, reset, leak or leak:RATE [1/s]");
+                  "Of ODE forms " + integrator_names(Integrator::Takes::ode) + "; of DAE forms " +
+                      integrator_names(Integrator::Takes::dae) + " (default: by form)")
+      ->check(CLI::IsMember(names));
+  verb.add_option("--gauge", o.gauge, "Momentum forms: none, reset, flip, leak or leak:RATE [1/s]");
   verb.add_option("--rtol", o.rtol, "Relative tolerance")->check(positive)->capture_default_str();
   verb.add_option("--atol", o.atol,
                   "Absolute tolerance, times each unknown's scale (default: rtol)")
       ->check(positive);
-  verb.add_option("--step", o.step, "Step of rk4 [s]")->check(positive);
+  verb.add_option("--step", o.step, "Step of the fixed-step integrators [s]")->check(positive);
+  verb.add_option("--spectral-radius", o.spectral_radius,
+                  "Of generalised-alpha at infinite frequency, 0 to below 1")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
   verb.add_option("--end", o.end, "End time [s]")->check(positive);
   verb.add_option("--samples", o.samples, "Output intervals")->check(CLI::Range(1, 10'000'000));
-  auto* project =
-      verb.add_flag("--project", o.project, "Correct positions after each step (one-step methods)");
+  auto* project = verb.add_flag("--project", o.project,
+                                "Correct positions after each step (ODE forms; not with adams)");
   verb.add_flag("--no-project", o.no_project, "Do not, even if the scene asks for it")
       ->excludes(project);
   verb.add_option("--baumgarte-alpha", o.baumgarte_alpha, "α of Φ̈ + 2αΦ̇ + β²Φ = 0 [1/s]")

@@ -22,6 +22,7 @@ struct Options {
   double rtol = 1e-8;
   std::optional<double> atol, step, end;
   std::optional<int> samples;
+  double spectral_radius = 0.8;
   double baumgarte_alpha = 0, baumgarte_beta = 0;
   double beta = 0, penalty = 0;
   bool project = false, no_project = false;  ///< neither: as the scene says

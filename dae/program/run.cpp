@@ -1,5 +1,6 @@
 #include <momenta/dae/report/csv.h>
 #include <momenta/dae/report/table.h>
+#include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/study/environment.h>
 
 #include <cstdio>
@@ -23,11 +24,11 @@ int run(const Options& o) {
   s.rtol = o.rtol;
   s.atol = o.atol.value_or(o.rtol);
   s.step = o.step.value_or(defaults.step.value_or(0));
+  s.spectral_radius = o.spectral_radius;
   s.end_time = o.end.value_or(defaults.end_time);
   s.samples = o.samples.value_or(defaults.samples);
-  const bool one_step = s.integrator == "rk4" || s.integrator == "dp5" ||
-                        s.integrator == "dop853" || s.integrator == "vern9";
-  s.project = o.project || (defaults.project && one_step && !o.no_project);
+  const Integrator& method = integrator(s.integrator);
+  s.project = o.project || (defaults.project && method.projects && !o.no_project);
   s.baumgarte_alpha = o.baumgarte_alpha;
   s.baumgarte_beta = o.baumgarte_beta;
   s.beta = o.beta;

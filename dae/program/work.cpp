@@ -3,6 +3,7 @@
 #include <momenta/dae/report/number_text.h>
 #include <momenta/dae/report/page.h>
 #include <momenta/dae/report/table.h>
+#include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/study/own_reference.h>
 #include <momenta/dae/study/work_study.h>
 
@@ -50,6 +51,7 @@ int work(const Options& o, const WorkOptions& w) {
   request.forms = names_in(w.forms);
   for (const auto& form : request.forms) is_dae_form(form);  // unknown names before anything runs
   request.integrators = names_in(w.integrators);
+  for (const auto& name : request.integrators) integrator(name);
   if (!o.gauge.empty()) request.gauge = parse_gauge(o.gauge).text();
   request.tolerances = rungs(w);
   request.end_time = o.end.value_or(defaults.end_time);

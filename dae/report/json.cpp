@@ -25,6 +25,7 @@ Json summary_json(const RunResult& run, const Environment& environment) {
   json["scene"] = run.scene;
   json["form"] = s.form;
   json["integrator"] = s.integrator;
+  if (s.integrator == "generalised-alpha") json["spectral_radius"] = s.spectral_radius;
   json["gauge"] = s.gauge;
   json["rtol"] = number_or_null(s.rtol);
   json["atol"] = number_or_null(s.atol);

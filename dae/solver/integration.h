@@ -11,13 +11,14 @@ namespace momenta {
 
 struct IntegrationOptions {
   double rtol = 1e-8;
-  double atol = 1e-8;       ///< times the system's scale(i)
-  double step = 0;          ///< fixed step [s]; needed by rk4. dp5, dop853, vern9: > 0 means steps
-                            ///< of this length without error control. Ignored by the multistep
-                            ///< methods
-  double initial_step = 0;  ///< 0: chosen by the method
-  double max_step = 0;      ///< 0: none
-  int max_order = 0;        ///< multistep; 0: the method's own limit
+  double atol = 1e-8;  ///< times the system's scale(i)
+  double step = 0;     ///< fixed step [s]; needed by rk4, gauss, generalised-alpha. dp5, dop853,
+                    ///< vern9, radau5: > 0 means steps of this length without error control.
+                    ///< Ignored by the multistep methods
+  double initial_step = 0;       ///< 0: chosen by the method
+  double max_step = 0;           ///< 0: none
+  int max_order = 0;             ///< multistep; 0: the method's own limit
+  double spectral_radius = 0.8;  ///< generalised-alpha: at infinite frequency, in [0, 1)
   long max_steps = 50'000'000;
   double max_cpu_seconds = 0;  ///< 0: none; a run beyond it stops with status "time limit"
 };

@@ -1,7 +1,7 @@
 #pragma once
-// What runs of CVODE and IDA share: one internal step at a time up to a stop time, the observer
-// after each, output times by the method's own interpolation polynomial, limits, and where the run
-// ended.
+// What runs of CVODE, IDA and our implicit methods share: one internal step at a time up to a stop
+// time, the observer after each, output times by the method's own dense output, limits, and where
+// the run ended.
 
 #include <momenta/dae/solver/integration.h>
 #include <momenta/dae/solver/output_cursor.h>
@@ -18,7 +18,9 @@ namespace momenta {
 ///   const char* name();  double* y();  double* ydot() (null for an ODE), both at the step's end;
 ///   bool step(double& t, double end, std::string& cause);   one accepted step, t becomes its end;
 ///   bool at(double t, double* y, double* ydot);             within the last step, ydot may be
-///   null.
+///   null;
+///   bool sample(double t, double* y, double* ydot);         the same for output times, where at()
+///   is less accurate than the steps' ends; may be left out.
 template <class Method>
 class MultistepRun {
  public:
@@ -84,12 +86,19 @@ class MultistepRun {
   bool sample(double t, IntegrationResult& result) {
     if (!observer_.sample) return true;
     const bool has_rates = method_.ydot() != nullptr;
-    if (!method_.at(t, y_.data(), has_rates ? ydot_.data() : nullptr))
+    if (!dense_output(t, y_.data(), has_rates ? ydot_.data() : nullptr))
       return stop(result, "dense output of the last step failed");
     if (observer_.sample(t, y_.data(), has_rates ? ydot_.data() : nullptr)) return true;
     stop_time_ = t;
     result.y = y_;
     return stop(result, "the observer ended the run");
+  }
+
+  bool dense_output(double t, double* y, double* ydot) {
+    if constexpr (requires { method_.sample(t, y, ydot); })
+      return method_.sample(t, y, ydot);
+    else
+      return method_.at(t, y, ydot);
   }
 
   bool stop(IntegrationResult& result, const std::string& cause) {

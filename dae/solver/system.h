@@ -92,6 +92,15 @@ class DaeSystem {
   /// (multipliers).
   virtual double scale(int i) const = 0;
 
+  /// How methods that know the index weigh y_i in their norms: the error times h^power over atol ·
+  /// scale + rtol |y_i|. A variable that loses a power of the step (the velocities of an index-3
+  /// form) gets it back by power 1; power −1 keeps y_i out (multipliers).
+  struct Weight {
+    int power;
+    double scale;
+  };
+  virtual Weight weight(int i) const { return {differential(i) ? 0 : -1, scale(i)}; }
+
   const std::string& failure() const { return failure_; }
 
  protected:

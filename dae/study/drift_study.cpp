@@ -1,3 +1,4 @@
+#include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/study/drift_study.h>
 
 #include <algorithm>
@@ -18,7 +19,8 @@ std::vector<RunSettings> plan_runs(const Mechanism& mechanism, const DriftReques
   common.penalty = request.penalty;
   const std::string explicit_method =
       !request.integrator.empty() ? request.integrator : (request.step > 0 ? "rk4" : "dop853");
-  const bool one_step = explicit_method != "adams" && explicit_method != "bdf";
+  const bool one_step = !integrator(explicit_method).multistep;
+  const bool projects = integrator(explicit_method).projects;
   const std::string leak = mechanism.scene().run.leak
                                ? Gauge{Gauge::Kind::leak, *mechanism.scene().run.leak}.text()
                                : "leak";
@@ -28,7 +30,7 @@ std::vector<RunSettings> plan_runs(const Mechanism& mechanism, const DriftReques
     RunSettings s = common;
     s.form = form;
     s.gauge = gauge;
-    s.project = project && one_step;
+    s.project = project && projects;
     s.integrator = is_dae_form(form) ? "ida" : explicit_method;
     runs.push_back(s);
   };
@@ -42,7 +44,10 @@ std::vector<RunSettings> plan_runs(const Mechanism& mechanism, const DriftReques
     const bool gauged = takes_gauge(form);
     if (is_dae_form(form)) {
       add(form, !gauged ? "" : request.gauge.empty() ? leak : request.gauge, false);
-    } else if (form == "momentum" && request.gauge.empty() && loops) {
+      continue;
+    }
+    if (!integrator(explicit_method).takes_form(form, false)) continue;
+    if (form == "momentum" && request.gauge.empty() && loops) {
       add(form, leak, request.project);
       if (one_step) add(form, "reset", request.project);
       add(form, "none", request.project);
@@ -54,8 +59,8 @@ std::vector<RunSettings> plan_runs(const Mechanism& mechanism, const DriftReques
       add("projected", "", false);
     }
     // The projected twin of `acceleration` is the form `projected`.
-    if (form == "momentum" && loops && one_step && !request.project)
-      add(form, request.gauge.empty() ? "reset" : request.gauge, true);
+    if (form == "momentum" && loops && projects && !request.project)
+      add(form, !request.gauge.empty() ? request.gauge : one_step ? "reset" : leak, true);
   }
   return runs;
 }

@@ -1,5 +1,6 @@
 #include <momenta/dae/form/ode_form.h>
 #include <momenta/dae/measure/growth.h>
+#include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/study/run_form.h>
 
 #include <algorithm>
@@ -16,10 +17,6 @@ double cpu_now() {
   timespec t{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
-bool is_multistep(const std::string& integrator) {
-  return integrator == "adams" || integrator == "bdf";
 }
 
 /// Uniform samples and the reference's own times, ascending, without the start.
@@ -286,20 +283,27 @@ class Runner {
       : start_(start) {
     const bool dae = is_dae_form(s.form);
     if (s.integrator.empty()) s.integrator = default_integrator(s.form);
-    if (dae != (s.integrator == "ida"))
-      throw std::invalid_argument("form '" + s.form + "' is " +
-                                  (dae ? "a DAE: expected integrator ida"
-                                       : "an ODE: expected rk4, dp5, dop853, vern9, adams or bdf") +
+    const Integrator& method = integrator(s.integrator);
+    const auto wanted = dae ? Integrator::Takes::dae : Integrator::Takes::ode;
+    if (method.takes != wanted)
+      throw std::invalid_argument("form '" + s.form + "' is " + (dae ? "a DAE" : "an ODE") +
+                                  ": expected integrator " + integrator_names(wanted) +
                                   ", found '" + s.integrator + "'");
-    if (is_multistep(s.integrator) && needs_one_step_method(s.form))
+    if (!method.takes_form(s.form, dae))
+      throw std::invalid_argument("'" + s.integrator + "' is for form " + method.form +
+                                  ", found '" + s.form + "'");
+    if (method.multistep && needs_one_step_method(s.form))
       throw std::invalid_argument("form '" + s.form + "' alters its state after steps, and '" +
-                                  s.integrator +
-                                  "' is a multistep method: expected rk4, dp5, dop853 or vern9");
-    if (is_multistep(s.integrator) && (s.project || s.gauge == "reset"))
+                                  s.integrator + "' is a multistep method: expected rk4, dp5, " +
+                                  "dop853 or vern9");
+    if (s.project && !dae && !method.projects)
       throw std::invalid_argument(
-          "'" + s.integrator +
-          "' is a multistep method: a state altered after each step would spoil its history; "
-          "use gauge leak or none and no position correction");
+          "'" + s.integrator + "' takes no correction after each step: expected no --project" +
+          (method.multistep ? ", it would spoil the method's history" : ""));
+    if (method.multistep && (s.gauge == "reset" || s.gauge == "flip"))
+      throw std::invalid_argument("'" + s.integrator + "' is a multistep method: gauge " + s.gauge +
+                                  " after each step would spoil its history; use leak or none");
+    if (s.integrator == "rattle") s.gauge = "reset";  // its last stage does it
     if (!(s.end_time > 0) || !std::isfinite(s.end_time))
       throw std::invalid_argument("the end time must be positive and finite");
     if (s.samples < 1) throw std::invalid_argument("expected at least one sample");
@@ -318,11 +322,12 @@ class Runner {
     s.beta = form_->beta();
     s.penalty = form_->penalty();
     s.kkt = mechanism.m() == 0 || dae ? "" : name_of(mechanism.kkt());
-    if (s.integrator != "rk4") s.step = 0;
+    if (method.step == Integrator::Step::adaptive) s.step = 0;
     integrator_ = s.integrator;
     options_.rtol = s.rtol;
     options_.atol = s.atol;
     options_.step = s.step;
+    options_.spectral_radius = s.spectral_radius;
     options_.max_cpu_seconds = max_cpu_seconds;
   }
 
@@ -334,11 +339,10 @@ class Runner {
   }
 
   IntegrationResult integrate(const std::vector<double>& times, const Observer& observer) {
-    if (form_->is_dae()) return integrate_ida(*form_->dae(), start_.t, times, options_, observer);
+    if (DaeSystem* dae = form_->dae())
+      return momenta::integrate(integrator_, *dae, start_.t, times, options_, observer);
     const auto y0 = form_->initial(start_);
-    if (is_multistep(integrator_))
-      return integrate_cvode(integrator_, *form_->ode(), start_.t, y0, times, options_, observer);
-    return integrate_explicit(integrator_, *form_->ode(), start_.t, y0, times, options_, observer);
+    return momenta::integrate(integrator_, *form_->ode(), start_.t, y0, times, options_, observer);
   }
 
  private:

@@ -18,7 +18,7 @@ inline constexpr double not_measured =
 struct RunSettings {
   std::string form = "momentum";
   std::string integrator = "dop853";
-  std::string gauge = "none";  ///< none, leak:κ, reset; empty for acceleration forms
+  std::string gauge = "none";  ///< none, leak:κ, reset, flip; empty for acceleration forms
   double rtol = 1e-8, atol = 1e-8;
   double step = 0;       ///< [s], 0 for adaptive integrators
   double end_time = 10;  ///< [s]
@@ -26,9 +26,10 @@ struct RunSettings {
   bool project = false;  ///< one mass-metric position correction after each accepted step
   double baumgarte_alpha = 0, baumgarte_beta = 0;  ///< [1/s]: Φ̈ + 2αΦ̇ + β²Φ = 0
   double beta = 0;                                 ///< [1/s]: Φ̇ = −βΦ of momentum forms
-  double penalty = 0;  ///< of augmented Lagrangians, in effective masses of the loops
-  std::string kkt;     ///< how (7) is solved: dense, sparse, or empty (no loops, or solved inside
-                       ///< IDA's Newton matrix)
+  double penalty = 0;            ///< of augmented Lagrangians, in effective masses of the loops
+  double spectral_radius = 0.8;  ///< of generalised-alpha
+  std::string kkt;  ///< how (7) is solved: dense, sparse, or empty (no loops, or solved inside
+                    ///< IDA's Newton matrix)
 };
 
 /// A fitted power law running_max(t) ~ t^exponent (measure/growth.h).

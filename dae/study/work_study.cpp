@@ -1,3 +1,4 @@
+#include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/study/work_study.h>
 
 #include <algorithm>
@@ -12,35 +13,39 @@ std::vector<RunSettings> plan_ladders(const Mechanism& mechanism, const WorkRequ
   common.end_time = request.end_time;
   common.samples = request.samples;
   const bool loops = mechanism.m() > 0;
-  const std::vector<std::string> methods =
-      request.integrators.empty() ? std::vector<std::string>{"dop853"} : request.integrators;
+  // Of the methods asked for, those a form takes; its default where there is none among them.
+  const auto methods_of = [&](const std::string& form) {
+    const bool dae = is_dae_form(form);
+    std::vector<std::string> methods;
+    for (const std::string& method : request.integrators)
+      if (integrator(method).takes_form(form, dae)) methods.push_back(method);
+    if (methods.empty()) methods.push_back(default_integrator(form));
+    return methods;
+  };
   std::vector<RunSettings> ladders;
-  const auto add = [&](const std::string& form, const std::string& integrator, bool one_step) {
+  const auto add = [&](const std::string& form, const std::string& method) {
+    const bool dae = is_dae_form(form), one_step = !dae && !integrator(method).multistep;
     RunSettings s = common;
     s.form = form;
-    s.integrator = integrator;
+    s.integrator = method;
     // What the theory of each recommends: a one-step method may reset the gauge and correct
     // positions, which makes `projected` of `acceleration`; others have feedback instead.
     if (takes_gauge(form) && loops)
       s.gauge = !request.gauge.empty() ? request.gauge : one_step ? "reset" : "leak";
-    s.project = one_step && loops && (form == "momentum" || form == "acceleration");
+    s.project = !dae && integrator(method).projects && loops &&
+                (form == "momentum" || form == "acceleration");
     ladders.push_back(s);
   };
   for (const std::string& form : request.forms.empty() ? form_names() : request.forms) {
     // Without loops all forms are one of two ODEs.
     const bool asked = !request.forms.empty();
     if (!loops && !asked && form != "momentum" && form != "acceleration") continue;
-    if (is_dae_form(form)) {
-      add(form, "ida", false);
-      continue;
-    }
-    for (const std::string& method : methods) {
-      if (method == "ida") continue;
-      const bool one_step = method != "adams" && method != "bdf";
+    for (const std::string& method : methods_of(form)) {
+      const bool one_step = !is_dae_form(form) && !integrator(method).multistep;
       // Not twice the same, and not what the method cannot take, unless asked for.
       if (!asked && loops && form == "acceleration" && one_step) continue;
       if (!asked && needs_one_step_method(form) && !one_step) continue;
-      add(form, method, one_step);
+      add(form, method);
     }
   }
   return ladders;
@@ -54,7 +59,7 @@ std::vector<RunResult> run_work_study(const Mechanism& mechanism, const Start& s
   std::vector<RunResult> results;
   bool going = true;
   for (std::size_t i = 0; i < ladders.size() && going; ++i) {
-    const bool fixed = ladders[i].integrator == "rk4";
+    const bool fixed = integrator(ladders[i].integrator).step == Integrator::Step::fixed;
     for (const double rung : fixed ? request.steps : request.tolerances) {
       RunRequest run;
       run.settings = ladders[i];

@@ -12,7 +12,7 @@ namespace momenta {
 
 struct WorkRequest {
   std::vector<std::string> forms;        ///< empty: all
-  std::vector<std::string> integrators;  ///< of the ODE forms; empty: dop853
+  std::vector<std::string> integrators;  ///< each for the forms it takes; empty: dop853, ida
   std::string gauge;                     ///< of the momentum forms; empty: by form and integrator
   std::vector<double> tolerances;        ///< rtol = atol, falling
   std::vector<double> steps;             ///< of rk4 [s], falling

@@ -69,6 +69,7 @@ void expect_all_forms_agree(const Scene& scene, Algebra algebra, double end, dou
         const bool late = form.find("-index3") != std::string::npos;
         const double bound = late ? 300 * ida_bound : ida_bound;
         expect_close(form, "ida", gauge, 1e-9, bound);
+        expect_close(form, "radau5", gauge, 1e-9, bound);
       } else {
         expect_close(form, "dop853", gauge, 1e-10, explicit_bound);
         if (!needs_one_step_method(form))

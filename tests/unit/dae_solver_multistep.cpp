@@ -31,13 +31,14 @@ class GivenOde : public OdeSystem {
     return rhs_(t, y, ydot) || fail("the loop opens at t = " + std::to_string(t));
   }
   bool has_after_step() const override { return hooked; }
+  /// adams must not alter accepted states; bdf has its projection function for it.
   bool after_step(double, double*, bool&) override {
-    ADD_FAILURE() << "a multistep method must not alter accepted states";
-    return false;
+    ++corrected;
+    return true;
   }
   void begin_step(double, const double*) override { ++begun; }
   bool hooked = true;
-  long begun = 0;
+  long begun = 0, corrected = 0;
 
  private:
   int size_;
@@ -122,6 +123,7 @@ TEST(Cvode, ShowsEachStepAndSamplesBetween) {
     EXPECT_EQ(reached, times.back());
     EXPECT_EQ(steps, r.counters.steps);
     EXPECT_EQ(system.begun, steps);
+    EXPECT_EQ(system.corrected > 0, method == "bdf");
     EXPECT_LT(worst, 1e-6) << method;
   }
 }

@@ -1,0 +1,32 @@
+#pragma once
+// The parts of a mechanism's Hamiltonian, dense, for RATTLE: a mixin of the form `momentum`. Takes
+// no memory before it is asked.
+
+#include <momenta/dae/form/coordinate_motion.h>
+#include <momenta/dae/solver/constrained_hamiltonian.h>
+
+#include <memory>
+
+namespace momenta {
+
+class HamiltonianParts : public ConstrainedHamiltonian {
+ public:
+  explicit HamiltonianParts(const Mechanism& mechanism) : system_(mechanism) {}
+
+  int coordinates() const override { return system_.nq(); }
+  int momenta() const override { return system_.nv(); }
+  int multipliers() const override { return system_.m(); }
+  void place(double t, const double* q, PlacedHamiltonian& placed) override;
+  void force(const double* q, const double* u, double* g) override;
+  void coordinate_rates(const double* q, const double* u, double* qdot) override;
+  void move(const double* q, const double* delta, double* moved) override;
+
+ private:
+  struct Work;
+  Work& parts();
+
+  const Mechanism& system_;
+  std::shared_ptr<Work> parts_;
+};
+
+}  // namespace momenta

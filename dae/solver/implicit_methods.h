@@ -1,0 +1,30 @@
+#pragma once
+// The implicit one-step methods of our own, each in its file; integrators.h calls them by name.
+
+#include <momenta/dae/solver/integration.h>
+
+namespace momenta {
+
+/// Radau IIA of order 5 with step control; started as IDA is, dense LU or KLU by the system's
+/// pattern, with its exact Jacobian.
+IntegrationResult integrate_radau5(DaeSystem&, double t0, const std::vector<double>& output_times,
+                                   const IntegrationOptions&, const Observer&);
+
+/// Gauss collocation with steps of options.step; `stages` 2 or 3 for orders 4 and 6.
+IntegrationResult integrate_gauss(int stages, OdeSystem&, double t0, const std::vector<double>& y0,
+                                  const std::vector<double>& output_times,
+                                  const IntegrationOptions&, const Observer&);
+
+/// RATTLE with steps of options.step, for systems that are ConstrainedHamiltonian; any σ of y0 is
+/// taken out of its p.
+IntegrationResult integrate_rattle(OdeSystem&, double t0, const std::vector<double>& y0,
+                                   const std::vector<double>& output_times,
+                                   const IntegrationOptions&, const Observer&);
+
+/// Generalised-α with steps of options.step and its spectral radius, for systems that are
+/// SecondOrder.
+IntegrationResult integrate_generalised_alpha(DaeSystem&, double t0,
+                                              const std::vector<double>& output_times,
+                                              const IntegrationOptions&, const Observer&);
+
+}  // namespace momenta

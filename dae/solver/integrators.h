@@ -1,0 +1,48 @@
+#pragma once
+// The integrators by name: what each takes, how it steps, and the one place that calls it. Options,
+// errors, studies and `momenta --help` ask here.
+
+#include <momenta/dae/solver/integration.h>
+
+#include <string>
+#include <vector>
+
+namespace momenta {
+
+struct Integrator {
+  enum class Takes {
+    ode,  ///< y' = f(t, y)
+    dae,  ///< F(t, y, y') = 0
+  };
+  enum class Step { adaptive, fixed };
+
+  std::string name;
+  Takes takes;
+  Step step;
+  bool multistep;      ///< carries a history: a gauge reset or flip would spoil it
+  bool projects;       ///< states may be corrected onto the constraints after each step
+  std::string method;  ///< one line
+  std::string form;    ///< the one form it is for; empty: all of its kind
+
+  bool takes_form(const std::string& wanted, bool dae) const {
+    return (takes == Takes::dae) == dae && (form.empty() || form == wanted);
+  }
+};
+
+/// All, in the order tables list them.
+const std::vector<Integrator>& integrators();
+/// @throws std::invalid_argument with all names for an unknown one.
+const Integrator& integrator(const std::string& name);
+/// "a, b or c": the names of those that take such systems.
+std::string integrator_names(Integrator::Takes takes);
+
+/// y' = f(t, y) from y0 by the named method. @throws std::invalid_argument for one that takes DAEs.
+IntegrationResult integrate(const std::string& name, OdeSystem&, double t0,
+                            const std::vector<double>& y0, const std::vector<double>& output_times,
+                            const IntegrationOptions&, const Observer&);
+/// F(t, y, y') = 0 from the system's own start. @throws std::invalid_argument for an ODE method.
+IntegrationResult integrate(const std::string& name, DaeSystem&, double t0,
+                            const std::vector<double>& output_times, const IntegrationOptions&,
+                            const Observer&);
+
+}  // namespace momenta

@@ -1,0 +1,40 @@
+#pragma once
+// A Newton matrix of the implicit Runge-Kutta and second-order methods, real or complex, dense or
+// with the system's pattern: filled, factorised, solved with. IDA and CVODE have their own.
+
+#include <momenta/dae/solver/system.h>
+
+#include <complex>
+#include <memory>
+
+namespace momenta {
+
+template <class Scalar>  // double or std::complex<double>
+class NewtonMatrix {
+ public:
+  virtual ~NewtonMatrix() = default;
+  /// Dense: column-major n × n. Sparse: in the order of the pattern.
+  virtual Scalar* values() = 0;
+  /// False when the matrix is singular or not finite. Dense O(n³).
+  virtual bool factor() = 0;
+  /// b ← A⁻¹ b, n values. Allocates nothing.
+  virtual void solve(Scalar* b) = 0;
+};
+
+/// Partially pivoted LU where the pattern is empty, KLU where it is not. The pattern must outlive
+/// the matrix.
+template <class Scalar>
+std::unique_ptr<NewtonMatrix<Scalar>> make_newton_matrix(int size, const JacobianPattern& pattern);
+
+/// Number of stored values.
+inline std::size_t entry_count(int size, const JacobianPattern& pattern) {
+  const auto n = static_cast<std::size_t>(size);
+  return pattern.column_start.empty() ? n * n : pattern.row.size();
+}
+
+/// As results name it.
+inline const char* linear_solver_name(const JacobianPattern& pattern) {
+  return pattern.column_start.empty() ? "dense LU" : "KLU";
+}
+
+}  // namespace momenta

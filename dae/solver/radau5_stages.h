@@ -1,0 +1,141 @@
+#pragma once
+// The nonlinear system of one step of Radau IIA, order 5, for F(t, y, y') = 0:
+//
+//   F(t + c_i h, y + Z_i, Y'_i) = 0,  Y' = A⁻¹ Z / h,  i = 1, 2, 3;  y_new = y + Z_3,
+//
+// by simplified Newton iterations. With A⁻¹ = T Λ T⁻¹, Λ = γ ⊕ (α, −β; β, α), W = T⁻¹ Z and
+// J(c) = ∂F/∂y + c ∂F/∂y' the three coupled systems of n equations become a real and a complex one:
+//
+//   J(γ/h) ΔW_1 = −R_1,   J((α + iβ)/h) (ΔW_2 + i ΔW_3) = −(R_2 + i R_3),   R = T⁻¹ F.
+//
+// J(0) and ∂F/∂y' are kept, so that another h needs another factorisation and no new derivatives.
+// Source: Hairer, Wanner, Solving Ordinary Differential Equations II, IV.5, IV.8; for F(t, y, y')
+// the same with M replaced by ∂F/∂y' and −J by ∂F/∂y.
+
+#include <momenta/dae/solver/newton_matrix.h>
+#include <momenta/dae/solver/sundials_handles.h>
+#include <momenta/dae/solver/weighted_norm.h>
+
+#include <Eigen/Core>
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+namespace momenta::radau5 {
+
+inline constexpr double root6 = 2.4494897427831780982;
+inline constexpr std::array<double, 3> c{(4 - root6) / 10, (4 + root6) / 10, 1.0};
+
+/// Runge-Kutta matrix.
+inline Eigen::Matrix3d coefficients() {
+  Eigen::Matrix3d a;
+  a << (88 - 7 * root6) / 360, (296 - 169 * root6) / 1800, (-2 + 3 * root6) / 225,
+      (296 + 169 * root6) / 1800, (88 + 7 * root6) / 360, (-2 - 3 * root6) / 225, (16 - root6) / 36,
+      (16 + root6) / 36, 1.0 / 9;
+  return a;
+}
+
+/// Eigenvalues of A⁻¹: γ and α ± iβ, in terms of ∛9.
+inline constexpr double root9 = 2.0800838230519041145;
+inline constexpr double gamma0 = (6 + root9 * (root9 - 1)) / 30;  ///< 1/γ
+inline constexpr double inverse_alpha = (12 - root9 * (root9 - 1)) / 60;
+inline constexpr double inverse_beta = root9 * (root9 + 1) * 1.7320508075688772935 / 60;
+inline constexpr double modulus = inverse_alpha * inverse_alpha + inverse_beta * inverse_beta;
+inline constexpr double gamma = 1 / gamma0, alpha = inverse_alpha / modulus,
+                        beta = inverse_beta / modulus;
+
+/// T: the real eigenvector of A⁻¹, then real and (negative) imaginary part of a complex one, scaled
+/// to T_32 = 1, T_33 = 0. An eigenvector of A = integration is the values at c of a cubic x(θ) with
+/// x(0) = 0 whose derivative is μ x up to a multiple of the nodes' polynomial: found by solving.
+inline Eigen::Matrix3d transformation() {
+  const Eigen::Matrix3d inverse = coefficients().inverse();
+  Eigen::Matrix3d t;
+  // (A⁻¹ − μ) x = 0 with x_3 = 1, from the first two rows; real and imaginary parts for α + iβ.
+  const Eigen::Matrix2d block = inverse.topLeftCorner<2, 2>();
+  const Eigen::Vector2d right = -inverse.topRightCorner<2, 1>();
+  t.col(0) << (block - gamma * Eigen::Matrix2d::Identity()).inverse() * right, 1.0;
+  using C = std::complex<double>;
+  const Eigen::Matrix2cd shifted = block.cast<C>() - C(alpha, beta) * Eigen::Matrix2cd::Identity();
+  const Eigen::Vector2cd x = shifted.inverse() * right.cast<C>();
+  t.col(1) << x.real(), 1.0;
+  t.col(2) << -x.imag(), 0.0;
+  return t;
+}
+
+/// J(γ/h) and J((α + iβ)/h), factorised.
+struct Factors {
+  Factors(int size, const JacobianPattern& pattern)
+      : real(make_newton_matrix<double>(size, pattern)),
+        complex(make_newton_matrix<std::complex<double>>(size, pattern)) {}
+  std::unique_ptr<NewtonMatrix<double>> real;
+  std::unique_ptr<NewtonMatrix<std::complex<double>>> complex;
+};
+
+enum class Outcome { converged, slow, diverged, evaluation_failed, not_finite };
+
+class Stages {
+ public:
+  Stages(DaeSystem& system)
+      : system_(system),
+        n_(static_cast<std::size_t>(system.size())),
+        entries_(entry_count(system.size(), system.pattern())),
+        inverse_(coefficients().inverse()),
+        t_(transformation()),
+        t_inverse_(t_.inverse()) {
+    for (auto* v : {&argument_, &rate_, &r_[0], &r_[1], &r_[2], &w_[0], &w_[1], &w_[2]})
+      v->resize(n_);
+    by_y_.resize(entries_);
+    by_rate_.resize(entries_);
+    complex_.resize(n_);
+  }
+
+  long evaluations = 0, iterations = 0;
+  /// Of the last solve: the contraction, its last factor θ/(1 − θ), iterations.
+  double theta = 0, contraction = 1;
+  int count = 0;
+
+  /// ∂F/∂y and ∂F/∂y'; `rate_scale` [1/s] only balances the two in one evaluation.
+  bool differentiate(double t, const double* y, const double* ydot, double rate_scale) {
+    if (!system_.jacobian(t, y, ydot, 0, by_y_.data()) ||
+        !system_.jacobian(t, y, ydot, rate_scale, by_rate_.data()))
+      return false;
+    for (std::size_t i = 0; i < entries_; ++i) by_rate_[i] = (by_rate_[i] - by_y_[i]) / rate_scale;
+    return true;
+  }
+
+  /// False: a matrix is singular.
+  bool factor(Factors& f, double h) const {
+    for (std::size_t i = 0; i < entries_; ++i) {
+      f.real->values()[i] = by_y_[i] + gamma / h * by_rate_[i];
+      f.complex->values()[i] = {by_y_[i] + alpha / h * by_rate_[i], beta / h * by_rate_[i]};
+    }
+    return f.real->factor() && f.complex->factor();
+  }
+
+  /// Newton iterations on z (3 of n values each, a guess on entry). They stop at `fraction` of the
+  /// tolerance, or when `most` would not be enough.
+  Outcome solve(const Factors& f, double t, double h, const double* y, const WeightedNorm& norm,
+                double fraction, int most, std::array<std::vector<double>, 3>& z);
+
+  /// Y'_i = Σ_j (A⁻¹)_ij Z_j / h.
+  void rate(int i, double h, const std::array<std::vector<double>, 3>& z, double* ydot) const {
+    for (std::size_t k = 0; k < n_; ++k)
+      ydot[k] =
+          (inverse_(i, 0) * z[0][k] + inverse_(i, 1) * z[1][k] + inverse_(i, 2) * z[2][k]) / h;
+  }
+
+  /// x ← J(γ/h)⁻¹ (γ/h) ∂F/∂y' x: what an implicit Euler step of h/γ would leave of x.
+  void filter(const Factors& f, double h, double* x);
+
+ private:
+  DaeSystem& system_;
+  std::size_t n_, entries_;
+  Eigen::Matrix3d inverse_, t_, t_inverse_;
+  std::vector<double> by_y_, by_rate_, argument_, rate_;
+  std::array<std::vector<double>, 3> r_, w_;
+  std::vector<std::complex<double>> complex_;
+};
+
+}  // namespace momenta::radau5

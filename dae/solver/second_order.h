@@ -1,0 +1,21 @@
+#pragma once
+// What methods for equations of second order need to know of a DaeSystem beside its residual:
+// y = (q, v, λ), rows in the same order: q' = E(q) v, M v' + … + Φ_qᵀλ = 0, Φ(q, t) = 0. There may
+// be more coordinates than rates (quaternions).
+
+namespace momenta {
+
+class SecondOrder {
+ public:
+  virtual ~SecondOrder() = default;
+  virtual int coordinates() const = 0;  ///< nq
+  virtual int rates() const = 0;        ///< nv
+  virtual int multipliers() const = 0;  ///< m
+  /// E(q) v (nq) of v (nv).
+  virtual void coordinate_rates(const double* q, const double* v, double* qdot) = 0;
+  /// q ∘ exp δ: where constant rates δ (nv) lead in a unit of time, to fourth order in δ (exact for
+  /// joints with q' = v); quaternions of unit length.
+  virtual void move(const double* q, const double* delta, double* moved) = 0;
+};
+
+}  // namespace momenta
