@@ -25,6 +25,9 @@ class Census {
   const JointSpec& require_joint(const std::string& name, Location at,
                                  const std::string& who) const;
 
+  /// `name` is a loop.
+  const LoopSpec& require_loop(const std::string& name, Location at, const std::string& who) const;
+
   /// `name` is a joint of one coordinate: revolute, prismatic or helical.
   void require_one_coordinate(const std::string& name, Location at, const std::string& who) const;
 
@@ -32,6 +35,7 @@ class Census {
   const Scene& scene_;
   std::map<std::string, const BodySpec*, std::less<>> bodies_;
   std::map<std::string, const JointSpec*, std::less<>> joints_;
+  std::map<std::string, const LoopSpec*, std::less<>> loops_;
 };
 
 /// Every body is the child of exactly one joint and no joints form a cycle. @pre the names are
