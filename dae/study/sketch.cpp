@@ -21,6 +21,7 @@ Eigen::Matrix<double, 2, 3> view(const Mechanism& mechanism) {
 Sketch sketch(const Mechanism& mechanism, double t, const Eigen::VectorXd& q) {
   Scene open = mechanism.scene();
   open.loops.clear();
+  std::erase_if(open.drives, [](const DriveSpec& drive) { return !drive.loop.empty(); });
   OpenChain chain(open);
   const auto poses = chain.poses(t, q);
   const auto page = view(mechanism);

@@ -206,6 +206,7 @@ bool LoopSweeps<Spatial, S, Rows, Momentum>::operator()(const S& t, const In& q,
   return true;
 }
 
+/// Points, axes and rows of all loops, d of couplers.
 template <class S, int Rows, bool Momentum>
 template <class In>
 void LoopSweeps<Spatial, S, Rows, Momentum>::place_loops(const In& q, const In& x,

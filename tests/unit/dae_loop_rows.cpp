@@ -271,6 +271,68 @@ TEST_P(PlanarLoopRows, AgreeWithSpace) {
   RecordProperty("planar against spatial", std::to_string(worst * 1e16) + "e-16");
 }
 
+/// Every row by name, what is driven said so; and why a driven loop is no loop of a plane.
+TEST(DrivenLoopRows, AreNamed) {
+  RandomTree random(5);
+  Scene scene = random.scene({.bodies = 3, .drives = false});
+  const auto names = [&](LoopKind kind, int coordinates) {
+    scene.loops = {random_loop(random, scene, kind)};
+    scene.drives.clear();
+    drive_loop(random, scene, scene.loops[0], coordinates, 0);
+    std::string all;
+    for (const RowName& row : Mechanism(scene, {.algebra = Algebra::spatial}).rows())
+      all += (all.empty() ? "" : ", ") + row.what;
+    return all;
+  };
+  const std::string point = "point along axis 1, point along axis 2, ",
+                    hinge = "axis 3 against axis 1, axis 3 against axis 2";
+  EXPECT_EQ(names(LoopKind::cylindrical, 0), point + hinge);
+  EXPECT_EQ(names(LoopKind::cylindrical, 3),
+            point + "point along axis 3, driven, " + hinge + ", axis 1 against axis 2, driven");
+  EXPECT_EQ(names(LoopKind::planar, 2), "point along axis 3, point along axis 2, driven, " + hinge);
+  EXPECT_EQ(names(LoopKind::distance, 1), "distance, driven");
+}
+
+TEST(DrivenLoopRows, LeaveThePlane) {
+  Scene scene;
+  scene.bodies.resize(2);
+  for (int i = 0; i < 2; ++i) {
+    BodySpec& b = scene.bodies[static_cast<std::size_t>(i)];
+    b.name = std::string(1, static_cast<char>('a' + i));
+    b.mass = 1;
+    b.inertia.setIdentity();
+    JointSpec j;
+    j.name = "J" + b.name;
+    j.child = b.name;
+    j.parent = i == 0 ? "ground" : "a";
+    scene.joints.push_back(j);
+  }
+  LoopSpec l;
+  l.name = "C";
+  l.child = "b";
+  l.kind = LoopKind::distance;
+  l.length = 1;
+  scene.loops = {l};
+  EXPECT_TRUE(Mechanism(scene).plan().planar);
+  DriveSpec d;
+  d.loop = "C";
+  d.kind = "polynomial";
+  d.coefficients = {0.1, 1};
+  for (const char* axis : {"x", "z"}) {
+    d.origin = axis;
+    scene.drives = {d};
+    EXPECT_EQ(Mechanism(scene).plan().planar, d.origin == "x");
+  }
+  try {
+    const Mechanism mechanism(scene, {.algebra = Algebra::planar});
+    FAIL();
+  } catch (const SceneError& error) {
+    EXPECT_STREQ(error.what(),
+                 "scene: the planar kernel was asked for, but the origin of loop 'C' is driven out "
+                 "of the plane of the joints");
+  }
+}
+
 TEST(Couplers, TreesOfAllJoints) {
   Worst worst;
   int coupled = 0;
