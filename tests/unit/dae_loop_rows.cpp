@@ -280,7 +280,8 @@ TEST(DrivenLoopRows, AreNamed) {
     scene.drives.clear();
     drive_loop(random, scene, scene.loops[0], coordinates, 0);
     std::string all;
-    for (const RowName& row : Mechanism(scene, {.algebra = Algebra::spatial}).rows())
+    const Mechanism mechanism(scene, {.algebra = Algebra::spatial});
+    for (const RowName& row : mechanism.rows())
       all += (all.empty() ? "" : ", ") + row.what;
     return all;
   };
