@@ -3,16 +3,16 @@
 // algebra and one scalar. u_A, u_B: velocities of the two points; w_a, w_b: angular velocities of
 // the axes; both with what drives prescribe relative to the bodies; s: the impulse σ of the row.
 //
-//         Φ̇                                       wrench on A          inertial rate N on A, σ
-//         fixed
-//   D_j   b·(u_A − u_B) + (w_b × b)·D             force b s at x_A     force (w_b × b) s at x_A,
-//                                                                      couple u_A × b s
-//   O_ij  (a × b)·(w_a − w_b)                     couple (a × b) s     couple
-//                                                        [(w_a × a) × b + a × (w_b × b)] s
-//   L     (D·(u_A − u_B) − l l̇)/l₀                force D s/l₀ at x_A  force (u_A − u_B) s/l₀ at
-//   x_A,
-//                                                                      couple u_A × D s/l₀
-//   Q     Σ rᵢ uᵢ − ċ                             none: pᵢ += rᵢ s     none
+//   D_j   Φ̇ = b·(u_A − u_B) + (w_b × b)·D            impulse on A: force b s at x_A
+//         N on A: force (w_b × b) s at x_A, couple u_A × b s
+//   O_ij  Φ̇ = (a × b)·(w_a − w_b)                    impulse on A: couple (a × b) s
+//         N on A: couple [(w_a × a) × b + a × (w_b × b)] s
+//   L     Φ̇ = (D·(u_A − u_B) − l l̇)/l₀               impulse on A: force D s/l₀ at x_A
+//         N on A: force (u_A − u_B) s/l₀ at x_A, couple u_A × D s/l₀
+//   Q     Φ̇ = Σ rᵢ uᵢ − ċ                            no impulse on bodies: pᵢ += rᵢ s
+//         N: none
+//
+// N is the inertial rate of the impulse at fixed σ.
 //
 // On B act the exact negatives, with the same line of action. N = (d/dt Jᵀ)σ + Ω × w: it is added
 // to the applied wrenches T, because Ω × P* in (35) takes the part Ω × w away again. With this, p =

@@ -17,7 +17,7 @@
 // and D = −ω² m c; a joint's velocity product takes the place of Ω_t, J̇ V of d.
 //
 // A row's D_j has F = b_j, O_ij has c = a_i × b_j, a distance has F = D/l₀. Where drives move
-// points and axes, u_A and the rates of rows have their prescribed velocities in them, and d their
+// points and axes, u_B and the rates of rows have their prescribed velocities in them, and d their
 // Φ_t.
 //
 // A coupler has no wrench: its row enters where one of its joints is eliminated, c = EᵀC + r, and p
