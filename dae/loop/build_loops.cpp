@@ -1,7 +1,6 @@
 #include <momenta/core/scene/kinds.h>
 #include <momenta/dae/loop/loop_choice.h>
 #include <momenta/dae/loop/loop_model.h>
-#include <momenta/dae/loop/loops_in_time.h>
 
 #include <algorithm>
 #include <cmath>
