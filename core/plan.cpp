@@ -39,7 +39,7 @@ std::vector<std::pair<std::string, std::string>> Plan::lines() const {
       {"gravity", !gravity ? "none, left out"
                   : loops  ? "weights on bodies"
                            : "carried as first moments"},
-      {"drives", drives ? "rheonomic terms Ω_t evaluated" : "none, Ω_t left out"},
+      {"drives", drives ? "rheonomic terms Ω_t, Φ_t evaluated" : "none, Ω_t and Φ_t left out"},
       {"quasi-velocities",
        quasi_velocities ? "spherical or free joints: quaternions in q" : "none, q̇ = u"},
       {"joint forces", joint_forces ? "springs, dampers, torques on joints" : "none, left out"},

@@ -16,7 +16,7 @@ struct Plan {
   bool planar = false;        ///< 3-component algebra
   std::string planar_reason;  ///< why not, when spatial
   bool gravity = false;
-  bool drives = false;            ///< rheonomic: Ω_t
+  bool drives = false;            ///< rheonomic: Ω_t, Φ_t
   bool quasi_velocities = false;  ///< spherical or free joints: quaternions, p not canonical
   bool third_sweep = false;       ///< springs, dampers or wrenches on bodies
   bool joint_forces = false;

@@ -45,6 +45,7 @@ Mechanism::Mechanism(Scene scene, MechanismOptions options)
   row_names_ = row_names(scene_, plan_.planar);
   rows_ = static_cast<int>(row_names_.size());
   plan_.loops = rows_ > 0;
+  plan_.drives |= visit([](const auto& cast) { return !cast.loops.motions.empty(); });
   dense_ = options.kkt == KktChoice::dense ||
            (options.kkt != KktChoice::sparse && tree_.nv + rows_ <= dense_limit);
   if (rows_ > 0) choose_kkt(options.kkt);
@@ -52,7 +53,7 @@ Mechanism::Mechanism(Scene scene, MechanismOptions options)
   const auto group = [&](const auto& cast) {
     int index = 0;
     for (const auto& l : cast.loops.loops) {
-      const int points = l.length > 0 ? 1 : l.n_points;
+      const int points = l.first_rows();
       for (int i = 0; i < points; ++i) row_groups_.push_back(index);
       for (int i = points; i < l.rows; ++i) row_groups_.push_back(index + 1);
       index += 2;

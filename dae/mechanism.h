@@ -64,8 +64,8 @@ class Mechanism {
   /// Found when first asked for: a long open chain never fills its M.
   const KktPattern& kkt_pattern() const;
   const std::vector<RowName>& rows() const { return row_names_; }
-  /// Rows of one loop and one kind (points, axes or distance) share a unit and so a scale: group
-  /// index of each row.
+  /// Rows of one loop and one kind (points, axes, distance or coupling) share a unit and so a
+  /// scale: group index of each row.
   const std::vector<int>& row_groups() const { return row_groups_; }
 
   /// A workspace for one thread; S is double, Dual8 or Jet.

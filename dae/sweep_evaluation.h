@@ -40,14 +40,14 @@ class Mechanism::SweepEvaluation final : public Evaluation<S> {
 
   void place(double t, const S* q) override {
     poses_outward(w_, Moment<S>::at(t), q, true);
-    loops_.place();
+    loops_.place(t, q);
     gravity_current_ = false;
   }
   void positions(S* phi) override { loops_.positions(phi); }
 
   void move(const S* u) override {
     velocities_outward(w_, u ? u : still_.data());
-    loops_.move();
+    loops_.move(u);
   }
   void velocities(S* rate) override { loops_.velocities(rate); }
 
@@ -55,6 +55,7 @@ class Mechanism::SweepEvaluation final : public Evaluation<S> {
     body_momenta(w_);
     if (sigma) loops_.add_wrenches(sigma, 1.0, [](auto& body) -> Force& { return body.P; });
     momenta_inward(w_, p);
+    if (sigma) loops_.add_couplings(sigma, 1.0, p);
   }
 
   void momentum_rates(const S* q, const S* u, const S* sigma, double leak, S* pdot) override {
@@ -64,6 +65,7 @@ class Mechanism::SweepEvaluation final : public Evaluation<S> {
       if (leak != 0) loops_.add_wrenches(sigma, -leak, [](auto& body) -> Force& { return body.T; });
     }
     momentum_rates_inward(w_, q, u, pdot);
+    if (sigma && leak != 0) loops_.add_couplings(sigma, -leak, pdot);
   }
 
   void joint_forces(const S* q, const S* u, const S* udot, const S* lambda, S* tau) override {
@@ -72,6 +74,8 @@ class Mechanism::SweepEvaluation final : public Evaluation<S> {
     // Φ_qᵀλ stands on the left of (1a): as an applied wrench it is −λ.
     if (lambda) loops_.add_wrenches(lambda, -1.0, [](auto& body) -> Force& { return body.T; });
     newton_euler_inward(w_, q, u, tau);
+    if (lambda) loops_.add_couplings(lambda, 1.0, tau);
+    loops_.accelerate(udot);
   }
   void accelerations(S* rate) override { loops_.accelerations(rate); }
 
@@ -79,6 +83,7 @@ class Mechanism::SweepEvaluation final : public Evaluation<S> {
     for (auto& body : w_.body) body.P = {};
     loops_.add_wrenches(x, 1.0, [](auto& body) -> Force& { return body.P; });
     momenta_inward(w_, result);
+    loops_.add_couplings(x, 1.0, result);
   }
 
   void coordinate_rates(const S* q, const S* u, S* qdot) const override {
@@ -97,11 +102,13 @@ class Mechanism::SweepEvaluation final : public Evaluation<S> {
     each_constraint_entry([&](int, int, const S& value) { *values++ = value; });
   }
   /// Calls entry(row, column, value) for the structural nonzeros of Φ_q: the joints between each
-  /// end of a loop and the lowest common ancestor of its bodies; above it the two ends cancel.
+  /// end of a loop and the lowest common ancestor of its bodies; above it the two ends cancel. Of a
+  /// coupler its ratios.
   template <class Entry>
   void each_constraint_entry(Entry&& entry) {
     for (std::size_t i = 0; i < loops_.model().loops.size(); ++i) {
       const auto& l = loops_.model().loops[i];
+      for (const auto& c : l.joints) entry(l.row, c.u, S(c.ratio));
       for (int row = 0; row < l.rows; ++row) {
         Force on_a, on_b;
         loops_.unit_wrench(i, row, on_a, on_b);

@@ -62,7 +62,10 @@ Census::Census(const Scene& scene) : scene_(scene) {
     edges.add("joint", joint.name, joint.at);
     joints_.emplace(joint.name, &joint);
   }
-  for (const LoopSpec& loop : scene.loops) edges.add("loop", loop.name, loop.at);
+  for (const LoopSpec& loop : scene.loops) {
+    edges.add("loop", loop.name, loop.at);
+    loops_.emplace(loop.name, &loop);
+  }
 
   Names markers(scene, "markers");
   for (const MarkerSpec& marker : scene.markers) markers.add("marker", marker.name, marker.at);
@@ -87,11 +90,17 @@ void Census::require_body(const std::string& name, bool or_ground, Location at,
 const JointSpec& Census::require_joint(const std::string& name, Location at,
                                        const std::string& who) const {
   if (const auto found = joints_.find(name); found != joints_.end()) return *found->second;
-  const bool is_loop = std::any_of(scene_.loops.begin(), scene_.loops.end(),
-                                   [&](const LoopSpec& loop) { return loop.name == name; });
   throw SceneError(scene_.where(at) + who + ": " + in_quotes(name) +
-                   (is_loop ? " is a loop" : " is no joint") +
+                   (loops_.contains(name) ? " is a loop" : " is no joint") +
                    ", expected the name of a [[joint]]" + near_key(name, joints_));
+}
+
+const LoopSpec& Census::require_loop(const std::string& name, Location at,
+                                     const std::string& who) const {
+  if (const auto found = loops_.find(name); found != loops_.end()) return *found->second;
+  throw SceneError(scene_.where(at) + who + ": " + in_quotes(name) +
+                   (joints_.contains(name) ? " is a joint" : " is no loop") +
+                   ", expected the name of a [[loop]]" + near_key(name, loops_));
 }
 
 void Census::require_one_coordinate(const std::string& name, Location at,

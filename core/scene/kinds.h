@@ -13,20 +13,17 @@ namespace momenta::reading {
 inline constexpr std::array<std::string_view, 9> joint_kinds{
     "revolute",  "prismatic", "helical", "cylindrical", "universal",
     "spherical", "planar",    "free",    "weld"};
-inline constexpr std::array<std::string_view, 9> loop_kinds{"point",     "revolute",    "spherical",
-                                                            "weld",      "prismatic",   "distance",
-                                                            "universal", "cylindrical", "planar"};
+inline constexpr std::array<std::string_view, 10> loop_kinds{
+    "point",    "revolute",  "spherical",   "weld",   "prismatic",
+    "distance", "universal", "cylindrical", "planar", "coupler"};
 inline constexpr std::array<std::string_view, 4> drive_kinds{"polynomial", "harmonic", "step",
                                                              "table"};
 inline constexpr std::array<std::string_view, 3> force_kinds{"spring-damper", "torque", "wrench"};
 inline constexpr std::array<std::string_view, 5> shape_kinds{"rod", "box", "cylinder", "sphere",
                                                              "point"};
 
-/// Kinds the scene format has a name for, and no equations yet: the first as a loop only.
-inline constexpr std::array<std::string_view, 2> planned_kinds{"helical", "coupler"};
-
 static_assert(static_cast<std::size_t>(JointKind::user) == joint_kinds.size());
-static_assert(static_cast<std::size_t>(LoopKind::planar) + 1 == loop_kinds.size());
+static_assert(static_cast<std::size_t>(LoopKind::coupler) + 1 == loop_kinds.size());
 
 inline std::string_view name_of(JointKind kind) {
   return kind == JointKind::user ? "user" : joint_kinds.at(static_cast<std::size_t>(kind));

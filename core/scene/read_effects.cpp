@@ -5,6 +5,8 @@
 #include <momenta/core/scene/read_tables.h>
 #include <momenta/core/tree/drive.h>
 
+#include <vector>
+
 namespace momenta::reading {
 
 DriveSpec read_drive(const Fields& table) {
@@ -12,30 +14,49 @@ DriveSpec read_drive(const Fields& table) {
   drive.at = table.at();
   drive.kind = drive_kinds.at(read_kind(table, drive_kinds));
 
-  // the unit is that of the joint coordinate, rad or m, which is not known here
+  // the unit is that of what is driven, rad or m, which is not known here
   constexpr Quantity coordinate{};
-  drive.coordinate = table.index("coordinate", 0);
+  const auto allow = [&](std::vector<std::string_view> keys) {
+    keys.insert(keys.end(), {"joint", "loop", "coordinate", "origin", "kind"});
+    table.allow(keys);
+  };
   if (drive.kind == "polynomial") {
-    table.allow({"joint", "coordinate", "kind", "coefficients"});
+    allow({"coefficients"});
     drive.coefficients = table.numbers("coefficients", coordinate);
   } else if (drive.kind == "harmonic") {
-    table.allow({"joint", "coordinate", "kind", "offset", "amplitude", "frequency", "phase"});
+    allow({"offset", "amplitude", "frequency", "phase"});
     drive.offset = table.number("offset", coordinate, 0);
     drive.amplitude = table.number("amplitude", coordinate);
     drive.frequency = table.number("frequency", {"rad/s"});
     drive.phase = table.number("phase", {"rad"}, 0);
   } else if (drive.kind == "step") {
-    table.allow({"joint", "coordinate", "kind", "from", "to", "start", "duration"});
+    allow({"from", "to", "start", "duration"});
     drive.from = table.number("from", coordinate, 0);
     drive.to = table.number("to", coordinate);
     drive.start = table.number("start", {"s"}, 0);
     drive.duration = table.number("duration", {"s", Bound::positive});
   } else {
-    table.allow({"joint", "coordinate", "kind", "times", "values"});
+    allow({"times", "values"});
     drive.times = table.numbers("times", {"s"});
     drive.values = table.numbers("values", coordinate);
   }
-  drive.joint = table.text("joint");
+  if (table.has("joint") && table.has("loop"))
+    table.fail_key("loop", "is given beside joint, expected one of them");
+  drive.coordinate = table.index("coordinate", 0);
+  if (!table.has("loop")) {
+    table.refuse("origin", "belongs to the drive of a loop, expected none on that of a joint");
+    drive.joint = table.text("joint");
+  } else {
+    drive.loop = table.text("loop");
+    if (table.has("origin")) {
+      drive.origin = table.text("origin");
+      if (drive.origin != "x" && drive.origin != "y" && drive.origin != "z")
+        table.fail_key("origin",
+                       "is " + in_quotes(drive.origin) +
+                           ", expected \"x\", \"y\" or \"z\" of the loop's origin.parent");
+      table.refuse("coordinate", "is given beside origin, expected one of them");
+    }
+  }
   if (const std::string fault = law_fault(drive); !fault.empty()) table.fail_at(table.at(), fault);
   return drive;
 }

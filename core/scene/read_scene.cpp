@@ -60,9 +60,10 @@ Scene parse_scene(std::string_view text, const std::string& file) try {
     scene.bodies.push_back(reading::read_body(t));
   for (const Fields& t : table.tables("joint", "joint"))
     scene.joints.push_back(reading::read_joint(t));
-  for (const Fields& t : table.tables("loop", "loop")) scene.loops.push_back(reading::read_loop(t));
   for (const Fields& t : table.tables("drive", "drive"))
     scene.drives.push_back(reading::read_drive(t));
+  for (const Fields& t : table.tables("loop", "loop"))
+    scene.loops.push_back(reading::read_loop(t, scene.drives));
   for (const Fields& t : table.tables("force", "force"))
     scene.forces.push_back(reading::read_force(t));
   for (const Fields& t : table.tables("marker", "marker"))

@@ -5,6 +5,7 @@
 #include <momenta/core/scene/read_tables.h>
 #include <momenta/core/scene/shapes.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace momenta::reading {
@@ -115,7 +116,7 @@ BodySpec read_body(const Fields& table) {
 JointSpec read_joint(const Fields& table) {
   JointSpec joint;
   joint.at = table.at();
-  joint.kind = static_cast<JointKind>(read_kind(table, joint_kinds));
+  joint.kind = static_cast<JointKind>(read_kind(table, joint_kinds, loop_kinds, "[[loop]]"));
   const std::string kind(name_of(joint.kind));
   if (!has_axis(joint.kind))
     table.refuse("axis", "has no meaning for a " + kind +
@@ -166,11 +167,39 @@ JointSpec read_joint(const Fields& table) {
   return joint;
 }
 
-LoopSpec read_loop(const Fields& table) {
+namespace {
+
+/// The keys of a coupler, which ties coordinates and no bodies.
+void read_coupler(const Fields& table, LoopSpec& loop) {
+  table.allow({"name", "kind", "joints", "coordinates", "ratios", "offset"});
+  loop.name = table.text("name");
+  loop.joints = table.texts("joints");
+  if (loop.joints.empty()) table.fail_key("joints", "names no joint, expected at least one");
+  loop.ratios = table.numbers("ratios", {});
+  if (table.has("coordinates"))
+    for (const double x : table.numbers("coordinates", {})) {
+      const int coordinate = x >= 0 && x < 10 ? static_cast<int>(x) : -1;
+      if (coordinate != x)
+        table.fail_key("coordinates",
+                       "has " + digits(x) + ", expected whole numbers >= 0, one for each joint");
+      loop.coordinates.push_back(coordinate);
+    }
+  loop.offset = table.number("offset", {"rad or m"}, 0);
+}
+
+}  // namespace
+
+LoopSpec read_loop(const Fields& table, std::span<const DriveSpec> drives) {
   LoopSpec loop;
   loop.at = table.at();
-  loop.kind = static_cast<LoopKind>(read_kind(table, loop_kinds));
+  loop.kind = static_cast<LoopKind>(read_kind(table, loop_kinds, joint_kinds, "[[joint]]"));
   const std::string kind(name_of(loop.kind));
+  if (loop.kind == LoopKind::coupler) {
+    read_coupler(table, loop);
+    return loop;
+  }
+  for (const std::string_view key : {"joints", "coordinates", "ratios", "offset"})
+    table.refuse(key, "has no meaning for a " + kind + " loop, expected on coupler only");
   for (const std::string_view key : {"position", "velocity", "stiffness", "rest", "damping"})
     table.refuse(key,
                  "belongs to a [[joint]], expected none on a loop (a loop has no coordinates)");
@@ -180,9 +209,12 @@ LoopSpec read_loop(const Fields& table) {
                              "universal, cylindrical and planar only");
   if (loop.kind != LoopKind::universal)
     table.refuse("axis2", "has no meaning for a " + kind + " loop, expected on universal only");
+  if (loop.kind != LoopKind::planar)
+    table.refuse("direction", "has no meaning for a " + kind + " loop, expected on planar only");
   if (loop.kind != LoopKind::distance)
     table.refuse("length", "has no meaning for a " + kind + " loop, expected on distance only");
-  table.allow({"name", "kind", "parent", "child", "origin", "rotation", "axis", "axis2", "length"});
+  table.allow({"name", "kind", "parent", "child", "origin", "rotation", "axis", "axis2",
+               "direction", "length"});
 
   loop.name = table.text("name");
   loop.parent = table.text("parent", loop.parent);
@@ -193,9 +225,16 @@ LoopSpec read_loop(const Fields& table) {
   loop.rotation = read_rotation(table);
   loop.axis = table.direction("axis", loop.axis);
   loop.axis2 = table.direction("axis2", loop.axis2);
-  if (table.has("axis2") && loop.axis.cross(loop.axis2).norm() < parallel_slack)
-    table.fail_key("axis2", "is parallel to axis, expected another direction");
-  if (loop.kind == LoopKind::distance) loop.length = table.number("length", {"m", Bound::positive});
+  loop.direction = table.direction("direction", loop.direction);
+  for (const char* key : {"axis2", "direction"})
+    if (table.has(key) && loop.axis.cross(table.direction(key, {})).norm() < parallel_slack)
+      table.fail_key(key, "is parallel to axis, expected another direction");
+  const auto prescribes_length = [&](const DriveSpec& drive) {
+    return drive.loop == loop.name && drive.origin.empty();
+  };
+  if (loop.kind == LoopKind::distance &&
+      (table.has("length") || std::none_of(drives.begin(), drives.end(), prescribes_length)))
+    loop.length = table.number("length", {"m", Bound::positive});
   return loop;
 }
 

@@ -13,15 +13,19 @@ namespace momenta::reading {
 
 BodySpec read_body(const Fields& table);
 JointSpec read_joint(const Fields& table);
-LoopSpec read_loop(const Fields& table);
+/// `drives`: those of the scene, which may stand for numbers of the loop.
+LoopSpec read_loop(const Fields& table, std::span<const DriveSpec> drives);
 DriveSpec read_drive(const Fields& table);
 ForceSpec read_force(const Fields& table);
 MarkerSpec read_marker(const Fields& table);
 RunDefaults read_run(const Fields& table);
 
-/// The value of `key`, one of `kinds`; else fails with the kinds there are. @return its index in
+/// The value of `kind`, one of `kinds`; else fails with the kinds there are. `others` are those of
+/// another table, whose name the sentence says when they are asked for here. @return its index in
 /// `kinds`
-std::size_t read_kind(const Fields& table, std::span<const std::string_view> kinds);
+std::size_t read_kind(const Fields& table, std::span<const std::string_view> kinds,
+                      std::span<const std::string_view> others = {},
+                      std::string_view table_of_others = {});
 
 /// origin = { parent = [..], child = [..] }, both zero by default.
 struct Origins {

@@ -123,7 +123,8 @@ enum class LoopKind {
   distance,
   universal,
   cylindrical,
-  planar
+  planar,
+  coupler
 };
 
 /// A joint that closes a loop; the same keys as a joint, without coordinates and what acts on them.
@@ -133,6 +134,7 @@ enum class LoopKind {
 ///   - `universal` keeps the points together and `axis`, held by the parent, at its angle to
 ///     `axis2`, held by the child
 ///   - `planar` keeps the child's point in the plane across `axis`, and `axis` common
+///   - `coupler` ties no bodies but coordinates of joints: Σ ratios[i] q_i = offset
 struct LoopSpec {
   std::string name;
   LoopKind kind = LoopKind::point;
@@ -144,23 +146,61 @@ struct LoopSpec {
   Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
   /// Universal: as of a joint; zero means perpendicular_to(axis).
   Eigen::Vector3d axis2 = Eigen::Vector3d::Zero();
-  double length = 0;  ///< distance [m]
+  /// Planar: as of a joint, for what drives prescribe; zero means perpendicular_to(axis).
+  Eigen::Vector3d direction = Eigen::Vector3d::Zero();
+  double length = 0;  ///< distance [m]; no matter where a drive prescribes it
+  // Coupler: coordinates of joints whose rates are their q̇, no two the same, driven or not.
+  std::vector<std::string> joints;
+  std::vector<int> coordinates;  ///< as of a drive, one for each joint; empty: all 0
+  std::vector<double> ratios;    ///< [1, rad/m or m/rad], not zero, one for each joint
+  double offset = 0;             ///< [rad or m]; no matter where a drive prescribes it
   Location at;
 };
 
-/// One coordinate of a joint as a function of time, counted from 0 as in the joint's q.
-/// Cylindrical, universal and planar joints: any of them, each by its own drive. Spherical joints
-/// are driven in all of roll, pitch, yaw, which are coordinates 0, 1, 2: child axes = Rz(yaw)
-/// Ry(pitch) Rx(roll) in the joint frame; free joints in all of x, y, z, roll, pitch, yaw. A driven
-/// free joint on a body without mass is a moving base.
+/// How many coordinates of a loop drives can prescribe: those that the joint of its kind has, the
+/// length of a distance, the offset of a coupler.
+constexpr int driven_coordinates_of(LoopKind kind) {
+  switch (kind) {
+    case LoopKind::revolute:
+    case LoopKind::prismatic:
+    case LoopKind::distance:
+    case LoopKind::coupler:
+      return 1;
+    case LoopKind::universal:
+    case LoopKind::cylindrical:
+      return 2;
+    case LoopKind::spherical:
+    case LoopKind::planar:
+      return 3;
+    case LoopKind::point:
+    case LoopKind::weld:
+      return 0;
+  }
+  return 0;
+}
+
+/// One number of a joint or of a loop as a function of time.
+///
+/// Of a joint: a coordinate, counted from 0 as in the joint's q. Cylindrical, universal and planar
+/// joints: any of them, each by its own drive. Spherical joints are driven in all of roll, pitch,
+/// yaw, which are coordinates 0, 1, 2: child axes = Rz(yaw) Ry(pitch) Rx(roll) in the joint frame;
+/// free joints in all of x, y, z, roll, pitch, yaw. A driven free joint on a body without mass is a
+/// moving base.
+///
+/// Of a loop: a coordinate, counted as of the joint of the same kind (driven_coordinates_of), which
+/// is then no longer free; or a component of its `origin_parent`, which then moves. What is written
+/// in the loop for a number that a drive prescribes has no effect.
+///
 ///   - polynomial: f = Σ cᵢ tⁱ, coefficients = [c0, c1, ...]
 ///   - harmonic: f = offset + amplitude sin(ω t + φ), with ω = frequency [rad/s], φ = phase [rad]
 ///   - step: `from` → `to` between start and start + duration, by the quintic 10x³ − 15x⁴ + 6x⁵
 ///   - table: natural cubic spline through (times, values); constant slope outside
 /// The laws are evaluated by MotionLaw, core/tree/drive.h.
 struct DriveSpec {
-  std::string joint;
+  std::string joint;  ///< or
+  std::string loop;   ///< one of them is empty
   int coordinate = 0;
+  std::string origin;  ///< loops: "x", "y" or "z" of origin_parent instead of a coordinate
   std::string kind;
   std::vector<double> coefficients;
   double offset = 0, amplitude = 0, frequency = 0, phase = 0;

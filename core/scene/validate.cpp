@@ -3,32 +3,23 @@
 #include <momenta/core/scene/read_scene.h>
 #include <momenta/core/scene/shapes.h>
 #include <momenta/core/scene/validate_parts.h>
-#include <momenta/core/tree/drive.h>
 #include <momenta/core/user_joint.h>
 
 #include <algorithm>
 #include <cmath>
 #include <set>
-#include <span>
 #include <string_view>
-#include <utility>
 
 namespace momenta {
 namespace {
 
 using reading::Census;
-using reading::digits;
 using reading::in_quotes;
 using reading::name_of;
+using reading::require;
 
 bool finite(const std::vector<double>& numbers) {
   return std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::isfinite(x); });
-}
-
-/// `condition` or SceneError "<place><who>: <sentence>".
-void require(bool condition, const Scene& scene, Location at, const std::string& who,
-             const char* sentence) {
-  if (!condition) throw SceneError(scene.where(at) + who + ": " + sentence);
 }
 
 void check_bodies(const Scene& scene) {
@@ -149,62 +140,18 @@ void check_joints(const Scene& scene, const Census& census) {
 void check_loops(const Scene& scene, const Census& census) {
   for (const LoopSpec& loop : scene.loops) {
     const std::string who = "loop " + in_quotes(loop.name);
+    if (loop.kind == LoopKind::coupler) {
+      reading::check_coupler(scene, census, loop);
+      continue;
+    }
     check_edge(scene, census, loop, who);
-    require(std::isfinite(loop.length) && (loop.kind != LoopKind::distance || loop.length > 0),
+    require(std::isfinite(loop.length) &&
+                (loop.kind != LoopKind::distance || loop.length > 0 ||
+                 reading::drive_of(scene, &DriveSpec::loop, loop.name, 0) != nullptr),
             scene, loop.at, who, "length must be finite and > 0 [m]");
     check_second_direction(scene, loop, loop.axis2, LoopKind::universal, who + ": axis2");
+    check_second_direction(scene, loop, loop.direction, LoopKind::planar, who + ": direction");
   }
-}
-
-/// Spherical and free joints are driven in all coordinates or in none.
-void check_full_drive(const Scene& scene, const JointSpec& joint, const DriveSpec& drive,
-                      const std::set<std::pair<std::string, int>>& driven, const std::string& who) {
-  if (joint.kind != JointKind::spherical && joint.kind != JointKind::free) return;
-  const std::span<const std::string_view> all(reading::pose_coordinates);
-  const auto names = joint.kind == JointKind::free ? all : all.subspan(3);
-  std::string missing;
-  for (std::size_t i = 0; i < names.size(); ++i)
-    if (!driven.contains({joint.name, static_cast<int>(i)}))
-      missing +=
-          (missing.empty() ? "" : ", ") + std::to_string(i) + " (" + std::string(names[i]) + ")";
-  if (!missing.empty())
-    throw SceneError(scene.where(drive.at) + who + ": coordinate " + missing +
-                     " has no drive, expected drives of all " + std::to_string(names.size()) +
-                     " coordinates of a " + std::string(name_of(joint.kind)) + " joint (" +
-                     reading::listed(names) + ") or of none");
-}
-
-void check_drives(const Scene& scene, const Census& census) {
-  std::set<std::pair<std::string, int>> driven;
-  const auto owner = [](const DriveSpec& drive) {
-    return "drive of joint " + in_quotes(drive.joint);
-  };
-  for (const DriveSpec& drive : scene.drives) {
-    const std::string who = owner(drive);
-    const JointSpec& joint = census.require_joint(drive.joint, drive.at, who);
-    const int count = rates_of(joint.kind);
-    require(
-        joint.kind != JointKind::user, scene, drive.at, who,
-        ("joint " + in_quotes(joint.name) + " is user, expected what moves it in its law").c_str());
-    if (count == 0)
-      throw SceneError(scene.where(drive.at) + who + ": joint " + in_quotes(joint.name) + " is " +
-                       std::string(name_of(joint.kind)) + ", expected a joint that moves");
-    if (drive.coordinate < 0 || drive.coordinate >= count)
-      throw SceneError(scene.where(drive.at) + who + ": coordinate is " +
-                       std::to_string(drive.coordinate) + ", expected " +
-                       (count == 1 ? std::string("0") : "0 to " + std::to_string(count - 1)) +
-                       " for a " + std::string(name_of(joint.kind)) + " joint");
-    if (!driven.emplace(drive.joint, drive.coordinate).second)
-      throw SceneError(scene.where(drive.at) + who + ": " +
-                       (count == 1 ? std::string("the joint")
-                                   : "coordinate " + std::to_string(drive.coordinate)) +
-                       " has a drive already, expected one");
-    const std::string fault = law_fault(drive);
-    require(fault.empty(), scene, drive.at, who, fault.c_str());
-  }
-  for (const DriveSpec& drive : scene.drives)
-    check_full_drive(scene, census.require_joint(drive.joint, drive.at, owner(drive)), drive,
-                     driven, owner(drive));
 }
 
 void check_forces(const Scene& scene, const Census& census) {
@@ -265,7 +212,7 @@ void validate(const Scene& scene) {
   check_bodies(scene);
   check_joints(scene, census);
   check_loops(scene, census);
-  check_drives(scene, census);
+  reading::check_drives(scene, census);
   check_forces(scene, census);
   check_rest(scene, census);
   reading::check_tree(scene);

@@ -1,5 +1,6 @@
 #pragma once
-// The two checks of validate() which look at the scene as a whole: its names and its tree.
+// The checks of validate() which look at the scene as a whole: its names, its tree, and what ties
+// drives and couplers to joints and loops.
 
 #include <momenta/core/scene/scene.h>
 
@@ -8,6 +9,12 @@
 #include <string_view>
 
 namespace momenta::reading {
+
+/// `condition` or SceneError "<place><who>: <sentence>".
+inline void require(bool condition, const Scene& scene, Location at, const std::string& who,
+                    const char* sentence) {
+  if (!condition) throw SceneError(scene.where(at) + who + ": " + sentence);
+}
 
 /// Who is called what. Construction checks the names themselves: none empty, none twice among
 /// bodies, among joints and loops together, among markers, among named forces; none with control
@@ -25,6 +32,9 @@ class Census {
   const JointSpec& require_joint(const std::string& name, Location at,
                                  const std::string& who) const;
 
+  /// `name` is a loop.
+  const LoopSpec& require_loop(const std::string& name, Location at, const std::string& who) const;
+
   /// `name` is a joint of one coordinate: revolute, prismatic or helical.
   void require_one_coordinate(const std::string& name, Location at, const std::string& who) const;
 
@@ -32,7 +42,20 @@ class Census {
   const Scene& scene_;
   std::map<std::string, const BodySpec*, std::less<>> bodies_;
   std::map<std::string, const JointSpec*, std::less<>> joints_;
+  std::map<std::string, const LoopSpec*, std::less<>> loops_;
 };
+
+/// The drive of a coordinate of a joint or loop, which is none of a loop's origin; or null.
+/// O(drives)
+const DriveSpec* drive_of(const Scene& scene, std::string DriveSpec::*owner,
+                          const std::string& name, int coordinate);
+
+/// Joints known, none of their coordinates a part of a quaternion, none twice, not all driven.
+void check_coupler(const Scene& scene, const Census& census, const LoopSpec& loop);
+
+/// Joints, loops and coordinates known, none driven twice, laws without fault, spherical and free
+/// joints and spherical loops driven as a whole, lengths positive at the start.
+void check_drives(const Scene& scene, const Census& census);
 
 /// Every body is the child of exactly one joint and no joints form a cycle. @pre the names are
 /// known and unique

@@ -96,7 +96,8 @@ class TreeBuilder {
   explicit TreeBuilder(const Scene& scene) : scene_(scene) {
     for (const auto& body : scene.bodies) bodies_[body.name] = &body;
     for (const auto& joint : scene.joints) children_[joint.parent].push_back(&joint);
-    for (const auto& drive : scene.drives) drives_[drive.joint].push_back(&drive);
+    for (const auto& drive : scene.drives)
+      if (!drive.joint.empty()) drives_[drive.joint].push_back(&drive);
     tree_.name = scene.name;
     tree_.gravity = scene.gravity;
   }

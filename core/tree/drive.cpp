@@ -55,7 +55,9 @@ MotionLaw::MotionLaw(const DriveSpec& spec)
       start_(spec.start),
       duration_(spec.duration) {
   if (const std::string fault = law_fault(spec); !fault.empty())
-    throw SceneError("drive of joint '" + spec.joint + "': " + fault);
+    throw SceneError(
+        (spec.joint.empty() ? "drive of loop '" + spec.loop : "drive of joint '" + spec.joint) +
+        "': " + fault);
   if (spec.kind == "harmonic") kind_ = Kind::harmonic;
   if (spec.kind == "step") kind_ = Kind::step;
   if (spec.kind == "table") {

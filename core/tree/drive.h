@@ -1,5 +1,5 @@
 #pragma once
-// Motion laws: a joint coordinate f as a function of time, with its first two derivatives.
+// Motion laws: a number f of a joint or loop as a function of time, with its first two derivatives.
 //
 // polynomial
 //   f = Σ cᵢ tⁱ;  f, ḟ, f̈ by one Horner scheme

@@ -1,36 +1,12 @@
 #include <momenta/core/scene/kinds.h>
+#include <momenta/dae/loop/loop_choice.h>
 #include <momenta/dae/loop/loop_model.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace momenta {
 namespace {
-
-/// The loop's frame with `axis` third, in the joint frame of the scene: columns e1, e2, e3.
-Eigen::Matrix3d axes_of(const LoopSpec& loop) {
-  if (!reading::has_axis(loop.kind)) return Eigen::Matrix3d::Identity();
-  return Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), loop.axis).toRotationMatrix();
-}
-
-/// The rows of a kind in space.
-template <class Loop>
-void choose_rows(LoopKind kind, Loop& l) {
-  const bool slides = kind == LoopKind::prismatic || kind == LoopKind::cylindrical;
-  const bool floats = kind == LoopKind::planar;
-  l.n_points = floats ? 1 : slides ? 2 : 3;
-  l.points = {floats ? 2 : 0, 1, 2};
-  if (kind == LoopKind::revolute || kind == LoopKind::cylindrical || floats) {
-    l.n_axes = 2;
-    l.axes = {{{2, 0}, {2, 1}, {0, 0}}};
-  } else if (kind == LoopKind::weld || kind == LoopKind::prismatic) {
-    l.n_axes = 3;
-    l.axes = {{{0, 1}, {1, 2}, {2, 0}}};
-  } else if (kind == LoopKind::universal) {
-    l.n_axes = 1;
-    l.axes = {{{0, 2}, {0, 0}, {0, 0}}};
-  }
-  l.rows = l.n_points + l.n_axes;
-}
 
 Eigen::Matrix3d zero_rotation(const Tree& tree, const std::vector<Eigen::Isometry3d>& poses,
                               int body) {
@@ -39,48 +15,155 @@ Eigen::Matrix3d zero_rotation(const Tree& tree, const std::vector<Eigen::Isometr
   return (poses[k] * tree.bodies[k].scene_axes).linear();
 }
 
+template <class Loop>
+void take_rows(const LoopChoice& choice, Loop& l) {
+  l.n_points = static_cast<int>(choice.points.size());
+  std::copy(choice.points.begin(), choice.points.end(), l.points.begin());
+  l.n_axes = static_cast<int>(choice.axes.size());
+  std::copy(choice.axes.begin(), choice.axes.end(), l.axes.begin());
+  l.rows = static_cast<int>(choice.names.size());
+}
+
+/// Σ rᵢ qᵢ = c. Driven coordinates go to the other side.
+template <class Space>
+void couple(const LoopSpec& spec, const Tree& tree, typename LoopModel<Space>::Loop& l,
+            typename LoopModel<Space>::Motion& motion) {
+  l.given = spec.offset;
+  for (std::size_t i = 0; i < spec.joints.size(); ++i) {
+    const int coordinate = spec.coordinates.empty() ? 0 : spec.coordinates[i];
+    const int last = tree.carried_by(spec.joints[i]);
+    for (int k = tree.first_part(last); k <= last; ++k) {
+      const Tree::Body& b = tree.bodies[static_cast<std::size_t>(k)];
+      if (b.coordinate != coordinate) continue;
+      if (b.drive >= 0)
+        motion.numbers.emplace_back(-spec.ratios[i],
+                                    tree.drives[static_cast<std::size_t>(b.drive)]);
+      else
+        l.joints.push_back({k, b.q, b.u, spec.ratios[i]});
+    }
+  }
+}
+
+/// What drives prescribe of a loop whose points, axes and numbers are in place. `along` and `about`
+/// take a vector of the joint frame to the axes of B and to an axis of turning in A or B.
+template <class Space, class Slide, class About>
+void prescribe(const LoopSpec& spec, const Tree& tree, const Model<Space>& model,
+               const LoopDrives& drives, const LoopChoice& choice, Slide&& along, About&& about,
+               typename LoopModel<Space>::Motion&& motion, LoopModel<Space>& all,
+               typename LoopModel<Space>::Loop& l) {
+  motion.given = l.given;
+  motion.axis_a = l.axis_a;
+  motion.axis_b = l.axis_b;
+  Eigen::Vector3d start = spec.origin_parent;
+  for (int i = 0; i < 3; ++i)
+    if (const DriveSpec* drive = drives.origin[static_cast<std::size_t>(i)]) {
+      start[i] = 0;
+      motion.slides.push_back(
+          {MotionLaw(*drive), model.direction(l.b, tree.direction(l.b, Eigen::Vector3d::Unit(i)))});
+    }
+  motion.at_b = model.point(l.b, tree.point(l.b, start));
+  for (const auto& slide : choice.slides)
+    motion.slides.push_back({MotionLaw(*slide.drive), along(slide.axis)});
+  for (const auto& turn : choice.turns_a)
+    motion.turns_a.push_back({MotionLaw(*turn.drive), about(l.a, turn.axis)});
+  for (const auto& turn : choice.turns_b)
+    motion.turns_b.push_back({MotionLaw(*turn.drive), about(l.b, turn.axis)});
+  if ((l.is_distance() || l.is_coupler()) && drives.coordinate[0]) {
+    motion.given = 0;
+    motion.numbers.emplace_back(1.0, MotionLaw(*drives.coordinate[0]));
+  }
+  if (motion.slides.empty() && motion.turns_a.empty() && motion.turns_b.empty() &&
+      motion.numbers.empty())
+    return;
+  l.motion = static_cast<int>(all.motions.size());
+  all.motions.push_back(std::move(motion));
+}
+
+/// l at the start, the scale of its equation.
+double length_at_start(const LoopSpec& spec, const LoopDrives& drives) {
+  if (!drives.coordinate[0]) return spec.length;
+  double length, rate, second;
+  MotionLaw(*drives.coordinate[0]).evaluate(0.0, length, rate, second);
+  return length;
+}
+
+template <class Space>
+void append(typename LoopModel<Space>::Loop&& l, LoopModel<Space>& all) {
+  l.row = all.rows;
+  all.rows += l.rows;
+  all.loops.push_back(std::move(l));
+}
+
 }  // namespace
 
 LoopModel<Spatial> build_loops(const Scene& scene, const Tree& tree, const Model<Spatial>& model) {
   LoopModel<Spatial> all;
+  DrivesOfLoops drives = drives_of_loops(scene);
   for (const LoopSpec& spec : scene.loops) {
+    const LoopDrives& own = drives[spec.name];
+    const LoopChoice choice = choose_rows(spec, own, false);
     LoopModel<Spatial>::Loop l;
-    l.a = tree.body(spec.child);
-    l.b = tree.body(spec.parent);
-    l.at_a = model.point(l.a, tree.point(l.a, spec.origin_child));
-    l.at_b = model.point(l.b, tree.point(l.b, spec.origin_parent));
-    const Eigen::Matrix3d e = axes_of(spec), in_parent = spec.rotation.toRotationMatrix() * e;
+    LoopModel<Spatial>::Motion motion;
+    take_rows(choice, l);
+    if (spec.kind == LoopKind::coupler) {
+      couple<Spatial>(spec, tree, l, motion);
+    } else {
+      l.a = tree.body(spec.child);
+      l.b = tree.body(spec.parent);
+      l.at_a = model.point(l.a, tree.point(l.a, spec.origin_child));
+      l.at_b = model.point(l.b, tree.point(l.b, spec.origin_parent));
+    }
+    const Eigen::Matrix3d turn = spec.rotation.toRotationMatrix();
+    const auto in_a = [&](const Eigen::Vector3d& v) {
+      return model.direction(l.a, tree.direction(l.a, v));
+    };
+    const auto in_b = [&](const Eigen::Vector3d& v) {
+      return model.direction(l.b, tree.direction(l.b, turn * v));
+    };
     for (int i = 0; i < 3; ++i) {
       const auto at = static_cast<std::size_t>(i);
-      l.axis_a[at] = model.direction(l.a, tree.direction(l.a, e.col(i)));
-      l.axis_b[at] = model.direction(l.b, tree.direction(l.b, in_parent.col(i)));
+      l.axis_a[at] = in_a(choice.frame.col(i));
+      l.axis_b[at] = in_b(choice.frame.col(i));
     }
     if (spec.kind == LoopKind::distance) {
-      l.length = spec.length;
-      l.rows = 1;
-    } else {
-      choose_rows(spec.kind, l);
+      l.given = length_at_start(spec, own);
+      l.per_length = 1 / l.given;
     }
-    if (spec.kind == LoopKind::universal) {
+    if (spec.kind == LoopKind::universal && !own.drives_coordinates()) {
       const Eigen::Vector3d axis = spec.axis.normalized();
       const Eigen::Vector3d second =
           spec.axis2.isZero() ? perpendicular_to(axis) : spec.axis2.normalized();
-      l.axis_a[0] = model.direction(l.a, tree.direction(l.a, second));
+      l.axis_a[0] = in_a(second);
       l.gamma = axis.dot(second);
     }
-    l.row = all.rows;
-    all.rows += l.rows;
-    all.loops.push_back(l);
+    prescribe(
+        spec, tree, model, own, choice, in_b,
+        [&](int body, const Eigen::Vector3d& v) { return body == l.a ? in_a(v) : in_b(v); },
+        std::move(motion), all, l);
+    append(std::move(l), all);
   }
   return all;
 }
 
 LoopModel<Planar> build_loops(const Scene& scene, const Tree& tree, const Model<Planar>& model) {
   LoopModel<Planar> all;
+  DrivesOfLoops drives = drives_of_loops(scene);
   const auto poses = tree.zero_poses();
   const Eigen::Vector3d normal = model.basis.col(2);
   for (const LoopSpec& spec : scene.loops) {
+    const LoopDrives& own = drives[spec.name];
+    const LoopChoice choice = choose_rows(spec, own, true);
     LoopModel<Planar>::Loop l;
+    LoopModel<Planar>::Motion motion;
+    take_rows(choice, l);
+    if (spec.kind == LoopKind::coupler) {
+      couple<Planar>(spec, tree, l, motion);
+      const auto none = [](const auto&...) { return Vec2<double>{}; };
+      const auto no_axis = [](const auto&...) { return 0.0; };
+      prescribe(spec, tree, model, own, choice, none, no_axis, std::move(motion), all, l);
+      append(std::move(l), all);
+      continue;
+    }
     l.a = tree.body(spec.child);
     l.b = tree.body(spec.parent);
     const Eigen::Vector3d point_a = tree.point(l.a, spec.origin_child),
@@ -92,14 +175,14 @@ LoopModel<Planar> build_loops(const Scene& scene, const Tree& tree, const Model<
     };
     const double across = height(l.a, point_a) - height(l.b, point_b);
     if (spec.kind == LoopKind::distance) {
-      l.length = spec.length;
+      l.given = length_at_start(spec, own);
+      l.per_length = 1 / l.given;
       l.across2 = across * across;
-      l.rows = 1;
-      if (std::abs(across) > spec.length)
+      if (std::abs(across) > l.given)
         throw SceneError(scene.where(spec.at) + "loop '" + spec.name +
                          "' cannot close: its points lie " + std::to_string(std::abs(across)) +
                          " m apart across the plane, more than its length " +
-                         std::to_string(spec.length) + " m");
+                         std::to_string(l.given) + " m");
     } else {
       const double size = 1 + point_a.norm() + point_b.norm();
       if (std::abs(across) > 1e-9 * size)
@@ -108,7 +191,6 @@ LoopModel<Planar> build_loops(const Scene& scene, const Tree& tree, const Model<
             std::to_string(std::abs(across)) +
             " m apart across the plane in which the scene moves; expected the same height");
       const bool slides = spec.kind == LoopKind::prismatic;
-      const bool turns_locked = slides || spec.kind == LoopKind::weld;
       // Axes in the plane: for a slide, 1 along it and 2 across; else the plane's own.
       const Eigen::Matrix3d in_joint =
           zero_rotation(tree, poses, l.b) * spec.rotation.toRotationMatrix();
@@ -124,15 +206,19 @@ LoopModel<Planar> build_loops(const Scene& scene, const Tree& tree, const Model<
       };
       l.axis_b = {in_plane(first), in_plane(second), {}};
       l.axis_a = {in_plane(child_from_joint * first), in_plane(child_from_joint * second), {}};
-      l.n_points = slides ? 1 : 2;
-      l.points = slides ? std::array<int, 3>{1, 0, 0} : std::array<int, 3>{0, 1, 0};
-      l.n_axes = turns_locked ? 1 : 0;
-      l.axes = {{{0, 1}, {0, 0}, {0, 0}}};
-      l.rows = l.n_points + l.n_axes;
     }
-    l.row = all.rows;
-    all.rows += l.rows;
-    all.loops.push_back(l);
+    // The axis of a hinge is along the normal or against it.
+    prescribe(
+        spec, tree, model, own, choice,
+        [&](const Eigen::Vector3d& v) {
+          return model.direction(l.b, tree.direction(l.b, spec.rotation * v));
+        },
+        [&](int, const Eigen::Vector3d& v) {
+          const Eigen::Vector3d axis = zero_rotation(tree, poses, l.a) * v;
+          return normal.dot(axis) > 0 ? 1.0 : -1.0;
+        },
+        std::move(motion), all, l);
+    append(std::move(l), all);
   }
   return all;
 }
@@ -141,7 +227,17 @@ std::string loops_leave_plane(const Scene& scene, const Tree& tree, const Eigen:
   const auto poses = tree.zero_poses();
   const Eigen::Vector3d normal = basis.col(2);
   constexpr double angle_tolerance = 1e-10;
+  DrivesOfLoops drives = drives_of_loops(scene);
   for (const LoopSpec& spec : scene.loops) {
+    if (spec.kind == LoopKind::coupler) continue;
+    const LoopDrives& own = drives[spec.name];
+    for (int i = 0; i < 3; ++i) {
+      const Eigen::Vector3d along = zero_rotation(tree, poses, tree.body(spec.parent)).col(i);
+      if (own.origin[static_cast<std::size_t>(i)] && std::abs(along.dot(normal)) > angle_tolerance)
+        return "the origin of loop '" + spec.name + "' is driven out of the plane of the joints";
+    }
+    if (spec.kind == LoopKind::spherical && own.drives_coordinates())
+      return "loop '" + spec.name + "' is of a kind that only space has";
     const Eigen::Matrix3d in_b =
         zero_rotation(tree, poses, tree.body(spec.parent)) * spec.rotation.toRotationMatrix();
     const Eigen::Matrix3d in_a = zero_rotation(tree, poses, tree.body(spec.child));
@@ -173,40 +269,10 @@ std::string loops_leave_plane(const Scene& scene, const Tree& tree, const Eigen:
 
 std::vector<RowName> row_names(const Scene& scene, bool planar) {
   std::vector<RowName> names;
-  const std::array<const char*, 3> point{"point along axis 1", "point along axis 2",
-                                         "point along axis 3"};
-  for (const LoopSpec& spec : scene.loops) {
-    const auto add = [&](const std::string& what) { names.push_back({spec.name, what}); };
-    if (spec.kind == LoopKind::distance) {
-      add("distance");
-      continue;
-    }
-    const bool slides = spec.kind == LoopKind::prismatic;
-    const bool locked = slides || spec.kind == LoopKind::weld;
-    if (planar) {
-      if (!slides) add("point along axis 1");
-      add(slides ? "point across the slide" : "point along axis 2");
-      if (locked) add("angle");
-      continue;
-    }
-    if (spec.kind == LoopKind::planar) {
-      add(point[2]);
-    } else {
-      for (std::size_t i = 0; i < (slides || spec.kind == LoopKind::cylindrical ? 2u : 3u); ++i)
-        add(point[i]);
-    }
-    if (spec.kind == LoopKind::universal) {
-      add("second axis against axis 3");
-    } else if (spec.kind == LoopKind::revolute || spec.kind == LoopKind::cylindrical ||
-               spec.kind == LoopKind::planar) {
-      add("axis 3 against axis 1");
-      add("axis 3 against axis 2");
-    } else if (locked) {
-      add("axis 1 against axis 2");
-      add("axis 2 against axis 3");
-      add("axis 3 against axis 1");
-    }
-  }
+  DrivesOfLoops drives = drives_of_loops(scene);
+  for (const LoopSpec& spec : scene.loops)
+    for (const std::string& what : choose_rows(spec, drives[spec.name], planar).names)
+      names.push_back({spec.name, what});
   return names;
 }
 

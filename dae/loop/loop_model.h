@@ -2,23 +2,31 @@
 // Loops cast into one algebra: for every loop its two bodies, the points and axes it ties together,
 // and which rows.
 //
-// Body A is the loop's child, B its parent; b_j are axes fixed in B, a_i axes fixed in A; D = x_A −
-// x_B.
+// Body A is the loop's child, B its parent; b_j are axes of B, a_i axes of A; D = x_A − x_B.
 //   D_j    b_j · D                      point on a plane through x_B
 //   O_ij   a_i · b_j − γ                two axes at a fixed angle, mostly a right one
-//   L      (D · D − l²) / (2 l)         distance, in metres
+//   L      (D · D − l²) / (2 l₀)        distance, in metres; l₀: l at the start
+//   Q      Σ rᵢ qᵢ − c                  coordinates of joints
 //
 //   point, spherical  D1 D2 D3          revolute about axis 3   D1 D2 D3, O31 O32
 //   weld              D1 D2 D3, O12 O23 O31      prismatic along axis 3   D1 D2, O12 O23 O31
 //   universal, axes b_3, a_1  D1 D2 D3, O13          cylindrical along axis 3   D1 D2, O31 O32
 //   planar across axis 3      D3, O31 O32            distance                   L
+//   coupler                   Q
 // In a plane: point, spherical, revolute D1 D2; weld D1 D2 O12; prismatic D (across), O12; distance
 // L.
+//
+// Drives make these functions of time: x_B and b_j move relative to B as prescribed, a_i relative
+// to A, l and c change. A driven coordinate of a loop adds a row: a driven slide the D along it,
+// with x_B shifted by its displacement; a driven angle θ the O12 about its axis, with the a_i
+// turned back by θ, so that the row is sin of what the angle is off and as good at every θ. A
+// driven universal or spherical loop leaves a hinge, or nothing: loop_choice.cpp.
 
 #include <momenta/core/kernel/model.h>
 
 #include <array>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace momenta {
@@ -26,9 +34,17 @@ namespace momenta {
 template <class Space>
 struct LoopModel {
   using Vector = typename Space::template Vector<double>;
+  /// Angular velocity: a vector in space, a number in the plane.
+  using Angular = decltype(cross(Vector{}, Vector{}));
 
+  /// Of a coupler: one free coordinate.
+  struct Coupled {
+    int body = 0;  ///< whose joint it is
+    int q = 0, u = 0;
+    double ratio = 0;
+  };
   struct Loop {
-    int a = -1, b = -1;                    ///< bodies, −1: ground
+    int a = -1, b = -1;                    ///< bodies, −1: ground, and both of a coupler
     int row = 0, rows = 0;                 ///< place in Φ
     Vector at_a, at_b;                     ///< points, body axes
     std::array<Vector, 3> axis_a, axis_b;  ///< axes, body axes
@@ -36,19 +52,52 @@ struct LoopModel {
     int n_points = 0;
     std::array<std::pair<int, int>, 3> axes{};  ///< (i, j) of the O_ij rows
     int n_axes = 0;
-    double gamma = 0;    ///< universal: cosine of the angle between the two axes
-    double length = 0;   ///< distance loops; then the only row
-    double across2 = 0;  ///< squared distance across the plane of a planar scene
+    double gamma = 0;             ///< universal: cosine of the angle between the two axes
+    double per_length = 0;        ///< distance: 1/l₀; then L is the only row
+    double given = 0;             ///< l or c
+    double across2 = 0;           ///< squared distance across the plane of a planar scene
+    std::vector<Coupled> joints;  ///< coupler: then Q is the only row
+    int motion = -1;              ///< place in `motions`; −1: nothing is prescribed
+
+    bool is_distance() const { return per_length > 0; }
+    bool is_coupler() const { return !joints.empty(); }
+    /// Rows of the first unit: points, a distance or a coupling. Those of axes follow.
+    int first_rows() const { return is_distance() || is_coupler() ? 1 : n_points; }
+  };
+
+  /// What drives prescribe of one loop, and where that stands at one time.
+  struct Motion {
+    struct Slide {
+      MotionLaw law;
+      Vector along;  ///< x_B moves by f along, axes of B
+    };
+    struct Turn {
+      MotionLaw law;
+      Angular axis;  ///< the axes are turned by f about it, axes of the body
+    };
+    std::vector<Slide> slides;
+    std::vector<Turn> turns_a, turns_b;                 ///< R = R₁(f₁) R₂(f₂) …
+    std::vector<std::pair<double, MotionLaw>> numbers;  ///< l or c is given + Σ factor · f
+    // As the loop would be with every f zero.
+    Vector at_b{};
+    std::array<Vector, 3> axis_a{}, axis_b{};
+    double given = 0;
+
+    // At the time of LoopsInTime: rates relative to the bodies, in their axes.
+    Vector v{}, a{};                                                       ///< of x_B
+    Angular turning_a{}, turning_a_rate{}, turning_b{}, turning_b_rate{};  ///< of a_i and b_j
+    double given_rate = 0, given_second = 0;
   };
 
   std::vector<Loop> loops;
+  std::vector<Motion> motions;
   int rows = 0;  ///< m, size of Φ
 };
 
 /// One row of Φ by name: what a rank report or a failure message calls it.
 struct RowName {
   std::string loop;
-  std::string what;  ///< "point along axis 1", "axis 3 against axis 1", "distance"
+  std::string what;  ///< "point along axis 1", "axis 3 against axis 1", "distance, driven"
 };
 
 LoopModel<Spatial> build_loops(const Scene& scene, const Tree& tree, const Model<Spatial>& model);

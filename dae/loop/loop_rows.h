@@ -1,21 +1,27 @@
 #pragma once
 // The loop equations at three levels, their impulses and the inertial rates of those, for one
-// algebra and one scalar. u_A, u_B: velocities of the two points; ω_a, ω_b: angular velocities; s:
-// the impulse σ of the row.
+// algebra and one scalar. u_A, u_B: velocities of the two points; w_a, w_b: angular velocities of
+// the axes; both with what drives prescribe relative to the bodies; s: the impulse σ of the row.
 //
-//          Φ̇                                      wrench on A          inertial rate N on A at
-//          fixed σ
-//   D_j    b·(u_A − u_B) + (ω_b × b)·D            force b s at x_A     force (ω_b × b) s at x_A,
-//   couple u_A × b s O_ij   (a × b)·(ω_a − ω_b)                    couple (a × b) s     couple
-//   [(ω_a × a) × b + a × (ω_b × b)] s L      D·(u_A − u_B)/l                        force D s/l at
-//   x_A   force (u_A − u_B) s/l at x_A, couple u_A × D s/l
+//   D_j   Φ̇ = b·(u_A − u_B) + (w_b × b)·D            impulse on A: force b s at x_A
+//         N on A: force (w_b × b) s at x_A, couple u_A × b s
+//   O_ij  Φ̇ = (a × b)·(w_a − w_b)                    impulse on A: couple (a × b) s
+//         N on A: couple [(w_a × a) × b + a × (w_b × b)] s
+//   L     Φ̇ = (D·(u_A − u_B) − l l̇)/l₀               impulse on A: force D s/l₀ at x_A
+//         N on A: force (u_A − u_B) s/l₀ at x_A, couple u_A × D s/l₀
+//   Q     Φ̇ = Σ rᵢ uᵢ − ċ                            no impulse on bodies: pᵢ += rᵢ s
+//         N: none
+//
+// N is the inertial rate of the impulse at fixed σ.
+//
 // On B act the exact negatives, with the same line of action. N = (d/dt Jᵀ)σ + Ω × w: it is added
 // to the applied wrenches T, because Ω × P* in (35) takes the part Ω × w away again. With this, p =
-// EᵀP*_aug is row 1 of (7) and (35) is (8), without M or Φ_q.
+// EᵀP*_aug + Σ r σ is row 1 of (7) and (35) is (8), without M or Φ_q. Φ̇_qᵀσ has its part from
+// moving rows in it, Φ_qt σ, because u_B, w_a and w_b have the prescribed motion in them.
 
 #include <momenta/core/kernel/points.h>
 #include <momenta/core/scalar/dual.h>
-#include <momenta/dae/loop/loop_model.h>
+#include <momenta/dae/loop/loops_in_time.h>
 
 namespace momenta {
 
@@ -37,13 +43,19 @@ class LoopRows {
   using Angular = decltype(cross(Vector{}, Vector{}));  ///< Vec3 in space, S in the plane
 
   LoopRows(const LoopModel<Space>& model, Workspace<Space, S>& w)
-      : model_(model), w_(w), at_(model.loops.size()) {}
+      : in_time_(model), model_(&model), w_(w), at_(model.loops.size()) {}
 
-  /// Points and axes in ground components; needs poses.
-  void place() {
+  /// Points and axes in ground components; needs poses at (t, q).
+  void place(double t, const S* q) {
+    model_ = &in_time_.at(t);
     for (std::size_t i = 0; i < at_.size(); ++i) {
-      const auto& l = model_.loops[i];
+      const auto& l = model_->loops[i];
       auto& s = at_[i];
+      if (l.is_coupler()) {
+        s.position = S(-l.given);
+        for (const auto& c : l.joints) s.position += c.ratio * q[c.q];
+        continue;
+      }
       s.x_a = point_position(w_, l.a, l.at_a);
       s.x_b = point_position(w_, l.b, l.at_b);
       s.D = s.x_a - s.x_b;
@@ -54,15 +66,38 @@ class LoopRows {
     }
   }
 
-  /// Point and angular velocities; needs velocities.
-  void move() {
+  /// Point and angular velocities; needs velocities. `u` null: zero rates.
+  void move(const S* u) {
     for (std::size_t i = 0; i < at_.size(); ++i) {
-      const auto& l = model_.loops[i];
+      const auto& l = model_->loops[i];
       auto& s = at_[i];
+      if (l.is_coupler()) {
+        s.rate = S(-given_rate(l));
+        for (const auto& c : l.joints)
+          if (u) s.rate += c.ratio * u[c.u];
+        continue;
+      }
       s.u_a = point_velocity(w_, l.a, s.x_a);
       s.u_b = point_velocity(w_, l.b, s.x_b);
       s.w_a = angular_velocity(w_, l.a);
       s.w_b = angular_velocity(w_, l.b);
+      if (l.motion < 0) continue;
+      const auto& m = motion(l);
+      s.u_b += to_ground(w_, l.b, m.v);
+      s.w_a += turning_in_ground(l.a, m.turning_a);
+      s.w_b += turning_in_ground(l.b, m.turning_b);
+    }
+  }
+
+  /// Accelerations of couplers; `udot` null: zero.
+  void accelerate(const S* udot) {
+    for (std::size_t i = 0; i < at_.size(); ++i) {
+      const auto& l = model_->loops[i];
+      if (!l.is_coupler()) continue;
+      S& second = at_[i].second;
+      second = S(l.motion < 0 ? 0.0 : -motion(l).given_second);
+      for (const auto& c : l.joints)
+        if (udot) second += c.ratio * udot[c.u];
     }
   }
 
@@ -73,8 +108,9 @@ class LoopRows {
                phi[row] = dot(a, b) - l.gamma;
              },
              [&](int row, const auto& l, const At& s) {
-               phi[row] = (dot(s.D, s.D) + (l.across2 - l.length * l.length)) * (0.5 / l.length);
-             });
+               phi[row] = (dot(s.D, s.D) + (l.across2 - l.given * l.given)) * (0.5 * l.per_length);
+             },
+             [&](int row, const At& s) { phi[row] = s.position; });
   }
 
   /// Φ̇ (m) for the velocities of the last move().
@@ -87,31 +123,36 @@ class LoopRows {
           rate[row] = inner(cross(a, b), s.w_a - s.w_b);
         },
         [&](int row, const auto& l, const At& s) {
-          rate[row] = dot(s.D, s.u_a - s.u_b) * (1.0 / l.length);
-        });
+          rate[row] = (dot(s.D, s.u_a - s.u_b) - l.given * given_rate(l)) * l.per_length;
+        },
+        [&](int row, const At& s) { rate[row] = s.rate; });
   }
 
-  /// Φ̈ (m) for the accelerations body[k].A: with u̇ = 0 the bias (d/dt Φ_q) u + d/dt Φ_t.
+  /// Φ̈ (m) for the accelerations body[k].A and of accelerate(): with u̇ = 0 the bias (d/dt Φ_q) u +
+  /// d/dt Φ_t.
   void accelerations(S* rate) const {
-    const auto accelerate = [&](const auto& l, const At& s) -> Vector {
-      return point_acceleration(w_, l.a, s.x_a) - point_acceleration(w_, l.b, s.x_b);
-    };
     each_row(
         [&](int row, const auto& l, const At& s, const Vector& b) {
           const Vector bdot = cross(s.w_b, b);
-          const Vector bddot = cross(s.w_b, bdot) + cross(angular_acceleration(w_, l.b), b);
-          rate[row] = dot(b, accelerate(l, s)) + 2.0 * dot(bdot, s.u_a - s.u_b) + dot(bddot, s.D);
+          const Vector bddot = cross(s.w_b, bdot) + cross(turning_b(l), b);
+          rate[row] =
+              dot(b, acceleration_apart(l, s)) + 2.0 * dot(bdot, s.u_a - s.u_b) + dot(bddot, s.D);
         },
         [&](int row, const auto& l, const At& s, const Vector& a, const Vector& b) {
           const Vector adot = cross(s.w_a, a), bdot = cross(s.w_b, b);
-          rate[row] =
-              inner(cross(a, b), angular_acceleration(w_, l.a) - angular_acceleration(w_, l.b)) +
-              dot(cross(s.w_a, adot), b) + 2.0 * dot(adot, bdot) + dot(a, cross(s.w_b, bdot));
+          rate[row] = inner(cross(a, b), turning_a(l) - turning_b(l)) + dot(cross(s.w_a, adot), b) +
+                      2.0 * dot(adot, bdot) + dot(a, cross(s.w_b, bdot));
         },
         [&](int row, const auto& l, const At& s) {
           const Vector rel = s.u_a - s.u_b;
-          rate[row] = (dot(s.D, accelerate(l, s)) + dot(rel, rel)) * (1.0 / l.length);
-        });
+          double given = 0;
+          if (l.motion >= 0) {
+            const auto& m = motion(l);
+            given = m.given_rate * m.given_rate + l.given * m.given_second;
+          }
+          rate[row] = (dot(s.D, acceleration_apart(l, s)) + dot(rel, rel) - given) * l.per_length;
+        },
+        [&](int row, const At& s) { rate[row] = s.second; });
   }
 
   /// Adds the wrenches of the impulses `sigma`, times `factor`, to the bodies' forces chosen by
@@ -139,9 +180,16 @@ class LoopRows {
         true);
   }
 
-  /// Unit wrench of a row on its bodies, in the axes of the sweeps: the start of a row of Φ_q.
+  /// Adds the impulses of couplers, times `factor`, to the momenta or forces of joints (nv).
+  void add_couplings(const S* sigma, double factor, S* on_joints) const {
+    for (const auto& l : model_->loops)
+      for (const auto& c : l.joints) on_joints[c.u] += (factor * c.ratio) * sigma[l.row];
+  }
+
+  /// Unit wrench of a row on its bodies, none of couplers, in the axes of the sweeps: the start of
+  /// a row of Φ_q.
   void unit_wrench(std::size_t loop, int row_of_loop, Force& on_a, Force& on_b) const {
-    const auto& l = model_.loops[loop];
+    const auto& l = model_->loops[loop];
     const At& s = at_[loop];
     on_a = {};
     on_b = {};
@@ -149,8 +197,9 @@ class LoopRows {
       if (l.a >= 0) add_force(w_, l.a, s.x_a, f, on_a);
       if (l.b >= 0) add_force(w_, l.b, s.x_a, -f, on_b);
     };
-    if (l.length > 0) {
-      push(S(1.0 / l.length) * s.D);
+    if (l.is_coupler()) return;
+    if (l.is_distance()) {
+      push(S(l.per_length) * s.D);
     } else if (row_of_loop < l.n_points) {
       push(s.b[static_cast<std::size_t>(l.points[static_cast<std::size_t>(row_of_loop)])]);
     } else {
@@ -161,23 +210,65 @@ class LoopRows {
     }
   }
 
-  const LoopModel<Space>& model() const { return model_; }
+  const LoopModel<Space>& model() const { return *model_; }
 
  private:
   struct At {
     Vector x_a, x_b, D, u_a, u_b;
     Angular w_a{}, w_b{};
     std::array<Vector, 3> a, b;
+    S position{}, rate{}, second{};  ///< of a coupler
   };
+  using Loop = typename LoopModel<Space>::Loop;
 
-  template <class Point, class Axes, class Distance>
-  void each_row(Point&& point, Axes&& axes, Distance&& distance) const {
+  const auto& motion(const Loop& l) const {
+    return model_->motions[static_cast<std::size_t>(l.motion)];
+  }
+  double given_rate(const Loop& l) const { return l.motion < 0 ? 0.0 : motion(l).given_rate; }
+  Angular turning_in_ground(int k, const typename LoopModel<Space>::Angular& w) const {
+    if constexpr (Space::dimension == 3)
+      return S(w);
+    else
+      return to_ground(w_, k, w);
+  }
+  /// Angular acceleration of axes on body k that turn by `w` relative to it, ẇ in body axes.
+  Angular turning(int k, const typename LoopModel<Space>::Angular& w,
+                  const typename LoopModel<Space>::Angular& rate) const {
+    Angular sum = angular_acceleration(w_, k) + turning_in_ground(k, rate);
+    if constexpr (Space::dimension == 6)
+      sum += cross(angular_velocity(w_, k), turning_in_ground(k, w));
+    return sum;
+  }
+  Angular turning_a(const Loop& l) const {
+    if (l.motion < 0) return angular_acceleration(w_, l.a);
+    return turning(l.a, motion(l).turning_a, motion(l).turning_a_rate);
+  }
+  Angular turning_b(const Loop& l) const {
+    if (l.motion < 0) return angular_acceleration(w_, l.b);
+    return turning(l.b, motion(l).turning_b, motion(l).turning_b_rate);
+  }
+  /// d/dt (u_A − u_B); x_B moves on B with v and a: its own + 2 ω × v + a.
+  Vector acceleration_apart(const Loop& l, const At& s) const {
+    Vector apart = point_acceleration(w_, l.a, s.x_a) - point_acceleration(w_, l.b, s.x_b);
+    if (l.motion < 0) return apart;
+    const auto& m = motion(l);
+    apart -=
+        2.0 * cross(angular_velocity(w_, l.b), to_ground(w_, l.b, m.v)) + to_ground(w_, l.b, m.a);
+    return apart;
+  }
+
+  template <class Point, class Axes, class Distance, class Coupling>
+  void each_row(Point&& point, Axes&& axes, Distance&& distance, Coupling&& coupling) const {
     for (std::size_t i = 0; i < at_.size(); ++i) {
-      const auto& l = model_.loops[i];
+      const auto& l = model_->loops[i];
       const At& s = at_[i];
       int row = l.row;
-      if (l.length > 0) {
+      if (l.is_distance()) {
         distance(row, l, s);
+        continue;
+      }
+      if (l.is_coupler()) {
+        coupling(row, s);
         continue;
       }
       for (int j = 0; j < l.n_points; ++j)
@@ -195,13 +286,14 @@ class LoopRows {
   void each_loop_wrench(const S* sigma, double factor, Field field, Point&& point, Axes&& axes,
                         bool rate) {
     for (std::size_t i = 0; i < at_.size(); ++i) {
-      const auto& l = model_.loops[i];
+      const auto& l = model_->loops[i];
       const At& s = at_[i];
+      if (l.is_coupler()) continue;
       Vector force{}, impulse{};
       Angular couple{};
       int row = l.row;
-      if (l.length > 0) {
-        const S scaled = sigma[row] * (factor / l.length);
+      if (l.is_distance()) {
+        const S scaled = sigma[row] * (factor * l.per_length);
         if (rate) {
           force = scaled * (s.u_a - s.u_b);
           impulse = scaled * s.D;
@@ -236,7 +328,8 @@ class LoopRows {
     }
   }
 
-  const LoopModel<Space>& model_;
+  LoopsInTime<Space> in_time_;
+  const LoopModel<Space>* model_;  ///< at the time of place()
   Workspace<Space, S>& w_;
   std::vector<At> at_;
 };

@@ -68,10 +68,15 @@ Reactions in(const Mechanism& mechanism, const Model<Space>& model, double t,
   if (mechanism.m() > 0) {
     const LoopModel<Space> loop_model = build_loops(scene, tree, model);
     LoopRows<Space, double> loops(loop_model, w);
-    loops.place();
+    loops.place(t, q.data());
     loops.add_wrenches(lambda.data(), -1.0, [](auto& body) -> Force& { return body.T; });
     for (std::size_t i = 0; i < scene.loops.size(); ++i) {
       const auto& l = loop_model.loops[i];
+      if (l.is_coupler()) {  // no body feels it but through its joints
+        const Eigen::Vector3d none = Eigen::Vector3d::Zero();
+        all.loops.push_back({scene.loops[i].name, none, none, none});
+        continue;
+      }
       Force on_child{};
       for (int row = 0; row < l.rows; ++row) {
         Force a, b;

@@ -31,6 +31,19 @@ constexpr FormIndex indices[] = {
     {"stabilised-index2", "2"},
 };
 
+/// "ground - rocker", "A, B" of a coupler; and whether drives prescribe something of it.
+std::string loop_in_words(const Scene& scene, const LoopSpec& loop) {
+  std::string words;
+  if (loop.kind == LoopKind::coupler) {
+    for (const std::string& joint : loop.joints) words += (words.empty() ? "" : ", ") + joint;
+  } else {
+    words = loop.parent + " - " + loop.child;
+  }
+  for (const DriveSpec& drive : scene.drives)
+    if (drive.loop == loop.name) return words + ", driven";
+  return words;
+}
+
 }  // namespace
 
 int check(const Options& o) {
@@ -91,7 +104,8 @@ int check(const Options& o) {
                 std::string(reading::name_of(kinds.at(b.joint))).c_str(), b.name.c_str(), b.mass);
   }
   for (const auto& loop : mechanism->scene().loops)
-    std::printf("  loop %s: %s - %s\n", loop.name.c_str(), loop.parent.c_str(), loop.child.c_str());
+    std::printf("  loop %s: %s\n", loop.name.c_str(),
+                loop_in_words(mechanism->scene(), loop).c_str());
   std::printf(
       "\n  %zu bodies, %d coordinates, %d rates, %d loop equations of rank %d: mobility %d\n",
       mechanism->scene().bodies.size(), mechanism->nq(), mechanism->nv(), mechanism->m(), a.rank,

@@ -2,7 +2,9 @@
 
 #include <momenta/dae/joint_places.h>
 
+#include <array>
 #include <cstdio>
+#include <map>
 
 #include "json_writer.h"
 #include "options.h"
@@ -92,12 +94,28 @@ class Document {
         v.push_back(rate);
         acceleration.push_back(second);
       }
-      w_.open(joint.name);
-      w_.numbers("q", q);
-      w_.numbers("v", v);
-      w_.numbers("acceleration", acceleration);
-      w_.close();
+      prescribed(joint.name, q, v, acceleration);
     }
+    std::map<std::string, std::array<std::vector<double>, 3>> of_loops;  // in the order of drives
+    for (const DriveSpec& drive : mechanism_.scene().drives) {
+      if (drive.loop.empty()) continue;
+      double f, rate, second;
+      MotionLaw(drive).evaluate(given_.t, f, rate, second);
+      auto& [q, v, acceleration] = of_loops[drive.loop];
+      q.push_back(f);
+      v.push_back(rate);
+      acceleration.push_back(second);
+    }
+    for (const auto& [name, x] : of_loops) prescribed(name, x[0], x[1], x[2]);
+    w_.close();
+  }
+
+  void prescribed(const std::string& name, const std::vector<double>& q,
+                  const std::vector<double>& v, const std::vector<double>& acceleration) {
+    w_.open(name);
+    w_.numbers("q", q);
+    w_.numbers("v", v);
+    w_.numbers("acceleration", acceleration);
     w_.close();
   }
 
@@ -105,7 +123,8 @@ class Document {
     w_.open("loops");
     const std::vector<RowName>& rows = mechanism_.rows();
     std::size_t row = 0;  // rows stand loop by loop
-    for (const Transmitted& r : s_.reactions.loops) {
+    for (std::size_t i = 0; i < s_.reactions.loops.size(); ++i) {
+      const Transmitted& r = s_.reactions.loops[i];
       const auto first = static_cast<Eigen::Index>(row);
       std::vector<std::string> what;
       for (; row < rows.size() && rows[row].loop == r.name; ++row) what.push_back(rows[row].what);
@@ -116,7 +135,7 @@ class Document {
       w_.numbers("phidot", s_.phidot.segment(first, count));
       w_.numbers("sigma", s_.sigma.segment(first, count));
       w_.numbers("lambda", s_.lambda.segment(first, count));
-      wrench(r);
+      if (mechanism_.scene().loops[i].kind != LoopKind::coupler) wrench(r);
       w_.close();
     }
     w_.close();

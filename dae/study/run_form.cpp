@@ -250,6 +250,21 @@ std::string default_integrator(const std::string& form) {
   return is_dae_form(form) ? "ida" : "dop853";
 }
 
+namespace {
+
+/// Whether a coupler ties angles alone, so that its λ is a moment.
+bool couples_angles(const Mechanism& mechanism, const std::string& coupler) {
+  for (const LoopSpec& l : mechanism.scene().loops)
+    for (std::size_t i = 0; l.name == coupler && i < l.joints.size(); ++i)
+      for (const Tree::Body& b : mechanism.tree().bodies)
+        if (b.joint == l.joints[i] && b.kind == JointKind::prismatic &&
+            b.coordinate == (l.coordinates.empty() ? 0 : l.coordinates[i]))
+          return false;
+  return true;
+}
+
+}  // namespace
+
 std::vector<std::string> trajectory_columns(const Mechanism& mechanism) {
   std::vector<std::string> columns{"t [s]"};
   const auto add = [&](const std::vector<Column>& more) {
@@ -267,7 +282,9 @@ std::vector<std::string> trajectory_columns(const Mechanism& mechanism) {
   for (const auto& row : mechanism.rows()) {
     number = row.loop == loop ? number + 1 : 1;
     loop = row.loop;
-    const bool couple = row.what.rfind("axis", 0) == 0 || row.what == "angle";
+    const bool couple = row.what.find("against") != std::string::npos ||
+                        row.what.rfind("angle", 0) == 0 ||
+                        (row.what.rfind("coupling", 0) == 0 && couples_angles(mechanism, loop));
     columns.push_back(loop + ".lambda" + std::to_string(number) + (couple ? " [N m]" : " [N]"));
   }
   return columns;

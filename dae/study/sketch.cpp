@@ -21,6 +21,7 @@ Eigen::Matrix<double, 2, 3> view(const Mechanism& mechanism) {
 Sketch sketch(const Mechanism& mechanism, double t, const Eigen::VectorXd& q) {
   Scene open = mechanism.scene();
   open.loops.clear();
+  std::erase_if(open.drives, [](const DriveSpec& drive) { return !drive.loop.empty(); });
   OpenChain chain(open);
   const auto poses = chain.poses(t, q);
   const auto page = view(mechanism);
@@ -46,7 +47,7 @@ Sketch sketch(const Mechanism& mechanism, double t, const Eigen::VectorXd& q) {
       if (joint.parent == body.name) add(joint.origin_parent);
     };
     for (const auto& joint : scene.joints) touch(joint);
-    for (const auto& loop : scene.loops) touch(loop);
+    for (const auto& loop : scene.loops) touch(loop);  // a coupler touches no body
     if (body.shape.kind == "rod") add(body.shape.size.x() * body.shape.axis);
     if (corners.size() < 2) add(body.com);
     Sketch::Line line{body.name, {}};
@@ -58,7 +59,8 @@ Sketch sketch(const Mechanism& mechanism, double t, const Eigen::VectorXd& q) {
     s.points.push_back({joint.name, joint.parent == "ground" ? "ground" : "joint",
                         place(joint.parent, joint.origin_parent)});
   for (const auto& loop : scene.loops)
-    s.points.push_back({loop.name, "loop", place(loop.child, loop.origin_child)});
+    if (loop.kind != LoopKind::coupler)
+      s.points.push_back({loop.name, "loop", place(loop.child, loop.origin_child)});
   for (const auto& marker : scene.markers)
     s.points.push_back({marker.name, "marker", place(marker.body, marker.point)});
   return s;

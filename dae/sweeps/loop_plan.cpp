@@ -1,6 +1,7 @@
 #include <momenta/dae/sweeps/loop_plan.h>
 
 #include <algorithm>
+#include <set>
 
 namespace momenta {
 namespace {
@@ -29,6 +30,29 @@ Way way_of(const std::vector<int>& parents, const LoopShape& loop) {
   }
   way.closes_at = a;
   if (a >= 0) way.fronts.push_back(a);
+  return way;
+}
+
+/// Climbs from all joints at once, the last body first, until every way has passed its joint and
+/// they have met.
+Way way_of_coupler(const std::vector<int>& parents, const LoopShape& coupler) {
+  std::set<int> at, joints;
+  for (const auto& [body, ratio] : coupler.joints) joints.insert(body);
+  at = joints;
+  Way way;
+  while (*at.rbegin() >= 0 && (at.size() > 1 || *at.rbegin() >= *joints.begin())) {
+    const int k = *at.rbegin();
+    at.erase(k);
+    way.fronts.push_back(k);
+    const int parent = parents[static_cast<std::size_t>(k)];
+    if (parent < 0) {
+      way.root_b = way.root_b < 0 ? k : way.root_b;  // the last root
+      way.root_a = k;
+    }
+    at.insert(parent);
+  }
+  way.closes_at = *at.rbegin();
+  if (way.closes_at >= 0) way.fronts.push_back(way.closes_at);
   return way;
 }
 
@@ -95,6 +119,7 @@ LoopPlan planned(const std::vector<int>& parents, const std::vector<LoopShape>& 
     if (k >= 0) plan.takes_legs[static_cast<std::size_t>(k)] = 1;
   std::vector<std::uint64_t> used(n, 0), used_at_ground(n, 0);
   std::vector<std::vector<LoopPlan::End>> ends(n);
+  std::vector<std::vector<LoopPlan::Coupling>> couplings(n);
   std::vector<std::vector<int>> closings(n), ground_closings(n);
   std::vector<int> roots;  // ascending
   for (std::size_t k = 0; k < n; ++k)
@@ -111,7 +136,7 @@ LoopPlan planned(const std::vector<int>& parents, const std::vector<LoopShape>& 
           leg = std::max(leg, root);
     LoopShape open = loop;
     if (leg >= 0) (leg == root_a ? open.b : open.a) = -1;
-    const Way way = way_of(parents, open);
+    const Way way = loop.joints.empty() ? way_of(parents, open) : way_of_coupler(parents, loop);
     std::vector<int> gathered;
     if (way.closes_at < 0) {
       const int a = way.root_a < 0 ? way.root_b : way.root_a,
@@ -136,6 +161,9 @@ LoopPlan planned(const std::vector<int>& parents, const std::vector<LoopShape>& 
       for (const int k : gathered) used_at_ground[static_cast<std::size_t>(k)] |= own;
     }
     plan.pair.push_back(loop.pair);
+    for (const auto& [body, ratio] : loop.joints)
+      couplings[static_cast<std::size_t>(body)].push_back(
+          {static_cast<int>(i), ratio, body == loop.joints.front().first});
     for (int end : {loop.a, loop.b})
       for (int k = end; k >= 0 && !plan.posed[static_cast<std::size_t>(k)];
            k = parents[static_cast<std::size_t>(k)])
@@ -147,6 +175,7 @@ LoopPlan planned(const std::vector<int>& parents, const std::vector<LoopShape>& 
       ends[static_cast<std::size_t>(open.b)].push_back({static_cast<int>(i), false, open.a < 0});
   }
   plan.ends_of = ranges(ends, plan.ends);
+  plan.couplings_of = ranges(couplings, plan.couplings);
   plan.closings_of = ranges(closings, plan.closings);
   plan.ground_closings_of = ranges(ground_closings, plan.closings);
   plan.folded_onto = std::move(folded_onto);
@@ -158,7 +187,7 @@ LoopPlan planned(const std::vector<int>& parents, const std::vector<LoopShape>& 
 LoopPlan plan_loops(const std::vector<int>& parents, const std::vector<LoopShape>& loops,
                     bool may_fold) {
   LoopPlan plan = planned(parents, loops, std::vector<int>(parents.size(), -1));
-  if (plan.fits() || !may_fold) return plan;
+  if (plan.fits() || !may_fold || plan.couples()) return plan;
   return planned(parents, loops, foldable_legs(parents, loops));
 }
 

@@ -2,6 +2,9 @@
 // How the sweeps carry loops: which lanes a loop's equations keep, at which bodies its ends enter,
 // and where it closes: at the lowest common ancestor of its two bodies.
 //
+// A coupler has no ends. It is open where its joints are eliminated and above, and closes once all
+// of them are: at the lowest common ancestor of their parents.
+//
 // Two loops that are open in one front need different lanes: greedy colouring of the fronts, loop
 // by loop in the order of the scene. At the ground, fronts of the tree's roots are gathered one
 // after the other, last root first; a loop between roots is open there from the later root to the
@@ -26,12 +29,19 @@ struct LoopPlan {
     bool on_a = true;   ///< body A of the loop, the one whose wrench acts as written
     bool first = true;  ///< the end that brings the loop's right-hand side along
   };
+  struct Coupling {
+    int loop = 0;
+    double ratio = 0;
+    bool first = true;
+  };
   struct Range {
     int first = 0, last = 0;  ///< [first, last)
   };
 
   std::vector<End> ends;                  ///< by body
   std::vector<Range> ends_of;             ///< per body, into ends
+  std::vector<Coupling> couplings;        ///< by body, of its joint
+  std::vector<Range> couplings_of;        ///< per body, into couplings
   std::vector<int> closings;              ///< loops, by the body that closes them, in closing order
   std::vector<Range> closings_of;         ///< per body, into closings
   std::vector<Range> ground_closings_of;  ///< per body: only roots have some
@@ -41,13 +51,16 @@ struct LoopPlan {
   std::vector<char> takes_legs;  ///< per body: legs fold into it
   std::vector<char> posed;       ///< per body: carries an end of a loop, near or far
   int lanes = 0;                 ///< lanes needed
+  bool couples() const { return !couplings.empty(); }
   bool fits() const { return lanes <= most_lanes; }
 };
 
-/// A loop's bodies (−1: ground) and how many equations it has.
+/// A loop's bodies (−1: ground) and how many equations it has; of a coupler the bodies whose joints
+/// it ties, and their ratios.
 struct LoopShape {
   int a = -1, b = -1, rows = 0;
   bool pair = false;
+  std::vector<std::pair<int, double>> joints{};
 };
 
 /// `parents` in depth-first order, −1 for roots. O(bodies + length of all loops). Legs are folded

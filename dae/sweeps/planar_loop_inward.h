@@ -61,7 +61,7 @@ MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::close(const LoopPlan:
 template <class S, int Rows, bool Momentum>
 void LoopSweeps<Planar, S, Rows, Momentum>::close_any(int loop, Open& open, double fade) {
   const Loop& l = loops_->loops[static_cast<std::size_t>(loop)];
-  const int points = l.length > 0 ? 1 : l.n_points;
+  const int points = l.first_rows();
   close_loop(open.blocks, plan_->lane[static_cast<std::size_t>(loop)], points, l.rows - points,
              fade, &rows_[static_cast<std::size_t>(l.row)], PlanarWeight<S>{open.cargo});
 }
@@ -71,7 +71,7 @@ template <class In>
 bool LoopSweeps<Planar, S, Rows, Momentum>::inward(const In& r, const RightSide<S>& right) {
   const PlanarLink* links = tree_->links.data();
   const Vec2<double>& g = tree_->model->gravity;
-  const bool falls = !Momentum && tree_->model->has_gravity;
+  const bool falls = !Momentum && tree_->model->has_gravity, couples = plan_->couples();
   PlanarCargo<S> a{};
   Blocks o{}, ground{};
   for (std::size_t k = pins_.size(); k-- > 0;) {
@@ -103,7 +103,7 @@ bool LoopSweeps<Planar, S, Rows, Momentum>::inward(const In& r, const RightSide<
     if (closing.first != closing.last) close<true>(closing, a, o, right.fade);
     if (!l.pin) {
       Open here{a, o};
-      if (!general_inward(k, r, here)) {
+      if (!general_inward(k, r, right, here)) {
         stuck_ = static_cast<int>(k);
         return false;
       }
@@ -115,7 +115,14 @@ bool LoopSweeps<Planar, S, Rows, Momentum>::inward(const In& r, const RightSide<
         return false;
       }
       const S inverse = S(1.0) / a.I;
-      const S pk = l.sign < 0 ? -r[l.u] : S(r[l.u]);
+      S pk = l.sign < 0 ? -r[l.u] : S(r[l.u]);
+      if (couples)
+        each_coupling(*plan_, k, [&](const LoopPlan::Coupling& j, std::size_t loop, int lane) {
+          const double ratio = l.sign < 0 ? -j.ratio : j.ratio;
+          o.C[2].add(lane, S(ratio));
+          if (j.first) o.d.add(lane, coupled_[loop]);
+          if (right.centre) pk = pk - ratio * right.centre[loops_->loops[loop].row];
+        });
       const S e = pk - a.Dn;
       w.y0 = e * inverse;
       w.g = o.C[2] * inverse;
@@ -149,6 +156,10 @@ bool LoopSweeps<Planar, S, Rows, Momentum>::inward(const In& r, const RightSide<
         }
         Base::carry(a, w.rx, w.ry, pk);
         o.C[2] = o.C[1] * w.rx - o.C[0] * w.ry;
+        if (couples)
+          each_coupling(*plan_, k, [&](const LoopPlan::Coupling& j, std::size_t, int lane) {
+            o.C[2].add(lane, S(l.sign < 0 ? j.ratio : -j.ratio));
+          });
       }
     }
     if (l.parent < 0) {
@@ -172,7 +183,8 @@ bool LoopSweeps<Planar, S, Rows, Momentum>::inward(const In& r, const RightSide<
 /// Sliders, driven joints and welds.
 template <class S, int Rows, bool Momentum>
 template <class In>
-bool LoopSweeps<Planar, S, Rows, Momentum>::general_inward(std::size_t k, const In& r, Open& open) {
+bool LoopSweeps<Planar, S, Rows, Momentum>::general_inward(std::size_t k, const In& r,
+                                                           const RightSide<S>& right, Open& open) {
   const PlanarLink& l = tree_->links[k];
   const auto& b = Base::body(k);
   auto& x = joints_[static_cast<std::size_t>(l.record)];
@@ -183,7 +195,11 @@ bool LoopSweeps<Planar, S, Rows, Momentum>::general_inward(std::size_t k, const 
   x.M = Base::blocks(a);
   x.D = {{{a.Dx, a.Dy}}, a.Dn};
   for (int i = 0; i < 3; ++i) y.C[i] = o.C[i];
-  const S own = b.nv == 1 ? S(r[b.u]) : S(0.0);
+  S own = b.nv == 1 ? S(r[b.u]) : S(0.0);
+  if (right.centre)
+    each_coupling(*plan_, k, [&](const LoopPlan::Coupling& j, std::size_t loop, int) {
+      own = own - j.ratio * right.centre[loops_->loops[loop].row];
+    });
   Planar::ArticulatedInertia<S> M;
   if (!eliminate<Planar>(b, x, M)) return false;
   auto D = remainder<Planar>(b, x, &own);
@@ -191,7 +207,11 @@ bool LoopSweeps<Planar, S, Rows, Momentum>::general_inward(std::size_t k, const 
     Planar::Motion<S> E{};
     const S one(1.0);
     Joint<Planar>::add_motion(b, x.edge, &one, E);
-    const Lanes<S, Rows> c = o.C[0] * E[0] + o.C[1] * E[1] + o.C[2] * E[2];
+    Lanes<S, Rows> c = o.C[0] * E[0] + o.C[1] * E[1] + o.C[2] * E[2];
+    each_coupling(*plan_, k, [&](const LoopPlan::Coupling& j, std::size_t loop, int lane) {
+      c.add(lane, S(j.ratio));
+      if (j.first) o.d.add(lane, coupled_[loop]);
+    });
     y.g = c * x.pivot;
     o.d += y.g * x.e;
     o.scale += c * y.g;

@@ -158,6 +158,7 @@ void LoopSweeps<Planar, S, Rows, Momentum>::rates_inward(const In& q, const Righ
   for (std::size_t i = 0; i < places_.size(); ++i) {
     const Loop& l = loops_->loops[i];
     const Place& s = places_[i];
+    if (l.is_coupler()) continue;
     S Fx = zero, Fy = zero, c = zero, Nx = zero, Ny = zero, n = zero;
     const S wa = l.a < 0 ? zero : pins_[static_cast<std::size_t>(l.a)].omega;
     const S wb = l.b < 0 ? zero : pins_[static_cast<std::size_t>(l.b)].omega;
@@ -167,26 +168,36 @@ void LoopSweeps<Planar, S, Rows, Momentum>::rates_inward(const In& q, const Righ
       ux = A.vx - wa * s.ay;
       uy = A.vy + wa * s.ax;
     }
+    S turning_a = wa, turning_b = wb;  // of the axes
+    if (l.motion >= 0) {
+      turning_a = turning_a + motion(l).turning_a;
+      turning_b = turning_b + motion(l).turning_b;
+    }
     for (int row = 0; row < l.rows; ++row) {
       const S x = S(impulse[l.row + row]);
       Fx = Fx + x * s.Fx[row];
       Fy = Fy + x * s.Fy[row];
       c = c + x * s.c[row];
-      if (row >= l.n_points && l.length == 0) n = n + x * ((wb - wa) * s.turn[row]);
+      if (row >= l.n_points && !l.is_distance())
+        n = n + x * ((turning_b - turning_a) * s.turn[row]);
     }
-    if (l.length > 0) {  // F' = (u_A − u_B) σ / l
+    if (l.is_distance()) {  // F' = (u_A − u_B) σ / l₀
       S bx = zero, by = zero;
       if (l.b >= 0) {
         const LoopedPin<S, Rows>& B = pins_[static_cast<std::size_t>(l.b)];
         bx = B.vx - wb * (s.by - s.gap_y);
         by = B.vy + wb * (s.bx - s.gap_x);
       }
-      const S scaled = (S(impulse[l.row])) * (1.0 / l.length);
+      if (l.motion >= 0) {
+        bx = bx + moving_point(l).v[0];
+        by = by + moving_point(l).v[1];
+      }
+      const S scaled = (S(impulse[l.row])) * l.per_length;
       Nx = scaled * (ux - bx);
       Ny = scaled * (uy - by);
     } else {
-      Nx = -(wb * Fy);
-      Ny = wb * Fx;
+      Nx = -(turning_b * Fy);
+      Ny = turning_b * Fx;
     }
     n = n + (ux * Fy - uy * Fx) - right.leak * c;
     Nx = Nx - right.leak * Fx;
@@ -236,6 +247,7 @@ void LoopSweeps<Planar, S, Rows, Momentum>::rates_inward(const In& q, const Righ
       to.fn = to.fn + T.fn;
     }
   }
+  if (plan_->couples() && right.leak != 0) leak_of_couplers<S>(*loops_, right.leak, impulse, rate);
 }
 
 template <class S, int Rows, bool Momentum>

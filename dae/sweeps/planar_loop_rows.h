@@ -12,6 +12,8 @@ void LoopSweeps<Planar, S, Rows, Momentum>::place_loops() {
   for (std::size_t i = 0; i < places_.size(); ++i) {
     const Loop& l = loops_->loops[i];
     Place& s = places_[i];
+    if (l.is_coupler()) continue;
+    if (l.motion >= 0) place_moving(l);
     const auto in_ground = [&](int body, const Vec2<double>& v) {
       if (body < 0) return Vec2<S>{{S(v[0]), S(v[1])}};
       const auto k = static_cast<std::size_t>(body);
@@ -41,8 +43,8 @@ void LoopSweeps<Planar, S, Rows, Momentum>::place_loops() {
       s.c[0] = s.c[1] = S(0.0);
       continue;
     }
-    if (l.length > 0) {
-      const S inverse(1.0 / l.length);
+    if (l.is_distance()) {
+      const S inverse(l.per_length);
       s.Fx[0] = inverse * gap[0];
       s.Fy[0] = inverse * gap[1];
       s.c[0] = S(0.0);
@@ -66,22 +68,104 @@ void LoopSweeps<Planar, S, Rows, Momentum>::place_loops() {
   }
 }
 
-/// d of a row before the joints' shares: βΦ, or in the acceleration form J̇ V and the feedback.
+/// Prescribed motion of x_B in ground axes.
+template <class S, int Rows, bool Momentum>
+void LoopSweeps<Planar, S, Rows, Momentum>::place_moving(const Loop& l) {
+  MovingPoint& to = moving_[static_cast<std::size_t>(l.motion)];
+  const Motion& m = motion(l);
+  const auto in_ground = [&](const Vec2<double>& v) {
+    if (l.b < 0) return Vec2<S>{{S(v[0]), S(v[1])}};
+    const auto k = static_cast<std::size_t>(l.b);
+    const S c = angles_.cosine(k), e = angles_.sine(k);
+    return Vec2<S>{{c * v[0] - e * v[1], e * v[0] + c * v[1]}};
+  };
+  to = {in_ground(m.v), in_ground(m.a)};
+}
+
+/// d of couplers: −ċ, Φ, or in the acceleration form −c̈ and the feedback.
+template <class S, int Rows, bool Momentum>
+template <class In>
+void LoopSweeps<Planar, S, Rows, Momentum>::place_couplers(const In& q, const In& x,
+                                                           const RightSide<S>& right) {
+  for (std::size_t i = 0; i < places_.size(); ++i)
+    if (const Loop& l = loops_->loops[i]; l.is_coupler())
+      coupled_[i] = coupler_bias<Momentum>(*loops_, l, q, x, right);
+}
+
+/// Φ_t of a row.
+template <class S, int Rows, bool Momentum>
+S LoopSweeps<Planar, S, Rows, Momentum>::moving_rate(const Loop& l, const Place& s, int row) const {
+  const Motion& m = motion(l);
+  const Vec2<S>& v = moving_point(l).v;
+  const S along = s.Fx[row] * v[0] + s.Fy[row] * v[1];
+  if (l.is_distance()) return S(-(l.given * m.given_rate * l.per_length)) - along;
+  if (row >= l.n_points) return (m.turning_a - m.turning_b) * s.c[row];
+  return m.turning_b * (s.Fx[row] * s.gap_y - s.Fy[row] * s.gap_x) - along;
+}
+
+/// J̇ V + d/dt Φ_t and the feedback, from the total velocities of points and axes.
+template <class S, int Rows, bool Momentum>
+S LoopSweeps<Planar, S, Rows, Momentum>::moving_bias(const Loop& l, const Place& s, int row,
+                                                     const RightSide<S>& right,
+                                                     const S& phi) const {
+  const Motion& m = motion(l);
+  const MovingPoint& prescribed = moving_point(l);
+  const S Fx = s.Fx[row], Fy = s.Fy[row];
+  S aw(0.0), bw(0.0);
+  Vec2<S> u{}, accelerated{};  // of x_A − x_B, the bodies' own accelerations left out
+  if (l.a >= 0) {
+    const LoopedPin<S, Rows>& A = pins_[static_cast<std::size_t>(l.a)];
+    aw = A.omega;
+    u = {{A.vx - aw * s.ay, A.vy + aw * s.ax}};
+    accelerated = {{-(aw * aw * s.ax), -(aw * aw * s.ay)}};
+  }
+  if (l.b >= 0) {
+    const LoopedPin<S, Rows>& B = pins_[static_cast<std::size_t>(l.b)];
+    bw = B.omega;
+    const Vec2<S> arm{{s.bx - s.gap_x, s.by - s.gap_y}};
+    u -= Vec2<S>{{B.vx - bw * arm[1], B.vy + bw * arm[0]}};
+    accelerated += (bw * bw) * arm - S(2.0) * cross(bw, prescribed.v);
+  }
+  u -= prescribed.v;
+  accelerated -= prescribed.a;
+  const S wa = aw + S(m.turning_a), wb = bw + S(m.turning_b);
+  S bias, rate;
+  if (l.is_distance()) {
+    const S given(l.given * m.given_rate * l.per_length);
+    rate = Fx * u[0] + Fy * u[1] - given;
+    bias = dot(u, u) * l.per_length + (Fx * accelerated[0] + Fy * accelerated[1]) -
+           S((m.given_rate * m.given_rate + l.given * m.given_second) * l.per_length);
+  } else if (row < l.n_points) {
+    const S across = Fx * s.gap_y - Fy * s.gap_x, along = Fx * s.gap_x + Fy * s.gap_y;
+    rate = Fx * u[0] + Fy * u[1] + wb * across;
+    bias = Fx * accelerated[0] + Fy * accelerated[1] + 2.0 * (wb * (Fx * u[1] - Fy * u[0])) +
+           m.turning_b_rate * across - wb * wb * along;
+  } else {
+    rate = s.c[row] * (wa - wb);
+    bias = (wb - wa) * (wa - wb) * s.turn[row] + (m.turning_a_rate - m.turning_b_rate) * s.c[row];
+  }
+  return bias + (2 * right.alpha) * rate + (right.beta * right.beta) * phi;
+}
+
+/// d of a row before the joints' shares: βΦ + Φ_t, or in the acceleration form J̇ V and the
+/// feedback.
 template <class S, int Rows, bool Momentum>
 S LoopSweeps<Planar, S, Rows, Momentum>::row_bias(const Loop& l, const Place& s, int row,
                                                   const RightSide<S>& right) const {
   const S Fx = s.Fx[row], Fy = s.Fy[row], c = s.c[row];
   S phi(0.0);
   if (right.positions != 0 || right.beta != 0) {
-    if (l.length > 0)
-      phi = (s.gap_x * s.gap_x + s.gap_y * s.gap_y + (l.across2 - l.length * l.length)) *
-            (0.5 / l.length);
+    if (l.is_distance())
+      phi = (s.gap_x * s.gap_x + s.gap_y * s.gap_y + (l.across2 - l.given * l.given)) *
+            (0.5 * l.per_length);
     else
       phi = row < l.n_points ? Fx * s.gap_x + Fy * s.gap_y : s.turn[row];
   }
   if constexpr (Momentum) {
-    return right.positions * phi;
+    const S given = right.positions * phi;
+    return l.motion >= 0 && right.drives ? given + moving_rate(l, s, row) : given;
   } else {
+    if (l.motion >= 0) return moving_bias(l, s, row, right, phi);
     const S zero(0.0);
     const auto velocity = [&](int body, S& vx, S& vy, S& omega) {
       vx = vy = omega = zero;
@@ -97,11 +181,11 @@ S LoopSweeps<Planar, S, Rows, Momentum>::row_bias(const Loop& l, const Place& s,
     // Velocity of x_A on A, and of the point of B that is there.
     const S ux = avx - aw * s.ay, uy = avy + aw * s.ax, wx = bvx - bw * s.by, wy = bvy + bw * s.bx;
     S bias;
-    if (l.length > 0) {
+    if (l.is_distance()) {
       // d/dt (D/l)·(u_A − u_B), u_B at the marker of B: there the arm is x_B − O_B.
       const S sx = s.bx - s.gap_x, sy = s.by - s.gap_y;
       const S rx = ux - (bvx - bw * sy), ry = uy - (bvy + bw * sx);
-      bias = (rx * rx + ry * ry) * (1.0 / l.length) +
+      bias = (rx * rx + ry * ry) * l.per_length +
              (Fx * (bw * bw * sx - aw * aw * s.ax) + Fy * (bw * bw * sy - aw * aw * s.ay));
     } else if (row < l.n_points) {
       const S turning_x = -(bw * Fy), turning_y = bw * Fx;          // ω_b × b
@@ -130,6 +214,8 @@ void LoopSweeps<Planar, S, Rows, Momentum>::enter(std::size_t k, const RightSide
     const Loop& l = loops_->loops[loop];
     const Place& s = places_[loop];
     const int lane = plan_->lane[loop];
+    const bool asks =
+        end.first && (!Momentum || right.positions != 0 || (l.motion >= 0 && right.drives));
     const S sign(end.on_a ? 1.0 : -1.0);
     const S rx = sign * (end.on_a ? s.ax : s.bx), ry = sign * (end.on_a ? s.ay : s.by);
     if (plan_->pair[loop]) {
@@ -144,8 +230,7 @@ void LoopSweeps<Planar, S, Rows, Momentum>::enter(std::size_t k, const RightSide
         a.Dy = a.Dy + (first * fy + second * fx);
         a.Dn = a.Dn + (first * n0 + second * n1);
       }
-      if (end.first && (!Momentum || right.positions != 0))
-        o.d.add_pair(lane, row_bias(l, s, 0, right), row_bias(l, s, 1, right));
+      if (asks) o.d.add_pair(lane, row_bias(l, s, 0, right), row_bias(l, s, 1, right));
       if (end.first && right.compliance) o = softened(o, lane, 2, right.compliance + l.row);
       continue;
     }
@@ -161,8 +246,7 @@ void LoopSweeps<Planar, S, Rows, Momentum>::enter(std::size_t k, const RightSide
         a.Dy = a.Dy + centre * fy;
         a.Dn = a.Dn + centre * n;
       }
-      if (end.first && (!Momentum || right.positions != 0))
-        o.d.add(lane + row, row_bias(l, s, row, right));
+      if (asks) o.d.add(lane + row, row_bias(l, s, row, right));
     }
     if (end.first && right.compliance) o = softened(o, lane, l.rows, right.compliance + l.row);
   }

@@ -16,10 +16,17 @@
 // force F' at x_A, couple c' + u_A × F; on B the exact negative. Acceleration form: r = joint force
 // and D = −ω² m c; a joint's velocity product takes the place of Ω_t, J̇ V of d.
 //
-// A row's D_j has F = b_j, O_ij has c = a_i × b_j, a distance has F = D/l.
+// A row's D_j has F = b_j, O_ij has c = a_i × b_j, a distance has F = D/l₀. Where drives move
+// points and axes, u_B and the rates of rows have their prescribed velocities in them, and d their
+// Φ_t.
+//
+// A coupler has no wrench: its row enters where one of its joints is eliminated, c = EᵀC + r, and p
+// has r σ in it. A pin is eliminated by its absolute rate, of which u is the part beyond the
+// parent's: there r joins the couple, and leaves it again with the opposite sign.
 
 #include <momenta/core/kernel/planar_sweeps.h>
-#include <momenta/dae/loop/loop_model.h>
+#include <momenta/dae/loop/loops_in_time.h>
+#include <momenta/dae/sweeps/couplings.h>
 #include <momenta/dae/sweeps/front.h>
 #include <momenta/dae/sweeps/loop_plan.h>
 #include <momenta/dae/sweeps/right_side.h>
@@ -77,15 +84,33 @@ class LoopSweeps<Planar, S, Rows, Momentum> : PlanarPlaces<S> {
     S Fx[3], Fy[3], c[3];
     S turn[3];  ///< a_i · b_j of an axis row
   };
+  /// Of a loop with drives, ground axes: velocity and acceleration of x_B on B.
+  struct MovingPoint {
+    Vec2<S> v, a;
+  };
   struct Open {
     PlanarCargo<S> cargo;
     Blocks blocks;
   };
   using Loop = LoopModel<Planar>::Loop;
+  using Motion = LoopModel<Planar>::Motion;
 
   template <class In>
   void place_bodies(const In& x, const RightSide<S>& right);
   void place_loops();
+  __attribute__((noinline)) void place_moving(const Loop& l);
+  template <class In>
+  __attribute__((noinline)) void place_couplers(const In& q, const In& x,
+                                                const RightSide<S>& right);
+  __attribute__((noinline)) S moving_rate(const Loop& l, const Place& s, int row) const;
+  __attribute__((noinline)) S moving_bias(const Loop& l, const Place& s, int row,
+                                          const RightSide<S>& right, const S& phi) const;
+  const Motion& motion(const Loop& l) const {
+    return loops_->motions[static_cast<std::size_t>(l.motion)];
+  }
+  const MovingPoint& moving_point(const Loop& l) const {
+    return moving_[static_cast<std::size_t>(l.motion)];
+  }
   S row_bias(const Loop& l, const Place& s, int row, const RightSide<S>& right) const;
   template <class In>
   bool inward(const In& r, const RightSide<S>& right);
@@ -95,7 +120,8 @@ class LoopSweeps<Planar, S, Rows, Momentum> : PlanarPlaces<S> {
                             double fade);
   __attribute__((noinline)) void close_any(int loop, Open& open, double fade);
   template <class In>
-  __attribute__((noinline)) bool general_inward(std::size_t k, const In& r, Open& open);
+  __attribute__((noinline)) bool general_inward(std::size_t k, const In& r,
+                                                const RightSide<S>& right, Open& open);
   template <class Out>
   void outward(const RightSide<S>& right, Out u, Out impulse, Out rate);
   template <bool Moves, class Out>
@@ -108,11 +134,14 @@ class LoopSweeps<Planar, S, Rows, Momentum> : PlanarPlaces<S> {
   void rates_inward(const In& q, const RightSide<S>& right, const Out& u, const Out& impulse,
                     Out rate);
 
-  const LoopModel<Planar>* loops_;  ///< points and axes in the frames of the links
+  LoopsInTime<Planar> in_time_;
+  const LoopModel<Planar>* loops_;  ///< points and axes in the frames of the links, at the time
   const LoopPlan* plan_;
   std::vector<LoopedPin<S, Rows>> pins_;
   std::vector<LoopedJoint<S, Rows>> looped_;
   std::vector<Place> places_;
+  std::vector<MovingPoint> moving_;                     ///< by motion
+  std::vector<S> coupled_;                              ///< by loop: d of a coupler
   std::vector<S> origin_x_, origin_y_, own_x_, own_y_;  ///< O_K; own first moments
   std::vector<Open> slots_;
   struct Outward {
@@ -133,11 +162,14 @@ LoopSweeps<Planar, S, Rows, Momentum>::LoopSweeps(const PlanarTree& tree,
                                                   const LoopModel<Planar>& loops,
                                                   const LoopPlan& plan)
     : Base(tree),
+      in_time_(loops),
       loops_(&loops),
       plan_(&plan),
       pins_(tree.links.size()),
       looped_(static_cast<std::size_t>(tree.records)),
       places_(loops.loops.size()),
+      moving_(loops.motions.size()),
+      coupled_(plan.couples() ? loops.loops.size() : 0),
       origin_x_(tree.links.size()),
       origin_y_(tree.links.size()),
       own_x_(tree.links.size()),
@@ -156,7 +188,9 @@ bool LoopSweeps<Planar, S, Rows, Momentum>::operator()(const S& t, const In& q, 
   Base::place(t, q);
   stuck_ = -1;
   place_bodies(x, right);
+  loops_ = &in_time_.at(value_of(t));
   place_loops();
+  if (plan_->couples()) place_couplers(q, x, right);
   if (!inward(Momentum ? x : tau, right)) return false;
   outward(right, u, sigma, rate);
   if (Momentum && right.rates) rates_inward(q, right, u, sigma, rate);

@@ -40,9 +40,14 @@ void LoopSweeps<Spatial, S, Rows, Momentum>::enter(std::size_t k, const LoopPlan
     }
     if (!end.first) continue;
     if (right.positions != 0) a.blocks.d.add(lane + row, right.positions * s.position(l, row));
-    if constexpr (!Momentum) {
-      const auto rates = s.rates(loop_body(l.a), loop_body(l.b));
-      S d = s.bias(l, rates, row);
+    if constexpr (Momentum) {
+      if (l.motion >= 0 && right.drives)
+        a.blocks.d.add(lane + row, s.moving_rate(prescribed(l), row));
+    } else {
+      const auto rates = rates_of(l, s);
+      S d = l.motion < 0
+                ? s.bias(l, rates, row)
+                : s.moving_bias(l, loop_body(l.a), loop_body(l.b), prescribed(l), rates, row);
       if (right.alpha != 0 || right.beta != 0)
         d += (2 * right.alpha) * s.velocity(rates, row) +
              (right.beta * right.beta) * s.position(l, row);
@@ -95,7 +100,7 @@ void LoopSweeps<Spatial, S, Rows, Momentum>::fold(std::size_t root, const RightS
 template <class S, int Rows, bool Momentum>
 void LoopSweeps<Spatial, S, Rows, Momentum>::close(int loop, Carried& a, double fade) {
   const Loop& l = loops_->loops[static_cast<std::size_t>(loop)];
-  const int points = l.length > 0 ? 1 : l.n_points;
+  const int points = l.first_rows();
   close_loop(a.blocks, plan_->lane[static_cast<std::size_t>(loop)], points, l.rows - points, fade,
              &rows_[static_cast<std::size_t>(l.row)], SpatialWeight<S, Cargo<S>>{a.cargo});
 }
@@ -137,9 +142,9 @@ bool LoopSweeps<Spatial, S, Rows, Momentum>::inward(const In& r, const RightSide
     const LoopPlan::Range closing = plan_->closings_of[k];
     for (int i = closing.first; i < closing.last; ++i)
       close(plan_->closings[static_cast<std::size_t>(i)], a, right.fade);
-    if (!(l.kind == LinkKind::pin    ? pin_inward(k, r, a)
+    if (!(l.kind == LinkKind::pin    ? pin_inward(k, r, right, a)
           : l.kind == LinkKind::ball ? ball_inward(k, r, a)
-                                     : any_inward(k, r, a))) {
+                                     : any_inward(k, r, right, a))) {
       stuck_ = static_cast<int>(k);
       return false;
     }
@@ -166,13 +171,23 @@ bool LoopSweeps<Spatial, S, Rows, Momentum>::inward(const In& r, const RightSide
 
 template <class S, int Rows, bool Momentum>
 template <class In>
-bool LoopSweeps<Spatial, S, Rows, Momentum>::pin_inward(std::size_t k, const In& r, Carried& a) {
+bool LoopSweeps<Spatial, S, Rows, Momentum>::pin_inward(std::size_t k, const In& r,
+                                                        const RightSide<S>& right, Carried& a) {
   const Link& l = tree_->links[k];
   PinRecord& w = pins_[k];
   Cargo<S>& m = a.cargo;
   Blocks& o = a.blocks;
   if (!all_positive(m.M.Izz)) return false;
-  const S inverse = S(1.0) / m.M.Izz, e = S(r[l.u]) - m.Dnz;
+  const bool couples = plan_->couples();
+  S own = S(r[l.u]);
+  if (couples) {
+    each_coupling(*plan_, k, [&](const LoopPlan::Coupling& j, std::size_t loop, int lane) {
+      o.C[5].add(lane, S(j.ratio));
+      if (j.first) o.d.add(lane, coupled_[loop]);
+      if (right.centre) own = own - j.ratio * right.centre[loops_->loops[loop].row];
+    });
+  }
+  const S inverse = S(1.0) / m.M.Izz, e = own - m.Dnz;
   w.y0 = e * inverse;
   Eliminated<S> left;
   eliminate_pin(m.M, inverse, w.h, left.M);
@@ -181,7 +196,7 @@ bool LoopSweeps<Spatial, S, Rows, Momentum>::pin_inward(std::size_t k, const In&
   left.fz = m.Dfz + w.h.fz * e;
   left.nx = m.Dnx + w.h.nx * e;
   left.ny = m.Dny + w.h.ny * e;
-  left.nz = S(r[l.u]);
+  left.nz = own;
   left.Gx = w.Gx = m.Gx;
   left.Gy = w.Gy = m.Gy;
   left.Gz = m.Gz;
@@ -197,6 +212,10 @@ bool LoopSweeps<Spatial, S, Rows, Momentum>::pin_inward(std::size_t k, const In&
   o.C[3] -= c * w.h.nx;
   o.C[4] -= c * w.h.ny;
   o.C[5] = {};
+  if (couples)
+    each_coupling(*plan_, k, [&](const LoopPlan::Coupling& j, std::size_t, int lane) {
+      o.C[5].add(lane, S(-j.ratio));
+    });
   // The pin's screw.
   const S cosine = angles_.cosine(k), sine = angles_.sine(k);
   turn_and_shift_z(left.M, cosine, sine, l.d);
@@ -294,7 +313,8 @@ bool LoopSweeps<Spatial, S, Rows, Momentum>::ball_inward(std::size_t k, const In
 /// Sliders, screws, free, driven and welded joints.
 template <class S, int Rows, bool Momentum>
 template <class In>
-bool LoopSweeps<Spatial, S, Rows, Momentum>::any_inward(std::size_t k, const In& r, Carried& a) {
+bool LoopSweeps<Spatial, S, Rows, Momentum>::any_inward(std::size_t k, const In& r,
+                                                        const RightSide<S>& right, Carried& a) {
   const Link& l = tree_->links[k];
   const auto& b = body(k);
   auto& x = joints_[static_cast<std::size_t>(l.record)];
@@ -304,11 +324,15 @@ bool LoopSweeps<Spatial, S, Rows, Momentum>::any_inward(std::size_t k, const In&
   x.D = remainder_of(a.cargo);
   x.moment = {{a.cargo.Gx, a.cargo.Gy, a.cargo.Gz}};
   for (int i = 0; i < 6; ++i) y.C[i] = o.C[i];
-  S right[6]{};
-  for (int i = 0; i < b.nv; ++i) right[i] = S(r[b.u + i]);
+  S own[6]{};
+  for (int i = 0; i < b.nv; ++i) own[i] = S(r[b.u + i]);
+  if (right.centre)
+    each_coupling(*plan_, k, [&](const LoopPlan::Coupling& j, std::size_t loop, int) {
+      own[0] = own[0] - j.ratio * right.centre[loops_->loops[loop].row];
+    });
   Spatial::ArticulatedInertia<S> M;
   if (!eliminate<Spatial>(b, x, M)) return false;
-  auto D = remainder<Spatial>(b, x, right);
+  auto D = remainder<Spatial>(b, x, own);
   const auto eliminate_lanes = [&](const Column& c, const Column& g, const S& e) {
     o.d += g * e;
     o.scale += c * g;
@@ -320,6 +344,10 @@ bool LoopSweeps<Spatial, S, Rows, Momentum>::any_inward(std::size_t k, const In&
     Joint<Spatial>::add_motion(b, x.edge, &one, E);
     Column c = o.C[0] * E[0];
     for (int i = 1; i < 6; ++i) c += o.C[i] * E[i];
+    each_coupling(*plan_, k, [&](const LoopPlan::Coupling& j, std::size_t loop, int lane) {
+      c.add(lane, S(j.ratio));
+      if (j.first) o.d.add(lane, coupled_[loop]);
+    });
     y.g[0] = c * x.pivot;
     eliminate_lanes(c, y.g[0], x.e);
     for (int i = 0; i < 6; ++i) o.C[i] -= c * x.h[i];
@@ -330,7 +358,7 @@ bool LoopSweeps<Spatial, S, Rows, Momentum>::any_inward(std::size_t k, const In&
       y.g[3 + i] = o.C[3] * x.I(i, 0) + o.C[4] * x.I(i, 1) + o.C[5] * x.I(i, 2);
       left[i] = o.C[i] - (o.C[3] * x.H(i, 0) + o.C[4] * x.H(i, 1) + o.C[5] * x.H(i, 2));
     }
-    for (int i = 0; i < 3; ++i) eliminate_lanes(o.C[3 + i], y.g[3 + i], right[3 + i] - x.D.n[i]);
+    for (int i = 0; i < 3; ++i) eliminate_lanes(o.C[3 + i], y.g[3 + i], own[3 + i] - x.D.n[i]);
     for (int i = 0; i < 3; ++i)
       y.g[i] = left[0] * x.A(i, 0) + left[1] * x.A(i, 1) + left[2] * x.A(i, 2);
     for (int i = 0; i < 3; ++i) eliminate_lanes(left[i], y.g[i], x.y[i]);

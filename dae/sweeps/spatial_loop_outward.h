@@ -222,11 +222,12 @@ void LoopSweeps<Spatial, S, Rows, Momentum>::rates_inward(const RightSide<S>& ri
     if (plan_->posed[k]) wrenches_[k] = {};
   for (std::size_t i = 0; i < places_.size(); ++i) {
     const Loop& l = loops_->loops[i];
+    if (l.is_coupler()) continue;
     const SpatialLoopPlace<S>& s = places_[i];
     Vec3<S> force, couple;
     s.inertial_rate(
-        l, s.rates(loop_body(l.a), loop_body(l.b)),
-        [&](int row) { return S(impulse[l.row + row]); }, right.leak, force, couple);
+        l, rates_of(l, s), [&](int row) { return S(impulse[l.row + row]); }, right.leak, force,
+        couple);
     const auto act = [&](int on, const Vec3<S>& arm, const S& sign) {
       if (on < 0) return;
       const auto k = static_cast<std::size_t>(on);
@@ -253,6 +254,7 @@ void LoopSweeps<Spatial, S, Rows, Momentum>::rates_inward(const RightSide<S>& ri
     }
     if (l.parent >= 0) wrenches_[static_cast<std::size_t>(l.parent)] += wrench_to_parent(k, T);
   }
+  if (plan_->couples() && right.leak != 0) leak_of_couplers<S>(*loops_, right.leak, impulse, rate);
 }
 
 template <class S, int Rows, bool Momentum>

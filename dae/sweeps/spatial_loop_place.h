@@ -16,6 +16,36 @@ struct LoopBody {
 };
 
 template <class S>
+Vec3<S> in_ground(const LoopBody<S>* body, const Vec3<double>& v) {
+  Vec3<S> r;
+  for (int i = 0; i < 3; ++i)
+    r[i] = body ? body->pose.axes(i, 0) * v[0] + body->pose.axes(i, 1) * v[1] +
+                      body->pose.axes(i, 2) * v[2]
+                : S(v[i]);
+  return r;
+}
+
+/// What drives prescribe of a loop, ground axes (LoopModel::Motion).
+template <class S>
+struct PrescribedMotion {
+  Vec3<S> v, a;                                                  ///< of x_B
+  Vec3<S> turning_a, turning_a_rate, turning_b, turning_b_rate;  ///< of the axes
+  S given{}, given_rate{};                                       ///< l l̇ / l₀, its derivative
+
+  void place(const LoopModel<Spatial>::Loop& l, const LoopModel<Spatial>::Motion& m,
+             const LoopBody<S>* A, const LoopBody<S>* B) {
+    v = in_ground(B, m.v);
+    a = in_ground(B, m.a);
+    turning_a = in_ground(A, m.turning_a);
+    turning_a_rate = in_ground(A, m.turning_a_rate);
+    turning_b = in_ground(B, m.turning_b);
+    turning_b_rate = in_ground(B, m.turning_b_rate);
+    given = S(l.given * m.given_rate * l.per_length);
+    given_rate = S((m.given_rate * m.given_rate + l.given * m.given_second) * l.per_length);
+  }
+};
+
+template <class S>
 struct SpatialLoopPlace {
   using Loop = LoopModel<Spatial>::Loop;
   Vec3<S> ra, rb, gap;  ///< x_A − O_A, x_A − O_B, D = x_A − x_B
@@ -23,14 +53,6 @@ struct SpatialLoopPlace {
   Vec3<S> a[3], b[3];
 
   void place(const Loop& l, const LoopBody<S>* A, const LoopBody<S>* B) {
-    const auto in_ground = [](const LoopBody<S>* body, const Vec3<double>& v) {
-      Vec3<S> r;
-      for (int i = 0; i < 3; ++i)
-        r[i] = body ? body->pose.axes(i, 0) * v[0] + body->pose.axes(i, 1) * v[1] +
-                          body->pose.axes(i, 2) * v[2]
-                    : S(v[i]);
-      return r;
-    };
     ra = in_ground(A, l.at_a);
     const Vec3<S> arm_b = in_ground(B, l.at_b);
     Vec3<S> between{};
@@ -38,8 +60,8 @@ struct SpatialLoopPlace {
     if (B) between -= B->pose.origin;
     rb = between + ra;
     gap = rb - arm_b;
-    if (l.length > 0) {
-      F[0] = S(1.0 / l.length) * gap;
+    if (l.is_distance()) {
+      F[0] = S(l.per_length) * gap;
       c[0] = {};
       return;
     }
@@ -58,7 +80,7 @@ struct SpatialLoopPlace {
   }
 
   S position(const Loop& l, int row) const {
-    if (l.length > 0) return (dot(gap, gap) - S(l.length * l.length)) * (0.5 / l.length);
+    if (l.is_distance()) return (dot(gap, gap) - S(l.given * l.given)) * (0.5 * l.per_length);
     if (row < l.n_points) return dot(F[row], gap);
     const auto [x, y] = l.axes[static_cast<std::size_t>(row - l.n_points)];
     return dot(a[x], b[y]) - l.gamma;
@@ -67,6 +89,7 @@ struct SpatialLoopPlace {
   /// Velocities of x_A on A and of the points of B at x_A and at x_B.
   struct Rates {
     Vec3<S> wa{}, wb{}, u{}, at_a{}, at_b{}, vb{};
+    S given{};  ///< l l̇ / l₀
   };
   Rates rates(const LoopBody<S>* A, const LoopBody<S>* B) const {
     Rates r;
@@ -83,15 +106,51 @@ struct SpatialLoopPlace {
     return r;
   }
 
+  /// The frame of B moves on B, that of A turns on A.
+  void add_prescribed(const PrescribedMotion<S>& p, Rates& r) const {
+    r.wa += p.turning_a;
+    r.wb += p.turning_b;
+    r.at_a += p.v + cross(p.turning_b, gap);
+    r.at_b += p.v;
+    r.given = p.given;
+  }
+
   S velocity(const Rates& r, int row) const {
-    return dot(F[row], r.u - r.at_a) + dot(c[row], r.wa - r.wb);
+    return dot(F[row], r.u - r.at_a) + dot(c[row], r.wa - r.wb) - r.given;
+  }
+  /// Φ_t
+  S moving_rate(const PrescribedMotion<S>& p, int row) const {
+    Rates r;
+    add_prescribed(p, r);
+    return velocity(r, row);
+  }
+  /// J̇ V + d/dt Φ_t; `r` with what is prescribed.
+  S moving_bias(const Loop& l, const LoopBody<S>* A, const LoopBody<S>* B,
+                const PrescribedMotion<S>& p, const Rates& r, int row) const {
+    Vec3<S> apart{}, alpha_a = p.turning_a_rate, alpha_b = p.turning_b_rate;
+    if (A) {
+      apart += cross(A->w, cross(A->w, ra));
+      alpha_a += cross(A->w, p.turning_a);
+    }
+    if (B) {
+      apart -= cross(B->w, cross(B->w, rb - gap)) + S(2.0) * cross(B->w, p.v);
+      alpha_b += cross(B->w, p.turning_b);
+    }
+    apart -= p.a;
+    const Vec3<S> u = r.u - r.at_b;
+    if (l.is_distance()) return dot(u, u) * l.per_length + dot(F[row], apart) - p.given_rate;
+    if (row >= l.n_points)
+      return dot(axis_rate(l, r, row), r.wa - r.wb) + dot(c[row], alpha_a - alpha_b);
+    const Vec3<S> turning = cross(r.wb, F[row]);
+    return dot(F[row], apart) + S(2.0) * dot(turning, u) +
+           dot(cross(r.wb, turning) + cross(alpha_b, F[row]), gap);
   }
   /// J̇ V: Φ̈ without the accelerations of the two bodies.
   S bias(const Loop& l, const Rates& r, int row) const {
     const Vec3<S> turning = cross(r.wa, cross(r.wa, ra));
-    if (l.length > 0) {
+    if (l.is_distance()) {
       const Vec3<S> apart = r.u - r.at_b;
-      return dot(apart, apart) * (1.0 / l.length) +
+      return dot(apart, apart) * l.per_length +
              dot(F[row], turning - cross(r.wb, cross(r.wb, rb - gap)));
     }
     if (row < l.n_points)
@@ -112,14 +171,14 @@ struct SpatialLoopPlace {
     Vec3<S> f{}, n{}, turning{};
     for (int row = 0; row < l.rows; ++row) {
       const S s = sigma(row);
-      if (row < l.n_points || l.length > 0) {
+      if (row < l.n_points || l.is_distance()) {
         f += s * F[row];
       } else {
         n += s * c[row];
         turning += s * axis_rate(l, r, row);
       }
     }
-    force = l.length > 0 ? (sigma(0) * (1.0 / l.length)) * (r.u - r.at_b) : cross(r.wb, f);
+    force = l.is_distance() ? (sigma(0) * l.per_length) * (r.u - r.at_b) : cross(r.wb, f);
     couple = turning + cross(r.u, f);
     if (leak != 0) {
       force -= S(leak) * f;

@@ -6,11 +6,15 @@
 //
 // and C' takes the same screws to the parent as D'. Momentum form: P* = M'V + D' + C'σ before the
 // pin's screw, ṗ = weight − Eᵀ(V × P*) + Eᵀ T*, T* the N − κ w of the loops below, gathered by a
-// last sweep over the bodies on their ways. Acceleration form: A = (acceleration of O, dω/dt) in
-// body axes, the ground falls upward with −g, c the velocity products of acceleration_sweeps.h.
+// last sweep over the bodies on their ways. A coupler's r joins C_nz where the pin is eliminated,
+// and leaves it with the opposite sign, as the pin is eliminated by its absolute rate. Acceleration
+// form: A = (acceleration of O, dω/dt) in body axes, the ground falls upward with −g, c the
+// velocity products of acceleration_sweeps.h.
 
 #include <momenta/core/kernel/pin.h>
 #include <momenta/core/kernel/sweeps.h>
+#include <momenta/dae/loop/loops_in_time.h>
+#include <momenta/dae/sweeps/couplings.h>
 #include <momenta/dae/sweeps/loop_plan.h>
 #include <momenta/dae/sweeps/right_side.h>
 #include <momenta/dae/sweeps/spatial_columns.h>
@@ -83,6 +87,17 @@ class LoopSweeps<Spatial, S, Rows, Momentum> {
   }
   Force wrench_to_parent(std::size_t k, Force f) const;
 
+  const PrescribedMotion<S>& prescribed(const Loop& l) const {
+    return moving_[static_cast<std::size_t>(l.motion)];
+  }
+  typename SpatialLoopPlace<S>::Rates rates_of(const Loop& l, const SpatialLoopPlace<S>& s) const {
+    auto rates = s.rates(loop_body(l.a), loop_body(l.b));
+    if (l.motion >= 0) s.add_prescribed(prescribed(l), rates);
+    return rates;
+  }
+
+  template <class In>
+  void place_loops(const In& q, const In& x, const RightSide<S>& right);
   template <class In>
   void move_bodies(const In& x, const RightSide<S>& right);
   void pose_bodies();
@@ -93,11 +108,12 @@ class LoopSweeps<Spatial, S, Rows, Momentum> {
   __attribute__((noinline)) void fold(std::size_t root, const RightSide<S>& right, Carried& leg);
   __attribute__((noinline)) void close(int loop, Carried& a, double fade);
   template <class In>
-  bool pin_inward(std::size_t k, const In& r, Carried& a);
+  bool pin_inward(std::size_t k, const In& r, const RightSide<S>& right, Carried& a);
   template <class In>
   __attribute__((noinline)) bool ball_inward(std::size_t k, const In& r, Carried& a);
   template <class In>
-  __attribute__((noinline)) bool any_inward(std::size_t k, const In& r, Carried& a);
+  __attribute__((noinline)) bool any_inward(std::size_t k, const In& r, const RightSide<S>& right,
+                                            Carried& a);
   template <class Out>
   void solve_loops(const LoopPlan::Range& range, const RightSide<S>& right, const Motion* motion,
                    Column& sigma, Out& out);
@@ -115,7 +131,8 @@ class LoopSweeps<Spatial, S, Rows, Momentum> {
   void rates_inward(const RightSide<S>& right, const Out& impulse, Out rate);
 
   const LinkTree* tree_;
-  const LoopModel<Spatial>* loops_;
+  LoopsInTime<Spatial> in_time_;
+  const LoopModel<Spatial>* loops_;  ///< at the time
   const LoopPlan* plan_;
   Angles<S> angles_;
   std::vector<PinRecord> pins_;
@@ -126,6 +143,8 @@ class LoopSweeps<Spatial, S, Rows, Momentum> {
   std::vector<LoopBody<S>> bodies_;
   std::vector<Force> wrenches_;
   std::vector<SpatialLoopPlace<S>> places_;
+  std::vector<PrescribedMotion<S>> moving_;  ///< by motion
+  std::vector<S> coupled_;                   ///< by loop: d of a coupler
   std::vector<Carried> slots_;
   std::vector<Moving> outward_slots_;
   std::vector<Row> rows_;
@@ -140,6 +159,7 @@ LoopSweeps<Spatial, S, Rows, Momentum>::LoopSweeps(const LinkTree& tree,
                                                    const LoopModel<Spatial>& loops,
                                                    const LoopPlan& plan)
     : tree_(&tree),
+      in_time_(loops),
       loops_(&loops),
       plan_(&plan),
       angles_(tree.links.size()),
@@ -151,6 +171,8 @@ LoopSweeps<Spatial, S, Rows, Momentum>::LoopSweeps(const LinkTree& tree,
       bodies_(tree.links.size()),
       wrenches_(tree.links.size()),
       places_(loops.loops.size()),
+      moving_(loops.motions.size()),
+      coupled_(plan.couples() ? loops.loops.size() : 0),
       slots_(static_cast<std::size_t>(tree.slots)),
       outward_slots_(static_cast<std::size_t>(tree.slots)),
       rows_(static_cast<std::size_t>(loops.rows)) {
@@ -176,14 +198,31 @@ bool LoopSweeps<Spatial, S, Rows, Momentum>::operator()(const S& t, const In& q,
     if (plan_->takes_legs[k]) legs_[k] = {};
   pose_bodies();
   move_bodies(x, right);
-  for (std::size_t i = 0; i < places_.size(); ++i) {
-    const Loop& l = loops_->loops[i];
-    places_[i].place(l, loop_body(l.a), loop_body(l.b));
-  }
+  loops_ = &in_time_.at(value_of(t));
+  place_loops(q, x, right);
   if (!inward(Momentum ? x : tau, right)) return false;
   outward(q, right, u, impulse, rate);
   if (Momentum && right.rates) rates_inward(right, impulse, rate);
   return true;
+}
+
+/// Points, axes and rows of all loops, d of couplers.
+template <class S, int Rows, bool Momentum>
+template <class In>
+void LoopSweeps<Spatial, S, Rows, Momentum>::place_loops(const In& q, const In& x,
+                                                         const RightSide<S>& right) {
+  for (std::size_t i = 0; i < places_.size(); ++i) {
+    const Loop& l = loops_->loops[i];
+    if (l.is_coupler()) {
+      coupled_[i] = coupler_bias<Momentum>(*loops_, l, q, x, right);
+      continue;
+    }
+    const LoopBody<S>*A = loop_body(l.a), *B = loop_body(l.b);
+    places_[i].place(l, A, B);
+    if (l.motion < 0) continue;
+    const auto at = static_cast<std::size_t>(l.motion);
+    moving_[at].place(l, loops_->motions[at], A, B);
+  }
 }
 
 /// Poses of the bodies on the ways of loops, in ground axes.

@@ -190,6 +190,18 @@ class DenseLagrangian {
   DenseLagrangian(const Scene& scene, const Tree& tree);
 
   int nv() const { return nv_; }
+  /// Place in q of a coordinate, or −1 and its drive.
+  std::pair<int, const DriveSpec*> coordinate(const std::string& joint, int coordinate) const {
+    for (const Place& p : places_) {
+      if (p.joint->name != joint) continue;
+      if (const auto drive = p.drives.find(coordinate); drive != p.drives.end())
+        return {-1, drive->second};
+      int at = p.q + coordinate;
+      for (const auto& [driven, law] : p.drives) at -= driven < coordinate;
+      return {at, nullptr};
+    }
+    return {-1, nullptr};
+  }
 
   template <class S>
   List<Frame<S>> frames(const S& t, const List<S>& q) const;

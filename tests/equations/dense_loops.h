@@ -7,6 +7,10 @@
 //   Φ_q        the same along N(q) e_j, ṫ = 0
 //   Φ̈, Φ̇_q     derivative of those along the motion
 //
+// Drives are functions of t here: origins and lengths as they say; a driven displacement shifts the
+// parent's point; of a driven angle the rotation is written out, as the scene format defines it,
+// and undone on the child's axes (or, outer angle of a universal loop alone, done to the parent's).
+//
 // With a basis of the plane given (columns e1, e2, normal) the rows are those of a planar scene.
 
 #include "equations/dense_lagrangian.h"
@@ -30,8 +34,22 @@ class DenseLoops {
     while (at_zero.size() <= scene.bodies.size())
       for (const JointSpec& j : scene.joints)
         if (at_zero.contains(j.parent)) at_zero[j.child] = product(at_zero[j.parent], turn_of(j));
-    for (const LoopSpec& spec : scene.loops)
-      loops_.push_back(plane ? planar(spec, *plane, at_zero) : spatial(spec));
+    for (const LoopSpec& spec : scene.loops) {
+      std::array<const DriveSpec*, 3> driven{}, origin{};
+      for (const DriveSpec& d : scene.drives)
+        if (d.loop == spec.name) {
+          if (d.origin.empty())
+            driven[static_cast<std::size_t>(d.coordinate)] = &d;
+          else
+            origin[static_cast<std::size_t>(d.origin[0] - 'x')] = &d;
+        }
+      if (spec.kind == LoopKind::distance || spec.kind == LoopKind::coupler)
+        loops_.push_back({&spec, {}, {}, {}, {}, 0, {}, {}, {}, {}, {}});
+      else
+        loops_.push_back(plane ? planar(spec, driven, *plane, at_zero) : spatial(spec, driven));
+      loops_.back().driven = driven;
+      loops_.back().origin = origin;
+    }
   }
 
   template <class S>
@@ -39,18 +57,40 @@ class DenseLoops {
     const auto frames = motion_.frames(t, q);
     List<S> phi;
     for (const Loop& l : loops_) {
-      const auto [axes_a, origin_a] = frame(frames, l.spec->child);
-      const auto [axes_b, origin_b] = frame(frames, l.spec->parent);
-      const Triple<S> gap = (origin_a + axes_a * triple<S>(l.spec->origin_child)) -
-                            (origin_b + axes_b * triple<S>(l.spec->origin_parent));
-      if (l.spec->kind == LoopKind::distance) {
-        const S length = lift<S>(l.spec->length);
-        phi.push_back((inner(gap, gap) - length * length) / (lift<S>(2) * length));
+      if (l.spec->kind == LoopKind::coupler) {
+        phi.push_back(coupling(l, t, q));
         continue;
       }
-      for (const std::size_t j : l.points) phi.push_back(inner(axes_b * raised<S>(l.b[j]), gap));
+      const auto [axes_a, origin_a] = frame(frames, l.spec->child);
+      const auto [axes_b, origin_b] = frame(frames, l.spec->parent);
+      Triple<S> at_b = triple<S>(l.spec->origin_parent);
+      for (std::size_t i = 0; i < 3; ++i)
+        if (l.origin[i]) at_b[i] = drive_position(*l.origin[i], t);
+      for (const auto& [axis, drive] : l.slides)
+        at_b = at_b + drive_position(*drive, t) * raised<S>(axis);
+      const Triple<S> gap =
+          (origin_a + axes_a * triple<S>(l.spec->origin_child)) - (origin_b + axes_b * at_b);
+      if (l.spec->kind == LoopKind::distance) {
+        S length = lift<S>(l.spec->length), scale = length;
+        if (l.driven[0]) {
+          length = drive_position(*l.driven[0], t);
+          scale = lift<S>(drive_position(*l.driven[0], Real(0)));
+        }
+        phi.push_back((inner(gap, gap) - length * length) / (lift<S>(2) * scale));
+        continue;
+      }
+      const auto turn = [&](const List<Angle>& angles) {
+        auto r = from_quaternion(lift<S>(1), Triple<S>{});
+        for (const Angle& a : angles)
+          r = product(r,
+                      about_axis(raised<S>(a.axis), lift<S>(a.sign) * drive_position(*a.drive, t)));
+        return r;
+      };
+      const Rotation<S> turned_a = product(axes_a, turn(l.turns_a)),
+                        turned_b = product(axes_b, turn(l.turns_b));
+      for (const std::size_t j : l.points) phi.push_back(inner(turned_b * raised<S>(l.b[j]), gap));
       for (const auto& [i, j] : l.axes)
-        phi.push_back(inner(axes_a * raised<S>(l.a[i]), axes_b * raised<S>(l.b[j])) -
+        phi.push_back(inner(turned_a * raised<S>(l.a[i]), turned_b * raised<S>(l.b[j])) -
                       lift<S>(l.cosine));
     }
     return phi;
@@ -116,7 +156,7 @@ class DenseLoops {
   Eigen::Index rows() const {
     Eigen::Index n = 0;
     for (const Loop& l : loops_)
-      n += l.spec->kind == LoopKind::distance
+      n += l.spec->kind == LoopKind::distance || l.spec->kind == LoopKind::coupler
                ? 1
                : static_cast<Eigen::Index>(l.points.size() + l.axes.size());
     return n;
@@ -124,13 +164,34 @@ class DenseLoops {
 
  private:
   using D1 = Dual<Real, 1>;
+  struct Angle {
+    Triple<Real> axis;  ///< in the body's axes
+    Real sign;
+    const DriveSpec* drive;
+  };
+  using Drives = std::array<const DriveSpec*, 3>;
   struct Loop {
     const LoopSpec* spec;
     std::array<Triple<Real>, 3> a, b;  ///< axes in the scene's axes of child and parent
     List<std::size_t> points;
     List<std::pair<std::size_t, std::size_t>> axes;
     Real cosine = 0;  ///< between the axes of a universal loop
+    List<std::pair<Triple<Real>, const DriveSpec*>> slides;  ///< axes of the parent
+    List<Angle> turns_a, turns_b;
+    Drives driven{}, origin{};
   };
+
+  template <class S>
+  S coupling(const Loop& l, const S& t, const List<S>& q) const {
+    S sum = l.driven[0] ? lift<S>(-1) * drive_position(*l.driven[0], t) : lift<S>(-l.spec->offset);
+    for (std::size_t i = 0; i < l.spec->joints.size(); ++i) {
+      const int coordinate = l.spec->coordinates.empty() ? 0 : l.spec->coordinates[i];
+      const auto [at, drive] = motion_.coordinate(l.spec->joints[i], coordinate);
+      sum += lift<S>(l.spec->ratios[i]) *
+             (drive ? drive_position(*drive, t) : q[static_cast<std::size_t>(at)]);
+    }
+    return sum;
+  }
 
   template <class Spec>
   static Rotation<Real> turn_of(const Spec& s) {
@@ -153,39 +214,90 @@ class DenseLoops {
   }
 
   /// Third axis along the joint's, by the shortest turn from z; the child's axes as at zero.
-  static Loop spatial(const LoopSpec& spec) {
-    Loop l{&spec, {}, {}, {0, 1, 2}, {}, 0};
-    Rotation<Real> e = from_quaternion(Real(1), Triple<Real>{});
-    if (spec.kind == LoopKind::revolute || spec.kind == LoopKind::prismatic ||
-        spec.kind == LoopKind::universal || spec.kind == LoopKind::cylindrical ||
-        spec.kind == LoopKind::planar) {
-      const Triple<Real> axis = unit(spec.axis), z{0, 0, 1};
-      e = from_quaternion(1 + inner(z, axis), outer(z, axis));
+  static Loop spatial(const LoopSpec& spec, const Drives& driven) {
+    Loop l{&spec, {}, {}, {}, {}, 0, {}, {}, {}, {}, {}};
+    const LoopKind kind = spec.kind;
+    const Triple<Real> z{0, 0, 1};
+    Triple<Real> third = z;
+    if (kind == LoopKind::revolute || kind == LoopKind::prismatic || kind == LoopKind::universal ||
+        kind == LoopKind::cylindrical || kind == LoopKind::planar)
+      third = unit(spec.axis);
+    const Triple<Real> hinge = third;
+    Triple<Real> second{};
+    if (kind == LoopKind::universal)
+      second =
+          unit(spec.axis2.isZero() ? perpendicular_to(spec.axis) : Eigen::Vector3d(spec.axis2));
+    const bool outer_alone = kind == LoopKind::universal && driven[0] && !driven[1];
+    if (outer_alone) third = second;
+    Rotation<Real> e = from_quaternion(1 + inner(z, third), outer(z, third));
+    if (kind == LoopKind::planar && (driven[0] || driven[1] || driven[2])) {
+      Triple<Real> first = triple<Real>(spec.direction.isZero() ? perpendicular_to(spec.axis)
+                                                                : Eigen::Vector3d(spec.direction));
+      first = first - inner(first, third) * third;
+      first = (1 / std::sqrt(inner(first, first))) * first;
+      e = transposed(Rotation<Real>{first, outer(third, first), third});
     }
     const Rotation<Real> child = transposed(e), parent = transposed(product(turn_of(spec), e));
     for (std::size_t i = 0; i < 3; ++i) {
       l.a[i] = child[i];
       l.b[i] = parent[i];
     }
-    if (spec.kind == LoopKind::prismatic || spec.kind == LoopKind::cylindrical) l.points = {0, 1};
-    if (spec.kind == LoopKind::planar) l.points = {2};
-    if (spec.kind == LoopKind::revolute || spec.kind == LoopKind::cylindrical ||
-        spec.kind == LoopKind::planar)
-      l.axes = {{2, 0}, {2, 1}};
-    if (spec.kind == LoopKind::universal) {
-      l.a[0] = unit(spec.axis2);
-      l.axes = {{0, 2}};
-      l.cosine = inner(unit(spec.axis), unit(spec.axis2));
+    const auto slide = [&](std::size_t coordinate, std::size_t axis) {
+      if (!driven[coordinate]) return;
+      l.points.push_back(axis);
+      l.slides.emplace_back(parent[axis], driven[coordinate]);
+    };
+    // C of the coordinates, inner angles first taken off.
+    const auto undo = [&](const Triple<Real>& axis, const DriveSpec* drive) {
+      if (drive) l.turns_a.push_back({axis, -1, drive});
+    };
+    switch (kind) {
+      case LoopKind::prismatic:
+      case LoopKind::cylindrical:
+        l.points = {0, 1};
+        slide(0, 2);
+        break;
+      case LoopKind::planar:
+        l.points = {2};
+        slide(0, 0);
+        slide(1, 1);
+        break;
+      default:
+        l.points = {0, 1, 2};
     }
-    if (spec.kind == LoopKind::prismatic || spec.kind == LoopKind::weld)
+    if (kind == LoopKind::prismatic || kind == LoopKind::weld ||
+        (kind == LoopKind::spherical && driven[0]))
       l.axes = {{0, 1}, {1, 2}, {2, 0}};
+    if (kind == LoopKind::spherical)
+      for (std::size_t i = 0; i < 3; ++i) undo(identity()[i], driven[i]);
+    const DriveSpec* angle = nullptr;  // about the third axis
+    if (kind == LoopKind::revolute) angle = driven[0];
+    if (kind == LoopKind::cylindrical) angle = driven[1];
+    if (kind == LoopKind::planar) angle = driven[2];
+    if (kind == LoopKind::universal) {
+      undo(second, driven[1]);
+      if (driven[1]) angle = driven[0];
+      if (outer_alone) l.turns_b.push_back({turn_of(spec) * hinge, 1, driven[0]});
+      if (!driven[0] && !driven[1]) {
+        l.a[0] = second;
+        l.axes = {{0, 2}};
+        l.cosine = inner(hinge, second);
+      }
+    }
+    if (l.axes.empty() && kind != LoopKind::point && kind != LoopKind::spherical)
+      l.axes = {{2, 0}, {2, 1}};
+    if (angle) {
+      l.axes.emplace_back(0, 1);
+      undo(third, angle);
+    }
     return l;
   }
+  static Rotation<Real> identity() { return from_quaternion(Real(1), Triple<Real>{}); }
 
   /// First axis along e1, or along the slide, both bodies at joint position zero.
-  static Loop planar(const LoopSpec& spec, const Eigen::Matrix3d& plane,
+  static Loop planar(const LoopSpec& spec, const Drives& driven, const Eigen::Matrix3d& plane,
                      const std::map<std::string, Rotation<Real>>& at_zero) {
-    Loop l{&spec, {}, {}, {0, 1}, {}, 0};
+    Loop l{&spec, {}, {}, {0, 1}, {}, 0, {}, {}, {}, {}, {}};
     const Rotation<Real> parent = at_zero.at(spec.parent);
     const Rotation<Real> joint = product(parent, turn_of(spec));
     const bool slides = spec.kind == LoopKind::prismatic;
@@ -195,7 +307,15 @@ class DenseLoops {
     l.b = {transposed(parent) * first, transposed(parent) * second, {}};
     l.a = {transposed(joint) * first, transposed(joint) * second, {}};
     if (slides) l.points = {1};
+    if (slides && driven[0]) {
+      l.points.push_back(0);
+      l.slides.emplace_back(l.b[0], driven[0]);
+    }
     if (slides || spec.kind == LoopKind::weld) l.axes = {{0, 1}};
+    if (spec.kind == LoopKind::revolute && driven[0]) {
+      l.axes = {{0, 1}};
+      l.turns_a.push_back({unit(spec.axis), -1, driven[0]});
+    }
     return l;
   }
 

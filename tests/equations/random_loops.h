@@ -4,6 +4,8 @@
 #include "equations/dense_lagrangian.h"
 #include "equations/random_tree.h"
 
+#include <optional>
+
 namespace momenta::equations {
 
 /// Those a plane knows, and all.
@@ -11,6 +13,7 @@ inline constexpr std::array planar_loop_kinds{LoopKind::point,     LoopKind::rev
                                               LoopKind::spherical, LoopKind::weld,
                                               LoopKind::prismatic, LoopKind::distance};
 inline constexpr std::array loop_kinds{
+    // of bodies
     LoopKind::point,     LoopKind::revolute,    LoopKind::spherical,
     LoopKind::weld,      LoopKind::prismatic,   LoopKind::distance,
     LoopKind::universal, LoopKind::cylindrical, LoopKind::planar};
@@ -33,7 +36,63 @@ inline LoopSpec random_loop(RandomTree& random, const Scene& scene, LoopKind kin
     const Eigen::Vector3d across = l.axis.unitOrthogonal();
     l.axis2 = Eigen::AngleAxisd(random.uniform(-1, 1), across.cross(l.axis)) * across;
   }
+  if (kind == LoopKind::planar && random.chance(0.7)) {
+    const Eigen::Vector3d across = l.axis.unitOrthogonal();
+    l.direction = Eigen::AngleAxisd(random.uniform(-1, 1), across.cross(l.axis)) * across;
+  }
   if (kind == LoopKind::distance) l.length = random.uniform(0.8, 1.5);
+  return l;
+}
+
+/// Drives of coordinates and of components of the origin, each chosen by a bit.
+inline void drive_loop(RandomTree& random, Scene& scene, const LoopSpec& l, int coordinates,
+                       int origins) {
+  const auto add = [&](int coordinate, const std::string& origin) {
+    DriveSpec d = random.drive("", coordinate);
+    d.loop = l.name;
+    d.origin = origin;
+    if (l.kind == LoopKind::distance && origin.empty()) {
+      d.kind = "harmonic";
+      d.offset = random.uniform(0.9, 1.3);
+      d.amplitude = random.uniform(-0.4, 0.4);
+      d.frequency = random.uniform(0.5, 3);
+      d.phase = random.uniform(-3, 3);
+    }
+    scene.drives.push_back(d);
+  };
+  for (int i = 0; i < driven_coordinates_of(l.kind); ++i)
+    if (l.kind == LoopKind::spherical ? coordinates != 0 : (coordinates >> i & 1) != 0) add(i, "");
+  const std::array<const char*, 3> names{"x", "y", "z"};
+  for (std::size_t i = 0; i < 3; ++i)
+    if ((origins >> i & 1) != 0) add(0, names[i]);
+}
+
+/// Up to three coordinates of joints without quaternions, driven ones among them, but one free at
+/// least; none where there is no such coordinate.
+inline std::optional<LoopSpec> random_coupler(RandomTree& random, const Scene& scene) {
+  LoopSpec l;
+  l.name = "loop" + std::to_string(scene.loops.size());
+  l.kind = LoopKind::coupler;
+  l.offset = random.uniform(-1, 1);
+  bool all_driven = true;
+  for (int tries = 0; tries < 20 && l.joints.size() < 3; ++tries) {
+    const JointSpec& j =
+        scene.joints[static_cast<std::size_t>(random.below(static_cast<int>(scene.joints.size())))];
+    if (j.kind == JointKind::spherical || j.kind == JointKind::free || j.kind == JointKind::weld)
+      continue;
+    const int coordinate = random.below(rates_of(j.kind));
+    bool known = false, driven = false;
+    for (std::size_t i = 0; i < l.joints.size(); ++i)
+      known |= l.joints[i] == j.name && l.coordinates[i] == coordinate;
+    for (const DriveSpec& d : scene.drives)
+      driven |= d.joint == j.name && d.coordinate == coordinate;
+    if (known) continue;
+    all_driven &= driven;
+    l.joints.push_back(j.name);
+    l.coordinates.push_back(coordinate);
+    l.ratios.push_back(random.chance(0.5) ? random.uniform(0.3, 2) : random.uniform(-2, -0.3));
+  }
+  if (all_driven) return std::nullopt;
   return l;
 }
 

@@ -137,6 +137,39 @@ class RandomTree {
     return s;
   }
 
+  /// A law of any kind, of order one between t = 0 and 1.
+  DriveSpec drive(const std::string& joint, int coordinate) {
+    DriveSpec d;
+    d.joint = joint;
+    d.coordinate = coordinate;
+    switch (below(4)) {
+      case 0:
+        d.kind = "polynomial";
+        for (int i = 0; i < 4; ++i) d.coefficients.push_back(uniform(-1, 1));
+        break;
+      case 1:
+        d.kind = "harmonic";
+        d.offset = uniform(-1, 1);
+        d.amplitude = uniform(-1, 1);
+        d.frequency = uniform(0.5, 3);
+        d.phase = uniform(-3, 3);
+        break;
+      case 2:
+        d.kind = "step";
+        d.from = uniform(-1, 1);
+        d.to = uniform(-1, 1);
+        d.start = -0.5;
+        d.duration = 2;
+        break;
+      case 3:  // states are between 0 and 1
+        d.kind = "table";
+        d.times = {-0.3, 0.2, 0.45, 0.9, 1.2};
+        for (std::size_t i = 0; i < d.times.size(); ++i) d.values.push_back(uniform(-1, 1));
+        break;
+    }
+    return d;
+  }
+
  private:
   static std::string body_name(int k) { return k < 0 ? "ground" : "body" + std::to_string(k); }
 
@@ -212,38 +245,6 @@ class RandomTree {
       default:
         return std::pow(10.0, uniform(-12, -3));
     }
-  }
-
-  DriveSpec drive(const std::string& joint, int coordinate) {
-    DriveSpec d;
-    d.joint = joint;
-    d.coordinate = coordinate;
-    switch (below(4)) {
-      case 0:
-        d.kind = "polynomial";
-        for (int i = 0; i < 4; ++i) d.coefficients.push_back(uniform(-1, 1));
-        break;
-      case 1:
-        d.kind = "harmonic";
-        d.offset = uniform(-1, 1);
-        d.amplitude = uniform(-1, 1);
-        d.frequency = uniform(0.5, 3);
-        d.phase = uniform(-3, 3);
-        break;
-      case 2:
-        d.kind = "step";
-        d.from = uniform(-1, 1);
-        d.to = uniform(-1, 1);
-        d.start = -0.5;
-        d.duration = 2;
-        break;
-      case 3:  // states are between 0 and 1
-        d.kind = "table";
-        d.times = {-0.3, 0.2, 0.45, 0.9, 1.2};
-        for (std::size_t i = 0; i < d.times.size(); ++i) d.values.push_back(uniform(-1, 1));
-        break;
-    }
-    return d;
   }
 
   void effects(const TreeRecipe& recipe, Scene& s, int k) {

@@ -1,8 +1,8 @@
 // A joint and a loop are interchangeable, and the room has no preferred direction: the same motion
 // wherever the loops are cut, however the scene is turned, in the plane or in space.
 
-#include "equations/dense_lagrangian.h"
 #include "equations/linkages.h"
+#include "equations/recut.h"
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,6 @@
 #include <momenta/dae/study/run_form.h>
 
 #include <filesystem>
-#include <set>
 
 namespace momenta {
 namespace {
@@ -19,76 +18,6 @@ using namespace equations;
 
 Scene example(const std::string& name) {
   return read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples" / name / "scene.toml");
-}
-
-/// The hinge seen from its child: same angle, axis reversed.
-JointSpec reversed(const JointSpec& j) {
-  JointSpec r = j;
-  std::swap(r.parent, r.child);
-  std::swap(r.origin_parent, r.origin_child);
-  r.rotation = j.rotation.conjugate();
-  r.axis = -(j.rotation * j.axis);
-  return r;
-}
-
-/// The scene with loop `closed` made a joint and joint `cut` made a loop, at the poses of `q`.
-Scene recut(const Scene& scene, const Tree& tree, const Eigen::VectorXd& q, const std::string& cut,
-            const std::string& closed) {
-  const auto poses = DenseLagrangian(scene, tree).poses(0, q);
-  std::map<std::string, Eigen::Quaterniond> axes{{"ground", Eigen::Quaterniond::Identity()}};
-  for (std::size_t k = 0; k < poses.size(); ++k)
-    axes[scene.bodies[k].name] = Eigen::Quaterniond(poses[k].linear());
-
-  Scene s = scene;
-  s.joints.clear();
-  s.loops.clear();
-  std::vector<JointSpec> edges;
-  for (const LoopSpec& l : scene.loops) {
-    if (l.name != closed) {
-      s.loops.push_back(l);
-      continue;
-    }
-    JointSpec j;
-    j.name = l.name;
-    j.parent = l.parent;
-    j.child = l.child;
-    j.origin_parent = l.origin_parent;
-    j.origin_child = l.origin_child;
-    j.rotation = l.rotation;
-    j.axis = l.axis;
-    edges.push_back(j);
-  }
-  for (const JointSpec& j : scene.joints) {
-    if (j.name != cut) {
-      edges.push_back(j);
-      continue;
-    }
-    LoopSpec l;
-    l.name = j.name;
-    l.kind = LoopKind::revolute;
-    l.parent = j.parent;
-    l.child = j.child;
-    l.origin_parent = j.origin_parent;
-    l.origin_child = j.origin_child;
-    l.rotation = j.rotation;
-    l.axis = j.axis;
-    s.loops.push_back(l);
-  }
-  std::set<std::string> reached{"ground"};
-  while (!edges.empty()) {
-    const auto next = std::find_if(edges.begin(), edges.end(), [&](const JointSpec& j) {
-      return reached.contains(j.parent) || reached.contains(j.child);
-    });
-    if (next == edges.end()) break;
-    JointSpec j = reached.contains(next->parent) ? *next : reversed(*next);
-    edges.erase(next);
-    const Eigen::AngleAxisd turn((axes[j.parent] * j.rotation).conjugate() * axes[j.child]);
-    j.position = {turn.angle() * (turn.axis().dot(j.axis) < 0 ? -1 : 1)};
-    reached.insert(j.child);
-    s.joints.push_back(j);
-  }
-  s.held.clear();
-  return s;
 }
 
 /// How far each hinge has turned since the start, by name, at the end of a run.

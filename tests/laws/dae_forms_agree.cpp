@@ -217,6 +217,21 @@ TEST(Jacobians, RandomLoopsWithDrivesAndQuaternions) {
   }
 }
 
+TEST(Jacobians, DrivenLoopsAndCouplers) {
+  for (unsigned seed = 0; seed < 6; ++seed) {
+    RandomTree random(seed + 40);
+    Scene scene = random.scene({.bodies = 4});
+    scene.loops.push_back(random_loop(random, scene, loop_kinds[(seed + 4) % loop_kinds.size()]));
+    drive_loop(random, scene, scene.loops.back(), 1 + random.below(7), random.below(8));
+    if (const auto coupler = random_coupler(random, scene)) {
+      scene.loops.push_back(*coupler);
+      drive_loop(random, scene, *coupler, 1, 0);
+    }
+    const Mechanism mechanism(scene, {.algebra = Algebra::spatial});
+    expect_exact_jacobians(mechanism, anywhere(mechanism, seed), seed);
+  }
+}
+
 TEST(Starts, SatisfyTheEquationsOfTheirForm) {
   std::vector<std::pair<Scene, Algebra>> scenes{{example("four_bar"), Algebra::automatic},
                                                 {example("four_bar"), Algebra::spatial},

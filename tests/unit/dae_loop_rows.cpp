@@ -129,6 +129,26 @@ void sweep(const TreeRecipe& recipe, LoopKind kind, int trees, unsigned seed) {
   worst.expect_below(algebra_tol(4 * recipe.bodies));
 }
 
+/// Every choice of driven coordinates, origins driven or not, among other loops.
+void driven_sweep(LoopKind kind, int trees, unsigned seed) {
+  Worst worst;
+  const int choices = 1 << driven_coordinates_of(kind);
+  for (int i = 0; i < trees; ++i) {
+    RandomTree random(seed + static_cast<unsigned>(i));
+    Scene scene = random.scene({.bodies = 5});
+    scene.loops.push_back(
+        random_loop(random, scene, loop_kinds[static_cast<std::size_t>(i) % loop_kinds.size()]));
+    scene.loops.push_back(random_loop(random, scene, kind));
+    const int origins = i % 3 == 0 ? 0 : random.below(8);
+    drive_loop(random, scene, scene.loops.back(), i % choices, origins);
+    const Mechanism mechanism(scene, {.algebra = Algebra::spatial});
+    EXPECT_EQ(mechanism.rows().size(), static_cast<std::size_t>(mechanism.m()));
+    compare(mechanism, random, worst);
+    if (testing::Test::HasFatalFailure()) return;
+  }
+  worst.expect_below(algebra_tol(4 * 5));
+}
+
 class LoopRows : public testing::TestWithParam<LoopKind> {};
 TEST_P(LoopRows, TreesOfAllJoints) {
   sweep({}, GetParam(), 25, 100);
@@ -141,6 +161,9 @@ TEST_P(LoopRows, HingesAndSlides) {
 }
 TEST_P(LoopRows, RightAngles) {
   sweep({.placing = Placing::right_angles}, GetParam(), 15, 400);
+}
+TEST_P(LoopRows, Driven) {
+  driven_sweep(GetParam(), 32, 600);
 }
 TEST_P(LoopRows, NearlyParallelAxes) {
   sweep({.placing = Placing::degenerate}, GetParam(), 15, 500);
@@ -168,6 +191,34 @@ TEST_P(PlanarLoopRows, AnyPlane) {
     compare(mechanism, random, worst);
     if (HasFatalFailure()) return;
   }
+  worst.expect_below(algebra_tol(24));
+}
+
+TEST_P(PlanarLoopRows, Driven) {
+  Worst worst;
+  int planar = 0;
+  for (unsigned i = 0; i < 60; ++i) {
+    RandomTree random(1700 + i);
+    Scene scene = random.planar_scene({.bodies = 5, .drives = i % 2 == 0});
+    const Tree tree = build_tree(scene);
+    const auto found = find_plane(tree, scene);
+    if (!found.basis) continue;
+    const Eigen::Vector3d normal = found.basis->col(2);
+    LoopSpec l = into_plane(random, scene, random_loop(random, scene, GetParam()), normal);
+    int origins = 0;  // those axes of the parent that lie in the plane
+    const auto axes = axes_at_zero(scene).at(l.parent);
+    for (int k = 0; k < 3; ++k)
+      if (std::abs((axes * Eigen::Vector3d::Unit(k)).dot(normal)) < 1e-12) origins |= 1 << k;
+    level(l, scene, tree, normal);
+    scene.loops.push_back(l);
+    const bool turns = l.kind == LoopKind::spherical;  // in space
+    drive_loop(random, scene, l, turns ? 0 : static_cast<int>(i) % 2, origins);
+    const Mechanism mechanism(scene);
+    planar += mechanism.plan().planar;
+    compare(mechanism, random, worst);
+    if (HasFatalFailure()) return;
+  }
+  EXPECT_GT(planar, 30);
   worst.expect_below(algebra_tol(24));
 }
 
@@ -218,6 +269,92 @@ TEST_P(PlanarLoopRows, AgreeWithSpace) {
   EXPECT_GT(compared, 8);
   EXPECT_LT(worst, algebra_tol(28));
   RecordProperty("planar against spatial", std::to_string(worst * 1e16) + "e-16");
+}
+
+/// Every row by name, what is driven said so; and why a driven loop is no loop of a plane.
+TEST(DrivenLoopRows, AreNamed) {
+  RandomTree random(5);
+  Scene scene = random.scene({.bodies = 3, .drives = false});
+  const auto names = [&](LoopKind kind, int coordinates) {
+    scene.loops = {random_loop(random, scene, kind)};
+    scene.drives.clear();
+    drive_loop(random, scene, scene.loops[0], coordinates, 0);
+    std::string all;
+    const Mechanism mechanism(scene, {.algebra = Algebra::spatial});
+    for (const RowName& row : mechanism.rows())
+      all += (all.empty() ? "" : ", ") + row.what;
+    return all;
+  };
+  const std::string point = "point along axis 1, point along axis 2, ",
+                    hinge = "axis 3 against axis 1, axis 3 against axis 2";
+  EXPECT_EQ(names(LoopKind::cylindrical, 0), point + hinge);
+  EXPECT_EQ(names(LoopKind::cylindrical, 3),
+            point + "point along axis 3, driven, " + hinge + ", axis 1 against axis 2, driven");
+  EXPECT_EQ(names(LoopKind::planar, 2), "point along axis 3, point along axis 2, driven, " + hinge);
+  EXPECT_EQ(names(LoopKind::distance, 1), "distance, driven");
+}
+
+TEST(DrivenLoopRows, LeaveThePlane) {
+  Scene scene;
+  scene.bodies.resize(2);
+  for (int i = 0; i < 2; ++i) {
+    BodySpec& b = scene.bodies[static_cast<std::size_t>(i)];
+    b.name = std::string(1, static_cast<char>('a' + i));
+    b.mass = 1;
+    b.inertia.setIdentity();
+    JointSpec j;
+    j.name = "J" + b.name;
+    j.child = b.name;
+    j.parent = i == 0 ? "ground" : "a";
+    scene.joints.push_back(j);
+  }
+  LoopSpec l;
+  l.name = "C";
+  l.child = "b";
+  l.kind = LoopKind::distance;
+  l.length = 1;
+  scene.loops = {l};
+  EXPECT_TRUE(Mechanism(scene).plan().planar);
+  DriveSpec d;
+  d.loop = "C";
+  d.kind = "polynomial";
+  d.coefficients = {0.1, 1};
+  for (const char* axis : {"x", "z"}) {
+    d.origin = axis;
+    scene.drives = {d};
+    EXPECT_EQ(Mechanism(scene).plan().planar, d.origin == "x");
+  }
+  try {
+    const Mechanism mechanism(scene, {.algebra = Algebra::planar});
+    FAIL();
+  } catch (const SceneError& error) {
+    EXPECT_STREQ(error.what(),
+                 "scene: the planar kernel was asked for, but the origin of loop 'C' is driven out "
+                 "of the plane of the joints");
+  }
+}
+
+TEST(Couplers, TreesOfAllJoints) {
+  Worst worst;
+  int coupled = 0;
+  for (unsigned i = 0; i < 60; ++i) {
+    RandomTree random(2100 + i);
+    const bool planar = i % 3 == 2;
+    Scene scene = planar ? random.planar_scene({}) : random.scene({});
+    if (!planar)
+      scene.loops.push_back(random_loop(random, scene, loop_kinds[i % loop_kinds.size()]));
+    for (int k = 0; k < 2; ++k)
+      if (const auto coupler = random_coupler(random, scene)) {
+        scene.loops.push_back(*coupler);
+        if (random.chance(0.5)) drive_loop(random, scene, *coupler, 1, 0);
+        ++coupled;
+      }
+    if (scene.loops.empty()) continue;
+    compare(Mechanism(scene), random, worst);
+    if (testing::Test::HasFatalFailure()) return;
+  }
+  EXPECT_GT(coupled, 80);
+  worst.expect_below(algebra_tol(24));
 }
 
 std::string kind_name(const testing::TestParamInfo<LoopKind>& info) {

@@ -154,6 +154,72 @@ TEST(LoopSweeps, AgreeWithTheAssembledMatrixInThePlane) {
   expect_rounding(worst, 10);
 }
 
+TEST(LoopSweeps, DrivenLoopsInSpace) {
+  Worst worst;
+  for (unsigned seed = 0; seed < 1200; ++seed) {
+    RandomTree random(seed + 5000);
+    Scene scene = random.scene({.bodies = 8});
+    const LoopKind kind = loop_kinds[seed % loop_kinds.size()];
+    for (unsigned i = 0; i < 1 + seed % 2; ++i) {
+      scene.loops.push_back(random_loop(random, scene, i == 0 ? kind : LoopKind::distance));
+      drive_loop(random, scene, scene.loops.back(), random.below(8), random.below(8));
+    }
+    compare(scene, random, {.algebra = Algebra::spatial}, worst);
+  }
+  EXPECT_GT(worst.tried, 250);
+  expect_rounding(worst, 8);
+}
+
+TEST(LoopSweeps, DrivenLoopsInThePlane) {
+  Worst worst;
+  for (unsigned seed = 0; seed < 800; ++seed) {
+    RandomTree random(seed + 7000);
+    Scene scene = random.planar_scene({.bodies = 9});
+    const Tree tree = build_tree(scene);
+    const auto plane = find_plane(tree, scene);
+    ASSERT_TRUE(plane.basis) << seed << ": " << plane.why;
+    const Eigen::Vector3d normal = plane.basis->col(2);
+    for (unsigned i = 0; i < 1 + seed % 2; ++i) {
+      LoopSpec l = into_plane(
+          random, scene,
+          random_loop(random, scene, planar_loop_kinds[(seed + i) % planar_loop_kinds.size()]),
+          normal);
+      level(l, scene, tree, normal);
+      int origins = 0;
+      const auto axes = axes_at_zero(scene).at(l.parent);
+      for (int k = 0; k < 3; ++k)
+        if (std::abs((axes * Eigen::Vector3d::Unit(k)).dot(normal)) < 1e-12) origins |= 1 << k;
+      scene.loops.push_back(l);
+      drive_loop(random, scene, l, l.kind == LoopKind::spherical ? 0 : 1, origins);
+    }
+    compare(scene, random, {.algebra = Algebra::planar}, worst);
+  }
+  EXPECT_GT(worst.tried, 250);
+  expect_rounding(worst, 9);
+}
+
+TEST(LoopSweeps, Couplers) {
+  for (const bool planar : {false, true}) {
+    Worst worst;
+    for (unsigned seed = 0; seed < 700; ++seed) {
+      RandomTree random(seed + 9000);
+      const TreeRecipe recipe{.bodies = 9};
+      Scene scene = planar ? random.planar_scene(recipe) : random.scene(recipe);
+      if (!planar && seed % 3 == 0)
+        scene.loops.push_back(random_loop(random, scene, loop_kinds[seed % loop_kinds.size()]));
+      for (unsigned i = 0; i < 1 + seed % 4; ++i)
+        if (const auto coupler = random_coupler(random, scene)) {
+          scene.loops.push_back(*coupler);
+          if (random.chance(0.4)) drive_loop(random, scene, *coupler, 1, 0);
+        }
+      if (scene.loops.empty()) continue;
+      compare(scene, random, {.algebra = planar ? Algebra::planar : Algebra::spatial}, worst);
+    }
+    EXPECT_GT(worst.tried, 300);
+    expect_rounding(worst, 9);
+  }
+}
+
 /// Errors of u from p = M u₀ + Φ_qᵀσ, u₀ on the branch and σ of order one, a little away from the
 /// flat pose where a row of four-bars loses rank: against u₀, and against quad precision at the
 /// same q and p, whose rounding an exact solution takes for motion.
@@ -273,6 +339,18 @@ TEST(LoopSweeps, LevelsAndBatchesAgree) {
     Scene scene =
         planar ? row_of_four_bars(2, 1.1) : random.scene({.bodies = 6, .body_forces = false});
     if (!planar) scene.loops.push_back(random_loop(random, scene, LoopKind::point));
+    if (seed % 4 == 1) drive_loop(random, scene, scene.loops.back(), 0, 5);
+    if (seed % 8 > 5) {
+      LoopSpec gear;
+      gear.name = "gear";
+      gear.kind = LoopKind::coupler;
+      if (planar)
+        gear.joints = {"B0", "O2"};
+      else if (const auto coupler = random_coupler(random, scene))
+        gear = *coupler;
+      if (planar) gear.ratios = {1.2, -0.7};
+      if (!gear.joints.empty()) scene.loops.push_back(gear);
+    }
     const Mechanism mechanism(scene);
     if (mechanism.m() == 0 || mechanism.kkt() != KktChoice::sweeps) continue;
     const int count = 11, nq = mechanism.nq(), nv = mechanism.nv(), m = mechanism.m();

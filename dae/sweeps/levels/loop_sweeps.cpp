@@ -48,6 +48,12 @@ LoopModel<Planar> in_link_frames(LoopModel<Planar> loops, const PlanarTree& tree
     turn(l.b, l.at_b);
     for (auto& axis : l.axis_a) turn(l.a, axis);
     for (auto& axis : l.axis_b) turn(l.b, axis);
+    if (l.motion < 0) continue;
+    auto& m = loops.motions[static_cast<std::size_t>(l.motion)];
+    turn(l.b, m.at_b);
+    for (auto& axis : m.axis_a) turn(l.a, axis);
+    for (auto& axis : m.axis_b) turn(l.b, axis);
+    for (auto& slide : m.slides) turn(l.b, slide.along);
   }
   return loops;
 }

@@ -64,8 +64,10 @@ LoopPlan plan_loops(const Model<Space>& model, const LoopModel<Space>& loops) {
   std::vector<int> parents;
   for (const auto& b : model.bodies) parents.push_back(b.parent);
   std::vector<LoopShape> shapes;
-  for (const auto& l : loops.loops)
-    shapes.push_back({l.a, l.b, l.rows, l.length == 0 && l.n_points == 2 && l.n_axes == 0});
+  for (const auto& l : loops.loops) {
+    shapes.push_back({l.a, l.b, l.rows, l.n_points == 2 && l.n_axes == 0});
+    for (const auto& c : l.joints) shapes.back().joints.emplace_back(c.body, c.ratio);
+  }
   return plan_loops(parents, shapes, Space::dimension == 6);
 }
 

@@ -1,0 +1,39 @@
+#pragma once
+// Which rows a loop of a scene has, from its kind and from what drives prescribe of it.
+
+#include <momenta/core/scene/scene.h>
+
+#include <array>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace momenta {
+
+/// Drives of one loop; null where there is none.
+struct LoopDrives {
+  std::array<const DriveSpec*, 3> coordinate{}, origin{};
+  bool drives_coordinates() const { return coordinate[0] || coordinate[1] || coordinate[2]; }
+};
+using DrivesOfLoops = std::map<std::string, LoopDrives>;
+DrivesOfLoops drives_of_loops(const Scene& scene);
+
+struct LoopChoice {
+  struct Along {
+    const DriveSpec* drive;
+    Eigen::Vector3d axis;  ///< in the joint frame
+  };
+  Eigen::Matrix3d frame = Eigen::Matrix3d::Identity();  ///< space: axes 1, 2, 3 in the joint frame
+  std::vector<int> points;                              ///< j of the D_j rows
+  std::vector<std::pair<int, int>> axes;                ///< (i, j) of the O_ij rows
+  std::vector<std::string> names;                       ///< of all rows
+  std::vector<Along> slides;                            ///< of x_B
+  std::vector<Along> turns_a, turns_b;  ///< of the axes of A and B, one after the other
+};
+
+/// Rows and prescribed motion; of a distance or a coupler only the name. In a plane axis 1 is that
+/// of the slide, axis 2 stands across it.
+LoopChoice choose_rows(const LoopSpec& loop, const LoopDrives& drives, bool planar);
+
+}  // namespace momenta
