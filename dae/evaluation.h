@@ -59,7 +59,8 @@ class Evaluation {
   virtual int stuck() const = 0;
 
   /// Generalised forces (nv) of springs, dampers and wrenches between points of bodies at (t, q,
-  /// u), and all but the weights: those of the joints besides. Both place and move.
+  /// u), and all but the weights: those of the joints besides. Neither needs place() or move();
+  /// both spoil what those left.
   virtual void body_forces(double t, const S* q, const S* u, S* tau) = 0;
   virtual void applied_forces(double t, const S* q, const S* u, S* tau) = 0;
 

@@ -14,31 +14,35 @@
 
 namespace momenta {
 
+/// The edge of body k at (q, t), its pose in ground axes too when asked; parents first.
+template <class Space, class S>
+void place_body(Workspace<Space, S>& w, std::size_t k, const S& t, const S* q, bool with_pose) {
+  const auto& model = *w.model;
+  const auto& b = model.bodies[k];
+  auto& s = w.body[k];
+  if (b.drive >= 0)
+    prescribe(model.drives[static_cast<std::size_t>(b.drive)], t, s.drive, s.drive_rate,
+              s.drive_acceleration);
+  const auto* parent = b.parent < 0 ? nullptr : &w.body[static_cast<std::size_t>(b.parent)];
+  if constexpr (Space::dimension == 6)
+    if (b.law)
+      Joint<Space>::place(b, t, q + b.q, w.users[static_cast<std::size_t>(b.user)], s.edge);
+  const S value = b.drive >= 0 ? s.drive : (b.nq == 1 ? q[b.q] : S(0.0));
+  if (!b.law)
+    Joint<Space>::template place<S>(b, parent ? &parent->edge : nullptr, value, q + b.q, s.edge);
+  if constexpr (Space::dimension == 3) s.inertia = Planar::turned(b.inertia, s.edge);
+  if (with_pose) {
+    typename Space::template Pose<S> ground;
+    if constexpr (Space::dimension == 6) ground.axes = identity3<S>();
+    s.pose = Space::pose_outward(b.edge, b.kind, s.edge, parent ? parent->pose : ground);
+  }
+}
+
 /// Edges at (q, t); poses in ground axes too when asked. Cost O(bodies), one sine and cosine per
 /// revolute joint.
 template <class Space, class S>
 void poses_outward(Workspace<Space, S>& w, const S& t, const S* q, bool with_poses) {
-  const auto& model = *w.model;
-  for (std::size_t k = 0; k < w.body.size(); ++k) {
-    const auto& b = model.bodies[k];
-    auto& s = w.body[k];
-    if (b.drive >= 0)
-      prescribe(model.drives[static_cast<std::size_t>(b.drive)], t, s.drive, s.drive_rate,
-                s.drive_acceleration);
-    const auto* parent = b.parent < 0 ? nullptr : &w.body[static_cast<std::size_t>(b.parent)];
-    if constexpr (Space::dimension == 6)
-      if (b.law)
-        Joint<Space>::place(b, t, q + b.q, w.users[static_cast<std::size_t>(b.user)], s.edge);
-    const S value = b.drive >= 0 ? s.drive : (b.nq == 1 ? q[b.q] : S(0.0));
-    if (!b.law)
-      Joint<Space>::template place<S>(b, parent ? &parent->edge : nullptr, value, q + b.q, s.edge);
-    if constexpr (Space::dimension == 3) s.inertia = Planar::turned(b.inertia, s.edge);
-    if (with_poses) {
-      typename Space::template Pose<S> ground;
-      if constexpr (Space::dimension == 6) ground.axes = identity3<S>();
-      s.pose = Space::pose_outward(b.edge, b.kind, s.edge, parent ? parent->pose : ground);
-    }
-  }
+  for (std::size_t k = 0; k < w.body.size(); ++k) place_body(w, k, t, q, with_poses);
 }
 
 /// Ω_t of (13): prescribed joint motion, or what a user joint moves with t alone, added to V.
@@ -50,22 +54,25 @@ void add_drive(const typename Model<Space>::Body& b, const typename Workspace<Sp
     if (b.law) v += s.edge.own->drift;
 }
 
-/// Ω_K of all bodies from the joint rates, eq. (23).
+/// Ω_K of body k from the joint rates, eq. (23); parents first.
+template <class Space, class S>
+void move_body(Workspace<Space, S>& w, std::size_t k, const S* u) {
+  const auto& b = w.model->bodies[k];
+  auto& s = w.body[k];
+  s.V = b.parent < 0
+            ? typename Space::template Motion<S>{}
+            : Space::to_child(b.edge, b.kind, s.edge, w.body[static_cast<std::size_t>(b.parent)].V);
+  if (b.drive >= 0)
+    add_drive<Space, S>(b, s, s.V);
+  else
+    Joint<Space>::add_motion(b, s.edge, u + b.u, s.V);
+  if (b.law) add_drive<Space, S>(b, s, s.V);
+}
+
+/// Ω_K of all bodies.
 template <class Space, class S>
 void velocities_outward(Workspace<Space, S>& w, const S* u) {
-  const auto& model = *w.model;
-  for (std::size_t k = 0; k < w.body.size(); ++k) {
-    const auto& b = model.bodies[k];
-    auto& s = w.body[k];
-    s.V = b.parent < 0 ? typename Space::template Motion<S>{}
-                       : Space::to_child(b.edge, b.kind, s.edge,
-                                         w.body[static_cast<std::size_t>(b.parent)].V);
-    if (b.drive >= 0)
-      add_drive<Space, S>(b, s, s.V);
-    else
-      Joint<Space>::add_motion(b, s.edge, u + b.u, s.V);
-    if (b.law) add_drive<Space, S>(b, s, s.V);
-  }
+  for (std::size_t k = 0; k < w.body.size(); ++k) move_body(w, k, u);
 }
 
 /// Gravity in the axes of every body.

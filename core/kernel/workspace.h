@@ -36,11 +36,27 @@ struct Workspace {
       : model(&m),
         body(m.bodies.size()),
         generalised(static_cast<std::size_t>(m.nv)),
-        users(m.laws.size()) {}
+        users(m.laws.size()) {
+    std::vector<char> carries(m.bodies.size());
+    const auto mark = [&](int k) {
+      for (; k >= 0 && !carries[static_cast<std::size_t>(k)];
+           k = m.bodies[static_cast<std::size_t>(k)].parent)
+        carries[static_cast<std::size_t>(k)] = 1;
+    };
+    for (const auto& spring : m.springs) {
+      mark(spring.child);
+      mark(spring.parent);
+    }
+    for (const auto& wrench : m.wrenches) mark(wrench.body);
+    for (std::size_t k = 0; k < carries.size(); ++k)
+      if (carries[k]) forced.push_back(static_cast<int>(k));
+  }
 
   const Model<Space>* model;
   std::vector<Body> body;
-  std::vector<S> generalised;        ///< scratch, nv: generalised forces
+  std::vector<S> generalised;  ///< scratch, nv: generalised forces
+  std::vector<int>
+      forced;  ///< bodies with forces at points of theirs, and all on their ways to the ground
   std::vector<UserMotion<S>> users;  ///< what the edges of user joints point to
 
   /// The rigid inertia of body k in the axes the sweeps work in.
