@@ -42,7 +42,7 @@ std::vector<std::string> commands_of(const std::string& page) {
     text = std::regex_replace(text, std::regex("\\$" + name + "\\b"), value);
   std::vector<std::string> all;
   const std::regex command(
-      "(?:\n {4,}|`)(momenta (?:index|check|assemble|evaluate|run|drift) [^\n`]*)");
+      "(?:\n {4,}|`)(momenta (?:index|check|assemble|evaluate|run|drift|work) [^\n`]*)");
   for (std::sregex_iterator it(text.begin(), text.end(), command), end; it != end; ++it)
     all.push_back((*it)[1]);
   return all;
@@ -50,11 +50,14 @@ std::vector<std::string> commands_of(const std::string& page) {
 
 /// The same on a short span, with its results in `out`.
 std::string shortened(std::string command, const fs::path& out) {
-  command = std::regex_replace(command, std::regex(" --(end|samples|out|rtol) [^ ]+"), "");
-  const bool integrates =
-      command.rfind("momenta run", 0) == 0 || command.rfind("momenta drift", 0) == 0;
-  if (integrates) command += " --end 0.003 --samples 3 --rtol 1e-6 --quiet";
-  if (command.rfind("momenta check", 0) != 0) command += " --out '" + out.string() + "'";
+  command = std::regex_replace(
+      command, std::regex(" --(end|samples|out|rtol|from|to|per-decade) [^ ]+"), "");
+  const auto is = [&](const char* verb) { return command.rfind(verb, 0) == 0; };
+  if (is("momenta run") || is("momenta drift") || is("momenta work")) {
+    command += " --end 0.003 --samples 3 --quiet";
+    command += is("momenta work") ? " --from 1e-4 --to 1e-5" : " --rtol 1e-6";
+  }
+  if (!is("momenta check")) command += " --out '" + out.string() + "'";
   return "'" + (fs::path(MOMENTA_BINARY_DIR) / "dae").string() + "'/" + command;
 }
 
