@@ -196,6 +196,24 @@ TEST(Index, ASingularPoseOfIndependentLoopsHasNoneThere) {
   EXPECT_NE(singular.forms[0].found.index, 2);
 }
 
+TEST(Index, DrivenLoopsAreRefused) {
+  // A rod that grows: the array would need every derivative of its length.
+  Scene s = scene_of("pendulum/cartesian.toml");
+  DriveSpec growing;
+  growing.loop = "bar";
+  growing.kind = "polynomial";
+  growing.coefficients = {1.0, 0.1};
+  s.drives.push_back(growing);
+  const Mechanism mechanism(s);
+  const Start start = assemble(mechanism).start;
+  try {
+    run_index_study(mechanism, start, {});
+    FAIL() << "expected a refusal";
+  } catch (const SceneError& e) {
+    EXPECT_NE(std::string(e.what()).find("loop 'bar' is driven"), std::string::npos) << e.what();
+  }
+}
+
 TEST(Index, WithoutLoopsTheFormsAreOdes) {
   const Mechanism mechanism(scene_of("chain/scene.toml"));
   const Start start = assemble(mechanism).start;
