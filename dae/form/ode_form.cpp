@@ -45,7 +45,7 @@ void OdeForm::note_pivots() {
   const LoopSolver::Pivots pivots = solver_->pivots();
   always_faded_ = std::min(always_faded_, pivots.faded);
   near_singular_ |= pivots.weakest < near || pivots.faded > always_faded_;
-  if (!watched_ || pivots.faded == 0) return;
+  if (!watched_) return;
   for (const int row : solver_->faded_rows()) ++(*watched_)[static_cast<std::size_t>(row)];
 }
 
