@@ -317,7 +317,7 @@ class Runner {
       throw std::invalid_argument(
           "'" + s.integrator + "' takes no correction after each step: expected no --project" +
           (method.multistep ? ", it would spoil the method's history" : ""));
-    if (method.multistep && (s.gauge == "reset" || s.gauge == "flip"))
+    if (!dae && method.multistep && (s.gauge == "reset" || s.gauge == "flip"))
       throw std::invalid_argument("'" + s.integrator + "' is a multistep method: gauge " + s.gauge +
                                   " after each step would spoil its history; use leak or none");
     if (s.integrator == "rattle") s.gauge = "reset";  // its last stage does it
