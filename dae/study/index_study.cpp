@@ -141,13 +141,6 @@ IndexStudy run_index_study(const Mechanism& mechanism, const Start& start,
   if (forms.empty())
     forms = mechanism.m() > 0 ? form_names() : std::vector<std::string>{"momentum", "acceleration"};
   for (const auto& form : forms) is_dae_form(form);  // an unknown name is told before anything runs
-  // Derivative arrays differentiate in t; what drives prescribe of loops is known to two orders
-  // only.
-  for (const DriveSpec& drive : mechanism.scene().drives)
-    if (!drive.loop.empty())
-      throw SceneError(mechanism.scene().where(drive.at) + "the index is not found where a drive " +
-                       "prescribes a loop: found a drive of loop '" + drive.loop +
-                       "', expected drives of joints alone");
   const int smallest = mechanism.nq() + mechanism.nv() + mechanism.m();
   if (smallest > index_limit)
     throw SceneError(mechanism.scene().where({}) +
