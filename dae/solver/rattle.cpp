@@ -176,6 +176,7 @@ class Rattle {
       if (m > 0) to.p -= 0.5 * h * here_.constraint.transpose() * lambda;
       const VectorXd u0_before = u0, u1_before = u1;
       u0 = here_.rates(to.p);
+      u1 += u0 - u0_before;  // it follows p_½ too: λ's correction counts on both
       const VectorXd first = 0.5 * h * u0, second = 0.5 * h * u1;
       parts_.move(from.q.data(), first.data(), middle.data());
       parts_.move(middle.data(), second.data(), to.q.data());
