@@ -13,8 +13,8 @@ struct IntegrationOptions {
   double rtol = 1e-8;
   double atol = 1e-8;  ///< times the system's scale(i)
   double step = 0;     ///< fixed step [s]; needed by rk4, gauss, generalised-alpha. dp5, dop853,
-                    ///< vern9, radau5: > 0 means steps of this length without error control.
-                    ///< Ignored by the multistep methods
+                       ///< vern9, radau5: > 0 means steps of this length without error control.
+                       ///< Ignored by the multistep methods
   double initial_step = 0;       ///< 0: chosen by the method
   double max_step = 0;           ///< 0: none
   int max_order = 0;             ///< multistep; 0: the method's own limit

@@ -95,8 +95,7 @@ TEST(Examples, FourBarMeetsItsReference) {
 
 // Through seven bifurcations in ten seconds, on the wanted branch.
 TEST(Examples, SliderCrankKeepsItsBranch) {
-  for (const auto& [form, gauge] :
-       {std::pair("momentum", "reset"), std::pair("projected", "")}) {
+  for (const auto& [form, gauge] : {std::pair("momentum", "reset"), std::pair("projected", "")}) {
     SCOPED_TRACE(form);
     const RunResult run =
         run_against_reference("slider_crank", form, gauge, 1e-10, 10, "scene.toml", 10, true);

@@ -144,8 +144,9 @@ double far_from_start(const std::string& gauge, const std::string& method, int c
   const auto start = c.form->initial(c.start);
   const auto turn = [&](std::vector<double> y) {
     bool changed = false;
-    if (c.form->ode()->has_after_step())
+    if (c.form->ode()->has_after_step()) {
       EXPECT_TRUE(c.form->ode()->after_step(0, y.data(), changed));
+    }
     for (std::size_t i = static_cast<std::size_t>(c.mechanism.nq()); i < y.size(); ++i)
       y[i] = -y[i];
     return y;

@@ -281,8 +281,7 @@ TEST(DrivenLoopRows, AreNamed) {
     drive_loop(random, scene, scene.loops[0], coordinates, 0);
     std::string all;
     const Mechanism mechanism(scene, {.algebra = Algebra::spatial});
-    for (const RowName& row : mechanism.rows())
-      all += (all.empty() ? "" : ", ") + row.what;
+    for (const RowName& row : mechanism.rows()) all += (all.empty() ? "" : ", ") + row.what;
     return all;
   };
   const std::string point = "point along axis 1, point along axis 2, ",

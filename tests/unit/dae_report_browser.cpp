@@ -107,7 +107,7 @@ TEST_P(Browser, ShowsALadderWithinTheWindow) {
   const auto [report, console] = opened(synthetic::ladder(), GetParam());
   EXPECT_EQ(console, "");
   EXPECT_EQ(report, "fits width=" + std::to_string(GetParam()) +
-                        " plots=6 tables=4 small=0 sorted=ascending svg=1");
+                        " plots=9 tables=4 small=0 sorted=ascending svg=1");
 }
 
 TEST_P(Browser, ShowsALoneRunWithoutHistory) {

@@ -153,8 +153,9 @@ function makingSection() {
   const add = (node) => node && main.append(node);
   let costsShown = false;
   const addCosts = () => {
-    const chart = costsShown ? null : scatterChart(costs);
+    if (costsShown) return;
     costsShown = true;
+    const chart = scatterChart(costs);
     if (chart) add(chartSection(costs, chart, false));
     if (study.drift_study) return;
     for (const spec of furtherCosts) {
