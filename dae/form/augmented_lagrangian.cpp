@@ -13,7 +13,6 @@
 // Drifts        as `baumgarte`: Φ, Φ̇ bounded at a level set by ω and the step. An iteration leaves
 //               1/(1 + α W) of what λ lacks, W = Φ_q M⁻¹Φ_qᵀ: 10⁻¹⁴ after two. Where W loses rank
 //               nothing has to be chosen; λ stays what it was in the directions that vanish.
-//               Couplers have no ends at which the sweeps could soften them: they hold exactly.
 // Settings      α = penalty / W, W of the start: penalty effective masses, 10⁷ unless given;
 //               ξω = ω = 1/T, T the mechanism's own time scale, where the literature takes ω = 10,
 //               ξ = 1 for motions of a second

@@ -40,13 +40,10 @@ struct Front {
   }
 };
 
-/// The front with rows that give way, r −= compliance σ, of the loop at `lane`. By value: a front
-/// whose address is taken leaves the registers.
+/// Rows of the loop at `lane`, about to close, give way: r −= compliance σ.
 template <class S, int Rows, int Columns>
-__attribute__((noinline)) Front<S, Rows, Columns> softened(Front<S, Rows, Columns> front, int lane,
-                                                           int rows, const S* compliance) {
-  for (int i = lane; i < lane + rows; ++i) front.W[i].add(i, compliance[i - lane]);
-  return front;
+void soften(Front<S, Rows, Columns>& front, int lane, int rows, const S* compliance) {
+  for (int i = 0; i < rows; ++i) front.W[lane + i].add(lane + i, compliance[i]);
 }
 
 /// A closed row, for the way back.

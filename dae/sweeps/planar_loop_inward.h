@@ -47,6 +47,11 @@ MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::close(const LoopPlan:
     if constexpr (pairs_in_registers)
       if (plan_->pair[at]) {
         at_lane<Rows>(plan_->lane[at], [&]<int Lane>() MOMENTA_INLINED {
+          if (compliance_) {
+            const S* soft = compliance_ + loops_->loops[at].row;
+            o.W[Lane].add(Lane, soft[0]);
+            o.W[Lane + 1].add(Lane + 1, soft[1]);
+          }
           close_pair<Lane, Moves>(o, fade, pairs_[at], PlanarWeight<S>{a});
         });
         continue;
@@ -62,6 +67,8 @@ template <class S, int Rows, bool Momentum>
 void LoopSweeps<Planar, S, Rows, Momentum>::close_any(int loop, Open& open, double fade) {
   const Loop& l = loops_->loops[static_cast<std::size_t>(loop)];
   const int points = l.first_rows();
+  if (compliance_)
+    soften(open.blocks, plan_->lane[static_cast<std::size_t>(loop)], l.rows, compliance_ + l.row);
   close_loop(open.blocks, plan_->lane[static_cast<std::size_t>(loop)], points, l.rows - points,
              fade, &rows_[static_cast<std::size_t>(l.row)], PlanarWeight<S>{open.cargo});
 }

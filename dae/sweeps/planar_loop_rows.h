@@ -231,7 +231,6 @@ void LoopSweeps<Planar, S, Rows, Momentum>::enter(std::size_t k, const RightSide
         a.Dn = a.Dn + (first * n0 + second * n1);
       }
       if (asks) o.d.add_pair(lane, row_bias(l, s, 0, right), row_bias(l, s, 1, right));
-      if (end.first && right.compliance) o = softened(o, lane, 2, right.compliance + l.row);
       continue;
     }
     for (int row = 0; row < l.rows; ++row) {
@@ -248,7 +247,6 @@ void LoopSweeps<Planar, S, Rows, Momentum>::enter(std::size_t k, const RightSide
       }
       if (asks) o.d.add(lane + row, row_bias(l, s, row, right));
     }
-    if (end.first && right.compliance) o = softened(o, lane, l.rows, right.compliance + l.row);
   }
 }
 

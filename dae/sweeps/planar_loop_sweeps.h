@@ -152,9 +152,10 @@ class LoopSweeps<Planar, S, Rows, Momentum> : PlanarPlaces<S> {
   struct Wrench {
     S fx, fy, fn;
   };
-  std::vector<Wrench> wrenches_;  ///< T, N and leak
-  std::vector<Row> rows_;         ///< by row of Φ, in closing order within a loop
-  std::vector<Pair> pairs_;       ///< by loop
+  std::vector<Wrench> wrenches_;   ///< T, N and leak
+  std::vector<Row> rows_;          ///< by row of Φ, in closing order within a loop
+  const S* compliance_ = nullptr;  ///< of the call under way: right.compliance
+  std::vector<Pair> pairs_;        ///< by loop
 };
 
 template <class S, int Rows, bool Momentum>
@@ -187,6 +188,7 @@ bool LoopSweeps<Planar, S, Rows, Momentum>::operator()(const S& t, const In& q, 
                                                        Out u, Out sigma, Out rate) {
   Base::place(t, q);
   stuck_ = -1;
+  compliance_ = right.compliance;
   place_bodies(x, right);
   loops_ = &in_time_.at(value_of(t));
   place_loops();

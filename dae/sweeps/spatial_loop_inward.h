@@ -59,8 +59,6 @@ void LoopSweeps<Spatial, S, Rows, Momentum>::enter(std::size_t k, const LoopPlan
       a.blocks.d.add(lane + row, d);
     }
   }
-  if (end.first && right.compliance)
-    a.blocks = softened(a.blocks, lane, l.rows, right.compliance + l.row);
   if (right.centre) {
     a.cargo.Dfx += centre_force[0];
     a.cargo.Dfy += centre_force[1];
@@ -101,6 +99,8 @@ template <class S, int Rows, bool Momentum>
 void LoopSweeps<Spatial, S, Rows, Momentum>::close(int loop, Carried& a, double fade) {
   const Loop& l = loops_->loops[static_cast<std::size_t>(loop)];
   const int points = l.first_rows();
+  if (compliance_)
+    soften(a.blocks, plan_->lane[static_cast<std::size_t>(loop)], l.rows, compliance_ + l.row);
   close_loop(a.blocks, plan_->lane[static_cast<std::size_t>(loop)], points, l.rows - points, fade,
              &rows_[static_cast<std::size_t>(l.row)], SpatialWeight<S, Cargo<S>>{a.cargo});
 }

@@ -148,8 +148,9 @@ class LoopSweeps<Spatial, S, Rows, Momentum> {
   std::vector<Carried> slots_;
   std::vector<Moving> outward_slots_;
   std::vector<Row> rows_;
-  std::vector<Cargo<S>> legs_;  ///< by body: what folded legs add to it
-  std::vector<Motion> taken_;   ///< by body: Ω of those that take legs
+  std::vector<Cargo<S>> legs_;     ///< by body: what folded legs add to it
+  std::vector<Motion> taken_;      ///< by body: Ω of those that take legs
+  const S* compliance_ = nullptr;  ///< of the call under way: right.compliance
   int stuck_ = -1;
   bool weak_leg_ = false;
 };
@@ -193,6 +194,7 @@ bool LoopSweeps<Spatial, S, Rows, Momentum>::operator()(const S& t, const In& q,
       users_, [&](std::size_t record) -> auto& { return balls_[record].R; });
   stuck_ = tree_->stuck;
   weak_leg_ = false;
+  compliance_ = right.compliance;
   if (stuck_ >= 0) return false;
   for (std::size_t k = 0; k < legs_.size(); ++k)
     if (plan_->takes_legs[k]) legs_[k] = {};
