@@ -181,7 +181,7 @@ def lesson5(program, folder):
 def lesson6(program, folder):
     for scene, name, file, x in (("four_bar", "Four-bar, 10 s", "lesson6_four_bar.svg", (2, 4)),
                                  ("n_four_bar", "Forty four-bars, 10 s", "lesson6_n_four_bar.svg", (2, 4))):
-        command = [program, "work", TOP / "examples" / scene / "scene.toml", "--forms", "momentum,acceleration",
+        command = [program, "work", TOP / "examples" / scene / "scene.toml", "--forms", "momentum,projected",
                    "--gauge", "reset", "--end", "10", "--reference", TOP / "examples" / scene / "reference.csv",
                    "--quiet", "--out", folder]
         subprocess.run([str(part) for part in command], check=True)
@@ -189,7 +189,7 @@ def lesson6(program, folder):
             runs = [r for r in json.load(f) if r["status"] == "done" and r["error"]["position_max"]]
         chart = Chart(f"{name}, dop853 at 1e-4 … 1e-12: error of positions", "solutions of (7) or (3)", x, (-12, 0))
         for form, label, colour in (("momentum", "momentum, reset, projected", BLUE),
-                                    ("acceleration", "acceleration, projected", RED)):
+                                    ("projected", "projected (accelerations)", RED)):
             points = [(r["counters"]["factorizations"], r["error"]["position_max"]) for r in runs if r["form"] == form]
             chart.curve(points, label, colour, dots=True)
         chart.write(file)
