@@ -1,12 +1,7 @@
 #include <momenta/dae/report/conclusion.h>
-#include <momenta/dae/report/csv.h>
-#include <momenta/dae/report/page.h>
-#include <momenta/dae/report/table.h>
 #include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/study/drift_study.h>
 
-#include <algorithm>
-#include <cstdio>
 #include <sstream>
 
 #include "options.h"
@@ -49,28 +44,13 @@ int drift(const Options& o, const DriftOptions& d) {
   {
     ProgressLine line(o.quiet);
     request.progress = [&](int number, int total, const std::string& label, double fraction) {
-      line.show("[" + std::to_string(number) + "/" + std::to_string(total) + "] " + label + "  " +
-                std::to_string(static_cast<int>(100 * fraction)) + " %");
-      return !interrupted();
+      return line.going(number, total, label, fraction);
     };
     study.runs = run_drift_study(*mechanism, a.start, request);
   }
   study.reference = o.reference.string();
   describe(study, o, *mechanism, a);
-  const std::string json = study_json(study).dump(2) + "\n";
-  if (!o.out.empty() && (!write_result(o.out / "summary.json", json) ||
-                         !write_result(o.out / "study.csv", study_csv(study)) ||
-                         !write_result(o.out / "index.html", drift_page(study))))
-    return run_failed;
-  if (o.json)
-    std::fputs(json.c_str(), stdout);
-  else if (!o.quiet)
-    std::printf("%s\n%s\n", drift_table(study).c_str(), conclusion(study).c_str());
-  if (!o.out.empty() && !o.quiet)
-    std::fprintf(stderr, "momenta: wrote %s\n", (o.out / "index.html").c_str());
-  const bool any = std::any_of(study.runs.begin(), study.runs.end(),
-                               [](const auto& r) { return r.status == "done"; });
-  return any && !interrupted() ? done : run_failed;
+  return publish(study, conclusion(study) + "\n", o);
 }
 
 }  // namespace momenta::program

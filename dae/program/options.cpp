@@ -2,11 +2,15 @@
 
 #include <momenta/core/scene/read_scene.h>
 #include <momenta/dae/report/atomic_write.h>
+#include <momenta/dae/report/csv.h>
+#include <momenta/dae/report/page.h>
+#include <momenta/dae/report/table.h>
 #include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/study/environment.h>
 #include <momenta/dae/study/sketch.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <fstream>
@@ -109,6 +113,23 @@ bool write_result(const std::filesystem::path& file, std::string_view content) {
   return !problem;
 }
 
+int publish(const StudyResult& study, const std::string& words, const Options& o) {
+  const std::string json = study_json(study).dump(2) + "\n";
+  if (!o.out.empty() && (!write_result(o.out / "summary.json", json) ||
+                         !write_result(o.out / "study.csv", study_csv(study)) ||
+                         !write_result(o.out / "index.html", drift_page(study))))
+    return run_failed;
+  if (o.json)
+    std::fputs(json.c_str(), stdout);
+  else if (!o.quiet)
+    std::printf("%s\n%s", drift_table(study).c_str(), words.c_str());
+  if (!o.out.empty() && !o.quiet)
+    std::fprintf(stderr, "momenta: wrote %s\n", (o.out / "index.html").c_str());
+  const bool any = std::any_of(study.runs.begin(), study.runs.end(),
+                               [](const auto& r) { return r.status == "done"; });
+  return any && !interrupted() ? done : run_failed;
+}
+
 bool interrupted() {
   return signal_came != 0;
 }
@@ -121,6 +142,11 @@ void watch_signals() {
 ProgressLine::ProgressLine(bool quiet) : active_(!quiet && isatty(STDERR_FILENO) != 0) {}
 ProgressLine::~ProgressLine() {
   if (active_) std::fputs("\r\x1b[K", stderr);
+}
+bool ProgressLine::going(int number, int total, const std::string& label, double fraction) {
+  show("[" + std::to_string(number) + "/" + std::to_string(total) + "] " + label + "  " +
+       std::to_string(static_cast<int>(100 * fraction)) + " %");
+  return !interrupted();
 }
 void ProgressLine::show(const std::string& text) {
   if (active_) std::fprintf(stderr, "\r%.100s\x1b[K", text.c_str());

@@ -45,6 +45,10 @@ void describe(StudyResult& study, const Options& o, const Mechanism& mechanism,
 /// Writes a result file; on failure prints the sentence and returns false.
 bool write_result(const std::filesystem::path& file, std::string_view content);
 
+/// Writes a study's files where --out says, prints its table and `words`, or its JSON, and returns
+/// the exit status.
+int publish(const StudyResult& study, const std::string& words, const Options& o);
+
 /// True once SIGINT or SIGTERM came: runs stop at their next sample and keep what they have.
 bool interrupted();
 void watch_signals();
@@ -55,6 +59,8 @@ class ProgressLine {
   explicit ProgressLine(bool quiet);
   ~ProgressLine();
   void show(const std::string& text);
+  /// Shows where a study is; false once it is interrupted.
+  bool going(int number, int total, const std::string& label, double fraction);
 
  private:
   bool active_;

@@ -1,15 +1,10 @@
 #include <momenta/dae/report/advice.h>
-#include <momenta/dae/report/csv.h>
 #include <momenta/dae/report/number_text.h>
-#include <momenta/dae/report/page.h>
-#include <momenta/dae/report/table.h>
 #include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/study/own_reference.h>
 #include <momenta/dae/study/work_study.h>
 
-#include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <sstream>
 
 #include "options.h"
@@ -78,27 +73,12 @@ int work(const Options& o, const WorkOptions& w) {
     }
     request.reference = reference.get();
     request.progress = [&](int number, int total, const std::string& label, double fraction) {
-      line.show("[" + std::to_string(number) + "/" + std::to_string(total) + "] " + label + "  " +
-                std::to_string(static_cast<int>(100 * fraction)) + " %");
-      return !interrupted();
+      return line.going(number, total, label, fraction);
     };
     study.runs = run_work_study(*mechanism, a.start, request);
   }
   describe(study, o, *mechanism, a);
-  const std::string json = study_json(study).dump(2) + "\n";
-  if (!o.out.empty() && (!write_result(o.out / "summary.json", json) ||
-                         !write_result(o.out / "study.csv", study_csv(study)) ||
-                         !write_result(o.out / "index.html", drift_page(study))))
-    return run_failed;
-  if (o.json)
-    std::fputs(json.c_str(), stdout);
-  else if (!o.quiet)
-    std::printf("%s\n%s", drift_table(study).c_str(), advice(study).c_str());
-  if (!o.out.empty() && !o.quiet)
-    std::fprintf(stderr, "momenta: wrote %s\n", (o.out / "index.html").c_str());
-  const bool any = std::any_of(study.runs.begin(), study.runs.end(),
-                               [](const auto& r) { return r.status == "done"; });
-  return any && !interrupted() ? done : run_failed;
+  return publish(study, advice(study), o);
 }
 
 }  // namespace momenta::program
