@@ -2,8 +2,6 @@
 #include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/study/drift_study.h>
 
-#include <sstream>
-
 #include "options.h"
 
 namespace momenta::program {
@@ -14,11 +12,8 @@ int drift(const Options& o, const DriftOptions& d) {
   const Assembly a = assemble(*mechanism);
   const RunDefaults& defaults = mechanism->scene().run;
   DriftRequest request;
-  std::stringstream forms(d.forms);
-  for (std::string form; std::getline(forms, form, ',');) {
-    is_dae_form(form);  // an unknown name is told before anything runs
-    request.forms.push_back(form);
-  }
+  request.forms = names_in(d.forms);
+  for (const auto& form : request.forms) is_dae_form(form);  // unknown names before anything runs
   if (!o.integrator.empty() && integrator(o.integrator).takes != Integrator::Takes::ode)
     throw std::invalid_argument(
         "--integrator chooses the method of the ODE forms; the DAE forms run on ida anyway");

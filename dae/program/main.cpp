@@ -18,6 +18,7 @@ int main(int argc, char** argv) {
   for (int i = 0; i < argc; ++i) o.command += (i == 0 ? "momenta" : std::string(" ") + argv[i]);
   DriftOptions d;
   WorkOptions w;
+  StressOptions stress_options;
   std::string family, state = "{}";
   std::optional<int> n;
   CLI::App app(
@@ -84,6 +85,38 @@ int main(int argc, char** argv) {
       ->add_option("--at", index_state, "Consistent state, as for evaluate (default: the start)")
       ->type_name("STATE");
   index_app->add_option("--out", o.out, "Directory for index.json");
+  CLI::App* stress_app =
+      app.add_subcommand("stress", "Which form survives which extreme, and how the others fail");
+  stress_app->add_option("scene", o.scene,
+                         "Scene driven to extremes (default: the built-in ladders)");
+  stress_app->add_option("--forms", stress_options.forms, "Comma-separated (default: all)");
+  stress_app->add_option("--integrators", stress_options.integrators,
+                         "Comma-separated, each for the forms it takes (default: by form)");
+  stress_app->add_option(
+      "--along", stress_options.along,
+      "Of a scene: stiffness, damping, mass ratio, size, speed, duration; built in: words of a "
+      "ladder's name (default: all)");
+  stress_app
+      ->add_option("--within", stress_options.within,
+                   "Largest opening, energy error and error of what survives")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  stress_app->add_option("--rtol", o.rtol, "Relative and absolute tolerance")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  stress_app->add_option("--end", o.end, "End time of the scene [s]")->check(CLI::PositiveNumber);
+  stress_app->add_option("--cpu-limit", o.cpu_limit, "Processor time of one run [s] (default: 20)")
+      ->check(CLI::PositiveNumber);
+  stress_app
+      ->add_option("--reference-limit", stress_options.reference_seconds,
+                   "Processor time of one reference in quadruple precision [s]; 0: none")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  stress_app->add_option("--threads", stress_options.threads, "Default: one for each processor")
+      ->check(CLI::Range(1, 1024));
+  stress_app->add_option("--out", o.out, "Directory for results");
+  stress_app->add_flag("--json", o.json, "One JSON document on standard output");
+  stress_app->add_flag("--quiet", o.quiet, "No progress, no table");
   CLI::App* make_verb = app.add_subcommand("make", "Prints a scene of a family");
   std::string all_families;
   for (const Family& f : families()) all_families += "\n  " + std::string(f.name) + ": " + f.what;
@@ -98,7 +131,7 @@ int main(int argc, char** argv) {
     if (unknown)
       std::fprintf(stderr,
                    "momenta: verb '%.60s' is not known; expected check, assemble, evaluate, index, "
-                   "run, drift, work or make\n",
+                   "run, drift, work, stress or make\n",
                    argv[1]);
     else
       std::fprintf(stderr, "momenta: %s\n", e.what());
@@ -112,6 +145,7 @@ int main(int argc, char** argv) {
     if (*work_verb) return work(o, w);
     if (*evaluate_verb) return evaluate(o, state);
     if (*index_app) return index_verb(o, index_forms, index_state);
+    if (*stress_app) return stress(o, stress_options);
     return make(family, n);
   } catch (const momenta::SceneError& e) {
     std::fprintf(stderr, "momenta: %s\n", e.what());

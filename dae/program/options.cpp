@@ -15,6 +15,7 @@
 #include <cstdio>
 #include <fstream>
 #include <iterator>
+#include <sstream>
 
 namespace momenta::program {
 namespace {
@@ -105,6 +106,13 @@ void describe(StudyResult& study, const Options& o, const Mechanism& mechanism,
   study.sketch = sketch(mechanism, assembly.start.t, assembly.start.q);
   study.environment = environment();
   if (interrupted() && !study.runs.empty()) study.runs.back().reason = "interrupted";
+}
+
+std::vector<std::string> names_in(const std::string& list) {
+  std::vector<std::string> names;
+  std::stringstream in(list);
+  for (std::string name; std::getline(in, name, ',');) names.push_back(name);
+  return names;
 }
 
 bool write_result(const std::filesystem::path& file, std::string_view content) {

@@ -42,6 +42,9 @@ std::unique_ptr<Reference> load_reference(const Options& o, const Mechanism& mec
 void describe(StudyResult& study, const Options& o, const Mechanism& mechanism,
               const Assembly& assembly);
 
+/// "a,b,c" as a list.
+std::vector<std::string> names_in(const std::string& list);
+
 /// Writes a result file; on failure prints the sentence and returns false.
 bool write_result(const std::filesystem::path& file, std::string_view content);
 
@@ -81,6 +84,14 @@ struct WorkOptions {
   bool no_reference = false;  ///< judge by drift alone
 };
 int work(const Options& o, const WorkOptions& w);
+struct StressOptions {
+  std::string forms, integrators, along;  ///< comma-separated; empty: the usual ones, all ladders
+  double within = 1e-3;
+  double reference_seconds = 10;
+  int threads = 0;  ///< 0: one for each processor
+};
+/// Without a scene: the built-in ladders.
+int stress(const Options& o, const StressOptions& options);
 /// `state`: a JSON file, "-" for standard input, or text that starts with "{".
 int evaluate(const Options& o, const std::string& state);
 /// `forms`: comma-separated, empty: all. `state`: as for evaluate; empty: the start.

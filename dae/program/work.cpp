@@ -5,7 +5,6 @@
 #include <momenta/dae/study/work_study.h>
 
 #include <cmath>
-#include <sstream>
 
 #include "options.h"
 
@@ -13,13 +12,6 @@ namespace momenta::program {
 namespace {
 
 constexpr int own_reference_rows = 100;
-
-std::vector<std::string> names_in(const std::string& list) {
-  std::vector<std::string> names;
-  std::stringstream in(list);
-  for (std::string name; std::getline(in, name, ',');) names.push_back(name);
-  return names;
-}
 
 /// 1e-4, 1e-5, … through the tolerances asked for.
 std::vector<double> rungs(const WorkOptions& w) {

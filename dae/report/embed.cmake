@@ -1,7 +1,7 @@
-# cmake -D OUTPUT=embedded.cpp -D "FILES=name=path;name=path" -P embed.cmake
+# cmake -D OUTPUT=embedded.cpp -D HEADER=<momenta/dae/…> -D "FILES=name=path;name=path" -P embed.cmake
 # Writes one function momenta::embedded::name() per file, returning its bytes. A byte array rather than string
 # literals: no limit of length, nothing to escape.
-set(text "#include <momenta/dae/report/embedded.h>\n\nnamespace momenta::embedded {\n")
+set(text "#include ${HEADER}\n\nnamespace momenta::embedded {\n")
 foreach(entry IN LISTS FILES)
   string(REGEX MATCH "^([a-z_]+)=(.*)$" whole "${entry}")
   set(name "${CMAKE_MATCH_1}")

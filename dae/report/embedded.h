@@ -6,6 +6,8 @@
 namespace momenta::embedded {
 
 std::string_view page_html();
+std::string_view stress_html();
+std::string_view stress_css();
 std::string_view page_css();
 std::string_view text_js();
 std::string_view signs_js();

@@ -3,32 +3,13 @@
 #include <momenta/dae/report/embedded.h>
 #include <momenta/dae/report/page.h>
 #include <momenta/dae/report/page_data.h>
+#include <momenta/dae/report/template.h>
 
 #include <algorithm>
 #include <sstream>
-#include <utility>
-#include <vector>
 
 namespace momenta {
 namespace {
-
-using Replacements = std::vector<std::pair<std::string_view, std::string>>;
-
-// One pass over the template, so that braces inside a replacement are never taken for a name.
-std::string filled(std::string_view page, const Replacements& replacements) {
-  std::string text;
-  while (true) {
-    const auto open = page.find("{{");
-    text += page.substr(0, open);
-    if (open == std::string_view::npos) return text;
-    const auto close = page.find("}}", open);
-    const auto name = page.substr(open + 2, close - open - 2);
-    for (const auto& [key, value] : replacements) {
-      if (key == name) text += value;
-    }
-    page.remove_prefix(close + 2);
-  }
-}
 
 // "</script" inside a JSON string would end the island; "<\/" is the same string to every JSON
 // reader. "<!--" would start a state of the HTML reader in which the end tag is not found.
@@ -110,32 +91,6 @@ std::string script() {
 }
 
 }  // namespace
-
-std::string escape_html(std::string_view text) {
-  std::string html;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        html += "&amp;";
-        break;
-      case '<':
-        html += "&lt;";
-        break;
-      case '>':
-        html += "&gt;";
-        break;
-      case '"':
-        html += "&quot;";
-        break;
-      case '\'':
-        html += "&#39;";
-        break;
-      default:
-        html += c;
-    }
-  }
-  return html;
-}
 
 std::string drift_page(const StudyResult& study) {
   const std::string stopped = failures(study);

@@ -4,7 +4,6 @@
 #include <momenta/dae/study/run_result.h>
 
 #include <string>
-#include <string_view>
 
 namespace momenta {
 
@@ -12,8 +11,5 @@ namespace momenta {
 /// made. Script, style and uPlot are inlined; the data are the JSON island `<script
 /// type="application/json" id="study">`.
 std::string drift_page(const StudyResult&);
-
-/// & < > " ' as entities.
-std::string escape_html(std::string_view text);
 
 }  // namespace momenta

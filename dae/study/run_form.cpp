@@ -78,15 +78,21 @@ class Looker {
     e_->move(now_.u.data());
     e_->velocities(phi_.data());
     const double velocity = phi_.norm();
-    const double energy = mechanism_.plan().drives
-                              ? not_measured
-                              : e_->kinetic() + e_->potential(now_.q.data()) - work_until(t);
+    const double kinetic = e_->kinetic(), potential = e_->potential(now_.q.data());
+    const double energy =
+        mechanism_.plan().drives ? not_measured : kinetic + potential - work_until(t);
     if (!std::isfinite(position) || !std::isfinite(velocity)) {
       trouble_ = "at t = " + std::to_string(t) + " s the state is not finite";
       return false;
     }
     Series& s = result_.series;
-    if (s.t.empty()) energy_at_start_ = energy;
+    if (s.t.empty()) {
+      energy_at_start_ = energy;
+      potential_at_start_ = potential;
+    }
+    const double exchanged = kinetic + std::abs(potential - potential_at_start_);
+    if (!(kinetic <= result_.kinetic_energy_max)) result_.kinetic_energy_max = kinetic;
+    if (!(exchanged <= result_.energy_scale)) result_.energy_scale = exchanged;
     s.t.push_back(t);
     s.position_drift.push_back(position);
     s.velocity_drift.push_back(velocity);
@@ -236,7 +242,7 @@ class Looker {
   std::vector<double> markers_, row_, state_;
   Snapshot now_;
   bool loses_energy_;
-  double energy_at_start_ = 0, between_ = 0;
+  double energy_at_start_ = 0, potential_at_start_ = 0, between_ = 0;
   double work_ = 0;  ///< up to step_from_ [J]
   double step_from_ = 0, step_end_ = 0;
   std::array<double, 5> power_{};  ///< at the Gauss points of the last step [W]

@@ -75,6 +75,9 @@ struct RunResult {
          between_steps_max = not_measured;
   Growth position_growth, velocity_growth;
   double energy_error_max = not_measured;
+  /// Largest T, and largest T + |V − V(0)|, at the samples [J]: what rates and energy errors
+  /// compare with.
+  double kinetic_energy_max = not_measured, energy_scale = not_measured;
   double position_error_max = not_measured, velocity_error_max = not_measured;
   /// Loop equations that were redundant or nearly so, in how many right-hand sides of the run; ODE
   /// forms.

@@ -1,8 +1,7 @@
 #pragma once
-// Linkages of the tests, written by hand: N four-bars in a row, Bricard's, and how any scene is
-// turned as a whole.
+// Linkages of the tests, written by hand: N four-bars in a row, Bricard's, Stewart's.
 
-#include <momenta/core/scene/scene.h>
+#include <momenta/dae/study/extremes.h>
 
 #include <cmath>
 #include <numbers>
@@ -10,25 +9,6 @@
 #include <vector>
 
 namespace momenta::equations {
-
-/// The same scene in a turned room.
-inline Scene turned(Scene s, const Eigen::Quaterniond& r) {
-  s.gravity = r * s.gravity;
-  const auto turn = [&](auto& joint) {
-    if (joint.parent != "ground") return;
-    joint.origin_parent = r * joint.origin_parent;
-    joint.rotation = r * joint.rotation;
-  };
-  for (auto& j : s.joints) turn(j);
-  for (auto& l : s.loops) turn(l);
-  for (auto& f : s.forces) {
-    if (f.parent == "ground") f.origin_parent = r * f.origin_parent;
-    if (f.in_body_axes) continue;
-    f.force = r * f.force;
-    f.torque = r * f.torque;
-  }
-  return s;
-}
 
 /// Angles by which a planar scene is turned to be judged by the worst: none, nearly none, near the
 /// diagonals, and in between [rad].

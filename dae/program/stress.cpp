@@ -1,0 +1,90 @@
+#include <momenta/core/scene/read_scene.h>
+#include <momenta/dae/report/stress_report.h>
+#include <momenta/dae/solver/integrators.h>
+
+#include <cstdio>
+#include <sstream>
+#include <stdexcept>
+#include <thread>
+
+#include "options.h"
+#include "stress_ladders.h"
+
+namespace momenta::program {
+namespace {
+
+/// Forms × integrators that go together; a form for which none is named takes its own.
+std::vector<Contestant> contestants_of(const std::vector<std::string>& forms,
+                                       const std::vector<std::string>& methods) {
+  std::vector<Contestant> all;
+  for (const std::string& form : forms.empty() ? form_names() : forms) {
+    const bool dae = is_dae_form(form);
+    bool any = false;
+    for (const std::string& name : methods) {
+      const Integrator& method = integrator(name);
+      if (!method.takes_form(form, dae)) continue;
+      if (method.multistep && needs_one_step_method(form)) continue;
+      all.push_back({form, name});
+      any = true;
+    }
+    if (!any) all.push_back({form, ""});
+  }
+  return all;
+}
+
+}  // namespace
+
+int stress(const Options& o, const StressOptions& options) {
+  StressRequest request;
+  const auto forms = names_in(options.forms), methods = names_in(options.integrators);
+  for (const auto& name : methods) integrator(name);
+  request.contestants =
+      forms.empty() && methods.empty() ? usual_contestants() : contestants_of(forms, methods);
+  std::string title = "Built-in ladders";
+  if (o.scene.empty()) {
+    request.ladders = built_in_ladders();
+    if (!options.along.empty())
+      std::erase_if(request.ladders, [&](const Ladder& ladder) {
+        const auto names = names_in(options.along);
+        return std::none_of(names.begin(), names.end(), [&](const std::string& name) {
+          return ladder.name.find(name) != std::string::npos;
+        });
+      });
+    if (request.ladders.empty())
+      throw std::invalid_argument("--along '" + options.along +
+                                  "': no built-in ladder has that in its name");
+  } else {
+    Scene scene = read_scene(o.scene);
+    scene.run.end_time = o.end.value_or(scene.run.end_time);
+    title = scene.name;
+    request.ladders = ladders_of(scene, names_in(options.along));
+  }
+  request.rtol = o.rtol;
+  request.bound = options.within;
+  request.cpu_limit = o.cpu_limit.value_or(20);
+  request.reference_cpu_limit = options.reference_seconds;
+  request.threads = options.threads > 0
+                        ? options.threads
+                        : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  StressResult result;
+  {
+    ProgressLine line(o.quiet);
+    request.progress = [&](int number, int total, const std::string& what) {
+      return line.going(number, total, what, static_cast<double>(number) / total);
+    };
+    result = run_stress_study(request);
+  }
+  result.command = o.command;
+  const std::string json = stress_json(result).dump(2) + "\n";
+  if (!o.out.empty() && (!write_result(o.out / "stress.json", json) ||
+                         !write_result(o.out / "stress.csv", stress_csv(result)) ||
+                         !write_result(o.out / "index.html", stress_page(result, title))))
+    return run_failed;
+  if (o.json)
+    std::fputs(json.c_str(), stdout);
+  else if (!o.quiet)
+    std::fputs(stress_table(result).c_str(), stdout);
+  return result.complete ? done : run_failed;
+}
+
+}  // namespace momenta::program

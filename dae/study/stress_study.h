@@ -1,0 +1,92 @@
+#pragma once
+// Which form survives what: ladders of ever harder scenes, every contestant up each of them until
+// it fails, and how it failed.
+//
+// A run has survived when it came to its end within the time allowed and
+//
+//   opening   max |Φ| / length of the scene
+//   energy    max |E(t) − E(0)| / max (T + |V − V(0)|)
+//   error     max |q − q_ref| / (1 + |q_ref|), where there is a reference
+//
+// are all within one bound. Else the verdict tells the two kinds of failure apart: a run that
+// stopped, or took too long, said so; one that went wrong did not.
+
+#include <momenta/dae/study/extremes.h>
+#include <momenta/dae/study/run_form.h>
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace momenta {
+
+struct Rung {
+  std::string label;
+  Scene scene;
+  MechanismOptions options = {};
+};
+struct Ladder {
+  std::string name;
+  std::vector<Rung> rungs;
+  bool rising = true;  ///< ever harder: a contestant leaves at its first failure
+};
+
+/// A scene along one direction, a rung for each factor.
+Ladder ladder_of(const Scene& scene, Extreme extreme, const std::vector<double>& factors);
+
+struct Contestant {
+  std::string form, integrator;  ///< no integrator: the form's default
+};
+
+enum class Verdict { survived, wrong, stopped, slow, untried };
+const char* name_of(Verdict verdict);
+
+struct StressRun {
+  Contestant contestant;
+  int rung = 0;
+  Verdict verdict = Verdict::untried;
+  std::string cause;         ///< one sentence where it did not survive
+  double at = not_measured;  ///< when it went wrong or stopped [s]
+  double opening = not_measured, energy = not_measured, error = not_measured;
+  double loop_speed =
+      not_measured;  ///< max |Φ̇| / √(2 T / m), largest kinetic energy T, whole mass m
+  RunResult run;     ///< without series
+};
+
+struct LadderResult {
+  std::string name;
+  bool rising = true;
+  std::vector<std::string> rungs;            ///< labels
+  std::vector<double> end_time;              ///< of each rung [s]
+  std::vector<std::string> refused;          ///< why a rung has no consistent start, or empty
+  std::vector<double> reference;             ///< accuracy of each rung's reference; NaN without one
+  std::vector<std::vector<StressRun>> runs;  ///< [contestant][rung tried]
+};
+
+struct StressResult {
+  std::vector<Contestant> contestants;
+  std::vector<LadderResult> ladders;
+  double bound = 0, cpu_limit = 0, rtol = 0;
+  bool complete = true;  ///< false: interrupted
+  Environment environment;
+  std::string command;
+};
+
+struct StressRequest {
+  std::vector<Ladder> ladders;
+  std::vector<Contestant> contestants;
+  double rtol = 1e-8;  ///< = atol
+  double bound = 1e-3;
+  double cpu_limit = 10;            ///< of one run [s]
+  double reference_cpu_limit = 10;  ///< of one rung's reference in quadruple precision [s]; 0: none
+  int threads = 1;
+  /// Called before each run; false ends the study. Calls do not overlap.
+  std::function<bool(int done, int total, const std::string& what)> progress;
+};
+
+/// Climbs all ladders. Results do not depend on
+/// `threads`, but for what is too slow. @throws std::invalid_argument for unknown names
+StressResult run_stress_study(const StressRequest& request);
+
+}  // namespace momenta

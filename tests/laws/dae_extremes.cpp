@@ -1,0 +1,249 @@
+// Scenes in other units and in turned rooms move alike: q(t) of the one is q(τt) of the other,
+// lengths times s. So do scenes of another size, and scenes that start at rest at another speed.
+
+#include "equations/linkages.h"
+
+#include <gtest/gtest.h>
+#include <momenta/core/scene/read_scene.h>
+#include <momenta/dae/study/extremes.h>
+#include <momenta/dae/study/run_form.h>
+
+#include <cmath>
+#include <filesystem>
+
+namespace momenta {
+namespace {
+
+Scene example(const std::string& name) {
+  return read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples" / name);
+}
+
+/// Everything a scene can have that has a unit, in one mechanism: springs, dampers, drives of
+/// lengths and angles, a coupler between the two, a wrench, a moving point.
+Scene rich() {
+  return parse_scene(R"(
+name = "rich"
+gravity = [0.3, -9.81, 0.0]
+[run]
+end = 1.5
+[[body]]
+name = "cart"
+mass = 2.0
+shape = { kind = "box", size = [0.2, 0.1, 0.1] }
+[[body]]
+name = "arm"
+mass = 0.7
+shape = { kind = "rod", length = 0.6, axis = "x" }
+[[body]]
+name = "screw"
+mass = 0.4
+com = [0.1, 0.0, 0.05]
+inertia = [0.02, 0.03, 0.04]
+[[body]]
+name = "crank"
+mass = 0.5
+shape = { kind = "rod", length = 0.3, axis = "x" }
+[[body]]
+name = "rod"
+mass = 0.3
+shape = { kind = "rod", length = 1.1, axis = "x" }
+[[joint]]
+name = "track"
+kind = "prismatic"
+parent = "ground"
+child = "cart"
+axis = [1, 0, 0]
+position = 0.2
+velocity = 0.4
+stiffness = 40.0
+rest = 0.1
+damping = 0.8
+[[joint]]
+name = "pin"
+kind = "revolute"
+parent = "cart"
+child = "arm"
+axis = [0, 0, 1]
+position = -0.8
+velocity = 0.9
+stiffness = 1.5
+damping = 0.05
+[[joint]]
+name = "thread"
+kind = "helical"
+parent = "arm"
+child = "screw"
+origin = { parent = [0.6, 0, 0] }
+axis = [1, 0, 0]
+pitch = 0.02
+velocity = 3.0
+[[joint]]
+name = "O"
+kind = "revolute"
+parent = "ground"
+child = "crank"
+origin = { parent = [0, 1, 0] }
+axis = [0, 0, 1]
+[[joint]]
+name = "A"
+kind = "revolute"
+parent = "crank"
+child = "rod"
+origin = { parent = [0.3, 0, 0] }
+axis = [0, 0, 1]
+position = -1.2
+[[loop]]
+name = "string"
+kind = "distance"
+parent = "ground"
+child = "rod"
+origin = { parent = [1.3, 0.4, 0], child = [1.1, 0, 0] }
+length = 0.5
+[[loop]]
+name = "gear"
+kind = "coupler"
+joints = ["track", "thread"]
+ratios = [1.0, 0.05]
+offset = 0.2
+[[drive]]
+joint = "O"
+kind = "harmonic"
+amplitude = 0.4
+frequency = 3.0
+[[drive]]
+loop = "string"
+origin = "y"
+kind = "polynomial"
+coefficients = [0.4, 0.05, -0.03]
+[[force]]
+kind = "spring-damper"
+parent = "ground"
+child = "arm"
+origin = { parent = [0.5, -1.0, 0.2], child = [0.6, 0, 0] }
+stiffness = 25.0
+damping = 0.3
+rest = 0.4
+[[force]]
+kind = "torque"
+joint = "pin"
+value = 0.6
+[[force]]
+kind = "wrench"
+body = "screw"
+point = [0.1, 0, 0]
+force = [0.5, 0.2, -0.1]
+torque = [0.01, 0.02, 0.03]
+)");
+}
+
+/// With its consistent start written out: which one assembly finds from a guess depends on units.
+Scene at_start(Scene scene) {
+  const Mechanism mechanism(scene);
+  const Start start = assemble(mechanism).start;
+  for (const auto& b : mechanism.tree().bodies)
+    for (JointSpec& j : scene.joints)
+      if (j.name == b.joint) {
+        j.position.assign(start.q.data() + b.q, start.q.data() + b.q + b.nq);
+        j.velocity.assign(start.u.data() + b.u, start.u.data() + b.u + b.nv);
+      }
+  return scene;
+}
+
+struct Ends {
+  Eigen::VectorXd q, u;
+};
+Ends run_to_end(const Scene& scene) {
+  validate(scene);
+  const Mechanism mechanism(scene);
+  const Start start = assemble(mechanism).start;
+  RunRequest request;
+  request.settings.gauge = "reset";
+  request.settings.project = mechanism.m() > 0;
+  // Steps of one length in the units of the scene: then both take the same ones, and only rounding
+  // is left between them.
+  request.settings.integrator = "rk4";
+  request.settings.step = scene.run.end_time / 3000;
+  request.settings.end_time = scene.run.end_time;
+  request.settings.samples = 2;
+  request.keep_trajectory = true;
+  const RunResult run = run_form(mechanism, start, request);
+  EXPECT_EQ(run.status, "done") << run.reason;
+  const auto& row = run.trajectory.rows.back();
+  const auto nq = mechanism.nq(), nv = mechanism.nv();
+  return {Eigen::Map<const Eigen::VectorXd>(row.data() + 1, nq),
+          Eigen::Map<const Eigen::VectorXd>(row.data() + 1 + nq, nv)};
+}
+
+void expect_similar(const Scene& scene, const Units& units, double tolerance) {
+  const Ends plain = run_to_end(scene), other = run_to_end(in_units(scene, units));
+  const Tree tree = build_tree(scene);
+  for (const auto& b : tree.bodies) {
+    const double s = b.kind == JointKind::prismatic ? units.length : 1;
+    for (int i = 0; i < b.nv; ++i) {
+      EXPECT_NEAR(other.q[b.q + i] / s, plain.q[b.q + i], tolerance) << b.joint;
+      EXPECT_NEAR(other.u[b.u + i] * units.time / s, plain.u[b.u + i], 10 * tolerance) << b.joint;
+    }
+  }
+}
+
+TEST(Extremes, OtherUnitsSameMotion) {
+  for (const Units& units : {Units{1000, 1, 1}, Units{1, 1e-3, 1}, Units{1, 1, 1e6},
+                             Units{0.0254, 60, 0.4536}, Units{1e-3, 1e-3, 1e-9}})
+    expect_similar(at_start(rich()), units, 1e-10);
+}
+
+TEST(Extremes, UnitsThatAreLeftOutWouldBeSeen) {
+  // The law above has something to compare: the motion is not at rest, and every coordinate moves.
+  const Scene scene = rich();
+  const Ends end = run_to_end(scene);
+  EXPECT_GT(end.u.cwiseAbs().minCoeff(), 1e-2);
+}
+
+TEST(Extremes, SizeAndSpeedFromRestAreSimilarMotions) {
+  Scene four_bar = example("four_bar/scene.toml");
+  four_bar.run.end_time = 3;
+  const Ends plain = run_to_end(four_bar);
+  for (const double f : {1e-3, 1e-1, 1e2, 1e4}) {
+    const Ends sized = run_to_end(driven_to(four_bar, Extreme::size, f));
+    EXPECT_LT((sized.q - plain.q).norm(), 1e-10) << f;
+    EXPECT_LT((sized.u * std::sqrt(f) - plain.u).norm(), 1e-9) << f;
+    const Ends fast = run_to_end(driven_to(four_bar, Extreme::speed, f));
+    EXPECT_LT((fast.q - plain.q).norm(), 1e-10) << f;
+    EXPECT_LT((fast.u / f - plain.u).norm(), 1e-9) << f;
+  }
+}
+
+TEST(Extremes, TurnedRoomSameMotion) {
+  Scene scene = example("four_bar/scene.toml");
+  scene.run.end_time = 3;
+  const Eigen::Quaterniond r(Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 3).normalized()));
+  const Ends plain = run_to_end(scene), turned_end = run_to_end(turned(scene, r));
+  EXPECT_LT((turned_end.q - plain.q).norm(), 1e-10);
+}
+
+TEST(Extremes, WhatASceneLacksIsSaid) {
+  const Scene chain = example("pendulum/scene.toml");
+  EXPECT_EQ(lacks(chain, Extreme::stiffness), "no spring in it");
+  EXPECT_EQ(lacks(chain, Extreme::mass_ratio), "one body only");
+  EXPECT_EQ(lacks(chain, Extreme::size), "");
+}
+
+TEST(Extremes, FactorsGoWhereTheyShould) {
+  const Scene governor = example("extremes/governor.toml");
+  const Scene stiff = driven_to(governor, Extreme::stiffness, 10);
+  EXPECT_EQ(stiff.forces[0].stiffness, 8e6);
+  EXPECT_EQ(stiff.forces[0].damping, 4e4);
+  EXPECT_EQ(driven_to(governor, Extreme::damping, 10).forces[1].damping, 4e5);
+  const Scene heavy = driven_to(governor, Extreme::mass_ratio, 10);
+  EXPECT_EQ(heavy.bodies[0].mass, governor.bodies[0].mass);
+  EXPECT_EQ(heavy.bodies[1].mass, 10 * governor.bodies[1].mass);
+  EXPECT_EQ(heavy.bodies[1].inertia(2, 2), 10 * governor.bodies[1].inertia(2, 2));
+  EXPECT_EQ(driven_to(governor, Extreme::speed, 10).joints[0].velocity[0],
+            10 * governor.joints[0].velocity[0]);
+  EXPECT_EQ(driven_to(governor, Extreme::duration, 10).run.end_time, 100);
+  const Scene damped = driven_to(example("four_bar/scene.toml"), Extreme::damping, 1);
+  for (const JointSpec& j : damped.joints) EXPECT_DOUBLE_EQ(j.damping, 4.5 * 2 * 2);
+}
+
+}  // namespace
+}  // namespace momenta
