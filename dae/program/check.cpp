@@ -1,5 +1,6 @@
 #include <momenta/core/operations.h>
 #include <momenta/core/scene/kinds.h>
+#include <momenta/dae/measure/rank.h>
 
 #include <cstdio>
 #include <map>
@@ -44,12 +45,79 @@ std::string loop_in_words(const Scene& scene, const LoopSpec& loop) {
   return words;
 }
 
+/// Above this the singular value decompositions of the rank report take minutes.
+constexpr int most_equations = 600;
+
+const std::string& loop_of(const Mechanism& mechanism, int row) {
+  return mechanism.rows()[static_cast<std::size_t>(row)].loop;
+}
+
+std::string in_words(const SimplerLoop& change) {
+  return change.kind.empty() ? "loop '" + change.loop + "' can be left out"
+                             : "a " + change.kind + " loop in place of '" + change.loop +
+                                   "' ties as much, with " + std::to_string(change.fewer) +
+                                   (change.fewer == 1 ? " equation" : " equations") + " less";
+}
+
+void print_rank(const Mechanism& mechanism, const RankReport& r) {
+  const int m = mechanism.m(), redundant = m - r.rank_nearby;
+  std::printf("\nLoop equations\n");
+  if (r.rank == m) {
+    std::printf("  independent: smallest singular value %.3g, of Φ_q without units\n", r.kept);
+    return;
+  }
+  std::printf(
+      "  rank %d of %d: smallest singular value that counts %.3g, largest that does not %.2g\n",
+      r.rank, m, r.kept, r.dropped);
+  if (r.poses == 0)
+    std::printf("  nothing can move: whether this holds elsewhere cannot be told\n");
+  else if (r.singular_here())
+    std::printf(
+        "  a singular pose: rank %d nearby. Motions in %d directions meet here; a run follows its "
+        "velocities, and from rest may follow any\n",
+        r.rank_nearby, r.rank_nearby - r.rank + mechanism.nv() - r.rank_nearby);
+  for (const Dependency& d : r.dependencies)
+    std::printf("  %s: %s\n", d.only_here ? "only here" : "redundant",
+                in_words(mechanism, d).c_str());
+  if (redundant > 0) {
+    for (const SimplerLoop& change : r.simpler) std::printf("  %s\n", in_words(change).c_str());
+    if (r.simpler.empty())
+      std::printf(
+          "  no simpler kind of loop ties as much: how the loops share the load is not "
+          "determined\n");
+  }
+}
+
+nlohmann::ordered_json rank_json(const Mechanism& mechanism, const RankReport& r) {
+  nlohmann::ordered_json j;
+  j["rank"] = r.rank;
+  j["kept"] = r.kept;
+  j["dropped"] = r.dropped;
+  j["poses_nearby"] = r.poses;
+  j["rank_nearby"] = r.rank_nearby;
+  j["dependencies"] = nlohmann::json::array();
+  for (const Dependency& d : r.dependencies) {
+    nlohmann::ordered_json one{{"loop", loop_of(mechanism, d.row)},
+                               {"row", mechanism.rows()[static_cast<std::size_t>(d.row)].what},
+                               {"only_here", d.only_here},
+                               {"words", in_words(mechanism, d)}};
+    j["dependencies"].push_back(std::move(one));
+  }
+  j["simpler"] = nlohmann::json::array();
+  for (const SimplerLoop& change : r.simpler)
+    j["simpler"].push_back(
+        {{"loop", change.loop}, {"kind", change.kind}, {"equations_fewer", change.fewer}});
+  return j;
+}
+
 }  // namespace
 
 int check(const Options& o) {
   const auto mechanism = load(o);
   const Assembly a = assemble(*mechanism);
   const Tree& tree = mechanism->tree();
+  const bool ranked = mechanism->m() > 0 && mechanism->m() <= most_equations;
+  const RankReport rank = ranked ? rank_report(*mechanism, a.start) : RankReport{};
   if (o.json) {
     nlohmann::ordered_json j;
     j["scene"] = tree.name;
@@ -77,6 +145,7 @@ int check(const Options& o) {
       const auto& name = mechanism->rows()[static_cast<std::size_t>(row)];
       j["dependent_rows"].push_back({{"loop", name.loop}, {"row", name.what}});
     }
+    if (ranked) j["loops"] = rank_json(*mechanism, rank);
     std::printf("%s\n", j.dump(2).c_str());
     return done;
   }
@@ -110,12 +179,7 @@ int check(const Options& o) {
       "\n  %zu bodies, %d coordinates, %d rates, %d loop equations of rank %d: mobility %d\n",
       mechanism->scene().bodies.size(), mechanism->nq(), mechanism->nv(), mechanism->m(), a.rank,
       a.mobility);
-  for (int row : a.dependent_rows) {
-    const auto& name = mechanism->rows()[static_cast<std::size_t>(row)];
-    std::printf("  redundant at the start: loop '%s', %s\n", name.loop.c_str(), name.what.c_str());
-  }
-  if (mechanism->m() > 0 && a.dependent_rows.empty())
-    std::printf("  loop equations independent: smallest pivot of Φ_q %.3g\n", a.smallest_pivot);
+  if (ranked) print_rank(*mechanism, rank);
   std::printf("\nPlan\n");
   for (const auto& [what, how] : mechanism->plan_lines())
     std::printf("  %-17s %s\n", what.c_str(), how.c_str());
