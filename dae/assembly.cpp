@@ -1,4 +1,5 @@
 #include <momenta/dae/assembly.h>
+#include <momenta/dae/assembly_side.h>
 #include <momenta/dae/kkt/kkt.h>
 
 #include <Eigen/QR>
@@ -11,8 +12,9 @@ namespace momenta {
 namespace {
 
 constexpr int most_iterations = 200;
-constexpr double largest_step = 0.4;     // [rad or m]: stay on the branch of the guess
-constexpr double closed = 1e-12;         // |Φ|∞, times 1 + size
+constexpr double largest_step = 0.4;     // [rad or lengths]: stay on the branch of the guess
+constexpr double short_step = 0.03;      // where that left it
+constexpr double closed = 1e-12;         // |Φ|∞, points in lengths
 constexpr double rank_tolerance = 1e-9;  // of pivots, against the largest
 
 using Decomposition = Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>;
@@ -30,6 +32,7 @@ class Assembler {
       : mechanism_(mechanism),
         e_(mechanism.evaluation<double>()),
         free_(static_cast<std::size_t>(mechanism.nv()), true) {
+    measure();
     for (const auto& name : mechanism.scene().held) {
       const Tree& tree = mechanism.tree();
       const int last = tree.carried_by(name);
@@ -45,7 +48,15 @@ class Assembler {
     a.start.q = mechanism_.tree().q0;
     a.start.u = mechanism_.tree().u0;
     if (mechanism_.m() > 0) {
+      const Eigen::VectorXd guess = a.start.q;
       close_positions(a);
+      if (a.mirrored = mirrored(guess, a.start.q); !a.mirrored.empty()) {
+        Assembly again;
+        again.start.q = guess;
+        again.start.u = a.start.u;
+        limit_ = short_step;
+        if (closes(again) && mirrored(guess, again.start.q).empty()) a = std::move(again);
+      }
       close_velocities(a);
       judge_rank(a);
     }
@@ -55,13 +66,43 @@ class Assembler {
   }
 
  private:
+  /// Units of coordinates and equations: lengths of the scene, and radians.
+  void measure() {
+    const double length = length_of(mechanism_.scene());
+    column_.setOnes(mechanism_.nv());
+    for (const auto& b : mechanism_.tree().bodies) {
+      if (b.kind == JointKind::prismatic && b.nv == 1) column_[b.u] = length;
+      if (b.nv == 6) column_.segment<3>(b.u).setConstant(length);
+    }
+    row_.setOnes(mechanism_.m());
+    for (int i = 0; i < mechanism_.m(); ++i)
+      if (mechanism_.row_groups()[static_cast<std::size_t>(i)] % 2 == 0)
+        row_[i] = coupled(mechanism_.rows()[static_cast<std::size_t>(i)].loop, length);
+  }
+  /// Of a row of points or a distance: the length. Of a coupler: what its terms are by nature.
+  double coupled(const std::string& loop, double length) const {
+    for (const LoopSpec& l : mechanism_.scene().loops) {
+      if (l.name != loop || l.kind != LoopKind::coupler) continue;
+      double size = 0;
+      for (std::size_t i = 0; i < l.joints.size(); ++i)
+        for (const Tree::Body& b : mechanism_.tree().bodies)
+          if (b.joint == l.joints[i] &&
+              b.coordinate == (l.coordinates.empty() ? 0 : l.coordinates[i]))
+            size = std::max(size, std::abs(l.ratios[i]) * (b.nv > 0 ? column_[b.u] : 1));
+      return size > 0 ? size : 1;
+    }
+    return length;
+  }
+
+  /// D⁻¹ Φ_q C in those units.
   Eigen::MatrixXd jacobian() {
     const auto& pattern = mechanism_.kkt_pattern().constraint;
     std::vector<double> values(pattern.size());
     e_->constraint_entries(values.data());
     Eigen::MatrixXd j = Eigen::MatrixXd::Zero(mechanism_.m(), mechanism_.nv());
     for (std::size_t i = 0; i < values.size(); ++i)
-      j(pattern[i].row, pattern[i].column) = values[i];
+      j(pattern[i].row, pattern[i].column) =
+          values[i] * column_[pattern[i].column] / row_[pattern[i].row];
     return j;
   }
   Eigen::MatrixXd free_columns(Eigen::MatrixXd j) const {
@@ -73,7 +114,19 @@ class Assembler {
     Eigen::VectorXd phi(mechanism_.m());
     e_->place(0, q.data());
     e_->positions(phi.data());
-    return phi;
+    return phi.cwiseQuotient(row_);
+  }
+  std::vector<std::string> mirrored(const Eigen::VectorXd& guess, const Eigen::VectorXd& reached) {
+    e_->place(0, guess.data());
+    const Eigen::MatrixXd from = free_columns(jacobian());
+    e_->place(0, reached.data());
+    std::vector<std::string> loops;
+    for (const auto& rows : rows_that_changed_side(from, free_columns(jacobian())))
+      for (const int row : rows) {
+        const std::string& loop = mechanism_.rows()[static_cast<std::size_t>(row)].loop;
+        if (std::find(loops.begin(), loops.end(), loop) == loops.end()) loops.push_back(loop);
+      }
+    return loops;
   }
 
   /// Where a step leads, shortened until the loops close further; near rounding level they no
@@ -86,7 +139,8 @@ class Assembler {
     Trial best;
     if (!step.allFinite()) return best;
     const double length = step.size() > 0 ? step.cwiseAbs().maxCoeff() : 0;
-    if (length > largest_step) step *= largest_step / length;
+    if (length > limit_) step *= limit_ / length;
+    step = step.cwiseProduct(column_);
     Eigen::VectorXd qdot = Eigen::VectorXd::Zero(mechanism_.nq());
     for (int halving = 0; halving < 12; ++halving, step *= 0.5) {
       e_->place(0, q.data());
@@ -111,15 +165,15 @@ class Assembler {
   }
 
   void close_positions(Assembly& a) {
+    if (!closes(a)) refuse(gap(a.start.q).cwiseProduct(row_));
+  }
+  bool closes(Assembly& a) {
     Eigen::VectorXd& q = a.start.q;
-    double size = 1;
-    for (const auto& loop : mechanism_.scene().loops)
-      size = std::max({size, loop.origin_child.norm(), loop.origin_parent.norm()});
     const Eigen::VectorXd guess = q;
     Eigen::VectorXd phi = gap(q);
     double norm = phi.norm();
     int stalled = 0;
-    for (; a.iterations < most_iterations && norm > 1e-16 * size && stalled < 2; ++a.iterations) {
+    for (; a.iterations < most_iterations && norm > 1e-16 && stalled < 2; ++a.iterations) {
       const Eigen::MatrixXd j = free_columns(jacobian());
       Trial next = along(q, norm, -decompose(j).solve(phi));
       // Redundant rows are redundant only where the loops are closed: off it they ask, through
@@ -130,15 +184,15 @@ class Assembler {
           next = std::move(damped);
       const double next_norm = next.norm;
       if (!(next_norm < norm)) break;
-      stalled = next_norm > 0.5 * norm && norm < closed * size ? stalled + 1 : 0;
+      stalled = next_norm > 0.5 * norm && norm < closed ? stalled + 1 : 0;
       q = next.q;
       phi = gap(q);
       norm = next_norm;
     }
     phi = gap(q);
-    a.position_residual = phi.cwiseAbs().maxCoeff();
+    a.position_residual = phi.cwiseProduct(row_).cwiseAbs().maxCoeff();
     a.moved = (q - guess).cwiseAbs().maxCoeff();
-    if (!(a.position_residual <= closed * size)) refuse(phi);
+    return phi.cwiseAbs().maxCoeff() <= closed;
   }
 
   [[noreturn]] void refuse(const Eigen::VectorXd& phi) const {
@@ -152,7 +206,7 @@ class Assembler {
              mechanism_.rows()[static_cast<std::size_t>(row)].loop == loop.name;
            ++row)
         largest = std::max(largest, std::abs(phi[row]));
-      if (largest <= closed) continue;
+      if (largest <= closed * row_[row - 1]) continue;
       char text[32];
       std::snprintf(text, sizeof text, "%.3g", largest);
       if (open.empty()) at = loop.at;
@@ -171,14 +225,14 @@ class Assembler {
     for (int pass = 0; pass < 2; ++pass) {
       e_->move(u.data());
       e_->velocities(rate.data());
-      u -= decomposition.solve(rate);
+      u -= decomposition.solve(rate.cwiseQuotient(row_)).cwiseProduct(column_);
     }
     e_->move(u.data());
     e_->velocities(rate.data());
     a.velocity_residual = rate.cwiseAbs().maxCoeff();
-    const double scale =
-        1 + (u.size() > 0 ? u.cwiseAbs().maxCoeff() : 0) * (1 + j.cwiseAbs().maxCoeff());
-    if (a.velocity_residual <= 1e-10 * scale) return;
+    const double scale = 1 + (u.size() > 0 ? u.cwiseQuotient(column_).cwiseAbs().maxCoeff() : 0) *
+                                 (1 + j.cwiseAbs().maxCoeff());
+    if (rate.cwiseQuotient(row_).cwiseAbs().maxCoeff() <= 1e-10 * scale) return;
     Eigen::Index worst;
     rate.cwiseAbs().maxCoeff(&worst);
     const auto& name = mechanism_.rows()[static_cast<std::size_t>(worst)].loop;
@@ -239,9 +293,20 @@ class Assembler {
   const Mechanism& mechanism_;
   std::unique_ptr<Evaluation<double>> e_;
   std::vector<bool> free_;
+  Eigen::VectorXd column_, row_;  ///< units of rates (nv) and of equations (m)
+  double limit_ = largest_step;
 };
 
 }  // namespace
+
+std::string mirror_sentence(const Assembly& assembly) {
+  if (assembly.mirrored.empty()) return "";
+  std::string loops;
+  for (const std::string& loop : assembly.mirrored)
+    loops += (loops.empty() ? "'" : ", '") + loop + "'";
+  return std::string(assembly.mirrored.size() == 1 ? "loop " : "loops ") + loops +
+         " closed on the other side of a singular pose than guessed: the mirror assembly";
+}
 
 Assembly assemble(const Mechanism& mechanism) {
   return Assembler(mechanism).run();

@@ -2,7 +2,9 @@
 #include <momenta/core/scene/scene.h>
 #include <momenta/core/user_joint.h>
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace momenta {
 
@@ -28,6 +30,39 @@ Eigen::Vector3d perpendicular_to(const Eigen::Vector3d& axis) {
     if (std::abs(a[i]) > std::abs(a[nearest]) + tie) nearest = i;
   const Eigen::Vector3d next = Eigen::Vector3d::Unit((nearest + 1) % 3);
   return (next - next.dot(a) * a).normalized();
+}
+
+double length_of(const Scene& scene) {
+  struct Points {
+    Eigen::Vector3d low, high;
+  };
+  std::map<std::string, Points> bodies;  // boxes around what is on each: O(points)
+  double length = 0;
+  const auto on = [&](const std::string& body, const Eigen::Vector3d& x) {
+    const auto [at, is_new] = bodies.try_emplace(body, Points{x, x});
+    if (is_new) return;
+    at->second.low = at->second.low.cwiseMin(x);
+    at->second.high = at->second.high.cwiseMax(x);
+  };
+  for (const BodySpec& b : scene.bodies)
+    if (b.mass > 0) on(b.name, b.com);
+  const auto ends = [&](const auto& x) {
+    on(x.parent, x.origin_parent);
+    on(x.child, x.origin_child);
+  };
+  for (const JointSpec& j : scene.joints) ends(j);
+  for (const LoopSpec& l : scene.loops) {
+    length = std::max(length, l.length);
+    if (l.kind != LoopKind::coupler) ends(l);
+  }
+  for (const ForceSpec& f : scene.forces) {
+    if (f.kind == "spring-damper") ends(f);
+    if (f.kind == "wrench") on(f.body, f.point);
+  }
+  for (const MarkerSpec& m : scene.markers) on(m.body, m.point);
+  for (const auto& [name, points] : bodies)
+    length = std::max(length, (points.high - points.low).norm());
+  return length > 0 ? length : 1;
 }
 
 }  // namespace momenta

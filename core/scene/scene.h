@@ -268,4 +268,10 @@ struct Scene {
   std::string where(Location at) const;
 };
 
+/// A length that is natural to the scene [m]: the largest diagonal of the boxes, along its axes,
+/// around the points of one body, or of the ground, where joints, loops, springs, wrenches and
+/// markers are, and its centre of mass; no less than the length of a loop; 1 when all of these are
+/// zero. Gaps of loops are judged by it.
+double length_of(const Scene& scene);
+
 }  // namespace momenta

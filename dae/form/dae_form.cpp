@@ -50,7 +50,7 @@ DaeForm::DaeForm(std::string name, const Mechanism& mechanism, DaeLayout layout,
       gauge_.kappa = default_leak(mechanism, start);
   }
   if (unknowns != Unknowns::velocities)
-    std::copy(inertia_.begin(), inertia_.end(), scale_.begin() + layout_.x());
+    momentum_scales(*plain_.e, layout_.nv, scale_.data() + layout_.x());
   if (layout.m > 0) find_redundancy(start);
   for (int i = layout_.s(); i < layout_.size(); ++i)
     scale_[static_cast<std::size_t>(i)] = std::numeric_limits<double>::infinity();

@@ -126,4 +126,11 @@ double default_leak(const Mechanism& mechanism, const Start& start) {
   return std::round(kappa / unit) * unit;
 }
 
+void momentum_scales(Evaluation<double>& e, int nv, double* scale) {
+  e.mass_diagonal(scale);
+  const double largest = nv > 0 ? *std::max_element(scale, scale + nv) : 0;
+  for (int i = 0; i < nv; ++i)
+    if (!(scale[i] > 1e-14 * largest)) scale[i] = largest > 0 ? largest : 1;
+}
+
 }  // namespace momenta

@@ -96,6 +96,11 @@ bool is_dae_form(const std::string& name);
 std::unique_ptr<Form> make_form(const std::string& name, const Mechanism& mechanism,
                                 const FormOptions& options, const Start& start);
 
+/// How large each momentum is (nv) at the configuration placed in `e`: its own inertia M_ii times a
+/// rate of 1 rad/s or 1 m/s. A joint that moves nothing heavy, a massless coupler's, has loops'
+/// impulses alone for a momentum, and they are as large as those of others: then the largest M_ii.
+void momentum_scales(Evaluation<double>& e, int nv, double* scale);
+
 /// A leak rate that fits the mechanism: the root of the largest acceleration the loops cause at the
 /// start, [1/s]. The optimum is flat over a decade on either side.
 double default_leak(const Mechanism& mechanism, const Start& start);

@@ -17,9 +17,8 @@ MomentumForm::MomentumForm(std::string name, const Mechanism& mechanism, const F
   if (gauge_.kind == Gauge::Kind::leak && gauge_.kappa == 0)
     gauge_.kappa = default_leak(mechanism, start);
   if (has_loops()) solver_->stabilise(beta_);
-  // A momentum is as large as its own inertia times a rate of 1 rad/s or 1 m/s.
   e_->place(start.t, start.q.data());
-  e_->mass_diagonal(scale_.data() + mechanism.nq());
+  momentum_scales(*e_, mechanism.nv(), scale_.data() + mechanism.nq());
 }
 
 std::vector<double> MomentumForm::initial(const Start& start) {

@@ -302,6 +302,13 @@ RankReport rank_report(const Mechanism& mechanism, const Start& start) {
   return report;
 }
 
+MatrixXd idle_forces(const Mechanism& mechanism, double t, const VectorXd& q) {
+  if (mechanism.m() == 0) return {};
+  RankScout scout(mechanism);
+  const Decomposed d = decompose(scout.scaled_jacobian(t, q));
+  return scout.row_factor().asDiagonal() * d.left;
+}
+
 std::string in_words(const Mechanism& mechanism, const Dependency& dependency) {
   const auto& rows = mechanism.rows();
   const auto number = [&](int row) {  // within its loop, from 1

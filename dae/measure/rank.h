@@ -57,6 +57,10 @@ struct RankReport {
 /// of some hundred equations.
 RankReport rank_report(const Mechanism& mechanism, const Start& start);
 
+/// Forces of the loops (m × n, independent columns) that move nothing at (t, q): Φ_qᵀν = 0. None
+/// where the equations are independent. Cost O((n + m)³)
+Eigen::MatrixXd idle_forces(const Mechanism& mechanism, double t, const Eigen::VectorXd& q);
+
 /// "loop 'C' row 3, axis 3 against axis 1, follows from loop 'B' rows 1, 2"
 std::string in_words(const Mechanism& mechanism, const Dependency& dependency);
 

@@ -3,6 +3,8 @@
 #include <momenta/dae/loop/loop_rows.h>
 #include <momenta/dae/measure/reactions.h>
 
+#include <algorithm>
+
 namespace momenta {
 namespace {
 
@@ -106,6 +108,32 @@ Reactions reactions(const Mechanism& mechanism, double t, const Eigen::VectorXd&
     return in(mechanism, build_planar_model(tree, mechanism.scene(), plan.basis), t, q, u, udot,
               lambda);
   return in(mechanism, build_spatial_model(tree, mechanism.scene()), t, q, u, udot, lambda);
+}
+
+void mark_undetermined(Reactions& all, const Mechanism& mechanism, double t,
+                       const Eigen::VectorXd& q, const Eigen::MatrixXd& idle) {
+  // Reactions are affine in λ: what a column of `idle` adds, with nothing moving.
+  const Eigen::VectorXd rest = Eigen::VectorXd::Zero(mechanism.nv());
+  const double length = length_of(mechanism.scene());
+  const auto none = [&] {
+    return reactions(mechanism, t, q, rest, rest, Eigen::VectorXd::Zero(mechanism.m()));
+  };
+  for (Eigen::Index k = 0; k < idle.cols(); ++k) {
+    const Reactions without = none(), with = reactions(mechanism, t, q, rest, rest, idle.col(k));
+    const auto mark = [&](std::vector<Transmitted>& marked, const std::vector<Transmitted>& a,
+                          const std::vector<Transmitted>& b) {
+      const auto size = [&](std::size_t i) {
+        return (a[i].force - b[i].force).norm() * length + (a[i].torque - b[i].torque).norm();
+      };
+      double largest = 0;
+      for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, size(i));
+      for (std::size_t i = 0; i < a.size(); ++i)
+        if (size(i) > 1e-9 * (largest + a[i].force.norm() * length + a[i].torque.norm()))
+          marked[i].unique = false;
+    };
+    mark(all.joints, with.joints, without.joints);
+    mark(all.loops, with.loops, without.loops);
+  }
 }
 
 }  // namespace momenta

@@ -24,6 +24,7 @@ struct Transmitted {
   Eigen::Vector3d at;      ///< the joint's or loop's point of the child, ground axes [m]
   Eigen::Vector3d force;   ///< [N]
   Eigen::Vector3d torque;  ///< about `at` [N m]
+  bool unique = true;  ///< false: redundant loops share this load in a way that nothing here tells
 };
 
 struct Reactions {
@@ -36,5 +37,9 @@ struct Reactions {
 Reactions reactions(const Mechanism& mechanism, double t, const Eigen::VectorXd& q,
                     const Eigen::VectorXd& u, const Eigen::VectorXd& udot,
                     const Eigen::VectorXd& lambda);
+
+/// Marks what changes with forces that move nothing (`idle`: m × n, measure/rank.h).
+void mark_undetermined(Reactions& all, const Mechanism& mechanism, double t,
+                       const Eigen::VectorXd& q, const Eigen::MatrixXd& idle);
 
 }  // namespace momenta

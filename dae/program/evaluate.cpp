@@ -79,6 +79,7 @@ class Document {
     w_.numbers("force", r.force);
     w_.numbers("torque", r.torque);
     w_.numbers("at", r.at);
+    if (!r.unique) w_.text("not_unique", "redundant loops share this load");
   }
 
   void driven() {

@@ -1,4 +1,5 @@
 #include <momenta/dae/report/csv.h>
+#include <momenta/dae/report/number_text.h>
 #include <momenta/dae/report/table.h>
 #include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/study/environment.h>
@@ -8,11 +9,25 @@
 #include "options.h"
 
 namespace momenta::program {
+namespace {
+
+void print_passages(const RunResult& result) {
+  constexpr std::size_t most = 12;
+  if (result.passages.empty()) return;
+  std::string times;
+  for (std::size_t i = 0; i < result.passages.size() && i < most; ++i)
+    times += (i == 0 ? "" : ", ") + compact(result.passages[i].t, 4);
+  std::printf("\nClose to singular poses at t = %s%s s, least pivot %s\n", times.c_str(),
+              result.passages.size() > most ? ", …" : "",
+              scientific(result.least_pivot, 1).c_str());
+}
+
+}  // namespace
 
 int run(const Options& o) {
   const auto mechanism = load(o);
   const auto reference = load_reference(o, *mechanism);
-  const Assembly a = assemble(*mechanism);
+  const Assembly a = assembled(*mechanism);
   const RunDefaults& defaults = mechanism->scene().run;
   RunRequest request;
   RunSettings& s = request.settings;
@@ -61,6 +76,7 @@ int run(const Options& o) {
     std::fputs(summary.c_str(), stdout);
   } else if (!o.quiet) {
     std::fputs(drift_table(study).c_str(), stdout);
+    print_passages(result);
   }
   if (result.status == "done") return done;
   std::fprintf(stderr, "momenta: the run stopped: %s\n", result.reason.c_str());

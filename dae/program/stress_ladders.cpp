@@ -16,9 +16,8 @@ namespace {
 using Factors = std::vector<double>;
 const Factors upwards{1e3, 1e6, 1e9, 1e12}, downwards{1e-3, 1e-6, 1e-9, 1e-12};
 
-/// "1e6", never "1000000": ladders are read by their exponents.
 std::string power(double x) {
-  return x >= 1e-3 && x < 1e4 ? compact(x, 4) : scientific(x, 1);
+  return x >= 1e-3 && x < 1e5 ? compact(x, 5) : scientific(x, 1);
 }
 
 /// A scene that the program carries, to an end that leaves time for all forms.

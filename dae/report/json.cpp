@@ -62,6 +62,10 @@ Json summary_json(const RunResult& run, const Environment& environment) {
   for (const auto& row : run.faded_rows)
     json["faded_rows"].push_back(
         {{"loop", row.loop}, {"row", row.row}, {"evaluations", row.evaluations}});
+  json["least_pivot"] = number_or_null(run.least_pivot);
+  json["passages"] = Json::array();
+  for (const auto& passage : run.passages)
+    json["passages"].push_back({{"t", passage.t}, {"pivot", passage.pivot}});
   json["environment"] = environment_json(environment);
   return json;
 }

@@ -18,8 +18,9 @@ inline std::string in_words(double x) {
   return text;
 }
 
-/// "dp5 stopped at t = 0.5 s: cause"
+/// "dp5 stopped at t = 0.5 s: cause"; a cause that begins with its own time keeps that one.
 inline std::string stop_sentence(const std::string& method, double t, const std::string& cause) {
+  if (cause.rfind("at t = ", 0) == 0) return method + " stopped " + cause;
   return method + " stopped at t = " + in_words(t) + " s: " + cause;
 }
 

@@ -104,27 +104,6 @@ void damp(Scene& scene, double factor) {
 
 }  // namespace
 
-double length_of(const Scene& scene) {
-  double length = 0;
-  for (const BodySpec& body : scene.bodies) {
-    std::vector<Eigen::Vector3d> points;
-    if (body.mass > 0) points.push_back(body.com);
-    for (const auto& j : scene.joints) {
-      if (j.child == body.name) points.push_back(j.origin_child);
-      if (j.parent == body.name) points.push_back(j.origin_parent);
-    }
-    for (const auto& l : scene.loops) {
-      if (l.child == body.name) points.push_back(l.origin_child);
-      if (l.parent == body.name) points.push_back(l.origin_parent);
-    }
-    for (const auto& m : scene.markers)
-      if (m.body == body.name) points.push_back(m.point);
-    for (const auto& a : points)
-      for (const auto& b : points) length = std::max(length, (a - b).norm());
-  }
-  return length > 0 ? length : 1;
-}
-
 Scene in_units(Scene scene, const Units& units) {
   const double s = units.length, tau = units.time, mu = units.mass;
   const double speed = s / tau, force = mu * s / (tau * tau), torque = force * s;

@@ -47,8 +47,4 @@ std::string lacks(const Scene& scene, Extreme extreme);
 /// `scene` with one of its directions times `factor`. @pre lacks() is empty, factor > 0
 Scene driven_to(const Scene& scene, Extreme extreme, double factor);
 
-/// A length for judging gaps of its loops [m]: the largest distance of two ends of joints, loops or
-/// markers on one body, or of a body's com from such an end; 1 when all of that is zero.
-double length_of(const Scene& scene);
-
 }  // namespace momenta

@@ -118,6 +118,7 @@ class Looker {
       const double drift = phi_.norm();
       if (!(drift <= between_)) between_ = drift;
     }
+    if (solver_ && mechanism_.kkt() == KktChoice::sweeps) look_for_passages(t0, t1, between);
     if (loses_energy_) {
       // Power at the Gauss points of the step; the polynomial through them gives the work up to any
       // sample inside it.
@@ -165,6 +166,43 @@ class Looker {
   const std::string& trouble() const { return trouble_; }
 
  private:
+  /// The weakest pivot of the loops at a time within the last step; 0 where a row faded that is not
+  /// redundant throughout.
+  double pivot_at(double t, const Interpolant& between) {
+    between(t, state_.data());
+    if (!form_.coordinates(t, state_.data(), middle_)) return not_measured;
+    at_rest_.setZero(mechanism_.nv());
+    if (!solver_->free_velocity(t, middle_.data(), at_rest_.data(), unused_.data()))
+      return not_measured;
+    const LoopSolver::Pivots pivots = solver_->pivots();
+    always_faded_ = std::min(always_faded_, pivots.faded);
+    return pivots.faded > always_faded_ ? 0 : pivots.weakest;
+  }
+  /// Least pivots below `near_singular`, one for each time the run goes there.
+  void look_for_passages(double t0, double t1, const Interpolant& between) {
+    constexpr double near_singular = 1e-2;
+    constexpr int closer_looks = 8;
+    unused_.resize(mechanism_.nv());
+    const auto note = [&](double t, double pivot) {
+      if (std::isnan(pivot)) return;
+      if (!(result_.least_pivot <= pivot)) result_.least_pivot = pivot;
+      if (pivot >= near_singular) {
+        passing_ = false;
+        return;
+      }
+      if (!passing_) result_.passages.push_back({t, pivot});
+      passing_ = true;
+      if (RunResult::Passage& last = result_.passages.back(); pivot < last.pivot) last = {t, pivot};
+    };
+    const double end = pivot_at(t1, between);
+    if (passing_ || end < 10 * near_singular)
+      for (int i = 1; i < closer_looks; ++i) {
+        const double t = t0 + (t1 - t0) * i / closer_looks;
+        note(t, pivot_at(t, between));
+      }
+    note(t1, end);
+  }
+
   static bool loses_energy(const Scene& scene) {
     for (const auto& joint : scene.joints)
       if (joint.damping != 0) return true;
@@ -247,6 +285,9 @@ class Looker {
   double step_from_ = 0, step_end_ = 0;
   std::array<double, 5> power_{};  ///< at the Gauss points of the last step [W]
   int compared_ = 0;
+  Eigen::VectorXd at_rest_, unused_;
+  int always_faded_ = std::numeric_limits<int>::max();
+  bool passing_ = false;
   std::string trouble_;
 };
 

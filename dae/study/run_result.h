@@ -86,6 +86,15 @@ struct RunResult {
     long evaluations = 0;
   };
   std::vector<Faded> faded_rows;
+  /// Where loop equations came near to losing rank, beyond what is redundant everywhere: the least
+  /// pivot on the way, relative to what it would be without other loops; it goes with the square of
+  /// the distance to the singular pose. Trajectories alone, loops in the sweeps.
+  struct Passage {
+    double t = 0;      ///< [s]
+    double pivot = 0;  ///< least, 0: faded
+  };
+  std::vector<Passage> passages;
+  double least_pivot = not_measured;  ///< of the whole run
   Series series;
   Trajectory trajectory;
 };

@@ -1,5 +1,6 @@
 #include <momenta/dae/kkt/kkt.h>
 #include <momenta/dae/kkt/tree_factor.h>
+#include <momenta/dae/measure/rank.h>
 #include <momenta/dae/study/state_values.h>
 
 #include <Eigen/SVD>
@@ -169,6 +170,8 @@ class StateEvaluator {
     s_.singular_values = Eigen::JacobiSVD<Eigen::MatrixXd>(j).singularValues();
     const double least = rank_tolerance * s_.singular_values[0];
     for (double value : s_.singular_values) s_.rank += value > least;
+    mark_undetermined(s_.reactions, mechanism_, given_.t, given_.q,
+                      idle_forces(mechanism_, given_.t, given_.q));
   }
 
   const Mechanism& mechanism_;

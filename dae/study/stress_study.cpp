@@ -25,6 +25,14 @@ std::string digits(double x) {
   return text;
 }
 
+/// "1e6": ladders are read by their exponents.
+std::string power_of_ten(double x) {
+  const int exponent = static_cast<int>(std::lround(std::log10(x)));
+  return std::abs(exponent) > 2 && std::abs(std::pow(10.0, exponent) / x - 1) < 1e-9
+             ? "1e" + std::to_string(exponent)
+             : digits(x);
+}
+
 double thread_seconds() {
   timespec t{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
@@ -101,8 +109,8 @@ double first_beyond(const Series& s, const std::vector<double>& values, double l
 
 void judge(StressRun& r, const Ground& ground, double bound, double cpu_limit) {
   const RunResult& run = r.run;
-  // Where nothing moves, rounding is no failure: a billionth of its length over the run is rest.
-  const double rest = 1e-9 * ground.length / run.settings.end_time;
+  // Where nothing moves, rounding is no failure: a millionth of its length over the run is rest.
+  const double rest = 1e-6 * ground.length / run.settings.end_time;
   const double energy_scale = std::max(run.energy_scale, 0.5 * ground.mass * rest * rest);
   r.opening = run.position_drift_max / ground.length;
   r.loop_speed = run.velocity_drift_max / std::sqrt(2 * run.kinetic_energy_max / ground.mass);
@@ -187,7 +195,7 @@ const char* name_of(Verdict verdict) {
 Ladder ladder_of(const Scene& scene, Extreme extreme, const std::vector<double>& factors) {
   Ladder ladder{std::string(name_of(extreme)), {}, true};
   for (const double f : factors)
-    ladder.rungs.push_back({"×" + digits(f), driven_to(scene, extreme, f), {}});
+    ladder.rungs.push_back({"×" + power_of_ten(f), driven_to(scene, extreme, f), {}});
   return ladder;
 }
 

@@ -136,19 +136,6 @@ torque = [0.01, 0.02, 0.03]
 )");
 }
 
-/// With its consistent start written out: which one assembly finds from a guess depends on units.
-Scene at_start(Scene scene) {
-  const Mechanism mechanism(scene);
-  const Start start = assemble(mechanism).start;
-  for (const auto& b : mechanism.tree().bodies)
-    for (JointSpec& j : scene.joints)
-      if (j.name == b.joint) {
-        j.position.assign(start.q.data() + b.q, start.q.data() + b.q + b.nq);
-        j.velocity.assign(start.u.data() + b.u, start.u.data() + b.u + b.nv);
-      }
-  return scene;
-}
-
 struct Ends {
   Eigen::VectorXd q, u;
 };
@@ -189,7 +176,7 @@ void expect_similar(const Scene& scene, const Units& units, double tolerance) {
 TEST(Extremes, OtherUnitsSameMotion) {
   for (const Units& units : {Units{1000, 1, 1}, Units{1, 1e-3, 1}, Units{1, 1, 1e6},
                              Units{0.0254, 60, 0.4536}, Units{1e-3, 1e-3, 1e-9}})
-    expect_similar(at_start(rich()), units, 1e-10);
+    expect_similar(rich(), units, 1e-10);
 }
 
 TEST(Extremes, UnitsThatAreLeftOutWouldBeSeen) {
@@ -243,6 +230,69 @@ TEST(Extremes, FactorsGoWhereTheyShould) {
   EXPECT_EQ(driven_to(governor, Extreme::duration, 10).run.end_time, 100);
   const Scene damped = driven_to(example("four_bar/scene.toml"), Extreme::damping, 1);
   for (const JointSpec& j : damped.joints) EXPECT_DOUBLE_EQ(j.damping, 4.5 * 2 * 2);
+}
+
+TEST(Extremes, MasslessCouplerMovesLikeOneThatWeighsNextToNothing) {
+  // No inertia at one joint: M is singular, (7) is not.
+  const auto at_end = [](double mass, const std::string& form, const std::string& method,
+                         const std::string& gauge) {
+    Scene scene = example("four_bar/scene.toml");
+    scene.bodies[1].mass = mass;
+    scene.bodies[1].inertia = mass / 3 * Eigen::Matrix3d::Identity();
+    const Mechanism mechanism(scene);
+    RunRequest request;
+    request.settings.form = form;
+    request.settings.integrator = method;
+    request.settings.gauge = gauge;
+    request.settings.project = method == "dop853" && form == "momentum";
+    request.settings.rtol = request.settings.atol = 1e-9;
+    request.settings.end_time = 2;
+    request.keep_trajectory = true;
+    const RunResult run = run_form(mechanism, assemble(mechanism).start, request);
+    EXPECT_EQ(run.status, "done") << form << ": " << run.reason;
+    return Eigen::VectorXd(
+        Eigen::Map<const Eigen::VectorXd>(run.trajectory.rows.back().data() + 1, mechanism.nq()));
+  };
+  const Eigen::VectorXd light = at_end(1e-9, "projected", "dop853", "");
+  EXPECT_LT((at_end(0, "momentum", "dop853", "reset") - light).norm(), 1e-6);
+  EXPECT_LT((at_end(0, "momentum", "dop853", "leak") - light).norm(), 1e-6);
+  EXPECT_LT((at_end(0, "momentum", "dp5", "none") - light).norm(), 1e-6);
+  EXPECT_LT((at_end(0, "momentum-index2", "ida", "leak") - light).norm(), 1e-4);
+  EXPECT_LT((at_end(0, "projected", "dop853", "") - light).norm(), 1e-6);
+}
+
+TEST(Extremes, PassagesOfSingularPosesAreListed) {
+  // The vertical's angle from upright obeys φ'' = λ sin φ: flat at π/2, 3π/2, …
+  const auto run_of = [](const std::string& name) {
+    Scene scene = example(name);
+    const Mechanism mechanism(scene);
+    RunRequest request;
+    request.settings.gauge = "reset";
+    request.settings.project = true;
+    request.settings.end_time = 5;
+    request.keep_trajectory = true;
+    return run_form(mechanism, assemble(mechanism).start, request);
+  };
+  const RunResult regular = run_of("four_bar/scene.toml");
+  EXPECT_TRUE(regular.passages.empty());
+  EXPECT_GT(regular.least_pivot, 0.01);
+  // The slider-crank with equal links is straight up and straight down where its angle is π/2 + kπ.
+  const RunResult crank = run_of("slider_crank/scene.toml");
+  ASSERT_EQ(crank.status, "done") << crank.reason;
+  std::vector<double> expected;
+  const auto& rows = crank.trajectory.rows;
+  const auto folded = [](double q) { return std::cos(q); };
+  for (std::size_t i = 1; i < rows.size(); ++i)
+    if ((folded(rows[i][1]) > 0) != (folded(rows[i - 1][1]) > 0)) {
+      const double a = folded(rows[i - 1][1]), b = folded(rows[i][1]);
+      expected.push_back(rows[i - 1][0] + (rows[i][0] - rows[i - 1][0]) * a / (a - b));
+    }
+  ASSERT_GT(expected.size(), 2u);
+  ASSERT_EQ(crank.passages.size(), expected.size());
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    EXPECT_NEAR(crank.passages[i].t, expected[i], 0.02);
+    EXPECT_LT(crank.passages[i].pivot, 1e-2);
+  }
 }
 
 }  // namespace

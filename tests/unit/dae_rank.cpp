@@ -7,6 +7,7 @@
 #include <momenta/core/scene/read_scene.h>
 #include <momenta/dae/assembly.h>
 #include <momenta/dae/measure/rank.h>
+#include <momenta/dae/measure/reactions.h>
 
 #include <filesystem>
 
@@ -162,6 +163,49 @@ TEST(Rank, UnitsAndSizesDoNotMatter) {
     EXPECT_EQ(r.rank, 4) << length;
     EXPECT_EQ(r.rank_nearby, 4) << length;
   }
+}
+
+Reactions marked(const Mechanism& mechanism, const Start& s) {
+  Reactions r = reactions(mechanism, s.t, s.q, s.u, s.udot, s.lambda);
+  mark_undetermined(r, mechanism, s.t, s.q, idle_forces(mechanism, s.t, s.q));
+  return r;
+}
+
+TEST(Rank, ReactionsThatRedundantLoopsShareAreMarked) {
+  // Independent loops: everything is unique.
+  const Mechanism plain(example("four_bar/scene.toml"));
+  for (const auto& r : marked(plain, assemble(plain).start).joints) EXPECT_TRUE(r.unique) << r.name;
+
+  // Three cranks: every crank carries a share that is not determined.
+  const Mechanism shared(example("extremes/three_cranks.toml"));
+  const Reactions three = marked(shared, assemble(shared).start);
+  for (const auto& r : three.joints) EXPECT_FALSE(r.unique) << r.name;
+  for (const auto& r : three.loops) EXPECT_FALSE(r.unique) << r.name;
+
+  // A pendulum beside them has nothing to do with it.
+  Scene beside = example("extremes/three_cranks.toml");
+  BodySpec bob = beside.bodies[0];
+  bob.name = "bob";
+  JointSpec pin = beside.joints[0];
+  pin.name = "P9";
+  pin.child = "bob";
+  pin.origin_parent = {5, 0, 0};
+  beside.bodies.push_back(bob);
+  beside.joints.push_back(pin);
+  const Mechanism both(beside);
+  for (const auto& r : marked(both, assemble(both).start).joints)
+    EXPECT_EQ(r.unique, r.name == "P9") << r.name;
+
+  // What is unique does not depend on which of the answers is given; what is not, does.
+  const Start start = assemble(shared).start;
+  const Eigen::MatrixXd idle = idle_forces(shared, start.t, start.q);
+  const Reactions a = reactions(shared, start.t, start.q, start.u, start.udot, start.lambda),
+                  b = reactions(shared, start.t, start.q, start.u, start.udot,
+                                start.lambda + 3 * idle.col(0) / idle.col(0).norm());
+  double changed = 0;
+  for (std::size_t i = 0; i < a.joints.size(); ++i)
+    changed = std::max(changed, (a.joints[i].force - b.joints[i].force).norm());
+  EXPECT_GT(changed, 0.1);
 }
 
 }  // namespace
