@@ -193,7 +193,9 @@ TEST(Assembly, KeepsToTheSideOfTheGuessOrSaysThatItDidNot) {
     EXPECT_EQ(crossed, !a.mirrored.empty()) << trial;
     EXPECT_EQ(side(a.start.q) > 0, is_open(a.start.q)) << trial;
     ++(crossed ? told : kept);
-    if (crossed) EXPECT_NE(mirror_sentence(a).find("loop 'B'"), std::string::npos);
+    if (crossed) {
+      EXPECT_NE(mirror_sentence(a).find("loop 'B'"), std::string::npos);
+    }
   }
   EXPECT_GT(kept, 2700);
   RecordProperty("kept", kept);
