@@ -313,7 +313,7 @@ class Runner {
                                   ": expected integrator " + integrator_names(wanted) +
                                   ", found '" + s.integrator + "'");
     if (!method.takes_form(s.form, dae))
-      throw std::invalid_argument("'" + s.integrator + "' is for form " + method.form +
+      throw std::invalid_argument("'" + s.integrator + "' is for form " + listed(method.forms) +
                                   ", found '" + s.form + "'");
     if (method.multistep && needs_one_step_method(s.form))
       throw std::invalid_argument("form '" + s.form + "' alters its state after steps, and '" +
