@@ -64,6 +64,7 @@ class AccelerationIndex2 final : public DaeFormOf<AccelerationIndex2>, public Ha
     e.move(base + layout_.x());
     e.velocities(work.g.data());
     for (double& g : work.g) g /= -w;
+    work.kkt.add_compliance(-1, z, work.g.data());
     if (!work.kkt.factor()) return failed("the matrix of a half-explicit stage is singular");
     work.kkt.solve(work.r.data(), work.g.data(), vdot, z);
     return true;

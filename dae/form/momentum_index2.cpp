@@ -74,6 +74,8 @@ class MomentumIndex2 final : public DaeFormOf<MomentumIndex2>, public HalfExplic
       e.positions(work.g.data());
       for (double& g : work.g) g /= -w;
       if (count == 0) {
+        centre(z);
+        work.kkt.add_compliance(-1, z, work.g.data());
         work.kkt.meet_at(e);
         if (!work.kkt.factor()) return failed("the matrix of a half-explicit stage is singular");
         work.kkt.rates(work.u.data(), work.correction.data());
@@ -82,6 +84,8 @@ class MomentumIndex2 final : public DaeFormOf<MomentumIndex2>, public HalfExplic
         for (std::size_t i = 0; i < work.u.size(); ++i)
           std::swap(work.u[i], work.delta[i]), work.delta[i] = work.u[i] - work.delta[i];
       } else {
+        work.kkt.add_compliance(1, z, work.g.data());
+        work.kkt.add_compliance(-1, work.centre.data(), work.g.data());
         work.kkt.solve(nullptr, work.g.data(), work.delta.data(), work.correction.data());
         for (std::size_t i = 0; i < work.u.size(); ++i) work.u[i] += work.delta[i];
         for (int i = 0; i < layout_.m; ++i) z[i] += work.correction[static_cast<std::size_t>(i)];
@@ -104,7 +108,13 @@ class MomentumIndex2 final : public DaeFormOf<MomentumIndex2>, public HalfExplic
   }
 
  protected:
-  std::vector<double> compliance() const override { return regularisation(); }
+  /// Off the manifold redundant equations contradict each other by the square of the distance,
+  /// which divided by ε is σ: a larger ε than Newton matrices have.
+  std::vector<double> compliance() const override {
+    std::vector<double> c = regularisation();
+    for (double& epsilon : c) epsilon *= 1e3;
+    return c;
+  }
 
  private:
   static constexpr double reached = 4 * std::numeric_limits<double>::epsilon(), small = 1e-12;

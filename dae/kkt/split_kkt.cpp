@@ -93,4 +93,8 @@ void SplitKkt::solve(const double* r, const double* g, double* x, double* s) {
   std::copy_n(right_.data() + nv_, m_, s);
 }
 
+void SplitKkt::add_compliance(double factor, const double* s, double* g) const {
+  for (std::size_t i = 0; i < compliance_.size(); ++i) g[i] += factor * compliance_[i] * s[i];
+}
+
 }  // namespace momenta

@@ -3,10 +3,10 @@
 // leads,
 //
 //   ( M(q)     Φ_q(q)ᵀ ) ( x )   ( r )
-//   ( Φ_q(q̄)  −ε      ) ( s ) = ( g )
+//   ( Φ_q(q̄)  −ε      ) ( s ) = ( g − ε s_0 )
 //
 // No symmetry is left, so it is one LU: dense up to 60 unknowns, KLU above. ε, of redundant loops
-// alone, is what keeps it regular.
+// alone, keeps it regular; s_0, the multiplier of the stage before, keeps what ε costs small.
 
 #include <momenta/dae/mechanism.h>
 #include <momenta/dae/solver/newton_matrix.h>
@@ -32,6 +32,8 @@ class SplitKkt {
   bool factor();
   /// x (nv), s (m) of r (nv; null: zero), g (m).
   void solve(const double* r, const double* g, double* x, double* s);
+  /// g += factor · ε s (m).
+  void add_compliance(double factor, const double* s, double* g) const;
 
  private:
   const KktPattern& entries_;
