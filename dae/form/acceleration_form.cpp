@@ -25,7 +25,7 @@ bool AccelerationForm::rhs(double t, const double* y, double* ydot) {
   if (!has_loops()) {
     if (!e_->open_accelerations(t, q, u, udot))
       return fail_at(t, mechanism_.no_inertia(e_->stuck()));
-    e_->coordinate_rates(q, u, ydot);
+    coordinate_rates(q, u, ydot);
     return true;
   }
   const double* centre = centre_.data();
@@ -38,7 +38,7 @@ bool AccelerationForm::rhs(double t, const double* y, double* ydot) {
     centre = nu_.data();
   }
   note_pivots();
-  e_->coordinate_rates(q, u, ydot);
+  coordinate_rates(q, u, ydot);
   return true;
 }
 

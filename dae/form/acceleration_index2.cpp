@@ -10,20 +10,68 @@
 // Problems in DAEs
 
 #include <momenta/dae/form/dae_form.h>
+#include <momenta/dae/form/half_explicit_parts.h>
 
 namespace momenta {
 namespace {
 
-class AccelerationIndex2 final : public DaeFormOf<AccelerationIndex2> {
+class AccelerationIndex2 final : public DaeFormOf<AccelerationIndex2>, public HalfExplicitParts {
  public:
   AccelerationIndex2(const Mechanism& mechanism, const FormOptions& options, const Start& start)
       : DaeFormOf("acceleration-index2", mechanism, {mechanism.nq(), mechanism.nv(), mechanism.m()},
-                  options, start, Unknowns::velocities) {}
+                  options, start, Unknowns::velocities),
+        HalfExplicitParts(mechanism) {}
 
   template <class S>
   void rows(DaeScratch<S>& s, double t, const S* y, const S* ydot, S* r) {
     s.e->velocities(acceleration_rows(s, t, y, ydot, r));
   }
+
+  /// Φ̈ = 0: (3).
+  bool consistent(double t, const double* y, double* z, double* f) override {
+    Work& w = work();
+    const double *q = y, *v = y + layout_.x();
+    double* vdot = f + layout_.x();
+    if (!w.solver) {
+      if (!w.e->open_accelerations(t, q, v, vdot))
+        return failed(mechanism_.no_inertia(w.e->stuck()));
+    } else if (!w.solver->acceleration(t, q, v, centre(z), 0, 0, vdot, z)) {
+      return failed("the solution of (3) is not finite");
+    }
+    w.e->coordinate_rates(q, v, f);
+    return true;
+  }
+
+  /// q at the next stage does not depend on λ, and v does linearly:
+  ///   M v̇ + Φ_qᵀλ = Q + L_q − Ṁ v,  Φ_q(q̄) v̇ = −(Φ_q(q̄) v_base + Φ_t)/w.
+  bool advance(double t, const double* y, double t_next, const double* base, double w, double* z,
+               double* f) override {
+    Work& work = this->work();
+    auto& e = *work.e;
+    const double *q = y, *v = y + layout_.x();
+    double* vdot = f + layout_.x();
+    if (layout_.m == 0) return consistent(t, y, z, f);
+    e.place(t, q);
+    work.kkt.act_at(e);
+    e.move(v);
+    e.joint_forces(q, v, nullptr, nullptr, work.r.data());
+    for (double& r : work.r) r = -r;
+    e.coordinate_rates(q, v, f);
+    for (int i = 0; i < layout_.nq; ++i)
+      work.there[static_cast<std::size_t>(i)] = base[i] + w * f[i];
+    e.place(t_next, work.there.data());
+    work.kkt.meet_at(e);
+    e.move(base + layout_.x());
+    e.velocities(work.g.data());
+    for (double& g : work.g) g /= -w;
+    work.kkt.add_compliance(-1, z, work.g.data());
+    if (!work.kkt.factor()) return failed("the matrix of a half-explicit stage is singular");
+    work.kkt.solve(work.r.data(), work.g.data(), vdot, z);
+    return true;
+  }
+
+ protected:
+  std::vector<double> compliance() const override { return regularisation(); }
 };
 
 }  // namespace

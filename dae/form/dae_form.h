@@ -72,6 +72,8 @@ class DaeForm : public Form, public DaeSystem {
   virtual bool rate_is_tested() const { return true; }
 
   double leak() const { return gauge_.kappa; }
+  /// ε by row of Φ (m), empty when the loops are independent at the start.
+  const std::vector<double>& regularisation() const { return epsilon_; }
 
   DaeLayout layout_;
   const Mechanism& mechanism_;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <functional>
 #include <stdexcept>
 
@@ -122,8 +124,9 @@ double default_leak(const Mechanism& mechanism, const Start& start) {
   const double kappa = std::max(std::sqrt(acceleration), rate);
   if (!(kappa > 0) || !std::isfinite(kappa)) return 1.0;
   // Two digits are more than the choice deserves, and make a rate that can be typed again.
-  const double unit = std::pow(10.0, std::floor(std::log10(kappa)) - 1);
-  return std::round(kappa / unit) * unit;
+  char digits[16];
+  std::snprintf(digits, sizeof digits, "%.1e", kappa);
+  return std::strtod(digits, nullptr);
 }
 
 void momentum_scales(Evaluation<double>& e, int nv, double* scale) {

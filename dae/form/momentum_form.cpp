@@ -49,7 +49,7 @@ bool MomentumForm::rhs(double t, const double* y, double* ydot) {
     if (!solve(t, q, p, pdot)) return false;
     note_pivots();
   }
-  e_->coordinate_rates(q, u_.data(), ydot);
+  coordinate_rates(q, u_.data(), ydot);
   return true;
 }
 
@@ -64,7 +64,7 @@ bool MomentumForm::after_step(double t, double* y, bool& changed) {
     e_->momenta(nullptr, p);
     // (7) at the new state gives the same u, and σ = 0.
     e_->momentum_rates(q, u_.data(), nullptr, 0, work_.data());
-    e_->coordinate_rates(q, u_.data(), correction_.data());
+    coordinate_rates(q, u_.data(), correction_.data());
     changed = true;
     reset_ = solutions_ == 1;
   }

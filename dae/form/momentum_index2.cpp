@@ -9,20 +9,116 @@
 // constraint at position level
 
 #include <momenta/dae/form/dae_form.h>
+#include <momenta/dae/form/half_explicit_parts.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace momenta {
 namespace {
 
-class MomentumIndex2 final : public DaeFormOf<MomentumIndex2> {
+class MomentumIndex2 final : public DaeFormOf<MomentumIndex2>, public HalfExplicitParts {
  public:
   MomentumIndex2(const Mechanism& mechanism, const FormOptions& options, const Start& start)
       : DaeFormOf("momentum-index2", mechanism, {mechanism.nq(), mechanism.nv(), mechanism.m()},
-                  options, start, Unknowns::impulses) {}
+                  options, start, Unknowns::impulses),
+        HalfExplicitParts(mechanism) {}
 
   template <class S>
   void rows(DaeScratch<S>& s, double t, const S* y, const S* ydot, S* r) {
     s.e->positions(momentum_rows(s, t, y, ydot, r));
   }
+
+  /// Φ̇ = 0: (7), and (8).
+  bool consistent(double t, const double* y, double* z, double* f) override {
+    Work& w = work();
+    const double *q = y, *p = y + layout_.x();
+    double* pdot = f + layout_.x();
+    if (!w.solver) {
+      if (!w.e->open_momentum_rates(t, q, p, w.u.data(), pdot))
+        return failed(mechanism_.no_inertia(w.e->stuck()));
+    } else if (!w.solver->momentum(t, q, p, centre(z), fade_evaluation, leak(), w.u.data(), z,
+                                   pdot)) {
+      return failed("the solution of (7) is not finite");
+    }
+    w.e->coordinate_rates(q, w.u.data(), f);
+    return true;
+  }
+
+  /// Newton's method for u and σ in
+  ///   M u + Φ_qᵀσ = p,  Φ(q̄) = 0,  q̄ = q_base + w q̇(u),
+  /// from the u of the stage before, with the Φ_q(q̄) of its first q̄: row 1 holds at every
+  /// iteration, and Φ shrinks like the change of q̄.
+  bool advance(double t, const double* y, double t_next, const double* base, double w, double* z,
+               double* f) override {
+    Work& work = this->work();
+    auto& e = *work.e;
+    const double *q = y, *p = y + layout_.x();
+    if (layout_.m == 0) return consistent(t, y, z, f);
+    e.place(t, q);
+    work.kkt.act_at(e);
+    e.move(nullptr);
+    e.momenta(nullptr, work.r.data());  // what drives prescribe
+    for (std::size_t i = 0; i < work.r.size(); ++i) work.r[i] = p[i] - work.r[i];
+    e.joint_rates(q, f, work.u.data());
+    double last = std::numeric_limits<double>::infinity();
+    for (int count = 0;; ++count) {
+      e.coordinate_rates(q, work.u.data(), f);
+      double size = 1;
+      for (std::size_t i = 0; i < work.there.size(); ++i) {
+        work.there[i] = base[i] + w * f[i];
+        size = std::max(size, std::abs(work.there[i]));
+      }
+      e.place(t_next, work.there.data());
+      e.positions(work.g.data());
+      for (double& g : work.g) g /= -w;
+      if (count == 0) {
+        centre(z);
+        work.kkt.add_compliance(-1, z, work.g.data());
+        work.kkt.meet_at(e);
+        if (!work.kkt.factor()) return failed("the matrix of a half-explicit stage is singular");
+        work.kkt.rates(work.u.data(), work.correction.data());
+        for (std::size_t i = 0; i < work.g.size(); ++i) work.g[i] += work.correction[i];
+        work.kkt.solve(work.r.data(), work.g.data(), work.delta.data(), z);
+        for (std::size_t i = 0; i < work.u.size(); ++i)
+          std::swap(work.u[i], work.delta[i]), work.delta[i] = work.u[i] - work.delta[i];
+      } else {
+        work.kkt.add_compliance(1, z, work.g.data());
+        work.kkt.add_compliance(-1, work.centre.data(), work.g.data());
+        work.kkt.solve(nullptr, work.g.data(), work.delta.data(), work.correction.data());
+        for (std::size_t i = 0; i < work.u.size(); ++i) work.u[i] += work.delta[i];
+        for (int i = 0; i < layout_.m; ++i) z[i] += work.correction[static_cast<std::size_t>(i)];
+      }
+      double change = 0;
+      for (const double d : work.delta) change = std::max(change, std::abs(w * d) / size);
+      if (!std::isfinite(change)) return failed("a value that is not a finite number came up");
+      // Rounding; below its square root a correction that shrinks no more is rounding too.
+      if (change <= reached || (change <= small && change >= 0.5 * last)) break;
+      if (count == most_iterations || (count > 1 && change > last))
+        return failed("the impulses of a half-explicit stage did not converge");
+      last = change;
+    }
+    e.coordinate_rates(q, work.u.data(), f);
+    e.place(t, q);
+    e.move(work.u.data());
+    e.momenta(z, work.r.data());
+    e.momentum_rates(q, work.u.data(), z, leak(), f + layout_.x());
+    return true;
+  }
+
+ protected:
+  /// Off the manifold redundant equations contradict each other by the square of the distance,
+  /// which divided by ε is σ: a larger ε than Newton matrices have.
+  std::vector<double> compliance() const override {
+    std::vector<double> c = regularisation();
+    for (double& epsilon : c) epsilon *= 1e3;
+    return c;
+  }
+
+ private:
+  static constexpr double reached = 4 * std::numeric_limits<double>::epsilon(), small = 1e-12;
+  static constexpr int most_iterations = 20;
 };
 
 }  // namespace

@@ -56,7 +56,7 @@ bool OdeForm::solve_correction(double t, const double* q) {
 
 void OdeForm::take_correction(double* q) {
   // q ← q + q̇(δ): exact for one-dof joints, to second order for quaternions.
-  e_->coordinate_rates(q, delta_.data(), correction_.data());
+  coordinate_rates(q, delta_.data(), correction_.data());
   for (std::size_t i = 0; i < correction_.size(); ++i) q[i] += correction_[i];
 }
 

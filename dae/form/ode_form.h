@@ -27,6 +27,13 @@ class OdeForm : public Form, public OdeSystem {
 
  protected:
   bool has_loops() const { return mechanism_.m() > 0; }
+  /// q̇ of u: u itself unless there are quaternions.
+  void coordinate_rates(const double* q, const double* u, double* qdot) const {
+    if (mechanism_.plan().quasi_velocities)
+      e_->coordinate_rates(q, u, qdot);
+    else
+      std::copy_n(u, mechanism_.nv(), qdot);
+  }
   /// The cause by name when the solver failed to solve `what` at (t, q).
   bool solver_failed(double t, const double* q, const std::string& what);
   /// One Newton step on q in the mass metric: δ of M δ + Φ_qᵀν = 0, Φ_q δ = −Φ.

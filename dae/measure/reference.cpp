@@ -76,6 +76,25 @@ Reference::Reference(const std::filesystem::path& file) : file_(file.string()) {
   if (times_.empty()) refuse("there are no rows; expected at least one time");
 }
 
+std::string Reference::csv() const {
+  std::string text = "t [s]";
+  for (const std::string& column : columns_) text += "," + column;
+  text += '\n';
+  const auto add = [&text](double x) {
+    char digits[32];
+    text.append(digits, std::to_chars(digits, digits + sizeof digits, x).ptr);
+  };
+  for (std::size_t i = 0; i < times_.size(); ++i) {
+    add(times_[i]);
+    for (const double x : values_[i]) {
+      text += ',';
+      add(x);
+    }
+    text += '\n';
+  }
+  return text;
+}
+
 void Reference::bind(const std::vector<std::string>& trajectory_columns) {
   place_.clear();
   is_rate_.clear();

@@ -30,6 +30,9 @@ class Reference {
   /// column that the trajectory does not have.
   void bind(const std::vector<std::string>& trajectory_columns);
 
+  /// As a file: what the constructor reads, numbers to the last digit.
+  std::string csv() const;
+
   struct Error {
     double position = 0,
            velocity = 0;  ///< max |value − ref| / (1 + |ref|) over columns in rad, m and rad/s, m/s

@@ -43,7 +43,8 @@ void add_run_options(CLI::App& verb, Options& o) {
   for (const Integrator& i : integrators()) names.push_back(i.name);
   verb.add_option("--integrator", o.integrator,
                   "Of ODE forms " + integrator_names(Integrator::Takes::ode) + "; of DAE forms " +
-                      integrator_names(Integrator::Takes::dae) + " (default: by form)")
+                      integrator_names(Integrator::Takes::dae) +
+                      " (default: ida, or by tolerance dp5, dop853, vern9)")
       ->check(CLI::IsMember(names));
   verb.add_option("--gauge", o.gauge, "Momentum forms: none, reset, flip, leak or leak:RATE [1/s]");
   verb.add_option("--rtol", o.rtol, "Relative tolerance")->check(positive)->capture_default_str();

@@ -32,7 +32,7 @@ int run(const Options& o) {
   RunRequest request;
   RunSettings& s = request.settings;
   s.form = o.form;
-  s.integrator = o.integrator.empty() ? default_integrator(o.form) : o.integrator;
+  s.integrator = o.integrator.empty() ? default_integrator(o.form, o.rtol) : o.integrator;
   s.gauge = !o.gauge.empty() ? o.gauge
             : defaults.leak  ? Gauge{Gauge::Kind::leak, *defaults.leak}.text()
                              : "leak";

@@ -70,6 +70,9 @@ int work(const Options& o, const WorkOptions& w) {
     study.runs = run_work_study(*mechanism, a.start, request);
   }
   describe(study, o, *mechanism, a);
+  const bool own = o.reference.empty() && reference;
+  if (own && !o.out.empty() && !write_result(o.out / "reference.csv", reference->csv()))
+    return run_failed;
   return publish(study, advice(study), o);
 }
 

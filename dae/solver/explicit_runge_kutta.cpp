@@ -5,8 +5,9 @@
 // very step; output times inside it; after_step on y_new; output times at its end; begin_step and
 // the first stage of the next. What is looked at does not change what is computed: the stages of
 // dense output are extra, and f at the end serves the next step only when y was not altered in
-// between. Source: Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I, II.4-II.6,
-// II.10.
+// between. A step taken with care may be long against the distance to a singular pose, where no
+// polynomial follows the motion: its samples are ends of steps of their own. Source: Hairer,
+// Norsett, Wanner, Solving Ordinary Differential Equations I, II.4-II.6, II.10.
 
 #include <momenta/dae/solver/explicit_step.h>
 #include <momenta/dae/solver/first_step.h>
@@ -22,6 +23,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 
 namespace momenta {
@@ -67,6 +69,7 @@ class ExplicitRun {
         sample_(y0.size()),
         corrected_(system.has_after_step()) {
     if (corrected_) unaltered_.resize(y0.size());
+    if (observer.sample && !fixed_) look_.emplace(system, options.rtol, options.atol, y0.data());
     if (observer.step) between_ = [this](double t, double* y) { step_.interpolate(t, y); };
   }
 
@@ -119,7 +122,9 @@ class ExplicitRun {
       }
       ++result_.counters.steps;
       bool altered = false;
-      if (!observe(t1) || !correct(t1, altered)) return false;
+      if (!observe(t1)) return false;
+      if (leaves_care_) care(false);
+      if (!correct(t1, altered)) return false;
       // Without a correction f at the end is the next first stage wherever it is there; with one,
       // only for methods that always have it, so that observing a run does not change it.
       const bool keep_end = corrected_ ? Tableau::end_derivative_always && !altered : true;
@@ -163,7 +168,7 @@ class ExplicitRun {
         if (!std::isfinite(error_squared)) failure = StageFailure::not_finite;
       }
     if (failure == StageFailure::none && error_squared <= 1) {
-      if (careful_ && !system_.wants_care()) care(false);
+      leaves_care_ = careful_ && !system_.wants_care();
       if constexpr (Tableau::estimates > 0)
         if (!fixed_) h_ = std::min(h_ * control_.accepted(error_squared), longest_step());
       return true;
@@ -179,7 +184,35 @@ class ExplicitRun {
 
   void care(bool careful) {
     careful_ = careful;
+    leaves_care_ = false;
     system_.take_care(careful);
+  }
+
+  /// Steps of their own from this one's start to t, each within the tolerance; uncounted, and not
+  /// corrected. False where more than a few are needed.
+  bool steps_to(double t) {
+    if constexpr (Tableau::estimates > 0) {
+      std::copy_n(step_.y(), sample_.size(), look_->y());
+      if (!look_->begin(t_)) return false;
+      double from = t_, h = t - t_;
+      for (int trials = 0; trials < 20; ++trials) {
+        const bool last = from + 1.01 * h >= t;
+        const double to = last ? t : from + h;
+        const bool good = look_->attempt(from, to, to - from) == StageFailure::none &&
+                          look_->motion_error_squared() <= 1;
+        if (!good) {
+          h = 0.5 * (to - from);
+          continue;
+        }
+        if (last) {
+          std::copy_n(look_->y_new(), sample_.size(), sample_.data());
+          return true;
+        }
+        if (!look_->advance(true) && !look_->begin(to)) return false;
+        from = to;
+      }
+    }
+    return false;
   }
 
   std::string failure_cause(StageFailure failure) const {
@@ -203,7 +236,8 @@ class ExplicitRun {
       const double t = outputs_.time();
       outputs_.advance();
       if (!observer_.sample) continue;
-      if (!step_.interpolate(t, sample_.data())) return stop_at_interpolation(t1);
+      if (!(careful_ && steps_to(t)) && !step_.interpolate(t, sample_.data()))
+        return stop_at_interpolation(t1);
       if (!observer_.sample(t, sample_.data(), nullptr))
         return stop_here(t, sample_.data(), "the observer ended the run");
     }
@@ -263,6 +297,7 @@ class ExplicitRun {
   const Observer& observer_;
   OutputCursor outputs_;
   ExplicitStep<Tableau> step_;
+  std::optional<ExplicitStep<Tableau>> look_;  ///< for samples of careful steps
   StepControl<Tableau> control_;
   CpuLimit cpu_;
   Interpolant between_;
@@ -271,6 +306,7 @@ class ExplicitRun {
   bool fixed_;           ///< steps of options.step, no error control
   std::vector<double> sample_, unaltered_;
   bool careful_ = false;            ///< near a singular pose
+  bool leaves_care_ = false;        ///< the step just taken was the last one there
   bool corrected_;                  ///< the system alters accepted states
   bool stopped_elsewhere_ = false;  ///< result_ has a time and state that are no step's start
   IntegrationResult result_;

@@ -1,5 +1,6 @@
 #pragma once
-// The implicit one-step methods of our own, each in its file; integrators.h calls them by name.
+// The implicit and half-explicit one-step methods of our own, each in its file; integrators.h calls
+// them by name.
 
 #include <momenta/dae/solver/integration.h>
 
@@ -26,5 +27,10 @@ IntegrationResult integrate_rattle(OdeSystem&, double t0, const std::vector<doub
 IntegrationResult integrate_generalised_alpha(DaeSystem&, double t0,
                                               const std::vector<double>& output_times,
                                               const IntegrationOptions&, const Observer&);
+
+/// The half-explicit method of order 5, for systems that are HalfExplicit; step control, or steps
+/// of options.step.
+IntegrationResult integrate_hem5(DaeSystem&, double t0, const std::vector<double>& output_times,
+                                 const IntegrationOptions&, const Observer&);
 
 }  // namespace momenta

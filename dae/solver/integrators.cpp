@@ -9,6 +9,8 @@ namespace {
 using Takes = Integrator::Takes;
 using Step = Integrator::Step;
 
+}  // namespace
+
 std::string listed(const std::vector<std::string>& names) {
   std::string text;
   for (std::size_t i = 0; i < names.size(); ++i) {
@@ -18,24 +20,39 @@ std::string listed(const std::vector<std::string>& names) {
   return text;
 }
 
-}  // namespace
-
 const std::vector<Integrator>& integrators() {
   static const std::vector<Integrator> all{
-      {"rk4", Takes::ode, Step::fixed, false, true, "classical Runge-Kutta, order 4", ""},
-      {"dp5", Takes::ode, Step::adaptive, false, true, "Dormand-Prince 5(4)", ""},
-      {"dop853", Takes::ode, Step::adaptive, false, true, "Dormand-Prince 8(5,3)", ""},
-      {"vern9", Takes::ode, Step::adaptive, false, true, "Verner 9(8)", ""},
-      {"adams", Takes::ode, Step::adaptive, true, false, "CVODE, Adams-Moulton of orders 1 to 12",
-       ""},
-      {"bdf", Takes::ode, Step::adaptive, true, true, "CVODE, BDF of orders 1 to 5", ""},
-      {"gauss4", Takes::ode, Step::fixed, false, true, "Gauss collocation, 2 stages, order 4", ""},
-      {"gauss6", Takes::ode, Step::fixed, false, true, "Gauss collocation, 3 stages, order 6", ""},
-      {"rattle", Takes::ode, Step::fixed, false, false, "RATTLE, order 2", "momentum"},
-      {"ida", Takes::dae, Step::adaptive, true, false, "IDA, BDF of orders 1 to 5", ""},
-      {"radau5", Takes::dae, Step::adaptive, false, false, "Radau IIA, order 5", ""},
-      {"generalised-alpha", Takes::dae, Step::fixed, false, false, "generalised-α, order 2",
-       "acceleration-index3"},
+      {"rk4", Takes::ode, Step::fixed, false, true, "classical Runge-Kutta, order 4", {}},
+      {"dp5", Takes::ode, Step::adaptive, false, true, "Dormand-Prince 5(4)", {}},
+      {"dop853", Takes::ode, Step::adaptive, false, true, "Dormand-Prince 8(5,3)", {}},
+      {"vern9", Takes::ode, Step::adaptive, false, true, "Verner 9(8)", {}},
+      {"adams",
+       Takes::ode,
+       Step::adaptive,
+       true,
+       false,
+       "CVODE, Adams-Moulton of orders 1 to 12",
+       {}},
+      {"bdf", Takes::ode, Step::adaptive, true, true, "CVODE, BDF of orders 1 to 5", {}},
+      {"gauss4", Takes::ode, Step::fixed, false, true, "Gauss collocation, 2 stages, order 4", {}},
+      {"gauss6", Takes::ode, Step::fixed, false, true, "Gauss collocation, 3 stages, order 6", {}},
+      {"rattle", Takes::ode, Step::fixed, false, false, "RATTLE, order 2", {"momentum"}},
+      {"ida", Takes::dae, Step::adaptive, true, false, "IDA, BDF of orders 1 to 5", {}},
+      {"radau5", Takes::dae, Step::adaptive, false, false, "Radau IIA, order 5", {}},
+      {"generalised-alpha",
+       Takes::dae,
+       Step::fixed,
+       false,
+       false,
+       "generalised-α, order 2",
+       {"acceleration-index3"}},
+      {"hem5",
+       Takes::dae,
+       Step::adaptive,
+       false,
+       false,
+       "half-explicit Runge-Kutta, order 5",
+       {"acceleration-index2", "momentum-index2"}},
   };
   return all;
 }
@@ -75,6 +92,7 @@ IntegrationResult integrate(const std::string& name, DaeSystem& system, double t
   if (name == "radau5") return integrate_radau5(system, t0, output_times, options, observer);
   if (name == "generalised-alpha")
     return integrate_generalised_alpha(system, t0, output_times, options, observer);
+  if (name == "hem5") return integrate_hem5(system, t0, output_times, options, observer);
   throw std::invalid_argument("no method \"" + name +
                               "\" for DAEs: " + integrator_names(Takes::dae) + " are known");
 }

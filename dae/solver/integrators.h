@@ -4,6 +4,7 @@
 
 #include <momenta/dae/solver/integration.h>
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -19,13 +20,14 @@ struct Integrator {
   std::string name;
   Takes takes;
   Step step;
-  bool multistep;      ///< carries a history: a gauge reset or flip would spoil it
-  bool projects;       ///< states may be corrected onto the constraints after each step
-  std::string method;  ///< one line
-  std::string form;    ///< the one form it is for; empty: all of its kind
+  bool multistep;                  ///< carries a history: a gauge reset or flip would spoil it
+  bool projects;                   ///< states may be corrected onto the constraints after each step
+  std::string method;              ///< one line
+  std::vector<std::string> forms;  ///< those it is for; empty: all of its kind
 
   bool takes_form(const std::string& wanted, bool dae) const {
-    return (takes == Takes::dae) == dae && (form.empty() || form == wanted);
+    return (takes == Takes::dae) == dae &&
+           (forms.empty() || std::find(forms.begin(), forms.end(), wanted) != forms.end());
   }
 };
 
@@ -33,7 +35,9 @@ struct Integrator {
 const std::vector<Integrator>& integrators();
 /// @throws std::invalid_argument with all names for an unknown one.
 const Integrator& integrator(const std::string& name);
-/// "a, b or c": the names of those that take such systems.
+/// "a, b or c".
+std::string listed(const std::vector<std::string>& names);
+/// The names of those that take such systems, listed.
 std::string integrator_names(Integrator::Takes takes);
 
 /// y' = f(t, y) from y0 by the named method. @throws std::invalid_argument for one that takes DAEs.

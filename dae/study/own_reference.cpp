@@ -13,6 +13,9 @@ namespace {
 using Rows = std::vector<std::vector<double>>;
 
 constexpr double tight = 1e-22, loose = 1e-18;
+/// Prescribed motion is a function of t, and t is a double: nothing is to be had below its
+/// rounding.
+constexpr double tight_in_time = 1e-14, loose_in_time = 1e-12;
 constexpr double shortest = 1e-9;  ///< step, of the interval
 
 [[noreturn]] void give_up(double t, const std::string& why) {
@@ -71,8 +74,9 @@ OwnReference own_reference(const Mechanism& mechanism, const Start& start, doubl
   std::vector<std::string> columns;
   for (const auto& c : mechanism.coordinate_columns()) columns.push_back(c.label());
   for (const auto& c : mechanism.rate_columns()) columns.push_back(c.label());
-  const Rows rows = solve(mechanism, start, end, count, tight, going_on),
-             check = solve(mechanism, start, end, count, loose, going_on);
+  const bool in_time = mechanism.plan().drives;
+  const Rows rows = solve(mechanism, start, end, count, in_time ? tight_in_time : tight, going_on),
+             check = solve(mechanism, start, end, count, in_time ? loose_in_time : loose, going_on);
   OwnReference own{Reference("quadruple precision", columns, times, rows), 0};
   std::vector<std::string> bound{"t [s]"};
   bound.insert(bound.end(), columns.begin(), columns.end());

@@ -293,8 +293,10 @@ class Looker {
 
 }  // namespace
 
-std::string default_integrator(const std::string& form) {
-  return is_dae_form(form) ? "ida" : "dop853";
+std::string default_integrator(const std::string& form, double rtol) {
+  if (is_dae_form(form)) return "ida";
+  // A tolerance typed as 1e-4 or 1e-9 may come by way of a logarithm.
+  return rtol > 0.99e-4 ? "dp5" : rtol < 1.01e-9 ? "vern9" : "dop853";
 }
 
 namespace {
@@ -346,7 +348,7 @@ class Runner {
   Runner(const Mechanism& mechanism, const Start& start, RunSettings& s, double max_cpu_seconds)
       : start_(start) {
     const bool dae = is_dae_form(s.form);
-    if (s.integrator.empty()) s.integrator = default_integrator(s.form);
+    if (s.integrator.empty()) s.integrator = default_integrator(s.form, s.rtol);
     const Integrator& method = integrator(s.integrator);
     const auto wanted = dae ? Integrator::Takes::dae : Integrator::Takes::ode;
     if (method.takes != wanted)
@@ -354,7 +356,7 @@ class Runner {
                                   ": expected integrator " + integrator_names(wanted) +
                                   ", found '" + s.integrator + "'");
     if (!method.takes_form(s.form, dae))
-      throw std::invalid_argument("'" + s.integrator + "' is for form " + method.form +
+      throw std::invalid_argument("'" + s.integrator + "' is for form " + listed(method.forms) +
                                   ", found '" + s.form + "'");
     if (method.multistep && needs_one_step_method(s.form))
       throw std::invalid_argument("form '" + s.form + "' alters its state after steps, and '" +

@@ -205,7 +205,7 @@ StressResult run_stress_study(const StressRequest& request) {
   result.cpu_limit = request.cpu_limit;
   result.rtol = request.rtol;
   for (Contestant c : request.contestants) {
-    if (c.integrator.empty()) c.integrator = default_integrator(c.form);
+    if (c.integrator.empty()) c.integrator = default_integrator(c.form, request.rtol);
     const Integrator& method = integrator(c.integrator);
     const bool dae = is_dae_form(c.form);
     if (!method.takes_form(c.form, dae) || (method.multistep && needs_one_step_method(c.form)))

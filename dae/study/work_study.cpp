@@ -19,7 +19,7 @@ std::vector<RunSettings> plan_ladders(const Mechanism& mechanism, const WorkRequ
     std::vector<std::string> methods;
     for (const std::string& method : request.integrators)
       if (integrator(method).takes_form(form, dae)) methods.push_back(method);
-    if (methods.empty()) methods.push_back(default_integrator(form));
+    if (methods.empty()) methods.push_back(dae ? "ida" : "dop853");
     return methods;
   };
   std::vector<RunSettings> ladders;

@@ -52,7 +52,7 @@ TEST(Examples, EverySceneAssembles) {
       }
     }
   }
-  EXPECT_GE(scenes, 8);
+  EXPECT_GE(scenes, 11);
 }
 
 // The IVP Test Set's start is consistent to all digits of a double, and its crank acceleration is
@@ -102,6 +102,34 @@ TEST(Examples, SliderCrankKeepsItsBranch) {
     EXPECT_LE(run.position_error_max, 1e-6);
     EXPECT_LE(run.energy_error_max, 1e-6);
   }
+}
+
+TEST(Examples, SpatialSliderCrankMeetsItsReference) {
+  const RunResult run =
+      run_against_reference("spatial_slider_crank", "momentum", "reset", 1e-12, 5);
+  EXPECT_LE(run.position_error_max, 1e-8);
+  EXPECT_LE(run.energy_error_max, 1e-9);
+  // Its start in closed form.
+  const Mechanism mechanism(read_scene(examples / "spatial_slider_crank" / "scene.toml"));
+  const Eigen::VectorXd u = assemble(mechanism).start.u;
+  EXPECT_NEAR(u[1], 0.24, 1e-12);
+  EXPECT_NEAR(u[2], 1.92, 1e-12);
+  EXPECT_NEAR(u[3], std::hypot(0.96, 0.48), 1e-12);
+}
+
+TEST(Examples, BricardMeetsItsReference) {
+  const RunResult run =
+      run_against_reference("bricard", "momentum", "reset", 1e-12, 10, "scene.toml", 10, true);
+  EXPECT_LE(run.position_error_max, 1e-8);
+  EXPECT_LE(run.energy_error_max, 1e-9);
+  EXPECT_LE(run.position_drift_max, 1e-13);
+}
+
+TEST(Examples, DrivenMeetsItsReference) {
+  EXPECT_LE(run_against_reference("driven", "momentum", "reset", 1e-12, 10).position_error_max,
+            1e-9);
+  EXPECT_LE(run_against_reference("driven", "acceleration", "", 1e-12, 10).position_error_max,
+            1e-8);
 }
 
 TEST(Examples, PendulumMeetsItsReference) {

@@ -9,6 +9,7 @@
 #include <momenta/dae/assembly.h>
 #include <momenta/dae/form/form.h>
 #include <momenta/dae/solver/integration.h>
+#include <momenta/dae/study/run_form.h>
 
 #include <filesystem>
 #include <random>
@@ -133,6 +134,31 @@ TEST(Care, ErrorsFollowTheToleranceThroughSingularPoses) {
       EXPECT_LT(evaluations, 12'000) << around * factor;  // steps do not collapse
     }
     EXPECT_LT(worst, 2e4 * around) << around;
+  }
+}
+
+// Between steps too: next to a pose no polynomial over a long step follows the motion.
+TEST(Care, SamplesFollowTheTolerance) {
+  const Mechanism mechanism(read_scene(example("n_four_bar")));
+  const Start start = assemble(mechanism).start;
+  Reference reference(example("n_four_bar").parent_path() / "reference.csv");
+  reference.bind(trajectory_columns(mechanism));
+  for (const double tolerance : {3.16e-6, 1e-6, 1e-8, 1e-10, 1e-11}) {
+    RunRequest request;
+    request.settings.integrator = "vern9";
+    request.settings.gauge = "reset";
+    request.settings.project = true;
+    request.settings.rtol = request.settings.atol = tolerance;
+    request.settings.samples = 1;
+    request.reference = &reference;
+    const RunResult looked = run_form(mechanism, start, request);
+    ASSERT_EQ(looked.status, "done") << looked.reason;
+    EXPECT_LT(looked.position_error_max, 500 * tolerance) << tolerance;
+    EXPECT_LT(looked.energy_error_max, 1e4 * tolerance) << tolerance;
+    // Looking on changes nothing.
+    request.reference = nullptr;
+    const RunResult alone = run_form(mechanism, start, request);
+    EXPECT_EQ(alone.series.energy.back(), looked.series.energy.back()) << tolerance;
   }
 }
 

@@ -96,6 +96,14 @@ TEST(Integrators, RefuseWhatDoesNotFitWithASentence) {
   EXPECT_TRUE(says(with("momentum", "rattle"), "step > 0"));
 }
 
+TEST(Integrators, DefaultGoesByTolerance) {
+  for (const auto& [rtol, name] :
+       {std::pair(1e-2, "dp5"), std::pair(1e-4, "dp5"), std::pair(1e-5, "dop853"),
+        std::pair(1e-8, "dop853"), std::pair(1e-9, "vern9"), std::pair(1e-13, "vern9")})
+    EXPECT_EQ(default_integrator("momentum", rtol), name) << rtol;
+  EXPECT_EQ(default_integrator("momentum-index2", 1e-4), "ida");
+}
+
 TEST(Bdf, ProjectedKeepsTheLoopsShut) {
   const Mechanism mechanism(four_bar());
   for (const char* form : {"momentum", "acceleration"}) {

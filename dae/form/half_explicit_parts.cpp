@@ -1,0 +1,42 @@
+#include <momenta/dae/form/half_explicit_parts.h>
+
+#include <Eigen/Core>
+#include <algorithm>
+
+namespace momenta {
+
+HalfExplicitParts::Work::Work(const Mechanism& mechanism, std::vector<double> compliance)
+    : e(mechanism.evaluation<double>()), kkt(mechanism, std::move(compliance)) {
+  if (mechanism.m() > 0) solver = make_loop_solver(mechanism, *e);
+  const auto nv = static_cast<std::size_t>(mechanism.nv()),
+             m = static_cast<std::size_t>(mechanism.m());
+  there.resize(static_cast<std::size_t>(mechanism.nq()));
+  for (auto* v : {&u, &delta, &r}) v->resize(nv);
+  for (auto* v : {&g, &correction, &centre}) v->resize(m);
+}
+
+HalfExplicitParts::Work& HalfExplicitParts::work() {
+  if (!work_) work_ = std::make_shared<Work>(system_, compliance());
+  return *work_;
+}
+
+bool HalfExplicitParts::failed(std::string sentence) {
+  why_ = std::move(sentence);
+  return false;
+}
+
+const double* HalfExplicitParts::centre(const double* z) {
+  Work& w = work();
+  std::copy_n(z, w.centre.size(), w.centre.data());
+  return w.centre.data();
+}
+
+void HalfExplicitParts::normalise(double* y) {
+  if (!system_.plan().quasi_velocities) return;
+  for (const auto& b : system_.tree().bodies) {
+    if (b.nq < 4) continue;
+    Eigen::Map<Eigen::Vector4d>(y + b.q + (b.nq - 4)).normalize();
+  }
+}
+
+}  // namespace momenta

@@ -1,0 +1,48 @@
+#pragma once
+// What the two forms of index 2 share as half-explicit systems: evaluations and solvers, taken when
+// first asked for. z of a stage from the hidden constraint is the one of the ODE form's right-hand
+// side; z that leads onto the constraint at the next stage is solved for by SplitKkt.
+
+#include <momenta/dae/kkt/loop_solver.h>
+#include <momenta/dae/kkt/split_kkt.h>
+#include <momenta/dae/solver/half_explicit.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace momenta {
+
+class HalfExplicitParts : public HalfExplicit {
+ public:
+  explicit HalfExplicitParts(const Mechanism& mechanism) : system_(mechanism) {}
+
+  int differential_unknowns() const override { return system_.nq() + system_.nv(); }
+  int multipliers() const override { return system_.m(); }
+  void normalise(double* y) override;
+  const std::string& half_explicit_failure() const override { return why_; }
+
+ protected:
+  struct Work {
+    Work(const Mechanism& mechanism, std::vector<double> compliance);
+    std::unique_ptr<Evaluation<double>> e;
+    std::unique_ptr<LoopSolver> solver;  ///< null without loops
+    SplitKkt kkt;
+    std::vector<double> there, u, delta, r, g, correction, centre;
+  };
+  /// Small entries in place of zeros for redundant loops (m), or empty.
+  virtual std::vector<double> compliance() const = 0;
+
+  Work& work();
+  bool failed(std::string sentence);
+  /// Copies z as what faded rows keep, for a solution that writes into z.
+  const double* centre(const double* z);
+
+  const Mechanism& system_;
+
+ private:
+  std::shared_ptr<Work> work_;
+  std::string why_;
+};
+
+}  // namespace momenta

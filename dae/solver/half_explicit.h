@@ -1,0 +1,30 @@
+#pragma once
+// What half-explicit methods need of a system of index 2,
+//
+//   y' = f(t, y, z),  0 = g(t, y),
+//
+// y without z. A mixin of the forms that are one.
+
+#include <string>
+
+namespace momenta {
+
+class HalfExplicit {
+ public:
+  virtual ~HalfExplicit() = default;
+  virtual int differential_unknowns() const = 0;  ///< of y
+  virtual int multipliers() const = 0;            ///< of z
+
+  /// z from the hidden constraint d/dt g(t, y) = 0, and f(t, y, z).
+  virtual bool consistent(double t, const double* y, double* z, double* f) = 0;
+  /// z and f(t, y, z) such that g(t_next, base + w f) = 0, w > 0 or < 0; `z` and `f` hold those of
+  /// the stage before.
+  virtual bool advance(double t, const double* y, double t_next, const double* base, double w,
+                       double* z, double* f) = 0;
+  /// Quaternions of y back to unit length.
+  virtual void normalise(double* y) = 0;
+  /// Why one of them failed.
+  virtual const std::string& half_explicit_failure() const = 0;
+};
+
+}  // namespace momenta

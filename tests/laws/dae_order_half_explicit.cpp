@@ -1,0 +1,276 @@
+// hem5 has order 5: every order condition of index 2 by its tree, and halved steps on mechanisms,
+// in q, u, p and in the multiplier, for both forms, with prescribed motion and with quaternions.
+
+#include "equations/index2_trees.h"
+#include "equations/linkages.h"
+
+#include <gtest/gtest.h>
+#include <momenta/core/scene/read_scene.h>
+#include <momenta/dae/solver/implicit_methods.h>
+#include <momenta/dae/solver/tableau_hem5.h>
+#include <momenta/dae/study/run_form.h>
+
+#include <array>
+#include <filesystem>
+
+namespace momenta {
+namespace {
+
+using namespace equations;
+using explicit_rk::TableauDp5;
+
+/// What a tree has: at the six stages Y_i and at y_1, where z is that of the hidden constraint; at
+/// the six Ȳ_i.
+struct Weights {
+  std::array<double, 7> at{};
+  std::array<double, 6> bar{};
+  double exact = 1;  ///< times c^ρ
+};
+
+Weights weights_of(const Index2Tree& tree, const std::vector<Weights>& known) {
+  constexpr std::size_t s = TableauHem5::stages;
+  Weights w;
+  std::array<double, 7> product;
+  std::array<double, 6> product_bar;
+  product.fill(1);
+  product_bar.fill(1);
+  for (const std::size_t son : tree.sons) {
+    for (std::size_t i = 0; i <= s; ++i) product[i] *= known[son].at[i];
+    for (std::size_t i = 0; i < s; ++i) product_bar[i] *= known[son].bar[i];
+    w.exact *= known[son].exact;
+  }
+  if (!tree.z) {
+    w.exact /= tree.order;
+    for (std::size_t i = 0; i <= s; ++i)
+      for (std::size_t j = 0; j < std::min(i, s); ++j) w.at[i] += TableauDp5::a[i][j] * product[j];
+    for (std::size_t i = 1; i < s; ++i)
+      for (std::size_t j = 0; j <= i; ++j) w.bar[i] += TableauHem5::a_bar[i][j] * product[j];
+    return w;
+  }
+  w.exact *= tree.order + 1;
+  for (std::size_t i = 1; i < s; ++i) {
+    w.at[i] = product_bar[i];
+    for (std::size_t j = 1; j < i; ++j) w.at[i] -= TableauHem5::a_bar[i][j] * w.at[j];
+    w.at[i] /= TableauHem5::a_bar[i][i];
+  }
+  w.at[s] = w.exact;
+  return w;
+}
+
+TEST(HalfExplicitOrder, EveryConditionOfOrderFive) {
+  const auto trees = index2_trees(6);
+  std::vector<Weights> known;
+  std::array<int, 7> count{}, missed{}, missed_embedded{};
+  for (const Index2Tree& tree : trees) {
+    known.push_back(weights_of(tree, known));
+    if (tree.z) continue;
+    const auto order = static_cast<std::size_t>(tree.order);
+    ++count[order];
+    const double exact = known.back().exact;
+    const double off = known.back().at[6] - exact;
+    if (std::abs(off) > 1e-13 * exact) ++missed[order];
+    // b̂ = b − e.
+    double embedded = off;
+    for (std::size_t j = 0; j < 7; ++j) {
+      double product = 1;
+      for (const std::size_t son : tree.sons) product *= known[son].at[j];
+      embedded -= TableauDp5::e[0][j] * product;
+    }
+    if (std::abs(embedded) > 1e-13 * exact) ++missed_embedded[order];
+  }
+  // As many as the literature counts.
+  EXPECT_EQ(count[1], 1);
+  EXPECT_EQ(count[2], 3);
+  EXPECT_EQ(count[3], 22);
+  for (std::size_t order = 1; order <= 5; ++order) EXPECT_EQ(missed[order], 0) << order;
+  EXPECT_GT(missed[6], 0);
+  for (std::size_t order = 1; order <= 4; ++order) EXPECT_EQ(missed_embedded[order], 0) << order;
+  EXPECT_GT(missed_embedded[5], 0);
+}
+
+struct Errors {
+  double q, x, multiplier;  ///< x: u or p
+};
+
+/// At the end of so many steps, against a run of dop853 at 1e-14 on the ODE form of the same
+/// unknowns, with the same gauge.
+class Halving {
+ public:
+  Halving(const Scene& scene, const std::string& form, double end)
+      : mechanism_(scene), start_(assemble(mechanism_).start), form_(form), end_(end) {
+    if (form == "momentum-index2") options_.gauge = parse_gauge("leak");
+    const auto ode = make_form(form == "momentum-index2" ? "momentum" : "acceleration", mechanism_,
+                               options_, start_);
+    IntegrationOptions tight;
+    tight.rtol = tight.atol = 1e-14;
+    const auto truth =
+        integrate_explicit("dop853", *ode->ode(), 0, ode->initial(start_), {end}, tight, {});
+    EXPECT_TRUE(truth.done) << truth.reason;
+    exact_ = truth.y;
+    EXPECT_TRUE(ode->read(end, exact_.data(), nullptr, read_));
+  }
+  Errors with(int steps) const {
+    const auto form = make_form(form_, mechanism_, options_, start_);
+    IntegrationOptions options;
+    options.step = end_ / steps;
+    const auto run = integrate_hem5(*form->dae(), 0, {end_}, options, {});
+    EXPECT_TRUE(run.done) << run.reason;
+    EXPECT_EQ(run.counters.steps, steps);
+    const auto largest = [&](int from, int to, const double* exact) {
+      double error = 0;
+      for (int i = from; i < to; ++i)
+        error = std::max(error, std::abs(run.y[static_cast<std::size_t>(i)] - *exact++));
+      return error;
+    };
+    const int nq = mechanism_.nq(), n = nq + mechanism_.nv();
+    return {largest(0, nq, exact_.data()), largest(nq, n, exact_.data() + nq),
+            largest(n, n + mechanism_.m(), read_.multipliers.data())};
+  }
+
+ private:
+  Mechanism mechanism_;
+  Start start_;
+  std::string form_;
+  double end_;
+  FormOptions options_;
+  std::vector<double> exact_;
+  Snapshot read_;
+};
+
+Scene example(const char* name) {
+  return read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples" / name / "scene.toml");
+}
+
+/// The four-bar's crank turned by a prescribed motion, cut at the crank's hinge.
+Scene driven_crank() {
+  Scene scene = example("four_bar");
+  DriveSpec d;
+  d.kind = "polynomial";
+  d.coefficients = {1.5707963267948966, 4, 0.5};
+  d.joint = "O";
+  scene.drives.push_back(d);
+  scene.held.clear();
+  return scene;
+}
+
+/// A rod on a ball joint carries a flying one: q̇ is not u.
+Scene two_rods() {
+  Scene scene;
+  scene.name = "two rods with quaternions";
+  scene.gravity = {0, -9.81, 0};
+  for (const char* name : {"held", "flying"}) scene.bodies.push_back(rod(name, 0.2));
+  JointSpec ball;
+  ball.name = "A";
+  ball.child = "held";
+  ball.kind = JointKind::spherical;
+  ball.position = {1, 0, 0, 0};
+  ball.velocity = {0.5, 1, 0.3};
+  scene.joints.push_back(ball);
+  JointSpec free = ball;
+  free.name = "B";
+  free.child = "flying";
+  free.kind = JointKind::free;
+  free.position = {1, 0, 0, std::cos(0.3), 0, std::sin(0.3), 0};
+  free.velocity = {0, 0, 0, 0.2, -1, 2};
+  scene.joints.push_back(free);
+  LoopSpec loop;
+  loop.name = "C";
+  loop.kind = LoopKind::point;
+  loop.parent = "held";
+  loop.child = "flying";
+  loop.origin_parent = {1, 0, 0};
+  scene.loops.push_back(loop);
+  return scene;
+}
+
+TEST(HalfExplicitOrder, HalvedStepsOnMechanisms) {
+  struct Case {
+    Scene scene;
+    double end;
+    int coarse;
+  };
+  for (const Case& c : {Case{example("four_bar"), 1, 200}, Case{example("andrews"), 0.01, 100},
+                        Case{driven_crank(), 1, 60}, Case{two_rods(), 1, 100}})
+    for (const std::string form : {"acceleration-index2", "momentum-index2"}) {
+      SCOPED_TRACE(c.scene.name + " " + form);
+      const Halving halving(c.scene, form, c.end);
+      const Errors a = halving.with(c.coarse), b = halving.with(4 * c.coarse);
+      // The driven crank leaves no freedom: with Φ = 0 in the equations its q is exact.
+      const auto expect_five = [](const char* what, double coarse, double fine) {
+        if (coarse > 1e-13) {
+          EXPECT_NEAR(std::log2(coarse / fine) / 2, 5, 0.6)
+              << what << ": " << coarse << ", " << fine;
+        }
+      };
+      expect_five("q", a.q, b.q);
+      expect_five("u or p", a.x, b.x);
+      expect_five("multiplier", a.multiplier, b.multiplier);
+    }
+}
+
+RunResult run_hem5(const Mechanism& mechanism, const std::string& form, double tolerance,
+                   double end, int samples) {
+  RunRequest request;
+  request.settings.form = form;
+  request.settings.integrator = "hem5";
+  request.settings.gauge = form == "momentum-index2" ? "leak" : "";
+  request.settings.rtol = request.settings.atol = tolerance;
+  request.settings.end_time = end;
+  request.settings.samples = samples;
+  request.keep_trajectory = true;
+  return run_form(mechanism, assemble(mechanism).start, request);
+}
+
+// The constraint that stands in the equations, at every sample inside steps too; the other one
+// drifts with the local error.
+TEST(HalfExplicit, KeepsItsConstraint) {
+  const Mechanism mechanism(example("four_bar"));
+  const RunResult p = run_hem5(mechanism, "momentum-index2", 1e-6, 5, 500);
+  ASSERT_EQ(p.status, "done") << p.reason;
+  EXPECT_LE(p.position_drift_max, 1e-14);
+  const RunResult u = run_hem5(mechanism, "acceleration-index2", 1e-6, 5, 500);
+  ASSERT_EQ(u.status, "done") << u.reason;
+  EXPECT_LE(u.velocity_drift_max, 1e-13);
+  EXPECT_LE(u.position_drift_max, 1e-3);
+  EXPECT_GE(u.position_drift_max, 1e-12);
+}
+
+// A redundant equation in every configuration; KLU above 60 unknowns.
+TEST(HalfExplicit, RedundantAndSparse) {
+  const Mechanism redundant(bricard()), many(row_of_four_bars(12, 1.0, 0.5));
+  for (const std::string form : {"acceleration-index2", "momentum-index2"}) {
+    const RunResult a = run_hem5(redundant, form, 1e-9, 0.5, 10);
+    ASSERT_EQ(a.status, "done") << form << a.reason;
+    EXPECT_LE(a.energy_error_max, 1e-6) << form;
+    EXPECT_LE(a.position_drift_max, 1e-7) << form;
+    const RunResult b = run_hem5(many, form, 1e-9, 0.3, 10);
+    ASSERT_EQ(b.status, "done") << form << b.reason;
+    EXPECT_LE(b.energy_error_max, 1e-6) << form;
+  }
+}
+
+// Looking on changes nothing of the run.
+TEST(HalfExplicit, SamplesDoNotChangeTheRun) {
+  const Mechanism mechanism(example("four_bar"));
+  for (const std::string form : {"acceleration-index2", "momentum-index2"}) {
+    const RunResult few = run_hem5(mechanism, form, 1e-7, 2, 1),
+                    many = run_hem5(mechanism, form, 1e-7, 2, 200);
+    EXPECT_EQ(few.counters.steps, many.counters.steps);
+    EXPECT_EQ(few.trajectory.rows.back(), many.trajectory.rows.back()) << form;
+  }
+}
+
+TEST(HalfExplicit, RefusesOtherForms) {
+  const Mechanism mechanism(example("four_bar"));
+  for (const char* form : {"acceleration-index3", "momentum-index1", "stabilised-index2"}) try {
+      run_hem5(mechanism, form, 1e-7, 1, 1);
+      FAIL() << form;
+    } catch (const std::invalid_argument& e) {
+      EXPECT_NE(std::string(e.what()).find("acceleration-index2 or momentum-index2"),
+                std::string::npos)
+          << e.what();
+    }
+}
+
+}  // namespace
+}  // namespace momenta
