@@ -126,7 +126,10 @@ MOMENTA_INLINE void carry_axis(const Link& l, const Spatial::EdgeConstants& k,
   if (l.turn == Turn::tilted) {
     tilt_inward<Gravity>(k, m, cargo);
   } else {
-    turn_x(cargo.M, l.ca, l.sa);
+    if (l.turn == Turn::right)
+      right_turn_x(cargo.M);
+    else
+      turn_x(cargo.M, l.ca, l.sa);
     shift_x(cargo.M, l.a);
     const auto turn = [&](S& y, S& z) {
       const S before = y;

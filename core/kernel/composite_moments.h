@@ -1,7 +1,7 @@
 #pragma once
 // First and second moments of subtrees, and how they pass a pin: of composite_sweeps.h.
 
-#include <momenta/core/kernel/mass_moments.h>
+#include <momenta/core/kernel/acceleration_field.h>
 
 namespace momenta {
 

@@ -286,6 +286,30 @@ MOMENTA_INLINE void turn_x(Full<S>& m, const C& c, const C& s) {
   turn_general(c, s, m.Hyy, m.Hyz, m.Hyx, m.Hzy, m.Hzz, m.Hzx, m.Hxy, m.Hxz);
 }
 
+/// The same by +90°, y ← −z, z ← y: nothing is rounded.
+template <class S>
+MOMENTA_INLINE void right_turn_x(Full<S>& m) {
+  const Full<S> r = m;
+  m.Axy = -r.Axz;
+  m.Axz = r.Axy;
+  m.Ayy = r.Azz;
+  m.Ayz = -r.Ayz;
+  m.Azz = r.Ayy;
+  m.Hxy = -r.Hxz;
+  m.Hxz = r.Hxy;
+  m.Hyx = -r.Hzx;
+  m.Hzx = r.Hyx;
+  m.Hyy = r.Hzz;
+  m.Hyz = -r.Hzy;
+  m.Hzy = -r.Hyz;
+  m.Hzz = r.Hyy;
+  m.Ixy = -r.Ixz;
+  m.Ixz = r.Ixy;
+  m.Iyy = r.Izz;
+  m.Iyz = -r.Iyz;
+  m.Izz = r.Iyy;
+}
+
 /// A screw about z of the full matrix: of a joint on one axis, and the way to a joint that is not
 /// its parent's first.
 template <class S, class C>
