@@ -7,10 +7,6 @@
 namespace momenta {
 namespace {
 
-std::string padded(const std::string& text, std::size_t to) {
-  return text + std::string(to > width(text) ? to - width(text) : 0, ' ');
-}
-
 /// "4 2 0": one number for each level.
 std::string over_levels(const IndexFound& found, int ArrayLevel::*number) {
   std::string all;

@@ -103,4 +103,8 @@ std::size_t width(const std::string& text) {
   }));
 }
 
+std::string padded(const std::string& text, std::size_t to) {
+  return text + std::string(to > width(text) ? to - width(text) : 0, ' ');
+}
+
 }  // namespace momenta

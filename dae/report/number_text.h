@@ -29,5 +29,7 @@ std::string time_text(double seconds);
 
 /// Characters on a terminal: bytes of UTF-8 without its continuations, combining dots not counted.
 std::size_t width(const std::string& text);
+/// With spaces behind it to that width.
+std::string padded(const std::string& text, std::size_t to);
 
 }  // namespace momenta
