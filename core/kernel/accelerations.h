@@ -1,6 +1,7 @@
 #pragma once
 // The acceleration route: Newton-Euler inward for joint forces and reactions, and the articulated
-// recursion for u̇ (acceleration_sweeps.h, planar_sweeps.h) with all forces of the scene.
+// recursion for u̇ (acceleration_sweeps.h, planar_acceleration_sweeps.h) with all forces of the
+// scene.
 //
 //   A_K = 𝒯ⱽ A_L + E u̇ + c_K,  c_K: velocity products and prescribed accelerations       derivative
 //   of (23) F_K = M_K A_K + b_K − T_K + Σ 𝒯ᶠ F_child,  b_K = Ω_K × (M_K Ω_K) (17), (21) τ_K = Eᵀ
@@ -10,7 +11,7 @@
 
 #include <momenta/core/kernel/acceleration_sweeps.h>
 #include <momenta/core/kernel/body_forces.h>
-#include <momenta/core/kernel/planar_sweeps.h>
+#include <momenta/core/kernel/planar_acceleration_sweeps.h>
 
 namespace momenta {
 

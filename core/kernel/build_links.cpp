@@ -89,6 +89,7 @@ LinkTree build_links(const Model<Spatial>& model) {
     l.has_force = b.nv == 1 && (b.stiffness != 0 || b.damping != 0 || b.torque != 0);
     tree.theta0[k] = b.theta0;
     if (l.kind == LinkKind::general) l.record = tree.records++;
+    l.one_axis = l.kind == LinkKind::general && b.nv <= 1 && !b.law;
     tree.users += b.law != nullptr;
     if (l.kind == LinkKind::ball) {
       l.record = static_cast<int>(tree.balls.size());

@@ -9,7 +9,7 @@
 // M⁻¹ at once.
 
 #include <momenta/core/kernel/momentum_sweeps.h>
-#include <momenta/core/kernel/planar_sweeps.h>
+#include <momenta/core/kernel/planar_momentum_sweeps.h>
 
 #include <type_traits>
 

@@ -3,7 +3,8 @@
 // place in the arrays in one flat record, bodies in depth-first order.
 //
 // Pins (undriven revolute joints) are what nearly all trees are made of: they have the fast path
-// and their own compact records. Every other joint takes the general path, which knows all kinds.
+// and their own compact records. Joints on one axis that slide, screw, are driven or welded are
+// eliminated in one piece (axis_joint.h). The rest, free and user joints, take the general path.
 //
 // Two things never change while the tree moves and are put in here once:
 //   - The first moment of a subtree about O: children on pins stay where their joint is, so their
@@ -51,6 +52,7 @@ struct Link {
   bool tip = false;        ///< carries nothing
   bool opens = false;      ///< the last child of its parent, which the inward sweep meets first
   bool screwed = false;    ///< a screw about the parent's z comes first
+  bool one_axis = false;   ///< general links: a screw about z, driven or not, or a weld
   bool has_force = false;  ///< spring, damper or torque on the joint
   Path path = Path::any;
 };

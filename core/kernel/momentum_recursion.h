@@ -1,8 +1,8 @@
 #pragma once
 // The recursion of the paper as the rest of the toolkit calls it: (q, p, t) → (u, ṗ), u → p, and
-// the way back by M⁻¹. The two sweeps are in momentum_sweeps.h and planar_sweeps.h; wrenches
-// between points of bodies depend on poses and velocities of several bodies, which are known only
-// after them: then, and only then, a third sweep adds Eᵀ T* of those wrenches to ṗ.
+// the way back by M⁻¹. The two sweeps are in momentum_sweeps.h and planar_momentum_sweeps.h;
+// wrenches between points of bodies depend on poses and velocities of several bodies, which are
+// known only after them: then, and only then, a third sweep adds Eᵀ T* of those wrenches to ṗ.
 
 #include <momenta/core/kernel/body_forces.h>
 #include <momenta/core/kernel/inverse_mass.h>

@@ -19,8 +19,9 @@
 // What a body passes to its parent stays in registers when the parent is the body before it; other
 // children leave it in the parent's slot. Wrenches between points of bodies need a third sweep.
 
+#include <momenta/core/kernel/ball.h>
 #include <momenta/core/kernel/forces.h>
-#include <momenta/core/kernel/pin.h>
+#include <momenta/core/kernel/place_links.h>
 #include <momenta/core/kernel/sweeps.h>
 
 namespace momenta {
@@ -103,6 +104,11 @@ class MomentumSweeps<Spatial, S> {
   __attribute__((noinline)) void ball_outward(std::size_t k, Out u, Out pdot,
                                               OutwardCargo<S>& cargo);
   template <bool Gravity, class In>
+  __attribute__((noinline)) bool axis_inward(std::size_t k, const In& p, Cargo<S>& cargo);
+  template <bool Gravity, class In, class Out>
+  __attribute__((noinline)) void axis_outward(std::size_t k, const In& q, Out u, Out pdot,
+                                              OutwardCargo<S>& cargo);
+  template <bool Gravity, class In>
   __attribute__((noinline)) bool general_inward(std::size_t k, const In& p, Cargo<S>& cargo);
   template <bool Gravity, class In, class Out>
   __attribute__((noinline)) void general_outward(std::size_t k, const In& q, Out u, Out pdot,
@@ -124,52 +130,6 @@ class MomentumSweeps<Spatial, S> {
   int stuck_ = -1;
 };
 
-/// (46)-(48) of a pin whose M*, D, G are complete.
-template <bool Gravity, class S>
-MOMENTA_INLINE void eliminate_pin(const Cargo<S>& cargo, const S& p, const S& inverse,
-                                  PinRecord<S>& w, Eliminated<S>& r) {
-  const S e = p - cargo.Dnz;
-  w.inverse = inverse;
-  w.y0 = e * inverse;
-  PinColumn<S> h;
-  eliminate_pin(cargo.M, inverse, h, r.M);
-  w.h = h;
-  r.fx = cargo.Dfx + h.fx * e;
-  r.fy = cargo.Dfy + h.fy * e;
-  r.fz = cargo.Dfz + h.fz * e;
-  r.nx = cargo.Dnx + h.nx * e;
-  r.ny = cargo.Dny + h.ny * e;
-  r.nz = p;
-  if constexpr (Gravity) {
-    w.Gx = r.Gx = cargo.Gx;
-    w.Gy = r.Gy = cargo.Gy;
-    r.Gz = cargo.Gz;
-  }
-}
-
-/// The pin's own screw; what the outward sweep needs is stored on the way.
-template <bool Gravity, class S>
-MOMENTA_INLINE void turn_pin(Eliminated<S>& r, const S& c, const S& s, double d, PinRecord<S>& w) {
-  turn_and_shift_z(r.M, c, s, d);
-  w.M = r.M;
-  S x = c * r.fx - s * r.fy;
-  r.fy = s * r.fx + c * r.fy;
-  r.fx = x;
-  x = c * r.nx - s * r.ny;
-  r.ny = s * r.nx + c * r.ny;
-  r.nx = x - d * r.fy;
-  r.ny = r.ny + d * r.fx;
-  w.Dfx = r.fx;
-  w.Dfy = r.fy;
-  w.Dnx = r.nx;
-  w.Dny = r.ny;
-  if constexpr (Gravity) {
-    x = c * r.Gx - s * r.Gy;
-    r.Gy = s * r.Gx + c * r.Gy;
-    r.Gx = x;
-  }
-}
-
 template <class S>
 template <bool Gravity, class In>
 bool MomentumSweeps<Spatial, S>::inward(const In& p) {
@@ -190,95 +150,13 @@ bool MomentumSweeps<Spatial, S>::inward(const In& p) {
         --k;
         if (!(links[k].kind == LinkKind::pin    ? pin_inward<Gravity>(k, p, cargo)
               : links[k].kind == LinkKind::ball ? ball_inward<Gravity>(k, p, cargo)
+              : links[k].one_axis               ? axis_inward<Gravity>(k, p, cargo)
                                                 : general_inward<Gravity>(k, p, cargo)))
           stuck_ = static_cast<int>(k);
         break;
     }
     if (stuck_ >= 0) return false;
   }
-  return true;
-}
-
-/// Pins inside a chain from `end` − 1 down, as far as their turns are of one kind; returns the end
-/// of what is left. All that passes from body to body stays in registers.
-template <class S>
-template <Turn turn, bool Gravity, class In>
-std::size_t MomentumSweeps<Spatial, S>::chain_inward(std::size_t end, const In& p, Cargo<S>& from) {
-  Cargo<S> cargo = from;
-  const Link* links = tree_->links.data();
-  std::size_t k = end;
-  do {
-    --k;
-    const Link& l = links[k];
-    PinRecord<S>& w = pins_[k];
-    add_body(cargo.M, l);
-    if constexpr (Gravity) {
-      cargo.Gx = cargo.Gx + l.moment[0];
-      cargo.Gy = cargo.Gy + l.moment[1];
-      cargo.Gz = cargo.Gz + l.moment[2];
-    }
-    if (!all_positive(cargo.M.Izz)) {
-      stuck_ = static_cast<int>(k);
-      return k;
-    }
-    Eliminated<S> r;
-    eliminate_pin<Gravity>(cargo, p[l.u], S(1.0) / cargo.M.Izz, w, r);
-    turn_pin<Gravity>(r, angles_.cosine(k), angles_.sine(k), l.d, w);
-    carry<turn, Gravity>(r, l, cargo);
-  } while (links[k - 1].path == static_cast<Path>(turn));
-  from = cargo;
-  return k;
-}
-
-/// Any other pin: at a tip, at a branch, on the ground, beside a first child.
-template <class S>
-template <bool Gravity, class In>
-bool MomentumSweeps<Spatial, S>::pin_inward(std::size_t k, const In& p, Cargo<S>& cargo) {
-  const Link& l = tree_->links[k];
-  PinRecord<S>& w = pins_[k];
-  const S pk = p[l.u];
-  Eliminated<S> r;
-  if (l.tip) {
-    const Tip& tip = tree_->tips[static_cast<std::size_t>(l.record)];
-    set_tip(tip, w.h, r.M);
-    w.inverse = S(tip.inverse);
-    w.y0 = pk * tip.inverse;
-    r.fx = pk * tip.h[0];
-    r.fy = pk * tip.h[1];
-    r.fz = pk * tip.h[2];
-    r.nx = pk * tip.h[3];
-    r.ny = pk * tip.h[4];
-    r.nz = pk;
-    if constexpr (Gravity) {
-      w.Gx = r.Gx = S(l.moment[0]);
-      w.Gy = r.Gy = S(l.moment[1]);
-      r.Gz = S(l.moment[2]);
-    }
-    if (l.parent < 0) return true;
-  } else {
-    add_body(cargo.M, l);
-    if constexpr (Gravity) {
-      cargo.Gx = cargo.Gx + l.moment[0];
-      cargo.Gy = cargo.Gy + l.moment[1];
-      cargo.Gz = cargo.Gz + l.moment[2];
-    }
-    if (l.slot >= 0) add<Gravity>(cargo, slots_[static_cast<std::size_t>(l.slot)]);
-    if (!all_positive(cargo.M.Izz)) return false;
-    const S inverse = S(1.0) / cargo.M.Izz;
-    if (l.parent < 0) {  // nothing is passed on to the ground
-      w.inverse = inverse;
-      w.y0 = (pk - cargo.Dnz) * inverse;
-      if constexpr (Gravity) {
-        w.Gx = cargo.Gx;
-        w.Gy = cargo.Gy;
-      }
-      return true;
-    }
-    eliminate_pin<Gravity>(cargo, pk, inverse, w, r);
-  }
-  turn_pin<Gravity>(r, angles_.cosine(k), angles_.sine(k), l.d, w);
-  carry_any<Gravity>(l, body(k).edge, r, cargo);
-  if (!l.first) leave<Gravity>(l, slot_of_parent(l), cargo);
   return true;
 }
 
@@ -312,6 +190,8 @@ bool MomentumSweeps<Spatial, S>::outward(const In& q, Out u, Out pdot) {
       OutwardCargo<S> here{vx, vy, vz, ox, oy, oz, gx, gy, gz};
       if (l.kind == LinkKind::ball)
         ball_outward<Gravity>(k, u, pdot, here);
+      else if (l.one_axis)
+        axis_outward<Gravity>(k, q, u, pdot, here);
       else
         general_outward<Gravity>(k, q, u, pdot, here);
       vx = here.vx;
@@ -380,146 +260,7 @@ bool MomentumSweeps<Spatial, S>::outward(const In& q, Out u, Out pdot) {
   return true;
 }
 
-// A ball joint leaves its body no angular inertia towards the parent: M' = (A', 0; 0, 0) with
-// A' = A − H I⁻¹ Hᵀ, D' = (D_f + H I⁻¹ e, p). What arrives at the parent is A' turned, and what its
-// step r makes of it: H = −A r̃, I = r̃ H.
-template <class S>
-template <bool Gravity, class In>
-bool MomentumSweeps<Spatial, S>::ball_inward(std::size_t k, const In& p, Cargo<S>& cargo) {
-  const Link& l = tree_->links[k];
-  BallRecord<S>& w = balls_[static_cast<std::size_t>(l.record)];
-  if (l.tip) cargo = {};
-  add_body(cargo.M, l);
-  if constexpr (Gravity) {
-    cargo.Gx = cargo.Gx + l.moment[0];
-    cargo.Gy = cargo.Gy + l.moment[1];
-    cargo.Gz = cargo.Gz + l.moment[2];
-    w.G = {{cargo.Gx, cargo.Gy, cargo.Gz}};
-  }
-  if (l.slot >= 0) {
-    add<Gravity>(cargo, slots_[static_cast<std::size_t>(l.slot)]);
-    if constexpr (Gravity) w.G = {{cargo.Gx, cargo.Gy, cargo.Gz}};
-  }
-  w.p = {{p[l.u], p[l.u + 1], p[l.u + 2]}};
-  if (!w.pivot.eliminate(cargo.M, w.A)) return false;
-  const Vec3<S> e{{w.p[0] - cargo.Dnx, w.p[1] - cargo.Dny, w.p[2] - cargo.Dnz}};
-  w.Df = Vec3<S>{{cargo.Dfx, cargo.Dfy, cargo.Dfz}} + w.pivot.remainder(e);
-  if (l.parent < 0) return true;
-
-  carry_ball(tree_->balls[static_cast<std::size_t>(l.record)].origin, w.R, w.A, w.Df, w.p, cargo);
-  if constexpr (Gravity) {
-    const Vec3<S> G = w.R * w.G;
-    cargo.Gx = G[0];
-    cargo.Gy = G[1];
-    cargo.Gz = G[2];
-  }
-  if (!l.first) leave<Gravity>(l, slot_of_parent(l), cargo);
-  return true;
-}
-
-template <class S>
-template <bool Gravity, class Out>
-void MomentumSweeps<Spatial, S>::ball_outward(std::size_t k, Out u, Out pdot, OutwardCargo<S>& c) {
-  const Link& l = tree_->links[k];
-  const BallRecord<S>& w = balls_[static_cast<std::size_t>(l.record)];
-  Vec3<S> v{}, o{}, g{};
-  if (l.parent >= 0) {
-    const auto& r = tree_->balls[static_cast<std::size_t>(l.record)].origin;
-    v = transpose_times(w.R,
-                        Vec3<S>{{c.vx + c.oy * r[2] - c.oz * r[1], c.vy + c.oz * r[0] - c.ox * r[2],
-                                 c.vz + c.ox * r[1] - c.oy * r[0]}});
-    o = transpose_times(w.R, Vec3<S>{{c.ox, c.oy, c.oz}});
-    if constexpr (Gravity) g = transpose_times(w.R, Vec3<S>{{c.gx, c.gy, c.gz}});
-  } else if constexpr (Gravity) {
-    const auto& at = tree_->model->gravity;
-    g = transpose_times(w.R, Vec3<S>{{S(at[0]), S(at[1]), S(at[2])}});
-  }
-  const Vec3<S> omega = w.pivot.omega(v);
-  const Vec3<S> Pf = w.A * v + w.Df;
-  Vec3<S> net = -(cross(v, Pf) + cross(omega, w.p));
-  if constexpr (Gravity) net += cross(w.G, g);
-  for (int i = 0; i < 3; ++i) {
-    u[l.u + i] = omega[i] - o[i];
-    pdot[l.u + i] = net[i];
-  }
-  set_cargo(c, Spatial::Motion<S>{v, omega}, g);
-}
-
-template <class S>
-template <bool Gravity, class In>
-bool MomentumSweeps<Spatial, S>::general_inward(std::size_t k, const In& p, Cargo<S>& cargo) {
-  const Link& l = tree_->links[k];
-  const auto& b = body(k);
-  auto& x = joints_[static_cast<std::size_t>(l.record)];
-  if (l.tip) cargo = {};
-  add_body(cargo.M, l);
-  cargo.Gx += l.moment[0];
-  cargo.Gy += l.moment[1];
-  cargo.Gz += l.moment[2];
-  if (l.slot >= 0) add<Gravity>(cargo, slots_[static_cast<std::size_t>(l.slot)]);
-  x.M = blocks(cargo.M);
-  x.D = remainder_of(cargo);
-  x.moment = {{cargo.Gx, cargo.Gy, cargo.Gz}};
-  S r[6]{};
-  for (int i = 0; i < b.nv; ++i) r[i] = p[b.u + i];
-  Spatial::ArticulatedInertia<S> M;
-  if (!eliminate<Spatial>(b, x, M)) return false;
-  auto D = remainder<Spatial>(b, x, r);
-  if (b.drive >= 0) {  // M' = M*: its momentum under the prescribed rates Ω_t, (44)
-    Spatial::Motion<S> prescribed{};
-    Joint<Spatial>::add_motion(b, x.edge, &x.drive_rate, prescribed);
-    D += Spatial::momentum(x.M, prescribed);
-  }
-  if (b.law) D += reduced_momentum<Spatial>(b, x, x.user->motion.drift);
-  if (b.parent < 0) return true;
-  Vec3<S> G{};
-  if constexpr (Gravity)
-    G = Spatial::moment_to_parent(b.edge, b.kind, x.edge, x.moment, b.subtree_mass);
-  set_cargo(cargo, Spatial::to_parent(b.edge, b.kind, x.edge, M),
-            Spatial::to_parent(b.edge, b.kind, x.edge, D), G);
-  if (!l.first) leave<Gravity>(l, slot_of_parent(l), cargo);
-  return true;
-}
-
-template <class S>
-template <bool Gravity, class In, class Out>
-void MomentumSweeps<Spatial, S>::general_outward(std::size_t k, const In& q, Out u, Out pdot,
-                                                 OutwardCargo<S>& c) {
-  const auto& b = body(k);
-  const auto& x = joints_[static_cast<std::size_t>(tree_->links[k].record)];
-  Spatial::Motion<S> V{};
-  Vec3<S> g{};
-  if (b.parent >= 0) {
-    V = Spatial::to_child(b.edge, b.kind, x.edge,
-                          Spatial::Motion<S>{{{c.vx, c.vy, c.vz}}, {{c.ox, c.oy, c.oz}}});
-    g = {{c.gx, c.gy, c.gz}};
-  } else {
-    for (int i = 0; i < 3; ++i) g[i] = S(tree_->model->gravity[i]);
-  }
-  if constexpr (Gravity) g = Spatial::direction_to_child(b.edge, b.kind, x.edge, g);
-  if (b.drive >= 0) Joint<Spatial>::add_motion(b, x.edge, &x.drive_rate, V);
-  if (b.law) V += x.user->motion.drift;
-  if (b.nv > 0) {
-    S own[6];
-    solve_joint<Spatial>(b, x, V, own);
-    Spatial::Force<S> net{};
-    if constexpr (Gravity) net = Spatial::weight(S(b.subtree_mass), x.moment, g);
-    auto P = Spatial::momentum(x.M, V);  // (42)
-    P += x.D;
-    net -= Spatial::cross_force(V, P);
-    S rate[6];
-    Joint<Spatial>::project(b, x.edge, net, rate);  // (35)
-    if (b.law) {
-      Joint<Spatial>::move(b, x.edge, static_cast<const S*>(own));
-      Joint<Spatial>::add_axis_rate(b, x.edge, P, rate);
-    }
-    if (b.nv == 1 && tree_->model->has_joint_forces) rate[0] += joint_force(b, S(q[b.q]), own[0]);
-    for (int i = 0; i < b.nv; ++i) {
-      u[b.u + i] = own[i];
-      pdot[b.u + i] = rate[i];
-    }
-  }
-  set_cargo(c, V, g);
-}
-
 }  // namespace momenta
+
+#include <momenta/core/kernel/momentum_joints.h>
+#include <momenta/core/kernel/momentum_pins.h>

@@ -1,6 +1,6 @@
 #pragma once
-// How pins and ball joints pass mass matrices and remainders to their parents: shared by the
-// momentum and the acceleration recursion.
+// How pins pass mass matrices and remainders to their parents, and motions to their children:
+// shared by the momentum and the acceleration recursion.
 
 #include <momenta/core/kernel/general_joint.h>
 #include <momenta/core/kernel/link.h>
@@ -58,10 +58,9 @@ MOMENTA_INLINE void set_tip(const Tip& tip, PinColumn<S>& h, Reduced<S>& m) {
   h = {S(tip.h[0]), S(tip.h[1]), S(tip.h[2]), S(tip.h[3]), S(tip.h[4])};
 }
 
-/// The screw about the parent's z.
-template <bool Gravity, class S>
-MOMENTA_INLINE void screw_inward(const Spatial::EdgeConstants& e, Cargo<S>& cargo) {
-  const double c = e.cos_gamma, s = e.sin_gamma, d = e.delta;
+/// A screw about z; of G the turn.
+template <bool Gravity, class S, class C>
+MOMENTA_INLINE void screw_inward(const C& c, const C& s, const C& d, Cargo<S>& cargo) {
   turn_and_shift_z(cargo.M, c, s, d);
   S x = c * cargo.Dfx - s * cargo.Dfy;
   cargo.Dfy = s * cargo.Dfx + c * cargo.Dfy;
@@ -173,99 +172,7 @@ MOMENTA_INLINE void carry_any(const Link& l, const Spatial::EdgeConstants& e,
       tilt_inward(e, r, cargo);
       break;
   }
-  if (l.screwed) screw_inward<Gravity>(e, cargo);
-}
-
-/// (46)-(48) of a ball joint by I = L Δ Lᵀ, which leaves A' = A − Z Δ⁻¹ Zᵀ with Z = H L⁻ᵀ, the
-/// whole of M', and D'_f = D_f + Z Δ⁻¹ L⁻¹ e. No inverse is formed: shorter, and backward stable.
-template <class S>
-struct BallPivot {
-  S l10, l20, l21, i0, i1, i2;  ///< L, Δ⁻¹
-  Mat3<S> s;                    ///< Z Δ⁻¹
-  Vec3<S> e;                    ///< L⁻¹ e
-
-  /// False when I is not positive.
-  MOMENTA_INLINE bool eliminate(const Full<S>& m, Sym3<S>& A) {
-    i0 = S(1.0) / m.Ixx;
-    l10 = m.Ixy * i0;
-    l20 = m.Ixz * i0;
-    const S d1 = m.Iyy - l10 * m.Ixy, below = m.Iyz - l20 * m.Ixy;
-    i1 = S(1.0) / d1;
-    l21 = below * i1;
-    const S d2 = m.Izz - l20 * m.Ixz - l21 * below;
-    i2 = S(1.0) / d2;
-    if (!pivots_positive(m.Ixx, d1, d2, m.Ixx, m.Iyy, m.Izz)) return false;
-    const S zx0 = m.Hxx, zx1 = m.Hxy - l10 * zx0, zx2 = m.Hxz - l20 * zx0 - l21 * zx1;
-    const S zy0 = m.Hyx, zy1 = m.Hyy - l10 * zy0, zy2 = m.Hyz - l20 * zy0 - l21 * zy1;
-    const S zz0 = m.Hzx, zz1 = m.Hzy - l10 * zz0, zz2 = m.Hzz - l20 * zz0 - l21 * zz1;
-    s = {
-        {zx0 * i0, zx1 * i1, zx2 * i2, zy0 * i0, zy1 * i1, zy2 * i2, zz0 * i0, zz1 * i1, zz2 * i2}};
-    A.x[0] = m.Axx - (s.x[0] * zx0 + s.x[1] * zx1 + s.x[2] * zx2);
-    A.x[1] = m.Axy - (s.x[0] * zy0 + s.x[1] * zy1 + s.x[2] * zy2);
-    A.x[2] = m.Axz - (s.x[0] * zz0 + s.x[1] * zz1 + s.x[2] * zz2);
-    A.x[3] = m.Ayy - (s.x[3] * zy0 + s.x[4] * zy1 + s.x[5] * zy2);
-    A.x[4] = m.Ayz - (s.x[3] * zz0 + s.x[4] * zz1 + s.x[5] * zz2);
-    A.x[5] = m.Azz - (s.x[6] * zz0 + s.x[7] * zz1 + s.x[8] * zz2);
-    return true;
-  }
-  /// D'_f − D_f from e = r − D_n.
-  MOMENTA_INLINE Vec3<S> remainder(const Vec3<S>& right) {
-    e[0] = right[0];
-    e[1] = right[1] - l10 * e[0];
-    e[2] = right[2] - l20 * e[0] - l21 * e[1];
-    return s * e;
-  }
-  /// ω = L⁻ᵀ (Δ⁻¹ L⁻¹ e − (Z Δ⁻¹)ᵀ v) of the body, v the velocity of its origin.
-  MOMENTA_INLINE Vec3<S> omega(const Vec3<S>& v) const {
-    const Vec3<S> g = transpose_times(s, v);
-    const S z = e[2] * i2 - g[2];
-    const S y = e[1] * i1 - g[1] - l21 * z;
-    return {{e[0] * i0 - g[0] - l10 * y - l20 * z, y, z}};
-  }
-};
-
-/// M' = (A, 0; 0, 0) and D' = (f, n) of a ball joint in the parent's frame: A turned by R, and what
-/// the step r makes of it, H = −A r̃, I = r̃ H.
-template <class S>
-MOMENTA_INLINE void carry_ball(const Vec3<double>& r, const Mat3<S>& R, const Sym3<S>& A,
-                               const Vec3<S>& force, const Vec3<S>& moment, Cargo<S>& cargo) {
-  const S rx(r[0]), ry(r[1]), rz(r[2]);
-  Mat3<S> RA;
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j)
-      RA(i, j) = R(i, 0) * A(0, j) + R(i, 1) * A(1, j) + R(i, 2) * A(2, j);
-  const auto entry = [&](int i, int j) {
-    return RA(i, 0) * R(j, 0) + RA(i, 1) * R(j, 1) + RA(i, 2) * R(j, 2);
-  };
-  Full<S>& m = cargo.M;
-  m.Axx = entry(0, 0);
-  m.Axy = entry(0, 1);
-  m.Axz = entry(0, 2);
-  m.Ayy = entry(1, 1);
-  m.Ayz = entry(1, 2);
-  m.Azz = entry(2, 2);
-  m.Hxx = m.Axz * ry - m.Axy * rz;
-  m.Hxy = m.Axx * rz - m.Axz * rx;
-  m.Hxz = m.Axy * rx - m.Axx * ry;
-  m.Hyx = m.Ayz * ry - m.Ayy * rz;
-  m.Hyy = m.Axy * rz - m.Ayz * rx;
-  m.Hyz = m.Ayy * rx - m.Axy * ry;
-  m.Hzx = m.Azz * ry - m.Ayz * rz;
-  m.Hzy = m.Axz * rz - m.Azz * rx;
-  m.Hzz = m.Ayz * rx - m.Axz * ry;
-  m.Ixx = ry * m.Hzx - rz * m.Hyx;
-  m.Ixy = ry * m.Hzy - rz * m.Hyy;
-  m.Ixz = ry * m.Hzz - rz * m.Hyz;
-  m.Iyy = rz * m.Hxy - rx * m.Hzy;
-  m.Iyz = rz * m.Hxz - rx * m.Hzz;
-  m.Izz = rx * m.Hyz - ry * m.Hxz;
-  const Vec3<S> f = R * force, n = R * moment;
-  cargo.Dfx = f[0];
-  cargo.Dfy = f[1];
-  cargo.Dfz = f[2];
-  cargo.Dnx = n[0] + ry * f[2] - rz * f[1];
-  cargo.Dny = n[1] + rz * f[0] - rx * f[2];
-  cargo.Dnz = n[2] + rx * f[1] - ry * f[0];
+  if (l.screwed) screw_inward<Gravity>(e.cos_gamma, e.sin_gamma, e.delta, cargo);
 }
 
 // The constant screws outward, for a direction and for a motion; nearly parallel axes out of line.
@@ -346,48 +253,6 @@ MOMENTA_INLINE void constants_outward(const Link& l, const Spatial::EdgeConstant
     x = l.ca * oy + l.sa * oz;
     oz = l.ca * oz - l.sa * oy;
     oy = x;
-  }
-}
-
-/// Sines and cosines of all pins, turned axes of ball joints (`axes(record)`), edges of the others.
-template <class S, class In, class Axes>
-void place_links(const LinkTree& tree, const S& t, const In& q, Angles<S>& angles,
-                 std::vector<JointRecord<Spatial, S>>& joints, std::vector<UserRecord<S>>& users,
-                 Axes&& axes) {
-  const Link* links = tree.links.data();
-  const double* theta0 = tree.theta0.data();
-  const std::size_t n = angles.size();
-  for (std::size_t k = 0; k < n; ++k)
-    angles.set(k, links[k].kind == LinkKind::pin ? q[links[k].q] + theta0[k] : S(0.0));
-  angles.turn();
-  if (joints.empty() && tree.balls.empty()) return;
-  for (std::size_t k = 0; k < n; ++k) {
-    if (links[k].kind == LinkKind::pin) continue;
-    const auto& b = tree.model->bodies[k];
-    const auto record = static_cast<std::size_t>(links[k].record);
-    if (links[k].kind == LinkKind::ball) {
-      const S at[4] = {q[b.q], q[b.q + 1], q[b.q + 2], q[b.q + 3]};
-      // c ∘ q, the constant turn and the joint's own as one quaternion
-      const double* c = tree.balls[record].turn;
-      const S both[4] = {c[0] * at[0] - c[1] * at[1] - c[2] * at[2] - c[3] * at[3],
-                         c[0] * at[1] + c[1] * at[0] + c[2] * at[3] - c[3] * at[2],
-                         c[0] * at[2] + c[2] * at[0] + c[3] * at[1] - c[1] * at[3],
-                         c[0] * at[3] + c[3] * at[0] + c[1] * at[2] - c[2] * at[1]};
-      axes(record) = rotation_of(both);
-      continue;
-    }
-    auto& x = joints[record];
-    S at[7]{};
-    for (int i = 0; i < b.nq; ++i) at[i] = q[b.q + i];
-    if (b.law) {
-      x.user = &users[static_cast<std::size_t>(b.user)];
-      Joint<Spatial>::place(b, t, static_cast<const S*>(at), x.user->motion, x.edge);
-      continue;
-    }
-    if (b.drive >= 0)
-      prescribe(tree.model->drives[static_cast<std::size_t>(b.drive)], t, x.drive, x.drive_rate,
-                x.drive_acceleration);
-    Joint<Spatial>::place<S>(b, nullptr, b.drive >= 0 ? x.drive : at[0], at, x.edge);
   }
 }
 

@@ -246,37 +246,79 @@ MOMENTA_INLINE void parallel_turn_and_shift_x(const Reduced<S>& r, double sign, 
   m.Izz = a * m.Hyz;
 }
 
-/// A screw about z of the full matrix: the way to a joint that is not its parent's first.
-template <class S>
-MOMENTA_INLINE void turn_and_shift_z(Full<S>& m, double c, double s, double d) {
-  const double cs = c * s, ss = s * s, cs2 = cs + cs, ss2 = ss + ss;
-  S x;
-  const auto turn_symmetric = [&](S& xx, S& xy, S& xz, S& yy, S& yz) {
-    const S difference = xx - yy;
-    const S t = ss * difference + cs2 * xy, u = cs * difference - ss2 * xy;
-    xx = xx - t;
-    yy = yy + t;
-    xy = xy + u;
-    x = c * xz - s * yz;
-    yz = s * xz + c * yz;
-    xz = x;
-  };
-  turn_symmetric(m.Axx, m.Axy, m.Axz, m.Ayy, m.Ayz);
-  turn_symmetric(m.Ixx, m.Ixy, m.Ixz, m.Iyy, m.Iyz);
-  const S difference = m.Hxx - m.Hyy, sum = m.Hxy + m.Hyx;
+// Turns of the full matrix about an axis, here called z: of a symmetric block, without its zz …
+template <class S, class C>
+MOMENTA_INLINE void turn_symmetric(const C& c, const C& s, S& xx, S& xy, S& xz, S& yy, S& yz) {
+  const C cs = c * s, ss = s * s;
+  const S difference = xx - yy;
+  const S t = ss * difference + (cs + cs) * xy, u = cs * difference - (ss + ss) * xy;
+  xx = xx - t;
+  yy = yy + t;
+  xy = xy + u;
+  const S x = c * xz - s * yz;
+  yz = s * xz + c * yz;
+  xz = x;
+}
+// … and of a general one.
+template <class S, class C>
+MOMENTA_INLINE void turn_general(const C& c, const C& s, S& xx, S& xy, S& xz, S& yx, S& yy, S& yz,
+                                 S& zx, S& zy) {
+  const C cs = c * s, ss = s * s;
+  const S difference = xx - yy, sum = xy + yx;
   const S t = ss * difference + cs * sum, u = cs * difference - ss * sum;
-  m.Hxx = m.Hxx - t;
-  m.Hyy = m.Hyy + t;
-  m.Hxy = m.Hxy + u;
-  m.Hyx = m.Hyx + u;
-  x = c * m.Hzx - s * m.Hzy;
-  m.Hzy = s * m.Hzx + c * m.Hzy;
-  m.Hzx = x;
-  x = c * m.Hxz - s * m.Hyz;
-  m.Hyz = s * m.Hxz + c * m.Hyz;
-  m.Hxz = x;
+  xx = xx - t;
+  yy = yy + t;
+  xy = xy + u;
+  yx = yx + u;
+  S x = c * zx - s * zy;
+  zy = s * zx + c * zy;
+  zx = x;
+  x = c * xz - s * yz;
+  yz = s * xz + c * yz;
+  xz = x;
+}
+
+/// The turn of the full matrix about x.
+template <class S, class C>
+MOMENTA_INLINE void turn_x(Full<S>& m, const C& c, const C& s) {
+  turn_symmetric(c, s, m.Ayy, m.Ayz, m.Axy, m.Azz, m.Axz);
+  turn_symmetric(c, s, m.Iyy, m.Iyz, m.Ixy, m.Izz, m.Ixz);
+  turn_general(c, s, m.Hyy, m.Hyz, m.Hyx, m.Hzy, m.Hzz, m.Hzx, m.Hxy, m.Hxz);
+}
+
+/// The same by +90°, y ← −z, z ← y: nothing is rounded.
+template <class S>
+MOMENTA_INLINE void right_turn_x(Full<S>& m) {
+  const Full<S> r = m;
+  m.Axy = -r.Axz;
+  m.Axz = r.Axy;
+  m.Ayy = r.Azz;
+  m.Ayz = -r.Ayz;
+  m.Azz = r.Ayy;
+  m.Hxy = -r.Hxz;
+  m.Hxz = r.Hxy;
+  m.Hyx = -r.Hzx;
+  m.Hzx = r.Hyx;
+  m.Hyy = r.Hzz;
+  m.Hyz = -r.Hzy;
+  m.Hzy = -r.Hyz;
+  m.Hzz = r.Hyy;
+  m.Ixy = -r.Ixz;
+  m.Ixz = r.Ixy;
+  m.Iyy = r.Izz;
+  m.Iyz = -r.Iyz;
+  m.Izz = r.Iyy;
+}
+
+/// A screw about z of the full matrix: of a joint on one axis, and the way to a joint that is not
+/// its parent's first.
+template <class S, class C>
+MOMENTA_INLINE void turn_and_shift_z(Full<S>& m, const C& c, const C& s, const C& d) {
+  turn_symmetric(c, s, m.Axx, m.Axy, m.Axz, m.Ayy, m.Ayz);
+  turn_symmetric(c, s, m.Ixx, m.Ixy, m.Ixz, m.Iyy, m.Iyz);
+  turn_general(c, s, m.Hxx, m.Hxy, m.Hxz, m.Hyx, m.Hyy, m.Hyz, m.Hzx, m.Hzy);
   const S hxx = m.Hxx, hxy = m.Hxy, hyx = m.Hyx;
-  x = d * m.Axy;
+  const S x = d * m.Axy;
   m.Hxx = m.Hxx - x;
   m.Hyx = m.Hyx - d * m.Ayy;
   m.Hzx = m.Hzx - d * m.Ayz;

@@ -15,9 +15,15 @@
 namespace momenta {
 namespace {
 
-/// Columns e1, e2, e3 with `axis` third.
+/// Columns e1, e2, e3 with `axis` third: turned the shortest way, about v = e_z × axis,
+/// R = 1 + ṽ + ṽ² / (1 + c), c = e_z · axis; of two opposite axes about x.
 Eigen::Matrix3d frame_about(const Eigen::Vector3d& axis) {
-  return Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), axis).toRotationMatrix();
+  const Eigen::Vector3d a = axis.normalized();
+  const double c = a.z(), s2 = a.x() * a.x() + a.y() * a.y();
+  if (c < 0 && s2 == 0) return Eigen::Vector3d(1, -1, -1).asDiagonal();
+  Eigen::Matrix3d v;
+  v << 0, 0, a.x(), 0, 0, a.y(), -a.x(), -a.y(), 0;
+  return Eigen::Matrix3d::Identity() + v + v * v * (c < 0 ? (1 - c) / s2 : 1 / (1 + c));
 }
 
 class Choosing {

@@ -1,6 +1,6 @@
 #include <momenta/dae/measure/derivative_array.h>
+#include <momenta/dae/measure/singular_values.h>
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

@@ -1,8 +1,8 @@
 #include <momenta/dae/kkt/axis_scale.h>
 #include <momenta/dae/kkt/loop_solver.h>
 #include <momenta/dae/measure/rank.h>
+#include <momenta/dae/measure/singular_values.h>
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <random>

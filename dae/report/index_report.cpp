@@ -7,20 +7,6 @@
 namespace momenta {
 namespace {
 
-/// Characters on a terminal: UTF-8 without its continuation bytes, combining dots not counted.
-std::size_t width(const std::string& text) {
-  std::size_t n = 0;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const auto c = static_cast<unsigned char>(text[i]);
-    n += (c & 0xc0) != 0x80 && c != 0xcc;
-  }
-  return n;
-}
-
-std::string padded(const std::string& text, std::size_t to) {
-  return text + std::string(to > width(text) ? to - width(text) : 0, ' ');
-}
-
 /// "4 2 0": one number for each level.
 std::string over_levels(const IndexFound& found, int ArrayLevel::*number) {
   std::string all;

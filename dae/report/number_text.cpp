@@ -96,4 +96,15 @@ std::string time_text(double seconds) {
   return with_prefix(seconds, "s", prefixes, 0.1);
 }
 
+std::size_t width(const std::string& text) {
+  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) {
+    const auto byte = static_cast<unsigned char>(c);
+    return (byte & 0xc0) != 0x80 && byte != 0xcc;
+  }));
+}
+
+std::string padded(const std::string& text, std::size_t to) {
+  return text + std::string(to > width(text) ? to - width(text) : 0, ' ');
+}
+
 }  // namespace momenta

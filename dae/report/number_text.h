@@ -27,4 +27,9 @@ std::string length_text(double metres);
 /// The same for a time: "12 s", "0.31 s", "31 ms", "4.2 µs".
 std::string time_text(double seconds);
 
+/// Characters on a terminal: bytes of UTF-8 without its continuations, combining dots not counted.
+std::size_t width(const std::string& text);
+/// With spaces behind it to that width.
+std::string padded(const std::string& text, std::size_t to);
+
 }  // namespace momenta

@@ -9,15 +9,7 @@
 namespace momenta {
 namespace {
 
-/// Characters on a terminal: UTF-8 without its continuation bytes.
-std::size_t width(const std::string& text) {
-  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) {
-    return (static_cast<unsigned char>(c) & 0xc0) != 0x80;
-  }));
-}
-std::string padded(const std::string& text, std::size_t to) {
-  return text + std::string(to > width(text) ? to - width(text) : 0, ' ');
-}
+using Json = nlohmann::ordered_json;
 
 std::string label(const Contestant& c) {
   return c.form + ", " + c.integrator;
@@ -132,7 +124,6 @@ std::string stress_csv(const StressResult& study) {
 }
 
 nlohmann::ordered_json stress_json(const StressResult& study) {
-  using Json = nlohmann::ordered_json;
   Json j;
   j["command"] = study.command;
   j["bound"] = study.bound;

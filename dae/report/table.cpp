@@ -14,12 +14,6 @@ constexpr std::size_t text_columns =
     5;  // these stand at the left of their column, numbers at the right
 using Row = std::array<std::string, columns>;
 
-// Characters seen, not bytes: κ and ± are two bytes in UTF-8.
-std::size_t width(const std::string& text) {
-  return static_cast<std::size_t>(
-      std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
-}
-
 std::string growth(const Growth& g) {
   if (std::isnan(g.exponent)) return "-";
   if (std::isnan(g.half_range)) return fixed(g.exponent, 2);

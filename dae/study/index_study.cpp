@@ -1,7 +1,7 @@
 #include <momenta/dae/form/dae_form.h>
+#include <momenta/dae/measure/singular_values.h>
 #include <momenta/dae/study/index_study.h>
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 

@@ -24,7 +24,7 @@
 // has r σ in it. A pin is eliminated by its absolute rate, of which u is the part beyond the
 // parent's: there r joins the couple, and leaves it again with the opposite sign.
 
-#include <momenta/core/kernel/planar_sweeps.h>
+#include <momenta/core/kernel/planar_places.h>
 #include <momenta/dae/loop/loops_in_time.h>
 #include <momenta/dae/sweeps/couplings.h>
 #include <momenta/dae/sweeps/front.h>

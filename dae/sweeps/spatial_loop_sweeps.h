@@ -11,7 +11,8 @@
 // form: A = (acceleration of O, dω/dt) in body axes, the ground falls upward with −g, c the
 // velocity products of acceleration_sweeps.h.
 
-#include <momenta/core/kernel/pin.h>
+#include <momenta/core/kernel/ball.h>
+#include <momenta/core/kernel/place_links.h>
 #include <momenta/core/kernel/sweeps.h>
 #include <momenta/dae/loop/loops_in_time.h>
 #include <momenta/dae/sweeps/couplings.h>

@@ -75,6 +75,21 @@ Scene random_chain(int n) {
   });
 }
 
+Scene slide_and_pin_chain(int n) {
+  Scene s = random_chain(n);
+  for (std::size_t i = 1; i < s.joints.size(); i += 2) s.joints[i].kind = JointKind::prismatic;
+  return s;
+}
+
+Scene helical_chain(int n) {
+  Scene s = random_chain(n);
+  for (JointSpec& j : s.joints) {
+    j.kind = JointKind::helical;
+    j.pitch = 0.1;
+  }
+  return s;
+}
+
 Scene right_angle_chain(int n) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> any(-1, 1);

@@ -9,6 +9,10 @@ namespace momenta::benchmark_models {
 /// 17° or more; or every axis at a right angle to the last.
 Scene random_chain(int n);
 Scene right_angle_chain(int n);
+/// The random chain with every other pin a slide along its axis; with a screw of 0.1 m/rad in place
+/// of every pin.
+Scene slide_and_pin_chain(int n);
+Scene helical_chain(int n);
 /// n rods of 0.1 m on pins that turn by a quarter from one to the next, nearly straight.
 Scene rope(int n);
 /// n rods in a plane.

@@ -194,10 +194,12 @@ void add_batches(const char* name, const Row& row, Algorithm algorithm, std::vec
 void register_open_chains() {
   using namespace benchmark_models;
   const std::vector<int> all = {1, 2, 4, 7, 16, 63, 1000, 10000, 100000}, some = {7, 63, 1000};
-  const Row rows[] = {{"random_chain", random_chain},      {"right_angle_chain", right_angle_chain},
-                      {"planar_chain", planar_chain},      {"rope", rope},
-                      {"binary_tree", binary_tree},        {"star", star},
-                      {"spherical_chain", spherical_chain}};
+  const Row rows[] = {
+      {"random_chain", random_chain},       {"right_angle_chain", right_angle_chain},
+      {"planar_chain", planar_chain},       {"rope", rope},
+      {"binary_tree", binary_tree},         {"star", star},
+      {"spherical_chain", spherical_chain}, {"slide_and_pin_chain", slide_and_pin_chain},
+      {"helical_chain", helical_chain},     {"random_chain_with_drives", with_drives}};
   for (const auto algorithm : {Algorithm::momentum, Algorithm::acceleration}) {
     for (const Row& row : rows) {
       add(row.name, row, algorithm, row.model == random_chain ? all : some);
@@ -231,7 +233,6 @@ void register_open_chains() {
   // What the plan leaves out, and what a level brings.
   const Row omissions[] = {
       {"random_chain_without_gravity", without_gravity},
-      {"random_chain_with_drives", with_drives},
       {"planar_chain_in_space", planar_chain, Algebra::spatial},
       {"random_chain_level1", random_chain, Algebra::automatic, 1},
       {"random_chain_level3", random_chain, Algebra::automatic, 3},

@@ -1,5 +1,6 @@
 #pragma once
-// Both recursions on a workspace alone, for one evaluation: links and sweeps are made for it.
+// Both recursions on a workspace alone, for one evaluation: links and sweeps are made for it. On
+// numbers that several tests use they are compiled once, in recursions.cpp.
 
 #include <momenta/core/kernel/accelerations.h>
 #include <momenta/core/kernel/momentum_recursion.h>
@@ -25,5 +26,18 @@ bool acceleration_recursion(Workspace<Space, S>& w, const S& t, const S* q, cons
   }
   return ok;
 }
+
+extern template bool momentum_recursion(Workspace<Spatial, double>&, const double&, const double*,
+                                        const double*, double*, double*);
+extern template bool momentum_recursion(Workspace<Planar, double>&, const double&, const double*,
+                                        const double*, double*, double*);
+extern template bool momentum_recursion(Workspace<Spatial, Dual8>&, const Dual8&, const Dual8*,
+                                        const Dual8*, Dual8*, Dual8*);
+extern template bool acceleration_recursion(Workspace<Spatial, double>&, const double&,
+                                            const double*, const double*, double*);
+extern template bool momentum_recursion(Workspace<Planar, Dual8>&, const Dual8&, const Dual8*,
+                                        const Dual8*, Dual8*, Dual8*);
+extern template bool acceleration_recursion(Workspace<Planar, double>&, const double&,
+                                            const double*, const double*, double*);
 
 }  // namespace momenta::equations

@@ -1,84 +1,19 @@
 #pragma once
 // One mechanism of hinges, cut elsewhere.
 
-#include "equations/dense_lagrangian.h"
+#include <momenta/core/scene/scene.h>
+#include <momenta/core/tree/tree.h>
 
-#include <algorithm>
-#include <set>
+#include <string>
 
 namespace momenta::equations {
 
 /// The hinge seen from its child: same angle, axis reversed.
-inline JointSpec reversed(const JointSpec& j) {
-  JointSpec r = j;
-  std::swap(r.parent, r.child);
-  std::swap(r.origin_parent, r.origin_child);
-  r.rotation = j.rotation.conjugate();
-  r.axis = -(j.rotation * j.axis);
-  return r;
-}
+JointSpec reversed(const JointSpec& j);
 
 /// The scene of hinges with loop `closed` made a joint and joint `cut` made a loop, driven as it
 /// was, at the poses of `q`.
-inline Scene recut(const Scene& scene, const Tree& tree, const Eigen::VectorXd& q,
-                   const std::string& cut, const std::string& closed) {
-  const auto poses = DenseLagrangian(scene, tree).poses(0, q);
-  std::map<std::string, Eigen::Quaterniond> axes{{"ground", Eigen::Quaterniond::Identity()}};
-  for (std::size_t k = 0; k < poses.size(); ++k)
-    axes[scene.bodies[k].name] = Eigen::Quaterniond(poses[k].linear());
-
-  Scene s = scene;
-  s.joints.clear();
-  s.loops.clear();
-  std::vector<JointSpec> edges;
-  for (const LoopSpec& l : scene.loops) {
-    if (l.name != closed) {
-      s.loops.push_back(l);
-      continue;
-    }
-    JointSpec j;
-    j.name = l.name;
-    j.parent = l.parent;
-    j.child = l.child;
-    j.origin_parent = l.origin_parent;
-    j.origin_child = l.origin_child;
-    j.rotation = l.rotation;
-    j.axis = l.axis;
-    edges.push_back(j);
-  }
-  for (const JointSpec& j : scene.joints) {
-    if (j.name != cut) {
-      edges.push_back(j);
-      continue;
-    }
-    LoopSpec l;
-    l.name = j.name;
-    l.kind = LoopKind::revolute;
-    l.parent = j.parent;
-    l.child = j.child;
-    l.origin_parent = j.origin_parent;
-    l.origin_child = j.origin_child;
-    l.rotation = j.rotation;
-    l.axis = j.axis;
-    s.loops.push_back(l);
-    for (DriveSpec& drive : s.drives)
-      if (drive.joint == cut) std::swap(drive.joint, drive.loop);
-  }
-  std::set<std::string> reached{"ground"};
-  while (!edges.empty()) {
-    const auto next = std::find_if(edges.begin(), edges.end(), [&](const JointSpec& j) {
-      return reached.contains(j.parent) || reached.contains(j.child);
-    });
-    if (next == edges.end()) break;
-    JointSpec j = reached.contains(next->parent) ? *next : reversed(*next);
-    edges.erase(next);
-    const Eigen::AngleAxisd turn((axes[j.parent] * j.rotation).conjugate() * axes[j.child]);
-    j.position = {turn.angle() * (turn.axis().dot(j.axis) < 0 ? -1 : 1)};
-    reached.insert(j.child);
-    s.joints.push_back(j);
-  }
-  s.held.clear();
-  return s;
-}
+Scene recut(const Scene& scene, const Tree& tree, const Eigen::VectorXd& q, const std::string& cut,
+            const std::string& closed);
 
 }  // namespace momenta::equations

@@ -10,6 +10,7 @@
 #include <momenta/core/kernel/jacobian_pass.h>
 #include <momenta/core/kernel/levels/open_sweeps.h>
 #include <momenta/core/kernel/levels/strided.h>
+#include <momenta/core/kernel/planar_acceleration_sweeps.h>
 
 #include <limits>
 

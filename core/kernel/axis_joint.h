@@ -1,0 +1,215 @@
+#pragma once
+// Joints on one axis beside pins: slides, screws, driven ones, welds. With E = (e_f ẑ; e_n ẑ),
+// (0, 1) of a pin, (1, 0) of a slide, (pitch, 1) of a screw, and U = M*E:
+//
+//   free      M_j = EᵀU, h = U / M_j, M' = M* − U hᵀ, D' = D + h (r − Eᵀ D)    (46)-(48)
+//   driven    M' = M*, D' = D + U f', of momenta, f the law of motion          (44)
+//   welded    M' = M*, D' = D
+//
+// then the screw (θ, d) about z and the constant ones. All of it is one piece of code without
+// calls: what general_joint.h does by kind, with every intermediate in registers.
+
+#include <momenta/core/kernel/pin.h>
+
+namespace momenta {
+
+/// A motion or a wrench by its components.
+template <class S>
+struct AxisColumn {
+  S fx, fy, fz, nx, ny, nz;
+};
+
+/// U = M*E.
+template <class S>
+MOMENTA_INLINE AxisColumn<S> axis_column(const Model<Spatial>::Body& b, const Full<S>& m) {
+  if (b.kind == JointKind::prismatic) return {m.Axz, m.Ayz, m.Azz, m.Hzx, m.Hzy, m.Hzz};
+  const double pitch = b.kind == JointKind::helical ? b.pitch : 0;
+  return {pitch * m.Axz + m.Hxz, pitch * m.Ayz + m.Hyz, pitch * m.Azz + m.Hzz,
+          pitch * m.Hzx + m.Ixz, pitch * m.Hzy + m.Iyz, pitch * m.Hzz + m.Izz};
+}
+
+/// (46)-(48) of a free slide or screw: M', D' in place of M*, D for the right-hand side r. False
+/// when M_j is not positive: Joint::inertia_margin and reduce say what rounding may do to it.
+template <class S>
+MOMENTA_INLINE bool eliminate_axis(const Model<Spatial>::Body& b, const S& r, Cargo<S>& cargo,
+                                   JointRecord<Spatial, S>& x) {
+  constexpr double rounding = 16 * std::numeric_limits<double>::epsilon();
+  Full<S>& m = cargo.M;
+  const bool slides = b.kind == JointKind::prismatic;
+  const AxisColumn<S> U = axis_column(b, m);
+  const S mass = slides ? U.fz : b.pitch * U.fz + U.nz;
+  const S along = slides ? cargo.Dfz : b.pitch * cargo.Dfz + cargo.Dnz;
+  const double least = rounding * b.subtree_mass;
+  if (!all_positive(slides
+                        ? mass - least
+                        : mass - (b.pitch * b.pitch * least + rounding * (m.Ixx + m.Iyy + m.Izz))))
+    return false;
+  const S inverse = S(1.0) / mass, e = r - along;
+  const AxisColumn<S> h{inverse * U.fx, inverse * U.fy, inverse * U.fz,
+                        inverse * U.nx, inverse * U.ny, inverse * U.nz};
+  x.pivot = inverse;
+  x.e = e;
+  x.h = {{{h.fx, h.fy, h.fz}}, {{h.nx, h.ny, h.nz}}};
+  m.Axx = m.Axx - U.fx * h.fx;
+  m.Axy = m.Axy - U.fx * h.fy;
+  m.Ayy = m.Ayy - U.fy * h.fy;
+  m.Hxx = m.Hxx - U.fx * h.nx;
+  m.Hxy = m.Hxy - U.fx * h.ny;
+  m.Hyx = m.Hyx - U.fy * h.nx;
+  m.Hyy = m.Hyy - U.fy * h.ny;
+  m.Ixx = m.Ixx - U.nx * h.nx;
+  m.Ixy = m.Ixy - U.nx * h.ny;
+  m.Iyy = m.Iyy - U.ny * h.ny;
+  if (slides) {
+    m.Hxz = m.Hxz - U.fx * h.nz;
+    m.Hyz = m.Hyz - U.fy * h.nz;
+    m.Ixz = m.Ixz - U.nx * h.nz;
+    m.Iyz = m.Iyz - U.ny * h.nz;
+    m.Izz = m.Izz - U.nz * h.nz;
+    m.Axz = m.Ayz = m.Azz = m.Hzx = m.Hzy = m.Hzz = S(0.0);
+  } else if (std::abs(b.pitch) <= 1) {
+    m.Axz = m.Axz - U.fx * h.fz;
+    m.Ayz = m.Ayz - U.fy * h.fz;
+    m.Azz = m.Azz - U.fz * h.fz;
+    m.Hzx = m.Hzx - U.fz * h.nx;
+    m.Hzy = m.Hzy - U.fz * h.ny;
+    m.Hxz = -b.pitch * m.Axz;
+    m.Hyz = -b.pitch * m.Ayz;
+    m.Hzz = -b.pitch * m.Azz;
+    m.Ixz = -b.pitch * m.Hzx;
+    m.Iyz = -b.pitch * m.Hzy;
+    m.Izz = -b.pitch * m.Hzz;
+  } else {
+    const double turns = 1 / b.pitch;
+    m.Hxz = m.Hxz - U.fx * h.nz;
+    m.Hyz = m.Hyz - U.fy * h.nz;
+    m.Ixz = m.Ixz - U.nx * h.nz;
+    m.Iyz = m.Iyz - U.ny * h.nz;
+    m.Izz = m.Izz - U.nz * h.nz;
+    m.Hzx = -turns * m.Ixz;
+    m.Hzy = -turns * m.Iyz;
+    m.Hzz = -turns * m.Izz;
+    m.Axz = -turns * m.Hxz;
+    m.Ayz = -turns * m.Hyz;
+    m.Azz = -turns * m.Hzz;
+  }
+  cargo.Dfx = cargo.Dfx + e * h.fx;
+  cargo.Dfy = cargo.Dfy + e * h.fy;
+  cargo.Dfz = cargo.Dfz + e * h.fz;
+  cargo.Dnx = cargo.Dnx + e * h.nx;
+  cargo.Dny = cargo.Dny + e * h.ny;
+  cargo.Dnz = cargo.Dnz + e * h.nz;
+  return true;
+}
+
+/// Nearly parallel axes: a turn about y and the screw about x.
+template <bool Gravity, class S>
+__attribute__((noinline)) void tilt_inward(const Spatial::EdgeConstants& k, double m,
+                                           Cargo<S>& cargo) {
+  Spatial::EdgeConstants way = k;
+  way.about_z = false;
+  const Spatial::Edge<S> nothing;
+  Vec3<S> G{};
+  if constexpr (Gravity)
+    G = Spatial::moment_to_parent(way, JointKind::weld, nothing,
+                                  Vec3<S>{{cargo.Gx, cargo.Gy, cargo.Gz}}, m);
+  set_cargo(cargo, Spatial::to_parent(way, JointKind::weld, nothing, blocks(cargo.M)),
+            Spatial::to_parent(way, JointKind::weld, nothing, remainder_of(cargo)), G);
+}
+
+/// M', D' and, of the mass m, G from the frame of the joint to the parent's.
+template <bool Gravity, class S>
+MOMENTA_INLINE void carry_axis(const Link& l, const Spatial::EdgeConstants& k,
+                               const Spatial::Edge<S>& e, double m, Cargo<S>& cargo) {
+  screw_inward<Gravity>(e.cos_theta, e.sin_theta, e.d, cargo);
+  if constexpr (Gravity) cargo.Gz = cargo.Gz + m * e.d;
+  if (l.turn == Turn::tilted) {
+    tilt_inward<Gravity>(k, m, cargo);
+  } else {
+    if (l.turn == Turn::right)
+      right_turn_x(cargo.M);
+    else
+      turn_x(cargo.M, l.ca, l.sa);
+    shift_x(cargo.M, l.a);
+    const auto turn = [&](S& y, S& z) {
+      const S before = y;
+      y = l.ca * y - l.sa * z;
+      z = l.sa * before + l.ca * z;
+    };
+    turn(cargo.Dfy, cargo.Dfz);
+    turn(cargo.Dny, cargo.Dnz);
+    cargo.Dny = cargo.Dny - l.a * cargo.Dfz;
+    cargo.Dnz = cargo.Dnz + l.a * cargo.Dfy;
+    if constexpr (Gravity) {
+      turn(cargo.Gy, cargo.Gz);
+      cargo.Gx = cargo.Gx + m * l.a;
+    }
+  }
+  if (l.screwed) {
+    screw_inward<Gravity>(k.cos_gamma, k.sin_gamma, k.delta, cargo);
+    if constexpr (Gravity) cargo.Gz = cargo.Gz + m * k.delta;
+  }
+}
+
+/// W = 𝒯ⱽ Ω_L in the frame of the joint, from the parent's motion in `c`; with gravity, g too.
+template <bool Gravity, class S>
+MOMENTA_INLINE void constants_and_screw_outward(const Link& l, const Spatial::EdgeConstants& k,
+                                                const Spatial::Edge<S>& e, OutwardCargo<S>& c) {
+  constants_outward(l, k, c.vx, c.vy, c.vz, c.ox, c.oy, c.oz);
+  c.vx = c.vx + e.d * c.oy;
+  c.vy = c.vy - e.d * c.ox;
+  S x = e.cos_theta * c.vx + e.sin_theta * c.vy;
+  c.vy = e.cos_theta * c.vy - e.sin_theta * c.vx;
+  c.vx = x;
+  x = e.cos_theta * c.ox + e.sin_theta * c.oy;
+  c.oy = e.cos_theta * c.oy - e.sin_theta * c.ox;
+  c.ox = x;
+  if constexpr (Gravity) {
+    constants_outward(l, k, c.gx, c.gy, c.gz);
+    x = e.cos_theta * c.gx + e.sin_theta * c.gy;
+    c.gy = e.cos_theta * c.gy - e.sin_theta * c.gx;
+    c.gx = x;
+  }
+}
+
+/// u = M_j⁻¹ e − hᵀ W, (45).
+template <class S>
+MOMENTA_INLINE S axis_rate(const JointRecord<Spatial, S>& x, const OutwardCargo<S>& w) {
+  return x.pivot * x.e - (x.h.f[0] * w.vx + x.h.f[1] * w.vy + x.h.f[2] * w.vz + x.h.n[0] * w.ox +
+                          x.h.n[1] * w.oy + x.h.n[2] * w.oz);
+}
+/// Ω = W + E u
+template <class S>
+MOMENTA_INLINE void add_axis_motion(const Model<Spatial>::Body& b, const S& u, OutwardCargo<S>& w) {
+  if (b.kind == JointKind::revolute) {
+    w.oz = w.oz + u;
+  } else if (b.kind == JointKind::prismatic) {
+    w.vz = w.vz + u;
+  } else if (b.kind == JointKind::helical) {
+    w.vz = w.vz + b.pitch * u;
+    w.oz = w.oz + u;
+  }
+}
+
+/// Eᵀ (T* − Ω × P*) of (35), P* = M*Ω + D: two or four of the six rows of P*.
+template <bool Gravity, class S>
+MOMENTA_INLINE S axis_momentum_rate(const Model<Spatial>::Body& b, const JointRecord<Spatial, S>& x,
+                                    const OutwardCargo<S>& w) {
+  const auto &A = x.M.A.x, &H = x.M.H.x, &I = x.M.I.x;
+  const S fx =
+      A[0] * w.vx + A[1] * w.vy + A[2] * w.vz + H[0] * w.ox + H[1] * w.oy + H[2] * w.oz + x.D.f[0];
+  const S fy =
+      A[1] * w.vx + A[3] * w.vy + A[4] * w.vz + H[3] * w.ox + H[4] * w.oy + H[5] * w.oz + x.D.f[1];
+  S along = w.oy * fx - w.ox * fy;  // of f; of n below
+  if constexpr (Gravity) along = along + b.subtree_mass * w.gz;
+  if (b.kind == JointKind::prismatic) return along;
+  const S nx =
+      H[0] * w.vx + H[3] * w.vy + H[6] * w.vz + I[0] * w.ox + I[1] * w.oy + I[2] * w.oz + x.D.n[0];
+  const S ny =
+      H[1] * w.vx + H[4] * w.vy + H[7] * w.vz + I[1] * w.ox + I[3] * w.oy + I[4] * w.oz + x.D.n[1];
+  S about = w.vy * fx - w.vx * fy + w.oy * nx - w.ox * ny;
+  if constexpr (Gravity) about = about + x.moment[0] * w.gy - x.moment[1] * w.gx;
+  return b.kind == JointKind::revolute ? about : b.pitch * along + about;
+}
+
+}  // namespace momenta

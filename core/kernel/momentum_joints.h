@@ -1,0 +1,209 @@
+#pragma once
+// Joints other than pins in the momentum recursion, both ways: balls, joints on one axis, and free
+// and user joints.
+
+#include <momenta/core/kernel/axis_joint.h>
+#include <momenta/core/kernel/momentum_sweeps.h>
+
+namespace momenta {
+
+// A ball joint leaves its body no angular inertia towards the parent: M' = (A', 0; 0, 0) with
+// A' = A − H I⁻¹ Hᵀ, D' = (D_f + H I⁻¹ e, p). What arrives at the parent is A' turned, and what its
+// step r makes of it: H = −A r̃, I = r̃ H.
+template <class S>
+template <bool Gravity, class In>
+bool MomentumSweeps<Spatial, S>::ball_inward(std::size_t k, const In& p, Cargo<S>& cargo) {
+  const Link& l = tree_->links[k];
+  BallRecord<S>& w = balls_[static_cast<std::size_t>(l.record)];
+  if (l.tip) cargo = {};
+  add_body(cargo.M, l);
+  if constexpr (Gravity) {
+    cargo.Gx = cargo.Gx + l.moment[0];
+    cargo.Gy = cargo.Gy + l.moment[1];
+    cargo.Gz = cargo.Gz + l.moment[2];
+    w.G = {{cargo.Gx, cargo.Gy, cargo.Gz}};
+  }
+  if (l.slot >= 0) {
+    add<Gravity>(cargo, slots_[static_cast<std::size_t>(l.slot)]);
+    if constexpr (Gravity) w.G = {{cargo.Gx, cargo.Gy, cargo.Gz}};
+  }
+  w.p = {{p[l.u], p[l.u + 1], p[l.u + 2]}};
+  if (!w.pivot.eliminate(cargo.M, w.A)) return false;
+  const Vec3<S> e{{w.p[0] - cargo.Dnx, w.p[1] - cargo.Dny, w.p[2] - cargo.Dnz}};
+  w.Df = Vec3<S>{{cargo.Dfx, cargo.Dfy, cargo.Dfz}} + w.pivot.remainder(e);
+  if (l.parent < 0) return true;
+
+  carry_ball(tree_->balls[static_cast<std::size_t>(l.record)].origin, w.R, w.A, w.Df, w.p, cargo);
+  if constexpr (Gravity) {
+    const Vec3<S> G = w.R * w.G;
+    cargo.Gx = G[0];
+    cargo.Gy = G[1];
+    cargo.Gz = G[2];
+  }
+  if (!l.first) leave<Gravity>(l, slot_of_parent(l), cargo);
+  return true;
+}
+
+template <class S>
+template <bool Gravity, class Out>
+void MomentumSweeps<Spatial, S>::ball_outward(std::size_t k, Out u, Out pdot, OutwardCargo<S>& c) {
+  const Link& l = tree_->links[k];
+  const BallRecord<S>& w = balls_[static_cast<std::size_t>(l.record)];
+  Vec3<S> v{}, o{}, g{};
+  if (l.parent >= 0) {
+    const auto& r = tree_->balls[static_cast<std::size_t>(l.record)].origin;
+    v = transpose_times(w.R,
+                        Vec3<S>{{c.vx + c.oy * r[2] - c.oz * r[1], c.vy + c.oz * r[0] - c.ox * r[2],
+                                 c.vz + c.ox * r[1] - c.oy * r[0]}});
+    o = transpose_times(w.R, Vec3<S>{{c.ox, c.oy, c.oz}});
+    if constexpr (Gravity) g = transpose_times(w.R, Vec3<S>{{c.gx, c.gy, c.gz}});
+  } else if constexpr (Gravity) {
+    const auto& at = tree_->model->gravity;
+    g = transpose_times(w.R, Vec3<S>{{S(at[0]), S(at[1]), S(at[2])}});
+  }
+  const Vec3<S> omega = w.pivot.omega(v);
+  const Vec3<S> Pf = w.A * v + w.Df;
+  Vec3<S> net = -(cross(v, Pf) + cross(omega, w.p));
+  if constexpr (Gravity) net += cross(w.G, g);
+  for (int i = 0; i < 3; ++i) {
+    u[l.u + i] = omega[i] - o[i];
+    pdot[l.u + i] = net[i];
+  }
+  set_cargo(c, Spatial::Motion<S>{v, omega}, g);
+}
+
+template <class S>
+template <bool Gravity, class In>
+bool MomentumSweeps<Spatial, S>::axis_inward(std::size_t k, const In& p, Cargo<S>& from) {
+  const Link& l = tree_->links[k];
+  const auto& b = body(k);
+  auto& x = joints_[static_cast<std::size_t>(l.record)];
+  Cargo<S> cargo{};
+  if (!l.tip) cargo = from;
+  add_body(cargo.M, l);
+  if constexpr (Gravity) {
+    cargo.Gx = cargo.Gx + l.moment[0];
+    cargo.Gy = cargo.Gy + l.moment[1];
+    cargo.Gz = cargo.Gz + l.moment[2];
+  }
+  if (l.slot >= 0) add<Gravity>(cargo, slots_[static_cast<std::size_t>(l.slot)]);
+  if (b.nv > 0) {
+    x.M = blocks(cargo.M);
+    x.D = remainder_of(cargo);
+    if constexpr (Gravity) x.moment = {{cargo.Gx, cargo.Gy, cargo.Gz}};
+    if (!eliminate_axis(b, S(p[l.u]), cargo, x)) return false;
+  } else if (b.drive >= 0) {
+    const AxisColumn<S> U = axis_column(b, cargo.M);
+    cargo.Dfx = cargo.Dfx + x.drive_rate * U.fx;
+    cargo.Dfy = cargo.Dfy + x.drive_rate * U.fy;
+    cargo.Dfz = cargo.Dfz + x.drive_rate * U.fz;
+    cargo.Dnx = cargo.Dnx + x.drive_rate * U.nx;
+    cargo.Dny = cargo.Dny + x.drive_rate * U.ny;
+    cargo.Dnz = cargo.Dnz + x.drive_rate * U.nz;
+  }
+  if (l.parent < 0) return true;
+  carry_axis<Gravity>(l, b.edge, x.edge, b.subtree_mass, cargo);
+  from = cargo;
+  if (!l.first) leave<Gravity>(l, slot_of_parent(l), from);
+  return true;
+}
+
+template <class S>
+template <bool Gravity, class In, class Out>
+void MomentumSweeps<Spatial, S>::axis_outward(std::size_t k, const In& q, Out u, Out pdot,
+                                              OutwardCargo<S>& c) {
+  const Link& l = tree_->links[k];
+  const auto& b = body(k);
+  const auto& x = joints_[static_cast<std::size_t>(l.record)];
+  const S zero(0.0);
+  OutwardCargo<S> w = c;
+  if (l.parent < 0) {
+    const auto& g = tree_->model->gravity;
+    w = {zero, zero, zero, zero, zero, zero, S(g[0]), S(g[1]), S(g[2])};
+  }
+  constants_and_screw_outward<Gravity>(l, b.edge, x.edge, w);
+  if (b.nv == 0) {
+    add_axis_motion(b, x.drive_rate, w);
+  } else {
+    const S own = axis_rate(x, w);
+    add_axis_motion(b, own, w);
+    S rate = axis_momentum_rate<Gravity>(b, x, w);
+    if (l.has_force) rate = rate + joint_force(b, S(q[l.q]), own);
+    u[l.u] = own;
+    pdot[l.u] = rate;
+  }
+  c = w;
+}
+
+template <class S>
+template <bool Gravity, class In>
+bool MomentumSweeps<Spatial, S>::general_inward(std::size_t k, const In& p, Cargo<S>& cargo) {
+  const Link& l = tree_->links[k];
+  const auto& b = body(k);
+  auto& x = joints_[static_cast<std::size_t>(l.record)];
+  if (l.tip) cargo = {};
+  add_body(cargo.M, l);
+  cargo.Gx += l.moment[0];
+  cargo.Gy += l.moment[1];
+  cargo.Gz += l.moment[2];
+  if (l.slot >= 0) add<Gravity>(cargo, slots_[static_cast<std::size_t>(l.slot)]);
+  x.M = blocks(cargo.M);
+  x.D = remainder_of(cargo);
+  x.moment = {{cargo.Gx, cargo.Gy, cargo.Gz}};
+  S r[6]{};
+  for (int i = 0; i < b.nv; ++i) r[i] = p[b.u + i];
+  Spatial::ArticulatedInertia<S> M;
+  if (!eliminate<Spatial>(b, x, M)) return false;
+  auto D = remainder<Spatial>(b, x, r);
+  if (b.law) D += reduced_momentum<Spatial>(b, x, x.user->motion.drift);
+  if (b.parent < 0) return true;
+  Vec3<S> G{};
+  if constexpr (Gravity)
+    G = Spatial::moment_to_parent(b.edge, b.kind, x.edge, x.moment, b.subtree_mass);
+  set_cargo(cargo, Spatial::to_parent(b.edge, b.kind, x.edge, M),
+            Spatial::to_parent(b.edge, b.kind, x.edge, D), G);
+  if (!l.first) leave<Gravity>(l, slot_of_parent(l), cargo);
+  return true;
+}
+
+template <class S>
+template <bool Gravity, class In, class Out>
+void MomentumSweeps<Spatial, S>::general_outward(std::size_t k, const In& q, Out u, Out pdot,
+                                                 OutwardCargo<S>& c) {
+  const auto& b = body(k);
+  const auto& x = joints_[static_cast<std::size_t>(tree_->links[k].record)];
+  Spatial::Motion<S> V{};
+  Vec3<S> g{};
+  if (b.parent >= 0) {
+    V = Spatial::to_child(b.edge, b.kind, x.edge,
+                          Spatial::Motion<S>{{{c.vx, c.vy, c.vz}}, {{c.ox, c.oy, c.oz}}});
+    g = {{c.gx, c.gy, c.gz}};
+  } else {
+    for (int i = 0; i < 3; ++i) g[i] = S(tree_->model->gravity[i]);
+  }
+  if constexpr (Gravity) g = Spatial::direction_to_child(b.edge, b.kind, x.edge, g);
+  if (b.law) V += x.user->motion.drift;
+  if (b.nv > 0) {
+    S own[6];
+    solve_joint<Spatial>(b, x, V, own);
+    Spatial::Force<S> net{};
+    if constexpr (Gravity) net = Spatial::weight(S(b.subtree_mass), x.moment, g);
+    auto P = Spatial::momentum(x.M, V);  // (42)
+    P += x.D;
+    net -= Spatial::cross_force(V, P);
+    S rate[6];
+    Joint<Spatial>::project(b, x.edge, net, rate);  // (35)
+    if (b.law) {
+      Joint<Spatial>::move(b, x.edge, static_cast<const S*>(own));
+      Joint<Spatial>::add_axis_rate(b, x.edge, P, rate);
+    }
+    if (b.nv == 1 && tree_->model->has_joint_forces) rate[0] += joint_force(b, S(q[b.q]), own[0]);
+    for (int i = 0; i < b.nv; ++i) {
+      u[b.u + i] = own[i];
+      pdot[b.u + i] = rate[i];
+    }
+  }
+  set_cargo(c, V, g);
+}
+
+}  // namespace momenta

@@ -1,0 +1,138 @@
+#pragma once
+// Pins on the inward way of the momentum recursion, (46)-(48), (43), (44): inside a chain, where
+// all that passes from body to body stays in registers, and anywhere else.
+
+#include <momenta/core/kernel/momentum_sweeps.h>
+
+namespace momenta {
+
+/// (46)-(48) of a pin whose M*, D, G are complete.
+template <bool Gravity, class S>
+MOMENTA_INLINE void eliminate_pin(const Cargo<S>& cargo, const S& p, const S& inverse,
+                                  PinRecord<S>& w, Eliminated<S>& r) {
+  const S e = p - cargo.Dnz;
+  w.inverse = inverse;
+  w.y0 = e * inverse;
+  PinColumn<S> h;
+  eliminate_pin(cargo.M, inverse, h, r.M);
+  w.h = h;
+  r.fx = cargo.Dfx + h.fx * e;
+  r.fy = cargo.Dfy + h.fy * e;
+  r.fz = cargo.Dfz + h.fz * e;
+  r.nx = cargo.Dnx + h.nx * e;
+  r.ny = cargo.Dny + h.ny * e;
+  r.nz = p;
+  if constexpr (Gravity) {
+    w.Gx = r.Gx = cargo.Gx;
+    w.Gy = r.Gy = cargo.Gy;
+    r.Gz = cargo.Gz;
+  }
+}
+
+/// The pin's own screw; what the outward sweep needs is stored on the way.
+template <bool Gravity, class S>
+MOMENTA_INLINE void turn_pin(Eliminated<S>& r, const S& c, const S& s, double d, PinRecord<S>& w) {
+  turn_and_shift_z(r.M, c, s, d);
+  w.M = r.M;
+  S x = c * r.fx - s * r.fy;
+  r.fy = s * r.fx + c * r.fy;
+  r.fx = x;
+  x = c * r.nx - s * r.ny;
+  r.ny = s * r.nx + c * r.ny;
+  r.nx = x - d * r.fy;
+  r.ny = r.ny + d * r.fx;
+  w.Dfx = r.fx;
+  w.Dfy = r.fy;
+  w.Dnx = r.nx;
+  w.Dny = r.ny;
+  if constexpr (Gravity) {
+    x = c * r.Gx - s * r.Gy;
+    r.Gy = s * r.Gx + c * r.Gy;
+    r.Gx = x;
+  }
+}
+
+/// Pins inside a chain from `end` − 1 down, as far as their turns are of one kind; returns the end
+/// of what is left. All that passes from body to body stays in registers.
+template <class S>
+template <Turn turn, bool Gravity, class In>
+std::size_t MomentumSweeps<Spatial, S>::chain_inward(std::size_t end, const In& p, Cargo<S>& from) {
+  Cargo<S> cargo = from;
+  const Link* links = tree_->links.data();
+  std::size_t k = end;
+  do {
+    --k;
+    const Link& l = links[k];
+    PinRecord<S>& w = pins_[k];
+    add_body(cargo.M, l);
+    if constexpr (Gravity) {
+      cargo.Gx = cargo.Gx + l.moment[0];
+      cargo.Gy = cargo.Gy + l.moment[1];
+      cargo.Gz = cargo.Gz + l.moment[2];
+    }
+    if (!all_positive(cargo.M.Izz)) {
+      stuck_ = static_cast<int>(k);
+      return k;
+    }
+    Eliminated<S> r;
+    eliminate_pin<Gravity>(cargo, p[l.u], S(1.0) / cargo.M.Izz, w, r);
+    turn_pin<Gravity>(r, angles_.cosine(k), angles_.sine(k), l.d, w);
+    carry<turn, Gravity>(r, l, cargo);
+  } while (links[k - 1].path == static_cast<Path>(turn));
+  from = cargo;
+  return k;
+}
+
+/// Any other pin: at a tip, at a branch, on the ground, beside a first child.
+template <class S>
+template <bool Gravity, class In>
+bool MomentumSweeps<Spatial, S>::pin_inward(std::size_t k, const In& p, Cargo<S>& cargo) {
+  const Link& l = tree_->links[k];
+  PinRecord<S>& w = pins_[k];
+  const S pk = p[l.u];
+  Eliminated<S> r;
+  if (l.tip) {
+    const Tip& tip = tree_->tips[static_cast<std::size_t>(l.record)];
+    set_tip(tip, w.h, r.M);
+    w.inverse = S(tip.inverse);
+    w.y0 = pk * tip.inverse;
+    r.fx = pk * tip.h[0];
+    r.fy = pk * tip.h[1];
+    r.fz = pk * tip.h[2];
+    r.nx = pk * tip.h[3];
+    r.ny = pk * tip.h[4];
+    r.nz = pk;
+    if constexpr (Gravity) {
+      w.Gx = r.Gx = S(l.moment[0]);
+      w.Gy = r.Gy = S(l.moment[1]);
+      r.Gz = S(l.moment[2]);
+    }
+    if (l.parent < 0) return true;
+  } else {
+    add_body(cargo.M, l);
+    if constexpr (Gravity) {
+      cargo.Gx = cargo.Gx + l.moment[0];
+      cargo.Gy = cargo.Gy + l.moment[1];
+      cargo.Gz = cargo.Gz + l.moment[2];
+    }
+    if (l.slot >= 0) add<Gravity>(cargo, slots_[static_cast<std::size_t>(l.slot)]);
+    if (!all_positive(cargo.M.Izz)) return false;
+    const S inverse = S(1.0) / cargo.M.Izz;
+    if (l.parent < 0) {  // nothing is passed on to the ground
+      w.inverse = inverse;
+      w.y0 = (pk - cargo.Dnz) * inverse;
+      if constexpr (Gravity) {
+        w.Gx = cargo.Gx;
+        w.Gy = cargo.Gy;
+      }
+      return true;
+    }
+    eliminate_pin<Gravity>(cargo, pk, inverse, w, r);
+  }
+  turn_pin<Gravity>(r, angles_.cosine(k), angles_.sine(k), l.d, w);
+  carry_any<Gravity>(l, body(k).edge, r, cargo);
+  if (!l.first) leave<Gravity>(l, slot_of_parent(l), cargo);
+  return true;
+}
+
+}  // namespace momenta

@@ -1,0 +1,91 @@
+#pragma once
+// Where the joints of a tree are at (t, q): the first step of every recursion. Angles of pins and
+// of all other joints on one axis are turned together, packs of them side by side.
+
+#include <momenta/core/kernel/general_joint.h>
+#include <momenta/core/kernel/link.h>
+
+namespace momenta {
+
+/// Angle about z of the screw of a joint on one axis at its coordinate [rad], and shift along it
+/// [m].
+template <class S>
+MOMENTA_INLINE S angle_at(const Model<Spatial>::Body& b, const S& value) {
+  return b.kind == JointKind::revolute || b.kind == JointKind::helical ? value + b.theta0
+                                                                       : S(b.theta0);
+}
+template <class S>
+MOMENTA_INLINE S shift_at(const Model<Spatial>::Body& b, const S& value) {
+  if (b.kind == JointKind::prismatic) return value + b.d0;
+  return b.kind == JointKind::helical ? b.pitch * value + b.d0 : S(b.d0);
+}
+
+/// Axes of a ball joint: the constant turn c and the joint's own as one quaternion c ∘ q.
+template <class S, class In>
+Mat3<S> ball_axes(const BallPlace& place, const In& q, int first) {
+  const double* c = place.turn;
+  const S at[4] = {q[first], q[first + 1], q[first + 2], q[first + 3]};
+  const S both[4] = {c[0] * at[0] - c[1] * at[1] - c[2] * at[2] - c[3] * at[3],
+                     c[0] * at[1] + c[1] * at[0] + c[2] * at[3] - c[3] * at[2],
+                     c[0] * at[2] + c[2] * at[0] + c[3] * at[1] - c[1] * at[3],
+                     c[0] * at[3] + c[3] * at[0] + c[1] * at[2] - c[2] * at[1]};
+  return rotation_of(both);
+}
+
+/// Sines and cosines of all pins, turned axes of ball joints (`axes(record)`), edges of the others.
+template <class S, class In, class Axes>
+void place_links(const LinkTree& tree, const S& t, const In& q, Angles<S>& angles,
+                 std::vector<JointRecord<Spatial, S>>& joints, std::vector<UserRecord<S>>& users,
+                 Axes&& axes) {
+  const Link* links = tree.links.data();
+  const double* theta0 = tree.theta0.data();
+  const std::size_t n = angles.size();
+  const bool pins_alone = joints.empty();
+  for (std::size_t k = 0; k < n; ++k) {
+    if (links[k].kind == LinkKind::pin) {
+      angles.set(k, q[links[k].q] + theta0[k]);
+    } else if (pins_alone || !links[k].one_axis) {
+      angles.set(k, S(0.0));
+    } else {
+      const auto& b = tree.model->bodies[k];
+      auto& x = joints[static_cast<std::size_t>(links[k].record)];
+      S value(0.0);
+      if (b.drive >= 0) {
+        prescribe(tree.model->drives[static_cast<std::size_t>(b.drive)], t, x.drive, x.drive_rate,
+                  x.drive_acceleration);
+        value = x.drive;
+      } else if (b.nv > 0) {
+        value = q[b.q];
+      }
+      x.edge.d = shift_at(b, value);
+      angles.set(k, angle_at(b, value));
+    }
+  }
+  angles.turn();
+  if (pins_alone && tree.balls.empty()) return;
+  for (std::size_t k = 0; k < n; ++k) {
+    if (links[k].kind == LinkKind::pin) continue;
+    const auto& b = tree.model->bodies[k];
+    const auto record = static_cast<std::size_t>(links[k].record);
+    if (links[k].kind == LinkKind::ball) {
+      axes(record) = ball_axes<S>(tree.balls[record], q, b.q);
+      continue;
+    }
+    auto& x = joints[record];
+    if (links[k].one_axis) {
+      x.edge.cos_theta = angles.cosine(k);
+      x.edge.sin_theta = angles.sine(k);
+      continue;
+    }
+    S at[7]{};
+    for (int i = 0; i < b.nq; ++i) at[i] = q[b.q + i];
+    if (b.law) {
+      x.user = &users[static_cast<std::size_t>(b.user)];
+      Joint<Spatial>::place(b, t, static_cast<const S*>(at), x.user->motion, x.edge);
+    } else {
+      Joint<Spatial>::place<S>(b, nullptr, at[0], at, x.edge);
+    }
+  }
+}
+
+}  // namespace momenta

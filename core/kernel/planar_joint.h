@@ -1,0 +1,98 @@
+#pragma once
+// Joints in a plane: Joint<Planar> of joint.h.
+
+#include <momenta/core/kernel/model.h>
+
+#include <limits>
+
+namespace momenta {
+
+template <class Space>
+struct Joint;
+
+template <>
+struct Joint<Planar> {
+  using Body = Model<Planar>::Body;
+
+  template <class S>
+  static void place(const Body& b, const Planar::Edge<S>* parent, const S& value, const S* /*q*/,
+                    Planar::Edge<S>& e) {
+    using std::cos, std::sin;
+    const auto turned = [&](double x, double y) -> Vec2<S> {
+      if (!parent) return {{S(x), S(y)}};
+      return {{parent->c * x - parent->s * y, parent->s * x + parent->c * y}};
+    };
+    e.r = turned(b.edge.x, b.edge.y);
+    if (b.kind == JointKind::revolute) {
+      e.angle = b.edge.sign * value;
+      if (parent) e.angle += parent->angle;
+      e.c = cos(e.angle);
+      e.s = sin(e.angle);
+      e.sign = S(b.edge.sign);
+      return;
+    }
+    if (parent) {
+      e.angle = parent->angle;
+      e.c = parent->c;
+      e.s = parent->s;
+    }
+    if (b.kind == JointKind::prismatic) {
+      e.slide = turned(b.edge.slide_x, b.edge.slide_y);
+      e.r += value * e.slide;
+    }
+  }
+
+  template <class S>
+  static void add_motion(const Body& b, const Planar::Edge<S>& e, const S* u,
+                         Planar::Motion<S>& v) {
+    if (b.kind == JointKind::revolute)
+      v.w += b.edge.sign * u[0];
+    else if (b.kind == JointKind::prismatic)
+      v.v += u[0] * e.slide;
+  }
+
+  template <class S>
+  static void project(const Body& b, const Planar::Edge<S>& e, const Planar::Force<S>& f, S* p) {
+    if (b.kind == JointKind::revolute)
+      p[0] = b.edge.sign * f.n;
+    else if (b.kind == JointKind::prismatic)
+      p[0] = dot(e.slide, f.f);
+  }
+
+  template <class S>
+  static S along(const Body& b, const Planar::Edge<S>& e, const Planar::Force<S>& f) {
+    return b.kind == JointKind::revolute ? S(b.edge.sign * f.n) : dot(e.slide, f.f);
+  }
+
+  template <class S>
+  static Planar::Force<S> column(const Body& b, const Planar::Edge<S>& e,
+                                 const Planar::ArticulatedInertia<S>& m) {
+    if (b.kind == JointKind::revolute) return {e.sign * m.H, e.sign * m.I};
+    const Vec2<S>& s = e.slide;
+    return {{{m.xx * s[0] + m.xy * s[1], m.xy * s[0] + m.yy * s[1]}}, dot(m.H, s)};
+  }
+
+  template <class S>
+  static S inertia_margin(const Body& b, const Planar::ArticulatedInertia<S>&,
+                          const S& joint_mass) {
+    constexpr double rounding = 16 * std::numeric_limits<double>::epsilon();
+    return b.kind == JointKind::revolute ? joint_mass : joint_mass - S(rounding * b.subtree_mass);
+  }
+
+  template <class S>
+  static void reduce(const Body& b, Planar::ArticulatedInertia<S>& m, const Planar::Force<S>& u,
+                     const Planar::Force<S>& h) {
+    m.xx -= u.f[0] * h.f[0];
+    m.xy -= u.f[0] * h.f[1];
+    m.yy -= u.f[1] * h.f[1];
+    m.H[0] -= u.f[0] * h.n;
+    m.H[1] -= u.f[1] * h.n;
+    m.I -= u.n * h.n;
+    if (b.kind == JointKind::revolute) {
+      m.H = {};
+      m.I = S(0.0);
+    }
+  }
+};
+
+}  // namespace momenta

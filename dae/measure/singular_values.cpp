@@ -1,0 +1,3 @@
+#include <momenta/dae/measure/singular_values.h>
+
+template class Eigen::BDCSVD<Eigen::MatrixXd>;

@@ -1,0 +1,155 @@
+#include "equations/linkages.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace momenta::equations {
+
+std::vector<double> orientations() {
+  std::vector<double> all{0};
+  for (double small = 1e-8; small < 2e-2; small *= 10) all.push_back(small);
+  for (const double corner : {std::numbers::pi / 4, std::numbers::pi / 2})
+    all.insert(all.end(), {corner - 1e-4, corner, corner + 1e-7});
+  for (int i = 0; i < 11; ++i) all.push_back(0.1 + 0.29 * i);
+  return all;
+}
+
+BodySpec rod(const std::string& name, double width) {
+  BodySpec b;
+  b.name = name;
+  b.mass = 1;
+  b.com = {0.5, 0, 0};
+  const double across = (1 + width * width) / 12, along = width * width / 6;
+  b.inertia = Eigen::Vector3d(along, across, across).asDiagonal();
+  return b;
+}
+
+JointSpec hinge(const std::string& name, const std::string& parent, const std::string& child,
+                const Eigen::Vector3d& origin_parent, double angle) {
+  JointSpec j;
+  j.name = name;
+  j.parent = parent;
+  j.child = child;
+  j.origin_parent = origin_parent;
+  j.position = {angle};
+  return j;
+}
+
+Scene row_of_four_bars(int n, double angle, double rate) {
+  Scene s;
+  s.name = "row of four-bars";
+  s.gravity = {0, -9.81, 0};
+  const Eigen::Vector3d tip(1, 0, 0);
+  for (int i = 0; i <= n; ++i) {
+    const std::string upright = "upright" + std::to_string(i);
+    s.bodies.push_back(rod(upright));
+    s.joints.push_back(hinge("O" + std::to_string(i), "ground", upright, i * tip, angle));
+    s.joints.back().velocity = {rate};
+    if (i == n) break;
+    const std::string level = "level" + std::to_string(i);
+    s.bodies.push_back(rod(level));
+    s.joints.push_back(hinge("B" + std::to_string(i), upright, level, tip, -angle));
+    s.joints.back().velocity = {-rate};
+    LoopSpec l;
+    l.name = "C" + std::to_string(i);
+    l.kind = LoopKind::revolute;
+    l.parent = level;
+    l.child = "upright" + std::to_string(i + 1);
+    l.origin_parent = l.origin_child = tip;
+    s.loops.push_back(l);
+  }
+  return s;
+}
+
+Scene bricard() {
+  Scene s;
+  s.name = "Bricard";
+  s.gravity = {0, -9.81, 0};
+  const Eigen::Vector3d x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
+  const Eigen::Vector3d along[] = {x, -y, z, -x, y};  // from each centre to the next
+  const Eigen::Vector3d axes[] = {y, z, x, y, z, x};
+  Eigen::Quaterniond before = Eigen::Quaterniond::Identity();  // axes of the rod before
+  std::string parent = "ground";
+  for (int i = 0; i < 5; ++i) {
+    const auto name = "rod" + std::to_string(i + 1);
+    const Eigen::Quaterniond own = Eigen::Quaterniond::FromTwoVectors(x, along[i]);
+    s.bodies.push_back(rod(name, 0.1));
+    JointSpec j =
+        hinge("P" + std::to_string(i + 1), parent, name, i == 0 ? Eigen::Vector3d(0, 0, 0) : x, 0);
+    j.rotation = before.conjugate() * own;
+    j.axis = own.conjugate() * axes[i];
+    s.joints.push_back(j);
+    parent = name;
+    before = own;
+  }
+  LoopSpec l;
+  l.name = "P6";
+  l.kind = LoopKind::revolute;
+  l.child = parent;
+  l.origin_child = x;
+  l.origin_parent = z;
+  l.rotation = before;
+  l.axis = before.conjugate() * axes[5];
+  s.loops.push_back(l);
+  return s;
+}
+
+Scene platform(int legs) {
+  Scene s;
+  s.name = "Stewart platform";
+  s.gravity = {0, 0, -9.81};
+  const auto body = [&](const std::string& name, double mass, const Eigen::Vector3d& com,
+                        const Eigen::Vector3d& inertia) {
+    BodySpec b;
+    b.name = name;
+    b.mass = mass;
+    b.com = com;
+    b.inertia = inertia.asDiagonal();
+    s.bodies.push_back(b);
+  };
+  const auto joint = [&](const std::string& name, JointKind kind, const std::string& parent,
+                         const std::string& child) -> JointSpec& {
+    JointSpec j;
+    j.name = name;
+    j.kind = kind;
+    j.parent = parent;
+    j.child = child;
+    s.joints.push_back(j);
+    return s.joints.back();
+  };
+  const Eigen::Matrix3d turn = (Eigen::AngleAxisd(0.2, Eigen::Vector3d::UnitZ()) *
+                                Eigen::AngleAxisd(0.15, Eigen::Vector3d::UnitX()))
+                                   .toRotationMatrix();
+  const Eigen::Vector3d place(0.05, -0.03, 1.1);
+  const Eigen::Quaterniond at(turn);
+  body("platform", 10, {0, 0, 0.02}, {0.4, 0.4, 0.8});
+  joint("P", JointKind::free, "ground", "platform").position = {
+      place.x(), place.y(), place.z(), at.w(), at.x(), at.y(), at.z()};
+  for (int i = 0; i < legs; ++i) {
+    const std::string number = std::to_string(i);
+    const double side = i % 2 ? 0.25 : -0.25, around = i * 2 * std::acos(-1.0) / legs;
+    const Eigen::Vector3d foot(std::cos(around + side), std::sin(around + side), 0),
+        seat(0.5 * std::cos(around - side), 0.5 * std::sin(around - side), 0);
+    const Eigen::Vector3d way = place + turn * seat - foot, along = way.normalized();
+    body("lower" + number, 2, {0, 0, 0.3}, {0.06, 0.06, 0.01});
+    JointSpec& u = joint("U" + number, JointKind::universal, "ground", "lower" + number);
+    u.origin_parent = foot;
+    u.axis = {1, 0, 0};
+    u.axis2 = {0, 1, 0};
+    u.position = {std::atan2(-along.y(), along.z()), std::asin(along.x())};
+    body("upper" + number, 1, {0, 0, -0.3}, {0.03, 0.03, 0.005});
+    JointSpec& p = joint("S" + number, JointKind::prismatic, "lower" + number, "upper" + number);
+    p.axis = {0, 0, 1};
+    p.position = {way.norm()};
+    LoopSpec l;
+    l.name = "B" + number;
+    l.kind = LoopKind::spherical;
+    l.parent = "platform";
+    l.child = "upper" + number;
+    l.origin_parent = seat;
+    s.loops.push_back(l);
+  }
+  return s;
+}
+
+}  // namespace momenta::equations
