@@ -7,7 +7,7 @@
 namespace momenta {
 namespace {
 
-constexpr std::size_t dense_limit = 60;  ///< unknowns, as of the DAE forms
+constexpr std::size_t dense_unknowns = 60;  ///< unknowns, as of the DAE forms
 
 }  // namespace
 
@@ -23,7 +23,7 @@ SplitKkt::SplitKkt(const Mechanism& mechanism, std::vector<double> compliance)
   using Place = std::pair<std::size_t, std::size_t>;  // column, row
   const auto at = [](int i) { return static_cast<std::size_t>(i); };
   std::set<Place> places;
-  if (n > dense_limit) {
+  if (n > dense_unknowns) {
     for (const auto& [row, column] : entries_.mass)
       places.insert({{at(row), at(column)}, {at(column), at(row)}});
     for (const auto& [row, column] : entries_.constraint)

@@ -3,6 +3,7 @@
 #include <momenta/dae/measure/rank.h>
 #include <momenta/dae/measure/singular_values.h>
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -142,9 +143,8 @@ std::vector<int> reduce(MatrixXd& n, const std::vector<int>& first) {
     const VectorXd direction = n.row(best).tail(n.cols() - k).transpose().normalized();
     MatrixXd rest = n.rightCols(n.cols() - k);
     const VectorXd column = rest * direction;
-    const MatrixXd others = Eigen::JacobiSVD<MatrixXd>(direction.transpose(), Eigen::ComputeFullV)
-                                .matrixV()
-                                .rightCols(rest.cols() - 1);
+    const MatrixXd all = Eigen::HouseholderQR<MatrixXd>(direction).householderQ();
+    const MatrixXd others = all.rightCols(rest.cols() - 1);
     n.rightCols(n.cols() - k - 1) = rest * others;
     n.col(k) = column / column[best];
     own.push_back(best);

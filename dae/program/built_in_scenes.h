@@ -8,6 +8,7 @@ namespace momenta::embedded {
 std::string_view four_bar();
 std::string_view slider_crank();
 std::string_view n_four_bar();
+std::string_view bricard();
 std::string_view spring_pendulum();
 std::string_view governor();
 std::string_view heavy_top();

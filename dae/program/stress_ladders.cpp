@@ -166,7 +166,9 @@ Ladder redundant() {
           {{"three cranks", built_in(embedded::three_cranks(), 10), {}},
            {"four-bar on hinges in space", four_bar(), in_space},
            {"the same, tilted", turned(four_bar(), tilt), in_space},
-           {"one loop twice", std::move(twice), {}}},
+           {"one loop twice", std::move(twice), {}},
+           {"Bricard", built_in(embedded::bricard(), 10), {}},
+           {"Bricard, tilted", turned(built_in(embedded::bricard(), 10), tilt), {}}},
           false};
 }
 Ladder singular() {
