@@ -85,4 +85,6 @@ OpenLanes::OpenLanes(const LoopPlan& plan, const std::vector<int>& parents,
   }
 }
 
+OpenLanes::~OpenLanes() = default;
+
 }  // namespace momenta

@@ -20,9 +20,26 @@ struct OpenLanes {
   std::vector<Front> fronts;       ///< per body
   std::vector<LaneGroups> beside;  ///< per loop: of those still open once it has closed
 
-  OpenLanes() = default;
-  /// `rows` of each loop. O(length of all loops). @pre plan.fits()
+  /// From the parents of all bodies and the rows of all loops. O(length of all loops). Out of line
+  /// like the destructor: the sweeps that call them are compiled for several instruction levels.
+  /// @pre plan.fits()
   OpenLanes(const LoopPlan& plan, const std::vector<int>& parents, const std::vector<int>& rows);
+  ~OpenLanes();
+  OpenLanes(const OpenLanes&) = delete;
+  OpenLanes& operator=(const OpenLanes&) = delete;
 };
+
+template <class Tree>
+__attribute__((always_inline)) inline std::vector<int> parents_of(const Tree& tree) {
+  std::vector<int> parents(tree.links.size());
+  for (std::size_t k = 0; k < parents.size(); ++k) parents[k] = tree.links[k].parent;
+  return parents;
+}
+template <class Loops>
+__attribute__((always_inline)) inline std::vector<int> rows_of(const Loops& loops) {
+  std::vector<int> rows(loops.loops.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = loops.loops[i].rows;
+  return rows;
+}
 
 }  // namespace momenta

@@ -215,6 +215,7 @@ LoopSweeps<Planar, S, Rows, Momentum>::LoopSweeps(const PlanarTree& tree,
       in_time_(loops),
       loops_(&loops),
       plan_(&plan),
+      lanes_(plan, parents_of(tree), rows_of(loops)),
       pins_(tree.links.size()),
       looped_(static_cast<std::size_t>(tree.records)),
       ties_(loops.loops.size()),
@@ -240,10 +241,6 @@ LoopSweeps<Planar, S, Rows, Momentum>::LoopSweeps(const PlanarTree& tree,
                   S(l.axis_b[0][0]), S(l.axis_b[0][1])};  // of an end on the ground for good
   }
   if (!others_.empty()) origins_.resize(tree.links.size());
-  std::vector<int> parents, rows;
-  for (const PlanarLink& l : tree.links) parents.push_back(l.parent);
-  for (const Loop& l : loops.loops) rows.push_back(l.rows);
-  lanes_ = OpenLanes(plan, parents, rows);
 }
 
 template <class S, int Rows, bool Momentum>

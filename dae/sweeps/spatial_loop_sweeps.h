@@ -175,6 +175,7 @@ LoopSweeps<Spatial, S, Rows, Momentum>::LoopSweeps(const LinkTree& tree,
       in_time_(loops),
       loops_(&loops),
       plan_(&plan),
+      lanes_(plan, parents_of(tree), rows_of(loops)),
       angles_(tree.links.size()),
       pins_(tree.links.size()),
       balls_(tree.balls.size()),
@@ -189,10 +190,6 @@ LoopSweeps<Spatial, S, Rows, Momentum>::LoopSweeps(const LinkTree& tree,
       slots_(static_cast<std::size_t>(tree.slots)),
       outward_slots_(static_cast<std::size_t>(tree.slots)),
       rows_(static_cast<std::size_t>(loops.rows)) {
-  std::vector<int> parents, rows;
-  for (const Link& l : tree.links) parents.push_back(l.parent);
-  for (const Loop& l : loops.loops) rows.push_back(l.rows);
-  lanes_ = OpenLanes(plan, parents, rows);
   for (const char takes : plan.takes_legs)
     if (takes && legs_.empty()) {
       legs_.resize(tree.links.size());
