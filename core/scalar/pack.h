@@ -44,12 +44,13 @@ struct Pack {
   Lanes v{};
 
   Pack() = default;
-  /// Lane by lane: `Lanes{} + x` would add, because −0 + 0 is 0.
+  /// One broadcast: x − 0 is x whatever its sign, and folds; filling lane by lane compiles to as
+  /// many masked moves as there are lanes.
   MOMENTA_INLINE Pack(double x) {  // NOLINT: constants mix freely
     if constexpr (Width == 1)
       v = x;
     else
-      for (int i = 0; i < Width; ++i) v[i] = x;
+      v = x - Lanes{};
   }
   static MOMENTA_INLINE Pack of(Lanes x) {
     Pack p;

@@ -23,20 +23,110 @@ namespace momenta {
 /// Blocks of the loops open at a front; `columns`: 3 in a plane, 6 in space.
 template <class S, int Rows, int Columns>
 struct Front {
-  Lanes<S, Rows> C[Columns];  ///< wrench of a unit impulse, force before couple
-  Lanes<S, Rows> d;
-  Lanes<S, Rows> scale;
-  Lanes<S, Rows> W[Rows];
+  using Here = Lanes<S, Rows>;
+  Here C[Columns];  ///< wrench of a unit impulse, force before couple
+  Here d;
+  Here scale;
+  Here W[Rows];  ///< symmetric: of lanes apart only the upper triangle is kept
 
-  MOMENTA_INLINE void add(const Front& b) {
-    for (int i = 0; i < Columns; ++i) C[i] += b.C[i];
-    add_at_ground(b);
+  MOMENTA_INLINE S w(int i, int j) const { return Here::apart && j < i ? W[j][i] : W[i][j]; }
+
+  /// Zeroes what opens here: at a tip everything, elsewhere the groups in `fresh`; of those in
+  /// `born` only C and d, as a pin's elimination will write W and scale.
+  MOMENTA_INLINE void begin(bool tip, LaneGroups fresh, LaneGroups born = 0) {
+    if constexpr (!Here::apart) {
+      if (tip) *this = {};
+    } else {
+      const S zero(0.0);
+      each_open<S, Rows>(fresh, [&](auto i) MOMENTA_INLINED {
+        each<Columns>([&](auto k) MOMENTA_INLINED { C[k].v[i] = zero; });
+        d.v[i] = zero;
+      });
+      each_open<S, Rows>(fresh & ~born, [&](auto i) MOMENTA_INLINED {
+        scale.v[i] = zero;
+        each<Rows>([&](auto j) MOMENTA_INLINED { (j < i ? W[j].v[i] : W[i].v[j]) = zero; });
+      });
+    }
   }
-  /// The ground does not move: C no longer matters.
-  MOMENTA_INLINE void add_at_ground(const Front& b) {
-    d += b.d;
-    scale += b.scale;
-    for (int i = 0; i < Rows; ++i) W[i] += b.W[i];
+  MOMENTA_INLINE void add(const Front& b, LaneGroups open) {
+    each_open<S, Rows>(open, [&](auto i) MOMENTA_INLINED {
+      each<Columns>([&](auto k) MOMENTA_INLINED { C[k].v[i] = C[k].v[i] + b.C[k].v[i]; });
+    });
+    add_at_ground(b, open, 0, open);
+  }
+  /// The ground does not move: C no longer matters. Of `fresh` groups nothing was there, of `all`
+  /// are those that stay.
+  MOMENTA_INLINE void add_at_ground(const Front& b, LaneGroups open, LaneGroups fresh,
+                                    LaneGroups all) {
+    each_open<S, Rows>(open, [&](auto i) MOMENTA_INLINED {
+      put(fresh, i, i, d.v[i], b.d.v[i]);
+      put(fresh, i, i, scale.v[i], b.scale.v[i]);
+    });
+    each_entry(open, [&](auto i, auto part)
+                         MOMENTA_INLINED { put(fresh, i, part, W[i].v[part], b.W[i].v[part]); });
+    if constexpr (Here::apart)
+      if (all & ~open)
+        each_open<S, Rows>(fresh, [&](auto i) MOMENTA_INLINED {
+          each_open<S, Rows>(all & ~open, [&](auto j) MOMENTA_INLINED {
+            (j < i ? W[j].v[i] : W[i].v[j]) = S(0.0);
+          });
+        });
+  }
+  /// A joint's coordinate goes: W += c (M_j⁻¹ c)ᵀ, d += y c, y = M_j⁻¹ e; leaves g = M_j⁻¹ c. The
+  /// scale is the caller's. Of `born` groups W is written.
+  MOMENTA_INLINE void eliminate(const Here& c, const S& inverse, const S& y, LaneGroups open,
+                                LaneGroups born, Here& g) {
+    Here local, own;
+    each_open<S, Rows>(open, [&](auto i) MOMENTA_INLINED {
+      own.v[i] = c.v[i];
+      local.v[i] = own.v[i] * Here::all(inverse);
+      d.v[i] = d.v[i] + own.v[i] * Here::all(y);
+      g.v[i] = local.v[i];
+    });
+    each_entry(open, [&](auto i, auto part) MOMENTA_INLINED {
+      put(born, i, part, W[i].v[part], local.v[part] * own.all(own[i]));
+    });
+  }
+  /// Writes x, where lane i or j is in `fresh`, else adds it.
+  template <class I, class J, class Part>
+  MOMENTA_INLINE static void put([[maybe_unused]] LaneGroups fresh, I i, J j, Part& to,
+                                 const Part& x) {
+    if constexpr (Here::apart) {
+      if ((fresh >> (i / 2) | fresh >> (j / 2)) & 1) {
+        to = x;
+        return;
+      }
+    }
+    to = to + x;
+  }
+  /// W += g cᵀ
+  MOMENTA_INLINE void add_product(const Here& g, const Here& c, LaneGroups open) {
+    each_entry(open, [&](auto i, auto part) MOMENTA_INLINED {
+      W[i].v[part] = W[i].v[part] + g.v[part] * c.all(c[i]);
+    });
+  }
+  /// W −= a bᵀ + x yᵀ
+  MOMENTA_INLINE void subtract_products(const Here& a, const Here& b, const Here& x, const Here& y,
+                                        LaneGroups open) {
+    each_entry(open, [&](auto i, auto part) MOMENTA_INLINED {
+      W[i].v[part] = W[i].v[part] - (a.v[part] * a.all(b[i]) + x.v[part] * a.all(y[i]));
+    });
+  }
+
+ private:
+  /// act(row, part of the row) for the entries of W that are kept, of open lanes.
+  template <class Act>
+  MOMENTA_INLINE static void each_entry(LaneGroups open, Act&& act) {
+    if constexpr (Here::apart)
+      each_open<S, Rows>(open, [&](auto i) MOMENTA_INLINED {
+        each_open<S, Rows>(open, [&](auto j) MOMENTA_INLINED {
+          if (j >= i) act(i, j);
+        });
+      });
+    else
+      each<Rows>([&](auto i) MOMENTA_INLINED {
+        each<Here::parts>([&](auto part) MOMENTA_INLINED { act(i, part); });
+      });
   }
 };
 
@@ -58,12 +148,12 @@ struct ClosedRow {
   /// σ_k for the motion `omega` of the closing body.
   template <class Motion>
   MOMENTA_INLINE S impulse(const Motion& omega, const Lanes<S, Rows>& sigma) const {
-    S s = d - dot(G, sigma);
+    S s = impulse_at_ground(sigma);
     for (int i = 0; i < Columns; ++i) s = s + c[i] * omega[i];
     return s;
   }
   MOMENTA_INLINE S impulse_at_ground(const Lanes<S, Rows>& sigma) const {
-    return d - dot(G, sigma);
+    return minus_dot(d, G, sigma, ~LaneGroups{});
   }
 };
 
@@ -76,14 +166,19 @@ MOMENTA_INLINE S faded_inverse(const S& w, const S& tau) {
 }
 
 /// Closes the row at `lane`; `weight` takes c f cᵀ and c f d: weight(c, f c, f d).
+/// @pre lanes of no open loop hold zero
 template <class S, int Rows, int Columns, class Weight>
 MOMENTA_INLINE void close_row(int lane, Front<S, Rows, Columns>& front, const S& tau,
                               ClosedRow<S, Rows, Columns>& row, Weight&& weight) {
+  using Here = Lanes<S, Rows>;
   const S zero(0.0);
-  Lanes<S, Rows> own = front.W[lane];
-  const S w = front.W[lane][lane], f = faded_inverse(w, tau);
+  Here own = front.W[lane];
+  if constexpr (Here::apart)
+    for (int i = 1; i < Rows; ++i)
+      for (int j = 0; j < i && i == lane; ++j) own.v[j] = front.W[j].v[i];
+  const S w = own[lane], f = faded_inverse(w, tau);
   own.set(lane, zero);
-  const Lanes<S, Rows> G = own * f;
+  const Here G = own * f;
   S c[Columns];
   const S d = front.d[lane];
   for (int i = 0; i < Columns; ++i) {
@@ -145,7 +240,7 @@ void close_loop(Front<S, Rows, Columns>& front, int lane, int points, int others
     double largest = -1;
     for (int i = 0; i < rows; ++i) {
       if (closed[i]) continue;
-      const double w = size_of(front.W[lane + i][lane + i]);
+      const double w = size_of(front.w(lane + i, lane + i));
       const double relative = unit[i] > 0 ? w / unit[i] : 0;
       if (best < 0 || relative > largest) {
         best = i;
@@ -156,131 +251,6 @@ void close_loop(Front<S, Rows, Columns>& front, int lane, int points, int others
     close_row(lane + best, front, tau[best], records[k], weight);
   }
   for (int i = 0; i < rows; ++i) front.scale.set(lane + i, S(0.0));
-}
-
-/// A pair of point rows at lane A, A + 1 closed in registers; state by state the row with the
-/// larger pivot goes first: (a, b) ← (b, −a) where W_bb > W_aa.
-template <class S, int Rows, int Columns>
-struct ClosedPair {
-  Lanes<S, Rows> Ga, Gb;
-  S a[Columns], b[Columns];
-  S da, db, l, swap;  ///< l: W_ab f_a; swap: 1 where the rows changed places
-  S w_a, w_b, tau;
-
-  template <class Motion>
-  MOMENTA_INLINE void impulses(const Motion& omega, const Lanes<S, Rows>& sigma, S& x, S& y) const {
-    x = da - dot(Ga, sigma);
-    y = db - dot(Gb, sigma);
-    for (int i = 0; i < Columns; ++i) {
-      x = x + a[i] * omega[i];
-      y = y + b[i] * omega[i];
-    }
-    unite(x, y);
-  }
-  MOMENTA_INLINE void impulses_at_ground(const Lanes<S, Rows>& sigma, S& x, S& y) const {
-    x = da - dot(Ga, sigma);
-    y = db - dot(Gb, sigma);
-    unite(x, y);
-  }
-
- private:
-  MOMENTA_INLINE void unite(S& x, S& y) const {
-    const S half(0.5), first = x - l * y;
-    x = where_greater(swap, half, -y, first);
-    y = where_greater(swap, half, first, y);
-  }
-};
-
-template <int A, bool Moves, class S, int Rows, int Columns, class Weight>
-MOMENTA_INLINE void close_pair(Front<S, Rows, Columns>& front, double fade,
-                               ClosedPair<S, Rows, Columns>& pair, Weight&& weight) {
-  constexpr int B = A + 1;
-  const S zero(0.0), one(1.0);
-  Lanes<S, Rows> Wa = front.W[A], Wb = front.W[B];
-  const S waa = Wa[A], wbb = Wb[B];
-  const S tau = (front.scale[A] + front.scale[B]) * (0.5 * fade);
-  const auto swapped = [&](const S& x, const S& y) { return where_greater(wbb, waa, x, y); };
-  pair.swap = swapped(one, zero);
-  const S first = swapped(wbb, waa), second = swapped(waa, wbb), coupling = swapped(-Wa[B], Wa[B]);
-  const S fa = faded_inverse(first, tau), l = coupling * fa, p = second - l * coupling,
-          fb = faded_inverse(p, tau);
-  pair.l = l;
-  pair.w_a = first;
-  pair.w_b = p;
-  pair.tau = tau;
-  S da = swapped(front.d[B], front.d[A]), db = swapped(-front.d[A], front.d[B]) - l * da;
-  pair.da = fa * da;
-  pair.db = fb * db;
-  if constexpr (Rows > 2) {
-    Wa.set(A, zero);
-    Wa.set(B, zero);
-    Wb.set(A, zero);
-    Wb.set(B, zero);
-    Lanes<S, Rows> ga, gb;
-    if constexpr (requires { Wa.v[0].v; }) {
-      for (int i = 0; i < Rows; ++i) {
-        ga.v[i] = swapped(Wb.v[i], Wa.v[i]);
-        gb.v[i] = swapped(-Wa.v[i], Wb.v[i]);
-      }
-    } else {
-      const S s = pair.swap, k = one - s;
-      ga = Wa * k + Wb * s;
-      gb = Wb * k - Wa * s;
-    }
-    gb -= ga * l;
-    pair.Ga = ga * fa;
-    pair.Gb = gb * fb;
-    front.d.set(A, zero);
-    front.d.set(B, zero);
-    front.d -= pair.Ga * da + pair.Gb * db;
-    for (int i = 0; i < Rows; ++i) {
-      if (i == A || i == B) {
-        front.W[i] = {};
-        continue;
-      }
-      front.W[i].set(A, zero);
-      front.W[i].set(B, zero);
-      front.W[i] -= pair.Ga * ga[i] + pair.Gb * gb[i];
-    }
-    if constexpr (Moves) {
-      S ca[Columns], cb[Columns];
-      for (int i = 0; i < Columns; ++i) {
-        const S x = front.C[i][A], y = front.C[i][B];
-        ca[i] = swapped(y, x);
-        cb[i] = swapped(-x, y) - l * ca[i];
-        pair.a[i] = fa * ca[i];
-        pair.b[i] = fb * cb[i];
-        front.C[i].set(A, zero);
-        front.C[i].set(B, zero);
-        front.C[i] -= pair.Ga * ca[i] + pair.Gb * cb[i];
-      }
-      weight(ca, pair.a, pair.da);
-      weight(cb, pair.b, pair.db);
-    }
-    front.scale.set(A, zero);
-    front.scale.set(B, zero);
-  } else {
-    if constexpr (Moves) {
-      for (int i = 0; i < Columns; ++i) {
-        const S x = front.C[i][A], y = front.C[i][B];
-        pair.a[i] = swapped(y, x);
-        pair.b[i] = swapped(-x, y) - l * pair.a[i];
-      }
-      S fca[Columns], fcb[Columns];
-      for (int i = 0; i < Columns; ++i) {
-        fca[i] = fa * pair.a[i];
-        fcb[i] = fb * pair.b[i];
-      }
-      weight(pair.a, fca, pair.da);
-      weight(pair.b, fcb, pair.db);
-      for (int i = 0; i < Columns; ++i) {
-        pair.a[i] = fca[i];
-        pair.b[i] = fcb[i];
-      }
-    }
-    pair.Ga = pair.Gb = {};
-    front = {};
-  }
 }
 
 }  // namespace momenta

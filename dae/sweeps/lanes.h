@@ -1,51 +1,51 @@
 #pragma once
 // One number for each open loop equation of a front. Every loop keeps its lanes from its ends to
-// the body that closes it, so fronts are merged by plain addition and lanes of no open loop hold
-// zero.
+// the body that closes it, so fronts are merged by plain addition.
 //
-// For one state the lanes fill registers, as many as the level's registers take; for a pack of
-// states each lane is a pack of its own.
+// For one state the lanes fill registers, as many as the level's registers take, and lanes of no
+// open loop hold zero. For a pack of states each lane is a pack of its own, and work on lanes of no
+// open loop would be work for nothing: there lanes stand in groups of two, a mask has a bit for
+// every group, and groups outside the mask hold anything.
 
 #include <momenta/core/scalar/sine_cosine.h>
+#include <momenta/dae/sweeps/open_lanes.h>
+
+#include <type_traits>
 
 /// Of a lambda whose captures must stay in registers.
 #define MOMENTA_INLINED __attribute__((always_inline))
 
 namespace momenta {
 
+/// act(0) … act(n − 1), with constants: what they index may stay in registers.
+template <int n, class Act>
+MOMENTA_INLINE void each(Act&& act) {
+  if constexpr (n > 0) {
+    each<n - 1>(act);
+    act(std::integral_constant<int, n - 1>{});
+  }
+}
+
 template <class S, int Rows>
 struct Lanes {
+  using Part = S;  ///< what one operation works on
+  static constexpr int parts = Rows;
+  static constexpr bool apart = true;  ///< a part holds one lane
   S v[Rows]{};
 
+  static MOMENTA_INLINE const S& all(const S& x) { return x; }
   MOMENTA_INLINE S operator[](int i) const { return v[i]; }
   MOMENTA_INLINE void set(int i, const S& x) { v[i] = x; }
   MOMENTA_INLINE void add(int i, const S& x) { v[i] = v[i] + x; }
-  /// To lanes i, i + 1; i is even.
-  MOMENTA_INLINE void add_pair(int i, const S& x, const S& y) {
+  template <int i>
+  MOMENTA_INLINE void set_pair(const S& x, const S& y) {
+    v[i] = x;
+    v[i + 1] = y;
+  }
+  template <int i>
+  MOMENTA_INLINE void add_pair(const S& x, const S& y) {
     v[i] = v[i] + x;
     v[i + 1] = v[i + 1] + y;
-  }
-
-  MOMENTA_INLINE Lanes& operator+=(const Lanes& b) {
-    for (int i = 0; i < Rows; ++i) v[i] = v[i] + b.v[i];
-    return *this;
-  }
-  MOMENTA_INLINE Lanes& operator-=(const Lanes& b) {
-    for (int i = 0; i < Rows; ++i) v[i] = v[i] - b.v[i];
-    return *this;
-  }
-  friend MOMENTA_INLINE Lanes operator*(Lanes a, const S& s) {
-    for (int i = 0; i < Rows; ++i) a.v[i] = a.v[i] * s;
-    return a;
-  }
-  friend MOMENTA_INLINE Lanes operator*(Lanes a, const Lanes& b) {
-    for (int i = 0; i < Rows; ++i) a.v[i] = a.v[i] * b.v[i];
-    return a;
-  }
-  friend MOMENTA_INLINE S dot(const Lanes& a, const Lanes& b) {
-    S sum = a.v[0] * b.v[0];
-    for (int i = 1; i < Rows; ++i) sum = sum + a.v[i] * b.v[i];
-    return sum;
   }
 };
 
@@ -53,59 +53,41 @@ template <int Level, int Rows>
 struct Lanes<Pack<1, Level>, Rows> {
   using S = Pack<1, Level>;
   static constexpr int width = Rows < native_width<Level> ? Rows : native_width<Level>;
+  using Part = Pack<width, Level>;
   static constexpr int parts = Rows / width;
-  using Part = typename Register<width>::Doubles;
+  static constexpr bool apart = false;
   using Places = typename Register<width>::Integers;
   Part v[parts]{};
 
-  MOMENTA_INLINE S operator[](int i) const { return S(v[i / width][i % width]); }
+  static MOMENTA_INLINE Part all(const S& x) { return Part(x.v); }
+  MOMENTA_INLINE S operator[](int i) const { return S(v[i / width].v[i % width]); }
   /// Lanes are chosen by comparison: writing one number into a register would go through memory.
   MOMENTA_INLINE void set(int i, const S& x) {
-    for (int k = 0; k < parts; ++k) v[k] = places(k) == i ? all(x) : v[k];
+    for (int k = 0; k < parts; ++k) v[k].v = places(k) == i ? Part(x.v).v : v[k].v;
   }
   MOMENTA_INLINE void add(int i, const S& x) {
-    for (int k = 0; k < parts; ++k) v[k] += places(k) == i ? all(x) : Part{};
+    for (int k = 0; k < parts; ++k) v[k].v += places(k) == i ? Part(x.v).v : Part(0.0).v;
   }
-  MOMENTA_INLINE void add_pair(int i, const S& x, const S& y) {
-    for (int k = 0; k < parts; ++k) {
-      Part both;
-      for (int j = 0; j < width; j += 2) {
-        both[j] = x.v;
-        both[j + 1] = y.v;
-      }
-      v[k] += (places(k) & ~1) == i ? both : Part{};
-    }
+  template <int i>
+  MOMENTA_INLINE void set_pair(const S& x, const S& y) {
+    auto& part = v[i / width].v;
+    part = (places(i / width) & ~1) == i ? both(x, y) : part;
   }
-
-  MOMENTA_INLINE Lanes& operator+=(const Lanes& b) {
-    for (int k = 0; k < parts; ++k) v[k] += b.v[k];
-    return *this;
-  }
-  MOMENTA_INLINE Lanes& operator-=(const Lanes& b) {
-    for (int k = 0; k < parts; ++k) v[k] -= b.v[k];
-    return *this;
-  }
-  friend MOMENTA_INLINE Lanes operator*(Lanes a, const S& s) {
-    for (int k = 0; k < parts; ++k) a.v[k] *= s.v;
-    return a;
-  }
-  friend MOMENTA_INLINE Lanes operator*(Lanes a, const Lanes& b) {
-    for (int k = 0; k < parts; ++k) a.v[k] *= b.v[k];
-    return a;
-  }
-  friend MOMENTA_INLINE S dot(const Lanes& a, const Lanes& b) {
-    Part sum = a.v[0] * b.v[0];
-    for (int k = 1; k < parts; ++k) sum += a.v[k] * b.v[k];
-    if constexpr (width == 8)
-      return S(((sum[0] + sum[4]) + (sum[2] + sum[6])) + ((sum[1] + sum[5]) + (sum[3] + sum[7])));
-    else if constexpr (width == 4)
-      return S((sum[0] + sum[2]) + (sum[1] + sum[3]));
-    else
-      return S(sum[0] + sum[1]);
+  template <int i>
+  MOMENTA_INLINE void add_pair(const S& x, const S& y) {
+    auto& part = v[i / width].v;
+    part += (places(i / width) & ~1) == i ? both(x, y) : Part(0.0).v;
   }
 
  private:
-  static MOMENTA_INLINE Part all(const S& x) { return Pack<width, Level>(x.v).v; }
+  static MOMENTA_INLINE typename Part::Lanes both(const S& x, const S& y) {
+    Part p;
+    for (int j = 0; j < width; j += 2) {
+      p.v[j] = x.v;
+      p.v[j + 1] = y.v;
+    }
+    return p.v;
+  }
   static MOMENTA_INLINE Places places(int part) {
     Places at{};
     for (int i = 0; i < width; ++i) at[i] = part * width + i;
@@ -114,12 +96,99 @@ struct Lanes<Pack<1, Level>, Rows> {
 };
 
 template <class S, int Rows>
+MOMENTA_INLINE Lanes<S, Rows>& operator+=(Lanes<S, Rows>& a, const Lanes<S, Rows>& b) {
+  each<Lanes<S, Rows>::parts>([&](auto k) MOMENTA_INLINED { a.v[k] = a.v[k] + b.v[k]; });
+  return a;
+}
+template <class S, int Rows>
+MOMENTA_INLINE Lanes<S, Rows>& operator-=(Lanes<S, Rows>& a, const Lanes<S, Rows>& b) {
+  each<Lanes<S, Rows>::parts>([&](auto k) MOMENTA_INLINED { a.v[k] = a.v[k] - b.v[k]; });
+  return a;
+}
+template <class S, int Rows>
+MOMENTA_INLINE Lanes<S, Rows> operator*(Lanes<S, Rows> a, const std::type_identity_t<S>& s) {
+  each<Lanes<S, Rows>::parts>([&](auto k) MOMENTA_INLINED { a.v[k] = a.v[k] * a.all(s); });
+  return a;
+}
+template <class S, int Rows>
+MOMENTA_INLINE Lanes<S, Rows> operator*(Lanes<S, Rows> a, const Lanes<S, Rows>& b) {
+  each<Lanes<S, Rows>::parts>([&](auto k) MOMENTA_INLINED { a.v[k] = a.v[k] * b.v[k]; });
+  return a;
+}
+template <class S, int Rows>
 MOMENTA_INLINE Lanes<S, Rows> operator+(Lanes<S, Rows> a, const Lanes<S, Rows>& b) {
   return a += b;
 }
 template <class S, int Rows>
 MOMENTA_INLINE Lanes<S, Rows> operator-(Lanes<S, Rows> a, const Lanes<S, Rows>& b) {
   return a -= b;
+}
+
+/// act(part) for the parts that hold lanes of open loops.
+template <class S, int Rows, class Act>
+MOMENTA_INLINE void each_open([[maybe_unused]] LaneGroups open, Act&& act) {
+  using Here = Lanes<S, Rows>;
+  if constexpr (!Here::apart) {
+    each<Here::parts>(act);
+  } else if constexpr (Rows > 8) {
+    for (int i = 0; i < Rows; ++i)
+      if (open >> (i / 2) & 1) act(i);
+  } else {
+    each<Rows / 2>([&](auto group) MOMENTA_INLINED {
+      if (open >> group & 1) {
+        act(std::integral_constant<int, 2 * group>{});
+        act(std::integral_constant<int, 2 * group + 1>{});
+      }
+    });
+  }
+}
+
+/// Σ of a packed register's lanes.
+template <int W, int L>
+MOMENTA_INLINE Pack<1, L> sum_of(const Pack<W, L>& x) {
+  const auto& v = x.v;
+  if constexpr (W == 8)
+    return Pack<1, L>(((v[0] + v[4]) + (v[2] + v[6])) + ((v[1] + v[5]) + (v[3] + v[7])));
+  else if constexpr (W == 4)
+    return Pack<1, L>((v[0] + v[2]) + (v[1] + v[3]));
+  else
+    return Pack<1, L>(v[0] + v[1]);
+}
+
+/// a·b of one state's lanes.
+template <int L, int Rows>
+MOMENTA_INLINE Pack<1, L> dot(const Lanes<Pack<1, L>, Rows>& a, const Lanes<Pack<1, L>, Rows>& b) {
+  auto sum = a.v[0] * b.v[0];
+  for (int k = 1; k < Lanes<Pack<1, L>, Rows>::parts; ++k) sum = sum + a.v[k] * b.v[k];
+  return sum_of(sum);
+}
+/// x + a·b over the open lanes.
+template <class S, int Rows>
+MOMENTA_INLINE S plus_dot(S x, const Lanes<S, Rows>& a, const Lanes<S, Rows>& b,
+                          [[maybe_unused]] LaneGroups open) {
+  if constexpr (Lanes<S, Rows>::apart) {
+    each_open<S, Rows>(open, [&](auto i) MOMENTA_INLINED { x = x + a.v[i] * b.v[i]; });
+    return x;
+  } else {
+    return x + dot(a, b);
+  }
+}
+/// x − a·b over the open lanes.
+template <class S, int Rows>
+MOMENTA_INLINE S minus_dot(S x, const Lanes<S, Rows>& a, const Lanes<S, Rows>& b,
+                           [[maybe_unused]] LaneGroups open) {
+  if constexpr (Lanes<S, Rows>::apart) {
+    each_open<S, Rows>(open, [&](auto i) MOMENTA_INLINED { x = x - a.v[i] * b.v[i]; });
+    return x;
+  } else {
+    return x - dot(a, b);
+  }
+}
+
+template <int L, int Rows>
+MOMENTA_INLINE Lanes<Pack<1, L>, Rows> operator-(Lanes<Pack<1, L>, Rows> a) {
+  for (auto& part : a.v) part = -part;
+  return a;
 }
 
 /// x where the condition a > b holds, else y; state by state.
@@ -130,6 +199,14 @@ MOMENTA_INLINE Pack<W, L> where_greater(const Pack<W, L>& a, const Pack<W, L>& b
     return a.v > b.v ? x : y;
   else
     return Pack<W, L>::of(a.v > b.v ? x.v : y.v);
+}
+
+/// All lanes of one state at once.
+template <int L, int Rows>
+MOMENTA_INLINE Lanes<Pack<1, L>, Rows> where_greater(const Pack<1, L>& a, const Pack<1, L>& b,
+                                                     const Lanes<Pack<1, L>, Rows>& x,
+                                                     const Lanes<Pack<1, L>, Rows>& y) {
+  return a.v > b.v ? x : y;
 }
 
 }  // namespace momenta

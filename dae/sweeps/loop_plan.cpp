@@ -168,11 +168,14 @@ LoopPlan planned(const std::vector<int>& parents, const std::vector<LoopShape>& 
       for (int k = end; k >= 0 && !plan.posed[static_cast<std::size_t>(k)];
            k = parents[static_cast<std::size_t>(k)])
         plan.posed[static_cast<std::size_t>(k)] = 1;
-    // The first end to enter brings the right-hand side along: that of the leg, where there is one.
+    // The end that sweeps inward meet first brings the right-hand side along: that of the leg,
+    // where there is one.
     if (open.a >= 0)
-      ends[static_cast<std::size_t>(open.a)].push_back({static_cast<int>(i), true, true});
+      ends[static_cast<std::size_t>(open.a)].push_back(
+          {static_cast<int>(i), true, open.a >= open.b});
     if (open.b >= 0)
-      ends[static_cast<std::size_t>(open.b)].push_back({static_cast<int>(i), false, open.a < 0});
+      ends[static_cast<std::size_t>(open.b)].push_back(
+          {static_cast<int>(i), false, open.b > open.a});
   }
   plan.ends_of = ranges(ends, plan.ends);
   plan.couplings_of = ranges(couplings, plan.couplings);

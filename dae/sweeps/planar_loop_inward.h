@@ -40,7 +40,7 @@ template <class S, int Rows, bool Momentum>
 template <bool Moves>
 MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::close(const LoopPlan::Range& range,
                                                                  PlanarCargo<S>& a, Blocks& o,
-                                                                 double fade) {
+                                                                 double fade, LaneGroups all) {
   for (int i = range.first; i < range.last; ++i) {
     const int loop = plan_->closings[static_cast<std::size_t>(i)];
     const auto at = static_cast<std::size_t>(loop);
@@ -49,46 +49,76 @@ MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::close(const LoopPlan:
         at_lane<Rows>(plan_->lane[at], [&]<int Lane>() MOMENTA_INLINED {
           if (compliance_) {
             const S* soft = compliance_ + loops_->loops[at].row;
-            o.W[Lane].add(Lane, soft[0]);
-            o.W[Lane + 1].add(Lane + 1, soft[1]);
+            o.W[Lane].template add_pair<Lane>(soft[0], S(0.0));
+            o.W[Lane + 1].template add_pair<Lane>(S(0.0), soft[1]);
           }
-          close_pair<Lane, Moves>(o, fade, pairs_[at], PlanarWeight<S>{a});
+          close_pair<Lane, Moves>(o, fade, lanes_.beside[at], pairs_[at], PlanarWeight<S>{a});
         });
         continue;
       }
     Open copy{a, o};
-    close_any(loop, copy, fade);
+    close_any(loop, copy, fade, all);
     a = copy.cargo;
     o = copy.blocks;
   }
 }
 
 template <class S, int Rows, bool Momentum>
-void LoopSweeps<Planar, S, Rows, Momentum>::close_any(int loop, Open& open, double fade) {
-  const Loop& l = loops_->loops[static_cast<std::size_t>(loop)];
+void LoopSweeps<Planar, S, Rows, Momentum>::close_any(int loop, Open& open, double fade,
+                                                      LaneGroups all) {
+  const auto at = static_cast<std::size_t>(loop);
+  const Loop& l = loops_->loops[at];
   const int points = l.first_rows();
-  if (compliance_)
-    soften(open.blocks, plan_->lane[static_cast<std::size_t>(loop)], l.rows, compliance_ + l.row);
-  close_loop(open.blocks, plan_->lane[static_cast<std::size_t>(loop)], points, l.rows - points,
-             fade, &rows_[static_cast<std::size_t>(l.row)], PlanarWeight<S>{open.cargo});
+  open.blocks.begin(false, ~all);
+  if (compliance_) soften(open.blocks, plan_->lane[at], l.rows, compliance_ + l.row);
+  close_loop(open.blocks, plan_->lane[at], points, l.rows - points, fade,
+             &rows_[static_cast<std::size_t>(l.row)], PlanarWeight<S>{open.cargo});
+}
+
+/// The rows of couplers on joint k of body k; returns the joint's momentum or force without what
+/// they are centred on.
+template <class S, int Rows, bool Momentum>
+template <class In>
+S LoopSweeps<Planar, S, Rows, Momentum>::couple(std::size_t k, const In& r,
+                                                const RightSide<S>& right, Blocks& o) {
+  const PlanarLink& l = tree_->links[k];
+  S own = l.sign < 0 ? -r[l.u] : S(r[l.u]);
+  each_coupling(*plan_, k, [&](const LoopPlan::Coupling& j, std::size_t loop, int lane) {
+    const double ratio = l.sign < 0 ? -j.ratio : j.ratio;
+    o.C[2].add(lane, S(ratio));
+    if (j.first) o.d.add(lane, coupled_[loop]);
+    if (right.centre) own = own - ratio * right.centre[loops_->loops[loop].row];
+  });
+  return own;
+}
+template <class S, int Rows, bool Momentum>
+void LoopSweeps<Planar, S, Rows, Momentum>::uncouple(std::size_t k, Column& c) {
+  const double sign = tree_->links[k].sign;
+  each_coupling(*plan_, k, [&](const LoopPlan::Coupling& j, std::size_t, int lane) {
+    c.add(lane, S(sign < 0 ? j.ratio : -j.ratio));
+  });
 }
 
 template <class S, int Rows, bool Momentum>
 template <class In>
 bool LoopSweeps<Planar, S, Rows, Momentum>::inward(const In& r, const RightSide<S>& right) {
   const PlanarLink* links = tree_->links.data();
+  const OpenLanes::Front* fronts = lanes_.fronts.data();
   const Vec2<double>& g = tree_->model->gravity;
   const bool falls = !Momentum && tree_->model->has_gravity, couples = plan_->couples();
   PlanarCargo<S> a{};
-  Blocks o{}, ground{};
+  // Of a pack in memory: registers could not hold it, and what is open differs from body to body.
+  Blocks local[2];
+  Blocks &o = Column::apart ? front_ : local[0], &ground = Column::apart ? ground_ : local[1];
   for (std::size_t k = pins_.size(); k-- > 0;) {
     const PlanarLink& l = links[k];
+    const OpenLanes::Front& front = fronts[k];
     LoopedPin<S, Rows>& w = pins_[k];
-    const S kx = own_x_[k], ky = own_y_[k];
-    if (l.tip) {
-      a = {};
-      o = {};
-    }
+    const S c = angles_.cosine(k), s = angles_.sine(k);
+    const S kx = l.cx * c - l.cy * s, ky = l.cx * s + l.cy * c;
+    if (l.tip) a = {};
+    const LaneGroups born = l.pin ? front.born : 0;
+    o.begin(l.tip, front.fresh, born);
     Base::add_body(a, l, kx, ky);
     if constexpr (!Momentum) {
       const S w2 = w.omega * w.omega;
@@ -103,11 +133,11 @@ bool LoopSweeps<Planar, S, Rows, Momentum>::inward(const In& r, const RightSide<
     if (l.slot >= 0) {
       const Open& slot = slots_[static_cast<std::size_t>(l.slot)];
       Base::add(a, slot.cargo);
-      o.add(slot.blocks);
+      o.add(slot.blocks, front.slot);
     }
     enter(k, right, a, o);
     const LoopPlan::Range closing = plan_->closings_of[k];
-    if (closing.first != closing.last) close<true>(closing, a, o, right.fade);
+    if (closing.first != closing.last) close<true>(closing, a, o, right.fade, front.all);
     if (!l.pin) {
       Open here{a, o};
       if (!general_inward(k, r, right, here)) {
@@ -122,66 +152,78 @@ bool LoopSweeps<Planar, S, Rows, Momentum>::inward(const In& r, const RightSide<
         return false;
       }
       const S inverse = S(1.0) / a.I;
-      S pk = l.sign < 0 ? -r[l.u] : S(r[l.u]);
-      if (couples)
-        each_coupling(*plan_, k, [&](const LoopPlan::Coupling& j, std::size_t loop, int lane) {
-          const double ratio = l.sign < 0 ? -j.ratio : j.ratio;
-          o.C[2].add(lane, S(ratio));
-          if (j.first) o.d.add(lane, coupled_[loop]);
-          if (right.centre) pk = pk - ratio * right.centre[loops_->loops[loop].row];
-        });
+      S pk;
+      if (couples) {
+        Blocks here = o;
+        pk = couple(k, r, right, here);
+        o = here;
+      } else {
+        pk = l.sign < 0 ? -r[l.u] : S(r[l.u]);
+      }
       const S e = pk - a.Dn;
       w.y0 = e * inverse;
-      w.g = o.C[2] * inverse;
-      o.d += o.C[2] * w.y0;
-      o.scale += o.C[2] * w.g;
-      for (int i = 0; i < Rows; ++i) o.W[i] += w.g * o.C[2][i];
+      o.eliminate(o.C[2], inverse, w.y0, front.open, born, w.g);
+      each_open<S, Rows>(front.open, [&](auto i) MOMENTA_INLINED {
+        Blocks::put(born, i, i, o.scale.v[i], o.C[2].v[i] * w.g.v[i]);
+      });
       if (l.parent >= 0) {
-        w.hx = a.Hx * inverse;
-        w.hy = a.Hy * inverse;
-        a.Axx = a.Axx - a.Hx * w.hx;
-        a.Axy = a.Axy - a.Hx * w.hy;
-        a.Ayy = a.Ayy - a.Hy * w.hy;
-        a.Dx = a.Dx + w.hx * e;
-        a.Dy = a.Dy + w.hy * e;
-        o.C[0] -= o.C[2] * w.hx;
-        o.C[1] -= o.C[2] * w.hy;
+        const S hx = a.Hx * inverse, hy = a.Hy * inverse;
+        w.hx = hx;
+        w.hy = hy;
+        a.Axx = a.Axx - a.Hx * hx;
+        a.Axy = a.Axy - a.Hx * hy;
+        a.Ayy = a.Ayy - a.Hy * hy;
+        a.Dx = a.Dx + hx * e;
+        a.Dy = a.Dy + hy * e;
+        const S rx = w.rx, ry = w.ry;
+        each_open<S, Rows>(front.open, [&](auto i) MOMENTA_INLINED {
+          const auto n = o.C[2].v[i], x = o.C[0].v[i] - n * Column::all(hx),
+                     y = o.C[1].v[i] - n * Column::all(hy);
+          o.C[0].v[i] = x;
+          o.C[1].v[i] = y;
+          o.C[2].v[i] = y * Column::all(rx) - x * Column::all(ry);
+          if constexpr (Momentum) {
+            w.Cx.v[i] = x;
+            w.Cy.v[i] = y;
+          }
+        });
         if constexpr (Momentum) {
           w.Axx = a.Axx;
           w.Axy = a.Axy;
           w.Ayy = a.Ayy;
           w.Dx = a.Dx;
           w.Dy = a.Dy;
-          w.Cx = o.C[0];
-          w.Cy = o.C[1];
         } else {
           const LoopedPin<S, Rows>& from = pins_[static_cast<std::size_t>(l.parent)];
-          const S w2 = from.omega * from.omega, bx = -(w2 * w.rx), by = -(w2 * w.ry);
+          const S w2 = from.omega * from.omega, bx = -(w2 * rx), by = -(w2 * ry);
           a.Dx = a.Dx + (a.Axx * bx + a.Axy * by);
           a.Dy = a.Dy + (a.Axy * bx + a.Ayy * by);
-          o.d += o.C[0] * bx + o.C[1] * by;
-        }
-        Base::carry(a, w.rx, w.ry, pk);
-        o.C[2] = o.C[1] * w.rx - o.C[0] * w.ry;
-        if (couples)
-          each_coupling(*plan_, k, [&](const LoopPlan::Coupling& j, std::size_t, int lane) {
-            o.C[2].add(lane, S(l.sign < 0 ? j.ratio : -j.ratio));
+          each_open<S, Rows>(front.open, [&](auto i) MOMENTA_INLINED {
+            o.d.v[i] = o.d.v[i] + (o.C[0].v[i] * Column::all(bx) + o.C[1].v[i] * Column::all(by));
           });
+        }
+        Base::carry(a, rx, ry, pk);
+        if (couples) {
+          Column here = o.C[2];
+          uncouple(k, here);
+          o.C[2] = here;
+        }
       }
     }
     if (l.parent < 0) {
-      ground.add_at_ground(o);
+      ground.add_at_ground(o, front.open, front.ground_fresh, front.ground);
       const LoopPlan::Range last = plan_->ground_closings_of[k];
-      if (last.first != last.last) close<false>(last, a, ground, right.fade);
+      if (last.first != last.last) close<false>(last, a, ground, right.fade, front.ground);
     } else if (!l.first) {
-      Open& slot = slots_[static_cast<std::size_t>(links[static_cast<std::size_t>(l.parent)].slot)];
+      const auto parent = static_cast<std::size_t>(l.parent);
+      Open& slot = slots_[static_cast<std::size_t>(links[parent].slot)];
       if (l.opens) {
         slot.cargo = a;
-        slot.blocks = o;
+        slot.blocks.begin(true, fronts[parent].slot);
       } else {
         Base::add(slot.cargo, a);
-        slot.blocks.add(o);
       }
+      slot.blocks.add(o, front.open);
     }
   }
   return true;
@@ -199,6 +241,8 @@ bool LoopSweeps<Planar, S, Rows, Momentum>::general_inward(std::size_t k, const 
   LoopedPin<S, Rows>& w = pins_[k];
   PlanarCargo<S>& a = open.cargo;
   Blocks& o = open.blocks;
+  const LaneGroups carried = lanes_.fronts[k].open;
+  o.begin(false, ~carried);
   x.M = Base::blocks(a);
   x.D = {{{a.Dx, a.Dy}}, a.Dn};
   for (int i = 0; i < 3; ++i) y.C[i] = o.C[i];
@@ -214,15 +258,13 @@ bool LoopSweeps<Planar, S, Rows, Momentum>::general_inward(std::size_t k, const 
     Planar::Motion<S> E{};
     const S one(1.0);
     Joint<Planar>::add_motion(b, x.edge, &one, E);
-    Lanes<S, Rows> c = o.C[0] * E[0] + o.C[1] * E[1] + o.C[2] * E[2];
+    Column c = o.C[0] * E[0] + o.C[1] * E[1] + o.C[2] * E[2];
     each_coupling(*plan_, k, [&](const LoopPlan::Coupling& j, std::size_t loop, int lane) {
       c.add(lane, S(j.ratio));
       if (j.first) o.d.add(lane, coupled_[loop]);
     });
-    y.g = c * x.pivot;
-    o.d += y.g * x.e;
+    o.eliminate(c, x.pivot, x.pivot * x.e, carried, 0, y.g);
     o.scale += c * y.g;
-    for (int i = 0; i < Rows; ++i) o.W[i] += y.g * c[i];
     for (int i = 0; i < 3; ++i) o.C[i] -= c * x.h[i];
   }
   // Ω_t, or what the body's acceleration has beside its parent's and E u̇.

@@ -8,10 +8,9 @@ namespace momenta {
 /// Impulses of the loops in `range`, last closed first.
 template <class S, int Rows, bool Momentum>
 template <bool Moves, class Out>
-void LoopSweeps<Planar, S, Rows, Momentum>::solve_loops(const LoopPlan::Range& range,
-                                                        const RightSide<S>& right,
-                                                        const Planar::Motion<S>& motion,
-                                                        Lanes<S, Rows>& sigma, Out& out) {
+MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::solve_loops(
+    const LoopPlan::Range& range, const RightSide<S>& right, const Planar::Motion<S>& motion,
+    Column& sigma, Out& out) {
   const auto store = [&](int row, const S& x) {
     out[row] = right.centre ? x + right.centre[row] : x;
   };
@@ -22,20 +21,21 @@ void LoopSweeps<Planar, S, Rows, Momentum>::solve_loops(const LoopPlan::Range& r
     if (pairs_in_registers && plan_->pair[at]) {
       S x, y;
       if constexpr (Moves)
-        pairs_[at].impulses(motion, sigma, x, y);
+        pairs_[at].impulses(motion, sigma, lanes_.beside[at], x, y);
       else
-        pairs_[at].impulses_at_ground(sigma, x, y);
-      sigma.set(lane, x);
-      sigma.set(lane + 1, y);
+        pairs_[at].impulses_at_ground(sigma, lanes_.beside[at], x, y);
+      at_lane<Rows>(lane, [&]<int Lane>() MOMENTA_INLINED { sigma.template set_pair<Lane>(x, y); });
       store(l.row, x);
       store(l.row + 1, y);
     } else {
+      Column here = sigma;
       for (int j = l.rows; j-- > 0;) {
         const Row& row = rows_[static_cast<std::size_t>(l.row + j)];
-        const S x = Moves ? row.impulse(motion, sigma) : row.impulse_at_ground(sigma);
-        sigma.set(row.lane, x);
+        const S x = Moves ? row.impulse(motion, here) : row.impulse_at_ground(here);
+        here.set(row.lane, x);
         store(l.row + row.lane - lane, x);
       }
+      sigma = here;
     }
   }
 }
@@ -48,9 +48,10 @@ void LoopSweeps<Planar, S, Rows, Momentum>::outward(const RightSide<S>& right, O
   const bool rates = Momentum && right.rates;
   const S zero(0.0);
   S vx = zero, vy = zero, omega = zero;
-  Lanes<S, Rows> sigma{}, at_ground{};
+  Column sigma{}, at_ground{};
   for (std::size_t k = 0; k < pins_.size(); ++k) {
     const PlanarLink& l = links[k];
+    const LaneGroups open = lanes_.fronts[k].open;
     LoopedPin<S, Rows>& w = pins_[k];
     if (l.parent < 0) {
       const LoopPlan::Range last = plan_->ground_closings_of[k];
@@ -73,7 +74,7 @@ void LoopSweeps<Planar, S, Rows, Momentum>::outward(const RightSide<S>& right, O
       vy = here.vy;
       omega = here.omega;
     } else {
-      S turning = w.y0 - dot(w.g, sigma), own = turning;
+      S turning = minus_dot(w.y0, w.g, sigma, open), own = turning;
       if (l.parent >= 0) {
         vx = vx - omega * w.ry;
         vy = vy + omega * w.rx;
@@ -90,8 +91,8 @@ void LoopSweeps<Planar, S, Rows, Momentum>::outward(const RightSide<S>& right, O
       if (rates) {
         S turned = zero;
         if (l.parent >= 0) {
-          const S Px = w.Axx * vx + w.Axy * vy + w.Dx + dot(w.Cx, sigma),
-                  Py = w.Axy * vx + w.Ayy * vy + w.Dy + dot(w.Cy, sigma);
+          const S Px = plus_dot(w.Axx * vx + w.Axy * vy + w.Dx, w.Cx, sigma, open),
+                  Py = plus_dot(w.Axy * vx + w.Ayy * vy + w.Dy, w.Cy, sigma, open);
           turned = vy * Px - vx * Py;
         }
         rate[l.u] = turned;  // about the plane's normal, until the last sweep
@@ -113,21 +114,22 @@ template <class S, int Rows, bool Momentum>
 template <class Out>
 void LoopSweeps<Planar, S, Rows, Momentum>::general_outward(std::size_t k, bool rates, Out u,
                                                             Out rate, PlanarMotion<S>& m,
-                                                            const Lanes<S, Rows>& sigma) {
+                                                            const Column& sigma) {
   const auto& b = Base::body(k);
   const auto& x = joints_[static_cast<std::size_t>(tree_->links[k].record)];
   const auto& y = looped_[static_cast<std::size_t>(tree_->links[k].record)];
+  const LaneGroups open = lanes_.fronts[k].open;
   Planar::Motion<S> V{{{m.vx, m.vy}}, m.omega};
   if (b.parent >= 0) V = Planar::to_child({}, b.kind, x.edge, V);
   V += y.V;
   if (b.nv == 1) {
-    const S own = x.pivot * x.e - Planar::power(x.h, V) - dot(y.g, sigma);
+    const S own = minus_dot(x.pivot * x.e - Planar::power(x.h, V), y.g, sigma, open);
     Joint<Planar>::add_motion(b, x.edge, &own, V);
     u[b.u] = own;
     if (rates) {
       auto P = Planar::momentum(x.M, V);
       P += x.D;
-      P += Planar::Force<S>{{{dot(y.C[0], sigma), dot(y.C[1], sigma)}}, dot(y.C[2], sigma)};
+      for (int i = 0; i < 3; ++i) P[i] = plus_dot(P[i], y.C[i], sigma, open);
       Planar::Force<S> net{};
       net -= Planar::cross_force(V, P);
       S along;
@@ -148,82 +150,20 @@ void LoopSweeps<Planar, S, Rows, Momentum>::rates_inward(const In& q, const Righ
   const Vec2<double>& g = tree_->model->gravity;
   const bool falls = tree_->model->has_gravity;
   const S zero(0.0);
-  for (std::size_t k = 0; k < pins_.size(); ++k) {
-    Wrench& T = wrenches_[k];
-    if (falls)
-      T = {S(links[k].m * g[0]), S(links[k].m * g[1]), own_x_[k] * g[1] - own_y_[k] * g[0]};
-    else
-      T = {zero, zero, zero};
-  }
-  for (std::size_t i = 0; i < places_.size(); ++i) {
-    const Loop& l = loops_->loops[i];
-    const Place& s = places_[i];
-    if (l.is_coupler()) continue;
-    S Fx = zero, Fy = zero, c = zero, Nx = zero, Ny = zero, n = zero;
-    const S wa = l.a < 0 ? zero : pins_[static_cast<std::size_t>(l.a)].omega;
-    const S wb = l.b < 0 ? zero : pins_[static_cast<std::size_t>(l.b)].omega;
-    S ux = zero, uy = zero;
-    if (l.a >= 0) {
-      const LoopedPin<S, Rows>& A = pins_[static_cast<std::size_t>(l.a)];
-      ux = A.vx - wa * s.ay;
-      uy = A.vy + wa * s.ax;
-    }
-    S turning_a = wa, turning_b = wb;  // of the axes
-    if (l.motion >= 0) {
-      turning_a = turning_a + motion(l).turning_a;
-      turning_b = turning_b + motion(l).turning_b;
-    }
-    for (int row = 0; row < l.rows; ++row) {
-      const S x = S(impulse[l.row + row]);
-      Fx = Fx + x * s.Fx[row];
-      Fy = Fy + x * s.Fy[row];
-      c = c + x * s.c[row];
-      if (row >= l.n_points && !l.is_distance())
-        n = n + x * ((turning_b - turning_a) * s.turn[row]);
-    }
-    if (l.is_distance()) {  // F' = (u_A − u_B) σ / l₀
-      S bx = zero, by = zero;
-      if (l.b >= 0) {
-        const LoopedPin<S, Rows>& B = pins_[static_cast<std::size_t>(l.b)];
-        bx = B.vx - wb * (s.by - s.gap_y);
-        by = B.vy + wb * (s.bx - s.gap_x);
-      }
-      if (l.motion >= 0) {
-        bx = bx + moving_point(l).v[0];
-        by = by + moving_point(l).v[1];
-      }
-      const S scaled = (S(impulse[l.row])) * l.per_length;
-      Nx = scaled * (ux - bx);
-      Ny = scaled * (uy - by);
-    } else {
-      Nx = -(turning_b * Fy);
-      Ny = turning_b * Fx;
-    }
-    n = n + (ux * Fy - uy * Fx) - right.leak * c;
-    Nx = Nx - right.leak * Fx;
-    Ny = Ny - right.leak * Fy;
-    if (l.a >= 0) {
-      Wrench& T = wrenches_[static_cast<std::size_t>(l.a)];
-      T.fx = T.fx + Nx;
-      T.fy = T.fy + Ny;
-      T.fn = T.fn + (n + (s.ax * Ny - s.ay * Nx));
-    }
-    if (l.b >= 0) {
-      Wrench& T = wrenches_[static_cast<std::size_t>(l.b)];
-      T.fx = T.fx - Nx;
-      T.fy = T.fy - Ny;
-      T.fn = T.fn - (n + (s.bx * Ny - s.by * Nx));
-    }
-  }
-  Wrench from{};
+  Wrench T{};
   for (std::size_t k = pins_.size(); k-- > 0;) {
     const PlanarLink& l = links[k];
-    Wrench T = wrenches_[k];
-    if (!l.tip) {
-      T.fx = T.fx + from.fx;
-      T.fy = T.fy + from.fy;
-      T.fn = T.fn + from.fn;
+    if (l.tip) T = {zero, zero, zero};
+    if (falls) {
+      const S c = angles_.cosine(k), s = angles_.sine(k);
+      T.fx = T.fx + l.m * g[0];
+      T.fy = T.fy + l.m * g[1];
+      T.fn = T.fn + (c * (l.cx * g[1] - l.cy * g[0]) - s * (l.cy * g[1] + l.cx * g[0]));
     }
+    if (l.slot >= 0) add(T, wrench_slots_[static_cast<std::size_t>(l.slot)]);
+    const LoopPlan::Range ends = plan_->ends_of[k];
+    for (int i = ends.first; i < ends.last; ++i)
+      add_inertial_rates(plan_->ends[static_cast<std::size_t>(i)], right, impulse, T);
     if (l.pin) {
       const S turned = S(rate[l.u]) + T.fn;
       S own = l.sign < 0 ? -turned : turned;
@@ -238,16 +178,99 @@ void LoopSweeps<Planar, S, Rows, Momentum>::rates_inward(const In& q, const Righ
     if (l.parent < 0) continue;
     const LoopedPin<S, Rows>& w = pins_[k];
     T.fn = T.fn + (w.rx * T.fy - w.ry * T.fx);
-    if (l.first) {
-      from = T;
-    } else {
-      Wrench& to = wrenches_[static_cast<std::size_t>(l.parent)];
-      to.fx = to.fx + T.fx;
-      to.fy = to.fy + T.fy;
-      to.fn = to.fn + T.fn;
-    }
+    if (l.first) continue;
+    Wrench& to =
+        wrench_slots_[static_cast<std::size_t>(links[static_cast<std::size_t>(l.parent)].slot)];
+    if (l.opens)
+      to = T;
+    else
+      add(to, T);
   }
   if (plan_->couples() && right.leak != 0) leak_of_couplers<S>(*loops_, right.leak, impulse, rate);
+}
+
+/// N − κ w at one end of a loop: found at the end met first, for both.
+template <class S, int Rows, bool Momentum>
+template <class Out>
+MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::add_inertial_rates(
+    const LoopPlan::End& end, const RightSide<S>& right, const Out& impulse, Wrench& T) {
+  const auto loop = static_cast<std::size_t>(end.loop);
+  Wrench& other = wrenches_[loop];
+  if (!end.first) {
+    add(T, other);
+    return;
+  }
+  const Place& s = places_[loop];
+  const Loop& l = loops_->loops[loop];
+  const S zero(0.0);
+  const auto motion_of = [&](int body) MOMENTA_INLINED {
+    if (body < 0) return Planar::Motion<S>{};
+    const LoopedPin<S, Rows>& w = pins_[static_cast<std::size_t>(body)];
+    return Planar::Motion<S>{{{w.vx, w.vy}}, w.omega};
+  };
+  const Planar::Motion<S> A = motion_of(l.a), B = motion_of(l.b);
+  Wrench w, N;  // of the impulses on A about x_A, and its rate
+  if (ties_[loop].holds) {
+    const S x = S(impulse[l.row]), y = S(impulse[l.row + 1]);
+    w = {x * s.Fx - y * s.Fy, x * s.Fy + y * s.Fx, zero};
+    N = {-(B.w * w.fy), B.w * w.fx, zero};
+  } else {
+    force_of_rows(loop, right, impulse, A, B, w, N);
+  }
+  const S ux = A.v[0] - A.w * s.ay, uy = A.v[1] + A.w * s.ax;
+  N.fn = N.fn + (ux * w.fy - uy * w.fx);
+  N.fx = N.fx - right.leak * w.fx;
+  N.fy = N.fy - right.leak * w.fy;
+  const S on_a = N.fn + (s.ax * N.fy - s.ay * N.fx), on_b = N.fn + (s.bx * N.fy - s.by * N.fx);
+  if (end.on_a) {
+    add(T, {N.fx, N.fy, on_a});
+    other = {-N.fx, -N.fy, -on_b};
+  } else {
+    add(T, {-N.fx, -N.fy, -on_b});
+    other = {N.fx, N.fy, on_a};
+  }
+}
+
+/// w and N of a loop that is no tie; N without u_A × F, its couple with the leak.
+template <class S, int Rows, bool Momentum>
+template <class Out>
+void LoopSweeps<Planar, S, Rows, Momentum>::force_of_rows(
+    std::size_t loop, const RightSide<S>& right, const Out& impulse, const Planar::Motion<S>& of_a,
+    const Planar::Motion<S>& of_b, Wrench& w, Wrench& N) const {
+  const Loop& l = loops_->loops[loop];
+  const Place& s = places_[loop];
+  const S zero(0.0);
+  w = N = {zero, zero, zero};
+  if (l.is_coupler()) return;
+  S turning_a = of_a.w, turning_b = of_b.w;  // of the axes
+  if (l.motion >= 0) {
+    turning_a = turning_a + motion(l).turning_a;
+    turning_b = turning_b + motion(l).turning_b;
+  }
+  for (int row = 0; row < l.rows; ++row) {
+    const RowPlace r = row_place(loop, row);
+    const S x = S(impulse[l.row + row]);
+    w.fx = w.fx + x * r.Fx;
+    w.fy = w.fy + x * r.Fy;
+    w.fn = w.fn + x * r.c;
+    if (row >= l.n_points && !l.is_distance()) N.fn = N.fn + x * ((turning_b - turning_a) * r.turn);
+  }
+  N.fn = N.fn - right.leak * w.fn;
+  if (!l.is_distance()) {
+    N.fx = -(turning_b * w.fy);
+    N.fy = turning_b * w.fx;
+    return;
+  }
+  // F' = (u_A − u_B) σ / l₀
+  const Vec2<S> gap = gap_of(l, s);
+  S bx = of_b.v[0] - of_b.w * (s.by - gap[1]), by = of_b.v[1] + of_b.w * (s.bx - gap[0]);
+  if (l.motion >= 0) {
+    bx = bx + moving_point(l).v[0];
+    by = by + moving_point(l).v[1];
+  }
+  const S scaled = S(impulse[l.row]) * l.per_length;
+  N.fx = scaled * ((of_a.v[0] - of_a.w * s.ay) - bx);
+  N.fy = scaled * ((of_a.v[1] + of_a.w * s.ax) - by);
 }
 
 template <class S, int Rows, bool Momentum>
@@ -258,8 +281,8 @@ void LoopSweeps<Planar, S, Rows, Momentum>::each_pivot(Report&& report) const {
     if (pairs_in_registers && plan_->pair[i]) {
       const Pair& p = pairs_[i];
       const bool swapped = value_of(p.swap) > 0.5;
-      report(l.row + (swapped ? 1 : 0), value_of(p.w_a), value_of(p.tau));
-      report(l.row + (swapped ? 0 : 1), value_of(p.w_b), value_of(p.tau));
+      report(l.row + (swapped ? 1 : 0), value_of(p.pivots.w_a), value_of(p.pivots.tau));
+      report(l.row + (swapped ? 0 : 1), value_of(p.pivots.w_b), value_of(p.pivots.tau));
     } else {
       for (int j = 0; j < l.rows; ++j) {
         const Row& row = rows_[static_cast<std::size_t>(l.row + j)];

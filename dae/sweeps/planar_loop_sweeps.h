@@ -26,8 +26,8 @@
 
 #include <momenta/core/kernel/planar_places.h>
 #include <momenta/dae/loop/loops_in_time.h>
+#include <momenta/dae/sweeps/closed_pair.h>
 #include <momenta/dae/sweeps/couplings.h>
-#include <momenta/dae/sweeps/front.h>
 #include <momenta/dae/sweeps/loop_plan.h>
 #include <momenta/dae/sweeps/right_side.h>
 
@@ -54,6 +54,7 @@ template <class S, int Rows, bool Momentum>
 class LoopSweeps<Planar, S, Rows, Momentum> : PlanarPlaces<S> {
   using Base = PlanarPlaces<S>;
   using Base::angles_, Base::joints_, Base::stuck_, Base::tree_;
+  using Column = Lanes<S, Rows>;
   using Blocks = Front<S, Rows, 3>;
   using Row = ClosedRow<S, Rows, 3>;
   using Pair = ClosedPair<S, Rows, 3>;
@@ -70,6 +71,11 @@ class LoopSweeps<Planar, S, Rows, Momentum> : PlanarPlaces<S> {
   bool operator()(const S& t, const In& q, const In& x, const In& tau, const RightSide<S>& right,
                   Out u, Out sigma, Out rate);
 
+  /// What an evaluation goes through in memory.
+  static std::size_t bytes(const PlanarTree& tree, const LoopModel<Planar>& loops) {
+    return tree.links.size() * (sizeof(LoopedPin<S, Rows>) + 3 * sizeof(S)) +
+           loops.loops.size() * (sizeof(Place) + sizeof(Pair) + sizeof(Wrench));
+  }
   using Base::stuck;
   static bool weak_leg() { return false; }  ///< no leg is folded in a plane
   /// Pivots of the last solution: calls report(row of Φ, w, τ).
@@ -77,12 +83,23 @@ class LoopSweeps<Planar, S, Rows, Momentum> : PlanarPlaces<S> {
   void each_pivot(Report&& report) const;
 
  private:
-  /// Where a loop stands: the points it ties, seen from both bodies, and its rows.
+  using Loop = LoopModel<Planar>::Loop;
+  using Motion = LoopModel<Planar>::Motion;
+
+  /// A loop of two point rows that no drive moves: all that placing it takes.
+  struct Tie {
+    double ax = 0, ay = 0, ex = 0, ey = 0;  ///< x_A, first axis; body axes
+    int a = -1, b = -1;
+    bool holds = false;  ///< false: any other loop
+  };
+  /// Where a loop stands, ground axes.
   struct Place {
     S ax, ay, bx, by;  ///< x_A − O_A and x_A − O_B
-    S gap_x, gap_y;    ///< D = x_A − x_B
-    S Fx[3], Fy[3], c[3];
-    S turn[3];  ///< a_i · b_j of an axis row
+    S Fx, Fy;          ///< of a pair: first axis; the second stands across it
+  };
+  /// A row's unit impulse on body A: force at x_A, couple; of an axis row a_i · b_j too.
+  struct RowPlace {
+    S Fx, Fy, c, turn;
   };
   /// Of a loop with drives, ground axes: velocity and acceleration of x_B on B.
   struct MovingPoint {
@@ -92,33 +109,45 @@ class LoopSweeps<Planar, S, Rows, Momentum> : PlanarPlaces<S> {
     PlanarCargo<S> cargo;
     Blocks blocks;
   };
-  using Loop = LoopModel<Planar>::Loop;
-  using Motion = LoopModel<Planar>::Motion;
 
   template <class In>
   void place_bodies(const In& x, const RightSide<S>& right);
-  void place_loops();
-  __attribute__((noinline)) void place_moving(const Loop& l);
+  MOMENTA_INLINE void place_ends(std::size_t k, const S& x, const S& y);
+  __attribute__((noinline)) void place_other_loops();
+  void place_rows(const Loop& l, std::size_t loop);
+  void place_moving(const Loop& l);
   template <class In>
   __attribute__((noinline)) void place_couplers(const In& q, const In& x,
                                                 const RightSide<S>& right);
-  __attribute__((noinline)) S moving_rate(const Loop& l, const Place& s, int row) const;
-  __attribute__((noinline)) S moving_bias(const Loop& l, const Place& s, int row,
-                                          const RightSide<S>& right, const S& phi) const;
+  Vec2<S> in_ground(int body, const Vec2<double>& v) const;
+  /// D = x_A − x_B
+  Vec2<S> gap_of(const Loop& l, const Place& s) const {
+    return Vec2<S>{{s.bx, s.by}} - in_ground(l.b, l.at_b);
+  }
+  RowPlace row_place(std::size_t loop, int row) const;
+  S moving_rate(const Loop& l, const Place& s, const RowPlace& r, int row) const;
+  S moving_bias(const Loop& l, const Place& s, const RowPlace& r, int row,
+                const RightSide<S>& right, const S& phi) const;
   const Motion& motion(const Loop& l) const {
     return loops_->motions[static_cast<std::size_t>(l.motion)];
   }
   const MovingPoint& moving_point(const Loop& l) const {
     return moving_[static_cast<std::size_t>(l.motion)];
   }
-  S row_bias(const Loop& l, const Place& s, int row, const RightSide<S>& right) const;
+  S row_bias(std::size_t loop, int row, const RightSide<S>& right) const;
   template <class In>
   bool inward(const In& r, const RightSide<S>& right);
   MOMENTA_INLINE void enter(std::size_t k, const RightSide<S>& right, PlanarCargo<S>& a, Blocks& o);
+  __attribute__((noinline)) void enter_rows(const LoopPlan::End& end, const RightSide<S>& right,
+                                            Open& open);
   template <bool Moves>
-  MOMENTA_INLINE void close(const LoopPlan::Range& range, PlanarCargo<S>& a, Blocks& o,
-                            double fade);
-  __attribute__((noinline)) void close_any(int loop, Open& open, double fade);
+  MOMENTA_INLINE void close(const LoopPlan::Range& range, PlanarCargo<S>& a, Blocks& o, double fade,
+                            LaneGroups all);
+  __attribute__((noinline)) void close_any(int loop, Open& open, double fade, LaneGroups all);
+  template <class In>
+  __attribute__((noinline)) S couple(std::size_t k, const In& r, const RightSide<S>& right,
+                                     Blocks& o);
+  __attribute__((noinline)) void uncouple(std::size_t k, Column& c);
   template <class In>
   __attribute__((noinline)) bool general_inward(std::size_t k, const In& r,
                                                 const RightSide<S>& right, Open& open);
@@ -126,36 +155,56 @@ class LoopSweeps<Planar, S, Rows, Momentum> : PlanarPlaces<S> {
   void outward(const RightSide<S>& right, Out u, Out impulse, Out rate);
   template <bool Moves, class Out>
   MOMENTA_INLINE void solve_loops(const LoopPlan::Range& range, const RightSide<S>& right,
-                                  const Planar::Motion<S>& motion, Lanes<S, Rows>& sigma, Out& out);
+                                  const Planar::Motion<S>& motion, Column& sigma, Out& out);
   template <class Out>
   __attribute__((noinline)) void general_outward(std::size_t k, bool rates, Out u, Out rate,
-                                                 PlanarMotion<S>& m, const Lanes<S, Rows>& sigma);
+                                                 PlanarMotion<S>& m, const Column& sigma);
+  struct Wrench {
+    S fx, fy, fn;
+  };
+  static MOMENTA_INLINE void add(Wrench& a, const Wrench& b) {
+    a.fx = a.fx + b.fx;
+    a.fy = a.fy + b.fy;
+    a.fn = a.fn + b.fn;
+  }
   template <class In, class Out>
   void rates_inward(const In& q, const RightSide<S>& right, const Out& u, const Out& impulse,
                     Out rate);
+  template <class Out>
+  MOMENTA_INLINE void add_inertial_rates(const LoopPlan::End& end, const RightSide<S>& right,
+                                         const Out& impulse, Wrench& T);
+  template <class Out>
+  __attribute__((noinline)) void force_of_rows(std::size_t loop, const RightSide<S>& right,
+                                               const Out& impulse, const Planar::Motion<S>& of_a,
+                                               const Planar::Motion<S>& of_b, Wrench& w,
+                                               Wrench& N) const;
 
   LoopsInTime<Planar> in_time_;
   const LoopModel<Planar>* loops_;  ///< points and axes in the frames of the links, at the time
   const LoopPlan* plan_;
+  OpenLanes lanes_;
   std::vector<LoopedPin<S, Rows>> pins_;
   std::vector<LoopedJoint<S, Rows>> looped_;
-  std::vector<Place> places_;
-  std::vector<MovingPoint> moving_;                     ///< by motion
-  std::vector<S> coupled_;                              ///< by loop: d of a coupler
-  std::vector<S> origin_x_, origin_y_, own_x_, own_y_;  ///< O_K; own first moments
+  std::vector<Tie> ties_;            ///< by loop
+  std::vector<int> others_;          ///< loops that are no tie
+  std::vector<Place> places_;        ///< by loop
+  std::vector<RowPlace> row_at_;     ///< by row of Φ; not of pairs
+  std::vector<MovingPoint> moving_;  ///< by motion
+  std::vector<S> coupled_;           ///< by loop: d of a coupler
+  std::vector<Vec2<S>> origins_;     ///< by body, where loops are no ties: O_K
+  std::vector<Vec2<S>> origin_slots_;
   std::vector<Open> slots_;
   struct Outward {
     PlanarMotion<S> motion;
-    Lanes<S, Rows> sigma;
+    Column sigma;
   };
   std::vector<Outward> outward_slots_;
-  struct Wrench {
-    S fx, fy, fn;
-  };
-  std::vector<Wrench> wrenches_;   ///< T, N and leak
+  std::vector<Wrench> wrenches_;  ///< by loop, on its earlier body: N and leak
+  std::vector<Wrench> wrench_slots_;
+  Blocks front_, ground_;
   std::vector<Row> rows_;          ///< by row of Φ, in closing order within a loop
-  const S* compliance_ = nullptr;  ///< of the call under way: right.compliance
   std::vector<Pair> pairs_;        ///< by loop
+  const S* compliance_ = nullptr;  ///< of the call under way: right.compliance
 };
 
 template <class S, int Rows, bool Momentum>
@@ -166,20 +215,33 @@ LoopSweeps<Planar, S, Rows, Momentum>::LoopSweeps(const PlanarTree& tree,
       in_time_(loops),
       loops_(&loops),
       plan_(&plan),
+      lanes_(plan, parents_of(tree), rows_of(loops)),
       pins_(tree.links.size()),
       looped_(static_cast<std::size_t>(tree.records)),
+      ties_(loops.loops.size()),
       places_(loops.loops.size()),
+      row_at_(static_cast<std::size_t>(loops.rows)),
       moving_(loops.motions.size()),
       coupled_(plan.couples() ? loops.loops.size() : 0),
-      origin_x_(tree.links.size()),
-      origin_y_(tree.links.size()),
-      own_x_(tree.links.size()),
-      own_y_(tree.links.size()),
+      origin_slots_(static_cast<std::size_t>(tree.slots)),
       slots_(static_cast<std::size_t>(tree.slots)),
       outward_slots_(static_cast<std::size_t>(tree.slots)),
-      wrenches_(tree.links.size()),
+      wrenches_(loops.loops.size()),
+      wrench_slots_(static_cast<std::size_t>(tree.slots)),
       rows_(static_cast<std::size_t>(loops.rows)),
-      pairs_(loops.loops.size()) {}
+      pairs_(loops.loops.size()) {
+  for (std::size_t i = 0; i < ties_.size(); ++i) {
+    const Loop& l = loops.loops[i];
+    if (!plan.pair[i] || !pairs_in_registers || l.motion >= 0 || l.a == l.b) {
+      others_.push_back(static_cast<int>(i));
+      continue;
+    }
+    ties_[i] = {l.at_a[0], l.at_a[1], l.axis_b[0][0], l.axis_b[0][1], l.a, l.b, true};
+    places_[i] = {S(l.at_a[0]),      S(l.at_a[1]),     S(0.0), S(0.0),
+                  S(l.axis_b[0][0]), S(l.axis_b[0][1])};  // of an end on the ground for good
+  }
+  if (!others_.empty()) origins_.resize(tree.links.size());
+}
 
 template <class S, int Rows, bool Momentum>
 template <class In, class Out>
@@ -191,7 +253,7 @@ bool LoopSweeps<Planar, S, Rows, Momentum>::operator()(const S& t, const In& q, 
   compliance_ = right.compliance;
   place_bodies(x, right);
   loops_ = &in_time_.at(value_of(t));
-  place_loops();
+  if (!others_.empty()) place_other_loops();
   if (plan_->couples()) place_couplers(q, x, right);
   if (!inward(Momentum ? x : tau, right)) return false;
   outward(right, u, sigma, rate);
@@ -199,68 +261,9 @@ bool LoopSweeps<Planar, S, Rows, Momentum>::operator()(const S& t, const In& q, 
   return true;
 }
 
-/// r, O, own first moments; in the acceleration form the velocities of all bodies.
-template <class S, int Rows, bool Momentum>
-template <class In>
-void LoopSweeps<Planar, S, Rows, Momentum>::place_bodies(const In& x, const RightSide<S>& right) {
-  const PlanarLink* links = tree_->links.data();
-  const std::size_t n = pins_.size();
-  for (std::size_t k = 0; k < n; ++k) {
-    const PlanarLink& l = links[k];
-    LoopedPin<S, Rows>& w = pins_[k];
-    const Vec2<S> r = l.pin ? Base::step(l) : joints_[static_cast<std::size_t>(l.record)].edge.r;
-    w.rx = r[0];
-    w.ry = r[1];
-    const auto parent = static_cast<std::size_t>(l.parent);
-    if (l.parent < 0) {
-      origin_x_[k] = w.rx;
-      origin_y_[k] = w.ry;
-    } else {
-      origin_x_[k] = origin_x_[parent] + w.rx;
-      origin_y_[k] = origin_y_[parent] + w.ry;
-    }
-    const S c = angles_.cosine(k), s = angles_.sine(k);
-    own_x_[k] = l.cx * c - l.cy * s;
-    own_y_[k] = l.cx * s + l.cy * c;
-    if constexpr (!Momentum) {
-      S vx(0.0), vy(0.0), omega(0.0);
-      if (l.parent >= 0) {
-        const LoopedPin<S, Rows>& from = pins_[parent];
-        omega = from.omega;
-        vx = from.vx - omega * w.ry;
-        vy = from.vy + omega * w.rx;
-      }
-      if (l.pin) {
-        omega = l.sign < 0 ? omega - x[l.u] : omega + x[l.u];
-      } else {
-        const auto& b = Base::body(k);
-        auto& j = joints_[static_cast<std::size_t>(l.record)];
-        Planar::Motion<S> V{}, product{};
-        const S own = b.drive >= 0 ? j.drive_rate : b.nv == 1 ? S(x[b.u]) : S(0.0);
-        Joint<Planar>::add_motion(b, j.edge, &own, V);
-        omega += V.w;
-        vx += V.v[0];
-        vy += V.v[1];
-        // Coriolis 2 ω × E u, and what a drive prescribes.
-        product.v = cross(S(2.0) * omega, V.v);
-        if (b.drive >= 0) Joint<Planar>::add_motion(b, j.edge, &j.drive_acceleration, product);
-        looped_[static_cast<std::size_t>(l.record)].V = product;
-      }
-      w.vx = vx;
-      w.vy = vy;
-      w.omega = omega;
-    } else if (!l.pin) {
-      const auto& b = Base::body(k);
-      const auto& j = joints_[static_cast<std::size_t>(l.record)];
-      Planar::Motion<S> V{};
-      if (b.drive >= 0 && right.drives) Joint<Planar>::add_motion(b, j.edge, &j.drive_rate, V);
-      looped_[static_cast<std::size_t>(l.record)].V = V;
-    }
-  }
-}
-
 }  // namespace momenta
 
 #include <momenta/dae/sweeps/planar_loop_inward.h>
 #include <momenta/dae/sweeps/planar_loop_outward.h>
+#include <momenta/dae/sweeps/planar_loop_place.h>
 #include <momenta/dae/sweeps/planar_loop_rows.h>

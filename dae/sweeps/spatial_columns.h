@@ -1,6 +1,7 @@
 #pragma once
 // The columns C of open loops on their way to the parent: each is a wrench, so the screws of the
-// edge turn and shift all of them as they do one force, eq. (22).
+// edge turn and shift all of them as they do one force, eq. (22). Six parts at a time: a part holds
+// as many lanes as a register, or one lane of a pack.
 
 #include <momenta/core/kernel/link.h>
 #include <momenta/core/kernel/spatial.h>
@@ -9,38 +10,40 @@
 namespace momenta {
 
 /// One screw about axis X: turn (c, s), shift t.
-template <int X, class Column, class C>
-MOMENTA_INLINE void screw_columns(Column* C6, const C& c, const C& s, const C& t) {
+template <int X, class Part>
+MOMENTA_INLINE void screw_columns(Part* C6, const Part& c, const Part& s, const Part& t) {
   constexpr int Y = (X + 1) % 3, Z = (X + 2) % 3;
-  const auto turn = [&](Column* v) {
-    const Column y = v[Y] * c - v[Z] * s;
+  const auto turn = [&](Part* v) MOMENTA_INLINED {
+    const Part y = v[Y] * c - v[Z] * s;
     v[Z] = v[Y] * s + v[Z] * c;
     v[Y] = y;
   };
   turn(C6);
   turn(C6 + 3);
-  C6[3 + Y] -= C6[Z] * t;
-  C6[3 + Z] += C6[Y] * t;
+  C6[3 + Y] = C6[3 + Y] - C6[Z] * t;
+  C6[3 + Z] = C6[3 + Z] + C6[Y] * t;
 }
 
 /// The constant screws of an edge, from the joint to the parent's frame.
-template <class S, class Column>
-MOMENTA_INLINE void columns_to_parent(const Spatial::EdgeConstants& e, Column* C6) {
-  if (e.about_y) screw_columns<1>(C6, S(e.cos_beta), S(e.sin_beta), S(0.0));
-  if (e.about_x) screw_columns<0>(C6, S(e.cos_alpha), S(e.sin_alpha), S(e.a));
-  if (e.about_z) screw_columns<2>(C6, S(e.cos_gamma), S(e.sin_gamma), S(e.delta));
+template <class Part>
+MOMENTA_INLINE void columns_to_parent(const Spatial::EdgeConstants& e, Part* C6) {
+  if (e.about_y) screw_columns<1>(C6, Part(e.cos_beta), Part(e.sin_beta), Part(0.0));
+  if (e.about_x) screw_columns<0>(C6, Part(e.cos_alpha), Part(e.sin_alpha), Part(e.a));
+  if (e.about_z) screw_columns<2>(C6, Part(e.cos_gamma), Part(e.sin_gamma), Part(e.delta));
 }
 
 /// Rotation R and then step r of a joint that moves freely.
-template <class S, class Column>
-void columns_to_parent(const Mat3<S>& R, const Vec3<S>& r, Column* C6) {
-  for (Column* v : {C6, C6 + 3}) {
-    const Column x = v[0], y = v[1], z = v[2];
-    for (int i = 0; i < 3; ++i) v[i] = x * R(i, 0) + y * R(i, 1) + z * R(i, 2);
+template <class Here, class S>
+MOMENTA_INLINE void columns_to_parent(const Mat3<S>& R, const Vec3<S>& r, typename Here::Part* C6) {
+  using Part = typename Here::Part;
+  for (Part* v : {C6, C6 + 3}) {
+    const Part x = v[0], y = v[1], z = v[2];
+    for (int i = 0; i < 3; ++i)
+      v[i] = x * Here::all(R(i, 0)) + y * Here::all(R(i, 1)) + z * Here::all(R(i, 2));
   }
   for (int i = 0; i < 3; ++i) {
     const int j = (i + 1) % 3, k = (i + 2) % 3;
-    C6[3 + i] += C6[k] * r[j] - C6[j] * r[k];
+    C6[3 + i] = C6[3 + i] + (C6[k] * Here::all(r[j]) - C6[j] * Here::all(r[k]));
   }
 }
 

@@ -85,7 +85,7 @@ void LoopSweeps<Spatial, S, Rows, Momentum>::fold(std::size_t root, const RightS
   }
   for (int i = range.first; i < range.last; ++i) {
     const int loop = plan_->closings[static_cast<std::size_t>(i)];
-    close(loop, leg, right.fade);
+    close(loop, leg, right.fade, lanes_.fronts[root].open);
     const Loop& l = loops_->loops[static_cast<std::size_t>(loop)];
     for (int row = 0; row < l.rows; ++row) {
       const Row& closed = rows_[static_cast<std::size_t>(l.row + row)];
@@ -96,9 +96,11 @@ void LoopSweeps<Spatial, S, Rows, Momentum>::fold(std::size_t root, const RightS
 }
 
 template <class S, int Rows, bool Momentum>
-void LoopSweeps<Spatial, S, Rows, Momentum>::close(int loop, Carried& a, double fade) {
+void LoopSweeps<Spatial, S, Rows, Momentum>::close(int loop, Carried& a, double fade,
+                                                   LaneGroups all) {
   const Loop& l = loops_->loops[static_cast<std::size_t>(loop)];
   const int points = l.first_rows();
+  a.blocks.begin(false, ~all);
   if (compliance_)
     soften(a.blocks, plan_->lane[static_cast<std::size_t>(loop)], l.rows, compliance_ + l.row);
   close_loop(a.blocks, plan_->lane[static_cast<std::size_t>(loop)], points, l.rows - points, fade,
@@ -112,7 +114,9 @@ bool LoopSweeps<Spatial, S, Rows, Momentum>::inward(const In& r, const RightSide
   Carried a{}, ground{};
   for (std::size_t k = pins_.size(); k-- > 0;) {
     const Link& l = links[k];
-    if (l.tip) a = {};
+    const OpenLanes::Front& front = lanes_.fronts[k];
+    if (l.tip) a.cargo = {};
+    a.blocks.begin(l.tip, front.fresh);
     add_body(a.cargo.M, l);
     if constexpr (Momentum) {
       a.cargo.Gx = a.cargo.Gx + l.moment[0];
@@ -135,13 +139,13 @@ bool LoopSweeps<Spatial, S, Rows, Momentum>::inward(const In& r, const RightSide
     if (l.slot >= 0) {
       const Carried& slot = slots_[static_cast<std::size_t>(l.slot)];
       add<Momentum>(a.cargo, slot.cargo);
-      a.blocks.add(slot.blocks);
+      a.blocks.add(slot.blocks, front.slot);
     }
     if (plan_->takes_legs[k]) add<Momentum>(a.cargo, legs_[k]);
     enter(k, right, a);
     const LoopPlan::Range closing = plan_->closings_of[k];
     for (int i = closing.first; i < closing.last; ++i)
-      close(plan_->closings[static_cast<std::size_t>(i)], a, right.fade);
+      close(plan_->closings[static_cast<std::size_t>(i)], a, right.fade, front.all);
     if (!(l.kind == LinkKind::pin    ? pin_inward(k, r, right, a)
           : l.kind == LinkKind::ball ? ball_inward(k, r, a)
                                      : any_inward(k, r, right, a))) {
@@ -151,19 +155,20 @@ bool LoopSweeps<Spatial, S, Rows, Momentum>::inward(const In& r, const RightSide
     if (l.parent < 0 && plan_->folded_onto[k] >= 0) {
       fold(k, right, a);
     } else if (l.parent < 0) {
-      ground.blocks.add_at_ground(a.blocks);
+      ground.blocks.add_at_ground(a.blocks, front.open, front.ground_fresh, front.ground);
       const LoopPlan::Range last = plan_->ground_closings_of[k];
       for (int i = last.first; i < last.last; ++i)
-        close(plan_->closings[static_cast<std::size_t>(i)], ground, right.fade);
+        close(plan_->closings[static_cast<std::size_t>(i)], ground, right.fade, front.ground);
     } else if (!l.first) {
-      Carried& slot =
-          slots_[static_cast<std::size_t>(links[static_cast<std::size_t>(l.parent)].slot)];
+      const auto parent = static_cast<std::size_t>(l.parent);
+      Carried& slot = slots_[static_cast<std::size_t>(links[parent].slot)];
       if (l.opens) {
-        slot = a;
+        slot.cargo = a.cargo;
+        slot.blocks.begin(true, lanes_.fronts[parent].slot);
       } else {
         add<Momentum>(slot.cargo, a.cargo);
-        slot.blocks.add(a.blocks);
       }
+      slot.blocks.add(a.blocks, front.open);
     }
   }
   return true;
@@ -200,24 +205,52 @@ bool LoopSweeps<Spatial, S, Rows, Momentum>::pin_inward(std::size_t k, const In&
   left.Gx = w.Gx = m.Gx;
   left.Gy = w.Gy = m.Gy;
   left.Gz = m.Gz;
+  if constexpr (!Momentum)
+    if (l.parent < 0) {  // on the ground c is its fall
+      const Vec3<double>& g = tree_->weight[k];
+      w.c = {{{S(-g[0]), S(-g[1]), S(-g[2])}}, {}};
+    }
+  const S cosine = angles_.cosine(k), sine = angles_.sine(k);
   // The loops.
-  const Column c = o.C[5];
-  w.g = c * inverse;
-  o.d += c * w.y0;
-  o.scale += (o.C[3] * o.C[3] + o.C[4] * o.C[4] + c * c) * inverse;
-  for (int i = 0; i < Rows; ++i) o.W[i] += w.g * c[i];
-  o.C[0] -= c * w.h.fx;
-  o.C[1] -= c * w.h.fy;
-  o.C[2] -= c * w.h.fz;
-  o.C[3] -= c * w.h.nx;
-  o.C[4] -= c * w.h.ny;
-  o.C[5] = {};
+  const LaneGroups open = lanes_.fronts[k].open;
+  o.eliminate(o.C[5], inverse, w.y0, open, 0, w.g);
+  Column couplers{};
   if (couples)
     each_coupling(*plan_, k, [&](const LoopPlan::Coupling& j, std::size_t, int lane) {
-      o.C[5].add(lane, S(-j.ratio));
+      couplers.add(lane, S(-j.ratio));
     });
+  const auto& edge = body(k).edge;
+  each_open<S, Rows>(open, [&](auto i) MOMENTA_INLINED {
+    using Part = typename Column::Part;
+    Part C[6];
+    each<6>([&](auto j) MOMENTA_INLINED { C[j] = o.C[j].v[i]; });
+    const Part c = C[5];
+    o.scale.v[i] = o.scale.v[i] + (C[3] * C[3] + C[4] * C[4] + c * c) * Column::all(inverse);
+    C[0] = C[0] - c * Column::all(w.h.fx);
+    C[1] = C[1] - c * Column::all(w.h.fy);
+    C[2] = C[2] - c * Column::all(w.h.fz);
+    C[3] = C[3] - c * Column::all(w.h.nx);
+    C[4] = C[4] - c * Column::all(w.h.ny);
+    C[5] = couplers.v[i];
+    screw_columns<2>(C, Column::all(cosine), Column::all(sine), Part(l.d));
+    if constexpr (Momentum) {
+      w.C[0].v[i] = C[0];
+      w.C[1].v[i] = C[1];
+      w.C[2].v[i] = C[3];
+      w.C[3].v[i] = C[4];
+    } else {
+      // d' += C'ᵀ c
+      const Motion& given = w.c;
+      o.d.v[i] = o.d.v[i] + (C[0] * Column::all(given.v[0]) + C[1] * Column::all(given.v[1]) +
+                             C[2] * Column::all(given.v[2]) + C[3] * Column::all(given.w[0]) +
+                             C[4] * Column::all(given.w[1]));
+    }
+    if (l.parent >= 0) {
+      columns_to_parent(edge, C);
+      each<6>([&](auto j) MOMENTA_INLINED { o.C[j].v[i] = C[j]; });
+    }
+  });
   // The pin's screw.
-  const S cosine = angles_.cosine(k), sine = angles_.sine(k);
   turn_and_shift_z(left.M, cosine, sine, l.d);
   w.M = left.M;
   S x = cosine * left.fx - sine * left.fy;
@@ -229,23 +262,14 @@ bool LoopSweeps<Spatial, S, Rows, Momentum>::pin_inward(std::size_t k, const In&
   x = cosine * left.Gx - sine * left.Gy;
   left.Gy = sine * left.Gx + cosine * left.Gy;
   left.Gx = x;
-  screw_columns<2>(o.C, cosine, sine, S(l.d));
   if constexpr (Momentum) {
     w.Dfx = left.fx;
     w.Dfy = left.fy;
     w.Dnx = left.nx;
     w.Dny = left.ny;
-    w.C[0] = o.C[0];
-    w.C[1] = o.C[1];
-    w.C[2] = o.C[3];
-    w.C[3] = o.C[4];
     if (l.parent < 0) return true;
   } else {
-    // D' += M'c, d' += C'ᵀc; on the ground c is its fall.
-    if (l.parent < 0) {
-      const Vec3<double>& g = tree_->weight[k];
-      w.c = {{{S(-g[0]), S(-g[1]), S(-g[2])}}, {}};
-    }
+    // D' += M'c
     const Reduced<S>& M = left.M;
     const Vec3<S>&v = w.c.v, &n = w.c.w;
     left.fx += M.Axx * v[0] + M.Axy * v[1] + M.Axz * v[2] + M.Hxx * n[0] + M.Hxy * n[1];
@@ -253,11 +277,9 @@ bool LoopSweeps<Spatial, S, Rows, Momentum>::pin_inward(std::size_t k, const In&
     left.fz += M.Axz * v[0] + M.Ayz * v[1] + M.Azz * v[2] + M.Hzx * n[0] + M.Hzy * n[1];
     left.nx += M.Hxx * v[0] + M.Hyx * v[1] + M.Hzx * v[2] + M.Ixx * n[0] + M.Ixy * n[1];
     left.ny += M.Hxy * v[0] + M.Hyy * v[1] + M.Hzy * v[2] + M.Ixy * n[0] + M.Iyy * n[1];
-    o.d += o.C[0] * v[0] + o.C[1] * v[1] + o.C[2] * v[2] + o.C[3] * n[0] + o.C[4] * n[1];
     if (l.parent < 0) return true;
   }
-  carry_any<Momentum>(l, body(k).edge, left, m);
-  columns_to_parent<S>(body(k).edge, o.C);
+  carry_any<Momentum>(l, edge, left, m);
   return true;
 }
 
@@ -274,31 +296,44 @@ bool LoopSweeps<Spatial, S, Rows, Momentum>::ball_inward(std::size_t k, const In
   w.G = {{m.Gx, m.Gy, m.Gz}};
   w.Df = Vec3<S>{{m.Dfx, m.Dfy, m.Dfz}} + w.pivot.remainder(w.p - Vec3<S>{{m.Dnx, m.Dny, m.Dnz}});
   // L⁻¹ c, then as three pins.
-  Column z[3];
-  z[0] = o.C[3];
-  z[1] = o.C[4] - z[0] * w.pivot.l10;
-  z[2] = o.C[5] - z[0] * w.pivot.l20 - z[1] * w.pivot.l21;
-  const S inverse[3] = {w.pivot.i0, w.pivot.i1, w.pivot.i2};
-  for (int i = 0; i < 3; ++i) {
-    w.g[i] = z[i] * inverse[i];
-    o.d += w.g[i] * w.pivot.e[i];
-    o.scale += z[i] * w.g[i];
-    for (int j = 0; j < Rows; ++j) o.W[j] += w.g[i] * z[i][j];
-    for (int j = 0; j < 3; ++j) o.C[j] -= z[i] * w.pivot.s(j, i);
-    o.C[3 + i] = {};
-  }
-  for (int i = 0; i < 3; ++i) w.C[i] = o.C[i];
-  Vec3<S> force = w.Df;
-  if constexpr (!Momentum) {
+  if constexpr (!Momentum)
     if (l.parent < 0) {
       const auto& g = tree_->model->gravity;
       w.c.v = transpose_times(w.R, Vec3<S>{{S(-g[0]), S(-g[1]), S(-g[2])}});
     }
-    force += w.A * w.c.v;
-    o.d += o.C[0] * w.c.v[0] + o.C[1] * w.c.v[1] + o.C[2] * w.c.v[2];
-  }
-  if (l.parent < 0) return true;
+  const LaneGroups open = lanes_.fronts[static_cast<std::size_t>(k)].open;
   const auto& at = tree_->balls[record].origin;
+  const Vec3<S> step{{S(at[0]), S(at[1]), S(at[2])}};
+  const auto times = [](const auto& part, const S& x)
+                         MOMENTA_INLINED { return part * Column::all(x); };
+  Column z[3];
+  each_open<S, Rows>(open, [&](auto i) MOMENTA_INLINED {
+    z[0].v[i] = o.C[3].v[i];
+    z[1].v[i] = o.C[4].v[i] - times(z[0].v[i], w.pivot.l10);
+    z[2].v[i] = o.C[5].v[i] - times(z[0].v[i], w.pivot.l20) - times(z[1].v[i], w.pivot.l21);
+  });
+  const S inverse[3] = {w.pivot.i0, w.pivot.i1, w.pivot.i2};
+  for (int j = 0; j < 3; ++j)
+    o.eliminate(z[j], inverse[j], inverse[j] * w.pivot.e[j], open, 0, w.g[j]);
+  each_open<S, Rows>(open, [&](auto i) MOMENTA_INLINED {
+    typename Column::Part C[6];
+    for (int j = 0; j < 3; ++j) {
+      const auto zj = z[j].v[i];
+      o.scale.v[i] = o.scale.v[i] + zj * w.g[j].v[i];
+    }
+    for (int j = 0; j < 3; ++j) {
+      C[j] = o.C[j].v[i] - (times(z[0].v[i], w.pivot.s(j, 0)) + times(z[1].v[i], w.pivot.s(j, 1)) +
+                            times(z[2].v[i], w.pivot.s(j, 2)));
+      w.C[j].v[i] = C[j];
+      C[3 + j] = typename Column::Part(0.0);
+      if constexpr (!Momentum) o.d.v[i] = o.d.v[i] + times(C[j], w.c.v[j]);
+    }
+    columns_to_parent<Column>(w.R, step, C);
+    each<6>([&](auto j) MOMENTA_INLINED { o.C[j].v[i] = C[j]; });
+  });
+  Vec3<S> force = w.Df;
+  if constexpr (!Momentum) force += w.A * w.c.v;
+  if (l.parent < 0) return true;
   carry_ball(at, w.R, w.A, force, w.p, m);
   if constexpr (Momentum) {
     const Vec3<S> G = w.R * w.G;
@@ -306,7 +341,6 @@ bool LoopSweeps<Spatial, S, Rows, Momentum>::ball_inward(std::size_t k, const In
     m.Gy = G[1];
     m.Gz = G[2];
   }
-  columns_to_parent(w.R, Vec3<S>{{S(at[0]), S(at[1]), S(at[2])}}, o.C);
   return true;
 }
 
@@ -320,6 +354,8 @@ bool LoopSweeps<Spatial, S, Rows, Momentum>::any_inward(std::size_t k, const In&
   auto& x = joints_[static_cast<std::size_t>(l.record)];
   auto& y = any_[static_cast<std::size_t>(l.record)];
   Blocks& o = a.blocks;
+  const LaneGroups open = lanes_.fronts[k].open;
+  o.begin(false, ~open);
   x.M = blocks(a.cargo.M);
   x.D = remainder_of(a.cargo);
   x.moment = {{a.cargo.Gx, a.cargo.Gy, a.cargo.Gz}};
@@ -336,7 +372,7 @@ bool LoopSweeps<Spatial, S, Rows, Momentum>::any_inward(std::size_t k, const In&
   const auto eliminate_lanes = [&](const Column& c, const Column& g, const S& e) {
     o.d += g * e;
     o.scale += c * g;
-    for (int i = 0; i < Rows; ++i) o.W[i] += g * c[i];
+    o.add_product(g, c, open);
   };
   if (b.nv == 1) {
     Motion E{};
@@ -380,11 +416,17 @@ bool LoopSweeps<Spatial, S, Rows, Momentum>::any_inward(std::size_t k, const In&
     G = Spatial::moment_to_parent(b.edge, b.kind, x.edge, x.moment, b.subtree_mass);
   set_cargo(a.cargo, Spatial::to_parent(b.edge, b.kind, x.edge, M),
             Spatial::to_parent(b.edge, b.kind, x.edge, D), G);
-  if (Spatial::moves_freely(b.kind))
-    columns_to_parent(x.edge.rotation, x.edge.position, o.C);
-  else
-    screw_columns<2>(o.C, x.edge.cos_theta, x.edge.sin_theta, x.edge.d);
-  columns_to_parent<S>(b.edge, o.C);
+  each_open<S, Rows>(open, [&](auto i) MOMENTA_INLINED {
+    typename Column::Part C[6];
+    each<6>([&](auto j) MOMENTA_INLINED { C[j] = o.C[j].v[i]; });
+    if (Spatial::moves_freely(b.kind))
+      columns_to_parent<Column>(x.edge.rotation, x.edge.position, C);
+    else
+      screw_columns<2>(C, Column::all(x.edge.cos_theta), Column::all(x.edge.sin_theta),
+                       Column::all(x.edge.d));
+    columns_to_parent(b.edge, C);
+    each<6>([&](auto j) MOMENTA_INLINED { o.C[j].v[i] = C[j]; });
+  });
   return true;
 }
 

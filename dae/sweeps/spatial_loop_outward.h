@@ -76,6 +76,7 @@ void LoopSweeps<Spatial, S, Rows, Momentum>::pin_outward(std::size_t k, const In
   const PinRecord& w = pins_[k];
   Vec3<S>&v = m.V.v, &o = m.V.w;
   const S c = angles_.cosine(k), s = angles_.sine(k);
+  const auto along = [&](const Column& x) MOMENTA_INLINED { return along_sigma(k, x, m.sigma); };
   S turned(0.0);
   const bool falls = Momentum && rates && tree_->model->has_gravity;
   if (l.parent >= 0) {
@@ -85,13 +86,13 @@ void LoopSweeps<Spatial, S, Rows, Momentum>::pin_outward(std::size_t k, const In
     if (rates) {
       const Reduced<S>& M = w.M;
       const S Pfx = M.Axx * v[0] + M.Axy * v[1] + M.Axz * v[2] + M.Hxx * o[0] + M.Hxy * o[1] +
-                    w.Dfx + dot(w.C[0], m.sigma);
+                    w.Dfx + along(w.C[0]);
       const S Pfy = M.Axy * v[0] + M.Ayy * v[1] + M.Ayz * v[2] + M.Hyx * o[0] + M.Hyy * o[1] +
-                    w.Dfy + dot(w.C[1], m.sigma);
+                    w.Dfy + along(w.C[1]);
       const S Pnx = M.Hxx * v[0] + M.Hyx * v[1] + M.Hzx * v[2] + M.Ixx * o[0] + M.Ixy * o[1] +
-                    w.Dnx + dot(w.C[2], m.sigma);
+                    w.Dnx + along(w.C[2]);
       const S Pny = M.Hxy * v[0] + M.Hyy * v[1] + M.Hzy * v[2] + M.Ixy * o[0] + M.Iyy * o[1] +
-                    w.Dny + dot(w.C[3], m.sigma);
+                    w.Dny + along(w.C[3]);
       turned = v[1] * Pfx - v[0] * Pfy + o[1] * Pnx - o[0] * Pny;
     }
     v[0] = v[0] + l.d * o[1];
@@ -110,7 +111,7 @@ void LoopSweeps<Spatial, S, Rows, Momentum>::pin_outward(std::size_t k, const In
     momenta::turn_back<2>(m.g, c, s);
     turned = turned + (w.Gx * m.g[1] - w.Gy * m.g[0]);
   }
-  const S turning = w.y0 - dot(w.g, m.sigma) -
+  const S turning = w.y0 - along(w.g) -
                     (w.h.fx * v[0] + w.h.fy * v[1] + w.h.fz * v[2] + w.h.nx * o[0] + w.h.ny * o[1]);
   const S own = turning - o[2];
   o[2] = turning;
@@ -125,6 +126,8 @@ void LoopSweeps<Spatial, S, Rows, Momentum>::ball_outward(std::size_t k, bool ra
   const Link& l = tree_->links[k];
   const BallRecord& w = balls_[static_cast<std::size_t>(l.record)];
   Vec3<S>&v = m.V.v, &o = m.V.w;
+  const auto along_lanes = [&](const Column& x)
+                               MOMENTA_INLINED { return along_sigma(k, x, m.sigma); };
   if (l.parent >= 0) {
     const auto& r = tree_->balls[static_cast<std::size_t>(l.record)].origin;
     v = transpose_times(w.R, v + cross(o, Vec3<S>{{S(r[0]), S(r[1]), S(r[2])}}));
@@ -134,15 +137,15 @@ void LoopSweeps<Spatial, S, Rows, Momentum>::ball_outward(std::size_t k, bool ra
   m.g = transpose_times(w.R, m.g);
   // ω = L⁻ᵀ (Δ⁻¹ L⁻¹ e − (Z Δ⁻¹)ᵀ v − g σ)
   const Vec3<S> along = transpose_times(w.pivot.s, v);
-  const S z = w.pivot.e[2] * w.pivot.i2 - along[2] - dot(w.g[2], m.sigma);
-  const S y = w.pivot.e[1] * w.pivot.i1 - along[1] - dot(w.g[1], m.sigma) - w.pivot.l21 * z;
-  const Vec3<S> omega{{w.pivot.e[0] * w.pivot.i0 - along[0] - dot(w.g[0], m.sigma) -
+  const S z = w.pivot.e[2] * w.pivot.i2 - along[2] - along_lanes(w.g[2]);
+  const S y = w.pivot.e[1] * w.pivot.i1 - along[1] - along_lanes(w.g[1]) - w.pivot.l21 * z;
+  const Vec3<S> omega{{w.pivot.e[0] * w.pivot.i0 - along[0] - along_lanes(w.g[0]) -
                            w.pivot.l10 * y - w.pivot.l20 * z,
                        y, z}};
   Vec3<S> net{};
   if (rates) {
     Vec3<S> P = w.A * v + w.Df;
-    for (int i = 0; i < 3; ++i) P[i] += dot(w.C[i], m.sigma);
+    for (int i = 0; i < 3; ++i) P[i] += along_lanes(w.C[i]);
     net = cross(w.G, m.g) - cross(v, P) - cross(omega, w.p);
   }
   for (int i = 0; i < 3; ++i) {
@@ -160,18 +163,19 @@ void LoopSweeps<Spatial, S, Rows, Momentum>::any_outward(std::size_t k, const In
   const auto record = static_cast<std::size_t>(tree_->links[k].record);
   const auto& x = joints_[record];
   const auto& y = any_[record];
+  const auto along = [&](const Column& c) MOMENTA_INLINED { return along_sigma(k, c, m.sigma); };
   if (b.parent >= 0) m.V = Spatial::to_child(b.edge, b.kind, x.edge, m.V);
   m.g = Spatial::direction_to_child(b.edge, b.kind, x.edge, m.g);
   m.V += y.given;
   S own[6];
   if (b.nv == 1) {
-    own[0] = x.pivot * x.e - Spatial::power(x.h, m.V) - dot(y.g[0], m.sigma);
+    own[0] = x.pivot * x.e - Spatial::power(x.h, m.V) - along(y.g[0]);
     Joint<Spatial>::add_motion(b, x.edge, own, m.V);
   } else if (b.nv == 6) {
     Vec3<S> v = x.A * x.y;
-    for (int i = 0; i < 3; ++i) v[i] -= dot(y.g[i], m.sigma);
+    for (int i = 0; i < 3; ++i) v[i] -= along(y.g[i]);
     Vec3<S> omega = x.x - transpose_times(x.H, v);
-    for (int i = 0; i < 3; ++i) omega[i] -= dot(y.g[3 + i], m.sigma);
+    for (int i = 0; i < 3; ++i) omega[i] -= along(y.g[3 + i]);
     for (int i = 0; i < 3; ++i) {
       own[i] = v[i] - m.V.v[i];
       own[3 + i] = omega[i] - m.V.w[i];
@@ -184,12 +188,13 @@ void LoopSweeps<Spatial, S, Rows, Momentum>::any_outward(std::size_t k, const In
   Force net = Spatial::weight(S(b.subtree_mass), x.moment, m.g);
   Force P = Spatial::momentum(x.M, m.V);  // (42)
   P += x.D;
-  for (int i = 0; i < 6; ++i) P[i] += dot(y.C[i], m.sigma);
+  for (int i = 0; i < 6; ++i) P[i] += along(y.C[i]);
   net -= Spatial::cross_force(m.V, P);
-  S along[6];
-  Joint<Spatial>::project(b, x.edge, net, along);  // (35)
-  if (b.nv == 1 && tree_->model->has_joint_forces) along[0] += joint_force(b, S(q[b.q]), own[0]);
-  for (int i = 0; i < b.nv; ++i) rate[b.u + i] = along[i];
+  S rates_of_p[6];
+  Joint<Spatial>::project(b, x.edge, net, rates_of_p);  // (35)
+  if (b.nv == 1 && tree_->model->has_joint_forces)
+    rates_of_p[0] += joint_force(b, S(q[b.q]), own[0]);
+  for (int i = 0; i < b.nv; ++i) rate[b.u + i] = rates_of_p[i];
 }
 
 template <class S, int Rows, bool Momentum>

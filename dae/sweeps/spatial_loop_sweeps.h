@@ -45,6 +45,12 @@ class LoopSweeps<Spatial, S, Rows, Momentum> {
   bool operator()(const S& t, const In& q, const In& x, const In& tau, const RightSide<S>& right,
                   Out u, Out impulse, Out rate);
 
+  /// What an evaluation goes through in memory.
+  static std::size_t bytes(const LinkTree& tree, const LoopModel<Spatial>& loops) {
+    return tree.links.size() * (sizeof(PinRecord) + sizeof(LoopBody<S>) + sizeof(Force)) +
+           loops.loops.size() * sizeof(SpatialLoopPlace<S>) +
+           static_cast<std::size_t>(loops.rows) * sizeof(Row);
+  }
   int stuck() const { return stuck_; }
   /// Whether the last solution closed a folded leg on too weak a pivot: it is then wrong.
   bool weak_leg() const { return weak_leg_; }
@@ -107,7 +113,7 @@ class LoopSweeps<Spatial, S, Rows, Momentum> {
   void enter(std::size_t k, const RightSide<S>& right, Carried& a);
   void enter(std::size_t k, const LoopPlan::End& end, const RightSide<S>& right, Carried& a);
   __attribute__((noinline)) void fold(std::size_t root, const RightSide<S>& right, Carried& leg);
-  __attribute__((noinline)) void close(int loop, Carried& a, double fade);
+  __attribute__((noinline)) void close(int loop, Carried& a, double fade, LaneGroups all);
   template <class In>
   bool pin_inward(std::size_t k, const In& r, const RightSide<S>& right, Carried& a);
   template <class In>
@@ -115,6 +121,10 @@ class LoopSweeps<Spatial, S, Rows, Momentum> {
   template <class In>
   __attribute__((noinline)) bool any_inward(std::size_t k, const In& r, const RightSide<S>& right,
                                             Carried& a);
+  /// xᵀσ over the lanes open above body k.
+  MOMENTA_INLINE S along_sigma(std::size_t k, const Column& x, const Column& sigma) const {
+    return plus_dot(S(0.0), x, sigma, lanes_.fronts[k].open);
+  }
   template <class Out>
   void solve_loops(const LoopPlan::Range& range, const RightSide<S>& right, const Motion* motion,
                    Column& sigma, Out& out);
@@ -135,6 +145,7 @@ class LoopSweeps<Spatial, S, Rows, Momentum> {
   LoopsInTime<Spatial> in_time_;
   const LoopModel<Spatial>* loops_;  ///< at the time
   const LoopPlan* plan_;
+  OpenLanes lanes_;
   Angles<S> angles_;
   std::vector<PinRecord> pins_;
   std::vector<BallRecord> balls_;
@@ -164,6 +175,7 @@ LoopSweeps<Spatial, S, Rows, Momentum>::LoopSweeps(const LinkTree& tree,
       in_time_(loops),
       loops_(&loops),
       plan_(&plan),
+      lanes_(plan, parents_of(tree), rows_of(loops)),
       angles_(tree.links.size()),
       pins_(tree.links.size()),
       balls_(tree.balls.size()),

@@ -218,17 +218,24 @@ void register_closed_loops() {
       add("stewart", by(platform), {1}, how);
     }
   }
-  const Row four{"momentum", one_four_bar}, andrew{"momentum", andrews},
-      bars{"momentum", benchmark_models::n_four_bar};
   const std::string batch = "/batch" + std::to_string(best_level() >= 4   ? 8
                                                       : best_level() >= 3 ? 4
                                                                           : 2);
-  benchmark::RegisterBenchmark(("closed/momentum/four_bar" + batch).c_str(), evaluate_batch, four)
-      ->Arg(1);
-  benchmark::RegisterBenchmark(("closed/momentum/andrews" + batch).c_str(), evaluate_batch, andrew)
-      ->Arg(1);
-  benchmark::RegisterBenchmark(("closed/momentum/n_four_bar" + batch).c_str(), evaluate_batch, bars)
-      ->Arg(40);
+  const auto add_batch = [&](const std::string& model, Scene (*made)(int), std::vector<long> sizes,
+                             Algebra algebra = Algebra::automatic) {
+    for (const long n : sizes)
+      benchmark::RegisterBenchmark(("closed/momentum/" + model + batch).c_str(), evaluate_batch,
+                                   Row{"momentum", made, algebra})
+          ->Arg(n);
+  };
+  add_batch("four_bar", one_four_bar, {1});
+  add_batch("andrews", andrews, {1});
+  add_batch("andrews_chained", andrews_chained, {1});
+  add_batch("n_four_bar", benchmark_models::n_four_bar, {40, 200, 1000, 10000});
+  add_batch("ladder", benchmark_models::scissor_ladder, {10, 50, 200, 1000, 10000});
+  add_batch("stewart", stewart, {1});
+  add_batch("bricard", bricard, {1});
+  add_batch("four_bar_in_space", one_four_bar, {1}, Algebra::spatial);
 }
 
 }  // namespace momenta

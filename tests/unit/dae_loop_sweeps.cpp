@@ -330,6 +330,45 @@ TEST(LoopSweeps, RedundantRows) {
   }
 }
 
+/// Batches of random states against the same states one by one, at every level; how many states
+/// were compared.
+int compare_batches(const Mechanism& mechanism, RandomTree& random, int count) {
+  int compared = 0;
+  const int nq = mechanism.nq(), nv = mechanism.nv(), m = mechanism.m();
+  using States = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  States q(nq, count), p(nv, count), u(nv, count), pdot(nv, count), sigma(m, count);
+  for (int i = 0; i < count; ++i) {
+    q.col(i) = random.state(mechanism.tree()).q;
+    for (int k = 0; k < nv; ++k) p(k, i) = random.uniform(-2, 2);
+  }
+  RightSide<double> right;
+  right.fade = fade_evaluation;
+  right.leak = 0.5;
+  right.rates = true;
+  for (const int level : {1, 3, 4}) {
+    if (level > best_level()) continue;
+    const auto sweeps = mechanism.looped_sweeps(level);
+    EXPECT_TRUE(sweeps->momentum(0,
+                                 {q.data(), p.data(), u.data(), sigma.data(), pdot.data(), count,
+                                  static_cast<std::size_t>(count)},
+                                 right.fade, right.leak));
+    for (int i = 0; i < count; ++i) {
+      const VectorXd qi = q.col(i), pi = p.col(i);
+      VectorXd ui(nv), si(m), ri(nv);
+      EXPECT_TRUE(
+          sweeps->momentum(0, qi.data(), pi.data(), right, ui.data(), si.data(), ri.data()));
+      std::vector<int> faded(static_cast<std::size_t>(m));
+      if (sweeps->faded_rows(faded.data(), true) > 0) continue;  // which row gives way is open
+      ++compared;
+      const double size = 1 + si.cwiseAbs().maxCoeff() + ui.cwiseAbs().maxCoeff();
+      EXPECT_LT(relative_error(VectorXd(u.col(i)), ui), 1e-10 * size) << level;
+      EXPECT_LT(relative_error(VectorXd(sigma.col(i)), si), 1e-9 * size) << level;
+      EXPECT_LT(relative_error(VectorXd(pdot.col(i)), ri), 1e-9 * size) << level;
+    }
+  }
+  return compared;
+}
+
 /// Every level computes the same, and a batch what single states do.
 TEST(LoopSweeps, LevelsAndBatchesAgree) {
   int compared = 0;
@@ -353,40 +392,68 @@ TEST(LoopSweeps, LevelsAndBatchesAgree) {
     }
     const Mechanism mechanism(scene);
     if (mechanism.m() == 0 || mechanism.kkt() != KktChoice::sweeps) continue;
-    const int count = 11, nq = mechanism.nq(), nv = mechanism.nv(), m = mechanism.m();
-    using States = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-    States q(nq, count), p(nv, count), u(nv, count), pdot(nv, count), sigma(m, count);
-    for (int i = 0; i < count; ++i) {
-      q.col(i) = random.state(mechanism.tree()).q;
-      for (int k = 0; k < nv; ++k) p(k, i) = random.uniform(-2, 2);
-    }
-    RightSide<double> right;
-    right.fade = fade_evaluation;
-    right.leak = 0.5;
-    right.rates = true;
-    for (const int level : {1, 3, 4}) {
-      if (level > best_level()) continue;
-      const auto sweeps = mechanism.looped_sweeps(level);
-      EXPECT_TRUE(sweeps->momentum(0,
-                                   {q.data(), p.data(), u.data(), sigma.data(), pdot.data(), count,
-                                    static_cast<std::size_t>(count)},
-                                   right.fade, right.leak));
-      for (int i = 0; i < count; ++i) {
-        const VectorXd qi = q.col(i), pi = p.col(i);
-        VectorXd ui(nv), si(m), ri(nv);
-        EXPECT_TRUE(
-            sweeps->momentum(0, qi.data(), pi.data(), right, ui.data(), si.data(), ri.data()));
-        std::vector<int> faded(static_cast<std::size_t>(m));
-        if (sweeps->faded_rows(faded.data(), true) > 0) continue;  // which row gives way is open
-        ++compared;
-        const double size = 1 + si.cwiseAbs().maxCoeff() + ui.cwiseAbs().maxCoeff();
-        EXPECT_LT(relative_error(VectorXd(u.col(i)), ui), 1e-10 * size) << level;
-        EXPECT_LT(relative_error(VectorXd(sigma.col(i)), si), 1e-9 * size) << level;
-        EXPECT_LT(relative_error(VectorXd(pdot.col(i)), ri), 1e-9 * size) << level;
-      }
-    }
+    compared += compare_batches(mechanism, random, 11);
   }
   EXPECT_GT(compared, 200);
+}
+
+/// Loops of every kind, alone, beside each other and inside one another: lanes open and close in
+/// groups, some of them shared.
+TEST(LoopSweeps, BatchesOfEveryLoop) {
+  int planar = 0, spatial = 0;
+  for (unsigned seed = 0; seed < 240; ++seed) {
+    RandomTree random(seed);
+    const bool in_plane = seed % 2 == 0;
+    Scene scene = in_plane ? random.planar_scene({.bodies = 10})
+                           : random.scene({.bodies = 8, .body_forces = false});
+    const Tree tree = build_tree(scene);
+    const unsigned kind = seed / 2;
+    if (in_plane) {
+      const auto plane = find_plane(tree, scene);
+      ASSERT_TRUE(plane.basis) << seed << ": " << plane.why;
+      const Eigen::Vector3d normal = plane.basis->col(2);
+      for (unsigned i = 0; i < 1 + seed % 3; ++i) {
+        LoopSpec l = into_plane(
+            random, scene,
+            random_loop(random, scene, planar_loop_kinds[(kind + i) % planar_loop_kinds.size()]),
+            normal);
+        level(l, scene, tree, normal);
+        scene.loops.push_back(l);
+      }
+    } else {
+      scene.loops.push_back(random_loop(random, scene, loop_kinds[kind % loop_kinds.size()]));
+      if (seed % 3 > 0) scene.loops.push_back(random_loop(random, scene, LoopKind::distance));
+    }
+    const Mechanism mechanism(scene);
+    if (mechanism.m() > mechanism.nv() || mechanism.kkt() != KktChoice::sweeps) continue;
+    (in_plane ? planar : spatial) += compare_batches(mechanism, random, 9);
+  }
+  EXPECT_GT(planar, 800);
+  EXPECT_GT(spatial, 800);
+}
+
+/// Records of a pack beyond the cache: the batch takes the states one by one, to the last bit.
+TEST(LoopSweeps, LargeBatchesGoStateByState) {
+  RandomTree random(1);
+  const Mechanism mechanism(row_of_four_bars(4000, 1.1));
+  EXPECT_EQ(mechanism.plan().planar, true);
+  const Eigen::Index nq = mechanism.nq(), nv = mechanism.nv(), m = mechanism.m();
+  const VectorXd q = mechanism.tree().q0;
+  VectorXd p(nv), u(nv), pdot(nv), sigma(m), u1(nv), pdot1(nv), sigma1(m);
+  for (double& x : p) x = random.uniform(-2, 2);
+  ASSERT_EQ(q.size(), nq);
+  const auto sweeps = mechanism.looped_sweeps();
+  RightSide<double> right;
+  right.fade = fade_evaluation;
+  right.leak = 0.5;
+  right.rates = true;
+  EXPECT_TRUE(sweeps->momentum(0, {q.data(), p.data(), u.data(), sigma.data(), pdot.data(), 1, 1},
+                               right.fade, right.leak));
+  EXPECT_TRUE(
+      sweeps->momentum(0, q.data(), p.data(), right, u1.data(), sigma1.data(), pdot1.data()));
+  EXPECT_EQ(u, u1);
+  EXPECT_EQ(sigma, sigma1);
+  EXPECT_EQ(pdot, pdot1);
 }
 
 TEST(LoopSweeps, CodeOfALevelIsItsOwn) {

@@ -40,6 +40,8 @@ class LoopedSweepsAt final : public LoopedSweeps {
     return ok;
   }
   bool momentum(double t, const LoopedStates& s, double fade, double leak) override {
+    if (decltype(many_)::element_type::bytes(tree_, loops_) > most_bytes)
+      return one_by_one(t, s, fade, leak);
     auto& sweeps = made(many_);
     RightSide<Many> right;
     right.fade = fade;
@@ -111,6 +113,26 @@ class LoopedSweepsAt final : public LoopedSweeps {
   Sweeps& made(std::unique_ptr<Sweeps>& sweeps) {
     if (!sweeps) sweeps = std::make_unique<Sweeps>(tree_, loops_, plan_);
     return *sweeps;
+  }
+
+  /// Packs whose records leave the cache take longer than the same states one after the other.
+  static constexpr std::size_t most_bytes = 16 << 20;
+  bool one_by_one(double t, const LoopedStates& s, double fade, double leak) {
+    RightSide<One> right;
+    right.fade = fade;
+    right.leak = leak;
+    right.rates = true;
+    bool all = true, weak = false;
+    for (std::size_t i = 0; i < s.count; ++i) {
+      const StridedIn<One> x{s.p + i, s.stride};
+      all &= momentum_(One(t), StridedIn<One>{s.q + i, s.stride}, x, x, right,
+                       StridedOut<One>{s.u + i, s.stride}, StridedOut<One>{s.sigma + i, s.stride},
+                       StridedOut<One>{s.pdot + i, s.stride});
+      if (!all) stuck_ = momentum_.stuck();
+      weak |= momentum_.weak_leg();
+    }
+    weak_leg_ = weak;
+    return all;
   }
 
   /// The states that fill no pack, copied into one; its last lanes repeat the last state.

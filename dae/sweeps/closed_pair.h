@@ -1,0 +1,151 @@
+#pragma once
+// Two point rows of a loop closed together, in registers: what front.h does row by row, written out
+// for the pair that every hinge in a plane is.
+
+#include <momenta/dae/sweeps/front.h>
+
+namespace momenta {
+
+/// Pivots of a pair are kept for a single state, whose failures and faded rows are told.
+template <class S>
+constexpr bool keeps_pivots = true;
+template <int W, int L>
+constexpr bool keeps_pivots<Pack<W, L>> = W == 1;
+
+/// A pair of point rows at lanes A, A + 1 closed in registers; state by state the row with the
+/// larger pivot goes first: (a, b) ← (b, −a) where W_bb > W_aa.
+template <class S, int Rows, int Columns>
+struct ClosedPair {
+  struct Nothing {};
+  using Beside = std::conditional_t<(Rows > 2), Lanes<S, Rows>, Nothing>;
+  struct Pivots {
+    S w_a, w_b, tau;
+  };
+  S a[Columns], b[Columns];
+  S da, db, l, swap;  ///< l: W_ab f_a; swap: 1 where the rows changed places
+  [[no_unique_address]] Beside Ga, Gb;
+  [[no_unique_address]] std::conditional_t<keeps_pivots<S>, Pivots, Nothing> pivots;
+
+  template <class Motion>
+  MOMENTA_INLINE void impulses(const Motion& omega, const Lanes<S, Rows>& sigma, LaneGroups beside,
+                               S& x, S& y) const {
+    x = da;
+    y = db;
+    each<Columns>([&](auto i) MOMENTA_INLINED {
+      x = x + a[i] * omega[i];
+      y = y + b[i] * omega[i];
+    });
+    unite(sigma, beside, x, y);
+  }
+  MOMENTA_INLINE void impulses_at_ground(const Lanes<S, Rows>& sigma, LaneGroups beside, S& x,
+                                         S& y) const {
+    x = da;
+    y = db;
+    unite(sigma, beside, x, y);
+  }
+
+ private:
+  MOMENTA_INLINE void unite([[maybe_unused]] const Lanes<S, Rows>& sigma,
+                            [[maybe_unused]] LaneGroups beside, S& x, S& y) const {
+    if constexpr (Rows > 2) {
+      x = minus_dot(x, Ga, sigma, beside);
+      y = minus_dot(y, Gb, sigma, beside);
+    }
+    const S half(0.5), first = x - l * y;
+    x = where_greater(swap, half, -y, first);
+    y = where_greater(swap, half, first, y);
+  }
+};
+
+/// f of both pivots of a pair, w_a and p = w_b − k² f_a. Where neither is near fading, τ/w below
+/// 2⁻¹⁴, f(w) is 1/w to the last digit; where nothing much cancels, p = (w_a w_b − k²)/w_a is as
+/// good, and both share a division.
+template <class S>
+MOMENTA_INLINE void invert_pivots(const S& w_a, const S& w_b, const S& k, const S& tau, S& f_a,
+                                  S& f_b, S& p) {
+  const S steep = 16384.0 * tau, product = w_a * w_b, det = product - k * k;
+  if (__builtin_expect(all_positive(w_a - steep) && all_positive(det - steep * w_a) &&
+                           all_positive(8.0 * det - product),
+                       1)) {
+    const S inverse = S(1.0) / (w_a * det);
+    f_a = det * inverse;
+    f_b = w_a * w_a * inverse;
+    p = det * f_a;
+  } else {
+    f_a = faded_inverse(w_a, tau);
+    p = w_b - k * (k * f_a);
+    f_b = faded_inverse(p, tau);
+  }
+}
+
+/// Closes a pair; `beside`: the loops that stay open.
+template <int A, bool Moves, class S, int Rows, int Columns, class Weight>
+MOMENTA_INLINE void close_pair(Front<S, Rows, Columns>& front, double fade,
+                               [[maybe_unused]] LaneGroups beside,
+                               ClosedPair<S, Rows, Columns>& pair, Weight&& weight) {
+  constexpr int B = A + 1;
+  using Here = Lanes<S, Rows>;
+  const S zero(0.0), one(1.0);
+  const S waa = front.w(A, A), wbb = front.w(B, B), wab = front.w(A, B);
+  const S tau = (front.scale[A] + front.scale[B]) * (0.5 * fade);
+  const auto swapped = [&](const auto& x, const auto& y)
+                           MOMENTA_INLINED { return where_greater(wbb, waa, x, y); };
+  pair.swap = swapped(one, zero);
+  const S first = swapped(wbb, waa), second = swapped(waa, wbb), coupling = swapped(-wab, wab);
+  S fa, fb, p;
+  invert_pivots(first, second, coupling, tau, fa, fb, p);
+  const S l = coupling * fa;
+  pair.l = l;
+  if constexpr (keeps_pivots<S>) pair.pivots = {first, p, tau};
+  const S da = swapped(front.d[B], front.d[A]), db = swapped(-front.d[A], front.d[B]) - l * da;
+  pair.da = fa * da;
+  pair.db = fb * db;
+  S ca[Columns], cb[Columns];
+  if constexpr (Moves) {
+    each<Columns>([&](auto i) MOMENTA_INLINED {
+      const S x = front.C[i][A], y = front.C[i][B];
+      ca[i] = swapped(y, x);
+      cb[i] = swapped(-x, y) - l * ca[i];
+      pair.a[i] = fa * ca[i];
+      pair.b[i] = fb * cb[i];
+    });
+    weight(ca, pair.a, pair.da);
+    weight(cb, pair.b, pair.db);
+  }
+  if constexpr (Rows > 2) {
+    Here ga, gb;
+    if constexpr (Here::apart) {
+      each_open<S, Rows>(beside, [&](auto i) MOMENTA_INLINED {
+        const S x = front.w(A, i), y = front.w(B, i);
+        ga.v[i] = swapped(y, x);
+        gb.v[i] = swapped(-x, y);
+      });
+    } else {
+      front.W[A].template set_pair<A>(zero, zero);
+      front.W[B].template set_pair<A>(zero, zero);
+      ga = swapped(front.W[B], front.W[A]);
+      gb = swapped(-front.W[A], front.W[B]);
+      front.W[A] = front.W[B] = {};
+      each<Rows>([&](auto i) MOMENTA_INLINED { front.W[i].template set_pair<A>(zero, zero); });
+      each<Columns>([&](auto i) MOMENTA_INLINED { front.C[i].template set_pair<A>(zero, zero); });
+      front.d.template set_pair<A>(zero, zero);
+      front.scale.template set_pair<A>(zero, zero);
+    }
+    each_open<S, Rows>(beside, [&](auto i) MOMENTA_INLINED {
+      gb.v[i] = gb.v[i] - ga.v[i] * Here::all(l);
+      pair.Ga.v[i] = ga.v[i] * Here::all(fa);
+      pair.Gb.v[i] = gb.v[i] * Here::all(fb);
+      front.d.v[i] = front.d.v[i] - (pair.Ga.v[i] * Here::all(da) + pair.Gb.v[i] * Here::all(db));
+      if constexpr (Moves)
+        each<Columns>([&](auto k) MOMENTA_INLINED {
+          front.C[k].v[i] =
+              front.C[k].v[i] - (pair.Ga.v[i] * Here::all(ca[k]) + pair.Gb.v[i] * Here::all(cb[k]));
+        });
+    });
+    front.subtract_products(pair.Ga, ga, pair.Gb, gb, beside);
+  } else if constexpr (!Here::apart) {
+    front = {};
+  }
+}
+
+}  // namespace momenta

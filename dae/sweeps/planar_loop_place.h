@@ -1,0 +1,176 @@
+#pragma once
+// Where bodies and loops of a plane stand at one state. Part of planar_loop_sweeps.h.
+
+#include <momenta/dae/sweeps/planar_loop_sweeps.h>
+
+namespace momenta {
+
+/// O_K − O_L, points and axes of ties; in the acceleration form the velocities of all bodies.
+template <class S, int Rows, bool Momentum>
+template <class In>
+void LoopSweeps<Planar, S, Rows, Momentum>::place_bodies(const In& x, const RightSide<S>& right) {
+  const PlanarLink* links = tree_->links.data();
+  const std::size_t n = pins_.size();
+  S ox(0.0), oy(0.0);
+  for (std::size_t k = 0; k < n; ++k) {
+    const PlanarLink& l = links[k];
+    LoopedPin<S, Rows>& w = pins_[k];
+    const Vec2<S> r = l.pin ? Base::step(l) : joints_[static_cast<std::size_t>(l.record)].edge.r;
+    w.rx = r[0];
+    w.ry = r[1];
+    const auto parent = static_cast<std::size_t>(l.parent);
+    if (l.parent < 0) {
+      ox = oy = S(0.0);
+    } else if (!l.first) {
+      const Vec2<S>& from = origin_slots_[static_cast<std::size_t>(links[parent].slot)];
+      ox = from[0];
+      oy = from[1];
+    }
+    ox = ox + w.rx;
+    oy = oy + w.ry;
+    if (l.slot >= 0) origin_slots_[static_cast<std::size_t>(l.slot)] = {{ox, oy}};
+    if (!origins_.empty()) origins_[k] = {{ox, oy}};
+    place_ends(k, ox, oy);
+    if constexpr (!Momentum) {
+      S vx(0.0), vy(0.0), omega(0.0);
+      if (l.parent >= 0) {
+        const LoopedPin<S, Rows>& from = pins_[parent];
+        omega = from.omega;
+        vx = from.vx - omega * w.ry;
+        vy = from.vy + omega * w.rx;
+      }
+      if (l.pin) {
+        omega = l.sign < 0 ? omega - x[l.u] : omega + x[l.u];
+      } else {
+        const auto& b = Base::body(k);
+        auto& j = joints_[static_cast<std::size_t>(l.record)];
+        Planar::Motion<S> V{}, product{};
+        const S own = b.drive >= 0 ? j.drive_rate : b.nv == 1 ? S(x[b.u]) : S(0.0);
+        Joint<Planar>::add_motion(b, j.edge, &own, V);
+        omega += V.w;
+        vx += V.v[0];
+        vy += V.v[1];
+        // Coriolis 2 ω × E u, and what a drive prescribes.
+        product.v = cross(S(2.0) * omega, V.v);
+        if (b.drive >= 0) Joint<Planar>::add_motion(b, j.edge, &j.drive_acceleration, product);
+        looped_[static_cast<std::size_t>(l.record)].V = product;
+      }
+      w.vx = vx;
+      w.vy = vy;
+      w.omega = omega;
+    } else if (!l.pin) {
+      const auto& b = Base::body(k);
+      const auto& j = joints_[static_cast<std::size_t>(l.record)];
+      Planar::Motion<S> V{};
+      if (b.drive >= 0 && right.drives) Joint<Planar>::add_motion(b, j.edge, &j.drive_rate, V);
+      looped_[static_cast<std::size_t>(l.record)].V = V;
+    }
+  }
+}
+
+/// The ends of ties on body k with its joint at (x, y). x_A − O_B = (O_A − O_B) + a waits with the
+/// joint of the end placed first.
+template <class S, int Rows, bool Momentum>
+MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::place_ends(std::size_t k, const S& x,
+                                                                      const S& y) {
+  const LoopPlan::Range range = plan_->ends_of[k];
+  for (int i = range.first; i < range.last; ++i) {
+    const LoopPlan::End& end = plan_->ends[static_cast<std::size_t>(i)];
+    const auto loop = static_cast<std::size_t>(end.loop);
+    const Tie& t = ties_[loop];
+    if (!t.holds) continue;
+    Place& s = places_[loop];
+    const S c = angles_.cosine(k), e = angles_.sine(k);
+    S bx = x, by = y;
+    if (end.on_a) {
+      s.ax = c * t.ax - e * t.ay;
+      s.ay = e * t.ax + c * t.ay;
+      if (end.first) {
+        bx = (t.b < 0 ? x : x - s.bx) + s.ax;
+        by = (t.b < 0 ? y : y - s.by) + s.ay;
+      }
+    } else {
+      s.Fx = c * t.ex - e * t.ey;
+      s.Fy = e * t.ex + c * t.ey;
+      if (end.first) {
+        bx = (t.a < 0 ? -x : s.bx - x) + s.ax;
+        by = (t.a < 0 ? -y : s.by - y) + s.ay;
+      }
+    }
+    s.bx = bx;
+    s.by = by;
+  }
+}
+
+template <class S, int Rows, bool Momentum>
+Vec2<S> LoopSweeps<Planar, S, Rows, Momentum>::in_ground(int body, const Vec2<double>& v) const {
+  if (body < 0) return Vec2<S>{{S(v[0]), S(v[1])}};
+  const auto k = static_cast<std::size_t>(body);
+  const S c = angles_.cosine(k), e = angles_.sine(k);
+  return Vec2<S>{{c * v[0] - e * v[1], e * v[0] + c * v[1]}};
+}
+
+/// Loops that are no ties.
+template <class S, int Rows, bool Momentum>
+void LoopSweeps<Planar, S, Rows, Momentum>::place_other_loops() {
+  const auto origin = [&](int body) {
+    return body < 0 ? Vec2<S>{} : origins_[static_cast<std::size_t>(body)];
+  };
+  for (const int i : others_) {
+    const auto loop = static_cast<std::size_t>(i);
+    const Loop& l = loops_->loops[loop];
+    if (l.is_coupler()) continue;
+    if (l.motion >= 0) place_moving(l);
+    const Vec2<S> arm = in_ground(l.a, l.at_a), from_b = origin(l.a) - origin(l.b) + arm;
+    Place& s = places_[loop];
+    s = {arm[0], arm[1], from_b[0], from_b[1], S(0.0), S(0.0)};
+    if (plan_->pair[loop]) {
+      const Vec2<S> b = in_ground(l.b, l.axis_b[0]);
+      s.Fx = b[0];
+      s.Fy = b[1];
+    } else {
+      place_rows(l, loop);
+    }
+  }
+}
+
+template <class S, int Rows, bool Momentum>
+void LoopSweeps<Planar, S, Rows, Momentum>::place_rows(const Loop& l, std::size_t loop) {
+  const S zero(0.0);
+  RowPlace* rows = &row_at_[static_cast<std::size_t>(l.row)];
+  if (l.is_distance()) {
+    const Vec2<S> F = S(l.per_length) * gap_of(l, places_[loop]);
+    rows[0] = {F[0], F[1], zero, zero};
+    return;
+  }
+  for (int j = 0; j < l.n_points; ++j) {
+    const Vec2<S> b =
+        in_ground(l.b, l.axis_b[static_cast<std::size_t>(l.points[static_cast<std::size_t>(j)])]);
+    rows[j] = {b[0], b[1], zero, zero};
+  }
+  for (int j = 0; j < l.n_axes; ++j) {
+    const auto [x, y] = l.axes[static_cast<std::size_t>(j)];
+    const Vec2<S> a = in_ground(l.a, l.axis_a[static_cast<std::size_t>(x)]),
+                  b = in_ground(l.b, l.axis_b[static_cast<std::size_t>(y)]);
+    rows[l.n_points + j] = {zero, zero, cross(a, b), dot(a, b)};
+  }
+}
+
+/// Prescribed motion of x_B in ground axes.
+template <class S, int Rows, bool Momentum>
+void LoopSweeps<Planar, S, Rows, Momentum>::place_moving(const Loop& l) {
+  const Motion& m = motion(l);
+  moving_[static_cast<std::size_t>(l.motion)] = {in_ground(l.b, m.v), in_ground(l.b, m.a)};
+}
+
+/// d of couplers: −ċ, Φ, or in the acceleration form −c̈ and the feedback.
+template <class S, int Rows, bool Momentum>
+template <class In>
+void LoopSweeps<Planar, S, Rows, Momentum>::place_couplers(const In& q, const In& x,
+                                                           const RightSide<S>& right) {
+  for (std::size_t i = 0; i < places_.size(); ++i)
+    if (const Loop& l = loops_->loops[i]; l.is_coupler())
+      coupled_[i] = coupler_bias<Momentum>(*loops_, l, q, x, right);
+}
+
+}  // namespace momenta
