@@ -1,6 +1,7 @@
 // Prescribed motion in loops, and couplers: the same motion as of driven joints wherever the scene
 // is cut, motions known in closed form, and the power of what is prescribed.
 
+#include "equations/dense_lagrangian.h"
 #include "equations/linkages.h"
 #include "equations/random_loops.h"
 #include "equations/recut.h"

@@ -39,7 +39,7 @@ TEST(Integrators, EveryNameRunsTheFormsItTakes) {
   for (const Integrator& method : integrators()) {
     RunRequest request;
     request.settings.form = method.takes == Integrator::Takes::ode ? "momentum" : "momentum-index2";
-    if (!method.form.empty()) request.settings.form = method.form;
+    if (!method.forms.empty()) request.settings.form = method.forms.front();
     request.settings.integrator = method.name;
     request.settings.gauge = "leak";
     request.settings.step = 0.005;
