@@ -1,5 +1,4 @@
 #include <momenta/dae/assembly.h>
-#include <momenta/dae/assembly_side.h>
 #include <momenta/dae/kkt/kkt.h>
 
 #include <Eigen/QR>
@@ -13,7 +12,6 @@ namespace {
 
 constexpr int most_iterations = 200;
 constexpr double largest_step = 0.4;     // [rad or lengths]: stay on the branch of the guess
-constexpr double short_step = 0.03;      // where that left it
 constexpr double closed = 1e-12;         // |Φ|∞, points in lengths
 constexpr double rank_tolerance = 1e-9;  // of pivots, against the largest
 
@@ -48,15 +46,7 @@ class Assembler {
     a.start.q = mechanism_.tree().q0;
     a.start.u = mechanism_.tree().u0;
     if (mechanism_.m() > 0) {
-      const Eigen::VectorXd guess = a.start.q;
       close_positions(a);
-      if (a.mirrored = mirrored(guess, a.start.q); !a.mirrored.empty()) {
-        Assembly again;
-        again.start.q = guess;
-        again.start.u = a.start.u;
-        limit_ = short_step;
-        if (closes(again) && mirrored(guess, again.start.q).empty()) a = std::move(again);
-      }
       close_velocities(a);
       judge_rank(a);
     }
@@ -116,19 +106,6 @@ class Assembler {
     e_->positions(phi.data());
     return phi.cwiseQuotient(row_);
   }
-  std::vector<std::string> mirrored(const Eigen::VectorXd& guess, const Eigen::VectorXd& reached) {
-    e_->place(0, guess.data());
-    const Eigen::MatrixXd from = free_columns(jacobian());
-    e_->place(0, reached.data());
-    std::vector<std::string> loops;
-    for (const auto& rows : rows_that_changed_side(from, free_columns(jacobian())))
-      for (const int row : rows) {
-        const std::string& loop = mechanism_.rows()[static_cast<std::size_t>(row)].loop;
-        if (std::find(loops.begin(), loops.end(), loop) == loops.end()) loops.push_back(loop);
-      }
-    return loops;
-  }
-
   /// Where a step leads, shortened until the loops close further; near rounding level they no
   /// longer do, and the norm stays at infinity.
   struct Trial {
@@ -139,7 +116,7 @@ class Assembler {
     Trial best;
     if (!step.allFinite()) return best;
     const double length = step.size() > 0 ? step.cwiseAbs().maxCoeff() : 0;
-    if (length > limit_) step *= limit_ / length;
+    if (length > largest_step) step *= largest_step / length;
     step = step.cwiseProduct(column_);
     Eigen::VectorXd qdot = Eigen::VectorXd::Zero(mechanism_.nq());
     for (int halving = 0; halving < 12; ++halving, step *= 0.5) {
@@ -165,9 +142,6 @@ class Assembler {
   }
 
   void close_positions(Assembly& a) {
-    if (!closes(a)) refuse(gap(a.start.q).cwiseProduct(row_));
-  }
-  bool closes(Assembly& a) {
     Eigen::VectorXd& q = a.start.q;
     const Eigen::VectorXd guess = q;
     Eigen::VectorXd phi = gap(q);
@@ -192,7 +166,7 @@ class Assembler {
     phi = gap(q);
     a.position_residual = phi.cwiseProduct(row_).cwiseAbs().maxCoeff();
     a.moved = (q - guess).cwiseAbs().maxCoeff();
-    return phi.cwiseAbs().maxCoeff() <= closed;
+    if (!(phi.cwiseAbs().maxCoeff() <= closed)) refuse(phi.cwiseProduct(row_));
   }
 
   [[noreturn]] void refuse(const Eigen::VectorXd& phi) const {
@@ -294,19 +268,9 @@ class Assembler {
   std::unique_ptr<Evaluation<double>> e_;
   std::vector<bool> free_;
   Eigen::VectorXd column_, row_;  ///< units of rates (nv) and of equations (m)
-  double limit_ = largest_step;
 };
 
 }  // namespace
-
-std::string mirror_sentence(const Assembly& assembly) {
-  if (assembly.mirrored.empty()) return "";
-  std::string loops;
-  for (const std::string& loop : assembly.mirrored)
-    loops += (loops.empty() ? "'" : ", '") + loop + "'";
-  return std::string(assembly.mirrored.size() == 1 ? "loop " : "loops ") + loops +
-         " closed on the other side of a singular pose than guessed: the mirror assembly";
-}
 
 Assembly assemble(const Mechanism& mechanism) {
   return Assembler(mechanism).run();

@@ -22,19 +22,12 @@ struct Assembly {
       0;  ///< and the largest that does not (0 when the rows are independent)
   std::vector<int> dependent_rows;  ///< rows of Φ that follow from the others at the start
   int mobility = 0;                 ///< nv − rank
-  /// Loops for which the pose reached lies on the other side of a singular one than the guess: the
-  /// mirror assembly. Told where held joints leave no freedom (assembly_side.h).
-  std::vector<std::string> mirrored;
 };
-
-/// One sentence about them; empty when there are none.
-std::string mirror_sentence(const Assembly& assembly);
 
 /// Damped Gauss-Newton from the scene's positions, joints of `held` unmoved; steps of minimal
 /// change, lengths counted in the length of the scene, so that units do not matter; then the rates
 /// nearest to the scene's with Φ_q u + Φ_t = 0, held ones kept. |Φ|∞ ≤ 1e-12, points in lengths of
-/// the scene, or as low as rounding allows. Where that leads to the mirror assembly, once more in
-/// short steps, which keep to the guess's side if anything does.
+/// the scene, or as low as rounding allows.
 /// @throws SceneError naming the loops that stay open and by how much, or the held rates that
 /// cannot be met.
 Assembly assemble(const Mechanism& mechanism);

@@ -114,7 +114,7 @@ nlohmann::ordered_json rank_json(const Mechanism& mechanism, const RankReport& r
 
 int check(const Options& o) {
   const auto mechanism = load(o);
-  const Assembly a = assembled(*mechanism);
+  const Assembly a = assemble(*mechanism);
   const Tree& tree = mechanism->tree();
   const bool ranked = mechanism->m() > 0 && mechanism->m() <= most_equations;
   const RankReport rank = ranked ? rank_report(*mechanism, a.start) : RankReport{};
@@ -207,7 +207,7 @@ int check(const Options& o) {
 
 int assemble_verb(const Options& o) {
   const auto mechanism = load(o);
-  const Assembly a = assembled(*mechanism);
+  const Assembly a = assemble(*mechanism);
   nlohmann::ordered_json j;
   j["scene"] = mechanism->scene().name;
   j["position_residual"] = a.position_residual;
@@ -215,7 +215,6 @@ int assemble_verb(const Options& o) {
   j["moved"] = a.moved;
   j["iterations"] = a.iterations;
   j["mobility"] = a.mobility;
-  j["mirrored_loops"] = a.mirrored;
   for (const auto& b : mechanism->tree().bodies) {
     for (int i = 0; i < b.nq; ++i) j["q"][b.joint].push_back(a.start.q[b.q + i]);
     for (int i = 0; i < b.nv; ++i) {

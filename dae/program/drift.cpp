@@ -9,7 +9,7 @@ namespace momenta::program {
 int drift(const Options& o, const DriftOptions& d) {
   const auto mechanism = load(o);
   const auto reference = load_reference(o, *mechanism);
-  const Assembly a = assembled(*mechanism);
+  const Assembly a = assemble(*mechanism);
   const RunDefaults& defaults = mechanism->scene().run;
   DriftRequest request;
   request.forms = names_in(d.forms);

@@ -89,14 +89,6 @@ std::unique_ptr<Mechanism> load(const Options& o) {
   return std::make_unique<Mechanism>(read_scene(o.scene), options);
 }
 
-Assembly assembled(const Mechanism& mechanism) {
-  Assembly a = assemble(mechanism);
-  if (const std::string mirror = mirror_sentence(a); !mirror.empty())
-    std::fprintf(stderr, "momenta: note: %s; move the guess of its joints to have the other\n",
-                 mirror.c_str());
-  return a;
-}
-
 std::unique_ptr<Reference> load_reference(const Options& o, const Mechanism& mechanism) {
   if (o.reference.empty()) return nullptr;
   auto reference = std::make_unique<Reference>(o.reference);

@@ -35,8 +35,6 @@ void add_scene(CLI::App& verb, Options& o);
 void add_run_options(CLI::App& verb, Options& o);
 
 std::unique_ptr<Mechanism> load(const Options& o);
-/// A consistent start; a mirror assembly is told on standard error.
-Assembly assembled(const Mechanism& mechanism);
 /// The reference, bound to the mechanism's columns; empty when none is asked for.
 std::unique_ptr<Reference> load_reference(const Options& o, const Mechanism& mechanism);
 

@@ -27,7 +27,7 @@ void print_passages(const RunResult& result) {
 int run(const Options& o) {
   const auto mechanism = load(o);
   const auto reference = load_reference(o, *mechanism);
-  const Assembly a = assembled(*mechanism);
+  const Assembly a = assemble(*mechanism);
   const RunDefaults& defaults = mechanism->scene().run;
   RunRequest request;
   RunSettings& s = request.settings;

@@ -32,7 +32,7 @@ std::vector<double> rungs(const WorkOptions& w) {
 int work(const Options& o, const WorkOptions& w) {
   const auto mechanism = load(o);
   auto reference = load_reference(o, *mechanism);
-  const Assembly a = assembled(*mechanism);
+  const Assembly a = assemble(*mechanism);
   const RunDefaults& defaults = mechanism->scene().run;
   WorkRequest request;
   request.forms = names_in(w.forms);

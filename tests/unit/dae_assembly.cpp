@@ -7,10 +7,8 @@
 #include <gtest/gtest.h>
 #include <momenta/core/scene/read_scene.h>
 #include <momenta/dae/assembly.h>
-#include <momenta/dae/assembly_side.h>
 
 #include <filesystem>
-#include <numbers>
 
 namespace momenta {
 namespace {
@@ -155,58 +153,10 @@ TEST(Assembly, WithoutLoopsTheGuessStays) {
   EXPECT_EQ(a.start.u, mechanism.tree().u0);
 }
 
-/// Above or below the line from the crank's tip to the rocker's pivot: which of its two assemblies
-/// a four-bar is in.
-bool is_open(const Eigen::VectorXd& q) {
-  const Eigen::Vector2d tip(0.5 * std::cos(q[0]), 0.5 * std::sin(q[0]));
-  const Eigen::Vector2d to_pivot = Eigen::Vector2d(2, 0) - tip;
-  const Eigen::Vector2d coupler(std::cos(q[0] + q[1]), std::sin(q[0] + q[1]));
-  return to_pivot.x() * coupler.y() - to_pivot.y() * coupler.x() > 0;
-}
-
-TEST(Assembly, KeepsToTheSideOfTheGuessOrSaysThatItDidNot) {
-  // From anywhere: what comes out closes the loop; it is on the side of the guess, or said not to
-  // be.
-  RandomTree random(3);
-  int kept = 0, told = 0, refused = 0;
-  for (int trial = 0; trial < 3000; ++trial) {
-    Scene scene = example("four_bar");
-    for (int i = 0; i < 3; ++i)
-      scene.joints[static_cast<std::size_t>(i)].position = {std::numbers::pi *
-                                                            random.uniform(-1, 1)};
-    const Mechanism mechanism(scene);
-    Assembly a;
-    try {
-      a = assemble(mechanism);
-    } catch (const SceneError& e) {
-      ++refused;
-      EXPECT_NE(std::string(e.what()).find("stays open by"), std::string::npos) << e.what();
-      continue;
-    }
-    ASSERT_LT(a.position_residual, 1e-11);
-    const Eigen::VectorXd& guess = mechanism.tree().q0;
-    // The determinant of the loop's equations in the coupler's and the rocker's angle, by hand:
-    // 2 m · 1.5 m · sin(rocker − coupler).
-    const auto side = [](const Eigen::VectorXd& q) { return std::sin(q[2] - q[0] - q[1]); };
-    if (std::abs(side(guess)) < 1e-4) continue;
-    const bool crossed = (side(guess) > 0) != (side(a.start.q) > 0);
-    EXPECT_EQ(crossed, !a.mirrored.empty()) << trial;
-    EXPECT_EQ(side(a.start.q) > 0, is_open(a.start.q)) << trial;
-    ++(crossed ? told : kept);
-    if (crossed) {
-      EXPECT_NE(mirror_sentence(a).find("loop 'B'"), std::string::npos);
-    }
-  }
-  EXPECT_GT(kept, 2700);
-  RecordProperty("kept", kept);
-  RecordProperty("told", told);
-  RecordProperty("refused", refused);
-}
-
 TEST(Assembly, RandomStartsOfTheExamplesAssembleOrAreRefusedWithTheReason) {
   RandomTree random(4);
   int assembled = 0, refused = 0;
-  for (const char* name : {"slider_crank", "andrews", "n_four_bar"}) {
+  for (const char* name : {"four_bar", "slider_crank", "andrews", "bricard", "n_four_bar"}) {
     const Scene plain = example(name);
     for (int trial = 0; trial < (plain.bodies.size() > 20 ? 10 : 500); ++trial) {
       Scene scene = plain;
@@ -228,52 +178,8 @@ TEST(Assembly, RandomStartsOfTheExamplesAssembleOrAreRefusedWithTheReason) {
       }
     }
   }
-  EXPECT_GT(assembled, 900);
-  EXPECT_EQ(assembled + refused, 1010);
-}
-
-TEST(Assembly, TwoLoopsHaveTwoSides) {
-  // Two four-bars that share nothing: mirroring both must not cancel out.
-  Scene scene = example("four_bar");
-  const Scene other = example("four_bar");
-  const auto second = [](std::string name) { return name == "ground" ? name : name + "2"; };
-  for (BodySpec b : other.bodies) {
-    b.name = second(b.name);
-    scene.bodies.push_back(b);
-  }
-  for (JointSpec j : other.joints) {
-    j.name = second(j.name);
-    j.parent = second(j.parent);
-    j.child = second(j.child);
-    scene.joints.push_back(j);
-  }
-  LoopSpec loop = other.loops[0];
-  loop.name = second(loop.name);
-  loop.parent = second(loop.parent);
-  loop.child = second(loop.child);
-  scene.loops.push_back(loop);
-  scene.markers.clear();
-  const Mechanism mechanism(scene);
-  Eigen::MatrixXd from = Eigen::MatrixXd::Zero(4, 6), to = from;
-  // Columns of the cranks are held; the others' blocks by hand, det > 0 before, < 0 after.
-  from.block<2, 2>(0, 1) << 1, 0, 0, 1;
-  from.block<2, 2>(2, 4) << 0, 1, -1, 0;
-  to.block<2, 2>(0, 1) << 1, 0, 0, -1;
-  to.block<2, 2>(2, 4) << 0, 1, 1, 0.5;
-  EXPECT_EQ(rows_that_changed_side(from, to).size(), 2u);
-  to.block<2, 2>(2, 4) = from.block<2, 2>(2, 4);
-  const auto one = rows_that_changed_side(from, to);
-  int rows = 0;
-  for (const auto& block : one) rows += static_cast<int>(block.size());
-  EXPECT_GE(one.size(), 1u);
-  for (const auto& block : one)
-    for (const int row : block) EXPECT_LT(row, 2);
-  EXPECT_TRUE(rows_that_changed_side(from, from).empty());
-  // Free columns to spare: nothing is told.
-  from.col(0).setOnes();
-  EXPECT_TRUE(rows_that_changed_side(from, to).empty());
-  EXPECT_GT(rows, 0);
-  EXPECT_EQ(assemble(mechanism).mirrored.size(), 0u);
+  EXPECT_GT(assembled, 1500);
+  EXPECT_EQ(assembled + refused, 2010);
 }
 
 TEST(Assembly, UnitsDoNotMatter) {

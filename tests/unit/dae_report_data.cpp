@@ -26,7 +26,8 @@ TEST(SummaryJson, HasThePublicKeys) {
                  "atol",        "step",       "end_time",      "status",  "reason",
                  "counters",    "time",       "drift",         "energy",  "error",
                  "environment", "jacobian",   "linear_solver", "kkt",     "project",
-                 "stopped_at",  "faded_rows", "beta",          "penalty", "partitions"};
+                 "stopped_at",  "faded_rows", "beta",          "penalty", "partitions",
+                 "least_pivot", "passages"};
   std::sort(expected.begin(), expected.end());
   EXPECT_EQ(keys(json), expected);
   EXPECT_EQ(keys(json["counters"]), (Names{"evaluations", "factorizations", "jacobians",
