@@ -80,16 +80,16 @@ std::string summary_section(const StressResult& study) {
     const Tally t = tally(study, c);
     if (t.tried() == 0) continue;
     std::string row = row_head(study.contestants[c]);
-    for (const int n : {t.survived, t.wrong, t.stopped, t.slow, t.tried()})
+    for (const int n : {t.survived, t.rungs, t.wrong, t.stopped, t.slow})
       row += tag("td", "", std::to_string(n));
     rows += tag("tr", "", row);
   }
   std::string head = tag("th", "scope=\"col\" class=\"verdict\"", "form, integrator");
-  for (const char* title : {"survived", "wrong in silence", "stopped", "slow", "of"})
+  for (const char* title : {"survived", "of rungs", "wrong in silence", "stopped", "slow"})
     head += tag("th", "scope=\"col\"", title);
   return tag(
       "section", "",
-      tag("h2", "", "All ladders") +
+      tag("h2", "", "Ladders that all took part in") +
           tag("p", of_class("caption"),
               "Wrong: came to a result beyond the bound without saying so. Stopped: gave a reason "
               "and ended. Slow: not done within " +
@@ -97,7 +97,8 @@ std::string summary_section(const StressResult& study) {
                   " s of processor time. On a rising ladder nothing is tried after the first "
                   "failure. The number in a cell is the largest of opening over length, energy "
                   "error over what is exchanged, and error against the reference.") +
-          framed("all ladders", tag("thead", "", tag("tr", "", head)) + tag("tbody", "", rows)));
+          framed("ladders that all took part in",
+                 tag("thead", "", tag("tr", "", head)) + tag("tbody", "", rows)));
 }
 
 /// Who survived most, and who was wrong without a word.
@@ -114,8 +115,8 @@ std::string answer(const StressResult& study) {
   const Tally t = tally(study, best);
   return tag("code", "", escape_html(study.contestants[best].form)) + " by " +
          escape_html(study.contestants[best].integrator) +
-         " survived most: " + std::to_string(t.survived) + " of " + std::to_string(t.tried()) +
-         " runs within " + compact(study.bound, 2) + ". Of all " + std::to_string(tried) +
+         " survived most: " + std::to_string(t.survived) + " of " + std::to_string(t.rungs) +
+         " rungs within " + compact(study.bound, 2) + ". Of all " + std::to_string(tried) +
          " runs " + std::to_string(silent) + (silent == 1 ? " was" : " were") +
          " wrong without a word." + (study.complete ? "" : " The study was interrupted.");
 }

@@ -41,14 +41,23 @@ double worst_measure(const StressRun& r) {
 }
 
 Tally tally(const StressResult& study, std::size_t contestant) {
+  const auto common = [](const LadderResult& ladder) {
+    return std::none_of(ladder.runs.begin(), ladder.runs.end(),
+                        [](const auto& climb) { return climb.empty(); });
+  };
+  const bool any = std::any_of(study.ladders.begin(), study.ladders.end(), common);
   Tally t;
-  for (const LadderResult& ladder : study.ladders)
+  for (const LadderResult& ladder : study.ladders) {
+    if (any && !common(ladder)) continue;
+    t.rungs +=
+        static_cast<int>(std::count(ladder.refused.begin(), ladder.refused.end(), std::string()));
     for (const StressRun& r : ladder.runs[contestant]) {
       t.survived += r.verdict == Verdict::survived;
       t.wrong += r.verdict == Verdict::wrong;
       t.stopped += r.verdict == Verdict::stopped;
       t.slow += r.verdict == Verdict::slow;
     }
+  }
   return t;
 }
 
@@ -83,12 +92,13 @@ std::string stress_table(const StressResult& study) {
         text += "  " + ladder.rungs[k] + " has no start: " + ladder.refused[k] + "\n";
     text += "\n";
   }
-  text += padded("All ladders", name_width + 4) + "survived   wrong in silence   stopped   slow\n";
+  text +=
+      padded("Ladders of all", name_width + 4) + "survived   wrong in silence   stopped   slow\n";
   for (std::size_t c = 0; c < study.contestants.size(); ++c) {
     const Tally t = tally(study, c);
     if (t.tried() == 0) continue;
     text += "  " + padded(label(study.contestants[c]), name_width + 2) +
-            padded(std::to_string(t.survived) + " of " + std::to_string(t.tried()), 11) +
+            padded(std::to_string(t.survived) + " of " + std::to_string(t.rungs), 11) +
             padded(std::to_string(t.wrong), 19) + padded(std::to_string(t.stopped), 10) +
             std::to_string(t.slow) + "\n";
   }
@@ -135,6 +145,7 @@ nlohmann::ordered_json stress_json(const StressResult& study) {
     const Tally t = tally(study, c);
     j["contestants"].push_back({{"form", study.contestants[c].form},
                                 {"integrator", study.contestants[c].integrator},
+                                {"rungs", t.rungs},
                                 {"survived", t.survived},
                                 {"wrong", t.wrong},
                                 {"stopped", t.stopped},

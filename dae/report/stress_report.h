@@ -21,9 +21,12 @@ std::string stress_page(const StressResult&, const std::string& title);
 /// The largest of opening, energy and error that was measured; NaN for none.
 double worst_measure(const StressRun&);
 
-/// How a contestant fared over all ladders.
+/// How a contestant fared over the ladders that all took part in; of all ladders where there is no
+/// such one. Without loops forms other than momentum and acceleration do not take part: open chains
+/// would make those two look hardier than they are.
 struct Tally {
   int survived = 0, wrong = 0, stopped = 0, slow = 0;
+  int rungs = 0;  ///< of those ladders: what was not tried after a failure was not survived
   int tried() const { return survived + wrong + stopped + slow; }
 };
 Tally tally(const StressResult&, std::size_t contestant);

@@ -162,5 +162,37 @@ TEST(Examples, ChainMeetsItsReference) {
   EXPECT_LE(run_against_reference("chain", "momentum", "none", 1e-12, 5).position_error_max, 1e-7);
 }
 
+/// An open chain of examples/extremes against its reference.
+RunResult run_extreme(const std::string& name, const std::string& form, double tol) {
+  const auto folder = examples / "extremes";
+  const Mechanism mechanism(read_scene(folder / (name + ".toml")));
+  Reference reference(folder / (name + ".csv"));
+  reference.bind(trajectory_columns(mechanism));
+  RunRequest request;
+  request.settings.form = form;
+  request.settings.integrator = "dop853";
+  request.settings.rtol = request.settings.atol = tol;
+  request.settings.samples = 10;
+  request.reference = &reference;
+  const RunResult run = run_form(mechanism, assemble(mechanism).start, request);
+  EXPECT_EQ(run.status, "done") << run.reason;
+  return run;
+}
+
+TEST(Examples, SpringPendulumMeetsItsReference) {
+  for (const char* form : {"momentum", "acceleration"}) {
+    EXPECT_LE(run_extreme("spring_pendulum", form, 1e-10).position_error_max, 1e-8) << form;
+    EXPECT_LE(run_extreme("spring_pendulum", form, 1e-13).position_error_max, 1e-10) << form;
+  }
+}
+
+TEST(Examples, LightCartMeetsItsReference) {
+  for (const char* form : {"momentum", "acceleration"}) {
+    const RunResult run = run_extreme("light_cart", form, 1e-12);
+    EXPECT_LE(run.position_error_max, 1e-6) << form;
+    EXPECT_GT(run.counters.steps, 100) << form;
+  }
+}
+
 }  // namespace
 }  // namespace momenta

@@ -444,4 +444,46 @@ TEST_F(Program, LargeFamiliesAreWrittenQuicklyAndImpossibleOnesRefused) {
   expect_refused("make humanoid --n 12", "expected 30, its number of hinges");
 }
 
+TEST_F(Program, StressTellsWhoSurvives) {
+  const fs::path results = folder_ / "results";
+  const Outcome o = call("stress '" + example("four_bar") +
+                         "' --end 1 --along 'duration,mass ratio' --forms momentum,projected "
+                         "--reference-limit 0 --cpu-limit 2 --out '" +
+                         results.string() + "'");
+  EXPECT_EQ(o.status, 0) << o.err;
+  EXPECT_NE(o.out.find("Ladders of all"), std::string::npos);
+  const auto json = nlohmann::json::parse(text_of(results / "stress.json"));
+  EXPECT_EQ(json["ladders"].size(), 3u);
+  EXPECT_EQ(json["contestants"].size(), 2u);
+  EXPECT_EQ(json["contestants"][0]["form"], "momentum");
+  EXPECT_GT(json["contestants"][0]["survived"].get<int>(), 3);
+  EXPECT_TRUE(json["complete"].get<bool>());
+  const std::string csv = text_of(results / "stress.csv");
+  std::size_t runs = 0;
+  for (const auto& ladder : json["ladders"]) runs += ladder["runs"].size();
+  EXPECT_EQ(static_cast<std::size_t>(std::count(csv.begin(), csv.end(), '\n')), runs + 1);
+  EXPECT_NE(text_of(results / "index.html").find("survived most"), std::string::npos);
+}
+
+TEST_F(Program, StressRefusesWhatItDoesNotKnow) {
+  expect_refused("stress --along nonsense", "nonsense");
+  expect_refused("stress '" + example("four_bar") + "' --along nonsense", "nonsense");
+  expect_refused("stress '" + example("four_bar") + "' --along stiffness", "no spring");
+  expect_refused("stress '" + example("four_bar") + "' --forms nonsense", "nonsense");
+  expect_refused("stress '" + example("four_bar") + "' --integrators nonsense", "nonsense");
+  expect_refused("stress nowhere.toml", "nowhere.toml");
+}
+
+TEST_F(Program, CheckNamesWhatIsRedundantAndWhatIsSingular) {
+  const Outcome three =
+      call("check '" + std::string(MOMENTA_SOURCE_DIR) + "/examples/extremes/three_cranks.toml'");
+  EXPECT_EQ(three.status, 0);
+  EXPECT_NE(three.out.find("redundant: loop 'C' row"), std::string::npos) << three.out;
+  EXPECT_NE(three.out.find("follows from loop 'B'"), std::string::npos) << three.out;
+  const Outcome hinges = call("check '" + example("four_bar") + "' --algebra spatial");
+  EXPECT_NE(hinges.out.find("a point loop in place of 'B' ties as much"), std::string::npos);
+  const Outcome json = call("check '" + example("bricard") + "' --json");
+  EXPECT_EQ(nlohmann::json::parse(json.out)["loops"]["dependencies"].size(), 1u);
+}
+
 }  // namespace

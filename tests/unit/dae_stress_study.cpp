@@ -48,6 +48,21 @@ TEST(StressStudy, AFormThatDriftsIsWrongInSilenceAndLeavesTheLadder) {
   EXPECT_EQ(tally(result, 1).survived, 3);
 }
 
+TEST(StressStudy, OnlyLaddersOfAllAreCounted) {
+  StressRequest request =
+      climb(four_bar(1), Extreme::duration, {1, 2}, {{"momentum", ""}, {"projected", ""}});
+  Scene pendulum =
+      read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples/pendulum/scene.toml");
+  pendulum.run.end_time = 1;
+  request.ladders.push_back(ladder_of(pendulum, Extreme::duration, {1, 2, 3}));
+  const StressResult result = run_stress_study(request);
+  EXPECT_EQ(result.ladders[1].runs[0].size(), 3u);  // an open chain: momentum alone
+  EXPECT_TRUE(result.ladders[1].runs[1].empty());
+  EXPECT_EQ(tally(result, 0).survived, 2);
+  EXPECT_EQ(tally(result, 1).survived, 2);
+  EXPECT_EQ(tally(result, 0).rungs, 2);
+}
+
 TEST(StressStudy, StiffnessMakesExplicitMethodsSlowAndTheCauseIsTold) {
   Scene scene = four_bar(10);
   scene.joints[2].damping = 1;
