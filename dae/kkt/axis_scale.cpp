@@ -5,8 +5,6 @@
 namespace momenta {
 
 AxisScale::AxisScale(const Mechanism& mechanism) {
-  constexpr double dust = 1e-16;
-  const double length = length_of(mechanism.scene());
   const auto& pattern = mechanism.kkt_pattern();
   std::vector<std::size_t> diagonal(static_cast<std::size_t>(mechanism.nv()));
   for (std::size_t i = 0; i < pattern.mass.size(); ++i)
@@ -22,18 +20,14 @@ AxisScale::AxisScale(const Mechanism& mechanism) {
     const auto row = static_cast<std::size_t>(entry.row),
                column = static_cast<std::size_t>(entry.column);
     const bool ties_axes = mechanism.row_groups()[row] % 2 == 1;  // each loop: points, then axes
-    if (ties_axes) {
-      if (turns[column]) hanging_.push_back({row, diagonal[column], 1});
-    } else {
-      hanging_.push_back({row, diagonal[column], dust * (turns[column] ? length * length : 1)});
-    }
+    if (ties_axes && turns[column]) hanging_.push_back({row, diagonal[column]});
   }
 }
 
 void AxisScale::measure(const std::vector<double>& mass, std::vector<double>& scale) const {
   std::fill(scale.begin(), scale.end(), 0.0);
   for (const auto& h : hanging_)
-    if (mass[h.mass] > 0) scale[h.row] += h.arm2 / mass[h.mass];
+    if (mass[h.mass] > 0) scale[h.row] += 1 / mass[h.mass];
 }
 
 std::vector<double> row_scales(const Mechanism& mechanism, Evaluation<double>& e) {

@@ -1,8 +1,7 @@
 #pragma once
-// How large rows are by nature, not as they are. Where all hinges of a loop are parallel, the
+// How large rows that tie axes are by nature. Where all hinges of a loop are parallel, the
 // equations for its axes vanish to rounding in every entry: they are redundant, not weak, and what
-// is left of them is no scale for anything. So do equations for a point that the tree grants by
-// itself, of a slide along a cylindrical joint for instance.
+// is left of them is no scale for anything.
 
 #include <momenta/dae/mechanism.h>
 
@@ -15,15 +14,13 @@ class AxisScale {
   explicit AxisScale(const Mechanism& mechanism);
 
   /// Per row (m): Σ_j 1/M_jj over the rotations that an axis row hangs on, whose entries are at
-  /// most 1: its W_ii when the axes are anyhow. Of a row of points or a distance 1e-16 of the same
-  /// with arms as long as the scene: far below what any row weighs that is not rounding, far above
-  /// the 1e-32 of one that is. `mass`: values of M in the order of the KKT pattern.
+  /// most 1: its W_ii when the axes are anyhow; 0 for rows of points and distances. `mass`: values
+  /// of M in the order of the KKT pattern.
   void measure(const std::vector<double>& mass, std::vector<double>& scale) const;
 
  private:
   struct Hanging {
     std::size_t row, mass;  ///< row of Φ, place of M_jj among the values
-    double arm2;            ///< square of the largest entry there may be, or 1e-16 of it
   };
   std::vector<Hanging> hanging_;
 };

@@ -75,7 +75,7 @@ void print_rank(const Mechanism& mechanism, const RankReport& r) {
     std::printf(
         "  a singular pose: rank %d nearby. Motions in %d directions meet here; a run follows its "
         "velocities, and from rest may follow any\n",
-        r.rank_nearby, r.rank_nearby - r.rank + mechanism.nv() - r.rank_nearby);
+        r.rank_nearby, mechanism.nv() - r.rank);
   for (const Dependency& d : r.dependencies)
     std::printf("  %s: %s\n", d.only_here ? "only here" : "redundant",
                 in_words(mechanism, d).c_str());
