@@ -115,11 +115,10 @@ void mark_undetermined(Reactions& all, const Mechanism& mechanism, double t,
   // Reactions are affine in λ: what a column of `idle` adds, with nothing moving.
   const Eigen::VectorXd rest = Eigen::VectorXd::Zero(mechanism.nv());
   const double length = length_of(mechanism.scene());
-  const auto none = [&] {
-    return reactions(mechanism, t, q, rest, rest, Eigen::VectorXd::Zero(mechanism.m()));
-  };
+  const Reactions without =
+      reactions(mechanism, t, q, rest, rest, Eigen::VectorXd::Zero(mechanism.m()));
   for (Eigen::Index k = 0; k < idle.cols(); ++k) {
-    const Reactions without = none(), with = reactions(mechanism, t, q, rest, rest, idle.col(k));
+    const Reactions with = reactions(mechanism, t, q, rest, rest, idle.col(k));
     const auto mark = [&](std::vector<Transmitted>& marked, const std::vector<Transmitted>& a,
                           const std::vector<Transmitted>& b) {
       const auto size = [&](std::size_t i) {

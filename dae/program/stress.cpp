@@ -2,8 +2,8 @@
 #include <momenta/dae/report/stress_report.h>
 #include <momenta/dae/solver/integrators.h>
 
+#include <algorithm>
 #include <cstdio>
-#include <sstream>
 #include <stdexcept>
 #include <thread>
 

@@ -34,28 +34,30 @@ inline std::string time_limit_sentence(const std::string& method, double limit, 
          " at t = " + in_words(t) + " s";
 }
 
+/// CPU time of the calling thread [s].
+inline double thread_seconds() {
+#ifdef CLOCK_THREAD_CPUTIME_ID
+  std::timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+#else
+  using std::chrono::steady_clock;
+  return std::chrono::duration<double>(steady_clock::now().time_since_epoch()).count();
+#endif
+}
+
 /// CPU time of the calling thread since construction against a limit; looks at the clock once in 64
 /// calls, which is what a clock read of 0.2-1 us may cost beside steps of the same length.
 class CpuLimit {
  public:
-  explicit CpuLimit(double seconds) : limit_(seconds), start_(seconds > 0 ? now() : 0) {}
+  explicit CpuLimit(double seconds) : limit_(seconds), start_(seconds > 0 ? thread_seconds() : 0) {}
   double seconds() const { return limit_; }
   bool exceeded() {
     if (!(limit_ > 0) || ++calls_ % 64 != 0) return false;
-    return now() - start_ > limit_;
+    return thread_seconds() - start_ > limit_;
   }
 
  private:
-  static double now() {
-#ifdef CLOCK_THREAD_CPUTIME_ID
-    std::timespec time{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-    return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-#else
-    using std::chrono::steady_clock;
-    return std::chrono::duration<double>(steady_clock::now().time_since_epoch()).count();
-#endif
-  }
   double limit_, start_;
   long calls_ = 0;
 };

@@ -1,23 +1,17 @@
 #include <momenta/dae/form/ode_form.h>
 #include <momenta/dae/measure/growth.h>
 #include <momenta/dae/solver/integrators.h>
+#include <momenta/dae/solver/stopping.h>
 #include <momenta/dae/study/run_form.h>
 
 #include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
-#include <ctime>
 #include <stdexcept>
 
 namespace momenta {
 namespace {
-
-double cpu_now() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
 
 /// Uniform samples and the reference's own times, ascending, without the start.
 std::vector<double> output_times(const RunSettings& s, const Reference* reference) {
@@ -429,7 +423,7 @@ RunResult run_form(const Mechanism& mechanism, const Start& start, const RunRequ
   result.scene = mechanism.scene().name;
   result.settings = request.settings;
   Runner runner(mechanism, start, result.settings, request.max_cpu_seconds);
-  const double wall_start = wall_now(), cpu_start = cpu_now();
+  const double wall_start = wall_now(), cpu_start = thread_seconds();
   Looker looker(mechanism, runner.form(), request, result);
   const auto y0 = runner.form().initial(start);
   looker.sample(start.t, y0.data(), nullptr);
@@ -443,7 +437,7 @@ RunResult run_form(const Mechanism& mechanism, const Start& start, const RunRequ
           [&](double t0, double t1, const Interpolant& between) {
             return looker.step(t0, t1, between);
           }});
-  result.cpu_s = cpu_now() - cpu_start;
+  result.cpu_s = thread_seconds() - cpu_start;
   result.wall_s = wall_now() - wall_start;
   result.status =
       run.done ? "done" : (run.reason.rfind("time limit", 0) == 0 ? "time limit" : "failed");
@@ -473,9 +467,9 @@ void time_runs(const Mechanism& mechanism, const Start& start, std::vector<RunRe
       if (going_on && !going_on(i)) return;
       RunSettings settings = runs[i].settings;
       Runner runner(mechanism, start, settings, 0);
-      const double wall_start = wall_now(), cpu_start = cpu_now();
+      const double wall_start = wall_now(), cpu_start = thread_seconds();
       const IntegrationResult run = runner.integrate({settings.end_time}, {});
-      cpu[i].push_back(cpu_now() - cpu_start);
+      cpu[i].push_back(thread_seconds() - cpu_start);
       wall[i].push_back(wall_now() - wall_start);
       spent[i] += cpu[i].back();
       // What the time was spent on: without the stages and solutions that looking on takes.

@@ -1,5 +1,6 @@
 #include <momenta/core/scene/read_scene.h>
 #include <momenta/dae/solver/integrators.h>
+#include <momenta/dae/solver/stopping.h>
 #include <momenta/dae/study/environment.h>
 #include <momenta/dae/study/own_reference.h>
 #include <momenta/dae/study/stress_study.h>
@@ -8,7 +9,6 @@
 #include <atomic>
 #include <cmath>
 #include <cstdio>
-#include <ctime>
 #include <memory>
 #include <mutex>
 #include <stdexcept>
@@ -31,12 +31,6 @@ std::string power_of_ten(double x) {
   return std::abs(exponent) > 2 && std::abs(std::pow(10.0, exponent) / x - 1) < 1e-9
              ? "1e" + std::to_string(exponent)
              : digits(x);
-}
-
-double thread_seconds() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
 /// A rung made ready: what all contestants share.

@@ -152,4 +152,33 @@ Scene platform(int legs) {
   return s;
 }
 
+Scene flying_rod() {
+  Scene scene;
+  scene.name = "a rod on a ball joint carries a flying one";
+  scene.gravity = {0, -9.81, 0};
+  for (const char* name : {"held", "flying"}) scene.bodies.push_back(rod(name, 0.2));
+  JointSpec ball;
+  ball.name = "A";
+  ball.child = "held";
+  ball.kind = JointKind::spherical;
+  ball.position = {1, 0, 0, 0};
+  ball.velocity = {0.5, 1, 0.3};
+  scene.joints.push_back(ball);
+  JointSpec free = ball;
+  free.name = "B";
+  free.child = "flying";
+  free.kind = JointKind::free;
+  free.position = {1, 0, 0, std::cos(0.3), 0, std::sin(0.3), 0};
+  free.velocity = {0, 0, 0, 0.2, -1, 2};
+  scene.joints.push_back(free);
+  LoopSpec loop;
+  loop.name = "C";
+  loop.kind = LoopKind::point;
+  loop.parent = "held";
+  loop.child = "flying";
+  loop.origin_parent = {1, 0, 0};
+  scene.loops.push_back(loop);
+  return scene;
+}
+
 }  // namespace momenta::equations

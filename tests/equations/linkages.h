@@ -29,4 +29,7 @@ Scene bricard();
 /// a free platform on ball joints.
 Scene platform(int legs);
 
+/// A rod on a ball joint carries a flying one by its end: q̇ is not u.
+Scene flying_rod();
+
 }  // namespace momenta::equations

@@ -153,36 +153,6 @@ Scene driven_crank() {
   return scene;
 }
 
-/// A rod on a ball joint carries a flying one: q̇ is not u.
-Scene two_rods() {
-  Scene scene;
-  scene.name = "two rods with quaternions";
-  scene.gravity = {0, -9.81, 0};
-  for (const char* name : {"held", "flying"}) scene.bodies.push_back(rod(name, 0.2));
-  JointSpec ball;
-  ball.name = "A";
-  ball.child = "held";
-  ball.kind = JointKind::spherical;
-  ball.position = {1, 0, 0, 0};
-  ball.velocity = {0.5, 1, 0.3};
-  scene.joints.push_back(ball);
-  JointSpec free = ball;
-  free.name = "B";
-  free.child = "flying";
-  free.kind = JointKind::free;
-  free.position = {1, 0, 0, std::cos(0.3), 0, std::sin(0.3), 0};
-  free.velocity = {0, 0, 0, 0.2, -1, 2};
-  scene.joints.push_back(free);
-  LoopSpec loop;
-  loop.name = "C";
-  loop.kind = LoopKind::point;
-  loop.parent = "held";
-  loop.child = "flying";
-  loop.origin_parent = {1, 0, 0};
-  scene.loops.push_back(loop);
-  return scene;
-}
-
 TEST(HalfExplicitOrder, HalvedStepsOnMechanisms) {
   struct Case {
     Scene scene;
@@ -190,7 +160,7 @@ TEST(HalfExplicitOrder, HalvedStepsOnMechanisms) {
     int coarse;
   };
   for (const Case& c : {Case{example("four_bar"), 1, 200}, Case{example("andrews"), 0.01, 100},
-                        Case{driven_crank(), 1, 60}, Case{two_rods(), 1, 100}})
+                        Case{driven_crank(), 1, 60}, Case{flying_rod(), 1, 100}})
     for (const std::string form : {"acceleration-index2", "momentum-index2"}) {
       SCOPED_TRACE(c.scene.name + " " + form);
       const Halving halving(c.scene, form, c.end);
