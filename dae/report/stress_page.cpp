@@ -113,8 +113,13 @@ std::string answer(const StressResult& study) {
     tried += t.tried();
   }
   const Tally t = tally(study, best);
+  int others = 0;  // as many rungs as the best
+  for (std::size_t c = 0; c < study.contestants.size(); ++c)
+    others += c != best && tally(study, c).survived == t.survived;
+  const std::string equals =
+      others == 0 ? "" : " and " + std::to_string(others) + (others == 1 ? " other" : " others");
   return tag("code", "", escape_html(study.contestants[best].form)) + " by " +
-         escape_html(study.contestants[best].integrator) +
+         escape_html(study.contestants[best].integrator) + equals +
          " survived most: " + std::to_string(t.survived) + " of " + std::to_string(t.rungs) +
          " rungs within " + compact(study.bound, 2) + ". Of all " + std::to_string(tried) +
          " runs " + std::to_string(silent) + (silent == 1 ? " was" : " were") +

@@ -61,6 +61,9 @@ TEST(StressStudy, OnlyLaddersOfAllAreCounted) {
   EXPECT_EQ(tally(result, 0).survived, 2);
   EXPECT_EQ(tally(result, 1).survived, 2);
   EXPECT_EQ(tally(result, 0).rungs, 2);
+  // Who is not alone at the top is not called the only one.
+  EXPECT_NE(stress_page(result, "t").find(" and 1 other survived most: 2 of 2 rungs"),
+            std::string::npos);
 }
 
 TEST(StressStudy, StiffnessMakesExplicitMethodsSlowAndTheCauseIsTold) {
