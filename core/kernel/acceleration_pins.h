@@ -80,31 +80,48 @@ std::size_t AccelerationSweeps<Spatial, S>::chain_inward(std::size_t end, const 
 
 template <class S>
 template <class InTau>
-bool AccelerationSweeps<Spatial, S>::pin_inward(std::size_t k, const InTau& tau, Cargo<S>& cargo) {
-  const Link& l = tree_->links[k];
-  PinAcceleration<S>& w = pins_[k];
-  Eliminated<S> r;
-  S inverse;
-  if (l.tip) {
-    cargo = {};
-    add_bias(cargo, w);
-    const Tip& tip = tree_->tips[static_cast<std::size_t>(l.record)];
-    set_tip(tip, w.h, r.M);
-    inverse = S(tip.inverse);
-  } else {
-    add_body(cargo.M, l);
-    add_bias(cargo, w);
-    if (l.slot >= 0) add<false>(cargo, slots_[static_cast<std::size_t>(l.slot)]);
-    if (!all_positive(cargo.M.Izz)) return false;
-    inverse = S(1.0) / cargo.M.Izz;
-    eliminate_pin(cargo.M, inverse, w.h, r.M);
-  }
-  eliminate_bias(cargo, S(tau[l.u]), inverse, w, r);
-  if (l.parent < 0) return true;
-  turn_pin(r, angles_.cosine(k), angles_.sine(k), l.d, w);
-  carry_any<false>(l, body(k).edge, r, cargo);
-  if (!l.first) leave<false>(l, slot_of_parent(l), cargo);
-  return true;
+std::size_t AccelerationSweeps<Spatial, S>::pins_inward(std::size_t end, const InTau& tau,
+                                                        Cargo<S>& from) {
+  Cargo<S> cargo = from;
+  const Link* links = tree_->links.data();
+  std::size_t k = end;
+  do {
+    --k;
+    const Link& l = links[k];
+    PinAcceleration<S>& w = pins_[k];
+    Eliminated<S> r;
+    PinColumn<S> h;
+    S inverse;
+    if (l.tip) {
+      cargo.Dfx = w.bfx;
+      cargo.Dfy = w.bfy;
+      cargo.Dfz = w.bfz;
+      cargo.Dnx = w.bnx;
+      cargo.Dny = w.bny;
+      cargo.Dnz = w.bnz;
+      const Tip& tip = tree_->tips[static_cast<std::size_t>(l.record)];
+      set_tip(tip, h, r.M);
+      inverse = S(tip.inverse);
+    } else {
+      add_body(cargo.M, l);
+      add_bias(cargo, w);
+      if (l.slot >= 0) add<false>(cargo, slots_[static_cast<std::size_t>(l.slot)]);
+      if (!all_positive(cargo.M.Izz)) {
+        stuck_ = static_cast<int>(k);
+        return k;
+      }
+      inverse = S(1.0) / cargo.M.Izz;
+      eliminate_pin(cargo.M, inverse, h, r.M);
+    }
+    w.h = h;
+    eliminate_bias(cargo, S(tau[l.u]), inverse, w, r);
+    if (l.parent < 0) continue;
+    turn_pin(r, angles_.cosine(k), angles_.sine(k), l.d, w);
+    carry_any<false>(l, body(k).edge, r, cargo);
+    if (!l.first) leave<false>(l, slot_of_parent(l), cargo);
+  } while (k > 0 && links[k - 1].path == Path::any && links[k - 1].kind == LinkKind::pin);
+  from = cargo;
+  return k;
 }
 
 }  // namespace momenta

@@ -78,7 +78,8 @@ class AccelerationSweeps<Spatial, S> {
   __attribute__((noinline)) std::size_t chain_inward(std::size_t end, const InTau& tau,
                                                      Cargo<S>& cargo);
   template <class InTau>
-  __attribute__((noinline)) bool pin_inward(std::size_t k, const InTau& tau, Cargo<S>& cargo);
+  __attribute__((noinline)) std::size_t pins_inward(std::size_t end, const InTau& tau,
+                                                    Cargo<S>& cargo);
   template <class InTau>
   __attribute__((noinline)) bool ball_inward(std::size_t k, const InTau& tau, Cargo<S>& cargo);
   template <class InTau>
@@ -124,11 +125,14 @@ bool AccelerationSweeps<Spatial, S>::inward(const InTau& tau) {
         k = chain_inward<Turn::parallel>(k, tau, cargo);
         break;
       case Path::any:
+        if (links[k - 1].kind == LinkKind::pin) {
+          k = pins_inward(k, tau, cargo);
+          break;
+        }
         --k;
-        if (!(links[k].kind == LinkKind::pin    ? pin_inward(k, tau, cargo)
-              : links[k].kind == LinkKind::ball ? ball_inward(k, tau, cargo)
-              : links[k].one_axis               ? axis_inward(k, tau, cargo)
-                                                : general_inward(k, tau, cargo)))
+        if (!(links[k].kind == LinkKind::ball ? ball_inward(k, tau, cargo)
+              : links[k].one_axis             ? axis_inward(k, tau, cargo)
+                                              : general_inward(k, tau, cargo)))
           stuck_ = static_cast<int>(k);
         break;
     }

@@ -29,6 +29,26 @@ MOMENTA_INLINE void eliminate_pin(const Cargo<S>& cargo, const S& p, const S& in
   }
 }
 
+/// (46)-(48) of a pin that carries nothing: constants of the tree but for p.
+template <bool Gravity, class S>
+MOMENTA_INLINE void leave_tip(const Tip& tip, const Link& l, const S& p, PinRecord<S>& w,
+                              Eliminated<S>& r) {
+  set_tip(tip, w.h, r.M);
+  w.inverse = S(tip.inverse);
+  w.y0 = p * tip.inverse;
+  r.fx = p * tip.h[0];
+  r.fy = p * tip.h[1];
+  r.fz = p * tip.h[2];
+  r.nx = p * tip.h[3];
+  r.ny = p * tip.h[4];
+  r.nz = p;
+  if constexpr (Gravity) {
+    w.Gx = r.Gx = S(l.moment[0]);
+    w.Gy = r.Gy = S(l.moment[1]);
+    r.Gz = S(l.moment[2]);
+  }
+}
+
 /// The pin's own screw; what the outward sweep needs is stored on the way.
 template <bool Gravity, class S>
 MOMENTA_INLINE void turn_pin(Eliminated<S>& r, const S& c, const S& s, double d, PinRecord<S>& w) {
@@ -83,56 +103,53 @@ std::size_t MomentumSweeps<Spatial, S>::chain_inward(std::size_t end, const In& 
   return k;
 }
 
-/// Any other pin: at a tip, at a branch, on the ground, beside a first child.
+/// Other pins from `end` − 1 down, one after another: at tips, at branches, on the ground, beside a
+/// first child. What passes from a first child to its parent stays in registers here too.
 template <class S>
 template <bool Gravity, class In>
-bool MomentumSweeps<Spatial, S>::pin_inward(std::size_t k, const In& p, Cargo<S>& cargo) {
-  const Link& l = tree_->links[k];
-  PinRecord<S>& w = pins_[k];
-  const S pk = p[l.u];
-  Eliminated<S> r;
-  if (l.tip) {
-    const Tip& tip = tree_->tips[static_cast<std::size_t>(l.record)];
-    set_tip(tip, w.h, r.M);
-    w.inverse = S(tip.inverse);
-    w.y0 = pk * tip.inverse;
-    r.fx = pk * tip.h[0];
-    r.fy = pk * tip.h[1];
-    r.fz = pk * tip.h[2];
-    r.nx = pk * tip.h[3];
-    r.ny = pk * tip.h[4];
-    r.nz = pk;
-    if constexpr (Gravity) {
-      w.Gx = r.Gx = S(l.moment[0]);
-      w.Gy = r.Gy = S(l.moment[1]);
-      r.Gz = S(l.moment[2]);
-    }
-    if (l.parent < 0) return true;
-  } else {
-    add_body(cargo.M, l);
-    if constexpr (Gravity) {
-      cargo.Gx = cargo.Gx + l.moment[0];
-      cargo.Gy = cargo.Gy + l.moment[1];
-      cargo.Gz = cargo.Gz + l.moment[2];
-    }
-    if (l.slot >= 0) add<Gravity>(cargo, slots_[static_cast<std::size_t>(l.slot)]);
-    if (!all_positive(cargo.M.Izz)) return false;
-    const S inverse = S(1.0) / cargo.M.Izz;
-    if (l.parent < 0) {  // nothing is passed on to the ground
-      w.inverse = inverse;
-      w.y0 = (pk - cargo.Dnz) * inverse;
+std::size_t MomentumSweeps<Spatial, S>::pins_inward(std::size_t end, const In& p, Cargo<S>& from) {
+  Cargo<S> cargo = from;
+  const Link* links = tree_->links.data();
+  std::size_t k = end;
+  do {
+    --k;
+    const Link& l = links[k];
+    PinRecord<S>& w = pins_[k];
+    const S pk = p[l.u];
+    Eliminated<S> r;
+    if (l.tip) {
+      leave_tip<Gravity>(tree_->tips[static_cast<std::size_t>(l.record)], l, pk, w, r);
+      if (l.parent < 0) continue;
+    } else {
+      add_body(cargo.M, l);
       if constexpr (Gravity) {
-        w.Gx = cargo.Gx;
-        w.Gy = cargo.Gy;
+        cargo.Gx = cargo.Gx + l.moment[0];
+        cargo.Gy = cargo.Gy + l.moment[1];
+        cargo.Gz = cargo.Gz + l.moment[2];
       }
-      return true;
+      if (l.slot >= 0) add<Gravity>(cargo, slots_[static_cast<std::size_t>(l.slot)]);
+      if (!all_positive(cargo.M.Izz)) {
+        stuck_ = static_cast<int>(k);
+        return k;
+      }
+      const S inverse = S(1.0) / cargo.M.Izz;
+      if (l.parent < 0) {  // nothing is passed on to the ground
+        w.inverse = inverse;
+        w.y0 = (pk - cargo.Dnz) * inverse;
+        if constexpr (Gravity) {
+          w.Gx = cargo.Gx;
+          w.Gy = cargo.Gy;
+        }
+        continue;
+      }
+      eliminate_pin<Gravity>(cargo, pk, inverse, w, r);
     }
-    eliminate_pin<Gravity>(cargo, pk, inverse, w, r);
-  }
-  turn_pin<Gravity>(r, angles_.cosine(k), angles_.sine(k), l.d, w);
-  carry_any<Gravity>(l, body(k).edge, r, cargo);
-  if (!l.first) leave<Gravity>(l, slot_of_parent(l), cargo);
-  return true;
+    turn_pin<Gravity>(r, angles_.cosine(k), angles_.sine(k), l.d, w);
+    carry_any<Gravity>(l, body(k).edge, r, cargo);
+    if (!l.first) leave<Gravity>(l, slot_of_parent(l), cargo);
+  } while (k > 0 && links[k - 1].path == Path::any && links[k - 1].kind == LinkKind::pin);
+  from = cargo;
+  return k;
 }
 
 }  // namespace momenta

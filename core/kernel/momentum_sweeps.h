@@ -97,7 +97,7 @@ class MomentumSweeps<Spatial, S> {
   template <Turn turn, bool Gravity, class In>
   __attribute__((noinline)) std::size_t chain_inward(std::size_t end, const In& p, Cargo<S>& cargo);
   template <bool Gravity, class In>
-  __attribute__((noinline)) bool pin_inward(std::size_t k, const In& p, Cargo<S>& cargo);
+  __attribute__((noinline)) std::size_t pins_inward(std::size_t end, const In& p, Cargo<S>& cargo);
   template <bool Gravity, class In>
   __attribute__((noinline)) bool ball_inward(std::size_t k, const In& p, Cargo<S>& cargo);
   template <bool Gravity, class Out>
@@ -147,11 +147,14 @@ bool MomentumSweeps<Spatial, S>::inward(const In& p) {
         k = chain_inward<Turn::parallel, Gravity>(k, p, cargo);
         break;
       case Path::any:
+        if (links[k - 1].kind == LinkKind::pin) {
+          k = pins_inward<Gravity>(k, p, cargo);
+          break;
+        }
         --k;
-        if (!(links[k].kind == LinkKind::pin    ? pin_inward<Gravity>(k, p, cargo)
-              : links[k].kind == LinkKind::ball ? ball_inward<Gravity>(k, p, cargo)
-              : links[k].one_axis               ? axis_inward<Gravity>(k, p, cargo)
-                                                : general_inward<Gravity>(k, p, cargo)))
+        if (!(links[k].kind == LinkKind::ball ? ball_inward<Gravity>(k, p, cargo)
+              : links[k].one_axis             ? axis_inward<Gravity>(k, p, cargo)
+                                              : general_inward<Gravity>(k, p, cargo)))
           stuck_ = static_cast<int>(k);
         break;
     }

@@ -25,27 +25,33 @@ struct Eliminated {
   S fx, fy, fz, nx, ny, nz, Gx, Gy, Gz;
 };
 
+/// f(number of a, the same number of b) for all numbers of two cargos, one by one: copies of whole
+/// records would be read back in other pieces than they were written in, and wait for memory.
+template <bool Gravity = true, class S, class F>
+MOMENTA_INLINE void in_pairs(Cargo<S>& a, const Cargo<S>& b, F&& f) {
+  Full<S>& m = a.M;
+  const Full<S>& n = b.M;
+  f(m.Axx, n.Axx), f(m.Axy, n.Axy), f(m.Axz, n.Axz);
+  f(m.Ayy, n.Ayy), f(m.Ayz, n.Ayz), f(m.Azz, n.Azz);
+  f(m.Hxx, n.Hxx), f(m.Hxy, n.Hxy), f(m.Hxz, n.Hxz);
+  f(m.Hyx, n.Hyx), f(m.Hyy, n.Hyy), f(m.Hyz, n.Hyz);
+  f(m.Hzx, n.Hzx), f(m.Hzy, n.Hzy), f(m.Hzz, n.Hzz);
+  f(m.Ixx, n.Ixx), f(m.Ixy, n.Ixy), f(m.Ixz, n.Ixz);
+  f(m.Iyy, n.Iyy), f(m.Iyz, n.Iyz), f(m.Izz, n.Izz);
+  f(a.Dfx, b.Dfx), f(a.Dfy, b.Dfy), f(a.Dfz, b.Dfz);
+  f(a.Dnx, b.Dnx), f(a.Dny, b.Dny), f(a.Dnz, b.Dnz);
+  if constexpr (Gravity) f(a.Gx, b.Gx), f(a.Gy, b.Gy), f(a.Gz, b.Gz);
+}
 template <bool Gravity, class S>
 MOMENTA_INLINE void add(Cargo<S>& a, const Cargo<S>& b) {
-  add(a.M, b.M);
-  a.Dfx = a.Dfx + b.Dfx;
-  a.Dfy = a.Dfy + b.Dfy;
-  a.Dfz = a.Dfz + b.Dfz;
-  a.Dnx = a.Dnx + b.Dnx;
-  a.Dny = a.Dny + b.Dny;
-  a.Dnz = a.Dnz + b.Dnz;
-  if constexpr (Gravity) {
-    a.Gx = a.Gx + b.Gx;
-    a.Gy = a.Gy + b.Gy;
-    a.Gz = a.Gz + b.Gz;
-  }
+  in_pairs<Gravity>(a, b, [](S& x, const S& y) { x = x + y; });
 }
 
 /// What a child beside the first leaves in its parent's slot.
 template <bool Gravity, class S>
 MOMENTA_INLINE void leave(const Link& l, Cargo<S>& slot, const Cargo<S>& cargo) {
   if (l.opens)
-    slot = cargo;
+    in_pairs<Gravity>(slot, cargo, [](S& a, const S& b) { a = b; });
   else
     add<Gravity>(slot, cargo);
 }
@@ -121,9 +127,10 @@ Spatial::Force<S> remainder_of(const Cargo<S>& c) {
   return {{{c.Dfx, c.Dfy, c.Dfz}}, {{c.Dnx, c.Dny, c.Dnz}}};
 }
 template <class S>
-void set_cargo(Cargo<S>& c, const Spatial::ArticulatedInertia<S>& M, const Spatial::Force<S>& D,
-               const Vec3<S>& G) {
-  c = {full(M), D.f[0], D.f[1], D.f[2], D.n[0], D.n[1], D.n[2], G[0], G[1], G[2]};
+MOMENTA_INLINE void set_cargo(Cargo<S>& c, const Spatial::ArticulatedInertia<S>& M,
+                              const Spatial::Force<S>& D, const Vec3<S>& G) {
+  in_pairs(c, Cargo<S>{full(M), D.f[0], D.f[1], D.f[2], D.n[0], D.n[1], D.n[2], G[0], G[1], G[2]},
+           [](S& a, const S& b) { a = b; });
 }
 template <class S>
 void set_cargo(OutwardCargo<S>& c, const Spatial::Motion<S>& V, const Vec3<S>& g) {
@@ -132,15 +139,9 @@ void set_cargo(OutwardCargo<S>& c, const Spatial::Motion<S>& V, const Vec3<S>& g
 
 /// Nearly parallel axes: a turn about y and the screw about x.
 template <class S>
-__attribute__((noinline)) void tilt_inward(const Spatial::EdgeConstants& e, const Eliminated<S>& r,
-                                           Cargo<S>& cargo) {
-  const S zero(0.0);
-  const Reduced<S>& m = r.M;
-  Spatial::ArticulatedInertia<S> M{{{m.Axx, m.Axy, m.Axz, m.Ayy, m.Ayz, m.Azz}},
-                                   {{m.Hxx, m.Hxy, zero, m.Hyx, m.Hyy, zero, m.Hzx, m.Hzy, zero}},
-                                   {{m.Ixx, m.Ixy, zero, m.Iyy, zero, zero}}};
-  Spatial::Force<S> D{{{r.fx, r.fy, r.fz}}, {{r.nx, r.ny, r.nz}}};
-  Vec3<S> G{{r.Gx, r.Gy, r.Gz}};
+__attribute__((noinline)) void tilt_inward(const Spatial::EdgeConstants& e,
+                                           Spatial::ArticulatedInertia<S>& M, Spatial::Force<S>& D,
+                                           Vec3<S>& G) {
   if (e.about_y) {
     Spatial::inertia_inward<1>(M, e.cos_beta, e.sin_beta, 0.0);
     Spatial::force_inward<1>(D, e.cos_beta, e.sin_beta, 0.0);
@@ -151,7 +152,6 @@ __attribute__((noinline)) void tilt_inward(const Spatial::EdgeConstants& e, cons
     Spatial::force_inward<0>(D, e.cos_alpha, e.sin_alpha, e.a);
     momenta::turn<0>(G, e.cos_alpha, e.sin_alpha);
   }
-  set_cargo(cargo, M, D, G);
 }
 
 /// All constant screws of a pin, in order.
@@ -168,9 +168,20 @@ MOMENTA_INLINE void carry_any(const Link& l, const Spatial::EdgeConstants& e,
     case Turn::parallel:
       carry<Turn::parallel, Gravity>(r, l, cargo);
       break;
-    case Turn::tilted:
-      tilt_inward(e, r, cargo);
+    case Turn::tilted: {
+      const S zero(0.0);
+      const Reduced<S>& m = r.M;
+      Spatial::ArticulatedInertia<S> M{
+          {{m.Axx, m.Axy, m.Axz, m.Ayy, m.Ayz, m.Azz}},
+          {{m.Hxx, m.Hxy, zero, m.Hyx, m.Hyy, zero, m.Hzx, m.Hzy, zero}},
+          {{m.Ixx, m.Ixy, zero, m.Iyy, zero, zero}}};
+      Spatial::Force<S> D{{{r.fx, r.fy, r.fz}}, {{r.nx, r.ny, r.nz}}};
+      Vec3<S> G{};
+      if constexpr (Gravity) G = {{r.Gx, r.Gy, r.Gz}};
+      tilt_inward(e, M, D, G);
+      set_cargo(cargo, M, D, G);
       break;
+    }
   }
   if (l.screwed) screw_inward<Gravity>(e.cos_gamma, e.sin_gamma, e.delta, cargo);
 }

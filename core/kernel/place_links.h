@@ -22,7 +22,7 @@ MOMENTA_INLINE S shift_at(const Model<Spatial>::Body& b, const S& value) {
 
 /// Axes of a ball joint: the constant turn c and the joint's own as one quaternion c ∘ q.
 template <class S, class In>
-Mat3<S> ball_axes(const BallPlace& place, const In& q, int first) {
+MOMENTA_INLINE Mat3<S> ball_axes(const BallPlace& place, const In& q, int first) {
   const double* c = place.turn;
   const S at[4] = {q[first], q[first + 1], q[first + 2], q[first + 3]};
   const S both[4] = {c[0] * at[0] - c[1] * at[1] - c[2] * at[2] - c[3] * at[3],

@@ -41,7 +41,7 @@ struct Register<8> {
 template <int Width, int Level>
 struct Pack {
   using Lanes = typename Register<Width>::Doubles;
-  Lanes v{};
+  Lanes v;  ///< nothing unless set, as of plain doubles; Pack{} is zero
 
   Pack() = default;
   /// One broadcast: x − 0 is x whatever its sign, and folds; filling lane by lane compiles to as
