@@ -1,0 +1,126 @@
+#pragma once
+// What an OpenChain holds: the tree, its plan and the kernel the plan has chosen. For the sources
+// of OpenChain alone.
+
+#include <momenta/core/kernel/levels/open_sweeps.h>
+#include <momenta/core/kernel/reactions.h>
+#include <momenta/core/kernel/whole_sums.h>
+#include <momenta/core/open_chain.h>
+
+#include <optional>
+#include <variant>
+
+namespace momenta {
+
+/// Workspaces of dual numbers, made when a call first needs them.
+template <class Pass>
+class WhenAsked {
+ public:
+  template <class Links>
+  Pass& get(const Links& links) {
+    if (!pass_) pass_ = std::make_unique<Pass>(links);
+    return *pass_;
+  }
+
+ private:
+  std::unique_ptr<Pass> pass_;
+};
+
+template <class Space>
+struct Kernel {
+  using Links = decltype(build_links(std::declval<const Model<Space>&>()));
+  // Links, sweeps and workspace point at the model, so it stays at one address.
+  Kernel(Model<Space> m, int level)
+      : model(std::make_unique<Model<Space>>(std::move(m))),
+        links(std::make_unique<Links>(build_links(*model))),
+        sweeps(make_sweeps(*links, level)),
+        w(*model) {}
+  std::unique_ptr<Model<Space>> model;
+  std::unique_ptr<Links> links;
+  std::unique_ptr<OpenSweeps> sweeps;
+  WhenAsked<ReactionPass<Space>> reactions;
+  Workspace<Space, double> w;
+};
+
+struct OpenChain::Inside {
+  Tree tree;
+  Plan plan;
+  std::variant<Kernel<Planar>, Kernel<Spatial>> kernel;
+  std::optional<Scene> flat;  ///< of a planar kernel: `in_space` is made of it when asked for
+  std::unique_ptr<WholeSweep> in_space;
+  Eigen::VectorXd u, p;  // scratch, nv
+  int singular = -1;
+  Eigen::Index failed_state = -1;  ///< of the last batch
+
+  Inside(Tree t, Plan pl, const Scene& from, int level)
+      : tree(std::move(t)),
+        plan(std::move(pl)),
+        kernel(plan.planar
+                   ? decltype(kernel)(
+                         Kernel<Planar>(build_planar_model(tree, from, plan.basis), level))
+                   : decltype(kernel)(Kernel<Spatial>(build_spatial_model(tree, from), level))),
+        u(tree.nv),
+        p(tree.nv) {
+    if (plan.planar) flat = from;
+  }
+
+  /// The momentum recursion and its third sweep.
+  template <class K>
+  bool momentum(K& k, double t, const double* q, const double* momenta, double* rates,
+                double* pdot) {
+    if (!k.sweeps->momentum(t, q, momenta, rates, pdot)) {
+      singular = k.sweeps->stuck();
+      return false;
+    }
+    singular = -1;
+    failed_state = -1;
+    if (k.model->has_body_forces()) {
+      body_force_rates(k.w, t, q, static_cast<const double*>(rates));
+      for (int i = 0; i < tree.nv; ++i) pdot[i] += k.w.generalised[static_cast<std::size_t>(i)];
+    }
+    return true;
+  }
+  template <class K>
+  bool acceleration(K& k, double t, const double* q, const double* rates, double* udot) {
+    applied_forces(k.w, t, q, rates);
+    const bool ok = k.sweeps->acceleration(t, q, rates, k.w.generalised.data(), udot);
+    singular = ok ? -1 : k.sweeps->stuck();
+    return ok;
+  }
+
+  /// What a call on one state left behind.
+  template <class K>
+  bool noted_one(K& k, bool ok) {
+    singular = ok ? -1 : k.sweeps->stuck();
+    failed_state = -1;
+    return ok;
+  }
+  /// What a batch left behind.
+  template <class K>
+  bool noted(K& k, bool ok) {
+    singular = ok ? -1 : k.sweeps->stuck();
+    failed_state = ok ? -1 : static_cast<Eigen::Index>(k.sweeps->failed_state());
+    return ok;
+  }
+  /// Forces between bodies: state by state.
+  template <class F>
+  bool one_by_one(Eigen::Index count, F&& f) {
+    Eigen::Index failed = -1;
+    int stuck = -1;
+    for (Eigen::Index i = 0; i < count; ++i)
+      if (!f(i) && failed < 0) {
+        failed = i;
+        stuck = singular;
+      }
+    failed_state = failed;
+    singular = stuck;
+    return failed < 0;
+  }
+
+  template <class F>
+  decltype(auto) visit(F&& f) {
+    return kernel.index() == 0 ? f(std::get<0>(kernel)) : f(std::get<1>(kernel));
+  }
+};
+
+}  // namespace momenta

@@ -1,0 +1,123 @@
+// What a chain at a state is asked for beside its motion: energies, sums over all bodies,
+// reactions, mass matrix, poses.
+
+#include <momenta/core/kernel/accelerations.h>
+#include <momenta/core/kernel/mass_matrix.h>
+#include <momenta/core/open_chain_inside.h>
+
+namespace momenta {
+namespace {
+
+Eigen::Vector3d vector(const Vec3<double>& v) {
+  return {v[0], v[1], v[2]};
+}
+
+/// F_K in the scene's axes of body k: the model's frame may be turned and shifted along the joint's
+/// z.
+Reaction reaction_of(const Tree::Body& body, const Model<Spatial>& model,
+                     const Workspace<Spatial, double>&, std::size_t k,
+                     const Spatial::Force<double>& f) {
+  const Eigen::Matrix3d to_scene = (model.frames[k] * body.scene_axes).linear().transpose();
+  const Eigen::Vector3d force = vector(f.f);
+  const Eigen::Vector3d origin = model.frames[k].translation();
+  const Eigen::Vector3d torque = vector(f.n) - origin.cross(force);
+  return {body.joint, to_scene * force, to_scene * torque};
+}
+Reaction reaction_of(const Tree::Body& body, const Model<Planar>& model,
+                     const Workspace<Planar, double>& w, std::size_t k,
+                     const Planar::Force<double>& wrench) {
+  const auto& edge = w.body[k].edge;
+  const Vec2<double> f = wrench.f;
+  const Eigen::Vector3d turned_back(edge.c * f[0] + edge.s * f[1], edge.c * f[1] - edge.s * f[0],
+                                    0);
+  const Eigen::Matrix3d to_scene =
+      (model.frames[k].linear() * body.scene_axes.linear()).transpose();
+  return {body.joint, to_scene * turned_back, to_scene * Eigen::Vector3d(0, 0, wrench.n)};
+}
+
+Eigen::Isometry3d pose_of(const Tree::Body& body, const Model<Spatial>& model,
+                          const Workspace<Spatial, double>& w, std::size_t k) {
+  Eigen::Isometry3d pose;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) pose.linear()(i, j) = w.body[k].pose.axes(i, j);
+  pose.translation() = vector(w.body[k].pose.origin);
+  pose.makeAffine();
+  return pose * model.frames[k] * body.scene_axes;
+}
+Eigen::Isometry3d pose_of(const Tree::Body& body, const Model<Planar>& model,
+                          const Workspace<Planar, double>& w, std::size_t k) {
+  const auto& p = w.body[k].pose;
+  Eigen::Isometry3d in_plane = Eigen::Isometry3d::Identity();
+  in_plane.linear().topLeftCorner<2, 2>() << p.c, -p.s, p.s, p.c;
+  in_plane.translation() << p.origin[0], p.origin[1], 0;
+  Eigen::Isometry3d basis = Eigen::Isometry3d::Identity();
+  basis.linear() = model.basis;
+  return basis * in_plane * model.frames[k] * body.scene_axes;
+}
+
+}  // namespace
+
+Energies OpenChain::energies(double t, const ConstVectorRef& q, const ConstVectorRef& u) {
+  return inside_->visit([&](auto& kernel) {
+    Energies e;
+    momenta_from_rates(kernel.w, t, q.data(), u.data(), inside_->p.data());
+    poses_outward(kernel.w, t, q.data(), true);
+    e.kinetic = kinetic_energy(kernel.w);
+    e.potential = potential_energy(kernel.w, q.data());
+    e.hamiltonian = inside_->p.dot(u) - e.kinetic + e.potential;
+    return e;
+  });
+}
+
+bool OpenChain::whole(double t, const ConstVectorRef& q, const ConstVectorRef& p, Whole& all) {
+  const double* u = inside_->u.data();
+  if (!velocities(t, q, p, inside_->u)) return false;
+  if (auto* in_space = std::get_if<Kernel<Spatial>>(&inside_->kernel)) {
+    all = whole_of(whole_sums(in_space->w, t, q.data(), u));
+    return true;
+  }
+  if (!inside_->in_space)
+    inside_->in_space = std::make_unique<WholeSweep>(inside_->tree, *inside_->flat);
+  all = (*inside_->in_space)(t, q.data(), u);
+  return true;
+}
+
+std::vector<Reaction> OpenChain::reactions(double t, const ConstVectorRef& q,
+                                           const ConstVectorRef& u) {
+  return inside_->visit([&](auto& kernel) {
+    std::vector<Reaction> all;
+    Eigen::VectorXd p(nv()), rates(nv()), pdot(nv()), qdot(nq());
+    momenta_from_rates(kernel.w, t, q.data(), u.data(), p.data());
+    if (!inside_->momentum(kernel, t, q.data(), p.data(), rates.data(), pdot.data())) return all;
+    momenta::coordinate_rates(*kernel.model, q.data(), u.data(), qdot.data());
+    auto& pass = kernel.reactions.get(*kernel.links);
+    pass(t, q.data(), qdot.data(), p.data(), pdot.data());
+    poses_outward(kernel.w, t, q.data(), true);
+    all.reserve(tree().bodies.size());
+    for (std::size_t k = 0; k < tree().bodies.size(); ++k)
+      if (tree().carries_scene_body(static_cast<int>(k)))
+        all.push_back(reaction_of(tree().bodies[k], *kernel.model, kernel.w, k, pass.reaction(k)));
+    return all;
+  });
+}
+
+Eigen::MatrixXd OpenChain::mass_matrix(double t, const ConstVectorRef& q) {
+  Eigen::MatrixXd m = Eigen::MatrixXd::Zero(nv(), nv());
+  inside_->visit([&](auto& kernel) {
+    poses_outward(kernel.w, t, q.data(), false);
+    mass_matrix_inward(kernel.w, [&](int i, int j, double value) { m(i, j) = m(j, i) = value; });
+  });
+  return m;
+}
+
+std::vector<Eigen::Isometry3d> OpenChain::poses(double t, const ConstVectorRef& q) {
+  return inside_->visit([&](auto& kernel) {
+    poses_outward(kernel.w, t, q.data(), true);
+    std::vector<Eigen::Isometry3d> all;
+    for (std::size_t k = 0; k < tree().bodies.size(); ++k)
+      all.push_back(pose_of(tree().bodies[k], *kernel.model, kernel.w, k));
+    return all;
+  });
+}
+
+}  // namespace momenta
