@@ -1,22 +1,36 @@
 #pragma once
-// The families that `momenta make` prints. The same family and n give the same text everywhere.
+// The families that `momenta make` prints. The same family, n and plane give the same text
+// everywhere.
 
 #include <span>
 
+#include "scene_text.h"
+
 namespace momenta::program {
+
+/// Where a planar mechanism lies: its x and y in the scene, gravity along its −y.
+struct Plane {
+  Triple rpy{};  ///< axes of the plane in the scene's: Rz(y) Ry(p) Rx(r)
+  Triple from_plane(const Triple& v) const;
+};
 
 struct Family {
   const char* name;
   const char* what;  ///< in a few words; N is the size
   int least, most, usual;
-  void (*print)(int n);
+  void (*print)(int n);                             ///< in space; null: planar
+  void (*print_in)(int n, const Plane&) = nullptr;  ///< in a plane
 };
 
 std::span<const Family> families();
 
 // planar
-void print_chain(int n);
-void print_n_four_bar(int n);
+void print_chain(int n, const Plane& plane);
+void print_n_four_bar(int n, const Plane& plane);
+void print_scissor_ladder(int n, const Plane& plane);
+void print_closed_chain(int n, const Plane& plane);
+void print_grid(int n, const Plane& plane);
+void print_jansen_legs(int n, const Plane& plane);
 // in space
 void print_random_chain(int n);
 void print_rope(int n);
@@ -24,5 +38,6 @@ void print_spherical_chain(int n);
 void print_tree(int n);
 void print_star(int n);
 void print_humanoid(int n);
+void print_stewart(int n);
 
 }  // namespace momenta::program

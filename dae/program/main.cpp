@@ -121,7 +121,9 @@ int main(int argc, char** argv) {
   std::string all_families;
   for (const Family& f : families()) all_families += "\n  " + std::string(f.name) + ": " + f.what;
   make_verb->add_option("family", family, "One of:" + all_families)->required();
-  make_verb->add_option("--n", n, "Size N (default 10; humanoid: 30 alone)");
+  make_verb->add_option("--n", n, "Size N (each family has its own default)");
+  bool turned = false;
+  make_verb->add_flag("--turned", turned, "Planar families: in a plane across all axes");
 
   try {
     app.parse(argc, argv);
@@ -146,7 +148,7 @@ int main(int argc, char** argv) {
     if (*evaluate_verb) return evaluate(o, state);
     if (*index_app) return index_verb(o, index_forms, index_state);
     if (*stress_app) return stress(o, stress_options);
-    return make(family, n);
+    return make(family, n, turned);
   } catch (const momenta::SceneError& e) {
     std::fprintf(stderr, "momenta: %s\n", e.what());
   } catch (const std::invalid_argument& e) {

@@ -97,6 +97,6 @@ int evaluate(const Options& o, const std::string& state);
 /// `forms`: comma-separated, empty: all. `state`: as for evaluate; empty: the start.
 int index_verb(const Options& o, const std::string& forms, const std::string& state);
 /// Prints a scene; `n` empty: the usual size of the family. @throws std::invalid_argument
-int make(const std::string& family, std::optional<int> n);
+int make(const std::string& family, std::optional<int> n, bool turned);
 
 }  // namespace momenta::program

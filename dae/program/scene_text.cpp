@@ -16,6 +16,19 @@ bool zero(const Triple& v) {
   return v[0] == 0 && v[1] == 0 && v[2] == 0;
 }
 
+/// What joints and loops have alike: names and ends, rotation and axis.
+template <class Text>
+void open_frames(const char* table, const Text& t) {
+  put("\n[[" + std::string(table) + "]]\nname = \"" + t.name + "\"\nkind = \"" + t.kind +
+      "\"\nparent = \"" + t.parent + "\"\nchild = \"" + t.child + "\"\n");
+}
+template <class Text>
+void turn_frames(const Text& t) {
+  if (!zero(t.rpy)) put("rotation = { rpy = " + triple_text(t.rpy) + " }\n");
+  if (!t.axis.empty())
+    put("axis = " + (t.axis.front() == '[' ? t.axis : "\"" + t.axis + "\"") + "\n");
+}
+
 void open_body(const std::string& name, double mass) {
   put("\n[[body]]\nname = \"" + name + "\"\nmass = " + number_text(mass) + "\n");
 }
@@ -38,6 +51,26 @@ void print_head(const std::string& comment, const std::string& name, const Tripl
                 double end) {
   put("# " + comment + "\nname = \"" + name + "\"\ngravity = " + triple_text(gravity) +
       "\n\n[run]\nend = " + number_text(end) + "\nsamples = 500\n");
+}
+
+void print_corrected_head(const std::string& comment, const std::string& name,
+                          const Triple& gravity, double end) {
+  print_head(comment, name, gravity, end);
+  put("leak = 3.0\nproject = true   # passes singular poses\n");
+}
+
+void print_held(const std::string& joint) {
+  put("\n[assembly]\nhold = [\"" + joint + "\"]\n");
+}
+
+void print_plate(const std::string& name, double mass, const Triple& com, double planar) {
+  open_body(name, mass);
+  put("com = " + triple_text(com) + "\ninertia = " + number_text(planar) + "\n");
+}
+
+void print_rod(const std::string& name, double mass, double length) {
+  open_body(name, mass);
+  put("shape = { kind = \"rod\", length = " + number_text(length) + ", axis = \"x\" }\n");
 }
 
 void print_cylinder(const std::string& name, double mass, double length, double radius,
@@ -63,17 +96,21 @@ void print_ball(const std::string& name, double mass, double radius, const Tripl
 }
 
 void print_joint(const JointText& joint) {
-  put("\n[[joint]]\nname = \"" + joint.name + "\"\nkind = \"" + joint.kind + "\"\nparent = \"" +
-      joint.parent + "\"\nchild = \"" + joint.child + "\"\n");
+  open_frames("joint", joint);
   if (!zero(joint.origin_parent))
     put("origin = { parent = " + triple_text(joint.origin_parent) + " }\n");
-  if (!zero(joint.rpy)) put("rotation = { rpy = " + triple_text(joint.rpy) + " }\n");
-  if (!joint.axis.empty())
-    put("axis = " + (joint.axis.front() == '[' ? joint.axis : "\"" + joint.axis + "\"") + "\n");
+  turn_frames(joint);
   if (!joint.position.empty()) put("position = " + joint.position + "\n");
   if (!joint.velocity.empty()) put("velocity = " + joint.velocity + "\n");
   if (joint.stiffness != 0) put("stiffness = " + number_text(joint.stiffness) + "\n");
   if (joint.damping != 0) put("damping = " + number_text(joint.damping) + "\n");
+}
+
+void print_loop(const LoopText& loop) {
+  open_frames("loop", loop);
+  put("origin = { parent = " + triple_text(loop.origin_parent) +
+      ", child = " + triple_text(loop.origin_child) + " }\n");
+  turn_frames(loop);
 }
 
 void print_marker(const std::string& name, const std::string& body, const Triple& point) {

@@ -14,12 +14,22 @@ using Triple = std::array<double, 3>;
 /// The comment on top, name, gravity and [run].
 void print_head(const std::string& comment, const std::string& name, const Triple& gravity,
                 double end);
+/// The same for loops that pass singular poses: positions are put back on them after every step.
+void print_corrected_head(const std::string& comment, const std::string& name,
+                          const Triple& gravity, double end);
 
 /// A cylinder that reaches from the body origin along `axis` ("x", "-z", …).
 void print_cylinder(const std::string& name, double mass, double length, double radius,
                     const std::string& axis);
 /// A box of these edges about `com`, body axes.
 void print_box(const std::string& name, double mass, const Triple& size, const Triple& com);
+/// The joint that assembly leaves as it starts.
+void print_held(const std::string& joint);
+
+/// A body of moment of inertia `planar` about z through `com`.
+void print_plate(const std::string& name, double mass, const Triple& com, double planar);
+/// A slender rod from the body origin along x.
+void print_rod(const std::string& name, double mass, double length);
 /// A solid ball about `com`.
 void print_ball(const std::string& name, double mass, double radius, const Triple& com);
 
@@ -31,6 +41,13 @@ struct JointText {
   double stiffness = 0, damping = 0;
 };
 void print_joint(const JointText& joint);
+
+struct LoopText {
+  std::string name, kind = "revolute", parent = "ground", child;
+  Triple origin_parent{}, origin_child{}, rpy{};
+  std::string axis;
+};
+void print_loop(const LoopText& loop);
 
 void print_marker(const std::string& name, const std::string& body, const Triple& point);
 

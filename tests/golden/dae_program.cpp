@@ -2,6 +2,8 @@
 // half-written.
 
 #include <gtest/gtest.h>
+#include <momenta/core/scene/read_scene.h>
+#include <momenta/dae/assembly.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -401,6 +403,18 @@ TEST_F(Program, FamiliesItMakesAreScenesItReadsAndRuns) {
       {"rope", 10},
       {"n-four-bar --n 1", 1},
       {"n-four-bar --n 3", 1},
+      {"n-four-bar --n 3 --turned", 1},
+      {"chain --n 4 --turned", 4},
+      {"scissor-ladder --n 2", 2},
+      {"scissor-ladder --n 5 --turned", 2},
+      {"closed-chain --n 3", 1},
+      {"closed-chain --n 9 --turned", 7},
+      {"grid --n 1", 1},
+      {"grid --n 3 --turned", 3},
+      {"jansen-legs --n 1", 1},
+      {"jansen-legs --n 3 --turned", 1},
+      {"stewart --n 3", 6},
+      {"stewart", 6},
       {"humanoid --n 30", 36},
   };
   for (const auto& [family, mobility] : mobilities) {
@@ -434,6 +448,17 @@ TEST_F(Program, FamiliesAreWhatTheirNamesSay) {
   EXPECT_NEAR(crown - sole, 1.75, 0.06);  // knees bent
 }
 
+TEST_F(Program, LoopsOfFamiliesCloseAsTheyArePrinted) {
+  for (const char* family : {"n-four-bar", "scissor-ladder", "closed-chain", "grid", "jansen-legs",
+                             "jansen-legs --n 7 --turned", "grid --turned", "stewart --n 9"}) {
+    SCOPED_TRACE(family);
+    const std::string scene = write("made.toml", call(std::string("make ") + family).out).string();
+    const Mechanism mechanism(read_scene(scene));
+    const Assembly found = assemble(mechanism);
+    EXPECT_LT(found.moved, 1e-12);
+  }
+}
+
 TEST_F(Program, LargeFamiliesAreWrittenQuicklyAndImpossibleOnesRefused) {
   const Outcome tree = call("make tree --n 100000");
   ASSERT_EQ(tree.status, 0);
@@ -442,6 +467,7 @@ TEST_F(Program, LargeFamiliesAreWrittenQuicklyAndImpossibleOnesRefused) {
   expect_refused("make rope --n 0", "found --n 0, expected 1 to 100000");
   expect_refused("make star --n 100000", "expected 1 to 20000");
   expect_refused("make humanoid --n 12", "expected 30, its number of hinges");
+  expect_refused("make rope --turned", "found --turned, which is for planar mechanisms alone");
 }
 
 TEST_F(Program, StressTellsWhoSurvives) {

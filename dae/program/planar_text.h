@@ -1,0 +1,18 @@
+#pragma once
+// Joints of mechanisms in a plane, as text.
+
+#include <string>
+
+#include "families.h"
+
+namespace momenta::program {
+
+/// A hinge about the plane's normal; `at` in axes of the parent, of the plane on the ground.
+JointText hinge(const std::string& name, const std::string& parent, const std::string& child,
+                const Triple& at, double angle, double rate, const Plane& plane);
+
+/// Prints a hinge that closes a loop between two bodies.
+void print_closing(const std::string& name, const std::string& parent, const std::string& child,
+                   const Triple& at_parent, const Triple& at_child);
+
+}  // namespace momenta::program
