@@ -1,10 +1,11 @@
+#include <momenta/dae/kkt/kkt.h>
 #include <momenta/dae/mechanism.h>
 
 namespace momenta {
 namespace {
 
 // Below this size a dense Cholesky of M and a pivoted LDLᵀ of the loops' small matrix beat sparse
-// bookkeeping, and the pivots can be filtered one by one.
+// bookkeeping.
 constexpr int dense_limit = 60;
 
 Plan plan_with_loops(const Tree& tree, const Scene& scene, Algebra algebra) {
@@ -48,8 +49,6 @@ Mechanism::Mechanism(Scene scene, MechanismOptions options)
   plan_.drives |= visit([](const auto& cast) { return !cast.loops.motions.empty(); });
   dense_ = options.kkt == KktChoice::dense ||
            (options.kkt != KktChoice::sparse && tree_.nv + rows_ <= dense_limit);
-  if (rows_ > 0) choose_kkt(options.kkt);
-
   const auto group = [&](const auto& cast) {
     int index = 0;
     for (const auto& l : cast.loops.loops) {
@@ -60,6 +59,7 @@ Mechanism::Mechanism(Scene scene, MechanismOptions options)
     }
   };
   visit(group);
+  if (rows_ > 0) choose_kkt(options.kkt);
 }
 
 const char* name_of(KktChoice choice) {
@@ -77,8 +77,6 @@ const char* name_of(KktChoice choice) {
 }
 
 void Mechanism::choose_kkt(KktChoice asked) {
-  kkt_ = dense_ ? KktChoice::dense : KktChoice::sparse;
-  if (asked == KktChoice::dense || asked == KktChoice::sparse) return;
   const auto plan = [&](auto& cast) {
     cast.links = build_links(cast.model);
     cast.plan = plan_loops(cast.model, cast.loops);
@@ -92,21 +90,37 @@ void Mechanism::choose_kkt(KktChoice asked) {
     plan(std::get<0>(cast_));
   else
     plan(std::get<1>(cast_));
+  light_ = find_light_joint(kkt_reason_.empty());
+  kkt_ = dense_ ? KktChoice::dense : KktChoice::sparse;
+  if (asked == KktChoice::dense || asked == KktChoice::sparse) return;
+  if (kkt_reason_.empty()) kkt_reason_ = light_;
   if (kkt_reason_.empty()) {
-    // A joint may have no inertia until a loop closes above it.
     kkt_ = KktChoice::sweeps;
-    const auto sweeps = looped_sweeps();
-    std::vector<double> zero(static_cast<std::size_t>(tree_.nv)), u(zero), sigma(row_names_.size());
-    if (!sweeps->momentum(0, tree_.q0.data(), zero.data(), {}, u.data(), sigma.data(), nullptr))
-      kkt_reason_ =
-          tree_.joint_in_words(sweeps->stuck()) + " has no inertia before its loops close";
+    return;
   }
-  if (kkt_reason_.empty()) return;
   if (asked == KktChoice::sweeps)
     throw SceneError(scene_.where({}) + "the sweeps were asked to carry the loops, but " +
                      kkt_reason_ + "; expected --kkt sparse or dense");
   kkt_ = KktChoice::sparse;
   dense_ = false;
+}
+
+/// A joint may have no inertia until a loop closes above it, or so little that nothing of the
+/// others is left beside it: in that order of elimination the rates no longer meet the equations.
+/// One solution at the start tells.
+std::string Mechanism::find_light_joint(bool swept) const {
+  const auto size = static_cast<std::size_t>(tree_.nv);
+  std::vector<double> p(size, 0.0), u(size), sigma(row_names_.size());
+  if (!swept) {
+    const auto e = evaluation<double>();
+    const auto kkt = make_sparse_kkt(*this);
+    e->place(0, tree_.q0.data());
+    return kkt->factor(*e, fade_evaluation) || kkt->stuck() < 0 ? "" : no_inertia(kkt->stuck());
+  }
+  const auto sweeps = looped_sweeps();
+  if (!sweeps->momentum(0, tree_.q0.data(), p.data(), {}, u.data(), sigma.data(), nullptr))
+    return tree_.joint_in_words(sweeps->stuck()) + " has no inertia before its loops close";
+  return "";
 }
 
 std::unique_ptr<LoopedSweeps> Mechanism::looped_sweeps(int level) const {
@@ -186,8 +200,8 @@ std::vector<std::pair<std::string, std::string>> Mechanism::plan_lines() const {
           std::to_string(visit([](const auto& cast) { return cast.plan.lanes; })) +
           " equations open at once";
   else if (kkt_ == KktChoice::sparse)
-    how = "sparse: KLU on a pattern analysed once" +
-          (kkt_reason_.empty() ? "" : " (" + kkt_reason_ + ")");
+    how = std::string(tips_first() ? "sparse: filtered LDLᵀ" : "sparse: KLU") +
+          " on a pattern analysed once" + (kkt_reason_.empty() ? "" : " (" + kkt_reason_ + ")");
   lines.emplace_back("solving (7)", how + ", " + std::to_string(tree_.nv + rows_) + " unknowns");
   return lines;
 }

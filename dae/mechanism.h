@@ -56,6 +56,9 @@ class Mechanism {
   KktChoice kkt() const { return kkt_; }
   /// Whether an assembled matrix, where one is needed, is dense.
   bool dense_kkt() const { return dense_; }
+  /// Whether joints can be eliminated before the loops that hold them: each has inertia by then,
+  /// and enough beside its neighbours not to take their digits.
+  bool tips_first() const { return light_.empty(); }
   /// The sweeps that carry this mechanism's loops, for one instruction level; 0: the machine's
   /// best. @pre kkt() is sweeps
   std::unique_ptr<LoopedSweeps> looped_sweeps(int level = 0) const;
@@ -97,6 +100,7 @@ class Mechanism {
     return plan_.planar ? f(std::get<0>(cast_)) : f(std::get<1>(cast_));
   }
   void choose_kkt(KktChoice asked);
+  std::string find_light_joint(bool swept) const;
   template <class Space, class S>
   class SweepEvaluation;
 
@@ -108,6 +112,7 @@ class Mechanism {
   bool dense_ = true;
   KktChoice kkt_ = KktChoice::dense;
   std::string kkt_reason_;  ///< why the sweeps do not carry the loops; empty when they do
+  std::string light_;       ///< which joint has too little inertia before its loops close, or empty
   mutable KktPattern pattern_;
   mutable std::once_flag pattern_known_;
   std::vector<RowName> row_names_;
