@@ -31,7 +31,8 @@ class Detoured {
         system_(system),
         state_(static_cast<std::size_t>(system.detour_size())),
         look_(state_.size()),
-        n_(static_cast<std::size_t>(system.size())) {
+        n_(static_cast<std::size_t>(system.size())),
+        on_a_grid_(options.step > 0) {
     options_.rtol = options.rtol;
     options_.atol = options.atol;
     options_.max_step = options.max_step;
@@ -92,7 +93,7 @@ class Detoured {
   /// The way from t to where no pivot is weak any more, or to the end. False where none is made: no
   /// pivot is weak at t, or the way fails, or is too long for a pose to be passed.
   bool plan(double t, double end) {
-    if (!system_.near_singular(t, method_.y())) return false;
+    if (on_a_grid_ || !system_.near_singular(t, method_.y())) return false;
     OdeSystem& ode = *system_.detour(t, method_.y(), state_.data());
     way_.clear();
     next_ = 0;
@@ -149,6 +150,7 @@ class Detoured {
   std::vector<double> state_, look_, look_rate_;
   std::vector<Place> way_;  ///< ends of its steps, before them where it began
   std::size_t next_ = 0, n_;
+  bool on_a_grid_;  ///< fixed steps: no detours
   bool under_way_ = false;
   double not_before_ = -std::numeric_limits<double>::infinity();  ///< after a way that failed [s]
   long steps_ = 0, evaluations_ = 0;
