@@ -1,6 +1,8 @@
 #include <momenta/dae/kkt/kkt.h>
 #include <momenta/dae/mechanism.h>
 
+#include <cstdio>
+
 namespace momenta {
 namespace {
 
@@ -59,7 +61,9 @@ Mechanism::Mechanism(Scene scene, MechanismOptions options)
     }
   };
   visit(group);
-  if (rows_ > 0) choose_kkt(options.kkt);
+  if (rows_ == 0) return;
+  weigh_loops();
+  choose_kkt(options.kkt);
 }
 
 const char* name_of(KktChoice choice) {
@@ -90,7 +94,7 @@ void Mechanism::choose_kkt(KktChoice asked) {
     plan(std::get<0>(cast_));
   else
     plan(std::get<1>(cast_));
-  light_ = find_light_joint(kkt_reason_.empty());
+  if (light_.empty()) light_ = joint_without_inertia(kkt_reason_.empty());
   kkt_ = dense_ ? KktChoice::dense : KktChoice::sparse;
   if (asked == KktChoice::dense || asked == KktChoice::sparse) return;
   if (kkt_reason_.empty()) kkt_reason_ = light_;
@@ -105,10 +109,63 @@ void Mechanism::choose_kkt(KktChoice asked) {
   dense_ = false;
 }
 
-/// A joint may have no inertia until a loop closes above it, or so little that nothing of the
-/// others is left beside it: in that order of elimination the rates no longer meet the equations.
-/// One solution at the start tells.
-std::string Mechanism::find_light_joint(bool swept) const {
+/// Scales of the loops at the start, and joints too light for the others: beside a mobility 10⁶
+/// times theirs the filter of the pivots takes what the others have of a row.
+void Mechanism::weigh_loops() {
+  constexpr double least_lever = 1e-4, most_apart = 1e6;
+  const double length = length_of(scene_);
+  std::vector<double> inertia(static_cast<std::size_t>(tree_.nv));
+  const auto e = evaluation<double>();
+  e->place(0, tree_.q0.data());
+  e->mass_diagonal(inertia.data());
+  const auto slides = [](const Tree::Body& b, int i) {
+    return b.nv == 6 ? i < 3 : b.nv == 1 && b.kind == JointKind::prismatic;
+  };
+  const auto weigh = [&](auto& cast) {
+    for (auto& l : cast.loops.loops) {
+      double sum = 0, least = 0;
+      int lightest = -1, heaviest = -1;
+      double of_lightest = 0, of_heaviest = 0;
+      const auto pass = [&](int k) {
+        const Tree::Body& b = tree_.bodies[static_cast<std::size_t>(k)];
+        for (int i = 0; i < b.nv; ++i) {
+          const double along = inertia[static_cast<std::size_t>(b.u + i)];
+          const double mass = slides(b, i) ? along : along / (length * length);
+          if (!(mass > 0)) continue;
+          sum += 1 / mass;
+          if (lightest < 0 || mass < of_lightest) lightest = k, of_lightest = mass;
+          if (heaviest < 0 || mass > of_heaviest) heaviest = k, of_heaviest = mass;
+        }
+      };
+      if (l.is_coupler()) {
+        for (const auto& c : l.joints) pass(c.body);
+      } else {
+        for (int a = l.a, b = l.b; a != b;) {
+          int& later = a > b ? a : b;
+          pass(later);
+          later = tree_.bodies[static_cast<std::size_t>(later)].parent;
+        }
+        least = least_lever * least_lever * sum;
+      }
+      l.least_scale = least;
+      for (int i = 0; i < l.rows; ++i) least_scales_.push_back(i < l.first_rows() ? least : 0.0);
+      if (light_.empty() && of_heaviest > most_apart * of_lightest) {
+        char times[32];
+        std::snprintf(times, sizeof times, "%.0e", of_heaviest / of_lightest);
+        light_ = "what turns about " + tree_.joint_in_words(lightest) + " is " + times +
+                 " times lighter than what turns about " + tree_.joint_in_words(heaviest) +
+                 " in its loop";
+      }
+    }
+  };
+  if (plan_.planar)
+    weigh(std::get<0>(cast_));
+  else
+    weigh(std::get<1>(cast_));
+}
+
+/// A joint may have no inertia until a loop closes above it: one solution at the start tells.
+std::string Mechanism::joint_without_inertia(bool swept) const {
   const auto size = static_cast<std::size_t>(tree_.nv);
   std::vector<double> p(size, 0.0), u(size), sigma(row_names_.size());
   if (!swept) {

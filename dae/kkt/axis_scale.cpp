@@ -7,6 +7,7 @@ namespace momenta {
 AxisScale::AxisScale(const Mechanism& mechanism)
     : pattern_(mechanism.kkt_pattern()),
       groups_(mechanism.row_groups()),
+      least_(mechanism.least_scales()),
       diagonal_(static_cast<std::size_t>(mechanism.nv())) {
   for (std::size_t i = 0; i < pattern_.mass.size(); ++i)
     if (pattern_.mass[i].row == pattern_.mass[i].column)
@@ -28,7 +29,7 @@ AxisScale::AxisScale(const Mechanism& mechanism)
 }
 
 void AxisScale::measure(const std::vector<double>& mass, std::vector<double>& scale) const {
-  std::fill(scale.begin(), scale.end(), 0.0);
+  scale = least_;
   for (const auto& h : hanging_)
     if (mass[h.mass] > 0) scale[h.row] += 1 / mass[h.mass];
 }
@@ -42,7 +43,7 @@ void AxisScale::of_groups(const std::vector<double>& mass, const std::vector<dou
     if (own > 0) scale[static_cast<std::size_t>(entry.row)] += constraint[i] * constraint[i] / own;
   }
   for (std::size_t h = 0, row = 0; row < scale.size(); ++row) {
-    double natural = 0;
+    double natural = least_[row];
     for (; h < hanging_.size() && hanging_[h].row == row; ++h)
       if (mass[hanging_[h].mass] > 0) natural += 1 / mass[hanging_[h].mass];
     scale[row] = std::max(scale[row], natural);

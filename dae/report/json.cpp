@@ -66,7 +66,8 @@ Json summary_json(const RunResult& run, const Environment& environment) {
   json["least_pivot"] = number_or_null(run.least_pivot);
   json["passages"] = Json::array();
   for (const auto& passage : run.passages)
-    json["passages"].push_back({{"t", passage.t}, {"pivot", passage.pivot}});
+    json["passages"].push_back(
+        {{"t", passage.t}, {"pivot", passage.pivot}, {"ambiguous", passage.ambiguous}});
   json["environment"] = environment_json(environment);
   return json;
 }
