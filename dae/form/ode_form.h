@@ -19,7 +19,7 @@ class OdeForm : public Form, public OdeSystem {
   /// Of the run itself; those made for looking at samples are not counted.
   long factorizations() const { return solver_ ? solver_->solutions() - looked_ : 0; }
   /// Counts in `evaluations` (m), row of Φ by row, the right-hand sides in which it faded; null:
-  /// counts no longer. The sparse matrix can't tell which rows fade.
+  /// counts no longer. KLU can't tell which rows fade.
   void watch_faded(std::vector<long>* evaluations) { watched_ = evaluations; }
 
   /// The σ or λ (m) of a moment ago, which the next step keeps where rows fade.
