@@ -13,6 +13,7 @@ namespace {
 constexpr int most_iterations = 200;
 constexpr double largest_step = 0.4;     // [rad or lengths]: stay on the branch of the guess
 constexpr double closed = 1e-12;         // |Φ|∞, points in lengths
+constexpr double far = 0.1;              // [rad or lengths]: Newton's steps may leave the branch
 constexpr double rank_tolerance = 1e-9;  // of pivots, against the largest
 
 using Decomposition = Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>;
@@ -106,6 +107,16 @@ class Assembler {
     e_->positions(phi.data());
     return phi.cwiseQuotient(row_);
   }
+  /// q after a step in units.
+  Eigen::VectorXd moved(const Eigen::VectorXd& q, const Eigen::VectorXd& step) {
+    const Eigen::VectorXd rates = step.cwiseProduct(column_);
+    Eigen::VectorXd qdot = Eigen::VectorXd::Zero(mechanism_.nq());
+    e_->place(0, q.data());
+    e_->coordinate_rates(q.data(), rates.data(), qdot.data());
+    Eigen::VectorXd next = q + qdot;
+    normalise(next);
+    return next;
+  }
   /// Where a step leads, shortened until the loops close further; near rounding level they no
   /// longer do, and the norm stays at infinity.
   struct Trial {
@@ -117,13 +128,8 @@ class Assembler {
     if (!step.allFinite()) return best;
     const double length = step.size() > 0 ? step.cwiseAbs().maxCoeff() : 0;
     if (length > largest_step) step *= largest_step / length;
-    step = step.cwiseProduct(column_);
-    Eigen::VectorXd qdot = Eigen::VectorXd::Zero(mechanism_.nq());
     for (int halving = 0; halving < 12; ++halving, step *= 0.5) {
-      e_->place(0, q.data());
-      e_->coordinate_rates(q.data(), step.data(), qdot.data());
-      Eigen::VectorXd next = q + qdot;
-      normalise(next);
+      Eigen::VectorXd next = moved(q, step);
       if (const double reached = gap(next).norm(); reached < norm) {
         best.q = std::move(next);
         best.norm = reached;
@@ -132,22 +138,28 @@ class Assembler {
     }
     return best;
   }
-  /// Minimises |J δ + Φ|² + |Φ|² |δ|².
+  /// Minimises |J δ + Φ|² + λ² |δ|², λ = |Φ|, but not so small that rows which are dust beside the
+  /// others count.
   static Eigen::VectorXd damped_step(const Eigen::MatrixXd& j, const Eigen::VectorXd& phi) {
+    const double damping = std::max(phi.norm(), rank_tolerance * j.cwiseAbs().maxCoeff());
     Eigen::MatrixXd stacked(j.rows() + j.cols(), j.cols());
-    stacked << j, phi.norm() * Eigen::MatrixXd::Identity(j.cols(), j.cols());
+    stacked << j, damping * Eigen::MatrixXd::Identity(j.cols(), j.cols());
     Eigen::VectorXd right = Eigen::VectorXd::Zero(stacked.rows());
     right.head(phi.size()) = -phi;
     return stacked.householderQr().solve(right);
   }
 
-  void close_positions(Assembly& a) {
-    Eigen::VectorXd& q = a.start.q;
-    const Eigen::VectorXd guess = q;
+  /// Where Newton's steps from q lead.
+  struct Closed {
+    Eigen::VectorXd q;
+    double gap = 0;  ///< |Φ|∞, points in lengths
+    bool is_closed() const { return gap <= closed; }
+  };
+  Closed close_from(Eigen::VectorXd q, int& iterations) {
     Eigen::VectorXd phi = gap(q);
     double norm = phi.norm();
     int stalled = 0;
-    for (; a.iterations < most_iterations && norm > 1e-16 && stalled < 2; ++a.iterations) {
+    for (; iterations < most_iterations && norm > 1e-16 && stalled < 2; ++iterations) {
       const Eigen::MatrixXd j = free_columns(jacobian());
       Trial next = along(q, norm, -decompose(j).solve(phi));
       // Redundant rows are redundant only where the loops are closed: off it they ask, through
@@ -163,10 +175,77 @@ class Assembler {
       phi = gap(q);
       norm = next_norm;
     }
-    phi = gap(q);
+    return {q, phi.size() > 0 ? phi.cwiseAbs().maxCoeff() : 0};
+  }
+
+  /// The gap closed continuously, down to a hundredth; false where it gets stuck before.
+  bool follow(Eigen::VectorXd& q) {
+    constexpr double longest = 0.05, bend = 0.3, least_part = 1e-4;
+    constexpr int most_steps = 600;
+    Eigen::VectorXd phi = gap(q);
+    const double end = 0.01 * std::min(phi.norm(), 1.0);
+    double part = longest;
+    for (int count = 0; count < most_steps && phi.norm() > end; ++count) {
+      const Eigen::MatrixXd j = free_columns(jacobian());
+      Eigen::VectorXd step = damped_step(j, phi);
+      if (!step.allFinite()) return false;
+      const double length = step.cwiseAbs().maxCoeff();
+      step *= std::min(part, longest / std::max(length, longest * 1e-3));
+      const Eigen::VectorXd expected = j * step;
+      if (!(expected.norm() > 1e-6 * phi.norm())) return false;  // nowhere to go
+      const Eigen::VectorXd next = moved(q, step);
+      const Eigen::VectorXd reached = gap(next);
+      if ((reached - phi - expected).norm() > bend * expected.norm()) {
+        if ((part *= 0.5) < least_part) return false;
+        e_->place(0, q.data());
+        continue;
+      }
+      part = std::min(0.25, 1.5 * part);
+      q = next;
+      phi = reached;
+    }
+    return phi.norm() <= end;
+  }
+
+  /// Largest change of a coordinate, in units.
+  double apart(const Eigen::VectorXd& a, const Eigen::VectorXd& b) const {
+    double largest = 0;
+    for (const auto& body : mechanism_.tree().bodies)
+      for (int i = 0; i < body.nq; ++i) {
+        const double unit = i < body.nv ? column_[body.u + i] : 1;
+        largest = std::max(largest, std::abs(a[body.q + i] - b[body.q + i]) / unit);
+      }
+    return largest;
+  }
+
+  void close_positions(Assembly& a) {
+    const Eigen::VectorXd guess = a.start.q;
+    Closed found = close_from(guess, a.iterations);
+    const double way = apart(found.q, guess);
+    if (!found.is_closed() || way > far) {
+      Closed followed{guess, 0};
+      const bool arrived = follow(followed.q);
+      followed = close_from(followed.q, a.iterations);
+      const double other = apart(followed.q, guess);
+      if (followed.is_closed() && (!found.is_closed() || other < 0.7 * way - far)) {
+        char text[160];
+        std::snprintf(text, sizeof text,
+                      "the assembly reached continuously from the guess, joints moved by at most "
+                      "%.3g; Newton's steps lead to another, %.3g away",
+                      other, way);
+        if (found.is_closed()) a.branch = text;
+        found = std::move(followed);
+      } else if (found.is_closed() && !arrived) {
+        a.branch =
+            "one of several assemblies, the guess does not tell which: on the way from there the "
+            "loop equations lose rank before they close";
+      }
+    }
+    a.start.q = found.q;
+    const Eigen::VectorXd phi = gap(a.start.q);
     a.position_residual = phi.cwiseProduct(row_).cwiseAbs().maxCoeff();
-    a.moved = (q - guess).cwiseAbs().maxCoeff();
-    if (!(phi.cwiseAbs().maxCoeff() <= closed)) refuse(phi.cwiseProduct(row_));
+    a.moved = (a.start.q - guess).cwiseAbs().maxCoeff();
+    if (!found.is_closed()) refuse(phi.cwiseProduct(row_));
   }
 
   [[noreturn]] void refuse(const Eigen::VectorXd& phi) const {
@@ -186,9 +265,11 @@ class Assembler {
       if (open.empty()) at = loop.at;
       open += (open.empty() ? "loop '" : ", loop '") + loop.name + "' stays open by " + text;
     }
-    throw SceneError(
-        scene.where(at) + "the mechanism cannot be assembled from these positions: " + open +
-        (scene.held.empty() ? "" : " while joints are held") + "; expected loops that close");
+    throw SceneError(scene.where(at) + "the mechanism cannot be assembled from these positions: " +
+                     open + (scene.held.empty() ? "" : " while joints are held") + " (" +
+                     std::to_string(mechanism_.m()) + " equations, " +
+                     std::to_string(std::count(free_.begin(), free_.end(), true)) +
+                     " free rates); expected loops that close");
   }
 
   void close_velocities(Assembly& a) {

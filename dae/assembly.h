@@ -22,12 +22,20 @@ struct Assembly {
       0;  ///< and the largest that does not (0 when the rows are independent)
   std::vector<int> dependent_rows;  ///< rows of Φ that follow from the others at the start
   int mobility = 0;                 ///< nv − rank
+  /// Which of several assemblies this is, where the guess does not decide it at once: one sentence,
+  /// or empty.
+  std::string branch;
 };
 
 /// Damped Gauss-Newton from the scene's positions, joints of `held` unmoved; steps of minimal
 /// change, lengths counted in the length of the scene, so that units do not matter; then the rates
 /// nearest to the scene's with Φ_q u + Φ_t = 0, held ones kept. |Φ|∞ ≤ 1e-12, points in lengths of
 /// the scene, or as low as rounding allows.
+///
+/// Far from the guess Newton's steps may end in another assembly, the mirror image say. So where
+/// they moved a joint by more than 0.1 the gap is also closed continuously, δ' = −(JᵀJ + |Φ|²)⁻¹Jᵀ
+/// Φ in steps of at most 0.05; if that ends clearly nearer to the guess it is taken. `branch` says
+/// so, or that it got stuck where the equations lose rank, so that the guess does not tell.
 /// @throws SceneError naming the loops that stay open and by how much, or the held rates that
 /// cannot be met.
 Assembly assemble(const Mechanism& mechanism);

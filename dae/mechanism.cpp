@@ -1,10 +1,13 @@
+#include <momenta/dae/kkt/kkt.h>
 #include <momenta/dae/mechanism.h>
+
+#include <cstdio>
 
 namespace momenta {
 namespace {
 
 // Below this size a dense Cholesky of M and a pivoted LDLᵀ of the loops' small matrix beat sparse
-// bookkeeping, and the pivots can be filtered one by one.
+// bookkeeping.
 constexpr int dense_limit = 60;
 
 Plan plan_with_loops(const Tree& tree, const Scene& scene, Algebra algebra) {
@@ -48,8 +51,6 @@ Mechanism::Mechanism(Scene scene, MechanismOptions options)
   plan_.drives |= visit([](const auto& cast) { return !cast.loops.motions.empty(); });
   dense_ = options.kkt == KktChoice::dense ||
            (options.kkt != KktChoice::sparse && tree_.nv + rows_ <= dense_limit);
-  if (rows_ > 0) choose_kkt(options.kkt);
-
   const auto group = [&](const auto& cast) {
     int index = 0;
     for (const auto& l : cast.loops.loops) {
@@ -60,6 +61,9 @@ Mechanism::Mechanism(Scene scene, MechanismOptions options)
     }
   };
   visit(group);
+  if (rows_ == 0) return;
+  weigh_loops();
+  choose_kkt(options.kkt);
 }
 
 const char* name_of(KktChoice choice) {
@@ -77,8 +81,6 @@ const char* name_of(KktChoice choice) {
 }
 
 void Mechanism::choose_kkt(KktChoice asked) {
-  kkt_ = dense_ ? KktChoice::dense : KktChoice::sparse;
-  if (asked == KktChoice::dense || asked == KktChoice::sparse) return;
   const auto plan = [&](auto& cast) {
     cast.links = build_links(cast.model);
     cast.plan = plan_loops(cast.model, cast.loops);
@@ -92,21 +94,90 @@ void Mechanism::choose_kkt(KktChoice asked) {
     plan(std::get<0>(cast_));
   else
     plan(std::get<1>(cast_));
+  if (light_.empty()) light_ = joint_without_inertia(kkt_reason_.empty());
+  kkt_ = dense_ ? KktChoice::dense : KktChoice::sparse;
+  if (asked == KktChoice::dense || asked == KktChoice::sparse) return;
+  if (kkt_reason_.empty()) kkt_reason_ = light_;
   if (kkt_reason_.empty()) {
-    // A joint may have no inertia until a loop closes above it.
     kkt_ = KktChoice::sweeps;
-    const auto sweeps = looped_sweeps();
-    std::vector<double> zero(static_cast<std::size_t>(tree_.nv)), u(zero), sigma(row_names_.size());
-    if (!sweeps->momentum(0, tree_.q0.data(), zero.data(), {}, u.data(), sigma.data(), nullptr))
-      kkt_reason_ =
-          tree_.joint_in_words(sweeps->stuck()) + " has no inertia before its loops close";
+    return;
   }
-  if (kkt_reason_.empty()) return;
   if (asked == KktChoice::sweeps)
     throw SceneError(scene_.where({}) + "the sweeps were asked to carry the loops, but " +
                      kkt_reason_ + "; expected --kkt sparse or dense");
   kkt_ = KktChoice::sparse;
   dense_ = false;
+}
+
+/// Scales of the loops at the start, and joints too light for the others: beside a mobility 10⁶
+/// times theirs the filter of the pivots takes what the others have of a row.
+void Mechanism::weigh_loops() {
+  constexpr double least_lever = 1e-4, most_apart = 1e6;
+  const double length = length_of(scene_);
+  std::vector<double> inertia(static_cast<std::size_t>(tree_.nv));
+  const auto e = evaluation<double>();
+  e->place(0, tree_.q0.data());
+  e->mass_diagonal(inertia.data());
+  const auto slides = [](const Tree::Body& b, int i) {
+    return b.nv == 6 ? i < 3 : b.nv == 1 && b.kind == JointKind::prismatic;
+  };
+  const auto weigh = [&](auto& cast) {
+    for (auto& l : cast.loops.loops) {
+      double sum = 0, least = 0;
+      int lightest = -1, heaviest = -1;
+      double of_lightest = 0, of_heaviest = 0;
+      const auto pass = [&](int k) {
+        const Tree::Body& b = tree_.bodies[static_cast<std::size_t>(k)];
+        for (int i = 0; i < b.nv; ++i) {
+          const double along = inertia[static_cast<std::size_t>(b.u + i)];
+          const double mass = slides(b, i) ? along : along / (length * length);
+          if (!(mass > 0)) continue;
+          sum += 1 / mass;
+          if (lightest < 0 || mass < of_lightest) lightest = k, of_lightest = mass;
+          if (heaviest < 0 || mass > of_heaviest) heaviest = k, of_heaviest = mass;
+        }
+      };
+      if (l.is_coupler()) {
+        for (const auto& c : l.joints) pass(c.body);
+      } else {
+        for (int a = l.a, b = l.b; a != b;) {
+          int& later = a > b ? a : b;
+          pass(later);
+          later = tree_.bodies[static_cast<std::size_t>(later)].parent;
+        }
+        least = least_lever * least_lever * sum;
+      }
+      l.least_scale = least;
+      for (int i = 0; i < l.rows; ++i) least_scales_.push_back(i < l.first_rows() ? least : 0.0);
+      if (light_.empty() && of_heaviest > most_apart * of_lightest) {
+        char times[32];
+        std::snprintf(times, sizeof times, "%.0e", of_heaviest / of_lightest);
+        light_ = "what turns about " + tree_.joint_in_words(lightest) + " is " + times +
+                 " times lighter than what turns about " + tree_.joint_in_words(heaviest) +
+                 " in its loop";
+      }
+    }
+  };
+  if (plan_.planar)
+    weigh(std::get<0>(cast_));
+  else
+    weigh(std::get<1>(cast_));
+}
+
+/// A joint may have no inertia until a loop closes above it: one solution at the start tells.
+std::string Mechanism::joint_without_inertia(bool swept) const {
+  const auto size = static_cast<std::size_t>(tree_.nv);
+  std::vector<double> p(size, 0.0), u(size), sigma(row_names_.size());
+  if (!swept) {
+    const auto e = evaluation<double>();
+    const auto kkt = make_sparse_kkt(*this);
+    e->place(0, tree_.q0.data());
+    return kkt->factor(*e, fade_evaluation) || kkt->stuck() < 0 ? "" : no_inertia(kkt->stuck());
+  }
+  const auto sweeps = looped_sweeps();
+  if (!sweeps->momentum(0, tree_.q0.data(), p.data(), {}, u.data(), sigma.data(), nullptr))
+    return tree_.joint_in_words(sweeps->stuck()) + " has no inertia before its loops close";
+  return "";
 }
 
 std::unique_ptr<LoopedSweeps> Mechanism::looped_sweeps(int level) const {
@@ -186,8 +257,8 @@ std::vector<std::pair<std::string, std::string>> Mechanism::plan_lines() const {
           std::to_string(visit([](const auto& cast) { return cast.plan.lanes; })) +
           " equations open at once";
   else if (kkt_ == KktChoice::sparse)
-    how = "sparse: KLU on a pattern analysed once" +
-          (kkt_reason_.empty() ? "" : " (" + kkt_reason_ + ")");
+    how = std::string(tips_first() ? "sparse: filtered LDLᵀ" : "sparse: KLU") +
+          " on a pattern analysed once" + (kkt_reason_.empty() ? "" : " (" + kkt_reason_ + ")");
   lines.emplace_back("solving (7)", how + ", " + std::to_string(tree_.nv + rows_) + " unknowns");
   return lines;
 }

@@ -56,6 +56,9 @@ class Mechanism {
   KktChoice kkt() const { return kkt_; }
   /// Whether an assembled matrix, where one is needed, is dense.
   bool dense_kkt() const { return dense_; }
+  /// Whether joints can be eliminated before the loops that hold them: each has inertia by then,
+  /// and enough beside its neighbours not to take their digits.
+  bool tips_first() const { return light_.empty(); }
   /// The sweeps that carry this mechanism's loops, for one instruction level; 0: the machine's
   /// best. @pre kkt() is sweeps
   std::unique_ptr<LoopedSweeps> looped_sweeps(int level = 0) const;
@@ -67,6 +70,12 @@ class Mechanism {
   /// Rows of one loop and one kind (points, axes, distance or coupling) share a unit and so a
   /// scale: group index of each row.
   const std::vector<int>& row_groups() const { return row_groups_; }
+
+  /// Scale of each row of Φ_q M⁻¹ Φ_qᵀ (m) below which it is dust, whatever its loop's other rows
+  /// are: what unit forces on levers of 10⁻⁴ lengths of the scene move at the start. A slide along
+  /// the axis of a cylindrical joint has four rows out of five that hold nothing but rounding. Zero
+  /// for axes, whose size by nature is known, and for couplers. [1/kg]
+  const std::vector<double>& least_scales() const { return least_scales_; }
 
   /// A workspace for one thread; S is double, Dual8 or Jet.
   template <class S>
@@ -97,6 +106,8 @@ class Mechanism {
     return plan_.planar ? f(std::get<0>(cast_)) : f(std::get<1>(cast_));
   }
   void choose_kkt(KktChoice asked);
+  void weigh_loops();
+  std::string joint_without_inertia(bool swept) const;
   template <class Space, class S>
   class SweepEvaluation;
 
@@ -108,10 +119,12 @@ class Mechanism {
   bool dense_ = true;
   KktChoice kkt_ = KktChoice::dense;
   std::string kkt_reason_;  ///< why the sweeps do not carry the loops; empty when they do
+  std::string light_;       ///< which joint has too little inertia before its loops close, or empty
   mutable KktPattern pattern_;
   mutable std::once_flag pattern_known_;
   std::vector<RowName> row_names_;
   std::vector<int> row_groups_;
+  std::vector<double> least_scales_;
 };
 
 extern template std::unique_ptr<Evaluation<double>> Mechanism::evaluation<double>() const;

@@ -37,7 +37,8 @@ DaeForm::DaeForm(std::string name, const Mechanism& mechanism, DaeLayout layout,
       start_(start),
       scale_(static_cast<std::size_t>(layout.size()), 1.0),
       plain_(make_scratch<double>(mechanism, layout.size())),
-      dual_(make_scratch<Dual8>(mechanism, layout.size())) {
+      dual_(make_scratch<Dual8>(mechanism, layout.size())),
+      options_(options) {
   plain_.e->place(start.t, start.q.data());
   inertia_.resize(static_cast<std::size_t>(layout.nv));
   plain_.e->mass_diagonal(inertia_.data());
@@ -104,29 +105,96 @@ std::vector<double> DaeForm::initial(const Start& start) {
 bool DaeForm::start(double t, double* y, double* ydot) {
   const auto y0 = initial(start_);
   std::copy(y0.begin(), y0.end(), y);
+  complete(t, start_.u.data(), start_.udot.data(), start_.lambda.data(), y, ydot);
+  for (int i = 0; i < size(); ++i)
+    if (!std::isfinite(y[i]) || !std::isfinite(ydot[i])) return fail("the start is not finite");
+  if (batches_.empty()) analyse_pattern();
+  return true;
+}
+
+void DaeForm::complete(double t, const double* u, const double* udot, const double* lambda,
+                       double* y, double* ydot) {
   std::fill(ydot, ydot + size(), 0.0);
   auto& e = *plain_.e;
   e.place(t, y);
-  e.move(start_.u.data());
-  e.coordinate_rates(y, start_.u.data(), ydot);
+  e.move(u);
+  e.coordinate_rates(y, u, ydot);
   if (unknowns_ == Unknowns::impulses) {
     e.momenta(y + layout_.s(), plain_.b.data());
-    e.momentum_rates(y, start_.u.data(), y + layout_.s(), leak(), ydot + layout_.x());
-    if (leak() == 0)  // σ̇ = λ − κσ
-      for (int i = 0; i < layout_.m; ++i) ydot[layout_.s() + i] = start_.lambda[i];
+    e.momentum_rates(y, u, y + layout_.s(), leak(), ydot + layout_.x());
+    for (int i = layout_.s(); i < layout_.s() + layout_.m; ++i)
+      ydot[i] = lambda[i - layout_.s()] - leak() * y[i];  // σ̇ = λ − κσ
   }
   if (unknowns_ == Unknowns::momenta) {
-    e.momenta(nullptr, plain_.b.data());
-    e.momentum_rates(y, start_.u.data(), nullptr, 0, ydot + layout_.x());
+    std::copy_n(lambda, layout_.m, y + layout_.s());
+    e.momenta(nullptr, y + layout_.x());
+    e.momentum_rates(y, u, nullptr, 0, ydot + layout_.x());
     e.constraint_forces(y + layout_.s(), plain_.b.data());
     for (int i = 0; i < layout_.nv; ++i)
       ydot[layout_.x() + i] -= plain_.b[static_cast<std::size_t>(i)];
   }
-  if (unknowns_ == Unknowns::velocities || layout_.explicit_velocity)
-    std::copy(start_.udot.begin(), start_.udot.end(), ydot + layout_.v());
-  for (int i = 0; i < size(); ++i)
-    if (!std::isfinite(y[i]) || !std::isfinite(ydot[i])) return fail("the start is not finite");
-  if (batches_.empty()) analyse_pattern();
+  if (unknowns_ == Unknowns::velocities) std::copy_n(lambda, layout_.m, y + layout_.s());
+  if (unknowns_ == Unknowns::velocities || layout_.explicit_velocity) {
+    std::copy_n(u, layout_.nv, y + layout_.v());
+    std::copy_n(udot, layout_.nv, ydot + layout_.v());
+  }
+  if (layout_.position_multiplier) std::fill_n(y + layout_.mu(), layout_.m, 0.0);
+}
+
+/// Relative to the best so far: loops that are weak throughout are no pose to be passed.
+bool DaeForm::near_singular(double t, const double* y) {
+  if (layout_.m == 0) return false;
+  Detour& d = detour_;
+  if (!d.solver) {
+    d.solver = make_loop_solver(mechanism_, *plain_.e);
+    d.always_faded = layout_.m;
+    for (auto* v : {&d.u, &d.udot}) v->resize(static_cast<std::size_t>(layout_.nv));
+    for (auto* v : {&d.sigma, &d.lambda}) v->assign(static_cast<std::size_t>(layout_.m), 0.0);
+  }
+  std::fill(d.udot.begin(), d.udot.end(), 0.0);
+  if (!d.solver->free_velocity(t, y, d.udot.data(), d.u.data())) return false;
+  const LoopSolver::Pivots pivots = d.solver->pivots();
+  d.always_faded = std::min(d.always_faded, pivots.faded);
+  const double weakest = pivots.faded > d.always_faded ? 0 : pivots.weakest;
+  d.strongest = std::max(d.strongest, weakest);
+  return weakest < OdeForm::near * d.strongest;
+}
+
+OdeSystem* DaeForm::detour(double t, const double* y, double* state) {
+  Detour& d = detour_;
+  if (!d.form) {
+    FormOptions options = options_;
+    options.project = true;
+    options.gauge = momentum_like() ? gauge_ : Gauge{Gauge::Kind::reset, 0};
+    d.form = make_momentum(mechanism_, options, start_);
+  }
+  std::copy_n(y, layout_.nq + layout_.nv, state);
+  if (momentum_like()) {
+    d.form->centre_on(y + layout_.s());
+    return d.form.get();
+  }
+  std::fill(d.sigma.begin(), d.sigma.end(), 0.0);
+  d.form->centre_on(d.sigma.data());
+  if (unknowns_ == Unknowns::velocities) {
+    plain_.e->place(t, y);
+    plain_.e->move(y + layout_.v());
+    plain_.e->momenta(nullptr, state + layout_.nq);
+  }
+  return d.form.get();
+}
+
+bool DaeForm::rejoin(double t, const double* state, double* y, double* ydot) {
+  Detour& d = detour_;
+  const double* p = state + layout_.nq;
+  const double* centre = momentum_like() ? y + layout_.s() : nullptr;
+  if (!d.solver->momentum(t, state, p, centre, fade_evaluation, 0, d.u.data(), d.sigma.data(),
+                          nullptr) ||
+      !d.solver->acceleration(t, state, d.u.data(), momentum_like() ? nullptr : y + layout_.s(), 0,
+                              0, d.udot.data(), d.lambda.data()))
+    return fail("the state past a singular pose is not finite");
+  std::copy_n(state, layout_.nq + layout_.nv, y);
+  if (momentum_like()) std::copy(d.sigma.begin(), d.sigma.end(), y + layout_.s());
+  complete(t, d.u.data(), d.udot.data(), d.lambda.data(), y, ydot);
   return true;
 }
 

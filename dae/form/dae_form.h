@@ -9,6 +9,7 @@
 // with series (Jet) their total derivatives, from which the index is found.
 
 #include <momenta/dae/form/form.h>
+#include <momenta/dae/form/ode_form.h>
 #include <momenta/dae/kkt/kkt.h>
 
 namespace momenta {
@@ -55,6 +56,10 @@ class DaeForm : public Form, public DaeSystem {
   bool differential(int i) const override;
   double scale(int i) const override;
   Weight weight(int i) const override;
+  bool near_singular(double t, const double* y) override;
+  OdeSystem* detour(double t, const double* y, double* state) override;
+  int detour_size() const override { return layout_.nq + layout_.nv; }
+  bool rejoin(double t, const double* state, double* y, double* ydot) override;
 
   /// F along a curve, y and y' given as series, with its derivatives along their two directions.
   /// Without the regularisation of redundant loops: the equations as the form's head has them.
@@ -96,6 +101,9 @@ class DaeForm : public Form, public DaeSystem {
                         const std::vector<int>& direction_of);
   /// u of M u + prescribed part = p (4).
   bool open_rates(double t, const double* y, double* u);
+  /// y and y' at q, with s, and p where it has σ in it, in place: the rest from u, u̇, λ.
+  void complete(double t, const double* u, const double* udot, const double* lambda, double* y,
+                double* ydot);
   void find_redundancy(const Start& start);
   void analyse_pattern();
 
@@ -111,6 +119,15 @@ class DaeForm : public Form, public DaeSystem {
   std::vector<double>
       epsilon_;               ///< per row of Φ; empty when the loops are independent at the start
   std::unique_ptr<Kkt> kkt_;  ///< for reading momentum states back
+  FormOptions options_;
+  /// Past singular poses: the momentum form, and a solver of (7) to see them come.
+  struct Detour {
+    std::unique_ptr<OdeForm> form;
+    std::unique_ptr<LoopSolver> solver;
+    std::vector<double> u, udot, sigma, lambda;
+    double strongest = 0;  ///< largest of the weakest pivots so far
+    int always_faded = 0;
+  } detour_;
   JacobianPattern pattern_;
   std::vector<std::vector<int>>
       batches_;  ///< per dual evaluation: the direction of each column, −1: none

@@ -19,11 +19,20 @@ class OdeForm : public Form, public OdeSystem {
   /// Of the run itself; those made for looking at samples are not counted.
   long factorizations() const { return solver_ ? solver_->solutions() - looked_ : 0; }
   /// Counts in `evaluations` (m), row of Φ by row, the right-hand sides in which it faded; null:
-  /// counts no longer. The sparse matrix can't tell which rows fade.
+  /// counts no longer. KLU can't tell which rows fade.
   void watch_faded(std::vector<long>* evaluations) { watched_ = evaluations; }
 
+  /// The σ or λ (m) of a moment ago, which the next step keeps where rows fade.
+  void centre_on(const double* multipliers) {
+    std::copy_n(multipliers, multipliers_.size(), multipliers_.begin());
+  }
   void begin_step(double t, const double* y) override;
   bool wants_care() const override { return near_singular_; }
+
+  /// A pivot goes with the square of the distance to the singular pose: within about a tenth of a
+  /// radian. Over ten tolerances around each of 1e-6, 1e-8 and 1e-10 on the N-four-bar, 1e-2 gives
+  /// errors that follow the tolerance; at 1e-5 steps begin to collapse.
+  static constexpr double near = 1e-2;
 
  protected:
   bool has_loops() const { return mechanism_.m() > 0; }
@@ -67,11 +76,6 @@ class OdeForm : public Form, public OdeSystem {
     OdeForm& form_;
     long before_;
   };
-
-  /// A pivot goes with the square of the distance to the singular pose: within about a tenth of a
-  /// radian. Over ten tolerances around each of 1e-6, 1e-8 and 1e-10 on the N-four-bar, 1e-2 gives
-  /// errors that follow the tolerance; at 1e-5 steps begin to collapse.
-  static constexpr double near = 1e-2;
 
   long looked_ = 0;
   bool near_singular_ = false;

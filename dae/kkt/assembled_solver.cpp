@@ -83,6 +83,8 @@ class AssembledSolver final : public LoopSolver {
     return rows_;
   }
 
+  Pivots pivots() const override { return {kkt_->weakest(), kkt_->faded()}; }
+
  private:
   bool factor(double t, const double* q, double fade, bool softens = true) {
     e_.place(t, q);

@@ -126,6 +126,7 @@ class DenseKkt final : public Kkt {
       if (!std::isfinite(tau_[idx(i)])) return false;
     }
     faded_rows_.clear();
+    weakest_ = 1;
     for (int k = 0; k < m_; ++k) {
       int best = k;
       for (int i = k + 1; i < m_; ++i)
@@ -136,7 +137,10 @@ class DenseKkt final : public Kkt {
       const int row = order_[idx(k)];
       const double d = w_[at(row, row, m_)], tau = compliance_ ? 0 : tau_[idx(row)];
       inverse_[idx(k)] = d > 0 ? inverse_faded(d, tau) : 0;
-      if (!(d > 10 * tau)) faded_rows_.push_back(row);
+      if (!(d > 10 * tau))
+        faded_rows_.push_back(row);
+      else if (tau > 0)
+        weakest_ = std::min(weakest_, d * fade / tau);
       for (int i = k + 1; i < m_; ++i) {
         const int a = order_[idx(i)];
         const double l = w_[at(a, row, m_)] * inverse_[idx(k)];
@@ -178,7 +182,8 @@ std::unique_ptr<Kkt> make_dense_kkt(const Mechanism& mechanism) {
 }
 
 std::unique_ptr<Kkt> make_kkt(const Mechanism& mechanism) {
-  return mechanism.dense_kkt() ? make_dense_kkt(mechanism) : make_sparse_kkt(mechanism);
+  if (mechanism.dense_kkt()) return make_dense_kkt(mechanism);
+  return mechanism.tips_first() ? make_sparse_kkt(mechanism) : make_klu_kkt(mechanism);
 }
 
 }  // namespace momenta

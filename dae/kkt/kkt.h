@@ -6,7 +6,7 @@
 //
 // Redundant loop equations and singular poses make Φ_q lose rank; u stays well defined, σ does not.
 // Weak directions of σ are therefore faded out, towards `centre` (the σ of the step's start): see
-// dense_kkt.cpp and sparse_kkt.cpp.
+// dense_kkt.cpp, filtered_factor.h, and klu_kkt.cpp.
 
 #include <momenta/dae/mechanism.h>
 
@@ -36,10 +36,13 @@ class Kkt {
   virtual bool solve(const double* r, const double* g, const double* centre, double* u,
                      double* sigma) = 0;
 
-  /// Rows of Φ whose pivots faded at the last factor(): redundant or singular here. The sparse
-  /// factorisation can't tell, and lists none.
+  /// Rows of Φ whose pivots faded at the last factor(): redundant or singular here. KLU can't tell,
+  /// and lists none.
   const std::vector<int>& faded_rows() const { return faded_rows_; }
   int faded() const { return static_cast<int>(faded_rows_.size()); }
+  /// Of the last factor(): the least pivot of a row of Φ that has not faded, relative to its
+  /// group's scale; 1 where none is known.
+  double weakest() const { return weakest_; }
   long factorizations() const { return factorizations_; }
   /// Place in u of the joint at which the last factor() failed, or −1: something is not finite.
   int stuck() const { return stuck_; }
@@ -47,13 +50,16 @@ class Kkt {
  protected:
   std::vector<int> faded_rows_;
   const double* compliance_ = nullptr;
+  double weakest_ = 1;
   long factorizations_ = 0;
   int stuck_ = -1;
 };
 
-/// Dense or sparse by size, or as the mechanism's options say. Needs loops (m > 0).
+/// Dense or sparse by size, or as the mechanism's options say; by KLU where joints have no inertia
+/// before their loops close. Needs loops (m > 0).
 std::unique_ptr<Kkt> make_kkt(const Mechanism& mechanism);
 std::unique_ptr<Kkt> make_dense_kkt(const Mechanism& mechanism);
 std::unique_ptr<Kkt> make_sparse_kkt(const Mechanism& mechanism);
+std::unique_ptr<Kkt> make_klu_kkt(const Mechanism& mechanism);
 
 }  // namespace momenta

@@ -3,7 +3,7 @@
 // and (3), and corrections of positions and velocities in the mass metric.
 //
 //   sweeps   the loops' impulses are eliminated inside the recursion           (dae/sweeps)
-//   sparse   the assembled matrix of (7), KLU                                  (sparse_kkt.cpp)
+//   sparse   LDLᵀ of the assembled matrix of (7), or KLU            (sparse_kkt.cpp, klu_kkt.cpp)
 //   dense    Cholesky of M, pivoted LDLᵀ of the loops' matrix                  (dense_kkt.cpp)
 //
 // Weak rows fade towards `centre`, the σ of the step's start: see kkt.h. In a softened solver no
@@ -44,12 +44,12 @@ class LoopSolver {
   /// Rows of Φ that faded in the last solution: redundant or singular there.
   virtual const std::vector<int>& faded_rows() = 0;
   /// Of the last solution: its weakest pivot that has not faded, relative to what the row's would
-  /// be without other loops, and how many have faded. Elimination in the sweeps alone can tell.
+  /// be without other loops, and how many have faded. KLU alone can't tell.
   struct Pivots {
     double weakest = 1;
     int faded = 0;
   };
-  virtual Pivots pivots() const { return {}; }
+  virtual Pivots pivots() const = 0;
   /// Place in u of the joint at which the last call failed, or −1: a result is not finite.
   int stuck() const { return stuck_; }
 

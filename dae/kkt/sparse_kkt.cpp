@@ -1,213 +1,77 @@
-// Large systems: the assembled matrix of (7), factorised by KLU on a pattern analysed once; values
-// travel through index maps. The loops' block is −ε instead of 0, with ε about fade times the scale
-// of Φ_q M⁻¹ Φ_qᵀ, and the right-hand side recentred,
-//   Φ_q u − ε (σ − centre) = g,
-// so that a regular row is off by ε (σ − centre) only, and a redundant or vanishing row keeps its
-// impulse. KLU chooses its pivots once and then refactorises; when the residual of a solution tells
-// that they no longer fit, it chooses anew.
+// Large systems: L D Lᵀ of the assembled matrix of (7), every pivot of σ filtered as in the dense
+// form and in the sweeps, on a pattern analysed once.
 
 #include <momenta/dae/kkt/axis_scale.h>
+#include <momenta/dae/kkt/filtered_factor.h>
 #include <momenta/dae/kkt/kkt.h>
-#include <suitesparse/klu.h>
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 namespace momenta {
 namespace {
-
-// Fading by an added block, once refined, costs (ε/W)² on every row, so it must be weaker than the
-// filter of the dense form, which costs (τ/W)⁴.
-constexpr double weaker = 1e-2;
-constexpr int refinements = 3;      // one does, two where a pivot is as small as ε
-constexpr double rounding = 1e-11;  // of the residual, row by row
 
 class SparseKkt final : public Kkt {
  public:
   explicit SparseKkt(const Mechanism& mechanism)
       : pattern_(mechanism.kkt_pattern()),
-        groups_(mechanism.row_groups()),
         axis_scale_(mechanism),
-        n_(mechanism.nv()),
-        m_(mechanism.m()),
+        factor_(mechanism),
+        n_(static_cast<std::size_t>(mechanism.nv())),
+        m_(static_cast<std::size_t>(mechanism.m())),
         mass_(pattern_.mass.size()),
         constraint_(pattern_.constraint.size()),
-        epsilon_(static_cast<std::size_t>(m_)),
-        row_scale_(static_cast<std::size_t>(m_)),
-        natural_(static_cast<std::size_t>(m_)),
-        x_(static_cast<std::size_t>(n_ + m_)),
-        b_(x_.size()),
-        r_(x_.size()) {
-    klu_defaults(&common_);
-    build_pattern();
-    symbolic_ = klu_analyze(n_ + m_, start_.data(), row_.data(), &common_);
+        tau_(m_),
+        x_(n_ + m_) {
+    faded_rows_.reserve(m_);
   }
-  ~SparseKkt() override {
-    if (numeric_) klu_free_numeric(&numeric_, &common_);
-    if (symbolic_) klu_free_symbolic(&symbolic_, &common_);
-  }
-  SparseKkt(const SparseKkt&) = delete;
-  SparseKkt& operator=(const SparseKkt&) = delete;
 
   bool factor(Evaluation<double>& e, double fade) override {
     ++factorizations_;
     e.mass_entries(mass_.data());
     e.constraint_entries(constraint_.data());
-    for (std::size_t i = 0; i < mass_.size(); ++i) {
-      value_[mass_at_[i].first] = mass_[i];
-      value_[mass_at_[i].second] = mass_[i];
+    axis_scale_.of_groups(mass_, constraint_, tau_);
+    for (double& tau : tau_) {
+      tau = compliance_ ? 0 : tau * fade;
+      if (!std::isfinite(tau)) return false;
     }
-    for (std::size_t i = 0; i < constraint_.size(); ++i) {
-      value_[constraint_at_[i].first] = constraint_[i];
-      value_[constraint_at_[i].second] = constraint_[i];
+    const bool ok = factor_.factor(mass_, constraint_, compliance_, tau_.data());
+    stuck_ = factor_.stuck();
+    if (!ok) return false;
+    faded_rows_.clear();
+    weakest_ = 1;
+    for (std::size_t i = 0; i < m_; ++i) {
+      const double w = factor_.pivots()[i];
+      if (!(w > 10 * tau_[i]))
+        faded_rows_.push_back(static_cast<int>(i));
+      else if (tau_[i] > 0)
+        weakest_ = std::min(weakest_, w * fade / tau_[i]);
     }
-    regularise(fade);
-    for (double v : value_)
-      if (!std::isfinite(v)) return false;
-    if (numeric_ &&
-        klu_refactor(start_.data(), row_.data(), value_.data(), symbolic_, numeric_, &common_) ==
-            1 &&
-        common_.status == KLU_OK)
-      return true;
-    return factor_anew();
+    return true;
   }
 
   bool solve(const double* r, const double* g, const double* centre, double* u,
              double* sigma) override {
-    const auto attempt = [&] {
-      std::copy(r, r + n_, b_.begin());
-      for (int i = 0; i < m_; ++i)
-        b_[static_cast<std::size_t>(n_ + i)] =
-            g[i] - (centre ? epsilon_[static_cast<std::size_t>(i)] * centre[i] : 0.0);
-      return solve_refined(centre);
-    };
-    if (!attempt() && !(factor_anew() && attempt())) return false;
-    std::copy(x_.begin(), x_.begin() + n_, u);
-    std::copy(x_.begin() + n_, x_.end(), sigma);
-    return true;
+    std::copy_n(r, n_, x_.begin());
+    std::copy_n(g, m_, x_.begin() + static_cast<std::ptrdiff_t>(n_));
+    if (centre)
+      for (std::size_t i = 0; i < constraint_.size(); ++i)
+        x_[static_cast<std::size_t>(pattern_.constraint[i].column)] -=
+            constraint_[i] * centre[pattern_.constraint[i].row];
+    factor_.solve(x_.data());
+    bool finite = true;
+    for (const double x : x_) finite = finite && std::isfinite(x);
+    std::copy_n(x_.begin(), n_, u);
+    for (std::size_t i = 0; i < m_; ++i) sigma[i] = x_[n_ + i] + (centre ? centre[i] : 0.0);
+    return finite;
   }
 
  private:
-  bool factor_anew() {
-    if (numeric_) klu_free_numeric(&numeric_, &common_);
-    numeric_ = symbolic_
-                   ? klu_factor(start_.data(), row_.data(), value_.data(), symbolic_, &common_)
-                   : nullptr;
-    return numeric_ && common_.status == KLU_OK;
-  }
-
-  /// x = A⁻¹ b, then refinement against the same equations centred on the σ just found: it removes
-  /// rounding and takes the block's bias from ε/W to (ε/W)². False when the residual does not reach
-  /// rounding level.
-  bool solve_refined(const double* centre) {
-    x_ = b_;
-    if (klu_solve(symbolic_, numeric_, n_ + m_, 1, x_.data(), &common_) != 1) return false;
-    for (std::size_t i = 0; i < epsilon_.size() && !compliance_; ++i) {
-      const std::size_t row = static_cast<std::size_t>(n_) + i;
-      b_[row] -= epsilon_[i] * (x_[row] - (centre ? centre[i] : 0.0));
-    }
-    residual();
-    for (int step = 0; step < refinements; ++step) {
-      if (klu_solve(symbolic_, numeric_, n_ + m_, 1, r_.data(), &common_) != 1) return false;
-      for (std::size_t i = 0; i < x_.size(); ++i) x_[i] += r_[i];
-      if (residual() < rounding) return true;
-    }
-    return false;
-  }
-
-  /// r = b − A x; returns its largest entry relative to Σ |A| |x| + |b| of its row.
-  double residual() {
-    std::fill(size_.begin(), size_.end(), 0.0);
-    r_ = b_;
-    for (int j = 0; j < n_ + m_; ++j)
-      for (int k = start_[static_cast<std::size_t>(j)]; k < start_[static_cast<std::size_t>(j) + 1];
-           ++k) {
-        const auto i = static_cast<std::size_t>(row_[static_cast<std::size_t>(k)]);
-        const double term = value_[static_cast<std::size_t>(k)] * x_[static_cast<std::size_t>(j)];
-        r_[i] -= term;
-        size_[i] += std::abs(term);
-      }
-    double largest = 0;
-    for (std::size_t i = 0; i < r_.size(); ++i) {
-      if (!std::isfinite(r_[i])) return HUGE_VAL;
-      const double scale = size_[i] + std::abs(b_[i]);
-      if (scale > 0) largest = std::max(largest, std::abs(r_[i]) / scale);
-    }
-    return largest;
-  }
-
-  /// ε of each row: fade times the mean of Σ_j Φ_ij²/M_jj over the rows of its group, no less than
-  /// is natural for axes.
-  void regularise(double fade) {
-    if (compliance_) {
-      for (std::size_t i = 0; i < epsilon_.size(); ++i) {
-        epsilon_[i] = compliance_[i];
-        value_[diagonal_[static_cast<std::size_t>(n_) + i]] = -compliance_[i];
-      }
-      return;
-    }
-    std::fill(row_scale_.begin(), row_scale_.end(), 0.0);
-    for (std::size_t i = 0; i < constraint_.size(); ++i) {
-      const auto& entry = pattern_.constraint[i];
-      const double mass = value_[diagonal_[static_cast<std::size_t>(entry.column)]];
-      if (mass > 0)
-        row_scale_[static_cast<std::size_t>(entry.row)] += constraint_[i] * constraint_[i] / mass;
-    }
-    axis_scale_.measure(mass_, natural_);
-    for (std::size_t i = 0; i < natural_.size(); ++i)
-      row_scale_[i] = std::max(row_scale_[i], natural_[i]);
-    for (std::size_t first = 0; first < groups_.size();) {
-      std::size_t last = first;
-      double sum = 0;
-      while (last < groups_.size() && groups_[last] == groups_[first]) sum += row_scale_[last++];
-      const double epsilon = weaker * fade * sum / static_cast<double>(last - first);
-      for (; first < last; ++first) {
-        epsilon_[first] = epsilon;
-        value_[diagonal_[static_cast<std::size_t>(n_) + first]] = -epsilon;
-      }
-    }
-  }
-
-  void build_pattern() {
-    std::map<std::pair<int, int>, std::size_t> place;  // (column, row)
-    const auto both = [&](int i, int j) {
-      place[{j, i}];
-      place[{i, j}];
-    };
-    for (const auto& e : pattern_.mass) both(e.row, e.column);
-    for (const auto& e : pattern_.constraint) both(n_ + e.row, e.column);
-    for (int i = 0; i < n_ + m_; ++i) both(i, i);
-    start_.assign(static_cast<std::size_t>(n_ + m_) + 1, 0);
-    for (auto& [key, at] : place) {
-      at = row_.size();
-      row_.push_back(key.second);
-      ++start_[static_cast<std::size_t>(key.first) + 1];
-    }
-    for (std::size_t j = 1; j < start_.size(); ++j) start_[j] += start_[j - 1];
-    value_.assign(row_.size(), 0.0);
-    size_.assign(static_cast<std::size_t>(n_ + m_), 0.0);
-    for (const auto& e : pattern_.mass)
-      mass_at_.push_back({place.at({e.column, e.row}), place.at({e.row, e.column})});
-    for (const auto& e : pattern_.constraint)
-      constraint_at_.push_back(
-          {place.at({e.column, n_ + e.row}), place.at({n_ + e.row, e.column})});
-    for (int i = 0; i < n_ + m_; ++i) diagonal_.push_back(place.at({i, i}));
-  }
-
   const KktPattern& pattern_;
-  const std::vector<int>& groups_;
   AxisScale axis_scale_;
-  int n_, m_;
-  std::vector<double> mass_, constraint_, epsilon_, row_scale_, natural_;
-  std::vector<double> x_, b_, r_, size_;
-  std::vector<int> start_, row_;
-  std::vector<double> value_;
-  std::vector<std::pair<std::size_t, std::size_t>> mass_at_, constraint_at_;
-  std::vector<std::size_t> diagonal_;
-  klu_common common_{};
-  klu_symbolic* symbolic_ = nullptr;
-  klu_numeric* numeric_ = nullptr;
+  FilteredFactor factor_;
+  std::size_t n_, m_;
+  std::vector<double> mass_, constraint_, tau_, x_;
 };
 
 }  // namespace

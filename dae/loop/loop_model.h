@@ -58,6 +58,7 @@ struct LoopModel {
     double across2 = 0;           ///< squared distance across the plane of a planar scene
     std::vector<Coupled> joints;  ///< coupler: then Q is the only row
     int motion = -1;              ///< place in `motions`; −1: nothing is prescribed
+    double least_scale = 0;       ///< of rows of points: Mechanism::least_scales()
 
     bool is_distance() const { return per_length > 0; }
     bool is_coupler() const { return !joints.empty(); }

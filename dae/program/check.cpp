@@ -127,6 +127,7 @@ int check(const Options& o) {
     j["loop_equations"] = mechanism->m();
     j["rank"] = a.rank;
     j["mobility"] = a.mobility;
+    j["assembly"] = {{"moved", a.moved}, {"branch", a.branch}};
     for (const auto& [what, how] : mechanism->plan_lines()) j["plan"][what] = how;
     if (mechanism->m() == 0) {
       const auto counted = [&](Recursion recursion) {
@@ -179,6 +180,9 @@ int check(const Options& o) {
       "\n  %zu bodies, %d coordinates, %d rates, %d loop equations of rank %d: mobility %d\n",
       mechanism->scene().bodies.size(), mechanism->nq(), mechanism->nv(), mechanism->m(), a.rank,
       a.mobility);
+  if (mechanism->m() > 0)
+    std::printf("  assembled with joints moved by at most %.3g from the guess%s%s\n", a.moved,
+                a.branch.empty() ? "" : ": ", a.branch.c_str());
   if (ranked) print_rank(*mechanism, rank);
   std::printf("\nPlan\n");
   for (const auto& [what, how] : mechanism->plan_lines())
@@ -213,6 +217,7 @@ int assemble_verb(const Options& o) {
   j["position_residual"] = a.position_residual;
   j["velocity_residual"] = a.velocity_residual;
   j["moved"] = a.moved;
+  j["branch"] = a.branch;
   j["iterations"] = a.iterations;
   j["mobility"] = a.mobility;
   for (const auto& b : mechanism->tree().bodies) {
@@ -234,6 +239,7 @@ int assemble_verb(const Options& o) {
       "guess\n",
       mechanism->scene().name.c_str(), a.iterations, a.position_residual, a.velocity_residual,
       a.moved);
+  if (!a.branch.empty()) std::printf("  %s\n", a.branch.c_str());
   const Tree& tree = mechanism->tree();
   for (int last = 0; last < static_cast<int>(tree.bodies.size()); ++last) {
     if (!tree.carries_scene_body(last)) continue;

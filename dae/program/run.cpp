@@ -3,6 +3,7 @@
 #include <momenta/dae/report/table.h>
 #include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/study/environment.h>
+#include <momenta/dae/study/run_form.h>
 
 #include <cstdio>
 
@@ -20,6 +21,11 @@ void print_passages(const RunResult& result) {
   std::printf("\nClose to singular poses at t = %s%s s, least pivot %s\n", times.c_str(),
               result.passages.size() > most ? ", …" : "",
               scientific(result.least_pivot, 1).c_str());
+  for (const RunResult::Passage& passage : result.passages)
+    if (passage.ambiguous) {
+      std::printf("Ambiguous: %s\n", ambiguous_from(passage.t).c_str());
+      break;
+    }
 }
 
 }  // namespace
@@ -67,7 +73,9 @@ int run(const Options& o) {
   const RunResult& result = study.runs.front();
   if (interrupted())
     study.runs.front().reason = "interrupted at t = " + std::to_string(result.stopped_at) + " s";
-  const std::string summary = summary_json(result, study.environment).dump(2) + "\n";
+  auto json = summary_json(result, study.environment);
+  json["assembly"] = {{"moved", a.moved}, {"branch", a.branch}};
+  const std::string summary = json.dump(2) + "\n";
   if (!o.out.empty() &&
       (!write_result(o.out / "trajectory.csv", trajectory_csv(result.trajectory)) ||
        !write_result(o.out / "summary.json", summary)))
@@ -77,6 +85,7 @@ int run(const Options& o) {
   } else if (!o.quiet) {
     std::fputs(drift_table(study).c_str(), stdout);
     print_passages(result);
+    if (!a.branch.empty()) std::printf("Started from %s\n", a.branch.c_str());
   }
   if (result.status == "done") return done;
   std::fprintf(stderr, "momenta: the run stopped: %s\n", result.reason.c_str());

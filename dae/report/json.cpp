@@ -46,7 +46,8 @@ Json summary_json(const RunResult& run, const Environment& environment) {
                       {"evaluations", c.evaluations},
                       {"jacobians", c.jacobians},
                       {"factorizations", c.factorizations},
-                      {"newton_iterations", c.newton_iterations}};
+                      {"newton_iterations", c.newton_iterations},
+                      {"detours", c.detours}};
   json["time"] = {{"cpu_s", number_or_null(run.cpu_s)},
                   {"wall_s", number_or_null(run.wall_s)},
                   {"repeats", run.repeats}};
@@ -65,7 +66,8 @@ Json summary_json(const RunResult& run, const Environment& environment) {
   json["least_pivot"] = number_or_null(run.least_pivot);
   json["passages"] = Json::array();
   for (const auto& passage : run.passages)
-    json["passages"].push_back({{"t", passage.t}, {"pivot", passage.pivot}});
+    json["passages"].push_back(
+        {{"t", passage.t}, {"pivot", passage.pivot}, {"ambiguous", passage.ambiguous}});
   json["environment"] = environment_json(environment);
   return json;
 }

@@ -6,8 +6,13 @@
 // the first stage of the next. What is looked at does not change what is computed: the stages of
 // dense output are extra, and f at the end serves the next step only when y was not altered in
 // between. A step taken with care may be long against the distance to a singular pose, where no
-// polynomial follows the motion: its samples are ends of steps of their own. Source: Hairer,
-// Norsett, Wanner, Solving Ordinary Differential Equations I, II.4-II.6, II.10.
+// polynomial follows the motion: its samples are ends of steps of their own. Nor can such a step be
+// more accurate than rounding in f lets it: close to the pose that is ε/δ, the estimate is of the
+// size of h ε/δ, and a control that takes it for the method's error shortens steps without end. So
+// where careful steps have become short, an estimate is held against that of a step shorter by a
+// 64th, from a start one rounding away. The method's own error is nearly the same in both; if most
+// is not, no shorter step is better, and the next is longer. Source: Hairer, Norsett, Wanner,
+// Solving Ordinary Differential Equations I, II.4-II.6, II.10.
 
 #include <momenta/dae/solver/explicit_step.h>
 #include <momenta/dae/solver/first_step.h>
@@ -84,6 +89,13 @@ class ExplicitRun {
   }
 
  private:
+  /// A careful step below this part of the first one may be short because of rounding.
+  static constexpr double short_step = 0.1;
+  /// Squares of estimates over tolerances: below the first steps grow anyhow; above the second
+  /// a pose was hit too closely.
+  static constexpr double least_suspect = 1e-4, most_rounding = 1e4;
+  static constexpr int most_lengthened = 12;  ///< trials of one step
+
   /// First stage and first step.
   bool start() {
     system_.begin_step(t_, step_.y());
@@ -167,8 +179,23 @@ class ExplicitRun {
         error_squared = careful_ ? step_.motion_error_squared() : step_.error_squared();
         if (!std::isfinite(error_squared)) failure = StageFailure::not_finite;
       }
+    if (careful_ && failure == StageFailure::none && is_rounding(error_squared)) {
+      if (error_squared < most_rounding) {
+        leaves_care_ = !system_.wants_care();
+        lengthened_ = 0;
+        h_ = std::min(2 * h_, longest_step());
+        return true;
+      }
+      // A stage fell upon the pose. Those of a longer step are farther from it.
+      if (++lengthened_ <= most_lengthened) {
+        ++result_.counters.rejected;
+        h_ = std::min(1.7 * h_, longest_step());
+        return false;
+      }
+    }
     if (failure == StageFailure::none && error_squared <= 1) {
       leaves_care_ = careful_ && !system_.wants_care();
+      lengthened_ = 0;
       if constexpr (Tableau::estimates > 0)
         if (!fixed_) h_ = std::min(h_ * control_.accepted(error_squared), longest_step());
       return true;
@@ -182,7 +209,24 @@ class ExplicitRun {
     return stop(failure_cause(failure));
   }
 
+  /// Whether an estimate is rounding for the most part.
+  bool is_rounding(double error_squared) {
+    if constexpr (Tableau::estimates > 0) {
+      if (!(h_ < short_step * first_careful_ && error_squared > least_suspect)) return false;
+      if (!again_) again_.emplace(system_, options_.rtol, options_.atol, step_.y());
+      for (std::size_t i = 0; i < sample_.size(); ++i)
+        again_->y()[i] = step_.y()[i] * (i % 2 == 0 ? 1 + epsilon : 1 - epsilon);
+      const double shorter = h_ * (1 - 1.0 / 64);
+      if (!again_->begin(t_) || again_->attempt(t_, t_ + shorter, shorter) != StageFailure::none)
+        return false;
+      again_->subtract_stages(step_);
+      return again_->motion_error_squared() > 0.25 * error_squared;
+    }
+    return false;
+  }
+
   void care(bool careful) {
+    if (careful && !careful_) first_careful_ = h_;
     careful_ = careful;
     leaves_care_ = false;
     system_.take_care(careful);
@@ -297,7 +341,8 @@ class ExplicitRun {
   const Observer& observer_;
   OutputCursor outputs_;
   ExplicitStep<Tableau> step_;
-  std::optional<ExplicitStep<Tableau>> look_;  ///< for samples of careful steps
+  std::optional<ExplicitStep<Tableau>> look_;   ///< for samples of careful steps
+  std::optional<ExplicitStep<Tableau>> again_;  ///< from a start one rounding away
   StepControl<Tableau> control_;
   CpuLimit cpu_;
   Interpolant between_;
@@ -306,6 +351,8 @@ class ExplicitRun {
   bool fixed_;           ///< steps of options.step, no error control
   std::vector<double> sample_, unaltered_;
   bool careful_ = false;            ///< near a singular pose
+  double first_careful_ = 0;        ///< the step with which care began [s]
+  int lengthened_ = 0;              ///< trials of this step
   bool leaves_care_ = false;        ///< the step just taken was the last one there
   bool corrected_;                  ///< the system alters accepted states
   bool stopped_elsewhere_ = false;  ///< result_ has a time and state that are no step's start

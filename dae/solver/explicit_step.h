@@ -119,6 +119,11 @@ class ExplicitStep {
     return both == 0 ? 0 : h_ * h_ * high * high / both;
   }
 
+  /// Stages less those of another step: what estimates are then made of.
+  void subtract_stages(const ExplicitStep& other) {
+    for (std::size_t i = 0; i < (s + 1) * stride_; ++i) k_[i] -= other.k_[i];
+  }
+
   /// y at t in [t, t1] into out, n values; NaN throughout when a stage for it cannot be had.
   bool interpolate(double t, double* out) {
     if (!have_dense_ && !prepare_dense()) {

@@ -10,6 +10,7 @@
 // Step: options.step, without error control, where given; else PI control as in dp5.
 // Source: tableau_hem5.h.
 
+#include <momenta/dae/solver/detour.h>
 #include <momenta/dae/solver/fixed_grid.h>
 #include <momenta/dae/solver/half_explicit.h>
 #include <momenta/dae/solver/implicit_methods.h>
@@ -77,6 +78,12 @@ class Hem5 {
                                      : first_step_fraction * span_;
     h_ = options_.step > 0 ? h_ : std::min(h_, longest);
     return finite(now_);
+  }
+
+  /// From y, z and y' as they stand; the step is what it was before.
+  bool restart(double) {
+    control_ = {};
+    return true;
   }
 
   bool step(double& t, double end, std::string& cause) {
@@ -246,8 +253,10 @@ IntegrationResult integrate_hem5(DaeSystem& system, double t0,
     result.y.assign(method.y(), method.y() + system.size());
     return result;
   }
-  MultistepRun<Hem5>(method, system.size(), t0, output_times, options, observer).run(result);
+  Detoured<Hem5> run(method, system, options);
+  MultistepRun<Detoured<Hem5>>(run, system.size(), t0, output_times, options, observer).run(result);
   result.counters = method.counters();
+  run.count(result.counters);
   return result;
 }
 

@@ -15,6 +15,7 @@
 // Numerical Solution of Initial-Value Problems in Differential-Algebraic Equations, ch. 5.
 
 #include <klu.h>
+#include <momenta/dae/solver/detour.h>
 #include <momenta/dae/solver/integration.h>
 #include <momenta/dae/solver/multistep_run.h>
 #include <momenta/dae/solver/sundials_handles.h>
@@ -79,6 +80,8 @@ class Ida {
   bool start(double t0) {
     t0_ = t0;
     if (!system_.start(t0, y_.data(), ydot_.data())) return false;
+    begin_y_.assign(y_.data(), y_.data() + y_.size());
+    begin_ydot_.assign(ydot_.data(), ydot_.data() + ydot_.size());
     sparse_ = !system_.pattern().column_start.empty();  // known once the system has started
     return sundials::all_finite(y_.data(), y_.size()) &&
            sundials::all_finite(ydot_.data(), ydot_.size());
@@ -102,7 +105,8 @@ class Ida {
     if (options_.max_order > 0)
       check(IDASetMaxOrd(ida, std::min(options_.max_order, highest_order)), "IDASetMaxOrd");
     if (options_.max_step > 0) check(IDASetMaxStep(ida, options_.max_step), "IDASetMaxStep");
-    check(IDASetStopTime(ida, t0_ + span_), "IDASetStopTime");
+    t_end_ = t0_ + span_;
+    check(IDASetStopTime(ida, t_end_), "IDASetStopTime");
     first_step_ = options_.initial_step > 0 ? options_.initial_step : first_step_fraction * span_;
     if (options_.max_step > 0) first_step_ = std::min(first_step_, options_.max_step);
     check(IDASetInitStep(ida, std::min(first_step_, span_)), "IDASetInitStep");
@@ -112,8 +116,9 @@ class Ida {
     const double t0 = t;
     evaluation_failed_ = not_finite_ = false;
     int flag = IDASolve(memory_.get(), end, &t, y_, ydot_, IDA_ONE_STEP);
+    double first_step = first_step_;
     for (int retry = 0; retry < first_step_retries && first_step_failed(flag); ++retry) {
-      restart(first_step_ *= first_step_retry);
+      begin_anew(first_step *= first_step_retry);
       flag = IDASolve(memory_.get(), end, &t, y_, ydot_, IDA_ONE_STEP);
     }
     if (flag == IDA_SUCCESS || flag == IDA_TSTOP_RETURN) {
@@ -131,6 +136,15 @@ class Ida {
     }
     cause = explain(flag);
     return false;
+  }
+
+  /// At order 1, from y and y' as they stand.
+  bool restart(double t) {
+    t0_ = t;
+    begin_y_.assign(y_.data(), y_.data() + y_.size());
+    begin_ydot_.assign(ydot_.data(), ydot_.data() + ydot_.size());
+    begin_anew(first_step_);
+    return true;
   }
 
   bool at(double t, double* y, double* ydot) {
@@ -212,11 +226,12 @@ class Ida {
     return steps == 0;
   }
 
-  void restart(double first_step) {
+  void begin_anew(double first_step) {
     add_counters(earlier_attempts_);
-    if (!start(t0_)) return;  // the next solve then fails for the same cause
+    std::copy(begin_y_.begin(), begin_y_.end(), y_.data());
+    std::copy(begin_ydot_.begin(), begin_ydot_.end(), ydot_.data());
     check(IDAReInit(memory_.get(), t0_, y_, ydot_), "IDAReInit");
-    check(IDASetInitStep(memory_.get(), first_step), "IDASetInitStep");
+    check(IDASetInitStep(memory_.get(), std::min(first_step, t_end_ - t0_)), "IDASetInitStep");
   }
 
   void add_counters(Counters& c) {
@@ -273,9 +288,10 @@ class Ida {
   DaeSystem& system_;
   const IntegrationOptions& options_;
   bool sparse_ = false;
-  double span_, t0_ = 0;
+  double span_, t0_ = 0, t_end_ = 0;
   double first_step_ = 0;
-  sundials::Context context_;  // before everything made with it
+  std::vector<double> begin_y_, begin_ydot_;  ///< at t0_, where it last began
+  sundials::Context context_;                 // before everything made with it
   sundials::Vector y_, ydot_, output_, tolerance_, differential_;
   sundials::Matrix matrix_;
   sundials::LinearSolver linear_solver_;
@@ -305,8 +321,10 @@ IntegrationResult integrate_ida(DaeSystem& system, double t0,
   }
   const bool has_span = outputs.end() > t0;
   if (has_span) ida.initialise();
-  MultistepRun<Ida>(ida, system.size(), t0, output_times, options, observer).run(result);
+  Detoured<Ida> run(ida, system, options);
+  MultistepRun<Detoured<Ida>>(run, system.size(), t0, output_times, options, observer).run(result);
   if (has_span) result.counters = ida.counters();
+  run.count(result.counters);
   return result;
 }
 

@@ -17,6 +17,7 @@
 // index 3. Source: Hairer, Wanner, Solving Ordinary Differential Equations II, IV.8, VII.4, VII.6;
 // Hairer, Lubich, Roche, The Numerical Solution of Differential-Algebraic Systems by RK Methods.
 
+#include <momenta/dae/solver/detour.h>
 #include <momenta/dae/solver/fixed_grid.h>
 #include <momenta/dae/solver/implicit_methods.h>
 #include <momenta/dae/solver/multistep_run.h>
@@ -77,6 +78,13 @@ class Radau5 {
     }
     h_ = options_.initial_step > 0 ? options_.initial_step : first_step_fraction * span_;
     h_ = std::min(h_, longest());
+  }
+
+  /// From y and y' as they stand; the step is what it was before.
+  bool restart(double) {
+    first_ = changed_ = true;
+    have_derivatives_ = false;
+    return true;
   }
 
   bool step(double& t, double end, std::string& cause) {
@@ -337,8 +345,11 @@ IntegrationResult integrate_radau5(DaeSystem& system, double t0,
     return result;
   }
   if (outputs.end() > t0) radau.initialise();
-  MultistepRun<Radau5>(radau, system.size(), t0, output_times, options, observer).run(result);
+  Detoured<Radau5> run(radau, system, options);
+  MultistepRun<Detoured<Radau5>>(run, system.size(), t0, output_times, options, observer)
+      .run(result);
   result.counters = radau.counters();
+  run.count(result.counters);
   return result;
 }
 

@@ -101,6 +101,20 @@ class DaeSystem {
   };
   virtual Weight weight(int i) const { return {differential(i) ? 0 : -1, scale(i)}; }
 
+  /// Whether the coordinates that lead y, and the states below, are near a pose where loop
+  /// equations lose rank: the Newton matrix of any method whose step spans it may be singular.
+  virtual bool near_singular(double /*t*/, const double* /*y*/) { return false; }
+  /// There: the same motion as an ODE whose steps are taken with care, and its `state`
+  /// (detour_size()) at (t, y).
+  virtual OdeSystem* detour(double /*t*/, const double* /*y*/, double* /*state*/) {
+    return nullptr;
+  }
+  virtual int detour_size() const { return 0; }
+  /// y and y' from a state of that ODE; y comes with the multipliers of a moment ago.
+  virtual bool rejoin(double /*t*/, const double* /*state*/, double* /*y*/, double* /*ydot*/) {
+    return false;
+  }
+
   const std::string& failure() const { return failure_; }
 
  protected:

@@ -8,6 +8,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <stdexcept>
 
 namespace momenta {
@@ -55,10 +56,9 @@ class Looker {
         middle_(mechanism.nq()),
         markers_(static_cast<std::size_t>(6 * static_cast<int>(mechanism.scene().markers.size()))),
         loses_energy_(loses_energy(mechanism.scene())) {
-    if (request.keep_trajectory) {
-      result.trajectory.columns = trajectory_columns(mechanism);
-      if (mechanism.m() > 0) solver_ = make_loop_solver(mechanism, *e_);
-    }
+    if (request.keep_trajectory) result.trajectory.columns = trajectory_columns(mechanism);
+    if (mechanism.m() > 0) solver_ = make_loop_solver(mechanism, *e_);
+    length_ = length_of(mechanism.scene());
   }
 
   bool sample(double t, const double* y, const double* ydot) {
@@ -112,7 +112,8 @@ class Looker {
       const double drift = phi_.norm();
       if (!(drift <= between_)) between_ = drift;
     }
-    if (solver_ && mechanism_.kkt() == KktChoice::sweeps) look_for_passages(t0, t1, between);
+    if (solver_ && (mechanism_.kkt() != KktChoice::sparse || mechanism_.tips_first()))
+      look_for_passages(t0, t1, between);
     if (loses_energy_) {
       // Power at the Gauss points of the step; the polynomial through them gives the work up to any
       // sample inside it.
@@ -172,6 +173,18 @@ class Looker {
     always_faded_ = std::min(always_faded_, pivots.faded);
     return pivots.faded > always_faded_ ? 0 : pivots.weakest;
   }
+  /// Two motions that meet where a pivot vanishes with the square of the distance, Φ = x y = 0,
+  /// keep clear of each other off the constraints, Φ = x y = η: no nearer than √η, where the pivot
+  /// is about η, and there either leads into the other.
+  bool is_ambiguous(double t, double pivot, const Interpolant& between) {
+    constexpr double apart = 10;
+    Snapshot here;
+    between(t, state_.data());
+    if (!form_.read(t, state_.data(), nullptr, here)) return false;
+    e_->place(t, here.q.data());
+    e_->positions(phi_.data());
+    return phi_.norm() / length_ > rounding_level && pivot < apart * phi_.norm() / length_;
+  }
   /// Least pivots below `near_singular`, one for each time the run goes there.
   void look_for_passages(double t0, double t1, const Interpolant& between) {
     constexpr double near_singular = 1e-2;
@@ -186,7 +199,11 @@ class Looker {
       }
       if (!passing_) result_.passages.push_back({t, pivot});
       passing_ = true;
-      if (RunResult::Passage& last = result_.passages.back(); pivot < last.pivot) last = {t, pivot};
+      RunResult::Passage& last = result_.passages.back();
+      last.ambiguous = last.ambiguous || is_ambiguous(t, pivot, between);
+      if (!(pivot < last.pivot)) return;
+      last.t = t;
+      last.pivot = pivot;
     };
     const double end = pivot_at(t1, between);
     if (passing_ || end < 10 * near_singular)
@@ -239,7 +256,7 @@ class Looker {
     if (mechanism_.m() == 0) return;
     row_.push_back(position);
     row_.push_back(velocity);
-    if (solver_) {
+    if (request_.keep_trajectory) {
       Eigen::VectorXd udot(mechanism_.nv()), lambda(mechanism_.m());
       if (!solver_->acceleration(t, now_.q.data(), now_.u.data(), nullptr, 0, 0, udot.data(),
                                  lambda.data()))
@@ -282,6 +299,7 @@ class Looker {
   Eigen::VectorXd at_rest_, unused_;
   int always_faded_ = std::numeric_limits<int>::max();
   bool passing_ = false;
+  double length_ = 1;  ///< of the scene [m]
   std::string trouble_;
 };
 
@@ -454,6 +472,14 @@ RunResult run_form(const Mechanism& mechanism, const Start& start, const RunRequ
           {mechanism.rows()[row].loop, mechanism.rows()[row].what, faded[row]});
   looker.finish();
   return result;
+}
+
+std::string ambiguous_from(double t) {
+  char time[32];
+  std::snprintf(time, sizeof time, "%.4g", t);
+  return "from t = " + std::string(time) +
+         " s the motion is one of several: its loops are open by more than tells apart those that "
+         "meet in the singular pose there";
 }
 
 void time_runs(const Mechanism& mechanism, const Start& start, std::vector<RunResult>& runs,

@@ -26,6 +26,9 @@ std::vector<std::string> trajectory_columns(const Mechanism& mechanism);
 /// not fit together.
 RunResult run_form(const Mechanism& mechanism, const Start& start, const RunRequest& request);
 
+/// The sentence for a run past an ambiguous singular pose.
+std::string ambiguous_from(double t);
+
 /// Times finished runs with nobody looking: rounds over all of them, so that a drifting clock hurts
 /// all alike, and medians in cpu_s, wall_s; counters become those of such a run. Short runs get up
 /// to 40 rounds. A run is left out of further rounds once its own time passes `budget` seconds of

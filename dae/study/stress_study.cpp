@@ -142,7 +142,13 @@ void judge(StressRun& r, const Ground& ground, double bound, double cpu_limit) {
                                   : " of what is exchanged") +
               " at the most, beyond the bound from t = " + digits(at) + " s";
   }
-  if (r.verdict == Verdict::wrong) return;
+  for (const RunResult::Passage& passage : run.passages)
+    if (r.verdict == Verdict::wrong && passage.ambiguous && passage.t <= r.at) {
+      r.verdict = Verdict::stopped;  // as far as it vouches for itself
+      r.at = passage.t;
+      r.cause = ambiguous_from(passage.t);
+    }
+  if (r.verdict != Verdict::untried) return;
   if (run.status != "done") {
     r.verdict = Verdict::stopped;
     r.at = run.stopped_at;

@@ -215,11 +215,12 @@ double size_of(const Pack<W, L>& x) {
   return sum;
 }
 
-/// Closes the rows of one loop: `points` rows at `lane` that share a unit, then `others`.
-/// Records them in closing order.
+/// Closes the rows of one loop: `points` rows at `lane` that share a unit and have that scale at
+/// least, then `others`. Records them in closing order.
 template <class S, int Rows, int Columns, class Weight>
-void close_loop(Front<S, Rows, Columns>& front, int lane, int points, int others, double fade,
-                ClosedRow<S, Rows, Columns>* records, Weight&& weight) {
+void close_loop(Front<S, Rows, Columns>& front, int lane, int points, int others,
+                double least_scale, double fade, ClosedRow<S, Rows, Columns>* records,
+                Weight&& weight) {
   const int rows = points + others;
   S tau[6];
   double unit[6];
@@ -227,7 +228,7 @@ void close_loop(Front<S, Rows, Columns>& front, int lane, int points, int others
     const int end = first < points ? points : rows;
     S sum(0.0);
     for (int i = first; i < end; ++i) sum += front.scale[lane + i];
-    sum = sum * (1.0 / (end - first));
+    sum = sum * (1.0 / (end - first)) + S(first < points ? least_scale : 0.0);
     for (int i = first; i < end; ++i) {
       tau[i] = sum * fade;
       unit[i] = size_of(sum);

@@ -71,7 +71,7 @@ void LoopSweeps<Planar, S, Rows, Momentum>::close_any(int loop, Open& open, doub
   const int points = l.first_rows();
   open.blocks.begin(false, ~all);
   if (compliance_) soften(open.blocks, plan_->lane[at], l.rows, compliance_ + l.row);
-  close_loop(open.blocks, plan_->lane[at], points, l.rows - points, fade,
+  close_loop(open.blocks, plan_->lane[at], points, l.rows - points, l.least_scale, fade,
              &rows_[static_cast<std::size_t>(l.row)], PlanarWeight<S>{open.cargo});
 }
 

@@ -103,8 +103,9 @@ void LoopSweeps<Spatial, S, Rows, Momentum>::close(int loop, Carried& a, double 
   a.blocks.begin(false, ~all);
   if (compliance_)
     soften(a.blocks, plan_->lane[static_cast<std::size_t>(loop)], l.rows, compliance_ + l.row);
-  close_loop(a.blocks, plan_->lane[static_cast<std::size_t>(loop)], points, l.rows - points, fade,
-             &rows_[static_cast<std::size_t>(l.row)], SpatialWeight<S, Cargo<S>>{a.cargo});
+  close_loop(a.blocks, plan_->lane[static_cast<std::size_t>(loop)], points, l.rows - points,
+             l.least_scale, fade, &rows_[static_cast<std::size_t>(l.row)],
+             SpatialWeight<S, Cargo<S>>{a.cargo});
 }
 
 template <class S, int Rows, bool Momentum>

@@ -9,6 +9,7 @@
 #include <momenta/dae/assembly.h>
 
 #include <filesystem>
+#include <numbers>
 
 namespace momenta {
 namespace {
@@ -142,6 +143,70 @@ TEST(Assembly, HeldRatesThatTearALoopAreSaid) {
   const std::string what = complaint(scene);
   EXPECT_NE(what.find("loop 'B'"), std::string::npos) << what;
   EXPECT_NE(what.find("rates that the loops allow"), std::string::npos) << what;
+}
+
+// A crank-rocker with the crank held: from any guess of the others its two assemblies are mirror
+// images about the line from the crank's tip to C. The guess's own is taken.
+TEST(Assembly, KeepsToTheBranchOfTheGuess) {
+  Scene scene = example("four_bar");
+  const Assembly open = assemble(Mechanism(scene));
+  int kept = 0, told = 0;
+  for (int i = 0; i < 24; ++i)
+    for (int j = 0; j < 24; ++j) {
+      Scene s = scene;
+      s.joints[1].position = {open.start.q[1] + 0.26 * (i - 11.5)};
+      s.joints[2].position = {open.start.q[2] + 0.26 * (j - 11.5)};
+      const Mechanism mechanism(s);
+      const Assembly a = assemble(mechanism);
+      expect_consistent(mechanism, a);
+      const double near = std::max(std::abs(s.joints[1].position[0] - open.start.q[1]),
+                                   std::abs(s.joints[2].position[0] - open.start.q[2]));
+      const bool here = (a.start.q - open.start.q).cwiseAbs().maxCoeff() < 1e-9;
+      if (near < 0.8) {
+        EXPECT_TRUE(here) << i << " " << j << ": " << a.branch;
+      }
+      kept += here;
+      told += !a.branch.empty();
+    }
+  EXPECT_GT(kept, 24 * 24 / 3);
+  EXPECT_GT(told, 0);
+  RecordProperty("kept", kept);
+  RecordProperty("told", told);
+}
+
+// From anywhere: it closes, or says which loops stay open; never anything else.
+TEST(Assembly, ClosesFromAnywhereOrSaysWhatStaysOpen) {
+  int closed = 0, refused = 0;
+  for (const char* name : {"four_bar", "andrews", "slider_crank", "spatial_slider_crank", "bricard",
+                           "driven", "n_four_bar"}) {
+    const Scene scene = example(name);
+    RandomTree random(7);
+    const int tries = std::string(name) == "n_four_bar" ? 4 : 40;
+    for (int i = 0; i < tries; ++i) {
+      Scene s = scene;
+      const double length = length_of(s);
+      for (JointSpec& joint : s.joints)
+        for (double& x : joint.position) {
+          const double unit = joint.kind == JointKind::prismatic ? length : std::numbers::pi;
+          x = random.uniform(-unit, unit);
+        }
+      try {
+        const Mechanism mechanism(s);
+        const Assembly a = assemble(mechanism);
+        EXPECT_LT(a.position_residual, 1e-12 * length) << name;
+        EXPECT_TRUE(a.start.q.allFinite() && a.start.lambda.allFinite());
+        ++closed;
+      } catch (const SceneError& e) {
+        const std::string what = e.what();
+        EXPECT_NE(what.find("stays open by"), std::string::npos) << name << ": " << what;
+        EXPECT_NE(what.find("free rates"), std::string::npos) << name << ": " << what;
+        ++refused;
+      }
+    }
+  }
+  RecordProperty("closed", closed);
+  RecordProperty("refused", refused);
+  EXPECT_GT(closed, 100);
 }
 
 TEST(Assembly, WithoutLoopsTheGuessStays) {

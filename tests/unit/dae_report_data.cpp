@@ -30,7 +30,7 @@ TEST(SummaryJson, HasThePublicKeys) {
                  "least_pivot", "passages"};
   std::sort(expected.begin(), expected.end());
   EXPECT_EQ(keys(json), expected);
-  EXPECT_EQ(keys(json["counters"]), (Names{"evaluations", "factorizations", "jacobians",
+  EXPECT_EQ(keys(json["counters"]), (Names{"detours", "evaluations", "factorizations", "jacobians",
                                            "newton_iterations", "rejected", "steps"}));
   EXPECT_EQ(keys(json["time"]), (Names{"cpu_s", "repeats", "wall_s"}));
   EXPECT_EQ(keys(json["drift"]), (Names{"between_steps_max", "position_exponent", "position_max",

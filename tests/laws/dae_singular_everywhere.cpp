@@ -1,0 +1,201 @@
+// Singular poses passed by every solver of (7), every method and at every tolerance, in turned and
+// tilted scenes; each bound holds for the worst of them.
+
+#include "equations/linkages.h"
+
+#include <gtest/gtest.h>
+#include <momenta/core/scene/read_scene.h>
+#include <momenta/dae/assembly.h>
+#include <momenta/dae/study/extremes.h>
+#include <momenta/dae/study/run_form.h>
+
+#include <filesystem>
+#include <numbers>
+
+namespace momenta {
+namespace {
+
+constexpr double end_of_runs = 10;  // [s]
+
+Scene example(const std::string& name) {
+  return read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples" / name / "scene.toml");
+}
+/// In the plane as it is, turned in it, tilted out of it.
+Scene posed(const Scene& scene, int pose) {
+  const Eigen::Vector3d axis = pose == 1 ? Eigen::Vector3d(0, 0, 1) : Eigen::Vector3d(1, 2, 3);
+  return pose == 0 ? scene
+                   : turned(scene, Eigen::Quaterniond(Eigen::AngleAxisd(0.7, axis.normalized())));
+}
+
+struct Case {
+  Scene scene;
+  double exact;  ///< first coordinate at the end
+};
+/// θ of θ'' = −λ cos θ: the wanted motion of a row of N four-bars; by Nyström's method of order 5.
+Case row(int n) {
+  const long double lambda = 9.81L * 3 * (3 * n + 1) / (2 * (4 * n + 1)), h = 1e-3L;
+  long double x = std::numbers::pi / 2, v = -1;
+  const auto f = [&](long double at) { return -lambda * std::cos(at); };
+  for (int i = 0; i < 10000; ++i) {
+    const long double k1 = f(x), k2 = f(x + h * v / 5 + h * h * k1 / 50),
+                      k3 = f(x + 2 * h * v / 3 + h * h * (-k1 / 27 + 7 * k2 / 27)),
+                      k4 = f(x + h * v + h * h * (3 * k1 / 10 - 2 * k2 / 35 + 9 * k3 / 35));
+    x += h * v + h * h * (14 * k1 + 100 * k2 + 54 * k3) / 336;
+    v += h * (14 * k1 + 125 * k2 + 162 * k3 + 35 * k4) / 336;
+  }
+  return {equations::row_of_four_bars(n, std::numbers::pi / 2, -1), static_cast<double>(x)};
+}
+Case bifurcation() {
+  return {example("slider_crank"), 20.4724231148819971};  // the last line of its reference.csv
+}
+
+RunResult run(const Mechanism& mechanism, const std::string& form, const std::string& integrator,
+              double tolerance) {
+  RunRequest request;
+  RunSettings& s = request.settings;
+  s.form = form;
+  s.integrator = integrator;
+  const bool is_dae = is_dae_form(form);
+  s.gauge = is_dae ? "leak:3" : "reset";
+  s.project = !is_dae && form == "momentum";
+  s.rtol = s.atol = tolerance;
+  s.end_time = end_of_runs;
+  s.samples = 50;
+  request.keep_trajectory = true;
+  request.max_cpu_seconds = 60;
+  return run_form(mechanism, assemble(mechanism).start, request);
+}
+double error_of(const RunResult& run, double exact) {
+  EXPECT_EQ(run.status, "done") << run.reason;
+  return run.status == "done" ? std::abs(run.trajectory.rows.back()[1] - exact) : HUGE_VAL;
+}
+
+TEST(SingularEverywhere, ExplicitMethodsWithEverySolver) {
+  for (const Case& c : {row(1), row(2), bifurcation()})
+    for (int pose = 0; pose < 3; ++pose)
+      for (const KktChoice kkt : {KktChoice::sweeps, KktChoice::sparse, KktChoice::dense}) {
+        const Mechanism mechanism(posed(c.scene, pose), {Algebra::automatic, kkt});
+        for (double tolerance = 1e-4; tolerance > 5e-11; tolerance /= 10) {
+          const RunResult r = run(mechanism, "momentum", "dop853", tolerance);
+          EXPECT_LT(error_of(r, c.exact), 500 * tolerance)
+              << c.scene.name << ", pose " << pose << ", " << name_of(kkt) << ", " << tolerance;
+          EXPECT_FALSE(r.passages.empty());
+          for (const auto& passage : r.passages) EXPECT_FALSE(passage.ambiguous);
+        }
+      }
+}
+
+TEST(SingularEverywhere, FortyCells) {
+  const Case c = row(40);
+  for (const int pose : {0, 2})
+    for (const KktChoice kkt : {KktChoice::sweeps, KktChoice::sparse}) {
+      const Mechanism mechanism(posed(c.scene, pose), {Algebra::automatic, kkt});
+      for (const double tolerance : {1e-4, 1e-6, 1e-8, 1e-10})
+        EXPECT_LT(error_of(run(mechanism, "momentum", "dop853", tolerance), c.exact),
+                  500 * tolerance)
+            << name_of(kkt) << ", pose " << pose << ", " << tolerance;
+      for (const char* form : {"momentum-index2", "stabilised-index2"})
+        for (const double tolerance : {1e-6, 1e-10})
+          EXPECT_LT(error_of(run(mechanism, form, "ida", tolerance), c.exact), 3e4 * tolerance)
+              << form << ", " << name_of(kkt) << ", pose " << pose << ", " << tolerance;
+    }
+}
+
+TEST(SingularEverywhere, ImplicitMethodsMakeADetour) {
+  for (const Case& c : {row(1), row(2), bifurcation()})
+    for (const int pose : {0, 2}) {
+      const Mechanism mechanism(posed(c.scene, pose));
+      for (const char* form : {"momentum-index2", "momentum-stabilised", "stabilised-index2"})
+        for (const char* method : {"ida", "radau5"})
+          for (double tolerance = 1e-4; tolerance > 5e-11; tolerance /= 100) {
+            const RunResult r = run(mechanism, form, method, tolerance);
+            // IDA's own error: 1e4 tolerances and more in ten seconds, as in regular motions.
+            EXPECT_LT(error_of(r, c.exact), std::min(0.5, 3e4 * tolerance))
+                << form << " " << method << ", pose " << pose << ", " << tolerance;
+            EXPECT_GT(r.counters.detours, 0);
+            EXPECT_LT(r.counters.detours, r.counters.steps);
+          }
+      for (const char* method : {"ida", "hem5"})
+        for (const double tolerance : {1e-6, 1e-8}) {
+          const RunResult r = run(mechanism, "acceleration-index2", method, tolerance);
+          EXPECT_LT(error_of(r, c.exact), 3e4 * tolerance) << method << ", pose " << pose;
+        }
+    }
+}
+
+// Where no pose is singular nothing is different.
+TEST(SingularEverywhere, NoDetourWithoutNeed) {
+  const Mechanism mechanism(example("four_bar"));
+  const RunResult r = run(mechanism, "momentum-index2", "ida", 1e-8);
+  EXPECT_EQ(r.status, "done") << r.reason;
+  EXPECT_EQ(r.counters.detours, 0);
+  EXPECT_TRUE(r.passages.empty());
+}
+
+TEST(SingularEverywhere, SamplesWithinADetourLieOnTheMotion) {
+  const Case c = bifurcation();
+  const Mechanism mechanism(c.scene);
+  RunRequest request;
+  request.settings.form = "momentum-index2";
+  request.settings.integrator = "ida";
+  request.settings.gauge = "leak:3";
+  request.settings.rtol = request.settings.atol = 1e-9;
+  request.settings.end_time = 1.2;  // the first pose is at 1.02 s
+  request.settings.samples = 600;
+  request.keep_trajectory = true;
+  const Start start = assemble(mechanism).start;
+  const RunResult implicit = run_form(mechanism, start, request);
+  request.settings.form = "momentum";
+  request.settings.integrator = "dop853";
+  request.settings.gauge = "reset";
+  request.settings.project = true;
+  request.settings.rtol = request.settings.atol = 1e-12;
+  const RunResult exact = run_form(mechanism, start, request);
+  ASSERT_EQ(implicit.status, "done") << implicit.reason;
+  ASSERT_EQ(exact.status, "done") << exact.reason;
+  EXPECT_GT(implicit.counters.detours, 0);
+  ASSERT_EQ(implicit.trajectory.rows.size(), exact.trajectory.rows.size());
+  double worst = 0;
+  for (std::size_t i = 0; i < exact.trajectory.rows.size(); ++i)
+    for (int k = 0; k < mechanism.nq() + mechanism.nv(); ++k) {
+      const auto column = static_cast<std::size_t>(1 + k);
+      worst = std::max(
+          worst, std::abs(implicit.trajectory.rows[i][column] - exact.trajectory.rows[i][column]));
+    }
+  EXPECT_LT(worst, 1e-5);
+}
+
+// Tolerances at which rounding near the pose is larger than what is asked for.
+TEST(SingularEverywhere, RoundingShortensNoStep) {
+  for (const Case& c : {row(1), row(2), bifurcation()})
+    for (int pose = 0; pose < 3; ++pose) {
+      const Mechanism mechanism(posed(c.scene, pose));
+      for (const char* method : {"dop853", "vern9"})
+        for (const double tolerance : {1e-12, 3e-13, 1e-13}) {
+          const RunResult r = run(mechanism, "momentum", method, tolerance);
+          EXPECT_LT(error_of(r, c.exact), 5e-9) << method << ", pose " << pose;
+          EXPECT_LT(r.counters.steps, 2000) << method << ", pose " << pose << ", " << tolerance;
+        }
+    }
+}
+
+// Forms whose loops open may lose the branch, and then say where.
+TEST(SingularEverywhere, WhoLosesTheBranchSaysSo) {
+  int lost = 0;
+  for (const Case& c : {row(1), row(2), bifurcation()})
+    for (const char* form : {"acceleration", "baumgarte"}) {
+      const Mechanism mechanism(c.scene);
+      for (const double tolerance : {1e-6, 1e-8}) {
+        const RunResult r = run(mechanism, form, "dop853", tolerance);
+        if (r.status != "done" || error_of(r, c.exact) < 0.01) continue;
+        ++lost;
+        const bool told = std::any_of(r.passages.begin(), r.passages.end(),
+                                      [](const auto& p) { return p.ambiguous; });
+        EXPECT_TRUE(told) << form << " on " << c.scene.name << " at " << tolerance;
+      }
+    }
+  EXPECT_GT(lost, 0);
+}
+
+}  // namespace
+}  // namespace momenta
