@@ -1,4 +1,5 @@
 #include <momenta/dae/form/half_explicit_parts.h>
+#include <momenta/dae/kkt/kkt.h>
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -37,6 +38,24 @@ void HalfExplicitParts::normalise(double* y) {
     if (b.nq < 4) continue;
     Eigen::Map<Eigen::Vector4d>(y + b.q + (b.nq - 4)).normalize();
   }
+}
+
+std::string HalfExplicitParts::dependent(double t, const double* y) {
+  constexpr double weak = 1e-3;        // pivots fade at ten times this, of their group's mean
+  constexpr int most_equations = 600;  // the matrix is dense
+  if (system_.m() == 0 || system_.m() > most_equations) return "";
+  Work& w = work();
+  const auto kkt = make_dense_kkt(system_);
+  w.e->place(t, y);
+  if (!kkt->factor(*w.e, weak) || kkt->faded() == 0) return "";
+  const RowName& first = system_.rows()[static_cast<std::size_t>(kkt->faded_rows().front())];
+  const int others = kkt->faded() - 1;
+  return "loop '" + first.loop + "' (" + first.what + ")" +
+         (others > 0 ? " and " + std::to_string(others) + " more of the " +
+                           std::to_string(system_.m()) + " equations depend"
+                     : std::string(" depends")) +
+         " on the other equations there, or nearly so, and half-explicit stages need them "
+         "independent";
 }
 
 }  // namespace momenta

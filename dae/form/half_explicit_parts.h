@@ -20,6 +20,7 @@ class HalfExplicitParts : public HalfExplicit {
   int differential_unknowns() const override { return system_.nq() + system_.nv(); }
   int multipliers() const override { return system_.m(); }
   void normalise(double* y) override;
+  std::string dependent(double t, const double* y) override;
   const std::string& half_explicit_failure() const override { return why_; }
 
  protected:
