@@ -59,7 +59,8 @@ class MaximalSolver final : public LoopSolver {
       auto f = body.T;
       f -= Space::momentum(w_.inertia(k), body.A);
       f -= Space::velocity_wrench(w_.inertia(k), body.V);
-      f_[k] = Tree::column(f);
+      f_[k] = {};
+      Tree::add(f, f_[k]);
     }
     if (model_.has_joint_forces)
       for (std::size_t k = 0; k < n_; ++k)
@@ -143,7 +144,7 @@ class MaximalSolver final : public LoopSolver {
     LoopColumn column;
     for (std::size_t k = 0; k < n_; ++k)
       if (on_way[k]) column.bodies.push_back(k);
-    column.h.assign(n_, Tree::Column::Zero());
+    column.h.assign(n_, {});
     return column;
   }
 
@@ -172,7 +173,7 @@ class MaximalSolver final : public LoopSolver {
   }
   static double inner(const std::vector<std::size_t>& bodies, const Columns& a, const Columns& b) {
     double sum = 0;
-    for (const std::size_t k : bodies) sum += a[k].dot(b[k]);
+    for (const std::size_t k : bodies) sum += Tree::inner(a[k], b[k]);
     return sum;
   }
   /// What is natural for rows of axes, at the first configuration.
@@ -186,11 +187,11 @@ class MaximalSolver final : public LoopSolver {
 
   void place_column(std::size_t loop, int row, LoopColumn& column) {
     const auto& l = loop_model_.loops[loop];
-    for (const std::size_t k : column.bodies) f_[k].setZero();
+    for (const std::size_t k : column.bodies) f_[k] = {};
     typename Space::template Force<double> on_a{}, on_b{};
     rows_.unit_wrench(loop, row, on_a, on_b);
-    if (l.a >= 0) f_[static_cast<std::size_t>(l.a)] += Tree::column(on_a);
-    if (l.b >= 0) f_[static_cast<std::size_t>(l.b)] += Tree::column(on_b);
+    if (l.a >= 0) Tree::add(on_a, f_[static_cast<std::size_t>(l.a)]);
+    if (l.b >= 0) Tree::add(on_b, f_[static_cast<std::size_t>(l.b)]);
     for (const auto& coupled : l.joints)
       tree_.add_torque(static_cast<std::size_t>(coupled.body), coupled.ratio, f_.data());
     for (std::size_t i = column.bodies.size(); i-- > 0;)
@@ -198,7 +199,7 @@ class MaximalSolver final : public LoopSolver {
   }
 
   bool solve_torques(const double* centre, double* u, double* sigma) {
-    for (auto& f : f_) f.setZero();
+    for (auto& f : f_) f = {};
     for (std::size_t k = 0; k < n_; ++k)
       if (model_.bodies[k].nv > 0)
         tree_.add_torques(k, torque_.data() + model_.bodies[k].u, f_.data());
@@ -224,7 +225,8 @@ class MaximalSolver final : public LoopSolver {
   }
   void take(const double* s) {
     for (std::size_t i = 0; i < columns_.size(); ++i)
-      for (const std::size_t k : columns_[i].bodies) h_[k] -= s[i] * columns_[i].h[k];
+      for (const std::size_t k : columns_[i].bodies)
+        for (std::size_t r = 0; r < h_[k].size(); ++r) h_[k][r] -= s[i] * columns_[i].h[k][r];
   }
 
   const Mechanism& mechanism_;

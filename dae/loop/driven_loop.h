@@ -1,12 +1,6 @@
 #pragma once
 // One driven loop at one time: what its drives prescribe, and the rates of that relative to the
-// bodies, in their axes.
-//
-//   x_B = x_B0 + Σ f_k d_k,  v = Σ ḟ_k d_k,  a = Σ f̈_k d_k
-//   b_j = R₁(f₁) R₂(f₂) … b_j0;  with c_k = R₁ … R_{k−1} times the axis of R_k
-//   w = Σ ḟ_k c_k,  dw/dt = Σ (f̈_k c_k + w_{<k} × ḟ_k c_k)
-//   l or c = given + Σ factor_k f_k
-//
+// bodies, in their axes, by the formulas of loops_in_time.h; l or c = given + Σ factor_k f_k.
 // T is the scalar of time: double, or a series where the loop's equations are wanted as series in
 // t.
 

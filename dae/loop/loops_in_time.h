@@ -1,8 +1,13 @@
 #pragma once
 // The loops of a model at one time: points, axes, lengths and offsets where drives prescribe them,
 // and their rates relative to the bodies.
-// (driven_loop.h). Everything that follows, rows, impulses and rates N, is then as for points and
-// axes fixed in the bodies, with total velocities in place of the bodies'.
+//
+//   x_B = x_B0 + Σ f_k d_k,  v = Σ ḟ_k d_k,  a = Σ f̈_k d_k
+//   b_j = R₁(f₁) R₂(f₂) … b_j0;  with c_k = R₁ … R_{k−1} times the axis of R_k
+//   w = Σ ḟ_k c_k,  dw/dt = Σ (f̈_k c_k + w_{<k} × ḟ_k c_k)
+//
+// Everything that follows, rows, impulses and rates N, is then as for points and axes fixed in the
+// bodies, with total velocities in place of the bodies'.
 
 #include <momenta/core/scalar/pack.h>
 #include <momenta/dae/loop/loop_model.h>

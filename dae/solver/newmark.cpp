@@ -165,9 +165,13 @@ bool Newmark::solve(double t, double h, State& next, Factored& matrix, Counters&
       if (size <= norm_.rounding() ||
           (count > 1 && ratio < 0.9 && size * ratio / (1 - ratio) <= newton_fraction)) {
         place(h, next);
-        const bool good = !rule_.augmented || project(t + h, next, *matrix.matrix);
+        // An earlier step's matrix would do for Newton's method; projections along its directions
+        // would err by its age, and cost an order.
+        if (rule_.augmented)
+          return differentiate(t, h, next, matrix, counters) &&
+                 project(t + h, next, *matrix.matrix);
         if (ratio > fast_enough) matrix.step = 0;
-        return good;
+        return true;
       }
       if (count > 3 && ratio > (fresh ? 0.9 : fast_enough)) break;
     }
@@ -263,8 +267,8 @@ bool Newmark::correct(double t, double h, State& next, NewtonMatrix<double>& mat
 }
 
 /// v onto Φ̇ = 0, then v̇ onto Φ̈ = 0. A right-hand side b of the scaled matrix in the rows of Φ alone
-/// has a solution with Φ_q w = b in w = (β/γ) times its part of v. Repeated, since the matrix may
-/// be an earlier step's and the penalty leaves a part in 1/penalty, until it is rounding.
+/// has a solution with Φ_q w = b in w = (β/γ) times its part of v. Repeated
+/// until it is rounding, since the penalty leaves a part in 1/penalty.
 bool Newmark::project(double t, State& next, NewtonMatrix<double>& matrix) {
   const double *q = next.y.data(), factor = rule_.beta / rule_.gamma;
   double *v = next.y.data() + nq_, *vdot = next.ydot.data() + nq_;

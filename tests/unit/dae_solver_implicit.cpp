@@ -1,5 +1,5 @@
-// The registry of integrators; limits, stops, failures and bookkeeping of radau5, gauss and
-// generalised-alpha; matrices dense and sparse.
+// The registry of integrators; limits, stops, failures and bookkeeping of radau5, gauss,
+// generalised-alpha and bayo-ledesma; matrices dense and sparse.
 
 #include <gtest/gtest.h>
 #include <momenta/core/scene/read_scene.h>
@@ -86,6 +86,9 @@ TEST(Integrators, RefuseWhatDoesNotFitWithASentence) {
   EXPECT_TRUE(says(with("acceleration-index2", "generalised-alpha", "none", false, 0.01),
                    "acceleration-index3"));
   EXPECT_TRUE(says(with("acceleration-index3", "generalised-alpha"), "step"));
+  EXPECT_TRUE(says(with("acceleration-index2", "bayo-ledesma", "none", false, 0.01),
+                   "acceleration-index3"));
+  EXPECT_TRUE(says(with("acceleration-index3", "bayo-ledesma"), "step"));
   EXPECT_TRUE(says(with("momentum", "adams", "none", true), "history"));
   EXPECT_TRUE(says(with("momentum", "bdf", "reset"), "multistep"));
   EXPECT_TRUE(says(with("momentum", "bdf", "flip"), "history"));
@@ -415,12 +418,6 @@ TEST(BayoLedesma, PassesRedundantLoopsAndAnyPenalty) {
     }
     before = end.q;
   }
-}
-
-TEST(BayoLedesma, SaysWhatItTakes) {
-  EXPECT_TRUE(says(with("acceleration-index2", "bayo-ledesma", "none", false, 0.01),
-                   "acceleration-index3"));
-  EXPECT_TRUE(says(with("acceleration-index3", "bayo-ledesma"), "step"));
 }
 
 TEST(Rattle, KeepsBothConstraintsEverywhere) {
