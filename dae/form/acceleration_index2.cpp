@@ -71,7 +71,11 @@ class AccelerationIndex2 final : public DaeFormOf<AccelerationIndex2>, public Ha
   }
 
  protected:
-  std::vector<double> compliance() const override { return regularisation(); }
+  std::vector<double> compliance() const override {
+    std::vector<double> c = regularisation();
+    for (double& epsilon : c) epsilon *= 1e3;
+    return c;
+  }
 };
 
 }  // namespace

@@ -39,6 +39,10 @@ class AccelerationIndex3 final : public DaeFormOf<AccelerationIndex3>, public Se
   void move(const double* q, const double* delta, double* moved) override {
     motion_.move(*e_, q, delta, moved);
   }
+  void constraints(double t, const double* q, double* phi) override {
+    e_->place(t, q);
+    e_->positions(phi);
+  }
   void constraint_rates(double t, const double* q, const double* v, double* rate) override {
     e_->place(t, q);
     e_->move(v);

@@ -172,6 +172,7 @@ class MaximalTree {
       if (j.light) stiffen<s>(j, stiffened);
       if (!small::cholesky(j.L, j.light ? 1e-13 : 0)) return false;
       if constexpr (s > 0) {
+        // the joint: Y = L⁻¹Sᵀ, YᵀY = R Rᵀ
         double Y[d][s] = {}, R[s][s];
         const bool slanted = j.moved < d;
         for (int i = 0; i < s; ++i) {
@@ -186,6 +187,7 @@ class MaximalTree {
             R[i][l] = sum;
           }
         if (!small::cholesky(R, 0)) return false;
+        // what solutions need of it: B = R⁻¹Yᵀ, T = R⁻¹S
         for (int i = 0; i < s; ++i)
           for (int r = 0; r < d; ++r) j.B[i][r] = Y[r][i], j.T[i][r] = 0;
         small::forward(R, j.B);
@@ -198,6 +200,7 @@ class MaximalTree {
             if (slanted) j.T[i][j.moved] += inverse[i][l] * j.slant[l];
           }
         if (b.parent < 0) return true;
+        // what the parent gets: TᵀT, less Σ
         double left[d][d];
         for (int a = 0; a < d; ++a)
           for (int c = 0; c < d; ++c) {

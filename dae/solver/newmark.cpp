@@ -255,6 +255,8 @@ bool Newmark::correct(double t, double h, State& next, NewtonMatrix<double>& mat
   ++counters.evaluations;
   if (!system_.residual(t + h, next.y.data(), next.ydot.data(), residual_.data()))
     return evaluation_failed();
+  // Redundant loops need nothing beside the penalty: Φ itself, without ε λ.
+  if (rule_.augmented) order_.constraints(t + h, next.y.data(), residual_.data() + nq_ + nv_);
   for (std::size_t row = 0; row < n_; ++row)
     residual_[row] = row < nq_ ? 0 : -row_scale(row, h) * residual_[row];
   matrix.solve(residual_.data());

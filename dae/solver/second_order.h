@@ -20,7 +20,8 @@ class SecondOrder {
   virtual void move(const double* q, const double* delta, double* moved) = 0;
 
   // For projections and penalties:
-  /// Φ̇ (m) of v, and Φ̈ of v and v̇, at (t, q).
+  /// Φ (m) at (t, q), Φ̇ of v, and Φ̈ of v and v̇.
+  virtual void constraints(double t, const double* q, double* phi) = 0;
   virtual void constraint_rates(double t, const double* q, const double* v, double* rate) = 0;
   virtual void constraint_accelerations(double t, const double* q, const double* v,
                                         const double* vdot, double* rate) = 0;

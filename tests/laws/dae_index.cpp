@@ -212,7 +212,8 @@ Scene driven_pendulum() {
 }
 
 TEST(Index, DrivenLoopsKeepTheirs) {
-  for (const Scene& scene : {driven_pendulum(), scene_of("driven/scene.toml")}) {
+  for (const Scene& scene :
+       {driven_pendulum(), scene_of("driven/scene.toml"), scene_of("driven/swing.toml")}) {
     const Mechanism mechanism(scene);
     ASSERT_TRUE(mechanism.plan().drives);
     expect_promised(mechanism, assemble(mechanism).start, least_gap);
