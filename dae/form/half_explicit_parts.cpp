@@ -16,8 +16,16 @@ HalfExplicitParts::Work::Work(const Mechanism& mechanism, std::vector<double> co
   for (auto* v : {&g, &correction, &centre}) v->resize(m);
 }
 
+/// Off the manifold redundant equations contradict each other by the square of the distance, which
+/// divided by ε is λ or σ: a larger ε than Newton matrices have. What it costs goes with the change
+/// of the multiplier from stage to stage.
 HalfExplicitParts::Work& HalfExplicitParts::work() {
-  if (!work_) work_ = std::make_shared<Work>(system_, compliance());
+  constexpr double softer = 1e3;
+  if (!work_) {
+    std::vector<double> compliance = newton_regularisation();
+    for (double& epsilon : compliance) epsilon *= softer;
+    work_ = std::make_shared<Work>(system_, std::move(compliance));
+  }
   return *work_;
 }
 

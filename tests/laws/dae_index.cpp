@@ -10,6 +10,7 @@
 #include <momenta/core/scene/read_scene.h>
 #include <momenta/dae/assembly.h>
 #include <momenta/dae/form/dae_form.h>
+#include <momenta/dae/kkt/kkt.h>
 #include <momenta/dae/study/index_study.h>
 #include <momenta/dae/study/run_form.h>
 
@@ -272,10 +273,17 @@ TEST(Index, SeriesOfTheEquationsAreTheirDerivativesInTime) {
     }
     scenes.push_back(scene);
   }
+  int tried = 0;
   for (const Scene& scene : scenes) {
     const Mechanism mechanism(scene);
     Start start{0, mechanism.tree().q0, mechanism.tree().u0, Eigen::VectorXd::Zero(mechanism.nv()),
                 Eigen::VectorXd::Zero(mechanism.m())};
+    // The residual of redundant loops is regularised, their series are not.
+    const auto e = mechanism.evaluation<double>();
+    const auto kkt = make_dense_kkt(mechanism);
+    e->place(start.t, start.q.data());
+    if (!kkt->factor(*e, fade_evaluation) || kkt->faded() > 0) continue;
+    ++tried;
     for (const auto& name : form_names()) {
       if (!is_dae_form(name)) continue;
       SCOPED_TRACE(scene.name + ", " + name);
@@ -292,7 +300,7 @@ TEST(Index, SeriesOfTheEquationsAreTheirDerivativesInTime) {
           y[i].a.c[k] = value;
           if (k > 0) ydot[i].a.c[k - 1] = static_cast<double>(k) * value;
         }
-      const double t0 = 0.2;
+      const double t0 = 0.25;  // not at the knot of a table
       dae.along(t0, y.data(), ydot.data(), r.data());
       // Five-point differences, error O(h⁴).
       const double h = 1e-3;
@@ -311,6 +319,7 @@ TEST(Index, SeriesOfTheEquationsAreTheirDerivativesInTime) {
       }
     }
   }
+  EXPECT_GE(tried, 9);
 }
 
 }  // namespace
