@@ -262,10 +262,10 @@ TEST(Index, SeriesOfTheEquationsAreTheirDerivativesInTime) {
   std::uniform_real_distribution<double> any(-0.5, 0.5);
   // Loops of every kind driven in every way.
   std::vector<Scene> scenes{scene_of("andrews/scene.toml"), platform(3), driven, driven_pendulum()};
-  for (unsigned seed = 0; seed < 9; ++seed) {
+  for (unsigned seed = 0; seed < 36; ++seed) {
     RandomTree tree(seed);
-    Scene scene = tree.scene({.bodies = 3});
-    scene.loops.push_back(random_loop(tree, scene, loop_kinds[seed]));
+    Scene scene = tree.scene({.bodies = 4});
+    scene.loops.push_back(random_loop(tree, scene, loop_kinds[seed % loop_kinds.size()]));
     drive_loop(tree, scene, scene.loops.back(), 7, 7);
     if (const auto coupler = random_coupler(tree, scene)) {
       scene.loops.push_back(*coupler);
