@@ -60,7 +60,8 @@ bool MomentumForm::after_step(double t, double* y, bool& changed) {
   if (has_loops() && gauge_.kind == Gauge::Kind::reset) {
     if (!solve(t, q, p, nullptr)) return false;
     e_->place(t, q);
-    // p − Φ_qᵀσ and not M u, its equal: one rounding of p instead of those of the way to u and back.
+    // p − Φ_qᵀσ and not M u, its equal: one rounding of p instead of those of the way to u and
+    // back.
     e_->constraint_forces(multipliers_.data(), work_.data());
     for (std::size_t i = 0; i < work_.size(); ++i) p[i] -= work_[i];
     e_->move(u_.data());

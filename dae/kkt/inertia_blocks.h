@@ -6,12 +6,12 @@
 
 namespace momenta {
 
-inline void full(const Planar::ArticulatedInertia<double>& m, double (&all)[3][3]) {
+inline void expand(const Planar::ArticulatedInertia<double>& m, double (&all)[3][3]) {
   all[0][0] = m.xx, all[0][1] = m.xy, all[0][2] = m.H[0];
   all[1][0] = m.xy, all[1][1] = m.yy, all[1][2] = m.H[1];
   all[2][0] = m.H[0], all[2][1] = m.H[1], all[2][2] = m.I;
 }
-inline void full(const Spatial::ArticulatedInertia<double>& m, double (&all)[6][6]) {
+inline void expand(const Spatial::ArticulatedInertia<double>& m, double (&all)[6][6]) {
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) {
       all[i][j] = m.A(i, j);
@@ -22,11 +22,11 @@ inline void full(const Spatial::ArticulatedInertia<double>& m, double (&all)[6][
 
 /// From a symmetric matrix.
 template <class Inertia>
-Inertia from_full(const double (&all)[3][3]) {
+Inertia compress(const double (&all)[3][3]) {
   return {all[0][0], all[0][1], all[1][1], {{all[0][2], all[1][2]}}, all[2][2]};
 }
 template <class Inertia>
-Inertia from_full(const double (&all)[6][6]) {
+Inertia compress(const double (&all)[6][6]) {
   Inertia m;
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) {

@@ -43,7 +43,7 @@ class MaximalTree {
       Inertia own{};
       Space::add(own, w.model->bodies[k].inertia);
       double all[d][d];
-      full(own, all);
+      expand(own, all);
       joint_[k].light = !small::cholesky(all, 1e-12);
     }
   }
@@ -167,7 +167,7 @@ class MaximalTree {
       if (b.parent >= 0) hand_on(k, j.A);
       return true;
     } else {
-      full(j.A, j.L);
+      expand(j.A, j.L);
       double stiffened[d] = {};
       if (j.light) stiffen<s>(j, stiffened);
       if (!small::cholesky(j.L, j.light ? 1e-13 : 0)) return false;
@@ -209,7 +209,7 @@ class MaximalTree {
             left[a][c] = sum;
           }
         if (j.light) add_held<s>(j, stiffened, -1, left);
-        hand_on(k, from_full<Inertia>(left));
+        hand_on(k, compress<Inertia>(left));
       }
       return true;
     }
