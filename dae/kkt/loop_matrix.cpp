@@ -42,6 +42,7 @@ bool LoopMatrix::eliminate(double fade, const double* natural, const double* com
     if (!std::isfinite(tau_[idx(i)])) return false;
   }
   faded_rows_.clear();
+  weakest_ = 1;
   for (int k = 0; k < m_; ++k) {
     int best = k;
     for (int i = k + 1; i < m_; ++i)
@@ -50,7 +51,10 @@ bool LoopMatrix::eliminate(double fade, const double* natural, const double* com
     const int row = order_[idx(k)];
     const double d = at(row, row), tau = compliance ? 0 : tau_[idx(row)];
     inverse_[idx(k)] = d > 0 ? inverse_faded(d, tau) : 0;
-    if (!(d > 10 * tau)) faded_rows_.push_back(row);
+    if (!(d > 10 * tau))
+      faded_rows_.push_back(row);
+    else if (tau > 0)
+      weakest_ = std::min(weakest_, d * fade / tau);
     for (int i = k + 1; i < m_; ++i) {
       const int a = order_[idx(i)];
       const double l = at(a, row) * inverse_[idx(k)];

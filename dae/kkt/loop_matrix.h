@@ -26,6 +26,8 @@ class LoopMatrix {
   void solve(double* d, double* sigma) const;
   /// Rows whose pivots faded at the last eliminate().
   const std::vector<int>& faded_rows() const { return faded_rows_; }
+  /// The weakest pivot that did not fade, over the mean diagonal of its row's group; 1 at most.
+  double weakest() const { return weakest_; }
 
  private:
   std::size_t place(int i, int j) const {
@@ -38,6 +40,7 @@ class LoopMatrix {
   std::vector<double> w_;  ///< m × m, its columns as they stood when eliminated
   std::vector<double> inverse_, tau_, group_sum_;
   std::vector<int> order_, group_rows_, faded_rows_;
+  double weakest_ = 1;
 };
 
 }  // namespace momenta

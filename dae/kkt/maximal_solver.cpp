@@ -122,6 +122,9 @@ class MaximalSolver final : public LoopSolver {
   }
 
   const std::vector<int>& faded_rows() override { return loops_.faded_rows(); }
+  Pivots pivots() const override {
+    return {loops_.weakest(), static_cast<int>(loops_.faded_rows().size())};
+  }
 
  private:
   using Tree = MaximalTree<Space>;
