@@ -71,7 +71,7 @@ class AccelerationIndex2 final : public DaeFormOf<AccelerationIndex2>, public Ha
   }
 
  protected:
-  std::vector<double> compliance() const override { return regularisation(); }
+  const std::vector<double>& newton_regularisation() const override { return regularisation(); }
 };
 
 }  // namespace

@@ -11,6 +11,7 @@
 
 #include <momenta/dae/form/coordinate_motion.h>
 #include <momenta/dae/form/dae_form.h>
+#include <momenta/dae/form/penalty.h>
 #include <momenta/dae/solver/second_order.h>
 
 namespace momenta {
@@ -20,7 +21,9 @@ class AccelerationIndex3 final : public DaeFormOf<AccelerationIndex3>, public Se
  public:
   AccelerationIndex3(const Mechanism& mechanism, const FormOptions& options, const Start& start)
       : DaeFormOf("acceleration-index3", mechanism, {mechanism.nq(), mechanism.nv(), mechanism.m()},
-                  options, start, Unknowns::velocities) {}
+                  options, start, Unknowns::velocities),
+        penalty_(options.penalty),
+        start_(start) {}
 
   template <class S>
   void rows(DaeScratch<S>& s, double t, const S* y, const S* ydot, S* r) {
@@ -36,6 +39,26 @@ class AccelerationIndex3 final : public DaeFormOf<AccelerationIndex3>, public Se
   void move(const double* q, const double* delta, double* moved) override {
     motion_.move(*e_, q, delta, moved);
   }
+  void constraints(double t, const double* q, double* phi) override {
+    e_->place(t, q);
+    e_->positions(phi);
+  }
+  void constraint_rates(double t, const double* q, const double* v, double* rate) override {
+    e_->place(t, q);
+    e_->move(v);
+    e_->velocities(rate);
+  }
+  void constraint_accelerations(double t, const double* q, const double* v, const double* vdot,
+                                double* rate) override {
+    e_->place(t, q);
+    e_->move(v);
+    e_->joint_forces(q, v, vdot, nullptr, forces_.data());
+    e_->accelerations(rate);
+  }
+  const std::vector<double>& compliance() override {
+    if (compliance_.empty()) compliance_ = penalty_compliance(mechanism_, *e_, penalty_, start_);
+    return compliance_;
+  }
 
  protected:
   bool rate_is_tested() const override { return false; }  // BDF converges for v one order late
@@ -43,6 +66,10 @@ class AccelerationIndex3 final : public DaeFormOf<AccelerationIndex3>, public Se
  private:
   std::unique_ptr<Evaluation<double>> e_ = mechanism_.evaluation<double>();
   CoordinateMotion motion_{mechanism_};
+  double penalty_;
+  Start start_;
+  std::vector<double> compliance_,
+      forces_ = std::vector<double>(static_cast<std::size_t>(mechanism_.nv()));
 };
 
 }  // namespace

@@ -16,8 +16,7 @@
 // Settings      α = penalty / W, W of the start: penalty effective masses, 10⁷ unless given;
 //               ξω = ω = 1/T, T the mechanism's own time scale, where the literature takes ω = 10,
 //               ξ = 1 for motions of a second
-// Left out      the index-3 form with mass-orthogonal projections (Bayo, Ledesma, Nonlinear
-//               Dynamics 9, 1996): a trapezoidal rule of order 2 that belongs to no integrator here
+// Index 3       with mass-orthogonal projections: integrator `bayo-ledesma`
 // Source        Bayo, Avello, Nonlinear Dynamics 5 (1994); Bayo, García de Jalón, Serna, Comput.
 //               Methods Appl. Mech. Eng. 71 (1988).
 

@@ -34,6 +34,7 @@ const std::vector<Entry>& registry() {
       {"projected", Kind::ode_one_step, false, make_projected},
       {"partitioned", Kind::ode_one_step, false, make_partitioned},
       {"baumgarte", Kind::ode, false, make_baumgarte},
+      {"maximal-coordinates", Kind::ode, false, make_maximal_coordinates},
       {"augmented-lagrangian", Kind::ode, false, make_augmented_lagrangian},
       {"acceleration-index1", Kind::dae, false, make_acceleration_index1},
       {"acceleration-index2", Kind::dae, false, make_acceleration_index2},

@@ -70,7 +70,7 @@ class Form {
   virtual long partitions() const { return 0; }
   /// The gauge in force, with its κ.
   virtual Gauge gauge() const { return {}; }
-  /// α, β of Φ̈ + 2αΦ̇ + β²Φ = 0 [1/s]; zero for all forms but baumgarte and augmented-lagrangian.
+  /// α, β of Φ̈ + 2αΦ̇ + β²Φ = 0 [1/s]; zero for forms without feedback.
   virtual std::pair<double, double> baumgarte_gains() const { return {0, 0}; }
   /// β of Φ̇ = −βΦ in force [1/s]; zero for forms that do not take it.
   virtual double beta() const { return 0; }

@@ -1,4 +1,5 @@
 #include <momenta/dae/form/half_explicit_parts.h>
+#include <momenta/dae/kkt/kkt.h>
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -15,8 +16,16 @@ HalfExplicitParts::Work::Work(const Mechanism& mechanism, std::vector<double> co
   for (auto* v : {&g, &correction, &centre}) v->resize(m);
 }
 
+/// Off the manifold redundant equations contradict each other by the square of the distance, which
+/// divided by ε is λ or σ: a larger ε than Newton matrices have. What it costs goes with the change
+/// of the multiplier from stage to stage.
 HalfExplicitParts::Work& HalfExplicitParts::work() {
-  if (!work_) work_ = std::make_shared<Work>(system_, compliance());
+  constexpr double softer = 1e3;
+  if (!work_) {
+    std::vector<double> compliance = newton_regularisation();
+    for (double& epsilon : compliance) epsilon *= softer;
+    work_ = std::make_shared<Work>(system_, std::move(compliance));
+  }
   return *work_;
 }
 
@@ -37,6 +46,24 @@ void HalfExplicitParts::normalise(double* y) {
     if (b.nq < 4) continue;
     Eigen::Map<Eigen::Vector4d>(y + b.q + (b.nq - 4)).normalize();
   }
+}
+
+std::string HalfExplicitParts::dependent(double t, const double* y) {
+  constexpr double weak = 1e-3;        // pivots fade at ten times this, of their group's mean
+  constexpr int most_equations = 600;  // the matrix is dense
+  if (system_.m() == 0 || system_.m() > most_equations) return "";
+  Work& w = work();
+  const auto kkt = make_dense_kkt(system_);
+  w.e->place(t, y);
+  if (!kkt->factor(*w.e, weak) || kkt->faded() == 0) return "";
+  const RowName& first = system_.rows()[static_cast<std::size_t>(kkt->faded_rows().front())];
+  const int others = kkt->faded() - 1;
+  return "loop '" + first.loop + "' (" + first.what + ")" +
+         (others > 0 ? " and " + std::to_string(others) + " more of the " +
+                           std::to_string(system_.m()) + " equations depend"
+                     : std::string(" depends")) +
+         " on the other equations there, or nearly so, and half-explicit stages need them "
+         "independent";
 }
 
 }  // namespace momenta

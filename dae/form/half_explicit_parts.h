@@ -20,6 +20,7 @@ class HalfExplicitParts : public HalfExplicit {
   int differential_unknowns() const override { return system_.nq() + system_.nv(); }
   int multipliers() const override { return system_.m(); }
   void normalise(double* y) override;
+  std::string dependent(double t, const double* y) override;
   const std::string& half_explicit_failure() const override { return why_; }
 
  protected:
@@ -30,8 +31,8 @@ class HalfExplicitParts : public HalfExplicit {
     SplitKkt kkt;
     std::vector<double> there, u, delta, r, g, correction, centre;
   };
-  /// Small entries in place of zeros for redundant loops (m), or empty.
-  virtual std::vector<double> compliance() const = 0;
+  /// ε of the form's Newton matrix by row of redundant loops (m), or empty.
+  virtual const std::vector<double>& newton_regularisation() const = 0;
 
   Work& work();
   bool failed(std::string sentence);

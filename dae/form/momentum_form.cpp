@@ -60,8 +60,12 @@ bool MomentumForm::after_step(double t, double* y, bool& changed) {
   if (has_loops() && gauge_.kind == Gauge::Kind::reset) {
     if (!solve(t, q, p, nullptr)) return false;
     e_->place(t, q);
+    // p − Φ_qᵀσ and not M u, its equal: one rounding of p instead of those of the way to u and
+    // back.
+    e_->constraint_forces(multipliers_.data(), work_.data());
+    for (std::size_t i = 0; i < work_.size(); ++i) p[i] -= work_[i];
     e_->move(u_.data());
-    e_->momenta(nullptr, p);
+    e_->momenta(nullptr, work_.data());
     // (7) at the new state gives the same u, and σ = 0.
     e_->momentum_rates(q, u_.data(), nullptr, 0, work_.data());
     coordinate_rates(q, u_.data(), correction_.data());

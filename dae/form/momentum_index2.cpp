@@ -108,13 +108,7 @@ class MomentumIndex2 final : public DaeFormOf<MomentumIndex2>, public HalfExplic
   }
 
  protected:
-  /// Off the manifold redundant equations contradict each other by the square of the distance,
-  /// which divided by ε is σ: a larger ε than Newton matrices have.
-  std::vector<double> compliance() const override {
-    std::vector<double> c = regularisation();
-    for (double& epsilon : c) epsilon *= 1e3;
-    return c;
-  }
+  const std::vector<double>& newton_regularisation() const override { return regularisation(); }
 
  private:
   static constexpr double reached = 4 * std::numeric_limits<double>::epsilon(), small = 1e-12;

@@ -95,6 +95,8 @@ std::unique_ptr<OdeForm> make_acceleration(const Mechanism&, const FormOptions&,
 std::unique_ptr<OdeForm> make_projected(const Mechanism&, const FormOptions&, const Start&);
 std::unique_ptr<OdeForm> make_partitioned(const Mechanism&, const FormOptions&, const Start&);
 std::unique_ptr<OdeForm> make_baumgarte(const Mechanism&, const FormOptions&, const Start&);
+std::unique_ptr<OdeForm> make_maximal_coordinates(const Mechanism&, const FormOptions&,
+                                                  const Start&);
 std::unique_ptr<OdeForm> make_augmented_lagrangian(const Mechanism&, const FormOptions&,
                                                    const Start&);
 std::unique_ptr<OdeForm> make_augmented_lagrangian_canonical(const Mechanism&, const FormOptions&,

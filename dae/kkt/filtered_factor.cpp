@@ -1,3 +1,4 @@
+#include <momenta/dae/kkt/faded_pivot.h>
 #include <momenta/dae/kkt/filtered_factor.h>
 #include <suitesparse/amd.h>
 
@@ -7,17 +8,6 @@
 #include <set>
 
 namespace momenta {
-namespace {
-
-/// d³/(d⁴ + τ⁴), written so that no power under- or overflows; 0 for d ≤ 0.
-double inverse_faded(double d, double tau) {
-  if (!(d > 0)) return 0;
-  const double ratio = tau / d, squared = ratio * ratio;
-  return 1 / (d * (1 + squared * squared));
-}
-
-}  // namespace
-
 FilteredFactor::FilteredFactor(const Mechanism& mechanism)
     : pattern_(mechanism.kkt_pattern()), n_(mechanism.nv()), m_(mechanism.m()) {
   order(mechanism);
@@ -238,7 +228,7 @@ bool FilteredFactor::eliminate(const Block& block, const double* tau) {
     std::swap(turn[k], turn[best]);
     const auto c = static_cast<std::size_t>(turn[k]);
     const auto row = static_cast<std::size_t>(unknown_[first + c] - n_);
-    const double w = -a[c * height + c], f = inverse_faded(w, tau[row]);
+    const double w = -a[c * height + c], f = faded_inverse(w, tau[row]);
     if (!std::isfinite(w)) return false;
     pivot_[row] = w;
     inverse_[first + c] = -f;

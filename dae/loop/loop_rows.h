@@ -21,7 +21,7 @@
 
 #include <momenta/core/kernel/points.h>
 #include <momenta/core/scalar/dual.h>
-#include <momenta/dae/loop/loops_in_time.h>
+#include <momenta/dae/loop/driven_loop.h>
 
 namespace momenta {
 
@@ -43,25 +43,29 @@ class LoopRows {
   using Angular = decltype(cross(Vector{}, Vector{}));  ///< Vec3 in space, S in the plane
 
   LoopRows(const LoopModel<Space>& model, Workspace<Space, S>& w)
-      : in_time_(model), model_(&model), w_(w), at_(model.loops.size()) {}
+      : model_(&model), w_(w), at_(model.loops.size()), driven_(model.motions.size()) {}
 
   /// Points and axes in ground components; needs poses at (t, q).
   void place(double t, const S* q) {
-    model_ = &in_time_.at(t);
+    for (std::size_t i = 0; i < driven_.size(); ++i)
+      driven_[i].move(model_->motions[i], Moment<Time>::at(t));
     for (std::size_t i = 0; i < at_.size(); ++i) {
       const auto& l = model_->loops[i];
       auto& s = at_[i];
       if (l.is_coupler()) {
-        s.position = S(-l.given);
+        s.position = -S(given(l));
         for (const auto& c : l.joints) s.position += c.ratio * q[c.q];
         continue;
       }
       s.x_a = point_position(w_, l.a, l.at_a);
-      s.x_b = point_position(w_, l.b, l.at_b);
+      s.x_b =
+          l.motion < 0 ? point_position(w_, l.b, l.at_b) : point_position(w_, l.b, motion(l).at_b);
       s.D = s.x_a - s.x_b;
       for (std::size_t j = 0; j < (Space::dimension == 3 ? 2u : 3u); ++j) {
-        s.a[j] = to_ground(w_, l.a, l.axis_a[j]);
-        s.b[j] = to_ground(w_, l.b, l.axis_b[j]);
+        s.a[j] = l.motion < 0 ? to_ground(w_, l.a, l.axis_a[j])
+                              : to_ground(w_, l.a, motion(l).axis_a[j]);
+        s.b[j] = l.motion < 0 ? to_ground(w_, l.b, l.axis_b[j])
+                              : to_ground(w_, l.b, motion(l).axis_b[j]);
       }
     }
   }
@@ -72,7 +76,7 @@ class LoopRows {
       const auto& l = model_->loops[i];
       auto& s = at_[i];
       if (l.is_coupler()) {
-        s.rate = S(-given_rate(l));
+        s.rate = -S(given_rate(l));
         for (const auto& c : l.joints)
           if (u) s.rate += c.ratio * u[c.u];
         continue;
@@ -95,7 +99,7 @@ class LoopRows {
       const auto& l = model_->loops[i];
       if (!l.is_coupler()) continue;
       S& second = at_[i].second;
-      second = S(l.motion < 0 ? 0.0 : -motion(l).given_second);
+      second = l.motion < 0 ? S(0.0) : -S(motion(l).given_second);
       for (const auto& c : l.joints)
         if (udot) second += c.ratio * udot[c.u];
     }
@@ -108,7 +112,8 @@ class LoopRows {
                phi[row] = dot(a, b) - l.gamma;
              },
              [&](int row, const auto& l, const At& s) {
-               phi[row] = (dot(s.D, s.D) + (l.across2 - l.given * l.given)) * (0.5 * l.per_length);
+               phi[row] =
+                   (dot(s.D, s.D) + (l.across2 - given(l) * given(l))) * (0.5 * l.per_length);
              },
              [&](int row, const At& s) { phi[row] = s.position; });
   }
@@ -123,7 +128,7 @@ class LoopRows {
           rate[row] = inner(cross(a, b), s.w_a - s.w_b);
         },
         [&](int row, const auto& l, const At& s) {
-          rate[row] = (dot(s.D, s.u_a - s.u_b) - l.given * given_rate(l)) * l.per_length;
+          rate[row] = (dot(s.D, s.u_a - s.u_b) - given(l) * given_rate(l)) * l.per_length;
         },
         [&](int row, const At& s) { rate[row] = s.rate; });
   }
@@ -145,12 +150,12 @@ class LoopRows {
         },
         [&](int row, const auto& l, const At& s) {
           const Vector rel = s.u_a - s.u_b;
-          double given = 0;
+          S second = dot(s.D, acceleration_apart(l, s)) + dot(rel, rel);
           if (l.motion >= 0) {
             const auto& m = motion(l);
-            given = m.given_rate * m.given_rate + l.given * m.given_second;
+            second -= S(m.given_rate * m.given_rate + m.given * m.given_second);
           }
-          rate[row] = (dot(s.D, acceleration_apart(l, s)) + dot(rel, rel) - given) * l.per_length;
+          rate[row] = second * l.per_length;
         },
         [&](int row, const At& s) { rate[row] = s.second; });
   }
@@ -221,19 +226,21 @@ class LoopRows {
   };
   using Loop = typename LoopModel<Space>::Loop;
 
-  const auto& motion(const Loop& l) const {
-    return model_->motions[static_cast<std::size_t>(l.motion)];
-  }
-  double given_rate(const Loop& l) const { return l.motion < 0 ? 0.0 : motion(l).given_rate; }
-  Angular turning_in_ground(int k, const typename LoopModel<Space>::Angular& w) const {
+  using Time = typename TimeOf<S>::type;
+  using Driven = DrivenLoop<Space, Time>;
+
+  const Driven& motion(const Loop& l) const { return driven_[static_cast<std::size_t>(l.motion)]; }
+  Time given(const Loop& l) const { return l.motion < 0 ? Time(l.given) : motion(l).given; }
+  Time given_rate(const Loop& l) const { return l.motion < 0 ? Time(0.0) : motion(l).given_rate; }
+  Angular turning_in_ground(int k, const typename Driven::Angular& w) const {
     if constexpr (Space::dimension == 3)
       return S(w);
     else
       return to_ground(w_, k, w);
   }
   /// Angular acceleration of axes on body k that turn by `w` relative to it, ẇ in body axes.
-  Angular turning(int k, const typename LoopModel<Space>::Angular& w,
-                  const typename LoopModel<Space>::Angular& rate) const {
+  Angular turning(int k, const typename Driven::Angular& w,
+                  const typename Driven::Angular& rate) const {
     Angular sum = angular_acceleration(w_, k) + turning_in_ground(k, rate);
     if constexpr (Space::dimension == 6)
       sum += cross(angular_velocity(w_, k), turning_in_ground(k, w));
@@ -328,10 +335,10 @@ class LoopRows {
     }
   }
 
-  LoopsInTime<Space> in_time_;
-  const LoopModel<Space>* model_;  ///< at the time of place()
+  const LoopModel<Space>* model_;
   Workspace<Space, S>& w_;
   std::vector<At> at_;
+  std::vector<Driven> driven_;  ///< at the time of place()
 };
 
 }  // namespace momenta

@@ -25,6 +25,7 @@ constexpr FormIndex indices[] = {
     {"projected", "ODE"},
     {"partitioned", "ODE"},
     {"baumgarte", "ODE"},
+    {"maximal-coordinates", "ODE"},
     {"augmented-lagrangian", "ODE"},
     {"acceleration-index1", "1"},
     {"acceleration-index2", "2"},

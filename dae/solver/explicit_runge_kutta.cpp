@@ -236,7 +236,7 @@ class ExplicitRun {
   /// corrected. False where more than a few are needed.
   bool steps_to(double t) {
     if constexpr (Tableau::estimates > 0) {
-      std::copy_n(step_.y(), sample_.size(), look_->y());
+      look_->restart(step_.y());
       if (!look_->begin(t_)) return false;
       double from = t_, h = t - t_;
       for (int trials = 0; trials < 20; ++trials) {

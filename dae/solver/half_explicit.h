@@ -23,6 +23,9 @@ class HalfExplicit {
                        double* z, double* f) = 0;
   /// Quaternions of y back to unit length.
   virtual void normalise(double* y) = 0;
+  /// Which equations 0 = g depend on others at (t, y), or nearly so, as a clause; empty: none.
+  /// There stages have no solution, or many.
+  virtual std::string dependent(double t, const double* y) = 0;
   /// Why one of them failed.
   virtual const std::string& half_explicit_failure() const = 0;
 };

@@ -121,6 +121,8 @@ class Hem5 {
         std::swap(old_, now_);
         cause =
             cause_ + (fixed ? ", with a step of " : ", also with a step of ") + in_words(h_) + " s";
+        if (const std::string why = parts_.dependent(t, now_.y.data()); !why.empty())
+          cause += ": " + why;
         return false;
       }
     }

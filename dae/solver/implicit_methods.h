@@ -28,6 +28,12 @@ IntegrationResult integrate_generalised_alpha(DaeSystem&, double t0,
                                               const std::vector<double>& output_times,
                                               const IntegrationOptions&, const Observer&);
 
+/// The augmented Lagrangian of index 3 with mass-orthogonal projections, steps of options.step, for
+/// systems that are SecondOrder.
+IntegrationResult integrate_bayo_ledesma(DaeSystem&, double t0,
+                                         const std::vector<double>& output_times,
+                                         const IntegrationOptions&, const Observer&);
+
 /// The half-explicit method of order 5, for systems that are HalfExplicit; step control, or steps
 /// of options.step.
 IntegrationResult integrate_hem5(DaeSystem&, double t0, const std::vector<double>& output_times,

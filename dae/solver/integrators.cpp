@@ -46,6 +46,13 @@ const std::vector<Integrator>& integrators() {
        false,
        "generalised-α, order 2",
        {"acceleration-index3"}},
+      {"bayo-ledesma",
+       Takes::dae,
+       Step::fixed,
+       false,
+       false,
+       "augmented Lagrangian of index 3, trapezoidal rule and mass-orthogonal projections, order 2",
+       {"acceleration-index3"}},
       {"hem5",
        Takes::dae,
        Step::adaptive,
@@ -92,6 +99,8 @@ IntegrationResult integrate(const std::string& name, DaeSystem& system, double t
   if (name == "radau5") return integrate_radau5(system, t0, output_times, options, observer);
   if (name == "generalised-alpha")
     return integrate_generalised_alpha(system, t0, output_times, options, observer);
+  if (name == "bayo-ledesma")
+    return integrate_bayo_ledesma(system, t0, output_times, options, observer);
   if (name == "hem5") return integrate_hem5(system, t0, output_times, options, observer);
   throw std::invalid_argument("no method \"" + name +
                               "\" for DAEs: " + integrator_names(Takes::dae) + " are known");

@@ -3,6 +3,8 @@
 // y = (q, v, λ), rows in the same order: q' = E(q) v, M v' + … + Φ_qᵀλ = 0, Φ(q, t) = 0. There may
 // be more coordinates than rates (quaternions).
 
+#include <vector>
+
 namespace momenta {
 
 class SecondOrder {
@@ -16,6 +18,15 @@ class SecondOrder {
   /// q ∘ exp δ: where constant rates δ (nv) lead in a unit of time, to fourth order in δ (exact for
   /// joints with q' = v); quaternions of unit length.
   virtual void move(const double* q, const double* delta, double* moved) = 0;
+
+  // For projections and penalties:
+  /// Φ (m) at (t, q), Φ̇ of v, and Φ̈ of v and v̇.
+  virtual void constraints(double t, const double* q, double* phi) = 0;
+  virtual void constraint_rates(double t, const double* q, const double* v, double* rate) = 0;
+  virtual void constraint_accelerations(double t, const double* q, const double* v,
+                                        const double* vdot, double* rate) = 0;
+  /// 1/(penalty × effective mass) by row of Φ (m).
+  virtual const std::vector<double>& compliance() = 0;
 };
 
 }  // namespace momenta

@@ -44,6 +44,13 @@ std::vector<RunSettings> plan_runs(const Mechanism& mechanism, const DriftReques
     const bool gauged = takes_gauge(form);
     if (is_dae_form(form)) {
       add(form, !gauged ? "" : request.gauge.empty() ? leak : request.gauge, false);
+      // Where there is a step, the methods of fixed steps that are made for this form too.
+      for (const Integrator& method : integrators())
+        if (request.step > 0 && method.step == Integrator::Step::fixed && !method.forms.empty() &&
+            method.takes_form(form, true)) {
+          runs.push_back(runs.back());
+          runs.back().integrator = method.name;
+        }
       continue;
     }
     if (!integrator(explicit_method).takes_form(form, false)) continue;

@@ -147,12 +147,6 @@ IndexStudy run_index_study(const Mechanism& mechanism, const Start& start,
                      "the index is found from dense matrices: found " + std::to_string(smallest) +
                      " unknowns, expected at most " + std::to_string(index_limit) +
                      "; take a smaller mechanism of the same kind");
-  // Prescribed motion of a loop reaches its rows as numbers at one time, not as a series.
-  for (const DriveSpec& drive : mechanism.scene().drives)
-    if (!drive.loop.empty())
-      throw SceneError(mechanism.scene().where(drive.at) + "loop '" + drive.loop +
-                       "' is driven, and the index is found for driven joints alone; expected a "
-                       "scene without drives of loops");
   IndexStudy study;
   study.scene = mechanism.scene().name;
   study.t = start.t;

@@ -176,12 +176,12 @@ TEST_F(Program, DriftWritesPageTableAndJson) {
   ASSERT_EQ(o.status, 0) << o.err;
   const auto runs = nlohmann::json::parse(o.out);
   ASSERT_TRUE(runs.is_array());
-  EXPECT_EQ(runs.size(), 18u);
+  EXPECT_EQ(runs.size(), 19u);
   for (const auto& run : runs) EXPECT_EQ(run.at("status"), "done") << run.at("form");
   EXPECT_EQ(nlohmann::json::parse(text_of(results / "summary.json")), runs);
   EXPECT_NE(text_of(results / "index.html").find("<!doctype html>"), std::string::npos);
   const std::string csv = text_of(results / "study.csv");
-  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 19);
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 20);
 }
 
 TEST_F(Program, WorkMakesItsOwnReferenceAndAdvises) {

@@ -91,7 +91,8 @@ const std::vector<std::pair<std::string, std::string>> further{
     {"projected", ""},
     {"partitioned", ""},
     {"augmented-lagrangian", ""},
-    {"augmented-lagrangian-canonical", "leak"}};
+    {"augmented-lagrangian-canonical", "leak"},
+    {"maximal-coordinates", ""}};
 
 void expect_agreement(const Scene& scene, double end, double bound) {
   const Mechanism mechanism(scene);
@@ -187,6 +188,28 @@ TEST(Projected, RepeatsLargeCorrections) {
     } else {
       EXPECT_GT(phi.norm(), 1e-7);
     }
+  }
+}
+
+TEST(MaximalCoordinates, IsBaumgartesMotion) {
+  for (const char* name : {"four_bar", "andrews", "spatial_slider_crank", "bricard"}) {
+    const Mechanism mechanism(example(name));
+    const double end = name == std::string("andrews") ? 0.01 : 1;
+    const RunResult a = run(mechanism, adaptive("maximal-coordinates", 1e-10, end)),
+                    b = run(mechanism, adaptive("baumgarte", 1e-10, end));
+    ASSERT_EQ(a.status, "done") << a.reason;
+    EXPECT_EQ(a.settings.baumgarte_alpha, b.settings.baumgarte_alpha);
+    EXPECT_LT(apart(a, b, mechanism.nq()), 1e-7) << name;
+    EXPECT_NEAR(static_cast<double>(a.counters.steps), static_cast<double>(b.counters.steps), 3);
+  }
+}
+TEST(MaximalCoordinates, SolvesTreesToo) {
+  for (const char* name : {"pendulum", "free_body", "chain"}) {
+    const Mechanism mechanism(example(name));
+    const RunResult a = run(mechanism, adaptive("maximal-coordinates", 1e-11, 1)),
+                    b = run(mechanism, adaptive("acceleration", 1e-11, 1));
+    ASSERT_EQ(a.status, "done") << a.reason;
+    EXPECT_LT(apart(a, b, mechanism.nq() + mechanism.nv()), 1e-7) << name;
   }
 }
 
@@ -379,6 +402,10 @@ TEST(DriftStudy, ListsEveryFormOnceAndItsTwins) {
   const auto multistep = names();
   EXPECT_EQ(count(multistep, "projected") + count(multistep, "partitioned"), 0);
   EXPECT_EQ(count(multistep, "acceleration"), 1);
+  // With a step, methods of fixed steps beside IDA.
+  request.integrator = "rk4";
+  request.step = 0.01;
+  EXPECT_EQ(count(names(), "acceleration-index3"), 3);
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 
 #include <array>
 #include <filesystem>
+#include <numbers>
 
 namespace momenta {
 namespace {
@@ -229,6 +230,26 @@ TEST(HalfExplicit, SamplesDoNotChangeTheRun) {
     EXPECT_EQ(few.counters.steps, many.counters.steps);
     EXPECT_EQ(few.trajectory.rows.back(), many.trajectory.rows.back()) << form;
   }
+}
+
+// 81 rods meet singular poses, where Φ_q of a stage and of the place it leads to do not fit
+// together.
+TEST(HalfExplicit, NamesTheDependentEquationWhereItStops) {
+  const Mechanism mechanism(row_of_four_bars(10, std::numbers::pi / 2, -1));
+  const RunResult r = run_hem5(mechanism, "momentum-index2", 1e-8, 5, 5);
+  ASSERT_EQ(r.status, "failed");
+  EXPECT_NE(r.reason.find("t = "), std::string::npos) << r.reason;
+  EXPECT_NE(r.reason.find("loop '"), std::string::npos) << r.reason;
+  EXPECT_NE(r.reason.find("other equations"), std::string::npos) << r.reason;
+  // Where all equations are independent nothing is named: a step too long for any solution.
+  const Mechanism regular(example("four_bar"));
+  const Start start = assemble(regular).start;
+  const auto form = make_form("momentum-index2", regular, {}, start);
+  IntegrationOptions options;
+  options.step = 5;
+  const auto run = integrate_hem5(*form->dae(), 0, {10.0}, options, {});
+  EXPECT_FALSE(run.done);
+  EXPECT_EQ(run.reason.find("other equations"), std::string::npos) << run.reason;
 }
 
 TEST(HalfExplicit, RefusesOtherForms) {

@@ -470,4 +470,25 @@ TEST(ExplicitArguments, AreChecked) {
   EXPECT_THROW(run("dp5", {1}, {1}, tolerance(0)), std::invalid_argument);
 }
 
+/// y' = 1.
+class Clock final : public OdeSystem {
+ public:
+  int size() const override { return 1; }
+  bool rhs(double, const double*, double* ydot) override {
+    ydot[0] = 1;
+    return true;
+  }
+};
+
+TEST(Explicit, SumsOfManyStepsLoseNothing) {
+  // A hundred thousand steps of 0.1, each rounded off by up to half of 1.8e-12.
+  Clock clock;
+  IntegrationOptions options;
+  options.step = 0.1;
+  const auto run = integrate_explicit("rk4", clock, 0, {1.0 / 3}, {1e4}, options, {});
+  ASSERT_TRUE(run.done) << run.reason;
+  EXPECT_EQ(run.counters.steps, 100000);
+  EXPECT_NEAR(run.y[0], 1.0 / 3 + 1e4, 4e-12);
+}
+
 }  // namespace

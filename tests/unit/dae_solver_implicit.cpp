@@ -1,5 +1,5 @@
-// The registry of integrators; limits, stops, failures and bookkeeping of radau5, gauss and
-// generalised-alpha; matrices dense and sparse.
+// The registry of integrators; limits, stops, failures and bookkeeping of radau5, gauss,
+// generalised-alpha and bayo-ledesma; matrices dense and sparse.
 
 #include <gtest/gtest.h>
 #include <momenta/core/scene/read_scene.h>
@@ -86,6 +86,9 @@ TEST(Integrators, RefuseWhatDoesNotFitWithASentence) {
   EXPECT_TRUE(says(with("acceleration-index2", "generalised-alpha", "none", false, 0.01),
                    "acceleration-index3"));
   EXPECT_TRUE(says(with("acceleration-index3", "generalised-alpha"), "step"));
+  EXPECT_TRUE(says(with("acceleration-index2", "bayo-ledesma", "none", false, 0.01),
+                   "acceleration-index3"));
+  EXPECT_TRUE(says(with("acceleration-index3", "bayo-ledesma"), "step"));
   EXPECT_TRUE(says(with("momentum", "adams", "none", true), "history"));
   EXPECT_TRUE(says(with("momentum", "bdf", "reset"), "multistep"));
   EXPECT_TRUE(says(with("momentum", "bdf", "flip"), "history"));
@@ -355,6 +358,66 @@ TEST(GeneralisedAlpha, SamplesBetweenStepsKeepTheLoopsShut) {
   EXPECT_EQ(run.counters.steps, 199);
   EXPECT_LT(run.position_drift_max, 1e-9);
   EXPECT_GT(run.velocity_drift_max, 1e-7);  // order 2, not a constraint of the method
+}
+
+TEST(BayoLedesma, HoldsPositionsRatesAndAccelerations) {
+  // The last of the three by what projections are for: v̇ and λ of the trapezoidal rule alone swing
+  // from step to step.
+  for (const Scene& scene : {four_bar(), equations::row_of_four_bars(12, 1.2)}) {
+    const Mechanism mechanism(scene);
+    const Start start = assemble(mechanism).start;
+    const auto form = make_form("acceleration-index3", mechanism, {}, start);
+    const auto e = mechanism.evaluation<double>();
+    IntegrationOptions options = tolerance(1e-9);
+    options.step = 0.003;
+    double position = 0, rate = 0, acceleration = 0;
+    Eigen::VectorXd phi(mechanism.m()), forces(mechanism.nv());
+    Observer look;
+    look.sample = [&](double t, const double* y, const double* ydot) {
+      const double *q = y, *v = y + mechanism.nq();
+      e->place(t, q);
+      e->positions(phi.data());
+      position = std::max(position, phi.cwiseAbs().maxCoeff());
+      e->move(v);
+      e->velocities(phi.data());
+      rate = std::max(rate, phi.cwiseAbs().maxCoeff());
+      e->joint_forces(q, v, ydot + mechanism.nq(), nullptr, forces.data());
+      e->accelerations(phi.data());
+      acceleration = std::max(acceleration, phi.cwiseAbs().maxCoeff());
+      return true;
+    };
+    std::vector<double> times;
+    for (int i = 1; i <= 50; ++i) times.push_back(0.02 * i);
+    const auto run = integrate_bayo_ledesma(*form->dae(), 0, times, options, look);
+    ASSERT_TRUE(run.done) << run.reason;
+    EXPECT_EQ(run.linear_solver, mechanism.nv() > 20 ? "KLU" : "dense LU");
+    EXPECT_LT(position, 1e-11) << scene.name;
+    EXPECT_LT(rate, 1e-12) << scene.name;
+    EXPECT_LT(acceleration, 1e-10) << scene.name;
+    EXPECT_LE(run.counters.newton_iterations, 5 * run.counters.steps) << scene.name;
+  }
+}
+
+TEST(BayoLedesma, PassesRedundantLoopsAndAnyPenalty) {
+  // The motion does not depend on the penalty once the multipliers have settled.
+  const Mechanism mechanism(equations::bricard());
+  const Start start = assemble(mechanism).start;
+  Eigen::VectorXd before;
+  for (const double penalty : {1e4, 1e7, 1e9}) {
+    FormOptions settings;
+    settings.penalty = penalty;
+    const auto form = make_form("acceleration-index3", mechanism, settings, start);
+    IntegrationOptions options = tolerance(1e-10);
+    options.step = 0.005;
+    const auto run = integrate_bayo_ledesma(*form->dae(), 0, {1.0}, options, {});
+    ASSERT_TRUE(run.done) << penalty << ": " << run.reason;
+    Snapshot end;
+    ASSERT_TRUE(form->read(1, run.y.data(), nullptr, end));
+    if (before.size() > 0) {
+      EXPECT_LT((end.q - before).cwiseAbs().maxCoeff(), 1e-7) << penalty;
+    }
+    before = end.q;
+  }
 }
 
 TEST(Rattle, KeepsBothConstraintsEverywhere) {

@@ -9,7 +9,7 @@ const preferred = [
   ["momentum", 0], ["acceleration", 1], ["momentum-stabilised", 2], ["stabilised-index2", 3], ["projected", 4],
   ["baumgarte", 5], ["momentum-index2", 6], ["augmented-lagrangian", 7], ["momentum-index1", 0],
   ["acceleration-index1", 1], ["partitioned", 2], ["acceleration-index3", 3], ["momentum-index3", 6],
-  ["acceleration-index2", 5], ["augmented-lagrangian-canonical", 0],
+  ["acceleration-index2", 5], ["augmented-lagrangian-canonical", 0], ["maximal-coordinates", 7],
 ];
 
 const dashes = [[], [9, 5], [2, 4], [12, 4, 2, 4], [16, 6], [2, 8]];

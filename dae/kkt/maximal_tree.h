@@ -1,0 +1,335 @@
+#pragma once
+// The bodies of a tree each with all its velocities, and the joints between them as equations:
+//
+//   M_k a_k + S_kᵀ y_k − Σ_children 𝒯ᶠ_c S_cᵀ y_c = f_k,    S_k (a_k − 𝒯ⱽ_k a_parent) = 0
+//
+// d unknowns a_k and s_k unknowns y_k a body, d = 6 or 3, s_k the d − n_k directions in which its
+// joint does not move (rows of S_k). Ordered tips first, body before joint, the matrix fills in
+// nowhere: its block LDLᵀ costs O(bodies). With A_k for M_k and what children left,
+//
+//   A = L Lᵀ,  Y = L⁻¹Sᵀ,  YᵀY = R Rᵀ,  B = R⁻¹Yᵀ,  T = R⁻¹S
+//   f inward:     h = (1 − BᵀB) L⁻¹ f,      f_parent += 𝒯ᶠ Tᵀ B L⁻¹ f
+//   a outward:    a = L⁻ᵀ (h + Bᵀ T 𝒯ⱽ a_parent)
+//   to A_parent:  𝒯ᶠ TᵀT 𝒯ⱽ
+//
+// and fᵀ K⁻¹ g = Σ h(f)·h(g), K⁻¹ the a-block of the inverse. A body without inertia in some
+// direction (a thin rod about itself, the cross of a universal joint) has no Cholesky factor: SᵀΣS
+// is added to its A, which changes y by Σ S 𝒯ⱽ a_parent and no motion, so that Σ is taken off again
+// on the way to the parent. A joint that moves nothing by itself hands on A and f as they are.
+// Source: Baraff, Linear-time dynamics using Lagrange multipliers, SIGGRAPH 1996.
+
+#include <momenta/core/kernel/sweeps.h>
+#include <momenta/dae/kkt/inertia_blocks.h>
+#include <momenta/dae/kkt/small_cholesky.h>
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+namespace momenta {
+
+template <class Space>
+class MaximalTree {
+ public:
+  static constexpr int d = Space::dimension;
+  using Work = Workspace<Space, double>;
+  using Motion = typename Space::template Motion<double>;
+  using Force = typename Space::template Force<double>;
+  using Inertia = typename Space::template ArticulatedInertia<double>;
+  using Column = std::array<double, d>;  ///< of a wrench, an acceleration, or h
+
+  explicit MaximalTree(const Work& w) : w_(w), joint_(w.body.size()), a_(w.body.size()) {
+    for (std::size_t k = 0; k < joint_.size(); ++k) {
+      Inertia own{};
+      Space::add(own, w.model->bodies[k].inertia);
+      double all[d][d];
+      expand(own, all);
+      joint_[k].light = !small::cholesky(all, 1e-12);
+    }
+  }
+
+  /// Factorises at the edges placed in the workspace. False: stuck() has no inertia to move.
+  bool factor() {
+    for (std::size_t k = 0; k < joint_.size(); ++k) {
+      joint_[k].A = {};
+      Space::add(joint_[k].A, w_.inertia(k));
+      set_axes(k);
+    }
+    for (std::size_t k = joint_.size(); k-- > 0;) {
+      bool ok = true;
+      with_rows(k, [&](auto s) { ok = eliminate<s.value>(k); });
+      if (ok) continue;
+      stuck_ = static_cast<int>(k);
+      return false;
+    }
+    return true;
+  }
+  int stuck() const { return stuck_; }
+
+  /// The wrench f on body k into h, and what it leaves to the parent; children first.
+  void inward(std::size_t k, Column* f, Column* h) const {
+    with_rows(k, [&](auto s) { inward<s.value>(k, f, h); });
+  }
+  /// h into the rates u (nv) of joints.
+  void outward(const Column* h, double* u) {
+    for (std::size_t k = 0; k < joint_.size(); ++k)
+      with_rows(k, [&](auto s) { outward<s.value>(k, h, u); });
+  }
+
+  /// Wrenches on body k and its parent that do the torques r (n_k) at its joint and nothing else.
+  void add_torques(std::size_t k, const double* r, Column* f) const {
+    const auto& b = w_.model->bodies[k];
+    if (b.nv == 1) return add_torque(k, *r, f);
+    Force on{};
+    for (int i = 0; i < b.nv; ++i) on[d - b.nv + i] = r[i];
+    act(k, on, f);
+  }
+  /// The same at a joint of one degree of freedom.
+  void add_torque(std::size_t k, double r, Column* f) const {
+    Force on{};
+    on[joint_[k].moved] = r * joint_[k].along;
+    act(k, on, f);
+  }
+
+  static void add(const Force& f, Column& to) {
+    for (int i = 0; i < d; ++i) to[static_cast<std::size_t>(i)] += f[i];
+  }
+  static double inner(const Column& a, const Column& b) {
+    double sum = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
+    return sum;
+  }
+
+ private:
+  /// Row i of S is e_(held i) + slant_i e_moved. u = along (a − 𝒯ⱽ a_parent)_moved where one
+  /// degree of freedom is.
+  struct JointBlocks {
+    Inertia A;
+    double L[d][d], B[d][d], T[d][d];  ///< B and T: s rows
+    double slant[d];
+    int held[d];
+    int moved = -1;
+    double along = 1;
+    bool light = false;  ///< the body alone resists nothing in some direction
+  };
+
+  /// Calls with the number of rows of S as a constant.
+  template <class F>
+  void with_rows(std::size_t k, F&& f) const {
+    switch (d - w_.model->bodies[k].nv) {
+      case d - 1:
+        return f(std::integral_constant<int, d - 1>());
+      case d:
+        return f(std::integral_constant<int, d>());
+      case 0:
+        return f(std::integral_constant<int, 0>());
+      default:
+        return f(std::integral_constant<int, 3>());
+    }
+  }
+
+  void set_axes(std::size_t k) {
+    const auto& b = w_.model->bodies[k];
+    auto& j = joint_[k];
+    j.moved = d;
+    j.along = 1;
+    double slope = 0;  // of what moves with the moved direction, in the one before it or after
+    if (b.nv == 1) {
+      if constexpr (d == 3) {
+        j.moved = 2;
+        j.along = b.edge.sign;
+        if (b.kind == JointKind::prismatic) {
+          const auto& slide = w_.body[k].edge.slide;
+          j.moved = std::abs(slide[0]) >= std::abs(slide[1]) ? 0 : 1;
+          j.along = 1 / slide[j.moved];
+          slope = slide[1 - j.moved] * j.along;
+        }
+      } else {
+        j.moved = b.kind == JointKind::prismatic ? 2 : 5;
+        if (b.kind == JointKind::helical) slope = b.pitch;  // v_z = pitch ω_z
+      }
+    }
+    // Of balls the first three, of driven joints and welds all.
+    int row = 0;
+    for (int i = 0; i < d; ++i)
+      if (i != j.moved) {
+        const bool slanted = d == 3 ? i < 2 : i == 2;
+        j.held[row] = i;
+        j.slant[row++] = slanted ? -slope : 0;
+      }
+  }
+
+  template <int s>
+  bool eliminate(std::size_t k) {
+    const auto& b = w_.model->bodies[k];
+    auto& j = joint_[k];
+    if constexpr (s == d) {
+      if (b.parent >= 0) hand_on(k, j.A);
+      return true;
+    } else {
+      expand(j.A, j.L);
+      double stiffened[d] = {};
+      if (j.light) stiffen<s>(j, stiffened);
+      if (!small::cholesky(j.L, j.light ? 1e-13 : 0)) return false;
+      if constexpr (s > 0) {
+        // the joint: Y = L⁻¹Sᵀ, YᵀY = R Rᵀ
+        double Y[d][s] = {}, R[s][s];
+        const bool slanted = j.moved < d;
+        for (int i = 0; i < s; ++i) {
+          Y[j.held[i]][i] = 1;
+          if (slanted) Y[j.moved][i] = j.slant[i];
+        }
+        small::forward(j.L, Y);
+        for (int i = 0; i < s; ++i)
+          for (int l = 0; l <= i; ++l) {
+            double sum = 0;
+            for (int r = 0; r < d; ++r) sum += Y[r][i] * Y[r][l];
+            R[i][l] = sum;
+          }
+        if (!small::cholesky(R, 0)) return false;
+        // what solutions need of it: B = R⁻¹Yᵀ, T = R⁻¹S
+        for (int i = 0; i < s; ++i)
+          for (int r = 0; r < d; ++r) j.B[i][r] = Y[r][i], j.T[i][r] = 0;
+        small::forward(R, j.B);
+        double inverse[s][s] = {};
+        for (int i = 0; i < s; ++i) inverse[i][i] = 1;
+        small::forward(R, inverse);
+        for (int i = 0; i < s; ++i)
+          for (int l = 0; l <= i; ++l) {
+            j.T[i][j.held[l]] = inverse[i][l];
+            if (slanted) j.T[i][j.moved] += inverse[i][l] * j.slant[l];
+          }
+        if (b.parent < 0) return true;
+        // what the parent gets: TᵀT, less Σ
+        double left[d][d];
+        for (int a = 0; a < d; ++a)
+          for (int c = 0; c < d; ++c) {
+            double sum = 0;
+            for (int i = 0; i < s; ++i) sum += j.T[i][a] * j.T[i][c];
+            left[a][c] = sum;
+          }
+        if (j.light) add_held<s>(j, stiffened, -1, left);
+        hand_on(k, compress<Inertia>(left));
+      }
+      return true;
+    }
+  }
+  void hand_on(std::size_t k, const Inertia& m) {
+    const auto& b = w_.model->bodies[k];
+    joint_[static_cast<std::size_t>(b.parent)].A +=
+        Space::to_parent(b.edge, b.kind, w_.body[k].edge, m);
+  }
+
+  /// m += factor SᵀΣS
+  template <int s>
+  static void add_held(const JointBlocks& j, const double* sigma, double factor,
+                       double (&m)[d][d]) {
+    for (int i = 0; i < s; ++i) {
+      const double value = factor * sigma[i];
+      const int at = j.held[i];
+      m[at][at] += value;
+      if (j.moved == d) continue;
+      m[at][j.moved] += value * j.slant[i];
+      m[j.moved][at] += value * j.slant[i];
+      m[j.moved][j.moved] += value * j.slant[i] * j.slant[i];
+    }
+  }
+  /// Σ: what A has along the rows of S, and where that is nothing, a little of all it has.
+  template <int s>
+  static void stiffen(JointBlocks& j, double* sigma) {
+    double trace = 0;
+    for (int i = 0; i < d; ++i) trace += j.L[i][i];
+    for (int i = 0; i < s; ++i) {
+      double along = j.L[j.held[i]][j.held[i]];
+      if (j.moved < d)
+        along += j.slant[i] * (2 * j.L[j.held[i]][j.moved] + j.slant[i] * j.L[j.moved][j.moved]);
+      sigma[i] = std::max(along, 1e-3 * trace / d);
+    }
+    add_held<s>(j, sigma, 1, j.L);
+  }
+
+  template <int s>
+  void inward(std::size_t k, Column* f, Column* h) const {
+    const auto& j = joint_[k];
+    const int parent = w_.model->bodies[k].parent;
+    if constexpr (s == d) {
+      h[k] = {};
+      if (parent >= 0) add(to_parent(k, f[k]), f[parent]);
+    } else {
+      h[k] = f[k];
+      small::forward(j.L, h[k].data());
+      double g[d];
+      for (int i = 0; i < s; ++i) {
+        g[i] = 0;
+        for (int r = 0; r < d; ++r) g[i] += j.B[i][r] * h[k][static_cast<std::size_t>(r)];
+      }
+      Column left{};
+      for (int i = 0; i < s; ++i)
+        for (int r = 0; r < d; ++r) {
+          h[k][static_cast<std::size_t>(r)] -= g[i] * j.B[i][r];
+          left[static_cast<std::size_t>(r)] += g[i] * j.T[i][r];
+        }
+      if (s > 0 && parent >= 0) add(to_parent(k, left), f[parent]);
+    }
+  }
+
+  template <int s>
+  void outward(std::size_t k, const Column* h, double* u) {
+    const auto& b = w_.model->bodies[k];
+    const auto& j = joint_[k];
+    Column& a = a_[k];
+    const Column carried =
+        b.parent < 0 ? Column{} : to_child(k, a_[static_cast<std::size_t>(b.parent)]);
+    if constexpr (s == d) {
+      a = carried;
+    } else {
+      a = h[k];
+      for (int i = 0; i < s; ++i) {
+        double g = 0;
+        for (int r = 0; r < d; ++r) g += j.T[i][r] * carried[static_cast<std::size_t>(r)];
+        for (int r = 0; r < d; ++r) a[static_cast<std::size_t>(r)] += g * j.B[i][r];
+      }
+      small::backward(j.L, a.data());
+      if (b.nv == 1) {
+        const auto moved = static_cast<std::size_t>(j.moved);
+        u[b.u] = j.along * (a[moved] - carried[moved]);
+      } else {
+        for (int i = 0; i < b.nv; ++i) {
+          const auto at = static_cast<std::size_t>(d - b.nv + i);
+          u[b.u + i] = a[at] - carried[at];
+        }
+      }
+    }
+  }
+
+  void act(std::size_t k, const Force& on, Column* f) const {
+    const auto& b = w_.model->bodies[k];
+    add(on, f[k]);
+    if (b.parent < 0) return;
+    Force back = Space::to_parent(b.edge, b.kind, w_.body[k].edge, on);
+    for (int i = 0; i < d; ++i) back[i] = -back[i];
+    add(back, f[b.parent]);
+  }
+  Column to_child(std::size_t k, const Column& v) const {
+    const auto& b = w_.model->bodies[k];
+    Motion m;
+    for (int i = 0; i < d; ++i) m[i] = v[static_cast<std::size_t>(i)];
+    m = Space::to_child(b.edge, b.kind, w_.body[k].edge, m);
+    Column out;
+    for (int i = 0; i < d; ++i) out[static_cast<std::size_t>(i)] = m[i];
+    return out;
+  }
+  Force to_parent(std::size_t k, const Column& v) const {
+    const auto& b = w_.model->bodies[k];
+    Force f;
+    for (int i = 0; i < d; ++i) f[i] = v[static_cast<std::size_t>(i)];
+    return Space::to_parent(b.edge, b.kind, w_.body[k].edge, f);
+  }
+
+  const Work& w_;
+  std::vector<JointBlocks> joint_;
+  std::vector<Column> a_;  ///< of each body
+  int stuck_ = -1;
+};
+
+}  // namespace momenta
