@@ -34,10 +34,10 @@ void list(const Each& each,
 template <class Each>
 void list(const Each& each,
           auto&& s) requires std::is_same_v<std::remove_cvref_t<decltype(s)>, Counters> {
-  auto& [steps, rejected, evaluations, jacobians, factorizations, newton_iterations] = s;
+  auto& [steps, rejected, evaluations, jacobians, factorizations, newton_iterations, detours] = s;
   each("steps", steps), each("rejected", rejected), each("evaluations", evaluations);
   each("jacobians", jacobians), each("factorizations", factorizations);
-  each("newton_iterations", newton_iterations);
+  each("newton_iterations", newton_iterations), each("detours", detours);
 }
 
 template <class Each>
@@ -60,8 +60,8 @@ void list(const Each& each,
 template <class Each>
 void list(const Each& each,
           auto&& s) requires std::is_same_v<std::remove_cvref_t<decltype(s)>, RunResult::Passage> {
-  auto& [t, pivot] = s;
-  each("t", t), each("pivot", pivot);
+  auto& [t, pivot, ambiguous] = s;
+  each("t", t), each("pivot", pivot), each("ambiguous", ambiguous);
 }
 
 template <class Each>
