@@ -47,6 +47,7 @@ class Assembler {
     a.start.q = mechanism_.tree().q0;
     a.start.u = mechanism_.tree().u0;
     if (mechanism_.m() > 0) {
+      if (mechanism_.nv() == 0) nothing_moves();
       close_positions(a);
       close_velocities(a);
       judge_rank(a);
@@ -338,6 +339,13 @@ class Assembler {
   [[noreturn]] void no_inertia(int rate) const {
     throw SceneError(mechanism_.scene().where({}) +
                      "the mechanism cannot move at its start: " + mechanism_.no_inertia(rate));
+  }
+
+  [[noreturn]] void nothing_moves() const {
+    const LoopSpec& loop = mechanism_.scene().loops.front();
+    throw SceneError(mechanism_.scene().where(loop.at) + "loop '" + loop.name +
+                     "' ties bodies of which none can move: expected a joint that is neither a "
+                     "weld nor driven");
   }
 
   void normalise(Eigen::VectorXd& q) const {

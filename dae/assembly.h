@@ -36,8 +36,8 @@ struct Assembly {
 /// they moved a joint by more than 0.1 the gap is also closed continuously, δ' = −(JᵀJ + |Φ|²)⁻¹Jᵀ
 /// Φ in steps of at most 0.05; if that ends clearly nearer to the guess it is taken. `branch` says
 /// so, or that it got stuck where the equations lose rank, so that the guess does not tell.
-/// @throws SceneError naming the loops that stay open and by how much, or the held rates that
-/// cannot be met.
+/// @throws SceneError naming the loops that stay open and by how much, the held rates that cannot
+/// be met, or a loop where no joint can move.
 Assembly assemble(const Mechanism& mechanism);
 
 }  // namespace momenta

@@ -10,6 +10,7 @@ namespace momenta {
 
 class Reference {
  public:
+  Reference() = default;
   /// Reads the file. @throws SceneError: file, line, what was found, what was expected.
   explicit Reference(const std::filesystem::path& file);
   /// Values by time, by column (without t), of a solution from elsewhere: `source` names it.
@@ -25,6 +26,7 @@ class Reference {
   const std::vector<std::string>& columns() const {
     return columns_;
   }  ///< without t, "name [unit]"
+  const std::vector<std::vector<double>>& values() const { return values_; }  ///< by time, column
 
   /// Matches the columns with those of a trajectory ("t [s]" first). @throws SceneError naming a
   /// column that the trajectory does not have.

@@ -35,6 +35,9 @@ int drift(const Options& o, const DriftOptions& d) {
   request.reference = reference.get();
   // One form that grinds to a halt must not keep the others' results from the user.
   request.max_cpu_seconds = o.cpu_limit.value_or(60);
+  expect_own_results(o.out, {"trajectory.csv", "stress.json"});
+  const auto journal = keep_runs(o);
+  request.journal = journal.get();
   StudyResult study;
   {
     ProgressLine line(o.quiet);
@@ -45,7 +48,7 @@ int drift(const Options& o, const DriftOptions& d) {
   }
   study.reference = o.reference.string();
   describe(study, o, *mechanism, a);
-  return publish(study, conclusion(study) + "\n", o);
+  return publish(study, conclusion(study) + "\n", o, journal.get());
 }
 
 }  // namespace momenta::program

@@ -139,6 +139,16 @@ int main(int argc, char** argv) {
       std::fprintf(stderr, "momenta: %s\n", e.what());
     return bad_input;
   }
+  for (const CLI::App* verb : app.get_subcommands()) {
+    o.asked = verb->get_name();
+    for (const CLI::Option* option : verb->get_options()) {
+      const std::string name = option->get_name();
+      if (option->count() == 0 || name == "scene" || name == "--reference" || name == "--out" ||
+          name == "--json" || name == "--quiet" || name == "--threads")
+        continue;
+      for (const std::string& value : option->results()) o.asked += " " + name + "=" + value;
+    }
+  }
   try {
     if (*check_verb) return check(o);
     if (*assemble_app) return assemble_verb(o);

@@ -25,6 +25,11 @@ extern "C" void take_signal(int) {
   signal_came = 1;
 }
 
+std::string content_of(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
 }  // namespace
 
 void add_scene(CLI::App& verb, Options& o) {
@@ -100,8 +105,7 @@ void describe(StudyResult& study, const Options& o, const Mechanism& mechanism,
               const Assembly& assembly) {
   study.scene = mechanism.scene().name;
   study.scene_file = o.scene.string();
-  std::ifstream in(o.scene, std::ios::binary);
-  study.scene_hash = digest(std::string(std::istreambuf_iterator<char>(in), {}));
+  study.scene_hash = digest(content_of(o.scene));
   study.command = o.command;
   study.plan = mechanism.plan_lines();
   study.sketch = sketch(mechanism, assembly.start.t, assembly.start.q);
@@ -116,18 +120,49 @@ std::vector<std::string> names_in(const std::string& list) {
   return names;
 }
 
+void expect_own_results(const std::filesystem::path& out, const std::vector<const char*>& foreign) {
+  for (const char* name : foreign)
+    if (!out.empty() && std::filesystem::exists(out / name))
+      throw std::invalid_argument("--out " + out.string() + " holds the " + name +
+                                  " of another verb; expected a directory of its own");
+}
+
+std::unique_ptr<Journal> keep_runs(const Options& o) {
+  if (o.out.empty()) return nullptr;
+  Journal::Study study{"", build_digest(), o.command};
+  for (const auto& file : {o.scene, o.reference}) study.digest += digest(content_of(file)) + " ";
+  study.digest = digest(study.digest + o.asked);
+  auto journal = std::make_unique<Journal>(o.out / "runs.jsonl", study);
+  if (!o.quiet && journal->of_another_build())
+    std::fprintf(stderr, "momenta: %s is of another build of the program: begun anew\n",
+                 journal->file().c_str());
+  return journal;
+}
+
+void close(Journal* journal, std::size_t runs, bool over, const Options& o) {
+  if (!journal) return;
+  if (!o.quiet && journal->runs_taken() > 0)
+    std::fprintf(stderr, "momenta: %d of %zu runs taken from %s\n", journal->runs_taken(), runs,
+                 journal->file().c_str());
+  if (!journal->trouble().empty())
+    std::fprintf(stderr, "momenta: %s\n", journal->trouble().c_str());
+  if (over) journal->remove();
+}
+
 bool write_result(const std::filesystem::path& file, std::string_view content) {
   const auto problem = atomic_write(file, content);
   if (problem) std::fprintf(stderr, "momenta: %s\n", problem->c_str());
   return !problem;
 }
 
-int publish(const StudyResult& study, const std::string& words, const Options& o) {
+int publish(const StudyResult& study, const std::string& words, const Options& o,
+            Journal* journal) {
   const std::string json = study_json(study).dump(2) + "\n";
   if (!o.out.empty() && (!write_result(o.out / "summary.json", json) ||
                          !write_result(o.out / "study.csv", study_csv(study)) ||
                          !write_result(o.out / "index.html", drift_page(study))))
     return run_failed;
+  close(journal, study.runs.size(), !interrupted(), o);
   if (o.json)
     std::fputs(json.c_str(), stdout);
   else if (!o.quiet)

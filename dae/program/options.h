@@ -3,6 +3,7 @@
 
 #include <momenta/dae/assembly.h>
 #include <momenta/dae/report/json.h>
+#include <momenta/dae/study/journal.h>
 #include <momenta/dae/study/run_form.h>
 
 #include <CLI/CLI.hpp>
@@ -16,6 +17,7 @@ inline constexpr int done = 0, run_failed = 1, bad_input = 2;
 
 struct Options {
   std::string command;  ///< as typed
+  std::string asked;    ///< the verb and its options, but for where and how results are told
   std::filesystem::path scene;
   std::string algebra = "auto", kkt = "auto";
   std::string form = "momentum", integrator, gauge;
@@ -48,9 +50,19 @@ std::vector<std::string> names_in(const std::string& list);
 /// Writes a result file; on failure prints the sentence and returns false.
 bool write_result(const std::filesystem::path& file, std::string_view content);
 
+/// Finished runs of this study, kept beside its results until it is over; null without --out.
+std::unique_ptr<Journal> keep_runs(const Options& o);
+
 /// Writes a study's files where --out says, prints its table and `words`, or its JSON, and returns
 /// the exit status.
-int publish(const StudyResult& study, const std::string& words, const Options& o);
+int publish(const StudyResult& study, const std::string& words, const Options& o, Journal* journal);
+
+/// Refuses a directory that holds results of a verb of which this one would replace some and leave
+/// others. @throws std::invalid_argument
+void expect_own_results(const std::filesystem::path& out, const std::vector<const char*>& foreign);
+/// Says how many runs were taken from the journal and what is amiss with it; removes it where the
+/// study is over and written.
+void close(Journal* journal, std::size_t runs, bool over, const Options& o);
 
 /// True once SIGINT or SIGTERM came: runs stop at their next sample and keep what they have.
 bool interrupted();

@@ -57,6 +57,7 @@ int run(const Options& o) {
   request.reference = reference.get();
   request.keep_trajectory = true;
   request.max_cpu_seconds = o.cpu_limit.value_or(0);
+  expect_own_results(o.out, {"study.csv", "stress.json"});
   ProgressLine line(o.quiet);
   request.progress = [&](double t) {
     line.show(s.form + "  t = " + std::to_string(t) + " s");

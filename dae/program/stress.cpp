@@ -66,6 +66,9 @@ int stress(const Options& o, const StressOptions& options) {
   request.threads = options.threads > 0
                         ? options.threads
                         : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  expect_own_results(o.out, {"study.csv", "trajectory.csv"});
+  const auto journal = keep_runs(o);
+  request.journal = journal.get();
   StressResult result;
   {
     ProgressLine line(o.quiet);
@@ -80,6 +83,10 @@ int stress(const Options& o, const StressOptions& options) {
                          !write_result(o.out / "stress.csv", stress_csv(result)) ||
                          !write_result(o.out / "index.html", stress_page(result, title))))
     return run_failed;
+  std::size_t runs = 0;
+  for (const LadderResult& ladder : result.ladders)
+    for (const auto& climb : ladder.runs) runs += climb.size();
+  close(journal.get(), runs, result.complete, o);
   if (o.json)
     std::fputs(json.c_str(), stdout);
   else if (!o.quiet)

@@ -2,6 +2,7 @@
 #include <momenta/dae/report/number_text.h>
 #include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/study/own_reference.h>
+#include <momenta/dae/study/run_record.h>
 #include <momenta/dae/study/work_study.h>
 
 #include <cmath>
@@ -46,17 +47,25 @@ int work(const Options& o, const WorkOptions& w) {
   for (int i = 0; i < w.step_rungs; ++i) request.steps.push_back(std::ldexp(step, 1 - i));
   request.samples = o.samples.value_or(own_reference_rows);
   request.max_cpu_seconds = o.cpu_limit.value_or(10);
+  expect_own_results(o.out, {"trajectory.csv", "stress.json"});
+  const auto journal = keep_runs(o);
+  request.journal = journal.get();
   StudyResult study;
   study.drift_study = false;
   study.reference = o.reference.string();
   {
     ProgressLine line(o.quiet);
     if (!reference && !w.no_reference) {
-      auto own =
-          own_reference(*mechanism, a.start, request.end_time, own_reference_rows, [&](double t) {
-            line.show("reference  t = " + compact(t, 4) + " s");
-            return !interrupted();
-          });
+      auto known = recall<OwnReference>(journal.get(), "reference");
+      if (known) known->reference.bind(trajectory_columns(*mechanism));
+      OwnReference own = known
+                             ? *std::move(known)
+                             : own_reference(*mechanism, a.start, request.end_time,
+                                             own_reference_rows, [&](double t) {
+                                               line.show("reference  t = " + compact(t, 4) + " s");
+                                               return !interrupted();
+                                             });
+      if (journal && !known) journal->add("reference", record_of(own));
       reference = std::make_unique<Reference>(std::move(own.reference));
       study.reference =
           "quadruple precision: acceleration form projected at each step, extrapolation; two "
@@ -73,7 +82,7 @@ int work(const Options& o, const WorkOptions& w) {
   const bool own = o.reference.empty() && reference;
   if (own && !o.out.empty() && !write_result(o.out / "reference.csv", reference->csv()))
     return run_failed;
-  return publish(study, advice(study), o);
+  return publish(study, advice(study), o, journal.get());
 }
 
 }  // namespace momenta::program

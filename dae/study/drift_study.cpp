@@ -1,5 +1,6 @@
 #include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/study/drift_study.h>
+#include <momenta/dae/study/run_record.h>
 
 #include <algorithm>
 
@@ -92,7 +93,13 @@ std::vector<RunResult> run_drift_study(const Mechanism& mechanism, const Start& 
                                  t / request.end_time);
         return going;
       };
+    const std::string key = key_of(runs[i]);
+    if (auto known = recall<RunResult>(request.journal, key)) {
+      results.push_back(*std::move(known));
+      continue;
+    }
     results.push_back(run_form(mechanism, start, run));
+    if (request.journal && going) request.journal->add(key, record_of(results.back()));
   }
   if (going)
     time_runs(mechanism, start, results, 5, 3, [&](std::size_t i) {

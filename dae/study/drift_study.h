@@ -1,6 +1,7 @@
 #pragma once
 // The same mechanism through every form: the main job.
 
+#include <momenta/dae/study/journal.h>
 #include <momenta/dae/study/run_form.h>
 
 #include <functional>
@@ -24,6 +25,7 @@ struct DriftRequest {
                          ///< kind is added
   const Reference* reference = nullptr;
   double max_cpu_seconds = 0;
+  Journal* journal = nullptr;  ///< finished runs are taken from it, and new ones recorded
   /// Before each run (number, of how many, label) and during it (fraction done); false stops the
   /// study.
   std::function<bool(int, int, const std::string&, double)> progress;

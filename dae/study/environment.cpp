@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <ctime>
 #include <fstream>
+#include <iterator>
 
 namespace momenta {
 
@@ -40,6 +41,15 @@ Environment environment() {
   std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
   e.date = text;
   return e;
+}
+
+std::string build_digest() {
+  const Environment e = environment();
+  std::string all = e.cpu + e.compiler + e.flags + e.build_type;
+  for (const auto& [name, version] : e.versions) all += name + version;
+  std::ifstream program("/proc/self/exe", std::ios::binary);
+  all.append(std::istreambuf_iterator<char>(program), {});
+  return digest(all);
 }
 
 std::string digest(std::string_view text) {

@@ -8,6 +8,10 @@ namespace momenta {
 /// Processor, compiler, flags, versions of the libraries, date: what stands beside every figure.
 Environment environment();
 
+/// Tells this build of the program on this processor from others: what may change a result's
+/// digits.
+std::string build_digest();
+
 /// 64-bit FNV-1a digest of a text, in hexadecimal: tells one scene from another, nothing more.
 std::string digest(std::string_view text);
 

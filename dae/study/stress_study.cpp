@@ -3,6 +3,7 @@
 #include <momenta/dae/solver/stopping.h>
 #include <momenta/dae/study/environment.h>
 #include <momenta/dae/study/own_reference.h>
+#include <momenta/dae/study/run_record.h>
 #include <momenta/dae/study/stress_study.h>
 
 #include <algorithm>
@@ -43,7 +44,7 @@ struct Ground {
   std::string refused;
 };
 
-Ground prepare(const Rung& rung, const StressRequest& request,
+Ground prepare(const Rung& rung, const std::string& name, const StressRequest& request,
                const std::function<bool()>& going_on) {
   Ground g;
   try {
@@ -58,18 +59,25 @@ Ground prepare(const Rung& rung, const StressRequest& request,
   g.mass = 0;
   for (const BodySpec& b : rung.scene.bodies) g.mass += b.mass;
   if (!(request.reference_cpu_limit > 0)) return g;
-  const double from = thread_seconds();
-  try {
-    OwnReference own =
-        own_reference(*g.mechanism, g.start, rung.scene.run.end_time, reference_rows, [&](double) {
-          return thread_seconds() - from < request.reference_cpu_limit && going_on();
-        });
-    // A motion that two tolerances in quadruple precision do not agree on is no judge.
-    if (own.accuracy < 1e-3 * request.bound) {
-      g.accuracy = own.accuracy;
-      g.reference = std::make_unique<Reference>(std::move(own.reference));
+  const std::string key = "reference " + name;
+  auto own = recall<OwnReference>(request.journal, key);
+  if (!own) {
+    own.emplace().accuracy = not_measured;  // too long, or no such solution: judged without
+    const double from = thread_seconds();
+    try {
+      own = own_reference(
+          *g.mechanism, g.start, rung.scene.run.end_time, reference_rows, [&](double) {
+            return thread_seconds() - from < request.reference_cpu_limit && going_on();
+          });
+    } catch (const std::runtime_error&) {
     }
-  } catch (const std::runtime_error&) {  // too long, or no such solution: judged without
+    if (request.journal && going_on()) request.journal->add(key, record_of(*own));
+  }
+  // A motion that two tolerances in quadruple precision do not agree on is no judge.
+  if (own->accuracy < 1e-3 * request.bound) {
+    own->reference.bind(trajectory_columns(*g.mechanism));
+    g.accuracy = own->accuracy;
+    g.reference = std::make_unique<Reference>(std::move(own->reference));
   }
   return g;
 }
@@ -250,8 +258,9 @@ StressResult run_stress_study(const StressRequest& request) {
   share(request.threads, places.size(), [&](std::size_t i) {
     const auto [l, k] = places[i];
     const Rung& rung = request.ladders[l].rungs[k];
-    if (!tell(request.ladders[l].name + " " + rung.label + ": reference", 1)) return;
-    Ground& g = grounds[l][k] = prepare(rung, request, [&] { return going.load(); });
+    const std::string name = request.ladders[l].name + " " + rung.label;
+    if (!tell(name + ": reference", 1)) return;
+    Ground& g = grounds[l][k] = prepare(rung, name, request, [&] { return going.load(); });
     result.ladders[l].refused[k] = g.refused;
     result.ladders[l].reference[k] = g.accuracy;
   });
@@ -266,24 +275,26 @@ StressResult run_stress_study(const StressRequest& request) {
       const Ground& g = grounds[l][static_cast<std::size_t>(k)];
       if (!g.refused.empty() || !g.mechanism) continue;
       if (!competes(contestant, *g.mechanism)) continue;
-      if (!tell(result.ladders[l].name + " " +
-                    result.ladders[l].rungs[static_cast<std::size_t>(k)] + ": " + contestant.form +
-                    " " + contestant.integrator,
-                1))
-        return;
+      const std::string name =
+          result.ladders[l].name + " " + result.ladders[l].rungs[static_cast<std::size_t>(k)];
+      if (!tell(name + ": " + contestant.form + " " + contestant.integrator, 1)) return;
       RunRequest run;
       run.settings = settings_of(contestant, *g.mechanism, request.rtol);
       run.reference = g.reference.get();
       run.max_cpu_seconds = request.cpu_limit;
       run.progress = [&](double) { return going.load(); };
-      StressRun r;
-      r.contestant = contestant;
-      r.rung = k;
-      r.run = run_form(*g.mechanism, g.start, run);
-      if (!going) return;
-      judge(r, g, request.bound, request.cpu_limit);
-      r.run.series = {};
-      climb.push_back(std::move(r));
+      const std::string key = name + key_of(run.settings);
+      auto r = recall<StressRun>(request.journal, key);
+      if (!r) {
+        r.emplace().run = run_form(*g.mechanism, g.start, run);
+        if (!going) return;
+        judge(*r, g, request.bound, request.cpu_limit);
+        r->run.series = {};
+        if (request.journal) request.journal->add(key, record_of(*r));
+      }
+      r->contestant = contestant;
+      r->rung = k;
+      climb.push_back(*std::move(r));
       if (request.ladders[l].rising && climb.back().verdict != Verdict::survived) break;
     }
     const std::lock_guard lock(turn);

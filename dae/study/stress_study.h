@@ -12,6 +12,7 @@
 // stopped, or took too long, said so; one that went wrong did not.
 
 #include <momenta/dae/study/extremes.h>
+#include <momenta/dae/study/journal.h>
 #include <momenta/dae/study/run_form.h>
 
 #include <functional>
@@ -81,6 +82,7 @@ struct StressRequest {
   double cpu_limit = 10;            ///< of one run [s]
   double reference_cpu_limit = 10;  ///< of one rung's reference in quadruple precision [s]; 0: none
   int threads = 1;
+  Journal* journal = nullptr;  ///< finished runs are taken from it, and new ones recorded
   /// Called before each run; false ends the study. Calls do not overlap.
   std::function<bool(int done, int total, const std::string& what)> progress;
 };

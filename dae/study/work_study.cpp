@@ -1,4 +1,5 @@
 #include <momenta/dae/solver/integrators.h>
+#include <momenta/dae/study/run_record.h>
 #include <momenta/dae/study/work_study.h>
 
 #include <algorithm>
@@ -74,7 +75,13 @@ std::vector<RunResult> run_work_study(const Mechanism& mechanism, const Start& s
                                ladders[i].form + " " + ladders[i].integrator, t / request.end_time);
           return going;
         };
-      results.push_back(run_form(mechanism, start, run));
+      const std::string key = key_of(run.settings);
+      if (auto known = recall<RunResult>(request.journal, key)) {
+        results.push_back(*std::move(known));
+      } else {
+        results.push_back(run_form(mechanism, start, run));
+        if (request.journal && going) request.journal->add(key, record_of(results.back()));
+      }
       // A tighter rung would need longer still; one that failed may be followed by one that works.
       if (!going || results.back().status == "time limit") break;
     }

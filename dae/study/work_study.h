@@ -2,6 +2,7 @@
 // Error against run time: every form and integrator asked for, each over a ladder of tolerances, or
 // of steps where a method has no error control.
 
+#include <momenta/dae/study/journal.h>
 #include <momenta/dae/study/run_form.h>
 
 #include <functional>
@@ -20,6 +21,7 @@ struct WorkRequest {
   int samples = 100;
   const Reference* reference = nullptr;  ///< bound; errors are largest over its times
   double max_cpu_seconds = 10;  ///< of one run; a ladder ends at the first rung that needs more
+  Journal* journal = nullptr;   ///< finished runs are taken from it, and new ones recorded
   /// Before each run (number, of how many, label) and during it (fraction done); false stops the
   /// study.
   std::function<bool(int, int, const std::string&, double)> progress;

@@ -6,7 +6,9 @@
 #include <momenta/core/tree/tree.h>
 
 #include <Eigen/Geometry>
+#include <cstdint>
 #include <random>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -44,11 +46,14 @@ struct TreeState {
 class RandomTree {
  public:
   explicit RandomTree(unsigned seed) : bits_(seed) {}
+  /// From bytes, one for each choice, then from a generator: what searches for scenes or makes them
+  /// smaller works on bytes. Zeros mostly mean less: nothing that chance() decides on.
+  explicit RandomTree(std::span<const unsigned char> bytes) : bytes_(bytes) {}
 
   double uniform(double low, double high) {
-    return low + (high - low) * (static_cast<double>(bits_() >> 11) / 9007199254740992.0);
+    return low + (high - low) * (static_cast<double>(bits() >> 11) / 9007199254740992.0);
   }
-  int below(int count) { return static_cast<int>(bits_() % static_cast<unsigned>(count)); }
+  int below(int count) { return static_cast<int>(bits() % static_cast<unsigned>(count)); }
   bool chance(double p) { return uniform(0, 1) < p; }
 
   Eigen::Vector3d vector(double size) {
@@ -90,7 +95,15 @@ class RandomTree {
 
   void effects(const TreeRecipe& recipe, Scene& s, int k);
 
+  std::uint64_t bits() {
+    if (bytes_.empty()) return bits_();
+    const std::uint64_t all = 0x0101010101010101 * std::uint64_t{bytes_.front()};
+    bytes_ = bytes_.subspan(1);
+    return ~all;
+  }
+
   std::mt19937_64 bits_;
+  std::span<const unsigned char> bytes_;
 };
 
 }  // namespace momenta::equations

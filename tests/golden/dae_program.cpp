@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -205,6 +206,56 @@ TEST_F(Program, WorkMakesItsOwnReferenceAndAdvises) {
   expect_refused("work '" + example("four_bar") + "' --from 1e-9 --to 1e-5",
                  "expected the loosest tolerance first");
   expect_refused("work '" + example("four_bar") + "' --forms acceleraton", "acceleraton");
+}
+
+TEST_F(Program, KilledStudyResumesAndStudiesDoNotMix) {
+  const std::string program = std::string(MOMENTA_BINARY_DIR) + "/dae/momenta",
+                    study = "drift '" + example("four_bar") +
+                            "' --end 40 --samples 50 --forms "
+                            "momentum,acceleration,momentum-index2,stabilised-index2";
+  const fs::path whole = folder_ / "whole", killed = folder_ / "killed",
+                 journal = killed / "runs.jsonl";
+  ASSERT_EQ(call(study + " --out '" + whole.string() + "'").status, 0);
+  const std::string kill = "'" + program + "' " + study + " --out '" + killed.string() +
+                           "' >/dev/null 2>&1 & pid=$!; for i in $(seq 3000); do "
+                           "[ \"$(cat '" +
+                           journal.string() +
+                           "' 2>/dev/null | wc -l)\" -ge 4 ] && break; sleep 0.01; done; "
+                           "kill -9 $pid; wait $pid 2>/dev/null";
+  const int raw = std::system(kill.c_str());  // NOLINT: the command is this test's own
+  ASSERT_EQ(WEXITSTATUS(raw), 128 + SIGKILL);
+  ASSERT_FALSE(fs::exists(killed / "summary.json"));
+  const std::string before = text_of(journal);
+  const auto lines = std::count(before.begin(), before.end(), '\n');
+  ASSERT_GE(lines, 4);
+
+  // Neither another scene nor other settings nor another verb takes the place.
+  const std::string there = " --out '" + killed.string() + "'";
+  expect_refused("drift '" + example("slider_crank") + "' --end 40" + there, "unfinished study");
+  expect_refused(study + " --rtol 1e-7" + there, "unfinished study, 'momenta drift");
+  expect_refused("work '" + example("four_bar") + "' --end 40" + there, "unfinished study");
+  EXPECT_EQ(text_of(journal), before);
+
+  const Outcome o = call(study + there);
+  EXPECT_EQ(o.status, 0) << o.err;
+  const auto all = nlohmann::json::parse(text_of(whole / "summary.json")).size();
+  EXPECT_NE(o.err.find("momenta: " + std::to_string(lines - 1) + " of " + std::to_string(all) +
+                       " runs taken from "),
+            std::string::npos)
+      << o.err;
+  EXPECT_FALSE(fs::exists(journal));
+  const auto untimed = [](const fs::path& folder) {
+    auto runs = nlohmann::json::parse(text_of(folder / "summary.json"));
+    for (auto& run : runs) {
+      run.erase("time");
+      run["environment"].erase("date");
+    }
+    return runs;
+  };
+  EXPECT_EQ(untimed(killed), untimed(whole));
+  // Finished results are another verb's neighbours no more than unfinished ones.
+  expect_refused("run '" + example("four_bar") + "' --end 1" + there, "study.csv of another verb");
+  expect_refused("stress '" + example("four_bar") + "'" + there, "study.csv of another verb");
 }
 
 TEST_F(Program, IndexAgreesWithCheckAndIsWritten) {

@@ -200,14 +200,6 @@ TEST(Extremes, SizeAndSpeedFromRestAreSimilarMotions) {
   }
 }
 
-TEST(Extremes, TurnedRoomSameMotion) {
-  Scene scene = example("four_bar/scene.toml");
-  scene.run.end_time = 3;
-  const Eigen::Quaterniond r(Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 3).normalized()));
-  const Ends plain = run_to_end(scene), turned_end = run_to_end(turned(scene, r));
-  EXPECT_LT((turned_end.q - plain.q).norm(), 1e-10);
-}
-
 TEST(Extremes, WhatASceneLacksIsSaid) {
   const Scene chain = example("pendulum/scene.toml");
   EXPECT_EQ(lacks(chain, Extreme::stiffness), "no spring in it");

@@ -1,0 +1,222 @@
+#include <momenta/dae/study/run_record.h>
+
+#include <cmath>
+#include <type_traits>
+
+namespace momenta {
+namespace {
+
+using Record = nlohmann::json;
+
+// Every structure lists its members once, for both ways. The bindings name all of them: one that is
+// added and not listed here does not compile.
+
+template <class Each>
+void list(const Each& each,
+          auto&& s) requires std::is_same_v<std::remove_cvref_t<decltype(s)>, RunSettings> {
+  auto& [form, integrator, gauge, rtol, atol, step, end_time, samples, project, baumgarte_alpha,
+         baumgarte_beta, beta, penalty, spectral_radius, kkt] = s;
+  each("form", form), each("integrator", integrator), each("gauge", gauge);
+  each("rtol", rtol), each("atol", atol), each("step", step), each("end_time", end_time);
+  each("samples", samples), each("project", project);
+  each("baumgarte_alpha", baumgarte_alpha), each("baumgarte_beta", baumgarte_beta);
+  each("beta", beta), each("penalty", penalty), each("spectral_radius", spectral_radius);
+  each("kkt", kkt);
+}
+
+template <class Each>
+void list(const Each& each,
+          auto&& s) requires std::is_same_v<std::remove_cvref_t<decltype(s)>, Growth> {
+  auto& [exponent, half_range, from, to] = s;
+  each("exponent", exponent), each("half_range", half_range), each("from", from), each("to", to);
+}
+
+template <class Each>
+void list(const Each& each,
+          auto&& s) requires std::is_same_v<std::remove_cvref_t<decltype(s)>, Counters> {
+  auto& [steps, rejected, evaluations, jacobians, factorizations, newton_iterations, detours] = s;
+  each("steps", steps), each("rejected", rejected), each("evaluations", evaluations);
+  each("jacobians", jacobians), each("factorizations", factorizations);
+  each("newton_iterations", newton_iterations), each("detours", detours);
+}
+
+template <class Each>
+void list(const Each& each,
+          auto&& s) requires std::is_same_v<std::remove_cvref_t<decltype(s)>, Series> {
+  auto& [t, position_drift, velocity_drift, energy, energy_error, impulse, position_error,
+         velocity_error] = s;
+  each("t", t), each("position_drift", position_drift), each("velocity_drift", velocity_drift);
+  each("energy", energy), each("energy_error", energy_error), each("impulse", impulse);
+  each("position_error", position_error), each("velocity_error", velocity_error);
+}
+
+template <class Each>
+void list(const Each& each,
+          auto&& s) requires std::is_same_v<std::remove_cvref_t<decltype(s)>, RunResult::Faded> {
+  auto& [loop, row, evaluations] = s;
+  each("loop", loop), each("row", row), each("evaluations", evaluations);
+}
+
+template <class Each>
+void list(const Each& each,
+          auto&& s) requires std::is_same_v<std::remove_cvref_t<decltype(s)>, RunResult::Passage> {
+  auto& [t, pivot, ambiguous] = s;
+  each("t", t), each("pivot", pivot), each("ambiguous", ambiguous);
+}
+
+template <class Each>
+void list(const Each& each,
+          auto&& s) requires std::is_same_v<std::remove_cvref_t<decltype(s)>, RunResult> {
+  auto& [scene, settings, status, reason, stopped_at, counters, partitions, jacobian, linear_solver,
+         cpu_s, wall_s, repeats, position_drift_max, velocity_drift_max, between_steps_max,
+         position_growth, velocity_growth, energy_error_max, kinetic_energy_max, energy_scale,
+         position_error_max, velocity_error_max, faded_rows, passages, least_pivot, series,
+         trajectory] = s;
+  each("scene", scene), each("settings", settings), each("status", status), each("reason", reason);
+  each("stopped_at", stopped_at), each("counters", counters), each("partitions", partitions);
+  each("jacobian", jacobian), each("linear_solver", linear_solver);
+  each("cpu_s", cpu_s), each("wall_s", wall_s), each("repeats", repeats);
+  each("position_drift_max", position_drift_max), each("velocity_drift_max", velocity_drift_max);
+  each("between_steps_max", between_steps_max);
+  each("position_growth", position_growth), each("velocity_growth", velocity_growth);
+  each("energy_error_max", energy_error_max), each("kinetic_energy_max", kinetic_energy_max);
+  each("energy_scale", energy_scale);
+  each("position_error_max", position_error_max), each("velocity_error_max", velocity_error_max);
+  each("faded_rows", faded_rows), each("passages", passages), each("least_pivot", least_pivot);
+  each("series", series);
+  static_cast<void>(trajectory);  // no study keeps one
+}
+
+template <class Each>
+void list(const Each& each,
+          auto&& s) requires std::is_same_v<std::remove_cvref_t<decltype(s)>, Contestant> {
+  auto& [form, integrator] = s;
+  each("form", form), each("integrator", integrator);
+}
+
+template <class Each>
+void list(const Each& each,
+          auto&& s) requires std::is_same_v<std::remove_cvref_t<decltype(s)>, StressRun> {
+  auto& [contestant, rung, verdict, cause, at, opening, energy, error, loop_speed, run] = s;
+  each("contestant", contestant), each("rung", rung), each("verdict", verdict);
+  each("cause", cause), each("at", at), each("opening", opening), each("energy", energy);
+  each("error", error), each("loop_speed", loop_speed), each("run", run);
+}
+
+template <class T>
+Record written(const T& value);
+template <class T>
+void read(const Record& record, T& value);
+
+// Numbers to their last digit, as the library prints them; others by name.
+template <>
+Record written(const double& value) {
+  return std::isfinite(value) ? Record(value)
+         : std::isnan(value)  ? Record("nan")
+                              : Record(value > 0 ? "inf" : "-inf");
+}
+template <>
+void read(const Record& record, double& value) {
+  if (!record.is_string()) {
+    value = record.get<double>();
+    return;
+  }
+  const auto& name = record.get_ref<const std::string&>();
+  value = name == "inf"    ? std::numeric_limits<double>::infinity()
+          : name == "-inf" ? -std::numeric_limits<double>::infinity()
+                           : not_measured;
+}
+
+template <class T>
+struct IsList : std::false_type {};
+template <class T>
+struct IsList<std::vector<T>> : std::true_type {};
+
+template <class T>
+Record written(const T& value) {
+  if constexpr (IsList<T>::value) {
+    Record record = Record::array();
+    for (const auto& x : value) record.push_back(written(x));
+    return record;
+  } else if constexpr (std::is_enum_v<T>) {
+    return static_cast<int>(value);
+  } else if constexpr (std::is_arithmetic_v<T> || std::is_same_v<T, std::string>) {
+    return value;
+  } else {
+    Record record = Record::object();
+    list([&](const char* name, const auto& member) { record[name] = written(member); }, value);
+    return record;
+  }
+}
+
+template <class T>
+void read(const Record& record, T& value) {
+  if constexpr (IsList<T>::value) {
+    value.clear();
+    for (const Record& x : record) read(x, value.emplace_back());
+  } else if constexpr (std::is_enum_v<T>) {
+    value = static_cast<T>(record.get<int>());
+  } else if constexpr (std::is_arithmetic_v<T> || std::is_same_v<T, std::string>) {
+    value = record.get<T>();
+  } else {
+    list([&](const char* name, auto& member) { read(record.at(name), member); }, value);
+  }
+}
+
+template <class T>
+bool read_whole(const Record& record, T& value) {
+  try {
+    read(record, value);
+  } catch (const Record::exception&) {
+    return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+std::string key_of(const RunSettings& settings) {
+  return written(settings).dump();
+}
+
+Record record_of(const RunResult& run) {
+  return written(run);
+}
+Record record_of(const StressRun& run) {
+  return written(run);
+}
+Record record_of(const OwnReference& own) {
+  return {{"accuracy", written(own.accuracy)},
+          {"source", own.reference.file()},
+          {"columns", own.reference.columns()},
+          {"times", written(own.reference.times())},
+          {"values", written(own.reference.values())}};
+}
+
+bool read_record(const Record& record, RunResult& run) {
+  return read_whole(record, run);
+}
+bool read_record(const Record& record, StressRun& run) {
+  return read_whole(record, run);
+}
+bool read_record(const Record& record, OwnReference& own) {
+  std::vector<std::string> columns;
+  std::vector<double> times;
+  std::vector<std::vector<double>> values;
+  try {
+    read(record.at("accuracy"), own.accuracy);
+    read(record.at("columns"), columns);
+    read(record.at("times"), times);
+    read(record.at("values"), values);
+    if (values.size() != times.size()) return false;
+    for (const auto& row : values)
+      if (row.size() != columns.size()) return false;
+    own.reference =
+        Reference(record.at("source"), std::move(columns), std::move(times), std::move(values));
+  } catch (const Record::exception&) {
+    return false;
+  }
+  return true;
+}
+
+}  // namespace momenta

@@ -1,0 +1,36 @@
+#pragma once
+// Runs as JSON that reads back bit for bit, for journals: all of a run but its trajectory.
+
+#include <momenta/dae/study/journal.h>
+#include <momenta/dae/study/own_reference.h>
+#include <momenta/dae/study/stress_study.h>
+
+#include <optional>
+#include <type_traits>
+
+namespace momenta {
+
+/// What a run depends on beside the scene, as a key.
+std::string key_of(const RunSettings& settings);
+
+/// Records of what is kept. Non-finite numbers are strings, since JSON has none.
+nlohmann::json record_of(const RunResult& run);
+nlohmann::json record_of(const StressRun& run);
+nlohmann::json record_of(const OwnReference& reference);
+
+/// Reads a record back; false, and the value is not to be used, where it is none of that kind.
+bool read_record(const nlohmann::json& record, RunResult& run);
+bool read_record(const nlohmann::json& record, StressRun& run);
+bool read_record(const nlohmann::json& record, OwnReference& reference);
+
+/// What the journal holds under a key; nothing without a journal.
+template <class T>
+std::optional<T> recall(Journal* journal, const std::string& key) {
+  const nlohmann::json* record = journal ? journal->find(key) : nullptr;
+  std::optional<T> value(std::in_place);
+  if (!record || !read_record(*record, *value)) return std::nullopt;
+  if constexpr (!std::is_same_v<T, OwnReference>) journal->take_run();
+  return value;
+}
+
+}  // namespace momenta
