@@ -61,7 +61,10 @@ class TextWalk {
       }
       if (c == '"' || c == '\'') {
         begins_line_ = false;
-        if (!skip_string(c)) return;
+        TextWalk here = *this;
+        const bool closed = skip_string(c);
+        if (!closed || here.within_a_word()) here.require_ascii_line();
+        if (!closed) return;
         continue;
       }
       require_ascii("outside strings and comments");
@@ -103,6 +106,15 @@ class TextWalk {
     }
     dots_ = 0;
     if (++values_ > most_values) refuse("more than 4 million values", "a scene of fewer");
+  }
+
+  /// A quote that begins no string: toml++ reads numbers and words on over it.
+  bool within_a_word() const {
+    return i_ > 0 && std::string_view(" \t\r\n=,.[{").find(text_[i_ - 1]) == std::string_view::npos;
+  }
+  void require_ascii_line() {
+    for (; i_ < text_.size() && text_[i_] != '\n'; ++i_)
+      require_ascii("after a quote that is none of a string");
   }
 
   /// After [ or [[ of a table header toml++ takes for granted that a name follows.

@@ -3,6 +3,7 @@
 #include "equations/any_text.h"
 
 #include <gtest/gtest.h>
+#include <momenta/core/scene/read_scene.h>
 
 #include <random>
 #include <string>
@@ -126,6 +127,20 @@ TEST(DamagedScene, BytesFlippedAtRandom) {
     scenes += survives(text);
   }
   EXPECT_GT(scenes, 0);  // some flips change a digit only
+}
+
+// toml++ reads a number on over a quote, and asks of what follows whether it is white.
+TEST(DamagedScene, QuotesWithinWordsBeforeCharactersOutsideAscii) {
+  for (const char* text : {"a = 1.B\"\xef\xbb\xbd = [run]", "a = 1.B\"\xef\xbb\xbd\" = 1",
+                           "a = x'\xef\xbb\xbd' # ü", "a = \"\xef\xbb\xbd\nb = 1"}) {
+    try {
+      parse_scene(text);
+      ADD_FAILURE() << text;
+    } catch (const SceneError& e) {
+      EXPECT_NE(std::string(e.what()).find("a character outside ASCII"), std::string::npos)
+          << e.what();
+    }
+  }
 }
 
 TEST(DamagedScene, PiecesShuffled) {
