@@ -234,11 +234,18 @@ TEST(HalfExplicit, SamplesDoNotChangeTheRun) {
 
 // 81 rods meet singular poses, where Φ_q of a stage and of the place it leads to do not fit
 // together.
+// Steps of its own length take the singular poses as an ODE; short fixed ones run into them.
 TEST(HalfExplicit, NamesTheDependentEquationWhereItStops) {
   const Mechanism mechanism(row_of_four_bars(10, std::numbers::pi / 2, -1));
-  const RunResult r = run_hem5(mechanism, "momentum-index2", 1e-8, 5, 5);
-  ASSERT_EQ(r.status, "failed");
-  EXPECT_NE(r.reason.find("t = "), std::string::npos) << r.reason;
+  const RunResult passes = run_hem5(mechanism, "momentum-index2", 1e-8, 5, 5);
+  EXPECT_EQ(passes.status, "done") << passes.reason;
+  EXPECT_GT(passes.counters.detours, 0);
+  const Start flat = assemble(mechanism).start;
+  const auto row = make_form("momentum-index2", mechanism, {}, flat);
+  IntegrationOptions fixed;
+  fixed.step = 0.001;
+  const auto r = integrate_hem5(*row->dae(), 0, {5.0}, fixed, {});
+  ASSERT_FALSE(r.done);
   EXPECT_NE(r.reason.find("loop '"), std::string::npos) << r.reason;
   EXPECT_NE(r.reason.find("other equations"), std::string::npos) << r.reason;
   // Where all equations are independent nothing is named: a step too long for any solution.
