@@ -498,6 +498,16 @@ TEST_F(Program, FamiliesAreWhatTheirNamesSay) {
   const double crown = person.at("markers").at("crown").at("position").at(2).get<double>();
   const double sole = person.at("markers").at("left_sole").at("position").at(2).get<double>();
   EXPECT_NEAR(crown - sole, 1.75, 0.06);  // knees bent
+  // Jansen's legs walk: for a good third of a turn the foot goes level.
+  const auto walker = start("jansen-legs --n 24");
+  std::vector<double> heights;
+  for (int leg = 1; leg <= 24; ++leg)
+    heights.push_back(
+        walker.at("markers").at("foot" + std::to_string(leg)).at("position").at(1).get<double>());
+  const double lowest = *std::min_element(heights.begin(), heights.end());
+  EXPECT_GE(std::count_if(heights.begin(), heights.end(),
+                          [&](double height) { return height < lowest + 0.01; }),
+            9);
 }
 
 TEST_F(Program, LoopsOfFamiliesCloseAsTheyArePrinted) {
