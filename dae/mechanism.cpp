@@ -83,10 +83,13 @@ const char* name_of(KktChoice choice) {
 void Mechanism::choose_kkt(KktChoice asked) {
   const auto plan = [&](auto& cast) {
     cast.links = build_links(cast.model);
-    cast.plan = plan_loops(cast.model, cast.loops);
-    cast.link_loops = in_link_frames(cast.loops, cast.links);
-    if (!cast.plan.fits())
-      kkt_reason_ = std::to_string(cast.plan.lanes) +
+    cast.swept = swept_loops(cast.model, in_link_frames(cast.loops, cast.links));
+    if (!cast.swept.shared.empty()) {
+      cast.as_given.loops = in_link_frames(cast.loops, cast.links);
+      cast.as_given.plan = plan_loops(cast.model, cast.as_given.loops);
+    }
+    if (!cast.swept.plan.fits())
+      kkt_reason_ = std::to_string(cast.swept.plan.lanes) +
                     " loop equations are open at once, more than " +
                     std::to_string(LoopPlan::most_lanes);
   };
@@ -182,9 +185,17 @@ std::string Mechanism::joint_without_inertia(bool swept) const {
 
 std::unique_ptr<LoopedSweeps> Mechanism::looped_sweeps(int level) const {
   return visit([&](const auto& cast) {
-    return make_looped_sweeps(cast.links, cast.link_loops, cast.plan,
-                              level > 0 ? level : best_level());
+    return make_looped_sweeps(cast.links, cast.swept, level > 0 ? level : best_level());
   });
+}
+std::unique_ptr<LoopedSweeps> Mechanism::looped_sweeps_as_given() const {
+  return visit([](const auto& cast) {
+    const auto& loops = cast.swept.shared.empty() ? cast.swept : cast.as_given;
+    return make_looped_sweeps(cast.links, loops, best_level());
+  });
+}
+bool Mechanism::pairs_anew() const {
+  return visit([](const auto& cast) { return !cast.swept.shared.empty(); });
 }
 bool Mechanism::has_body_forces() const {
   return visit([](const auto& cast) { return cast.model.has_body_forces(); });
@@ -254,8 +265,9 @@ std::vector<std::pair<std::string, std::string>> Mechanism::plan_lines() const {
   std::string how = "dense: Cholesky of M, pivoted and filtered LDLᵀ of the loops";
   if (kkt_ == KktChoice::sweeps)
     how = "loops carried by the sweeps, at most " +
-          std::to_string(visit([](const auto& cast) { return cast.plan.lanes; })) +
-          " equations open at once";
+          std::to_string(visit([](const auto& cast) { return cast.swept.plan.lanes; })) +
+          " equations open at once" +
+          (pairs_anew() ? ", loops that meet in one point paired along the tree" : "");
   else if (kkt_ == KktChoice::sparse)
     how = std::string(tips_first() ? "sparse: filtered LDLᵀ" : "sparse: KLU") +
           " on a pattern analysed once" + (kkt_reason_.empty() ? "" : " (" + kkt_reason_ + ")");

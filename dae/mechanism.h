@@ -62,6 +62,10 @@ class Mechanism {
   /// The sweeps that carry this mechanism's loops, for one instruction level; 0: the machine's
   /// best. @pre kkt() is sweeps
   std::unique_ptr<LoopedSweeps> looped_sweeps(int level = 0) const;
+  /// The same with the loops paired as the scene has them.
+  std::unique_ptr<LoopedSweeps> looped_sweeps_as_given() const;
+  /// Whether ties that meet in one point are paired anew.
+  bool pairs_anew() const;
   bool has_body_forces() const;   ///< springs, dampers or wrenches between points of bodies
   bool has_joint_forces() const;  ///< springs, dampers or torques of joints
   /// Found when first asked for: a long open chain never fills its M.
@@ -97,8 +101,7 @@ class Mechanism {
   struct Cast {
     Model<Space> model;
     LoopModel<Space> loops;
-    LoopPlan plan;
-    LoopModel<Space> link_loops;  ///< points and axes in the frames of the links
+    SweptLoops<Space> swept, as_given;  ///< as_given: only where `swept` pairs ties anew
     decltype(build_links(std::declval<const Model<Space>&>())) links;
   };
   template <class F>

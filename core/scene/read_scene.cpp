@@ -1,6 +1,7 @@
 #include <momenta/core/scene/near_name.h>
 #include <momenta/core/scene/read_scene.h>
 #include <momenta/core/scene/read_tables.h>
+#include <momenta/core/scene/set_numbers.h>
 
 #include <fstream>
 #include <new>
@@ -46,8 +47,14 @@ Scene read_scene(const std::filesystem::path& file) {
   return parse_scene(text_of(file, name), name);
 }
 
-Scene parse_scene(std::string_view text, const std::string& file) try {
-  const reading::Value root = reading::parse_toml(text, file);
+Scene parse_scene(std::string_view text, const std::string& file) {
+  return parse_scene(text, file, {});
+}
+
+Scene parse_scene(std::string_view text, const std::string& file,
+                  const std::vector<Setting>& settings) try {
+  reading::Value root = reading::parse_toml(text, file);
+  reading::set_numbers(root, settings);
   const Fields table(root, "", file);
   table.allow(
       {"name", "gravity", "body", "joint", "loop", "drive", "force", "marker", "assembly", "run"});

@@ -218,6 +218,10 @@ LoopModel<Planar> build_loops(const Scene& scene, const Tree& tree, const Model<
           return normal.dot(axis) > 0 ? 1.0 : -1.0;
         },
         std::move(motion), all, l);
+    if (l.n_points == 2 && l.n_axes == 0 && l.motion < 0 && l.a != l.b) {
+      l.is_tie = true;
+      l.axis_b = {Vec2<double>{{1, 0}}, Vec2<double>{{0, 1}}, {}};
+    }
     append(std::move(l), all);
   }
   return all;

@@ -14,7 +14,9 @@
 //   planar across axis 3      D3, O31 O32            distance                   L
 //   coupler                   Q
 // In a plane: point, spherical, revolute D1 D2; weld D1 D2 O12; prismatic D (across), O12; distance
-// L.
+// L. The D1 D2 of a plane that come alone and that no drive moves are a tie: their b_j are the axes
+// of the ground, so that Φ = x_A − x_B, and the impulse σ is the one on A at x_A and, negated, on B
+// at x_B, whatever its axes.
 //
 // Drives make these functions of time: x_B and b_j move relative to B as prescribed, a_i relative
 // to A, l and c change. A driven coordinate of a loop adds a row: a driven slide the D along it,
@@ -53,6 +55,7 @@ struct LoopModel {
     std::array<std::pair<int, int>, 3> axes{};  ///< (i, j) of the O_ij rows
     int n_axes = 0;
     double gamma = 0;             ///< universal: cosine of the angle between the two axes
+    bool is_tie = false;          ///< D1 D2 along axes of the ground
     double per_length = 0;        ///< distance: 1/l₀; then L is the only row
     double given = 0;             ///< l or c
     double across2 = 0;           ///< squared distance across the plane of a planar scene
@@ -60,6 +63,8 @@ struct LoopModel {
     int motion = -1;              ///< place in `motions`; −1: nothing is prescribed
     double least_scale = 0;       ///< of rows of points: Mechanism::least_scales()
 
+    /// Whose axes the b_j are.
+    int axes_of_b() const { return is_tie ? -1 : b; }
     bool is_distance() const { return per_length > 0; }
     bool is_coupler() const { return !joints.empty(); }
     /// Rows of the first unit: points, a distance or a coupling. Those of axes follow.

@@ -14,7 +14,8 @@
 //
 // N is the inertial rate of the impulse at fixed σ.
 //
-// On B act the exact negatives, with the same line of action. N = (d/dt Jᵀ)σ + Ω × w: it is added
+// On B act the exact negatives, with the same line of action. Of a tie, b fixed in the ground, they
+// act at x_B instead: force −b s, N −u_B × b s. N = (d/dt Jᵀ)σ + Ω × w: it is added
 // to the applied wrenches T, because Ω × P* in (35) takes the part Ω × w away again. With this, p =
 // EᵀP*_aug + Σ r σ is row 1 of (7) and (35) is (8), without M or Φ_q. Φ̇_qᵀσ has its part from
 // moving rows in it, Φ_qt σ, because u_B, w_a and w_b have the prescribed motion in them.
@@ -64,7 +65,7 @@ class LoopRows {
       for (std::size_t j = 0; j < (Space::dimension == 3 ? 2u : 3u); ++j) {
         s.a[j] = l.motion < 0 ? to_ground(w_, l.a, l.axis_a[j])
                               : to_ground(w_, l.a, motion(l).axis_a[j]);
-        s.b[j] = l.motion < 0 ? to_ground(w_, l.b, l.axis_b[j])
+        s.b[j] = l.motion < 0 ? to_ground(w_, l.axes_of_b(), l.axis_b[j])
                               : to_ground(w_, l.b, motion(l).axis_b[j]);
       }
     }
@@ -84,7 +85,7 @@ class LoopRows {
       s.u_a = point_velocity(w_, l.a, s.x_a);
       s.u_b = point_velocity(w_, l.b, s.x_b);
       s.w_a = angular_velocity(w_, l.a);
-      s.w_b = angular_velocity(w_, l.b);
+      s.w_b = angular_velocity(w_, l.axes_of_b());
       if (l.motion < 0) continue;
       const auto& m = motion(l);
       s.u_b += to_ground(w_, l.b, m.v);
@@ -200,7 +201,7 @@ class LoopRows {
     on_b = {};
     const auto push = [&](const Vector& f) {
       if (l.a >= 0) add_force(w_, l.a, s.x_a, f, on_a);
-      if (l.b >= 0) add_force(w_, l.b, s.x_a, -f, on_b);
+      if (l.b >= 0) add_force(w_, l.b, l.is_tie ? s.x_b : s.x_a, -f, on_b);
     };
     if (l.is_coupler()) return;
     if (l.is_distance()) {
@@ -251,7 +252,7 @@ class LoopRows {
     return turning(l.a, motion(l).turning_a, motion(l).turning_a_rate);
   }
   Angular turning_b(const Loop& l) const {
-    if (l.motion < 0) return angular_acceleration(w_, l.b);
+    if (l.motion < 0) return angular_acceleration(w_, l.axes_of_b());
     return turning(l.b, motion(l).turning_b, motion(l).turning_b_rate);
   }
   /// d/dt (u_A − u_B); x_B moves on B with v and a: its own + 2 ω × v + a.
@@ -321,16 +322,16 @@ class LoopRows {
                     axes(s, s.a[static_cast<std::size_t>(x)], s.b[static_cast<std::size_t>(y)]);
         }
       }
-      if (rate) couple += cross(s.u_a, impulse);
+      const Vector& u_on_b = l.is_tie ? s.u_b : s.u_a;
       if (l.a >= 0) {
         Force& on = field(w_.body[static_cast<std::size_t>(l.a)]);
         add_force(w_, l.a, s.x_a, force, on);
-        add_couple(w_, l.a, couple, on);
+        add_couple(w_, l.a, rate ? couple + cross(s.u_a, impulse) : couple, on);
       }
       if (l.b >= 0) {
         Force& on = field(w_.body[static_cast<std::size_t>(l.b)]);
-        add_force(w_, l.b, s.x_a, Vector(-force), on);
-        add_couple(w_, l.b, Angular(-couple), on);
+        add_force(w_, l.b, l.is_tie ? s.x_b : s.x_a, Vector(-force), on);
+        add_couple(w_, l.b, Angular(rate ? -(couple + cross(u_on_b, impulse)) : -couple), on);
       }
     }
   }

@@ -35,7 +35,7 @@ int drift(const Options& o, const DriftOptions& d) {
   request.reference = reference.get();
   // One form that grinds to a halt must not keep the others' results from the user.
   request.max_cpu_seconds = o.cpu_limit.value_or(60);
-  expect_own_results(o.out, {"trajectory.csv", "stress.json"});
+  expect_own_results(o.out, "study.csv");
   const auto journal = keep_runs(o);
   request.journal = journal.get();
   StudyResult study;

@@ -117,6 +117,24 @@ int main(int argc, char** argv) {
   stress_app->add_option("--out", o.out, "Directory for results");
   stress_app->add_flag("--json", o.json, "One JSON document on standard output");
   stress_app->add_flag("--quiet", o.quiet, "No progress, no table");
+  CLI::App* sweep_app =
+      app.add_subcommand("sweep", "One run for each combination of numbers of the scene");
+  SweepOptions sweep_options;
+  add_scene(*sweep_app, o);
+  sweep_app
+      ->add_option("--vary", sweep_options.vary,
+                   "PLACE=FROM:TO:COUNT, PLACE=FROM:TO:COUNT:log or PLACE=VALUE,VALUE; a place is "
+                   "body.crank.mass, joint.O.position, gravity.1, …; again for another number")
+      ->required();
+  sweep_app->add_option("--watch", sweep_options.watch,
+                        "Columns of the trajectory, comma-separated: last, least and greatest");
+  sweep_app->add_option("--form", o.form, "Which equations")->capture_default_str();
+  add_run_options(*sweep_app, o);
+  sweep_app->remove_option(sweep_app->get_option("--reference"));
+  sweep_app
+      ->add_option("--threads", sweep_options.threads,
+                   "Default: one for each processor; under mpirun one in each process")
+      ->check(CLI::Range(1, 1024));
   CLI::App* make_verb = app.add_subcommand("make", "Prints a scene of a family");
   std::string all_families;
   for (const Family& f : families()) all_families += "\n  " + std::string(f.name) + ": " + f.what;
@@ -133,7 +151,7 @@ int main(int argc, char** argv) {
     if (unknown)
       std::fprintf(stderr,
                    "momenta: verb '%.60s' is not known; expected check, assemble, evaluate, index, "
-                   "run, drift, work, stress or make\n",
+                   "run, drift, work, stress, sweep or make\n",
                    argv[1]);
     else
       std::fprintf(stderr, "momenta: %s\n", e.what());
@@ -158,6 +176,7 @@ int main(int argc, char** argv) {
     if (*evaluate_verb) return evaluate(o, state);
     if (*index_app) return index_verb(o, index_forms, index_state);
     if (*stress_app) return stress(o, stress_options);
+    if (*sweep_app) return sweep(o, sweep_options);
     return make(family, n, turned);
   } catch (const momenta::SceneError& e) {
     std::fprintf(stderr, "momenta: %s\n", e.what());

@@ -82,7 +82,7 @@ void add_run_options(CLI::App& verb, Options& o) {
   verb.add_option("--out", o.out, "Directory for results");
 }
 
-std::unique_ptr<Mechanism> load(const Options& o) {
+MechanismOptions mechanism_options(const Options& o) {
   MechanismOptions options;
   options.algebra = o.algebra == "planar"    ? Algebra::planar
                     : o.algebra == "spatial" ? Algebra::spatial
@@ -91,7 +91,38 @@ std::unique_ptr<Mechanism> load(const Options& o) {
                 : o.kkt == "sweeps" ? KktChoice::sweeps
                 : o.kkt == "sparse" ? KktChoice::sparse
                                     : KktChoice::automatic;
-  return std::make_unique<Mechanism>(read_scene(o.scene), options);
+  return options;
+}
+
+std::unique_ptr<Mechanism> load(const Options& o) {
+  return std::make_unique<Mechanism>(read_scene(o.scene), mechanism_options(o));
+}
+
+std::string scene_text(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in) throw std::invalid_argument(file.string() + ": the file cannot be opened for reading");
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+RunSettings run_settings(const Options& o, const RunDefaults& defaults) {
+  RunSettings s;
+  s.form = o.form;
+  s.integrator = o.integrator.empty() ? default_integrator(o.form, o.rtol) : o.integrator;
+  s.gauge = !o.gauge.empty() ? o.gauge
+            : defaults.leak  ? Gauge{Gauge::Kind::leak, *defaults.leak}.text()
+                             : "leak";
+  s.rtol = o.rtol;
+  s.atol = o.atol.value_or(o.rtol);
+  s.step = o.step.value_or(defaults.step.value_or(0));
+  s.spectral_radius = o.spectral_radius;
+  s.end_time = o.end.value_or(defaults.end_time);
+  s.samples = o.samples.value_or(defaults.samples);
+  s.project = o.project || (defaults.project && integrator(s.integrator).projects && !o.no_project);
+  s.baumgarte_alpha = o.baumgarte_alpha;
+  s.baumgarte_beta = o.baumgarte_beta;
+  s.beta = o.beta;
+  s.penalty = o.penalty;
+  return s;
 }
 
 std::unique_ptr<Reference> load_reference(const Options& o, const Mechanism& mechanism) {
@@ -120,10 +151,10 @@ std::vector<std::string> names_in(const std::string& list) {
   return names;
 }
 
-void expect_own_results(const std::filesystem::path& out, const std::vector<const char*>& foreign) {
-  for (const char* name : foreign)
-    if (!out.empty() && std::filesystem::exists(out / name))
-      throw std::invalid_argument("--out " + out.string() + " holds the " + name +
+void expect_own_results(const std::filesystem::path& out, std::string_view own) {
+  for (const std::string_view name : {"trajectory.csv", "study.csv", "stress.json", "sweep.csv"})
+    if (name != own && !out.empty() && std::filesystem::exists(out / name))
+      throw std::invalid_argument("--out " + out.string() + " holds the " + std::string(name) +
                                   " of another verb; expected a directory of its own");
 }
 

@@ -36,7 +36,12 @@ struct Options {
 void add_scene(CLI::App& verb, Options& o);
 void add_run_options(CLI::App& verb, Options& o);
 
+MechanismOptions mechanism_options(const Options& o);
 std::unique_ptr<Mechanism> load(const Options& o);
+/// The run that is asked for, of a scene with these defaults.
+RunSettings run_settings(const Options& o, const RunDefaults& defaults);
+/// The text of a scene's file. @throws std::invalid_argument where there is none.
+std::string scene_text(const std::filesystem::path& file);
 /// The reference, bound to the mechanism's columns; empty when none is asked for.
 std::unique_ptr<Reference> load_reference(const Options& o, const Mechanism& mechanism);
 
@@ -57,9 +62,9 @@ std::unique_ptr<Journal> keep_runs(const Options& o);
 /// the exit status.
 int publish(const StudyResult& study, const std::string& words, const Options& o, Journal* journal);
 
-/// Refuses a directory that holds results of a verb of which this one would replace some and leave
-/// others. @throws std::invalid_argument
-void expect_own_results(const std::filesystem::path& out, const std::vector<const char*>& foreign);
+/// Refuses a directory that holds results of another verb than the one that writes `own`.
+/// @throws std::invalid_argument
+void expect_own_results(const std::filesystem::path& out, std::string_view own);
 /// Says how many runs were taken from the journal and what is amiss with it; removes it where the
 /// study is over and written.
 void close(Journal* journal, std::size_t runs, bool over, const Options& o);
@@ -104,6 +109,12 @@ struct StressOptions {
 };
 /// Without a scene: the built-in ladders.
 int stress(const Options& o, const StressOptions& options);
+struct SweepOptions {
+  std::vector<std::string> vary;
+  std::string watch;  ///< comma-separated
+  int threads = 0;    ///< 0: one for each processor, of one process
+};
+int sweep(const Options& o, const SweepOptions& s);
 /// `state`: a JSON file, "-" for standard input, or text that starts with "{".
 int evaluate(const Options& o, const std::string& state);
 /// `forms`: comma-separated, empty: all. `state`: as for evaluate; empty: the start.

@@ -1,7 +1,6 @@
 #include <momenta/dae/report/csv.h>
 #include <momenta/dae/report/number_text.h>
 #include <momenta/dae/report/table.h>
-#include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/study/environment.h>
 #include <momenta/dae/study/run_form.h>
 
@@ -34,30 +33,13 @@ int run(const Options& o) {
   const auto mechanism = load(o);
   const auto reference = load_reference(o, *mechanism);
   const Assembly a = assemble(*mechanism);
-  const RunDefaults& defaults = mechanism->scene().run;
   RunRequest request;
-  RunSettings& s = request.settings;
-  s.form = o.form;
-  s.integrator = o.integrator.empty() ? default_integrator(o.form, o.rtol) : o.integrator;
-  s.gauge = !o.gauge.empty() ? o.gauge
-            : defaults.leak  ? Gauge{Gauge::Kind::leak, *defaults.leak}.text()
-                             : "leak";
-  s.rtol = o.rtol;
-  s.atol = o.atol.value_or(o.rtol);
-  s.step = o.step.value_or(defaults.step.value_or(0));
-  s.spectral_radius = o.spectral_radius;
-  s.end_time = o.end.value_or(defaults.end_time);
-  s.samples = o.samples.value_or(defaults.samples);
-  const Integrator& method = integrator(s.integrator);
-  s.project = o.project || (defaults.project && method.projects && !o.no_project);
-  s.baumgarte_alpha = o.baumgarte_alpha;
-  s.baumgarte_beta = o.baumgarte_beta;
-  s.beta = o.beta;
-  s.penalty = o.penalty;
+  request.settings = run_settings(o, mechanism->scene().run);
+  const RunSettings& s = request.settings;
   request.reference = reference.get();
   request.keep_trajectory = true;
   request.max_cpu_seconds = o.cpu_limit.value_or(0);
-  expect_own_results(o.out, {"study.csv", "stress.json"});
+  expect_own_results(o.out, "trajectory.csv");
   ProgressLine line(o.quiet);
   request.progress = [&](double t) {
     line.show(s.form + "  t = " + std::to_string(t) + " s");

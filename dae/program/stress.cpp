@@ -66,7 +66,7 @@ int stress(const Options& o, const StressOptions& options) {
   request.threads = options.threads > 0
                         ? options.threads
                         : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  expect_own_results(o.out, {"study.csv", "trajectory.csv"});
+  expect_own_results(o.out, "stress.json");
   const auto journal = keep_runs(o);
   request.journal = journal.get();
   StressResult result;

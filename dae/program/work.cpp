@@ -47,7 +47,7 @@ int work(const Options& o, const WorkOptions& w) {
   for (int i = 0; i < w.step_rungs; ++i) request.steps.push_back(std::ldexp(step, 1 - i));
   request.samples = o.samples.value_or(own_reference_rows);
   request.max_cpu_seconds = o.cpu_limit.value_or(10);
-  expect_own_results(o.out, {"trajectory.csv", "stress.json"});
+  expect_own_results(o.out, "study.csv");
   const auto journal = keep_runs(o);
   request.journal = journal.get();
   StudyResult study;

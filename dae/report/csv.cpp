@@ -4,19 +4,6 @@
 #include <cmath>
 
 namespace momenta {
-namespace {
-
-std::string join(const std::vector<std::string>& cells) {
-  std::string line;
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    if (i > 0) line += ',';
-    line += cells[i];
-  }
-  return line + "\n";
-}
-
-}  // namespace
-
 std::string csv_cell(std::string_view text) {
   if (text.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(text);
   std::string cell = "\"";
@@ -27,88 +14,97 @@ std::string csv_cell(std::string_view text) {
   return cell + '"';
 }
 
+std::string csv_line(const std::vector<std::string>& cells) {
+  std::string line;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    if (i > 0) line += ',';
+    line += cells[i];
+  }
+  return line + "\n";
+}
+
 std::string study_csv(const StudyResult& study) {
-  std::string text = join({"scene",
-                           "form",
-                           "integrator",
-                           "gauge",
-                           "rtol",
-                           "atol",
-                           "step [s]",
-                           "end_time [s]",
-                           "project",
-                           "baumgarte_alpha [1/s]",
-                           "baumgarte_beta [1/s]",
-                           "beta [1/s]",
-                           "penalty",
-                           "kkt",
-                           "jacobian",
-                           "linear_solver",
-                           "status",
-                           "stopped_at [s]",
-                           "reason",
-                           "position_drift_max [m]",
-                           "velocity_drift_max [m/s]",
-                           "between_steps_max [m]",
-                           "position_exponent",
-                           "position_exponent_half_range",
-                           "velocity_exponent",
-                           "velocity_exponent_half_range",
-                           "energy_error_max [J]",
-                           "position_error_max",
-                           "velocity_error_max",
-                           "steps",
-                           "rejected",
-                           "evaluations",
-                           "jacobians",
-                           "factorizations",
-                           "newton_iterations",
-                           "partitions",
-                           "cpu [s]",
-                           "wall [s]",
-                           "repeats"});
+  std::string text = csv_line({"scene",
+                               "form",
+                               "integrator",
+                               "gauge",
+                               "rtol",
+                               "atol",
+                               "step [s]",
+                               "end_time [s]",
+                               "project",
+                               "baumgarte_alpha [1/s]",
+                               "baumgarte_beta [1/s]",
+                               "beta [1/s]",
+                               "penalty",
+                               "kkt",
+                               "jacobian",
+                               "linear_solver",
+                               "status",
+                               "stopped_at [s]",
+                               "reason",
+                               "position_drift_max [m]",
+                               "velocity_drift_max [m/s]",
+                               "between_steps_max [m]",
+                               "position_exponent",
+                               "position_exponent_half_range",
+                               "velocity_exponent",
+                               "velocity_exponent_half_range",
+                               "energy_error_max [J]",
+                               "position_error_max",
+                               "velocity_error_max",
+                               "steps",
+                               "rejected",
+                               "evaluations",
+                               "jacobians",
+                               "factorizations",
+                               "newton_iterations",
+                               "partitions",
+                               "cpu [s]",
+                               "wall [s]",
+                               "repeats"});
   for (const RunResult& run : study.runs) {
     const RunSettings& s = run.settings;
     const Counters& c = run.counters;
-    text += join({csv_cell(run.scene),
-                  csv_cell(s.form),
-                  csv_cell(s.integrator),
-                  csv_cell(s.gauge),
-                  round_trip(s.rtol),
-                  round_trip(s.atol),
-                  round_trip(s.step),
-                  round_trip(s.end_time),
-                  s.project ? "true" : "false",
-                  round_trip(s.baumgarte_alpha),
-                  round_trip(s.baumgarte_beta),
-                  round_trip(s.beta),
-                  round_trip(s.penalty),
-                  csv_cell(s.kkt),
-                  csv_cell(run.jacobian),
-                  csv_cell(run.linear_solver),
-                  csv_cell(run.status),
-                  round_trip(run.stopped_at),
-                  csv_cell(run.reason),
-                  round_trip(run.position_drift_max),
-                  round_trip(run.velocity_drift_max),
-                  round_trip(run.between_steps_max),
-                  round_trip(run.position_growth.exponent),
-                  round_trip(run.position_growth.half_range),
-                  round_trip(run.velocity_growth.exponent),
-                  round_trip(run.velocity_growth.half_range),
-                  round_trip(run.energy_error_max),
-                  round_trip(run.position_error_max),
-                  round_trip(run.velocity_error_max),
-                  std::to_string(c.steps),
-                  std::to_string(c.rejected),
-                  std::to_string(c.evaluations),
-                  std::to_string(c.jacobians),
-                  std::to_string(c.factorizations),
-                  std::to_string(c.newton_iterations),
-                  std::to_string(run.partitions),
-                  round_trip(run.cpu_s),
-                  round_trip(run.wall_s),
-                  std::to_string(run.repeats)});
+    text += csv_line({csv_cell(run.scene),
+                      csv_cell(s.form),
+                      csv_cell(s.integrator),
+                      csv_cell(s.gauge),
+                      round_trip(s.rtol),
+                      round_trip(s.atol),
+                      round_trip(s.step),
+                      round_trip(s.end_time),
+                      s.project ? "true" : "false",
+                      round_trip(s.baumgarte_alpha),
+                      round_trip(s.baumgarte_beta),
+                      round_trip(s.beta),
+                      round_trip(s.penalty),
+                      csv_cell(s.kkt),
+                      csv_cell(run.jacobian),
+                      csv_cell(run.linear_solver),
+                      csv_cell(run.status),
+                      round_trip(run.stopped_at),
+                      csv_cell(run.reason),
+                      round_trip(run.position_drift_max),
+                      round_trip(run.velocity_drift_max),
+                      round_trip(run.between_steps_max),
+                      round_trip(run.position_growth.exponent),
+                      round_trip(run.position_growth.half_range),
+                      round_trip(run.velocity_growth.exponent),
+                      round_trip(run.velocity_growth.half_range),
+                      round_trip(run.energy_error_max),
+                      round_trip(run.position_error_max),
+                      round_trip(run.velocity_error_max),
+                      std::to_string(c.steps),
+                      std::to_string(c.rejected),
+                      std::to_string(c.evaluations),
+                      std::to_string(c.jacobians),
+                      std::to_string(c.factorizations),
+                      std::to_string(c.newton_iterations),
+                      std::to_string(run.partitions),
+                      round_trip(run.cpu_s),
+                      round_trip(run.wall_s),
+                      std::to_string(run.repeats)});
   }
   return text;
 }
@@ -116,7 +112,7 @@ std::string study_csv(const StudyResult& study) {
 std::string trajectory_csv(const Trajectory& trajectory) {
   std::vector<std::string> cells;
   for (const std::string& column : trajectory.columns) cells.push_back(csv_cell(column));
-  std::string text = join(cells);
+  std::string text = csv_line(cells);
   for (const auto& row : trajectory.rows) {
     for (std::size_t i = 0; i < row.size(); ++i) {
       if (i > 0) text += ',';

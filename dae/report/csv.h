@@ -6,6 +6,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace momenta {
 
@@ -17,5 +18,7 @@ std::string trajectory_csv(const Trajectory&);
 
 /// The text as one cell: quoted when it holds a comma, a quote or a line break, its quotes doubled.
 std::string csv_cell(std::string_view text);
+/// Cells with commas between and a line break behind.
+std::string csv_line(const std::vector<std::string>& cells);
 
 }  // namespace momenta

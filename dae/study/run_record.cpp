@@ -103,6 +103,25 @@ void list(const Each& each,
   each("error", error), each("loop_speed", loop_speed), each("run", run);
 }
 
+template <class Each>
+void list(const Each& each,
+          auto&& s) requires std::is_same_v<std::remove_cvref_t<decltype(s)>, SweepCase::Watched> {
+  auto& [last, least, greatest] = s;
+  each("last", last), each("least", least), each("greatest", greatest);
+}
+
+template <class Each>
+void list(const Each& each,
+          auto&& s) requires std::is_same_v<std::remove_cvref_t<decltype(s)>, SweepCase> {
+  auto& [values, status, reason, stopped_at, position_drift_max, velocity_drift_max,
+         energy_error_max, steps, evaluations, watched, cpu_s] = s;
+  each("values", values), each("status", status), each("reason", reason);
+  each("stopped_at", stopped_at), each("position_drift_max", position_drift_max);
+  each("velocity_drift_max", velocity_drift_max), each("energy_error_max", energy_error_max);
+  each("steps", steps), each("evaluations", evaluations), each("watched", watched);
+  each("cpu_s", cpu_s);
+}
+
 template <class T>
 Record written(const T& value);
 template <class T>
@@ -185,6 +204,9 @@ Record record_of(const RunResult& run) {
 Record record_of(const StressRun& run) {
   return written(run);
 }
+Record record_of(const SweepCase& run) {
+  return written(run);
+}
 Record record_of(const OwnReference& own) {
   return {{"accuracy", written(own.accuracy)},
           {"source", own.reference.file()},
@@ -197,6 +219,9 @@ bool read_record(const Record& record, RunResult& run) {
   return read_whole(record, run);
 }
 bool read_record(const Record& record, StressRun& run) {
+  return read_whole(record, run);
+}
+bool read_record(const Record& record, SweepCase& run) {
   return read_whole(record, run);
 }
 bool read_record(const Record& record, OwnReference& own) {

@@ -4,6 +4,7 @@
 #include <momenta/dae/study/journal.h>
 #include <momenta/dae/study/own_reference.h>
 #include <momenta/dae/study/stress_study.h>
+#include <momenta/dae/study/sweep_study.h>
 
 #include <optional>
 #include <type_traits>
@@ -16,11 +17,13 @@ std::string key_of(const RunSettings& settings);
 /// Records of what is kept. Non-finite numbers are strings, since JSON has none.
 nlohmann::json record_of(const RunResult& run);
 nlohmann::json record_of(const StressRun& run);
+nlohmann::json record_of(const SweepCase& run);
 nlohmann::json record_of(const OwnReference& reference);
 
 /// Reads a record back; false, and the value is not to be used, where it is none of that kind.
 bool read_record(const nlohmann::json& record, RunResult& run);
 bool read_record(const nlohmann::json& record, StressRun& run);
+bool read_record(const nlohmann::json& record, SweepCase& run);
 bool read_record(const nlohmann::json& record, OwnReference& reference);
 
 /// What the journal holds under a key; nothing without a journal.

@@ -4,6 +4,7 @@
 #include <momenta/dae/study/environment.h>
 #include <momenta/dae/study/own_reference.h>
 #include <momenta/dae/study/run_record.h>
+#include <momenta/dae/study/share.h>
 #include <momenta/dae/study/stress_study.h>
 
 #include <algorithm>
@@ -13,7 +14,6 @@
 #include <memory>
 #include <mutex>
 #include <stdexcept>
-#include <thread>
 
 namespace momenta {
 namespace {
@@ -164,17 +164,6 @@ void judge(StressRun& r, const Ground& ground, double bound, double cpu_limit) {
     return;
   }
   r.verdict = Verdict::survived;
-}
-
-/// Calls work(i) for i < count on several threads.
-void share(int threads, std::size_t count, const std::function<void(std::size_t)>& work) {
-  std::atomic<std::size_t> next{0};
-  const auto take = [&] {
-    for (std::size_t i; (i = next++) < count;) work(i);
-  };
-  std::vector<std::jthread> others;
-  for (int k = 1; k < threads; ++k) others.emplace_back(take);
-  take();
 }
 
 bool competes(const Contestant& c, const Mechanism& mechanism) {

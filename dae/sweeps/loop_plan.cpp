@@ -1,6 +1,8 @@
 #include <momenta/dae/sweeps/loop_plan.h>
 
 #include <algorithm>
+#include <bit>
+#include <functional>
 #include <set>
 
 namespace momenta {
@@ -177,6 +179,11 @@ LoopPlan planned(const std::vector<int>& parents, const std::vector<LoopShape>& 
       ends[static_cast<std::size_t>(open.b)].push_back(
           {static_cast<int>(i), false, open.b > open.a});
   }
+  for (const auto& fronts : {std::cref(used), std::cref(used_at_ground)})
+    for (const std::uint64_t open : fronts.get()) {
+      const std::int64_t equations = std::popcount(open);
+      plan.work += equations * equations;
+    }
   plan.ends_of = ranges(ends, plan.ends);
   plan.couplings_of = ranges(couplings, plan.couplings);
   plan.closings_of = ranges(closings, plan.closings);

@@ -51,6 +51,7 @@ struct LoopPlan {
   std::vector<char> takes_legs;  ///< per body: legs fold into it
   std::vector<char> posed;       ///< per body: carries an end of a loop, near or far
   int lanes = 0;                 ///< lanes needed
+  std::int64_t work = 0;         ///< Σ over the fronts of the squared number of open equations
   bool couples() const { return !couplings.empty(); }
   bool fits() const { return lanes <= most_lanes; }
 };

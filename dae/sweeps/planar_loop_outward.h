@@ -163,7 +163,7 @@ void LoopSweeps<Planar, S, Rows, Momentum>::rates_inward(const In& q, const Righ
     if (l.slot >= 0) add(T, wrench_slots_[static_cast<std::size_t>(l.slot)]);
     const LoopPlan::Range ends = plan_->ends_of[k];
     for (int i = ends.first; i < ends.last; ++i)
-      add_inertial_rates(plan_->ends[static_cast<std::size_t>(i)], right, impulse, T);
+      add_inertial_rates(k, plan_->ends[static_cast<std::size_t>(i)], right, impulse, T);
     if (l.pin) {
       const S turned = S(rate[l.u]) + T.fn;
       S own = l.sign < 0 ? -turned : turned;
@@ -189,19 +189,32 @@ void LoopSweeps<Planar, S, Rows, Momentum>::rates_inward(const In& q, const Righ
   if (plan_->couples() && right.leak != 0) leak_of_couplers<S>(*loops_, right.leak, impulse, rate);
 }
 
-/// N − κ w at one end of a loop: found at the end met first, for both.
+/// N − κ w at the end of a loop on body k: of a tie each end's own, N = u × F; else found at the
+/// end met first, for both.
 template <class S, int Rows, bool Momentum>
 template <class Out>
 MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::add_inertial_rates(
-    const LoopPlan::End& end, const RightSide<S>& right, const Out& impulse, Wrench& T) {
+    std::size_t k, const LoopPlan::End& end, const RightSide<S>& right, const Out& impulse,
+    Wrench& T) {
   const auto loop = static_cast<std::size_t>(end.loop);
+  const Place& s = places_[loop];
+  const Loop& l = loops_->loops[loop];
+  if (ties_[loop].holds) {
+    const LoopedPin<S, Rows>& w = pins_[k];
+    const S sign(end.on_a ? 1.0 : -1.0), rx = end.on_a ? s.ax : s.bx, ry = end.on_a ? s.ay : s.by,
+                                         fx = sign * S(impulse[l.row]),
+                                         fy = sign * S(impulse[l.row + 1]), leak(right.leak);
+    const S ux = w.vx - w.omega * ry, uy = w.vy + w.omega * rx;
+    T.fx = T.fx - leak * fx;
+    T.fy = T.fy - leak * fy;
+    T.fn = T.fn + (ux - leak * rx) * fy - (uy - leak * ry) * fx;
+    return;
+  }
   Wrench& other = wrenches_[loop];
   if (!end.first) {
     add(T, other);
     return;
   }
-  const Place& s = places_[loop];
-  const Loop& l = loops_->loops[loop];
   const S zero(0.0);
   const auto motion_of = [&](int body) MOMENTA_INLINED {
     if (body < 0) return Planar::Motion<S>{};
@@ -210,13 +223,7 @@ MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::add_inertial_rates(
   };
   const Planar::Motion<S> A = motion_of(l.a), B = motion_of(l.b);
   Wrench w, N;  // of the impulses on A about x_A, and its rate
-  if (ties_[loop].holds) {
-    const S x = S(impulse[l.row]), y = S(impulse[l.row + 1]);
-    w = {x * s.Fx - y * s.Fy, x * s.Fy + y * s.Fx, zero};
-    N = {-(B.w * w.fy), B.w * w.fx, zero};
-  } else {
-    force_of_rows(loop, right, impulse, A, B, w, N);
-  }
+  force_of_rows(loop, right, impulse, A, B, w, N);
   const S ux = A.v[0] - A.w * s.ay, uy = A.v[1] + A.w * s.ax;
   N.fn = N.fn + (ux * w.fy - uy * w.fx);
   N.fx = N.fx - right.leak * w.fx;
@@ -231,7 +238,7 @@ MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::add_inertial_rates(
   }
 }
 
-/// w and N of a loop that is no tie; N without u_A × F, its couple with the leak.
+/// w and N of a loop that is no tie, N without u_A × F, its couple with the leak.
 template <class S, int Rows, bool Momentum>
 template <class Out>
 void LoopSweeps<Planar, S, Rows, Momentum>::force_of_rows(

@@ -5,7 +5,7 @@
 
 namespace momenta {
 
-/// O_K − O_L, points and axes of ties; in the acceleration form the velocities of all bodies.
+/// O_K − O_L, points of ties; in the acceleration form the velocities of all bodies.
 template <class S, int Rows, bool Momentum>
 template <class In>
 void LoopSweeps<Planar, S, Rows, Momentum>::place_bodies(const In& x, const RightSide<S>& right) {
@@ -30,7 +30,7 @@ void LoopSweeps<Planar, S, Rows, Momentum>::place_bodies(const In& x, const Righ
     oy = oy + w.ry;
     if (l.slot >= 0) origin_slots_[static_cast<std::size_t>(l.slot)] = {{ox, oy}};
     if (!origins_.empty()) origins_[k] = {{ox, oy}};
-    place_ends(k, ox, oy);
+    place_ends(k, right, ox, oy);
     if constexpr (!Momentum) {
       S vx(0.0), vy(0.0), omega(0.0);
       if (l.parent >= 0) {
@@ -68,11 +68,12 @@ void LoopSweeps<Planar, S, Rows, Momentum>::place_bodies(const In& x, const Righ
   }
 }
 
-/// The ends of ties on body k with its joint at (x, y). x_A − O_B = (O_A − O_B) + a waits with the
-/// joint of the end placed first.
+/// The ends of ties on body k with its joint at (x, y). D begins with the end that is placed first.
 template <class S, int Rows, bool Momentum>
-MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::place_ends(std::size_t k, const S& x,
-                                                                      const S& y) {
+MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::place_ends(std::size_t k,
+                                                                      const RightSide<S>& right,
+                                                                      const S& x, const S& y) {
+  const bool gap = right.positions != 0 || right.beta != 0;
   const LoopPlan::Range range = plan_->ends_of[k];
   for (int i = range.first; i < range.last; ++i) {
     const LoopPlan::End& end = plan_->ends[static_cast<std::size_t>(i)];
@@ -81,24 +82,15 @@ MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::place_ends(std::size_
     if (!t.holds) continue;
     Place& s = places_[loop];
     const S c = angles_.cosine(k), e = angles_.sine(k);
-    S bx = x, by = y;
-    if (end.on_a) {
-      s.ax = c * t.ax - e * t.ay;
-      s.ay = e * t.ax + c * t.ay;
-      if (end.first) {
-        bx = (t.b < 0 ? x : x - s.bx) + s.ax;
-        by = (t.b < 0 ? y : y - s.by) + s.ay;
-      }
-    } else {
-      s.Fx = c * t.ex - e * t.ey;
-      s.Fy = e * t.ex + c * t.ey;
-      if (end.first) {
-        bx = (t.a < 0 ? -x : s.bx - x) + s.ax;
-        by = (t.a < 0 ? -y : s.by - y) + s.ay;
-      }
-    }
-    s.bx = bx;
-    s.by = by;
+    const Vec2<double>& at = end.on_a ? t.a : t.b;
+    const S rx = c * at[0] - e * at[1], ry = e * at[0] + c * at[1];
+    (end.on_a ? s.ax : s.bx) = rx;
+    (end.on_a ? s.ay : s.by) = ry;
+    if (!gap) continue;
+    const bool begins = !end.first || t.grounded;
+    const S sign(end.on_a ? 1.0 : -1.0);
+    s.Dx = (begins ? S(t.D[0]) : s.Dx) + sign * (x + rx);
+    s.Dy = (begins ? S(t.D[1]) : s.Dy) + sign * (y + ry);
   }
 }
 
@@ -123,7 +115,7 @@ void LoopSweeps<Planar, S, Rows, Momentum>::place_other_loops() {
     if (l.motion >= 0) place_moving(l);
     const Vec2<S> arm = in_ground(l.a, l.at_a), from_b = origin(l.a) - origin(l.b) + arm;
     Place& s = places_[loop];
-    s = {arm[0], arm[1], from_b[0], from_b[1], S(0.0), S(0.0)};
+    s = {arm[0], arm[1], from_b[0], from_b[1], S(0.0), S(0.0), S(0.0), S(0.0)};
     if (plan_->pair[loop]) {
       const Vec2<S> b = in_ground(l.b, l.axis_b[0]);
       s.Fx = b[0];

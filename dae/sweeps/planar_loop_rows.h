@@ -9,9 +9,11 @@ namespace momenta {
 template <class S, int Rows, bool Momentum>
 typename LoopSweeps<Planar, S, Rows, Momentum>::RowPlace
 LoopSweeps<Planar, S, Rows, Momentum>::row_place(std::size_t loop, int row) const {
+  const S zero(0.0), one(1.0);
+  if (ties_[loop].holds)
+    return row == 0 ? RowPlace{one, zero, zero, zero} : RowPlace{zero, one, zero, zero};
   if (!plan_->pair[loop]) return row_at_[static_cast<std::size_t>(loops_->loops[loop].row + row)];
   const Place& s = places_[loop];
-  const S zero(0.0);
   return row == 0 ? RowPlace{s.Fx, s.Fy, zero, zero} : RowPlace{-s.Fy, s.Fx, zero, zero};
 }
 
@@ -73,6 +75,31 @@ S LoopSweeps<Planar, S, Rows, Momentum>::moving_bias(const Loop& l, const Place&
   return bias + (2 * right.alpha) * rate + (right.beta * right.beta) * phi;
 }
 
+/// d of both rows of a tie: βΦ, or in the acceleration form J̇ V and the feedback.
+template <class S, int Rows, bool Momentum>
+Vec2<S> LoopSweeps<Planar, S, Rows, Momentum>::tie_bias(const Loop& l, const Place& s,
+                                                        const RightSide<S>& right) const {
+  const Vec2<S> D{{s.Dx, s.Dy}};
+  if constexpr (Momentum) {
+    return S(right.positions) * D;
+  } else {
+    // Velocity of a point, and its acceleration but for the bodies' own.
+    const auto end = [&](int body, const Vec2<S>& arm, Vec2<S>& u, Vec2<S>& bias) {
+      if (body < 0) return;
+      const LoopedPin<S, Rows>& w = pins_[static_cast<std::size_t>(body)];
+      u = {{w.vx - w.omega * arm[1], w.vy + w.omega * arm[0]}};
+      bias = -(w.omega * w.omega) * arm;
+    };
+    Vec2<S> ua{}, ub{}, a{}, b{};
+    end(l.a, {{s.ax, s.ay}}, ua, a);
+    end(l.b, {{s.bx, s.by}}, ub, b);
+    Vec2<S> bias = a - b;
+    if (right.alpha != 0 || right.beta != 0)
+      bias += S(2 * right.alpha) * (ua - ub) + S(right.beta * right.beta) * D;
+    return bias;
+  }
+}
+
 /// d of a row before the joints' shares: βΦ + Φ_t, or in the acceleration form J̇ V and the
 /// feedback.
 template <class S, int Rows, bool Momentum>
@@ -80,6 +107,7 @@ S LoopSweeps<Planar, S, Rows, Momentum>::row_bias(std::size_t loop, int row,
                                                   const RightSide<S>& right) const {
   const Loop& l = loops_->loops[loop];
   const Place& s = places_[loop];
+  if (ties_[loop].holds) return tie_bias(l, s, right)[row];
   const RowPlace r = row_place(loop, row);
   S phi(0.0);
   if (right.positions != 0 || right.beta != 0) {
@@ -143,23 +171,7 @@ MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::enter(std::size_t k,
     const auto loop = static_cast<std::size_t>(end.loop);
     if constexpr (pairs_in_registers)
       if (plan_->pair[loop]) {
-        const Place& s = places_[loop];
-        const bool asks = end.first && (!Momentum || right.positions != 0 || !ties_[loop].holds);
-        const S Fx = s.Fx, Fy = s.Fy, rx = end.on_a ? s.ax : s.bx, ry = end.on_a ? s.ay : s.by;
-        const S sign(end.on_a ? 1.0 : -1.0), fx = sign * Fx, fy = sign * Fy, n0 = rx * fy - ry * fx,
-                                             n1 = rx * fx + ry * fy;
-        if (right.centre) {
-          const S* centre = right.centre + loops_->loops[loop].row;
-          a.Dx = a.Dx + (centre[0] * fx - centre[1] * fy);
-          a.Dy = a.Dy + (centre[0] * fy + centre[1] * fx);
-          a.Dn = a.Dn + (centre[0] * n0 + centre[1] * n1);
-        }
-        at_lane<Rows>(plan_->lane[loop], [&]<int Lane>() MOMENTA_INLINED {
-          o.C[0].template add_pair<Lane>(fx, -fy);
-          o.C[1].template add_pair<Lane>(fy, fx);
-          o.C[2].template add_pair<Lane>(n0, n1);
-          if (asks) o.d.template add_pair<Lane>(row_bias(loop, 0, right), row_bias(loop, 1, right));
-        });
+        enter_pair(end, right, a, o);
         continue;
       }
     Open copy{a, o};
@@ -167,6 +179,44 @@ MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::enter(std::size_t k,
     a = copy.cargo;
     o = copy.blocks;
   }
+}
+
+template <class S, int Rows, bool Momentum>
+MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::enter_pair(const LoopPlan::End& end,
+                                                                      const RightSide<S>& right,
+                                                                      PlanarCargo<S>& a,
+                                                                      Blocks& o) {
+  const auto loop = static_cast<std::size_t>(end.loop);
+  const Place& s = places_[loop];
+  const bool tie = ties_[loop].holds;
+  const S sign(end.on_a ? 1.0 : -1.0), rx = end.on_a ? s.ax : s.bx, ry = end.on_a ? s.ay : s.by;
+  // (fx, fy) and (−fy, fx) with their couples.
+  S fx = sign, fy(0.0), n0 = -(sign * ry), n1 = sign * rx;
+  if (!tie) {
+    fx = sign * s.Fx;
+    fy = sign * s.Fy;
+    n0 = rx * fy - ry * fx;
+    n1 = rx * fx + ry * fy;
+  }
+  if (right.centre) {
+    const S* centre = right.centre + loops_->loops[loop].row;
+    a.Dx = a.Dx + (centre[0] * fx - centre[1] * fy);
+    a.Dy = a.Dy + (centre[0] * fy + centre[1] * fx);
+    a.Dn = a.Dn + (centre[0] * n0 + centre[1] * n1);
+  }
+  const bool asks = end.first && (!Momentum || right.positions != 0 || !tie);
+  at_lane<Rows>(plan_->lane[loop], [&]<int Lane>() MOMENTA_INLINED {
+    o.C[0].template add_pair<Lane>(fx, -fy);
+    o.C[1].template add_pair<Lane>(fy, fx);
+    o.C[2].template add_pair<Lane>(n0, n1);
+    if (!asks) return;
+    Vec2<S> d;
+    if (tie)
+      d = tie_bias(loops_->loops[loop], s, right);
+    else
+      d = {{row_bias(loop, 0, right), row_bias(loop, 1, right)}};
+    o.d.template add_pair<Lane>(d[0], d[1]);
+  });
 }
 
 template <class S, int Rows, bool Momentum>

@@ -16,7 +16,8 @@
 // force F' at x_A, couple c' + u_A × F; on B the exact negative. Acceleration form: r = joint force
 // and D = −ω² m c; a joint's velocity product takes the place of Ω_t, J̇ V of d.
 //
-// A row's D_j has F = b_j, O_ij has c = a_i × b_j, a distance has F = D/l₀. Where drives move
+// A row's D_j has F = b_j, O_ij has c = a_i × b_j, a distance has F = D/l₀; of a tie F' = 0, and
+// each end has its own arm: x_B − O_B on B. Where drives move
 // points and axes, u_B and the rates of rows have their prescribed velocities in them, and d their
 // Φ_t.
 //
@@ -86,16 +87,17 @@ class LoopSweeps<Planar, S, Rows, Momentum> : PlanarPlaces<S> {
   using Loop = LoopModel<Planar>::Loop;
   using Motion = LoopModel<Planar>::Motion;
 
-  /// A loop of two point rows that no drive moves: all that placing it takes.
+  /// All that placing a tie takes.
   struct Tie {
-    double ax = 0, ay = 0, ex = 0, ey = 0;  ///< x_A, first axis; body axes
-    int a = -1, b = -1;
+    Vec2<double> a, b, D;  ///< x_A and x_B, body axes; what an end on the ground has of D
+    bool grounded = false;
     bool holds = false;  ///< false: any other loop
   };
   /// Where a loop stands, ground axes.
   struct Place {
-    S ax, ay, bx, by;  ///< x_A − O_A and x_A − O_B
-    S Fx, Fy;          ///< of a pair: first axis; the second stands across it
+    S ax, ay, bx, by;  ///< x_A − O_A and x_A − O_B, of a tie x_B − O_B
+    S Dx, Dy;          ///< of a tie, where equations ask for it
+    S Fx, Fy;          ///< of any other pair: first axis; the second stands across it
   };
   /// A row's unit impulse on body A: force at x_A, couple; of an axis row a_i · b_j too.
   struct RowPlace {
@@ -112,7 +114,7 @@ class LoopSweeps<Planar, S, Rows, Momentum> : PlanarPlaces<S> {
 
   template <class In>
   void place_bodies(const In& x, const RightSide<S>& right);
-  MOMENTA_INLINE void place_ends(std::size_t k, const S& x, const S& y);
+  MOMENTA_INLINE void place_ends(std::size_t k, const RightSide<S>& right, const S& x, const S& y);
   __attribute__((noinline)) void place_other_loops();
   void place_rows(const Loop& l, std::size_t loop);
   void place_moving(const Loop& l);
@@ -135,9 +137,12 @@ class LoopSweeps<Planar, S, Rows, Momentum> : PlanarPlaces<S> {
     return moving_[static_cast<std::size_t>(l.motion)];
   }
   S row_bias(std::size_t loop, int row, const RightSide<S>& right) const;
+  Vec2<S> tie_bias(const Loop& l, const Place& s, const RightSide<S>& right) const;
   template <class In>
   bool inward(const In& r, const RightSide<S>& right);
   MOMENTA_INLINE void enter(std::size_t k, const RightSide<S>& right, PlanarCargo<S>& a, Blocks& o);
+  MOMENTA_INLINE void enter_pair(const LoopPlan::End& end, const RightSide<S>& right,
+                                 PlanarCargo<S>& a, Blocks& o);
   __attribute__((noinline)) void enter_rows(const LoopPlan::End& end, const RightSide<S>& right,
                                             Open& open);
   template <bool Moves>
@@ -171,8 +176,8 @@ class LoopSweeps<Planar, S, Rows, Momentum> : PlanarPlaces<S> {
   void rates_inward(const In& q, const RightSide<S>& right, const Out& u, const Out& impulse,
                     Out rate);
   template <class Out>
-  MOMENTA_INLINE void add_inertial_rates(const LoopPlan::End& end, const RightSide<S>& right,
-                                         const Out& impulse, Wrench& T);
+  MOMENTA_INLINE void add_inertial_rates(std::size_t k, const LoopPlan::End& end,
+                                         const RightSide<S>& right, const Out& impulse, Wrench& T);
   template <class Out>
   __attribute__((noinline)) void force_of_rows(std::size_t loop, const RightSide<S>& right,
                                                const Out& impulse, const Planar::Motion<S>& of_a,
@@ -232,13 +237,12 @@ LoopSweeps<Planar, S, Rows, Momentum>::LoopSweeps(const PlanarTree& tree,
       pairs_(loops.loops.size()) {
   for (std::size_t i = 0; i < ties_.size(); ++i) {
     const Loop& l = loops.loops[i];
-    if (!plan.pair[i] || !pairs_in_registers || l.motion >= 0 || l.a == l.b) {
+    if (!l.is_tie) {
       others_.push_back(static_cast<int>(i));
       continue;
     }
-    ties_[i] = {l.at_a[0], l.at_a[1], l.axis_b[0][0], l.axis_b[0][1], l.a, l.b, true};
-    places_[i] = {S(l.at_a[0]),      S(l.at_a[1]),     S(0.0), S(0.0),
-                  S(l.axis_b[0][0]), S(l.axis_b[0][1])};  // of an end on the ground for good
+    const Vec2<double> D = l.a < 0 ? l.at_a : l.b < 0 ? -l.at_b : Vec2<double>{};
+    ties_[i] = {l.at_a, l.at_b, D, l.a < 0 || l.b < 0, true};
   }
   if (!others_.empty()) origins_.resize(tree.links.size());
 }

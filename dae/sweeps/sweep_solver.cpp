@@ -32,7 +32,11 @@ class SweepSolver final : public LoopSolver {
     for (const auto& b : mechanism.tree().bodies) place_of_body_.push_back(b.nv > 0 ? b.u : -1);
   }
 
-  void soften(std::vector<double> compliance) override { compliance_ = std::move(compliance); }
+  /// A compliance row by row is none of rows paired anew.
+  void soften(std::vector<double> compliance) override {
+    compliance_ = std::move(compliance);
+    if (mechanism_.pairs_anew()) sweeps_ = mechanism_.looped_sweeps_as_given();
+  }
 
   bool momentum(double t, const double* q, const double* p, const double* centre, double fade,
                 double leak, double* u, double* sigma, double* pdot) override {

@@ -1,76 +1,25 @@
 // The program as its users meet it: exit status, one sentence on standard error, nothing
 // half-written.
 
+#include "golden/program.h"
+
 #include <gtest/gtest.h>
 #include <momenta/core/scene/read_scene.h>
 #include <momenta/dae/assembly.h>
 #include <momenta/dae/mechanism.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
 #include <csignal>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 namespace {
 
-namespace fs = std::filesystem;
-
-std::string text_of(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
-struct Outcome {
-  int status = -1;
-  std::string out, err;
-};
-
-class Program : public testing::Test {
- protected:
-  Program() {
-    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::temp_directory_path() /
-              ("momenta_program_" + std::string(test->name()) + "_" + std::to_string(getpid()));
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  ~Program() override { fs::remove_all(folder_); }
-
-  Outcome call(const std::string& arguments, const fs::path& input = "/dev/null") const {
-    const fs::path out = folder_ / "stdout", err = folder_ / "stderr";
-    const std::string command = std::string(MOMENTA_BINARY_DIR) + "/dae/momenta " + arguments +
-                                " >'" + out.string() + "' 2>'" + err.string() + "' <'" +
-                                input.string() + "'";
-    const int raw = std::system(command.c_str());  // NOLINT: the command is this test's own
-    return {WIFEXITED(raw) ? WEXITSTATUS(raw) : -WTERMSIG(raw), text_of(out), text_of(err)};
-  }
-  static std::string example(const std::string& name) {
-    return std::string(MOMENTA_SOURCE_DIR) + "/examples/" + name + "/scene.toml";
-  }
-  fs::path write(const std::string& name, const std::string& content) const {
-    std::ofstream(folder_ / name, std::ios::binary) << content;
-    return folder_ / name;
-  }
-  void expect_refused(const std::string& arguments, const std::string& mentions) const {
-    const Outcome o = call(arguments);
-    EXPECT_EQ(o.status, 2) << arguments << "\n" << o.err;
-    EXPECT_EQ(std::count(o.err.begin(), o.err.end(), '\n'), 1) << arguments << "\n" << o.err;
-    EXPECT_EQ(o.err.rfind("momenta: ", 0), 0u) << o.err;
-    EXPECT_NE(o.err.find(mentions), std::string::npos)
-        << "expected '" << mentions << "' in: " << o.err;
-    EXPECT_TRUE(o.out.empty()) << o.out;
-  }
-
-  fs::path folder_;
-};
+using namespace momenta::golden;
 
 TEST_F(Program, RefusesEveryBrokenSceneAndWritesNothing) {
   int scenes = 0;
@@ -209,21 +158,14 @@ TEST_F(Program, WorkMakesItsOwnReferenceAndAdvises) {
 }
 
 TEST_F(Program, KilledStudyResumesAndStudiesDoNotMix) {
-  const std::string program = std::string(MOMENTA_BINARY_DIR) + "/dae/momenta",
-                    study = "drift '" + example("four_bar") +
+  const std::string study = "drift '" + example("four_bar") +
                             "' --end 40 --samples 50 --forms "
                             "momentum,acceleration,momentum-index2,stabilised-index2";
   const fs::path whole = folder_ / "whole", killed = folder_ / "killed",
                  journal = killed / "runs.jsonl";
   ASSERT_EQ(call(study + " --out '" + whole.string() + "'").status, 0);
-  const std::string kill = "'" + program + "' " + study + " --out '" + killed.string() +
-                           "' >/dev/null 2>&1 & pid=$!; for i in $(seq 3000); do "
-                           "[ \"$(cat '" +
-                           journal.string() +
-                           "' 2>/dev/null | wc -l)\" -ge 4 ] && break; sleep 0.01; done; "
-                           "kill -9 $pid; wait $pid 2>/dev/null";
-  const int raw = std::system(kill.c_str());  // NOLINT: the command is this test's own
-  ASSERT_EQ(WEXITSTATUS(raw), 128 + SIGKILL);
+  ASSERT_EQ(status_when_killed(study + " --out '" + killed.string() + "'", journal, 4),
+            128 + SIGKILL);
   ASSERT_FALSE(fs::exists(killed / "summary.json"));
   const std::string before = text_of(journal);
   const auto lines = std::count(before.begin(), before.end(), '\n');

@@ -5,32 +5,29 @@
 namespace momenta {
 
 template <int Level, class Space, class Tree>
-std::unique_ptr<LoopedSweeps> looped_sweeps_at(const Tree& tree, const LoopModel<Space>& loops,
-                                               const LoopPlan& plan);
+std::unique_ptr<LoopedSweeps> looped_sweeps_at(const Tree& tree, const SweptLoops<Space>& swept);
 
 namespace {
 
 template <class Space, class Tree>
-std::unique_ptr<LoopedSweeps> make(const Tree& tree, const LoopModel<Space>& loops,
-                                   const LoopPlan& plan, [[maybe_unused]] int level) {
+std::unique_ptr<LoopedSweeps> make(const Tree& tree, const SweptLoops<Space>& swept,
+                                   [[maybe_unused]] int level) {
 #ifdef MOMENTA_LEVELS
-  if (level >= 4) return looped_sweeps_at<4>(tree, loops, plan);
-  if (level >= 3) return looped_sweeps_at<3>(tree, loops, plan);
+  if (level >= 4) return looped_sweeps_at<4>(tree, swept);
+  if (level >= 3) return looped_sweeps_at<3>(tree, swept);
 #endif
-  return looped_sweeps_at<1>(tree, loops, plan);
+  return looped_sweeps_at<1>(tree, swept);
 }
 
 }  // namespace
 
 std::unique_ptr<LoopedSweeps> make_looped_sweeps(const PlanarTree& tree,
-                                                 const LoopModel<Planar>& loops,
-                                                 const LoopPlan& plan, int level) {
-  return make(tree, loops, plan, level);
+                                                 const SweptLoops<Planar>& swept, int level) {
+  return make(tree, swept, level);
 }
 std::unique_ptr<LoopedSweeps> make_looped_sweeps(const LinkTree& tree,
-                                                 const LoopModel<Spatial>& loops,
-                                                 const LoopPlan& plan, int level) {
-  return make(tree, loops, plan, level);
+                                                 const SweptLoops<Spatial>& swept, int level) {
+  return make(tree, swept, level);
 }
 
 LoopModel<Spatial> in_link_frames(LoopModel<Spatial> loops, const LinkTree&) {
@@ -47,7 +44,7 @@ LoopModel<Planar> in_link_frames(LoopModel<Planar> loops, const PlanarTree& tree
     turn(l.a, l.at_a);
     turn(l.b, l.at_b);
     for (auto& axis : l.axis_a) turn(l.a, axis);
-    for (auto& axis : l.axis_b) turn(l.b, axis);
+    for (auto& axis : l.axis_b) turn(l.axes_of_b(), axis);
     if (l.motion < 0) continue;
     auto& m = loops.motions[static_cast<std::size_t>(l.motion)];
     turn(l.b, m.at_b);

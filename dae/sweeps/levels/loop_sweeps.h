@@ -6,6 +6,7 @@
 #include <momenta/core/kernel/link.h>
 #include <momenta/core/kernel/planar_link.h>
 #include <momenta/dae/loop/loop_model.h>
+#include <momenta/dae/loop/shared_points.h>
 #include <momenta/dae/sweeps/loop_plan.h>
 #include <momenta/dae/sweeps/right_side.h>
 
@@ -31,6 +32,7 @@ class LoopedSweeps {
   virtual bool momentum(double t, const double* q, const double* p, const RightSide<double>& right,
                         double* u, double* sigma, double* pdot) = 0;
   /// u̇ (nv) and λ (m) of (3) from u and all generalised forces τ (nv) but the weights'.
+  /// @pre No compliance where ties are paired anew, here and in momentum().
   virtual bool acceleration(double t, const double* q, const double* u, const double* tau,
                             const RightSide<double>& right, double* udot, double* lambda) = 0;
   /// momentum() with rates for many states, `width()` at a time; no centre. False when some state
@@ -58,6 +60,14 @@ class LoopedSweeps {
 LoopModel<Planar> in_link_frames(LoopModel<Planar> loops, const PlanarTree& tree);
 LoopModel<Spatial> in_link_frames(LoopModel<Spatial> loops, const LinkTree& tree);
 
+/// Loops as the sweeps carry them.
+template <class Space>
+struct SweptLoops {
+  LoopModel<Space> loops;  ///< points and axes in the frames of the links
+  LoopPlan plan;
+  SharedPoints shared;  ///< empty: the loops are those of the scene
+};
+
 /// The plan of a model's loops; in space legs may be folded.
 template <class Space>
 LoopPlan plan_loops(const Model<Space>& model, const LoopModel<Space>& loops) {
@@ -71,13 +81,22 @@ LoopPlan plan_loops(const Model<Space>& model, const LoopModel<Space>& loops) {
   return plan_loops(parents, shapes, Space::dimension == 6);
 }
 
-/// @pre `loops` in the frames of the links, level ≤ best_level(), plan.fits(); tree and plan stay
-/// where they are.
+/// `loops` in the frames of the links and their plan; ties that meet in one point are paired anew
+/// where that is less work and both plans fit.
+template <class Space>
+SweptLoops<Space> swept_loops(const Model<Space>& model, LoopModel<Space> loops) {
+  SweptLoops<Space> given{std::move(loops), {}, {}}, anew;
+  given.plan = plan_loops(model, given.loops);
+  anew.shared = SharedPoints(given.loops, anew.loops);
+  if (anew.shared.empty()) return given;
+  anew.plan = plan_loops(model, anew.loops);
+  return given.plan.fits() && anew.plan.work < given.plan.work ? anew : given;
+}
+
+/// @pre level ≤ best_level(), swept.plan.fits(); tree and swept loops stay where they are.
 std::unique_ptr<LoopedSweeps> make_looped_sweeps(const PlanarTree& tree,
-                                                 const LoopModel<Planar>& loops,
-                                                 const LoopPlan& plan, int level);
+                                                 const SweptLoops<Planar>& swept, int level);
 std::unique_ptr<LoopedSweeps> make_looped_sweeps(const LinkTree& tree,
-                                                 const LoopModel<Spatial>& loops,
-                                                 const LoopPlan& plan, int level);
+                                                 const SweptLoops<Spatial>& swept, int level);
 
 }  // namespace momenta

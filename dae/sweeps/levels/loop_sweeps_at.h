@@ -17,14 +17,19 @@ class LoopedSweepsAt final : public LoopedSweeps {
   static constexpr std::size_t abreast = Rows > 8 ? 1 : native_width<Level>;
 
  public:
-  LoopedSweepsAt(const Tree& tree, const LoopModel<Space>& loops, const LoopPlan& plan)
-      : tree_(tree), loops_(loops), plan_(plan), momentum_(tree, loops, plan) {}
+  LoopedSweepsAt(const Tree& tree, const SweptLoops<Space>& swept)
+      : tree_(tree),
+        loops_(swept.loops),
+        plan_(swept.plan),
+        shared_(swept.shared),
+        momentum_(tree, loops_, plan_) {}
 
   bool momentum(double t, const double* q, const double* p, const RightSide<double>& right,
                 double* u, double* sigma, double* pdot) override {
     const bool ok = momentum_(One(t), StridedIn<One>{q, 1}, StridedIn<One>{p, 1},
                               StridedIn<One>{p, 1}, one(right), StridedOut<One>{u, 1},
                               StridedOut<One>{sigma, 1}, StridedOut<One>{pdot, 1});
+    if (!shared_.empty()) shared_.to_given(sigma, 1);
     stuck_ = momentum_.stuck();
     weak_leg_ = momentum_.weak_leg();
     return ok;
@@ -35,6 +40,7 @@ class LoopedSweepsAt final : public LoopedSweeps {
     const bool ok = sweeps(One(t), StridedIn<One>{q, 1}, StridedIn<One>{u, 1},
                            StridedIn<One>{tau, 1}, one(right), StridedOut<One>{udot, 1},
                            StridedOut<One>{lambda, 1}, StridedOut<One>{udot, 1});
+    if (!shared_.empty()) shared_.to_given(lambda, 1);
     stuck_ = sweeps.stuck();
     weak_leg_ = sweeps.weak_leg();
     return ok;
@@ -62,6 +68,7 @@ class LoopedSweepsAt final : public LoopedSweeps {
     for (; first + lanes <= s.count; first += lanes)
       pack(s.q + first, s.p + first, s.u + first, s.sigma + first, s.pdot + first, s.stride);
     if (first < s.count) rest(s, first, pack);
+    to_given(s);
     return all;
   }
 
@@ -88,10 +95,12 @@ class LoopedSweepsAt final : public LoopedSweeps {
   bool weak_leg() const override { return weak_leg_; }
 
  private:
-  static RightSide<One> one(const RightSide<double>& right) {
+  RightSide<One> one(const RightSide<double>& right) {
     RightSide<One> r;
     static_assert(sizeof(One) == sizeof(double));
-    r.centre = reinterpret_cast<const One*>(right.centre);
+    const bool paired = right.centre && !shared_.empty();
+    r.centre =
+        reinterpret_cast<const One*>(paired ? shared_.to_paired(right.centre) : right.centre);
     r.fade = right.fade;
     r.drives = right.drives;
     r.positions = right.positions;
@@ -101,6 +110,10 @@ class LoopedSweepsAt final : public LoopedSweeps {
     r.beta = right.beta;
     r.compliance = reinterpret_cast<const One*>(right.compliance);
     return r;
+  }
+  void to_given(const LoopedStates& s) {
+    if (shared_.empty()) return;
+    for (std::size_t i = 0; i < s.count; ++i) shared_.to_given(s.sigma + i, s.stride);
   }
   template <class Report>
   void each_pivot(bool of_momentum, Report&& report) const {
@@ -132,6 +145,7 @@ class LoopedSweepsAt final : public LoopedSweeps {
       weak |= momentum_.weak_leg();
     }
     weak_leg_ = weak;
+    to_given(s);
     return all;
   }
 
@@ -167,6 +181,7 @@ class LoopedSweepsAt final : public LoopedSweeps {
   const Tree& tree_;
   const LoopModel<Space>& loops_;
   const LoopPlan& plan_;
+  SharedPoints shared_;
   LoopSweeps<Space, One, Rows, true> momentum_;
   std::unique_ptr<LoopSweeps<Space, One, Rows, false>> acceleration_;
   std::unique_ptr<LoopSweeps<Space, Many, Rows, true>> many_;
@@ -177,10 +192,10 @@ class LoopedSweepsAt final : public LoopedSweeps {
 
 /// The narrowest fronts that hold the plan's lanes.
 template <int Level, class Space, class Tree>
-std::unique_ptr<LoopedSweeps> looped_sweeps_at(const Tree& tree, const LoopModel<Space>& loops,
-                                               const LoopPlan& plan) {
+std::unique_ptr<LoopedSweeps> looped_sweeps_at(const Tree& tree, const SweptLoops<Space>& swept) {
+  const LoopPlan& plan = swept.plan;
   const auto make = [&]<int Rows>() -> std::unique_ptr<LoopedSweeps> {
-    return std::make_unique<LoopedSweepsAt<Tree, Space, Level, Rows>>(tree, loops, plan);
+    return std::make_unique<LoopedSweepsAt<Tree, Space, Level, Rows>>(tree, swept);
   };
   if constexpr (Space::dimension == 3)
     if (plan.lanes <= 2) return make.template operator()<2>();

@@ -2,6 +2,5 @@
 
 namespace momenta {
 template std::unique_ptr<LoopedSweeps> looped_sweeps_at<1>(const PlanarTree&,
-                                                           const LoopModel<Planar>&,
-                                                           const LoopPlan&);
+                                                           const SweptLoops<Planar>&);
 }  // namespace momenta

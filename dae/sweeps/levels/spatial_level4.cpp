@@ -2,6 +2,5 @@
 
 namespace momenta {
 template std::unique_ptr<LoopedSweeps> looped_sweeps_at<4>(const LinkTree&,
-                                                           const LoopModel<Spatial>&,
-                                                           const LoopPlan&);
+                                                           const SweptLoops<Spatial>&);
 }  // namespace momenta

@@ -1,0 +1,185 @@
+#include <momenta/core/scene/scene.h>
+#include <momenta/dae/assembly.h>
+#include <momenta/dae/solver/stopping.h>
+#include <momenta/dae/study/sweep_study.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <new>
+#include <stdexcept>
+#include <tuple>
+
+namespace momenta {
+namespace {
+
+constexpr std::size_t most_cases = 10'000'000;
+
+std::vector<std::string> parts(const std::string& text, char between) {
+  std::vector<std::string> all(1);
+  for (const char c : text)
+    if (c == between)
+      all.emplace_back();
+    else
+      all.back() += c;
+  return all;
+}
+
+class VariedText {
+ public:
+  explicit VariedText(const std::string& text) : text_(text) {}
+
+  std::pair<std::string, std::vector<double>> read() const {
+    const std::size_t equals = text_.rfind('=');
+    if (equals == std::string::npos || equals == 0) refuse();
+    const std::string place = text_.substr(0, equals), values = text_.substr(equals + 1);
+    const auto range = parts(values, ':');
+    if (range.size() == 1) {
+      std::vector<double> list;
+      for (const std::string& value : parts(values, ',')) list.push_back(number(value));
+      return {place, list};
+    }
+    const bool log = range.size() == 4 && range[3] == "log";
+    if (range.size() != 3 && !log) refuse();
+    return {place, spaced(number(range[0]), number(range[1]), range[2], log)};
+  }
+
+ private:
+  [[noreturn]] void refuse() const {
+    throw std::invalid_argument("--vary '" + text_ +
+                                "': expected PLACE=FROM:TO:COUNT, PLACE=FROM:TO:COUNT:log or "
+                                "PLACE=VALUE,VALUE,…, as in body.crank.mass=1:10:100");
+  }
+  double number(const std::string& text) const {
+    double value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) refuse();
+    return value;
+  }
+  std::vector<double> spaced(double from, double to, const std::string& count_text,
+                             bool log) const {
+    const double count = number(count_text);
+    if (count < 1 || count != std::floor(count) || count > static_cast<double>(most_cases))
+      throw std::invalid_argument("--vary '" + text_ + "': found " + count_text +
+                                  " values, expected 1 to " + std::to_string(most_cases));
+    if (log && !(from > 0 && to > 0))
+      throw std::invalid_argument("--vary '" + text_ +
+                                  "': a logarithmic range needs both ends above zero");
+    const auto n = static_cast<std::size_t>(count);
+    std::vector<double> values(n, from);
+    for (std::size_t i = 1; i < n; ++i) {
+      const double part = static_cast<double>(i) / static_cast<double>(n - 1);
+      values[i] = i + 1 == n ? to
+                  : log      ? from * std::pow(to / from, part)
+                             : from + (to - from) * part;
+    }
+    return values;
+  }
+
+  const std::string& text_;
+};
+
+/// Places of the watched columns; "P.x" finds "P.x [m]".
+std::vector<std::size_t> columns_of(const SweepRequest& request,
+                                    const std::vector<std::string>& columns) {
+  std::vector<std::size_t> places;
+  for (const std::string& name : request.watched) {
+    const auto found = std::find_if(columns.begin(), columns.end(), [&](const std::string& c) {
+      return c == name || c.substr(0, c.find(" [")) == name;
+    });
+    if (found == columns.end()) {
+      std::string all;
+      for (const std::string& c : columns) all += (all.empty() ? "" : ", ") + c;
+      throw std::invalid_argument("--watch '" + name + "': no such column, expected one of " + all);
+    }
+    places.push_back(static_cast<std::size_t>(found - columns.begin()));
+  }
+  return places;
+}
+
+void watch(const RunResult& run, const std::vector<std::size_t>& columns, SweepCase& result) {
+  for (const std::size_t column : columns) {
+    SweepCase::Watched w;
+    for (const auto& row : run.trajectory.rows) {
+      const double x = row[column];
+      w.last = x;
+      if (!(x >= w.least)) w.least = x;
+      if (!(x <= w.greatest)) w.greatest = x;
+    }
+    result.watched.push_back(w);
+  }
+}
+
+void make(const SweepRequest& request, SweepCase& result) {
+  std::vector<Setting> settings;
+  for (std::size_t i = 0; i < request.varied.size(); ++i)
+    settings.push_back({request.varied[i].place, result.values[i]});
+  Scene scene = parse_scene(request.text, request.file, settings);
+  const Mechanism mechanism(std::move(scene), request.mechanism);
+  const auto columns = columns_of(request, trajectory_columns(mechanism));
+  const Assembly assembly = assemble(mechanism);
+  RunRequest one;
+  one.settings = request.settings(mechanism.scene().run);
+  one.keep_trajectory = !columns.empty();
+  one.max_cpu_seconds = request.max_cpu_seconds;
+  one.progress = [&](double) { return !request.going_on || request.going_on(); };
+  const RunResult run = run_form(mechanism, assembly.start, one);
+  result.status = run.status;
+  result.reason = run.reason;
+  result.stopped_at = run.stopped_at;
+  result.position_drift_max = run.position_drift_max;
+  result.velocity_drift_max = run.velocity_drift_max;
+  result.energy_error_max = run.energy_error_max;
+  result.steps = run.counters.steps;
+  result.evaluations = run.counters.evaluations;
+  watch(run, columns, result);
+}
+
+}  // namespace
+
+Varied::Varied(const std::string& text) {
+  std::tie(place, values) = VariedText(text).read();
+}
+
+std::size_t SweepRequest::cases() const {
+  std::size_t count = 1;
+  for (const Varied& v : varied) {
+    if (v.values.size() > most_cases / count)
+      throw std::invalid_argument("--vary: more than " + std::to_string(most_cases) +
+                                  " combinations, expected fewer values");
+    count *= v.values.size();
+  }
+  return count;
+}
+
+std::vector<double> SweepRequest::values(std::size_t number) const {
+  std::vector<double> all(varied.size());
+  for (std::size_t i = varied.size(); i-- > 0;) {
+    const auto& values = varied[i].values;
+    all[i] = values[number % values.size()];
+    number /= values.size();
+  }
+  return all;
+}
+
+SweepCase run_case(const SweepRequest& request, std::size_t number) {
+  SweepCase result;
+  result.values = request.values(number);
+  const double from = thread_seconds();
+  const auto refuse = [&](const std::string& reason) {
+    result.status = "refused";
+    result.reason = reason;
+  };
+  try {
+    make(request, result);
+  } catch (const std::bad_alloc&) {
+    refuse("not enough memory for this case");
+  } catch (const std::runtime_error& e) {
+    refuse(e.what());
+  }
+  result.cpu_s = thread_seconds() - from;
+  result.watched.resize(request.watched.size());
+  return result;
+}
+
+}  // namespace momenta

@@ -1,0 +1,111 @@
+#include "equations/sweeps_against_matrix.h"
+
+#include "equations/tolerance.h"
+
+#include <gtest/gtest.h>
+#include <momenta/dae/kkt/assembled_solver.h>
+#include <momenta/dae/sweeps/sweep_solver.h>
+
+#include <Eigen/Dense>
+
+namespace momenta::equations {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// Condition of M and of Φ_q M^(−1/2) at one configuration.
+struct Conditions {
+  double of_mass = 1, of_loops = 1;
+};
+Conditions conditions(const Mechanism& mechanism, Evaluation<double>& e) {
+  const auto& pattern = mechanism.kkt_pattern();
+  std::vector<double> values(std::max(pattern.mass.size(), pattern.constraint.size()));
+  MatrixXd M = MatrixXd::Zero(mechanism.nv(), mechanism.nv()),
+           J = MatrixXd::Zero(mechanism.m(), mechanism.nv());
+  e.mass_entries(values.data());
+  for (std::size_t i = 0; i < pattern.mass.size(); ++i)
+    M(pattern.mass[i].row, pattern.mass[i].column) =
+        M(pattern.mass[i].column, pattern.mass[i].row) = values[i];
+  e.constraint_entries(values.data());
+  for (std::size_t i = 0; i < pattern.constraint.size(); ++i)
+    J(pattern.constraint[i].row, pattern.constraint[i].column) = values[i];
+  const VectorXd masses = M.selfadjointView<Eigen::Lower>().eigenvalues();
+  const VectorXd loops =
+      MatrixXd(M.llt().matrixL().solve(J.transpose())).jacobiSvd().singularValues();
+  return {masses.maxCoeff() / masses.minCoeff(),
+          loops.size() > 0 && loops.minCoeff() > 0 ? loops.maxCoeff() / loops.minCoeff() : 1e300};
+}
+
+struct Result {
+  VectorXd u, sigma, pdot, udot, lambda, delta;
+};
+Result solved(LoopSolver& solver, const Mechanism& mechanism, const TreeState& s, const VectorXd& p,
+              const VectorXd& centre) {
+  const int nv = mechanism.nv(), m = mechanism.m();
+  Result r{VectorXd(nv), VectorXd(m), VectorXd(nv), VectorXd(nv), VectorXd(m), VectorXd(nv)};
+  EXPECT_TRUE(solver.momentum(s.t, s.q.data(), p.data(), centre.data(), fade_evaluation, 0.7,
+                              r.u.data(), r.sigma.data(), r.pdot.data()));
+  EXPECT_TRUE(solver.acceleration(s.t, s.q.data(), s.u.data(), centre.data(), 0.3, 0.4,
+                                  r.udot.data(), r.lambda.data()));
+  EXPECT_TRUE(solver.position_correction(s.t, s.q.data(), r.delta.data()));
+  return r;
+}
+
+}  // namespace
+
+void compare(const Scene& scene, RandomTree& random, const MechanismOptions& options,
+             Worst& worst) {
+  MechanismOptions dense = options;
+  dense.kkt = KktChoice::dense;
+  const Mechanism twin(scene, dense);
+  if (twin.m() > twin.nv()) return;
+  const TreeState s = random.state(twin.tree());
+  const auto e = twin.evaluation<double>();
+  e->place(s.t, s.q.data());
+  const Conditions c = conditions(twin, *e);
+  if (!(c.of_loops < 100)) return;
+  const Mechanism mechanism(scene, options);
+  if (mechanism.kkt() != KktChoice::sweeps) return;
+  ++worst.tried;
+  worst.anew += mechanism.pairs_anew();
+  VectorXd p(twin.nv()), centre(twin.m());
+  for (double& x : p) x = random.uniform(-2, 2);
+  for (double& x : centre) x = random.uniform(-2, 2);
+  const auto own = mechanism.evaluation<double>();
+  const auto sweeps = make_sweep_solver(mechanism, *own);
+  const auto assembled = make_assembled_solver(twin, *e);
+  const Result a = solved(*sweeps, mechanism, s, p, centre),
+               b = solved(*assembled, twin, s, p, centre);
+  const double growth = std::sqrt(c.of_mass) * c.of_loops * c.of_loops;
+  const auto note = [&](double& to, const VectorXd& x, const VectorXd& y) {
+    to = std::max(to, relative_error(x, y) / growth);
+  };
+  note(worst.u, a.u, b.u);
+  note(worst.sigma, a.sigma, b.sigma);
+  note(worst.pdot, a.pdot, b.pdot);
+  note(worst.udot, a.udot, b.udot);
+  note(worst.lambda, a.lambda, b.lambda);
+  note(worst.delta, a.delta, b.delta);
+  MechanismOptions assembled_sparse = options;
+  assembled_sparse.kkt = KktChoice::sparse;
+  const Mechanism third(scene, assembled_sparse);
+  const auto third_e = third.evaluation<double>();
+  const Result f = solved(*make_assembled_solver(third, *third_e), third, s, p, centre);
+  note(worst.sparse, f.u, a.u);
+  note(worst.sparse, f.pdot, a.pdot);
+  note(worst.sparse, f.udot, a.udot);
+}
+
+void expect_rounding(const Worst& w, int bodies) {
+  const double tolerance = algebra_tol(bodies);
+  EXPECT_LT(w.u, tolerance);
+  EXPECT_LT(w.sigma, tolerance);
+  EXPECT_LT(w.pdot, tolerance);
+  EXPECT_LT(w.udot, tolerance);
+  EXPECT_LT(w.lambda, tolerance);
+  EXPECT_LT(w.delta, tolerance);
+  EXPECT_LT(w.sparse, 1e-12);  // its block −ε is 1e-10 of the scale, refined once
+}
+
+}  // namespace momenta::equations

@@ -1,0 +1,23 @@
+#pragma once
+// Solutions by the sweeps against those of the assembled matrices, dense and sparse, at random
+// states: momentum and acceleration form, ṗ, and the correction of positions.
+
+#include "equations/random_tree.h"
+
+#include <momenta/dae/mechanism.h>
+
+namespace momenta::equations {
+
+/// Largest differences over the growth that rounding must have, by what differs.
+struct Worst {
+  double u = 0, sigma = 0, pdot = 0, udot = 0, lambda = 0, delta = 0, sparse = 0;
+  int tried = 0;  ///< carried by the sweeps
+  int anew = 0;   ///< of these, with ties paired anew
+};
+
+/// One random state of `scene`, where it is well conditioned and has no more equations than rates.
+void compare(const Scene& scene, RandomTree& random, const MechanismOptions& options, Worst& worst);
+
+void expect_rounding(const Worst& worst, int bodies);
+
+}  // namespace momenta::equations

@@ -1,0 +1,164 @@
+// Sweeps over numbers of a scene: the same cases on one thread, several threads, several processes,
+// and after a kill.
+
+#include "golden/program.h"
+
+#include <gtest/gtest.h>
+#include <momenta/dae/assembly.h>
+#include <momenta/dae/report/sweep_report.h>
+
+#include <csignal>
+#include <set>
+
+namespace {
+
+using namespace momenta;
+using namespace momenta::golden;
+
+std::string four_bar() {
+  return text_of(std::string(MOMENTA_SOURCE_DIR) + "/examples/four_bar/scene.toml");
+}
+RunSettings short_run(const RunDefaults& defaults) {
+  RunSettings s;
+  s.end_time = std::min(defaults.end_time, 0.5);
+  s.samples = 10;
+  return s;
+}
+SweepRequest small_sweep() {
+  SweepRequest request;
+  request.text = four_bar();
+  request.file = "four_bar";
+  request.varied = {Varied("body.crank.mass=0.5:2:4"), Varied("gravity.1=-9.81,0,3")};
+  request.settings = short_run;
+  return request;
+}
+
+TEST(Sweep, ValuesOfARange) {
+  EXPECT_EQ(Varied("a=1:3:5").values, (std::vector<double>{1, 1.5, 2, 2.5, 3}));
+  EXPECT_EQ(Varied("a=7:9:1").values, (std::vector<double>{7}));
+  EXPECT_EQ(Varied("a=3,1,2").values, (std::vector<double>{3, 1, 2}));
+  EXPECT_EQ(Varied("body.a=b.mass=3").place, "body.a=b.mass");
+  const auto log = Varied("a=1e-3:1e3:7:log").values;
+  for (int i = 0; i < 7; ++i)
+    EXPECT_NEAR(log[static_cast<std::size_t>(i)] / std::pow(10.0, i - 3), 1, 1e-14);
+  for (const char* wrong : {"", "a", "=1", "a=", "a=1:2", "a=1:2:0", "a=1:2:2.5", "a=1:2:3:lin",
+                            "a=1,,2", "a=nan", "a=0:1:3:log", "a=1:2:99999999999", "a=1 ,2"})
+    EXPECT_THROW(Varied{wrong}, std::invalid_argument) << wrong;
+}
+
+TEST(Sweep, EveryCombinationOnceTheLastChangingFastest) {
+  const SweepRequest request = small_sweep();
+  ASSERT_EQ(request.cases(), 12u);
+  std::set<std::vector<double>> seen;
+  for (std::size_t i = 0; i < 12; ++i) seen.insert(request.values(i));
+  EXPECT_EQ(seen.size(), 12u);
+  EXPECT_EQ(request.values(1), (std::vector<double>{0.5, 0}));
+  EXPECT_EQ(request.values(3), (std::vector<double>{1, -9.81}));
+  SweepRequest endless = request;
+  endless.varied.assign(8, Varied("a=1:2:100"));
+  EXPECT_THROW(endless.cases(), std::invalid_argument);
+}
+
+/// A case is the run of the scene with that number written into it.
+TEST(Sweep, ACaseIsTheRunOfItsScene) {
+  SweepRequest request = small_sweep();
+  request.watched = {"A.q", "t"};
+  const SweepCase made = run_case(request, 3);
+  ASSERT_EQ(made.status, "done") << made.reason;
+  Scene scene = parse_scene(request.text, "four_bar", {});
+  for (BodySpec& body : scene.bodies)
+    if (body.name == "crank") body.mass = 1;
+  scene.gravity.y() = -9.81;
+  const Mechanism mechanism(scene);
+  RunRequest one;
+  one.settings = short_run(scene.run);
+  one.keep_trajectory = true;
+  const RunResult run = run_form(mechanism, assemble(mechanism).start, one);
+  EXPECT_EQ(made.position_drift_max, run.position_drift_max);
+  EXPECT_EQ(made.energy_error_max, run.energy_error_max);
+  EXPECT_EQ(made.steps, run.counters.steps);
+  ASSERT_EQ(made.watched.size(), 2u);
+  const auto& columns = run.trajectory.columns;
+  const auto a = static_cast<std::size_t>(std::find(columns.begin(), columns.end(), "A.q [rad]") -
+                                          columns.begin());
+  EXPECT_EQ(made.watched[0].last, run.trajectory.rows.back()[a]);
+  double least = 1e300, greatest = -1e300;
+  for (const auto& row : run.trajectory.rows) {
+    least = std::min(least, row[a]);
+    greatest = std::max(greatest, row[a]);
+  }
+  EXPECT_EQ(made.watched[0].least, least);
+  EXPECT_EQ(made.watched[0].greatest, greatest);
+  EXPECT_EQ(made.watched[1].last, 0.5);
+}
+
+TEST(Sweep, WhatIsWrongWithACaseIsInTheCase) {
+  SweepRequest request = small_sweep();
+  request.varied = {Varied("body.crank.mass=1,-1"), Varied("loop.B.origin.child.0=1.5,15")};
+  const auto made = [&](std::size_t i) { return run_case(request, i); };
+  EXPECT_EQ(made(0).status, "done");
+  EXPECT_EQ(made(1).status, "refused");
+  EXPECT_NE(made(1).reason.find("stays open"), std::string::npos) << made(1).reason;
+  EXPECT_EQ(made(2).status, "refused");
+  EXPECT_NE(made(2).reason.find("mass"), std::string::npos) << made(2).reason;
+  // What is wrong with all of them ends the study.
+  for (const char* place :
+       {"body.crnk.mass=1", "gravity.3=1", "body.crank=1", "name=1", "body.crank.mass.x=1"}) {
+    request.varied = {Varied(place)};
+    EXPECT_THROW(made(0), std::invalid_argument) << place;
+  }
+  request.varied = {Varied("gravity.0=0")};
+  request.watched = {"nothing"};
+  EXPECT_THROW(made(0), std::invalid_argument);
+}
+
+class SweepProgram : public Program {
+ protected:
+  std::string sweep(const std::string& out) const {
+    return "sweep '" + example("four_bar") +
+           "' --vary body.crank.mass=0.5:2:8 --vary body.rocker.mass=-1,1,2 --end 2 --watch "
+           "A.q,energy --out '" +
+           (folder_ / out).string() + "'";
+  }
+  std::string csv(const std::string& out) const { return text_of(folder_ / out / "sweep.csv"); }
+};
+
+TEST_F(SweepProgram, ThreadsProcessesAndKillsChangeNothing) {
+  ASSERT_EQ(call(sweep("one") + " --threads 1").status, 0) << text_of(folder_ / "stderr");
+  const std::string expected = csv("one");
+  EXPECT_EQ(std::count(expected.begin(), expected.end(), '\n'), 25);
+  EXPECT_NE(expected.find("refused"), std::string::npos);
+  ASSERT_EQ(call(sweep("four") + " --threads 4").status, 0);
+  EXPECT_EQ(csv("four"), expected);
+
+  const fs::path journal = folder_ / "killed" / "runs.jsonl";
+  ASSERT_EQ(status_when_killed(sweep("killed") + " --threads 2", journal, 6), 128 + SIGKILL);
+  ASSERT_FALSE(fs::exists(folder_ / "killed" / "sweep.csv"));
+  const Outcome resumed = call(sweep("killed"));
+  EXPECT_EQ(resumed.status, 0) << resumed.err;
+  EXPECT_NE(resumed.err.find("of 24 runs taken from"), std::string::npos) << resumed.err;
+  EXPECT_EQ(csv("killed"), expected);
+  EXPECT_FALSE(fs::exists(journal));
+  const auto json = nlohmann::json::parse(text_of(folder_ / "killed" / "sweep.json"));
+  EXPECT_EQ(json.at("cases"), 24);
+  EXPECT_EQ(json.at("status").at("refused"), 8);
+  EXPECT_EQ(json.at("status").at("done"), 16);
+
+  if (!MOMENTA_WITH_MPI || std::system("command -v mpirun >/dev/null") != 0) return;
+  const Outcome ranks =
+      call(sweep("ranks"), "/dev/null", "mpirun --allow-run-as-root --oversubscribe -n 3 ");
+  EXPECT_EQ(ranks.status, 0) << ranks.err;
+  EXPECT_EQ(csv("ranks"), expected);
+  const auto shared = nlohmann::json::parse(text_of(folder_ / "ranks" / "sweep.json"));
+  EXPECT_EQ(shared.at("processes"), 3);
+}
+
+TEST_F(SweepProgram, RefusesWhatItCannotVary) {
+  const std::string scene = "sweep '" + example("four_bar") + "' ";
+  expect_refused(scene + "--vary body.crank.mass=1:2", "PLACE=FROM:TO:COUNT");
+  expect_refused(scene + "--vary body.crnk.mass=1:2:3", "no body of that name");
+  expect_refused(scene + "--vary body.crank.mass=1:2:3 --watch speed", "no such column");
+  expect_refused("sweep nowhere.toml --vary a=1", "nowhere.toml");
+}
+
+}  // namespace
