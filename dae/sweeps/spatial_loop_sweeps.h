@@ -354,4 +354,5 @@ void LoopSweeps<Spatial, S, Rows, Momentum>::move_bodies(const In& x, const Righ
 }  // namespace momenta
 
 #include <momenta/dae/sweeps/spatial_loop_inward.h>
+#include <momenta/dae/sweeps/spatial_loop_joints.h>
 #include <momenta/dae/sweeps/spatial_loop_outward.h>

@@ -37,9 +37,8 @@ Conditions conditions(const Mechanism& mechanism, Evaluation<double>& e) {
           loops.size() > 0 && loops.minCoeff() > 0 ? loops.maxCoeff() / loops.minCoeff() : 1e300};
 }
 
-struct Result {
-  VectorXd u, sigma, pdot, udot, lambda, delta;
-};
+}  // namespace
+
 Result solved(LoopSolver& solver, const Mechanism& mechanism, const TreeState& s, const VectorXd& p,
               const VectorXd& centre) {
   const int nv = mechanism.nv(), m = mechanism.m();
@@ -51,8 +50,6 @@ Result solved(LoopSolver& solver, const Mechanism& mechanism, const TreeState& s
   EXPECT_TRUE(solver.position_correction(s.t, s.q.data(), r.delta.data()));
   return r;
 }
-
-}  // namespace
 
 void compare(const Scene& scene, RandomTree& random, const MechanismOptions& options,
              Worst& worst) {

@@ -4,9 +4,18 @@
 
 #include "equations/random_tree.h"
 
+#include <momenta/dae/kkt/loop_solver.h>
 #include <momenta/dae/mechanism.h>
 
 namespace momenta::equations {
+
+/// Momentum form, acceleration form and correction of positions at one state, with gauge and
+/// feedback of their own.
+struct Result {
+  Eigen::VectorXd u, sigma, pdot, udot, lambda, delta;
+};
+Result solved(LoopSolver& solver, const Mechanism& mechanism, const TreeState& s,
+              const Eigen::VectorXd& p, const Eigen::VectorXd& centre);
 
 /// Largest differences over the growth that rounding must have, by what differs.
 struct Worst {

@@ -27,10 +27,10 @@ Scene tied_rods(RandomTree& random, unsigned bodies, unsigned tied) {
   for (unsigned i = 0; i < bodies; ++i) {
     s.bodies.push_back(rod(name(i)));
     const bool grounded = i == 0 || random.chance(0.3);
-    s.joints.push_back(hinge(
-        "O" + std::to_string(i),
-        grounded ? "ground" : name(static_cast<unsigned>(random.below(static_cast<int>(i)))),
-        name(i), {random.uniform(0.2, 1), random.uniform(-1, 1), 0}, random.uniform(-3, 3)));
+    s.joints.push_back(
+        hinge("O" + std::to_string(i),
+              grounded ? "ground" : name(static_cast<unsigned>(random.below(static_cast<int>(i)))),
+              name(i), {random.uniform(0.2, 1), random.uniform(-1, 1), 0}, random.uniform(-3, 3)));
   }
   std::vector<std::string> sides;
   for (unsigned i = 0; i < bodies; ++i) sides.push_back(name(i));

@@ -1,0 +1,64 @@
+#pragma once
+// What the files of the Python module share. A mechanism is shared by what is made of it; vectors
+// go in and out without copies, as NumPy arrays of float64.
+
+#include <momenta/core/open_chain.h>
+#include <momenta/dae/assembly.h>
+#include <momenta/dae/kkt/loop_solver.h>
+#include <pybind11/eigen.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <memory>
+#include <string>
+
+namespace momenta::python {
+
+namespace py = pybind11;
+using Vector = Eigen::VectorXd;
+using In = Eigen::Ref<const Eigen::VectorXd>;
+
+/// Refuses an array of the wrong length, by its name.
+inline void expect_size(const In& x, int size, const char* name, const char* what) {
+  if (x.size() != size)
+    throw py::value_error(std::string(name) + " has " + std::to_string(x.size()) +
+                          " numbers, expected " + std::to_string(size) + " (" + what + ")");
+}
+
+/// A mechanism with the workspaces of one thread: evaluations, the solver of its loops, its tree.
+class Bench {
+ public:
+  Bench(Scene scene, const MechanismOptions& options)
+      : mechanism(std::make_shared<const Mechanism>(std::move(scene), options)),
+        e(mechanism->evaluation<double>()) {
+    if (mechanism->m() > 0) solver = make_loop_solver(*mechanism, *e);
+  }
+  OpenChain& chain() {
+    if (!chain_) chain_ = std::make_unique<OpenChain>(mechanism->scene());
+    return *chain_;
+  }
+  void expect(const In* q, const In* u, const char* rates = "u") const {
+    if (q) expect_size(*q, mechanism->nq(), "q", "nq");
+    if (u) expect_size(*u, mechanism->nv(), rates, "nv");
+  }
+  [[noreturn]] void fail() const {
+    throw SceneError(solver && solver->stuck() >= 0 ? mechanism->no_inertia(solver->stuck())
+                     : e->stuck() >= 0              ? mechanism->no_inertia(e->stuck())
+                                                    : "the solution is not finite");
+  }
+
+  std::shared_ptr<const Mechanism> mechanism;
+  std::unique_ptr<Evaluation<double>> e;
+  std::unique_ptr<LoopSolver> solver;
+
+ private:
+  std::unique_ptr<OpenChain> chain_;
+};
+using BenchPtr = std::shared_ptr<Bench>;
+
+void bind_mechanism(py::module_& module);
+void bind_runs(py::module_& module);
+/// Methods of Mechanism that run it.
+void add_runs(py::class_<Bench, BenchPtr>& mechanism);
+
+}  // namespace momenta::python

@@ -1,0 +1,253 @@
+// Mechanism: what a scene is, its consistent start, and the equations at one state.
+
+#include <momenta/core/scene/read_scene.h>
+#include <momenta/dae/study/state_values.h>
+
+#include <optional>
+
+#include "bindings.h"
+
+namespace momenta::python {
+
+namespace {
+
+MechanismOptions options_of(const std::string& algebra, const std::string& kkt) {
+  MechanismOptions options;
+  if (algebra == "planar")
+    options.algebra = Algebra::planar;
+  else if (algebra == "spatial")
+    options.algebra = Algebra::spatial;
+  else if (algebra != "auto")
+    throw py::value_error("algebra '" + algebra + "': expected auto, planar or spatial");
+  if (kkt == "sweeps")
+    options.kkt = KktChoice::sweeps;
+  else if (kkt == "sparse")
+    options.kkt = KktChoice::sparse;
+  else if (kkt == "dense")
+    options.kkt = KktChoice::dense;
+  else if (kkt != "auto")
+    throw py::value_error("kkt '" + kkt + "': expected auto, sweeps, sparse or dense");
+  return options;
+}
+
+std::vector<std::string> labels(const std::vector<Column>& columns) {
+  std::vector<std::string> all;
+  for (const Column& c : columns) all.push_back(c.label());
+  return all;
+}
+
+/// (u, σ, ṗ) of (7)-(8).
+py::tuple momentum_rates(Bench& b, double t, const In& q, const In& p,
+                         const std::optional<Vector>& centre, double leak) {
+  const int nv = b.mechanism->nv(), m = b.mechanism->m();
+  b.expect(&q, &p, "p");
+  Vector u(nv), pdot(nv), sigma(m);
+  if (centre) expect_size(*centre, m, "centre", "m");
+  const bool ok =
+      m == 0 ? b.e->open_momentum_rates(t, q.data(), p.data(), u.data(), pdot.data())
+             : b.solver->momentum(t, q.data(), p.data(), centre ? centre->data() : nullptr,
+                                  fade_evaluation, leak, u.data(), sigma.data(), pdot.data());
+  if (!ok) b.fail();
+  return py::make_tuple(std::move(u), std::move(sigma), std::move(pdot));
+}
+
+/// (u̇, λ) of (3).
+py::tuple accelerations(Bench& b, double t, const In& q, const In& u) {
+  const int nv = b.mechanism->nv(), m = b.mechanism->m();
+  b.expect(&q, &u);
+  Vector udot(nv), lambda(m);
+  const bool ok = m == 0 ? b.e->open_accelerations(t, q.data(), u.data(), udot.data())
+                         : b.solver->acceleration(t, q.data(), u.data(), nullptr, 0, 0, udot.data(),
+                                                  lambda.data());
+  if (!ok) b.fail();
+  return py::make_tuple(std::move(udot), std::move(lambda));
+}
+
+Vector momenta_of(Bench& b, double t, const In& q, const In& u,
+                  const std::optional<Vector>& sigma) {
+  b.expect(&q, &u);
+  if (sigma) expect_size(*sigma, b.mechanism->m(), "sigma", "m");
+  Vector p(b.mechanism->nv());
+  b.e->place(t, q.data());
+  b.e->move(u.data());
+  b.e->momenta(sigma ? sigma->data() : nullptr, p.data());
+  return p;
+}
+
+/// (Φ, Φ̇)
+py::tuple constraints(Bench& b, double t, const In& q, const In& u) {
+  b.expect(&q, &u);
+  Vector phi(b.mechanism->m()), rate(b.mechanism->m());
+  b.e->place(t, q.data());
+  b.e->positions(phi.data());
+  b.e->move(u.data());
+  b.e->velocities(rate.data());
+  return py::make_tuple(std::move(phi), std::move(rate));
+}
+
+/// M and Φ_q, dense.
+py::tuple kkt(Bench& b, double t, const In& q) {
+  b.expect(&q, nullptr);
+  const KktPattern& pattern = b.mechanism->kkt_pattern();
+  std::vector<double> values(std::max(pattern.mass.size(), pattern.constraint.size()));
+  Eigen::MatrixXd M = Eigen::MatrixXd::Zero(b.mechanism->nv(), b.mechanism->nv()),
+                  J = Eigen::MatrixXd::Zero(b.mechanism->m(), b.mechanism->nv());
+  b.e->place(t, q.data());
+  b.e->mass_entries(values.data());
+  for (std::size_t i = 0; i < pattern.mass.size(); ++i)
+    M(pattern.mass[i].row, pattern.mass[i].column) =
+        M(pattern.mass[i].column, pattern.mass[i].row) = values[i];
+  b.e->constraint_entries(values.data());
+  for (std::size_t i = 0; i < pattern.constraint.size(); ++i)
+    J(pattern.constraint[i].row, pattern.constraint[i].column) = values[i];
+  return py::make_tuple(std::move(M), std::move(J));
+}
+
+Vector inverse_mass_times(Bench& b, double t, const In& q, const In& x) {
+  b.expect(&q, &x, "x");
+  Vector result(b.mechanism->nv());
+  if (!b.chain().inverse_mass_times(t, q, x, result)) throw SceneError(b.chain().failure());
+  return result;
+}
+
+py::tuple energies(Bench& b, double t, const In& q, const In& u) {
+  b.expect(&q, &u);
+  b.e->place(t, q.data());
+  b.e->move(u.data());
+  const double kinetic = b.e->kinetic();
+  return py::make_tuple(kinetic, b.e->potential(q.data()));
+}
+
+py::dict evaluate(Bench& b, double t, const std::optional<Vector>& q,
+                  const std::optional<Vector>& v, const std::optional<Vector>& p) {
+  const Tree& tree = b.mechanism->tree();
+  if (v && p) throw py::value_error("v and p are both given; expected one of them");
+  GivenState given;
+  given.t = t;
+  given.q = q.value_or(tree.q0);
+  given.v = v.value_or(tree.u0);
+  given.tau = Vector::Zero(tree.nv);
+  expect_size(given.q, tree.nq, "q", "nq");
+  expect_size(given.v, tree.nv, "v", "nv");
+  if (p) {
+    expect_size(*p, tree.nv, "p", "nv");
+    given.of_momenta = true;
+    given.p = *p;
+    given.p_given.assign(static_cast<std::size_t>(tree.nv), true);
+  }
+  StateValues s = evaluate_state(*b.mechanism, given);
+  py::dict all;
+  const auto put = [&](const char* name, auto&& value) { all[name] = py::cast(std::move(value)); };
+  put("v", s.v), put("p", s.p), put("qdot", s.qdot), put("pdot", s.pdot), put("bias", s.bias);
+  put("udot_free", s.free), put("udot", b.mechanism->m() > 0 ? s.constrained : s.free);
+  put("phi", s.phi), put("phidot", s.phidot), put("sigma", s.sigma), put("lambda_", s.lambda);
+  put("T", s.kinetic), put("V", s.potential), put("H", s.hamiltonian);
+  if (s.dense) put("M", s.mass), put("rank", s.rank), put("singular_values", s.singular_values);
+  py::dict reactions;
+  for (const auto* list : {&s.reactions.joints, &s.reactions.loops})
+    for (const Transmitted& r : *list)
+      reactions[r.name.c_str()] = py::make_tuple(r.force, r.torque);
+  all["reactions"] = reactions;
+  return all;
+}
+
+py::dict plan(const Bench& b) {
+  py::dict lines;
+  for (const auto& [name, text] : b.mechanism->plan_lines()) lines[name.c_str()] = text;
+  return lines;
+}
+
+}  // namespace
+
+void bind_mechanism(py::module_& module) {
+  using namespace py::literals;
+  py::class_<Assembly>(module, "Start", "A consistent start: the loops closed, rates with them.")
+      .def_property_readonly(
+          "t", [](const Assembly& a) { return a.start.t; }, "[s]")
+      .def_property_readonly(
+          "q", [](const Assembly& a) { return a.start.q; }, "(nq)")
+      .def_property_readonly(
+          "u", [](const Assembly& a) { return a.start.u; }, "(nv)")
+      .def_property_readonly(
+          "udot", [](const Assembly& a) { return a.start.udot; }, "(nv)")
+      .def_property_readonly(
+          "lambda_", [](const Assembly& a) { return a.start.lambda; }, "(m)")
+      .def_readonly("rank", &Assembly::rank, "of the loop equations")
+      .def_readonly("mobility", &Assembly::mobility, "nv - rank")
+      .def_readonly("dependent_rows", &Assembly::dependent_rows,
+                    "loop equations that follow from the others, places in `equations`")
+      .def_readonly("moved", &Assembly::moved, "largest move from the guess [rad or m]")
+      .def_readonly("branch", &Assembly::branch,
+                    "which of several assemblies it is, where the guess does not decide it");
+
+  py::class_<Bench, BenchPtr> mechanism(module, "Mechanism",
+                                        "A scene made ready to move. Made by load() and parse().");
+  const auto of = [](auto f) { return [f](const Bench& b) { return f(*b.mechanism); }; };
+  mechanism.def_property_readonly("name", of([](const Mechanism& m) { return m.scene().name; }))
+      .def_property_readonly("nq", of([](const Mechanism& m) { return m.nq(); }), "coordinates")
+      .def_property_readonly("nv", of([](const Mechanism& m) { return m.nv(); }),
+                             "rates and momenta")
+      .def_property_readonly("m", of([](const Mechanism& m) { return m.m(); }), "loop equations")
+      .def_property_readonly("coordinates",
+                             of([](const Mechanism& m) { return labels(m.coordinate_columns()); }),
+                             "names of q with units")
+      .def_property_readonly("rates",
+                             of([](const Mechanism& m) { return labels(m.rate_columns()); }),
+                             "names of u with units")
+      .def_property_readonly("equations", of([](const Mechanism& m) {
+                               std::vector<std::string> names;
+                               for (const RowName& r : m.rows())
+                                 names.push_back(r.loop + ": " + r.what);
+                               return names;
+                             }),
+                             "names of the loop equations")
+      .def_property_readonly("q0", of([](const Mechanism& m) { return m.tree().q0; }),
+                             "the scene's guess (nq)")
+      .def_property_readonly("u0", of([](const Mechanism& m) { return m.tree().u0; }),
+                             "the scene's guess (nv)")
+      .def_property_readonly("plan", &plan, "what an evaluation does and leaves out, by topic")
+      .def("__repr__", of([](const Mechanism& m) {
+             return "<momenta.Mechanism '" + m.scene().name + "': " + std::to_string(m.nv()) +
+                    " rates, " + std::to_string(m.m()) + " loop equations>";
+           }))
+      .def(
+          "assemble", [](const Bench& b) { return assemble(*b.mechanism); },
+          "Closes the loops from the scene's guess. Raises SceneError where they stay open.")
+      .def("momentum_rates", &momentum_rates, "t"_a, "q"_a, "p"_a, "centre"_a = py::none(),
+           "leak"_a = 0.0,
+           "(u, sigma, pdot) from (t, q, p): eqs. (7), (8). `centre` (m): what sigma of weak "
+           "equations fades towards; `leak` [1/s]. O(bodies).")
+      .def("accelerations", &accelerations, "t"_a, "q"_a, "u"_a,
+           "(udot, lambda_) from (t, q, u): eq. (3). O(bodies).")
+      .def("momenta", &momenta_of, "t"_a, "q"_a, "u"_a, "sigma"_a = py::none(),
+           "p = M u + Phi_q' sigma and what is prescribed (nv). O(bodies).")
+      .def("constraints", &constraints, "t"_a, "q"_a, "u"_a, "(Phi, Phidot), both (m).")
+      .def("kkt", &kkt, "t"_a, "q"_a, "(M, Phi_q), dense: (nv, nv) and (m, nv).")
+      .def("inverse_mass_times", &inverse_mass_times, "t"_a, "q"_a, "x"_a,
+           "M^-1 x (nv) of the tree, its loops left out. O(bodies).")
+      .def("energies", &energies, "t"_a, "q"_a, "u"_a, "(T, V) [J].")
+      .def("evaluate", &evaluate, "t"_a = 0.0, "q"_a = py::none(), "v"_a = py::none(),
+           "p"_a = py::none(),
+           "Everything at one state as a dict: momenta, accelerations, multipliers, energies, "
+           "reactions (force [N], torque [N m], axes of the child), M where it is small. What is "
+           "left out is the scene's guess.");
+  add_runs(mechanism);
+
+  module.def(
+      "load",
+      [](const std::string& file, const std::string& algebra, const std::string& kkt) {
+        return std::make_shared<Bench>(read_scene(file), options_of(algebra, kkt));
+      },
+      "file"_a, "algebra"_a = "auto", "kkt"_a = "auto",
+      "Reads a scene file. Raises SceneError: one sentence with file, line and what is wrong.");
+  module.def(
+      "parse",
+      [](const std::string& text, const std::string& name, const std::string& algebra,
+         const std::string& kkt) {
+        return std::make_shared<Bench>(parse_scene(text, name), options_of(algebra, kkt));
+      },
+      "text"_a, "name"_a = "scene", "algebra"_a = "auto", "kkt"_a = "auto",
+      "The same from TOML text; `name` stands in messages.");
+}
+
+}  // namespace momenta::python

@@ -1,0 +1,175 @@
+"""The Python module: laws of the equations, views without copies, sentences for what is wrong."""
+
+import gc
+import os
+import pathlib
+import runpy
+import signal
+import threading
+import time
+import unittest
+
+import momenta
+import numpy as np
+
+EXAMPLES = pathlib.Path(os.environ["MOMENTA_EXAMPLES"])
+
+
+def load(name):
+    return momenta.load(str(EXAMPLES / name / "scene.toml"))
+
+
+class Equations(unittest.TestCase):
+    def setUp(self):
+        self.m = load("andrews")
+        self.start = self.m.assemble()
+        self.rng = np.random.default_rng(1)
+
+    def test_kkt_solution_solves_the_kkt_system(self):
+        m, q = self.m, self.start.q
+        p = self.rng.normal(size=m.nv) * 1e-5
+        u, sigma, pdot = m.momentum_rates(0.0, q, p)
+        M, J = m.kkt(0.0, q)
+        self.assertEqual((M.shape, J.shape), ((m.nv, m.nv), (m.m, m.nv)))
+        scale = np.abs(p).max()
+        np.testing.assert_allclose(M @ u + J.T @ sigma, p, atol=1e-12 * scale)
+        np.testing.assert_allclose(J @ u, 0, atol=1e-12 * np.abs(J).max() * np.abs(u).max())
+        np.testing.assert_allclose(m.momenta(0.0, q, u, sigma), p, atol=1e-12 * scale)
+        udot, lam = m.accelerations(0.0, q, np.zeros(m.nv))
+        np.testing.assert_allclose(J @ udot, 0, atol=1e-9 * np.abs(udot).max())
+        np.testing.assert_allclose(udot, self.start.udot, rtol=1e-8, atol=1e-8)
+
+    def test_inverse_mass(self):
+        M, _ = self.m.kkt(0.0, self.start.q)
+        x = self.rng.normal(size=self.m.nv)
+        np.testing.assert_allclose(M @ self.m.inverse_mass_times(0.0, self.start.q, x), x, atol=1e-10)
+
+    def test_constraints_hold_and_energy_is_that_of_the_mass_matrix(self):
+        m, s = self.m, self.start
+        phi, rate = m.constraints(0.0, s.q, s.u)
+        self.assertLess(np.abs(phi).max(), 1e-12)
+        self.assertLess(np.abs(rate).max(), 1e-12)
+        u = self.rng.normal(size=m.nv)
+        kinetic, _ = m.energies(0.0, s.q, u)
+        M, _ = m.kkt(0.0, s.q)
+        self.assertAlmostEqual(kinetic, u @ M @ u / 2, delta=1e-12 * kinetic)
+
+    def test_evaluate_agrees(self):
+        values = self.m.evaluate(q=self.start.q, p=np.zeros(self.m.nv))
+        u, sigma, pdot = self.m.momentum_rates(0.0, self.start.q, np.zeros(self.m.nv))
+        np.testing.assert_allclose(values["pdot"], pdot, atol=1e-12)
+        self.assertIn("O", values["reactions"])
+        self.assertEqual(values["rank"], self.m.m)
+
+    def test_names(self):
+        m = self.m
+        self.assertEqual([len(m.coordinates), len(m.rates), len(m.equations)], [m.nq, m.nv, m.m])
+        self.assertEqual(m.coordinates[0], "O.q [rad]")
+        self.assertIn("loops", m.plan)
+        self.assertIn("6 loop equations", repr(m))
+
+    def test_open_chain(self):
+        m = load("chain")
+        self.assertEqual(m.m, 0)
+        q = self.rng.normal(size=m.nq) if m.nq == m.nv else m.assemble().q
+        u = self.rng.normal(size=m.nv)
+        p = m.momenta(0.0, q, u)
+        back, sigma, _ = m.momentum_rates(0.0, q, p)
+        np.testing.assert_allclose(back, u, atol=1e-9)
+        self.assertEqual(sigma.size, 0)
+
+
+class Runs(unittest.TestCase):
+    def test_arrays_are_views_that_outlive_the_name(self):
+        run = load("four_bar").run(end=1.0, samples=50)
+        self.assertEqual(run.status, "done", run.reason)
+        self.assertEqual(run.trajectory.shape, (51, len(run.columns)))
+        for x in (run.t, run.trajectory, run["O.q"], run.energy_error):
+            self.assertFalse(x.flags.owndata)
+        self.assertTrue(np.shares_memory(run["O.q"], run.trajectory))
+        self.assertTrue(np.shares_memory(run.t, run.t))
+        np.testing.assert_array_equal(run["t"], run.t)
+        q = run["O.q"]
+        copy = q.copy()
+        del run
+        gc.collect()
+        np.testing.assert_array_equal(q, copy)
+
+    def test_states_go_in_without_copies_of_their_kind(self):
+        m = load("four_bar")
+        q = m.assemble().q
+        wide = np.zeros((m.nq, 2))
+        wide[:, 0] = q  # a column with a stride, and whole numbers, are taken too
+        a = m.constraints(0.0, wide[:, 0], np.zeros(m.nv, dtype=int))
+        b = m.constraints(0.0, q, np.zeros(m.nv))
+        np.testing.assert_array_equal(a[0], b[0])
+
+    def test_same_as_ever(self):
+        m = load("four_bar")
+        a, b = (m.run(form="momentum", integrator="dop853", rtol=1e-9, end=2.0) for _ in range(2))
+        np.testing.assert_array_equal(a.trajectory, b.trajectory)
+        self.assertGreater(a.counters["steps"], 5)
+
+    def test_drift_and_work(self):
+        m = load("four_bar")
+        runs = m.drift(forms=["momentum", "acceleration"], end=2.0, samples=20)
+        self.assertEqual({r.form for r in runs}, {"momentum", "acceleration"})
+        ladder = m.work(forms=["momentum"], integrators=["dop853"], tolerances=[1e-5, 1e-8], end=1.0)
+        self.assertEqual([r.rtol for r in ladder], [1e-5, 1e-8])
+        self.assertLess(ladder[1].position_error_max, ladder[0].position_error_max)
+
+    def test_other_threads_go_on_during_a_run(self):
+        counted, stop = [0], threading.Event()
+
+        def count():
+            while not stop.is_set():
+                counted[0] += 1
+                time.sleep(0.001)
+
+        thread = threading.Thread(target=count)
+        thread.start()
+        before = counted[0]
+        load("four_bar").run(end=200.0, samples=10, rtol=1e-12)
+        during = counted[0] - before
+        stop.set()
+        thread.join()
+        self.assertGreater(during, 3)
+
+    def test_ctrl_c_stops_a_run(self):
+        timer = threading.Timer(0.3, lambda: os.kill(os.getpid(), signal.SIGINT))
+        timer.start()
+        with self.assertRaises(KeyboardInterrupt):
+            load("four_bar").run(end=1e6, samples=10_000_000, rtol=1e-12)
+        timer.join()
+
+
+class Mistakes(unittest.TestCase):
+    def expect(self, words, call, *arguments, **named):
+        with self.assertRaises(ValueError) as caught:
+            call(*arguments, **named)
+        self.assertIn(words, str(caught.exception))
+        self.assertNotIn("\n", str(caught.exception))
+
+    def test_sentences(self):
+        m = load("four_bar")
+        self.expect("nowhere.toml", momenta.load, "nowhere.toml")
+        self.expect("no body", momenta.parse, "name = 'nothing'")
+        self.expect("q has 2 numbers, expected 3 (nq)", m.constraints, 0.0, np.zeros(2), np.zeros(3))
+        self.expect("p has 4 numbers", m.momentum_rates, 0.0, np.zeros(3), np.zeros(4))
+        self.expect("'momentm'", m.run, form="momentm")
+        self.expect("expected auto, planar or spatial", momenta.load,
+                    str(EXAMPLES / "four_bar" / "scene.toml"), algebra="flat")
+        self.assertTrue(issubclass(momenta.SceneError, ValueError))
+        with self.assertRaises(KeyError):
+            m.run(end=0.1)["speed"]
+
+
+class ExampleScripts(unittest.TestCase):
+    def test_they_run(self):
+        for script in sorted((pathlib.Path(__file__).parent / "examples").glob("*.py")):
+            with self.subTest(script.name):
+                runpy.run_path(str(script), run_name="tested")
+
+
+if __name__ == "__main__":
+    unittest.main()
