@@ -85,10 +85,9 @@ int main(int argc, char** argv) {
       ->add_option("--at", index_state, "Consistent state, as for evaluate (default: the start)")
       ->type_name("STATE");
   index_app->add_option("--out", o.out, "Directory for index.json");
-  CLI::App* stress_app =
-      app.add_subcommand("stress", "Which form survives which extreme, and how the others fail");
-  stress_app->add_option("scene", o.scene,
-                         "Scene driven to extremes (default: the built-in ladders)");
+  CLI::App* stress_app = app.add_subcommand(
+      "stress", "Which form survives which extreme: of a scene, else of built-in ladders");
+  add_scene_file(*stress_app, o, false);
   stress_app->add_option("--forms", stress_options.forms, "Comma-separated (default: all)");
   stress_app->add_option("--integrators", stress_options.integrators,
                          "Comma-separated, each for the forms it takes (default: by form)");
@@ -117,6 +116,12 @@ int main(int argc, char** argv) {
   stress_app->add_option("--out", o.out, "Directory for results");
   stress_app->add_flag("--json", o.json, "One JSON document on standard output");
   stress_app->add_flag("--quiet", o.quiet, "No progress, no table");
+  CLI::App* convert_verb =
+      app.add_subcommand("convert", "Writes a scene, URDF or MJCF as a scene in TOML");
+  add_scene_file(*convert_verb, o);
+  convert_verb->add_flag("--quiet", o.quiet, "Do not tell what was left out");
+  std::filesystem::path converted;
+  convert_verb->add_option("out", converted, "TOML file to write (default: standard output)");
   CLI::App* make_verb = app.add_subcommand("make", "Prints a scene of a family");
   std::string all_families;
   for (const Family& f : families()) all_families += "\n  " + std::string(f.name) + ": " + f.what;
@@ -133,7 +138,7 @@ int main(int argc, char** argv) {
     if (unknown)
       std::fprintf(stderr,
                    "momenta: verb '%.60s' is not known; expected check, assemble, evaluate, index, "
-                   "run, drift, work, stress or make\n",
+                   "run, drift, work, stress, convert or make\n",
                    argv[1]);
     else
       std::fprintf(stderr, "momenta: %s\n", e.what());
@@ -158,6 +163,7 @@ int main(int argc, char** argv) {
     if (*evaluate_verb) return evaluate(o, state);
     if (*index_app) return index_verb(o, index_forms, index_state);
     if (*stress_app) return stress(o, stress_options);
+    if (*convert_verb) return convert(o, converted);
     return make(family, n, turned);
   } catch (const momenta::SceneError& e) {
     std::fprintf(stderr, "momenta: %s\n", e.what());
