@@ -1,6 +1,7 @@
 // <worldbody>: nested bodies. A body with several joints becomes a chain of joints with massless
 // bodies between, all with the body's frame at zero; q of a hinge or slide counts from its `ref`.
 
+#include <momenta/core/scene/kinds.h>
 #include <momenta/core/scene/mjcf/mjcf_inertia.h>
 #include <momenta/core/scene/mjcf/mjcf_model.h>
 #include <momenta/core/scene/near_name.h>
@@ -169,7 +170,7 @@ class BodyReader {
   void read_mechanics(const Node& node, JointSpec& joint, const MjcfFrame& at) {
     const bool one = has_one_coordinate(joint.kind);
     if (node.name() == "freejoint") return;
-    joint.axis = node.direction("axis", Vector3d::UnitZ());
+    if (has_axis(joint.kind)) joint.axis = node.direction("axis", Vector3d::UnitZ());
     if (node.has("springdamper")) node.fail("springdamper", "is not read, expected stiffness");
     for (const char* key : {"range", "actuatorfrcrange"})
       if (node.has(key)) model_.remarks.left_out("joint limits");

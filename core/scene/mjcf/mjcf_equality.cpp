@@ -25,7 +25,7 @@ class EqualityReader {
     if (!node_.flag("active", true))
       return model_.remarks.left_out("equality constraints that are not active");
     loop_.at = node_.at();
-    loop_.name = model_.edges.free(node_.text("name", node_.name() + " 1"));
+    loop_.name = model_.edges.free(node_.text("name", node_.name() + " equality"));
     if (node_.name() == "joint")
       couple();
     else

@@ -1,5 +1,6 @@
 // <robot>: links become bodies, joints become joints, mimic becomes a coupler.
 
+#include <momenta/core/scene/kinds.h>
 #include <momenta/core/scene/near_name.h>
 #include <momenta/core/scene/read_scene.h>
 #include <momenta/core/scene/toml_values.h>
@@ -90,10 +91,10 @@ JointSpec read_joint(const Node& node, Remarks& remarks) {
   const Origin origin = read_origin(node);
   joint.origin_parent = origin.xyz;
   joint.rotation = origin.turn;
-  if (const auto axis = node.child("axis"); axis && joint.kind != JointKind::weld)
-    joint.axis = axis->direction("xyz", Vector3d::UnitX());
-  else
-    joint.axis = Vector3d::UnitX();
+  if (has_axis(joint.kind)) {
+    const auto axis = node.child("axis");
+    joint.axis = axis ? axis->direction("xyz", Vector3d::UnitX()) : Vector3d(Vector3d::UnitX());
+  }
   constexpr std::array<std::string_view, 6> read{"parent", "child",    "origin",
                                                  "axis",   "dynamics", "mimic"};
   for (const Node& part : node.children()) {

@@ -1,6 +1,7 @@
 // URDF+: <loop> closes a loop by a joint between two links, <coupling> is a gear.
 // arXiv 2411.19753.
 
+#include <momenta/core/scene/kinds.h>
 #include <momenta/core/scene/near_name.h>
 #include <momenta/core/scene/urdf/urdf.h>
 
@@ -59,13 +60,13 @@ void read_loop_tag(const Node& node, Scene& scene, FreeNames& edges) {
   const auto axis = node.child("axis");
   const Eigen::Vector3d along = axis ? axis->direction("xyz", Eigen::Vector3d::UnitX())
                                      : Eigen::Vector3d(Eigen::Vector3d::UnitX());
-  loop.axis = two.turn * along;
+  if (has_axis(loop.kind)) loop.axis = two.turn * along;
   loop.rotation = one.turn * two.turn.conjugate();
   if (loop.child == "ground") {  // what does not move is the parent
     std::swap(loop.parent, loop.child);
     std::swap(loop.origin_parent, loop.origin_child);
     loop.rotation = loop.rotation.conjugate();
-    loop.axis = one.turn * along;
+    if (has_axis(loop.kind)) loop.axis = one.turn * along;
   }
   scene.loops.push_back(loop);
 }
