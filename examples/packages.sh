@@ -1,7 +1,7 @@
 # Debian packages the project needs, in one place; sourced by examples/run and tests/run.
 # shellcheck shell=bash disable=SC2034
 
-packages_to_build=(cmake make g++ libeigen3-dev libtomlplusplus-dev
+packages_to_build=(cmake make g++ libeigen3-dev libtomlplusplus-dev libtinyxml2-dev libyaml-cpp-dev
                    libsundials-dev libsuitesparse-dev nlohmann-json3-dev libcli11-dev)
 packages_to_test=(libgtest-dev libbenchmark-dev librapidcheck-dev)
 

@@ -1,4 +1,5 @@
 #include <momenta/core/scene/fields.h>
+#include <momenta/core/scene/kinds.h>
 #include <momenta/core/scene/near_name.h>
 
 #include <algorithm>
@@ -191,8 +192,9 @@ Eigen::Vector3d Fields::direction(std::string_view key, const Eigen::Vector3d& o
   }
   if (value->type != Value::Type::array) mismatch(*value, std::string(key), expected);
 
-  // scaled first: squares of very large or very small entries would overflow or vanish
   const Eigen::Vector3d along = vector(key, {});
+  if (is_unit(along)) return along;
+  // scaled first: squares of very large or very small entries would overflow or vanish
   const double largest = along.lpNorm<Eigen::Infinity>();
   if (largest == 0) fail_key(key, "is the zero vector, expected " + expected);
   return (along / largest).normalized();

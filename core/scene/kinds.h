@@ -4,6 +4,7 @@
 #include <momenta/core/scene/scene.h>
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <string_view>
 
@@ -51,5 +52,13 @@ inline constexpr double parallel_slack = 1e-6;
 /// Unit quaternions within this are normalised, or accepted; beyond it they are a mistake of the
 /// author.
 inline constexpr double norm_slack = 1e-6;
+
+/// Of unit length to rounding: such vectors stay as they are, so that what was written by
+/// scene_text() is read back the same, bit by bit.
+template <class V>
+bool is_unit(const V& v) {
+  constexpr double rounding = 1e-14;
+  return std::abs(v.squaredNorm() - 1) <= rounding;
+}
 
 }  // namespace momenta::reading

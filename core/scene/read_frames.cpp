@@ -57,7 +57,7 @@ Eigen::Quaterniond read_rotation(const Fields& table) {
     const double norm = quaternion.norm();
     if (!(std::abs(norm - 1) <= norm_slack))
       rotation->fail_key("quaternion", "has the norm " + digits(norm) + ", expected 1 within 1e-6");
-    return quaternion.normalized();
+    return is_unit(quaternion) ? quaternion : quaternion.normalized();
   }
   const double angle = rotation->number("angle", {"rad"});
   if (!rotation->has("axis")) table.fail_key("rotation", "has an angle and no axis, expected both");

@@ -1,50 +1,47 @@
+#include <momenta/core/scene/file_text.h>
+#include <momenta/core/scene/mjcf/mjcf.h>
 #include <momenta/core/scene/near_name.h>
 #include <momenta/core/scene/read_scene.h>
 #include <momenta/core/scene/read_tables.h>
 #include <momenta/core/scene/set_numbers.h>
+#include <momenta/core/scene/urdf/urdf.h>
 
-#include <fstream>
 #include <new>
-#include <system_error>
 
 namespace momenta {
 namespace {
 
 using reading::Fields;
 
-/// The whole file. Its size is asked before a byte is read; what has no size (a pipe) is read up to
-/// the limit.
-std::string text_of(const std::filesystem::path& file, const std::string& name) {
-  std::error_code error;
-  const auto status = std::filesystem::status(file, error);
-  if (!std::filesystem::exists(status)) reading::fail(name, {}, "no such file, expected a scene");
-  if (std::filesystem::is_directory(status))
-    reading::fail(name, {}, "a directory, expected a scene file");
-  if (std::filesystem::is_regular_file(status)) {
-    const auto size = std::filesystem::file_size(file, error);
-    if (!error && size > reading::largest_text)
-      reading::fail(name, {}, "the file is over 64 MiB, expected a scene of at most 64 MiB");
-  }
-
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) reading::fail(name, {}, "the file cannot be opened for reading");
-  std::string text;
-  constexpr std::size_t chunk = std::size_t{1} << 16;
-  while (stream && text.size() <= reading::largest_text) {
-    const std::size_t size = text.size();
-    text.resize(size + chunk);
-    stream.read(text.data() + size, static_cast<std::streamsize>(chunk));
-    text.resize(size + static_cast<std::size_t>(stream.gcount()));
-  }
-  if (stream.bad()) reading::fail(name, {}, "the file cannot be read to its end");
-  return text;
+/// URDF or MJCF, by the root element.
+Scene parse_robot(std::string_view text, const std::string& file, const ReadOptions& options) {
+  const reading::Element root = reading::parse_xml(text, file);
+  if (root.name == "robot") return reading::read_urdf(root, file, options);
+  const std::string asked = !options.loops.empty() ? "a file of loops"
+                            : options.free_root    ? "a free root"
+                                                   : "";
+  if (!asked.empty()) reading::fail(file, {}, "no URDF, expected one where " + asked + " is given");
+  if (root.name == "mujoco") return reading::read_mjcf(root, file);
+  reading::fail(file, {root.line, 0},
+                "the root element is <" + reading::on_one_line(root.name) +
+                    ">, expected <robot> (URDF) or <mujoco> (MJCF)");
 }
 
 }  // namespace
 
-Scene read_scene(const std::filesystem::path& file) {
-  const std::string name = file.string();
-  return parse_scene(text_of(file, name), name);
+Scene read_scene(const std::filesystem::path& file, const ReadOptions& options) {
+  const std::string name = file.string(), ending = file.extension().string();
+  const std::string text = reading::text_of(file);
+  if (ending == ".urdf" || ending == ".xml" || ending == ".mjcf") {
+    try {
+      return parse_robot(text, name, options);
+    } catch (const std::bad_alloc&) {
+      reading::fail(name, {}, "the scene does not fit into memory");
+    }
+  }
+  if (!options.loops.empty() || options.free_root)
+    reading::fail(name, {}, "no URDF, expected one where a file of loops or a free root is given");
+  return parse_scene(text, name);
 }
 
 Scene parse_scene(std::string_view text, const std::string& file) {

@@ -84,13 +84,13 @@ void normalise_quaternion(const Fields& table, std::vector<double>& position) {
   if (!(std::abs(norm - 1) <= norm_slack))
     table.fail_key("position",
                    "has a quaternion of norm " + digits(norm) + ", expected 1 within 1e-6");
-  quaternion /= norm;
+  if (!is_unit(quaternion)) quaternion /= norm;
 }
 
 }  // namespace
 
 BodySpec read_body(const Fields& table) {
-  table.allow({"name", "mass", "com", "inertia", "shape"});
+  table.allow({"name", "mass", "com", "inertia", "any_inertia", "shape"});
   BodySpec body;
   body.at = table.at();
   body.name = table.text("name");
@@ -108,7 +108,8 @@ BodySpec read_body(const Fields& table) {
   // what is written out wins over the shape
   body.com = table.vector("com", {"m"}, centre_of(body.shape));
   body.inertia = table.has("inertia") ? read_inertia(table) : inertia_of(body.shape, body.mass);
-  if (const std::string fault = inertia_fault(body.inertia); !fault.empty())
+  body.any_inertia = table.flag("any_inertia", false);
+  if (const std::string fault = inertia_fault(body.inertia); !fault.empty() && !body.any_inertia)
     table.fail_key(table.has("inertia") ? "inertia" : "shape", fault);
   return body;
 }

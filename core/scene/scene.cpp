@@ -10,7 +10,8 @@ namespace momenta {
 
 std::string Scene::where(Location at) const {
   std::string prefix = file.empty() ? std::string("scene") : reading::on_one_line(file);
-  if (at.line > 0) prefix += ":" + std::to_string(at.line) + ":" + std::to_string(at.column);
+  if (at.line > 0) prefix += ":" + std::to_string(at.line);
+  if (at.line > 0 && at.column > 0) prefix += ":" + std::to_string(at.column);
   return prefix + ": ";
 }
 

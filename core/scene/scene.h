@@ -1,6 +1,6 @@
 #pragma once
 // A scene: the mechanism as its author wrote it, before any analysis. Plain data, SI units, angles
-// in rad. The reader (read_scene) fills it from TOML; programs may fill it by hand.
+// in rad. Readers (read_scene) fill it from files; programs may fill it by hand.
 
 #include <momenta/core/tree/joint_kind.h>
 
@@ -21,7 +21,7 @@ class UserJoint;  // core/user_joint.h
 /// Where a thing stands in its file; line 0 means it did not come from a file.
 struct Location {
   int line = 0;    ///< from 1
-  int column = 0;  ///< from 1, in characters
+  int column = 0;  ///< from 1, in characters; 0: not known
 };
 
 /// Bad input. what() is one sentence: "file:line:column: what was found, what was expected".
@@ -52,6 +52,8 @@ struct BodySpec {
   /// About the centre of mass, body axes [kg m²]; its principal moments a <= b <= c satisfy
   /// 0 <= a and c <= a + b.
   Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();
+  /// The inertia is taken as it is, though no rigid body need have it: files of robots hold such.
+  bool any_inertia = false;
   Shape shape;
   Location at;
 };
@@ -262,6 +264,8 @@ struct Scene {
   std::vector<std::string> held;  ///< [assembly] hold: joints whose q and u assembly must keep
   Location held_at;               ///< of that list
   RunDefaults run;                ///< [run] end, step, leak, samples
+  /// What a reader of another format left out, or read in a way to be known: a sentence a kind.
+  std::vector<std::string> remarks;
 
   /// The sentence prefix "file:line:column: " of a place in this scene; without line and column
   /// for a thing that came from no file, and "scene: " where the scene itself did.

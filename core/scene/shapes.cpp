@@ -31,12 +31,19 @@ Eigen::Matrix3d inertia_of(const Shape& shape, double mass) {
   return Eigen::Matrix3d::Zero();
 }
 
-std::string inertia_fault(const Eigen::Matrix3d& inertia) {
+std::string matrix_fault(const Eigen::Matrix3d& inertia) {
   if (!inertia.allFinite()) return "is not finite";
   const double largest = inertia.cwiseAbs().maxCoeff();
   if (largest == 0) return "";
   const Eigen::Matrix3d scaled = inertia / largest;
-  if ((scaled - scaled.transpose()).cwiseAbs().maxCoeff() > 1e-9) return "is not symmetric";
+  return (scaled - scaled.transpose()).cwiseAbs().maxCoeff() > 1e-9 ? "is not symmetric" : "";
+}
+
+std::string inertia_fault(const Eigen::Matrix3d& inertia) {
+  if (std::string fault = matrix_fault(inertia); !fault.empty()) return fault;
+  const double largest = inertia.cwiseAbs().maxCoeff();
+  if (largest == 0) return "";
+  const Eigen::Matrix3d scaled = inertia / largest;
 
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(scaled, Eigen::EigenvaluesOnly);
   const Eigen::Vector3d moments = solver.eigenvalues();  // ascending

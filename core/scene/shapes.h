@@ -18,6 +18,9 @@ Eigen::Vector3d centre_of(const Shape& shape);
 ///   point     0
 Eigen::Matrix3d inertia_of(const Shape& shape, double mass);
 
+/// What makes numbers no symmetric matrix, in words, or empty.
+std::string matrix_fault(const Eigen::Matrix3d& inertia);
+
 /// What makes a matrix no inertia of a rigid body, in words, or empty. The principal moments a <= b
 /// <= c must satisfy 0 <= a and c <= a + b, both within 1e-9 c.
 std::string inertia_fault(const Eigen::Matrix3d& inertia);

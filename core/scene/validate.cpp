@@ -28,7 +28,8 @@ void check_bodies(const Scene& scene) {
     require(std::isfinite(body.mass) && body.mass >= 0, scene, body.at, who,
             "mass must be finite and >= 0 [kg]");
     require(body.com.allFinite(), scene, body.at, who, "com must be finite [m]");
-    const std::string fault = reading::inertia_fault(body.inertia);
+    const std::string fault = body.any_inertia ? reading::matrix_fault(body.inertia)
+                                               : reading::inertia_fault(body.inertia);
     require(fault.empty(), scene, body.at, who, ("inertia " + fault).c_str());
     const auto& kinds = reading::shape_kinds;
     require(body.shape.kind.empty() ||

@@ -85,10 +85,9 @@ int main(int argc, char** argv) {
       ->add_option("--at", index_state, "Consistent state, as for evaluate (default: the start)")
       ->type_name("STATE");
   index_app->add_option("--out", o.out, "Directory for index.json");
-  CLI::App* stress_app =
-      app.add_subcommand("stress", "Which form survives which extreme, and how the others fail");
-  stress_app->add_option("scene", o.scene,
-                         "Scene driven to extremes (default: the built-in ladders)");
+  CLI::App* stress_app = app.add_subcommand(
+      "stress", "Which form survives which extreme: of a scene, else of built-in ladders");
+  add_scene_file(*stress_app, o, false);
   stress_app->add_option("--forms", stress_options.forms, "Comma-separated (default: all)");
   stress_app->add_option("--integrators", stress_options.integrators,
                          "Comma-separated, each for the forms it takes (default: by form)");
@@ -135,6 +134,12 @@ int main(int argc, char** argv) {
       ->add_option("--threads", sweep_options.threads,
                    "Default: one for each processor; under mpirun one in each process")
       ->check(CLI::Range(1, 1024));
+  CLI::App* convert_verb =
+      app.add_subcommand("convert", "Writes a scene, URDF or MJCF as a scene in TOML");
+  add_scene_file(*convert_verb, o);
+  convert_verb->add_flag("--quiet", o.quiet, "Do not tell what was left out");
+  std::filesystem::path converted;
+  convert_verb->add_option("out", converted, "TOML file to write (default: standard output)");
   CLI::App* make_verb = app.add_subcommand("make", "Prints a scene of a family");
   std::string all_families;
   for (const Family& f : families()) all_families += "\n  " + std::string(f.name) + ": " + f.what;
@@ -151,7 +156,7 @@ int main(int argc, char** argv) {
     if (unknown)
       std::fprintf(stderr,
                    "momenta: verb '%.60s' is not known; expected check, assemble, evaluate, index, "
-                   "run, drift, work, stress, sweep or make\n",
+                   "run, drift, work, stress, sweep, convert or make\n",
                    argv[1]);
     else
       std::fprintf(stderr, "momenta: %s\n", e.what());
@@ -177,6 +182,7 @@ int main(int argc, char** argv) {
     if (*index_app) return index_verb(o, index_forms, index_state);
     if (*stress_app) return stress(o, stress_options);
     if (*sweep_app) return sweep(o, sweep_options);
+    if (*convert_verb) return convert(o, converted);
     return make(family, n, turned);
   } catch (const momenta::SceneError& e) {
     std::fprintf(stderr, "momenta: %s\n", e.what());

@@ -32,8 +32,16 @@ std::string content_of(const std::filesystem::path& file) {
 
 }  // namespace
 
+void add_scene_file(CLI::App& verb, Options& o, bool required) {
+  verb.add_option("scene", o.scene, "Scene: TOML, URDF (.urdf) or MJCF (.xml, .mjcf)")
+      ->required(required);
+  verb.add_option("--loops", o.reading.loops,
+                  "Of a URDF: YAML file with its loops (default: the one beside it, if any)");
+  verb.add_flag("--free-root", o.reading.free_root, "Of a URDF: the root link floats");
+}
+
 void add_scene(CLI::App& verb, Options& o) {
-  verb.add_option("scene", o.scene, "Scene file (TOML)")->required();
+  add_scene_file(verb, o);
   verb.add_option("--algebra", o.algebra, "Kernel: auto, planar or spatial")
       ->check(CLI::IsMember({"auto", "planar", "spatial"}));
   verb.add_option("--kkt", o.kkt, "How (7) is solved: auto, sweeps, sparse or dense")
@@ -82,6 +90,14 @@ void add_run_options(CLI::App& verb, Options& o) {
   verb.add_option("--out", o.out, "Directory for results");
 }
 
+Scene read(const Options& o) {
+  Scene scene = read_scene(o.scene, o.reading);
+  if (!o.quiet)
+    for (const std::string& remark : scene.remarks)
+      std::fprintf(stderr, "momenta: %s: %s\n", o.scene.c_str(), remark.c_str());
+  return scene;
+}
+
 MechanismOptions mechanism_options(const Options& o) {
   MechanismOptions options;
   options.algebra = o.algebra == "planar"    ? Algebra::planar
@@ -95,13 +111,7 @@ MechanismOptions mechanism_options(const Options& o) {
 }
 
 std::unique_ptr<Mechanism> load(const Options& o) {
-  return std::make_unique<Mechanism>(read_scene(o.scene), mechanism_options(o));
-}
-
-std::string scene_text(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw std::invalid_argument(file.string() + ": the file cannot be opened for reading");
-  return {std::istreambuf_iterator<char>(in), {}};
+  return std::make_unique<Mechanism>(read(o), mechanism_options(o));
 }
 
 RunSettings run_settings(const Options& o, const RunDefaults& defaults) {
@@ -161,7 +171,8 @@ void expect_own_results(const std::filesystem::path& out, std::string_view own) 
 std::unique_ptr<Journal> keep_runs(const Options& o) {
   if (o.out.empty()) return nullptr;
   Journal::Study study{"", build_digest(), o.command};
-  for (const auto& file : {o.scene, o.reference}) study.digest += digest(content_of(file)) + " ";
+  for (const auto& file : {o.scene, o.reference, o.reading.loops})
+    study.digest += digest(content_of(file)) + " ";
   study.digest = digest(study.digest + o.asked);
   auto journal = std::make_unique<Journal>(o.out / "runs.jsonl", study);
   if (!o.quiet && journal->of_another_build())

@@ -1,6 +1,7 @@
 #pragma once
 // What the verbs share: the scene and common options, messages, exit status.
 
+#include <momenta/core/scene/read_scene.h>
 #include <momenta/dae/assembly.h>
 #include <momenta/dae/report/json.h>
 #include <momenta/dae/study/journal.h>
@@ -19,6 +20,7 @@ struct Options {
   std::string command;  ///< as typed
   std::string asked;    ///< the verb and its options, but for where and how results are told
   std::filesystem::path scene;
+  ReadOptions reading;  ///< what a URDF does not say
   std::string algebra = "auto", kkt = "auto";
   std::string form = "momentum", integrator, gauge;
   double rtol = 1e-8;
@@ -34,14 +36,16 @@ struct Options {
 };
 
 void add_scene(CLI::App& verb, Options& o);
+/// The scene alone, with what a URDF does not say.
+void add_scene_file(CLI::App& verb, Options& o, bool required = true);
 void add_run_options(CLI::App& verb, Options& o);
 
 MechanismOptions mechanism_options(const Options& o);
+/// Reads the scene, and tells what its reader remarked unless --quiet is given.
+Scene read(const Options& o);
 std::unique_ptr<Mechanism> load(const Options& o);
 /// The run that is asked for, of a scene with these defaults.
 RunSettings run_settings(const Options& o, const RunDefaults& defaults);
-/// The text of a scene's file. @throws std::invalid_argument where there is none.
-std::string scene_text(const std::filesystem::path& file);
 /// The reference, bound to the mechanism's columns; empty when none is asked for.
 std::unique_ptr<Reference> load_reference(const Options& o, const Mechanism& mechanism);
 
@@ -119,6 +123,8 @@ int sweep(const Options& o, const SweepOptions& s);
 int evaluate(const Options& o, const std::string& state);
 /// `forms`: comma-separated, empty: all. `state`: as for evaluate; empty: the start.
 int index_verb(const Options& o, const std::string& forms, const std::string& state);
+/// Writes the scene as TOML to `out`; empty or "-": prints it.
+int convert(const Options& o, const std::filesystem::path& out);
 /// Prints a scene; `n` empty: the usual size of the family. @throws std::invalid_argument
 int make(const std::string& family, std::optional<int> n, bool turned);
 

@@ -54,7 +54,7 @@ int stress(const Options& o, const StressOptions& options) {
       throw std::invalid_argument("--along '" + options.along +
                                   "': no built-in ladder has that in its name");
   } else {
-    Scene scene = read_scene(o.scene);
+    Scene scene = read(o);
     scene.run.end_time = o.end.value_or(scene.run.end_time);
     title = scene.name;
     request.ladders = ladders_of(scene, names_in(options.along));

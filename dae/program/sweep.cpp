@@ -1,3 +1,5 @@
+#include <momenta/core/scene/file_text.h>
+#include <momenta/core/scene/write_scene.h>
 #include <momenta/dae/report/json.h>
 #include <momenta/dae/report/sweep_report.h>
 #include <momenta/dae/study/environment.h>
@@ -69,12 +71,21 @@ class Finished {
   std::mutex turn_;
 };
 
+/// The scene as TOML: its own text, so that what it leaves out may be varied too, or, of another
+/// format, the text it converts to.
+std::string toml_of(const Options& o) {
+  const Scene scene = read(o);
+  const std::string ending = o.scene.extension().string();
+  const bool converted = ending == ".urdf" || ending == ".xml" || ending == ".mjcf";
+  return converted ? scene_text(scene) : reading::text_of(o.scene);
+}
+
 }  // namespace
 
 int sweep(const Options& o, const SweepOptions& s) {
   Ranks ranks;
   SweepRequest request;
-  request.text = scene_text(o.scene);
+  request.text = toml_of(o);
   request.file = o.scene.string();
   request.mechanism = mechanism_options(o);
   for (const std::string& text : s.vary) request.varied.emplace_back(text);

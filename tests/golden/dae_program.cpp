@@ -60,6 +60,28 @@ TEST_F(Program, RefusesFilesThatAreNoScenes) {
   expect_refused("check '" + (folder_ / "missing.toml").string() + "'", "missing.toml");
 }
 
+// A robot moves as the scene it is converted to; what is left out is told unless --quiet is given.
+TEST_F(Program, ReadsAndConvertsRobots) {
+  const std::string models = std::string(MOMENTA_SOURCE_DIR) + "/examples/models/";
+  const std::string gripper = models + "robotiq_2f85_v4/2f85.xml";
+  const std::string written = (folder_ / "gripper.toml").string();
+  const Outcome told = call("convert " + gripper + " '" + written + "'");
+  EXPECT_EQ(told.status, 0) << told.err;
+  EXPECT_NE(told.err.find("2f85.xml: left out: actuators (1)\n"), std::string::npos) << told.err;
+  EXPECT_EQ(call("convert " + gripper + " --quiet").err, "");
+  EXPECT_EQ(call("convert " + gripper).out, text_of(written));
+  for (const std::string verb : {"check ", "assemble "}) {
+    const Outcome robot = call(verb + gripper), scene = call(verb + "'" + written + "'");
+    EXPECT_EQ(robot.status, 0) << robot.err;
+    EXPECT_EQ(robot.out, scene.out);
+  }
+  EXPECT_EQ(call("check " + models + "epr_robot_delta/robot.urdf").status, 0);
+  EXPECT_EQ(call("check " + models + "ur5/ur5_robot.urdf --free-root --quiet").status, 0);
+  expect_refused("check " + models + "ur5/ur5_robot.urdf --loops none.yaml", "no such file");
+  expect_refused("check " + gripper + " --free-root", "no URDF");
+  expect_refused("convert " + example("four_bar") + " --loops x.yaml", "no URDF");
+}
+
 TEST_F(Program, RefusesWrongUsage) {
   const std::string scene = "'" + example("four_bar") + "'";
   expect_refused("run " + scene + " --form nonsense", "form 'nonsense' is not known");

@@ -1,0 +1,234 @@
+// <worldbody>: nested bodies. A body with several joints becomes a chain of joints with massless
+// bodies between, all with the body's frame at zero; q of a hinge or slide counts from its `ref`.
+
+#include <momenta/core/scene/kinds.h>
+#include <momenta/core/scene/mjcf/mjcf_inertia.h>
+#include <momenta/core/scene/mjcf/mjcf_model.h>
+#include <momenta/core/scene/near_name.h>
+
+#include <algorithm>
+#include <array>
+
+namespace momenta::reading {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr std::array<std::string_view, 4> joint_types{"hinge", "slide", "ball", "free"};
+constexpr std::array kind_of_type{JointKind::revolute, JointKind::prismatic, JointKind::spherical,
+                                  JointKind::free};
+
+/// Where a body hangs.
+struct Place {
+  std::string parent;  ///< by its name in the file
+  MjcfFrame at;        ///< frame of the parent at qpos0
+  std::string active;  ///< class of defaults
+  bool moves = false;  ///< some joint lies between the parent and the ground
+};
+
+class BodyReader {
+ public:
+  explicit BodyReader(MjcfModel& model) : model_(model) {}
+
+  void children_of(const Node& node, const Place& place) {
+    for (const Node& part : node.children()) {
+      const std::string& what = part.name();
+      if (what == "body")
+        body(part, place);
+      else if (what == "site")
+        site(part, place);
+      else if (what == "geom")
+        model_.remarks.left_out("geoms as shapes to see and to touch");
+      else if (what == "camera" || what == "light")
+        model_.remarks.left_out(what + "s");
+      else if (what == "frame" || what == "replicate" || what == "composite" ||
+               what == "flexcomp" || what == "attach" || what == "include")
+        part.of("").fail("is not read, expected bodies written out");
+      else if (what != "joint" && what != "freejoint" && what != "inertial")
+        model_.remarks.left_out("<" + what + "> of bodies");
+    }
+  }
+
+ private:
+  void site(const Node& node, const Place& place) {
+    const Element full = model_.defaults.with_defaults(node, "site", place.active);
+    const std::string name = node.text("name", "");
+    const Node site(full, "site " + in_quotes(name), model_.scene.file);
+    if (name.empty()) return;
+    const auto [known, fresh] =
+        model_.sites.emplace(name, MjcfModel::Site{place.parent, read_frame(site, model_.angles)});
+    if (!fresh) site.fail("has a name that is taken, expected each name once among sites");
+  }
+
+  void body(const Node& node, const Place& place) {
+    ++count_;
+    const bool named = node.has("name");
+    const std::string name =
+        named ? node.text("name") : model_.bodies.free("body" + std::to_string(count_));
+    const Node self = node.of("body " + in_quotes(name));
+    if (name == "world" || name == "ground")
+      self.fail("has a name that is reserved, expected another");
+    if (named) model_.bodies.take(name);
+
+    Place inside{name, {}, model_.defaults.active_class(self, place.active), place.moves};
+    const MjcfFrame frame{self.vector("pos", Vector3d::Zero()), read_turn(self, model_.angles)};
+    inside.at = place.at * frame;
+    if (!model_.frames.emplace(name, inside.at).second)
+      self.fail("has a name that is taken, expected each name once among bodies");
+    std::vector<Node> joints;
+    for (const Node& part : self.children())
+      if (part.name() == "joint" || part.name() == "freejoint") joints.push_back(part);
+    inside.moves |= !joints.empty();
+
+    BodySpec spec;
+    spec.name = name;
+    spec.at = self.at();
+    weigh_body(spec, self, inside);
+    hang(self, joints, frame, place, inside);
+    model_.scene.bodies.push_back(spec);
+    if (self.number("gravcomp", 0) != 0) model_.remarks.left_out("gravity compensation of bodies");
+    if (self.flag("mocap", false)) model_.remarks.count("left at rest: bodies of motion capture");
+    children_of(self, inside);
+  }
+
+  void weigh_body(BodySpec& spec, const Node& self, const Place& inside) {
+    const auto inertial = self.child("inertial");
+    MjcfInertia sum;
+    if (inertial && !model_.always_geoms) {
+      sum = read_inertial(*inertial, model_.angles);
+    } else if (model_.geoms_weigh) {
+      for (const Node& part : self.children("geom")) {
+        const Element full = model_.defaults.with_defaults(part, "geom", inside.active);
+        const Node geom(full, self.owner(), model_.scene.file);
+        const double group = geom.number("group", 0);
+        if (group < model_.least_group || group > model_.largest_group) continue;
+        sum.add(read_geom(geom, model_.angles, !inside.moves));
+      }
+    }
+    weigh(spec, sum.mass, sum.com, sum.inertia, inertial ? *inertial : self, model_.remarks);
+  }
+
+  /// The joints between a body and its parent, the first next to the parent; none: a weld.
+  void hang(const Node& self, const std::vector<Node>& joints, const MjcfFrame& frame,
+            const Place& place, const Place& inside) {
+    std::string parent = MjcfModel::in_scene(place.parent);
+    if (joints.empty()) {
+      JointSpec weld;
+      weld.at = self.at();
+      weld.kind = JointKind::weld;
+      weld.name = model_.edges.free(inside.parent + " weld");
+      weld.parent = parent;
+      weld.child = inside.parent;
+      weld.origin_parent = frame.at;
+      weld.rotation = frame.turn;
+      model_.scene.joints.push_back(weld);
+    }
+    for (std::size_t i = 0; i < joints.size(); ++i) {
+      const bool first = i == 0, last = i + 1 == joints.size();
+      const bool free_tag = joints[i].name() == "freejoint";
+      const Element full = free_tag
+                               ? joints[i].element()
+                               : model_.defaults.with_defaults(joints[i], "joint", inside.active);
+      const Node written(full, self.owner(), model_.scene.file);
+      const std::size_t type = free_tag ? 3 : written.word("type", joint_types, 0);
+      JointSpec joint;
+      joint.at = written.at();
+      joint.kind = kind_of_type[type];
+      joint.name = written.has("name")
+                       ? written.text("name")
+                       : model_.edges.free(inside.parent + " " + std::string(joint_types[type]));
+      if (written.has("name")) model_.edges.take(joint.name);
+      const Node node(full, "joint " + in_quotes(joint.name), model_.scene.file);
+      joint.parent = parent;
+      joint.child = last ? inside.parent : model_.bodies.free(inside.parent + " at " + joint.name);
+      if (joint.kind == JointKind::free) {
+        if (place.parent != "world" || joints.size() > 1)
+          node.fail("is free, expected such a joint alone, on a body of the world");
+        const Eigen::Quaterniond& q = inside.at.turn;
+        const Vector3d& x = inside.at.at;
+        joint.position = {x[0], x[1], x[2], q.w(), q.x(), q.y(), q.z()};
+      } else {
+        const Vector3d anchor = node.vector("pos", Vector3d::Zero());
+        joint.origin_child = anchor;
+        joint.origin_parent = first ? frame * anchor : anchor;
+        if (first) joint.rotation = frame.turn;
+      }
+      read_mechanics(node, joint, inside.at);
+      if (!last) {
+        BodySpec between;
+        between.name = joint.child;
+        between.at = joint.at;
+        model_.scene.bodies.push_back(between);
+      }
+      parent = joint.child;
+      model_.scene.joints.push_back(joint);
+    }
+  }
+
+  /// Axis, spring, damper, armature. Torque −k (q − springref) − c q̇, where the scene's q is the
+  /// file's less `ref`.
+  void read_mechanics(const Node& node, JointSpec& joint, const MjcfFrame& at) {
+    const bool one = has_one_coordinate(joint.kind);
+    if (node.name() == "freejoint") return;
+    if (has_axis(joint.kind)) joint.axis = node.direction("axis", Vector3d::UnitZ());
+    if (node.has("springdamper")) node.fail("springdamper", "is not read, expected stiffness");
+    for (const char* key : {"range", "actuatorfrcrange"})
+      if (node.has(key)) model_.remarks.left_out("joint limits");
+    if (node.number("frictionloss", 0) != 0) model_.remarks.left_out("friction of joints");
+    const double stiffness = node.number("stiffness", 0), damping = node.number("damping", 0),
+                 armature = node.number("armature", 0);
+    if (!one) {
+      if (stiffness != 0) model_.remarks.left_out("springs of ball and free joints");
+      if (damping != 0) model_.remarks.left_out("dampers of ball and free joints");
+      if (armature != 0)
+        node.fail("armature",
+                  "is " + digits(armature) +
+                      " on a ball or free joint, expected it on hinges and slides alone");
+      return;
+    }
+    joint.stiffness = stiffness;
+    joint.damping = damping;
+    const double unit = joint.kind == JointKind::revolute ? model_.angles.unit : 1;
+    if (stiffness != 0) joint.rest = unit * (node.number("springref", 0) - node.number("ref", 0));
+    if (armature < 0) node.fail("armature", "is negative, expected a number >= 0");
+    if (armature > 0)
+      model_.rotors.push_back({joint.name, at.turn * joint.axis, armature, joint.at});
+  }
+
+  MjcfModel& model_;
+  int count_ = 0;  ///< bodies so far: the names of those that have none
+};
+
+}  // namespace
+
+void read_worldbody(const Node& world, MjcfModel& model) {
+  BodyReader(model).children_of(world,
+                                {"world", {}, model.defaults.active_class(world, "main"), false});
+}
+
+void add_rotors(MjcfModel& model) {
+  for (const MjcfModel::Rotor& rotor : model.rotors) {
+    const Eigen::Matrix3d along = rotor.axis * rotor.axis.transpose();
+    BodySpec body;
+    body.at = rotor.at;
+    body.name = model.bodies.free(rotor.joint + " rotor");
+    body.inertia = 0.5 * rotor.inertia * (Eigen::Matrix3d::Identity() + along);
+    JointSpec pin;
+    pin.at = rotor.at;
+    pin.name = model.edges.free(rotor.joint + " rotor");
+    pin.child = body.name;
+    pin.axis = rotor.axis;
+    LoopSpec gear;
+    gear.at = rotor.at;
+    gear.name = model.edges.free(rotor.joint + " armature");
+    gear.kind = LoopKind::coupler;
+    gear.joints = {rotor.joint, pin.name};
+    gear.ratios = {1, -1};
+    model.scene.bodies.push_back(body);
+    model.scene.joints.push_back(pin);
+    model.scene.loops.push_back(gear);
+    model.remarks.count("armatures as rotors, on the ground and coupled to their joints");
+  }
+}
+
+}  // namespace momenta::reading

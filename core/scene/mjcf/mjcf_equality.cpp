@@ -1,0 +1,149 @@
+// <equality>: connect is a point, weld a weld, joint a coupler.
+
+#include <momenta/core/scene/mjcf/mjcf_model.h>
+#include <momenta/core/scene/near_name.h>
+
+#include <algorithm>
+
+namespace momenta::reading {
+namespace {
+
+using Eigen::Quaterniond;
+using Eigen::Vector3d;
+
+/// The two ends of a constraint and their frames in their bodies, by name in the file.
+struct Ends {
+  std::string one, two;
+  MjcfFrame at_one, at_two;
+};
+
+class EqualityReader {
+ public:
+  EqualityReader(const Node& node, MjcfModel& model) : node_(node), model_(model) {}
+
+  void read() {
+    if (!node_.flag("active", true))
+      return model_.remarks.left_out("equality constraints that are not active");
+    loop_.at = node_.at();
+    loop_.name = model_.edges.free(node_.text("name", node_.name() + " equality"));
+    if (node_.name() == "joint")
+      couple();
+    else
+      tie();
+    model_.scene.loops.push_back(loop_);
+  }
+
+ private:
+  const MjcfModel::Site& site(const char* key) const {
+    const std::string name = node_.text(key);
+    const auto found = model_.sites.find(name);
+    if (found == model_.sites.end())
+      node_.fail(key, "is " + in_quotes(name) + ", expected the name of a <site>");
+    return found->second;
+  }
+
+  std::string body(const char* key, const std::string& otherwise) const {
+    const std::string name = node_.text(key, otherwise);
+    std::vector<std::string_view> known;
+    for (const auto& entry : model_.frames) known.push_back(entry.first);
+    if (!model_.frames.contains(name))
+      node_.fail(key, "is " + in_quotes(name) + ", expected the name of a <body>" +
+                          did_you_mean(name, known));
+    return name;
+  }
+
+  /// Connect: both ends have one point. Weld: R1 quat1 = R2 quat2 besides; the frames of bodies are
+  /// `relpose` in the first and the anchor in the second. What is not given is as at qpos0.
+  Ends ends() const {
+    if (node_.has("site1") || node_.has("site2")) {
+      const MjcfModel::Site &one = site("site1"), &two = site("site2");
+      return {one.body, two.body, one.frame, two.frame};
+    }
+    Ends e;
+    node_.text("body1");
+    e.one = body("body1", "");
+    e.two = body("body2", "world");
+    const MjcfFrame two_in_one = model_.frames.at(e.one).inverse() * model_.frames.at(e.two);
+    if (node_.name() == "connect") {
+      e.at_one.at = node_.vector("anchor");
+      e.at_two.at = two_in_one.inverse() * e.at_one.at;
+      return e;
+    }
+    e.at_two.at = node_.vector("anchor", Vector3d::Zero());
+    e.at_one = {two_in_one * e.at_two.at, two_in_one.turn};
+    if (!node_.has("relpose")) return e;
+    const std::vector<double> x = node_.numbers("relpose", 7);
+    const Quaterniond turn(x[3], x[4], x[5], x[6]);
+    if (turn.norm() > 0) e.at_one = {{x[0], x[1], x[2]}, turn.normalized()};
+    return e;
+  }
+
+  void tie() {
+    Ends e = ends();
+    const bool turns = node_.name() == "weld" && node_.number("torquescale", 1) != 0;
+    loop_.kind = turns ? LoopKind::weld : LoopKind::point;
+    if (e.one == e.two) node_.fail("ties a body to itself, expected two bodies");
+    if (e.two == "world") {  // what does not move is the parent
+      std::swap(e.one, e.two);
+      std::swap(e.at_one, e.at_two);
+    }
+    loop_.parent = MjcfModel::in_scene(e.one);
+    loop_.child = MjcfModel::in_scene(e.two);
+    loop_.origin_parent = e.at_one.at;
+    loop_.origin_child = e.at_two.at;
+    if (turns) loop_.rotation = (e.at_one.turn * e.at_two.turn.conjugate()).normalized();
+  }
+
+  std::string joint(const char* key) const {
+    const std::string name = node_.text(key);
+    for (const JointSpec& j : model_.scene.joints)
+      if (j.name == name) {
+        if (has_one_coordinate(j.kind)) return name;
+        node_.fail(key, "is " + in_quotes(name) + ", expected a hinge or a slide");
+      }
+    node_.fail(key, "is " + in_quotes(name) + ", expected the name of a joint");
+  }
+
+  /// q1 − ref1 = c0 + c1 (q2 − ref2); the scene's q are those differences.
+  void couple() {
+    loop_.kind = LoopKind::coupler;
+    std::vector<double> c{0, 1, 0, 0, 0};
+    if (node_.has("polycoef")) {
+      const std::vector<double> given = node_.numbers("polycoef");
+      if (given.size() > c.size())
+        node_.fail("polycoef", "has " + std::to_string(given.size()) + " numbers, expected 5");
+      std::copy(given.begin(), given.end(), c.begin());
+    }
+    loop_.joints = {joint("joint1")};
+    loop_.ratios = {1};
+    loop_.offset = c[0];
+    if (!node_.has("joint2")) return;
+    if (c[2] != 0 || c[3] != 0 || c[4] != 0)
+      node_.fail("polycoef", "has powers above the first, expected a linear coupling");
+    if (const std::string other = joint("joint2"); c[1] != 0) {
+      if (other == loop_.joints[0]) node_.fail("ties a joint to itself, expected two joints");
+      loop_.joints.push_back(other);
+      loop_.ratios.push_back(-c[1]);
+    }
+  }
+
+  const Node& node_;
+  MjcfModel& model_;
+  LoopSpec loop_;
+};
+
+}  // namespace
+
+void read_equality(const Node& equality, MjcfModel& model) {
+  for (const Node& part : equality.children()) {
+    if (part.name() != "connect" && part.name() != "weld" && part.name() != "joint")
+      part.of("equality").fail("is not read, expected connect, weld or joint");
+    const Element full = model.defaults.with_defaults(part, "equality", MjcfDefaults::main_class);
+    const std::string name = part.text("name", "");
+    const Node node(full, name.empty() ? std::string("equality") : "equality " + in_quotes(name),
+                    model.scene.file);
+    EqualityReader(node, model).read();
+  }
+}
+
+}  // namespace momenta::reading

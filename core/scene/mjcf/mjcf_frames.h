@@ -1,0 +1,39 @@
+#pragma once
+// Frames of MJCF: a position and an orientation said in one of five ways.
+
+#include <momenta/core/scene/xml/xml_node.h>
+
+#include <Eigen/Geometry>
+#include <array>
+#include <numbers>
+#include <string>
+#include <string_view>
+
+namespace momenta::reading {
+
+inline constexpr std::array<std::string_view, 5> orientation_keys{"quat", "axisangle", "xyaxes",
+                                                                  "zaxis", "euler"};
+
+/// What <compiler> says of angles.
+struct MjcfAngles {
+  double unit = std::numbers::pi / 180;  ///< of a written angle [rad]; degrees are the default
+  std::string euler_order = "xyz";  ///< lower case: about the turned axes; upper case: the fixed
+};
+
+struct MjcfFrame {
+  Eigen::Vector3d at = Eigen::Vector3d::Zero();
+  Eigen::Quaterniond turn = Eigen::Quaterniond::Identity();
+
+  Eigen::Vector3d operator*(const Eigen::Vector3d& point) const { return at + turn * point; }
+  MjcfFrame operator*(const MjcfFrame& inner) const {
+    return {*this * inner.at, (turn * inner.turn).normalized()};
+  }
+  MjcfFrame inverse() const { return {-(turn.conjugate() * at), turn.conjugate()}; }
+};
+
+/// The orientation an element gives, else none. @throws SceneError where it gives two
+Eigen::Quaterniond read_turn(const Node& node, const MjcfAngles& angles);
+/// `pos` and the orientation; or, by `fromto`, the middle of the two points with z along them.
+MjcfFrame read_frame(const Node& node, const MjcfAngles& angles);
+
+}  // namespace momenta::reading

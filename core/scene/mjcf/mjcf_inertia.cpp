@@ -1,0 +1,125 @@
+#include <momenta/core/scene/mjcf/mjcf_inertia.h>
+#include <momenta/core/scene/near_name.h>
+#include <momenta/core/scene/xml/made_scene.h>
+
+#include <array>
+
+namespace momenta::reading {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+enum class Shape { sphere, capsule, ellipsoid, cylinder, box, plane, hfield, mesh, sdf };
+constexpr std::array<std::string_view, 9> shapes{
+    "sphere", "capsule", "ellipsoid", "cylinder", "box", "plane", "hfield", "mesh", "sdf"};
+
+Matrix3d rotated(const Matrix3d& m, const Eigen::Quaterniond& turn) {
+  const Matrix3d r = turn.toRotationMatrix();
+  if (r == Matrix3d::Identity()) return m;
+  const Matrix3d t = r * m * r.transpose();
+  return 0.5 * (t + t.transpose());
+}
+
+/// Steiner's term m (|r|² 1 − r rᵀ).
+Matrix3d steiner(double mass, const Vector3d& r) {
+  return mass * (r.squaredNorm() * Matrix3d::Identity() - r * r.transpose());
+}
+
+/// Radius and half length, or the three half lengths, as the shape has them; `fromto` gives the one
+/// along z.
+Vector3d size_of(const Node& geom, Shape shape) {
+  const std::vector<double> given = geom.numbers("size");
+  const bool by_ends = geom.has("fromto");
+  const bool of_three = shape == Shape::ellipsoid || shape == Shape::box;
+  const std::size_t needed = shape == Shape::sphere || by_ends ? 1 : (of_three ? 3 : 2);
+  if (given.size() < needed)
+    geom.fail("size", "has " + std::to_string(given.size()) + " numbers, expected " +
+                          std::to_string(needed) + " for a " +
+                          std::string(shapes[static_cast<std::size_t>(shape)]));
+  Vector3d size = Vector3d::Zero();
+  for (std::size_t i = 0; i < needed; ++i) size[static_cast<Eigen::Index>(i)] = given[i];
+  if (by_ends) {
+    const std::vector<double> n = geom.numbers("fromto", 6);
+    const double half = 0.5 * Vector3d(n[3] - n[0], n[4] - n[1], n[5] - n[2]).norm();
+    size = of_three ? Vector3d(given[0], given[0], half) : Vector3d(given[0], half, 0);
+  }
+  for (std::size_t i = 0; i < (by_ends ? (of_three ? 3 : 2) : needed); ++i)
+    if (!(size[static_cast<Eigen::Index>(i)] > 0))
+      geom.fail("size", "is not positive, expected numbers > 0 [m]");
+  return size;
+}
+
+struct Solid {
+  double volume = 0;
+  Vector3d moments = Vector3d::Zero();  ///< per mass, principal, z last
+};
+
+Solid solid_of(Shape shape, const Vector3d& s) {
+  const double pi = std::numbers::pi;
+  const Vector3d squares = s.cwiseAbs2();
+  const Vector3d others(squares[1] + squares[2], squares[0] + squares[2], squares[0] + squares[1]);
+  if (shape == Shape::box) return {8 * s.prod(), others / 3};
+  if (shape == Shape::ellipsoid) return {4 * pi / 3 * s.prod(), others / 5};
+  const double r = s[0], h = s[1];
+  if (shape == Shape::sphere) return {4 * pi / 3 * r * r * r, Vector3d::Constant(0.4 * r * r)};
+  const double cylinder = 2 * pi * r * r * h, ball = 4 * pi / 3 * r * r * r;
+  const double across = (3 * r * r + 4 * h * h) / 12, along = r * r / 2;
+  if (shape == Shape::cylinder) return {cylinder, {across, across, along}};
+  const double part = ball / (cylinder + ball);
+  const double ends = 0.4 * r * r + h * h + 0.75 * h * r;
+  const double x = part * ends + (1 - part) * across;
+  return {cylinder + ball, {x, x, part * 0.4 * r * r + (1 - part) * along}};
+}
+
+}  // namespace
+
+void MjcfInertia::add(const MjcfInertia& other) {
+  if (other.mass == 0) return;
+  const double sum = mass + other.mass;
+  const Vector3d middle = (mass * com + other.mass * other.com) / sum;
+  inertia += steiner(mass, com - middle) + other.inertia + steiner(other.mass, other.com - middle);
+  mass = sum;
+  com = middle;
+}
+
+MjcfInertia read_inertial(const Node& node, const MjcfAngles& angles) {
+  MjcfInertia body;
+  body.mass = node.number("mass");
+  body.com = node.vector("pos");
+  if (node.has("fullinertia")) {
+    if (node.has("diaginertia")) node.fail("has diaginertia and fullinertia, expected one of them");
+    const std::vector<double> m = node.numbers("fullinertia", 6);
+    body.inertia = rotated(symmetric(m[0], m[1], m[2], m[3], m[4], m[5]), read_turn(node, angles));
+  } else {
+    const Vector3d moments = node.vector("diaginertia");
+    body.inertia = rotated(moments.asDiagonal().toDenseMatrix(), read_turn(node, angles));
+  }
+  return body;
+}
+
+MjcfInertia read_geom(const Node& geom, const MjcfAngles& angles, bool at_rest) {
+  MjcfInertia body;
+  const auto shape = static_cast<Shape>(geom.word("type", shapes, 0));
+  if (shape == Shape::plane || shape == Shape::hfield) return body;
+  const bool by_mass = geom.has("mass");
+  const double given = by_mass ? geom.number("mass") : geom.number("density", 1000);
+  if (given < 0) geom.fail(by_mass ? "mass" : "density", "is negative, expected a number >= 0");
+  if (given == 0) return body;
+  if (shape == Shape::mesh || shape == Shape::sdf || geom.has("mesh")) {
+    if (at_rest) return body;
+    geom.fail(
+        "gives its body the mass of a mesh, and meshes are not read; expected an <inertial> "
+        "of the body");
+  }
+  if (geom.flag("shellinertia", false))
+    geom.fail("shellinertia", "is true, expected a solid: shells are not read");
+  const MjcfFrame frame = read_frame(geom, angles);
+  const Solid solid = solid_of(shape, size_of(geom, shape));
+  body.mass = by_mass ? given : given * solid.volume;
+  body.com = frame.at;
+  body.inertia = rotated((body.mass * solid.moments).asDiagonal().toDenseMatrix(), frame.turn);
+  return body;
+}
+
+}  // namespace momenta::reading

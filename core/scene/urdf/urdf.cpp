@@ -1,0 +1,214 @@
+// <robot>: links become bodies, joints become joints, mimic becomes a coupler.
+
+#include <momenta/core/scene/kinds.h>
+#include <momenta/core/scene/near_name.h>
+#include <momenta/core/scene/read_scene.h>
+#include <momenta/core/scene/toml_values.h>
+#include <momenta/core/scene/urdf/urdf.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <set>
+
+namespace momenta::reading {
+namespace {
+
+using Eigen::Vector3d;
+using Turn = Eigen::AngleAxisd;
+
+constexpr std::array<std::string_view, 7> urdf_joints{
+    "revolute", "continuous", "prismatic", "fixed", "floating", "planar", "spherical"};
+constexpr std::array joint_kind_of{JointKind::revolute, JointKind::revolute, JointKind::prismatic,
+                                   JointKind::weld,     JointKind::free,     JointKind::planar,
+                                   JointKind::spherical};
+
+/// "link 'arm'" of a <link name="arm">.
+Node owned(const Node& node, const char* title) {
+  const std::string* name = node.element().find("name");
+  return node.of(std::string(title) + " " + in_quotes(name ? *name : "without a name"));
+}
+
+BodySpec read_link(const Node& link, Remarks& remarks) {
+  BodySpec body;
+  body.name = link.text("name");
+  body.at = link.at();
+  for (const Node& part : link.children()) {
+    if (part.name() == "inertial") continue;
+    if (part.name() == "visual" || part.name() == "collision")
+      remarks.left_out(part.name() + " shapes");
+    else
+      remarks.left_out("<" + part.name() + "> of links");
+  }
+  const auto inertial = link.child("inertial");
+  if (!inertial) return body;
+  const Origin origin = read_origin(*inertial);
+  const Node mass = inertial->required("mass");
+  const auto moments = inertial->child("inertia");
+  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();
+  if (moments) {
+    const auto entry = [&](const char* name) { return moments->number(name); };
+    const auto product = [&](const char* name) { return moments->number(name, 0); };
+    const Eigen::Matrix3d turn = origin.turn.toRotationMatrix();
+    inertia = symmetric(entry("ixx"), entry("iyy"), entry("izz"), product("ixy"), product("ixz"),
+                        product("iyz"));
+    if (turn != Eigen::Matrix3d::Identity()) {
+      const Eigen::Matrix3d turned = turn * inertia * turn.transpose();
+      inertia = 0.5 * (turned + turned.transpose());
+    }
+  } else if (mass.number("value") > 0) {
+    inertial->fail("has a mass and no <inertia>, expected both");
+  }
+  weigh(body, mass.number("value"), origin.xyz, inertia, mass, remarks);
+  return body;
+}
+
+/// q − multiplier · q_other = offset.
+LoopSpec read_mimic(const Node& mimic, const std::string& joint, FreeNames& edges) {
+  LoopSpec loop;
+  loop.kind = LoopKind::coupler;
+  loop.at = mimic.at();
+  loop.name = edges.free(joint + " mimic");
+  const double multiplier = mimic.number("multiplier", 1);
+  loop.joints = {joint};
+  loop.ratios = {1};
+  if (const std::string other = mimic.text("joint"); multiplier != 0) {
+    loop.joints.push_back(other);
+    loop.ratios.push_back(-multiplier);
+  }
+  loop.offset = mimic.number("offset", 0);
+  return loop;
+}
+
+JointSpec read_joint(const Node& node, Remarks& remarks) {
+  JointSpec joint;
+  joint.at = node.at();
+  joint.name = node.text("name");
+  node.text("type");
+  joint.kind = joint_kind_of[node.word("type", urdf_joints, 0)];
+  joint.parent = node.required("parent").text("link");
+  joint.child = node.required("child").text("link");
+  const Origin origin = read_origin(node);
+  joint.origin_parent = origin.xyz;
+  joint.rotation = origin.turn;
+  if (has_axis(joint.kind)) {
+    const auto axis = node.child("axis");
+    joint.axis = axis ? axis->direction("xyz", Vector3d::UnitX()) : Vector3d(Vector3d::UnitX());
+  }
+  constexpr std::array<std::string_view, 6> read{"parent", "child",    "origin",
+                                                 "axis",   "dynamics", "mimic"};
+  for (const Node& part : node.children()) {
+    if (part.name() == "limit")
+      remarks.left_out("joint limits");
+    else if (std::find(read.begin(), read.end(), part.name()) == read.end())
+      remarks.left_out("<" + part.name() + "> of joints");
+  }
+  if (const auto dynamics = node.child("dynamics")) {
+    const double damping = dynamics->number("damping", 0);
+    if (has_one_coordinate(joint.kind))
+      joint.damping = damping;
+    else if (damping != 0)
+      remarks.left_out("dampers of joints of several degrees of freedom");
+    if (dynamics->number("friction", 0) != 0) remarks.left_out("friction of joints");
+  }
+  return joint;
+}
+
+/// Hangs the root, the only link that is no joint's child, on the ground. A root called "ground" is
+/// the ground itself.
+void hang_root(Scene& scene, const Node& robot, const std::vector<Node>& links, bool free,
+               FreeNames& edges) {
+  std::map<std::string, const Node*> roots;
+  for (const Node& link : links) roots.emplace(link.text("name"), &link);
+  for (const JointSpec& joint : scene.joints) {
+    const auto known = [&](const std::string& link, const char* what) {
+      if (roots.contains(link)) return;
+      std::vector<std::string_view> names;
+      for (const BodySpec& body : scene.bodies) names.push_back(body.name);
+      throw SceneError(scene.where(joint.at) + "joint " + in_quotes(joint.name) + ": " + what +
+                       " is " + in_quotes(link) + ", expected the name of a link" +
+                       did_you_mean(link, names));
+    };
+    known(joint.parent, "parent");
+    known(joint.child, "child");
+  }
+  for (const JointSpec& joint : scene.joints) roots.erase(joint.child);
+  if (roots.empty()) {  // the joints form a cycle, which the sentence names
+    validate(scene);
+    return;
+  }
+  if (roots.size() > 1)
+    robot.fail("has two links that are no joint's child, " + in_quotes(roots.begin()->first) +
+               " and " + in_quotes(std::next(roots.begin())->first) +
+               ", expected one root and a tree below it");
+  const std::string root = roots.begin()->first;
+  if (root == "ground") {
+    if (free)
+      roots.begin()->second->fail(
+          "is the root and called ground, which cannot be free; expected "
+          "another name");
+    std::erase_if(scene.bodies, [](const BodySpec& body) { return body.name == "ground"; });
+    return;
+  }
+  JointSpec joint;
+  joint.at = roots.begin()->second->at();
+  joint.name = edges.free("root");
+  joint.kind = free ? JointKind::free : JointKind::weld;
+  joint.child = root;
+  scene.joints.insert(scene.joints.begin(), joint);
+}
+
+}  // namespace
+
+Origin read_origin(const Node& node) {
+  Origin origin;
+  const auto given = node.child("origin");
+  if (!given) return origin;
+  origin.xyz = given->vector("xyz", origin.xyz);
+  const Vector3d rpy = given->vector("rpy", Vector3d::Zero());
+  origin.turn = Turn(rpy[2], Vector3d::UnitZ()) * Turn(rpy[1], Vector3d::UnitY()) *
+                Turn(rpy[0], Vector3d::UnitX());
+  return origin;
+}
+
+Scene read_urdf(const Element& element, const std::string& file, const ReadOptions& options) {
+  const Node robot(element, "", file);
+  Scene scene;
+  scene.file = file;
+  scene.name = robot.text("name", "");
+  scene.gravity = {0, 0, -9.81};
+  Remarks remarks;
+  FreeNames edges;
+  std::vector<Node> links, mimics;
+  for (const Node& node : robot.children("link")) {
+    links.push_back(owned(node, "link"));
+    scene.bodies.push_back(read_link(links.back(), remarks));
+  }
+  if (links.empty()) robot.fail("has no <link>, expected at least one");
+  for (const Node& node : robot.children("joint")) {
+    const Node joint = owned(node, "joint");
+    scene.joints.push_back(read_joint(joint, remarks));
+    edges.take(scene.joints.back().name);
+    if (joint.child("mimic")) mimics.push_back(joint);
+  }
+  hang_root(scene, robot, links, options.free_root, edges);
+  for (const Node& joint : mimics)
+    scene.loops.push_back(read_mimic(*joint.child("mimic"), joint.text("name"), edges));
+  for (const Node& node : robot.children()) {
+    if (node.name() == "loop")
+      read_loop_tag(owned(node, "loop"), scene, edges);
+    else if (node.name() == "coupling")
+      read_coupling_tag(owned(node, "coupling"), scene, edges);
+    else if (node.name().find("xacro:") == 0)
+      node.fail("is a xacro macro, expected a URDF that xacro has expanded");
+    else if (node.name() != "link" && node.name() != "joint")
+      remarks.left_out("<" + node.name() + "> of the robot");
+  }
+  read_loops_beside(file, options, scene, edges, remarks);
+  scene.remarks = remarks.sentences();
+  if (scene.bodies.empty()) robot.fail("has one link only, the ground, expected a body");
+  validate(scene);
+  return scene;
+}
+
+}  // namespace momenta::reading

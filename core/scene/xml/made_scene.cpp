@@ -1,0 +1,30 @@
+#include <momenta/core/scene/near_name.h>
+#include <momenta/core/scene/shapes.h>
+#include <momenta/core/scene/xml/made_scene.h>
+
+namespace momenta::reading {
+
+std::string FreeNames::free(const std::string& wish) {
+  std::string name = wish;
+  for (int i = 2; !taken_.insert(name).second; ++i) name = wish + " " + std::to_string(i);
+  return name;
+}
+
+void weigh(BodySpec& body, double mass, const Eigen::Vector3d& com, const Eigen::Matrix3d& inertia,
+           const Node& node, Remarks& remarks) {
+  if (mass < 0) node.fail("gives the mass " + digits(mass) + ", expected a number >= 0 [kg]");
+  body.mass = mass;
+  body.com = com;
+  body.inertia = inertia;
+  if (inertia_fault(inertia).empty()) return;
+  body.any_inertia = true;
+  remarks.count("taken as written: inertias that no rigid body has");
+}
+
+Eigen::Matrix3d symmetric(double xx, double yy, double zz, double xy, double xz, double yz) {
+  Eigen::Matrix3d m;
+  m << xx, xy, xz, xy, yy, yz, xz, yz, zz;
+  return m;
+}
+
+}  // namespace momenta::reading

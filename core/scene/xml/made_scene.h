@@ -1,0 +1,32 @@
+#pragma once
+// What the readers of robots share: names that are free, and bodies with their inertia.
+
+#include <momenta/core/scene/scene.h>
+#include <momenta/core/scene/xml/remarks.h>
+#include <momenta/core/scene/xml/xml_node.h>
+
+#include <set>
+#include <string>
+
+namespace momenta::reading {
+
+/// FreeNames taken so far among joints and loops, or among bodies.
+class FreeNames {
+ public:
+  void take(const std::string& name) { taken_.insert(name); }
+  /// `wish`, or with a number behind it where that is taken; taken from now on.
+  std::string free(const std::string& wish);
+
+ private:
+  std::set<std::string> taken_;
+};
+
+/// Gives a body its mass, and its inertia about the centre of mass, body axes. One that no rigid
+/// body has is taken as it is, and said so. @throws SceneError for a negative mass
+void weigh(BodySpec& body, double mass, const Eigen::Vector3d& com, const Eigen::Matrix3d& inertia,
+           const Node& node, Remarks& remarks);
+
+/// xx, yy, zz, xy, xz, yz as a matrix.
+Eigen::Matrix3d symmetric(double xx, double yy, double zz, double xy, double xz, double yz);
+
+}  // namespace momenta::reading

@@ -1,0 +1,23 @@
+#pragma once
+// What a reader leaves out or takes in a way to be known, counted: one sentence a kind, in the
+// order in which they were met.
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace momenta::reading {
+
+class Remarks {
+ public:
+  void count(const std::string& sentence);
+  /// `kind` is a plural: "joint limits".
+  void left_out(const std::string& kind) { count("left out: " + kind); }
+  /// "left out: joint limits (12)".
+  std::vector<std::string> sentences() const;
+
+ private:
+  std::vector<std::pair<std::string, int>> counts_;
+};
+
+}  // namespace momenta::reading

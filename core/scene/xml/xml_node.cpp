@@ -1,0 +1,142 @@
+#include <momenta/core/scene/kinds.h>
+#include <momenta/core/scene/near_name.h>
+#include <momenta/core/scene/toml_values.h>
+#include <momenta/core/scene/xml/xml_node.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+namespace momenta::reading {
+namespace {
+
+bool is_space(char c) {
+  return c == ' ' || c == '\t' || c == '\n' || c == '\r';
+}
+
+std::string_view trimmed(std::string_view text) {
+  while (!text.empty() && is_space(text.front())) text.remove_prefix(1);
+  while (!text.empty() && is_space(text.back())) text.remove_suffix(1);
+  return text;
+}
+
+}  // namespace
+
+void Node::fail(const std::string& sentence) const {
+  momenta::reading::fail(*file_, at(),
+                         (owner_.empty() ? "" : owner_ + ": ") + "<" + name() + "> " + sentence);
+}
+
+void Node::fail(std::string_view attribute, const std::string& sentence) const {
+  fail(std::string(attribute) + " " + sentence);
+}
+
+std::string Node::text(std::string_view attribute) const {
+  const std::string* found = element_->find(attribute);
+  if (found == nullptr) fail("has no " + std::string(attribute) + ", expected one");
+  const std::string words(trimmed(*found));
+  if (words.empty()) fail(attribute, "is empty, expected a name or a value");
+  return words;
+}
+
+std::string Node::text(std::string_view attribute, const std::string& otherwise) const {
+  const std::string* found = element_->find(attribute);
+  return found == nullptr ? otherwise : std::string(trimmed(*found));
+}
+
+std::vector<double> Node::numbers(std::string_view attribute) const {
+  const std::string* found = element_->find(attribute);
+  if (found == nullptr) fail("has no " + std::string(attribute) + ", expected numbers");
+  std::vector<double> all;
+  const char* at = found->data();
+  const char* const end = at + found->size();
+  for (;;) {
+    while (at != end && is_space(*at)) ++at;
+    if (at == end) return all;
+    const char* from = at;
+    while (at != end && !is_space(*at)) ++at;
+    const std::string_view word(from, static_cast<std::size_t>(at - from));
+    double value = 0;
+    const bool plus = word.size() > 1 && word[0] == '+' && word[1] != '-';
+    const auto [stop, error] = std::from_chars(from + plus, at, value);
+    if (stop != at || error != std::errc() || !std::isfinite(value))
+      fail(attribute, "has " + in_quotes(word) + ", expected finite numbers");
+    all.push_back(value);
+  }
+}
+
+std::vector<double> Node::numbers(std::string_view attribute, std::size_t count) const {
+  std::vector<double> all = numbers(attribute);
+  if (all.size() != count)
+    fail(attribute,
+         "has " + std::to_string(all.size()) + " numbers, expected " + std::to_string(count));
+  return all;
+}
+
+double Node::number(std::string_view attribute) const {
+  return numbers(attribute, 1).front();
+}
+double Node::number(std::string_view attribute, double otherwise) const {
+  return has(attribute) ? number(attribute) : otherwise;
+}
+
+bool Node::flag(std::string_view attribute, bool otherwise) const {
+  constexpr std::array<std::string_view, 2> words{"false", "true"};
+  return word(attribute, words, otherwise ? 1 : 0) == 1;
+}
+
+Eigen::Vector3d Node::vector(std::string_view attribute) const {
+  const std::vector<double> three = numbers(attribute, 3);
+  return {three[0], three[1], three[2]};
+}
+Eigen::Vector3d Node::vector(std::string_view attribute, const Eigen::Vector3d& otherwise) const {
+  return has(attribute) ? vector(attribute) : otherwise;
+}
+
+Eigen::Vector3d Node::direction(std::string_view attribute,
+                                const Eigen::Vector3d& otherwise) const {
+  if (!has(attribute)) return otherwise;
+  const Eigen::Vector3d along = vector(attribute);
+  if (is_unit(along)) return along;
+  const double largest = along.lpNorm<Eigen::Infinity>();
+  if (largest == 0) fail(attribute, "is the zero vector, expected a direction");
+  return (along / largest).normalized();
+}
+
+std::size_t Node::word(std::string_view attribute, std::span<const std::string_view> words,
+                       std::size_t otherwise) const {
+  if (!has(attribute)) return otherwise;
+  const std::string found = text(attribute);
+  const auto known = std::find(words.begin(), words.end(), found);
+  if (known == words.end())
+    fail(attribute, "is " + in_quotes(found) + ", expected one of: " + listed(words) +
+                        did_you_mean(found, words));
+  return static_cast<std::size_t>(known - words.begin());
+}
+
+std::vector<Node> Node::children() const {
+  std::vector<Node> all;
+  for (const Element& e : element_->children) all.emplace_back(e, owner_, *file_);
+  return all;
+}
+
+std::vector<Node> Node::children(std::string_view name) const {
+  std::vector<Node> all;
+  for (const Element& e : element_->children)
+    if (e.name == name) all.emplace_back(e, owner_, *file_);
+  return all;
+}
+
+std::optional<Node> Node::child(std::string_view name) const {
+  std::vector<Node> all = children(name);
+  if (all.size() > 1) all[1].fail("is there twice, expected once");
+  return all.empty() ? std::nullopt : std::optional<Node>(std::move(all.front()));
+}
+
+Node Node::required(std::string_view name) const {
+  std::optional<Node> found = child(name);
+  if (!found) fail("has no <" + std::string(name) + ">, expected one");
+  return *std::move(found);
+}
+
+}  // namespace momenta::reading

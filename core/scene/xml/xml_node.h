@@ -1,0 +1,66 @@
+#pragma once
+// An element read by type. Every complaint names the file, the line, the owner of the element
+// ("link 'arm'"), the attribute, what was found and what was expected.
+
+#include <momenta/core/scene/scene.h>
+#include <momenta/core/scene/xml/xml_values.h>
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace momenta::reading {
+
+class Node {
+ public:
+  /// `owner` opens every sentence; empty: the element's own name does.
+  Node(const Element& element, std::string owner, const std::string& file)
+      : element_(&element), owner_(std::move(owner)), file_(&file) {}
+
+  const std::string& name() const { return element_->name; }
+  const Element& element() const { return *element_; }
+  const std::string& owner() const { return owner_; }
+  Location at() const { return {element_->line, 0}; }
+  bool has(std::string_view attribute) const { return element_->find(attribute) != nullptr; }
+
+  // Without `otherwise` the attribute must be there. Numbers are finite; lists are parted by white
+  // space.
+  std::string text(std::string_view attribute) const;
+  std::string text(std::string_view attribute, const std::string& otherwise) const;
+  double number(std::string_view attribute) const;
+  double number(std::string_view attribute, double otherwise) const;
+  bool flag(std::string_view attribute, bool otherwise) const;  ///< true or false
+  std::vector<double> numbers(std::string_view attribute) const;
+  std::vector<double> numbers(std::string_view attribute, std::size_t count) const;
+  Eigen::Vector3d vector(std::string_view attribute) const;
+  Eigen::Vector3d vector(std::string_view attribute, const Eigen::Vector3d& otherwise) const;
+  /// The same, of unit length.
+  Eigen::Vector3d direction(std::string_view attribute, const Eigen::Vector3d& otherwise) const;
+  /// One of `words`, by its place among them.
+  std::size_t word(std::string_view attribute, std::span<const std::string_view> words,
+                   std::size_t otherwise) const;
+
+  /// The elements in this one, in the order of the file; they keep its owner.
+  std::vector<Node> children() const;
+  std::vector<Node> children(std::string_view name) const;
+  /// The only element of this name, if any. @throws SceneError for two
+  std::optional<Node> child(std::string_view name) const;
+  Node required(std::string_view name) const;
+  /// This element under another owner.
+  Node of(std::string owner) const { return {*element_, std::move(owner), *file_}; }
+
+  /// "file:line: owner: <element> sentence"
+  [[noreturn]] void fail(const std::string& sentence) const;
+  [[noreturn]] void fail(std::string_view attribute, const std::string& sentence) const;
+
+ private:
+  const Element* element_;
+  std::string owner_;
+  const std::string* file_;
+};
+
+}  // namespace momenta::reading

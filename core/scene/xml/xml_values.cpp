@@ -1,0 +1,56 @@
+#include <momenta/core/scene/near_name.h>
+#include <momenta/core/scene/toml_values.h>
+#include <momenta/core/scene/xml/xml_values.h>
+#include <tinyxml2.h>
+
+namespace momenta::reading {
+namespace {
+
+constexpr int deepest = 200;
+
+Element copied(const tinyxml2::XMLElement& from, int depth, const std::string& file) {
+  Element element;
+  element.name = from.Name();
+  element.line = from.GetLineNum();
+  if (depth > deepest)
+    fail(file, {element.line, 0}, "elements nested more than 200 deep, expected no such depth");
+  for (auto* a = from.FirstAttribute(); a; a = a->Next())
+    element.attributes.push_back({a->Name(), a->Value()});
+  for (auto* child = from.FirstChildElement(); child; child = child->NextSiblingElement())
+    element.children.push_back(copied(*child, depth + 1, file));
+  return element;
+}
+
+/// What tinyxml2 says, cut down to the cause: "XML_ERROR_MISMATCHED_ELEMENT" is "mismatched
+/// element".
+std::string in_words(const char* error) {
+  std::string words = error;
+  for (const std::string_view prefix : {"XML_ERROR_", "XML_"})
+    if (words.starts_with(prefix)) words.erase(0, prefix.size());
+  for (char& c : words)
+    c = c == '_' ? ' ' : static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
+  return on_one_line(words);
+}
+
+}  // namespace
+
+const std::string* Element::find(std::string_view attribute) const {
+  for (const Attribute& a : attributes)
+    if (a.name == attribute) return &a.text;
+  return nullptr;
+}
+
+Element parse_xml(std::string_view text, const std::string& file) {
+  if (text.size() > largest_text) fail(file, {}, "over 64 MiB, expected a scene of at most 64 MiB");
+  if (const auto zero = text.find('\0'); zero != std::string_view::npos)
+    fail(file, {}, "holds the character NUL, expected text");
+  tinyxml2::XMLDocument document;
+  if (document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS)
+    fail(file, {document.ErrorLineNum(), 0},
+         "not valid XML: " + in_words(document.ErrorName()) + ", expected well-formed elements");
+  if (document.RootElement() == nullptr)
+    fail(file, {1, 0}, "no XML element, expected <robot> or <mujoco>");
+  return copied(*document.RootElement(), 1, file);
+}
+
+}  // namespace momenta::reading

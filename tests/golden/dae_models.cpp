@@ -1,0 +1,338 @@
+// Models by others against values of an independent reader and evaluator in 80-bit numbers: mass
+// matrix, bias, accelerations, energies, springs, armatures, and accelerations with loops closed,
+// redundant ones too. examples/models/README.md tells what the values are and where the models come
+// from; MOMENTA_MODELS names a folder with more of them, and then a table is printed.
+#include <gtest/gtest.h>
+#include <momenta/core/scene/read_scene.h>
+#include <momenta/dae/joint_places.h>
+#include <momenta/dae/study/state_values.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <map>
+#include <nlohmann/json.hpp>
+
+namespace momenta {
+namespace {
+
+namespace fs = std::filesystem;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using nlohmann::json;
+
+struct Model {
+  fs::path file;
+  json reference;
+};
+
+/// Every model of the folders below `folder`.
+std::vector<Model> models_below(const fs::path& folder) {
+  std::vector<Model> all;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const fs::path values = entry.path() / "reference.json";
+    if (!fs::exists(values)) continue;
+    const json reference = json::parse(std::ifstream(values));
+    for (const auto& [file, model] : reference.at("models").items())
+      all.push_back({entry.path() / file, model});
+  }
+  std::sort(all.begin(), all.end(), [](const Model& a, const Model& b) { return a.file < b.file; });
+  return all;
+}
+
+std::vector<Model> models() {
+  std::vector<Model> all = models_below(fs::path(MOMENTA_SOURCE_DIR) / "examples" / "models");
+  if (const char* more = std::getenv("MOMENTA_MODELS"))
+    for (Model& model : models_below(more)) all.push_back(std::move(model));
+  return all;
+}
+
+VectorXd vector(const json& j) {
+  const auto values = j.get<std::vector<double>>();
+  return VectorXd::Map(values.data(), static_cast<Eigen::Index>(values.size()));
+}
+
+/// Largest difference by the largest value, which is at least `scale`.
+double deviation(const MatrixXd& found, const MatrixXd& expected, double scale = 0) {
+  EXPECT_EQ(found.size(), expected.size());
+  if (found.size() != expected.size() || found.size() == 0)
+    return found.size() == expected.size() ? 0 : 1;
+  scale = std::max(scale, expected.cwiseAbs().maxCoeff());
+  return (found - expected).cwiseAbs().maxCoeff() / (scale > 0 ? scale : 1);
+}
+
+bool ends_with(const std::string& name, const std::string& end) {
+  return name.size() >= end.size() && name.compare(name.size() - end.size(), end.size(), end) == 0;
+}
+
+/// Takes the rotors that stand for armatures out of a scene. @return armature by joint
+std::map<std::string, double> take_rotors(Scene& scene) {
+  std::map<std::string, double> armatures;
+  std::map<std::string, std::string> rotors;  // its joint, and the joint it stands for
+  for (const LoopSpec& loop : scene.loops)
+    if (loop.kind == LoopKind::coupler && ends_with(loop.name, " armature"))
+      rotors[loop.joints.at(1)] = loop.joints.at(0);
+  std::erase_if(scene.loops, [&](const LoopSpec& l) { return ends_with(l.name, " armature"); });
+  for (const JointSpec& joint : scene.joints)
+    if (rotors.contains(joint.name))
+      for (const BodySpec& body : scene.bodies)
+        if (body.name == joint.child)
+          armatures[rotors[joint.name]] = joint.axis.dot(body.inertia * joint.axis);
+  std::erase_if(scene.joints, [&](const JointSpec& j) { return rotors.contains(j.name); });
+  std::erase_if(scene.bodies, [&](const BodySpec& b) { return rotors.contains(b.name); });
+  return armatures;
+}
+
+/// The scene, with joints in the order of the reference.
+class Pair {
+ public:
+  explicit Pair(const Model& model) : reference_(model.reference) {
+    ReadOptions options;
+    options.free_root = reference_.value("base", "").starts_with("floating");
+    scene_ = read_scene(model.file, options);
+    with_rotors_ = scene_;
+    armatures_ = take_rotors(scene_);
+    // the reference leaves out what geoms weigh
+    for (const json& b : reference_.at("bodies"))
+      if (b.at("mass") == 0.0 && b.at("inertia_com")[0][0] == 0.0)
+        for (BodySpec& body : scene_.bodies)
+          if (body.name == b.at("name")) {
+            body.mass = 0;
+            body.inertia.setZero();
+          }
+    name_joints();
+  }
+
+  const Scene& scene() const { return scene_; }
+  const Scene& with_rotors() const { return with_rotors_; }
+  Scene without_loops() const {
+    Scene tree = scene_;
+    tree.loops.clear();
+    return tree;
+  }
+  static Scene without_springs(Scene scene) {
+    for (JointSpec& joint : scene.joints) joint.stiffness = joint.rest = joint.damping = 0;
+    return scene;
+  }
+  const std::map<std::string, double>& armatures() const { return armatures_; }
+  const json& joints() const { return reference_.at("joints"); }
+  const std::vector<std::string>& names() const { return names_; }
+
+  /// Where the numbers of the reference stand in q and u of a mechanism, and what turns its rates
+  /// into those of a scene: u = T v, T orthogonal; free joints have their velocity in body axes.
+  struct Map {
+    GivenState given;
+    MatrixXd T;
+    VectorXd Tdot_v;
+  };
+  Map state(const Mechanism& mechanism, const json& s) const {
+    const VectorXd q = vector(s.at("q")), v = vector(s.at("v")), tau = vector(s.at("tau"));
+    Map m;
+    m.given.q = VectorXd::Zero(mechanism.nq());
+    m.T = MatrixXd::Zero(mechanism.nv(), v.size());
+    m.Tdot_v = VectorXd::Zero(mechanism.nv());
+    const auto places = joint_places(mechanism.tree());
+    for (std::size_t i = 0; i < names_.size(); ++i) {
+      const json& j = joints()[i];
+      const auto place = std::find_if(places.begin(), places.end(),
+                                      [&](const JointPlace& p) { return p.name == names_[i]; });
+      if (place == places.end()) ADD_FAILURE() << "no joint " << names_[i];
+      const Eigen::Index at = j.at("qposadr"), dof = j.at("dofadr");
+      for (std::size_t k = 0; k < place->q.size(); ++k)
+        m.given.q[place->q[k]] = q[at + static_cast<Eigen::Index>(k)] - j.value("ref", 0.0);
+      for (std::size_t k = 0; k < place->u.size(); ++k)
+        m.T(place->u[k], dof + static_cast<Eigen::Index>(k)) = 1;
+      if (j.at("type") != "free") continue;
+      const Eigen::Matrix3d to_body = Eigen::Quaterniond(q[at + 3], q[at + 4], q[at + 5], q[at + 6])
+                                          .toRotationMatrix()
+                                          .transpose();
+      m.T.block<3, 3>(place->u[0], dof) = to_body;
+      const Eigen::Vector3d velocity = to_body * v.segment<3>(dof);
+      m.Tdot_v.segment<3>(place->u[0]) = -v.segment<3>(dof + 3).cross(velocity);
+    }
+    m.given.v = m.T * v;
+    m.given.tau = m.T * tau;
+    return m;
+  }
+
+ private:
+  void name_joints() {
+    std::vector<std::string> in_order;
+    for (const JointSpec& joint : scene_.joints)
+      if (joint.kind != JointKind::weld) in_order.push_back(joint.name);
+    ASSERT_EQ(in_order.size(), joints().size());
+    for (std::size_t i = 0; i < in_order.size(); ++i)
+      names_.push_back(joints()[i].at("name").is_null()
+                           ? in_order[i]
+                           : joints()[i].at("name").get<std::string>());
+  }
+
+  json reference_;
+  Scene scene_, with_rotors_;
+  std::map<std::string, double> armatures_;
+  std::vector<std::string> names_;
+};
+
+bool has_quaternions(const Mechanism& mechanism) {
+  return mechanism.nq() != mechanism.nv();
+}
+
+/// From the rows of its lower triangle.
+MatrixXd mass_matrix(const json& lower, Eigen::Index n) {
+  MatrixXd m(n, n);
+  for (Eigen::Index i = 0; i < n; ++i)
+    for (Eigen::Index j = 0; j <= i; ++j)
+      m(i, j) = m(j, i) = lower[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)];
+  return m;
+}
+
+class Models : public testing::TestWithParam<std::size_t> {
+ protected:
+  static const Model& model() {
+    static const std::vector<Model> all = models();
+    return all.at(GetParam());
+  }
+  static double tolerance() { return model().reference.at("constraints").empty() ? 1e-12 : 1e-10; }
+};
+
+TEST_P(Models, MassMatrixBiasAndAccelerationsOfTheTree) {
+  const Pair pair(model());
+  const Mechanism tree(Pair::without_springs(pair.without_loops()));
+  const json& reference = model().reference;
+  double mass = 0, bias = 0, free = 0, kinetic = 0, potential = 0, first_potential = 0;
+  for (const json& s : reference.at("states")) {
+    const Pair::Map m = pair.state(tree, s);
+    const StateValues x = evaluate_state(tree, m.given);
+    ASSERT_TRUE(x.dense);
+    const VectorXd tau = vector(s.at("tau"));
+    mass = std::max(
+        mass, deviation(m.T.transpose() * x.mass * m.T, mass_matrix(s.at("M_lower"), tree.nv())));
+    bias = std::max(bias, deviation(m.T.transpose() * (x.mass * m.Tdot_v + x.bias) + tau,
+                                    vector(s.at("bias")), tau.cwiseAbs().maxCoeff()));
+    free = std::max(free, deviation(m.T.transpose() * (x.free - m.Tdot_v), vector(s.at("qdd"))));
+    const double t = s.at("kinetic_energy"), v = s.at("potential_energy");
+    kinetic = std::max(kinetic, std::abs(x.kinetic - t) / std::max(1e-300, std::abs(t)));
+    if (&s == &reference.at("states")[0]) first_potential = x.potential - v;
+    potential = std::max(potential, std::abs(x.potential - v - first_potential) /
+                                        std::max({1.0, std::abs(v), std::abs(x.potential)}));
+  }
+  if (std::getenv("MOMENTA_MODELS"))
+    std::printf("| %s/%s | %d | %.0e | %.0e | %.0e |\n",
+                model().file.parent_path().filename().c_str(), model().file.filename().c_str(),
+                tree.nv(), mass, bias, free);
+  EXPECT_LE(mass, 1e-12);
+  EXPECT_LE(bias, 1e-12);
+  EXPECT_LE(free, tolerance());
+  EXPECT_LE(kinetic, 1e-12);
+  EXPECT_LE(potential, 1e-12);
+}
+
+TEST_P(Models, AccelerationsWithLoopsClosed) {
+  const json& reference = model().reference;
+  if (reference.at("constraints").empty()) GTEST_SKIP() << "a tree";
+  const Pair pair(model());
+  const Mechanism mechanism(Pair::without_springs(pair.scene()));
+  double open = 0, speed = 0, constrained = 0, allowed = 1e-10;
+  int rank = 0;
+  for (const json& s : reference.at("constrained_states")) {
+    const Pair::Map m = pair.state(mechanism, s);
+    const StateValues x = evaluate_state(mechanism, m.given);
+    open = std::max(open, x.phi.cwiseAbs().maxCoeff());
+    speed = std::max(speed, x.phidot.cwiseAbs().maxCoeff());
+    constrained = std::max(constrained, deviation(m.T.transpose() * (x.constrained - m.Tdot_v),
+                                                  vector(s.at("qdd_constrained"))));
+    // Next to a singular pose the last bit of q may move the answer by more: by 1e-9 in the delta
+    // robot, whose singular values go down to 2e-5 of the largest.
+    GivenState moved = m.given;
+    const VectorXd directions = VectorXd::LinSpaced(moved.q.size(), -1, 1);
+    const double step = 1e-9, bits = 4 * std::numeric_limits<double>::epsilon();
+    if (!has_quaternions(mechanism)) {
+      moved.q += step * directions;
+      allowed = std::max(
+          allowed,
+          bits / step * deviation(evaluate_state(mechanism, moved).constrained, x.constrained));
+    }
+    rank = x.rank;
+    EXPECT_EQ(x.rank, s.at("rank").get<int>());
+  }
+  if (std::getenv("MOMENTA_MODELS"))
+    std::printf("| %s/%s | loops %d rows, rank %d | open %.0e | speed %.0e | %.0e |\n",
+                model().file.parent_path().filename().c_str(), model().file.filename().c_str(),
+                mechanism.m(), rank, open, speed, constrained);
+  EXPECT_LE(open, 1e-10);
+  EXPECT_LE(speed, 1e-10);
+  EXPECT_LE(constrained, allowed);
+  EXPECT_LE(allowed, 1e-7);
+}
+
+TEST_P(Models, ArmaturesAreRotors) {
+  const Pair pair(model());
+  std::size_t expected = 0;
+  for (std::size_t i = 0; i < pair.names().size(); ++i) {
+    const double armature = pair.joints()[i].value("armature", 0.0);
+    if (armature == 0) continue;
+    ++expected;
+    const auto found = pair.armatures().find(pair.names()[i]);
+    ASSERT_NE(found, pair.armatures().end()) << pair.names()[i];
+    EXPECT_NEAR(found->second, armature, 1e-15 * armature + 1e-18);
+  }
+  EXPECT_EQ(pair.armatures().size(), expected);
+}
+
+// (M + A) q̈ + bias = τ with A the armatures, whatever the rotors themselves do.
+TEST_P(Models, ArmaturesAddToTheDiagonalOfM) {
+  const Pair pair(model());
+  const json& reference = model().reference;
+  if (pair.armatures().empty() || !reference.at("constraints").empty()) GTEST_SKIP();
+  const Mechanism mechanism(Pair::without_springs(pair.with_rotors()));
+  for (const json& s : reference.at("states")) {
+    const Pair::Map m = pair.state(mechanism, s);
+    const VectorXd tau = vector(s.at("tau"));
+    MatrixXd mass = mass_matrix(s.at("M_lower"), tau.size());
+    for (std::size_t i = 0; i < pair.names().size(); ++i)
+      if (const Eigen::Index dof = pair.joints()[i].at("dofadr");
+          pair.joints()[i].at("type") != "free")
+        mass(dof, dof) += pair.joints()[i].value("armature", 0.0);
+    const VectorXd expected = mass.ldlt().solve(tau - vector(s.at("bias")));
+    const VectorXd found = evaluate_state(mechanism, m.given).constrained - m.Tdot_v;
+    EXPECT_LE(deviation(m.T.transpose() * found, expected), 1e-11);
+  }
+}
+
+// Springs and dampers of hinges and slides; those of ball joints are left out and told.
+TEST_P(Models, SpringsAndDampers) {
+  const Pair pair(model());
+  const Mechanism bare(Pair::without_springs(pair.without_loops())), tree(pair.without_loops());
+  for (const json& s : model().reference.at("states")) {
+    const Pair::Map m = pair.state(tree, s);
+    VectorXd expected = vector(s.at("qfrc_passive_mujoco"));
+    VectorXd found =
+        m.T.transpose() * (evaluate_state(bare, m.given).bias - evaluate_state(tree, m.given).bias);
+    for (std::size_t i = 0; i < pair.names().size(); ++i) {
+      const json& j = pair.joints()[i];
+      const std::string type = j.at("type");
+      if (type == "ball") expected.segment<3>(j.at("dofadr")).setZero();
+      if (type == "free") expected.segment<6>(j.at("dofadr")).setZero();
+    }
+    // the two biases lose their digits in the difference
+    const double scale = std::max(1.0, evaluate_state(bare, m.given).bias.cwiseAbs().maxCoeff());
+    EXPECT_LE((found - expected).cwiseAbs().maxCoeff(), 1e-12 * scale);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(ByOthers, Models, testing::Range(std::size_t{0}, models().size()),
+                         [](const auto& one) {
+                           static const std::vector<Model> all = models();
+                           const fs::path file = all.at(one.param).file;
+                           std::string name = std::to_string(one.param) + "_" +
+                                              file.parent_path().filename().string() + "_" +
+                                              file.stem().string();
+                           for (char& c : name)
+                             if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
+                           return name;
+                         });
+
+}  // namespace
+}  // namespace momenta

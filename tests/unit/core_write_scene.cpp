@@ -1,0 +1,247 @@
+// Scenes written as TOML and read again are the same, bit by bit.
+
+#include "equations/random_tree.h"
+#include "equations/same_scene.h"
+
+#include <gtest/gtest.h>
+#include <momenta/core/scene/read_scene.h>
+#include <momenta/core/scene/write_scene.h>
+
+#include <filesystem>
+
+namespace momenta {
+namespace {
+
+namespace fs = std::filesystem;
+using equations::difference;
+
+/// Read, written, read: nothing differs, and the text does not change any more.
+void expect_exact(const Scene& scene) {
+  const std::string text = scene_text(scene);
+  const Scene again = parse_scene(text, "written.toml");
+  EXPECT_EQ(difference(scene, again), "");
+  Scene named = again;
+  named.remarks = scene.remarks;
+  EXPECT_EQ(scene_text(named), text);
+}
+
+std::vector<fs::path> files_with(const std::vector<std::string>& endings) {
+  std::vector<fs::path> files;
+  for (const auto& entry :
+       fs::recursive_directory_iterator(fs::path(MOMENTA_SOURCE_DIR) / "examples"))
+    for (const std::string& ending : endings)
+      if (entry.path().extension() == ending) files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+TEST(WriteScene, EveryExample) {
+  const auto files = files_with({".toml"});
+  EXPECT_GE(files.size(), 11U);
+  for (const fs::path& file : files) {
+    SCOPED_TRACE(file.string());
+    expect_exact(read_scene(file));
+  }
+}
+
+TEST(WriteScene, EveryModel) {
+  const auto files = files_with({".urdf", ".xml"});
+  EXPECT_GE(files.size(), 10U);
+  for (const fs::path& file : files) {
+    SCOPED_TRACE(file.string());
+    expect_exact(read_scene(file));
+    ReadOptions floating;
+    floating.free_root = true;
+    if (file.extension() == ".urdf" && file.filename() != "revolute_rotor_chain.urdf")
+      expect_exact(read_scene(file, floating));
+  }
+}
+
+// Every key of the format, with numbers that are hard to write.
+TEST(WriteScene, EveryKey) {
+  const Scene scene = parse_scene(R"(
+name = "a \"quoted\" \\ name\nwith ü and \u0001"
+gravity = [-0.0, 1e300, -5e-324]
+[[body]]
+name = "rod"
+mass = 18446744073709551616.0
+shape = { kind = "rod", length = 0.1, axis = [1, 2, 3] }
+[[body]]
+name = "box"
+mass = 1
+shape = { kind = "box", size = [0.1, 0.2, 0.3] }
+com = [1, -0.0, 2]
+[[body]]
+name = "cylinder"
+mass = 0.1
+shape = { kind = "cylinder", length = 0.3, radius = 0.7, axis = "-y" }
+[[body]]
+name = "ball"
+mass = 3
+shape = { kind = "sphere", radius = 1e-7 }
+[[body]]
+name = "point"
+mass = 1e22
+shape = { kind = "point" }
+[[body]]
+name = "any"
+mass = 0.3
+inertia = [1, 2, 9, 0.1, -0.2, 0.3]
+any_inertia = true
+[[body]]
+name = "planar"
+mass = 0.3
+inertia = 0.7
+[[body]]
+name = "none"
+mass = 0
+[[joint]]
+name = "A"
+kind = "revolute"
+child = "rod"
+origin = { parent = [1, 2, 3] }
+rotation = { rpy = [0.1, 0.2, 0.3] }
+axis = [1, 1, 1]
+position = 0.1
+velocity = -0.0
+stiffness = 1e15
+rest = 0.2
+damping = 123456789012345680000.0
+[[joint]]
+name = "B"
+kind = "helical"
+parent = "rod"
+child = "box"
+pitch = 0
+[[joint]]
+name = "C"
+kind = "universal"
+parent = "box"
+child = "cylinder"
+axis2 = [3, 1, 1]
+origin = { child = [1, 2, 3] }
+[[joint]]
+name = "D"
+kind = "planar"
+parent = "cylinder"
+child = "ball"
+direction = [1, 1, 0]
+[[joint]]
+name = "E"
+kind = "free"
+child = "point"
+position = [1, 2, 3, 0.6, 0, 0.8000001, 0]
+velocity = [1, 2, 3, 4, 5, 6]
+[[joint]]
+name = "F"
+kind = "cylindrical"
+parent = "ball"
+child = "any"
+[[joint]]
+name = "G"
+kind = "prismatic"
+parent = "any"
+child = "planar"
+[[joint]]
+name = "H"
+kind = "weld"
+parent = "any"
+child = "none"
+rotation = { axis = [1, 2, 3], angle = 1 }
+[[loop]]
+name = "L"
+kind = "distance"
+parent = "box"
+child = "point"
+length = 0.1
+[[loop]]
+name = "M"
+kind = "coupler"
+joints = ["A", "D"]
+coordinates = [0, 2]
+ratios = [1, -0.1]
+offset = 0.3
+[[loop]]
+name = "N"
+kind = "universal"
+child = "any"
+axis2 = "x"
+[[loop]]
+name = "P"
+kind = "planar"
+child = "point"
+direction = "y"
+[[drive]]
+joint = "G"
+kind = "harmonic"
+amplitude = 0.1
+frequency = 3
+offset = 0.1
+phase = 0.2
+[[drive]]
+loop = "P"
+coordinate = 1
+kind = "polynomial"
+coefficients = [0, 0.1]
+[[drive]]
+loop = "N"
+origin = "x"
+kind = "step"
+to = 0.1
+duration = 0.3
+from = 0.2
+start = 0.1
+[[drive]]
+joint = "F"
+coordinate = 1
+kind = "table"
+times = [0, 0.1]
+values = [0, 0.3]
+[[force]]
+kind = "spring-damper"
+name = "spring"
+parent = "rod"
+child = "point"
+origin = { parent = [1, 0, 0], child = [0, 0.1, 0] }
+stiffness = 0.1
+damping = 0.2
+rest = 0.3
+[[force]]
+kind = "torque"
+joint = "A"
+value = 0.1
+[[force]]
+kind = "wrench"
+body = "any"
+point = [1, 2, 3]
+force = [4, 5, 6]
+torque = [7, 8, 9]
+axes = "body"
+[[marker]]
+name = "m"
+body = "rod"
+point = [0.1, 0, 0]
+[assembly]
+hold = ["A"]
+[run]
+end = 0.1
+step = 0.001
+leak = 3
+samples = 7
+project = true
+)");
+  expect_exact(scene);
+}
+
+TEST(WriteScene, RandomTrees) {
+  for (unsigned seed = 1; seed <= 40; ++seed) {
+    SCOPED_TRACE(seed);
+    // once read, directions are of unit length to the last bit
+    equations::RandomTree random(seed);
+    equations::TreeRecipe recipe;
+    expect_exact(parse_scene(scene_text(random.scene(recipe))));
+  }
+}
+
+}  // namespace
+}  // namespace momenta
