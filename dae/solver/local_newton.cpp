@@ -34,10 +34,8 @@ bool LocalNewton::evaluate(double t, const double* y, const double* ydot, double
   if (version_ != jacobian_.version()) {
     newton_.reset();
     version_ = jacobian_.version();
-    const JacobianPattern& pattern = jacobian_.pattern();
-    const std::size_t whole = pattern.column_start.size() - 1;
-    newton_ = make_newton_matrix<double>(static_cast<int>(whole), pattern);
-    work_.assign(whole, 0.0);
+    newton_ = make_local_matrix(jacobian_.pattern());
+    work_.assign(jacobian_.pattern().column_start.size() - 1, 0.0);
   }
   std::copy(jacobian_.values().begin(), jacobian_.values().end(), newton_->values());
   return true;

@@ -4,13 +4,17 @@
 //   ( A  B ) ( δ )   ( b )
 //   ( C  T ) ( z ) = ( 0 ),     J = A − B T⁻¹ C
 //
-// by KLU, its ordering once, pivots kept while they do not make entries grow. IDA sees a matrix and
+// by KLU, its ordering (COLAMD) once, pivots kept while they do not make entries grow. IDA sees a matrix and
 // a linear solver of its own kinds.
 
 #include <momenta/dae/solver/newton_matrix.h>
 #include <momenta/dae/solver/sundials_handles.h>
 
 namespace momenta {
+
+/// As KLU takes it best; factors of a ladder of crossed bars then grow like its bars. The pattern
+/// must outlive the matrix.
+std::unique_ptr<NewtonMatrix<double>> make_local_matrix(const JacobianPattern& pattern);
 
 class LocalNewton {
  public:
