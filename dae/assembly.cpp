@@ -1,35 +1,29 @@
 #include <momenta/dae/assembly.h>
-#include <momenta/dae/kkt/kkt.h>
+#include <momenta/dae/kkt/least_norm.h>
+#include <momenta/dae/kkt/loop_solver.h>
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <map>
 
 namespace momenta {
 namespace {
 
 constexpr int most_iterations = 200;
-constexpr double largest_step = 0.4;     // [rad or lengths]: stay on the branch of the guess
-constexpr double closed = 1e-12;         // |Φ|∞, points in lengths
-constexpr double far = 0.1;              // [rad or lengths]: Newton's steps may leave the branch
-constexpr double rank_tolerance = 1e-9;  // of pivots, against the largest
-
-using Decomposition = Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>;
-
-Decomposition decompose(const Eigen::MatrixXd& j) {
-  Decomposition d;
-  d.setThreshold(rank_tolerance);
-  d.compute(j);
-  return d;
-}
+constexpr double largest_step = 0.4;  // [rad or lengths]: stay on the branch of the guess
+constexpr double closed = 1e-12;      // |Φ|∞, points in lengths; at least
+constexpr double far = 0.1;           // [rad or lengths]: Newton's steps may leave the branch
+constexpr double rank_tolerance = LeastNorm::rank_tolerance;
 
 class Assembler {
  public:
   explicit Assembler(const Mechanism& mechanism)
       : mechanism_(mechanism),
         e_(mechanism.evaluation<double>()),
+        pattern_(mechanism.constraint_pattern()),
+        steps_(pattern_, mechanism.m(), mechanism.nv()),
         free_(static_cast<std::size_t>(mechanism.nv()), true) {
     measure();
     for (const auto& name : mechanism.scene().held) {
@@ -58,49 +52,65 @@ class Assembler {
   }
 
  private:
-  /// Units of coordinates and equations: lengths of the scene, and radians.
+  /// Units of coordinates and equations: lengths of the scene, and radians. What rounding leaves
+  /// open grows with the way from the ground: a sum of k terms of size up to R is off by √k R ε.
   void measure() {
     const double length = length_of(mechanism_.scene());
+    std::vector<double> reach;
+    std::vector<int> depth;
+    for (const auto& b : mechanism_.tree().bodies) {
+      const double step = b.placement.translation().norm();
+      const auto parent = static_cast<std::size_t>(b.parent);
+      reach.push_back(b.parent < 0 ? step : reach[parent] + step);
+      depth.push_back(b.parent < 0 ? 1 : depth[parent] + 1);
+      closed_ = std::max(closed_, 4 * std::numeric_limits<double>::epsilon() *
+                                      std::sqrt(depth.back()) * reach.back() / length);
+    }
     column_.setOnes(mechanism_.nv());
     for (const auto& b : mechanism_.tree().bodies) {
       if (b.kind == JointKind::prismatic && b.nv == 1) column_[b.u] = length;
       if (b.nv == 6) column_.segment<3>(b.u).setConstant(length);
     }
     row_.setOnes(mechanism_.m());
+    std::map<std::string, const LoopSpec*> couplers;
+    for (const LoopSpec& l : mechanism_.scene().loops)
+      if (l.kind == LoopKind::coupler) couplers.emplace(l.name, &l);
     for (int i = 0; i < mechanism_.m(); ++i)
-      if (mechanism_.row_groups()[static_cast<std::size_t>(i)] % 2 == 0)
-        row_[i] = coupled(mechanism_.rows()[static_cast<std::size_t>(i)].loop, length);
+      if (mechanism_.row_groups()[static_cast<std::size_t>(i)] % 2 == 0) {
+        const auto coupler = couplers.find(mechanism_.rows()[static_cast<std::size_t>(i)].loop);
+        row_[i] = coupler == couplers.end() ? length : size_of(*coupler->second);
+      }
   }
-  /// Of a row of points or a distance: the length. Of a coupler: what its terms are by nature.
-  double coupled(const std::string& loop, double length) const {
-    for (const LoopSpec& l : mechanism_.scene().loops) {
-      if (l.name != loop || l.kind != LoopKind::coupler) continue;
-      double size = 0;
-      for (std::size_t i = 0; i < l.joints.size(); ++i)
-        for (const Tree::Body& b : mechanism_.tree().bodies)
-          if (b.joint == l.joints[i] &&
-              b.coordinate == (l.coordinates.empty() ? 0 : l.coordinates[i]))
-            size = std::max(size, std::abs(l.ratios[i]) * (b.nv > 0 ? column_[b.u] : 1));
-      return size > 0 ? size : 1;
+  /// Of the equation of a coupler: what its terms are by nature.
+  double size_of(const LoopSpec& l) const {
+    const Tree& tree = mechanism_.tree();
+    double size = 0;
+    for (std::size_t i = 0; i < l.joints.size(); ++i) {
+      const int last = tree.carried_by(l.joints[i]);
+      for (int k = tree.first_part(last); k <= last; ++k) {
+        const Tree::Body& b = tree.bodies[static_cast<std::size_t>(k)];
+        if (b.coordinate == (l.coordinates.empty() ? 0 : l.coordinates[i]))
+          size = std::max(size, std::abs(l.ratios[i]) * (b.nv > 0 ? column_[b.u] : 1));
+      }
     }
-    return length;
+    return size > 0 ? size : 1;
   }
 
-  /// D⁻¹ Φ_q C in those units.
-  Eigen::MatrixXd jacobian() {
-    const auto& pattern = mechanism_.kkt_pattern().constraint;
-    std::vector<double> values(pattern.size());
+  /// Entries of D⁻¹ Φ_q C in those units; those of held joints zero where only free ones step.
+  std::vector<double> jacobian(bool all = false) {
+    std::vector<double> values(pattern_.size());
     e_->constraint_entries(values.data());
-    Eigen::MatrixXd j = Eigen::MatrixXd::Zero(mechanism_.m(), mechanism_.nv());
-    for (std::size_t i = 0; i < values.size(); ++i)
-      j(pattern[i].row, pattern[i].column) =
-          values[i] * column_[pattern[i].column] / row_[pattern[i].row];
-    return j;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const auto [row, column] = pattern_[i];
+      const bool steps = all || free_[static_cast<std::size_t>(column)];
+      values[i] = steps ? values[i] * column_[column] / row_[row] : 0;
+    }
+    return values;
   }
-  Eigen::MatrixXd free_columns(Eigen::MatrixXd j) const {
-    for (int i = 0; i < mechanism_.nv(); ++i)
-      if (!free_[static_cast<std::size_t>(i)]) j.col(i).setZero();
-    return j;
+  static double largest_of(const std::vector<double>& j) {
+    double largest = 0;
+    for (const double x : j) largest = std::max(largest, std::abs(x));
+    return largest;
   }
   Eigen::VectorXd gap(const Eigen::VectorXd& q) {
     Eigen::VectorXd phi(mechanism_.m());
@@ -141,28 +151,25 @@ class Assembler {
   }
   /// Minimises |J δ + Φ|² + λ² |δ|², λ = |Φ|, but not so small that rows which are dust beside the
   /// others count.
-  static Eigen::VectorXd damped_step(const Eigen::MatrixXd& j, const Eigen::VectorXd& phi) {
-    const double damping = std::max(phi.norm(), rank_tolerance * j.cwiseAbs().maxCoeff());
-    Eigen::MatrixXd stacked(j.rows() + j.cols(), j.cols());
-    stacked << j, damping * Eigen::MatrixXd::Identity(j.cols(), j.cols());
-    Eigen::VectorXd right = Eigen::VectorXd::Zero(stacked.rows());
-    right.head(phi.size()) = -phi;
-    return stacked.householderQr().solve(right);
+  Eigen::VectorXd damped_step(const std::vector<double>& j, const Eigen::VectorXd& phi) {
+    steps_.factor(j, std::max(phi.norm(), rank_tolerance * largest_of(j)));
+    return -steps_.solve(phi);
   }
 
   /// Where Newton's steps from q lead.
   struct Closed {
     Eigen::VectorXd q;
     double gap = 0;  ///< |Φ|∞, points in lengths
-    bool is_closed() const { return gap <= closed; }
+    bool is_closed = false;
   };
   Closed close_from(Eigen::VectorXd q, int& iterations) {
     Eigen::VectorXd phi = gap(q);
     double norm = phi.norm();
     int stalled = 0;
     for (; iterations < most_iterations && norm > 1e-16 && stalled < 2; ++iterations) {
-      const Eigen::MatrixXd j = free_columns(jacobian());
-      Trial next = along(q, norm, -decompose(j).solve(phi));
+      const std::vector<double> j = jacobian();
+      steps_.factor(j);
+      Trial next = along(q, norm, -steps_.solve(phi));
       // Redundant rows are redundant only where the loops are closed: off it they ask, through
       // pivots as small as the gap, for steps that lead nowhere. Damping by the gap is harmless
       // near the end, where it vanishes faster than what is left to do.
@@ -171,12 +178,13 @@ class Assembler {
           next = std::move(damped);
       const double next_norm = next.norm;
       if (!(next_norm < norm)) break;
-      stalled = next_norm > 0.5 * norm && norm < closed ? stalled + 1 : 0;
+      stalled = next_norm > 0.5 * norm && norm < closed_ ? stalled + 1 : 0;
       q = next.q;
       phi = gap(q);
       norm = next_norm;
     }
-    return {q, phi.size() > 0 ? phi.cwiseAbs().maxCoeff() : 0};
+    const double last = phi.size() > 0 ? phi.cwiseAbs().maxCoeff() : 0;
+    return {q, last, last <= closed_};
   }
 
   /// The gap closed continuously, down to a hundredth; false where it gets stuck before.
@@ -187,12 +195,12 @@ class Assembler {
     const double end = 0.01 * std::min(phi.norm(), 1.0);
     double part = longest;
     for (int count = 0; count < most_steps && phi.norm() > end; ++count) {
-      const Eigen::MatrixXd j = free_columns(jacobian());
+      const std::vector<double> j = jacobian();
       Eigen::VectorXd step = damped_step(j, phi);
       if (!step.allFinite()) return false;
       const double length = step.cwiseAbs().maxCoeff();
       step *= std::min(part, longest / std::max(length, longest * 1e-3));
-      const Eigen::VectorXd expected = j * step;
+      const Eigen::VectorXd expected = steps_.product(j, step);
       if (!(expected.norm() > 1e-6 * phi.norm())) return false;  // nowhere to go
       const Eigen::VectorXd next = moved(q, step);
       const Eigen::VectorXd reached = gap(next);
@@ -223,20 +231,20 @@ class Assembler {
     const Eigen::VectorXd guess = a.start.q;
     Closed found = close_from(guess, a.iterations);
     const double way = apart(found.q, guess);
-    if (!found.is_closed() || way > far) {
-      Closed followed{guess, 0};
+    if (!found.is_closed || way > far) {
+      Closed followed{guess, 0, false};
       const bool arrived = follow(followed.q);
       followed = close_from(followed.q, a.iterations);
       const double other = apart(followed.q, guess);
-      if (followed.is_closed() && (!found.is_closed() || other < 0.7 * way - far)) {
+      if (followed.is_closed && (!found.is_closed || other < 0.7 * way - far)) {
         char text[160];
         std::snprintf(text, sizeof text,
                       "the assembly reached continuously from the guess, joints moved by at most "
                       "%.3g; Newton's steps lead to another, %.3g away",
                       other, way);
-        if (found.is_closed()) a.branch = text;
+        if (found.is_closed) a.branch = text;
         found = std::move(followed);
-      } else if (found.is_closed() && !arrived) {
+      } else if (found.is_closed && !arrived) {
         a.branch =
             "one of several assemblies, the guess does not tell which: on the way from there the "
             "loop equations lose rank before they close";
@@ -246,7 +254,7 @@ class Assembler {
     const Eigen::VectorXd phi = gap(a.start.q);
     a.position_residual = phi.cwiseProduct(row_).cwiseAbs().maxCoeff();
     a.moved = (a.start.q - guess).cwiseAbs().maxCoeff();
-    if (!found.is_closed()) refuse(phi.cwiseProduct(row_));
+    if (!found.is_closed) refuse(phi.cwiseProduct(row_));
   }
 
   [[noreturn]] void refuse(const Eigen::VectorXd& phi) const {
@@ -260,7 +268,7 @@ class Assembler {
              mechanism_.rows()[static_cast<std::size_t>(row)].loop == loop.name;
            ++row)
         largest = std::max(largest, std::abs(phi[row]));
-      if (largest <= closed * row_[row - 1]) continue;
+      if (largest <= closed_ * row_[row - 1]) continue;
       char text[32];
       std::snprintf(text, sizeof text, "%.3g", largest);
       if (open.empty()) at = loop.at;
@@ -276,18 +284,18 @@ class Assembler {
   void close_velocities(Assembly& a) {
     Eigen::VectorXd& u = a.start.u;
     Eigen::VectorXd rate(mechanism_.m());
-    const Eigen::MatrixXd j = free_columns(jacobian());
-    const auto decomposition = decompose(j);
+    const std::vector<double> j = jacobian();
+    steps_.factor(j);
     for (int pass = 0; pass < 2; ++pass) {
       e_->move(u.data());
       e_->velocities(rate.data());
-      u -= decomposition.solve(rate.cwiseQuotient(row_)).cwiseProduct(column_);
+      u -= steps_.solve(rate.cwiseQuotient(row_)).cwiseProduct(column_);
     }
     e_->move(u.data());
     e_->velocities(rate.data());
     a.velocity_residual = rate.cwiseAbs().maxCoeff();
     const double scale = 1 + (u.size() > 0 ? u.cwiseQuotient(column_).cwiseAbs().maxCoeff() : 0) *
-                                 (1 + j.cwiseAbs().maxCoeff());
+                                 (1 + largest_of(j));
     if (rate.cwiseQuotient(row_).cwiseAbs().maxCoeff() <= 1e-10 * scale) return;
     Eigen::Index worst;
     rate.cwiseAbs().maxCoeff(&worst);
@@ -299,19 +307,12 @@ class Assembler {
                      "' apart at a rate of " + text + "; expected rates that the loops allow");
   }
 
-  /// Rank by column-pivoted QR; its pivots bound the singular values to a factor of about √nv.
   void judge_rank(Assembly& a) {
-    // Pivoting on the columns of Φ_qᵀ orders the rows: those beyond the rank depend on the ones
-    // before.
-    const auto decomposition = decompose(jacobian().transpose());
-    const Eigen::VectorXd pivots = decomposition.matrixQTZ().diagonal().cwiseAbs();
-    a.rank = static_cast<int>(decomposition.rank());
-    a.smallest_pivot = a.rank > 0 ? pivots[a.rank - 1] : 0;
-    a.largest_neglected =
-        a.rank < pivots.size() ? pivots.tail(pivots.size() - a.rank).maxCoeff() : 0;
-    const auto& order = decomposition.colsPermutation().indices();
-    for (int i = a.rank; i < mechanism_.m(); ++i) a.dependent_rows.push_back(order[i]);
-    std::sort(a.dependent_rows.begin(), a.dependent_rows.end());
+    LeastNorm::Rows rows = steps_.judge(jacobian(true));
+    a.rank = rows.rank;
+    a.smallest_pivot = rows.smallest_pivot;
+    a.largest_neglected = rows.largest_neglected;
+    a.dependent_rows = std::move(rows.dependent);
   }
 
   void accelerations(Assembly& a) {
@@ -323,6 +324,13 @@ class Assembler {
     if (mechanism_.m() == 0) {
       if (!e_->open_accelerations(s.t, s.q.data(), s.u.data(), s.udot.data()))
         no_inertia(e_->stuck());
+      return;
+    }
+    if (mechanism_.kkt() == KktChoice::sweeps && !mechanism_.dense_kkt()) {
+      const auto solver = make_loop_solver(mechanism_, *e_);
+      if (!solver->acceleration(s.t, s.q.data(), s.u.data(), nullptr, 0, 0, s.udot.data(),
+                                s.lambda.data()))
+        no_inertia(solver->stuck());
       return;
     }
     const auto kkt = make_kkt(mechanism_);
@@ -354,7 +362,10 @@ class Assembler {
   }
 
   const Mechanism& mechanism_;
+  double closed_ = closed;
   std::unique_ptr<Evaluation<double>> e_;
+  const std::vector<KktPattern::Entry>& pattern_;  ///< of Φ_q
+  LeastNorm steps_;
   std::vector<bool> free_;
   Eigen::VectorXd column_, row_;  ///< units of rates (nv) and of equations (m)
 };

@@ -30,7 +30,7 @@ struct Assembly {
 /// Damped Gauss-Newton from the scene's positions, joints of `held` unmoved; steps of minimal
 /// change, lengths counted in the length of the scene, so that units do not matter; then the rates
 /// nearest to the scene's with Φ_q u + Φ_t = 0, held ones kept. |Φ|∞ ≤ 1e-12, points in lengths of
-/// the scene, or as low as rounding allows.
+/// the scene, or what rounding leaves on the way from the ground.
 ///
 /// Far from the guess Newton's steps may end in another assembly, the mirror image say. So where
 /// they moved a joint by more than 0.1 the gap is also closed continuously, δ' = −(JᵀJ + |Φ|²)⁻¹Jᵀ

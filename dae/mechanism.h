@@ -3,6 +3,7 @@
 // does. Immutable; every form, solver and measure takes it by const reference.
 
 #include <momenta/core/open_chain.h>
+#include <momenta/core/scalar/local_dual.h>
 #include <momenta/core/scalar/power_series.h>
 #include <momenta/dae/evaluation.h>
 #include <momenta/dae/loop/loop_model.h>
@@ -68,8 +69,10 @@ class Mechanism {
   bool pairs_anew() const;
   bool has_body_forces() const;   ///< springs, dampers or wrenches between points of bodies
   bool has_joint_forces() const;  ///< springs, dampers or torques of joints
-  /// Found when first asked for: a long open chain never fills its M.
+  /// Found when first asked for: a long chain never fills its M, O(Σ depth).
   const KktPattern& kkt_pattern() const;
+  /// Of Φ_q alone, O(length of all loops).
+  const std::vector<KktPattern::Entry>& constraint_pattern() const;
   const std::vector<RowName>& rows() const { return row_names_; }
   /// Rows of one loop and one kind (points, axes, distance or coupling) share a unit and so a
   /// scale: group index of each row.
@@ -81,7 +84,7 @@ class Mechanism {
   /// for axes, whose size by nature is known, and for couplers. [1/kg]
   const std::vector<double>& least_scales() const { return least_scales_; }
 
-  /// A workspace for one thread; S is double, Dual8 or Jet.
+  /// A workspace for one thread; S is double, Dual8, LocalDual or Jet.
   template <class S>
   std::unique_ptr<Evaluation<S>> evaluation() const;
 
@@ -124,7 +127,7 @@ class Mechanism {
   std::string kkt_reason_;  ///< why the sweeps do not carry the loops; empty when they do
   std::string light_;       ///< which joint has too little inertia before its loops close, or empty
   mutable KktPattern pattern_;
-  mutable std::once_flag pattern_known_;
+  mutable std::once_flag mass_pattern_known_, constraint_pattern_known_;
   std::vector<RowName> row_names_;
   std::vector<int> row_groups_;
   std::vector<double> least_scales_;
@@ -132,6 +135,7 @@ class Mechanism {
 
 extern template std::unique_ptr<Evaluation<double>> Mechanism::evaluation<double>() const;
 extern template std::unique_ptr<Evaluation<Dual8>> Mechanism::evaluation<Dual8>() const;
+extern template std::unique_ptr<Evaluation<LocalDual>> Mechanism::evaluation<LocalDual>() const;
 extern template std::unique_ptr<Evaluation<Jet>> Mechanism::evaluation<Jet>() const;
 
 }  // namespace momenta

@@ -124,8 +124,12 @@ class TreeBuilder {
     }
     tree_.q0.resize(tree_.nq);
     tree_.u0.resize(tree_.nv);
-    for (std::size_t k = 0; k < tree_.bodies.size(); ++k)
+    for (std::size_t k = 0; k < tree_.bodies.size(); ++k) {
       append_start(*joints_[k], tree_.bodies[k], tree_);
+      if (!tree_.carries_scene_body(static_cast<int>(k))) continue;
+      tree_.body_places.emplace(tree_.bodies[k].name, static_cast<int>(k));
+      tree_.joint_places.emplace(tree_.bodies[k].joint, static_cast<int>(k));
+    }
     for (const auto& force : scene_.forces)
       if (force.kind == "torque")
         tree_.bodies[static_cast<std::size_t>(tree_.carried_by(force.joint))].torque += force.value;
@@ -232,17 +236,13 @@ Tree build_tree(const Scene& scene) {
 }
 
 int Tree::body(const std::string& scene_name) const {
-  for (std::size_t k = 0; k < bodies.size(); ++k)
-    if (bodies[k].name == scene_name && carries_scene_body(static_cast<int>(k)))
-      return static_cast<int>(k);
-  return -1;
+  const auto found = body_places.find(scene_name);
+  return found == body_places.end() ? -1 : found->second;
 }
 
 int Tree::carried_by(const std::string& joint_name) const {
-  for (std::size_t k = 0; k < bodies.size(); ++k)
-    if (bodies[k].joint == joint_name && carries_scene_body(static_cast<int>(k)))
-      return static_cast<int>(k);
-  return -1;
+  const auto found = joint_places.find(joint_name);
+  return found == joint_places.end() ? -1 : found->second;
 }
 
 std::string Tree::joint_in_words(int k) const {

@@ -8,6 +8,7 @@
 
 #include <Eigen/Geometry>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 namespace momenta {
@@ -47,6 +48,8 @@ struct Tree {
   int nq = 0;                                         ///< size of q
   int nv = 0;                                         ///< size of u and p
   Eigen::VectorXd q0, u0;                             ///< the scene's start values (q: nq, u: nv)
+
+  std::unordered_map<std::string, int> body_places, joint_places;  ///< of body() and carried_by()
 
   /// Index of a body by its scene name; −1 for "ground".
   int body(const std::string& scene_name) const;

@@ -5,28 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
-#include <set>
 
 namespace momenta {
-namespace {
-
-constexpr int dense_limit =
-    60;  // unknowns below which a dense Newton matrix is faster than KLU's bookkeeping
-
-template <class S>
-DaeScratch<S> make_scratch(const Mechanism& mechanism, int size) {
-  DaeScratch<S> s;
-  s.e = mechanism.evaluation<S>();
-  const auto nv = static_cast<std::size_t>(mechanism.nv());
-  s.u.resize(nv);
-  s.a.resize(std::max(nv, static_cast<std::size_t>(mechanism.m())));
-  s.b.resize(nv);
-  for (auto* v : {&s.y, &s.ydot, &s.r}) v->resize(static_cast<std::size_t>(size));
-  return s;
-}
-
-}  // namespace
 
 DaeForm::DaeForm(std::string name, const Mechanism& mechanism, DaeLayout layout,
                  const FormOptions& options, const Start& start, Unknowns unknowns)
@@ -36,8 +16,7 @@ DaeForm::DaeForm(std::string name, const Mechanism& mechanism, DaeLayout layout,
       unknowns_(unknowns),
       start_(start),
       scale_(static_cast<std::size_t>(layout.size()), 1.0),
-      plain_(make_scratch<double>(mechanism, layout.size())),
-      dual_(make_scratch<Dual8>(mechanism, layout.size())),
+      plain_(mechanism, layout.size()),
       options_(options) {
   plain_.e->place(start.t, start.q.data());
   inertia_.resize(static_cast<std::size_t>(layout.nv));
@@ -58,9 +37,17 @@ DaeForm::DaeForm(std::string name, const Mechanism& mechanism, DaeLayout layout,
 }
 
 void DaeForm::find_redundancy(const Start& start) {
-  const auto kkt = make_dense_kkt(mechanism_);
-  plain_.e->place(start.t, start.q.data());
-  if (!kkt->factor(*plain_.e, fade_evaluation) || kkt->faded() == 0) return;
+  if (mechanism_.dense_kkt() || mechanism_.kkt() != KktChoice::sweeps) {
+    const auto kkt = make_dense_kkt(mechanism_);
+    plain_.e->place(start.t, start.q.data());
+    if (!kkt->factor(*plain_.e, fade_evaluation) || kkt->faded() == 0) return;
+  } else {
+    const auto solver = make_loop_solver(mechanism_, *plain_.e);
+    std::vector<double> rest(static_cast<std::size_t>(layout_.nv), 0.0), u(rest.size());
+    if (!solver->free_velocity(start.t, start.q.data(), rest.data(), u.data())) return;
+    if (solver->pivots().faded == 0) return;
+    plain_.e->place(start.t, start.q.data());
+  }
   epsilon_ = row_scales(mechanism_, *plain_.e);
   for (double& epsilon : epsilon_) epsilon *= 1e-9;
 }
@@ -108,7 +95,6 @@ bool DaeForm::start(double t, double* y, double* ydot) {
   complete(t, start_.u.data(), start_.udot.data(), start_.lambda.data(), y, ydot);
   for (int i = 0; i < size(); ++i)
     if (!std::isfinite(y[i]) || !std::isfinite(ydot[i])) return fail("the start is not finite");
-  if (batches_.empty()) analyse_pattern();
   return true;
 }
 
@@ -207,12 +193,13 @@ bool DaeForm::residual(double t, const double* y, const double* ydot, double* r)
 }
 
 void DaeForm::along(double t, const Jet* y, const Jet* ydot, Jet* r) {
-  if (!jet_.e) jet_ = make_scratch<Jet>(mechanism_, size());
+  if (!jet_.e) jet_ = DaeScratch<Jet>(mechanism_, size());
   equations(jet_, t, y, ydot, r);
 }
 
 bool DaeForm::evaluate_columns(double t, const double* y, const double* ydot, double c,
                                const std::vector<int>& direction_of) {
+  if (!dual_.e) dual_ = DaeScratch<Dual8>(mechanism_, size());
   for (int i = 0; i < size(); ++i) {
     const auto at = static_cast<std::size_t>(i);
     dual_.y[at] = Dual8(y[i]);
@@ -228,6 +215,7 @@ bool DaeForm::evaluate_columns(double t, const double* y, const double* ydot, do
 }
 
 bool DaeForm::jacobian(double t, const double* y, const double* ydot, double c, double* values) {
+  if (batches_.empty()) analyse_pattern();
   const auto n = static_cast<std::size_t>(size());
   bool finite = true;
   for (std::size_t batch = 0; batch < batches_.size(); ++batch) {
@@ -254,79 +242,6 @@ bool DaeForm::jacobian(double t, const double* y, const double* ydot, double c, 
   return finite || fail("the Jacobian is not finite");
 }
 
-/// Dense below the limit: column i goes in batch i/8. Above it the pattern is read off exact
-/// derivatives at random states, where a structural nonzero vanishes with probability zero, and
-/// columns that share no row are evaluated along one direction (Curtis, Powell, Reid 1974).
-void DaeForm::analyse_pattern() {
-  const int n = size();
-  batches_.clear();
-  groups_.clear();
-  const auto add_groups = [&](const std::vector<std::vector<int>>& groups) {
-    for (std::size_t first = 0; first < groups.size(); first += 8) {
-      std::vector<int> direction_of(static_cast<std::size_t>(n), -1);
-      std::vector<std::vector<int>> batch;
-      for (std::size_t k = first; k < std::min(first + 8, groups.size()); ++k) {
-        for (int column : groups[k])
-          direction_of[static_cast<std::size_t>(column)] = static_cast<int>(k - first);
-        batch.push_back(groups[k]);
-      }
-      batches_.push_back(std::move(direction_of));
-      groups_.push_back(std::move(batch));
-    }
-  };
-  std::vector<std::vector<int>> single;
-  for (int i = 0; i < n; ++i) single.push_back({i});
-  pattern_ = {};
-  if (n <= dense_limit) {
-    add_groups(single);
-    return;
-  }
-  std::mt19937 random(1);
-  std::uniform_real_distribution<double> any(-1.0, 1.0);
-  std::vector<std::set<long>> rows(static_cast<std::size_t>(n));
-  std::vector<double> y(static_cast<std::size_t>(n)), ydot(y.size());
-  for (int probe = 0; probe < 3; ++probe) {
-    for (std::size_t i = 0; i < y.size(); ++i) {
-      y[i] =
-          any(random) +
-          (i < static_cast<std::size_t>(layout_.nq) ? start_.q[static_cast<Eigen::Index>(i)] : 0.0);
-      ydot[i] = any(random);
-    }
-    for (int first = 0; first < n; first += 8) {
-      std::vector<int> direction_of(static_cast<std::size_t>(n), -1);
-      for (int i = first; i < std::min(first + 8, n); ++i)
-        direction_of[static_cast<std::size_t>(i)] = i - first;
-      evaluate_columns(start_.t, y.data(), ydot.data(), 1.234, direction_of);
-      for (int i = 0; i < n; ++i)
-        for (int column = first; column < std::min(first + 8, n); ++column)
-          if (dual_.r[static_cast<std::size_t>(i)].b[static_cast<std::size_t>(column - first)] != 0)
-            rows[static_cast<std::size_t>(column)].insert(i);
-    }
-  }
-  pattern_.column_start.push_back(0);
-  for (const auto& column : rows) {
-    pattern_.row.insert(pattern_.row.end(), column.begin(), column.end());
-    pattern_.column_start.push_back(static_cast<long>(pattern_.row.size()));
-  }
-  std::vector<std::vector<int>> groups;
-  std::vector<std::vector<bool>> taken;
-  for (int column = 0; column < n; ++column) {
-    const auto& mine = rows[static_cast<std::size_t>(column)];
-    std::size_t colour = 0;
-    for (; colour < groups.size(); ++colour)
-      if (std::none_of(mine.begin(), mine.end(),
-                       [&](long row) { return taken[colour][static_cast<std::size_t>(row)]; }))
-        break;
-    if (colour == groups.size()) {
-      groups.emplace_back();
-      taken.emplace_back(static_cast<std::size_t>(n), false);
-    }
-    groups[colour].push_back(column);
-    for (long row : mine) taken[colour][static_cast<std::size_t>(row)] = true;
-  }
-  add_groups(groups);
-}
-
 bool DaeForm::read(double t, const double* y, const double*, Snapshot& out) {
   out.q = Eigen::Map<const Eigen::VectorXd>(y, layout_.nq);
   out.multipliers = Eigen::Map<const Eigen::VectorXd>(y + layout_.s(), layout_.m);
@@ -339,6 +254,13 @@ bool DaeForm::read(double t, const double* y, const double*, Snapshot& out) {
   // u from (7) at (q, p): the velocity that belongs to the state, whatever the integrator's last
   // Newton residual.
   auto& e = *plain_.e;
+  if (layout_.m > 0 && mechanism_.kkt() == KktChoice::sweeps && !mechanism_.dense_kkt()) {
+    if (!reader_) reader_ = make_loop_solver(mechanism_, e);
+    reader_->stabilise(beta());
+    Eigen::VectorXd unused(layout_.m);
+    return reader_->momentum(t, y, y + layout_.x(), y + layout_.s(), fade_evaluation, 0,
+                             out.u.data(), unused.data(), nullptr);
+  }
   e.place(t, y);
   Eigen::VectorXd r = Eigen::Map<const Eigen::VectorXd>(y + layout_.x(), layout_.nv), g(layout_.m),
                   sigma(layout_.m);

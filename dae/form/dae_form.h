@@ -6,11 +6,16 @@
 // Rows: nv kinematic or momentum rows; one row q·q̇ + (|q|² − 1)/2 = 0 per quaternion; nv dynamic
 // rows; then the form's other rows. A form writes its equations once, as a template on the scalar:
 // with double they are the residual, with dual numbers eight columns of ∂F/∂y + c ∂F/∂y' at a time,
-// with series (Jet) their total derivatives, from which the index is found.
+// with sparse dual numbers the entries of a local matrix in its place (local_rows.h), with series
+// (Jet) their total derivatives, from which the index is found.
 
 #include <momenta/dae/form/form.h>
+#include <momenta/dae/form/local_rows.h>
 #include <momenta/dae/form/ode_form.h>
 #include <momenta/dae/kkt/kkt.h>
+#include <momenta/dae/kkt/loop_solver.h>
+
+#include <algorithm>
 
 namespace momenta {
 
@@ -33,6 +38,15 @@ template <class S>
 struct DaeScratch {
   std::unique_ptr<Evaluation<S>> e;
   std::vector<S> u, a, b, y, ydot, r;
+
+  DaeScratch() = default;
+  DaeScratch(const Mechanism& mechanism, int size) : e(mechanism.evaluation<S>()) {
+    const auto nv = static_cast<std::size_t>(mechanism.nv());
+    u.resize(nv);
+    a.resize(std::max(nv, static_cast<std::size_t>(mechanism.m())));
+    b.resize(nv);
+    for (auto* v : {&y, &ydot, &r}) v->resize(static_cast<std::size_t>(size));
+  }
 };
 
 class DaeForm : public Form, public DaeSystem {
@@ -51,7 +65,11 @@ class DaeForm : public Form, public DaeSystem {
   int size() const override { return layout_.size(); }
   bool residual(double t, const double* y, const double* ydot, double* r) override;
   bool jacobian(double t, const double* y, const double* ydot, double c, double* values) override;
-  const JacobianPattern& pattern() const override { return pattern_; }
+  /// Found when first asked for.
+  const JacobianPattern& pattern() const override;
+  LocalJacobian* local() override;
+  /// The local matrix, whatever the size.
+  LocalJacobian& local_jacobian();
   bool start(double t, double* y, double* ydot) override;
   bool differential(int i) const override;
   double scale(int i) const override;
@@ -71,6 +89,8 @@ class DaeForm : public Form, public DaeSystem {
                          double* r) = 0;
   virtual void equations(DaeScratch<Dual8>& s, double t, const Dual8* y, const Dual8* ydot,
                          Dual8* r) = 0;
+  virtual void equations(DaeScratch<LocalDual>& s, double t, const LocalDual* y,
+                         const LocalDual* ydot, LocalDual* r) = 0;
   virtual void equations(DaeScratch<Jet>& s, double t, const Jet* y, const Jet* ydot, Jet* r) = 0;
   /// Whether x takes part in the error test: not in index-3 forms, whose x is one derivative
   /// rougher than q.
@@ -99,12 +119,14 @@ class DaeForm : public Form, public DaeSystem {
   }
   bool evaluate_columns(double t, const double* y, const double* ydot, double c,
                         const std::vector<int>& direction_of);
+  class Local;
   /// u of M u + prescribed part = p (4).
   bool open_rates(double t, const double* y, double* u);
   /// y and y' at q, with s, and p where it has σ in it, in place: the rest from u, u̇, λ.
   void complete(double t, const double* u, const double* udot, const double* lambda, double* y,
                 double* ydot);
   void find_redundancy(const Start& start);
+  /// Dense, or a pattern and the columns that can share a direction.
   void analyse_pattern();
 
   std::string name_;
@@ -114,11 +136,13 @@ class DaeForm : public Form, public DaeSystem {
   std::vector<double> scale_;
   std::vector<double> inertia_;  ///< diagonal of M at the start
   DaeScratch<double> plain_;
-  DaeScratch<Dual8> dual_;
-  DaeScratch<Jet> jet_;  ///< filled when first asked for
+  DaeScratch<Dual8> dual_;  ///< filled when first asked for, as all that follow
+  DaeScratch<Jet> jet_;
+  std::unique_ptr<LocalJacobian> local_;
   std::vector<double>
       epsilon_;               ///< per row of Φ; empty when the loops are independent at the start
   std::unique_ptr<Kkt> kkt_;  ///< for reading momentum states back
+  std::unique_ptr<LoopSolver> reader_;  ///< the same for large mechanisms
   FormOptions options_;
   /// Past singular poses: the momentum form, and a solver of (7) to see them come.
   struct Detour {
@@ -128,7 +152,7 @@ class DaeForm : public Form, public DaeSystem {
     double strongest = 0;  ///< largest of the weakest pivots so far
     int always_faded = 0;
   } detour_;
-  JacobianPattern pattern_;
+  JacobianPattern pattern_;  ///< with its batches; empty batches: not yet analysed
   std::vector<std::vector<int>>
       batches_;  ///< per dual evaluation: the direction of each column, −1: none
   std::vector<std::vector<std::vector<int>>>
@@ -148,6 +172,10 @@ class DaeFormOf : public DaeForm {
   }
   void equations(DaeScratch<Dual8>& s, double t, const Dual8* y, const Dual8* ydot,
                  Dual8* r) override {
+    static_cast<Derived*>(this)->rows(s, t, y, ydot, r);
+  }
+  void equations(DaeScratch<LocalDual>& s, double t, const LocalDual* y, const LocalDual* ydot,
+                 LocalDual* r) override {
     static_cast<Derived*>(this)->rows(s, t, y, ydot, r);
   }
   void equations(DaeScratch<Jet>& s, double t, const Jet* y, const Jet* ydot, Jet* r) override {

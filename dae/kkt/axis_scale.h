@@ -15,23 +15,32 @@ class AxisScale {
 
   /// Per row (m): Σ_j 1/M_jj over the rotations that an axis row hangs on, whose entries are at
   /// most 1: its W_ii when the axes are anyhow; the mechanism's least scale for rows of points and
-  /// distances. `mass`: values
-  /// of M in the order of the KKT pattern.
-  void measure(const std::vector<double>& mass, std::vector<double>& scale) const;
+  /// distances. `inertia`: M_jj (nv).
+  void measure(const std::vector<double>& inertia, std::vector<double>& scale) const;
   /// Per row (m) the mean over the rows of its group of max(Σ_j Φ_ij² / M_jj, the above);
   /// `constraint`: values of Φ_q in the order of the pattern.
-  void of_groups(const std::vector<double>& mass, const std::vector<double>& constraint,
+  void of_groups(const std::vector<double>& inertia, const std::vector<double>& constraint,
                  std::vector<double>& scale) const;
 
  private:
   struct Hanging {
-    std::size_t row, mass;  ///< row of Φ, place of M_jj among the values
+    std::size_t row, rate;  ///< row of Φ, j
   };
-  const KktPattern& pattern_;
+  const std::vector<KktPattern::Entry>& pattern_;  ///< of Φ_q
   const std::vector<int>& groups_;
   const std::vector<double>& least_;
-  std::vector<std::size_t> diagonal_;  ///< place of M_jj among the values (nv)
   std::vector<Hanging> hanging_;
+};
+
+/// M_jj out of the values of M.
+class MassDiagonal {
+ public:
+  MassDiagonal(const KktPattern& pattern, int nv);
+  const std::vector<double>& of(const std::vector<double>& mass);
+
+ private:
+  std::vector<std::size_t> place_;
+  std::vector<double> inertia_;
 };
 
 /// Scale of each row of Φ_q M⁻¹ Φ_qᵀ (m) at the configuration placed in `e`: the mean of Σ_j Φ_ij²

@@ -4,7 +4,7 @@ namespace momenta {
 
 CoordinateJacobian::CoordinateJacobian(const Mechanism& mechanism)
     : tree_(mechanism.tree()), m_(mechanism.m()), qdot_(mechanism.nq()), u_(mechanism.nv()) {
-  if (m_ > 0) rate_pattern_ = mechanism.kkt_pattern().constraint;
+  if (m_ > 0) rate_pattern_ = mechanism.constraint_pattern();
   std::vector<int> coordinate(static_cast<std::size_t>(mechanism.nv())),
       ball(coordinate.size(), -1);
   for (const auto& b : tree_.bodies) {

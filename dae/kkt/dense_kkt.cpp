@@ -19,6 +19,7 @@ class DenseKkt final : public Kkt {
   explicit DenseKkt(const Mechanism& mechanism)
       : pattern_(mechanism.kkt_pattern()),
         axis_scale_(mechanism),
+        diagonal_of_mass_(pattern_, mechanism.nv()),
         n_(mechanism.nv()),
         m_(mechanism.m()),
         mass_(pattern_.mass.size()),
@@ -85,7 +86,7 @@ class DenseKkt final : public Kkt {
   static std::size_t at(int i, int j, int columns) { return size(i, columns) + idx(j); }
 
   bool eliminate_loops(double fade) {
-    axis_scale_.measure(mass_, natural_);
+    axis_scale_.measure(diagonal_of_mass_.of(mass_), natural_);
     for (int i = 0; i < m_; ++i)
       for (int j = 0; j <= i; ++j) {
         double s = 0;
@@ -100,6 +101,7 @@ class DenseKkt final : public Kkt {
 
   const KktPattern& pattern_;
   AxisScale axis_scale_;
+  MassDiagonal diagonal_of_mass_;
   int n_, m_;
   std::vector<double> mass_, constraint_;
   TreeFactor factor_;

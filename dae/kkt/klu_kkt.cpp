@@ -30,6 +30,7 @@ class KluKkt final : public Kkt {
   explicit KluKkt(const Mechanism& mechanism)
       : pattern_(mechanism.kkt_pattern()),
         axis_scale_(mechanism),
+        diagonal_of_mass_(pattern_, mechanism.nv()),
         n_(mechanism.nv()),
         m_(mechanism.m()),
         mass_(pattern_.mass.size()),
@@ -146,7 +147,7 @@ class KluKkt final : public Kkt {
       }
       return;
     }
-    axis_scale_.of_groups(mass_, constraint_, epsilon_);
+    axis_scale_.of_groups(diagonal_of_mass_.of(mass_), constraint_, epsilon_);
     for (std::size_t i = 0; i < epsilon_.size(); ++i) {
       epsilon_[i] *= weaker * fade;
       value_[diagonal_[static_cast<std::size_t>(n_) + i]] = -epsilon_[i];
@@ -181,6 +182,7 @@ class KluKkt final : public Kkt {
 
   const KktPattern& pattern_;
   AxisScale axis_scale_;
+  MassDiagonal diagonal_of_mass_;
   int n_, m_;
   std::vector<double> mass_, constraint_, epsilon_;
   std::vector<double> x_, b_, r_, size_;

@@ -181,11 +181,11 @@ class MaximalSolver final : public LoopSolver {
   }
   /// What is natural for rows of axes, at the first configuration.
   void measure(double t, const double* q) {
-    std::vector<double> mass(mechanism_.kkt_pattern().mass.size());
+    std::vector<double> inertia(still_.size());
     natural_.resize(g_.size());
     e_.place(t, q);
-    e_.mass_entries(mass.data());
-    axis_scale_.measure(mass, natural_);
+    e_.mass_diagonal(inertia.data());
+    axis_scale_.measure(inertia, natural_);
   }
 
   void place_column(std::size_t loop, int row, LoopColumn& column) {

@@ -16,6 +16,7 @@ class SparseKkt final : public Kkt {
   explicit SparseKkt(const Mechanism& mechanism)
       : pattern_(mechanism.kkt_pattern()),
         axis_scale_(mechanism),
+        diagonal_of_mass_(pattern_, mechanism.nv()),
         factor_(mechanism),
         n_(static_cast<std::size_t>(mechanism.nv())),
         m_(static_cast<std::size_t>(mechanism.m())),
@@ -30,7 +31,7 @@ class SparseKkt final : public Kkt {
     ++factorizations_;
     e.mass_entries(mass_.data());
     e.constraint_entries(constraint_.data());
-    axis_scale_.of_groups(mass_, constraint_, tau_);
+    axis_scale_.of_groups(diagonal_of_mass_.of(mass_), constraint_, tau_);
     for (double& tau : tau_) {
       tau = compliance_ ? 0 : tau * fade;
       if (!std::isfinite(tau)) return false;
@@ -69,6 +70,7 @@ class SparseKkt final : public Kkt {
  private:
   const KktPattern& pattern_;
   AxisScale axis_scale_;
+  MassDiagonal diagonal_of_mass_;
   FilteredFactor factor_;
   std::size_t n_, m_;
   std::vector<double> mass_, constraint_, tau_, x_;

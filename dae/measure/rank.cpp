@@ -51,7 +51,7 @@ class RankScout {
   MatrixXd scaled_jacobian(double t, const VectorXd& q) {
     const int nv = mechanism_.nv(), m = mechanism_.m();
     e_->place(t, q.data());
-    const auto& pattern = mechanism_.kkt_pattern().constraint;
+    const auto& pattern = mechanism_.constraint_pattern();
     std::vector<double> values(pattern.size());
     e_->constraint_entries(values.data());
     VectorXd mass(nv);

@@ -49,6 +49,9 @@ std::string loop_in_words(const Scene& scene, const LoopSpec& loop) {
 /// Above this the singular value decompositions of the rank report take minutes.
 constexpr int most_equations = 600;
 
+/// Lines about bodies, and as many about loops, that a reader can be asked to read.
+constexpr int most_lines = 200;
+
 const std::string& loop_of(const Mechanism& mechanism, int row) {
   return mechanism.rows()[static_cast<std::size_t>(row)].loop;
 }
@@ -157,6 +160,7 @@ int check(const Options& o) {
   for (const auto& joint : mechanism->scene().joints) kinds[joint.name] = joint.kind;
   const int count = static_cast<int>(tree.bodies.size());
   std::vector<int> depths(tree.bodies.size());
+  int lines = 0, left_out = 0;
   for (int last = 0; last < count; ++last) {
     const auto& b = tree.bodies[static_cast<std::size_t>(last)];
     const int depth = b.parent < 0 ? 0
@@ -167,16 +171,26 @@ int check(const Options& o) {
     int drives = 0;
     for (int k = tree.first_part(last); k <= last; ++k)
       drives += tree.bodies[static_cast<std::size_t>(k)].drive >= 0;
-    if (depth > 12) continue;  // long chains: the first bodies tell the pattern
+    if (depth > 12 || lines == most_lines) {  // the first bodies tell the pattern
+      ++left_out;
+      continue;
+    }
+    ++lines;
     std::printf("  %*s%s (%s%s) %s, %.4g kg\n", 2 * depth, "", b.joint.c_str(),
                 drives == 0         ? ""
                 : drives == b.parts ? "driven "
                                     : "partly driven ",
                 std::string(reading::name_of(kinds.at(b.joint))).c_str(), b.name.c_str(), b.mass);
   }
-  for (const auto& loop : mechanism->scene().loops)
+  if (left_out > 0) std::printf("  … and %d bodies more\n", left_out);
+  lines = 0;
+  for (const auto& loop : mechanism->scene().loops) {
+    if (lines++ == most_lines) break;
     std::printf("  loop %s: %s\n", loop.name.c_str(),
                 loop_in_words(mechanism->scene(), loop).c_str());
+  }
+  if (const auto loops = static_cast<int>(mechanism->scene().loops.size()); loops > most_lines)
+    std::printf("  … and %d loops more\n", loops - most_lines);
   std::printf(
       "\n  %zu bodies, %d coordinates, %d rates, %d loop equations of rank %d: mobility %d\n",
       mechanism->scene().bodies.size(), mechanism->nq(), mechanism->nv(), mechanism->m(), a.rank,
@@ -184,7 +198,15 @@ int check(const Options& o) {
   if (mechanism->m() > 0)
     std::printf("  assembled with joints moved by at most %.3g from the guess%s%s\n", a.moved,
                 a.branch.empty() ? "" : ": ", a.branch.c_str());
-  if (ranked) print_rank(*mechanism, rank);
+  if (ranked)
+    print_rank(*mechanism, rank);
+  else if (mechanism->m() > 0)
+    std::printf(
+        "\nLoop equations\n  %s; singular values and poses nearby left out, of more than %d "
+        "equations they take minutes\n",
+        a.rank == mechanism->m() ? "independent by their pivots here"
+                                 : "some depend on others by their pivots here",
+        most_equations);
   std::printf("\nPlan\n");
   for (const auto& [what, how] : mechanism->plan_lines())
     std::printf("  %-17s %s\n", what.c_str(), how.c_str());

@@ -17,6 +17,7 @@
 #include <klu.h>
 #include <momenta/dae/solver/detour.h>
 #include <momenta/dae/solver/integration.h>
+#include <momenta/dae/solver/local_newton.h>
 #include <momenta/dae/solver/multistep_run.h>
 #include <momenta/dae/solver/sundials_handles.h>
 #include <sunlinsol/sunlinsol_dense.h>
@@ -73,7 +74,7 @@ class Ida {
   }
 
   static const char* name() { return "ida"; }
-  const char* linear_solver() const { return sparse_ ? "KLU" : "dense LU"; }
+  const char* linear_solver() const { return local_ ? "KLU, local" : sparse_ ? "KLU" : "dense LU"; }
   double* y() { return y_.data(); }
   double* ydot() { return ydot_.data(); }
 
@@ -82,7 +83,11 @@ class Ida {
     if (!system_.start(t0, y_.data(), ydot_.data())) return false;
     begin_y_.assign(y_.data(), y_.data() + y_.size());
     begin_ydot_.assign(ydot_.data(), ydot_.data() + ydot_.size());
-    sparse_ = !system_.pattern().column_start.empty();  // known once the system has started
+    // Known once the system has started.
+    if (LocalJacobian* local = system_.local())
+      local_ = std::make_unique<LocalNewton>(*local, system_.size(), context_);
+    else
+      sparse_ = !system_.pattern().column_start.empty();
     return sundials::all_finite(y_.data(), y_.size()) &&
            sundials::all_finite(ydot_.data(), ydot_.size());
   }
@@ -95,8 +100,12 @@ class Ida {
     check(IDASVtolerances(ida, options_.rtol, tolerance_), "IDASVtolerances");
     check(IDASetId(ida, differential_), "IDASetId");
     check(IDASetSuppressAlg(ida, SUNTRUE), "IDASetSuppressAlg");
-    make_linear_solver();
-    check(IDASetLinearSolver(ida, linear_solver_.get(), matrix_.get()), "IDASetLinearSolver");
+    if (local_) {
+      check(IDASetLinearSolver(ida, local_->solver(), local_->matrix()), "IDASetLinearSolver");
+    } else {
+      make_linear_solver();
+      check(IDASetLinearSolver(ida, linear_solver_.get(), matrix_.get()), "IDASetLinearSolver");
+    }
     check(IDASetJacFn(ida, jacobian), "IDASetJacFn");
     check(IDASetNonlinConvCoef(ida, newton_fraction), "IDASetNonlinConvCoef");
     check(IDASetMaxErrTestFails(ida, max_error_test_failures), "IDASetMaxErrTestFails");
@@ -195,6 +204,10 @@ class Ida {
   static int jacobian(double t, double c, N_Vector y, N_Vector ydot, N_Vector, SUNMatrix matrix,
                       void* self, N_Vector, N_Vector, N_Vector) {
     Ida& ida = *static_cast<Ida*>(self);
+    if (ida.local_) {
+      if (ida.local_->evaluate(t, N_VGetArrayPointer(y), N_VGetArrayPointer(ydot), c)) return 0;
+      return ida.evaluation_failed_ = true, 1;
+    }
     double* values = nullptr;
     long entries = 0;
     if (ida.sparse_) {
@@ -295,6 +308,7 @@ class Ida {
   sundials::Vector y_, ydot_, output_, tolerance_, differential_;
   sundials::Matrix matrix_;
   sundials::LinearSolver linear_solver_;
+  std::unique_ptr<LocalNewton> local_;  ///< in place of the two
   sundials::Integrator memory_;
   Counters earlier_attempts_;
   bool evaluation_failed_ = false, not_finite_ = false;  ///< in a trial of the present step

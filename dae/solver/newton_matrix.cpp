@@ -3,6 +3,7 @@
 // Source of KLU: Davis, Palamadai Natarajan, ACM TOMS 37 (2010) 36.
 
 #include <klu.h>
+#include <momenta/dae/solver/local_newton.h>
 #include <momenta/dae/solver/newton_matrix.h>
 
 #include <Eigen/LU>
@@ -52,12 +53,17 @@ class SparseMatrix final : public NewtonMatrix<Scalar> {
   static constexpr bool is_real = std::is_same_v<Scalar, double>;
 
  public:
-  SparseMatrix(int size, const JacobianPattern& pattern)
+  enum class Order { blocks, columns };  ///< BTF and AMD, or COLAMD alone
+  SparseMatrix(int size, const JacobianPattern& pattern, Order order = Order::blocks)
       : size_(size),
         column_start_(pattern.column_start.begin(), pattern.column_start.end()),
         row_(pattern.row.begin(), pattern.row.end()),
         a_(pattern.row.size()) {
     klu_defaults(&common_);
+    if (order == Order::columns) {
+      common_.btf = 0;
+      common_.ordering = 1;
+    }
     symbolic_ = klu_analyze(size_, column_start_.data(), row_.data(), &common_);
     if (symbolic_ == nullptr)
       throw std::invalid_argument("the Jacobian pattern is structurally singular");
@@ -134,6 +140,13 @@ std::unique_ptr<NewtonMatrix<Scalar>> make_newton_matrix(int size, const Jacobia
       static_cast<std::size_t>(pattern.column_start.back()) != pattern.row.size())
     throw std::invalid_argument("the Jacobian pattern does not fit the system");
   return std::make_unique<SparseMatrix<Scalar>>(size, pattern);
+}
+
+/// Zeros all over the diagonal: AMD's order is for pivots on it, and those KLU then takes fill.
+std::unique_ptr<NewtonMatrix<double>> make_local_matrix(const JacobianPattern& pattern) {
+  using Matrix = SparseMatrix<double>;
+  const auto size = static_cast<int>(pattern.column_start.size()) - 1;
+  return std::make_unique<Matrix>(size, pattern, Matrix::Order::columns);
 }
 
 template std::unique_ptr<NewtonMatrix<double>> make_newton_matrix(int, const JacobianPattern&);

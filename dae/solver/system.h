@@ -68,6 +68,19 @@ struct JacobianPattern {
   std::vector<long> row;           ///< row of each stored entry, ascending in each column
 };
 
+/// A matrix with unknowns z beside y that has J = ∂F/∂y + c ∂F/∂y' once they are eliminated, and
+/// far fewer entries: rows and columns of y come first, ( A B; C T ), J = A − B T⁻¹ C.
+class LocalJacobian {
+ public:
+  virtual ~LocalJacobian() = default;
+  /// Exact, at the arguments of jacobian(); O(entries). False when it is not finite.
+  virtual bool evaluate(double t, const double* y, const double* ydot, double c) = 0;
+  /// Of the last evaluation. The version tells that the pattern is another than before.
+  virtual const JacobianPattern& pattern() const = 0;
+  virtual const std::vector<double>& values() const = 0;
+  virtual int version() const = 0;
+};
+
 class DaeSystem {
  public:
   virtual ~DaeSystem() = default;
@@ -81,6 +94,9 @@ class DaeSystem {
                         double* values) = 0;
   /// Valid from start() on.
   virtual const JacobianPattern& pattern() const = 0;
+  /// What to factorise in place of J where that is large; else null. Whoever takes it asks for no
+  /// pattern().
+  virtual LocalJacobian* local() { return nullptr; }
 
   /// Consistent start: y and y' with F(t, y, y') = 0.
   virtual bool start(double t, double* y, double* ydot) = 0;

@@ -84,16 +84,24 @@ std::vector<LoopPlan::Range> ranges(const std::vector<std::vector<T>>& lists,
 
 namespace {
 
-int root_of(const std::vector<int>& parents, int k) {
-  while (k >= 0 && parents[static_cast<std::size_t>(k)] >= 0)
-    k = parents[static_cast<std::size_t>(k)];
-  return k;
-}
+/// The root above each body, −1 above the ground.
+class Roots {
+ public:
+  explicit Roots(const std::vector<int>& parents) {
+    for (std::size_t k = 0; k < parents.size(); ++k)
+      root_.push_back(parents[k] < 0 ? static_cast<int>(k) : of(parents[k]));
+  }
+  int of(int body) const { return body < 0 ? -1 : root_[static_cast<std::size_t>(body)]; }
+
+ private:
+  std::vector<int> root_;
+};
 
 /// Per body: of a root whose loops to other trees all end on one body before it, that body.
 std::vector<int> foldable_legs(const std::vector<int>& parents,
                                const std::vector<LoopShape>& loops) {
   constexpr int none = -1, several = -2;
+  const Roots roots(parents);
   std::vector<int> onto(parents.size(), none);
   const auto tie = [&](int root, int other) {
     if (root < 0) return;
@@ -101,7 +109,7 @@ std::vector<int> foldable_legs(const std::vector<int>& parents,
     at = other < 0 || other > root || (at != none && at != other) ? several : other;
   };
   for (const LoopShape& loop : loops) {
-    const int a = root_of(parents, loop.a), b = root_of(parents, loop.b);
+    const int a = roots.of(loop.a), b = roots.of(loop.b);
     if (a == b) continue;
     tie(a, loop.b);
     tie(b, loop.a);
@@ -123,19 +131,19 @@ LoopPlan planned(const std::vector<int>& parents, const std::vector<LoopShape>& 
   std::vector<std::vector<LoopPlan::End>> ends(n);
   std::vector<std::vector<LoopPlan::Coupling>> couplings(n);
   std::vector<std::vector<int>> closings(n), ground_closings(n);
+  const Roots root(parents);
   std::vector<int> roots;  // ascending
   for (std::size_t k = 0; k < n; ++k)
     if (parents[k] < 0) roots.push_back(static_cast<int>(k));
 
   for (std::size_t i = 0; i < loops.size(); ++i) {
     const LoopShape& loop = loops[i];
-    const int root_a = root_of(parents, loop.a), root_b = root_of(parents, loop.b);
+    const int root_a = root.of(loop.a), root_b = root.of(loop.b);
     // The leg of a folded loop: its root; the loop is open in the leg alone.
     int leg = -1;
     if (root_a != root_b)
-      for (const int root : {root_a, root_b})
-        if (root >= 0 && folded_onto[static_cast<std::size_t>(root)] >= 0)
-          leg = std::max(leg, root);
+      for (const int end : {root_a, root_b})
+        if (end >= 0 && folded_onto[static_cast<std::size_t>(end)] >= 0) leg = std::max(leg, end);
     LoopShape open = loop;
     if (leg >= 0) (leg == root_a ? open.b : open.a) = -1;
     const Way way = loop.joints.empty() ? way_of(parents, open) : way_of_coupler(parents, loop);

@@ -1,0 +1,93 @@
+// Newton matrices of the DAE forms and their patterns: dense for few unknowns, columns that share
+// no row along one direction, and for many unknowns a local matrix in the place of J.
+
+#include <momenta/dae/form/dae_form.h>
+
+#include <cmath>
+
+namespace momenta {
+namespace {
+
+constexpr int dense_limit =
+    60;  // unknowns below which a dense Newton matrix is faster than KLU's bookkeeping
+constexpr int local_limit = 500;  // above which J itself is not formed
+
+}  // namespace
+
+class DaeForm::Local final : public LocalJacobian {
+ public:
+  explicit Local(DaeForm& form) : form_(form), s_(form.mechanism_, form.size()) {}
+
+  bool evaluate(double t, const double* y, const double* ydot, double c) override {
+    cuts_.begin(form_.size(), !form_.mechanism_.plan().drives);
+    for (int i = 0; i < form_.size(); ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      s_.y[at] = LocalDual::variable(y[i], i);
+      s_.ydot[at] = LocalDual::variable(ydot[i], i, c);
+    }
+    form_.equations(s_, t, s_.y.data(), s_.ydot.data(), s_.r.data());
+    form_.regularise(s_.y.data(), s_.r.data());
+    cuts_.stop();
+    rows_.take(s_.r, cuts_);
+    for (const double x : rows_.values())
+      if (!std::isfinite(x)) return form_.fail("the Jacobian is not finite");
+    return true;
+  }
+  const JacobianPattern& pattern() const override { return rows_.pattern(); }
+  const std::vector<double>& values() const override { return rows_.values(); }
+  int version() const override { return rows_.version(); }
+  JacobianPattern eliminated() const { return rows_.eliminated(form_.size()); }
+
+ private:
+  DaeForm& form_;
+  DaeScratch<LocalDual> s_;
+  Cuts cuts_;
+  LocalRows rows_;
+};
+
+LocalJacobian* DaeForm::local() {
+  return size() > local_limit ? &local_jacobian() : nullptr;
+}
+
+LocalJacobian& DaeForm::local_jacobian() {
+  if (!local_) local_ = std::make_unique<Local>(*this);
+  return *local_;
+}
+
+const JacobianPattern& DaeForm::pattern() const {
+  if (batches_.empty()) const_cast<DaeForm*>(this)->analyse_pattern();
+  return pattern_;
+}
+
+/// Which unknowns a residual hangs on is told by its construction, at whatever state: that of the
+/// local matrix at the start.
+void DaeForm::analyse_pattern() {
+  const int n = size();
+  pattern_ = {};
+  std::vector<std::vector<int>> groups;
+  if (n <= dense_limit) {
+    for (int i = 0; i < n; ++i) groups.push_back({i});
+  } else {
+    std::vector<double> y(static_cast<std::size_t>(n), 1.0), ydot(y.size(), 1.0);
+    std::copy(start_.q.begin(), start_.q.end(), y.begin());
+    Local local(*this);
+    local.evaluate(start_.t, y.data(), ydot.data(), 1);
+    pattern_ = local.eliminated();
+    groups = apart_columns(pattern_);
+  }
+  batches_.clear();
+  groups_.clear();
+  for (std::size_t first = 0; first < groups.size(); first += 8) {
+    std::vector<int> direction_of(static_cast<std::size_t>(n), -1);
+    std::vector<std::vector<int>> batch;
+    for (std::size_t k = first; k < std::min(first + 8, groups.size()); ++k) {
+      for (const int column : groups[k])
+        direction_of[static_cast<std::size_t>(column)] = static_cast<int>(k - first);
+      batch.push_back(groups[k]);
+    }
+    batches_.push_back(std::move(direction_of));
+    groups_.push_back(std::move(batch));
+  }
+}
+
+}  // namespace momenta

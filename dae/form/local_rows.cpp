@@ -1,0 +1,121 @@
+#include <momenta/dae/form/local_rows.h>
+
+#include <algorithm>
+
+namespace momenta {
+
+void LocalRows::take(const std::vector<LocalDual>& r, const Cuts& cuts) {
+  end_.clear();
+  at_.clear();
+  term_.clear();
+  for (const LocalDual& x : r) {
+    for (std::size_t k = 0; k < static_cast<std::size_t>(x.terms); ++k) {
+      at_.push_back(x.at[k]);
+      term_.push_back(x.b[k]);
+    }
+    end_.push_back(at_.size());
+  }
+  for (int i = 0; i < cuts.size(); ++i) {
+    for (std::size_t k = cuts.first(i); k < cuts.last(i); ++k) {
+      at_.push_back(cuts.columns()[k]);
+      term_.push_back(-cuts.values()[k]);
+    }
+    end_.push_back(at_.size());
+  }
+  if (version_ == 0 || end_ != end_before_ || at_ != at_before_) {
+    size_ = static_cast<int>(end_.size());
+    diagonal_.assign(static_cast<std::size_t>(cuts.size()), 0);
+    analyse();
+    end_before_ = end_;
+    at_before_ = at_;
+    ++version_;
+  }
+  for (std::size_t k = 0; k < term_.size(); ++k) values_[place_[k]] = term_[k];
+  for (const std::size_t k : diagonal_) values_[k] = 1;
+}
+
+void LocalRows::analyse() {
+  const auto n = static_cast<std::size_t>(size_);
+  const std::size_t residuals = n - diagonal_.size();
+  std::vector<long>& start = pattern_.column_start;
+  start.assign(n + 1, 0);
+  for (const int column : at_) ++start[static_cast<std::size_t>(column) + 1];
+  for (std::size_t i = residuals; i < n; ++i) ++start[i + 1];
+  for (std::size_t j = 0; j < n; ++j) start[j + 1] += start[j];
+  pattern_.row.resize(static_cast<std::size_t>(start[n]));
+  values_.assign(pattern_.row.size(), 0.0);
+  place_.resize(at_.size());
+  std::vector<long> next(start.begin(), start.end() - 1);
+  const auto put = [&](std::size_t row, std::size_t column) {
+    const auto at = static_cast<std::size_t>(next[column]++);
+    pattern_.row[at] = static_cast<long>(row);
+    return at;
+  };
+  for (std::size_t row = 0, k = 0; row < n; ++row) {
+    for (; k < end_[row]; ++k) place_[k] = put(row, static_cast<std::size_t>(at_[k]));
+    if (row >= residuals) diagonal_[row - residuals] = put(row, row);
+  }
+}
+
+JacobianPattern LocalRows::eliminated(int n) const {
+  const auto size = static_cast<std::size_t>(n);
+  std::vector<std::vector<int>> rows_of(size);  // per column
+  std::vector<int> seen(static_cast<std::size_t>(size_), -1), open;
+  for (int row = 0; row < n; ++row) {
+    open.assign(1, row);
+    bool is_residual = true;
+    while (!open.empty()) {
+      const int unknown = open.back();
+      const auto i = static_cast<std::size_t>(unknown);
+      open.pop_back();
+      if (!is_residual && unknown < n) {
+        rows_of[i].push_back(row);
+        continue;
+      }
+      is_residual = false;
+      for (std::size_t k = i == 0 ? 0 : end_[i - 1]; k < end_[i]; ++k)
+        if (int& by = seen[static_cast<std::size_t>(at_[k])]; by != row) {
+          by = row;
+          open.push_back(at_[k]);
+        }
+    }
+  }
+  JacobianPattern pattern;
+  pattern.column_start.push_back(0);
+  for (const auto& rows : rows_of) {
+    pattern.row.insert(pattern.row.end(), rows.begin(), rows.end());
+    pattern.column_start.push_back(static_cast<long>(pattern.row.size()));
+  }
+  return pattern;
+}
+
+std::vector<std::vector<int>> apart_columns(const JacobianPattern& pattern) {
+  const std::size_t n = pattern.column_start.size() - 1;
+  const auto rows = [&](std::size_t column) {
+    return std::pair{pattern.row.begin() + pattern.column_start[column],
+                     pattern.row.begin() + pattern.column_start[column + 1]};
+  };
+  std::vector<std::vector<int>> columns_of(n), groups;
+  for (std::size_t j = 0; j < n; ++j)
+    for (auto [row, end] = rows(j); row != end; ++row)
+      columns_of[static_cast<std::size_t>(*row)].push_back(static_cast<int>(j));
+  std::vector<int> group_of(n, -1);
+  std::vector<std::size_t> taken_by;  // per group: the last column it was refused to
+  for (std::size_t j = 0; j < n; ++j) {
+    for (auto [row, end] = rows(j); row != end; ++row)
+      for (const int other : columns_of[static_cast<std::size_t>(*row)])
+        if (const int group = group_of[static_cast<std::size_t>(other)]; group >= 0)
+          taken_by[static_cast<std::size_t>(group)] = j;
+    std::size_t group = 0;
+    while (group < groups.size() && taken_by[group] == j) ++group;
+    if (group == groups.size()) {
+      groups.emplace_back();
+      taken_by.push_back(n);
+    }
+    groups[group].push_back(static_cast<int>(j));
+    group_of[j] = static_cast<int>(group);
+  }
+  return groups;
+}
+
+}  // namespace momenta

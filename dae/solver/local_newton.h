@@ -1,0 +1,44 @@
+#pragma once
+// Newton's linear systems for IDA by a matrix that is larger than J and local: J δ = b is solved as
+//
+//   ( A  B ) ( δ )   ( b )
+//   ( C  T ) ( z ) = ( 0 ),     J = A − B T⁻¹ C
+//
+// by KLU, its ordering (COLAMD) once, pivots kept while they do not make entries grow. IDA sees a matrix and
+// a linear solver of its own kinds.
+
+#include <momenta/dae/solver/newton_matrix.h>
+#include <momenta/dae/solver/sundials_handles.h>
+
+namespace momenta {
+
+/// As KLU takes it best; factors of a ladder of crossed bars then grow like its bars. The pattern
+/// must outlive the matrix.
+std::unique_ptr<NewtonMatrix<double>> make_local_matrix(const JacobianPattern& pattern);
+
+class LocalNewton {
+ public:
+  /// `size`: of J.
+  LocalNewton(LocalJacobian& jacobian, int size, const sundials::Context& context);
+  LocalNewton(const LocalNewton&) = delete;
+  LocalNewton& operator=(const LocalNewton&) = delete;
+
+  SUNMatrix matrix() { return matrix_.get(); }
+  SUNLinearSolver solver() { return solver_.get(); }
+  /// False when the system's evaluation failed.
+  bool evaluate(double t, const double* y, const double* ydot, double c);
+
+ private:
+  bool factor();
+  void solve(double* x, const double* b);
+
+  LocalJacobian& jacobian_;
+  std::size_t size_;
+  int version_ = 0;  ///< of the pattern in newton_
+  std::unique_ptr<NewtonMatrix<double>> newton_;
+  std::vector<double> work_;
+  sundials::Matrix matrix_;
+  sundials::LinearSolver solver_;
+};
+
+}  // namespace momenta

@@ -1,0 +1,87 @@
+// What a mechanism of twenty thousand bodies must do: assemble, with the right rank, and solve (7)
+// to rounding; and what it holds in memory doubles when its bodies do.
+
+#include "equations/large_scenes.h"
+#include "equations/linkages.h"
+
+#include <gtest/gtest.h>
+#include <malloc.h>
+#include <momenta/dae/assembly.h>
+#include <momenta/dae/kkt/loop_solver.h>
+
+#include <memory>
+
+namespace momenta {
+namespace {
+
+using namespace equations;
+using Eigen::VectorXd;
+
+struct Large {
+  const char* name;
+  Scene (*make)(int bodies);
+  int mobility(int bodies) const { return name == std::string("arch") ? bodies - 2 : 1; }
+};
+const Large all[] = {
+    {"row", [](int bodies) { return row_of_four_bars(bodies / 2, 1.1, 1); }},
+    {"ladder", [](int bodies) { return crossed_bars(bodies / 2); }},
+    {"arch", [](int bodies) { return arch(bodies); }},
+};
+
+class Scale : public testing::TestWithParam<Large> {};
+
+TEST_P(Scale, TwentyThousandBodiesAssembleAndMove) {
+  const Mechanism mechanism(GetParam().make(20000));
+  const Assembly a = assemble(mechanism);
+  EXPECT_EQ(a.rank, mechanism.m());
+  // A ladder held at one pin turns and opens: one more.
+  const int more = GetParam().name == std::string("ladder") ? 1 : 0;
+  EXPECT_EQ(a.mobility,
+            GetParam().mobility(static_cast<int>(mechanism.tree().bodies.size())) + more);
+  EXPECT_LT(a.moved, 1e-6);
+
+  const auto e = mechanism.evaluation<double>();
+  const auto solver = make_loop_solver(mechanism, *e);
+  const VectorXd& q = a.start.q;
+  VectorXd p(mechanism.nv()), u(mechanism.nv()), back(mechanism.nv()), pdot(mechanism.nv()),
+      sigma(mechanism.m()), rate(mechanism.m());
+  e->place(0, q.data());
+  e->move(a.start.u.data());
+  e->momenta(nullptr, p.data());
+  const double size = p.cwiseAbs().maxCoeff();
+  ASSERT_TRUE(solver->momentum(0, q.data(), p.data(), nullptr, fade_evaluation, 0, u.data(),
+                               sigma.data(), pdot.data()));
+  EXPECT_TRUE(pdot.allFinite());
+  e->place(0, q.data());
+  e->move(u.data());
+  e->momenta(sigma.data(), back.data());
+  EXPECT_LT((back - p).cwiseAbs().maxCoeff(), 1e-9 * size);
+  e->velocities(rate.data());
+  EXPECT_LT(rate.cwiseAbs().maxCoeff(), 1e-9 * (1 + u.cwiseAbs().maxCoeff()));
+}
+
+std::size_t held() {
+  const auto info = mallinfo2();
+  return info.uordblks + info.hblkhd;
+}
+
+TEST_P(Scale, MemoryGrowsLikeTheBodies) {
+  const auto bytes = [&](int bodies) {
+    const std::size_t before = held();
+    const auto mechanism = std::make_unique<Mechanism>(GetParam().make(bodies));
+    const auto e = mechanism->evaluation<double>();
+    const auto solver = make_loop_solver(*mechanism, *e);
+    assemble(*mechanism);  // patterns are kept
+    return static_cast<double>(held()) - static_cast<double>(before);
+  };
+  const double one = bytes(4000), two = bytes(8000);
+  if (!(one > 0)) GTEST_SKIP() << "another heap";
+  EXPECT_LT(two, 2.2 * one);
+  EXPECT_LT(two, 20e3 * 8000);
+}
+
+INSTANTIATE_TEST_SUITE_P(Families, Scale, testing::ValuesIn(all),
+                         [](const auto& family) { return std::string(family.param.name); });
+
+}  // namespace
+}  // namespace momenta
