@@ -29,10 +29,14 @@ Scene parse_robot(std::string_view text, const std::string& file, const ReadOpti
 
 }  // namespace
 
+bool is_toml(const std::filesystem::path& file) {
+  const std::string ending = file.extension().string();
+  return ending != ".urdf" && ending != ".xml" && ending != ".mjcf";
+}
+
 Scene read_scene(const std::filesystem::path& file, const ReadOptions& options) {
-  const std::string name = file.string(), ending = file.extension().string();
-  const std::string text = reading::text_of(file);
-  if (ending == ".urdf" || ending == ".xml" || ending == ".mjcf") {
+  const std::string name = file.string(), text = reading::text_of(file);
+  if (!is_toml(file)) {
     try {
       return parse_robot(text, name, options);
     } catch (const std::bad_alloc&) {

@@ -19,6 +19,9 @@ struct ReadOptions {
 /// unread.
 Scene read_scene(const std::filesystem::path& file, const ReadOptions& options = {});
 
+/// False for the endings .urdf, .xml and .mjcf.
+bool is_toml(const std::filesystem::path& file);
+
 /// A scene from TOML; `file` only names it in messages.
 Scene parse_scene(std::string_view text, const std::string& file = "scene");
 

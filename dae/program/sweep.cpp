@@ -75,9 +75,7 @@ class Finished {
 /// format, the text it converts to.
 std::string toml_of(const Options& o) {
   const Scene scene = read(o);
-  const std::string ending = o.scene.extension().string();
-  const bool converted = ending == ".urdf" || ending == ".xml" || ending == ".mjcf";
-  return converted ? scene_text(scene) : reading::text_of(o.scene);
+  return is_toml(o.scene) ? reading::text_of(o.scene) : scene_text(scene);
 }
 
 }  // namespace
