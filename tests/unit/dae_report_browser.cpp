@@ -41,7 +41,7 @@ setInterval(() => {
   parent.postMessage([root.scrollWidth <= innerWidth ? "fits" : "scrolls", "width=" + innerWidth,
     "plots=" + document.querySelectorAll(".plot canvas").length, "tables=" + document.querySelectorAll("table").length,
     "small=" + small.length, "sorted=" + sort.closest("th").getAttribute("aria-sort"),
-    "svg=" + document.querySelectorAll(".mechanism svg").length].join(" "), "*");
+    "movies=" + document.querySelectorAll(".movie canvas").length].join(" "), "*");
 }, 200); });</script>)";
 
 class Browser : public ::testing::TestWithParam<int> {
@@ -100,14 +100,14 @@ TEST_P(Browser, ShowsAllFormsWithinTheWindow) {
   const auto [report, console] = opened(synthetic::all_forms(), GetParam());
   EXPECT_EQ(console, "");
   EXPECT_EQ(report, "fits width=" + std::to_string(GetParam()) +
-                        " plots=5 tables=4 small=0 sorted=ascending svg=1");
+                        " plots=5 tables=4 small=0 sorted=ascending movies=1");
 }
 
 TEST_P(Browser, ShowsALadderWithinTheWindow) {
   const auto [report, console] = opened(synthetic::ladder(), GetParam());
   EXPECT_EQ(console, "");
   EXPECT_EQ(report, "fits width=" + std::to_string(GetParam()) +
-                        " plots=9 tables=4 small=0 sorted=ascending svg=1");
+                        " plots=9 tables=4 small=0 sorted=ascending movies=1");
 }
 
 TEST_P(Browser, ShowsALoneRunWithoutHistory) {
@@ -117,7 +117,7 @@ TEST_P(Browser, ShowsALoneRunWithoutHistory) {
   const auto [report, console] = opened(synthetic::study_of({run}), GetParam());
   EXPECT_EQ(console, "");
   EXPECT_EQ(report, "fits width=" + std::to_string(GetParam()) +
-                        " plots=1 tables=1 small=0 sorted=ascending svg=1");
+                        " plots=1 tables=1 small=0 sorted=ascending movies=1");
 }
 
 INSTANTIATE_TEST_SUITE_P(Widths, Browser, ::testing::Values(360, 1600));
