@@ -293,7 +293,7 @@ class ChartDrawing {
     for (const Drawn& d : drawn_)
       if (d.wavy)
         markup += stroke(path(d.x, d.y), colour_of(d.curve->sign), 0.75, "", "faint",
-                         drawn_.size() > 6 ? 0.25 : 0.4);
+                         drawn_.size() > 6 ? 0.15 : 0.4);
     for (const Drawn& d : drawn_) {
       const std::string line = path(d.x, d.top);
       if (d.curve->sign.colour == yellow && d.x.size() > 1)
@@ -304,10 +304,13 @@ class ChartDrawing {
     return markup;
   }
 
+  /// Whether curves differ by markers.
+  bool markers() const {
+    return std::any_of(drawn_.begin(), drawn_.end(),
+                       [](const Drawn& d) { return d.curve->sign.marker != "circle"; });
+  }
+
   std::string ends() const {
-    const bool markers = std::any_of(drawn_.begin(), drawn_.end(), [](const Drawn& d) {
-      return d.curve->sign.marker != "circle";
-    });
     std::string markup;
     for (const Drawn& d : drawn_) {
       const std::string fill = colour_of(d.curve->sign);
@@ -315,7 +318,7 @@ class ChartDrawing {
         markup += marker(d.curve->sign.marker, px(d.x[i]), py(d.top[i]), 5, fill);
       if (d.curve->failed)
         markup += cross_at(px(d.x.back()), py(d.top.back()));
-      else if (!d.curve->dots && markers)
+      else if (!d.curve->dots && markers())
         markup += marker(d.curve->sign.marker, px(d.x.back()), py(d.top.back()), 4.5, fill);
     }
     return markup;
@@ -348,6 +351,9 @@ class ChartDrawing {
       if (!d.curve->sign.dash.empty())
         swatch.emplace_back("stroke-dasharray", dash_of(d.curve->sign.dash));
       markup += svg::element("path", swatch);
+      if (d.curve->dots || markers())
+        markup +=
+            marker(d.curve->sign.marker, right + 25, heights[i], 4.5, colour_of(d.curve->sign));
       markup += svg::text(right + 38, heights[i] + 5, d.curve->name);
     }
     return markup;

@@ -75,6 +75,7 @@ class Eye {
             planar_ ? -d.z() : d.z(), scale};
   }
   double height() const { return height_; }
+  bool planar() const { return planar_; }
 
  private:
   bool planar_;
@@ -89,18 +90,29 @@ struct Item {
   std::string markup;
 };
 
-std::string bar(const Projected& a, const Projected& b, double width) {
-  const auto stroke = [&](const char* colour, double w) {
-    return svg::element("line", {{"x1", svg::number(a.at.x())},
-                                 {"y1", svg::number(a.at.y())},
-                                 {"x2", svg::number(b.at.x())},
-                                 {"y2", svg::number(b.at.y())},
-                                 {"stroke", colour},
-                                 {"stroke-width", svg::number(w)},
-                                 {"stroke-linecap", "round"}});
+std::string circle(const Vector2d& at, double r, const char* fill, const char* stroke,
+                   double width) {
+  return svg::element("circle", {{"cx", svg::number(at.x())},
+                                 {"cy", svg::number(at.y())},
+                                 {"r", svg::number(r)},
+                                 {"fill", fill},
+                                 {"stroke", stroke},
+                                 {"stroke-width", svg::number(width)}});
+}
+
+/// A piece of a bar with a rim of the ground, so that nearer ones pass in front; round where the
+/// bar ends.
+std::string bar(const Projected& a, const Projected& b, double width, bool first, bool last) {
+  const Vector2d way = (b.at - a.at).normalized() * 0.7;
+  const auto stroke = [&](const char* colour, double w, double over) {
+    const Vector2d from = a.at - over * way, to = b.at + over * way;
+    std::string markup = svg::line(from.x(), from.y(), to.x(), to.y(), colour, w);
+    if (over > 0 && first) markup += circle(a.at, w / 2, colour, "none", 0);
+    if (over > 0 && last) markup += circle(b.at, w / 2, colour, "none", 0);
+    return markup;
   };
-  return stroke("#ffffff", width + 2.5) + stroke(rim, width) +
-         stroke(body_colour, std::max(0.6, width - 2));
+  return stroke("#ffffff", width + 2.5, 0) + stroke(rim, width, 1) +
+         stroke(body_colour, std::max(0.6, width - 2), 1);
 }
 
 std::string polygon(const std::vector<Projected>& corners, const char* fill, double opacity) {
@@ -112,16 +124,6 @@ std::string polygon(const std::vector<Projected>& corners, const char* fill, dou
                                   {"fill-opacity", svg::number(opacity)},
                                   {"stroke", rim},
                                   {"stroke-linejoin", "round"}});
-}
-
-std::string circle(const Vector2d& at, double r, const char* fill, const char* stroke,
-                   double width) {
-  return svg::element("circle", {{"cx", svg::number(at.x())},
-                                 {"cy", svg::number(at.y())},
-                                 {"r", svg::number(r)},
-                                 {"fill", fill},
-                                 {"stroke", stroke},
-                                 {"stroke-width", svg::number(width)}});
 }
 
 std::string ground_sign(const Vector2d& at) {
@@ -180,12 +182,12 @@ void add_body(std::vector<Item>& items, const Picture::Body& body, const Isometr
   const auto project = [&](const Vector3d& p) { return eye.project(at * p); };
   const auto add_bar = [&](const Vector3d& a, const Vector3d& b, double metres) {
     // In pieces, each at its own depth.
-    constexpr int pieces = 8;
+    const int pieces = eye.planar() ? 1 : 8;
     for (int i = 0; i < pieces; ++i) {
       const Projected p = project(a + (b - a) * i / pieces),
                       q = project(a + (b - a) * (i + 1) / pieces);
       const double w = std::clamp(0.5 * metres * (p.scale + q.scale), 2.0, 60.0);
-      items.push_back({0.5 * (p.depth + q.depth), bar(p, q, w)});
+      items.push_back({0.5 * (p.depth + q.depth), bar(p, q, w, i == 0, i + 1 == pieces)});
     }
   };
   const std::string& kind = body.shape.kind;
