@@ -158,12 +158,15 @@ Drawn drawn_of(const Chart& chart, const Curve& curve) {
     for (std::size_t i = 0; i < kept.size(); ++i) kept[i] = i;
   else
     kept = thinned(curve.x, curve.y, static_cast<std::size_t>(points_on_paper), chart.log_x);
-  double top = 0;
+  std::vector<double> top = curve.y;
+  double largest = 0;
+  for (double& v : top)
+    if (chart.running_maximum && std::isfinite(v)) v = largest = std::max(largest, v);
   for (const std::size_t i : kept) {
     d.x.push_back(curve.x[i]);
     d.y.push_back(curve.y[i]);
-    d.top.push_back(chart.running_maximum ? top = std::max(top, curve.y[i]) : curve.y[i]);
-    d.wavy = d.wavy || curve.y[i] < 0.8 * d.top.back();
+    d.top.push_back(top[i]);
+    d.wavy = d.wavy || curve.y[i] < 0.8 * top[i];
   }
   return d;
 }

@@ -128,7 +128,7 @@ Json page_data(const StudyResult& study) {
 
 namespace {
 
-constexpr std::size_t stretches = 300, most_curves = 40;
+constexpr std::size_t stretches = 300, most_curves = 24;
 
 /// Least and largest of each stretch of y, in their order; all of y where there are few.
 std::vector<double> extremes_of(const std::vector<double>& y) {

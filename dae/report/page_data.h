@@ -18,7 +18,7 @@ nlohmann::ordered_json page_data(const StudyResult&);
 
 /// Curves of a run over time, those of one chart at common times: [{key, title, y_title, unit, log,
 /// t, curves [{name, y, colour, dash}]}]. More samples than a chart is wide become the least and
-/// the largest of each stretch, in their order; more than 40 curves of a unit are left out.
+/// the largest of each stretch, in their order; more than 24 curves of a unit are left out.
 nlohmann::ordered_json timeline_json(const RunResult&);
 
 }  // namespace momenta

@@ -151,10 +151,11 @@ Json motion_json(const Picture& picture, const Motion& motion) {
 }
 
 int film_intervals(const Picture& picture, std::size_t runs) {
-  constexpr std::size_t budget = 1'500'000;
+  constexpr std::size_t budget = 1'000'000;
   constexpr int least = 32, most = 8192;
   const std::size_t frame =
       std::max<std::size_t>(1, bytes_a_frame(picture) * std::max<std::size_t>(1, runs));
+  if (least * frame > budget) return 0;
   int intervals = least;
   while (intervals < most && static_cast<std::size_t>(2 * intervals) * frame <= budget)
     intervals *= 2;

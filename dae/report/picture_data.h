@@ -25,7 +25,7 @@ nlohmann::ordered_json picture_json(const Picture&);
 nlohmann::ordered_json motion_json(const Picture&, const Motion&);
 
 /// Intervals of films, a power of two, so that the films of `runs` runs together stay below about
-/// 1.5 MB of a page.
+/// 1 MB of a page; 0 where that were too few to show anything.
 int film_intervals(const Picture&, std::size_t runs);
 
 }  // namespace momenta

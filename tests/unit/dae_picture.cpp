@@ -347,7 +347,7 @@ TEST(Film, ThinningKeepsTheEndsAndNeverTurnsFarBetweenFrames) {
 TEST(Film, LargeMechanismsStayWithinTheirShareOfAPage) {
   Picture picture;
   picture.planar = true;
-  for (const std::size_t bodies : {3u, 81u, 400u}) {
+  for (const std::size_t bodies : {3u, 81u, 400u, 2000u}) {
     picture.bodies.assign(bodies, {});
     for (auto& body : picture.bodies) body.turn = Picture::Turn::about_axis;
     for (const std::size_t runs : {1u, 20u}) {
@@ -357,8 +357,10 @@ TEST(Film, LargeMechanismsStayWithinTheirShareOfAPage) {
                            {std::vector<Quaterniond>(bodies, Quaterniond::Identity()),
                             std::vector<Vector3d>(bodies, Vector3d::Zero()),
                             {}});
-      EXPECT_LT(runs * motion_json(picture, motion).dump().size(), 1'600'000u) << bodies;
-      EXPECT_GE(intervals, 32u);
+      EXPECT_TRUE(intervals >= 32 || (intervals == 0 && bodies * runs >= 40'000)) << bodies;
+      if (intervals > 0) {
+        EXPECT_LT(runs * motion_json(picture, motion).dump().size(), 1'100'000u) << bodies;
+      }
     }
   }
 }

@@ -1,8 +1,8 @@
 // One time for everything on the page: the clock, its controls, and the mechanisms that follow it.
 
 /** {t, start, end, playing, speed}; set(t), toggle(), step(n); onTime(f) and onState(f) are called with changes. */
-function clockOf(films) {
-  const start = Math.min(...films.map((film) => film.start)), end = Math.max(...films.map((film) => film.end));
+function clockOf(films, until = -Infinity) {
+  const start = Math.min(...films.map((film) => film.start)), end = Math.max(until, ...films.map((film) => film.end));
   const every = Math.min(...films.map((film) => film.every).filter((x) => x > 0), Math.max(end - start, 1e-9));
   const timeListeners = [], stateListeners = [];
   // In real time where that takes no longer than half a minute; else all of it in twenty seconds or so.
@@ -85,11 +85,11 @@ const many = (n, one, more = one + "s") => `${n} ${n === 1 ? one : more}`;
 
 /**
  * The figure: tick boxes, one panel for each film, the clock. titleOf(film) is the panel's heading or null; names: the
- * boxes ticked at first. Returns {figure, clock, stages}.
+ * boxes ticked at first; until: the end of curves that go on without a film. Returns {figure, clock, stages}.
  */
-function moviePlayer(films, titleOf, ticked) {
+function moviePlayer(films, titleOf, ticked, until) {
   const camera = cameraOf(extentOf(films));
-  const clock = clockOf(films);
+  const clock = clockOf(films, until);
   const moving = clock.end > clock.start;
   const fitting = gapFactor(films, camera.size);
   let factor = fitting;
@@ -120,7 +120,7 @@ function moviePlayer(films, titleOf, ticked) {
       const state = on(clock.t);
       if (!state) continue;
       const widest = Math.max(0, ...state.gaps.map(norm));
-      const over = clock.t > film.end + 1e-9 * (1 + Math.abs(film.end));
+      const over = film.count > 1 && clock.t > film.end + 1e-9 * (1 + Math.abs(film.end));
       note.textContent = `${over ? `stopped at ${number(film.end, 4)} s; ` : ""}` +
         (widest > 1e-14 * camera.size ? `widest gap ${number(widest)} m` : "closed to rounding");
     }
@@ -162,6 +162,9 @@ function moviePlayer(films, titleOf, ticked) {
   boxes.append(looks);
 
   const figure = element("div", { class: "movie" }, panels, ...(moving ? [clockBar(clock)] : []), boxes);
+  if (moving && films.every((film) => film.count < 2)) {
+    figure.append(element("p", { class: "caption" }, "The start only: a film of so many bodies is more than a page holds."));
+  }
   if (films.some((film) => film.coarse)) {
     figure.append(element("p", { class: "caption" }, `Frames are ${number(films[0].every, 3)} s apart and bodies turn far between them: ` +
       "they are shown one by one, and which way a body went is not told."));
