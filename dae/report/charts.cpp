@@ -14,6 +14,9 @@ constexpr double rounding_floor = 1e-17;  // of logarithmic axes: below it nothi
 bool any_finite(const std::vector<double>& y) {
   return std::any_of(y.begin(), y.end(), [](double v) { return std::isfinite(v); });
 }
+bool any_but_zero(const std::vector<double>& y) {
+  return std::any_of(y.begin(), y.end(), [](double v) { return std::isfinite(v) && v != 0; });
+}
 std::vector<double> sizes_of(std::vector<double> y) {
   for (double& v : y) v = std::isnan(v) ? v : std::max(std::abs(v), rounding_floor);
   return y;
@@ -73,7 +76,8 @@ std::vector<Chart> charts_of_run(const RunResult& run) {
   for (const History& history : histories()) {
     const std::vector<double>& y = run.series.*history.values;
     const std::string key = history.key;
-    if (!any_finite(y) || (key == "impulse" && !takes_gauge(run.settings.form))) continue;
+    // Zero throughout is nothing to look at: drifts without loops.
+    if (!any_but_zero(y) || (key == "impulse" && !takes_gauge(run.settings.form))) continue;
     Chart chart = over_time(history.key, history.title, history.axis, history.unit);
     chart.log_y = true;
     chart.curves.push_back({history.title, run.series.t, sizes_of(y), sign_in_turn(charts.size()),
