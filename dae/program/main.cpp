@@ -85,6 +85,12 @@ int main(int argc, char** argv) {
       ->add_option("--at", index_state, "Consistent state, as for evaluate (default: the start)")
       ->type_name("STATE");
   index_app->add_option("--out", o.out, "Directory for index.json");
+  CLI::App* view_verb =
+      app.add_subcommand("view", "A page that shows the assembled mechanism, to turn and to zoom");
+  add_scene(*view_verb, o);
+  for (const char* unused : {"--json", "--kkt"})
+    view_verb->remove_option(view_verb->get_option(unused));
+  view_verb->add_option("--out", o.out, "Directory for index.html (default: standard output)");
   CLI::App* stress_app = app.add_subcommand(
       "stress", "Which form survives which extreme: of a scene, else of built-in ladders");
   add_scene_file(*stress_app, o, false);
@@ -113,7 +119,7 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   stress_app->add_option("--threads", stress_options.threads, "Default: one for each processor")
       ->check(CLI::Range(1, 1024));
-  stress_app->add_option("--out", o.out, "Directory for results");
+  add_results(*stress_app, o);
   stress_app->add_flag("--json", o.json, "One JSON document on standard output");
   stress_app->add_flag("--quiet", o.quiet, "No progress, no table");
   CLI::App* sweep_app =
@@ -129,7 +135,8 @@ int main(int argc, char** argv) {
                         "Columns of the trajectory, comma-separated: last, least and greatest");
   sweep_app->add_option("--form", o.form, "Which equations")->capture_default_str();
   add_run_options(*sweep_app, o);
-  sweep_app->remove_option(sweep_app->get_option("--reference"));
+  for (const char* unused : {"--reference", "--figures"})
+    sweep_app->remove_option(sweep_app->get_option(unused));
   sweep_app
       ->add_option("--threads", sweep_options.threads,
                    "Default: one for each processor; under mpirun one in each process")
@@ -156,7 +163,7 @@ int main(int argc, char** argv) {
     if (unknown)
       std::fprintf(stderr,
                    "momenta: verb '%.60s' is not known; expected check, assemble, evaluate, index, "
-                   "run, drift, work, stress, sweep, convert or make\n",
+                   "run, view, drift, work, stress, sweep, convert or make\n",
                    argv[1]);
     else
       std::fprintf(stderr, "momenta: %s\n", e.what());
@@ -167,7 +174,7 @@ int main(int argc, char** argv) {
     for (const CLI::Option* option : verb->get_options()) {
       const std::string name = option->get_name();
       if (option->count() == 0 || name == "scene" || name == "--reference" || name == "--out" ||
-          name == "--json" || name == "--quiet" || name == "--threads")
+          name == "--figures" || name == "--json" || name == "--quiet" || name == "--threads")
         continue;
       for (const std::string& value : option->results()) o.asked += " " + name + "=" + value;
     }
@@ -180,6 +187,7 @@ int main(int argc, char** argv) {
     if (*work_verb) return work(o, w);
     if (*evaluate_verb) return evaluate(o, state);
     if (*index_app) return index_verb(o, index_forms, index_state);
+    if (*view_verb) return view(o);
     if (*stress_app) return stress(o, stress_options);
     if (*sweep_app) return sweep(o, sweep_options);
     if (*convert_verb) return convert(o, converted);

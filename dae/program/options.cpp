@@ -4,10 +4,11 @@
 #include <momenta/dae/report/atomic_write.h>
 #include <momenta/dae/report/csv.h>
 #include <momenta/dae/report/page.h>
+#include <momenta/dae/report/picture_data.h>
 #include <momenta/dae/report/table.h>
 #include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/study/environment.h>
-#include <momenta/dae/study/sketch.h>
+#include <momenta/dae/study/motion.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -87,7 +88,13 @@ void add_run_options(CLI::App& verb, Options& o) {
                   "Stop a run after this much CPU time [s] (run: none; drift: 60 for each run)")
       ->check(positive);
   verb.add_option("--reference", o.reference, "CSV with a reference solution");
+  add_results(verb, o);
+}
+
+void add_results(CLI::App& verb, Options& o) {
   verb.add_option("--out", o.out, "Directory for results");
+  verb.add_option("--figures", o.figures, "Every chart as a figure for papers, in DIR/figures: svg")
+      ->check(CLI::IsMember({"svg"}));
 }
 
 Scene read(const Options& o) {
@@ -111,6 +118,7 @@ MechanismOptions mechanism_options(const Options& o) {
 }
 
 std::unique_ptr<Mechanism> load(const Options& o) {
+  expect_place_for_figures(o);
   return std::make_unique<Mechanism>(read(o), mechanism_options(o));
 }
 
@@ -149,9 +157,30 @@ void describe(StudyResult& study, const Options& o, const Mechanism& mechanism,
   study.scene_hash = digest(content_of(o.scene));
   study.command = o.command;
   study.plan = mechanism.plan_lines();
-  study.sketch = sketch(mechanism, assembly.start.t, assembly.start.q);
+  if (!o.out.empty()) show(study, mechanism, assembly);
   study.environment = environment();
   if (interrupted() && !study.runs.empty()) study.runs.back().reason = "interrupted";
+}
+
+int film_intervals_of(const Mechanism& mechanism, const Options& o, std::size_t runs) {
+  if (o.out.empty() || mechanism.scene().bodies.size() > most_bodies_drawn) return 0;
+  return film_intervals(picture_of(mechanism), runs);
+}
+
+void show(StudyResult& study, const Mechanism& mechanism, const Assembly& assembly) {
+  if (mechanism.scene().bodies.size() > most_bodies_drawn) return;
+  study.picture = picture_of(mechanism);
+  for (std::size_t i = 0; i < study.runs.size(); ++i) {
+    if (study.runs[i].film.frames.empty()) continue;
+    Motion motion = motion_of(mechanism, study.runs[i].film);
+    motion.run = static_cast<int>(i);
+    thin(motion, study.picture);
+    study.motions.push_back(std::move(motion));
+  }
+  if (!study.motions.empty()) return;
+  const auto& q = assembly.start.q;
+  study.motions.push_back(
+      motion_of(mechanism, {assembly.start.t, 0, {std::vector<double>(q.begin(), q.end())}}));
 }
 
 std::vector<std::string> names_in(const std::string& list) {
@@ -197,6 +226,17 @@ bool write_result(const std::filesystem::path& file, std::string_view content) {
   return !problem;
 }
 
+void expect_place_for_figures(const Options& o) {
+  if (!o.figures.empty() && o.out.empty())
+    throw std::invalid_argument("--figures " + o.figures + ": expected --out DIR for them");
+}
+
+bool write_figures(const std::vector<Figure>& figures, const Options& o) {
+  for (const Figure& figure : figures)
+    if (!write_result(o.out / "figures" / (figure.name + ".svg"), figure.svg)) return false;
+  return true;
+}
+
 int publish(const StudyResult& study, const std::string& words, const Options& o,
             Journal* journal) {
   const std::string json = study_json(study).dump(2) + "\n";
@@ -204,6 +244,7 @@ int publish(const StudyResult& study, const std::string& words, const Options& o
                          !write_result(o.out / "study.csv", study_csv(study)) ||
                          !write_result(o.out / "index.html", drift_page(study))))
     return run_failed;
+  if (!o.figures.empty() && !write_figures(figures_of_study(study), o)) return run_failed;
   close(journal, study.runs.size(), !interrupted(), o);
   if (o.json)
     std::fputs(json.c_str(), stdout);

@@ -3,6 +3,7 @@
 
 #include <momenta/core/scene/read_scene.h>
 #include <momenta/dae/assembly.h>
+#include <momenta/dae/report/figure.h>
 #include <momenta/dae/report/json.h>
 #include <momenta/dae/study/journal.h>
 #include <momenta/dae/study/run_form.h>
@@ -32,6 +33,7 @@ struct Options {
   bool project = false, no_project = false;  ///< neither: as the scene says
   std::optional<double> cpu_limit;
   std::filesystem::path reference, out;
+  std::string figures;  ///< svg or none
   bool json = false, quiet = false;
 };
 
@@ -39,6 +41,7 @@ void add_scene(CLI::App& verb, Options& o);
 /// The scene alone, with what a URDF does not say.
 void add_scene_file(CLI::App& verb, Options& o, bool required = true);
 void add_run_options(CLI::App& verb, Options& o);
+void add_results(CLI::App& verb, Options& o);
 
 MechanismOptions mechanism_options(const Options& o);
 /// Reads the scene, and tells what its reader remarked unless --quiet is given.
@@ -53,11 +56,22 @@ std::unique_ptr<Reference> load_reference(const Options& o, const Mechanism& mec
 void describe(StudyResult& study, const Options& o, const Mechanism& mechanism,
               const Assembly& assembly);
 
+/// Intervals of the film of one of so many runs; 0 without --out and where nothing is drawn.
+int film_intervals_of(const Mechanism& mechanism, const Options& o, std::size_t runs);
+
+/// The mechanism's picture and the motions of the runs that were filmed, else its start.
+void show(StudyResult& study, const Mechanism& mechanism, const Assembly& assembly);
+
 /// "a,b,c" as a list.
 std::vector<std::string> names_in(const std::string& list);
 
 /// Writes a result file; on failure prints the sentence and returns false.
 bool write_result(const std::filesystem::path& file, std::string_view content);
+
+/// Where figures are asked for there must be a place for them. @throws std::invalid_argument
+void expect_place_for_figures(const Options& o);
+/// Writes them to figures/ where --out says; as write_result.
+bool write_figures(const std::vector<Figure>& figures, const Options& o);
 
 /// Finished runs of this study, kept beside its results until it is over; null without --out.
 std::unique_ptr<Journal> keep_runs(const Options& o);
@@ -93,6 +107,8 @@ class ProgressLine {
 int check(const Options& o);
 int assemble_verb(const Options& o);
 int run(const Options& o);
+/// The page of the assembled mechanism: a file with --out, else on standard output.
+int view(const Options& o);
 struct DriftOptions {
   std::string forms;  ///< comma-separated; empty: all
 };

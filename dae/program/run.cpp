@@ -1,7 +1,7 @@
 #include <momenta/dae/report/csv.h>
 #include <momenta/dae/report/number_text.h>
+#include <momenta/dae/report/page.h>
 #include <momenta/dae/report/table.h>
-#include <momenta/dae/study/environment.h>
 #include <momenta/dae/study/run_form.h>
 
 #include <cstdio>
@@ -39,6 +39,7 @@ int run(const Options& o) {
   request.reference = reference.get();
   request.keep_trajectory = true;
   request.max_cpu_seconds = o.cpu_limit.value_or(0);
+  request.film_intervals = film_intervals_of(*mechanism, o, 1);
   expect_own_results(o.out, "trajectory.csv");
   ProgressLine line(o.quiet);
   request.progress = [&](double t) {
@@ -46,14 +47,12 @@ int run(const Options& o) {
     return !interrupted();
   };
   StudyResult study;
-  study.scene = mechanism->scene().name;
-  study.scene_file = o.scene.string();
-  study.command = o.command;
-  study.environment = environment();
   study.runs.push_back(run_form(*mechanism, a.start, request));
   if (!interrupted()) time_runs(*mechanism, a.start, study.runs, 3);
   line.show("");
   const RunResult& result = study.runs.front();
+  study.reference = o.reference.string();
+  describe(study, o, *mechanism, a);
   if (interrupted())
     study.runs.front().reason = "interrupted at t = " + std::to_string(result.stopped_at) + " s";
   auto json = summary_json(result, study.environment);
@@ -61,8 +60,10 @@ int run(const Options& o) {
   const std::string summary = json.dump(2) + "\n";
   if (!o.out.empty() &&
       (!write_result(o.out / "trajectory.csv", trajectory_csv(result.trajectory)) ||
-       !write_result(o.out / "summary.json", summary)))
+       !write_result(o.out / "summary.json", summary) ||
+       !write_result(o.out / "index.html", run_page(study))))
     return run_failed;
+  if (!o.figures.empty() && !write_figures(figures_of_run(study), o)) return run_failed;
   if (o.json) {
     std::fputs(summary.c_str(), stdout);
   } else if (!o.quiet) {

@@ -35,6 +35,7 @@ std::vector<Contestant> contestants_of(const std::vector<std::string>& forms,
 }  // namespace
 
 int stress(const Options& o, const StressOptions& options) {
+  expect_place_for_figures(o);
   StressRequest request;
   const auto forms = names_in(options.forms), methods = names_in(options.integrators);
   for (const auto& name : methods) integrator(name);
@@ -83,6 +84,7 @@ int stress(const Options& o, const StressOptions& options) {
                          !write_result(o.out / "stress.csv", stress_csv(result)) ||
                          !write_result(o.out / "index.html", stress_page(result, title))))
     return run_failed;
+  if (!o.figures.empty() && !write_figures(figures_of_stress(result), o)) return run_failed;
   std::size_t runs = 0;
   for (const LadderResult& ladder : result.ladders)
     for (const auto& climb : ladder.runs) runs += climb.size();

@@ -11,11 +11,12 @@
 namespace momenta {
 namespace {
 
+using Json = nlohmann::ordered_json;
+
 // "</script" inside a JSON string would end the island; "<\/" is the same string to every JSON
 // reader. "<!--" would start a state of the HTML reader in which the end tag is not found.
-std::string island(const nlohmann::ordered_json& data) {
-  const std::string json =
-      data.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+std::string island(const Json& data) {
+  const std::string json = data.dump(-1, ' ', false, Json::error_handler_t::replace);
   std::string text;
   text.reserve(json.size());
   for (std::size_t i = 0; i < json.size(); ++i) {
@@ -78,35 +79,60 @@ std::string paragraphs(const std::string& lines) {
 }
 
 // The scripts share one scope, in the order in which each uses what stands before it.
-std::string script() {
+std::string script(std::initializer_list<std::string_view> own) {
   std::string text;
-  for (const std::string_view part :
-       {embedded::text_js(), embedded::signs_js(), embedded::table_js(), embedded::chart_js(),
-        embedded::history_js(), embedded::scatter_js(), embedded::mechanism_js(),
-        embedded::page_js()}) {
+  const auto add = [&](std::string_view part) {
     text += part;
     text += '\n';
-  }
+  };
+  for (const std::string_view part :
+       {embedded::text_js(), embedded::signs_js(), embedded::chart_js(), embedded::film_js(),
+        embedded::camera_js(), embedded::solids_js(), embedded::strokes_js(), embedded::stage_js(),
+        embedded::player_js(), embedded::making_js()})
+    add(part);
+  for (const std::string_view part : own) add(part);
   return text;
 }
 
-}  // namespace
-
-std::string drift_page(const StudyResult& study) {
-  const std::string stopped = failures(study);
+std::string page(const StudyResult& study, const std::string& kind, const std::string& answer_html,
+                 const std::string& stopped, const Json& data, const std::string& scripts) {
   return filled(
       embedded::page_html(),
       {{"scene", escape_html(study.scene)},
-       {"kind", study.drift_study ? "Drift of the loops" : "Error against time"},
-       {"answer", study.drift_study ? marked_up(answer(study)) : paragraphs(advice(study))},
+       {"kind", kind},
+       {"answer", answer_html},
        {"failures",
         stopped.empty() ? "" : "<p class=\"answer failures\">" + marked_up(stopped) + "</p>"},
        {"uplot_license", std::string(embedded::uplot_license())},
        {"uplot_css", std::string(embedded::uplot_css())},
        {"page_css", std::string(embedded::page_css())},
-       {"study", island(page_data(study))},
+       {"study", island(data)},
        {"uplot_js", std::string(embedded::uplot_js())},
-       {"page_js", script()}});
+       {"page_js", scripts}});
+}
+
+}  // namespace
+
+std::string drift_page(const StudyResult& study) {
+  return page(study, study.drift_study ? "Drift of the loops" : "Error against time",
+              study.drift_study ? marked_up(answer(study)) : paragraphs(advice(study)),
+              failures(study), page_data(study),
+              script({embedded::table_js(), embedded::history_js(), embedded::scatter_js(),
+                      embedded::study_page_js()}));
+}
+
+std::string run_page(const StudyResult& study) {
+  Json data = page_data(study);
+  data["timeline"] = timeline_json(study.runs.front());
+  return page(study, "One run", marked_up(answer(study)), failures(study), data,
+              script({embedded::timeline_js(), embedded::run_page_js()}));
+}
+
+std::string view_page(const StudyResult& study, const std::string& words) {
+  Json data = page_data(study);
+  data["timeline"] = Json::array();
+  return page(study, "The mechanism", marked_up(words), "", data,
+              script({embedded::timeline_js(), embedded::run_page_js()}));
 }
 
 }  // namespace momenta

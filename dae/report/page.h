@@ -7,9 +7,16 @@
 
 namespace momenta {
 
-/// The page: the conclusion, charts with their tables, the drawing of the mechanism, how it was
-/// made. Script, style and uPlot are inlined; the data are the JSON island `<script
-/// type="application/json" id="study">`.
+// Script, style and uPlot are inlined; the data are the JSON island `<script
+// type="application/json" id="study">`.
+/// Of a study: the conclusion, the mechanism as each run moved it, charts with their tables, how it
+/// was made.
 std::string drift_page(const StudyResult&);
+
+/// Of its first run: the mechanism moving beside energy, drift and joint curves, with one time.
+std::string run_page(const StudyResult&);
+
+/// Of a scene without runs: the mechanism as it is assembled; `words` say what it is.
+std::string view_page(const StudyResult&, const std::string& words);
 
 }  // namespace momenta

@@ -1,7 +1,9 @@
 #include <momenta/dae/form/form.h>
+#include <momenta/dae/report/chart.h>
 #include <momenta/dae/report/csv.h>
 #include <momenta/dae/report/json.h>
 #include <momenta/dae/report/page_data.h>
+#include <momenta/dae/report/picture_data.h>
 #include <momenta/dae/report/run_label.h>
 #include <momenta/dae/report/thinning.h>
 #include <momenta/dae/study/work_study.h>
@@ -36,19 +38,14 @@ Json curve(const std::vector<double>& t, const std::vector<double>& y) {
 }
 
 Json series_json(const RunResult& run) {
-  const Series& s = run.series;
   Json series = Json::object();
-  const auto add = [&](const char* name, const std::vector<double>& y) {
-    if (std::any_of(y.begin(), y.end(), [](double v) { return std::isfinite(v); })) {
-      series[name] = curve(s.t, y);
-    }
-  };
-  add("position_drift", s.position_drift);
-  add("velocity_drift", s.velocity_drift);
-  add("energy_error", s.energy_error);
-  // |λ| is a force and |σ| an impulse: only forms with impulses share the axis.
-  if (takes_gauge(run.settings.form)) add("impulse", s.impulse);
-  add("position_error", s.position_error);
+  for (const History& history : histories()) {
+    const std::vector<double>& y = run.series.*history.values;
+    // |λ| is a force and |σ| an impulse: only forms with impulses share the axis.
+    if (std::string_view(history.key) == "impulse" && !takes_gauge(run.settings.form)) continue;
+    if (std::any_of(y.begin(), y.end(), [](double v) { return std::isfinite(v); }))
+      series[history.key] = curve(run.series.t, y);
+  }
   return series;
 }
 
@@ -65,14 +62,21 @@ Json pairs_json(const std::vector<std::pair<std::string, std::string>>& pairs) {
   return json;
 }
 
-Json sketch_json(const Sketch& sketch) {
-  Json lines = Json::array(), points = Json::array();
-  for (const auto& line : sketch.lines)
-    lines.push_back({{"body", line.body}, {"points", line.points}});
-  for (const auto& point : sketch.points) {
-    points.push_back({{"name", point.name}, {"kind", point.kind}, {"at", point.at}});
-  }
-  return {{"lines", lines}, {"points", points}};
+Json histories_json() {
+  Json all = Json::array();
+  for (const History& h : histories())
+    all.push_back({{"key", h.key},
+                   {"title", h.title},
+                   {"yTitle", h.axis},
+                   {"unit", h.unit},
+                   {"slopes", h.slopes}});
+  return all;
+}
+
+Json motions_json(const StudyResult& study) {
+  Json motions = Json::array();
+  for (const Motion& motion : study.motions) motions.push_back(motion_json(study.picture, motion));
+  return motions;
 }
 
 }  // namespace
@@ -81,6 +85,7 @@ Json page_data(const StudyResult& study) {
   const auto labels = run_labels(study), ladder_labels = run_labels(study, false);
   const auto ladder = ladders(study);
   const auto curves = runs_with_curves(study);
+  const auto signs = signs_of(study);
 
   const bool reference = !study.reference.empty();
   const auto front =
@@ -95,6 +100,8 @@ Json page_data(const StudyResult& study) {
     json["ladder_label"] = ladder_labels[i];
     json["tolerance"] = tolerance_text(run.settings);
     json["ladder"] = ladder[i];
+    json["sign"] = {
+        {"colour", signs[i].colour}, {"dash", signs[i].dash}, {"marker", signs[i].marker}};
     json["best"] = std::find(front.begin(), front.end(), i) != front.end();
     json["baumgarte"] = {run.settings.baumgarte_alpha, run.settings.baumgarte_beta};
     json["growth"] = {{"position", growth_json(run.position_growth)},
@@ -111,9 +118,71 @@ Json page_data(const StudyResult& study) {
           {"drift_study", study.drift_study},
           {"plan", pairs_json(study.plan)},
           {"environment", environment_json(study.environment)},
-          {"sketch", sketch_json(study.sketch)},
+          {"palette", palette},
+          {"histories", histories_json()},
+          {"picture", picture_json(study.picture)},
+          {"motions", motions_json(study)},
           {"csv", study_csv(study)},
           {"runs", runs}};
+}
+
+namespace {
+
+constexpr std::size_t stretches = 300, most_curves = 24;
+
+/// Least and largest of each stretch of y, in their order; all of y where there are few.
+std::vector<double> extremes_of(const std::vector<double>& y) {
+  if (y.size() <= 2 * stretches) return y;
+  std::vector<double> kept;
+  for (std::size_t i = 0; i < stretches; ++i) {
+    const std::size_t from = i * y.size() / stretches, to = (i + 1) * y.size() / stretches;
+    std::size_t low = from, high = from;
+    for (std::size_t k = from; k < to; ++k) {
+      if (y[k] < y[low] || std::isnan(y[low])) low = k;
+      if (y[k] > y[high] || std::isnan(y[high])) high = k;
+    }
+    kept.push_back(y[std::min(low, high)]);
+    kept.push_back(y[std::max(low, high)]);
+  }
+  return kept;
+}
+/// First and middle time of each stretch.
+std::vector<double> times_of(const std::vector<double>& t) {
+  if (t.size() <= 2 * stretches) return t;
+  std::vector<double> kept;
+  for (std::size_t i = 0; i < 2 * stretches; ++i) kept.push_back(t[i * t.size() / (2 * stretches)]);
+  kept.back() = t.back();
+  return kept;
+}
+Json drawn_all(const std::vector<double>& values) {
+  Json all = Json::array();
+  for (const double v : values) all.push_back(std::isfinite(v) ? Json(drawn(v)) : Json());
+  return all;
+}
+
+}  // namespace
+
+Json timeline_json(const RunResult& run) {
+  Json charts = Json::array();
+  for (const Chart& chart : charts_of_run(run)) {
+    Json curves = Json::array();
+    for (const Curve& curve : chart.curves) {
+      if (curves.size() == most_curves) break;
+      curves.push_back({{"name", curve.name},
+                        {"y", drawn_all(extremes_of(curve.y))},
+                        {"colour", curve.sign.colour},
+                        {"dash", curve.sign.dash}});
+    }
+    charts.push_back({{"key", chart.key},
+                      {"title", chart.title},
+                      {"y_title", chart.y_title},
+                      {"unit", chart.unit},
+                      {"log", chart.log_y},
+                      {"left_out", chart.curves.size() - curves.size()},
+                      {"t", drawn_all(times_of(chart.curves.front().x))},
+                      {"curves", curves}});
+  }
+  return charts;
 }
 
 }  // namespace momenta

@@ -144,16 +144,41 @@ std::string how_section(const StressResult& study) {
                   pair("Processor", study.environment.cpu) + pair("Date", study.environment.date)));
 }
 
+/// Custom properties of the light page.
+std::string verdict_colours() {
+  std::string css;
+  for (const Verdict v : {Verdict::survived, Verdict::slow, Verdict::stopped, Verdict::wrong})
+    css += "--" + std::string(name_of(v)) + ": " + colour_of(v) + "; ";
+  return ":root { " + css + "}";
+}
+
 }  // namespace
+
+const char* colour_of(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::survived:
+      return "#dcefe4";
+    case Verdict::slow:
+      return "#eef0f3";
+    case Verdict::stopped:
+      return "#fbeed3";
+    case Verdict::wrong:
+      return "#f9d9cf";
+    case Verdict::untried:
+      return "#ffffff";
+  }
+  return "#ffffff";
+}
 
 std::string stress_page(const StressResult& study, const std::string& title) {
   std::string main = summary_section(study);
   for (const LadderResult& ladder : study.ladders) main += ladder_section(study, ladder);
-  return filled(embedded::stress_html(), {{"title", escape_html(title)},
-                                          {"answer", answer(study)},
-                                          {"main", main + how_section(study)},
-                                          {"page_css", std::string(embedded::page_css())},
-                                          {"stress_css", std::string(embedded::stress_css())}});
+  return filled(embedded::stress_html(),
+                {{"title", escape_html(title)},
+                 {"answer", answer(study)},
+                 {"main", main + how_section(study)},
+                 {"page_css", std::string(embedded::page_css())},
+                 {"stress_css", verdict_colours() + "\n" + std::string(embedded::stress_css())}});
 }
 
 }  // namespace momenta

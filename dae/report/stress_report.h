@@ -18,6 +18,9 @@ nlohmann::ordered_json stress_json(const StressResult&);
 /// index.html: the same tables, causes under each; needs no script.
 std::string stress_page(const StressResult&, const std::string& title);
 
+/// "#dcefe4" for survived, …: pages on white ground, and figures.
+const char* colour_of(Verdict);
+
 /// The largest of opening, energy and error that was measured; NaN for none.
 double worst_measure(const StressRun&);
 

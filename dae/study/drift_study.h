@@ -25,6 +25,7 @@ struct DriftRequest {
                          ///< kind is added
   const Reference* reference = nullptr;
   double max_cpu_seconds = 0;
+  int film_intervals = 0;  ///< of each run; 0: no films
   Journal* journal = nullptr;  ///< finished runs are taken from it, and new ones recorded
   /// Before each run (number, of how many, label) and during it (fraction done); false stops the
   /// study.

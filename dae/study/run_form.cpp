@@ -97,12 +97,18 @@ class Looker {
     if (row_wanted) row(t, energy, position, velocity);
     if (request_.reference) compare(t);
     if (request_.keep_trajectory) result_.trajectory.rows.push_back(row_);
+    if (request_.film_intervals > 0 && result_.film.frames.empty()) {
+      result_.film.start = t;
+      result_.film.every = (result_.settings.end_time - t) / request_.film_intervals;
+      result_.film.frames.emplace_back(now_.q.begin(), now_.q.end());
+    }
     return !request_.progress || request_.progress(t);
   }
 
   bool step(double t0, double t1, const Interpolant& between) {
     state_.resize(
         static_cast<std::size_t>(form_.is_dae() ? form_.dae()->size() : form_.ode()->size()));
+    if (request_.film_intervals > 0) film_until(t1, between);
     const double middle = 0.5 * (t0 + t1);
     if (mechanism_.m() > 0) {
       between(middle, state_.data());
@@ -161,6 +167,18 @@ class Looker {
   const std::string& trouble() const { return trouble_; }
 
  private:
+  /// Coordinates at the film's times within the last step.
+  void film_until(double t1, const Interpolant& between) {
+    Film& film = result_.film;
+    const double rounding = 1e-9 * film.every;
+    while (static_cast<int>(film.frames.size()) <= request_.film_intervals) {
+      const double t = film.start + film.every * static_cast<double>(film.frames.size());
+      if (t > t1 + rounding) return;
+      between(std::min(t, t1), state_.data());
+      if (!form_.coordinates(t, state_.data(), middle_)) return;
+      film.frames.emplace_back(middle_.begin(), middle_.end());
+    }
+  }
   /// The weakest pivot of the loops at a time within the last step; 0 where a row faded that is not
   /// redundant throughout.
   double pivot_at(double t, const Interpolant& between) {

@@ -13,6 +13,8 @@ struct RunRequest {
   RunSettings settings;
   const Reference* reference = nullptr;  ///< bound to trajectory_columns(mechanism)
   bool keep_trajectory = false;
+  /// The film has the start and this many equal intervals more; a run that fails, fewer. 0: none.
+  int film_intervals = 0;
   double max_cpu_seconds = 0;  ///< 0: none
   /// Called now and then with the simulated time; return false to stop the run.
   std::function<bool(double t)> progress;

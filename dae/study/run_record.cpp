@@ -52,6 +52,13 @@ void list(const Each& each,
 
 template <class Each>
 void list(const Each& each,
+          auto&& s) requires std::is_same_v<std::remove_cvref_t<decltype(s)>, Film> {
+  auto& [start, every, frames] = s;
+  each("start", start), each("every", every), each("frames", frames);
+}
+
+template <class Each>
+void list(const Each& each,
           auto&& s) requires std::is_same_v<std::remove_cvref_t<decltype(s)>, RunResult::Faded> {
   auto& [loop, row, evaluations] = s;
   each("loop", loop), each("row", row), each("evaluations", evaluations);
@@ -71,7 +78,7 @@ void list(const Each& each,
          cpu_s, wall_s, repeats, position_drift_max, velocity_drift_max, between_steps_max,
          position_growth, velocity_growth, energy_error_max, kinetic_energy_max, energy_scale,
          position_error_max, velocity_error_max, faded_rows, passages, least_pivot, series,
-         trajectory] = s;
+         trajectory, film] = s;
   each("scene", scene), each("settings", settings), each("status", status), each("reason", reason);
   each("stopped_at", stopped_at), each("counters", counters), each("partitions", partitions);
   each("jacobian", jacobian), each("linear_solver", linear_solver);
@@ -83,7 +90,7 @@ void list(const Each& each,
   each("energy_scale", energy_scale);
   each("position_error_max", position_error_max), each("velocity_error_max", velocity_error_max);
   each("faded_rows", faded_rows), each("passages", passages), each("least_pivot", least_pivot);
-  each("series", series);
+  each("series", series), each("film", film);
   static_cast<void>(trajectory);  // no study keeps one
 }
 

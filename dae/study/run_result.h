@@ -3,6 +3,7 @@
 // CSV, JSON and page.
 
 #include <momenta/dae/solver/integration.h>
+#include <momenta/dae/study/picture.h>
 
 #include <array>
 #include <limits>
@@ -100,22 +101,7 @@ struct RunResult {
   double least_pivot = not_measured;  ///< of the whole run
   Series series;
   Trajectory trajectory;
-};
-
-/// The mechanism at the start, for the drawing on a page: ground axes projected onto the plane
-/// shown.
-struct Sketch {
-  struct Line {
-    std::string body;
-    std::vector<std::array<double, 2>> points;
-  };  ///< one polyline or polygon per body [m]
-  struct Point {
-    std::string name;
-    std::string kind;
-    std::array<double, 2> at;
-  };  ///< kind: joint, loop, marker, ground
-  std::vector<Line> lines;
-  std::vector<Point> points;
+  Film film;  ///< empty where none was asked for
 };
 
 struct Environment {
@@ -125,7 +111,7 @@ struct Environment {
   std::string date;  ///< ISO 8601
 };
 
-/// What `momenta drift` and `momenta work` produce.
+/// What `momenta run`, `momenta drift` and `momenta work` produce.
 struct StudyResult {
   std::string scene;  ///< its name
   std::string scene_file;
@@ -134,7 +120,8 @@ struct StudyResult {
   std::string reference;   ///< file name of the reference, or empty
   std::vector<std::pair<std::string, std::string>>
       plan;  ///< lines of the plan, as `momenta check` prints them
-  Sketch sketch;
+  Picture picture;
+  std::vector<Motion> motions;  ///< of each run with a film, or one of the start alone
   Environment environment;
   std::vector<RunResult> runs;  ///< the drift runs, one per form, then (work) further rungs
   bool drift_study = true;      ///< false: a ladder of tolerances

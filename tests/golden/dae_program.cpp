@@ -47,6 +47,46 @@ TEST_F(Program, RefusesScenesThatCannotBeAssembled) {
                  "apart across the plane");
 }
 
+TEST_F(Program, WritesPagesAndFigures) {
+  const fs::path run = folder_ / "run", drift = folder_ / "drift", view = folder_ / "view";
+  const std::string scene = "'" + example("bricard") + "' --quiet --figures svg --end 1 --out '";
+  EXPECT_EQ(call("run " + scene + run.string() + "'").status, 0);
+  EXPECT_EQ(call("drift " + scene + drift.string() + "' --forms momentum,acceleration").status, 0);
+  EXPECT_EQ(call("view '" + example("bricard") + "' --quiet --out '" + view.string() + "'").status,
+            0);
+  for (const fs::path& folder : {run, drift, view}) {
+    const std::string page = text_of(folder / "index.html");
+    EXPECT_GT(page.size(), 100'000u);
+    EXPECT_LT(page.size(), 3'000'000u);
+    const auto from = page.find("id=\"study\">") + 11;
+    const auto data = nlohmann::json::parse(page.substr(from, page.find("</script>", from) - from));
+    EXPECT_EQ(data["picture"]["bodies"].size(), 5u);
+    EXPECT_EQ(data["motions"].size(), folder == drift ? data["runs"].size() : 1u);
+    EXPECT_EQ(data["motions"][0]["count"] == 1, folder == view);
+  }
+  for (const char* figure : {"mechanism", "position_drift", "angles", "energy_error"})
+    EXPECT_TRUE(fs::exists(run / "figures" / (std::string(figure) + ".svg"))) << figure;
+  EXPECT_TRUE(fs::exists(drift / "figures" / "error_cost.svg"));
+  const Outcome printed = call("view '" + example("four_bar") + "'");
+  EXPECT_EQ(printed.status, 0);
+  EXPECT_EQ(printed.out.rfind("<!doctype html>", 0), 0u);
+  expect_refused("run '" + example("four_bar") + "' --figures svg", "expected --out DIR");
+  expect_refused("run '" + example("four_bar") + "' --figures png --out x", "png");
+  expect_refused("view '" + example("four_bar") + "' --out '" + run.string() + "'",
+                 "trajectory.csv");
+}
+
+TEST_F(Program, ShowsNoMechanismThatAPageCannotHold) {
+  const Outcome text = call("make chain --n 2001");
+  const std::string scene = write("long.toml", text.out).string();
+  expect_refused("view '" + scene + "'", "expected at most 2000");
+  const fs::path out = folder_ / "results";
+  EXPECT_EQ(call("run '" + scene + "' --quiet --end 1e-3 --samples 2 --out '" + out.string() + "'")
+                .status,
+            0);
+  EXPECT_LT(text_of(out / "index.html").size(), 3'000'000u);
+}
+
 TEST_F(Program, RefusesFilesThatAreNoScenes) {
   expect_refused("check '" + write("empty.toml", "").string() + "'", "empty.toml");
   expect_refused("check '" +

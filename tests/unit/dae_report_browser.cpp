@@ -30,7 +30,7 @@ std::string output_of(const std::string& command) {
 // The page tells what it measures of itself to the frame around it, whose root element --dump-dom
 // shows. A frame, because a window of Chromium is not made as narrow as a telephone. It measures
 // again and again and the last report stands: a busy machine lays the page out late.
-constexpr const char* probe = R"(<script>addEventListener("load", () => {
+constexpr const char* probe = R"(addEventListener("load", () => {
 const sort = document.querySelector("thead button");
 sort.click();
 setInterval(() => {
@@ -41,8 +41,8 @@ setInterval(() => {
   parent.postMessage([root.scrollWidth <= innerWidth ? "fits" : "scrolls", "width=" + innerWidth,
     "plots=" + document.querySelectorAll(".plot canvas").length, "tables=" + document.querySelectorAll("table").length,
     "small=" + small.length, "sorted=" + sort.closest("th").getAttribute("aria-sort"),
-    "svg=" + document.querySelectorAll(".mechanism svg").length].join(" "), "*");
-}, 200); });</script>)";
+    "movies=" + document.querySelectorAll(".movie canvas").length].join(" "), "*");
+}, 200); });)";
 
 class Browser : public ::testing::TestWithParam<int> {
  protected:
@@ -57,10 +57,14 @@ class Browser : public ::testing::TestWithParam<int> {
     if (!directory_.empty()) fs::remove_all(directory_);
   }
 
-  // The page's own report, and what the console said.
-  std::pair<std::string, std::string> opened(const StudyResult& study, int width) {
-    std::string page = drift_page(study);
-    page.insert(page.rfind("</body>"), probe);
+  // The page's own report, and what the console said. Without a screen and in virtual time a
+  // browser makes next to no frames: a timer stands for them.
+  std::pair<std::string, std::string> opened(std::string page, int width,
+                                             const char* question = probe) {
+    page.insert(page.rfind("}\n</script>"),  // among the page's own functions
+                std::string("requestAnimationFrame = (act) => setTimeout(() => "
+                            "act(performance.now()), 16);\n") +
+                    question);
     const fs::path file = directory_ / "frame.html", log = directory_ / "log";
     EXPECT_EQ(atomic_write(directory_ / "index.html", page), std::nullopt);
     EXPECT_EQ(atomic_write(
@@ -97,27 +101,137 @@ class Browser : public ::testing::TestWithParam<int> {
 };
 
 TEST_P(Browser, ShowsAllFormsWithinTheWindow) {
-  const auto [report, console] = opened(synthetic::all_forms(), GetParam());
+  const auto [report, console] = opened(drift_page(synthetic::all_forms()), GetParam());
   EXPECT_EQ(console, "");
   EXPECT_EQ(report, "fits width=" + std::to_string(GetParam()) +
-                        " plots=5 tables=4 small=0 sorted=ascending svg=1");
+                        " plots=5 tables=4 small=0 sorted=ascending movies=1");
 }
 
 TEST_P(Browser, ShowsALadderWithinTheWindow) {
-  const auto [report, console] = opened(synthetic::ladder(), GetParam());
+  const auto [report, console] = opened(drift_page(synthetic::ladder()), GetParam());
   EXPECT_EQ(console, "");
   EXPECT_EQ(report, "fits width=" + std::to_string(GetParam()) +
-                        " plots=9 tables=4 small=0 sorted=ascending svg=1");
+                        " plots=9 tables=4 small=0 sorted=ascending movies=1");
 }
 
 TEST_P(Browser, ShowsALoneRunWithoutHistory) {
   RunResult run;
   run.position_drift_max = 0;
   run.cpu_s = 0.1;
-  const auto [report, console] = opened(synthetic::study_of({run}), GetParam());
+  const auto [report, console] = opened(drift_page(synthetic::study_of({run})), GetParam());
   EXPECT_EQ(console, "");
   EXPECT_EQ(report, "fits width=" + std::to_string(GetParam()) +
-                        " plots=1 tables=1 small=0 sorted=ascending svg=1");
+                        " plots=1 tables=1 small=0 sorted=ascending movies=1");
+}
+
+// What a page with a mechanism shows: pixels of its canvas that change with the time, links that
+// hold together at their joints, axes that stay unit, a line at the same time in every chart, the
+// camera.
+constexpr const char* moving = R"(addEventListener("load", async () => {
+const canvas = document.querySelector(".movie canvas"), pixels = () => canvas.toDataURL();
+const drawn = async () => { for (let i = 0; i < 3; ++i) await new Promise(requestAnimationFrame); };
+await drawn();
+const film = filmOf(study.motions.at(-1));
+let apart = 0, length = 0;
+for (let i = 0; i <= 200; ++i) {
+  const state = film.at(film.start + ((film.end - film.start) * i) / 200);
+  picture.bodies.forEach((body, k) => {
+    length = Math.max(length, Math.abs(Math.hypot(...state.turns[k]) - 1));
+    const at = minus(pointOf(state, body.parent, body.at_parent), pointOf(state, k, body.at_child));
+    if (!body.slides) apart = Math.max(apart, norm(at));
+  });
+}
+const first = pixels(), slide = document.querySelector(".clock input");
+slide.value = 2500;
+slide.dispatchEvent(new Event("input"));
+await drawn();
+const quarter = pixels(), time = document.querySelector(".time").textContent;
+const lines = [...document.querySelectorAll(".now")].map((line) => {
+  const over = line.parentElement.getBoundingClientRect();
+  return (line.getBoundingClientRect().left + 1 - over.left) / over.width;
+});
+canvas.dispatchEvent(new KeyboardEvent("keydown", { key: "+", bubbles: true }));
+await drawn();
+const zoomed = pixels();
+document.querySelectorAll(".boxes input").forEach((box) => box.click());
+await drawn();
+const ticked = pixels();
+document.querySelector(".play").click();
+await drawn();
+await drawn();
+const root = document.documentElement;
+setInterval(() => parent.postMessage([root.scrollWidth <= innerWidth ? "fits" : "scrolls", time.replaceAll(" ", ""),
+  "moved=" + (first !== quarter), "zoomed=" + (quarter !== zoomed), "ticked=" + (zoomed !== ticked),
+  "plays=" + (ticked !== pixels()), "apart=" + (apart < 1e-6), "unit=" + (length < 1e-12),
+  "cursors=" + lines.length, "common=" + lines.every((x) => Math.abs(x - 0.25) < 0.01)].join(" "), "*"), 100);
+});)";
+
+StudyResult filmed(std::vector<Motion> motions) {
+  RunResult run = synthetic::run_of({}, 2, 500);
+  run.trajectory.columns = {"t [s]", "O.q [rad]", "A.q [rad]", "O.u [rad/s]", "energy [J]"};
+  for (int i = 0; i <= 500; ++i) {
+    const double t = i / 250.0;
+    run.trajectory.rows.push_back({t, 6.28 * t, -6 * t, 6.28, 12});
+  }
+  StudyResult study = synthetic::study_of({run, run});
+  study.motions = std::move(motions);
+  return study;
+}
+
+TEST_P(Browser, MovesTheMechanismOfARunWithItsCurves) {
+  const auto [report, console] =
+      opened(run_page(filmed({synthetic::motion(0, 2, 101)})), GetParam(), moving);
+  EXPECT_EQ(console, "");
+  EXPECT_EQ(
+      report,
+      "fits t=0.500s moved=true zoomed=true ticked=true plays=true apart=true unit=true cursors=6 "
+      "common=true");
+}
+
+TEST_P(Browser, MovesTheMechanismsOfAllForms) {
+  StudyResult study = filmed({synthetic::motion(0, 2, 101), synthetic::motion(1, 2, 101)});
+  study.runs[1].settings.form = "acceleration";
+  const auto [report, console] = opened(drift_page(study), GetParam(), moving);
+  EXPECT_EQ(console, "");
+  EXPECT_EQ(
+      report,
+      "fits t=0.500s moved=true zoomed=true ticked=true plays=true apart=true unit=true cursors=0 "
+      "common=true");
+}
+
+TEST_P(Browser, TurnsAMechanismInSpace) {
+  StudyResult study = filmed({synthetic::motion(0, 2, 101)});
+  study.picture.planar = false;
+  study.picture.bodies[1].turn = Picture::Turn::freely;
+  study.picture.bodies[1].shape = {"box", {0.4, 0.3, 0.2}, {1, 0, 0}};
+  study.picture.bodies[0].shape = {"cylinder", {0.4, 0.1, 0}, {1, 0, 0}};
+  study.picture.bodies[2].shape = {"sphere", {0.2, 0, 0}, {1, 0, 0}};
+  const auto [report, console] = opened(run_page(study), GetParam(), moving);
+  EXPECT_EQ(console, "");
+  EXPECT_EQ(
+      report,
+      "fits t=0.500s moved=true zoomed=true ticked=true plays=true apart=true unit=true cursors=6 "
+      "common=true");
+}
+
+// Nothing moves and nothing was run: the picture and its boxes.
+constexpr const char* still = R"(addEventListener("load", async () => {
+const canvas = document.querySelector(".movie canvas");
+const drawn = async () => { for (let i = 0; i < 3; ++i) await new Promise(requestAnimationFrame); };
+await drawn();
+const before = canvas.toDataURL();
+document.querySelector(".boxes input").click();
+await drawn();
+setInterval(() => parent.postMessage([document.documentElement.scrollWidth <= innerWidth ? "fits" : "scrolls",
+  "clock=" + document.querySelectorAll(".clock").length, "rows=" + document.querySelectorAll("tbody tr").length,
+  "ticked=" + (canvas.toDataURL() !== before)].join(" "), "*"), 100);
+});)";
+
+TEST_P(Browser, ShowsASceneThatWasNotRun) {
+  StudyResult study = synthetic::study_of({});
+  const auto [report, console] = opened(view_page(study, "Three links."), GetParam(), still);
+  EXPECT_EQ(console, "");
+  EXPECT_EQ(report, "fits clock=0 rows=4 ticked=true");
 }
 
 INSTANTIATE_TEST_SUITE_P(Widths, Browser, ::testing::Values(360, 1600));

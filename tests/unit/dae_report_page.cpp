@@ -56,7 +56,7 @@ TEST(Page, DataParseBackAndFitAMegabyte) {
   const auto data = island_of(page);
   ASSERT_EQ(data["runs"].size(), 14u);
   EXPECT_EQ(data["runs"][8]["status"], "failed");
-  EXPECT_EQ(data["sketch"]["lines"].size(), 3u);
+  EXPECT_EQ(data["picture"]["bodies"].size(), 3u);
   for (const auto& run : data["runs"]) {
     const auto& drift = run["series"]["position_drift"];
     EXPECT_EQ(drift["t"].size(), drift["y"].size());

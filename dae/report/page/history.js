@@ -101,7 +101,7 @@ function historyChart(spec) {
   // The steepest line runs three times above the largest curve's end; the others start where it does.
   function under() {
     floorLine(u);
-    if (!spec.slopes || !visible().length) return;
+    if (!spec.slopes.length || !visible().length) return;
     const largest = visible().reduce((a, b) => (b.top.at(-1) > a.top.at(-1) ? b : a));
     const steepest = Math.max(...spec.slopes);
     const start = largest.t[0], end = largest.t.at(-1);

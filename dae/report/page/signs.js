@@ -1,51 +1,9 @@
-// Which sign stands for which run: colour for the form, marker for the integrator, dash for what still differs.
+// The signs of runs: colour for the form, marker for the integrator, dash for what still differs.
 
 /** The eight colours of Okabe and Ito. Black is the ink of the theme; yellow needs an outline on white. */
-const palette = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "ink", "#e69f00", "#56b4e9", "#f0e442"];
+const { palette } = study;
 const yellow = palette.length - 1;
-
-/** Every form has its colour on every page; where a page has more than eight, later ones share it with a dash. */
-const preferred = [
-  ["momentum", 0], ["acceleration", 1], ["momentum-stabilised", 2], ["stabilised-index2", 3], ["projected", 4],
-  ["baumgarte", 5], ["momentum-index2", 6], ["augmented-lagrangian", 7], ["momentum-index1", 0],
-  ["acceleration-index1", 1], ["partitioned", 2], ["acceleration-index3", 3], ["momentum-index3", 6],
-  ["acceleration-index2", 5], ["augmented-lagrangian-canonical", 0], ["maximal-coordinates", 7],
-];
-
-const dashes = [[], [9, 5], [2, 4], [12, 4, 2, 4], [16, 6], [2, 8]];
-const markers = ["circle", "square", "triangle", "diamond", "plus", "star"];
-
-const signs = (() => {
-  const order = (form) => {
-    const i = preferred.findIndex(([name]) => name === form);
-    return i < 0 ? preferred.length : i;
-  };
-  const forms = [...new Set(runs.map((run) => run.form))];
-  const integrators = [...new Set(runs.map((run) => run.integrator))];
-
-  const uses = palette.map(() => 0);
-  const colourOf = {}, roundOf = {};
-  for (const form of [...forms].sort((a, b) => order(a) - order(b))) {
-    let colour = order(form) < preferred.length ? preferred[order(form)][1] : 0;
-    const free = uses.indexOf(0);
-    if (uses[colour] > 0) colour = free >= 0 ? free : uses.indexOf(Math.min(...uses));
-    if (free < 0 && order(form) < preferred.length) colour = preferred[order(form)][1];
-    roundOf[form] = uses[colour]++;
-    colourOf[form] = colour;
-  }
-
-  const variants = {};
-  return runs.map((run, i) => {
-    if (run.ladder !== i && !study.drift_study) return null;  // a rung takes the sign of its ladder
-    const key = `${run.form} ${run.integrator}`;
-    variants[key] = (variants[key] ?? -1) + 1;
-    return {
-      colour: colourOf[run.form],
-      dash: dashes[(roundOf[run.form] + 2 * variants[key]) % dashes.length],
-      marker: markers[integrators.indexOf(run.integrator) % markers.length],
-    };
-  }).map((sign, i, all) => sign ?? all[runs[i].ladder]);
-})();
+const signs = runs.map((run) => run.sign);
 
 const manyIntegrators = new Set(runs.map((run) => run.integrator)).size > 1;
 

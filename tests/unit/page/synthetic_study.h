@@ -77,6 +77,52 @@ inline RunResult failed(RunResult run, double time, std::string reason) {
   return run;
 }
 
+/// Three links with a loop at C.
+inline Picture four_bar() {
+  using Eigen::Vector3d;
+  Picture p;
+  p.planar = true;
+  p.length = 2;
+  const auto link = [&](const char* name, const char* joint, int parent, Vector3d at,
+                        double length) {
+    Picture::Body body;
+    body.name = name;
+    body.joint = joint;
+    body.joint_kind = "revolute";
+    body.parent = parent;
+    body.at_parent = std::move(at);
+    body.turn = Picture::Turn::about_axis;
+    body.com = {0.5 * length, 0, 0};
+    body.ends = {Vector3d::Zero(), Vector3d(length, 0, 0)};
+    p.bodies.push_back(body);
+  };
+  link("crank", "O", -1, {0, 0, 0}, 0.7);
+  link("coupler", "A", 0, {0.7, 0, 0}, 2);
+  link("rocker", "B", -1, {2.5, 0, 0}, 1.3);
+  p.loops = {{"C", "revolute", 1, 2, {2, 0, 0}, {1.3, 0, 0}}};
+  p.markers = {{"P", 1, {1, 0, 0}}};
+  return p;
+}
+
+/// The crank turns once a second; the loop opens like t.
+inline Motion motion(int run, double end, std::size_t frames) {
+  Motion m;
+  m.run = run;
+  m.every = frames > 1 ? end / static_cast<double>(frames - 1) : 0;
+  for (std::size_t k = 0; k < frames; ++k) {
+    const double t = m.every * static_cast<double>(k);
+    const auto about_z = [](double angle) {
+      return Eigen::Quaterniond(Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()));
+    };
+    Motion::Frame frame;
+    frame.turn = {about_z(6.283185307179586 * t), about_z(-6 * t), about_z(2 + std::sin(t))};
+    frame.slide = {{0, 0, 0}, {0.7, 0, 0}, {2.5, 0, 0}};
+    frame.gap = {Eigen::Vector3d(1e-6 * t, 0, 0)};
+    m.frames.push_back(frame);
+  }
+  return m;
+}
+
 inline StudyResult study_of(std::vector<RunResult> runs) {
   StudyResult study;
   study.scene = "Planar four-bar";
@@ -97,14 +143,8 @@ inline StudyResult study_of(std::vector<RunResult> runs) {
       "Release",
       {{"momenta", "0.1.0"}, {"SUNDIALS", "6.4.1"}, {"SuiteSparse", "5.12.0"}, {"Eigen", "3.4.0"}},
       "2025-03-01T12:00:00Z"};
-  study.sketch.lines = {{"crank", {{0, 0}, {0.35, 0.6}}},
-                        {"coupler", {{0.35, 0.6}, {2.2, 1.3}}},
-                        {"rocker", {{2.2, 1.3}, {2.5, 0}}}};
-  study.sketch.points = {{"O", "ground", {0, 0}},
-                         {"A", "joint", {0.35, 0.6}},
-                         {"B", "joint", {2.2, 1.3}},
-                         {"C", "loop", {2.5, 0}},
-                         {"P", "marker", {1.275, 0.95}}};
+  study.picture = four_bar();
+  study.motions = {motion(-1, 0, 1)};
   study.runs = std::move(runs);
   return study;
 }

@@ -1,8 +1,4 @@
-// The page, section by section: charts with their tables, the mechanism, how it was made.
-
-function section(title, caption, ...content) {
-  return element("section", {}, element("h2", {}, title), element("p", { class: "caption" }, caption), ...content);
-}
+// The page of a study: charts with their tables, the mechanisms side by side, how it was made.
 
 const numeric = (name, unit, get, best = true, digits = 2) =>
   ({ name, unit, get, best, text: (value) => number(value, digits) });
@@ -17,43 +13,27 @@ const largest = (what) => `${what}; strong lines are the largest value so far, f
 const anyFailed = runs.some((run) => run.status !== "done");
 const withReference = runs.some((run) => measured(run.error.position_max));
 
-const histories = [
-  {
-    key: "position_drift", title: "Position drift", yTitle: "position drift |Φ| [m]", unit: "m", slopes: [1, 2],
-    caption: largest("How far the loops are open"),
-    columns: [
-      numeric("largest drift", "m", (run) => run.drift.position_max),
-      optional(numeric("between steps", "m", (run) => run.drift.between_steps_max)),
-      ...growth((run) => run.growth.position),
-    ],
-  },
-  {
-    key: "velocity_drift", title: "Velocity drift", yTitle: "velocity drift |Φ̇| [m/s]", unit: "m/s", slopes: [1, 2],
-    caption: largest("How fast the loops open"),
-    columns: [
-      numeric("largest drift", "m/s", (run) => run.drift.velocity_max),
-      ...growth((run) => run.growth.velocity),
-    ],
-  },
-  {
-    key: "energy_error", title: "Energy error", yTitle: "energy error |E − E₀| [J]", unit: "J",
-    caption: largest("Energy, less the work done on the mechanism, against its value at the start"),
-    columns: [numeric("largest energy error", "J", (run) => run.energy.error_max)],
-  },
-  {
-    key: "position_error", title: "Error against the reference", yTitle: "error of positions max |err|/(1+|ref|)", unit: "1",
-    caption: largest(`Distance from ${study.reference || "the reference"}`),
-    columns: [
-      numeric("largest position error", "", (run) => run.error.position_max),
-      optional(numeric("largest velocity error", "", (run) => run.error.velocity_max)),
-    ],
-  },
-  {
-    key: "impulse", title: "Loop impulses", yTitle: "loop impulses |σ| [N s]", unit: "N s",
-    caption: largest("What a gauge keeps from growing: the multipliers σ of momentum forms"),
-    columns: [],
-  },
-];
+/** Captions and columns of the histories that the data name. */
+const told = {
+  position_drift: [largest("How far the loops are open"), [
+    numeric("largest drift", "m", (run) => run.drift.position_max),
+    optional(numeric("between steps", "m", (run) => run.drift.between_steps_max)),
+    ...growth((run) => run.growth.position),
+  ]],
+  velocity_drift: [largest("How fast the loops open"), [
+    numeric("largest drift", "m/s", (run) => run.drift.velocity_max),
+    ...growth((run) => run.growth.velocity),
+  ]],
+  energy_error: [largest("Energy, less the work done on the mechanism, against its value at the start"), [
+    numeric("largest energy error", "J", (run) => run.energy.error_max),
+  ]],
+  position_error: [largest(`Distance from ${study.reference || "the reference"}`), [
+    numeric("largest position error", "", (run) => run.error.position_max),
+    optional(numeric("largest velocity error", "", (run) => run.error.velocity_max)),
+  ]],
+  impulse: [largest("What a gauge keeps from growing: the multipliers σ of momentum forms"), []],
+};
+const histories = study.histories.map((history) => ({ ...history, caption: told[history.key][0], columns: told[history.key][1] }));
 
 const time = { xTitle: "processor time", xUnit: "s", cost: (run) => run.time.cpu_s };
 const costs = {
@@ -123,34 +103,28 @@ function failedSection() {
   return section("Runs that did not finish", "Their curves and numbers go up to where they stopped.", list);
 }
 
-function makingSection() {
-  const { environment } = study;
-  const repeats = [...new Set(runs.map((run) => run.time.repeats))].sort((a, b) => a - b);
-  const span = [...new Set(runs.map((run) => run.end_time))].map((t) => `${number(t, 4)} s`).join(", ");
-  const list = element("dl");
-  const line = (name, value, code = false) => {
-    if (value) list.append(element("dt", {}, name), element("dd", {}, code ? element("code", {}, value) : value));
-  };
-  line("command", study.command, true);
-  line("scene", [study.scene, study.scene_file].filter(Boolean).join(", "));
-  line("hash of the scene", study.scene_hash, true);
-  line("simulated time", span);
-  for (const [name, value] of study.plan) line(`plan: ${name}`, value);
-  line("reference", study.reference || "none");
-  line("repeats", repeats.some((n) => n > 0) ? `${repeats.join(", ")}; times are their median` : "");
-  line("versions", Object.entries(environment.versions).map(([name, version]) => `${name} ${version}`).join(", "));
-  line("compiler", environment.compiler);
-  line("flags", environment.flags, true);
-  line("build", environment.build_type);
-  line("processor", environment.cpu);
-  line("date", environment.date);
-  const all = download("All numbers of all runs as CSV", `${fileName}.csv`, () => study.csv);
-  return section("How it was made", "", list, element("p", { class: "notes" }, all));
+/** The mechanism as each run moved it, or, of a ladder, at its start; null where nothing is drawn. */
+function sideBySide() {
+  const films = study.motions.map(filmOf);
+  if (!films.length || !picture.bodies.length) return null;
+  const moving = films.some((film) => film.run >= 0);
+  const titleOf = (film) => film.run < 0 ? null : element("span", {}, swatch(film.run, false), " ", runs[film.run].label);
+  const player = moviePlayer(films, titleOf, films.length > 1 ? ["loops", "joints"] : usualBoxes);
+  const magnified = player.factor() > 1
+    ? `Gaps of loops are drawn ${player.factor() < 1e4 ? player.factor() : `10${raised(Math.round(Math.log10(player.factor())))}`} times as wide as they are, the same factor in all. `
+    : player.factor() === 1 ? "Gaps of loops are drawn in true size. " : "";
+  player.clock.set(player.clock.end);  // where the gaps are to be seen
+  return section(moving ? "The mechanism in every form" : "The mechanism at the start", `${moving ? magnified : ""}${steeringWords()}.`, player.figure);
 }
 
 {
   const main = document.getElementById("main");
   const add = (node) => node && main.append(node);
+  let mechanismsShown = false;
+  const addMechanisms = () => {
+    if (!mechanismsShown) add(sideBySide());
+    mechanismsShown = true;
+  };
   let costsShown = false;
   const addCosts = () => {
     if (costsShown) return;
@@ -180,18 +154,10 @@ function makingSection() {
     // The error has its table with the costs.
     if (spec.key === "position_error" && runs.some((run) => measured(run.time.cpu_s))) spec.columns = [];
     add(chartSection(spec, chart, true));
+    if (study.drift_study) addMechanisms();
   }
   if (anyFailed) add(failedSection());
-  add(mechanismSection());
+  addMechanisms();
   add(makingSection());
-
-  // Charts take their colours when they are drawn: again when the theme changes, and in ink on paper.
-  const redraw = () => charts.forEach((chart) => chart.redraw());
-  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", redraw);
-  const paper = (on) => () => {
-    document.documentElement.classList.toggle("paper", on);
-    redraw();
-  };
-  addEventListener("beforeprint", paper(true));
-  addEventListener("afterprint", paper(false));
+  followTheme();
 }

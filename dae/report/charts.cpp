@@ -1,0 +1,217 @@
+#include <momenta/dae/form/form.h>
+#include <momenta/dae/report/chart.h>
+#include <momenta/dae/report/run_label.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace momenta {
+namespace {
+
+constexpr double rounding_floor = 1e-17;  // of logarithmic axes: below it nothing but rounding
+
+bool any_finite(const std::vector<double>& y) {
+  return std::any_of(y.begin(), y.end(), [](double v) { return std::isfinite(v); });
+}
+bool any_but_zero(const std::vector<double>& y) {
+  return std::any_of(y.begin(), y.end(), [](double v) { return std::isfinite(v) && v != 0; });
+}
+std::vector<double> sizes_of(std::vector<double> y) {
+  for (double& v : y) v = std::isnan(v) ? v : std::max(std::abs(v), rounding_floor);
+  return y;
+}
+
+Chart over_time(const char* key, const char* title, const std::string& y_title, const char* unit) {
+  Chart chart;
+  chart.key = key;
+  chart.title = title;
+  chart.x_title = "time t [s]";
+  chart.y_title = y_title;
+  chart.unit = unit;
+  return chart;
+}
+
+/// What a column of a trajectory is called beyond its name, by unit.
+struct Quantity {
+  const char *unit, *key, *title, *axis;
+};
+constexpr std::array<Quantity, 7> quantities{{{"rad", "angles", "Angles", "angle"},
+                                              {"m", "positions", "Positions", "position"},
+                                              {"rad/s", "angular_rates", "Angular rates", "rate"},
+                                              {"m/s", "speeds", "Speeds", "speed"},
+                                              {"1", "quaternions", "Quaternions", "part"},
+                                              {"N", "forces", "Loop forces λ", "force"},
+                                              {"N m", "moments", "Loop moments λ", "moment"}}};
+
+}  // namespace
+
+const std::vector<History>& histories() {
+  static const std::vector<History> all{
+      {"position_drift",
+       "Position drift",
+       "position drift |Φ| [m]",
+       "m",
+       &Series::position_drift,
+       {1, 2}},
+      {"velocity_drift",
+       "Velocity drift",
+       "velocity drift |Φ̇| [m/s]",
+       "m/s",
+       &Series::velocity_drift,
+       {1, 2}},
+      {"energy_error", "Energy error", "energy error |E − E₀| [J]", "J", &Series::energy_error, {}},
+      {"position_error",
+       "Error against the reference",
+       "error of positions max |err|/(1+|ref|)",
+       "1",
+       &Series::position_error,
+       {}},
+      {"impulse", "Loop impulses", "loop impulses |σ| [N s]", "N s", &Series::impulse, {}}};
+  return all;
+}
+
+std::vector<Chart> charts_of_run(const RunResult& run) {
+  std::vector<Chart> charts;
+  for (const History& history : histories()) {
+    const std::vector<double>& y = run.series.*history.values;
+    const std::string key = history.key;
+    // Zero throughout is nothing to look at: drifts without loops.
+    if (!any_but_zero(y) || (key == "impulse" && !takes_gauge(run.settings.form))) continue;
+    Chart chart = over_time(history.key, history.title, history.axis, history.unit);
+    chart.log_y = true;
+    chart.curves.push_back({history.title, run.series.t, sizes_of(y), sign_in_turn(charts.size()),
+                            run.status != "done"});
+    charts.push_back(std::move(chart));
+  }
+  const Trajectory& trajectory = run.trajectory;
+  if (trajectory.rows.empty()) return charts;
+  std::map<std::string, std::vector<std::size_t>> by_unit;
+  for (std::size_t c = 1; c < trajectory.columns.size(); ++c) {
+    const std::string& label = trajectory.columns[c];
+    const auto bracket = label.rfind(" [");
+    const std::string name = label.substr(0, bracket);
+    if (name == "energy" || name == "position_drift" || name == "velocity_drift") continue;
+    by_unit[label.substr(bracket + 2, label.size() - bracket - 3)].push_back(c);
+  }
+  for (const Quantity& q : quantities) {
+    Chart chart = over_time(q.key, q.title, std::string(q.axis) + " [" + q.unit + "]", q.unit);
+    for (const std::size_t c : by_unit[q.unit]) {
+      const std::string& label = trajectory.columns[c];
+      Curve curve{label.substr(0, label.rfind(" [")),
+                  {},
+                  {},
+                  sign_in_turn(chart.curves.size()),
+                  run.status != "done"};
+      for (const auto& row : trajectory.rows) {
+        curve.x.push_back(row[0]);
+        curve.y.push_back(row[c]);
+      }
+      if (any_finite(curve.y)) chart.curves.push_back(std::move(curve));
+    }
+    if (!chart.curves.empty()) charts.push_back(std::move(chart));
+  }
+  return charts;
+}
+
+namespace {
+
+/// One figure of a run against what it cost.
+struct Cost {
+  const char *key, *title, *x_title, *y_title, *unit;
+  double (*x)(const RunResult&);
+  double (*y)(const RunResult&);
+};
+double processor_time(const RunResult& run) {
+  return run.cpu_s;
+}
+double evaluations(const RunResult& run) {
+  return static_cast<double>(run.counters.evaluations);
+}
+double position_error(const RunResult& run) {
+  return run.position_error_max;
+}
+double position_drift(const RunResult& run) {
+  return run.position_drift_max;
+}
+double energy_error(const RunResult& run) {
+  return run.energy_error_max;
+}
+
+/// The rungs of a ladder are joined; the runs of a drift study stand alone.
+Chart scatter(const StudyResult& study, const Cost& cost, const std::vector<Sign>& signs) {
+  Chart chart;
+  chart.key = cost.key;
+  chart.title = cost.title;
+  chart.x_title = cost.x_title;
+  chart.y_title = cost.y_title;
+  chart.unit = cost.unit;
+  chart.log_x = chart.log_y = true;
+  const auto labels = run_labels(study, study.drift_study);
+  const auto ladder = ladders(study);
+  std::map<std::size_t, std::size_t> place;
+  for (std::size_t i = 0; i < study.runs.size(); ++i) {
+    const RunResult& run = study.runs[i];
+    const double x = cost.x(run), y = cost.y(run);
+    if (!(x > 0) || !std::isfinite(y)) continue;
+    const std::size_t group = study.drift_study ? i : ladder[i];
+    if (place.emplace(group, chart.curves.size()).second) {
+      chart.curves.push_back({labels[group], {}, {}, signs[group]});
+      chart.curves.back().dots = true;
+    }
+    Curve& curve = chart.curves[place[group]];
+    curve.x.push_back(x);
+    curve.y.push_back(std::max(y, rounding_floor));
+    curve.failed = run.status != "done";
+  }
+  return chart;
+}
+
+}  // namespace
+
+std::vector<Chart> charts_of_study(const StudyResult& study) {
+  const auto signs = signs_of(study);
+  const auto labels = run_labels(study), ladder_labels = run_labels(study, false);
+  std::vector<Chart> charts;
+  for (const History& history : histories()) {
+    Chart chart = over_time(history.key, history.title, history.axis, history.unit);
+    chart.log_x = chart.log_y = chart.running_maximum = true;
+    chart.slopes = history.slopes;
+    for (const std::size_t i : runs_with_curves(study)) {
+      const RunResult& run = study.runs[i];
+      const std::vector<double>& y = run.series.*history.values;
+      if (!any_finite(y)) continue;
+      // |λ| is a force and |σ| an impulse: only forms with impulses share the axis.
+      if (std::string(history.key) == "impulse" && !takes_gauge(run.settings.form)) continue;
+      chart.curves.push_back({study.drift_study ? labels[i] : ladder_labels[i], run.series.t,
+                              sizes_of(y), signs[i], run.status != "done"});
+    }
+    if (!chart.curves.empty()) charts.push_back(std::move(chart));
+  }
+  const bool judged = std::any_of(study.runs.begin(), study.runs.end(), [](const RunResult& run) {
+    return std::isfinite(run.position_error_max);
+  });
+  const char* time = "processor time [s]";
+  const char* error =
+      judged ? "error of positions max |err|/(1+|ref|)" : "largest position drift |Φ| [m]";
+  const char* unit = judged ? "1" : "m";
+  const auto y = judged ? position_error : position_drift;
+  std::vector<Cost> costs{
+      {"error_cost", "Error against processor time", time, error, unit, processor_time, y}};
+  if (!study.drift_study) {
+    costs.push_back({"error_evaluations", "Error against evaluations",
+                     "evaluations of the right-hand side or the residual", error, unit, evaluations,
+                     y});
+    costs.push_back({"drift_cost", "Position drift against processor time", time,
+                     "largest position drift |Φ| [m]", "m", processor_time, position_drift});
+    costs.push_back({"energy_cost", "Energy error against processor time", time,
+                     "largest energy error |E − E₀| [J]", "J", processor_time, energy_error});
+  }
+  for (const Cost& cost : costs) {
+    Chart chart = scatter(study, cost, signs);
+    if (!chart.curves.empty()) charts.push_back(std::move(chart));
+  }
+  return charts;
+}
+
+}  // namespace momenta

@@ -1,0 +1,80 @@
+#pragma once
+// What is drawn of a mechanism, and how it moved: for pages and figures.
+//
+// A body hangs on its parent by its joint. The place of body k, with R its axes and x its origin:
+//
+//   R_k = R_j T(t),   x_k = x_j + R_j s(t) − R_k c        j: parent, T: turn, s: slide
+//
+// c is the joint's point in the child. With T and s sampled, the ends of two links that share a
+// joint coincide at every instant, between the samples too: interpolating T and s cannot tear a
+// joint apart, as interpolating poses would. Of loops nothing of the kind is true; their gap is
+// sampled itself:
+//
+//   g(t) = what of x_A − x_B the loop does not allow,   ground axes
+
+#include <momenta/core/scene/scene.h>
+
+#include <string>
+#include <vector>
+
+namespace momenta {
+
+struct Picture {
+  enum class Turn { none, about_axis, freely };
+  struct Body {
+    std::string name, joint, joint_kind;
+    int parent = -1;  ///< place among the bodies, before this one; −1: ground
+    Eigen::Vector3d at_parent = Eigen::Vector3d::Zero();  ///< s where the joint does not slide
+    Eigen::Vector3d at_child = Eigen::Vector3d::Zero();   ///< c
+    /// T = rest · R(axis, angle) of joints that turn about one axis, fixed in both bodies.
+    Turn turn = Turn::none;
+    bool slides = false;
+    Eigen::Quaterniond rest = Eigen::Quaterniond::Identity();
+    Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< in the joint frame
+    Shape shape;
+    double mass = 0;
+    Eigen::Vector3d com = Eigen::Vector3d::Zero();
+    /// Where joints, loops and springs hold it, and the ends of a rod; no two the same.
+    std::vector<Eigen::Vector3d> ends;
+  };
+  /// Two points, in body axes; −1: ground.
+  struct Pair {
+    std::string name, kind;
+    int parent = -1, child = -1;
+    Eigen::Vector3d at_parent = Eigen::Vector3d::Zero(), at_child = Eigen::Vector3d::Zero();
+  };
+  struct Marker {
+    std::string name;
+    int body = -1;
+    Eigen::Vector3d at = Eigen::Vector3d::Zero();
+  };
+
+  bool planar = false;
+  /// Columns: right, up and towards the viewer, ground axes; of a planar mechanism its plane.
+  Eigen::Matrix3d view = Eigen::Matrix3d::Identity();
+  double length = 1;  ///< natural length of the scene [m]
+  std::vector<Body> bodies;
+  std::vector<Pair> loops;    ///< all but couplers
+  std::vector<Pair> springs;  ///< between points of bodies
+  std::vector<Marker> markers;
+};
+
+/// Coordinates at equal times: start, start + every, … [s].
+struct Film {
+  double start = 0, every = 0;
+  std::vector<std::vector<double>> frames;  ///< q of each
+};
+
+/// T and s of every body and g of every loop, at the times of a film.
+struct Motion {
+  int run = -1;  ///< of which run of a study; −1: the start, before any
+  struct Frame {
+    std::vector<Eigen::Quaterniond> turn;  ///< unit; of `about_axis` with its vector along the axis
+    std::vector<Eigen::Vector3d> slide;    ///< [m]
+    std::vector<Eigen::Vector3d> gap;      ///< [m]
+  };
+  double start = 0, every = 0;
+  std::vector<Frame> frames;
+};
+
+}  // namespace momenta
