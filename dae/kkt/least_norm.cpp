@@ -10,8 +10,10 @@
 namespace momenta {
 namespace {
 
-/// Numbers of A, zeros among them, up to which it is treated densely.
+/// Numbers of A, zeros among them, and columns up to which it is treated densely: damped, the
+/// dense way costs their cube, however few rows there are.
 constexpr double most_dense = 1e5;
+constexpr int most_dense_columns = 400;
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
@@ -111,7 +113,7 @@ struct LeastNorm::Sparse {
 
 LeastNorm::LeastNorm(const std::vector<KktPattern::Entry>& pattern, int rows, int columns)
     : pattern_(pattern), rows_(rows), columns_(columns) {
-  if (static_cast<double>(rows) * columns <= most_dense)
+  if (static_cast<double>(rows) * columns <= most_dense && columns <= most_dense_columns)
     dense_ = std::make_unique<Dense>();
   else
     sparse_ = std::make_unique<Sparse>();
