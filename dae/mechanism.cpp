@@ -1,6 +1,7 @@
 #include <momenta/dae/kkt/kkt.h>
 #include <momenta/dae/mechanism.h>
 
+#include <cmath>
 #include <cstdio>
 
 namespace momenta {
@@ -113,7 +114,9 @@ void Mechanism::choose_kkt(KktChoice asked) {
 }
 
 /// Scales of the loops at the start, and joints too light for the others: beside a mobility 10⁶
-/// times theirs the filter of the pivots takes what the others have of a row.
+/// times theirs the filter of the pivots takes what the others have of a row. A joint's inertia is
+/// weighed at the end of the way from it to the loop's point: so a uniform chain stays a chain of
+/// equals, whatever its length.
 void Mechanism::weigh_loops() {
   constexpr double least_lever = 1e-4, most_apart = 1e6;
   const double length = length_of(scene_);
@@ -121,6 +124,7 @@ void Mechanism::weigh_loops() {
   const auto e = evaluation<double>();
   e->place(0, tree_.q0.data());
   e->mass_diagonal(inertia.data());
+  const auto poses = tree_.zero_poses();
   const auto slides = [](const Tree::Body& b, int i) {
     return b.nv == 6 ? i < 3 : b.nv == 1 && b.kind == JointKind::prismatic;
   };
@@ -129,24 +133,30 @@ void Mechanism::weigh_loops() {
       double sum = 0, least = 0;
       int lightest = -1, heaviest = -1;
       double of_lightest = 0, of_heaviest = 0;
-      const auto pass = [&](int k) {
+      const auto pass = [&](int k, double lever) {
         const Tree::Body& b = tree_.bodies[static_cast<std::size_t>(k)];
         for (int i = 0; i < b.nv; ++i) {
           const double along = inertia[static_cast<std::size_t>(b.u + i)];
-          const double mass = slides(b, i) ? along : along / (length * length);
-          if (!(mass > 0)) continue;
-          sum += 1 / mass;
+          if (!(along > 0)) continue;
+          sum += slides(b, i) ? 1 / along : length * length / along;
+          if (!slides(b, i) && !(lever > least_lever * length)) continue;
+          const double mass = slides(b, i) ? along : along / (lever * lever);
           if (lightest < 0 || mass < of_lightest) lightest = k, of_lightest = mass;
           if (heaviest < 0 || mass > of_heaviest) heaviest = k, of_heaviest = mass;
         }
       };
       if (l.is_coupler()) {
-        for (const auto& c : l.joints) pass(c.body);
+        for (const auto& c : l.joints) pass(c.body, length);
       } else {
+        double way_a = std::sqrt(dot(l.at_a, l.at_a)), way_b = std::sqrt(dot(l.at_b, l.at_b));
         for (int a = l.a, b = l.b; a != b;) {
           int& later = a > b ? a : b;
-          pass(later);
+          double& way = a > b ? way_a : way_b;
+          pass(later, way);
+          const Eigen::Vector3d from = poses[static_cast<std::size_t>(later)].translation();
           later = tree_.bodies[static_cast<std::size_t>(later)].parent;
+          if (later >= 0)
+            way += (from - poses[static_cast<std::size_t>(later)].translation()).norm();
         }
         least = least_lever * least_lever * sum;
       }
