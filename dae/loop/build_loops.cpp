@@ -24,6 +24,15 @@ void take_rows(const LoopChoice& choice, Loop& l) {
   l.rows = static_cast<int>(choice.names.size());
 }
 
+/// Whether no body carries both.
+bool meet_at_ground(const Tree& tree, int a, int b) {
+  while (a != b) {
+    int& later = a > b ? a : b;
+    later = tree.bodies[static_cast<std::size_t>(later)].parent;
+  }
+  return a < 0;
+}
+
 /// Σ rᵢ qᵢ = c. Driven coordinates go to the other side.
 template <class Space>
 void couple(const LoopSpec& spec, const Tree& tree, typename LoopModel<Space>::Loop& l,
@@ -218,7 +227,7 @@ LoopModel<Planar> build_loops(const Scene& scene, const Tree& tree, const Model<
           return normal.dot(axis) > 0 ? 1.0 : -1.0;
         },
         std::move(motion), all, l);
-    if (l.n_points == 2 && l.n_axes == 0 && l.motion < 0 && l.a != l.b) {
+    if (l.n_points == 2 && l.n_axes == 0 && l.motion < 0 && meet_at_ground(tree, l.a, l.b)) {
       l.is_tie = true;
       l.axis_b = {Vec2<double>{{1, 0}}, Vec2<double>{{0, 1}}, {}};
     }

@@ -22,6 +22,12 @@ int place_in(const std::vector<int>& nodes, int node) {
   return static_cast<int>(std::find(nodes.begin(), nodes.end(), node) - nodes.begin());
 }
 
+int root_of(const std::vector<int>& parents, int body) {
+  while (parents[static_cast<std::size_t>(body)] >= 0)
+    body = parents[static_cast<std::size_t>(body)];
+  return body;
+}
+
 /// Per pair of `wanted` the signed pairs of the tree `given` that add up to it: x_a − x_b as the
 /// sum along the way from a to b.
 std::vector<std::vector<std::pair<int, double>>> along(const std::vector<Pair>& given,
@@ -56,7 +62,8 @@ std::vector<std::vector<std::pair<int, double>>> along(const std::vector<Pair>& 
 }  // namespace
 
 template <class Space>
-SharedPoints::SharedPoints(const LoopModel<Space>& loops, LoopModel<Space>& paired_anew) {
+SharedPoints::SharedPoints(const std::vector<int>& parents, const LoopModel<Space>& loops,
+                           LoopModel<Space>& paired_anew) {
   paired_anew = loops;
   // Nodes: a body's point; joined by ties into trees.
   struct Node {
@@ -101,8 +108,9 @@ SharedPoints::SharedPoints(const LoopModel<Space>& loops, LoopModel<Space>& pair
     const auto body = [&](int node) { return nodes[static_cast<std::size_t>(node)].body; };
     std::sort(shared.nodes.begin(), shared.nodes.end(),
               [&](int x, int y) { return body(x) < body(y); });
-    if (std::adjacent_find(shared.nodes.begin(), shared.nodes.end(),
-                           [&](int x, int y) { return body(x) == body(y); }) != shared.nodes.end())
+    if (std::adjacent_find(shared.nodes.begin(), shared.nodes.end(), [&](int x, int y) {
+          return body(x) >= 0 && root_of(parents, body(x)) == root_of(parents, body(y));
+        }) != shared.nodes.end())
       continue;
     const bool grounded = body(shared.nodes.front()) < 0;
     std::vector<Pair> given, paired;
@@ -172,7 +180,9 @@ SharedPoints::SharedPoints(const SharedPoints&) = default;
 SharedPoints& SharedPoints::operator=(const SharedPoints&) = default;
 SharedPoints::~SharedPoints() = default;
 
-template SharedPoints::SharedPoints(const LoopModel<Planar>&, LoopModel<Planar>&);
-template SharedPoints::SharedPoints(const LoopModel<Spatial>&, LoopModel<Spatial>&);
+template SharedPoints::SharedPoints(const std::vector<int>&, const LoopModel<Planar>&,
+                                    LoopModel<Planar>&);
+template SharedPoints::SharedPoints(const std::vector<int>&, const LoopModel<Spatial>&,
+                                    LoopModel<Spatial>&);
 
 }  // namespace momenta

@@ -25,10 +25,13 @@ class SharedPoints {
   SharedPoints(const SharedPoints&);
   SharedPoints& operator=(const SharedPoints&);
   ~SharedPoints();
-  /// The loops with such ties paired anew, each in the place of one of them, and the two bases.
+  /// The loops with such ties paired anew, each in the place of one of them, and the two bases. Of
+  /// bodies given by their parents, −1 the ground's; new pairs too are ties, of bodies that no
+  /// third one carries: two on one branch may have too little freedom between them to close there.
   /// O(loops · log loops + Σ bodies² over the shared points).
   template <class Space>
-  SharedPoints(const LoopModel<Space>& loops, LoopModel<Space>& paired_anew);
+  SharedPoints(const std::vector<int>& parents, const LoopModel<Space>& loops,
+               LoopModel<Space>& paired_anew);
 
   /// Whether anything was.
   bool empty() const { return count_ == 0; }

@@ -49,6 +49,11 @@ class DenseLoops {
         loops_.push_back(plane ? planar(spec, driven, *plane, at_zero) : spatial(spec, driven));
       loops_.back().driven = driven;
       loops_.back().origin = origin;
+      const auto given = [](const DriveSpec* d) { return d != nullptr; };
+      if (plane && !std::any_of(driven.begin(), driven.end(), given) &&
+          !std::any_of(origin.begin(), origin.end(), given) && only_points(spec.kind) &&
+          apart(scene, spec.child, spec.parent))
+        loops_.back().tied_along = plane;
     }
   }
 
@@ -88,7 +93,10 @@ class DenseLoops {
       };
       const Rotation<S> turned_a = product(axes_a, turn(l.turns_a)),
                         turned_b = product(axes_b, turn(l.turns_b));
-      for (const std::size_t j : l.points) phi.push_back(inner(turned_b * raised<S>(l.b[j]), gap));
+      for (const std::size_t j : l.points)
+        phi.push_back(l.tied_along
+                          ? inner(triple<S>(l.tied_along->col(static_cast<Eigen::Index>(j))), gap)
+                          : inner(turned_b * raised<S>(l.b[j]), gap));
       for (const auto& [i, j] : l.axes)
         phi.push_back(inner(turned_a * raised<S>(l.a[i]), turned_b * raised<S>(l.b[j])) -
                       lift<S>(l.cosine));
@@ -179,7 +187,28 @@ class DenseLoops {
     List<std::pair<Triple<Real>, const DriveSpec*>> slides;  ///< axes of the parent
     List<Angle> turns_a, turns_b;
     Drives driven{}, origin{};
+    std::optional<Eigen::Matrix3d> tied_along{};  ///< of a tie in a plane: axes of the ground
   };
+
+  static bool only_points(LoopKind kind) {
+    return kind == LoopKind::point || kind == LoopKind::spherical || kind == LoopKind::revolute;
+  }
+  /// Whether no body carries both.
+  static bool apart(const Scene& scene, const std::string& a, const std::string& b) {
+    const auto carriers = [&](std::string name) {
+      std::vector<std::string> all;
+      while (name != "ground") {
+        all.push_back(name);
+        for (const JointSpec& j : scene.joints)
+          if (j.child == all.back()) name = j.parent;
+      }
+      return all;
+    };
+    for (const std::string& x : carriers(a))
+      for (const std::string& y : carriers(b))
+        if (x == y) return false;
+    return true;
+  }
 
   template <class S>
   S coupling(const Loop& l, const S& t, const List<S>& q) const {

@@ -150,24 +150,26 @@ TEST(Assembly, HeldRatesThatTearALoopAreSaid) {
 TEST(Assembly, KeepsToTheBranchOfTheGuess) {
   Scene scene = example("four_bar");
   const Assembly open = assemble(Mechanism(scene));
+  // In the plane the loop's rows are places in the ground, and Newton's steps alone end in the same
+  // assembly as the continued gap; in space, along axes of a body that turns, they do not always.
   int kept = 0, told = 0;
-  for (int i = 0; i < 24; ++i)
-    for (int j = 0; j < 24; ++j) {
-      Scene s = scene;
-      s.joints[1].position = {open.start.q[1] + 0.26 * (i - 11.5)};
-      s.joints[2].position = {open.start.q[2] + 0.26 * (j - 11.5)};
-      const Mechanism mechanism(s);
-      const Assembly a = assemble(mechanism);
-      expect_consistent(mechanism, a);
-      const double near = std::max(std::abs(s.joints[1].position[0] - open.start.q[1]),
-                                   std::abs(s.joints[2].position[0] - open.start.q[2]));
-      const bool here = (a.start.q - open.start.q).cwiseAbs().maxCoeff() < 1e-9;
-      if (near < 0.8) {
-        EXPECT_TRUE(here) << i << " " << j << ": " << a.branch;
-      }
-      kept += here;
-      told += !a.branch.empty();
+  for (int n = 0; n < 2 * 24 * 24; ++n) {
+    const int i = n / 24 % 24, j = n % 24;
+    Scene s = scene;
+    s.joints[1].position = {open.start.q[1] + 0.26 * (i - 11.5)};
+    s.joints[2].position = {open.start.q[2] + 0.26 * (j - 11.5)};
+    const Mechanism mechanism(s, {.algebra = n < 24 * 24 ? Algebra::planar : Algebra::spatial});
+    const Assembly a = assemble(mechanism);
+    expect_consistent(mechanism, a);
+    const double near = std::max(std::abs(s.joints[1].position[0] - open.start.q[1]),
+                                 std::abs(s.joints[2].position[0] - open.start.q[2]));
+    const bool here = (a.start.q - open.start.q).cwiseAbs().maxCoeff() < 1e-9;
+    if (near < 0.8) {
+      EXPECT_TRUE(here) << i << " " << j << ": " << a.branch;
     }
+    kept += here;
+    told += !a.branch.empty();
+  }
   EXPECT_GT(told, 0);
   RecordProperty("kept", kept);
   RecordProperty("told", told);

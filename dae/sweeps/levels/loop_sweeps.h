@@ -87,7 +87,9 @@ template <class Space>
 SweptLoops<Space> swept_loops(const Model<Space>& model, LoopModel<Space> loops) {
   SweptLoops<Space> given{std::move(loops), {}, {}}, anew;
   given.plan = plan_loops(model, given.loops);
-  anew.shared = SharedPoints(given.loops, anew.loops);
+  std::vector<int> parents;
+  for (const auto& b : model.bodies) parents.push_back(b.parent);
+  anew.shared = SharedPoints(parents, given.loops, anew.loops);
   if (anew.shared.empty()) return given;
   anew.plan = plan_loops(model, anew.loops);
   return given.plan.fits() && anew.plan.work < given.plan.work ? anew : given;
