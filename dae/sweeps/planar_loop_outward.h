@@ -223,7 +223,13 @@ MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::add_inertial_rates(
   };
   const Planar::Motion<S> A = motion_of(l.a), B = motion_of(l.b);
   Wrench w, N;  // of the impulses on A about x_A, and its rate
-  force_of_rows(loop, right, impulse, A, B, w, N);
+  if (ties_[loop].turns) {
+    const S x = S(impulse[l.row]), y = S(impulse[l.row + 1]);
+    w = {x * s.Fx - y * s.Fy, x * s.Fy + y * s.Fx, zero};
+    N = {-(B.w * w.fy), B.w * w.fx, zero};
+  } else {
+    force_of_rows(loop, right, impulse, A, B, w, N);
+  }
   const S ux = A.v[0] - A.w * s.ay, uy = A.v[1] + A.w * s.ax;
   N.fn = N.fn + (ux * w.fy - uy * w.fx);
   N.fx = N.fx - right.leak * w.fx;

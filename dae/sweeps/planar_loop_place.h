@@ -79,8 +79,9 @@ MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::place_ends(std::size_
     const LoopPlan::End& end = plan_->ends[static_cast<std::size_t>(i)];
     const auto loop = static_cast<std::size_t>(end.loop);
     const Tie& t = ties_[loop];
-    if (!t.holds) continue;
     Place& s = places_[loop];
+    if (t.turns) place_turning(k, end, t, s, x, y);
+    if (!t.holds) continue;
     const S c = angles_.cosine(k), e = angles_.sine(k);
     const Vec2<double>& at = end.on_a ? t.a : t.b;
     const S rx = c * at[0] - e * at[1], ry = e * at[0] + c * at[1];
@@ -92,6 +93,27 @@ MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::place_ends(std::size_
     s.Dx = (begins ? S(t.D[0]) : s.Dx) + sign * (x + rx);
     s.Dy = (begins ? S(t.D[1]) : s.Dy) + sign * (y + ry);
   }
+}
+
+/// The same of rows along axes of B. x_A − O_B = (O_A − O_B) + a waits with the joint of the end
+/// placed first.
+template <class S, int Rows, bool Momentum>
+MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::place_turning(std::size_t k,
+                                                                         const LoopPlan::End& end,
+                                                                         const Tie& t, Place& s,
+                                                                         const S& x, const S& y) {
+  const S c = angles_.cosine(k), e = angles_.sine(k);
+  const Vec2<double>& v = end.on_a ? t.a : t.b;
+  const S vx = c * v[0] - e * v[1], vy = e * v[0] + c * v[1];
+  (end.on_a ? s.ax : s.Fx) = vx;
+  (end.on_a ? s.ay : s.Fy) = vy;
+  S bx = x, by = y;
+  if (end.first) {
+    bx = (end.on_a ? x - s.bx : s.bx - x) + s.ax;
+    by = (end.on_a ? y - s.by : s.by - y) + s.ay;
+  }
+  s.bx = bx;
+  s.by = by;
 }
 
 template <class S, int Rows, bool Momentum>

@@ -204,7 +204,7 @@ MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::enter_pair(const Loop
     a.Dy = a.Dy + (centre[0] * fy + centre[1] * fx);
     a.Dn = a.Dn + (centre[0] * n0 + centre[1] * n1);
   }
-  const bool asks = end.first && (!Momentum || right.positions != 0 || !tie);
+  const bool asks = end.first && (!Momentum || right.positions != 0 || !(tie || ties_[loop].turns));
   at_lane<Rows>(plan_->lane[loop], [&]<int Lane>() MOMENTA_INLINED {
     o.C[0].template add_pair<Lane>(fx, -fy);
     o.C[1].template add_pair<Lane>(fy, fx);

@@ -87,11 +87,12 @@ class LoopSweeps<Planar, S, Rows, Momentum> : PlanarPlaces<S> {
   using Loop = LoopModel<Planar>::Loop;
   using Motion = LoopModel<Planar>::Motion;
 
-  /// All that placing a tie takes.
+  /// All that placing a tie takes, or two point rows along axes of B that no drive moves.
   struct Tie {
     Vec2<double> a, b, D;  ///< x_A and x_B, body axes; what an end on the ground has of D
     bool grounded = false;
     bool holds = false;  ///< false: any other loop
+    bool turns = false;  ///< b is then the first axis
   };
   /// Where a loop stands, ground axes.
   struct Place {
@@ -115,6 +116,8 @@ class LoopSweeps<Planar, S, Rows, Momentum> : PlanarPlaces<S> {
   template <class In>
   void place_bodies(const In& x, const RightSide<S>& right);
   MOMENTA_INLINE void place_ends(std::size_t k, const RightSide<S>& right, const S& x, const S& y);
+  MOMENTA_INLINE void place_turning(std::size_t k, const LoopPlan::End& end, const Tie& t, Place& s,
+                                    const S& x, const S& y);
   __attribute__((noinline)) void place_other_loops();
   void place_rows(const Loop& l, std::size_t loop);
   void place_moving(const Loop& l);
@@ -191,7 +194,7 @@ class LoopSweeps<Planar, S, Rows, Momentum> : PlanarPlaces<S> {
   std::vector<LoopedPin<S, Rows>> pins_;
   std::vector<LoopedJoint<S, Rows>> looped_;
   std::vector<Tie> ties_;            ///< by loop
-  std::vector<int> others_;          ///< loops that are no tie
+  std::vector<int> others_;          ///< loops that are none
   std::vector<Place> places_;        ///< by loop
   std::vector<RowPlace> row_at_;     ///< by row of Φ; not of pairs
   std::vector<MovingPoint> moving_;  ///< by motion
@@ -238,7 +241,10 @@ LoopSweeps<Planar, S, Rows, Momentum>::LoopSweeps(const PlanarTree& tree,
   for (std::size_t i = 0; i < ties_.size(); ++i) {
     const Loop& l = loops.loops[i];
     if (!l.is_tie) {
-      others_.push_back(static_cast<int>(i));
+      if (plan.pair[i] && l.motion < 0 && l.a >= 0 && l.b >= 0 && l.a != l.b)
+        ties_[i] = {l.at_a, l.axis_b[0], {}, false, false, true};
+      else
+        others_.push_back(static_cast<int>(i));
       continue;
     }
     const Vec2<double> D = l.a < 0 ? l.at_a : l.b < 0 ? -l.at_b : Vec2<double>{};
