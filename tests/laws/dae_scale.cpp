@@ -6,8 +6,10 @@
 
 #include <gtest/gtest.h>
 #include <malloc.h>
+
 #include <momenta/dae/assembly.h>
 #include <momenta/dae/kkt/loop_solver.h>
+#include <cmath>
 
 #include <memory>
 
@@ -20,11 +22,12 @@ using Eigen::VectorXd;
 struct Large {
   const char* name;
   Scene (*make)(int bodies);
-  int mobility;
+  int mobility(int bodies) const { return name == std::string("arch") ? bodies - 2 : 1; }
 };
 const Large all[] = {
-    {"row", [](int bodies) { return row_of_four_bars(bodies / 2, 1.1, 1); }, 1},
-    {"ladder", [](int bodies) { return crossed_bars(bodies / 2); }, 2},
+    {"row", [](int bodies) { return row_of_four_bars(bodies / 2, 1.1, 1); }},
+    {"ladder", [](int bodies) { return crossed_bars(bodies / 2); }},
+    {"arch", [](int bodies) { return arch(bodies); }},
 };
 
 class Scale : public testing::TestWithParam<Large> {};
@@ -33,7 +36,10 @@ TEST_P(Scale, TwentyThousandBodiesAssembleAndMove) {
   const Mechanism mechanism(GetParam().make(20000));
   const Assembly a = assemble(mechanism);
   EXPECT_EQ(a.rank, mechanism.m());
-  EXPECT_EQ(a.mobility, GetParam().mobility);
+  // A ladder held at one pin turns and opens: one more.
+  const int more = GetParam().name == std::string("ladder") ? 1 : 0;
+  EXPECT_EQ(a.mobility,
+            GetParam().mobility(static_cast<int>(mechanism.tree().bodies.size())) + more);
   EXPECT_LT(a.moved, 1e-6);
 
   const auto e = mechanism.evaluation<double>();
@@ -41,8 +47,12 @@ TEST_P(Scale, TwentyThousandBodiesAssembleAndMove) {
   const VectorXd& q = a.start.q;
   VectorXd p(mechanism.nv()), u(mechanism.nv()), back(mechanism.nv()), pdot(mechanism.nv()),
       sigma(mechanism.m()), rate(mechanism.m());
+  // What starts at rest is pushed, as its loops do not allow.
+  VectorXd wanted = a.start.u;
+  if (wanted.isZero(0))
+    for (Eigen::Index i = 0; i < wanted.size(); ++i) wanted[i] = std::sin(static_cast<double>(i));
   e->place(0, q.data());
-  e->move(a.start.u.data());
+  e->move(wanted.data());
   e->momenta(nullptr, p.data());
   const double size = p.cwiseAbs().maxCoeff();
   ASSERT_TRUE(solver->momentum(0, q.data(), p.data(), nullptr, fade_evaluation, 0, u.data(),
