@@ -121,6 +121,11 @@ Ranks::Ranks() {
   if (!std::freopen("/dev/null", "w", stdout) || !std::freopen("/dev/null", "w", stderr))
     throw std::runtime_error("/dev/null cannot be written");
 }
+bool Ranks::agreed(bool ready) {
+  int said = ready;
+  if (count_ > 1) MPI_Bcast(&said, 1, MPI_INT, 0, MPI_COMM_WORLD);
+  return said != 0;
+}
 Ranks::~Ranks() {
   int initialised = 0;
   MPI_Initialized(&initialised);
@@ -137,6 +142,9 @@ void hand_out(Queue&, int, const std::function<void(std::size_t, const std::stri
 }  // namespace
 
 Ranks::Ranks() = default;
+bool Ranks::agreed(bool ready) {
+  return ready;
+}
 Ranks::~Ranks() = default;
 
 #endif

@@ -21,6 +21,10 @@ class Ranks {
   int rank() const { return rank_; }
   int count() const { return count_; }
 
+  /// Tells the other ranks whether rank 0 has a study for them; what they return is what it said.
+  /// Called once by all.
+  bool agreed(bool ready);
+
   /// Calls make(number) once for each of `wanted`, on any rank, and keep(number, record) for each
   /// on rank 0, from several threads there. The same `make` on all ranks, `wanted` and `keep` on
   /// rank 0 alone. `threads` on rank 0 and on each other. Stops handing out once going_on() is

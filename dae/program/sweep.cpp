@@ -94,11 +94,18 @@ int sweep(const Options& o, const SweepOptions& s) {
   const std::size_t count = request.cases();
   const auto make = [&](std::size_t number) { return record_of(run_case(request, number)).dump(); };
   if (ranks.rank() > 0) {
-    ranks.share({}, 1, make, {}, {});
+    if (ranks.agreed(true)) ranks.share({}, 1, make, {}, {});
     return done;
   }
-  expect_own_results(o.out, "sweep.csv");
-  const auto journal = keep_runs(o);
+  std::unique_ptr<Journal> journal;
+  try {
+    expect_own_results(o.out, "sweep.csv");
+    journal = keep_runs(o);
+  } catch (...) {
+    ranks.agreed(false);
+    throw;
+  }
+  ranks.agreed(true);
   ProgressLine line(o.quiet);
   Finished finished(count, Keys(o, request), journal.get(), line);
   const int alone = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));

@@ -151,6 +151,13 @@ TEST_F(SweepProgram, ThreadsProcessesAndKillsChangeNothing) {
   EXPECT_EQ(csv("ranks"), expected);
   const auto shared = nlohmann::json::parse(text_of(folder_ / "ranks" / "sweep.json"));
   EXPECT_EQ(shared.at("processes"), 3);
+  // What rank 0 alone can tell is told, and nobody waits for it.
+  fs::create_directories(folder_ / "foreign");
+  std::ofstream(folder_ / "foreign" / "study.csv") << "another verb's";
+  const Outcome refused = call(sweep("foreign"), "/dev/null",
+                               "timeout 60 mpirun --allow-run-as-root --oversubscribe -n 3 ");
+  EXPECT_EQ(refused.status, 2) << refused.err;
+  EXPECT_NE(refused.err.find("study.csv of another verb"), std::string::npos) << refused.err;
 }
 
 TEST_F(SweepProgram, RefusesWhatItCannotVary) {
