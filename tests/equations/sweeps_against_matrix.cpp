@@ -1,5 +1,6 @@
 #include "equations/sweeps_against_matrix.h"
 
+#include "equations/kkt_blocks.h"
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
@@ -19,17 +20,7 @@ struct Conditions {
   double of_mass = 1, of_loops = 1;
 };
 Conditions conditions(const Mechanism& mechanism, Evaluation<double>& e) {
-  const auto& pattern = mechanism.kkt_pattern();
-  std::vector<double> values(std::max(pattern.mass.size(), pattern.constraint.size()));
-  MatrixXd M = MatrixXd::Zero(mechanism.nv(), mechanism.nv()),
-           J = MatrixXd::Zero(mechanism.m(), mechanism.nv());
-  e.mass_entries(values.data());
-  for (std::size_t i = 0; i < pattern.mass.size(); ++i)
-    M(pattern.mass[i].row, pattern.mass[i].column) =
-        M(pattern.mass[i].column, pattern.mass[i].row) = values[i];
-  e.constraint_entries(values.data());
-  for (std::size_t i = 0; i < pattern.constraint.size(); ++i)
-    J(pattern.constraint[i].row, pattern.constraint[i].column) = values[i];
+  const auto [M, J] = KktBlocks(mechanism, e);
   const VectorXd masses = M.selfadjointView<Eigen::Lower>().eigenvalues();
   const VectorXd loops =
       MatrixXd(M.llt().matrixL().solve(J.transpose())).jacobiSvd().singularValues();

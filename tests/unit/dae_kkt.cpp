@@ -1,6 +1,7 @@
 // The solvers of (7) against dense factorisations in longer arithmetic: regular systems, redundant
 // rows, nearly singular poses in every orientation.
 
+#include "equations/kkt_blocks.h"
 #include "equations/linkages.h"
 #include "equations/random_loops.h"
 #include "equations/tolerance.h"
@@ -22,21 +23,8 @@ using RealMatrix = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic>;
 using RealVector = Eigen::Matrix<Real, Eigen::Dynamic, 1>;
 
 /// (7) as it stands at one configuration.
-struct Assembled {
-  MatrixXd M, J;
-  Assembled(const Mechanism& mechanism, Evaluation<double>& e)
-      : M(MatrixXd::Zero(mechanism.nv(), mechanism.nv())),
-        J(MatrixXd::Zero(mechanism.m(), mechanism.nv())) {
-    const auto& pattern = mechanism.kkt_pattern();
-    std::vector<double> values(std::max(pattern.mass.size(), pattern.constraint.size()));
-    e.mass_entries(values.data());
-    for (std::size_t i = 0; i < pattern.mass.size(); ++i)
-      M(pattern.mass[i].row, pattern.mass[i].column) =
-          M(pattern.mass[i].column, pattern.mass[i].row) = values[i];
-    e.constraint_entries(values.data());
-    for (std::size_t i = 0; i < pattern.constraint.size(); ++i)
-      J(pattern.constraint[i].row, pattern.constraint[i].column) = values[i];
-  }
+struct Assembled : KktBlocks {
+  using KktBlocks::KktBlocks;
   MatrixXd matrix() const {
     const auto n = M.rows(), m = J.rows();
     MatrixXd a = MatrixXd::Zero(n + m, n + m);
