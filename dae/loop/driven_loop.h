@@ -54,7 +54,7 @@ struct DrivenLoop {
   T given{}, given_rate{}, given_second{};
 
   void move(const Motion& m, const T& t) {
-    T f, rate, second;
+    T f{}, rate{}, second{};
     at_b = of(m.at_b);
     v = a = {};
     for (const auto& slide : m.slides) {
