@@ -107,7 +107,8 @@ bool LoopSweeps<Planar, S, Rows, Momentum>::inward(const In& r, const RightSide<
   const Vec2<double>& g = tree_->model->gravity;
   const bool falls = !Momentum && tree_->model->has_gravity, couples = plan_->couples();
   PlanarCargo<S> a{};
-  // Of a pack in memory: registers could not hold it, and what is open differs from body to body.
+  // Of one state in registers: all that takes its address takes a copy. Of a pack in memory, as what
+  // is open differs from body to body.
   std::conditional_t<Column::apart, Blocks&, Blocks> o = front_;
   Blocks& ground = ground_;
   if constexpr (!Column::apart) ground = {};
