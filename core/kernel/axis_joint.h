@@ -195,7 +195,9 @@ MOMENTA_INLINE void add_axis_motion(const Model<Spatial>::Body& b, const S& u, O
 template <bool Gravity, class S>
 MOMENTA_INLINE S axis_momentum_rate(const Model<Spatial>::Body& b, const JointRecord<Spatial, S>& x,
                                     const OutwardCargo<S>& w) {
-  const auto &A = x.M.A.x, &H = x.M.H.x, &I = x.M.I.x;
+  const auto& A = x.M.A.x;
+  const auto& H = x.M.H.x;
+  const auto& I = x.M.I.x;
   const S fx =
       A[0] * w.vx + A[1] * w.vy + A[2] * w.vz + H[0] * w.ox + H[1] * w.oy + H[2] * w.oz + x.D.f[0];
   const S fy =

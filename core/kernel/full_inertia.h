@@ -42,7 +42,9 @@ MOMENTA_INLINE void add(Full<S>& a, const Full<S>& b) {
 }
 template <class S>
 Full<S> full(const Spatial::ArticulatedInertia<S>& m) {
-  const auto &A = m.A.x, &H = m.H.x, &I = m.I.x;
+  const auto& A = m.A.x;
+  const auto& H = m.H.x;
+  const auto& I = m.I.x;
   return {A[0], A[1], A[2], A[3], A[4], A[5], H[0], H[1], H[2], H[3], H[4],
           H[5], H[6], H[7], H[8], I[0], I[1], I[2], I[3], I[4], I[5]};
 }

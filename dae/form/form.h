@@ -62,7 +62,7 @@ class Form {
   /// algebraic solve.
   virtual bool read(double t, const double* y, const double* ydot, Snapshot& out) = 0;
   /// q alone (nq): what Φ is evaluated at between steps, before any correction.
-  virtual bool coordinates(double /*t*/, const double* y, Eigen::VectorXd& q) {
+  virtual bool read_coordinates(double /*t*/, const double* y, Eigen::VectorXd& q) {
     std::copy_n(y, q.size(), q.begin());
     return true;
   }

@@ -123,7 +123,7 @@ class Partitioned final : public OdeForm {
   }
   bool wants_care() const override { return false; }
 
-  bool coordinates(double t, const double* y, Eigen::VectorXd& q) override {
+  bool read_coordinates(double t, const double* y, Eigen::VectorXd& q) override {
     if (!close(t, y)) return false;
     q = q_;
     return true;

@@ -79,7 +79,7 @@ class Looker {
     const double middle = 0.5 * (t0 + t1);
     if (mechanism_.m() > 0) {
       between(middle, state_.data());
-      if (!form_.coordinates(middle, state_.data(), middle_)) return true;
+      if (!form_.read_coordinates(middle, state_.data(), middle_)) return true;
       e_->place(middle, middle_.data());
       e_->positions(phi_.data());
       const double drift = phi_.norm();
@@ -149,7 +149,7 @@ class Looker {
       const double t = film.start + film.every * static_cast<double>(film.frames.size());
       if (t > t1 + rounding) return;
       between(std::min(t, t1), state_.data());
-      if (!form_.coordinates(t, state_.data(), middle_)) return;
+      if (!form_.read_coordinates(t, state_.data(), middle_)) return;
       film.frames.emplace_back(middle_.begin(), middle_.end());
     }
   }
@@ -157,7 +157,7 @@ class Looker {
   /// redundant throughout.
   double pivot_at(double t, const Interpolant& between) {
     between(t, state_.data());
-    if (!form_.coordinates(t, state_.data(), middle_)) return not_measured;
+    if (!form_.read_coordinates(t, state_.data(), middle_)) return not_measured;
     at_rest_.setZero(mechanism_.nv());
     if (!solver_->free_velocity(t, middle_.data(), at_rest_.data(), unused_.data()))
       return not_measured;

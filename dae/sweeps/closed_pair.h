@@ -57,16 +57,33 @@ struct ClosedPair {
   }
 };
 
+/// w_a w_b − k² and whether all its digits can be trusted: with a fused multiply-add always, the
+/// product's own rounding being taken off (Kahan); else where nothing much cancels.
+template <class S>
+MOMENTA_INLINE bool exact_determinant(const S& w_a, const S& w_b, const S& k, S& det) {
+  const S product = w_a * w_b;
+  det = product - k * k;
+  return all_positive(8.0 * det - product);
+}
+#ifdef __FMA__
+template <int L>
+MOMENTA_INLINE bool exact_determinant(const Pack<1, L>& w_a, const Pack<1, L>& w_b,
+                                      const Pack<1, L>& k, Pack<1, L>& det) {
+  const double square = k.v * k.v, rounding = __builtin_fma(k.v, k.v, -square);
+  det = Pack<1, L>(__builtin_fma(w_a.v, w_b.v, -square) - rounding);
+  return true;
+}
+#endif
+
 /// f of both pivots of a pair, w_a and p = w_b − k² f_a. Where neither is near fading, τ/w below
-/// 2⁻¹⁴, f(w) is 1/w to the last digit; where nothing much cancels, p = (w_a w_b − k²)/w_a is as
-/// good, and both share a division.
+/// 2⁻¹⁴, f(w) is 1/w to the last digit, p = (w_a w_b − k²)/w_a, and both share a division.
 template <class S>
 MOMENTA_INLINE void invert_pivots(const S& w_a, const S& w_b, const S& k, const S& tau, S& f_a,
                                   S& f_b, S& p) {
-  const S steep = 16384.0 * tau, product = w_a * w_b, det = product - k * k;
-  if (__builtin_expect(all_positive(w_a - steep) && all_positive(det - steep * w_a) &&
-                           all_positive(8.0 * det - product),
-                       1)) {
+  const S steep = 16384.0 * tau;
+  S det;
+  const bool exact = exact_determinant(w_a, w_b, k, det);
+  if (__builtin_expect(exact && all_positive(w_a - steep) && all_positive(det - steep * w_a), 1)) {
     const S inverse = S(1.0) / (w_a * det);
     f_a = det * inverse;
     f_b = w_a * w_a * inverse;
@@ -86,8 +103,9 @@ MOMENTA_INLINE void close_pair(Front<S, Rows, Columns>& front, double fade,
   constexpr int B = A + 1;
   using Here = Lanes<S, Rows>;
   const S zero(0.0), one(1.0);
-  const S waa = front.w(A, A), wbb = front.w(B, B), wab = front.w(A, B);
-  const S tau = (front.scale[A] + front.scale[B]) * (0.5 * fade);
+  const S waa = front.template w<A, A>(), wbb = front.template w<B, B>(),
+          wab = front.template w<A, B>();
+  const S tau = (front.scale.template at<A>() + front.scale.template at<B>()) * (0.5 * fade);
   const auto swapped = [&](const auto& x, const auto& y)
                            MOMENTA_INLINED { return where_greater(wbb, waa, x, y); };
   pair.swap = swapped(one, zero);
@@ -97,15 +115,16 @@ MOMENTA_INLINE void close_pair(Front<S, Rows, Columns>& front, double fade,
   const S l = coupling * fa;
   pair.l = l;
   if constexpr (keeps_pivots<S>) pair.pivots = {first, p, tau};
-  const S da = swapped(front.d[B], front.d[A]), db = swapped(-front.d[A], front.d[B]) - l * da;
+  const S da = swapped(front.d.template at<B>(), front.d.template at<A>()),
+          db = swapped(-front.d.template at<A>(), front.d.template at<B>()) - l * da;
   pair.da = fa * da;
   pair.db = fb * db;
   S ca[Columns], cb[Columns];
   if constexpr (Moves) {
     each<Columns>([&](auto i) MOMENTA_INLINED {
-      const S x = front.C[i][A], y = front.C[i][B];
-      ca[i] = swapped(y, x);
-      cb[i] = swapped(-x, y) - l * ca[i];
+      const S x = front.C[i].template at<A>(), y = front.C[i].template at<B>();
+      ca[i] = where_greater(wbb, waa, y, x);
+      cb[i] = where_greater(wbb, waa, -x, y) - l * ca[i];
       pair.a[i] = fa * ca[i];
       pair.b[i] = fb * cb[i];
     });
@@ -116,7 +135,7 @@ MOMENTA_INLINE void close_pair(Front<S, Rows, Columns>& front, double fade,
     Here ga, gb;
     if constexpr (Here::apart) {
       each_open<S, Rows>(beside, [&](auto i) MOMENTA_INLINED {
-        const S x = front.w(A, i), y = front.w(B, i);
+        const S x = front.template w<A, i>(), y = front.template w<B, i>();
         ga.v[i] = swapped(y, x);
         gb.v[i] = swapped(-x, y);
       });

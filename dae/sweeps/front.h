@@ -30,6 +30,13 @@ struct Front {
   Here W[Rows];  ///< symmetric: of lanes apart only the upper triangle is kept
 
   MOMENTA_INLINE S w(int i, int j) const { return Here::apart && j < i ? W[j][i] : W[i][j]; }
+  template <int i, int j>
+  MOMENTA_INLINE S w() const {
+    if constexpr (Here::apart && j < i)
+      return W[j].template at<i>();
+    else
+      return W[i].template at<j>();
+  }
 
   /// Zeroes what opens here: at a tip everything, elsewhere the groups in `fresh`; of those in
   /// `born` only C and d, as a pin's elimination will write W and scale.
@@ -84,7 +91,7 @@ struct Front {
       g.v[i] = local.v[i];
     });
     each_entry(open, [&](auto i, auto part) MOMENTA_INLINED {
-      put(born, i, part, W[i].v[part], local.v[part] * own.all(own[i]));
+      put(born, i, part, W[i].v[part], local.v[part] * own.all(own.template at<i>()));
     });
   }
   /// Writes x, where lane i or j is in `fresh`, else adds it.
@@ -102,19 +109,22 @@ struct Front {
   /// W += g cᵀ
   MOMENTA_INLINE void add_product(const Here& g, const Here& c, LaneGroups open) {
     each_entry(open, [&](auto i, auto part) MOMENTA_INLINED {
-      W[i].v[part] = W[i].v[part] + g.v[part] * c.all(c[i]);
+      W[i].v[part] = W[i].v[part] + g.v[part] * c.all(c.template at<i>());
     });
   }
   /// W −= a bᵀ + x yᵀ
   MOMENTA_INLINE void subtract_products(const Here& a, const Here& b, const Here& x, const Here& y,
                                         LaneGroups open) {
     each_entry(open, [&](auto i, auto part) MOMENTA_INLINED {
-      W[i].v[part] = W[i].v[part] - (a.v[part] * a.all(b[i]) + x.v[part] * a.all(y[i]));
+      W[i].v[part] = W[i].v[part] - (a.v[part] * a.all(b.template at<i>()) +
+                                     x.v[part] * a.all(y.template at<i>()));
     });
   }
 
  private:
-  /// act(row, part of the row) for the entries of W that are kept, of open lanes.
+  /// act(row, part of the row) for the entries of W that are kept, of open lanes. Without a lambda
+  /// in a lambda: g++ resolves the address of what is captured so deep when it is too late for
+  /// registers.
   template <class Act>
   MOMENTA_INLINE static void each_entry(LaneGroups open, Act&& act) {
     if constexpr (Here::apart)
@@ -124,9 +134,15 @@ struct Front {
         });
       });
     else
-      each<Rows>([&](auto i) MOMENTA_INLINED {
-        each<Here::parts>([&](auto part) MOMENTA_INLINED { act(i, part); });
-      });
+      parts_from<0>(act);
+  }
+  template <int k, class Act>
+  MOMENTA_INLINE static void parts_from(Act& act) {
+    if constexpr (k < Rows * Here::parts) {
+      act(std::integral_constant<int, k / Here::parts>{},
+          std::integral_constant<int, k % Here::parts>{});
+      parts_from<k + 1>(act);
+    }
   }
 };
 

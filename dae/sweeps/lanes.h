@@ -35,6 +35,10 @@ struct Lanes {
 
   static MOMENTA_INLINE const S& all(const S& x) { return x; }
   MOMENTA_INLINE S operator[](int i) const { return v[i]; }
+  template <int i>
+  MOMENTA_INLINE S at() const {
+    return v[i];
+  }
   MOMENTA_INLINE void set(int i, const S& x) { v[i] = x; }
   MOMENTA_INLINE void add(int i, const S& x) { v[i] = v[i] + x; }
   template <int i>
@@ -61,6 +65,13 @@ struct Lanes<Pack<1, Level>, Rows> {
 
   static MOMENTA_INLINE Part all(const S& x) { return Part(x.v); }
   MOMENTA_INLINE S operator[](int i) const { return S(v[i / width].v[i % width]); }
+  /// The same of a lane known here: the register it is read from stays one. An index that is
+  /// constant only after inlining reads memory, and then whatever it is part of lives there.
+  template <int i>
+  MOMENTA_INLINE S at() const {
+    constexpr int part = i / width, place = i % width;
+    return S(v[part].v[place]);
+  }
   /// Lanes are chosen by comparison: writing one number into a register would go through memory.
   MOMENTA_INLINE void set(int i, const S& x) {
     for (int k = 0; k < parts; ++k) v[k].v = places(k) == i ? Part(x.v).v : v[k].v;
@@ -191,12 +202,15 @@ MOMENTA_INLINE Lanes<Pack<1, L>, Rows> operator-(Lanes<Pack<1, L>, Rows> a) {
   return a;
 }
 
+// Of both results the values are chosen: x or y itself would be chosen by address, and live in
+// memory with all it is part of.
+
 /// x where the condition a > b holds, else y; state by state.
 template <int W, int L>
 MOMENTA_INLINE Pack<W, L> where_greater(const Pack<W, L>& a, const Pack<W, L>& b,
                                         const Pack<W, L>& x, const Pack<W, L>& y) {
   if constexpr (W == 1)
-    return a.v > b.v ? x : y;
+    return Pack<W, L>(a.v > b.v ? x.v : y.v);
   else
     return Pack<W, L>::of(a.v > b.v ? x.v : y.v);
 }
@@ -206,7 +220,11 @@ template <int L, int Rows>
 MOMENTA_INLINE Lanes<Pack<1, L>, Rows> where_greater(const Pack<1, L>& a, const Pack<1, L>& b,
                                                      const Lanes<Pack<1, L>, Rows>& x,
                                                      const Lanes<Pack<1, L>, Rows>& y) {
-  return a.v > b.v ? x : y;
+  const bool greater = a.v > b.v;
+  Lanes<Pack<1, L>, Rows> chosen;
+  each<Lanes<Pack<1, L>, Rows>::parts>(
+      [&](auto k) MOMENTA_INLINED { chosen.v[k].v = greater ? x.v[k].v : y.v[k].v; });
+  return chosen;
 }
 
 }  // namespace momenta

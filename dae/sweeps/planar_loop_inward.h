@@ -42,13 +42,13 @@ MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::close(const LoopPlan:
                                                                  PlanarCargo<S>& a, Blocks& o,
                                                                  double fade, LaneGroups all) {
   for (int i = range.first; i < range.last; ++i) {
-    const int loop = plan_->closings[static_cast<std::size_t>(i)];
-    const auto at = static_cast<std::size_t>(loop);
+    const Closing& c = closings_[static_cast<std::size_t>(i)];
+    const auto at = static_cast<std::size_t>(c.loop);
     if constexpr (pairs_in_registers)
-      if (plan_->pair[at]) {
-        at_lane<Rows>(plan_->lane[at], [&]<int Lane>() MOMENTA_INLINED {
+      if (c.pair) [[likely]] {
+        at_lane<Rows>(c.lane, [&]<int Lane>() MOMENTA_INLINED {
           if (compliance_) {
-            const S* soft = compliance_ + loops_->loops[at].row;
+            const S* soft = compliance_ + c.row;
             o.W[Lane].template add_pair<Lane>(soft[0], S(0.0));
             o.W[Lane + 1].template add_pair<Lane>(S(0.0), soft[1]);
           }
@@ -57,7 +57,7 @@ MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::close(const LoopPlan:
         continue;
       }
     Open copy{a, o};
-    close_any(loop, copy, fade, all);
+    close_any(c.loop, copy, fade, all);
     a = copy.cargo;
     o = copy.blocks;
   }
@@ -107,15 +107,22 @@ bool LoopSweeps<Planar, S, Rows, Momentum>::inward(const In& r, const RightSide<
   const Vec2<double>& g = tree_->model->gravity;
   const bool falls = !Momentum && tree_->model->has_gravity, couples = plan_->couples();
   PlanarCargo<S> a{};
-  // Of a pack in memory: registers could not hold it, and what is open differs from body to body.
-  Blocks local[2];
-  Blocks &o = Column::apart ? front_ : local[0], &ground = Column::apart ? ground_ : local[1];
+  // Of one state in registers: all that takes its address takes a copy. Of a pack in memory, as what
+  // is open differs from body to body.
+  std::conditional_t<Column::apart, Blocks&, Blocks> o = front_;
+  Blocks& ground = ground_;
+  if constexpr (!Column::apart) ground = {};
   for (std::size_t k = pins_.size(); k-- > 0;) {
     const PlanarLink& l = links[k];
     const OpenLanes::Front& front = fronts[k];
     LoopedPin<S, Rows>& w = pins_[k];
     const S c = angles_.cosine(k), s = angles_.sine(k);
     const S kx = l.cx * c - l.cy * s, ky = l.cx * s + l.cy * c;
+    if constexpr (Momentum) {
+      const Vec2<S> way = way_from_parent(l);
+      w.rx = way[0];
+      w.ry = way[1];
+    }
     if (l.tip) a = {};
     const LaneGroups born = l.pin ? front.born : 0;
     o.begin(l.tip, front.fresh, born);
@@ -138,7 +145,7 @@ bool LoopSweeps<Planar, S, Rows, Momentum>::inward(const In& r, const RightSide<
     enter(k, right, a, o);
     const LoopPlan::Range closing = plan_->closings_of[k];
     if (closing.first != closing.last) close<true>(closing, a, o, right.fade, front.all);
-    if (!l.pin) {
+    if (!l.pin) [[unlikely]] {
       Open here{a, o};
       if (!general_inward(k, r, right, here)) {
         stuck_ = static_cast<int>(k);
@@ -153,7 +160,7 @@ bool LoopSweeps<Planar, S, Rows, Momentum>::inward(const In& r, const RightSide<
       }
       const S inverse = S(1.0) / a.I;
       S pk;
-      if (couples) {
+      if (couples) [[unlikely]] {
         Blocks here = o;
         pk = couple(k, r, right, here);
         o = here;
@@ -203,7 +210,7 @@ bool LoopSweeps<Planar, S, Rows, Momentum>::inward(const In& r, const RightSide<
           });
         }
         Base::carry(a, rx, ry, pk);
-        if (couples) {
+        if (couples) [[unlikely]] {
           Column here = o.C[2];
           uncouple(k, here);
           o.C[2] = here;

@@ -15,25 +15,25 @@ MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::solve_loops(
     out[row] = right.centre ? x + right.centre[row] : x;
   };
   for (int i = range.last; i-- > range.first;) {
-    const auto at = static_cast<std::size_t>(plan_->closings[static_cast<std::size_t>(i)]);
-    const Loop& l = loops_->loops[at];
-    const int lane = plan_->lane[at];
-    if (pairs_in_registers && plan_->pair[at]) {
+    const Closing& c = closings_[static_cast<std::size_t>(i)];
+    const auto at = static_cast<std::size_t>(c.loop);
+    if (pairs_in_registers && c.pair) {
       S x, y;
       if constexpr (Moves)
         pairs_[at].impulses(motion, sigma, lanes_.beside[at], x, y);
       else
         pairs_[at].impulses_at_ground(sigma, lanes_.beside[at], x, y);
-      at_lane<Rows>(lane, [&]<int Lane>() MOMENTA_INLINED { sigma.template set_pair<Lane>(x, y); });
-      store(l.row, x);
-      store(l.row + 1, y);
+      at_lane<Rows>(c.lane,
+                    [&]<int Lane>() MOMENTA_INLINED { sigma.template set_pair<Lane>(x, y); });
+      store(c.row, x);
+      store(c.row + 1, y);
     } else {
       Column here = sigma;
-      for (int j = l.rows; j-- > 0;) {
-        const Row& row = rows_[static_cast<std::size_t>(l.row + j)];
+      for (int j = loops_->loops[at].rows; j-- > 0;) {
+        const Row& row = rows_[static_cast<std::size_t>(c.row + j)];
         const S x = Moves ? row.impulse(motion, here) : row.impulse_at_ground(here);
         here.set(row.lane, x);
-        store(l.row + row.lane - lane, x);
+        store(c.row + row.lane - c.lane, x);
       }
       sigma = here;
     }
@@ -69,7 +69,8 @@ void LoopSweeps<Planar, S, Rows, Momentum>::outward(const RightSide<S>& right, O
     }
     if (!l.pin) {
       PlanarMotion<S> here{vx, vy, omega};
-      general_outward(k, rates, u, rate, here, sigma);
+      const Column carried = sigma;  // whose address is taken
+      general_outward(k, rates, u, rate, here, carried);
       vx = here.vx;
       vy = here.vy;
       omega = here.omega;
@@ -163,7 +164,7 @@ void LoopSweeps<Planar, S, Rows, Momentum>::rates_inward(const In& q, const Righ
     if (l.slot >= 0) add(T, wrench_slots_[static_cast<std::size_t>(l.slot)]);
     const LoopPlan::Range ends = plan_->ends_of[k];
     for (int i = ends.first; i < ends.last; ++i)
-      add_inertial_rates(k, plan_->ends[static_cast<std::size_t>(i)], right, impulse, T);
+      add_inertial_rates(k, static_cast<std::size_t>(i), right, impulse, T);
     if (l.pin) {
       const S turned = S(rate[l.u]) + T.fn;
       S own = l.sign < 0 ? -turned : turned;
@@ -189,32 +190,39 @@ void LoopSweeps<Planar, S, Rows, Momentum>::rates_inward(const In& q, const Righ
   if (plan_->couples() && right.leak != 0) leak_of_couplers<S>(*loops_, right.leak, impulse, rate);
 }
 
-/// N − κ w at the end of a loop on body k: of a tie each end's own, N = u × F; else found at the
-/// end met first, for both.
+/// N − κ w at an end on body k: of a tie each end's own, N = u × F.
 template <class S, int Rows, bool Momentum>
 template <class Out>
 MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::add_inertial_rates(
-    std::size_t k, const LoopPlan::End& end, const RightSide<S>& right, const Out& impulse,
-    Wrench& T) {
-  const auto loop = static_cast<std::size_t>(end.loop);
-  const Place& s = places_[loop];
-  const Loop& l = loops_->loops[loop];
-  if (ties_[loop].holds) {
-    const LoopedPin<S, Rows>& w = pins_[k];
-    const S sign(end.on_a ? 1.0 : -1.0), rx = end.on_a ? s.ax : s.bx, ry = end.on_a ? s.ay : s.by,
-                                         fx = sign * S(impulse[l.row]),
-                                         fy = sign * S(impulse[l.row + 1]), leak(right.leak);
-    const S ux = w.vx - w.omega * ry, uy = w.vy + w.omega * rx;
-    T.fx = T.fx - leak * fx;
-    T.fy = T.fy - leak * fy;
-    T.fn = T.fn + (ux - leak * rx) * fy - (uy - leak * ry) * fx;
+    std::size_t k, std::size_t i, const RightSide<S>& right, const Out& impulse, Wrench& T) {
+  const End& end = ends_[i];
+  if (!end.tie) {
+    add_other_rates(end, right, impulse, T);
     return;
   }
+  const LoopedPin<S, Rows>& w = pins_[k];
+  const Vec2<S>& r = arms_[i];
+  const S fx = end.sign * S(impulse[end.row]), fy = end.sign * S(impulse[end.row + 1]),
+          leak(right.leak);
+  const S ux = w.vx - w.omega * r[1], uy = w.vy + w.omega * r[0];
+  T.fx = T.fx - leak * fx;
+  T.fy = T.fy - leak * fy;
+  T.fn = T.fn + (ux - leak * r[0]) * fy - (uy - leak * r[1]) * fx;
+}
+
+/// The same of any other loop, found at the end met first for both.
+template <class S, int Rows, bool Momentum>
+template <class Out>
+MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::add_other_rates(
+    const End& end, const RightSide<S>& right, const Out& impulse, Wrench& T) {
+  const auto loop = static_cast<std::size_t>(end.loop);
   Wrench& other = wrenches_[loop];
   if (!end.first) {
     add(T, other);
     return;
   }
+  const Place& s = places_[loop];
+  const Loop& l = loops_->loops[loop];
   const S zero(0.0);
   const auto motion_of = [&](int body) MOMENTA_INLINED {
     if (body < 0) return Planar::Motion<S>{};
@@ -223,12 +231,16 @@ MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::add_inertial_rates(
   };
   const Planar::Motion<S> A = motion_of(l.a), B = motion_of(l.b);
   Wrench w, N;  // of the impulses on A about x_A, and its rate
-  if (ties_[loop].turns) {
+  if (end.turns) {
     const S x = S(impulse[l.row]), y = S(impulse[l.row + 1]);
     w = {x * s.Fx - y * s.Fy, x * s.Fy + y * s.Fx, zero};
     N = {-(B.w * w.fy), B.w * w.fx, zero};
   } else {
-    force_of_rows(loop, right, impulse, A, B, w, N);
+    const Planar::Motion<S> of_a = A, of_b = B;  // copies, as their addresses are taken
+    Wrench sum, rate;
+    force_of_rows(loop, right, impulse, of_a, of_b, sum, rate);
+    w = sum;
+    N = rate;
   }
   const S ux = A.v[0] - A.w * s.ay, uy = A.v[1] + A.w * s.ax;
   N.fn = N.fn + (ux * w.fy - uy * w.fx);

@@ -5,19 +5,23 @@
 
 namespace momenta {
 
-/// O_K − O_L, points of ties; in the acceleration form the velocities of all bodies.
+/// Where the ends of loops are, beyond what their own bodies know; in the acceleration form the
+/// velocities of all bodies.
 template <class S, int Rows, bool Momentum>
 template <class In>
 void LoopSweeps<Planar, S, Rows, Momentum>::place_bodies(const In& x, const RightSide<S>& right) {
   const PlanarLink* links = tree_->links.data();
   const std::size_t n = pins_.size();
+  const bool gap = asks_for_gaps(right);
   S ox(0.0), oy(0.0);
   for (std::size_t k = 0; k < n; ++k) {
     const PlanarLink& l = links[k];
     LoopedPin<S, Rows>& w = pins_[k];
-    const Vec2<S> r = l.pin ? Base::step(l) : joints_[static_cast<std::size_t>(l.record)].edge.r;
-    w.rx = r[0];
-    w.ry = r[1];
+    const Vec2<S> r = way_from_parent(l);
+    if constexpr (!Momentum) {
+      w.rx = r[0];
+      w.ry = r[1];
+    }
     const auto parent = static_cast<std::size_t>(l.parent);
     if (l.parent < 0) {
       ox = oy = S(0.0);
@@ -26,11 +30,11 @@ void LoopSweeps<Planar, S, Rows, Momentum>::place_bodies(const In& x, const Righ
       ox = from[0];
       oy = from[1];
     }
-    ox = ox + w.rx;
-    oy = oy + w.ry;
+    ox = ox + r[0];
+    oy = oy + r[1];
     if (l.slot >= 0) origin_slots_[static_cast<std::size_t>(l.slot)] = {{ox, oy}};
     if (!origins_.empty()) origins_[k] = {{ox, oy}};
-    place_ends(k, right, ox, oy);
+    place_ends(k, gap, ox, oy);
     if constexpr (!Momentum) {
       S vx(0.0), vy(0.0), omega(0.0);
       if (l.parent >= 0) {
@@ -68,45 +72,33 @@ void LoopSweeps<Planar, S, Rows, Momentum>::place_bodies(const In& x, const Righ
   }
 }
 
-/// The ends of ties on body k with its joint at (x, y). D begins with the end that is placed first.
+/// Ends on body k with its joint at (x, y). A tie's D begins with the end that is placed first.
 template <class S, int Rows, bool Momentum>
-MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::place_ends(std::size_t k,
-                                                                      const RightSide<S>& right,
+MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::place_ends(std::size_t k, bool gap,
                                                                       const S& x, const S& y) {
-  const bool gap = right.positions != 0 || right.beta != 0;
   const LoopPlan::Range range = plan_->ends_of[k];
   for (int i = range.first; i < range.last; ++i) {
-    const LoopPlan::End& end = plan_->ends[static_cast<std::size_t>(i)];
-    const auto loop = static_cast<std::size_t>(end.loop);
-    const Tie& t = ties_[loop];
-    Place& s = places_[loop];
-    if (t.turns) place_turning(k, end, t, s, x, y);
-    if (!t.holds) continue;
-    const S c = angles_.cosine(k), e = angles_.sine(k);
-    const Vec2<double>& at = end.on_a ? t.a : t.b;
-    const S rx = c * at[0] - e * at[1], ry = e * at[0] + c * at[1];
-    (end.on_a ? s.ax : s.bx) = rx;
-    (end.on_a ? s.ay : s.by) = ry;
-    if (!gap) continue;
-    const bool begins = !end.first || t.grounded;
-    const S sign(end.on_a ? 1.0 : -1.0);
-    s.Dx = (begins ? S(t.D[0]) : s.Dx) + sign * (x + rx);
-    s.Dy = (begins ? S(t.D[1]) : s.Dy) + sign * (y + ry);
+    const End& end = ends_[static_cast<std::size_t>(i)];
+    if (end.turns) place_turning(k, end, x, y);
+    if (!end.tie || !gap) continue;
+    const Vec2<S> arm = turned(k, end.at);
+    Vec2<S>& D = gaps_[static_cast<std::size_t>(end.loop)];
+    if (end.begins) D = Vec2<S>{{S(end.D[0]), S(end.D[1])}};
+    D[0] = D[0] + end.sign * (x + arm[0]);
+    D[1] = D[1] + end.sign * (y + arm[1]);
   }
 }
 
-/// The same of rows along axes of B. x_A − O_B = (O_A − O_B) + a waits with the joint of the end
-/// placed first.
+/// Of rows along axes of B. x_A − O_B = (O_A − O_B) + a waits with the joint of the end placed
+/// first.
 template <class S, int Rows, bool Momentum>
 MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::place_turning(std::size_t k,
-                                                                         const LoopPlan::End& end,
-                                                                         const Tie& t, Place& s,
-                                                                         const S& x, const S& y) {
-  const S c = angles_.cosine(k), e = angles_.sine(k);
-  const Vec2<double>& v = end.on_a ? t.a : t.b;
-  const S vx = c * v[0] - e * v[1], vy = e * v[0] + c * v[1];
-  (end.on_a ? s.ax : s.Fx) = vx;
-  (end.on_a ? s.ay : s.Fy) = vy;
+                                                                         const End& end, const S& x,
+                                                                         const S& y) {
+  Place& s = places_[static_cast<std::size_t>(end.loop)];
+  const Vec2<S> v = turned(k, end.at);
+  (end.on_a ? s.ax : s.Fx) = v[0];
+  (end.on_a ? s.ay : s.Fy) = v[1];
   S bx = x, by = y;
   if (end.first) {
     bx = (end.on_a ? x - s.bx : s.bx - x) + s.ax;
@@ -119,12 +111,10 @@ MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::place_turning(std::si
 template <class S, int Rows, bool Momentum>
 Vec2<S> LoopSweeps<Planar, S, Rows, Momentum>::in_ground(int body, const Vec2<double>& v) const {
   if (body < 0) return Vec2<S>{{S(v[0]), S(v[1])}};
-  const auto k = static_cast<std::size_t>(body);
-  const S c = angles_.cosine(k), e = angles_.sine(k);
-  return Vec2<S>{{c * v[0] - e * v[1], e * v[0] + c * v[1]}};
+  return turned(static_cast<std::size_t>(body), v);
 }
 
-/// Loops that are no ties.
+/// Loops that need both their bodies' places at once.
 template <class S, int Rows, bool Momentum>
 void LoopSweeps<Planar, S, Rows, Momentum>::place_other_loops() {
   const auto origin = [&](int body) {
@@ -137,7 +127,7 @@ void LoopSweeps<Planar, S, Rows, Momentum>::place_other_loops() {
     if (l.motion >= 0) place_moving(l);
     const Vec2<S> arm = in_ground(l.a, l.at_a), from_b = origin(l.a) - origin(l.b) + arm;
     Place& s = places_[loop];
-    s = {arm[0], arm[1], from_b[0], from_b[1], S(0.0), S(0.0), S(0.0), S(0.0)};
+    s = {arm[0], arm[1], from_b[0], from_b[1], S(0.0), S(0.0)};
     if (plan_->pair[loop]) {
       const Vec2<S> b = in_ground(l.b, l.axis_b[0]);
       s.Fx = b[0];

@@ -10,7 +10,7 @@ template <class S, int Rows, bool Momentum>
 typename LoopSweeps<Planar, S, Rows, Momentum>::RowPlace
 LoopSweeps<Planar, S, Rows, Momentum>::row_place(std::size_t loop, int row) const {
   const S zero(0.0), one(1.0);
-  if (ties_[loop].holds)
+  if (loops_->loops[loop].is_tie)
     return row == 0 ? RowPlace{one, zero, zero, zero} : RowPlace{zero, one, zero, zero};
   if (!plan_->pair[loop]) return row_at_[static_cast<std::size_t>(loops_->loops[loop].row + row)];
   const Place& s = places_[loop];
@@ -75,39 +75,45 @@ S LoopSweeps<Planar, S, Rows, Momentum>::moving_bias(const Loop& l, const Place&
   return bias + (2 * right.alpha) * rate + (right.beta * right.beta) * phi;
 }
 
-/// d of both rows of a tie: βΦ, or in the acceleration form J̇ V and the feedback.
+/// Whether an end brings something for d: of a tie both ends have their share of J̇ V.
 template <class S, int Rows, bool Momentum>
-Vec2<S> LoopSweeps<Planar, S, Rows, Momentum>::tie_bias(const Loop& l, const Place& s,
-                                                        const RightSide<S>& right) const {
-  const Vec2<S> D{{s.Dx, s.Dy}};
+MOMENTA_INLINE bool LoopSweeps<Planar, S, Rows, Momentum>::asks(const End& end,
+                                                                const RightSide<S>& right) const {
+  if (end.tie) return Momentum ? end.first && right.positions != 0 : true;
+  if (!end.first) return false;
+  if (!Momentum || right.positions != 0) return true;
+  return !end.turns && loops_->loops[static_cast<std::size_t>(end.loop)].motion >= 0 &&
+         right.drives;
+}
+
+/// What one end on body k brings to d of both rows of a tie: βΦ; in the acceleration form its own
+/// J̇ V = ∓ω² a, and of the feedback 2α times its point's velocity.
+template <class S, int Rows, bool Momentum>
+MOMENTA_INLINE Vec2<S> LoopSweeps<Planar, S, Rows, Momentum>::tie_bias(
+    std::size_t k, const End& end, const Vec2<S>& arm, const RightSide<S>& right) const {
+  const Vec2<S>& D = gaps_[static_cast<std::size_t>(end.loop)];
   if constexpr (Momentum) {
     return S(right.positions) * D;
   } else {
-    // Velocity of a point, and its acceleration but for the bodies' own.
-    const auto end = [&](int body, const Vec2<S>& arm, Vec2<S>& u, Vec2<S>& bias) {
-      if (body < 0) return;
-      const LoopedPin<S, Rows>& w = pins_[static_cast<std::size_t>(body)];
-      u = {{w.vx - w.omega * arm[1], w.vy + w.omega * arm[0]}};
-      bias = -(w.omega * w.omega) * arm;
-    };
-    Vec2<S> ua{}, ub{}, a{}, b{};
-    end(l.a, {{s.ax, s.ay}}, ua, a);
-    end(l.b, {{s.bx, s.by}}, ub, b);
-    Vec2<S> bias = a - b;
-    if (right.alpha != 0 || right.beta != 0)
-      bias += S(2 * right.alpha) * (ua - ub) + S(right.beta * right.beta) * D;
+    const LoopedPin<S, Rows>& w = pins_[k];
+    const S centripetal = -end.sign * (w.omega * w.omega);
+    Vec2<S> bias{{centripetal * arm[0], centripetal * arm[1]}};
+    if (right.alpha != 0) {
+      const double damping = 2 * right.alpha * end.sign;
+      bias += S(damping) * Vec2<S>{{w.vx - w.omega * arm[1], w.vy + w.omega * arm[0]}};
+    }
+    if (right.beta != 0 && end.first) bias += S(right.beta * right.beta) * D;
     return bias;
   }
 }
 
-/// d of a row before the joints' shares: βΦ + Φ_t, or in the acceleration form J̇ V and the
-/// feedback.
+/// d of a row that is no tie's, before the joints' shares: βΦ + Φ_t, or in the acceleration form J̇
+/// V and the feedback.
 template <class S, int Rows, bool Momentum>
 S LoopSweeps<Planar, S, Rows, Momentum>::row_bias(std::size_t loop, int row,
                                                   const RightSide<S>& right) const {
   const Loop& l = loops_->loops[loop];
   const Place& s = places_[loop];
-  if (ties_[loop].holds) return tie_bias(l, s, right)[row];
   const RowPlace r = row_place(loop, row);
   S phi(0.0);
   if (right.positions != 0 || right.beta != 0) {
@@ -166,53 +172,59 @@ MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::enter(std::size_t k,
                                                                  const RightSide<S>& right,
                                                                  PlanarCargo<S>& a, Blocks& o) {
   const LoopPlan::Range range = plan_->ends_of[k];
-  for (int i = range.first; i < range.last; ++i) {
-    const LoopPlan::End& end = plan_->ends[static_cast<std::size_t>(i)];
-    const auto loop = static_cast<std::size_t>(end.loop);
+  for (int n = range.first; n < range.last; ++n) {
+    const auto i = static_cast<std::size_t>(n);
     if constexpr (pairs_in_registers)
-      if (plan_->pair[loop]) {
-        enter_pair(end, right, a, o);
+      if (ends_[i].pair) [[likely]] {
+        enter_pair(k, i, right, a, o);
         continue;
       }
     Open copy{a, o};
-    enter_rows(end, right, copy);
+    enter_rows(k, i, right, copy);
     a = copy.cargo;
     o = copy.blocks;
   }
 }
 
 template <class S, int Rows, bool Momentum>
-MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::enter_pair(const LoopPlan::End& end,
+MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::enter_pair(std::size_t k, std::size_t i,
                                                                       const RightSide<S>& right,
                                                                       PlanarCargo<S>& a,
                                                                       Blocks& o) {
+  const End& end = ends_[i];
   const auto loop = static_cast<std::size_t>(end.loop);
-  const Place& s = places_[loop];
-  const bool tie = ties_[loop].holds;
-  const S sign(end.on_a ? 1.0 : -1.0), rx = end.on_a ? s.ax : s.bx, ry = end.on_a ? s.ay : s.by;
   // (fx, fy) and (−fy, fx) with their couples.
-  S fx = sign, fy(0.0), n0 = -(sign * ry), n1 = sign * rx;
-  if (!tie) {
+  const S sign(end.sign);
+  S fx = sign, fy(0.0), n0, n1;
+  Vec2<S> arm;
+  if (end.tie) {
+    arm = turned(k, end.at);
+    arms_[i] = arm;
+    n0 = -(sign * arm[1]);
+    n1 = sign * arm[0];
+  } else {
+    const Place& s = places_[loop];
+    arm = end.on_a ? Vec2<S>{{s.ax, s.ay}} : Vec2<S>{{s.bx, s.by}};
     fx = sign * s.Fx;
     fy = sign * s.Fy;
-    n0 = rx * fy - ry * fx;
-    n1 = rx * fx + ry * fy;
+    n0 = arm[0] * fy - arm[1] * fx;
+    n1 = arm[0] * fx + arm[1] * fy;
   }
   if (right.centre) {
-    const S* centre = right.centre + loops_->loops[loop].row;
+    const S* centre = right.centre + end.row;
     a.Dx = a.Dx + (centre[0] * fx - centre[1] * fy);
     a.Dy = a.Dy + (centre[0] * fy + centre[1] * fx);
     a.Dn = a.Dn + (centre[0] * n0 + centre[1] * n1);
   }
-  const bool asks = end.first && (!Momentum || right.positions != 0 || !(tie || ties_[loop].turns));
-  at_lane<Rows>(plan_->lane[loop], [&]<int Lane>() MOMENTA_INLINED {
+  const bool asked = asks(end, right);
+  at_lane<Rows>(end.lane, [&]<int Lane>() MOMENTA_INLINED {
     o.C[0].template add_pair<Lane>(fx, -fy);
     o.C[1].template add_pair<Lane>(fy, fx);
     o.C[2].template add_pair<Lane>(n0, n1);
-    if (!asks) return;
+    if (!asked) return;
     Vec2<S> d;
-    if (tie)
-      d = tie_bias(loops_->loops[loop], s, right);
+    if (end.tie)
+      d = tie_bias(k, end, arm, right);
     else
       d = {{row_bias(loop, 0, right), row_bias(loop, 1, right)}};
     o.d.template add_pair<Lane>(d[0], d[1]);
@@ -220,21 +232,27 @@ MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::enter_pair(const Loop
 }
 
 template <class S, int Rows, bool Momentum>
-void LoopSweeps<Planar, S, Rows, Momentum>::enter_rows(const LoopPlan::End& end,
+void LoopSweeps<Planar, S, Rows, Momentum>::enter_rows(std::size_t k, std::size_t i,
                                                        const RightSide<S>& right, Open& open) {
+  const End& end = ends_[i];
   const auto loop = static_cast<std::size_t>(end.loop);
   const Loop& l = loops_->loops[loop];
-  const Place& s = places_[loop];
-  const int lane = plan_->lane[loop];
-  const bool asks =
-      end.first && (!Momentum || right.positions != 0 || (l.motion >= 0 && right.drives));
-  const S sign(end.on_a ? 1.0 : -1.0);
-  const S rx = end.on_a ? s.ax : s.bx, ry = end.on_a ? s.ay : s.by;
+  const bool asked = asks(end, right);
+  Vec2<S> arm, d;
+  if (end.tie) {
+    arms_[i] = arm = turned(k, end.at);
+    if (asked) d = tie_bias(k, end, arm, right);
+  } else {
+    const Place& s = places_[loop];
+    arm = end.on_a ? Vec2<S>{{s.ax, s.ay}} : Vec2<S>{{s.bx, s.by}};
+  }
+  const int lane = end.lane;
+  const S sign(end.sign);
   PlanarCargo<S>& a = open.cargo;
   Blocks& o = open.blocks;
   for (int row = 0; row < l.rows; ++row) {
     const RowPlace r = row_place(loop, row);
-    const S fx = sign * r.Fx, fy = sign * r.Fy, n = rx * fy - ry * fx + sign * r.c;
+    const S fx = sign * r.Fx, fy = sign * r.Fy, n = arm[0] * fy - arm[1] * fx + sign * r.c;
     o.C[0].add(lane + row, fx);
     o.C[1].add(lane + row, fy);
     o.C[2].add(lane + row, n);
@@ -244,7 +262,7 @@ void LoopSweeps<Planar, S, Rows, Momentum>::enter_rows(const LoopPlan::End& end,
       a.Dy = a.Dy + centre * fy;
       a.Dn = a.Dn + centre * n;
     }
-    if (asks) o.d.add(lane + row, row_bias(loop, row, right));
+    if (asked) o.d.add(lane + row, end.tie ? d[row] : row_bias(loop, row, right));
   }
 }
 

@@ -87,18 +87,24 @@ class LoopSweeps<Planar, S, Rows, Momentum> : PlanarPlaces<S> {
   using Loop = LoopModel<Planar>::Loop;
   using Motion = LoopModel<Planar>::Motion;
 
-  /// All that placing a tie takes, or two point rows along axes of B that no drive moves.
-  struct Tie {
-    Vec2<double> a, b, D;  ///< x_A and x_B, body axes; what an end on the ground has of D
-    bool grounded = false;
-    bool holds = false;  ///< false: any other loop
-    bool turns = false;  ///< b is then the first axis
+  /// An end of a loop, by body: what all sweeps take of it, in one place.
+  struct End {
+    Vec2<double> at;  ///< its point, body axes; on B of two rows along axes of B the first of these
+    Vec2<double> D;   ///< of a tie's end that begins its D: what an end on the ground has of it
+    double sign = 1;  ///< −1 on body B
+    int loop = 0, row = 0, lane = 0;
+    bool pair = false, tie = false;
+    bool turns = false;  ///< two point rows along axes of B that no drive moves
+    bool on_a = true, first = true, begins = false;
   };
-  /// Where a loop stands, ground axes.
+  struct Closing {
+    int loop, row, lane;
+    bool pair;
+  };
+  /// Where a loop that is no tie stands, ground axes.
   struct Place {
-    S ax, ay, bx, by;  ///< x_A − O_A and x_A − O_B, of a tie x_B − O_B
-    S Dx, Dy;          ///< of a tie, where equations ask for it
-    S Fx, Fy;          ///< of any other pair: first axis; the second stands across it
+    S ax, ay, bx, by;  ///< x_A − O_A and x_A − O_B
+    S Fx, Fy;          ///< of a pair: first axis; the second stands across it
   };
   /// A row's unit impulse on body A: force at x_A, couple; of an axis row a_i · b_j too.
   struct RowPlace {
@@ -115,16 +121,23 @@ class LoopSweeps<Planar, S, Rows, Momentum> : PlanarPlaces<S> {
 
   template <class In>
   void place_bodies(const In& x, const RightSide<S>& right);
-  MOMENTA_INLINE void place_ends(std::size_t k, const RightSide<S>& right, const S& x, const S& y);
-  MOMENTA_INLINE void place_turning(std::size_t k, const LoopPlan::End& end, const Tie& t, Place& s,
-                                    const S& x, const S& y);
+  MOMENTA_INLINE void place_ends(std::size_t k, bool gap, const S& x, const S& y);
+  MOMENTA_INLINE void place_turning(std::size_t k, const End& end, const S& x, const S& y);
   __attribute__((noinline)) void place_other_loops();
   void place_rows(const Loop& l, std::size_t loop);
   void place_moving(const Loop& l);
   template <class In>
   __attribute__((noinline)) void place_couplers(const In& q, const In& x,
                                                 const RightSide<S>& right);
+  MOMENTA_INLINE Vec2<S> turned(std::size_t k, const Vec2<double>& v) const {
+    const S c = angles_.cosine(k), e = angles_.sine(k);
+    return Vec2<S>{{c * v[0] - e * v[1], e * v[0] + c * v[1]}};
+  }
   Vec2<S> in_ground(int body, const Vec2<double>& v) const;
+  /// O_K − O_L
+  MOMENTA_INLINE Vec2<S> way_from_parent(const PlanarLink& l) const {
+    return l.pin ? Base::step(l) : joints_[static_cast<std::size_t>(l.record)].edge.r;
+  }
   /// D = x_A − x_B
   Vec2<S> gap_of(const Loop& l, const Place& s) const {
     return Vec2<S>{{s.bx, s.by}} - in_ground(l.b, l.at_b);
@@ -140,13 +153,18 @@ class LoopSweeps<Planar, S, Rows, Momentum> : PlanarPlaces<S> {
     return moving_[static_cast<std::size_t>(l.motion)];
   }
   S row_bias(std::size_t loop, int row, const RightSide<S>& right) const;
-  Vec2<S> tie_bias(const Loop& l, const Place& s, const RightSide<S>& right) const;
+  static bool asks_for_gaps(const RightSide<S>& right) {
+    return right.positions != 0 || right.beta != 0;
+  }
+  MOMENTA_INLINE bool asks(const End& end, const RightSide<S>& right) const;
+  MOMENTA_INLINE Vec2<S> tie_bias(std::size_t k, const End& end, const Vec2<S>& arm,
+                                  const RightSide<S>& right) const;
   template <class In>
   bool inward(const In& r, const RightSide<S>& right);
   MOMENTA_INLINE void enter(std::size_t k, const RightSide<S>& right, PlanarCargo<S>& a, Blocks& o);
-  MOMENTA_INLINE void enter_pair(const LoopPlan::End& end, const RightSide<S>& right,
+  MOMENTA_INLINE void enter_pair(std::size_t k, std::size_t i, const RightSide<S>& right,
                                  PlanarCargo<S>& a, Blocks& o);
-  __attribute__((noinline)) void enter_rows(const LoopPlan::End& end, const RightSide<S>& right,
+  __attribute__((noinline)) void enter_rows(std::size_t k, std::size_t i, const RightSide<S>& right,
                                             Open& open);
   template <bool Moves>
   MOMENTA_INLINE void close(const LoopPlan::Range& range, PlanarCargo<S>& a, Blocks& o, double fade,
@@ -179,8 +197,11 @@ class LoopSweeps<Planar, S, Rows, Momentum> : PlanarPlaces<S> {
   void rates_inward(const In& q, const RightSide<S>& right, const Out& u, const Out& impulse,
                     Out rate);
   template <class Out>
-  MOMENTA_INLINE void add_inertial_rates(std::size_t k, const LoopPlan::End& end,
-                                         const RightSide<S>& right, const Out& impulse, Wrench& T);
+  MOMENTA_INLINE void add_inertial_rates(std::size_t k, std::size_t i, const RightSide<S>& right,
+                                         const Out& impulse, Wrench& T);
+  template <class Out>
+  MOMENTA_INLINE void add_other_rates(const End& end, const RightSide<S>& right, const Out& impulse,
+                                      Wrench& T);
   template <class Out>
   __attribute__((noinline)) void force_of_rows(std::size_t loop, const RightSide<S>& right,
                                                const Out& impulse, const Planar::Motion<S>& of_a,
@@ -193,8 +214,12 @@ class LoopSweeps<Planar, S, Rows, Momentum> : PlanarPlaces<S> {
   OpenLanes lanes_;
   std::vector<LoopedPin<S, Rows>> pins_;
   std::vector<LoopedJoint<S, Rows>> looped_;
-  std::vector<Tie> ties_;            ///< by loop
-  std::vector<int> others_;          ///< loops that are none
+  std::vector<End> ends_;            ///< as in the plan
+  std::vector<Closing> closings_;    ///< as in the plan
+  std::vector<Vec2<S>> arms_;        ///< of ties, by end: x − O of its body, ground axes
+  std::vector<Vec2<S>> gaps_;        ///< of ties, by loop: D, where equations ask for it
+  std::vector<int> others_;          ///< loops that are neither ties nor turn with B alone
+  bool far_reaching_ = false;        ///< some row takes more than where its own end is
   std::vector<Place> places_;        ///< by loop
   std::vector<RowPlace> row_at_;     ///< by row of Φ; not of pairs
   std::vector<MovingPoint> moving_;  ///< by motion
@@ -226,7 +251,8 @@ LoopSweeps<Planar, S, Rows, Momentum>::LoopSweeps(const PlanarTree& tree,
       lanes_(plan, parents_of(tree), rows_of(loops)),
       pins_(tree.links.size()),
       looped_(static_cast<std::size_t>(tree.records)),
-      ties_(loops.loops.size()),
+      arms_(plan.ends.size()),
+      gaps_(loops.loops.size()),
       places_(loops.loops.size()),
       row_at_(static_cast<std::size_t>(loops.rows)),
       moving_(loops.motions.size()),
@@ -238,17 +264,34 @@ LoopSweeps<Planar, S, Rows, Momentum>::LoopSweeps(const PlanarTree& tree,
       wrench_slots_(static_cast<std::size_t>(tree.slots)),
       rows_(static_cast<std::size_t>(loops.rows)),
       pairs_(loops.loops.size()) {
-  for (std::size_t i = 0; i < ties_.size(); ++i) {
+  const auto turns = [&](std::size_t i) {
     const Loop& l = loops.loops[i];
-    if (!l.is_tie) {
-      if (plan.pair[i] && l.motion < 0 && l.a >= 0 && l.b >= 0 && l.a != l.b)
-        ties_[i] = {l.at_a, l.axis_b[0], {}, false, false, true};
-      else
-        others_.push_back(static_cast<int>(i));
-      continue;
-    }
-    const Vec2<double> D = l.a < 0 ? l.at_a : l.b < 0 ? -l.at_b : Vec2<double>{};
-    ties_[i] = {l.at_a, l.at_b, D, l.a < 0 || l.b < 0, true};
+    return plan.pair[i] && !l.is_tie && l.motion < 0 && l.a >= 0 && l.b >= 0 && l.a != l.b;
+  };
+  for (std::size_t i = 0; i < loops.loops.size(); ++i)
+    if (!loops.loops[i].is_tie && !turns(i)) others_.push_back(static_cast<int>(i));
+  for (const LoopPlan::End& end : plan.ends) {
+    const auto i = static_cast<std::size_t>(end.loop);
+    const Loop& l = loops.loops[i];
+    far_reaching_ = far_reaching_ || !l.is_tie;
+    End e;
+    e.at = end.on_a ? l.at_a : l.is_tie ? l.at_b : l.axis_b[0];
+    if (l.is_tie) e.D = l.a < 0 ? l.at_a : l.b < 0 ? -l.at_b : Vec2<double>{};
+    e.sign = end.on_a ? 1.0 : -1.0;
+    e.loop = end.loop;
+    e.row = l.row;
+    e.lane = plan.lane[i];
+    e.pair = plan.pair[i];
+    e.tie = l.is_tie;
+    e.turns = turns(i);
+    e.on_a = end.on_a;
+    e.first = end.first;
+    e.begins = l.is_tie && (!end.first || l.a < 0 || l.b < 0);
+    ends_.push_back(e);
+  }
+  for (const int loop : plan.closings) {
+    const auto i = static_cast<std::size_t>(loop);
+    closings_.push_back({loop, loops.loops[i].row, plan.lane[i], plan.pair[i] != 0});
   }
   if (!others_.empty()) origins_.resize(tree.links.size());
 }
@@ -261,7 +304,8 @@ bool LoopSweeps<Planar, S, Rows, Momentum>::operator()(const S& t, const In& q, 
   Base::place(t, q);
   stuck_ = -1;
   compliance_ = right.compliance;
-  place_bodies(x, right);
+  if (!Momentum || far_reaching_ || !joints_.empty() || asks_for_gaps(right))
+    place_bodies(x, right);
   loops_ = &in_time_.at(value_of(t));
   if (!others_.empty()) place_other_loops();
   if (plan_->couples()) place_couplers(q, x, right);
