@@ -20,7 +20,7 @@ std::string joined(const std::vector<std::string>& words, const char* between) {
 }
 
 /// Within single quotes of a shell.
-std::string quoted(const std::string& text) {
+std::string shell_quoted(const std::string& text) {
   std::string out = "'";
   for (const char c : text) out += c == '\'' ? "'\\''" : std::string(1, c);
   return out + "'";
@@ -47,7 +47,7 @@ std::string bash_offer(const std::string& type_name) {
   switch (values.paths) {
     case Values::Paths::scenes:
       return "_momenta_files " +
-             quoted(joined({std::begin(scene_endings), std::end(scene_endings)}, "|"));
+             shell_quoted(joined({std::begin(scene_endings), std::end(scene_endings)}, "|"));
     case Values::Paths::files:
       return "_momenta_files '*'";
     case Values::Paths::directories:
@@ -56,7 +56,7 @@ std::string bash_offer(const std::string& type_name) {
       break;
   }
   return (values.several ? "_momenta_list " : "_momenta_words ") +
-         quoted(joined(values.words, " "));
+         shell_quoted(joined(values.words, " "));
 }
 
 std::string bash_script(const CLI::App& program) {
@@ -72,9 +72,9 @@ std::string bash_script(const CLI::App& program) {
           flags.push_back(shown_name(*o));
       } else
         patterns[bash_offer(o->get_type_name())].push_back(
-            quoted(verb->get_name() + " " + shown_name(*o)));
+            shell_quoted(verb->get_name() + " " + shown_name(*o)));
     options += "      " + verb->get_name() + ") _momenta_words " +
-               quoted(joined(names_of(options_of(*verb, false)), " ")) + " ;;\n";
+               shell_quoted(joined(names_of(options_of(*verb, false)), " ")) + " ;;\n";
     int place = 0;
     for (const CLI::Option* o : options_of(*verb, true))
       positionals += "      '" + verb->get_name() + " " + std::to_string(place++) + "') " +
@@ -187,7 +187,8 @@ std::string zsh_action(const std::string& type_name) {
 std::string zsh_script(const CLI::App& program) {
   std::string verbs, cases;
   for (const CLI::App* verb : verbs_of(program)) {
-    verbs += "    " + quoted(zsh_text(verb->get_name()) + ":" + verb->get_description()) + "\n";
+    verbs +=
+        "    " + shell_quoted(zsh_text(verb->get_name()) + ":" + verb->get_description()) + "\n";
     cases += "    " + verb->get_name() + ")\n      _arguments";
     for (const CLI::Option* o : verb->get_options()) {
       const std::string type_name = o->get_type_name();
@@ -198,7 +199,7 @@ std::string zsh_script(const CLI::App& program) {
       else
         spec = shown_name(*o) + (is_flag(*o) ? "" : "=") + "[" + zsh_text(shown_text(*o)) + "]" +
                (is_flag(*o) ? "" : ":" + zsh_text(type_name) + ":" + zsh_action(type_name));
-      cases += " \\\n        " + quoted(spec);
+      cases += " \\\n        " + shell_quoted(spec);
     }
     cases += " ;;\n";
   }
@@ -235,7 +236,7 @@ std::string fish_values(const std::string& type_name) {
       for (const char* ending : scene_endings)
         calls += (calls.empty() ? "__fish_complete_suffix ." : "; __fish_complete_suffix .") +
                  std::string(ending);
-      return " -x -a " + quoted("(" + calls + ")");
+      return " -x -a " + shell_quoted("(" + calls + ")");
     }
     case Values::Paths::files:
       return " -r -F";
@@ -246,8 +247,8 @@ std::string fish_values(const std::string& type_name) {
   }
   if (values.words.empty()) return " -x";
   if (values.several)
-    return " -x -a " + quoted("(__fish_append , " + joined(values.words, " ") + ")");
-  return " -x -a " + quoted(joined(values.words, " "));
+    return " -x -a " + shell_quoted("(__fish_append , " + joined(values.words, " ") + ")");
+  return " -x -a " + shell_quoted(joined(values.words, " "));
 }
 
 std::string fish_script(const CLI::App& program) {
@@ -255,10 +256,10 @@ std::string fish_script(const CLI::App& program) {
       "# Completes momenta in fish. Made by: momenta completion fish\n\ncomplete -c momenta -f\n";
   for (const CLI::Option* o : options_of(program, false))
     out += "complete -c momenta -n __fish_use_subcommand -l " + shown_name(*o).substr(2) + " -d " +
-           quoted(o->get_description()) + "\n";
+           shell_quoted(o->get_description()) + "\n";
   for (const CLI::App* verb : verbs_of(program)) {
     out += "complete -c momenta -n __fish_use_subcommand -a " + verb->get_name() + " -d " +
-           quoted(verb->get_description()) + "\n";
+           shell_quoted(verb->get_description()) + "\n";
     for (const CLI::Option* o : verb->get_options()) {
       const std::string when =
           "complete -c momenta -n '__fish_seen_subcommand_from " + verb->get_name() + "'";
@@ -267,7 +268,7 @@ std::string fish_script(const CLI::App& program) {
       else
         out += when + " -l " + shown_name(*o).substr(2) +
                (is_flag(*o) ? "" : fish_values(o->get_type_name())) + " -d " +
-               quoted(shown_text(*o)) + "\n";
+               shell_quoted(shown_text(*o)) + "\n";
     }
   }
   return out;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <sstream>
 
+#include "families.h"
 #include "values.h"
 
 namespace momenta::program {
@@ -45,12 +46,17 @@ std::string name_and_type(const CLI::Option& o) {
 }
 
 std::string help_of_verb(const CLI::App& verb) {
-  std::string out = wrapped("", verb.get_description() + ".", 0);
-  out += "\n" + wrapped("Usage: ", "momenta " + synopsis_of(verb), 7) + "\n";
-  for (const CLI::Option* o : verb.get_options()) out += row(name_and_type(*o), shown_text(*o));
+  std::string out = wrapped("Usage: ", "momenta " + synopsis_of(verb), 7) +
+                    wrapped("", verb.get_description() + ".", 0) + "\n";
+  for (const CLI::Option* o : verb.get_options())
+    if (o != verb.get_help_ptr()) out += row(name_and_type(*o), shown_text(*o));
   const auto sentences = names_behind(verb.get_options());
   if (!sentences.empty()) out += "\n";
   for (const std::string& sentence : sentences) out += wrapped("", sentence, 2);
+  if (any_takes(verb.get_options(), "FAMILY")) {
+    out += "\nFAMILY:\n";
+    for (const Family& f : families()) out += row(f.name, f.what);
+  }
   return out + "\n" + verb.get_footer() + "\n";
 }
 

@@ -32,7 +32,7 @@ int main(int argc, char** argv) {
   app.formatter_fn(
       [](const CLI::App* of, std::string, CLI::AppFormatMode) { return screen_help(*of); });
   app.set_help_flag("--help", "This text");
-  app.set_version_flag("--version", std::string("momenta ") + version(), "The version");
+  app.set_version_flag("--version", std::string("momenta ") + momenta::version(), "The version");
   app.footer(std::string(exit_status) +
              "\nExample: momenta drift examples/four_bar/scene.toml --out results");
 
@@ -53,19 +53,18 @@ int main(int argc, char** argv) {
   add_run_options(*run_verb, o);
   CLI::App* drift_verb =
       app.add_subcommand("drift", "Every form side by side: drift, energy, error against run time");
-  drift_verb->footer("Example: momenta drift examples/four_bar/scene.toml --end 20 --out results");
+  drift_verb->footer("Example: momenta drift examples/four_bar/scene.toml --end 5 --out results");
   add_scene(*drift_verb, o);
   drift_verb->add_option("--forms", d.forms, "Default: all")->type_name("FORM,...");
   add_run_options(*drift_verb, o, "60");
+  drift_verb->remove_option(drift_verb->get_option("--spectral-radius"));
+  drift_verb->get_option("--integrator")->description("Of ODE forms (default: rk4, else dop853)");
   CLI::App* work_verb =
       app.add_subcommand("work", "Error against run time: every form over a ladder of tolerances");
-  work_verb->footer(
-      "Example: momenta work examples/four_bar/scene.toml --forms momentum,projected --end 1");
+  work_verb->footer("Example: momenta work examples/four_bar/scene.toml --forms momentum --end 1");
   add_scene(*work_verb, o);
   work_verb->add_option("--forms", w.forms, "Default: all")->type_name("FORM,...");
-  work_verb
-      ->add_option("--integrators", w.integrators,
-                   "Each for the forms it takes (default: dop853 and ida)")
+  work_verb->add_option("--integrators", w.integrators, "Each for the forms it takes")
       ->type_name("INTEGRATOR,...");
   positive(work_verb->add_option("--from", w.loosest, "Loosest tolerance"), "X")
       ->capture_default_str();
@@ -77,10 +76,11 @@ int main(int argc, char** argv) {
   within(work_verb->add_option("--step-rungs", w.step_rungs, "Fixed steps: 2 --step, and halves"),
          "N", 1, 40)
       ->capture_default_str();
-  work_verb->add_flag("--no-reference", w.no_reference,
-                      "Judge by the largest drift, not by a reference in quad precision");
+  work_verb->add_flag("--no-reference", w.no_reference, "Judge by the largest drift alone");
   add_run_options(*work_verb, o, "10");
-  for (const char* unused : {"--integrator", "--rtol", "--atol", "--project", "--no-project"})
+  for (const char* unused :
+       {"--integrator", "--rtol", "--atol", "--spectral-radius", "--project", "--no-project",
+        "--baumgarte-alpha", "--baumgarte-beta", "--beta", "--penalty"})
     work_verb->remove_option(work_verb->get_option(unused));
   CLI::App* evaluate_verb =
       app.add_subcommand("evaluate", "Everything at one state, as one JSON document");
@@ -95,8 +95,7 @@ int main(int argc, char** argv) {
   evaluate_verb->add_option("--out", o.out, "Directory for evaluate.json")->type_name("DIR");
   CLI::App* index_app = app.add_subcommand(
       "index", "The differentiation index of each form, by numbers, and its hidden constraints");
-  index_app->footer(
-      "Example: momenta index examples/four_bar/scene.toml --forms momentum,acceleration-index3");
+  index_app->footer("Example: momenta index examples/four_bar/scene.toml --forms momentum-index2");
   add_scene(*index_app, o);
   std::string index_forms, index_state;
   index_app->add_option("--forms", index_forms, "Default: all")->type_name("FORM,...");
@@ -115,8 +114,7 @@ int main(int argc, char** argv) {
       ->type_name("DIR");
   CLI::App* stress_app = app.add_subcommand(
       "stress", "Which form survives which extreme: of a scene, else of built-in ladders");
-  stress_app->footer(
-      "Example: momenta stress examples/four_bar/scene.toml --along size --forms momentum --end 1");
+  stress_app->footer("Example: momenta stress examples/four_bar/scene.toml --along size --end 1");
   add_scene_file(*stress_app, o, false);
   stress_app->add_option("--forms", stress_options.forms, "Default: all")->type_name("FORM,...");
   stress_app
@@ -155,13 +153,11 @@ int main(int argc, char** argv) {
       app.add_subcommand("sweep", "One run for each combination of numbers of the scene");
   SweepOptions sweep_options;
   sweep_app->footer(
-      "Example: momenta sweep examples/four_bar/scene.toml --vary body.crank.mass=1:10:4 --end 1");
+      "Example: momenta sweep examples/four_bar/scene.toml --vary body.crank.mass=1,2");
   add_scene(*sweep_app, o);
   sweep_app
-      ->add_option(
-          "--vary", sweep_options.vary,
-          "FROM:TO:COUNT, FROM:TO:COUNT:log or VALUE,VALUE for a place as body.crank.mass, "
-          "joint.O.position or gravity.1; once for each number")
+      ->add_option("--vary", sweep_options.vary,
+                   "Say body.crank.mass=1,2 or gravity.1=0:10:5[:log]")
       ->type_name("PLACE=VALUES")
       ->required();
   sweep_app
@@ -187,7 +183,7 @@ int main(int argc, char** argv) {
       ->type_name("FILE");
   CLI::App* make_verb = app.add_subcommand("make", "Prints a scene of a family");
   make_verb->footer("Example: momenta make stewart --n 6 > stewart.toml");
-  make_verb->add_option("family", family, "Which")->required()->type_name("FAMILY");
+  make_verb->add_option("family", family, "Which mechanism")->required()->type_name("FAMILY");
   make_verb->add_option("--n", n, "Size (each family has its own default)")->type_name("N");
   bool turned = false;
   make_verb->add_flag("--turned", turned, "Planar families: in a plane across all axes");
@@ -195,7 +191,8 @@ int main(int argc, char** argv) {
       app.add_subcommand("completion", "Prints a script that completes this command line");
   completion_verb->footer("Example: momenta completion bash > momenta");
   std::string shell;
-  one_of(completion_verb->add_option("shell", shell, "Whose")->required(), {"bash", "zsh", "fish"});
+  one_of(completion_verb->add_option("shell", shell, "For which shell")->required(),
+         {"bash", "zsh", "fish"});
   CLI::App* manual_verb = app.add_subcommand("manual", "Prints momenta(1) in roff")->group("");
 
   try {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <sstream>
 
+#include "families.h"
 #include "help.h"
 #include "values.h"
 
@@ -55,7 +56,7 @@ std::vector<Entry> entries_of(const std::vector<const CLI::App*>& verbs, bool op
   std::vector<Entry> entries;
   for (const CLI::App* verb : verbs)
     for (const CLI::Option* o : verb->get_options()) {
-      if (o->nonpositional() != options || shown_name(*o) == "--help") continue;
+      if (o->nonpositional() != options || o == verb->get_help_ptr()) continue;
       const std::string head = tag(*o), text = plain(shown_text(*o));
       auto known = std::find_if(entries.begin(), entries.end(),
                                 [&](const Entry& e) { return e.head == head && e.text == text; });
@@ -100,6 +101,10 @@ std::string man_page(const CLI::App& program) {
     out += paragraph(tag(*o), plain(shown_text(*o)) + ".");
   out += ".SH NAMES\n";
   for (const std::string& sentence : names_behind(all)) out += ".PP\n" + plain(sentence) + "\n";
+  if (any_takes(all, "FAMILY")) {
+    out += ".PP\nFAMILY:\n";
+    for (const Family& f : families()) out += paragraph(bold(f.name), plain(f.what) + ".");
+  }
   out += ".SH EXIT STATUS\n" + plain(exit_status) + "\n";
   out += ".SH EXAMPLES\n.EX\n";
   for (const CLI::App* verb : verbs) {

@@ -82,25 +82,19 @@ std::string synopsis_of(const CLI::App& verb) {
   return text + " [OPTIONS]";
 }
 
+bool any_takes(const std::vector<const CLI::Option*>& options, const std::string& word) {
+  return std::any_of(options.begin(), options.end(), [&](const CLI::Option* o) {
+    const std::string type_name = o->get_type_name();
+    return type_name == word || type_name == word + std::string(and_so_on);
+  });
+}
+
 std::vector<std::string> names_behind(const std::vector<const CLI::Option*>& options) {
-  const auto takes = [&](const std::string& word) {
-    return std::any_of(options.begin(), options.end(), [&](const CLI::Option* o) {
-      const std::string type_name = o->get_type_name();
-      return type_name == word || type_name == word + std::string(and_so_on);
-    });
-  };
   std::vector<std::string> sentences;
-  if (takes("FORM")) sentences.push_back("FORM: " + listed(form_names()) + ".");
-  if (takes("INTEGRATOR"))
+  if (any_takes(options, "FORM")) sentences.push_back("FORM: " + listed(form_names()) + ".");
+  if (any_takes(options, "INTEGRATOR"))
     sentences.push_back("INTEGRATOR of ODE forms: " + integrator_names(Integrator::Takes::ode) +
                         "; of DAE forms: " + integrator_names(Integrator::Takes::dae) + ".");
-  if (takes("FAMILY")) {
-    std::string families_listed = "FAMILY:";
-    for (const Family& f : families())
-      families_listed +=
-          (&f == &families().front() ? " " : "; ") + std::string(f.name) + ", " + f.what;
-    sentences.push_back(families_listed + ".");
-  }
   return sentences;
 }
 

@@ -41,7 +41,9 @@ bool is_flag(const CLI::Option& option);
 std::string shown_text(const CLI::Option& option);
 /// "run SCENE [OPTIONS]"
 std::string synopsis_of(const CLI::App& verb);
-/// Sentences that tell the names behind the words in capitals of these options.
+/// Whether one of these options takes what is called `word`, or several of it.
+bool any_takes(const std::vector<const CLI::Option*>& options, const std::string& word);
+/// Sentences that tell the forms and integrators, where these options take them.
 std::vector<std::string> names_behind(const std::vector<const CLI::Option*>& options);
 
 }  // namespace momenta::program
