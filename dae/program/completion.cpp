@@ -231,13 +231,12 @@ _momenta "$@"
 std::string fish_values(const std::string& type_name) {
   const Values values = values_of(type_name);
   switch (values.paths) {
-    case Values::Paths::scenes: {
-      std::string calls;
-      for (const char* ending : scene_endings)
-        calls += (calls.empty() ? "__fish_complete_suffix ." : "; __fish_complete_suffix .") +
-                 std::string(ending);
-      return " -x -a " + shell_quoted("(" + calls + ")");
-    }
+    case Values::Paths::scenes:
+      return " -x -a " + shell_quoted(
+                             "(__fish_complete_path (commandline -ct) | string match -r "
+                             "'.*(?:/|\\.(?:" +
+                             joined({std::begin(scene_endings), std::end(scene_endings)}, "|") +
+                             "))(?:\\t.*)?$')");
     case Values::Paths::files:
       return " -r -F";
     case Values::Paths::directories:
