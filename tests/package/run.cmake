@@ -2,6 +2,8 @@
 # program and libraries work from there.
 #
 #   cmake -D BUILD=<build folder> -D WORK=<folder to use> -D SOURCE=<top of the project> -D PYTHON=<ON or OFF> -P run.cmake
+cmake_minimum_required(VERSION 3.25)
+
 function(step)
   execute_process(COMMAND ${ARGN} COMMAND_ERROR_IS_FATAL ANY)
 endfunction()
