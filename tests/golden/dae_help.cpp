@@ -189,7 +189,7 @@ TEST_F(Help, BashCompletesVerbsOptionsAndWhatTheyTake) {
 }
 
 TEST_F(Help, BashCompletesScenesAndFolders) {
-  for (const char* name : {"arm.toml", "arm.urdf", "arm.xml", "arm.mjcf", "arm.txt"})
+  for (const char* name : {"arm.toml", "arm.urdf", "arm.xml", "arm.mjcf", "arm.txt", "arm.tomlx"})
     write(name, "");
   fs::create_directory(folder_ / "armoury");
   const Names scenes{"arm.toml", "arm.urdf", "arm.xml", "arm.mjcf", "armoury"};
@@ -199,8 +199,8 @@ TEST_F(Help, BashCompletesScenesAndFolders) {
   EXPECT_EQ(offered("momenta run --form = momentum ar"), scenes);
   EXPECT_EQ(offered("momenta run arm.toml ar"), Names{});
   EXPECT_EQ(offered("momenta run --out ar"), Names{"armoury"});
-  EXPECT_EQ(offered("momenta run --reference arm.t"), (Names{"arm.toml", "arm.txt"}));
-  EXPECT_EQ(offered("momenta convert arm.xml arm.t"), (Names{"arm.toml", "arm.txt"}));
+  EXPECT_EQ(offered("momenta run --reference arm.t"), (Names{"arm.toml", "arm.tomlx", "arm.txt"}));
+  EXPECT_EQ(offered("momenta convert arm.xml arm.t"), (Names{"arm.toml", "arm.tomlx", "arm.txt"}));
 }
 
 TEST_F(Help, FishCompletes) {

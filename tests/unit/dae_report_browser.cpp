@@ -47,6 +47,12 @@ setInterval(() => {
     "movies=" + document.querySelectorAll(".movie canvas").length].join(" "), "*");
 }, 200); });)";
 
+// Firefox tells of errors alone: what a page writes to its console becomes one.
+constexpr const char* written_is_thrown =
+    R"(for (const level of ["log", "info", "warn", "error"])
+  console[level] = (...said) => setTimeout(() => { throw Error(level + ": " + said); });
+)";
+
 class Browser : public ::testing::TestWithParam<std::tuple<std::string, int>> {
  protected:
   void SetUp() override {
@@ -69,7 +75,7 @@ class Browser : public ::testing::TestWithParam<std::tuple<std::string, int>> {
     page.insert(page.rfind("}\n</script>"),  // among the page's own functions
                 std::string("requestAnimationFrame = (act) => setTimeout(() => "
                             "act(performance.now()), 16);\n") +
-                    question);
+                    (browser() == "firefox-esr" ? written_is_thrown : "") + question);
     const fs::path file = directory_ / "frame.html";
     EXPECT_EQ(atomic_write(directory_ / "index.html", page), std::nullopt);
     EXPECT_EQ(atomic_write(

@@ -66,14 +66,12 @@ class Firefox {
     return ask("WebDriver:ExecuteScript", {{"script", script}, {"args", nlohmann::json::array()}})
         .at("value");
   }
-  /// Errors and warnings about files, and whatever pages from files wrote to the console.
+  /// Errors and warnings about files. What a page writes to the console itself is not among them:
+  /// that stays with the process of the page.
   std::string console() {
     const auto lines = in_chrome(
-        "const told = Cc['@mozilla.org/consoleAPI-storage;1'].getService(Ci.nsIConsoleAPIStorage)"
-        ".getEvents().filter((e) => (e.filename || '').startsWith('file://'))"
-        ".map((e) => e.level + ': ' + e.arguments.join(' '));"
         "return Services.console.getMessageArray().map((m) => m.message)"
-        ".filter((m) => m.includes('file://')).concat(told);");
+        ".filter((m) => m.includes('file://'));");
     std::string text;
     for (const auto& line : lines) text += line.get<std::string>() + "\n";
     return text;
