@@ -1,14 +1,17 @@
 // The program: one verb a file.
 
 #include <momenta/core/scene/scene.h>
+#include <momenta/dae/solver/integrators.h>
+#include <momenta/dae/study/environment.h>
 
 #include <cstdio>
 #include <exception>
 #include <new>
 #include <stdexcept>
 
-#include "families.h"
+#include "help.h"
 #include "options.h"
+#include "values.h"
 
 using namespace momenta::program;
 
@@ -22,149 +25,186 @@ int main(int argc, char** argv) {
   std::string family, state = "{}";
   std::optional<int> n;
   CLI::App app(
-      "Constrained multibody systems on canonical momenta: open chains, closed loops, and how far "
-      "they drift.");
+      "Constrained multibody systems on canonical momenta: open chains, closed loops, "
+      "and how far they drift.");
   app.require_subcommand(1);
-  app.set_version_flag("--version", "momenta 0.1.0");
-  app.footer("Example: momenta drift examples/four_bar/scene.toml --out results");
+  // Before the verbs: they take it over.
+  app.formatter_fn(
+      [](const CLI::App* of, std::string, CLI::AppFormatMode) { return screen_help(*of); });
+  app.set_help_flag("--help", "This text");
+  app.set_version_flag("--version", std::string("momenta ") + momenta::version(), "The version");
+  app.footer(std::string(exit_status) +
+             "\nExample: momenta drift examples/four_bar/scene.toml --out results");
 
   CLI::App* check_verb =
       app.add_subcommand("check", "Topology, mobility, redundant equations, the plan");
+  check_verb->footer("Example: momenta check examples/bricard/scene.toml");
   add_scene(*check_verb, o);
   CLI::App* assemble_app =
       app.add_subcommand("assemble", "A consistent start: positions, rates, accelerations, λ");
+  assemble_app->footer("Example: momenta assemble examples/andrews/scene.toml");
   add_scene(*assemble_app, o);
   CLI::App* run_verb = app.add_subcommand("run", "One form, one integrator");
+  run_verb->footer("Example: momenta run examples/four_bar/scene.toml --end 20 --out results");
   add_scene(*run_verb, o);
-  run_verb->add_option("--form", o.form, "Which equations (see momenta check)")
-      ->capture_default_str();
+  run_verb->add_option("--form", o.form, "Which equations")
+      ->capture_default_str()
+      ->type_name("FORM");
   add_run_options(*run_verb, o);
   CLI::App* drift_verb =
       app.add_subcommand("drift", "Every form side by side: drift, energy, error against run time");
+  drift_verb->footer("Example: momenta drift examples/four_bar/scene.toml --end 5 --out results");
   add_scene(*drift_verb, o);
-  drift_verb->add_option("--forms", d.forms, "Comma-separated (default: all)");
-  add_run_options(*drift_verb, o);
+  drift_verb->add_option("--forms", d.forms, "Default: all")->type_name("FORM,...");
+  add_run_options(*drift_verb, o, "60");
+  drift_verb->remove_option(drift_verb->get_option("--spectral-radius"));
+  drift_verb->get_option("--integrator")->description("Of ODE forms (default: rk4, else dop853)");
   CLI::App* work_verb =
       app.add_subcommand("work", "Error against run time: every form over a ladder of tolerances");
+  work_verb->footer("Example: momenta work examples/four_bar/scene.toml --forms momentum --end 1");
   add_scene(*work_verb, o);
-  work_verb->add_option("--forms", w.forms, "Comma-separated (default: all)");
-  work_verb->add_option("--integrators", w.integrators,
-                        "Comma-separated, each for the forms it takes (default: dop853 and ida)");
-  work_verb->add_option("--from", w.loosest, "Loosest tolerance")
-      ->check(CLI::PositiveNumber)
+  work_verb->add_option("--forms", w.forms, "Default: all")->type_name("FORM,...");
+  work_verb->add_option("--integrators", w.integrators, "Each for the forms it takes")
+      ->type_name("INTEGRATOR,...");
+  positive(work_verb->add_option("--from", w.loosest, "Loosest tolerance"), "X")
       ->capture_default_str();
-  work_verb->add_option("--to", w.tightest, "Tightest tolerance")
-      ->check(CLI::PositiveNumber)
+  positive(work_verb->add_option("--to", w.tightest, "Tightest tolerance"), "X")
       ->capture_default_str();
-  work_verb->add_option("--per-decade", w.per_decade, "Tolerances in a decade")
-      ->check(CLI::Range(0.25, 100.0))
+  within(work_verb->add_option("--per-decade", w.per_decade, "Tolerances in a decade"), "X", 0.25,
+         100.0)
       ->capture_default_str();
-  work_verb->add_option("--step-rungs", w.step_rungs, "Fixed steps: twice --step, and halves of it")
-      ->check(CLI::Range(1, 40))
+  within(work_verb->add_option("--step-rungs", w.step_rungs, "Fixed steps: 2 --step, and halves"),
+         "N", 1, 40)
       ->capture_default_str();
-  work_verb->add_flag("--no-reference", w.no_reference,
-                      "Judge by the largest drift instead of a reference made in quad precision");
-  add_run_options(*work_verb, o);
-  for (const char* unused : {"--integrator", "--rtol", "--atol", "--project", "--no-project"})
+  work_verb->add_flag("--no-reference", w.no_reference, "Judge by the largest drift alone");
+  add_run_options(*work_verb, o, "10");
+  for (const char* unused :
+       {"--integrator", "--rtol", "--atol", "--spectral-radius", "--project", "--no-project",
+        "--baumgarte-alpha", "--baumgarte-beta", "--beta", "--penalty"})
     work_verb->remove_option(work_verb->get_option(unused));
   CLI::App* evaluate_verb =
       app.add_subcommand("evaluate", "Everything at one state, as one JSON document");
+  evaluate_verb->footer(
+      "Example: momenta evaluate examples/pendulum/scene.toml --at '{\"q\": {\"O\": 1.5}}'");
   add_scene(*evaluate_verb, o);
   evaluate_verb
       ->add_option("--at", state,
                    "State by joint name, {\"t\": 0, \"q\": {..}, \"v\" or \"p\": {..}, \"tau\": "
                    "{..}}: a JSON file, -, or the text itself (what is left out is the start)")
       ->type_name("STATE");
-  evaluate_verb->add_option("--out", o.out, "Directory for evaluate.json");
+  evaluate_verb->add_option("--out", o.out, "Directory for evaluate.json")->type_name("DIR");
   CLI::App* index_app = app.add_subcommand(
       "index", "The differentiation index of each form, by numbers, and its hidden constraints");
+  index_app->footer("Example: momenta index examples/four_bar/scene.toml --forms momentum-index2");
   add_scene(*index_app, o);
   std::string index_forms, index_state;
-  index_app->add_option("--forms", index_forms, "Comma-separated (default: all)");
+  index_app->add_option("--forms", index_forms, "Default: all")->type_name("FORM,...");
   index_app
       ->add_option("--at", index_state, "Consistent state, as for evaluate (default: the start)")
       ->type_name("STATE");
-  index_app->add_option("--out", o.out, "Directory for index.json");
+  index_app->add_option("--out", o.out, "Directory for index.json")->type_name("DIR");
   CLI::App* view_verb =
       app.add_subcommand("view", "A page that shows the assembled mechanism, to turn and to zoom");
+  view_verb->footer(
+      "Example: momenta view examples/models/agility_cassie/cassie.xml --out results");
   add_scene(*view_verb, o);
   for (const char* unused : {"--json", "--kkt"})
     view_verb->remove_option(view_verb->get_option(unused));
-  view_verb->add_option("--out", o.out, "Directory for index.html (default: standard output)");
+  view_verb->add_option("--out", o.out, "Directory for index.html (default: standard output)")
+      ->type_name("DIR");
   CLI::App* stress_app = app.add_subcommand(
       "stress", "Which form survives which extreme: of a scene, else of built-in ladders");
+  stress_app->footer("Example: momenta stress examples/four_bar/scene.toml --along size --end 1");
   add_scene_file(*stress_app, o, false);
-  stress_app->add_option("--forms", stress_options.forms, "Comma-separated (default: all)");
-  stress_app->add_option("--integrators", stress_options.integrators,
-                         "Comma-separated, each for the forms it takes (default: by form)");
-  stress_app->add_option(
-      "--along", stress_options.along,
-      "Of a scene: stiffness, damping, mass ratio, size, speed, duration; built in: words of a "
-      "ladder's name (default: all)");
+  stress_app->add_option("--forms", stress_options.forms, "Default: all")->type_name("FORM,...");
   stress_app
-      ->add_option("--within", stress_options.within,
-                   "Largest opening, energy error and error of what survives")
-      ->check(CLI::PositiveNumber)
+      ->add_option("--integrators", stress_options.integrators,
+                   "Each for the forms it takes (default: by form)")
+      ->type_name("INTEGRATOR,...");
+  stress_app
+      ->add_option(
+          "--along", stress_options.along,
+          "Of a scene: stiffness, damping, mass ratio, size, speed, duration; built in: words of a "
+          "ladder's name (default: all)")
+      ->type_name("LADDER,...");
+  positive(stress_app->add_option("--within", stress_options.within,
+                                  "Largest opening, energy error and error of what survives"),
+           "X")
       ->capture_default_str();
-  stress_app->add_option("--rtol", o.rtol, "Relative and absolute tolerance")
-      ->check(CLI::PositiveNumber)
+  positive(stress_app->add_option("--rtol", o.rtol, "Relative and absolute tolerance"), "X")
       ->capture_default_str();
-  stress_app->add_option("--end", o.end, "End time of the scene [s]")->check(CLI::PositiveNumber);
-  stress_app->add_option("--cpu-limit", o.cpu_limit, "Processor time of one run [s] (default: 20)")
-      ->check(CLI::PositiveNumber);
+  positive(stress_app->add_option("--end", o.end, "End time of the scene [s]"), "S");
+  positive(
+      stress_app->add_option("--cpu-limit", o.cpu_limit, "CPU time of a run [s] (default: 20)"),
+      "S");
   stress_app
       ->add_option("--reference-limit", stress_options.reference_seconds,
-                   "Processor time of one reference in quadruple precision [s]; 0: none")
-      ->check(CLI::NonNegativeNumber)
+                   "CPU time of one reference in quadruple precision [s]; 0: none")
+      ->check(CLI::NonNegativeNumber.description(""))
+      ->type_name("S")
       ->capture_default_str();
-  stress_app->add_option("--threads", stress_options.threads, "Default: one for each processor")
-      ->check(CLI::Range(1, 1024));
+  within(stress_app->add_option("--threads", stress_options.threads,
+                                "Default: one for each processor"),
+         "N", 1, 1024);
   add_results(*stress_app, o);
   stress_app->add_flag("--json", o.json, "One JSON document on standard output");
   stress_app->add_flag("--quiet", o.quiet, "No progress, no table");
   CLI::App* sweep_app =
       app.add_subcommand("sweep", "One run for each combination of numbers of the scene");
   SweepOptions sweep_options;
+  sweep_app->footer(
+      "Example: momenta sweep examples/four_bar/scene.toml --vary body.crank.mass=1,2");
   add_scene(*sweep_app, o);
   sweep_app
       ->add_option("--vary", sweep_options.vary,
-                   "PLACE=FROM:TO:COUNT, PLACE=FROM:TO:COUNT:log or PLACE=VALUE,VALUE; a place is "
-                   "body.crank.mass, joint.O.position, gravity.1, …; again for another number")
+                   "Say body.crank.mass=1,2 or gravity.1=0:10:5[:log]")
+      ->type_name("PLACE=VALUES")
       ->required();
-  sweep_app->add_option("--watch", sweep_options.watch,
-                        "Columns of the trajectory, comma-separated: last, least and greatest");
-  sweep_app->add_option("--form", o.form, "Which equations")->capture_default_str();
+  sweep_app
+      ->add_option("--watch", sweep_options.watch,
+                   "Columns of the trajectory: last, least and greatest")
+      ->type_name("COLUMN,...");
+  sweep_app->add_option("--form", o.form, "Which equations")
+      ->capture_default_str()
+      ->type_name("FORM");
   add_run_options(*sweep_app, o);
   for (const char* unused : {"--reference", "--figures"})
     sweep_app->remove_option(sweep_app->get_option(unused));
-  sweep_app
-      ->add_option("--threads", sweep_options.threads,
-                   "Default: one for each processor; under mpirun one in each process")
-      ->check(CLI::Range(1, 1024));
+  within(sweep_app->add_option("--threads", sweep_options.threads,
+                               "Default: one a processor; under mpirun one a process"),
+         "N", 1, 1024);
   CLI::App* convert_verb =
       app.add_subcommand("convert", "Writes a scene, URDF or MJCF as a scene in TOML");
+  convert_verb->footer("Example: momenta convert examples/models/ur5/ur5_robot.urdf ur5.toml");
   add_scene_file(*convert_verb, o);
   convert_verb->add_flag("--quiet", o.quiet, "Do not tell what was left out");
   std::filesystem::path converted;
-  convert_verb->add_option("out", converted, "TOML file to write (default: standard output)");
+  convert_verb->add_option("out", converted, "TOML file to write (default: standard output)")
+      ->type_name("FILE");
   CLI::App* make_verb = app.add_subcommand("make", "Prints a scene of a family");
-  std::string all_families;
-  for (const Family& f : families()) all_families += "\n  " + std::string(f.name) + ": " + f.what;
-  make_verb->add_option("family", family, "One of:" + all_families)->required();
-  make_verb->add_option("--n", n, "Size N (each family has its own default)");
+  make_verb->footer("Example: momenta make stewart --n 6 > stewart.toml");
+  make_verb->add_option("family", family, "Which mechanism")->required()->type_name("FAMILY");
+  make_verb->add_option("--n", n, "Size (each family has its own default)")->type_name("N");
   bool turned = false;
   make_verb->add_flag("--turned", turned, "Planar families: in a plane across all axes");
+  CLI::App* completion_verb =
+      app.add_subcommand("completion", "Prints a script that completes this command line");
+  completion_verb->footer("Example: momenta completion bash > momenta");
+  std::string shell;
+  one_of(completion_verb->add_option("shell", shell, "For which shell")->required(),
+         {"bash", "zsh", "fish"});
+  CLI::App* manual_verb = app.add_subcommand("manual", "Prints momenta(1) in roff")->group("");
 
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() == 0) return app.exit(e);
     const bool unknown = argc > 1 && argv[1][0] != '-' && app.get_subcommands().empty();
+    std::vector<std::string> verbs;
+    for (const CLI::App* verb : verbs_of(app)) verbs.push_back(verb->get_name());
     if (unknown)
-      std::fprintf(stderr,
-                   "momenta: verb '%.60s' is not known; expected check, assemble, evaluate, index, "
-                   "run, view, drift, work, stress, sweep, convert or make\n",
-                   argv[1]);
+      std::fprintf(stderr, "momenta: verb '%.60s' is not known; expected %s\n", argv[1],
+                   momenta::listed(verbs).c_str());
     else
       std::fprintf(stderr, "momenta: %s\n", e.what());
     return bad_input;
@@ -191,6 +231,8 @@ int main(int argc, char** argv) {
     if (*stress_app) return stress(o, stress_options);
     if (*sweep_app) return sweep(o, sweep_options);
     if (*convert_verb) return convert(o, converted);
+    if (*completion_verb) return std::fputs(completion_script(app, shell).c_str(), stdout), done;
+    if (*manual_verb) return std::fputs(man_page(app).c_str(), stdout), done;
     return make(family, n, turned);
   } catch (const momenta::SceneError& e) {
     std::fprintf(stderr, "momenta: %s\n", e.what());

@@ -18,6 +18,8 @@
 #include <iterator>
 #include <sstream>
 
+#include "values.h"
+
 namespace momenta::program {
 namespace {
 
@@ -34,67 +36,63 @@ std::string content_of(const std::filesystem::path& file) {
 }  // namespace
 
 void add_scene_file(CLI::App& verb, Options& o, bool required) {
-  verb.add_option("scene", o.scene, "Scene: TOML, URDF (.urdf) or MJCF (.xml, .mjcf)")
-      ->required(required);
-  verb.add_option("--loops", o.reading.loops,
-                  "Of a URDF: YAML file with its loops (default: the one beside it, if any)");
+  verb.add_option("scene", o.scene, "TOML, URDF (.urdf) or MJCF (.xml, .mjcf)")
+      ->required(required)
+      ->type_name("SCENE");
+  verb.add_option("--loops", o.reading.loops, "Of a URDF: its loops (default: the .yaml beside it)")
+      ->type_name("FILE");
   verb.add_flag("--free-root", o.reading.free_root, "Of a URDF: the root link floats");
 }
 
 void add_scene(CLI::App& verb, Options& o) {
   add_scene_file(verb, o);
-  verb.add_option("--algebra", o.algebra, "Kernel: auto, planar or spatial")
-      ->check(CLI::IsMember({"auto", "planar", "spatial"}));
-  verb.add_option("--kkt", o.kkt, "How (7) is solved: auto, sweeps, sparse or dense")
-      ->check(CLI::IsMember({"auto", "sweeps", "sparse", "dense"}));
+  one_of(verb.add_option("--algebra", o.algebra, "Kernel (default: auto)"),
+         {"auto", "planar", "spatial"});
+  one_of(verb.add_option("--kkt", o.kkt, "How (7) is solved (default: auto)"),
+         {"auto", "sweeps", "sparse", "dense"});
   verb.add_flag("--json", o.json, "One JSON document on standard output");
   verb.add_flag("--quiet", o.quiet, "No progress, no table");
 }
 
-void add_run_options(CLI::App& verb, Options& o) {
-  const auto positive = CLI::PositiveNumber;
+void add_run_options(CLI::App& verb, Options& o, const char* cpu_limit) {
   std::vector<std::string> names;
   for (const Integrator& i : integrators()) names.push_back(i.name);
-  verb.add_option("--integrator", o.integrator,
-                  "Of ODE forms " + integrator_names(Integrator::Takes::ode) + "; of DAE forms " +
-                      integrator_names(Integrator::Takes::dae) +
-                      " (default: ida, or by tolerance dp5, dop853, vern9)")
-      ->check(CLI::IsMember(names));
-  verb.add_option("--gauge", o.gauge, "Momentum forms: none, reset, flip, leak or leak:RATE [1/s]");
-  verb.add_option("--rtol", o.rtol, "Relative tolerance")->check(positive)->capture_default_str();
-  verb.add_option("--atol", o.atol,
-                  "Absolute tolerance, times each unknown's scale (default: rtol)")
-      ->check(positive);
-  verb.add_option("--step", o.step, "Step of the fixed-step integrators [s]")->check(positive);
-  verb.add_option("--spectral-radius", o.spectral_radius,
-                  "Of generalised-alpha at infinite frequency, 0 to below 1")
-      ->check(CLI::Range(0.0, 1.0))
+  one_of(verb.add_option("--integrator", o.integrator,
+                         "Default: ida, or dp5, dop853, vern9 by --rtol"),
+         names)
+      ->type_name("INTEGRATOR");
+  verb.add_option("--gauge", o.gauge, "Of momentum forms, rate in 1/s")
+      ->type_name("none|reset|flip|leak|leak:RATE");
+  positive(verb.add_option("--rtol", o.rtol, "Relative tolerance"), "X")->capture_default_str();
+  positive(
+      verb.add_option("--atol", o.atol, "Absolute, times each unknown's scale (default: rtol)"),
+      "X");
+  positive(verb.add_option("--step", o.step, "Step of the fixed-step integrators [s]"), "S");
+  within(verb.add_option("--spectral-radius", o.spectral_radius, "Of generalised-alpha, below 1"),
+         "X", 0.0, 1.0)
       ->capture_default_str();
-  verb.add_option("--end", o.end, "End time [s]")->check(positive);
-  verb.add_option("--samples", o.samples, "Output intervals")->check(CLI::Range(1, 10'000'000));
-  auto* project = verb.add_flag("--project", o.project,
-                                "Correct positions after each step (ODE forms; not with adams)");
+  positive(verb.add_option("--end", o.end, "End time [s]"), "S");
+  within(verb.add_option("--samples", o.samples, "Output intervals"), "N", 1, 10'000'000);
+  auto* project =
+      verb.add_flag("--project", o.project, "Correct positions after each step (ODE forms)");
   verb.add_flag("--no-project", o.no_project, "Do not, even if the scene asks for it")
       ->excludes(project);
-  verb.add_option("--baumgarte-alpha", o.baumgarte_alpha, "α of Φ̈ + 2αΦ̇ + β²Φ = 0 [1/s]")
-      ->check(positive);
-  verb.add_option("--baumgarte-beta", o.baumgarte_beta, "β [1/s]")->check(positive);
-  verb.add_option("--beta", o.beta, "Momentum forms: Φ̇ = −βΦ instead of 0 [1/s] (default: 0)")
-      ->check(positive);
-  verb.add_option("--penalty", o.penalty,
-                  "Augmented Lagrangians: α in effective masses of the loops (default: 1e7)")
-      ->check(positive);
-  verb.add_option("--cpu-limit", o.cpu_limit,
-                  "Stop a run after this much CPU time [s] (run: none; drift: 60 for each run)")
-      ->check(positive);
-  verb.add_option("--reference", o.reference, "CSV with a reference solution");
+  positive(verb.add_option("--baumgarte-alpha", o.baumgarte_alpha, "α of Φ̈ + 2αΦ̇ + β²Φ = 0 [1/s]"),
+           "X");
+  positive(verb.add_option("--baumgarte-beta", o.baumgarte_beta, "β of it [1/s]"), "X");
+  positive(verb.add_option("--beta", o.beta, "Momentum forms: Φ̇ = −βΦ [1/s] (default: 0)"), "X");
+  positive(verb.add_option("--penalty", o.penalty, "Of augmented Lagrangians (default: 1e7)"), "X");
+  positive(verb.add_option("--cpu-limit", o.cpu_limit,
+                           std::string("CPU time of a run [s] (default: ") + cpu_limit + ")"),
+           "S");
+  verb.add_option("--reference", o.reference, "CSV with a reference solution")->type_name("FILE");
   add_results(verb, o);
 }
 
 void add_results(CLI::App& verb, Options& o) {
-  verb.add_option("--out", o.out, "Directory for results");
-  verb.add_option("--figures", o.figures, "Every chart as a figure for papers, in DIR/figures: svg")
-      ->check(CLI::IsMember({"svg"}));
+  verb.add_option("--out", o.out, "Directory for results")->type_name("DIR");
+  one_of(verb.add_option("--figures", o.figures, "Every chart for papers, in DIR/figures"),
+         {"svg"});
 }
 
 Scene read(const Options& o) {

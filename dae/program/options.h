@@ -40,7 +40,8 @@ struct Options {
 void add_scene(CLI::App& verb, Options& o);
 /// The scene alone, with what a URDF does not say.
 void add_scene_file(CLI::App& verb, Options& o, bool required = true);
-void add_run_options(CLI::App& verb, Options& o);
+/// `cpu_limit`: that of a run of this verb, in words.
+void add_run_options(CLI::App& verb, Options& o, const char* cpu_limit = "none");
 void add_results(CLI::App& verb, Options& o);
 
 MechanismOptions mechanism_options(const Options& o);

@@ -2,6 +2,7 @@
 // calls release the interpreter, and Ctrl-C stops them at the next sample.
 
 #include <momenta/dae/solver/integrators.h>
+#include <momenta/dae/study/column_named.h>
 #include <momenta/dae/study/drift_study.h>
 #include <momenta/dae/study/own_reference.h>
 #include <momenta/dae/study/work_study.h>
@@ -25,9 +26,7 @@ struct Run {
   }
   std::size_t columns() const { return result.trajectory.columns.size(); }
   std::size_t column(const std::string& name) const {
-    const Names& all = result.trajectory.columns;
-    for (std::size_t i = 0; i < all.size(); ++i)
-      if (all[i] == name || all[i].substr(0, all[i].find(" [")) == name) return i;
+    if (const auto at = column_named(result.trajectory.columns, name)) return *at;
     throw py::key_error("no column '" + name + "'; `columns` has all of them");
   }
 };

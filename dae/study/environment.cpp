@@ -11,6 +11,10 @@
 
 namespace momenta {
 
+const char* version() {
+  return MOMENTA_VERSION;
+}
+
 Environment environment() {
   Environment e;
   std::ifstream info("/proc/cpuinfo");
@@ -29,7 +33,7 @@ Environment environment() {
   const auto dotted = [](int a, int b, int c) {
     return std::to_string(a) + "." + std::to_string(b) + "." + std::to_string(c);
   };
-  e.versions = {{"momenta", MOMENTA_VERSION},
+  e.versions = {{"momenta", version()},
                 {"SUNDIALS", SUNDIALS_VERSION},
                 {"SuiteSparse", dotted(SUITESPARSE_MAIN_VERSION, SUITESPARSE_SUB_VERSION,
                                        SUITESPARSE_SUBSUB_VERSION)},

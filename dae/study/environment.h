@@ -5,6 +5,9 @@
 
 namespace momenta {
 
+/// Of momenta: "0.1.0".
+const char* version();
+
 /// Processor, compiler, flags, versions of the libraries, date: what stands beside every figure.
 Environment environment();
 

@@ -1,6 +1,7 @@
 #include <momenta/core/scene/scene.h>
 #include <momenta/dae/assembly.h>
 #include <momenta/dae/solver/stopping.h>
+#include <momenta/dae/study/column_named.h>
 #include <momenta/dae/study/sweep_study.h>
 
 #include <algorithm>
@@ -84,15 +85,13 @@ std::vector<std::size_t> columns_of(const SweepRequest& request,
                                     const std::vector<std::string>& columns) {
   std::vector<std::size_t> places;
   for (const std::string& name : request.watched) {
-    const auto found = std::find_if(columns.begin(), columns.end(), [&](const std::string& c) {
-      return c == name || c.substr(0, c.find(" [")) == name;
-    });
-    if (found == columns.end()) {
+    const auto place = column_named(columns, name);
+    if (!place) {
       std::string all;
       for (const std::string& c : columns) all += (all.empty() ? "" : ", ") + c;
       throw std::invalid_argument("--watch '" + name + "': no such column, expected one of " + all);
     }
-    places.push_back(static_cast<std::size_t>(found - columns.begin()));
+    places.push_back(*place);
   }
   return places;
 }

@@ -1,8 +1,9 @@
 // The page in a real browser: no console message, no horizontal scroll, every chart and table
-// there. Skipped where Chromium is not installed.
+// there. In Chromium and in Firefox, skipped where one is not installed.
 #include <gtest/gtest.h>
 #include <momenta/dae/report/atomic_write.h>
 #include <momenta/dae/report/page.h>
+#include <unit/page/firefox.h>
 #include <unit/page/synthetic_study.h>
 
 #include <array>
@@ -10,6 +11,8 @@
 #include <cstdlib>
 #include <filesystem>
 #include <string>
+#include <tuple>
+#include <utility>
 
 namespace momenta {
 namespace {
@@ -44,11 +47,17 @@ setInterval(() => {
     "movies=" + document.querySelectorAll(".movie canvas").length].join(" "), "*");
 }, 200); });)";
 
-class Browser : public ::testing::TestWithParam<int> {
+// Firefox tells of errors alone: what a page writes to its console becomes one.
+constexpr const char* written_is_thrown =
+    R"(for (const level of ["log", "info", "warn", "error"])
+  console[level] = (...said) => setTimeout(() => { throw Error(level + ": " + said); });
+)";
+
+class Browser : public ::testing::TestWithParam<std::tuple<std::string, int>> {
  protected:
   void SetUp() override {
-    if (std::system("command -v chromium >/dev/null 2>&1") != 0)
-      GTEST_SKIP() << "Chromium is not installed";
+    if (std::system(("command -v " + browser() + " >/dev/null 2>&1").c_str()) != 0)
+      GTEST_SKIP() << browser() << " is not installed";
     std::string pattern = (fs::temp_directory_path() / "momenta-page-XXXXXX").string();
     ASSERT_NE(mkdtemp(pattern.data()), nullptr);
     directory_ = pattern;
@@ -57,15 +66,17 @@ class Browser : public ::testing::TestWithParam<int> {
     if (!directory_.empty()) fs::remove_all(directory_);
   }
 
+  static std::string browser() { return std::get<0>(GetParam()); }
+  static int width() { return std::get<1>(GetParam()); }
+
   // The page's own report, and what the console said. Without a screen and in virtual time a
   // browser makes next to no frames: a timer stands for them.
-  std::pair<std::string, std::string> opened(std::string page, int width,
-                                             const char* question = probe) {
+  std::pair<std::string, std::string> opened(std::string page, const char* question = probe) {
     page.insert(page.rfind("}\n</script>"),  // among the page's own functions
                 std::string("requestAnimationFrame = (act) => setTimeout(() => "
                             "act(performance.now()), 16);\n") +
-                    question);
-    const fs::path file = directory_ / "frame.html", log = directory_ / "log";
+                    (browser() == "firefox-esr" ? written_is_thrown : "") + question);
+    const fs::path file = directory_ / "frame.html";
     EXPECT_EQ(atomic_write(directory_ / "index.html", page), std::nullopt);
     EXPECT_EQ(atomic_write(
                   file,
@@ -73,8 +84,28 @@ class Browser : public ::testing::TestWithParam<int> {
                   "'data-probe', e.data)</script><iframe src=\"index.html\" "
                   "style=\"border:0;height:2000px;"
                   "width:" +
-                      std::to_string(width) + "px\"></iframe>"),
+                      std::to_string(width()) + "px\"></iframe>"),
               std::nullopt);
+    return browser() == "firefox-esr" ? in_firefox(file) : in_chromium(file);
+  }
+
+  std::pair<std::string, std::string> in_firefox(const fs::path& file) {
+    Firefox firefox(directory_ / "profile");
+    firefox.open(file);
+    std::string report, last;
+    // It measures five times a second: what stands for a second is its last word.
+    for (int waited = 0, stood = 0; waited < 300 && stood < 10; ++waited) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(100));
+      const auto told =
+          firefox.in_page("return document.documentElement.getAttribute('data-probe')");
+      last = std::exchange(report, told.is_null() ? "" : told.get<std::string>());
+      stood = !report.empty() && report == last ? stood + 1 : 0;
+    }
+    return {report, firefox.console()};
+  }
+
+  std::pair<std::string, std::string> in_chromium(const fs::path& file) {
+    const fs::path log = directory_ / "log";
     const std::string command =
         "timeout 60 chromium --headless --no-sandbox --disable-gpu --disable-background-networking "
         "--no-first-run "
@@ -101,16 +132,16 @@ class Browser : public ::testing::TestWithParam<int> {
 };
 
 TEST_P(Browser, ShowsAllFormsWithinTheWindow) {
-  const auto [report, console] = opened(drift_page(synthetic::all_forms()), GetParam());
+  const auto [report, console] = opened(drift_page(synthetic::all_forms()));
   EXPECT_EQ(console, "");
-  EXPECT_EQ(report, "fits width=" + std::to_string(GetParam()) +
+  EXPECT_EQ(report, "fits width=" + std::to_string(width()) +
                         " plots=5 tables=4 small=0 sorted=ascending movies=1");
 }
 
 TEST_P(Browser, ShowsALadderWithinTheWindow) {
-  const auto [report, console] = opened(drift_page(synthetic::ladder()), GetParam());
+  const auto [report, console] = opened(drift_page(synthetic::ladder()));
   EXPECT_EQ(console, "");
-  EXPECT_EQ(report, "fits width=" + std::to_string(GetParam()) +
+  EXPECT_EQ(report, "fits width=" + std::to_string(width()) +
                         " plots=9 tables=4 small=0 sorted=ascending movies=1");
 }
 
@@ -118,9 +149,9 @@ TEST_P(Browser, ShowsALoneRunWithoutHistory) {
   RunResult run;
   run.position_drift_max = 0;
   run.cpu_s = 0.1;
-  const auto [report, console] = opened(drift_page(synthetic::study_of({run})), GetParam());
+  const auto [report, console] = opened(drift_page(synthetic::study_of({run})));
   EXPECT_EQ(console, "");
-  EXPECT_EQ(report, "fits width=" + std::to_string(GetParam()) +
+  EXPECT_EQ(report, "fits width=" + std::to_string(width()) +
                         " plots=1 tables=1 small=0 sorted=ascending movies=1");
 }
 
@@ -179,8 +210,7 @@ StudyResult filmed(std::vector<Motion> motions) {
 }
 
 TEST_P(Browser, MovesTheMechanismOfARunWithItsCurves) {
-  const auto [report, console] =
-      opened(run_page(filmed({synthetic::motion(0, 2, 101)})), GetParam(), moving);
+  const auto [report, console] = opened(run_page(filmed({synthetic::motion(0, 2, 101)})), moving);
   EXPECT_EQ(console, "");
   EXPECT_EQ(
       report,
@@ -191,7 +221,7 @@ TEST_P(Browser, MovesTheMechanismOfARunWithItsCurves) {
 TEST_P(Browser, MovesTheMechanismsOfAllForms) {
   StudyResult study = filmed({synthetic::motion(0, 2, 101), synthetic::motion(1, 2, 101)});
   study.runs[1].settings.form = "acceleration";
-  const auto [report, console] = opened(drift_page(study), GetParam(), moving);
+  const auto [report, console] = opened(drift_page(study), moving);
   EXPECT_EQ(console, "");
   EXPECT_EQ(
       report,
@@ -206,7 +236,7 @@ TEST_P(Browser, TurnsAMechanismInSpace) {
   study.picture.bodies[1].shape = {"box", {0.4, 0.3, 0.2}, {1, 0, 0}};
   study.picture.bodies[0].shape = {"cylinder", {0.4, 0.1, 0}, {1, 0, 0}};
   study.picture.bodies[2].shape = {"sphere", {0.2, 0, 0}, {1, 0, 0}};
-  const auto [report, console] = opened(run_page(study), GetParam(), moving);
+  const auto [report, console] = opened(run_page(study), moving);
   EXPECT_EQ(console, "");
   EXPECT_EQ(
       report,
@@ -229,12 +259,15 @@ setInterval(() => parent.postMessage([document.documentElement.scrollWidth <= in
 
 TEST_P(Browser, ShowsASceneThatWasNotRun) {
   StudyResult study = synthetic::study_of({});
-  const auto [report, console] = opened(view_page(study, "Three links."), GetParam(), still);
+  const auto [report, console] = opened(view_page(study, "Three links."), still);
   EXPECT_EQ(console, "");
   EXPECT_EQ(report, "fits clock=0 rows=4 ticked=true");
 }
 
-INSTANTIATE_TEST_SUITE_P(Widths, Browser, ::testing::Values(360, 1600));
+INSTANTIATE_TEST_SUITE_P(Widths, Browser,
+                         ::testing::Combine(::testing::Values(std::string("chromium"),
+                                                              std::string("firefox-esr")),
+                                            ::testing::Values(360, 1600)));
 
 }  // namespace
 }  // namespace momenta

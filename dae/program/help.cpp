@@ -1,0 +1,91 @@
+#include "help.h"
+
+#include <algorithm>
+#include <sstream>
+
+#include "families.h"
+#include "values.h"
+
+namespace momenta::program {
+namespace {
+
+constexpr std::size_t text_column = 26;
+
+/// The words of `text` from where `line` stands on, later lines indented; lines of `text` stay.
+std::string wrapped(std::string line, const std::string& text, std::size_t indent) {
+  std::string out;
+  std::istringstream lines(text);
+  bool first = true;
+  for (std::string part; std::getline(lines, part); first = false) {
+    if (!first) {
+      out += line + "\n";
+      line.assign(indent, ' ');
+    }
+    std::istringstream words(part);
+    bool spaced = true;  // nothing, or blanks, before the next word
+    for (std::string word; words >> word; spaced = false) {
+      if (!spaced && columns_of(line) + 1 + columns_of(word) > screen_width) {
+        out += line + "\n";
+        line.assign(indent, ' ');
+        spaced = true;
+      }
+      line += (spaced ? "" : " ") + word;
+    }
+  }
+  return out + line + "\n";
+}
+
+std::string row(const std::string& name, const std::string& text) {
+  std::string line = "  " + name + "  ";
+  if (line.size() < text_column) line.resize(text_column, ' ');
+  return wrapped(line, text, text_column);
+}
+
+std::string name_and_type(const CLI::Option& o) {
+  return shown_name(o) + (is_flag(o) || !o.nonpositional() ? "" : " " + o.get_type_name());
+}
+
+std::string help_of_verb(const CLI::App& verb) {
+  std::string out = wrapped("Usage: ", "momenta " + synopsis_of(verb), 7) +
+                    wrapped("", verb.get_description() + ".", 0) + "\n";
+  for (const CLI::Option* o : verb.get_options())
+    if (o != verb.get_help_ptr()) out += row(name_and_type(*o), shown_text(*o));
+  const auto sentences = names_behind(verb.get_options());
+  if (!sentences.empty()) out += "\n";
+  for (const std::string& sentence : sentences) out += wrapped("", sentence, 2);
+  if (any_takes(verb.get_options(), "FAMILY")) {
+    out += "\nFAMILY:\n";
+    for (const Family& f : families()) out += row(f.name, f.what);
+  }
+  return out + "\n" + verb.get_footer() + "\n";
+}
+
+std::string help_of_program(const CLI::App& program) {
+  std::string out = wrapped("", program.get_description(), 0);
+  out += "\nUsage: momenta VERB [OPTIONS]\n       momenta VERB --help\n\n";
+  for (const CLI::App* verb : verbs_of(program))
+    out += row(verb->get_name(), verb->get_description());
+  out += "\n";
+  for (const CLI::Option* o : program.get_options()) out += row(name_and_type(*o), shown_text(*o));
+  return out + "\n" + wrapped("", program.get_footer(), 0);
+}
+
+}  // namespace
+
+std::size_t columns_of(std::string_view text) {
+  std::size_t columns = 0;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto byte = static_cast<unsigned char>(text[i]);
+    const bool continued = (byte & 0xc0) == 0x80;
+    const bool mark = byte == 0xcc || (byte == 0xcd && i + 1 < text.size() &&
+                                       static_cast<unsigned char>(text[i + 1]) < 0xb0);
+    if (!continued && !mark) ++columns;
+  }
+  return columns;
+}
+
+std::string screen_help(const CLI::App& app) {
+  return app.get_parent() ? help_of_verb(app) : help_of_program(app);
+}
+
+}  // namespace momenta::program
