@@ -145,8 +145,13 @@ int main(int argc, char** argv) {
       app.add_subcommand("convert", "Writes a scene, URDF or MJCF as a scene in TOML");
   add_scene_file(*convert_verb, o);
   convert_verb->add_flag("--quiet", o.quiet, "Do not tell what was left out");
-  std::filesystem::path converted;
-  convert_verb->add_option("out", converted, "TOML file to write (default: standard output)");
+  ConvertOptions convert_options;
+  convert_verb->add_option("out", convert_options.out,
+                           "TOML file to write (default: standard output)");
+  convert_verb->add_flag("--recut", convert_options.recut,
+                         "Assembled, and its loops cut where they are the least work to carry");
+  convert_verb->add_option("--keep", convert_options.keep,
+                           "With --recut: joint or loop that stays what it is; again for another");
   CLI::App* make_verb = app.add_subcommand("make", "Prints a scene of a family");
   std::string all_families;
   for (const Family& f : families()) all_families += "\n  " + std::string(f.name) + ": " + f.what;
@@ -190,7 +195,7 @@ int main(int argc, char** argv) {
     if (*view_verb) return view(o);
     if (*stress_app) return stress(o, stress_options);
     if (*sweep_app) return sweep(o, sweep_options);
-    if (*convert_verb) return convert(o, converted);
+    if (*convert_verb) return convert(o, convert_options);
     return make(family, n, turned);
   } catch (const momenta::SceneError& e) {
     std::fprintf(stderr, "momenta: %s\n", e.what());
