@@ -90,9 +90,10 @@ void Mechanism::choose_kkt(KktChoice asked) {
       cast.as_given.plan = plan_loops(cast.model, cast.as_given.loops);
     }
     if (!cast.swept.plan.fits())
-      kkt_reason_ = std::to_string(cast.swept.plan.lanes) +
-                    " loop equations are open at once, more than " +
-                    std::to_string(LoopPlan::most_lanes);
+      kkt_reason_ =
+          (cast.swept.plan.lanes > 64 ? std::string("more than 64")  // no more are counted
+                                      : std::to_string(cast.swept.plan.lanes)) +
+          " loop equations are open at once, more than " + std::to_string(LoopPlan::most_lanes);
   };
   if (plan_.planar)
     plan(std::get<0>(cast_));

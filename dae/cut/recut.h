@@ -22,10 +22,11 @@
 namespace momenta {
 
 struct CutCost {
-  int open = 0;                   ///< equations open at once, at most
-  std::int64_t work = 0;          ///< LoopPlan::work: Σ over the fronts of their number squared
-  std::int64_t mass_entries = 0;  ///< of M, upper triangle, one rate a body of the tree
-  int depth = 0;                  ///< of the tree, bodies
+  int open = 0;                     ///< equations open at once, at most
+  std::int64_t work = 0;            ///< LoopPlan::work: Σ over the fronts of their number squared
+  std::int64_t mass_entries = 0;    ///< of M, upper triangle, one rate a body of the tree
+  std::int64_t factor_entries = 0;  ///< of L, where (7) is solved by the joints' sparse matrix
+  int depth = 0;                    ///< of the tree, bodies
 };
 
 struct Recut {
@@ -41,7 +42,8 @@ CutCost cut_cost(const Mechanism& mechanism);
 
 /// The best cuts found, by descent from the given tree and from a shallow one; those given where
 /// that lowers neither the work by two hundredths nor, at next to the same work, the entries of M
-/// by a quarter. Bounded effort: of a hundred thousand bodies some seconds.
+/// by a quarter. Where the sweeps can't carry the loops either way, the entries of L decide
+/// instead. Bounded effort: of a hundred thousand bodies some seconds.
 /// @throws SceneError where `keep` names neither a joint nor a loop
 Recut recut(const Mechanism& mechanism, const Start& start,
             const std::vector<std::string>& keep = {});

@@ -118,6 +118,10 @@ std::unique_ptr<Kkt> make_dense_kkt(const Mechanism& mechanism) {
   return std::make_unique<DenseKkt>(mechanism);
 }
 
+bool filters_pivots(const Mechanism& mechanism) {
+  return mechanism.dense_kkt() || (mechanism.tips_first() && !solved_by_bodies(mechanism));
+}
+
 std::unique_ptr<Kkt> make_kkt(const Mechanism& mechanism) {
   if (mechanism.dense_kkt()) return make_dense_kkt(mechanism);
   if (solved_by_bodies(mechanism)) return make_body_kkt(mechanism);

@@ -63,6 +63,9 @@ std::unique_ptr<Kkt> make_kkt(const Mechanism& mechanism);
 /// `deep_tree` joints from the ground in the mean, the joints' own is the costlier one. O(bodies).
 bool solved_by_bodies(const Mechanism& mechanism);
 inline constexpr double deep_tree = 40;
+/// Whether the matrix of make_kkt() has a pivot for each row of Φ, to fade and to be told: KLU has
+/// none.
+bool filters_pivots(const Mechanism& mechanism);
 std::unique_ptr<Kkt> make_dense_kkt(const Mechanism& mechanism);
 std::unique_ptr<Kkt> make_sparse_kkt(const Mechanism& mechanism);
 std::unique_ptr<Kkt> make_klu_kkt(const Mechanism& mechanism);

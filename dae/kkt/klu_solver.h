@@ -2,7 +2,8 @@
 // (7), the last m of its equations Φ_q u − ε (σ − centre) = g, factorised by KLU. Pivots are sought
 // among all unknowns, σ may go before u, so there is no single pivot of a row of Φ to fade: −ε
 // stands in place of 0, ε about fade times the scale of Φ_q M⁻¹ Φ_qᵀ, recentred, so that a regular
-// row is off by ε (σ − centre) only, and a redundant or vanishing row keeps its impulse.
+// row is off by ε (σ − centre) only, and a redundant or vanishing row keeps its impulse. On regular
+// rows recentring takes that away.
 //
 // The pattern is analysed once, pivots are chosen once and then kept as long as the entries do not
 // grow on them (klu_rgrowth). Every solution is refined against its residual, which is what says
@@ -48,7 +49,7 @@ class KluSolver {
 
   SymmetricMatrix matrix_;
   std::size_t hard_;  ///< unknowns before σ
-  std::vector<double> epsilon_, given_, b_, x_, r_;
+  std::vector<double> epsilon_, centre_, given_, b_, x_, r_;
   int singular_ = -1;
   double fresh_ = 0;  ///< reciprocal growth of the entries on pivots just chosen
   long choices_ = 0;

@@ -66,7 +66,7 @@ double SymmetricMatrix::residual(const double* b, const double* x, double* r) {
   for (std::size_t i = 0; i < n; ++i) {
     if (!std::isfinite(r[i])) return HUGE_VAL;
     const double reach = largest_[i] * size_of_x;
-    double scale = scale_[i] + std::abs(b[i]);
+    double scale = scale_[i] += std::abs(b[i]);
     if (!(scale > dust * reach)) scale += reach;
     if (scale > 0) largest = std::max(largest, std::abs(r[i]) / scale);
   }

@@ -26,6 +26,8 @@ class SymmetricMatrix {
   /// stands still, the largest entry of the row times that counts too.
   /// Source: Arioli, Demmel, Duff, SIAM J. Matrix Anal. Appl. 10 (1989) 165.
   double residual(const double* b, const double* x, double* r);
+  /// Σ|A||x| + |b| of a row at the last residual().
+  double row_size(std::size_t i) const { return scale_[i]; }
 
   // By columns, rows ascending.
   std::vector<int> start, row;

@@ -121,6 +121,7 @@ nlohmann::ordered_json cut_json(const Recut& r) {
     return nlohmann::ordered_json{{"open_equations", c.open},
                                   {"work", c.work},
                                   {"mass_entries", c.mass_entries},
+                                  {"factor_entries", c.factor_entries},
                                   {"depth", c.depth}};
   };
   nlohmann::ordered_json j{{"now", cost(r.before)}};

@@ -28,8 +28,15 @@ std::string cuts_in_words(const Recut& recut) {
                 b.open, a.open, static_cast<double>(b.work), static_cast<double>(a.work),
                 static_cast<double>(b.mass_entries), static_cast<double>(a.mass_entries), b.depth,
                 a.depth);
+  std::string factors;
+  if (b.factor_entries > 0) {
+    char text[64];
+    std::snprintf(text, sizeof text, "; entries of the factors %.3g, now %.3g",
+                  static_cast<double>(b.factor_entries), static_cast<double>(a.factor_entries));
+    factors = text;
+  }
   return "cut at " + listed(recut.cut) + ", with " + listed(recut.joined) +
-         " in the tree: " + numbers;
+         " in the tree: " + numbers + factors;
 }
 
 }  // namespace momenta::program
