@@ -334,7 +334,7 @@ class Assembler {
       return;
     }
     const auto kkt = make_kkt(mechanism_);
-    if (!kkt->factor(*e_, fade_evaluation)) no_inertia(kkt->stuck());
+    if (!kkt->factor(*e_, s.t, s.q.data(), fade_evaluation)) no_inertia(kkt->stuck());
     e_->move(s.u.data());
     Eigen::VectorXd r(mechanism_.nv()), g(mechanism_.m());
     e_->joint_forces(s.q.data(), s.u.data(), nullptr, nullptr, r.data());

@@ -90,9 +90,10 @@ void Mechanism::choose_kkt(KktChoice asked) {
       cast.as_given.plan = plan_loops(cast.model, cast.as_given.loops);
     }
     if (!cast.swept.plan.fits())
-      kkt_reason_ = std::to_string(cast.swept.plan.lanes) +
-                    " loop equations are open at once, more than " +
-                    std::to_string(LoopPlan::most_lanes);
+      kkt_reason_ =
+          (cast.swept.plan.lanes > 64 ? std::string("more than 64")  // no more are counted
+                                      : std::to_string(cast.swept.plan.lanes)) +
+          " loop equations are open at once, more than " + std::to_string(LoopPlan::most_lanes);
   };
   if (plan_.planar)
     plan(std::get<0>(cast_));
@@ -183,9 +184,11 @@ std::string Mechanism::joint_without_inertia(bool swept) const {
   std::vector<double> p(size, 0.0), u(size), sigma(row_names_.size());
   if (!swept) {
     const auto e = evaluation<double>();
+    if (solved_by_bodies(*this)) return "";  // pivots are sought there
     const auto kkt = make_sparse_kkt(*this);
-    e->place(0, tree_.q0.data());
-    return kkt->factor(*e, fade_evaluation) || kkt->stuck() < 0 ? "" : no_inertia(kkt->stuck());
+    return kkt->factor(*e, 0, tree_.q0.data(), fade_evaluation) || kkt->stuck() < 0
+               ? ""
+               : no_inertia(kkt->stuck());
   }
   const auto sweeps = looped_sweeps();
   if (!sweeps->momentum(0, tree_.q0.data(), p.data(), {}, u.data(), sigma.data(), nullptr))
@@ -279,7 +282,12 @@ std::vector<std::pair<std::string, std::string>> Mechanism::plan_lines() const {
           " equations open at once" +
           (pairs_anew() ? ", loops that meet in one point paired along the tree" : "");
   else if (kkt_ == KktChoice::sparse)
-    how = std::string(tips_first() ? "sparse: filtered LDLᵀ" : "sparse: KLU") +
+    how = std::string(
+              solved_by_bodies(*this)
+                  ? "sparse: KLU on the equations of the bodies, the tree being deep; poses are "
+                    "not filtered,"
+              : tips_first() ? "sparse: filtered LDLᵀ"
+                             : "sparse: KLU") +
           " on a pattern analysed once" + (kkt_reason_.empty() ? "" : " (" + kkt_reason_ + ")");
   lines.emplace_back("solving (7)", how + ", " + std::to_string(tree_.nv + rows_) + " unknowns");
   return lines;

@@ -39,8 +39,8 @@ DaeForm::DaeForm(std::string name, const Mechanism& mechanism, DaeLayout layout,
 void DaeForm::find_redundancy(const Start& start) {
   if (mechanism_.dense_kkt() || mechanism_.kkt() != KktChoice::sweeps) {
     const auto kkt = make_dense_kkt(mechanism_);
-    plain_.e->place(start.t, start.q.data());
-    if (!kkt->factor(*plain_.e, fade_evaluation) || kkt->faded() == 0) return;
+    if (!kkt->factor(*plain_.e, start.t, start.q.data(), fade_evaluation) || kkt->faded() == 0)
+      return;
   } else {
     const auto solver = make_loop_solver(mechanism_, *plain_.e);
     std::vector<double> rest(static_cast<std::size_t>(layout_.nv), 0.0), u(rest.size());
@@ -281,7 +281,7 @@ bool DaeForm::read(double t, const double* y, const double*, Snapshot& out) {
     g -= beta() * phi;
   }
   if (!kkt_) kkt_ = make_kkt(mechanism_);
-  return kkt_->factor(e, fade_evaluation) &&
+  return kkt_->factor(e, t, y, fade_evaluation) &&
          kkt_->solve(r.data(), g.data(), y + layout_.s(), out.u.data(), sigma.data());
 }
 

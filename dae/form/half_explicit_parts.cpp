@@ -54,8 +54,7 @@ std::string HalfExplicitParts::dependent(double t, const double* y) {
   if (system_.m() == 0 || system_.m() > most_equations) return "";
   Work& w = work();
   const auto kkt = make_dense_kkt(system_);
-  w.e->place(t, y);
-  if (!kkt->factor(*w.e, weak) || kkt->faded() == 0) return "";
+  if (!kkt->factor(*w.e, t, y, weak) || kkt->faded() == 0) return "";
   const RowName& first = system_.rows()[static_cast<std::size_t>(kkt->faded_rows().front())];
   const int others = kkt->faded() - 1;
   return "loop '" + first.loop + "' (" + first.what + ")" +

@@ -87,10 +87,9 @@ class AssembledSolver final : public LoopSolver {
 
  private:
   bool factor(double t, const double* q, double fade, bool softens = true) {
-    e_.place(t, q);
     kkt_->soften(softens && !compliance_.empty() ? compliance_.data() : nullptr);
     ++solutions_;
-    const bool ok = kkt_->factor(e_, fade);
+    const bool ok = kkt_->factor(e_, t, q, fade);
     stuck_ = ok ? -1 : kkt_->stuck();
     return ok;
   }

@@ -55,6 +55,12 @@ void AxisScale::of_groups(const std::vector<double>& inertia, const std::vector<
   }
 }
 
+void AxisScale::softness(const std::vector<double>& inertia, const std::vector<double>& constraint,
+                         double fade, std::vector<double>& epsilon) const {
+  of_groups(inertia, constraint, epsilon);
+  for (double& e : epsilon) e *= 1e-2 * fade;
+}
+
 MassDiagonal::MassDiagonal(const KktPattern& pattern, int nv)
     : place_(static_cast<std::size_t>(nv)), inertia_(place_.size()) {
   for (std::size_t i = 0; i < pattern.mass.size(); ++i)

@@ -21,6 +21,10 @@ class AxisScale {
   /// `constraint`: values of Φ_q in the order of the pattern.
   void of_groups(const std::vector<double>& inertia, const std::vector<double>& constraint,
                  std::vector<double>& scale) const;
+  /// ε of KluSolver (m), from the same. An added block, once refined, costs (ε/W)² on every row: so
+  /// it is a hundred times weaker than the filter of pivots, which costs (τ/W)⁴.
+  void softness(const std::vector<double>& inertia, const std::vector<double>& constraint,
+                double fade, std::vector<double>& epsilon) const;
 
  private:
   struct Hanging {

@@ -34,8 +34,9 @@ class DenseKkt final : public Kkt {
     faded_rows_.reserve(static_cast<std::size_t>(m_));
   }
 
-  bool factor(Evaluation<double>& e, double fade) override {
+  bool factor(Evaluation<double>& e, double t, const double* q, double fade) override {
     ++factorizations_;
+    e.place(t, q);
     e.mass_entries(mass_.data());
     e.constraint_entries(constraint_.data());
     stuck_ = factor_.factor(mass_);
@@ -117,8 +118,13 @@ std::unique_ptr<Kkt> make_dense_kkt(const Mechanism& mechanism) {
   return std::make_unique<DenseKkt>(mechanism);
 }
 
+bool filters_pivots(const Mechanism& mechanism) {
+  return mechanism.dense_kkt() || (mechanism.tips_first() && !solved_by_bodies(mechanism));
+}
+
 std::unique_ptr<Kkt> make_kkt(const Mechanism& mechanism) {
   if (mechanism.dense_kkt()) return make_dense_kkt(mechanism);
+  if (solved_by_bodies(mechanism)) return make_body_kkt(mechanism);
   return mechanism.tips_first() ? make_sparse_kkt(mechanism) : make_klu_kkt(mechanism);
 }
 

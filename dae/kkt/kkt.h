@@ -6,7 +6,7 @@
 //
 // Redundant loop equations and singular poses make Φ_q lose rank; u stays well defined, σ does not.
 // Weak directions of σ are therefore faded out, towards `centre` (the σ of the step's start): see
-// dense_kkt.cpp, filtered_factor.h, and klu_kkt.cpp.
+// dense_kkt.cpp, filtered_factor.h, and klu_solver.h.
 
 #include <momenta/dae/mechanism.h>
 
@@ -24,10 +24,10 @@ class Kkt {
  public:
   virtual ~Kkt() = default;
 
-  /// Assembles and factorises at the configuration placed in `e`. False when M is not positive
+  /// Assembles and factorises at (t, q), where `e` is placed. False when M is not positive
   /// definite, or when an entry is not finite. Cost: dense O((nv + m)³); sparse O(fill) on a
   /// pattern analysed once.
-  virtual bool factor(Evaluation<double>& e, double fade) = 0;
+  virtual bool factor(Evaluation<double>& e, double t, const double* q, double fade) = 0;
   /// For the factorisations from now on: −compliance (m) in place of the zero block, Φ_q u −
   /// compliance (σ − centre) = g, and no row fades. Null: as before.
   void soften(const double* compliance) { compliance_ = compliance; }
@@ -55,11 +55,20 @@ class Kkt {
   int stuck_ = -1;
 };
 
-/// Dense or sparse by size, or as the mechanism's options say; by KLU where joints have no inertia
-/// before their loops close. Needs loops (m > 0).
+/// Dense or sparse by size, or as the mechanism's options say; sparse by the equations of the
+/// bodies where the tree is deep, else by KLU where joints have no inertia before their loops
+/// close. Needs loops (m > 0).
 std::unique_ptr<Kkt> make_kkt(const Mechanism& mechanism);
+/// Whether a sparse matrix is that of the bodies' equations: where bodies are more than
+/// `deep_tree` joints from the ground in the mean, the joints' own is the costlier one. O(bodies).
+bool solved_by_bodies(const Mechanism& mechanism);
+inline constexpr double deep_tree = 40;
+/// Whether the matrix of make_kkt() has a pivot for each row of Φ, to fade and to be told: KLU has
+/// none.
+bool filters_pivots(const Mechanism& mechanism);
 std::unique_ptr<Kkt> make_dense_kkt(const Mechanism& mechanism);
 std::unique_ptr<Kkt> make_sparse_kkt(const Mechanism& mechanism);
 std::unique_ptr<Kkt> make_klu_kkt(const Mechanism& mechanism);
+std::unique_ptr<Kkt> make_body_kkt(const Mechanism& mechanism);
 
 }  // namespace momenta

@@ -27,8 +27,9 @@ class SparseKkt final : public Kkt {
     faded_rows_.reserve(m_);
   }
 
-  bool factor(Evaluation<double>& e, double fade) override {
+  bool factor(Evaluation<double>& e, double t, const double* q, double fade) override {
     ++factorizations_;
+    e.place(t, q);
     e.mass_entries(mass_.data());
     e.constraint_entries(constraint_.data());
     axis_scale_.of_groups(diagonal_of_mass_.of(mass_), constraint_, tau_);

@@ -1,11 +1,13 @@
 #include <momenta/core/operations.h>
 #include <momenta/core/scene/kinds.h>
+#include <momenta/dae/cut/recut.h>
 #include <momenta/dae/measure/rank.h>
 
 #include <cstdio>
 #include <map>
 #include <vector>
 
+#include "cut_words.h"
 #include "options.h"
 
 namespace momenta::program {
@@ -114,6 +116,22 @@ nlohmann::ordered_json rank_json(const Mechanism& mechanism, const RankReport& r
   return j;
 }
 
+nlohmann::ordered_json cut_json(const Recut& r) {
+  const auto cost = [](const CutCost& c) {
+    return nlohmann::ordered_json{{"open_equations", c.open},
+                                  {"work", c.work},
+                                  {"mass_entries", c.mass_entries},
+                                  {"factor_entries", c.factor_entries},
+                                  {"depth", c.depth}};
+  };
+  nlohmann::ordered_json j{{"now", cost(r.before)}};
+  if (!r.gains()) return j;
+  j["better"] = cost(r.after);
+  j["better"]["cut"] = r.cut;
+  j["better"]["joined"] = r.joined;
+  return j;
+}
+
 }  // namespace
 
 int check(const Options& o) {
@@ -151,6 +169,7 @@ int check(const Options& o) {
       j["dependent_rows"].push_back({{"loop", name.loop}, {"row", name.what}});
     }
     if (ranked) j["loops"] = rank_json(*mechanism, rank);
+    if (mechanism->m() > 0) j["cuts"] = cut_json(recut(*mechanism, a.start));
     std::printf("%s\n", j.dump(2).c_str());
     return done;
   }
@@ -210,6 +229,11 @@ int check(const Options& o) {
   std::printf("\nPlan\n");
   for (const auto& [what, how] : mechanism->plan_lines())
     std::printf("  %-17s %s\n", what.c_str(), how.c_str());
+  if (mechanism->m() > 0) {
+    const Recut cuts = recut(*mechanism, a.start);
+    std::printf("  %-17s %s%s\n", "cuts", cuts_in_words(cuts).c_str(),
+                cuts.gains() ? " (momenta convert SCENE OUT --recut)" : "");
+  }
   if (mechanism->m() == 0) {
     std::printf("\nOperations of one evaluation\n");
     const auto print = [&](const char* name, Recursion recursion) {

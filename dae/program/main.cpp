@@ -178,9 +178,16 @@ int main(int argc, char** argv) {
   convert_verb->footer("Example: momenta convert examples/models/ur5/ur5_robot.urdf ur5.toml");
   add_scene_file(*convert_verb, o);
   convert_verb->add_flag("--quiet", o.quiet, "Do not tell what was left out");
-  std::filesystem::path converted;
-  convert_verb->add_option("out", converted, "TOML file to write (default: standard output)")
+  ConvertOptions convert_options;
+  convert_verb
+      ->add_option("out", convert_options.out, "TOML file to write (default: standard output)")
       ->type_name("FILE");
+  convert_verb->add_flag("--recut", convert_options.recut,
+                         "Assembled, and its loops cut where they are least work");
+  convert_verb
+      ->add_option("--keep", convert_options.keep,
+                   "With --recut: a joint or loop to leave; repeatable")
+      ->type_name("NAME");
   CLI::App* make_verb = app.add_subcommand("make", "Prints a scene of a family");
   make_verb->footer("Example: momenta make stewart --n 6 > stewart.toml");
   make_verb->add_option("family", family, "Which mechanism")->required()->type_name("FAMILY");
@@ -230,7 +237,7 @@ int main(int argc, char** argv) {
     if (*view_verb) return view(o);
     if (*stress_app) return stress(o, stress_options);
     if (*sweep_app) return sweep(o, sweep_options);
-    if (*convert_verb) return convert(o, converted);
+    if (*convert_verb) return convert(o, convert_options);
     if (*completion_verb) return std::fputs(completion_script(app, shell).c_str(), stdout), done;
     if (*manual_verb) return std::fputs(man_page(app).c_str(), stdout), done;
     return make(family, n, turned);

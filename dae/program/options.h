@@ -140,8 +140,13 @@ int sweep(const Options& o, const SweepOptions& s);
 int evaluate(const Options& o, const std::string& state);
 /// `forms`: comma-separated, empty: all. `state`: as for evaluate; empty: the start.
 int index_verb(const Options& o, const std::string& forms, const std::string& state);
-/// Writes the scene as TOML to `out`; empty or "-": prints it.
-int convert(const Options& o, const std::filesystem::path& out);
+struct ConvertOptions {
+  std::filesystem::path out;      ///< empty or "-": standard output
+  bool recut = false;             ///< loops cut where they are carried with the least work
+  std::vector<std::string> keep;  ///< joints and loops that stay what they are
+};
+/// Writes the scene as TOML.
+int convert(const Options& o, const ConvertOptions& c);
 /// Prints a scene; `n` empty: the usual size of the family. @throws std::invalid_argument
 int make(const std::string& family, std::optional<int> n, bool turned);
 

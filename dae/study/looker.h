@@ -85,7 +85,7 @@ class Looker {
       const double drift = phi_.norm();
       if (!(drift <= between_)) between_ = drift;
     }
-    if (solver_ && (mechanism_.kkt() != KktChoice::sparse || mechanism_.tips_first()))
+    if (solver_ && (mechanism_.kkt() == KktChoice::sweeps || filters_pivots(mechanism_)))
       look_for_passages(t0, t1, between);
     if (loses_energy_) {
       // Power at the Gauss points of the step; the polynomial through them gives the work up to any

@@ -25,7 +25,8 @@ class StateEvaluator {
     if (m > 0) {
       kkt_ = make_kkt(mechanism_);
       e_->place(given_.t, given_.q.data());
-      if (nv > 0 && !kkt_->factor(*e_, fade_evaluation)) refuse(kkt_->stuck());
+      if (nv > 0 && !kkt_->factor(*e_, given_.t, given_.q.data(), fade_evaluation))
+        refuse(kkt_->stuck());
       s_.faded = kkt_->faded();
     }
     rates_and_momenta();

@@ -100,6 +100,24 @@ TEST_F(Program, RefusesFilesThatAreNoScenes) {
   expect_refused("check '" + (folder_ / "missing.toml").string() + "'", "missing.toml");
 }
 
+// A scene cut anew is a scene again: the joint that was cut is a loop, and nothing more is to gain.
+TEST_F(Program, ConvertCutsAnewWhereThatIsLessWork) {
+  const fs::path chain = write("chain.toml", call("make closed-chain --n 60").out),
+                 anew = folder_ / "anew.toml";
+  EXPECT_NE(call("check '" + chain.string() + "'").out.find("--recut"), std::string::npos);
+  const Outcome told = call("convert '" + chain.string() + "' '" + anew.string() + "' --recut");
+  EXPECT_EQ(told.status, 0) << told.err;
+  EXPECT_NE(told.err.find("tree 30 deep, now 60"), std::string::npos) << told.err;
+  const Outcome checked = call("check '" + anew.string() + "' --json");
+  EXPECT_EQ(checked.status, 0) << checked.err;
+  EXPECT_NE(checked.out.find("\"depth\": 30"), std::string::npos);
+  EXPECT_EQ(checked.out.find("\"better\""), std::string::npos);
+  const Outcome kept = call("convert '" + chain.string() + "' --recut --keep end --quiet");
+  EXPECT_EQ(kept.out, call("convert '" + chain.string() + "'").out);
+  expect_refused("convert '" + chain.string() + "' --keep end", "--recut");
+  expect_refused("convert '" + chain.string() + "' --recut --keep nobody", "'nobody'");
+}
+
 // A robot moves as the scene it is converted to; what is left out is told unless --quiet is given.
 TEST_F(Program, ReadsAndConvertsRobots) {
   const std::string models = std::string(MOMENTA_SOURCE_DIR) + "/examples/models/";

@@ -116,8 +116,7 @@ TEST(Multipliers, ForceIsRateOfImpulsePlusLeak) {
     const auto e = motion.mechanism.evaluation<double>();
     const auto kkt = make_kkt(motion.mechanism);
     VectorXd r(motion.mechanism.nv()), g(motion.mechanism.m()), udot(r.size()), lambda(g.size());
-    e->place(t, middle.q.data());
-    ASSERT_TRUE(kkt->factor(*e, fade_evaluation));
+    ASSERT_TRUE(kkt->factor(*e, t, middle.q.data(), fade_evaluation));
     e->move(middle.u.data());
     e->joint_forces(middle.q.data(), middle.u.data(), nullptr, nullptr, r.data());
     e->accelerations(g.data());

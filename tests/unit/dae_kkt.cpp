@@ -2,13 +2,17 @@
 // rows, nearly singular poses in every orientation.
 
 #include "equations/kkt_blocks.h"
+#include "equations/large_scenes.h"
 #include "equations/linkages.h"
 #include "equations/random_loops.h"
+#include "equations/sweeps_against_matrix.h"
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
 #include <momenta/core/scene/read_scene.h>
+#include <momenta/dae/kkt/body_matrix.h>
 #include <momenta/dae/kkt/kkt.h>
+#include <momenta/dae/kkt/klu_solver.h>
 
 #include <Eigen/Dense>
 
@@ -45,10 +49,10 @@ struct Solution {
   bool done = false;
   int faded = 0;
 };
-Solution solve(Kkt& kkt, Evaluation<double>& e, const VectorXd& r, const VectorXd& g, double fade,
-               const VectorXd& centre = {}) {
+Solution solve(Kkt& kkt, Evaluation<double>& e, double t, const VectorXd& q, const VectorXd& r,
+               const VectorXd& g, double fade, const VectorXd& centre = {}) {
   Solution s{VectorXd(r.size()), VectorXd(g.size())};
-  s.done = kkt.factor(e, fade) &&
+  s.done = kkt.factor(e, t, q.data(), fade) &&
            kkt.solve(r.data(), g.data(), centre.size() > 0 ? centre.data() : nullptr, s.u.data(),
                      s.sigma.data());
   s.faded = kkt.faded();
@@ -62,7 +66,7 @@ VectorXd any(RandomTree& random, int size) {
 }
 
 TEST(Kkt, RegularSystemsAgreeWithDenseLu) {
-  double worst_dense = 0, worst_sparse = 0, worst_centre = 0;
+  double worst_dense = 0, worst_sparse = 0, worst_klu = 0, worst_centre = 0;
   int tried = 0;
   for (unsigned seed = 0; seed < 150; ++seed) {
     RandomTree random(seed);
@@ -70,6 +74,8 @@ TEST(Kkt, RegularSystemsAgreeWithDenseLu) {
     const auto kind = loop_kinds[seed % loop_kinds.size()];
     scene.loops.push_back(random_loop(random, scene, kind));
     scene.loops.push_back(random_loop(random, scene, LoopKind::point));
+    if (seed % 3 == 0)
+      if (const auto coupler = random_coupler(random, scene)) scene.loops.push_back(*coupler);
     const Mechanism mechanism(scene);
     if (mechanism.m() > mechanism.nv()) continue;
     const TreeState s = random.state(mechanism.tree());
@@ -98,22 +104,34 @@ TEST(Kkt, RegularSystemsAgreeWithDenseLu) {
              scale / growth;
     };
     const auto dense = make_dense_kkt(mechanism), sparse = make_sparse_kkt(mechanism);
-    const Solution plain = solve(*dense, *e, r, g, fade_evaluation);
+    const Solution plain = solve(*dense, *e, s.t, s.q, r, g, fade_evaluation);
     EXPECT_EQ(plain.faded, 0);
     worst_dense = std::max(worst_dense, error(plain));
-    worst_sparse = std::max(worst_sparse, error(solve(*sparse, *e, r, g, fade_evaluation)));
+    worst_sparse =
+        std::max(worst_sparse, error(solve(*sparse, *e, s.t, s.q, r, g, fade_evaluation)));
     // Where nothing fades the centre is of no consequence.
     const VectorXd centre = any(random, mechanism.m());
-    worst_centre = std::max(worst_centre, error(solve(*dense, *e, r, g, fade_evaluation, centre)));
-    worst_sparse = std::max(worst_sparse, error(solve(*sparse, *e, r, g, fade_evaluation, centre)));
+    worst_centre =
+        std::max(worst_centre, error(solve(*dense, *e, s.t, s.q, r, g, fade_evaluation, centre)));
+    worst_sparse =
+        std::max(worst_sparse, error(solve(*sparse, *e, s.t, s.q, r, g, fade_evaluation, centre)));
+    // Pivots sought among all unknowns, of the joints or of the bodies.
+    for (const auto& make : {make_klu_kkt, make_body_kkt}) {
+      const auto kkt = make(mechanism);
+      worst_klu = std::max(worst_klu, error(solve(*kkt, *e, s.t, s.q, r, g, fade_evaluation)));
+      worst_klu =
+          std::max(worst_klu, error(solve(*kkt, *e, s.t, s.q, r, g, fade_evaluation, centre)));
+    }
   }
   EXPECT_GT(tried, 30);
   RecordProperty("dense", std::to_string(worst_dense * 1e16) + "e-16");
   RecordProperty("sparse", std::to_string(worst_sparse * 1e16) + "e-16");
+  RecordProperty("klu", std::to_string(worst_klu * 1e16) + "e-16");
   EXPECT_LT(worst_dense, algebra_tol(8));
   EXPECT_LT(worst_centre, algebra_tol(8));
   // ε of the sparse form is 1e-12 of the scale of Φ_q M⁻¹ Φ_qᵀ.
   EXPECT_LT(worst_sparse, 1e-12);
+  EXPECT_LT(worst_klu, 1e-12);
 }
 
 /// u of least squares, min |Φ_q u − g| then min ½ uᵀM u − rᵀu, and the smallest σ for it.
@@ -144,11 +162,12 @@ void expect_least_squares(const Scene& scene, int rank, RandomTree& random) {
   const VectorXd consistent = a.J * any(random, mechanism.nv());
   const VectorXd r = any(random, mechanism.nv()), centre = any(random, mechanism.m());
   const auto [u, sigma] = least(a, r, consistent);
-  for (const bool is_dense : {true, false})
+  for (const auto& make : {make_dense_kkt, make_sparse_kkt, make_klu_kkt, make_body_kkt})
     for (const bool centred : {false, true}) {
-      const auto kkt = is_dense ? make_dense_kkt(mechanism) : make_sparse_kkt(mechanism);
+      const bool is_dense = make == make_dense_kkt;
+      const auto kkt = make(mechanism);
       const Solution found =
-          solve(*kkt, *e, r, consistent, fade_evaluation, centred ? centre : VectorXd());
+          solve(*kkt, *e, 0, q, r, consistent, fade_evaluation, centred ? centre : VectorXd());
       EXPECT_TRUE(found.done);
       EXPECT_LT(relative_error(found.u, u), is_dense ? 2e-14 : 1e-10)
           << (is_dense ? "dense" : "sparse") << (centred ? " centred" : "");
@@ -224,7 +243,8 @@ double error_near_flat(Scene scene, Algebra algebra, double fade, bool centred) 
   b << r, g;
   const auto exact = quad_solve(a.matrix(), b);
   const auto kkt = make_dense_kkt(mechanism);
-  const Solution found = solve(*kkt, *e, r, g, fade, centred ? sigma : VectorXd());
+  const Solution found =
+      solve(*kkt, *e, 0, mechanism.tree().q0, r, g, fade, centred ? sigma : VectorXd());
   EXPECT_TRUE(found.done);
   double worst = 0;
   for (Eigen::Index i = 0; i < found.u.size(); ++i)
@@ -268,7 +288,7 @@ TEST(Kkt, NearlyFlatRowInSpace) {
       const VectorXd r = a.M * mechanism.tree().u0 + a.J.transpose() * sigma;
       const VectorXd g = VectorXd::Zero(mechanism.m());
       const auto kkt = make_dense_kkt(mechanism);
-      const Solution found = solve(*kkt, *e, r, g, fade_evaluation, sigma);
+      const Solution found = solve(*kkt, *e, 0, mechanism.tree().q0, r, g, fade_evaluation, sigma);
       EXPECT_LT((found.u - mechanism.tree().u0).cwiseAbs().maxCoeff(), 500 * rounding / delta)
           << delta;
       EXPECT_GE(found.faded, 6);
@@ -287,13 +307,85 @@ TEST(Kkt, LongRowsSparseAgreesWithDense) {
     for (int pose = 0; pose < 3; ++pose) {  // refactorised at each
       e->place(0, q.data());
       const VectorXd r = any(random, mechanism.nv()), g = any(random, mechanism.m());
-      const Solution a = solve(*dense, *e, r, g, fade_evaluation),
-                     b = solve(*sparse, *e, r, g, fade_evaluation);
+      const Solution a = solve(*dense, *e, 0, q, r, g, fade_evaluation),
+                     b = solve(*sparse, *e, 0, q, r, g, fade_evaluation);
       EXPECT_TRUE(a.done && b.done);
       EXPECT_LT(relative_error(b.u, a.u), 1e-9) << n;
       q += 0.1 * any(random, mechanism.nv());
     }
   }
+}
+
+/// Deep trees: momenta, accelerations and corrections by the bodies' equations against the sweeps,
+/// and the entries of the factors grow like the bodies.
+TEST(Kkt, DeepTreesAreSolvedByTheirBodies) {
+  for (const Scene& scene : {crossed_bars(60), arch(120)}) {
+    const Mechanism by_sweeps(scene), by_bodies(scene, {.kkt = KktChoice::sparse}),
+        in_space(scene, {.algebra = Algebra::spatial, .kkt = KktChoice::sparse});
+    ASSERT_TRUE(solved_by_bodies(by_bodies));
+    ASSERT_EQ(by_sweeps.kkt(), KktChoice::sweeps);
+    const auto e = by_sweeps.evaluation<double>(), f = by_bodies.evaluation<double>(),
+               g = in_space.evaluation<double>();
+    const auto sweeps = make_loop_solver(by_sweeps, *e), bodies = make_loop_solver(by_bodies, *f),
+               spatial = make_loop_solver(in_space, *g);
+    RandomTree random(3);
+    TreeState s{0, by_sweeps.tree().q0, by_sweeps.tree().u0};
+    for (int pose = 0; pose < 3; ++pose) {  // refactorised at each
+      const VectorXd p = any(random, by_sweeps.nv()), centre = any(random, by_sweeps.m());
+      const Result exact = solved(*sweeps, by_sweeps, s, p, centre),
+                   found = solved(*bodies, by_bodies, s, p, centre);
+      EXPECT_LT(relative_error(found.u, exact.u), 1e-9) << scene.name;
+      EXPECT_LT(relative_error(found.pdot, exact.pdot), 1e-8) << scene.name;
+      EXPECT_LT(relative_error(found.udot, exact.udot), 1e-8) << scene.name;
+      EXPECT_LT(relative_error(found.delta, exact.delta), 1e-8) << scene.name;
+      // In space rows across the plane are redundant; σ has other ones.
+      VectorXd u(p.size()), sigma(in_space.m());
+      ASSERT_TRUE(spatial->momentum(0, s.q.data(), p.data(), nullptr, fade_evaluation, 0, u.data(),
+                                    sigma.data(), nullptr));
+      const Result plain = solved(*sweeps, by_sweeps, s, p, VectorXd::Zero(by_sweeps.m()));
+      EXPECT_LT(relative_error(u, plain.u), 1e-7) << scene.name;
+      s.q += 1e-3 * any(random, by_sweeps.nv());
+    }
+  }
+  const auto entries = [](int n) {
+    const Mechanism mechanism(crossed_bars(n));
+    return with_body_matrix(mechanism, [&](auto equations) {
+      KluSolver solver(equations->size(), mechanism.m(), equations->entries(),
+                       KluSolver::Order::columns);
+      std::size_t i = 0;
+      equations->each_entry([&](int, int, double x) { solver.matrix().set(i++, x); });
+      const std::vector<double> epsilon(static_cast<std::size_t>(mechanism.m()), 1e-12);
+      EXPECT_TRUE(solver.factor(epsilon));
+      return static_cast<double>(solver.entries());
+    });
+  };
+  EXPECT_LT(entries(400), 2.3 * entries(200));
+  EXPECT_GT(entries(400), 1.7 * entries(200));
+}
+
+/// Pivots that have become bad are chosen anew, and what has no solution is told.
+TEST(Kkt, PivotsThatNoLongerFitAreChosenAnew) {
+  KluSolver solver(3, 0, {{0, 0}, {1, 0}, {1, 1}, {2, 1}, {2, 2}}, KluSolver::Order::blocks);
+  const auto solve = [&](double a, double b, double c) {
+    std::size_t i = 0;
+    for (const double x : {a, 1.0, b, 1.0, c}) solver.matrix().set(i++, x);
+    Eigen::Vector3d x(1, 2, 3);
+    Eigen::Matrix3d A;
+    A << a, 1, 0, 1, b, 1, 0, 1, c;
+    const Eigen::Vector3d right = A * x;
+    Eigen::Vector3d found = right;
+    if (!solver.factor({})) return -1.0;
+    return solver.solve(found.data(), nullptr, true) ? (found - x).norm() : -1.0;
+  };
+  EXPECT_LT(solve(4, 4, 4), 1e-14);
+  EXPECT_EQ(solver.choices(), 1);
+  EXPECT_LT(solve(5, 4, 3), 1e-14);
+  EXPECT_EQ(solver.choices(), 1);
+  EXPECT_LT(solve(1e-18, 1e-18, 4), 1e-12);
+  EXPECT_EQ(solver.choices(), 2);
+  EXPECT_EQ(solve(0, 0, 0), -1);  // rows 1 and 3 are the same
+  EXPECT_EQ(solve(std::nan(""), 1, 1), -1);
+  EXPECT_LT(solve(4, 4, 4), 1e-14);
 }
 
 TEST(Kkt, ReportsWhatCannotBeFactorised) {
@@ -304,15 +396,14 @@ TEST(Kkt, ReportsWhatCannotBeFactorised) {
   scene.bodies[1].inertia.setZero();
   const Mechanism mechanism(scene);
   const auto e = mechanism.evaluation<double>();
-  e->place(0, mechanism.tree().q0.data());
-  EXPECT_FALSE(make_dense_kkt(mechanism)->factor(*e, fade_evaluation));
+  const double* start = mechanism.tree().q0.data();
+  EXPECT_FALSE(make_dense_kkt(mechanism)->factor(*e, 0, start, fade_evaluation));
   VectorXd q = Mechanism(row_of_four_bars(1, 1)).tree().q0;
   q[1] = std::numeric_limits<double>::quiet_NaN();
   const Mechanism heavy(row_of_four_bars(1, 1));
   const auto f = heavy.evaluation<double>();
-  f->place(0, q.data());
-  EXPECT_FALSE(make_dense_kkt(heavy)->factor(*f, fade_evaluation));
-  EXPECT_FALSE(make_sparse_kkt(heavy)->factor(*f, fade_evaluation));
+  for (const auto& make : {make_dense_kkt, make_sparse_kkt, make_klu_kkt, make_body_kkt})
+    EXPECT_FALSE(make(heavy)->factor(*f, 0, q.data(), fade_evaluation));
 }
 
 }  // namespace

@@ -1,0 +1,51 @@
+#pragma once
+// The same mechanism with other joints cut: joints made loops, loops made joints, every body where
+// it was and as fast. What is cut changes no motion; it changes how many loop equations are open at
+// once in the sweeps and how deep the tree is (cycles.h).
+//
+// A loop may become a joint of its kind (a point or spherical loop of a planar mechanism: a hinge)
+// if it has one, is not driven and its bodies stand as that joint lets them. A joint may become a
+// loop of its kind if nothing is said of its coordinates: no drive, spring, damper, torque or
+// coupler, not held by [assembly]. Free and helical joints are no loops, distances and couplers no
+// joints. `keep` names further joints and loops to leave as they are.
+//
+// Joints keep their names, their axes and, if seen from the other body now, their q and u; the two
+// coordinates of a universal joint then change places, and those of planar, spherical and free
+// joints are others, as remarks of the new scene tell.
+
+#include <momenta/dae/form/form.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace momenta {
+
+struct CutCost {
+  int open = 0;                     ///< equations open at once, at most
+  std::int64_t work = 0;            ///< LoopPlan::work: Σ over the fronts of their number squared
+  std::int64_t mass_entries = 0;    ///< of M, upper triangle, one rate a body of the tree
+  std::int64_t factor_entries = 0;  ///< of L, where (7) is solved by the joints' sparse matrix
+  int depth = 0;                    ///< of the tree, bodies
+};
+
+struct Recut {
+  std::vector<std::string> cut;     ///< joints that became loops, in the order of the scene
+  std::vector<std::string> joined;  ///< loops that became joints
+  CutCost before, after;
+  Scene scene;  ///< with the remarks; the given one where nothing is gained
+  bool gains() const { return !cut.empty(); }
+};
+
+/// How the loops of a mechanism lie in its tree. O(bodies + length of all loops).
+CutCost cut_cost(const Mechanism& mechanism);
+
+/// The best cuts found, by descent from the given tree and from a shallow one; those given where
+/// that lowers neither the work by two hundredths nor, at next to the same work, the entries of M
+/// by a quarter. Where the sweeps can't carry the loops either way, the entries of L decide
+/// instead. Bounded effort: of a hundred thousand bodies some seconds.
+/// @throws SceneError where `keep` names neither a joint nor a loop
+Recut recut(const Mechanism& mechanism, const Start& start,
+            const std::vector<std::string>& keep = {});
+
+}  // namespace momenta

@@ -1,0 +1,134 @@
+#include <momenta/dae/cut/relative_motion.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+namespace momenta {
+namespace {
+
+using Eigen::AngleAxisd;
+using Eigen::Matrix3d;
+using Eigen::Quaterniond;
+using Eigen::Vector3d;
+
+Matrix3d turn(const Vector3d& axis, double angle) {
+  return AngleAxisd(angle, axis).toRotationMatrix();
+}
+
+/// Angle about `axis` from what `from` points to across it to what `to` does.
+double angle_about(const Vector3d& axis, const Vector3d& from, const Vector3d& to) {
+  return std::atan2(axis.dot(from.cross(to)), from.dot(to) - axis.dot(from) * axis.dot(to));
+}
+
+}  // namespace
+
+JointMotion joint_motion(const JointSpec& joint, const BodyMotion& parent,
+                         const BodyMotion& child) {
+  // The child's frame in the joint frame, which rides on the parent.
+  const Matrix3d frame = parent.pose.linear() * joint.rotation.toRotationMatrix();
+  const Vector3d point = child.pose * joint.origin_child;
+  const Matrix3d C = frame.transpose() * child.pose.linear();
+  const Vector3d d = frame.transpose() * (point - parent.pose * joint.origin_parent);
+  const Vector3d point_rate =
+      child.v + child.omega.cross(Vector3d(child.pose.linear() * joint.origin_child));
+  const Vector3d carried =
+      parent.v + parent.omega.cross(Vector3d(point - parent.pose.translation()));
+  const Vector3d v = frame.transpose() * (point_rate - carried);
+  const Vector3d omega = frame.transpose() * (child.omega - parent.omega);
+
+  const Vector3d axis = joint.axis.normalized(), side = perpendicular_to(axis);
+  const double angle = angle_about(axis, side, C * side);
+  JointMotion m;
+  Vector3d slid = Vector3d::Zero();
+  Matrix3d turned = Matrix3d::Identity();
+  switch (joint.kind) {
+    case JointKind::revolute:
+    case JointKind::helical:
+      m.q = {angle}, m.u = {axis.dot(omega)};
+      turned = turn(axis, angle);
+      slid = joint.kind == JointKind::helical ? Vector3d(joint.pitch * angle * axis) : slid;
+      break;
+    case JointKind::prismatic:
+      m.q = {axis.dot(d)}, m.u = {axis.dot(v)};
+      slid = m.q[0] * axis;
+      break;
+    case JointKind::cylindrical:
+      m.q = {axis.dot(d), angle}, m.u = {axis.dot(v), axis.dot(omega)};
+      slid = m.q[0] * axis;
+      turned = turn(axis, angle);
+      break;
+    case JointKind::universal: {
+      const Vector3d second = joint.axis2.isZero() ? side : joint.axis2.normalized();
+      const double first = angle_about(axis, second, C * second);
+      const Vector3d across = perpendicular_to(second);
+      const Matrix3d rest = turn(axis, -first) * C;
+      m.q = {first, angle_about(second, across, rest * across)};
+      turned = turn(axis, m.q[0]) * turn(second, m.q[1]);
+      Eigen::Matrix<double, 3, 2> along;
+      along << axis, turn(axis, first) * second;
+      const Eigen::Vector2d rates = along.colPivHouseholderQr().solve(omega);
+      m.u = {rates[0], rates[1]};
+      break;
+    }
+    case JointKind::planar: {
+      Vector3d first = joint.direction.isZero() ? side : joint.direction;
+      first = (first - first.dot(axis) * axis).normalized();
+      const Vector3d second = axis.cross(first);
+      m.q = {first.dot(d), second.dot(d), angle};
+      m.u = {first.dot(v), second.dot(v), axis.dot(omega)};
+      slid = m.q[0] * first + m.q[1] * second;
+      turned = turn(axis, angle);
+      break;
+    }
+    case JointKind::spherical:
+    case JointKind::free: {
+      const Quaterniond q(C);
+      turned = C;
+      const Vector3d rate = C.transpose() * omega;
+      if (joint.kind == JointKind::free) {
+        const Vector3d w = C.transpose() * v;
+        m.q = {d[0], d[1], d[2]}, m.u = {w[0], w[1], w[2]};
+        slid = d;
+      }
+      for (const double x : {q.w(), q.x(), q.y(), q.z()}) m.q.push_back(x);
+      for (int i = 0; i < 3; ++i) m.u.push_back(rate[i]);
+      break;
+    }
+    case JointKind::weld:
+    case JointKind::user:
+      break;
+  }
+  m.shift = (d - slid).norm();
+  m.tilt = (C - turned).cwiseAbs().maxCoeff();
+  return m;
+}
+
+bool keeps_coordinates(JointKind kind) {
+  return kind == JointKind::revolute || kind == JointKind::prismatic ||
+         kind == JointKind::helical || kind == JointKind::cylindrical ||
+         kind == JointKind::universal || kind == JointKind::weld;
+}
+
+JointSpec turned_round(const JointSpec& joint) {
+  JointSpec t = joint;
+  std::swap(t.parent, t.child);
+  std::swap(t.origin_parent, t.origin_child);
+  t.rotation = joint.rotation.conjugate();
+  // The new joint frame has the axes of the old parent; there the old joint frame is `rotation`.
+  t.axis = -(joint.rotation * joint.axis);
+  if (joint.kind == JointKind::universal) {
+    const Eigen::Vector3d second =
+        joint.axis2.isZero() ? perpendicular_to(joint.axis) : joint.axis2;
+    t.axis2 = t.axis;
+    t.axis = -(joint.rotation * second);
+    std::reverse(t.position.begin(), t.position.end());
+    std::reverse(t.velocity.begin(), t.velocity.end());
+  } else if (joint.kind == JointKind::planar && !joint.direction.isZero()) {
+    t.direction = joint.rotation * joint.direction;
+  }
+  if (!keeps_coordinates(joint.kind)) t.position = t.velocity = {};
+  return t;
+}
+
+}  // namespace momenta

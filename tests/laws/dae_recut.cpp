@@ -1,0 +1,244 @@
+// Other joints cut, the same mechanism: every body where it was, as fast, and accelerated alike.
+
+#include "equations/large_scenes.h"
+#include "equations/linkages.h"
+#include "equations/random_tree.h"
+#include "equations/recut.h"
+
+#include <gtest/gtest.h>
+#include <momenta/core/scene/read_scene.h>
+#include <momenta/core/scene/write_scene.h>
+#include <momenta/dae/assembly.h>
+#include <momenta/dae/cut/recut.h>
+#include <momenta/dae/cut/relative_motion.h>
+#include <momenta/dae/kkt/loop_solver.h>
+
+#include <map>
+
+namespace momenta {
+namespace {
+
+using namespace equations;
+using Eigen::VectorXd;
+
+Scene example(const std::string& name) {
+  return read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples" / name / "scene.toml");
+}
+
+/// Three points of every body off its axes.
+Scene marked(Scene scene) {
+  scene.markers.clear();
+  for (const BodySpec& body : scene.bodies)
+    for (int i = 0; i < 3; ++i) {
+      MarkerSpec m;
+      m.name = body.name + std::to_string(i);
+      m.body = body.name;
+      m.point[i] = 0.7;
+      scene.markers.push_back(m);
+    }
+  return scene;
+}
+
+/// Places and velocities of the markers at the assembled start, and a little later along the
+/// accelerations found there.
+std::vector<double> motion(const Scene& scene, double& moved) {
+  const Mechanism mechanism(marked(scene));
+  const Assembly a = assemble(mechanism);
+  moved = a.moved;
+  const auto e = mechanism.evaluation<double>();
+  std::vector<double> values(6 * mechanism.scene().markers.size()), all;
+  VectorXd q = a.start.q, u = a.start.u, qdot(mechanism.nq());
+  for (const double h : {0.0, 1e-3}) {
+    e->place(h, q.data());
+    const VectorXd later = u + h * a.start.udot;
+    e->move(later.data());
+    e->markers(values.data());
+    all.insert(all.end(), values.begin(), values.end());
+    e->coordinate_rates(q.data(), u.data(), qdot.data());
+    q += 1e-3 * qdot;
+  }
+  return all;
+}
+
+/// The accelerations are compared by velocities after h, to within what the second order of the
+/// step leaves, h² times the fastest rate and the length of joints' ways.
+void expect_same_motion(const Scene& scene, const Scene& other, const std::string& what) {
+  double moved = 0, other_moved = 0;
+  const auto expected = motion(scene, moved), found = motion(other, other_moved);
+  EXPECT_LT(other_moved, 1e-9) << what << ": it was assembled already";
+  ASSERT_EQ(expected.size(), found.size());
+  const std::size_t half = expected.size() / 2;
+  for (std::size_t i = 0; i < half; ++i)
+    EXPECT_NEAR(found[i], expected[i], 1e-8 * (1 + std::abs(expected[i]))) << what << " " << i;
+  double fastest = 1;
+  for (std::size_t i = 0; i < expected.size(); ++i)
+    fastest = std::max(fastest, std::abs(expected[i]));
+  for (std::size_t i = half; i < expected.size(); ++i)
+    EXPECT_NEAR(found[i], expected[i], 2e-5 * fastest * fastest) << what << " later " << i;
+}
+
+/// recut() of a scene, read back from its text.
+Scene recut_text(const Recut& found) {
+  return parse_scene(scene_text(found.scene));
+}
+
+TEST(Recut, HingesBadlyCutAreCutBetterAndMoveAlike) {
+  Scene chain = arch(60);
+  const Recut found = [&] {
+    const Mechanism mechanism(chain);
+    return recut(mechanism, assemble(mechanism).start);
+  }();
+  ASSERT_TRUE(found.gains());
+  EXPECT_EQ(found.joined, std::vector<std::string>{"end"});
+  EXPECT_LT(found.after.mass_entries, 0.6 * static_cast<double>(found.before.mass_entries));
+  EXPECT_EQ(found.after.depth, 30);
+  expect_same_motion(chain, recut_text(found), "arch");
+}
+
+TEST(Recut, WhateverWasCutTheWorkIsNoMore) {
+  int bettered = 0;
+  for (const auto& [name, cut, closed] :
+       {std::tuple{"four_bar", "A", "B"}, std::tuple{"four_bar", "C", "B"},
+        std::tuple{"andrews", "F", "E2"}, std::tuple{"andrews", "B", "E2"},
+        std::tuple{"andrews", "A5", "E4"}, std::tuple{"andrews", "H", "E6"}}) {
+    const Scene scene = example(name);
+    const Mechanism mechanism(scene);
+    const Scene bad = recut(scene, mechanism.tree(), assemble(mechanism).start.q, cut, closed);
+    const Mechanism worse(bad);
+    const Recut found = recut(worse, assemble(worse).start);
+    EXPECT_LE(found.after.work, found.before.work);
+    if (found.gains()) expect_same_motion(bad, recut_text(found), std::string(name) + " " + cut);
+    // what is worse than the example was cut badly; a local minimum may be (pairs of ties that meet
+    // in one point are chosen after the cuts)
+    bettered += 10 * found.before.work > 11 * cut_cost(mechanism).work &&
+                found.after.work < found.before.work;
+  }
+  EXPECT_GT(bettered, 0);
+}
+
+TEST(Recut, LeavesWhatItsAuthorSaysSomethingOf) {
+  const auto joined = [](const Scene& scene, std::vector<std::string> keep) {
+    const Mechanism mechanism(scene);
+    return recut(mechanism, assemble(mechanism).start, keep);
+  };
+  const std::string middle = "J30";
+  Scene chain = arch(60);
+  EXPECT_FALSE(joined(chain, {"end"}).gains());
+  EXPECT_EQ(joined(chain, {}).cut, std::vector<std::string>{middle});
+  const auto elsewhere = joined(chain, {middle}).cut;
+  ASSERT_EQ(elsewhere.size(), 1u);
+  EXPECT_NE(elsewhere.front(), middle);
+  Scene sprung = chain;
+  sprung.joints[30].stiffness = 3;
+  EXPECT_EQ(joined(sprung, {}).cut, elsewhere);
+  Scene damped = chain;
+  damped.joints[30].damping = 1;
+  EXPECT_EQ(joined(damped, {}).cut, elsewhere);
+  Scene pulled = chain;
+  ForceSpec torque;
+  torque.kind = "torque";
+  torque.joint = middle;
+  torque.value = 2;
+  pulled.forces.push_back(torque);
+  EXPECT_EQ(joined(pulled, {}).cut, elsewhere);
+  expect_same_motion(pulled, recut_text(joined(pulled, {})), "pulled");
+  EXPECT_THROW(joined(chain, {"nobody"}), SceneError);
+}
+
+/// Two bodies, a joint of any kind between them, seen from either.
+TEST(Recut, JointsTurnedRoundHoldTheSamePose) {
+  int tried = 0;
+  for (unsigned seed = 0; seed < 120; ++seed) {
+    RandomTree random(seed);
+    TreeRecipe recipe{.bodies = 2, .branching = Branching::serial, .drives = false};
+    recipe.joint_forces = recipe.body_forces = false;
+    const JointKind kind = recipe.kinds[seed % recipe.kinds.size()];
+    recipe.kinds = {kind};
+    Scene scene = random.scene(recipe);
+    // the first body flies, the joint in question carries the second
+    JointSpec& free = scene.joints[0];
+    free = JointSpec{};
+    free.name = "free";
+    free.kind = JointKind::free;
+    free.child = scene.bodies[0].name;
+    JointSpec& joint = scene.joints[1];
+    const auto at = [](const Scene& s, const VectorXd& q, const VectorXd& u) {
+      const Mechanism mechanism(marked(s));
+      const auto e = mechanism.evaluation<double>();
+      e->place(0, q.data());
+      e->move(u.data());
+      std::vector<double> values(6 * mechanism.scene().markers.size());
+      e->markers(values.data());
+      return values;
+    };
+    const Mechanism mechanism(scene);
+    const TreeState s = random.state(mechanism.tree());
+    const auto expected = at(scene, s.q, s.u);
+    // its motion from its markers
+    std::map<std::string, BodyMotion> bodies;
+    for (std::size_t k = 0; k < 2; ++k) {
+      const auto poses = OpenChain(scene).poses(0, s.q);
+      BodyMotion m;
+      m.pose = poses[static_cast<std::size_t>(mechanism.tree().body(scene.bodies[k].name))];
+      Eigen::Matrix3d points, rates;
+      for (int i = 0; i < 3; ++i)
+        for (int c = 0; c < 3; ++c) {
+          const double* v = expected.data() + 18 * k + 6 * static_cast<std::size_t>(i);
+          points(c, i) = v[c], rates(c, i) = v[3 + c];
+        }
+      // v_i = v + ω × (x_i − x): six of the nine equations decide
+      Eigen::Matrix<double, 9, 6> A = Eigen::Matrix<double, 9, 6>::Zero();
+      Eigen::Matrix<double, 9, 1> b;
+      for (int i = 0; i < 3; ++i) {
+        const Eigen::Vector3d r = points.col(i) - m.pose.translation();
+        A.block<3, 3>(3 * i, 0).setIdentity();
+        A.block<3, 3>(3 * i, 3) << 0, r[2], -r[1], -r[2], 0, r[0], r[1], -r[0], 0;
+        b.segment<3>(3 * i) = rates.col(i);
+      }
+      const Eigen::Matrix<double, 6, 1> x = A.colPivHouseholderQr().solve(b);
+      m.v = x.head<3>();
+      m.omega = x.tail<3>();
+      bodies[scene.bodies[k].name] = m;
+    }
+    // as it is: its own q and u are found
+    joint.position.assign(static_cast<std::size_t>(coordinates_of(kind)), 0.0);
+    const JointMotion own = joint_motion(joint, bodies[joint.parent], bodies[joint.child]);
+    EXPECT_LT(own.shift, 1e-9);
+    EXPECT_LT(own.tilt, 1e-9);
+    // turned round: the same place of both bodies
+    joint.position = own.q, joint.velocity = own.u;
+    Scene other = scene;
+    other.joints[1] = turned_round(joint);
+    JointSpec& turned = other.joints[1];
+    if (!keeps_coordinates(kind)) {
+      const JointMotion m = joint_motion(turned, bodies[turned.parent], bodies[turned.child]);
+      EXPECT_LT(m.shift, 1e-9);
+      EXPECT_LT(m.tilt, 1e-9);
+      turned.position = m.q, turned.velocity = m.u;
+    }
+    JointSpec& flies = other.joints[0];
+    flies.child = turned.parent;
+    const JointMotion m = joint_motion(flies, BodyMotion{}, bodies[flies.child]);
+    flies.position = m.q, flies.velocity = m.u;
+    const Mechanism turned_mechanism(other);
+    const auto found = at(other, turned_mechanism.tree().q0, turned_mechanism.tree().u0);
+    for (std::size_t i = 0; i < expected.size(); ++i)
+      EXPECT_NEAR(found[i], expected[i], 1e-9 * (1 + std::abs(expected[i])))
+          << seed << " kind " << static_cast<int>(kind) << " " << i;
+    ++tried;
+  }
+  EXPECT_EQ(tried, 120);
+}
+
+TEST(Recut, PlatformOnManyLegsAndOtherGivenScenes) {
+  for (const Scene& scene :
+       {platform(6), bricard(), crossed_bars(8), row_of_four_bars(5, 1.1, 1)}) {
+    const Mechanism mechanism(scene);
+    const Recut found = recut(mechanism, assemble(mechanism).start);
+    EXPECT_LE(found.after.open, std::max(found.before.open, LoopPlan::most_lanes));
+    if (found.gains()) expect_same_motion(scene, recut_text(found), scene.name);
+  }
+}
+
+}  // namespace
+}  // namespace momenta
