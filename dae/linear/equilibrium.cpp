@@ -15,9 +15,10 @@ namespace {
 using Eigen::VectorXd;
 
 constexpr int most_steps = 400, most_halvings = 30, most_polishings = 4;
-constexpr double at_rest = 1e-10;      // forces left, relative: good enough to be polished
-constexpr double longest_step = 0.4;   // [rad or lengths of the scene]
-constexpr double gone = 1e3;           // lengths of the scene: it falls
+constexpr double balanced = 1e-8;      // forces left, relative: an equilibrium
+constexpr double at_rest = 1e-10;       // forces left, relative: good enough to be polished
+constexpr double longest_step = 0.4;    // [rad or lengths of the scene]
+constexpr double gone = 1e3;            // lengths of the scene: it falls
 constexpr double neutral_floor = 1e-9;  // least μ against the natural one: keeps neutral directions
 
 /// Rates that are lengths: of slides and of free bodies.
@@ -60,14 +61,14 @@ class Searcher {
     here.left = measure(here);
     soften(t, q);
     if (search == Search::start) {
-      if (!(here.left <= 1e-8)) refuse(here, "the assembled pose is no equilibrium");
+      if (!(here.left <= balanced)) refuse(here, "the assembled pose is no equilibrium");
     } else {
       while (!(here.left <= at_rest) && found.steps < most_steps) {
         ++found.steps;
         const bool moved = search == Search::settle ? settle(t, here) : halve(t, here);
         if (!moved || !((here.q - q).cwiseAbs().maxCoeff() < gone * std::max(length_, 1.0))) break;
       }
-      if (!(here.left <= at_rest)) refuse(here, "no equilibrium was found from this pose");
+      if (!(here.left <= balanced)) refuse(here, "no equilibrium was found from this pose");
     }
     for (int pass = 0; search != Search::start && pass < most_polishings; ++pass)
       if (!polish(t, here)) break;
@@ -96,8 +97,8 @@ class Searcher {
     Pose p;
     p.q = q;
     if (!poses_.let_go(t, q, p.udot, p.lambda))
-      throw SceneError(mechanism_.scene().where({}) + "the mechanism cannot be let go: " +
-                       mechanism_.no_inertia(poses_.stuck()));
+      throw SceneError(mechanism_.scene().where({}) +
+                       "the mechanism cannot be let go: " + mechanism_.no_inertia(poses_.stuck()));
     p.force.resize(mechanism_.nv());
     e_.place(t, q.data());
     e_.move(rest_.data());
@@ -251,8 +252,7 @@ VectorXd force_scales(const Mechanism& mechanism, Evaluation<double>& e) {
     torque += f.kind == "torque" ? std::abs(f.value) : f.torque.norm();
   }
   force += 2 * e.kinetic() / length;  // of running drives
-  for (const JointSpec& j : scene.joints)
-    torque += std::abs(j.stiffness) * (1 + std::abs(j.rest));
+  for (const JointSpec& j : scene.joints) torque += std::abs(j.stiffness) * (1 + std::abs(j.rest));
   VectorXd scale(mechanism.nv());
   e.mass_diagonal(scale.data());
   for (const Tree::Body& b : mechanism.tree().bodies)

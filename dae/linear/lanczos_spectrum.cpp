@@ -17,8 +17,8 @@ using Eigen::VectorXd;
 using ConstMap = Map<const VectorXd>;
 
 constexpr int most_restarts = 300;
-constexpr double promised = 1e-11;     // of eigenvalues of the inverse
-constexpr double zero = 1e-8;          // of the shift: what is left of a rigid mode's s²
+constexpr double promised = 1e-11;  // of eigenvalues of the inverse
+constexpr double zero = 1e-8;       // of the shift: what is left of a rigid mode's s²
 
 /// M, C and the inverse, at the equilibrium.
 class Products {
@@ -119,8 +119,7 @@ struct FirstOrder {
   void perform_op(const double* in, double* out) const {
     const Eigen::Index n = products.size();
     const VectorXd x = ConstMap(in, n), v = ConstMap(in + n, n);
-    const VectorXd next =
-        -products.inverse(products.mass(v + tau * x) + products.damping(x));
+    const VectorXd next = -products.inverse(products.mass(v + tau * x) + products.damping(x));
     Map<VectorXd>(out, n) = next;
     Map<VectorXd>(out + n, n) = tau * next + x;
   }
@@ -140,8 +139,7 @@ void lanczos(const Mechanism& mechanism, Products& products, int count, Spectrum
   Spectra::SymGEigsShiftSolver<Inverse, Mass, Spectra::GEigsMode::ShiftInvert> solver(
       inverse, mass, count, basis, tau);
   solver.init();
-  const auto converged =
-      solver.compute(Spectra::SortRule::LargestMagn, most_restarts, promised);
+  const auto converged = solver.compute(Spectra::SortRule::LargestMagn, most_restarts, promised);
   if (solver.info() != Spectra::CompInfo::Successful) stopped(mechanism, converged, count);
   const VectorXd squares = solver.eigenvalues();
   const Eigen::MatrixXd shapes = solver.eigenvectors();
@@ -165,8 +163,7 @@ void arnoldi(const Mechanism& mechanism, Products& products, int count, Spectrum
   const int basis = std::min(2 * found.mobility - 1, std::max(2 * wanted + 1, wanted + 20));
   Spectra::GenEigsSolver<FirstOrder> solver(inverse, wanted, basis);
   solver.init();
-  const auto converged =
-      solver.compute(Spectra::SortRule::LargestMagn, most_restarts, promised);
+  const auto converged = solver.compute(Spectra::SortRule::LargestMagn, most_restarts, promised);
   if (solver.info() != Spectra::CompInfo::Successful) stopped(mechanism, converged, wanted);
   const VectorXcd values = solver.eigenvalues();
   const Eigen::MatrixXcd vectors = solver.eigenvectors();

@@ -39,8 +39,7 @@ bool LocalPencil::factor(double t, const VectorXd& q, const VectorXd& lambda, do
   }
   for (std::size_t i = 0; i < m; ++i) {
     const double value = lambda[static_cast<long>(i)];
-    lambda_[i] =
-        out_[i] ? LocalDual(value) : LocalDual::variable(value, static_cast<int>(nv + i));
+    lambda_[i] = out_[i] ? LocalDual(value) : LocalDual::variable(value, static_cast<int>(nv + i));
   }
   local_->place(t, q_.data());
   local_->positions(phi_.data());

@@ -45,10 +45,9 @@ bool PoseMotion::move(double t, const VectorXd& from, const VectorXd& delta, Vec
 bool PoseMotion::let_go(double t, const VectorXd& q, VectorXd& udot, VectorXd& lambda) {
   udot.setZero(mechanism_.nv());
   lambda.setZero(mechanism_.m());
-  const bool ok =
-      solver_ ? solver_->acceleration(t, q.data(), rest_.data(), nullptr, 0, 0, udot.data(),
-                                      lambda.data())
-              : e_->open_accelerations(t, q.data(), rest_.data(), udot.data());
+  const bool ok = solver_ ? solver_->acceleration(t, q.data(), rest_.data(), nullptr, 0, 0,
+                                                  udot.data(), lambda.data())
+                          : e_->open_accelerations(t, q.data(), rest_.data(), udot.data());
   return ok && udot.allFinite() && lambda.allFinite();
 }
 

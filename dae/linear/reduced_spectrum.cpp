@@ -109,9 +109,8 @@ void first_order(const OnBasis& r, const Mechanism& mechanism, const Equilibrium
   std::vector<Eigen::Index> order(static_cast<std::size_t>(A.rows()));
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<Eigen::Index>(i);
   const auto& values = solver.eigenvalues();
-  std::stable_sort(order.begin(), order.end(), [&](auto i, auto j) {
-    return std::abs(values[i]) < std::abs(values[j]);
-  });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](auto i, auto j) { return std::abs(values[i]) < std::abs(values[j]); });
   for (Eigen::Index i = 0; i < Z.cols(); ++i) {
     Mode mode;
     mode.shape = (r.N * Z.col(i)).cast<std::complex<double>>();

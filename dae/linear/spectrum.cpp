@@ -19,10 +19,10 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr int most_dense = 400;     // rates, or loop equations, of singular values
-constexpr int most_reduced = 300;   // degrees of freedom whose modes are all found
-constexpr int usual_count = 20;     // of more
-constexpr double counts = 1e-7;     // of the largest singular value
+constexpr int most_dense = 400;    // rates, or loop equations, of singular values
+constexpr int most_reduced = 300;  // degrees of freedom whose modes are all found
+constexpr int usual_count = 20;    // of more
+constexpr double counts = 1e-7;    // of the largest singular value
 
 /// Φ_q at the equilibrium in the units of kkt/axis_scale.h: D^(−1/2) Φ_q diag(M)^(−1/2).
 struct ScaledLoops {
@@ -111,7 +111,8 @@ void refuse_springs_without_length(const Mechanism& mechanism, const Equilibrium
   };
   for (const ForceSpec& f : scene.forces) {
     if (!is_spring(f) || (f.stiffness == 0 && f.damping == 0)) continue;
-    const double length = (place(f.child, f.origin_child) - place(f.parent, f.origin_parent)).norm();
+    const double length =
+        (place(f.child, f.origin_child) - place(f.parent, f.origin_parent)).norm();
     if (length <= 1e-9 * length_of(scene))
       throw SceneError(scene.where(f.at) + "spring '" + f.name + "' from '" + f.parent + "' to '" +
                        f.child +
@@ -133,7 +134,8 @@ double Mode::frequency() const {
 }
 
 double Mode::damping_ratio() const {
-  return s == 0.0 ? std::numeric_limits<double>::quiet_NaN() : -s.real() / std::abs(s);
+  if (s == 0.0) return std::numeric_limits<double>::quiet_NaN();
+  return s.real() == 0 ? 0 : -s.real() / std::abs(s);
 }
 
 const char* name_of(Mode::Kind kind) {
@@ -160,8 +162,9 @@ Spectrum spectrum(const Mechanism& mechanism, const Equilibrium& at, int count, 
     LeastNorm rows(mechanism.constraint_pattern(), mechanism.m(), mechanism.nv());
     found.dependent_rows = rows.judge(scaled.values).dependent;
   }
-  found.dense = route == Route::dense || (route == Route::automatic && mechanism.nv() <= most_dense &&
-                                          mechanism.m() <= most_dense);
+  found.dense =
+      route == Route::dense ||
+      (route == Route::automatic && mechanism.nv() <= most_dense && mechanism.m() <= most_dense);
   if (found.dense) {
     const MatrixXd N = motions_dense(mechanism, scaled, found.rank);
     found.mobility = mechanism.nv() - found.rank;
@@ -170,10 +173,10 @@ Spectrum spectrum(const Mechanism& mechanism, const Equilibrium& at, int count, 
     found.rank = mechanism.m() - static_cast<int>(found.dependent_rows.size());
     found.mobility = mechanism.nv() - found.rank;
     if (found.mobility <= most_reduced) {
-      reduced_spectrum(mechanism, at,
-                       motions_by_projection(mechanism, at, scaled, found.dependent_rows,
-                                             found.mobility),
-                       found);
+      reduced_spectrum(
+          mechanism, at,
+          motions_by_projection(mechanism, at, scaled, found.dependent_rows, found.mobility),
+          found);
     } else {
       lanczos_spectrum(mechanism, at, count > 0 ? count : usual_count, found);
     }

@@ -13,7 +13,8 @@
 //
 //   N      few unknowns: from the singular values of Φ_q; many: projections of random vectors by
 //          LocalPencil, as many as the mobility
-//   many degrees of freedom: not K̃ but (K + σM)⁻¹ by LocalPencil, Lanczos and Arnoldi (Spectra), for
+//   many degrees of freedom: not K̃ but (K + σM)⁻¹ by LocalPencil, Lanczos and Arnoldi (Spectra),
+//   for
 //          the modes nearest to s = 0
 
 #include <momenta/dae/linear/equilibrium.h>
@@ -31,18 +32,18 @@ struct Mode {
   bool real = true;        ///< whether all joints pass the equilibrium at once
 
   Kind kind() const;
-  double angular_frequency() const { return s.imag(); }                   ///< [rad/s]
-  double frequency() const;                                               ///< [Hz]
-  double damping_ratio() const;  ///< −Re s/|s|; NaN of a rigid one
+  double angular_frequency() const { return s.imag(); }  ///< [rad/s]
+  double frequency() const;                              ///< [Hz]
+  double damping_ratio() const;                          ///< −Re s/|s|; NaN of a rigid one
 };
 const char* name_of(Mode::Kind kind);
 
 enum class Route { automatic, dense, sparse };
 
 struct Spectrum {
-  std::vector<Mode> modes;  ///< growing ones first, then by |s|
-  int mobility = 0;         ///< nv − rank of Φ_q
-  int rank = 0;             ///< of Φ_q
+  std::vector<Mode> modes;   ///< growing ones first, then by |s|
+  int mobility = 0;          ///< nv − rank of Φ_q
+  int rank = 0;              ///< of Φ_q
   bool conservative = true;  ///< neither dampers nor gyroscopic terms nor forces without potential
   bool complete = true;      ///< all modes are there
   bool dense = true;

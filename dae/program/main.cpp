@@ -85,6 +85,29 @@ int main(int argc, char** argv) {
       ->add_option("--at", index_state, "Consistent state, as for evaluate (default: the start)")
       ->type_name("STATE");
   index_app->add_option("--out", o.out, "Directory for index.json");
+  CLI::App* modes_app = app.add_subcommand(
+      "modes",
+      "Where the mechanism rests, and its small motions there: frequencies, damping, shapes");
+  ModesOptions modes_options;
+  add_scene(*modes_app, o);
+  modes_app
+      ->add_option("--equilibrium", modes_options.equilibrium,
+                   "settle: downhill from the assembled pose; nearest: by Newton's method, saddles "
+                   "too; start: the assembled pose itself")
+      ->check(CLI::IsMember({"settle", "nearest", "start"}))
+      ->capture_default_str();
+  modes_app
+      ->add_option("--drives", modes_options.drives,
+                   "held: where they are at t = 0; running: at constant speed, a relative "
+                   "equilibrium")
+      ->check(CLI::IsMember({"held", "running"}))
+      ->capture_default_str();
+  modes_app
+      ->add_option("--count", modes_options.count,
+                   "Modes, those nearest to s = 0 (default: all of up to 300, else 20)")
+      ->check(CLI::Range(1, 1000));
+  modes_app->add_option("--out", o.out, "Directory for modes.csv, modes.json, index.html");
+  modes_app->footer("Example: momenta modes examples/four_bar/scene.toml --out results");
   CLI::App* view_verb =
       app.add_subcommand("view", "A page that shows the assembled mechanism, to turn and to zoom");
   add_scene(*view_verb, o);
@@ -163,7 +186,7 @@ int main(int argc, char** argv) {
     if (unknown)
       std::fprintf(stderr,
                    "momenta: verb '%.60s' is not known; expected check, assemble, evaluate, index, "
-                   "run, view, drift, work, stress, sweep, convert or make\n",
+                   "modes, run, view, drift, work, stress, sweep, convert or make\n",
                    argv[1]);
     else
       std::fprintf(stderr, "momenta: %s\n", e.what());
@@ -187,6 +210,7 @@ int main(int argc, char** argv) {
     if (*work_verb) return work(o, w);
     if (*evaluate_verb) return evaluate(o, state);
     if (*index_app) return index_verb(o, index_forms, index_state);
+    if (*modes_app) return modes(o, modes_options);
     if (*view_verb) return view(o);
     if (*stress_app) return stress(o, stress_options);
     if (*sweep_app) return sweep(o, sweep_options);

@@ -191,7 +191,8 @@ std::vector<std::string> names_in(const std::string& list) {
 }
 
 void expect_own_results(const std::filesystem::path& out, std::string_view own) {
-  for (const std::string_view name : {"trajectory.csv", "study.csv", "stress.json", "sweep.csv"})
+  for (const std::string_view name :
+       {"trajectory.csv", "study.csv", "stress.json", "sweep.csv", "modes.csv"})
     if (name != own && !out.empty() && std::filesystem::exists(out / name))
       throw std::invalid_argument("--out " + out.string() + " holds the " + std::string(name) +
                                   " of another verb; expected a directory of its own");

@@ -135,6 +135,12 @@ struct SweepOptions {
   int threads = 0;    ///< 0: one for each processor, of one process
 };
 int sweep(const Options& o, const SweepOptions& s);
+struct ModesOptions {
+  std::string equilibrium = "settle";  ///< settle, nearest or start
+  std::string drives = "held";         ///< held or running
+  std::optional<int> count;
+};
+int modes(const Options& o, const ModesOptions& m);
 /// `state`: a JSON file, "-" for standard input, or text that starts with "{".
 int evaluate(const Options& o, const std::string& state);
 /// `forms`: comma-separated, empty: all. `state`: as for evaluate; empty: the start.

@@ -68,8 +68,9 @@ double largest_in_units(const Mechanism& mechanism, const ModesResult& r, const 
   const double length = length_of(mechanism.scene());
   double largest = 0;
   for (Eigen::Index i = 0; i < shape.size(); ++i)
-    largest = std::max(largest, std::abs(shape[i]) /
-                                    (r.shapes[static_cast<std::size_t>(i)].unit == "m" ? length : 1));
+    largest =
+        std::max(largest, std::abs(shape[i]) /
+                              (r.shapes[static_cast<std::size_t>(i)].unit == "m" ? length : 1));
   return largest;
 }
 
@@ -103,7 +104,7 @@ ModesResult find_modes(const Mechanism& mechanism, const Start& start,
     result.spectrum = spectrum(mechanism, at, request.count, request.route);
     const auto& modes = result.spectrum.modes;
     if (request.search != Search::settle || at.steps == 0 || saddles == most_saddles ||
-        !result.spectrum.conservative || modes.empty() || !(modes.front().s.real() > 0))
+        !has_potential(mechanism) || modes.empty() || !(modes.front().s.real() > 0))
       break;
     VectorXd way = modes.front().shape.real();
     way *= aside / largest_in_units(mechanism, result, way);
@@ -135,14 +136,12 @@ Film swing(const Mechanism& mechanism, const ModesResult& result, const Mode& mo
   const auto frame_of = [](const VectorXd& q) { return std::vector<double>(q.begin(), q.end()); };
   PoseMotion poses(mechanism);
   const auto delta = [&](double amplitude, int k) -> VectorXd {
-    if (mode.real)
-      return amplitude * (-1 + 2.0 * k / intervals) * mode.shape.real();
-    return amplitude *
-           (mode.shape * std::polar(1.0, 2 * std::numbers::pi * k / intervals)).real();
+    if (mode.real) return amplitude * (-1 + 2.0 * k / intervals) * mode.shape.real();
+    return amplitude * (mode.shape * std::polar(1.0, 2 * std::numbers::pi * k / intervals)).real();
   };
   // How far a small amplitude takes the bodies.
-  const double unit = probe / std::max(1e-300, largest_in_units(mechanism, result,
-                                                                mode.shape.cwiseAbs()));
+  const double unit =
+      probe / std::max(1e-300, largest_in_units(mechanism, result, mode.shape.cwiseAbs()));
   const Picture picture = picture_of(mechanism);
   Film probing{at.t, 0, {frame_of(at.q)}};
   for (const int k : {intervals, 0, intervals / 4}) {
@@ -154,8 +153,8 @@ Film swing(const Mechanism& mechanism, const ModesResult& result, const Mode& mo
   double turn = 0, way = 0, extent = picture.length;
   for (std::size_t k = 0; k < rest.size(); ++k)
     for (std::size_t j = 0; j < k; ++j)
-      extent = std::max(extent, (rest[k] * picture.bodies[k].com - rest[j] * picture.bodies[j].com)
-                                    .norm());
+      extent = std::max(extent,
+                        (rest[k] * picture.bodies[k].com - rest[j] * picture.bodies[j].com).norm());
   for (const Motion::Frame& frame : probed.frames) {
     const auto there = places(picture, frame);
     for (std::size_t k = 0; k < rest.size(); ++k) {
@@ -166,7 +165,7 @@ Film swing(const Mechanism& mechanism, const ModesResult& result, const Mode& mo
     }
   }
   double amplitude = unit / std::max({turn / largest_turn, way / (largest_way * extent), probe});
-  Film film{0, 1.0 / intervals, {}};
+  Film film{at.t, 0, {}};
   for (int halving = 0; halving < most_halvings; ++halving, amplitude *= 0.5) {
     film.frames.clear();
     for (int k = 0; k <= intervals; ++k) {

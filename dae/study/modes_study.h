@@ -35,9 +35,9 @@ struct ModesResult {
 /// coefficients
 ModesResult find_modes(const Mechanism& mechanism, const Start& start, const ModesRequest& request);
 
-/// Poses on Φ = 0 along a mode: of a real one δ from −A φ to A φ, of another one period of it. A
-/// turns bodies by up to 0.35 rad and carries them by up to 0.15 of the mechanism's extent, less
-/// where the loops do not allow it.
+/// Poses on Φ = 0 along a mode, 33, all at the time of the equilibrium: of a real one δ from −A φ
+/// to A φ, of another one period of it. A turns bodies by up to 0.35 rad and carries them by up to
+/// 0.15 of the mechanism's extent, less where the loops do not allow it.
 Film swing(const Mechanism& mechanism, const ModesResult& result, const Mode& mode);
 
 }  // namespace momenta
