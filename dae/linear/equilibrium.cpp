@@ -15,7 +15,7 @@ namespace {
 using Eigen::VectorXd;
 
 constexpr int most_steps = 400, most_halvings = 30, most_polishings = 4;
-constexpr double balanced = 1e-8;      // forces left, relative: an equilibrium
+constexpr double balanced = 1e-8;       // forces left, relative: an equilibrium
 constexpr double at_rest = 1e-10;       // forces left, relative: good enough to be polished
 constexpr double longest_step = 0.4;    // [rad or lengths of the scene]
 constexpr double gone = 1e3;            // lengths of the scene: it falls
@@ -42,11 +42,7 @@ class Searcher {
         length_(length_of(mechanism.scene())),
         potential_(has_potential(mechanism)),
         rest_(VectorXd::Zero(mechanism.nv())),
-        unit_(VectorXd::Ones(mechanism.nv())) {
-    for (const auto& b : mechanism.tree().bodies)
-      for (int i = 0; i < b.nv; ++i)
-        if (is_shift(b, i)) unit_[b.u + i] = length_;
-  }
+        unit_(natural_units(mechanism)) {}
 
   Equilibrium from(double t, const VectorXd& q, Search search) {
     Equilibrium found;
@@ -262,6 +258,15 @@ VectorXd force_scales(const Mechanism& mechanism, Evaluation<double>& e) {
       s = std::max({force * lever + torque, 1e-12 * s, 1e-30});
     }
   return scale;
+}
+
+VectorXd natural_units(const Mechanism& mechanism) {
+  const double length = length_of(mechanism.scene());
+  VectorXd unit = VectorXd::Ones(mechanism.nv());
+  for (const Tree::Body& b : mechanism.tree().bodies)
+    for (int i = 0; i < b.nv; ++i)
+      if (is_shift(b, i)) unit[b.u + i] = length;
+  return unit;
 }
 
 Equilibrium find_equilibrium(const Mechanism& mechanism, const Start& start, Search search) {

@@ -56,4 +56,7 @@ bool has_potential(const Mechanism& mechanism);
 /// residuals are measured by [N m or N].
 Eigen::VectorXd force_scales(const Mechanism& mechanism, Evaluation<double>& e);
 
+/// 1 for turns, the length of the scene for shifts (nv).
+Eigen::VectorXd natural_units(const Mechanism& mechanism);
+
 }  // namespace momenta

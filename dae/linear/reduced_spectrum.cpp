@@ -19,19 +19,22 @@ using Eigen::VectorXd;
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
 /// What of an eigenvalue of K̃ along y is rounding: how K changes between poses that cannot be told
-/// apart, and what the solver itself loses.
+/// apart, what the forces lose that it is made of, and what the solver itself loses.
 class Rounding {
  public:
   Rounding(const Mechanism& mechanism, const Equilibrium& at, const MatrixXd& N, const MatrixXd& K,
            double largest)
-      : floor_(8 * static_cast<double>(N.cols()) * epsilon * largest) {
+      : floor_(8 * static_cast<double>(N.cols()) * epsilon * largest), N_(N) {
     constexpr int poses = 2;
     constexpr double least = 1e-12;  // [rad or m]
     std::mt19937 random(1);
     std::uniform_real_distribution<double> within(-1, 1);
     const double way = std::max(least, std::min(at.last_step, 1e-3));
     const auto e = mechanism.evaluation<double>();
-    VectorXd delta(mechanism.nv()), qdot(mechanism.nq());
+    VectorXd delta = VectorXd::Zero(mechanism.nv()), qdot(mechanism.nq());
+    e->place(at.t, at.q.data());
+    e->move(delta.data());
+    stiffness_ = force_scales(mechanism, *e).cwiseQuotient(natural_units(mechanism)).cwiseSqrt();
     for (int k = 0; k < poses; ++k) {
       for (double& x : delta) x = way * within(random);
       qdot.setZero();
@@ -44,11 +47,14 @@ class Rounding {
   double along(const VectorXd& y) const {
     double most = 0;
     for (const MatrixXd& change : changes_) most = std::max(most, std::abs(y.dot(change * y)));
-    return 10 * most + floor_;
+    const double forces = stiffness_.dot((N_ * y).cwiseAbs());
+    return 10 * most + 4 * epsilon * forces * forces + floor_;
   }
 
  private:
   double floor_;
+  const MatrixXd& N_;
+  VectorXd stiffness_;  ///< roots of natural stiffnesses of the rates
   std::vector<MatrixXd> changes_;
 };
 

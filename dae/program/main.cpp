@@ -39,6 +39,11 @@ int main(int argc, char** argv) {
   run_verb->add_option("--form", o.form, "Which equations (see momenta check)")
       ->capture_default_str();
   add_run_options(*run_verb, o);
+  run_verb
+      ->add_option("--data", o.data,
+                   "Trajectory as csv, or as hdf5: run.h5, written while the run goes on")
+      ->check(CLI::IsMember({"csv", "hdf5"}))
+      ->capture_default_str();
   CLI::App* drift_verb =
       app.add_subcommand("drift", "Every form side by side: drift, energy, error against run time");
   add_scene(*drift_verb, o);

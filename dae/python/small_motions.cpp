@@ -18,7 +18,8 @@ Search search_named(const std::string& name) {
 
 py::dict modes(const Bench& b, const std::string& equilibrium, const std::string& drives,
                int count) {
-  if (count < 0) throw py::value_error("count is " + std::to_string(count) + ", expected 0 or more");
+  if (count < 0)
+    throw py::value_error("count is " + std::to_string(count) + ", expected 0 or more");
   if (drives != "held" && drives != "running")
     throw py::value_error("drives '" + drives + "': expected held or running");
   const ModesRequest request{search_named(equilibrium), count, Route::automatic};

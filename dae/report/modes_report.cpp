@@ -105,8 +105,8 @@ std::string modes_table(const ModesResult& r) {
     rows.push_back({std::to_string(++number), name_of(mode.kind()),
                     swings ? compact(mode.frequency(), 5) : "-",
                     swings ? compact(mode.angular_frequency(), 5) : "-",
-                    swings ? compact(mode.damping_ratio(), 4) : "-",
-                    compact(mode.s.real(), 4), largest_entries(r, mode)});
+                    swings ? compact(mode.damping_ratio(), 4) : "-", compact(mode.s.real(), 4),
+                    largest_entries(r, mode)});
   }
   return text + "\n" + table_of(rows);
 }

@@ -63,15 +63,9 @@ void expect_constant(const Mechanism& mechanism, const Equilibrium& at) {
   }
 }
 
-/// Largest change of the unit of a shape, rad or lengths of the scene.
-double largest_in_units(const Mechanism& mechanism, const ModesResult& r, const VectorXd& shape) {
-  const double length = length_of(mechanism.scene());
-  double largest = 0;
-  for (Eigen::Index i = 0; i < shape.size(); ++i)
-    largest =
-        std::max(largest, std::abs(shape[i]) /
-                              (r.shapes[static_cast<std::size_t>(i)].unit == "m" ? length : 1));
-  return largest;
+/// Largest entry of a shape, in rad or lengths of the scene.
+double largest_in_units(const Mechanism& mechanism, const VectorXd& shape) {
+  return shape.cwiseQuotient(natural_units(mechanism)).cwiseAbs().maxCoeff();
 }
 
 }  // namespace
@@ -107,7 +101,7 @@ ModesResult find_modes(const Mechanism& mechanism, const Start& start,
         !has_potential(mechanism) || modes.empty() || !(modes.front().s.real() > 0))
       break;
     VectorXd way = modes.front().shape.real();
-    way *= aside / largest_in_units(mechanism, result, way);
+    way *= aside / largest_in_units(mechanism, way);
     const int steps = at.steps;
     at = settle_from(mechanism, at, way);
     at.steps += steps;
@@ -140,8 +134,7 @@ Film swing(const Mechanism& mechanism, const ModesResult& result, const Mode& mo
     return amplitude * (mode.shape * std::polar(1.0, 2 * std::numbers::pi * k / intervals)).real();
   };
   // How far a small amplitude takes the bodies.
-  const double unit =
-      probe / std::max(1e-300, largest_in_units(mechanism, result, mode.shape.cwiseAbs()));
+  const double unit = probe / std::max(1e-300, largest_in_units(mechanism, mode.shape.cwiseAbs()));
   const Picture picture = picture_of(mechanism);
   Film probing{at.t, 0, {frame_of(at.q)}};
   for (const int k : {intervals, 0, intervals / 4}) {

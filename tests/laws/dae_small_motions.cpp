@@ -141,19 +141,25 @@ TEST(SmallMotions, SolveTheirEquationsWithShapesOfUnitMass) {
     for (const Mode& mode : r.spectrum.modes) {
       const VectorXcd& phi = mode.shape;
       EXPECT_NEAR(std::abs(phi.dot(l.M * phi)), 1, 1e-10) << name;
-      if (mechanism.m() > 0)
+      if (mechanism.m() > 0) {
         EXPECT_LT((l.loops * phi).norm(), 1e-9 * (1 + l.loops.norm()) * phi.norm()) << name;
+      }
       const VectorXcd inertia = mode.s * mode.s * (l.M * phi),
                       rest = mode.s * (l.C * phi) + l.K * phi;
+      const double dust = 1e-13 * (N.cwiseAbs().transpose() * (l.M * phi).cwiseAbs()).norm() *
+                          std::norm(r.spectrum.modes.back().s);
       const double size = (N.transpose() * inertia).norm() +
                           (N.transpose().cwiseAbs() * (l.K * phi).cwiseAbs()).norm();
-      EXPECT_LT((N.transpose() * (inertia + rest)).norm(), 1e-8 * size) << name << " " << mode.s;
+      EXPECT_LE((N.transpose() * (inertia + rest)).norm(), 1e-8 * size + dust)
+          << name << " " << mode.s;
     }
     if (!r.spectrum.conservative) continue;
     EXPECT_LT((l.M - l.M.transpose()).norm(), 1e-12 * l.M.norm()) << name;
     for (const Mode& a : r.spectrum.modes)
       for (const Mode& b : r.spectrum.modes)
-        if (&a != &b) EXPECT_LT(std::abs(a.shape.dot(l.M * b.shape)), 1e-9) << name;
+        if (&a != &b) {
+          EXPECT_LT(std::abs(a.shape.dot(l.M * b.shape)), 1e-9) << name;
+        }
   }
 }
 
@@ -162,12 +168,11 @@ void expect_same(const ModesResult& found, const ModesResult& expected, double r
   ASSERT_EQ(found.spectrum.modes.size(), expected.spectrum.modes.size()) << what;
   for (std::size_t i = 0; i < found.spectrum.modes.size(); ++i) {
     const auto a = found.spectrum.modes[i].s, b = expected.spectrum.modes[i].s;
-    EXPECT_LT(std::abs(a - b), relative * std::abs(b)) << what << ", mode " << i + 1;
+    EXPECT_LE(std::abs(a - b), relative * std::abs(b)) << what << ", mode " << i + 1;
   }
 }
 
 TEST(SmallMotions, AreTheSameWhereverLoopsAreCut) {
-  const Scene bar = sprung_four_bar(0.2), chain = hanging_loop(6, 1.4);
   const auto at_cuts = [](const Scene& scene, const std::vector<std::string>& cuts,
                           const std::string& loop) {
     const Mechanism mechanism(scene);
@@ -179,8 +184,7 @@ TEST(SmallMotions, AreTheSameWhereverLoopsAreCut) {
     }
   };
   at_cuts(example("four_bar/scene.toml"), {"O", "A", "C"}, "B");
-  at_cuts(chain, {"j1", "j3", "j5"}, "end");
-  (void)bar;
+  at_cuts(hanging_loop(6, 1.4), {"j1", "j3", "j5"}, "end");
 }
 
 TEST(SmallMotions, AreTheSameInATurnedRoom) {

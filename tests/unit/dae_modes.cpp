@@ -149,9 +149,8 @@ TEST(Modes, OfAChainOfMassesAndSprings) {
     closed.push_back(2 * std::sqrt(k / m) * std::sin(i * pi / (2 * (n + 1))));
   }
   expect_frequencies(modes_of(s.str()), open, 1e-12);
-  s << "[[force]]\nkind = \"spring-damper\"\nparent = \"b" << n
-    << "\"\nchild = \"ground\"\norigin = { parent = [0, 0, 0], child = [" << n + 1
-    << ", 0, 0] }\nstiffness = " << k << "\nrest = 1\n";
+  s << "[[force]]\nkind = \"spring-damper\"\nparent = \"ground\"\nchild = \"b" << n
+    << "\"\norigin = { parent = [" << n + 1 << ", 0, 0] }\nstiffness = " << k << "\nrest = 1\n";
   expect_frequencies(modes_of(s.str()), closed, 1e-12);
 }
 
