@@ -19,6 +19,7 @@
 #include <fstream>
 #include <iterator>
 #include <sstream>
+#include <stdexcept>
 
 namespace momenta::program {
 namespace {
@@ -238,12 +239,14 @@ std::unique_ptr<TrajectoryFile> trajectory_file(const Options& o, const Mechanis
         "--data hdf5: this program was built without HDF5; expected --data csv, or a build with "
         "MOMENTA_HDF5=ON");
   if (o.out.empty()) throw std::invalid_argument("--data hdf5: expected --out DIR for run.h5");
-  return std::make_unique<TrajectoryFile>(
+  auto file = std::make_unique<TrajectoryFile>(
       o.out / "run.h5", trajectory_columns(mechanism),
       TrajectoryFile::Texts{{"scene", scene_text(mechanism.scene())},
                             {"command", o.command},
                             {"settings", key_of(settings)},
                             {"environment", environment_json(environment()).dump()}});
+  if (!file->problem().empty()) throw std::runtime_error(file->problem());
+  return file;
 }
 
 void expect_place_for_figures(const Options& o) {

@@ -70,7 +70,8 @@ std::vector<std::string> names_in(const std::string& list);
 /// Writes a result file; on failure prints the sentence and returns false.
 bool write_result(const std::filesystem::path& file, std::string_view content);
 
-/// The run's trajectory as HDF5, where that is asked for. @throws std::invalid_argument
+/// The run's trajectory as HDF5, where that is asked for. @throws std::invalid_argument;
+/// std::runtime_error where it cannot be written
 std::unique_ptr<TrajectoryFile> trajectory_file(const Options& o, const Mechanism& mechanism,
                                                 const RunSettings& settings);
 

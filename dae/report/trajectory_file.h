@@ -1,6 +1,6 @@
 #pragma once
-// A trajectory as HDF5, written while the run goes on: what is held in memory does not grow with
-// its length.
+// A trajectory as HDF5, written while the run goes on: no more than a chunk of it is held in
+// memory.
 //
 //   /trajectory/NAME   one dataset a column of trajectory.csv, doubles bit for bit, NaN where the
 //                      CSV has an empty cell; attribute `unit`. Attribute `columns` of the group:

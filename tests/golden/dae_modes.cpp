@@ -8,9 +8,9 @@
 namespace momenta::golden {
 namespace {
 
-using Modes = Program;
+using ModesOfTheProgram = Program;
 
-TEST_F(Modes, AreToldInATableAndInFiles) {
+TEST_F(ModesOfTheProgram, AreToldInATableAndInFiles) {
   const Outcome o = call("modes '" + example("four_bar") + "' --out '" + folder_.string() + "/m'");
   EXPECT_EQ(o.status, 0) << o.err;
   EXPECT_NE(o.out.find("The equilibrium is stable; joints are up to 2.87 rad or m away"),
@@ -43,7 +43,7 @@ TEST_F(Modes, AreToldInATableAndInFiles) {
   EXPECT_EQ(nlohmann::json::parse(json_alone.out)["modes"], json["modes"]);
 }
 
-TEST_F(Modes, KeepToDirectoriesOfTheirOwn) {
+TEST_F(ModesOfTheProgram, KeepToDirectoriesOfTheirOwn) {
   const fs::path out = folder_ / "m";
   ASSERT_EQ(call("modes '" + example("four_bar") + "' --quiet --out '" + out.string() + "'").status,
             0);
@@ -51,7 +51,7 @@ TEST_F(Modes, KeepToDirectoriesOfTheirOwn) {
                  "holds the modes.csv of another verb");
 }
 
-TEST_F(Modes, OfRobotsAndWhatFalls) {
+TEST_F(ModesOfTheProgram, OfRobotsAndWhatFalls) {
   const std::string models = std::string(MOMENTA_SOURCE_DIR) + "/examples/models/";
   const Outcome o = call("modes '" + models + "ur5/ur5_robot.urdf' --quiet --json");
   ASSERT_EQ(o.status, 0) << o.err;
@@ -63,7 +63,7 @@ TEST_F(Modes, OfRobotsAndWhatFalls) {
       "no equilibrium was found from this pose: joint 'cassie-pelvis free' is left with");
 }
 
-TEST_F(Modes, RefuseWhatTheyCannotDoInOneSentence) {
+TEST_F(ModesOfTheProgram, RefuseWhatTheyCannotDoInOneSentence) {
   expect_refused("modes '" + example("four_bar") + "' --equilibrium start",
                  "the assembled pose is no equilibrium: joint '");
   expect_refused("modes '" + example("driven") + "' --drives running",
@@ -72,7 +72,7 @@ TEST_F(Modes, RefuseWhatTheyCannotDoInOneSentence) {
   expect_refused("modes '" + example("four_bar") + "' --count 0", "--count");
 }
 
-TEST_F(Modes, OfDrivesHeldAndManyJoints) {
+TEST_F(ModesOfTheProgram, OfDrivesHeldAndManyJoints) {
   EXPECT_NE(call("modes '" + example("driven") + "'").out.find("4.2888"), std::string::npos);
   // 450 rods: 3 modes of all, by Lanczos' method; the lowest near Bernoulli's rope.
   const fs::path scene = write("chain.toml", call("make chain --n 450").out);

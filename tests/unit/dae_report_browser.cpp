@@ -303,8 +303,8 @@ origin = { parent = [1, 0, 0] }
   }
   const auto [report, console] = opened(modes_page(study, result), GetParam(), swinging);
   EXPECT_EQ(console, "");
-  // A fortieth of twenty periods: half a period.
-  EXPECT_EQ(report, "fits modes=2 other=true smaller=true moved=true time=t=0.93s");
+  // A fortieth of twenty periods, half of 2π/√((3 − 6/√7) g/l).
+  EXPECT_EQ(report, "fits modes=2 other=true smaller=true moved=true time=t=1.17s");
 }
 
 INSTANTIATE_TEST_SUITE_P(Widths, Browser, ::testing::Values(360, 1600));
