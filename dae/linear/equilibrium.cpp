@@ -1,5 +1,6 @@
 #include <momenta/dae/kkt/axis_scale.h>
 #include <momenta/dae/linear/equilibrium.h>
+#include <momenta/dae/linear/least_curvature.h>
 #include <momenta/dae/linear/local_pencil.h>
 #include <momenta/dae/linear/pose_motion.h>
 #include <momenta/dae/report/number_text.h>
@@ -14,7 +15,7 @@ namespace {
 
 using Eigen::VectorXd;
 
-constexpr int most_steps = 400, most_halvings = 30, most_polishings = 4;
+constexpr int most_steps = 1000, most_halvings = 30, most_polishings = 4;
 constexpr double balanced = 1e-8;       // forces left, relative: an equilibrium
 constexpr double at_rest = 1e-10;       // forces left, relative: good enough to be polished
 constexpr double longest_step = 0.4;    // [rad or lengths of the scene]
@@ -39,6 +40,7 @@ class Searcher {
         poses_(mechanism),
         e_(poses_.evaluation()),
         pencil_(mechanism),
+        curvature_(mechanism, poses_),
         length_(length_of(mechanism.scene())),
         potential_(has_potential(mechanism)),
         rest_(VectorXd::Zero(mechanism.nv())),
@@ -62,6 +64,7 @@ class Searcher {
       while (!(here.left <= at_rest) && found.steps < most_steps) {
         ++found.steps;
         const bool moved = search == Search::settle ? settle(t, here) : halve(t, here);
+        if (search == Search::settle && here.left <= at_rest) leave_saddle(t, here);
         if (!moved || !((here.q - q).cwiseAbs().maxCoeff() < gone * std::max(length_, 1.0))) break;
       }
       if (!(here.left <= balanced)) refuse(here, "no equilibrium was found from this pose");
@@ -152,26 +155,48 @@ class Searcher {
     if (!delta.allFinite()) return {};
     step_ = delta.cwiseAbs().maxCoeff();
     const double longest = delta.cwiseQuotient(unit_).cwiseAbs().maxCoeff();
-    if (longest > longest_step) delta *= longest_step / longest;
-    return delta;
+    part_ = std::min(1.0, longest_step / longest);
+    return part_ * delta;
   }
 
+  /// One step downhill. μ follows how well V − T₀ falls as its second-order part foretells.
   bool settle(double t, Pose& here) {
-    for (int tries = 0; tries < 60; ++tries, mu_ *= 4) {
+    constexpr int most_tries = 60;
+    constexpr double least_share = 0.05, poor = 0.25, good = 0.75;
+    const double rounding = 1e-13 * scale_.cwiseProduct(unit_).sum();
+    for (int tries = 0; tries < most_tries; ++tries, mu_ *= 4) {
       const VectorXd delta = step(t, here, mu_);
       VectorXd q;
       if (delta.size() == 0 || !poses_.move(t, here.q, delta, q)) continue;
-      if (potential_ && !(delta.dot(here.force) > 0)) continue;
+      const double work = delta.dot(here.force);
+      if (potential_ && !(work > 0)) continue;
+      // δᵀKδ follows from the step's own equation, shortened to `part_` of it.
+      e_.place(t, here.q.data());
+      const double bent = part_ * work - mu_ * delta.dot(poses_.momentum(delta));
       Pose next = look(t, q);
-      const double rounding = 1e-13 * scale_.cwiseProduct(unit_).sum();
-      const bool down = potential_ && next.merit < here.merit;
+      const double share = (here.merit - next.merit) / (work - 0.5 * bent);
+      const bool down = potential_ && work > rounding && share > least_share;
       const bool level = !potential_ || next.merit <= here.merit + rounding;
       if (!down && !(level && next.left < here.left)) continue;
+      const bool trusted = !down || (share > good && share < 2 - good);
       here = std::move(next);
-      mu_ = std::max(0.2 * mu_, floor());
+      mu_ = std::max(trusted ? 0.2 * mu_ : share < poor ? 2 * mu_ : mu_, floor());
       return true;
     }
     return false;
+  }
+
+  /// From a pose where the potential curves downwards: a little along the ways it does so.
+  void leave_saddle(double t, Pose& here) {
+    constexpr int thorough = 60;
+    constexpr double aside = 0.05;  // [rad or lengths of the scene]
+    if (!potential_) return;
+    const Curvature bent = curvature_.find(t, here.q, here.lambda, thorough);
+    if (bent.downwards.size() == 0) return;
+    const VectorXd way =
+        aside / bent.downwards.cwiseQuotient(unit_).cwiseAbs().maxCoeff() * bent.downwards;
+    VectorXd q;
+    if (poses_.move(t, here.q, way, q)) here = look(t, q);
   }
 
   bool halve(double t, Pose& here) {
@@ -221,12 +246,14 @@ class Searcher {
   PoseMotion poses_;
   Evaluation<double>& e_;
   LocalPencil pencil_;
+  LeastCurvature curvature_;
   double length_;
   bool potential_;
   VectorXd rest_, unit_, scale_;
   std::vector<double> scales_;  ///< of the loops' rows
   double natural_ = 1;          ///< [1/s²]
   double mu_ = 1, step_ = 0;
+  double part_ = 1;  ///< of the last step that was taken
 };
 
 }  // namespace

@@ -51,4 +51,28 @@ bool PoseMotion::let_go(double t, const VectorXd& q, VectorXd& udot, VectorXd& l
   return ok && udot.allFinite() && lambda.allFinite();
 }
 
+VectorXd PoseMotion::momentum(const VectorXd& y) {
+  VectorXd p(mechanism_.nv());
+  e_->move(y.data());
+  e_->momenta(nullptr, p.data());
+  if (!mechanism_.plan().drives) return p;
+  VectorXd prescribed(mechanism_.nv());
+  e_->move(rest_.data());
+  e_->momenta(nullptr, prescribed.data());
+  return p - prescribed;
+}
+
+bool PoseMotion::free_velocity(double t, const VectorXd& q, const VectorXd& p, VectorXd& y) {
+  y.setZero(mechanism_.nv());
+  if (solver_) return solver_->free_velocity(t, q.data(), p.data(), y.data());
+  VectorXd unused(mechanism_.nv()), none = VectorXd::Zero(mechanism_.nv()), prescribed = none;
+  if (!e_->open_momentum_rates(t, q.data(), p.data(), y.data(), unused.data())) return false;
+  if (!mechanism_.plan().drives) return true;
+  // p = M y + what drives prescribe.
+  const bool ok =
+      e_->open_momentum_rates(t, q.data(), none.data(), prescribed.data(), unused.data());
+  y -= prescribed;
+  return ok;
+}
+
 }  // namespace momenta

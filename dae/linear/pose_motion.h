@@ -19,6 +19,14 @@ class PoseMotion {
   /// u̇ (nv) and λ (m) of (3) at rest. False where something has no inertia.
   bool let_go(double t, const Eigen::VectorXd& q, Eigen::VectorXd& udot, Eigen::VectorXd& lambda);
 
+  /// y (nv) of M y + Φ_qᵀσ = p, Φ_q y = 0: what of a momentum moves. False where something has no
+  /// inertia.
+  bool free_velocity(double t, const Eigen::VectorXd& q, const Eigen::VectorXd& p,
+                     Eigen::VectorXd& y);
+
+  /// M y (nv) where the evaluation is placed.
+  Eigen::VectorXd momentum(const Eigen::VectorXd& y);
+
   Evaluation<double>& evaluation() { return *e_; }
   /// Place in u of the joint at which let_go() failed.
   int stuck() const { return solver_ ? solver_->stuck() : e_->stuck(); }
