@@ -1,6 +1,6 @@
 #include <momenta/dae/kkt/axis_scale.h>
+#include <momenta/dae/linear/downward_ways.h>
 #include <momenta/dae/linear/equilibrium.h>
-#include <momenta/dae/linear/least_curvature.h>
 #include <momenta/dae/linear/local_pencil.h>
 #include <momenta/dae/linear/pose_motion.h>
 #include <momenta/dae/report/number_text.h>
@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::VectorXd;
 
-constexpr int most_steps = 1000, most_halvings = 30, most_polishings = 4;
+constexpr int most_steps = 1000, steps_a_rate = 4, most_halvings = 30, most_polishings = 4;
 constexpr double balanced = 1e-8;       // forces left, relative: an equilibrium
 constexpr double at_rest = 1e-10;       // forces left, relative: good enough to be polished
 constexpr double longest_step = 0.4;    // [rad or lengths of the scene]
@@ -40,7 +40,7 @@ class Searcher {
         poses_(mechanism),
         e_(poses_.evaluation()),
         pencil_(mechanism),
-        curvature_(mechanism, poses_),
+        ways_(mechanism, poses_),
         length_(length_of(mechanism.scene())),
         potential_(has_potential(mechanism)),
         rest_(VectorXd::Zero(mechanism.nv())),
@@ -61,7 +61,7 @@ class Searcher {
     if (search == Search::start) {
       if (!(here.left <= balanced)) refuse(here, "the assembled pose is no equilibrium");
     } else {
-      while (!(here.left <= at_rest) && found.steps < most_steps) {
+      while (!(here.left <= at_rest) && found.steps < most_steps + steps_a_rate * mechanism_.nv()) {
         ++found.steps;
         const bool moved = search == Search::settle ? settle(t, here) : halve(t, here);
         if (search == Search::settle && here.left <= at_rest) leave_saddle(t, here);
@@ -163,7 +163,7 @@ class Searcher {
   bool settle(double t, Pose& here) {
     constexpr int most_tries = 60;
     constexpr double least_share = 0.05, poor = 0.25, good = 0.75;
-    const double rounding = 1e-13 * scale_.cwiseProduct(unit_).sum();
+    const double rounding = 4e-15 * scale_.cwiseProduct(unit_).maxCoeff();
     for (int tries = 0; tries < most_tries; ++tries, mu_ *= 4) {
       const VectorXd delta = step(t, here, mu_);
       VectorXd q;
@@ -188,14 +188,12 @@ class Searcher {
 
   /// From a pose where the potential curves downwards: a little along the ways it does so.
   void leave_saddle(double t, Pose& here) {
-    constexpr int thorough = 60;
     constexpr double aside = 0.05;  // [rad or lengths of the scene]
-    if (!potential_) return;
-    const Curvature bent = curvature_.find(t, here.q, here.lambda, thorough);
-    if (bent.downwards.size() == 0) return;
-    const VectorXd way =
-        aside / bent.downwards.cwiseQuotient(unit_).cwiseAbs().maxCoeff() * bent.downwards;
+    if (!potential_ || step(t, here, floor()).size() == 0) return;
+    const VectorXd down = ways_.find(t, here.q, here.lambda, pencil_);
+    if (down.size() == 0) return;
     VectorXd q;
+    const VectorXd way = aside / down.cwiseQuotient(unit_).cwiseAbs().maxCoeff() * down;
     if (poses_.move(t, here.q, way, q)) here = look(t, q);
   }
 
@@ -246,7 +244,7 @@ class Searcher {
   PoseMotion poses_;
   Evaluation<double>& e_;
   LocalPencil pencil_;
-  LeastCurvature curvature_;
+  DownwardWays ways_;
   double length_;
   bool potential_;
   VectorXd rest_, unit_, scale_;
