@@ -12,10 +12,11 @@
 //   ( K + μM  Φ_qᵀ ) ( δ )   ( −r − Φ_qᵀλ )
 //   ( Φ_q     0    ) ( ν ) = (  0         ),    q ← q ∘ exp δ,  then back to Φ = 0
 //
-//   settle    μ falls while steps lead downhill in V − T₀ and rises when one does not: an implicit
-//             step of the gradient flow M q̇ = −∇(V − T₀) of length 1/μ, which ends as Newton's
-//             method (pseudo-transient continuation: Kelley, Keyes, SIAM J. Numer. Anal. 35 (1998)
-//             508). Forces without a potential: the forces left must fall instead.
+//   settle    μ falls while V − T₀ falls as K foretells and rises when it does not: implicit steps
+//             of length 1/μ of the gradient flow M q̇ = −∇(V − T₀), which ends as Newton's method
+//             (pseudo-transient continuation: Kelley, Keyes, SIAM J. Numer. Anal. 35 (1998) 508).
+//             Saddles on the way are left (downward_ways.h). Forces without a potential: the forces
+//             left must fall instead.
 //   nearest   Newton's method, μ = 0, steps halved until the forces left fall: it ends at any kind
 //             of equilibrium, a saddle too.
 //   start     no step: the pose is one, or is refused.
