@@ -84,20 +84,18 @@ VectorXd DownwardWays::find(double t, const VectorXd& q, const VectorXd& lambda,
   place_ = q;
   std::copy(lambda.begin(), lambda.end(), lambda_.begin());
   poses_.evaluation().place(t, q.data());
-  VectorXd far = negative(most_far, [&](const VectorXd& y, const VectorXd&) {
+  const VectorXd far = negative(most_far, [&](const VectorXd& y, const VectorXd&) {
     VectorXd next;
     const VectorXd force = stiffness(t, y);
     return poses_.free_velocity(t, q, force, next) ? next : VectorXd();
   });
+  if (far.size() > 0) return far;
   poses_.evaluation().place(t, q.data());
-  const VectorXd near = negative(most_near, [&](const VectorXd&, VectorXd p) {
+  return negative(most_near, [&](const VectorXd&, VectorXd p) {
     VectorXd gap = VectorXd::Zero(mechanism_.m());
     factored.solve(p, gap);
     return p;
   });
-  if (far.size() == 0) return near;
-  if (near.size() > 0) far += near;
-  return far;
 }
 
 }  // namespace momenta

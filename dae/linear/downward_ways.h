@@ -4,9 +4,9 @@
 //   K y = κ M y,   Φ_q y = 0
 //
 // by a few steps of Lanczos' method in the metric M, on M⁻¹K, which brings out κ far below zero,
-// and on (K + μM)⁻¹M, which brings out those near it. Products with K by dual numbers, with M⁻¹ by
-// the solver of the loops, O(bodies) each.
-// Source: Parlett, The Symmetric Eigenvalue Problem, chapter 13.
+// and, where there are none, on (K + μM)⁻¹M, which brings out those near it. Products with K by
+// dual numbers, with M⁻¹ by the solver of the loops, O(bodies) each. Source: Parlett, The Symmetric
+// Eigenvalue Problem, chapter 13.
 
 #include <momenta/dae/linear/local_pencil.h>
 #include <momenta/dae/linear/pose_motion.h>

@@ -192,9 +192,14 @@ class Searcher {
     if (!potential_ || step(t, here, floor()).size() == 0) return;
     const VectorXd down = ways_.find(t, here.q, here.lambda, pencil_);
     if (down.size() == 0) return;
-    VectorXd q;
-    const VectorXd way = aside / down.cwiseQuotient(unit_).cwiseAbs().maxCoeff() * down;
-    if (poses_.move(t, here.q, way, q)) here = look(t, q);
+    VectorXd q, way = aside / down.cwiseQuotient(unit_).cwiseAbs().maxCoeff() * down;
+    for (int k = 0; k < 6; ++k, way *= -0.5) {
+      if (!poses_.move(t, here.q, way, q)) continue;
+      if (Pose next = look(t, q); next.merit < here.merit) {
+        here = std::move(next);
+        return;
+      }
+    }
   }
 
   bool halve(double t, Pose& here) {

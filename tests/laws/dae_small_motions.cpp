@@ -226,6 +226,29 @@ TEST(SmallMotions, LanczosAndArnoldiFindTheLowestOfAll) {
   }
 }
 
+TEST(SmallMotions, SettlingEndsInAMinimumBelowTheStart) {
+  // Chains pass folded poses on their way down, saddles all of them.
+  for (const char* name : {"chain/scene.toml", "extremes/five_rods.toml", "four_bar/scene.toml",
+                           "models/panda_urdf/panda.urdf"}) {
+    const Mechanism mechanism(example(name));
+    const Start start = assemble(mechanism).start;
+    const ModesResult r = find_modes(mechanism, start, {});
+    EXPECT_EQ(r.growing(), 0) << name;
+    const auto e = mechanism.evaluation<double>();
+    const VectorXd rest = VectorXd::Zero(mechanism.nv());
+    e->place(0, start.q.data());
+    e->move(rest.data());
+    EXPECT_LT(r.equilibrium.potential, e->potential(start.q.data())) << name;
+    if (mechanism.m() > 0) continue;
+    // Without loops a minimum under weights alone is where every force along a joint vanishes.
+    VectorXd left(mechanism.nv());
+    e->place(0, r.equilibrium.q.data());
+    e->move(rest.data());
+    e->joint_forces(r.equilibrium.q.data(), rest.data(), nullptr, nullptr, left.data());
+    EXPECT_LT(left.cwiseQuotient(force_scales(mechanism, *e)).cwiseAbs().maxCoeff(), 1e-12) << name;
+  }
+}
+
 TEST(SmallMotions, AreWhatARunDoes) {
   constexpr double epsilon = 1e-5;
   for (const double damping : {0.0, 0.05}) {
