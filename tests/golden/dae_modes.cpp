@@ -76,7 +76,7 @@ TEST_F(ModesOfTheProgram, OfDrivesHeldAndManyJoints) {
   EXPECT_NE(call("modes '" + example("driven") + "'").out.find("4.2888"), std::string::npos);
   // 310 rods, from level: 3 modes of all, by Lanczos' method; the lowest near Bernoulli's rope.
   const fs::path scene = write("chain.toml", call("make chain --n 310").out);
-  const Outcome o = call("modes '" + scene.string() + "' --json --count 3");
+  const Outcome o = call("modes '" + scene.string() + "' --json --count 3 --kkt sparse");
   ASSERT_EQ(o.status, 0) << o.err;
   const auto json = nlohmann::json::parse(o.out);
   EXPECT_EQ(json["complete"], false);
