@@ -51,6 +51,9 @@ int main(int argc, char** argv) {
       ->capture_default_str()
       ->type_name("FORM");
   add_run_options(*run_verb, o);
+  one_of(run_verb->add_option("--data", o.data, "Trajectory's format; hdf5 while the run goes on"),
+         {"csv", "hdf5"})
+      ->capture_default_str();
   CLI::App* drift_verb =
       app.add_subcommand("drift", "Every form side by side: drift, energy, error against run time");
   drift_verb->footer("Example: momenta drift examples/four_bar/scene.toml --end 5 --out results");
@@ -103,6 +106,24 @@ int main(int argc, char** argv) {
       ->add_option("--at", index_state, "Consistent state, as for evaluate (default: the start)")
       ->type_name("STATE");
   index_app->add_option("--out", o.out, "Directory for index.json")->type_name("DIR");
+  CLI::App* modes_app = app.add_subcommand(
+      "modes", "Where it rests, and small motions there: frequencies, damping, shapes");
+  modes_app->footer("Example: momenta modes examples/four_bar/scene.toml --out results");
+  ModesOptions modes_options;
+  add_scene(*modes_app, o);
+  one_of(modes_app->add_option("--equilibrium", modes_options.equilibrium,
+                               "Downhill; by Newton, saddles too; or as assembled"),
+         {"settle", "nearest", "start"})
+      ->capture_default_str();
+  one_of(modes_app->add_option("--drives", modes_options.drives,
+                               "As at t = 0, or at constant speed: a relative equilibrium"),
+         {"held", "running"})
+      ->capture_default_str();
+  within(modes_app->add_option("--count", modes_options.count,
+                               "Modes nearest to s = 0 (default: all of up to 300, else 20)"),
+         "N", 1, 1000);
+  modes_app->add_option("--out", o.out, "Directory for modes.csv, modes.json, index.html")
+      ->type_name("DIR");
   CLI::App* view_verb =
       app.add_subcommand("view", "A page that shows the assembled mechanism, to turn and to zoom");
   view_verb->footer(
@@ -234,6 +255,7 @@ int main(int argc, char** argv) {
     if (*work_verb) return work(o, w);
     if (*evaluate_verb) return evaluate(o, state);
     if (*index_app) return index_verb(o, index_forms, index_state);
+    if (*modes_app) return modes(o, modes_options);
     if (*view_verb) return view(o);
     if (*stress_app) return stress(o, stress_options);
     if (*sweep_app) return sweep(o, sweep_options);

@@ -1,6 +1,7 @@
 #include "options.h"
 
 #include <momenta/core/scene/read_scene.h>
+#include <momenta/core/scene/write_scene.h>
 #include <momenta/dae/report/atomic_write.h>
 #include <momenta/dae/report/csv.h>
 #include <momenta/dae/report/page.h>
@@ -9,6 +10,7 @@
 #include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/study/environment.h>
 #include <momenta/dae/study/motion.h>
+#include <momenta/dae/study/run_record.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -17,6 +19,7 @@
 #include <fstream>
 #include <iterator>
 #include <sstream>
+#include <stdexcept>
 
 #include "values.h"
 
@@ -189,8 +192,10 @@ std::vector<std::string> names_in(const std::string& list) {
 }
 
 void expect_own_results(const std::filesystem::path& out, std::string_view own) {
-  for (const std::string_view name : {"trajectory.csv", "study.csv", "stress.json", "sweep.csv"})
-    if (name != own && !out.empty() && std::filesystem::exists(out / name))
+  for (const std::string_view name :
+       {"trajectory.csv", "run.h5", "study.csv", "stress.json", "sweep.csv", "modes.csv"})
+    if (name != own && !(name == "run.h5" && own == "trajectory.csv") && !out.empty() &&
+        std::filesystem::exists(out / name))
       throw std::invalid_argument("--out " + out.string() + " holds the " + std::string(name) +
                                   " of another verb; expected a directory of its own");
 }
@@ -222,6 +227,24 @@ bool write_result(const std::filesystem::path& file, std::string_view content) {
   const auto problem = atomic_write(file, content);
   if (problem) std::fprintf(stderr, "momenta: %s\n", problem->c_str());
   return !problem;
+}
+
+std::unique_ptr<TrajectoryFile> trajectory_file(const Options& o, const Mechanism& mechanism,
+                                                const RunSettings& settings) {
+  if (o.data != "hdf5") return nullptr;
+  if (!writes_hdf5())
+    throw std::invalid_argument(
+        "--data hdf5: this program was built without HDF5; expected --data csv, or a build with "
+        "MOMENTA_HDF5=ON");
+  if (o.out.empty()) throw std::invalid_argument("--data hdf5: expected --out DIR for run.h5");
+  auto file = std::make_unique<TrajectoryFile>(
+      o.out / "run.h5", trajectory_columns(mechanism),
+      TrajectoryFile::Texts{{"scene", scene_text(mechanism.scene())},
+                            {"command", o.command},
+                            {"settings", key_of(settings)},
+                            {"environment", environment_json(environment()).dump()}});
+  if (!file->problem().empty()) throw std::runtime_error(file->problem());
+  return file;
 }
 
 void expect_place_for_figures(const Options& o) {

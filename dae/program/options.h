@@ -5,6 +5,7 @@
 #include <momenta/dae/assembly.h>
 #include <momenta/dae/report/figure.h>
 #include <momenta/dae/report/json.h>
+#include <momenta/dae/report/trajectory_file.h>
 #include <momenta/dae/study/journal.h>
 #include <momenta/dae/study/run_form.h>
 
@@ -33,7 +34,8 @@ struct Options {
   bool project = false, no_project = false;  ///< neither: as the scene says
   std::optional<double> cpu_limit;
   std::filesystem::path reference, out;
-  std::string figures;  ///< svg or none
+  std::string figures;       ///< svg or none
+  std::string data = "csv";  ///< of run: csv or hdf5
   bool json = false, quiet = false;
 };
 
@@ -68,6 +70,11 @@ std::vector<std::string> names_in(const std::string& list);
 
 /// Writes a result file; on failure prints the sentence and returns false.
 bool write_result(const std::filesystem::path& file, std::string_view content);
+
+/// The run's trajectory as HDF5, where that is asked for. @throws std::invalid_argument;
+/// std::runtime_error where it cannot be written
+std::unique_ptr<TrajectoryFile> trajectory_file(const Options& o, const Mechanism& mechanism,
+                                                const RunSettings& settings);
 
 /// Where figures are asked for there must be a place for them. @throws std::invalid_argument
 void expect_place_for_figures(const Options& o);
@@ -136,6 +143,12 @@ struct SweepOptions {
   int threads = 0;    ///< 0: one for each processor, of one process
 };
 int sweep(const Options& o, const SweepOptions& s);
+struct ModesOptions {
+  std::string equilibrium = "settle";  ///< settle, nearest or start
+  std::string drives = "held";         ///< held or running
+  std::optional<int> count;
+};
+int modes(const Options& o, const ModesOptions& m);
 /// `state`: a JSON file, "-" for standard input, or text that starts with "{".
 int evaluate(const Options& o, const std::string& state);
 /// `forms`: comma-separated, empty: all. `state`: as for evaluate; empty: the start.

@@ -11,6 +11,8 @@
 namespace momenta::program {
 namespace {
 
+constexpr int most_drawn = 4000;  // samples that a page is made of
+
 void print_passages(const RunResult& result) {
   constexpr std::size_t most = 12;
   if (result.passages.empty()) return;
@@ -41,6 +43,12 @@ int run(const Options& o) {
   request.max_cpu_seconds = o.cpu_limit.value_or(0);
   request.film_intervals = film_intervals_of(*mechanism, o, 1);
   expect_own_results(o.out, "trajectory.csv");
+  const auto file = trajectory_file(o, *mechanism, s);
+  if (file) {
+    // What the page draws is a part of it; memory does not grow with the trajectory.
+    request.keep_every = 1 + s.samples / most_drawn;
+    request.on_row = [&](const std::vector<double>& row) { return file->write(row); };
+  }
   ProgressLine line(o.quiet);
   request.progress = [&](double t) {
     line.show(s.form + "  t = " + std::to_string(t) + " s");
@@ -58,11 +66,20 @@ int run(const Options& o) {
   auto json = summary_json(result, study.environment);
   json["assembly"] = {{"moved", a.moved}, {"branch", a.branch}};
   const std::string summary = json.dump(2) + "\n";
+  if (file && !file->finish(summary)) {
+    std::fprintf(stderr, "momenta: %s\n", file->problem().c_str());
+    return run_failed;
+  }
   if (!o.out.empty() &&
-      (!write_result(o.out / "trajectory.csv", trajectory_csv(result.trajectory)) ||
+      (!(file || write_result(o.out / "trajectory.csv", trajectory_csv(result.trajectory))) ||
        !write_result(o.out / "summary.json", summary) ||
        !write_result(o.out / "index.html", run_page(study))))
     return run_failed;
+  if (!o.out.empty()) {
+    // Of an earlier run in the other format.
+    std::error_code ignored;
+    std::filesystem::remove(o.out / (file ? "trajectory.csv" : "run.h5"), ignored);
+  }
   if (!o.figures.empty() && !write_figures(figures_of_run(study), o)) return run_failed;
   if (o.json) {
     std::fputs(summary.c_str(), stdout);

@@ -60,5 +60,7 @@ void bind_mechanism(py::module_& module);
 void bind_runs(py::module_& module);
 /// Methods of Mechanism that run it.
 void add_runs(py::class_<Bench, BenchPtr>& mechanism);
+/// The one that finds its modes.
+void add_modes(py::class_<Bench, BenchPtr>& mechanism);
 
 }  // namespace momenta::python

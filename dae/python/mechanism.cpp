@@ -232,6 +232,7 @@ void bind_mechanism(py::module_& module) {
            "reactions (force [N], torque [N m], axes of the child), M where it is small. What is "
            "left out is the scene's guess.");
   add_runs(mechanism);
+  add_modes(mechanism);
 
   module.def(
       "load",

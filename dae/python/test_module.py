@@ -79,6 +79,64 @@ class Equations(unittest.TestCase):
         self.assertEqual(sigma.size, 0)
 
 
+class SmallMotions(unittest.TestCase):
+    def test_shapes_solve_the_linearised_equations_of_unit_mass(self):
+        m = load("four_bar")
+        found = m.modes()
+        self.assertEqual((found["nature"], found["degrees_of_freedom"]), ("stable", 1))
+        M, J = m.kkt(0.0, found["q"])
+        phi = found["shapes"]
+        self.assertEqual(phi.shape, (m.nv, 1))
+        np.testing.assert_allclose(phi.conj().T @ M @ phi, 1, atol=1e-12)
+        np.testing.assert_allclose(J @ phi, 0, atol=1e-12)
+        # Let go a little beside it, it accelerates by s^2 times the way.
+        step = 1e-6 * phi[:, 0].real
+        udot, _ = m.accelerations(0.0, found["q"] + step, np.zeros(m.nv))
+        s = found["s"][0]
+        np.testing.assert_allclose(udot, (s * s).real * step, rtol=1e-4)
+        np.testing.assert_allclose(found["frequency"], s.imag / (2 * np.pi))
+        np.testing.assert_array_equal(found["damping_ratio"], 0)
+
+    def test_drives_are_held_or_running(self):
+        text = """
+            gravity = [0, 0, -9.81]
+            [[body]]
+            name = "shaft"
+            mass = 1
+            inertia = [1, 1, 1]
+            [[body]]
+            name = "bob"
+            mass = 2
+            com = [0, 0, -0.5]
+            inertia = [0, 0, 0]
+            [[joint]]
+            name = "S"
+            kind = "revolute"
+            child = "shaft"
+            axis = "z"
+            [[joint]]
+            name = "O"
+            kind = "revolute"
+            parent = "shaft"
+            child = "bob"
+            axis = "y"
+            position = 0.1
+            [[drive]]
+            joint = "S"
+            kind = "polynomial"
+            coefficients = [0, 3]
+        """
+        m = momenta.parse(text)
+        np.testing.assert_allclose(m.modes()["s"].imag ** 2, 9.81 / 0.5)
+        np.testing.assert_allclose(m.modes(drives="running")["s"].imag ** 2, 9.81 / 0.5 - 9)
+
+    def test_what_is_wrong_is_said(self):
+        with self.assertRaisesRegex(momenta.SceneError, "no equilibrium: joint"):
+            load("four_bar").modes(equilibrium="start")
+        with self.assertRaisesRegex(ValueError, "expected settle, nearest or start"):
+            load("four_bar").modes(equilibrium="up")
+
+
 class Runs(unittest.TestCase):
     def test_arrays_are_views_that_outlive_the_name(self):
         run = load("four_bar").run(end=1.0, samples=50)

@@ -59,13 +59,23 @@ std::optional<std::string> atomic_write(const std::filesystem::path& path,
   const int file = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (file < 0) return "Cannot write " + path.string() + ": " + cause(errno) + ".";
 
-  int error = write_and_close(file, content);
+  if (const int error = write_and_close(file, content)) {
+    ::unlink(temporary.c_str());
+    return "Cannot write " + path.string() + ": " + cause(error) + ".";
+  }
+  return put_in_place(temporary, path);
+}
+
+std::optional<std::string> put_in_place(const std::filesystem::path& temporary,
+                                        const std::filesystem::path& path) {
+  const int file = ::open(temporary.c_str(), O_RDONLY | O_CLOEXEC);
+  int error = file < 0 ? errno : write_and_close(file, {});
   if (error == 0 && std::rename(temporary.c_str(), path.c_str()) != 0) error = errno;
   if (error != 0) {
     ::unlink(temporary.c_str());
     return "Cannot write " + path.string() + ": " + cause(error) + ".";
   }
-  sync_directory(directory);
+  sync_directory(path.has_parent_path() ? path.parent_path() : ".");
   return std::nullopt;
 }
 

@@ -16,4 +16,9 @@ namespace momenta {
 [[nodiscard]] std::optional<std::string> atomic_write(const std::filesystem::path& path,
                                                       std::string_view content);
 
+/// The second half of it: a temporary file that is written and closed reaches the disk and gets its
+/// name. On failure it is removed.
+[[nodiscard]] std::optional<std::string> put_in_place(const std::filesystem::path& temporary,
+                                                      const std::filesystem::path& path);
+
 }  // namespace momenta

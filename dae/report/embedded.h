@@ -24,6 +24,7 @@ std::string_view player_js();
 std::string_view timeline_js();
 std::string_view making_js();
 std::string_view study_page_js();
+std::string_view modes_page_js();
 std::string_view run_page_js();
 std::string_view uplot_js();
 std::string_view uplot_css();

@@ -1,6 +1,8 @@
 #include <momenta/dae/report/advice.h>
 #include <momenta/dae/report/conclusion.h>
 #include <momenta/dae/report/embedded.h>
+#include <momenta/dae/report/json.h>
+#include <momenta/dae/report/modes_report.h>
 #include <momenta/dae/report/page.h>
 #include <momenta/dae/report/page_data.h>
 #include <momenta/dae/report/template.h>
@@ -126,6 +128,22 @@ std::string run_page(const StudyResult& study) {
   data["timeline"] = timeline_json(study.runs.front());
   return page(study, "One run", marked_up(answer(study)), failures(study), data,
               script({embedded::timeline_js(), embedded::run_page_js()}));
+}
+
+std::string modes_page(const StudyResult& study, const ModesResult& result) {
+  Json data = page_data(study);
+  Json modes = Json::array();
+  for (const Mode& mode : result.spectrum.modes)
+    modes.push_back({{"kind", name_of(mode.kind())},
+                     {"real", mode.real},
+                     {"s", {mode.s.real(), mode.s.imag()}},
+                     {"frequency", mode.frequency()},
+                     {"damping_ratio", number_or_null(mode.damping_ratio())},
+                     {"moves", largest_entries(result, mode)}});
+  data["modes"] = std::move(modes);
+  data["csv"] = modes_csv(result);
+  return page(study, "Small motions", marked_up(modes_in_words(result)), "", data,
+              script({embedded::modes_page_js()}));
 }
 
 std::string view_page(const StudyResult& study, const std::string& words) {

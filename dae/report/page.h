@@ -1,6 +1,7 @@
 #pragma once
 // index.html of a study: one file that opens with the network off.
 
+#include <momenta/dae/study/modes_study.h>
 #include <momenta/dae/study/run_result.h>
 
 #include <string>
@@ -18,5 +19,8 @@ std::string run_page(const StudyResult&);
 
 /// Of a scene without runs: the mechanism as it is assembled; `words` say what it is.
 std::string view_page(const StudyResult&, const std::string& words);
+
+/// Of an equilibrium: the mechanism swinging in one mode at a time, and all modes as a table.
+std::string modes_page(const StudyResult&, const ModesResult&);
 
 }  // namespace momenta

@@ -63,7 +63,10 @@ class Looker {
     const bool row_wanted = request_.keep_trajectory || request_.reference;
     if (row_wanted) row(t, energy, position, velocity);
     if (request_.reference) compare(t);
-    if (request_.keep_trajectory) result_.trajectory.rows.push_back(row_);
+    if (request_.keep_trajectory) {
+      if (request_.on_row && !request_.on_row(row_)) return false;
+      if (rows_++ % request_.keep_every == 0) result_.trajectory.rows.push_back(row_);
+    }
     if (request_.film_intervals > 0 && result_.film.frames.empty()) {
       result_.film.start = t;
       result_.film.every = (result_.settings.end_time - t) / request_.film_intervals;
@@ -288,6 +291,7 @@ class Looker {
   double step_from_ = 0, step_end_ = 0;
   std::array<double, 5> power_{};  ///< at the Gauss points of the last step [W]
   int compared_ = 0;
+  long rows_ = 0;  ///< of the trajectory
   Eigen::VectorXd at_rest_, unused_;
   int always_faded_ = std::numeric_limits<int>::max();
   bool passing_ = false;

@@ -13,6 +13,9 @@ struct RunRequest {
   RunSettings settings;
   const Reference* reference = nullptr;  ///< bound to trajectory_columns(mechanism)
   bool keep_trajectory = false;
+  int keep_every = 1;  ///< of its rows, from the first
+  /// Called with every row of the trajectory, where one is kept; return false to stop the run.
+  std::function<bool(const std::vector<double>& row)> on_row;
   /// The film has the start and this many equal intervals more; a run that fails, fewer. 0: none.
   int film_intervals = 0;
   double max_cpu_seconds = 0;  ///< 0: none

@@ -1,8 +1,12 @@
 // The page in a real browser: no console message, no horizontal scroll, every chart and table
 // there. In Chromium and in Firefox, skipped where one is not installed.
 #include <gtest/gtest.h>
+#include <momenta/core/scene/read_scene.h>
+#include <momenta/dae/assembly.h>
 #include <momenta/dae/report/atomic_write.h>
 #include <momenta/dae/report/page.h>
+#include <momenta/dae/study/modes_study.h>
+#include <momenta/dae/study/motion.h>
 #include <unit/page/firefox.h>
 #include <unit/page/synthetic_study.h>
 
@@ -262,6 +266,75 @@ TEST_P(Browser, ShowsASceneThatWasNotRun) {
   const auto [report, console] = opened(view_page(study, "Three links."), still);
   EXPECT_EQ(console, "");
   EXPECT_EQ(report, "fits clock=0 rows=4 ticked=true");
+}
+
+// What the page of modes shows: another picture for another mode, for another amplitude, and at
+// another time; links that hold together in between.
+constexpr const char* swinging = R"(addEventListener("load", async () => {
+const pixels = () => document.querySelector(".movie canvas").toDataURL();
+const drawn = async () => { for (let i = 0; i < 4; ++i) await new Promise(requestAnimationFrame); };
+await drawn();
+const first = pixels();
+document.querySelectorAll("tbody button")[1].click();
+await drawn();
+const second = pixels(), choice = document.querySelector(".boxes select");
+const size = document.querySelector(".boxes input[type=range]");
+size.value = 0.3;
+size.dispatchEvent(new Event("input"));
+await drawn();
+const smaller = pixels();
+choice.value = "0";
+choice.dispatchEvent(new Event("change"));
+await drawn();
+const slide = document.querySelector(".clock input");
+slide.value = 250;
+slide.dispatchEvent(new Event("input"));
+await drawn();
+const later = pixels();
+const root = document.documentElement;
+setInterval(() => parent.postMessage([root.scrollWidth <= innerWidth ? "fits" : "scrolls", "modes=" + choice.options.length,
+  "other=" + (first !== second), "smaller=" + (second !== smaller), "moved=" + (first !== later),
+  "time=" + document.querySelector(".time").textContent.replaceAll(" ", "")].join(" "), "*"), 100);
+});)";
+
+TEST_P(Browser, SwingsInTheModeThatIsChosen) {
+  const Mechanism mechanism(parse_scene(R"(
+name = "Two rods"
+gravity = [0, -9.81, 0]
+[[body]]
+name = "a"
+mass = 1
+shape = { kind = "rod", length = 1, axis = "x" }
+[[body]]
+name = "b"
+mass = 1
+shape = { kind = "rod", length = 1, axis = "x" }
+[[joint]]
+name = "O"
+kind = "revolute"
+child = "a"
+[[joint]]
+name = "A"
+kind = "revolute"
+parent = "a"
+child = "b"
+origin = { parent = [1, 0, 0] }
+)",
+                                        "test"));
+  const ModesResult result = find_modes(mechanism, assemble(mechanism).start, {});
+  StudyResult study = synthetic::study_of({});
+  study.picture = picture_of(mechanism);
+  study.motions.clear();
+  for (std::size_t i = 0; i < 2; ++i) {
+    study.motions.push_back(
+        motion_of(mechanism, swing(mechanism, result, result.spectrum.modes[i])));
+    study.motions.back().run = static_cast<int>(i);
+    study.motions.back().every = 1;
+  }
+  const auto [report, console] = opened(modes_page(study, result), swinging);
+  EXPECT_EQ(console, "");
+  // A fortieth of twenty periods, half of 2π/√((3 − 6/√7) g/l).
+  EXPECT_EQ(report, "fits modes=2 other=true smaller=true moved=true time=t=1.17s");
 }
 
 INSTANTIATE_TEST_SUITE_P(Widths, Browser,

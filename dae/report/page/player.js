@@ -64,7 +64,7 @@ function clockBar(clock) {
     play.setAttribute("aria-label", clock.playing ? "Pause" : "Play");
   });
   addEventListener("keydown", (event) => {
-    if (["INPUT", "SELECT", "BUTTON", "A"].includes(event.target.tagName)) return;
+    if (!play.isConnected || ["INPUT", "SELECT", "BUTTON", "A"].includes(event.target.tagName)) return;
     if (event.key === " ") clock.toggle();
     else if (event.key === "," || event.key === ".") clock.step(event.key === "." ? 1 : -1);
     else return;

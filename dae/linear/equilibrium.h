@@ -1,0 +1,63 @@
+#pragma once
+// A pose at which the mechanism stays when it is let go at rest:
+//
+//   r(q) + Φ_qᵀλ = 0,   Φ(q) = 0          r: (1a) at u = u̇ = 0
+//
+// Judged by letting go: λ and u̇ are those of (3) at rest, and M u̇ is what is left of the forces.
+// Where drives run, this is a relative equilibrium, of V − T₀ with T₀ the kinetic energy of the
+// prescribed motion alone.
+//
+// Each step solves, with the exact second derivatives K of V + λ·Φ,
+//
+//   ( K + μM  Φ_qᵀ ) ( δ )   ( −r − Φ_qᵀλ )
+//   ( Φ_q     0    ) ( ν ) = (  0         ),    q ← q ∘ exp δ,  then back to Φ = 0
+//
+//   settle    μ falls while V − T₀ falls as K foretells and rises when it does not: implicit steps
+//             of length 1/μ of the gradient flow M q̇ = −∇(V − T₀), which ends as Newton's method
+//             (pseudo-transient continuation: Kelley, Keyes, SIAM J. Numer. Anal. 35 (1998) 508).
+//             Saddles on the way are left (downward_ways.h). Forces without a potential: the forces
+//             left must fall instead.
+//   nearest   Newton's method, μ = 0, steps halved until the forces left fall: it ends at any kind
+//             of equilibrium, a saddle too.
+//   start     no step: the pose is one, or is refused.
+
+#include <momenta/dae/form/form.h>
+
+#include <string>
+
+namespace momenta {
+
+enum class Search { settle, nearest, start };
+
+struct Equilibrium {
+  double t = 0;
+  Eigen::VectorXd q, lambda;  ///< nq; m, the loops' forces there (one choice of them if redundant)
+  int steps = 0;
+  double left = 0;       ///< largest force left, relative to what acts on that joint
+  double moved = 0;      ///< largest change of a coordinate since the start [rad or m]
+  double last_step = 0;  ///< [rad or m]
+  double potential = 0;  ///< V [J]
+};
+
+/// From a consistent start, whose rates do not matter. `settle` goes on from a saddle that it came
+/// to, not from one that it started at.
+/// @throws SceneError naming the joint at which most force is left, or the drive that does not
+/// allow rest.
+Equilibrium find_equilibrium(const Mechanism& mechanism, const Start& start, Search search);
+
+/// The same from a pose turned by `way` (nv), brought back to Φ = 0.
+Equilibrium settle_from(const Mechanism& mechanism, const Equilibrium& saddle,
+                        const Eigen::VectorXd& way);
+
+/// Whether all forces on it have a potential: no wrench that turns with a body, no constant torque
+/// in space.
+bool has_potential(const Mechanism& mechanism);
+
+/// Natural size of each rate's force (nv) at the placed pose, moved at rest: what rounding and
+/// residuals are measured by [N m or N].
+Eigen::VectorXd force_scales(const Mechanism& mechanism, Evaluation<double>& e);
+
+/// 1 for turns, the length of the scene for shifts (nv).
+Eigen::VectorXd natural_units(const Mechanism& mechanism);
+
+}  // namespace momenta

@@ -1,0 +1,118 @@
+#include <momenta/core/tree/drive.h>
+#include <momenta/dae/linear/linearisation.h>
+
+#include <algorithm>
+#include <vector>
+
+namespace momenta {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr int directions = 8;
+
+/// Derivatives of (r, Φ) at rest, eight directions at a time.
+class Columns {
+ public:
+  Columns(const Mechanism& mechanism, double t, const VectorXd& q, const VectorXd& lambda,
+          const MatrixXd& X)
+      : mechanism_(mechanism),
+        t_(t),
+        q_(q),
+        X_(X),
+        plain_(mechanism.evaluation<double>()),
+        dual_(mechanism.evaluation<Dual8>()),
+        place_(static_cast<std::size_t>(mechanism.nq())),
+        rate_(static_cast<std::size_t>(mechanism.nv())),
+        acceleration_(rate_.size()),
+        r_(rate_.size()),
+        lambda_(lambda.begin(), lambda.end()),
+        phi_(static_cast<std::size_t>(mechanism.m())) {
+    plain_->place(t, q.data());
+  }
+
+  enum class By { poses, rates, accelerations };
+
+  /// Columns of ∂r, and of ∂Φ where `loops` is given.
+  void take(By by, MatrixXd& of_forces, MatrixXd* loops) {
+    const int nv = mechanism_.nv(), m = mechanism_.m();
+    for (Eigen::Index first = 0; first < X_.cols(); first += directions) {
+      const Eigen::Index count = std::min<Eigen::Index>(directions, X_.cols() - first);
+      seed(by, first, count);
+      dual_->place(t_, place_.data());
+      if (loops) dual_->positions(phi_.data());
+      dual_->move(rate_.data());
+      dual_->joint_forces(place_.data(), rate_.data(), acceleration_.data(), lambda_.data(),
+                          r_.data());
+      for (Eigen::Index d = 0; d < count; ++d) {
+        const auto k = static_cast<std::size_t>(d);
+        for (int i = 0; i < nv; ++i) of_forces(i, first + d) = r_[static_cast<std::size_t>(i)].b[k];
+        for (int i = 0; loops && i < m; ++i)
+          (*loops)(i, first + d) = phi_[static_cast<std::size_t>(i)].b[k];
+      }
+    }
+  }
+
+ private:
+  void seed(By by, Eigen::Index first, Eigen::Index count) {
+    for (std::size_t i = 0; i < place_.size(); ++i) place_[i] = Dual8(q_[static_cast<long>(i)]);
+    std::fill(rate_.begin(), rate_.end(), Dual8(0.0));
+    std::fill(acceleration_.begin(), acceleration_.end(), Dual8(0.0));
+    VectorXd x, way(mechanism_.nq());
+    for (Eigen::Index d = 0; d < count; ++d) {
+      const auto k = static_cast<std::size_t>(d);
+      x = X_.col(first + d);
+      if (by == By::poses) {
+        way.setZero();
+        plain_->coordinate_rates(q_.data(), x.data(), way.data());
+        for (std::size_t i = 0; i < place_.size(); ++i) place_[i].b[k] = way[static_cast<long>(i)];
+      } else {
+        auto& seeded = by == By::rates ? rate_ : acceleration_;
+        for (std::size_t i = 0; i < seeded.size(); ++i) seeded[i].b[k] = x[static_cast<long>(i)];
+      }
+    }
+  }
+
+  const Mechanism& mechanism_;
+  double t_;
+  const VectorXd& q_;
+  const MatrixXd& X_;
+  std::unique_ptr<Evaluation<double>> plain_;
+  std::unique_ptr<Evaluation<Dual8>> dual_;
+  std::vector<Dual8> place_, rate_, acceleration_, r_, lambda_, phi_;
+};
+
+}  // namespace
+
+Linearisation linearise(const Mechanism& mechanism, double t, const VectorXd& q,
+                        const VectorXd& lambda, const MatrixXd& X) {
+  Linearisation l;
+  for (MatrixXd* a : {&l.M, &l.C, &l.K}) a->setZero(mechanism.nv(), X.cols());
+  l.loops.setZero(mechanism.m(), X.cols());
+  Columns columns(mechanism, t, q, lambda, X);
+  columns.take(Columns::By::poses, l.K, mechanism.m() > 0 ? &l.loops : nullptr);
+  columns.take(Columns::By::rates, l.C, nullptr);
+  columns.take(Columns::By::accelerations, l.M, nullptr);
+  return l;
+}
+
+Scene held_at_start(Scene scene) {
+  for (DriveSpec& drive : scene.drives) {
+    double f = 0, rate = 0, acceleration = 0;
+    MotionLaw(drive).evaluate(0.0, f, rate, acceleration);
+    DriveSpec held;
+    held.joint = drive.joint;
+    held.loop = drive.loop;
+    held.coordinate = drive.coordinate;
+    held.origin = drive.origin;
+    held.at = drive.at;
+    held.kind = "polynomial";
+    held.coefficients = {f};
+    drive = std::move(held);
+  }
+  for (JointSpec& joint : scene.joints) joint.velocity.clear();
+  return scene;
+}
+
+}  // namespace momenta

@@ -1,0 +1,29 @@
+#pragma once
+// The equations of small motions about a pose at rest. With r(q, u, u̇, λ) the residual of (1a),
+//
+//   q = q* ∘ exp δ,  u = δ̇:    M δ̈ + C δ̇ + K δ + Φ_qᵀ δλ = 0,   Φ_q δ = 0
+//   M = ∂r/∂u̇,  C = ∂r/∂u,  K = ∂r/∂δ at constant λ,   all at (q*, 0, 0, λ*)
+//
+// K has the geometric part Σ λ_i ∂(∇Φ_i)/∂δ in it: what the loops' forces do when they turn. All
+// are exact to rounding, by dual numbers. Derivation: docs/theory/small-motions.md.
+
+#include <momenta/dae/mechanism.h>
+
+#include <Eigen/Core>
+
+namespace momenta {
+
+struct Linearisation {
+  Eigen::MatrixXd M, C, K;  ///< M X, C X, K X, nv × columns of X
+  Eigen::MatrixXd loops;    ///< Φ_q X, m × columns
+};
+
+/// Along the columns of X (nv × any number), at (t, q), u = u̇ = 0, with λ (m). Cost O(bodies) a
+/// column.
+Linearisation linearise(const Mechanism& mechanism, double t, const Eigen::VectorXd& q,
+                        const Eigen::VectorXd& lambda, const Eigen::MatrixXd& X);
+
+/// The scene with every drive held where it is at t = 0, and no velocity.
+Scene held_at_start(Scene scene);
+
+}  // namespace momenta

@@ -1,0 +1,43 @@
+#pragma once
+// Poses on Φ = 0 near a pose: q ∘ exp δ, then corrections of least change in the mass metric.
+
+#include <momenta/dae/form/coordinate_motion.h>
+#include <momenta/dae/kkt/loop_solver.h>
+
+#include <Eigen/Core>
+#include <memory>
+
+namespace momenta {
+
+class PoseMotion {
+ public:
+  explicit PoseMotion(const Mechanism& mechanism);
+
+  /// False where the loops do not close; `q` is then of no use.
+  bool move(double t, const Eigen::VectorXd& from, const Eigen::VectorXd& delta,
+            Eigen::VectorXd& q);
+  /// u̇ (nv) and λ (m) of (3) at rest. False where something has no inertia.
+  bool let_go(double t, const Eigen::VectorXd& q, Eigen::VectorXd& udot, Eigen::VectorXd& lambda);
+
+  /// y (nv) of M y + Φ_qᵀσ = p, Φ_q y = 0: what of a momentum moves. False where something has no
+  /// inertia.
+  bool free_velocity(double t, const Eigen::VectorXd& q, const Eigen::VectorXd& p,
+                     Eigen::VectorXd& y);
+
+  /// M y (nv) where the evaluation is placed.
+  Eigen::VectorXd momentum(const Eigen::VectorXd& y);
+
+  Evaluation<double>& evaluation() { return *e_; }
+  /// Place in u of the joint at which let_go() failed.
+  int stuck() const { return solver_ ? solver_->stuck() : e_->stuck(); }
+
+ private:
+  const Mechanism& mechanism_;
+  std::unique_ptr<Evaluation<double>> e_;
+  std::unique_ptr<LoopSolver> solver_;  ///< null without loops
+  CoordinateMotion motion_;
+  Eigen::VectorXd phi_, delta_, rest_;
+  double closed_;
+};
+
+}  // namespace momenta

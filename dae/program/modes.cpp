@@ -1,0 +1,72 @@
+// Equilibrium, frequencies and shapes of small motions.
+
+#include <momenta/dae/linear/linearisation.h>
+#include <momenta/dae/report/modes_report.h>
+#include <momenta/dae/report/page.h>
+#include <momenta/dae/report/picture_data.h>
+#include <momenta/dae/study/environment.h>
+#include <momenta/dae/study/motion.h>
+
+#include <cstdio>
+
+#include "options.h"
+
+namespace momenta::program {
+namespace {
+
+constexpr std::size_t most_films = 12;
+
+/// The modes that a page shows swinging: as many as it holds.
+void film(StudyResult& study, const Mechanism& mechanism, const ModesResult& result) {
+  if (mechanism.scene().bodies.size() > most_bodies_drawn) return;
+  const auto& modes = result.spectrum.modes;
+  const std::size_t count = std::min(most_films, modes.size());
+  if (count == 0 || film_intervals(picture_of(mechanism), count) == 0) return;
+  for (std::size_t i = 0; i < count; ++i) {
+    study.motions.push_back(motion_of(mechanism, swing(mechanism, result, modes[i])));
+    study.motions.back().run = static_cast<int>(i);
+    study.motions.back().every = 1;
+  }
+}
+
+}  // namespace
+
+int modes(const Options& o, const ModesOptions& m) {
+  Scene scene = read(o);
+  if (m.drives == "held") scene = held_at_start(std::move(scene));
+  const Mechanism mechanism(std::move(scene), mechanism_options(o));
+  expect_own_results(o.out, "modes.csv");
+  const Assembly a = assemble(mechanism);
+  ModesRequest request;
+  request.search = m.equilibrium == "start"     ? Search::start
+                   : m.equilibrium == "nearest" ? Search::nearest
+                                                : Search::settle;
+  request.count = m.count.value_or(0);
+  request.route = o.kkt == "dense"    ? Route::dense
+                  : o.kkt == "sparse" ? Route::sparse
+                                      : Route::automatic;
+  const ModesResult result = find_modes(mechanism, a.start, request);
+  auto json = modes_json(result);
+  json["environment"] = environment_json(environment());
+  const std::string text = json.dump(2) + "\n";
+  if (!o.out.empty()) {
+    StudyResult study;
+    film(study, mechanism, result);
+    Assembly at = a;
+    at.start.q = result.equilibrium.q;
+    describe(study, o, mechanism, at);
+    if (!write_result(o.out / "modes.csv", modes_csv(result)) ||
+        !write_result(o.out / "modes.json", text) ||
+        !write_result(o.out / "index.html", modes_page(study, result)))
+      return run_failed;
+  }
+  if (o.json)
+    std::fputs(text.c_str(), stdout);
+  else if (!o.quiet)
+    std::fputs(modes_table(result).c_str(), stdout);
+  if (!o.out.empty() && !o.quiet)
+    std::fprintf(stderr, "momenta: wrote %s\n", (o.out / "index.html").c_str());
+  return done;
+}
+
+}  // namespace momenta::program
