@@ -2,6 +2,7 @@
 #include <momenta/dae/report/page.h>
 #include <momenta/dae/report/picture_data.h>
 
+#include <algorithm>
 #include <cstdio>
 
 #include "options.h"
@@ -16,10 +17,14 @@ std::string counted(std::size_t n, const std::string& one, const std::string& mo
 /// What there is to see, in a sentence or two.
 std::string words_of(const Mechanism& mechanism, const Assembly& a) {
   const Scene& scene = mechanism.scene();
+  const auto couplers = static_cast<std::size_t>(
+      std::count_if(scene.loops.begin(), scene.loops.end(),
+                    [](const LoopSpec& l) { return l.kind == LoopKind::coupler; }));
   std::string words =
       counted(scene.bodies.size(), "body", "bodies") + ", " +
       counted(scene.joints.size(), "joint", "joints") + ", " +
-      counted(scene.loops.size(), "loop", "loops") + "; " +
+      counted(scene.loops.size() - couplers, "loop", "loops") +
+      (couplers > 0 ? ", " + counted(couplers, "coupler", "couplers") : "") + "; " +
       counted(static_cast<std::size_t>(mechanism.nv()), "rate", "rates") + ", " +
       counted(static_cast<std::size_t>(mechanism.m()), "loop equation", "loop equations") +
       (mechanism.plan().planar ? ", in a plane." : ", in space.");

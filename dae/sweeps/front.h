@@ -91,7 +91,7 @@ struct Front {
       g.v[i] = local.v[i];
     });
     each_entry(open, [&](auto i, auto part) MOMENTA_INLINED {
-      put(born, i, part, W[i].v[part], local.v[part] * own.all(own.template at<i>()));
+      put(born, i, part, W[i].v[part], local.v[part] * own.all(own[i]));
     });
   }
   /// Writes x, where lane i or j is in `fresh`, else adds it.
@@ -109,15 +109,14 @@ struct Front {
   /// W += g cᵀ
   MOMENTA_INLINE void add_product(const Here& g, const Here& c, LaneGroups open) {
     each_entry(open, [&](auto i, auto part) MOMENTA_INLINED {
-      W[i].v[part] = W[i].v[part] + g.v[part] * c.all(c.template at<i>());
+      W[i].v[part] = W[i].v[part] + g.v[part] * c.all(c[i]);
     });
   }
   /// W −= a bᵀ + x yᵀ
   MOMENTA_INLINE void subtract_products(const Here& a, const Here& b, const Here& x, const Here& y,
                                         LaneGroups open) {
     each_entry(open, [&](auto i, auto part) MOMENTA_INLINED {
-      W[i].v[part] = W[i].v[part] - (a.v[part] * a.all(b.template at<i>()) +
-                                     x.v[part] * a.all(y.template at<i>()));
+      W[i].v[part] = W[i].v[part] - (a.v[part] * a.all(b[i]) + x.v[part] * a.all(y[i]));
     });
   }
 

@@ -39,6 +39,10 @@ struct Lanes {
   MOMENTA_INLINE S at() const {
     return v[i];
   }
+  template <int i>
+  MOMENTA_INLINE S operator[](std::integral_constant<int, i>) const {
+    return at<i>();
+  }
   MOMENTA_INLINE void set(int i, const S& x) { v[i] = x; }
   MOMENTA_INLINE void add(int i, const S& x) { v[i] = v[i] + x; }
   template <int i>
@@ -71,6 +75,10 @@ struct Lanes<Pack<1, Level>, Rows> {
   MOMENTA_INLINE S at() const {
     constexpr int part = i / width, place = i % width;
     return S(v[part].v[place]);
+  }
+  template <int i>
+  MOMENTA_INLINE S operator[](std::integral_constant<int, i>) const {
+    return at<i>();
   }
   /// Lanes are chosen by comparison: writing one number into a register would go through memory.
   MOMENTA_INLINE void set(int i, const S& x) {
