@@ -7,7 +7,7 @@ namespace {
 
 constexpr std::size_t most_named = 4;
 
-std::string listed(const std::vector<std::string>& names) {
+std::string first_named(const std::vector<std::string>& names) {
   std::string all;
   for (std::size_t i = 0; i < names.size(); ++i) {
     if (i == most_named) return all + " and " + std::to_string(names.size() - i) + " more";
@@ -35,7 +35,7 @@ std::string cuts_in_words(const Recut& recut) {
                   static_cast<double>(b.factor_entries), static_cast<double>(a.factor_entries));
     factors = text;
   }
-  return "cut at " + listed(recut.cut) + ", with " + listed(recut.joined) +
+  return "cut at " + first_named(recut.cut) + ", with " + first_named(recut.joined) +
          " in the tree: " + numbers + factors;
 }
 

@@ -51,8 +51,7 @@ int main(int argc, char** argv) {
       ->capture_default_str()
       ->type_name("FORM");
   add_run_options(*run_verb, o);
-  one_of(run_verb->add_option("--data", o.data, "Trajectory's format; hdf5 while the run goes on"),
-         {"csv", "hdf5"})
+  one_of(run_verb->add_option("--data", o.data, "Format of the trajectory"), {"csv", "hdf5"})
       ->capture_default_str();
   CLI::App* drift_verb =
       app.add_subcommand("drift", "Every form side by side: drift, energy, error against run time");
