@@ -16,12 +16,12 @@ Tree checked_tree(const Scene& scene) {
 }
 }  // namespace
 
-OpenChain::OpenChain(const Scene& scene, Algebra algebra, int level) {
+OpenChain::OpenChain(const Scene& scene, Algebra algebra, int level, bool limbs_side_by_side) {
   Tree tree = checked_tree(scene);
   Plan plan = make_plan(tree, scene, algebra);
   const int best = best_level();
   inside_ = std::make_unique<Inside>(std::move(tree), std::move(plan), scene,
-                                     level == 0 ? best : std::min(level, best));
+                                     level == 0 ? best : std::min(level, best), limbs_side_by_side);
 }
 OpenChain::~OpenChain() = default;
 OpenChain::OpenChain(OpenChain&&) noexcept = default;
@@ -121,14 +121,8 @@ bool OpenChain::velocities(double t, const ConstVectorRef& q, const ConstVectorR
 bool OpenChain::inverse_mass_times(double t, const ConstVectorRef& q, const ConstVectorRef& x,
                                    VectorRef result) {
   return inside_->visit([&](auto& kernel) {
-    inside_->p.setZero();
-    if (!kernel.sweeps->momentum(t, q.data(), inside_->p.data(), inside_->u.data(),
-                                 inside_->p.data())) {
-      inside_->singular = kernel.sweeps->stuck();
-      return false;
-    }
-    kernel.sweeps->inverse_mass_times(x.data(), result.data());
-    return true;
+    return inside_->noted_one(
+        kernel, kernel.sweeps->inverse_mass_times(t, q.data(), x.data(), result.data()));
   });
 }
 

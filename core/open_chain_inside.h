@@ -29,14 +29,21 @@ class WhenAsked {
 template <class Space>
 struct Kernel {
   using Links = decltype(build_links(std::declval<const Model<Space>&>()));
-  // Links, sweeps and workspace point at the model, so it stays at one address.
-  Kernel(Model<Space> m, int level)
+  // Links, limbs, sweeps and workspace point at the model, so it stays at one address.
+  Kernel(Model<Space> m, int level, [[maybe_unused]] bool limbs_side_by_side)
       : model(std::make_unique<Model<Space>>(std::move(m))),
         links(std::make_unique<Links>(build_links(*model))),
-        sweeps(make_sweeps(*links, level)),
-        w(*model) {}
+        w(*model) {
+    if constexpr (Space::dimension == 6) {
+      if (limbs_side_by_side) limbs = find_limbs(*links, limb_lanes_at(level));
+      sweeps = make_sweeps(*links, level, limbs.get());
+    } else {
+      sweeps = make_sweeps(*links, level);
+    }
+  }
   std::unique_ptr<Model<Space>> model;
   std::unique_ptr<Links> links;
+  std::unique_ptr<Limbs> limbs;
   std::unique_ptr<OpenSweeps> sweeps;
   WhenAsked<ReactionPass<Space>> reactions;
   Workspace<Space, double> w;
@@ -52,13 +59,13 @@ struct OpenChain::Inside {
   int singular = -1;
   Eigen::Index failed_state = -1;  ///< of the last batch
 
-  Inside(Tree t, Plan pl, const Scene& from, int level)
+  Inside(Tree t, Plan pl, const Scene& from, int level, bool limbs_side_by_side)
       : tree(std::move(t)),
         plan(std::move(pl)),
-        kernel(plan.planar
-                   ? decltype(kernel)(
-                         Kernel<Planar>(build_planar_model(tree, from, plan.basis), level))
-                   : decltype(kernel)(Kernel<Spatial>(build_spatial_model(tree, from), level))),
+        kernel(plan.planar ? decltype(kernel)(Kernel<Planar>(
+                                 build_planar_model(tree, from, plan.basis), level, false))
+                           : decltype(kernel)(Kernel<Spatial>(build_spatial_model(tree, from),
+                                                              level, limbs_side_by_side))),
         u(tree.nv),
         p(tree.nv) {
     if (plan.planar) flat = from;

@@ -1,3 +1,5 @@
+#include <momenta/core/kernel/levels/open_sweeps.h>
+#include <momenta/core/kernel/limbs/limbs.h>
 #include <momenta/dae/kkt/kkt.h>
 #include <momenta/dae/mechanism.h>
 
@@ -267,8 +269,14 @@ std::vector<Column> Mechanism::marker_columns() const {
 
 std::vector<std::pair<std::string, std::string>> Mechanism::plan_lines() const {
   auto lines = plan_.lines();
-  if (!plan_.planar)
-    lines.emplace_back("joints", links_in_words(build_links(std::get<Cast<Spatial>>(cast_).model)));
+  if (!plan_.planar) {
+    const LinkTree links = build_links(std::get<Cast<Spatial>>(cast_).model);
+    lines.emplace_back("joints", links_in_words(links));
+    if (rows_ == 0) {
+      const std::string limbs = limbs_in_words(links, limb_lanes_at(best_level()));
+      lines.emplace_back("limbs", limbs.empty() ? "none of one shape: body by body" : limbs);
+    }
+  }
   if (rows_ == 0) {
     lines.emplace_back("loops", "none: no KKT system, no σ, forward dynamics by the two sweeps");
     return lines;

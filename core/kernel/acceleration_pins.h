@@ -15,6 +15,15 @@ MOMENTA_INLINE void add_bias(Cargo<S>& cargo, const PinAcceleration<S>& w) {
   cargo.Dny = cargo.Dny + w.bny;
   cargo.Dnz = cargo.Dnz + w.bnz;
 }
+template <class S>
+MOMENTA_INLINE void set_bias(Cargo<S>& cargo, const PinAcceleration<S>& w) {
+  cargo.Dfx = w.bfx;
+  cargo.Dfy = w.bfy;
+  cargo.Dfz = w.bfz;
+  cargo.Dnx = w.bnx;
+  cargo.Dny = w.bny;
+  cargo.Dnz = w.bnz;
+}
 /// D' after the pin is eliminated.
 template <class S>
 MOMENTA_INLINE void eliminate_bias(const Cargo<S>& cargo, const S& tau, const S& inverse,
@@ -29,8 +38,8 @@ MOMENTA_INLINE void eliminate_bias(const Cargo<S>& cargo, const S& tau, const S&
   r.nz = tau;
 }
 /// The pin's screw for M' and D', then D' += M' c.
-template <class S>
-MOMENTA_INLINE void turn_pin(Eliminated<S>& r, const S& c, const S& s, double d,
+template <class S, class C>
+MOMENTA_INLINE void turn_pin(Eliminated<S>& r, const S& c, const S& s, const C& d,
                              const PinAcceleration<S>& w) {
   turn_and_shift_z(r.M, c, s, d);
   S x = c * r.fx - s * r.fy;
@@ -93,16 +102,12 @@ std::size_t AccelerationSweeps<Spatial, S>::pins_inward(std::size_t end, const I
     PinColumn<S> h;
     S inverse;
     if (l.tip) {
-      cargo.Dfx = w.bfx;
-      cargo.Dfy = w.bfy;
-      cargo.Dfz = w.bfz;
-      cargo.Dnx = w.bnx;
-      cargo.Dny = w.bny;
-      cargo.Dnz = w.bnz;
+      set_bias(cargo, w);
       const Tip& tip = tree_->tips[static_cast<std::size_t>(l.record)];
       set_tip(tip, h, r.M);
       inverse = S(tip.inverse);
     } else {
+      if (l.carries_limbs_alone) cargo = {};
       add_body(cargo.M, l);
       add_bias(cargo, w);
       if (l.slot >= 0) add<false>(cargo, slots_[static_cast<std::size_t>(l.slot)]);

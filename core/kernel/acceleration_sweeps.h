@@ -53,9 +53,7 @@ class AccelerationSweeps<Spatial, S> {
   /// O(bodies).
   template <class In, class InTau, class Out>
   bool operator()(const S& t, const In& q, const In& u, const InTau& tau, Out udot) {
-    place_links(
-        *tree_, t, q, angles_, joints_,
-        users_, [&](std::size_t record) -> auto& { return balls_[record].R; });
+    place(t, q);
     stuck_ = tree_->stuck;
     if (stuck_ >= 0) return false;
     velocities(u);
@@ -63,17 +61,29 @@ class AccelerationSweeps<Spatial, S> {
     outward(udot);
     return true;
   }
-
   int stuck() const { return stuck_; }
 
- private:
+  // Sweep by sweep: of a trunk, whose limbs go between (limb_accelerations.h).
+  template <class In>
+  void place(const S& t, const In& q) {
+    stuck_ = -1;
+    place_links(
+        *tree_, t, q, angles_, joints_,
+        users_, [&](std::size_t record) -> auto& { return balls_[record].R; });
+  }
   template <class In>
   void velocities(const In& u);
   template <class InTau>
   bool inward(const InTau& tau);
   template <class Out>
   void outward(Out udot);
+  /// What limbs leave in a slot before the inward sweep, and find there after either outward one.
+  Cargo<S>& carried(int slot) { return slots_[static_cast<std::size_t>(slot)]; }
+  const OutwardCargo<S>& motion(int slot) const {
+    return outward_slots_[static_cast<std::size_t>(slot)];
+  }
 
+ private:
   template <Turn turn, class InTau>
   __attribute__((noinline)) std::size_t chain_inward(std::size_t end, const InTau& tau,
                                                      Cargo<S>& cargo);
@@ -141,13 +151,35 @@ bool AccelerationSweeps<Spatial, S>::inward(const InTau& tau) {
   return true;
 }
 
+/// A pin's last step: A from the parent's frame to its own but for its own turning, left in `wz`.
+template <class Link, class Edge, class S>
+MOMENTA_INLINE void accelerate_pin(const Link& l, const Edge& edge, const PinAcceleration<S>& w,
+                                   const S& c, const S& s, S& vx, S& vy, S& vz, S& ox, S& oy, S& oz,
+                                   S& wz) {
+  constants_outward(l, edge, vx, vy, vz, ox, oy, oz);
+  vx = vx + w.clx;
+  vy = vy + w.cly;
+  vz = vz + w.clz;
+  ox = ox + w.cox;
+  oy = oy + w.coy;
+  vx = vx + l.d * oy;
+  vy = vy - l.d * ox;
+  S x = c * vx + s * vy;
+  vy = c * vy - s * vx;
+  vx = x;
+  x = c * ox + s * oy;
+  oy = c * oy - s * ox;
+  ox = x;
+  wz = w.y0 - (w.h.fx * vx + w.h.fy * vy + w.h.fz * vz + w.h.nx * ox + w.h.ny * oy);
+}
+
 template <class S>
 template <class Out>
 void AccelerationSweeps<Spatial, S>::outward(Out udot) {
   const Link* links = tree_->links.data();
   const auto& gravity = tree_->model->gravity;
   const S zero(0.0);
-  S vx = zero, vy = zero, vz = zero, ox = zero, oy = zero, oz = zero, x;
+  S vx = zero, vy = zero, vz = zero, ox = zero, oy = zero, oz = zero;
   for (std::size_t k = 0; k < angles_.size(); ++k) {
     const Link& l = links[k];
     if (l.parent >= 0 && !l.first) {
@@ -188,21 +220,8 @@ void AccelerationSweeps<Spatial, S>::outward(Out udot) {
         oz = w.y0 - (w.h.fx * vx + w.h.fy * vy + w.h.fz * vz);
         udot[l.u] = oz;
       } else {
-        constants_outward(l, body(k).edge, vx, vy, vz, ox, oy, oz);
-        vx = vx + w.clx;
-        vy = vy + w.cly;
-        vz = vz + w.clz;
-        ox = ox + w.cox;
-        oy = oy + w.coy;
-        vx = vx + l.d * oy;
-        vy = vy - l.d * ox;
-        x = c * vx + s * vy;
-        vy = c * vy - s * vx;
-        vx = x;
-        x = c * ox + s * oy;
-        oy = c * oy - s * ox;
-        ox = x;
-        const S wz = w.y0 - (w.h.fx * vx + w.h.fy * vy + w.h.fz * vz + w.h.nx * ox + w.h.ny * oy);
+        S wz;
+        accelerate_pin(l, body(k).edge, w, c, s, vx, vy, vz, ox, oy, oz, wz);
         udot[l.u] = wz - oz;
         oz = wz;
       }

@@ -6,7 +6,7 @@
 namespace momenta {
 
 /// ω × (ω × m c) and ω × J ω of a body.
-template <class S>
+template <class Link, class S>
 MOMENTA_INLINE void bias_wrench(const Link& l, const S& ox, const S& oy, const S& oz, S& bfx,
                                 S& bfy, S& bfz, S& bnx, S& bny, S& bnz) {
   const S kx = oy * l.c[2] - oz * l.c[1];
@@ -23,12 +23,51 @@ MOMENTA_INLINE void bias_wrench(const Link& l, const S& ox, const S& oy, const S
   bnz = ox * ly - oy * lx;
 }
 
+/// ω of a pin from its parent's, and its c; all before its screw, p = ω × (ω × r) of its origin.
+template <class Link, class S>
+MOMENTA_INLINE void turn_velocity(const Link& l, const S& px, const S& py, const S& pz,
+                                  const S& own, const S& c, const S& s, S& ox, S& oy, S& oz,
+                                  PinAcceleration<S>& w) {
+  const S wz = oz + own, dx = l.d * ox, dy = l.d * oy;
+  w.clx = px + dx * wz;
+  w.cly = py + dy * wz;
+  w.clz = pz - (dx * ox + dy * oy);
+  w.cox = oy * own;
+  w.coy = -(ox * own);
+  const S x = c * ox + s * oy;
+  oy = c * oy - s * ox;
+  ox = x;
+  oz = wz;
+}
+/// The same from the parent's frame, over a turn and shift about x alone.
+template <class Link, class Edge, class S>
+MOMENTA_INLINE void pin_velocity(const Link& l, const Edge& edge, const S& own, const S& c,
+                                 const S& s, S& ox, S& oy, S& oz, PinAcceleration<S>& w) {
+  const S yy = oy * oy, zz = oz * oz;
+  S px = -(l.a * (yy + zz)), py = l.a * (ox * oy), pz = l.a * (ox * oz);
+  constants_outward(l, edge, ox, oy, oz);
+  constants_outward(l, edge, px, py, pz);
+  turn_velocity(l, px, py, pz, own, c, s, ox, oy, oz, w);
+}
+/// Over any constant screws.
+template <class Link, class Edge, class S>
+MOMENTA_INLINE void screwed_pin_velocity(const Link& l, const Edge& edge, const S& own, const S& c,
+                                         const S& s, S& ox, S& oy, S& oz, PinAcceleration<S>& w) {
+  Spatial::Motion<S> W{{}, {{ox, oy, oz}}};
+  Spatial::constants_outward(edge, W);
+  const Vec3<S> p = cross(W.w, W.v);
+  ox = W.w[0];
+  oy = W.w[1];
+  oz = W.w[2];
+  turn_velocity(l, p[0], p[1], p[2], own, c, s, ox, oy, oz, w);
+}
+
 template <class S>
 template <class In>
 void AccelerationSweeps<Spatial, S>::velocities(const In& u) {
   const Link* links = tree_->links.data();
   const S zero(0.0);
-  S ox = zero, oy = zero, oz = zero, x;
+  S ox = zero, oy = zero, oz = zero;
   for (std::size_t k = 0; k < angles_.size(); ++k) {
     const Link& l = links[k];
     if (l.parent >= 0 && !l.first) {
@@ -51,21 +90,7 @@ void AccelerationSweeps<Spatial, S>::velocities(const In& u) {
         ox = oy = zero;
         oz = own;
       } else {
-        const S yy = oy * oy, zz = oz * oz;
-        S px = -(l.a * (yy + zz)), py = l.a * (ox * oy), pz = l.a * (ox * oz);
-        constants_outward(l, body(k).edge, ox, oy, oz);
-        constants_outward(l, body(k).edge, px, py, pz);
-        const S wz = oz + own, dx = l.d * ox, dy = l.d * oy;
-        w.clx = px + dx * wz;
-        w.cly = py + dy * wz;
-        w.clz = pz - (dx * ox + dy * oy);
-        w.cox = oy * own;
-        w.coy = -(ox * own);
-        const S c = angles_.cosine(k), s = angles_.sine(k);
-        x = c * ox + s * oy;
-        oy = c * oy - s * ox;
-        ox = x;
-        oz = wz;
+        pin_velocity(l, body(k).edge, own, angles_.cosine(k), angles_.sine(k), ox, oy, oz, w);
       }
       bias_wrench(l, ox, oy, oz, w.bfx, w.bfy, w.bfz, w.bnx, w.bny, w.bnz);
     }
@@ -91,20 +116,13 @@ void AccelerationSweeps<Spatial, S>::any_velocity(std::size_t k, const In& u,
   Vec3<S> omega;
   if (l.kind == LinkKind::pin) {
     auto& w = pins_[k];
-    if (l.parent >= 0) {  // in the frame before the pin's screw
-      const Spatial::Edge<S> constant;
-      W = Spatial::to_child(b.edge, JointKind::weld, constant, W);
-      const Vec3<S> p = cross(W.w, W.v);
-      const S own = u[l.u], wz = W.w[2] + own, dx = l.d * W.w[0], dy = l.d * W.w[1];
-      w.clx = p[0] + dx * wz;
-      w.cly = p[1] + dy * wz;
-      w.clz = p[2] - (dx * W.w[0] + dy * W.w[1]);
-      w.cox = W.w[1] * own;
-      w.coy = -(W.w[0] * own);
-      momenta::turn_back<2>(W.w, angles_.cosine(k), angles_.sine(k));
-    }
     omega = W.w;
-    omega[2] += u[l.u];
+    const S own = u[l.u];
+    if (l.parent >= 0)
+      screwed_pin_velocity(l, b.edge, own, angles_.cosine(k), angles_.sine(k), omega[0], omega[1],
+                           omega[2], w);
+    else
+      omega[2] += own;
     bias_wrench(l, omega[0], omega[1], omega[2], w.bfx, w.bfy, w.bfz, w.bnx, w.bny, w.bnz);
   } else if (l.kind == LinkKind::ball) {
     auto& w = balls_[static_cast<std::size_t>(l.record)];

@@ -48,8 +48,10 @@ struct Link {
   int record = -1;  ///< general links: index of their record; balls, tips: of their constants
   LinkKind kind = LinkKind::pin;
   Turn turn = Turn::general;
-  bool first = false;      ///< its parent is the body before it
-  bool tip = false;        ///< carries nothing
+  bool first = false;  ///< its parent is the body before it
+  bool tip = false;    ///< carries nothing
+  bool carries_limbs_alone =
+      false;               ///< of a trunk (limbs/limbs.h): nothing arrives but in its slot
   bool opens = false;      ///< the last child of its parent, which the inward sweep meets first
   bool screwed = false;    ///< a screw about the parent's z comes first
   bool one_axis = false;   ///< general links: a screw about z, driven or not, or a weld

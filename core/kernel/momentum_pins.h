@@ -29,29 +29,31 @@ MOMENTA_INLINE void eliminate_pin(const Cargo<S>& cargo, const S& p, const S& in
   }
 }
 
-/// (46)-(48) of a pin that carries nothing: constants of the tree but for p.
-template <bool Gravity, class S>
-MOMENTA_INLINE void leave_tip(const Tip& tip, const Link& l, const S& p, PinRecord<S>& w,
-                              Eliminated<S>& r) {
-  set_tip(tip, w.h, r.M);
-  w.inverse = S(tip.inverse);
-  w.y0 = p * tip.inverse;
-  r.fx = p * tip.h[0];
-  r.fy = p * tip.h[1];
-  r.fz = p * tip.h[2];
-  r.nx = p * tip.h[3];
-  r.ny = p * tip.h[4];
+/// (46)-(48) of a pin that carries nothing: h, M' and M_j⁻¹ are constants, `moment` the body's m c.
+template <bool Gravity, class S, class C>
+MOMENTA_INLINE void leave_tip(const PinColumn<S>& h, const Reduced<S>& M, const S& inverse,
+                              const C (&moment)[3], const S& p, PinRecord<S>& w, Eliminated<S>& r) {
+  w.h = h;
+  r.M = M;
+  w.inverse = inverse;
+  w.y0 = p * inverse;
+  r.fx = p * h.fx;
+  r.fy = p * h.fy;
+  r.fz = p * h.fz;
+  r.nx = p * h.nx;
+  r.ny = p * h.ny;
   r.nz = p;
   if constexpr (Gravity) {
-    w.Gx = r.Gx = S(l.moment[0]);
-    w.Gy = r.Gy = S(l.moment[1]);
-    r.Gz = S(l.moment[2]);
+    w.Gx = r.Gx = S(moment[0]);
+    w.Gy = r.Gy = S(moment[1]);
+    r.Gz = S(moment[2]);
   }
 }
 
 /// The pin's own screw; what the outward sweep needs is stored on the way.
-template <bool Gravity, class S>
-MOMENTA_INLINE void turn_pin(Eliminated<S>& r, const S& c, const S& s, double d, PinRecord<S>& w) {
+template <bool Gravity, class S, class C>
+MOMENTA_INLINE void turn_pin(Eliminated<S>& r, const S& c, const S& s, const C& d,
+                             PinRecord<S>& w) {
   turn_and_shift_z(r.M, c, s, d);
   w.M = r.M;
   S x = c * r.fx - s * r.fy;
@@ -118,9 +120,14 @@ std::size_t MomentumSweeps<Spatial, S>::pins_inward(std::size_t end, const In& p
     const S pk = p[l.u];
     Eliminated<S> r;
     if (l.tip) {
-      leave_tip<Gravity>(tree_->tips[static_cast<std::size_t>(l.record)], l, pk, w, r);
+      const Tip& tip = tree_->tips[static_cast<std::size_t>(l.record)];
+      PinColumn<S> h;
+      Reduced<S> M;
+      set_tip(tip, h, M);
+      leave_tip<Gravity>(h, M, S(tip.inverse), l.moment, pk, w, r);
       if (l.parent < 0) continue;
     } else {
+      if (l.carries_limbs_alone) cargo = {};
       add_body(cargo.M, l);
       if constexpr (Gravity) {
         cargo.Gx = cargo.Gx + l.moment[0];

@@ -86,6 +86,11 @@ class MomentumSweeps<Spatial, S> {
   void inverse_mass_times(MassSolution<Spatial, X>& solution, const In& x, Out result);
 
   int stuck() const { return stuck_; }
+  /// Of a trunk: what limbs leave in a slot before an evaluation, and find there after it.
+  Cargo<S>& carried(int slot) { return slots_[static_cast<std::size_t>(slot)]; }
+  const OutwardCargo<S>& motion(int slot) const {
+    return outward_slots_[static_cast<std::size_t>(slot)];
+  }
 
  private:
   template <bool Gravity, class In>
@@ -129,6 +134,39 @@ class MomentumSweeps<Spatial, S> {
   MassSolution<Spatial, S> solution_;
   int stuck_ = -1;
 };
+
+/// A pin's outward step: Ω and g from the parent's frame to its own but for its own turning, which
+/// is left in `wz`; (45), (42), and ṗ without the joint's force, (35).
+template <bool Gravity, class Link, class Edge, class S>
+MOMENTA_INLINE void move_pin(const Link& l, const Edge& edge, const PinRecord<S>& w, const S& c,
+                             const S& s, S& vx, S& vy, S& vz, S& ox, S& oy, S& oz, S& gx, S& gy,
+                             S& gz, S& wz, S& rate) {
+  constants_outward(l, edge, vx, vy, vz, ox, oy, oz);
+  if constexpr (Gravity) constants_outward(l, edge, gx, gy, gz);
+  // P* = M' W + D' and its moment Eᵀ(W × P*), in the frame before the pin's screw.
+  const Reduced<S>& m = w.M;
+  const S Pfx = m.Axx * vx + m.Axy * vy + m.Axz * vz + m.Hxx * ox + m.Hxy * oy + w.Dfx;
+  const S Pfy = m.Axy * vx + m.Ayy * vy + m.Ayz * vz + m.Hyx * ox + m.Hyy * oy + w.Dfy;
+  const S Pnx = m.Hxx * vx + m.Hyx * vy + m.Hzx * vz + m.Ixx * ox + m.Ixy * oy + w.Dnx;
+  const S Pny = m.Hxy * vx + m.Hyy * vy + m.Hzy * vz + m.Ixy * ox + m.Iyy * oy + w.Dny;
+  rate = vy * Pfx - vx * Pfy + oy * Pnx - ox * Pny;
+  // The pin's screw.
+  vx = vx + l.d * oy;
+  vy = vy - l.d * ox;
+  S x = c * vx + s * vy;
+  vy = c * vy - s * vx;
+  vx = x;
+  x = c * ox + s * oy;
+  oy = c * oy - s * ox;
+  ox = x;
+  if constexpr (Gravity) {
+    x = c * gx + s * gy;
+    gy = c * gy - s * gx;
+    gx = x;
+    rate = rate + w.Gx * gy - w.Gy * gx;
+  }
+  wz = w.y0 - (w.h.fx * vx + w.h.fy * vy + w.h.fz * vz + w.h.nx * ox + w.h.ny * oy);
+}
 
 template <class S>
 template <bool Gravity, class In>
@@ -211,7 +249,7 @@ bool MomentumSweeps<Spatial, S>::outward(const In& q, Out u, Out pdot) {
     } else {
       const PinRecord<S>& w = pins_[k];
       const S c = angles_.cosine(k), s = angles_.sine(k);
-      S x, wz, own, rate;
+      S wz, own, rate;
       if (l.parent < 0) {
         rate = zero;
         if constexpr (Gravity) {
@@ -224,32 +262,7 @@ bool MomentumSweeps<Spatial, S>::outward(const In& q, Out u, Out pdot) {
         vx = vy = vz = ox = oy = zero;
         own = wz = w.y0;
       } else {
-        // The constant screws.
-        constants_outward(l, body(k).edge, vx, vy, vz, ox, oy, oz);
-        if constexpr (Gravity) constants_outward(l, body(k).edge, gx, gy, gz);
-        // P* = M' W + D' and its moment Eᵀ(W × P*), in the frame before the pin's screw.
-        const Reduced<S>& m = w.M;
-        const S Pfx = m.Axx * vx + m.Axy * vy + m.Axz * vz + m.Hxx * ox + m.Hxy * oy + w.Dfx;
-        const S Pfy = m.Axy * vx + m.Ayy * vy + m.Ayz * vz + m.Hyx * ox + m.Hyy * oy + w.Dfy;
-        const S Pnx = m.Hxx * vx + m.Hyx * vy + m.Hzx * vz + m.Ixx * ox + m.Ixy * oy + w.Dnx;
-        const S Pny = m.Hxy * vx + m.Hyy * vy + m.Hzy * vz + m.Ixy * ox + m.Iyy * oy + w.Dny;
-        rate = vy * Pfx - vx * Pfy + oy * Pnx - ox * Pny;
-        // The pin's screw.
-        vx = vx + l.d * oy;
-        vy = vy - l.d * ox;
-        x = c * vx + s * vy;
-        vy = c * vy - s * vx;
-        vx = x;
-        x = c * ox + s * oy;
-        oy = c * oy - s * ox;
-        ox = x;
-        if constexpr (Gravity) {
-          x = c * gx + s * gy;
-          gy = c * gy - s * gx;
-          gx = x;
-          rate = rate + w.Gx * gy - w.Gy * gx;
-        }
-        wz = w.y0 - (w.h.fx * vx + w.h.fy * vy + w.h.fz * vz + w.h.nx * ox + w.h.ny * oy);
+        move_pin<Gravity>(l, body(k).edge, w, c, s, vx, vy, vz, ox, oy, oz, gx, gy, gz, wz, rate);
         own = wz - oz;
       }
       oz = wz;

@@ -27,10 +27,10 @@ struct Eliminated {
 
 /// f(number of a, the same number of b) for all numbers of two cargos, one by one: copies of whole
 /// records would be read back in other pieces than they were written in, and wait for memory.
-template <bool Gravity = true, class S, class F>
-MOMENTA_INLINE void in_pairs(Cargo<S>& a, const Cargo<S>& b, F&& f) {
-  Full<S>& m = a.M;
-  const Full<S>& n = b.M;
+template <bool Gravity = true, class A, class B, class F>
+MOMENTA_INLINE void in_pairs(Cargo<A>& a, const Cargo<B>& b, F&& f) {
+  Full<A>& m = a.M;
+  const Full<B>& n = b.M;
   f(m.Axx, n.Axx), f(m.Axy, n.Axy), f(m.Axz, n.Axz);
   f(m.Ayy, n.Ayy), f(m.Ayz, n.Ayz), f(m.Azz, n.Azz);
   f(m.Hxx, n.Hxx), f(m.Hxy, n.Hxy), f(m.Hxz, n.Hxz);
@@ -48,7 +48,7 @@ MOMENTA_INLINE void add(Cargo<S>& a, const Cargo<S>& b) {
 }
 
 /// What a child beside the first leaves in its parent's slot.
-template <bool Gravity, class S>
+template <bool Gravity, class Link, class S>
 MOMENTA_INLINE void leave(const Link& l, Cargo<S>& slot, const Cargo<S>& cargo) {
   if (l.opens)
     in_pairs<Gravity>(slot, cargo, [](S& a, const S& b) { a = b; });
@@ -82,9 +82,9 @@ MOMENTA_INLINE void screw_inward(const C& c, const C& s, const C& d, Cargo<S>& c
 }
 
 /// The screw about x to the parent.
-template <Turn turn, bool Gravity, class S>
+template <Turn turn, bool Gravity, class Link, class S>
 MOMENTA_INLINE void carry(const Eliminated<S>& r, const Link& l, Cargo<S>& cargo) {
-  const double ca = l.ca, sa = l.sa, a = l.a;
+  const auto &ca = l.ca, &sa = l.sa, &a = l.a;
   cargo.Dfx = r.fx;
   cargo.Dnx = r.nx;
   if constexpr (Gravity) cargo.Gx = r.Gx;
@@ -138,13 +138,13 @@ void set_cargo(OutwardCargo<S>& c, const Spatial::Motion<S>& V, const Vec3<S>& g
 }
 
 /// Nearly parallel axes: a turn about y and the screw about x.
-template <class S>
-__attribute__((noinline)) void tilt_inward(const Spatial::EdgeConstants& e,
-                                           Spatial::ArticulatedInertia<S>& M, Spatial::Force<S>& D,
-                                           Vec3<S>& G) {
+template <class Edge, class S>
+__attribute__((noinline)) void tilt_inward(const Edge& e, Spatial::ArticulatedInertia<S>& M,
+                                           Spatial::Force<S>& D, Vec3<S>& G) {
   if (e.about_y) {
-    Spatial::inertia_inward<1>(M, e.cos_beta, e.sin_beta, 0.0);
-    Spatial::force_inward<1>(D, e.cos_beta, e.sin_beta, 0.0);
+    const decltype(e.cos_beta) no_shift(0.0);
+    Spatial::inertia_inward<1>(M, e.cos_beta, e.sin_beta, no_shift);
+    Spatial::force_inward<1>(D, e.cos_beta, e.sin_beta, no_shift);
     momenta::turn<1>(G, e.cos_beta, e.sin_beta);
   }
   if (e.about_x) {
@@ -155,9 +155,9 @@ __attribute__((noinline)) void tilt_inward(const Spatial::EdgeConstants& e,
 }
 
 /// All constant screws of a pin, in order.
-template <bool Gravity, class S>
-MOMENTA_INLINE void carry_any(const Link& l, const Spatial::EdgeConstants& e,
-                              const Eliminated<S>& r, Cargo<S>& cargo) {
+template <bool Gravity, class Link, class Edge, class S>
+MOMENTA_INLINE void carry_any(const Link& l, const Edge& e, const Eliminated<S>& r,
+                              Cargo<S>& cargo) {
   switch (l.turn) {
     case Turn::general:
       carry<Turn::general, Gravity>(r, l, cargo);
@@ -187,18 +187,16 @@ MOMENTA_INLINE void carry_any(const Link& l, const Spatial::EdgeConstants& e,
 }
 
 // The constant screws outward, for a direction and for a motion; nearly parallel axes out of line.
-template <class S>
-__attribute__((noinline)) void tilt_outward(const Spatial::EdgeConstants& e, Vec3<S>& g) {
-  g = Spatial::direction_to_child(e, JointKind::weld, Spatial::Edge<S>{}, g);
+template <class Edge, class S>
+__attribute__((noinline)) void tilt_outward(const Edge& e, Vec3<S>& g) {
+  Spatial::constants_outward(e, g);
 }
-template <class S>
-__attribute__((noinline)) void tilt_outward(const Spatial::EdgeConstants& e,
-                                            Spatial::Motion<S>& m) {
-  m = Spatial::to_child(e, JointKind::weld, Spatial::Edge<S>{}, m);
+template <class Edge, class S>
+__attribute__((noinline)) void tilt_outward(const Edge& e, Spatial::Motion<S>& m) {
+  Spatial::constants_outward(e, m);
 }
-template <class S>
-MOMENTA_INLINE void constants_outward(const Link& l, const Spatial::EdgeConstants& e, S& gx, S& gy,
-                                      S& gz) {
+template <class Link, class Edge, class S>
+MOMENTA_INLINE void constants_outward(const Link& l, const Edge& e, S& gx, S& gy, S& gz) {
   S x;
   if (l.turn == Turn::tilted) {
     Vec3<S> g{{gx, gy, gz}};
@@ -223,9 +221,9 @@ MOMENTA_INLINE void constants_outward(const Link& l, const Spatial::EdgeConstant
     gy = x;
   }
 }
-template <class S>
-MOMENTA_INLINE void constants_outward(const Link& l, const Spatial::EdgeConstants& e, S& vx, S& vy,
-                                      S& vz, S& ox, S& oy, S& oz) {
+template <class Link, class Edge, class S>
+MOMENTA_INLINE void constants_outward(const Link& l, const Edge& e, S& vx, S& vy, S& vz, S& ox,
+                                      S& oy, S& oz) {
   if (l.turn == Turn::tilted) {
     Spatial::Motion<S> m{{{vx, vy, vz}}, {{ox, oy, oz}}};
     tilt_outward(e, m);

@@ -51,8 +51,8 @@ MOMENTA_INLINE void eliminate_pin(const Full<S>& m, const S& inverse, PinColumn<
 
 /// The pin's own screw: turn by θ, 2 × 2 blocks by their trace and difference, then shift along z
 /// by d: H' = H − A r̃, I' = I − Hᵀ r̃ + r̃ H'.
-template <class S>
-MOMENTA_INLINE void turn_and_shift_z(Reduced<S>& r, const S& c, const S& s, double d) {
+template <class S, class C>
+MOMENTA_INLINE void turn_and_shift_z(Reduced<S>& r, const S& c, const S& s, const C& d) {
   const S ss = s * s, cs = c * s, ss2 = ss + ss, cs2 = cs + cs;
   {
     const S difference = r.Axx - r.Ayy;
@@ -98,7 +98,7 @@ MOMENTA_INLINE void turn_and_shift_z(Reduced<S>& r, const S& c, const S& s, doub
 /// Turn about x by the link's α.
 template <class Link, class S>
 MOMENTA_INLINE void turn_x(const Reduced<S>& r, const Link& l, Full<S>& m) {
-  const double ca = l.ca, sa = l.sa;
+  const auto &ca = l.ca, &sa = l.sa;
   const S difference = r.Ayy - r.Azz;
   const S t = l.ss * difference + l.cs2 * r.Ayz, u = l.cs * difference - l.ss2 * r.Ayz;
   m.Axx = r.Axx;
@@ -126,8 +126,8 @@ MOMENTA_INLINE void turn_x(const Reduced<S>& r, const Link& l, Full<S>& m) {
 }
 
 /// Shift along x by a, the matrix full.
-template <class S>
-MOMENTA_INLINE void shift_x(Full<S>& m, double a) {
+template <class S, class C>
+MOMENTA_INLINE void shift_x(Full<S>& m, const C& a) {
   const S hzy = m.Hzy, hyz = m.Hyz, hyy = m.Hyy;
   const S x = a * m.Ayz;
   m.Hxy = m.Hxy - a * m.Axz;
@@ -145,8 +145,8 @@ MOMENTA_INLINE void shift_x(Full<S>& m, double a) {
 
 /// Turn about x by +90° (y ← −z, z ← y) and shift along x by a: ω_y has no row and no column before
 /// the shift.
-template <class S>
-MOMENTA_INLINE void right_turn_and_shift_x(const Reduced<S>& r, double a, Full<S>& m) {
+template <class S, class C>
+MOMENTA_INLINE void right_turn_and_shift_x(const Reduced<S>& r, const C& a, Full<S>& m) {
   m.Axx = r.Axx;
   m.Axy = -r.Axz;
   m.Axz = r.Axy;
@@ -172,8 +172,8 @@ MOMENTA_INLINE void right_turn_and_shift_x(const Reduced<S>& r, double a, Full<S
 }
 
 /// Parallel axes: α = 0 or 180°, sign = cos α. ω_z has no row and no column before the shift.
-template <class S>
-MOMENTA_INLINE void parallel_turn_and_shift_x(const Reduced<S>& r, double sign, double a,
+template <class S, class C>
+MOMENTA_INLINE void parallel_turn_and_shift_x(const Reduced<S>& r, const C& sign, const C& a,
                                               Full<S>& m) {
   m.Axx = r.Axx;
   m.Axy = sign * r.Axy;

@@ -100,12 +100,25 @@ struct Spatial : SpatialAlgebra {
   // --- the whole edge
   // ------------------------------------------------------------------------------------------
 
+  /// The constant screws outward, of a motion and of a direction. Constants: EdgeConstants, or of
+  /// several edges side by side (LimbLink).
+  template <class Constants, class S>
+  static void constants_outward(const Constants& k, Motion<S>& m) {
+    if (k.about_z) motion_outward<2>(m, k.cos_gamma, k.sin_gamma, k.delta);
+    if (k.about_x) motion_outward<0>(m, k.cos_alpha, k.sin_alpha, k.a);
+    if (k.about_y) motion_outward<1>(m, k.cos_beta, k.sin_beta, decltype(k.cos_beta)(0.0));
+  }
+  template <class Constants, class S>
+  static void constants_outward(const Constants& k, Vec3<S>& g) {
+    if (k.about_z) turn_back<2>(g, k.cos_gamma, k.sin_gamma);
+    if (k.about_x) turn_back<0>(g, k.cos_alpha, k.sin_alpha);
+    if (k.about_y) turn_back<1>(g, k.cos_beta, k.sin_beta);
+  }
+
   /// Parent velocity to the child's frame: the first term of (23), without the joint's own motion.
   template <class S>
   static Motion<S> to_child(const EdgeConstants& k, JointKind kind, const Edge<S>& e, Motion<S> m) {
-    if (k.about_z) motion_outward<2>(m, k.cos_gamma, k.sin_gamma, k.delta);
-    if (k.about_x) motion_outward<0>(m, k.cos_alpha, k.sin_alpha, k.a);
-    if (k.about_y) motion_outward<1>(m, k.cos_beta, k.sin_beta, 0.0);
+    constants_outward(k, m);
     if (moves_freely(kind)) {
       m.v += cross(m.w, e.position);
       m.v = transpose_times(e.rotation, m.v);
@@ -160,9 +173,7 @@ struct Spatial : SpatialAlgebra {
   template <class S>
   static Vec3<S> direction_to_child(const EdgeConstants& k, JointKind kind, const Edge<S>& e,
                                     Vec3<S> g) {
-    if (k.about_z) turn_back<2>(g, k.cos_gamma, k.sin_gamma);
-    if (k.about_x) turn_back<0>(g, k.cos_alpha, k.sin_alpha);
-    if (k.about_y) turn_back<1>(g, k.cos_beta, k.sin_beta);
+    constants_outward(k, g);
     if (moves_freely(kind)) return transpose_times(e.rotation, g);
     turn_back<2>(g, e.cos_theta, e.sin_theta);
     return g;

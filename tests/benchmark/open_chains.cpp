@@ -21,6 +21,7 @@ struct Row {
   MakeScene model;
   Algebra algebra = Algebra::automatic;
   int level = 0;  ///< 0: the machine's best
+  bool limbs_side_by_side = true;
 };
 
 constexpr int states_in_turn = 64;
@@ -54,7 +55,8 @@ void finish(benchmark::State& state, double bodies) {
 enum class Algorithm { momentum, acceleration };
 
 void single(benchmark::State& state, Row row, Algorithm algorithm) {
-  OpenChain chain(row.model(static_cast<int>(state.range(0))), row.algebra, row.level);
+  OpenChain chain(row.model(static_cast<int>(state.range(0))), row.algebra, row.level,
+                  row.limbs_side_by_side);
   const States64 states(chain);
   std::vector<Eigen::VectorXd> q, x;
   for (int i = 0; i < states_in_turn; ++i) {
@@ -207,7 +209,12 @@ void register_open_chains() {
     }
     const Row person{"humanoid", humanoid};
     add(person.name, person, algorithm, {31});
-    add_batches(person.name, person, algorithm, {31});
+    const Row body_by_body[] = {
+        {"binary_tree_body_by_body", binary_tree, Algebra::automatic, 0, false},
+        {"star_body_by_body", star, Algebra::automatic, 0, false},
+        {"humanoid_body_by_body", humanoid, Algebra::automatic, 0, false}};
+    for (const Row& row : body_by_body)
+      add(row.name, row, algorithm, row.model == humanoid ? std::vector{31} : some);
   }
   for (const bool inverse : {false, true}) {
     const std::string head = inverse ? "open/inverse_dynamics/" : "open/composite/";

@@ -6,7 +6,7 @@
 namespace momenta {
 
 template <int Level>
-std::unique_ptr<OpenSweeps> sweeps_at(const LinkTree& tree);
+std::unique_ptr<OpenSweeps> sweeps_at(const LinkTree& tree, const Limbs* limbs);
 template <int Level>
 std::unique_ptr<OpenSweeps> sweeps_at(const PlanarTree& tree);
 
@@ -23,19 +23,19 @@ int best_level() {
   return 1;
 }
 
-template <class Tree>
-std::unique_ptr<OpenSweeps> make(const Tree& tree, [[maybe_unused]] int level) {
+template <class... Arguments>
+std::unique_ptr<OpenSweeps> make([[maybe_unused]] int level, const Arguments&... arguments) {
 #ifdef MOMENTA_LEVELS
-  if (level >= 4) return sweeps_at<4>(tree);
-  if (level >= 3) return sweeps_at<3>(tree);
+  if (level >= 4) return sweeps_at<4>(arguments...);
+  if (level >= 3) return sweeps_at<3>(arguments...);
 #endif
-  return sweeps_at<1>(tree);
+  return sweeps_at<1>(arguments...);
 }
-std::unique_ptr<OpenSweeps> make_sweeps(const LinkTree& tree, int level) {
-  return make(tree, level);
+std::unique_ptr<OpenSweeps> make_sweeps(const LinkTree& tree, int level, const Limbs* limbs) {
+  return make(level, tree, limbs);
 }
 std::unique_ptr<OpenSweeps> make_sweeps(const PlanarTree& tree, int level) {
-  return make(tree, level);
+  return make(level, tree);
 }
 
 bool is_hamiltonian_on_pins(const LinkTree& tree) {

@@ -3,7 +3,7 @@
 // made: a packaged binary is fast on every machine. Level 1 is plain x86-64 (and any other
 // architecture), 3 has AVX2 and fused multiply-add, 4 has AVX-512.
 
-#include <momenta/core/kernel/link.h>
+#include <momenta/core/kernel/limbs/limbs.h>
 #include <momenta/core/kernel/planar_link.h>
 
 #include <cstddef>
@@ -25,8 +25,8 @@ class OpenSweeps {
 
   /// q̇ or, with `qdot` null, only u (nv) and ṗ (nv); forces between points of bodies left out.
   virtual bool momentum(double t, const double* q, const double* p, double* u, double* pdot) = 0;
-  /// M⁻¹ x (nv) at the configuration of the last momentum().
-  virtual void inverse_mass_times(const double* x, double* result) = 0;
+  /// M⁻¹ x (nv).
+  virtual bool inverse_mass_times(double t, const double* q, const double* x, double* result) = 0;
   /// The derivative of (q̇, ṗ) along (δq, δp), forces between points of bodies included.
   virtual bool derivative(double t, const double* q, const double* p, const double* dq,
                           const double* dp, double* dqdot, double* dpdot) = 0;
@@ -57,9 +57,16 @@ class OpenSweeps {
 
 /// The highest level this machine and this library have.
 int best_level();
+/// Limbs of one state side by side. More than four seldom fill a register, and records of eight
+/// leave the cache.
+constexpr int limb_lanes_at(int level) {
+  return level >= 3 ? 4 : 2;
+}
 
-/// @pre level ≤ best_level(), one of 1, 3, 4; the tree stays where it is.
-std::unique_ptr<OpenSweeps> make_sweeps(const LinkTree& tree, int level);
+/// `limbs`: of that tree, limb_lanes_at(level) at a time, for single states; null: body by body.
+/// @pre level ≤ best_level(), one of 1, 3, 4; tree and limbs stay where they are.
+std::unique_ptr<OpenSweeps> make_sweeps(const LinkTree& tree, int level,
+                                        const Limbs* limbs = nullptr);
 std::unique_ptr<OpenSweeps> make_sweeps(const PlanarTree& tree, int level);
 
 }  // namespace momenta

@@ -10,6 +10,8 @@
 #include <momenta/core/kernel/jacobian_pass.h>
 #include <momenta/core/kernel/levels/open_sweeps.h>
 #include <momenta/core/kernel/levels/strided.h>
+#include <momenta/core/kernel/limbs/limb_accelerations.h>
+#include <momenta/core/kernel/limbs/limb_momenta.h>
 #include <momenta/core/kernel/planar_acceleration_sweeps.h>
 
 #include <limits>
@@ -21,9 +23,11 @@ class OpenSweepsAt final : public OpenSweeps {
   static constexpr int lanes = native_width<Level>;
   using One = Pack<1, Level>;
   using Many = Pack<lanes, Level>;
+  static constexpr int limb_lanes = limb_lanes_at(Level);
+  using Limb = Pack<limb_lanes, Level>;
 
  public:
-  explicit OpenSweepsAt(const Tree& tree)
+  OpenSweepsAt(const Tree& tree, const Limbs* limbs)
       : tree_(tree),
         momentum_(tree),
         acceleration_(tree),
@@ -37,16 +41,38 @@ class OpenSweepsAt final : public OpenSweeps {
       quasi_velocities_ |= b.nq != b.nv;
       has_user_joints_ |= b.kind == JointKind::user;
     }
+    if (!limbs) return;
+    if constexpr (Space::dimension == 6) {
+      limbed_momenta_ = std::make_unique<LimbedMomenta<Limb, One>>(tree, *limbs);
+      limbed_accelerations_ = std::make_unique<LimbedAccelerations<Limb, One>>(tree, *limbs);
+    }
   }
 
   bool momentum(double t, const double* q, const double* p, double* u, double* pdot) override {
+    if constexpr (Space::dimension == 6)
+      if (limbed_momenta_) {
+        const bool ok = (*limbed_momenta_)(t, StridedIn<One>{q, 1}, StridedIn<One>{p, 1},
+                                           StridedOut<One>{u, 1}, StridedOut<One>{pdot, 1});
+        if (!ok) stuck_ = limbed_momenta_->stuck();
+        return ok;
+      }
     const bool ok = momentum_(One(t), StridedIn<One>{q, 1}, StridedIn<One>{p, 1},
                               StridedOut<One>{u, 1}, StridedOut<One>{pdot, 1});
     if (!ok) stuck_ = momentum_.stuck();
     return ok;
   }
-  void inverse_mass_times(const double* x, double* result) override {
+  bool inverse_mass_times(double t, const double* q, const double* x, double* result) override {
+    const auto nv = static_cast<std::size_t>(tree_.model->nv);
+    rates_.resize(3 * nv);
+    double* const no_momenta = rates_.data() + 2 * nv;
+    for (std::size_t i = 0; i < nv; ++i) no_momenta[i] = 0;
+    if (!momentum_(One(t), StridedIn<One>{q, 1}, StridedIn<One>{no_momenta, 1},
+                   StridedOut<One>{rates_.data(), 1}, StridedOut<One>{rates_.data() + nv, 1})) {
+      stuck_ = momentum_.stuck();
+      return false;
+    }
     momentum_.inverse_mass_times(StridedIn<One>{x, 1}, StridedOut<One>{result, 1});
+    return true;
   }
   bool derivative(double t, const double* q, const double* p, const double* dq, const double* dp,
                   double* dqdot, double* dpdot) override {
@@ -70,6 +96,13 @@ class OpenSweepsAt final : public OpenSweeps {
   }
   bool acceleration(double t, const double* q, const double* u, const double* tau,
                     double* udot) override {
+    if constexpr (Space::dimension == 6)
+      if (limbed_accelerations_) {
+        const bool ok = (*limbed_accelerations_)(t, StridedIn<One>{q, 1}, StridedIn<One>{u, 1},
+                                                 StridedIn<One>{tau, 1}, StridedOut<One>{udot, 1});
+        if (!ok) stuck_ = limbed_accelerations_->stuck();
+        return ok;
+      }
     const bool ok = acceleration_(One(t), StridedIn<One>{q, 1}, StridedIn<One>{u, 1},
                                   StridedIn<One>{tau, 1}, StridedOut<One>{udot, 1});
     if (!ok) stuck_ = acceleration_.stuck();
@@ -233,6 +266,8 @@ class OpenSweepsAt final : public OpenSweeps {
   };
 
   const Tree& tree_;
+  std::unique_ptr<LimbedMomenta<Limb, One>> limbed_momenta_;
+  std::unique_ptr<LimbedAccelerations<Limb, One>> limbed_accelerations_;
   MomentumSweeps<Space, One> momentum_;
   AccelerationSweeps<Space, One> acceleration_;
   /// Nothing to ask for in a plane.
@@ -255,12 +290,12 @@ class OpenSweepsAt final : public OpenSweeps {
 };
 
 template <int Level>
-std::unique_ptr<OpenSweeps> sweeps_at(const LinkTree& tree) {
-  return std::make_unique<OpenSweepsAt<LinkTree, Spatial, Level>>(tree);
+std::unique_ptr<OpenSweeps> sweeps_at(const LinkTree& tree, const Limbs* limbs) {
+  return std::make_unique<OpenSweepsAt<LinkTree, Spatial, Level>>(tree, limbs);
 }
 template <int Level>
 std::unique_ptr<OpenSweeps> sweeps_at(const PlanarTree& tree) {
-  return std::make_unique<OpenSweepsAt<PlanarTree, Planar, Level>>(tree);
+  return std::make_unique<OpenSweepsAt<PlanarTree, Planar, Level>>(tree, nullptr);
 }
 
 }  // namespace momenta

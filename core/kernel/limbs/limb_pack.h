@@ -1,0 +1,187 @@
+#pragma once
+// Limbs of one shape in the lanes of S: constants, sines and cosines, and how they meet the trunk.
+// What both recursions on limbs share.
+
+#include <momenta/core/kernel/limbs/limbs.h>
+#include <momenta/core/kernel/pin.h>
+
+namespace momenta {
+
+/// The constants of one pin of every limb. Names as in Link, EdgeConstants and Body.
+template <class S>
+struct LimbLink {
+  struct Edge {
+    S cos_gamma, sin_gamma, delta, cos_alpha, sin_alpha, a, cos_beta, sin_beta;
+    bool about_z, about_x, about_y;
+  };
+  S ca, sa, a, cc, cs, ss, cs2, ss2, d, m, moment[3], c[3], J[6];
+  S theta0;
+  Edge edge;
+  S stiffness, rest, damping, torque;
+  int slot, parent_slot;  ///< within the limb
+  Turn turn;
+  bool root, first, tip, opens, screwed, has_force;
+};
+
+/// What is constant of a pin at the tip of every limb: Tip.
+template <class S>
+struct LimbTip {
+  S inverse;
+  PinColumn<S> h;
+  Reduced<S> M;
+};
+
+template <class S>
+class LimbPack {
+ public:
+  static constexpr int lanes = static_cast<int>(sizeof(S) / sizeof(double));
+
+  LimbPack(const LinkTree& tree, const LimbGroup& group)
+      : group_(&group),
+        links_(group.places.size()),
+        tips_(group.places.size()),
+        q_(group.places.size()),
+        sine_(group.places.size()),
+        cosine_(group.places.size()) {
+    for (std::size_t k = 0; k < links_.size(); ++k) {
+      const LimbGroup::Place& place = group.places[k];
+      LimbLink<S>& l = links_[k];
+      l.turn = place.turn;
+      l.root = place.parent < 0;
+      l.first = place.first;
+      l.tip = place.tip;
+      l.opens = place.opens;
+      l.screwed = place.screwed;
+      l.has_force = place.has_force;
+      l.edge.about_z = l.screwed;
+      l.edge.about_x = true;
+      l.edge.about_y = l.turn == Turn::tilted;
+      l.slot = place.slot;
+      l.parent_slot = l.root ? -1 : group.places[static_cast<std::size_t>(place.parent)].slot;
+      for (int lane = 0; lane < lanes; ++lane) {
+        const auto at = static_cast<std::size_t>(link(k, lane));
+        take(tree.links[at], tree.model->bodies[at], tree.theta0[at], lane, l);
+      }
+      if (!l.tip) continue;
+      Full<S> M;
+      set_body(M, l);
+      tips_[k].inverse = S(1.0) / M.Izz;
+      eliminate_pin(M, tips_[k].inverse, tips_[k].h, tips_[k].M);
+    }
+  }
+
+  std::size_t size() const { return links_.size(); }
+  int slots() const { return group_->slots; }
+  const LimbLink<S>& operator[](std::size_t k) const { return links_[k]; }
+  const LimbTip<S>& tip(std::size_t k) const { return tips_[k]; }
+  const S& q(std::size_t k) const { return q_[k]; }
+  const S& sine(std::size_t k) const { return sine_[k]; }
+  const S& cosine(std::size_t k) const { return cosine_[k]; }
+
+  void place(const double* q) {
+    gather(q, group_->q.data(), q_);
+    for (std::size_t k = 0; k < links_.size(); ++k)
+      sine_cosine(q_[k] + links_[k].theta0, sine_[k], cosine_[k]);
+  }
+  /// Numbers by u of the tree to numbers by place.
+  void take_rates(const double* u, std::vector<S>& to) const { gather(u, group_->u.data(), to); }
+  void give_rates(const std::vector<S>& from, double* u) const {
+    const auto* at = reinterpret_cast<const char*>(from.data());
+    const int* index = group_->u.data();
+    const int count = group_->count;
+    for (std::size_t k = links_.size(); k > 0; --k, index += lanes, at += sizeof(S))
+      for (int lane = 0; lane < count; ++lane) __builtin_memcpy(u + index[lane], at + 8 * lane, 8);
+  }
+
+  /// Adds what arrives below the roots to the slots of the trunk.
+  template <bool Gravity, class Trunk>
+  void leave_at_trunk(const Cargo<S>& cargo, Trunk& trunk) const {
+    if (group_->one_parent) {
+      const int count = group_->count, slot = group_->trunk_slots.front();
+      if (slot < 0) return;
+      const auto sum = [count](const S& x) {
+        double all = lane_of(x, 0);
+        for (int lane = 1; lane < count; ++lane) all += lane_of(x, lane);
+        return all;
+      };
+      if (group_->opens.front())
+        in_pairs<Gravity>(trunk.carried(slot), cargo, [&](auto& a, const S& b) { a = sum(b); });
+      else
+        in_pairs<Gravity>(trunk.carried(slot), cargo, [&](auto& a, const S& b) { a = a + sum(b); });
+      return;
+    }
+    for (int lane = 0; lane < group_->count; ++lane) {
+      const int slot = group_->trunk_slots[static_cast<std::size_t>(lane)];
+      if (slot < 0) continue;
+      if (group_->opens[static_cast<std::size_t>(lane)])
+        in_pairs<Gravity>(trunk.carried(slot), cargo,
+                          [lane](auto& a, const S& b) { a = lane_of(b, lane); });
+      else
+        in_pairs<Gravity>(trunk.carried(slot), cargo,
+                          [lane](auto& a, const S& b) { a = a + lane_of(b, lane); });
+    }
+  }
+  /// Motions of the bodies that carry the roots, from the trunk; `ground` where that is the ground.
+  template <class Trunk, class One>
+  void take_from_trunk(const Trunk& trunk, const OutwardCargo<One>& ground,
+                       OutwardCargo<S>& motion) const {
+    auto* to = reinterpret_cast<char*>(&motion);
+    constexpr int numbers = sizeof(OutwardCargo<One>) / sizeof(double);
+    for (int lane = 0; lane < lanes; ++lane) {
+      const int slot = group_->trunk_slots[static_cast<std::size_t>(
+          lane < group_->count ? lane : group_->count - 1)];
+      const OutwardCargo<One>& from = slot < 0 ? ground : trunk.motion(slot);
+      for (int i = 0; i < numbers; ++i)
+        __builtin_memcpy(to + 8 * (i * lanes + lane), reinterpret_cast<const char*>(&from) + 8 * i,
+                         8);
+    }
+  }
+
+  /// The link of the tree of the first lane where x is not positive.
+  int stuck_at(std::size_t k, const S& x) const {
+    int lane = 0;
+    while (lane < lanes - 1 && x.lane(lane) > 0) ++lane;
+    return link(k, lane);
+  }
+
+ private:
+  /// Read from memory: a lane chosen at run time does not come out of a register.
+  static MOMENTA_INLINE double lane_of(const S& x, int lane) {
+    double value;
+    __builtin_memcpy(&value, reinterpret_cast<const char*>(&x) + 8 * lane, 8);
+    return value;
+  }
+
+  int link(std::size_t k, int lane) const {
+    return group_->links[k * lanes + static_cast<std::size_t>(lane)];
+  }
+  static void take(const Link& l, const Model<Spatial>::Body& b, double theta0, int lane,
+                   LimbLink<S>& to) {
+    const auto set = [lane](S& x, double value) { x.set_lane(lane, value); };
+    set(to.ca, l.ca), set(to.sa, l.sa), set(to.a, l.a), set(to.d, l.d);
+    set(to.cc, l.cc), set(to.cs, l.cs), set(to.ss, l.ss), set(to.cs2, l.cs2), set(to.ss2, l.ss2);
+    set(to.m, l.m);
+    for (int i = 0; i < 3; ++i) set(to.moment[i], l.moment[i]), set(to.c[i], l.c[i]);
+    for (int i = 0; i < 6; ++i) set(to.J[i], l.J[i]);
+    set(to.theta0, theta0);
+    const Spatial::EdgeConstants& e = b.edge;
+    set(to.edge.cos_gamma, e.cos_gamma), set(to.edge.sin_gamma, e.sin_gamma);
+    set(to.edge.delta, e.delta);
+    set(to.edge.cos_alpha, e.cos_alpha), set(to.edge.sin_alpha, e.sin_alpha), set(to.edge.a, e.a);
+    set(to.edge.cos_beta, e.cos_beta), set(to.edge.sin_beta, e.sin_beta);
+    set(to.stiffness, b.stiffness), set(to.rest, b.rest);
+    set(to.damping, b.damping), set(to.torque, b.torque);
+  }
+  static void gather(const double* from, const int* i, std::vector<S>& to) {
+    auto* at = reinterpret_cast<char*>(to.data());
+    for (std::size_t k = to.size(); k > 0; --k, i += lanes, at += sizeof(S))
+      for (int lane = 0; lane < lanes; ++lane) __builtin_memcpy(at + 8 * lane, from + i[lane], 8);
+  }
+
+  const LimbGroup* group_;
+  std::vector<LimbLink<S>> links_;
+  std::vector<LimbTip<S>> tips_;
+  std::vector<S> q_, sine_, cosine_;
+};
+
+}  // namespace momenta

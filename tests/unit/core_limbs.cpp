@@ -1,0 +1,200 @@
+// Limbs of one shape side by side against the same trees body by body: which subtrees become limbs,
+// and that neither motion nor what is refused depends on it.
+#include <gtest/gtest.h>
+#include <momenta/core/kernel/levels/open_sweeps.h>
+#include <momenta/core/kernel/limbs/limbs.h>
+#include <momenta/core/open_chain.h>
+
+#include <algorithm>
+
+#include "equations/random_tree.h"
+#include "equations/tolerance.h"
+
+namespace momenta {
+namespace {
+
+using namespace equations;
+
+/// A trunk of any joints, and on its bodies and the ground copies of random limbs: parents by
+/// number within the limb, constants each their own.
+Scene with_limbs(RandomTree& random, int trunk, int shapes, int copies, bool forces) {
+  TreeRecipe recipe{.bodies = trunk, .drives = true, .joint_forces = forces, .body_forces = forces};
+  Scene s = random.scene(recipe);
+  const TreeRecipe pins{.bodies = 6,
+                        .placing = random.chance(0.5) ? Placing::general : Placing::degenerate,
+                        .kinds = {JointKind::revolute},
+                        .drives = false,
+                        .joint_forces = forces,
+                        .body_forces = false};
+  for (int shape = 0; shape < shapes; ++shape) {
+    std::vector<int> parents{-1};
+    const int size = 1 + random.below(6);
+    for (int k = 1; k < size; ++k) parents.push_back(random.below(k));
+    const int count = 2 + random.below(copies);
+    for (int copy = 0; copy < count; ++copy) {
+      const std::string name = "limb" + std::to_string(shape) + "_" + std::to_string(copy) + "_";
+      const Scene from = random.scene(pins);
+      const std::string on = random.chance(0.2) ? "ground" : s.bodies.front().name;
+      for (int k = 0; k < size; ++k) {
+        const auto i = static_cast<std::size_t>(k);
+        BodySpec b = from.bodies[i];
+        b.name = name + std::to_string(k);
+        JointSpec j = from.joints[i];
+        j.name = "to_" + b.name;
+        j.child = b.name;
+        j.parent = k == 0 ? on : name + std::to_string(parents[i]);
+        s.bodies.push_back(b);
+        s.joints.push_back(j);
+      }
+    }
+  }
+  return s;
+}
+
+/// How many bodies of the scene go side by side.
+std::size_t expect_sound_limbs(const Scene& scene, int lanes) {
+  const Tree tree = build_tree(scene);
+  const Model<Spatial> model = build_spatial_model(tree, scene);
+  const LinkTree links = build_links(model);
+  const auto limbs = find_limbs(links, lanes);
+  if (!limbs) return 0;
+  std::vector<int> met(links.links.size(), 0);
+  for (const int k : limbs->bodies) ++met[static_cast<std::size_t>(k)];
+  std::size_t side_by_side = 0;
+  for (const LimbGroup& g : limbs->groups) {
+    EXPECT_GE(g.count, 2);
+    EXPECT_LE(g.count, lanes);
+    const auto link = [&](std::size_t place, int lane) {
+      return g.links[place * static_cast<std::size_t>(g.lanes) + static_cast<std::size_t>(lane)];
+    };
+    for (std::size_t k = 0; k < g.places.size(); ++k)
+      for (int lane = 0; lane < g.count; ++lane) {
+        ++met[static_cast<std::size_t>(link(k, lane))];
+        ++side_by_side;
+        const Link& l = links.links[static_cast<std::size_t>(link(k, lane))];
+        EXPECT_EQ(l.kind, LinkKind::pin);
+        EXPECT_EQ(l.tip, g.places[k].tip);
+        if (k > 0) {
+          EXPECT_EQ(l.parent, link(static_cast<std::size_t>(g.places[k].parent), lane));
+        }
+      }
+  }
+  // Every body once, in a limb or in the trunk; parents within the trunk come first.
+  EXPECT_TRUE(std::all_of(met.begin(), met.end(), [](int times) { return times == 1; }));
+  for (std::size_t k = 0; k < limbs->trunk.links.size(); ++k)
+    EXPECT_LT(limbs->trunk.links[k].parent, static_cast<int>(k));
+  return side_by_side;
+}
+
+void compare(const Scene& scene, RandomTree& random, int level) {
+  OpenChain limbed(scene, Algebra::spatial, level), plain(scene, Algebra::spatial, level, false);
+  const TreeState s = random.state(plain.tree());
+  Eigen::VectorXd p(plain.nv()), qdot(plain.nq()), pdot(plain.nv()), udot(plain.nv());
+  plain.momenta(s.t, s.q, s.u, p);
+  Eigen::VectorXd qdot2(qdot), pdot2(pdot), udot2(udot), solved(pdot), solved2(pdot);
+  ASSERT_TRUE(plain.rates(s.t, s.q, p, qdot, pdot)) << plain.failure();
+  ASSERT_TRUE(limbed.rates(s.t, s.q, p, qdot2, pdot2)) << limbed.failure();
+  ASSERT_TRUE(plain.accelerations(s.t, s.q, s.u, udot));
+  ASSERT_TRUE(limbed.accelerations(s.t, s.q, s.u, udot2));
+  ASSERT_TRUE(plain.inverse_mass_times(s.t, s.q, p, solved));
+  ASSERT_TRUE(limbed.inverse_mass_times(s.t, s.q, p, solved2));
+  const Eigen::VectorXd singular = plain.mass_matrix(s.t, s.q).jacobiSvd().singularValues();
+  const double tolerance = algebra_tol(12) * singular[0] / singular[singular.size() - 1];
+  EXPECT_LT(relative_error(qdot2, qdot), tolerance);
+  EXPECT_LT(relative_error(pdot2, pdot), tolerance);
+  EXPECT_LT(relative_error(udot2, udot), tolerance);
+  EXPECT_EQ(solved2, solved);
+}
+
+TEST(Limbs, MoveAsBodyByBody) {
+  std::size_t bodies = 0;
+  for (unsigned seed = 0; seed < 150; ++seed) {
+    RandomTree random(seed);
+    const Scene scene = with_limbs(random, 1 + static_cast<int>(seed % 5),
+                                   1 + static_cast<int>(seed % 3), 8, seed % 2 == 0);
+    for (const int level : {1, 3, 4})
+      if (level <= best_level()) {
+        bodies += expect_sound_limbs(scene, limb_lanes_at(level));
+        compare(scene, random, level);
+      }
+    if (HasFailure()) FAIL() << "seed " << seed;
+  }
+  EXPECT_GT(bodies, 150U * 4);
+}
+
+TEST(Limbs, OnTheGroundLeaveNoTrunk) {
+  RandomTree random(3);
+  Scene scene = with_limbs(random, 1, 1, 7, false);
+  scene.bodies.erase(scene.bodies.begin());
+  scene.joints.erase(scene.joints.begin());
+  scene.drives.clear();
+  for (JointSpec& j : scene.joints)
+    if (j.parent == "body0") j.parent = "ground";
+  const std::size_t bodies = expect_sound_limbs(scene, limb_lanes_at(best_level()));
+  EXPECT_GE(2 * bodies, scene.bodies.size());
+  for (const bool gravity : {true, false}) {
+    if (!gravity) scene.gravity.setZero();
+    compare(scene, random, 0);
+  }
+}
+
+/// One long limb twice, or many short ones of the same bodies: whatever saves more.
+TEST(Limbs, AreChosenByWhatTheySave) {
+  const auto legs = [](int count, int length) {
+    Scene s;
+    const auto add = [&](const std::string& name, const std::string& parent) {
+      BodySpec b;
+      b.name = name;
+      b.mass = 1;
+      b.com = {0.1, 0.2, 0.3};
+      b.inertia = Eigen::Vector3d(0.1, 0.1, 0.1).asDiagonal();
+      s.bodies.push_back(b);
+      JointSpec j;
+      j.name = "to_" + name;
+      j.parent = parent;
+      j.child = name;
+      j.kind = parent == "ground" ? JointKind::free : JointKind::revolute;
+      j.axis = {0, 1, 0};
+      j.origin_parent = {0.3, 0.1, 0};
+      s.joints.push_back(j);
+    };
+    add("base", "ground");
+    for (int leg = 0; leg < count; ++leg)
+      for (int k = 0; k < length; ++k) {
+        const std::string name = "leg" + std::to_string(leg) + "_";
+        add(name + std::to_string(k), k == 0 ? "base" : name + std::to_string(k - 1));
+      }
+    return s;
+  };
+  const auto words = [&](const Scene& s, int lanes) {
+    const Tree tree = build_tree(s);
+    const Model<Spatial> model = build_spatial_model(tree, s);
+    return limbs_in_words(build_links(model), lanes);
+  };
+  // Along a leg every length is a shape of its own, the whole leg the one that saves most.
+  EXPECT_EQ(words(legs(4, 6), 4), "4 of 6 pins side by side in 4 lanes");
+  EXPECT_EQ(words(legs(6, 3), 4), "6 of 3 pins side by side in 4 lanes");
+  EXPECT_EQ(words(legs(5, 3), 4), "4 of 3 pins side by side in 4 lanes");
+  EXPECT_EQ(words(legs(1, 6), 4), "");
+}
+
+/// A limb's joint without inertia has the same name in either way of going.
+TEST(Limbs, RefuseAJointWithoutInertiaByName) {
+  RandomTree random(5);
+  Scene scene = with_limbs(random, 2, 1, 8, false);
+  ASSERT_GT(expect_sound_limbs(scene, limb_lanes_at(best_level())), 0U);
+  const std::string tip = scene.bodies.back().name;
+  scene.bodies.back().mass = 0;
+  scene.bodies.back().com.setZero();
+  scene.bodies.back().inertia.setZero();
+  OpenChain limbed(scene, Algebra::spatial), plain(scene, Algebra::spatial, 0, false);
+  const TreeState s = random.state(plain.tree());
+  Eigen::VectorXd rates(plain.nq()), pdot(plain.nv());
+  EXPECT_FALSE(limbed.rates(0, s.q, s.u, rates, pdot));
+  EXPECT_FALSE(plain.rates(0, s.q, s.u, rates, pdot));
+  EXPECT_NE(limbed.failure().find(tip), std::string::npos) << limbed.failure();
+  EXPECT_EQ(limbed.failure(), plain.failure());
+}
+
+}  // namespace
+}  // namespace momenta
