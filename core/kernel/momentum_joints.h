@@ -16,17 +16,9 @@ bool MomentumSweeps<Spatial, S>::ball_inward(std::size_t k, const In& p, Cargo<S
   const Link& l = tree_->links[k];
   BallRecord<S>& w = balls_[static_cast<std::size_t>(l.record)];
   if (l.tip) cargo = {};
-  add_body(cargo.M, l);
-  if constexpr (Gravity) {
-    cargo.Gx = cargo.Gx + l.moment[0];
-    cargo.Gy = cargo.Gy + l.moment[1];
-    cargo.Gz = cargo.Gz + l.moment[2];
-    w.G = {{cargo.Gx, cargo.Gy, cargo.Gz}};
-  }
-  if (l.slot >= 0) {
-    add<Gravity>(cargo, slots_[static_cast<std::size_t>(l.slot)]);
-    if constexpr (Gravity) w.G = {{cargo.Gx, cargo.Gy, cargo.Gz}};
-  }
+  add_body<Gravity>(cargo, l);
+  if (l.slot >= 0) add<Gravity>(cargo, slots_[static_cast<std::size_t>(l.slot)]);
+  if constexpr (Gravity) w.G = {{cargo.Gx, cargo.Gy, cargo.Gz}};
   w.p = {{p[l.u], p[l.u + 1], p[l.u + 2]}};
   if (!w.pivot.eliminate(cargo.M, w.A)) return false;
   const Vec3<S> e{{w.p[0] - cargo.Dnx, w.p[1] - cargo.Dny, w.p[2] - cargo.Dnz}};
@@ -80,12 +72,7 @@ bool MomentumSweeps<Spatial, S>::axis_inward(std::size_t k, const In& p, Cargo<S
   auto& x = joints_[static_cast<std::size_t>(l.record)];
   Cargo<S> cargo{};
   if (!l.tip) cargo = from;
-  add_body(cargo.M, l);
-  if constexpr (Gravity) {
-    cargo.Gx = cargo.Gx + l.moment[0];
-    cargo.Gy = cargo.Gy + l.moment[1];
-    cargo.Gz = cargo.Gz + l.moment[2];
-  }
+  add_body<Gravity>(cargo, l);
   if (l.slot >= 0) add<Gravity>(cargo, slots_[static_cast<std::size_t>(l.slot)]);
   if (b.nv > 0) {
     x.M = blocks(cargo.M);
@@ -142,10 +129,7 @@ bool MomentumSweeps<Spatial, S>::general_inward(std::size_t k, const In& p, Carg
   const auto& b = body(k);
   auto& x = joints_[static_cast<std::size_t>(l.record)];
   if (l.tip) cargo = {};
-  add_body(cargo.M, l);
-  cargo.Gx += l.moment[0];
-  cargo.Gy += l.moment[1];
-  cargo.Gz += l.moment[2];
+  add_body<true>(cargo, l);
   if (l.slot >= 0) add<Gravity>(cargo, slots_[static_cast<std::size_t>(l.slot)]);
   x.M = blocks(cargo.M);
   x.D = remainder_of(cargo);

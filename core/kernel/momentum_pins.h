@@ -86,12 +86,7 @@ std::size_t MomentumSweeps<Spatial, S>::chain_inward(std::size_t end, const In& 
     --k;
     const Link& l = links[k];
     PinRecord<S>& w = pins_[k];
-    add_body(cargo.M, l);
-    if constexpr (Gravity) {
-      cargo.Gx = cargo.Gx + l.moment[0];
-      cargo.Gy = cargo.Gy + l.moment[1];
-      cargo.Gz = cargo.Gz + l.moment[2];
-    }
+    add_body<Gravity>(cargo, l);
     if (!all_positive(cargo.M.Izz)) {
       stuck_ = static_cast<int>(k);
       return k;
@@ -128,12 +123,7 @@ std::size_t MomentumSweeps<Spatial, S>::pins_inward(std::size_t end, const In& p
       if (l.parent < 0) continue;
     } else {
       if (l.carries_limbs_alone) cargo = {};
-      add_body(cargo.M, l);
-      if constexpr (Gravity) {
-        cargo.Gx = cargo.Gx + l.moment[0];
-        cargo.Gy = cargo.Gy + l.moment[1];
-        cargo.Gz = cargo.Gz + l.moment[2];
-      }
+      add_body<Gravity>(cargo, l);
       if (l.slot >= 0) add<Gravity>(cargo, slots_[static_cast<std::size_t>(l.slot)]);
       if (!all_positive(cargo.M.Izz)) {
         stuck_ = static_cast<int>(k);

@@ -47,6 +47,17 @@ MOMENTA_INLINE void add(Cargo<S>& a, const Cargo<S>& b) {
   in_pairs<Gravity>(a, b, [](S& x, const S& y) { x = x + y; });
 }
 
+/// + the body itself and the constant part of its first moment.
+template <bool Gravity, class Link, class S>
+MOMENTA_INLINE void add_body(Cargo<S>& cargo, const Link& l) {
+  add_body(cargo.M, l);
+  if constexpr (Gravity) {
+    cargo.Gx = cargo.Gx + l.moment[0];
+    cargo.Gy = cargo.Gy + l.moment[1];
+    cargo.Gz = cargo.Gz + l.moment[2];
+  }
+}
+
 /// What a child beside the first leaves in its parent's slot.
 template <bool Gravity, class Link, class S>
 MOMENTA_INLINE void leave(const Link& l, Cargo<S>& slot, const Cargo<S>& cargo) {

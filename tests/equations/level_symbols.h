@@ -15,6 +15,9 @@ namespace momenta::equations {
 /// data.
 inline void expect_own_symbols(const char* folder, const char* pattern,
                                std::initializer_list<const char*> own) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "one level alone is compiled: it shares with none";
+#endif
   std::string command = "for f in $(find '";
   command.append(folder).append("' -name '").append(pattern);
   command.append("'); do nm -C \"$f\"; done 2>/dev/null");
@@ -28,12 +31,12 @@ inline void expect_own_symbols(const char* folder, const char* pattern,
     ++symbols;
     bool fine = false;
     for (const char* mark : own) fine |= text.find(mark) != std::string::npos;
-    for (const char* data : {"typeinfo", "DW.ref", "__asan", "__odr"})
+    for (const char* data : {"typeinfo", "DW.ref"})
       fine |= text.find(data) != std::string::npos;
     EXPECT_TRUE(fine) << text;
   }
   pclose(pipe);
-#if defined(__OPTIMIZE__) && !defined(__SANITIZE_ADDRESS__)
+#ifdef __OPTIMIZE__
   EXPECT_GT(symbols, 20);
 #endif
 }

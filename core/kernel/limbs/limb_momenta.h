@@ -67,12 +67,7 @@ bool LimbMomenta<S>::sweep_inward() {
       const LimbTip<S>& tip = limbs_.tip(k);
       leave_tip<Gravity>(tip.h, tip.M, tip.inverse, l.moment, p_[k], w, r);
     } else {
-      add_body(cargo.M, l);
-      if constexpr (Gravity) {
-        cargo.Gx = cargo.Gx + l.moment[0];
-        cargo.Gy = cargo.Gy + l.moment[1];
-        cargo.Gz = cargo.Gz + l.moment[2];
-      }
+      add_body<Gravity>(cargo, l);
       if (l.slot >= 0) add<Gravity>(cargo, slots_[static_cast<std::size_t>(l.slot)]);
       if (!all_positive(cargo.M.Izz)) {
         stuck_ = limbs_.stuck_at(k, cargo.M.Izz);

@@ -1,0 +1,213 @@
+#include <momenta/core/scene/near_name.h>
+#include <momenta/dae/cut/interchange.h>
+
+namespace momenta {
+
+std::optional<JointKind> as_joint(LoopKind kind, bool planar) {
+  switch (kind) {
+    case LoopKind::point:
+    case LoopKind::spherical:
+      return planar ? JointKind::revolute : JointKind::spherical;
+    case LoopKind::revolute:
+      return JointKind::revolute;
+    case LoopKind::weld:
+      return JointKind::weld;
+    case LoopKind::prismatic:
+      return JointKind::prismatic;
+    case LoopKind::universal:
+      return JointKind::universal;
+    case LoopKind::cylindrical:
+      return JointKind::cylindrical;
+    case LoopKind::planar:
+      return JointKind::planar;
+    case LoopKind::distance:
+    case LoopKind::coupler:
+      break;
+  }
+  return std::nullopt;
+}
+
+std::optional<LoopKind> as_loop(JointKind kind) {
+  switch (kind) {
+    case JointKind::revolute:
+      return LoopKind::revolute;
+    case JointKind::prismatic:
+      return LoopKind::prismatic;
+    case JointKind::cylindrical:
+      return LoopKind::cylindrical;
+    case JointKind::universal:
+      return LoopKind::universal;
+    case JointKind::spherical:
+      return LoopKind::spherical;
+    case JointKind::planar:
+      return LoopKind::planar;
+    case JointKind::weld:
+      return LoopKind::weld;
+    case JointKind::helical:
+    case JointKind::free:
+    case JointKind::user:
+      break;
+  }
+  return std::nullopt;
+}
+
+int rows_of(JointKind kind, bool planar) {
+  return (planar ? 3 : 6) - rates_of(kind);
+}
+
+Sayings::Sayings(const Scene& scene, const std::vector<std::string>& keep)
+    : kept(keep.begin(), keep.end()) {
+  for (const JointSpec& joint : scene.joints)
+    if (joint.stiffness != 0 || joint.damping != 0) of_coordinates.insert(joint.name);
+  for (const DriveSpec& drive : scene.drives)
+    (drive.joint.empty() ? driven_loops.insert(drive.loop) : of_coordinates.insert(drive.joint));
+  for (const ForceSpec& force : scene.forces)
+    if (force.kind == "torque") of_coordinates.insert(force.joint);
+  for (const LoopSpec& loop : scene.loops)
+    of_coordinates.insert(loop.joints.begin(), loop.joints.end());
+  of_coordinates.insert(scene.held.begin(), scene.held.end());
+  std::set<std::string> known;
+  for (const JointSpec& joint : scene.joints) known.insert(joint.name);
+  for (const LoopSpec& loop : scene.loops) known.insert(loop.name);
+  for (const std::string& name : keep)
+    if (!known.contains(name))
+      throw SceneError(scene.where({}) + "joint or loop " + reading::in_quotes(name) +
+                       ", to be kept, is not in the scene");
+}
+
+BodyMotions::BodyMotions(const Mechanism& mechanism, const Start& start) {
+  Scene open = mechanism.scene();
+  open.loops.clear();
+  open.markers.clear();
+  std::erase_if(open.drives, [](const DriveSpec& drive) { return !drive.loop.empty(); });
+  // Of four points of a body, one from its origin along each axis, velocities give v and ω.
+  for (const BodySpec& body : open.bodies)
+    for (int i = 0; i < 4; ++i) {
+      MarkerSpec marker;
+      marker.name = body.name + " " + std::to_string(i);
+      marker.body = body.name;
+      if (i < 3) marker.point[i] = 1;
+      open.markers.push_back(marker);
+    }
+  const Mechanism tree(open);
+  const auto poses = OpenChain(open).poses(start.t, start.q);
+  const auto e = tree.evaluation<double>();
+  e->place(start.t, start.q.data());
+  e->move(start.u.data());
+  std::vector<double> values(6 * open.markers.size());
+  e->markers(values.data());
+  motion_["ground"] = {};
+  for (std::size_t i = 0; i < open.bodies.size(); ++i) {
+    const std::string& name = open.bodies[i].name;
+    const auto velocity = [&](std::size_t point) {
+      const double* at = values.data() + 6 * (4 * i + point) + 3;
+      return Eigen::Vector3d(at[0], at[1], at[2]);
+    };
+    BodyMotion m;
+    m.pose = poses[static_cast<std::size_t>(mechanism.tree().body(name))];
+    m.v = velocity(3);
+    Eigen::Vector3d omega = Eigen::Vector3d::Zero();
+    for (int k = 0; k < 3; ++k) {
+      const Eigen::Vector3d axis = m.pose.linear().col(k);
+      omega += 0.5 * axis.cross(Eigen::Vector3d(velocity(static_cast<std::size_t>(k)) - m.v));
+    }
+    m.omega = omega;
+    motion_[name] = m;
+  }
+}
+
+std::optional<JointSpec> joint_of(const LoopSpec& loop, const Mechanism& mechanism,
+                                  const BodyMotions& bodies, double length) {
+  const auto kind = as_joint(loop.kind, mechanism.plan().planar);
+  if (!kind) return std::nullopt;
+  JointSpec joint;
+  joint.name = loop.name;
+  joint.kind = *kind;
+  joint.parent = loop.parent;
+  joint.child = loop.child;
+  joint.origin_parent = loop.origin_parent;
+  joint.origin_child = loop.origin_child;
+  joint.rotation = loop.rotation;
+  joint.axis = loop.axis;
+  joint.axis2 = loop.axis2;
+  joint.direction = loop.direction;
+  const BodyMotion &parent = bodies.of(loop.parent), &child = bodies.of(loop.child);
+  if (*kind == JointKind::revolute && loop.kind != LoopKind::revolute)
+    joint.axis = (parent.pose.linear() * loop.rotation.toRotationMatrix()).transpose() *
+                 mechanism.plan().basis.col(2);
+  const JointMotion m = joint_motion(joint, parent, child);
+  // A hinge closes with its axes reversed as well; across the plane of a planar mechanism points
+  // may lie apart.
+  if (m.tilt > 1e-8 || m.shift > 1e-8 * length) return std::nullopt;
+  joint.position = m.q;
+  joint.velocity = m.u;
+  return joint;
+}
+
+LoopSpec loop_of(const JointSpec& joint) {
+  LoopSpec loop;
+  loop.name = joint.name;
+  loop.kind = *as_loop(joint.kind);
+  loop.parent = joint.parent;
+  loop.child = joint.child;
+  loop.origin_parent = joint.origin_parent;
+  loop.origin_child = joint.origin_child;
+  loop.rotation = joint.rotation;
+  loop.axis = joint.axis;
+  loop.axis2 = joint.axis2;
+  loop.direction = joint.direction;
+  return loop;
+}
+
+std::vector<JointSpec> joints_at(const Mechanism& mechanism, const Start& start) {
+  std::vector<JointSpec> joints = mechanism.scene().joints;
+  std::unordered_map<std::string, JointSpec*> by_name;
+  for (JointSpec& joint : joints) {
+    by_name[joint.name] = &joint;
+    const auto nq = static_cast<std::size_t>(coordinates_of(joint)),
+               nv = static_cast<std::size_t>(rates_of(joint));
+    if (joint.position.empty()) {
+      joint.position.assign(nq, 0.0);
+      if (joint.kind == JointKind::spherical || joint.kind == JointKind::free)
+        joint.position[nq - 4] = 1;
+    }
+    if (joint.velocity.empty()) joint.velocity.assign(nv, 0.0);
+  }
+  for (const Tree::Body& b : mechanism.tree().bodies) {
+    JointSpec& joint = *by_name.at(b.joint);
+    const auto first = static_cast<std::size_t>(b.parts > 1 ? b.coordinate : 0);
+    for (int i = 0; i < b.nq; ++i)
+      joint.position[first + static_cast<std::size_t>(i)] = start.q[b.q + i];
+    for (int i = 0; i < b.nv; ++i)
+      joint.velocity[first + static_cast<std::size_t>(i)] = start.u[b.u + i];
+  }
+  return joints;
+}
+
+bool turn_round(JointSpec& joint, Scene& scene, const Sayings& said, const BodyMotions& bodies) {
+  if (!keeps_coordinates(joint.kind)) {
+    if (said.of_coordinates.contains(joint.name)) return false;
+    joint = turned_round(joint);
+    const JointMotion m = joint_motion(joint, bodies.of(joint.parent), bodies.of(joint.child));
+    joint.position = m.q;
+    joint.velocity = m.u;
+    scene.remarks.push_back("joint '" + joint.name +
+                            "' is counted from its other body: its coordinates mean others");
+    return true;
+  }
+  joint = turned_round(joint);
+  if (joint.kind != JointKind::universal) return true;
+  for (DriveSpec& drive : scene.drives)
+    if (drive.joint == joint.name) drive.coordinate = 1 - drive.coordinate;
+  for (LoopSpec& loop : scene.loops)
+    for (std::size_t i = 0; i < loop.joints.size(); ++i)
+      if (loop.joints[i] == joint.name) {
+        loop.coordinates.resize(loop.joints.size());
+        loop.coordinates[i] = 1 - loop.coordinates[i];
+      }
+  scene.remarks.push_back("joint '" + joint.name +
+                          "' is counted from its other body: its two angles have changed places");
+  return true;
+}
+
+}  // namespace momenta
