@@ -19,9 +19,9 @@ Tree checked_tree(const Scene& scene) {
 OpenChain::OpenChain(const Scene& scene, Algebra algebra, int level, bool limbs_side_by_side) {
   Tree tree = checked_tree(scene);
   Plan plan = make_plan(tree, scene, algebra);
-  const int best = best_level();
   inside_ = std::make_unique<Inside>(std::move(tree), std::move(plan), scene,
-                                     level == 0 ? best : std::min(level, best), limbs_side_by_side);
+                                     level == 0 ? best_level() : level_at_most(level),
+                                     limbs_side_by_side);
 }
 OpenChain::~OpenChain() = default;
 OpenChain::OpenChain(OpenChain&&) noexcept = default;

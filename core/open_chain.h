@@ -44,9 +44,10 @@ struct Reaction {
 
 class OpenChain {
  public:
-  /// `level`: x86-64 level of the compiled recursion, 1, 3 (AVX2) or 4 (AVX-512); 0 takes the best
-  /// this machine has, and none above that is taken. `limbs_side_by_side`: in space, subtrees of
-  /// pins of one shape share vector registers (kernel/limbs/limbs.h); results differ by rounding.
+  /// `level`: x86-64 level of the compiled recursion, 1, 3 (AVX2) or 4 (AVX-512), or what is next
+  /// below it of those machine and library have; 0 takes the best. `limbs_side_by_side`: in space,
+  /// subtrees of pins of one shape share vector registers (kernel/limbs/limbs.h); results differ by
+  /// rounding.
   explicit OpenChain(const Scene& scene, Algebra algebra = Algebra::automatic, int level = 0,
                      bool limbs_side_by_side = true);
   ~OpenChain();

@@ -194,7 +194,7 @@ void register_closed_loops() {
     in_space.algebra = Algebra::spatial;
     add("four_bar_in_space", in_space, {1});
     for (const int level : {1, 3}) {
-      if (level > best_level()) continue;
+      if (level_at_most(level) != level) continue;
       const auto at = [&](Row row) {
         row.level = level;
         return row;

@@ -244,7 +244,9 @@ void register_open_chains() {
       {"random_chain_level1", random_chain, Algebra::automatic, 1},
       {"random_chain_level3", random_chain, Algebra::automatic, 3},
   };
-  for (const Row& row : omissions) add(row.name, row, Algorithm::momentum, some);
+  for (const Row& row : omissions)
+    if (row.level == 0 || level_at_most(row.level) == row.level)
+      add(row.name, row, Algorithm::momentum, some);
 }
 
 }  // namespace momenta

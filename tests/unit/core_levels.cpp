@@ -20,7 +20,7 @@ using namespace equations;
 std::vector<int> levels() {
   std::vector<int> all;
   for (const int level : {1, 3, 4})
-    if (level <= best_level()) all.push_back(level);
+    if (level_at_most(level) == level) all.push_back(level);
   return all;
 }
 

@@ -250,7 +250,7 @@ int compare_batches(const Mechanism& mechanism, RandomTree& random, int count) {
   right.leak = 0.5;
   right.rates = true;
   for (const int level : {1, 3, 4}) {
-    if (level > best_level()) continue;
+    if (level_at_most(level) != level) continue;
     const auto sweeps = mechanism.looped_sweeps(level);
     EXPECT_TRUE(sweeps->momentum(0,
                                  {q.data(), p.data(), u.data(), sigma.data(), pdot.data(), count,

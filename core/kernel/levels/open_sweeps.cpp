@@ -10,13 +10,15 @@ std::unique_ptr<OpenSweeps> sweeps_at(const LinkTree& tree, const Limbs* limbs);
 template <int Level>
 std::unique_ptr<OpenSweeps> sweeps_at(const PlanarTree& tree);
 
-int best_level() {
-#ifdef MOMENTA_LEVELS
-  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+int level_at_most([[maybe_unused]] int level) {
+#ifdef MOMENTA_LEVEL4
+  if (level >= 4 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
       __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw") &&
       __builtin_cpu_supports("avx512cd"))
     return 4;
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
+#endif
+#ifdef MOMENTA_LEVEL3
+  if (level >= 3 && __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
       __builtin_cpu_supports("bmi2"))
     return 3;
 #endif
@@ -25,8 +27,10 @@ int best_level() {
 
 template <class... Arguments>
 std::unique_ptr<OpenSweeps> make([[maybe_unused]] int level, const Arguments&... arguments) {
-#ifdef MOMENTA_LEVELS
+#ifdef MOMENTA_LEVEL4
   if (level >= 4) return sweeps_at<4>(arguments...);
+#endif
+#ifdef MOMENTA_LEVEL3
   if (level >= 3) return sweeps_at<3>(arguments...);
 #endif
   return sweeps_at<1>(arguments...);

@@ -55,8 +55,11 @@ class OpenSweeps {
   virtual std::size_t failed_state() const = 0;
 };
 
-/// The highest level this machine and this library have.
-int best_level();
+/// The highest level of 1, 3, 4 up to `level` that this machine and this library have.
+int level_at_most(int level);
+inline int best_level() {
+  return level_at_most(4);
+}
 /// Limbs of one state side by side. More than four seldom fill a register, and records of eight
 /// leave the cache.
 constexpr int limb_lanes_at(int level) {
@@ -64,7 +67,7 @@ constexpr int limb_lanes_at(int level) {
 }
 
 /// `limbs`: of that tree, limb_lanes_at(level) at a time, for single states; null: body by body.
-/// @pre level ≤ best_level(), one of 1, 3, 4; tree and limbs stay where they are.
+/// @pre level_at_most(level) is level; tree and limbs stay where they are.
 std::unique_ptr<OpenSweeps> make_sweeps(const LinkTree& tree, int level,
                                         const Limbs* limbs = nullptr);
 std::unique_ptr<OpenSweeps> make_sweeps(const PlanarTree& tree, int level);

@@ -12,8 +12,10 @@ namespace {
 template <class Space, class Tree>
 std::unique_ptr<LoopedSweeps> make(const Tree& tree, const SweptLoops<Space>& swept,
                                    [[maybe_unused]] int level) {
-#ifdef MOMENTA_LEVELS
+#ifdef MOMENTA_LEVEL4
   if (level >= 4) return looped_sweeps_at<4>(tree, swept);
+#endif
+#ifdef MOMENTA_LEVEL3
   if (level >= 3) return looped_sweeps_at<3>(tree, swept);
 #endif
   return looped_sweeps_at<1>(tree, swept);

@@ -95,7 +95,7 @@ SweptLoops<Space> swept_loops(const Model<Space>& model, LoopModel<Space> loops)
   return given.plan.fits() && anew.plan.work < given.plan.work ? anew : given;
 }
 
-/// @pre level ≤ best_level(), swept.plan.fits(); tree and swept loops stay where they are.
+/// @pre level_at_most(level) is level, swept.plan.fits(); tree and swept loops stay where they are.
 std::unique_ptr<LoopedSweeps> make_looped_sweeps(const PlanarTree& tree,
                                                  const SweptLoops<Planar>& swept, int level);
 std::unique_ptr<LoopedSweeps> make_looped_sweeps(const LinkTree& tree,
