@@ -149,7 +149,8 @@ bool LoopSweeps<Spatial, S, Rows, Momentum>::inward(const In& r, const RightSide
       close(plan_->closings[static_cast<std::size_t>(i)], a, right.fade, front.all);
     if (!(l.kind == LinkKind::pin    ? pin_inward(k, r, right, a)
           : l.kind == LinkKind::ball ? ball_inward(k, r, a)
-                                     : any_inward(k, r, right, a))) {
+          : l.one_axis               ? axis_inward(k, r, right, a)
+                                     : free_inward(k, r, a))) {
       stuck_ = static_cast<int>(k);
       return false;
     }

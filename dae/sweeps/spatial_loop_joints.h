@@ -1,6 +1,6 @@
 #pragma once
-// Joints eliminated on the way inward in space: pins, balls, and all others. Part of
-// spatial_loop_sweeps.h.
+// Joints eliminated on the way inward in space: pins, balls, free ones; others on one axis are in
+// spatial_loop_axes.h. Part of spatial_loop_sweeps.h.
 
 #include <momenta/dae/sweeps/spatial_loop_sweeps.h>
 
@@ -176,15 +176,14 @@ bool LoopSweeps<Spatial, S, Rows, Momentum>::ball_inward(std::size_t k, const In
   return true;
 }
 
-/// Sliders, screws, free, driven and welded joints.
+/// Free joints: nothing is left of a body, M' = 0, C' = 0, and D' is its own p.
 template <class S, int Rows, bool Momentum>
 template <class In>
-bool LoopSweeps<Spatial, S, Rows, Momentum>::any_inward(std::size_t k, const In& r,
-                                                        const RightSide<S>& right, Carried& a) {
-  const Link& l = tree_->links[k];
+bool LoopSweeps<Spatial, S, Rows, Momentum>::free_inward(std::size_t k, const In& r, Carried& a) {
   const auto& b = body(k);
-  auto& x = joints_[static_cast<std::size_t>(l.record)];
-  auto& y = any_[static_cast<std::size_t>(l.record)];
+  const auto record = static_cast<std::size_t>(tree_->links[k].record);
+  auto& x = joints_[record];
+  auto& y = any_[record];
   Blocks& o = a.blocks;
   const LaneGroups open = lanes_.fronts[k].open;
   o.begin(false, ~open);
@@ -192,73 +191,38 @@ bool LoopSweeps<Spatial, S, Rows, Momentum>::any_inward(std::size_t k, const In&
   x.D = remainder_of(a.cargo);
   x.moment = {{a.cargo.Gx, a.cargo.Gy, a.cargo.Gz}};
   for (int i = 0; i < 6; ++i) y.C[i] = o.C[i];
-  S own[6]{};
-  for (int i = 0; i < b.nv; ++i) own[i] = S(r[b.u + i]);
-  if (right.centre)
-    each_coupling(*plan_, k, [&](const LoopPlan::Coupling& j, std::size_t loop, int) {
-      own[0] = own[0] - j.ratio * right.centre[loops_->loops[loop].row];
-    });
+  S own[6];
+  for (int i = 0; i < 6; ++i) own[i] = S(r[b.u + i]);
   Spatial::ArticulatedInertia<S> M;
   if (!eliminate<Spatial>(b, x, M)) return false;
-  auto D = remainder<Spatial>(b, x, own);
+  const Force D = remainder<Spatial>(b, x, own);
   const auto eliminate_lanes = [&](const Column& c, const Column& g, const S& e) {
     o.d += g * e;
     o.scale += c * g;
     o.add_product(g, c, open);
   };
-  if (b.nv == 1) {
-    Motion E{};
-    const S one(1.0);
-    Joint<Spatial>::add_motion(b, x.edge, &one, E);
-    Column c = o.C[0] * E[0];
-    for (int i = 1; i < 6; ++i) c += o.C[i] * E[i];
-    each_coupling(*plan_, k, [&](const LoopPlan::Coupling& j, std::size_t loop, int lane) {
-      c.add(lane, S(j.ratio));
-      if (j.first) o.d.add(lane, coupled_[loop]);
-    });
-    y.g[0] = c * x.pivot;
-    eliminate_lanes(c, y.g[0], x.e);
-    for (int i = 0; i < 6; ++i) o.C[i] -= c * x.h[i];
-  } else if (b.nv == 6) {
-    // Angular: I⁻¹ c_n; then A⁻¹ (c_f − H I⁻¹ c_n).
-    Column left[3];
-    for (int i = 0; i < 3; ++i) {
-      y.g[3 + i] = o.C[3] * x.I(i, 0) + o.C[4] * x.I(i, 1) + o.C[5] * x.I(i, 2);
-      left[i] = o.C[i] - (o.C[3] * x.H(i, 0) + o.C[4] * x.H(i, 1) + o.C[5] * x.H(i, 2));
-    }
-    for (int i = 0; i < 3; ++i) eliminate_lanes(o.C[3 + i], y.g[3 + i], own[3 + i] - x.D.n[i]);
-    for (int i = 0; i < 3; ++i)
-      y.g[i] = left[0] * x.A(i, 0) + left[1] * x.A(i, 1) + left[2] * x.A(i, 2);
-    for (int i = 0; i < 3; ++i) eliminate_lanes(left[i], y.g[i], x.y[i]);
-    for (int i = 0; i < 6; ++i) o.C[i] = {};
+  // Angular: I⁻¹ c_n; then A⁻¹ (c_f − H I⁻¹ c_n).
+  Column left[3];
+  for (int i = 0; i < 3; ++i) {
+    y.g[3 + i] = o.C[3] * x.I(i, 0) + o.C[4] * x.I(i, 1) + o.C[5] * x.I(i, 2);
+    left[i] = o.C[i] - (o.C[3] * x.H(i, 0) + o.C[4] * x.H(i, 1) + o.C[5] * x.H(i, 2));
   }
+  for (int i = 0; i < 3; ++i) eliminate_lanes(o.C[3 + i], y.g[3 + i], own[3 + i] - x.D.n[i]);
+  for (int i = 0; i < 3; ++i)
+    y.g[i] = left[0] * x.A(i, 0) + left[1] * x.A(i, 1) + left[2] * x.A(i, 2);
+  for (int i = 0; i < 3; ++i) eliminate_lanes(left[i], y.g[i], x.y[i]);
+  for (int i = 0; i < 6; ++i) o.C[i] = {};
   if constexpr (!Momentum)
     if (b.parent < 0) {
       const auto& g = tree_->model->gravity;
       y.given.v -=
           Spatial::direction_to_child(b.edge, b.kind, x.edge, Vec3<S>{{S(g[0]), S(g[1]), S(g[2])}});
     }
-  if (b.nv != 6) {  // else nothing is left: M' = 0, C' = 0
-    D += Spatial::momentum(M, y.given);
-    for (int i = 0; i < 6; ++i) o.d += o.C[i] * y.given[i];
-  }
   if (b.parent < 0) return true;
   Vec3<S> G{};
   if constexpr (Momentum)
     G = Spatial::moment_to_parent(b.edge, b.kind, x.edge, x.moment, b.subtree_mass);
-  set_cargo(a.cargo, Spatial::to_parent(b.edge, b.kind, x.edge, M),
-            Spatial::to_parent(b.edge, b.kind, x.edge, D), G);
-  each_open<S, Rows>(open, [&](auto i) MOMENTA_INLINED {
-    typename Column::Part C[6];
-    each<6>([&](auto j) MOMENTA_INLINED { C[j] = o.C[j].v[i]; });
-    if (Spatial::moves_freely(b.kind))
-      columns_to_parent<Column>(x.edge.rotation, x.edge.position, C);
-    else
-      screw_columns<2>(C, Column::all(x.edge.cos_theta), Column::all(x.edge.sin_theta),
-                       Column::all(x.edge.d));
-    columns_to_parent(b.edge, C);
-    each<6>([&](auto j) MOMENTA_INLINED { o.C[j].v[i] = C[j]; });
-  });
+  set_cargo(a.cargo, M, Spatial::to_parent(b.edge, b.kind, x.edge, D), G);
   return true;
 }
 

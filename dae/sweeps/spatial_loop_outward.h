@@ -54,8 +54,10 @@ void LoopSweeps<Spatial, S, Rows, Momentum>::outward(const In& q, const RightSid
       pin_outward(k, q, rates, m, u, rate);
     else if (l.kind == LinkKind::ball)
       ball_outward(k, rates, m, u, rate);
+    else if (l.one_axis)
+      axis_outward(k, q, rates, m, u, rate);
     else
-      any_outward(k, q, rates, m, u, rate);
+      free_outward(k, rates, m, u, rate);
     const LoopPlan::Range closed = plan_->closings_of[k];
     if (closed.first != closed.last) solve_loops(closed, right, &m.V, m.sigma, impulse);
     if (plan_->takes_legs[k]) taken_[k] = m.V;
@@ -156,9 +158,9 @@ void LoopSweeps<Spatial, S, Rows, Momentum>::ball_outward(std::size_t k, bool ra
 }
 
 template <class S, int Rows, bool Momentum>
-template <class In, class Out>
-void LoopSweeps<Spatial, S, Rows, Momentum>::any_outward(std::size_t k, const In& q, bool rates,
-                                                         Moving& m, Out u, Out rate) {
+template <class Out>
+void LoopSweeps<Spatial, S, Rows, Momentum>::free_outward(std::size_t k, bool rates, Moving& m,
+                                                          Out u, Out rate) {
   const auto& b = body(k);
   const auto record = static_cast<std::size_t>(tree_->links[k].record);
   const auto& x = joints_[record];
@@ -167,34 +169,22 @@ void LoopSweeps<Spatial, S, Rows, Momentum>::any_outward(std::size_t k, const In
   if (b.parent >= 0) m.V = Spatial::to_child(b.edge, b.kind, x.edge, m.V);
   m.g = Spatial::direction_to_child(b.edge, b.kind, x.edge, m.g);
   m.V += y.given;
-  S own[6];
-  if (b.nv == 1) {
-    own[0] = x.pivot * x.e - Spatial::power(x.h, m.V) - along(y.g[0]);
-    Joint<Spatial>::add_motion(b, x.edge, own, m.V);
-  } else if (b.nv == 6) {
-    Vec3<S> v = x.A * x.y;
-    for (int i = 0; i < 3; ++i) v[i] -= along(y.g[i]);
-    Vec3<S> omega = x.x - transpose_times(x.H, v);
-    for (int i = 0; i < 3; ++i) omega[i] -= along(y.g[3 + i]);
-    for (int i = 0; i < 3; ++i) {
-      own[i] = v[i] - m.V.v[i];
-      own[3 + i] = omega[i] - m.V.w[i];
-    }
-    m.V = {v, omega};
+  Vec3<S> v = x.A * x.y;
+  for (int i = 0; i < 3; ++i) v[i] -= along(y.g[i]);
+  Vec3<S> omega = x.x - transpose_times(x.H, v);
+  for (int i = 0; i < 3; ++i) omega[i] -= along(y.g[3 + i]);
+  for (int i = 0; i < 3; ++i) {
+    u[b.u + i] = v[i] - m.V.v[i];
+    u[b.u + 3 + i] = omega[i] - m.V.w[i];
   }
-  if (b.nv == 0) return;
-  for (int i = 0; i < b.nv; ++i) u[b.u + i] = own[i];
+  m.V = {v, omega};
   if (!rates) return;
   Force net = Spatial::weight(S(b.subtree_mass), x.moment, m.g);
   Force P = Spatial::momentum(x.M, m.V);  // (42)
   P += x.D;
   for (int i = 0; i < 6; ++i) P[i] += along(y.C[i]);
   net -= Spatial::cross_force(m.V, P);
-  S rates_of_p[6];
-  Joint<Spatial>::project(b, x.edge, net, rates_of_p);  // (35)
-  if (b.nv == 1 && tree_->model->has_joint_forces)
-    rates_of_p[0] += joint_force(b, S(q[b.q]), own[0]);
-  for (int i = 0; i < b.nv; ++i) rate[b.u + i] = rates_of_p[i];
+  for (int i = 0; i < 6; ++i) rate[b.u + i] = net[i];  // (35), E = 1
 }
 
 template <class S, int Rows, bool Momentum>

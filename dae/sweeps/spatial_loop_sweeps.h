@@ -119,8 +119,10 @@ class LoopSweeps<Spatial, S, Rows, Momentum> {
   template <class In>
   __attribute__((noinline)) bool ball_inward(std::size_t k, const In& r, Carried& a);
   template <class In>
-  __attribute__((noinline)) bool any_inward(std::size_t k, const In& r, const RightSide<S>& right,
-                                            Carried& a);
+  __attribute__((noinline)) bool axis_inward(std::size_t k, const In& r, const RightSide<S>& right,
+                                             Carried& a);
+  template <class In>
+  __attribute__((noinline)) bool free_inward(std::size_t k, const In& r, Carried& a);
   /// xᵀσ over the lanes open above body k.
   MOMENTA_INLINE S along_sigma(std::size_t k, const Column& x, const Column& sigma) const {
     return plus_dot(S(0.0), x, sigma, lanes_.fronts[k].open);
@@ -136,8 +138,11 @@ class LoopSweeps<Spatial, S, Rows, Momentum> {
   __attribute__((noinline)) void ball_outward(std::size_t k, bool rates, Moving& m, Out u,
                                               Out rate);
   template <class In, class Out>
-  __attribute__((noinline)) void any_outward(std::size_t k, const In& q, bool rates, Moving& m,
-                                             Out u, Out rate);
+  __attribute__((noinline)) void axis_outward(std::size_t k, const In& q, bool rates, Moving& m,
+                                              Out u, Out rate);
+  template <class Out>
+  __attribute__((noinline)) void free_outward(std::size_t k, bool rates, Moving& m, Out u,
+                                              Out rate);
   template <class Out>
   void rates_inward(const RightSide<S>& right, const Out& impulse, Out rate);
 
@@ -353,6 +358,7 @@ void LoopSweeps<Spatial, S, Rows, Momentum>::move_bodies(const In& x, const Righ
 
 }  // namespace momenta
 
+#include <momenta/dae/sweeps/spatial_loop_axes.h>
 #include <momenta/dae/sweeps/spatial_loop_inward.h>
 #include <momenta/dae/sweeps/spatial_loop_joints.h>
 #include <momenta/dae/sweeps/spatial_loop_outward.h>
