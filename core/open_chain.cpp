@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <stdexcept>
 
 namespace momenta {
 namespace {
@@ -13,6 +14,12 @@ Tree checked_tree(const Scene& scene) {
     throw SceneError(scene.where(scene.loops.front().at) + "loop '" + scene.loops.front().name +
                      "' closes the tree, but an open chain has no loops");
   return build_tree(scene);
+}
+
+void check_threads(int threads) {
+  if (threads < 1)
+    throw std::invalid_argument("found " + std::to_string(threads) +
+                                " threads for a batch of states, expected 1 or more");
 }
 }  // namespace
 
@@ -51,14 +58,17 @@ bool OpenChain::rates(double t, const ConstVectorRef& q, const ConstVectorRef& p
 }
 
 bool OpenChain::rates_of_states(double t, const ConstStatesRef& q, const ConstStatesRef& p,
-                                StatesRef qdot, StatesRef pdot) {
+                                StatesRef qdot, StatesRef pdot, int threads) {
+  check_threads(threads);
   return inside_->visit([&](auto& kernel) {
     const auto stride = q.outerStride();
     if (!kernel.model->has_body_forces() && stride == p.outerStride() &&
         stride == qdot.outerStride() && stride == pdot.outerStride())
-      return inside_->noted(
-          kernel, kernel.sweeps->momentum(t, {q.data(), p.data(), qdot.data(), pdot.data(), stride,
-                                              static_cast<std::size_t>(q.cols())}));
+      return inside_->batch(
+          kernel, threads,
+          {q.data(), p.data(), qdot.data(), pdot.data(), stride,
+           static_cast<std::size_t>(q.cols())},
+          [t](OpenSweeps& sweeps, const States& part) { return sweeps.momentum(t, part); });
     Eigen::VectorXd one_qdot(nq()), one_pdot(nv());
     return inside_->one_by_one(q.cols(), [&](Eigen::Index i) {
       const bool ok = rates(t, q.col(i), p.col(i), one_qdot, one_pdot);
@@ -71,14 +81,16 @@ bool OpenChain::rates_of_states(double t, const ConstStatesRef& q, const ConstSt
 }
 
 bool OpenChain::accelerations_of_states(double t, const ConstStatesRef& q, const ConstStatesRef& u,
-                                        StatesRef udot) {
+                                        StatesRef udot, int threads) {
+  check_threads(threads);
   return inside_->visit([&](auto& kernel) {
     const auto stride = q.outerStride();
     if (!kernel.model->has_body_forces() && !kernel.model->has_joint_forces &&
         stride == u.outerStride() && stride == udot.outerStride())
-      return inside_->noted(
-          kernel, kernel.sweeps->acceleration(t, {q.data(), u.data(), nullptr, udot.data(), stride,
-                                                  static_cast<std::size_t>(q.cols())}));
+      return inside_->batch(
+          kernel, threads,
+          {q.data(), u.data(), nullptr, udot.data(), stride, static_cast<std::size_t>(q.cols())},
+          [t](OpenSweeps& sweeps, const States& part) { return sweeps.acceleration(t, part); });
     Eigen::VectorXd one(nv());
     return inside_->one_by_one(q.cols(), [&](Eigen::Index i) {
       const bool ok = accelerations(t, q.col(i), u.col(i), one);

@@ -6,7 +6,9 @@
 #include <momenta/core/kernel/reactions.h>
 #include <momenta/core/kernel/whole_sums.h>
 #include <momenta/core/open_chain.h>
+#include <momenta/core/share.h>
 
+#include <algorithm>
 #include <optional>
 #include <variant>
 
@@ -45,6 +47,7 @@ struct Kernel {
   std::unique_ptr<Links> links;
   std::unique_ptr<Limbs> limbs;
   std::unique_ptr<OpenSweeps> sweeps;
+  std::vector<std::unique_ptr<OpenSweeps>> further;  ///< one for each thread beside the caller's
   WhenAsked<ReactionPass<Space>> reactions;
   Workspace<Space, double> w;
 };
@@ -56,6 +59,7 @@ struct OpenChain::Inside {
   std::optional<Scene> flat;  ///< of a planar kernel: `in_space` is made of it when asked for
   std::unique_ptr<WholeSweep> in_space;
   Eigen::VectorXd u, p;  // scratch, nv
+  bool has_user_joints = false;
   int singular = -1;
   Eigen::Index failed_state = -1;  ///< of the last batch
 
@@ -69,6 +73,7 @@ struct OpenChain::Inside {
         u(tree.nv),
         p(tree.nv) {
     if (plan.planar) flat = from;
+    for (const auto& b : tree.bodies) has_user_joints |= b.kind == JointKind::user;
   }
 
   /// The momentum recursion and its third sweep.
@@ -102,12 +107,43 @@ struct OpenChain::Inside {
     failed_state = -1;
     return ok;
   }
-  /// What a batch left behind.
-  template <class K>
-  bool noted(K& k, bool ok) {
-    singular = ok ? -1 : k.sweeps->stuck();
-    failed_state = ok ? -1 : static_cast<Eigen::Index>(k.sweeps->failed_state());
-    return ok;
+  /// Many states by `run`, consecutive ones on each thread. Parts end where packs do: whatever
+  /// shares a register shares it on any number of threads.
+  template <class K, class Run>
+  bool batch(K& k, int threads, const States& all, Run&& run) {
+    const auto width = static_cast<std::size_t>(k.sweeps->width());
+    const std::size_t packs = (all.count + width - 1) / width;
+    std::size_t parts = has_user_joints ? 1 : static_cast<std::size_t>(threads);
+    parts = std::max<std::size_t>(1, std::min(parts, packs));
+    singular = -1;
+    failed_state = -1;
+    if (parts == 1) {
+      if (run(*k.sweeps, all)) return true;
+      singular = k.sweeps->stuck();
+      failed_state = static_cast<Eigen::Index>(k.sweeps->failed_state());
+      return false;
+    }
+    while (k.further.size() + 1 < parts)
+      k.further.push_back(make_sweeps(*k.links, k.sweeps->level()));
+    const auto sweeps = [&](std::size_t i) -> OpenSweeps& {
+      return i == 0 ? *k.sweeps : *k.further[i - 1];
+    };
+    const auto begin = [&](std::size_t i) {
+      return std::min(all.count, packs * i / parts * width);
+    };
+    std::vector<char> failed(parts, 0);
+    share(static_cast<int>(parts), parts, [&](std::size_t i) {
+      const std::size_t first = begin(i);
+      const States part{all.q + first,    all.p + first, all.qdot ? all.qdot + first : nullptr,
+                        all.pdot + first, all.stride,    begin(i + 1) - first};
+      failed[i] = !run(sweeps(i), part);
+    });
+    for (std::size_t i = 0; i < parts && failed_state < 0; ++i)
+      if (failed[i]) {
+        singular = sweeps(i).stuck();
+        failed_state = static_cast<Eigen::Index>(begin(i) + sweeps(i).failed_state());
+      }
+    return failed_state < 0;
   }
   /// Forces between bodies: state by state.
   template <class F>

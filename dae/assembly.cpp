@@ -166,14 +166,17 @@ class Assembler {
     Eigen::VectorXd phi = gap(q);
     double norm = phi.norm();
     int stalled = 0;
+    std::vector<double> j;
+    bool settled =
+        false;  // factorised where the loops are closed: J changes by rounding from there
     for (; iterations < most_iterations && norm > 1e-16 && stalled < 2; ++iterations) {
-      const std::vector<double> j = jacobian();
-      steps_.factor(j);
+      if (!settled) steps_.factor(j = jacobian());
+      settled = phi.cwiseAbs().maxCoeff() <= closed_;
       Trial next = along(q, norm, -steps_.solve(phi));
       // Redundant rows are redundant only where the loops are closed: off it they ask, through
       // pivots as small as the gap, for steps that lead nowhere. Damping by the gap is harmless
       // near the end, where it vanishes faster than what is left to do.
-      if (!(next.norm < 0.5 * norm))
+      if (!settled && !(next.norm < 0.5 * norm))
         if (Trial damped = along(q, norm, damped_step(j, phi)); damped.norm < next.norm)
           next = std::move(damped);
       const double next_norm = next.norm;

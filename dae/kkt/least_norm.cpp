@@ -83,6 +83,7 @@ struct LeastNorm::Sparse {
   }
   void factorise(double tolerance) {
     forget();
+    ++factorizations;
     factors = SuiteSparseQR_factorize<double>(SPQR_ORDERING_DEFAULT, tolerance, &matrix, &common);
     if (factors == nullptr) throw std::bad_alloc();
   }
@@ -108,7 +109,10 @@ struct LeastNorm::Sparse {
   cholmod_sparse matrix{};
   std::vector<Long> start, index;
   std::vector<double> value;
+  std::vector<double> factored;  ///< the values of A in the factors
+  double factored_damping = 0;   ///< and the λ
   Factors* factors = nullptr;
+  long factorizations = 0;
 };
 
 LeastNorm::LeastNorm(const std::vector<KktPattern::Entry>& pattern, int rows, int columns)
@@ -119,6 +123,10 @@ LeastNorm::LeastNorm(const std::vector<KktPattern::Entry>& pattern, int rows, in
     sparse_ = std::make_unique<Sparse>();
 }
 LeastNorm::~LeastNorm() = default;
+
+long LeastNorm::factorizations() const {
+  return sparse_ ? sparse_->factorizations : 0;
+}
 
 namespace {
 
@@ -133,6 +141,11 @@ MatrixXd filled(const std::vector<KktPattern::Entry>& pattern, const std::vector
 
 void LeastNorm::factor(const std::vector<double>& values, double damping) {
   if (sparse_) {
+    if (sparse_->factors != nullptr && values == sparse_->factored &&
+        damping == sparse_->factored_damping)
+      return;
+    sparse_->factored = values;
+    sparse_->factored_damping = damping;
     sparse_->fill(pattern_, values, static_cast<std::size_t>(rows_),
                   static_cast<std::size_t>(columns_), damping);
     sparse_->factorise(rank_tolerance * sparse_->largest_column());

@@ -24,7 +24,7 @@ std::span<const Family> families() {
              print_scissor_ladder},
       Family{"closed-chain", "N rods between two fixed points", 3, more / 2, 10, nullptr,
              print_closed_chain},
-      Family{"grid", "N rows of N hanging parallelograms", 1, 200, 5, nullptr, print_grid},
+      Family{"grid", "N rows of N hanging parallelograms", 1, 250, 5, nullptr, print_grid},
       Family{"jansen-legs", "N walking legs on one crank", 1, many / 10, 2, nullptr,
              print_jansen_legs},
       Family{"stewart", "a platform on N sprung legs", 3, many / 10, 6, print_stewart},

@@ -4,8 +4,8 @@
 //   ( A  B ) ( δ )   ( b )
 //   ( C  T ) ( z ) = ( 0 ),     J = A − B T⁻¹ C
 //
-// by KLU, its ordering (COLAMD) once, pivots kept while they do not make entries grow. IDA sees a matrix and
-// a linear solver of its own kinds.
+// by KLU, its ordering (COLAMD) once, pivots kept while they do not make entries grow more than
+// others would. IDA sees a matrix and a linear solver of its own kinds.
 
 #include <momenta/dae/solver/newton_matrix.h>
 #include <momenta/dae/solver/sundials_handles.h>

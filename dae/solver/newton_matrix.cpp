@@ -7,6 +7,7 @@
 #include <momenta/dae/solver/newton_matrix.h>
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <type_traits>
@@ -24,6 +25,7 @@ class DenseMatrix final : public NewtonMatrix<Scalar> {
   explicit DenseMatrix(int size) : a_(Matrix::Zero(size, size)), lu_(size), x_(size) {}
   Scalar* values() override { return a_.data(); }
   bool factor() override {
+    ++choices_;
     lu_.compute(a_);
     for (Eigen::Index i = 0; i < a_.rows(); ++i) {
       const double pivot = std::abs(lu_.matrixLU()(i, i));
@@ -31,6 +33,7 @@ class DenseMatrix final : public NewtonMatrix<Scalar> {
     }
     return true;
   }
+  long choices() const override { return choices_; }
   void solve(Scalar* b) override {
     Eigen::Map<Vector> right(b, a_.rows());
     x_.noalias() = lu_.permutationP() * right;
@@ -43,10 +46,12 @@ class DenseMatrix final : public NewtonMatrix<Scalar> {
   Matrix a_;
   Eigen::PartialPivLU<Matrix> lu_;
   Vector x_;
+  long choices_ = 0;
 };
 
-/// Below this reciprocal growth of the entries old pivots are given up.
-constexpr double least_growth = 1e-4;
+/// Old pivots are given up where the entries grow on them by more than this, and by that much more
+/// than on pivots just chosen: those of local matrices of long ladders grow by 10⁶ on any.
+constexpr double most_growth = 1e4, beside_fresh = 100;
 
 template <class Scalar>
 class SparseMatrix final : public NewtonMatrix<Scalar> {
@@ -82,13 +87,17 @@ class SparseMatrix final : public NewtonMatrix<Scalar> {
       if (!std::isfinite(std::abs(x))) return false;
     if (numeric_ != nullptr && again()) return true;
     forget();
+    ++choices_;
     int* start = column_start_.data();
     if constexpr (is_real)
       numeric_ = klu_factor(start, row_.data(), numbers(), symbolic_, &common_);
     else
       numeric_ = klu_z_factor(start, row_.data(), numbers(), symbolic_, &common_);
-    return numeric_ != nullptr && common_.status == KLU_OK;
+    if (numeric_ == nullptr || common_.status != KLU_OK) return false;
+    fresh_growth_ = growth();
+    return true;
   }
+  long choices() const override { return choices_; }
 
   void solve(Scalar* b) override {
     if constexpr (is_real)
@@ -105,15 +114,21 @@ class SparseMatrix final : public NewtonMatrix<Scalar> {
   bool again() {
     int* start = column_start_.data();
     if constexpr (is_real)
-      return klu_refactor(start, row_.data(), numbers(), symbolic_, numeric_, &common_) != 0 &&
-             common_.status == KLU_OK &&
-             klu_rgrowth(start, row_.data(), numbers(), symbolic_, numeric_, &common_) != 0 &&
-             common_.rgrowth > least_growth;
+      klu_refactor(start, row_.data(), numbers(), symbolic_, numeric_, &common_);
     else
-      return klu_z_refactor(start, row_.data(), numbers(), symbolic_, numeric_, &common_) != 0 &&
-             common_.status == KLU_OK &&
-             klu_z_rgrowth(start, row_.data(), numbers(), symbolic_, numeric_, &common_) != 0 &&
-             common_.rgrowth > least_growth;
+      klu_z_refactor(start, row_.data(), numbers(), symbolic_, numeric_, &common_);
+    return common_.status == KLU_OK &&
+           growth() < std::max(most_growth, beside_fresh * fresh_growth_);
+  }
+  /// Of the entries, from A to U: the largest over the columns. Infinite where it is not known.
+  double growth() {
+    int* start = column_start_.data();
+    int known = 0;
+    if constexpr (is_real)
+      known = klu_rgrowth(start, row_.data(), numbers(), symbolic_, numeric_, &common_);
+    else
+      known = klu_z_rgrowth(start, row_.data(), numbers(), symbolic_, numeric_, &common_);
+    return known != 0 && common_.rgrowth > 0 ? 1 / common_.rgrowth : HUGE_VAL;
   }
   void forget() {
     if (numeric_ == nullptr) return;
@@ -129,6 +144,8 @@ class SparseMatrix final : public NewtonMatrix<Scalar> {
   klu_common common_{};
   klu_symbolic* symbolic_ = nullptr;
   klu_numeric* numeric_ = nullptr;
+  double fresh_growth_ = 0;
+  long choices_ = 0;
 };
 
 }  // namespace

@@ -19,6 +19,8 @@ class NewtonMatrix {
   virtual bool factor() = 0;
   /// b ← A⁻¹ b, n values. Allocates nothing.
   virtual void solve(Scalar* b) = 0;
+  /// Factorisations for which pivots were chosen anew: all dense ones.
+  virtual long choices() const = 0;
 };
 
 /// Partially pivoted LU where the pattern is empty, KLU where it is not. The pattern must outlive

@@ -4,7 +4,7 @@
 #include <momenta/dae/study/environment.h>
 #include <momenta/dae/study/own_reference.h>
 #include <momenta/dae/study/run_record.h>
-#include <momenta/dae/study/share.h>
+#include <momenta/core/share.h>
 #include <momenta/dae/study/stress_study.h>
 
 #include <algorithm>

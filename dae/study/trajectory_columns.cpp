@@ -1,17 +1,28 @@
 #include <momenta/dae/study/run_form.h>
 
+#include <set>
+
 namespace momenta {
 namespace {
 
-/// Whether a coupler ties angles alone, so that its λ is a moment.
-bool couples_angles(const Mechanism& mechanism, const std::string& coupler) {
-  for (const LoopSpec& l : mechanism.scene().loops)
-    for (std::size_t i = 0; l.name == coupler && i < l.joints.size(); ++i)
-      for (const Tree::Body& b : mechanism.tree().bodies)
-        if (b.joint == l.joints[i] && b.kind == JointKind::prismatic &&
-            b.coordinate == (l.coordinates.empty() ? 0 : l.coordinates[i]))
-          return false;
-  return true;
+/// Couplers that tie angles alone, by name: their λ is a moment.
+std::set<std::string> couplers_of_angles(const Mechanism& mechanism) {
+  const Tree& tree = mechanism.tree();
+  std::set<std::string> names;
+  for (const LoopSpec& l : mechanism.scene().loops) {
+    if (l.kind != LoopKind::coupler) continue;
+    bool slides = false;
+    for (std::size_t i = 0; i < l.joints.size(); ++i) {
+      const int last = tree.carried_by(l.joints[i]);
+      for (int k = tree.first_part(last); k <= last; ++k) {
+        const Tree::Body& b = tree.bodies[static_cast<std::size_t>(k)];
+        slides |= b.kind == JointKind::prismatic &&
+                  b.coordinate == (l.coordinates.empty() ? 0 : l.coordinates[i]);
+      }
+    }
+    if (!slides) names.insert(l.name);
+  }
+  return names;
 }
 
 }  // namespace
@@ -28,6 +39,7 @@ std::vector<std::string> trajectory_columns(const Mechanism& mechanism) {
   if (mechanism.m() == 0) return columns;
   columns.emplace_back("position_drift [m]");
   columns.emplace_back("velocity_drift [m/s]");
+  const std::set<std::string> of_angles = couplers_of_angles(mechanism);
   std::string loop;
   int number = 0;
   for (const auto& row : mechanism.rows()) {
@@ -35,7 +47,7 @@ std::vector<std::string> trajectory_columns(const Mechanism& mechanism) {
     loop = row.loop;
     const bool couple = row.what.find("against") != std::string::npos ||
                         row.what.rfind("angle", 0) == 0 ||
-                        (row.what.rfind("coupling", 0) == 0 && couples_angles(mechanism, loop));
+                        (row.what.rfind("coupling", 0) == 0 && of_angles.count(loop) > 0);
     columns.push_back(loop + ".lambda" + std::to_string(number) + (couple ? " [N m]" : " [N]"));
   }
   return columns;

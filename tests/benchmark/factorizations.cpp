@@ -18,10 +18,11 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
 
 #include "equations/large_scenes.h"
 #include "equations/linkages.h"
+#include "processor_time.h"
+#include "pushed_state.h"
 #include "sparse_solvers.h"
 
 namespace momenta {
@@ -29,28 +30,6 @@ namespace {
 
 using benchmark_solvers::SparseSolver;
 using Eigen::VectorXd;
-
-double seconds() {
-  timespec t{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
-/// Least of five or more calls, in milliseconds.
-template <class F>
-double least_ms(F&& f) {
-  constexpr double enough = 0.2;
-  double least = HUGE_VAL, spent = 0;
-  for (int i = 0; i < 5 || (spent < enough && i < 1000); ++i) {
-    const double from = seconds();
-    f();
-    const double took = seconds() - from;
-    least = std::min(least, took);
-    spent += took;
-    if (spent > 5) break;
-  }
-  return 1e3 * least;
-}
 
 /// A system to solve: (7) for one state, by one of its matrices.
 struct System {
@@ -60,23 +39,9 @@ struct System {
   int rates = 0;  ///< place of u among the unknowns
 };
 
-struct State {
-  VectorXd q, p;
-};
-State state_of(const Mechanism& mechanism) {
-  State s{mechanism.tree().q0, VectorXd(mechanism.nv())};
-  VectorXd u = mechanism.tree().u0;
-  for (Eigen::Index i = 0; i < u.size(); ++i) u[i] += std::sin(static_cast<double>(i));
-  const auto e = mechanism.evaluation<double>();
-  e->place(0, s.q.data());
-  e->move(u.data());
-  e->momenta(nullptr, s.p.data());
-  return s;
-}
-
 constexpr double delta = 1e-9;
 
-System joints_of(const Mechanism& mechanism, const State& s) {
+System joints_of(const Mechanism& mechanism, const PushedState& s) {
   const KktPattern& pattern = mechanism.kkt_pattern();
   const int n = mechanism.nv(), m = mechanism.m();
   std::vector<KktPattern::Entry> entries = pattern.mass;
@@ -99,7 +64,7 @@ System joints_of(const Mechanism& mechanism, const State& s) {
   return system;
 }
 
-System bodies_of(const Mechanism& mechanism, const State& s) {
+System bodies_of(const Mechanism& mechanism, const PushedState& s) {
   return with_body_matrix(mechanism, [&](auto equations) {
     const int size = equations->size(), n = mechanism.nv();
     System system{"bodies",
@@ -141,10 +106,10 @@ void measure(const char* name, int n, System& system, SparseSolver& solver, bool
   const SymmetricMatrix& a = shifts ? system.shifted : system.matrix;
   double analysis = HUGE_VAL;
   for (int i = 0; i < 3; ++i) {
-    const double from = seconds();
+    const double from = processor_seconds();
     if (!solver.analyse(a))
       return row(name, n, system.name, solver.name() + ": refused", -1, -1, -1, -1, -1);
-    analysis = std::min(analysis, 1e3 * (seconds() - from));
+    analysis = std::min(analysis, 1e3 * (processor_seconds() - from));
   }
   if (!solver.factor(a))
     return row(name, n, system.name, solver.name() + ": singular", analysis, -1, -1, -1, -1);
@@ -165,7 +130,7 @@ void measure(const char* name, int n, System& system, SparseSolver& solver, bool
 void measure(const char* name, int n, const Scene& scene) {
   using namespace benchmark_solvers;
   const Mechanism mechanism(scene);
-  const State s = state_of(mechanism);
+  const PushedState s = pushed_state(mechanism, mechanism.tree().q0);
   VectorXd exact(mechanism.nv()), sigma(mechanism.m());
   const auto e = mechanism.evaluation<double>();
   const auto sweeps = make_loop_solver(mechanism, *e);
@@ -184,9 +149,9 @@ void measure(const char* name, int n, const Scene& scene) {
   }
   const VectorXd zero = VectorXd::Zero(mechanism.m());
   const auto ours = [&](const char* how, std::unique_ptr<Kkt> (*make)(const Mechanism&)) {
-    const double from = seconds();
+    const double from = processor_seconds();
     const auto kkt = make(mechanism);
-    const double analysis = 1e3 * (seconds() - from);
+    const double analysis = 1e3 * (processor_seconds() - from);
     VectorXd u(exact.size());
     kkt->factor(*e, 0, s.q.data(), fade_evaluation);
     const double factorisation = least_ms([&] { kkt->factor(*e, 0, s.q.data(), fade_evaluation); });

@@ -60,7 +60,7 @@ class Program : public testing::Test {
     return WEXITSTATUS(std::system(command.c_str()));  // NOLINT: the command is this test's own
   }
   static std::string example(const std::string& name) {
-    return std::string(MOMENTA_SOURCE_DIR) + "/examples/" + name + "/scene.toml";
+    return (std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples" / name / "scene.toml").string();
   }
   fs::path write(const std::string& name, const std::string& content) const {
     std::ofstream(folder_ / name, std::ios::binary) << content;

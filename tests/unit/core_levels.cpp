@@ -6,6 +6,7 @@
 #include <momenta/core/open_chain.h>
 
 #include <cmath>
+#include <cstring>
 #include <random>
 
 #include "equations/level_symbols.h"
@@ -135,6 +136,42 @@ TEST(Levels, OneBadStateSpoilsNoOther) {
   EXPECT_NE(other.failure().find("state 3"), std::string::npos) << other.failure();
   for (Eigen::Index i = 0; i < 5; ++i)
     EXPECT_EQ(qdot.col(i).array().isNaN().any(), i == 3) << "state " << i;
+}
+
+/// However many share the states: the same bits, and the same culprit.
+TEST(Threads, OfABatchChangeNothing) {
+  for (unsigned seed = 200; seed < 212; ++seed) {
+    RandomTree random(seed);
+    OpenChain chain(RandomTree(seed).scene({.body_forces = seed % 4 == 0}));
+    constexpr Eigen::Index counts[] = {1, 7, 30, 3000};
+    const Eigen::Index count = counts[seed / 2 % 4];
+    Batch b(chain, random, count);
+    if (count > 20) {
+      b.q.col(count - 9).setConstant(std::numeric_limits<double>::quiet_NaN());
+      b.q.col(count - 2).setConstant(std::numeric_limits<double>::quiet_NaN());
+    }
+    const bool rates = chain.rates_of_states(0.3, b.q, b.p, b.qdot, b.pdot);
+    const std::string culprit = chain.failure();
+    EXPECT_EQ(rates, count <= 20 || chain.nv() < 2) << seed;
+    const bool accelerations = chain.accelerations_of_states(0.3, b.q, b.u, b.udot);
+    const auto same = [](const StateMatrix& x, const StateMatrix& y) {
+      return x.size() == y.size() &&
+             std::memcmp(x.data(), y.data(), sizeof(double) * static_cast<std::size_t>(x.size())) ==
+                 0;
+    };
+    for (const int threads : {2, 3, 16}) {
+      StateMatrix qdot = StateMatrix::Ones(b.qdot.rows(), count), pdot(b.pdot), udot(b.udot);
+      pdot.setOnes();
+      udot.setOnes();
+      EXPECT_EQ(chain.rates_of_states(0.3, b.q, b.p, qdot, pdot, threads), rates);
+      EXPECT_EQ(chain.failure(), culprit) << threads;
+      EXPECT_EQ(chain.accelerations_of_states(0.3, b.q, b.u, udot, threads), accelerations);
+      EXPECT_TRUE(same(qdot, b.qdot)) << seed << ", " << threads;
+      EXPECT_TRUE(same(pdot, b.pdot)) << seed << ", " << threads;
+      EXPECT_TRUE(same(udot, b.udot)) << seed << ", " << threads;
+    }
+    EXPECT_THROW(chain.rates_of_states(0.3, b.q, b.p, b.qdot, b.pdot, 0), std::invalid_argument);
+  }
 }
 
 TEST(Levels, SinesOfLargeAnglesAndNone) {

@@ -58,6 +58,28 @@ TEST(LeastNorm, SparseIsDense) {
   }
 }
 
+/// Neither stale factors nor needless ones.
+TEST(LeastNorm, FactorisesWhatIsNew) {
+  System s = banded(300, 420, 0);
+  const VectorXd b = VectorXd::LinSpaced(300, -1, 2);
+  LeastNorm steps(s.pattern, 300, 420);
+  steps.factor(s.values);
+  const VectorXd first = steps.solve(b);
+  steps.factor(s.values);
+  EXPECT_EQ(steps.judge(s.values).rank, 300);
+  EXPECT_EQ(steps.factorizations(), 1);
+  EXPECT_EQ(steps.solve(b), first);
+  steps.factor(s.values, 0.3);
+  EXPECT_GT((steps.solve(b) - first).norm(), 1e-3 * first.norm());
+  steps.factor(s.values);
+  EXPECT_EQ(steps.factorizations(), 3);
+  EXPECT_EQ(steps.solve(b), first);
+  s.values[17] += 1;
+  steps.factor(s.values);
+  EXPECT_EQ(steps.factorizations(), 4);
+  EXPECT_LT((steps.product(s.values, steps.solve(b)) - b).norm(), 1e-11 * b.norm());
+}
+
 TEST(LeastNorm, FindsDependentRows) {
   const System s = banded(300, 420, 20);
   LeastNorm steps(s.pattern, 300, 420);

@@ -10,6 +10,7 @@
 #include <momenta/core/scene/read_scene.h>
 #include <momenta/dae/assembly.h>
 #include <momenta/dae/form/dae_form.h>
+#include <momenta/dae/solver/local_newton.h>
 #include <momenta/dae/study/run_form.h>
 
 #include <Eigen/LU>
@@ -125,6 +126,53 @@ TEST(LocalJacobian, GrowsLikeTheMechanism) {
           << name << " of " << scene.name;
     }
   }
+}
+
+/// Of a ladder they let entries grow as much as any others do, so they serve at other states and
+/// steps; where one of them is lost others are chosen.
+TEST(LocalJacobian, PivotsAreKept) {
+  const Mechanism mechanism(crossed_bars(100));
+  const auto form = make_form("momentum-index2", mechanism, {}, assemble(mechanism).start);
+  auto& dae = dynamic_cast<DaeForm&>(*form);
+  std::vector<double> y(static_cast<std::size_t>(dae.size())), ydot(y.size());
+  ASSERT_TRUE(dae.start(0, y.data(), ydot.data()));
+  LocalJacobian& local = dae.local_jacobian();
+  ASSERT_TRUE(local.evaluate(0, y.data(), ydot.data(), 1e5));
+  const JacobianPattern pattern = local.pattern();
+  const auto matrix = make_local_matrix(pattern);
+  const std::size_t count = local.values().size(), n = pattern.column_start.size() - 1;
+  std::vector<double> values = local.values();
+  const auto solve = [&] {
+    std::copy(values.begin(), values.end(), matrix->values());
+    ASSERT_TRUE(matrix->factor());
+    std::vector<double> x(n), b(n, 0.0), size(n, 0.0);
+    for (std::size_t i = 0; i < n; ++i) x[i] = b[i] = i % 3 == 0 ? 1.0 : -0.5;
+    matrix->solve(x.data());
+    for (std::size_t j = 0; j < n; ++j)
+      for (auto k = static_cast<std::size_t>(pattern.column_start[j]);
+           k < static_cast<std::size_t>(pattern.column_start[j + 1]); ++k) {
+        const auto row = static_cast<std::size_t>(pattern.row[k]);
+        b[row] -= values[k] * x[j];
+        size[row] += std::abs(values[k] * x[j]);
+      }
+    for (std::size_t i = 0; i < n; ++i) EXPECT_LT(std::abs(b[i]), 1e-6 * (1 + size[i])) << i;
+  };
+  solve();
+  EXPECT_EQ(matrix->choices(), 1);
+  RandomTree random(4);
+  for (const double c : {7e4, 3e5, 4e3}) {
+    for (double& x : y) x += 1e-3 * random.uniform(-1, 1);
+    ASSERT_TRUE(local.evaluate(0, y.data(), ydot.data(), c));
+    ASSERT_EQ(local.values().size(), count);
+    values = local.values();
+    solve();
+    EXPECT_EQ(matrix->choices(), 1) << c;
+  }
+  // Every entry of another size: what were pivots are now small beside others in their columns.
+  for (double& x : values) x *= std::pow(10, random.uniform(-12, 0));
+  std::copy(values.begin(), values.end(), matrix->values());
+  EXPECT_TRUE(matrix->factor());
+  EXPECT_EQ(matrix->choices(), 2);
 }
 
 /// IDA by the local matrix finds the motion that the sweeps find.

@@ -1,9 +1,10 @@
 // Growth laws read from noisy data, reference files and what is wrong with them.
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/scene.h>
+#include <momenta/core/scene/read_scene.h>
 #include <momenta/dae/measure/growth.h>
 #include <momenta/dae/measure/reference.h>
+#include <momenta/dae/study/run_form.h>
 
 #include <cmath>
 #include <filesystem>
@@ -111,6 +112,59 @@ TEST_F(ReferenceFile, ColumnsMustBeThoseOfTheTrajectory) {
     EXPECT_NE(std::string(e.what()).find("'O.q [deg]'"), std::string::npos) << e.what();
     EXPECT_NE(std::string(e.what()).find("'O.q [rad]'"), std::string::npos) << e.what();
   }
+}
+
+/// λ of a coupler is a moment where all that it ties turns, a force where something slides.
+TEST(Columns, UnitsOfCouplers) {
+  const Mechanism mechanism(parse_scene(R"(
+name = "couplers"
+[[body]]
+name = "a"
+mass = 1
+shape = { kind = "box", size = [1, 1, 1] }
+[[body]]
+name = "b"
+mass = 1
+shape = { kind = "box", size = [1, 1, 1] }
+[[body]]
+name = "c"
+mass = 1
+shape = { kind = "box", size = [1, 1, 1] }
+[[joint]]
+name = "turn"
+kind = "revolute"
+child = "a"
+[[joint]]
+name = "slide"
+kind = "prismatic"
+child = "b"
+[[joint]]
+name = "both"
+kind = "cylindrical"
+child = "c"
+[[loop]]
+name = "gear"
+kind = "coupler"
+joints = ["turn", "both"]
+coordinates = [0, 1]
+ratios = [1, -2]
+[[loop]]
+name = "rack"
+kind = "coupler"
+joints = ["turn", "slide"]
+ratios = [1, 3]
+[[loop]]
+name = "screw"
+kind = "coupler"
+joints = ["turn", "both"]
+coordinates = [0, 0]
+ratios = [1, 3]
+)"));
+  const std::vector<std::string> columns = trajectory_columns(mechanism);
+  ASSERT_GE(columns.size(), 3u);
+  EXPECT_EQ(
+      std::vector<std::string>(columns.end() - 3, columns.end()),
+      (std::vector<std::string>{"gear.lambda1 [N m]", "rack.lambda1 [N]", "screw.lambda1 [N]"}));
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include <momenta/dae/study/share.h>
+#include <momenta/core/share.h>
 
 #include <atomic>
 #include <exception>
