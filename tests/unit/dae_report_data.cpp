@@ -27,7 +27,7 @@ TEST(SummaryJson, HasThePublicKeys) {
                  "counters",    "time",       "drift",         "energy",  "error",
                  "environment", "jacobian",   "linear_solver", "kkt",     "project",
                  "stopped_at",  "faded_rows", "beta",          "penalty", "partitions",
-                 "least_pivot", "passages"};
+                 "least_pivot", "passages",   "undetermined"};
   std::sort(expected.begin(), expected.end());
   EXPECT_EQ(keys(json), expected);
   EXPECT_EQ(keys(json["counters"]), (Names{"detours", "evaluations", "factorizations", "jacobians",
