@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 
 namespace momenta {
 namespace {
@@ -22,6 +23,13 @@ bool CoordinateSplit::choose(const std::vector<double>& values, int rank) {
   for (std::size_t i = 0; i < values.size(); ++i)
     a(pattern_[i].row, pattern_[i].column) = values[i] / weights_[pattern_[i].column];
   if (!a.allFinite()) return false;
+  if (a.size() == 0) {  // nothing moves, or nothing ties
+    rows_.clear();
+    dependent_.clear();
+    independent_.resize(static_cast<std::size_t>(columns));
+    std::iota(independent_.begin(), independent_.end(), 0);
+    return rank <= 0;
+  }
   const Eigen::FullPivLU<Eigen::MatrixXd> lu(a);
   const Eigen::VectorXd pivots = lu.matrixLU().diagonal().cwiseAbs();
   const double least = rank_tolerance * (pivots.size() > 0 ? pivots.maxCoeff() : 0);

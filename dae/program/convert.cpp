@@ -26,7 +26,7 @@ int convert(const Options& o, const ConvertOptions& c) {
   const std::string text = scene_text(c.recut ? recut_scene(o, c) : read(o));
   if (c.out.empty() || c.out == "-")
     std::fputs(text.c_str(), stdout);
-  else if (!write_result(c.out, text))
+  else if (!write_results({{c.out, text}}))
     return run_failed;
   return done;
 }

@@ -40,6 +40,7 @@ int drift(const Options& o, const DriftOptions& d) {
       *mechanism, o, request.forms.empty() ? runs_at_most : 3 * request.forms.size());
   expect_own_results(o.out, "study.csv");
   const auto journal = keep_runs(o);
+  watch_signals();
   request.journal = journal.get();
   StudyResult study;
   {

@@ -193,7 +193,7 @@ int evaluate(const Options& o, const std::string& state) {
   const GivenState given = read_state(state, *mechanism);
   const StateValues values = evaluate_state(*mechanism, given);
   const std::string json = Document(*mechanism, given, values).write();
-  if (!o.out.empty() && !write_result(o.out / "evaluate.json", json)) return run_failed;
+  if (!o.out.empty() && !write_results({{o.out / "evaluate.json", json}})) return run_failed;
   if (o.out.empty() || o.json) std::fputs(json.c_str(), stdout);
   if (!o.out.empty() && !o.quiet)
     std::fprintf(stderr, "momenta: wrote %s\n", (o.out / "evaluate.json").c_str());

@@ -47,6 +47,7 @@ int index_verb(const Options& o, const std::string& forms, const std::string& st
   std::stringstream list(forms);
   for (std::string form; std::getline(list, form, ',');) names.push_back(form);
   const Start start = point(*mechanism, state);
+  watch_signals();
   IndexStudy study;
   {
     ProgressLine line(o.quiet);
@@ -56,7 +57,7 @@ int index_verb(const Options& o, const std::string& forms, const std::string& st
     });
   }
   const std::string json = index_json(study).dump(2) + "\n";
-  if (!o.out.empty() && !write_result(o.out / "index.json", json)) return run_failed;
+  if (!o.out.empty() && !write_results({{o.out / "index.json", json}})) return run_failed;
   if (o.json)
     std::fputs(json.c_str(), stdout);
   else if (!o.quiet)

@@ -4,7 +4,10 @@
 #include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/study/environment.h>
 
+#include <cerrno>
+#include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <exception>
 #include <new>
 #include <stdexcept>
@@ -15,8 +18,9 @@
 
 using namespace momenta::program;
 
-int main(int argc, char** argv) {
-  watch_signals();
+namespace {
+
+int answer(int argc, char** argv) {
   Options o;
   for (int i = 0; i < argc; ++i) o.command += (i == 0 ? "momenta" : std::string(" ") + argv[i]);
   DriftOptions d;
@@ -274,4 +278,15 @@ int main(int argc, char** argv) {
     return run_failed;
   }
   return bad_input;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  // A file that may grow no further is a sentence, like a full disk.
+  std::signal(SIGXFSZ, SIG_IGN);
+  const int status = answer(argc, argv);
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return status;
+  std::fprintf(stderr, "momenta: standard output cannot be written: %s\n", std::strerror(errno));
+  return status == done ? run_failed : status;
 }

@@ -55,9 +55,9 @@ int modes(const Options& o, const ModesOptions& m) {
     Assembly at = a;
     at.start.q = result.equilibrium.q;
     describe(study, o, mechanism, at);
-    if (!write_result(o.out / "modes.csv", modes_csv(result)) ||
-        !write_result(o.out / "modes.json", text) ||
-        !write_result(o.out / "index.html", modes_page(study, result)))
+    if (!write_results({{o.out / "modes.csv", modes_csv(result)},
+                        {o.out / "modes.json", text},
+                        {o.out / "index.html", modes_page(study, result)}}))
       return run_failed;
   }
   if (o.json)

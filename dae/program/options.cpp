@@ -160,7 +160,8 @@ void describe(StudyResult& study, const Options& o, const Mechanism& mechanism,
   study.plan = mechanism.plan_lines();
   if (!o.out.empty()) show(study, mechanism, assembly);
   study.environment = environment();
-  if (interrupted() && !study.runs.empty()) study.runs.back().reason = "interrupted";
+  if (interrupted() && !study.runs.empty() && study.runs.back().status != "done")
+    study.runs.back().reason = "interrupted";
 }
 
 int film_intervals_of(const Mechanism& mechanism, const Options& o, std::size_t runs) {
@@ -223,26 +224,29 @@ void close(Journal* journal, std::size_t runs, bool over, const Options& o) {
   if (over) journal->remove();
 }
 
-bool write_result(const std::filesystem::path& file, std::string_view content) {
-  const auto problem = atomic_write(file, content);
+bool write_results(const std::vector<ResultFile>& files) {
+  const auto problem = atomic_write(files);
   if (problem) std::fprintf(stderr, "momenta: %s\n", problem->c_str());
   return !problem;
 }
 
 std::unique_ptr<TrajectoryFile> trajectory_file(const Options& o, const Mechanism& mechanism,
                                                 const RunSettings& settings) {
-  if (o.data != "hdf5") return nullptr;
-  if (!writes_hdf5())
+  const bool hdf5 = o.data == "hdf5";
+  if (hdf5 && !writes_hdf5())
     throw std::invalid_argument(
         "--data hdf5: this program was built without HDF5; expected --data csv, or a build with "
         "MOMENTA_HDF5=ON");
-  if (o.out.empty()) throw std::invalid_argument("--data hdf5: expected --out DIR for run.h5");
-  auto file = std::make_unique<TrajectoryFile>(
-      o.out / "run.h5", trajectory_columns(mechanism),
-      TrajectoryFile::Texts{{"scene", scene_text(mechanism.scene())},
-                            {"command", o.command},
-                            {"settings", key_of(settings)},
-                            {"environment", environment_json(environment()).dump()}});
+  if (hdf5 && o.out.empty())
+    throw std::invalid_argument("--data hdf5: expected --out DIR for run.h5");
+  if (o.out.empty()) return nullptr;
+  const auto columns = trajectory_columns(mechanism);
+  auto file = !hdf5 ? csv_trajectory(o.out / "trajectory.csv", columns)
+                    : hdf5_trajectory(o.out / "run.h5", columns,
+                                      {{"scene", scene_text(mechanism.scene())},
+                                       {"command", o.command},
+                                       {"settings", key_of(settings)},
+                                       {"environment", environment_json(environment()).dump()}});
   if (!file->problem().empty()) throw std::runtime_error(file->problem());
   return file;
 }
@@ -252,20 +256,21 @@ void expect_place_for_figures(const Options& o) {
     throw std::invalid_argument("--figures " + o.figures + ": expected --out DIR for them");
 }
 
-bool write_figures(const std::vector<Figure>& figures, const Options& o) {
-  for (const Figure& figure : figures)
-    if (!write_result(o.out / "figures" / (figure.name + ".svg"), figure.svg)) return false;
-  return true;
+void add_figures(std::vector<ResultFile>& files, std::vector<Figure> figures, const Options& o) {
+  for (Figure& figure : figures)
+    files.push_back({o.out / "figures" / (figure.name + ".svg"), std::move(figure.svg)});
 }
 
-int publish(const StudyResult& study, const std::string& words, const Options& o,
-            Journal* journal) {
+int publish(const StudyResult& study, const std::string& words, const Options& o, Journal* journal,
+            std::vector<ResultFile> files) {
   const std::string json = study_json(study).dump(2) + "\n";
-  if (!o.out.empty() && (!write_result(o.out / "summary.json", json) ||
-                         !write_result(o.out / "study.csv", study_csv(study)) ||
-                         !write_result(o.out / "index.html", drift_page(study))))
-    return run_failed;
-  if (!o.figures.empty() && !write_figures(figures_of_study(study), o)) return run_failed;
+  if (!o.out.empty()) {
+    files.push_back({o.out / "summary.json", json});
+    files.push_back({o.out / "study.csv", study_csv(study)});
+    files.push_back({o.out / "index.html", drift_page(study)});
+    if (!o.figures.empty()) add_figures(files, figures_of_study(study), o);
+    if (!write_results(files)) return run_failed;
+  }
   close(journal, study.runs.size(), !interrupted(), o);
   if (o.json)
     std::fputs(json.c_str(), stdout);
@@ -283,8 +288,10 @@ bool interrupted() {
 }
 
 void watch_signals() {
-  std::signal(SIGINT, take_signal);
-  std::signal(SIGTERM, take_signal);
+  struct sigaction once {};
+  once.sa_handler = take_signal;
+  once.sa_flags = static_cast<int>(SA_RESETHAND | SA_RESTART);
+  for (const int number : {SIGINT, SIGTERM}) ::sigaction(number, &once, nullptr);
 }
 
 ProgressLine::ProgressLine(bool quiet) : active_(!quiet && isatty(STDERR_FILENO) != 0) {}

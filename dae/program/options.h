@@ -3,6 +3,7 @@
 
 #include <momenta/core/scene/read_scene.h>
 #include <momenta/dae/assembly.h>
+#include <momenta/dae/report/atomic_write.h>
 #include <momenta/dae/report/figure.h>
 #include <momenta/dae/report/json.h>
 #include <momenta/dae/report/trajectory_file.h>
@@ -68,25 +69,26 @@ void show(StudyResult& study, const Mechanism& mechanism, const Assembly& assemb
 /// "a,b,c" as a list.
 std::vector<std::string> names_in(const std::string& list);
 
-/// Writes a result file; on failure prints the sentence and returns false.
-bool write_result(const std::filesystem::path& file, std::string_view content);
+/// Writes result files, all or none; on failure prints the sentence and returns false.
+bool write_results(const std::vector<ResultFile>& files);
 
-/// The run's trajectory as HDF5, where that is asked for. @throws std::invalid_argument;
-/// std::runtime_error where it cannot be written
+/// The run's trajectory, where --out asks for one, as text or as HDF5. @throws
+/// std::invalid_argument; std::runtime_error where it cannot be written
 std::unique_ptr<TrajectoryFile> trajectory_file(const Options& o, const Mechanism& mechanism,
                                                 const RunSettings& settings);
 
 /// Where figures are asked for there must be a place for them. @throws std::invalid_argument
 void expect_place_for_figures(const Options& o);
-/// Writes them to figures/ where --out says; as write_result.
-bool write_figures(const std::vector<Figure>& figures, const Options& o);
+/// Adds them, as files of figures/ where --out says.
+void add_figures(std::vector<ResultFile>& files, std::vector<Figure> figures, const Options& o);
 
 /// Finished runs of this study, kept beside its results until it is over; null without --out.
 std::unique_ptr<Journal> keep_runs(const Options& o);
 
-/// Writes a study's files where --out says, prints its table and `words`, or its JSON, and returns
-/// the exit status.
-int publish(const StudyResult& study, const std::string& words, const Options& o, Journal* journal);
+/// Writes a study's files, `files` among them, where --out says, prints its table and `words`, or
+/// its JSON, and returns the exit status.
+int publish(const StudyResult& study, const std::string& words, const Options& o, Journal* journal,
+            std::vector<ResultFile> files = {});
 
 /// Refuses a directory that holds results of another verb than the one that writes `own`.
 /// @throws std::invalid_argument
@@ -95,9 +97,11 @@ void expect_own_results(const std::filesystem::path& out, std::string_view own);
 /// study is over and written.
 void close(Journal* journal, std::size_t runs, bool over, const Options& o);
 
-/// True once SIGINT or SIGTERM came: runs stop at their next sample and keep what they have.
-bool interrupted();
+/// From now on SIGINT and SIGTERM are noted, for verbs that look whether one came; a second one of
+/// its kind ends the program where it stands.
 void watch_signals();
+/// True once one came: runs stop at their next step and keep what they have.
+bool interrupted();
 
 /// One line on standard error that rewrites itself on a terminal, and stays silent elsewhere.
 class ProgressLine {

@@ -1,10 +1,13 @@
 #include <momenta/dae/report/csv.h>
 #include <momenta/dae/report/number_text.h>
 #include <momenta/dae/report/page.h>
+#include <momenta/dae/report/part_file.h>
 #include <momenta/dae/report/table.h>
 #include <momenta/dae/study/run_form.h>
 
 #include <cstdio>
+#include <map>
+#include <stdexcept>
 
 #include "options.h"
 
@@ -29,6 +32,66 @@ void print_passages(const RunResult& result) {
     }
 }
 
+/// "C.lambda1, C.lambda2", and of the samples that they are not unique at how many.
+void print_undetermined(const RunResult& result) {
+  std::map<long, std::string> by_samples;
+  for (const RunResult::Undetermined& u : result.undetermined) {
+    std::string& names = by_samples[u.samples];
+    names += (names.empty() ? "" : ", ") + u.column.substr(0, u.column.rfind(" ["));
+  }
+  for (const auto& [samples, names] : by_samples)
+    std::printf("\nNot unique at %s: %s\n",
+                samples == static_cast<long>(result.series.t.size())
+                    ? "any sample"
+                    : (std::to_string(samples) + " samples").c_str(),
+                names.c_str());
+}
+
+/// The files of a run: the trajectory, written while it goes on, and a summary for which there is
+/// room whatever happens.
+class RunFiles {
+ public:
+  /// @throws std::invalid_argument, std::runtime_error
+  RunFiles(const Options& o, const Mechanism& mechanism, const RunSettings& settings)
+      : o_(o), trajectory_(trajectory_file(o, mechanism, settings)) {
+    if (!trajectory_) return;
+    summary_.emplace(o.out / "summary.json");
+    if (!summary_->reserve(summary_room)) throw std::runtime_error(summary_->problem());
+  }
+
+  bool write(const std::vector<double>& row) { return !trajectory_ || trajectory_->write(row); }
+  bool flush() { return !trajectory_ || trajectory_->flush(); }
+  /// Why rows could not be written; empty: all were.
+  std::string problem() const { return trajectory_ ? trajectory_->problem() : ""; }
+
+  /// Gives all files their names, those of `others` too where there is room for them; else prints
+  /// the sentence and returns false.
+  bool finish(const std::string& summary, const std::vector<ResultFile>& others) {
+    if (!trajectory_) return true;
+    const bool told = !problem().empty();  // as the reason why the run stopped
+    bool all = trajectory_->finish(summary) || (!told && complain(problem()));
+    summary_->append(summary);
+    all = (summary_->put_in_place() || complain(summary_->problem())) && all;
+    // What stands there of an earlier run would contradict them.
+    std::error_code ignored;
+    std::filesystem::remove(o_.out / (o_.data == "hdf5" ? "trajectory.csv" : "run.h5"), ignored);
+    if (write_results(others)) return all;
+    for (const ResultFile& other : others) std::filesystem::remove(other.path, ignored);
+    return false;
+  }
+
+ private:
+  static constexpr std::size_t summary_room = 1 << 16;
+  static bool complain(const std::string& sentence) {
+    std::fprintf(stderr, "momenta: %s\n", sentence.c_str());
+    return false;
+  }
+
+  const Options& o_;
+  std::unique_ptr<TrajectoryFile> trajectory_;
+  std::optional<PartFile> summary_;
+};
+
 }  // namespace
 
 int run(const Options& o) {
@@ -43,54 +106,48 @@ int run(const Options& o) {
   request.max_cpu_seconds = o.cpu_limit.value_or(0);
   request.film_intervals = film_intervals_of(*mechanism, o, 1);
   expect_own_results(o.out, "trajectory.csv");
-  const auto file = trajectory_file(o, *mechanism, s);
-  if (file) {
-    // What the page draws is a part of it; memory does not grow with the trajectory.
-    request.keep_every = 1 + s.samples / most_drawn;
-    request.on_row = [&](const std::vector<double>& row) { return file->write(row); };
-  }
+  RunFiles files(o, *mechanism, s);
+  // What the page draws is a part of it; memory does not grow with the trajectory.
+  if (o.data == "hdf5") request.keep_every = 1 + s.samples / most_drawn;
+  request.on_row = [&](const std::vector<double>& row) { return files.write(row); };
   ProgressLine line(o.quiet);
   request.progress = [&](double t) {
     line.show(s.form + "  t = " + std::to_string(t) + " s");
     return !interrupted();
   };
+  request.going_on = [] { return !interrupted(); };
+  watch_signals();
   StudyResult study;
   study.runs.push_back(run_form(*mechanism, a.start, request));
-  if (!interrupted()) time_runs(*mechanism, a.start, study.runs, 3);
+  RunResult& result = study.runs.front();
+  if (!files.flush()) result.status = "failed";
+  if (!interrupted()) time_runs(*mechanism, a.start, study.runs, 3, 3, {}, request.going_on);
   line.show("");
-  const RunResult& result = study.runs.front();
   study.reference = o.reference.string();
   describe(study, o, *mechanism, a);
-  if (interrupted())
-    study.runs.front().reason = "interrupted at t = " + std::to_string(result.stopped_at) + " s";
+  const std::string there = " at t = " + std::to_string(result.stopped_at) + " s";
+  if (!files.problem().empty())
+    result.reason = there.substr(1) + ": " + files.problem();
+  else if (interrupted() && result.status != "done")
+    result.reason = "interrupted" + there;
   auto json = summary_json(result, study.environment);
   json["assembly"] = {{"moved", a.moved}, {"branch", a.branch}};
   const std::string summary = json.dump(2) + "\n";
-  if (file && !file->finish(summary)) {
-    std::fprintf(stderr, "momenta: %s\n", file->problem().c_str());
-    return run_failed;
-  }
-  if (!o.out.empty() &&
-      (!(file || write_result(o.out / "trajectory.csv", trajectory_csv(result.trajectory))) ||
-       !write_result(o.out / "summary.json", summary) ||
-       !write_result(o.out / "index.html", run_page(study))))
-    return run_failed;
-  if (!o.out.empty()) {
-    // Of an earlier run in the other format.
-    std::error_code ignored;
-    std::filesystem::remove(o.out / (file ? "trajectory.csv" : "run.h5"), ignored);
-  }
-  if (!o.figures.empty() && !write_figures(figures_of_run(study), o)) return run_failed;
+  std::vector<ResultFile> others;
+  if (!o.out.empty()) others.push_back({o.out / "index.html", run_page(study)});
+  if (!o.figures.empty()) add_figures(others, figures_of_run(study), o);
+  const bool written = files.finish(summary, others);
   if (o.json) {
     std::fputs(summary.c_str(), stdout);
   } else if (!o.quiet) {
     std::fputs(drift_table(study).c_str(), stdout);
     print_passages(result);
+    print_undetermined(result);
     if (!a.branch.empty()) std::printf("Started from %s\n", a.branch.c_str());
   }
-  if (result.status == "done") return done;
-  std::fprintf(stderr, "momenta: the run stopped: %s\n", result.reason.c_str());
-  return run_failed;
+  if (result.status != "done")
+    std::fprintf(stderr, "momenta: the run stopped: %s\n", result.reason.c_str());
+  return written && result.status == "done" ? done : run_failed;
 }
 
 }  // namespace momenta::program

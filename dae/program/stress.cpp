@@ -69,6 +69,7 @@ int stress(const Options& o, const StressOptions& options) {
                         : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   expect_own_results(o.out, "stress.json");
   const auto journal = keep_runs(o);
+  watch_signals();
   request.journal = journal.get();
   StressResult result;
   {
@@ -80,11 +81,13 @@ int stress(const Options& o, const StressOptions& options) {
   }
   result.command = o.command;
   const std::string json = stress_json(result).dump(2) + "\n";
-  if (!o.out.empty() && (!write_result(o.out / "stress.json", json) ||
-                         !write_result(o.out / "stress.csv", stress_csv(result)) ||
-                         !write_result(o.out / "index.html", stress_page(result, title))))
-    return run_failed;
-  if (!o.figures.empty() && !write_figures(figures_of_stress(result), o)) return run_failed;
+  if (!o.out.empty()) {
+    std::vector<ResultFile> files{{o.out / "stress.json", json},
+                                  {o.out / "stress.csv", stress_csv(result)},
+                                  {o.out / "index.html", stress_page(result, title)}};
+    if (!o.figures.empty()) add_figures(files, figures_of_stress(result), o);
+    if (!write_results(files)) return run_failed;
+  }
   std::size_t runs = 0;
   for (const LadderResult& ladder : result.ladders)
     for (const auto& climb : ladder.runs) runs += climb.size();

@@ -82,6 +82,7 @@ std::string toml_of(const Options& o) {
 
 int sweep(const Options& o, const SweepOptions& s) {
   Ranks ranks;
+  watch_signals();
   SweepRequest request;
   request.text = toml_of(o);
   request.file = o.scene.string();
@@ -127,8 +128,8 @@ int sweep(const Options& o, const SweepOptions& s) {
   json["threads"] = threads;
   json["environment"] = environment_json(environment());
   const std::string summary = json.dump(2) + "\n";
-  if (!o.out.empty() && (!write_result(o.out / "sweep.csv", sweep_csv(request, finished.cases())) ||
-                         !write_result(o.out / "sweep.json", summary)))
+  if (!o.out.empty() && !write_results({{o.out / "sweep.csv", sweep_csv(request, finished.cases())},
+                                        {o.out / "sweep.json", summary}}))
     return run_failed;
   close(journal.get(), count, true, o);
   if (o.json)

@@ -51,7 +51,7 @@ int view(const Options& o) {
     std::fputs(page.c_str(), stdout);
     return done;
   }
-  if (!write_result(o.out / "index.html", page)) return run_failed;
+  if (!write_results({{o.out / "index.html", page}})) return run_failed;
   if (!o.quiet) std::fprintf(stderr, "momenta: wrote %s\n", (o.out / "index.html").c_str());
   return done;
 }

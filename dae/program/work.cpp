@@ -49,6 +49,7 @@ int work(const Options& o, const WorkOptions& w) {
   request.max_cpu_seconds = o.cpu_limit.value_or(10);
   expect_own_results(o.out, "study.csv");
   const auto journal = keep_runs(o);
+  watch_signals();
   request.journal = journal.get();
   StudyResult study;
   study.drift_study = false;
@@ -79,10 +80,10 @@ int work(const Options& o, const WorkOptions& w) {
     study.runs = run_work_study(*mechanism, a.start, request);
   }
   describe(study, o, *mechanism, a);
+  std::vector<ResultFile> files;
   const bool own = o.reference.empty() && reference;
-  if (own && !o.out.empty() && !write_result(o.out / "reference.csv", reference->csv()))
-    return run_failed;
-  return publish(study, advice(study), o, journal.get());
+  if (own && !o.out.empty()) files.push_back({o.out / "reference.csv", reference->csv()});
+  return publish(study, advice(study), o, journal.get(), std::move(files));
 }
 
 }  // namespace momenta::program

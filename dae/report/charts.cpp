@@ -44,6 +44,16 @@ constexpr std::array<Quantity, 7> quantities{{{"rad", "angles", "Angles", "angle
                                               {"N", "forces", "Loop forces λ", "force"},
                                               {"N m", "moments", "Loop moments λ", "moment"}}};
 
+/// What a curve's name has to say of loop forces that are not unique.
+std::string remark(const RunResult& run, const std::string& column) {
+  for (const RunResult::Undetermined& u : run.undetermined)
+    if (u.column == column)
+      return u.samples == static_cast<long>(run.series.t.size())
+                 ? " (not unique)"
+                 : " (not unique at " + std::to_string(u.samples) + " samples)";
+  return "";
+}
+
 }  // namespace
 
 const std::vector<History>& histories() {
@@ -91,14 +101,16 @@ std::vector<Chart> charts_of_run(const RunResult& run) {
     const std::string& label = trajectory.columns[c];
     const auto bracket = label.rfind(" [");
     const std::string name = label.substr(0, bracket);
-    if (name == "energy" || name == "position_drift" || name == "velocity_drift") continue;
+    if (name == "energy" || name == "position_drift" || name == "velocity_drift" ||
+        name.ends_with(".undetermined"))
+      continue;
     by_unit[label.substr(bracket + 2, label.size() - bracket - 3)].push_back(c);
   }
   for (const Quantity& q : quantities) {
     Chart chart = over_time(q.key, q.title, std::string(q.axis) + " [" + q.unit + "]", q.unit);
     for (const std::size_t c : by_unit[q.unit]) {
       const std::string& label = trajectory.columns[c];
-      Curve curve{label.substr(0, label.rfind(" [")),
+      Curve curve{label.substr(0, label.rfind(" [")) + remark(run, label),
                   {},
                   {},
                   sign_in_turn(chart.curves.size()),

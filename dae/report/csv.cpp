@@ -109,18 +109,19 @@ std::string study_csv(const StudyResult& study) {
   return text;
 }
 
-std::string trajectory_csv(const Trajectory& trajectory) {
+std::string trajectory_head(const std::vector<std::string>& columns) {
   std::vector<std::string> cells;
-  for (const std::string& column : trajectory.columns) cells.push_back(csv_cell(column));
-  std::string text = csv_line(cells);
-  for (const auto& row : trajectory.rows) {
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      if (i > 0) text += ',';
-      text += round_trip(row[i]);
-    }
-    text += "\n";
+  for (const std::string& column : columns) cells.push_back(csv_cell(column));
+  return csv_line(cells);
+}
+
+std::string trajectory_line(const std::vector<double>& row) {
+  std::string line;
+  for (std::size_t i = 0; i < row.size(); ++i) {
+    if (i > 0) line += ',';
+    line += round_trip(row[i]);
   }
-  return text;
+  return line + "\n";
 }
 
 }  // namespace momenta

@@ -13,8 +13,9 @@ namespace momenta {
 /// One row per run: settings, status, drift, energy, error, counters, times.
 std::string study_csv(const StudyResult&);
 
-/// Header from the columns, one row per output time.
-std::string trajectory_csv(const Trajectory&);
+/// The lines of trajectory.csv: its header from the columns, and one of an output time.
+std::string trajectory_head(const std::vector<std::string>& columns);
+std::string trajectory_line(const std::vector<double>& row);
 
 /// The text as one cell: quoted when it holds a comma, a quote or a line break, its quotes doubled.
 std::string csv_cell(std::string_view text);

@@ -68,6 +68,11 @@ Json summary_json(const RunResult& run, const Environment& environment) {
   for (const auto& passage : run.passages)
     json["passages"].push_back(
         {{"t", passage.t}, {"pivot", passage.pivot}, {"ambiguous", passage.ambiguous}});
+  // Null where no trajectory was kept, and nobody looked.
+  json["undetermined"] = run.trajectory.columns.empty() ? Json() : Json::array();
+  for (const auto& u : run.undetermined)
+    json["undetermined"].push_back(
+        {{"column", u.column}, {"samples", u.samples}, {"from", u.from}, {"to", u.to}});
   json["environment"] = environment_json(environment);
   return json;
 }

@@ -4,9 +4,12 @@
 
 #include <momenta/dae/form/ode_form.h>
 #include <momenta/dae/measure/growth.h>
+#include <momenta/dae/measure/multipliers.h>
 #include <momenta/dae/study/run_form.h>
 
+#include <algorithm>
 #include <array>
+#include <optional>
 
 namespace momenta {
 
@@ -24,7 +27,11 @@ class Looker {
         markers_(static_cast<std::size_t>(6 * static_cast<int>(mechanism.scene().markers.size()))),
         loses_energy_(loses_energy(mechanism.scene())) {
     if (request.keep_trajectory) result.trajectory.columns = trajectory_columns(mechanism);
-    if (mechanism.m() > 0) solver_ = make_loop_solver(mechanism, *e_);
+    if (mechanism.m() > 0) {
+      solver_ = make_loop_solver(mechanism, *e_);
+      unique_.emplace(mechanism, *e_, *solver_);
+      all_unique_.assign(static_cast<std::size_t>(mechanism.m()), true);
+    }
     length_ = length_of(mechanism.scene());
   }
 
@@ -105,7 +112,7 @@ class Looker {
         power_[i] = e_->lost_power(now_.u.data());
       }
     }
-    return true;
+    return !request_.going_on || request_.going_on();
   }
 
   void finish() {
@@ -256,8 +263,34 @@ class Looker {
       if (!solver_->acceleration(t, now_.q.data(), now_.u.data(), nullptr, 0, 0, udot.data(),
                                  lambda.data()))
         lambda.setConstant(not_measured);
-      row_.insert(row_.end(), lambda.begin(), lambda.end());
+      loop_forces(t, lambda);
     }
+  }
+
+  /// λ of each loop, and how many of them are not unique.
+  void loop_forces(double t, const Eigen::VectorXd& lambda) {
+    const bool found = !std::isnan(lambda[0]);
+    const std::vector<bool>& unique =
+        found ? unique_->find(t, now_.q.data(), now_.u.data(), lambda.data()) : all_unique_;
+    const auto& rows = mechanism_.rows();
+    int not_unique = 0;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      if (!unique[i]) note_undetermined(row_.size(), t);
+      row_.push_back(lambda[static_cast<Eigen::Index>(i)]);
+      not_unique += !unique[i];
+      if (i + 1 < rows.size() && rows[i + 1].loop == rows[i].loop) continue;
+      row_.push_back(found ? not_unique : not_measured);
+      not_unique = 0;
+    }
+  }
+  void note_undetermined(std::size_t column, double t) {
+    const std::string& label = result_.trajectory.columns[column];
+    auto& all = result_.undetermined;
+    auto at =
+        std::find_if(all.begin(), all.end(), [&](const auto& u) { return u.column == label; });
+    if (at == all.end()) at = all.insert(at, {label, 0, t, t});
+    ++at->samples;
+    at->to = t;
   }
 
   void compare(double t) {
@@ -282,6 +315,8 @@ class Looker {
   RunResult& result_;
   std::unique_ptr<Evaluation<double>> e_;
   std::unique_ptr<LoopSolver> solver_;
+  std::optional<UniqueMultipliers> unique_;
+  std::vector<bool> all_unique_;
   Eigen::VectorXd phi_, middle_;
   std::vector<double> markers_, row_, state_;
   Snapshot now_;

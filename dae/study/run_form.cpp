@@ -173,9 +173,12 @@ std::string ambiguous_from(double t) {
 }
 
 void time_runs(const Mechanism& mechanism, const Start& start, std::vector<RunResult>& runs,
-               int rounds, double budget, const std::function<bool(std::size_t)>& going_on) {
+               int rounds, double budget, const std::function<bool(std::size_t)>& going_on,
+               const std::function<bool()>& at_step) {
   std::vector<std::vector<double>> cpu(runs.size()), wall(runs.size());
   std::vector<double> spent(runs.size(), 0.0);
+  Observer observer;
+  if (at_step) observer.step = [&](double, double, const Interpolant&) { return at_step(); };
   for (int round = 0; round < most_rounds; ++round)
     for (std::size_t i = 0; i < runs.size(); ++i) {
       if (runs[i].status != "done" || spent[i] > budget) continue;
@@ -184,7 +187,8 @@ void time_runs(const Mechanism& mechanism, const Start& start, std::vector<RunRe
       RunSettings settings = runs[i].settings;
       Runner runner(mechanism, start, settings, 0);
       const double wall_start = wall_now(), cpu_start = thread_seconds();
-      const IntegrationResult run = runner.integrate({settings.end_time}, {});
+      const IntegrationResult run = runner.integrate({settings.end_time}, observer);
+      if (at_step && !at_step()) return;
       cpu[i].push_back(thread_seconds() - cpu_start);
       wall[i].push_back(wall_now() - wall_start);
       spent[i] += cpu[i].back();

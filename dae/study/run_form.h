@@ -19,8 +19,10 @@ struct RunRequest {
   /// The film has the start and this many equal intervals more; a run that fails, fewer. 0: none.
   int film_intervals = 0;
   double max_cpu_seconds = 0;  ///< 0: none
-  /// Called now and then with the simulated time; return false to stop the run.
+  /// Called with the time of each sample; return false to stop the run.
   std::function<bool(double t)> progress;
+  /// Asked after each step; false stops the run.
+  std::function<bool()> going_on;
 };
 
 /// Columns of trajectory.csv: t, q, u, markers, energy, drifts, loop forces.
@@ -37,10 +39,12 @@ std::string ambiguous_from(double t);
 /// Times finished runs with nobody looking: rounds over all of them, so that a drifting clock hurts
 /// all alike, and medians in cpu_s, wall_s; counters become those of such a run. Short runs get up
 /// to 40 rounds. A run is left out of further rounds once its own time passes `budget` seconds of
-/// CPU.
+/// CPU. `going_on` is asked before each run, with its number, `at_step` after each step; false ends
+/// it all.
 void time_runs(const Mechanism& mechanism, const Start& start, std::vector<RunResult>& runs,
                int rounds = 5, double budget = 3,
-               const std::function<bool(std::size_t)>& going_on = {});
+               const std::function<bool(std::size_t)>& going_on = {},
+               const std::function<bool()>& at_step = {});
 
 /// The integrator a form takes when none is named: for DAE forms ida, else that of the order which
 /// costs least at such tolerances: dp5 from 1e-4 up, vern9 from 1e-9 down, dop853 between.

@@ -72,13 +72,20 @@ void list(const Each& each,
 }
 
 template <class Each>
+void list(const Each& each, auto&& s) requires
+    std::is_same_v<std::remove_cvref_t<decltype(s)>, RunResult::Undetermined> {
+  auto& [column, samples, from, to] = s;
+  each("column", column), each("samples", samples), each("from", from), each("to", to);
+}
+
+template <class Each>
 void list(const Each& each,
           auto&& s) requires std::is_same_v<std::remove_cvref_t<decltype(s)>, RunResult> {
   auto& [scene, settings, status, reason, stopped_at, counters, partitions, jacobian, linear_solver,
          cpu_s, wall_s, repeats, position_drift_max, velocity_drift_max, between_steps_max,
          position_growth, velocity_growth, energy_error_max, kinetic_energy_max, energy_scale,
-         position_error_max, velocity_error_max, faded_rows, passages, least_pivot, series,
-         trajectory, film] = s;
+         position_error_max, velocity_error_max, faded_rows, passages, least_pivot, undetermined,
+         series, trajectory, film] = s;
   each("scene", scene), each("settings", settings), each("status", status), each("reason", reason);
   each("stopped_at", stopped_at), each("counters", counters), each("partitions", partitions);
   each("jacobian", jacobian), each("linear_solver", linear_solver);
@@ -90,6 +97,7 @@ void list(const Each& each,
   each("energy_scale", energy_scale);
   each("position_error_max", position_error_max), each("velocity_error_max", velocity_error_max);
   each("faded_rows", faded_rows), each("passages", passages), each("least_pivot", least_pivot);
+  each("undetermined", undetermined);
   each("series", series), each("film", film);
   static_cast<void>(trajectory);  // no study keeps one
 }

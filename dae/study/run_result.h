@@ -99,6 +99,13 @@ struct RunResult {
   };
   std::vector<Passage> passages;
   double least_pivot = not_measured;  ///< of the whole run
+  /// Loop forces of the trajectory that are not unique (measure/multipliers.h), where one is kept.
+  struct Undetermined {
+    std::string column;
+    long samples = 0;         ///< how many
+    double from = 0, to = 0;  ///< the first and the last of them [s]
+  };
+  std::vector<Undetermined> undetermined;
   Series series;
   Trajectory trajectory;
   Film film;  ///< empty where none was asked for

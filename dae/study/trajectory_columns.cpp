@@ -42,7 +42,11 @@ std::vector<std::string> trajectory_columns(const Mechanism& mechanism) {
   const std::set<std::string> of_angles = couplers_of_angles(mechanism);
   std::string loop;
   int number = 0;
+  const auto end_loop = [&] {
+    if (number > 0) columns.push_back(loop + ".undetermined [1]");
+  };
   for (const auto& row : mechanism.rows()) {
+    if (row.loop != loop) end_loop();
     number = row.loop == loop ? number + 1 : 1;
     loop = row.loop;
     const bool couple = row.what.find("against") != std::string::npos ||
@@ -50,6 +54,7 @@ std::vector<std::string> trajectory_columns(const Mechanism& mechanism) {
                         (row.what.rfind("coupling", 0) == 0 && of_angles.count(loop) > 0);
     columns.push_back(loop + ".lambda" + std::to_string(number) + (couple ? " [N m]" : " [N]"));
   }
+  end_loop();
   return columns;
 }
 

@@ -12,8 +12,6 @@
 //
 // Nothing here knows of recursions, transforms or quasi-velocity equations. In canonical trees
 // lagrange_rates() gives ṗ once more as ∂L/∂q + Q.
-//
-// The bodies of these functions are in dense_lagrangian_sums.h, compiled once per test program.
 
 #include <momenta/core/scalar/dual.h>
 #include <momenta/core/scene/scene.h>

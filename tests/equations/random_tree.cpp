@@ -11,11 +11,13 @@ Eigen::Vector3d RandomTree::direction() {
 }
 
 Eigen::Quaterniond RandomTree::turn() {
-  return Eigen::Quaterniond(Eigen::AngleAxisd(uniform(-3.1, 3.1), direction()));
+  const Eigen::Vector3d axis = direction();
+  return Eigen::Quaterniond(Eigen::AngleAxisd(uniform(-3.1, 3.1), axis));
 }
 
 Eigen::Matrix3d RandomTree::inertia(double mass) {
-  Eigen::Vector3d edge(uniform(0.2, 1), uniform(0.2, 1), uniform(0.2, 1));
+  const double z = uniform(0.2, 1), y = uniform(0.2, 1), x = uniform(0.2, 1);
+  Eigen::Vector3d edge(x, y, z);
   edge = edge.cwiseAbs2();
   const Eigen::Vector3d moments =
       mass / 12 * Eigen::Vector3d(edge.y() + edge.z(), edge.z() + edge.x(), edge.x() + edge.y());
@@ -144,9 +146,10 @@ JointSpec RandomTree::joint(const TreeRecipe& recipe, int k) {
       break;
     case Placing::right_angles:
       for (int i = 0; i < 3; ++i) j.origin_parent[i] = below(3) - 1;
-      j.rotation = Eigen::Quaterniond(
-          Eigen::AngleAxisd(below(4) * std::acos(0.0), Eigen::Vector3d::Unit(below(3))));
-      j.axis = (chance(0.5) ? 1 : -1) * Eigen::Vector3d::Unit(below(3));
+      j.axis = Eigen::Vector3d::Unit(below(3));
+      j.rotation = Eigen::AngleAxisd(below(4) * std::acos(0.0), j.axis);
+      j.axis = Eigen::Vector3d::Unit(below(3));
+      if (!chance(0.5)) j.axis = -j.axis;
       break;
     case Placing::degenerate:
       // The scene's axes stay nearly parallel, so axes do too; offsets along them, across, none.

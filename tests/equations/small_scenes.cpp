@@ -49,7 +49,10 @@ void add_loop(RandomTree& random, Scene& s, bool planar) {
     level(l, s, tree, normal);
   }
   if (random.chance(0.6)) close(l, s, build_tree(s));
-  if (random.chance(0.3)) drive_loop(random, s, l, random.below(8), random.below(8));
+  if (random.chance(0.3)) {
+    const int origins = random.below(8), coordinates = random.below(8);
+    drive_loop(random, s, l, coordinates, origins);
+  }
   s.loops.push_back(l);
   if (random.chance(0.2)) {
     l.name += "again";

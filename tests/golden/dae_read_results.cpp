@@ -197,6 +197,32 @@ TEST_F(Results, OfAStoppedRunKeepItsSamples) {
   EXPECT_GT(t.back(), summary["stopped_at"].get<double>() - 0.02);
 }
 
+TEST_F(Results, WithoutRoomKeepWholeChunks) {
+  const fs::path out = folder_ / "limited";
+  // Files of at most 1.5 MB: three chunks of 4096 rows and 15 columns.
+  const Outcome o =
+      call("run '" + example("four_bar") +
+               "' --quiet --data hdf5 --end 100 --samples 100000 --out '" + out.string() + "'",
+           "/dev/null", "ulimit -f 3000; ");
+  EXPECT_EQ(o.status, 1);
+  EXPECT_NE(o.err.find("run.h5: File too large"), std::string::npos) << o.err;
+  EXPECT_FALSE(fs::exists(out / "run.h5.part"));
+  const hid_t file = H5Fopen((out / "run.h5").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+  ASSERT_GE(file, 0);
+  const std::vector<double> t = dataset(file, "trajectory/t"), q = dataset(file, "trajectory/C.q");
+  const auto told = nlohmann::json::parse(attribute(file, "/", "summary"));
+  H5Fclose(file);
+  ASSERT_GT(t.size(), 0u);
+  EXPECT_EQ(t.size() % 4096, 0u);
+  EXPECT_EQ(q.size(), t.size());
+  EXPECT_NEAR(t.back(), static_cast<double>(t.size() - 1) * 1e-3, 1e-12);
+  EXPECT_NE(q.back(), 0);
+  const auto summary = nlohmann::json::parse(text_of(out / "summary.json"));
+  EXPECT_EQ(summary["status"], "failed");
+  EXPECT_NE(summary["reason"].get<std::string>().find("File too large"), std::string::npos);
+  EXPECT_EQ(told, summary);
+}
+
 TEST_F(Results, OfAKilledRunKeepWholeChunks) {
   const fs::path out = folder_ / "killed";
   // 14 columns: chunks of 4096 rows.

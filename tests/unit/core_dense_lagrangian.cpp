@@ -1,19 +1,12 @@
-// The slow twin, compiled here for all tests, against a slider-pendulum by hand.
+// The slow twin against a slider-pendulum by hand.
 
-#include "equations/dense_lagrangian_sums.h"
+#include "equations/dense_lagrangian.h"
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
 
 namespace momenta {
 namespace equations {
-
-template auto DenseLagrangian::moving(const Real&, const List<Real>&, const List<Real>&, bool) const
-    -> List<Moving<Real>>;
-template Real DenseLagrangian::kinetic_energy(const Real&, const List<Real>&,
-                                              const List<Real>&) const;
-template Real DenseLagrangian::potential_energy(const Real&, const List<Real>&) const;
-
 namespace {
 
 /// A cart of mass M on x and a point of mass m on a massless bar of length l, angle θ from below:

@@ -1,6 +1,5 @@
 // Loops by sweeps against Φ of positions alone, off the manifold, at random states of random trees.
 
-#include "equations/dense_lagrangian_sums.h"
 #include "equations/dense_loops.h"
 #include "equations/random_loops.h"
 #include "equations/tolerance.h"

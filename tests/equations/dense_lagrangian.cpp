@@ -1,6 +1,4 @@
-#pragma once
-// The sums over bodies of dense_lagrangian.h. Nested dual numbers are slow to compile: one file of
-// a test program includes this, for core tests unit/core_dense_lagrangian.cpp.
+// The sums over bodies. Nested dual numbers are slow to compile: here, once for all programs.
 
 #include "equations/dense_lagrangian.h"
 
@@ -454,5 +452,11 @@ auto DenseLagrangian::poses(Real t, const Eigen::VectorXd& q) const -> List<Eige
   }
   return all;
 }
+
+template auto DenseLagrangian::moving(const Real&, const List<Real>&, const List<Real>&, bool) const
+    -> List<Moving<Real>>;
+template Real DenseLagrangian::kinetic_energy(const Real&, const List<Real>&,
+                                              const List<Real>&) const;
+template Real DenseLagrangian::potential_energy(const Real&, const List<Real>&) const;
 
 }  // namespace momenta::equations

@@ -1,0 +1,55 @@
+#include <momenta/dae/kkt/axis_scale.h>
+#include <momenta/dae/measure/multipliers.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+namespace momenta {
+
+UniqueMultipliers::UniqueMultipliers(const Mechanism& mechanism, Evaluation<double>& e,
+                                     LoopSolver& solver)
+    : mechanism_(mechanism),
+      e_(e),
+      solver_(solver),
+      tells_(mechanism.kkt() == KktChoice::sweeps || filters_pivots(mechanism)),
+      centre_(static_cast<std::size_t>(mechanism.m())),
+      moved_(centre_.size()),
+      udot_(static_cast<std::size_t>(mechanism.nv())),
+      unique_(centre_.size(), true) {
+  std::mt19937 random(1);  // the same direction every time
+  std::uniform_real_distribution<double> size(0.5, 1);
+  for (std::size_t i = 0; i < centre_.size(); ++i)
+    direction_.push_back(random() % 2 ? size(random) : -size(random));
+}
+
+const std::vector<bool>& UniqueMultipliers::find(double t, const double* q, const double* u,
+                                                 const double* lambda) {
+  unique_.assign(centre_.size(), true);
+  if (tells_ && solver_.pivots().faded == 0) return unique_;
+  // In accelerations, so that forces and moments compare: a row's λ times its W_ii.
+  e_.place(t, q);
+  const std::vector<double> scale = row_scales(mechanism_, e_);
+  double largest = 0;
+  for (std::size_t i = 0; i < scale.size(); ++i)
+    largest = std::max(largest, std::abs(lambda[i]) * scale[i]);
+  if (!(largest > 0)) largest = 1;
+  for (std::size_t i = 0; i < scale.size(); ++i) centre_[i] = direction_[i] * largest / scale[i];
+  if (!solver_.acceleration(t, q, u, centre_.data(), 0, 0, udot_.data(), moved_.data())) {
+    unique_.assign(unique_.size(), false);
+    return unique_;
+  }
+  double furthest = 0;
+  for (std::size_t i = 0; i < scale.size(); ++i) {
+    moved_[i] = std::abs(moved_[i] - lambda[i]) * scale[i];
+    furthest = std::max(furthest, moved_[i]);
+  }
+  // What regular rows move by is rounding over their pivots, which are above those that fade.
+  constexpr double takes_part = 1e-6;
+  if (furthest > takes_part * largest)
+    for (std::size_t i = 0; i < unique_.size(); ++i)
+      unique_[i] = !(moved_[i] > takes_part * furthest);
+  return unique_;
+}
+
+}  // namespace momenta

@@ -1,0 +1,38 @@
+#pragma once
+// Which of the loops' multipliers are unique at a state: found by the solver that gives them, at
+// the cost of solving once more, and only where it has met rows that say nothing.
+//
+// Where Φ_q has lost rank, λ of (3) is determined but for ν with Φ_qᵀν = 0. A solver then gives the
+// λ near a `centre` (kkt/kkt.h), and its weak pivots say nothing else: λ is affine in the centre,
+// and
+//
+//   λ(c) − λ(0) = P c,   the range of P the space of ν.
+//
+// For all c but those of a set of measure zero a component of P c vanishes only if that row of P
+// does, so one c taken at random tells: what does not move is unique.
+
+#include <momenta/dae/kkt/loop_solver.h>
+
+#include <vector>
+
+namespace momenta {
+
+class UniqueMultipliers {
+ public:
+  UniqueMultipliers(const Mechanism& mechanism, Evaluation<double>& e, LoopSolver& solver);
+
+  /// By row of Φ (m), at (t, q, u), of the `lambda` (m) that `solver` has just found there, centred
+  /// on zero. All false where the second solution fails. Cost: as of `lambda` where rows have
+  /// faded, or where (7) is solved by KLU, which can't tell; else nothing.
+  const std::vector<bool>& find(double t, const double* q, const double* u, const double* lambda);
+
+ private:
+  const Mechanism& mechanism_;
+  Evaluation<double>& e_;
+  LoopSolver& solver_;
+  bool tells_;  ///< the solver knows when rows have faded
+  std::vector<double> direction_, centre_, moved_, udot_;
+  std::vector<bool> unique_;
+};
+
+}  // namespace momenta

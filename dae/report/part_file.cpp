@@ -1,0 +1,107 @@
+#include <momenta/dae/report/atomic_write.h>
+#include <momenta/dae/report/part_file.h>
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <system_error>
+
+namespace momenta {
+
+PartFile::PartFile(std::filesystem::path file) : file_(std::move(file)), part_(file_) {
+  part_ += ".part";
+  const auto directory = file_.parent_path();
+  std::error_code failure;
+  if (!directory.empty()) made_directory_ = create_directories(directory, failure);
+  if (failure)
+    problem_ = "Cannot make the directory " + directory.string() + ": " + failure.message() + ".";
+  else
+    open();
+}
+
+PartFile::~PartFile() {
+  if (descriptor_ >= 0) {
+    ::unlink(part_.c_str());
+    ::close(descriptor_);
+  }
+  std::error_code not_empty;
+  if (made_directory_) std::filesystem::remove(file_.parent_path(), not_empty);
+}
+
+bool PartFile::open() {
+  // A lock, not O_EXCL: it goes with its process, whatever ends that. Where the file system knows
+  // no locks, two at once are the user's to avoid.
+  while (true) {
+    descriptor_ = ::open(part_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    if (descriptor_ < 0) return fail(errno);
+    struct stat own {
+    }, named{};
+    if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+      problem_ = "Cannot write " + file_.string() + ": another process is writing it.";
+    } else if (::fstat(descriptor_, &own) != 0 || ::stat(part_.c_str(), &named) != 0 ||
+               own.st_ino != named.st_ino || own.st_dev != named.st_dev) {
+      ::close(descriptor_);  // another process had it, and has just put it in place
+      continue;
+    } else if (::ftruncate(descriptor_, 0) != 0) {
+      fail(errno);
+    }
+    if (problem_.empty()) return true;
+    ::close(descriptor_);
+    descriptor_ = -1;
+    return false;
+  }
+}
+
+bool PartFile::fail(int error) {
+  if (problem_.empty())
+    problem_ =
+        "Cannot write " + file_.string() + ": " + std::generic_category().message(error) + ".";
+  return false;
+}
+
+bool PartFile::append(std::string_view text) {
+  if (!problem_.empty()) return false;
+  while (!text.empty()) {
+    const ssize_t written = ::write(descriptor_, text.data(), text.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) return fail(errno);
+    size_ += static_cast<std::size_t>(written);
+    text.remove_prefix(static_cast<std::size_t>(written));
+  }
+  return true;
+}
+
+bool PartFile::reserve(std::size_t bytes) {
+  if (!problem_.empty()) return false;
+  const int error = ::posix_fallocate(descriptor_, 0, static_cast<off_t>(bytes));
+  // EINVAL, EOPNOTSUPP: the file system can't promise room; there may be some all the same.
+  return error == 0 || error == EINVAL || error == EOPNOTSUPP || fail(error);
+}
+
+void PartFile::cut(std::size_t size) {
+  if (descriptor_ < 0) return;
+  size_ = size;
+  if (::ftruncate(descriptor_, static_cast<off_t>(size)) != 0) fail(errno);
+}
+
+bool PartFile::sync() {
+  if (!problem_.empty()) return false;
+  // EINVAL: the file system knows no fsync for this file; the rename is atomic all the same.
+  return ::fsync(descriptor_) == 0 || errno == EINVAL || fail(errno);
+}
+
+bool PartFile::put_in_place() {
+  if (descriptor_ < 0) return false;
+  if (::ftruncate(descriptor_, static_cast<off_t>(size_)) != 0) return fail(errno);  // reserved
+  const auto trouble = momenta::put_in_place(part_, file_);
+  ::close(descriptor_);
+  descriptor_ = -1;
+  if (!trouble) return true;
+  if (problem_.empty()) problem_ = *trouble;
+  return false;
+}
+
+}  // namespace momenta

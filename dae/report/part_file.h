@@ -1,0 +1,52 @@
+#pragma once
+// FILE.part, which becomes FILE once it is whole: a reader never sees half a result, nor does a
+// kill or a full disk leave one. What a killed process left of a FILE.part, the next that writes
+// FILE replaces.
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace momenta {
+
+/// Every call is false once something is amiss; problem() has the sentence with the file and the
+/// system's word for the cause.
+class PartFile {
+ public:
+  /// Makes FILE.part, and directories that are missing. It is this process's own while it lives.
+  explicit PartFile(std::filesystem::path file);
+  /// Not put in place: removes FILE.part, and a directory made for it that is empty.
+  ~PartFile();
+  PartFile(const PartFile&) = delete;
+  PartFile& operator=(const PartFile&) = delete;
+
+  /// Where it fails, a first part of `text` may be written: size() tells.
+  bool append(std::string_view text);
+  /// Room on the disk for so many bytes, before anything is appended.
+  bool reserve(std::size_t bytes);
+  /// Drops all but the first `size` bytes, also after a failure.
+  void cut(std::size_t size);
+  std::size_t size() const { return size_; }
+  /// Waits until what was appended is on the disk.
+  bool sync();
+  /// Gives the file its name, of whole content or of what cut() left. A file that stood there
+  /// before is unchanged where this fails.
+  bool put_in_place();
+
+  const std::filesystem::path& file() const { return file_; }
+  /// Empty: nothing is amiss.
+  const std::string& problem() const { return problem_; }
+
+ private:
+  bool open();
+  bool fail(int error);
+
+  std::filesystem::path file_, part_;
+  int descriptor_ = -1;
+  std::size_t size_ = 0;
+  bool made_directory_ = false;
+  std::string problem_;
+};
+
+}  // namespace momenta

@@ -1,0 +1,338 @@
+// What ends a run from outside: signals, kills at any moment, a disk that is full. Samples until
+// then are kept, a file under its final name is whole, and the same command gives what it would
+// have given undisturbed.
+
+#include "golden/program.h"
+
+#include <momenta/dae/report/part_file.h>
+#include <sys/mount.h>
+
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <random>
+
+namespace momenta::golden {
+namespace {
+
+using nlohmann::json;
+
+std::ptrdiff_t lines_of(const std::string& text) {
+  return std::count(text.begin(), text.end(), '\n');
+}
+
+/// Without what a clock says.
+json untimed(json told) {
+  if (told.is_object())
+    for (const char* key : {"time", "environment", "cpu_s", "wall_s", "command", "repeats", "date"})
+      told.erase(key);
+  if (told.is_structured())
+    for (auto& member : told) member = untimed(member);
+  return told;
+}
+
+class Stopped : public Program {
+ protected:
+  /// The shell's status of a command that gets a signal after so many seconds; `status` of its own
+  /// where it was faster.
+  int signalled(const std::string& arguments, int number, double after) const {
+    const std::string command = program() + arguments + " >'" + (folder_ / "said").string() +
+                                "' 2>'" + (folder_ / "err").string() + "' & pid=$!; sleep " +
+                                std::to_string(after) + "; kill -" + std::to_string(number) +
+                                " $pid 2>/dev/null; wait $pid 2>/dev/null";
+    return WEXITSTATUS(std::system(command.c_str()));  // NOLINT: the command is this test's own
+  }
+  std::string err() const { return text_of(folder_ / "err"); }
+  std::string at(const std::string& out) const {
+    return " --quiet --out '" + (folder_ / out).string() + "'";
+  }
+  json summary(const std::string& out) const {
+    return json::parse(text_of(folder_ / out / "summary.json"));
+  }
+};
+
+/// A small disk of its own; not there where there is no right to mount one.
+class Disk {
+ public:
+  Disk(const fs::path& at, const std::string& size) : at_(at) {
+    fs::create_directories(at);
+    there_ = ::mount("tmpfs", at.c_str(), "tmpfs", 0, ("size=" + size).c_str()) == 0;
+  }
+  ~Disk() {
+    if (there_) ::umount(at_.c_str());
+  }
+  Disk(const Disk&) = delete;
+  Disk& operator=(const Disk&) = delete;
+  explicit operator bool() const { return there_; }
+
+ private:
+  fs::path at_;
+  bool there_ = false;
+};
+
+const std::string endless = " --integrator rk4 --step 1e-4 --end 1e6 --samples 1000000";
+
+TEST_F(Stopped, BySignalsRunsKeepTheirSamples) {
+  const std::string scene = "run '" + example("four_bar") + "'";
+  for (const int number : {SIGINT, SIGTERM}) {
+    EXPECT_EQ(signalled(scene + endless + at("out"), number, 0.5), 1);
+    EXPECT_EQ(err().rfind("momenta: the run stopped: interrupted at t = ", 0), 0u) << err();
+    const auto told = summary("out");
+    EXPECT_EQ(told["status"], "failed");
+    EXPECT_EQ(told["reason"].get<std::string>().rfind("interrupted at t = ", 0), 0u);
+    const std::string trajectory = text_of(folder_ / "out/trajectory.csv");
+    EXPECT_EQ(trajectory.back(), '\n');
+    // One a second of the motion, the start and the line of names.
+    EXPECT_EQ(lines_of(trajectory), std::floor(told["stopped_at"].get<double>()) + 2);
+    EXPECT_GT(lines_of(trajectory), 3);
+  }
+  // Where no sample is near, the next step is.
+  EXPECT_EQ(signalled(scene + " --integrator rk4 --step 1e-4 --end 1e6 --samples 1" + at("far"),
+                      SIGTERM, 0.3),
+            1);
+  EXPECT_GT(summary("far")["stopped_at"], 1.0);
+}
+
+TEST_F(Stopped, WhileItIsTimedARunIsDone) {
+  // Some seconds of motion, then as long for each of three timed rounds.
+  const std::string command = "run '" + example("four_bar") +
+                              "' --integrator rk4 --step 1e-4 --end 300 --samples 10" +
+                              at("timed") + " & pid=$!; for i in $(seq 3000); do [ \"$(cat '" +
+                              (folder_ / "timed/trajectory.csv.part").string() +
+                              "' 2>/dev/null | wc -l)\" -ge 12 ] && break; sleep 0.01; done; "
+                              "kill -TERM $pid; wait $pid";
+  const int raw = std::system((program() + command).c_str());  // NOLINT: this test's own
+  EXPECT_EQ(WEXITSTATUS(raw), 0);
+  EXPECT_EQ(summary("timed")["status"], "done");
+  EXPECT_EQ(summary("timed")["reason"], "");
+  EXPECT_EQ(lines_of(text_of(folder_ / "timed/trajectory.csv")), 12);
+}
+
+TEST_F(Stopped, VerbsThatKeepNothingEndAtOnce) {
+  const Outcome made = call("make closed-chain --n 20000");
+  ASSERT_EQ(made.status, 0);
+  const fs::path scene = write("long.toml", made.out);
+  const auto before = std::chrono::steady_clock::now();
+  EXPECT_EQ(signalled("modes '" + scene.string() + "' --count 5", SIGTERM, 0.2), 128 + SIGTERM);
+  EXPECT_LT(std::chrono::steady_clock::now() - before, std::chrono::seconds(5));
+}
+
+TEST_F(Stopped, AKilledRunLeavesItsLinesAndEarlierResults) {
+  const std::string command = "run '" + example("four_bar") + "'" + endless + at("out");
+  const std::string before = "run '" + example("four_bar") + "' --end 1 --samples 10" + at("out");
+  ASSERT_EQ(call(before).status, 0);
+  const std::string trajectory = text_of(folder_ / "out/trajectory.csv"),
+                    told = text_of(folder_ / "out/summary.json");
+  EXPECT_EQ(signalled(command, SIGKILL, 2.5), 128 + SIGKILL);
+  EXPECT_EQ(text_of(folder_ / "out/trajectory.csv"), trajectory);
+  EXPECT_EQ(text_of(folder_ / "out/summary.json"), told);
+  const std::string part = text_of(folder_ / "out/trajectory.csv.part");
+  EXPECT_GT(lines_of(part), 5);
+  // Another kill, and what is left goes on changing nothing.
+  EXPECT_EQ(signalled(command, SIGKILL, 0.3), 128 + SIGKILL);
+  ASSERT_EQ(call(before).status, 0);
+  EXPECT_EQ(text_of(folder_ / "out/trajectory.csv"), trajectory);
+  for (const auto& entry : fs::directory_iterator(folder_ / "out"))
+    EXPECT_NE(entry.path().extension(), ".part") << entry.path();
+}
+
+TEST_F(Stopped, TwoRunsAtOnceInOneDirectoryAreRefused) {
+  fs::create_directories(folder_ / "out");
+  const PartFile other(folder_ / "out/trajectory.csv");
+  const Outcome o = call("run '" + example("four_bar") + "' --end 1" + at("out"));
+  EXPECT_EQ(o.status, 1);
+  EXPECT_NE(o.err.find("trajectory.csv: another process is writing it."), std::string::npos)
+      << o.err;
+}
+
+TEST_F(Stopped, WithoutRoomARunKeepsWholeLinesAndSaysSo) {
+  const std::string command =
+      "run '" + example("four_bar") + "' --end 20 --samples 20000 --quiet --out ";
+  ASSERT_EQ(call(command + "'" + (folder_ / "whole").string() + "'").status, 0);
+  const std::string whole = text_of(folder_ / "whole/trajectory.csv");
+  const auto expect_part = [&](const fs::path& out, const std::string& cause) {
+    const std::string part = text_of(out / "trajectory.csv");
+    EXPECT_GT(lines_of(part), 100);
+    EXPECT_LT(lines_of(part), lines_of(whole));
+    EXPECT_TRUE(whole.starts_with(part));
+    EXPECT_EQ(part.back(), '\n');
+    const auto told = json::parse(text_of(out / "summary.json"));
+    EXPECT_EQ(told["status"], "failed");
+    EXPECT_NE(told["reason"].get<std::string>().find(cause), std::string::npos) << told["reason"];
+    for (const auto& entry : fs::directory_iterator(out))
+      EXPECT_NE(entry.path().extension(), ".part") << entry.path();
+  };
+  // A limit of the shell on the size of files, here 1 MB.
+  const Outcome o =
+      call(command + "'" + (folder_ / "limited").string() + "'", "/dev/null", "ulimit -f 2000; ");
+  EXPECT_EQ(o.status, 1);
+  EXPECT_EQ(o.err.rfind("momenta: the run stopped: at t = ", 0), 0u) << o.err;
+  expect_part(folder_ / "limited", "trajectory.csv: File too large.");
+
+  const fs::path disk = folder_ / "disk";
+  const Disk small(disk, "1m");
+  if (!small) GTEST_SKIP() << "no right to mount a small disk";
+  const Outcome full = call(command + "'" + (disk / "out").string() + "'");
+  EXPECT_EQ(full.status, 1);
+  EXPECT_NE(full.err.find("No space left on device"), std::string::npos) << full.err;
+  expect_part(disk / "out", "trajectory.csv: No space left on device.");
+  // No page of another run stands beside them, and no room at all is told before anything runs.
+  EXPECT_FALSE(fs::exists(disk / "out/index.html"));
+  const Outcome none = call(command + "'" + (disk / "none").string() + "'");
+  EXPECT_EQ(none.status, 1);
+  EXPECT_NE(none.err.find("No space left on device"), std::string::npos) << none.err;
+  EXPECT_FALSE(fs::exists(disk / "none"));
+}
+
+TEST_F(Stopped, FilesOfAStudyAreReplacedTogetherOrNotAtAll) {
+  const fs::path out = folder_ / "out";
+  const std::string study = "drift '" + example("four_bar") +
+                            "' --forms momentum,acceleration --samples 10 --out '" + out.string() +
+                            "' --figures svg --end ";
+  ASSERT_EQ(call(study + "1").status, 0);
+  const auto results = [&] {
+    std::map<fs::path, std::string> all;
+    for (const auto& entry : fs::recursive_directory_iterator(out))
+      if (entry.is_regular_file() && entry.path().filename() != "runs.jsonl")
+        all[entry.path()] = text_of(entry.path());
+    return all;
+  };
+  const auto before = results();
+  ASSERT_GT(before.size(), 5u);
+  // The last of them cannot be written.
+  const fs::path last = (--before.end())->first;
+  ASSERT_EQ(last.filename(), "summary.json");
+  for (const char* name : {"index.html.part", "figures/mechanism.svg.part"}) {
+    fs::create_directories(out / name);
+    const Outcome o = call(study + "2");
+    EXPECT_EQ(o.status, 1);
+    EXPECT_NE(o.err.find(": Is a directory."), std::string::npos) << o.err;
+    EXPECT_EQ(results(), before);
+    fs::remove(out / name);
+  }
+  // Its runs are kept.
+  const Outcome again = call(study + "2");
+  EXPECT_EQ(again.status, 0);
+  EXPECT_NE(again.err.find(" runs taken from "), std::string::npos) << again.err;
+  const auto after = results();
+  EXPECT_EQ(after.size(), before.size());
+  for (const auto& [file, text] : after)
+    if (file.filename() != "mechanism.svg") {
+      EXPECT_NE(text, before.at(file)) << file;
+    }
+}
+
+TEST_F(Stopped, WithoutRoomAStudyGoesOnOnceThereIsSome) {
+  const fs::path disk = folder_ / "disk";
+  const Disk small(disk, "1500k");
+  if (!small) GTEST_SKIP() << "no right to mount a small disk";
+  const std::string study = "drift '" + example("four_bar") +
+                            "' --forms momentum,acceleration --end 2 --samples 10 --out '" +
+                            disk.string() + "'";
+  const Outcome o = call(study);
+  EXPECT_EQ(o.status, 1);
+  EXPECT_NE(o.err.find("No space left on device."), std::string::npos) << o.err;
+  EXPECT_EQ(std::distance(fs::directory_iterator(disk), {}), 1);
+  ASSERT_TRUE(fs::exists(disk / "runs.jsonl"));
+  ASSERT_EQ(::mount("tmpfs", disk.c_str(), "tmpfs", MS_REMOUNT, "size=30m"), 0);
+  const Outcome again = call(study);
+  EXPECT_EQ(again.status, 0) << again.err;
+  EXPECT_NE(again.err.find(" runs taken from "), std::string::npos) << again.err;
+  const std::string whole = folder_ / "whole";
+  ASSERT_EQ(call(study.substr(0, study.find(" --out")) + " --out '" + whole + "'").status, 0);
+  EXPECT_EQ(untimed(json::parse(text_of(disk / "summary.json"))),
+            untimed(json::parse(text_of(whole + "/summary.json"))));
+}
+
+TEST_F(Stopped, StandardOutputThatIsFullIsTold) {
+  for (const std::string& verb :
+       {std::string("make chain"), "check '" + example("four_bar") + "'",
+        "run '" + example("four_bar") + "' --end 0.1", std::string("completion bash")}) {
+    const std::string command =
+        program() + verb + " >/dev/full 2>'" + (folder_ / "err").string() + "'";
+    EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 1) << verb;  // NOLINT: this test's own
+    EXPECT_NE(err().find("momenta: standard output cannot be written: No space left on device\n"),
+              std::string::npos)
+        << err();
+  }
+}
+
+// Killed at any moment, again and again, then left to end.
+
+struct Verb {
+  const char *name, *arguments;
+  std::vector<const char*> tables;  ///< results without times, to the last bit
+  std::vector<const char*> told;    ///< results with times
+};
+const Verb verbs[] = {
+    {"run",
+     "run FOUR_BAR --integrator rk4 --step 1e-4 --end 10",
+     {"trajectory.csv"},
+     {"summary.json"}},
+    {"drift", "drift FOUR_BAR --end 2 --samples 50", {}, {"summary.json"}},
+    {"work",
+     "work FOUR_BAR --forms momentum,projected,momentum-index2 --from 1e-4 --to 1e-8 --end 1",
+     {"reference.csv"},
+     {"summary.json"}},
+    {"stress",
+     "stress FOUR_BAR --forms momentum,projected,baumgarte --along size --end 1 --threads 2",
+     {},
+     {"stress.json"}},
+    {"sweep",
+     "sweep FOUR_BAR --vary body.crank.mass=0.5:2:20 --end 5 --threads 2",
+     {"sweep.csv"},
+     {}},
+    {"modes", "modes FOUR_BAR", {"modes.csv"}, {}}};
+
+class Killed : public Stopped, public testing::WithParamInterface<Verb> {};
+
+TEST_P(Killed, AtAnyMomentItGivesWhatItGivesUndisturbed) {
+  const Verb& verb = GetParam();
+  std::string arguments = verb.arguments;
+  arguments.replace(arguments.find("FOUR_BAR"), 8, "'" + example("four_bar") + "'");
+  const auto start = std::chrono::steady_clock::now();
+  ASSERT_EQ(call(arguments + at("whole")).status, 0) << text_of(folder_ / "stderr");
+  const double seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const auto expect_whole = [&](bool all) {
+    const fs::path whole = folder_ / "whole", killed = folder_ / "killed";
+    for (const char* name : verb.tables)
+      if (all || fs::exists(killed / name)) {
+        EXPECT_EQ(text_of(killed / name), text_of(whole / name)) << name;
+      }
+    for (const char* name : verb.told)
+      if (all || fs::exists(killed / name)) {
+        EXPECT_EQ(untimed(json::parse(text_of(killed / name))),
+                  untimed(json::parse(text_of(whole / name))))
+            << name;
+      }
+    if (fs::exists(killed / "index.html")) {
+      EXPECT_TRUE(text_of(killed / "index.html").ends_with("</html>\n"));
+    }
+  };
+  std::random_device random;
+  constexpr int kills = 4;
+  int killed = 0;
+  for (int k = 0; k < kills; ++k) {
+    const double after = seconds * std::uniform_real_distribution<double>(0, 1)(random);
+    SCOPED_TRACE("kill " + std::to_string(k) + " after " + std::to_string(after) + " s");
+    const int status = signalled(arguments + at("killed"), SIGKILL, after);
+    EXPECT_TRUE(status == 128 + SIGKILL || status == 0) << status << err();
+    killed += status != 0;
+    expect_whole(status == 0);
+  }
+  EXPECT_GT(killed, 0);
+  EXPECT_EQ(call(arguments + at("killed")).status, 0) << text_of(folder_ / "stderr");
+  expect_whole(true);
+  for (const auto& entry : fs::directory_iterator(folder_ / "killed")) {
+    EXPECT_NE(entry.path().extension(), ".part") << entry.path();
+    EXPECT_NE(entry.path().extension(), ".jsonl") << entry.path();
+  }
+}
+INSTANTIATE_TEST_SUITE_P(Verbs, Killed, testing::ValuesIn(verbs),
+                         [](const auto& verb) { return std::string(verb.param.name); });
+
+}  // namespace
+}  // namespace momenta::golden

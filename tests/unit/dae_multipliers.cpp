@@ -1,0 +1,211 @@
+// Which loop forces are unique: by two centres of the solver, against the null space of Φ_qᵀ from
+// singular values; at poses, and along runs, where trajectories, summaries and charts tell.
+
+#include "equations/linkages.h"
+#include "equations/random_loops.h"
+#include "equations/small_scenes.h"
+
+#include <gtest/gtest.h>
+#include <momenta/core/scene/read_scene.h>
+#include <momenta/dae/measure/multipliers.h>
+#include <momenta/dae/measure/rank.h>
+#include <momenta/dae/report/chart.h>
+#include <momenta/dae/report/json.h>
+#include <momenta/dae/study/run_form.h>
+
+#include <algorithm>
+#include <map>
+#include <random>
+
+namespace momenta {
+namespace {
+
+using namespace equations;
+
+Scene example(const std::string& name) {
+  return read_scene(std::string(MOMENTA_SOURCE_DIR) + "/examples/" + name);
+}
+
+/// Slow twin: rows in which a force that moves nothing takes part.
+std::vector<bool> unique_by_singular_values(const Mechanism& mechanism, double t,
+                                            const Eigen::VectorXd& q) {
+  const Eigen::MatrixXd idle = idle_forces(mechanism, t, q);
+  std::vector<bool> unique(static_cast<std::size_t>(mechanism.m()), true);
+  for (int i = 0; i < mechanism.m(); ++i)
+    for (Eigen::Index k = 0; k < idle.cols(); ++k)
+      if (std::abs(idle(i, k)) > 1e-6 * idle.col(k).cwiseAbs().maxCoeff())
+        unique[static_cast<std::size_t>(i)] = false;
+  return unique;
+}
+
+std::vector<bool> unique_by_centres(const Mechanism& mechanism, const Start& at) {
+  const auto e = mechanism.evaluation<double>();
+  const auto solver = make_loop_solver(mechanism, *e);
+  UniqueMultipliers unique(mechanism, *e, *solver);
+  Eigen::VectorXd udot(mechanism.nv()), lambda(mechanism.m());
+  EXPECT_TRUE(solver->acceleration(at.t, at.q.data(), at.u.data(), nullptr, 0, 0, udot.data(),
+                                   lambda.data()));
+  return unique.find(at.t, at.q.data(), at.u.data(), lambda.data());
+}
+
+/// The scene with a pendulum on a loop of its own beside it, whose forces are unique.
+Scene beside_a_pendulum(Scene scene) {
+  scene.bodies.push_back(rod("bob", 0.1));
+  scene.joints.push_back(hinge("P9", "ground", "bob", {7, 0, 0}, 0.3));
+  scene.joints.back().kind = JointKind::free;
+  scene.joints.back().position = {7, 0, 0, 1, 0, 0, 0};
+  LoopSpec l;
+  l.name = "own";
+  l.kind = LoopKind::point;
+  l.child = "bob";
+  l.origin_parent = {7, 0, 0};
+  scene.loops.push_back(l);
+  return scene;
+}
+
+TEST(UniqueMultipliers, AgreeWithSingularValuesWhateverSolves) {
+  const Scene three = example("extremes/three_cranks.toml"), four = example("four_bar/scene.toml");
+  Scene twice = four;
+  twice.loops.push_back(twice.loops[0]);
+  twice.loops.back().name = "again";
+  int shared = 0, determined = 0, both = 0;
+  for (const Scene& scene : {three, four, twice, bricard(), row_of_four_bars(2, 0, 1),
+                             beside_a_pendulum(three), beside_a_pendulum(bricard()), platform(6)})
+    for (const Algebra algebra : {Algebra::automatic, Algebra::spatial})
+      for (const KktChoice kkt : {KktChoice::sweeps, KktChoice::sparse, KktChoice::dense}) {
+        const Mechanism mechanism(scene, {.algebra = algebra, .kkt = kkt});
+        const Start start = assemble(mechanism).start;
+        const auto found = unique_by_centres(mechanism, start);
+        EXPECT_EQ(found, unique_by_singular_values(mechanism, start.t, start.q))
+            << scene.name << " " << static_cast<int>(algebra) << name_of(mechanism.kkt());
+        const auto unique = std::count(found.begin(), found.end(), true);
+        shared += unique == 0;
+        determined += unique == mechanism.m();
+        both += unique > 0 && unique < mechanism.m();
+      }
+  // A coupler that weighs next to nothing: KLU, which does not know what has faded.
+  Scene light = beside_a_pendulum(three);
+  light.bodies[1].mass *= 1e-8;
+  light.bodies[1].inertia *= 1e-8;
+  const Mechanism by_klu(light);
+  ASSERT_FALSE(filters_pivots(by_klu));
+  const Start start = assemble(by_klu).start;
+  EXPECT_EQ(unique_by_centres(by_klu, start), unique_by_singular_values(by_klu, start.t, start.q));
+  EXPECT_GE(shared, 10);
+  EXPECT_GE(determined, 9);
+  EXPECT_GE(both, 10);
+}
+
+TEST(UniqueMultipliers, AgreeOnRandomLoopsWrittenTwice) {
+  std::mt19937 random(3);
+  int compared = 0, mixed = 0;
+  for (int round = 0; round < 150; ++round) {
+    std::vector<unsigned char> bytes(200);
+    for (auto& b : bytes) b = static_cast<unsigned char>(random());
+    Scene scene = sound_scene(bytes, round % 2 == 0);
+    if (round % 3 > 0) {
+      scene.loops.push_back(scene.loops.back());
+      scene.loops.back().name += "again";
+      if (round % 3 > 1) scene.loops.back().kind = LoopKind::point;
+    }
+    try {
+      const Mechanism mechanism(scene);
+      const Start start = assemble(mechanism).start;
+      // Poses at which the rank is a matter of taste are no law's business.
+      const RankReport rank = rank_report(mechanism, start);
+      if (rank.kept < 1e-2 || rank.dropped > 1e-12) continue;
+      const auto found = unique_by_centres(mechanism, start);
+      EXPECT_EQ(found, unique_by_singular_values(mechanism, start.t, start.q)) << round << "\n"
+                                                                               << outline(scene);
+      ++compared;
+      const auto unique = std::count(found.begin(), found.end(), true);
+      mixed += unique > 0 && unique < mechanism.m();
+    } catch (const SceneError&) {
+    }
+  }
+  EXPECT_GT(compared, 60);
+  EXPECT_GT(mixed, 5);
+}
+
+RunResult run_of(const Mechanism& mechanism, const std::string& form, double end, int samples) {
+  RunRequest request;
+  request.settings.form = form;
+  request.settings.integrator = "";
+  request.settings.gauge = "leak";
+  request.settings.end_time = end;
+  request.settings.samples = samples;
+  request.keep_trajectory = true;
+  return run_form(mechanism, assemble(mechanism).start, request);
+}
+
+/// What the trajectory says of every sample against its pose; whether some are not unique.
+bool expect_told(const Mechanism& mechanism, const RunResult& run) {
+  EXPECT_EQ(run.status, "done") << run.reason;
+  const auto& columns = run.trajectory.columns;
+  std::map<std::string, long> samples;
+  for (const auto& row : run.trajectory.rows) {
+    const Eigen::VectorXd q = Eigen::Map<const Eigen::VectorXd>(row.data() + 1, mechanism.nq());
+    const auto unique = unique_by_singular_values(mechanism, row[0], q);
+    std::map<std::string, int> of_loop;
+    for (std::size_t i = 0; i < unique.size(); ++i) of_loop[mechanism.rows()[i].loop] += !unique[i];
+    std::size_t i = 0;
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+      if (columns[c].find(".lambda") != std::string::npos && !unique[i++]) ++samples[columns[c]];
+      for (const auto& [loop, count] : of_loop)
+        if (columns[c] == loop + ".undetermined [1]") {
+          EXPECT_EQ(row[c], count) << loop << " at t = " << row[0];
+        }
+    }
+    EXPECT_EQ(i, unique.size());
+  }
+  EXPECT_EQ(run.undetermined.size(), samples.size());
+  for (const auto& u : run.undetermined) EXPECT_EQ(u.samples, samples[u.column]) << u.column;
+  return !samples.empty();
+}
+
+TEST(UniqueMultipliers, AreToldAlongARun) {
+  const Mechanism plain(example("four_bar/scene.toml")),
+      hinges(example("four_bar/scene.toml"), {.algebra = Algebra::spatial}),
+      cranks(example("extremes/three_cranks.toml")), six_hinges(bricard());
+  for (const char* form : {"momentum", "projected", "momentum-index2", "augmented-lagrangian"}) {
+    EXPECT_FALSE(expect_told(plain, run_of(plain, form, 1, 20))) << form;
+    EXPECT_TRUE(expect_told(hinges, run_of(hinges, form, 1, 20))) << form;
+    EXPECT_TRUE(expect_told(cranks, run_of(cranks, form, 1, 20))) << form;
+    EXPECT_TRUE(expect_told(six_hinges, run_of(six_hinges, form, 1, 20))) << form;
+  }
+  // In the plane of a four-bar the forces are unique, hinges or not; across it they are not.
+  const RunResult run = run_of(hinges, "momentum", 1, 20);
+  std::vector<std::string> told;
+  for (const auto& u : run.undetermined) told.push_back(u.column);
+  EXPECT_EQ(told,
+            (std::vector<std::string>{"B.lambda3 [N]", "B.lambda4 [N m]", "B.lambda5 [N m]"}));
+  for (const auto& u : run.undetermined) {
+    EXPECT_EQ(u.samples, 21);
+    EXPECT_EQ(u.from, 0);
+    EXPECT_EQ(u.to, 1);
+  }
+  // A chart and the summary say it too.
+  std::vector<std::string> curves;
+  for (const Chart& chart : charts_of_run(run))
+    if (chart.key == "forces")
+      for (const Curve& curve : chart.curves) curves.push_back(curve.name);
+  EXPECT_EQ(curves, (std::vector<std::string>{"B.lambda1", "B.lambda2", "B.lambda3 (not unique)"}));
+  const auto json = summary_json(run, {}).at("undetermined");
+  ASSERT_EQ(json.size(), 3u);
+  EXPECT_EQ(json[0]["column"], "B.lambda3 [N]");
+  EXPECT_EQ(json[0]["samples"], 21);
+}
+
+TEST(UniqueMultipliers, OfAPoseOnTheWayAreToldThere) {
+  // Flat at the start and nowhere after: the sum of both rods' pushes along the row is anybody's.
+  const Mechanism mechanism(row_of_four_bars(1, 0, 1));
+  const RunResult run = run_of(mechanism, "momentum", 0.5, 5);
+  EXPECT_TRUE(expect_told(mechanism, run));
+  for (const auto& u : run.undetermined) {
+    EXPECT_EQ(u.samples, 1);
+    EXPECT_EQ(u.to, 0);
+  }
+}
+
+}  // namespace
+}  // namespace momenta
