@@ -167,8 +167,8 @@ class Assembler {
     double norm = phi.norm();
     int stalled = 0;
     std::vector<double> j;
-    bool settled =
-        false;  // factorised where the loops are closed: J changes by rounding from there
+    // Factorised where the loops are closed: J changes by rounding from there.
+    bool settled = false;
     for (; iterations < most_iterations && norm > 1e-16 && stalled < 2; ++iterations) {
       if (!settled) steps_.factor(j = jacobian());
       settled = phi.cwiseAbs().maxCoeff() <= closed_;
