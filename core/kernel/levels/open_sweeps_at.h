@@ -41,6 +41,7 @@ class OpenSweepsAt final : public OpenSweeps {
       quasi_velocities_ |= b.nq != b.nv;
       has_user_joints_ |= b.kind == JointKind::user;
     }
+    rates_.resize(3 * static_cast<std::size_t>(tree.model->nv));
     if (!limbs) return;
     if constexpr (Space::dimension == 6) {
       limbed_momenta_ = std::make_unique<LimbedMomenta<Limb, One>>(tree, *limbs);
@@ -63,7 +64,6 @@ class OpenSweepsAt final : public OpenSweeps {
   }
   bool inverse_mass_times(double t, const double* q, const double* x, double* result) override {
     const auto nv = static_cast<std::size_t>(tree_.model->nv);
-    rates_.resize(3 * nv);
     double* const no_momenta = rates_.data() + 2 * nv;
     for (std::size_t i = 0; i < nv; ++i) no_momenta[i] = 0;
     if (!momentum_(One(t), StridedIn<One>{q, 1}, StridedIn<One>{no_momenta, 1},
