@@ -160,11 +160,10 @@ joints = ["turn", "both"]
 coordinates = [0, 0]
 ratios = [1, 3]
 )"));
-  const std::vector<std::string> columns = trajectory_columns(mechanism);
-  ASSERT_GE(columns.size(), 3u);
-  EXPECT_EQ(
-      std::vector<std::string>(columns.end() - 3, columns.end()),
-      (std::vector<std::string>{"gear.lambda1 [N m]", "rack.lambda1 [N]", "screw.lambda1 [N]"}));
+  std::vector<std::string> columns = trajectory_columns(mechanism);
+  std::erase_if(columns, [](const std::string& c) { return c.find(".lambda") == c.npos; });
+  EXPECT_EQ(columns, (std::vector<std::string>{"gear.lambda1 [N m]", "rack.lambda1 [N]",
+                                               "screw.lambda1 [N]"}));
 }
 
 }  // namespace
