@@ -63,12 +63,17 @@ class TextWalk {
         begins_line_ = false;
         TextWalk here = *this;
         const bool closed = skip_string(c);
+        in_word_ = true;
         if (!closed || here.within_a_word()) here.require_ascii_line();
         if (!closed) return;
         continue;
       }
       require_ascii("outside strings and comments");
-      if (c == '[' && begins_line_ && depth_ == 0) check_header();
+      if (c == '[' && begins_line_ && depth_ == 0) {
+        check_header();
+        is_header_ = true;
+      }
+      note_word(c);
       if (c != ' ' && c != '\t') begins_line_ = false;
       count(c);
       ++i_;
@@ -96,7 +101,8 @@ class TextWalk {
         ++line_;
         line_begin_ = i_ + 1;
         begins_line_ = true;
-        dots_ = 0;
+        is_header_ = false;
+        dots_ = equals_ = 0;
         return;
       case '=':
       case ',':
@@ -108,10 +114,41 @@ class TextWalk {
     if (++values_ > most_values) refuse("more than 4 million values", "a scene of fewer");
   }
 
-  /// A quote that begins no string: toml++ reads numbers and words on over it.
-  bool within_a_word() const {
-    return i_ > 0 && std::string_view(" \t\r\n=,.[{").find(text_[i_ - 1]) == std::string_view::npos;
+  /// A key may stand here: no value yet since the line, the inline table or its last comma began.
+  bool at_key() const {
+    return is_header_ || (equals_ == 0 && (depth_ == 0 || closing_[depth_ - 1] == '}'));
   }
+  /// A word is what toml++ reads in one go: up to white space, a comma or a closing bracket, and
+  /// past anything else; of a key up to its equals sign.
+  void note_word(char c) {
+    switch (c) {
+      case ' ':
+      case '\t':
+      case '\r':
+      case '\n':
+      case ']':
+      case '}':
+        in_word_ = false;
+        return;
+      case ',':
+        in_word_ = false;
+        equals_ = 0;
+        return;
+      case '{':
+        equals_ = 0;
+        return;
+      case '[':
+        return;
+      case '=':
+        if (at_key()) in_word_ = false;
+        ++equals_;
+        return;
+      default:
+        in_word_ = true;
+    }
+  }
+  /// A quote that begins no string: toml++ reads numbers and words on over it.
+  bool within_a_word() const { return in_word_ && !(at_key() && text_[i_ - 1] == '.'); }
   void require_ascii_line() {
     for (; i_ < text_.size() && text_[i_] != '\n'; ++i_)
       require_ascii("after a quote that is none of a string");
@@ -199,7 +236,8 @@ class TextWalk {
   std::string_view text_;
   const std::string& file_;
   std::size_t i_ = 0, line_begin_ = 0;
-  bool begins_line_ = true;
+  bool begins_line_ = true, is_header_ = false, in_word_ = false;
+  int equals_ = 0;                       ///< signs since a key was last expected
   std::array<char, deepest> closing_{};  // of the brackets open here
   std::size_t depth_ = 0;
   int line_ = 1, dots_ = 0, values_ = 0;

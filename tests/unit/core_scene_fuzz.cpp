@@ -131,14 +131,32 @@ TEST(DamagedScene, BytesFlippedAtRandom) {
 
 // toml++ reads a number on over a quote, and asks of what follows whether it is white.
 TEST(DamagedScene, QuotesWithinWordsBeforeCharactersOutsideAscii) {
-  for (const char* text : {"a = 1.B\"\xef\xbb\xbd = [run]", "a = 1.B\"\xef\xbb\xbd\" = 1",
-                           "a = x'\xef\xbb\xbd' # ü", "a = \"\xef\xbb\xbd\nb = 1"}) {
+  for (const char* text :
+       {"a = 1.B\"\xef\xbb\xbd = [run]", "a = 1.B\"\xef\xbb\xbd\" = 1", "a = x'\xef\xbb\xbd' # ü",
+        "a = \"\xef\xbb\xbd\nb = 1", "\nr= 1x0=\"\xef\xba\xbf\"\n00", "a = 1x[\"\xef\xba\xbf\"]",
+        "a = 1x.\"\xef\xba\xbf\"", "a = [1, 1x=\"\xef\xba\xbf\"]", "a = {b = 1x{\"\xef\xba\xbf\"}",
+        "a = 1x==\"\xef\xba\xbf\""}) {
     try {
       parse_scene(text);
       ADD_FAILURE() << text;
     } catch (const SceneError& e) {
       EXPECT_NE(std::string(e.what()).find("a character outside ASCII"), std::string::npos)
           << e.what();
+    }
+  }
+}
+
+// Valid TOML has its letters wherever a string may begin.
+TEST(DamagedScene, StringsOutsideAsciiAreKeysAndValues) {
+  for (const char* text : {"\"ü\" = 1", "a.\"ü\".b = 1", "a . 'ü' = 1", "a=\"ü\"", "a=['ü',\"ü\"]",
+                           "a={\"ü\"='ü',b.\"ü\"=1}", "[\"ü\"]", "[[a.\"ü\"]]",
+                           "a=[{b='ü'},{c=\"ü\"}]", "a=[\n'ü'\n]", "a=[['ü']]", "a={b={c='ü'}}"}) {
+    try {
+      parse_scene(text);
+      ADD_FAILURE() << text;  // text, but no scene
+    } catch (const SceneError& e) {
+      EXPECT_EQ(std::string(e.what()).find("ASCII"), std::string::npos) << text << "\n" << e.what();
+      EXPECT_EQ(std::string(e.what()).find("not valid TOML"), std::string::npos) << e.what();
     }
   }
 }
