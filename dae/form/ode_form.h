@@ -5,7 +5,15 @@
 #include <momenta/dae/form/form.h>
 #include <momenta/dae/kkt/loop_solver.h>
 
+#include <stdexcept>
+
 namespace momenta {
+
+/// A form has no state at the start it is given: a run of it that fails before its first sample,
+/// while others go on. what(): one sentence.
+struct NoStateAtStart : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
 
 class OdeForm : public Form, public OdeSystem {
  public:

@@ -64,7 +64,7 @@ class Partitioned final : public OdeForm {
       positions_ = std::make_unique<CoordinateSplit>(jacobian_.pattern(), jacobian_.rows(),
                                                      jacobian_.weights(weights));
     if (!choose(start.t))
-      throw std::invalid_argument(
+      throw NoStateAtStart(
           "form 'partitioned': the loops leave no regular partition of the coordinates at the "
           "start");
   }

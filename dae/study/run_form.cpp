@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 #include <stdexcept>
 
 namespace momenta {
@@ -130,7 +131,16 @@ RunResult run_form(const Mechanism& mechanism, const Start& start, const RunRequ
   RunResult result;
   result.scene = mechanism.scene().name;
   result.settings = request.settings;
-  Runner runner(mechanism, start, result.settings, request.max_cpu_seconds);
+  std::optional<Runner> made;
+  try {
+    made.emplace(mechanism, start, result.settings, request.max_cpu_seconds);
+  } catch (const NoStateAtStart& none) {
+    result.status = "failed";
+    result.reason = none.what();
+    result.stopped_at = start.t;
+    return result;
+  }
+  Runner& runner = *made;
   const double wall_start = wall_now(), cpu_start = thread_seconds();
   Looker looker(mechanism, runner.form(), request, result);
   const auto y0 = runner.form().initial(start);

@@ -6,6 +6,9 @@
 
 #include <gtest/gtest.h>
 #include <momenta/core/scene/read_scene.h>
+#include <momenta/dae/report/page.h>
+#include <momenta/dae/report/table.h>
+#include <momenta/dae/study/drift_study.h>
 #include <momenta/dae/study/run_form.h>
 
 #include <algorithm>
@@ -150,6 +153,50 @@ TEST(NothingMoves, AndEveryMethodComesToItsEnd) {
     EXPECT_EQ(run.series.t, (std::vector<double>{0, 0.25, 0.5, 0.75, 1})) << method;
     EXPECT_EQ(run.energy_error_max, 0) << method;
   }
+}
+
+// A rod of next to no mass: no pivot of its turning counts beside those of its sliding.
+TEST(NoPartition, FailsTheRunAndNotTheStudy) {
+  const Mechanism mechanism(parse_scene(R"(
+[[body]]
+name = "dust"
+mass = 1e-88
+com = [0.05, 0.05, 0.04]
+inertia = [0.1, 0.1, 0.1, 0, 0, 0]
+[[joint]]
+name = "O"
+kind = "free"
+child = "dust"
+[[loop]]
+name = "C"
+kind = "distance"
+child = "dust"
+origin = { parent = [-0.4, 0.05, 0.5], child = [-0.4, -0.3, -0.4] }
+length = 1.0
+)"));
+  const Start start = assemble(mechanism).start;
+  RunRequest request;
+  request.settings.form = "partitioned";
+  request.settings.integrator = "dop853";
+  request.keep_trajectory = true;
+  const RunResult run = run_form(mechanism, start, request);
+  EXPECT_EQ(run.status, "failed");
+  EXPECT_NE(run.reason.find("no regular partition"), std::string::npos) << run.reason;
+  EXPECT_TRUE(run.series.t.empty());
+  DriftRequest drift;
+  drift.forms = {"partitioned", "momentum-index2"};
+  drift.end_time = 0.1;
+  drift.samples = 2;
+  const auto runs = run_drift_study(mechanism, start, drift);
+  ASSERT_EQ(runs.size(), 2u);
+  EXPECT_EQ(runs[0].status, "failed");
+  EXPECT_FALSE(runs[1].series.t.empty());
+  StudyResult study;
+  study.runs = runs;
+  EXPECT_FALSE(drift_page(study).empty());
+  EXPECT_FALSE(drift_table(study).empty());
+  study.runs = {run};
+  EXPECT_FALSE(run_page(study).empty());
 }
 
 TEST(NothingMoves, ALoopThereIsRefused) {
