@@ -16,8 +16,10 @@ namespace {
 using namespace equations;
 
 /// A trunk of any joints, and on its bodies and the ground copies of random limbs: parents by
-/// number within the limb, constants each their own.
-Scene with_limbs(RandomTree& random, int trunk, int shapes, int copies, bool forces) {
+/// number within the limb, constants each their own. Sizes and numbers of copies at random, up to
+/// `copies` + 1, or all as said.
+Scene with_limbs(RandomTree& random, int trunk, int shapes, int copies, bool forces,
+                 int same_size = 0) {
   TreeRecipe recipe{.bodies = trunk, .drives = true, .joint_forces = forces, .body_forces = forces};
   Scene s = random.scene(recipe);
   const TreeRecipe pins{.bodies = 6,
@@ -28,9 +30,9 @@ Scene with_limbs(RandomTree& random, int trunk, int shapes, int copies, bool for
                         .body_forces = false};
   for (int shape = 0; shape < shapes; ++shape) {
     std::vector<int> parents{-1};
-    const int size = 1 + random.below(6);
+    const int size = same_size > 0 ? same_size : 1 + random.below(6);
     for (int k = 1; k < size; ++k) parents.push_back(random.below(k));
-    const int count = 2 + random.below(copies);
+    const int count = same_size > 0 ? copies : 2 + random.below(copies);
     for (int copy = 0; copy < count; ++copy) {
       const std::string name = "limb" + std::to_string(shape) + "_" + std::to_string(copy) + "_";
       const Scene from = random.scene(pins);
@@ -124,14 +126,14 @@ TEST(Limbs, MoveAsBodyByBody) {
 
 TEST(Limbs, OnTheGroundLeaveNoTrunk) {
   RandomTree random(3);
-  Scene scene = with_limbs(random, 1, 1, 7, false);
+  Scene scene = with_limbs(random, 1, 1, 9, false, 4);
   scene.bodies.erase(scene.bodies.begin());
   scene.joints.erase(scene.joints.begin());
   scene.drives.clear();
   for (JointSpec& j : scene.joints)
     if (j.parent == "body0") j.parent = "ground";
   const std::size_t bodies = expect_sound_limbs(scene, limb_lanes_at(best_level()));
-  EXPECT_GE(2 * bodies, scene.bodies.size());
+  EXPECT_EQ(bodies, 8U * 4);  // the ninth limb stays with the trunk
   for (const bool gravity : {true, false}) {
     if (!gravity) scene.gravity.setZero();
     compare(scene, random, 0);
@@ -173,7 +175,10 @@ TEST(Limbs, AreChosenByWhatTheySave) {
   };
   // Along a leg every length is a shape of its own, the whole leg the one that saves most.
   EXPECT_EQ(words(legs(4, 6), 4), "4 of 6 pins side by side in 4 lanes");
-  EXPECT_EQ(words(legs(6, 3), 4), "6 of 3 pins side by side in 4 lanes");
+  EXPECT_EQ(words(legs(6, 6), 4), "6 of 6 pins side by side in 4 lanes");
+  // Two short ones gain nothing, nor do tips alone.
+  EXPECT_EQ(words(legs(6, 3), 4), "4 of 3 pins side by side in 4 lanes");
+  EXPECT_EQ(words(legs(4, 1), 4), "");
   EXPECT_EQ(words(legs(5, 3), 4), "4 of 3 pins side by side in 4 lanes");
   EXPECT_EQ(words(legs(1, 6), 4), "");
 }
@@ -181,7 +186,7 @@ TEST(Limbs, AreChosenByWhatTheySave) {
 /// A limb's joint without inertia has the same name in either way of going.
 TEST(Limbs, RefuseAJointWithoutInertiaByName) {
   RandomTree random(5);
-  Scene scene = with_limbs(random, 2, 1, 8, false);
+  Scene scene = with_limbs(random, 2, 1, 8, false, 5);
   ASSERT_GT(expect_sound_limbs(scene, limb_lanes_at(best_level())), 0U);
   const std::string tip = scene.bodies.back().name;
   scene.bodies.back().mass = 0;

@@ -9,10 +9,9 @@
 namespace momenta {
 namespace {
 
-/// A pack of limbs over a single one, in time: batches of states against single ones.
-constexpr double pack_cost = 1.4;
-/// Bodies saved that pay for handing over between limbs and trunk.
-constexpr double least_saving = 2;
+// In times of one pin in a chain: a pack of pins, what a tip takes less, and handing a limb over
+// between lanes and trunk. What saves less than `least_saving` stays as it is.
+constexpr double pack_cost = 1.7, tip_discount = 0.4, hand_over = 0.4, least_saving = 1;
 
 /// Children of a body that is one of many of its shape: screwed or not, and their shapes.
 using Children = std::vector<std::pair<bool, int>>;
@@ -60,13 +59,18 @@ Shapes shapes_of(const LinkTree& tree) {
   return s;
 }
 
-/// How many of `count` limbs go into packs: a last one alone stays with the trunk.
-int packed(int count, int lanes) {
-  return count % lanes == 1 ? count - 1 : count;
+/// Saved by `count` limbs of `size` bodies in one pack.
+double saved_by_pack(int size, int count) {
+  return (count - pack_cost) * (size - tip_discount) - hand_over * count;
+}
+/// How many of `count` limbs go into packs: a last one only if that saves something.
+int packed(int size, int count, int lanes) {
+  const int last = count % lanes;
+  return saved_by_pack(size, last) > 0 ? count : count - last;
 }
 double saving(int size, int count, int lanes) {
-  const int in_packs = packed(count, lanes);
-  return size * (in_packs - pack_cost * ((in_packs + lanes - 1) / lanes));
+  const int last = packed(size, count, lanes) % lanes;
+  return count / lanes * saved_by_pack(size, lanes) + (last > 0 ? saved_by_pack(size, last) : 0);
 }
 
 /// Roots of the limbs to take, by shape: the most saving first, of what is left each time. A
@@ -101,7 +105,8 @@ std::vector<std::vector<int>> choose(const LinkTree& tree, const Shapes& s, int 
       continue;
     }
     if (now < least_saving) continue;
-    roots.resize(static_cast<std::size_t>(packed(static_cast<int>(roots.size()), lanes)));
+    roots.resize(static_cast<std::size_t>(packed(s.size[static_cast<std::size_t>(roots.front())],
+                                                 static_cast<int>(roots.size()), lanes)));
     for (const int r : roots) {
       const auto first = taken.begin() + r;
       std::fill(first, first + s.size[static_cast<std::size_t>(r)], char(1));

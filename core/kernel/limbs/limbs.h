@@ -11,10 +11,10 @@
 // for one lane as for all.
 //
 // Two subtrees have one shape when their children do, pairwise, and come over a screw about the
-// parent's z or not alike. Which shapes to take is a choice between few long and many short limbs:
-// a pack of limbs costs about `pack_cost` single ones, so m limbs of b bodies in packs of w save
-//   b (m − pack_cost ⌈m / w⌉)
-// bodies; the shape that saves most goes first, then the next among the bodies that are left.
+// parent's z or not alike. Which shapes to take is a choice between few long and many short limbs.
+// In times of one pin, a pack of c limbs of b bodies saves
+//   (c − pack_cost)(b − tip_discount) − c hand_over;
+// the shape whose packs save most goes first, then the next among the bodies that are left.
 
 #include <momenta/core/kernel/link.h>
 
