@@ -116,7 +116,7 @@ class SweepProgram : public Program {
  protected:
   std::string sweep(const std::string& out) const {
     return "sweep '" + example("four_bar") +
-           "' --vary body.crank.mass=0.5:2:8 --vary body.rocker.mass=-1,1,2 --end 2 --watch "
+           "' --vary body.crank.mass=0.5:2:8 --vary body.rocker.mass=-1,1,2 --end 600 --watch "
            "A.q,energy --out '" +
            (folder_ / out).string() + "'";
   }
