@@ -162,14 +162,7 @@ MOMENTA_INLINE void accelerate_pin(const Link& l, const Edge& edge, const PinAcc
   vz = vz + w.clz;
   ox = ox + w.cox;
   oy = oy + w.coy;
-  vx = vx + l.d * oy;
-  vy = vy - l.d * ox;
-  S x = c * vx + s * vy;
-  vy = c * vy - s * vx;
-  vx = x;
-  x = c * ox + s * oy;
-  oy = c * oy - s * ox;
-  ox = x;
+  screw_outward(c, s, l.d, vx, vy, ox, oy);
   wz = w.y0 - (w.h.fx * vx + w.h.fy * vy + w.h.fz * vz + w.h.nx * ox + w.h.ny * oy);
 }
 

@@ -34,9 +34,7 @@ MOMENTA_INLINE void turn_velocity(const Link& l, const S& px, const S& py, const
   w.clz = pz - (dx * ox + dy * oy);
   w.cox = oy * own;
   w.coy = -(ox * own);
-  const S x = c * ox + s * oy;
-  oy = c * oy - s * ox;
-  ox = x;
+  turn_outward(c, s, ox, oy);
   oz = wz;
 }
 /// The same from the parent's frame, over a turn and shift about x alone.

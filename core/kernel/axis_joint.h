@@ -156,19 +156,10 @@ template <bool Gravity, class S>
 MOMENTA_INLINE void constants_and_screw_outward(const Link& l, const Spatial::EdgeConstants& k,
                                                 const Spatial::Edge<S>& e, OutwardCargo<S>& c) {
   constants_outward(l, k, c.vx, c.vy, c.vz, c.ox, c.oy, c.oz);
-  c.vx = c.vx + e.d * c.oy;
-  c.vy = c.vy - e.d * c.ox;
-  S x = e.cos_theta * c.vx + e.sin_theta * c.vy;
-  c.vy = e.cos_theta * c.vy - e.sin_theta * c.vx;
-  c.vx = x;
-  x = e.cos_theta * c.ox + e.sin_theta * c.oy;
-  c.oy = e.cos_theta * c.oy - e.sin_theta * c.ox;
-  c.ox = x;
+  screw_outward(e.cos_theta, e.sin_theta, e.d, c.vx, c.vy, c.ox, c.oy);
   if constexpr (Gravity) {
     constants_outward(l, k, c.gx, c.gy, c.gz);
-    x = e.cos_theta * c.gx + e.sin_theta * c.gy;
-    c.gy = e.cos_theta * c.gy - e.sin_theta * c.gx;
-    c.gx = x;
+    turn_outward(e.cos_theta, e.sin_theta, c.gx, c.gy);
   }
 }
 

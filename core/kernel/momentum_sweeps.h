@@ -150,19 +150,9 @@ MOMENTA_INLINE void move_pin(const Link& l, const Edge& edge, const PinRecord<S>
   const S Pnx = m.Hxx * vx + m.Hyx * vy + m.Hzx * vz + m.Ixx * ox + m.Ixy * oy + w.Dnx;
   const S Pny = m.Hxy * vx + m.Hyy * vy + m.Hzy * vz + m.Ixy * ox + m.Iyy * oy + w.Dny;
   rate = vy * Pfx - vx * Pfy + oy * Pnx - ox * Pny;
-  // The pin's screw.
-  vx = vx + l.d * oy;
-  vy = vy - l.d * ox;
-  S x = c * vx + s * vy;
-  vy = c * vy - s * vx;
-  vx = x;
-  x = c * ox + s * oy;
-  oy = c * oy - s * ox;
-  ox = x;
+  screw_outward(c, s, l.d, vx, vy, ox, oy);
   if constexpr (Gravity) {
-    x = c * gx + s * gy;
-    gy = c * gy - s * gx;
-    gx = x;
+    turn_outward(c, s, gx, gy);
     rate = rate + w.Gx * gy - w.Gy * gx;
   }
   wz = w.y0 - (w.h.fx * vx + w.h.fy * vy + w.h.fz * vz + w.h.nx * ox + w.h.ny * oy);

@@ -197,6 +197,22 @@ MOMENTA_INLINE void carry_any(const Link& l, const Edge& e, const Eliminated<S>&
   if (l.screwed) screw_inward<Gravity>(e.cos_gamma, e.sin_gamma, e.delta, cargo);
 }
 
+/// Two components across z in axes turned by the angle of (c, s).
+template <class C, class S>
+MOMENTA_INLINE void turn_outward(const C& c, const C& s, S& x, S& y) {
+  const S turned = c * x + s * y;
+  y = c * y - s * x;
+  x = turned;
+}
+/// A screw about z outward, 𝒯ⱽ of (23): of a motion the rows across z; those along it stay.
+template <class C, class D, class S>
+MOMENTA_INLINE void screw_outward(const C& c, const C& s, const D& d, S& vx, S& vy, S& ox, S& oy) {
+  vx = vx + d * oy;
+  vy = vy - d * ox;
+  turn_outward(c, s, vx, vy);
+  turn_outward(c, s, ox, oy);
+}
+
 // The constant screws outward, for a direction and for a motion; nearly parallel axes out of line.
 template <class Edge, class S>
 __attribute__((noinline)) void tilt_outward(const Edge& e, Vec3<S>& g) {
@@ -217,11 +233,7 @@ MOMENTA_INLINE void constants_outward(const Link& l, const Edge& e, S& gx, S& gy
     gz = g[2];
     return;
   }
-  if (l.screwed) {
-    x = e.cos_gamma * gx + e.sin_gamma * gy;
-    gy = e.cos_gamma * gy - e.sin_gamma * gx;
-    gx = x;
-  }
+  if (l.screwed) turn_outward(e.cos_gamma, e.sin_gamma, gx, gy);
   if (l.turn == Turn::right) {
     x = gz;
     gz = -gy;
@@ -247,16 +259,7 @@ MOMENTA_INLINE void constants_outward(const Link& l, const Edge& e, S& vx, S& vy
     return;
   }
   S x;
-  if (l.screwed) {
-    vx = vx + e.delta * oy;
-    vy = vy - e.delta * ox;
-    x = e.cos_gamma * vx + e.sin_gamma * vy;
-    vy = e.cos_gamma * vy - e.sin_gamma * vx;
-    vx = x;
-    x = e.cos_gamma * ox + e.sin_gamma * oy;
-    oy = e.cos_gamma * oy - e.sin_gamma * ox;
-    ox = x;
-  }
+  if (l.screwed) screw_outward(e.cos_gamma, e.sin_gamma, e.delta, vx, vy, ox, oy);
   vy = vy + l.a * oz;
   vz = vz - l.a * oy;
   if (l.turn == Turn::right) {
