@@ -2,6 +2,7 @@
 #include <momenta/core/kernel/limbs/limbs.h>
 #include <momenta/dae/kkt/kkt.h>
 #include <momenta/dae/mechanism.h>
+#include <momenta/dae/sweeps/legs/legs.h>
 
 #include <cmath>
 #include <cstdio>
@@ -198,9 +199,10 @@ std::string Mechanism::joint_without_inertia(bool swept) const {
   return "";
 }
 
-std::unique_ptr<LoopedSweeps> Mechanism::looped_sweeps(int level) const {
+std::unique_ptr<LoopedSweeps> Mechanism::looped_sweeps(int level, bool legs_side_by_side) const {
   return visit([&](const auto& cast) {
-    return make_looped_sweeps(cast.links, cast.swept, level > 0 ? level : best_level());
+    return make_looped_sweeps(cast.links, cast.swept, level > 0 ? level : best_level(),
+                              legs_side_by_side);
   });
 }
 std::unique_ptr<LoopedSweeps> Mechanism::looped_sweeps_as_given() const {
@@ -267,6 +269,13 @@ std::vector<Column> Mechanism::marker_columns() const {
   return columns;
 }
 
+std::string Mechanism::legs_in_words() const {
+  if (plan_.planar) return "";
+  const auto& cast = std::get<Cast<Spatial>>(cast_);
+  return momenta::legs_in_words(
+      find_legs(cast.links, cast.swept.loops, cast.swept.plan, leg_lanes_at(best_level())));
+}
+
 std::vector<std::pair<std::string, std::string>> Mechanism::plan_lines() const {
   auto lines = plan_.lines();
   if (!plan_.planar) {
@@ -283,12 +292,14 @@ std::vector<std::pair<std::string, std::string>> Mechanism::plan_lines() const {
   }
   lines.emplace_back("loops", std::to_string(scene_.loops.size()) + " with " +
                                   std::to_string(rows_) + " equations");
+  const std::string legs = legs_in_words();
   std::string how = "dense: Cholesky of M, pivoted and filtered LDLᵀ of the loops";
   if (kkt_ == KktChoice::sweeps)
     how = "loops carried by the sweeps, at most " +
           std::to_string(visit([](const auto& cast) { return cast.swept.plan.lanes; })) +
           " equations open at once" +
-          (pairs_anew() ? ", loops that meet in one point paired along the tree" : "");
+          (pairs_anew() ? ", loops that meet in one point paired along the tree" : "") +
+          (legs.empty() ? "" : ", " + legs);
   else if (kkt_ == KktChoice::sparse)
     how = std::string(
               solved_by_bodies(*this)

@@ -19,9 +19,12 @@ struct AxisColumn {
   S fx, fy, fz, nx, ny, nz;
 };
 
+// Bodies, links and constants of edges: Model<Spatial>::Body, Link and EdgeConstants, or records of
+// the same names that hold those of several mechanisms side by side.
+
 /// U = M*E.
-template <class S>
-MOMENTA_INLINE AxisColumn<S> axis_column(const Model<Spatial>::Body& b, const Full<S>& m) {
+template <class Body, class S>
+MOMENTA_INLINE AxisColumn<S> axis_column(const Body& b, const Full<S>& m) {
   if (b.kind == JointKind::prismatic) return {m.Axz, m.Ayz, m.Azz, m.Hzx, m.Hzy, m.Hzz};
   const double pitch = b.kind == JointKind::helical ? b.pitch : 0;
   return {pitch * m.Axz + m.Hxz, pitch * m.Ayz + m.Hyz, pitch * m.Azz + m.Hzz,
@@ -30,8 +33,8 @@ MOMENTA_INLINE AxisColumn<S> axis_column(const Model<Spatial>::Body& b, const Fu
 
 /// (46)-(48) of a free slide or screw: M', D' in place of M*, D for the right-hand side r. False
 /// when M_j is not positive: Joint::inertia_margin and reduce say what rounding may do to it.
-template <class S>
-MOMENTA_INLINE bool eliminate_axis(const Model<Spatial>::Body& b, const S& r, Cargo<S>& cargo,
+template <class Body, class S>
+MOMENTA_INLINE bool eliminate_axis(const Body& b, const S& r, Cargo<S>& cargo,
                                    JointRecord<Spatial, S>& x) {
   constexpr double rounding = 16 * std::numeric_limits<double>::epsilon();
   Full<S>& m = cargo.M;
@@ -39,7 +42,7 @@ MOMENTA_INLINE bool eliminate_axis(const Model<Spatial>::Body& b, const S& r, Ca
   const AxisColumn<S> U = axis_column(b, m);
   const S mass = slides ? U.fz : b.pitch * U.fz + U.nz;
   const S along = slides ? cargo.Dfz : b.pitch * cargo.Dfz + cargo.Dnz;
-  const double least = rounding * b.subtree_mass;
+  const auto least = rounding * b.subtree_mass;
   if (!all_positive(slides
                         ? mass - least
                         : mass - (b.pitch * b.pitch * least + rounding * (m.Ixx + m.Iyy + m.Izz))))
@@ -103,24 +106,22 @@ MOMENTA_INLINE bool eliminate_axis(const Model<Spatial>::Body& b, const S& r, Ca
 }
 
 /// Nearly parallel axes: a turn about y and the screw about x.
-template <bool Gravity, class S>
-__attribute__((noinline)) void tilt_inward(const Spatial::EdgeConstants& k, double m,
-                                           Cargo<S>& cargo) {
-  Spatial::EdgeConstants way = k;
-  way.about_z = false;
-  const Spatial::Edge<S> nothing;
+template <bool Gravity, class Constants, class Mass, class S>
+__attribute__((noinline)) void tilt_inward(const Constants& k, const Mass& m, Cargo<S>& cargo) {
+  Spatial::ArticulatedInertia<S> M = blocks(cargo.M);
+  Spatial::Force<S> D = remainder_of(cargo);
   Vec3<S> G{};
+  if constexpr (Gravity) G = {{cargo.Gx, cargo.Gy, cargo.Gz}};
+  tilt_inward(k, M, D, G);
   if constexpr (Gravity)
-    G = Spatial::moment_to_parent(way, JointKind::weld, nothing,
-                                  Vec3<S>{{cargo.Gx, cargo.Gy, cargo.Gz}}, m);
-  set_cargo(cargo, Spatial::to_parent(way, JointKind::weld, nothing, blocks(cargo.M)),
-            Spatial::to_parent(way, JointKind::weld, nothing, remainder_of(cargo)), G);
+    if (k.about_x) G[0] = G[0] + m * k.a;
+  set_cargo(cargo, M, D, G);
 }
 
 /// M', D' and, of the mass m, G from the frame of the joint to the parent's.
-template <bool Gravity, class S>
-MOMENTA_INLINE void carry_axis(const Link& l, const Spatial::EdgeConstants& k,
-                               const Spatial::Edge<S>& e, double m, Cargo<S>& cargo) {
+template <bool Gravity, class Link, class Constants, class Mass, class S>
+MOMENTA_INLINE void carry_axis(const Link& l, const Constants& k, const Spatial::Edge<S>& e,
+                               const Mass& m, Cargo<S>& cargo) {
   screw_inward<Gravity>(e.cos_theta, e.sin_theta, e.d, cargo);
   if constexpr (Gravity) cargo.Gz = cargo.Gz + m * e.d;
   if (l.turn == Turn::tilted) {
@@ -152,8 +153,8 @@ MOMENTA_INLINE void carry_axis(const Link& l, const Spatial::EdgeConstants& k,
 }
 
 /// W = 𝒯ⱽ Ω_L in the frame of the joint, from the parent's motion in `c`; with gravity, g too.
-template <bool Gravity, class S>
-MOMENTA_INLINE void constants_and_screw_outward(const Link& l, const Spatial::EdgeConstants& k,
+template <bool Gravity, class Link, class Constants, class S>
+MOMENTA_INLINE void constants_and_screw_outward(const Link& l, const Constants& k,
                                                 const Spatial::Edge<S>& e, OutwardCargo<S>& c) {
   constants_outward(l, k, c.vx, c.vy, c.vz, c.ox, c.oy, c.oz);
   screw_outward(e.cos_theta, e.sin_theta, e.d, c.vx, c.vy, c.ox, c.oy);
@@ -170,8 +171,8 @@ MOMENTA_INLINE S axis_rate(const JointRecord<Spatial, S>& x, const OutwardCargo<
                           x.h.n[1] * w.oy + x.h.n[2] * w.oz);
 }
 /// Ω = W + E u
-template <class S>
-MOMENTA_INLINE void add_axis_motion(const Model<Spatial>::Body& b, const S& u, OutwardCargo<S>& w) {
+template <class Body, class S>
+MOMENTA_INLINE void add_axis_motion(const Body& b, const S& u, OutwardCargo<S>& w) {
   if (b.kind == JointKind::revolute) {
     w.oz = w.oz + u;
   } else if (b.kind == JointKind::prismatic) {
@@ -183,8 +184,8 @@ MOMENTA_INLINE void add_axis_motion(const Model<Spatial>::Body& b, const S& u, O
 }
 
 /// Eᵀ (T* − Ω × P*) of (35), P* = M*Ω + D: two or four of the six rows of P*.
-template <bool Gravity, class S>
-MOMENTA_INLINE S axis_momentum_rate(const Model<Spatial>::Body& b, const JointRecord<Spatial, S>& x,
+template <bool Gravity, class Body, class S>
+MOMENTA_INLINE S axis_momentum_rate(const Body& b, const JointRecord<Spatial, S>& x,
                                     const OutwardCargo<S>& w) {
   const auto& A = x.M.A.x;
   const auto& H = x.M.H.x;

@@ -32,14 +32,14 @@ MOMENTA_INLINE Mat3<S> ball_axes(const BallPlace& place, const In& q, int first)
   return rotation_of(both);
 }
 
-/// Sines and cosines of all pins, turned axes of ball joints (`axes(record)`), edges of the others.
+/// Sines and cosines of the first n links that are pins, turned axes of ball joints
+/// (`axes(record)`), edges of the others.
 template <class S, class In, class Axes>
 void place_links(const LinkTree& tree, const S& t, const In& q, Angles<S>& angles,
                  std::vector<JointRecord<Spatial, S>>& joints, std::vector<UserRecord<S>>& users,
-                 Axes&& axes) {
+                 Axes&& axes, std::size_t n) {
   const Link* links = tree.links.data();
   const double* theta0 = tree.theta0.data();
-  const std::size_t n = angles.size();
   const bool pins_alone = joints.empty();
   for (std::size_t k = 0; k < n; ++k) {
     if (links[k].kind == LinkKind::pin) {
@@ -61,7 +61,7 @@ void place_links(const LinkTree& tree, const S& t, const In& q, Angles<S>& angle
       angles.set(k, angle_at(b, value));
     }
   }
-  angles.turn();
+  angles.turn(n);
   if (pins_alone && tree.balls.empty()) return;
   for (std::size_t k = 0; k < n; ++k) {
     if (links[k].kind == LinkKind::pin) continue;
@@ -86,6 +86,13 @@ void place_links(const LinkTree& tree, const S& t, const In& q, Angles<S>& angle
       Joint<Spatial>::place<S>(b, nullptr, at[0], at, x.edge);
     }
   }
+}
+/// All of them.
+template <class S, class In, class Axes>
+void place_links(const LinkTree& tree, const S& t, const In& q, Angles<S>& angles,
+                 std::vector<JointRecord<Spatial, S>>& joints, std::vector<UserRecord<S>>& users,
+                 Axes&& axes) {
+  place_links(tree, t, q, angles, joints, users, axes, angles.size());
 }
 
 }  // namespace momenta

@@ -116,8 +116,8 @@ struct Spatial : SpatialAlgebra {
   }
 
   /// Parent velocity to the child's frame: the first term of (23), without the joint's own motion.
-  template <class S>
-  static Motion<S> to_child(const EdgeConstants& k, JointKind kind, const Edge<S>& e, Motion<S> m) {
+  template <class Constants, class S>
+  static Motion<S> to_child(const Constants& k, JointKind kind, const Edge<S>& e, Motion<S> m) {
     constants_outward(k, m);
     if (moves_freely(kind)) {
       m.v += cross(m.w, e.position);
@@ -170,8 +170,8 @@ struct Spatial : SpatialAlgebra {
 
   /// A direction or point fixed in the parent's frame in child axes (no shift): gravity on its way
   /// outward.
-  template <class S>
-  static Vec3<S> direction_to_child(const EdgeConstants& k, JointKind kind, const Edge<S>& e,
+  template <class Constants, class S>
+  static Vec3<S> direction_to_child(const Constants& k, JointKind kind, const Edge<S>& e,
                                     Vec3<S> g) {
     constants_outward(k, g);
     if (moves_freely(kind)) return transpose_times(e.rotation, g);
@@ -197,11 +197,11 @@ struct Spatial : SpatialAlgebra {
     return mc;
   }
 
-  template <class S>
-  static Pose<S> pose_outward(const EdgeConstants& k, JointKind kind, const Edge<S>& e, Pose<S> p) {
+  template <class Constants, class S>
+  static Pose<S> pose_outward(const Constants& k, JointKind kind, const Edge<S>& e, Pose<S> p) {
     if (k.about_z) pose_outward<2>(p, k.cos_gamma, k.sin_gamma, k.delta);
     if (k.about_x) pose_outward<0>(p, k.cos_alpha, k.sin_alpha, k.a);
-    if (k.about_y) pose_outward<1>(p, k.cos_beta, k.sin_beta, 0.0);
+    if (k.about_y) pose_outward<1>(p, k.cos_beta, k.sin_beta, decltype(k.cos_beta)(0.0));
     if (moves_freely(kind)) {
       p.origin += p.axes * e.position;
       p.axes = p.axes * e.rotation;

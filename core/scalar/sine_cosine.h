@@ -104,8 +104,10 @@ class Angles {
   MOMENTA_INLINE const S& sine(std::size_t i) const { return sine_[i]; }
   MOMENTA_INLINE const S& cosine(std::size_t i) const { return cosine_[i]; }
   std::size_t size() const { return size_; }
-  MOMENTA_INLINE void turn() {
-    for (std::size_t i = 0; i < size_; ++i) sine_cosine(angle_[i], sine_[i], cosine_[i]);
+  MOMENTA_INLINE void turn() { turn(size_); }
+  /// The first n alone.
+  MOMENTA_INLINE void turn(std::size_t n) {
+    for (std::size_t i = 0; i < n; ++i) sine_cosine(angle_[i], sine_[i], cosine_[i]);
   }
 
  private:
@@ -128,8 +130,9 @@ class Angles<Pack<1, L>> {
   MOMENTA_INLINE One sine(std::size_t i) const { return at(sine_, i); }
   MOMENTA_INLINE One cosine(std::size_t i) const { return at(cosine_, i); }
   std::size_t size() const { return size_; }
-  MOMENTA_INLINE void turn() {
-    for (std::size_t i = 0; i < angle_.size(); ++i) sine_cosine(angle_[i], sine_[i], cosine_[i]);
+  MOMENTA_INLINE void turn() { turn(size_); }
+  MOMENTA_INLINE void turn(std::size_t n) {
+    for (std::size_t i = 0; i * width < n; ++i) sine_cosine(angle_[i], sine_[i], cosine_[i]);
   }
 
  private:
@@ -162,6 +165,7 @@ class Angles<Directions<W, L>> {
   }
   std::size_t size() const { return slopes_.size(); }
   MOMENTA_INLINE void turn() { values_.turn(); }
+  MOMENTA_INLINE void turn(std::size_t n) { values_.turn(n); }
 
  private:
   static MOMENTA_INLINE S with(const Pack<1, L>& value, const Lanes& slope) {

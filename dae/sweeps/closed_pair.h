@@ -6,12 +6,6 @@
 
 namespace momenta {
 
-/// Pivots of a pair are kept for a single state, whose failures and faded rows are told.
-template <class S>
-constexpr bool keeps_pivots = true;
-template <int W, int L>
-constexpr bool keeps_pivots<Pack<W, L>> = W == 1;
-
 /// A pair of point rows at lanes A, A + 1 closed in registers; state by state the row with the
 /// larger pivot goes first: (a, b) ← (b, −a) where W_bb > W_aa.
 template <class S, int Rows, int Columns>

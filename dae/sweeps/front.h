@@ -163,9 +163,10 @@ struct ClosedRow {
   /// σ_k for the motion `omega` of the closing body.
   template <class Motion>
   MOMENTA_INLINE S impulse(const Motion& omega, const Lanes<S, Rows>& sigma) const {
-    S s = impulse_at_ground(sigma);
+    // What waits for the σ just found comes last.
+    S s = d;
     for (int i = 0; i < Columns; ++i) s = s + c[i] * omega[i];
-    return s;
+    return minus_dot(s, G, sigma, ~LaneGroups{});
   }
   MOMENTA_INLINE S impulse_at_ground(const Lanes<S, Rows>& sigma) const {
     return minus_dot(d, G, sigma, ~LaneGroups{});
@@ -225,48 +226,70 @@ inline bool has_faded(double w, double tau) {
 /// What tells the size of a pivot to the choice of the next one: of a pack, all its states.
 template <int W, int L>
 double size_of(const Pack<W, L>& x) {
-  double sum = 0;
-  for (int i = 0; i < W; ++i) sum += x.lane(i) > 0 ? x.lane(i) : 0;
-  return sum;
+  const Pack<W, L> zero(0.0), positive = where_greater(x, zero, x, zero);
+  if constexpr (W == 1)
+    return positive.v;
+  else
+    return sum_of(positive).v;
 }
 
+/// Of a single state the pivots are kept: its failures and faded rows are told.
+template <class S>
+constexpr bool keeps_pivots = true;
+template <int W, int L>
+constexpr bool keeps_pivots<Pack<W, L>> = W == 1;
+
 /// Closes the rows of one loop: `points` rows at `lane` that share a unit and have that scale at
-/// least, then `others`. Records them in closing order.
+/// least, then `others`. Records them in closing order. Of a pack all states are closed in one
+/// order: false where that takes, of some state, a pivot below a thousandth of the largest that is
+/// left, and may so lose three digits.
 template <class S, int Rows, int Columns, class Weight>
-void close_loop(Front<S, Rows, Columns>& front, int lane, int points, int others,
-                double least_scale, double fade, ClosedRow<S, Rows, Columns>* records,
+bool close_loop(Front<S, Rows, Columns>& front, int lane, int points, int others,
+                const S& least_scale, double fade, ClosedRow<S, Rows, Columns>* records,
                 Weight&& weight) {
   const int rows = points + others;
   S tau[6];
-  double unit[6];
+  double per_unit[6];
   for (int first = 0; first < rows; first = points) {
     const int end = first < points ? points : rows;
     S sum(0.0);
     for (int i = first; i < end; ++i) sum += front.scale[lane + i];
-    sum = sum * (1.0 / (end - first)) + S(first < points ? least_scale : 0.0);
+    sum = sum * (1.0 / (end - first)) + (first < points ? least_scale : S(0.0));
+    const double unit = size_of(sum), inverse = unit > 0 ? 1 / unit : 0;
     for (int i = first; i < end; ++i) {
       tau[i] = sum * fade;
-      unit[i] = size_of(sum);
+      per_unit[i] = inverse;
     }
     if (end == rows) break;
   }
-  bool closed[6] = {};
+  constexpr double least_share = 1e-3;
+  bool closed[6] = {}, even = true;
   for (int k = 0; k < rows; ++k) {
     int best = -1;
     double largest = -1;
+    [[maybe_unused]] S largest_of_each(0.0);
     for (int i = 0; i < rows; ++i) {
       if (closed[i]) continue;
-      const double w = size_of(front.w(lane + i, lane + i));
-      const double relative = unit[i] > 0 ? w / unit[i] : 0;
+      const S pivot = front.w(lane + i, lane + i);
+      const double relative = size_of(pivot) * per_unit[i];
+      if constexpr (!keeps_pivots<S>) {
+        const S own = pivot * per_unit[i];
+        largest_of_each = where_greater(own, largest_of_each, own, largest_of_each);
+      }
       if (best < 0 || relative > largest) {
         best = i;
         largest = relative;
       }
     }
+    if constexpr (!keeps_pivots<S>)
+      even = even && per_unit[best] > 0 &&
+             all_positive(front.w(lane + best, lane + best) * per_unit[best] -
+                          least_share * largest_of_each);
     closed[best] = true;
     close_row(lane + best, front, tau[best], records[k], weight);
   }
   for (int i = 0; i < rows; ++i) front.scale.set(lane + i, S(0.0));
+  return even;
 }
 
 }  // namespace momenta

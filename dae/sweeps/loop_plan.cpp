@@ -206,6 +206,10 @@ LoopPlan plan_loops(const std::vector<int>& parents, const std::vector<LoopShape
                     bool may_fold) {
   LoopPlan plan = planned(parents, loops, std::vector<int>(parents.size(), -1));
   if (plan.fits() || !may_fold || plan.couples()) return plan;
+  return plan_folded(parents, loops);
+}
+
+LoopPlan plan_folded(const std::vector<int>& parents, const std::vector<LoopShape>& loops) {
   return planned(parents, loops, foldable_legs(parents, loops));
 }
 

@@ -69,5 +69,7 @@ struct LoopShape {
 /// needed all the same, `lanes` says so.
 LoopPlan plan_loops(const std::vector<int>& parents, const std::vector<LoopShape>& loops,
                     bool may_fold);
+/// With every leg folded that can be.
+LoopPlan plan_folded(const std::vector<int>& parents, const std::vector<LoopShape>& loops);
 
 }  // namespace momenta

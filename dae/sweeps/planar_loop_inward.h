@@ -71,7 +71,7 @@ void LoopSweeps<Planar, S, Rows, Momentum>::close_any(int loop, Open& open, doub
   const int points = l.first_rows();
   open.blocks.begin(false, ~all);
   if (compliance_) soften(open.blocks, plan_->lane[at], l.rows, compliance_ + l.row);
-  close_loop(open.blocks, plan_->lane[at], points, l.rows - points, l.least_scale, fade,
+  close_loop(open.blocks, plan_->lane[at], points, l.rows - points, S(l.least_scale), fade,
              &rows_[static_cast<std::size_t>(l.row)], PlanarWeight<S>{open.cargo});
 }
 
@@ -107,8 +107,8 @@ bool LoopSweeps<Planar, S, Rows, Momentum>::inward(const In& r, const RightSide<
   const Vec2<double>& g = tree_->model->gravity;
   const bool falls = !Momentum && tree_->model->has_gravity, couples = plan_->couples();
   PlanarCargo<S> a{};
-  // Of one state in registers: all that takes its address takes a copy. Of a pack in memory, as what
-  // is open differs from body to body.
+  // Of one state in registers: all that takes its address takes a copy. Of a pack in memory, as
+  // what is open differs from body to body.
   std::conditional_t<Column::apart, Blocks&, Blocks> o = front_;
   Blocks& ground = ground_;
   if constexpr (!Column::apart) ground = {};

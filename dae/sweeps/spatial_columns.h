@@ -25,8 +25,8 @@ MOMENTA_INLINE void screw_columns(Part* C6, const Part& c, const Part& s, const 
 }
 
 /// The constant screws of an edge, from the joint to the parent's frame.
-template <class Part>
-MOMENTA_INLINE void columns_to_parent(const Spatial::EdgeConstants& e, Part* C6) {
+template <class Constants, class Part>
+MOMENTA_INLINE void columns_to_parent(const Constants& e, Part* C6) {
   if (e.about_y) screw_columns<1>(C6, Part(e.cos_beta), Part(e.sin_beta), Part(0.0));
   if (e.about_x) screw_columns<0>(C6, Part(e.cos_alpha), Part(e.sin_alpha), Part(e.a));
   if (e.about_z) screw_columns<2>(C6, Part(e.cos_gamma), Part(e.sin_gamma), Part(e.delta));

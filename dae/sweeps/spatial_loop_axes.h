@@ -10,11 +10,12 @@
 
 namespace momenta {
 
-template <class S, int Rows, bool Momentum>
+template <class S, int Rows, bool Momentum, class Tree>
 template <class In>
-bool LoopSweeps<Spatial, S, Rows, Momentum>::axis_inward(std::size_t k, const In& r,
-                                                         const RightSide<S>& right, Carried& a) {
-  const Link& l = tree_->links[k];
+bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::axis_inward(std::size_t k, const In& r,
+                                                             const RightSide<S>& right,
+                                                             Carried& a) {
+  const auto& l = tree_->links[k];
   const auto& b = body(k);
   auto& x = joints_[static_cast<std::size_t>(l.record)];
   auto& y = any_[static_cast<std::size_t>(l.record)];
@@ -80,11 +81,12 @@ bool LoopSweeps<Spatial, S, Rows, Momentum>::axis_inward(std::size_t k, const In
   return true;
 }
 
-template <class S, int Rows, bool Momentum>
+template <class S, int Rows, bool Momentum, class Tree>
 template <class In, class Out>
-void LoopSweeps<Spatial, S, Rows, Momentum>::axis_outward(std::size_t k, const In& q, bool rates,
-                                                          Moving& moving, Out u, Out rate) {
-  const Link& l = tree_->links[k];
+void SpatialLoopSweeps<S, Rows, Momentum, Tree>::axis_outward(std::size_t k, const In& q,
+                                                              bool rates, Moving& moving, Out u,
+                                                              Out rate) {
+  const auto& l = tree_->links[k];
   const auto& b = body(k);
   auto& x = joints_[static_cast<std::size_t>(l.record)];
   const auto& y = any_[static_cast<std::size_t>(l.record)];

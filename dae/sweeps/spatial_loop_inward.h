@@ -7,17 +7,17 @@
 namespace momenta {
 
 /// The loop ends on body k.
-template <class S, int Rows, bool Momentum>
-void LoopSweeps<Spatial, S, Rows, Momentum>::enter(std::size_t k, const RightSide<S>& right,
-                                                   Carried& a) {
+template <class S, int Rows, bool Momentum, class Tree>
+void SpatialLoopSweeps<S, Rows, Momentum, Tree>::enter(std::size_t k, const RightSide<S>& right,
+                                                       Carried& a) {
   const LoopPlan::Range range = plan_->ends_of[k];
   for (int i = range.first; i < range.last; ++i)
     enter(k, plan_->ends[static_cast<std::size_t>(i)], right, a);
 }
 
-template <class S, int Rows, bool Momentum>
-void LoopSweeps<Spatial, S, Rows, Momentum>::enter(std::size_t k, const LoopPlan::End& end,
-                                                   const RightSide<S>& right, Carried& a) {
+template <class S, int Rows, bool Momentum, class Tree>
+void SpatialLoopSweeps<S, Rows, Momentum, Tree>::enter(std::size_t k, const LoopPlan::End& end,
+                                                       const RightSide<S>& right, Carried& a) {
   const auto loop = static_cast<std::size_t>(end.loop);
   const Loop& l = loops_->loops[loop];
   const SpatialLoopPlace<S>& s = places_[loop];
@@ -26,38 +26,29 @@ void LoopSweeps<Spatial, S, Rows, Momentum>::enter(std::size_t k, const LoopPlan
   const S sign(end.on_a ? 1.0 : -1.0);
   const Vec3<S> arm = transpose_times(axes, end.on_a ? s.ra : s.rb);
   Vec3<S> centre_force{}, centre_couple{};
-  for (int row = 0; row < l.rows; ++row) {
-    const Vec3<S> f = transpose_times(axes, sign * s.F[row]);
-    const Vec3<S> n = cross(arm, f) + transpose_times(axes, sign * s.c[row]);
+  for (int row = 0; row < l.first_rows(); ++row) {
+    // The b_j are constant in B.
+    const Vec3<S> f =
+        end.on_a || l.is_distance()
+            ? transpose_times(axes, sign * s.F[row])
+            : sign *
+                  in_ground<S>(
+                      nullptr,
+                      l.axis_b[static_cast<std::size_t>(l.points[static_cast<std::size_t>(row)])]);
+    const Vec3<S> n = cross(arm, f);
     for (int j = 0; j < 3; ++j) {
       a.blocks.C[j].add(lane + row, f[j]);
       a.blocks.C[3 + j].add(lane + row, n[j]);
     }
     if (right.centre) {
-      const S centre = right.centre[l.row + row];
-      centre_force += centre * f;
-      centre_couple += centre * n;
+      centre_force += right.centre[l.row + row] * f;
+      centre_couple += right.centre[l.row + row] * n;
     }
-    if (!end.first) continue;
-    if (right.positions != 0) a.blocks.d.add(lane + row, right.positions * s.position(l, row));
-    if constexpr (Momentum) {
-      if (l.motion >= 0 && right.drives)
-        a.blocks.d.add(lane + row, s.moving_rate(prescribed(l), row));
-    } else {
-      const auto rates = rates_of(l, s);
-      S d = l.motion < 0
-                ? s.bias(l, rates, row)
-                : s.moving_bias(l, loop_body(l.a), loop_body(l.b), prescribed(l), rates, row);
-      if (right.alpha != 0 || right.beta != 0)
-        d += (2 * right.alpha) * s.velocity(rates, row) +
-             (right.beta * right.beta) * s.position(l, row);
-      // The ground falls upward too: its end of the row accelerates with −g.
-      const auto& g = tree_->model->gravity;
-      const S along = s.F[row][0] * g[0] + s.F[row][1] * g[1] + s.F[row][2] * g[2];
-      if (l.b < 0) d += along;
-      if (l.a < 0) d -= along;
-      a.blocks.d.add(lane + row, d);
-    }
+  }
+  for (int row = l.first_rows(); row < l.rows; ++row) {
+    const Vec3<S> n = transpose_times(axes, sign * s.c[row]);
+    for (int j = 0; j < 3; ++j) a.blocks.C[3 + j].add(lane + row, n[j]);
+    if (right.centre) centre_couple += right.centre[l.row + row] * n;
   }
   if (right.centre) {
     a.cargo.Dfx += centre_force[0];
@@ -67,13 +58,49 @@ void LoopSweeps<Spatial, S, Rows, Momentum>::enter(std::size_t k, const LoopPlan
     a.cargo.Dny += centre_couple[1];
     a.cargo.Dnz += centre_couple[2];
   }
+  if (end.first) enter_right_side(loop, right, a.blocks.d);
+}
+
+/// d of a loop's rows: positions, what is prescribed, velocity products.
+template <class S, int Rows, bool Momentum, class Tree>
+void SpatialLoopSweeps<S, Rows, Momentum, Tree>::enter_right_side(std::size_t loop,
+                                                                  const RightSide<S>& right,
+                                                                  Column& d) {
+  const Loop& l = loops_->loops[loop];
+  const SpatialLoopPlace<S>& s = places_[loop];
+  const int lane = plan_->lane[loop];
+  if (right.positions != 0)
+    for (int row = 0; row < l.rows; ++row) d.add(lane + row, right.positions * s.position(l, row));
+  if constexpr (Momentum) {
+    if (l.motion < 0 || !right.drives) return;
+    for (int row = 0; row < l.rows; ++row) d.add(lane + row, s.moving_rate(l, prescribed(l), row));
+  } else {
+    const auto rates = rates_of(l, s);
+    const LoopBody<S>*A = loop_body(l.a), *B = loop_body(l.b);
+    const Vec3<S> apart = s.apart_bias(rates);
+    const auto& g = tree_->model->gravity;
+    for (int row = 0; row < l.rows; ++row) {
+      S bias = l.motion < 0 ? s.bias(l, rates, apart, row)
+                            : s.moving_bias(l, A, B, prescribed(l), rates, row);
+      if (right.alpha != 0 || right.beta != 0)
+        bias += (2 * right.alpha) * s.velocity(l, rates, row) +
+                (right.beta * right.beta) * s.position(l, row);
+      // The ground falls upward too: its end of the row accelerates with −g.
+      if (row < l.first_rows() && (l.a < 0 || l.b < 0)) {
+        const S along = s.F[row][0] * g[0] + s.F[row][1] * g[1] + s.F[row][2] * g[2];
+        if (l.b < 0) bias += along;
+        if (l.a < 0) bias -= along;
+      }
+      d.add(lane + row, bias);
+    }
+  }
 }
 
 /// Closes the loops of a leg that has been eliminated down to the ground into the body they tie it
 /// to: r = JᵀΩ_L − W σ + d with the leg's W and d.
-template <class S, int Rows, bool Momentum>
-void LoopSweeps<Spatial, S, Rows, Momentum>::fold(std::size_t root, const RightSide<S>& right,
-                                                  Carried& leg) {
+template <class S, int Rows, bool Momentum, class Tree>
+void SpatialLoopSweeps<S, Rows, Momentum, Tree>::fold(std::size_t root, const RightSide<S>& right,
+                                                      Carried& leg) {
   const auto onto = static_cast<std::size_t>(plan_->folded_onto[root]);
   const LoopPlan::Range range = plan_->ground_closings_of[root];
   leg.cargo = {};
@@ -95,26 +122,27 @@ void LoopSweeps<Spatial, S, Rows, Momentum>::fold(std::size_t root, const RightS
   add<Momentum>(legs_[onto], leg.cargo);
 }
 
-template <class S, int Rows, bool Momentum>
-void LoopSweeps<Spatial, S, Rows, Momentum>::close(int loop, Carried& a, double fade,
-                                                   LaneGroups all) {
+template <class S, int Rows, bool Momentum, class Tree>
+void SpatialLoopSweeps<S, Rows, Momentum, Tree>::close(int loop, Carried& a, double fade,
+                                                       LaneGroups all) {
   const Loop& l = loops_->loops[static_cast<std::size_t>(loop)];
   const int points = l.first_rows();
   a.blocks.begin(false, ~all);
   if (compliance_)
     soften(a.blocks, plan_->lane[static_cast<std::size_t>(loop)], l.rows, compliance_ + l.row);
-  close_loop(a.blocks, plan_->lane[static_cast<std::size_t>(loop)], points, l.rows - points,
-             l.least_scale, fade, &rows_[static_cast<std::size_t>(l.row)],
-             SpatialWeight<S, Cargo<S>>{a.cargo});
+  even_ &= close_loop(a.blocks, plan_->lane[static_cast<std::size_t>(loop)], points,
+                      l.rows - points, S(l.least_scale), fade,
+                      &rows_[static_cast<std::size_t>(l.row)], SpatialWeight<S, Cargo<S>>{a.cargo});
 }
 
-template <class S, int Rows, bool Momentum>
+template <class S, int Rows, bool Momentum, class Tree>
 template <class In>
-bool LoopSweeps<Spatial, S, Rows, Momentum>::inward(const In& r, const RightSide<S>& right) {
-  const Link* links = tree_->links.data();
+bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::inward(const In& r, const RightSide<S>& right) {
+  const auto* links = tree_->links.data();
   Carried a{}, ground{};
-  for (std::size_t k = pins_.size(); k-- > 0;) {
-    const Link& l = links[k];
+  for (std::size_t k = swept_; k-- > 0;) {
+    if (elsewhere(k)) continue;
+    const auto& l = links[k];
     const OpenLanes::Front& front = lanes_.fronts[k];
     if (l.tip) a.cargo = {};
     a.blocks.begin(l.tip, front.fresh);
@@ -147,10 +175,14 @@ bool LoopSweeps<Spatial, S, Rows, Momentum>::inward(const In& r, const RightSide
     const LoopPlan::Range closing = plan_->closings_of[k];
     for (int i = closing.first; i < closing.last; ++i)
       close(plan_->closings[static_cast<std::size_t>(i)], a, right.fade, front.all);
-    if (!(l.kind == LinkKind::pin    ? pin_inward(k, r, right, a)
-          : l.kind == LinkKind::ball ? ball_inward(k, r, a)
-          : l.one_axis               ? axis_inward(k, r, right, a)
-                                     : free_inward(k, r, a))) {
+    bool moves = true;
+    if (l.kind == LinkKind::pin)
+      moves = pin_inward(k, r, right, a);
+    else if (of_legs || l.one_axis)
+      moves = axis_inward(k, r, right, a);
+    else if constexpr (!of_legs)
+      moves = l.kind == LinkKind::ball ? ball_inward(k, r, a) : free_inward(k, r, a);
+    if (!moves) {
       stuck_ = static_cast<int>(k);
       return false;
     }

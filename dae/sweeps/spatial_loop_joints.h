@@ -6,11 +6,11 @@
 
 namespace momenta {
 
-template <class S, int Rows, bool Momentum>
+template <class S, int Rows, bool Momentum, class Tree>
 template <class In>
-bool LoopSweeps<Spatial, S, Rows, Momentum>::pin_inward(std::size_t k, const In& r,
-                                                        const RightSide<S>& right, Carried& a) {
-  const Link& l = tree_->links[k];
+bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::pin_inward(std::size_t k, const In& r,
+                                                            const RightSide<S>& right, Carried& a) {
+  const auto& l = tree_->links[k];
   PinRecord& w = pins_[k];
   Cargo<S>& m = a.cargo;
   Blocks& o = a.blocks;
@@ -39,7 +39,7 @@ bool LoopSweeps<Spatial, S, Rows, Momentum>::pin_inward(std::size_t k, const In&
   left.Gz = m.Gz;
   if constexpr (!Momentum)
     if (l.parent < 0) {  // on the ground c is its fall
-      const Vec3<double>& g = tree_->weight[k];
+      const auto& g = tree_->weight[k];
       w.c = {{{S(-g[0]), S(-g[1]), S(-g[2])}}, {}};
     }
   const S cosine = angles_.cosine(k), sine = angles_.sine(k);
@@ -115,10 +115,11 @@ bool LoopSweeps<Spatial, S, Rows, Momentum>::pin_inward(std::size_t k, const In&
   return true;
 }
 
-template <class S, int Rows, bool Momentum>
+template <class S, int Rows, bool Momentum, class Tree>
 template <class In>
-bool LoopSweeps<Spatial, S, Rows, Momentum>::ball_inward(std::size_t k, const In& r, Carried& a) {
-  const Link& l = tree_->links[k];
+bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::ball_inward(std::size_t k, const In& r,
+                                                             Carried& a) {
+  const auto& l = tree_->links[k];
   const auto record = static_cast<std::size_t>(l.record);
   BallRecord& w = balls_[record];
   Cargo<S>& m = a.cargo;
@@ -177,9 +178,10 @@ bool LoopSweeps<Spatial, S, Rows, Momentum>::ball_inward(std::size_t k, const In
 }
 
 /// Free joints: nothing is left of a body, M' = 0, C' = 0, and D' is its own p.
-template <class S, int Rows, bool Momentum>
+template <class S, int Rows, bool Momentum, class Tree>
 template <class In>
-bool LoopSweeps<Spatial, S, Rows, Momentum>::free_inward(std::size_t k, const In& r, Carried& a) {
+bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::free_inward(std::size_t k, const In& r,
+                                                             Carried& a) {
   const auto& b = body(k);
   const auto record = static_cast<std::size_t>(tree_->links[k].record);
   auto& x = joints_[record];

@@ -6,12 +6,12 @@
 namespace momenta {
 
 /// Impulses of the loops in `range`, last closed first; `motion` null at the ground.
-template <class S, int Rows, bool Momentum>
+template <class S, int Rows, bool Momentum, class Tree>
 template <class Out>
-void LoopSweeps<Spatial, S, Rows, Momentum>::solve_loops(const LoopPlan::Range& range,
-                                                         const RightSide<S>& right,
-                                                         const Motion* motion, Column& sigma,
-                                                         Out& out) {
+void SpatialLoopSweeps<S, Rows, Momentum, Tree>::solve_loops(const LoopPlan::Range& range,
+                                                             const RightSide<S>& right,
+                                                             const Motion* motion, Column& sigma,
+                                                             Out& out) {
   for (int i = range.last; i-- > range.first;) {
     const auto at = static_cast<std::size_t>(plan_->closings[static_cast<std::size_t>(i)]);
     const Loop& l = loops_->loops[at];
@@ -25,17 +25,18 @@ void LoopSweeps<Spatial, S, Rows, Momentum>::solve_loops(const LoopPlan::Range& 
   }
 }
 
-template <class S, int Rows, bool Momentum>
+template <class S, int Rows, bool Momentum, class Tree>
 template <class In, class Out>
-void LoopSweeps<Spatial, S, Rows, Momentum>::outward(const In& q, const RightSide<S>& right, Out u,
-                                                     Out impulse, Out rate) {
-  const Link* links = tree_->links.data();
+void SpatialLoopSweeps<S, Rows, Momentum, Tree>::outward(const In& q, const RightSide<S>& right,
+                                                         Out u, Out impulse, Out rate) {
+  const auto* links = tree_->links.data();
   const bool rates = Momentum && right.rates;
   const auto& gravity = tree_->model->gravity;
   Moving m{};
   Column at_ground{};
-  for (std::size_t k = 0; k < pins_.size(); ++k) {
-    const Link& l = links[k];
+  for (std::size_t k = 0; k < swept_; ++k) {
+    if (elsewhere(k)) continue;
+    const auto& l = links[k];
     if (l.parent < 0) {
       m.V = {};
       for (int i = 0; i < 3; ++i) m.g[i] = S(gravity[i]);
@@ -52,12 +53,14 @@ void LoopSweeps<Spatial, S, Rows, Momentum>::outward(const In& q, const RightSid
     }
     if (l.kind == LinkKind::pin)
       pin_outward(k, q, rates, m, u, rate);
-    else if (l.kind == LinkKind::ball)
-      ball_outward(k, rates, m, u, rate);
-    else if (l.one_axis)
+    else if (of_legs || l.one_axis)
       axis_outward(k, q, rates, m, u, rate);
-    else
-      free_outward(k, rates, m, u, rate);
+    else if constexpr (!of_legs) {
+      if (l.kind == LinkKind::ball)
+        ball_outward(k, rates, m, u, rate);
+      else
+        free_outward(k, rates, m, u, rate);
+    }
     const LoopPlan::Range closed = plan_->closings_of[k];
     if (closed.first != closed.last) solve_loops(closed, right, &m.V, m.sigma, impulse);
     if (plan_->takes_legs[k]) taken_[k] = m.V;
@@ -70,11 +73,11 @@ void LoopSweeps<Spatial, S, Rows, Momentum>::outward(const In& q, const RightSid
   }
 }
 
-template <class S, int Rows, bool Momentum>
+template <class S, int Rows, bool Momentum, class Tree>
 template <class In, class Out>
-void LoopSweeps<Spatial, S, Rows, Momentum>::pin_outward(std::size_t k, const In& q, bool rates,
-                                                         Moving& m, Out u, Out rate) {
-  const Link& l = tree_->links[k];
+void SpatialLoopSweeps<S, Rows, Momentum, Tree>::pin_outward(std::size_t k, const In& q, bool rates,
+                                                             Moving& m, Out u, Out rate) {
+  const auto& l = tree_->links[k];
   const PinRecord& w = pins_[k];
   Vec3<S>&v = m.V.v, &o = m.V.w;
   const S c = angles_.cosine(k), s = angles_.sine(k);
@@ -103,7 +106,7 @@ void LoopSweeps<Spatial, S, Rows, Momentum>::pin_outward(std::size_t k, const In
     m.V = {};
     if constexpr (!Momentum) m.V = w.c;
     if (falls) {
-      const Vec3<double>& g = tree_->weight[k];
+      const auto& g = tree_->weight[k];
       m.g = {{S(g[0]), S(g[1]), S(g[2])}};
     }
   }
@@ -121,11 +124,11 @@ void LoopSweeps<Spatial, S, Rows, Momentum>::pin_outward(std::size_t k, const In
   if (rates) rate[l.u] = l.has_force ? turned + joint_force(body(k), S(q[l.q]), own) : turned;
 }
 
-template <class S, int Rows, bool Momentum>
+template <class S, int Rows, bool Momentum, class Tree>
 template <class Out>
-void LoopSweeps<Spatial, S, Rows, Momentum>::ball_outward(std::size_t k, bool rates, Moving& m,
-                                                          Out u, Out rate) {
-  const Link& l = tree_->links[k];
+void SpatialLoopSweeps<S, Rows, Momentum, Tree>::ball_outward(std::size_t k, bool rates, Moving& m,
+                                                              Out u, Out rate) {
+  const auto& l = tree_->links[k];
   const BallRecord& w = balls_[static_cast<std::size_t>(l.record)];
   Vec3<S>&v = m.V.v, &o = m.V.w;
   const auto along_lanes = [&](const Column& x)
@@ -157,10 +160,10 @@ void LoopSweeps<Spatial, S, Rows, Momentum>::ball_outward(std::size_t k, bool ra
   o = omega;
 }
 
-template <class S, int Rows, bool Momentum>
+template <class S, int Rows, bool Momentum, class Tree>
 template <class Out>
-void LoopSweeps<Spatial, S, Rows, Momentum>::free_outward(std::size_t k, bool rates, Moving& m,
-                                                          Out u, Out rate) {
+void SpatialLoopSweeps<S, Rows, Momentum, Tree>::free_outward(std::size_t k, bool rates, Moving& m,
+                                                              Out u, Out rate) {
   const auto& b = body(k);
   const auto record = static_cast<std::size_t>(tree_->links[k].record);
   const auto& x = joints_[record];
@@ -187,35 +190,22 @@ void LoopSweeps<Spatial, S, Rows, Momentum>::free_outward(std::size_t k, bool ra
   for (int i = 0; i < 6; ++i) rate[b.u + i] = net[i];  // (35), E = 1
 }
 
-template <class S, int Rows, bool Momentum>
-typename LoopSweeps<Spatial, S, Rows, Momentum>::Force
-LoopSweeps<Spatial, S, Rows, Momentum>::wrench_to_parent(std::size_t k, Force f) const {
-  const Link& l = tree_->links[k];
-  if (l.kind == LinkKind::ball) {
-    const auto record = static_cast<std::size_t>(l.record);
-    const auto& r = tree_->balls[record].origin;
-    const Mat3<S>& R = balls_[record].R;
-    const Vec3<S> force = R * f.f;
-    return {force, R * f.n + cross(Vec3<S>{{S(r[0]), S(r[1]), S(r[2])}}, force)};
-  }
-  if (l.kind == LinkKind::general)
-    return Spatial::to_parent(body(k).edge, body(k).kind,
-                              joints_[static_cast<std::size_t>(l.record)].edge, f);
-  Spatial::Edge<S> e;
-  e.cos_theta = angles_.cosine(k);
-  e.sin_theta = angles_.sine(k);
-  e.d = S(l.d);
-  return Spatial::to_parent(body(k).edge, JointKind::revolute, e, f);
-}
-
-/// ṗ += Eᵀ T*: N − κ w of the loops below.
-template <class S, int Rows, bool Momentum>
+/// ṗ += Eᵀ T*: N − κ w of the loops below, in ground axes, where wrenches pass from O to O by a
+/// shift alone.
+template <class S, int Rows, bool Momentum, class Tree>
 template <class Out>
-void LoopSweeps<Spatial, S, Rows, Momentum>::rates_inward(const RightSide<S>& right,
-                                                          const Out& impulse, Out rate) {
-  for (std::size_t k = 0; k < wrenches_.size(); ++k)
+void SpatialLoopSweeps<S, Rows, Momentum, Tree>::rates_inward(const RightSide<S>& right,
+                                                              const Out& impulse, Out rate) {
+  for (std::size_t k = 0; k < swept_; ++k)
     if (plan_->posed[k]) wrenches_[k] = {};
+  if constexpr (takes_packs)
+    if (legs_apart_)
+      for (auto& pack : packs_) {
+        const auto onto = static_cast<std::size_t>(pack->onto());
+        pack->inertial_rates(bodies_[onto], wrenches_[onto], rate);
+      }
   for (std::size_t i = 0; i < places_.size(); ++i) {
+    if (loop_elsewhere(i)) continue;
     const Loop& l = loops_->loops[i];
     if (l.is_coupler()) continue;
     const SpatialLoopPlace<S>& s = places_[i];
@@ -223,45 +213,62 @@ void LoopSweeps<Spatial, S, Rows, Momentum>::rates_inward(const RightSide<S>& ri
     s.inertial_rate(
         l, rates_of(l, s), [&](int row) { return S(impulse[l.row + row]); }, right.leak, force,
         couple);
-    const auto act = [&](int on, const Vec3<S>& arm, const S& sign) {
-      if (on < 0) return;
-      const auto k = static_cast<std::size_t>(on);
-      const auto& axes = bodies_[k].pose.axes;
-      const Vec3<S> n = couple + cross(arm, force);
-      wrenches_[k] += Force{transpose_times(axes, sign * force), transpose_times(axes, sign * n)};
-    };
-    act(l.a, s.ra, S(1.0));
-    act(l.b, s.rb, S(-1.0));
+    if (l.a >= 0) wrenches_[static_cast<std::size_t>(l.a)] += {force, couple + cross(s.ra, force)};
+    if (l.b >= 0) wrenches_[static_cast<std::size_t>(l.b)] -= {force, couple + cross(s.rb, force)};
   }
-  for (std::size_t k = wrenches_.size(); k-- > 0;) {
-    if (!plan_->posed[k]) continue;
-    const Link& l = tree_->links[k];
+  for (std::size_t k = swept_; k-- > 0;) {
+    if (!plan_->posed[k] || elsewhere(k)) continue;
+    const auto& l = tree_->links[k];
     const auto& b = body(k);
+    const auto& axes = bodies_[k].pose.axes;
     const Force& T = wrenches_[k];
+    const auto about_z = [&](const Vec3<S>& x) {
+      return axes(0, 2) * x[0] + axes(1, 2) * x[1] + axes(2, 2) * x[2];
+    };
     if (l.kind == LinkKind::pin) {
-      rate[l.u] = S(rate[l.u]) + T.n[2];
+      rate[l.u] = S(rate[l.u]) + about_z(T.n);
     } else if (l.kind == LinkKind::ball) {
-      for (int i = 0; i < 3; ++i) rate[l.u + i] = S(rate[l.u + i]) + T.n[i];
-    } else if (b.nv > 0) {
-      S along[6];
-      Joint<Spatial>::project(b, joints_[static_cast<std::size_t>(l.record)].edge, T, along);
-      for (int i = 0; i < b.nv; ++i) rate[b.u + i] = S(rate[b.u + i]) + along[i];
+      const Vec3<S> n = transpose_times(axes, T.n);
+      for (int i = 0; i < 3; ++i) rate[l.u + i] = S(rate[l.u + i]) + n[i];
+    } else if (b.kind == JointKind::prismatic && b.nv > 0) {
+      rate[b.u] = S(rate[b.u]) + about_z(T.f);
+    } else if constexpr (!of_legs) {
+      if (b.nv > 0) {
+        S along[6];
+        Joint<Spatial>::project(b, joints_[static_cast<std::size_t>(l.record)].edge,
+                                Force{transpose_times(axes, T.f), transpose_times(axes, T.n)},
+                                along);
+        for (int i = 0; i < b.nv; ++i) rate[b.u + i] = S(rate[b.u + i]) + along[i];
+      }
     }
-    if (l.parent >= 0) wrenches_[static_cast<std::size_t>(l.parent)] += wrench_to_parent(k, T);
+    if (l.parent >= 0)
+      wrenches_[static_cast<std::size_t>(l.parent)] += {T.f, T.n + cross(bodies_[k].step, T.f)};
   }
-  if (plan_->couples() && right.leak != 0) leak_of_couplers<S>(*loops_, right.leak, impulse, rate);
+  if constexpr (!of_legs)
+    if (plan_->couples() && right.leak != 0)
+      leak_of_couplers<S>(*loops_, right.leak, impulse, rate);
 }
 
-template <class S, int Rows, bool Momentum>
+template <class S, int Rows, bool Momentum, class Tree>
 template <class Report>
-void LoopSweeps<Spatial, S, Rows, Momentum>::each_pivot(Report&& report) const {
+void SpatialLoopSweeps<S, Rows, Momentum, Tree>::each_row(Report&& report) const {
   for (std::size_t i = 0; i < places_.size(); ++i) {
+    if (loop_elsewhere(i)) continue;
     const Loop& l = loops_->loops[i];
     for (int j = 0; j < l.rows; ++j) {
       const Row& row = rows_[static_cast<std::size_t>(l.row + j)];
-      report(l.row + row.lane - plan_->lane[i], value_of(row.w), value_of(row.tau));
+      report(l.row + row.lane - plan_->lane[i], row.w, row.tau);
     }
   }
+}
+
+template <class S, int Rows, bool Momentum, class Tree>
+template <class Report>
+void SpatialLoopSweeps<S, Rows, Momentum, Tree>::each_pivot(Report&& report) const {
+  each_row([&](int row, const S& w, const S& tau) { report(row, value_of(w), value_of(tau)); });
+  if constexpr (takes_packs)
+    if (legs_apart_)
+      for (const auto& pack : packs_) pack->each_pivot(report);
 }
 
 }  // namespace momenta

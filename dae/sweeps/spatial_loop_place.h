@@ -12,11 +12,13 @@ namespace momenta {
 template <class S>
 struct LoopBody {
   Spatial::Pose<S> pose;
+  Vec3<S> step;  ///< from the parent's O to its own: without the digits their places have in common
   Vec3<S> v, w;  ///< velocity of O, angular velocity
 };
 
-template <class S>
-Vec3<S> in_ground(const LoopBody<S>* body, const Vec3<double>& v) {
+/// `v` constant in the body; of several mechanisms side by side, one for each.
+template <class S, class Constant>
+Vec3<S> in_ground(const LoopBody<S>* body, const Vec3<Constant>& v) {
   Vec3<S> r;
   for (int i = 0; i < 3; ++i)
     r[i] = body ? body->pose.axes(i, 0) * v[0] + body->pose.axes(i, 1) * v[1] +
@@ -47,11 +49,12 @@ struct PrescribedMotion {
 
 template <class S>
 struct SpatialLoopPlace {
-  using Loop = LoopModel<Spatial>::Loop;
   Vec3<S> ra, rb, gap;  ///< x_A − O_A, x_A − O_B, D = x_A − x_B
-  Vec3<S> F[6], c[6];
+  Vec3<S> F[3];         ///< of rows of points
+  Vec3<S> c[6];         ///< of rows of axes
   Vec3<S> a[3], b[3];
 
+  template <class Loop>
   void place(const Loop& l, const LoopBody<S>* A, const LoopBody<S>* B) {
     ra = in_ground(A, l.at_a);
     const Vec3<S> arm_b = in_ground(B, l.at_b);
@@ -62,23 +65,19 @@ struct SpatialLoopPlace {
     gap = rb - arm_b;
     if (l.is_distance()) {
       F[0] = S(l.per_length) * gap;
-      c[0] = {};
       return;
     }
     for (std::size_t j = 0; j < 3; ++j) b[j] = in_ground(B, l.axis_b[j]);
     if (l.n_axes > 0)
       for (std::size_t j = 0; j < 3; ++j) a[j] = in_ground(A, l.axis_a[j]);
-    for (int j = 0; j < l.n_points; ++j) {
-      F[j] = b[l.points[static_cast<std::size_t>(j)]];
-      c[j] = {};
-    }
+    for (int j = 0; j < l.n_points; ++j) F[j] = b[l.points[static_cast<std::size_t>(j)]];
     for (int j = 0; j < l.n_axes; ++j) {
       const auto [x, y] = l.axes[static_cast<std::size_t>(j)];
-      F[l.n_points + j] = {};
       c[l.n_points + j] = cross(a[x], b[y]);
     }
   }
 
+  template <class Loop>
   S position(const Loop& l, int row) const {
     if (l.is_distance()) return (dot(gap, gap) - S(l.given * l.given)) * (0.5 * l.per_length);
     if (row < l.n_points) return dot(F[row], gap);
@@ -115,16 +114,20 @@ struct SpatialLoopPlace {
     r.given = p.given;
   }
 
-  S velocity(const Rates& r, int row) const {
-    return dot(F[row], r.u - r.at_a) + dot(c[row], r.wa - r.wb) - r.given;
+  template <class Loop>
+  S velocity(const Loop& l, const Rates& r, int row) const {
+    const S along = row < l.first_rows() ? dot(F[row], r.u - r.at_a) : dot(c[row], r.wa - r.wb);
+    return along - r.given;
   }
   /// Φ_t
-  S moving_rate(const PrescribedMotion<S>& p, int row) const {
+  template <class Loop>
+  S moving_rate(const Loop& l, const PrescribedMotion<S>& p, int row) const {
     Rates r;
     add_prescribed(p, r);
-    return velocity(r, row);
+    return velocity(l, r, row);
   }
   /// J̇ V + d/dt Φ_t; `r` with what is prescribed.
+  template <class Loop>
   S moving_bias(const Loop& l, const LoopBody<S>* A, const LoopBody<S>* B,
                 const PrescribedMotion<S>& p, const Rates& r, int row) const {
     Vec3<S> apart{}, alpha_a = p.turning_a_rate, alpha_b = p.turning_b_rate;
@@ -145,27 +148,29 @@ struct SpatialLoopPlace {
     return dot(F[row], apart) + S(2.0) * dot(turning, u) +
            dot(cross(r.wb, turning) + cross(alpha_b, F[row]), gap);
   }
-  /// J̇ V: Φ̈ without the accelerations of the two bodies.
-  S bias(const Loop& l, const Rates& r, int row) const {
-    const Vec3<S> turning = cross(r.wa, cross(r.wa, ra));
+  /// What J̇ V of a point along b_j is b_j times: (ω_B × b)·x = b·(x × ω_B).
+  Vec3<S> apart_bias(const Rates& r) const {
+    return cross(r.wa, cross(r.wa, ra)) - cross(r.wb, r.u - r.vb) + cross(r.u - r.at_a, r.wb);
+  }
+  /// J̇ V: Φ̈ without the accelerations of the two bodies; `apart` as above.
+  template <class Loop>
+  S bias(const Loop& l, const Rates& r, const Vec3<S>& apart, int row) const {
     if (l.is_distance()) {
-      const Vec3<S> apart = r.u - r.at_b;
-      return dot(apart, apart) * l.per_length +
-             dot(F[row], turning - cross(r.wb, cross(r.wb, rb - gap)));
+      const Vec3<S> u = r.u - r.at_b;
+      return dot(u, u) * l.per_length +
+             dot(F[row], cross(r.wa, cross(r.wa, ra)) - cross(r.wb, cross(r.wb, rb - gap)));
     }
-    if (row < l.n_points)
-      return dot(cross(r.wb, F[row]), r.u - r.at_a) +
-             dot(F[row], turning - cross(r.wb, r.u - r.vb));
-    return dot(axis_rate(l, r, row), r.wa - r.wb);
+    return row < l.n_points ? dot(F[row], apart) : dot(axis_rate(l, r, row), r.wa - r.wb);
   }
   /// d/dt (a_i × b_j)
+  template <class Loop>
   Vec3<S> axis_rate(const Loop& l, const Rates& r, int row) const {
     const auto [x, y] = l.axes[static_cast<std::size_t>(row - l.n_points)];
     return cross(cross(r.wa, a[x]), b[y]) + cross(a[x], cross(r.wb, b[y]));
   }
 
   /// N − κ w of the impulses σ(row), as force at x_A and couple on A.
-  template <class Sigma>
+  template <class Loop, class Sigma>
   void inertial_rate(const Loop& l, const Rates& r, const Sigma& sigma, double leak, Vec3<S>& force,
                      Vec3<S>& couple) const {
     Vec3<S> f{}, n{}, turning{};

@@ -16,27 +16,40 @@
 #include <momenta/core/kernel/sweeps.h>
 #include <momenta/dae/loop/loops_in_time.h>
 #include <momenta/dae/sweeps/couplings.h>
+#include <momenta/dae/sweeps/legs/leg_pack.h>
 #include <momenta/dae/sweeps/loop_plan.h>
 #include <momenta/dae/sweeps/right_side.h>
 #include <momenta/dae/sweeps/spatial_columns.h>
 #include <momenta/dae/sweeps/spatial_loop_place.h>
+
+#include <algorithm>
 
 namespace momenta {
 
 template <class Space, class S, int Rows, bool Momentum>
 class LoopSweeps;
 
-template <class S, int Rows, bool Momentum>
-class LoopSweeps<Spatial, S, Rows, Momentum> {
+/// Tree: LinkTree; or LegTree, which holds the constants of several legs side by side.
+template <class S, int Rows, bool Momentum, class Tree>
+class SpatialLoopSweeps {
   using Column = Lanes<S, Rows>;
   using Blocks = Front<S, Rows, 6>;
   using Row = ClosedRow<S, Rows, 6>;
-  using Loop = LoopModel<Spatial>::Loop;
+  using Loops = typename LoopsOf<Tree>::Model;
+  using Loop = typename Loops::Loop;
+  static constexpr bool of_legs = LoopsOf<Tree>::of_legs;
+  static constexpr bool takes_packs = !of_legs && !std::is_void_v<typename LegLanes<S>::type>;
+  struct NoPack {};
+  using Packs = typename std::conditional_t<
+      takes_packs, std::type_identity<LegPack<S, typename LegLanes<S>::type, Momentum>>,
+      std::type_identity<NoPack>>::type;
   using Motion = Spatial::Motion<S>;
   using Force = Spatial::Force<S>;
 
  public:
-  LoopSweeps(const LinkTree& tree, const LoopModel<Spatial>& loops, const LoopPlan& plan);
+  /// `legs`: those to take side by side; null: none.
+  SpatialLoopSweeps(const Tree& tree, const Loops& loops, const LoopPlan& plan,
+                    const LegGroups* legs = nullptr);
 
   /// Momentum form: u (nv) and σ (m) of (7) from p; with right.rates ṗ (nv) of (8), forces between
   /// points of bodies left out. Acceleration form: u̇, λ from u and joint forces `tau` (nv). False
@@ -46,17 +59,47 @@ class LoopSweeps<Spatial, S, Rows, Momentum> {
                   Out u, Out impulse, Out rate);
 
   /// What an evaluation goes through in memory.
-  static std::size_t bytes(const LinkTree& tree, const LoopModel<Spatial>& loops) {
+  static std::size_t bytes(const Tree& tree, const Loops& loops) {
     return tree.links.size() * (sizeof(PinRecord) + sizeof(LoopBody<S>) + sizeof(Force)) +
            loops.loops.size() * sizeof(SpatialLoopPlace<S>) +
            static_cast<std::size_t>(loops.rows) * sizeof(Row);
   }
+  // Legs side by side: the three steps of operator() between which the body they fold into is
+  // swept.
+
+  /// From the pose of that body, in acceleration form its velocities too, to brought_by_legs().
+  template <class In>
+  bool legs_inward(const S& t, const In& q, const In& x, const In& tau, const RightSide<S>& right,
+                   const LoopBody<S>& onto);
+  const Cargo<S>& brought_by_legs() const { return legs_[0]; }
+  /// From its motion V, in its axes.
+  template <class In, class Out>
+  void legs_outward(const In& q, const RightSide<S>& right, const Motion& V, Out u, Out impulse,
+                    Out rate) {
+    taken_[0] = V;
+    outward(q, right, u, impulse, rate);
+  }
+  /// From its velocities in ground axes; what the loops' N − κ w do to it.
+  template <class Out>
+  const Force& legs_rates(const Vec3<S>& v, const Vec3<S>& w, const RightSide<S>& right,
+                          const Out& impulse, Out rate) {
+    bodies_[0].v = v;
+    bodies_[0].w = w;
+    rates_inward(right, impulse, rate);
+    return wrenches_[0];
+  }
+
   int stuck() const { return stuck_; }
   /// Whether the last solution closed a folded leg on too weak a pivot: it is then wrong.
   bool weak_leg() const { return weak_leg_; }
+  /// Whether one order of closing rows did for all states or legs of a pack: close_loop().
+  bool uneven() const { return !even_; }
   /// Pivots of the last solution: calls report(row of Φ, w, τ).
   template <class Report>
   void each_pivot(Report&& report) const;
+  /// The same with packs as they are: report(row of Φ, w, τ).
+  template <class Report>
+  void each_row(Report&& report) const;
 
  private:
   struct Carried {
@@ -88,11 +131,23 @@ class LoopSweeps<Spatial, S, Rows, Momentum> {
     Motion given;  ///< Ω_t, or the velocity product and prescribed acceleration
   };
 
-  const Model<Spatial>::Body& body(std::size_t k) const { return tree_->model->bodies[k]; }
+  const auto& body(std::size_t k) const { return tree_->model->bodies[k]; }
+  /// Whether others sweep body k: legs side by side, or of legs the body they fold into.
+  bool elsewhere(std::size_t k) const {
+    if constexpr (of_legs)
+      return k == 0;
+    else
+      return legs_apart_ && legs_apart_->bodies[k];
+  }
+  void sweep_apart(const LegGroups* legs) {
+    legs_apart_ = legs;
+    swept_ = pins_.size();
+    while (swept_ > 0 && elsewhere(swept_ - 1)) --swept_;
+  }
+  bool loop_elsewhere(std::size_t i) const { return legs_apart_ && legs_apart_->loops[i]; }
   const LoopBody<S>* loop_body(int k) const {
     return k < 0 ? nullptr : &bodies_[static_cast<std::size_t>(k)];
   }
-  Force wrench_to_parent(std::size_t k, Force f) const;
 
   const PrescribedMotion<S>& prescribed(const Loop& l) const {
     return moving_[static_cast<std::size_t>(l.motion)];
@@ -103,6 +158,11 @@ class LoopSweeps<Spatial, S, Rows, Momentum> {
     return rates;
   }
 
+  template <class In, class Out>
+  bool evaluate(const S& t, const In& q, const In& x, const In& tau, const RightSide<S>& right,
+                Out u, Out impulse, Out rate);
+  template <class In>
+  bool place(const S& t, const In& q, const In& x, const RightSide<S>& right);
   template <class In>
   void place_loops(const In& q, const In& x, const RightSide<S>& right);
   template <class In>
@@ -112,6 +172,7 @@ class LoopSweeps<Spatial, S, Rows, Momentum> {
   bool inward(const In& r, const RightSide<S>& right);
   void enter(std::size_t k, const RightSide<S>& right, Carried& a);
   void enter(std::size_t k, const LoopPlan::End& end, const RightSide<S>& right, Carried& a);
+  void enter_right_side(std::size_t loop, const RightSide<S>& right, Column& d);
   __attribute__((noinline)) void fold(std::size_t root, const RightSide<S>& right, Carried& leg);
   __attribute__((noinline)) void close(int loop, Carried& a, double fade, LaneGroups all);
   template <class In>
@@ -146,9 +207,9 @@ class LoopSweeps<Spatial, S, Rows, Momentum> {
   template <class Out>
   void rates_inward(const RightSide<S>& right, const Out& impulse, Out rate);
 
-  const LinkTree* tree_;
-  LoopsInTime<Spatial> in_time_;
-  const LoopModel<Spatial>* loops_;  ///< at the time
+  const Tree* tree_;
+  typename LoopsOf<Tree>::InTime in_time_;
+  const Loops* loops_;  ///< at the time
   const LoopPlan* plan_;
   OpenLanes lanes_;
   Angles<S> angles_;
@@ -158,7 +219,7 @@ class LoopSweeps<Spatial, S, Rows, Momentum> {
   std::vector<UserRecord<S>> users_;
   std::vector<AnyRecord> any_;
   std::vector<LoopBody<S>> bodies_;
-  std::vector<Force> wrenches_;
+  std::vector<Force> wrenches_;  ///< ground axes, about O; Ω of the bodies in acceleration form
   std::vector<SpatialLoopPlace<S>> places_;
   std::vector<PrescribedMotion<S>> moving_;  ///< by motion
   std::vector<S> coupled_;                   ///< by loop: d of a coupler
@@ -168,14 +229,25 @@ class LoopSweeps<Spatial, S, Rows, Momentum> {
   std::vector<Cargo<S>> legs_;     ///< by body: what folded legs add to it
   std::vector<Motion> taken_;      ///< by body: Ω of those that take legs
   const S* compliance_ = nullptr;  ///< of the call under way: right.compliance
+  std::vector<std::unique_ptr<Packs>> packs_;
+  const LegGroups* legs_beside_ = nullptr;  ///< those that packs_ hold
+  const LegGroups* legs_apart_ = nullptr;   ///< the same, while packs_ sweep them
+  std::size_t swept_;                       ///< after so many bodies only those elsewhere follow
   int stuck_ = -1;
-  bool weak_leg_ = false;
+  bool weak_leg_ = false, even_ = true;
 };
 
 template <class S, int Rows, bool Momentum>
-LoopSweeps<Spatial, S, Rows, Momentum>::LoopSweeps(const LinkTree& tree,
-                                                   const LoopModel<Spatial>& loops,
-                                                   const LoopPlan& plan)
+class LoopSweeps<Spatial, S, Rows, Momentum>
+    : public SpatialLoopSweeps<S, Rows, Momentum, LinkTree> {
+ public:
+  using SpatialLoopSweeps<S, Rows, Momentum, LinkTree>::SpatialLoopSweeps;
+};
+
+template <class S, int Rows, bool Momentum, class Tree>
+SpatialLoopSweeps<S, Rows, Momentum, Tree>::SpatialLoopSweeps(const Tree& tree, const Loops& loops,
+                                                              const LoopPlan& plan,
+                                                              const LegGroups* legs)
     : tree_(&tree),
       in_time_(loops),
       loops_(&loops),
@@ -194,166 +266,67 @@ LoopSweeps<Spatial, S, Rows, Momentum>::LoopSweeps(const LinkTree& tree,
       coupled_(plan.couples() ? loops.loops.size() : 0),
       slots_(static_cast<std::size_t>(tree.slots)),
       outward_slots_(static_cast<std::size_t>(tree.slots)),
-      rows_(static_cast<std::size_t>(loops.rows)) {
+      rows_(static_cast<std::size_t>(loops.rows)),
+      swept_(tree.links.size()) {
   for (const char takes : plan.takes_legs)
     if (takes && legs_.empty()) {
       legs_.resize(tree.links.size());
       taken_.resize(tree.links.size());
     }
+  if constexpr (takes_packs)
+    if (legs && !legs->groups.empty()) {
+      legs_beside_ = legs;
+      for (const LegGroup& group : legs->groups)
+        packs_.push_back(std::make_unique<Packs>(tree, loops, group));
+    }
 }
 
-template <class S, int Rows, bool Momentum>
+template <class S, int Rows, bool Momentum, class Tree>
 template <class In, class Out>
-bool LoopSweeps<Spatial, S, Rows, Momentum>::operator()(const S& t, const In& q, const In& x,
-                                                        const In& tau, const RightSide<S>& right,
-                                                        Out u, Out impulse, Out rate) {
-  place_links(
-      *tree_, t, q, angles_, joints_,
-      users_, [&](std::size_t record) -> auto& { return balls_[record].R; });
-  stuck_ = tree_->stuck;
-  weak_leg_ = false;
-  compliance_ = right.compliance;
-  if (stuck_ >= 0) return false;
-  for (std::size_t k = 0; k < legs_.size(); ++k)
-    if (plan_->takes_legs[k]) legs_[k] = {};
-  pose_bodies();
-  move_bodies(x, right);
-  loops_ = &in_time_.at(value_of(t));
-  place_loops(q, x, right);
+bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::operator()(const S& t, const In& q, const In& x,
+                                                            const In& tau,
+                                                            const RightSide<S>& right, Out u,
+                                                            Out impulse, Out rate) {
+  if (legs_apart_ != legs_beside_) sweep_apart(legs_beside_);
+  return evaluate(t, q, x, tau, right, u, impulse, rate);
+}
+
+template <class S, int Rows, bool Momentum, class Tree>
+template <class In, class Out>
+bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::evaluate(const S& t, const In& q, const In& x,
+                                                          const In& tau, const RightSide<S>& right,
+                                                          Out u, Out impulse, Out rate) {
+  if (!place(t, q, x, right)) return false;
+  if constexpr (takes_packs)
+    for (auto& pack : packs_) {
+      const auto onto = static_cast<std::size_t>(pack->onto());
+      if (legs_apart_ && pack->inward(t, q, x, tau, right, bodies_[onto], legs_[onto])) {
+        weak_leg_ |= pack->weak_leg();
+        continue;
+      }
+      // One by one: which joint has no inertia, or each leg in its own order.
+      if (!legs_apart_) break;
+      sweep_apart(nullptr);
+      return evaluate(t, q, x, tau, right, u, impulse, rate);
+    }
   if (!inward(Momentum ? x : tau, right)) return false;
   outward(q, right, u, impulse, rate);
+  if constexpr (takes_packs)
+    if (legs_apart_)
+      for (auto& pack : packs_)
+        pack->outward(taken_[static_cast<std::size_t>(pack->onto())], u, impulse);
   if (Momentum && right.rates) rates_inward(right, impulse, rate);
   return true;
 }
 
-/// Points, axes and rows of all loops, d of couplers.
-template <class S, int Rows, bool Momentum>
+template <class S, int Rows, bool Momentum, class Tree>
 template <class In>
-void LoopSweeps<Spatial, S, Rows, Momentum>::place_loops(const In& q, const In& x,
-                                                         const RightSide<S>& right) {
-  for (std::size_t i = 0; i < places_.size(); ++i) {
-    const Loop& l = loops_->loops[i];
-    if (l.is_coupler()) {
-      coupled_[i] = coupler_bias<Momentum>(*loops_, l, q, x, right);
-      continue;
-    }
-    const LoopBody<S>*A = loop_body(l.a), *B = loop_body(l.b);
-    places_[i].place(l, A, B);
-    if (l.motion < 0) continue;
-    const auto at = static_cast<std::size_t>(l.motion);
-    moving_[at].place(l, loops_->motions[at], A, B);
-  }
-}
-
-/// Poses of the bodies on the ways of loops, in ground axes.
-template <class S, int Rows, bool Momentum>
-void LoopSweeps<Spatial, S, Rows, Momentum>::pose_bodies() {
-  Spatial::Pose<S> ground;
-  ground.axes = identity3<S>();
-  for (std::size_t k = 0; k < bodies_.size(); ++k) {
-    if (!plan_->posed[k]) continue;
-    const Link& l = tree_->links[k];
-    const auto& from = l.parent < 0 ? ground : bodies_[static_cast<std::size_t>(l.parent)].pose;
-    auto& to = bodies_[k].pose;
-    if (l.kind == LinkKind::pin) {
-      Spatial::Edge<S> e;
-      e.cos_theta = angles_.cosine(k);
-      e.sin_theta = angles_.sine(k);
-      e.d = S(l.d);
-      to = Spatial::pose_outward(body(k).edge, JointKind::revolute, e, from);
-    } else if (l.kind == LinkKind::ball) {
-      const auto record = static_cast<std::size_t>(l.record);
-      const auto& r = tree_->balls[record].origin;
-      to.axes = from.axes * balls_[record].R;
-      to.origin = from.origin + from.axes * Vec3<S>{{S(r[0]), S(r[1]), S(r[2])}};
-    } else {
-      to = Spatial::pose_outward(body(k).edge, body(k).kind,
-                                 joints_[static_cast<std::size_t>(l.record)].edge, from);
-    }
-  }
-}
-
-/// Acceleration form: velocities in ground axes, velocity products and bias wrenches of all bodies.
-/// Momentum form: Ω_t of the driven joints.
-template <class S, int Rows, bool Momentum>
-template <class In>
-void LoopSweeps<Spatial, S, Rows, Momentum>::move_bodies(const In& x, const RightSide<S>& right) {
-  if constexpr (Momentum) {
-    if (joints_.empty()) return;
-    for (std::size_t k = 0; k < pins_.size(); ++k) {
-      const Link& l = tree_->links[k];
-      if (l.kind != LinkKind::general) continue;
-      const auto record = static_cast<std::size_t>(l.record);
-      any_[record].given = {};
-      if (body(k).drive >= 0 && right.drives)
-        Joint<Spatial>::add_motion(body(k), joints_[record].edge, &joints_[record].drive_rate,
-                                   any_[record].given);
-    }
-  } else {
-    // Ω in body axes, kept where the bodies' wrenches will be.
-    const auto velocity = [&](std::size_t k) -> Force& { return wrenches_[k]; };
-    for (std::size_t k = 0; k < pins_.size(); ++k) {
-      const Link& l = tree_->links[k];
-      const auto& b = body(k);
-      Motion V{}, own{}, product{};
-      Vec3<S> step_product{};
-      if (l.parent >= 0) {
-        const Force& from = velocity(static_cast<std::size_t>(l.parent));
-        V = {from.f, from.n};
-      }
-      // ω × (ω × r) of the parent's rotation, in the body's axes: cross(ω, velocity it gives O).
-      Motion turning{{}, V.w};
-      if (l.kind == LinkKind::pin) {
-        constants_outward(l, b.edge, V.v[0], V.v[1], V.v[2], V.w[0], V.w[1], V.w[2]);
-        constants_outward(l, b.edge, turning.v[0], turning.v[1], turning.v[2], turning.w[0],
-                          turning.w[1], turning.w[2]);
-        // The pin's screw without its turn: the product is wanted before it.
-        V.v[0] = V.v[0] + l.d * V.w[1];
-        V.v[1] = V.v[1] - l.d * V.w[0];
-        turning.v[0] = turning.v[0] + l.d * turning.w[1];
-        turning.v[1] = turning.v[1] - l.d * turning.w[0];
-        const S rate = x[l.u];
-        step_product = cross(V.w, turning.v);
-        pins_[k].c = {step_product, {{V.w[1] * rate, -(V.w[0] * rate), S(0.0)}}};
-        pins_[k].c.v[0] += l.d * (V.w[0] * rate);
-        pins_[k].c.v[1] += l.d * (V.w[1] * rate);
-        const S c = angles_.cosine(k), s = angles_.sine(k);
-        momenta::turn_back<2>(V.v, c, s);
-        momenta::turn_back<2>(V.w, c, s);
-        V.w[2] += rate;
-      } else if (l.kind == LinkKind::ball) {
-        auto& w = balls_[static_cast<std::size_t>(l.record)];
-        const auto& r = tree_->balls[static_cast<std::size_t>(l.record)].origin;
-        const Vec3<S> step{{S(r[0]), S(r[1]), S(r[2])}};
-        const Vec3<S> rate{{x[l.u], x[l.u + 1], x[l.u + 2]}};
-        const Vec3<S> way = cross(V.w, step);
-        w.c.v = transpose_times(w.R, cross(V.w, way));
-        V = {transpose_times(w.R, V.v + way), transpose_times(w.R, V.w)};
-        w.c.w = cross(V.w, rate);
-        V.w += rate;
-      } else {
-        auto& j = joints_[static_cast<std::size_t>(l.record)];
-        V = Spatial::to_child(b.edge, b.kind, j.edge, V);
-        turning = Spatial::to_child(b.edge, b.kind, j.edge, turning);
-        S rates[6]{};
-        if (b.drive >= 0) {
-          Joint<Spatial>::add_motion(b, j.edge, &j.drive_rate, own);
-        } else {
-          for (int i = 0; i < b.nv; ++i) rates[i] = x[b.u + i];
-          Joint<Spatial>::add_motion(b, j.edge, rates, own);
-        }
-        product = {cross(V.w, turning.v) + cross(S(2.0) * V.w + own.w, own.v), cross(V.w, own.w)};
-        if (b.drive >= 0) Joint<Spatial>::add_motion(b, j.edge, &j.drive_acceleration, product);
-        any_[static_cast<std::size_t>(l.record)].given = product;
-        V += own;
-      }
-      velocity(k) = {V.v, V.w};
-      if (plan_->posed[k]) {
-        bodies_[k].v = bodies_[k].pose.axes * V.v;
-        bodies_[k].w = bodies_[k].pose.axes * V.w;
-      }
-    }
-  }
+bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::legs_inward(const S& t, const In& q, const In& x,
+                                                             const In& tau,
+                                                             const RightSide<S>& right,
+                                                             const LoopBody<S>& onto) {
+  bodies_[0] = onto;
+  return place(t, q, x, right) && inward(Momentum ? x : tau, right);
 }
 
 }  // namespace momenta
@@ -361,4 +334,5 @@ void LoopSweeps<Spatial, S, Rows, Momentum>::move_bodies(const In& x, const Righ
 #include <momenta/dae/sweeps/spatial_loop_axes.h>
 #include <momenta/dae/sweeps/spatial_loop_inward.h>
 #include <momenta/dae/sweeps/spatial_loop_joints.h>
+#include <momenta/dae/sweeps/spatial_loop_outset.h>
 #include <momenta/dae/sweeps/spatial_loop_outward.h>

@@ -1,4 +1,5 @@
 #include <momenta/core/kernel/child_order.h>
+#include <momenta/core/kernel/limbs/limb_link.h>
 #include <momenta/core/kernel/limbs/limbs.h>
 
 #include <algorithm>
@@ -160,9 +161,7 @@ LimbGroup group_of(const LinkTree& tree, const Shapes& s, const int* roots, int 
       const int link = bodies[static_cast<std::size_t>(std::min(lane, count - 1))][k];
       const Link& l = tree.links[static_cast<std::size_t>(link)];
       if (lane == 0) place.turn = l.turn;
-      if (place.turn != l.turn)
-        place.turn =
-            place.turn == Turn::tilted || l.turn == Turn::tilted ? Turn::tilted : Turn::general;
+      place.turn = common_turn(place.turn, l.turn);
       place.screwed |= l.screwed;
       place.has_force |= l.has_force;
       g.links.push_back(link);

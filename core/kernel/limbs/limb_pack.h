@@ -2,26 +2,11 @@
 // Limbs of one shape in the lanes of S: constants, sines and cosines, and how they meet the trunk.
 // What both recursions on limbs share.
 
+#include <momenta/core/kernel/limbs/limb_link.h>
 #include <momenta/core/kernel/limbs/limbs.h>
 #include <momenta/core/kernel/pin.h>
 
 namespace momenta {
-
-/// The constants of one pin of every limb. Names as in Link, EdgeConstants and Body.
-template <class S>
-struct LimbLink {
-  struct Edge {
-    S cos_gamma, sin_gamma, delta, cos_alpha, sin_alpha, a, cos_beta, sin_beta;
-    bool about_z, about_x, about_y;
-  };
-  S ca, sa, a, cc, cs, ss, cs2, ss2, d, m, moment[3], c[3], J[6];
-  S theta0;
-  Edge edge;
-  S stiffness, rest, damping, torque;
-  int slot, parent_slot;  ///< within the limb
-  Turn turn;
-  bool root, first, tip, opens, screwed, has_force;
-};
 
 /// What is constant of a pin at the tip of every limb: Tip.
 template <class S>
@@ -60,7 +45,7 @@ class LimbPack {
       l.parent_slot = l.root ? -1 : group.places[static_cast<std::size_t>(place.parent)].slot;
       for (int lane = 0; lane < lanes; ++lane) {
         const auto at = static_cast<std::size_t>(link(k, lane));
-        take(tree.links[at], tree.model->bodies[at], tree.theta0[at], lane, l);
+        l.take(tree.links[at], tree.model->bodies[at], tree.theta0[at], lane);
       }
       if (!l.tip) continue;
       Full<S> M;
@@ -154,23 +139,6 @@ class LimbPack {
 
   int link(std::size_t k, int lane) const {
     return group_->links[k * lanes + static_cast<std::size_t>(lane)];
-  }
-  static void take(const Link& l, const Model<Spatial>::Body& b, double theta0, int lane,
-                   LimbLink<S>& to) {
-    const auto set = [lane](S& x, double value) { x.set_lane(lane, value); };
-    set(to.ca, l.ca), set(to.sa, l.sa), set(to.a, l.a), set(to.d, l.d);
-    set(to.cc, l.cc), set(to.cs, l.cs), set(to.ss, l.ss), set(to.cs2, l.cs2), set(to.ss2, l.ss2);
-    set(to.m, l.m);
-    for (int i = 0; i < 3; ++i) set(to.moment[i], l.moment[i]), set(to.c[i], l.c[i]);
-    for (int i = 0; i < 6; ++i) set(to.J[i], l.J[i]);
-    set(to.theta0, theta0);
-    const Spatial::EdgeConstants& e = b.edge;
-    set(to.edge.cos_gamma, e.cos_gamma), set(to.edge.sin_gamma, e.sin_gamma);
-    set(to.edge.delta, e.delta);
-    set(to.edge.cos_alpha, e.cos_alpha), set(to.edge.sin_alpha, e.sin_alpha), set(to.edge.a, e.a);
-    set(to.edge.cos_beta, e.cos_beta), set(to.edge.sin_beta, e.sin_beta);
-    set(to.stiffness, b.stiffness), set(to.rest, b.rest);
-    set(to.damping, b.damping), set(to.torque, b.torque);
   }
   static void gather(const double* from, const int* i, std::vector<S>& to) {
     auto* at = reinterpret_cast<char*>(to.data());

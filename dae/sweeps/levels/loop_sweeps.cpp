@@ -1,35 +1,41 @@
+#include <momenta/dae/sweeps/legs/legs.h>
 #include <momenta/dae/sweeps/levels/loop_sweeps.h>
 
 #include <cmath>
+#include <utility>
 
 namespace momenta {
 
 template <int Level, class Space, class Tree>
-std::unique_ptr<LoopedSweeps> looped_sweeps_at(const Tree& tree, const SweptLoops<Space>& swept);
+std::unique_ptr<LoopedSweeps> looped_sweeps_at(const Tree& tree, const SweptLoops<Space>& swept,
+                                               LegGroups legs);
 
 namespace {
 
 template <class Space, class Tree>
 std::unique_ptr<LoopedSweeps> make(const Tree& tree, const SweptLoops<Space>& swept,
-                                   [[maybe_unused]] int level) {
+                                   [[maybe_unused]] int level, LegGroups legs) {
 #ifdef MOMENTA_LEVEL4
-  if (level >= 4) return looped_sweeps_at<4>(tree, swept);
+  if (level >= 4) return looped_sweeps_at<4>(tree, swept, std::move(legs));
 #endif
 #ifdef MOMENTA_LEVEL3
-  if (level >= 3) return looped_sweeps_at<3>(tree, swept);
+  if (level >= 3) return looped_sweeps_at<3>(tree, swept, std::move(legs));
 #endif
-  return looped_sweeps_at<1>(tree, swept);
+  return looped_sweeps_at<1>(tree, swept, std::move(legs));
 }
 
 }  // namespace
 
 std::unique_ptr<LoopedSweeps> make_looped_sweeps(const PlanarTree& tree,
-                                                 const SweptLoops<Planar>& swept, int level) {
-  return make(tree, swept, level);
+                                                 const SweptLoops<Planar>& swept, int level, bool) {
+  return make(tree, swept, level, {});
 }
 std::unique_ptr<LoopedSweeps> make_looped_sweeps(const LinkTree& tree,
-                                                 const SweptLoops<Spatial>& swept, int level) {
-  return make(tree, swept, level);
+                                                 const SweptLoops<Spatial>& swept, int level,
+                                                 bool legs_side_by_side) {
+  return make(tree, swept, level,
+              legs_side_by_side ? find_legs(tree, swept.loops, swept.plan, leg_lanes_at(level))
+                                : LegGroups{});
 }
 
 LoopModel<Spatial> in_link_frames(LoopModel<Spatial> loops, const LinkTree&) {

@@ -95,10 +95,13 @@ SweptLoops<Space> swept_loops(const Model<Space>& model, LoopModel<Space> loops)
   return given.plan.fits() && anew.plan.work < given.plan.work ? anew : given;
 }
 
+/// `legs_side_by_side`: in space, of one state, folded legs of one shape (legs/legs.h).
 /// @pre level_at_most(level) is level, swept.plan.fits(); tree and swept loops stay where they are.
 std::unique_ptr<LoopedSweeps> make_looped_sweeps(const PlanarTree& tree,
-                                                 const SweptLoops<Planar>& swept, int level);
+                                                 const SweptLoops<Planar>& swept, int level,
+                                                 bool legs_side_by_side = true);
 std::unique_ptr<LoopedSweeps> make_looped_sweeps(const LinkTree& tree,
-                                                 const SweptLoops<Spatial>& swept, int level);
+                                                 const SweptLoops<Spatial>& swept, int level,
+                                                 bool legs_side_by_side = true);
 
 }  // namespace momenta

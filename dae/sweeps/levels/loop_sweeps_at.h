@@ -3,6 +3,7 @@
 // core/kernel/levels/open_sweeps_at.h says why.
 
 #include <momenta/core/kernel/levels/strided.h>
+#include <momenta/dae/sweeps/legs/legs.h>
 #include <momenta/dae/sweeps/levels/loop_sweeps.h>
 #include <momenta/dae/sweeps/planar_loop_sweeps.h>
 #include <momenta/dae/sweeps/spatial_loop_sweeps.h>
@@ -17,12 +18,13 @@ class LoopedSweepsAt final : public LoopedSweeps {
   static constexpr std::size_t abreast = Rows > 8 ? 1 : native_width<Level>;
 
  public:
-  LoopedSweepsAt(const Tree& tree, const SweptLoops<Space>& swept)
+  LoopedSweepsAt(const Tree& tree, const SweptLoops<Space>& swept, LegGroups legs)
       : tree_(tree),
         loops_(swept.loops),
         plan_(swept.plan),
         shared_(swept.shared),
-        momentum_(tree, loops_, plan_) {}
+        legs_(std::move(legs)),
+        momentum_(swept_by<LoopSweeps<Space, One, Rows, true>>()) {}
 
   bool momentum(double t, const double* q, const double* p, const RightSide<double>& right,
                 double* u, double* sigma, double* pdot) override {
@@ -123,8 +125,15 @@ class LoopedSweepsAt final : public LoopedSweeps {
       acceleration_->each_pivot(report);
   }
   template <class Sweeps>
+  Sweeps swept_by() const {
+    if constexpr (Space::dimension == 6)
+      return Sweeps(tree_, loops_, plan_, &legs_);
+    else
+      return Sweeps(tree_, loops_, plan_);
+  }
+  template <class Sweeps>
   Sweeps& made(std::unique_ptr<Sweeps>& sweeps) {
-    if (!sweeps) sweeps = std::make_unique<Sweeps>(tree_, loops_, plan_);
+    if (!sweeps) sweeps.reset(new Sweeps(swept_by<Sweeps>()));
     return *sweeps;
   }
 
@@ -182,6 +191,7 @@ class LoopedSweepsAt final : public LoopedSweeps {
   const LoopModel<Space>& loops_;
   const LoopPlan& plan_;
   SharedPoints shared_;
+  LegGroups legs_;
   LoopSweeps<Space, One, Rows, true> momentum_;
   std::unique_ptr<LoopSweeps<Space, One, Rows, false>> acceleration_;
   std::unique_ptr<LoopSweeps<Space, Many, Rows, true>> many_;
@@ -192,10 +202,11 @@ class LoopedSweepsAt final : public LoopedSweeps {
 
 /// The narrowest fronts that hold the plan's lanes.
 template <int Level, class Space, class Tree>
-std::unique_ptr<LoopedSweeps> looped_sweeps_at(const Tree& tree, const SweptLoops<Space>& swept) {
+std::unique_ptr<LoopedSweeps> looped_sweeps_at(const Tree& tree, const SweptLoops<Space>& swept,
+                                               LegGroups legs) {
   const LoopPlan& plan = swept.plan;
   const auto make = [&]<int Rows>() -> std::unique_ptr<LoopedSweeps> {
-    return std::make_unique<LoopedSweepsAt<Tree, Space, Level, Rows>>(tree, swept);
+    return std::make_unique<LoopedSweepsAt<Tree, Space, Level, Rows>>(tree, swept, std::move(legs));
   };
   if constexpr (Space::dimension == 3)
     if (plan.lanes <= 2) return make.template operator()<2>();

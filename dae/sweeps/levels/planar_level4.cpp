@@ -2,5 +2,5 @@
 
 namespace momenta {
 template std::unique_ptr<LoopedSweeps> looped_sweeps_at<4>(const PlanarTree&,
-                                                           const SweptLoops<Planar>&);
+                                                           const SweptLoops<Planar>&, LegGroups);
 }  // namespace momenta

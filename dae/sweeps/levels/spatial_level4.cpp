@@ -2,5 +2,5 @@
 
 namespace momenta {
 template std::unique_ptr<LoopedSweeps> looped_sweeps_at<4>(const LinkTree&,
-                                                           const SweptLoops<Spatial>&);
+                                                           const SweptLoops<Spatial>&, LegGroups);
 }  // namespace momenta

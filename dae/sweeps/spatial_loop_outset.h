@@ -1,0 +1,171 @@
+#pragma once
+// What comes before the sweeps in space: joints, bodies and loops in their places and, in
+// acceleration form, moving. Part of spatial_loop_sweeps.h.
+
+#include <momenta/dae/sweeps/spatial_loop_sweeps.h>
+
+namespace momenta {
+
+template <class S, int Rows, bool Momentum, class Tree>
+template <class In>
+bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::place(const S& t, const In& q, const In& x,
+                                                       const RightSide<S>& right) {
+  place_links(
+      *tree_, t, q, angles_, joints_,
+      users_, [&](std::size_t record) -> auto& { return balls_[record].R; }, swept_);
+  stuck_ = tree_->stuck;
+  weak_leg_ = false;
+  even_ = true;
+  compliance_ = right.compliance;
+  if (stuck_ >= 0) return false;
+  for (std::size_t k = 0; k < std::min(swept_, legs_.size()); ++k)
+    if (plan_->takes_legs[k]) legs_[k] = {};
+  pose_bodies();
+  move_bodies(x, right);
+  loops_ = &in_time_.at(value_of(t));
+  place_loops(q, x, right);
+  return true;
+}
+
+/// Points, axes and rows of all loops, d of couplers.
+template <class S, int Rows, bool Momentum, class Tree>
+template <class In>
+void SpatialLoopSweeps<S, Rows, Momentum, Tree>::place_loops(const In& q, const In& x,
+                                                             const RightSide<S>& right) {
+  for (std::size_t i = 0; i < places_.size(); ++i) {
+    if (loop_elsewhere(i)) continue;
+    const Loop& l = loops_->loops[i];
+    if constexpr (!of_legs)
+      if (l.is_coupler()) {
+        coupled_[i] = coupler_bias<Momentum>(*loops_, l, q, x, right);
+        continue;
+      }
+    const LoopBody<S>*A = loop_body(l.a), *B = loop_body(l.b);
+    places_[i].place(l, A, B);
+    if constexpr (!of_legs)
+      if (l.motion >= 0) {
+        const auto at = static_cast<std::size_t>(l.motion);
+        moving_[at].place(l, loops_->motions[at], A, B);
+      }
+  }
+}
+
+/// Poses of the bodies on the ways of loops, in ground axes.
+template <class S, int Rows, bool Momentum, class Tree>
+void SpatialLoopSweeps<S, Rows, Momentum, Tree>::pose_bodies() {
+  Spatial::Pose<S> ground;
+  ground.axes = identity3<S>();
+  for (std::size_t k = 0; k < swept_; ++k) {
+    if (!plan_->posed[k] || elsewhere(k)) continue;
+    const auto& l = tree_->links[k];
+    const auto& from = l.parent < 0 ? ground : bodies_[static_cast<std::size_t>(l.parent)].pose;
+    Spatial::Pose<S> at{from.axes, Vec3<S>{{S(0.0), S(0.0), S(0.0)}}};  // from the parent's O
+    if (l.kind == LinkKind::pin) {
+      Spatial::Edge<S> e;
+      e.cos_theta = angles_.cosine(k);
+      e.sin_theta = angles_.sine(k);
+      e.d = S(l.d);
+      at = Spatial::pose_outward(body(k).edge, JointKind::revolute, e, at);
+    } else if (!of_legs && l.kind == LinkKind::ball) {
+      const auto record = static_cast<std::size_t>(l.record);
+      const auto& r = tree_->balls[record].origin;
+      at = {from.axes * balls_[record].R, from.axes * Vec3<S>{{S(r[0]), S(r[1]), S(r[2])}}};
+    } else {
+      at = Spatial::pose_outward(body(k).edge, body(k).kind,
+                                 joints_[static_cast<std::size_t>(l.record)].edge, at);
+    }
+    LoopBody<S>& to = bodies_[k];
+    to.step = at.origin;
+    to.pose.axes = at.axes;
+    to.pose.origin = from.origin + at.origin;
+  }
+}
+
+/// Acceleration form: velocities in ground axes, velocity products and bias wrenches of all bodies.
+/// Momentum form: Ω_t of the driven joints.
+template <class S, int Rows, bool Momentum, class Tree>
+template <class In>
+void SpatialLoopSweeps<S, Rows, Momentum, Tree>::move_bodies(const In& x,
+                                                             const RightSide<S>& right) {
+  if constexpr (Momentum) {
+    if (joints_.empty()) return;
+    if constexpr (!of_legs)
+      for (std::size_t k = 0; k < swept_; ++k) {
+        const auto& l = tree_->links[k];
+        if (l.kind != LinkKind::general || elsewhere(k)) continue;
+        const auto record = static_cast<std::size_t>(l.record);
+        any_[record].given = {};
+        if (body(k).drive >= 0 && right.drives)
+          Joint<Spatial>::add_motion(body(k), joints_[record].edge, &joints_[record].drive_rate,
+                                     any_[record].given);
+      }
+  } else {
+    // Ω in body axes, kept where the bodies' wrenches will be.
+    const auto velocity = [&](std::size_t k) -> Force& { return wrenches_[k]; };
+    for (std::size_t k = 0; k < swept_; ++k) {
+      if (elsewhere(k)) continue;
+      const auto& l = tree_->links[k];
+      const auto& b = body(k);
+      Motion V{}, own{}, product{};
+      Vec3<S> step_product{};
+      if (l.parent >= 0) {
+        const Force& from = velocity(static_cast<std::size_t>(l.parent));
+        V = {from.f, from.n};
+      }
+      // ω × (ω × r) of the parent's rotation, in the body's axes: cross(ω, velocity it gives O).
+      Motion turning{{}, V.w};
+      if (l.kind == LinkKind::pin) {
+        constants_outward(l, b.edge, V.v[0], V.v[1], V.v[2], V.w[0], V.w[1], V.w[2]);
+        constants_outward(l, b.edge, turning.v[0], turning.v[1], turning.v[2], turning.w[0],
+                          turning.w[1], turning.w[2]);
+        // The pin's screw without its turn: the product is wanted before it.
+        V.v[0] = V.v[0] + l.d * V.w[1];
+        V.v[1] = V.v[1] - l.d * V.w[0];
+        turning.v[0] = turning.v[0] + l.d * turning.w[1];
+        turning.v[1] = turning.v[1] - l.d * turning.w[0];
+        const S rate = x[l.u];
+        step_product = cross(V.w, turning.v);
+        pins_[k].c = {step_product, {{V.w[1] * rate, -(V.w[0] * rate), S(0.0)}}};
+        pins_[k].c.v[0] += l.d * (V.w[0] * rate);
+        pins_[k].c.v[1] += l.d * (V.w[1] * rate);
+        const S c = angles_.cosine(k), s = angles_.sine(k);
+        momenta::turn_back<2>(V.v, c, s);
+        momenta::turn_back<2>(V.w, c, s);
+        V.w[2] += rate;
+      } else if (!of_legs && l.kind == LinkKind::ball) {
+        auto& w = balls_[static_cast<std::size_t>(l.record)];
+        const auto& r = tree_->balls[static_cast<std::size_t>(l.record)].origin;
+        const Vec3<S> step{{S(r[0]), S(r[1]), S(r[2])}};
+        const Vec3<S> rate{{x[l.u], x[l.u + 1], x[l.u + 2]}};
+        const Vec3<S> way = cross(V.w, step);
+        w.c.v = transpose_times(w.R, cross(V.w, way));
+        V = {transpose_times(w.R, V.v + way), transpose_times(w.R, V.w)};
+        w.c.w = cross(V.w, rate);
+        V.w += rate;
+      } else {
+        auto& j = joints_[static_cast<std::size_t>(l.record)];
+        V = Spatial::to_child(b.edge, b.kind, j.edge, V);
+        turning = Spatial::to_child(b.edge, b.kind, j.edge, turning);
+        if constexpr (of_legs) {
+          own.v[2] = x[b.u];
+        } else {
+          S rates[6]{};
+          for (int i = 0; i < b.nv; ++i) rates[i] = x[b.u + i];
+          Joint<Spatial>::add_motion(b, j.edge, b.drive >= 0 ? &j.drive_rate : rates, own);
+        }
+        product = {cross(V.w, turning.v) + cross(S(2.0) * V.w + own.w, own.v), cross(V.w, own.w)};
+        if constexpr (!of_legs)
+          if (b.drive >= 0) Joint<Spatial>::add_motion(b, j.edge, &j.drive_acceleration, product);
+        any_[static_cast<std::size_t>(l.record)].given = product;
+        V += own;
+      }
+      velocity(k) = {V.v, V.w};
+      if (plan_->posed[k]) {
+        bodies_[k].v = bodies_[k].pose.axes * V.v;
+        bodies_[k].w = bodies_[k].pose.axes * V.w;
+      }
+    }
+  }
+}
+
+}  // namespace momenta
