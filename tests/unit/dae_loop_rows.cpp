@@ -1,13 +1,10 @@
 // Loops by sweeps against Φ of positions alone, off the manifold, at random states of random trees.
 
 #include "equations/dense_loops.h"
-#include "equations/large_scenes.h"
-#include "equations/linkages.h"
 #include "equations/random_loops.h"
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/scalar/quad.h>
 #include <momenta/dae/form/form.h>
 
 namespace momenta {
@@ -377,40 +374,6 @@ TEST(Couplers, TreesOfAllJoints) {
   }
   EXPECT_GT(coupled, 80);
   worst.expect_below(algebra_tol(24));
-}
-
-/// Kilometres from the ground Φ is right to the rounding of its own loop, four bars of 2 m: not to
-/// that of the places, which is a hundred times as much.
-TEST(FarLoops, AreRightToTheirOwnRounding) {
-  for (const bool planar : {true, false}) {
-    Scene scene = crossed_bars(1500);
-    if (!planar) {
-      // One joint about another axis makes the scene spatial.
-      scene.bodies.push_back(rod("aside", 0.1));
-      scene.joints.push_back(hinge("aside", "ground", "aside", {0, 0, 0}, 0.3));
-      scene.joints.back().axis = {1, 0, 0};
-    }
-    const Mechanism mechanism(scene);
-    ASSERT_EQ(mechanism.plan().planar, planar);
-    const auto e = mechanism.evaluation<double>();
-    const auto true_e = mechanism.evaluation<Quad>();
-    VectorXd q = mechanism.tree().q0, phi(mechanism.m());
-    // Another pose, nearly closed, with digits of all sizes in it.
-    for (Eigen::Index i = 0; i < q.size(); ++i) q[i] += 1e-7 * std::sin(static_cast<double>(i));
-    std::vector<Quad> true_q(q.begin(), q.end()), true_phi(static_cast<std::size_t>(phi.size()));
-    e->place(0, q.data());
-    e->positions(phi.data());
-    true_e->place(0, true_q.data());
-    true_e->positions(true_phi.data());
-    double worst = 0, apart = 0;
-    for (Eigen::Index i = 0; i < phi.size(); ++i) {
-      const double exact = value_of(true_phi[static_cast<std::size_t>(i)]);
-      worst = std::max(worst, std::abs(phi[i] - exact));
-      apart = std::max(apart, std::abs(exact));
-    }
-    EXPECT_LT(worst, 2 * algebra_tol(4)) << (planar ? "plane" : "space");
-    EXPECT_GT(apart, 1e-8);
-  }
 }
 
 std::string kind_name(const testing::TestParamInfo<LoopKind>& info) {
