@@ -23,6 +23,7 @@
 #include <momenta/core/kernel/points.h>
 #include <momenta/core/scalar/dual.h>
 #include <momenta/dae/loop/driven_loop.h>
+#include <momenta/dae/loop/lost_places.h>
 
 namespace momenta {
 
@@ -44,12 +45,17 @@ class LoopRows {
   using Angular = decltype(cross(Vector{}, Vector{}));  ///< Vec3 in space, S in the plane
 
   LoopRows(const LoopModel<Space>& model, Workspace<Space, S>& w)
-      : model_(&model), w_(w), at_(model.loops.size()), driven_(model.motions.size()) {}
+      : model_(&model),
+        w_(w),
+        at_(model.loops.size()),
+        driven_(model.motions.size()),
+        lost_(w.body.size()) {}
 
   /// Points and axes in ground components; needs poses at (t, q).
   void place(double t, const S* q) {
     for (std::size_t i = 0; i < driven_.size(); ++i)
       driven_[i].move(model_->motions[i], Moment<Time>::at(t));
+    if constexpr (rounded) lost_.outward(w_);
     for (std::size_t i = 0; i < at_.size(); ++i) {
       const auto& l = model_->loops[i];
       auto& s = at_[i];
@@ -58,10 +64,14 @@ class LoopRows {
         for (const auto& c : l.joints) s.position += c.ratio * q[c.q];
         continue;
       }
-      s.x_a = point_position(w_, l.a, l.at_a);
-      s.x_b =
-          l.motion < 0 ? point_position(w_, l.b, l.at_b) : point_position(w_, l.b, motion(l).at_b);
+      const Vector arm_a = to_ground(w_, l.a, l.at_a);
+      const Vector arm_b =
+          l.motion < 0 ? to_ground(w_, l.b, l.at_b) : to_ground(w_, l.b, motion(l).at_b);
+      s.x_a = origin(w_, l.a) + arm_a;
+      s.x_b = origin(w_, l.b) + arm_b;
       s.D = s.x_a - s.x_b;
+      if constexpr (rounded)
+        s.D += lost_.of_point(w_, l.a, arm_a, s.x_a) - lost_.of_point(w_, l.b, arm_b, s.x_b);
       for (std::size_t j = 0; j < (Space::dimension == 3 ? 2u : 3u); ++j) {
         s.a[j] = l.motion < 0 ? to_ground(w_, l.a, l.axis_a[j])
                               : to_ground(w_, l.a, motion(l).axis_a[j]);
@@ -227,6 +237,8 @@ class LoopRows {
   };
   using Loop = typename LoopModel<Space>::Loop;
 
+  /// Derivatives are right to their own size.
+  static constexpr bool rounded = std::is_same_v<S, double>;
   using Time = typename TimeOf<S>::type;
   using Driven = DrivenLoop<Space, Time>;
 
@@ -340,6 +352,7 @@ class LoopRows {
   Workspace<Space, S>& w_;
   std::vector<At> at_;
   std::vector<Driven> driven_;  ///< at the time of place()
+  LostPlaces<Space> lost_;
 };
 
 }  // namespace momenta

@@ -19,6 +19,7 @@
 #include <momenta/dae/solver/integration.h>
 #include <momenta/dae/solver/local_newton.h>
 #include <momenta/dae/solver/multistep_run.h>
+#include <momenta/dae/solver/rounding_floor.h>
 #include <momenta/dae/solver/sundials_handles.h>
 #include <sunlinsol/sunlinsol_dense.h>
 #include <sunlinsol/sunlinsol_klu.h>
@@ -26,7 +27,9 @@
 #include <sunmatrix/sunmatrix_sparse.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <limits>
 #include <stdexcept>
@@ -64,6 +67,10 @@ class Ida {
         output_(system.size(), context_),
         tolerance_(system.size(), context_),
         differential_(system.size(), context_),
+        floor_(system.size(), context_,
+               [&system](double t, const double* y, const double* ydot, double* r) {
+                 return system.residual(t, y, ydot, r);
+               }),
         memory_(sundials::require(IDACreate(context_)), {IDAFree}) {
     for (int i = 0; i < system.size(); ++i) {
       // 1/(rtol |y_i| + ∞) = 0: IDA accepts a weight of zero, as long as no tolerance is zero.
@@ -100,12 +107,11 @@ class Ida {
     check(IDASVtolerances(ida, options_.rtol, tolerance_), "IDASVtolerances");
     check(IDASetId(ida, differential_), "IDASetId");
     check(IDASetSuppressAlg(ida, SUNTRUE), "IDASetSuppressAlg");
-    if (local_) {
-      check(IDASetLinearSolver(ida, local_->solver(), local_->matrix()), "IDASetLinearSolver");
-    } else {
-      make_linear_solver();
-      check(IDASetLinearSolver(ida, linear_solver_.get(), matrix_.get()), "IDASetLinearSolver");
-    }
+    if (!local_) make_linear_solver();
+    SUNLinearSolver solver = local_ ? local_->solver() : linear_solver_.get();
+    SUNMatrix matrix = local_ ? local_->matrix() : matrix_.get();
+    check(IDASetLinearSolver(ida, solver, matrix), "IDASetLinearSolver");
+    floor_.attach(ida, solver, matrix);
     check(IDASetJacFn(ida, jacobian), "IDASetJacFn");
     check(IDASetNonlinConvCoef(ida, newton_fraction), "IDASetNonlinConvCoef");
     check(IDASetMaxErrTestFails(ida, max_error_test_failures), "IDASetMaxErrTestFails");
@@ -124,6 +130,7 @@ class Ida {
   bool step(double& t, double end, std::string& cause) {
     const double t0 = t;
     evaluation_failed_ = not_finite_ = false;
+    floor_.forget();
     int flag = IDASolve(memory_.get(), end, &t, y_, ydot_, IDA_ONE_STEP);
     double first_step = first_step_;
     for (int retry = 0; retry < first_step_retries && first_step_failed(flag); ++retry) {
@@ -138,7 +145,10 @@ class Ida {
       // Shortened over and over before a point it cannot pass, it would go on in steps of no
       // length.
       if (t < end && t - t0 < 4 * std::numeric_limits<double>::epsilon() * std::abs(t)) {
-        cause = "the step became as short as the rounding of t" + inner_cause();
+        const std::string inner = inner_cause();
+        const double floor = inner.empty() ? floor_.here() : 0;
+        cause = "the step became as short as the rounding of t" +
+                (floor > newton_fraction ? "; " + of_rounding(floor) : inner);
         return false;
       }
       return true;
@@ -169,6 +179,7 @@ class Ida {
   Counters counters() {
     Counters c = earlier_attempts_;
     add_counters(c);
+    c.evaluations += floor_.evaluations();
     return c;
   }
 
@@ -273,6 +284,13 @@ class Ida {
     return not_finite_ ? ": a value that is not a finite number came up" : "";
   }
 
+  static std::string of_rounding(double floor) {
+    std::array<char, 16> number{};
+    std::snprintf(number.data(), number.size(), "%.1g", floor);
+    return std::string("rounding of the state alone moves Newton's corrections by ") +
+           number.data() + " tolerances";
+  }
+
   std::string explain(int flag) const {
     const std::string inner = inner_cause();
     switch (flag) {
@@ -281,6 +299,9 @@ class Ida {
       case IDA_ERR_FAIL:
         return "the local error stayed above its tolerance with the shortest step" + inner;
       case IDA_CONV_FAIL:
+        if (floor_.reached() > 0 && inner.empty())
+          return "the tolerance asks for more than double precision has: " +
+                 of_rounding(floor_.reached());
         return "Newton's method did not converge with the shortest step" + inner;
       case IDA_LSETUP_FAIL:
       case IDA_LSOLVE_FAIL:
@@ -309,6 +330,7 @@ class Ida {
   sundials::Matrix matrix_;
   sundials::LinearSolver linear_solver_;
   std::unique_ptr<LocalNewton> local_;  ///< in place of the two
+  RoundingFloor floor_;
   sundials::Integrator memory_;
   Counters earlier_attempts_;
   bool evaluation_failed_ = false, not_finite_ = false;  ///< in a trial of the present step

@@ -243,8 +243,8 @@ TEST(HalfExplicit, NamesTheDependentEquationWhereItStops) {
   const Start flat = assemble(mechanism).start;
   const auto row = make_form("momentum-index2", mechanism, {}, flat);
   IntegrationOptions fixed;
-  fixed.step = 0.001;
-  const auto r = integrate_hem5(*row->dae(), 0, {5.0}, fixed, {});
+  fixed.step = 5e-5;
+  const auto r = integrate_hem5(*row->dae(), 0, {1.0}, fixed, {});
   ASSERT_FALSE(r.done);
   EXPECT_NE(r.reason.find("loop '"), std::string::npos) << r.reason;
   EXPECT_NE(r.reason.find("other equations"), std::string::npos) << r.reason;

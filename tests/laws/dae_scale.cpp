@@ -3,12 +3,16 @@
 
 #include "equations/large_scenes.h"
 #include "equations/linkages.h"
+#include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
 #include <malloc.h>
 
+#include <momenta/core/scalar/quad.h>
 #include <momenta/dae/assembly.h>
+#include <momenta/dae/form/form.h>
 #include <momenta/dae/kkt/loop_solver.h>
+#include <momenta/dae/solver/integration.h>
 #include <cmath>
 
 #include <memory>
@@ -84,6 +88,59 @@ TEST_P(Scale, MemoryGrowsLikeTheBodies) {
   if (!(one > 0)) GTEST_SKIP() << "another heap";
   EXPECT_LT(two, 2.2 * one);
   EXPECT_LT(two, 20e3 * 8000);
+}
+
+/// Kilometres from the ground Φ is right to the rounding of its own loop, four bars of 2 m: not to
+/// that of the places, which is a hundred times as much.
+TEST(FarLoops, AreRightToTheirOwnRounding) {
+  for (const bool planar : {true, false}) {
+    Scene scene = crossed_bars(1500);
+    if (!planar) {
+      // One joint about another axis makes the scene spatial.
+      scene.bodies.push_back(rod("aside", 0.1));
+      scene.joints.push_back(hinge("aside", "ground", "aside", {0, 0, 0}, 0.3));
+      scene.joints.back().axis = {1, 0, 0};
+    }
+    const Mechanism mechanism(scene);
+    ASSERT_EQ(mechanism.plan().planar, planar);
+    const auto e = mechanism.evaluation<double>();
+    const auto true_e = mechanism.evaluation<Quad>();
+    VectorXd q = mechanism.tree().q0, phi(mechanism.m());
+    // Another pose, nearly closed, with digits of all sizes in it.
+    for (Eigen::Index i = 0; i < q.size(); ++i) q[i] += 1e-7 * std::sin(static_cast<double>(i));
+    std::vector<Quad> true_q(q.begin(), q.end()), true_phi(static_cast<std::size_t>(phi.size()));
+    e->place(0, q.data());
+    e->positions(phi.data());
+    true_e->place(0, true_q.data());
+    true_e->positions(true_phi.data());
+    double worst = 0, apart = 0;
+    for (Eigen::Index i = 0; i < phi.size(); ++i) {
+      const double exact = value_of(true_phi[static_cast<std::size_t>(i)]);
+      worst = std::max(worst, std::abs(phi[i] - exact));
+      apart = std::max(apart, std::abs(exact));
+    }
+    EXPECT_LT(worst, 2 * algebra_tol(4)) << (planar ? "plane" : "space");
+    EXPECT_GT(apart, 1e-8);
+  }
+}
+
+/// IDA's first steps on a ladder of four thousand bars. Φ is rounded like its loops, not like the
+/// ladder: with what rounding leaves of places 3 km away, answered by impulses, no correction of p
+/// at the tip is below the tolerance, however short the step.
+TEST(LongLadder, ImplicitFormsStart) {
+  const Mechanism mechanism(crossed_bars(2000));
+  const Start start = assemble(mechanism).start;
+  for (const char* name : {"momentum-index2", "acceleration-index2", "stabilised-index2"}) {
+    FormOptions options;
+    if (takes_gauge(name)) options.gauge = {Gauge::Kind::leak, 1.7};
+    const auto form = make_form(name, mechanism, options, start);
+    IntegrationOptions tolerance;
+    tolerance.rtol = tolerance.atol = 1e-8;
+    const auto run = integrate_ida(*form->dae(), start.t, {1e-3}, tolerance, {});
+    EXPECT_TRUE(run.done) << name << ": " << run.reason;
+    EXPECT_LT(run.counters.steps, 100) << name;
+    EXPECT_LT(run.counters.rejected, 5) << name;
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Families, Scale, testing::ValuesIn(all),

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <random>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -352,6 +353,41 @@ TEST(Ida, TriesAgainWithShorterFirstSteps) {
   EXPECT_TRUE(r.done) << r.reason;
   EXPECT_GE(r.counters.rejected, 25);
   EXPECT_NEAR(r.y[0], pendulum_by_angle(1)[0], 1e-3);
+}
+
+/// index_one() with an algebraic equation that is rough by `roughness` at the scale of rounding, as
+/// one with large terms that cancel.
+GivenDae rough_index_one(double roughness) {
+  GivenDae s = index_one();
+  s.f = [smooth = s.f, roughness](double t, const double* y, const double* yd, double* r) {
+    smooth(t, y, yd, r);
+    const std::size_t chance = std::hash<double>()(y[0]) ^ (std::hash<double>()(y[1]) << 1);
+    r[1] +=
+        roughness * (static_cast<double>(std::minstd_rand(chance % 2147483647u)()) * 0x1p-30 - 1);
+  };
+  return s;
+}
+
+TEST(Ida, AcceptsCorrectionsThatOnlyRoundingMakes) {
+  // A sixth of the tolerance: five times what Newton's method is to leave.
+  const double tol = 1e-7;
+  GivenDae smooth = index_one(), rough = rough_index_one(0.15 * tol);
+  const auto truth = integrate_ida(smooth, 0, {2.0}, tolerance(1e-11), {});
+  const auto r = integrate_ida(rough, 0, {2.0}, tolerance(tol), {});
+  ASSERT_TRUE(r.done) << r.reason;
+  EXPECT_NEAR(r.y[0], truth.y[0], 100 * tol);
+  EXPECT_LT(r.counters.steps, 1000);
+}
+
+TEST(Ida, NamesRoundingWhereItIsMoreThanTheTolerance) {
+  const double tol = 1e-7;
+  GivenDae rough = rough_index_one(1000 * tol);
+  const auto r = integrate_ida(rough, 0, {2.0}, tolerance(tol), {});
+  EXPECT_FALSE(r.done);
+  EXPECT_NE(r.reason.find("the tolerance asks for more than double precision has: rounding of the "
+                          "state alone moves Newton's corrections by "),
+            std::string::npos)
+      << r.reason;
 }
 
 TEST(Ida, SamplesCarryRates) {
