@@ -69,8 +69,8 @@ class OpenChain {
   /// lanes of vector registers. Where forces act between points of bodies, state by state. False
   /// when a state has no rates: its columns are NaN, those of all others are right; failure() names
   /// the first. `threads`: how many share the states, each with a workspace of its own, for the
-  /// same results bit by bit. They start and end with the call, which takes some 20 µs and memory.
-  /// User joints and forces between points of bodies keep to the caller's thread.
+  /// same results bit by bit. They start and end with the call, which takes 8 µs or more each, and
+  /// memory. User joints and forces between points of bodies keep to the caller's thread.
   /// @throws std::invalid_argument for less than one thread.
   bool rates_of_states(double t, const ConstStatesRef& q, const ConstStatesRef& p, StatesRef qdot,
                        StatesRef pdot, int threads = 1);

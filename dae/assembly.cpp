@@ -1,4 +1,5 @@
 #include <momenta/dae/assembly.h>
+#include <momenta/dae/assembly_units.h>
 #include <momenta/dae/kkt/least_norm.h>
 #include <momenta/dae/kkt/loop_solver.h>
 
@@ -6,7 +7,6 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
-#include <map>
 
 namespace momenta {
 namespace {
@@ -24,8 +24,8 @@ class Assembler {
         e_(mechanism.evaluation<double>()),
         pattern_(mechanism.constraint_pattern()),
         steps_(pattern_, mechanism.m(), mechanism.nv()),
-        free_(static_cast<std::size_t>(mechanism.nv()), true) {
-    measure();
+        free_(static_cast<std::size_t>(mechanism.nv()), true),
+        units_(mechanism) {
     for (const auto& name : mechanism.scene().held) {
       const Tree& tree = mechanism.tree();
       const int last = tree.carried_by(name);
@@ -52,50 +52,6 @@ class Assembler {
   }
 
  private:
-  /// Units of coordinates and equations: lengths of the scene, and radians. What rounding leaves
-  /// open grows with the way from the ground: a sum of k terms of size up to R is off by √k R ε.
-  void measure() {
-    const double length = length_of(mechanism_.scene());
-    std::vector<double> reach;
-    std::vector<int> depth;
-    for (const auto& b : mechanism_.tree().bodies) {
-      const double step = b.placement.translation().norm();
-      const auto parent = static_cast<std::size_t>(b.parent);
-      reach.push_back(b.parent < 0 ? step : reach[parent] + step);
-      depth.push_back(b.parent < 0 ? 1 : depth[parent] + 1);
-      closed_ = std::max(closed_, 4 * std::numeric_limits<double>::epsilon() *
-                                      std::sqrt(depth.back()) * reach.back() / length);
-    }
-    column_.setOnes(mechanism_.nv());
-    for (const auto& b : mechanism_.tree().bodies) {
-      if (b.kind == JointKind::prismatic && b.nv == 1) column_[b.u] = length;
-      if (b.nv == 6) column_.segment<3>(b.u).setConstant(length);
-    }
-    row_.setOnes(mechanism_.m());
-    std::map<std::string, const LoopSpec*> couplers;
-    for (const LoopSpec& l : mechanism_.scene().loops)
-      if (l.kind == LoopKind::coupler) couplers.emplace(l.name, &l);
-    for (int i = 0; i < mechanism_.m(); ++i)
-      if (mechanism_.row_groups()[static_cast<std::size_t>(i)] % 2 == 0) {
-        const auto coupler = couplers.find(mechanism_.rows()[static_cast<std::size_t>(i)].loop);
-        row_[i] = coupler == couplers.end() ? length : size_of(*coupler->second);
-      }
-  }
-  /// Of the equation of a coupler: what its terms are by nature.
-  double size_of(const LoopSpec& l) const {
-    const Tree& tree = mechanism_.tree();
-    double size = 0;
-    for (std::size_t i = 0; i < l.joints.size(); ++i) {
-      const int last = tree.carried_by(l.joints[i]);
-      for (int k = tree.first_part(last); k <= last; ++k) {
-        const Tree::Body& b = tree.bodies[static_cast<std::size_t>(k)];
-        if (b.coordinate == (l.coordinates.empty() ? 0 : l.coordinates[i]))
-          size = std::max(size, std::abs(l.ratios[i]) * (b.nv > 0 ? column_[b.u] : 1));
-      }
-    }
-    return size > 0 ? size : 1;
-  }
-
   /// Entries of D⁻¹ Φ_q C in those units; those of held joints zero where only free ones step.
   std::vector<double> jacobian(bool all = false) {
     std::vector<double> values(pattern_.size());
@@ -365,12 +321,13 @@ class Assembler {
   }
 
   const Mechanism& mechanism_;
-  double closed_ = closed;
   std::unique_ptr<Evaluation<double>> e_;
   const std::vector<KktPattern::Entry>& pattern_;  ///< of Φ_q
   LeastNorm steps_;
   std::vector<bool> free_;
-  Eigen::VectorXd column_, row_;  ///< units of rates (nv) and of equations (m)
+  AssemblyUnits units_;
+  const Eigen::VectorXd &column_ = units_.rates, &row_ = units_.equations;
+  const double closed_ = std::max(closed, units_.rounding);
 };
 
 }  // namespace

@@ -57,6 +57,15 @@ std::string in_quotes(std::string_view name) {
   return "'" + on_one_line(name.substr(0, cut)) + "...'";
 }
 
+std::string all_in_quotes(std::span<const std::string> names, std::size_t most) {
+  std::string all;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (i == most) return all + " and " + std::to_string(names.size() - i) + " more";
+    all += (i == 0 ? "" : ", ") + in_quotes(names[i]);
+  }
+  return all;
+}
+
 std::string listed(std::span<const std::string_view> names) {
   std::string list;
   for (const std::string_view name : names) {

@@ -1,3 +1,4 @@
+#include <momenta/core/scene/near_name.h>
 #include <momenta/dae/cut/cycles.h>
 #include <momenta/dae/cut/interchange.h>
 #include <momenta/dae/cut/recut.h>
@@ -114,13 +115,9 @@ int rebuild(const Mechanism& mechanism, const Start& start, const SceneGraph& gr
       reached.push_back(next);
       if (!away && !turn_round(joint, scene, said, bodies)) return no_way;
     }
-  const auto in_words = [](const std::vector<std::string>& names) {
-    std::string words;
-    for (const std::string& name : names) words += (words.empty() ? "'" : ", '") + name + "'";
-    return words;
-  };
-  scene.remarks.push_back("cut anew: loops in place of joints " + in_words(result.cut) +
-                          ", joints in place of loops " + in_words(result.joined));
+  scene.remarks.push_back("cut anew: loops in place of joints " +
+                          reading::all_in_quotes(result.cut) + ", joints in place of loops " +
+                          reading::all_in_quotes(result.joined));
   return none;
 }
 

@@ -1,3 +1,4 @@
 #include <momenta/dae/measure/singular_values.h>
 
 template class Eigen::BDCSVD<Eigen::MatrixXd>;
+template class Eigen::JacobiSVD<Eigen::MatrixXd>;

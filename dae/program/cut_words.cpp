@@ -1,20 +1,13 @@
 #include "cut_words.h"
 
+#include <momenta/core/scene/near_name.h>
+
 #include <cstdio>
 
 namespace momenta::program {
 namespace {
 
 constexpr std::size_t most_named = 4;
-
-std::string first_named(const std::vector<std::string>& names) {
-  std::string all;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    if (i == most_named) return all + " and " + std::to_string(names.size() - i) + " more";
-    all += (i == 0 ? "'" : ", '") + names[i] + "'";
-  }
-  return all;
-}
 
 }  // namespace
 
@@ -35,8 +28,8 @@ std::string cuts_in_words(const Recut& recut) {
                   static_cast<double>(b.factor_entries), static_cast<double>(a.factor_entries));
     factors = text;
   }
-  return "cut at " + first_named(recut.cut) + ", with " + first_named(recut.joined) +
-         " in the tree: " + numbers + factors;
+  return "cut at " + reading::all_in_quotes(recut.cut, most_named) + ", with " +
+         reading::all_in_quotes(recut.joined, most_named) + " in the tree: " + numbers + factors;
 }
 
 }  // namespace momenta::program

@@ -124,19 +124,14 @@ std::unique_ptr<Mechanism> load(const Options& o) {
 }
 
 RunSettings run_settings(const Options& o, const RunDefaults& defaults) {
-  RunSettings s;
-  s.form = o.form;
-  s.integrator = o.integrator.empty() ? default_integrator(o.form, o.rtol) : o.integrator;
-  s.gauge = !o.gauge.empty() ? o.gauge
-            : defaults.leak  ? Gauge{Gauge::Kind::leak, *defaults.leak}.text()
-                             : "leak";
-  s.rtol = o.rtol;
-  s.atol = o.atol.value_or(o.rtol);
-  s.step = o.step.value_or(defaults.step.value_or(0));
+  RunSettings s = default_settings(defaults, o.form, o.integrator, o.rtol);
+  if (!o.gauge.empty()) s.gauge = o.gauge;
+  s.atol = o.atol.value_or(s.atol);
+  s.step = o.step.value_or(s.step);
   s.spectral_radius = o.spectral_radius;
-  s.end_time = o.end.value_or(defaults.end_time);
-  s.samples = o.samples.value_or(defaults.samples);
-  s.project = o.project || (defaults.project && integrator(s.integrator).projects && !o.no_project);
+  s.end_time = o.end.value_or(s.end_time);
+  s.samples = o.samples.value_or(s.samples);
+  s.project = o.project || (s.project && !o.no_project);
   s.baumgarte_alpha = o.baumgarte_alpha;
   s.baumgarte_beta = o.baumgarte_beta;
   s.beta = o.beta;

@@ -1,6 +1,7 @@
 // Mechanism: what a scene is, its consistent start, and the equations at one state.
 
 #include <momenta/core/scene/read_scene.h>
+#include <momenta/dae/kkt/dense_blocks.h>
 #include <momenta/dae/study/state_values.h>
 
 #include <optional>
@@ -88,19 +89,8 @@ py::tuple constraints(Bench& b, double t, const In& q, const In& u) {
 /// M and Φ_q, dense.
 py::tuple kkt(Bench& b, double t, const In& q) {
   b.expect(&q, nullptr);
-  const KktPattern& pattern = b.mechanism->kkt_pattern();
-  std::vector<double> values(std::max(pattern.mass.size(), pattern.constraint.size()));
-  Eigen::MatrixXd M = Eigen::MatrixXd::Zero(b.mechanism->nv(), b.mechanism->nv()),
-                  J = Eigen::MatrixXd::Zero(b.mechanism->m(), b.mechanism->nv());
   b.e->place(t, q.data());
-  b.e->mass_entries(values.data());
-  for (std::size_t i = 0; i < pattern.mass.size(); ++i)
-    M(pattern.mass[i].row, pattern.mass[i].column) =
-        M(pattern.mass[i].column, pattern.mass[i].row) = values[i];
-  b.e->constraint_entries(values.data());
-  for (std::size_t i = 0; i < pattern.constraint.size(); ++i)
-    J(pattern.constraint[i].row, pattern.constraint[i].column) = values[i];
-  return py::make_tuple(std::move(M), std::move(J));
+  return py::make_tuple(dense_mass(*b.mechanism, *b.e), dense_constraints(*b.mechanism, *b.e));
 }
 
 Vector inverse_mass_times(Bench& b, double t, const In& q, const In& x) {

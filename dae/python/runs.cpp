@@ -65,20 +65,15 @@ RunPtr run(const Bench& bench, const std::string& form, const std::string& integ
            bool project, double baumgarte_alpha, double baumgarte_beta, double beta, double penalty,
            const std::string& reference, double cpu_limit) {
   const Mechanism& mechanism = *bench.mechanism;
-  const RunDefaults& defaults = mechanism.scene().run;
   const auto given = reference_of(reference, mechanism);
   RunRequest request;
   RunSettings& s = request.settings;
-  s.form = form;
-  s.integrator = integrator.empty() ? default_integrator(form, rtol) : integrator;
-  s.gauge = !gauge.empty()  ? gauge
-            : defaults.leak ? Gauge{Gauge::Kind::leak, *defaults.leak}.text()
-                            : "leak";
-  s.rtol = rtol;
-  s.atol = atol > 0 ? atol : rtol;
-  s.step = step > 0 ? step : defaults.step.value_or(0);
-  s.end_time = end > 0 ? end : defaults.end_time;
-  s.samples = samples > 0 ? samples : defaults.samples;
+  s = default_settings(mechanism.scene().run, form, integrator, rtol);
+  if (!gauge.empty()) s.gauge = gauge;
+  if (atol > 0) s.atol = atol;
+  if (step > 0) s.step = step;
+  if (end > 0) s.end_time = end;
+  if (samples > 0) s.samples = samples;
   s.project = project;
   s.baumgarte_alpha = baumgarte_alpha;
   s.baumgarte_beta = baumgarte_beta;

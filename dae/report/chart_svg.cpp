@@ -1,11 +1,11 @@
+#include <momenta/dae/report/chart_axis.h>
+#include <momenta/dae/report/chart_marker.h>
 #include <momenta/dae/report/figure.h>
-#include <momenta/dae/report/number_text.h>
 #include <momenta/dae/report/svg.h>
 #include <momenta/dae/report/thinning.h>
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace momenta {
 namespace {
@@ -23,125 +23,6 @@ std::string dash_of(const std::vector<double>& dash) {
   std::string text;
   for (const double d : dash) text += (text.empty() ? "" : " ") + svg::number(d);
   return text;
-}
-
-/// "10⁻³", between the powers "2·10⁻³".
-std::string power_text(double value) {
-  const double exponent = std::floor(std::log10(value) + 1e-9);
-  const auto mantissa = std::lround(value / std::pow(10.0, exponent));
-  std::string text = mantissa == 1 ? "10" : std::to_string(mantissa) + "·10";
-  static constexpr std::array<const char*, 10> raised{"⁰", "¹", "²", "³", "⁴",
-                                                      "⁵", "⁶", "⁷", "⁸", "⁹"};
-  for (const char c : svg::number(exponent))
-    text += c == '-' ? "⁻" : raised[static_cast<std::size_t>(c - '0')];
-  return text;
-}
-
-/// One axis: its range, its ticks, where a value stands along `length` pixels.
-struct Axis {
-  bool log;
-  double low, high, length;
-
-  double at(double value) const {
-    return log ? length * std::log(value / low) / std::log(high / low)
-               : length * (value - low) / (high - low);
-  }
-  std::vector<double> ticks(double apart) const {
-    std::vector<double> all;
-    const double room = std::max(2.0, std::floor(length / apart));
-    if (log) {
-      const double first = std::floor(std::log10(low) + 1e-9),
-                   last = std::ceil(std::log10(high) - 1e-9);
-      const double stride = std::max(1.0, std::ceil((last - first) / room));
-      const bool fine = stride == 1 && std::log10(high / low) < 2.5 && room > 3 * (last - first);
-      for (double k = first; k <= last; k += stride)
-        for (const double m : fine ? std::vector<double>{1, 2, 5} : std::vector<double>{1}) {
-          const double value = m * std::pow(10.0, k);
-          if (value >= low * 0.999 && value <= high * 1.001) all.push_back(value);
-        }
-      return all;
-    }
-    const double least = (high - low) / room,
-                 decade = std::pow(10.0, std::floor(std::log10(least)));
-    double step = 10 * decade;
-    for (const double m : {5.0, 2.0, 1.0})
-      if (m * decade >= least) step = m * decade;
-    for (double k = std::ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; ++k)
-      all.push_back(k * step);
-    return all;
-  }
-  std::string name(double value) const {
-    return log                                      ? power_text(value)
-           : std::abs(value) < 1e-12 * (high - low) ? "0"
-                                                    : compact(value, 6);
-  }
-  std::string words(const std::string& title) const {
-    return title + " from " + round_trip(low) + " to " + round_trip(high) +
-           (log ? ", logarithmic" : ", linear");
-  }
-};
-
-struct Range {
-  double low = std::numeric_limits<double>::infinity(), high = -low;
-  void take(double v) {
-    low = std::min(low, v);
-    high = std::max(high, v);
-  }
-  bool empty() const { return !(low <= high); }
-};
-
-/// Whole decades around the data, or a little room.
-Axis axis_around(Range range, bool log, bool whole, double length) {
-  if (range.empty()) range = log ? Range{1e-3, 1} : Range{0, 1};
-  if (log && whole) {
-    range.low = std::pow(10.0, std::floor(std::log10(range.low) + 1e-9));
-    range.high = std::pow(10.0, std::ceil(std::log10(range.high) - 1e-9));
-    if (!(range.high > range.low)) range.high = 10 * range.low;
-  } else if (log && !(range.high > range.low)) {
-    range.high = 10 * range.low;
-  } else if (!log && whole) {
-    const double room = range.high > range.low ? 0.06 * (range.high - range.low)
-                                               : std::max(0.1 * std::abs(range.high), 1e-3);
-    range = {range.low - room, range.high + room};
-  } else if (!log && !(range.high > range.low)) {
-    range.high = range.low + 1;
-  }
-  return {log, range.low, range.high, length};
-}
-
-std::string marker(const std::string& kind, double x, double y, double r, const std::string& fill) {
-  static const std::vector<std::pair<double, double>> square{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}},
-      triangle{{0, -1.2}, {1.15, 0.85}, {-1.15, 0.85}},
-      diamond{{0, -1.35}, {1.35, 0}, {0, 1.35}, {-1.35, 0}},
-      plus{{-.4, -1.2}, {.4, -1.2}, {.4, -.4}, {1.2, -.4}, {1.2, .4},   {.4, .4},
-           {.4, 1.2},   {-.4, 1.2}, {-.4, .4}, {-1.2, .4}, {-1.2, -.4}, {-.4, -.4}};
-  std::vector<std::pair<double, double>> corners = kind == "square"     ? square
-                                                   : kind == "triangle" ? triangle
-                                                   : kind == "diamond"  ? diamond
-                                                   : kind == "plus"     ? plus
-                                                                        : square;
-  if (kind == "circle")
-    return svg::element("circle", {{"cx", svg::number(x)},
-                                   {"cy", svg::number(y)},
-                                   {"r", svg::number(r)},
-                                   {"fill", fill},
-                                   {"stroke", "#ffffff"}});
-  if (kind == "star") {
-    corners.clear();
-    for (int k = 0; k < 10; ++k) {
-      const double size = k % 2 == 1 ? 0.6 : 1.4, angle = std::numbers::pi * k / 5;
-      corners.emplace_back(size * std::sin(angle), -size * std::cos(angle));
-    }
-  }
-  std::string points;
-  for (const auto& [dx, dy] : corners)
-    points += (points.empty() ? "" : " ") + svg::number(x + r * dx) + "," + svg::number(y + r * dy);
-  return svg::element("polygon", {{"points", points}, {"fill", fill}, {"stroke", "#ffffff"}});
-}
-
-std::string cross_at(double x, double y) {
-  const std::string d = "M" + svg::number(x - 5) + " " + svg::number(y - 5) + "l10 10m0 -10l-10 10";
-  return svg::element("path", {{"d", d}, {"stroke", "#a32a00"}, {"stroke-width", "3"}});
 }
 
 /// What is drawn of a curve.
@@ -372,26 +253,6 @@ class ChartDrawing {
 
 std::string chart_svg(const Chart& chart) {
   return ChartDrawing(chart).markup();
-}
-
-namespace {
-
-std::vector<Figure> drawn_all(const std::vector<Chart>& charts, const Picture& picture,
-                              const std::vector<Motion>& motions) {
-  std::vector<Figure> figures;
-  if (!picture.bodies.empty() && !motions.empty() && !motions.front().frames.empty())
-    figures.push_back({"mechanism", mechanism_svg(picture, motions.front().frames.front())});
-  for (const Chart& chart : charts) figures.push_back({chart.key, chart_svg(chart)});
-  return figures;
-}
-
-}  // namespace
-
-std::vector<Figure> figures_of_run(const StudyResult& study) {
-  return drawn_all(charts_of_run(study.runs.front()), study.picture, study.motions);
-}
-std::vector<Figure> figures_of_study(const StudyResult& study) {
-  return drawn_all(charts_of_study(study), study.picture, study.motions);
 }
 
 }  // namespace momenta

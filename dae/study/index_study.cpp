@@ -1,4 +1,5 @@
 #include <momenta/dae/form/dae_form.h>
+#include <momenta/dae/kkt/dense_blocks.h>
 #include <momenta/dae/measure/singular_values.h>
 #include <momenta/dae/study/index_study.h>
 
@@ -15,21 +16,11 @@ struct Matrices {
 
 Matrices matrices(const Mechanism& mechanism, const Start& start) {
   const int nv = mechanism.nv(), m = mechanism.m();
-  Matrices a{Eigen::MatrixXd::Zero(nv + m, nv + m), Eigen::MatrixXd::Zero(m, nv)};
+  Matrices a{Eigen::MatrixXd::Zero(nv + m, nv + m), {}};
   const auto e = mechanism.evaluation<double>();
   e->place(start.t, start.q.data());
-  const KktPattern& pattern = mechanism.kkt_pattern();
-  std::vector<double> mass(pattern.mass.size()), constraint(pattern.constraint.size());
-  e->mass_entries(mass.data());
-  e->constraint_entries(constraint.data());
-  for (std::size_t i = 0; i < mass.size(); ++i) {
-    const auto [row, column] = pattern.mass[i];
-    a.kkt(row, column) = a.kkt(column, row) = mass[i];
-  }
-  for (std::size_t i = 0; i < constraint.size(); ++i) {
-    const auto [row, column] = pattern.constraint[i];
-    a.constraint(row, column) = constraint[i];
-  }
+  a.constraint = dense_constraints(mechanism, *e);
+  a.kkt.topLeftCorner(nv, nv) = dense_mass(mechanism, *e);
   a.kkt.bottomLeftCorner(m, nv) = a.constraint;
   a.kkt.topRightCorner(nv, m) = a.constraint.transpose();
   return a;

@@ -42,6 +42,20 @@ std::string default_integrator(const std::string& form, double rtol) {
   return rtol > 0.99e-4 ? "dp5" : rtol < 1.01e-9 ? "vern9" : "dop853";
 }
 
+RunSettings default_settings(const RunDefaults& scene, const std::string& form,
+                             const std::string& method, double rtol) {
+  RunSettings s;
+  s.form = form;
+  s.integrator = method.empty() ? default_integrator(form, rtol) : method;
+  s.gauge = scene.leak ? Gauge{Gauge::Kind::leak, *scene.leak}.text() : "leak";
+  s.rtol = s.atol = rtol;
+  s.step = scene.step.value_or(0);
+  s.end_time = scene.end_time;
+  s.samples = scene.samples;
+  s.project = scene.project && integrator(s.integrator).projects;
+  return s;
+}
+
 namespace {
 
 /// A form with its integrator, ready to go; shared by the watched run and the timed ones.

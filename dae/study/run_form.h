@@ -50,4 +50,10 @@ void time_runs(const Mechanism& mechanism, const Start& start, std::vector<RunRe
 /// costs least at such tolerances: dp5 from 1e-4 up, vern9 from 1e-9 down, dop853 between.
 std::string default_integrator(const std::string& form, double rtol);
 
+/// A run of this form where nothing else is said: tolerances both `rtol`, times, step, gauge and
+/// correction of the scene, and the default integrator where `method` is empty. @throws
+/// std::invalid_argument for an integrator there is not.
+RunSettings default_settings(const RunDefaults& scene, const std::string& form,
+                             const std::string& method, double rtol);
+
 }  // namespace momenta

@@ -1,9 +1,9 @@
+#include <momenta/dae/kkt/dense_blocks.h>
 #include <momenta/dae/kkt/kkt.h>
 #include <momenta/dae/kkt/tree_factor.h>
 #include <momenta/dae/measure/rank.h>
+#include <momenta/dae/measure/singular_values.h>
 #include <momenta/dae/study/state_values.h>
-
-#include <Eigen/SVD>
 
 namespace momenta {
 namespace {
@@ -152,21 +152,10 @@ class StateEvaluator {
 
   void dense_parts() {
     s_.dense = true;
-    const auto& pattern = mechanism_.kkt_pattern();
     e_->place(given_.t, given_.q.data());
-    std::vector<double> values(pattern.mass.size());
-    e_->mass_entries(values.data());
-    s_.mass.setZero(mechanism_.nv(), mechanism_.nv());
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      const auto [row, column] = pattern.mass[i];
-      s_.mass(row, column) = s_.mass(column, row) = values[i];
-    }
+    s_.mass = dense_mass(mechanism_, *e_);
     if (mechanism_.m() == 0 || mechanism_.nv() == 0) return;
-    values.resize(pattern.constraint.size());
-    e_->constraint_entries(values.data());
-    Eigen::MatrixXd j = Eigen::MatrixXd::Zero(mechanism_.m(), mechanism_.nv());
-    for (std::size_t i = 0; i < values.size(); ++i)
-      j(pattern.constraint[i].row, pattern.constraint[i].column) = values[i];
+    const Eigen::MatrixXd j = dense_constraints(mechanism_, *e_);
     if (!j.allFinite()) refuse(-1);
     s_.singular_values = Eigen::JacobiSVD<Eigen::MatrixXd>(j).singularValues();
     const double least = rank_tolerance * s_.singular_values[0];

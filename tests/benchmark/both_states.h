@@ -6,10 +6,11 @@
 #include <momenta/core/kernel/momentum_sweeps.h>
 #include <momenta/core/scalar/dual.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <utility>
 #include <vector>
+
+#include "equations/decompositions.h"
 
 namespace momenta::stability {
 

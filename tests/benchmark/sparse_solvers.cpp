@@ -20,6 +20,29 @@ int* rows_of(const SymmetricMatrix& a) {
 double* values_of(const SymmetricMatrix& a) {
   return const_cast<double*>(a.values().data());
 }
+/// A matrix and a right side as CHOLMOD and SPQR take them: views, nothing copied.
+cholmod_sparse view_of(const SymmetricMatrix& a, int index_type, void* start, void* row) {
+  cholmod_sparse view{};
+  view.nrow = view.ncol = static_cast<std::size_t>(a.size());
+  view.nzmax = a.row.size();
+  view.p = start;
+  view.i = row;
+  view.x = values_of(a);
+  view.itype = index_type;
+  view.xtype = CHOLMOD_REAL;
+  view.dtype = CHOLMOD_DOUBLE;
+  view.sorted = view.packed = 1;
+  return view;
+}
+cholmod_dense view_of(std::vector<double>& x) {
+  cholmod_dense b{};
+  b.nrow = b.nzmax = b.d = x.size();
+  b.ncol = 1;
+  b.x = x.data();
+  b.xtype = CHOLMOD_REAL;
+  b.dtype = CHOLMOD_DOUBLE;
+  return b;
+}
 
 class Klu final : public SparseSolver {
  public:
@@ -123,22 +146,17 @@ class Cholmod final : public SparseSolver {
   std::string name() const override { return "CHOLMOD LDLᵀ"; }
   bool analyse(const SymmetricMatrix& a) override {
     if (factor_) cholmod_free_factor(&factor_, &common_);
-    cholmod_sparse view = view_of(a);
+    cholmod_sparse view = upper_of(a);
     factor_ = cholmod_analyze(&view, &common_);
     entries_ = common_.lnz;
     return factor_ != nullptr;
   }
   bool factor(const SymmetricMatrix& a) override {
-    cholmod_sparse view = view_of(a);
+    cholmod_sparse view = upper_of(a);
     return cholmod_factorize(&view, factor_, &common_) == 1 && common_.status == CHOLMOD_OK;
   }
   void solve(std::vector<double>& x) override {
-    cholmod_dense b{};
-    b.nrow = b.nzmax = b.d = x.size();
-    b.ncol = 1;
-    b.x = x.data();
-    b.xtype = CHOLMOD_REAL;
-    b.dtype = CHOLMOD_DOUBLE;
+    cholmod_dense b = view_of(x);
     cholmod_dense* found = cholmod_solve(CHOLMOD_A, factor_, &b, &common_);
     std::copy_n(static_cast<double*>(found->x), x.size(), x.begin());
     cholmod_free_dense(&found, &common_);
@@ -147,18 +165,9 @@ class Cholmod final : public SparseSolver {
   double quality() const override { return cholmod_rcond(factor_, &common_); }
 
  private:
-  static cholmod_sparse view_of(const SymmetricMatrix& a) {
-    cholmod_sparse view{};
-    view.nrow = view.ncol = static_cast<std::size_t>(a.size());
-    view.nzmax = a.row.size();
-    view.p = start_of(a);
-    view.i = rows_of(a);
-    view.x = values_of(a);
+  static cholmod_sparse upper_of(const SymmetricMatrix& a) {
+    cholmod_sparse view = view_of(a, CHOLMOD_INT, start_of(a), rows_of(a));
     view.stype = 1;  // of both triangles the upper one is read
-    view.itype = CHOLMOD_INT;
-    view.xtype = CHOLMOD_REAL;
-    view.dtype = CHOLMOD_DOUBLE;
-    view.sorted = view.packed = 1;
     return view;
   }
   mutable cholmod_common common_{};
@@ -180,21 +189,16 @@ class Spqr final : public SparseSolver {
     if (qr_) SuiteSparseQR_free(&qr_, &common_);
     start_.assign(a.start.begin(), a.start.end());
     row_.assign(a.row.begin(), a.row.end());
-    cholmod_sparse view = view_of(a);
+    cholmod_sparse view = whole_of(a);
     qr_ = SuiteSparseQR_symbolic<double>(SPQR_ORDERING_DEFAULT, 0, &view, &common_);
     return qr_ != nullptr;
   }
   bool factor(const SymmetricMatrix& a) override {
-    cholmod_sparse view = view_of(a);
+    cholmod_sparse view = whole_of(a);
     return SuiteSparseQR_numeric<double>(SPQR_NO_TOL, &view, qr_, &common_) == 1;
   }
   void solve(std::vector<double>& x) override {
-    cholmod_dense b{};
-    b.nrow = b.nzmax = b.d = x.size();
-    b.ncol = 1;
-    b.x = x.data();
-    b.xtype = CHOLMOD_REAL;
-    b.dtype = CHOLMOD_DOUBLE;
+    cholmod_dense b = view_of(x);
     cholmod_dense* y = SuiteSparseQR_qmult<double>(SPQR_QTX, qr_, &b, &common_);
     cholmod_dense* found = SuiteSparseQR_solve<double>(SPQR_RETX_EQUALS_B, qr_, y, &common_);
     std::copy_n(static_cast<double*>(found->x), x.size(), x.begin());
@@ -205,18 +209,8 @@ class Spqr final : public SparseSolver {
   double quality() const override { return 0; }
 
  private:
-  cholmod_sparse view_of(const SymmetricMatrix& a) {
-    cholmod_sparse view{};
-    view.nrow = view.ncol = static_cast<std::size_t>(a.size());
-    view.nzmax = row_.size();
-    view.p = start_.data();
-    view.i = row_.data();
-    view.x = values_of(a);
-    view.itype = CHOLMOD_LONG;
-    view.xtype = CHOLMOD_REAL;
-    view.dtype = CHOLMOD_DOUBLE;
-    view.sorted = view.packed = 1;
-    return view;
+  cholmod_sparse whole_of(const SymmetricMatrix& a) {
+    return view_of(a, CHOLMOD_LONG, start_.data(), row_.data());
   }
   mutable cholmod_common common_{};
   std::vector<SuiteSparse_long> start_, row_;

@@ -2,6 +2,7 @@
 // broken_scenes/ opens with "# expect: " lines, the parts its sentence must contain.
 
 #include <gtest/gtest.h>
+#include <momenta/core/scene/near_name.h>
 #include <momenta/core/scene/read_scene.h>
 
 #include <algorithm>
@@ -322,6 +323,15 @@ TEST(BrokenHandmade, ScenesBuiltByHandAreChecked) {
     expect_contains(sentence, part);
     EXPECT_TRUE(sentence.starts_with("scene: ")) << sentence;
   }
+}
+
+TEST(Words, NamesInQuotesSayHowManyMoreThereAre) {
+  const std::vector<std::string> names{"a", "b\n", "c"};
+  EXPECT_EQ(reading::all_in_quotes({}), "");
+  EXPECT_EQ(reading::all_in_quotes(names), "'a', 'b\\x0a', 'c'");
+  EXPECT_EQ(reading::all_in_quotes(names, 3), "'a', 'b\\x0a', 'c'");
+  EXPECT_EQ(reading::all_in_quotes(names, 2), "'a', 'b\\x0a' and 1 more");
+  EXPECT_EQ(reading::all_in_quotes(names, 1), "'a' and 2 more");
 }
 
 }  // namespace

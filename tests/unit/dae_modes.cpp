@@ -197,34 +197,29 @@ TEST(Modes, OfAParallelogramHeldByASpring) {
   EXPECT_NEAR(weak.spectrum.modes[0].s.real(), std::sqrt((g * weight - 10) / inertia), 1e-10);
 }
 
+/// One body of 2 kg on a joint from the ground: further lines are the joint's.
+std::string body_on(const std::string& kind) {
+  return R"(
+[[body]]
+name = "b"
+mass = 2
+inertia = [1, 2, 2.5]
+[[joint]]
+name = "F"
+child = "b"
+kind = ")" +
+         kind + "\"\n";
+}
+
 TEST(Modes, OfAMechanismThatNothingHolds) {
   const ModesResult bar = modes_of(parallelogram("", 0, 0));
   EXPECT_STREQ(bar.nature(), "neutral");
   EXPECT_EQ(bar.rigid(), 1);
-  const ModesResult body = modes_of(R"(
-[[body]]
-name = "b"
-mass = 2
-inertia = [1, 2, 2.5]
-[[joint]]
-name = "F"
-kind = "free"
-child = "b"
-)");
+  const ModesResult body = modes_of(body_on("free"));
   EXPECT_EQ(body.rigid(), 6);
   EXPECT_EQ(body.spectrum.modes.size(), 6u);
   // One hinge damped, nothing held: a mode that stays and one that stops.
-  const ModesResult damped = modes_of(R"(
-[[body]]
-name = "b"
-mass = 2
-inertia = [1, 2, 2.5]
-[[joint]]
-name = "F"
-kind = "revolute"
-child = "b"
-damping = 0.5
-)");
+  const ModesResult damped = modes_of(body_on("revolute") + "damping = 0.5\n");
   ASSERT_EQ(damped.spectrum.modes.size(), 2u);
   EXPECT_EQ(damped.spectrum.modes[0].kind(), Mode::Kind::rigid);
   EXPECT_NEAR(damped.spectrum.modes[1].s.real(), -0.5 / 2.5, 1e-14);
@@ -232,17 +227,7 @@ damping = 0.5
 
 TEST(Modes, OfABodyOnSpringsAtAnyTurn) {
   // Three springs along each axis at the mass centre: 2 k/m in each direction; turns are free.
-  std::string text = R"(
-[[body]]
-name = "b"
-mass = 2
-inertia = [1, 2, 2.5]
-[[joint]]
-name = "F"
-kind = "free"
-child = "b"
-position = [0.1, -0.05, 0.07, 0.5, 0.5, -0.5, 0.5]
-)";
+  std::string text = body_on("free") + "position = [0.1, -0.05, 0.07, 0.5, 0.5, -0.5, 0.5]\n";
   for (const char* end :
        {"[3, 0, 0]", "[-3, 0, 0]", "[0, 3, 0]", "[0, -3, 0]", "[0, 0, 3]", "[0, 0, -3]"})
     text +=
@@ -256,7 +241,10 @@ position = [0.1, -0.05, 0.07, 0.5, 0.5, -0.5, 0.5]
   EXPECT_LT(r.equilibrium.q.head<3>().norm(), 1e-12);
 }
 
-const std::string hoop = R"(
+/// A bob of 2 kg half a metre below, on a joint O of a shaft that turns about z: further lines are
+/// the drive's.
+std::string bob_on_shaft(const std::string& joint) {
+  return R"(
 gravity = [0, 0, -9.81]
 [[body]]
 name = "shaft"
@@ -274,17 +262,18 @@ child = "shaft"
 axis = "z"
 [[joint]]
 name = "O"
-kind = "revolute"
 parent = "shaft"
 child = "bob"
-axis = "y"
-position = 0.1
+)" + joint +
+         R"(
 [[drive]]
 joint = "S"
 kind = "polynomial"
 )";
+}
 
 TEST(Modes, OfABobOnATurningHoop) {
+  const std::string hoop = bob_on_shaft("kind = \"revolute\"\naxis = \"y\"\nposition = 0.1");
   const double fast = 6, slow = 3, ratio = g / (0.5 * fast * fast);
   const ModesResult out = modes_of(hoop + "coefficients = [0, 6]\n", {}, true);
   EXPECT_NEAR(std::cos(out.equilibrium.q[0]), ratio, 1e-12);
@@ -298,34 +287,8 @@ TEST(Modes, OfABobOnATurningHoop) {
 }
 
 TEST(Modes, OfFoucaultsPendulum) {
-  const std::string text = R"(
-gravity = [0, 0, -9.81]
-[[body]]
-name = "shaft"
-mass = 1
-inertia = [1, 1, 1]
-[[body]]
-name = "bob"
-mass = 2
-com = [0, 0, -0.5]
-inertia = [0, 0, 0]
-[[joint]]
-name = "S"
-kind = "revolute"
-child = "shaft"
-axis = "z"
-[[joint]]
-name = "O"
-kind = "universal"
-parent = "shaft"
-child = "bob"
-axis = "x"
-axis2 = "y"
-[[drive]]
-joint = "S"
-kind = "polynomial"
-coefficients = [0, 2]
-)";
+  const std::string text =
+      bob_on_shaft("kind = \"universal\"\naxis = \"x\"\naxis2 = \"y\"") + "coefficients = [0, 2]\n";
   const ModesResult r = modes_of(text, {}, true);
   EXPECT_FALSE(r.spectrum.conservative);
   expect_frequencies(r, {std::sqrt(g / 0.5) - 2, std::sqrt(g / 0.5) + 2}, 1e-12);
@@ -463,28 +426,8 @@ TEST(Modes, WhatFallsAndWhatHasNoLengthIsRefusedInASentence) {
       EXPECT_NE(std::string(e.what()).find(with), std::string::npos) << e.what();
     }
   };
-  refused(R"(
-gravity = [0, 0, -9.81]
-[[body]]
-name = "b"
-mass = 2
-inertia = [1, 1, 1]
-[[joint]]
-name = "F"
-kind = "free"
-child = "b"
-)",
-          "joint 'F'");
-  refused(R"(
-[[body]]
-name = "b"
-mass = 2
-inertia = [1, 1, 1]
-[[joint]]
-name = "F"
-kind = "planar"
-child = "b"
-[[force]]
+  refused("gravity = [0, 0, -9.81]" + body_on("free"), "joint 'F'");
+  refused(body_on("planar") + R"([[force]]
 name = "pull"
 kind = "spring-damper"
 child = "b"

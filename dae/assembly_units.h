@@ -1,0 +1,21 @@
+#pragma once
+// Units in which an assembly counts what joints move and how far loops are open: lengths of the
+// scene, and radians. Scaled so, neither depends on the units of the scene.
+
+#include <momenta/dae/mechanism.h>
+
+#include <Eigen/Core>
+
+namespace momenta {
+
+struct AssemblyUnits {
+  explicit AssemblyUnits(const Mechanism& mechanism);
+
+  Eigen::VectorXd rates;      ///< by rate u, nv [m or rad]
+  Eigen::VectorXd equations;  ///< by loop equation, m; of a coupler what its terms are by nature
+  /// What rounding leaves open of loops that close, in these units. It grows with the way from the
+  /// ground: a sum of k terms of size up to R is off by √k R ε.
+  double rounding = 0;
+};
+
+}  // namespace momenta

@@ -1,0 +1,87 @@
+#include <momenta/dae/report/chart_axis.h>
+#include <momenta/dae/report/number_text.h>
+#include <momenta/dae/report/svg.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace momenta {
+namespace {
+
+/// "10⁻³", between the powers "2·10⁻³".
+std::string power_text(double value) {
+  const double exponent = std::floor(std::log10(value) + 1e-9);
+  const auto mantissa = std::lround(value / std::pow(10.0, exponent));
+  std::string text = mantissa == 1 ? "10" : std::to_string(mantissa) + "·10";
+  static constexpr std::array<const char*, 10> raised{"⁰", "¹", "²", "³", "⁴",
+                                                      "⁵", "⁶", "⁷", "⁸", "⁹"};
+  for (const char c : svg::number(exponent))
+    text += c == '-' ? "⁻" : raised[static_cast<std::size_t>(c - '0')];
+  return text;
+}
+
+}  // namespace
+
+void Range::take(double value) {
+  low = std::min(low, value);
+  high = std::max(high, value);
+}
+
+double Axis::at(double value) const {
+  return log ? length * std::log(value / low) / std::log(high / low)
+             : length * (value - low) / (high - low);
+}
+
+std::vector<double> Axis::ticks(double apart) const {
+  std::vector<double> all;
+  const double room = std::max(2.0, std::floor(length / apart));
+  if (log) {
+    const double first = std::floor(std::log10(low) + 1e-9),
+                 last = std::ceil(std::log10(high) - 1e-9);
+    const double stride = std::max(1.0, std::ceil((last - first) / room));
+    const bool fine = stride == 1 && std::log10(high / low) < 2.5 && room > 3 * (last - first);
+    for (double k = first; k <= last; k += stride)
+      for (const double m : fine ? std::vector<double>{1, 2, 5} : std::vector<double>{1}) {
+        const double value = m * std::pow(10.0, k);
+        if (value >= low * 0.999 && value <= high * 1.001) all.push_back(value);
+      }
+    return all;
+  }
+  const double least = (high - low) / room, decade = std::pow(10.0, std::floor(std::log10(least)));
+  double step = 10 * decade;
+  for (const double m : {5.0, 2.0, 1.0})
+    if (m * decade >= least) step = m * decade;
+  for (double k = std::ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; ++k)
+    all.push_back(k * step);
+  return all;
+}
+
+std::string Axis::name(double value) const {
+  return log ? power_text(value) : std::abs(value) < 1e-12 * (high - low) ? "0" : compact(value, 6);
+}
+
+std::string Axis::words(const std::string& title) const {
+  return title + " from " + round_trip(low) + " to " + round_trip(high) +
+         (log ? ", logarithmic" : ", linear");
+}
+
+Axis axis_around(Range range, bool log, bool whole, double length) {
+  if (range.empty()) range = log ? Range{1e-3, 1} : Range{0, 1};
+  if (log && whole) {
+    range.low = std::pow(10.0, std::floor(std::log10(range.low) + 1e-9));
+    range.high = std::pow(10.0, std::ceil(std::log10(range.high) - 1e-9));
+    if (!(range.high > range.low)) range.high = 10 * range.low;
+  } else if (log && !(range.high > range.low)) {
+    range.high = 10 * range.low;
+  } else if (!log && whole) {
+    const double room = range.high > range.low ? 0.06 * (range.high - range.low)
+                                               : std::max(0.1 * std::abs(range.high), 1e-3);
+    range = {range.low - room, range.high + room};
+  } else if (!log && !(range.high > range.low)) {
+    range.high = range.low + 1;
+  }
+  return {log, range.low, range.high, length};
+}
+
+}  // namespace momenta

@@ -1,0 +1,15 @@
+#pragma once
+// Markers of a chart's points, as SVG.
+
+#include <string>
+
+namespace momenta {
+
+/// A circle, square, triangle, diamond, plus or star about (x, y), r in size [px]; of any other
+/// kind a square.
+std::string marker(const std::string& kind, double x, double y, double r, const std::string& fill);
+
+/// Where a run failed.
+std::string cross_at(double x, double y);
+
+}  // namespace momenta
