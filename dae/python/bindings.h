@@ -33,8 +33,13 @@ class Bench {
         e(mechanism->evaluation<double>()) {
     if (mechanism->m() > 0) solver = make_loop_solver(*mechanism, *e);
   }
+  /// The tree, its loops open: M is the tree's.
   OpenChain& chain() {
-    if (!chain_) chain_ = std::make_unique<OpenChain>(mechanism->scene());
+    if (!chain_) {
+      Scene tree = mechanism->scene();
+      tree.loops.clear();
+      chain_ = std::make_unique<OpenChain>(tree);
+    }
     return *chain_;
   }
   void expect(const In* q, const In* u, const char* rates = "u") const {

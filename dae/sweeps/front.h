@@ -241,14 +241,15 @@ constexpr bool keeps_pivots<Pack<W, L>> = W == 1;
 
 /// Closes the rows of one loop: `points` rows at `lane` that share a unit and have that scale at
 /// least, then `others`. Records them in closing order. Of a pack all states are closed in one
-/// order: false where that takes, of some state, a pivot below a thousandth of the largest that is
-/// left, and may so lose three digits.
+/// order: false where that takes, of some state, a pivot below a hundredth of the largest that is
+/// left, or a weak one, before which each should go in its own order.
 template <class S, int Rows, int Columns, class Weight>
 bool close_loop(Front<S, Rows, Columns>& front, int lane, int points, int others,
                 const S& least_scale, double fade, ClosedRow<S, Rows, Columns>* records,
                 Weight&& weight) {
   const int rows = points + others;
   S tau[6];
+  [[maybe_unused]] S scale[6];
   double per_unit[6];
   for (int first = 0; first < rows; first = points) {
     const int end = first < points ? points : rows;
@@ -258,11 +259,12 @@ bool close_loop(Front<S, Rows, Columns>& front, int lane, int points, int others
     const double unit = size_of(sum), inverse = unit > 0 ? 1 / unit : 0;
     for (int i = first; i < end; ++i) {
       tau[i] = sum * fade;
+      scale[i] = sum;
       per_unit[i] = inverse;
     }
     if (end == rows) break;
   }
-  constexpr double least_share = 1e-3;
+  constexpr double least_share = 1e-2, weak = 1e-4;
   bool closed[6] = {}, even = true;
   for (int k = 0; k < rows; ++k) {
     int best = -1;
@@ -281,10 +283,11 @@ bool close_loop(Front<S, Rows, Columns>& front, int lane, int points, int others
         largest = relative;
       }
     }
-    if constexpr (!keeps_pivots<S>)
-      even = even && per_unit[best] > 0 &&
-             all_positive(front.w(lane + best, lane + best) * per_unit[best] -
-                          least_share * largest_of_each);
+    if constexpr (!keeps_pivots<S>) {
+      const S pivot = front.w(lane + best, lane + best);
+      even = even && per_unit[best] > 0 && all_positive(pivot - weak * scale[best]) &&
+             all_positive(pivot * per_unit[best] - least_share * largest_of_each);
+    }
     closed[best] = true;
     close_row(lane + best, front, tau[best], records[k], weight);
   }

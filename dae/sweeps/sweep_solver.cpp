@@ -45,9 +45,10 @@ class SweepSolver final : public LoopSolver {
     right.leak = leak;
     right.rates = pdot != nullptr;
     of_momentum_ = true;
-    if (!noted(sweeps_->momentum(t, q, p, right, u, sigma, pdot))) return false;
+    const bool ok = noted(sweeps_->momentum(t, q, p, right, u, sigma, pdot));
     if (sweeps_->weak_leg())
       return by_matrix().momentum(t, q, p, centre, fade, leak, u, sigma, pdot);
+    if (!ok) return false;
     if (pdot && has_body_forces_) {
       e_.body_forces(t, q, u, tau_.data());
       for (std::size_t i = 0; i < tau_.size(); ++i) pdot[i] += tau_[i];
@@ -63,11 +64,11 @@ class SweepSolver final : public LoopSolver {
     right.beta = beta;
     if (has_forces_) e_.applied_forces(t, q, u, tau_.data());
     of_momentum_ = false;
-    if (!noted(sweeps_->acceleration(t, q, u, has_forces_ ? tau_.data() : zero_.data(), right, udot,
-                                     lambda)))
-      return false;
+    const bool ok = noted(sweeps_->acceleration(t, q, u, has_forces_ ? tau_.data() : zero_.data(),
+                                                right, udot, lambda));
     if (sweeps_->weak_leg())
       return by_matrix().acceleration(t, q, u, centre, alpha, beta, udot, lambda);
+    if (!ok) return false;
     return finite(udot, zero_.size()) && finite(lambda, nu_.size());
   }
 
@@ -76,8 +77,9 @@ class SweepSolver final : public LoopSolver {
     right.fade = fade_evaluation;
     right.drives = false;
     of_momentum_ = true;
-    if (!noted(sweeps_->momentum(t, q, p, right, u, nu_.data(), nullptr))) return false;
+    const bool ok = noted(sweeps_->momentum(t, q, p, right, u, nu_.data(), nullptr));
     if (sweeps_->weak_leg()) return by_matrix().free_velocity(t, q, p, u);
+    if (!ok) return false;
     return finite(u, zero_.size());
   }
 
@@ -87,9 +89,9 @@ class SweepSolver final : public LoopSolver {
     right.drives = false;
     right.positions = 1;
     of_momentum_ = true;
-    if (!noted(sweeps_->momentum(t, q, zero_.data(), right, delta, nu_.data(), nullptr)))
-      return false;
+    const bool ok = noted(sweeps_->momentum(t, q, zero_.data(), right, delta, nu_.data(), nullptr));
     if (sweeps_->weak_leg()) return by_matrix().position_correction(t, q, delta);
+    if (!ok) return false;
     return finite(delta, zero_.size());
   }
 
@@ -115,7 +117,8 @@ class SweepSolver final : public LoopSolver {
     return right;
   }
 
-  /// Where a folded leg loses rank its loops cannot close by themselves.
+  /// Where a folded leg loses rank its loops cannot close by themselves, and what they leave of the
+  /// body they fold into may seem to have no inertia.
   LoopSolver& by_matrix() {
     if (!matrix_) {
       matrix_ = make_assembled_solver(mechanism_, e_);
@@ -128,7 +131,8 @@ class SweepSolver final : public LoopSolver {
   bool noted(bool ok) {
     ++solutions_;
     stuck_ = -1;
-    if (!ok) stuck_ = place_of_body_[static_cast<std::size_t>(sweeps_->stuck())];
+    if (!ok && !sweeps_->weak_leg())
+      stuck_ = place_of_body_[static_cast<std::size_t>(sweeps_->stuck())];
     return ok;
   }
 

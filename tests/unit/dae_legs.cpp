@@ -2,6 +2,7 @@
 // assembled matrix; which legs are of one shape.
 
 #include "equations/linkages.h"
+#include "equations/quad_loops.h"
 #include "equations/random_loops.h"
 #include "equations/sweeps_against_matrix.h"
 #include "equations/tolerance.h"
@@ -29,7 +30,8 @@ struct LegRecipe {
 };
 
 /// A flying platform on legs at random, and a pendulum beside it that has nothing to do with them.
-Scene legged(RandomTree& random, const std::vector<LegRecipe>& recipes) {
+/// `forces`: springs and dampers on some joints.
+Scene legged(RandomTree& random, const std::vector<LegRecipe>& recipes, bool forces) {
   Scene s;
   s.name = "platform";
   s.gravity = random.vector(9);
@@ -51,7 +53,7 @@ Scene legged(RandomTree& random, const std::vector<LegRecipe>& recipes) {
     j.origin_child = random.vector(0.5);
     j.rotation = random.turn();
     j.axis = random.direction();
-    if (kind != JointKind::free && random.chance(0.4)) {
+    if (forces && kind != JointKind::free && random.chance(0.4)) {
       j.stiffness = random.uniform(0, 5);
       j.damping = random.uniform(0, 2);
       j.rest = random.uniform(-1, 1);
@@ -131,15 +133,38 @@ Solution solution(LoopedSweeps& sweeps, const Mechanism& m, const TreeState& s, 
   return r;
 }
 
+/// Errors of u, ṗ and u̇ against quad precision, the largest: what a pose costs in digits, whatever
+/// the order of elimination.
+double error_of(LoopedSweeps& sweeps, const Mechanism& m, const TreeState& s, const VectorXd& p,
+                const LoopedRates& exact, double leak) {
+  VectorXd u(m.nv()), pdot(m.nv()), udot(m.nv()), sigma(m.m());
+  const VectorXd no_force = VectorXd::Zero(m.nv());
+  RightSide<double> right;
+  right.fade = fade_evaluation;
+  right.leak = leak;
+  right.rates = true;
+  const bool ok =
+      sweeps.momentum(s.t, s.q.data(), p.data(), right, u.data(), sigma.data(), pdot.data()) &&
+      sweeps.acceleration(s.t, s.q.data(), s.u.data(), no_force.data(), right, udot.data(),
+                          sigma.data());
+  EXPECT_TRUE(ok || sweeps.weak_leg());
+  if (!ok) return 1;
+  return std::max({relative_error(u, exact.u), relative_error(pdot, exact.pdot),
+                   relative_error(udot, exact.udot)});
+}
+
 TEST(Legs, SideBySideAreWhatTheyAreOneByOne) {
+  constexpr double leak = 0.7;
   for (const int level : {1, 3, 4}) {
     if (level_at_most(level) != level) continue;
     int compared = 0;
-    for (unsigned seed = 0; seed < 240; ++seed) {
+    double logs = 0;
+    for (unsigned seed = 0; seed < 120; ++seed) {
       RandomTree random(seed);
-      const Scene scene = legged(random, recipes[seed % recipes.size()]);
+      const Scene scene = legged(random, recipes[seed % recipes.size()], false);
       const Mechanism mechanism(scene, {.kkt = KktChoice::sweeps});
       VectorXd p(mechanism.nv()), centre(mechanism.m()), compliance;
+      VectorXd u(mechanism.nv()), pdot(mechanism.nv()), sigma(mechanism.m());
       if (seed % 4 == 0) compliance = VectorXd::Constant(mechanism.m(), 0.01);
       const auto beside = mechanism.looped_sweeps(level),
                  apart = mechanism.looped_sweeps(level, false);
@@ -147,24 +172,40 @@ TEST(Legs, SideBySideAreWhatTheyAreOneByOne) {
         const TreeState s = random.state(mechanism.tree());
         for (double& x : p) x = random.uniform(-2, 2);
         for (double& x : centre) x = random.uniform(-2, 2);
+        const LoopedRates exact = quad_rates(mechanism, s.q, p, s.u, leak, fade_evaluation);
+        const double one_by_one = error_of(*apart, mechanism, s, p, exact, leak),
+                     together = error_of(*beside, mechanism, s, p, exact, leak);
+        if (apart->weak_leg()) {
+          // Both say so, and the solver takes the assembled matrix.
+          EXPECT_TRUE(beside->weak_leg()) << seed;
+          const auto e = mechanism.evaluation<double>();
+          EXPECT_TRUE(make_sweep_solver(mechanism, *e)
+                          ->momentum(s.t, s.q.data(), p.data(), centre.data(), fade_evaluation,
+                                     leak, u.data(), sigma.data(), pdot.data()))
+              << seed;
+        }
+        if (apart->weak_leg() || !(one_by_one < 1e-6)) continue;
+        ++compared;
+        EXPECT_LT(together, 30 * one_by_one + 1e-13) << seed;
+        logs += std::log((together + 1e-16) / (one_by_one + 1e-16));
+        // With all that may be asked of them.
         const Solution a = solution(*beside, mechanism, s, p, centre, compliance),
                        b = solution(*apart, mechanism, s, p, centre, compliance);
-        EXPECT_EQ(beside->weak_leg(), apart->weak_leg());
-        // Where a leg is near losing its rank, orders of elimination differ in more than roundings.
-        if (b.weakest * fade_evaluation < 1e-4) continue;
-        ++compared;
+        const double limit = 1e3 * one_by_one + 1e-12;
+        EXPECT_LT(relative_error(a.u, b.u), limit) << seed;
+        EXPECT_LT(relative_error(a.sigma, b.sigma), limit * (1 + b.sigma.norm())) << seed;
+        EXPECT_LT(relative_error(a.pdot, b.pdot), limit) << seed;
+        EXPECT_LT(relative_error(a.udot, b.udot), limit) << seed;
+        EXPECT_LT(relative_error(a.lambda, b.lambda), limit * (1 + b.lambda.norm())) << seed;
         // Legs of several rows are closed in one order, and their pivots are others then.
         if (seed % recipes.size() == 3) {
           EXPECT_NEAR(a.weakest / b.weakest, 1, 1e-6) << seed;
         }
-        EXPECT_LT(relative_error(a.u, b.u), 1e-9) << seed;
-        EXPECT_LT(relative_error(a.sigma, b.sigma), 1e-9) << seed;
-        EXPECT_LT(relative_error(a.pdot, b.pdot), 1e-9) << seed;
-        EXPECT_LT(relative_error(a.udot, b.udot), 1e-9) << seed;
-        EXPECT_LT(relative_error(a.lambda, b.lambda), 1e-9) << seed;
       }
     }
-    EXPECT_GT(compared, 300) << level;
+    EXPECT_GT(compared, 250) << level;
+    // In the mean they are as exact.
+    EXPECT_LT(logs / compared, std::log(1.5)) << level;
   }
 }
 
@@ -172,8 +213,8 @@ TEST(Legs, AgreeWithTheAssembledMatrix) {
   Worst worst;
   for (unsigned seed = 0; seed < 300; ++seed) {
     RandomTree random(seed + 1000);
-    compare(legged(random, recipes[seed % recipes.size()]), random, {.algebra = Algebra::spatial},
-            worst);
+    compare(legged(random, recipes[seed % recipes.size()], true), random,
+            {.algebra = Algebra::spatial}, worst);
   }
   EXPECT_GT(worst.tried, 30);
   expect_rounding(worst, 20);
