@@ -34,7 +34,15 @@ void place_body(Workspace<Space, S>& w, std::size_t k, const S& t, const S* q, b
   if (with_pose) {
     typename Space::template Pose<S> ground;
     if constexpr (Space::dimension == 6) ground.axes = identity3<S>();
-    s.pose = Space::pose_outward(b.edge, b.kind, s.edge, parent ? parent->pose : ground);
+    const auto& from = parent ? parent->pose : ground;
+    if constexpr (Space::dimension == 6) {
+      const auto at = Space::pose_outward(b.edge, b.kind, s.edge,
+                                          typename Space::template Pose<S>{from.axes, {}});
+      s.step = at.origin;
+      s.pose = {at.axes, from.origin + at.origin};
+    } else {
+      s.pose = Space::pose_outward(b.edge, b.kind, s.edge, from);
+    }
   }
 }
 

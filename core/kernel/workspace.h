@@ -21,6 +21,7 @@ struct Workspace {
     typename Space::template Edge<S> edge;  ///< way from the parent at this configuration
     typename Space::template RigidInertia<S> inertia;  ///< planar only: turned to ground axes
     typename Space::template Pose<S> pose;  ///< in ground axes; only where loops or forces need it
+    Vector step;  ///< with it, in space: from the parent's O to its own, ground axes
     S drive{}, drive_rate{}, drive_acceleration{};  ///< prescribed joint motion
     // velocities_outward, rates_outward
     Motion V;  ///< Ω_K

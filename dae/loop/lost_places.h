@@ -40,16 +40,10 @@ class LostPlaces {
   Vector of_body(int k) const { return k < 0 ? Vector{} : lost_[static_cast<std::size_t>(k)]; }
   /// From the parent's origin to that of body k, in ground axes.
   static Vector step(const Workspace<Space, double>& w, std::size_t k) {
-    const auto& b = w.model->bodies[k];
-    const auto& edge = w.body[k].edge;
-    if constexpr (Space::dimension == 3) {
-      return edge.r;
-    } else {
-      typename Space::template Pose<double> parent;
-      parent.axes =
-          b.parent < 0 ? identity3<double>() : w.body[static_cast<std::size_t>(b.parent)].pose.axes;
-      return Space::pose_outward(b.edge, b.kind, edge, parent).origin;
-    }
+    if constexpr (Space::dimension == 3)
+      return w.body[k].edge.r;
+    else
+      return w.body[k].step;
   }
 
   std::vector<Vector> lost_;
