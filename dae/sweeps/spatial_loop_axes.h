@@ -60,12 +60,7 @@ bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::axis_inward(std::size_t k, cons
     }
   if (!Momentum || b.nv == 0) {  // D' += M'c, d' += C'ᵀ c of a motion that is given
     const Force P = Spatial::momentum(blocks(m.M), y.given);
-    m.Dfx = m.Dfx + P.f[0];
-    m.Dfy = m.Dfy + P.f[1];
-    m.Dfz = m.Dfz + P.f[2];
-    m.Dnx = m.Dnx + P.n[0];
-    m.Dny = m.Dny + P.n[1];
-    m.Dnz = m.Dnz + P.n[2];
+    add_remainder(m, P);
     for (int i = 0; i < 6; ++i) o.d += o.C[i] * y.given[i];
   }
   if (l.parent < 0) return true;

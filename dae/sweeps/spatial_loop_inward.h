@@ -50,14 +50,7 @@ void SpatialLoopSweeps<S, Rows, Momentum, Tree>::enter(std::size_t k, const Loop
     for (int j = 0; j < 3; ++j) a.blocks.C[3 + j].add(lane + row, n[j]);
     if (right.centre) centre_couple += right.centre[l.row + row] * n;
   }
-  if (right.centre) {
-    a.cargo.Dfx += centre_force[0];
-    a.cargo.Dfy += centre_force[1];
-    a.cargo.Dfz += centre_force[2];
-    a.cargo.Dnx += centre_couple[0];
-    a.cargo.Dny += centre_couple[1];
-    a.cargo.Dnz += centre_couple[2];
-  }
+  if (right.centre) add_remainder(a.cargo, Force{centre_force, centre_couple});
   if (end.first) enter_right_side(loop, right, a.blocks.d);
 }
 
@@ -158,12 +151,7 @@ bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::inward(const In& r, const Right
                         l.J[1] * w[0] + l.J[3] * w[1] + l.J[4] * w[2],
                         l.J[2] * w[0] + l.J[4] * w[1] + l.J[5] * w[2]}};
       const Vec3<S> f = cross(w, cross(w, mc)), n = cross(w, Jw);
-      a.cargo.Dfx = a.cargo.Dfx + f[0];
-      a.cargo.Dfy = a.cargo.Dfy + f[1];
-      a.cargo.Dfz = a.cargo.Dfz + f[2];
-      a.cargo.Dnx = a.cargo.Dnx + n[0];
-      a.cargo.Dny = a.cargo.Dny + n[1];
-      a.cargo.Dnz = a.cargo.Dnz + n[2];
+      add_remainder(a.cargo, Force{f, n});
     }
     if (l.slot >= 0) {
       const Carried& slot = slots_[static_cast<std::size_t>(l.slot)];

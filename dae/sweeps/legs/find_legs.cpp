@@ -119,8 +119,6 @@ LegGroups find_legs(const LinkTree& tree, const LoopModel<Spatial>& loops, const
           all.bodies[static_cast<std::size_t>(k)] = 1;
       }
       for (int i = 0; i < g.loops; ++i) {
-        g.rows +=
-            loops.loops[static_cast<std::size_t>(leg(0).loops[static_cast<std::size_t>(i)])].rows;
         for (int lane = 0; lane < lanes; ++lane) {
           g.loop.push_back(leg(lane).loops[static_cast<std::size_t>(i)]);
           all.loops[static_cast<std::size_t>(g.loop.back())] = 1;

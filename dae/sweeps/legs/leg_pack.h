@@ -7,8 +7,6 @@
 #include <momenta/dae/sweeps/right_side.h>
 #include <momenta/dae/sweeps/spatial_loop_place.h>
 
-#include <memory>
-
 namespace momenta {
 
 template <class S, int Rows, bool Momentum, class Tree>
@@ -21,7 +19,7 @@ struct LegLanes {
 };
 template <int L>
 struct LegLanes<Pack<1, L>> {
-  using type = Pack<native_width<L>, L>;
+  using type = Pack<leg_lanes_at(L), L>;
 };
 
 /// One pack; One: a single state's number, S: a pack of them at the same level.
@@ -168,6 +166,7 @@ class LegPack {
     gather(from, row_at_, to);
     return to.data();
   }
+
   const LegGroup& group_;
   LegTree<S> tree_;
   LegLoops<S> loops_;

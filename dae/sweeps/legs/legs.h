@@ -21,12 +21,12 @@ namespace momenta {
 
 /// Up to `lanes` legs that fold into one body.
 struct LegGroup {
-  int onto = -1;                        ///< that body
-  int lanes = 0, count = 0;             ///< of these, so many in use; the others repeat the last
-  int bodies = 0, loops = 0, rows = 0;  ///< of a leg
-  std::vector<int> roots;               ///< by lane; a leg's bodies follow its root
-  std::vector<int> loop;                ///< of the model, at [i · lanes + lane]
-  LoopPlan plan;  ///< of one leg: body 0 that it folds into, and its own from 1 on
+  int onto = -1;              ///< that body
+  int lanes = 0, count = 0;   ///< of these, so many in use; the others repeat the last
+  int bodies = 0, loops = 0;  ///< of a leg
+  std::vector<int> roots;     ///< by lane; a leg's bodies follow its root
+  std::vector<int> loop;      ///< of the model, at [i · lanes + lane]
+  LoopPlan plan;              ///< of one leg: body 0 that it folds into, and its own from 1 on
 };
 
 struct LegGroups {
