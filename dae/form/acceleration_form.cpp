@@ -51,7 +51,6 @@ bool AccelerationForm::after_step(double t, double* y, bool&) {
 
 bool AccelerationForm::read(double t, const double* y, const double*, Snapshot& out) {
   const Looking looking(*this);
-  const std::vector<double> kept = multipliers_;
   std::vector<double> state(y, y + size()), rates(state.size());
   double *q = state.data(), *u = q + mechanism_.nq();
   // The correction belongs to the method, so it is applied to interpolated states too.
@@ -60,7 +59,6 @@ bool AccelerationForm::read(double t, const double* y, const double*, Snapshot& 
   out.q = Eigen::Map<const Eigen::VectorXd>(q, mechanism_.nq());
   out.u = Eigen::Map<const Eigen::VectorXd>(u, mechanism_.nv());
   out.multipliers = Eigen::Map<const Eigen::VectorXd>(multipliers_.data(), mechanism_.m());
-  multipliers_ = kept;  // looking on must not move the centre of later steps
   return true;
 }
 

@@ -29,7 +29,7 @@ class AccelerationForm : public OdeForm {
     OdeForm::begin_step(t, y);
     centre_ = multipliers_;
   }
-  bool wants_care() const override { return false; }
+  Care wants_care() const override { return Care::none; }
   bool read(double t, const double* y, const double*, Snapshot& out) override;
 
  protected:

@@ -127,7 +127,8 @@ void DaeForm::complete(double t, const double* u, const double* udot, const doub
   if (layout_.position_multiplier) std::fill_n(y + layout_.mu(), layout_.m, 0.0);
 }
 
-/// Relative to the best so far: loops that are weak throughout are no pose to be passed.
+/// Relative to the best so far: loops that are weak throughout are no pose to be passed. A
+/// hundredth is a tenth of a radian away.
 bool DaeForm::near_singular(double t, const double* y) {
   if (layout_.m == 0) return false;
   Detour& d = detour_;
@@ -143,7 +144,8 @@ bool DaeForm::near_singular(double t, const double* y) {
   d.always_faded = std::min(d.always_faded, pivots.faded);
   const double weakest = pivots.faded > d.always_faded ? 0 : pivots.weakest;
   d.strongest = std::max(d.strongest, weakest);
-  return weakest < OdeForm::near * d.strongest;
+  constexpr double near = 1e-2;
+  return weakest < near * d.strongest;
 }
 
 OdeSystem* DaeForm::detour(double t, const double* y, double* state) {

@@ -41,7 +41,7 @@ bool MomentumForm::rhs(double t, const double* y, double* ydot) {
     if (!e_->open_momentum_rates(t, q, p, u_.data(), pdot))
       return fail_at(t, mechanism_.no_inertia(e_->stuck()));
   } else {
-    if (careful_) {
+    if (corrects_) {
       place_.assign(q, q + mechanism_.nq());
       if (!correct_position(t, place_.data())) return false;
       q = place_.data();
@@ -119,7 +119,6 @@ void MomentumForm::begin_step(double t, const double* y) {
 bool MomentumForm::read(double t, const double* y, const double*, Snapshot& out) {
   const double* p = y + mechanism_.nq();
   const Looking looking(*this);
-  const std::vector<double> kept = multipliers_;
   out.q = Eigen::Map<const Eigen::VectorXd>(y, mechanism_.nq());
   const double* q = out.q.data();
   // The correction belongs to the method, so it is applied to interpolated states too.
@@ -131,7 +130,6 @@ bool MomentumForm::read(double t, const double* y, const double*, Snapshot& out)
   }
   out.u = Eigen::Map<const Eigen::VectorXd>(u_.data(), mechanism_.nv());
   out.multipliers = Eigen::Map<const Eigen::VectorXd>(multipliers_.data(), mechanism_.m());
-  multipliers_ = kept;  // looking on must not move the centre of later steps
   return true;
 }
 

@@ -26,7 +26,7 @@ class MomentumForm : public OdeForm {
   bool after_step(double t, double* y, bool& changed) override;
   bool first_derivative(double* ydot) override;
   void begin_step(double t, const double* y) override;
-  void take_care(bool careful) override { careful_ = careful; }
+  void take_care(Care care) override { corrects_ = care == Care::position; }
   double motion_error_squared(double t, const double* y, const double* error, double rtol,
                               double atol) override;
   bool read(double t, const double* y, const double*, Snapshot& out) override;
@@ -39,7 +39,7 @@ class MomentumForm : public OdeForm {
   Gauge gauge_;
   double beta_;
   int solutions_;  ///< of (7) in one evaluation, each around the σ of the one before
-  bool careful_ = false;
+  bool corrects_ = false;
   bool reset_ = false;  ///< work_ and correction_ hold f after a reset
   std::vector<double> around_, place_;
 };

@@ -38,13 +38,30 @@ bool OdeForm::solver_failed(double t, const double* q, const std::string& what) 
 }
 
 void OdeForm::begin_step(double, const double*) {
-  near_singular_ = false;
+  care_ = Care::none;
+}
+
+void OdeForm::look_on(bool looking) {
+  const long solutions = solver_ ? solver_->solutions() : 0;
+  if (looking && looking_++ == 0) {
+    before_looking_ = solutions;
+    kept_ = multipliers_;
+  }
+  if (!looking && --looking_ == 0) {
+    looked_ += solutions - before_looking_;
+    multipliers_ = kept_;  // what pivots are centred on
+  }
 }
 
 void OdeForm::note_pivots() {
+  if (looking_ > 0) return;
   const LoopSolver::Pivots pivots = solver_->pivots();
   always_faded_ = std::min(always_faded_, pivots.faded);
-  near_singular_ |= pivots.weakest < near || pivots.faded > always_faded_;
+  weakest_at_best_ = std::max(weakest_at_best_, pivots.weakest);
+  if (pivots.weakest < near || pivots.faded > always_faded_)
+    care_ = Care::position;
+  else if (pivots.weakest < approaching * weakest_at_best_)
+    care_ = std::max(care_, Care::norm);
   if (!watched_) return;
   for (const int row : solver_->faded_rows()) ++(*watched_)[static_cast<std::size_t>(row)];
 }

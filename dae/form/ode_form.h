@@ -35,12 +35,14 @@ class OdeForm : public Form, public OdeSystem {
     std::copy_n(multipliers, multipliers_.size(), multipliers_.begin());
   }
   void begin_step(double t, const double* y) override;
-  bool wants_care() const override { return near_singular_; }
+  Care wants_care() const override { return care_; }
+  void look_on(bool looking) override;
 
-  /// A pivot goes with the square of the distance to the singular pose: within about a tenth of a
-  /// radian. Over ten tolerances around each of 1e-6, 1e-8 and 1e-10 on the N-four-bar, 1e-2 gives
-  /// errors that follow the tolerance; at 1e-5 steps begin to collapse.
-  static constexpr double near = 1e-2;
+  /// Where care begins: a pivot goes with the square of the distance to the singular pose. Errors
+  /// are measured by the motion where the weakest pivot is below this part of the largest it has
+  /// been, f is taken at corrected positions where it is below `near` of its scale, a hundredth of
+  /// a radian away. Loops that are weak throughout approach nothing.
+  static constexpr double approaching = 0.2, near = 1e-4;
 
  protected:
   bool has_loops() const { return mechanism_.m() > 0; }
@@ -69,25 +71,12 @@ class OdeForm : public Form, public OdeSystem {
   /// The sentence "at t = …: why".
   bool fail_at(double t, const std::string& why);
 
-  /// Counts what happens while it lives as looking, not running.
-  class Looking {
-   public:
-    explicit Looking(OdeForm& form)
-        : form_(form), before_(form.solver_ ? form.solver_->solutions() : 0) {}
-    ~Looking() {
-      if (form_.solver_) form_.looked_ += form_.solver_->solutions() - before_;
-    }
-    Looking(const Looking&) = delete;
-    Looking& operator=(const Looking&) = delete;
-
-   private:
-    OdeForm& form_;
-    long before_;
-  };
-
-  long looked_ = 0;
-  bool near_singular_ = false;
-  int always_faded_ = 0;  ///< rows that are redundant wherever the mechanism has been
+  int looking_ = 0;  ///< depth
+  long looked_ = 0, before_looking_ = 0;
+  std::vector<double> kept_;    ///< multipliers, while looking
+  Care care_ = Care::none;      ///< of the step under way
+  double weakest_at_best_ = 0;  ///< largest that the weakest pivot has been on the run
+  int always_faded_ = 0;        ///< rows that are redundant wherever the mechanism has been
   std::vector<long>* watched_ = nullptr;
   std::string name_;
   const Mechanism& mechanism_;

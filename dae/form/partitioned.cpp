@@ -121,7 +121,7 @@ class Partitioned final : public OdeForm {
     OdeForm::begin_step(t, y);
     centre_ = multipliers_;
   }
-  bool wants_care() const override { return false; }
+  Care wants_care() const override { return Care::none; }
 
   bool read_coordinates(double t, const double* y, Eigen::VectorXd& q) override {
     if (!close(t, y)) return false;
@@ -130,12 +130,10 @@ class Partitioned final : public OdeForm {
   }
   bool read(double t, const double* y, const double*, Snapshot& out) override {
     const Looking looking(*this);
-    const std::vector<double> kept = multipliers_;
     if (!close(t, y) || !accelerate(t)) return false;
     out.q = q_;
     out.u = u_;
     out.multipliers = Eigen::Map<const Eigen::VectorXd>(multipliers_.data(), mechanism_.m());
-    multipliers_ = kept;  // looking on must not move the centre of later steps
     return true;
   }
 

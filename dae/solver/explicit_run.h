@@ -111,7 +111,7 @@ class ExplicitRun {
       ++result_.counters.steps;
       bool altered = false;
       if (!observe(t1)) return false;
-      if (leaves_care_) care(false);
+      if (less_care_) care(system_.wants_care());
       if (!correct(t1, altered)) return false;
       // Without a correction f at the end is the next first stage wherever it is there; with one,
       // only for methods that always have it, so that observing a run does not change it.
@@ -145,19 +145,20 @@ class ExplicitRun {
   bool attempt(double t1) {
     StageFailure failure = step_.attempt(t_, t1, h_);
     // Once more with care: f differs there from what these stages were.
-    if (!fixed_ && !careful_ && system_.wants_care()) {
-      care(true);
-      failure = step_.attempt(t_, t1, h_);
+    if (!fixed_ && system_.wants_care() > care_) {
+      const bool again = system_.wants_care() == Care::position;
+      care(system_.wants_care());
+      if (again) failure = step_.attempt(t_, t1, h_);
     }
     double error_squared = 0;
     if constexpr (Tableau::estimates > 0)
       if (!fixed_ && failure == StageFailure::none) {
-        error_squared = careful_ ? step_.motion_error_squared() : step_.error_squared();
+        error_squared = care_ != Care::none ? step_.motion_error_squared() : step_.error_squared();
         if (!std::isfinite(error_squared)) failure = StageFailure::not_finite;
       }
-    if (careful_ && failure == StageFailure::none && is_rounding(error_squared)) {
+    if (care_ != Care::none && failure == StageFailure::none && is_rounding(error_squared)) {
       if (error_squared < most_rounding) {
-        leaves_care_ = !system_.wants_care();
+        less_care_ = system_.wants_care() < care_;
         lengthened_ = 0;
         h_ = std::min(2 * h_, longest_step());
         return true;
@@ -170,7 +171,7 @@ class ExplicitRun {
       }
     }
     if (failure == StageFailure::none && error_squared <= 1) {
-      leaves_care_ = careful_ && !system_.wants_care();
+      less_care_ = system_.wants_care() < care_;
       lengthened_ = 0;
       if constexpr (Tableau::estimates > 0)
         if (!fixed_) h_ = std::min(h_ * control_.accepted(error_squared), longest_step());
@@ -201,11 +202,11 @@ class ExplicitRun {
     return false;
   }
 
-  void care(bool careful) {
-    if (careful && !careful_) first_careful_ = h_;
-    careful_ = careful;
-    leaves_care_ = false;
-    system_.take_care(careful);
+  void care(Care care) {
+    if (care_ == Care::none) first_careful_ = h_;
+    care_ = care;
+    less_care_ = false;
+    system_.take_care(care);
   }
 
   /// Steps of their own from this one's start to t, each within the tolerance; uncounted, and not
@@ -246,6 +247,7 @@ class ExplicitRun {
 
   /// Shows the step, then the output times inside it.
   bool observe(double t1) {
+    const Looking looking(system_);
     if (observer_.step) {
       const bool go_on = observer_.step(t_, t1, between_);
       if (step_.interpolation_failed()) return stop_at_interpolation(t1);
@@ -256,7 +258,7 @@ class ExplicitRun {
       const double t = outputs_.time();
       outputs_.advance();
       if (!observer_.sample) continue;
-      if (!(careful_ && steps_to(t)) && !step_.interpolate(t, sample_.data()))
+      if (!(care_ != Care::none && steps_to(t)) && !step_.interpolate(t, sample_.data()))
         return stop_at_interpolation(t1);
       if (!observer_.sample(t, sample_.data(), nullptr))
         return stop_here(t, sample_.data(), "the observer ended the run");
@@ -273,6 +275,7 @@ class ExplicitRun {
 
   /// Output times at or before t, from the state at the step's end.
   bool sample_until(double t) {
+    const Looking looking(system_);
     for (; outputs_.due(t); outputs_.advance())
       if (observer_.sample && !observer_.sample(outputs_.time(), step_.y(), nullptr)) {
         outputs_.advance();
@@ -326,10 +329,10 @@ class ExplicitRun {
   double h_ = 0;         ///< step tried next [s]
   bool fixed_;           ///< steps of options.step, no error control
   std::vector<double> sample_, unaltered_;
-  bool careful_ = false;            ///< near a singular pose
+  Care care_ = Care::none;          ///< of the step under way
   double first_careful_ = 0;        ///< the step with which care began [s]
   int lengthened_ = 0;              ///< trials of this step
-  bool leaves_care_ = false;        ///< the step just taken was the last one there
+  bool less_care_ = false;          ///< the step just taken needed less
   bool corrected_;                  ///< the system alters accepted states
   bool stopped_elsewhere_ = false;  ///< result_ has a time and state that are no step's start
   IntegrationResult result_;

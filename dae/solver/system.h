@@ -9,6 +9,10 @@
 
 namespace momenta {
 
+/// What a method with error control does about singular poses, in order of what it costs: nothing,
+/// errors measured by what they change of the motion, f at the corrected position as well.
+enum class Care { none, norm, position };
+
 class OdeSystem {
  public:
   virtual ~OdeSystem() = default;
@@ -32,12 +36,12 @@ class OdeSystem {
   /// f at the state after_step() left, where it came along; false: still to be evaluated.
   virtual bool first_derivative(double* /*ydot*/) { return false; }
 
-  /// Whether an evaluation since begin_step() met loop equations that are nearly dependent: a stage
-  /// a little off the manifold is then far off in its rates. A method that controls its error
-  /// repeats the step with care.
-  virtual bool wants_care() const { return false; }
-  /// With care: f is taken at the corrected position, and errors have the norm below.
-  virtual void take_care(bool /*careful*/) {}
+  /// What evaluations since begin_step() ask for: where loop equations become dependent, a stage a
+  /// little off the manifold is far off in its rates. A method that controls its error repeats the
+  /// step where f changes with it.
+  virtual Care wants_care() const { return Care::none; }
+  /// Care::position alone changes f.
+  virtual void take_care(Care /*care*/) {}
   /// Square of a norm of the local error at (t, y), root mean square over the unknowns, of what
   /// changes the motion alone: not of the gauge of σ. The weight of an unknown is atol · scale +
   /// rtol · size. Not finite when it cannot be had. In use while there is care.
@@ -45,6 +49,10 @@ class OdeSystem {
                                       double /*rtol*/, double /*atol*/) {
     return std::numeric_limits<double>::quiet_NaN();
   }
+
+  /// Evaluations from true to false are an observer's: they count nowhere, and no later step
+  /// depends on them. Pairs may stand within each other.
+  virtual void look_on(bool /*looking*/) {}
 
   /// Typical size of y_i, for absolute tolerances: the error weight is atol · scale_i + rtol ·
   /// |y_i|.
@@ -60,6 +68,18 @@ class OdeSystem {
 
  private:
   std::string failure_;
+};
+
+/// While it lives the system is looked at, not run.
+class Looking {
+ public:
+  explicit Looking(OdeSystem& system) : system_(system) { system_.look_on(true); }
+  ~Looking() { system_.look_on(false); }
+  Looking(const Looking&) = delete;
+  Looking& operator=(const Looking&) = delete;
+
+ private:
+  OdeSystem& system_;
 };
 
 /// Compressed columns of ∂F/∂y + c ∂F/∂y'; fixed once analysed. Empty column_start means dense.

@@ -208,7 +208,8 @@ class Looker {
       last.pivot = pivot;
     };
     const double end = pivot_at(t1, between);
-    if (passing_ || end < 10 * near_singular)
+    const bool careful = !form_.is_dae() && form_.ode()->wants_care() != Care::none;
+    if (passing_ || careful || end < 10 * near_singular)
       for (int i = 1; i < closer_looks; ++i) {
         const double t = t0 + (t1 - t0) * i / closer_looks;
         note(t, pivot_at(t, between));
