@@ -79,7 +79,9 @@ TEST(SingularEverywhere, ExplicitMethodsWithEverySolver) {
           const RunResult r = run(mechanism, "momentum", "dop853", tolerance);
           EXPECT_LT(error_of(r, c.exact), 500 * tolerance)
               << c.scene.name << ", pose " << pose << ", " << name_of(kkt) << ", " << tolerance;
-          EXPECT_FALSE(r.passages.empty()) << c.scene.name << ", pose " << pose << ", " << name_of(kkt) << ", " << tolerance << " least " << r.least_pivot;
+          EXPECT_FALSE(r.passages.empty())
+              << c.scene.name << ", pose " << pose << ", " << name_of(kkt) << ", " << tolerance
+              << " least " << r.least_pivot;
           for (const auto& passage : r.passages) EXPECT_FALSE(passage.ambiguous);
         }
       }
