@@ -134,7 +134,7 @@ bool MomentumForm::read(double t, const double* y, const double*, Snapshot& out)
 }
 
 bool MomentumForm::solve(double t, const double* q, const double* p, double* pdot) {
-  const double* centre = centre_.data();
+  const double* centre = gauge_.kind == Gauge::Kind::reset ? nullptr : centre_.data();  // σ = 0
   for (int k = 1; k <= solutions_; ++k) {
     if (!solver_->momentum(t, q, p, centre, fade_evaluation, leak(), u_.data(), multipliers_.data(),
                            k == solutions_ ? pdot : nullptr))
