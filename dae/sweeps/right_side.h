@@ -15,6 +15,12 @@ struct RightSide {
   double leak = 0;            ///< κ [1/s]
   double alpha = 0, beta = 0;     ///< Φ̈ + 2α Φ̇ + β² Φ = 0 [1/s]
   const S* compliance = nullptr;  ///< second row … + (σ − centre) · this (m); null: zero
+
+  /// The same for another scalar, with these rows.
+  template <class T>
+  RightSide<T> of_rows(const T* its_centre, const T* its_compliance) const {
+    return {its_centre, fade, drives, positions, rates, leak, alpha, beta, its_compliance};
+  }
 };
 
 }  // namespace momenta

@@ -71,15 +71,8 @@ class LegPack {
     gather(q, q_at_, q_);
     gather(x, u_at_, x_);
     if constexpr (!Momentum) gather(tau, u_at_, tau_);
-    right_.fade = right.fade;
-    right_.drives = right.drives;
-    right_.positions = right.positions;
-    right_.rates = right.rates;
-    right_.leak = right.leak;
-    right_.alpha = right.alpha;
-    right_.beta = right.beta;
-    right_.centre = gathered(right.centre, centre_);
-    right_.compliance = gathered(right.compliance, compliance_);
+    right_ = right.template of_rows<S>(gathered(right.centre, centre_),
+                                       gathered(right.compliance, compliance_));
     LoopBody<S> body;
     all_of(onto.pose.axes, body.pose.axes);
     all_of(onto.pose.origin, body.pose.origin);

@@ -98,20 +98,11 @@ class LoopedSweepsAt final : public LoopedSweeps {
 
  private:
   RightSide<One> one(const RightSide<double>& right) {
-    RightSide<One> r;
     static_assert(sizeof(One) == sizeof(double));
     const bool paired = right.centre && !shared_.empty();
-    r.centre =
-        reinterpret_cast<const One*>(paired ? shared_.to_paired(right.centre) : right.centre);
-    r.fade = right.fade;
-    r.drives = right.drives;
-    r.positions = right.positions;
-    r.rates = right.rates;
-    r.leak = right.leak;
-    r.alpha = right.alpha;
-    r.beta = right.beta;
-    r.compliance = reinterpret_cast<const One*>(right.compliance);
-    return r;
+    const double* centre = paired ? shared_.to_paired(right.centre) : right.centre;
+    return right.of_rows(reinterpret_cast<const One*>(centre),
+                         reinterpret_cast<const One*>(right.compliance));
   }
   void to_given(const LoopedStates& s) {
     if (shared_.empty()) return;
