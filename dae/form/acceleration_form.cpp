@@ -1,6 +1,8 @@
 #include <momenta/dae/form/acceleration_form.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace momenta {
 
@@ -9,7 +11,9 @@ AccelerationForm::AccelerationForm(std::string name, const Mechanism& mechanism,
     : OdeForm(std::move(name), mechanism, options),
       feedback_(feedback),
       solutions_(solutions),
-      nu_(multipliers_.size()) {}
+      nu_(multipliers_.size()) {
+  approaching_ = 0.05;  // no gauge hides in q and u: the plain norm serves longer
+}
 
 std::vector<double> AccelerationForm::initial(const Start& start) {
   std::vector<double> y(start.q.begin(), start.q.end());
@@ -27,6 +31,13 @@ bool AccelerationForm::rhs(double t, const double* y, double* ydot) {
       return fail_at(t, mechanism_.no_inertia(e_->stuck()));
     coordinate_rates(q, u, ydot);
     return true;
+  }
+  if (corrects_stages_) {
+    state_.assign(y, y + size());
+    double *near_q = state_.data(), *near_u = near_q + mechanism_.nq();
+    if (!correct_position(t, near_q) || !correct_velocity(t, near_q, near_u)) return false;
+    q = near_q;
+    u = near_u;
   }
   const double* centre = centre_.data();
   for (int k = 0; k < solutions_; ++k) {
@@ -71,6 +82,33 @@ bool AccelerationForm::correct_velocity(double t, const double* q, double* u) {
     return solver_failed(t, q, "the velocity correction");
   std::copy(u_.begin(), u_.end(), u);
   return true;
+}
+
+double AccelerationForm::motion_error_squared(double t, const double* y, const double* error,
+                                              double rtol, double atol) {
+  const int nq = mechanism_.nq(), nv = mechanism_.nv();
+  const double* u = y + nq;
+  // M e_u, without what drives add to p.
+  std::vector<double>& at_rest = nu_;
+  at_rest.assign(static_cast<std::size_t>(nv), 0.0);
+  e_->place(t, y);
+  e_->move(at_rest.data());
+  e_->momenta(nullptr, delta_.data());
+  e_->move(error + nq);
+  e_->momenta(nullptr, work_.data());
+  for (std::size_t i = 0; i < work_.size(); ++i) work_[i] -= delta_[i];
+  if (!solver_->free_velocity(t, y, work_.data(), delta_.data()))
+    return std::numeric_limits<double>::quiet_NaN();
+  double sum = 0;
+  for (int i = 0; i < nq; ++i) {
+    const double e = error[i] / (atol + rtol * std::abs(y[i]));
+    sum += e * e;
+  }
+  for (int i = 0; i < nv; ++i) {
+    const double e = delta_[static_cast<std::size_t>(i)] / (atol + rtol * std::abs(u[i]));
+    sum += e * e;
+  }
+  return sum / size();
 }
 
 Feedback feedback_of(const Mechanism& mechanism, const FormOptions& options, const Start& start) {

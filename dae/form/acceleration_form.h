@@ -29,7 +29,11 @@ class AccelerationForm : public OdeForm {
     OdeForm::begin_step(t, y);
     centre_ = multipliers_;
   }
-  Care wants_care() const override { return Care::none; }
+  /// Where q and u are corrected after steps, so are they in stages next to a singular pose.
+  Care wants_care() const override { return corrects() && solutions_ == 1 ? care_ : Care::none; }
+  void take_care(Care care) override { corrects_stages_ = care == Care::position; }
+  double motion_error_squared(double t, const double* y, const double* error, double rtol,
+                              double atol) override;
   bool read(double t, const double* y, const double*, Snapshot& out) override;
 
  protected:
@@ -45,6 +49,8 @@ class AccelerationForm : public OdeForm {
   Feedback feedback_;
   int solutions_;  ///< of (3) in one evaluation, each around the λ of the one before
   std::vector<double> nu_;
+  bool corrects_stages_ = false;
+  std::vector<double> state_;  ///< (q, u) where f is taken, with care
 };
 
 /// The gains given, or critically damped ones at the mechanism's own rate, default_leak's.

@@ -37,6 +37,8 @@ class MaximalCoordinates final : public AccelerationForm {
     solver_ = make_maximal_solver(mechanism, *e_);
   }
 
+  Care wants_care() const override { return Care::none; }
+
   /// Trees too are solved by their joints' multipliers.
   bool rhs(double t, const double* y, double* ydot) override {
     const double *q = y, *u = y + mechanism_.nq();

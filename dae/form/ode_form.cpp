@@ -60,7 +60,7 @@ void OdeForm::note_pivots() {
   weakest_at_best_ = std::max(weakest_at_best_, pivots.weakest);
   if (pivots.weakest < near || pivots.faded > always_faded_)
     care_ = Care::position;
-  else if (pivots.weakest < approaching * weakest_at_best_)
+  else if (pivots.weakest < approaching_ * weakest_at_best_)
     care_ = std::max(care_, Care::norm);
   if (!watched_) return;
   for (const int row : solver_->faded_rows()) ++(*watched_)[static_cast<std::size_t>(row)];

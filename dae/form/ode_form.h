@@ -38,13 +38,14 @@ class OdeForm : public Form, public OdeSystem {
   Care wants_care() const override { return care_; }
   void look_on(bool looking) override;
 
-  /// Where care begins: a pivot goes with the square of the distance to the singular pose. Errors
-  /// are measured by the motion where the weakest pivot is below this part of the largest it has
-  /// been, f is taken at corrected positions where it is below `near` of its scale, a hundredth of
-  /// a radian away. Loops that are weak throughout approach nothing.
-  static constexpr double approaching = 0.2, near = 1e-4;
-
  protected:
+  /// Where care begins: a pivot goes with the square of the distance to the singular pose. f is
+  /// taken at corrected positions where the weakest is below `near` of its scale, a hundredth of a
+  /// radian away; errors are measured by the motion where it is below that part of the largest it
+  /// has been: loops that are weak throughout approach nothing.
+  static constexpr double near = 1e-4;
+  double approaching_ = 0.2;
+
   bool has_loops() const { return mechanism_.m() > 0; }
   /// q̇ of u: u itself unless there are quaternions.
   void coordinate_rates(const double* q, const double* u, double* qdot) const {
