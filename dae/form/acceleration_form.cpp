@@ -1,7 +1,6 @@
 #include <momenta/dae/form/acceleration_form.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 namespace momenta {
@@ -86,11 +85,10 @@ bool AccelerationForm::correct_velocity(double t, const double* q, double* u) {
 
 double AccelerationForm::motion_error_squared(double t, const double* y, const double* error,
                                               double rtol, double atol) {
-  const int nq = mechanism_.nq(), nv = mechanism_.nv();
-  const double* u = y + nq;
+  const int nq = mechanism_.nq();
   // M e_u, without what drives add to p.
-  std::vector<double>& at_rest = nu_;
-  at_rest.assign(static_cast<std::size_t>(nv), 0.0);
+  std::vector<double>& at_rest = state_;
+  at_rest.assign(static_cast<std::size_t>(size()), 0.0);
   e_->place(t, y);
   e_->move(at_rest.data());
   e_->momenta(nullptr, delta_.data());
@@ -99,16 +97,7 @@ double AccelerationForm::motion_error_squared(double t, const double* y, const d
   for (std::size_t i = 0; i < work_.size(); ++i) work_[i] -= delta_[i];
   if (!solver_->free_velocity(t, y, work_.data(), delta_.data()))
     return std::numeric_limits<double>::quiet_NaN();
-  double sum = 0;
-  for (int i = 0; i < nq; ++i) {
-    const double e = error[i] / (atol + rtol * std::abs(y[i]));
-    sum += e * e;
-  }
-  for (int i = 0; i < nv; ++i) {
-    const double e = delta_[static_cast<std::size_t>(i)] / (atol + rtol * std::abs(u[i]));
-    sum += e * e;
-  }
-  return sum / size();
+  return mean_square(y, error, y + nq, delta_.data(), rtol, atol);
 }
 
 Feedback feedback_of(const Mechanism& mechanism, const FormOptions& options, const Start& start) {

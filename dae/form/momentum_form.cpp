@@ -96,16 +96,7 @@ double MomentumForm::motion_error_squared(double t, const double* y, const doubl
   const int nq = mechanism_.nq();
   if (!solver_->free_velocity(t, y, error + nq, delta_.data()))
     return std::numeric_limits<double>::quiet_NaN();
-  double sum = 0;
-  for (int i = 0; i < nq; ++i) {
-    const double e = error[i] / (atol + rtol * std::abs(y[i]));
-    sum += e * e;
-  }
-  for (std::size_t i = 0; i < delta_.size(); ++i) {
-    const double e = delta_[i] / (atol + rtol * std::abs(u_[i]));
-    sum += e * e;
-  }
-  return sum / size();
+  return mean_square(y, error, u_.data(), delta_.data(), rtol, atol);
 }
 
 void MomentumForm::begin_step(double t, const double* y) {

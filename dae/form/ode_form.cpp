@@ -66,6 +66,18 @@ void OdeForm::note_pivots() {
   for (const int row : solver_->faded_rows()) ++(*watched_)[static_cast<std::size_t>(row)];
 }
 
+double OdeForm::mean_square(const double* q, const double* e, const double* u, const double* v,
+                            double rtol, double atol) const {
+  double sum = 0;
+  const auto add = [&](double error, double value) {
+    const double x = error / (atol + rtol * std::abs(value));
+    sum += x * x;
+  };
+  for (int i = 0; i < mechanism_.nq(); ++i) add(e[i], q[i]);
+  for (int i = 0; i < mechanism_.nv(); ++i) add(v[i], u[i]);
+  return sum / size();
+}
+
 bool OdeForm::solve_correction(double t, const double* q) {
   return solver_->position_correction(t, q, delta_.data()) ||
          solver_failed(t, q, "the position correction");

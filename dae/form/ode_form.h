@@ -65,6 +65,9 @@ class OdeForm : public Form, public OdeSystem {
   /// Its two halves: delta_ at q, q ← q + q̇(delta_).
   bool solve_correction(double t, const double* q);
   void take_correction(double* q);
+  /// Of errors e of q (nq) and v of u (nv), each over atol + rtol times its size.
+  double mean_square(const double* q, const double* e, const double* u, const double* v,
+                     double rtol, double atol) const;
   /// Quaternions of q back to unit length.
   void normalise(double* q) const;
   /// After the solution of a right-hand side: which rows faded, and whether others are about to.
