@@ -10,7 +10,8 @@ AccelerationForm::AccelerationForm(std::string name, const Mechanism& mechanism,
     : OdeForm(std::move(name), mechanism, options),
       feedback_(feedback),
       solutions_(solutions),
-      nu_(multipliers_.size()) {
+      nu_(multipliers_.size()),
+      at_rest_(u_.size()) {
   approaching_ = 0.05;  // no gauge hides in q and u: the plain norm serves longer
 }
 
@@ -34,7 +35,7 @@ bool AccelerationForm::rhs(double t, const double* y, double* ydot) {
   if (corrects_stages_) {
     state_.assign(y, y + size());
     double *near_q = state_.data(), *near_u = near_q + mechanism_.nq();
-    if (!correct_position(t, near_q) || !correct_velocity(t, near_q, near_u)) return false;
+    if (!AccelerationForm::correct(t, near_q, near_u)) return false;
     q = near_q;
     u = near_u;
   }
@@ -87,10 +88,8 @@ double AccelerationForm::motion_error_squared(double t, const double* y, const d
                                               double rtol, double atol) {
   const int nq = mechanism_.nq();
   // M e_u, without what drives add to p.
-  std::vector<double>& at_rest = state_;
-  at_rest.assign(static_cast<std::size_t>(size()), 0.0);
   e_->place(t, y);
-  e_->move(at_rest.data());
+  e_->move(at_rest_.data());
   e_->momenta(nullptr, delta_.data());
   e_->move(error + nq);
   e_->momenta(nullptr, work_.data());

@@ -50,7 +50,8 @@ class AccelerationForm : public OdeForm {
   int solutions_;  ///< of (3) in one evaluation, each around the λ of the one before
   std::vector<double> nu_;
   bool corrects_stages_ = false;
-  std::vector<double> state_;  ///< (q, u) where f is taken, with care
+  std::vector<double> state_;    ///< (q, u) where f is taken, with care
+  std::vector<double> at_rest_;  ///< no rates
 };
 
 /// The gains given, or critically damped ones at the mechanism's own rate, default_leak's.

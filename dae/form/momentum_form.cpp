@@ -101,10 +101,7 @@ double MomentumForm::motion_error_squared(double t, const double* y, const doubl
 
 void MomentumForm::begin_step(double t, const double* y) {
   OdeForm::begin_step(t, y);
-  if (gauge_.kind == Gauge::Kind::reset)
-    std::fill(centre_.begin(), centre_.end(), 0.0);
-  else
-    centre_ = multipliers_;
+  if (gauge_.kind != Gauge::Kind::reset) centre_ = multipliers_;
 }
 
 bool MomentumForm::read(double t, const double* y, const double*, Snapshot& out) {

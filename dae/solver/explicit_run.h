@@ -111,7 +111,7 @@ class ExplicitRun {
       ++result_.counters.steps;
       bool altered = false;
       if (!observe(t1)) return false;
-      if (less_care_) care(system_.wants_care());
+      if (system_.wants_care() < care_) care(system_.wants_care());
       if (!correct(t1, altered)) return false;
       // Without a correction f at the end is the next first stage wherever it is there; with one,
       // only for methods that always have it, so that observing a run does not change it.
@@ -158,7 +158,6 @@ class ExplicitRun {
       }
     if (care_ != Care::none && failure == StageFailure::none && is_rounding(error_squared)) {
       if (error_squared < most_rounding) {
-        less_care_ = system_.wants_care() < care_;
         lengthened_ = 0;
         h_ = std::min(2 * h_, longest_step());
         return true;
@@ -171,7 +170,6 @@ class ExplicitRun {
       }
     }
     if (failure == StageFailure::none && error_squared <= 1) {
-      less_care_ = system_.wants_care() < care_;
       lengthened_ = 0;
       if constexpr (Tableau::estimates > 0)
         if (!fixed_) h_ = std::min(h_ * control_.accepted(error_squared), longest_step());
@@ -205,7 +203,6 @@ class ExplicitRun {
   void care(Care care) {
     if (care_ == Care::none) first_careful_ = h_;
     care_ = care;
-    less_care_ = false;
     system_.take_care(care);
   }
 
@@ -332,7 +329,6 @@ class ExplicitRun {
   Care care_ = Care::none;          ///< of the step under way
   double first_careful_ = 0;        ///< the step with which care began [s]
   int lengthened_ = 0;              ///< trials of this step
-  bool less_care_ = false;          ///< the step just taken needed less
   bool corrected_;                  ///< the system alters accepted states
   bool stopped_elsewhere_ = false;  ///< result_ has a time and state that are no step's start
   IntegrationResult result_;

@@ -154,7 +154,12 @@ TEST(Examples, FourBarMeetsItsReferenceToRounding) {
     ASSERT_EQ(run.status, "done") << run.reason;
     digits += std::log10(run.position_error_max);
   }
-  EXPECT_LE(std::pow(10, digits / static_cast<double>(tolerances.size())), 1e-12);
+#ifdef __FMA__
+  constexpr double least = 7e-13;
+#else
+  constexpr double least = 1e-12;
+#endif
+  EXPECT_LE(std::pow(10, digits / static_cast<double>(tolerances.size())), least);
 }
 
 // One degree of freedom, no losses, a start at rest: the motion repeats itself. Its period is read
