@@ -36,12 +36,7 @@ bool AccelerationSweeps<Spatial, S>::axis_inward(std::size_t k, const InTau& tau
   Cargo<S> cargo{};
   if (!l.tip) cargo = from;
   add_body(cargo.M, l);
-  cargo.Dfx = cargo.Dfx + x.D.f[0];
-  cargo.Dfy = cargo.Dfy + x.D.f[1];
-  cargo.Dfz = cargo.Dfz + x.D.f[2];
-  cargo.Dnx = cargo.Dnx + x.D.n[0];
-  cargo.Dny = cargo.Dny + x.D.n[1];
-  cargo.Dnz = cargo.Dnz + x.D.n[2];
+  add_remainder(cargo, x.D);
   if (l.slot >= 0) add<false>(cargo, slots_[static_cast<std::size_t>(l.slot)]);
   if (b.nv > 0 && !eliminate_axis(b, S(tau[l.u]), cargo, x)) return false;
   if (l.parent < 0) return true;
@@ -98,12 +93,7 @@ void AccelerationSweeps<Spatial, S>::axis_outward(std::size_t k, Out udot, Outwa
   const auto& x = joints_[static_cast<std::size_t>(l.record)];
   OutwardCargo<S> w = c;
   constants_and_screw_outward<false>(l, b.edge, x.edge, w);
-  w.vx = w.vx + x.c.v[0];
-  w.vy = w.vy + x.c.v[1];
-  w.vz = w.vz + x.c.v[2];
-  w.ox = w.ox + x.c.w[0];
-  w.oy = w.oy + x.c.w[1];
-  w.oz = w.oz + x.c.w[2];
+  add_motion(w, x.c);
   if (b.nv > 0) {
     const S own = axis_rate(x, w);
     add_axis_motion(b, own, w);

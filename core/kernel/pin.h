@@ -18,6 +18,27 @@ struct OutwardCargo {
   S vx, vy, vz, ox, oy, oz, gx, gy, gz;
 };
 
+/// D += a wrench, in the body's axes.
+template <class S>
+MOMENTA_INLINE void add_remainder(Cargo<S>& a, const Spatial::Force<S>& D) {
+  a.Dfx = a.Dfx + D.f[0];
+  a.Dfy = a.Dfy + D.f[1];
+  a.Dfz = a.Dfz + D.f[2];
+  a.Dnx = a.Dnx + D.n[0];
+  a.Dny = a.Dny + D.n[1];
+  a.Dnz = a.Dnz + D.n[2];
+}
+/// V += a motion, in the body's axes.
+template <class S>
+MOMENTA_INLINE void add_motion(OutwardCargo<S>& a, const Spatial::Motion<S>& V) {
+  a.vx = a.vx + V.v[0];
+  a.vy = a.vy + V.v[1];
+  a.vz = a.vz + V.v[2];
+  a.ox = a.ox + V.w[0];
+  a.oy = a.oy + V.w[1];
+  a.oz = a.oz + V.w[2];
+}
+
 /// What is left of a body once its pin is eliminated: M', and D' and G in its frame.
 template <class S>
 struct Eliminated {

@@ -12,6 +12,7 @@
 // (1975) 71-96; projection: Eich, SIAM J. Numer. Anal. 30 (1993) 1467-1482.
 
 #include <cvode/cvode_proj.h>
+#include <momenta/core/scalar/all_finite.h>
 #include <momenta/dae/solver/integration.h>
 #include <momenta/dae/solver/multistep_run.h>
 #include <momenta/dae/solver/sundials_handles.h>
@@ -91,7 +92,7 @@ class Cvode {
     system_.begin_step(t, y_.data());
     const int flag = CVode(memory_.get(), end, y_, &t, CV_ONE_STEP);
     if (flag == CV_SUCCESS || flag == CV_TSTOP_RETURN) {
-      if (!sundials::all_finite(y_.data(), y_.size())) {
+      if (!all_finite(y_.data(), y_.size())) {
         cause = "a value that is not a finite number came up";
         return false;
       }
@@ -142,7 +143,7 @@ class Cvode {
     double* values = N_VGetArrayPointer(ydot);
     const bool evaluated = cvode.system_.rhs(t, N_VGetArrayPointer(y), values);
     if (!evaluated) return cvode.evaluation_failed_ = true, 1;
-    if (sundials::all_finite(values, cvode.y_.size())) return 0;
+    if (all_finite(values, cvode.y_.size())) return 0;
     cvode.not_finite_ = true;
     return 1;
   }
@@ -155,7 +156,7 @@ class Cvode {
     bool changed = false;
     if (!cvode.system_.after_step(t, values, changed)) return cvode.evaluation_failed_ = true, 1;
     N_VLinearSum(1, change, -1, y, change);
-    if (sundials::all_finite(values, cvode.y_.size())) return 0;
+    if (all_finite(values, cvode.y_.size())) return 0;
     cvode.not_finite_ = true;
     return 1;
   }

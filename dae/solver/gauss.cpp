@@ -9,6 +9,7 @@
 // Looking on counts nothing and changes nothing. Source: Hairer, Lubich, Wanner, Geometric
 // Numerical Integration, II.1, VI.4, VIII.5, VIII.6.
 
+#include <momenta/core/scalar/all_finite.h>
 #include <momenta/dae/solver/fixed_grid.h>
 #include <momenta/dae/solver/gauss_stages.h>
 #include <momenta/dae/solver/implicit_methods.h>
@@ -65,7 +66,7 @@ class Gauss {
     }
     for (std::size_t i = 0; i < n_; ++i)
       if (y_[i] != new_[i]) rounding_[i] = 0;
-    if (!sundials::all_finite(y_.data(), static_cast<long>(n_))) {
+    if (!all_finite(y_.data(), n_)) {
       cause = "a value that is not a finite number came up";
       y_ = start_;
       return false;

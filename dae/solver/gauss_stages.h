@@ -8,9 +8,9 @@
 // ‖∂f/∂y‖; where it does not, simplified Newton iteration with ∂f/∂y by differences, kept from step
 // to step. Source: Hairer, Lubich, Wanner, Geometric Numerical Integration, VIII.6.
 
+#include <momenta/core/scalar/all_finite.h>
 #include <momenta/dae/solver/gauss_nodes.h>
 #include <momenta/dae/solver/integration.h>
-#include <momenta/dae/solver/sundials_handles.h>
 
 #include <Eigen/Core>
 #include <Eigen/LU>
@@ -96,7 +96,7 @@ class Stages {
           return newton ? Sweep::failed : Sweep::no_contraction;
         }
       }
-      if (!sundials::all_finite(k.data(), static_cast<long>(k.size()))) {
+      if (!all_finite(k.data(), k.size())) {
         cause = "a value that is not a finite number came up";
         return newton ? Sweep::failed : Sweep::no_contraction;
       }

@@ -10,13 +10,13 @@
 // Step: options.step, without error control, where given; else PI control as in dp5.
 // Source: tableau_hem5.h.
 
+#include <momenta/core/scalar/all_finite.h>
 #include <momenta/dae/solver/detour.h>
 #include <momenta/dae/solver/fixed_grid.h>
 #include <momenta/dae/solver/half_explicit.h>
 #include <momenta/dae/solver/implicit_methods.h>
 #include <momenta/dae/solver/multistep_run.h>
 #include <momenta/dae/solver/step_control.h>
-#include <momenta/dae/solver/sundials_handles.h>
 #include <momenta/dae/solver/tableau_hem5.h>
 #include <momenta/dae/solver/weighted_norm.h>
 
@@ -173,9 +173,7 @@ class Hem5 {
   }
 
   bool finite(const State& state) {
-    if (sundials::all_finite(state.y.data(), static_cast<long>(n_ + m_)) &&
-        sundials::all_finite(state.ydot.data(), static_cast<long>(n_ + m_)))
-      return true;
+    if (all_finite(state.y.data(), n_ + m_) && all_finite(state.ydot.data(), n_ + m_)) return true;
     cause_ = "a value that is not a finite number came up";
     return false;
   }

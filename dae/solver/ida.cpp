@@ -15,6 +15,7 @@
 // Numerical Solution of Initial-Value Problems in Differential-Algebraic Equations, ch. 5.
 
 #include <klu.h>
+#include <momenta/core/scalar/all_finite.h>
 #include <momenta/dae/solver/detour.h>
 #include <momenta/dae/solver/integration.h>
 #include <momenta/dae/solver/local_newton.h>
@@ -95,8 +96,7 @@ class Ida {
       local_ = std::make_unique<LocalNewton>(*local, system_.size(), context_);
     else
       sparse_ = !system_.pattern().column_start.empty();
-    return sundials::all_finite(y_.data(), y_.size()) &&
-           sundials::all_finite(ydot_.data(), ydot_.size());
+    return all_finite(y_.data(), y_.size()) && all_finite(ydot_.data(), ydot_.size());
   }
 
   void initialise() {
@@ -138,7 +138,7 @@ class Ida {
       flag = IDASolve(memory_.get(), end, &t, y_, ydot_, IDA_ONE_STEP);
     }
     if (flag == IDA_SUCCESS || flag == IDA_TSTOP_RETURN) {
-      if (!sundials::all_finite(y_.data(), y_.size())) {
+      if (!all_finite(y_.data(), y_.size())) {
         cause = "a value that is not a finite number came up";
         return false;
       }
@@ -207,7 +207,7 @@ class Ida {
     const bool evaluated =
         ida.system_.residual(t, N_VGetArrayPointer(y), N_VGetArrayPointer(ydot), values);
     if (!evaluated) return ida.evaluation_failed_ = true, 1;
-    if (sundials::all_finite(values, ida.y_.size())) return 0;
+    if (all_finite(values, ida.y_.size())) return 0;
     ida.not_finite_ = true;
     return 1;
   }
@@ -236,7 +236,7 @@ class Ida {
     const bool evaluated =
         ida.system_.jacobian(t, N_VGetArrayPointer(y), N_VGetArrayPointer(ydot), c, values);
     if (!evaluated) return ida.evaluation_failed_ = true, 1;
-    if (sundials::all_finite(values, entries)) return 0;
+    if (all_finite(values, entries)) return 0;
     ida.not_finite_ = true;
     return 1;
   }

@@ -1,6 +1,6 @@
+#include <momenta/core/scalar/all_finite.h>
 #include <momenta/dae/solver/multistep_run.h>
 #include <momenta/dae/solver/newmark.h>
-#include <momenta/dae/solver/sundials_handles.h>
 
 #include <algorithm>
 #include <cmath>
@@ -55,8 +55,7 @@ bool Newmark::start() {
   by_y_.resize(entry_count(system_.size(), system_.pattern()));
   by_rate_.resize(by_y_.size());
   old_ = now_;
-  return sundials::all_finite(now_.y.data(), static_cast<long>(n_)) &&
-         sundials::all_finite(now_.ydot.data(), static_cast<long>(n_));
+  return all_finite(now_.y.data(), n_) && all_finite(now_.ydot.data(), n_);
 }
 
 /// The pattern of the system, with places on the diagonal of λ where there is a penalty.

@@ -17,6 +17,7 @@
 // index 3. Source: Hairer, Wanner, Solving Ordinary Differential Equations II, IV.8, VII.4, VII.6;
 // Hairer, Lubich, Roche, The Numerical Solution of Differential-Algebraic Systems by RK Methods.
 
+#include <momenta/core/scalar/all_finite.h>
 #include <momenta/dae/solver/detour.h>
 #include <momenta/dae/solver/fixed_grid.h>
 #include <momenta/dae/solver/implicit_methods.h>
@@ -64,9 +65,8 @@ class Radau5 {
 
   bool start(double t0) {
     start_ = t1_ = t0;
-    return system_.start(t0, y_.data(), ydot_.data()) &&
-           sundials::all_finite(y_.data(), static_cast<long>(n_)) &&
-           sundials::all_finite(ydot_.data(), static_cast<long>(n_));
+    return system_.start(t0, y_.data(), ydot_.data()) && all_finite(y_.data(), n_) &&
+           all_finite(ydot_.data(), n_);
   }
 
   void initialise() {

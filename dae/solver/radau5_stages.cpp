@@ -1,3 +1,4 @@
+#include <momenta/core/scalar/all_finite.h>
 #include <momenta/dae/solver/radau5_stages.h>
 
 namespace momenta::radau5 {
@@ -20,7 +21,7 @@ Outcome Stages::solve(const Factors& f, double t, double h, const double* y,
       ++evaluations;
       if (!system_.residual(t + c[at] * h, argument_.data(), rate_.data(), r_[at].data()))
         return Outcome::evaluation_failed;
-      if (!sundials::all_finite(r_[at].data(), static_cast<long>(n_))) return Outcome::not_finite;
+      if (!all_finite(r_[at].data(), n_)) return Outcome::not_finite;
     }
     for (std::size_t k = 0; k < n_; ++k) {
       const Eigen::Vector3d r = t_inverse_ * Eigen::Vector3d(r_[0][k], r_[1][k], r_[2][k]);

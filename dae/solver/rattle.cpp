@@ -14,11 +14,11 @@
 // Source: Andersen, J. Comput. Phys. 52 (1983) 24-34; Jay, SIAM J. Numer. Anal. 33 (1996) 368-387;
 // Hairer, Lubich, Wanner, Geometric Numerical Integration, VII.1.4.
 
+#include <momenta/core/scalar/all_finite.h>
 #include <momenta/dae/solver/constrained_hamiltonian.h>
 #include <momenta/dae/solver/fixed_grid.h>
 #include <momenta/dae/solver/implicit_methods.h>
 #include <momenta/dae/solver/multistep_run.h>
-#include <momenta/dae/solver/sundials_handles.h>
 
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
@@ -87,7 +87,7 @@ class Rattle {
     if (!here_.at(parts_, t0_, now_.q)) return false;
     on_velocities(here_, now_);
     store(now_, y_.data());
-    return sundials::all_finite(y_.data(), static_cast<long>(y_.size()));
+    return all_finite(y_.data(), y_.size());
   }
 
   bool step(double& t, double end, std::string& cause) {

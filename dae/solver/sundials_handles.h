@@ -77,10 +77,4 @@ using Integrator = std::unique_ptr<void, ReleaseIntegrator>;
 /// An error handler that keeps silent: codes carry what is needed.
 inline void silent(int, const char*, const char*, char*, void*) {}
 
-inline bool all_finite(const double* x, long size) {
-  double probe = 0;
-  for (long i = 0; i < size; ++i) probe += 0 * x[i];
-  return probe == 0;
-}
-
 }  // namespace momenta::sundials

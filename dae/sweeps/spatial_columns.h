@@ -4,7 +4,6 @@
 // as many lanes as a register, or one lane of a pack.
 
 #include <momenta/core/kernel/link.h>
-#include <momenta/core/kernel/pin.h>
 #include <momenta/core/kernel/spatial.h>
 #include <momenta/dae/sweeps/front.h>
 
@@ -46,17 +45,6 @@ MOMENTA_INLINE void columns_to_parent(const Mat3<S>& R, const Vec3<S>& r, typena
     const int j = (i + 1) % 3, k = (i + 2) % 3;
     C6[3 + i] = C6[3 + i] + (C6[k] * Here::all(r[j]) - C6[j] * Here::all(r[k]));
   }
-}
-
-/// D += a wrench, in the body's axes.
-template <class S>
-MOMENTA_INLINE void add_remainder(Cargo<S>& a, const Spatial::Force<S>& D) {
-  a.Dfx = a.Dfx + D.f[0];
-  a.Dfy = a.Dfy + D.f[1];
-  a.Dfz = a.Dfz + D.f[2];
-  a.Dnx = a.Dnx + D.n[0];
-  a.Dny = a.Dny + D.n[1];
-  a.Dnz = a.Dnz + D.n[2];
 }
 
 /// What closing a row adds: c f cᵀ to M*, c f d to D.

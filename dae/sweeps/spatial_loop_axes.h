@@ -90,15 +90,7 @@ void SpatialLoopSweeps<S, Rows, Momentum, Tree>::axis_outward(std::size_t k, con
   Vec3<S>&v = moving.V.v, &o = moving.V.w, &g = moving.g;
   OutwardCargo<S> w{v[0], v[1], v[2], o[0], o[1], o[2], g[0], g[1], g[2]};
   constants_and_screw_outward<Momentum>(l, b.edge, x.edge, w);
-  if (!Momentum || b.nv == 0) {
-    const Motion& given = y.given;
-    w.vx = w.vx + given.v[0];
-    w.vy = w.vy + given.v[1];
-    w.vz = w.vz + given.v[2];
-    w.ox = w.ox + given.w[0];
-    w.oy = w.oy + given.w[1];
-    w.oz = w.oz + given.w[2];
-  }
+  if (!Momentum || b.nv == 0) add_motion(w, y.given);
   if (b.nv > 0) {
     const S own = axis_rate(x, w) - along(y.g[0]);
     add_axis_motion(b, own, w);

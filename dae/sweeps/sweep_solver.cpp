@@ -1,6 +1,7 @@
 // The forms' right-hand sides from the sweeps that carry loops. Springs between points of bodies
 // and wrenches take a sweep of their own, where a scene has some.
 
+#include <momenta/core/scalar/all_finite.h>
 #include <momenta/dae/kkt/assembled_solver.h>
 #include <momenta/dae/sweeps/levels/loop_sweeps.h>
 #include <momenta/dae/sweeps/sweep_solver.h>
@@ -10,16 +11,6 @@
 
 namespace momenta {
 namespace {
-
-/// In four sums: one would wait for itself at every addition.
-bool finite(const double* x, std::size_t n) {
-  double sums[4] = {};
-  std::size_t i = 0;
-  for (; i + 4 <= n; i += 4)
-    for (std::size_t j = 0; j < 4; ++j) sums[j] += x[i + j] * 0.0;
-  for (; i < n; ++i) sums[0] += x[i] * 0.0;
-  return sums[0] + sums[1] + sums[2] + sums[3] == 0;
-}
 
 class SweepSolver final : public LoopSolver {
  public:
@@ -57,8 +48,8 @@ class SweepSolver final : public LoopSolver {
       e_.body_forces(t, q, u, tau_.data());
       for (std::size_t i = 0; i < tau_.size(); ++i) pdot[i] += tau_[i];
     }
-    return finite(u, zero_.size()) && finite(sigma, nu_.size()) &&
-           (!pdot || finite(pdot, zero_.size()));
+    return all_finite(u, zero_.size()) && all_finite(sigma, nu_.size()) &&
+           (!pdot || all_finite(pdot, zero_.size()));
   }
 
   bool acceleration(double t, const double* q, const double* u, const double* centre, double alpha,
@@ -73,7 +64,7 @@ class SweepSolver final : public LoopSolver {
     if (sweeps_->weak_leg())
       return by_matrix().acceleration(t, q, u, centre, alpha, beta, udot, lambda);
     if (!ok) return false;
-    return finite(udot, zero_.size()) && finite(lambda, nu_.size());
+    return all_finite(udot, zero_.size()) && all_finite(lambda, nu_.size());
   }
 
   bool free_velocity(double t, const double* q, const double* p, double* u) override {
@@ -84,7 +75,7 @@ class SweepSolver final : public LoopSolver {
     const bool ok = noted(sweeps_->momentum(t, q, p, right, u, nu_.data(), nullptr));
     if (sweeps_->weak_leg()) return by_matrix().free_velocity(t, q, p, u);
     if (!ok) return false;
-    return finite(u, zero_.size());
+    return all_finite(u, zero_.size());
   }
 
   bool position_correction(double t, const double* q, double* delta) override {
@@ -96,7 +87,7 @@ class SweepSolver final : public LoopSolver {
     const bool ok = noted(sweeps_->momentum(t, q, zero_.data(), right, delta, nu_.data(), nullptr));
     if (sweeps_->weak_leg()) return by_matrix().position_correction(t, q, delta);
     if (!ok) return false;
-    return finite(delta, zero_.size());
+    return all_finite(delta, zero_.size());
   }
 
   const std::vector<int>& faded_rows() override {
