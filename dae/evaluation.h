@@ -59,10 +59,10 @@ class Evaluation {
   virtual int stuck() const = 0;
 
   /// Generalised forces (nv) of springs, dampers and wrenches between points of bodies at (t, q,
-  /// u), and all but the weights: those of the joints besides. Neither needs place() or move();
-  /// both spoil what those left.
+  /// u), and all but the weights: those of the joints besides or, with `at_points` false, alone.
+  /// Neither needs place() or move(); both spoil what those left.
   virtual void body_forces(double t, const S* q, const S* u, S* tau) = 0;
-  virtual void applied_forces(double t, const S* q, const S* u, S* tau) = 0;
+  virtual void applied_forces(double t, const S* q, const S* u, S* tau, bool at_points = true) = 0;
 
   /// T and V [J]; after place() and move().
   virtual S kinetic() = 0;

@@ -148,8 +148,8 @@ class Mechanism::SweepEvaluation final : public Evaluation<S> {
     body_force_rates(w_, Moment<S>::at(t), q, u);
     std::copy(w_.generalised.begin(), w_.generalised.end(), tau);
   }
-  void applied_forces(double t, const S* q, const S* u, S* tau) override {
-    momenta::applied_forces(w_, Moment<S>::at(t), q, u);
+  void applied_forces(double t, const S* q, const S* u, S* tau, bool at_points) override {
+    momenta::applied_forces(w_, Moment<S>::at(t), q, u, at_points);
     std::copy(w_.generalised.begin(), w_.generalised.end(), tau);
   }
 

@@ -30,11 +30,12 @@ void body_force_rates(Workspace<Space, S>& w, const S& t, const S* q, const S* u
 }
 
 /// w.generalised (nv) = every generalised force but the weights': the joints' own springs, dampers
-/// and torques, and what wrenches between bodies do to them.
+/// and torques, and, unless a sweep takes them as wrenches, those at points of bodies.
 template <class Space, class S>
-void applied_forces(Workspace<Space, S>& w, const S& t, const S* q, const S* u) {
+void applied_forces(Workspace<Space, S>& w, const S& t, const S* q, const S* u,
+                    bool at_points = true) {
   const auto& model = *w.model;
-  if (model.has_body_forces())
+  if (at_points && model.has_body_forces())
     body_force_rates(w, t, q, u);
   else
     for (auto& value : w.generalised) value = S(0.0);

@@ -69,6 +69,14 @@ PlanarTree build_links(const Model<Planar>& model) {
       parent.wy -= b.subtree_mass * (l.y * gy + l.x * gx);
     }
   }
+  const auto mark = [&](int k) {
+    if (k >= 0) tree.links[static_cast<std::size_t>(k)].forced = true;
+  };
+  for (const auto& spring : model.springs) {
+    mark(spring.parent);
+    mark(spring.child);
+  }
+  for (const auto& wrench : model.wrenches) mark(wrench.body);
   mark_openers(tree.links);
   return tree;
 }

@@ -30,11 +30,13 @@ void add_body_forces(Workspace<Space, S>& w) {
     const SpringLine<Space, S> line(w, spring);
     if (value_of(line.length) == 0)
       continue;  // direction undefined; a spring of zero length pulls nowhere
-    const S rate = dot(line.D, point_velocity(w, spring.child, line.child) -
-                                   point_velocity(w, spring.parent, line.parent)) /
-                   line.length;
-    const S tension = spring.stiffness * (line.length - spring.rest) + spring.damping * rate;
-    const auto f = (tension / line.length) * line.D;
+    const S inverse = S(1.0) / line.length;
+    S tension = spring.stiffness * (line.length - spring.rest);
+    if (spring.damping != 0)
+      tension += spring.damping * inverse *
+                 dot(line.D, point_velocity(w, spring.child, line.child) -
+                                 point_velocity(w, spring.parent, line.parent));
+    const auto f = (tension * inverse) * line.D;
     if (spring.child >= 0)
       add_force(w, spring.child, line.child, -f, w.body[static_cast<std::size_t>(spring.child)].T);
     if (spring.parent >= 0)

@@ -23,6 +23,7 @@ struct PlanarLink {
   int record = -1;
   bool pin = true;  ///< undriven revolute joint
   bool first = false, tip = false, has_force = false;
+  bool forced = false;  ///< springs or wrenches at points of its own
   bool opens = false;  ///< the last child of its parent, which the inward sweep meets first
 };
 

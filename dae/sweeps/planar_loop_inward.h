@@ -136,6 +136,12 @@ bool LoopSweeps<Planar, S, Rows, Momentum>::inward(const In& r, const RightSide<
         a.Dy = a.Dy - l.m * g[1];
         a.Dn = a.Dn - (kx * g[1] - ky * g[0]);
       }
+      if (l.forced && right.body_forces) {
+        const Planar::Force<S>& T = forces_->on(k);
+        a.Dx = a.Dx - T.f[0];
+        a.Dy = a.Dy - T.f[1];
+        a.Dn = a.Dn - T.n;
+      }
     }
     if (l.slot >= 0) {
       const Open& slot = slots_[static_cast<std::size_t>(l.slot)];

@@ -141,7 +141,7 @@ void LoopSweeps<Planar, S, Rows, Momentum>::general_outward(std::size_t k, bool 
   m = {V.v[0], V.v[1], V.w};
 }
 
-/// ṗ += Eᵀ T*: weights, N and leak.
+/// ṗ += Eᵀ T*: weights, springs and wrenches, N and leak.
 template <class S, int Rows, bool Momentum>
 template <class In, class Out>
 void LoopSweeps<Planar, S, Rows, Momentum>::rates_inward(const In& q, const RightSide<S>& right,
@@ -151,6 +151,7 @@ void LoopSweeps<Planar, S, Rows, Momentum>::rates_inward(const In& q, const Righ
   const Vec2<double>& g = tree_->model->gravity;
   const bool falls = tree_->model->has_gravity;
   const S zero(0.0);
+  if (right.body_forces) gather_forces();
   Wrench T{};
   for (std::size_t k = pins_.size(); k-- > 0;) {
     const PlanarLink& l = links[k];
@@ -160,6 +161,10 @@ void LoopSweeps<Planar, S, Rows, Momentum>::rates_inward(const In& q, const Righ
       T.fx = T.fx + l.m * g[0];
       T.fy = T.fy + l.m * g[1];
       T.fn = T.fn + (c * (l.cx * g[1] - l.cy * g[0]) - s * (l.cy * g[1] + l.cx * g[0]));
+    }
+    if (l.forced && right.body_forces) {
+      const Planar::Force<S>& own = forces_->on(k);
+      add(T, {own.f[0], own.f[1], own.n});
     }
     if (l.slot >= 0) add(T, wrench_slots_[static_cast<std::size_t>(l.slot)]);
     const LoopPlan::Range ends = plan_->ends_of[k];

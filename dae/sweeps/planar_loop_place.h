@@ -160,6 +160,15 @@ void LoopSweeps<Planar, S, Rows, Momentum>::place_rows(const Loop& l, std::size_
   }
 }
 
+/// Springs and wrenches at points of bodies; needs all velocities.
+template <class S, int Rows, bool Momentum>
+void LoopSweeps<Planar, S, Rows, Momentum>::gather_forces() {
+  forces_->gather([&](std::size_t k) -> typename PlanarBodyForces<S>::Known {
+    const LoopedPin<S, Rows>& w = pins_[k];
+    return {angles_.cosine(k), angles_.sine(k), w.rx, w.ry, w.vx, w.vy, w.omega};
+  });
+}
+
 /// Prescribed motion of x_B in ground axes.
 template <class S, int Rows, bool Momentum>
 void LoopSweeps<Planar, S, Rows, Momentum>::place_moving(const Loop& l) {

@@ -25,12 +25,15 @@
 // has r σ in it. A pin is eliminated by its absolute rate, of which u is the part beyond the
 // parent's: there r joins the couple, and leaves it again with the opposite sign.
 
+#include <momenta/core/kernel/planar_body_forces.h>
 #include <momenta/core/kernel/planar_places.h>
 #include <momenta/dae/loop/loops_in_time.h>
 #include <momenta/dae/sweeps/closed_pair.h>
 #include <momenta/dae/sweeps/couplings.h>
 #include <momenta/dae/sweeps/loop_plan.h>
 #include <momenta/dae/sweeps/right_side.h>
+
+#include <optional>
 
 namespace momenta {
 
@@ -65,9 +68,10 @@ class LoopSweeps<Planar, S, Rows, Momentum> : PlanarPlaces<S> {
  public:
   LoopSweeps(const PlanarTree& tree, const LoopModel<Planar>& loops, const LoopPlan& plan);
 
-  /// Momentum form: u (nv) and σ (m) of (7) from p; with `rate` ṗ (nv) of (8), forces between
-  /// points of bodies left out. Acceleration form: u̇, λ from u and joint forces `tau` (nv). False
-  /// when a joint's inertia is not positive: stuck(). O(bodies + m).
+  /// Momentum form: u (nv) and σ (m) of (7) from p; with `rate` ṗ (nv) of (8). Acceleration form:
+  /// u̇, λ from u and joint forces `tau` (nv). Springs and wrenches at points of bodies as
+  /// right.body_forces says. False when a joint's inertia is not positive: stuck(). O(bodies + m).
+  /// @pre Without right.body_forces for states side by side.
   template <class In, class Out>
   bool operator()(const S& t, const In& q, const In& x, const In& tau, const RightSide<S>& right,
                   Out u, Out sigma, Out rate);
@@ -134,6 +138,7 @@ class LoopSweeps<Planar, S, Rows, Momentum> : PlanarPlaces<S> {
     return Vec2<S>{{c * v[0] - e * v[1], e * v[0] + c * v[1]}};
   }
   Vec2<S> in_ground(int body, const Vec2<double>& v) const;
+  __attribute__((noinline)) void gather_forces();
   /// O_K − O_L
   MOMENTA_INLINE Vec2<S> way_from_parent(const PlanarLink& l) const {
     return l.pin ? Base::step(l) : joints_[static_cast<std::size_t>(l.record)].edge.r;
@@ -238,6 +243,7 @@ class LoopSweeps<Planar, S, Rows, Momentum> : PlanarPlaces<S> {
   std::vector<Row> rows_;          ///< by row of Φ, in closing order within a loop
   std::vector<Pair> pairs_;        ///< by loop
   const S* compliance_ = nullptr;  ///< of the call under way: right.compliance
+  std::optional<PlanarBodyForces<S>> forces_;
 };
 
 template <class S, int Rows, bool Momentum>
@@ -294,6 +300,7 @@ LoopSweeps<Planar, S, Rows, Momentum>::LoopSweeps(const PlanarTree& tree,
     closings_.push_back({loop, loops.loops[i].row, plan.lane[i], plan.pair[i] != 0});
   }
   if (!others_.empty()) origins_.resize(tree.links.size());
+  if (tree.model->has_body_forces()) forces_.emplace(tree);
 }
 
 template <class S, int Rows, bool Momentum>
@@ -309,6 +316,7 @@ bool LoopSweeps<Planar, S, Rows, Momentum>::operator()(const S& t, const In& q, 
   loops_ = &in_time_.at(value_of(t));
   if (!others_.empty()) place_other_loops();
   if (plan_->couples()) place_couplers(q, x, right);
+  if (!Momentum && right.body_forces) gather_forces();
   if (!inward(Momentum ? x : tau, right)) return false;
   outward(right, u, sigma, rate);
   if (Momentum && right.rates) rates_inward(q, right, u, sigma, rate);

@@ -13,13 +13,15 @@ struct RightSide {
   double positions = 0;       ///< second row Φ_q u = −Φ_t − this · Φ [1/s]
   bool rates = false;         ///< ṗ too
   double leak = 0;            ///< κ [1/s]
+  bool body_forces = false;   ///< springs and wrenches at points of bodies too: sweeps in a plane
   double alpha = 0, beta = 0;     ///< Φ̈ + 2α Φ̇ + β² Φ = 0 [1/s]
   const S* compliance = nullptr;  ///< second row … + (σ − centre) · this (m); null: zero
 
   /// The same for another scalar, with these rows.
   template <class T>
   RightSide<T> of_rows(const T* its_centre, const T* its_compliance) const {
-    return {its_centre, fade, drives, positions, rates, leak, alpha, beta, its_compliance};
+    return {its_centre, fade,        drives, positions, rates,
+            leak,       body_forces, alpha,  beta,      its_compliance};
   }
 };
 

@@ -1,5 +1,6 @@
 // The forms' right-hand sides from the sweeps that carry loops. Springs between points of bodies
-// and wrenches take a sweep of their own, where a scene has some.
+// and wrenches go with them in a plane; in space they take a sweep of their own, where a scene has
+// some.
 
 #include <momenta/core/scalar/all_finite.h>
 #include <momenta/dae/kkt/assembled_solver.h>
@@ -18,8 +19,9 @@ class SweepSolver final : public LoopSolver {
       : mechanism_(mechanism),
         e_(e),
         sweeps_(mechanism.looped_sweeps()),
-        has_body_forces_(mechanism.has_body_forces()),
-        has_forces_(has_body_forces_ || mechanism.has_joint_forces()),
+        carried_(mechanism.has_body_forces() && mechanism.plan().planar),
+        apart_(mechanism.has_body_forces() && !carried_),
+        has_tau_(apart_ || mechanism.has_joint_forces()),
         zero_(static_cast<std::size_t>(mechanism.nv())),
         tau_(zero_.size()),
         nu_(static_cast<std::size_t>(mechanism.m())) {
@@ -39,12 +41,13 @@ class SweepSolver final : public LoopSolver {
     right.positions = beta_;
     right.leak = leak;
     right.rates = pdot != nullptr;
+    right.body_forces = carried_ && pdot;
     of_momentum_ = true;
     const bool ok = noted(sweeps_->momentum(t, q, p, right, u, sigma, pdot));
     if (sweeps_->weak_leg())
       return by_matrix().momentum(t, q, p, centre, fade, leak, u, sigma, pdot);
     if (!ok) return false;
-    if (pdot && has_body_forces_) {
+    if (pdot && apart_) {
       e_.body_forces(t, q, u, tau_.data());
       for (std::size_t i = 0; i < tau_.size(); ++i) pdot[i] += tau_[i];
     }
@@ -57,10 +60,11 @@ class SweepSolver final : public LoopSolver {
     RightSide<double> right = of_rows(centre, fade_evaluation);
     right.alpha = alpha;
     right.beta = beta;
-    if (has_forces_) e_.applied_forces(t, q, u, tau_.data());
+    right.body_forces = carried_;
+    if (has_tau_) e_.applied_forces(t, q, u, tau_.data(), apart_);
     of_momentum_ = false;
-    const bool ok = noted(sweeps_->acceleration(t, q, u, has_forces_ ? tau_.data() : zero_.data(),
-                                                right, udot, lambda));
+    const bool ok = noted(
+        sweeps_->acceleration(t, q, u, has_tau_ ? tau_.data() : zero_.data(), right, udot, lambda));
     if (sweeps_->weak_leg())
       return by_matrix().acceleration(t, q, u, centre, alpha, beta, udot, lambda);
     if (!ok) return false;
@@ -135,7 +139,8 @@ class SweepSolver final : public LoopSolver {
   Evaluation<double>& e_;
   std::unique_ptr<LoopSolver> matrix_;
   std::unique_ptr<LoopedSweeps> sweeps_;
-  bool has_body_forces_, has_forces_;
+  bool carried_, apart_;  ///< forces at points of bodies: by these sweeps, or by one of their own
+  bool has_tau_;
   std::vector<double> zero_, tau_, nu_, compliance_;
   std::vector<int> rows_, place_of_body_;
   bool of_momentum_ = true;

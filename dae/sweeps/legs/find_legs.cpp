@@ -104,8 +104,8 @@ LegGroups find_legs(const LinkTree& tree, const LoopModel<Spatial>& loops, const
     for (int first = 0; first < total; first += lanes) {
       const int count = std::min(lanes, total - first);
       if (count < std::min(least, lanes)) break;
-      const auto leg = [&](int lane) {
-        return *alike[static_cast<std::size_t>(first + std::min(lane, count - 1))];
+      const auto leg = [&, &legs_of_shape = alike](int lane) {
+        return *legs_of_shape[static_cast<std::size_t>(first + std::min(lane, count - 1))];
       };
       LegGroup g;
       g.onto = shape.front();
