@@ -41,7 +41,7 @@ MOMENTA_INLINE void eliminate_bias(const Cargo<S>& cargo, const S& tau, const S&
 template <class S, class C>
 MOMENTA_INLINE void turn_pin(Eliminated<S>& r, const S& c, const S& s, const C& d,
                              const PinAcceleration<S>& w) {
-  turn_and_shift_z(r.M, c, s, d);
+  turn_and_shift_z(r.M, turning_of(r.M), c, s, d);
   S x = c * r.fx - s * r.fy;
   r.fy = s * r.fx + c * r.fy;
   r.fx = x;
@@ -63,13 +63,14 @@ std::size_t AccelerationSweeps<Spatial, S>::chain_inward(std::size_t end, const 
                                                          Cargo<S>& from) {
   Cargo<S> cargo = from;
   const Link* links = tree_->links.data();
-  std::size_t k = end;
-  do {
-    --k;
+  std::size_t k = end - 1;
+  add_body(cargo.M, links[k]);
+  add_bias(cargo, pins_[k]);
+  change_signs<turn>(cargo);
+  for (;;) {
     const Link& l = links[k];
     PinAcceleration<S>& w = pins_[k];
-    add_body(cargo.M, l);
-    add_bias(cargo, w);
+    change_signs<turn>(cargo);
     if (!all_positive(cargo.M.Izz)) {
       stuck_ = static_cast<int>(k);
       return k;
@@ -81,10 +82,17 @@ std::size_t AccelerationSweeps<Spatial, S>::chain_inward(std::size_t end, const 
     w.h = h;
     eliminate_bias(cargo, S(tau[l.u]), inverse, w, r);
     turn_pin(r, angles_.cosine(k), angles_.sine(k), l.d, w);
+    if (links[k - 1].path != static_cast<Path>(turn)) {
+      const Eliminated<S> last = r;  // whose address is taken
+      carry_last<turn, false>(last, l, from);
+      return k;
+    }
     carry<turn, false>(r, l, cargo);
-  } while (links[k - 1].path == static_cast<Path>(turn));
-  from = cargo;
-  return k;
+    --k;
+    add_body(cargo.M, links[k]);
+    add_bias(cargo, pins_[k]);
+    change_signs<turn>(cargo);
+  }
 }
 
 template <class S>

@@ -6,6 +6,15 @@
 
 namespace momenta {
 
+/// D' across the pin, for the outward sweep.
+template <class S>
+MOMENTA_INLINE void keep(const Eliminated<S>& r, PinRecord<S>& w) {
+  w.Dfx = r.fx;
+  w.Dfy = r.fy;
+  w.Dnx = r.nx;
+  w.Dny = r.ny;
+}
+
 /// (46)-(48) of a pin whose M*, D, G are complete.
 template <bool Gravity, class S>
 MOMENTA_INLINE void eliminate_pin(const Cargo<S>& cargo, const S& p, const S& inverse,
@@ -16,12 +25,14 @@ MOMENTA_INLINE void eliminate_pin(const Cargo<S>& cargo, const S& p, const S& in
   PinColumn<S> h;
   eliminate_pin(cargo.M, inverse, h, r.M);
   w.h = h;
+  w.M = turning_of(r.M);
   r.fx = cargo.Dfx + h.fx * e;
   r.fy = cargo.Dfy + h.fy * e;
   r.fz = cargo.Dfz + h.fz * e;
   r.nx = cargo.Dnx + h.nx * e;
   r.ny = cargo.Dny + h.ny * e;
   r.nz = p;
+  keep(r, w);
   if constexpr (Gravity) {
     w.Gx = r.Gx = cargo.Gx;
     w.Gy = r.Gy = cargo.Gy;
@@ -34,6 +45,7 @@ template <bool Gravity, class S, class C>
 MOMENTA_INLINE void leave_tip(const PinColumn<S>& h, const Reduced<S>& M, const S& inverse,
                               const C (&moment)[3], const S& p, PinRecord<S>& w, Eliminated<S>& r) {
   w.h = h;
+  w.M = turning_of(M);
   r.M = M;
   w.inverse = inverse;
   w.y0 = p * inverse;
@@ -43,6 +55,7 @@ MOMENTA_INLINE void leave_tip(const PinColumn<S>& h, const Reduced<S>& M, const 
   r.nx = p * h.nx;
   r.ny = p * h.ny;
   r.nz = p;
+  keep(r, w);
   if constexpr (Gravity) {
     w.Gx = r.Gx = S(moment[0]);
     w.Gy = r.Gy = S(moment[1]);
@@ -50,12 +63,11 @@ MOMENTA_INLINE void leave_tip(const PinColumn<S>& h, const Reduced<S>& M, const 
   }
 }
 
-/// The pin's own screw; what the outward sweep needs is stored on the way.
+/// The pin's own screw.
 template <bool Gravity, class S, class C>
-MOMENTA_INLINE void turn_pin(Eliminated<S>& r, const S& c, const S& s, const C& d,
-                             PinRecord<S>& w) {
-  turn_and_shift_z(r.M, c, s, d);
-  w.M = r.M;
+MOMENTA_INLINE void turn_pin(Eliminated<S>& r, const PinTurning<S>& m, const S& c, const S& s,
+                             const C& d) {
+  turn_and_shift_z(r.M, m, c, s, d);
   S x = c * r.fx - s * r.fy;
   r.fy = s * r.fx + c * r.fy;
   r.fx = x;
@@ -63,10 +75,6 @@ MOMENTA_INLINE void turn_pin(Eliminated<S>& r, const S& c, const S& s, const C& 
   r.ny = s * r.nx + c * r.ny;
   r.nx = x - d * r.fy;
   r.ny = r.ny + d * r.fx;
-  w.Dfx = r.fx;
-  w.Dfy = r.fy;
-  w.Dnx = r.nx;
-  w.Dny = r.ny;
   if constexpr (Gravity) {
     x = c * r.Gx - s * r.Gy;
     r.Gy = s * r.Gx + c * r.Gy;
@@ -75,29 +83,36 @@ MOMENTA_INLINE void turn_pin(Eliminated<S>& r, const S& c, const S& s, const C& 
 }
 
 /// Pins inside a chain from `end` − 1 down, as far as their turns are of one kind; returns the end
-/// of what is left. All that passes from body to body stays in registers.
+/// of what is left. All that passes from body to body stays in registers. The next body joins what
+/// arrives at it in the same breath: products and signs of the turn before go into its sums.
 template <class S>
 template <Turn turn, bool Gravity, class In>
 std::size_t MomentumSweeps<Spatial, S>::chain_inward(std::size_t end, const In& p, Cargo<S>& from) {
   Cargo<S> cargo = from;
   const Link* links = tree_->links.data();
-  std::size_t k = end;
-  do {
-    --k;
+  std::size_t k = end - 1;
+  add_body<Gravity>(cargo, links[k]);
+  change_signs<turn>(cargo);
+  for (;;) {
     const Link& l = links[k];
     PinRecord<S>& w = pins_[k];
-    add_body<Gravity>(cargo, l);
+    change_signs<turn>(cargo);
     if (!all_positive(cargo.M.Izz)) {
       stuck_ = static_cast<int>(k);
       return k;
     }
     Eliminated<S> r;
     eliminate_pin<Gravity>(cargo, p[l.u], S(1.0) / cargo.M.Izz, w, r);
-    turn_pin<Gravity>(r, angles_.cosine(k), angles_.sine(k), l.d, w);
+    turn_pin<Gravity>(r, w.M, angles_.cosine(k), angles_.sine(k), l.d);
+    if (links[k - 1].path != static_cast<Path>(turn)) {
+      const Eliminated<S> last = r;  // whose address is taken
+      carry_last<turn, Gravity>(last, l, from);
+      return k;
+    }
     carry<turn, Gravity>(r, l, cargo);
-  } while (links[k - 1].path == static_cast<Path>(turn));
-  from = cargo;
-  return k;
+    add_body<Gravity>(cargo, links[--k]);
+    change_signs<turn>(cargo);
+  }
 }
 
 /// Other pins from `end` − 1 down, one after another: at tips, at branches, on the ground, beside a
@@ -141,7 +156,7 @@ std::size_t MomentumSweeps<Spatial, S>::pins_inward(std::size_t end, const In& p
       }
       eliminate_pin<Gravity>(cargo, pk, inverse, w, r);
     }
-    turn_pin<Gravity>(r, angles_.cosine(k), angles_.sine(k), l.d, w);
+    turn_pin<Gravity>(r, w.M, angles_.cosine(k), angles_.sine(k), l.d);
     carry_any<Gravity>(l, body(k).edge, r, cargo);
     if (!l.first) leave<Gravity>(l, slot_of_parent(l), cargo);
   } while (k > 0 && links[k - 1].path == Path::any && links[k - 1].kind == LinkKind::pin);

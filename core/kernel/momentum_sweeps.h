@@ -11,10 +11,8 @@
 //             P* = M' W + D'                           (42)
 //             ṗ = Eᵀ (T* − W × P*) + joint force       (35), T* = weight of the subtree at G
 //
-// Ω × P* about the pin's axis does not change when frames are turned about and shifted along it, so
-// it is formed in the frame in which M' lies stored, after the pin's own screw: four of the six
-// rows of P* suffice, and W for Ω, because E u adds nothing about its own axis. Weight needs no
-// accumulated T*: masses of subtrees are constants.
+// P* itself is never formed: about the pin's axis Ω × P* takes ten numbers of M' (turning_rate).
+// Weight needs no accumulated T*: masses of subtrees are constants.
 //
 // What a body passes to its parent stays in registers when the parent is the body before it; other
 // children leave it in the parent's slot. Wrenches between points of bodies need a third sweep.
@@ -26,14 +24,14 @@
 
 namespace momenta {
 
-/// What the outward sweep needs of a pin.
+/// What the outward sweep needs of a pin, body axes.
 template <class S>
 struct PinRecord {
-  Reduced<S> M;  ///< M' after the pin's screw
+  PinTurning<S> M;  ///< of M'
   PinColumn<S> h;
-  S Dfx, Dfy, Dnx, Dny;  ///< D' there
+  S Dfx, Dfy, Dnx, Dny;  ///< D'
   S inverse, y0;         ///< M_j⁻¹, M_j⁻¹ e
-  S Gx, Gy;              ///< across the pin, body axes
+  S Gx, Gy;              ///< across the pin
 };
 
 /// What it needs of a ball joint. R: child components to the parent's.
@@ -136,21 +134,15 @@ class MomentumSweeps<Spatial, S> {
 };
 
 /// A pin's outward step: Ω and g from the parent's frame to its own but for its own turning, which
-/// is left in `wz`; (45), (42), and ṗ without the joint's force, (35).
+/// is left in `wz`; (45), and ṗ without the joint's force, (35).
 template <bool Gravity, class Link, class Edge, class S>
 MOMENTA_INLINE void move_pin(const Link& l, const Edge& edge, const PinRecord<S>& w, const S& c,
                              const S& s, S& vx, S& vy, S& vz, S& ox, S& oy, S& oz, S& gx, S& gy,
                              S& gz, S& wz, S& rate) {
   constants_outward(l, edge, vx, vy, vz, ox, oy, oz);
   if constexpr (Gravity) constants_outward(l, edge, gx, gy, gz);
-  // P* = M' W + D' and its moment Eᵀ(W × P*), in the frame before the pin's screw.
-  const Reduced<S>& m = w.M;
-  const S Pfx = m.Axx * vx + m.Axy * vy + m.Axz * vz + m.Hxx * ox + m.Hxy * oy + w.Dfx;
-  const S Pfy = m.Axy * vx + m.Ayy * vy + m.Ayz * vz + m.Hyx * ox + m.Hyy * oy + w.Dfy;
-  const S Pnx = m.Hxx * vx + m.Hyx * vy + m.Hzx * vz + m.Ixx * ox + m.Ixy * oy + w.Dnx;
-  const S Pny = m.Hxy * vx + m.Hyy * vy + m.Hzy * vz + m.Ixy * ox + m.Iyy * oy + w.Dny;
-  rate = vy * Pfx - vx * Pfy + oy * Pnx - ox * Pny;
   screw_outward(c, s, l.d, vx, vy, ox, oy);
+  rate = turning_rate(w.M, w.Dfx, w.Dfy, w.Dnx, w.Dny, vx, vy, vz, ox, oy);
   if constexpr (Gravity) {
     turn_outward(c, s, gx, gy);
     rate = rate + w.Gx * gy - w.Gy * gx;

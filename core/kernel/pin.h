@@ -154,6 +154,25 @@ MOMENTA_INLINE void carry(const Eliminated<S>& r, const Link& l, Cargo<S>& cargo
   }
 }
 
+/// A right turn changes signs. A chain carries these numbers with those they had before it, so that
+/// the next body's sums subtract them: no sign is changed by itself.
+template <Turn turn, class S>
+MOMENTA_INLINE void change_signs(Cargo<S>& cargo) {
+  if constexpr (turn == Turn::right) {
+    cargo.M.Axy = -cargo.M.Axy;
+    cargo.M.Ayz = -cargo.M.Ayz;
+    cargo.M.Hyx = -cargo.M.Hyx;
+    cargo.Dfy = -cargo.Dfy;
+    cargo.Dny = -cargo.Dny;
+  }
+}
+
+/// To the parent where a chain ends.
+template <Turn turn, bool Gravity, class Link, class S>
+__attribute__((noinline)) void carry_last(const Eliminated<S>& r, const Link& l, Cargo<S>& cargo) {
+  carry<turn, Gravity>(r, l, cargo);
+}
+
 template <class S>
 Spatial::Force<S> remainder_of(const Cargo<S>& c) {
   return {{{c.Dfx, c.Dfy, c.Dfz}}, {{c.Dnx, c.Dny, c.Dnz}}};

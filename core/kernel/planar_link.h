@@ -24,7 +24,7 @@ struct PlanarLink {
   bool pin = true;  ///< undriven revolute joint
   bool first = false, tip = false, has_force = false;
   bool forced = false;  ///< springs or wrenches at points of its own
-  bool opens = false;  ///< the last child of its parent, which the inward sweep meets first
+  bool opens = false;   ///< the last child of its parent, which the inward sweep meets first
 };
 
 struct PlanarTree {

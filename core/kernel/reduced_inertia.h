@@ -49,14 +49,40 @@ MOMENTA_INLINE void eliminate_pin(const Full<S>& m, const S& inverse, PinColumn<
   r.Iyy = m.Iyy - Uny * h.ny;
 }
 
-/// The pin's own screw: turn by θ, 2 × 2 blocks by their trace and difference, then shift along z
-/// by d: H' = H − A r̃, I' = I − Hᵀ r̃ + r̃ H'.
+/// What of M' enters Eᵀ(Ω × P*) of a pin, P* = M' W + D'. About the axis W does for Ω, as E u adds
+/// nothing there, and the quadratic form Eᵀ(W × M' W), collected, has ten numbers instead of the
+/// eighteen of four rows of M'; the four sums and differences are what the pin's turn takes of M'
+/// anyway.
+template <class S>
+struct PinTurning {
+  S A, Axy, Axz, Ayz;  ///< Axx − Ayy, …
+  S Hd, Hs, Hzx, Hzy;  ///< Hxx − Hyy, Hxy + Hyx, …
+  S I, Ixy;            ///< Ixx − Iyy, …
+};
+template <class S>
+MOMENTA_INLINE PinTurning<S> turning_of(const Reduced<S>& m) {
+  return {m.Axx - m.Ayy, m.Axy, m.Axz, m.Ayz,         m.Hxx - m.Hyy,
+          m.Hxy + m.Hyx, m.Hzx, m.Hzy, m.Ixx - m.Iyy, m.Ixy};
+}
+
+/// −Eᵀ(W × (M' W + D')).
+template <class S>
+MOMENTA_INLINE S turning_rate(const PinTurning<S>& m, const S& Dfx, const S& Dfy, const S& Dnx,
+                              const S& Dny, const S& vx, const S& vy, const S& vz, const S& ox,
+                              const S& oy) {
+  return vy * (m.A * vx + m.Axy * vy + m.Axz * vz + m.Hd * ox + m.Hs * oy + Dfx) -
+         vx * (m.Axy * vx + m.Ayz * vz - m.Hd * oy + m.Hs * ox + Dfy) +
+         oy * (m.I * ox + m.Ixy * oy + m.Hzx * vz + Dnx) - ox * (m.Ixy * ox + m.Hzy * vz + Dny);
+}
+
+/// The pin's own screw: turn by θ, 2 × 2 blocks by their trace and difference, `m` = turning_of(r),
+/// then shift along z by d: H' = H − A r̃, I' = I − Hᵀ r̃ + r̃ H'.
 template <class S, class C>
-MOMENTA_INLINE void turn_and_shift_z(Reduced<S>& r, const S& c, const S& s, const C& d) {
+MOMENTA_INLINE void turn_and_shift_z(Reduced<S>& r, const PinTurning<S>& m, const S& c, const S& s,
+                                     const C& d) {
   const S ss = s * s, cs = c * s, ss2 = ss + ss, cs2 = cs + cs;
   {
-    const S difference = r.Axx - r.Ayy;
-    const S t = ss * difference + cs2 * r.Axy, u = cs * difference - ss2 * r.Axy;
+    const S t = ss * m.A + cs2 * r.Axy, u = cs * m.A - ss2 * r.Axy;
     r.Axx = r.Axx - t;
     r.Ayy = r.Ayy + t;
     r.Axy = r.Axy + u;
@@ -65,8 +91,7 @@ MOMENTA_INLINE void turn_and_shift_z(Reduced<S>& r, const S& c, const S& s, cons
     r.Axz = xz;
   }
   {
-    const S difference = r.Hxx - r.Hyy, sum = r.Hxy + r.Hyx;
-    const S t = ss * difference + cs * sum, u = cs * difference - ss * sum;
+    const S t = ss * m.Hd + cs * m.Hs, u = cs * m.Hd - ss * m.Hs;
     r.Hxx = r.Hxx - t;
     r.Hyy = r.Hyy + t;
     r.Hxy = r.Hxy + u;
@@ -76,8 +101,7 @@ MOMENTA_INLINE void turn_and_shift_z(Reduced<S>& r, const S& c, const S& s, cons
     r.Hzx = zx;
   }
   {
-    const S difference = r.Ixx - r.Iyy;
-    const S t = ss * difference + cs2 * r.Ixy, u = cs * difference - ss2 * r.Ixy;
+    const S t = ss * m.I + cs2 * r.Ixy, u = cs * m.I - ss2 * r.Ixy;
     r.Ixx = r.Ixx - t;
     r.Iyy = r.Iyy + t;
     r.Ixy = r.Ixy + u;

@@ -108,7 +108,8 @@ SharedPoints::SharedPoints(const std::vector<int>& parents, const LoopModel<Spac
     std::sort(shared.nodes.begin(), shared.nodes.end(),
               [&](int x, int y) { return body(x) < body(y); });
     if (std::adjacent_find(shared.nodes.begin(), shared.nodes.end(), [&](int x, int y) {
-          return body(x) >= 0 && root_of(parents, body(x)) == root_of(parents, body(y));
+          return body(x) == body(y) ||
+                 (body(x) >= 0 && root_of(parents, body(x)) == root_of(parents, body(y)));
         }) != shared.nodes.end())
       continue;
     const bool grounded = body(shared.nodes.front()) < 0;

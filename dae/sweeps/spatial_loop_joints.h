@@ -64,13 +64,14 @@ bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::pin_inward(std::size_t k, const
     C[3] = C[3] - c * Column::all(w.h.nx);
     C[4] = C[4] - c * Column::all(w.h.ny);
     C[5] = couplers.v[i];
-    screw_columns<2>(C, Column::all(cosine), Column::all(sine), Part(l.d));
     if constexpr (Momentum) {
       w.C[0].v[i] = C[0];
       w.C[1].v[i] = C[1];
       w.C[2].v[i] = C[3];
       w.C[3].v[i] = C[4];
-    } else {
+    }
+    screw_columns<2>(C, Column::all(cosine), Column::all(sine), Part(l.d));
+    if constexpr (!Momentum) {
       // d' += C'ᵀ c
       const Motion& given = w.c;
       o.d.v[i] = o.d.v[i] + (C[0] * Column::all(given.v[0]) + C[1] * Column::all(given.v[1]) +
@@ -82,9 +83,17 @@ bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::pin_inward(std::size_t k, const
       each<6>([&](auto j) MOMENTA_INLINED { o.C[j].v[i] = C[j]; });
     }
   });
+  const PinTurning<S> turning = turning_of(left.M);
+  if constexpr (Momentum) {
+    w.M = turning;
+    w.Dfx = left.fx;
+    w.Dfy = left.fy;
+    w.Dnx = left.nx;
+    w.Dny = left.ny;
+    if (l.parent < 0) return true;
+  }
   // The pin's screw.
-  turn_and_shift_z(left.M, cosine, sine, l.d);
-  w.M = left.M;
+  turn_and_shift_z(left.M, turning, cosine, sine, l.d);
   S x = cosine * left.fx - sine * left.fy;
   left.fy = sine * left.fx + cosine * left.fy;
   left.fx = x;
@@ -94,13 +103,7 @@ bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::pin_inward(std::size_t k, const
   x = cosine * left.Gx - sine * left.Gy;
   left.Gy = sine * left.Gx + cosine * left.Gy;
   left.Gx = x;
-  if constexpr (Momentum) {
-    w.Dfx = left.fx;
-    w.Dfy = left.fy;
-    w.Dnx = left.nx;
-    w.Dny = left.ny;
-    if (l.parent < 0) return true;
-  } else {
+  if constexpr (!Momentum) {
     // D' += M'c
     const Reduced<S>& M = left.M;
     const Vec3<S>&v = w.c.v, &n = w.c.w;

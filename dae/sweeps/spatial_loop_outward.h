@@ -88,18 +88,6 @@ void SpatialLoopSweeps<S, Rows, Momentum, Tree>::pin_outward(std::size_t k, cons
     constants_outward(l, body(k).edge, v[0], v[1], v[2], o[0], o[1], o[2]);
     if constexpr (!Momentum) m.V += w.c;
     if (falls) constants_outward(l, body(k).edge, m.g[0], m.g[1], m.g[2]);
-    if (rates) {
-      const Reduced<S>& M = w.M;
-      const S Pfx = M.Axx * v[0] + M.Axy * v[1] + M.Axz * v[2] + M.Hxx * o[0] + M.Hxy * o[1] +
-                    w.Dfx + along(w.C[0]);
-      const S Pfy = M.Axy * v[0] + M.Ayy * v[1] + M.Ayz * v[2] + M.Hyx * o[0] + M.Hyy * o[1] +
-                    w.Dfy + along(w.C[1]);
-      const S Pnx = M.Hxx * v[0] + M.Hyx * v[1] + M.Hzx * v[2] + M.Ixx * o[0] + M.Ixy * o[1] +
-                    w.Dnx + along(w.C[2]);
-      const S Pny = M.Hxy * v[0] + M.Hyy * v[1] + M.Hzy * v[2] + M.Ixy * o[0] + M.Iyy * o[1] +
-                    w.Dny + along(w.C[3]);
-      turned = v[1] * Pfx - v[0] * Pfy + o[1] * Pnx - o[0] * Pny;
-    }
     v[0] = v[0] + l.d * o[1];
     v[1] = v[1] - l.d * o[0];
   } else {
@@ -112,6 +100,9 @@ void SpatialLoopSweeps<S, Rows, Momentum, Tree>::pin_outward(std::size_t k, cons
   }
   momenta::turn_back<2>(v, c, s);
   momenta::turn_back<2>(o, c, s);
+  if (rates && l.parent >= 0)
+    turned = turning_rate(w.M, w.Dfx, w.Dfy, w.Dnx, w.Dny, v[0], v[1], v[2], o[0], o[1]) +
+             turning_along(k, w.C, v, o, m.sigma);
   if (falls) {
     momenta::turn_back<2>(m.g, c, s);
     turned = turned + (w.Gx * m.g[1] - w.Gy * m.g[0]);

@@ -112,10 +112,10 @@ class SpatialLoopSweeps {
     Column sigma;
   };
   struct PinRecord {
-    Reduced<S> M;  ///< M' after the pin's screw
+    PinTurning<S> M;  ///< of M', momentum form
     PinColumn<S> h;
     S Dfx, Dfy, Dnx, Dny, y0, Gx, Gy;
-    Column C[4], g;  ///< rows fx, fy, nx, ny of C' after the pin's screw
+    Column C[4], g;  ///< rows fx, fy, nx, ny of C'
     Motion c;        ///< acceleration form: velocity product, before the pin's screw
   };
   struct BallRecord {
@@ -187,6 +187,16 @@ class SpatialLoopSweeps {
   /// xᵀσ over the lanes open above body k.
   MOMENTA_INLINE S along_sigma(std::size_t k, const Column& x, const Column& sigma) const {
     return plus_dot(S(0.0), x, sigma, lanes_.fronts[k].open);
+  }
+  /// −Eᵀ(W × C'σ) of a pin.
+  MOMENTA_INLINE S turning_along(std::size_t k, const Column (&C)[4], const Vec3<S>& v,
+                                 const Vec3<S>& o, const Column& sigma) const {
+    Column turned;
+    each_open<S, Rows>(lanes_.fronts[k].open, [&](auto i) MOMENTA_INLINED {
+      turned.v[i] = C[0].v[i] * Column::all(v[1]) - C[1].v[i] * Column::all(v[0]) +
+                    C[2].v[i] * Column::all(o[1]) - C[3].v[i] * Column::all(o[0]);
+    });
+    return along_sigma(k, turned, sigma);
   }
   template <class Out>
   void solve_loops(const LoopPlan::Range& range, const RightSide<S>& right, const Motion* motion,

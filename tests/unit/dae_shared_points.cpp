@@ -143,6 +143,20 @@ TEST(SharedPoints, OnlyTreesOfOnePoint) {
     apart.loops[i].origin_parent.x() += 1e-3 * static_cast<double>(i + 1);
   }
   EXPECT_FALSE(pairs_of(apart));
+  // One point of a body, held at two of the ground.
+  Scene torn;
+  torn.name = "torn";
+  torn.bodies = {rod("rod")};
+  torn.joints = {hinge("O", "ground", "rod", Eigen::Vector3d::Zero(), 0)};
+  for (const Eigen::Vector3d& at : {Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, 1, 0)}) {
+    closing.name = "tie" + std::to_string(torn.loops.size());
+    closing.parent = "ground";
+    closing.child = "rod";
+    closing.origin_parent = at;
+    closing.origin_child = Eigen::Vector3d::UnitX();
+    torn.loops.push_back(closing);
+  }
+  EXPECT_FALSE(pairs_of(torn));
 }
 
 }  // namespace
