@@ -6,15 +6,6 @@
 
 namespace momenta {
 
-/// D' across the pin, for the outward sweep.
-template <class S>
-MOMENTA_INLINE void keep(const Eliminated<S>& r, PinRecord<S>& w) {
-  w.Dfx = r.fx;
-  w.Dfy = r.fy;
-  w.Dnx = r.nx;
-  w.Dny = r.ny;
-}
-
 /// (46)-(48) of a pin whose M*, D, G are complete.
 template <bool Gravity, class S>
 MOMENTA_INLINE void eliminate_pin(const Cargo<S>& cargo, const S& p, const S& inverse,
@@ -25,14 +16,12 @@ MOMENTA_INLINE void eliminate_pin(const Cargo<S>& cargo, const S& p, const S& in
   PinColumn<S> h;
   eliminate_pin(cargo.M, inverse, h, r.M);
   w.h = h;
-  w.M = turning_of(r.M);
   r.fx = cargo.Dfx + h.fx * e;
   r.fy = cargo.Dfy + h.fy * e;
   r.fz = cargo.Dfz + h.fz * e;
   r.nx = cargo.Dnx + h.nx * e;
   r.ny = cargo.Dny + h.ny * e;
   r.nz = p;
-  keep(r, w);
   if constexpr (Gravity) {
     w.Gx = r.Gx = cargo.Gx;
     w.Gy = r.Gy = cargo.Gy;
@@ -45,7 +34,6 @@ template <bool Gravity, class S, class C>
 MOMENTA_INLINE void leave_tip(const PinColumn<S>& h, const Reduced<S>& M, const S& inverse,
                               const C (&moment)[3], const S& p, PinRecord<S>& w, Eliminated<S>& r) {
   w.h = h;
-  w.M = turning_of(M);
   r.M = M;
   w.inverse = inverse;
   w.y0 = p * inverse;
@@ -55,7 +43,6 @@ MOMENTA_INLINE void leave_tip(const PinColumn<S>& h, const Reduced<S>& M, const 
   r.nx = p * h.nx;
   r.ny = p * h.ny;
   r.nz = p;
-  keep(r, w);
   if constexpr (Gravity) {
     w.Gx = r.Gx = S(moment[0]);
     w.Gy = r.Gy = S(moment[1]);
@@ -63,11 +50,16 @@ MOMENTA_INLINE void leave_tip(const PinColumn<S>& h, const Reduced<S>& M, const 
   }
 }
 
-/// The pin's own screw.
+/// The pin's own screw; what the outward sweep needs is stored before.
 template <bool Gravity, class S, class C>
-MOMENTA_INLINE void turn_pin(Eliminated<S>& r, const PinTurning<S>& m, const S& c, const S& s,
-                             const C& d) {
-  turn_and_shift_z(r.M, m, c, s, d);
+MOMENTA_INLINE void turn_pin(Eliminated<S>& r, const S& c, const S& s, const C& d,
+                             PinRecord<S>& w) {
+  w.M = turning_of(r.M);
+  w.Dfx = r.fx;
+  w.Dfy = r.fy;
+  w.Dnx = r.nx;
+  w.Dny = r.ny;
+  turn_and_shift_z(r.M, w.M, c, s, d);
   S x = c * r.fx - s * r.fy;
   r.fy = s * r.fx + c * r.fy;
   r.fx = x;
@@ -103,7 +95,7 @@ std::size_t MomentumSweeps<Spatial, S>::chain_inward(std::size_t end, const In& 
     }
     Eliminated<S> r;
     eliminate_pin<Gravity>(cargo, p[l.u], S(1.0) / cargo.M.Izz, w, r);
-    turn_pin<Gravity>(r, w.M, angles_.cosine(k), angles_.sine(k), l.d);
+    turn_pin<Gravity>(r, angles_.cosine(k), angles_.sine(k), l.d, w);
     if (links[k - 1].path != static_cast<Path>(turn)) {
       const Eliminated<S> last = r;  // whose address is taken
       carry_last<turn, Gravity>(last, l, from);
@@ -156,7 +148,7 @@ std::size_t MomentumSweeps<Spatial, S>::pins_inward(std::size_t end, const In& p
       }
       eliminate_pin<Gravity>(cargo, pk, inverse, w, r);
     }
-    turn_pin<Gravity>(r, w.M, angles_.cosine(k), angles_.sine(k), l.d);
+    turn_pin<Gravity>(r, angles_.cosine(k), angles_.sine(k), l.d, w);
     carry_any<Gravity>(l, body(k).edge, r, cargo);
     if (!l.first) leave<Gravity>(l, slot_of_parent(l), cargo);
   } while (k > 0 && links[k - 1].path == Path::any && links[k - 1].kind == LinkKind::pin);

@@ -83,9 +83,8 @@ bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::pin_inward(std::size_t k, const
       each<6>([&](auto j) MOMENTA_INLINED { o.C[j].v[i] = C[j]; });
     }
   });
-  const PinTurning<S> turning = turning_of(left.M);
+  w.M = turning_of(left.M);
   if constexpr (Momentum) {
-    w.M = turning;
     w.Dfx = left.fx;
     w.Dfy = left.fy;
     w.Dnx = left.nx;
@@ -93,7 +92,7 @@ bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::pin_inward(std::size_t k, const
     if (l.parent < 0) return true;
   }
   // The pin's screw.
-  turn_and_shift_z(left.M, turning, cosine, sine, l.d);
+  turn_and_shift_z(left.M, w.M, cosine, sine, l.d);
   S x = cosine * left.fx - sine * left.fy;
   left.fy = sine * left.fx + cosine * left.fy;
   left.fx = x;

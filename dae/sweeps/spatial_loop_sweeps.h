@@ -112,7 +112,7 @@ class SpatialLoopSweeps {
     Column sigma;
   };
   struct PinRecord {
-    PinTurning<S> M;  ///< of M', momentum form
+    PinTurning<S> M;  ///< of M'
     PinColumn<S> h;
     S Dfx, Dfy, Dnx, Dny, y0, Gx, Gy;
     Column C[4], g;  ///< rows fx, fy, nx, ny of C'

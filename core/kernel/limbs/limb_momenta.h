@@ -75,7 +75,7 @@ bool LimbMomenta<S>::sweep_inward() {
       }
       eliminate_pin<Gravity>(cargo, p_[k], S(1.0) / cargo.M.Izz, w, r);
     }
-    turn_pin<Gravity>(r, w.M, limbs_.cosine(k), limbs_.sine(k), l.d);
+    turn_pin<Gravity>(r, limbs_.cosine(k), limbs_.sine(k), l.d, w);
     carry_any<Gravity>(l, l.edge, r, cargo);
     if (!l.first && !l.root)
       leave<Gravity>(l, slots_[static_cast<std::size_t>(l.parent_slot)], cargo);
