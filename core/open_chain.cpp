@@ -68,7 +68,7 @@ bool OpenChain::rates_of_states(double t, const ConstStatesRef& q, const ConstSt
           kernel, threads,
           {q.data(), p.data(), qdot.data(), pdot.data(), stride,
            static_cast<std::size_t>(q.cols())},
-          [t](OpenSweeps& sweeps, const States& part) { return sweeps.momentum(t, part); });
+          [t](BatchSweeps& sweeps, const States& part) { return sweeps.momentum(t, part); });
     Eigen::VectorXd one_qdot(nq()), one_pdot(nv());
     return inside_->one_by_one(q.cols(), [&](Eigen::Index i) {
       const bool ok = rates(t, q.col(i), p.col(i), one_qdot, one_pdot);
@@ -90,7 +90,7 @@ bool OpenChain::accelerations_of_states(double t, const ConstStatesRef& q, const
       return inside_->batch(
           kernel, threads,
           {q.data(), u.data(), nullptr, udot.data(), stride, static_cast<std::size_t>(q.cols())},
-          [t](OpenSweeps& sweeps, const States& part) { return sweeps.acceleration(t, part); });
+          [t](BatchSweeps& sweeps, const States& part) { return sweeps.acceleration(t, part); });
     Eigen::VectorXd one(nv());
     return inside_->one_by_one(q.cols(), [&](Eigen::Index i) {
       const bool ok = accelerations(t, q.col(i), u.col(i), one);

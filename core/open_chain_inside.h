@@ -2,7 +2,9 @@
 // What an OpenChain holds: the tree, its plan and the kernel the plan has chosen. For the sources
 // of OpenChain alone.
 
+#include <momenta/core/kernel/levels/batch_sweeps.h>
 #include <momenta/core/kernel/levels/open_sweeps.h>
+#include <momenta/core/kernel/levels/when_asked.h>
 #include <momenta/core/kernel/reactions.h>
 #include <momenta/core/kernel/whole_sums.h>
 #include <momenta/core/open_chain.h>
@@ -13,20 +15,6 @@
 #include <variant>
 
 namespace momenta {
-
-/// Workspaces of dual numbers, made when a call first needs them.
-template <class Pass>
-class WhenAsked {
- public:
-  template <class Links>
-  Pass& get(const Links& links) {
-    if (!pass_) pass_ = std::make_unique<Pass>(links);
-    return *pass_;
-  }
-
- private:
-  std::unique_ptr<Pass> pass_;
-};
 
 template <class Space>
 struct Kernel {
@@ -42,12 +30,13 @@ struct Kernel {
     } else {
       sweeps = make_sweeps(*links, level);
     }
+    batches.push_back(make_batch_sweeps(*links, level));
   }
   std::unique_ptr<Model<Space>> model;
   std::unique_ptr<Links> links;
   std::unique_ptr<Limbs> limbs;
   std::unique_ptr<OpenSweeps> sweeps;
-  std::vector<std::unique_ptr<OpenSweeps>> further;  ///< one for each thread beside the caller's
+  std::vector<std::unique_ptr<BatchSweeps>> batches;  ///< one for each thread
   WhenAsked<ReactionPass<Space>> reactions;
   Workspace<Space, double> w;
 };
@@ -111,23 +100,21 @@ struct OpenChain::Inside {
   /// shares a register shares it on any number of threads.
   template <class K, class Run>
   bool batch(K& k, int threads, const States& all, Run&& run) {
-    const auto width = static_cast<std::size_t>(k.sweeps->width());
+    const auto width = static_cast<std::size_t>(k.batches[0]->width());
     const std::size_t packs = (all.count + width - 1) / width;
     std::size_t parts = has_user_joints ? 1 : static_cast<std::size_t>(threads);
     parts = std::max<std::size_t>(1, std::min(parts, packs));
     singular = -1;
     failed_state = -1;
     if (parts == 1) {
-      if (run(*k.sweeps, all)) return true;
-      singular = k.sweeps->stuck();
-      failed_state = static_cast<Eigen::Index>(k.sweeps->failed_state());
+      BatchSweeps& sweeps = *k.batches[0];
+      if (run(sweeps, all)) return true;
+      singular = sweeps.stuck();
+      failed_state = static_cast<Eigen::Index>(sweeps.failed_state());
       return false;
     }
-    while (k.further.size() + 1 < parts)
-      k.further.push_back(make_sweeps(*k.links, k.sweeps->level()));
-    const auto sweeps = [&](std::size_t i) -> OpenSweeps& {
-      return i == 0 ? *k.sweeps : *k.further[i - 1];
-    };
+    while (k.batches.size() < parts)
+      k.batches.push_back(make_batch_sweeps(*k.links, k.sweeps->level()));
     const auto begin = [&](std::size_t i) {
       return std::min(all.count, packs * i / parts * width);
     };
@@ -136,12 +123,12 @@ struct OpenChain::Inside {
       const std::size_t first = begin(i);
       const States part{all.q + first,    all.p + first, all.qdot ? all.qdot + first : nullptr,
                         all.pdot + first, all.stride,    begin(i + 1) - first};
-      failed[i] = !run(sweeps(i), part);
+      failed[i] = !run(*k.batches[i], part);
     });
     for (std::size_t i = 0; i < parts && failed_state < 0; ++i)
       if (failed[i]) {
-        singular = sweeps(i).stuck();
-        failed_state = static_cast<Eigen::Index>(begin(i) + sweeps(i).failed_state());
+        singular = k.batches[i]->stuck();
+        failed_state = static_cast<Eigen::Index>(begin(i) + k.batches[i]->failed_state());
       }
     return failed_state < 0;
   }

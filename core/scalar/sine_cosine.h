@@ -87,14 +87,14 @@ MOMENTA_INLINE Pack<W, L> cos(const Pack<W, L>& x) {
   return c;
 }
 
-/// Doubles that fit the widest register of a level: joints of one state are turned side by side.
+/// Doubles that fit the widest register of a level.
 template <int Level>
 constexpr int native_width = Level >= 4   ? 8
                              : Level >= 3 ? 4
                                           : 2;
 
-/// Angles of one sweep and their sines and cosines, padded to whole registers: for a single state
-/// at a level the joints fill the lanes, and the padding is computed along.
+/// Angles of one sweep and their sines and cosines. Of a single state at a level, joints are turned
+/// side by side, padded to whole registers, and the padding is computed along.
 template <class S>
 class Angles {
  public:
@@ -116,7 +116,9 @@ class Angles {
 };
 template <int L>
 class Angles<Pack<1, L>> {
-  static constexpr int width = native_width<L>;
+  /// Eight at once save nothing: they wait for more angles, and while a register of eight is at
+  /// work the processor has one unit less for single numbers.
+  static constexpr int width = native_width<L> < 4 ? native_width<L> : 4;
   using One = Pack<1, L>;
   using Wide = Pack<width, L>;
 
@@ -132,10 +134,19 @@ class Angles<Pack<1, L>> {
   std::size_t size() const { return size_; }
   MOMENTA_INLINE void turn() { turn(size_); }
   MOMENTA_INLINE void turn(std::size_t n) {
-    for (std::size_t i = 0; i * width < n; ++i) sine_cosine(angle_[i], sine_[i], cosine_[i]);
+    for (std::size_t i = 0; i * width < n; ++i) sine_cosine(gathered(i), sine_[i], cosine_[i]);
   }
 
  private:
+  /// One by one: angles were stored one by one a moment ago, and a load of all of them would wait
+  /// until the last has left the store buffer.
+  MOMENTA_INLINE Wide gathered(std::size_t i) const {
+    const double* const a = reinterpret_cast<const double*>(angle_.data() + i);
+    if constexpr (width == 4)
+      return Wide::of((typename Wide::Lanes){a[0], a[1], a[2], a[3]});
+    else
+      return Wide::of((typename Wide::Lanes){a[0], a[1]});
+  }
   static MOMENTA_INLINE One at(const std::vector<Wide>& packs, std::size_t i) {
     One x;
     __builtin_memcpy(&x, reinterpret_cast<const char*>(packs.data()) + 8 * i, 8);

@@ -1,7 +1,9 @@
 #include <momenta/core/kernel/jacobian_pass.h>
+#include <momenta/core/kernel/levels/batch_sweeps.h>
 #include <momenta/core/kernel/levels/open_sweeps.h>
 
 #include <algorithm>
+#include <type_traits>
 
 namespace momenta {
 
@@ -9,6 +11,10 @@ template <int Level>
 std::unique_ptr<OpenSweeps> sweeps_at(const LinkTree& tree, const Limbs* limbs);
 template <int Level>
 std::unique_ptr<OpenSweeps> sweeps_at(const PlanarTree& tree);
+template <int Level>
+std::unique_ptr<BatchSweeps> batch_sweeps_at(const LinkTree& tree);
+template <int Level>
+std::unique_ptr<BatchSweeps> batch_sweeps_at(const PlanarTree& tree);
 
 int level_at_most([[maybe_unused]] int level) {
 #ifdef MOMENTA_LEVEL4
@@ -25,21 +31,28 @@ int level_at_most([[maybe_unused]] int level) {
   return 1;
 }
 
-template <class... Arguments>
-std::unique_ptr<OpenSweeps> make([[maybe_unused]] int level, const Arguments&... arguments) {
+/// What `at` makes for the level: at(std::integral_constant<int, level>).
+template <class At>
+auto make([[maybe_unused]] int level, At&& at) {
 #ifdef MOMENTA_LEVEL4
-  if (level >= 4) return sweeps_at<4>(arguments...);
+  if (level >= 4) return at(std::integral_constant<int, 4>());
 #endif
 #ifdef MOMENTA_LEVEL3
-  if (level >= 3) return sweeps_at<3>(arguments...);
+  if (level >= 3) return at(std::integral_constant<int, 3>());
 #endif
-  return sweeps_at<1>(arguments...);
+  return at(std::integral_constant<int, 1>());
 }
 std::unique_ptr<OpenSweeps> make_sweeps(const LinkTree& tree, int level, const Limbs* limbs) {
-  return make(level, tree, limbs);
+  return make(level, [&](auto l) { return sweeps_at<l>(tree, limbs); });
 }
 std::unique_ptr<OpenSweeps> make_sweeps(const PlanarTree& tree, int level) {
-  return make(level, tree);
+  return make(level, [&](auto l) { return sweeps_at<l>(tree); });
+}
+std::unique_ptr<BatchSweeps> make_batch_sweeps(const LinkTree& tree, int level) {
+  return make(level, [&](auto l) { return batch_sweeps_at<l>(tree); });
+}
+std::unique_ptr<BatchSweeps> make_batch_sweeps(const PlanarTree& tree, int level) {
+  return make(level, [&](auto l) { return batch_sweeps_at<l>(tree); });
 }
 
 bool is_hamiltonian_on_pins(const LinkTree& tree) {

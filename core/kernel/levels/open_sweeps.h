@@ -11,14 +11,6 @@
 
 namespace momenta {
 
-/// States side by side: coordinate i of state s is at base[i * stride + s].
-struct States {
-  const double *q, *p;
-  double *qdot, *pdot;
-  std::ptrdiff_t stride;
-  std::size_t count;
-};
-
 class OpenSweeps {
  public:
   virtual ~OpenSweeps() = default;
@@ -42,17 +34,9 @@ class OpenSweeps {
                                       double* udot) = 0;
   virtual bool inverse_dynamics(double t, const double* q, const double* u, const double* udot,
                                 double* tau) = 0;
-  /// q̇ and ṗ of many states, `width()` at a time. False when some state has a joint without
-  /// inertia: its index is in failed_state(), its results are NaN, those of all others are right.
-  virtual bool momentum(double t, const States& states) = 0;
-  /// u̇ of many states; p holds u, and the weights are the only forces. As momentum().
-  virtual bool acceleration(double t, const States& states) = 0;
-
-  virtual int width() const = 0;
   virtual int level() const = 0;
   /// Body whose joint had no inertia in the last failed call.
   virtual int stuck() const = 0;
-  virtual std::size_t failed_state() const = 0;
 };
 
 /// The highest level of 1, 3, 4 up to `level` that this machine and this library have.

@@ -1,0 +1,41 @@
+#pragma once
+// The two recursions for many states, as many side by side as a register of the level holds. They
+// stand apart from the sweeps of one state (open_sweeps.h), for the two want other machine code.
+
+#include <momenta/core/kernel/link.h>
+#include <momenta/core/kernel/planar_link.h>
+
+#include <cstddef>
+#include <memory>
+
+namespace momenta {
+
+/// States side by side: coordinate i of state s is at base[i * stride + s].
+struct States {
+  const double *q, *p;
+  double *qdot, *pdot;
+  std::ptrdiff_t stride;
+  std::size_t count;
+};
+
+class BatchSweeps {
+ public:
+  virtual ~BatchSweeps() = default;
+
+  /// q̇ and ṗ of many states, `width()` at a time. False when some state has a joint without
+  /// inertia: its index is in failed_state(), its results are NaN, those of all others are right.
+  virtual bool momentum(double t, const States& states) = 0;
+  /// u̇ of many states; p holds u, and the weights are the only forces. As momentum().
+  virtual bool acceleration(double t, const States& states) = 0;
+
+  virtual int width() const = 0;
+  /// Body whose joint had no inertia in the last failed call.
+  virtual int stuck() const = 0;
+  virtual std::size_t failed_state() const = 0;
+};
+
+/// @pre level_at_most(level) is level; the tree stays where it is.
+std::unique_ptr<BatchSweeps> make_batch_sweeps(const LinkTree& tree, int level);
+std::unique_ptr<BatchSweeps> make_batch_sweeps(const PlanarTree& tree, int level);
+
+}  // namespace momenta

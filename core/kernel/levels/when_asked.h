@@ -1,0 +1,22 @@
+#pragma once
+// Workspaces that few need, made when a call first does.
+
+#include <memory>
+
+namespace momenta {
+
+template <class Sweeps>
+class WhenAsked {
+ public:
+  /// @pre The same tree in every call.
+  template <class Tree>
+  Sweeps& get(const Tree& tree) {
+    if (!sweeps_) sweeps_ = std::make_unique<Sweeps>(tree);
+    return *sweeps_;
+  }
+
+ private:
+  std::unique_ptr<Sweeps> sweeps_;
+};
+
+}  // namespace momenta
