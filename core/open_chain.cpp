@@ -105,16 +105,17 @@ bool OpenChain::jacobian_times(double t, const ConstVectorRef& q, const ConstVec
                                const ConstVectorRef& dq, const ConstVectorRef& dp, VectorRef dqdot,
                                VectorRef dpdot) {
   return inside_->visit([&](auto& kernel) {
-    return inside_->noted_one(
-        kernel, kernel.sweeps->derivative(t, q.data(), p.data(), dq.data(), dp.data(), dqdot.data(),
-                                          dpdot.data()));
+    return inside_->noted_one(*kernel.sweeps,
+                              kernel.sweeps->derivative(t, q.data(), p.data(), dq.data(), dp.data(),
+                                                        dqdot.data(), dpdot.data()));
   });
 }
 
 bool OpenChain::jacobian(double t, const ConstVectorRef& q, const ConstVectorRef& p, MatrixRef J) {
   return inside_->visit([&](auto& kernel) {
-    return inside_->noted_one(
-        kernel, kernel.sweeps->jacobian(t, q.data(), p.data(), J.data(), J.outerStride()));
+    BatchSweeps& sweeps = *kernel.batches[0];
+    return inside_->noted_one(sweeps,
+                              sweeps.jacobian(t, q.data(), p.data(), J.data(), J.outerStride()));
   });
 }
 Eigen::MatrixXd OpenChain::jacobian(double t, const ConstVectorRef& q, const ConstVectorRef& p) {
@@ -134,7 +135,7 @@ bool OpenChain::inverse_mass_times(double t, const ConstVectorRef& q, const Cons
                                    VectorRef result) {
   return inside_->visit([&](auto& kernel) {
     return inside_->noted_one(
-        kernel, kernel.sweeps->inverse_mass_times(t, q.data(), x.data(), result.data()));
+        *kernel.sweeps, kernel.sweeps->inverse_mass_times(t, q.data(), x.data(), result.data()));
   });
 }
 

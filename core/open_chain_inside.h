@@ -90,9 +90,9 @@ struct OpenChain::Inside {
   }
 
   /// What a call on one state left behind.
-  template <class K>
-  bool noted_one(K& k, bool ok) {
-    singular = ok ? -1 : k.sweeps->stuck();
+  template <class Sweeps>
+  bool noted_one(const Sweeps& sweeps, bool ok) {
+    singular = ok ? -1 : sweeps.stuck();
     failed_state = -1;
     return ok;
   }

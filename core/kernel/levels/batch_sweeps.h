@@ -1,6 +1,7 @@
 #pragma once
-// The two recursions for many states, as many side by side as a register of the level holds. They
-// stand apart from the sweeps of one state (open_sweeps.h), for the two want other machine code.
+// The recursions for many states, or directions of a derivative: as many side by side as a register
+// of the level holds. They stand apart from the sweeps of one state (open_sweeps.h), for the two
+// want other machine code, and a function they shared would be linked in one way alone.
 
 #include <momenta/core/kernel/link.h>
 #include <momenta/core/kernel/planar_link.h>
@@ -27,6 +28,11 @@ class BatchSweeps {
   virtual bool momentum(double t, const States& states) = 0;
   /// u̇ of many states; p holds u, and the weights are the only forces. As momentum().
   virtual bool acceleration(double t, const States& states) = 0;
+
+  /// ∂(q̇, ṗ)/∂(q, p), forces between points of bodies included: columns of nq + nv numbers, each
+  /// `stride` after the one before.
+  virtual bool jacobian(double t, const double* q, const double* p, double* J,
+                        std::ptrdiff_t stride) = 0;
 
   virtual int width() const = 0;
   /// Body whose joint had no inertia in the last failed call.

@@ -3,6 +3,7 @@
 // open_sweeps_at.h says why.
 
 #include <momenta/core/kernel/acceleration_sweeps.h>
+#include <momenta/core/kernel/jacobian_pass.h>
 #include <momenta/core/kernel/levels/batch_sweeps.h>
 #include <momenta/core/kernel/levels/strided.h>
 #include <momenta/core/kernel/levels/when_asked.h>
@@ -47,6 +48,13 @@ class BatchSweepsAt final : public BatchSweeps {
           if (!ok) stuck_ = accelerations_.get(tree_).stuck();
           return ok;
         });
+  }
+
+  bool jacobian(double t, const double* q, const double* p, double* J,
+                std::ptrdiff_t stride) override {
+    const bool ok = jacobian_.get(tree_)(t, q, p, J, stride);
+    if (!ok) stuck_ = jacobian_.get(tree_).stuck();
+    return ok;
   }
 
   int width() const override { return lanes; }
@@ -147,6 +155,7 @@ class BatchSweepsAt final : public BatchSweeps {
   const Tree& tree_;
   WhenAsked<MomentumSweeps<Space, Many>> momenta_;
   WhenAsked<AccelerationSweeps<Space, Many>> accelerations_;
+  WhenAsked<JacobianPass<Space, Many>> jacobian_;
   Buffer rates_, padded_;
   int stuck_ = -1;
   std::size_t failed_state_ = 0;

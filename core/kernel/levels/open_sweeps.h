@@ -22,9 +22,6 @@ class OpenSweeps {
   /// The derivative of (q̇, ṗ) along (δq, δp), forces between points of bodies included.
   virtual bool derivative(double t, const double* q, const double* p, const double* dq,
                           const double* dp, double* dqdot, double* dpdot) = 0;
-  /// ∂(q̇, ṗ)/∂(q, p), likewise: columns of nq + nv numbers, each `stride` after the one before.
-  virtual bool jacobian(double t, const double* q, const double* p, double* J,
-                        std::ptrdiff_t stride) = 0;
   /// u̇ (nv) from all generalised forces τ (nv) but the weights'.
   virtual bool acceleration(double t, const double* q, const double* u, const double* tau,
                             double* udot) = 0;

@@ -20,7 +20,6 @@ namespace momenta {
 template <class Tree, class Space, int Level>
 class OpenSweepsAt final : public OpenSweeps {
   using One = Pack<1, Level>;
-  using Many = Pack<native_width<Level>, Level>;  ///< directions of a Jacobian
   static constexpr int limb_lanes = limb_lanes_at(Level);
   using Limb = Pack<limb_lanes, Level>;
 
@@ -77,12 +76,6 @@ class OpenSweepsAt final : public OpenSweeps {
     for (std::size_t i = 0; i < along.p.size(); ++i) along.pdot[i].b[0].store(dpdot + i);
     return true;
   }
-  bool jacobian(double t, const double* q, const double* p, double* J,
-                std::ptrdiff_t stride) override {
-    const bool ok = jacobian_.get(tree_)(t, q, p, J, stride);
-    if (!ok) stuck_ = jacobian_.get(tree_).stuck();
-    return ok;
-  }
   bool acceleration(double t, const double* q, const double* u, const double* tau,
                     double* udot) override {
     if constexpr (Space::dimension == 6)
@@ -133,7 +126,6 @@ class OpenSweepsAt final : public OpenSweeps {
   InSpace<CompositeSweeps<Spatial, One>> composite_;
   InSpace<InverseDynamicsSweeps<Spatial, One>> inverse_;
   WhenAsked<DirectionalPass<Space, 1, One>> along_;
-  WhenAsked<JacobianPass<Space, Many>> jacobian_;
   std::vector<One> scratch_;
   int stuck_ = -1;
   bool has_user_joints_ = false;
