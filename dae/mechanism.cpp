@@ -102,8 +102,12 @@ void Mechanism::choose_kkt(KktChoice asked) {
     plan(std::get<0>(cast_));
   else
     plan(std::get<1>(cast_));
-  if (light_.empty()) light_ = joint_without_inertia(kkt_reason_.empty());
+  const bool far_apart = !light_.empty();
+  if (!far_apart) light_ = joint_without_inertia(kkt_reason_.empty());
   kkt_ = dense_ ? KktChoice::dense : KktChoice::sparse;
+  if (far_apart && asked == KktChoice::dense)
+    throw SceneError(scene_.where({}) + "dense matrices were asked to solve (7), but " + light_ +
+                     "; expected --kkt sparse");
   if (asked == KktChoice::dense || asked == KktChoice::sparse) return;
   if (kkt_reason_.empty()) kkt_reason_ = light_;
   if (kkt_reason_.empty()) {
@@ -112,7 +116,7 @@ void Mechanism::choose_kkt(KktChoice asked) {
   }
   if (asked == KktChoice::sweeps)
     throw SceneError(scene_.where({}) + "the sweeps were asked to carry the loops, but " +
-                     kkt_reason_ + "; expected --kkt sparse or dense");
+                     kkt_reason_ + "; expected --kkt sparse" + (far_apart ? "" : " or dense"));
   kkt_ = KktChoice::sparse;
   dense_ = false;
 }
@@ -122,7 +126,7 @@ void Mechanism::choose_kkt(KktChoice asked) {
 /// weighed at the end of the way from it to the loop's point: so a uniform chain stays a chain of
 /// equals, whatever its length.
 void Mechanism::weigh_loops() {
-  constexpr double least_lever = 1e-4, most_apart = 1e6;
+  constexpr double least_lever = 1e-4, usual_spread = 1e6;
   const double length = length_of(scene_);
   std::vector<double> inertia(static_cast<std::size_t>(tree_.nv));
   const auto e = evaluation<double>();
@@ -133,6 +137,7 @@ void Mechanism::weigh_loops() {
     return b.nv == 6 ? i < 3 : b.nv == 1 && b.kind == JointKind::prismatic;
   };
   const auto weigh = [&](auto& cast) {
+    double lightest_of_all = HUGE_VAL, heaviest_of_all = 0;
     for (auto& l : cast.loops.loops) {
       double sum = 0, least = 0;
       int lightest = -1, heaviest = -1;
@@ -166,7 +171,12 @@ void Mechanism::weigh_loops() {
       }
       l.least_scale = least;
       for (int i = 0; i < l.rows; ++i) least_scales_.push_back(i < l.first_rows() ? least : 0.0);
-      if (light_.empty() && of_heaviest > most_apart * of_lightest) {
+      if (lightest >= 0) {
+        lightest_of_all = std::min(lightest_of_all, of_lightest);
+        heaviest_of_all = std::max(heaviest_of_all, of_heaviest);
+        spread_beyond_usual_ = std::max(1.0, heaviest_of_all / lightest_of_all / usual_spread);
+      }
+      if (light_.empty() && of_heaviest > usual_spread * of_lightest) {
         char times[32];
         std::snprintf(times, sizeof times, "%.0e", of_heaviest / of_lightest);
         light_ = "what turns about " + tree_.joint_in_words(lightest) + " is " + times +

@@ -1,5 +1,6 @@
 #include <momenta/dae/form/dae_form.h>
 #include <momenta/dae/kkt/axis_scale.h>
+#include <momenta/dae/kkt/idle_forces.h>
 #include <momenta/dae/kkt/kkt.h>
 #include <momenta/dae/kkt/tree_factor.h>
 
@@ -37,7 +38,10 @@ DaeForm::DaeForm(std::string name, const Mechanism& mechanism, DaeLayout layout,
 }
 
 void DaeForm::find_redundancy(const Start& start) {
-  if (mechanism_.dense_kkt() || mechanism_.kkt() != KktChoice::sweeps) {
+  if (!mechanism_.tips_first()) {  // no pivot of the loops tells
+    if (idle_forces(mechanism_, start.t, start.q).cols() == 0) return;
+    plain_.e->place(start.t, start.q.data());
+  } else if (mechanism_.dense_kkt() || mechanism_.kkt() != KktChoice::sweeps) {
     const auto kkt = make_dense_kkt(mechanism_);
     if (!kkt->factor(*plain_.e, start.t, start.q.data(), fade_evaluation) || kkt->faded() == 0)
       return;
@@ -49,7 +53,7 @@ void DaeForm::find_redundancy(const Start& start) {
     plain_.e->place(start.t, start.q.data());
   }
   epsilon_ = row_scales(mechanism_, *plain_.e);
-  for (double& epsilon : epsilon_) epsilon *= 1e-9;
+  for (double& epsilon : epsilon_) epsilon *= 1e-9 / mechanism_.spread_beyond_usual();
 }
 
 /// Where x is not tested it does not stop Newton's method either: what rounding of q leaves in it,

@@ -7,7 +7,8 @@ namespace momenta {
 AxisScale::AxisScale(const Mechanism& mechanism)
     : pattern_(mechanism.constraint_pattern()),
       groups_(mechanism.row_groups()),
-      least_(mechanism.least_scales()) {
+      least_(mechanism.least_scales()),
+      beyond_usual_(mechanism.spread_beyond_usual()) {
   std::vector<bool> turns(static_cast<std::size_t>(mechanism.nv()), false);
   for (const auto& b : mechanism.tree().bodies) {
     const int angular = b.nv == 6 ? 3 : 0;
@@ -58,7 +59,7 @@ void AxisScale::of_groups(const std::vector<double>& inertia, const std::vector<
 void AxisScale::softness(const std::vector<double>& inertia, const std::vector<double>& constraint,
                          double fade, std::vector<double>& epsilon) const {
   of_groups(inertia, constraint, epsilon);
-  for (double& e : epsilon) e *= 1e-2 * fade;
+  for (double& e : epsilon) e *= 1e-2 * fade / beyond_usual_;
 }
 
 MassDiagonal::MassDiagonal(const KktPattern& pattern, int nv)

@@ -1,6 +1,6 @@
+#include <momenta/dae/kkt/singular_values.h>
 #include <momenta/dae/linear/linearisation.h>
 #include <momenta/dae/linear/reduced_spectrum.h>
-#include <momenta/dae/measure/singular_values.h>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>

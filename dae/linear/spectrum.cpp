@@ -1,10 +1,10 @@
 #include <momenta/core/open_chain.h>
 #include <momenta/dae/kkt/axis_scale.h>
 #include <momenta/dae/kkt/least_norm.h>
+#include <momenta/dae/kkt/singular_values.h>
 #include <momenta/dae/linear/lanczos_spectrum.h>
 #include <momenta/dae/linear/local_pencil.h>
 #include <momenta/dae/linear/reduced_spectrum.h>
-#include <momenta/dae/measure/singular_values.h>
 
 #include <Eigen/QR>
 #include <algorithm>

@@ -1,5 +1,5 @@
+#include <momenta/dae/kkt/singular_values.h>
 #include <momenta/dae/measure/derivative_array.h>
-#include <momenta/dae/measure/singular_values.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,5 @@
-#include <momenta/dae/kkt/axis_scale.h>
 #include <momenta/dae/kkt/loop_solver.h>
 #include <momenta/dae/measure/rank.h>
-#include <momenta/dae/measure/singular_values.h>
 
 #include <Eigen/QR>
 #include <algorithm>
@@ -14,62 +12,19 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double counts = 1e-7;  // of the largest singular value
 constexpr int walks = 4, poses_of_a_walk = 2;
 constexpr double way = 0.1;          // [rad, m]
 constexpr double takes_part = 1e-6;  // of a dependency's largest coefficient
-
-struct Decomposed {
-  int rank = 0;
-  double kept = 0, dropped = 0;
-  MatrixXd left;  ///< null space of Aᵀ, columns
-};
-
-/// `largest`: singular value that others are compared with; 0: the largest of `a` itself.
-Decomposed decompose(const MatrixXd& a, double largest = 0) {
-  Decomposed d;
-  if (a.rows() == 0) return d;
-  if (a.cols() == 0) {
-    d.left = MatrixXd::Identity(a.rows(), a.rows());
-    return d;
-  }
-  const Eigen::BDCSVD<MatrixXd> svd(a, Eigen::ComputeFullU);
-  const VectorXd& s = svd.singularValues();
-  if (largest == 0) largest = s[0];
-  while (d.rank < s.size() && s[d.rank] > counts * largest) ++d.rank;
-  if (d.rank > 0) d.kept = s[d.rank - 1];
-  if (d.rank < s.size()) d.dropped = s[d.rank];
-  d.left = svd.matrixU().rightCols(a.rows() - d.rank);
-  return d;
-}
 
 class RankScout {
  public:
   explicit RankScout(const Mechanism& mechanism)
       : mechanism_(mechanism), e_(mechanism.evaluation<double>()) {}
 
-  MatrixXd scaled_jacobian(double t, const VectorXd& q) {
-    const int nv = mechanism_.nv(), m = mechanism_.m();
+  ScaledJacobian scaled(double t, const VectorXd& q) {
     e_->place(t, q.data());
-    const auto& pattern = mechanism_.constraint_pattern();
-    std::vector<double> values(pattern.size());
-    e_->constraint_entries(values.data());
-    VectorXd mass(nv);
-    e_->mass_diagonal(mass.data());
-    const std::vector<double> rows = row_scales(mechanism_, *e_);
-    row_factor_.resize(m);
-    for (int i = 0; i < m; ++i) {
-      const double scale = rows[static_cast<std::size_t>(i)];
-      row_factor_[i] = scale > 0 ? 1 / std::sqrt(scale) : 1;
-    }
-    MatrixXd a = MatrixXd::Zero(m, nv);
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      const auto [row, column] = pattern[i];
-      if (mass[column] > 0) a(row, column) = values[i] * row_factor_[row] / std::sqrt(mass[column]);
-    }
-    return a;
+    return scaled_jacobian(mechanism_, *e_);
   }
-  const VectorXd& row_factor() const { return row_factor_; }
 
   /// M u
   VectorXd momentum(double t, const VectorXd& q, const VectorXd& u) {
@@ -120,7 +75,6 @@ class RankScout {
   const Mechanism& mechanism_;
   std::unique_ptr<Evaluation<double>> e_;
   std::unique_ptr<LoopSolver> solver_;
-  VectorXd row_factor_;
 };
 
 /// The reduced basis of the columns of `n`: each has a row of its own where it is 1 and all others
@@ -191,7 +145,7 @@ std::vector<SimplerLoop> simpler_loops(const Mechanism& mechanism, const MatrixX
     Eigen::Index k = 0;
     for (std::size_t i = 0; i < which.size(); ++i)
       if (which[i]) part.row(k++) = a.row(static_cast<Eigen::Index>(i));
-    return decompose(part, largest).rank;
+    return rank_and_idle(part, largest).rank;
   };
   std::vector<SimplerLoop> found;
   const auto& loops = mechanism.scene().loops;
@@ -242,9 +196,8 @@ RankReport rank_report(const Mechanism& mechanism, const Start& start) {
   RankReport report;
   if (mechanism.m() == 0) return report;
   RankScout scout(mechanism);
-  const MatrixXd here = scout.scaled_jacobian(t, q);
-  const VectorXd factor = scout.row_factor();
-  Decomposed own = decompose(here);
+  const auto [here, factor] = scout.scaled(t, q);
+  RankAndIdle own = rank_and_idle(here);
   report.rank = report.rank_nearby = own.rank;
   report.kept = own.kept;
   report.dropped = own.dropped;
@@ -266,8 +219,8 @@ RankReport rank_report(const Mechanism& mechanism, const Start& start) {
     if (pose.size() == 0) continue;
     from = pose;
     ++report.poses;
-    const MatrixXd a = scout.scaled_jacobian(t, pose);
-    Decomposed there = decompose(a);
+    const MatrixXd a = scout.scaled(t, pose).a;
+    RankAndIdle there = rank_and_idle(a);
     if (there.rank > report.rank_nearby || (report.poses == 1 && there.rank >= report.rank)) {
       report.rank_nearby = there.rank;
       elsewhere = a;
@@ -300,13 +253,6 @@ RankReport rank_report(const Mechanism& mechanism, const Start& start) {
   if (!everywhere.empty())
     report.simpler = simpler_loops(mechanism, elsewhere, report.rank_nearby, involved);
   return report;
-}
-
-MatrixXd idle_forces(const Mechanism& mechanism, double t, const VectorXd& q) {
-  if (mechanism.m() == 0) return {};
-  RankScout scout(mechanism);
-  const Decomposed d = decompose(scout.scaled_jacobian(t, q));
-  return scout.row_factor().asDiagonal() * d.left;
 }
 
 std::string in_words(const Mechanism& mechanism, const Dependency& dependency) {

@@ -2,20 +2,15 @@
 // Which loop equations depend on which: at a pose, and at poses nearby on Φ = 0, which tells what
 // is redundant wherever the mechanism goes from what is so only here, at a singular pose.
 //
-// Judged on a matrix without units,
-//
-//   A = D^(−1/2) Φ_q diag(M)^(−1/2)
-//
-// D the scale of each row's group (kkt/axis_scale.h), so that turning the axes of a loop changes
-// nothing. Singular values above 1e-7 of the largest count: at the poses tried |Φ| is at rounding
-// level, and that of a redundant row stays below 1e-12. Every dependency is a ν with νᵀA = 0; of
-// these the reduced basis is taken, one dependent row each, the last of the scene where there is a
-// choice.
+// Judged on the matrix without units of kkt/idle_forces.h, at the poses tried, where |Φ| is at
+// rounding level. Every dependency is a ν with νᵀA = 0; of these the reduced basis is taken, one
+// dependent row each, the last of the scene where there is a choice.
 //
 // Nearby poses are reached by steps of a tenth of a radian, along the mechanism's own velocities
 // and along random ones that the loops allow, in several walks, each step brought back to Φ = 0.
 
 #include <momenta/dae/form/form.h>
+#include <momenta/dae/kkt/idle_forces.h>
 
 #include <string>
 #include <vector>
@@ -56,10 +51,6 @@ struct RankReport {
 /// At a consistent pose; of its rates only the direction matters. Cost O((n + m)³), for mechanisms
 /// of some hundred equations.
 RankReport rank_report(const Mechanism& mechanism, const Start& start);
-
-/// Forces of the loops (m × n, independent columns) that move nothing at (t, q): Φ_qᵀν = 0. None
-/// where the equations are independent. Cost O((n + m)³)
-Eigen::MatrixXd idle_forces(const Mechanism& mechanism, double t, const Eigen::VectorXd& q);
 
 /// "loop 'C' row 3, axis 3 against axis 1, follows from loop 'B' rows 1, 2"
 std::string in_words(const Mechanism& mechanism, const Dependency& dependency);

@@ -34,7 +34,8 @@ void film(StudyResult& study, const Mechanism& mechanism, const ModesResult& res
 int modes(const Options& o, const ModesOptions& m) {
   Scene scene = read(o);
   if (m.drives == "held") scene = held_at_start(std::move(scene));
-  const Mechanism mechanism(std::move(scene), mechanism_options(o));
+  // --kkt is the route to the modes here.
+  const Mechanism mechanism(std::move(scene), {.algebra = mechanism_options(o).algebra});
   expect_own_results(o.out, "modes.csv");
   const Assembly a = assemble(mechanism);
   ModesRequest request;

@@ -1,6 +1,6 @@
 #include <momenta/dae/form/dae_form.h>
 #include <momenta/dae/kkt/dense_blocks.h>
-#include <momenta/dae/measure/singular_values.h>
+#include <momenta/dae/kkt/singular_values.h>
 #include <momenta/dae/study/index_study.h>
 
 #include <algorithm>

@@ -1,8 +1,8 @@
 #include <momenta/dae/kkt/dense_blocks.h>
 #include <momenta/dae/kkt/kkt.h>
+#include <momenta/dae/kkt/singular_values.h>
 #include <momenta/dae/kkt/tree_factor.h>
 #include <momenta/dae/measure/rank.h>
-#include <momenta/dae/measure/singular_values.h>
 #include <momenta/dae/study/state_values.h>
 
 namespace momenta {
