@@ -1,11 +1,7 @@
 #include <momenta/core/kernel/levels/open_sweeps.h>
-#include <momenta/core/kernel/limbs/limbs.h>
 #include <momenta/dae/kkt/kkt.h>
+#include <momenta/dae/loop/loop_weights.h>
 #include <momenta/dae/mechanism.h>
-#include <momenta/dae/sweeps/legs/legs.h>
-
-#include <cmath>
-#include <cstdio>
 
 namespace momenta {
 namespace {
@@ -66,7 +62,7 @@ Mechanism::Mechanism(Scene scene, MechanismOptions options)
   };
   visit(group);
   if (rows_ == 0) return;
-  weigh_loops();
+  take_weights();
   choose_kkt(options.kkt);
 }
 
@@ -121,74 +117,26 @@ void Mechanism::choose_kkt(KktChoice asked) {
   dense_ = false;
 }
 
-/// Scales of the loops at the start, and joints too light for the others: beside a mobility 10⁶
-/// times theirs the filter of the pivots takes what the others have of a row. A joint's inertia is
-/// weighed at the end of the way from it to the loop's point: so a uniform chain stays a chain of
-/// equals, whatever its length.
-void Mechanism::weigh_loops() {
-  constexpr double least_lever = 1e-4, usual_spread = 1e6;
-  const double length = length_of(scene_);
-  std::vector<double> inertia(static_cast<std::size_t>(tree_.nv));
+void Mechanism::take_weights() {
   const auto e = evaluation<double>();
   e->place(0, tree_.q0.data());
+  std::vector<double> inertia(static_cast<std::size_t>(tree_.nv));
   e->mass_diagonal(inertia.data());
-  const auto poses = tree_.zero_poses();
-  const auto slides = [](const Tree::Body& b, int i) {
-    return b.nv == 6 ? i < 3 : b.nv == 1 && b.kind == JointKind::prismatic;
-  };
-  const auto weigh = [&](auto& cast) {
-    double lightest_of_all = HUGE_VAL, heaviest_of_all = 0;
-    for (auto& l : cast.loops.loops) {
-      double sum = 0, least = 0;
-      int lightest = -1, heaviest = -1;
-      double of_lightest = 0, of_heaviest = 0;
-      const auto pass = [&](int k, double lever) {
-        const Tree::Body& b = tree_.bodies[static_cast<std::size_t>(k)];
-        for (int i = 0; i < b.nv; ++i) {
-          const double along = inertia[static_cast<std::size_t>(b.u + i)];
-          if (!(along > 0)) continue;
-          sum += slides(b, i) ? 1 / along : length * length / along;
-          if (!slides(b, i) && !(lever > least_lever * length)) continue;
-          const double mass = slides(b, i) ? along : along / (lever * lever);
-          if (lightest < 0 || mass < of_lightest) lightest = k, of_lightest = mass;
-          if (heaviest < 0 || mass > of_heaviest) heaviest = k, of_heaviest = mass;
-        }
-      };
-      if (l.is_coupler()) {
-        for (const auto& c : l.joints) pass(c.body, length);
-      } else {
-        double way_a = std::sqrt(dot(l.at_a, l.at_a)), way_b = std::sqrt(dot(l.at_b, l.at_b));
-        for (int a = l.a, b = l.b; a != b;) {
-          int& later = a > b ? a : b;
-          double& way = a > b ? way_a : way_b;
-          pass(later, way);
-          const Eigen::Vector3d from = poses[static_cast<std::size_t>(later)].translation();
-          later = tree_.bodies[static_cast<std::size_t>(later)].parent;
-          if (later >= 0)
-            way += (from - poses[static_cast<std::size_t>(later)].translation()).norm();
-        }
-        least = least_lever * least_lever * sum;
-      }
-      l.least_scale = least;
-      for (int i = 0; i < l.rows; ++i) least_scales_.push_back(i < l.first_rows() ? least : 0.0);
-      if (lightest >= 0) {
-        lightest_of_all = std::min(lightest_of_all, of_lightest);
-        heaviest_of_all = std::max(heaviest_of_all, of_heaviest);
-        spread_beyond_usual_ = std::max(1.0, heaviest_of_all / lightest_of_all / usual_spread);
-      }
-      if (light_.empty() && of_heaviest > usual_spread * of_lightest) {
-        char times[32];
-        std::snprintf(times, sizeof times, "%.0e", of_heaviest / of_lightest);
-        light_ = "what turns about " + tree_.joint_in_words(lightest) + " is " + times +
-                 " times lighter than what turns about " + tree_.joint_in_words(heaviest) +
-                 " in its loop";
-      }
+  const auto take = [&](auto& cast) {
+    const LoopWeights weights = weigh_loops(cast.loops, tree_, inertia, length_of(scene_));
+    for (std::size_t k = 0; k < weights.least_scales.size(); ++k) {
+      auto& l = cast.loops.loops[k];
+      l.least_scale = weights.least_scales[k];
+      for (int i = 0; i < l.rows; ++i)
+        least_scales_.push_back(i < l.first_rows() ? l.least_scale : 0.0);
     }
+    spread_beyond_usual_ = weights.spread_beyond_usual;
+    light_ = weights.light;
   };
   if (plan_.planar)
-    weigh(std::get<0>(cast_));
+    take(std::get<0>(cast_));
   else
-    weigh(std::get<1>(cast_));
+    take(std::get<1>(cast_));
 }
 
 /// A joint may have no inertia until a loop closes above it: one solution at the start tells.
@@ -232,105 +180,5 @@ bool Mechanism::has_joint_forces() const {
 }
 
 Mechanism::~Mechanism() = default;
-
-namespace {
-
-/// What a one-dof joint adds to the name of its scene joint: "q", or the number of its coordinate
-/// behind it where the scene's joint has several.
-std::string one_dof_column(const Tree::Body& b, const char* letter) {
-  return b.joint + "." + letter + (b.parts > 1 ? std::to_string(b.coordinate) : "");
-}
-
-}  // namespace
-
-std::vector<Column> Mechanism::coordinate_columns() const {
-  std::vector<Column> columns;
-  for (const auto& b : tree_.bodies) {
-    if (b.nq == 1)
-      columns.push_back({one_dof_column(b, "q"), b.kind == JointKind::prismatic ? "m" : "rad"});
-    if (b.nq == 7)
-      for (const char* axis : {".x", ".y", ".z"}) columns.push_back({b.joint + axis, "m"});
-    if (b.nq >= 4)
-      for (const char* part : {".qw", ".qx", ".qy", ".qz"})
-        columns.push_back({b.joint + part, "1"});
-  }
-  return columns;
-}
-
-std::vector<Column> Mechanism::rate_columns() const {
-  std::vector<Column> columns;
-  for (const auto& b : tree_.bodies) {
-    if (b.nv == 1)
-      columns.push_back({one_dof_column(b, "u"), b.kind == JointKind::prismatic ? "m/s" : "rad/s"});
-    if (b.nv == 6)
-      for (const char* axis : {".vx", ".vy", ".vz"}) columns.push_back({b.joint + axis, "m/s"});
-    if (b.nv >= 3)
-      for (const char* axis : {".wx", ".wy", ".wz"}) columns.push_back({b.joint + axis, "rad/s"});
-  }
-  return columns;
-}
-
-std::vector<Column> Mechanism::marker_columns() const {
-  std::vector<Column> columns;
-  for (const auto& marker : scene_.markers) {
-    for (const char* axis : {".x", ".y", ".z"}) columns.push_back({marker.name + axis, "m"});
-    for (const char* axis : {".vx", ".vy", ".vz"}) columns.push_back({marker.name + axis, "m/s"});
-  }
-  return columns;
-}
-
-std::string Mechanism::legs_in_words() const {
-  if (plan_.planar) return "";
-  const auto& cast = std::get<Cast<Spatial>>(cast_);
-  return momenta::legs_in_words(
-      find_legs(cast.links, cast.swept.loops, cast.swept.plan, leg_lanes_at(best_level())));
-}
-
-std::vector<std::pair<std::string, std::string>> Mechanism::plan_lines() const {
-  auto lines = plan_.lines();
-  if (!plan_.planar) {
-    const LinkTree links = build_links(std::get<Cast<Spatial>>(cast_).model);
-    lines.emplace_back("joints", links_in_words(links));
-    if (rows_ == 0) {
-      const std::string limbs = limbs_in_words(links, limb_lanes_at(best_level()));
-      lines.emplace_back("limbs", limbs.empty() ? "none of one shape: body by body" : limbs);
-    }
-  }
-  if (rows_ == 0) {
-    lines.emplace_back("loops", "none: no KKT system, no σ, forward dynamics by the two sweeps");
-    return lines;
-  }
-  lines.emplace_back("loops", std::to_string(scene_.loops.size()) + " with " +
-                                  std::to_string(rows_) + " equations");
-  const std::string legs = legs_in_words();
-  std::string how = "dense: Cholesky of M, pivoted and filtered LDLᵀ of the loops";
-  if (kkt_ == KktChoice::sweeps)
-    how = "loops carried by the sweeps, at most " +
-          std::to_string(visit([](const auto& cast) { return cast.swept.plan.lanes; })) +
-          " equations open at once" +
-          (pairs_anew() ? ", loops that meet in one point paired along the tree" : "") +
-          (legs.empty() ? "" : ", " + legs);
-  else if (kkt_ == KktChoice::sparse)
-    how = std::string(
-              solved_by_bodies(*this)
-                  ? "sparse: KLU on the equations of the bodies, the tree being deep; poses are "
-                    "not filtered,"
-              : tips_first() ? "sparse: filtered LDLᵀ"
-                             : "sparse: KLU") +
-          " on a pattern analysed once" + (kkt_reason_.empty() ? "" : " (" + kkt_reason_ + ")");
-  lines.emplace_back("solving (7)", how + ", " + std::to_string(tree_.nv + rows_) + " unknowns");
-  return lines;
-}
-
-std::string Mechanism::no_inertia(int rate) const {
-  for (std::size_t k = 0; k < tree_.bodies.size(); ++k) {
-    const Tree::Body& b = tree_.bodies[k];
-    if (rate < b.u || rate >= b.u + b.nv) continue;
-    const auto carried = static_cast<std::size_t>(tree_.carried_by(b.joint));
-    return tree_.joint_in_words(static_cast<int>(k)) + " has no inertia to move: body '" +
-           tree_.bodies[carried].name + "' and what it carries weigh nothing along it";
-  }
-  return "the mass matrix is not finite";
-}
 
 }  // namespace momenta

@@ -60,8 +60,7 @@ class Mechanism {
   /// Whether joints can be eliminated before the loops that hold them: each has inertia by then,
   /// and enough beside its neighbours not to take their digits.
   bool tips_first() const { return light_.empty(); }
-  /// Of all that turns or slides in loops, weighed at the loops' points at the start: how many
-  /// times heavier than 10⁶ of the lightest the heaviest is, at least 1.
+  /// LoopWeights::spread_beyond_usual
   double spread_beyond_usual() const { return spread_beyond_usual_; }
   /// The sweeps that carry this mechanism's loops, for one instruction level; 0: the machine's
   /// best. `legs_side_by_side`: in space, of one state, folded legs of one shape are swept in the
@@ -83,9 +82,9 @@ class Mechanism {
   const std::vector<int>& row_groups() const { return row_groups_; }
 
   /// Scale of each row of Φ_q M⁻¹ Φ_qᵀ (m) below which it is dust, whatever its loop's other rows
-  /// are: what unit forces on levers of 10⁻⁴ lengths of the scene move at the start. A slide along
-  /// the axis of a cylindrical joint has four rows out of five that hold nothing but rounding. Zero
-  /// for axes, whose size by nature is known, and for couplers. [1/kg]
+  /// are: LoopWeights::least_scales, by row. A slide along the axis of a cylindrical joint has four
+  /// rows out of five that hold nothing but rounding. Zero for axes, whose size by nature is known,
+  /// and for couplers. [1/kg]
   const std::vector<double>& least_scales() const { return least_scales_; }
 
   /// A workspace for one thread; S is double, Dual8, LocalDual or Jet.
@@ -118,7 +117,7 @@ class Mechanism {
     return plan_.planar ? f(std::get<0>(cast_)) : f(std::get<1>(cast_));
   }
   void choose_kkt(KktChoice asked);
-  void weigh_loops();
+  void take_weights();
   std::string joint_without_inertia(bool swept) const;
   template <class Space, class S>
   class SweepEvaluation;

@@ -6,26 +6,19 @@
 //   (IDASetSuppressAlg): their error is of a lower order, and the test would shrink the step for
 //   ever;
 // - where scale is infinite they take no part in the Newton norm either: at the first, tiny steps
-// their
-//   noise is of the order of ε/h, and no tolerance fits;
+//   their noise is of the order of ε/h, and no tolerance fits;
 // - y and y' at the start satisfy all constraints, also hidden ones: IDA's own correction of
-// initial
-//   values treats index 1 only.
+//   initial values treats index 1 only.
 // Source: Hindmarsh et al., SUNDIALS, ACM TOMS 31 (2005) 363-396; Brenan, Campbell, Petzold,
 // Numerical Solution of Initial-Value Problems in Differential-Algebraic Equations, ch. 5.
 
-#include <klu.h>
 #include <momenta/core/scalar/all_finite.h>
 #include <momenta/dae/solver/detour.h>
+#include <momenta/dae/solver/ida_matrix.h>
 #include <momenta/dae/solver/integration.h>
-#include <momenta/dae/solver/local_newton.h>
 #include <momenta/dae/solver/multistep_run.h>
 #include <momenta/dae/solver/rounding_floor.h>
 #include <momenta/dae/solver/sundials_handles.h>
-#include <sunlinsol/sunlinsol_dense.h>
-#include <sunlinsol/sunlinsol_klu.h>
-#include <sunmatrix/sunmatrix_dense.h>
-#include <sunmatrix/sunmatrix_sparse.h>
 
 #include <algorithm>
 #include <array>
@@ -82,7 +75,8 @@ class Ida {
   }
 
   static const char* name() { return "ida"; }
-  const char* linear_solver() const { return local_ ? "KLU, local" : sparse_ ? "KLU" : "dense LU"; }
+  /// Of a system that has started.
+  const char* linear_solver() const { return matrix_ ? matrix_->linear_solver() : ""; }
   double* y() { return y_.data(); }
   double* ydot() { return ydot_.data(); }
 
@@ -91,11 +85,7 @@ class Ida {
     if (!system_.start(t0, y_.data(), ydot_.data())) return false;
     begin_y_.assign(y_.data(), y_.data() + y_.size());
     begin_ydot_.assign(ydot_.data(), ydot_.data() + ydot_.size());
-    // Known once the system has started.
-    if (LocalJacobian* local = system_.local())
-      local_ = std::make_unique<LocalNewton>(*local, system_.size(), context_);
-    else
-      sparse_ = !system_.pattern().column_start.empty();
+    matrix_ = std::make_unique<IdaMatrix>(system_, context_, y_);
     return all_finite(y_.data(), y_.size()) && all_finite(ydot_.data(), ydot_.size());
   }
 
@@ -107,11 +97,8 @@ class Ida {
     check(IDASVtolerances(ida, options_.rtol, tolerance_), "IDASVtolerances");
     check(IDASetId(ida, differential_), "IDASetId");
     check(IDASetSuppressAlg(ida, SUNTRUE), "IDASetSuppressAlg");
-    if (!local_) make_linear_solver();
-    SUNLinearSolver solver = local_ ? local_->solver() : linear_solver_.get();
-    SUNMatrix matrix = local_ ? local_->matrix() : matrix_.get();
-    check(IDASetLinearSolver(ida, solver, matrix), "IDASetLinearSolver");
-    floor_.attach(ida, solver, matrix);
+    check(IDASetLinearSolver(ida, matrix_->solver(), matrix_->matrix()), "IDASetLinearSolver");
+    floor_.attach(ida, matrix_->solver(), matrix_->matrix());
     check(IDASetJacFn(ida, jacobian), "IDASetJacFn");
     check(IDASetNonlinConvCoef(ida, newton_fraction), "IDASetNonlinConvCoef");
     check(IDASetMaxErrTestFails(ida, max_error_test_failures), "IDASetMaxErrTestFails");
@@ -184,22 +171,6 @@ class Ida {
   }
 
  private:
-  void make_linear_solver() {
-    const sunindextype n = system_.size();
-    if (sparse_) {
-      const JacobianPattern& pattern = system_.pattern();
-      if (pattern.column_start.size() != static_cast<std::size_t>(n) + 1 ||
-          static_cast<std::size_t>(pattern.column_start.back()) != pattern.row.size())
-        throw std::invalid_argument("the Jacobian pattern does not fit the system");
-      const auto entries = static_cast<sunindextype>(pattern.row.size());
-      matrix_.reset(sundials::require(SUNSparseMatrix(n, n, entries, CSC_MAT, context_)));
-      linear_solver_.reset(sundials::require(SUNLinSol_KLU(y_, matrix_.get(), context_)));
-    } else {
-      matrix_.reset(sundials::require(SUNDenseMatrix(n, n, context_)));
-      linear_solver_.reset(sundials::require(SUNLinSol_Dense(y_, matrix_.get(), context_)));
-    }
-  }
-
   /// 1 tells IDA to try a shorter step.
   static int residual(double t, N_Vector y, N_Vector ydot, N_Vector r, void* self) {
     Ida& ida = *static_cast<Ida*>(self);
@@ -215,30 +186,11 @@ class Ida {
   static int jacobian(double t, double c, N_Vector y, N_Vector ydot, N_Vector, SUNMatrix matrix,
                       void* self, N_Vector, N_Vector, N_Vector) {
     Ida& ida = *static_cast<Ida*>(self);
-    if (ida.local_) {
-      if (ida.local_->evaluate(t, N_VGetArrayPointer(y), N_VGetArrayPointer(ydot), c)) return 0;
-      return ida.evaluation_failed_ = true, 1;
-    }
-    double* values = nullptr;
-    long entries = 0;
-    if (ida.sparse_) {
-      // SUNDIALS clears the pattern with the values before each call.
-      const JacobianPattern& pattern = ida.system_.pattern();
-      std::copy(pattern.column_start.begin(), pattern.column_start.end(),
-                SUNSparseMatrix_IndexPointers(matrix));
-      std::copy(pattern.row.begin(), pattern.row.end(), SUNSparseMatrix_IndexValues(matrix));
-      values = SUNSparseMatrix_Data(matrix);
-      entries = static_cast<long>(pattern.row.size());
-    } else {
-      values = SUNDenseMatrix_Data(matrix);
-      entries = SUNDenseMatrix_LData(matrix);
-    }
-    const bool evaluated =
-        ida.system_.jacobian(t, N_VGetArrayPointer(y), N_VGetArrayPointer(ydot), c, values);
-    if (!evaluated) return ida.evaluation_failed_ = true, 1;
-    if (all_finite(values, entries)) return 0;
-    ida.not_finite_ = true;
-    return 1;
+    const IdaMatrix::Filled filled =
+        ida.matrix_->fill(t, N_VGetArrayPointer(y), N_VGetArrayPointer(ydot), c, matrix);
+    ida.evaluation_failed_ |= filled == IdaMatrix::Filled::not_evaluated;
+    ida.not_finite_ |= filled == IdaMatrix::Filled::not_finite;
+    return filled == IdaMatrix::Filled::yes ? 0 : 1;
   }
 
   bool first_step_failed(int flag) {
@@ -321,15 +273,12 @@ class Ida {
 
   DaeSystem& system_;
   const IntegrationOptions& options_;
-  bool sparse_ = false;
   double span_, t0_ = 0, t_end_ = 0;
   double first_step_ = 0;
   std::vector<double> begin_y_, begin_ydot_;  ///< at t0_, where it last began
   sundials::Context context_;                 // before everything made with it
   sundials::Vector y_, ydot_, output_, tolerance_, differential_;
-  sundials::Matrix matrix_;
-  sundials::LinearSolver linear_solver_;
-  std::unique_ptr<LocalNewton> local_;  ///< in place of the two
+  std::unique_ptr<IdaMatrix> matrix_;
   RoundingFloor floor_;
   sundials::Integrator memory_;
   Counters earlier_attempts_;

@@ -1,14 +1,14 @@
 #pragma once
-// What is measured along a run: drift, energy, errors, rows that fade, at the output times and, by
-// Gauss points, between the steps. Of run_form.cpp alone.
+// What is measured along a run: drift, energy, errors, rows that fade, at the output times and
+// between the steps. Of run_form.cpp alone.
 
-#include <momenta/dae/form/ode_form.h>
 #include <momenta/dae/measure/growth.h>
 #include <momenta/dae/measure/multipliers.h>
+#include <momenta/dae/study/lost_work.h>
+#include <momenta/dae/study/passages.h>
 #include <momenta/dae/study/run_form.h>
 
 #include <algorithm>
-#include <array>
 #include <optional>
 
 namespace momenta {
@@ -25,14 +25,15 @@ class Looker {
         phi_(mechanism.m()),
         middle_(mechanism.nq()),
         markers_(static_cast<std::size_t>(6 * static_cast<int>(mechanism.scene().markers.size()))),
-        loses_energy_(loses_energy(mechanism.scene())) {
+        lost_work_(mechanism.scene()) {
     if (request.keep_trajectory) result.trajectory.columns = trajectory_columns(mechanism);
     if (mechanism.m() > 0) {
       solver_ = make_loop_solver(mechanism, *e_);
       unique_.emplace(mechanism, *e_, *solver_);
       all_unique_.assign(static_cast<std::size_t>(mechanism.m()), true);
+      if (mechanism.kkt() == KktChoice::sweeps || filters_pivots(mechanism))
+        passages_.emplace(mechanism, form, *e_, *solver_, result);
     }
-    length_ = length_of(mechanism.scene());
   }
 
   bool sample(double t, const double* y, const double* ydot) {
@@ -48,7 +49,7 @@ class Looker {
     const double velocity = phi_.norm();
     const double kinetic = e_->kinetic(), potential = e_->potential(now_.q.data());
     const double energy =
-        mechanism_.plan().drives ? not_measured : kinetic + potential - work_until(t);
+        mechanism_.plan().drives ? not_measured : kinetic + potential - lost_work_.until(t);
     if (!std::isfinite(position) || !std::isfinite(velocity)) {
       trouble_ = "at t = " + std::to_string(t) + " s the state is not finite";
       return false;
@@ -95,23 +96,16 @@ class Looker {
       const double drift = phi_.norm();
       if (!(drift <= between_)) between_ = drift;
     }
-    if (solver_ && (mechanism_.kkt() == KktChoice::sweeps || filters_pivots(mechanism_)))
-      look_for_passages(t0, t1, between);
-    if (loses_energy_) {
-      // Power at the Gauss points of the step; the polynomial through them gives the work up to any
-      // sample inside it.
-      work_ = work_until(step_end_);
-      step_from_ = t0;
-      step_end_ = t1;
-      for (std::size_t i = 0; i < gauss_points.size(); ++i) {
-        const double t = t0 + gauss_points[i] * (t1 - t0);
-        between(t, state_.data());
-        if (!form_.read(t, state_.data(), nullptr, now_)) return true;
-        e_->place(t, now_.q.data());
-        e_->move(now_.u.data());
-        power_[i] = e_->lost_power(now_.u.data());
-      }
-    }
+    if (passages_) passages_->step(t0, t1, between, state_);
+    if (lost_work_.any() && !lost_work_.step(t0, t1, [&](double t, double& watts) {
+          between(t, state_.data());
+          if (!form_.read(t, state_.data(), nullptr, now_)) return false;
+          e_->place(t, now_.q.data());
+          e_->move(now_.u.data());
+          watts = e_->lost_power(now_.u.data());
+          return true;
+        }))
+      return true;
     return !request_.going_on || request_.going_on();
   }
 
@@ -145,12 +139,6 @@ class Looker {
 
  private:
   static constexpr double rounding_level = 1e-13;  ///< of |Φ| and |Φ̇| in metres and seconds
-  // Five-point Gauss rule on [0, 1].
-  static constexpr std::array<double, 5> gauss_points{
-      0.046910077030668004, 0.23076534494715845, 0.5, 0.76923465505284155, 0.95308992296933200};
-  static constexpr std::array<double, 5> gauss_weights{0.11846344252809454, 0.23931433524968324,
-                                                       0.28444444444444444, 0.23931433524968324,
-                                                       0.11846344252809454};
   /// Coordinates at the film's times within the last step.
   void film_until(double t1, const Interpolant& between) {
     Film& film = result_.film;
@@ -163,91 +151,6 @@ class Looker {
       film.frames.emplace_back(middle_.begin(), middle_.end());
     }
   }
-  /// The weakest pivot of the loops at a time within the last step; 0 where a row faded that is not
-  /// redundant throughout.
-  double pivot_at(double t, const Interpolant& between) {
-    between(t, state_.data());
-    if (!form_.read_coordinates(t, state_.data(), middle_)) return not_measured;
-    at_rest_.setZero(mechanism_.nv());
-    if (!solver_->free_velocity(t, middle_.data(), at_rest_.data(), unused_.data()))
-      return not_measured;
-    const LoopSolver::Pivots pivots = solver_->pivots();
-    always_faded_ = std::min(always_faded_, pivots.faded);
-    return pivots.faded > always_faded_ ? 0 : pivots.weakest;
-  }
-  /// Two motions that meet where a pivot vanishes with the square of the distance, Φ = x y = 0,
-  /// keep clear of each other off the constraints, Φ = x y = η: no nearer than √η, where the pivot
-  /// is about η, and there either leads into the other.
-  bool is_ambiguous(double t, double pivot, const Interpolant& between) {
-    constexpr double apart = 10;
-    Snapshot here;
-    between(t, state_.data());
-    if (!form_.read(t, state_.data(), nullptr, here)) return false;
-    e_->place(t, here.q.data());
-    e_->positions(phi_.data());
-    return phi_.norm() / length_ > rounding_level && pivot < apart * phi_.norm() / length_;
-  }
-  /// Least pivots below `near_singular`, one for each time the run goes there.
-  void look_for_passages(double t0, double t1, const Interpolant& between) {
-    constexpr double near_singular = 1e-2;
-    constexpr int closer_looks = 8;
-    unused_.resize(mechanism_.nv());
-    const auto note = [&](double t, double pivot) {
-      if (std::isnan(pivot)) return;
-      if (!(result_.least_pivot <= pivot)) result_.least_pivot = pivot;
-      if (pivot >= near_singular) {
-        passing_ = false;
-        return;
-      }
-      if (!passing_) result_.passages.push_back({t, pivot});
-      passing_ = true;
-      RunResult::Passage& last = result_.passages.back();
-      last.ambiguous = last.ambiguous || is_ambiguous(t, pivot, between);
-      if (!(pivot < last.pivot)) return;
-      last.t = t;
-      last.pivot = pivot;
-    };
-    const double end = pivot_at(t1, between);
-    const bool careful = !form_.is_dae() && form_.ode()->wants_care() != Care::none;
-    if (passing_ || careful || end < 10 * near_singular)
-      for (int i = 1; i < closer_looks; ++i) {
-        const double t = t0 + (t1 - t0) * i / closer_looks;
-        note(t, pivot_at(t, between));
-      }
-    note(t1, end);
-  }
-
-  static bool loses_energy(const Scene& scene) {
-    for (const auto& joint : scene.joints)
-      if (joint.damping != 0) return true;
-    for (const auto& f : scene.forces)
-      if ((f.kind == "spring-damper" && f.damping != 0) ||
-          (f.kind == "wrench" && (f.in_body_axes || f.torque.norm() > 0)))
-        return true;
-    return false;
-  }
-
-  /// Work done by what the energy does not hold, up to a time in the last step [J].
-  double work_until(double t) const {
-    if (!(step_end_ > step_from_)) return work_;
-    const double part = (t - step_from_) / (step_end_ - step_from_);
-    double mean = 0;  // of the power from step_from_ to t
-    for (std::size_t i = 0; i < gauss_points.size(); ++i)
-      mean += gauss_weights[i] * power_at(part * gauss_points[i]);
-    return work_ + mean * (t - step_from_);
-  }
-  /// The polynomial through the powers, at a fraction of the step.
-  double power_at(double x) const {
-    double sum = 0;
-    for (std::size_t i = 0; i < power_.size(); ++i) {
-      double term = power_[i];
-      for (std::size_t j = 0; j < power_.size(); ++j)
-        if (j != i) term *= (x - gauss_points[j]) / (gauss_points[i] - gauss_points[j]);
-      sum += term;
-    }
-    return sum;
-  }
-
   void row(double t, double energy, double position, double velocity) {
     row_.clear();
     row_.push_back(t);
@@ -321,17 +224,11 @@ class Looker {
   Eigen::VectorXd phi_, middle_;
   std::vector<double> markers_, row_, state_;
   Snapshot now_;
-  bool loses_energy_;
+  LostWork lost_work_;
+  std::optional<Passages> passages_;
   double energy_at_start_ = 0, potential_at_start_ = 0, between_ = 0;
-  double work_ = 0;  ///< up to step_from_ [J]
-  double step_from_ = 0, step_end_ = 0;
-  std::array<double, 5> power_{};  ///< at the Gauss points of the last step [W]
   int compared_ = 0;
   long rows_ = 0;  ///< of the trajectory
-  Eigen::VectorXd at_rest_, unused_;
-  int always_faded_ = std::numeric_limits<int>::max();
-  bool passing_ = false;
-  double length_ = 1;  ///< of the scene [m]
   std::string trouble_;
 };
 

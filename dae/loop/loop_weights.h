@@ -1,0 +1,30 @@
+#pragma once
+// What turns and slides in loops, weighed at the loops' points at the start: scales below which
+// rows of points are dust, and masses too far apart for joints to be eliminated before the loops
+// that hold them. A joint's inertia is weighed at the end of the way from it to the loop's point:
+// so a uniform chain stays a chain of equals, whatever its length.
+
+#include <momenta/dae/loop/loop_model.h>
+
+#include <string>
+#include <vector>
+
+namespace momenta {
+
+struct LoopWeights {
+  /// Per loop: what unit forces on levers of 10⁻⁴ lengths of the scene move; zero for couplers.
+  /// [1/kg]
+  std::vector<double> least_scales;
+  /// Of all loops: how many times heavier than 10⁶ of the lightest the heaviest is, at least 1.
+  double spread_beyond_usual = 1;
+  /// Which joint is 10⁶ times lighter than another of its loop, in words; empty: none. Beside a
+  /// mobility so much larger the filter of the pivots takes what the others have of a row.
+  std::string light;
+};
+
+/// `inertia`: M_jj (nv) at the start; `length`: of the scene. O(length of all loops)
+template <class Space>
+LoopWeights weigh_loops(const LoopModel<Space>& loops, const Tree& tree,
+                        const std::vector<double>& inertia, double length);
+
+}  // namespace momenta

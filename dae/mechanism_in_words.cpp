@@ -1,0 +1,110 @@
+// What a mechanism is called: columns of results, lines of the plan, joints that fail.
+
+#include <momenta/core/kernel/levels/open_sweeps.h>
+#include <momenta/core/kernel/limbs/limbs.h>
+#include <momenta/dae/kkt/kkt.h>
+#include <momenta/dae/mechanism.h>
+#include <momenta/dae/sweeps/legs/legs.h>
+
+namespace momenta {
+namespace {
+
+/// What a one-dof joint adds to the name of its scene joint: "q", or the number of its coordinate
+/// behind it where the scene's joint has several.
+std::string one_dof_column(const Tree::Body& b, const char* letter) {
+  return b.joint + "." + letter + (b.parts > 1 ? std::to_string(b.coordinate) : "");
+}
+
+}  // namespace
+
+std::vector<Column> Mechanism::coordinate_columns() const {
+  std::vector<Column> columns;
+  for (const auto& b : tree_.bodies) {
+    if (b.nq == 1)
+      columns.push_back({one_dof_column(b, "q"), b.kind == JointKind::prismatic ? "m" : "rad"});
+    if (b.nq == 7)
+      for (const char* axis : {".x", ".y", ".z"}) columns.push_back({b.joint + axis, "m"});
+    if (b.nq >= 4)
+      for (const char* part : {".qw", ".qx", ".qy", ".qz"})
+        columns.push_back({b.joint + part, "1"});
+  }
+  return columns;
+}
+
+std::vector<Column> Mechanism::rate_columns() const {
+  std::vector<Column> columns;
+  for (const auto& b : tree_.bodies) {
+    if (b.nv == 1)
+      columns.push_back({one_dof_column(b, "u"), b.kind == JointKind::prismatic ? "m/s" : "rad/s"});
+    if (b.nv == 6)
+      for (const char* axis : {".vx", ".vy", ".vz"}) columns.push_back({b.joint + axis, "m/s"});
+    if (b.nv >= 3)
+      for (const char* axis : {".wx", ".wy", ".wz"}) columns.push_back({b.joint + axis, "rad/s"});
+  }
+  return columns;
+}
+
+std::vector<Column> Mechanism::marker_columns() const {
+  std::vector<Column> columns;
+  for (const auto& marker : scene_.markers) {
+    for (const char* axis : {".x", ".y", ".z"}) columns.push_back({marker.name + axis, "m"});
+    for (const char* axis : {".vx", ".vy", ".vz"}) columns.push_back({marker.name + axis, "m/s"});
+  }
+  return columns;
+}
+
+std::string Mechanism::legs_in_words() const {
+  if (plan_.planar) return "";
+  const auto& cast = std::get<Cast<Spatial>>(cast_);
+  return momenta::legs_in_words(
+      find_legs(cast.links, cast.swept.loops, cast.swept.plan, leg_lanes_at(best_level())));
+}
+
+std::vector<std::pair<std::string, std::string>> Mechanism::plan_lines() const {
+  auto lines = plan_.lines();
+  if (!plan_.planar) {
+    const LinkTree links = build_links(std::get<Cast<Spatial>>(cast_).model);
+    lines.emplace_back("joints", links_in_words(links));
+    if (rows_ == 0) {
+      const std::string limbs = limbs_in_words(links, limb_lanes_at(best_level()));
+      lines.emplace_back("limbs", limbs.empty() ? "none of one shape: body by body" : limbs);
+    }
+  }
+  if (rows_ == 0) {
+    lines.emplace_back("loops", "none: no KKT system, no σ, forward dynamics by the two sweeps");
+    return lines;
+  }
+  lines.emplace_back("loops", std::to_string(scene_.loops.size()) + " with " +
+                                  std::to_string(rows_) + " equations");
+  const std::string legs = legs_in_words();
+  std::string how = "dense: Cholesky of M, pivoted and filtered LDLᵀ of the loops";
+  if (kkt_ == KktChoice::sweeps)
+    how = "loops carried by the sweeps, at most " +
+          std::to_string(visit([](const auto& cast) { return cast.swept.plan.lanes; })) +
+          " equations open at once" +
+          (pairs_anew() ? ", loops that meet in one point paired along the tree" : "") +
+          (legs.empty() ? "" : ", " + legs);
+  else if (kkt_ == KktChoice::sparse)
+    how = std::string(
+              solved_by_bodies(*this)
+                  ? "sparse: KLU on the equations of the bodies, the tree being deep; poses are "
+                    "not filtered,"
+              : tips_first() ? "sparse: filtered LDLᵀ"
+                             : "sparse: KLU") +
+          " on a pattern analysed once" + (kkt_reason_.empty() ? "" : " (" + kkt_reason_ + ")");
+  lines.emplace_back("solving (7)", how + ", " + std::to_string(tree_.nv + rows_) + " unknowns");
+  return lines;
+}
+
+std::string Mechanism::no_inertia(int rate) const {
+  for (std::size_t k = 0; k < tree_.bodies.size(); ++k) {
+    const Tree::Body& b = tree_.bodies[k];
+    if (rate < b.u || rate >= b.u + b.nv) continue;
+    const auto carried = static_cast<std::size_t>(tree_.carried_by(b.joint));
+    return tree_.joint_in_words(static_cast<int>(k)) + " has no inertia to move: body '" +
+           tree_.bodies[carried].name + "' and what it carries weigh nothing along it";
+  }
+  return "the mass matrix is not finite";
+}
+
+}  // namespace momenta

@@ -1,0 +1,31 @@
+#pragma once
+// Newton's matrix ∂F/∂y + c ∂F/∂y' as IDA takes it, and the solver of its linear systems: dense LU,
+// KLU on the system's pattern, or KLU on a larger local matrix (local_newton.h).
+
+#include <momenta/dae/solver/local_newton.h>
+#include <momenta/dae/solver/sundials_handles.h>
+
+namespace momenta {
+
+class IdaMatrix {
+ public:
+  enum class Filled { yes, not_evaluated, not_finite };
+
+  /// Of a system that has started: which of the three is known then. `like`: a vector of its size.
+  IdaMatrix(DaeSystem& system, const sundials::Context& context, N_Vector like);
+
+  const char* linear_solver() const { return local_ ? "KLU, local" : sparse_ ? "KLU" : "dense LU"; }
+  SUNMatrix matrix() { return local_ ? local_->matrix() : matrix_.get(); }
+  SUNLinearSolver solver() { return local_ ? local_->solver() : solver_.get(); }
+  /// @pre `matrix` is matrix() or a copy that IDA made of it
+  Filled fill(double t, const double* y, const double* ydot, double c, SUNMatrix matrix);
+
+ private:
+  DaeSystem& system_;
+  bool sparse_ = false;
+  sundials::Matrix matrix_;
+  sundials::LinearSolver solver_;
+  std::unique_ptr<LocalNewton> local_;  ///< in place of the two
+};
+
+}  // namespace momenta

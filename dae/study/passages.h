@@ -1,0 +1,98 @@
+#pragma once
+// Where a run passes poses at which its loop equations lose rank: least pivots below 1e-2 of their
+// scale, one for each time the run goes there, and whether the motion was sure to stay its own.
+
+#include <momenta/dae/form/ode_form.h>
+#include <momenta/dae/study/run_form.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace momenta {
+
+class Passages {
+ public:
+  /// Writes `least_pivot` and `passages` of `result`. @pre the solver's pivots are those of rows
+  Passages(const Mechanism& mechanism, Form& form, Evaluation<double>& e, LoopSolver& solver,
+           RunResult& result)
+      : form_(form),
+        e_(e),
+        solver_(solver),
+        result_(result),
+        phi_(mechanism.m()),
+        q_(mechanism.nq()),
+        at_rest_(Eigen::VectorXd::Zero(mechanism.nv())),
+        unused_(mechanism.nv()),
+        length_(length_of(mechanism.scene())) {}
+
+  /// Of the step just taken; `state`: work space of the form's size.
+  void step(double t0, double t1, const Interpolant& between, std::vector<double>& state) {
+    constexpr int closer_looks = 8;
+    const double end = pivot_at(t1, between, state);
+    const bool careful = !form_.is_dae() && form_.ode()->wants_care() != Care::none;
+    if (passing_ || careful || end < 10 * near_singular)
+      for (int i = 1; i < closer_looks; ++i) {
+        const double t = t0 + (t1 - t0) * i / closer_looks;
+        note(t, pivot_at(t, between, state), between, state);
+      }
+    note(t1, end, between, state);
+  }
+
+ private:
+  static constexpr double near_singular = 1e-2;
+
+  /// The weakest pivot of the loops at a time within the last step; 0 where a row faded that is not
+  /// redundant throughout.
+  double pivot_at(double t, const Interpolant& between, std::vector<double>& state) {
+    between(t, state.data());
+    if (!form_.read_coordinates(t, state.data(), q_)) return not_measured;
+    if (!solver_.free_velocity(t, q_.data(), at_rest_.data(), unused_.data())) return not_measured;
+    const LoopSolver::Pivots pivots = solver_.pivots();
+    always_faded_ = std::min(always_faded_, pivots.faded);
+    return pivots.faded > always_faded_ ? 0 : pivots.weakest;
+  }
+
+  void note(double t, double pivot, const Interpolant& between, std::vector<double>& state) {
+    if (std::isnan(pivot)) return;
+    if (!(result_.least_pivot <= pivot)) result_.least_pivot = pivot;
+    if (pivot >= near_singular) {
+      passing_ = false;
+      return;
+    }
+    if (!passing_) result_.passages.push_back({t, pivot});
+    passing_ = true;
+    RunResult::Passage& last = result_.passages.back();
+    last.ambiguous = last.ambiguous || is_ambiguous(t, pivot, between, state);
+    if (!(pivot < last.pivot)) return;
+    last.t = t;
+    last.pivot = pivot;
+  }
+
+  /// Two motions that meet where a pivot vanishes with the square of the distance, Φ = x y = 0,
+  /// keep clear of each other off the constraints, Φ = x y = η: no nearer than √η, where the pivot
+  /// is about η, and there either leads into the other.
+  bool is_ambiguous(double t, double pivot, const Interpolant& between,
+                    std::vector<double>& state) {
+    constexpr double apart = 10, rounding = 1e-13;
+    between(t, state.data());
+    if (!form_.read(t, state.data(), nullptr, here_)) return false;
+    e_.place(t, here_.q.data());
+    e_.positions(phi_.data());
+    const double opening = phi_.norm() / length_;
+    return opening > rounding && pivot < apart * opening;
+  }
+
+  Form& form_;
+  Evaluation<double>& e_;
+  LoopSolver& solver_;
+  RunResult& result_;
+  Eigen::VectorXd phi_, q_, at_rest_, unused_;
+  Snapshot here_;
+  double length_;  ///< of the scene [m]
+  int always_faded_ = std::numeric_limits<int>::max();
+  bool passing_ = false;
+};
+
+}  // namespace momenta
