@@ -100,7 +100,7 @@ TEST(SingularRuns, EqualLinkSliderCrankAtItsBifurcation) {
       error = std::max(
           error,
           std::abs(ten_seconds(mechanism, 0.65e-3 + i * 0.35e-3 / 39, 3, true).end.q[0] - exact));
-    EXPECT_LT(error, 2e-7) << "turned by " << angle;  // worst of 40; a tenth of it is rk4's own
+    EXPECT_LT(error, 1e-7) << "turned by " << angle;  // worst of 40
     RecordProperty("error at " + std::to_string(angle), std::to_string(error * 1e9) + "e-9");
   }
 }
