@@ -130,7 +130,7 @@ void Mechanism::take_weights() {
       for (int i = 0; i < l.rows; ++i)
         least_scales_.push_back(i < l.first_rows() ? l.least_scale : 0.0);
     }
-    spread_beyond_usual_ = weights.spread_beyond_usual;
+    mass_spread_ = weights.spread;
     light_ = weights.light;
   };
   if (plan_.planar)

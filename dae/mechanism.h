@@ -60,8 +60,8 @@ class Mechanism {
   /// Whether joints can be eliminated before the loops that hold them: each has inertia by then,
   /// and enough beside its neighbours not to take their digits.
   bool tips_first() const { return light_.empty(); }
-  /// LoopWeights::spread_beyond_usual
-  double spread_beyond_usual() const { return spread_beyond_usual_; }
+  /// LoopWeights::spread
+  double mass_spread() const { return mass_spread_; }
   /// The sweeps that carry this mechanism's loops, for one instruction level; 0: the machine's
   /// best. `legs_side_by_side`: in space, of one state, folded legs of one shape are swept in the
   /// lanes of a register. @pre kkt() is sweeps
@@ -130,7 +130,7 @@ class Mechanism {
   bool dense_ = true;
   KktChoice kkt_ = KktChoice::dense;
   std::string kkt_reason_;  ///< why the sweeps do not carry the loops; empty when they do
-  double spread_beyond_usual_ = 1;
+  double mass_spread_ = 1;
   std::string light_;  ///< which joint has too little inertia before its loops close, or empty
   mutable KktPattern pattern_;
   mutable std::once_flag mass_pattern_known_, constraint_pattern_known_;

@@ -53,7 +53,11 @@ void DaeForm::find_redundancy(const Start& start) {
     plain_.e->place(start.t, start.q.data());
   }
   epsilon_ = row_scales(mechanism_, *plain_.e);
-  for (double& epsilon : epsilon_) epsilon *= 1e-9 / mechanism_.spread_beyond_usual();
+  // The scale is that of the lightest; nothing takes back what ε costs the rows of the heaviest. On
+  // σ it cannot be much smaller: what rounding leaves in redundant rows, over ε, shortens steps.
+  const double unweakened = momentum_like() ? 1e6 : 1e2;
+  const double weaker = std::max(1.0, mechanism_.mass_spread() / unweakened);
+  for (double& epsilon : epsilon_) epsilon *= 1e-9 / weaker;
 }
 
 /// Where x is not tested it does not stop Newton's method either: what rounding of q leaves in it,

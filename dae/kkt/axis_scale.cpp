@@ -8,7 +8,7 @@ AxisScale::AxisScale(const Mechanism& mechanism)
     : pattern_(mechanism.constraint_pattern()),
       groups_(mechanism.row_groups()),
       least_(mechanism.least_scales()),
-      beyond_usual_(mechanism.spread_beyond_usual()) {
+      far_apart_(std::max(1.0, 1e-6 * mechanism.mass_spread())) {
   std::vector<bool> turns(static_cast<std::size_t>(mechanism.nv()), false);
   for (const auto& b : mechanism.tree().bodies) {
     const int angular = b.nv == 6 ? 3 : 0;
@@ -59,7 +59,7 @@ void AxisScale::of_groups(const std::vector<double>& inertia, const std::vector<
 void AxisScale::softness(const std::vector<double>& inertia, const std::vector<double>& constraint,
                          double fade, std::vector<double>& epsilon) const {
   of_groups(inertia, constraint, epsilon);
-  for (double& e : epsilon) e *= 1e-2 * fade / beyond_usual_;
+  for (double& e : epsilon) e *= 1e-2 * fade / far_apart_;
 }
 
 MassDiagonal::MassDiagonal(const KktPattern& pattern, int nv)

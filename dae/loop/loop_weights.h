@@ -15,8 +15,8 @@ struct LoopWeights {
   /// Per loop: what unit forces on levers of 10⁻⁴ lengths of the scene move; zero for couplers.
   /// [1/kg]
   std::vector<double> least_scales;
-  /// Of all loops: how many times heavier than 10⁶ of the lightest the heaviest is, at least 1.
-  double spread_beyond_usual = 1;
+  /// Of all loops: heaviest over lightest, at least 1.
+  double spread = 1;
   /// Which joint is 10⁶ times lighter than another of its loop, in words; empty: none. Beside a
   /// mobility so much larger the filter of the pivots takes what the others have of a row.
   std::string light;
