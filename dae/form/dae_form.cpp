@@ -3,6 +3,7 @@
 #include <momenta/dae/kkt/idle_forces.h>
 #include <momenta/dae/kkt/kkt.h>
 #include <momenta/dae/kkt/tree_factor.h>
+#include <momenta/dae/loop/loop_weights.h>
 
 #include <algorithm>
 #include <cmath>
@@ -39,8 +40,8 @@ DaeForm::DaeForm(std::string name, const Mechanism& mechanism, DaeLayout layout,
 
 void DaeForm::find_redundancy(const Start& start) {
   if (!mechanism_.tips_first()) {  // no pivot of the loops tells
-    if (idle_forces(mechanism_, start.t, start.q).cols() == 0) return;
     plain_.e->place(start.t, start.q.data());
+    if (rank_and_idle(scaled_jacobian(mechanism_, *plain_.e).a).rank == layout_.m) return;
   } else if (mechanism_.dense_kkt() || mechanism_.kkt() != KktChoice::sweeps) {
     const auto kkt = make_dense_kkt(mechanism_);
     if (!kkt->factor(*plain_.e, start.t, start.q.data(), fade_evaluation) || kkt->faded() == 0)
@@ -55,7 +56,7 @@ void DaeForm::find_redundancy(const Start& start) {
   epsilon_ = row_scales(mechanism_, *plain_.e);
   // The scale is that of the lightest; nothing takes back what ε costs the rows of the heaviest. On
   // σ it cannot be much smaller: what rounding leaves in redundant rows, over ε, shortens steps.
-  const double unweakened = momentum_like() ? 1e6 : 1e2;
+  const double unweakened = momentum_like() ? masses_far_apart : 1e2;
   const double weaker = std::max(1.0, mechanism_.mass_spread() / unweakened);
   for (double& epsilon : epsilon_) epsilon *= 1e-9 / weaker;
 }

@@ -1,4 +1,5 @@
 #include <momenta/dae/kkt/axis_scale.h>
+#include <momenta/dae/loop/loop_weights.h>
 
 #include <algorithm>
 
@@ -8,7 +9,7 @@ AxisScale::AxisScale(const Mechanism& mechanism)
     : pattern_(mechanism.constraint_pattern()),
       groups_(mechanism.row_groups()),
       least_(mechanism.least_scales()),
-      far_apart_(std::max(1.0, 1e-6 * mechanism.mass_spread())) {
+      far_apart_(std::max(1.0, mechanism.mass_spread() / masses_far_apart)) {
   std::vector<bool> turns(static_cast<std::size_t>(mechanism.nv()), false);
   for (const auto& b : mechanism.tree().bodies) {
     const int angular = b.nv == 6 ? 3 : 0;

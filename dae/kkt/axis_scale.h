@@ -23,8 +23,8 @@ class AxisScale {
                  std::vector<double>& scale) const;
   /// ε of KluSolver (m), from the same. An added block, once refined, costs (ε/W)² on every row: so
   /// it is a hundred times weaker than the filter of pivots, which costs (τ/W)⁴. The scale is what
-  /// the lightest body of a loop lets a row move; where masses are more than 10⁶ times apart, the
-  /// heaviest's is still above ε.
+  /// the lightest body of a loop lets a row move; where masses are further apart than
+  /// masses_far_apart, the heaviest's is still above ε.
   void softness(const std::vector<double>& inertia, const std::vector<double>& constraint,
                 double fade, std::vector<double>& epsilon) const;
 
@@ -35,7 +35,7 @@ class AxisScale {
   const std::vector<KktPattern::Entry>& pattern_;  ///< of Φ_q
   const std::vector<int>& groups_;
   const std::vector<double>& least_;
-  double far_apart_;  ///< mass spread over 10⁶, at least 1
+  double far_apart_;  ///< mass spread over masses_far_apart, at least 1
   std::vector<Hanging> hanging_;
 };
 

@@ -7,7 +7,7 @@
 namespace momenta {
 namespace {
 
-constexpr double least_lever = 1e-4, far_apart = 1e6;
+constexpr double least_lever = 1e-4;
 
 /// One loop: Σ 1/M_jj in the unit of 1/kg, and the lightest and the heaviest joint.
 struct Weighed {
@@ -77,7 +77,7 @@ LoopWeights weigh_loops(const LoopModel<Space>& loops, const Tree& tree,
     if (w.lightest < 0) continue;
     lightest = std::min(lightest, w.of_lightest);
     heaviest = std::max(heaviest, w.of_heaviest);
-    if (!weights.light.empty() || !(w.of_heaviest > far_apart * w.of_lightest)) continue;
+    if (!weights.light.empty() || !(w.of_heaviest > masses_far_apart * w.of_lightest)) continue;
     char times[32];
     std::snprintf(times, sizeof times, "%.0e", w.of_heaviest / w.of_lightest);
     weights.light = "what turns about " + tree.joint_in_words(w.lightest) + " is " + times +

@@ -11,14 +11,17 @@
 
 namespace momenta {
 
+/// Heavier by this, a joint is not to be taken together with a lighter one of its loop: beside a
+/// mobility so much larger the filter of the pivots takes what it has of a row.
+inline constexpr double masses_far_apart = 1e6;
+
 struct LoopWeights {
   /// Per loop: what unit forces on levers of 10⁻⁴ lengths of the scene move; zero for couplers.
   /// [1/kg]
   std::vector<double> least_scales;
   /// Of all loops: heaviest over lightest, at least 1.
   double spread = 1;
-  /// Which joint is 10⁶ times lighter than another of its loop, in words; empty: none. Beside a
-  /// mobility so much larger the filter of the pivots takes what the others have of a row.
+  /// Which joint is `masses_far_apart` from another of its loop, in words; empty: none.
   std::string light;
 };
 

@@ -7,9 +7,6 @@
 
 namespace momenta {
 
-/// Drift below this is the rounding of Φ itself: no growth law is read from it [m].
-inline constexpr double rounding_level = 1e-13;
-
 /// Runs whose slopes of sub-ranges spread wider than this have not grown as a power of t.
 inline constexpr double power_law_half_range = 0.3;
 

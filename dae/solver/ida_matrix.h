@@ -12,12 +12,13 @@ class IdaMatrix {
   enum class Filled { yes, not_evaluated, not_finite };
 
   /// Of a system that has started: which of the three is known then. `like`: a vector of its size.
+  /// @throws std::invalid_argument when the system's pattern does not fit its size
   IdaMatrix(DaeSystem& system, const sundials::Context& context, N_Vector like);
 
   const char* linear_solver() const { return local_ ? "KLU, local" : sparse_ ? "KLU" : "dense LU"; }
   SUNMatrix matrix() { return local_ ? local_->matrix() : matrix_.get(); }
   SUNLinearSolver solver() { return local_ ? local_->solver() : solver_.get(); }
-  /// @pre `matrix` is matrix() or a copy that IDA made of it
+  /// At y and y' of the system's size. @pre `matrix` is matrix() or a copy that IDA made of it
   Filled fill(double t, const double* y, const double* ydot, double c, SUNMatrix matrix);
 
  private:

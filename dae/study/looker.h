@@ -138,7 +138,6 @@ class Looker {
   const std::string& trouble() const { return trouble_; }
 
  private:
-  static constexpr double rounding_level = 1e-13;  ///< of |Φ| and |Φ̇| in metres and seconds
   /// Coordinates at the film's times within the last step.
   void film_until(double t1, const Interpolant& between) {
     Film& film = result_.film;

@@ -75,13 +75,13 @@ class Passages {
   /// is about η, and there either leads into the other.
   bool is_ambiguous(double t, double pivot, const Interpolant& between,
                     std::vector<double>& state) {
-    constexpr double apart = 10, rounding = 1e-13;
+    constexpr double apart = 10;
     between(t, state.data());
     if (!form_.read(t, state.data(), nullptr, here_)) return false;
     e_.place(t, here_.q.data());
     e_.positions(phi_.data());
     const double opening = phi_.norm() / length_;
-    return opening > rounding && pivot < apart * opening;
+    return opening > rounding_level && pivot < apart * opening;
   }
 
   Form& form_;

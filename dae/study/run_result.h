@@ -16,6 +16,9 @@ namespace momenta {
 inline constexpr double not_measured =
     std::numeric_limits<double>::quiet_NaN();  ///< JSON null, empty CSV cell
 
+/// Drift below this is the rounding of Φ, or of Φ̇, itself: no growth law is read from it [m, m/s].
+inline constexpr double rounding_level = 1e-13;
+
 struct RunSettings {
   std::string form = "momentum";
   std::string integrator = "dop853";
