@@ -3,6 +3,7 @@
 
 #include <momenta/core/kernel/accelerations.h>
 #include <momenta/core/kernel/mass_matrix.h>
+#include <momenta/core/kernel/pose_of.h>
 #include <momenta/core/open_chain_inside.h>
 
 namespace momenta {
@@ -33,26 +34,6 @@ Reaction reaction_of(const Tree::Body& body, const Model<Planar>& model,
   const Eigen::Matrix3d to_scene =
       (model.frames[k].linear() * body.scene_axes.linear()).transpose();
   return {body.joint, to_scene * turned_back, to_scene * Eigen::Vector3d(0, 0, wrench.n)};
-}
-
-Eigen::Isometry3d pose_of(const Tree::Body& body, const Model<Spatial>& model,
-                          const Workspace<Spatial, double>& w, std::size_t k) {
-  Eigen::Isometry3d pose;
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) pose.linear()(i, j) = w.body[k].pose.axes(i, j);
-  pose.translation() = vector(w.body[k].pose.origin);
-  pose.makeAffine();
-  return pose * model.frames[k] * body.scene_axes;
-}
-Eigen::Isometry3d pose_of(const Tree::Body& body, const Model<Planar>& model,
-                          const Workspace<Planar, double>& w, std::size_t k) {
-  const auto& p = w.body[k].pose;
-  Eigen::Isometry3d in_plane = Eigen::Isometry3d::Identity();
-  in_plane.linear().topLeftCorner<2, 2>() << p.c, -p.s, p.s, p.c;
-  in_plane.translation() << p.origin[0], p.origin[1], 0;
-  Eigen::Isometry3d basis = Eigen::Isometry3d::Identity();
-  basis.linear() = model.basis;
-  return basis * in_plane * model.frames[k] * body.scene_axes;
 }
 
 }  // namespace

@@ -10,10 +10,11 @@
 
 namespace momenta {
 
+/// The rows of the equations, which are wanted in every scalar.
 template <class S>
-class Evaluation {
+class EquationRows {
  public:
-  virtual ~Evaluation() = default;
+  virtual ~EquationRows() = default;
 
   /// Configuration q (nq) at time t.
   virtual void place(double t, const S* q) = 0;
@@ -42,36 +43,49 @@ class Evaluation {
   virtual void coordinate_rates(const S* q, const S* u, S* qdot) const = 0;
   virtual void joint_rates(const S* q, const S* qdot, S* u) const = 0;
 
+  /// Generalised forces (nv) at (t, q, u), all but the weights: those of the joints and, unless
+  /// `at_points` is false, of springs, dampers and wrenches between points of bodies. Needs neither
+  /// place() nor move(), and spoils what they left.
+  virtual void applied_forces(double t, const S* q, const S* u, S* tau, bool at_points = true) = 0;
+};
+
+template <class S>
+class Evaluation : public EquationRows<S> {};
+
+/// In doubles also what no form differentiates: the entries of (7), the recursions of mechanisms
+/// without loops, forces, energies, markers.
+template <>
+class Evaluation<double> : public EquationRows<double> {
+ public:
   /// Values of M (upper triangle) and Φ_q in the order of the mechanism's KKT pattern. After
   /// place().
-  virtual void mass_entries(S* values) = 0;
+  virtual void mass_entries(double* values) = 0;
   /// Diagonal of M (nv), O(bodies). After place().
-  virtual void mass_diagonal(S* values) = 0;
-  virtual void constraint_entries(S* values) = 0;
+  virtual void mass_diagonal(double* values) = 0;
+  virtual void constraint_entries(double* values) = 0;
 
   /// (q, p, t) → (u, ṗ) by the recursion of the paper: mechanisms without loops only. False when a
   /// joint has no inertia.
-  virtual bool open_momentum_rates(double t, const S* q, const S* p, S* u, S* pdot) = 0;
+  virtual bool open_momentum_rates(double t, const double* q, const double* p, double* u,
+                                   double* pdot) = 0;
   /// (q, u, t) → u̇ by the articulated recursion: mechanisms without loops only.
-  virtual bool open_accelerations(double t, const S* q, const S* u, S* udot) = 0;
+  virtual bool open_accelerations(double t, const double* q, const double* u, double* udot) = 0;
 
   /// Place in u of the joint at which one of these two failed.
   virtual int stuck() const = 0;
 
   /// Generalised forces (nv) of springs, dampers and wrenches between points of bodies at (t, q,
-  /// u), and all but the weights: those of the joints besides or, with `at_points` false, alone.
-  /// Neither needs place() or move(); both spoil what those left.
-  virtual void body_forces(double t, const S* q, const S* u, S* tau) = 0;
-  virtual void applied_forces(double t, const S* q, const S* u, S* tau, bool at_points = true) = 0;
+  /// u). As applied_forces() it spoils what place() and move() left.
+  virtual void body_forces(double t, const double* q, const double* u, double* tau) = 0;
 
   /// T and V [J]; after place() and move().
-  virtual S kinetic() = 0;
-  virtual S potential(const S* q) = 0;
+  virtual double kinetic() = 0;
+  virtual double potential(const double* q) = 0;
   /// Power of everything the energy does not hold [W]: dampers, wrenches that have no potential.
   /// After move(u).
-  virtual S lost_power(const S* u) = 0;
+  virtual double lost_power(const double* u) = 0;
   /// Per marker x y z [m] and its velocity [m/s], ground axes; after move().
-  virtual void markers(S* values) = 0;
+  virtual void markers(double* values) = 0;
 };
 
 }  // namespace momenta

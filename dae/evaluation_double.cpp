@@ -8,7 +8,7 @@ const KktPattern& Mechanism::kkt_pattern() const {
   constraint_pattern();
   std::call_once(mass_pattern_known_, [&] {
     visit([&]<class Space>(const Cast<Space>& cast) {
-      SweepEvaluation<Space, double> e(*this, cast);
+      SweepEvaluation<Space> e(*this, cast);
       e.place(0, tree_.q0.data());
       e.each_mass_entry([&](int i, int j, double) { pattern_.mass.push_back({i, j}); });
     });
@@ -19,7 +19,7 @@ const KktPattern& Mechanism::kkt_pattern() const {
 const std::vector<KktPattern::Entry>& Mechanism::constraint_pattern() const {
   std::call_once(constraint_pattern_known_, [&] {
     visit([&]<class Space>(const Cast<Space>& cast) {
-      SweepEvaluation<Space, double> e(*this, cast);
+      SweepEvaluation<Space> e(*this, cast);
       e.place(0, tree_.q0.data());
       e.each_constraint_entry([&](int i, int j, double) { pattern_.constraint.push_back({i, j}); });
     });
@@ -27,6 +27,10 @@ const std::vector<KktPattern::Entry>& Mechanism::constraint_pattern() const {
   return pattern_.constraint;
 }
 
-template std::unique_ptr<Evaluation<double>> Mechanism::evaluation<double>() const;
+template <>
+std::unique_ptr<Evaluation<double>> Mechanism::evaluation<double>() const {
+  if (plan_.planar) return std::make_unique<SweepEvaluation<Planar>>(*this, std::get<0>(cast_));
+  return std::make_unique<SweepEvaluation<Spatial>>(*this, std::get<1>(cast_));
+}
 
 }  // namespace momenta

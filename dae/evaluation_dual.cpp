@@ -1,6 +1,6 @@
 // Evaluations in dual numbers: exact Jacobians of the DAE forms.
 
-#include <momenta/dae/sweep_evaluation.h>
+#include <momenta/dae/sweep_rows.h>
 
 namespace momenta {
 

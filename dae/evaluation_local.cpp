@@ -1,6 +1,6 @@
 // Evaluations in sparse dual numbers: Newton matrices of large mechanisms, entry by entry.
 
-#include <momenta/dae/sweep_evaluation.h>
+#include <momenta/dae/sweep_rows.h>
 
 namespace momenta {
 

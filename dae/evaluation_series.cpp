@@ -1,7 +1,7 @@
 // Evaluations in series along a motion, with two directions each: the derivative arrays of the DAE
 // forms.
 
-#include <momenta/dae/sweep_evaluation.h>
+#include <momenta/dae/sweep_rows.h>
 
 namespace momenta {
 

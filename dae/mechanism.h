@@ -2,7 +2,7 @@
 // A scene made ready to move: its tree, its loops, and the plan that says what every evaluation
 // does. Immutable; every form, solver and measure takes it by const reference.
 
-#include <momenta/core/open_chain.h>
+#include <momenta/core/plan.h>
 #include <momenta/core/scalar/local_dual.h>
 #include <momenta/core/scalar/power_series.h>
 #include <momenta/dae/evaluation.h>
@@ -120,6 +120,8 @@ class Mechanism {
   void take_weights();
   std::string joint_without_inertia(bool swept) const;
   template <class Space, class S>
+  class SweepRows;
+  template <class Space>
   class SweepEvaluation;
 
   Scene scene_;
@@ -139,7 +141,8 @@ class Mechanism {
   std::vector<double> least_scales_;
 };
 
-extern template std::unique_ptr<Evaluation<double>> Mechanism::evaluation<double>() const;
+template <>
+std::unique_ptr<Evaluation<double>> Mechanism::evaluation<double>() const;
 extern template std::unique_ptr<Evaluation<Dual8>> Mechanism::evaluation<Dual8>() const;
 extern template std::unique_ptr<Evaluation<LocalDual>> Mechanism::evaluation<LocalDual>() const;
 extern template std::unique_ptr<Evaluation<Jet>> Mechanism::evaluation<Jet>() const;

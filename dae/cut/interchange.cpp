@@ -1,3 +1,4 @@
+#include <momenta/core/poses.h>
 #include <momenta/core/scene/near_name.h>
 #include <momenta/dae/cut/interchange.h>
 
@@ -90,7 +91,7 @@ BodyMotions::BodyMotions(const Mechanism& mechanism, const Start& start) {
       open.markers.push_back(marker);
     }
   const Mechanism tree(open);
-  const auto poses = OpenChain(open).poses(start.t, start.q);
+  const auto poses = Poses(open)(start.t, start.q.data());
   const auto e = tree.evaluation<double>();
   e->place(start.t, start.q.data());
   e->move(start.u.data());

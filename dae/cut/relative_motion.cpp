@@ -1,6 +1,6 @@
 #include <momenta/dae/cut/relative_motion.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -65,10 +65,11 @@ JointMotion joint_motion(const JointSpec& joint, const BodyMotion& parent,
       const Matrix3d rest = turn(axis, -first) * C;
       m.q = {first, angle_about(second, across, rest * across)};
       turned = turn(axis, m.q[0]) * turn(second, m.q[1]);
-      Eigen::Matrix<double, 3, 2> along;
-      along << axis, turn(axis, first) * second;
-      const Eigen::Vector2d rates = along.colPivHouseholderQr().solve(omega);
-      m.u = {rates[0], rates[1]};
+      // ω = u₁ a + u₂ b in the least-squares sense: the two normal equations of unit axes.
+      const Vector3d b = turn(axis, first) * second;
+      const double cosine = axis.dot(b), along_a = axis.dot(omega), along_b = b.dot(omega);
+      const double sine2 = axis.cross(b).squaredNorm();
+      m.u = {(along_a - cosine * along_b) / sine2, (along_b - cosine * along_a) / sine2};
       break;
     }
     case JointKind::planar: {

@@ -1,4 +1,4 @@
-#include <momenta/core/open_chain.h>
+#include <momenta/core/poses.h>
 #include <momenta/dae/kkt/axis_scale.h>
 #include <momenta/dae/kkt/least_norm.h>
 #include <momenta/dae/kkt/singular_values.h>
@@ -103,8 +103,7 @@ void refuse_springs_without_length(const Mechanism& mechanism, const Equilibrium
   Scene open = scene;
   open.loops.clear();
   std::erase_if(open.drives, [](const DriveSpec& drive) { return !drive.loop.empty(); });
-  OpenChain chain(open);
-  const auto poses = chain.poses(at.t, at.q);
+  const auto poses = Poses(open)(at.t, at.q.data());
   const auto place = [&](const std::string& body, const Eigen::Vector3d& point) -> Eigen::Vector3d {
     const int k = body == "ground" ? -1 : mechanism.tree().body(body);
     return k < 0 ? point : Eigen::Vector3d(poses[static_cast<std::size_t>(k)] * point);

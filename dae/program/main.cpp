@@ -1,5 +1,6 @@
 // The program: one verb a file.
 
+#include <momenta/core/kernel/levels/level.h>
 #include <momenta/core/scene/scene.h>
 #include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/study/environment.h>
@@ -170,6 +171,7 @@ int answer(int argc, char** argv) {
   within(stress_app->add_option("--threads", stress_options.threads,
                                 "Default: one for each processor"),
          "N", 1, 1024);
+  add_level(*stress_app, o);
   add_results(*stress_app, o);
   stress_app->add_flag("--json", o.json, "One JSON document on standard output");
   stress_app->add_flag("--quiet", o.quiet, "No progress, no table");
@@ -251,6 +253,7 @@ int answer(int argc, char** argv) {
     }
   }
   try {
+    if (!o.level.empty()) momenta::use_level(std::stoi(o.level));
     if (*check_verb) return check(o);
     if (*assemble_app) return assemble_verb(o);
     if (*run_verb) return run(o);

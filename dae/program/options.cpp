@@ -53,8 +53,15 @@ void add_scene(CLI::App& verb, Options& o) {
          {"auto", "planar", "spatial"});
   one_of(verb.add_option("--kkt", o.kkt, "How (7) is solved (default: auto)"),
          {"auto", "sweeps", "sparse", "dense"});
+  add_level(verb, o);
   verb.add_flag("--json", o.json, "One JSON document on standard output");
   verb.add_flag("--quiet", o.quiet, "No progress, no table");
+}
+
+void add_level(CLI::App& verb, Options& o) {
+  one_of(verb.add_option("--level", o.level,
+                         "x86-64 level of the kernels (default: MOMENTA_LEVEL, else the best)"),
+         {"1", "3", "4"});
 }
 
 void add_run_options(CLI::App& verb, Options& o, const char* cpu_limit) {

@@ -25,6 +25,7 @@ struct Options {
   std::filesystem::path scene;
   ReadOptions reading;  ///< what a URDF does not say
   std::string algebra = "auto", kkt = "auto";
+  std::string level;  ///< of the kernels; empty: the machine's best, or MOMENTA_LEVEL
   std::string form = "momentum", integrator, gauge;
   double rtol = 1e-8;
   std::optional<double> atol, step, end;
@@ -43,6 +44,7 @@ struct Options {
 void add_scene(CLI::App& verb, Options& o);
 /// The scene alone, with what a URDF does not say.
 void add_scene_file(CLI::App& verb, Options& o, bool required = true);
+void add_level(CLI::App& verb, Options& o);
 /// `cpu_limit`: that of a run of this verb, in words.
 void add_run_options(CLI::App& verb, Options& o, const char* cpu_limit = "none");
 void add_results(CLI::App& verb, Options& o);

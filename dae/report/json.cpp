@@ -13,9 +13,13 @@ Json number_or_null(double value) {
 Json environment_json(const Environment& environment) {
   Json versions = Json::object();
   for (const auto& [name, version] : environment.versions) versions[name] = version;
-  return {{"cpu", environment.cpu},     {"compiler", environment.compiler},
-          {"flags", environment.flags}, {"build_type", environment.build_type},
-          {"date", environment.date},   {"versions", versions}};
+  return {{"cpu", environment.cpu},
+          {"level", environment.level},
+          {"compiler", environment.compiler},
+          {"flags", environment.flags},
+          {"build_type", environment.build_type},
+          {"date", environment.date},
+          {"versions", versions}};
 }
 
 Json summary_json(const RunResult& run, const Environment& environment) {

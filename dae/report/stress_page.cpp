@@ -140,7 +140,9 @@ std::string how_section(const StressResult& study) {
               pair("Command", study.command) +
                   pair("Tolerance", "rtol = atol = " + scientific(study.rtol, 1)) +
                   pair("Bound", compact(study.bound, 2)) + pair("Versions", versions) +
-                  pair("Compiler", study.environment.compiler + ", " + study.environment.flags) +
+                  pair("Compiler", study.environment.compiler + ", " + study.environment.flags +
+                                       ", kernels x86-64-v" +
+                                       std::to_string(study.environment.level)) +
                   pair("Processor", study.environment.cpu) + pair("Date", study.environment.date)));
 }
 

@@ -1,3 +1,4 @@
+#include <momenta/core/kernel/levels/level.h>
 #include <momenta/dae/study/environment.h>
 #include <suitesparse/SuiteSparse_config.h>
 #include <sundials/sundials_config.h>
@@ -28,6 +29,7 @@ Environment environment() {
 #else
   e.compiler = "g++ " __VERSION__;
 #endif
+  e.level = best_level();
   e.flags = MOMENTA_FLAGS;
   e.build_type = MOMENTA_BUILD_TYPE;
   const auto dotted = [](int a, int b, int c) {
@@ -49,7 +51,7 @@ Environment environment() {
 
 std::string build_digest() {
   const Environment e = environment();
-  std::string all = e.cpu + e.compiler + e.flags + e.build_type;
+  std::string all = e.cpu + std::to_string(e.level) + e.compiler + e.flags + e.build_type;
   for (const auto& [name, version] : e.versions) all += name + version;
   std::ifstream program("/proc/self/exe", std::ios::binary);
   all.append(std::istreambuf_iterator<char>(program), {});

@@ -116,6 +116,7 @@ struct RunResult {
 
 struct Environment {
   std::string cpu, compiler, flags, build_type;
+  int level = 1;  ///< x86-64 level of the kernels
   std::vector<std::pair<std::string, std::string>>
       versions;      ///< momenta, SUNDIALS, SuiteSparse, Eigen
   std::string date;  ///< ISO 8601

@@ -6,6 +6,7 @@
 #include "equations/recut.h"
 
 #include <gtest/gtest.h>
+#include <momenta/core/open_chain.h>
 #include <momenta/core/scene/read_scene.h>
 #include <momenta/core/scene/write_scene.h>
 #include <momenta/dae/assembly.h>

@@ -2,6 +2,7 @@
 // kernel, gaps are the point rows of Φ, films are made without disturbing the run, and what a page
 // is given reads back to all of it within its quantisation.
 #include <gtest/gtest.h>
+#include <momenta/core/open_chain.h>
 #include <momenta/core/scene/read_scene.h>
 #include <momenta/dae/assembly.h>
 #include <momenta/dae/report/picture_data.h>

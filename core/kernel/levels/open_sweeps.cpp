@@ -3,6 +3,7 @@
 #include <momenta/core/kernel/levels/open_sweeps.h>
 
 #include <algorithm>
+#include <stdexcept>
 #include <type_traits>
 
 namespace momenta {
@@ -16,31 +17,19 @@ std::unique_ptr<BatchSweeps> batch_sweeps_at(const LinkTree& tree);
 template <int Level>
 std::unique_ptr<BatchSweeps> batch_sweeps_at(const PlanarTree& tree);
 
-int level_at_most([[maybe_unused]] int level) {
-#ifdef MOMENTA_LEVEL4
-  if (level >= 4 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
-      __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw") &&
-      __builtin_cpu_supports("avx512cd"))
-    return 4;
-#endif
-#ifdef MOMENTA_LEVEL3
-  if (level >= 3 && __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
-      __builtin_cpu_supports("bmi2"))
-    return 3;
-#endif
-  return 1;
-}
-
 /// What `at` makes for the level: at(std::integral_constant<int, level>).
 template <class At>
-auto make([[maybe_unused]] int level, At&& at) {
+std::invoke_result_t<At, std::integral_constant<int, 1>> make(int level, At&& at) {
 #ifdef MOMENTA_LEVEL4
   if (level >= 4) return at(std::integral_constant<int, 4>());
 #endif
 #ifdef MOMENTA_LEVEL3
   if (level >= 3) return at(std::integral_constant<int, 3>());
 #endif
-  return at(std::integral_constant<int, 1>());
+#ifdef MOMENTA_LEVEL1
+  if (level >= 1) return at(std::integral_constant<int, 1>());
+#endif
+  throw std::logic_error("no kernels of this level");
 }
 std::unique_ptr<OpenSweeps> make_sweeps(const LinkTree& tree, int level, const Limbs* limbs) {
   return make(level, [&](auto l) { return sweeps_at<l>(tree, limbs); });

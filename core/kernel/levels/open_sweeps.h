@@ -1,8 +1,8 @@
 #pragma once
 // The two recursions compiled for several x86-64 levels in one library, and chosen when a chain is
-// made: a packaged binary is fast on every machine. Level 1 is plain x86-64 (and any other
-// architecture), 3 has AVX2 and fused multiply-add, 4 has AVX-512.
+// made (level.h): a packaged binary is fast on every machine.
 
+#include <momenta/core/kernel/levels/level.h>
 #include <momenta/core/kernel/limbs/limbs.h>
 #include <momenta/core/kernel/planar_link.h>
 
@@ -36,11 +36,6 @@ class OpenSweeps {
   virtual int stuck() const = 0;
 };
 
-/// The highest level of 1, 3, 4 up to `level` that this machine and this library have.
-int level_at_most(int level);
-inline int best_level() {
-  return level_at_most(4);
-}
 /// Limbs of one state side by side. More than four seldom fill a register, and records of eight
 /// leave the cache.
 constexpr int limb_lanes_at(int level) {

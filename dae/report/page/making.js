@@ -21,6 +21,7 @@ function makingSection() {
   line("repeats", repeats.some((n) => n > 0) ? `${repeats.join(", ")}; times are their median` : "");
   line("versions", Object.entries(environment.versions).map(([name, version]) => `${name} ${version}`).join(", "));
   line("compiler", environment.compiler);
+  line("instruction level", `x86-64-v${environment.level}`);
   line("flags", environment.flags, true);
   line("build", environment.build_type);
   line("processor", environment.cpu);

@@ -2,6 +2,7 @@
 #include <momenta/dae/sweeps/levels/loop_sweeps.h>
 
 #include <cmath>
+#include <stdexcept>
 #include <utility>
 
 namespace momenta {
@@ -13,15 +14,18 @@ std::unique_ptr<LoopedSweeps> looped_sweeps_at(const Tree& tree, const SweptLoop
 namespace {
 
 template <class Space, class Tree>
-std::unique_ptr<LoopedSweeps> make(const Tree& tree, const SweptLoops<Space>& swept,
-                                   [[maybe_unused]] int level, LegGroups legs) {
+std::unique_ptr<LoopedSweeps> make(const Tree& tree, const SweptLoops<Space>& swept, int level,
+                                   LegGroups legs) {
 #ifdef MOMENTA_LEVEL4
   if (level >= 4) return looped_sweeps_at<4>(tree, swept, std::move(legs));
 #endif
 #ifdef MOMENTA_LEVEL3
   if (level >= 3) return looped_sweeps_at<3>(tree, swept, std::move(legs));
 #endif
-  return looped_sweeps_at<1>(tree, swept, std::move(legs));
+#ifdef MOMENTA_LEVEL1
+  if (level >= 1) return looped_sweeps_at<1>(tree, swept, std::move(legs));
+#endif
+  throw std::logic_error("no kernels of this level");
 }
 
 }  // namespace

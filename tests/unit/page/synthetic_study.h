@@ -141,6 +141,7 @@ inline StudyResult study_of(std::vector<RunResult> runs) {
       "GNU 12.2.0",
       "-O3 -fno-math-errno",
       "Release",
+      4,
       {{"momenta", "0.1.0"}, {"SUNDIALS", "6.4.1"}, {"SuiteSparse", "5.12.0"}, {"Eigen", "3.4.0"}},
       "2025-03-01T12:00:00Z"};
   study.picture = four_bar();
