@@ -35,6 +35,7 @@ int drift(const Options& o, const DriftOptions& d) {
   request.reference = reference.get();
   // One form that grinds to a halt must not keep the others' results from the user.
   request.max_cpu_seconds = o.cpu_limit.value_or(60);
+  request.timing = timing_named(o.timing);
   constexpr std::size_t runs_at_most = 24;
   request.film_intervals = film_intervals_of(
       *mechanism, o, request.forms.empty() ? runs_at_most : 3 * request.forms.size());

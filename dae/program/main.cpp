@@ -56,6 +56,7 @@ int answer(int argc, char** argv) {
       ->capture_default_str()
       ->type_name("FORM");
   add_run_options(*run_verb, o);
+  add_timing(*run_verb, o);
   one_of(run_verb->add_option("--data", o.data, "Format of the trajectory"), {"csv", "hdf5"})
       ->capture_default_str();
   CLI::App* drift_verb =
@@ -64,6 +65,7 @@ int answer(int argc, char** argv) {
   add_scene(*drift_verb, o);
   drift_verb->add_option("--forms", d.forms, "Default: all")->type_name("FORM,...");
   add_run_options(*drift_verb, o, "60");
+  add_timing(*drift_verb, o);
   drift_verb->remove_option(drift_verb->get_option("--spectral-radius"));
   drift_verb->get_option("--integrator")->description("Of ODE forms (default: rk4, else dop853)");
   CLI::App* work_verb =
@@ -85,6 +87,7 @@ int answer(int argc, char** argv) {
       ->capture_default_str();
   work_verb->add_flag("--no-reference", w.no_reference, "Judge by the largest drift alone");
   add_run_options(*work_verb, o, "10");
+  add_timing(*work_verb, o);
   for (const char* unused :
        {"--integrator", "--rtol", "--atol", "--spectral-radius", "--project", "--no-project",
         "--baumgarte-alpha", "--baumgarte-beta", "--beta", "--penalty"})

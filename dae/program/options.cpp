@@ -59,9 +59,14 @@ void add_scene(CLI::App& verb, Options& o) {
 }
 
 void add_level(CLI::App& verb, Options& o) {
-  one_of(verb.add_option("--level", o.level,
-                         "x86-64 level of the kernels (default: MOMENTA_LEVEL, else the best)"),
+  one_of(verb.add_option("--level", o.level, "x86-64 level of the kernels (default: best)"),
          {"1", "3", "4"});
+}
+
+void add_timing(CLI::App& verb, Options& o) {
+  one_of(verb.add_option("--timing", o.timing, "Medians of rounds, one run each, or none"),
+         {"rounds", "once", "none"})
+      ->capture_default_str();
 }
 
 void add_run_options(CLI::App& verb, Options& o, const char* cpu_limit) {

@@ -35,6 +35,7 @@ struct Options {
   double beta = 0, penalty = 0;
   bool project = false, no_project = false;  ///< neither: as the scene says
   std::optional<double> cpu_limit;
+  std::string timing = "rounds";
   std::filesystem::path reference, out;
   std::string figures;       ///< svg or none
   std::string data = "csv";  ///< of run: csv or hdf5
@@ -45,6 +46,8 @@ void add_scene(CLI::App& verb, Options& o);
 /// The scene alone, with what a URDF does not say.
 void add_scene_file(CLI::App& verb, Options& o, bool required = true);
 void add_level(CLI::App& verb, Options& o);
+/// Of verbs that time what they ran.
+void add_timing(CLI::App& verb, Options& o);
 /// `cpu_limit`: that of a run of this verb, in words.
 void add_run_options(CLI::App& verb, Options& o, const char* cpu_limit = "none");
 void add_results(CLI::App& verb, Options& o);

@@ -4,6 +4,7 @@
 #include <momenta/dae/report/part_file.h>
 #include <momenta/dae/report/table.h>
 #include <momenta/dae/study/run_form.h>
+#include <momenta/dae/study/timing.h>
 
 #include <cstdio>
 #include <map>
@@ -121,7 +122,9 @@ int run(const Options& o) {
   study.runs.push_back(run_form(*mechanism, a.start, request));
   RunResult& result = study.runs.front();
   if (!files.flush()) result.status = "failed";
-  if (!interrupted()) time_runs(*mechanism, a.start, study.runs, 3, 3, {}, request.going_on);
+  if (!interrupted())
+    time_runs(*mechanism, a.start, study.runs,
+              {timing_named(o.timing), 3, nullptr, {}, request.going_on});
   line.show("");
   study.reference = o.reference.string();
   describe(study, o, *mechanism, a);

@@ -47,6 +47,7 @@ int work(const Options& o, const WorkOptions& w) {
   for (int i = 0; i < w.step_rungs; ++i) request.steps.push_back(std::ldexp(step, 1 - i));
   request.samples = o.samples.value_or(own_reference_rows);
   request.max_cpu_seconds = o.cpu_limit.value_or(10);
+  request.timing = timing_named(o.timing);
   expect_own_results(o.out, "study.csv");
   const auto journal = keep_runs(o);
   watch_signals();

@@ -103,11 +103,16 @@ std::vector<RunResult> run_drift_study(const Mechanism& mechanism, const Start& 
     if (request.journal && going) request.journal->add(key, record_of(results.back()));
   }
   if (going)
-    time_runs(mechanism, start, results, 5, 3, [&](std::size_t i) {
-      return !request.progress ||
-             request.progress(static_cast<int>(i) + 1, static_cast<int>(results.size()),
-                              "timing " + results[i].settings.form, 1);
-    });
+    time_runs(mechanism, start, results,
+              {request.timing,
+               3,
+               request.journal,
+               [&](std::size_t i) {
+                 return !request.progress ||
+                        request.progress(static_cast<int>(i) + 1, static_cast<int>(results.size()),
+                                         "timing " + results[i].settings.form, 1);
+               },
+               {}});
   return results;
 }
 

@@ -2,7 +2,7 @@
 // The same mechanism through every form: the main job.
 
 #include <momenta/dae/study/journal.h>
-#include <momenta/dae/study/run_form.h>
+#include <momenta/dae/study/timing.h>
 
 #include <functional>
 #include <string>
@@ -24,8 +24,9 @@ struct DriftRequest {
   bool project = false;  ///< correct positions in the ODE forms; false: one projected run of each
                          ///< kind is added
   const Reference* reference = nullptr;
+  Timing timing = Timing::rounds;
   double max_cpu_seconds = 0;
-  int film_intervals = 0;  ///< of each run; 0: no films
+  int film_intervals = 0;      ///< of each run; 0: no films
   Journal* journal = nullptr;  ///< finished runs are taken from it, and new ones recorded
   /// Before each run (number, of how many, label) and during it (fraction done); false stops the
   /// study.

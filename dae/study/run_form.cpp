@@ -30,10 +30,6 @@ std::vector<double> output_times(const RunSettings& s, const Reference* referenc
   return times;
 }
 
-constexpr int most_rounds = 40;  // of timing: runs of a millisecond need many for a steady median
-constexpr double enough =
-    0.15;  // [s] of CPU time, with which a run needs no more rounds than asked for
-
 }  // namespace
 
 std::string default_integrator(const std::string& form, double rtol) {
@@ -196,40 +192,19 @@ std::string ambiguous_from(double t) {
          "meet in the singular pose there";
 }
 
-void time_runs(const Mechanism& mechanism, const Start& start, std::vector<RunResult>& runs,
-               int rounds, double budget, const std::function<bool(std::size_t)>& going_on,
-               const std::function<bool()>& at_step) {
-  std::vector<std::vector<double>> cpu(runs.size()), wall(runs.size());
-  std::vector<double> spent(runs.size(), 0.0);
+TimedRun time_run(const Mechanism& mechanism, const Start& start, RunSettings settings,
+                  const std::function<bool()>& at_step) {
   Observer observer;
   if (at_step) observer.step = [&](double, double, const Interpolant&) { return at_step(); };
-  for (int round = 0; round < most_rounds; ++round)
-    for (std::size_t i = 0; i < runs.size(); ++i) {
-      if (runs[i].status != "done" || spent[i] > budget) continue;
-      if (round >= rounds && spent[i] > enough) continue;
-      if (going_on && !going_on(i)) return;
-      RunSettings settings = runs[i].settings;
-      Runner runner(mechanism, start, settings, 0);
-      const double wall_start = wall_now(), cpu_start = thread_seconds();
-      const IntegrationResult run = runner.integrate({settings.end_time}, observer);
-      if (at_step && !at_step()) return;
-      cpu[i].push_back(thread_seconds() - cpu_start);
-      wall[i].push_back(wall_now() - wall_start);
-      spent[i] += cpu[i].back();
-      // What the time was spent on: without the stages and solutions that looking on takes.
-      runs[i].counters = run.counters;
-      runs[i].counters.factorizations += runner.factorizations();
-    }
-  const auto median = [](std::vector<double>& v) {
-    std::sort(v.begin(), v.end());
-    return v[v.size() / 2];
-  };
-  for (std::size_t i = 0; i < runs.size(); ++i) {
-    if (cpu[i].empty()) continue;
-    runs[i].repeats = static_cast<int>(cpu[i].size());
-    runs[i].cpu_s = median(cpu[i]);
-    runs[i].wall_s = median(wall[i]);
-  }
+  Runner runner(mechanism, start, settings, 0);
+  TimedRun timed;
+  const double wall_start = wall_now(), cpu_start = thread_seconds();
+  const IntegrationResult run = runner.integrate({settings.end_time}, observer);
+  timed.cpu_s = thread_seconds() - cpu_start;
+  timed.wall_s = wall_now() - wall_start;
+  timed.counters = run.counters;
+  timed.counters.factorizations += runner.factorizations();
+  return timed;
 }
 
 }  // namespace momenta

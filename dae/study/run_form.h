@@ -36,15 +36,14 @@ RunResult run_form(const Mechanism& mechanism, const Start& start, const RunRequ
 /// The sentence for a run past an ambiguous singular pose.
 std::string ambiguous_from(double t);
 
-/// Times finished runs with nobody looking: rounds over all of them, so that a drifting clock hurts
-/// all alike, and medians in cpu_s, wall_s; counters become those of such a run. Short runs get up
-/// to 40 rounds. A run is left out of further rounds once its own time passes `budget` seconds of
-/// CPU. `going_on` is asked before each run, with its number, `at_step` after each step; false ends
-/// it all.
-void time_runs(const Mechanism& mechanism, const Start& start, std::vector<RunResult>& runs,
-               int rounds = 5, double budget = 3,
-               const std::function<bool(std::size_t)>& going_on = {},
-               const std::function<bool()>& at_step = {});
+/// A run with nobody looking, and what it costs.
+struct TimedRun {
+  double cpu_s = not_measured, wall_s = not_measured;
+  Counters counters;
+};
+/// `settings`: those of a run that is done. `at_step` is asked after each step; false ends it.
+TimedRun time_run(const Mechanism& mechanism, const Start& start, RunSettings settings,
+                  const std::function<bool()>& at_step = {});
 
 /// The integrator a form takes when none is named: for DAE forms ida, else that of the order which
 /// costs least at such tolerances: dp5 from 1e-4 up, vern9 from 1e-9 down, dop853 between.

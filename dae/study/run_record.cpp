@@ -104,6 +104,13 @@ void list(const Each& each,
 
 template <class Each>
 void list(const Each& each,
+          auto&& s) requires std::is_same_v<std::remove_cvref_t<decltype(s)>, TimedRun> {
+  auto& [cpu_s, wall_s, counters] = s;
+  each("cpu_s", cpu_s), each("wall_s", wall_s), each("counters", counters);
+}
+
+template <class Each>
+void list(const Each& each,
           auto&& s) requires std::is_same_v<std::remove_cvref_t<decltype(s)>, Contestant> {
   auto& [form, integrator] = s;
   each("form", form), each("integrator", integrator);
@@ -216,6 +223,9 @@ std::string key_of(const RunSettings& settings) {
 Record record_of(const RunResult& run) {
   return written(run);
 }
+Record record_of(const TimedRun& run) {
+  return written(run);
+}
 Record record_of(const StressRun& run) {
   return written(run);
 }
@@ -231,6 +241,9 @@ Record record_of(const OwnReference& own) {
 }
 
 bool read_record(const Record& record, RunResult& run) {
+  return read_whole(record, run);
+}
+bool read_record(const Record& record, TimedRun& run) {
   return read_whole(record, run);
 }
 bool read_record(const Record& record, StressRun& run) {

@@ -3,6 +3,7 @@
 
 #include <momenta/dae/study/journal.h>
 #include <momenta/dae/study/own_reference.h>
+#include <momenta/dae/study/run_form.h>
 #include <momenta/dae/study/stress_study.h>
 #include <momenta/dae/study/sweep_study.h>
 
@@ -16,12 +17,14 @@ std::string key_of(const RunSettings& settings);
 
 /// Records of what is kept. Non-finite numbers are strings, since JSON has none.
 nlohmann::json record_of(const RunResult& run);
+nlohmann::json record_of(const TimedRun& run);
 nlohmann::json record_of(const StressRun& run);
 nlohmann::json record_of(const SweepCase& run);
 nlohmann::json record_of(const OwnReference& reference);
 
 /// Reads a record back; false, and the value is not to be used, where it is none of that kind.
 bool read_record(const nlohmann::json& record, RunResult& run);
+bool read_record(const nlohmann::json& record, TimedRun& run);
 bool read_record(const nlohmann::json& record, StressRun& run);
 bool read_record(const nlohmann::json& record, SweepCase& run);
 bool read_record(const nlohmann::json& record, OwnReference& reference);
@@ -32,7 +35,8 @@ std::optional<T> recall(Journal* journal, const std::string& key) {
   const nlohmann::json* record = journal ? journal->find(key) : nullptr;
   std::optional<T> value(std::in_place);
   if (!record || !read_record(*record, *value)) return std::nullopt;
-  if constexpr (!std::is_same_v<T, OwnReference>) journal->take_run();
+  if constexpr (!std::is_same_v<T, OwnReference> && !std::is_same_v<T, TimedRun>)
+    journal->take_run();
   return value;
 }
 

@@ -1,10 +1,10 @@
 #include <momenta/core/scene/read_scene.h>
+#include <momenta/core/share.h>
 #include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/solver/stopping.h>
 #include <momenta/dae/study/environment.h>
 #include <momenta/dae/study/own_reference.h>
 #include <momenta/dae/study/run_record.h>
-#include <momenta/core/share.h>
 #include <momenta/dae/study/stress_study.h>
 
 #include <algorithm>

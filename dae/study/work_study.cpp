@@ -87,11 +87,16 @@ std::vector<RunResult> run_work_study(const Mechanism& mechanism, const Start& s
     }
   }
   if (going)
-    time_runs(mechanism, start, results, 5, 1, [&](std::size_t i) {
-      return !request.progress ||
-             request.progress(static_cast<int>(i) + 1, static_cast<int>(results.size()),
-                              "timing " + results[i].settings.form, 1);
-    });
+    time_runs(mechanism, start, results,
+              {request.timing,
+               1,
+               request.journal,
+               [&](std::size_t i) {
+                 return !request.progress ||
+                        request.progress(static_cast<int>(i) + 1, static_cast<int>(results.size()),
+                                         "timing " + results[i].settings.form, 1);
+               },
+               {}});
   return results;
 }
 

@@ -3,7 +3,7 @@
 // of steps where a method has no error control.
 
 #include <momenta/dae/study/journal.h>
-#include <momenta/dae/study/run_form.h>
+#include <momenta/dae/study/timing.h>
 
 #include <functional>
 #include <string>
@@ -20,6 +20,7 @@ struct WorkRequest {
   double end_time = 10;                  ///< [s]
   int samples = 100;
   const Reference* reference = nullptr;  ///< bound; errors are largest over its times
+  Timing timing = Timing::rounds;
   double max_cpu_seconds = 10;  ///< of one run; a ladder ends at the first rung that needs more
   Journal* journal = nullptr;   ///< finished runs are taken from it, and new ones recorded
   /// Before each run (number, of how many, label) and during it (fraction done); false stops the

@@ -1,5 +1,7 @@
 // Every example assembles, and what has a reference meets it. The tolerances are those of each
 // integrator's promise with room for the growth of local errors over the run.
+#include "equations/ensemble.h"
+
 #include <gtest/gtest.h>
 #include <momenta/core/scene/read_scene.h>
 #include <momenta/dae/study/run_form.h>
@@ -30,7 +32,7 @@ RunResult run_against_reference(const std::string& example, const std::string& f
   request.settings.samples = samples;
   request.settings.project = project;
   request.reference = &reference;
-  const RunResult run = run_form(mechanism, assemble(mechanism).start, request);
+  const RunResult run = run_form(mechanism, equations::start_of(mechanism), request);
   EXPECT_EQ(run.status, "done") << run.reason;
   return run;
 }
@@ -150,7 +152,7 @@ TEST(Examples, FourBarMeetsItsReferenceToRounding) {
   for (const double tol : tolerances) {
     RunRequest request = tightest_four_bar(tol, 10, 1000);
     request.reference = &reference;
-    const RunResult run = run_form(mechanism, assemble(mechanism).start, request);
+    const RunResult run = run_form(mechanism, equations::start_of(mechanism), request);
     ASSERT_EQ(run.status, "done") << run.reason;
     digits += std::log10(run.position_error_max);
   }
@@ -169,7 +171,7 @@ TEST(Examples, FourBarReturnsAfterAThousandSeconds) {
   Reference reference(examples / "four_bar" / "reference_1000s.csv");
   reference.bind(trajectory_columns(mechanism));
   const double period = 3.78905311436032861;
-  const Start start = assemble(mechanism).start;
+  const Start start = equations::start_of(mechanism);
   RunRequest request = tightest_four_bar(1e-13, 1000, 100);
   request.settings.project = true;
   request.reference = &reference;
@@ -234,7 +236,7 @@ RunResult run_extreme(const std::string& name, const std::string& form, double t
   request.settings.rtol = request.settings.atol = tol;
   request.settings.samples = 10;
   request.reference = &reference;
-  const RunResult run = run_form(mechanism, assemble(mechanism).start, request);
+  const RunResult run = run_form(mechanism, equations::start_of(mechanism), request);
   EXPECT_EQ(run.status, "done") << run.reason;
   return run;
 }

@@ -1,6 +1,7 @@
 // A joint and a loop are interchangeable, and the room has no preferred direction: the same motion
 // wherever the loops are cut, however the scene is turned, in the plane or in space.
 
+#include "equations/ensemble.h"
 #include "equations/linkages.h"
 #include "equations/recut.h"
 #include "equations/tolerance.h"
@@ -29,7 +30,7 @@ std::map<std::string, double> turns(const Scene& scene, Algebra algebra, double 
   request.settings.end_time = end;
   request.settings.samples = 1;
   request.keep_trajectory = true;
-  const RunResult run = run_form(mechanism, assemble(mechanism).start, request);
+  const RunResult run = run_form(mechanism, equations::start_of(mechanism), request);
   EXPECT_EQ(run.status, "done") << run.reason;
   std::map<std::string, double> by_name;
   for (std::size_t i = 0; i < run.trajectory.columns.size(); ++i)

@@ -1,6 +1,7 @@
 // How drifts grow on the planar four-bar: like t for momenta with bounded impulses, like t² for
 // accelerations; not at all where positions are corrected. And the order of the method underneath.
 
+#include "equations/ensemble.h"
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
@@ -24,7 +25,7 @@ RunResult run(RunSettings settings) {
   RunRequest request;
   request.settings = std::move(settings);
   request.keep_trajectory = true;
-  return run_form(four_bar(), assemble(four_bar()).start, request);
+  return run_form(four_bar(), equations::start_of(four_bar()), request);
 }
 RunSettings long_run(const std::string& form, const std::string& gauge, bool project = false) {
   RunSettings s;

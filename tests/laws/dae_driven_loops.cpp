@@ -2,6 +2,7 @@
 // is cut, motions known in closed form, and the power of what is prescribed.
 
 #include "equations/dense_lagrangian.h"
+#include "equations/ensemble.h"
 #include "equations/linkages.h"
 #include "equations/random_loops.h"
 #include "equations/recut.h"
@@ -45,7 +46,7 @@ std::map<std::string, double> end_of(const Mechanism& mechanism, const Way& how,
   request.settings.end_time = end;
   request.settings.samples = 4;
   request.keep_trajectory = true;
-  const RunResult run = run_form(mechanism, assemble(mechanism).start, request);
+  const RunResult run = run_form(mechanism, equations::start_of(mechanism), request);
   EXPECT_EQ(run.status, "done") << how.form << ": " << run.reason;
   std::map<std::string, double> last;
   if (run.trajectory.rows.empty()) return last;

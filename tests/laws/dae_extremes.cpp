@@ -1,6 +1,7 @@
 // Scenes in other units and in turned rooms move alike: q(t) of the one is q(τt) of the other,
 // lengths times s. So do scenes of another size, and scenes that start at rest at another speed.
 
+#include "equations/ensemble.h"
 #include "equations/linkages.h"
 
 #include <gtest/gtest.h>
@@ -142,7 +143,7 @@ struct Ends {
 Ends run_to_end(const Scene& scene) {
   validate(scene);
   const Mechanism mechanism(scene);
-  const Start start = assemble(mechanism).start;
+  const Start start = equations::start_of(mechanism);
   RunRequest request;
   request.settings.gauge = "reset";
   request.settings.project = mechanism.m() > 0;
@@ -240,7 +241,7 @@ TEST(Extremes, MasslessCouplerMovesLikeOneThatWeighsNextToNothing) {
     request.settings.rtol = request.settings.atol = 1e-9;
     request.settings.end_time = 2;
     request.keep_trajectory = true;
-    const RunResult run = run_form(mechanism, assemble(mechanism).start, request);
+    const RunResult run = run_form(mechanism, equations::start_of(mechanism), request);
     EXPECT_EQ(run.status, "done") << form << ": " << run.reason;
     return Eigen::VectorXd(
         Eigen::Map<const Eigen::VectorXd>(run.trajectory.rows.back().data() + 1, mechanism.nq()));
@@ -263,7 +264,7 @@ TEST(Extremes, PassagesOfSingularPosesAreListed) {
     request.settings.project = true;
     request.settings.end_time = 5;
     request.keep_trajectory = true;
-    return run_form(mechanism, assemble(mechanism).start, request);
+    return run_form(mechanism, equations::start_of(mechanism), request);
   };
   const RunResult regular = run_of("four_bar/scene.toml");
   EXPECT_TRUE(regular.passages.empty());

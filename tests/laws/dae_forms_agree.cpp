@@ -1,6 +1,7 @@
 // Every form of every scene is the same motion: all of them against one tight solution; their exact
 // Jacobians against differences of their residuals; their starts against their own equations.
 
+#include "equations/ensemble.h"
 #include "equations/linkages.h"
 #include "equations/random_loops.h"
 #include "equations/tolerance.h"
@@ -32,7 +33,7 @@ RunResult run(const Mechanism& mechanism, const std::string& form, const std::st
   request.settings.samples = 20;
   request.keep_trajectory = true;
   request.max_cpu_seconds = 20;
-  return run_form(mechanism, assemble(mechanism).start, request);
+  return run_form(mechanism, equations::start_of(mechanism), request);
 }
 
 /// Largest difference of q over the samples, relative to 1 + |q|.
@@ -200,12 +201,12 @@ Start anywhere(const Mechanism& mechanism, unsigned seed) {
 TEST(Jacobians, FourBarAndSqueezer) {
   for (const char* name : {"four_bar", "andrews"}) {
     const Mechanism mechanism(example(name));
-    expect_exact_jacobians(mechanism, assemble(mechanism).start, 1);
+    expect_exact_jacobians(mechanism, equations::start_of(mechanism), 1);
   }
 }
 TEST(Jacobians, LongRowByColours) {
   const Mechanism mechanism(row_of_four_bars(15, 1.1, 1));
-  expect_exact_jacobians(mechanism, assemble(mechanism).start, 2);
+  expect_exact_jacobians(mechanism, equations::start_of(mechanism), 2);
 }
 TEST(Jacobians, RandomLoopsWithDrivesAndQuaternions) {
   for (unsigned seed = 0; seed < 6; ++seed) {
@@ -250,7 +251,7 @@ TEST(Starts, SatisfyTheEquationsOfTheirForm) {
   scenes.emplace_back(driven, Algebra::automatic);
   for (const auto& [scene, algebra] : scenes) {
     const Mechanism mechanism(scene, {.algebra = algebra});
-    const Start start = assemble(mechanism).start;
+    const Start start = equations::start_of(mechanism);
     for (const std::string& name : form_names()) {
       if (!is_dae_form(name)) continue;
       for (const char* gauge : {"none", "leak"}) {

@@ -2,6 +2,7 @@
 // independent coordinates, penalties, position feedback. Each against `momentum` and against what
 // its own file promises.
 
+#include "equations/ensemble.h"
 #include "equations/linkages.h"
 #include "equations/random_tree.h"
 #include "equations/tolerance.h"
@@ -56,7 +57,7 @@ RunResult run(const Mechanism& mechanism, RunSettings settings) {
   request.settings = std::move(settings);
   request.keep_trajectory = true;
   request.max_cpu_seconds = 60;
-  return run_form(mechanism, assemble(mechanism).start, request);
+  return run_form(mechanism, equations::start_of(mechanism), request);
 }
 RunSettings adaptive(const std::string& form, double tolerance, double end,
                      const std::string& gauge = "") {
@@ -170,7 +171,7 @@ TEST(Projected, IsWhatAccelerationWithProjectionIs) {
 TEST(Projected, RepeatsLargeCorrections) {
   // Pulled far off, a form that corrects once keeps the square of it; this one does not.
   const Mechanism mechanism(example("four_bar"));
-  const Start start = assemble(mechanism).start;
+  const Start start = equations::start_of(mechanism);
   for (const bool iterated : {true, false}) {
     FormOptions options;
     options.project = true;
@@ -243,7 +244,7 @@ TEST(Partitioned, IsTheAccelerationFormWithoutLoops) {
 TEST(Partitioned, LooksWithoutTouching) {
   // A state read in between, or a step tried and rejected, leaves no trace.
   const Mechanism mechanism(turning_four_bar());
-  const Start start = assemble(mechanism).start;
+  const Start start = equations::start_of(mechanism);
   const auto watched = make_form("partitioned", mechanism, {}, start),
              alone = make_form("partitioned", mechanism, {}, start);
   const auto y = watched->initial(start);
@@ -260,14 +261,25 @@ TEST(Partitioned, LooksWithoutTouching) {
   EXPECT_EQ(a, b);
 }
 TEST(Partitioned, StopsAtSingularPosesWithTheirTime) {
-  // A row of equal links lies flat after 0.7 s: the closer the steps, the surer no partition
-  // passes.
+  // A row of equal links lies flat after 0.72 s. The closer the steps, the surer no partition
+  // passes; which steps come how close is chance.
   const Mechanism mechanism(row_of_four_bars(5, std::numbers::pi / 2, -1));
-  const RunResult r = run(mechanism, adaptive("partitioned", 1e-11, 10));
-  EXPECT_EQ(r.status, "failed");
-  EXPECT_NE(r.reason.find("singular"), std::string::npos) << r.reason;
-  EXPECT_NE(r.reason.find("t = "), std::string::npos) << r.reason;
-  EXPECT_NEAR(r.stopped_at, 0.72, 0.05);
+  int stopped = 0;
+  for (const Start& start : equations::starts_of(mechanism, 10)) {
+    RunRequest request;
+    request.settings = adaptive("partitioned", 1e-11, 0.75);
+    const RunResult r = run_form(mechanism, start, request);
+    if (r.status == "done") {
+      EXPECT_LT(r.position_drift_max, 1e-9);
+      continue;
+    }
+    ++stopped;
+    EXPECT_EQ(r.status, "failed");
+    EXPECT_NE(r.reason.find("singular"), std::string::npos) << r.reason;
+    EXPECT_NE(r.reason.find("t = "), std::string::npos) << r.reason;
+    EXPECT_NEAR(r.stopped_at, 0.72, 0.05);
+  }
+  EXPECT_GE(stopped, 1);
 }
 TEST(Partitioned, IsRefusedToMethodsWithMemory) {
   const Mechanism mechanism(example("four_bar"));
@@ -372,7 +384,7 @@ TEST(MomentumIndexThree, HoldsPositionsAndLetsRatesGo) {
 
 TEST(DriftStudy, ListsEveryFormOnceAndItsTwins) {
   const Mechanism mechanism(example("four_bar"));
-  const Start start = assemble(mechanism).start;
+  const Start start = equations::start_of(mechanism);
   DriftRequest request;
   request.integrator = "dop853";
   request.rtol = request.atol = 1e-6;

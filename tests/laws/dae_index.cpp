@@ -3,6 +3,7 @@
 // units, on the algebra or on where along the motion one looks. Total derivatives of a form's
 // equations against differences of its residual along a curve.
 
+#include "equations/ensemble.h"
 #include "equations/linkages.h"
 #include "equations/random_loops.h"
 
@@ -74,13 +75,13 @@ TEST(Index, IsTheOneInTheNames) {
   for (const char* file : {"pendulum/cartesian.toml", "four_bar/scene.toml", "andrews/scene.toml",
                            "slider_crank/scene.toml"}) {
     const Mechanism mechanism(scene_of(file));
-    expect_promised(mechanism, assemble(mechanism).start, least_gap);
+    expect_promised(mechanism, equations::start_of(mechanism), least_gap);
   }
 }
 
 TEST(Index, IsTheSameInSpaceWithQuaternions) {
   const Mechanism mechanism(platform(3), {.algebra = Algebra::spatial});
-  expect_promised(mechanism, assemble(mechanism).start, least_gap);
+  expect_promised(mechanism, equations::start_of(mechanism), least_gap);
 }
 
 TEST(Index, IsTheSameAlongTheMotion) {
@@ -94,7 +95,7 @@ TEST(Index, IsTheSameAlongTheMotion) {
   request.settings.end_time = 0.9;
   request.settings.samples = 1;
   request.keep_trajectory = true;
-  const RunResult run = run_form(mechanism, assemble(mechanism).start, request);
+  const RunResult run = run_form(mechanism, equations::start_of(mechanism), request);
   ASSERT_EQ(run.status, "done");
   const auto& row = run.trajectory.rows.back();
   Scene later = mechanism.scene();
@@ -135,7 +136,7 @@ TEST(Index, DoesNotDependOnUnits) {
                            in_units(row_of_four_bars(2, 1.1, 0.7), 1, unit, 1),
                            in_units(row_of_four_bars(2, 1.1, 0.7), 1, 1, unit)}) {
       const Mechanism mechanism(s);
-      expect_promised(mechanism, assemble(mechanism).start, least_gap);
+      expect_promised(mechanism, equations::start_of(mechanism), least_gap);
     }
   }
 }
@@ -154,7 +155,7 @@ TEST(Index, DrivenMechanismsKeepTheirs) {
   s.drives.push_back(drive);
   const Mechanism mechanism(s);
   ASSERT_TRUE(mechanism.plan().drives);
-  expect_promised(mechanism, assemble(mechanism).start, least_gap);
+  expect_promised(mechanism, equations::start_of(mechanism), least_gap);
 }
 
 TEST(Index, RedundantLoopsHaveNone) {
@@ -190,8 +191,9 @@ TEST(Index, RedundantLoopsHaveNone) {
 TEST(Index, ASingularPoseOfIndependentLoopsHasNoneThere) {
   // The row of four-bars lying flat: Φ_q loses rank at this pose alone.
   const Mechanism upright(row_of_four_bars(2, 1.1)), flat(row_of_four_bars(2, 0));
-  const IndexStudy regular = run_index_study(upright, assemble(upright).start, {"momentum-index2"}),
-                   singular = run_index_study(flat, assemble(flat).start, {"momentum-index2"});
+  const IndexStudy regular =
+                       run_index_study(upright, equations::start_of(upright), {"momentum-index2"}),
+                   singular = run_index_study(flat, equations::start_of(flat), {"momentum-index2"});
   EXPECT_EQ(regular.loops.rank, upright.m());
   EXPECT_LT(singular.loops.rank, flat.m());
   EXPECT_EQ(regular.forms[0].found.index, 2);
@@ -217,13 +219,13 @@ TEST(Index, DrivenLoopsKeepTheirs) {
        {driven_pendulum(), scene_of("driven/scene.toml"), scene_of("driven/swing.toml")}) {
     const Mechanism mechanism(scene);
     ASSERT_TRUE(mechanism.plan().drives);
-    expect_promised(mechanism, assemble(mechanism).start, least_gap);
+    expect_promised(mechanism, equations::start_of(mechanism), least_gap);
   }
 }
 
 TEST(Index, WithoutLoopsTheFormsAreOdes) {
   const Mechanism mechanism(scene_of("chain/scene.toml"));
-  const Start start = assemble(mechanism).start;
+  const Start start = equations::start_of(mechanism);
   const IndexStudy study = run_index_study(mechanism, start, {});
   ASSERT_EQ(study.forms.size(), 2u);
   for (const auto& f : study.forms) EXPECT_EQ(f.inner.rank, mechanism.nv());

@@ -1,6 +1,7 @@
 // Laws of (7)-(8) along motions: the gauge moves nothing, λ = σ̇ + κσ, energy changes by the power
 // of what the energy does not hold.
 
+#include "equations/ensemble.h"
 #include "equations/linkages.h"
 #include "equations/tolerance.h"
 
@@ -143,7 +144,7 @@ TEST(Energy, ChangesByTheLostPower) {
   wrench.in_body_axes = true;
   scene.forces.push_back(wrench);
   const Mechanism mechanism(scene);
-  const Start start = assemble(mechanism).start;
+  const Start start = equations::start_of(mechanism);
   for (const auto& [form, integrator] :
        {std::pair{"momentum", "dop853"}, std::pair{"acceleration", "dop853"},
         std::pair{"momentum-index2", "ida"}, std::pair{"stabilised-index2", "ida"}}) {

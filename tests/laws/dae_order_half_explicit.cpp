@@ -1,6 +1,7 @@
 // hem5 has order 5: every order condition of index 2 by its tree, and halved steps on mechanisms,
 // in q, u, p and in the multiplier, for both forms, with prescribed motion and with quaternions.
 
+#include "equations/ensemble.h"
 #include "equations/index2_trees.h"
 #include "equations/linkages.h"
 
@@ -98,7 +99,7 @@ struct Errors {
 class Halving {
  public:
   Halving(const Scene& scene, const std::string& form, double end)
-      : mechanism_(scene), start_(assemble(mechanism_).start), form_(form), end_(end) {
+      : mechanism_(scene), start_(equations::start_of(mechanism_)), form_(form), end_(end) {
     if (form == "momentum-index2") options_.gauge = parse_gauge("leak");
     const auto ode = make_form(form == "momentum-index2" ? "momentum" : "acceleration", mechanism_,
                                options_, start_);
@@ -190,7 +191,7 @@ RunResult run_hem5(const Mechanism& mechanism, const std::string& form, double t
   request.settings.end_time = end;
   request.settings.samples = samples;
   request.keep_trajectory = true;
-  return run_form(mechanism, assemble(mechanism).start, request);
+  return run_form(mechanism, equations::start_of(mechanism), request);
 }
 
 // The constraint that stands in the equations, at every sample inside steps too; the other one
@@ -240,7 +241,7 @@ TEST(HalfExplicit, NamesTheDependentEquationWhereItStops) {
   const RunResult passes = run_hem5(mechanism, "momentum-index2", 1e-8, 5, 5);
   EXPECT_EQ(passes.status, "done") << passes.reason;
   EXPECT_GT(passes.counters.detours, 0);
-  const Start flat = assemble(mechanism).start;
+  const Start flat = equations::start_of(mechanism);
   const auto row = make_form("momentum-index2", mechanism, {}, flat);
   IntegrationOptions fixed;
   fixed.step = 5e-5;
@@ -250,7 +251,7 @@ TEST(HalfExplicit, NamesTheDependentEquationWhereItStops) {
   EXPECT_NE(r.reason.find("other equations"), std::string::npos) << r.reason;
   // Where all equations are independent nothing is named: a step too long for any solution.
   const Mechanism regular(example("four_bar"));
-  const Start start = assemble(regular).start;
+  const Start start = equations::start_of(regular);
   const auto form = make_form("momentum-index2", regular, {}, start);
   IntegrationOptions options;
   options.step = 5;

@@ -13,6 +13,7 @@
 #include <momenta/dae/solver/implicit_methods.h>
 
 #include "equations/cartesian_pendulum.h"
+#include "equations/ensemble.h"
 #include "equations/linkages.h"
 
 #include <cmath>
@@ -120,7 +121,7 @@ TEST(ImplicitOrder, MethodsOfSecondOrderOnMechanisms) {
   const Scene driven = read_scene(examples / "driven" / "scene.toml");
   for (const Scene& scene : {four_bar, flying_rod(), driven}) {
     const Mechanism mechanism(scene);
-    const Start start = assemble(mechanism).start;
+    const Start start = equations::start_of(mechanism);
     const double end = 1;
     const auto momentum = make_form("momentum", mechanism, {}, start);
     IntegrationOptions tight;

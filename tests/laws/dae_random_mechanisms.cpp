@@ -2,6 +2,7 @@
 // made smaller by leaving out bytes of what the mechanism was made from, and told in outline.
 // Another search: RC_PARAMS="seed=7 max_success=1000".
 
+#include "equations/ensemble.h"
 #include "equations/recut.h"
 #include "equations/small_scenes.h"
 
@@ -38,7 +39,7 @@ std::optional<Ready> regular(const Scene& scene) {
   try {
     validate(scene);
     Ready r{std::make_unique<Mechanism>(scene), {}};
-    r.start = assemble(*r.mechanism).start;
+    r.start = equations::start_of(*r.mechanism);
     const RankReport rank = rank_report(*r.mechanism, r.start);
     if (rank.rank < r.mechanism->m() || rank.rank_nearby < r.mechanism->m() || rank.kept < 1e-2)
       return std::nullopt;

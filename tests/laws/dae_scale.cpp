@@ -1,6 +1,7 @@
 // What a mechanism of twenty thousand bodies must do: assemble, with the right rank, and solve (7)
 // to rounding; and what it holds in memory doubles when its bodies do.
 
+#include "equations/ensemble.h"
 #include "equations/large_scenes.h"
 #include "equations/linkages.h"
 #include "equations/tolerance.h"
@@ -129,7 +130,7 @@ TEST(FarLoops, AreRightToTheirOwnRounding) {
 /// at the tip is below the tolerance, however short the step.
 TEST(LongLadder, ImplicitFormsStart) {
   const Mechanism mechanism(crossed_bars(2000));
-  const Start start = assemble(mechanism).start;
+  const Start start = equations::start_of(mechanism);
   for (const char* name : {"momentum-index2", "acceleration-index2", "stabilised-index2"}) {
     FormOptions options;
     if (takes_gauge(name)) options.gauge = {Gauge::Kind::leak, 1.7};

@@ -1,6 +1,7 @@
 // Runs of ten seconds through singular poses and along redundant loops: judged by the worst of many
 // step sizes and orientations, never by one run.
 
+#include "equations/ensemble.h"
 #include "equations/linkages.h"
 #include "equations/random_tree.h"
 #include "equations/tolerance.h"
@@ -26,7 +27,7 @@ struct Outcome {
 
 /// Ten seconds of the momentum form with rk4 at step h.
 Outcome ten_seconds(const Mechanism& mechanism, double h, double leak, bool project) {
-  const Start start = assemble(mechanism).start;
+  const Start start = equations::start_of(mechanism);
   FormOptions options;
   options.gauge = {Gauge::Kind::leak, leak};
   options.project = project;

@@ -2,6 +2,7 @@
 // and however the room is turned.
 
 #include "equations/differenced_motions.h"
+#include "equations/ensemble.h"
 #include "equations/linkages.h"
 #include "equations/recut.h"
 
@@ -31,7 +32,7 @@ Scene example(const std::string& name) {
 ModesResult modes_of(const Scene& scene, ModesRequest request = {},
                      Algebra algebra = Algebra::automatic) {
   const Mechanism mechanism(scene, {.algebra = algebra});
-  return find_modes(mechanism, assemble(mechanism).start, request);
+  return find_modes(mechanism, equations::start_of(mechanism), request);
 }
 
 /// A chain of n rods of 1 kg, `sag` times as long as the way between the two points it hangs on.
@@ -106,7 +107,7 @@ double distance(std::complex<double> s, const std::vector<std::complex<double>>&
 TEST(SmallMotions, AreThoseOfDifferencedAccelerations) {
   for (const auto& [name, scene] : mechanisms()) {
     const Mechanism mechanism(scene);
-    const ModesResult r = find_modes(mechanism, assemble(mechanism).start, {});
+    const ModesResult r = find_modes(mechanism, equations::start_of(mechanism), {});
     const auto twin = differenced_spectrum(mechanism, r.equilibrium);
     double largest = 0;
     for (const auto& s : twin) largest = std::max(largest, std::abs(s));
@@ -128,7 +129,7 @@ TEST(SmallMotions, AreThoseOfDifferencedAccelerations) {
 TEST(SmallMotions, SolveTheirEquationsWithShapesOfUnitMass) {
   for (const auto& [name, scene] : mechanisms()) {
     const Mechanism mechanism(scene);
-    const ModesResult r = find_modes(mechanism, assemble(mechanism).start, {});
+    const ModesResult r = find_modes(mechanism, equations::start_of(mechanism), {});
     const Equilibrium& at = r.equilibrium;
     const Linearisation l = linearise(mechanism, at.t, at.q, at.lambda,
                                       MatrixXd::Identity(mechanism.nv(), mechanism.nv()));
@@ -176,7 +177,7 @@ TEST(SmallMotions, AreTheSameWhereverLoopsAreCut) {
   const auto at_cuts = [](const Scene& scene, const std::vector<std::string>& cuts,
                           const std::string& loop) {
     const Mechanism mechanism(scene);
-    const ModesResult expected = find_modes(mechanism, assemble(mechanism).start, {});
+    const ModesResult expected = find_modes(mechanism, equations::start_of(mechanism), {});
     for (const std::string& cut : cuts) {
       const Scene other = recut(scene, mechanism.tree(), assemble(mechanism).start.q, cut, loop);
       expect_same(modes_of(other), expected, 1e-9, cut);
@@ -211,7 +212,7 @@ TEST(SmallMotions, LanczosAndArnoldiFindTheLowestOfAll) {
   for (const double damping : {0.0, 30.0}) {
     const Scene scene = hanging_loop(n, 1.3, damping);
     const Mechanism mechanism(scene);
-    const Start start = assemble(mechanism).start;
+    const Start start = equations::start_of(mechanism);
     const ModesResult lowest =
         find_modes(mechanism, start, {.count = count, .route = Route::sparse});
     const Spectrum all = spectrum(mechanism, lowest.equilibrium, count, Route::dense);
@@ -231,7 +232,7 @@ TEST(SmallMotions, SettlingEndsInAMinimumBelowTheStart) {
   for (const char* name : {"chain/scene.toml", "extremes/five_rods.toml", "four_bar/scene.toml",
                            "models/panda_urdf/panda.urdf"}) {
     const Mechanism mechanism(example(name));
-    const Start start = assemble(mechanism).start;
+    const Start start = equations::start_of(mechanism);
     const ModesResult r = find_modes(mechanism, start, {});
     EXPECT_EQ(r.growing(), 0) << name;
     const auto e = mechanism.evaluation<double>();
@@ -254,7 +255,7 @@ TEST(SmallMotions, AreWhatARunDoes) {
   for (const double damping : {0.0, 0.05}) {
     const Scene scene = sprung_four_bar(damping);
     const Mechanism mechanism(scene);
-    const ModesResult r = find_modes(mechanism, assemble(mechanism).start, {});
+    const ModesResult r = find_modes(mechanism, equations::start_of(mechanism), {});
     const Mode& mode = r.spectrum.modes.at(0);
     ASSERT_EQ(mode.kind(), Mode::Kind::oscillation);
     PoseMotion poses(mechanism);

@@ -11,6 +11,7 @@
 #include <momenta/dae/solver/implicit_methods.h>
 #include <momenta/dae/study/run_form.h>
 
+#include "equations/ensemble.h"
 #include "equations/linkages.h"
 
 #include <filesystem>
@@ -44,7 +45,7 @@ struct Canonical {
   Start start;
   std::unique_ptr<Form> form;
   Canonical(const Scene& scene, const std::string& gauge)
-      : mechanism(scene), start(assemble(mechanism).start) {
+      : mechanism(scene), start(equations::start_of(mechanism)) {
     FormOptions options;
     options.gauge = parse_gauge(gauge);
     form = make_form("momentum", mechanism, options, start);
@@ -108,7 +109,7 @@ std::vector<double> four_bar_state(const std::vector<double>& near, double angle
   scene.joints[0].velocity = {rate};
   scene.held = {scene.joints[0].name};
   const Mechanism mechanism(scene);
-  const Start start = assemble(mechanism).start;
+  const Start start = equations::start_of(mechanism);
   return make_form("momentum", mechanism, {}, start)->initial(start);
 }
 
@@ -177,7 +178,7 @@ std::pair<double, double> trend(const Scene& scene, const std::string& integrato
   request.settings.step = step;
   request.settings.end_time = end;
   request.settings.samples = static_cast<int>(std::lround(end / step / 4));
-  const RunResult run = run_form(mechanism, assemble(mechanism).start, request);
+  const RunResult run = run_form(mechanism, equations::start_of(mechanism), request);
   EXPECT_EQ(run.status, "done") << run.reason;
   const auto& e = run.series.energy_error;
   const auto quarter = static_cast<std::ptrdiff_t>(e.size() / 4);

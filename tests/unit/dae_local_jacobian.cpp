@@ -1,6 +1,7 @@
 // The local Newton matrix: what is left of it once its further unknowns are eliminated is J, and
 // its entries grow like the mechanism, however deep the tree is.
 
+#include "equations/ensemble.h"
 #include "equations/large_scenes.h"
 #include "equations/linkages.h"
 #include "equations/random_loops.h"
@@ -77,12 +78,12 @@ TEST(LocalJacobian, IsTheMatrixOfDualNumbers) {
   for (const char* name : {"four_bar", "andrews", "driven", "spatial_slider_crank"}) {
     const Mechanism mechanism(
         read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples" / name / "scene.toml"));
-    expect_same_matrix(mechanism, assemble(mechanism).start, 1);
+    expect_same_matrix(mechanism, equations::start_of(mechanism), 1);
   }
   for (const Scene& scene :
        {platform(6), crossed_bars(12), arch(15), row_of_four_bars(9, 1.1, 1)}) {
     const Mechanism mechanism(scene);
-    expect_same_matrix(mechanism, assemble(mechanism).start, 2);
+    expect_same_matrix(mechanism, equations::start_of(mechanism), 2);
   }
 }
 
@@ -104,7 +105,7 @@ TEST(LocalJacobian, IsThatOfRandomMechanisms) {
 
 std::size_t entries(const Scene& scene, const std::string& name) {
   const Mechanism mechanism(scene);
-  const auto form = make_form(name, mechanism, {}, assemble(mechanism).start);
+  const auto form = make_form(name, mechanism, {}, equations::start_of(mechanism));
   auto& dae = dynamic_cast<DaeForm&>(*form);
   std::vector<double> y(static_cast<std::size_t>(dae.size())), ydot(y.size());
   EXPECT_TRUE(dae.start(0, y.data(), ydot.data()));
@@ -132,7 +133,7 @@ TEST(LocalJacobian, GrowsLikeTheMechanism) {
 /// steps; where one of them is lost others are chosen.
 TEST(LocalJacobian, PivotsAreKept) {
   const Mechanism mechanism(crossed_bars(100));
-  const auto form = make_form("momentum-index2", mechanism, {}, assemble(mechanism).start);
+  const auto form = make_form("momentum-index2", mechanism, {}, equations::start_of(mechanism));
   auto& dae = dynamic_cast<DaeForm&>(*form);
   std::vector<double> y(static_cast<std::size_t>(dae.size())), ydot(y.size());
   ASSERT_TRUE(dae.start(0, y.data(), ydot.data()));
@@ -178,7 +179,7 @@ TEST(LocalJacobian, PivotsAreKept) {
 /// IDA by the local matrix finds the motion that the sweeps find.
 TEST(LocalJacobian, SameMotion) {
   const Mechanism mechanism(crossed_bars(90));
-  const Start start = assemble(mechanism).start;
+  const Start start = equations::start_of(mechanism);
   std::vector<double> ends[2];
   for (const bool dae : {false, true}) {
     RunRequest request;

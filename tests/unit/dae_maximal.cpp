@@ -2,6 +2,7 @@
 // mechanisms, the same as from the assembled matrix; trees as from the recursion; the cost of a
 // chain.
 
+#include "equations/ensemble.h"
 #include "equations/linkages.h"
 #include "equations/random_loops.h"
 #include "equations/tolerance.h"
@@ -177,7 +178,7 @@ TEST(Maximal, SolvesTreesAsTheRecursion) {
 TEST(Maximal, RedundantRowsFadeAsInTheAssembledMatrix) {
   for (const Scene& scene : {bricard(), row_of_four_bars(3, 0.8)}) {
     const Mechanism mechanism(scene, {.algebra = Algebra::spatial, .kkt = KktChoice::dense});
-    const Start start = assemble(mechanism).start;
+    const Start start = equations::start_of(mechanism);
     const auto e = mechanism.evaluation<double>(), other = mechanism.evaluation<double>();
     const auto exact = make_assembled_solver(mechanism, *e),
                found = make_maximal_solver(mechanism, *other);

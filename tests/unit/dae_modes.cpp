@@ -1,5 +1,7 @@
 // Equilibria and modes of mechanisms solved by hand.
 
+#include "equations/ensemble.h"
+
 #include <gtest/gtest.h>
 #include <momenta/core/scene/read_scene.h>
 #include <momenta/dae/assembly.h>
@@ -20,7 +22,7 @@ constexpr double g = 9.81;
 ModesResult modes_of(const std::string& text, ModesRequest request = {}, bool running = false) {
   Scene scene = parse_scene(text, "test");
   const Mechanism mechanism(running ? scene : held_at_start(scene));
-  return find_modes(mechanism, assemble(mechanism).start, request);
+  return find_modes(mechanism, equations::start_of(mechanism), request);
 }
 std::vector<double> frequencies(const ModesResult& r) {
   std::vector<double> all;
@@ -185,7 +187,8 @@ TEST(Modes, OfAParallelogramHeldByASpring) {
       for (const Route route : {Route::dense, Route::sparse}) {
         const Mechanism mechanism(parse_scene(parallelogram("", 80, gravity), "test"),
                                   {.algebra = algebra});
-        const ModesResult r = find_modes(mechanism, assemble(mechanism).start, {.route = route});
+        const ModesResult r =
+            find_modes(mechanism, equations::start_of(mechanism), {.route = route});
         EXPECT_EQ(r.spectrum.mobility, 1);
         EXPECT_EQ(mechanism.m() - r.spectrum.rank, algebra == Algebra::spatial ? 3 : 0);
         EXPECT_FALSE(r.singular_here());

@@ -1,6 +1,7 @@
 // Which loop forces are unique: by two centres of the solver, against the null space of Φ_qᵀ from
 // singular values; at poses, and along runs, where trajectories, summaries and charts tell.
 
+#include "equations/ensemble.h"
 #include "equations/linkages.h"
 #include "equations/random_loops.h"
 #include "equations/small_scenes.h"
@@ -74,7 +75,7 @@ TEST(UniqueMultipliers, AgreeWithSingularValuesWhateverSolves) {
     for (const Algebra algebra : {Algebra::automatic, Algebra::spatial})
       for (const KktChoice kkt : {KktChoice::sweeps, KktChoice::sparse, KktChoice::dense}) {
         const Mechanism mechanism(scene, {.algebra = algebra, .kkt = kkt});
-        const Start start = assemble(mechanism).start;
+        const Start start = equations::start_of(mechanism);
         const auto found = unique_by_centres(mechanism, start);
         EXPECT_EQ(found, unique_by_singular_values(mechanism, start.t, start.q))
             << scene.name << " " << static_cast<int>(algebra) << name_of(mechanism.kkt());
@@ -89,7 +90,7 @@ TEST(UniqueMultipliers, AgreeWithSingularValuesWhateverSolves) {
   light.bodies[1].inertia *= 1e-8;
   const Mechanism by_klu(light);
   ASSERT_FALSE(filters_pivots(by_klu));
-  const Start start = assemble(by_klu).start;
+  const Start start = equations::start_of(by_klu);
   EXPECT_EQ(unique_by_centres(by_klu, start), unique_by_singular_values(by_klu, start.t, start.q));
   EXPECT_GE(shared, 10);
   EXPECT_GE(determined, 9);
@@ -110,7 +111,7 @@ TEST(UniqueMultipliers, AgreeOnRandomLoopsWrittenTwice) {
     }
     try {
       const Mechanism mechanism(scene);
-      const Start start = assemble(mechanism).start;
+      const Start start = equations::start_of(mechanism);
       // Poses at which the rank is a matter of taste are no law's business.
       const RankReport rank = rank_report(mechanism, start);
       if (rank.kept < 1e-2 || rank.dropped > 1e-12) continue;
@@ -135,7 +136,7 @@ RunResult run_of(const Mechanism& mechanism, const std::string& form, double end
   request.settings.end_time = end;
   request.settings.samples = samples;
   request.keep_trajectory = true;
-  return run_form(mechanism, assemble(mechanism).start, request);
+  return run_form(mechanism, equations::start_of(mechanism), request);
 }
 
 /// What the trajectory says of every sample against its pose; whether some are not unique.

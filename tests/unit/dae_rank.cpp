@@ -1,6 +1,7 @@
 // Which loop equations depend on which, by name, here and elsewhere; and which multipliers are
 // unique.
 
+#include "equations/ensemble.h"
 #include "equations/linkages.h"
 
 #include <gtest/gtest.h>
@@ -20,14 +21,14 @@ Scene example(const std::string& name) {
   return read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples" / name);
 }
 RankReport report_of(const Mechanism& mechanism) {
-  return rank_report(mechanism, assemble(mechanism).start);
+  return rank_report(mechanism, equations::start_of(mechanism));
 }
 const Eigen::Quaterniond tilt(Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 3).normalized()));
 
 /// What a dependency claims: its row is a combination of those it names, and the forces in `idle`
 /// move nothing.
 void expect_true(const Mechanism& mechanism, const RankReport& r) {
-  const Start start = assemble(mechanism).start;
+  const Start start = equations::start_of(mechanism);
   const auto e = mechanism.evaluation<double>();
   e->place(start.t, start.q.data());
   std::vector<double> values(mechanism.kkt_pattern().constraint.size());
@@ -174,11 +175,12 @@ Reactions marked(const Mechanism& mechanism, const Start& s) {
 TEST(Rank, ReactionsThatRedundantLoopsShareAreMarked) {
   // Independent loops: everything is unique.
   const Mechanism plain(example("four_bar/scene.toml"));
-  for (const auto& r : marked(plain, assemble(plain).start).joints) EXPECT_TRUE(r.unique) << r.name;
+  for (const auto& r : marked(plain, equations::start_of(plain)).joints)
+    EXPECT_TRUE(r.unique) << r.name;
 
   // Three cranks: every crank carries a share that is not determined.
   const Mechanism shared(example("extremes/three_cranks.toml"));
-  const Reactions three = marked(shared, assemble(shared).start);
+  const Reactions three = marked(shared, equations::start_of(shared));
   for (const auto& r : three.joints) EXPECT_FALSE(r.unique) << r.name;
   for (const auto& r : three.loops) EXPECT_FALSE(r.unique) << r.name;
 
@@ -193,11 +195,11 @@ TEST(Rank, ReactionsThatRedundantLoopsShareAreMarked) {
   beside.bodies.push_back(bob);
   beside.joints.push_back(pin);
   const Mechanism both(beside);
-  for (const auto& r : marked(both, assemble(both).start).joints)
+  for (const auto& r : marked(both, equations::start_of(both)).joints)
     EXPECT_EQ(r.unique, r.name == "P9") << r.name;
 
   // What is unique does not depend on which of the answers is given; what is not, does.
-  const Start start = assemble(shared).start;
+  const Start start = equations::start_of(shared);
   const Eigen::MatrixXd idle = idle_forces(shared, start.t, start.q);
   const Reactions a = reactions(shared, start.t, start.q, start.u, start.udot, start.lambda),
                   b = reactions(shared, start.t, start.q, start.u, start.udot,

@@ -1,5 +1,7 @@
 // The page in a real browser: no console message, no horizontal scroll, every chart and table
 // there. In Chromium and in Firefox, skipped where one is not installed.
+#include "equations/ensemble.h"
+
 #include <gtest/gtest.h>
 #include <momenta/core/scene/read_scene.h>
 #include <momenta/dae/assembly.h>
@@ -321,7 +323,7 @@ child = "b"
 origin = { parent = [1, 0, 0] }
 )",
                                         "test"));
-  const ModesResult result = find_modes(mechanism, assemble(mechanism).start, {});
+  const ModesResult result = find_modes(mechanism, equations::start_of(mechanism), {});
   StudyResult study = synthetic::study_of({});
   study.picture = picture_of(mechanism);
   study.motions.clear();

@@ -1,6 +1,8 @@
 // Studies that were killed: what is done is taken over, what comes out is what an undisturbed study
 // gives, and no run of another study, scene or build gets in.
 
+#include "equations/ensemble.h"
+
 #include <gtest/gtest.h>
 #include <momenta/core/scene/read_scene.h>
 #include <momenta/dae/study/drift_study.h>
@@ -40,7 +42,7 @@ class Resume : public testing::Test {
                  std::string(testing::UnitTest::GetInstance()->current_test_info()->name()) + "_" +
                  std::to_string(getpid()))),
         mechanism_(read_scene(fs::path(MOMENTA_SOURCE_DIR) / "examples/four_bar/scene.toml")),
-        start_(assemble(mechanism_).start) {
+        start_(equations::start_of(mechanism_)) {
     fs::remove_all(folder_);
   }
   ~Resume() override { fs::remove_all(folder_); }

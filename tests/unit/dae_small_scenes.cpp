@@ -2,6 +2,7 @@
 // sentence why not: seeds, mutations of them, and a bounded number at random.
 
 #include "equations/any_text.h"
+#include "equations/ensemble.h"
 #include "equations/small_scenes.h"
 
 #include <gtest/gtest.h>
@@ -130,7 +131,7 @@ child = "block"
 
 TEST(NothingMoves, AndEveryMethodComesToItsEnd) {
   const Mechanism mechanism(parse_scene(welded));
-  const Start start = assemble(mechanism).start;
+  const Start start = equations::start_of(mechanism);
   for (const auto& [form, method] :
        {std::pair{"momentum", "dop853"}, std::pair{"acceleration", "rk4"},
         std::pair{"momentum", "bdf"}, std::pair{"acceleration", "adams"},
@@ -174,7 +175,7 @@ child = "dust"
 origin = { parent = [-0.4, 0.05, 0.5], child = [-0.4, -0.3, -0.4] }
 length = 1.0
 )"));
-  const Start start = assemble(mechanism).start;
+  const Start start = equations::start_of(mechanism);
   RunRequest request;
   request.settings.form = "partitioned";
   request.settings.integrator = "dop853";

@@ -3,6 +3,8 @@
 // that another file of the same program may bring its own; the test then finds its counter still
 // and skips, as it does where a sanitizer owns the heap.
 
+#include "equations/ensemble.h"
+
 #include <gtest/gtest.h>
 #include <momenta/core/scene/read_scene.h>
 #include <momenta/dae/assembly.h>
@@ -129,7 +131,7 @@ TEST(Allocation, NoneInStepsOfForms) {
 
   const Mechanism mechanism(
       read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples/four_bar/scene.toml"));
-  const Start start = assemble(mechanism).start;
+  const Start start = equations::start_of(mechanism);
   for (const std::string& name : form_names()) {
     if (is_dae_form(name)) continue;
     FormOptions options;

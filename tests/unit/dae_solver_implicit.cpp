@@ -10,6 +10,7 @@
 #include <momenta/dae/study/run_form.h>
 
 #include "equations/cartesian_pendulum.h"
+#include "equations/ensemble.h"
 #include "equations/linkages.h"
 
 #include <filesystem>
@@ -35,7 +36,7 @@ IntegrationOptions tolerance(double tol) {
 
 TEST(Integrators, EveryNameRunsTheFormsItTakes) {
   const Mechanism mechanism(four_bar());
-  const Start start = assemble(mechanism).start;
+  const Start start = equations::start_of(mechanism);
   for (const Integrator& method : integrators()) {
     RunRequest request;
     request.settings.form = method.takes == Integrator::Takes::ode ? "momentum" : "momentum-index2";
@@ -66,7 +67,7 @@ std::string refusal(const Mechanism& mechanism, const std::string& form,
   request.settings.end_time = 0.1;
   request.settings.samples = 1;
   try {
-    const RunResult run = run_form(mechanism, assemble(mechanism).start, request);
+    const RunResult run = run_form(mechanism, equations::start_of(mechanism), request);
     return run.status;
   } catch (const std::invalid_argument& e) {
     return e.what();
@@ -117,9 +118,9 @@ TEST(Bdf, ProjectedKeepsTheLoopsShut) {
     request.settings.rtol = request.settings.atol = 1e-7;
     request.settings.end_time = 5;
     request.settings.samples = 100;
-    const RunResult free = run_form(mechanism, assemble(mechanism).start, request);
+    const RunResult free = run_form(mechanism, equations::start_of(mechanism), request);
     request.settings.project = true;
-    const RunResult kept = run_form(mechanism, assemble(mechanism).start, request);
+    const RunResult kept = run_form(mechanism, equations::start_of(mechanism), request);
     ASSERT_EQ(free.status, "done") << free.reason;
     ASSERT_EQ(kept.status, "done") << kept.reason;
     EXPECT_GT(free.position_drift_max, 1e-8) << form;
@@ -330,7 +331,7 @@ TEST(Gauss, FailuresLimitsAndArguments) {
 TEST(GeneralisedAlpha, ConditionDoesNotGrowAsStepsShrink) {
   // Newton's iterations a step at h and h/1000, at the same tolerance.
   const Mechanism mechanism(four_bar());
-  const Start start = assemble(mechanism).start;
+  const Start start = equations::start_of(mechanism);
   for (const double h : {1e-3, 1e-6}) {
     const auto form = make_form("acceleration-index3", mechanism, {}, start);
     IntegrationOptions options = tolerance(1e-9);
@@ -353,7 +354,7 @@ TEST(GeneralisedAlpha, SamplesBetweenStepsKeepTheLoopsShut) {
   request.settings.step = 0.0101;
   request.settings.end_time = 2;
   request.settings.samples = 77;
-  const RunResult run = run_form(mechanism, assemble(mechanism).start, request);
+  const RunResult run = run_form(mechanism, equations::start_of(mechanism), request);
   ASSERT_EQ(run.status, "done") << run.reason;
   EXPECT_EQ(run.counters.steps, 199);
   EXPECT_LT(run.position_drift_max, 1e-9);
@@ -365,7 +366,7 @@ TEST(BayoLedesma, HoldsPositionsRatesAndAccelerations) {
   // from step to step.
   for (const Scene& scene : {four_bar(), equations::row_of_four_bars(12, 1.2)}) {
     const Mechanism mechanism(scene);
-    const Start start = assemble(mechanism).start;
+    const Start start = equations::start_of(mechanism);
     const auto form = make_form("acceleration-index3", mechanism, {}, start);
     const auto e = mechanism.evaluation<double>();
     IntegrationOptions options = tolerance(1e-9);
@@ -401,7 +402,7 @@ TEST(BayoLedesma, HoldsPositionsRatesAndAccelerations) {
 TEST(BayoLedesma, PassesRedundantLoopsAndAnyPenalty) {
   // The motion does not depend on the penalty once the multipliers have settled.
   const Mechanism mechanism(equations::bricard());
-  const Start start = assemble(mechanism).start;
+  const Start start = equations::start_of(mechanism);
   Eigen::VectorXd before;
   for (const double penalty : {1e4, 1e7, 1e9}) {
     FormOptions settings;
@@ -431,7 +432,7 @@ TEST(Rattle, KeepsBothConstraintsEverywhere) {
     request.settings.step = 0.0101;
     request.settings.end_time = 5;
     request.settings.samples = 77;
-    const RunResult run = run_form(*mechanism, assemble(*mechanism).start, request);
+    const RunResult run = run_form(*mechanism, equations::start_of(*mechanism), request);
     ASSERT_EQ(run.status, "done") << run.reason;
     EXPECT_EQ(run.settings.gauge, "reset");
     EXPECT_LT(run.position_drift_max, 1e-12);

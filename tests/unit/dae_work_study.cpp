@@ -1,5 +1,6 @@
 // What momenta work rests on: the quad-precision motion and its integrator, the front, the words.
 
+#include "equations/ensemble.h"
 #include "equations/linkages.h"
 
 #include <gtest/gtest.h>
@@ -49,7 +50,7 @@ TEST(Extrapolation, RefusesAStepTooLong) {
 TEST(QuadMotion, HasTheRatesOfTheAccelerationForm) {
   for (const char* name : {"four_bar", "andrews", "slider_crank", "free_body", "pendulum"}) {
     const Mechanism mechanism(read_scene(example(name, "scene.toml")));
-    const Start start = assemble(mechanism).start;
+    const Start start = equations::start_of(mechanism);
     const auto n = static_cast<std::size_t>(mechanism.nq() + mechanism.nv());
     std::vector<Quad> y(start.q.begin(), start.q.end()), rates(n);
     y.insert(y.end(), start.u.begin(), start.u.end());
@@ -70,7 +71,7 @@ TEST(OwnReference, AgreesWithThoseOfOthers) {
        {std::tuple{"andrews", 0.03, 1e-12}, std::tuple{"four_bar", 5.0, 1e-10},
         std::tuple{"pendulum", 2.0, 1e-11}}) {
     const Mechanism mechanism(read_scene(example(name, "scene.toml")));
-    const Start start = assemble(mechanism).start;
+    const Start start = equations::start_of(mechanism);
     const OwnReference own = own_reference(mechanism, start, end, 20);
     EXPECT_LT(own.accuracy, 1e-14) << name;
     Reference other(example(name, "reference.csv"));
@@ -127,7 +128,7 @@ TEST(WorkStudy, AdviceNamesTheCheapestOfEachForm) {
 
 TEST(WorkStudy, LaddersHaveTheirRungsAndErrorsFollow) {
   const Mechanism mechanism(read_scene(example("four_bar", "scene.toml")));
-  const Start start = assemble(mechanism).start;
+  const Start start = equations::start_of(mechanism);
   const OwnReference own = own_reference(mechanism, start, 1.0, 10);
   WorkRequest request;
   request.forms = {"momentum", "acceleration", "momentum-index2"};
