@@ -1,8 +1,10 @@
+#include <momenta/core/share.h>
 #include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/study/drift_study.h>
 #include <momenta/dae/study/run_record.h>
 
-#include <algorithm>
+#include <atomic>
+#include <mutex>
 
 namespace momenta {
 namespace {
@@ -78,40 +80,52 @@ std::vector<RunSettings> plan_runs(const Mechanism& mechanism, const DriftReques
 std::vector<RunResult> run_drift_study(const Mechanism& mechanism, const Start& start,
                                        const DriftRequest& request) {
   const auto runs = plan_runs(mechanism, request);
-  std::vector<RunResult> results;
-  bool going = true;
-  for (std::size_t i = 0; i < runs.size() && going; ++i) {
-    RunRequest run;
-    run.settings = runs[i];
-    run.reference = request.reference;
-    run.max_cpu_seconds = request.max_cpu_seconds;
-    run.film_intervals = request.film_intervals;
-    const std::string label = runs[i].form + (runs[i].gauge.empty() ? "" : " " + runs[i].gauge) +
-                              (runs[i].project ? " projected" : "");
-    if (request.progress)
-      run.progress = [&](double t) {
-        going = request.progress(static_cast<int>(i) + 1, static_cast<int>(runs.size()), label,
-                                 t / request.end_time);
-        return going;
-      };
+  const int total = static_cast<int>(runs.size());
+  std::vector<RunResult> results(runs.size());
+  std::vector<char> there(runs.size(), 0);
+  std::atomic<bool> going{true};
+  std::mutex turn;
+  const auto tell = [&](std::size_t i, const std::string& label, double fraction) {
+    const std::lock_guard lock(turn);
+    if (going && request.progress &&
+        !request.progress(static_cast<int>(i) + 1, total, label, fraction))
+      going = false;
+    return going.load();
+  };
+  // Watched side by side; what they take is measured after it, one at a time.
+  share(request.threads, runs.size(), [&](std::size_t i) {
+    if (!going) return;
     const std::string key = key_of(runs[i]);
-    if (auto known = recall<RunResult>(request.journal, key)) {
-      results.push_back(*std::move(known));
-      continue;
+    auto result = recall<RunResult>(request.journal, key);
+    if (!result) {
+      RunRequest run;
+      run.settings = runs[i];
+      run.reference = request.reference;
+      run.max_cpu_seconds = request.max_cpu_seconds;
+      run.film_intervals = request.film_intervals;
+      const std::string label = runs[i].form + (runs[i].gauge.empty() ? "" : " " + runs[i].gauge) +
+                                (runs[i].project ? " projected" : "");
+      run.progress = [&](double t) { return tell(i, label, t / request.end_time); };
+      result = run_form(mechanism, start, run);
+      if (request.journal && going) request.journal->add(key, record_of(*result));
     }
-    results.push_back(run_form(mechanism, start, run));
-    if (request.journal && going) request.journal->add(key, record_of(results.back()));
-  }
+    results[i] = *std::move(result);
+    there[i] = 1;
+  });
+  // Of a study that was interrupted: those that were begun.
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < results.size(); ++i)
+    if (there[i]) {
+      if (kept != i) results[kept] = std::move(results[i]);
+      ++kept;
+    }
+  results.resize(kept);
   if (going)
     time_runs(mechanism, start, results,
               {request.timing,
-               3,
+               0.8,
                request.journal,
-               [&](std::size_t i) {
-                 return !request.progress ||
-                        request.progress(static_cast<int>(i) + 1, static_cast<int>(results.size()),
-                                         "timing " + results[i].settings.form, 1);
-               },
+               [&](std::size_t i) { return tell(i, "timing " + results[i].settings.form, 1); },
                {}});
   return results;
 }

@@ -28,8 +28,9 @@ struct DriftRequest {
   double max_cpu_seconds = 0;
   int film_intervals = 0;      ///< of each run; 0: no films
   Journal* journal = nullptr;  ///< finished runs are taken from it, and new ones recorded
-  /// Before each run (number, of how many, label) and during it (fraction done); false stops the
-  /// study.
+  int threads = 1;             ///< for the watched runs; each alone is timed after them
+  /// Before each run (number, of how many, label) and during it (fraction done), from one thread at
+  /// a time; false stops the study.
   std::function<bool(int, int, const std::string&, double)> progress;
 };
 

@@ -4,6 +4,10 @@
 #include <sundials/sundials_config.h>
 
 #include <Eigen/Core>
+#ifdef __GLIBC__
+#include <gnu/libc-version.h>
+#endif
+
 #include <cstdint>
 #include <cstdio>
 #include <ctime>
@@ -40,6 +44,9 @@ Environment environment() {
                 {"SuiteSparse", dotted(SUITESPARSE_MAIN_VERSION, SUITESPARSE_SUB_VERSION,
                                        SUITESPARSE_SUBSUB_VERSION)},
                 {"Eigen", dotted(EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION)}};
+#ifdef __GLIBC__
+  e.versions.push_back({"C library", std::string("glibc ") + gnu_get_libc_version()});
+#endif
   const std::time_t now = std::time(nullptr);
   std::tm utc{};
   gmtime_r(&now, &utc);

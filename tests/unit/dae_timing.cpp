@@ -1,0 +1,128 @@
+// Times of finished runs: when a median counts as settled, what each way of timing leaves in the
+// results, and that a study that goes on takes no time twice.
+
+#include "equations/ensemble.h"
+
+#include <gtest/gtest.h>
+#include <momenta/core/scene/read_scene.h>
+#include <momenta/dae/study/timing.h>
+
+#include <cmath>
+#include <filesystem>
+#include <random>
+
+namespace momenta {
+namespace {
+
+/// Rounds until the median of times around 1 s with normal scatter `sigma` has settled; the mean of
+/// 200 series.
+double rounds_with(double sigma) {
+  std::mt19937 random(1);
+  std::normal_distribution<double> scatter(1, sigma);
+  double sum = 0;
+  for (int series = 0; series < 200; ++series) {
+    std::vector<double> times;
+    while (times.size() < 1000 && !is_settled(times)) times.push_back(std::abs(scatter(random)));
+    sum += static_cast<double>(times.size());
+  }
+  return sum / 200;
+}
+
+TEST(Timing, MediansOfSteadyTimesSettleAtOnceAndOthersWithTheSquareOfTheirScatter) {
+  EXPECT_FALSE(is_settled({}));
+  EXPECT_FALSE(is_settled({1}));
+  EXPECT_EQ(rounds_with(0), 2);
+  EXPECT_LT(rounds_with(0.005), 2.5);
+  // 0.93 · 1.35 σ / √n = 0.02
+  EXPECT_NEAR(rounds_with(0.1) / std::pow(0.93 * 1.35 * 0.1 / 0.02, 2), 1, 0.4);
+  EXPECT_NEAR(rounds_with(0.2) / rounds_with(0.1), 4, 1.5);
+}
+
+class TimedStudy : public testing::Test {
+ protected:
+  const Mechanism mechanism{
+      read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples/four_bar/scene.toml")};
+  const Start start = equations::start_of(mechanism);
+  std::vector<RunResult> runs;
+
+  TimedStudy() {
+    for (const char* form : {"momentum", "baumgarte"}) {
+      RunRequest request;
+      request.settings = default_settings(mechanism.scene().run, form, "dp5", 1e-6);
+      request.settings.end_time = 1;
+      runs.push_back(run_form(mechanism, start, request));
+    }
+    runs.push_back(runs[0]);
+    runs.back().status = "failed";
+  }
+};
+
+TEST_F(TimedStudy, SaysHowOftenItWasTimed) {
+  const RunResult failed = runs.back();
+  auto once = runs, rounds = runs, none = runs;
+  time_runs(mechanism, start, once, {.how = Timing::once, .going_on = {}, .at_step = {}});
+  time_runs(mechanism, start, rounds, {.going_on = {}, .at_step = {}});
+  time_runs(mechanism, start, none, {.how = Timing::none, .going_on = {}, .at_step = {}});
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_EQ(once[i].repeats, 1);
+    EXPECT_GT(once[i].cpu_s, 0);
+    EXPECT_GE(rounds[i].repeats, 2);
+    EXPECT_EQ(none[i].repeats, 0);
+    EXPECT_TRUE(std::isnan(none[i].cpu_s));
+    EXPECT_TRUE(std::isnan(none[i].wall_s));
+    EXPECT_EQ(once[i].counters.steps, rounds[i].counters.steps);
+  }
+  EXPECT_EQ(rounds[2].repeats, failed.repeats);
+}
+
+TEST_F(TimedStudy, TakesNoTimeTwice) {
+  const auto folder =
+      std::filesystem::temp_directory_path() / ("momenta_timing_" + std::to_string(getpid()));
+  const Journal::Study study{"digest", "build", "command"};
+  auto first = runs, stopped = runs, again = runs;
+  int asked = 0;
+  {
+    Journal journal(folder / "journal", study);
+    // Interrupted in the second round, it goes on from there.
+    time_runs(
+        mechanism, start, stopped,
+        {.journal = &journal, .going_on = [&](std::size_t) { return ++asked < 4; }, .at_step = {}});
+    EXPECT_EQ(asked, 4);
+    EXPECT_EQ(stopped[0].repeats, 2);
+    EXPECT_EQ(stopped[1].repeats, 1);
+  }
+  {
+    Journal journal(folder / "journal", study);
+    asked = 0;
+    time_runs(
+        mechanism, start, first,
+        {.journal = &journal, .going_on = [&](std::size_t) { return ++asked > 0; }, .at_step = {}});
+    EXPECT_EQ(asked, first[0].repeats + first[1].repeats - 3);
+  }
+  {
+    Journal journal(folder / "journal", study);
+    time_runs(mechanism, start, again,
+              {.journal = &journal,
+               .going_on =
+                   [&](std::size_t) {
+                     ADD_FAILURE() << "timed again";
+                     return true;
+                   },
+               .at_step = {}});
+    for (int i = 0; i < 2; ++i) {
+      EXPECT_EQ(again[i].repeats, first[i].repeats);
+      EXPECT_EQ(again[i].cpu_s, first[i].cpu_s);
+      EXPECT_EQ(again[i].counters.evaluations, first[i].counters.evaluations);
+    }
+    journal.remove();
+  }
+  std::filesystem::remove_all(folder);
+}
+
+TEST(Timing, NamesWhatItKnows) {
+  EXPECT_EQ(timing_named("once"), Timing::once);
+  EXPECT_THROW(timing_named("twice"), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace momenta
