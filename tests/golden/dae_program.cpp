@@ -185,7 +185,7 @@ TEST_F(Program, StoppedRunSaysWhyAndKeepsItsSamples) {
 
 TEST_F(Program, RunNamesRowsThatFade) {
   const auto faded = [&](const std::string& scene, const std::string& options) {
-    const Outcome o = call("run '" + scene + "' " + options + " --json");
+    const Outcome o = call("run '" + scene + "' " + options + " --timing none --json");
     EXPECT_EQ(o.status, 0) << o.err;
     return nlohmann::json::parse(o.out).at("faded_rows");
   };
@@ -239,7 +239,7 @@ TEST_F(Program, WorkMakesItsOwnReferenceAndAdvises) {
 
 TEST_F(Program, KilledStudyResumesAndStudiesDoNotMix) {
   const std::string study = "drift '" + example("four_bar") +
-                            "' --end 40 --samples 50 --forms "
+                            "' --end 40 --samples 50 --timing once --forms "
                             "momentum,acceleration,momentum-index2,stabilised-index2";
   const fs::path whole = folder_ / "whole", killed = folder_ / "killed",
                  journal = killed / "runs.jsonl";

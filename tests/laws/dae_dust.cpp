@@ -66,7 +66,6 @@ RunResult two_seconds(const Mechanism& mechanism, const std::string& form) {
   s.end_time = 2;
   s.samples = 10;
   request.keep_trajectory = true;
-  request.max_cpu_seconds = 20;
   return run_form(mechanism, a.start, request);
 }
 

@@ -32,7 +32,6 @@ RunResult run(const Mechanism& mechanism, const std::string& form, const std::st
   request.settings.end_time = end;
   request.settings.samples = 20;
   request.keep_trajectory = true;
-  request.max_cpu_seconds = 20;
   return run_form(mechanism, equations::start_of(mechanism), request);
 }
 

@@ -56,7 +56,6 @@ RunResult run(const Mechanism& mechanism, RunSettings settings) {
   RunRequest request;
   request.settings = std::move(settings);
   request.keep_trajectory = true;
-  request.max_cpu_seconds = 60;
   return run_form(mechanism, equations::start_of(mechanism), request);
 }
 RunSettings adaptive(const std::string& form, double tolerance, double end,

@@ -6,7 +6,6 @@
 #include <momenta/core/scene/read_scene.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -138,12 +137,11 @@ TEST_F(BrokenFile, NotUtf8) {
                     "scene.toml:1:5: a byte that is not UTF-8");
 }
 
-TEST_F(BrokenFile, HundredMegabytesAreRefusedUnread) {
+TEST_F(BrokenFile, WhatIsTooLargeIsNotReadToItsEnd) {
+  // A terabyte of holes, which no memory has room for.
   const fs::path path = file("nonsense");
-  fs::resize_file(path, 100'000'000);
-  const auto start = std::chrono::steady_clock::now();
+  fs::resize_file(path, 1'000'000'000'000);
   expect_contains(sentence_of([&] { read_scene(path); }), "over 64 MiB");
-  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::milliseconds(100));
   expect_contains(sentence_of([&] { parse_scene(std::string(100'000'000, '[')); }), "over 64 MiB");
 }
 
