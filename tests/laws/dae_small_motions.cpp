@@ -208,7 +208,7 @@ TEST(SmallMotions, DenseAndSparseRoutesAgree) {
 }
 
 TEST(SmallMotions, LanczosAndArnoldiFindTheLowestOfAll) {
-  constexpr int n = 310, count = 8;
+  constexpr int n = 160, count = 8;
   for (const double damping : {0.0, 30.0}) {
     const Scene scene = hanging_loop(n, 1.3, damping);
     const Mechanism mechanism(scene);
