@@ -1,5 +1,5 @@
 // The same numbers everywhere: at one instruction level a scene and its settings give the same bits
-// on every processor that has it, in portable builds and in builds for one machine. Digests of
+// on every processor that has it. Digests of
 // whole trajectories, by level, are in digests.json. What is promised and why:
 // docs/reference/same-numbers.md.
 
@@ -127,12 +127,15 @@ TEST_F(Digests, OfEveryLevelAreThoseOnRecord) {
   if (!__builtin_cpu_supports("fma") || !__builtin_cpu_supports("avx2"))
     GTEST_SKIP() << "without fused multiply-add the C library computes other last digits";
 #endif
+  // Eigen's factors of Newton matrices are only those of portable builds.
+  const bool portable = environment().flags.find("-march=native") == std::string::npos;
   nlohmann::json found;
   for (const int level : {1, 3, 4}) {
     if (level_at_most(level) != level) continue;
     use_level(level);
     auto& of_level = found[std::to_string(level)];
-    for (const Case& c : cases) of_level[name_of(c)] = trajectory_digest(c);
+    for (const Case& c : cases)
+      if (portable || !is_dae_form(c.form)) of_level[name_of(c)] = trajectory_digest(c);
     of_level["chain"] = chain_digest();
     const nlohmann::json recorded =
         record["levels"][compiler].value(std::to_string(level), nlohmann::json::object());
