@@ -1,7 +1,6 @@
 // The same numbers everywhere: at one instruction level a scene and its settings give the same bits
-// on every processor that has it. Digests of
-// whole trajectories, by level, are in digests.json. What is promised and why:
-// docs/reference/same-numbers.md.
+// on every processor that has it. Digests of whole trajectories, by level, are in digests.json.
+// What is promised and why: docs/reference/same-numbers.md.
 
 #include <gnu/libc-version.h>
 #include <gtest/gtest.h>
