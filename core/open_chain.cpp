@@ -23,12 +23,12 @@ void check_threads(int threads) {
 }
 }  // namespace
 
-OpenChain::OpenChain(const Scene& scene, Algebra algebra, int level, bool limbs_side_by_side) {
+OpenChain::OpenChain(const Scene& scene, Algebra algebra, int level, bool branches_side_by_side) {
   Tree tree = checked_tree(scene);
   Plan plan = make_plan(tree, scene, algebra);
   inside_ = std::make_unique<Inside>(std::move(tree), std::move(plan), scene,
                                      level == 0 ? best_level() : level_at_most(level),
-                                     limbs_side_by_side);
+                                     branches_side_by_side);
 }
 OpenChain::~OpenChain() = default;
 OpenChain::OpenChain(OpenChain&&) noexcept = default;

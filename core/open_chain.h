@@ -8,8 +8,8 @@
 // spatial, is chosen by the plan. One object serves one thread: it owns the workspace. No call
 // allocates unless it returns a matrix or a list.
 
+#include <momenta/core/centroidal.h>
 #include <momenta/core/plan.h>
-#include <momenta/core/whole.h>
 
 #include <Eigen/Core>
 #include <memory>
@@ -45,11 +45,11 @@ struct Reaction {
 class OpenChain {
  public:
   /// `level`: x86-64 level of the compiled recursion, 1, 3 (AVX2) or 4 (AVX-512), or what is next
-  /// below it of those machine and library have; 0 takes the best. `limbs_side_by_side`: in space,
-  /// subtrees of pins of one shape share vector registers (kernel/limbs/limbs.h); results differ by
-  /// rounding.
+  /// below it of those machine and library have; 0 takes the best. `branches_side_by_side`: in
+  /// space, subtrees of revolute joints of one shape share vector registers
+  /// (kernel/branches/branches.h); results differ by rounding.
   explicit OpenChain(const Scene& scene, Algebra algebra = Algebra::automatic, int level = 0,
-                     bool limbs_side_by_side = true);
+                     bool branches_side_by_side = true);
   ~OpenChain();
   OpenChain(OpenChain&&) noexcept;
   OpenChain& operator=(OpenChain&&) noexcept;
@@ -86,8 +86,8 @@ class OpenChain {
                       const ConstVectorRef& dq, const ConstVectorRef& dp, VectorRef dqdot,
                       VectorRef dpdot);
   /// ∂(q̇, ṗ)/∂(q, p) into J, (nq + nv)², exact to rounding: as many directions side by side as the
-  /// level has lanes; made of M⁻¹ and half the derivatives where Hamilton's equations hold on pins.
-  /// False as rates().
+  /// level has lanes; made of M⁻¹ and half the derivatives where Hamilton's equations hold on
+  /// revolute joints. False as rates().
   bool jacobian(double t, const ConstVectorRef& q, const ConstVectorRef& p, MatrixRef J);
   /// The same as a new matrix, empty where rates() would be false.
   Eigen::MatrixXd jacobian(double t, const ConstVectorRef& q, const ConstVectorRef& p);
@@ -103,7 +103,7 @@ class OpenChain {
   Energies energies(double t, const ConstVectorRef& q, const ConstVectorRef& u);
   /// Mass, centre of mass, linear and angular momentum of all bodies together, ground axes, from
   /// (t, q, p): u of (45), then Σ M Ω with what drives prescribe. O(bodies). False as rates().
-  bool whole(double t, const ConstVectorRef& q, const ConstVectorRef& p, Whole& all);
+  bool centroidal(double t, const ConstVectorRef& q, const ConstVectorRef& p, Centroidal& all);
   /// Joint reactions at (t, q, u) with the accelerations the dynamics gives: eq. (28), O(bodies).
   std::vector<Reaction> reactions(double t, const ConstVectorRef& q, const ConstVectorRef& u);
   /// M (nv × nv), dense, by composite inertias.

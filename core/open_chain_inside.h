@@ -2,11 +2,11 @@
 // What an OpenChain holds: the tree, its plan and the kernel the plan has chosen. For the sources
 // of OpenChain alone.
 
+#include <momenta/core/kernel/centroidal_sums.h>
 #include <momenta/core/kernel/levels/batch_sweeps.h>
 #include <momenta/core/kernel/levels/open_sweeps.h>
 #include <momenta/core/kernel/levels/when_asked.h>
 #include <momenta/core/kernel/reactions.h>
-#include <momenta/core/kernel/whole_sums.h>
 #include <momenta/core/open_chain.h>
 #include <momenta/core/share.h>
 
@@ -19,14 +19,14 @@ namespace momenta {
 template <class Space>
 struct Kernel {
   using Links = decltype(build_links(std::declval<const Model<Space>&>()));
-  // Links, limbs, sweeps and workspace point at the model, so it stays at one address.
-  Kernel(Model<Space> m, int level, [[maybe_unused]] bool limbs_side_by_side)
+  // Links, branches, sweeps and workspace point at the model, so it stays at one address.
+  Kernel(Model<Space> m, int level, [[maybe_unused]] bool branches_side_by_side)
       : model(std::make_unique<Model<Space>>(std::move(m))),
         links(std::make_unique<Links>(build_links(*model))),
         w(*model) {
     if constexpr (Space::dimension == 6) {
-      if (limbs_side_by_side) limbs = find_limbs(*links, limb_lanes_at(level));
-      sweeps = make_sweeps(*links, level, limbs.get());
+      if (branches_side_by_side) branches = find_branches(*links, branch_lanes_at(level));
+      sweeps = make_sweeps(*links, level, branches.get());
     } else {
       sweeps = make_sweeps(*links, level);
     }
@@ -34,7 +34,7 @@ struct Kernel {
   }
   std::unique_ptr<Model<Space>> model;
   std::unique_ptr<Links> links;
-  std::unique_ptr<Limbs> limbs;
+  std::unique_ptr<Branches> branches;
   std::unique_ptr<OpenSweeps> sweeps;
   std::vector<std::unique_ptr<BatchSweeps>> batches;  ///< one for each thread
   WhenAsked<ReactionPass<Space>> reactions;
@@ -46,19 +46,19 @@ struct OpenChain::Inside {
   Plan plan;
   std::variant<Kernel<Planar>, Kernel<Spatial>> kernel;
   std::optional<Scene> flat;  ///< of a planar kernel: `in_space` is made of it when asked for
-  std::unique_ptr<WholeSweep> in_space;
+  std::unique_ptr<CentroidalSweep> in_space;
   Eigen::VectorXd u, p;  // scratch, nv
   bool has_user_joints = false;
   int singular = -1;
   Eigen::Index failed_state = -1;  ///< of the last batch
 
-  Inside(Tree t, Plan pl, const Scene& from, int level, bool limbs_side_by_side)
+  Inside(Tree t, Plan pl, const Scene& from, int level, bool branches_side_by_side)
       : tree(std::move(t)),
         plan(std::move(pl)),
         kernel(plan.planar ? decltype(kernel)(Kernel<Planar>(
                                  build_planar_model(tree, from, plan.basis), level, false))
                            : decltype(kernel)(Kernel<Spatial>(build_spatial_model(tree, from),
-                                                              level, limbs_side_by_side))),
+                                                              level, branches_side_by_side))),
         u(tree.nv),
         p(tree.nv) {
     if (plan.planar) flat = from;
@@ -70,7 +70,7 @@ struct OpenChain::Inside {
   bool momentum(K& k, double t, const double* q, const double* momenta, double* rates,
                 double* pdot) {
     if (!k.sweeps->momentum(t, q, momenta, rates, pdot)) {
-      singular = k.sweeps->stuck();
+      singular = k.sweeps->singular_joint();
       return false;
     }
     singular = -1;
@@ -85,14 +85,14 @@ struct OpenChain::Inside {
   bool acceleration(K& k, double t, const double* q, const double* rates, double* udot) {
     applied_forces(k.w, t, q, rates);
     const bool ok = k.sweeps->acceleration(t, q, rates, k.w.generalised.data(), udot);
-    singular = ok ? -1 : k.sweeps->stuck();
+    singular = ok ? -1 : k.sweeps->singular_joint();
     return ok;
   }
 
   /// What a call on one state left behind.
   template <class Sweeps>
   bool noted_one(const Sweeps& sweeps, bool ok) {
-    singular = ok ? -1 : sweeps.stuck();
+    singular = ok ? -1 : sweeps.singular_joint();
     failed_state = -1;
     return ok;
   }
@@ -109,7 +109,7 @@ struct OpenChain::Inside {
     if (parts == 1) {
       BatchSweeps& sweeps = *k.batches[0];
       if (run(sweeps, all)) return true;
-      singular = sweeps.stuck();
+      singular = sweeps.singular_joint();
       failed_state = static_cast<Eigen::Index>(sweeps.failed_state());
       return false;
     }
@@ -127,7 +127,7 @@ struct OpenChain::Inside {
     });
     for (std::size_t i = 0; i < parts && failed_state < 0; ++i)
       if (failed[i]) {
-        singular = k.batches[i]->stuck();
+        singular = k.batches[i]->singular_joint();
         failed_state = static_cast<Eigen::Index>(begin(i) + k.batches[i]->failed_state());
       }
     return failed_state < 0;
@@ -136,14 +136,14 @@ struct OpenChain::Inside {
   template <class F>
   bool one_by_one(Eigen::Index count, F&& f) {
     Eigen::Index failed = -1;
-    int stuck = -1;
+    int singular_joint = -1;
     for (Eigen::Index i = 0; i < count; ++i)
       if (!f(i) && failed < 0) {
         failed = i;
-        stuck = singular;
+        singular_joint = singular;
       }
     failed_state = failed;
-    singular = stuck;
+    singular = singular_joint;
     return failed < 0;
   }
 

@@ -50,15 +50,16 @@ Energies OpenChain::energies(double t, const ConstVectorRef& q, const ConstVecto
   });
 }
 
-bool OpenChain::whole(double t, const ConstVectorRef& q, const ConstVectorRef& p, Whole& all) {
+bool OpenChain::centroidal(double t, const ConstVectorRef& q, const ConstVectorRef& p,
+                           Centroidal& all) {
   const double* u = inside_->u.data();
   if (!velocities(t, q, p, inside_->u)) return false;
   if (auto* in_space = std::get_if<Kernel<Spatial>>(&inside_->kernel)) {
-    all = whole_of(whole_sums(in_space->w, t, q.data(), u));
+    all = centroidal_of(centroidal_sums(in_space->w, t, q.data(), u));
     return true;
   }
   if (!inside_->in_space)
-    inside_->in_space = std::make_unique<WholeSweep>(inside_->tree, *inside_->flat);
+    inside_->in_space = std::make_unique<CentroidalSweep>(inside_->tree, *inside_->flat);
   all = (*inside_->in_space)(t, q.data(), u);
   return true;
 }

@@ -3,7 +3,8 @@
 // function of time and n = 1 … 6 coordinates, with q̇ = u. Everything else follows from it exactly
 // by dual numbers (kernel/user_motion.h): E and Ω_t of (13), Ė and dΩ_t/dt.
 //
-//   struct Crank {                                         // a pin at the end of an arm of 0.2 m
+//   struct Crank {                                         // a revolute joint at the end of an arm
+//   of 0.2 m
 //     template <class S>
 //     momenta::JointPose<S> operator()(const S& /*t*/, const S* q) const {
 //       const auto R = momenta::turn_about<S>({0, 0, 1}, q[0]);

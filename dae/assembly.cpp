@@ -282,18 +282,18 @@ class Assembler {
     e_->place(s.t, s.q.data());
     if (mechanism_.m() == 0) {
       if (!e_->open_accelerations(s.t, s.q.data(), s.u.data(), s.udot.data()))
-        no_inertia(e_->stuck());
+        no_inertia(e_->singular_joint());
       return;
     }
     if (mechanism_.kkt() == KktChoice::sweeps && !mechanism_.dense_kkt()) {
       const auto solver = make_loop_solver(mechanism_, *e_);
       if (!solver->acceleration(s.t, s.q.data(), s.u.data(), nullptr, 0, 0, s.udot.data(),
                                 s.lambda.data()))
-        no_inertia(solver->stuck());
+        no_inertia(solver->singular_joint());
       return;
     }
     const auto kkt = make_kkt(mechanism_);
-    if (!kkt->factor(*e_, s.t, s.q.data(), fade_evaluation)) no_inertia(kkt->stuck());
+    if (!kkt->factor(*e_, s.t, s.q.data(), fade_evaluation)) no_inertia(kkt->singular_joint());
     e_->move(s.u.data());
     Eigen::VectorXd r(mechanism_.nv()), g(mechanism_.m());
     e_->joint_forces(s.q.data(), s.u.data(), nullptr, nullptr, r.data());

@@ -31,7 +31,8 @@ class EquationRows {
   /// ṗ (nv), eq. (8), with the leak −κ Φ_qᵀσ. After momenta(sigma, …).
   virtual void momentum_rates(const S* q, const S* u, const S* sigma, double leak, S* pdot) = 0;
 
-  /// M u̇ + bias − Q + Φ_qᵀλ (nv): the residual of (1a). `udot`, `lambda` null: zero. After move(u).
+  /// M u̇ + bias − Q + Φ_qᵀλ (nv): the residual of (1a). `udot`, `lambda` null: zero. After
+  /// move(u).
   virtual void joint_forces(const S* q, const S* u, const S* udot, const S* lambda, S* tau) = 0;
   /// Φ̈ (m), eq. (2), with the accelerations of the last joint_forces().
   virtual void accelerations(S* rate) = 0;
@@ -72,7 +73,7 @@ class Evaluation<double> : public EquationRows<double> {
   virtual bool open_accelerations(double t, const double* q, const double* u, double* udot) = 0;
 
   /// Place in u of the joint at which one of these two failed.
-  virtual int stuck() const = 0;
+  virtual int singular_joint() const = 0;
 
   /// Generalised forces (nv) of springs, dampers and wrenches between points of bodies at (t, q,
   /// u). As applied_forces() it spoils what place() and move() left.
@@ -83,7 +84,7 @@ class Evaluation<double> : public EquationRows<double> {
   virtual double potential(const double* q) = 0;
   /// Power of everything the energy does not hold [W]: dampers, wrenches that have no potential.
   /// After move(u).
-  virtual double lost_power(const double* u) = 0;
+  virtual double dissipated_power(const double* u) = 0;
   /// Per marker x y z [m] and its velocity [m/s], ground axes; after move().
   virtual void markers(double* values) = 0;
 };

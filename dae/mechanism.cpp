@@ -90,9 +90,9 @@ void Mechanism::choose_kkt(KktChoice asked) {
     }
     if (!cast.swept.plan.fits())
       kkt_reason_ =
-          (cast.swept.plan.lanes > 64 ? std::string("more than 64")  // no more are counted
-                                      : std::to_string(cast.swept.plan.lanes)) +
-          " loop equations are open at once, more than " + std::to_string(LoopPlan::most_lanes);
+          (cast.swept.plan.slots > 64 ? std::string("more than 64")  // no more are counted
+                                      : std::to_string(cast.swept.plan.slots)) +
+          " loop equations are open at once, more than " + std::to_string(LoopPlan::most_slots);
   };
   if (plan_.planar)
     plan(std::get<0>(cast_));
@@ -147,20 +147,22 @@ std::string Mechanism::joint_without_inertia(bool swept) const {
     const auto e = evaluation<double>();
     if (solved_by_bodies(*this)) return "";  // pivots are sought there
     const auto kkt = make_sparse_kkt(*this);
-    return kkt->factor(*e, 0, tree_.q0.data(), fade_evaluation) || kkt->stuck() < 0
+    return kkt->factor(*e, 0, tree_.q0.data(), fade_evaluation) || kkt->singular_joint() < 0
                ? ""
-               : no_inertia(kkt->stuck());
+               : no_inertia(kkt->singular_joint());
   }
   const auto sweeps = looped_sweeps();
   if (!sweeps->momentum(0, tree_.q0.data(), p.data(), {}, u.data(), sigma.data(), nullptr))
-    return tree_.joint_in_words(sweeps->stuck()) + " has no inertia before its loops close";
+    return tree_.joint_in_words(sweeps->singular_joint()) +
+           " has no inertia before its loops close";
   return "";
 }
 
-std::unique_ptr<LoopedSweeps> Mechanism::looped_sweeps(int level, bool legs_side_by_side) const {
+std::unique_ptr<LoopedSweeps> Mechanism::looped_sweeps(int level,
+                                                       bool branches_side_by_side) const {
   return visit([&](const auto& cast) {
     return make_looped_sweeps(cast.links, cast.swept, level > 0 ? level : best_level(),
-                              legs_side_by_side);
+                              branches_side_by_side);
   });
 }
 std::unique_ptr<LoopedSweeps> Mechanism::looped_sweeps_as_given() const {

@@ -59,13 +59,14 @@ class Mechanism {
   bool dense_kkt() const { return dense_; }
   /// Whether joints can be eliminated before the loops that hold them: each has inertia by then,
   /// and enough beside its neighbours not to take their digits.
-  bool tips_first() const { return light_.empty(); }
+  bool leaves_first() const { return light_.empty(); }
   /// LoopWeights::spread
   double mass_spread() const { return mass_spread_; }
   /// The sweeps that carry this mechanism's loops, for one instruction level; 0: the machine's
-  /// best. `legs_side_by_side`: in space, of one state, folded legs of one shape are swept in the
-  /// lanes of a register. @pre kkt() is sweeps
-  std::unique_ptr<LoopedSweeps> looped_sweeps(int level = 0, bool legs_side_by_side = true) const;
+  /// best. `branches_side_by_side`: in space, of one state, folded branches of one shape are swept
+  /// in the slots of a register. @pre kkt() is sweeps
+  std::unique_ptr<LoopedSweeps> looped_sweeps(int level = 0,
+                                              bool branches_side_by_side = true) const;
   /// The same with the loops paired as the scene has them.
   std::unique_ptr<LoopedSweeps> looped_sweeps_as_given() const;
   /// Whether ties that meet in one point are paired anew.
@@ -103,8 +104,8 @@ class Mechanism {
   std::string no_inertia(int rate) const;
 
  private:
-  /// What legs the sweeps take side by side; empty: none.
-  std::string legs_in_words() const;
+  /// What branches the sweeps take side by side; empty: none.
+  std::string looped_branches_in_words() const;
   template <class Space>
   struct Cast {
     Model<Space> model;

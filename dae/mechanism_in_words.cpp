@@ -1,10 +1,10 @@
 // What a mechanism is called: columns of results, lines of the plan, joints that fail.
 
+#include <momenta/core/kernel/branches/branches.h>
 #include <momenta/core/kernel/levels/open_sweeps.h>
-#include <momenta/core/kernel/limbs/limbs.h>
 #include <momenta/dae/kkt/kkt.h>
 #include <momenta/dae/mechanism.h>
-#include <momenta/dae/sweeps/legs/legs.h>
+#include <momenta/dae/sweeps/branches/looped_branches.h>
 
 namespace momenta {
 namespace {
@@ -53,11 +53,11 @@ std::vector<Column> Mechanism::marker_columns() const {
   return columns;
 }
 
-std::string Mechanism::legs_in_words() const {
+std::string Mechanism::looped_branches_in_words() const {
   if (plan_.planar) return "";
   const auto& cast = std::get<Cast<Spatial>>(cast_);
-  return momenta::legs_in_words(
-      find_legs(cast.links, cast.swept.loops, cast.swept.plan, leg_lanes_at(best_level())));
+  return momenta::looped_branches_in_words(find_looped_branches(
+      cast.links, cast.swept.loops, cast.swept.plan, looped_branch_lanes_at(best_level())));
 }
 
 std::vector<std::pair<std::string, std::string>> Mechanism::plan_lines() const {
@@ -66,8 +66,9 @@ std::vector<std::pair<std::string, std::string>> Mechanism::plan_lines() const {
     const LinkTree links = build_links(std::get<Cast<Spatial>>(cast_).model);
     lines.emplace_back("joints", links_in_words(links));
     if (rows_ == 0) {
-      const std::string limbs = limbs_in_words(links, limb_lanes_at(best_level()));
-      lines.emplace_back("limbs", limbs.empty() ? "none of one shape: body by body" : limbs);
+      const std::string branches = branches_in_words(links, branch_lanes_at(best_level()));
+      lines.emplace_back("branches",
+                         branches.empty() ? "none of one shape: body by body" : branches);
     }
   }
   if (rows_ == 0) {
@@ -76,21 +77,21 @@ std::vector<std::pair<std::string, std::string>> Mechanism::plan_lines() const {
   }
   lines.emplace_back("loops", std::to_string(scene_.loops.size()) + " with " +
                                   std::to_string(rows_) + " equations");
-  const std::string legs = legs_in_words();
+  const std::string looped_branches = looped_branches_in_words();
   std::string how = "dense: Cholesky of M, pivoted and filtered LDLᵀ of the loops";
   if (kkt_ == KktChoice::sweeps)
     how = "loops carried by the sweeps, at most " +
-          std::to_string(visit([](const auto& cast) { return cast.swept.plan.lanes; })) +
+          std::to_string(visit([](const auto& cast) { return cast.swept.plan.slots; })) +
           " equations open at once" +
           (pairs_anew() ? ", loops that meet in one point paired along the tree" : "") +
-          (legs.empty() ? "" : ", " + legs);
+          (looped_branches.empty() ? "" : ", " + looped_branches);
   else if (kkt_ == KktChoice::sparse)
     how = std::string(
               solved_by_bodies(*this)
                   ? "sparse: KLU on the equations of the bodies, the tree being deep; poses are "
                     "not filtered,"
-              : tips_first() ? "sparse: filtered LDLᵀ"
-                             : "sparse: KLU") +
+              : leaves_first() ? "sparse: filtered LDLᵀ"
+                               : "sparse: KLU") +
           " on a pattern analysed once" + (kkt_reason_.empty() ? "" : " (" + kkt_reason_ + ")");
   lines.emplace_back("solving (7)", how + ", " + std::to_string(tree_.nv + rows_) + " unknowns");
   return lines;

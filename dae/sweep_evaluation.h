@@ -79,12 +79,12 @@ class Mechanism::SweepEvaluation final : public SweepRows<Space, double> {
   bool open_momentum_rates(double t, const double* q, const double* p, double* u,
                            double* pdot) override {
     const bool ok = momentum_recursion(*momentum_, w_, t, q, p, u, pdot);
-    stuck_ = ok ? -1 : momentum_->stuck();
+    singular_joint_ = ok ? -1 : momentum_->singular_joint();
     return ok;
   }
   bool open_accelerations(double t, const double* q, const double* u, double* udot) override {
     const bool ok = acceleration_recursion(*acceleration_, w_, t, q, u, udot);
-    stuck_ = ok ? -1 : acceleration_->stuck();
+    singular_joint_ = ok ? -1 : acceleration_->singular_joint();
     return ok;
   }
 
@@ -93,13 +93,13 @@ class Mechanism::SweepEvaluation final : public SweepRows<Space, double> {
     std::copy(w_.generalised.begin(), w_.generalised.end(), tau);
   }
 
-  int stuck() const override {
-    return stuck_ < 0 ? -1 : model_.bodies[static_cast<std::size_t>(stuck_)].u;
+  int singular_joint() const override {
+    return singular_joint_ < 0 ? -1 : model_.bodies[static_cast<std::size_t>(singular_joint_)].u;
   }
 
   double kinetic() override { return kinetic_energy(w_); }
   double potential(const double* q) override { return potential_energy(w_, q); }
-  double lost_power(const double* u) override {
+  double dissipated_power(const double* u) override {
     // Dampers and body-axes wrenches or torques: all applied power less that of the potentials.
     double power = 0;
     for (const auto& b : model_.bodies)
@@ -161,7 +161,7 @@ class Mechanism::SweepEvaluation final : public SweepRows<Space, double> {
   decltype(build_links(std::declval<const Model<Space>&>())) links_;
   std::optional<MomentumSweeps<Space, double>> momentum_;  ///< mechanisms without loops
   std::optional<AccelerationSweeps<Space, double>> acceleration_;
-  int stuck_ = -1;
+  int singular_joint_ = -1;
   std::vector<Marker> markers_;
 };
 

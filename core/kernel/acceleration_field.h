@@ -1,6 +1,6 @@
 #pragma once
 // The field of accelerations a + K r of a body, K = α~ + ω~ ω~, the wrench it takes, and the turns
-// by which both pass a pin: of inverse_dynamics_sweeps.h.
+// by which both pass a revolute joint: of inverse_dynamics_sweeps.h.
 
 #include <momenta/core/kernel/mass_moments.h>
 
@@ -23,8 +23,8 @@ template <class S>
 struct PlainWrench {
   S fx, fy, fz, nx, ny, nz;
 };
-/// Of the body itself; on a pin c_z = Σ_zz = 0.
-template <bool pin, class S>
+/// Of the body itself; on a revolute joint c_z = Σ_zz = 0.
+template <bool revolute, class S>
 MOMENTA_INLINE void own_wrench(const MassMoments<S>& b, const AccelerationField<S>& K, const S& ax,
                                const S& ay, const S& az, PlainWrench<S>& w) {
   const double *c = b.c, *s = b.s;
@@ -35,7 +35,7 @@ MOMENTA_INLINE void own_wrench(const MassMoments<S>& b, const AccelerationField<
   w.ny = (K.xx - K.zz) * s[2] + K.xy * s[4] - K.zx * s[0] - K.zy * s[1] - c[0] * az;
   w.nz = (K.yy - K.xx) * s[1] + K.yx * s[0] - K.xy * s[3] + K.yz * s[2] - K.xz * s[4] +
          (c[0] * ay - c[1] * ax);
-  if constexpr (!pin) {
+  if constexpr (!revolute) {
     w.fx = w.fx + K.xz * c[2];
     w.fy = w.fy + K.yz * c[2];
     w.fz = w.fz + K.zz * c[2];
@@ -108,9 +108,9 @@ MOMENTA_INLINE void turn_inward_z(const S& c, const S& s, S& x, S& y) {
   y = s * before + c * y;
 }
 
-/// A pin on the ground, or one whose way from the parent is a screw about x.
-MOMENTA_INLINE bool is_plain_pin(const Link& l) {
-  return l.kind == LinkKind::pin && (l.parent < 0 || !(l.screwed || l.turn == Turn::tilted));
+/// A revolute joint on the ground, or one whose way from the parent is a screw about x.
+MOMENTA_INLINE bool is_plain_revolute(const Link& l) {
+  return l.kind == LinkKind::revolute && (l.parent < 0 || !(l.screwed || l.turn == Turn::tilted));
 }
 
 }  // namespace momenta

@@ -1,6 +1,6 @@
 #pragma once
-// Joints other than pins in the articulated recursion, inward and outward: balls, joints on one
-// axis, and free and user joints.
+// Joints other than revolute ones in the articulated recursion, inward and outward: spherical
+// joints, joints on one axis, and free and user joints.
 
 #include <momenta/core/kernel/acceleration_sweeps.h>
 #include <momenta/core/kernel/axis_joint.h>
@@ -9,53 +9,57 @@ namespace momenta {
 
 template <class S>
 template <class InTau>
-bool AccelerationSweeps<Spatial, S>::ball_inward(std::size_t k, const InTau& tau, Cargo<S>& cargo) {
+bool AccelerationSweeps<Spatial, S>::spherical_inward(std::size_t k, const InTau& tau,
+                                                      Articulated<S>& articulated) {
   const Link& l = tree_->links[k];
-  BallAcceleration<S>& w = balls_[static_cast<std::size_t>(l.record)];
-  if (l.tip) cargo = {};
-  add_body(cargo.M, l);
-  if (l.slot >= 0) add<false>(cargo, slots_[static_cast<std::size_t>(l.slot)]);
+  SphericalAcceleration<S>& w = sphericals_[static_cast<std::size_t>(l.record)];
+  if (l.leaf) articulated = {};
+  add_body(articulated.M, l);
+  if (l.slot >= 0) add<false>(articulated, slots_[static_cast<std::size_t>(l.slot)]);
   Sym3<S> A;
-  if (!w.pivot.eliminate(cargo.M, A)) return false;
+  if (!w.pivot.eliminate(articulated.M, A)) return false;
   const Vec3<S> forces{{S(tau[l.u]), S(tau[l.u + 1]), S(tau[l.u + 2])}};
-  const Vec3<S> e = forces - w.bn - Vec3<S>{{cargo.Dnx, cargo.Dny, cargo.Dnz}};
+  const Vec3<S> e = forces - w.bn - Vec3<S>{{articulated.Dnx, articulated.Dny, articulated.Dnz}};
   const Vec3<S> reaction = w.pivot.remainder(e);
   if (l.parent < 0) return true;
-  const Vec3<S> f = w.bf + Vec3<S>{{cargo.Dfx, cargo.Dfy, cargo.Dfz}} + reaction + A * w.cl;
-  carry_ball(tree_->balls[static_cast<std::size_t>(l.record)].origin, w.R, A, f, forces, cargo);
-  if (!l.first) leave<false>(l, slot_of_parent(l), cargo);
+  const Vec3<S> f =
+      w.bf + Vec3<S>{{articulated.Dfx, articulated.Dfy, articulated.Dfz}} + reaction + A * w.cl;
+  carry_spherical(tree_->sphericals[static_cast<std::size_t>(l.record)].origin, w.R, A, f, forces,
+                  articulated);
+  if (!l.first) leave<false>(l, slot_of_parent(l), articulated);
   return true;
 }
 
 template <class S>
 template <class InTau>
-bool AccelerationSweeps<Spatial, S>::axis_inward(std::size_t k, const InTau& tau, Cargo<S>& from) {
+bool AccelerationSweeps<Spatial, S>::axis_inward(std::size_t k, const InTau& tau,
+                                                 Articulated<S>& from) {
   const Link& l = tree_->links[k];
   const auto& b = body(k);
   auto& x = joints_[static_cast<std::size_t>(l.record)];
-  Cargo<S> cargo{};
-  if (!l.tip) cargo = from;
-  add_body(cargo.M, l);
-  add_remainder(cargo, x.D);
-  if (l.slot >= 0) add<false>(cargo, slots_[static_cast<std::size_t>(l.slot)]);
-  if (b.nv > 0 && !eliminate_axis(b, S(tau[l.u]), cargo, x)) return false;
+  Articulated<S> articulated{};
+  if (!l.leaf) articulated = from;
+  add_body(articulated.M, l);
+  add_remainder(articulated, x.D);
+  if (l.slot >= 0) add<false>(articulated, slots_[static_cast<std::size_t>(l.slot)]);
+  if (b.nv > 0 && !eliminate_axis(b, S(tau[l.u]), articulated, x)) return false;
   if (l.parent < 0) return true;
-  const Full<S>& m = cargo.M;
+  const Full<S>& m = articulated.M;
   const Vec3<S>&v = x.c.v, &w = x.c.w;
-  cargo.Dfx = cargo.Dfx + (m.Axx * v[0] + m.Axy * v[1] + m.Axz * v[2] + m.Hxx * w[0] +
-                           m.Hxy * w[1] + m.Hxz * w[2]);
-  cargo.Dfy = cargo.Dfy + (m.Axy * v[0] + m.Ayy * v[1] + m.Ayz * v[2] + m.Hyx * w[0] +
-                           m.Hyy * w[1] + m.Hyz * w[2]);
-  cargo.Dfz = cargo.Dfz + (m.Axz * v[0] + m.Ayz * v[1] + m.Azz * v[2] + m.Hzx * w[0] +
-                           m.Hzy * w[1] + m.Hzz * w[2]);
-  cargo.Dnx = cargo.Dnx + (m.Hxx * v[0] + m.Hyx * v[1] + m.Hzx * v[2] + m.Ixx * w[0] +
-                           m.Ixy * w[1] + m.Ixz * w[2]);
-  cargo.Dny = cargo.Dny + (m.Hxy * v[0] + m.Hyy * v[1] + m.Hzy * v[2] + m.Ixy * w[0] +
-                           m.Iyy * w[1] + m.Iyz * w[2]);
-  cargo.Dnz = cargo.Dnz + (m.Hxz * v[0] + m.Hyz * v[1] + m.Hzz * v[2] + m.Ixz * w[0] +
-                           m.Iyz * w[1] + m.Izz * w[2]);
-  carry_axis<false>(l, b.edge, x.edge, 0, cargo);
-  from = cargo;
+  articulated.Dfx = articulated.Dfx + (m.Axx * v[0] + m.Axy * v[1] + m.Axz * v[2] + m.Hxx * w[0] +
+                                       m.Hxy * w[1] + m.Hxz * w[2]);
+  articulated.Dfy = articulated.Dfy + (m.Axy * v[0] + m.Ayy * v[1] + m.Ayz * v[2] + m.Hyx * w[0] +
+                                       m.Hyy * w[1] + m.Hyz * w[2]);
+  articulated.Dfz = articulated.Dfz + (m.Axz * v[0] + m.Ayz * v[1] + m.Azz * v[2] + m.Hzx * w[0] +
+                                       m.Hzy * w[1] + m.Hzz * w[2]);
+  articulated.Dnx = articulated.Dnx + (m.Hxx * v[0] + m.Hyx * v[1] + m.Hzx * v[2] + m.Ixx * w[0] +
+                                       m.Ixy * w[1] + m.Ixz * w[2]);
+  articulated.Dny = articulated.Dny + (m.Hxy * v[0] + m.Hyy * v[1] + m.Hzy * v[2] + m.Ixy * w[0] +
+                                       m.Iyy * w[1] + m.Iyz * w[2]);
+  articulated.Dnz = articulated.Dnz + (m.Hxz * v[0] + m.Hyz * v[1] + m.Hzz * v[2] + m.Ixz * w[0] +
+                                       m.Iyz * w[1] + m.Izz * w[2]);
+  carry_axis<false>(l, b.edge, x.edge, 0, articulated);
+  from = articulated;
   if (!l.first) leave<false>(l, slot_of_parent(l), from);
   return true;
 }
@@ -63,15 +67,15 @@ bool AccelerationSweeps<Spatial, S>::axis_inward(std::size_t k, const InTau& tau
 template <class S>
 template <class InTau>
 bool AccelerationSweeps<Spatial, S>::general_inward(std::size_t k, const InTau& tau,
-                                                    Cargo<S>& cargo) {
+                                                    Articulated<S>& articulated) {
   const Link& l = tree_->links[k];
   const auto& b = body(k);
   auto& x = joints_[static_cast<std::size_t>(l.record)];
-  if (l.tip) cargo = {};
-  add_body(cargo.M, l);
-  if (l.slot >= 0) add<false>(cargo, slots_[static_cast<std::size_t>(l.slot)]);
-  x.M = blocks(cargo.M);
-  x.D += remainder_of(cargo);
+  if (l.leaf) articulated = {};
+  add_body(articulated.M, l);
+  if (l.slot >= 0) add<false>(articulated, slots_[static_cast<std::size_t>(l.slot)]);
+  x.M = blocks(articulated.M);
+  x.D += remainder_of(articulated);
   S forces[6]{};
   for (int i = 0; i < b.nv; ++i) forces[i] = S(tau[b.u + i]);
   Spatial::ArticulatedInertia<S> M;
@@ -79,19 +83,19 @@ bool AccelerationSweeps<Spatial, S>::general_inward(std::size_t k, const InTau& 
   auto D = remainder<Spatial>(b, x, forces);
   if (b.parent < 0) return true;
   D += reduced_momentum<Spatial>(b, x, x.c);
-  set_cargo(cargo, Spatial::to_parent(b.edge, b.kind, x.edge, M),
-            Spatial::to_parent(b.edge, b.kind, x.edge, D), Vec3<S>{});
-  if (!l.first) leave<false>(l, slot_of_parent(l), cargo);
+  set_articulated(articulated, Spatial::to_parent(b.edge, b.kind, x.edge, M),
+                  Spatial::to_parent(b.edge, b.kind, x.edge, D), Vec3<S>{});
+  if (!l.first) leave<false>(l, slot_of_parent(l), articulated);
   return true;
 }
 
 template <class S>
 template <class Out>
-void AccelerationSweeps<Spatial, S>::axis_outward(std::size_t k, Out udot, OutwardCargo<S>& c) {
+void AccelerationSweeps<Spatial, S>::axis_outward(std::size_t k, Out udot, OutwardMotion<S>& c) {
   const Link& l = tree_->links[k];
   const auto& b = body(k);
   const auto& x = joints_[static_cast<std::size_t>(l.record)];
-  OutwardCargo<S> w = c;
+  OutwardMotion<S> w = c;
   constants_and_screw_outward<false>(l, b.edge, x.edge, w);
   add_motion(w, x.c);
   if (b.nv > 0) {
@@ -104,13 +108,13 @@ void AccelerationSweeps<Spatial, S>::axis_outward(std::size_t k, Out udot, Outwa
 
 template <class S>
 template <class Out>
-void AccelerationSweeps<Spatial, S>::general_outward(std::size_t k, Out udot, OutwardCargo<S>& c) {
+void AccelerationSweeps<Spatial, S>::general_outward(std::size_t k, Out udot, OutwardMotion<S>& c) {
   const Link& l = tree_->links[k];
   const auto& b = body(k);
   Spatial::Motion<S> V{{{c.vx, c.vy, c.vz}}, {{c.ox, c.oy, c.oz}}};
-  if (l.kind == LinkKind::ball) {
-    const auto& w = balls_[static_cast<std::size_t>(l.record)];
-    const auto& r = tree_->balls[static_cast<std::size_t>(l.record)].origin;
+  if (l.kind == LinkKind::spherical) {
+    const auto& w = sphericals_[static_cast<std::size_t>(l.record)];
+    const auto& r = tree_->sphericals[static_cast<std::size_t>(l.record)].origin;
     if (l.parent >= 0) V.v += cross(V.w, Vec3<S>{{S(r[0]), S(r[1]), S(r[2])}});
     V = {transpose_times(w.R, V.v), transpose_times(w.R, V.w)};
     V.v += w.cl;
@@ -129,7 +133,7 @@ void AccelerationSweeps<Spatial, S>::general_outward(std::size_t k, Out udot, Ou
     solve_joint<Spatial>(b, x, V, own);
     for (int i = 0; i < b.nv; ++i) udot[b.u + i] = own[i];
   }
-  set_cargo(c, V, Vec3<S>{});
+  set_articulated(c, V, Vec3<S>{});
 }
 
 }  // namespace momenta

@@ -9,25 +9,26 @@
 //
 // A = (acceleration of O, dω/dt) in body axes. With the acceleration of the point O itself instead
 // of the derivative of v in body axes, linear velocities drop out: only ω runs outward. Gravity is
-// an acceleration −g of the ground. For a pin with the way (x screw, z screw) from its parent,
+// an acceleration −g of the ground. For a revolute joint with the way (x screw, z screw) from its
+// parent,
 //   c = R ω × (ω × r) + the joint's part,  α part of c = ω × z q̇ = (ω_y q̇, −ω_x q̇, 0).
 
-#include <momenta/core/kernel/ball.h>
 #include <momenta/core/kernel/place_links.h>
+#include <momenta/core/kernel/spherical.h>
 
 namespace momenta {
 
 template <class S>
-struct PinAcceleration {
-  PinColumn<S> h;
+struct RevoluteAcceleration {
+  RevoluteColumn<S> h;
   S y0;                            ///< M_j⁻¹ e
   S bfx, bfy, bfz, bnx, bny, bnz;  ///< bias wrench
-  S clx, cly, clz, cox, coy;       ///< c, in the frame before the pin's screw
+  S clx, cly, clz, cox, coy;       ///< c, in the frame before the revolute joint's screw
 };
 template <class S>
-struct BallAcceleration {
+struct SphericalAcceleration {
   Mat3<S> R;
-  BallPivot<S> pivot;
+  SphericalPivot<S> pivot;
   Vec3<S> bf, bn, cl, co;
 };
 
@@ -41,35 +42,35 @@ class AccelerationSweeps<Spatial, S> {
   explicit AccelerationSweeps(const LinkTree& tree)
       : tree_(&tree),
         angles_(tree.links.size()),
-        pins_(tree.links.size()),
-        balls_(tree.balls.size()),
+        revolutes_(tree.links.size()),
+        sphericals_(tree.sphericals.size()),
         joints_(static_cast<std::size_t>(tree.records)),
         users_(static_cast<std::size_t>(tree.users)),
         slots_(static_cast<std::size_t>(tree.slots)),
         outward_slots_(static_cast<std::size_t>(tree.slots)) {}
 
   /// u̇ (nv) from (q, u, t) and all generalised forces τ (nv) but the weights'. In and Out index
-  /// like pointers to S. False when a joint's articulated inertia is not positive: stuck().
-  /// O(bodies).
+  /// like pointers to S. False when a joint's articulated inertia is not positive:
+  /// singular_joint(). O(bodies).
   template <class In, class InTau, class Out>
   bool operator()(const S& t, const In& q, const In& u, const InTau& tau, Out udot) {
     place(t, q);
-    stuck_ = tree_->stuck;
-    if (stuck_ >= 0) return false;
+    singular_joint_ = tree_->singular_joint;
+    if (singular_joint_ >= 0) return false;
     velocities(u);
     if (!inward(tau)) return false;
     outward(udot);
     return true;
   }
-  int stuck() const { return stuck_; }
+  int singular_joint() const { return singular_joint_; }
 
-  // Sweep by sweep: of a trunk, whose limbs go between (limb_accelerations.h).
+  // Sweep by sweep: of a remaining tree, whose branches go between (branch_accelerations.h).
   template <class In>
   void place(const S& t, const In& q) {
-    stuck_ = -1;
+    singular_joint_ = -1;
     place_links(
         *tree_, t, q, angles_, joints_,
-        users_, [&](std::size_t record) -> auto& { return balls_[record].R; });
+        users_, [&](std::size_t record) -> auto& { return sphericals_[record].R; });
   }
   template <class In>
   void velocities(const In& u);
@@ -77,85 +78,93 @@ class AccelerationSweeps<Spatial, S> {
   bool inward(const InTau& tau);
   template <class Out>
   void outward(Out udot);
-  /// What limbs leave in a slot before the inward sweep, and find there after either outward one.
-  Cargo<S>& carried(int slot) { return slots_[static_cast<std::size_t>(slot)]; }
-  const OutwardCargo<S>& motion(int slot) const {
+  /// What branches leave in a slot before the inward sweep, and find there after either outward
+  /// one.
+  Articulated<S>& carried(int slot) { return slots_[static_cast<std::size_t>(slot)]; }
+  const OutwardMotion<S>& motion(int slot) const {
     return outward_slots_[static_cast<std::size_t>(slot)];
   }
 
  private:
   template <Turn turn, class InTau>
   __attribute__((noinline)) std::size_t chain_inward(std::size_t end, const InTau& tau,
-                                                     Cargo<S>& cargo);
+                                                     Articulated<S>& articulated);
   template <class InTau>
-  __attribute__((noinline)) std::size_t pins_inward(std::size_t end, const InTau& tau,
-                                                    Cargo<S>& cargo);
+  __attribute__((noinline)) std::size_t revolutes_inward(std::size_t end, const InTau& tau,
+                                                         Articulated<S>& articulated);
   template <class InTau>
-  __attribute__((noinline)) bool ball_inward(std::size_t k, const InTau& tau, Cargo<S>& cargo);
+  __attribute__((noinline)) bool spherical_inward(std::size_t k, const InTau& tau,
+                                                  Articulated<S>& articulated);
   template <class InTau>
-  __attribute__((noinline)) bool axis_inward(std::size_t k, const InTau& tau, Cargo<S>& cargo);
+  __attribute__((noinline)) bool axis_inward(std::size_t k, const InTau& tau,
+                                             Articulated<S>& articulated);
   template <class Out>
-  __attribute__((noinline)) void axis_outward(std::size_t k, Out udot, OutwardCargo<S>& cargo);
+  __attribute__((noinline)) void axis_outward(std::size_t k, Out udot,
+                                              OutwardMotion<S>& articulated);
   template <class InTau>
-  __attribute__((noinline)) bool general_inward(std::size_t k, const InTau& tau, Cargo<S>& cargo);
+  __attribute__((noinline)) bool general_inward(std::size_t k, const InTau& tau,
+                                                Articulated<S>& articulated);
   template <class In>
-  __attribute__((noinline)) void any_velocity(std::size_t k, const In& u, OutwardCargo<S>& cargo);
+  __attribute__((noinline)) void any_velocity(std::size_t k, const In& u,
+                                              OutwardMotion<S>& articulated);
   template <class Out>
-  __attribute__((noinline)) void general_outward(std::size_t k, Out udot, OutwardCargo<S>& cargo);
+  __attribute__((noinline)) void general_outward(std::size_t k, Out udot,
+                                                 OutwardMotion<S>& articulated);
   const Model<Spatial>::Body& body(std::size_t k) const { return tree_->model->bodies[k]; }
-  Cargo<S>& slot_of_parent(const Link& l) {
+  Articulated<S>& slot_of_parent(const Link& l) {
     return slots_[static_cast<std::size_t>(tree_->links[static_cast<std::size_t>(l.parent)].slot)];
   }
 
   const LinkTree* tree_;
   Angles<S> angles_;
-  std::vector<PinAcceleration<S>> pins_;
-  std::vector<BallAcceleration<S>> balls_;
+  std::vector<RevoluteAcceleration<S>> revolutes_;
+  std::vector<SphericalAcceleration<S>> sphericals_;
   std::vector<JointRecord<Spatial, S>> joints_;
   std::vector<UserRecord<S>> users_;
-  std::vector<Cargo<S>> slots_;
-  std::vector<OutwardCargo<S>> outward_slots_;
-  int stuck_ = -1;
+  std::vector<Articulated<S>> slots_;
+  std::vector<OutwardMotion<S>> outward_slots_;
+  int singular_joint_ = -1;
 };
 
 template <class S>
 template <class InTau>
 bool AccelerationSweeps<Spatial, S>::inward(const InTau& tau) {
   const Link* links = tree_->links.data();
-  Cargo<S> cargo{};
+  Articulated<S> articulated{};
   for (std::size_t k = angles_.size(); k > 0;) {
     switch (links[k - 1].path) {
       case Path::chain_general:
-        k = chain_inward<Turn::general>(k, tau, cargo);
+        k = chain_inward<Turn::general>(k, tau, articulated);
         break;
       case Path::chain_right:
-        k = chain_inward<Turn::right>(k, tau, cargo);
+        k = chain_inward<Turn::right>(k, tau, articulated);
         break;
       case Path::chain_parallel:
-        k = chain_inward<Turn::parallel>(k, tau, cargo);
+        k = chain_inward<Turn::parallel>(k, tau, articulated);
         break;
       case Path::any:
-        if (links[k - 1].kind == LinkKind::pin) {
-          k = pins_inward(k, tau, cargo);
+        if (links[k - 1].kind == LinkKind::revolute) {
+          k = revolutes_inward(k, tau, articulated);
           break;
         }
         --k;
-        if (!(links[k].kind == LinkKind::ball ? ball_inward(k, tau, cargo)
-              : links[k].one_axis             ? axis_inward(k, tau, cargo)
-                                              : general_inward(k, tau, cargo)))
-          stuck_ = static_cast<int>(k);
+        if (!(links[k].kind == LinkKind::spherical ? spherical_inward(k, tau, articulated)
+              : links[k].one_axis                  ? axis_inward(k, tau, articulated)
+                                                   : general_inward(k, tau, articulated)))
+          singular_joint_ = static_cast<int>(k);
         break;
     }
-    if (stuck_ >= 0) return false;
+    if (singular_joint_ >= 0) return false;
   }
   return true;
 }
 
-/// A pin's last step: A from the parent's frame to its own but for its own turning, left in `wz`.
+/// A revolute joint's last step: A from the parent's frame to its own but for its own turning, left
+/// in `wz`.
 template <class Link, class Edge, class S>
-MOMENTA_INLINE void accelerate_pin(const Link& l, const Edge& edge, const PinAcceleration<S>& w,
-                                   const S& c, const S& s, S& vx, S& vy, S& vz, S& ox, S& oy, S& oz,
-                                   S& wz) {
+MOMENTA_INLINE void accelerate_revolute(const Link& l, const Edge& edge,
+                                        const RevoluteAcceleration<S>& w, const S& c, const S& s,
+                                        S& vx, S& vy, S& vz, S& ox, S& oy, S& oz, S& wz) {
   constants_outward(l, edge, vx, vy, vz, ox, oy, oz);
   vx = vx + w.clx;
   vy = vy + w.cly;
@@ -190,8 +199,8 @@ void AccelerationSweeps<Spatial, S>::outward(Out udot) {
       vz = S(-gravity[2]);
       ox = oy = oz = zero;
     }
-    if (l.kind != LinkKind::pin) {
-      OutwardCargo<S> here{vx, vy, vz, ox, oy, oz, zero, zero, zero};
+    if (l.kind != LinkKind::revolute) {
+      OutwardMotion<S> here{vx, vy, vz, ox, oy, oz, zero, zero, zero};
       if (l.one_axis)
         axis_outward(k, udot, here);
       else
@@ -203,7 +212,7 @@ void AccelerationSweeps<Spatial, S>::outward(Out udot) {
       oy = here.oy;
       oz = here.oz;
     } else {
-      const PinAcceleration<S>& w = pins_[k];
+      const RevoluteAcceleration<S>& w = revolutes_[k];
       const S c = angles_.cosine(k), s = angles_.sine(k);
       if (l.parent < 0) {
         const Vec3<double>& at = tree_->weight[k];
@@ -214,7 +223,7 @@ void AccelerationSweeps<Spatial, S>::outward(Out udot) {
         udot[l.u] = oz;
       } else {
         S wz;
-        accelerate_pin(l, body(k).edge, w, c, s, vx, vy, vz, ox, oy, oz, wz);
+        accelerate_revolute(l, body(k).edge, w, c, s, vx, vy, vz, ox, oy, oz, wz);
         udot[l.u] = wz - oz;
         oz = wz;
       }
@@ -227,5 +236,5 @@ void AccelerationSweeps<Spatial, S>::outward(Out udot) {
 }  // namespace momenta
 
 #include <momenta/core/kernel/acceleration_joints.h>
-#include <momenta/core/kernel/acceleration_pins.h>
+#include <momenta/core/kernel/acceleration_revolutes.h>
 #include <momenta/core/kernel/acceleration_velocities.h>

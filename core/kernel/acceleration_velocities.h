@@ -23,11 +23,12 @@ MOMENTA_INLINE void bias_wrench(const Link& l, const S& ox, const S& oy, const S
   bnz = ox * ly - oy * lx;
 }
 
-/// ω of a pin from its parent's, and its c; all before its screw, p = ω × (ω × r) of its origin.
+/// ω of a revolute joint from its parent's, and its c; all before its screw, p = ω × (ω × r) of its
+/// origin.
 template <class Link, class S>
 MOMENTA_INLINE void turn_velocity(const Link& l, const S& px, const S& py, const S& pz,
                                   const S& own, const S& c, const S& s, S& ox, S& oy, S& oz,
-                                  PinAcceleration<S>& w) {
+                                  RevoluteAcceleration<S>& w) {
   const S wz = oz + own, dx = l.d * ox, dy = l.d * oy;
   w.clx = px + dx * wz;
   w.cly = py + dy * wz;
@@ -39,8 +40,8 @@ MOMENTA_INLINE void turn_velocity(const Link& l, const S& px, const S& py, const
 }
 /// The same from the parent's frame, over a turn and shift about x alone.
 template <class Link, class Edge, class S>
-MOMENTA_INLINE void pin_velocity(const Link& l, const Edge& edge, const S& own, const S& c,
-                                 const S& s, S& ox, S& oy, S& oz, PinAcceleration<S>& w) {
+MOMENTA_INLINE void revolute_velocity(const Link& l, const Edge& edge, const S& own, const S& c,
+                                      const S& s, S& ox, S& oy, S& oz, RevoluteAcceleration<S>& w) {
   const S yy = oy * oy, zz = oz * oz;
   S px = -(l.a * (yy + zz)), py = l.a * (ox * oy), pz = l.a * (ox * oz);
   constants_outward(l, edge, ox, oy, oz);
@@ -49,8 +50,9 @@ MOMENTA_INLINE void pin_velocity(const Link& l, const Edge& edge, const S& own, 
 }
 /// Over any constant screws.
 template <class Link, class Edge, class S>
-MOMENTA_INLINE void screwed_pin_velocity(const Link& l, const Edge& edge, const S& own, const S& c,
-                                         const S& s, S& ox, S& oy, S& oz, PinAcceleration<S>& w) {
+MOMENTA_INLINE void screwed_revolute_velocity(const Link& l, const Edge& edge, const S& own,
+                                              const S& c, const S& s, S& ox, S& oy, S& oz,
+                                              RevoluteAcceleration<S>& w) {
   Spatial::Motion<S> W{{}, {{ox, oy, oz}}};
   Spatial::constants_outward(edge, W);
   const Vec3<S> p = cross(W.w, W.v);
@@ -75,20 +77,20 @@ void AccelerationSweeps<Spatial, S>::velocities(const In& u) {
       oy = from.oy;
       oz = from.oz;
     }
-    if (l.kind != LinkKind::pin || l.screwed || l.turn == Turn::tilted) {
-      OutwardCargo<S> here{zero, zero, zero, ox, oy, oz, zero, zero, zero};
+    if (l.kind != LinkKind::revolute || l.screwed || l.turn == Turn::tilted) {
+      OutwardMotion<S> here{zero, zero, zero, ox, oy, oz, zero, zero, zero};
       any_velocity(k, u, here);
       ox = here.ox;
       oy = here.oy;
       oz = here.oz;
     } else {
-      PinAcceleration<S>& w = pins_[k];
+      RevoluteAcceleration<S>& w = revolutes_[k];
       const S own = u[l.u];
       if (l.parent < 0) {
         ox = oy = zero;
         oz = own;
       } else {
-        pin_velocity(l, body(k).edge, own, angles_.cosine(k), angles_.sine(k), ox, oy, oz, w);
+        revolute_velocity(l, body(k).edge, own, angles_.cosine(k), angles_.sine(k), ox, oy, oz, w);
       }
       bias_wrench(l, ox, oy, oz, w.bfx, w.bfy, w.bfz, w.bnx, w.bny, w.bnz);
     }
@@ -104,27 +106,27 @@ void AccelerationSweeps<Spatial, S>::velocities(const In& u) {
 template <class S>
 template <class In>
 void AccelerationSweeps<Spatial, S>::any_velocity(std::size_t k, const In& u,
-                                                  OutwardCargo<S>& cargo) {
+                                                  OutwardMotion<S>& articulated) {
   const Link& l = tree_->links[k];
   const auto& b = body(k);
   // The parent's rotation seen from the child: ω, and the velocity ω × r it gives the child's
   // origin.
-  Spatial::Motion<S> W{{}, {{cargo.ox, cargo.oy, cargo.oz}}};
+  Spatial::Motion<S> W{{}, {{articulated.ox, articulated.oy, articulated.oz}}};
   if (l.parent < 0) W = {};
   Vec3<S> omega;
-  if (l.kind == LinkKind::pin) {
-    auto& w = pins_[k];
+  if (l.kind == LinkKind::revolute) {
+    auto& w = revolutes_[k];
     omega = W.w;
     const S own = u[l.u];
     if (l.parent >= 0)
-      screwed_pin_velocity(l, b.edge, own, angles_.cosine(k), angles_.sine(k), omega[0], omega[1],
-                           omega[2], w);
+      screwed_revolute_velocity(l, b.edge, own, angles_.cosine(k), angles_.sine(k), omega[0],
+                                omega[1], omega[2], w);
     else
       omega[2] += own;
     bias_wrench(l, omega[0], omega[1], omega[2], w.bfx, w.bfy, w.bfz, w.bnx, w.bny, w.bnz);
-  } else if (l.kind == LinkKind::ball) {
-    auto& w = balls_[static_cast<std::size_t>(l.record)];
-    const auto& r = tree_->balls[static_cast<std::size_t>(l.record)].origin;
+  } else if (l.kind == LinkKind::spherical) {
+    auto& w = sphericals_[static_cast<std::size_t>(l.record)];
+    const auto& r = tree_->sphericals[static_cast<std::size_t>(l.record)].origin;
     const Vec3<S> step{{S(r[0]), S(r[1]), S(r[2])}}, own{{u[l.u], u[l.u + 1], u[l.u + 2]}};
     w.cl = transpose_times(w.R, cross(W.w, cross(W.w, step)));
     const Vec3<S> before = transpose_times(w.R, W.w);
@@ -155,9 +157,9 @@ void AccelerationSweeps<Spatial, S>::any_velocity(std::size_t k, const In& u,
     bias_wrench(l, omega[0], omega[1], omega[2], w.D.f[0], w.D.f[1], w.D.f[2], w.D.n[0], w.D.n[1],
                 w.D.n[2]);
   }
-  cargo.ox = omega[0];
-  cargo.oy = omega[1];
-  cargo.oz = omega[2];
+  articulated.ox = omega[0];
+  articulated.oy = omega[1];
+  articulated.oz = omega[2];
 }
 
 }  // namespace momenta

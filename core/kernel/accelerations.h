@@ -52,9 +52,9 @@ void accelerations_outward(Workspace<Space, S>& w, const S* u, const S* udot) {
   }
 }
 
-/// τ = M u̇ + bias − applied − joint forces (nv): the residual of (1a) without λ. On entry body[k].T
-/// holds the applied wrenches (apply_forces) and the accelerations are current; on exit body[k].P
-/// holds F_K.
+/// τ = M u̇ + bias − applied − joint forces (nv): the residual of (1a) without λ. On entry
+/// body[k].T holds the applied wrenches (apply_forces) and the accelerations are current; on exit
+/// body[k].P holds F_K.
 template <class Space, class S>
 void newton_euler_inward(Workspace<Space, S>& w, const S* q, const S* u, S* tau) {
   const auto& model = *w.model;
@@ -71,7 +71,7 @@ void newton_euler_inward(Workspace<Space, S>& w, const S* q, const S* u, S* tau)
 }
 
 /// u̇ (nv) from (q, u, t) by the articulated recursion. False when a joint's articulated inertia is
-/// not positive (sweeps.stuck()). O(bodies).
+/// not positive (sweeps.singular_joint()). O(bodies).
 template <class Space, class S>
 bool acceleration_recursion(AccelerationSweeps<Space, S>& sweeps, Workspace<Space, S>& w,
                             const S& t, const S* q, const S* u, S* udot) {

@@ -1,6 +1,7 @@
 #pragma once
-// Joints on one axis beside pins: slides, screws, driven ones, welds. With E = (e_f ẑ; e_n ẑ),
-// (0, 1) of a pin, (1, 0) of a slide, (pitch, 1) of a screw, and U = M*E:
+// Joints on one axis beside revolute ones: prismatic joints, screws, driven ones, welds. With E =
+// (e_f ẑ; e_n ẑ), (0, 1) of a revolute joint, (1, 0) of a prismatic joint, (pitch, 1) of a screw,
+// and U = M*E:
 //
 //   free      M_j = EᵀU, h = U / M_j, M' = M* − U hᵀ, D' = D + h (r − Eᵀ D)    (46)-(48)
 //   driven    M' = M*, D' = D + U f', of momenta, f the law of motion          (44)
@@ -9,7 +10,7 @@
 // then the screw (θ, d) about z and the constant ones. All of it is one piece of code without
 // calls: what general_joint.h does by kind, with every intermediate in registers.
 
-#include <momenta/core/kernel/pin.h>
+#include <momenta/core/kernel/revolute.h>
 
 namespace momenta {
 
@@ -31,17 +32,18 @@ MOMENTA_INLINE AxisColumn<S> axis_column(const Body& b, const Full<S>& m) {
           pitch * m.Hzx + m.Ixz, pitch * m.Hzy + m.Iyz, pitch * m.Hzz + m.Izz};
 }
 
-/// (46)-(48) of a free slide or screw: M', D' in place of M*, D for the right-hand side r. False
-/// when M_j is not positive: Joint::inertia_margin and reduce say what rounding may do to it.
+/// (46)-(48) of a free prismatic joint or screw: M', D' in place of M*, D for the right-hand side
+/// r. False when M_j is not positive: Joint::inertia_margin and reduce say what rounding may do to
+/// it.
 template <class Body, class S>
-MOMENTA_INLINE bool eliminate_axis(const Body& b, const S& r, Cargo<S>& cargo,
+MOMENTA_INLINE bool eliminate_axis(const Body& b, const S& r, Articulated<S>& articulated,
                                    JointRecord<Spatial, S>& x) {
   constexpr double rounding = 16 * std::numeric_limits<double>::epsilon();
-  Full<S>& m = cargo.M;
+  Full<S>& m = articulated.M;
   const bool slides = b.kind == JointKind::prismatic;
   const AxisColumn<S> U = axis_column(b, m);
   const S mass = slides ? U.fz : b.pitch * U.fz + U.nz;
-  const S along = slides ? cargo.Dfz : b.pitch * cargo.Dfz + cargo.Dnz;
+  const S along = slides ? articulated.Dfz : b.pitch * articulated.Dfz + articulated.Dnz;
   const auto least = rounding * b.subtree_mass;
   if (!all_positive(slides
                         ? mass - least
@@ -96,66 +98,67 @@ MOMENTA_INLINE bool eliminate_axis(const Body& b, const S& r, Cargo<S>& cargo,
     m.Ayz = -turns * m.Hyz;
     m.Azz = -turns * m.Hzz;
   }
-  cargo.Dfx = cargo.Dfx + e * h.fx;
-  cargo.Dfy = cargo.Dfy + e * h.fy;
-  cargo.Dfz = cargo.Dfz + e * h.fz;
-  cargo.Dnx = cargo.Dnx + e * h.nx;
-  cargo.Dny = cargo.Dny + e * h.ny;
-  cargo.Dnz = cargo.Dnz + e * h.nz;
+  articulated.Dfx = articulated.Dfx + e * h.fx;
+  articulated.Dfy = articulated.Dfy + e * h.fy;
+  articulated.Dfz = articulated.Dfz + e * h.fz;
+  articulated.Dnx = articulated.Dnx + e * h.nx;
+  articulated.Dny = articulated.Dny + e * h.ny;
+  articulated.Dnz = articulated.Dnz + e * h.nz;
   return true;
 }
 
 /// Nearly parallel axes: a turn about y and the screw about x.
 template <bool Gravity, class Constants, class Mass, class S>
-__attribute__((noinline)) void tilt_inward(const Constants& k, const Mass& m, Cargo<S>& cargo) {
-  Spatial::ArticulatedInertia<S> M = blocks(cargo.M);
-  Spatial::Force<S> D = remainder_of(cargo);
+__attribute__((noinline)) void tilt_inward(const Constants& k, const Mass& m,
+                                           Articulated<S>& articulated) {
+  Spatial::ArticulatedInertia<S> M = blocks(articulated.M);
+  Spatial::Force<S> D = remainder_of(articulated);
   Vec3<S> G{};
-  if constexpr (Gravity) G = {{cargo.Gx, cargo.Gy, cargo.Gz}};
+  if constexpr (Gravity) G = {{articulated.Gx, articulated.Gy, articulated.Gz}};
   tilt_inward(k, M, D, G);
   if constexpr (Gravity)
     if (k.about_x) G[0] = G[0] + m * k.a;
-  set_cargo(cargo, M, D, G);
+  set_articulated(articulated, M, D, G);
 }
 
 /// M', D' and, of the mass m, G from the frame of the joint to the parent's.
 template <bool Gravity, class Link, class Constants, class Mass, class S>
 MOMENTA_INLINE void carry_axis(const Link& l, const Constants& k, const Spatial::Edge<S>& e,
-                               const Mass& m, Cargo<S>& cargo) {
-  screw_inward<Gravity>(e.cos_theta, e.sin_theta, e.d, cargo);
-  if constexpr (Gravity) cargo.Gz = cargo.Gz + m * e.d;
+                               const Mass& m, Articulated<S>& articulated) {
+  screw_inward<Gravity>(e.cos_theta, e.sin_theta, e.d, articulated);
+  if constexpr (Gravity) articulated.Gz = articulated.Gz + m * e.d;
   if (l.turn == Turn::tilted) {
-    tilt_inward<Gravity>(k, m, cargo);
+    tilt_inward<Gravity>(k, m, articulated);
   } else {
     if (l.turn == Turn::right)
-      right_turn_x(cargo.M);
+      right_turn_x(articulated.M);
     else
-      turn_x(cargo.M, l.ca, l.sa);
-    shift_x(cargo.M, l.a);
+      turn_x(articulated.M, l.ca, l.sa);
+    shift_x(articulated.M, l.a);
     const auto turn = [&](S& y, S& z) {
       const S before = y;
       y = l.ca * y - l.sa * z;
       z = l.sa * before + l.ca * z;
     };
-    turn(cargo.Dfy, cargo.Dfz);
-    turn(cargo.Dny, cargo.Dnz);
-    cargo.Dny = cargo.Dny - l.a * cargo.Dfz;
-    cargo.Dnz = cargo.Dnz + l.a * cargo.Dfy;
+    turn(articulated.Dfy, articulated.Dfz);
+    turn(articulated.Dny, articulated.Dnz);
+    articulated.Dny = articulated.Dny - l.a * articulated.Dfz;
+    articulated.Dnz = articulated.Dnz + l.a * articulated.Dfy;
     if constexpr (Gravity) {
-      turn(cargo.Gy, cargo.Gz);
-      cargo.Gx = cargo.Gx + m * l.a;
+      turn(articulated.Gy, articulated.Gz);
+      articulated.Gx = articulated.Gx + m * l.a;
     }
   }
   if (l.screwed) {
-    screw_inward<Gravity>(k.cos_gamma, k.sin_gamma, k.delta, cargo);
-    if constexpr (Gravity) cargo.Gz = cargo.Gz + m * k.delta;
+    screw_inward<Gravity>(k.cos_gamma, k.sin_gamma, k.delta, articulated);
+    if constexpr (Gravity) articulated.Gz = articulated.Gz + m * k.delta;
   }
 }
 
 /// W = 𝒯ⱽ Ω_L in the frame of the joint, from the parent's motion in `c`; with gravity, g too.
 template <bool Gravity, class Link, class Constants, class S>
 MOMENTA_INLINE void constants_and_screw_outward(const Link& l, const Constants& k,
-                                                const Spatial::Edge<S>& e, OutwardCargo<S>& c) {
+                                                const Spatial::Edge<S>& e, OutwardMotion<S>& c) {
   constants_outward(l, k, c.vx, c.vy, c.vz, c.ox, c.oy, c.oz);
   screw_outward(e.cos_theta, e.sin_theta, e.d, c.vx, c.vy, c.ox, c.oy);
   if constexpr (Gravity) {
@@ -166,13 +169,13 @@ MOMENTA_INLINE void constants_and_screw_outward(const Link& l, const Constants& 
 
 /// u = M_j⁻¹ e − hᵀ W, (45).
 template <class S>
-MOMENTA_INLINE S axis_rate(const JointRecord<Spatial, S>& x, const OutwardCargo<S>& w) {
+MOMENTA_INLINE S axis_rate(const JointRecord<Spatial, S>& x, const OutwardMotion<S>& w) {
   return x.pivot * x.e - (x.h.f[0] * w.vx + x.h.f[1] * w.vy + x.h.f[2] * w.vz + x.h.n[0] * w.ox +
                           x.h.n[1] * w.oy + x.h.n[2] * w.oz);
 }
 /// Ω = W + E u
 template <class Body, class S>
-MOMENTA_INLINE void add_axis_motion(const Body& b, const S& u, OutwardCargo<S>& w) {
+MOMENTA_INLINE void add_axis_motion(const Body& b, const S& u, OutwardMotion<S>& w) {
   if (b.kind == JointKind::revolute) {
     w.oz = w.oz + u;
   } else if (b.kind == JointKind::prismatic) {
@@ -186,7 +189,7 @@ MOMENTA_INLINE void add_axis_motion(const Body& b, const S& u, OutwardCargo<S>& 
 /// Eᵀ (T* − Ω × P*) of (35), P* = M*Ω + D: two or four of the six rows of P*.
 template <bool Gravity, class Body, class S>
 MOMENTA_INLINE S axis_momentum_rate(const Body& b, const JointRecord<Spatial, S>& x,
-                                    const OutwardCargo<S>& w) {
+                                    const OutwardMotion<S>& w) {
   const auto& A = x.M.A.x;
   const auto& H = x.M.H.x;
   const auto& I = x.M.I.x;

@@ -21,7 +21,7 @@ Vec3<double> place_of(const Model<Spatial>::Body& b) {
   return Spatial::moment_to_parent(b.edge, JointKind::weld, e, Vec3<double>{}, 1.0);
 }
 
-BallPlace ball_of(const Model<Spatial>::Body& b) {
+SphericalPlace spherical_of(const Model<Spatial>::Body& b) {
   Spatial::Edge<double> e;
   e.cos_theta = std::cos(b.theta0);
   e.sin_theta = std::sin(b.theta0);
@@ -36,13 +36,13 @@ BallPlace ball_of(const Model<Spatial>::Body& b) {
   return {{turn.w(), turn.x(), turn.y(), turn.z()}, at.origin};
 }
 
-Tip tip_of(const Link& l) {
+Leaf leaf_of(const Link& l) {
   Full<double> m;
   set_body(m, l);
-  Tip t;
+  Leaf t;
   t.inverse = 1 / m.Izz;
-  PinColumn<double> h;
-  eliminate_pin(m, t.inverse, h, t.M);
+  RevoluteColumn<double> h;
+  eliminate_revolute(m, t.inverse, h, t.M);
   t.h[0] = h.fx;
   t.h[1] = h.fy;
   t.h[2] = h.fz;
@@ -63,8 +63,8 @@ LinkTree build_links(const Model<Spatial>& model) {
   for (std::size_t k = 0; k < n; ++k) {
     const auto& b = model.bodies[k];
     Link& l = tree.links[k];
-    l.kind = b.kind == JointKind::revolute && b.drive < 0 ? LinkKind::pin
-             : b.kind == JointKind::spherical             ? LinkKind::ball
+    l.kind = b.kind == JointKind::revolute && b.drive < 0 ? LinkKind::revolute
+             : b.kind == JointKind::spherical             ? LinkKind::spherical
                                                           : LinkKind::general;
     l.turn = turn_of(b.edge);
     l.ca = b.edge.cos_alpha;
@@ -85,15 +85,15 @@ LinkTree build_links(const Model<Spatial>& model) {
     l.u = b.u;
     l.parent = b.parent;
     l.first = b.parent >= 0 && b.parent + 1 == static_cast<int>(k);
-    l.tip = k + 1 == n || model.bodies[k + 1].parent != static_cast<int>(k);
+    l.leaf = k + 1 == n || model.bodies[k + 1].parent != static_cast<int>(k);
     l.has_force = b.nv == 1 && (b.stiffness != 0 || b.damping != 0 || b.torque != 0);
     tree.theta0[k] = b.theta0;
     if (l.kind == LinkKind::general) l.record = tree.records++;
     l.one_axis = l.kind == LinkKind::general && b.nv <= 1 && !b.law;
     tree.users += b.law != nullptr;
-    if (l.kind == LinkKind::ball) {
-      l.record = static_cast<int>(tree.balls.size());
-      tree.balls.push_back(ball_of(b));
+    if (l.kind == LinkKind::spherical) {
+      l.record = static_cast<int>(tree.sphericals.size());
+      tree.sphericals.push_back(spherical_of(b));
     }
     if (b.parent >= 0) {
       Link& parent = tree.links[static_cast<std::size_t>(b.parent)];
@@ -109,24 +109,24 @@ LinkTree build_links(const Model<Spatial>& model) {
   }
   for (std::size_t k = n; k-- > 0;) {
     Link& l = tree.links[k];
-    if (l.kind == LinkKind::pin && l.first && !l.tip && l.slot < 0 && !l.screwed &&
+    if (l.kind == LinkKind::revolute && l.first && !l.leaf && l.slot < 0 && !l.screwed &&
         l.turn != Turn::tilted)
       l.path = static_cast<Path>(l.turn);
-    if (!l.tip || l.kind != LinkKind::pin) continue;
-    l.record = static_cast<int>(tree.tips.size());
-    tree.tips.push_back(tip_of(l));
-    if (!(l.J[5] > 0) && tree.stuck < 0) tree.stuck = static_cast<int>(k);
+    if (!l.leaf || l.kind != LinkKind::revolute) continue;
+    l.record = static_cast<int>(tree.leaves.size());
+    tree.leaves.push_back(leaf_of(l));
+    if (!(l.J[5] > 0) && tree.singular_joint < 0) tree.singular_joint = static_cast<int>(k);
   }
   mark_openers(tree.links);
   return tree;
 }
 
 std::string links_in_words(const LinkTree& tree) {
-  int right = 0, parallel = 0, general = 0, tilted = 0, balls = 0, others = 0;
+  int right = 0, parallel = 0, general = 0, tilted = 0, sphericals = 0, others = 0;
   for (const Link& l : tree.links) {
-    if (l.kind == LinkKind::ball) ++balls;
+    if (l.kind == LinkKind::spherical) ++sphericals;
     if (l.kind == LinkKind::general) ++others;
-    if (l.kind != LinkKind::pin) continue;
+    if (l.kind != LinkKind::revolute) continue;
     right += l.turn == Turn::right;
     parallel += l.turn == Turn::parallel;
     general += l.turn == Turn::general;
@@ -136,11 +136,11 @@ std::string links_in_words(const LinkTree& tree) {
   const auto add = [&](int count, const char* what) {
     if (count > 0) words += (words.empty() ? "" : ", ") + std::to_string(count) + " " + what;
   };
-  add(right, "pins at right angles");
-  add(parallel, "pins parallel");
-  add(general, "pins at other angles");
-  add(tilted, "pins nearly parallel");
-  add(balls, "ball joints");
+  add(right, "revolute joints at right angles");
+  add(parallel, "revolute joints parallel");
+  add(general, "revolute joints at other angles");
+  add(tilted, "revolute joints nearly parallel");
+  add(sphericals, "spherical joints");
   add(others, "of other kinds");
   return words;
 }

@@ -32,8 +32,8 @@ PlanarTree build_links(const Model<Planar>& model) {
     const auto& b = model.bodies[k];
     PlanarLink& l = tree.links[k];
     l.first = b.parent >= 0 && b.parent + 1 == static_cast<int>(k);
-    l.tip = k + 1 == n || model.bodies[k + 1].parent != static_cast<int>(k);
-    l.pin = b.kind == JointKind::revolute && b.drive < 0;
+    l.leaf = k + 1 == n || model.bodies[k + 1].parent != static_cast<int>(k);
+    l.revolute = b.kind == JointKind::revolute && b.drive < 0;
     l.has_force = b.nv == 1 && (b.stiffness != 0 || b.damping != 0 || b.torque != 0);
     l.sign = b.edge.sign;
     l.q = b.q;
@@ -53,18 +53,18 @@ PlanarTree build_links(const Model<Planar>& model) {
     l.x = b.edge.x;
     l.y = b.edge.y;
     turn_by(cp, -sp, l.x, l.y);
-    l.slide_x = b.edge.slide_x;
-    l.slide_y = b.edge.slide_y;
-    turn_by(cp, -sp, l.slide_x, l.slide_y);
+    l.prismatic_x = b.edge.prismatic_x;
+    l.prismatic_y = b.edge.prismatic_y;
+    turn_by(cp, -sp, l.prismatic_x, l.prismatic_y);
     if (l.first) {
       l.x = std::hypot(b.edge.x, b.edge.y);
       l.y = 0;
     }
-    if (!l.pin) l.record = tree.records++;
+    if (!l.revolute) l.record = tree.records++;
     if (b.parent < 0) continue;
     PlanarLink& parent = tree.links[static_cast<std::size_t>(b.parent)];
     if (!l.first && parent.slot < 0) parent.slot = tree.slots++;
-    if (l.pin) {
+    if (l.revolute) {
       parent.wx += b.subtree_mass * (l.x * gy - l.y * gx);
       parent.wy -= b.subtree_mass * (l.y * gy + l.x * gx);
     }

@@ -56,8 +56,8 @@ PlaneFinding find_plane(const Tree& tree, const Scene& scene) {
   if (!normal) {
     // The slide most inclined to the first one gives the sharpest normal.
     Eigen::Vector3d sharpest = Eigen::Vector3d::Zero();
-    for (const auto& slide : slides)
-      if (const Eigen::Vector3d n = slides.front().cross(slide); n.norm() > sharpest.norm())
+    for (const auto& prismatic : slides)
+      if (const Eigen::Vector3d n = slides.front().cross(prismatic); n.norm() > sharpest.norm())
         sharpest = n;
     if (sharpest.norm() >= angle_tolerance) normal = sharpest.normalized();
   }
@@ -102,8 +102,8 @@ Model<Planar> build_planar_model(const Tree& tree, const Scene& scene,
     m.edge.y = r.y();
     const Eigen::Vector3d axis = basis.transpose() * poses[k].linear().col(2);
     m.edge.sign = axis.z() < 0 ? -1 : 1;
-    m.edge.slide_x = axis.x();
-    m.edge.slide_y = axis.y();
+    m.edge.prismatic_x = axis.x();
+    m.edge.prismatic_y = axis.y();
     model.frames[k] = Eigen::Isometry3d::Identity();
     model.frames[k].linear() = basis.transpose() * poses[k].linear();
     model.frames[k].translation().z() = basis.col(2).dot(here);

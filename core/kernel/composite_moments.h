@@ -1,5 +1,5 @@
 #pragma once
-// First and second moments of subtrees, and how they pass a pin: of composite_sweeps.h.
+// First and second moments of subtrees, and how they pass a revolute joint: of composite_sweeps.h.
 
 #include <momenta/core/kernel/acceleration_field.h>
 
@@ -22,8 +22,8 @@ MOMENTA_INLINE void add(CompositeMoments<S>& a, const CompositeMoments<S>& b) {
   a.yz = a.yz + b.yz;
   a.zz = a.zz + b.zz;
 }
-/// + those of the body itself; on a pin c_z = Σ_zz = 0.
-template <bool pin, class S>
+/// + those of the body itself; on a revolute joint c_z = Σ_zz = 0.
+template <bool revolute, class S>
 MOMENTA_INLINE void add_body(CompositeMoments<S>& a, const MassMoments<S>& b) {
   a.x = a.x + b.c[0];
   a.y = a.y + b.c[1];
@@ -32,7 +32,7 @@ MOMENTA_INLINE void add_body(CompositeMoments<S>& a, const MassMoments<S>& b) {
   a.xz = a.xz + b.s[2];
   a.yy = a.yy + b.s[3];
   a.yz = a.yz + b.s[4];
-  if constexpr (!pin) {
+  if constexpr (!revolute) {
     a.z = a.z + b.c[2];
     a.zz = a.zz + b.s[5];
   }
@@ -43,7 +43,7 @@ MOMENTA_INLINE void set_body(CompositeMoments<S>& a, const MassMoments<S>& b) {
        S(b.s[2]), S(b.s[3]), S(b.s[4]), S(b.s[5])};
 }
 
-/// The pin's own screw, inward.
+/// The revolute joint's own screw, inward.
 template <class S>
 MOMENTA_INLINE void screw_z(CompositeMoments<S>& m, const S& c, const S& s, double d) {
   const S ss = s * s, cs = c * s;

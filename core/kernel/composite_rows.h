@@ -17,7 +17,7 @@ void CompositeSweeps<Spatial, S>::axes_outward() {
     if (l.parent < 0) {
       Xx = Yy = Zz = one;
       Xy = Xz = Yx = Yz = Zx = Zy = zero;
-    } else if (!is_plain_pin(l)) {
+    } else if (!is_plain_revolute(l)) {
       any_axes(k);
       const Station& here = stations_[k];
       Xx = here.X[0], Xy = here.X[1], Xz = here.X[2];
@@ -59,10 +59,10 @@ void CompositeSweeps<Spatial, S>::any_axes(std::size_t k) {
   at.axes.set_column(0, from.X);
   at.axes.set_column(1, from.Y);
   at.axes.set_column(2, from.Z);
-  if (l.kind == LinkKind::ball) {
-    const auto& r = tree_->balls[static_cast<std::size_t>(l.record)].origin;
+  if (l.kind == LinkKind::spherical) {
+    const auto& r = tree_->sphericals[static_cast<std::size_t>(l.record)].origin;
     at.origin = at.axes * Vec3<S>{{S(r[0]), S(r[1]), S(r[2])}};
-    at.axes = at.axes * dynamics_.ball_axes(l);
+    at.axes = at.axes * dynamics_.spherical_axes(l);
   } else {
     at = Spatial::pose_outward(b.edge, b.kind, dynamics_.edge(k), at);
   }
@@ -79,7 +79,7 @@ MOMENTA_INLINE void CompositeSweeps<Spatial, S>::inward_from(std::size_t k, Colu
     k = static_cast<std::size_t>(parent);
     const Place& at = places[k];
     F.nz = F.nz + (r[0] * F.fy - r[1] * F.fx);
-    if (at.parent < 0 && at.kind == LinkKind::pin) {  // Z = (0, 0, 1)
+    if (at.parent < 0 && at.kind == LinkKind::revolute) {  // Z = (0, 0, 1)
       *--row = F.nz;
       return;
     }
@@ -92,7 +92,7 @@ MOMENTA_INLINE void CompositeSweeps<Spatial, S>::inward_from(std::size_t k, Colu
     const auto moment = [&](const Vec3<S>& axis) {
       return axis[0] * F.nx + axis[1] * F.ny + axis[2] * F.nz;
     };
-    if (at.kind == LinkKind::pin) {
+    if (at.kind == LinkKind::revolute) {
       *--row = moment(w.Z);
       continue;
     }
@@ -120,14 +120,14 @@ void CompositeSweeps<Spatial, S>::rows_inward() {
   for (std::size_t k = stations_.size(); k-- > 0;) {
     const Link& l = links[k];
     const MassMoments<S>& own = dynamics_.moments(k);
-    if (l.tip)
+    if (l.leaf)
       set_body(m, own);
-    else if (l.kind == LinkKind::pin)
+    else if (l.kind == LinkKind::revolute)
       add_body<true>(m, own);
     else
       add_body<false>(m, own);
     if (l.slot >= 0) add(m, slots_[static_cast<std::size_t>(l.slot)]);
-    if (l.kind != LinkKind::pin) {
+    if (l.kind != LinkKind::revolute) {
       const CompositeMoments<S> here = m;
       any_rows(k, here);
     } else {
@@ -147,7 +147,7 @@ void CompositeSweeps<Spatial, S>::rows_inward() {
           row);
     }
     if (l.parent < 0) continue;
-    if (is_plain_pin(l)) {
+    if (is_plain_revolute(l)) {
       screw_z(m, angles.cosine(k), angles.sine(k), l.d);
       screw_x(m, l);
     } else {
@@ -226,9 +226,9 @@ void CompositeSweeps<Spatial, S>::any_inward(std::size_t k, CompositeMoments<S>&
     c[X] += mass * step;
   };
   using std::integral_constant;
-  if (l.kind == LinkKind::ball) {
-    const auto& r = tree_->balls[static_cast<std::size_t>(l.record)].origin;
-    turn_by(dynamics_.ball_axes(l));
+  if (l.kind == LinkKind::spherical) {
+    const auto& r = tree_->sphericals[static_cast<std::size_t>(l.record)].origin;
+    turn_by(dynamics_.spherical_axes(l));
     shift({{S(r[0]), S(r[1]), S(r[2])}});
   } else {
     const auto e = dynamics_.edge(k);

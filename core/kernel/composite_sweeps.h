@@ -1,13 +1,14 @@
 #pragma once
 // Not for trees with user joints: rows are gathered along axes that rest in their bodies.
 //
-// Composite rigid bodies in space, (q, u, τ, t) → u̇ by M itself: the opponent of small trees, where
-// it is hard to beat, and of trees that branch early.
+// Composite rigid bodies in space, (q, u, τ, t) → u̇ by M itself: the opponent of small trees,
+// where it is hard to beat, and of trees that branch early.
 //
 //   bias      what inverse_dynamics_sweeps.h takes τ to be at u̇ = 0
 //   outward   axes X, Y, Z and the step from parent to child, in axes all bodies of a tree share:
 //             those of its first body
-//   inward    subtrees: c and Σ about O by the screws of the frames; M E of a pin is the momentum
+//   inward    subtrees: c and Σ about O by the screws of the frames; M E of a revolute joint is the
+//   momentum
 //             of its subtree, turned as one body:
 //               f = z × c = (−c_y, c_x, 0),  n = (−Σ_xz, −Σ_yz, Σ_xx + Σ_yy)
 //             in the shared axes it goes to the ancestors, and gives an entry of M at each:
@@ -17,13 +18,14 @@
 //   M = Lᵀ D L, Lᵀ y = τ − bias, L u̇ = D⁻¹ y
 //
 // M_ij ≠ 0 only where one dof lies on the other's way to the root, and no other entry arises when
-// dofs are eliminated from the tips inward (Featherstone: branch-induced sparsity). Row k holds the
-// entries of the ancestors of k, the root's first, and its own last. The row of an ancestor i is
-// then as long as the part of row k up to i, entry for entry: eliminating k subtracts a piece of
+// dofs are eliminated from the leaves inward (Featherstone: branch-induced sparsity). Row k holds
+// the entries of the ancestors of k, the root's first, and its own last. The row of an ancestor i
+// is then as long as the part of row k up to i, entry for entry: eliminating k subtracts a piece of
 // row k from row i without looking up a single index.
 //
 // The masses given to the parent in inverse_dynamics_sweeps.h move no less with it than with the
-// body, so M is that of these moments as well; c and Σ pass pins and balls without mass.
+// body, so M is that of these moments as well; c and Σ pass revolute joints and spherical joints
+// without mass.
 //
 // O(n d²) for n dofs of depth d, O(n d) memory.
 
@@ -45,12 +47,12 @@ class CompositeSweeps<Spatial, S> {
   explicit CompositeSweeps(const LinkTree& tree);
 
   /// u̇ (nv) from (q, u, t) and all generalised forces τ (nv) but the weights'. In and Out index
-  /// like pointers to S. False when M is not positive definite: stuck(). O(dofs · depth²).
+  /// like pointers to S. False when M is not positive definite: singular_joint(). O(dofs · depth²).
   template <class In, class InTau, class Out>
   bool operator()(const S& t, const In& q, const In& u, const InTau& tau, Out udot) {
     dynamics_.place(t, q);
-    stuck_ = tree_->stuck;
-    if (stuck_ >= 0) return false;
+    singular_joint_ = tree_->singular_joint;
+    if (singular_joint_ >= 0) return false;
     dynamics_.bias(u, right_.data());
     for (std::size_t i = 0; i < dofs_.size(); ++i) right_[i] = tau[static_cast<int>(i)] - right_[i];
     axes_outward();
@@ -73,7 +75,7 @@ class CompositeSweeps<Spatial, S> {
               rows_[start(k) + static_cast<std::size_t>(p)]);
   }
 
-  int stuck() const { return stuck_; }
+  int singular_joint() const { return singular_joint_; }
   /// Entries M has room for: of one triangle.
   std::size_t entries() const { return rows_.size(); }
 
@@ -118,7 +120,7 @@ class CompositeSweeps<Spatial, S> {
   std::vector<Station> stations_;
   std::vector<CompositeMoments<S>> slots_;
   std::vector<S> rows_, right_, scale_;
-  int stuck_ = -1;
+  int singular_joint_ = -1;
 };
 
 template <class S>
@@ -173,7 +175,7 @@ bool CompositeSweeps<Spatial, S>::eliminate() {
     const Ancestor* way = way_.data() + start(k);
     const auto depth = static_cast<std::size_t>(dofs_[k].depth);
     if (!all_positive(row[depth] - rounding * scale_[k])) {
-      stuck_ = dofs_[k].body;
+      singular_joint_ = dofs_[k].body;
       return false;
     }
     const S inverse = S(1.0) / row[depth], own = right[k];

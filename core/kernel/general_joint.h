@@ -1,6 +1,6 @@
 #pragma once
 // The elimination of one joint of any kind, one record a joint: what both recursions do wherever
-// the fast path for pins does not apply.
+// the fast path for revolute joints does not apply.
 //
 //   M_j = Eᵀ M* E,  M' = M* − M*E M_j⁻¹ EᵀM*                 (46), (47)
 //   e = r − Eᵀ D,   D' = D + M*E M_j⁻¹ e                     (48)
@@ -50,9 +50,9 @@ struct JointRecord<Planar, S> {
 };
 
 /// Pivots d of L Δ Lᵀ with diagonal a, b, c: all positive, and their product more than rounding. A
-/// slender rod on a ball joint has no inertia about itself, however it lies. Entries are as exact
-/// as the largest, so the determinant is as exact as the product of the two largest diagonals with
-/// the largest.
+/// slender rod on a spherical joint has no inertia about itself, however it lies. Entries are as
+/// exact as the largest, so the determinant is as exact as the product of the two largest diagonals
+/// with the largest.
 template <class S>
 MOMENTA_INLINE bool pivots_positive(const S& d0, const S& d1, const S& d2, const S& a, const S& b,
                                     const S& c) {

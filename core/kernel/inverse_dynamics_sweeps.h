@@ -33,15 +33,15 @@ class InverseDynamicsSweeps<Spatial, S> {
         angles_(tree.links.size()),
         moments_(regrouped<S>(tree)),
         wrenches_(tree.links.size()),
-        axes_(tree.balls.size()),
+        axes_(tree.sphericals.size()),
         joints_(static_cast<std::size_t>(tree.records)),
         users_(static_cast<std::size_t>(tree.users)),
         origins_(joints_.size()),
         slots_(static_cast<std::size_t>(tree.slots)),
         outward_slots_(slots_.size()) {}
 
-  /// τ (nv) = M u̇ + bias − weights from (q, u, u̇, t): every generalised force but the weights'. In
-  /// and Out index like pointers to S. O(bodies).
+  /// τ (nv) = M u̇ + bias − weights from (q, u, u̇, t): every generalised force but the weights'.
+  /// In and Out index like pointers to S. O(bodies).
   template <class In, class InRate, class Out>
   void operator()(const S& t, const In& q, const In& u, const InRate& udot, Out tau) {
     place(t, q);
@@ -65,11 +65,11 @@ class InverseDynamicsSweeps<Spatial, S> {
 
   const Angles<S>& angles() const { return angles_; }
   const MassMoments<S>& moments(std::size_t k) const { return moments_[k]; }
-  /// Of a ball joint: child components to the parent's.
-  const Mat3<S>& ball_axes(const Link& l) const {
+  /// Of a spherical joint: child components to the parent's.
+  const Mat3<S>& spherical_axes(const Link& l) const {
     return axes_[static_cast<std::size_t>(l.record)];
   }
-  /// The way to body k at this configuration; not of balls.
+  /// The way to body k at this configuration; not of spherical joints.
   Spatial::Edge<S> edge(std::size_t k) const {
     const Link& l = tree_->links[k];
     if (l.kind == LinkKind::general) return joints_[static_cast<std::size_t>(l.record)].edge;
@@ -118,14 +118,14 @@ void InverseDynamicsSweeps<Spatial, S>::outward(const In& u, const InRate& udot)
   for (std::size_t k = 0; k < angles_.size(); ++k) {
     const Link& l = links[k];
     if (l.parent >= 0 && !l.first) at = outward_slots_[slot_of_parent(l)];
-    if (!is_plain_pin(l)) {
+    if (!is_plain_revolute(l)) {
       Spin<S> here = at;
       any_outward<moving>(k, u, udot, here);
       at = here;
     } else {
       PlainWrench<S>& w = wrenches_[k];
       const S c = angles_.cosine(k), s = angles_.sine(k), own = u[l.u];
-      if (l.parent < 0) {  // ω and α along the pin, nothing to pass on but its moment
+      if (l.parent < 0) {  // ω and α along the revolute joint, nothing to pass on but its moment
         const Vec3<double>& weight = tree_->weight[k];
         const MassMoments<S>& b = moments_[k];
         at = {zero,
@@ -192,10 +192,10 @@ void InverseDynamicsSweeps<Spatial, S>::any_outward(std::size_t k, const In& u, 
   }
   const Vec3<S> parent = A.v;
   Spatial::Motion<S> own{}, rate{};
-  if (l.kind == LinkKind::ball) {
-    const auto& r = tree_->balls[static_cast<std::size_t>(l.record)].origin;
+  if (l.kind == LinkKind::spherical) {
+    const auto& r = tree_->sphericals[static_cast<std::size_t>(l.record)].origin;
     const Vec3<S> step{{S(r[0]), S(r[1]), S(r[2])}};
-    const Mat3<S>& R = ball_axes(l);
+    const Mat3<S>& R = spherical_axes(l);
     W = {transpose_times(R, cross(W.w, step)), transpose_times(R, W.w)};
     A = {transpose_times(R, A.v + cross(A.w, step)), transpose_times(R, A.w)};
   } else {
@@ -240,14 +240,14 @@ void InverseDynamicsSweeps<Spatial, S>::inward(Out tau) {
   for (std::size_t k = angles_.size(); k-- > 0;) {
     const Link& l = links[k];
     const PlainWrench<S>& own = wrenches_[k];
-    const bool plain = is_plain_pin(l);
+    const bool plain = is_plain_revolute(l);
     if (plain && l.parent < 0) {
-      S moment = l.tip ? own.nz : own.nz + F.nz;
+      S moment = l.leaf ? own.nz : own.nz + F.nz;
       if (l.slot >= 0) moment = moment + slots_[static_cast<std::size_t>(l.slot)].nz;
       tau[l.u] = moment;
       continue;
     }
-    if (l.tip)
+    if (l.leaf)
       F = own;
     else
       add(F, own);
@@ -295,9 +295,9 @@ void InverseDynamicsSweeps<Spatial, S>::any_inward(std::size_t k, Out tau, Plain
     for (int i = 0; i < b.nv; ++i) tau[b.u + i] = along[i];
   }
   if (l.parent < 0) return;
-  if (l.kind == LinkKind::ball) {
-    const auto& r = tree_->balls[static_cast<std::size_t>(l.record)].origin;
-    F = {ball_axes(l) * F.f, ball_axes(l) * F.n};
+  if (l.kind == LinkKind::spherical) {
+    const auto& r = tree_->sphericals[static_cast<std::size_t>(l.record)].origin;
+    F = {spherical_axes(l) * F.f, spherical_axes(l) * F.n};
     F.n += cross(Vec3<S>{{S(r[0]), S(r[1]), S(r[2])}}, F.f);
   } else {
     F = Spatial::to_parent(b.edge, b.kind, edge(k), F);

@@ -51,10 +51,10 @@ void MomentumSweeps<Spatial, S>::inverse_mass_times(MassSolution<Spatial, X>& so
   for (std::size_t k = angles_.size(); k-- > 0;) {
     const Link& l = links[k];
     const auto& b = body(k);
-    if (l.tip) D = {};
+    if (l.leaf) D = {};
     if (l.slot >= 0) D += solution.inward[slot_of(l)];
-    if (l.kind == LinkKind::pin) {
-      const PinRecord<S>& w = pins_[k];
+    if (l.kind == LinkKind::revolute) {
+      const RevoluteRecord<S>& w = revolutes_[k];
       const X e = x[l.u] - D.n[2];
       solution.y0[k] = e * in(w.inverse);
       if (l.parent < 0) continue;
@@ -64,12 +64,12 @@ void MomentumSweeps<Spatial, S>::inverse_mass_times(MassSolution<Spatial, X>& so
       Spatial::force_inward<2>(D, in(c), in(s), X(l.d));
       Spatial::constants_inward(b.edge, D);
     } else if constexpr (any_joint) {
-      if (l.kind == LinkKind::ball) {
-        BallRecord<S>& w = balls_[static_cast<std::size_t>(l.record)];
+      if (l.kind == LinkKind::spherical) {
+        SphericalRecord<S>& w = sphericals_[static_cast<std::size_t>(l.record)];
         const Vec3<S> n{{x[l.u], x[l.u + 1], x[l.u + 2]}}, e = n - D.n;
         const Vec3<S> force = D.f + w.pivot.remainder(e);
         if (l.parent < 0) continue;
-        const auto& r = tree_->balls[static_cast<std::size_t>(l.record)].origin;
+        const auto& r = tree_->sphericals[static_cast<std::size_t>(l.record)].origin;
         D = {w.R * force, w.R * n};
         D.n += cross(Vec3<S>{{S(r[0]), S(r[1]), S(r[2])}}, D.f);
       } else {
@@ -97,8 +97,8 @@ void MomentumSweeps<Spatial, S>::inverse_mass_times(MassSolution<Spatial, X>& so
       V = {};
     else if (!l.first)
       V = solution.outward[parent_slot(l)];
-    if (l.kind == LinkKind::pin) {
-      const PinRecord<S>& w = pins_[k];
+    if (l.kind == LinkKind::revolute) {
+      const RevoluteRecord<S>& w = revolutes_[k];
       X turning = solution.y0[k];
       if (l.parent >= 0) {
         constants_outward(l, b.edge, V.v[0], V.v[1], V.v[2], V.w[0], V.w[1], V.w[2]);
@@ -112,9 +112,9 @@ void MomentumSweeps<Spatial, S>::inverse_mass_times(MassSolution<Spatial, X>& so
       }
       V.w[2] = turning;
     } else if constexpr (any_joint) {
-      if (l.kind == LinkKind::ball) {
-        const BallRecord<S>& w = balls_[static_cast<std::size_t>(l.record)];
-        const auto& r = tree_->balls[static_cast<std::size_t>(l.record)].origin;
+      if (l.kind == LinkKind::spherical) {
+        const SphericalRecord<S>& w = sphericals_[static_cast<std::size_t>(l.record)];
+        const auto& r = tree_->sphericals[static_cast<std::size_t>(l.record)].origin;
         V.v += cross(V.w, Vec3<S>{{S(r[0]), S(r[1]), S(r[2])}});
         V = {transpose_times(w.R, V.v), transpose_times(w.R, V.w)};
         const Vec3<S> omega = w.pivot.omega(V.v);
@@ -144,12 +144,12 @@ void MomentumSweeps<Planar, S>::inverse_mass_times(MassSolution<Planar, X>& solu
     return slot_of(links[static_cast<std::size_t>(l.parent)]);
   };
   Planar::Force<X> D;
-  for (std::size_t k = pins_.size(); k-- > 0;) {
+  for (std::size_t k = revolutes_.size(); k-- > 0;) {
     const PlanarLink& l = links[k];
-    if (l.tip) D = {};
+    if (l.leaf) D = {};
     if (l.slot >= 0) D += solution.inward[slot_of(l)];
-    if (l.pin) {
-      const PlanarPin<S>& w = pins_[k];
+    if (l.revolute) {
+      const PlanarRevolute<S>& w = revolutes_[k];
       const X n = l.sign < 0 ? -x[l.u] : X(x[l.u]), e = n - D.n;
       solution.y0[k] = e * in(w.inverse);
       if (l.parent < 0) continue;
@@ -172,14 +172,14 @@ void MomentumSweeps<Planar, S>::inverse_mass_times(MassSolution<Planar, X>& solu
       slot += D;
   }
   Planar::Motion<X> V;
-  for (std::size_t k = 0; k < pins_.size(); ++k) {
+  for (std::size_t k = 0; k < revolutes_.size(); ++k) {
     const PlanarLink& l = links[k];
     if (l.parent < 0)
       V = {};
     else if (!l.first)
       V = solution.outward[parent_slot(l)];
-    if (l.pin) {
-      const PlanarPin<S>& w = pins_[k];
+    if (l.revolute) {
+      const PlanarRevolute<S>& w = revolutes_[k];
       X own = solution.y0[k], turning = own;
       if (l.parent >= 0) {
         V.v += cross(V.w, Vec2<X>{{in(w.rx), in(w.ry)}});

@@ -5,9 +5,10 @@
 //   ∂q̇/∂p = M⁻¹,  ∂ṗ/∂p = −(∂q̇/∂q)ᵀ + ∂Q/∂p,  ∂Q/∂p = −C M⁻¹ for dampers C on the joints,
 //
 // so only the nq directions of q need dual numbers, W of them side by side in the lanes of a
-// register, and on trees of pins M⁻¹ comes from as many solves at once with the M* of that same
-// pass. Quasi-velocities (spherical, free joints) and dampers between bodies have no such
-// structure: there, and where joints of other kinds are among the pins, all directions are dual.
+// register, and on trees of revolute joints M⁻¹ comes from as many solves at once with the M* of
+// that same pass. Quasi-velocities (spherical, free joints) and dampers between bodies have no such
+// structure: there, and where joints of other kinds are among the revolute joints, all directions
+// are dual.
 
 #include <momenta/core/kernel/momentum_recursion.h>
 
@@ -44,12 +45,12 @@ class DirectionalPass {
                      qdot.data());
     return true;
   }
-  /// M⁻¹ x at the state of the last pass. @pre pins alone.
+  /// M⁻¹ x at the state of the last pass. @pre revolute joints alone.
   void inverse_mass_times(MassSolution<Space, S>& solution, const S* x, S* result) {
     sweeps_.template inverse_mass_times<S>(solution, x, result);
   }
 
-  int stuck() const { return sweeps_.stuck(); }
+  int singular_joint() const { return sweeps_.singular_joint(); }
 
   std::vector<D> q, p, u, pdot, qdot;
 
@@ -67,12 +68,13 @@ bool is_hamiltonian(const Model<Space>& model) {
     if (spring.damping != 0) return false;
   return model.wrenches.empty();  // in body axes, or with a torque, one need not have a potential
 }
-/// The same, and all joints are pins. Out of line: compiled for any machine.
-bool is_hamiltonian_on_pins(const LinkTree& tree);
-bool is_hamiltonian_on_pins(const PlanarTree& tree);
+/// The same, and all joints are revolute joints. Out of line: compiled for any machine.
+bool is_hamiltonian_on_revolutes(const LinkTree& tree);
+bool is_hamiltonian_on_revolutes(const PlanarTree& tree);
 
 /// ∂(q̇, ṗ)/∂(q, p), W directions a pass. Cost ⌈nq/W⌉ dual evaluations and ⌈nv/W⌉ solves with W
-/// right-hand sides where the structure holds on pins alone, ⌈(nq + nv)/W⌉ evaluations elsewhere.
+/// right-hand sides where the structure holds on revolute joints alone, ⌈(nq + nv)/W⌉ evaluations
+/// elsewhere.
 template <class Space, class Lanes>
 class JacobianPass;
 
@@ -84,7 +86,7 @@ class JacobianPass<Space, Pack<W, L>> {
  public:
   explicit JacobianPass(const typename Pass::Links& links)
       : model_(links.model),
-        structured_(is_hamiltonian_on_pins(links)),
+        structured_(is_hamiltonian_on_revolutes(links)),
         pass_(links),
         solution_(links),
         x_(pass_.p.size()),
@@ -117,7 +119,7 @@ class JacobianPass<Space, Pack<W, L>> {
     if (structured_) inverse_mass(J + nq * stride, stride);
     return true;
   }
-  int stuck() const { return pass_.stuck(); }
+  int singular_joint() const { return pass_.singular_joint(); }
 
  private:
   /// M⁻¹ into the first nv rows of as many columns, −C M⁻¹ onto the next.

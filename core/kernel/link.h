@@ -2,16 +2,15 @@
 // A body of the tree as the fused sweeps want it: the constants of its edge, its inertia and its
 // place in the arrays in one flat record, bodies in depth-first order.
 //
-// Pins (undriven revolute joints) are what nearly all trees are made of: they have the fast path
+// Revolute joints without drives are what nearly all trees are made of: they have the fast path
 // and their own compact records. Joints on one axis that slide, screw, are driven or welded are
 // eliminated in one piece (axis_joint.h). The rest, free and user joints, take the general path.
 //
 // Two things never change while the tree moves and are put in here once:
-//   - The first moment of a subtree about O: children on pins stay where their joint is, so their
-//     masses act there; `moment` holds the body's own m c and those masses.
-//   - A pin at the tip of the tree: its M*, its reduced mass matrix (47) and M*E M_j⁻¹ are
-//   constants
-//     (`Tip`).
+//   - The first moment of a subtree about O: children on revolute joints stay where their joint is,
+//     so their masses act there; `moment` holds the body's own m c and those masses.
+//   - A revolute joint at the leaf of the tree: its M*, its reduced mass matrix (47) and M*E M_j⁻¹
+//   are constants (`Leaf`).
 
 #include <momenta/core/kernel/model.h>
 #include <momenta/core/kernel/reduced_inertia.h>
@@ -22,36 +21,37 @@
 
 namespace momenta {
 
-enum class LinkKind : std::uint8_t { pin, ball, general };
+enum class LinkKind : std::uint8_t { revolute, spherical, general };
 
-/// The turn and shift about x between the parent's z axis and the pin's, cases by the work they
-/// need. `tilted`: nearly parallel axes, a turn about y besides.
+/// The turn and shift about x between the parent's z axis and the revolute joint's, cases by the
+/// work they need. `tilted`: nearly parallel axes, a turn about y besides.
 enum class Turn : std::uint8_t { general, right, parallel, tilted };
 
-/// How the inward sweep takes a link. Most lie inside a chain: a pin with one child, itself the
-/// first of its parent, without a screw about the parent's z. Neighbours of one kind of turn run
-/// through a loop without branches; the others go one by one.
+/// How the inward sweep takes a link. Most lie inside a chain: a revolute joint with one child,
+/// itself the first of its parent, without a screw about the parent's z. Neighbours of one kind of
+/// turn run through a loop without branches; the others go one by one.
 enum class Path : std::uint8_t { chain_general, chain_right, chain_parallel, any };
 
 struct Link {
   double ca = 1, sa = 0, a = 0;  ///< cosine and sine of α, shift along x [m]
   double cc = 1, cs = 0, ss = 0, cs2 = 0,
          ss2 = 0;      ///< cos²α, cos α sin α, sin²α; the last two twice
-  double d = 0;        ///< of a pin: shift along its axis [m]
+  double d = 0;        ///< of a revolute joint: shift along its axis [m]
   double m = 0;        ///< [kg]
   double moment[3]{};  ///< constant part of the subtree's first moment about O [kg m]
   double c[3]{};       ///< the body's own first moment m OG [kg m]
   double J[6]{};       ///< about O: xx xy xz yy yz zz [kg m²]
   int q = 0, u = 0;
   int parent = -1;
-  int slot = -1;    ///< where children beside the first leave what they carry; −1: none do
-  int record = -1;  ///< general links: index of their record; balls, tips: of their constants
-  LinkKind kind = LinkKind::pin;
+  int slot = -1;  ///< where children beside the first leave what they carry; −1: none do
+  int record =
+      -1;  ///< general links: index of their record; spherical joints, leaves: of their constants
+  LinkKind kind = LinkKind::revolute;
   Turn turn = Turn::general;
   bool first = false;  ///< its parent is the body before it
-  bool tip = false;    ///< carries nothing
-  bool carries_limbs_alone =
-      false;               ///< of a trunk (limbs/limbs.h): nothing arrives but in its slot
+  bool leaf = false;   ///< carries nothing
+  bool carries_branches_alone =
+      false;  ///< of a remaining tree (branches/branches.h): nothing arrives but in its slot
   bool opens = false;      ///< the last child of its parent, which the inward sweep meets first
   bool screwed = false;    ///< a screw about the parent's z comes first
   bool one_axis = false;   ///< general links: a screw about z, driven or not, or a weld
@@ -59,15 +59,15 @@ struct Link {
   Path path = Path::any;
 };
 
-/// What is constant of a pin that carries nothing.
-struct Tip {
+/// What is constant of a revolute joint that carries nothing.
+struct Leaf {
   double inverse = 0;  ///< M_j⁻¹
   double h[5]{};       ///< M*E M_j⁻¹ without its last entry, 1
   Reduced<double> M;   ///< (47)
 };
 
-/// The constant way to a ball joint as one rotation and one step.
-struct BallPlace {
+/// The constant way to a spherical joint as one rotation and one step.
+struct SphericalPlace {
   double turn[4]{1, 0, 0, 0};  ///< joint frame in the parent's axes, quaternion w x y z
   Vec3<double> origin;         ///< of the joint in the parent's frame [m]
 };
@@ -76,21 +76,23 @@ struct BallPlace {
 struct LinkTree {
   const Model<Spatial>* model = nullptr;
   std::vector<Link> links;
-  std::vector<Tip> tips;
-  std::vector<BallPlace> balls;
-  std::vector<double> theta0;  ///< by link: of a pin, the angle of its frame at q = 0 [rad]
-  std::vector<Vec3<double>>
-      weight;  ///< by link: for pins on the ground, gravity in their frame before the turn [m/s²]
+  std::vector<Leaf> leaves;
+  std::vector<SphericalPlace> sphericals;
+  std::vector<double>
+      theta0;  ///< by link: of a revolute joint, the angle of its frame at q = 0 [rad]
+  std::vector<Vec3<double>> weight;  ///< by link: for revolute joints on the ground, gravity in
+                                     ///< their frame before the turn [m/s²]
   int slots = 0, records = 0, users = 0;
-  /// Joint whose reduced or joint inertia is not positive although constant: a tip without inertia
-  /// about its pin; −1: none.
-  int stuck = -1;
+  /// Joint whose reduced or joint inertia is not positive although constant: a leaf without inertia
+  /// about its revolute joint; −1: none.
+  int singular_joint = -1;
 };
 
 /// @pre the model stays where it is for as long as the tree is used.
 LinkTree build_links(const Model<Spatial>& model);
 
-/// How many links take which way: "12 pins at right angles, 3 parallel, 1 of another kind".
+/// How many links take which way: "12 revolute joints at right angles, 3 parallel, 1 of another
+/// kind".
 std::string links_in_words(const LinkTree& tree);
 
 }  // namespace momenta

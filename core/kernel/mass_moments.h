@@ -1,18 +1,19 @@
 #pragma once
-// Mass on the axis of a pin moves with the parent as well as with the child, wherever the pin
-// stands. All the mass a pin carries, taken at O, and c_z and Σ_zz of its body are therefore given
-// to the parent once and for all; m a and whatever c_z and Σ_zz cost are saved. A ball joint gives
-// all its mass, at O. Torques are not touched: what is given away has no moment about the joint.
+// Mass on the axis of a revolute joint moves with the parent as well as with the child, wherever
+// the revolute joint stands. All the mass a revolute joint carries, taken at O, and c_z and Σ_zz of
+// its body are therefore given to the parent once and for all; m a and whatever c_z and Σ_zz cost
+// are saved. A spherical joint gives all its mass, at O. Torques are not touched: what is given
+// away has no moment about the joint.
 //   parent:  c += m r + c_z z,  Σ += m r rᵀ + c_z (r zᵀ + z rᵀ) + Σ_zz z zᵀ
 
-#include <momenta/core/kernel/pin.h>
+#include <momenta/core/kernel/revolute.h>
 
 #include <vector>
 
 namespace momenta {
 
-/// c and Σ (xx xy xz yy yz zz) about O of what moves with a body, other kinds of joints beyond pins
-/// and balls excepted.
+/// c and Σ (xx xy xz yy yz zz) about O of what moves with a body, other kinds of joints beyond
+/// revolute joints and spherical joints excepted.
 template <class S>
 struct MassMoments {
   double c[3]{}, s[6]{};
@@ -30,7 +31,7 @@ std::vector<MassMoments<S>> regrouped(const LinkTree& tree) {
     for (int i = 0; i < 6; ++i) own.s[i] += (i == 0 || i == 3 || i == 5 ? half_trace : 0) - l.J[i];
     if (l.kind == LinkKind::general) continue;
     double given[2] = {0, 0};
-    if (l.kind == LinkKind::pin) {
+    if (l.kind == LinkKind::revolute) {
       given[0] = own.c[2];
       given[1] = own.s[5];
       own.c[2] = own.s[5] = 0;

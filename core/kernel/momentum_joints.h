@@ -1,49 +1,52 @@
 #pragma once
-// Joints other than pins in the momentum recursion, both ways: balls, joints on one axis, and free
-// and user joints.
+// Joints other than revolute ones in the momentum recursion, both ways: spherical joints, joints on
+// one axis, and free and user joints.
 
 #include <momenta/core/kernel/axis_joint.h>
 #include <momenta/core/kernel/momentum_sweeps.h>
 
 namespace momenta {
 
-// A ball joint leaves its body no angular inertia towards the parent: M' = (A', 0; 0, 0) with
+// A spherical joint leaves its body no angular inertia towards the parent: M' = (A', 0; 0, 0) with
 // A' = A − H I⁻¹ Hᵀ, D' = (D_f + H I⁻¹ e, p). What arrives at the parent is A' turned, and what its
 // step r makes of it: H = −A r̃, I = r̃ H.
 template <class S>
 template <bool Gravity, class In>
-bool MomentumSweeps<Spatial, S>::ball_inward(std::size_t k, const In& p, Cargo<S>& cargo) {
+bool MomentumSweeps<Spatial, S>::spherical_inward(std::size_t k, const In& p,
+                                                  Articulated<S>& articulated) {
   const Link& l = tree_->links[k];
-  BallRecord<S>& w = balls_[static_cast<std::size_t>(l.record)];
-  if (l.tip) cargo = {};
-  add_body<Gravity>(cargo, l);
-  if (l.slot >= 0) add<Gravity>(cargo, slots_[static_cast<std::size_t>(l.slot)]);
-  if constexpr (Gravity) w.G = {{cargo.Gx, cargo.Gy, cargo.Gz}};
+  SphericalRecord<S>& w = sphericals_[static_cast<std::size_t>(l.record)];
+  if (l.leaf) articulated = {};
+  add_body<Gravity>(articulated, l);
+  if (l.slot >= 0) add<Gravity>(articulated, slots_[static_cast<std::size_t>(l.slot)]);
+  if constexpr (Gravity) w.G = {{articulated.Gx, articulated.Gy, articulated.Gz}};
   w.p = {{p[l.u], p[l.u + 1], p[l.u + 2]}};
-  if (!w.pivot.eliminate(cargo.M, w.A)) return false;
-  const Vec3<S> e{{w.p[0] - cargo.Dnx, w.p[1] - cargo.Dny, w.p[2] - cargo.Dnz}};
-  w.Df = Vec3<S>{{cargo.Dfx, cargo.Dfy, cargo.Dfz}} + w.pivot.remainder(e);
+  if (!w.pivot.eliminate(articulated.M, w.A)) return false;
+  const Vec3<S> e{{w.p[0] - articulated.Dnx, w.p[1] - articulated.Dny, w.p[2] - articulated.Dnz}};
+  w.Df = Vec3<S>{{articulated.Dfx, articulated.Dfy, articulated.Dfz}} + w.pivot.remainder(e);
   if (l.parent < 0) return true;
 
-  carry_ball(tree_->balls[static_cast<std::size_t>(l.record)].origin, w.R, w.A, w.Df, w.p, cargo);
+  carry_spherical(tree_->sphericals[static_cast<std::size_t>(l.record)].origin, w.R, w.A, w.Df, w.p,
+                  articulated);
   if constexpr (Gravity) {
     const Vec3<S> G = w.R * w.G;
-    cargo.Gx = G[0];
-    cargo.Gy = G[1];
-    cargo.Gz = G[2];
+    articulated.Gx = G[0];
+    articulated.Gy = G[1];
+    articulated.Gz = G[2];
   }
-  if (!l.first) leave<Gravity>(l, slot_of_parent(l), cargo);
+  if (!l.first) leave<Gravity>(l, slot_of_parent(l), articulated);
   return true;
 }
 
 template <class S>
 template <bool Gravity, class Out>
-void MomentumSweeps<Spatial, S>::ball_outward(std::size_t k, Out u, Out pdot, OutwardCargo<S>& c) {
+void MomentumSweeps<Spatial, S>::spherical_outward(std::size_t k, Out u, Out pdot,
+                                                   OutwardMotion<S>& c) {
   const Link& l = tree_->links[k];
-  const BallRecord<S>& w = balls_[static_cast<std::size_t>(l.record)];
+  const SphericalRecord<S>& w = sphericals_[static_cast<std::size_t>(l.record)];
   Vec3<S> v{}, o{}, g{};
   if (l.parent >= 0) {
-    const auto& r = tree_->balls[static_cast<std::size_t>(l.record)].origin;
+    const auto& r = tree_->sphericals[static_cast<std::size_t>(l.record)].origin;
     v = transpose_times(w.R,
                         Vec3<S>{{c.vx + c.oy * r[2] - c.oz * r[1], c.vy + c.oz * r[0] - c.ox * r[2],
                                  c.vz + c.ox * r[1] - c.oy * r[0]}});
@@ -61,36 +64,36 @@ void MomentumSweeps<Spatial, S>::ball_outward(std::size_t k, Out u, Out pdot, Ou
     u[l.u + i] = omega[i] - o[i];
     pdot[l.u + i] = net[i];
   }
-  set_cargo(c, Spatial::Motion<S>{v, omega}, g);
+  set_articulated(c, Spatial::Motion<S>{v, omega}, g);
 }
 
 template <class S>
 template <bool Gravity, class In>
-bool MomentumSweeps<Spatial, S>::axis_inward(std::size_t k, const In& p, Cargo<S>& from) {
+bool MomentumSweeps<Spatial, S>::axis_inward(std::size_t k, const In& p, Articulated<S>& from) {
   const Link& l = tree_->links[k];
   const auto& b = body(k);
   auto& x = joints_[static_cast<std::size_t>(l.record)];
-  Cargo<S> cargo{};
-  if (!l.tip) cargo = from;
-  add_body<Gravity>(cargo, l);
-  if (l.slot >= 0) add<Gravity>(cargo, slots_[static_cast<std::size_t>(l.slot)]);
+  Articulated<S> articulated{};
+  if (!l.leaf) articulated = from;
+  add_body<Gravity>(articulated, l);
+  if (l.slot >= 0) add<Gravity>(articulated, slots_[static_cast<std::size_t>(l.slot)]);
   if (b.nv > 0) {
-    x.M = blocks(cargo.M);
-    x.D = remainder_of(cargo);
-    if constexpr (Gravity) x.moment = {{cargo.Gx, cargo.Gy, cargo.Gz}};
-    if (!eliminate_axis(b, S(p[l.u]), cargo, x)) return false;
+    x.M = blocks(articulated.M);
+    x.D = remainder_of(articulated);
+    if constexpr (Gravity) x.moment = {{articulated.Gx, articulated.Gy, articulated.Gz}};
+    if (!eliminate_axis(b, S(p[l.u]), articulated, x)) return false;
   } else if (b.drive >= 0) {
-    const AxisColumn<S> U = axis_column(b, cargo.M);
-    cargo.Dfx = cargo.Dfx + x.drive_rate * U.fx;
-    cargo.Dfy = cargo.Dfy + x.drive_rate * U.fy;
-    cargo.Dfz = cargo.Dfz + x.drive_rate * U.fz;
-    cargo.Dnx = cargo.Dnx + x.drive_rate * U.nx;
-    cargo.Dny = cargo.Dny + x.drive_rate * U.ny;
-    cargo.Dnz = cargo.Dnz + x.drive_rate * U.nz;
+    const AxisColumn<S> U = axis_column(b, articulated.M);
+    articulated.Dfx = articulated.Dfx + x.drive_rate * U.fx;
+    articulated.Dfy = articulated.Dfy + x.drive_rate * U.fy;
+    articulated.Dfz = articulated.Dfz + x.drive_rate * U.fz;
+    articulated.Dnx = articulated.Dnx + x.drive_rate * U.nx;
+    articulated.Dny = articulated.Dny + x.drive_rate * U.ny;
+    articulated.Dnz = articulated.Dnz + x.drive_rate * U.nz;
   }
   if (l.parent < 0) return true;
-  carry_axis<Gravity>(l, b.edge, x.edge, b.subtree_mass, cargo);
-  from = cargo;
+  carry_axis<Gravity>(l, b.edge, x.edge, b.subtree_mass, articulated);
+  from = articulated;
   if (!l.first) leave<Gravity>(l, slot_of_parent(l), from);
   return true;
 }
@@ -98,12 +101,12 @@ bool MomentumSweeps<Spatial, S>::axis_inward(std::size_t k, const In& p, Cargo<S
 template <class S>
 template <bool Gravity, class In, class Out>
 void MomentumSweeps<Spatial, S>::axis_outward(std::size_t k, const In& q, Out u, Out pdot,
-                                              OutwardCargo<S>& c) {
+                                              OutwardMotion<S>& c) {
   const Link& l = tree_->links[k];
   const auto& b = body(k);
   const auto& x = joints_[static_cast<std::size_t>(l.record)];
   const S zero(0.0);
-  OutwardCargo<S> w = c;
+  OutwardMotion<S> w = c;
   if (l.parent < 0) {
     const auto& g = tree_->model->gravity;
     w = {zero, zero, zero, zero, zero, zero, S(g[0]), S(g[1]), S(g[2])};
@@ -124,16 +127,17 @@ void MomentumSweeps<Spatial, S>::axis_outward(std::size_t k, const In& q, Out u,
 
 template <class S>
 template <bool Gravity, class In>
-bool MomentumSweeps<Spatial, S>::general_inward(std::size_t k, const In& p, Cargo<S>& cargo) {
+bool MomentumSweeps<Spatial, S>::general_inward(std::size_t k, const In& p,
+                                                Articulated<S>& articulated) {
   const Link& l = tree_->links[k];
   const auto& b = body(k);
   auto& x = joints_[static_cast<std::size_t>(l.record)];
-  if (l.tip) cargo = {};
-  add_body<true>(cargo, l);
-  if (l.slot >= 0) add<Gravity>(cargo, slots_[static_cast<std::size_t>(l.slot)]);
-  x.M = blocks(cargo.M);
-  x.D = remainder_of(cargo);
-  x.moment = {{cargo.Gx, cargo.Gy, cargo.Gz}};
+  if (l.leaf) articulated = {};
+  add_body<true>(articulated, l);
+  if (l.slot >= 0) add<Gravity>(articulated, slots_[static_cast<std::size_t>(l.slot)]);
+  x.M = blocks(articulated.M);
+  x.D = remainder_of(articulated);
+  x.moment = {{articulated.Gx, articulated.Gy, articulated.Gz}};
   S r[6]{};
   for (int i = 0; i < b.nv; ++i) r[i] = p[b.u + i];
   Spatial::ArticulatedInertia<S> M;
@@ -144,16 +148,16 @@ bool MomentumSweeps<Spatial, S>::general_inward(std::size_t k, const In& p, Carg
   Vec3<S> G{};
   if constexpr (Gravity)
     G = Spatial::moment_to_parent(b.edge, b.kind, x.edge, x.moment, b.subtree_mass);
-  set_cargo(cargo, Spatial::to_parent(b.edge, b.kind, x.edge, M),
-            Spatial::to_parent(b.edge, b.kind, x.edge, D), G);
-  if (!l.first) leave<Gravity>(l, slot_of_parent(l), cargo);
+  set_articulated(articulated, Spatial::to_parent(b.edge, b.kind, x.edge, M),
+                  Spatial::to_parent(b.edge, b.kind, x.edge, D), G);
+  if (!l.first) leave<Gravity>(l, slot_of_parent(l), articulated);
   return true;
 }
 
 template <class S>
 template <bool Gravity, class In, class Out>
 void MomentumSweeps<Spatial, S>::general_outward(std::size_t k, const In& q, Out u, Out pdot,
-                                                 OutwardCargo<S>& c) {
+                                                 OutwardMotion<S>& c) {
   const auto& b = body(k);
   const auto& x = joints_[static_cast<std::size_t>(tree_->links[k].record)];
   Spatial::Motion<S> V{};
@@ -187,7 +191,7 @@ void MomentumSweeps<Spatial, S>::general_outward(std::size_t k, const In& q, Out
       pdot[b.u + i] = rate[i];
     }
   }
-  set_cargo(c, V, g);
+  set_articulated(c, V, g);
 }
 
 }  // namespace momenta

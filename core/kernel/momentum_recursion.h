@@ -10,7 +10,8 @@
 namespace momenta {
 
 /// u (nv) and ṗ (nv) from (q, p, t), eqs. (35), (37)-(48). Returns false when a joint's articulated
-/// inertia is not positive (sweeps.stuck()). `w` is used by the third sweep alone. O(bodies).
+/// inertia is not positive (sweeps.singular_joint()). `w` is used by the third sweep alone.
+/// O(bodies).
 template <class Space, class S>
 bool momentum_recursion(MomentumSweeps<Space, S>& sweeps, Workspace<Space, S>& w, const S& t,
                         const S* q, const S* p, S* u, S* pdot) {

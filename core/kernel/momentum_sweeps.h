@@ -1,6 +1,6 @@
 #pragma once
 // The recursion of the paper in space, (q, p, t) → (u, ṗ) in two sweeps, eqs. (35), (37)-(48), for
-// trees of any joints. For a single pin K with parent L, in the order of the code:
+// trees of any joints. For a single revolute joint K with parent L, in the order of the code:
 //
 //   inward    M*_K, D_K, G_K are complete             (43), (44); G: first moment of the subtree
 //             M_j⁻¹ = 1 / I_zz, h = M*E M_j⁻¹          (46)
@@ -11,34 +11,34 @@
 //             P* = M' W + D'                           (42)
 //             ṗ = Eᵀ (T* − W × P*) + joint force       (35), T* = weight of the subtree at G
 //
-// P* itself is never formed: about the pin's axis Ω × P* takes ten numbers of M' (turning_rate).
-// Weight needs no accumulated T*: masses of subtrees are constants.
+// P* itself is never formed: about the revolute joint's axis Ω × P* takes ten numbers of M'
+// (turning_rate). Weight needs no accumulated T*: masses of subtrees are constants.
 //
 // What a body passes to its parent stays in registers when the parent is the body before it; other
 // children leave it in the parent's slot. Wrenches between points of bodies need a third sweep.
 
-#include <momenta/core/kernel/ball.h>
 #include <momenta/core/kernel/forces.h>
 #include <momenta/core/kernel/place_links.h>
+#include <momenta/core/kernel/spherical.h>
 #include <momenta/core/kernel/sweeps.h>
 
 namespace momenta {
 
-/// What the outward sweep needs of a pin, body axes.
+/// What the outward sweep needs of a revolute joint, body axes.
 template <class S>
-struct PinRecord {
-  PinTurning<S> M;  ///< of M'
-  PinColumn<S> h;
+struct RevoluteRecord {
+  RevoluteTurning<S> M;  ///< of M'
+  RevoluteColumn<S> h;
   S Dfx, Dfy, Dnx, Dny;  ///< D'
   S inverse, y0;         ///< M_j⁻¹, M_j⁻¹ e
-  S Gx, Gy;              ///< across the pin
+  S Gx, Gy;              ///< across the revolute joint
 };
 
-/// What it needs of a ball joint. R: child components to the parent's.
+/// What it needs of a spherical joint. R: child components to the parent's.
 template <class S>
-struct BallRecord {
+struct SphericalRecord {
   Mat3<S> R;
-  BallPivot<S> pivot;
+  SphericalPivot<S> pivot;
   Sym3<S> A;         ///< M' = (A, 0; 0, 0)
   Vec3<S> Df, p, G;  ///< D' = (Df, p); first moment of the subtree
 };
@@ -53,8 +53,8 @@ class MomentumSweeps<Spatial, S> {
   explicit MomentumSweeps(const LinkTree& tree)
       : tree_(&tree),
         angles_(tree.links.size()),
-        pins_(tree.links.size()),
-        balls_(tree.balls.size()),
+        revolutes_(tree.links.size()),
+        sphericals_(tree.sphericals.size()),
         joints_(static_cast<std::size_t>(tree.records)),
         users_(static_cast<std::size_t>(tree.users)),
         slots_(static_cast<std::size_t>(tree.slots)),
@@ -62,14 +62,15 @@ class MomentumSweeps<Spatial, S> {
         solution_(tree) {}
 
   /// u (nv) and the open chain's ṗ (nv), forces between points of bodies left out. In and Out index
-  /// like pointers to S. False when a joint's articulated inertia is not positive: stuck().
+  /// like pointers to S. False when a joint's articulated inertia is not positive:
+  /// singular_joint().
   template <class In, class Out>
   bool operator()(const S& t, const In& q, const In& p, Out u, Out pdot) {
     place_links(
         *tree_, t, q, angles_, joints_,
-        users_, [&](std::size_t record) -> auto& { return balls_[record].R; });
-    stuck_ = tree_->stuck;
-    if (stuck_ >= 0) return false;
+        users_, [&](std::size_t record) -> auto& { return sphericals_[record].R; });
+    singular_joint_ = tree_->singular_joint;
+    if (singular_joint_ >= 0) return false;
     return tree_->model->has_gravity ? inward<true>(p) && outward<true>(q, u, pdot)
                                      : inward<false>(p) && outward<false>(q, u, pdot);
   }
@@ -79,14 +80,15 @@ class MomentumSweeps<Spatial, S> {
   template <class In, class Out>
   void inverse_mass_times(const In& x, Out result);
   /// The same on S or, from sweeps on directions, on packs of right-hand sides.
-  /// @pre S, or pins alone.
+  /// @pre S, or revolute joints alone.
   template <class X, class In, class Out>
   void inverse_mass_times(MassSolution<Spatial, X>& solution, const In& x, Out result);
 
-  int stuck() const { return stuck_; }
-  /// Of a trunk: what limbs leave in a slot before an evaluation, and find there after it.
-  Cargo<S>& carried(int slot) { return slots_[static_cast<std::size_t>(slot)]; }
-  const OutwardCargo<S>& motion(int slot) const {
+  int singular_joint() const { return singular_joint_; }
+  /// Of a remaining tree: what branches leave in a slot before an evaluation, and find there after
+  /// it.
+  Articulated<S>& carried(int slot) { return slots_[static_cast<std::size_t>(slot)]; }
+  const OutwardMotion<S>& motion(int slot) const {
     return outward_slots_[static_cast<std::size_t>(slot)];
   }
 
@@ -98,47 +100,52 @@ class MomentumSweeps<Spatial, S> {
 
   // Out of line: what the loop over a chain holds in registers must have no address.
   template <Turn turn, bool Gravity, class In>
-  __attribute__((noinline)) std::size_t chain_inward(std::size_t end, const In& p, Cargo<S>& cargo);
+  __attribute__((noinline)) std::size_t chain_inward(std::size_t end, const In& p,
+                                                     Articulated<S>& articulated);
   template <bool Gravity, class In>
-  __attribute__((noinline)) std::size_t pins_inward(std::size_t end, const In& p, Cargo<S>& cargo);
+  __attribute__((noinline)) std::size_t revolutes_inward(std::size_t end, const In& p,
+                                                         Articulated<S>& articulated);
   template <bool Gravity, class In>
-  __attribute__((noinline)) bool ball_inward(std::size_t k, const In& p, Cargo<S>& cargo);
+  __attribute__((noinline)) bool spherical_inward(std::size_t k, const In& p,
+                                                  Articulated<S>& articulated);
   template <bool Gravity, class Out>
-  __attribute__((noinline)) void ball_outward(std::size_t k, Out u, Out pdot,
-                                              OutwardCargo<S>& cargo);
+  __attribute__((noinline)) void spherical_outward(std::size_t k, Out u, Out pdot,
+                                                   OutwardMotion<S>& articulated);
   template <bool Gravity, class In>
-  __attribute__((noinline)) bool axis_inward(std::size_t k, const In& p, Cargo<S>& cargo);
+  __attribute__((noinline)) bool axis_inward(std::size_t k, const In& p,
+                                             Articulated<S>& articulated);
   template <bool Gravity, class In, class Out>
   __attribute__((noinline)) void axis_outward(std::size_t k, const In& q, Out u, Out pdot,
-                                              OutwardCargo<S>& cargo);
+                                              OutwardMotion<S>& articulated);
   template <bool Gravity, class In>
-  __attribute__((noinline)) bool general_inward(std::size_t k, const In& p, Cargo<S>& cargo);
+  __attribute__((noinline)) bool general_inward(std::size_t k, const In& p,
+                                                Articulated<S>& articulated);
   template <bool Gravity, class In, class Out>
   __attribute__((noinline)) void general_outward(std::size_t k, const In& q, Out u, Out pdot,
-                                                 OutwardCargo<S>& cargo);
+                                                 OutwardMotion<S>& articulated);
   const Model<Spatial>::Body& body(std::size_t k) const { return tree_->model->bodies[k]; }
-  Cargo<S>& slot_of_parent(const Link& l) {
+  Articulated<S>& slot_of_parent(const Link& l) {
     return slots_[static_cast<std::size_t>(tree_->links[static_cast<std::size_t>(l.parent)].slot)];
   }
 
   const LinkTree* tree_;
   Angles<S> angles_;
-  std::vector<PinRecord<S>> pins_;
-  std::vector<BallRecord<S>> balls_;
+  std::vector<RevoluteRecord<S>> revolutes_;
+  std::vector<SphericalRecord<S>> sphericals_;
   std::vector<JointRecord<Spatial, S>> joints_;
   std::vector<UserRecord<S>> users_;
-  std::vector<Cargo<S>> slots_;
-  std::vector<OutwardCargo<S>> outward_slots_;
+  std::vector<Articulated<S>> slots_;
+  std::vector<OutwardMotion<S>> outward_slots_;
   MassSolution<Spatial, S> solution_;
-  int stuck_ = -1;
+  int singular_joint_ = -1;
 };
 
-/// A pin's outward step: Ω and g from the parent's frame to its own but for its own turning, which
-/// is left in `wz`; (45), and ṗ without the joint's force, (35).
+/// A revolute joint's outward step: Ω and g from the parent's frame to its own but for its own
+/// turning, which is left in `wz`; (45), and ṗ without the joint's force, (35).
 template <bool Gravity, class Link, class Edge, class S>
-MOMENTA_INLINE void move_pin(const Link& l, const Edge& edge, const PinRecord<S>& w, const S& c,
-                             const S& s, S& vx, S& vy, S& vz, S& ox, S& oy, S& oz, S& gx, S& gy,
-                             S& gz, S& wz, S& rate) {
+MOMENTA_INLINE void move_revolute(const Link& l, const Edge& edge, const RevoluteRecord<S>& w,
+                                  const S& c, const S& s, S& vx, S& vy, S& vz, S& ox, S& oy, S& oz,
+                                  S& gx, S& gy, S& gz, S& wz, S& rate) {
   constants_outward(l, edge, vx, vy, vz, ox, oy, oz);
   if constexpr (Gravity) constants_outward(l, edge, gx, gy, gz);
   screw_outward(c, s, l.d, vx, vy, ox, oy);
@@ -154,31 +161,31 @@ template <class S>
 template <bool Gravity, class In>
 bool MomentumSweeps<Spatial, S>::inward(const In& p) {
   const Link* links = tree_->links.data();
-  Cargo<S> cargo{};  // of the body after the next one
+  Articulated<S> articulated{};  // of the body after the next one
   for (std::size_t k = angles_.size(); k > 0;) {
     switch (links[k - 1].path) {
       case Path::chain_general:
-        k = chain_inward<Turn::general, Gravity>(k, p, cargo);
+        k = chain_inward<Turn::general, Gravity>(k, p, articulated);
         break;
       case Path::chain_right:
-        k = chain_inward<Turn::right, Gravity>(k, p, cargo);
+        k = chain_inward<Turn::right, Gravity>(k, p, articulated);
         break;
       case Path::chain_parallel:
-        k = chain_inward<Turn::parallel, Gravity>(k, p, cargo);
+        k = chain_inward<Turn::parallel, Gravity>(k, p, articulated);
         break;
       case Path::any:
-        if (links[k - 1].kind == LinkKind::pin) {
-          k = pins_inward<Gravity>(k, p, cargo);
+        if (links[k - 1].kind == LinkKind::revolute) {
+          k = revolutes_inward<Gravity>(k, p, articulated);
           break;
         }
         --k;
-        if (!(links[k].kind == LinkKind::ball ? ball_inward<Gravity>(k, p, cargo)
-              : links[k].one_axis             ? axis_inward<Gravity>(k, p, cargo)
-                                              : general_inward<Gravity>(k, p, cargo)))
-          stuck_ = static_cast<int>(k);
+        if (!(links[k].kind == LinkKind::spherical ? spherical_inward<Gravity>(k, p, articulated)
+              : links[k].one_axis                  ? axis_inward<Gravity>(k, p, articulated)
+                                                   : general_inward<Gravity>(k, p, articulated)))
+          singular_joint_ = static_cast<int>(k);
         break;
     }
-    if (stuck_ >= 0) return false;
+    if (singular_joint_ >= 0) return false;
   }
   return true;
 }
@@ -209,10 +216,10 @@ bool MomentumSweeps<Spatial, S>::outward(const In& q, Out u, Out pdot) {
         gz = from.gz;
       }
     }
-    if (l.kind != LinkKind::pin) {
-      OutwardCargo<S> here{vx, vy, vz, ox, oy, oz, gx, gy, gz};
-      if (l.kind == LinkKind::ball)
-        ball_outward<Gravity>(k, u, pdot, here);
+    if (l.kind != LinkKind::revolute) {
+      OutwardMotion<S> here{vx, vy, vz, ox, oy, oz, gx, gy, gz};
+      if (l.kind == LinkKind::spherical)
+        spherical_outward<Gravity>(k, u, pdot, here);
       else if (l.one_axis)
         axis_outward<Gravity>(k, q, u, pdot, here);
       else
@@ -229,7 +236,7 @@ bool MomentumSweeps<Spatial, S>::outward(const In& q, Out u, Out pdot) {
         gz = here.gz;
       }
     } else {
-      const PinRecord<S>& w = pins_[k];
+      const RevoluteRecord<S>& w = revolutes_[k];
       const S c = angles_.cosine(k), s = angles_.sine(k);
       S wz, own, rate;
       if (l.parent < 0) {
@@ -244,7 +251,8 @@ bool MomentumSweeps<Spatial, S>::outward(const In& q, Out u, Out pdot) {
         vx = vy = vz = ox = oy = zero;
         own = wz = w.y0;
       } else {
-        move_pin<Gravity>(l, body(k).edge, w, c, s, vx, vy, vz, ox, oy, oz, gx, gy, gz, wz, rate);
+        move_revolute<Gravity>(l, body(k).edge, w, c, s, vx, vy, vz, ox, oy, oz, gx, gy, gz, wz,
+                               rate);
         own = wz - oz;
       }
       oz = wz;
@@ -261,4 +269,4 @@ bool MomentumSweeps<Spatial, S>::outward(const In& q, Out u, Out pdot) {
 }  // namespace momenta
 
 #include <momenta/core/kernel/momentum_joints.h>
-#include <momenta/core/kernel/momentum_pins.h>
+#include <momenta/core/kernel/momentum_revolutes.h>

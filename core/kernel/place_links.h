@@ -1,6 +1,6 @@
 #pragma once
-// Where the joints of a tree are at (t, q): the first step of every recursion. Angles of pins and
-// of all other joints on one axis are turned together, packs of them side by side.
+// Where the joints of a tree are at (t, q): the first step of every recursion. Angles of revolute
+// joints and of all other joints on one axis are turned together, packs of them side by side.
 
 #include <momenta/core/kernel/general_joint.h>
 #include <momenta/core/kernel/link.h>
@@ -20,9 +20,9 @@ MOMENTA_INLINE S shift_at(const Model<Spatial>::Body& b, const S& value) {
   return b.kind == JointKind::helical ? b.pitch * value + b.d0 : S(b.d0);
 }
 
-/// Axes of a ball joint: the constant turn c and the joint's own as one quaternion c ∘ q.
+/// Axes of a spherical joint: the constant turn c and the joint's own as one quaternion c ∘ q.
 template <class S, class In>
-MOMENTA_INLINE Mat3<S> ball_axes(const BallPlace& place, const In& q, int first) {
+MOMENTA_INLINE Mat3<S> spherical_axes(const SphericalPlace& place, const In& q, int first) {
   const double* c = place.turn;
   const S at[4] = {q[first], q[first + 1], q[first + 2], q[first + 3]};
   const S both[4] = {c[0] * at[0] - c[1] * at[1] - c[2] * at[2] - c[3] * at[3],
@@ -32,7 +32,7 @@ MOMENTA_INLINE Mat3<S> ball_axes(const BallPlace& place, const In& q, int first)
   return rotation_of(both);
 }
 
-/// Sines and cosines of the first n links that are pins, turned axes of ball joints
+/// Sines and cosines of the first n links that are revolute joints, turned axes of spherical joints
 /// (`axes(record)`), edges of the others.
 template <class S, class In, class Axes>
 void place_links(const LinkTree& tree, const S& t, const In& q, Angles<S>& angles,
@@ -40,11 +40,11 @@ void place_links(const LinkTree& tree, const S& t, const In& q, Angles<S>& angle
                  Axes&& axes, std::size_t n) {
   const Link* links = tree.links.data();
   const double* theta0 = tree.theta0.data();
-  const bool pins_alone = joints.empty();
+  const bool revolutes_alone = joints.empty();
   for (std::size_t k = 0; k < n; ++k) {
-    if (links[k].kind == LinkKind::pin) {
+    if (links[k].kind == LinkKind::revolute) {
       angles.set(k, q[links[k].q] + theta0[k]);
-    } else if (pins_alone || !links[k].one_axis) {
+    } else if (revolutes_alone || !links[k].one_axis) {
       angles.set(k, S(0.0));
     } else {
       const auto& b = tree.model->bodies[k];
@@ -62,13 +62,13 @@ void place_links(const LinkTree& tree, const S& t, const In& q, Angles<S>& angle
     }
   }
   angles.turn(n);
-  if (pins_alone && tree.balls.empty()) return;
+  if (revolutes_alone && tree.sphericals.empty()) return;
   for (std::size_t k = 0; k < n; ++k) {
-    if (links[k].kind == LinkKind::pin) continue;
+    if (links[k].kind == LinkKind::revolute) continue;
     const auto& b = tree.model->bodies[k];
     const auto record = static_cast<std::size_t>(links[k].record);
-    if (links[k].kind == LinkKind::ball) {
-      axes(record) = ball_axes<S>(tree.balls[record], q, b.q);
+    if (links[k].kind == LinkKind::spherical) {
+      axes(record) = spherical_axes<S>(tree.sphericals[record], q, b.q);
       continue;
     }
     auto& x = joints[record];

@@ -104,7 +104,7 @@ struct Planar {
   struct EdgeConstants {
     double x = 0, y = 0;  ///< joint in the parent's frame
     double sign = 1;      ///< revolute: +1 when its axis is the plane's normal, −1 when opposite
-    double slide_x = 0, slide_y = 0;  ///< prismatic: direction in the parent's frame
+    double prismatic_x = 0, prismatic_y = 0;  ///< prismatic: direction in the parent's frame
   };
 
   /// A body at one configuration: absolute angle, its joint seen from the parent's, and the slide
@@ -113,7 +113,7 @@ struct Planar {
   struct Edge {
     S angle{}, c{1.0}, s{};  ///< of the body
     Vec2<S> r;               ///< O_K − O_L, ground axes
-    Vec2<S> slide;           ///< unit vector, ground axes
+    Vec2<S> prismatic;       ///< unit vector, ground axes
     S sign{1.0};             ///< E of a revolute joint is (0, 0, sign)
   };
 

@@ -1,7 +1,7 @@
 #pragma once
 // The articulated-body recursion in a plane, (q, u, t) → u̇: the twin of planar_momentum_sweeps.h,
-// with the same elimination and axes. The velocity product of a pin is −ω_L² r, the bias of a body
-// −ω² m c.
+// with the same elimination and axes. The velocity product of a revolute joint is −ω_L² r, the bias
+// of a body −ω² m c.
 
 #include <momenta/core/kernel/planar_places.h>
 
@@ -13,17 +13,18 @@ class AccelerationSweeps;
 template <class S>
 class AccelerationSweeps<Planar, S> : PlanarPlaces<S> {
   using Base = PlanarPlaces<S>;
-  using Base::joints_, Base::outward_slots_, Base::pins_, Base::slots_, Base::stuck_, Base::tree_;
+  using Base::joints_, Base::outward_slots_, Base::revolutes_, Base::slots_, Base::singular_joint_,
+      Base::tree_;
 
  public:
   using Space = Planar;
-  using Base::Base, Base::stuck;
+  using Base::Base, Base::singular_joint;
 
   /// u̇ (nv) from (q, u, t) and all generalised forces τ (nv) but the weights'. O(bodies).
   template <class In, class InTau, class Out>
   bool operator()(const S& t, const In& q, const In& u, const InTau& tau, Out udot) {
     Base::place(t, q);
-    stuck_ = -1;
+    singular_joint_ = -1;
     velocities(u);
     if (!inward(tau)) return false;
     outward(udot);
@@ -31,7 +32,8 @@ class AccelerationSweeps<Planar, S> : PlanarPlaces<S> {
   }
 
  private:
-  /// What a pin keeps: in `Dx`, `Dy` −ω² m c of its body, then c = −ω_L² r in `Axx`, `Axy`.
+  /// What a revolute joint keeps: in `Dx`, `Dy` −ω² m c of its body, then c = −ω_L² r in `Axx`,
+  /// `Axy`.
   template <class In>
   void velocities(const In& u);
   template <class InTau>
@@ -46,15 +48,15 @@ void AccelerationSweeps<Planar, S>::velocities(const In& u) {
   const PlanarLink* links = tree_->links.data();
   const S zero(0.0);
   S omega = zero;
-  for (std::size_t k = 0; k < pins_.size(); ++k) {
+  for (std::size_t k = 0; k < revolutes_.size(); ++k) {
     const PlanarLink& l = links[k];
     if (l.parent < 0)
       omega = zero;
     else if (!l.first)
       omega = Base::motion_of_parent(l).omega;
-    PlanarPin<S>& w = pins_[k];
+    PlanarRevolute<S>& w = revolutes_[k];
     const S c = Base::angles_.cosine(k), s = Base::angles_.sine(k), parent_squared = omega * omega;
-    if (l.pin) {
+    if (l.revolute) {
       const Vec2<S> r = Base::step(l);
       w.rx = r[0];
       w.ry = r[1];
@@ -86,18 +88,18 @@ template <class S>
 template <class InTau>
 bool AccelerationSweeps<Planar, S>::inward(const InTau& tau) {
   const PlanarLink* links = tree_->links.data();
-  PlanarCargo<S> a{};
-  for (std::size_t k = pins_.size(); k-- > 0;) {
+  PlanarArticulated<S> a{};
+  for (std::size_t k = revolutes_.size(); k-- > 0;) {
     const PlanarLink& l = links[k];
-    PlanarPin<S>& w = pins_[k];
-    if (l.tip) a = {};
+    PlanarRevolute<S>& w = revolutes_[k];
+    if (l.leaf) a = {};
     Base::add_body(a, l, w.kx, w.ky);
     a.Dx = a.Dx + w.Dx;
     a.Dy = a.Dy + w.Dy;
     if (l.slot >= 0) Base::add(a, slots_[static_cast<std::size_t>(l.slot)]);
-    if (l.pin) {
+    if (l.revolute) {
       if (!all_positive(a.I)) {
-        stuck_ = static_cast<int>(k);
+        singular_joint_ = static_cast<int>(k);
         return false;
       }
       w.inverse = S(1.0) / a.I;
@@ -120,7 +122,7 @@ bool AccelerationSweeps<Planar, S>::inward(const InTau& tau) {
       const S r = b.nv == 1 ? S(tau[b.u]) : S(0.0);
       Planar::ArticulatedInertia<S> M;
       if (!eliminate<Planar>(b, x, M)) {
-        stuck_ = static_cast<int>(k);
+        singular_joint_ = static_cast<int>(k);
         return false;
       }
       auto D = remainder<Planar>(b, x, &r);
@@ -139,7 +141,7 @@ void AccelerationSweeps<Planar, S>::outward(Out udot) {
   const PlanarLink* links = tree_->links.data();
   const auto& g = tree_->model->gravity;
   S vx{}, vy{}, alpha{};
-  for (std::size_t k = 0; k < pins_.size(); ++k) {
+  for (std::size_t k = 0; k < revolutes_.size(); ++k) {
     const PlanarLink& l = links[k];
     if (l.parent < 0) {
       vx = S(-g[0]);
@@ -151,8 +153,8 @@ void AccelerationSweeps<Planar, S>::outward(Out udot) {
       vy = from.vy;
       alpha = from.omega;
     }
-    if (l.pin) {
-      const PlanarPin<S>& w = pins_[k];
+    if (l.revolute) {
+      const PlanarRevolute<S>& w = revolutes_[k];
       if (l.parent >= 0) {
         vx = vx - alpha * w.ry + w.Axx;
         vy = vy + alpha * w.rx + w.Axy;

@@ -37,8 +37,8 @@ struct Joint<Planar> {
       e.s = parent->s;
     }
     if (b.kind == JointKind::prismatic) {
-      e.slide = turned(b.edge.slide_x, b.edge.slide_y);
-      e.r += value * e.slide;
+      e.prismatic = turned(b.edge.prismatic_x, b.edge.prismatic_y);
+      e.r += value * e.prismatic;
     }
   }
 
@@ -48,7 +48,7 @@ struct Joint<Planar> {
     if (b.kind == JointKind::revolute)
       v.w += b.edge.sign * u[0];
     else if (b.kind == JointKind::prismatic)
-      v.v += u[0] * e.slide;
+      v.v += u[0] * e.prismatic;
   }
 
   template <class S>
@@ -56,19 +56,19 @@ struct Joint<Planar> {
     if (b.kind == JointKind::revolute)
       p[0] = b.edge.sign * f.n;
     else if (b.kind == JointKind::prismatic)
-      p[0] = dot(e.slide, f.f);
+      p[0] = dot(e.prismatic, f.f);
   }
 
   template <class S>
   static S along(const Body& b, const Planar::Edge<S>& e, const Planar::Force<S>& f) {
-    return b.kind == JointKind::revolute ? S(b.edge.sign * f.n) : dot(e.slide, f.f);
+    return b.kind == JointKind::revolute ? S(b.edge.sign * f.n) : dot(e.prismatic, f.f);
   }
 
   template <class S>
   static Planar::Force<S> column(const Body& b, const Planar::Edge<S>& e,
                                  const Planar::ArticulatedInertia<S>& m) {
     if (b.kind == JointKind::revolute) return {e.sign * m.H, e.sign * m.I};
-    const Vec2<S>& s = e.slide;
+    const Vec2<S>& s = e.prismatic;
     return {{{m.xx * s[0] + m.xy * s[1], m.xy * s[0] + m.yy * s[1]}}, dot(m.H, s)};
   }
 

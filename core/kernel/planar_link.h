@@ -15,14 +15,14 @@ struct PlanarLink {
   double m = 0, J = 0;    ///< [kg], about O [kg m²]
   double cx = 0, cy = 0;  ///< own first moment, body frame [kg m]
   double wx = 0, wy = 0;  ///< moment of the weight of all that stays in place: wx cos + wy sin
-  double slide_x = 0, slide_y = 0;  ///< of a slider, in the parent's frame
-  double sign = 1;                  ///< of a pin: +1 when its axis is the plane's normal
+  double prismatic_x = 0, prismatic_y = 0;  ///< of a slider, in the parent's frame
+  double sign = 1;  ///< of a revolute joint: +1 when its axis is the plane's normal
   int q = 0, u = 0;
   int parent = -1;
   int slot = -1;
   int record = -1;
-  bool pin = true;  ///< undriven revolute joint
-  bool first = false, tip = false, has_force = false;
+  bool revolute = true;  ///< undriven revolute joint
+  bool first = false, leaf = false, has_force = false;
   bool forced = false;  ///< springs or wrenches at points of its own
   bool opens = false;   ///< the last child of its parent, which the inward sweep meets first
 };

@@ -1,7 +1,7 @@
 #pragma once
 // The recursion of the paper in a plane, (q, p, t) → (u, ṗ), eqs. (35), (37)-(48), for trees of any
 // planar joints. Three-component algebra in ground axes about each body's own joint: no matrix is
-// ever turned. For a pin K, r the way from its parent's joint:
+// ever turned. For a revolute joint K, r the way from its parent's joint:
 //
 //   inward    M_j⁻¹ = 1/I, h = H/I, A' = A − H hᵀ, D' = D + h e, D'_n = p          (46)-(48)
 //             to the parent: A', H = A' ρ, I = r × H, D_n = p + r × D', ρ = (−r_y, r_x)   (43),
@@ -21,19 +21,20 @@ class MomentumSweeps;
 template <class S>
 class MomentumSweeps<Planar, S> : PlanarPlaces<S> {
   using Base = PlanarPlaces<S>;
-  using Base::joints_, Base::outward_slots_, Base::pins_, Base::slots_, Base::stuck_, Base::tree_;
+  using Base::joints_, Base::outward_slots_, Base::revolutes_, Base::slots_, Base::singular_joint_,
+      Base::tree_;
 
  public:
   using Space = Planar;
   explicit MomentumSweeps(const PlanarTree& tree) : Base(tree), solution_(tree) {}
-  using Base::stuck;
+  using Base::singular_joint;
 
   /// u (nv) and the open chain's ṗ (nv), forces between points of bodies left out. False when a
-  /// joint's articulated inertia is not positive: stuck(). O(bodies).
+  /// joint's articulated inertia is not positive: singular_joint(). O(bodies).
   template <class In, class Out>
   bool operator()(const S& t, const In& q, const In& p, Out u, Out pdot) {
     Base::place(t, q);
-    stuck_ = -1;
+    singular_joint_ = -1;
     return inward(p) && outward(q, u, pdot);
   }
 
@@ -42,7 +43,7 @@ class MomentumSweeps<Planar, S> : PlanarPlaces<S> {
   template <class In, class Out>
   void inverse_mass_times(const In& x, Out result);
   /// The same on S or, from sweeps on directions, on packs of right-hand sides.
-  /// @pre S, or pins alone.
+  /// @pre S, or revolute joints alone.
   template <class X, class In, class Out>
   void inverse_mass_times(MassSolution<Planar, X>& solution, const In& x, Out result);
 
@@ -50,7 +51,8 @@ class MomentumSweeps<Planar, S> : PlanarPlaces<S> {
   template <class In>
   bool inward(const In& p);
   template <class In>
-  __attribute__((noinline)) bool general_inward(std::size_t k, const In& p, PlanarCargo<S>& a);
+  __attribute__((noinline)) bool general_inward(std::size_t k, const In& p,
+                                                PlanarArticulated<S>& a);
   template <class In, class Out>
   bool outward(const In& q, Out u, Out pdot);
   template <class In, class Out>
@@ -63,27 +65,27 @@ template <class S>
 template <class In>
 bool MomentumSweeps<Planar, S>::inward(const In& p) {
   const PlanarLink* links = tree_->links.data();
-  PlanarCargo<S> a{};
-  for (std::size_t k = pins_.size(); k-- > 0;) {
+  PlanarArticulated<S> a{};
+  for (std::size_t k = revolutes_.size(); k-- > 0;) {
     const PlanarLink& l = links[k];
-    if (!l.pin) {
-      PlanarCargo<S> here = a;
+    if (!l.revolute) {
+      PlanarArticulated<S> here = a;
       if (!general_inward(k, p, here)) {
-        stuck_ = static_cast<int>(k);
+        singular_joint_ = static_cast<int>(k);
         return false;
       }
       a = here;
       continue;
     }
-    PlanarPin<S>& w = pins_[k];
+    PlanarRevolute<S>& w = revolutes_[k];
     const S c = Base::angles_.cosine(k), s = Base::angles_.sine(k);
     const S kx = l.cx * c - l.cy * s, ky = l.cx * s + l.cy * c;
-    if (l.tip) a = {};
+    if (l.leaf) a = {};
     Base::add_body(a, l, kx, ky);
     a.G = a.G + (l.wx * c + l.wy * s);
     if (l.slot >= 0) Base::add(a, slots_[static_cast<std::size_t>(l.slot)]);
     if (!all_positive(a.I)) {
-      stuck_ = static_cast<int>(k);
+      singular_joint_ = static_cast<int>(k);
       return false;
     }
     w.inverse = S(1.0) / a.I;
@@ -115,12 +117,13 @@ bool MomentumSweeps<Planar, S>::inward(const In& p) {
 
 template <class S>
 template <class In>
-bool MomentumSweeps<Planar, S>::general_inward(std::size_t k, const In& p, PlanarCargo<S>& a) {
+bool MomentumSweeps<Planar, S>::general_inward(std::size_t k, const In& p,
+                                               PlanarArticulated<S>& a) {
   const PlanarLink& l = tree_->links[k];
   const auto& b = Base::body(k);
   auto& x = joints_[static_cast<std::size_t>(l.record)];
   const S c = Base::angles_.cosine(k), s = Base::angles_.sine(k);
-  if (l.tip) a = {};
+  if (l.leaf) a = {};
   Base::add_body(a, l, l.cx * c - l.cy * s, l.cx * s + l.cy * c);
   a.G += l.wx * c + l.wy * s;
   if (l.slot >= 0) Base::add(a, slots_[static_cast<std::size_t>(l.slot)]);
@@ -151,7 +154,7 @@ bool MomentumSweeps<Planar, S>::outward(const In& q, Out u, Out pdot) {
   const PlanarLink* links = tree_->links.data();
   const S zero(0.0);
   S vx = zero, vy = zero, omega = zero;
-  for (std::size_t k = 0; k < pins_.size(); ++k) {
+  for (std::size_t k = 0; k < revolutes_.size(); ++k) {
     const PlanarLink& l = links[k];
     if (l.parent < 0) {
       vx = vy = omega = zero;
@@ -161,14 +164,14 @@ bool MomentumSweeps<Planar, S>::outward(const In& q, Out u, Out pdot) {
       vy = from.vy;
       omega = from.omega;
     }
-    if (!l.pin) {
+    if (!l.revolute) {
       PlanarMotion<S> here{vx, vy, omega};
       general_outward(k, q, u, pdot, here);
       vx = here.vx;
       vy = here.vy;
       omega = here.omega;
     } else {
-      const PlanarPin<S>& w = pins_[k];
+      const PlanarRevolute<S>& w = revolutes_[k];
       S own = w.y0, rate = w.G, turning = w.y0;
       if (l.parent >= 0) {
         vx = vx - omega * w.ry;

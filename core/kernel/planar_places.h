@@ -9,7 +9,7 @@ namespace momenta {
 
 /// What bodies pass inward, and outward.
 template <class S>
-struct PlanarCargo {
+struct PlanarArticulated {
   S Axx, Axy, Ayy, Hx, Hy, I, Dx, Dy, Dn, G;
 };
 template <class S>
@@ -18,7 +18,7 @@ struct PlanarMotion {
 };
 
 template <class S>
-struct PlanarPin {
+struct PlanarRevolute {
   S rx, ry;          ///< O_K − O_L
   S Axx, Axy, Ayy;   ///< A'
   S Dx, Dy, hx, hy;  ///< D', h
@@ -33,11 +33,11 @@ class PlanarPlaces {
   explicit PlanarPlaces(const PlanarTree& tree)
       : tree_(&tree),
         angles_(tree.links.size()),
-        pins_(tree.links.size()),
+        revolutes_(tree.links.size()),
         joints_(static_cast<std::size_t>(tree.records)),
         slots_(static_cast<std::size_t>(tree.slots)),
         outward_slots_(static_cast<std::size_t>(tree.slots)) {}
-  int stuck() const { return stuck_; }
+  int singular_joint() const { return singular_joint_; }
 
  protected:
   template <class In>
@@ -48,7 +48,7 @@ class PlanarPlaces {
       const PlanarLink& l = links[k];
       S angle(tree_->theta0[k]);
       if (l.parent >= 0) angle += angles_[static_cast<std::size_t>(l.parent)];
-      if (l.pin) {
+      if (l.revolute) {
         angles_.set(k, angle + l.sign * q[l.q]);
         continue;
       }
@@ -65,13 +65,13 @@ class PlanarPlaces {
     if (joints_.empty()) return;
     for (std::size_t k = 0; k < n; ++k) {
       const PlanarLink& l = links[k];
-      if (l.pin) continue;
+      if (l.revolute) continue;
       auto& x = joints_[static_cast<std::size_t>(l.record)];
       x.edge.r = step(l);
       x.edge.sign = S(l.sign);
       if (body(k).kind != JointKind::prismatic) continue;
-      x.edge.slide = turned(l.parent, l.slide_x, l.slide_y);
-      x.edge.r += x.value * x.edge.slide;
+      x.edge.prismatic = turned(l.parent, l.prismatic_x, l.prismatic_y);
+      x.edge.r += x.value * x.edge.prismatic;
     }
   }
 
@@ -89,7 +89,7 @@ class PlanarPlaces {
     return {{l.x * angles_.cosine(k), l.x * angles_.sine(k)}};
   }
   const Model<Planar>::Body& body(std::size_t k) const { return tree_->model->bodies[k]; }
-  PlanarCargo<S>& slot_of_parent(const PlanarLink& l) {
+  PlanarArticulated<S>& slot_of_parent(const PlanarLink& l) {
     return slots_[static_cast<std::size_t>(tree_->links[static_cast<std::size_t>(l.parent)].slot)];
   }
   /// Ω of the parent's joint, when that is not the body before.
@@ -98,7 +98,7 @@ class PlanarPlaces {
         tree_->links[static_cast<std::size_t>(l.parent)].slot)];
   }
 
-  static MOMENTA_INLINE void add(PlanarCargo<S>& a, const PlanarCargo<S>& b) {
+  static MOMENTA_INLINE void add(PlanarArticulated<S>& a, const PlanarArticulated<S>& b) {
     a.Axx = a.Axx + b.Axx;
     a.Axy = a.Axy + b.Axy;
     a.Ayy = a.Ayy + b.Ayy;
@@ -111,14 +111,14 @@ class PlanarPlaces {
     a.G = a.G + b.G;
   }
   /// What a child beside the first leaves in its parent's slot.
-  static MOMENTA_INLINE void leave(const PlanarLink& l, PlanarCargo<S>& slot,
-                                   const PlanarCargo<S>& a) {
+  static MOMENTA_INLINE void leave(const PlanarLink& l, PlanarArticulated<S>& slot,
+                                   const PlanarArticulated<S>& a) {
     if (l.opens)
       slot = a;
     else
       add(slot, a);
   }
-  static MOMENTA_INLINE void add_body(PlanarCargo<S>& a, const PlanarLink& l, const S& kx,
+  static MOMENTA_INLINE void add_body(PlanarArticulated<S>& a, const PlanarLink& l, const S& kx,
                                       const S& ky) {
     a.Axx = a.Axx + l.m;
     a.Ayy = a.Ayy + l.m;
@@ -127,31 +127,31 @@ class PlanarPlaces {
     a.I = a.I + l.J;
   }
   /// A', D' of a joint at O_K to O_L; D'_n = n.
-  static MOMENTA_INLINE void carry(PlanarCargo<S>& a, const S& rx, const S& ry, const S& n) {
+  static MOMENTA_INLINE void carry(PlanarArticulated<S>& a, const S& rx, const S& ry, const S& n) {
     a.Hx = a.Axy * rx - a.Axx * ry;
     a.Hy = a.Ayy * rx - a.Axy * ry;
     a.I = rx * a.Hy - ry * a.Hx;
     a.Dn = n + (rx * a.Dy - ry * a.Dx);
   }
   /// The same for M' and D' of any joint.
-  static void carry(PlanarCargo<S>& a, const JointRecord<Planar, S>& x,
+  static void carry(PlanarArticulated<S>& a, const JointRecord<Planar, S>& x,
                     const Planar::ArticulatedInertia<S>& M, const Planar::Force<S>& D) {
     const auto m = Planar::to_parent({}, JointKind::weld, x.edge, M);
     const auto d = Planar::to_parent({}, JointKind::weld, x.edge, D);
     const S G = a.G;
     a = {m.xx, m.xy, m.yy, m.H[0], m.H[1], m.I, d.f[0], d.f[1], d.n, G};
   }
-  static Planar::ArticulatedInertia<S> blocks(const PlanarCargo<S>& a) {
+  static Planar::ArticulatedInertia<S> blocks(const PlanarArticulated<S>& a) {
     return {a.Axx, a.Axy, a.Ayy, {{a.Hx, a.Hy}}, a.I};
   }
 
   const PlanarTree* tree_;
   Angles<S> angles_;
-  std::vector<PlanarPin<S>> pins_;
+  std::vector<PlanarRevolute<S>> revolutes_;
   std::vector<JointRecord<Planar, S>> joints_;
-  std::vector<PlanarCargo<S>> slots_;
+  std::vector<PlanarArticulated<S>> slots_;
   std::vector<PlanarMotion<S>> outward_slots_;
-  int stuck_ = -1;
+  int singular_joint_ = -1;
 };
 
 }  // namespace momenta

@@ -1,5 +1,5 @@
 #pragma once
-// M*_K of a body on a pin to its parent: (47) and 𝒯ᶠ M' 𝒯ⱽ of (43), entry by entry.
+// M*_K of a body on a revolute joint to its parent: (47) and 𝒯ᶠ M' 𝒯ⱽ of (43), entry by entry.
 //
 // M' = M* − U hᵀ has no row and no column for ω_z: 15 numbers instead of 21. The joint's screw
 // about z turns and shifts them among themselves. The turn about x that follows fills the third
@@ -10,22 +10,23 @@
 
 namespace momenta {
 
-/// M' in the frame of the pin: A = (Axx … Azz), H without its last column, I without its last row.
+/// M' in the frame of the revolute joint: A = (Axx … Azz), H without its last column, I without its
+/// last row.
 template <class S>
 struct Reduced {
   S Axx, Axy, Axz, Ayy, Ayz, Azz, Hxx, Hxy, Hyx, Hyy, Hzx, Hzy, Ixx, Ixy, Iyy;
 };
 
-/// h = M*E M_j⁻¹ of a pin; its last entry is 1.
+/// h = M*E M_j⁻¹ of a revolute joint; its last entry is 1.
 template <class S>
-struct PinColumn {
+struct RevoluteColumn {
   S fx, fy, fz, nx, ny;
 };
 
 /// (47), with inverse = M_j⁻¹ = 1 / I_zz.
 template <class S>
-MOMENTA_INLINE void eliminate_pin(const Full<S>& m, const S& inverse, PinColumn<S>& h,
-                                  Reduced<S>& r) {
+MOMENTA_INLINE void eliminate_revolute(const Full<S>& m, const S& inverse, RevoluteColumn<S>& h,
+                                       Reduced<S>& r) {
   const S &Ux = m.Hxz, &Uy = m.Hyz, &Uz = m.Hzz, &Unx = m.Ixz, &Uny = m.Iyz;
   h.fx = Ux * inverse;
   h.fy = Uy * inverse;
@@ -49,25 +50,25 @@ MOMENTA_INLINE void eliminate_pin(const Full<S>& m, const S& inverse, PinColumn<
   r.Iyy = m.Iyy - Uny * h.ny;
 }
 
-/// What of M' enters Eᵀ(Ω × P*) of a pin, P* = M' W + D'. About the axis W does for Ω, as E u adds
-/// nothing there, and the quadratic form Eᵀ(W × M' W), collected, has ten numbers instead of the
-/// eighteen of four rows of M'; the four sums and differences are what the pin's turn takes of M'
-/// anyway.
+/// What of M' enters Eᵀ(Ω × P*) of a revolute joint, P* = M' W + D'. About the axis W does for Ω,
+/// as E u adds nothing there, and the quadratic form Eᵀ(W × M' W), collected, has ten numbers
+/// instead of the eighteen of four rows of M'; the four sums and differences are what the revolute
+/// joint's turn takes of M' anyway.
 template <class S>
-struct PinTurning {
+struct RevoluteTurning {
   S A, Axy, Axz, Ayz;  ///< Axx − Ayy, …
   S Hd, Hs, Hzx, Hzy;  ///< Hxx − Hyy, Hxy + Hyx, …
   S I, Ixy;            ///< Ixx − Iyy, …
 };
 template <class S>
-MOMENTA_INLINE PinTurning<S> turning_of(const Reduced<S>& m) {
+MOMENTA_INLINE RevoluteTurning<S> turning_of(const Reduced<S>& m) {
   return {m.Axx - m.Ayy, m.Axy, m.Axz, m.Ayz,         m.Hxx - m.Hyy,
           m.Hxy + m.Hyx, m.Hzx, m.Hzy, m.Ixx - m.Iyy, m.Ixy};
 }
 
 /// −Eᵀ(W × (M' W + D')).
 template <class S>
-MOMENTA_INLINE S turning_rate(const PinTurning<S>& m, const S& Dfx, const S& Dfy, const S& Dnx,
+MOMENTA_INLINE S turning_rate(const RevoluteTurning<S>& m, const S& Dfx, const S& Dfy, const S& Dnx,
                               const S& Dny, const S& vx, const S& vy, const S& vz, const S& ox,
                               const S& oy) {
   return vy * (m.A * vx + m.Axy * vy + m.Axz * vz + m.Hd * ox + m.Hs * oy + Dfx) -
@@ -75,11 +76,11 @@ MOMENTA_INLINE S turning_rate(const PinTurning<S>& m, const S& Dfx, const S& Dfy
          oy * (m.I * ox + m.Ixy * oy + m.Hzx * vz + Dnx) - ox * (m.Ixy * ox + m.Hzy * vz + Dny);
 }
 
-/// The pin's own screw: turn by θ, 2 × 2 blocks by their trace and difference, `m` = turning_of(r),
-/// then shift along z by d: H' = H − A r̃, I' = I − Hᵀ r̃ + r̃ H'.
+/// The revolute joint's own screw: turn by θ, 2 × 2 blocks by their trace and difference, `m` =
+/// turning_of(r), then shift along z by d: H' = H − A r̃, I' = I − Hᵀ r̃ + r̃ H'.
 template <class S, class C>
-MOMENTA_INLINE void turn_and_shift_z(Reduced<S>& r, const PinTurning<S>& m, const S& c, const S& s,
-                                     const C& d) {
+MOMENTA_INLINE void turn_and_shift_z(Reduced<S>& r, const RevoluteTurning<S>& m, const S& c,
+                                     const S& s, const C& d) {
   const S ss = s * s, cs = c * s, ss2 = ss + ss, cs2 = cs + cs;
   {
     const S t = ss * m.A + cs2 * r.Axy, u = cs * m.A - ss2 * r.Axy;

@@ -101,7 +101,7 @@ struct Spatial : SpatialAlgebra {
   // ------------------------------------------------------------------------------------------
 
   /// The constant screws outward, of a motion and of a direction. Constants: EdgeConstants, or of
-  /// several edges side by side (LimbLink).
+  /// several edges side by side (BranchLink).
   template <class Constants, class S>
   static void constants_outward(const Constants& k, Motion<S>& m) {
     if (k.about_z) motion_outward<2>(m, k.cos_gamma, k.sin_gamma, k.delta);

@@ -183,9 +183,10 @@ struct Joint<Spatial> {
     return U;
   }
 
-  /// Positive where a one-dof joint has inertia to move. M_j itself for a pin, whose M' is free of
-  /// dust; less what rounding may leave of all the mass carried where a slide or a screw is
-  /// eliminated: behind two slides there is no mass along a third in their plane, but for rounding.
+  /// Positive where a one-dof joint has inertia to move. M_j itself for a revolute joint, whose M'
+  /// is free of dust; less what rounding may leave of all the mass carried where a prismatic joint
+  /// or a screw is eliminated: behind two slides there is no mass along a third in their plane, but
+  /// for rounding.
   template <class S>
   static S inertia_margin(const Body& b, const Spatial::ArticulatedInertia<S>& m,
                           const S& joint_mass) {

@@ -69,8 +69,8 @@ struct Workspace {
   }
 };
 
-/// Right-hand sides X on their way through a solve with M by the recursion: M_j⁻¹ e of pins, and
-/// what waits at bodies with several children, D inward and Ω outward.
+/// Right-hand sides X on their way through a solve with M by the recursion: M_j⁻¹ e of revolute
+/// joints, and what waits at bodies with several children, D inward and Ω outward.
 template <class Space, class X>
 struct MassSolution {
   template <class Tree>

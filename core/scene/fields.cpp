@@ -102,7 +102,7 @@ double Fields::number(std::string_view key, Quantity quantity, double otherwise)
   return has(key) ? number(key, quantity) : otherwise;
 }
 
-int Fields::whole(std::string_view key, int otherwise, int least) const {
+int Fields::centroidal(std::string_view key, int otherwise, int least) const {
   const Value* value = find(key);
   if (value == nullptr) return otherwise;
   const std::string expected = least > 0 ? "a whole number > 0" : "a whole number >= 0";
@@ -113,11 +113,11 @@ int Fields::whole(std::string_view key, int otherwise, int least) const {
 }
 
 int Fields::count(std::string_view key, int otherwise) const {
-  return whole(key, otherwise, 1);
+  return centroidal(key, otherwise, 1);
 }
 
 int Fields::index(std::string_view key, int otherwise) const {
-  return whole(key, otherwise, 0);
+  return centroidal(key, otherwise, 0);
 }
 
 bool Fields::flag(std::string_view key, bool otherwise) const {

@@ -66,7 +66,7 @@ class Fields {
   const Value& required(std::string_view key, const std::string& expected) const;
   [[noreturn]] void mismatch(const Value& found, const std::string& key,
                              const std::string& expected) const;
-  int whole(std::string_view key, int otherwise, int least) const;
+  int centroidal(std::string_view key, int otherwise, int least) const;
   double number_of(const Value& value, const std::string& key, Quantity quantity) const;
 
   const Value& value_;

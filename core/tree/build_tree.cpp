@@ -41,7 +41,7 @@ std::vector<Part> parts_of(const JointSpec& joint, bool driven) {
   using Kind = JointKind;
   const Eigen::Vector3d axis = joint.axis.normalized();
   switch (joint.kind) {
-    case Kind::helical:  // without pitch it stays in a plane, as a pin does
+    case Kind::helical:  // without pitch it stays in a plane, as a revolute joint does
       return {{joint.pitch == 0 ? Kind::revolute : Kind::helical, 0, axis}};
     case Kind::cylindrical:
       return {{Kind::prismatic, 0, axis}, {Kind::revolute, 1, axis}};

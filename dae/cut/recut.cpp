@@ -124,7 +124,7 @@ int rebuild(const Mechanism& mechanism, const Start& start, const SceneGraph& gr
 /// Less work; or entries of M saved at next to no work: loops that close at the ground count there
 /// once more.
 bool better(const CutCost& a, const CutCost& b) {
-  constexpr int most = LoopPlan::most_lanes;
+  constexpr int most = LoopPlan::most_slots;
   if ((a.open > most) != (b.open > most)) return a.open <= most;
   // the bodies' own equations are the same whatever is cut
   if (a.open > most) return a.factor_entries > 0 && 100 * a.factor_entries < 90 * b.factor_entries;
@@ -151,7 +151,7 @@ CutCost cut_cost(const Mechanism& mechanism) {
       mechanism.plan().planar
           ? plan(build_planar_model(tree, mechanism.scene(), mechanism.plan().basis))
           : plan(build_spatial_model(tree, mechanism.scene()));
-  cost.open = loops.lanes;
+  cost.open = loops.slots;
   cost.work = loops.work;
   if (mechanism.kkt() == KktChoice::sparse && filters_pivots(mechanism))
     cost.factor_entries = FilteredFactor(mechanism).entries();

@@ -30,8 +30,12 @@ class AccelerationForm : public OdeForm {
     centre_ = multipliers_;
   }
   /// Where q and u are corrected after steps, so are they in stages next to a singular pose.
-  Care wants_care() const override { return corrects() && solutions_ == 1 ? care_ : Care::none; }
-  void take_care(Care care) override { corrects_stages_ = care == Care::position; }
+  SingularityHandling wanted_handling() const override {
+    return corrects() && solutions_ == 1 ? handling_ : SingularityHandling::none;
+  }
+  void set_handling(SingularityHandling care) override {
+    corrects_stages_ = care == SingularityHandling::position;
+  }
   double motion_error_squared(double t, const double* y, const double* error, double rtol,
                               double atol) override;
   bool read(double t, const double* y, const double*, Snapshot& out) override;
@@ -50,7 +54,7 @@ class AccelerationForm : public OdeForm {
   int solutions_;  ///< of (3) in one evaluation, each around the λ of the one before
   std::vector<double> nu_;
   bool corrects_stages_ = false;
-  std::vector<double> state_;    ///< (q, u) where f is taken, with care
+  std::vector<double> state_;    ///< (q, u) where f is taken, with singularity handling
   std::vector<double> at_rest_;  ///< no rates
 };
 

@@ -39,7 +39,7 @@ DaeForm::DaeForm(std::string name, const Mechanism& mechanism, DaeLayout layout,
 }
 
 void DaeForm::find_redundancy(const Start& start) {
-  if (!mechanism_.tips_first()) {  // no pivot of the loops tells
+  if (!mechanism_.leaves_first()) {  // no pivot of the loops tells
     plain_.e->place(start.t, start.q.data());
     if (rank_and_idle(scaled_jacobian(mechanism_, *plain_.e).a).rank == layout_.m) return;
   } else if (mechanism_.dense_kkt() || mechanism_.kkt() != KktChoice::sweeps) {
@@ -140,7 +140,7 @@ void DaeForm::complete(double t, const double* u, const double* udot, const doub
 /// hundredth is a tenth of a radian away.
 bool DaeForm::near_singular(double t, const double* y) {
   if (layout_.m == 0) return false;
-  Detour& d = detour_;
+  OdeRestart& d = ode_restart_;
   if (!d.solver) {
     d.solver = make_loop_solver(mechanism_, *plain_.e);
     d.always_faded = layout_.m;
@@ -157,8 +157,8 @@ bool DaeForm::near_singular(double t, const double* y) {
   return weakest < near * d.strongest;
 }
 
-OdeSystem* DaeForm::detour(double t, const double* y, double* state) {
-  Detour& d = detour_;
+OdeSystem* DaeForm::ode_restart(double t, const double* y, double* state) {
+  OdeRestart& d = ode_restart_;
   if (!d.form) {
     FormOptions options = options_;
     options.project = true;
@@ -181,7 +181,7 @@ OdeSystem* DaeForm::detour(double t, const double* y, double* state) {
 }
 
 bool DaeForm::rejoin(double t, const double* state, double* y, double* ydot) {
-  Detour& d = detour_;
+  OdeRestart& d = ode_restart_;
   const double* p = state + layout_.nq;
   const double* centre = momentum_like() ? y + layout_.s() : nullptr;
   if (!d.solver->momentum(t, state, p, centre, fade_evaluation, 0, d.u.data(), d.sigma.data(),

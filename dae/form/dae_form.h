@@ -75,8 +75,8 @@ class DaeForm : public Form, public DaeSystem {
   double scale(int i) const override;
   Weight weight(int i) const override;
   bool near_singular(double t, const double* y) override;
-  OdeSystem* detour(double t, const double* y, double* state) override;
-  int detour_size() const override { return layout_.nq + layout_.nv; }
+  OdeSystem* ode_restart(double t, const double* y, double* state) override;
+  int ode_restart_size() const override { return layout_.nq + layout_.nv; }
   bool rejoin(double t, const double* state, double* y, double* ydot) override;
 
   /// F along a curve, y and y' given as series, with its derivatives along their two directions.
@@ -145,13 +145,13 @@ class DaeForm : public Form, public DaeSystem {
   std::unique_ptr<LoopSolver> reader_;  ///< the same for large mechanisms
   FormOptions options_;
   /// Past singular poses: the momentum form, and a solver of (7) to see them come.
-  struct Detour {
+  struct OdeRestart {
     std::unique_ptr<OdeForm> form;
     std::unique_ptr<LoopSolver> solver;
     std::vector<double> u, udot, sigma, lambda;
     double strongest = 0;  ///< largest of the weakest pivots so far
     int always_faded = 0;
-  } detour_;
+  } ode_restart_;
   JacobianPattern pattern_;  ///< with its batches; empty batches: not yet analysed
   std::vector<std::vector<int>>
       batches_;  ///< per dual evaluation: the direction of each column, −1: none

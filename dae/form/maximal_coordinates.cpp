@@ -37,7 +37,7 @@ class MaximalCoordinates final : public AccelerationForm {
     solver_ = make_maximal_solver(mechanism, *e_);
   }
 
-  Care wants_care() const override { return Care::none; }
+  SingularityHandling wanted_handling() const override { return SingularityHandling::none; }
 
   /// Trees too are solved by their joints' multipliers.
   bool rhs(double t, const double* y, double* ydot) override {

@@ -26,7 +26,9 @@ class MomentumForm : public OdeForm {
   bool after_step(double t, double* y, bool& changed) override;
   bool first_derivative(double* ydot) override;
   void begin_step(double t, const double* y) override;
-  void take_care(Care care) override { corrects_ = care == Care::position; }
+  void set_handling(SingularityHandling care) override {
+    corrects_ = care == SingularityHandling::position;
+  }
   double motion_error_squared(double t, const double* y, const double* error, double rtol,
                               double atol) override;
   bool read(double t, const double* y, const double*, Snapshot& out) override;

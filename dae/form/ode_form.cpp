@@ -33,12 +33,13 @@ bool OdeForm::fail_at(double t, const std::string& why) {
 bool OdeForm::solver_failed(double t, const double* q, const std::string& what) {
   for (int i = 0; i < mechanism_.nq(); ++i)
     if (!std::isfinite(q[i])) return fail_at(t, "a joint coordinate is not finite");
-  if (solver_->stuck() >= 0) return fail_at(t, mechanism_.no_inertia(solver_->stuck()));
+  if (solver_->singular_joint() >= 0)
+    return fail_at(t, mechanism_.no_inertia(solver_->singular_joint()));
   return fail_at(t, what + " is not finite");
 }
 
 void OdeForm::begin_step(double, const double*) {
-  care_ = Care::none;
+  handling_ = SingularityHandling::none;
 }
 
 void OdeForm::look_on(bool looking) {
@@ -59,9 +60,9 @@ void OdeForm::note_pivots() {
   always_faded_ = std::min(always_faded_, pivots.faded);
   weakest_at_best_ = std::max(weakest_at_best_, pivots.weakest);
   if (pivots.weakest < near || pivots.faded > always_faded_)
-    care_ = Care::position;
+    handling_ = SingularityHandling::position;
   else if (pivots.weakest < approaching_ * weakest_at_best_)
-    care_ = std::max(care_, Care::norm);
+    handling_ = std::max(handling_, SingularityHandling::norm);
   if (!watched_) return;
   for (const int row : solver_->faded_rows()) ++(*watched_)[static_cast<std::size_t>(row)];
 }

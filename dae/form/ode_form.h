@@ -35,14 +35,14 @@ class OdeForm : public Form, public OdeSystem {
     std::copy_n(multipliers, multipliers_.size(), multipliers_.begin());
   }
   void begin_step(double t, const double* y) override;
-  Care wants_care() const override { return care_; }
+  SingularityHandling wanted_handling() const override { return handling_; }
   void look_on(bool looking) override;
 
  protected:
-  /// Where care begins: a pivot goes with the square of the distance to the singular pose. f is
-  /// taken at corrected positions where the weakest is below `near` of its scale, a hundredth of a
-  /// radian away; errors are measured by the motion where it is below that part of the largest it
-  /// has been: loops that are weak throughout approach nothing.
+  /// Where singularity handling begins: a pivot goes with the square of the distance to the
+  /// singular pose. f is taken at corrected positions where the weakest is below `near` of its
+  /// scale, a hundredth of a radian away; errors are measured by the motion where it is below that
+  /// part of the largest it has been: loops that are weak throughout approach nothing.
   static constexpr double near = 1e-4;
   double approaching_ = 0.2;
 
@@ -77,8 +77,8 @@ class OdeForm : public Form, public OdeSystem {
 
   int looking_ = 0;  ///< depth
   long looked_ = 0, before_looking_ = 0;
-  std::vector<double> kept_;    ///< multipliers, while looking
-  Care care_ = Care::none;      ///< of the step under way
+  std::vector<double> kept_;                                  ///< multipliers, while looking
+  SingularityHandling handling_ = SingularityHandling::none;  ///< of the step under way
   double weakest_at_best_ = 0;  ///< largest that the weakest pivot has been on the run
   int always_faded_ = 0;        ///< rows that are redundant wherever the mechanism has been
   std::vector<long>* watched_ = nullptr;

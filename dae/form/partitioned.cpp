@@ -121,7 +121,7 @@ class Partitioned final : public OdeForm {
     OdeForm::begin_step(t, y);
     centre_ = multipliers_;
   }
-  Care wants_care() const override { return Care::none; }
+  SingularityHandling wanted_handling() const override { return SingularityHandling::none; }
 
   bool read_coordinates(double t, const double* y, Eigen::VectorXd& q) override {
     if (!close(t, y)) return false;
@@ -231,7 +231,7 @@ class Partitioned final : public OdeForm {
   bool accelerate(double t) {
     if (!has_loops())
       return e_->open_accelerations(t, q_.data(), u_.data(), udot_.data()) ||
-             fail_at(t, mechanism_.no_inertia(e_->stuck()));
+             fail_at(t, mechanism_.no_inertia(e_->singular_joint()));
     return solver_->acceleration(t, q_.data(), u_.data(), centre_.data(), 0, 0, udot_.data(),
                                  multipliers_.data()) ||
            solver_failed(t, q_.data(), "the solution of (3)");

@@ -90,7 +90,7 @@ class AssembledSolver final : public LoopSolver {
     kkt_->soften(softens && !compliance_.empty() ? compliance_.data() : nullptr);
     ++solutions_;
     const bool ok = kkt_->factor(e_, t, q, fade);
-    stuck_ = ok ? -1 : kkt_->stuck();
+    singular_joint_ = ok ? -1 : kkt_->singular_joint();
     return ok;
   }
 

@@ -39,7 +39,7 @@ class BodyKkt final : public Kkt {
       axis_scale_.softness(inertia_, constraint_, fade, epsilon_);
     }
     const bool ok = solver_.factor(epsilon_);
-    stuck_ =
+    singular_joint_ =
         ok || solver_.singular_column() < 0 ? -1 : equations_->joint_of(solver_.singular_column());
     return ok;
   }

@@ -39,8 +39,8 @@ class DenseKkt final : public Kkt {
     e.place(t, q);
     e.mass_entries(mass_.data());
     e.constraint_entries(constraint_.data());
-    stuck_ = factor_.factor(mass_);
-    if (stuck_ >= 0) return false;
+    singular_joint_ = factor_.factor(mass_);
+    if (singular_joint_ >= 0) return false;
     std::fill(g_.begin(), g_.end(), 0.0);
     for (std::size_t i = 0; i < constraint_.size(); ++i)
       g_[at(pattern_.constraint[i].row, pattern_.constraint[i].column, n_)] = constraint_[i];
@@ -119,13 +119,13 @@ std::unique_ptr<Kkt> make_dense_kkt(const Mechanism& mechanism) {
 }
 
 bool filters_pivots(const Mechanism& mechanism) {
-  return mechanism.dense_kkt() || (mechanism.tips_first() && !solved_by_bodies(mechanism));
+  return mechanism.dense_kkt() || (mechanism.leaves_first() && !solved_by_bodies(mechanism));
 }
 
 std::unique_ptr<Kkt> make_kkt(const Mechanism& mechanism) {
   if (mechanism.dense_kkt()) return make_dense_kkt(mechanism);
   if (solved_by_bodies(mechanism)) return make_body_kkt(mechanism);
-  return mechanism.tips_first() ? make_sparse_kkt(mechanism) : make_klu_kkt(mechanism);
+  return mechanism.leaves_first() ? make_sparse_kkt(mechanism) : make_klu_kkt(mechanism);
 }
 
 }  // namespace momenta

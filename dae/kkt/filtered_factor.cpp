@@ -149,7 +149,7 @@ bool FilteredFactor::factor(const std::vector<double>& mass, const std::vector<d
   if (compliance)
     for (std::size_t i = 0; i < diagonal_at_.size(); ++i) value_[diagonal_at_[i]] = -compliance[i];
   std::fill(head_.begin(), head_.end(), -1);
-  stuck_ = -1;
+  singular_joint_ = -1;
   for (std::size_t k = 0; k < blocks_.size(); ++k) {
     const Block& block = blocks_[k];
     for (std::size_t i = block.row; i < block.end; ++i)
@@ -201,7 +201,7 @@ bool FilteredFactor::eliminate(const Block& block, const double* tau) {
   double* a = &value_[block.value];
   if (!block.loop) {
     if (!(a[0] > 0) || !std::isfinite(a[0])) {
-      stuck_ = unknown_[first];
+      singular_joint_ = unknown_[first];
       return false;
     }
     inverse_[first] = 1 / a[0];

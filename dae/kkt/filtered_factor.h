@@ -28,14 +28,14 @@ class FilteredFactor {
   explicit FilteredFactor(const Mechanism& mechanism);
 
   /// From M and Φ_q in the order of the KKT pattern, E (m, null: 0) and τ (m, 0: no filter). False
-  /// where a pivot of u is not positive or not finite: stuck() is its place in u. O(fill), no
-  /// allocation.
+  /// where a pivot of u is not positive or not finite: singular_joint() is its place in u. O(fill),
+  /// no allocation.
   bool factor(const std::vector<double>& mass, const std::vector<double>& constraint,
               const double* compliance, const double* tau);
   /// x (nv + m) ← A⁻¹ x.
   void solve(double* x);
 
-  int stuck() const { return stuck_; }
+  int singular_joint() const { return singular_joint_; }
   /// w of each row of Φ (m) when it was closed.
   const std::vector<double>& pivots() const { return pivot_; }
   long entries() const { return static_cast<long>(value_.size()); }
@@ -56,7 +56,7 @@ class FilteredFactor {
   void update(const Block& from, std::size_t at, const Block& to);
 
   const KktPattern& pattern_;
-  int n_, m_, stuck_ = -1;
+  int n_, m_, singular_joint_ = -1;
   std::vector<int> place_;    ///< of each unknown in the order of elimination
   std::vector<int> unknown_;  ///< and back
   std::vector<Block> blocks_;

@@ -45,14 +45,14 @@ class Kkt {
   double weakest() const { return weakest_; }
   long factorizations() const { return factorizations_; }
   /// Place in u of the joint at which the last factor() failed, or −1: something is not finite.
-  int stuck() const { return stuck_; }
+  int singular_joint() const { return singular_joint_; }
 
  protected:
   std::vector<int> faded_rows_;
   const double* compliance_ = nullptr;
   double weakest_ = 1;
   long factorizations_ = 0;
-  int stuck_ = -1;
+  int singular_joint_ = -1;
 };
 
 /// Dense or sparse by size, or as the mechanism's options say; sparse by the equations of the

@@ -51,12 +51,12 @@ class LoopSolver {
   };
   virtual Pivots pivots() const = 0;
   /// Place in u of the joint at which the last call failed, or −1: a result is not finite.
-  int stuck() const { return stuck_; }
+  int singular_joint() const { return singular_joint_; }
 
  protected:
   double beta_ = 0;
   long solutions_ = 0;
-  int stuck_ = -1;
+  int singular_joint_ = -1;
 };
 
 /// As the mechanism's plan says; needs loops. `e` is an evaluation of it, used as a workspace.

@@ -155,9 +155,9 @@ class MaximalSolver final : public LoopSolver {
     ++solutions_;
     poses_outward(w_, t, q, true);
     rows_.place(t, q);
-    stuck_ = -1;
+    singular_joint_ = -1;
     if (!tree_.factor()) {
-      stuck_ = model_.bodies[static_cast<std::size_t>(tree_.stuck())].u;
+      singular_joint_ = model_.bodies[static_cast<std::size_t>(tree_.singular_joint())].u;
       return false;
     }
     if (g_.empty()) return true;

@@ -48,7 +48,8 @@ class MaximalTree {
     }
   }
 
-  /// Factorises at the edges placed in the workspace. False: stuck() has no inertia to move.
+  /// Factorises at the edges placed in the workspace. False: singular_joint() has no inertia to
+  /// move.
   bool factor() {
     for (std::size_t k = 0; k < joint_.size(); ++k) {
       joint_[k].A = {};
@@ -59,12 +60,12 @@ class MaximalTree {
       bool ok = true;
       with_rows(k, [&](auto s) { ok = eliminate<s.value>(k); });
       if (ok) continue;
-      stuck_ = static_cast<int>(k);
+      singular_joint_ = static_cast<int>(k);
       return false;
     }
     return true;
   }
-  int stuck() const { return stuck_; }
+  int singular_joint() const { return singular_joint_; }
 
   /// The wrench f on body k into h, and what it leaves to the parent; children first.
   void inward(std::size_t k, Column* f, Column* h) const {
@@ -139,10 +140,10 @@ class MaximalTree {
         j.moved = 2;
         j.along = b.edge.sign;
         if (b.kind == JointKind::prismatic) {
-          const auto& slide = w_.body[k].edge.slide;
-          j.moved = std::abs(slide[0]) >= std::abs(slide[1]) ? 0 : 1;
-          j.along = 1 / slide[j.moved];
-          slope = slide[1 - j.moved] * j.along;
+          const auto& prismatic = w_.body[k].edge.prismatic;
+          j.moved = std::abs(prismatic[0]) >= std::abs(prismatic[1]) ? 0 : 1;
+          j.along = 1 / prismatic[j.moved];
+          slope = prismatic[1 - j.moved] * j.along;
         }
       } else {
         j.moved = b.kind == JointKind::prismatic ? 2 : 5;
@@ -329,7 +330,7 @@ class MaximalTree {
   const Work& w_;
   std::vector<JointBlocks> joint_;
   std::vector<Column> a_;  ///< of each body
-  int stuck_ = -1;
+  int singular_joint_ = -1;
 };
 
 }  // namespace momenta

@@ -38,7 +38,7 @@ class SparseKkt final : public Kkt {
       if (!std::isfinite(tau)) return false;
     }
     const bool ok = factor_.factor(mass_, constraint_, compliance_, tau_.data());
-    stuck_ = factor_.stuck();
+    singular_joint_ = factor_.singular_joint();
     if (!ok) return false;
     faded_rows_.clear();
     weakest_ = 1;

@@ -96,8 +96,8 @@ class Searcher {
     Pose p;
     p.q = q;
     if (!poses_.let_go(t, q, p.udot, p.lambda))
-      throw SceneError(mechanism_.scene().where({}) +
-                       "the mechanism cannot be let go: " + mechanism_.no_inertia(poses_.stuck()));
+      throw SceneError(mechanism_.scene().where({}) + "the mechanism cannot be let go: " +
+                       mechanism_.no_inertia(poses_.singular_joint()));
     p.force.resize(mechanism_.nv());
     e_.place(t, q.data());
     e_.move(rest_.data());

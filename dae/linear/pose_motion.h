@@ -29,7 +29,7 @@ class PoseMotion {
 
   Evaluation<double>& evaluation() { return *e_; }
   /// Place in u of the joint at which let_go() failed.
-  int stuck() const { return solver_ ? solver_->stuck() : e_->stuck(); }
+  int singular_joint() const { return solver_ ? solver_->singular_joint() : e_->singular_joint(); }
 
  private:
   const Mechanism& mechanism_;

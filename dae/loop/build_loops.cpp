@@ -55,10 +55,10 @@ void couple(const LoopSpec& spec, const Tree& tree, typename LoopModel<Space>::L
 
 /// What drives prescribe of a loop whose points, axes and numbers are in place. `along` and `about`
 /// take a vector of the joint frame to the axes of B and to an axis of turning in A or B.
-template <class Space, class Slide, class About>
+template <class Space, class Translation, class About>
 void prescribe(const LoopSpec& spec, const Tree& tree, const Model<Space>& model,
-               const LoopDrives& drives, const LoopChoice& choice, Slide&& along, About&& about,
-               typename LoopModel<Space>::Motion&& motion, LoopModel<Space>& all,
+               const LoopDrives& drives, const LoopChoice& choice, Translation&& along,
+               About&& about, typename LoopModel<Space>::Motion&& motion, LoopModel<Space>& all,
                typename LoopModel<Space>::Loop& l) {
   motion.given = l.given;
   motion.axis_a = l.axis_a;
@@ -67,12 +67,12 @@ void prescribe(const LoopSpec& spec, const Tree& tree, const Model<Space>& model
   for (int i = 0; i < 3; ++i)
     if (const DriveSpec* drive = drives.origin[static_cast<std::size_t>(i)]) {
       start[i] = 0;
-      motion.slides.push_back(
+      motion.translations.push_back(
           {MotionLaw(*drive), model.direction(l.b, tree.direction(l.b, Eigen::Vector3d::Unit(i)))});
     }
   motion.at_b = model.point(l.b, tree.point(l.b, start));
-  for (const auto& slide : choice.slides)
-    motion.slides.push_back({MotionLaw(*slide.drive), along(slide.axis)});
+  for (const auto& translation : choice.translations)
+    motion.translations.push_back({MotionLaw(*translation.drive), along(translation.axis)});
   for (const auto& turn : choice.turns_a)
     motion.turns_a.push_back({MotionLaw(*turn.drive), about(l.a, turn.axis)});
   for (const auto& turn : choice.turns_b)
@@ -81,7 +81,7 @@ void prescribe(const LoopSpec& spec, const Tree& tree, const Model<Space>& model
     motion.given = 0;
     motion.numbers.emplace_back(1.0, MotionLaw(*drives.coordinate[0]));
   }
-  if (motion.slides.empty() && motion.turns_a.empty() && motion.turns_b.empty() &&
+  if (motion.translations.empty() && motion.turns_a.empty() && motion.turns_b.empty() &&
       motion.numbers.empty())
     return;
   l.motion = static_cast<int>(all.motions.size());
@@ -199,12 +199,12 @@ LoopModel<Planar> build_loops(const Scene& scene, const Tree& tree, const Model<
             scene.where(spec.at) + "loop '" + spec.name + "' cannot close: its two sides lie " +
             std::to_string(std::abs(across)) +
             " m apart across the plane in which the scene moves; expected the same height");
-      const bool slides = spec.kind == LoopKind::prismatic;
+      const bool translations = spec.kind == LoopKind::prismatic;
       // Axes in the plane: for a slide, 1 along it and 2 across; else the plane's own.
       const Eigen::Matrix3d in_joint =
           zero_rotation(tree, poses, l.b) * spec.rotation.toRotationMatrix();
-      Eigen::Vector3d first =
-          slides ? Eigen::Vector3d(in_joint * spec.axis) : Eigen::Vector3d(model.basis.col(0));
+      Eigen::Vector3d first = translations ? Eigen::Vector3d(in_joint * spec.axis)
+                                           : Eigen::Vector3d(model.basis.col(0));
       first.normalize();
       const Eigen::Vector3d second = normal.cross(first);
       const Eigen::Matrix3d child_from_joint =

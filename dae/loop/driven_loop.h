@@ -57,9 +57,9 @@ struct DrivenLoop {
     T f{}, rate{}, second{};
     at_b = of(m.at_b);
     v = a = {};
-    for (const auto& slide : m.slides) {
-      slide.law.evaluate(t, f, rate, second);
-      const Vector along = of(slide.along);
+    for (const auto& translation : m.translations) {
+      translation.law.evaluate(t, f, rate, second);
+      const Vector along = of(translation.along);
       at_b += f * along;
       v += rate * along;
       a += second * along;

@@ -54,20 +54,20 @@ class Choosing {
         break;
       case LoopKind::prismatic:
         points({0, 1});
-        slide(driven[0], 2);
+        translation(driven[0], 2);
         all_axes("");
         break;
       case LoopKind::cylindrical:
         points({0, 1});
-        slide(driven[0], 2);
+        translation(driven[0], 2);
         hinge("");
         angle(driven[1]);
         break;
       case LoopKind::planar:
         points({2});
         if (drives_.drives_coordinates()) displacements_as_axes();
-        slide(driven[0], 0);
-        slide(driven[1], 1);
+        translation(driven[0], 0);
+        translation(driven[1], 1);
         hinge("");
         angle(driven[2]);
         break;
@@ -88,7 +88,7 @@ class Choosing {
       point(1, "point across the slide");
       if (driven) {
         point(0, "point along the slide, driven");
-        c_.slides.push_back({driven, loop_.axis.normalized()});
+        c_.translations.push_back({driven, loop_.axis.normalized()});
       }
       axes(0, 1, "angle");
       return c_;
@@ -136,10 +136,10 @@ class Choosing {
     across(2, 1, note);
   }
   /// Rows of points stand before those of axes: call it before hinge() and all_axes().
-  void slide(const DriveSpec* drive, int j) {
+  void translation(const DriveSpec* drive, int j) {
     if (!drive) return;
     point(j, "point along axis " + number(j) + ", driven");
-    c_.slides.push_back({drive, c_.frame.col(j)});
+    c_.translations.push_back({drive, c_.frame.col(j)});
   }
   void angle(const DriveSpec* drive) {
     if (!drive) return;

@@ -28,7 +28,7 @@ struct LoopChoice {
   std::vector<int> points;                              ///< j of the D_j rows
   std::vector<std::pair<int, int>> axes;                ///< (i, j) of the O_ij rows
   std::vector<std::string> names;                       ///< of all rows
-  std::vector<Along> slides;                            ///< of x_B
+  std::vector<Along> translations;                      ///< of x_B
   std::vector<Along> turns_a, turns_b;  ///< of the axes of A and B, one after the other
 };
 

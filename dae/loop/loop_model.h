@@ -14,10 +14,10 @@
 //   planar across axis 3      D3, O31 O32            distance                   L
 //   coupler                   Q
 // In a plane: point, spherical, revolute D1 D2; weld D1 D2 O12; prismatic D (across), O12; distance
-// L. The D1 D2 of a plane that come alone, that no drive moves and whose bodies no third one carries
-// are a tie: their b_j are the axes of the ground, so that Φ = x_A − x_B, and the impulse σ is the
-// one on A at x_A and, negated, on B at x_B, whatever its axes. (A body that carried both would turn
-// Φ, and be felt in it where the loop is open.)
+// L. The D1 D2 of a plane that come alone, that no drive moves and whose bodies no third one
+// carries are a tie: their b_j are the axes of the ground, so that Φ = x_A − x_B, and the impulse σ
+// is the one on A at x_A and, negated, on B at x_B, whatever its axes. (A body that carried both
+// would turn Φ, and be felt in it where the loop is open.)
 //
 // Drives make these functions of time: x_B and b_j move relative to B as prescribed, a_i relative
 // to A, l and c change. A driven coordinate of a loop adds a row: a driven slide the D along it,
@@ -74,7 +74,7 @@ struct LoopModel {
 
   /// What drives prescribe of one loop, and where that stands at one time.
   struct Motion {
-    struct Slide {
+    struct Translation {
       MotionLaw law;
       Vector along;  ///< x_B moves by f along, axes of B
     };
@@ -82,7 +82,7 @@ struct LoopModel {
       MotionLaw law;
       Angular axis;  ///< the axes are turned by f about it, axes of the body
     };
-    std::vector<Slide> slides;
+    std::vector<Translation> translations;
     std::vector<Turn> turns_a, turns_b;                 ///< R = R₁(f₁) R₂(f₂) …
     std::vector<std::pair<double, MotionLaw>> numbers;  ///< l or c is given + Σ factor · f
     // As the loop would be with every f zero.

@@ -2,10 +2,10 @@
 // What rounding takes off the places of bodies on the way out from the ground.
 //
 // x_K = x_L + d_K is rounded to the size of x_K, however short the step d_K from the parent's
-// origin: kilometres from the ground, two points of one pin lie 10⁻¹² m apart by rounding alone. Φ
-// has to be right to the size of its loop instead: the impulses that Newton's method answers it
-// with are Φ over a step, and what they leave in p is as large at every step. So the rest is
-// carried beside the places,
+// origin: kilometres from the ground, two points of one revolute joint lie 10⁻¹² m apart by
+// rounding alone. Φ has to be right to the size of its loop instead: the impulses that Newton's
+// method answers it with are Φ over a step, and what they leave in p is as large at every step. So
+// the rest is carried beside the places,
 //
 //   ℓ_K = ℓ_L + (d_K − (x_K − x_L)),        D = (x_A − x_B) + (ℓ_A − ℓ_B),
 //

@@ -49,12 +49,14 @@ class Document {
     w_.number("V", s_.potential);
     w_.number("H", s_.hamiltonian);
     w_.close();
-    w_.open("whole");
-    w_.number("mass", s_.whole.mass);
-    w_.numbers("centre_of_mass", s_.whole.centre);
-    w_.numbers("linear_momentum", s_.whole.linear_momentum);
-    w_.numbers("angular_momentum", s_.whole.angular_momentum);
-    w_.close();
+    for (const char* key : {"centroidal", "whole"}) {  // `whole`: deprecated
+      w_.open(key);
+      w_.number("mass", s_.centroidal.mass);
+      w_.numbers("centre_of_mass", s_.centroidal.centre);
+      w_.numbers("linear_momentum", s_.centroidal.linear_momentum);
+      w_.numbers("angular_momentum", s_.centroidal.angular_momentum);
+      w_.close();
+    }
     w_.open("reactions");
     for (const Transmitted& r : s_.reactions.joints) {
       w_.open(r.name);

@@ -156,7 +156,7 @@ int answer(int argc, char** argv) {
           "ladder's name (default: all)")
       ->type_name("LADDER,...");
   positive(stress_app->add_option("--within", stress_options.within,
-                                  "Largest opening, energy error and error of what survives"),
+                                  "Largest position drift, energy error and error of what survives"),
            "X")
       ->capture_default_str();
   positive(stress_app->add_option("--rtol", o.rtol, "Relative and absolute tolerance"), "X")

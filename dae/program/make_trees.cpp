@@ -68,8 +68,9 @@ void print_rope(int n) {
 
 void print_spherical_chain(int n) {
   constexpr double length = 0.5, radius = 0.05, mass = 1;
-  print_head(numbered("Cylinders of 0.5 m on ball joints, ", n) + " of them, at random angles.",
-             numbered("Spherical chain of ", n), down, 5);
+  print_head(
+      numbered("Cylinders of 0.5 m on spherical joints, ", n) + " of them, at random angles.",
+      numbered("Spherical chain of ", n), down, 5);
   Draw draw(13);
   std::string parent = "ground";
   for (int i = 1; i <= n; ++i) {
@@ -116,7 +117,7 @@ void print_tree(int n) {
 }
 
 void print_star(int n) {
-  constexpr int pins = 6;
+  constexpr int revolutes = 6;
   constexpr double hub = 0.5, length = 0.3, radius = 0.03, mass = 1;
   const double turn = 4 * std::acos(0.0) / n;
   print_head(
@@ -131,7 +132,7 @@ void print_star(int n) {
   for (int leg = 1; leg <= n; ++leg) {
     const double angle = (leg - 1) * turn;
     std::string parent = "hub";
-    for (int i = 1; i <= pins; ++i) {
+    for (int i = 1; i <= revolutes; ++i) {
       const std::string body = numbered("leg", leg) + numbered("_", i);
       print_cylinder(body, mass, length, radius, "x");
       JointText joint;

@@ -17,18 +17,18 @@ namespace {
 
 constexpr int most_drawn = 4000;  // samples that a page is made of
 
-void print_passages(const RunResult& result) {
+void print_singular_crossings(const RunResult& result) {
   constexpr std::size_t most = 12;
-  if (result.passages.empty()) return;
+  if (result.singular_crossings.empty()) return;
   std::string times;
-  for (std::size_t i = 0; i < result.passages.size() && i < most; ++i)
-    times += (i == 0 ? "" : ", ") + compact(result.passages[i].t, 4);
+  for (std::size_t i = 0; i < result.singular_crossings.size() && i < most; ++i)
+    times += (i == 0 ? "" : ", ") + compact(result.singular_crossings[i].t, 4);
   std::printf("\nClose to singular poses at t = %s%s s, least pivot %s\n", times.c_str(),
-              result.passages.size() > most ? ", …" : "",
+              result.singular_crossings.size() > most ? ", …" : "",
               scientific(result.least_pivot, 1).c_str());
-  for (const RunResult::Passage& passage : result.passages)
-    if (passage.ambiguous) {
-      std::printf("Ambiguous: %s\n", ambiguous_from(passage.t).c_str());
+  for (const RunResult::SingularCrossing& crossing : result.singular_crossings)
+    if (crossing.ambiguous) {
+      std::printf("Ambiguous: %s\n", ambiguous_from(crossing.t).c_str());
       break;
     }
 }
@@ -144,7 +144,7 @@ int run(const Options& o) {
     std::fputs(summary.c_str(), stdout);
   } else if (!o.quiet) {
     std::fputs(drift_table(study).c_str(), stdout);
-    print_passages(result);
+    print_singular_crossings(result);
     print_undetermined(result);
     if (!a.branch.empty()) std::printf("Started from %s\n", a.branch.c_str());
   }

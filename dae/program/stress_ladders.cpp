@@ -128,15 +128,15 @@ Ladder long_chains() {
       rod.mass = 1;
       rod.com = {0.5, 0, 0};
       rod.inertia = Eigen::Vector3d(0, 1. / 12, 1. / 12).asDiagonal();
-      JointSpec pin;
-      pin.name = "J" + std::to_string(i);
-      pin.child = rod.name;
+      JointSpec revolute;
+      revolute.name = "J" + std::to_string(i);
+      revolute.child = rod.name;
       if (i > 0) {
-        pin.parent = s.bodies.back().name;
-        pin.origin_parent = {1, 0, 0};
+        revolute.parent = s.bodies.back().name;
+        revolute.origin_parent = {1, 0, 0};
       }
       s.bodies.push_back(std::move(rod));
-      s.joints.push_back(std::move(pin));
+      s.joints.push_back(std::move(revolute));
     }
     s.run.end_time = 0.5;
     s.run.samples = 50;

@@ -47,9 +47,10 @@ class Bench {
     if (u) expect_size(*u, mechanism->nv(), rates, "nv");
   }
   [[noreturn]] void fail() const {
-    throw SceneError(solver && solver->stuck() >= 0 ? mechanism->no_inertia(solver->stuck())
-                     : e->stuck() >= 0              ? mechanism->no_inertia(e->stuck())
-                                                    : "the solution is not finite");
+    throw SceneError(solver && solver->singular_joint() >= 0
+                         ? mechanism->no_inertia(solver->singular_joint())
+                     : e->singular_joint() >= 0 ? mechanism->no_inertia(e->singular_joint())
+                                                : "the solution is not finite");
   }
 
   std::shared_ptr<const Mechanism> mechanism;

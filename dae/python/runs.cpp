@@ -156,7 +156,8 @@ py::dict counters(const RunResult& r) {
   all["jacobians"] = r.counters.jacobians;
   all["factorizations"] = r.counters.factorizations;
   all["newton_iterations"] = r.counters.newton_iterations;
-  all["detours"] = r.counters.detours;
+  all["ode_restarts"] = r.counters.ode_restarts;
+  all["detours"] = r.counters.ode_restarts;  // deprecated
   return all;
 }
 

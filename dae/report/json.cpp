@@ -51,7 +51,8 @@ Json summary_json(const RunResult& run, const Environment& environment) {
                       {"jacobians", c.jacobians},
                       {"factorizations", c.factorizations},
                       {"newton_iterations", c.newton_iterations},
-                      {"detours", c.detours}};
+                      {"ode_restarts", c.ode_restarts},
+                      {"detours", c.ode_restarts}};  // deprecated
   json["time"] = {{"cpu_s", number_or_null(run.cpu_s)},
                   {"wall_s", number_or_null(run.wall_s)},
                   {"repeats", run.repeats}};
@@ -68,10 +69,11 @@ Json summary_json(const RunResult& run, const Environment& environment) {
     json["faded_rows"].push_back(
         {{"loop", row.loop}, {"row", row.row}, {"evaluations", row.evaluations}});
   json["least_pivot"] = number_or_null(run.least_pivot);
-  json["passages"] = Json::array();
-  for (const auto& passage : run.passages)
-    json["passages"].push_back(
-        {{"t", passage.t}, {"pivot", passage.pivot}, {"ambiguous", passage.ambiguous}});
+  json["singular_crossings"] = Json::array();
+  for (const auto& crossing : run.singular_crossings)
+    json["singular_crossings"].push_back(
+        {{"t", crossing.t}, {"pivot", crossing.pivot}, {"ambiguous", crossing.ambiguous}});
+  json["passages"] = json["singular_crossings"];  // deprecated
   // Null where no trajectory was kept, and nobody looked.
   json["undetermined"] = run.trajectory.columns.empty() ? Json() : Json::array();
   for (const auto& u : run.undetermined)

@@ -72,7 +72,7 @@ std::size_t bytes_a_frame(const Picture& picture) {
     numbers += (body.turn == Picture::Turn::none         ? 0u
                 : body.turn == Picture::Turn::about_axis ? 1u
                                                          : 4u) +
-               (body.slides ? 3u : 0u);
+               (body.translations ? 3u : 0u);
   return 2 * numbers * 4 / 3;
 }
 
@@ -90,7 +90,7 @@ Json picture_json(const Picture& picture) {
                       {"at_parent", numbers_of(b.at_parent)},
                       {"at_child", numbers_of(b.at_child)},
                       {"turn", text_of(b.turn)},
-                      {"slides", b.slides},
+                      {"slides", b.translations},
                       {"rest", {b.rest.w(), b.rest.x(), b.rest.y(), b.rest.z()}},
                       {"axis", {b.axis.x(), b.axis.y(), b.axis.z()}},
                       {"shape", b.shape.kind},
@@ -114,11 +114,12 @@ Json picture_json(const Picture& picture) {
 }
 
 Json motion_json(const Picture& picture, const Motion& motion) {
-  double slide_scale = 0, gap_scale = 0;
+  double translation_scale = 0, gap_scale = 0;
   for (const Motion::Frame& frame : motion.frames) {
     for (std::size_t k = 0; k < picture.bodies.size(); ++k)
-      if (picture.bodies[k].slides)
-        slide_scale = std::max(slide_scale, frame.slide[k].lpNorm<Eigen::Infinity>());
+      if (picture.bodies[k].translations)
+        translation_scale =
+            std::max(translation_scale, frame.translation[k].lpNorm<Eigen::Infinity>());
     for (const auto& gap : frame.gap) gap_scale = std::max(gap_scale, gap.norm());
   }
   std::vector<std::int16_t> data;
@@ -136,17 +137,21 @@ Json motion_json(const Picture& picture, const Motion& motion) {
       for (const int i : {3, 0, 1, 2})  // Eigen keeps x y z w
         track([&](const Motion::Frame& f) { return part_of(f.turn[k].coeffs()[i], 1); });
     }
-    for (int i = 0; body.slides && i < 3; ++i)
-      track([&](const Motion::Frame& f) { return part_of(f.slide[k][i], slide_scale); });
+    for (int i = 0; body.translations && i < 3; ++i)
+      track(
+          [&](const Motion::Frame& f) { return part_of(f.translation[k][i], translation_scale); });
   }
   for (std::size_t i = 0; i < picture.loops.size(); ++i)
     for (int j = 0; j < (picture.planar ? 2 : 3); ++j)
       track([&](const Motion::Frame& f) {
         return part_of(picture.planar ? f.gap[i].dot(picture.view.col(j)) : f.gap[i][j], gap_scale);
       });
-  return {{"run", motion.run},          {"start", motion.start},
-          {"every", motion.every},      {"count", motion.frames.size()},
-          {"slide_scale", slide_scale}, {"gap_scale", gap_scale},
+  return {{"run", motion.run},
+          {"start", motion.start},
+          {"every", motion.every},
+          {"count", motion.frames.size()},
+          {"slide_scale", translation_scale},
+          {"gap_scale", gap_scale},
           {"data", base64(data)}};
 }
 

@@ -95,7 +95,8 @@ std::string summary_section(const StressResult& study) {
               "and ended. Slow: not done within " +
                   compact(study.cpu_limit, 3) +
                   " s of processor time. On a rising ladder nothing is tried after the first "
-                  "failure. The number in a cell is the largest of opening over length, energy "
+                  "failure. The number in a cell is the largest of position drift over length, "
+                  "energy "
                   "error over what is exchanged, and error against the reference.") +
           framed("ladders that all took part in",
                  tag("thead", "", tag("tr", "", head)) + tag("tbody", "", rows)));

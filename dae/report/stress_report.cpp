@@ -35,7 +35,7 @@ std::string verdict_text(const StressRun& r) {
 
 double worst_measure(const StressRun& r) {
   double worst = not_measured;
-  for (const double x : {r.opening, r.energy, r.error})
+  for (const double x : {r.position_drift, r.energy, r.error})
     if (std::isfinite(x) && !(x <= worst)) worst = x;
   return worst;
 }
@@ -115,7 +115,7 @@ std::string stress_table(const StressResult& study) {
 std::string stress_csv(const StressResult& study) {
   std::string text =
       "ladder,rung,form,integrator,gauge,project,rtol,step [s],end_time [s],verdict,cause,at [s],"
-      "opening,loop_speed,energy,error,reference_accuracy,steps,evaluations,cpu [s]\n";
+      "position_drift,velocity_drift,energy,error,reference_accuracy,steps,evaluations,cpu [s]\n";
   for (const LadderResult& ladder : study.ladders)
     for (const auto& climb : ladder.runs)
       for (const StressRun& r : climb) {
@@ -125,7 +125,7 @@ std::string stress_csv(const StressResult& study) {
                 s.integrator + "," + s.gauge + "," + (s.project ? "true" : "false") + "," +
                 round_trip(s.rtol) + "," + round_trip(s.step) + "," + round_trip(s.end_time) + "," +
                 name_of(r.verdict) + "," + csv_cell(r.cause) + "," + round_trip(r.at) + "," +
-                round_trip(r.opening) + "," + round_trip(r.loop_speed) + "," +
+                round_trip(r.position_drift) + "," + round_trip(r.velocity_drift) + "," +
                 round_trip(r.energy) + "," + round_trip(r.error) + "," +
                 round_trip(ladder.reference[k]) + "," + std::to_string(r.run.counters.steps) + "," +
                 std::to_string(r.run.counters.evaluations) + "," + round_trip(r.run.cpu_s) + "\n";
@@ -171,8 +171,10 @@ nlohmann::ordered_json stress_json(const StressResult& study) {
                              {"verdict", name_of(r.verdict)},
                              {"cause", r.cause},
                              {"at", number_or_null(r.at)},
-                             {"opening", number_or_null(r.opening)},
-                             {"loop_speed", number_or_null(r.loop_speed)},
+                             {"position_drift", number_or_null(r.position_drift)},
+                             {"velocity_drift", number_or_null(r.velocity_drift)},
+                             {"opening", number_or_null(r.position_drift)},     // deprecated
+                             {"loop_speed", number_or_null(r.velocity_drift)},  // deprecated
                              {"energy", number_or_null(r.energy)},
                              {"error", number_or_null(r.error)},
                              {"steps", r.run.counters.steps},

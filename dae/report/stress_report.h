@@ -9,7 +9,7 @@
 
 namespace momenta {
 
-/// Per ladder a table contestants × rungs, the verdict and the largest of opening, energy and error
+/// Per ladder a table contestants × rungs, the verdict and the largest of position drift, energy and error
 /// in each cell; then how often each contestant survived; then the cause of every first failure.
 std::string stress_table(const StressResult&);
 /// One row per run.
@@ -21,7 +21,7 @@ std::string stress_page(const StressResult&, const std::string& title);
 /// "#dcefe4" for survived, …: pages on white ground, and figures.
 const char* colour_of(Verdict);
 
-/// The largest of opening, energy and error that was measured; NaN for none.
+/// The largest of position drift, energy and error that was measured; NaN for none.
 double worst_measure(const StressRun&);
 
 /// How a contestant fared over the ladders that all took part in; of all ladders where there is no

@@ -62,11 +62,12 @@ Figure table_of(const StressResult& study, const LadderResult& ladder) {
                        10;
   const double height = head_height + row_height * static_cast<double>(rows.size()) + 10;
   return {file_name(ladder.name),
-          svg::document(width, height, ladder.name,
-                        "Verdicts of forms and integrators along a ladder; the number is the "
-                        "largest of opening over length, energy error over what is exchanged, and "
-                        "error against the reference, or when the run stopped.",
-                        inside)};
+          svg::document(
+              width, height, ladder.name,
+              "Verdicts of forms and integrators along a ladder; the number is the "
+              "largest of position drift over length, energy error over what is exchanged, and "
+              "error against the reference, or when the run stopped.",
+              inside)};
 }
 
 }  // namespace

@@ -6,14 +6,15 @@
 // very step; output times inside it; after_step on y_new; output times at its end; begin_step and
 // the first stage of the next. What is looked at does not change what is computed: the stages of
 // dense output are extra, and f at the end serves the next step only when y was not altered in
-// between. A step taken with care may be long against the distance to a singular pose, where no
-// polynomial follows the motion: its samples are ends of steps of their own. Nor can such a step be
-// more accurate than rounding in f lets it: close to the pose that is ε/δ, the estimate is of the
-// size of h ε/δ, and a control that takes it for the method's error shortens steps without end. So
-// where careful steps have become short, an estimate is held against that of a step shorter by a
-// 64th, from a start one rounding away. The method's own error is nearly the same in both; if most
-// is not, no shorter step is better, and the next is longer. Source: Hairer, Norsett, Wanner,
-// Solving Ordinary Differential Equations I, II.4-II.6, II.10.
+// between. A step taken with singularity handling may be long against the distance to a singular
+// pose, where no polynomial follows the motion: its samples are ends of steps of their own. Nor can
+// such a step be more accurate than rounding in f lets it: close to the pose that is ε/δ, the
+// estimate is of the size of h ε/δ, and a control that takes it for the method's error shortens
+// steps without end. So where steps with singularity handling have become short, an estimate is
+// held against that of a step shorter by a 64th, from a start one rounding away. The method's own
+// error is nearly the same in both; if most is not, no shorter step is better, and the next is
+// longer. Source: Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I, II.4-II.6,
+// II.10.
 
 #include <momenta/dae/solver/explicit_step.h>
 #include <momenta/dae/solver/first_step.h>
@@ -65,7 +66,8 @@ class ExplicitRun {
   }
 
  private:
-  /// A careful step below this part of the first one may be short because of rounding.
+  /// A step with singularity handling below this part of the first one may be short because of
+  /// rounding.
   static constexpr double short_step = 0.1;
   /// Squares of estimates over tolerances: below the first steps grow anyhow; above the second
   /// a pose was hit too closely.
@@ -111,7 +113,7 @@ class ExplicitRun {
       ++result_.counters.steps;
       bool altered = false;
       if (!observe(t1)) return false;
-      if (system_.wants_care() < care_) care(system_.wants_care());
+      if (system_.wanted_handling() < handling_) care(system_.wanted_handling());
       if (!correct(t1, altered)) return false;
       // Without a correction f at the end is the next first stage wherever it is there; with one,
       // only for methods that always have it, so that observing a run does not change it.
@@ -144,19 +146,21 @@ class ExplicitRun {
   /// One trial of a step to t1. False: repeat with the new h_, or, with a reason set, stop.
   bool attempt(double t1) {
     StageFailure failure = step_.attempt(t_, t1, h_);
-    // Once more with care: f differs there from what these stages were.
-    if (!fixed_ && system_.wants_care() > care_) {
-      const bool again = system_.wants_care() == Care::position;
-      care(system_.wants_care());
+    // Once more with singularity handling: f differs there from what these stages were.
+    if (!fixed_ && system_.wanted_handling() > handling_) {
+      const bool again = system_.wanted_handling() == SingularityHandling::position;
+      care(system_.wanted_handling());
       if (again) failure = step_.attempt(t_, t1, h_);
     }
     double error_squared = 0;
     if constexpr (Tableau::estimates > 0)
       if (!fixed_ && failure == StageFailure::none) {
-        error_squared = care_ != Care::none ? step_.motion_error_squared() : step_.error_squared();
+        error_squared = handling_ != SingularityHandling::none ? step_.motion_error_squared()
+                                                               : step_.error_squared();
         if (!std::isfinite(error_squared)) failure = StageFailure::not_finite;
       }
-    if (care_ != Care::none && failure == StageFailure::none && is_rounding(error_squared)) {
+    if (handling_ != SingularityHandling::none && failure == StageFailure::none &&
+        is_rounding(error_squared)) {
       if (error_squared < most_rounding) {
         lengthened_ = 0;
         h_ = std::min(2 * h_, longest_step());
@@ -187,7 +191,7 @@ class ExplicitRun {
   /// Whether an estimate is rounding for the most part.
   bool is_rounding(double error_squared) {
     if constexpr (Tableau::estimates > 0) {
-      if (!(h_ < short_step * first_careful_ && error_squared > least_suspect)) return false;
+      if (!(h_ < short_step * first_handled_ && error_squared > least_suspect)) return false;
       if (!again_) again_.emplace(system_, options_.rtol, options_.atol, step_.y());
       for (std::size_t i = 0; i < sample_.size(); ++i)
         again_->y()[i] = step_.y()[i] * (i % 2 == 0 ? 1 + epsilon : 1 - epsilon);
@@ -200,10 +204,10 @@ class ExplicitRun {
     return false;
   }
 
-  void care(Care care) {
-    if (care_ == Care::none) first_careful_ = h_;
-    care_ = care;
-    system_.take_care(care);
+  void care(SingularityHandling care) {
+    if (handling_ == SingularityHandling::none) first_handled_ = h_;
+    handling_ = care;
+    system_.set_handling(care);
   }
 
   /// Steps of their own from this one's start to t, each within the tolerance; uncounted, and not
@@ -255,7 +259,8 @@ class ExplicitRun {
       const double t = outputs_.time();
       outputs_.advance();
       if (!observer_.sample) continue;
-      if (!(care_ != Care::none && steps_to(t)) && !step_.interpolate(t, sample_.data()))
+      if (!(handling_ != SingularityHandling::none && steps_to(t)) &&
+          !step_.interpolate(t, sample_.data()))
         return stop_at_interpolation(t1);
       if (!observer_.sample(t, sample_.data(), nullptr))
         return stop_here(t, sample_.data(), "the observer ended the run");
@@ -317,7 +322,7 @@ class ExplicitRun {
   const Observer& observer_;
   OutputCursor outputs_;
   ExplicitStep<Tableau> step_;
-  std::optional<ExplicitStep<Tableau>> look_;   ///< for samples of careful steps
+  std::optional<ExplicitStep<Tableau>> look_;   ///< for samples of steps with singularity handling
   std::optional<ExplicitStep<Tableau>> again_;  ///< from a start one rounding away
   StepControl<Tableau> control_;
   CpuLimit cpu_;
@@ -326,8 +331,8 @@ class ExplicitRun {
   double h_ = 0;         ///< step tried next [s]
   bool fixed_;           ///< steps of options.step, no error control
   std::vector<double> sample_, unaltered_;
-  Care care_ = Care::none;          ///< of the step under way
-  double first_careful_ = 0;        ///< the step with which care began [s]
+  SingularityHandling handling_ = SingularityHandling::none;  ///< of the step under way
+  double first_handled_ = 0;        ///< the step with which singularity handling began [s]
   int lengthened_ = 0;              ///< trials of this step
   bool corrected_;                  ///< the system alters accepted states
   bool stopped_elsewhere_ = false;  ///< result_ has a time and state that are no step's start

@@ -2,20 +2,19 @@
 // no Jacobian, g at rounding after every step.
 //
 // One step: k_1 = f(t, y_0, Z_1) from the step before; for i = 1 … 5 the stage Y_{i+1} by a, and
-// its Z by ā_{i+1}, which gives k_{i+1}; then y_1 = Ȳ_6, and k_7 = f(t_1, y_1, Z_7). Local error:
-// h Σ (b_j − b̂_j) k_j, over y, in the norm of WeightedNorm. Quaternions return to unit length after
-// a step; inside it they move as the equations move them, and |q| = 1 + O(h⁶).
-// z at a step's end is Z_7, of the order of y. A sample inside a step is a step of its own from
-// the step's start, of full order and on the constraint; where that fails, Hermite's cubic.
-// Step: options.step, without error control, where given; else PI control as in dp5.
-// Source: tableau_hem5.h.
+// its Z by ā_{i+1}, which gives k_{i+1}; then y_1 = Ȳ_6, and k_7 = f(t_1, y_1, Z_7). Local error: h
+// Σ (b_j − b̂_j) k_j, over y, in the norm of WeightedNorm. Quaternions return to unit length after
+// a step; inside it they move as the equations move them, and |q| = 1 + O(h⁶). z at a step's end is
+// Z_7, of the order of y. A sample inside a step is a step of its own from the step's start, of
+// full order and on the constraint; where that fails, Hermite's cubic. Step: options.step, without
+// error control, where given; else PI control as in dp5. Source: tableau_hem5.h.
 
 #include <momenta/core/scalar/all_finite.h>
-#include <momenta/dae/solver/detour.h>
 #include <momenta/dae/solver/fixed_grid.h>
 #include <momenta/dae/solver/half_explicit.h>
 #include <momenta/dae/solver/implicit_methods.h>
 #include <momenta/dae/solver/multistep_run.h>
+#include <momenta/dae/solver/ode_restart.h>
 #include <momenta/dae/solver/step_control.h>
 #include <momenta/dae/solver/tableau_hem5.h>
 #include <momenta/dae/solver/weighted_norm.h>
@@ -253,8 +252,9 @@ IntegrationResult integrate_hem5(DaeSystem& system, double t0,
     result.y.assign(method.y(), method.y() + system.size());
     return result;
   }
-  Detoured<Hem5> run(method, system, options);
-  MultistepRun<Detoured<Hem5>>(run, system.size(), t0, output_times, options, observer).run(result);
+  WithOdeRestarts<Hem5> run(method, system, options);
+  MultistepRun<WithOdeRestarts<Hem5>>(run, system.size(), t0, output_times, options, observer)
+      .run(result);
   result.counters = method.counters();
   run.count(result.counters);
   return result;

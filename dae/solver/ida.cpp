@@ -13,10 +13,10 @@
 // Numerical Solution of Initial-Value Problems in Differential-Algebraic Equations, ch. 5.
 
 #include <momenta/core/scalar/all_finite.h>
-#include <momenta/dae/solver/detour.h>
 #include <momenta/dae/solver/ida_matrix.h>
 #include <momenta/dae/solver/integration.h>
 #include <momenta/dae/solver/multistep_run.h>
+#include <momenta/dae/solver/ode_restart.h>
 #include <momenta/dae/solver/rounding_floor.h>
 #include <momenta/dae/solver/sundials_handles.h>
 
@@ -306,8 +306,9 @@ IntegrationResult integrate_ida(DaeSystem& system, double t0,
   }
   const bool has_span = outputs.end() > t0;
   if (has_span) ida.initialise();
-  Detoured<Ida> run(ida, system, options);
-  MultistepRun<Detoured<Ida>>(run, system.size(), t0, output_times, options, observer).run(result);
+  WithOdeRestarts<Ida> run(ida, system, options);
+  MultistepRun<WithOdeRestarts<Ida>>(run, system.size(), t0, output_times, options, observer)
+      .run(result);
   if (has_span) result.counters = ida.counters();
   run.count(result.counters);
   return result;

@@ -26,7 +26,8 @@ struct IntegrationOptions {
 struct Counters {
   long steps = 0, rejected = 0, evaluations = 0, jacobians = 0, factorizations = 0,
        newton_iterations = 0;
-  long detours = 0;  ///< of the steps, those of DAE methods taken as an ODE near singular poses
+  long ode_restarts =
+      0;  ///< of the steps, those of DAE methods taken as an ODE near singular poses
 };
 
 /// Interpolates the last accepted step: y (size of the system) at any t in [t0, t1].

@@ -18,10 +18,10 @@
 // Hairer, Lubich, Roche, The Numerical Solution of Differential-Algebraic Systems by RK Methods.
 
 #include <momenta/core/scalar/all_finite.h>
-#include <momenta/dae/solver/detour.h>
 #include <momenta/dae/solver/fixed_grid.h>
 #include <momenta/dae/solver/implicit_methods.h>
 #include <momenta/dae/solver/multistep_run.h>
+#include <momenta/dae/solver/ode_restart.h>
 #include <momenta/dae/solver/radau5_stages.h>
 
 #include <limits>
@@ -345,8 +345,8 @@ IntegrationResult integrate_radau5(DaeSystem& system, double t0,
     return result;
   }
   if (outputs.end() > t0) radau.initialise();
-  Detoured<Radau5> run(radau, system, options);
-  MultistepRun<Detoured<Radau5>>(run, system.size(), t0, output_times, options, observer)
+  WithOdeRestarts<Radau5> run(radau, system, options);
+  MultistepRun<WithOdeRestarts<Radau5>>(run, system.size(), t0, output_times, options, observer)
       .run(result);
   result.counters = radau.counters();
   run.count(result.counters);

@@ -11,7 +11,7 @@ namespace momenta {
 
 /// What a method with error control does about singular poses, in order of what it costs: nothing,
 /// errors measured by what they change of the motion, f at the corrected position as well.
-enum class Care { none, norm, position };
+enum class SingularityHandling { none, norm, position };
 
 class OdeSystem {
  public:
@@ -39,12 +39,12 @@ class OdeSystem {
   /// What evaluations since begin_step() ask for: where loop equations become dependent, a stage a
   /// little off the manifold is far off in its rates. A method that controls its error repeats the
   /// step where f changes with it.
-  virtual Care wants_care() const { return Care::none; }
-  /// Care::position alone changes f.
-  virtual void take_care(Care /*care*/) {}
+  virtual SingularityHandling wanted_handling() const { return SingularityHandling::none; }
+  /// SingularityHandling::position alone changes f.
+  virtual void set_handling(SingularityHandling /*singularity handling*/) {}
   /// Square of a norm of the local error at (t, y), root mean square over the unknowns, of what
   /// changes the motion alone: not of the gauge of σ. The weight of an unknown is atol · scale +
-  /// rtol · size. Not finite when it cannot be had. In use while there is care.
+  /// rtol · size. Not finite when it cannot be had. In use while there is singularity handling.
   virtual double motion_error_squared(double /*t*/, const double* /*y*/, const double* /*error*/,
                                       double /*rtol*/, double /*atol*/) {
     return std::numeric_limits<double>::quiet_NaN();
@@ -140,12 +140,12 @@ class DaeSystem {
   /// Whether the coordinates that lead y, and the states below, are near a pose where loop
   /// equations lose rank: the Newton matrix of any method whose step spans it may be singular.
   virtual bool near_singular(double /*t*/, const double* /*y*/) { return false; }
-  /// There: the same motion as an ODE whose steps are taken with care, and its `state`
-  /// (detour_size()) at (t, y).
-  virtual OdeSystem* detour(double /*t*/, const double* /*y*/, double* /*state*/) {
+  /// There: the same motion as an ODE whose steps are taken with singularity handling, and its
+  /// `state` (ode_restart_size()) at (t, y).
+  virtual OdeSystem* ode_restart(double /*t*/, const double* /*y*/, double* /*state*/) {
     return nullptr;
   }
-  virtual int detour_size() const { return 0; }
+  virtual int ode_restart_size() const { return 0; }
   /// y and y' from a state of that ODE; y comes with the multipliers of a moment ago.
   virtual bool rejoin(double /*t*/, const double* /*state*/, double* /*y*/, double* /*ydot*/) {
     return false;

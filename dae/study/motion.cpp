@@ -29,7 +29,7 @@ Picture::Turn turn_of(JointKind kind) {
       return Picture::Turn::freely;
   }
 }
-bool can_slide(JointKind kind) {
+bool can_translation(JointKind kind) {
   return kind != JointKind::weld && kind != JointKind::revolute && kind != JointKind::universal &&
          kind != JointKind::spherical;
 }
@@ -51,9 +51,9 @@ struct Order {
 };
 
 /// What a loop leaves free between its points, and what drives prescribe of it.
-class Opening {
+class LoopGap {
  public:
-  Opening(const Scene& scene, const LoopSpec& loop) : loop_(loop) {
+  LoopGap(const Scene& scene, const LoopSpec& loop) : loop_(loop) {
     for (const DriveSpec& drive : scene.drives)
       if (drive.loop == loop.name) drives_.push_back({MotionLaw(drive), drive});
     const Vector3d axis = loop.axis.normalized();
@@ -138,7 +138,7 @@ Picture picture_of(const Mechanism& mechanism) {
     body.at_parent = joint->origin_parent;
     body.at_child = joint->origin_child;
     body.turn = turn_of(joint->kind);
-    body.slides = can_slide(joint->kind);
+    body.translations = can_translation(joint->kind);
     body.rest = joint->rotation;
     body.axis = joint->axis.normalized();
     body.shape = spec.shape;
@@ -191,11 +191,11 @@ Motion motion_of(const Mechanism& mechanism, const Film& film) {
   std::vector<std::size_t> in_tree;
   for (const JointSpec* joint : order.joints)
     in_tree.push_back(static_cast<std::size_t>(mechanism.tree().body(joint->child)));
-  std::vector<Opening> openings;
+  std::vector<LoopGap> gaps;
   std::vector<std::pair<int, int>> sides;
   for (const LoopSpec& loop : mechanism.scene().loops)
     if (loop.kind != LoopKind::coupler) {
-      openings.emplace_back(mechanism.scene(), loop);
+      gaps.emplace_back(mechanism.scene(), loop);
       sides.push_back({order.place.at(loop.parent), order.place.at(loop.child)});
     }
 
@@ -214,10 +214,10 @@ Motion motion_of(const Mechanism& mechanism, const Film& film) {
       const Isometry3d relative =
           of(order.place.at(joint.parent)).inverse() * of(static_cast<int>(k));
       frame.turn.push_back(Quaterniond(relative.linear()).normalized());
-      frame.slide.push_back(relative * joint.origin_child);
+      frame.translation.push_back(relative * joint.origin_child);
     }
-    for (std::size_t i = 0; i < openings.size(); ++i)
-      frame.gap.push_back(openings[i].gap(t, of(sides[i].first), of(sides[i].second)));
+    for (std::size_t i = 0; i < gaps.size(); ++i)
+      frame.gap.push_back(gaps[i].gap(t, of(sides[i].first), of(sides[i].second)));
     motion.frames.push_back(std::move(frame));
   }
   return motion;
@@ -231,7 +231,7 @@ std::vector<Isometry3d> places(const Picture& picture, const Motion::Frame& fram
         body.parent < 0 ? Isometry3d::Identity() : all[static_cast<std::size_t>(body.parent)];
     Isometry3d place = Isometry3d::Identity();
     place.linear() = parent.linear() * frame.turn[k].toRotationMatrix();
-    place.translation() = parent * frame.slide[k] - place.linear() * body.at_child;
+    place.translation() = parent * frame.translation[k] - place.linear() * body.at_child;
     all.push_back(place);
   }
   return all;
@@ -246,7 +246,7 @@ std::pair<double, double> largest_change(const Motion& motion, std::size_t strid
     for (std::size_t k = 0; k < motion.frames[i].turn.size(); ++k) {
       const auto &a = motion.frames[i - stride], &b = motion.frames[i];
       turn = std::max(turn, a.turn[k].angularDistance(b.turn[k]));
-      shift = std::max(shift, (a.slide[k] - b.slide[k]).norm());
+      shift = std::max(shift, (a.translation[k] - b.translation[k]).norm());
     }
   return {turn, shift};
 }

@@ -28,7 +28,7 @@ struct Picture {
     Eigen::Vector3d at_child = Eigen::Vector3d::Zero();   ///< c
     /// T = rest · R(axis, angle) of joints that turn about one axis, fixed in both bodies.
     Turn turn = Turn::none;
-    bool slides = false;
+    bool translations = false;
     Eigen::Quaterniond rest = Eigen::Quaterniond::Identity();
     Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< in the joint frame
     Shape shape;
@@ -70,8 +70,8 @@ struct Motion {
   int run = -1;  ///< of which run of a study; −1: the start, before any
   struct Frame {
     std::vector<Eigen::Quaterniond> turn;  ///< unit; of `about_axis` with its vector along the axis
-    std::vector<Eigen::Vector3d> slide;    ///< [m]
-    std::vector<Eigen::Vector3d> gap;      ///< [m]
+    std::vector<Eigen::Vector3d> translation;  ///< [m]
+    std::vector<Eigen::Vector3d> gap;          ///< [m]
   };
   double start = 0, every = 0;
   std::vector<Frame> frames;

@@ -95,8 +95,8 @@ class QuadSweeps final : public QuadMotion {
   LoopModel<Space> loops_;
   LoopPlan plan_;
   std::unique_ptr<Evaluation<Quad>> e_;
-  LoopSweeps<Space, Quad, LoopPlan::most_lanes, false> accelerations_;
-  LoopSweeps<Space, Quad, LoopPlan::most_lanes, true> corrections_;
+  LoopSweeps<Space, Quad, LoopPlan::most_slots, false> accelerations_;
+  LoopSweeps<Space, Quad, LoopPlan::most_slots, true> corrections_;
   std::vector<Quad> tau_, work_, sigma_, delta_;
 };
 

@@ -1,7 +1,7 @@
 #include <momenta/dae/form/ode_form.h>
 #include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/solver/stopping.h>
-#include <momenta/dae/study/looker.h>
+#include <momenta/dae/study/run_monitor.h>
 
 #include <algorithm>
 #include <chrono>
@@ -152,24 +152,24 @@ RunResult run_form(const Mechanism& mechanism, const Start& start, const RunRequ
   }
   Runner& runner = *made;
   const double wall_start = wall_now(), cpu_start = thread_seconds();
-  Looker looker(mechanism, runner.form(), request, result);
+  RunMonitor monitor(mechanism, runner.form(), request, result);
   const auto y0 = runner.form().initial(start);
-  looker.sample(start.t, y0.data(), nullptr);
+  monitor.sample(start.t, y0.data(), nullptr);
   auto* ode = dynamic_cast<OdeForm*>(&runner.form());
   std::vector<long> faded(static_cast<std::size_t>(mechanism.m()));
   if (ode && mechanism.m() > 0) ode->watch_faded(&faded);
   const IntegrationResult run = runner.integrate(
       output_times(result.settings, request.reference),
       Observer{
-          [&](double t, const double* y, const double* ydot) { return looker.sample(t, y, ydot); },
+          [&](double t, const double* y, const double* ydot) { return monitor.sample(t, y, ydot); },
           [&](double t0, double t1, const Interpolant& between) {
-            return looker.step(t0, t1, between);
+            return monitor.step(t0, t1, between);
           }});
   result.cpu_s = thread_seconds() - cpu_start;
   result.wall_s = wall_now() - wall_start;
   result.status =
       run.done ? "done" : (run.reason.rfind("time limit", 0) == 0 ? "time limit" : "failed");
-  result.reason = run.done ? "" : (looker.trouble().empty() ? run.reason : looker.trouble());
+  result.reason = run.done ? "" : (monitor.trouble().empty() ? run.reason : monitor.trouble());
   result.stopped_at = run.end_time;
   result.counters = run.counters;
   result.jacobian = run.jacobian;
@@ -180,7 +180,7 @@ RunResult run_form(const Mechanism& mechanism, const Start& start, const RunRequ
     if (faded[row] > 0)
       result.faded_rows.push_back(
           {mechanism.rows()[row].loop, mechanism.rows()[row].what, faded[row]});
-  looker.finish();
+  monitor.finish();
   return result;
 }
 

@@ -34,10 +34,11 @@ void list(const Each& each,
 template <class Each>
 void list(const Each& each,
           auto&& s) requires std::is_same_v<std::remove_cvref_t<decltype(s)>, Counters> {
-  auto& [steps, rejected, evaluations, jacobians, factorizations, newton_iterations, detours] = s;
+  auto& [steps, rejected, evaluations, jacobians, factorizations, newton_iterations, ode_restarts] =
+      s;
   each("steps", steps), each("rejected", rejected), each("evaluations", evaluations);
   each("jacobians", jacobians), each("factorizations", factorizations);
-  each("newton_iterations", newton_iterations), each("detours", detours);
+  each("newton_iterations", newton_iterations), each("ode_restarts", ode_restarts);
 }
 
 template <class Each>
@@ -65,8 +66,8 @@ void list(const Each& each,
 }
 
 template <class Each>
-void list(const Each& each,
-          auto&& s) requires std::is_same_v<std::remove_cvref_t<decltype(s)>, RunResult::Passage> {
+void list(const Each& each, auto&& s) requires
+    std::is_same_v<std::remove_cvref_t<decltype(s)>, RunResult::SingularCrossing> {
   auto& [t, pivot, ambiguous] = s;
   each("t", t), each("pivot", pivot), each("ambiguous", ambiguous);
 }
@@ -84,8 +85,8 @@ void list(const Each& each,
   auto& [scene, settings, status, reason, stopped_at, counters, partitions, jacobian, linear_solver,
          cpu_s, wall_s, repeats, position_drift_max, velocity_drift_max, between_steps_max,
          position_growth, velocity_growth, energy_error_max, kinetic_energy_max, energy_scale,
-         position_error_max, velocity_error_max, faded_rows, passages, least_pivot, undetermined,
-         series, trajectory, film] = s;
+         position_error_max, velocity_error_max, faded_rows, singular_crossings, least_pivot,
+         undetermined, series, trajectory, film] = s;
   each("scene", scene), each("settings", settings), each("status", status), each("reason", reason);
   each("stopped_at", stopped_at), each("counters", counters), each("partitions", partitions);
   each("jacobian", jacobian), each("linear_solver", linear_solver);
@@ -96,7 +97,8 @@ void list(const Each& each,
   each("energy_error_max", energy_error_max), each("kinetic_energy_max", kinetic_energy_max);
   each("energy_scale", energy_scale);
   each("position_error_max", position_error_max), each("velocity_error_max", velocity_error_max);
-  each("faded_rows", faded_rows), each("passages", passages), each("least_pivot", least_pivot);
+  each("faded_rows", faded_rows), each("singular_crossings", singular_crossings),
+      each("least_pivot", least_pivot);
   each("undetermined", undetermined);
   each("series", series), each("film", film);
   static_cast<void>(trajectory);  // no study keeps one
@@ -119,10 +121,11 @@ void list(const Each& each,
 template <class Each>
 void list(const Each& each,
           auto&& s) requires std::is_same_v<std::remove_cvref_t<decltype(s)>, StressRun> {
-  auto& [contestant, rung, verdict, cause, at, opening, energy, error, loop_speed, run] = s;
+  auto& [contestant, rung, verdict, cause, at, position_drift, energy, error, velocity_drift, run] =
+      s;
   each("contestant", contestant), each("rung", rung), each("verdict", verdict);
-  each("cause", cause), each("at", at), each("opening", opening), each("energy", energy);
-  each("error", error), each("loop_speed", loop_speed), each("run", run);
+  each("cause", cause), each("at", at), each("position_drift", position_drift), each("energy", energy);
+  each("error", error), each("velocity_drift", velocity_drift), each("run", run);
 }
 
 template <class Each>

@@ -93,14 +93,14 @@ struct RunResult {
   /// Where loop equations came near to losing rank, beyond what is redundant everywhere: the least
   /// pivot on the way, relative to what it would be without other loops; it goes with the square of
   /// the distance to the singular pose. Not where (7) is solved by KLU.
-  struct Passage {
+  struct SingularCrossing {
     double t = 0;      ///< [s]
     double pivot = 0;  ///< least, 0: faded
     /// The loops were open, in lengths of the scene, by as much as the pivot: motions that meet at
     /// the pose are no longer told apart, and which one went on is chance.
     bool ambiguous = false;
   };
-  std::vector<Passage> passages;
+  std::vector<SingularCrossing> singular_crossings;
   double least_pivot = not_measured;  ///< of the whole run
   /// Loop forces of the trajectory that are not unique (measure/multipliers.h), where one is kept.
   struct Undetermined {

@@ -26,14 +26,14 @@ class StateEvaluator {
       kkt_ = make_kkt(mechanism_);
       e_->place(given_.t, given_.q.data());
       if (nv > 0 && !kkt_->factor(*e_, given_.t, given_.q.data(), fade_evaluation))
-        refuse(kkt_->stuck());
+        refuse(kkt_->singular_joint());
       s_.faded = kkt_->faded();
     }
     rates_and_momenta();
     forces();
     free_acceleration();
     if (m > 0) constrained_acceleration();
-    s_.whole = whole(mechanism_.tree(), mechanism_.scene(), given_.t, given_.q, s_.v);
+    s_.centroidal = centroidal(mechanism_.tree(), mechanism_.scene(), given_.t, given_.q, s_.v);
     s_.reactions = reactions(mechanism_, given_.t, given_.q, s_.v, m > 0 ? s_.constrained : s_.free,
                              s_.lambda);
     if (nv + m <= dense_state_limit) dense_parts();
@@ -69,7 +69,7 @@ class StateEvaluator {
     if (mechanism_.m() == 0) {
       if (!e_->open_momentum_rates(given_.t, given_.q.data(), s_.p.data(), s_.v.data(),
                                    s_.pdot.data()))
-        refuse(e_->stuck());
+        refuse(e_->singular_joint());
       return;
     }
     // Prescribed parts of M u and Φ̇ go to the right.
@@ -123,12 +123,12 @@ class StateEvaluator {
     if (mechanism_.nv() == 0) return;
     if (mechanism_.m() > 0) return free_of_loops();
     const double *q = given_.q.data(), t = given_.t;
-    if (!e_->open_accelerations(t, q, s_.v.data(), s_.free.data())) refuse(e_->stuck());
+    if (!e_->open_accelerations(t, q, s_.v.data(), s_.free.data())) refuse(e_->singular_joint());
     if (given_.tau.isZero(0)) return;
     VectorXd with(mechanism_.nv()), without = VectorXd::Zero(mechanism_.nv());
     VectorXd unused(mechanism_.nv());
     if (!e_->open_momentum_rates(t, q, given_.tau.data(), with.data(), unused.data()))
-      refuse(e_->stuck());
+      refuse(e_->singular_joint());
     if (mechanism_.plan().drives) {
       const VectorXd zero = VectorXd::Zero(mechanism_.nv());
       e_->open_momentum_rates(t, q, zero.data(), without.data(), unused.data());
@@ -142,7 +142,8 @@ class StateEvaluator {
     std::vector<double> values(pattern.mass.size());
     e_->mass_entries(values.data());
     TreeFactor factor(pattern, mechanism_.nv());
-    if (const int stuck = factor.factor(values); stuck >= 0) refuse(stuck);
+    if (const int singular_joint = factor.factor(values); singular_joint >= 0)
+      refuse(singular_joint);
     s_.free = -s_.bias;
     factor.inward(s_.free.data());
     for (int i = 0; i < mechanism_.nv(); ++i)

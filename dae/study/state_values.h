@@ -14,7 +14,7 @@
 // τ is a further generalised force along the joints; it counts among the applied ones everywhere.
 // Without loops everything but M is O(bodies), and no system of loops is built.
 
-#include <momenta/core/whole.h>
+#include <momenta/core/centroidal.h>
 #include <momenta/dae/measure/reactions.h>
 
 namespace momenta {
@@ -35,7 +35,7 @@ struct StateValues {
   Eigen::VectorXd phi, phidot, sigma, lambda;
   int faded = 0;  ///< rows that the solution of (7) found dependent or nearly so: σ, λ not unique
   double kinetic = 0, potential = 0, hamiltonian = 0;  ///< H = p·v − T + V
-  Whole whole;
+  Centroidal centroidal;
   Reactions reactions;
   std::vector<double> markers;  ///< per marker x y z and velocity
 

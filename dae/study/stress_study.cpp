@@ -114,8 +114,8 @@ void judge(StressRun& r, const Ground& ground, double bound, double cpu_limit) {
   // Where nothing moves, rounding is no failure: a millionth of its length over the run is rest.
   const double rest = 1e-6 * ground.length / run.settings.end_time;
   const double energy_scale = std::max(run.energy_scale, 0.5 * ground.mass * rest * rest);
-  r.opening = run.position_drift_max / ground.length;
-  r.loop_speed = run.velocity_drift_max / std::sqrt(2 * run.kinetic_energy_max / ground.mass);
+  r.position_drift = run.position_drift_max / ground.length;
+  r.velocity_drift = run.velocity_drift_max / std::sqrt(2 * run.kinetic_energy_max / ground.mass);
   r.energy = run.energy_error_max / energy_scale;
   r.error = run.position_error_max;
   if (run.status == "time limit") {
@@ -150,11 +150,11 @@ void judge(StressRun& r, const Ground& ground, double bound, double cpu_limit) {
                                   : " of what is exchanged") +
               " at the most, beyond the bound from t = " + digits(at) + " s";
   }
-  for (const RunResult::Passage& passage : run.passages)
-    if (r.verdict == Verdict::wrong && passage.ambiguous && passage.t <= r.at) {
+  for (const RunResult::SingularCrossing& crossing : run.singular_crossings)
+    if (r.verdict == Verdict::wrong && crossing.ambiguous && crossing.t <= r.at) {
       r.verdict = Verdict::stopped;  // as far as it vouches for itself
-      r.at = passage.t;
-      r.cause = ambiguous_from(passage.t);
+      r.at = crossing.t;
+      r.cause = ambiguous_from(crossing.t);
     }
   if (r.verdict != Verdict::untried) return;
   if (run.status != "done") {

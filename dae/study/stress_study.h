@@ -4,7 +4,7 @@
 //
 // A run has survived when it came to its end within the time allowed and
 //
-//   opening   max |Φ| / length of the scene
+//   position drift   max |Φ| / length of the scene
 //   energy    max |E(t) − E(0)| / max (T + |V − V(0)|)
 //   error     max |q − q_ref| / (1 + |q_ref|), where there is a reference
 //
@@ -49,8 +49,8 @@ struct StressRun {
   Verdict verdict = Verdict::untried;
   std::string cause;         ///< one sentence where it did not survive
   double at = not_measured;  ///< when it went wrong or stopped [s]
-  double opening = not_measured, energy = not_measured, error = not_measured;
-  double loop_speed =
+  double position_drift = not_measured, energy = not_measured, error = not_measured;
+  double velocity_drift =
       not_measured;  ///< max |Φ̇| / √(2 T / m), largest kinetic energy T, whole mass m
   RunResult run;     ///< without series
 };

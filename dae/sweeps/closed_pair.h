@@ -6,12 +6,12 @@
 
 namespace momenta {
 
-/// A pair of point rows at lanes A, A + 1 closed in registers; state by state the row with the
+/// A pair of point rows at slots A, A + 1 closed in registers; state by state the row with the
 /// larger pivot goes first: (a, b) ← (b, −a) where W_bb > W_aa.
 template <class S, int Rows, int Columns>
 struct ClosedPair {
   struct Nothing {};
-  using Beside = std::conditional_t<(Rows > 2), Lanes<S, Rows>, Nothing>;
+  using Beside = std::conditional_t<(Rows > 2), Slots<S, Rows>, Nothing>;
   struct Pivots {
     S w_a, w_b, tau;
   };
@@ -21,7 +21,7 @@ struct ClosedPair {
   [[no_unique_address]] std::conditional_t<keeps_pivots<S>, Pivots, Nothing> pivots;
 
   template <class Motion>
-  MOMENTA_INLINE void impulses(const Motion& omega, const Lanes<S, Rows>& sigma, LaneGroups beside,
+  MOMENTA_INLINE void impulses(const Motion& omega, const Slots<S, Rows>& sigma, SlotGroups beside,
                                S& x, S& y) const {
     x = da;
     y = db;
@@ -31,7 +31,7 @@ struct ClosedPair {
     });
     unite(sigma, beside, x, y);
   }
-  MOMENTA_INLINE void impulses_at_ground(const Lanes<S, Rows>& sigma, LaneGroups beside, S& x,
+  MOMENTA_INLINE void impulses_at_ground(const Slots<S, Rows>& sigma, SlotGroups beside, S& x,
                                          S& y) const {
     x = da;
     y = db;
@@ -39,8 +39,8 @@ struct ClosedPair {
   }
 
  private:
-  MOMENTA_INLINE void unite([[maybe_unused]] const Lanes<S, Rows>& sigma,
-                            [[maybe_unused]] LaneGroups beside, S& x, S& y) const {
+  MOMENTA_INLINE void unite([[maybe_unused]] const Slots<S, Rows>& sigma,
+                            [[maybe_unused]] SlotGroups beside, S& x, S& y) const {
     if constexpr (Rows > 2) {
       x = minus_dot(x, Ga, sigma, beside);
       y = minus_dot(y, Gb, sigma, beside);
@@ -92,10 +92,10 @@ MOMENTA_INLINE void invert_pivots(const S& w_a, const S& w_b, const S& k, const 
 /// Closes a pair; `beside`: the loops that stay open.
 template <int A, bool Moves, class S, int Rows, int Columns, class Weight>
 MOMENTA_INLINE void close_pair(Front<S, Rows, Columns>& front, double fade,
-                               [[maybe_unused]] LaneGroups beside,
+                               [[maybe_unused]] SlotGroups beside,
                                ClosedPair<S, Rows, Columns>& pair, Weight&& weight) {
   constexpr int B = A + 1;
-  using Here = Lanes<S, Rows>;
+  using Here = Slots<S, Rows>;
   const S zero(0.0), one(1.0);
   const S waa = front.template w<A, A>(), wbb = front.template w<B, B>(),
           wab = front.template w<A, B>();

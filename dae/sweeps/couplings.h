@@ -7,14 +7,14 @@
 
 namespace momenta {
 
-/// Calls act(coupling, loop, lane) for the couplers that tie the joint of body k.
+/// Calls act(coupling, loop, slot) for the couplers that tie the joint of body k.
 template <class Act>
 void each_coupling(const LoopPlan& plan, std::size_t k, Act&& act) {
   const LoopPlan::Range range = plan.couplings_of[k];
   for (int i = range.first; i < range.last; ++i) {
     const LoopPlan::Coupling& coupling = plan.couplings[static_cast<std::size_t>(i)];
     const auto loop = static_cast<std::size_t>(coupling.loop);
-    act(coupling, loop, plan.lane[loop]);
+    act(coupling, loop, plan.slot[loop]);
   }
 }
 

@@ -16,18 +16,18 @@
 // row's whole moment, and no closing takes from it. It is a measure even where a row is redundant
 // and W nothing but rounding.
 
-#include <momenta/dae/sweeps/lanes.h>
+#include <momenta/dae/sweeps/slots.h>
 
 namespace momenta {
 
 /// Blocks of the loops open at a front; `columns`: 3 in a plane, 6 in space.
 template <class S, int Rows, int Columns>
 struct Front {
-  using Here = Lanes<S, Rows>;
+  using Here = Slots<S, Rows>;
   Here C[Columns];  ///< wrench of a unit impulse, force before couple
   Here d;
   Here scale;
-  Here W[Rows];  ///< symmetric: of lanes apart only the upper triangle is kept
+  Here W[Rows];  ///< symmetric: of slots apart only the upper triangle is kept
 
   MOMENTA_INLINE S w(int i, int j) const { return Here::apart && j < i ? W[j][i] : W[i][j]; }
   template <int i, int j>
@@ -38,11 +38,11 @@ struct Front {
       return W[i].template at<j>();
   }
 
-  /// Zeroes what opens here: at a tip everything, elsewhere the groups in `fresh`; of those in
-  /// `born` only C and d, as a pin's elimination will write W and scale.
-  MOMENTA_INLINE void begin(bool tip, LaneGroups fresh, LaneGroups born = 0) {
+  /// Zeroes what opens here: at a leaf everything, elsewhere the groups in `fresh`; of those in
+  /// `born` only C and d, as a revolute joint's elimination will write W and scale.
+  MOMENTA_INLINE void begin(bool leaf, SlotGroups fresh, SlotGroups born = 0) {
     if constexpr (!Here::apart) {
-      if (tip) *this = {};
+      if (leaf) *this = {};
     } else {
       const S zero(0.0);
       each_open<S, Rows>(fresh, [&](auto i) MOMENTA_INLINED {
@@ -55,7 +55,7 @@ struct Front {
       });
     }
   }
-  MOMENTA_INLINE void add(const Front& b, LaneGroups open) {
+  MOMENTA_INLINE void add(const Front& b, SlotGroups open) {
     each_open<S, Rows>(open, [&](auto i) MOMENTA_INLINED {
       each<Columns>([&](auto k) MOMENTA_INLINED { C[k].v[i] = C[k].v[i] + b.C[k].v[i]; });
     });
@@ -63,8 +63,8 @@ struct Front {
   }
   /// The ground does not move: C no longer matters. Of `fresh` groups nothing was there, of `all`
   /// are those that stay.
-  MOMENTA_INLINE void add_at_ground(const Front& b, LaneGroups open, LaneGroups fresh,
-                                    LaneGroups all) {
+  MOMENTA_INLINE void add_at_ground(const Front& b, SlotGroups open, SlotGroups fresh,
+                                    SlotGroups all) {
     each_open<S, Rows>(open, [&](auto i) MOMENTA_INLINED {
       put(fresh, i, i, d.v[i], b.d.v[i]);
       put(fresh, i, i, scale.v[i], b.scale.v[i]);
@@ -81,8 +81,8 @@ struct Front {
   }
   /// A joint's coordinate goes: W += c (M_j⁻¹ c)ᵀ, d += y c, y = M_j⁻¹ e; leaves g = M_j⁻¹ c. The
   /// scale is the caller's. Of `born` groups W is written.
-  MOMENTA_INLINE void eliminate(const Here& c, const S& inverse, const S& y, LaneGroups open,
-                                LaneGroups born, Here& g) {
+  MOMENTA_INLINE void eliminate(const Here& c, const S& inverse, const S& y, SlotGroups open,
+                                SlotGroups born, Here& g) {
     Here local, own;
     each_open<S, Rows>(open, [&](auto i) MOMENTA_INLINED {
       own.v[i] = c.v[i];
@@ -94,9 +94,9 @@ struct Front {
       put(born, i, part, W[i].v[part], local.v[part] * own.all(own[i]));
     });
   }
-  /// Writes x, where lane i or j is in `fresh`, else adds it.
+  /// Writes x, where slot i or j is in `fresh`, else adds it.
   template <class I, class J, class Part>
-  MOMENTA_INLINE static void put([[maybe_unused]] LaneGroups fresh, I i, J j, Part& to,
+  MOMENTA_INLINE static void put([[maybe_unused]] SlotGroups fresh, I i, J j, Part& to,
                                  const Part& x) {
     if constexpr (Here::apart) {
       if ((fresh >> (i / 2) | fresh >> (j / 2)) & 1) {
@@ -107,25 +107,25 @@ struct Front {
     to = to + x;
   }
   /// W += g cᵀ
-  MOMENTA_INLINE void add_product(const Here& g, const Here& c, LaneGroups open) {
+  MOMENTA_INLINE void add_product(const Here& g, const Here& c, SlotGroups open) {
     each_entry(open, [&](auto i, auto part) MOMENTA_INLINED {
       W[i].v[part] = W[i].v[part] + g.v[part] * c.all(c[i]);
     });
   }
   /// W −= a bᵀ + x yᵀ
   MOMENTA_INLINE void subtract_products(const Here& a, const Here& b, const Here& x, const Here& y,
-                                        LaneGroups open) {
+                                        SlotGroups open) {
     each_entry(open, [&](auto i, auto part) MOMENTA_INLINED {
       W[i].v[part] = W[i].v[part] - (a.v[part] * a.all(b[i]) + x.v[part] * a.all(y[i]));
     });
   }
 
  private:
-  /// act(row, part of the row) for the entries of W that are kept, of open lanes. Without a lambda
+  /// act(row, part of the row) for the entries of W that are kept, of open slots. Without a lambda
   /// in a lambda: g++ resolves the address of what is captured so deep when it is too late for
   /// registers.
   template <class Act>
-  MOMENTA_INLINE static void each_entry(LaneGroups open, Act&& act) {
+  MOMENTA_INLINE static void each_entry(SlotGroups open, Act&& act) {
     if constexpr (Here::apart)
       each_open<S, Rows>(open, [&](auto i) MOMENTA_INLINED {
         each_open<S, Rows>(open, [&](auto j) MOMENTA_INLINED {
@@ -145,31 +145,31 @@ struct Front {
   }
 };
 
-/// Rows of the loop at `lane`, about to close, give way: r −= compliance σ.
+/// Rows of the loop at `slot`, about to close, give way: r −= compliance σ.
 template <class S, int Rows, int Columns>
-void soften(Front<S, Rows, Columns>& front, int lane, int rows, const S* compliance) {
-  for (int i = 0; i < rows; ++i) front.W[lane + i].add(lane + i, compliance[i]);
+void soften(Front<S, Rows, Columns>& front, int slot, int rows, const S* compliance) {
+  for (int i = 0; i < rows; ++i) front.W[slot + i].add(slot + i, compliance[i]);
 }
 
 /// A closed row, for the way back.
 template <class S, int Rows, int Columns>
 struct ClosedRow {
-  Lanes<S, Rows> G;  ///< f W_k·, zero in the lanes closed before and in its own
+  Slots<S, Rows> G;  ///< f W_k·, zero in the slots closed before and in its own
   S c[Columns];      ///< f c_k
   S d;               ///< f d_k
   S w, tau;          ///< the pivot, and where it fades
-  int lane;
+  int slot;
 
   /// σ_k for the motion `omega` of the closing body.
   template <class Motion>
-  MOMENTA_INLINE S impulse(const Motion& omega, const Lanes<S, Rows>& sigma) const {
+  MOMENTA_INLINE S impulse(const Motion& omega, const Slots<S, Rows>& sigma) const {
     // What waits for the σ just found comes last.
     S s = d;
     for (int i = 0; i < Columns; ++i) s = s + c[i] * omega[i];
-    return minus_dot(s, G, sigma, ~LaneGroups{});
+    return minus_dot(s, G, sigma, ~SlotGroups{});
   }
-  MOMENTA_INLINE S impulse_at_ground(const Lanes<S, Rows>& sigma) const {
-    return minus_dot(d, G, sigma, ~LaneGroups{});
+  MOMENTA_INLINE S impulse_at_ground(const Slots<S, Rows>& sigma) const {
+    return minus_dot(d, G, sigma, ~SlotGroups{});
   }
 };
 
@@ -181,40 +181,40 @@ MOMENTA_INLINE S faded_inverse(const S& w, const S& tau) {
   return where_greater(w, zero, inverse, zero);
 }
 
-/// Closes the row at `lane`; `weight` takes c f cᵀ and c f d: weight(c, f c, f d).
-/// @pre lanes of no open loop hold zero
+/// Closes the row at `slot`; `weight` takes c f cᵀ and c f d: weight(c, f c, f d).
+/// @pre slots of no open loop hold zero
 template <class S, int Rows, int Columns, class Weight>
-MOMENTA_INLINE void close_row(int lane, Front<S, Rows, Columns>& front, const S& tau,
+MOMENTA_INLINE void close_row(int slot, Front<S, Rows, Columns>& front, const S& tau,
                               ClosedRow<S, Rows, Columns>& row, Weight&& weight) {
-  using Here = Lanes<S, Rows>;
+  using Here = Slots<S, Rows>;
   const S zero(0.0);
-  Here own = front.W[lane];
+  Here own = front.W[slot];
   if constexpr (Here::apart)
     for (int i = 1; i < Rows; ++i)
-      for (int j = 0; j < i && i == lane; ++j) own.v[j] = front.W[j].v[i];
-  const S w = own[lane], f = faded_inverse(w, tau);
-  own.set(lane, zero);
+      for (int j = 0; j < i && i == slot; ++j) own.v[j] = front.W[j].v[i];
+  const S w = own[slot], f = faded_inverse(w, tau);
+  own.set(slot, zero);
   const Here G = own * f;
   S c[Columns];
-  const S d = front.d[lane];
+  const S d = front.d[slot];
   for (int i = 0; i < Columns; ++i) {
-    c[i] = front.C[i][lane];
-    front.C[i].set(lane, zero);
+    c[i] = front.C[i][slot];
+    front.C[i].set(slot, zero);
     front.C[i] -= G * c[i];
     row.c[i] = f * c[i];
   }
-  front.d.set(lane, zero);
+  front.d.set(slot, zero);
   front.d -= G * d;
   for (int i = 0; i < Rows; ++i) {
-    front.W[i].set(lane, zero);
+    front.W[i].set(slot, zero);
     front.W[i] -= G * own[i];
   }
-  front.W[lane] = {};
+  front.W[slot] = {};
   row.G = G;
   row.d = f * d;
   row.w = w;
   row.tau = tau;
-  row.lane = lane;
+  row.slot = slot;
   weight(c, row.c, row.d);
 }
 
@@ -239,12 +239,12 @@ constexpr bool keeps_pivots = true;
 template <int W, int L>
 constexpr bool keeps_pivots<Pack<W, L>> = W == 1;
 
-/// Closes the rows of one loop: `points` rows at `lane` that share a unit and have that scale at
+/// Closes the rows of one loop: `points` rows at `slot` that share a unit and have that scale at
 /// least, then `others`. Records them in closing order. Of a pack all states are closed in one
 /// order: false where that takes, of some state, a pivot below a hundredth of the largest that is
 /// left, or a weak one, before which each should go in its own order.
 template <class S, int Rows, int Columns, class Weight>
-bool close_loop(Front<S, Rows, Columns>& front, int lane, int points, int others,
+bool close_loop(Front<S, Rows, Columns>& front, int slot, int points, int others,
                 const S& least_scale, double fade, ClosedRow<S, Rows, Columns>* records,
                 Weight&& weight) {
   const int rows = points + others;
@@ -254,7 +254,7 @@ bool close_loop(Front<S, Rows, Columns>& front, int lane, int points, int others
   for (int first = 0; first < rows; first = points) {
     const int end = first < points ? points : rows;
     S sum(0.0);
-    for (int i = first; i < end; ++i) sum += front.scale[lane + i];
+    for (int i = first; i < end; ++i) sum += front.scale[slot + i];
     sum = sum * (1.0 / (end - first)) + (first < points ? least_scale : S(0.0));
     const double unit = size_of(sum), inverse = unit > 0 ? 1 / unit : 0;
     for (int i = first; i < end; ++i) {
@@ -272,7 +272,7 @@ bool close_loop(Front<S, Rows, Columns>& front, int lane, int points, int others
     [[maybe_unused]] S largest_of_each(0.0);
     for (int i = 0; i < rows; ++i) {
       if (closed[i]) continue;
-      const S pivot = front.w(lane + i, lane + i);
+      const S pivot = front.w(slot + i, slot + i);
       const double relative = size_of(pivot) * per_unit[i];
       if constexpr (!keeps_pivots<S>) {
         const S own = pivot * per_unit[i];
@@ -284,14 +284,14 @@ bool close_loop(Front<S, Rows, Columns>& front, int lane, int points, int others
       }
     }
     if constexpr (!keeps_pivots<S>) {
-      const S pivot = front.w(lane + best, lane + best);
+      const S pivot = front.w(slot + best, slot + best);
       even = even && per_unit[best] > 0 && all_positive(pivot - weak * scale[best]) &&
              all_positive(pivot * per_unit[best] - least_share * largest_of_each);
     }
     closed[best] = true;
-    close_row(lane + best, front, tau[best], records[k], weight);
+    close_row(slot + best, front, tau[best], records[k], weight);
   }
-  for (int i = 0; i < rows; ++i) front.scale.set(lane + i, S(0.0));
+  for (int i = 0; i < rows; ++i) front.scale.set(slot + i, S(0.0));
   return even;
 }
 

@@ -58,14 +58,14 @@ Way way_of_coupler(const std::vector<int>& parents, const LoopShape& coupler) {
   return way;
 }
 
-/// Place of `rows` neighbouring free lanes; pairs stand at even places, where registers hold them
+/// Place of `rows` neighbouring free slots; pairs stand at even places, where registers hold them
 /// together.
 int first_fit(std::uint64_t used, int rows) {
   const std::uint64_t block = (std::uint64_t{1} << rows) - 1;
   const int stride = rows == 2 ? 2 : 1;
-  int lane = 0;
-  while (lane + rows <= 64 && (used & (block << lane)) != 0) lane += stride;
-  return lane;
+  int slot = 0;
+  while (slot + rows <= 64 && (used & (block << slot)) != 0) slot += stride;
+  return slot;
 }
 
 template <class T>
@@ -98,8 +98,8 @@ class Roots {
 };
 
 /// Per body: of a root whose loops to other trees all end on one body before it, that body.
-std::vector<int> foldable_legs(const std::vector<int>& parents,
-                               const std::vector<LoopShape>& loops) {
+std::vector<int> foldable_looped_branches(const std::vector<int>& parents,
+                                          const std::vector<LoopShape>& loops) {
   constexpr int none = -1, several = -2;
   const Roots roots(parents);
   std::vector<int> onto(parents.size(), none);
@@ -122,11 +122,11 @@ LoopPlan planned(const std::vector<int>& parents, const std::vector<LoopShape>& 
                  std::vector<int> folded_onto) {
   const std::size_t n = parents.size();
   LoopPlan plan;
-  plan.lane.resize(loops.size());
+  plan.slot.resize(loops.size());
   plan.posed.assign(n, 0);
-  plan.takes_legs.assign(n, 0);
+  plan.takes_branches.assign(n, 0);
   for (const int k : folded_onto)
-    if (k >= 0) plan.takes_legs[static_cast<std::size_t>(k)] = 1;
+    if (k >= 0) plan.takes_branches[static_cast<std::size_t>(k)] = 1;
   std::vector<std::uint64_t> used(n, 0), used_at_ground(n, 0);
   std::vector<std::vector<LoopPlan::End>> ends(n);
   std::vector<std::vector<LoopPlan::Coupling>> couplings(n);
@@ -139,13 +139,14 @@ LoopPlan planned(const std::vector<int>& parents, const std::vector<LoopShape>& 
   for (std::size_t i = 0; i < loops.size(); ++i) {
     const LoopShape& loop = loops[i];
     const int root_a = root.of(loop.a), root_b = root.of(loop.b);
-    // The leg of a folded loop: its root; the loop is open in the leg alone.
-    int leg = -1;
+    // The branch of a folded loop: its root; the loop is open in the branch alone.
+    int looped_branch = -1;
     if (root_a != root_b)
       for (const int end : {root_a, root_b})
-        if (end >= 0 && folded_onto[static_cast<std::size_t>(end)] >= 0) leg = std::max(leg, end);
+        if (end >= 0 && folded_onto[static_cast<std::size_t>(end)] >= 0)
+          looped_branch = std::max(looped_branch, end);
     LoopShape open = loop;
-    if (leg >= 0) (leg == root_a ? open.b : open.a) = -1;
+    if (looped_branch >= 0) (looped_branch == root_a ? open.b : open.a) = -1;
     const Way way = loop.joints.empty() ? way_of(parents, open) : way_of_coupler(parents, loop);
     std::vector<int> gathered;
     if (way.closes_at < 0) {
@@ -158,15 +159,15 @@ LoopPlan planned(const std::vector<int>& parents, const std::vector<LoopShape>& 
     } else {
       closings[static_cast<std::size_t>(way.closes_at)].push_back(static_cast<int>(i));
     }
-    if (leg >= 0) gathered.clear();
+    if (looped_branch >= 0) gathered.clear();
     std::uint64_t taken = 0;
     for (const int k : way.fronts) taken |= used[static_cast<std::size_t>(k)];
     for (const int k : gathered) taken |= used_at_ground[static_cast<std::size_t>(k)];
-    const int lane = first_fit(taken, loop.rows);
-    plan.lane[i] = lane;
-    plan.lanes = std::max(plan.lanes, lane + loop.rows);
-    if (lane + loop.rows <= 64) {
-      const std::uint64_t own = ((std::uint64_t{1} << loop.rows) - 1) << lane;
+    const int slot = first_fit(taken, loop.rows);
+    plan.slot[i] = slot;
+    plan.slots = std::max(plan.slots, slot + loop.rows);
+    if (slot + loop.rows <= 64) {
+      const std::uint64_t own = ((std::uint64_t{1} << loop.rows) - 1) << slot;
       for (const int k : way.fronts) used[static_cast<std::size_t>(k)] |= own;
       for (const int k : gathered) used_at_ground[static_cast<std::size_t>(k)] |= own;
     }
@@ -178,7 +179,7 @@ LoopPlan planned(const std::vector<int>& parents, const std::vector<LoopShape>& 
       for (int k = end; k >= 0 && !plan.posed[static_cast<std::size_t>(k)];
            k = parents[static_cast<std::size_t>(k)])
         plan.posed[static_cast<std::size_t>(k)] = 1;
-    // The end that sweeps inward meet first brings the right-hand side along: that of the leg,
+    // The end that sweeps inward meet first brings the right-hand side along: that of the branch,
     // where there is one.
     if (open.a >= 0)
       ends[static_cast<std::size_t>(open.a)].push_back(
@@ -210,7 +211,7 @@ LoopPlan plan_loops(const std::vector<int>& parents, const std::vector<LoopShape
 }
 
 LoopPlan plan_folded(const std::vector<int>& parents, const std::vector<LoopShape>& loops) {
-  return planned(parents, loops, foldable_legs(parents, loops));
+  return planned(parents, loops, foldable_looped_branches(parents, loops));
 }
 
 }  // namespace momenta

@@ -1,19 +1,19 @@
 #pragma once
-// How the sweeps carry loops: which lanes a loop's equations keep, at which bodies its ends enter,
+// How the sweeps carry loops: which slots a loop's equations keep, at which bodies its ends enter,
 // and where it closes: at the lowest common ancestor of its two bodies.
 //
 // A coupler has no ends. It is open where its joints are eliminated and above, and closes once all
 // of them are: at the lowest common ancestor of their parents.
 //
-// Two loops that are open in one front need different lanes: greedy colouring of the fronts, loop
+// Two loops that are open in one front need different slots: greedy colouring of the fronts, loop
 // by loop in the order of the scene. At the ground, fronts of the tree's roots are gathered one
 // after the other, last root first; a loop between roots is open there from the later root to the
 // earlier one.
 //
-// A leg may be folded: a root's subtree that all its open loops tie to one other body L. With the
-// leg's own W the loops close into L at once, M*_L += J W⁻¹ Jᵀ, so that the lanes of all legs of a
-// platform are the same. It needs a W that is regular by itself, in every pose: only where lanes
-// would run out, and watched.
+// A branch may be folded: a root's subtree that all its open loops tie to one other body L. With
+// the branch's own W the loops close into L at once, M*_L += J W⁻¹ Jᵀ, so that the slots of all
+// branches of a platform are the same. It needs a W that is regular by itself, in every pose: only
+// where slots would run out, and watched.
 
 #include <cstdint>
 #include <utility>
@@ -22,7 +22,7 @@
 namespace momenta {
 
 struct LoopPlan {
-  static constexpr int most_lanes = 16;
+  static constexpr int most_slots = 16;
 
   struct End {
     int loop = 0;
@@ -45,15 +45,15 @@ struct LoopPlan {
   std::vector<int> closings;              ///< loops, by the body that closes them, in closing order
   std::vector<Range> closings_of;         ///< per body, into closings
   std::vector<Range> ground_closings_of;  ///< per body: only roots have some
-  std::vector<int> lane;                  ///< per loop: its first lane
+  std::vector<int> slot;                  ///< per loop: its first slot
   std::vector<char> pair;                 ///< per loop: two point rows and no other
-  std::vector<int> folded_onto;  ///< per body: of a root, the body its leg folds into; or −1
-  std::vector<char> takes_legs;  ///< per body: legs fold into it
-  std::vector<char> posed;       ///< per body: carries an end of a loop, near or far
-  int lanes = 0;                 ///< lanes needed
-  std::int64_t work = 0;         ///< Σ over the fronts of the squared number of open equations
+  std::vector<int> folded_onto;  ///< per body: of a root, the body its branch folds into; or −1
+  std::vector<char> takes_branches;  ///< per body: branches fold into it
+  std::vector<char> posed;           ///< per body: carries an end of a loop, near or far
+  int slots = 0;                     ///< slots needed
+  std::int64_t work = 0;             ///< Σ over the fronts of the squared number of open equations
   bool couples() const { return !couplings.empty(); }
-  bool fits() const { return lanes <= most_lanes; }
+  bool fits() const { return slots <= most_slots; }
 };
 
 /// A loop's bodies (−1: ground) and how many equations it has; of a coupler the bodies whose joints
@@ -64,12 +64,12 @@ struct LoopShape {
   std::vector<std::pair<int, double>> joints{};
 };
 
-/// `parents` in depth-first order, −1 for roots. O(bodies + length of all loops). Legs are folded
-/// where that is allowed (`may_fold`) and lanes run out without. Where more than most_lanes are
-/// needed all the same, `lanes` says so.
+/// `parents` in depth-first order, −1 for roots. O(bodies + length of all loops). Branches are
+/// folded where that is allowed (`may_fold`) and slots run out without. Where more than most_slots
+/// are needed all the same, `slots` says so.
 LoopPlan plan_loops(const std::vector<int>& parents, const std::vector<LoopShape>& loops,
                     bool may_fold);
-/// With every leg folded that can be.
+/// With every branch folded that can be.
 LoopPlan plan_folded(const std::vector<int>& parents, const std::vector<LoopShape>& loops);
 
 }  // namespace momenta

@@ -9,7 +9,7 @@ namespace momenta {
 /// What closing a row adds to the front: c f cᵀ and c f d.
 template <class S>
 struct PlanarWeight {
-  PlanarCargo<S>& a;
+  PlanarArticulated<S>& a;
   MOMENTA_INLINE void operator()(const S* c, const S* fc, const S& fd) const {
     a.Axx = a.Axx + c[0] * fc[0];
     a.Axy = a.Axy + c[0] * fc[1];
@@ -23,56 +23,56 @@ struct PlanarWeight {
   }
 };
 
-/// Calls pair<lane>() for an even lane.
-template <int Rows, int Lane = 0, class Pair>
-MOMENTA_INLINE void at_lane(int lane, Pair&& pair) {
-  if constexpr (Lane + 2 >= Rows) {
-    pair.template operator()<Lane>();
+/// Calls pair<slot>() for an even slot.
+template <int Rows, int Slot = 0, class Pair>
+MOMENTA_INLINE void at_slot(int slot, Pair&& pair) {
+  if constexpr (Slot + 2 >= Rows) {
+    pair.template operator()<Slot>();
   } else {
-    if (lane == Lane)
-      pair.template operator()<Lane>();
+    if (slot == Slot)
+      pair.template operator()<Slot>();
     else
-      at_lane<Rows, Lane + 2>(lane, pair);
+      at_slot<Rows, Slot + 2>(slot, pair);
   }
 }
 
 template <class S, int Rows, bool Momentum>
 template <bool Moves>
 MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::close(const LoopPlan::Range& range,
-                                                                 PlanarCargo<S>& a, Blocks& o,
-                                                                 double fade, LaneGroups all) {
+                                                                 PlanarArticulated<S>& a, Blocks& o,
+                                                                 double fade, SlotGroups all) {
   for (int i = range.first; i < range.last; ++i) {
     const Closing& c = closings_[static_cast<std::size_t>(i)];
     const auto at = static_cast<std::size_t>(c.loop);
     if constexpr (pairs_in_registers)
       if (c.pair) [[likely]] {
-        at_lane<Rows>(c.lane, [&]<int Lane>() MOMENTA_INLINED {
+        at_slot<Rows>(c.slot, [&]<int Slot>() MOMENTA_INLINED {
           if (compliance_) {
             const S* soft = compliance_ + c.row;
-            o.W[Lane].template add_pair<Lane>(soft[0], S(0.0));
-            o.W[Lane + 1].template add_pair<Lane>(S(0.0), soft[1]);
+            o.W[Slot].template add_pair<Slot>(soft[0], S(0.0));
+            o.W[Slot + 1].template add_pair<Slot>(S(0.0), soft[1]);
           }
-          close_pair<Lane, Moves>(o, fade, lanes_.beside[at], pairs_[at], PlanarWeight<S>{a});
+          close_pair<Slot, Moves>(o, fade, open_slots_.beside[at], pairs_[at], PlanarWeight<S>{a});
         });
         continue;
       }
     Open copy{a, o};
     close_any(c.loop, copy, fade, all);
-    a = copy.cargo;
+    a = copy.articulated;
     o = copy.blocks;
   }
 }
 
 template <class S, int Rows, bool Momentum>
 void LoopSweeps<Planar, S, Rows, Momentum>::close_any(int loop, Open& open, double fade,
-                                                      LaneGroups all) {
+                                                      SlotGroups all) {
   const auto at = static_cast<std::size_t>(loop);
   const Loop& l = loops_->loops[at];
   const int points = l.first_rows();
   open.blocks.begin(false, ~all);
-  if (compliance_) soften(open.blocks, plan_->lane[at], l.rows, compliance_ + l.row);
-  close_loop(open.blocks, plan_->lane[at], points, l.rows - points, S(l.least_scale), fade,
-             &rows_[static_cast<std::size_t>(l.row)], PlanarWeight<S>{open.cargo});
+  if (compliance_) soften(open.blocks, plan_->slot[at], l.rows, compliance_ + l.row);
+  close_loop(open.blocks, plan_->slot[at], points, l.rows - points, S(l.least_scale), fade,
+             &rows_[static_cast<std::size_t>(l.row)], PlanarWeight<S>{open.articulated});
 }
 
 /// The rows of couplers on joint k of body k; returns the joint's momentum or force without what
@@ -83,10 +83,10 @@ S LoopSweeps<Planar, S, Rows, Momentum>::couple(std::size_t k, const In& r,
                                                 const RightSide<S>& right, Blocks& o) {
   const PlanarLink& l = tree_->links[k];
   S own = l.sign < 0 ? -r[l.u] : S(r[l.u]);
-  each_coupling(*plan_, k, [&](const LoopPlan::Coupling& j, std::size_t loop, int lane) {
+  each_coupling(*plan_, k, [&](const LoopPlan::Coupling& j, std::size_t loop, int slot) {
     const double ratio = l.sign < 0 ? -j.ratio : j.ratio;
-    o.C[2].add(lane, S(ratio));
-    if (j.first) o.d.add(lane, coupled_[loop]);
+    o.C[2].add(slot, S(ratio));
+    if (j.first) o.d.add(slot, coupled_[loop]);
     if (right.centre) own = own - ratio * right.centre[loops_->loops[loop].row];
   });
   return own;
@@ -94,8 +94,8 @@ S LoopSweeps<Planar, S, Rows, Momentum>::couple(std::size_t k, const In& r,
 template <class S, int Rows, bool Momentum>
 void LoopSweeps<Planar, S, Rows, Momentum>::uncouple(std::size_t k, Column& c) {
   const double sign = tree_->links[k].sign;
-  each_coupling(*plan_, k, [&](const LoopPlan::Coupling& j, std::size_t, int lane) {
-    c.add(lane, S(sign < 0 ? j.ratio : -j.ratio));
+  each_coupling(*plan_, k, [&](const LoopPlan::Coupling& j, std::size_t, int slot) {
+    c.add(slot, S(sign < 0 ? j.ratio : -j.ratio));
   });
 }
 
@@ -103,19 +103,19 @@ template <class S, int Rows, bool Momentum>
 template <class In>
 bool LoopSweeps<Planar, S, Rows, Momentum>::inward(const In& r, const RightSide<S>& right) {
   const PlanarLink* links = tree_->links.data();
-  const OpenLanes::Front* fronts = lanes_.fronts.data();
+  const OpenSlots::Front* fronts = open_slots_.fronts.data();
   const Vec2<double>& g = tree_->model->gravity;
   const bool falls = !Momentum && tree_->model->has_gravity, couples = plan_->couples();
-  PlanarCargo<S> a{};
+  PlanarArticulated<S> a{};
   // Of one state in registers: all that takes its address takes a copy. Of a pack in memory, as
   // what is open differs from body to body.
   std::conditional_t<Column::apart, Blocks&, Blocks> o = front_;
   Blocks& ground = ground_;
   if constexpr (!Column::apart) ground = {};
-  for (std::size_t k = pins_.size(); k-- > 0;) {
+  for (std::size_t k = revolutes_.size(); k-- > 0;) {
     const PlanarLink& l = links[k];
-    const OpenLanes::Front& front = fronts[k];
-    LoopedPin<S, Rows>& w = pins_[k];
+    const OpenSlots::Front& front = fronts[k];
+    LoopedRevolute<S, Rows>& w = revolutes_[k];
     const S c = angles_.cosine(k), s = angles_.sine(k);
     const S kx = l.cx * c - l.cy * s, ky = l.cx * s + l.cy * c;
     if constexpr (Momentum) {
@@ -123,9 +123,9 @@ bool LoopSweeps<Planar, S, Rows, Momentum>::inward(const In& r, const RightSide<
       w.rx = way[0];
       w.ry = way[1];
     }
-    if (l.tip) a = {};
-    const LaneGroups born = l.pin ? front.born : 0;
-    o.begin(l.tip, front.fresh, born);
+    if (l.leaf) a = {};
+    const SlotGroups born = l.revolute ? front.born : 0;
+    o.begin(l.leaf, front.fresh, born);
     Base::add_body(a, l, kx, ky);
     if constexpr (!Momentum) {
       const S w2 = w.omega * w.omega;
@@ -145,23 +145,23 @@ bool LoopSweeps<Planar, S, Rows, Momentum>::inward(const In& r, const RightSide<
     }
     if (l.slot >= 0) {
       const Open& slot = slots_[static_cast<std::size_t>(l.slot)];
-      Base::add(a, slot.cargo);
+      Base::add(a, slot.articulated);
       o.add(slot.blocks, front.slot);
     }
     enter(k, right, a, o);
     const LoopPlan::Range closing = plan_->closings_of[k];
     if (closing.first != closing.last) close<true>(closing, a, o, right.fade, front.all);
-    if (!l.pin) [[unlikely]] {
+    if (!l.revolute) [[unlikely]] {
       Open here{a, o};
       if (!general_inward(k, r, right, here)) {
-        stuck_ = static_cast<int>(k);
+        singular_joint_ = static_cast<int>(k);
         return false;
       }
-      a = here.cargo;
+      a = here.articulated;
       o = here.blocks;
     } else {
       if (!all_positive(a.I)) {
-        stuck_ = static_cast<int>(k);
+        singular_joint_ = static_cast<int>(k);
         return false;
       }
       const S inverse = S(1.0) / a.I;
@@ -207,7 +207,7 @@ bool LoopSweeps<Planar, S, Rows, Momentum>::inward(const In& r, const RightSide<
           w.Dx = a.Dx;
           w.Dy = a.Dy;
         } else {
-          const LoopedPin<S, Rows>& from = pins_[static_cast<std::size_t>(l.parent)];
+          const LoopedRevolute<S, Rows>& from = revolutes_[static_cast<std::size_t>(l.parent)];
           const S w2 = from.omega * from.omega, bx = -(w2 * rx), by = -(w2 * ry);
           a.Dx = a.Dx + (a.Axx * bx + a.Axy * by);
           a.Dy = a.Dy + (a.Axy * bx + a.Ayy * by);
@@ -231,10 +231,10 @@ bool LoopSweeps<Planar, S, Rows, Momentum>::inward(const In& r, const RightSide<
       const auto parent = static_cast<std::size_t>(l.parent);
       Open& slot = slots_[static_cast<std::size_t>(links[parent].slot)];
       if (l.opens) {
-        slot.cargo = a;
+        slot.articulated = a;
         slot.blocks.begin(true, fronts[parent].slot);
       } else {
-        Base::add(slot.cargo, a);
+        Base::add(slot.articulated, a);
       }
       slot.blocks.add(o, front.open);
     }
@@ -251,10 +251,10 @@ bool LoopSweeps<Planar, S, Rows, Momentum>::general_inward(std::size_t k, const 
   const auto& b = Base::body(k);
   auto& x = joints_[static_cast<std::size_t>(l.record)];
   auto& y = looped_[static_cast<std::size_t>(l.record)];
-  LoopedPin<S, Rows>& w = pins_[k];
-  PlanarCargo<S>& a = open.cargo;
+  LoopedRevolute<S, Rows>& w = revolutes_[k];
+  PlanarArticulated<S>& a = open.articulated;
   Blocks& o = open.blocks;
-  const LaneGroups carried = lanes_.fronts[k].open;
+  const SlotGroups carried = open_slots_.fronts[k].open;
   o.begin(false, ~carried);
   x.M = Base::blocks(a);
   x.D = {{{a.Dx, a.Dy}}, a.Dn};
@@ -272,9 +272,9 @@ bool LoopSweeps<Planar, S, Rows, Momentum>::general_inward(std::size_t k, const 
     const S one(1.0);
     Joint<Planar>::add_motion(b, x.edge, &one, E);
     Column c = o.C[0] * E[0] + o.C[1] * E[1] + o.C[2] * E[2];
-    each_coupling(*plan_, k, [&](const LoopPlan::Coupling& j, std::size_t loop, int lane) {
-      c.add(lane, S(j.ratio));
-      if (j.first) o.d.add(lane, coupled_[loop]);
+    each_coupling(*plan_, k, [&](const LoopPlan::Coupling& j, std::size_t loop, int slot) {
+      c.add(slot, S(j.ratio));
+      if (j.first) o.d.add(slot, coupled_[loop]);
     });
     o.eliminate(c, x.pivot, x.pivot * x.e, carried, 0, y.g);
     o.scale += c * y.g;
@@ -283,7 +283,7 @@ bool LoopSweeps<Planar, S, Rows, Momentum>::general_inward(std::size_t k, const 
   // Ω_t, or what the body's acceleration has beside its parent's and E u̇.
   if constexpr (!Momentum)
     if (b.parent >= 0) {
-      const S omega = pins_[static_cast<std::size_t>(b.parent)].omega;
+      const S omega = revolutes_[static_cast<std::size_t>(b.parent)].omega;
       y.V.v -= (omega * omega) * x.edge.r;
     }
   D += Planar::momentum(M, y.V);

@@ -20,11 +20,11 @@ MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::solve_loops(
     if (pairs_in_registers && c.pair) {
       S x, y;
       if constexpr (Moves)
-        pairs_[at].impulses(motion, sigma, lanes_.beside[at], x, y);
+        pairs_[at].impulses(motion, sigma, open_slots_.beside[at], x, y);
       else
-        pairs_[at].impulses_at_ground(sigma, lanes_.beside[at], x, y);
-      at_lane<Rows>(c.lane,
-                    [&]<int Lane>() MOMENTA_INLINED { sigma.template set_pair<Lane>(x, y); });
+        pairs_[at].impulses_at_ground(sigma, open_slots_.beside[at], x, y);
+      at_slot<Rows>(c.slot,
+                    [&]<int Slot>() MOMENTA_INLINED { sigma.template set_pair<Slot>(x, y); });
       store(c.row, x);
       store(c.row + 1, y);
     } else {
@@ -32,8 +32,8 @@ MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::solve_loops(
       for (int j = loops_->loops[at].rows; j-- > 0;) {
         const Row& row = rows_[static_cast<std::size_t>(c.row + j)];
         const S x = Moves ? row.impulse(motion, here) : row.impulse_at_ground(here);
-        here.set(row.lane, x);
-        store(c.row + row.lane - c.lane, x);
+        here.set(row.slot, x);
+        store(c.row + row.slot - c.slot, x);
       }
       sigma = here;
     }
@@ -49,10 +49,10 @@ void LoopSweeps<Planar, S, Rows, Momentum>::outward(const RightSide<S>& right, O
   const S zero(0.0);
   S vx = zero, vy = zero, omega = zero;
   Column sigma{}, at_ground{};
-  for (std::size_t k = 0; k < pins_.size(); ++k) {
+  for (std::size_t k = 0; k < revolutes_.size(); ++k) {
     const PlanarLink& l = links[k];
-    const LaneGroups open = lanes_.fronts[k].open;
-    LoopedPin<S, Rows>& w = pins_[k];
+    const SlotGroups open = open_slots_.fronts[k].open;
+    LoopedRevolute<S, Rows>& w = revolutes_[k];
     if (l.parent < 0) {
       const LoopPlan::Range last = plan_->ground_closings_of[k];
       if (last.first != last.last)
@@ -67,7 +67,7 @@ void LoopSweeps<Planar, S, Rows, Momentum>::outward(const RightSide<S>& right, O
       omega = from.motion.omega;
       sigma = from.sigma;
     }
-    if (!l.pin) {
+    if (!l.revolute) {
       PlanarMotion<S> here{vx, vy, omega};
       const Column carried = sigma;  // whose address is taken
       general_outward(k, rates, u, rate, here, carried);
@@ -80,7 +80,8 @@ void LoopSweeps<Planar, S, Rows, Momentum>::outward(const RightSide<S>& right, O
         vx = vx - omega * w.ry;
         vy = vy + omega * w.rx;
         if constexpr (!Momentum) {
-          const S before = pins_[static_cast<std::size_t>(l.parent)].omega, w2 = before * before;
+          const S before = revolutes_[static_cast<std::size_t>(l.parent)].omega,
+                  w2 = before * before;
           vx = vx - w2 * w.rx;
           vy = vy - w2 * w.ry;
         }
@@ -119,7 +120,7 @@ void LoopSweeps<Planar, S, Rows, Momentum>::general_outward(std::size_t k, bool 
   const auto& b = Base::body(k);
   const auto& x = joints_[static_cast<std::size_t>(tree_->links[k].record)];
   const auto& y = looped_[static_cast<std::size_t>(tree_->links[k].record)];
-  const LaneGroups open = lanes_.fronts[k].open;
+  const SlotGroups open = open_slots_.fronts[k].open;
   Planar::Motion<S> V{{{m.vx, m.vy}}, m.omega};
   if (b.parent >= 0) V = Planar::to_child({}, b.kind, x.edge, V);
   V += y.V;
@@ -153,9 +154,9 @@ void LoopSweeps<Planar, S, Rows, Momentum>::rates_inward(const In& q, const Righ
   const S zero(0.0);
   if (right.body_forces) gather_forces();
   Wrench T{};
-  for (std::size_t k = pins_.size(); k-- > 0;) {
+  for (std::size_t k = revolutes_.size(); k-- > 0;) {
     const PlanarLink& l = links[k];
-    if (l.tip) T = {zero, zero, zero};
+    if (l.leaf) T = {zero, zero, zero};
     if (falls) {
       const S c = angles_.cosine(k), s = angles_.sine(k);
       T.fx = T.fx + l.m * g[0];
@@ -170,7 +171,7 @@ void LoopSweeps<Planar, S, Rows, Momentum>::rates_inward(const In& q, const Righ
     const LoopPlan::Range ends = plan_->ends_of[k];
     for (int i = ends.first; i < ends.last; ++i)
       add_inertial_rates(k, static_cast<std::size_t>(i), right, impulse, T);
-    if (l.pin) {
+    if (l.revolute) {
       const S turned = S(rate[l.u]) + T.fn;
       S own = l.sign < 0 ? -turned : turned;
       if (l.has_force) own = own + joint_force(Base::body(k), S(q[l.q]), S(u[l.u]));
@@ -182,7 +183,7 @@ void LoopSweeps<Planar, S, Rows, Momentum>::rates_inward(const In& q, const Righ
       rate[b.u] = S(rate[b.u]) + along + joint_force(b, S(q[b.q]), S(u[b.u]));
     }
     if (l.parent < 0) continue;
-    const LoopedPin<S, Rows>& w = pins_[k];
+    const LoopedRevolute<S, Rows>& w = revolutes_[k];
     T.fn = T.fn + (w.rx * T.fy - w.ry * T.fx);
     if (l.first) continue;
     Wrench& to =
@@ -205,7 +206,7 @@ MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::add_inertial_rates(
     add_other_rates(end, right, impulse, T);
     return;
   }
-  const LoopedPin<S, Rows>& w = pins_[k];
+  const LoopedRevolute<S, Rows>& w = revolutes_[k];
   const Vec2<S>& r = arms_[i];
   const S fx = end.sign * S(impulse[end.row]), fy = end.sign * S(impulse[end.row + 1]),
           leak(right.leak);
@@ -231,7 +232,7 @@ MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::add_other_rates(
   const S zero(0.0);
   const auto motion_of = [&](int body) MOMENTA_INLINED {
     if (body < 0) return Planar::Motion<S>{};
-    const LoopedPin<S, Rows>& w = pins_[static_cast<std::size_t>(body)];
+    const LoopedRevolute<S, Rows>& w = revolutes_[static_cast<std::size_t>(body)];
     return Planar::Motion<S>{{{w.vx, w.vy}}, w.omega};
   };
   const Planar::Motion<S> A = motion_of(l.a), B = motion_of(l.b);
@@ -316,7 +317,7 @@ void LoopSweeps<Planar, S, Rows, Momentum>::each_pivot(Report&& report) const {
     } else {
       for (int j = 0; j < l.rows; ++j) {
         const Row& row = rows_[static_cast<std::size_t>(l.row + j)];
-        report(l.row + row.lane - plan_->lane[i], value_of(row.w), value_of(row.tau));
+        report(l.row + row.slot - plan_->slot[i], value_of(row.w), value_of(row.tau));
       }
     }
   }

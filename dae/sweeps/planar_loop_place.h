@@ -11,12 +11,12 @@ template <class S, int Rows, bool Momentum>
 template <class In>
 void LoopSweeps<Planar, S, Rows, Momentum>::place_bodies(const In& x, const RightSide<S>& right) {
   const PlanarLink* links = tree_->links.data();
-  const std::size_t n = pins_.size();
+  const std::size_t n = revolutes_.size();
   const bool gap = asks_for_gaps(right);
   S ox(0.0), oy(0.0);
   for (std::size_t k = 0; k < n; ++k) {
     const PlanarLink& l = links[k];
-    LoopedPin<S, Rows>& w = pins_[k];
+    LoopedRevolute<S, Rows>& w = revolutes_[k];
     const Vec2<S> r = way_from_parent(l);
     if constexpr (!Momentum) {
       w.rx = r[0];
@@ -38,12 +38,12 @@ void LoopSweeps<Planar, S, Rows, Momentum>::place_bodies(const In& x, const Righ
     if constexpr (!Momentum) {
       S vx(0.0), vy(0.0), omega(0.0);
       if (l.parent >= 0) {
-        const LoopedPin<S, Rows>& from = pins_[parent];
+        const LoopedRevolute<S, Rows>& from = revolutes_[parent];
         omega = from.omega;
         vx = from.vx - omega * w.ry;
         vy = from.vy + omega * w.rx;
       }
-      if (l.pin) {
+      if (l.revolute) {
         omega = l.sign < 0 ? omega - x[l.u] : omega + x[l.u];
       } else {
         const auto& b = Base::body(k);
@@ -62,7 +62,7 @@ void LoopSweeps<Planar, S, Rows, Momentum>::place_bodies(const In& x, const Righ
       w.vx = vx;
       w.vy = vy;
       w.omega = omega;
-    } else if (!l.pin) {
+    } else if (!l.revolute) {
       const auto& b = Base::body(k);
       const auto& j = joints_[static_cast<std::size_t>(l.record)];
       Planar::Motion<S> V{};
@@ -164,7 +164,7 @@ void LoopSweeps<Planar, S, Rows, Momentum>::place_rows(const Loop& l, std::size_
 template <class S, int Rows, bool Momentum>
 void LoopSweeps<Planar, S, Rows, Momentum>::gather_forces() {
   forces_->gather([&](std::size_t k) -> typename PlanarBodyForces<S>::Known {
-    const LoopedPin<S, Rows>& w = pins_[k];
+    const LoopedRevolute<S, Rows>& w = revolutes_[k];
     return {angles_.cosine(k), angles_.sine(k), w.rx, w.ry, w.vx, w.vy, w.omega};
   });
 }

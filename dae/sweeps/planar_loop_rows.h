@@ -42,13 +42,13 @@ S LoopSweeps<Planar, S, Rows, Momentum>::moving_bias(const Loop& l, const Place&
   S aw(0.0), bw(0.0);
   Vec2<S> u{}, accelerated{};  // of x_A − x_B, the bodies' own accelerations left out
   if (l.a >= 0) {
-    const LoopedPin<S, Rows>& A = pins_[static_cast<std::size_t>(l.a)];
+    const LoopedRevolute<S, Rows>& A = revolutes_[static_cast<std::size_t>(l.a)];
     aw = A.omega;
     u = {{A.vx - aw * s.ay, A.vy + aw * s.ax}};
     accelerated = {{-(aw * aw * s.ax), -(aw * aw * s.ay)}};
   }
   if (l.b >= 0) {
-    const LoopedPin<S, Rows>& B = pins_[static_cast<std::size_t>(l.b)];
+    const LoopedRevolute<S, Rows>& B = revolutes_[static_cast<std::size_t>(l.b)];
     bw = B.omega;
     const Vec2<S> arm{{s.bx - gap[0], s.by - gap[1]}};
     u -= Vec2<S>{{B.vx - bw * arm[1], B.vy + bw * arm[0]}};
@@ -95,7 +95,7 @@ MOMENTA_INLINE Vec2<S> LoopSweeps<Planar, S, Rows, Momentum>::tie_bias(
   if constexpr (Momentum) {
     return S(right.positions) * D;
   } else {
-    const LoopedPin<S, Rows>& w = pins_[k];
+    const LoopedRevolute<S, Rows>& w = revolutes_[k];
     const S centripetal = -end.sign * (w.omega * w.omega);
     Vec2<S> bias{{centripetal * arm[0], centripetal * arm[1]}};
     if (right.alpha != 0) {
@@ -132,7 +132,7 @@ S LoopSweeps<Planar, S, Rows, Momentum>::row_bias(std::size_t loop, int row,
     const auto velocity = [&](int body, S& vx, S& vy, S& omega) {
       vx = vy = omega = zero;
       if (body < 0) return;
-      const LoopedPin<S, Rows>& w = pins_[static_cast<std::size_t>(body)];
+      const LoopedRevolute<S, Rows>& w = revolutes_[static_cast<std::size_t>(body)];
       vx = w.vx;
       vy = w.vy;
       omega = w.omega;
@@ -170,7 +170,8 @@ S LoopSweeps<Planar, S, Rows, Momentum>::row_bias(std::size_t loop, int row,
 template <class S, int Rows, bool Momentum>
 MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::enter(std::size_t k,
                                                                  const RightSide<S>& right,
-                                                                 PlanarCargo<S>& a, Blocks& o) {
+                                                                 PlanarArticulated<S>& a,
+                                                                 Blocks& o) {
   const LoopPlan::Range range = plan_->ends_of[k];
   for (int n = range.first; n < range.last; ++n) {
     const auto i = static_cast<std::size_t>(n);
@@ -181,7 +182,7 @@ MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::enter(std::size_t k,
       }
     Open copy{a, o};
     enter_rows(k, i, right, copy);
-    a = copy.cargo;
+    a = copy.articulated;
     o = copy.blocks;
   }
 }
@@ -189,7 +190,7 @@ MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::enter(std::size_t k,
 template <class S, int Rows, bool Momentum>
 MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::enter_pair(std::size_t k, std::size_t i,
                                                                       const RightSide<S>& right,
-                                                                      PlanarCargo<S>& a,
+                                                                      PlanarArticulated<S>& a,
                                                                       Blocks& o) {
   const End& end = ends_[i];
   const auto loop = static_cast<std::size_t>(end.loop);
@@ -217,17 +218,17 @@ MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::enter_pair(std::size_
     a.Dn = a.Dn + (centre[0] * n0 + centre[1] * n1);
   }
   const bool asked = asks(end, right);
-  at_lane<Rows>(end.lane, [&]<int Lane>() MOMENTA_INLINED {
-    o.C[0].template add_pair<Lane>(fx, -fy);
-    o.C[1].template add_pair<Lane>(fy, fx);
-    o.C[2].template add_pair<Lane>(n0, n1);
+  at_slot<Rows>(end.slot, [&]<int Slot>() MOMENTA_INLINED {
+    o.C[0].template add_pair<Slot>(fx, -fy);
+    o.C[1].template add_pair<Slot>(fy, fx);
+    o.C[2].template add_pair<Slot>(n0, n1);
     if (!asked) return;
     Vec2<S> d;
     if (end.tie)
       d = tie_bias(k, end, arm, right);
     else
       d = {{row_bias(loop, 0, right), row_bias(loop, 1, right)}};
-    o.d.template add_pair<Lane>(d[0], d[1]);
+    o.d.template add_pair<Slot>(d[0], d[1]);
   });
 }
 
@@ -246,23 +247,23 @@ void LoopSweeps<Planar, S, Rows, Momentum>::enter_rows(std::size_t k, std::size_
     const Place& s = places_[loop];
     arm = end.on_a ? Vec2<S>{{s.ax, s.ay}} : Vec2<S>{{s.bx, s.by}};
   }
-  const int lane = end.lane;
+  const int slot = end.slot;
   const S sign(end.sign);
-  PlanarCargo<S>& a = open.cargo;
+  PlanarArticulated<S>& a = open.articulated;
   Blocks& o = open.blocks;
   for (int row = 0; row < l.rows; ++row) {
     const RowPlace r = row_place(loop, row);
     const S fx = sign * r.Fx, fy = sign * r.Fy, n = arm[0] * fy - arm[1] * fx + sign * r.c;
-    o.C[0].add(lane + row, fx);
-    o.C[1].add(lane + row, fy);
-    o.C[2].add(lane + row, n);
+    o.C[0].add(slot + row, fx);
+    o.C[1].add(slot + row, fy);
+    o.C[2].add(slot + row, n);
     if (right.centre) {
       const S centre = right.centre[l.row + row];
       a.Dx = a.Dx + centre * fx;
       a.Dy = a.Dy + centre * fy;
       a.Dn = a.Dn + centre * n;
     }
-    if (asked) o.d.add(lane + row, end.tie ? d[row] : row_bias(loop, row, right));
+    if (asked) o.d.add(slot + row, end.tie ? d[row] : row_bias(loop, row, right));
   }
 }
 

@@ -22,8 +22,8 @@
 // Φ_t.
 //
 // A coupler has no wrench: its row enters where one of its joints is eliminated, c = EᵀC + r, and p
-// has r σ in it. A pin is eliminated by its absolute rate, of which u is the part beyond the
-// parent's: there r joins the couple, and leaves it again with the opposite sign.
+// has r σ in it. A revolute joint is eliminated by its absolute rate, of which u is the part beyond
+// the parent's: there r joins the couple, and leaves it again with the opposite sign.
 
 #include <momenta/core/kernel/planar_body_forces.h>
 #include <momenta/core/kernel/planar_places.h>
@@ -39,15 +39,15 @@ namespace momenta {
 
 /// What bodies have for the way out and the last sweep.
 template <class S, int Rows>
-struct LoopedPin {
-  Lanes<S, Rows> Cx, Cy, g;
+struct LoopedRevolute {
+  Slots<S, Rows> Cx, Cy, g;
   S rx, ry;                             ///< O_K − O_L
   S Axx, Axy, Ayy, Dx, Dy, hx, hy, y0;  ///< M', D', h, M_j⁻¹ e
   S vx, vy, omega;                      ///< Ω (momentum form); prescribed ones (acceleration)
 };
 template <class S, int Rows>
 struct LoopedJoint {
-  Lanes<S, Rows> C[3], g;
+  Slots<S, Rows> C[3], g;
   Planar::Motion<S> V;  ///< Ω_t, or the velocity product and prescribed acceleration of the joint
 };
 
@@ -57,8 +57,8 @@ class LoopSweeps;
 template <class S, int Rows, bool Momentum>
 class LoopSweeps<Planar, S, Rows, Momentum> : PlanarPlaces<S> {
   using Base = PlanarPlaces<S>;
-  using Base::angles_, Base::joints_, Base::stuck_, Base::tree_;
-  using Column = Lanes<S, Rows>;
+  using Base::angles_, Base::joints_, Base::singular_joint_, Base::tree_;
+  using Column = Slots<S, Rows>;
   using Blocks = Front<S, Rows, 3>;
   using Row = ClosedRow<S, Rows, 3>;
   using Pair = ClosedPair<S, Rows, 3>;
@@ -70,7 +70,8 @@ class LoopSweeps<Planar, S, Rows, Momentum> : PlanarPlaces<S> {
 
   /// Momentum form: u (nv) and σ (m) of (7) from p; with `rate` ṗ (nv) of (8). Acceleration form:
   /// u̇, λ from u and joint forces `tau` (nv). Springs and wrenches at points of bodies as
-  /// right.body_forces says. False when a joint's inertia is not positive: stuck(). O(bodies + m).
+  /// right.body_forces says. False when a joint's inertia is not positive: singular_joint().
+  /// O(bodies + m).
   /// @pre Without right.body_forces for states side by side.
   template <class In, class Out>
   bool operator()(const S& t, const In& q, const In& x, const In& tau, const RightSide<S>& right,
@@ -78,11 +79,11 @@ class LoopSweeps<Planar, S, Rows, Momentum> : PlanarPlaces<S> {
 
   /// What an evaluation goes through in memory.
   static std::size_t bytes(const PlanarTree& tree, const LoopModel<Planar>& loops) {
-    return tree.links.size() * (sizeof(LoopedPin<S, Rows>) + 3 * sizeof(S)) +
+    return tree.links.size() * (sizeof(LoopedRevolute<S, Rows>) + 3 * sizeof(S)) +
            loops.loops.size() * (sizeof(Place) + sizeof(Pair) + sizeof(Wrench));
   }
-  using Base::stuck;
-  static bool weak_leg() { return false; }  ///< no leg is folded in a plane
+  using Base::singular_joint;
+  static bool weak_looped_branch() { return false; }  ///< no branch is folded in a plane
   /// Pivots of the last solution: calls report(row of Φ, w, τ).
   template <class Report>
   void each_pivot(Report&& report) const;
@@ -96,13 +97,13 @@ class LoopSweeps<Planar, S, Rows, Momentum> : PlanarPlaces<S> {
     Vec2<double> at;  ///< its point, body axes; on B of two rows along axes of B the first of these
     Vec2<double> D;   ///< of a tie's end that begins its D: what an end on the ground has of it
     double sign = 1;  ///< −1 on body B
-    int loop = 0, row = 0, lane = 0;
+    int loop = 0, row = 0, slot = 0;
     bool pair = false, tie = false;
     bool turns = false;  ///< two point rows along axes of B that no drive moves
     bool on_a = true, first = true, begins = false;
   };
   struct Closing {
-    int loop, row, lane;
+    int loop, row, slot;
     bool pair;
   };
   /// Where a loop that is no tie stands, ground axes.
@@ -119,7 +120,7 @@ class LoopSweeps<Planar, S, Rows, Momentum> : PlanarPlaces<S> {
     Vec2<S> v, a;
   };
   struct Open {
-    PlanarCargo<S> cargo;
+    PlanarArticulated<S> articulated;
     Blocks blocks;
   };
 
@@ -141,7 +142,7 @@ class LoopSweeps<Planar, S, Rows, Momentum> : PlanarPlaces<S> {
   __attribute__((noinline)) void gather_forces();
   /// O_K − O_L
   MOMENTA_INLINE Vec2<S> way_from_parent(const PlanarLink& l) const {
-    return l.pin ? Base::step(l) : joints_[static_cast<std::size_t>(l.record)].edge.r;
+    return l.revolute ? Base::step(l) : joints_[static_cast<std::size_t>(l.record)].edge.r;
   }
   /// D = x_A − x_B
   Vec2<S> gap_of(const Loop& l, const Place& s) const {
@@ -166,15 +167,16 @@ class LoopSweeps<Planar, S, Rows, Momentum> : PlanarPlaces<S> {
                                   const RightSide<S>& right) const;
   template <class In>
   bool inward(const In& r, const RightSide<S>& right);
-  MOMENTA_INLINE void enter(std::size_t k, const RightSide<S>& right, PlanarCargo<S>& a, Blocks& o);
+  MOMENTA_INLINE void enter(std::size_t k, const RightSide<S>& right, PlanarArticulated<S>& a,
+                            Blocks& o);
   MOMENTA_INLINE void enter_pair(std::size_t k, std::size_t i, const RightSide<S>& right,
-                                 PlanarCargo<S>& a, Blocks& o);
+                                 PlanarArticulated<S>& a, Blocks& o);
   __attribute__((noinline)) void enter_rows(std::size_t k, std::size_t i, const RightSide<S>& right,
                                             Open& open);
   template <bool Moves>
-  MOMENTA_INLINE void close(const LoopPlan::Range& range, PlanarCargo<S>& a, Blocks& o, double fade,
-                            LaneGroups all);
-  __attribute__((noinline)) void close_any(int loop, Open& open, double fade, LaneGroups all);
+  MOMENTA_INLINE void close(const LoopPlan::Range& range, PlanarArticulated<S>& a, Blocks& o,
+                            double fade, SlotGroups all);
+  __attribute__((noinline)) void close_any(int loop, Open& open, double fade, SlotGroups all);
   template <class In>
   __attribute__((noinline)) S couple(std::size_t k, const In& r, const RightSide<S>& right,
                                      Blocks& o);
@@ -216,8 +218,8 @@ class LoopSweeps<Planar, S, Rows, Momentum> : PlanarPlaces<S> {
   LoopsInTime<Planar> in_time_;
   const LoopModel<Planar>* loops_;  ///< points and axes in the frames of the links, at the time
   const LoopPlan* plan_;
-  OpenLanes lanes_;
-  std::vector<LoopedPin<S, Rows>> pins_;
+  OpenSlots open_slots_;
+  std::vector<LoopedRevolute<S, Rows>> revolutes_;
   std::vector<LoopedJoint<S, Rows>> looped_;
   std::vector<End> ends_;            ///< as in the plan
   std::vector<Closing> closings_;    ///< as in the plan
@@ -254,8 +256,8 @@ LoopSweeps<Planar, S, Rows, Momentum>::LoopSweeps(const PlanarTree& tree,
       in_time_(loops),
       loops_(&loops),
       plan_(&plan),
-      lanes_(plan, parents_of(tree), rows_of(loops)),
-      pins_(tree.links.size()),
+      open_slots_(plan, parents_of(tree), rows_of(loops)),
+      revolutes_(tree.links.size()),
       looped_(static_cast<std::size_t>(tree.records)),
       arms_(plan.ends.size()),
       gaps_(loops.loops.size()),
@@ -286,7 +288,7 @@ LoopSweeps<Planar, S, Rows, Momentum>::LoopSweeps(const PlanarTree& tree,
     e.sign = end.on_a ? 1.0 : -1.0;
     e.loop = end.loop;
     e.row = l.row;
-    e.lane = plan.lane[i];
+    e.slot = plan.slot[i];
     e.pair = plan.pair[i];
     e.tie = l.is_tie;
     e.turns = turns(i);
@@ -297,7 +299,7 @@ LoopSweeps<Planar, S, Rows, Momentum>::LoopSweeps(const PlanarTree& tree,
   }
   for (const int loop : plan.closings) {
     const auto i = static_cast<std::size_t>(loop);
-    closings_.push_back({loop, loops.loops[i].row, plan.lane[i], plan.pair[i] != 0});
+    closings_.push_back({loop, loops.loops[i].row, plan.slot[i], plan.pair[i] != 0});
   }
   if (!others_.empty()) origins_.resize(tree.links.size());
   if (tree.model->has_body_forces()) forces_.emplace(tree);
@@ -309,7 +311,7 @@ bool LoopSweeps<Planar, S, Rows, Momentum>::operator()(const S& t, const In& q, 
                                                        const In& tau, const RightSide<S>& right,
                                                        Out u, Out sigma, Out rate) {
   Base::place(t, q);
-  stuck_ = -1;
+  singular_joint_ = -1;
   compliance_ = right.compliance;
   if (!Momentum || far_reaching_ || !joints_.empty() || asks_for_gaps(right))
     place_bodies(x, right);

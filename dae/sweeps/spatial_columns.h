@@ -1,7 +1,7 @@
 #pragma once
 // The columns C of open loops on their way to the parent: each is a wrench, so the screws of the
 // edge turn and shift all of them as they do one force, eq. (22). Six parts at a time: a part holds
-// as many lanes as a register, or one lane of a pack.
+// as many slots as a register, or one slot of a pack.
 
 #include <momenta/core/kernel/link.h>
 #include <momenta/core/kernel/spatial.h>
@@ -48,9 +48,9 @@ MOMENTA_INLINE void columns_to_parent(const Mat3<S>& R, const Vec3<S>& r, typena
 }
 
 /// What closing a row adds: c f cᵀ to M*, c f d to D.
-template <class S, class Cargo>
+template <class S, class Articulated>
 struct SpatialWeight {
-  Cargo& a;
+  Articulated& a;
   MOMENTA_INLINE void operator()(const S* c, const S* f, const S& fd) const {
     auto& m = a.M;
     m.Axx = m.Axx + c[0] * f[0];

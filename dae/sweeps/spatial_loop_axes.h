@@ -1,6 +1,7 @@
 #pragma once
-// Joints on one axis beside pins, with loops: slides, screws, driven and welded ones. The steps of
-// core/kernel/axis_joint.h, and of the open loops, with E = (e_f ẑ; e_n ẑ),
+// Joints on one axis beside revolute ones, with loops: prismatic joints, screws, driven and
+// welded ones. The steps of core/kernel/axis_joint.h, and of the open loops, with E = (e_f ẑ; e_n
+// ẑ),
 //
 //   c = EᵀC, W' = W + c c ᵀ M_j⁻¹, d' = d + c e M_j⁻¹, C' = C − h cᵀ. Part of
 //   spatial_loop_sweeps.h.
@@ -19,9 +20,9 @@ bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::axis_inward(std::size_t k, cons
   const auto& b = body(k);
   auto& x = joints_[static_cast<std::size_t>(l.record)];
   auto& y = any_[static_cast<std::size_t>(l.record)];
-  Cargo<S>& m = a.cargo;
+  Articulated<S>& m = a.articulated;
   Blocks& o = a.blocks;
-  const LaneGroups open = lanes_.fronts[k].open;
+  const SlotGroups open = open_slots_.fronts[k].open;
   o.begin(false, ~open);
   if constexpr (Momentum) {
     if (b.nv > 0) {
@@ -41,9 +42,9 @@ bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::axis_inward(std::size_t k, cons
     if (!eliminate_axis(b, own, m, x)) return false;
     Column c = slides ? o.C[2] : o.C[5];
     if (!slides && !only_turns) c += o.C[2] * S(b.pitch);
-    each_coupling(*plan_, k, [&](const LoopPlan::Coupling& j, std::size_t loop, int lane) {
-      c.add(lane, S(j.ratio));
-      if (j.first) o.d.add(lane, coupled_[loop]);
+    each_coupling(*plan_, k, [&](const LoopPlan::Coupling& j, std::size_t loop, int slot) {
+      c.add(slot, S(j.ratio));
+      if (j.first) o.d.add(slot, coupled_[loop]);
     });
     o.eliminate(c, x.pivot, x.pivot * x.e, open, 0, y.g[0]);
     each_open<S, Rows>(open, [&](auto i) MOMENTA_INLINED {
@@ -88,7 +89,7 @@ void SpatialLoopSweeps<S, Rows, Momentum, Tree>::axis_outward(std::size_t k, con
   const auto along = [&](const Column& c)
                          MOMENTA_INLINED { return along_sigma(k, c, moving.sigma); };
   Vec3<S>&v = moving.V.v, &o = moving.V.w, &g = moving.g;
-  OutwardCargo<S> w{v[0], v[1], v[2], o[0], o[1], o[2], g[0], g[1], g[2]};
+  OutwardMotion<S> w{v[0], v[1], v[2], o[0], o[1], o[2], g[0], g[1], g[2]};
   constants_and_screw_outward<Momentum>(l, b.edge, x.edge, w);
   if (!Momentum || b.nv == 0) add_motion(w, y.given);
   if (b.nv > 0) {

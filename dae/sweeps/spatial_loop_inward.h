@@ -22,7 +22,7 @@ void SpatialLoopSweeps<S, Rows, Momentum, Tree>::enter(std::size_t k, const Loop
   const Loop& l = loops_->loops[loop];
   const SpatialLoopPlace<S>& s = places_[loop];
   const auto& axes = bodies_[k].pose.axes;
-  const int lane = plan_->lane[loop];
+  const int slot = plan_->slot[loop];
   const S sign(end.on_a ? 1.0 : -1.0);
   const Vec3<S> arm = transpose_times(axes, end.on_a ? s.ra : s.rb);
   Vec3<S> centre_force{}, centre_couple{};
@@ -37,8 +37,8 @@ void SpatialLoopSweeps<S, Rows, Momentum, Tree>::enter(std::size_t k, const Loop
                       l.axis_b[static_cast<std::size_t>(l.points[static_cast<std::size_t>(row)])]);
     const Vec3<S> n = cross(arm, f);
     for (int j = 0; j < 3; ++j) {
-      a.blocks.C[j].add(lane + row, f[j]);
-      a.blocks.C[3 + j].add(lane + row, n[j]);
+      a.blocks.C[j].add(slot + row, f[j]);
+      a.blocks.C[3 + j].add(slot + row, n[j]);
     }
     if (right.centre) {
       centre_force += right.centre[l.row + row] * f;
@@ -47,10 +47,10 @@ void SpatialLoopSweeps<S, Rows, Momentum, Tree>::enter(std::size_t k, const Loop
   }
   for (int row = l.first_rows(); row < l.rows; ++row) {
     const Vec3<S> n = transpose_times(axes, sign * s.c[row]);
-    for (int j = 0; j < 3; ++j) a.blocks.C[3 + j].add(lane + row, n[j]);
+    for (int j = 0; j < 3; ++j) a.blocks.C[3 + j].add(slot + row, n[j]);
     if (right.centre) centre_couple += right.centre[l.row + row] * n;
   }
-  if (right.centre) add_remainder(a.cargo, Force{centre_force, centre_couple});
+  if (right.centre) add_remainder(a.articulated, Force{centre_force, centre_couple});
   if (end.first) enter_right_side(loop, right, a.blocks.d);
 }
 
@@ -61,12 +61,12 @@ void SpatialLoopSweeps<S, Rows, Momentum, Tree>::enter_right_side(std::size_t lo
                                                                   Column& d) {
   const Loop& l = loops_->loops[loop];
   const SpatialLoopPlace<S>& s = places_[loop];
-  const int lane = plan_->lane[loop];
+  const int slot = plan_->slot[loop];
   if (right.positions != 0)
-    for (int row = 0; row < l.rows; ++row) d.add(lane + row, right.positions * s.position(l, row));
+    for (int row = 0; row < l.rows; ++row) d.add(slot + row, right.positions * s.position(l, row));
   if constexpr (Momentum) {
     if (l.motion < 0 || !right.drives) return;
-    for (int row = 0; row < l.rows; ++row) d.add(lane + row, s.moving_rate(l, prescribed(l), row));
+    for (int row = 0; row < l.rows; ++row) d.add(slot + row, s.moving_rate(l, prescribed(l), row));
   } else {
     const auto rates = rates_of(l, s);
     const LoopBody<S>*A = loop_body(l.a), *B = loop_body(l.b);
@@ -84,48 +84,49 @@ void SpatialLoopSweeps<S, Rows, Momentum, Tree>::enter_right_side(std::size_t lo
         if (l.b < 0) bias += along;
         if (l.a < 0) bias -= along;
       }
-      d.add(lane + row, bias);
+      d.add(slot + row, bias);
     }
   }
 }
 
-/// Closes the loops of a leg that has been eliminated down to the ground into the body they tie it
-/// to: r = JᵀΩ_L − W σ + d with the leg's W and d.
+/// Closes the loops of a branch that has been eliminated down to the ground into the body they tie
+/// it to: r = JᵀΩ_L − W σ + d with the branch's W and d.
 template <class S, int Rows, bool Momentum, class Tree>
 void SpatialLoopSweeps<S, Rows, Momentum, Tree>::fold(std::size_t root, const RightSide<S>& right,
-                                                      Carried& leg) {
+                                                      Carried& looped_branch) {
   const auto onto = static_cast<std::size_t>(plan_->folded_onto[root]);
   const LoopPlan::Range range = plan_->ground_closings_of[root];
-  leg.cargo = {};
-  for (Column& c : leg.blocks.C) c = {};
+  looped_branch.articulated = {};
+  for (Column& c : looped_branch.blocks.C) c = {};
   for (int i = range.first; i < range.last; ++i) {
     const int loop = plan_->closings[static_cast<std::size_t>(i)];
     const bool on_a = loops_->loops[static_cast<std::size_t>(loop)].a == static_cast<int>(onto);
-    enter(onto, {loop, on_a, false}, right, leg);
+    enter(onto, {loop, on_a, false}, right, looped_branch);
   }
   for (int i = range.first; i < range.last; ++i) {
     const int loop = plan_->closings[static_cast<std::size_t>(i)];
-    close(loop, leg, right.fade, lanes_.fronts[root].open);
+    close(loop, looped_branch, right.fade, open_slots_.fronts[root].open);
     const Loop& l = loops_->loops[static_cast<std::size_t>(loop)];
     for (int row = 0; row < l.rows; ++row) {
       const Row& closed = rows_[static_cast<std::size_t>(l.row + row)];
-      weak_leg_ |= !all_positive(closed.w - S(10.0) * closed.tau);
+      weak_looped_branch_ |= !all_positive(closed.w - S(10.0) * closed.tau);
     }
   }
-  add<Momentum>(legs_[onto], leg.cargo);
+  add<Momentum>(looped_branches_[onto], looped_branch.articulated);
 }
 
 template <class S, int Rows, bool Momentum, class Tree>
 void SpatialLoopSweeps<S, Rows, Momentum, Tree>::close(int loop, Carried& a, double fade,
-                                                       LaneGroups all) {
+                                                       SlotGroups all) {
   const Loop& l = loops_->loops[static_cast<std::size_t>(loop)];
   const int points = l.first_rows();
   a.blocks.begin(false, ~all);
   if (compliance_)
-    soften(a.blocks, plan_->lane[static_cast<std::size_t>(loop)], l.rows, compliance_ + l.row);
-  even_ &= close_loop(a.blocks, plan_->lane[static_cast<std::size_t>(loop)], points,
-                      l.rows - points, S(l.least_scale), fade,
-                      &rows_[static_cast<std::size_t>(l.row)], SpatialWeight<S, Cargo<S>>{a.cargo});
+    soften(a.blocks, plan_->slot[static_cast<std::size_t>(loop)], l.rows, compliance_ + l.row);
+  even_ &=
+      close_loop(a.blocks, plan_->slot[static_cast<std::size_t>(loop)], points, l.rows - points,
+                 S(l.least_scale), fade, &rows_[static_cast<std::size_t>(l.row)],
+                 SpatialWeight<S, Articulated<S>>{a.articulated});
 }
 
 template <class S, int Rows, bool Momentum, class Tree>
@@ -136,14 +137,14 @@ bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::inward(const In& r, const Right
   for (std::size_t k = swept_; k-- > 0;) {
     if (elsewhere(k)) continue;
     const auto& l = links[k];
-    const OpenLanes::Front& front = lanes_.fronts[k];
-    if (l.tip) a.cargo = {};
-    a.blocks.begin(l.tip, front.fresh);
-    add_body(a.cargo.M, l);
+    const OpenSlots::Front& front = open_slots_.fronts[k];
+    if (l.leaf) a.articulated = {};
+    a.blocks.begin(l.leaf, front.fresh);
+    add_body(a.articulated.M, l);
     if constexpr (Momentum) {
-      a.cargo.Gx = a.cargo.Gx + l.moment[0];
-      a.cargo.Gy = a.cargo.Gy + l.moment[1];
-      a.cargo.Gz = a.cargo.Gz + l.moment[2];
+      a.articulated.Gx = a.articulated.Gx + l.moment[0];
+      a.articulated.Gy = a.articulated.Gy + l.moment[1];
+      a.articulated.Gz = a.articulated.Gz + l.moment[2];
     } else {
       const Vec3<S>& w = wrenches_[k].n;  // ω × (ω × m c), ω × J ω
       const Vec3<S> mc{{S(l.c[0]), S(l.c[1]), S(l.c[2])}};
@@ -151,27 +152,27 @@ bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::inward(const In& r, const Right
                         l.J[1] * w[0] + l.J[3] * w[1] + l.J[4] * w[2],
                         l.J[2] * w[0] + l.J[4] * w[1] + l.J[5] * w[2]}};
       const Vec3<S> f = cross(w, cross(w, mc)), n = cross(w, Jw);
-      add_remainder(a.cargo, Force{f, n});
+      add_remainder(a.articulated, Force{f, n});
     }
     if (l.slot >= 0) {
       const Carried& slot = slots_[static_cast<std::size_t>(l.slot)];
-      add<Momentum>(a.cargo, slot.cargo);
+      add<Momentum>(a.articulated, slot.articulated);
       a.blocks.add(slot.blocks, front.slot);
     }
-    if (plan_->takes_legs[k]) add<Momentum>(a.cargo, legs_[k]);
+    if (plan_->takes_branches[k]) add<Momentum>(a.articulated, looped_branches_[k]);
     enter(k, right, a);
     const LoopPlan::Range closing = plan_->closings_of[k];
     for (int i = closing.first; i < closing.last; ++i)
       close(plan_->closings[static_cast<std::size_t>(i)], a, right.fade, front.all);
     bool moves = true;
-    if (l.kind == LinkKind::pin)
-      moves = pin_inward(k, r, right, a);
-    else if (of_legs || l.one_axis)
+    if (l.kind == LinkKind::revolute)
+      moves = revolute_inward(k, r, right, a);
+    else if (of_looped_branches || l.one_axis)
       moves = axis_inward(k, r, right, a);
-    else if constexpr (!of_legs)
-      moves = l.kind == LinkKind::ball ? ball_inward(k, r, a) : free_inward(k, r, a);
+    else if constexpr (!of_looped_branches)
+      moves = l.kind == LinkKind::spherical ? spherical_inward(k, r, a) : free_inward(k, r, a);
     if (!moves) {
-      stuck_ = static_cast<int>(k);
+      singular_joint_ = static_cast<int>(k);
       return false;
     }
     if (l.parent < 0 && plan_->folded_onto[k] >= 0) {
@@ -185,10 +186,10 @@ bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::inward(const In& r, const Right
       const auto parent = static_cast<std::size_t>(l.parent);
       Carried& slot = slots_[static_cast<std::size_t>(links[parent].slot)];
       if (l.opens) {
-        slot.cargo = a.cargo;
-        slot.blocks.begin(true, lanes_.fronts[parent].slot);
+        slot.articulated = a.articulated;
+        slot.blocks.begin(true, open_slots_.fronts[parent].slot);
       } else {
-        add<Momentum>(slot.cargo, a.cargo);
+        add<Momentum>(slot.articulated, a.articulated);
       }
       slot.blocks.add(a.blocks, front.open);
     }

@@ -1,6 +1,6 @@
 #pragma once
-// Joints eliminated on the way inward in space: pins, balls, free ones; others on one axis are in
-// spatial_loop_axes.h. Part of spatial_loop_sweeps.h.
+// Joints eliminated on the way inward in space: revolute joints, spherical joints, free ones;
+// others on one axis are in spatial_loop_axes.h. Part of spatial_loop_sweeps.h.
 
 #include <momenta/dae/sweeps/spatial_loop_sweeps.h>
 
@@ -8,26 +8,27 @@ namespace momenta {
 
 template <class S, int Rows, bool Momentum, class Tree>
 template <class In>
-bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::pin_inward(std::size_t k, const In& r,
-                                                            const RightSide<S>& right, Carried& a) {
+bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::revolute_inward(std::size_t k, const In& r,
+                                                                 const RightSide<S>& right,
+                                                                 Carried& a) {
   const auto& l = tree_->links[k];
-  PinRecord& w = pins_[k];
-  Cargo<S>& m = a.cargo;
+  RevoluteRecord& w = revolutes_[k];
+  Articulated<S>& m = a.articulated;
   Blocks& o = a.blocks;
   if (!all_positive(m.M.Izz)) return false;
   const bool couples = plan_->couples();
   S own = S(r[l.u]);
   if (couples) {
-    each_coupling(*plan_, k, [&](const LoopPlan::Coupling& j, std::size_t loop, int lane) {
-      o.C[5].add(lane, S(j.ratio));
-      if (j.first) o.d.add(lane, coupled_[loop]);
+    each_coupling(*plan_, k, [&](const LoopPlan::Coupling& j, std::size_t loop, int slot) {
+      o.C[5].add(slot, S(j.ratio));
+      if (j.first) o.d.add(slot, coupled_[loop]);
       if (right.centre) own = own - j.ratio * right.centre[loops_->loops[loop].row];
     });
   }
   const S inverse = S(1.0) / m.M.Izz, e = own - m.Dnz;
   w.y0 = e * inverse;
   Eliminated<S> left;
-  eliminate_pin(m.M, inverse, w.h, left.M);
+  eliminate_revolute(m.M, inverse, w.h, left.M);
   left.fx = m.Dfx + w.h.fx * e;
   left.fy = m.Dfy + w.h.fy * e;
   left.fz = m.Dfz + w.h.fz * e;
@@ -44,12 +45,12 @@ bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::pin_inward(std::size_t k, const
     }
   const S cosine = angles_.cosine(k), sine = angles_.sine(k);
   // The loops.
-  const LaneGroups open = lanes_.fronts[k].open;
+  const SlotGroups open = open_slots_.fronts[k].open;
   o.eliminate(o.C[5], inverse, w.y0, open, 0, w.g);
   Column couplers{};
   if (couples)
-    each_coupling(*plan_, k, [&](const LoopPlan::Coupling& j, std::size_t, int lane) {
-      couplers.add(lane, S(-j.ratio));
+    each_coupling(*plan_, k, [&](const LoopPlan::Coupling& j, std::size_t, int slot) {
+      couplers.add(slot, S(-j.ratio));
     });
   const auto& edge = body(k).edge;
   each_open<S, Rows>(open, [&](auto i) MOMENTA_INLINED {
@@ -91,7 +92,7 @@ bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::pin_inward(std::size_t k, const
     w.Dny = left.ny;
     if (l.parent < 0) return true;
   }
-  // The pin's screw.
+  // The revolute joint's screw.
   turn_and_shift_z(left.M, w.M, cosine, sine, l.d);
   S x = cosine * left.fx - sine * left.fy;
   left.fy = sine * left.fx + cosine * left.fy;
@@ -119,25 +120,25 @@ bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::pin_inward(std::size_t k, const
 
 template <class S, int Rows, bool Momentum, class Tree>
 template <class In>
-bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::ball_inward(std::size_t k, const In& r,
-                                                             Carried& a) {
+bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::spherical_inward(std::size_t k, const In& r,
+                                                                  Carried& a) {
   const auto& l = tree_->links[k];
   const auto record = static_cast<std::size_t>(l.record);
-  BallRecord& w = balls_[record];
-  Cargo<S>& m = a.cargo;
+  SphericalRecord& w = sphericals_[record];
+  Articulated<S>& m = a.articulated;
   Blocks& o = a.blocks;
   w.p = {{S(r[l.u]), S(r[l.u + 1]), S(r[l.u + 2])}};
   if (!w.pivot.eliminate(m.M, w.A)) return false;
   w.G = {{m.Gx, m.Gy, m.Gz}};
   w.Df = Vec3<S>{{m.Dfx, m.Dfy, m.Dfz}} + w.pivot.remainder(w.p - Vec3<S>{{m.Dnx, m.Dny, m.Dnz}});
-  // L⁻¹ c, then as three pins.
+  // L⁻¹ c, then as three revolute joints.
   if constexpr (!Momentum)
     if (l.parent < 0) {
       const auto& g = tree_->model->gravity;
       w.c.v = transpose_times(w.R, Vec3<S>{{S(-g[0]), S(-g[1]), S(-g[2])}});
     }
-  const LaneGroups open = lanes_.fronts[static_cast<std::size_t>(k)].open;
-  const auto& at = tree_->balls[record].origin;
+  const SlotGroups open = open_slots_.fronts[static_cast<std::size_t>(k)].open;
+  const auto& at = tree_->sphericals[record].origin;
   const Vec3<S> step{{S(at[0]), S(at[1]), S(at[2])}};
   const auto times = [](const auto& part, const S& x)
                          MOMENTA_INLINED { return part * Column::all(x); };
@@ -169,7 +170,7 @@ bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::ball_inward(std::size_t k, cons
   Vec3<S> force = w.Df;
   if constexpr (!Momentum) force += w.A * w.c.v;
   if (l.parent < 0) return true;
-  carry_ball(at, w.R, w.A, force, w.p, m);
+  carry_spherical(at, w.R, w.A, force, w.p, m);
   if constexpr (Momentum) {
     const Vec3<S> G = w.R * w.G;
     m.Gx = G[0];
@@ -189,18 +190,18 @@ bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::free_inward(std::size_t k, cons
   auto& x = joints_[record];
   auto& y = any_[record];
   Blocks& o = a.blocks;
-  const LaneGroups open = lanes_.fronts[k].open;
+  const SlotGroups open = open_slots_.fronts[k].open;
   o.begin(false, ~open);
-  x.M = blocks(a.cargo.M);
-  x.D = remainder_of(a.cargo);
-  x.moment = {{a.cargo.Gx, a.cargo.Gy, a.cargo.Gz}};
+  x.M = blocks(a.articulated.M);
+  x.D = remainder_of(a.articulated);
+  x.moment = {{a.articulated.Gx, a.articulated.Gy, a.articulated.Gz}};
   for (int i = 0; i < 6; ++i) y.C[i] = o.C[i];
   S own[6];
   for (int i = 0; i < 6; ++i) own[i] = S(r[b.u + i]);
   Spatial::ArticulatedInertia<S> M;
   if (!eliminate<Spatial>(b, x, M)) return false;
   const Force D = remainder<Spatial>(b, x, own);
-  const auto eliminate_lanes = [&](const Column& c, const Column& g, const S& e) {
+  const auto eliminate_slots = [&](const Column& c, const Column& g, const S& e) {
     o.d += g * e;
     o.scale += c * g;
     o.add_product(g, c, open);
@@ -211,10 +212,10 @@ bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::free_inward(std::size_t k, cons
     y.g[3 + i] = o.C[3] * x.I(i, 0) + o.C[4] * x.I(i, 1) + o.C[5] * x.I(i, 2);
     left[i] = o.C[i] - (o.C[3] * x.H(i, 0) + o.C[4] * x.H(i, 1) + o.C[5] * x.H(i, 2));
   }
-  for (int i = 0; i < 3; ++i) eliminate_lanes(o.C[3 + i], y.g[3 + i], own[3 + i] - x.D.n[i]);
+  for (int i = 0; i < 3; ++i) eliminate_slots(o.C[3 + i], y.g[3 + i], own[3 + i] - x.D.n[i]);
   for (int i = 0; i < 3; ++i)
     y.g[i] = left[0] * x.A(i, 0) + left[1] * x.A(i, 1) + left[2] * x.A(i, 2);
-  for (int i = 0; i < 3; ++i) eliminate_lanes(left[i], y.g[i], x.y[i]);
+  for (int i = 0; i < 3; ++i) eliminate_slots(left[i], y.g[i], x.y[i]);
   for (int i = 0; i < 6; ++i) o.C[i] = {};
   if constexpr (!Momentum)
     if (b.parent < 0) {
@@ -226,7 +227,7 @@ bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::free_inward(std::size_t k, cons
   Vec3<S> G{};
   if constexpr (Momentum)
     G = Spatial::moment_to_parent(b.edge, b.kind, x.edge, x.moment, b.subtree_mass);
-  set_cargo(a.cargo, M, Spatial::to_parent(b.edge, b.kind, x.edge, D), G);
+  set_articulated(a.articulated, M, Spatial::to_parent(b.edge, b.kind, x.edge, D), G);
   return true;
 }
 

@@ -12,14 +12,14 @@ bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::place(const S& t, const In& q, 
                                                        const RightSide<S>& right) {
   place_links(
       *tree_, t, q, angles_, joints_,
-      users_, [&](std::size_t record) -> auto& { return balls_[record].R; }, swept_);
-  stuck_ = tree_->stuck;
-  weak_leg_ = false;
+      users_, [&](std::size_t record) -> auto& { return sphericals_[record].R; }, swept_);
+  singular_joint_ = tree_->singular_joint;
+  weak_looped_branch_ = false;
   even_ = true;
   compliance_ = right.compliance;
-  if (stuck_ >= 0) return false;
-  for (std::size_t k = 0; k < std::min(swept_, legs_.size()); ++k)
-    if (plan_->takes_legs[k]) legs_[k] = {};
+  if (singular_joint_ >= 0) return false;
+  for (std::size_t k = 0; k < std::min(swept_, looped_branches_.size()); ++k)
+    if (plan_->takes_branches[k]) looped_branches_[k] = {};
   pose_bodies();
   move_bodies(x, right);
   loops_ = &in_time_.at(value_of(t));
@@ -35,14 +35,14 @@ void SpatialLoopSweeps<S, Rows, Momentum, Tree>::place_loops(const In& q, const 
   for (std::size_t i = 0; i < places_.size(); ++i) {
     if (loop_elsewhere(i)) continue;
     const Loop& l = loops_->loops[i];
-    if constexpr (!of_legs)
+    if constexpr (!of_looped_branches)
       if (l.is_coupler()) {
         coupled_[i] = coupler_bias<Momentum>(*loops_, l, q, x, right);
         continue;
       }
     const LoopBody<S>*A = loop_body(l.a), *B = loop_body(l.b);
     places_[i].place(l, A, B);
-    if constexpr (!of_legs)
+    if constexpr (!of_looped_branches)
       if (l.motion >= 0) {
         const auto at = static_cast<std::size_t>(l.motion);
         moving_[at].place(l, loops_->motions[at], A, B);
@@ -60,16 +60,16 @@ void SpatialLoopSweeps<S, Rows, Momentum, Tree>::pose_bodies() {
     const auto& l = tree_->links[k];
     const auto& from = l.parent < 0 ? ground : bodies_[static_cast<std::size_t>(l.parent)].pose;
     Spatial::Pose<S> at{from.axes, Vec3<S>{{S(0.0), S(0.0), S(0.0)}}};  // from the parent's O
-    if (l.kind == LinkKind::pin) {
+    if (l.kind == LinkKind::revolute) {
       Spatial::Edge<S> e;
       e.cos_theta = angles_.cosine(k);
       e.sin_theta = angles_.sine(k);
       e.d = S(l.d);
       at = Spatial::pose_outward(body(k).edge, JointKind::revolute, e, at);
-    } else if (!of_legs && l.kind == LinkKind::ball) {
+    } else if (!of_looped_branches && l.kind == LinkKind::spherical) {
       const auto record = static_cast<std::size_t>(l.record);
-      const auto& r = tree_->balls[record].origin;
-      at = {from.axes * balls_[record].R, from.axes * Vec3<S>{{S(r[0]), S(r[1]), S(r[2])}}};
+      const auto& r = tree_->sphericals[record].origin;
+      at = {from.axes * sphericals_[record].R, from.axes * Vec3<S>{{S(r[0]), S(r[1]), S(r[2])}}};
     } else {
       at = Spatial::pose_outward(body(k).edge, body(k).kind,
                                  joints_[static_cast<std::size_t>(l.record)].edge, at);
@@ -89,7 +89,7 @@ void SpatialLoopSweeps<S, Rows, Momentum, Tree>::move_bodies(const In& x,
                                                              const RightSide<S>& right) {
   if constexpr (Momentum) {
     if (joints_.empty()) return;
-    if constexpr (!of_legs)
+    if constexpr (!of_looped_branches)
       for (std::size_t k = 0; k < swept_; ++k) {
         const auto& l = tree_->links[k];
         if (l.kind != LinkKind::general || elsewhere(k)) continue;
@@ -114,27 +114,27 @@ void SpatialLoopSweeps<S, Rows, Momentum, Tree>::move_bodies(const In& x,
       }
       // ω × (ω × r) of the parent's rotation, in the body's axes: cross(ω, velocity it gives O).
       Motion turning{{}, V.w};
-      if (l.kind == LinkKind::pin) {
+      if (l.kind == LinkKind::revolute) {
         constants_outward(l, b.edge, V.v[0], V.v[1], V.v[2], V.w[0], V.w[1], V.w[2]);
         constants_outward(l, b.edge, turning.v[0], turning.v[1], turning.v[2], turning.w[0],
                           turning.w[1], turning.w[2]);
-        // The pin's screw without its turn: the product is wanted before it.
+        // The revolute joint's screw without its turn: the product is wanted before it.
         V.v[0] = V.v[0] + l.d * V.w[1];
         V.v[1] = V.v[1] - l.d * V.w[0];
         turning.v[0] = turning.v[0] + l.d * turning.w[1];
         turning.v[1] = turning.v[1] - l.d * turning.w[0];
         const S rate = x[l.u];
         step_product = cross(V.w, turning.v);
-        pins_[k].c = {step_product, {{V.w[1] * rate, -(V.w[0] * rate), S(0.0)}}};
-        pins_[k].c.v[0] += l.d * (V.w[0] * rate);
-        pins_[k].c.v[1] += l.d * (V.w[1] * rate);
+        revolutes_[k].c = {step_product, {{V.w[1] * rate, -(V.w[0] * rate), S(0.0)}}};
+        revolutes_[k].c.v[0] += l.d * (V.w[0] * rate);
+        revolutes_[k].c.v[1] += l.d * (V.w[1] * rate);
         const S c = angles_.cosine(k), s = angles_.sine(k);
         momenta::turn_back<2>(V.v, c, s);
         momenta::turn_back<2>(V.w, c, s);
         V.w[2] += rate;
-      } else if (!of_legs && l.kind == LinkKind::ball) {
-        auto& w = balls_[static_cast<std::size_t>(l.record)];
-        const auto& r = tree_->balls[static_cast<std::size_t>(l.record)].origin;
+      } else if (!of_looped_branches && l.kind == LinkKind::spherical) {
+        auto& w = sphericals_[static_cast<std::size_t>(l.record)];
+        const auto& r = tree_->sphericals[static_cast<std::size_t>(l.record)].origin;
         const Vec3<S> step{{S(r[0]), S(r[1]), S(r[2])}};
         const Vec3<S> rate{{x[l.u], x[l.u + 1], x[l.u + 2]}};
         const Vec3<S> way = cross(V.w, step);
@@ -146,7 +146,7 @@ void SpatialLoopSweeps<S, Rows, Momentum, Tree>::move_bodies(const In& x,
         auto& j = joints_[static_cast<std::size_t>(l.record)];
         V = Spatial::to_child(b.edge, b.kind, j.edge, V);
         turning = Spatial::to_child(b.edge, b.kind, j.edge, turning);
-        if constexpr (of_legs) {
+        if constexpr (of_looped_branches) {
           own.v[2] = x[b.u];
         } else {
           S rates[6]{};
@@ -154,7 +154,7 @@ void SpatialLoopSweeps<S, Rows, Momentum, Tree>::move_bodies(const In& x,
           Joint<Spatial>::add_motion(b, j.edge, b.drive >= 0 ? &j.drive_rate : rates, own);
         }
         product = {cross(V.w, turning.v) + cross(S(2.0) * V.w + own.w, own.v), cross(V.w, own.w)};
-        if constexpr (!of_legs)
+        if constexpr (!of_looped_branches)
           if (b.drive >= 0) Joint<Spatial>::add_motion(b, j.edge, &j.drive_acceleration, product);
         any_[static_cast<std::size_t>(l.record)].given = product;
         V += own;

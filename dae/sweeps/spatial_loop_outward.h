@@ -18,8 +18,8 @@ void SpatialLoopSweeps<S, Rows, Momentum, Tree>::solve_loops(const LoopPlan::Ran
     for (int j = l.rows; j-- > 0;) {
       const Row& row = rows_[static_cast<std::size_t>(l.row + j)];
       const S x = motion ? row.impulse(*motion, sigma) : row.impulse_at_ground(sigma);
-      sigma.set(row.lane, x);
-      const int place = l.row + row.lane - plan_->lane[at];
+      sigma.set(row.slot, x);
+      const int place = l.row + row.slot - plan_->slot[at];
       out[place] = right.centre ? x + right.centre[place] : x;
     }
   }
@@ -51,19 +51,19 @@ void SpatialLoopSweeps<S, Rows, Momentum, Tree>::outward(const In& q, const Righ
     } else if (!l.first) {
       m = outward_slots_[static_cast<std::size_t>(links[static_cast<std::size_t>(l.parent)].slot)];
     }
-    if (l.kind == LinkKind::pin)
-      pin_outward(k, q, rates, m, u, rate);
-    else if (of_legs || l.one_axis)
+    if (l.kind == LinkKind::revolute)
+      revolute_outward(k, q, rates, m, u, rate);
+    else if (of_looped_branches || l.one_axis)
       axis_outward(k, q, rates, m, u, rate);
-    else if constexpr (!of_legs) {
-      if (l.kind == LinkKind::ball)
-        ball_outward(k, rates, m, u, rate);
+    else if constexpr (!of_looped_branches) {
+      if (l.kind == LinkKind::spherical)
+        spherical_outward(k, rates, m, u, rate);
       else
         free_outward(k, rates, m, u, rate);
     }
     const LoopPlan::Range closed = plan_->closings_of[k];
     if (closed.first != closed.last) solve_loops(closed, right, &m.V, m.sigma, impulse);
-    if (plan_->takes_legs[k]) taken_[k] = m.V;
+    if (plan_->takes_branches[k]) taken_[k] = m.V;
     if constexpr (Momentum)
       if (rates && plan_->posed[k]) {
         bodies_[k].v = bodies_[k].pose.axes * m.V.v;
@@ -75,10 +75,11 @@ void SpatialLoopSweeps<S, Rows, Momentum, Tree>::outward(const In& q, const Righ
 
 template <class S, int Rows, bool Momentum, class Tree>
 template <class In, class Out>
-void SpatialLoopSweeps<S, Rows, Momentum, Tree>::pin_outward(std::size_t k, const In& q, bool rates,
-                                                             Moving& m, Out u, Out rate) {
+void SpatialLoopSweeps<S, Rows, Momentum, Tree>::revolute_outward(std::size_t k, const In& q,
+                                                                  bool rates, Moving& m, Out u,
+                                                                  Out rate) {
   const auto& l = tree_->links[k];
-  const PinRecord& w = pins_[k];
+  const RevoluteRecord& w = revolutes_[k];
   Vec3<S>&v = m.V.v, &o = m.V.w;
   const S c = angles_.cosine(k), s = angles_.sine(k);
   const auto along = [&](const Column& x) MOMENTA_INLINED { return along_sigma(k, x, m.sigma); };
@@ -117,15 +118,15 @@ void SpatialLoopSweeps<S, Rows, Momentum, Tree>::pin_outward(std::size_t k, cons
 
 template <class S, int Rows, bool Momentum, class Tree>
 template <class Out>
-void SpatialLoopSweeps<S, Rows, Momentum, Tree>::ball_outward(std::size_t k, bool rates, Moving& m,
-                                                              Out u, Out rate) {
+void SpatialLoopSweeps<S, Rows, Momentum, Tree>::spherical_outward(std::size_t k, bool rates,
+                                                                   Moving& m, Out u, Out rate) {
   const auto& l = tree_->links[k];
-  const BallRecord& w = balls_[static_cast<std::size_t>(l.record)];
+  const SphericalRecord& w = sphericals_[static_cast<std::size_t>(l.record)];
   Vec3<S>&v = m.V.v, &o = m.V.w;
-  const auto along_lanes = [&](const Column& x)
+  const auto along_slots = [&](const Column& x)
                                MOMENTA_INLINED { return along_sigma(k, x, m.sigma); };
   if (l.parent >= 0) {
-    const auto& r = tree_->balls[static_cast<std::size_t>(l.record)].origin;
+    const auto& r = tree_->sphericals[static_cast<std::size_t>(l.record)].origin;
     v = transpose_times(w.R, v + cross(o, Vec3<S>{{S(r[0]), S(r[1]), S(r[2])}}));
     o = transpose_times(w.R, o);
   }
@@ -133,15 +134,15 @@ void SpatialLoopSweeps<S, Rows, Momentum, Tree>::ball_outward(std::size_t k, boo
   m.g = transpose_times(w.R, m.g);
   // ω = L⁻ᵀ (Δ⁻¹ L⁻¹ e − (Z Δ⁻¹)ᵀ v − g σ)
   const Vec3<S> along = transpose_times(w.pivot.s, v);
-  const S z = w.pivot.e[2] * w.pivot.i2 - along[2] - along_lanes(w.g[2]);
-  const S y = w.pivot.e[1] * w.pivot.i1 - along[1] - along_lanes(w.g[1]) - w.pivot.l21 * z;
-  const Vec3<S> omega{{w.pivot.e[0] * w.pivot.i0 - along[0] - along_lanes(w.g[0]) -
+  const S z = w.pivot.e[2] * w.pivot.i2 - along[2] - along_slots(w.g[2]);
+  const S y = w.pivot.e[1] * w.pivot.i1 - along[1] - along_slots(w.g[1]) - w.pivot.l21 * z;
+  const Vec3<S> omega{{w.pivot.e[0] * w.pivot.i0 - along[0] - along_slots(w.g[0]) -
                            w.pivot.l10 * y - w.pivot.l20 * z,
                        y, z}};
   Vec3<S> net{};
   if (rates) {
     Vec3<S> P = w.A * v + w.Df;
-    for (int i = 0; i < 3; ++i) P[i] += along_lanes(w.C[i]);
+    for (int i = 0; i < 3; ++i) P[i] += along_slots(w.C[i]);
     net = cross(w.G, m.g) - cross(v, P) - cross(omega, w.p);
   }
   for (int i = 0; i < 3; ++i) {
@@ -190,7 +191,7 @@ void SpatialLoopSweeps<S, Rows, Momentum, Tree>::rates_inward(const RightSide<S>
   for (std::size_t k = 0; k < swept_; ++k)
     if (plan_->posed[k]) wrenches_[k] = {};
   if constexpr (takes_packs)
-    if (legs_apart_)
+    if (branches_apart_)
       for (auto& pack : packs_) {
         const auto onto = static_cast<std::size_t>(pack->onto());
         pack->inertial_rates(bodies_[onto], wrenches_[onto], rate);
@@ -216,14 +217,14 @@ void SpatialLoopSweeps<S, Rows, Momentum, Tree>::rates_inward(const RightSide<S>
     const auto about_z = [&](const Vec3<S>& x) {
       return axes(0, 2) * x[0] + axes(1, 2) * x[1] + axes(2, 2) * x[2];
     };
-    if (l.kind == LinkKind::pin) {
+    if (l.kind == LinkKind::revolute) {
       rate[l.u] = S(rate[l.u]) + about_z(T.n);
-    } else if (l.kind == LinkKind::ball) {
+    } else if (l.kind == LinkKind::spherical) {
       const Vec3<S> n = transpose_times(axes, T.n);
       for (int i = 0; i < 3; ++i) rate[l.u + i] = S(rate[l.u + i]) + n[i];
     } else if (b.kind == JointKind::prismatic && b.nv > 0) {
       rate[b.u] = S(rate[b.u]) + about_z(T.f);
-    } else if constexpr (!of_legs) {
+    } else if constexpr (!of_looped_branches) {
       if (b.nv > 0) {
         S along[6];
         Joint<Spatial>::project(b, joints_[static_cast<std::size_t>(l.record)].edge,
@@ -235,7 +236,7 @@ void SpatialLoopSweeps<S, Rows, Momentum, Tree>::rates_inward(const RightSide<S>
     if (l.parent >= 0)
       wrenches_[static_cast<std::size_t>(l.parent)] += {T.f, T.n + cross(bodies_[k].step, T.f)};
   }
-  if constexpr (!of_legs)
+  if constexpr (!of_looped_branches)
     if (plan_->couples() && right.leak != 0)
       leak_of_couplers<S>(*loops_, right.leak, impulse, rate);
 }
@@ -248,7 +249,7 @@ void SpatialLoopSweeps<S, Rows, Momentum, Tree>::each_row(Report&& report) const
     const Loop& l = loops_->loops[i];
     for (int j = 0; j < l.rows; ++j) {
       const Row& row = rows_[static_cast<std::size_t>(l.row + j)];
-      report(l.row + row.lane - plan_->lane[i], row.w, row.tau);
+      report(l.row + row.slot - plan_->slot[i], row.w, row.tau);
     }
   }
 }
@@ -258,7 +259,7 @@ template <class Report>
 void SpatialLoopSweeps<S, Rows, Momentum, Tree>::each_pivot(Report&& report) const {
   each_row([&](int row, const S& w, const S& tau) { report(row, value_of(w), value_of(tau)); });
   if constexpr (takes_packs)
-    if (legs_apart_)
+    if (branches_apart_)
       for (const auto& pack : packs_) pack->each_pivot(report);
 }
 

@@ -1,22 +1,22 @@
 #pragma once
 // Closed loops in space inside the two sweeps, as in the plane (planar_loop_sweeps.h), in the
-// canonical frames and with the eliminations of the open chain's recursions. For a pin,
+// canonical frames and with the eliminations of the open chain's recursions. For a revolute joint,
 //
 //   c = C_nz, g = c M_j⁻¹, C' = C − h c, W' = W + c gᵀ, d' = d + g e
 //
 // and C' takes the same screws to the parent as D'. Momentum form: P* = M'V + D' + C'σ before the
-// pin's screw, ṗ = weight − Eᵀ(V × P*) + Eᵀ T*, T* the N − κ w of the loops below, gathered by a
-// last sweep over the bodies on their ways. A coupler's r joins C_nz where the pin is eliminated,
-// and leaves it with the opposite sign, as the pin is eliminated by its absolute rate. Acceleration
-// form: A = (acceleration of O, dω/dt) in body axes, the ground falls upward with −g, c the
-// velocity products of acceleration_sweeps.h.
+// revolute joint's screw, ṗ = weight − Eᵀ(V × P*) + Eᵀ T*, T* the N − κ w of the loops below,
+// gathered by a last sweep over the bodies on their ways. A coupler's r joins C_nz where the
+// revolute joint is eliminated, and leaves it with the opposite sign, as the revolute joint is
+// eliminated by its absolute rate. Acceleration form: A = (acceleration of O, dω/dt) in body axes,
+// the ground falls upward with −g, c the velocity products of acceleration_sweeps.h.
 
-#include <momenta/core/kernel/ball.h>
 #include <momenta/core/kernel/place_links.h>
+#include <momenta/core/kernel/spherical.h>
 #include <momenta/core/kernel/sweeps.h>
 #include <momenta/dae/loop/loops_in_time.h>
+#include <momenta/dae/sweeps/branches/looped_branch_pack.h>
 #include <momenta/dae/sweeps/couplings.h>
-#include <momenta/dae/sweeps/legs/leg_pack.h>
 #include <momenta/dae/sweeps/loop_plan.h>
 #include <momenta/dae/sweeps/right_side.h>
 #include <momenta/dae/sweeps/spatial_columns.h>
@@ -29,70 +29,73 @@ namespace momenta {
 template <class Space, class S, int Rows, bool Momentum>
 class LoopSweeps;
 
-/// Tree: LinkTree; or LegTree, which holds the constants of several legs side by side.
+/// Tree: LinkTree; or LoopedBranchTree, which holds the constants of several branches side by side.
 template <class S, int Rows, bool Momentum, class Tree>
 class SpatialLoopSweeps {
-  using Column = Lanes<S, Rows>;
+  using Column = Slots<S, Rows>;
   using Blocks = Front<S, Rows, 6>;
   using Row = ClosedRow<S, Rows, 6>;
   using Loops = typename LoopsOf<Tree>::Model;
   using Loop = typename Loops::Loop;
-  static constexpr bool of_legs = LoopsOf<Tree>::of_legs;
-  static constexpr bool takes_packs = !of_legs && !std::is_void_v<typename LegLanes<S>::type>;
+  static constexpr bool of_looped_branches = LoopsOf<Tree>::of_looped_branches;
+  static constexpr bool takes_packs =
+      !of_looped_branches && !std::is_void_v<typename LoopedBranchLanes<S>::type>;
   struct NoPack {};
   using Packs = typename std::conditional_t<
-      takes_packs, std::type_identity<LegPack<S, typename LegLanes<S>::type, Momentum>>,
+      takes_packs,
+      std::type_identity<LoopedBranchPack<S, typename LoopedBranchLanes<S>::type, Momentum>>,
       std::type_identity<NoPack>>::type;
   using Motion = Spatial::Motion<S>;
   using Force = Spatial::Force<S>;
 
  public:
-  /// `legs`: those to take side by side; null: none.
+  /// `looped_branches`: those to take side by side; null: none.
   SpatialLoopSweeps(const Tree& tree, const Loops& loops, const LoopPlan& plan,
-                    const LegGroups* legs = nullptr);
+                    const LoopedBranchGroups* looped_branches = nullptr);
 
   /// Momentum form: u (nv) and σ (m) of (7) from p; with right.rates ṗ (nv) of (8), forces between
   /// points of bodies left out. Acceleration form: u̇, λ from u and joint forces `tau` (nv). False
-  /// when a joint's inertia is not positive: stuck(). O(bodies + m).
+  /// when a joint's inertia is not positive: singular_joint(). O(bodies + m).
   template <class In, class Out>
   bool operator()(const S& t, const In& q, const In& x, const In& tau, const RightSide<S>& right,
                   Out u, Out impulse, Out rate);
 
   /// What an evaluation goes through in memory.
   static std::size_t bytes(const Tree& tree, const Loops& loops) {
-    return tree.links.size() * (sizeof(PinRecord) + sizeof(LoopBody<S>) + sizeof(Force)) +
+    return tree.links.size() * (sizeof(RevoluteRecord) + sizeof(LoopBody<S>) + sizeof(Force)) +
            loops.loops.size() * sizeof(SpatialLoopPlace<S>) +
            static_cast<std::size_t>(loops.rows) * sizeof(Row);
   }
-  // Legs side by side: the three steps of operator() between which the body they fold into is
+  // Branches side by side: the three steps of operator() between which the body they fold into is
   // swept.
 
-  /// From the pose of that body, in acceleration form its velocities too, to brought_by_legs().
+  /// From the pose of that body, in acceleration form its velocities too, to
+  /// brought_by_looped_branches().
   template <class In>
-  bool legs_inward(const S& t, const In& q, const In& x, const In& tau, const RightSide<S>& right,
-                   const LoopBody<S>& onto);
-  const Cargo<S>& brought_by_legs() const { return legs_[0]; }
+  bool looped_branches_inward(const S& t, const In& q, const In& x, const In& tau,
+                              const RightSide<S>& right, const LoopBody<S>& onto);
+  const Articulated<S>& brought_by_looped_branches() const { return looped_branches_[0]; }
   /// From its motion V, in its axes.
   template <class In, class Out>
-  void legs_outward(const In& q, const RightSide<S>& right, const Motion& V, Out u, Out impulse,
-                    Out rate) {
+  void looped_branches_outward(const In& q, const RightSide<S>& right, const Motion& V, Out u,
+                               Out impulse, Out rate) {
     taken_[0] = V;
     outward(q, right, u, impulse, rate);
   }
   /// From its velocities in ground axes; what the loops' N − κ w do to it.
   template <class Out>
-  const Force& legs_rates(const Vec3<S>& v, const Vec3<S>& w, const RightSide<S>& right,
-                          const Out& impulse, Out rate) {
+  const Force& looped_branches_rates(const Vec3<S>& v, const Vec3<S>& w, const RightSide<S>& right,
+                                     const Out& impulse, Out rate) {
     bodies_[0].v = v;
     bodies_[0].w = w;
     rates_inward(right, impulse, rate);
     return wrenches_[0];
   }
 
-  int stuck() const { return stuck_; }
-  /// Whether the last solution closed a folded leg on too weak a pivot: it is then wrong.
-  bool weak_leg() const { return weak_leg_; }
-  /// Whether one order of closing rows did for all states or legs of a pack: close_loop().
+  int singular_joint() const { return singular_joint_; }
+  /// Whether the last solution closed a folded branch on too weak a pivot: it is then wrong.
+  bool weak_looped_branch() const { return weak_looped_branch_; }
+  /// Whether one order of closing rows did for all states or branches of a pack: close_loop().
   bool uneven() const { return !even_; }
   /// Pivots of the last solution: calls report(row of Φ, w, τ).
   template <class Report>
@@ -103,7 +106,7 @@ class SpatialLoopSweeps {
 
  private:
   struct Carried {
-    Cargo<S> cargo;
+    Articulated<S> articulated;
     Blocks blocks;
   };
   struct Moving {
@@ -111,16 +114,16 @@ class SpatialLoopSweeps {
     Vec3<S> g;  ///< gravity (momentum form)
     Column sigma;
   };
-  struct PinRecord {
-    PinTurning<S> M;  ///< of M'
-    PinColumn<S> h;
+  struct RevoluteRecord {
+    RevoluteTurning<S> M;  ///< of M'
+    RevoluteColumn<S> h;
     S Dfx, Dfy, Dnx, Dny, y0, Gx, Gy;
     Column C[4], g;  ///< rows fx, fy, nx, ny of C'
-    Motion c;        ///< acceleration form: velocity product, before the pin's screw
+    Motion c;        ///< acceleration form: velocity product, before the revolute joint's screw
   };
-  struct BallRecord {
+  struct SphericalRecord {
     Mat3<S> R;
-    BallPivot<S> pivot;
+    SphericalPivot<S> pivot;
     Sym3<S> A;
     Vec3<S> Df, p, G;
     Column C[3], g[3];  ///< force rows of C'; Δ⁻¹ L⁻¹ C_n
@@ -132,19 +135,19 @@ class SpatialLoopSweeps {
   };
 
   const auto& body(std::size_t k) const { return tree_->model->bodies[k]; }
-  /// Whether others sweep body k: legs side by side, or of legs the body they fold into.
+  /// Whether others sweep body k: branches side by side, or of branches the body they fold into.
   bool elsewhere(std::size_t k) const {
-    if constexpr (of_legs)
+    if constexpr (of_looped_branches)
       return k == 0;
     else
-      return legs_apart_ && legs_apart_->bodies[k];
+      return branches_apart_ && branches_apart_->bodies[k];
   }
-  void sweep_apart(const LegGroups* legs) {
-    legs_apart_ = legs;
-    swept_ = pins_.size();
+  void sweep_apart(const LoopedBranchGroups* looped_branches) {
+    branches_apart_ = looped_branches;
+    swept_ = revolutes_.size();
     while (swept_ > 0 && elsewhere(swept_ - 1)) --swept_;
   }
-  bool loop_elsewhere(std::size_t i) const { return legs_apart_ && legs_apart_->loops[i]; }
+  bool loop_elsewhere(std::size_t i) const { return branches_apart_ && branches_apart_->loops[i]; }
   const LoopBody<S>* loop_body(int k) const {
     return k < 0 ? nullptr : &bodies_[static_cast<std::size_t>(k)];
   }
@@ -173,26 +176,27 @@ class SpatialLoopSweeps {
   void enter(std::size_t k, const RightSide<S>& right, Carried& a);
   void enter(std::size_t k, const LoopPlan::End& end, const RightSide<S>& right, Carried& a);
   void enter_right_side(std::size_t loop, const RightSide<S>& right, Column& d);
-  __attribute__((noinline)) void fold(std::size_t root, const RightSide<S>& right, Carried& leg);
-  __attribute__((noinline)) void close(int loop, Carried& a, double fade, LaneGroups all);
+  __attribute__((noinline)) void fold(std::size_t root, const RightSide<S>& right,
+                                      Carried& looped_branch);
+  __attribute__((noinline)) void close(int loop, Carried& a, double fade, SlotGroups all);
   template <class In>
-  bool pin_inward(std::size_t k, const In& r, const RightSide<S>& right, Carried& a);
+  bool revolute_inward(std::size_t k, const In& r, const RightSide<S>& right, Carried& a);
   template <class In>
-  __attribute__((noinline)) bool ball_inward(std::size_t k, const In& r, Carried& a);
+  __attribute__((noinline)) bool spherical_inward(std::size_t k, const In& r, Carried& a);
   template <class In>
   __attribute__((noinline)) bool axis_inward(std::size_t k, const In& r, const RightSide<S>& right,
                                              Carried& a);
   template <class In>
   __attribute__((noinline)) bool free_inward(std::size_t k, const In& r, Carried& a);
-  /// xᵀσ over the lanes open above body k.
+  /// xᵀσ over the slots open above body k.
   MOMENTA_INLINE S along_sigma(std::size_t k, const Column& x, const Column& sigma) const {
-    return plus_dot(S(0.0), x, sigma, lanes_.fronts[k].open);
+    return plus_dot(S(0.0), x, sigma, open_slots_.fronts[k].open);
   }
-  /// −Eᵀ(W × C'σ) of a pin.
+  /// −Eᵀ(W × C'σ) of a revolute joint.
   MOMENTA_INLINE S turning_along(std::size_t k, const Column (&C)[4], const Vec3<S>& v,
                                  const Vec3<S>& o, const Column& sigma) const {
     Column turned;
-    each_open<S, Rows>(lanes_.fronts[k].open, [&](auto i) MOMENTA_INLINED {
+    each_open<S, Rows>(open_slots_.fronts[k].open, [&](auto i) MOMENTA_INLINED {
       turned.v[i] = C[0].v[i] * Column::all(v[1]) - C[1].v[i] * Column::all(v[0]) +
                     C[2].v[i] * Column::all(o[1]) - C[3].v[i] * Column::all(o[0]);
     });
@@ -204,10 +208,10 @@ class SpatialLoopSweeps {
   template <class In, class Out>
   void outward(const In& q, const RightSide<S>& right, Out u, Out impulse, Out rate);
   template <class In, class Out>
-  void pin_outward(std::size_t k, const In& q, bool rates, Moving& m, Out u, Out rate);
+  void revolute_outward(std::size_t k, const In& q, bool rates, Moving& m, Out u, Out rate);
   template <class Out>
-  __attribute__((noinline)) void ball_outward(std::size_t k, bool rates, Moving& m, Out u,
-                                              Out rate);
+  __attribute__((noinline)) void spherical_outward(std::size_t k, bool rates, Moving& m, Out u,
+                                                   Out rate);
   template <class In, class Out>
   __attribute__((noinline)) void axis_outward(std::size_t k, const In& q, bool rates, Moving& m,
                                               Out u, Out rate);
@@ -221,10 +225,10 @@ class SpatialLoopSweeps {
   typename LoopsOf<Tree>::InTime in_time_;
   const Loops* loops_;  ///< at the time
   const LoopPlan* plan_;
-  OpenLanes lanes_;
+  OpenSlots open_slots_;
   Angles<S> angles_;
-  std::vector<PinRecord> pins_;
-  std::vector<BallRecord> balls_;
+  std::vector<RevoluteRecord> revolutes_;
+  std::vector<SphericalRecord> sphericals_;
   std::vector<JointRecord<Spatial, S>> joints_;
   std::vector<UserRecord<S>> users_;
   std::vector<AnyRecord> any_;
@@ -236,15 +240,15 @@ class SpatialLoopSweeps {
   std::vector<Carried> slots_;
   std::vector<Moving> outward_slots_;
   std::vector<Row> rows_;
-  std::vector<Cargo<S>> legs_;     ///< by body: what folded legs add to it
-  std::vector<Motion> taken_;      ///< by body: Ω of those that take legs
-  const S* compliance_ = nullptr;  ///< of the call under way: right.compliance
+  std::vector<Articulated<S>> looped_branches_;  ///< by body: what folded branches add to it
+  std::vector<Motion> taken_;                    ///< by body: Ω of those that take branches
+  const S* compliance_ = nullptr;                ///< of the call under way: right.compliance
   std::vector<std::unique_ptr<Packs>> packs_;
-  const LegGroups* legs_beside_ = nullptr;  ///< those that packs_ hold
-  const LegGroups* legs_apart_ = nullptr;   ///< the same, while packs_ sweep them
-  std::size_t swept_;                       ///< after so many bodies only those elsewhere follow
-  int stuck_ = -1;
-  bool weak_leg_ = false, even_ = true;
+  const LoopedBranchGroups* branches_beside_ = nullptr;  ///< those that packs_ hold
+  const LoopedBranchGroups* branches_apart_ = nullptr;   ///< the same, while packs_ sweep them
+  std::size_t swept_;  ///< after so many bodies only those elsewhere follow
+  int singular_joint_ = -1;
+  bool weak_looped_branch_ = false, even_ = true;
 };
 
 template <class S, int Rows, bool Momentum>
@@ -255,17 +259,17 @@ class LoopSweeps<Spatial, S, Rows, Momentum>
 };
 
 template <class S, int Rows, bool Momentum, class Tree>
-SpatialLoopSweeps<S, Rows, Momentum, Tree>::SpatialLoopSweeps(const Tree& tree, const Loops& loops,
-                                                              const LoopPlan& plan,
-                                                              const LegGroups* legs)
+SpatialLoopSweeps<S, Rows, Momentum, Tree>::SpatialLoopSweeps(
+    const Tree& tree, const Loops& loops, const LoopPlan& plan,
+    const LoopedBranchGroups* looped_branches)
     : tree_(&tree),
       in_time_(loops),
       loops_(&loops),
       plan_(&plan),
-      lanes_(plan, parents_of(tree), rows_of(loops)),
+      open_slots_(plan, parents_of(tree), rows_of(loops)),
       angles_(tree.links.size()),
-      pins_(tree.links.size()),
-      balls_(tree.balls.size()),
+      revolutes_(tree.links.size()),
+      sphericals_(tree.sphericals.size()),
       joints_(static_cast<std::size_t>(tree.records)),
       users_(static_cast<std::size_t>(tree.users)),
       any_(static_cast<std::size_t>(tree.records)),
@@ -278,15 +282,15 @@ SpatialLoopSweeps<S, Rows, Momentum, Tree>::SpatialLoopSweeps(const Tree& tree, 
       outward_slots_(static_cast<std::size_t>(tree.slots)),
       rows_(static_cast<std::size_t>(loops.rows)),
       swept_(tree.links.size()) {
-  for (const char takes : plan.takes_legs)
-    if (takes && legs_.empty()) {
-      legs_.resize(tree.links.size());
+  for (const char takes : plan.takes_branches)
+    if (takes && looped_branches_.empty()) {
+      looped_branches_.resize(tree.links.size());
       taken_.resize(tree.links.size());
     }
   if constexpr (takes_packs)
-    if (legs && !legs->groups.empty()) {
-      legs_beside_ = legs;
-      for (const LegGroup& group : legs->groups)
+    if (looped_branches && !looped_branches->groups.empty()) {
+      branches_beside_ = looped_branches;
+      for (const LoopedBranchGroup& group : looped_branches->groups)
         packs_.push_back(std::make_unique<Packs>(tree, loops, group));
     }
 }
@@ -297,7 +301,7 @@ bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::operator()(const S& t, const In
                                                             const In& tau,
                                                             const RightSide<S>& right, Out u,
                                                             Out impulse, Out rate) {
-  if (legs_apart_ != legs_beside_) sweep_apart(legs_beside_);
+  if (branches_apart_ != branches_beside_) sweep_apart(branches_beside_);
   return evaluate(t, q, x, tau, right, u, impulse, rate);
 }
 
@@ -310,19 +314,20 @@ bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::evaluate(const S& t, const In& 
   if constexpr (takes_packs)
     for (auto& pack : packs_) {
       const auto onto = static_cast<std::size_t>(pack->onto());
-      if (legs_apart_ && pack->inward(t, q, x, tau, right, bodies_[onto], legs_[onto])) {
-        weak_leg_ |= pack->weak_leg();
+      if (branches_apart_ &&
+          pack->inward(t, q, x, tau, right, bodies_[onto], looped_branches_[onto])) {
+        weak_looped_branch_ |= pack->weak_looped_branch();
         continue;
       }
-      // One by one: which joint has no inertia, or each leg in its own order.
-      if (!legs_apart_) break;
+      // One by one: which joint has no inertia, or each branch in its own order.
+      if (!branches_apart_) break;
       sweep_apart(nullptr);
       return evaluate(t, q, x, tau, right, u, impulse, rate);
     }
   if (!inward(Momentum ? x : tau, right)) return false;
   outward(q, right, u, impulse, rate);
   if constexpr (takes_packs)
-    if (legs_apart_)
+    if (branches_apart_)
       for (auto& pack : packs_)
         pack->outward(taken_[static_cast<std::size_t>(pack->onto())], u, impulse);
   if (Momentum && right.rates) rates_inward(right, impulse, rate);
@@ -331,10 +336,10 @@ bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::evaluate(const S& t, const In& 
 
 template <class S, int Rows, bool Momentum, class Tree>
 template <class In>
-bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::legs_inward(const S& t, const In& q, const In& x,
-                                                             const In& tau,
-                                                             const RightSide<S>& right,
-                                                             const LoopBody<S>& onto) {
+bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::looped_branches_inward(const S& t, const In& q,
+                                                                        const In& x, const In& tau,
+                                                                        const RightSide<S>& right,
+                                                                        const LoopBody<S>& onto) {
   bodies_[0] = onto;
   return place(t, q, x, right) && inward(Momentum ? x : tau, right);
 }

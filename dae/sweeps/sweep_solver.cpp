@@ -44,7 +44,7 @@ class SweepSolver final : public LoopSolver {
     right.body_forces = carried_ && pdot;
     of_momentum_ = true;
     const bool ok = noted(sweeps_->momentum(t, q, p, right, u, sigma, pdot));
-    if (sweeps_->weak_leg())
+    if (sweeps_->weak_looped_branch())
       return by_matrix().momentum(t, q, p, centre, fade, leak, u, sigma, pdot);
     if (!ok) return false;
     if (pdot && apart_) {
@@ -65,7 +65,7 @@ class SweepSolver final : public LoopSolver {
     of_momentum_ = false;
     const bool ok = noted(
         sweeps_->acceleration(t, q, u, has_tau_ ? tau_.data() : zero_.data(), right, udot, lambda));
-    if (sweeps_->weak_leg())
+    if (sweeps_->weak_looped_branch())
       return by_matrix().acceleration(t, q, u, centre, alpha, beta, udot, lambda);
     if (!ok) return false;
     return all_finite(udot, zero_.size()) && all_finite(lambda, nu_.size());
@@ -77,7 +77,7 @@ class SweepSolver final : public LoopSolver {
     right.drives = false;
     of_momentum_ = true;
     const bool ok = noted(sweeps_->momentum(t, q, p, right, u, nu_.data(), nullptr));
-    if (sweeps_->weak_leg()) return by_matrix().free_velocity(t, q, p, u);
+    if (sweeps_->weak_looped_branch()) return by_matrix().free_velocity(t, q, p, u);
     if (!ok) return false;
     return all_finite(u, zero_.size());
   }
@@ -89,7 +89,7 @@ class SweepSolver final : public LoopSolver {
     right.positions = 1;
     of_momentum_ = true;
     const bool ok = noted(sweeps_->momentum(t, q, zero_.data(), right, delta, nu_.data(), nullptr));
-    if (sweeps_->weak_leg()) return by_matrix().position_correction(t, q, delta);
+    if (sweeps_->weak_looped_branch()) return by_matrix().position_correction(t, q, delta);
     if (!ok) return false;
     return all_finite(delta, zero_.size());
   }
@@ -116,8 +116,8 @@ class SweepSolver final : public LoopSolver {
     return right;
   }
 
-  /// Where a folded leg loses rank its loops cannot close by themselves, and what they leave of the
-  /// body they fold into may seem to have no inertia.
+  /// Where a folded branch loses rank its loops cannot close by themselves, and what they leave of
+  /// the body they fold into may seem to have no inertia.
   LoopSolver& by_matrix() {
     if (!matrix_) {
       matrix_ = make_assembled_solver(mechanism_, e_);
@@ -129,9 +129,9 @@ class SweepSolver final : public LoopSolver {
 
   bool noted(bool ok) {
     ++solutions_;
-    stuck_ = -1;
-    if (!ok && !sweeps_->weak_leg())
-      stuck_ = place_of_body_[static_cast<std::size_t>(sweeps_->stuck())];
+    singular_joint_ = -1;
+    if (!ok && !sweeps_->weak_looped_branch())
+      singular_joint_ = place_of_body_[static_cast<std::size_t>(sweeps_->singular_joint())];
     return ok;
   }
 

@@ -141,13 +141,13 @@ def lesson3(program, folder):
         if summary["status"] == "done":
             drift.append((gain, summary["drift"]["position_max"]))
             error.append((gain, summary["error"]["position_max"]))
-    chart.curve(drift, "opening of the loop [m]", BLUE, dots=True)
+    chart.curve(drift, "position drift [m]", BLUE, dots=True)
     chart.curve(error, "error of positions", RED, dots=True)
     chart.write("lesson3.svg")
 
 
 def lesson4(program, folder):
-    chart = Chart("Four-bar: largest opening of the loop up to time t [m]", "t [s]", (0, 2), (-12, -2))
+    chart = Chart("Four-bar: position drift up to time t [m]", "t [s]", (0, 2), (-12, -2))
     for form, gauge, label, colour, dash in (
             ("acceleration", "none", "acceleration", RED, ""),
             ("momentum", "none", "momentum, no gauge", BLUE, "12 4"),

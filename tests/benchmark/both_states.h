@@ -1,6 +1,6 @@
 #pragma once
-// The motion of a chain of pins in its two states, x = (q, p) and x = (q, u), each by its own
-// recursion: ẋ, the way through a second in fixed steps, and how fast ẋ changes with x.
+// The motion of a chain of revolute joints in its two states, x = (q, p) and x = (q, u), each by
+// its own recursion: ẋ, the way through a second in fixed steps, and how fast ẋ changes with x.
 
 #include <momenta/core/kernel/acceleration_sweeps.h>
 #include <momenta/core/kernel/momentum_sweeps.h>

@@ -24,7 +24,7 @@ struct Row {
   Algebra algebra = Algebra::automatic;
   KktChoice kkt = KktChoice::sweeps;
   int level = 0;
-  bool legs_side_by_side = true;
+  bool branches_side_by_side = true;
 };
 
 /// States close to the scene's start, assembled where that is cheap (the models of any size start
@@ -85,7 +85,7 @@ void evaluate(benchmark::State& state, Row row) {
     one();
   };
   if (mechanism.kkt() == KktChoice::sweeps) {
-    const auto sweeps = mechanism.looped_sweeps(row.level, row.legs_side_by_side);
+    const auto sweeps = mechanism.looped_sweeps(row.level, row.branches_side_by_side);
     RightSide<double> right;
     right.centre = s.centre.data();
     right.fade = fade_evaluation;
@@ -191,7 +191,7 @@ void register_closed_loops() {
     add("ladder", ladder, {10, 50, 200, 1000, 10000});
     add("stewart", platform, {1});
     Row leg_by_leg = platform;
-    leg_by_leg.legs_side_by_side = false;
+    leg_by_leg.branches_side_by_side = false;
     add("stewart", leg_by_leg, {1}, "_leg_by_leg");
     add("bricard", six, {1});
     Row in_space = four;

@@ -2,7 +2,7 @@
 // A chain's motion in quad precision, for the doubles its model holds. It rests on p = Σ Eᵀ M Ω and
 // on the Newton-Euler recursion alone: what the fused recursions give is used to solve, and then
 // corrected by the residual until it is exact, so that constants they keep rounded (squares of
-// cosines, tips) do not enter. No forces but weights.
+// cosines, leaves) do not enter. No forces but weights.
 
 #include <momenta/core/kernel/accelerations.h>
 #include <momenta/core/kernel/momentum_recursion.h>

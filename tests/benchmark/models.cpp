@@ -75,7 +75,7 @@ Scene random_chain(int n) {
   });
 }
 
-Scene slide_and_pin_chain(int n) {
+Scene prismatic_and_revolute_chain(int n) {
   Scene s = random_chain(n);
   for (std::size_t i = 1; i < s.joints.size(); i += 2) s.joints[i].kind = JointKind::prismatic;
   return s;
@@ -176,9 +176,9 @@ Scene humanoid(int) {
   };
   const Eigen::Vector3d x(1, 0, 0), y(0, 1, 0), z(0, 0, 1), here(0, 0, 0), down(0, 0, -0.4);
   add("ground", "trunk", JointKind::free, z, here);
-  const auto limb = [&](const std::string& name, const std::string& parent,
-                        const Eigen::Vector3d& at, std::initializer_list<Eigen::Vector3d> axes,
-                        std::initializer_list<int> lengths) {
+  const auto branch = [&](const std::string& name, const std::string& parent,
+                          const Eigen::Vector3d& at, std::initializer_list<Eigen::Vector3d> axes,
+                          std::initializer_list<int> lengths) {
     std::string last = parent;
     int i = 0;
     auto step = lengths.begin();
@@ -191,12 +191,12 @@ Scene humanoid(int) {
     }
     return last;
   };
-  const std::string chest = limb("torso", "trunk", {0, 0, 0.1}, {z, x, y}, {0, -1});
-  limb("neck", chest, {0, 0, 0.4}, {y}, {});
+  const std::string chest = branch("torso", "trunk", {0, 0, 0.1}, {z, x, y}, {0, -1});
+  branch("neck", chest, {0, 0, 0.4}, {y}, {});
   for (const double side : {1.0, -1.0}) {
     const std::string name = side > 0 ? "left_" : "right_";
-    limb(name + "leg", "trunk", {0, 0.1 * side, 0}, {z, x, y, y, y, x}, {0, 0, 1, 1, 0});
-    limb(name + "arm", chest, {0, 0.2 * side, 0.3}, {y, x, z, y, z, y, x}, {0, 0, 1, 0, 1, 0});
+    branch(name + "leg", "trunk", {0, 0.1 * side, 0}, {z, x, y, y, y, x}, {0, 0, 1, 1, 0});
+    branch(name + "arm", chest, {0, 0.2 * side, 0.3}, {y, x, z, y, z, y, x}, {0, 0, 1, 0, 1, 0});
   }
   return s;
 }

@@ -5,21 +5,21 @@
 
 namespace momenta::benchmark_models {
 
-/// n bodies in series on pin joints; axes and offsets at random (seeded), inclined to each other by
-/// 17° or more; or every axis at a right angle to the last.
+/// n bodies in series on revolute joints; axes and offsets at random (seeded), inclined to each
+/// other by 17° or more; or every axis at a right angle to the last.
 Scene random_chain(int n);
 Scene right_angle_chain(int n);
-/// The random chain with every other pin a slide along its axis; with a screw of 0.1 m/rad in place
-/// of every pin.
-Scene slide_and_pin_chain(int n);
+/// The random chain with every other revolute joint a slide along its axis; with a screw of 0.1
+/// m/rad in place of every revolute joint.
+Scene prismatic_and_revolute_chain(int n);
 Scene helical_chain(int n);
-/// n rods of 0.1 m on pins that turn by a quarter from one to the next, nearly straight.
+/// n rods of 0.1 m on revolute joints that turn by a quarter from one to the next, nearly straight.
 Scene rope(int n);
 /// n rods in a plane.
 Scene planar_chain(int n);
-/// A full binary tree of pin joints.
+/// A full binary tree of revolute joints.
 Scene binary_tree(int n);
-/// A free body with legs of six pins, n bodies in all.
+/// A free body with legs of six revolute joints, n bodies in all.
 Scene star(int n);
 /// A free trunk with two legs of six hinges, two arms of seven, three in the torso, one in the
 /// neck: 31 bodies whatever n. Axes along the trunk's, two or three at a place.

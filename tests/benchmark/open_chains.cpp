@@ -21,7 +21,7 @@ struct Row {
   MakeScene model;
   Algebra algebra = Algebra::automatic;
   int level = 0;  ///< 0: the machine's best
-  bool limbs_side_by_side = true;
+  bool branches_side_by_side = true;
 };
 
 constexpr int states_in_turn = 64;
@@ -56,7 +56,7 @@ enum class Algorithm { momentum, acceleration };
 
 void single(benchmark::State& state, Row row, Algorithm algorithm) {
   OpenChain chain(row.model(static_cast<int>(state.range(0))), row.algebra, row.level,
-                  row.limbs_side_by_side);
+                  row.branches_side_by_side);
   const States64 states(chain);
   std::vector<Eigen::VectorXd> q, x;
   for (int i = 0; i < states_in_turn; ++i) {
@@ -200,7 +200,7 @@ void register_open_chains() {
       {"random_chain", random_chain},       {"right_angle_chain", right_angle_chain},
       {"planar_chain", planar_chain},       {"rope", rope},
       {"binary_tree", binary_tree},         {"star", star},
-      {"spherical_chain", spherical_chain}, {"slide_and_pin_chain", slide_and_pin_chain},
+      {"spherical_chain", spherical_chain}, {"slide_and_pin_chain", prismatic_and_revolute_chain},
       {"helical_chain", helical_chain},     {"random_chain_with_drives", with_drives}};
   for (const auto algorithm : {Algorithm::momentum, Algorithm::acceleration}) {
     for (const Row& row : rows) {

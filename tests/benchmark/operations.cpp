@@ -1,6 +1,7 @@
-// Operations of one evaluation of serial pin chains, n bodies, gravity included, sines and cosines
-// left out, counted by running the kernels on counting numbers; beside them the table of the paper.
-// Formulas are the line through n = 40 and n = 41; the column "exact" says whether it meets n = 10.
+// Operations of one evaluation of serial revolute joint chains, n bodies, gravity included, sines
+// and cosines left out, counted by running the kernels on counting numbers; beside them the table
+// of the paper. Formulas are the line through n = 40 and n = 41; the column "exact" says whether it
+// meets n = 10.
 
 #include <momenta/core/operations.h>
 

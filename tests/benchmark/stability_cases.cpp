@@ -38,12 +38,12 @@ Scene random_masses(unsigned seed) {
   return weighed(benchmark_models::random_chain(12),
                  [&](double) { return std::pow(10, exponent(random)); });
 }
-/// The last body: a rod along its own pin, of no thickness but for 1e-14 kg m².
+/// The last body: a rod along its own revolute joint, of no thickness but for 1e-14 kg m².
 Scene thin_tip(unsigned) {
   Scene scene = benchmark_models::random_chain(12);
   BodySpec& tip = scene.bodies.back();
-  JointSpec& pin = scene.joints.back();
-  pin.axis = Eigen::Vector3d::UnitZ();
+  JointSpec& revolute = scene.joints.back();
+  revolute.axis = Eigen::Vector3d::UnitZ();
   tip.com = {0, 0, 0.2};
   tip.inertia = Eigen::Vector3d(0.02, 0.02, 1e-14).asDiagonal();
   return scene;
@@ -69,7 +69,7 @@ std::vector<Case> cases() {
        {Named{"masses 1e9 ... 1e-9, base to tip", heavy_to_light},
         Named{"masses 1e-9 ... 1e9, base to tip", light_to_heavy},
         Named{"tip 1e9, rest 1", heavy_tip}, Named{"masses 1e-9 to 1e9 at random", random_masses},
-        Named{"inertia 1e-14 about the last pin", thin_tip}})
+        Named{"inertia 1e-14 about the last revolute joint", thin_tip}})
     all.push_back({name, 12, 1024, any_angle, scene});
   all.push_back({"coil, base at 1 km", 7, 1024, any_angle,
                  [](unsigned) { return at_1_km(random_chain(7)); }});

@@ -17,7 +17,7 @@ int main(int argc, char** argv) {
   request.settings.end_time = 10;
   const momenta::RunResult run = momenta::run_form(mechanism, assembly.start, request);
 
-  std::cout << run.status << ": loops opened by " << run.position_drift_max << " m, energy within "
+  std::cout << run.status << ": position drift " << run.position_drift_max << " m, energy within "
             << run.energy_error_max << " J\n";
   return run.status == "done" && run.position_drift_max < 1e-8 ? 0 : 1;
 }

@@ -154,7 +154,7 @@ Scene platform(int legs) {
 
 Scene flying_rod() {
   Scene scene;
-  scene.name = "a rod on a ball joint carries a flying one";
+  scene.name = "a rod on a spherical joint carries a flying one";
   scene.gravity = {0, -9.81, 0};
   for (const char* name : {"held", "flying"}) scene.bodies.push_back(rod(name, 0.2));
   JointSpec ball;

@@ -26,10 +26,10 @@ Scene row_of_four_bars(int n, double angle, double rate = 0);
 Scene bricard();
 
 /// A Stewart platform, or one of other than six legs: each a universal and a prismatic joint, under
-/// a free platform on ball joints.
+/// a free platform on spherical joints.
 Scene platform(int legs);
 
-/// A rod on a ball joint carries a flying one by its end: q̇ is not u.
+/// A rod on a spherical joint carries a flying one by its end: q̇ is not u.
 Scene flying_rod();
 
 }  // namespace momenta::equations

@@ -30,11 +30,11 @@ LoopedRates rates_in(const Mechanism& mechanism, const Model<Space>& model, cons
   right.leak = leak;
   right.fade = fade;
   right.rates = true;
-  constexpr int lanes = LoopPlan::most_lanes;
-  LoopSweeps<Space, Quad, lanes, true> momentum(tree, loops, plan);
+  constexpr int slots = LoopPlan::most_slots;
+  LoopSweeps<Space, Quad, slots, true> momentum(tree, loops, plan);
   momentum(Quad(0.0), In{q.data()}, In{p.data()}, In{p.data()}, right, Out{u.data()},
            Out{sigma.data()}, Out{pdot.data()});
-  LoopSweeps<Space, Quad, lanes, false> acceleration(tree, loops, plan);
+  LoopSweeps<Space, Quad, slots, false> acceleration(tree, loops, plan);
   acceleration(Quad(0.0), In{q.data()}, In{v.data()}, In{zero.data()}, right, Out{udot.data()},
                Out{sigma.data()}, Out{udot.data()});
   const auto rounded = [](const std::vector<Quad>& x) {

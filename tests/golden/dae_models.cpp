@@ -301,7 +301,7 @@ TEST_P(Models, ArmaturesAddToTheDiagonalOfM) {
   }
 }
 
-// Springs and dampers of hinges and slides; those of ball joints are left out and told.
+// Springs and dampers of hinges and slides; those of spherical joints are left out and told.
 TEST_P(Models, SpringsAndDampers) {
   const Pair pair(model());
   const Mechanism bare(Pair::without_springs(pair.without_loops())), tree(pair.without_loops());

@@ -356,7 +356,7 @@ TEST_F(Program, EvaluateGivesThePendulumByHand) {
       EXPECT_NEAR(found.at(i).get<double>(), expected[i], 1e-13) << found;
   };
   const double c = std::cos(angle), s = std::sin(angle);
-  const auto& all = j.at("whole");
+  const auto& all = j.at("centroidal");
   expect_vector(all.at("centre_of_mass"), c, s, 0);
   expect_vector(all.at("linear_momentum"), -rate * s, rate * c, 0);
   expect_vector(all.at("angular_momentum"), 0, 0, rate);
@@ -512,10 +512,10 @@ TEST_F(Program, FamiliesAreWhatTheirNamesSay) {
     return nlohmann::json::parse(call("evaluate '" + scene + "'").out);
   };
   const auto rope = start("rope --n 50");
-  EXPECT_NEAR(rope.at("whole").at("mass").get<double>(), 0.5, 1e-14);
+  EXPECT_NEAR(rope.at("centroidal").at("mass").get<double>(), 0.5, 1e-14);
   EXPECT_GT(rope.at("markers").at("end").at("position").at(0).get<double>(), 4.9);
   const auto person = start("humanoid");
-  EXPECT_NEAR(person.at("whole").at("mass").get<double>(), 75, 1e-12);
+  EXPECT_NEAR(person.at("centroidal").at("mass").get<double>(), 75, 1e-12);
   EXPECT_EQ(person.at("dofs").size(), 36u);
   const double crown = person.at("markers").at("crown").at("position").at(2).get<double>();
   const double sole = person.at("markers").at("left_sole").at("position").at(2).get<double>();

@@ -69,7 +69,7 @@ RunResult two_seconds(const Mechanism& mechanism, const std::string& form) {
   return run_form(mechanism, a.start, request);
 }
 
-TEST(Dust, SlideAlongACylindricalJointMovesTheSameTilted) {
+TEST(Dust, PrismaticAlongACylindricalJointMovesTheSameTilted) {
   const Scene scene = parse_scene(slide, "slide");
   const RunResult reference =
       two_seconds(Mechanism(scene, {Algebra::spatial, KktChoice::dense}), "momentum");
@@ -109,13 +109,13 @@ Scene with_coupler(double factor) {
 TEST(Dust, LoopsOfLightAndHeavyLinksAreLeftToKlu) {
   for (const double sign : {-1.0, 1.0}) {
     const Mechanism limit(with_coupler(std::pow(10, sign * 5)));
-    EXPECT_TRUE(limit.tips_first());
+    EXPECT_TRUE(limit.leaves_first());
     EXPECT_EQ(limit.kkt(), KktChoice::sweeps);
     const double angle = two_seconds(limit, "momentum").trajectory.rows.back()[1];
     for (const double power : {7, 9, 12}) {
       const Scene scene = with_coupler(std::pow(10, sign * power));
       const Mechanism mechanism(scene);
-      EXPECT_FALSE(mechanism.tips_first());
+      EXPECT_FALSE(mechanism.leaves_first());
       EXPECT_EQ(mechanism.kkt(), KktChoice::sparse);
       const auto lines = mechanism.plan_lines();
       EXPECT_TRUE(std::any_of(lines.begin(), lines.end(), [](const auto& line) {

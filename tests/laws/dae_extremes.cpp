@@ -254,7 +254,7 @@ TEST(Extremes, MasslessCouplerMovesLikeOneThatWeighsNextToNothing) {
   EXPECT_LT((at_end(0, "projected", "dop853", "") - light).norm(), 1e-5);
 }
 
-TEST(Extremes, PassagesOfSingularPosesAreListed) {
+TEST(Extremes, SingularCrossingsAreListed) {
   // The vertical's angle from upright obeys φ'' = λ sin φ: flat at π/2, 3π/2, …
   const auto run_of = [](const std::string& name) {
     Scene scene = example(name);
@@ -267,7 +267,7 @@ TEST(Extremes, PassagesOfSingularPosesAreListed) {
     return run_form(mechanism, equations::start_of(mechanism), request);
   };
   const RunResult regular = run_of("four_bar/scene.toml");
-  EXPECT_TRUE(regular.passages.empty());
+  EXPECT_TRUE(regular.singular_crossings.empty());
   EXPECT_GT(regular.least_pivot, 0.01);
   // The slider-crank with equal links is straight up and straight down where its angle is π/2 + kπ.
   const RunResult crank = run_of("slider_crank/scene.toml");
@@ -281,10 +281,10 @@ TEST(Extremes, PassagesOfSingularPosesAreListed) {
       expected.push_back(rows[i - 1][0] + (rows[i][0] - rows[i - 1][0]) * a / (a - b));
     }
   ASSERT_GT(expected.size(), 2u);
-  ASSERT_EQ(crank.passages.size(), expected.size());
+  ASSERT_EQ(crank.singular_crossings.size(), expected.size());
   for (std::size_t i = 0; i < expected.size(); ++i) {
-    EXPECT_NEAR(crank.passages[i].t, expected[i], 0.02);
-    EXPECT_LT(crank.passages[i].pivot, 1e-2);
+    EXPECT_NEAR(crank.singular_crossings[i].t, expected[i], 0.02);
+    EXPECT_LT(crank.singular_crossings[i].pivot, 1e-2);
   }
 }
 

@@ -109,7 +109,7 @@ TEST(AllForms, DrivenCrank) {
   expect_all_forms_agree(scene, Algebra::automatic, 2, 1e-7, 3e-5);
 }
 
-TEST(AllForms, BallJointsAFlyingRodAndALinkBetween) {
+TEST(AllForms, SphericalJointsAFlyingRodAndALinkBetween) {
   Scene scene;
   scene.name = "two rods and a flying one";
   scene.gravity = {0, -9.81, 0};

@@ -130,7 +130,7 @@ TEST(Multipliers, ForceIsRateOfImpulsePlusLeak) {
   }
 }
 
-TEST(Energy, ChangesByTheLostPower) {
+TEST(Energy, ChangesByTheDissipatedPower) {
   Scene scene = example("four_bar");
   scene.joints[0].damping = 0.4;
   scene.joints[1].stiffness = 3;

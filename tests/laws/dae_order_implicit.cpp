@@ -3,7 +3,8 @@
 //   gauss4, gauss6      Kepler's orbit, which closes after 2π: 4 and 6 at the steps' ends
 //   radau5              the Cartesian pendulum (q, v; λ) by the constraint it keeps: on q, v, λ
 //                       5, 5, 3 in index 2; at least 4, 3, 2 in index 3 (Hairer, Lubich, Roche)
-//   rattle, generalised-alpha, bayo-ledesma   four-bar and a flying rod with ball joints, whose q'
+//   rattle, generalised-alpha, bayo-ledesma   four-bar and a flying rod with spherical joints,
+//   whose q'
 //                       is not v: 2; a pivot that moves as prescribed
 
 #include <gtest/gtest.h>

@@ -71,7 +71,7 @@ bool same(double a, double b, double tolerance) {
 
 /// A run that comes near to no singular pose; there the least difference grows.
 bool smooth(const RunResult& run) {
-  return run.status == "done" && run.passages.empty();
+  return run.status == "done" && run.singular_crossings.empty();
 }
 
 void expect_same_coordinates(const Ready& a, const RunResult& x, const RunResult& y,
@@ -104,7 +104,7 @@ RC_GTEST_PROP(RandomMechanisms, GaugeShiftsMomentaAndImpulsesAndNothingElse, (co
   RC_ASSERT((after.multipliers - before.multipliers - c).norm() <= 1e-8 * (1 + c.norm()));
 }
 
-RC_GTEST_PROP(RandomMechanisms, EnergyChangesByTheLostPower, (const Bytes& bytes)) {
+RC_GTEST_PROP(RandomMechanisms, EnergyChangesByTheDissipatedPower, (const Bytes& bytes)) {
   const Scene scene = sound_scene(bytes);
   RC_LOG() << outline(scene);
   const auto r = regular(scene);

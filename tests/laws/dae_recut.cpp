@@ -236,7 +236,7 @@ TEST(Recut, PlatformOnManyLegsAndOtherGivenScenes) {
        {platform(6), bricard(), crossed_bars(8), row_of_four_bars(5, 1.1, 1)}) {
     const Mechanism mechanism(scene);
     const Recut found = recut(mechanism, assemble(mechanism).start);
-    EXPECT_LE(found.after.open, std::max(found.before.open, LoopPlan::most_lanes));
+    EXPECT_LE(found.after.open, std::max(found.before.open, LoopPlan::most_slots));
     if (found.gains()) expect_same_motion(scene, recut_text(found), scene.name);
   }
 }

@@ -96,10 +96,10 @@ TEST(SingularEverywhere, ExplicitMethodsWithEverySolver) {
           for (const Start& start : equations::starts_of(mechanism, 3)) {
             const RunResult r = run(mechanism, start, "momentum", "dop853", tolerance);
             errors.push_back(error_of(r, c.exact) / tolerance);
-            EXPECT_FALSE(r.passages.empty())
+            EXPECT_FALSE(r.singular_crossings.empty())
                 << c.scene.name << ", pose " << pose << ", " << name_of(kkt) << ", " << tolerance
                 << " least " << r.least_pivot;
-            for (const auto& passage : r.passages) ambiguous += passage.ambiguous;
+            for (const auto& crossing : r.singular_crossings) ambiguous += crossing.ambiguous;
           }
       }
     expect_errors(errors, 100, 200, c.scene.name);
@@ -135,10 +135,10 @@ TEST(SingularEverywhere, FortyCells) {
 
 // IDA's own error: 1e4 tolerances and more in ten seconds, as in regular motions; radau5's and
 // hem5's are hundreds.
-TEST(SingularEverywhere, ImplicitMethodsMakeADetour) {
+TEST(SingularEverywhere, ImplicitMethodsRestartAsAnOde) {
   for (const Case& c : {row(1), row(2), bifurcation()}) {
     const auto judge = [&](const std::string& form, const std::string& method,
-                           const std::vector<double>& tolerances, bool detours) {
+                           const std::vector<double>& tolerances, bool ode_restarts) {
       std::vector<double> errors;
       for (const int pose : {0, 2}) {
         const Mechanism mechanism(posed(c.scene, pose));
@@ -146,9 +146,9 @@ TEST(SingularEverywhere, ImplicitMethodsMakeADetour) {
           for (const Start& start : equations::starts_of(mechanism, 2)) {
             const RunResult r = run(mechanism, start, form, method, tolerance);
             errors.push_back(error_of(r, c.exact) / tolerance);
-            if (!detours) continue;
-            EXPECT_GT(r.counters.detours, 0);
-            EXPECT_LT(r.counters.detours, r.counters.steps);
+            if (!ode_restarts) continue;
+            EXPECT_GT(r.counters.ode_restarts, 0);
+            EXPECT_LT(r.counters.ode_restarts, r.counters.steps);
           }
       }
       const bool ida = method == "ida";
@@ -164,15 +164,15 @@ TEST(SingularEverywhere, ImplicitMethodsMakeADetour) {
 }
 
 // Where no pose is singular nothing is different.
-TEST(SingularEverywhere, NoDetourWithoutNeed) {
+TEST(SingularEverywhere, NoRestartWithoutNeed) {
   const Mechanism mechanism(example("four_bar"));
   const RunResult r = run(mechanism, "momentum-index2", "ida", 1e-8);
   EXPECT_EQ(r.status, "done") << r.reason;
-  EXPECT_EQ(r.counters.detours, 0);
-  EXPECT_TRUE(r.passages.empty());
+  EXPECT_EQ(r.counters.ode_restarts, 0);
+  EXPECT_TRUE(r.singular_crossings.empty());
 }
 
-TEST(SingularEverywhere, SamplesWithinADetourLieOnTheMotion) {
+TEST(SingularEverywhere, SamplesOfARestartLieOnTheMotion) {
   const Case c = bifurcation();
   const Mechanism mechanism(c.scene);
   RunRequest request;
@@ -193,7 +193,7 @@ TEST(SingularEverywhere, SamplesWithinADetourLieOnTheMotion) {
   const RunResult exact = run_form(mechanism, start, request);
   ASSERT_EQ(implicit.status, "done") << implicit.reason;
   ASSERT_EQ(exact.status, "done") << exact.reason;
-  EXPECT_GT(implicit.counters.detours, 0);
+  EXPECT_GT(implicit.counters.ode_restarts, 0);
   ASSERT_EQ(implicit.trajectory.rows.size(), exact.trajectory.rows.size());
   double worst = 0;
   for (std::size_t i = 0; i < exact.trajectory.rows.size(); ++i)
@@ -235,7 +235,7 @@ TEST(SingularEverywhere, WhoLosesTheBranchSaysSo) {
         const RunResult r = run(mechanism, form, "dop853", tolerance);
         if (r.status != "done" || error_of(r, c.exact) < 0.01) continue;
         ++lost;
-        const bool told = std::any_of(r.passages.begin(), r.passages.end(),
+        const bool told = std::any_of(r.singular_crossings.begin(), r.singular_crossings.end(),
                                       [](const auto& p) { return p.ambiguous; });
         EXPECT_TRUE(told) << form << " on " << c.scene.name << " at " << tolerance;
       }

@@ -1,5 +1,5 @@
-// (q, u) → u̇ by the articulated recursion against d'Alembert's principle in its dense form, against
-// Newton-Euler inward, and against the momentum recursion: ṗ = d/dt p(q(t), u(t), t).
+// (q, u) → u̇ by the articulated recursion against d'Alembert's principle in its dense form,
+// against Newton-Euler inward, and against the momentum recursion: ṗ = d/dt p(q(t), u(t), t).
 
 #include "equations/dense_lagrangian.h"
 #include "equations/random_tree.h"
@@ -42,8 +42,8 @@ void compare(const Scene& scene, RandomTree& random, Worst& worst) {
   Eigen::VectorXd udot(tree.nv), tau(tree.nv);
   ASSERT_TRUE(equations::acceleration_recursion(w, s.t, q, u, udot.data()));
   const RealVector expected = twin.accelerations(s.t, s.q, s.u);
-  // Forces of size |Q| and |M u̇| cancel in M u̇ = Q − bias: the rounding of either moves u̇ by up to
-  // |M⁻¹| |M u̇| ε.
+  // Forces of size |Q| and |M u̇| cancel in M u̇ = Q − bias: the rounding of either moves u̇ by up
+  // to |M⁻¹| |M u̇| ε.
   const RealMatrix m = twin.mass_matrix(s.t, s.q);
   const RealVector forces = m.cwiseAbs() * expected.cwiseAbs();
   double growth = 1;
@@ -127,7 +127,7 @@ TEST(Accelerations, ChainsForJoints) {
   sweep<Spatial>({.kinds = {JointKind::cylindrical, JointKind::universal, JointKind::planar}}, 40,
                  560);
 }
-TEST(Accelerations, DrivenBallsAndFreeJoints) {
+TEST(Accelerations, DrivenSphericalAndFreeJoints) {
   sweep<Spatial>({.kinds = {JointKind::revolute, JointKind::spherical, JointKind::free}}, 40, 5600);
 }
 TEST(Accelerations, MixedTrees) {

@@ -166,7 +166,7 @@ TEST(Comparators, ChainsForJoints) {
 TEST(Comparators, Drives) {
   sweep({.kinds = {JointKind::revolute, JointKind::prismatic, JointKind::helical}}, 60, 500);
 }
-TEST(Comparators, DrivenBallsAndFreeJoints) {
+TEST(Comparators, DrivenSphericalAndFreeJoints) {
   sweep({.kinds = {JointKind::revolute, JointKind::spherical, JointKind::free}}, 40, 5600);
 }
 TEST(Comparators, MixedTrees) {
@@ -185,8 +185,8 @@ TEST(Comparators, NearlyParallelAxes) {
   sweep({.placing = Placing::degenerate}, 40, 1000);
 }
 
-/// Pins in series and some in parallel, bodies of one size.
-Scene pins(unsigned seed, int n, Branching branching, Placing placing = Placing::general) {
+/// Revolute joints in series and some in parallel, bodies of one size.
+Scene revolutes(unsigned seed, int n, Branching branching, Placing placing = Placing::general) {
   return RandomTree(seed).scene({.bodies = n,
                                  .branching = branching,
                                  .placing = placing,
@@ -196,12 +196,12 @@ Scene pins(unsigned seed, int n, Branching branching, Placing placing = Placing:
                                  .body_forces = false});
 }
 
-// Far beyond where anyone would form M: both routes to u̇ agree as well as M allows, and the entries
-// of M are those of the staged sweep.
+// Far beyond where anyone would form M: both routes to u̇ agree as well as M allows, and the
+// entries of M are those of the staged sweep.
 TEST(Comparators, ChainsOf200Bodies) {
   double most = 0, masses = 0;
   for (const Placing placing : {Placing::general, Placing::right_angles}) {
-    const Scene scene = pins(7, 200, Branching::serial, placing);
+    const Scene scene = revolutes(7, 200, Branching::serial, placing);
     RandomTree random(8);
     const Tree tree = build_tree(scene);
     const TreeState s = random.state(tree);
@@ -236,7 +236,7 @@ TEST(Comparators, ChainsOf200Bodies) {
 
 TEST(Comparators, RoomForEntriesOnOneWayToTheRootOnly) {
   // A star of one body and seven on it: 1 + 7 · 2.
-  const Scene scene = pins(3, 8, Branching::star);
+  const Scene scene = revolutes(3, 8, Branching::star);
   const Model<Spatial> model = build_spatial_model(build_tree(scene), scene);
   EXPECT_EQ((CompositeSweeps<Spatial, double>(build_links(model)).entries()), 15u);
 }
@@ -244,7 +244,7 @@ TEST(Comparators, RoomForEntriesOnOneWayToTheRootOnly) {
 TEST(Comparators, NameTheJointWithoutInertia) {
   const double at_rest[4] = {1, 0, 0, 0}, none[3] = {0, 0, 0}, *q = at_rest, *zero = none;
   double udot[3];
-  Scene scene = pins(3, 1, Branching::serial);
+  Scene scene = revolutes(3, 1, Branching::serial);
   BodySpec& body = scene.bodies[0];
   JointSpec& joint = scene.joints[0];
   joint.kind = JointKind::spherical;
@@ -255,7 +255,7 @@ TEST(Comparators, NameTheJointWithoutInertia) {
     const LinkTree links = build_links(model);
     CompositeSweeps<Spatial, double> composite(links);
     const bool ok = composite(0.0, q, zero, zero, udot);
-    EXPECT_EQ(composite.stuck(), ok ? -1 : 0);
+    EXPECT_EQ(composite.singular_joint(), ok ? -1 : 0);
     return ok;
   };
   EXPECT_TRUE(moves());
@@ -335,9 +335,10 @@ TEST(Comparators, StatesSideBySide) {
 struct Costs {
   long inverse = 0, composite = 0, articulated = 0;
 };
-/// Executed operations of a chain of n pins whose axes lean by `lean` from one to the next.
+/// Executed operations of a chain of n revolute joints whose axes lean by `lean` from one to the
+/// next.
 Costs operations(int n, double lean) {
-  Scene scene = pins(5, n, Branching::serial);
+  Scene scene = revolutes(5, n, Branching::serial);
   for (JointSpec& j : scene.joints) {
     j.axis = {0, 0, 1};
     j.origin_child.setZero();

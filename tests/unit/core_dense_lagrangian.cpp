@@ -28,7 +28,7 @@ TEST(DenseLagrangian, SliderPendulumByHand) {
   scene.joints[0].kind = JointKind::prismatic;
   scene.joints[0].child = "cart";
   scene.joints[0].axis = {1, 0, 0};
-  scene.joints[1].name = "pin";
+  scene.joints[1].name = "revolute joint";
   scene.joints[1].parent = "cart";
   scene.joints[1].child = "point";
 

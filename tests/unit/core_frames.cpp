@@ -137,9 +137,9 @@ TEST(Frames, RatesAreInChildAxes) {
   EXPECT_LT((Vector3d(spin(2, 1), spin(0, 2), spin(1, 0)) - Vector3d::UnitY()).norm(), 2 * h);
 }
 
-/// origin_parent, rotation, axis and origin_child of a slide: the child's point moves along the
-/// axis in the joint frame.
-TEST(Frames, SlideByHand) {
+/// origin_parent, rotation, axis and origin_child of a prismatic joint: the child's point moves
+/// along the axis in the joint frame.
+TEST(Frames, PrismaticByHand) {
   Scene scene = one_body(JointKind::prismatic);
   JointSpec& joint = scene.joints.front();
   joint.origin_parent = {1, 2, 3};

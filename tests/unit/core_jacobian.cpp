@@ -94,11 +94,11 @@ TEST(Jacobian, OfQuasiVelocitiesAndDampersBetweenBodies) {
   EXPECT_LT(worst, algebra_tol(12));
 }
 
-/// Trees of pins with dampers on them, whose M⁻¹ comes from solves side by side, and of every
-/// joint.
+/// Trees of revolute joints with dampers on them, whose M⁻¹ comes from solves side by side, and of
+/// every joint.
 TEST(Jacobian, OfEveryLevelInSpaceAndInThePlane) {
   double worst = 0;
-  int on_pins = 0;
+  int on_revolutes = 0;
   for (unsigned seed = 200; seed < 260; ++seed) {
     RandomTree random(seed);
     TreeRecipe recipe{.bodies = 1 + static_cast<int>(seed % 12)};
@@ -118,11 +118,11 @@ TEST(Jacobian, OfEveryLevelInSpaceAndInThePlane) {
       if (flat) {
         const auto model = build_planar_model(chain.tree(), scene, chain.plan().basis);
         expected = twin(model, s, p);
-        on_pins += is_hamiltonian_on_pins(build_links(model));
+        on_revolutes += is_hamiltonian_on_revolutes(build_links(model));
       } else {
         const auto model = build_spatial_model(chain.tree(), scene);
         expected = twin(model, s, p);
-        on_pins += is_hamiltonian_on_pins(build_links(model));
+        on_revolutes += is_hamiltonian_on_revolutes(build_links(model));
       }
       Eigen::MatrixXd into = Eigen::MatrixXd::Zero(expected.rows() + 2, expected.cols());
       ASSERT_TRUE(chain.jacobian(s.t, s.q, p, into.topRows(expected.rows())));
@@ -140,7 +140,7 @@ TEST(Jacobian, OfEveryLevelInSpaceAndInThePlane) {
       worst = std::max(worst, (expected * d - along).cwiseAbs().maxCoeff() / scale);
     }
   }
-  EXPECT_GT(on_pins, 40);
+  EXPECT_GT(on_revolutes, 40);
   EXPECT_LT(worst, algebra_tol(12));
 }
 

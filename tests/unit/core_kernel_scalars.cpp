@@ -89,9 +89,9 @@ TEST(KernelScalars, AgreeInSpaceAndPlane) {
 
 /// A body without mass in the middle is fine as long as what it carries has inertia along every
 /// joint: every pair of kinds on both sides of one. Two joints with more than six degrees of
-/// freedom between them leave it loose; so do two balls, which turn about the line between them,
-/// two planar joints, which slide along the line common to their planes, and one of each. The inner
-/// joint is named.
+/// freedom between them leave it loose; so do two spherical joints, which turn about the line
+/// between them, two planar joints, which slide along the line common to their planes, and one of
+/// each. The inner joint is named.
 TEST(Kernel, MasslessBodiesBetweenAllKinds) {
   const JointKind kinds[] = {JointKind::revolute,    JointKind::prismatic, JointKind::helical,
                              JointKind::cylindrical, JointKind::universal, JointKind::spherical,
@@ -216,9 +216,9 @@ TEST(Kernel, JointWithoutInertiaIsNamed) {
   }
 }
 
-/// Two coaxial pins with nothing between them: the inner one has no inertia, and rounding must not
-/// lend it any. The same with a point mass or a slender rod on a ball joint: no inertia about the
-/// line.
+/// Two coaxial revolute joints with nothing between them: the inner one has no inertia, and
+/// rounding must not lend it any. The same with a point mass or a slender rod on a spherical joint:
+/// no inertia about the line.
 TEST(Kernel, RoundingIsNoInertia) {
   for (unsigned seed = 0; seed < 500; ++seed) {
     RandomTree random(seed);
@@ -240,18 +240,18 @@ TEST(Kernel, RoundingIsNoInertia) {
       EXPECT_FALSE(chain.rates(s.t, s.q, s.u, qdot, pdot)) << "seed " << seed;
       EXPECT_NE(chain.failure().find("'joint0'"), std::string::npos) << chain.failure();
     }
-    Scene ball = random.scene({.bodies = 1,
-                               .kinds = {JointKind::spherical},
-                               .drives = false,
-                               .joint_forces = false,
-                               .body_forces = false});
-    ball.bodies[0].inertia.setZero();
+    Scene spherical = random.scene({.bodies = 1,
+                                    .kinds = {JointKind::spherical},
+                                    .drives = false,
+                                    .joint_forces = false,
+                                    .body_forces = false});
+    spherical.bodies[0].inertia.setZero();
     if (seed % 2 == 0) {  // a slender rod along com instead
-      const Eigen::Vector3d n = ball.bodies[0].com.normalized();
-      ball.bodies[0].inertia = 0.3 * (Eigen::Matrix3d::Identity() - n * n.transpose());
-      ball.joints[0].origin_child.setZero();
+      const Eigen::Vector3d n = spherical.bodies[0].com.normalized();
+      spherical.bodies[0].inertia = 0.3 * (Eigen::Matrix3d::Identity() - n * n.transpose());
+      spherical.joints[0].origin_child.setZero();
     }
-    OpenChain chain(ball);
+    OpenChain chain(spherical);
     const TreeState s = random.state(chain.tree());
     Eigen::VectorXd qdot(4), pdot(3);
     EXPECT_FALSE(chain.rates(s.t, s.q, s.u, qdot, pdot)) << "seed " << seed;
@@ -275,12 +275,12 @@ TEST(Kernel, NoCallAllocates) {
     many_p.colwise() = p;
     const Eigen::VectorXd dq = s.q, dp = p;
     Eigen::MatrixXd jacobian(chain.nq() + chain.nv(), chain.nq() + chain.nv());
-    Whole all;
+    Centroidal all;
     const auto lazy = [&] {  // workspaces of packs and of dual numbers are made by the first call
       if (batches) chain.rates_of_states(s.t, many_q, many_p, many_qdot, many_pdot);
       chain.jacobian_times(s.t, s.q, p, dq, dp, qdot, pdot);
       chain.jacobian(s.t, s.q, p, jacobian);
-      chain.whole(s.t, s.q, p, all);
+      chain.centroidal(s.t, s.q, p, all);
     };
     lazy();
     const long before = allocations;

@@ -120,7 +120,7 @@ TEST(Levels, AgreeInThePlane) {
 }
 
 TEST(Levels, OneBadStateSpoilsNoOther) {
-  Scene s = pendulums(2);  // a body without inertia at the tip: no state has rates
+  Scene s = pendulums(2);  // a body without inertia at the leaf: no state has rates
   s.bodies[1].mass = 0;
   s.bodies[1].inertia.setZero();
   OpenChain chain(s, Algebra::spatial);
@@ -181,8 +181,8 @@ TEST(Levels, SinesOfLargeAnglesAndNone) {
   q << 0, 1e-300, -0.75, 1.5707963267948966, 3e3, -59999, 9.9e5, -1.1e6, 1e15, 1e300, 42;
   ASSERT_TRUE(chain.rates_of_states(0, q, p, qdot, pdot));
   for (Eigen::Index i = 0; i < 11; ++i) {
-    // Torque of the weight about the pin. The frame's constant angle is added to q first: that sum
-    // is as exact as q is.
+    // Torque of the weight about the revolute joint. The frame's constant angle is added to q
+    // first: that sum is as exact as q is.
     const double angle = q(0, i);
     const double torque = -9.81 * (0.5 * std::cos(angle) - 0.1 * std::sin(angle));
     if (std::abs(angle) < 1e7)

@@ -138,7 +138,7 @@ TEST(MomentumRecursion, DrivesOfSomeCoordinates) {
          .body_forces = false},
         60, 7000);
 }
-TEST(MomentumRecursion, DrivesOfBallsAndFreeJoints) {
+TEST(MomentumRecursion, DrivesOfSphericalAndFreeJoints) {
   sweep(
       {.kinds = {JointKind::revolute, JointKind::spherical, JointKind::free}, .body_forces = false},
       60, 7100);
@@ -167,7 +167,7 @@ TEST(MomentumRecursion, RightAngles) {
 TEST(MomentumRecursion, NearlyParallelAxes) {
   sweep({.placing = Placing::degenerate}, 100, 5000);
 }
-TEST(MomentumRecursion, NearlyParallelPins) {
+TEST(MomentumRecursion, NearlyParallelRevolutes) {
   sweep({.branching = Branching::serial,
          .placing = Placing::degenerate,
          .kinds = {JointKind::revolute, JointKind::prismatic}},

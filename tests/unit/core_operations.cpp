@@ -22,7 +22,7 @@ TEST(Counted, FoldsConstants) {
   EXPECT_EQ(Counted::count.needed.divisions, 1);
 }
 
-/// A chain of pins whose axes lean by `lean` from one to the next.
+/// A chain of revolute joints whose axes lean by `lean` from one to the next.
 Scene chain(int n, double lean, bool off_axis = true) {
   Scene s;
   s.gravity = {0.3, -9, 0.2};

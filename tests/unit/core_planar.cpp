@@ -108,14 +108,14 @@ void sweep(const TreeRecipe& recipe, int trees, unsigned seed) {
   }
 }
 
-TEST(Planar, Pins) {
+TEST(Planar, Revolutes) {
   sweep({.kinds = {JointKind::revolute}, .drives = false, .body_forces = false}, 200, 100);
 }
 TEST(Planar, Slides) {
   sweep({.bodies = 3, .kinds = {JointKind::prismatic}, .drives = false, .body_forces = false}, 100,
         300);
 }
-TEST(Planar, PinsAndSlides) {
+TEST(Planar, RevolutesAndPrismatics) {
   sweep({.kinds = {JointKind::revolute, JointKind::prismatic}, .drives = false}, 300, 400);
 }
 TEST(Planar, PlanarJoints) {

@@ -278,11 +278,11 @@ TEST(Scene, AxesOfAnyLength) {
 }
 
 TEST(Scene, StatesOfManyNumbers) {
-  const JointSpec ball =
+  const JointSpec spherical =
       with(point, "position = [0.6, 0, 0, 0.8000004]\nvelocity = [1, 2, 3]", "spherical").joints[0];
-  ASSERT_EQ(ball.position.size(), 4U);
-  EXPECT_NEAR(std::hypot(ball.position[0], ball.position[3]), 1, algebra_tol);
-  EXPECT_EQ(ball.velocity, (std::vector<double>{1, 2, 3}));
+  ASSERT_EQ(spherical.position.size(), 4U);
+  EXPECT_NEAR(std::hypot(spherical.position[0], spherical.position[3]), 1, algebra_tol);
+  EXPECT_EQ(spherical.velocity, (std::vector<double>{1, 2, 3}));
   const JointSpec loose =
       with(point, "position = [1, 2, 3, 1, 0, 0, 0]\nvelocity = [1, 2, 3, 4, 5, 6]", "free")
           .joints[0];

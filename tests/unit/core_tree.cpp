@@ -152,7 +152,7 @@ TEST(Tree, PlanarByHand) {
   expect_pose(pose(one_body(j), q), turn(0.8, Vector3d::UnitX()), {0, -0.5, 0.3});
 }
 
-TEST(Tree, DrivenBallByHand) {
+TEST(Tree, DrivenSphericalJointByHand) {
   Scene scene = one_body(joint(JointKind::spherical));
   for (int i = 0; i < 3; ++i) scene.drives.push_back(constant(i, 0.2 + 0.3 * i));
   expect_pose(

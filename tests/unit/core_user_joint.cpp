@@ -113,17 +113,18 @@ TEST(UserJoint, EulerAnglesAreTheSphericalJoint) {
   const auto law = std::make_shared<UserJoint>(3, euler);
   OpenChain mine(
       tree_of([&](Scene& s, const JointSpec& j) { s.joints.push_back(user(j, law)); }, true));
-  OpenChain ball(tree_of(
+  OpenChain spherical(tree_of(
       [&](Scene& s, JointSpec j) {
         j.kind = JointKind::spherical;
         s.joints.push_back(j);
       },
       true));
   const State s(8, 5);
-  Eigen::VectorXd q(ball.nq()), u(ball.nv()), one(8), other(8);
+  Eigen::VectorXd q(spherical.nq()), u(spherical.nv()), one(8), other(8);
   for (const char* name : {"U1", "J2", "U2", "J4"}) {
     const auto& m = mine.tree().bodies[static_cast<std::size_t>(mine.tree().carried_by(name))];
-    const auto& b = ball.tree().bodies[static_cast<std::size_t>(ball.tree().carried_by(name))];
+    const auto& b =
+        spherical.tree().bodies[static_cast<std::size_t>(spherical.tree().carried_by(name))];
     if (b.kind != JointKind::spherical) {
       q[b.q] = s.q[m.q];
       u[b.u] = s.u[m.u];
@@ -142,17 +143,17 @@ TEST(UserJoint, EulerAnglesAreTheSphericalJoint) {
     const Eigen::Quaterniond turned(r);
     q.segment(b.q, 4) << turned.w(), turned.x(), turned.y(), turned.z();
   }
-  const Energies e = mine.energies(0, s.q, s.u), f = ball.energies(0, q, u);
+  const Energies e = mine.energies(0, s.q, s.u), f = spherical.energies(0, q, u);
   EXPECT_NEAR(e.kinetic, f.kinetic, 1e-13 * f.kinetic);
   EXPECT_NEAR(e.potential, f.potential, 1e-13 * (1 + std::abs(f.potential)));
   ASSERT_TRUE(mine.accelerations(0, s.q, s.u, one));
-  ASSERT_TRUE(ball.accelerations(0, q, u, other));
+  ASSERT_TRUE(spherical.accelerations(0, q, u, other));
   const auto place = [](OpenChain& c, const char* name) {
     return c.tree().bodies[static_cast<std::size_t>(c.tree().carried_by(name))].u;
   };
   for (const char* name : {"J2", "J4"})
-    EXPECT_NEAR(one[place(mine, name)], other[place(ball, name)], 1e-12) << name;
-  const auto x = mine.reactions(0, s.q, s.u), y = ball.reactions(0, q, u);
+    EXPECT_NEAR(one[place(mine, name)], other[place(spherical, name)], 1e-12) << name;
+  const auto x = mine.reactions(0, s.q, s.u), y = spherical.reactions(0, q, u);
   ASSERT_EQ(x.size(), y.size());
   for (std::size_t i = 0; i < x.size(); ++i) {
     EXPECT_LE(relative_error(x[i].force, y[i].force), 1e-13);

@@ -155,7 +155,7 @@ TEST_P(LoopRows, TreesOfAllJoints) {
 TEST_P(LoopRows, Chains) {
   sweep({.branching = Branching::serial}, GetParam(), 15, 200);
 }
-TEST_P(LoopRows, HingesAndSlides) {
+TEST_P(LoopRows, RevolutesAndPrismatics2) {
   sweep({.kinds = {JointKind::revolute, JointKind::prismatic}}, GetParam(), 25, 300);
 }
 TEST_P(LoopRows, RightAngles) {

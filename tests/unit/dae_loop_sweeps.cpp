@@ -301,7 +301,7 @@ TEST(LoopSweeps, LevelsAndBatchesAgree) {
   EXPECT_GT(compared, 200);
 }
 
-/// Loops of every kind, alone, beside each other and inside one another: lanes open and close in
+/// Loops of every kind, alone, beside each other and inside one another: slots open and close in
 /// groups, some of them shared.
 TEST(LoopSweeps, BatchesOfEveryLoop) {
   int planar = 0, spatial = 0;
@@ -367,8 +367,8 @@ TEST(LoopSweeps, CodeOfALevelIsItsOwn) {
                      {"Pack<", "LoopedSweepsAt<", "looped_sweeps_at<"});
 }
 
-/// Legs folded onto a platform; the same loops as more lanes than there are go to the matrix.
-TEST(LoopSweeps, FoldedLegs) {
+/// Legs folded onto a platform; the same loops as more slots than there are go to the matrix.
+TEST(LoopSweeps, FoldedLoopedBranches) {
   Scene scene = platform(6);
   const Mechanism mechanism(scene, {.kkt = KktChoice::sweeps}),
       twin(scene, {.kkt = KktChoice::dense});
@@ -399,7 +399,7 @@ TEST(LoopSweeps, FoldedLegs) {
 }
 
 TEST(LoopSweeps, PlanSaysWhatItCannotCarry) {
-  // Nine points of one body held: more equations open at once than there are lanes.
+  // Nine points of one body held: more equations open at once than there are slots.
   Scene scene = row_of_four_bars(1, 1.1);
   for (int i = 0; i < 8; ++i) {
     LoopSpec l;

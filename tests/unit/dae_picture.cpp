@@ -182,8 +182,8 @@ TEST(Picture, PlacesRebuiltFromTurnsAndSlidesAreThoseOfTheKernel) {
           const Quaterniond about = body.rest.conjugate() * motion.frames[f].turn[k];
           EXPECT_LT(about.vec().cross(body.axis).norm(), 1e-12) << body.name;
         }
-        if (!body.slides) {
-          EXPECT_LT((motion.frames[f].slide[k] - body.at_parent).norm(), 1e-12) << body.name;
+        if (!body.translations) {
+          EXPECT_LT((motion.frames[f].translation[k] - body.at_parent).norm(), 1e-12) << body.name;
         }
       }
     }
@@ -287,13 +287,13 @@ TEST(PictureData, TracksReadBackWithinTheirUnits) {
         tracks = 4;
       }
       EXPECT_LT(turn.angularDistance(motion.frames[f].turn[k]), 1e-4) << body.name;
-      for (int i = 0; body.slides && i < 3; ++i)
+      for (int i = 0; body.translations && i < 3; ++i)
         EXPECT_NEAR(track(tracks + static_cast<std::size_t>(i), f) *
                         json["slide_scale"].get<double>() / 32767,
-                    motion.frames[f].slide[k][i], json["slide_scale"].get<double>() / 60000)
+                    motion.frames[f].translation[k][i], json["slide_scale"].get<double>() / 60000)
             << body.name;
     }
-    at += 7 * (tracks + (body.slides ? 3 : 0));
+    at += 7 * (tracks + (body.translations ? 3 : 0));
   }
   EXPECT_EQ(at, numbers.size());
 }

@@ -188,12 +188,12 @@ TEST(Rank, ReactionsThatRedundantLoopsShareAreMarked) {
   Scene beside = example("extremes/three_cranks.toml");
   BodySpec bob = beside.bodies[0];
   bob.name = "bob";
-  JointSpec pin = beside.joints[0];
-  pin.name = "P9";
-  pin.child = "bob";
-  pin.origin_parent = {5, 0, 0};
+  JointSpec revolute = beside.joints[0];
+  revolute.name = "P9";
+  revolute.child = "bob";
+  revolute.origin_parent = {5, 0, 0};
   beside.bodies.push_back(bob);
-  beside.joints.push_back(pin);
+  beside.joints.push_back(revolute);
   const Mechanism both(beside);
   for (const auto& r : marked(both, equations::start_of(both)).joints)
     EXPECT_EQ(r.unique, r.name == "P9") << r.name;

@@ -82,7 +82,7 @@ TEST_F(Resume, RecordsReadBackBitForBit) {
   run.settings.project = true;
   run.counters.evaluations = 1L << 62;
   run.faded_rows = {{"loop", "row", 3}};
-  run.passages = {{1 / 3.0, tiny, true}};
+  run.singular_crossings = {{1 / 3.0, tiny, true}};
   run.series.t = {0, -0.0, 1 / 3.0, huge, tiny, -inf, inf, not_measured};
   RunResult back;
   ASSERT_TRUE(read_record(nlohmann::json::parse(record_of(run).dump()), back));

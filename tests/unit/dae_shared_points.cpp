@@ -99,8 +99,8 @@ TEST(SharedPoints, BasesAreInverse) {
   EXPECT_GT(changed, 30);
 }
 
-/// The same motion whichever rods of a shared point the scene pairs, and no lanes beyond a path's.
-TEST(SharedPoints, AStarTakesTheLanesOfAPath) {
+/// The same motion whichever rods of a shared point the scene pairs, and no slots beyond a path's.
+TEST(SharedPoints, AStarTakesTheSlotsOfAPath) {
   Scene star;
   star.name = "star";
   for (int i = 0; i < 6; ++i) {
@@ -120,8 +120,8 @@ TEST(SharedPoints, AStarTakesTheLanesOfAPath) {
   }
   const Mechanism mechanism(star);
   EXPECT_TRUE(mechanism.pairs_anew());
-  EXPECT_EQ(mechanism.looped_sweeps()->lanes(), 4);
-  EXPECT_EQ(mechanism.looped_sweeps_as_given()->lanes(), 16);
+  EXPECT_EQ(mechanism.looped_sweeps()->slots(), 4);
+  EXPECT_EQ(mechanism.looped_sweeps_as_given()->slots(), 16);
   const auto lines = mechanism.plan_lines();
   EXPECT_NE(lines.back().second.find("paired along the tree"), std::string::npos);
 }

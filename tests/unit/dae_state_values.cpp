@@ -123,7 +123,7 @@ TEST(StateValues, OpenTreesAgreeWithTheOpenChain) {
   }
 }
 
-TEST(StateValues, WholeMomentaOfAFloatingTreeAreThoseOfItsFreeJoint) {
+TEST(StateValues, CentroidalMomentaOfAFloatingTreeAreThoseOfItsFreeJoint) {
   for (unsigned seed = 0; seed < 20; ++seed) {
     RandomTree random(40 + seed);
     TreeRecipe recipe;
@@ -144,7 +144,7 @@ TEST(StateValues, WholeMomentaOfAFloatingTreeAreThoseOfItsFreeJoint) {
     TreeState at = random.state(chain.tree());
     VectorXd p(chain.nv());
     chain.momenta(at.t, at.q, at.u, p);
-    const Whole all = whole(chain.tree(), scene, at.t, at.q, at.u);
+    const Centroidal all = centroidal(chain.tree(), scene, at.t, at.q, at.u);
     const Eigen::Isometry3d pose = chain.poses(at.t, at.q)[0];
     const Vector3d point = pose * root.origin_child;
     const Vector3d linear = pose.linear() * p.head<3>();
@@ -173,11 +173,11 @@ void expect_balance(const Mechanism& mechanism, const GivenState& given) {
     e->place(given.t, q.data());
     e->coordinate_rates(q.data(), mean.data(), qdot.data());
     q += dt * qdot;
-    return whole(mechanism.tree(), scene, given.t + dt, q, s.v + dt * udot);
+    return centroidal(mechanism.tree(), scene, given.t + dt, q, s.v + dt * udot);
   };
-  const Whole before = moved(-h), after = moved(h);
-  Vector3d force = s.whole.mass * scene.gravity;
-  Vector3d torque = s.whole.centre.cross(force);
+  const Centroidal before = moved(-h), after = moved(h);
+  Vector3d force = s.centroidal.mass * scene.gravity;
+  Vector3d torque = s.centroidal.centre.cross(force);
   const auto add = [&](const Transmitted& r) {
     force += r.force;
     torque += r.torque + r.at.cross(r.force);
@@ -307,8 +307,8 @@ TEST(StateValues, PendulumCutOpenPullsAsMuch) {
   EXPECT_LT((b.reactions.loops[0].force - inward).norm(), 1e-13);
   EXPECT_NEAR(b.lambda[0], pull, 1e-13);
   EXPECT_NEAR(a.free[0], -9.81 * std::cos(angle), 1e-13);
-  EXPECT_LT((a.whole.angular_momentum - Vector3d(0, 0, rate)).norm(), 1e-14);
-  EXPECT_LT((b.whole.angular_momentum - Vector3d(0, 0, rate)).norm(), 1e-14);
+  EXPECT_LT((a.centroidal.angular_momentum - Vector3d(0, 0, rate)).norm(), 1e-14);
+  EXPECT_LT((b.centroidal.angular_momentum - Vector3d(0, 0, rate)).norm(), 1e-14);
 }
 
 TEST(StateValues, LargeMechanismsLeaveDensePartsOut) {

@@ -41,8 +41,8 @@ TEST(StressStudy, AFormThatDriftsIsWrongInSilenceAndLeavesTheLadder) {
   ASSERT_EQ(sound.size(), 3u);
   for (const StressRun& r : sound) {
     EXPECT_EQ(r.verdict, Verdict::survived) << r.cause;
-    EXPECT_LT(r.opening, 1e-12);
-    EXPECT_LT(r.loop_speed, 1e-12);
+    EXPECT_LT(r.position_drift, 1e-12);
+    EXPECT_LT(r.velocity_drift, 1e-12);
   }
   EXPECT_EQ(tally(result, 0).wrong, 1);
   EXPECT_EQ(tally(result, 1).survived, 3);
@@ -125,7 +125,7 @@ TEST(StressStudy, ThreadsChangeNothing) {
       const StressRun &a = one.ladders[0].runs[c][k], &b = three.ladders[0].runs[c][k];
       EXPECT_EQ(a.verdict, b.verdict);
       EXPECT_EQ(a.energy, b.energy);
-      EXPECT_EQ(a.opening, b.opening);
+      EXPECT_EQ(a.position_drift, b.position_drift);
       EXPECT_EQ(a.run.counters.evaluations, b.run.counters.evaluations);
     }
   }

@@ -36,7 +36,7 @@ class BatchSweeps {
 
   virtual int width() const = 0;
   /// Body whose joint had no inertia in the last failed call.
-  virtual int stuck() const = 0;
+  virtual int singular_joint() const = 0;
   virtual std::size_t failed_state() const = 0;
 };
 

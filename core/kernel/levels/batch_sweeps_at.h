@@ -32,7 +32,7 @@ class BatchSweepsAt final : public BatchSweeps {
       const StridedOut<Many> u{direct ? qdot : rates_.data(), direct ? stride : lanes};
       if (!momenta_.get(tree_)(Many(t), StridedIn<Many>{q, stride}, StridedIn<Many>{p, stride}, u,
                                StridedOut<Many>{pdot, stride})) {
-        stuck_ = momenta_.get(tree_).stuck();
+        singular_joint_ = momenta_.get(tree_).singular_joint();
         return false;
       }
       if (!direct) coordinate_rates(q, qdot, stride);
@@ -45,7 +45,7 @@ class BatchSweepsAt final : public BatchSweeps {
           const bool ok = accelerations_.get(tree_)(Many(t), StridedIn<Many>{q, stride},
                                                     StridedIn<Many>{u, stride}, Nothing{},
                                                     StridedOut<Many>{udot, stride});
-          if (!ok) stuck_ = accelerations_.get(tree_).stuck();
+          if (!ok) singular_joint_ = accelerations_.get(tree_).singular_joint();
           return ok;
         });
   }
@@ -53,12 +53,12 @@ class BatchSweepsAt final : public BatchSweeps {
   bool jacobian(double t, const double* q, const double* p, double* J,
                 std::ptrdiff_t stride) override {
     const bool ok = jacobian_.get(tree_)(t, q, p, J, stride);
-    if (!ok) stuck_ = jacobian_.get(tree_).stuck();
+    if (!ok) singular_joint_ = jacobian_.get(tree_).singular_joint();
     return ok;
   }
 
   int width() const override { return lanes; }
-  int stuck() const override { return stuck_; }
+  int singular_joint() const override { return singular_joint_; }
   std::size_t failed_state() const override { return failed_state_; }
 
  private:
@@ -157,7 +157,7 @@ class BatchSweepsAt final : public BatchSweeps {
   WhenAsked<AccelerationSweeps<Space, Many>> accelerations_;
   WhenAsked<JacobianPass<Space, Many>> jacobian_;
   Buffer rates_, padded_;
-  int stuck_ = -1;
+  int singular_joint_ = -1;
   std::size_t failed_state_ = 0;
   bool quasi_velocities_ = false;
 };

@@ -9,7 +9,7 @@
 namespace momenta {
 
 template <int Level>
-std::unique_ptr<OpenSweeps> sweeps_at(const LinkTree& tree, const Limbs* limbs);
+std::unique_ptr<OpenSweeps> sweeps_at(const LinkTree& tree, const Branches* branches);
 template <int Level>
 std::unique_ptr<OpenSweeps> sweeps_at(const PlanarTree& tree);
 template <int Level>
@@ -31,8 +31,8 @@ std::invoke_result_t<At, std::integral_constant<int, 1>> make(int level, At&& at
 #endif
   throw std::logic_error("no kernels of this level");
 }
-std::unique_ptr<OpenSweeps> make_sweeps(const LinkTree& tree, int level, const Limbs* limbs) {
-  return make(level, [&](auto l) { return sweeps_at<l>(tree, limbs); });
+std::unique_ptr<OpenSweeps> make_sweeps(const LinkTree& tree, int level, const Branches* branches) {
+  return make(level, [&](auto l) { return sweeps_at<l>(tree, branches); });
 }
 std::unique_ptr<OpenSweeps> make_sweeps(const PlanarTree& tree, int level) {
   return make(level, [&](auto l) { return sweeps_at<l>(tree); });
@@ -44,14 +44,14 @@ std::unique_ptr<BatchSweeps> make_batch_sweeps(const PlanarTree& tree, int level
   return make(level, [&](auto l) { return batch_sweeps_at<l>(tree); });
 }
 
-bool is_hamiltonian_on_pins(const LinkTree& tree) {
+bool is_hamiltonian_on_revolutes(const LinkTree& tree) {
   return is_hamiltonian(*tree.model) &&
          std::all_of(tree.links.begin(), tree.links.end(),
-                     [](const Link& l) { return l.kind == LinkKind::pin; });
+                     [](const Link& l) { return l.kind == LinkKind::revolute; });
 }
-bool is_hamiltonian_on_pins(const PlanarTree& tree) {
+bool is_hamiltonian_on_revolutes(const PlanarTree& tree) {
   return is_hamiltonian(*tree.model) && std::all_of(tree.links.begin(), tree.links.end(),
-                                                    [](const PlanarLink& l) { return l.pin; });
+                                                    [](const PlanarLink& l) { return l.revolute; });
 }
 
 void prescribed_motion(const MotionLaw& law, double t, double& f, double& fdot, double& fddot) {

@@ -2,8 +2,8 @@
 // The two recursions compiled for several x86-64 levels in one library, and chosen when a chain is
 // made (level.h): a packaged binary is fast on every machine.
 
+#include <momenta/core/kernel/branches/branches.h>
 #include <momenta/core/kernel/levels/level.h>
-#include <momenta/core/kernel/limbs/limbs.h>
 #include <momenta/core/kernel/planar_link.h>
 
 #include <cstddef>
@@ -25,27 +25,28 @@ class OpenSweeps {
   /// u̇ (nv) from all generalised forces τ (nv) but the weights'.
   virtual bool acceleration(double t, const double* q, const double* u, const double* tau,
                             double* udot) = 0;
-  /// The two other classical algorithms, in space alone (false in a plane): u̇ by composite inertias
-  /// and a sparse factorisation of M, and τ of given accelerations.
+  /// The two other classical algorithms, in space alone (false in a plane): u̇ by composite
+  /// inertias and a sparse factorisation of M, and τ of given accelerations.
   virtual bool composite_acceleration(double t, const double* q, const double* u, const double* tau,
                                       double* udot) = 0;
   virtual bool inverse_dynamics(double t, const double* q, const double* u, const double* udot,
                                 double* tau) = 0;
   virtual int level() const = 0;
   /// Body whose joint had no inertia in the last failed call.
-  virtual int stuck() const = 0;
+  virtual int singular_joint() const = 0;
 };
 
-/// Limbs of one state side by side. More than four seldom fill a register, and records of eight
+/// Branches of one state side by side. More than four seldom fill a register, and records of eight
 /// leave the cache.
-constexpr int limb_lanes_at(int level) {
+constexpr int branch_lanes_at(int level) {
   return level >= 3 ? 4 : 2;
 }
 
-/// `limbs`: of that tree, limb_lanes_at(level) at a time, for single states; null: body by body.
-/// @pre level_at_most(level) is level; tree and limbs stay where they are.
+/// `branches`: of that tree, branch_lanes_at(level) at a time, for single states; null: body by
+/// body.
+/// @pre level_at_most(level) is level; tree and branches stay where they are.
 std::unique_ptr<OpenSweeps> make_sweeps(const LinkTree& tree, int level,
-                                        const Limbs* limbs = nullptr);
+                                        const Branches* branches = nullptr);
 std::unique_ptr<OpenSweeps> make_sweeps(const PlanarTree& tree, int level);
 
 }  // namespace momenta

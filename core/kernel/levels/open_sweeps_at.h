@@ -5,14 +5,14 @@
 // looks for such.
 
 #include <momenta/core/kernel/acceleration_sweeps.h>
+#include <momenta/core/kernel/branches/branch_accelerations.h>
+#include <momenta/core/kernel/branches/branch_momenta.h>
 #include <momenta/core/kernel/composite_sweeps.h>
 #include <momenta/core/kernel/inverse_dynamics_sweeps.h>
 #include <momenta/core/kernel/jacobian_pass.h>
 #include <momenta/core/kernel/levels/open_sweeps.h>
 #include <momenta/core/kernel/levels/strided.h>
 #include <momenta/core/kernel/levels/when_asked.h>
-#include <momenta/core/kernel/limbs/limb_accelerations.h>
-#include <momenta/core/kernel/limbs/limb_momenta.h>
 #include <momenta/core/kernel/planar_acceleration_sweeps.h>
 
 namespace momenta {
@@ -20,34 +20,35 @@ namespace momenta {
 template <class Tree, class Space, int Level>
 class OpenSweepsAt final : public OpenSweeps {
   using One = Pack<1, Level>;
-  static constexpr int limb_lanes = limb_lanes_at(Level);
-  using Limb = Pack<limb_lanes, Level>;
+  static constexpr int branch_lanes = branch_lanes_at(Level);
+  using Branch = Pack<branch_lanes, Level>;
 
  public:
-  OpenSweepsAt(const Tree& tree, const Limbs* limbs)
+  OpenSweepsAt(const Tree& tree, const Branches* branches)
       : tree_(tree),
         momentum_(tree),
         acceleration_(tree),
         scratch_(3 * static_cast<std::size_t>(tree.model->nv)) {
     for (const auto& b : tree.model->bodies) has_user_joints_ |= b.kind == JointKind::user;
-    if (!limbs) return;
+    if (!branches) return;
     if constexpr (Space::dimension == 6) {
-      limbed_momenta_ = std::make_unique<LimbedMomenta<Limb, One>>(tree, *limbs);
-      limbed_accelerations_ = std::make_unique<LimbedAccelerations<Limb, One>>(tree, *limbs);
+      branched_momenta_ = std::make_unique<BranchedMomenta<Branch, One>>(tree, *branches);
+      branched_accelerations_ =
+          std::make_unique<BranchedAccelerations<Branch, One>>(tree, *branches);
     }
   }
 
   bool momentum(double t, const double* q, const double* p, double* u, double* pdot) override {
     if constexpr (Space::dimension == 6)
-      if (limbed_momenta_) {
-        const bool ok = (*limbed_momenta_)(t, StridedIn<One>{q, 1}, StridedIn<One>{p, 1},
-                                           StridedOut<One>{u, 1}, StridedOut<One>{pdot, 1});
-        if (!ok) stuck_ = limbed_momenta_->stuck();
+      if (branched_momenta_) {
+        const bool ok = (*branched_momenta_)(t, StridedIn<One>{q, 1}, StridedIn<One>{p, 1},
+                                             StridedOut<One>{u, 1}, StridedOut<One>{pdot, 1});
+        if (!ok) singular_joint_ = branched_momenta_->singular_joint();
         return ok;
       }
     const bool ok = momentum_(One(t), StridedIn<One>{q, 1}, StridedIn<One>{p, 1},
                               StridedOut<One>{u, 1}, StridedOut<One>{pdot, 1});
-    if (!ok) stuck_ = momentum_.stuck();
+    if (!ok) singular_joint_ = momentum_.singular_joint();
     return ok;
   }
   bool inverse_mass_times(double t, const double* q, const double* x, double* result) override {
@@ -56,7 +57,7 @@ class OpenSweepsAt final : public OpenSweeps {
     for (std::size_t i = 0; i < nv; ++i) no_momenta[i] = 0;
     if (!momentum_(One(t), StridedIn<One>{q, 1}, StridedIn<One>{no_momenta, 1},
                    StridedOut<One>{u, 1}, StridedOut<One>{pdot, 1})) {
-      stuck_ = momentum_.stuck();
+      singular_joint_ = momentum_.singular_joint();
       return false;
     }
     momentum_.inverse_mass_times(StridedIn<One>{x, 1}, StridedOut<One>{result, 1});
@@ -69,7 +70,7 @@ class OpenSweepsAt final : public OpenSweeps {
     for (std::size_t i = 0; i < along.q.size(); ++i) along.q[i].b[0] = One(dq[i]);
     for (std::size_t i = 0; i < along.p.size(); ++i) along.p[i].b[0] = One(dp[i]);
     if (!along(t)) {
-      stuck_ = along.stuck();
+      singular_joint_ = along.singular_joint();
       return false;
     }
     for (std::size_t i = 0; i < along.q.size(); ++i) along.qdot[i].b[0].store(dqdot + i);
@@ -79,15 +80,16 @@ class OpenSweepsAt final : public OpenSweeps {
   bool acceleration(double t, const double* q, const double* u, const double* tau,
                     double* udot) override {
     if constexpr (Space::dimension == 6)
-      if (limbed_accelerations_) {
-        const bool ok = (*limbed_accelerations_)(t, StridedIn<One>{q, 1}, StridedIn<One>{u, 1},
-                                                 StridedIn<One>{tau, 1}, StridedOut<One>{udot, 1});
-        if (!ok) stuck_ = limbed_accelerations_->stuck();
+      if (branched_accelerations_) {
+        const bool ok =
+            (*branched_accelerations_)(t, StridedIn<One>{q, 1}, StridedIn<One>{u, 1},
+                                       StridedIn<One>{tau, 1}, StridedOut<One>{udot, 1});
+        if (!ok) singular_joint_ = branched_accelerations_->singular_joint();
         return ok;
       }
     const bool ok = acceleration_(One(t), StridedIn<One>{q, 1}, StridedIn<One>{u, 1},
                                   StridedIn<One>{tau, 1}, StridedOut<One>{udot, 1});
-    if (!ok) stuck_ = acceleration_.stuck();
+    if (!ok) singular_joint_ = acceleration_.singular_joint();
     return ok;
   }
 
@@ -112,12 +114,12 @@ class OpenSweepsAt final : public OpenSweeps {
   }
 
   int level() const override { return Level; }
-  int stuck() const override { return stuck_; }
+  int singular_joint() const override { return singular_joint_; }
 
  private:
   const Tree& tree_;
-  std::unique_ptr<LimbedMomenta<Limb, One>> limbed_momenta_;
-  std::unique_ptr<LimbedAccelerations<Limb, One>> limbed_accelerations_;
+  std::unique_ptr<BranchedMomenta<Branch, One>> branched_momenta_;
+  std::unique_ptr<BranchedAccelerations<Branch, One>> branched_accelerations_;
   MomentumSweeps<Space, One> momentum_;
   AccelerationSweeps<Space, One> acceleration_;
   struct None {};
@@ -127,13 +129,13 @@ class OpenSweepsAt final : public OpenSweeps {
   InSpace<InverseDynamicsSweeps<Spatial, One>> inverse_;
   WhenAsked<DirectionalPass<Space, 1, One>> along_;
   std::vector<One> scratch_;
-  int stuck_ = -1;
+  int singular_joint_ = -1;
   bool has_user_joints_ = false;
 };
 
 template <int Level>
-std::unique_ptr<OpenSweeps> sweeps_at(const LinkTree& tree, const Limbs* limbs) {
-  return std::make_unique<OpenSweepsAt<LinkTree, Spatial, Level>>(tree, limbs);
+std::unique_ptr<OpenSweeps> sweeps_at(const LinkTree& tree, const Branches* branches) {
+  return std::make_unique<OpenSweepsAt<LinkTree, Spatial, Level>>(tree, branches);
 }
 template <int Level>
 std::unique_ptr<OpenSweeps> sweeps_at(const PlanarTree& tree) {

@@ -71,7 +71,7 @@ const furtherCosts = [
   },
   {
     ...time, title: "Position drift against processor time",
-    caption: "What the loops cost to keep shut: largest opening of the loops.",
+    caption: "CPU time against the largest position drift.",
     yTitle: "largest position drift |Φ| [m]", unit: "m", value: (run) => run.drift.position_max, columns: [],
   },
   {

@@ -1,4 +1,4 @@
-#include <momenta/dae/sweeps/legs/legs.h>
+#include <momenta/dae/sweeps/branches/looped_branches.h>
 #include <momenta/dae/sweeps/levels/loop_sweeps.h>
 
 #include <cmath>
@@ -9,21 +9,21 @@ namespace momenta {
 
 template <int Level, class Space, class Tree>
 std::unique_ptr<LoopedSweeps> looped_sweeps_at(const Tree& tree, const SweptLoops<Space>& swept,
-                                               LegGroups legs);
+                                               LoopedBranchGroups looped_branches);
 
 namespace {
 
 template <class Space, class Tree>
 std::unique_ptr<LoopedSweeps> make(const Tree& tree, const SweptLoops<Space>& swept, int level,
-                                   LegGroups legs) {
+                                   LoopedBranchGroups looped_branches) {
 #ifdef MOMENTA_LEVEL4
-  if (level >= 4) return looped_sweeps_at<4>(tree, swept, std::move(legs));
+  if (level >= 4) return looped_sweeps_at<4>(tree, swept, std::move(looped_branches));
 #endif
 #ifdef MOMENTA_LEVEL3
-  if (level >= 3) return looped_sweeps_at<3>(tree, swept, std::move(legs));
+  if (level >= 3) return looped_sweeps_at<3>(tree, swept, std::move(looped_branches));
 #endif
 #ifdef MOMENTA_LEVEL1
-  if (level >= 1) return looped_sweeps_at<1>(tree, swept, std::move(legs));
+  if (level >= 1) return looped_sweeps_at<1>(tree, swept, std::move(looped_branches));
 #endif
   throw std::logic_error("no kernels of this level");
 }
@@ -36,10 +36,11 @@ std::unique_ptr<LoopedSweeps> make_looped_sweeps(const PlanarTree& tree,
 }
 std::unique_ptr<LoopedSweeps> make_looped_sweeps(const LinkTree& tree,
                                                  const SweptLoops<Spatial>& swept, int level,
-                                                 bool legs_side_by_side) {
+                                                 bool branches_side_by_side) {
   return make(tree, swept, level,
-              legs_side_by_side ? find_legs(tree, swept.loops, swept.plan, leg_lanes_at(level))
-                                : LegGroups{});
+              branches_side_by_side ? find_looped_branches(tree, swept.loops, swept.plan,
+                                                           looped_branch_lanes_at(level))
+                                    : LoopedBranchGroups{});
 }
 
 LoopModel<Spatial> in_link_frames(LoopModel<Spatial> loops, const LinkTree&) {
@@ -62,7 +63,7 @@ LoopModel<Planar> in_link_frames(LoopModel<Planar> loops, const PlanarTree& tree
     turn(l.b, m.at_b);
     for (auto& axis : m.axis_a) turn(l.a, axis);
     for (auto& axis : m.axis_b) turn(l.b, axis);
-    for (auto& slide : m.slides) turn(l.b, slide.along);
+    for (auto& translation : m.translations) turn(l.b, translation.along);
   }
   return loops;
 }

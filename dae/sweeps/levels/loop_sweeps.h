@@ -1,6 +1,6 @@
 #pragma once
 // The sweeps that carry loops, compiled for several x86-64 levels in one library and for several
-// numbers of lanes, and chosen when a mechanism is made.
+// numbers of slots, and chosen when a mechanism is made.
 
 #include <momenta/core/kernel/levels/open_sweeps.h>
 #include <momenta/core/kernel/link.h>
@@ -28,7 +28,7 @@ class LoopedSweeps {
   virtual ~LoopedSweeps() = default;
 
   /// u (nv) and σ (m) of (7) from p (nv); with right.rates ṗ (nv) of (8), forces between points of
-  /// bodies left out. False when a joint has no inertia: stuck().
+  /// bodies left out. False when a joint has no inertia: singular_joint().
   virtual bool momentum(double t, const double* q, const double* p, const RightSide<double>& right,
                         double* u, double* sigma, double* pdot) = 0;
   /// u̇ (nv) and λ (m) of (3) from u and all generalised forces τ (nv) but the weights'.
@@ -48,12 +48,12 @@ class LoopedSweeps {
     int faded = 0;
   };
   virtual Pivots pivots(bool of_momentum) const = 0;
-  virtual int lanes() const = 0;
+  virtual int slots() const = 0;
   virtual int width() const = 0;
-  virtual int stuck() const = 0;
-  /// Whether the last call closed a folded leg, of one state or of some of many, on too weak a
+  virtual int singular_joint() const = 0;
+  /// Whether the last call closed a folded branch, of one state or of some of many, on too weak a
   /// pivot: its solution is then wrong.
-  virtual bool weak_leg() const = 0;
+  virtual bool weak_looped_branch() const = 0;
 };
 
 /// The same loops with points and axes in the frames of the links. In space these are the model's.
@@ -68,7 +68,7 @@ struct SweptLoops {
   SharedPoints shared;  ///< empty: the loops are those of the scene
 };
 
-/// The plan of a model's loops; in space legs may be folded.
+/// The plan of a model's loops; in space branches may be folded.
 template <class Space>
 LoopPlan plan_loops(const Model<Space>& model, const LoopModel<Space>& loops) {
   std::vector<int> parents;
@@ -95,13 +95,14 @@ SweptLoops<Space> swept_loops(const Model<Space>& model, LoopModel<Space> loops)
   return given.plan.fits() && anew.plan.work < given.plan.work ? anew : given;
 }
 
-/// `legs_side_by_side`: in space, of one state, folded legs of one shape (legs/legs.h).
+/// `branches_side_by_side`: in space, of one state, folded branches of one shape
+/// (branches/branches.h).
 /// @pre level_at_most(level) is level, swept.plan.fits(); tree and swept loops stay where they are.
 std::unique_ptr<LoopedSweeps> make_looped_sweeps(const PlanarTree& tree,
                                                  const SweptLoops<Planar>& swept, int level,
-                                                 bool legs_side_by_side = true);
+                                                 bool branches_side_by_side = true);
 std::unique_ptr<LoopedSweeps> make_looped_sweeps(const LinkTree& tree,
                                                  const SweptLoops<Spatial>& swept, int level,
-                                                 bool legs_side_by_side = true);
+                                                 bool branches_side_by_side = true);
 
 }  // namespace momenta

@@ -3,7 +3,7 @@
 // core/kernel/levels/open_sweeps_at.h says why.
 
 #include <momenta/core/kernel/levels/strided.h>
-#include <momenta/dae/sweeps/legs/legs.h>
+#include <momenta/dae/sweeps/branches/looped_branches.h>
 #include <momenta/dae/sweeps/levels/loop_sweeps.h>
 #include <momenta/dae/sweeps/planar_loop_sweeps.h>
 #include <momenta/dae/sweeps/spatial_loop_sweeps.h>
@@ -18,12 +18,13 @@ class LoopedSweepsAt final : public LoopedSweeps {
   static constexpr std::size_t abreast = Rows > 8 ? 1 : native_width<Level>;
 
  public:
-  LoopedSweepsAt(const Tree& tree, const SweptLoops<Space>& swept, LegGroups legs)
+  LoopedSweepsAt(const Tree& tree, const SweptLoops<Space>& swept,
+                 LoopedBranchGroups looped_branches)
       : tree_(tree),
         loops_(swept.loops),
         plan_(swept.plan),
         shared_(swept.shared),
-        legs_(std::move(legs)),
+        looped_branches_(std::move(looped_branches)),
         momentum_(swept_by<LoopSweeps<Space, One, Rows, true>>()) {}
 
   bool momentum(double t, const double* q, const double* p, const RightSide<double>& right,
@@ -32,8 +33,8 @@ class LoopedSweepsAt final : public LoopedSweeps {
                               StridedIn<One>{p, 1}, one(right), StridedOut<One>{u, 1},
                               StridedOut<One>{sigma, 1}, StridedOut<One>{pdot, 1});
     if (!shared_.empty()) shared_.to_given(sigma, 1);
-    stuck_ = momentum_.stuck();
-    weak_leg_ = momentum_.weak_leg();
+    singular_joint_ = momentum_.singular_joint();
+    weak_looped_branch_ = momentum_.weak_looped_branch();
     return ok;
   }
   bool acceleration(double t, const double* q, const double* u, const double* tau,
@@ -43,8 +44,8 @@ class LoopedSweepsAt final : public LoopedSweeps {
                            StridedIn<One>{tau, 1}, one(right), StridedOut<One>{udot, 1},
                            StridedOut<One>{lambda, 1}, StridedOut<One>{udot, 1});
     if (!shared_.empty()) shared_.to_given(lambda, 1);
-    stuck_ = sweeps.stuck();
-    weak_leg_ = sweeps.weak_leg();
+    singular_joint_ = sweeps.singular_joint();
+    weak_looped_branch_ = sweeps.weak_looped_branch();
     return ok;
   }
   bool momentum(double t, const LoopedStates& s, double fade, double leak) override {
@@ -55,19 +56,19 @@ class LoopedSweepsAt final : public LoopedSweeps {
     right.fade = fade;
     right.leak = leak;
     right.rates = true;
-    constexpr std::size_t lanes = abreast;
+    constexpr std::size_t slots = abreast;
     bool all = true;
-    weak_leg_ = false;
+    weak_looped_branch_ = false;
     const auto pack = [&](const double* q, const double* p, double* u, double* sigma, double* pdot,
                           std::ptrdiff_t stride) {
       const StridedIn<Many> x{p, stride};
       all &= sweeps(Many(t), StridedIn<Many>{q, stride}, x, x, right, StridedOut<Many>{u, stride},
                     StridedOut<Many>{sigma, stride}, StridedOut<Many>{pdot, stride});
-      if (!all) stuck_ = sweeps.stuck();
-      weak_leg_ |= sweeps.weak_leg();
+      if (!all) singular_joint_ = sweeps.singular_joint();
+      weak_looped_branch_ |= sweeps.weak_looped_branch();
     };
     std::size_t first = 0;
-    for (; first + lanes <= s.count; first += lanes)
+    for (; first + slots <= s.count; first += slots)
       pack(s.q + first, s.p + first, s.u + first, s.sigma + first, s.pdot + first, s.stride);
     if (first < s.count) rest(s, first, pack);
     to_given(s);
@@ -91,10 +92,10 @@ class LoopedSweepsAt final : public LoopedSweeps {
     });
     return p;
   }
-  int lanes() const override { return Rows; }
+  int slots() const override { return Rows; }
   int width() const override { return static_cast<int>(abreast); }
-  int stuck() const override { return stuck_; }
-  bool weak_leg() const override { return weak_leg_; }
+  int singular_joint() const override { return singular_joint_; }
+  bool weak_looped_branch() const override { return weak_looped_branch_; }
 
  private:
   RightSide<One> one(const RightSide<double>& right) {
@@ -118,7 +119,7 @@ class LoopedSweepsAt final : public LoopedSweeps {
   template <class Sweeps>
   Sweeps swept_by() const {
     if constexpr (Space::dimension == 6)
-      return Sweeps(tree_, loops_, plan_, &legs_);
+      return Sweeps(tree_, loops_, plan_, &looped_branches_);
     else
       return Sweeps(tree_, loops_, plan_);
   }
@@ -141,40 +142,40 @@ class LoopedSweepsAt final : public LoopedSweeps {
       all &= momentum_(One(t), StridedIn<One>{s.q + i, s.stride}, x, x, right,
                        StridedOut<One>{s.u + i, s.stride}, StridedOut<One>{s.sigma + i, s.stride},
                        StridedOut<One>{s.pdot + i, s.stride});
-      if (!all) stuck_ = momentum_.stuck();
-      weak |= momentum_.weak_leg();
+      if (!all) singular_joint_ = momentum_.singular_joint();
+      weak |= momentum_.weak_looped_branch();
     }
-    weak_leg_ = weak;
+    weak_looped_branch_ = weak;
     to_given(s);
     return all;
   }
 
-  /// The states that fill no pack, copied into one; its last lanes repeat the last state.
+  /// The states that fill no pack, copied into one; its last slots repeat the last state.
   template <class PackOf>
   void rest(const LoopedStates& s, std::size_t first, PackOf&& pack) {
-    constexpr std::size_t lanes = abreast;
+    constexpr std::size_t slots = abreast;
     const auto nq = static_cast<std::size_t>(tree_.model->nq),
                nv = static_cast<std::size_t>(tree_.model->nv),
                m = static_cast<std::size_t>(loops_.rows);
-    if (padded_.size() < (nq + 3 * nv + m) * lanes) padded_.resize((nq + 3 * nv + m) * lanes);
-    double *q = &padded_.data()->v, *p = q + nq * lanes, *u = p + nv * lanes,
-           *pdot = u + nv * lanes, *sigma = pdot + nv * lanes;
+    if (padded_.size() < (nq + 3 * nv + m) * slots) padded_.resize((nq + 3 * nv + m) * slots);
+    double *q = &padded_.data()->v, *p = q + nq * slots, *u = p + nv * slots,
+           *pdot = u + nv * slots, *sigma = pdot + nv * slots;
     const auto at = [&](std::size_t i, std::size_t state) {
       return static_cast<std::ptrdiff_t>(i) * s.stride + static_cast<std::ptrdiff_t>(state);
     };
     const std::size_t count = s.count - first;
-    for (std::size_t lane = 0; lane < lanes; ++lane) {
-      const std::size_t state = first + (lane < count ? lane : count - 1);
-      for (std::size_t i = 0; i < nq; ++i) q[i * lanes + lane] = s.q[at(i, state)];
-      for (std::size_t i = 0; i < nv; ++i) p[i * lanes + lane] = s.p[at(i, state)];
+    for (std::size_t slot = 0; slot < slots; ++slot) {
+      const std::size_t state = first + (slot < count ? slot : count - 1);
+      for (std::size_t i = 0; i < nq; ++i) q[i * slots + slot] = s.q[at(i, state)];
+      for (std::size_t i = 0; i < nv; ++i) p[i * slots + slot] = s.p[at(i, state)];
     }
-    pack(q, p, u, sigma, pdot, static_cast<std::ptrdiff_t>(lanes));
-    for (std::size_t lane = 0; lane < count; ++lane) {
+    pack(q, p, u, sigma, pdot, static_cast<std::ptrdiff_t>(slots));
+    for (std::size_t slot = 0; slot < count; ++slot) {
       for (std::size_t i = 0; i < nv; ++i) {
-        s.u[at(i, first + lane)] = u[i * lanes + lane];
-        s.pdot[at(i, first + lane)] = pdot[i * lanes + lane];
+        s.u[at(i, first + slot)] = u[i * slots + slot];
+        s.pdot[at(i, first + slot)] = pdot[i * slots + slot];
       }
-      for (std::size_t i = 0; i < m; ++i) s.sigma[at(i, first + lane)] = sigma[i * lanes + lane];
+      for (std::size_t i = 0; i < m; ++i) s.sigma[at(i, first + slot)] = sigma[i * slots + slot];
     }
   }
 
@@ -182,27 +183,28 @@ class LoopedSweepsAt final : public LoopedSweeps {
   const LoopModel<Space>& loops_;
   const LoopPlan& plan_;
   SharedPoints shared_;
-  LegGroups legs_;
+  LoopedBranchGroups looped_branches_;
   LoopSweeps<Space, One, Rows, true> momentum_;
   std::unique_ptr<LoopSweeps<Space, One, Rows, false>> acceleration_;
   std::unique_ptr<LoopSweeps<Space, Many, Rows, true>> many_;
   std::vector<One> padded_;
-  int stuck_ = -1;
-  bool weak_leg_ = false;
+  int singular_joint_ = -1;
+  bool weak_looped_branch_ = false;
 };
 
-/// The narrowest fronts that hold the plan's lanes.
+/// The narrowest fronts that hold the plan's slots.
 template <int Level, class Space, class Tree>
 std::unique_ptr<LoopedSweeps> looped_sweeps_at(const Tree& tree, const SweptLoops<Space>& swept,
-                                               LegGroups legs) {
+                                               LoopedBranchGroups looped_branches) {
   const LoopPlan& plan = swept.plan;
   const auto make = [&]<int Rows>() -> std::unique_ptr<LoopedSweeps> {
-    return std::make_unique<LoopedSweepsAt<Tree, Space, Level, Rows>>(tree, swept, std::move(legs));
+    return std::make_unique<LoopedSweepsAt<Tree, Space, Level, Rows>>(tree, swept,
+                                                                      std::move(looped_branches));
   };
   if constexpr (Space::dimension == 3)
-    if (plan.lanes <= 2) return make.template operator()<2>();
-  if (plan.lanes <= 4) return make.template operator()<4>();
-  if (plan.lanes <= 8) return make.template operator()<8>();
+    if (plan.slots <= 2) return make.template operator()<2>();
+  if (plan.slots <= 4) return make.template operator()<4>();
+  if (plan.slots <= 8) return make.template operator()<8>();
   return make.template operator()<16>();
 }
 

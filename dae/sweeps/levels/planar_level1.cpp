@@ -2,5 +2,6 @@
 
 namespace momenta {
 template std::unique_ptr<LoopedSweeps> looped_sweeps_at<1>(const PlanarTree&,
-                                                           const SweptLoops<Planar>&, LegGroups);
+                                                           const SweptLoops<Planar>&,
+                                                           LoopedBranchGroups);
 }  // namespace momenta

@@ -2,5 +2,6 @@
 
 namespace momenta {
 template std::unique_ptr<LoopedSweeps> looped_sweeps_at<3>(const LinkTree&,
-                                                           const SweptLoops<Spatial>&, LegGroups);
+                                                           const SweptLoops<Spatial>&,
+                                                           LoopedBranchGroups);
 }  // namespace momenta

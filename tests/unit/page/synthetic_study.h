@@ -116,7 +116,7 @@ inline Motion motion(int run, double end, std::size_t frames) {
     };
     Motion::Frame frame;
     frame.turn = {about_z(6.283185307179586 * t), about_z(-6 * t), about_z(2 + std::sin(t))};
-    frame.slide = {{0, 0, 0}, {0.7, 0, 0}, {2.5, 0, 0}};
+    frame.translation = {{0, 0, 0}, {0.7, 0, 0}, {2.5, 0, 0}};
     frame.gap = {Eigen::Vector3d(1e-6 * t, 0, 0)};
     m.frames.push_back(frame);
   }

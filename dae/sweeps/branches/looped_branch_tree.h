@@ -1,26 +1,26 @@
 #pragma once
-// Legs of one shape as one mechanism whose constants are packs, a leg in each lane of S: what the
-// sweeps of spatial_loop_sweeps.h read in place of LinkTree and LoopModel. Body 0 is the one the
-// legs fold into: it is another's, and not swept here.
+// Branches of one shape as one mechanism whose constants are packs, a branch in each lane of S:
+// what the sweeps of spatial_loop_sweeps.h read in place of LinkTree and LoopModel. Body 0 is the
+// one the branches fold into: it is another's, and not swept here.
 
+#include <momenta/core/kernel/branches/branch_link.h>
 #include <momenta/core/kernel/general_joint.h>
-#include <momenta/core/kernel/limbs/limb_link.h>
 #include <momenta/dae/loop/loops_in_time.h>
-#include <momenta/dae/sweeps/legs/legs.h>
+#include <momenta/dae/sweeps/branches/looped_branches.h>
 
 #include <array>
 
 namespace momenta {
 
 template <class S>
-struct LegTree {
-  struct Link : LimbLink<S> {
-    LinkKind kind = LinkKind::pin;
+struct LoopedBranchTree {
+  struct Link : BranchLink<S> {
+    LinkKind kind = LinkKind::revolute;
     int parent = -1, record = -1, q = 0, u = 0;
     bool one_axis = false;
   };
   struct Body {
-    typename LimbLink<S>::Edge edge;
+    typename BranchLink<S>::Edge edge;
     JointKind kind = JointKind::revolute;
     int nv = 1, q = 0, u = 0;
     static constexpr int drive = -1;
@@ -33,21 +33,21 @@ struct LegTree {
     bool has_gravity = false;
   };
 
-  LegTree(const LinkTree& tree, const LegGroup& group);
-  LegTree(const LegTree&) = delete;
-  LegTree& operator=(const LegTree&) = delete;
+  LoopedBranchTree(const LinkTree& tree, const LoopedBranchGroup& group);
+  LoopedBranchTree(const LoopedBranchTree&) = delete;
+  LoopedBranchTree& operator=(const LoopedBranchTree&) = delete;
 
   Model own;
   const Model* model = &own;
   std::vector<Link> links;
   std::vector<S> theta0;
   std::vector<Vec3<S>> weight;
-  std::vector<BallPlace> balls;  ///< none
-  int slots = 0, records = 0, users = 0, stuck = -1;
+  std::vector<SphericalPlace> sphericals;  ///< none
+  int slots = 0, records = 0, users = 0, singular_joint = -1;
 };
 
 template <class S>
-LegTree<S>::LegTree(const LinkTree& tree, const LegGroup& group)
+LoopedBranchTree<S>::LoopedBranchTree(const LinkTree& tree, const LoopedBranchGroup& group)
     : links(static_cast<std::size_t>(group.bodies) + 1),
       theta0(links.size()),
       weight(links.size()) {
@@ -61,7 +61,7 @@ LegTree<S>::LegTree(const LinkTree& tree, const LegGroup& group)
     l.slot = l.parent_slot = -1;
     l.root = k == 1;
     l.first = !l.root;
-    l.tip = k == group.bodies;
+    l.leaf = k == group.bodies;
     l.opens = l.screwed = l.has_force = false;
     l.parent = l.root ? -1 : k - 1;
     l.q = l.u = b.q = b.u = k - 1;
@@ -85,7 +85,7 @@ LegTree<S>::LegTree(const LinkTree& tree, const LegGroup& group)
       b.d0.set_lane(lane, body.d0);
       for (int i = 0; i < 3; ++i) weight[at][i].set_lane(lane, tree.weight[link][i]);
     }
-    if (l.kind != LinkKind::pin) l.record = records++;
+    if (l.kind != LinkKind::revolute) l.record = records++;
     l.edge.about_z = l.screwed;
     l.edge.about_x = true;
     l.edge.about_y = l.turn == Turn::tilted;
@@ -98,16 +98,17 @@ LegTree<S>::LegTree(const LinkTree& tree, const LegGroup& group)
   }
 }
 
-/// place_links of core/kernel/place_links.h for pins and slides without drives.
+/// place_links of core/kernel/place_links.h for revolute joints and prismatic joints without
+/// drives.
 template <class S, class In, class Axes>
-void place_links(const LegTree<S>& tree, const S&, const In& q, Angles<S>& angles,
+void place_links(const LoopedBranchTree<S>& tree, const S&, const In& q, Angles<S>& angles,
                  std::vector<JointRecord<Spatial, S>>& joints, std::vector<UserRecord<S>>&, Axes&&,
                  std::size_t) {
   angles.set(0, S(0.0));
   for (std::size_t k = 1; k < tree.links.size(); ++k) {
     const auto& l = tree.links[k];
     const auto& b = tree.model->bodies[k];
-    if (l.kind == LinkKind::pin) {
+    if (l.kind == LinkKind::revolute) {
       angles.set(k, q[l.q] + tree.theta0[k]);
     } else {
       joints[static_cast<std::size_t>(l.record)].edge.d = q[l.q] + b.d0;
@@ -116,16 +117,16 @@ void place_links(const LegTree<S>& tree, const S&, const In& q, Angles<S>& angle
   }
   angles.turn();
   for (std::size_t k = 1; k < tree.links.size(); ++k) {
-    if (tree.links[k].kind == LinkKind::pin) continue;
+    if (tree.links[k].kind == LinkKind::revolute) continue;
     auto& edge = joints[static_cast<std::size_t>(tree.links[k].record)].edge;
     edge.cos_theta = angles.cosine(k);
     edge.sin_theta = angles.sine(k);
   }
 }
 
-/// Loops between the legs and body 0. Names as in LoopModel.
+/// Loops between the branches and body 0. Names as in LoopModel.
 template <class S>
-struct LegLoops {
+struct LoopedBranchLoops {
   struct Loop {
     int a = -1, b = -1, row = 0, rows = 0;
     Vec3<S> at_a, at_b;
@@ -146,11 +147,12 @@ struct LegLoops {
   std::array<int, 0> motions;
   int rows = 0;
 
-  LegLoops(const LoopModel<Spatial>& model, const LegGroup& group);
+  LoopedBranchLoops(const LoopModel<Spatial>& model, const LoopedBranchGroup& group);
 };
 
 template <class S>
-LegLoops<S>::LegLoops(const LoopModel<Spatial>& model, const LegGroup& group)
+LoopedBranchLoops<S>::LoopedBranchLoops(const LoopModel<Spatial>& model,
+                                        const LoopedBranchGroup& group)
     : loops(static_cast<std::size_t>(group.loops)) {
   for (std::size_t i = 0; i < loops.size(); ++i) {
     Loop& l = loops[i];
@@ -187,15 +189,15 @@ LegLoops<S>::LegLoops(const LoopModel<Spatial>& model, const LegGroup& group)
   }
 }
 
-/// Nothing of legs depends on time.
+/// Nothing of branches depends on time.
 template <class S>
-class LegLoopsInTime {
+class LoopedBranchLoopsInTime {
  public:
-  explicit LegLoopsInTime(const LegLoops<S>& loops) : loops_(&loops) {}
-  const LegLoops<S>& at(double) const { return *loops_; }
+  explicit LoopedBranchLoopsInTime(const LoopedBranchLoops<S>& loops) : loops_(&loops) {}
+  const LoopedBranchLoops<S>& at(double) const { return *loops_; }
 
  private:
-  const LegLoops<S>* loops_;
+  const LoopedBranchLoops<S>* loops_;
 };
 
 /// The loops that go with a tree.
@@ -203,13 +205,13 @@ template <class Tree>
 struct LoopsOf {
   using Model = LoopModel<Spatial>;
   using InTime = LoopsInTime<Spatial>;
-  static constexpr bool of_legs = false;
+  static constexpr bool of_looped_branches = false;
 };
 template <class S>
-struct LoopsOf<LegTree<S>> {
-  using Model = LegLoops<S>;
-  using InTime = LegLoopsInTime<S>;
-  static constexpr bool of_legs = true;
+struct LoopsOf<LoopedBranchTree<S>> {
+  using Model = LoopedBranchLoops<S>;
+  using InTime = LoopedBranchLoopsInTime<S>;
+  static constexpr bool of_looped_branches = true;
 };
 
 }  // namespace momenta

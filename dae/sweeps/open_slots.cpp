@@ -1,25 +1,25 @@
-#include <momenta/dae/sweeps/open_lanes.h>
+#include <momenta/dae/sweeps/open_slots.h>
 
 #include <algorithm>
 
 namespace momenta {
 namespace {
 
-LaneGroups groups_of(int lane, int rows) {
-  LaneGroups groups = 0;
-  for (int i = lane; i < lane + rows; ++i) groups |= LaneGroups{1} << (i / 2);
+SlotGroups groups_of(int slot, int rows) {
+  SlotGroups groups = 0;
+  for (int i = slot; i < slot + rows; ++i) groups |= SlotGroups{1} << (i / 2);
   return groups;
 }
 
 }  // namespace
 
-OpenLanes::OpenLanes(const LoopPlan& plan, const std::vector<int>& parents,
+OpenSlots::OpenSlots(const LoopPlan& plan, const std::vector<int>& parents,
                      const std::vector<int>& rows)
     : fronts(parents.size()), beside(rows.size()) {
   const std::size_t n = parents.size();
   const auto groups = [&](int loop) {
     const auto i = static_cast<std::size_t>(loop);
-    return groups_of(plan.lane[i], rows[i]);
+    return groups_of(plan.slot[i], rows[i]);
   };
   const auto closings = [&](const LoopPlan::Range& range) {
     return std::vector<int>(plan.closings.begin() + range.first,
@@ -49,7 +49,7 @@ OpenLanes::OpenLanes(const LoopPlan& plan, const std::vector<int>& parents,
       climb(plan.couplings[static_cast<std::size_t>(i)].loop, k);
   }
   // At the ground from its last root to the one that closes it.
-  std::vector<LaneGroups> stays(n, 0);
+  std::vector<SlotGroups> stays(n, 0);
   for (std::size_t k = 0; k < n; ++k)
     if (parents[k] < 0 && plan.folded_onto[k] < 0)
       for (const int loop : closings(plan.ground_closings_of[k])) {
@@ -60,14 +60,14 @@ OpenLanes::OpenLanes(const LoopPlan& plan, const std::vector<int>& parents,
             stays[static_cast<std::size_t>(r)] |= groups(loop);
           }
       }
-  const auto close = [&](const LoopPlan::Range& range, LaneGroups open) {
+  const auto close = [&](const LoopPlan::Range& range, SlotGroups open) {
     for (int i = range.last; i-- > range.first;) {
       const int loop = plan.closings[static_cast<std::size_t>(i)];
       beside[static_cast<std::size_t>(loop)] = open;
       open |= groups(loop);
     }
   };
-  LaneGroups arrived = 0;  // lanes of the ground before a root
+  SlotGroups arrived = 0;  // slots of the ground before a root
   for (std::size_t k = n; k-- > 0;) {
     Front& here = fronts[k];
     const bool continues = k + 1 < n && parents[k + 1] == static_cast<int>(k);
@@ -85,6 +85,6 @@ OpenLanes::OpenLanes(const LoopPlan& plan, const std::vector<int>& parents,
   }
 }
 
-OpenLanes::~OpenLanes() = default;
+OpenSlots::~OpenSlots() = default;
 
 }  // namespace momenta

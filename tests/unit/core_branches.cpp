@@ -1,8 +1,8 @@
-// Limbs of one shape side by side against the same trees body by body: which subtrees become limbs,
-// and that neither motion nor what is refused depends on it.
+// Branches of one shape side by side against the same trees body by body: which subtrees become
+// branches, and that neither motion nor what is refused depends on it.
 #include <gtest/gtest.h>
+#include <momenta/core/kernel/branches/branches.h>
 #include <momenta/core/kernel/levels/open_sweeps.h>
-#include <momenta/core/kernel/limbs/limbs.h>
 #include <momenta/core/open_chain.h>
 
 #include <algorithm>
@@ -15,27 +15,28 @@ namespace {
 
 using namespace equations;
 
-/// A trunk of any joints, and on its bodies and the ground copies of random limbs: parents by
-/// number within the limb, constants each their own. Sizes and numbers of copies at random, up to
-/// `copies` + 1, or all as said.
-Scene with_limbs(RandomTree& random, int trunk, int shapes, int copies, bool forces,
-                 int same_size = 0) {
-  TreeRecipe recipe{.bodies = trunk, .drives = true, .joint_forces = forces, .body_forces = forces};
+/// A remaining tree of any joints, and on its bodies and the ground copies of random branches:
+/// parents by number within the branch, constants each their own. Sizes and numbers of copies at
+/// random, up to `copies` + 1, or all as said.
+Scene with_branches(RandomTree& random, int remaining_tree, int shapes, int copies, bool forces,
+                    int same_size = 0) {
+  TreeRecipe recipe{
+      .bodies = remaining_tree, .drives = true, .joint_forces = forces, .body_forces = forces};
   Scene s = random.scene(recipe);
-  const TreeRecipe pins{.bodies = 6,
-                        .placing = random.chance(0.5) ? Placing::general : Placing::degenerate,
-                        .kinds = {JointKind::revolute},
-                        .drives = false,
-                        .joint_forces = forces,
-                        .body_forces = false};
+  const TreeRecipe revolutes{.bodies = 6,
+                             .placing = random.chance(0.5) ? Placing::general : Placing::degenerate,
+                             .kinds = {JointKind::revolute},
+                             .drives = false,
+                             .joint_forces = forces,
+                             .body_forces = false};
   for (int shape = 0; shape < shapes; ++shape) {
     std::vector<int> parents{-1};
     const int size = same_size > 0 ? same_size : 1 + random.below(6);
     for (int k = 1; k < size; ++k) parents.push_back(random.below(k));
     const int count = same_size > 0 ? copies : 2 + random.below(copies);
     for (int copy = 0; copy < count; ++copy) {
-      const std::string name = "limb" + std::to_string(shape) + "_" + std::to_string(copy) + "_";
-      const Scene from = random.scene(pins);
+      const std::string name = "branch" + std::to_string(shape) + "_" + std::to_string(copy) + "_";
+      const Scene from = random.scene(revolutes);
       const std::string on = random.chance(0.2) ? "ground" : s.bodies.front().name;
       for (int k = 0; k < size; ++k) {
         const auto i = static_cast<std::size_t>(k);
@@ -54,16 +55,16 @@ Scene with_limbs(RandomTree& random, int trunk, int shapes, int copies, bool for
 }
 
 /// How many bodies of the scene go side by side.
-std::size_t expect_sound_limbs(const Scene& scene, int lanes) {
+std::size_t expect_sound_branches(const Scene& scene, int lanes) {
   const Tree tree = build_tree(scene);
   const Model<Spatial> model = build_spatial_model(tree, scene);
   const LinkTree links = build_links(model);
-  const auto limbs = find_limbs(links, lanes);
-  if (!limbs) return 0;
+  const auto branches = find_branches(links, lanes);
+  if (!branches) return 0;
   std::vector<int> met(links.links.size(), 0);
-  for (const int k : limbs->bodies) ++met[static_cast<std::size_t>(k)];
+  for (const int k : branches->bodies) ++met[static_cast<std::size_t>(k)];
   std::size_t side_by_side = 0;
-  for (const LimbGroup& g : limbs->groups) {
+  for (const BranchGroup& g : branches->groups) {
     EXPECT_GE(g.count, 2);
     EXPECT_LE(g.count, lanes);
     const auto link = [&](std::size_t place, int lane) {
@@ -74,17 +75,18 @@ std::size_t expect_sound_limbs(const Scene& scene, int lanes) {
         ++met[static_cast<std::size_t>(link(k, lane))];
         ++side_by_side;
         const Link& l = links.links[static_cast<std::size_t>(link(k, lane))];
-        EXPECT_EQ(l.kind, LinkKind::pin);
-        EXPECT_EQ(l.tip, g.places[k].tip);
+        EXPECT_EQ(l.kind, LinkKind::revolute);
+        EXPECT_EQ(l.leaf, g.places[k].leaf);
         if (k > 0) {
           EXPECT_EQ(l.parent, link(static_cast<std::size_t>(g.places[k].parent), lane));
         }
       }
   }
-  // Every body once, in a limb or in the trunk; parents within the trunk come first.
+  // Every body once, in a branch or in the remaining tree; parents within the remaining tree come
+  // first.
   EXPECT_TRUE(std::all_of(met.begin(), met.end(), [](int times) { return times == 1; }));
-  for (std::size_t k = 0; k < limbs->trunk.links.size(); ++k)
-    EXPECT_LT(limbs->trunk.links[k].parent, static_cast<int>(k));
+  for (std::size_t k = 0; k < branches->remaining_tree.links.size(); ++k)
+    EXPECT_LT(branches->remaining_tree.links[k].parent, static_cast<int>(k));
   return side_by_side;
 }
 
@@ -111,15 +113,15 @@ void compare(const Scene& scene, RandomTree& random, int level) {
   }
 }
 
-TEST(Limbs, MoveAsBodyByBody) {
+TEST(Branches, MoveAsBodyByBody) {
   std::size_t bodies = 0;
   for (unsigned seed = 0; seed < 150; ++seed) {
     RandomTree random(seed);
-    const Scene scene = with_limbs(random, 1 + static_cast<int>(seed % 5),
-                                   1 + static_cast<int>(seed % 3), 8, seed % 2 == 0);
+    const Scene scene = with_branches(random, 1 + static_cast<int>(seed % 5),
+                                      1 + static_cast<int>(seed % 3), 8, seed % 2 == 0);
     for (const int level : {1, 3, 4})
       if (level_at_most(level) == level) {
-        bodies += expect_sound_limbs(scene, limb_lanes_at(level));
+        bodies += expect_sound_branches(scene, branch_lanes_at(level));
         compare(scene, random, level);
       }
     if (HasFailure()) FAIL() << "seed " << seed;
@@ -127,24 +129,24 @@ TEST(Limbs, MoveAsBodyByBody) {
   EXPECT_GT(bodies, 150U * 4);
 }
 
-TEST(Limbs, OnTheGroundLeaveNoTrunk) {
+TEST(Branches, OnTheGroundLeaveNoRemainingTree) {
   RandomTree random(3);
-  Scene scene = with_limbs(random, 1, 1, 9, false, 4);
+  Scene scene = with_branches(random, 1, 1, 9, false, 4);
   scene.bodies.erase(scene.bodies.begin());
   scene.joints.erase(scene.joints.begin());
   scene.drives.clear();
   for (JointSpec& j : scene.joints)
     if (j.parent == "body0") j.parent = "ground";
-  const std::size_t bodies = expect_sound_limbs(scene, limb_lanes_at(best_level()));
-  EXPECT_EQ(bodies, 8U * 4);  // the ninth limb stays with the trunk
+  const std::size_t bodies = expect_sound_branches(scene, branch_lanes_at(best_level()));
+  EXPECT_EQ(bodies, 8U * 4);  // the ninth branch stays with the remaining tree
   for (const bool gravity : {true, false}) {
     if (!gravity) scene.gravity.setZero();
     compare(scene, random, 0);
   }
 }
 
-/// One long limb twice, or many short ones of the same bodies: whatever saves more.
-TEST(Limbs, AreChosenByWhatTheySave) {
+/// One long branch twice, or many short ones of the same bodies: whatever saves more.
+TEST(Branches, AreChosenByWhatTheySave) {
   const auto legs = [](int count, int length) {
     Scene s;
     const auto add = [&](const std::string& name, const std::string& parent) {
@@ -174,24 +176,24 @@ TEST(Limbs, AreChosenByWhatTheySave) {
   const auto words = [&](const Scene& s, int lanes) {
     const Tree tree = build_tree(s);
     const Model<Spatial> model = build_spatial_model(tree, s);
-    return limbs_in_words(build_links(model), lanes);
+    return branches_in_words(build_links(model), lanes);
   };
   // Along a leg every length is a shape of its own, the whole leg the one that saves most.
-  EXPECT_EQ(words(legs(4, 6), 4), "4 of 6 pins side by side in 4 lanes");
-  EXPECT_EQ(words(legs(6, 6), 4), "6 of 6 pins side by side in 4 lanes");
-  // Two short ones gain nothing, nor do tips alone.
-  EXPECT_EQ(words(legs(6, 3), 4), "4 of 3 pins side by side in 4 lanes");
+  EXPECT_EQ(words(legs(4, 6), 4), "4 of 6 revolute joints side by side in 4 lanes");
+  EXPECT_EQ(words(legs(6, 6), 4), "6 of 6 revolute joints side by side in 4 lanes");
+  // Two short ones gain nothing, nor do leaves alone.
+  EXPECT_EQ(words(legs(6, 3), 4), "4 of 3 revolute joints side by side in 4 lanes");
   EXPECT_EQ(words(legs(4, 1), 4), "");
-  EXPECT_EQ(words(legs(5, 3), 4), "4 of 3 pins side by side in 4 lanes");
+  EXPECT_EQ(words(legs(5, 3), 4), "4 of 3 revolute joints side by side in 4 lanes");
   EXPECT_EQ(words(legs(1, 6), 4), "");
 }
 
-/// A limb's joint without inertia has the same name in either way of going.
-TEST(Limbs, RefuseAJointWithoutInertiaByName) {
+/// A branch's joint without inertia has the same name in either way of going.
+TEST(Branches, RefuseAJointWithoutInertiaByName) {
   RandomTree random(5);
-  Scene scene = with_limbs(random, 2, 1, 8, false, 5);
-  ASSERT_GT(expect_sound_limbs(scene, limb_lanes_at(best_level())), 0U);
-  const std::string tip = scene.bodies.back().name;
+  Scene scene = with_branches(random, 2, 1, 8, false, 5);
+  ASSERT_GT(expect_sound_branches(scene, branch_lanes_at(best_level())), 0U);
+  const std::string leaf = scene.bodies.back().name;
   scene.bodies.back().mass = 0;
   scene.bodies.back().com.setZero();
   scene.bodies.back().inertia.setZero();
@@ -200,7 +202,7 @@ TEST(Limbs, RefuseAJointWithoutInertiaByName) {
   Eigen::VectorXd rates(plain.nq()), pdot(plain.nv());
   EXPECT_FALSE(limbed.rates(0, s.q, s.u, rates, pdot));
   EXPECT_FALSE(plain.rates(0, s.q, s.u, rates, pdot));
-  EXPECT_NE(limbed.failure().find(tip), std::string::npos) << limbed.failure();
+  EXPECT_NE(limbed.failure().find(leaf), std::string::npos) << limbed.failure();
   EXPECT_EQ(limbed.failure(), plain.failure());
 }
 

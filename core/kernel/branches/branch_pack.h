@@ -1,40 +1,40 @@
 #pragma once
-// Limbs of one shape in the lanes of S: constants, sines and cosines, and how they meet the trunk.
-// What both recursions on limbs share.
+// Branches of one shape in the lanes of S: constants, sines and cosines, and how they meet the
+// remaining tree. What both recursions on branches share.
 
-#include <momenta/core/kernel/limbs/limb_link.h>
-#include <momenta/core/kernel/limbs/limbs.h>
-#include <momenta/core/kernel/pin.h>
+#include <momenta/core/kernel/branches/branch_link.h>
+#include <momenta/core/kernel/branches/branches.h>
+#include <momenta/core/kernel/revolute.h>
 
 namespace momenta {
 
-/// What is constant of a pin at the tip of every limb: Tip.
+/// What is constant of a revolute joint at the leaf of every branch: Leaf.
 template <class S>
-struct LimbTip {
+struct BranchLeaf {
   S inverse;
-  PinColumn<S> h;
+  RevoluteColumn<S> h;
   Reduced<S> M;
 };
 
 template <class S>
-class LimbPack {
+class BranchPack {
  public:
   static constexpr int lanes = static_cast<int>(sizeof(S) / sizeof(double));
 
-  LimbPack(const LinkTree& tree, const LimbGroup& group)
+  BranchPack(const LinkTree& tree, const BranchGroup& group)
       : group_(&group),
         links_(group.places.size()),
-        tips_(group.places.size()),
+        leaves_(group.places.size()),
         q_(group.places.size()),
         sine_(group.places.size()),
         cosine_(group.places.size()) {
     for (std::size_t k = 0; k < links_.size(); ++k) {
-      const LimbGroup::Place& place = group.places[k];
-      LimbLink<S>& l = links_[k];
+      const BranchGroup::Place& place = group.places[k];
+      BranchLink<S>& l = links_[k];
       l.turn = place.turn;
       l.root = place.parent < 0;
       l.first = place.first;
-      l.tip = place.tip;
+      l.leaf = place.leaf;
       l.opens = place.opens;
       l.screwed = place.screwed;
       l.has_force = place.has_force;
@@ -47,18 +47,18 @@ class LimbPack {
         const auto at = static_cast<std::size_t>(link(k, lane));
         l.take(tree.links[at], tree.model->bodies[at], tree.theta0[at], lane);
       }
-      if (!l.tip) continue;
+      if (!l.leaf) continue;
       Full<S> M;
       set_body(M, l);
-      tips_[k].inverse = S(1.0) / M.Izz;
-      eliminate_pin(M, tips_[k].inverse, tips_[k].h, tips_[k].M);
+      leaves_[k].inverse = S(1.0) / M.Izz;
+      eliminate_revolute(M, leaves_[k].inverse, leaves_[k].h, leaves_[k].M);
     }
   }
 
   std::size_t size() const { return links_.size(); }
   int slots() const { return group_->slots; }
-  const LimbLink<S>& operator[](std::size_t k) const { return links_[k]; }
-  const LimbTip<S>& tip(std::size_t k) const { return tips_[k]; }
+  const BranchLink<S>& operator[](std::size_t k) const { return links_[k]; }
+  const BranchLeaf<S>& leaf(std::size_t k) const { return leaves_[k]; }
   const S& q(std::size_t k) const { return q_[k]; }
   const S& sine(std::size_t k) const { return sine_[k]; }
   const S& cosine(std::size_t k) const { return cosine_[k]; }
@@ -78,11 +78,12 @@ class LimbPack {
       for (int lane = 0; lane < count; ++lane) __builtin_memcpy(u + index[lane], at + 8 * lane, 8);
   }
 
-  /// Adds what arrives below the roots to the slots of the trunk.
-  template <bool Gravity, class Trunk>
-  void leave_at_trunk(const Cargo<S>& cargo, Trunk& trunk) const {
+  /// Adds what arrives below the roots to the slots of the remaining tree.
+  template <bool Gravity, class RemainingTree>
+  void leave_at_remaining_tree(const Articulated<S>& articulated,
+                               RemainingTree& remaining_tree) const {
     if (group_->one_parent) {
-      const int count = group_->count, slot = group_->trunk_slots.front();
+      const int count = group_->count, slot = group_->remaining_tree_slots.front();
       if (slot < 0) return;
       const auto sum = [count](const S& x) {
         double all = lane_of(x, 0);
@@ -90,32 +91,35 @@ class LimbPack {
         return all;
       };
       if (group_->opens.front())
-        in_pairs<Gravity>(trunk.carried(slot), cargo, [&](auto& a, const S& b) { a = sum(b); });
+        in_pairs<Gravity>(remaining_tree.carried(slot), articulated,
+                          [&](auto& a, const S& b) { a = sum(b); });
       else
-        in_pairs<Gravity>(trunk.carried(slot), cargo, [&](auto& a, const S& b) { a = a + sum(b); });
+        in_pairs<Gravity>(remaining_tree.carried(slot), articulated,
+                          [&](auto& a, const S& b) { a = a + sum(b); });
       return;
     }
     for (int lane = 0; lane < group_->count; ++lane) {
-      const int slot = group_->trunk_slots[static_cast<std::size_t>(lane)];
+      const int slot = group_->remaining_tree_slots[static_cast<std::size_t>(lane)];
       if (slot < 0) continue;
       if (group_->opens[static_cast<std::size_t>(lane)])
-        in_pairs<Gravity>(trunk.carried(slot), cargo,
+        in_pairs<Gravity>(remaining_tree.carried(slot), articulated,
                           [lane](auto& a, const S& b) { a = lane_of(b, lane); });
       else
-        in_pairs<Gravity>(trunk.carried(slot), cargo,
+        in_pairs<Gravity>(remaining_tree.carried(slot), articulated,
                           [lane](auto& a, const S& b) { a = a + lane_of(b, lane); });
     }
   }
-  /// Motions of the bodies that carry the roots, from the trunk; `ground` where that is the ground.
-  template <class Trunk, class One>
-  void take_from_trunk(const Trunk& trunk, const OutwardCargo<One>& ground,
-                       OutwardCargo<S>& motion) const {
+  /// Motions of the bodies that carry the roots, from the remaining tree; `ground` where that is
+  /// the ground.
+  template <class RemainingTree, class One>
+  void take_from_remaining_tree(const RemainingTree& remaining_tree,
+                                const OutwardMotion<One>& ground, OutwardMotion<S>& motion) const {
     auto* to = reinterpret_cast<char*>(&motion);
-    constexpr int numbers = sizeof(OutwardCargo<One>) / sizeof(double);
+    constexpr int numbers = sizeof(OutwardMotion<One>) / sizeof(double);
     for (int lane = 0; lane < lanes; ++lane) {
-      const int slot = group_->trunk_slots[static_cast<std::size_t>(
+      const int slot = group_->remaining_tree_slots[static_cast<std::size_t>(
           lane < group_->count ? lane : group_->count - 1)];
-      const OutwardCargo<One>& from = slot < 0 ? ground : trunk.motion(slot);
+      const OutwardMotion<One>& from = slot < 0 ? ground : remaining_tree.motion(slot);
       for (int i = 0; i < numbers; ++i)
         __builtin_memcpy(to + 8 * (i * lanes + lane), reinterpret_cast<const char*>(&from) + 8 * i,
                          8);
@@ -123,7 +127,7 @@ class LimbPack {
   }
 
   /// The link of the tree of the first lane where x is not positive.
-  int stuck_at(std::size_t k, const S& x) const {
+  int singular_joint_at(std::size_t k, const S& x) const {
     int lane = 0;
     while (lane < lanes - 1 && x.lane(lane) > 0) ++lane;
     return link(k, lane);
@@ -146,9 +150,9 @@ class LimbPack {
       for (int lane = 0; lane < lanes; ++lane) __builtin_memcpy(at + 8 * lane, from + i[lane], 8);
   }
 
-  const LimbGroup* group_;
-  std::vector<LimbLink<S>> links_;
-  std::vector<LimbTip<S>> tips_;
+  const BranchGroup* group_;
+  std::vector<BranchLink<S>> links_;
+  std::vector<BranchLeaf<S>> leaves_;
   std::vector<S> q_, sine_, cosine_;
 };
 

@@ -7,8 +7,8 @@
 // its ends: the multiplier is noise there, the error test sees it in p or v, and the shorter step
 // lands nearer to the pose. So the way past the pose, from where the weakest pivot of the loops has
 // fallen below a hundredth of its best, is made by the same motion as an ODE, by `dop853` at the
-// same tolerance, with care (system.h); behind it the method starts anew with a consistent state,
-// a multistep method at order 1. Steps on the way are counted apart.
+// same tolerance, with singularity handling (system.h); behind it the method starts anew with a
+// consistent state, a multistep method at order 1. Steps on the way are counted apart.
 //
 // The way is made in one go; then its steps are told to the run one by one.
 
@@ -24,12 +24,12 @@ namespace momenta {
 /// `Method` is one of MultistepRun, which provides besides
 ///   bool restart(double t);   from y() and ydot(), which have been altered.
 template <class Method>
-class Detoured {
+class WithOdeRestarts {
  public:
-  Detoured(Method& method, DaeSystem& system, const IntegrationOptions& options)
+  WithOdeRestarts(Method& method, DaeSystem& system, const IntegrationOptions& options)
       : method_(method),
         system_(system),
-        state_(static_cast<std::size_t>(system.detour_size())),
+        state_(static_cast<std::size_t>(system.ode_restart_size())),
         look_(state_.size()),
         n_(static_cast<std::size_t>(system.size())),
         on_a_grid_(options.step > 0) {
@@ -44,7 +44,7 @@ class Detoured {
   double* ydot() { return under_way_ ? way_[next_].ydot.data() : method_.ydot(); }
   void count(Counters& counters) const {
     counters.steps += steps_;
-    counters.detours += steps_;
+    counters.ode_restarts += steps_;
     counters.evaluations += evaluations_;
   }
 
@@ -94,7 +94,7 @@ class Detoured {
   /// pivot is weak at t, or the way fails, or is too long for a pose to be passed.
   bool plan(double t, double end) {
     if (on_a_grid_ || !system_.near_singular(t, method_.y())) return false;
-    OdeSystem& ode = *system_.detour(t, method_.y(), state_.data());
+    OdeSystem& ode = *system_.ode_restart(t, method_.y(), state_.data());
     way_.clear();
     next_ = 0;
     way_.push_back({t, {method_.y(), method_.y() + n_}, {method_.ydot(), method_.ydot() + n_}});
@@ -135,7 +135,7 @@ class Detoured {
     if (t != from.t) {
       IntegrationOptions options = options_;
       options.initial_step = t - from.t;
-      OdeSystem& ode = *system_.detour(from.t, from.y.data(), state_.data());
+      OdeSystem& ode = *system_.ode_restart(from.t, from.y.data(), state_.data());
       const IntegrationResult run =
           integrate_explicit("dop853", ode, from.t, state_, {t}, options, {});
       good = run.done && system_.rejoin(t, run.y.data(), y, look_rate_.data());
@@ -150,7 +150,7 @@ class Detoured {
   std::vector<double> state_, look_, look_rate_;
   std::vector<Place> way_;  ///< ends of its steps, before them where it began
   std::size_t next_ = 0, n_;
-  bool on_a_grid_;  ///< fixed steps: no detours
+  bool on_a_grid_;  ///< fixed steps: no ODE restarts
   bool under_way_ = false;
   double not_before_ = -std::numeric_limits<double>::infinity();  ///< after a way that failed [s]
   long steps_ = 0, evaluations_ = 0;

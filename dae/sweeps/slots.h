@@ -1,14 +1,14 @@
 #pragma once
-// One number for each open loop equation of a front. Every loop keeps its lanes from its ends to
+// One number for each open loop equation of a front. Every loop keeps its slots from its ends to
 // the body that closes it, so fronts are merged by plain addition.
 //
-// For one state the lanes fill registers, as many as the level's registers take, and lanes of no
-// open loop hold zero. For a pack of states each lane is a pack of its own, and work on lanes of no
-// open loop would be work for nothing: there lanes stand in groups of two, a mask has a bit for
+// For one state the slots fill registers, as many as the level's registers take, and slots of no
+// open loop hold zero. For a pack of states each slot is a pack of its own, and work on slots of no
+// open loop would be work for nothing: there slots stand in groups of two, a mask has a bit for
 // every group, and groups outside the mask hold anything.
 
 #include <momenta/core/scalar/sine_cosine.h>
-#include <momenta/dae/sweeps/open_lanes.h>
+#include <momenta/dae/sweeps/open_slots.h>
 
 #include <type_traits>
 
@@ -27,10 +27,10 @@ MOMENTA_INLINE void each(Act&& act) {
 }
 
 template <class S, int Rows>
-struct Lanes {
+struct Slots {
   using Part = S;  ///< what one operation works on
   static constexpr int parts = Rows;
-  static constexpr bool apart = true;  ///< a part holds one lane
+  static constexpr bool apart = true;  ///< a part holds one slot
   S v[Rows]{};
 
   static MOMENTA_INLINE const S& all(const S& x) { return x; }
@@ -58,7 +58,7 @@ struct Lanes {
 };
 
 template <int Level, int Rows>
-struct Lanes<Pack<1, Level>, Rows> {
+struct Slots<Pack<1, Level>, Rows> {
   using S = Pack<1, Level>;
   static constexpr int width = Rows < native_width<Level> ? Rows : native_width<Level>;
   using Part = Pack<width, Level>;
@@ -69,7 +69,7 @@ struct Lanes<Pack<1, Level>, Rows> {
 
   static MOMENTA_INLINE Part all(const S& x) { return Part(x.v); }
   MOMENTA_INLINE S operator[](int i) const { return S(v[i / width].v[i % width]); }
-  /// The same of a lane known here: the register it is read from stays one. An index that is
+  /// The same of a slot known here: the register it is read from stays one. An index that is
   /// constant only after inlining reads memory, and then whatever it is part of lives there.
   template <int i>
   MOMENTA_INLINE S at() const {
@@ -80,7 +80,7 @@ struct Lanes<Pack<1, Level>, Rows> {
   MOMENTA_INLINE S operator[](std::integral_constant<int, i>) const {
     return at<i>();
   }
-  /// Lanes are chosen by comparison: writing one number into a register would go through memory.
+  /// Slots are chosen by comparison: writing one number into a register would go through memory.
   MOMENTA_INLINE void set(int i, const S& x) {
     for (int k = 0; k < parts; ++k) v[k].v = places(k) == i ? Part(x.v).v : v[k].v;
   }
@@ -115,38 +115,38 @@ struct Lanes<Pack<1, Level>, Rows> {
 };
 
 template <class S, int Rows>
-MOMENTA_INLINE Lanes<S, Rows>& operator+=(Lanes<S, Rows>& a, const Lanes<S, Rows>& b) {
-  each<Lanes<S, Rows>::parts>([&](auto k) MOMENTA_INLINED { a.v[k] = a.v[k] + b.v[k]; });
+MOMENTA_INLINE Slots<S, Rows>& operator+=(Slots<S, Rows>& a, const Slots<S, Rows>& b) {
+  each<Slots<S, Rows>::parts>([&](auto k) MOMENTA_INLINED { a.v[k] = a.v[k] + b.v[k]; });
   return a;
 }
 template <class S, int Rows>
-MOMENTA_INLINE Lanes<S, Rows>& operator-=(Lanes<S, Rows>& a, const Lanes<S, Rows>& b) {
-  each<Lanes<S, Rows>::parts>([&](auto k) MOMENTA_INLINED { a.v[k] = a.v[k] - b.v[k]; });
+MOMENTA_INLINE Slots<S, Rows>& operator-=(Slots<S, Rows>& a, const Slots<S, Rows>& b) {
+  each<Slots<S, Rows>::parts>([&](auto k) MOMENTA_INLINED { a.v[k] = a.v[k] - b.v[k]; });
   return a;
 }
 template <class S, int Rows>
-MOMENTA_INLINE Lanes<S, Rows> operator*(Lanes<S, Rows> a, const std::type_identity_t<S>& s) {
-  each<Lanes<S, Rows>::parts>([&](auto k) MOMENTA_INLINED { a.v[k] = a.v[k] * a.all(s); });
+MOMENTA_INLINE Slots<S, Rows> operator*(Slots<S, Rows> a, const std::type_identity_t<S>& s) {
+  each<Slots<S, Rows>::parts>([&](auto k) MOMENTA_INLINED { a.v[k] = a.v[k] * a.all(s); });
   return a;
 }
 template <class S, int Rows>
-MOMENTA_INLINE Lanes<S, Rows> operator*(Lanes<S, Rows> a, const Lanes<S, Rows>& b) {
-  each<Lanes<S, Rows>::parts>([&](auto k) MOMENTA_INLINED { a.v[k] = a.v[k] * b.v[k]; });
+MOMENTA_INLINE Slots<S, Rows> operator*(Slots<S, Rows> a, const Slots<S, Rows>& b) {
+  each<Slots<S, Rows>::parts>([&](auto k) MOMENTA_INLINED { a.v[k] = a.v[k] * b.v[k]; });
   return a;
 }
 template <class S, int Rows>
-MOMENTA_INLINE Lanes<S, Rows> operator+(Lanes<S, Rows> a, const Lanes<S, Rows>& b) {
+MOMENTA_INLINE Slots<S, Rows> operator+(Slots<S, Rows> a, const Slots<S, Rows>& b) {
   return a += b;
 }
 template <class S, int Rows>
-MOMENTA_INLINE Lanes<S, Rows> operator-(Lanes<S, Rows> a, const Lanes<S, Rows>& b) {
+MOMENTA_INLINE Slots<S, Rows> operator-(Slots<S, Rows> a, const Slots<S, Rows>& b) {
   return a -= b;
 }
 
-/// act(part) for the parts that hold lanes of open loops.
+/// act(part) for the parts that hold slots of open loops.
 template <class S, int Rows, class Act>
-MOMENTA_INLINE void each_open([[maybe_unused]] LaneGroups open, Act&& act) {
-  using Here = Lanes<S, Rows>;
+MOMENTA_INLINE void each_open([[maybe_unused]] SlotGroups open, Act&& act) {
+  using Here = Slots<S, Rows>;
   if constexpr (!Here::apart) {
     each<Here::parts>(act);
   } else if constexpr (Rows > 8) {
@@ -162,7 +162,7 @@ MOMENTA_INLINE void each_open([[maybe_unused]] LaneGroups open, Act&& act) {
   }
 }
 
-/// Σ of a packed register's lanes.
+/// Σ of a packed register's slots.
 template <int W, int L>
 MOMENTA_INLINE Pack<1, L> sum_of(const Pack<W, L>& x) {
   const auto& v = x.v;
@@ -174,29 +174,29 @@ MOMENTA_INLINE Pack<1, L> sum_of(const Pack<W, L>& x) {
     return Pack<1, L>(v[0] + v[1]);
 }
 
-/// a·b of one state's lanes.
+/// a·b of one state's slots.
 template <int L, int Rows>
-MOMENTA_INLINE Pack<1, L> dot(const Lanes<Pack<1, L>, Rows>& a, const Lanes<Pack<1, L>, Rows>& b) {
+MOMENTA_INLINE Pack<1, L> dot(const Slots<Pack<1, L>, Rows>& a, const Slots<Pack<1, L>, Rows>& b) {
   auto sum = a.v[0] * b.v[0];
-  for (int k = 1; k < Lanes<Pack<1, L>, Rows>::parts; ++k) sum = sum + a.v[k] * b.v[k];
+  for (int k = 1; k < Slots<Pack<1, L>, Rows>::parts; ++k) sum = sum + a.v[k] * b.v[k];
   return sum_of(sum);
 }
-/// x + a·b over the open lanes.
+/// x + a·b over the open slots.
 template <class S, int Rows>
-MOMENTA_INLINE S plus_dot(S x, const Lanes<S, Rows>& a, const Lanes<S, Rows>& b,
-                          [[maybe_unused]] LaneGroups open) {
-  if constexpr (Lanes<S, Rows>::apart) {
+MOMENTA_INLINE S plus_dot(S x, const Slots<S, Rows>& a, const Slots<S, Rows>& b,
+                          [[maybe_unused]] SlotGroups open) {
+  if constexpr (Slots<S, Rows>::apart) {
     each_open<S, Rows>(open, [&](auto i) MOMENTA_INLINED { x = x + a.v[i] * b.v[i]; });
     return x;
   } else {
     return x + dot(a, b);
   }
 }
-/// x − a·b over the open lanes.
+/// x − a·b over the open slots.
 template <class S, int Rows>
-MOMENTA_INLINE S minus_dot(S x, const Lanes<S, Rows>& a, const Lanes<S, Rows>& b,
-                           [[maybe_unused]] LaneGroups open) {
-  if constexpr (Lanes<S, Rows>::apart) {
+MOMENTA_INLINE S minus_dot(S x, const Slots<S, Rows>& a, const Slots<S, Rows>& b,
+                           [[maybe_unused]] SlotGroups open) {
+  if constexpr (Slots<S, Rows>::apart) {
     each_open<S, Rows>(open, [&](auto i) MOMENTA_INLINED { x = x - a.v[i] * b.v[i]; });
     return x;
   } else {
@@ -205,7 +205,7 @@ MOMENTA_INLINE S minus_dot(S x, const Lanes<S, Rows>& a, const Lanes<S, Rows>& b
 }
 
 template <int L, int Rows>
-MOMENTA_INLINE Lanes<Pack<1, L>, Rows> operator-(Lanes<Pack<1, L>, Rows> a) {
+MOMENTA_INLINE Slots<Pack<1, L>, Rows> operator-(Slots<Pack<1, L>, Rows> a) {
   for (auto& part : a.v) part = -part;
   return a;
 }
@@ -223,14 +223,14 @@ MOMENTA_INLINE Pack<W, L> where_greater(const Pack<W, L>& a, const Pack<W, L>& b
     return Pack<W, L>::of(a.v > b.v ? x.v : y.v);
 }
 
-/// All lanes of one state at once.
+/// All slots of one state at once.
 template <int L, int Rows>
-MOMENTA_INLINE Lanes<Pack<1, L>, Rows> where_greater(const Pack<1, L>& a, const Pack<1, L>& b,
-                                                     const Lanes<Pack<1, L>, Rows>& x,
-                                                     const Lanes<Pack<1, L>, Rows>& y) {
+MOMENTA_INLINE Slots<Pack<1, L>, Rows> where_greater(const Pack<1, L>& a, const Pack<1, L>& b,
+                                                     const Slots<Pack<1, L>, Rows>& x,
+                                                     const Slots<Pack<1, L>, Rows>& y) {
   const bool greater = a.v > b.v;
-  Lanes<Pack<1, L>, Rows> chosen;
-  each<Lanes<Pack<1, L>, Rows>::parts>(
+  Slots<Pack<1, L>, Rows> chosen;
+  each<Slots<Pack<1, L>, Rows>::parts>(
       [&](auto k) MOMENTA_INLINED { chosen.v[k].v = greater ? x.v[k].v : y.v[k].v; });
   return chosen;
 }

@@ -12,11 +12,12 @@
 
 namespace momenta {
 
-class Passages {
+class SingularCrossings {
  public:
-  /// Writes `least_pivot` and `passages` of `result`. @pre the solver's pivots are those of rows
-  Passages(const Mechanism& mechanism, Form& form, Evaluation<double>& e, LoopSolver& solver,
-           RunResult& result)
+  /// Writes `least_pivot` and `singular_crossings` of `result`. @pre the solver's pivots are those
+  /// of rows
+  SingularCrossings(const Mechanism& mechanism, Form& form, Evaluation<double>& e,
+                    LoopSolver& solver, RunResult& result)
       : form_(form),
         e_(e),
         solver_(solver),
@@ -31,8 +32,9 @@ class Passages {
   void step(double t0, double t1, const Interpolant& between, std::vector<double>& state) {
     constexpr int closer_looks = 8;
     const double end = pivot_at(t1, between, state);
-    const bool careful = !form_.is_dae() && form_.ode()->wants_care() != Care::none;
-    if (passing_ || careful || end < 10 * near_singular)
+    const bool handled =
+        !form_.is_dae() && form_.ode()->wanted_handling() != SingularityHandling::none;
+    if (passing_ || handled || end < 10 * near_singular)
       for (int i = 1; i < closer_looks; ++i) {
         const double t = t0 + (t1 - t0) * i / closer_looks;
         note(t, pivot_at(t, between, state), between, state);
@@ -61,9 +63,9 @@ class Passages {
       passing_ = false;
       return;
     }
-    if (!passing_) result_.passages.push_back({t, pivot});
+    if (!passing_) result_.singular_crossings.push_back({t, pivot});
     passing_ = true;
-    RunResult::Passage& last = result_.passages.back();
+    RunResult::SingularCrossing& last = result_.singular_crossings.back();
     last.ambiguous = last.ambiguous || is_ambiguous(t, pivot, between, state);
     if (!(pivot < last.pivot)) return;
     last.t = t;
@@ -80,8 +82,8 @@ class Passages {
     if (!form_.read(t, state.data(), nullptr, here_)) return false;
     e_.place(t, here_.q.data());
     e_.positions(phi_.data());
-    const double opening = phi_.norm() / length_;
-    return opening > rounding_level && pivot < apart * opening;
+    const double gap = phi_.norm() / length_;
+    return gap > rounding_level && pivot < apart * gap;
   }
 
   Form& form_;

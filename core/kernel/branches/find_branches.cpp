@@ -1,6 +1,6 @@
+#include <momenta/core/kernel/branches/branch_link.h>
+#include <momenta/core/kernel/branches/branches.h>
 #include <momenta/core/kernel/child_order.h>
-#include <momenta/core/kernel/limbs/limb_link.h>
-#include <momenta/core/kernel/limbs/limbs.h>
 
 #include <algorithm>
 #include <map>
@@ -10,15 +10,16 @@
 namespace momenta {
 namespace {
 
-// In times of one pin in a chain: a pack of pins, what a tip takes less, and handing a limb over
-// between lanes and trunk. What saves less than `least_saving` stays as it is.
-constexpr double pack_cost = 1.7, tip_discount = 0.4, hand_over = 0.4, least_saving = 1;
+// In times of one revolute joint in a chain: a pack of revolute joints, what a leaf takes less, and
+// handing a branch over between lanes and remaining tree. What saves less than `least_saving` stays
+// as it is.
+constexpr double pack_cost = 1.7, leaf_discount = 0.4, hand_over = 0.4, least_saving = 1;
 
 /// Children of a body that is one of many of its shape: screwed or not, and their shapes.
 using Children = std::vector<std::pair<bool, int>>;
 
 struct Shapes {
-  std::vector<int> of;                     ///< by link; −1: no limb
+  std::vector<int> of;                     ///< by link; −1: no branch
   std::vector<int> size;                   ///< bodies of the subtree, by link
   std::vector<std::vector<int>> children;  ///< by link, in the shape's order
   std::vector<std::vector<int>> roots;     ///< by shape, ascending
@@ -32,7 +33,7 @@ Shapes shapes_of(const LinkTree& tree) {
   for (std::size_t k = n; k-- > 0;) {
     const Link& l = tree.links[k];
     const auto parent = static_cast<std::size_t>(l.parent);
-    possible[k] = possible[k] && l.kind == LinkKind::pin;
+    possible[k] = possible[k] && l.kind == LinkKind::revolute;
     if (possible[k]) {
       auto& children = s.children[k];
       std::sort(children.begin(), children.end(), [&](int a, int b) {
@@ -60,11 +61,11 @@ Shapes shapes_of(const LinkTree& tree) {
   return s;
 }
 
-/// Saved by `count` limbs of `size` bodies in one pack.
+/// Saved by `count` branches of `size` bodies in one pack.
 double saved_by_pack(int size, int count) {
-  return (count - pack_cost) * (size - tip_discount) - hand_over * count;
+  return (count - pack_cost) * (size - leaf_discount) - hand_over * count;
 }
-/// How many of `count` limbs go into packs: a last one only if that saves something.
+/// How many of `count` branches go into packs: a last one only if that saves something.
 int packed(int size, int count, int lanes) {
   const int last = count % lanes;
   return saved_by_pack(size, last) > 0 ? count : count - last;
@@ -74,7 +75,7 @@ double saving(int size, int count, int lanes) {
   return count / lanes * saved_by_pack(size, lanes) + (last > 0 ? saved_by_pack(size, last) : 0);
 }
 
-/// Roots of the limbs to take, by shape: the most saving first, of what is left each time. A
+/// Roots of the branches to take, by shape: the most saving first, of what is left each time. A
 /// shape's saving only shrinks while others are taken, so the one that is still on top when looked
 /// at anew is the best.
 std::vector<std::vector<int>> choose(const LinkTree& tree, const Shapes& s, int lanes) {
@@ -121,7 +122,7 @@ std::vector<std::vector<int>> choose(const LinkTree& tree, const Shapes& s, int 
   return chosen;
 }
 
-/// Bodies of the limb at `root` in the shape's order.
+/// Bodies of the branch at `root` in the shape's order.
 void list_bodies(const Shapes& s, int root, int parent, std::vector<int>& bodies,
                  std::vector<int>& parents) {
   // Depth-first without recursion: chains are deep.
@@ -137,8 +138,9 @@ void list_bodies(const Shapes& s, int root, int parent, std::vector<int>& bodies
   }
 }
 
-LimbGroup group_of(const LinkTree& tree, const Shapes& s, const int* roots, int count, int lanes) {
-  LimbGroup g;
+BranchGroup group_of(const LinkTree& tree, const Shapes& s, const int* roots, int count,
+                     int lanes) {
+  BranchGroup g;
   g.count = count;
   g.lanes = lanes;
   std::vector<std::vector<int>> bodies(static_cast<std::size_t>(count));
@@ -152,7 +154,7 @@ LimbGroup group_of(const LinkTree& tree, const Shapes& s, const int* roots, int 
     auto& place = g.places[k];
     place.parent = parents[k];
     place.first = parents[k] >= 0 && parents[k] + 1 == static_cast<int>(k);
-    place.tip = k + 1 == parents.size() || parents[k + 1] != static_cast<int>(k);
+    place.leaf = k + 1 == parents.size() || parents[k + 1] != static_cast<int>(k);
     if (parents[k] >= 0 && !place.first) {
       auto& above = g.places[static_cast<std::size_t>(parents[k])];
       if (above.slot < 0) above.slot = g.slots++;
@@ -173,71 +175,72 @@ LimbGroup group_of(const LinkTree& tree, const Shapes& s, const int* roots, int 
   return g;
 }
 
-/// The tree without its limbs: links and bodies renumbered, slots where limbs arrive.
-void build_trunk(const LinkTree& tree, const std::vector<char>& in_limb, Limbs& limbs) {
-  limbs.trunk_model = *tree.model;
-  limbs.trunk_model.bodies.clear();
-  limbs.trunk = tree;
-  auto& trunk = limbs.trunk;
-  trunk.links.clear();
-  trunk.theta0.clear();
-  trunk.weight.clear();
-  trunk.slots = 0;
+/// The tree without its branches: links and bodies renumbered, slots where branches arrive.
+void build_remaining_tree(const LinkTree& tree, const std::vector<char>& in_branch,
+                          Branches& branches) {
+  branches.remaining_tree_model = *tree.model;
+  branches.remaining_tree_model.bodies.clear();
+  branches.remaining_tree = tree;
+  auto& remaining_tree = branches.remaining_tree;
+  remaining_tree.links.clear();
+  remaining_tree.theta0.clear();
+  remaining_tree.weight.clear();
+  remaining_tree.slots = 0;
   const std::size_t n = tree.links.size();
   std::vector<int> number(n, -1);
   for (std::size_t k = 0; k < n; ++k) {
-    if (in_limb[k]) continue;
-    const int here = static_cast<int>(trunk.links.size());
+    if (in_branch[k]) continue;
+    const int here = static_cast<int>(remaining_tree.links.size());
     number[k] = here;
-    limbs.bodies.push_back(static_cast<int>(k));
+    branches.bodies.push_back(static_cast<int>(k));
     Link l = tree.links[k];
     auto b = tree.model->bodies[k];
     if (l.parent >= 0) l.parent = b.parent = number[static_cast<std::size_t>(l.parent)];
     l.first = l.parent >= 0 && l.parent + 1 == here;
     l.slot = -1;
     l.opens = false;
-    l.carries_limbs_alone = false;
+    l.carries_branches_alone = false;
     if (l.parent >= 0 && !l.first) {
-      int& slot = trunk.links[static_cast<std::size_t>(l.parent)].slot;
-      if (slot < 0) slot = trunk.slots++;
+      int& slot = remaining_tree.links[static_cast<std::size_t>(l.parent)].slot;
+      if (slot < 0) slot = remaining_tree.slots++;
     }
-    trunk.links.push_back(l);
-    trunk.theta0.push_back(tree.theta0[k]);
-    trunk.weight.push_back(tree.weight[k]);
-    limbs.trunk_model.bodies.push_back(b);
+    remaining_tree.links.push_back(l);
+    remaining_tree.theta0.push_back(tree.theta0[k]);
+    remaining_tree.weight.push_back(tree.weight[k]);
+    branches.remaining_tree_model.bodies.push_back(b);
   }
-  mark_openers(trunk.links);
-  std::vector<char> reached(trunk.links.size(), 0);
-  for (LimbGroup& g : limbs.groups) {
+  mark_openers(remaining_tree.links);
+  std::vector<char> reached(remaining_tree.links.size(), 0);
+  for (BranchGroup& g : branches.groups) {
     g.one_parent = true;
-    const auto parent_of = [&](int limb) {
-      return tree.links[static_cast<std::size_t>(g.links[static_cast<std::size_t>(limb)])].parent;
+    const auto parent_of = [&](int branch) {
+      return tree.links[static_cast<std::size_t>(g.links[static_cast<std::size_t>(branch)])].parent;
     };
     for (int i = 0; i < g.count; ++i) {
       const int parent = parent_of(i);
       g.one_parent = g.one_parent && parent == parent_of(0);
       if (parent < 0) {
-        g.trunk_slots.push_back(-1);
+        g.remaining_tree_slots.push_back(-1);
         g.opens.push_back(0);
         continue;
       }
       const auto at = static_cast<std::size_t>(number[static_cast<std::size_t>(parent)]);
-      int& slot = trunk.links[at].slot;
-      if (slot < 0) slot = trunk.slots++;
-      g.trunk_slots.push_back(slot);
+      int& slot = remaining_tree.links[at].slot;
+      if (slot < 0) slot = remaining_tree.slots++;
+      g.remaining_tree_slots.push_back(slot);
       g.opens.push_back(!reached[at]);
       reached[at] = 1;
     }
   }
-  // Limbs are there before the trunk is swept: its own children only add.
-  for (std::size_t k = 0; k < trunk.links.size(); ++k) {
-    Link& l = trunk.links[k];
+  // Branches are there before the remaining tree is swept: its own children only add.
+  for (std::size_t k = 0; k < remaining_tree.links.size(); ++k) {
+    Link& l = remaining_tree.links[k];
     if (l.parent >= 0 && reached[static_cast<std::size_t>(l.parent)]) l.opens = false;
-    const bool bare =
-        k + 1 == trunk.links.size() || trunk.links[k + 1].parent != static_cast<int>(k);
-    l.carries_limbs_alone = bare && reached[k];
-    if (l.carries_limbs_alone && l.kind != LinkKind::pin) l.tip = true;
-    const bool in_chain = l.kind == LinkKind::pin && l.first && !l.tip && l.slot < 0 &&
+    const bool bare = k + 1 == remaining_tree.links.size() ||
+                      remaining_tree.links[k + 1].parent != static_cast<int>(k);
+    l.carries_branches_alone = bare && reached[k];
+    if (l.carries_branches_alone && l.kind != LinkKind::revolute) l.leaf = true;
+    const bool in_chain = l.kind == LinkKind::revolute && l.first && !l.leaf && l.slot < 0 &&
                           !l.screwed && l.turn != Turn::tilted;
     l.path = in_chain ? static_cast<Path>(l.turn) : Path::any;
   }
@@ -245,32 +248,33 @@ void build_trunk(const LinkTree& tree, const std::vector<char>& in_limb, Limbs& 
 
 }  // namespace
 
-std::unique_ptr<Limbs> find_limbs(const LinkTree& tree, int lanes) {
+std::unique_ptr<Branches> find_branches(const LinkTree& tree, int lanes) {
   const Shapes shapes = shapes_of(tree);
   const auto chosen = choose(tree, shapes, lanes);
   if (chosen.empty()) return nullptr;
-  auto limbs = std::make_unique<Limbs>();
-  std::vector<char> in_limb(tree.links.size(), 0);
+  auto branches = std::make_unique<Branches>();
+  std::vector<char> in_branch(tree.links.size(), 0);
   for (const auto& roots : chosen)
     for (std::size_t first = 0; first < roots.size(); first += static_cast<std::size_t>(lanes)) {
       const int count = std::min(lanes, static_cast<int>(roots.size() - first));
-      limbs->groups.push_back(group_of(tree, shapes, roots.data() + first, count, lanes));
-      for (const int link : limbs->groups.back().links) in_limb[static_cast<std::size_t>(link)] = 1;
+      branches->groups.push_back(group_of(tree, shapes, roots.data() + first, count, lanes));
+      for (const int link : branches->groups.back().links)
+        in_branch[static_cast<std::size_t>(link)] = 1;
     }
-  build_trunk(tree, in_limb, *limbs);
-  limbs->trunk.model = &limbs->trunk_model;
-  return limbs;
+  build_remaining_tree(tree, in_branch, *branches);
+  branches->remaining_tree.model = &branches->remaining_tree_model;
+  return branches;
 }
 
-std::string limbs_in_words(const LinkTree& tree, int lanes) {
-  const auto limbs = find_limbs(tree, lanes);
-  if (!limbs) return "";
+std::string branches_in_words(const LinkTree& tree, int lanes) {
+  const auto branches = find_branches(tree, lanes);
+  if (!branches) return "";
   std::map<std::size_t, int, std::greater<>> counts;
-  for (const LimbGroup& g : limbs->groups) counts[g.places.size()] += g.count;
+  for (const BranchGroup& g : branches->groups) counts[g.places.size()] += g.count;
   std::string words;
   for (const auto& [size, count] : counts)
     words += (words.empty() ? "" : ", ") + std::to_string(count) + " of " + std::to_string(size) +
-             (size == 1 ? " pin" : " pins");
+             (size == 1 ? " revolute joint" : " revolute joints");
   return words + " side by side in " + std::to_string(lanes) + " lanes";
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 // The mechanism as one body: mass, centre of mass, linear and angular momentum, ground axes. All
-// bodies move as drives and rates say, so prescribed motion counts. The sums: kernel/whole_sums.h.
+// bodies move as drives and rates say, so prescribed motion counts. The sums:
+// kernel/centroidal_sums.h.
 
 #include <momenta/core/scene/scene.h>
 #include <momenta/core/tree/tree.h>
@@ -9,7 +10,7 @@
 
 namespace momenta {
 
-struct Whole {
+struct Centroidal {
   double mass = 0;                                             ///< [kg]
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();            ///< [m]; NaN without mass
   Eigen::Vector3d linear_momentum = Eigen::Vector3d::Zero();   ///< [kg m/s]
@@ -18,15 +19,15 @@ struct Whole {
 
 /// Always in space: a planar scene whose bodies lie at different heights has angular momentum in
 /// its plane too. Owns its model and workspace; one object serves one thread.
-class WholeSweep {
+class CentroidalSweep {
  public:
-  WholeSweep(const Tree& tree, const Scene& scene);
-  ~WholeSweep();
-  WholeSweep(WholeSweep&&) noexcept;
-  WholeSweep& operator=(WholeSweep&&) noexcept;
+  CentroidalSweep(const Tree& tree, const Scene& scene);
+  ~CentroidalSweep();
+  CentroidalSweep(CentroidalSweep&&) noexcept;
+  CentroidalSweep& operator=(CentroidalSweep&&) noexcept;
 
   /// At (t, q, u), nq and nv numbers. O(bodies), no allocation.
-  Whole operator()(double t, const double* q, const double* u);
+  Centroidal operator()(double t, const double* q, const double* u);
 
  private:
   struct Inside;
@@ -34,7 +35,7 @@ class WholeSweep {
 };
 
 /// At one state (t, q, u), model and all.
-Whole whole(const Tree& tree, const Scene& scene, double t, const Eigen::VectorXd& q,
-            const Eigen::VectorXd& u);
+Centroidal centroidal(const Tree& tree, const Scene& scene, double t, const Eigen::VectorXd& q,
+                      const Eigen::VectorXd& u);
 
 }  // namespace momenta

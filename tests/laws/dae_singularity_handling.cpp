@@ -1,5 +1,5 @@
-// Adaptive steps of the momentum form: what their error norm sees, when they take care, and that
-// errors follow the tolerance through singular poses.
+// Adaptive steps of the momentum form: what their error norm sees, when they handle singularities,
+// and that errors follow the tolerance through singular poses.
 
 #include "equations/ensemble.h"
 #include "equations/linkages.h"
@@ -41,7 +41,7 @@ struct Motion {
   std::vector<double> y;
 };
 
-TEST(Care, ErrorNormDoesNotSeeTheGauge) {
+TEST(SingularityHandling, ErrorNormDoesNotSeeTheGauge) {
   for (const char* name : {"four_bar", "andrews", "slider_crank"}) {
     Motion m(name, "reset");
     OdeSystem& ode = *m.form->ode();
@@ -72,7 +72,7 @@ TEST(Care, ErrorNormDoesNotSeeTheGauge) {
   }
 }
 
-TEST(Care, DerivativeThatComesWithAResetIsF) {
+TEST(SingularityHandling, DerivativeThatComesWithAResetIsF) {
   for (const char* name : {"four_bar", "andrews"}) {
     Motion m(name, "reset");
     OdeSystem& ode = *m.form->ode();
@@ -95,19 +95,19 @@ TEST(Care, DerivativeThatComesWithAResetIsF) {
   }
 }
 
-TEST(Care, GrowsTowardsSingularPoses) {
+TEST(SingularityHandling, GrowsTowardsSingularPoses) {
   Motion m("slider_crank", "reset");
   OdeSystem& ode = *m.form->ode();
   std::vector<double> rates(m.y.size());
   ode.begin_step(0, m.y.data());
   ASSERT_TRUE(ode.rhs(0, m.y.data(), rates.data()));
-  EXPECT_EQ(ode.wants_care(), Care::none);
+  EXPECT_EQ(ode.wanted_handling(), SingularityHandling::none);
   Observer observer;
   int measured = 0, corrected = 0, steps = 0;
   observer.step = [&](double, double, const Interpolant&) {
     ++steps;
-    measured += ode.wants_care() != Care::none;
-    corrected += ode.wants_care() == Care::position;
+    measured += ode.wanted_handling() != SingularityHandling::none;
+    corrected += ode.wanted_handling() == SingularityHandling::position;
     return true;
   };
   const auto run =
@@ -118,7 +118,7 @@ TEST(Care, GrowsTowardsSingularPoses) {
   EXPECT_LT(measured, steps / 2);
 }
 
-TEST(Care, ErrorsFollowTheToleranceThroughSingularPoses) {
+TEST(SingularityHandling, ErrorsFollowTheToleranceThroughSingularPoses) {
   // The row of four-bars: motion of one angle, known to ten digits, through flat poses.
   // In both kinds of state.
   for (const char* how : {"momentum", "projected"}) {
@@ -146,7 +146,7 @@ TEST(Care, ErrorsFollowTheToleranceThroughSingularPoses) {
 }
 
 // Five equations a hinge, of which two count: more of them than velocities.
-TEST(Care, RedundantLoopsInSpace) {
+TEST(SingularityHandling, RedundantLoopsInSpace) {
   for (const char* how : {"momentum", "projected"}) {
     double end[2];
     for (const Algebra algebra : {Algebra::planar, Algebra::spatial}) {
@@ -162,12 +162,12 @@ TEST(Care, RedundantLoopsInSpace) {
 }
 
 // Without singular poses errors keep the plain norm, however weak the loops are throughout.
-TEST(Care, LeavesRegularMotionAlone) {
+TEST(SingularityHandling, LeavesRegularMotionAlone) {
   for (const char* name : {"andrews", "four_bar"}) {
     Motion m(name, "reset");
     Observer observer;
     observer.step = [&](double, double, const Interpolant&) {
-      EXPECT_EQ(m.form->ode()->wants_care(), Care::none) << name;
+      EXPECT_EQ(m.form->ode()->wanted_handling(), SingularityHandling::none) << name;
       return true;
     };
     const auto run = integrate_explicit("dop853", *m.form->ode(), 0, m.y, {0.03},
@@ -177,7 +177,7 @@ TEST(Care, LeavesRegularMotionAlone) {
 }
 
 // Between steps too: next to a pose no polynomial over a long step follows the motion.
-TEST(Care, SamplesFollowTheTolerance) {
+TEST(SingularityHandling, SamplesFollowTheTolerance) {
   const Mechanism mechanism(read_scene(example("n_four_bar")));
   Reference reference(example("n_four_bar").parent_path() / "reference.csv");
   reference.bind(trajectory_columns(mechanism));

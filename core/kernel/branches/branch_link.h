@@ -13,7 +13,7 @@ inline Turn common_turn(Turn a, Turn b) {
 
 /// Names as in Link, EdgeConstants and Body.
 template <class S>
-struct LimbLink {
+struct BranchLink {
   struct Edge {
     S cos_gamma, sin_gamma, delta, cos_alpha, sin_alpha, a, cos_beta, sin_beta;
     bool about_z, about_x, about_y;
@@ -22,9 +22,9 @@ struct LimbLink {
   S theta0;
   Edge edge;
   S stiffness, rest, damping, torque;
-  int slot, parent_slot;  ///< within the limb
+  int slot, parent_slot;  ///< within the branch
   Turn turn;
-  bool root, first, tip, opens, screwed, has_force;
+  bool root, first, leaf, opens, screwed, has_force;
 
   /// The numbers of one body into one lane.
   void take(const Link& l, const Model<Spatial>::Body& b, double angle, int lane) {

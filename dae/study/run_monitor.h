@@ -4,9 +4,9 @@
 
 #include <momenta/dae/measure/growth.h>
 #include <momenta/dae/measure/multipliers.h>
-#include <momenta/dae/study/lost_work.h>
-#include <momenta/dae/study/passages.h>
+#include <momenta/dae/study/dissipated_energy.h>
 #include <momenta/dae/study/run_form.h>
+#include <momenta/dae/study/singular_crossings.h>
 
 #include <algorithm>
 #include <optional>
@@ -14,9 +14,9 @@
 namespace momenta {
 
 /// Looks at states of a form: drifts, energy, errors.
-class Looker {
+class RunMonitor {
  public:
-  Looker(const Mechanism& mechanism, Form& form, const RunRequest& request, RunResult& result)
+  RunMonitor(const Mechanism& mechanism, Form& form, const RunRequest& request, RunResult& result)
       : mechanism_(mechanism),
         form_(form),
         request_(request),
@@ -25,14 +25,14 @@ class Looker {
         phi_(mechanism.m()),
         middle_(mechanism.nq()),
         markers_(static_cast<std::size_t>(6 * static_cast<int>(mechanism.scene().markers.size()))),
-        lost_work_(mechanism.scene()) {
+        dissipated_energy_(mechanism.scene()) {
     if (request.keep_trajectory) result.trajectory.columns = trajectory_columns(mechanism);
     if (mechanism.m() > 0) {
       solver_ = make_loop_solver(mechanism, *e_);
       unique_.emplace(mechanism, *e_, *solver_);
       all_unique_.assign(static_cast<std::size_t>(mechanism.m()), true);
       if (mechanism.kkt() == KktChoice::sweeps || filters_pivots(mechanism))
-        passages_.emplace(mechanism, form, *e_, *solver_, result);
+        singular_crossings_.emplace(mechanism, form, *e_, *solver_, result);
     }
   }
 
@@ -49,7 +49,7 @@ class Looker {
     const double velocity = phi_.norm();
     const double kinetic = e_->kinetic(), potential = e_->potential(now_.q.data());
     const double energy =
-        mechanism_.plan().drives ? not_measured : kinetic + potential - lost_work_.until(t);
+        mechanism_.plan().drives ? not_measured : kinetic + potential - dissipated_energy_.until(t);
     if (!std::isfinite(position) || !std::isfinite(velocity)) {
       trouble_ = "at t = " + std::to_string(t) + " s the state is not finite";
       return false;
@@ -96,13 +96,13 @@ class Looker {
       const double drift = phi_.norm();
       if (!(drift <= between_)) between_ = drift;
     }
-    if (passages_) passages_->step(t0, t1, between, state_);
-    if (lost_work_.any() && !lost_work_.step(t0, t1, [&](double t, double& watts) {
+    if (singular_crossings_) singular_crossings_->step(t0, t1, between, state_);
+    if (dissipated_energy_.any() && !dissipated_energy_.step(t0, t1, [&](double t, double& watts) {
           between(t, state_.data());
           if (!form_.read(t, state_.data(), nullptr, now_)) return false;
           e_->place(t, now_.q.data());
           e_->move(now_.u.data());
-          watts = e_->lost_power(now_.u.data());
+          watts = e_->dissipated_power(now_.u.data());
           return true;
         }))
       return true;
@@ -223,8 +223,8 @@ class Looker {
   Eigen::VectorXd phi_, middle_;
   std::vector<double> markers_, row_, state_;
   Snapshot now_;
-  LostWork lost_work_;
-  std::optional<Passages> passages_;
+  DissipatedEnergy dissipated_energy_;
+  std::optional<SingularCrossings> singular_crossings_;
   double energy_at_start_ = 0, potential_at_start_ = 0, between_ = 0;
   int compared_ = 0;
   long rows_ = 0;  ///< of the trajectory

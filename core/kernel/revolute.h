@@ -1,6 +1,6 @@
 #pragma once
-// How pins pass mass matrices and remainders to their parents, and motions to their children:
-// shared by the momentum and the acceleration recursion.
+// How revolute joints pass mass matrices and remainders to their parents, and motions to their
+// children: shared by the momentum and the acceleration recursion.
 
 #include <momenta/core/kernel/general_joint.h>
 #include <momenta/core/kernel/link.h>
@@ -9,18 +9,18 @@ namespace momenta {
 
 /// What bodies pass on inward: M*, D, G; outward: Ω, g.
 template <class S>
-struct Cargo {
+struct Articulated {
   Full<S> M;
   S Dfx, Dfy, Dfz, Dnx, Dny, Dnz, Gx, Gy, Gz;
 };
 template <class S>
-struct OutwardCargo {
+struct OutwardMotion {
   S vx, vy, vz, ox, oy, oz, gx, gy, gz;
 };
 
 /// D += a wrench, in the body's axes.
 template <class S>
-MOMENTA_INLINE void add_remainder(Cargo<S>& a, const Spatial::Force<S>& D) {
+MOMENTA_INLINE void add_remainder(Articulated<S>& a, const Spatial::Force<S>& D) {
   a.Dfx = a.Dfx + D.f[0];
   a.Dfy = a.Dfy + D.f[1];
   a.Dfz = a.Dfz + D.f[2];
@@ -30,7 +30,7 @@ MOMENTA_INLINE void add_remainder(Cargo<S>& a, const Spatial::Force<S>& D) {
 }
 /// V += a motion, in the body's axes.
 template <class S>
-MOMENTA_INLINE void add_motion(OutwardCargo<S>& a, const Spatial::Motion<S>& V) {
+MOMENTA_INLINE void add_motion(OutwardMotion<S>& a, const Spatial::Motion<S>& V) {
   a.vx = a.vx + V.v[0];
   a.vy = a.vy + V.v[1];
   a.vz = a.vz + V.v[2];
@@ -39,17 +39,18 @@ MOMENTA_INLINE void add_motion(OutwardCargo<S>& a, const Spatial::Motion<S>& V) 
   a.oz = a.oz + V.w[2];
 }
 
-/// What is left of a body once its pin is eliminated: M', and D' and G in its frame.
+/// What is left of a body once its revolute joint is eliminated: M', and D' and G in its frame.
 template <class S>
 struct Eliminated {
   Reduced<S> M;
   S fx, fy, fz, nx, ny, nz, Gx, Gy, Gz;
 };
 
-/// f(number of a, the same number of b) for all numbers of two cargos, one by one: copies of whole
-/// records would be read back in other pieces than they were written in, and wait for memory.
+/// f(number of a, the same number of b) for all numbers of two articulated quantities, one by one:
+/// copies of whole records would be read back in other pieces than they were written in, and wait
+/// for memory.
 template <bool Gravity = true, class A, class B, class F>
-MOMENTA_INLINE void in_pairs(Cargo<A>& a, const Cargo<B>& b, F&& f) {
+MOMENTA_INLINE void in_pairs(Articulated<A>& a, const Articulated<B>& b, F&& f) {
   Full<A>& m = a.M;
   const Full<B>& n = b.M;
   f(m.Axx, n.Axx), f(m.Axy, n.Axy), f(m.Axz, n.Axz);
@@ -64,92 +65,92 @@ MOMENTA_INLINE void in_pairs(Cargo<A>& a, const Cargo<B>& b, F&& f) {
   if constexpr (Gravity) f(a.Gx, b.Gx), f(a.Gy, b.Gy), f(a.Gz, b.Gz);
 }
 template <bool Gravity, class S>
-MOMENTA_INLINE void add(Cargo<S>& a, const Cargo<S>& b) {
+MOMENTA_INLINE void add(Articulated<S>& a, const Articulated<S>& b) {
   in_pairs<Gravity>(a, b, [](S& x, const S& y) { x = x + y; });
 }
 
 /// + the body itself and the constant part of its first moment.
 template <bool Gravity, class Link, class S>
-MOMENTA_INLINE void add_body(Cargo<S>& cargo, const Link& l) {
-  add_body(cargo.M, l);
+MOMENTA_INLINE void add_body(Articulated<S>& articulated, const Link& l) {
+  add_body(articulated.M, l);
   if constexpr (Gravity) {
-    cargo.Gx = cargo.Gx + l.moment[0];
-    cargo.Gy = cargo.Gy + l.moment[1];
-    cargo.Gz = cargo.Gz + l.moment[2];
+    articulated.Gx = articulated.Gx + l.moment[0];
+    articulated.Gy = articulated.Gy + l.moment[1];
+    articulated.Gz = articulated.Gz + l.moment[2];
   }
 }
 
 /// What a child beside the first leaves in its parent's slot.
 template <bool Gravity, class Link, class S>
-MOMENTA_INLINE void leave(const Link& l, Cargo<S>& slot, const Cargo<S>& cargo) {
+MOMENTA_INLINE void leave(const Link& l, Articulated<S>& slot, const Articulated<S>& articulated) {
   if (l.opens)
-    in_pairs<Gravity>(slot, cargo, [](S& a, const S& b) { a = b; });
+    in_pairs<Gravity>(slot, articulated, [](S& a, const S& b) { a = b; });
   else
-    add<Gravity>(slot, cargo);
+    add<Gravity>(slot, articulated);
 }
 
 template <class S>
-MOMENTA_INLINE void set_tip(const Tip& tip, PinColumn<S>& h, Reduced<S>& m) {
-  m = {S(tip.M.Axx), S(tip.M.Axy), S(tip.M.Axz), S(tip.M.Ayy), S(tip.M.Ayz),
-       S(tip.M.Azz), S(tip.M.Hxx), S(tip.M.Hxy), S(tip.M.Hyx), S(tip.M.Hyy),
-       S(tip.M.Hzx), S(tip.M.Hzy), S(tip.M.Ixx), S(tip.M.Ixy), S(tip.M.Iyy)};
-  h = {S(tip.h[0]), S(tip.h[1]), S(tip.h[2]), S(tip.h[3]), S(tip.h[4])};
+MOMENTA_INLINE void set_leaf(const Leaf& leaf, RevoluteColumn<S>& h, Reduced<S>& m) {
+  m = {S(leaf.M.Axx), S(leaf.M.Axy), S(leaf.M.Axz), S(leaf.M.Ayy), S(leaf.M.Ayz),
+       S(leaf.M.Azz), S(leaf.M.Hxx), S(leaf.M.Hxy), S(leaf.M.Hyx), S(leaf.M.Hyy),
+       S(leaf.M.Hzx), S(leaf.M.Hzy), S(leaf.M.Ixx), S(leaf.M.Ixy), S(leaf.M.Iyy)};
+  h = {S(leaf.h[0]), S(leaf.h[1]), S(leaf.h[2]), S(leaf.h[3]), S(leaf.h[4])};
 }
 
 /// A screw about z; of G the turn.
 template <bool Gravity, class S, class C>
-MOMENTA_INLINE void screw_inward(const C& c, const C& s, const C& d, Cargo<S>& cargo) {
-  turn_and_shift_z(cargo.M, c, s, d);
-  S x = c * cargo.Dfx - s * cargo.Dfy;
-  cargo.Dfy = s * cargo.Dfx + c * cargo.Dfy;
-  cargo.Dfx = x;
-  x = c * cargo.Dnx - s * cargo.Dny;
-  cargo.Dny = s * cargo.Dnx + c * cargo.Dny + d * cargo.Dfx;
-  cargo.Dnx = x - d * cargo.Dfy;
+MOMENTA_INLINE void screw_inward(const C& c, const C& s, const C& d, Articulated<S>& articulated) {
+  turn_and_shift_z(articulated.M, c, s, d);
+  S x = c * articulated.Dfx - s * articulated.Dfy;
+  articulated.Dfy = s * articulated.Dfx + c * articulated.Dfy;
+  articulated.Dfx = x;
+  x = c * articulated.Dnx - s * articulated.Dny;
+  articulated.Dny = s * articulated.Dnx + c * articulated.Dny + d * articulated.Dfx;
+  articulated.Dnx = x - d * articulated.Dfy;
   if constexpr (Gravity) {
-    x = c * cargo.Gx - s * cargo.Gy;
-    cargo.Gy = s * cargo.Gx + c * cargo.Gy;
-    cargo.Gx = x;
+    x = c * articulated.Gx - s * articulated.Gy;
+    articulated.Gy = s * articulated.Gx + c * articulated.Gy;
+    articulated.Gx = x;
   }
 }
 
 /// The screw about x to the parent.
 template <Turn turn, bool Gravity, class Link, class S>
-MOMENTA_INLINE void carry(const Eliminated<S>& r, const Link& l, Cargo<S>& cargo) {
+MOMENTA_INLINE void carry(const Eliminated<S>& r, const Link& l, Articulated<S>& articulated) {
   const auto &ca = l.ca, &sa = l.sa, &a = l.a;
-  cargo.Dfx = r.fx;
-  cargo.Dnx = r.nx;
-  if constexpr (Gravity) cargo.Gx = r.Gx;
+  articulated.Dfx = r.fx;
+  articulated.Dnx = r.nx;
+  if constexpr (Gravity) articulated.Gx = r.Gx;
   if constexpr (turn == Turn::general) {
-    turn_x(r.M, l, cargo.M);
-    shift_x(cargo.M, a);
-    cargo.Dfy = ca * r.fy - sa * r.fz;
-    cargo.Dfz = sa * r.fy + ca * r.fz;
-    cargo.Dny = ca * r.ny - sa * r.nz - a * cargo.Dfz;
-    cargo.Dnz = sa * r.ny + ca * r.nz + a * cargo.Dfy;
+    turn_x(r.M, l, articulated.M);
+    shift_x(articulated.M, a);
+    articulated.Dfy = ca * r.fy - sa * r.fz;
+    articulated.Dfz = sa * r.fy + ca * r.fz;
+    articulated.Dny = ca * r.ny - sa * r.nz - a * articulated.Dfz;
+    articulated.Dnz = sa * r.ny + ca * r.nz + a * articulated.Dfy;
     if constexpr (Gravity) {
-      cargo.Gy = ca * r.Gy - sa * r.Gz;
-      cargo.Gz = sa * r.Gy + ca * r.Gz;
+      articulated.Gy = ca * r.Gy - sa * r.Gz;
+      articulated.Gz = sa * r.Gy + ca * r.Gz;
     }
   } else if constexpr (turn == Turn::right) {
-    right_turn_and_shift_x(r.M, a, cargo.M);
-    cargo.Dfy = -r.fz;
-    cargo.Dfz = r.fy;
-    cargo.Dny = -(r.nz + a * r.fy);
-    cargo.Dnz = r.ny - a * r.fz;
+    right_turn_and_shift_x(r.M, a, articulated.M);
+    articulated.Dfy = -r.fz;
+    articulated.Dfz = r.fy;
+    articulated.Dny = -(r.nz + a * r.fy);
+    articulated.Dnz = r.ny - a * r.fz;
     if constexpr (Gravity) {
-      cargo.Gy = -r.Gz;
-      cargo.Gz = r.Gy;
+      articulated.Gy = -r.Gz;
+      articulated.Gz = r.Gy;
     }
   } else {
-    parallel_turn_and_shift_x(r.M, ca, a, cargo.M);
-    cargo.Dfy = ca * r.fy;
-    cargo.Dfz = ca * r.fz;
-    cargo.Dny = ca * r.ny - a * cargo.Dfz;
-    cargo.Dnz = ca * r.nz + a * cargo.Dfy;
+    parallel_turn_and_shift_x(r.M, ca, a, articulated.M);
+    articulated.Dfy = ca * r.fy;
+    articulated.Dfz = ca * r.fz;
+    articulated.Dny = ca * r.ny - a * articulated.Dfz;
+    articulated.Dnz = ca * r.nz + a * articulated.Dfy;
     if constexpr (Gravity) {
-      cargo.Gy = ca * r.Gy;
-      cargo.Gz = ca * r.Gz;
+      articulated.Gy = ca * r.Gy;
+      articulated.Gz = ca * r.Gz;
     }
   }
 }
@@ -157,34 +158,36 @@ MOMENTA_INLINE void carry(const Eliminated<S>& r, const Link& l, Cargo<S>& cargo
 /// A right turn changes signs. A chain carries these numbers with those they had before it, so that
 /// the next body's sums subtract them: no sign is changed by itself.
 template <Turn turn, class S>
-MOMENTA_INLINE void change_signs(Cargo<S>& cargo) {
+MOMENTA_INLINE void change_signs(Articulated<S>& articulated) {
   if constexpr (turn == Turn::right) {
-    cargo.M.Axy = -cargo.M.Axy;
-    cargo.M.Ayz = -cargo.M.Ayz;
-    cargo.M.Hyx = -cargo.M.Hyx;
-    cargo.Dfy = -cargo.Dfy;
-    cargo.Dny = -cargo.Dny;
+    articulated.M.Axy = -articulated.M.Axy;
+    articulated.M.Ayz = -articulated.M.Ayz;
+    articulated.M.Hyx = -articulated.M.Hyx;
+    articulated.Dfy = -articulated.Dfy;
+    articulated.Dny = -articulated.Dny;
   }
 }
 
 /// To the parent where a chain ends.
 template <Turn turn, bool Gravity, class Link, class S>
-__attribute__((noinline)) void carry_last(const Eliminated<S>& r, const Link& l, Cargo<S>& cargo) {
-  carry<turn, Gravity>(r, l, cargo);
+__attribute__((noinline)) void carry_last(const Eliminated<S>& r, const Link& l,
+                                          Articulated<S>& articulated) {
+  carry<turn, Gravity>(r, l, articulated);
 }
 
 template <class S>
-Spatial::Force<S> remainder_of(const Cargo<S>& c) {
+Spatial::Force<S> remainder_of(const Articulated<S>& c) {
   return {{{c.Dfx, c.Dfy, c.Dfz}}, {{c.Dnx, c.Dny, c.Dnz}}};
 }
 template <class S>
-MOMENTA_INLINE void set_cargo(Cargo<S>& c, const Spatial::ArticulatedInertia<S>& M,
-                              const Spatial::Force<S>& D, const Vec3<S>& G) {
-  in_pairs(c, Cargo<S>{full(M), D.f[0], D.f[1], D.f[2], D.n[0], D.n[1], D.n[2], G[0], G[1], G[2]},
-           [](S& a, const S& b) { a = b; });
+MOMENTA_INLINE void set_articulated(Articulated<S>& c, const Spatial::ArticulatedInertia<S>& M,
+                                    const Spatial::Force<S>& D, const Vec3<S>& G) {
+  in_pairs(
+      c, Articulated<S>{full(M), D.f[0], D.f[1], D.f[2], D.n[0], D.n[1], D.n[2], G[0], G[1], G[2]},
+      [](S& a, const S& b) { a = b; });
 }
 template <class S>
-void set_cargo(OutwardCargo<S>& c, const Spatial::Motion<S>& V, const Vec3<S>& g) {
+void set_articulated(OutwardMotion<S>& c, const Spatial::Motion<S>& V, const Vec3<S>& g) {
   c = {V.v[0], V.v[1], V.v[2], V.w[0], V.w[1], V.w[2], g[0], g[1], g[2]};
 }
 
@@ -205,19 +208,19 @@ __attribute__((noinline)) void tilt_inward(const Edge& e, Spatial::ArticulatedIn
   }
 }
 
-/// All constant screws of a pin, in order.
+/// All constant screws of a revolute joint, in order.
 template <bool Gravity, class Link, class Edge, class S>
 MOMENTA_INLINE void carry_any(const Link& l, const Edge& e, const Eliminated<S>& r,
-                              Cargo<S>& cargo) {
+                              Articulated<S>& articulated) {
   switch (l.turn) {
     case Turn::general:
-      carry<Turn::general, Gravity>(r, l, cargo);
+      carry<Turn::general, Gravity>(r, l, articulated);
       break;
     case Turn::right:
-      carry<Turn::right, Gravity>(r, l, cargo);
+      carry<Turn::right, Gravity>(r, l, articulated);
       break;
     case Turn::parallel:
-      carry<Turn::parallel, Gravity>(r, l, cargo);
+      carry<Turn::parallel, Gravity>(r, l, articulated);
       break;
     case Turn::tilted: {
       const S zero(0.0);
@@ -230,11 +233,11 @@ MOMENTA_INLINE void carry_any(const Link& l, const Edge& e, const Eliminated<S>&
       Vec3<S> G{};
       if constexpr (Gravity) G = {{r.Gx, r.Gy, r.Gz}};
       tilt_inward(e, M, D, G);
-      set_cargo(cargo, M, D, G);
+      set_articulated(articulated, M, D, G);
       break;
     }
   }
-  if (l.screwed) screw_inward<Gravity>(e.cos_gamma, e.sin_gamma, e.delta, cargo);
+  if (l.screwed) screw_inward<Gravity>(e.cos_gamma, e.sin_gamma, e.delta, articulated);
 }
 
 /// Two components across z in axes turned by the angle of (c, s).

@@ -1,5 +1,5 @@
-// Folded legs swept side by side: against the same legs one after the other, and against the
-// assembled matrix; which legs are of one shape.
+// Folded branches swept side by side: against the same branches one after the other, and against
+// the assembled matrix; which branches are of one shape.
 
 #include "equations/linkages.h"
 #include "equations/quad_loops.h"
@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 #include <momenta/core/kernel/levels/open_sweeps.h>
-#include <momenta/dae/sweeps/legs/legs.h>
+#include <momenta/dae/sweeps/branches/looped_branches.h>
 #include <momenta/dae/sweeps/levels/loop_sweeps.h>
 #include <momenta/dae/sweeps/sweep_solver.h>
 
@@ -147,13 +147,13 @@ double error_of(LoopedSweeps& sweeps, const Mechanism& m, const TreeState& s, co
       sweeps.momentum(s.t, s.q.data(), p.data(), right, u.data(), sigma.data(), pdot.data()) &&
       sweeps.acceleration(s.t, s.q.data(), s.u.data(), no_force.data(), right, udot.data(),
                           sigma.data());
-  EXPECT_TRUE(ok || sweeps.weak_leg());
+  EXPECT_TRUE(ok || sweeps.weak_looped_branch());
   if (!ok) return 1;
   return std::max({relative_error(u, exact.u), relative_error(pdot, exact.pdot),
                    relative_error(udot, exact.udot)});
 }
 
-TEST(Legs, SideBySideAreWhatTheyAreOneByOne) {
+TEST(LoopedBranches, SideBySideAreWhatTheyAreOneByOne) {
   constexpr double leak = 0.7;
   struct Level {
     int number, compared = 0;
@@ -179,16 +179,16 @@ TEST(Legs, SideBySideAreWhatTheyAreOneByOne) {
                    apart = mechanism.looped_sweeps(level.number, false);
         const double one_by_one = error_of(*apart, mechanism, s, p, exact, leak),
                      together = error_of(*beside, mechanism, s, p, exact, leak);
-        if (apart->weak_leg()) {
+        if (apart->weak_looped_branch()) {
           // Both say so, and the solver takes the assembled matrix.
-          EXPECT_TRUE(beside->weak_leg()) << seed;
+          EXPECT_TRUE(beside->weak_looped_branch()) << seed;
           const auto e = mechanism.evaluation<double>();
           EXPECT_TRUE(make_sweep_solver(mechanism, *e)
                           ->momentum(s.t, s.q.data(), p.data(), centre.data(), fade_evaluation,
                                      leak, u.data(), sigma.data(), pdot.data()))
               << seed;
         }
-        if (apart->weak_leg() || !(one_by_one < 1e-6)) continue;
+        if (apart->weak_looped_branch() || !(one_by_one < 1e-6)) continue;
         ++level.compared;
         EXPECT_LT(together, 30 * one_by_one + 1e-13) << seed;
         level.logs += std::log((together + 1e-16) / (one_by_one + 1e-16));
@@ -215,7 +215,7 @@ TEST(Legs, SideBySideAreWhatTheyAreOneByOne) {
   }
 }
 
-TEST(Legs, AgreeWithTheAssembledMatrix) {
+TEST(LoopedBranches, AgreeWithTheAssembledMatrix) {
   Worst worst;
   for (unsigned seed = 0; seed < 300; ++seed) {
     RandomTree random(seed + 1000);
@@ -226,11 +226,11 @@ TEST(Legs, AgreeWithTheAssembledMatrix) {
   expect_rounding(worst, 20);
 }
 
-TEST(Legs, AreToldOfOneShape) {
-  const auto lanes = std::to_string(leg_lanes_at(best_level()));
-  EXPECT_NE(
-      said_of_solving(Mechanism(platform(6))).find(" legs of 3 bodies side by side in " + lanes),
-      std::string::npos);
+TEST(LoopedBranches, AreToldOfOneShape) {
+  const auto lanes = std::to_string(looped_branch_lanes_at(best_level()));
+  EXPECT_NE(said_of_solving(Mechanism(platform(6)))
+                .find(" branches of 3 bodies side by side in " + lanes),
+            std::string::npos);
   // A chain of loops has none, nor has a platform whose equations fit.
   EXPECT_EQ(said_of_solving(Mechanism(row_of_four_bars(3, 1.1))).find("side by side"),
             std::string::npos);
@@ -240,15 +240,15 @@ TEST(Legs, AreToldOfOneShape) {
   for (JointSpec& j : scene.joints)
     if (j.name == "S4") j.kind = JointKind::revolute;
   const Mechanism other(scene);
-  const auto* words = "8 legs of 3 bodies";
+  const auto* words = "8 branches of 3 bodies";
   if (best_level() >= 4) {
     EXPECT_NE(said_of_solving(other).find(words), std::string::npos) << said_of_solving(other);
-    EXPECT_EQ(said_of_solving(Mechanism(platform(9))).find("9 legs"), std::string::npos);
+    EXPECT_EQ(said_of_solving(Mechanism(platform(9))).find("9 branches"), std::string::npos);
   }
 }
 
 /// A joint without inertia in one leg is told by its name, not by that of a leg beside it.
-TEST(Legs, StuckJointIsTheOneThatIs) {
+TEST(LoopedBranches, SingularJointIsTheOneThatIs) {
   Scene scene = platform(6);
   for (BodySpec& b : scene.bodies)
     if (b.name == "upper3") {

@@ -9,9 +9,9 @@
 
 namespace momenta {
 
-class LostWork {
+class DissipatedEnergy {
  public:
-  explicit LostWork(const Scene& scene) : any_(loses_energy(scene)) {}
+  explicit DissipatedEnergy(const Scene& scene) : any_(loses_energy(scene)) {}
 
   /// Whether there is anything to integrate.
   bool any() const { return any_; }

@@ -8,24 +8,24 @@
 //
 // Ω has the prescribed motion in it (23), so L = d/dt (m c) whatever drives do.
 
+#include <momenta/core/centroidal.h>
 #include <momenta/core/kernel/points.h>
 #include <momenta/core/kernel/sweeps.h>
-#include <momenta/core/whole.h>
 
 namespace momenta {
 
 template <class S>
-struct WholeSums {
+struct CentroidalSums {
   double mass = 0;
   Vec3<S> moment, linear, angular;  ///< m c, L, H; ground axes
 };
 
 /// At (t, q, u). Two outward sweeps, O(bodies).
 template <class S>
-WholeSums<S> whole_sums(Workspace<Spatial, S>& w, const S& t, const S* q, const S* u) {
+CentroidalSums<S> centroidal_sums(Workspace<Spatial, S>& w, const S& t, const S* q, const S* u) {
   poses_outward(w, t, q, true);
   velocities_outward(w, u);
-  WholeSums<S> all;
+  CentroidalSums<S> all;
   for (std::size_t k = 0; k < w.body.size(); ++k) {
     const int body = static_cast<int>(k);
     const auto& inertia = w.inertia(k);
@@ -39,7 +39,7 @@ WholeSums<S> whole_sums(Workspace<Spatial, S>& w, const S& t, const S* q, const 
   return all;
 }
 
-inline Whole whole_of(const WholeSums<double>& sums) {
+inline Centroidal centroidal_of(const CentroidalSums<double>& sums) {
   const auto eigen = [](const Vec3<double>& v) { return Eigen::Vector3d(v[0], v[1], v[2]); };
   return {sums.mass, eigen(sums.moment) / sums.mass, eigen(sums.linear), eigen(sums.angular)};
 }

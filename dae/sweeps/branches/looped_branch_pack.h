@@ -1,10 +1,10 @@
 #pragma once
-// Legs side by side beside the sweeps of the rest: numbers of one state into the lanes of S and
-// back, and what legs and the body they fold into hand to each other.
+// Branches side by side beside the sweeps of the rest: numbers of one state into the lanes of S and
+// back, and what branches and the body they fold into hand to each other.
 
-#include <momenta/dae/sweeps/lanes.h>
-#include <momenta/dae/sweeps/legs/leg_tree.h>
+#include <momenta/dae/sweeps/branches/looped_branch_tree.h>
 #include <momenta/dae/sweeps/right_side.h>
+#include <momenta/dae/sweeps/slots.h>
 #include <momenta/dae/sweeps/spatial_loop_place.h>
 
 namespace momenta {
@@ -12,25 +12,26 @@ namespace momenta {
 template <class S, int Rows, bool Momentum, class Tree>
 class SpatialLoopSweeps;
 
-/// What holds legs beside a single state's number; void: nothing does.
+/// What holds branches beside a single state's number; void: nothing does.
 template <class S>
-struct LegLanes {
+struct LoopedBranchLanes {
   using type = void;
 };
 template <int L>
-struct LegLanes<Pack<1, L>> {
-  using type = Pack<leg_lanes_at(L), L>;
+struct LoopedBranchLanes<Pack<1, L>> {
+  using type = Pack<looped_branch_lanes_at(L), L>;
 };
 
 /// One pack; One: a single state's number, S: a pack of them at the same level.
 template <class One, class S, bool Momentum>
-class LegPack {
-  using Sweeps = SpatialLoopSweeps<S, most_leg_rows, Momentum, LegTree<S>>;
+class LoopedBranchPack {
+  using Sweeps = SpatialLoopSweeps<S, most_looped_branch_rows, Momentum, LoopedBranchTree<S>>;
   using Motion = Spatial::Motion<One>;
 
  public:
   /// @pre the group stays where it is
-  LegPack(const LinkTree& tree, const LoopModel<Spatial>& loops, const LegGroup& group)
+  LoopedBranchPack(const LinkTree& tree, const LoopModel<Spatial>& loops,
+                   const LoopedBranchGroup& group)
       : group_(group),
         tree_(tree, group),
         loops_(loops, group),
@@ -41,7 +42,7 @@ class LegPack {
         const Link& l = tree.links[static_cast<std::size_t>(root + k)];
         const auto& b = tree.model->bodies[static_cast<std::size_t>(root + k)];
         q_at_.push_back(b.q);
-        u_at_.push_back(l.kind == LinkKind::pin ? l.u : b.u);
+        u_at_.push_back(l.kind == LinkKind::revolute ? l.u : b.u);
       }
     for (int i = 0; i < group.loops; ++i) {
       const auto row_of = [&](int lane) {
@@ -58,16 +59,16 @@ class LegPack {
       x->resize(static_cast<std::size_t>(loops_.rows));
   }
   // Its sweeps point to its tree.
-  LegPack(const LegPack&) = delete;
-  LegPack& operator=(const LegPack&) = delete;
+  LoopedBranchPack(const LoopedBranchPack&) = delete;
+  LoopedBranchPack& operator=(const LoopedBranchPack&) = delete;
 
   int onto() const { return group_.onto; }
 
-  /// Adds what the legs bring to the body in the place and motion of `onto`. False when a joint has
-  /// no inertia to move, or one order of elimination does not do for all legs.
+  /// Adds what the branches bring to the body in the place and motion of `onto`. False when a joint
+  /// has no inertia to move, or one order of elimination does not do for all branches.
   template <class In>
   bool inward(const One& t, const In& q, const In& x, const In& tau, const RightSide<One>& right,
-              const LoopBody<One>& onto, Cargo<One>& sum) {
+              const LoopBody<One>& onto, Articulated<One>& sum) {
     gather(q, q_at_, q_);
     gather(x, u_at_, x_);
     if constexpr (!Momentum) gather(tau, u_at_, tau_);
@@ -81,34 +82,35 @@ class LegPack {
       all_of(onto.w, body.w);
     }
     const S *at = q_.data(), *in = x_.data(), *forces = tau_.data();
-    if (!sweeps_.legs_inward(S(t.v), at, in, forces, right_, body) || sweeps_.uneven())
+    if (!sweeps_.looped_branches_inward(S(t.v), at, in, forces, right_, body) || sweeps_.uneven())
       return false;
     const S used = used_;
-    in_pairs<Momentum>(sum, sweeps_.brought_by_legs(),
+    in_pairs<Momentum>(sum, sweeps_.brought_by_looped_branches(),
                        [used](One& a, const S& b) { a = a + sum_of(b * used); });
     return true;
   }
-  bool weak_leg() const { return sweeps_.weak_leg(); }
+  bool weak_looped_branch() const { return sweeps_.weak_looped_branch(); }
 
-  /// u or u̇ and the impulses of the legs from the motion V of the body, in its axes.
+  /// u or u̇ and the impulses of the branches from the motion V of the body, in its axes.
   template <class Out>
   void outward(const Motion& V, Out u, Out impulse) {
     Spatial::Motion<S> all;
     all_of(V.v, all.v);
     all_of(V.w, all.w);
     const S* at = q_.data();
-    sweeps_.legs_outward(at, right_, all, u_.data(), sigma_.data(), rate_.data());
+    sweeps_.looped_branches_outward(at, right_, all, u_.data(), sigma_.data(), rate_.data());
     scatter(u_, u_at_, u);
     scatter(sigma_, row_at_, impulse);
   }
-  /// ṗ of the legs, complete; adds to `wrench` what their loops do to the body, whose velocities
-  /// are in `onto`; ground axes.
+  /// ṗ of the branches, complete; adds to `wrench` what their loops do to the body, whose
+  /// velocities are in `onto`; ground axes.
   template <class Out>
   void inertial_rates(const LoopBody<One>& onto, Spatial::Force<One>& wrench, Out rate) {
     Vec3<S> v, w;
     all_of(onto.v, v);
     all_of(onto.w, w);
-    const Spatial::Force<S>& T = sweeps_.legs_rates(v, w, right_, sigma_.data(), rate_.data());
+    const Spatial::Force<S>& T =
+        sweeps_.looped_branches_rates(v, w, right_, sigma_.data(), rate_.data());
     for (int i = 0; i < 6; ++i) wrench[i] = wrench[i] + sum_of(T[i] * used_);
     scatter(rate_, u_at_, rate);
   }
@@ -160,9 +162,9 @@ class LegPack {
     return to.data();
   }
 
-  const LegGroup& group_;
-  LegTree<S> tree_;
-  LegLoops<S> loops_;
+  const LoopedBranchGroup& group_;
+  LoopedBranchTree<S> tree_;
+  LoopedBranchLoops<S> loops_;
   Sweeps sweeps_;
   std::vector<int> q_at_, u_at_, row_at_;  ///< by place and lane
   std::vector<S> q_, x_, tau_, u_, rate_, sigma_, centre_, compliance_;

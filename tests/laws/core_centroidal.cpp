@@ -7,7 +7,7 @@
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/kernel/whole_sums.h>
+#include <momenta/core/kernel/centroidal_sums.h>
 #include <momenta/core/open_chain.h>
 
 namespace momenta {
@@ -24,9 +24,9 @@ struct Sample {
       : chain(scene, algebra), s(random.state(chain.tree())), p(chain.nv()) {
     chain.momenta(s.t, s.q, s.u, p);
   }
-  Whole whole() {
-    Whole all;
-    EXPECT_TRUE(chain.whole(s.t, s.q, p, all)) << chain.failure();
+  Centroidal centroidal() {
+    Centroidal all;
+    EXPECT_TRUE(chain.centroidal(s.t, s.q, p, all)) << chain.failure();
     return all;
   }
   double growth() {
@@ -41,13 +41,13 @@ double difference(const Vector3d& a, const Vector3d& b) {
 }
 
 /// Trees of every joint with drives, so that what is prescribed counts.
-TEST(Whole, LinearMomentumIsTheRateOfTheFirstMoment) {
+TEST(Centroidal, LinearMomentumIsTheRateOfTheFirstMoment) {
   double worst = 0;
   for (unsigned seed = 0; seed < 100; ++seed) {
     RandomTree random(seed);
     const Scene scene = random.scene({});
     Sample x(scene, Algebra::spatial, random);
-    const Whole all = x.whole();
+    const Centroidal all = x.centroidal();
     using D = Dual<double, 1>;
     const Model<Spatial> model = build_spatial_model(x.chain.tree(), scene);
     Workspace<Spatial, D> w(model);
@@ -55,7 +55,7 @@ TEST(Whole, LinearMomentumIsTheRateOfTheFirstMoment) {
     x.chain.coordinate_rates(x.s.q, x.s.u, qdot);
     std::vector<D> q(x.s.q.begin(), x.s.q.end()), u(x.s.u.begin(), x.s.u.end());
     for (std::size_t i = 0; i < q.size(); ++i) q[i].b[0] = qdot[static_cast<Eigen::Index>(i)];
-    const auto sums = whole_sums(w, D::variable(x.s.t, 0), q.data(), u.data());
+    const auto sums = centroidal_sums(w, D::variable(x.s.t, 0), q.data(), u.data());
     Vector3d rate;
     for (int i = 0; i < 3; ++i) rate[i] = sums.moment[i].b[0];
     worst = std::max(worst, difference(all.linear_momentum, rate) / x.growth());
@@ -63,14 +63,14 @@ TEST(Whole, LinearMomentumIsTheRateOfTheFirstMoment) {
   EXPECT_LT(worst, algebra_tol(12));
 }
 
-TEST(Whole, IsThatOfTheSlowTwin) {
+TEST(Centroidal, IsThatOfTheSlowTwin) {
   double worst = 0;
   for (unsigned seed = 0; seed < 60; ++seed) {
     RandomTree random(seed);
     const bool flat = seed % 3 == 0;
     const Scene scene = flat ? random.planar_scene({}) : random.scene({});
     Sample x(scene, flat ? Algebra::planar : Algebra::spatial, random);
-    const Whole all = x.whole();
+    const Centroidal all = x.centroidal();
     const DenseLagrangian twin(scene, x.chain.tree());
     const std::vector<Real> q(x.s.q.begin(), x.s.q.end()), u(x.s.u.begin(), x.s.u.end());
     const auto momenta = twin.body_momenta<Real>(twin.moving<Real>(x.s.t, q, u, true));
@@ -112,7 +112,7 @@ void follow(const Vector3d& gravity) {
     std::erase_if(scene.forces, [&](const ForceSpec& f) { return f.joint == base.name; });
     scene.gravity = gravity;
     Sample x(scene, Algebra::automatic, random);
-    const Whole before = x.whole();
+    const Centroidal before = x.centroidal();
     const int nq = x.chain.nq(), nv = x.chain.nv();
     Eigen::VectorXd y(nq + nv), rate(nq + nv);
     y << x.s.q, x.p;
@@ -128,7 +128,7 @@ void follow(const Vector3d& gravity) {
     }
     x.s.q = y.head(nq);
     x.p = y.tail(nv);
-    const Whole after = x.whole();
+    const Centroidal after = x.centroidal();
     // c moves along a parabola, and the weight acts there.
     const Vector3d weight = before.mass * gravity, L = before.linear_momentum,
                    c = before.centre + end / before.mass * L + end * end / 2 * gravity;
@@ -141,22 +141,22 @@ void follow(const Vector3d& gravity) {
         << "seed " << seed;
   }
 }
-TEST(Whole, OfAFreeTreeStays) {
+TEST(Centroidal, OfAFreeTreeStays) {
   follow(Vector3d::Zero());
 }
-TEST(Whole, OfAFreeTreeFallsAsOneBody) {
+TEST(Centroidal, OfAFreeTreeFallsAsOneBody) {
   follow({0.3, -9.81, 2});
 }
 
-TEST(Whole, OfAJointWithoutInertiaIsNone) {
+TEST(Centroidal, OfAJointWithoutInertiaIsNone) {
   RandomTree random(3);
   Scene scene = random.scene(
       {.bodies = 1, .kinds = {JointKind::revolute}, .drives = false, .body_forces = false});
   scene.bodies[0].mass = 0;
   scene.bodies[0].inertia.setZero();
   OpenChain chain(scene, Algebra::spatial);
-  Whole all;
-  EXPECT_FALSE(chain.whole(0, chain.tree().q0, Eigen::VectorXd::Ones(chain.nv()), all));
+  Centroidal all;
+  EXPECT_FALSE(chain.centroidal(0, chain.tree().q0, Eigen::VectorXd::Ones(chain.nv()), all));
   EXPECT_FALSE(chain.failure().empty());
 }
 

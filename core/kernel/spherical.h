@@ -1,14 +1,14 @@
 #pragma once
-// How a ball joint is eliminated and passes on what is left, in both recursions.
+// How a spherical joint is eliminated and passes on what is left, in both recursions.
 
-#include <momenta/core/kernel/pin.h>
+#include <momenta/core/kernel/revolute.h>
 
 namespace momenta {
 
-/// (46)-(48) of a ball joint by I = L Δ Lᵀ, which leaves A' = A − Z Δ⁻¹ Zᵀ with Z = H L⁻ᵀ, the
+/// (46)-(48) of a spherical joint by I = L Δ Lᵀ, which leaves A' = A − Z Δ⁻¹ Zᵀ with Z = H L⁻ᵀ, the
 /// whole of M', and D'_f = D_f + Z Δ⁻¹ L⁻¹ e. No inverse is formed: shorter, and backward stable.
 template <class S>
-struct BallPivot {
+struct SphericalPivot {
   S l10, l20, l21, i0, i1, i2;  ///< L, Δ⁻¹
   Mat3<S> s;                    ///< Z Δ⁻¹
   Vec3<S> e;                    ///< L⁻¹ e
@@ -53,11 +53,12 @@ struct BallPivot {
   }
 };
 
-/// M' = (A, 0; 0, 0) and D' = (f, n) of a ball joint in the parent's frame: A turned by R, and what
-/// the step r makes of it, H = −A r̃, I = r̃ H.
+/// M' = (A, 0; 0, 0) and D' = (f, n) of a spherical joint in the parent's frame: A turned by R, and
+/// what the step r makes of it, H = −A r̃, I = r̃ H.
 template <class S>
-MOMENTA_INLINE void carry_ball(const Vec3<double>& r, const Mat3<S>& R, const Sym3<S>& A,
-                               const Vec3<S>& force, const Vec3<S>& moment, Cargo<S>& cargo) {
+MOMENTA_INLINE void carry_spherical(const Vec3<double>& r, const Mat3<S>& R, const Sym3<S>& A,
+                                    const Vec3<S>& force, const Vec3<S>& moment,
+                                    Articulated<S>& articulated) {
   const S rx(r[0]), ry(r[1]), rz(r[2]);
   Mat3<S> RA;
   for (int i = 0; i < 3; ++i)
@@ -66,7 +67,7 @@ MOMENTA_INLINE void carry_ball(const Vec3<double>& r, const Mat3<S>& R, const Sy
   const auto entry = [&](int i, int j) {
     return RA(i, 0) * R(j, 0) + RA(i, 1) * R(j, 1) + RA(i, 2) * R(j, 2);
   };
-  Full<S>& m = cargo.M;
+  Full<S>& m = articulated.M;
   m.Axx = entry(0, 0);
   m.Axy = entry(0, 1);
   m.Axz = entry(0, 2);
@@ -89,12 +90,12 @@ MOMENTA_INLINE void carry_ball(const Vec3<double>& r, const Mat3<S>& R, const Sy
   m.Iyz = rz * m.Hxz - rx * m.Hzz;
   m.Izz = rx * m.Hyz - ry * m.Hxz;
   const Vec3<S> f = R * force, n = R * moment;
-  cargo.Dfx = f[0];
-  cargo.Dfy = f[1];
-  cargo.Dfz = f[2];
-  cargo.Dnx = n[0] + ry * f[2] - rz * f[1];
-  cargo.Dny = n[1] + rz * f[0] - rx * f[2];
-  cargo.Dnz = n[2] + rx * f[1] - ry * f[0];
+  articulated.Dfx = f[0];
+  articulated.Dfy = f[1];
+  articulated.Dfz = f[2];
+  articulated.Dnx = n[0] + ry * f[2] - rz * f[1];
+  articulated.Dny = n[1] + rz * f[0] - rx * f[2];
+  articulated.Dnz = n[2] + rx * f[1] - ry * f[0];
 }
 
 }  // namespace momenta

@@ -1,0 +1,165 @@
+#pragma once
+// Revolute joints on the inward way of the momentum recursion, (46)-(48), (43), (44): inside a
+// chain, where all that passes from body to body stays in registers, and anywhere else.
+
+#include <momenta/core/kernel/momentum_sweeps.h>
+
+namespace momenta {
+
+/// (46)-(48) of a revolute joint whose M*, D, G are complete.
+template <bool Gravity, class S>
+MOMENTA_INLINE void eliminate_revolute(const Articulated<S>& articulated, const S& p,
+                                       const S& inverse, RevoluteRecord<S>& w, Eliminated<S>& r) {
+  const S e = p - articulated.Dnz;
+  w.inverse = inverse;
+  w.y0 = e * inverse;
+  RevoluteColumn<S> h;
+  eliminate_revolute(articulated.M, inverse, h, r.M);
+  w.h = h;
+  r.fx = articulated.Dfx + h.fx * e;
+  r.fy = articulated.Dfy + h.fy * e;
+  r.fz = articulated.Dfz + h.fz * e;
+  r.nx = articulated.Dnx + h.nx * e;
+  r.ny = articulated.Dny + h.ny * e;
+  r.nz = p;
+  if constexpr (Gravity) {
+    w.Gx = r.Gx = articulated.Gx;
+    w.Gy = r.Gy = articulated.Gy;
+    r.Gz = articulated.Gz;
+  }
+}
+
+/// (46)-(48) of a revolute joint that carries nothing: h, M' and M_j⁻¹ are constants, `moment` the
+/// body's m c.
+template <bool Gravity, class S, class C>
+MOMENTA_INLINE void hand_on_leaf(const RevoluteColumn<S>& h, const Reduced<S>& M, const S& inverse,
+                                 const C (&moment)[3], const S& p, RevoluteRecord<S>& w,
+                                 Eliminated<S>& r) {
+  w.h = h;
+  r.M = M;
+  w.inverse = inverse;
+  w.y0 = p * inverse;
+  r.fx = p * h.fx;
+  r.fy = p * h.fy;
+  r.fz = p * h.fz;
+  r.nx = p * h.nx;
+  r.ny = p * h.ny;
+  r.nz = p;
+  if constexpr (Gravity) {
+    w.Gx = r.Gx = S(moment[0]);
+    w.Gy = r.Gy = S(moment[1]);
+    r.Gz = S(moment[2]);
+  }
+}
+
+/// The revolute joint's own screw; what the outward sweep needs is stored before.
+template <bool Gravity, class S, class C>
+MOMENTA_INLINE void turn_revolute(Eliminated<S>& r, const S& c, const S& s, const C& d,
+                                  RevoluteRecord<S>& w) {
+  w.M = turning_of(r.M);
+  w.Dfx = r.fx;
+  w.Dfy = r.fy;
+  w.Dnx = r.nx;
+  w.Dny = r.ny;
+  turn_and_shift_z(r.M, w.M, c, s, d);
+  S x = c * r.fx - s * r.fy;
+  r.fy = s * r.fx + c * r.fy;
+  r.fx = x;
+  x = c * r.nx - s * r.ny;
+  r.ny = s * r.nx + c * r.ny;
+  r.nx = x - d * r.fy;
+  r.ny = r.ny + d * r.fx;
+  if constexpr (Gravity) {
+    x = c * r.Gx - s * r.Gy;
+    r.Gy = s * r.Gx + c * r.Gy;
+    r.Gx = x;
+  }
+}
+
+/// Revolute joints inside a chain from `end` − 1 down, as far as their turns are of one kind;
+/// returns the end of what is left. All that passes from body to body stays in registers. The next
+/// body joins what arrives at it in the same breath: products and signs of the turn before go into
+/// its sums.
+template <class S>
+template <Turn turn, bool Gravity, class In>
+std::size_t MomentumSweeps<Spatial, S>::chain_inward(std::size_t end, const In& p,
+                                                     Articulated<S>& from) {
+  Articulated<S> articulated = from;
+  const Link* links = tree_->links.data();
+  std::size_t k = end - 1;
+  add_body<Gravity>(articulated, links[k]);
+  change_signs<turn>(articulated);
+  for (;;) {
+    const Link& l = links[k];
+    RevoluteRecord<S>& w = revolutes_[k];
+    change_signs<turn>(articulated);
+    if (!all_positive(articulated.M.Izz)) {
+      singular_joint_ = static_cast<int>(k);
+      return k;
+    }
+    Eliminated<S> r;
+    eliminate_revolute<Gravity>(articulated, p[l.u], S(1.0) / articulated.M.Izz, w, r);
+    turn_revolute<Gravity>(r, angles_.cosine(k), angles_.sine(k), l.d, w);
+    if (links[k - 1].path != static_cast<Path>(turn)) {
+      const Eliminated<S> last = r;  // whose address is taken
+      carry_last<turn, Gravity>(last, l, from);
+      return k;
+    }
+    carry<turn, Gravity>(r, l, articulated);
+    add_body<Gravity>(articulated, links[--k]);
+    change_signs<turn>(articulated);
+  }
+}
+
+/// Other revolute joints from `end` − 1 down, one after another: at leaves, at branches, on the
+/// ground, beside a first child. What passes from a first child to its parent stays in registers
+/// here too.
+template <class S>
+template <bool Gravity, class In>
+std::size_t MomentumSweeps<Spatial, S>::revolutes_inward(std::size_t end, const In& p,
+                                                         Articulated<S>& from) {
+  Articulated<S> articulated = from;
+  const Link* links = tree_->links.data();
+  std::size_t k = end;
+  do {
+    --k;
+    const Link& l = links[k];
+    RevoluteRecord<S>& w = revolutes_[k];
+    const S pk = p[l.u];
+    Eliminated<S> r;
+    if (l.leaf) {
+      const Leaf& leaf = tree_->leaves[static_cast<std::size_t>(l.record)];
+      RevoluteColumn<S> h;
+      Reduced<S> M;
+      set_leaf(leaf, h, M);
+      hand_on_leaf<Gravity>(h, M, S(leaf.inverse), l.moment, pk, w, r);
+      if (l.parent < 0) continue;
+    } else {
+      if (l.carries_branches_alone) articulated = {};
+      add_body<Gravity>(articulated, l);
+      if (l.slot >= 0) add<Gravity>(articulated, slots_[static_cast<std::size_t>(l.slot)]);
+      if (!all_positive(articulated.M.Izz)) {
+        singular_joint_ = static_cast<int>(k);
+        return k;
+      }
+      const S inverse = S(1.0) / articulated.M.Izz;
+      if (l.parent < 0) {  // nothing is passed on to the ground
+        w.inverse = inverse;
+        w.y0 = (pk - articulated.Dnz) * inverse;
+        if constexpr (Gravity) {
+          w.Gx = articulated.Gx;
+          w.Gy = articulated.Gy;
+        }
+        continue;
+      }
+      eliminate_revolute<Gravity>(articulated, pk, inverse, w, r);
+    }
+    turn_revolute<Gravity>(r, angles_.cosine(k), angles_.sine(k), l.d, w);
+    carry_any<Gravity>(l, body(k).edge, r, articulated);
+    if (!l.first) leave<Gravity>(l, slot_of_parent(l), articulated);
+  } while (k > 0 && links[k - 1].path == Path::any && links[k - 1].kind == LinkKind::revolute);
+  from = articulated;
+  return k;
+}
+
+}  // namespace momenta
