@@ -261,8 +261,12 @@ class Assembler {
     const auto& name = mechanism_.rows()[static_cast<std::size_t>(worst)].loop;
     char text[32];
     std::snprintf(text, sizeof text, "%.3g", a.velocity_residual);
-    throw SceneError(mechanism_.scene().where({}) +
-                     "the velocities of the held joints tear loop '" + name +
+    const Scene& scene = mechanism_.scene();
+    if (scene.held.empty() && !scene.drives.empty())
+      throw SceneError(scene.where(scene.drives.front().at) + "drives cannot start: loop '" + name +
+                       "' would open at a rate of " + text +
+                       ", whatever the other joints do; expected drives that the loops allow");
+    throw SceneError(scene.where({}) + "the velocities of the held joints tear loop '" + name +
                      "' apart at a rate of " + text + "; expected rates that the loops allow");
   }
 

@@ -18,28 +18,30 @@ enum class Kind { ode, ode_one_step, dae };
 struct Entry {
   std::string name;
   Kind kind;
-  bool impulses;  ///< σ among its unknowns or solved for: takes a gauge
+  bool impulses;   ///< σ among its unknowns or solved for: takes a gauge
+  bool positions;  ///< Φ = 0 among its equations, or met after each step
   Maker make;
 };
 
 const std::vector<Entry>& registry() {
   static const std::vector<Entry> entries{
-      {"momentum", Kind::ode, true, make_momentum},
-      {"momentum-index1", Kind::dae, true, make_momentum_index1},
-      {"momentum-index2", Kind::dae, true, make_momentum_index2},
-      {"momentum-stabilised", Kind::dae, true, make_momentum_stabilised},
-      {"momentum-index3", Kind::dae, false, make_momentum_index3},
-      {"augmented-lagrangian-canonical", Kind::ode, true, make_augmented_lagrangian_canonical},
-      {"acceleration", Kind::ode, false, make_acceleration},
-      {"projected", Kind::ode_one_step, false, make_projected},
-      {"partitioned", Kind::ode_one_step, false, make_partitioned},
-      {"baumgarte", Kind::ode, false, make_baumgarte},
-      {"maximal-coordinates", Kind::ode, false, make_maximal_coordinates},
-      {"augmented-lagrangian", Kind::ode, false, make_augmented_lagrangian},
-      {"acceleration-index1", Kind::dae, false, make_acceleration_index1},
-      {"acceleration-index2", Kind::dae, false, make_acceleration_index2},
-      {"acceleration-index3", Kind::dae, false, make_acceleration_index3},
-      {"stabilised-index2", Kind::dae, false, make_stabilised_index2},
+      {"momentum", Kind::ode, true, false, make_momentum},
+      {"momentum-index1", Kind::dae, true, false, make_momentum_index1},
+      {"momentum-index2", Kind::dae, true, false, make_momentum_index2},
+      {"momentum-stabilised", Kind::dae, true, true, make_momentum_stabilised},
+      {"momentum-index3", Kind::dae, false, true, make_momentum_index3},
+      {"augmented-lagrangian-canonical", Kind::ode, true, false,
+       make_augmented_lagrangian_canonical},
+      {"acceleration", Kind::ode, false, false, make_acceleration},
+      {"projected", Kind::ode_one_step, false, true, make_projected},
+      {"partitioned", Kind::ode_one_step, false, true, make_partitioned},
+      {"baumgarte", Kind::ode, false, false, make_baumgarte},
+      {"maximal-coordinates", Kind::ode, false, false, make_maximal_coordinates},
+      {"augmented-lagrangian", Kind::ode, false, false, make_augmented_lagrangian},
+      {"acceleration-index1", Kind::dae, false, false, make_acceleration_index1},
+      {"acceleration-index2", Kind::dae, false, false, make_acceleration_index2},
+      {"acceleration-index3", Kind::dae, false, true, make_acceleration_index3},
+      {"stabilised-index2", Kind::dae, false, true, make_stabilised_index2},
   };
   return entries;
 }
@@ -99,6 +101,10 @@ bool takes_gauge(const std::string& name) {
 
 bool needs_one_step_method(const std::string& name) {
   return entry(name).kind == Kind::ode_one_step;
+}
+
+bool holds_positions(const std::string& name) {
+  return entry(name).positions;
 }
 
 std::unique_ptr<Form> make_form(const std::string& name, const Mechanism& mechanism,

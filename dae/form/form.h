@@ -88,6 +88,9 @@ bool takes_gauge(const std::string& name);
 /// Whether the named form alters its state after each step, so that only one-step methods take it.
 /// @throws std::invalid_argument for an unknown name.
 bool needs_one_step_method(const std::string& name);
+/// Whether the named form has Φ = 0 among its equations, or meets it after each step by its nature.
+/// @throws std::invalid_argument for an unknown name.
+bool holds_positions(const std::string& name);
 /// Whether the named form is integrated as a DAE by IDA. @throws std::invalid_argument for an
 /// unknown name.
 bool is_dae_form(const std::string& name);

@@ -47,6 +47,7 @@ class Partitioned final : public OdeForm {
       : OdeForm("partitioned", mechanism, options),
         jacobian_(mechanism),
         start_q_(start.q),
+        before_q_(start.q),
         q_(start.q),
         u_(start.u),
         qdot_(mechanism.nq()),
@@ -76,7 +77,8 @@ class Partitioned final : public OdeForm {
   double scale(int) const override { return 1; }
 
   std::vector<double> initial(const Start& start) override {
-    start_q_ = q_ = start.q;
+    before_q_ = start_q_ = q_ = start.q;
+    before_t_ = start_t_ = start.t;
     u_ = start.u;
     std::copy(start.lambda.begin(), start.lambda.end(), multipliers_.begin());
     centre_ = multipliers_;
@@ -106,7 +108,10 @@ class Partitioned final : public OdeForm {
     // Rows that were not chosen follow from the others, unless the loops tie more than they did.
     if (phi_.size() > 0 && !(phi_.cwiseAbs().maxCoeff() < opened))
       return fail_at(t, "the loops tie more coordinates than at the start");
+    before_q_ = start_q_;
+    before_t_ = start_t_;
     start_q_ = q_;
+    start_t_ = t;
     evaluate_jacobian();
     if (at_start_->factor(values_) && growth() <= bound_) return true;
     if (!choose(t))
@@ -124,13 +129,13 @@ class Partitioned final : public OdeForm {
   SingularityHandling wanted_handling() const override { return SingularityHandling::none; }
 
   bool read_coordinates(double t, const double* y, Eigen::VectorXd& q) override {
-    if (!close(t, y)) return false;
+    if (!close(t, y, true)) return false;
     q = q_;
     return true;
   }
   bool read(double t, const double* y, const double*, Snapshot& out) override {
     const Looking looking(*this);
-    if (!close(t, y) || !accelerate(t)) return false;
+    if (!close(t, y, true) || !accelerate(t)) return false;
     out.q = q_;
     out.u = u_;
     out.multipliers = Eigen::Map<const Eigen::VectorXd>(multipliers_.data(), mechanism_.m());
@@ -182,8 +187,32 @@ class Partitioned final : public OdeForm {
 
   /// q_ and u_ of the state. Starts at the step's start whatever was evaluated before: a rejected
   /// step leaves no trace.
-  bool close(double t, const double* y) {
-    q_ = start_q_;
+  /// From the step's start. A time before it, of a late stage, lies within the last step, whose end
+  /// may be too far: from that one's start then; there, and for samples, in parts if it must be. A
+  /// stage of the step under way that is too far asks for a shorter step.
+  bool close(double t, const double* y, bool is_sample = false) {
+    if (close_from(start_q_, *at_start_, t, y)) return true;
+    const bool within_last = t < start_t_;
+    if (!within_last && !is_sample) return false;
+    const Eigen::VectorXd& first = within_last ? before_q_ : start_q_;
+    const double first_t = within_last ? before_t_ : start_t_;
+    Eigen::VectorXd from;
+    for (const int parts : {1, 2, 4, 8, 16}) {
+      from = first;
+      for (int k = 1; k <= parts; ++k) {
+        const double at = k == parts ? t : first_t + (t - first_t) * k / parts;
+        q_ = from;
+        e_->place(at, q_.data());
+        evaluate_jacobian();
+        if (!inside_->factor(values_) || !close_from(from, *inside_, at, y)) break;
+        if (k == parts) return true;
+        from = q_;
+      }
+    }
+    return false;
+  }
+  bool close_from(const Eigen::VectorXd& q, SplitFactor& first, double t, const double* y) {
+    q_ = q;
     for (int k = 0; k < freedom(); ++k) q_[independent_q(k)] = y[k];
     double before = 0;
     for (int k = 0;; ++k) {
@@ -193,7 +222,7 @@ class Partitioned final : public OdeForm {
         evaluate_jacobian();
         if (!inside_->factor(values_)) return too_long(t);
       }
-      (k == 0 ? *at_start_ : *inside_).solve(phi_, correction_q_);
+      (k == 0 ? first : *inside_).solve(phi_, correction_q_);
       double length = 0;
       for (int i = 0; i < positions().rank(); ++i) {
         q_[positions().dependent()[static_cast<std::size_t>(i)]] -= correction_q_[i];
@@ -246,7 +275,9 @@ class Partitioned final : public OdeForm {
   int rank_ = -1;  ///< of Φ_q, from the start on
   double bound_ = worst_growth;
   long partitions_ = 0;
-  Eigen::VectorXd start_q_, q_, u_, qdot_, udot_;  ///< start_q_: of the step's start
+  Eigen::VectorXd start_q_, before_q_;  ///< at the step's start, and at the start of the one before
+  double start_t_ = 0, before_t_ = 0;   ///< their times [s]
+  Eigen::VectorXd q_, u_, qdot_, udot_;
   Eigen::VectorXd phi_, rate_, correction_q_, correction_u_;
   std::vector<double> rate_values_, values_;
 };

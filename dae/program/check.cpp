@@ -9,6 +9,7 @@
 
 #include "cut_words.h"
 #include "options.h"
+#include "reach_words.h"
 
 namespace momenta::program {
 namespace {
@@ -140,6 +141,9 @@ int check(const Options& o) {
   const Tree& tree = mechanism->tree();
   const bool ranked = mechanism->m() > 0 && mechanism->m() <= most_equations;
   const RankReport rank = ranked ? rank_report(*mechanism, a.start) : RankReport{};
+  const double end = mechanism->scene().run.end_time;
+  DriveReach reach;
+  if (has_reach(*mechanism)) reach = drive_reach(*mechanism, a.start.t, a.start.q, end);
   if (o.json) {
     nlohmann::ordered_json j;
     j["scene"] = tree.name;
@@ -169,6 +173,7 @@ int check(const Options& o) {
       j["dependent_rows"].push_back({{"loop", name.loop}, {"row", name.what}});
     }
     if (ranked) j["loops"] = rank_json(*mechanism, rank);
+    if (has_reach(*mechanism)) j["drives"] = reach_json(reach);
     if (mechanism->m() > 0) j["cuts"] = cut_json(recut(*mechanism, a.start));
     std::printf("%s\n", j.dump(2).c_str());
     return done;
@@ -226,6 +231,7 @@ int check(const Options& o) {
         a.rank == mechanism->m() ? "independent by their pivots here"
                                  : "some depend on others by their pivots here",
         most_equations);
+  if (has_reach(*mechanism)) std::printf("\nDrives\n  %s\n", in_words(reach, end).c_str());
   std::printf("\nPlan\n");
   for (const auto& [what, how] : mechanism->plan_lines())
     std::printf("  %-17s %s\n", what.c_str(), how.c_str());

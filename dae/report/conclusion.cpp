@@ -240,6 +240,11 @@ std::string failed_sentence(const std::vector<Named>& failed, std::size_t total)
     text = "The run did not finish: ";
   } else if (failed.size() == total) {
     text = "None of the " + std::to_string(total) + " runs finished: ";
+    if (std::all_of(failed.begin(), failed.end(), [&](const Named& n) {
+          const RunResult &a = *n.run, &b = *failed.front().run;
+          return a.reason == b.reason && a.status == b.status && a.stopped_at == b.stopped_at;
+        }))
+      return text + clause(failed.front().run->reason) + ".";
   } else {
     text =
         std::to_string(failed.size()) + " of " + std::to_string(total) + " runs did not finish: ";

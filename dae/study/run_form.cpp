@@ -1,4 +1,5 @@
 #include <momenta/dae/form/ode_form.h>
+#include <momenta/dae/measure/drive_reach.h>
 #include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/solver/stopping.h>
 #include <momenta/dae/study/run_monitor.h>
@@ -13,8 +14,10 @@
 namespace momenta {
 namespace {
 
-/// Uniform samples and the reference's own times, ascending, without the start.
-std::vector<double> output_times(const RunSettings& s, const Reference* reference) {
+/// Uniform samples and the reference's own times, ascending, without the start; none beyond what
+/// drives can reach.
+std::vector<double> output_times(const RunSettings& s, const Reference* reference,
+                                 const DriveReach& reach) {
   std::vector<double> times;
   for (int i = 1; i <= s.samples; ++i) times.push_back(s.end_time * i / s.samples);
   if (reference)
@@ -27,6 +30,7 @@ std::vector<double> output_times(const RunSettings& s, const Reference* referenc
       std::unique(times.begin(), times.end(), [&](double a, double b) { return b - a < apart; }),
       times.end());
   times.back() = s.end_time;
+  if (!reach.obstacle.empty()) std::erase_if(times, [&](double t) { return !(t < reach.until); });
   return times;
 }
 
@@ -137,6 +141,38 @@ double wall_now() {
 
 }  // namespace
 
+namespace {
+
+/// A run that ends where drives cannot go on says so, whatever its method met there: where drives
+/// alone move the loops that is known before it starts; else it is looked for next to the last
+/// state with closed loops.
+void judge_drives(const Mechanism& mechanism, const DriveReach& reach,
+                  const std::vector<double>& times, const RunMonitor::Closed& closed,
+                  RunResult& result) {
+  const RunSettings& s = result.settings;
+  const double spacing = s.end_time / s.samples;
+  const auto stalled = [&](const DriveReach& found) {
+    result.status = "failed";
+    result.reason = found.obstacle;
+    result.stopped_at = found.until;
+  };
+  if (!reach.obstacle.empty()) {
+    // Next to a dead point rates have no bound, and a method may give up a little before it.
+    const double last = times.empty() ? 0 : times.back();
+    if (result.status == "done" || times.empty() || last - result.stopped_at <= 2 * spacing)
+      stalled(reach);
+    return;
+  }
+  if ((result.status != "failed" && result.status != "came apart") || closed.q.size() == 0) return;
+  const double later = std::max(1e-3 * s.end_time, 0.1 * (result.stopped_at - closed.t));
+  const DriveReach near =
+      drive_reach(mechanism, closed.t, closed.q, std::min(s.end_time, result.stopped_at + later),
+                  Followed::all);
+  if (!near.obstacle.empty()) stalled(near);
+}
+
+}  // namespace
+
 RunResult run_form(const Mechanism& mechanism, const Start& start, const RunRequest& request) {
   RunResult result;
   result.scene = mechanism.scene().name;
@@ -151,6 +187,8 @@ RunResult run_form(const Mechanism& mechanism, const Start& start, const RunRequ
     return result;
   }
   Runner& runner = *made;
+  const double end = result.settings.end_time;
+  const DriveReach reach = drive_reach(mechanism, start.t, start.q, end);
   const double wall_start = wall_now(), cpu_start = thread_seconds();
   RunMonitor monitor(mechanism, runner.form(), request, result);
   const auto y0 = runner.form().initial(start);
@@ -158,19 +196,25 @@ RunResult run_form(const Mechanism& mechanism, const Start& start, const RunRequ
   auto* ode = dynamic_cast<OdeForm*>(&runner.form());
   std::vector<long> faded(static_cast<std::size_t>(mechanism.m()));
   if (ode && mechanism.m() > 0) ode->watch_faded(&faded);
-  const IntegrationResult run = runner.integrate(
-      output_times(result.settings, request.reference),
-      Observer{
-          [&](double t, const double* y, const double* ydot) { return monitor.sample(t, y, ydot); },
-          [&](double t0, double t1, const Interpolant& between) {
-            return monitor.step(t0, t1, between);
-          }});
+  const std::vector<double> times = output_times(result.settings, request.reference, reach);
+  const Observer observer{
+      [&](double t, const double* y, const double* ydot) { return monitor.sample(t, y, ydot); },
+      [&](double t0, double t1, const Interpolant& between) {
+        return monitor.step(t0, t1, between);
+      }};
+  IntegrationResult run;
+  if (!times.empty()) run = runner.integrate(times, observer);
   result.cpu_s = thread_seconds() - cpu_start;
   result.wall_s = wall_now() - wall_start;
   result.status =
       run.done ? "done" : (run.reason.rfind("time limit", 0) == 0 ? "time limit" : "failed");
   result.reason = run.done ? "" : (monitor.trouble().empty() ? run.reason : monitor.trouble());
   result.stopped_at = run.end_time;
+  if (!run.done && !monitor.came_apart().empty()) {
+    result.status = "came apart";
+    result.reason = monitor.came_apart();
+  }
+  judge_drives(mechanism, reach, times, monitor.last_closed(), result);
   result.counters = run.counters;
   result.jacobian = run.jacobian;
   result.linear_solver = run.linear_solver;

@@ -4,6 +4,7 @@
 
 #include <momenta/dae/measure/growth.h>
 #include <momenta/dae/measure/multipliers.h>
+#include <momenta/dae/study/apart.h>
 #include <momenta/dae/study/dissipated_energy.h>
 #include <momenta/dae/study/run_form.h>
 #include <momenta/dae/study/singular_crossings.h>
@@ -28,6 +29,7 @@ class RunMonitor {
         dissipated_energy_(mechanism.scene()) {
     if (request.keep_trajectory) result.trajectory.columns = trajectory_columns(mechanism);
     if (mechanism.m() > 0) {
+      apart_.emplace(mechanism, result.settings);
       solver_ = make_loop_solver(mechanism, *e_);
       unique_.emplace(mechanism, *e_, *solver_);
       all_unique_.assign(static_cast<std::size_t>(mechanism.m()), true);
@@ -44,6 +46,10 @@ class RunMonitor {
     e_->place(t, now_.q.data());
     e_->positions(phi_.data());
     const double position = phi_.norm();
+    if (apart_ && std::isfinite(position)) {
+      came_apart_ = apart_->found(t, phi_, true);
+      keep_closed(t, now_.q);
+    }
     e_->move(now_.u.data());
     e_->velocities(phi_.data());
     const double velocity = phi_.norm();
@@ -80,6 +86,7 @@ class RunMonitor {
       result_.film.every = (result_.settings.end_time - t) / request_.film_intervals;
       result_.film.frames.emplace_back(now_.q.begin(), now_.q.end());
     }
+    if (!came_apart_.empty()) return false;
     return !request_.progress || request_.progress(t);
   }
 
@@ -95,6 +102,9 @@ class RunMonitor {
       e_->positions(phi_.data());
       const double drift = phi_.norm();
       if (!(drift <= between_)) between_ = drift;
+      if (std::isfinite(drift)) came_apart_ = apart_->found(middle, phi_, false);
+      if (!came_apart_.empty()) return false;
+      keep_closed(middle, middle_);
     }
     if (singular_crossings_) singular_crossings_->step(t0, t1, between, state_);
     if (dissipated_energy_.any() && !dissipated_energy_.step(t0, t1, [&](double t, double& watts) {
@@ -136,8 +146,23 @@ class RunMonitor {
   }
 
   const std::string& trouble() const { return trouble_; }
+  /// One sentence where the loops have come apart; empty where they have not.
+  const std::string& came_apart() const { return came_apart_; }
+  /// The last state with loops closed, of mechanisms with drives and loops.
+  struct Closed {
+    double t = 0;
+    Eigen::VectorXd q;
+  };
+  const Closed& last_closed() const { return closed_; }
 
  private:
+  /// @pre phi_ is Φ at (t, q)
+  void keep_closed(double t, const Eigen::VectorXd& q) {
+    constexpr double closed = 1e-5;  // of the scene's length, or radians
+    if (!mechanism_.plan().drives || apart_->gap(phi_) > closed) return;
+    closed_.t = t;
+    closed_.q = q;
+  }
   /// Coordinates at the film's times within the last step.
   void film_until(double t1, const Interpolant& between) {
     Film& film = result_.film;
@@ -225,6 +250,9 @@ class RunMonitor {
   Snapshot now_;
   DissipatedEnergy dissipated_energy_;
   std::optional<SingularCrossings> singular_crossings_;
+  std::optional<Apart> apart_;
+  std::string came_apart_;
+  Closed closed_;
   double energy_at_start_ = 0, potential_at_start_ = 0, between_ = 0;
   int compared_ = 0;
   long rows_ = 0;  ///< of the trajectory

@@ -67,9 +67,10 @@ struct Trajectory {
 struct RunResult {
   std::string scene;
   RunSettings settings;
-  std::string status = "done";  ///< done, failed, time limit
-  std::string reason;           ///< one sentence when not done
-  double stopped_at = 0;        ///< [s]
+  /// done, failed, time limit; came apart: the loops opened by more than a form may leave (apart.h)
+  std::string status = "done";
+  std::string reason;     ///< one sentence when not done
+  double stopped_at = 0;  ///< [s]
   Counters counters;
   long partitions = 0;  ///< how often `partitioned` chose its coordinates, the start included
   std::string jacobian, linear_solver;

@@ -74,12 +74,15 @@ double error_of(const RunResult& run, double exact) {
   return run.status == "done" ? std::abs(run.trajectory.rows.back()[1] - exact) : HUGE_VAL;
 }
 
-/// Errors of an ensemble in tolerances: the median, three quarters and all of them.
+/// Errors of an ensemble in tolerances: the median, three quarters, 95 %, and all of them. An error
+/// goes with 1/δ, δ the distance of the nearest step from the pose, which is anywhere: of N members
+/// the worst is some N times the median. Here N is 30 to 120, in 20 runs by other starts 2400.
 void expect_errors(const std::vector<double>& errors, double median, double three_quarters,
                    const std::string& what) {
   EXPECT_LT(equations::quantile(errors, 0.5), median) << what;
   EXPECT_LT(equations::quantile(errors, 0.75), three_quarters) << what;
-  EXPECT_LT(equations::quantile(errors, 1), 20 * three_quarters) << what;
+  EXPECT_LT(equations::quantile(errors, 0.95), 20 * three_quarters) << what;
+  EXPECT_LT(equations::quantile(errors, 1), 2400 * three_quarters) << what;
 }
 
 // How far a step past the pose misses goes with where it happens to fall, which tolerance, turn of

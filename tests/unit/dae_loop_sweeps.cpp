@@ -3,6 +3,7 @@
 // at every instruction level.
 
 #include "equations/level_symbols.h"
+#include "equations/levels.h"
 #include "equations/linkages.h"
 #include "equations/quad_loops.h"
 #include "equations/random_loops.h"
@@ -332,7 +333,7 @@ TEST(LoopSweeps, BatchesOfEveryLoop) {
     if (mechanism.m() > mechanism.nv() || mechanism.kkt() != KktChoice::sweeps) continue;
     (in_plane ? planar : spatial) += compare_batches(mechanism, random, 9);
   }
-  const int levels = 1 + (level_at_most(3) == 3) + (level_at_most(4) == 4);
+  const auto levels = static_cast<int>(equations::levels().size());
   EXPECT_GT(planar, 400 * levels);
   EXPECT_GT(spatial, 400 * levels);
 }

@@ -1,0 +1,235 @@
+#include <momenta/dae/assembly_units.h>
+#include <momenta/dae/kkt/least_norm.h>
+#include <momenta/dae/measure/drive_reach.h>
+#include <momenta/dae/measure/stalled_drive.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <optional>
+
+namespace momenta {
+namespace {
+
+constexpr double longest_step = 0.1;  // [rad or lengths] of any joint
+/// What a corrector may add to a predictor's step. Next to a dead point, q ~ (t* − t)^(1/2), it
+/// keeps h below 0.2 (t* − t): a gap behind which loops close again is not stepped over.
+constexpr double most_correction = 0.05;
+constexpr double closed = 1e-11;  // |Φ|∞, in the same units; at least
+constexpr int most_steps = 5000;
+constexpr double resolution = 1e-9;  // of the time in which drives move by one unit
+
+class Continuation {
+ public:
+  Continuation(const Mechanism& mechanism, double t, Eigen::VectorXd q)
+      : mechanism_(mechanism),
+        e_(mechanism.evaluation<double>()),
+        pattern_(mechanism.constraint_pattern()),
+        steps_(pattern_, mechanism.m(), mechanism.nv()),
+        units_(mechanism),
+        closed_(std::max(closed, 4 * units_.rounding)),
+        column_in_(static_cast<std::size_t>(mechanism.nv()), true),
+        row_in_(static_cast<std::size_t>(mechanism.m()), true),
+        t_(t),
+        q_(std::move(q)) {}
+
+  /// Leaves out groups that keep freedoms here; false where none is left.
+  bool leave_free_groups(bool& all_determined);
+  DriveReach follow(double end);
+
+ private:
+  std::vector<double> jacobian() {
+    std::vector<double> values(pattern_.size());
+    e_->constraint_entries(values.data());
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const auto [row, column] = pattern_[i];
+      const bool in = column_in_[static_cast<std::size_t>(column)];
+      values[i] = in ? values[i] * units_.rates[column] / units_.equations[row] : 0;
+    }
+    return values;
+  }
+  Eigen::VectorXd of_followed_rows(Eigen::VectorXd x) const {
+    for (Eigen::Index i = 0; i < x.size(); ++i)
+      x[i] = row_in_[static_cast<std::size_t>(i)] ? x[i] / units_.equations[i] : 0;
+    return x;
+  }
+  Eigen::VectorXd gap(double t, const Eigen::VectorXd& q) {
+    Eigen::VectorXd phi(mechanism_.m());
+    e_->place(t, q.data());
+    e_->positions(phi.data());
+    return of_followed_rows(std::move(phi));
+  }
+  /// After gap(t, q).
+  Eigen::VectorXd moved(const Eigen::VectorXd& q, const Eigen::VectorXd& step) {
+    const Eigen::VectorXd rates = step.cwiseProduct(units_.rates);
+    Eigen::VectorXd qdot = Eigen::VectorXd::Zero(mechanism_.nq());
+    e_->coordinate_rates(q.data(), rates.data(), qdot.data());
+    Eigen::VectorXd next = q + qdot;
+    for (const auto& b : mechanism_.tree().bodies)
+      if (b.nq >= 4) next.segment<4>(b.q + b.nq - 4).normalize();
+    return next;
+  }
+  /// u in units at (t_, q_), and how fast drives alone open the loops there [1/s].
+  Eigen::VectorXd rates() {
+    gap(t_, q_);
+    const std::vector<double> j = jacobian();
+    Eigen::VectorXd given(mechanism_.m());
+    e_->move(nullptr);
+    e_->velocities(given.data());
+    given = of_followed_rows(std::move(given));
+    speed_ = std::max(speed_, given.cwiseAbs().maxCoeff());
+    steps_.factor(j);
+    return -steps_.solve(given);
+  }
+  /// Newton's method from q at t, of steps that add up to `most_way` at the most; damped: by the
+  /// gap.
+  std::optional<Eigen::VectorXd> corrected(double t, Eigen::VectorXd q, double most_way,
+                                           bool damped);
+  /// Whether loops close a little later near by, and if so goes there.
+  bool passes(double step, double end);
+
+  const Mechanism& mechanism_;
+  std::unique_ptr<Evaluation<double>> e_;
+  const std::vector<KktPattern::Entry>& pattern_;
+  LeastNorm steps_;
+  AssemblyUnits units_;
+  double closed_;
+  std::vector<bool> column_in_, row_in_;
+  double t_;
+  Eigen::VectorXd q_;
+  double speed_ = 0;      ///< largest |Φ_t| met
+  Eigen::VectorXd open_;  ///< what stayed open behind the obstacle
+};
+
+bool Continuation::leave_free_groups(bool& all_determined) {
+  const auto columns = static_cast<std::size_t>(mechanism_.nv());
+  // Columns that share a row belong to one group.
+  std::vector<int> root(columns);
+  std::iota(root.begin(), root.end(), 0);
+  const auto root_of = [&](int c) {
+    while (root[static_cast<std::size_t>(c)] != c) c = root[static_cast<std::size_t>(c)];
+    return c;
+  };
+  std::vector<int> first(static_cast<std::size_t>(mechanism_.m()), -1);
+  std::vector<bool> met(columns, false);
+  for (const auto& [row, column] : pattern_) {
+    int& one = first[static_cast<std::size_t>(row)];
+    met[static_cast<std::size_t>(column)] = true;
+    if (one < 0) one = column;
+    root[static_cast<std::size_t>(root_of(column))] = root_of(one);
+  }
+  gap(t_, q_);
+  const std::vector<double> all = jacobian();
+  all_determined = true;
+  bool any = false;
+  for (int group = 0; group < mechanism_.nv(); ++group) {
+    if (root_of(group) != group || !met[static_cast<std::size_t>(group)]) continue;
+    std::vector<double> values = all;
+    int size = 0;
+    for (std::size_t i = 0; i < values.size(); ++i)
+      if (root_of(pattern_[i].column) != group) values[i] = 0;
+    for (std::size_t c = 0; c < columns; ++c)
+      size += met[c] && root_of(static_cast<int>(c)) == group;
+    const bool determined = steps_.judge(values).rank == size;
+    any = any || determined;
+    all_determined = all_determined && determined;
+    for (std::size_t c = 0; c < columns; ++c)
+      if (root_of(static_cast<int>(c)) == group) column_in_[c] = determined;
+    for (std::size_t r = 0; r < row_in_.size(); ++r)
+      if (first[r] >= 0 && root_of(first[r]) == group) row_in_[r] = determined;
+  }
+  // Rows without columns tie drives to the ground: they hold or they do not.
+  for (std::size_t r = 0; r < row_in_.size(); ++r) any = any || first[r] < 0;
+  return any;
+}
+
+std::optional<Eigen::VectorXd> Continuation::corrected(double t, Eigen::VectorXd q, double most_way,
+                                                       bool damped) {
+  const int most_iterations = damped ? 60 : 12;
+  double way = 0, last = std::numeric_limits<double>::infinity();
+  int slow = 0;
+  for (int i = 0; i < most_iterations; ++i) {
+    const Eigen::VectorXd phi = gap(t, q);
+    const double norm = phi.cwiseAbs().maxCoeff();
+    if (!std::isfinite(norm)) return std::nullopt;
+    if (norm <= closed_) return q;
+    if (damped) open_ = phi;
+    slow = norm > 0.5 * last ? slow + 1 : 0;
+    if (!damped && slow > 1) return std::nullopt;
+    last = norm;
+    const std::vector<double> j = jacobian();
+    steps_.factor(j, damped ? phi.norm() : 0);
+    const Eigen::VectorXd step = -steps_.solve(phi);
+    if (!step.allFinite()) return std::nullopt;
+    way += step.size() > 0 ? step.cwiseAbs().maxCoeff() : 0;
+    if (!(way <= most_way)) return std::nullopt;
+    q = moved(q, step);
+  }
+  return std::nullopt;
+}
+
+bool Continuation::passes(double step, double end) {
+  for (const double wider : {1e1, 1e3}) {
+    const double t = t_ + wider * step;
+    if (t >= end) break;
+    if (const auto there = corrected(t, q_, longest_step, true)) {
+      t_ = t;
+      q_ = *there;
+      return true;
+    }
+  }
+  return false;
+}
+
+DriveReach Continuation::follow(double end) {
+  DriveReach reach;
+  double h = end - t_;
+  int forks = 0;
+  for (int count = 0; count < most_steps && t_ < end; ++count) {
+    const Eigen::VectorXd u = rates();
+    const double fastest = u.size() > 0 ? u.cwiseAbs().maxCoeff() : 0;
+    if (!(speed_ > 0) && !(fastest > 0)) h = std::min(h, (end - t_) / 64);  // at rest, as yet
+    const double least = resolution * std::min(end - t_, speed_ > 0 ? 1 / speed_ : end - t_);
+    h = std::min(h, end - t_);
+    if (fastest * h > longest_step) h = longest_step / fastest;
+    for (;;) {
+      gap(t_, q_);
+      const double most_way = most_correction * h * fastest + 1e-9;
+      if (const auto there = corrected(t_ + h, moved(q_, h * u), most_way, false)) {
+        t_ = h < end - t_ ? t_ + h : end;
+        q_ = *there;
+        break;
+      }
+      h *= 0.5;
+      if (h > least) continue;
+      if (++forks <= 100 && passes(std::max(least, 1e-12 * std::abs(t_)), end)) break;
+      reach.until = t_;
+      reach.obstacle = stalled_drive(mechanism_, t_, open_.size() > 0 ? open_ : gap(t_ + h, q_));
+      return reach;
+    }
+    h *= 2;
+  }
+  reach.until = t_;
+  return reach;
+}
+
+}  // namespace
+
+DriveReach drive_reach(const Mechanism& mechanism, double t, const Eigen::VectorXd& q, double end,
+                       Followed followed) {
+  DriveReach reach;
+  reach.until = end;
+  if (mechanism.scene().drives.empty() || mechanism.m() == 0 || !(end > t)) return reach;
+  Continuation way(mechanism, t, q);
+  bool all_determined = true;
+  if (followed == Followed::determined && !way.leave_free_groups(all_determined)) {
+    reach.determined = false;
+    return reach;
+  }
+  reach = way.follow(end);
+  reach.determined = all_determined;
+  return reach;
+}
+
+}  // namespace momenta

@@ -1,0 +1,38 @@
+#pragma once
+// How far drives can go: the time at which a prescribed motion asks for what loops cannot follow.
+//
+// A connected group of loop equations whose Φ_q has full column rank leaves its joints no freedom:
+// drives alone move them, q(t) with Φ(q, t) = 0. It is followed by continuation,
+//
+//   predictor  q + h u,  Φ_q u = −Φ_t,    corrector  q − Φ_q⁺ Φ at t + h,
+//
+// with steps of at most a tenth of a radian or of the scene's length. At a dead point −Φ_t leaves
+// the range of Φ_q, u grows like (t* − t)^(−1/2), and behind it no pose near by closes the loops:
+// steps halve down to t*. At a change point or a fork, where the range shrinks but holds Φ_t, poses
+// behind it close, and the way goes on. No dynamics enters, so every form and every integrator is
+// told the same time.
+//
+// Groups with freedoms left move as forces say; there the continuation takes the least change, and
+// what it finds holds near the state it starts from alone.
+
+#include <momenta/dae/form/form.h>
+
+#include <string>
+
+namespace momenta {
+
+struct DriveReach {
+  double until = 0;        ///< loops were closed up to here [s]
+  std::string obstacle;    ///< one sentence: drives, time, loop; empty: none found up to `until`
+  bool determined = true;  ///< drives alone move all joints of the loops
+};
+
+/// Which groups are followed: those that drives determine, or all.
+enum class Followed { determined, all };
+
+/// From a closed state on to time `end` [s], or as far as 5000 steps go. Cost: two least-norm
+/// factorisations of Φ_q a step. Without drives or loops: `end`, at once.
+DriveReach drive_reach(const Mechanism& mechanism, double t, const Eigen::VectorXd& q, double end,
+                       Followed followed = Followed::determined);
+
+}  // namespace momenta

@@ -1,0 +1,17 @@
+#pragma once
+// What `momenta check` tells of how far drives can go.
+
+#include <momenta/dae/measure/drive_reach.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace momenta::program {
+
+/// Whether anything can be told: drives beside loops.
+bool has_reach(const Mechanism& mechanism);
+/// One line.
+std::string in_words(const DriveReach& reach, double end);
+nlohmann::ordered_json reach_json(const DriveReach& reach);
+
+}  // namespace momenta::program

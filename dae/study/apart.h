@@ -1,0 +1,61 @@
+#pragma once
+// When the loops of a run have come apart, so that what moves on is another mechanism.
+//
+// Each equation is judged in its own unit: points in lengths of the scene, axes in radians,
+// couplers in what their terms are by nature (AssemblyUnits). With |Φ|∞ so counted
+//
+//   forms that drift                         |Φ|∞ ≤ 1/4
+//   forms that hold Φ = 0, adaptive steps    |Φ|∞ ≤ 10⁴ rtol, no less than 10⁻⁶, no more than 1/4
+//
+// The second is what their Newton iterations and their interpolants between steps leave, with room;
+// beyond it a form no longer does what it is for.
+
+#include <momenta/dae/assembly_units.h>
+#include <momenta/dae/solver/integrators.h>
+#include <momenta/dae/study/run_result.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <string>
+
+namespace momenta {
+
+class Apart {
+ public:
+  static constexpr double most = 0.25;
+
+  /// @pre mechanism.m() > 0
+  Apart(const Mechanism& mechanism, const RunSettings& s)
+      : mechanism_(mechanism), units_(mechanism) {
+    const Integrator& method = integrator(s.integrator);
+    if ((s.project || holds_positions(s.form)) && method.step == Integrator::Step::adaptive)
+      least_ = std::clamp(1e4 * s.rtol, 1e-6, most);
+  }
+
+  /// |Φ|∞ in those units.
+  double gap(const Eigen::VectorXd& phi) {
+    return phi.cwiseAbs().cwiseQuotient(units_.equations).maxCoeff(&worst_);
+  }
+  /// One sentence where the loops have come apart at t [s]; empty where they hold. `at_sample`:
+  /// after all corrections.
+  std::string found(double t, const Eigen::VectorXd& phi, bool at_sample) {
+    const double open = gap(phi), limit = at_sample ? least_ : most;
+    if (open <= limit) return "";
+    const std::string& loop = mechanism_.rows()[static_cast<std::size_t>(worst_)].loop;
+    char text[160];
+    std::snprintf(
+        text, sizeof text, "' is open by %.3g of the scene's length or radians, %s %.2g", open,
+        limit < most ? "where this form holds it within" : "the most a drift may be is", limit);
+    char time[32];
+    std::snprintf(time, sizeof time, "%.6g", t);
+    return std::string("at t = ") + time + " s the loops came apart: loop '" + loop + text;
+  }
+
+ private:
+  const Mechanism& mechanism_;
+  AssemblyUnits units_;
+  double least_ = most;
+  Eigen::Index worst_ = 0;
+};
+
+}  // namespace momenta

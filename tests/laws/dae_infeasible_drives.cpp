@@ -1,0 +1,289 @@
+// Drives that ask for what loops cannot follow: every form and every integrator says the same time,
+// that of the dead point, and no run is done with open loops.
+//
+// The slow twin is geometry. A crank a turned by φ(t) about O carries a coupler b, pinned to a
+// rocker c about C at a distance g from O: the loop closes where
+//
+//   |b − c| ≤ d(φ) ≤ b + c,   d² = g² + a² − 2 g a cos φ,
+//
+// and the drive can go on until φ(t) first leaves these angles.
+
+#include "equations/ensemble.h"
+#include "equations/linkages.h"
+
+#include <gtest/gtest.h>
+#include <momenta/dae/measure/drive_reach.h>
+#include <momenta/dae/study/run_form.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <numbers>
+#include <random>
+
+namespace momenta {
+namespace {
+
+using namespace equations;
+using Eigen::Vector3d;
+
+struct FourBar {
+  double a = 1, b = 1.2, c = 0.6, g = 2;
+  double from = 0.5;      ///< φ(0) [rad]
+  DriveSpec law = {};     ///< φ(t)
+  bool folded = false;    ///< which of the two assemblies
+  bool as_loop = false;   ///< cut at the driven joint
+  bool pendulum = false;  ///< hangs from the coupler: a freedom the drive does not have
+};
+
+double law_at(const DriveSpec& d, double t) {
+  if (d.kind == "harmonic") return d.offset + d.amplitude * std::sin(d.frequency * t + d.phase);
+  double value = 0;
+  for (std::size_t i = d.coefficients.size(); i-- > 0;) value = value * t + d.coefficients[i];
+  return value;
+}
+
+/// How far the loop is from its limits, in length: positive where it closes with room.
+double room(const FourBar& x, double phi) {
+  const double d = std::sqrt(x.g * x.g + x.a * x.a - 2 * x.g * x.a * std::cos(phi));
+  return std::min(x.b + x.c - d, d - std::abs(x.b - x.c));
+}
+
+/// The first time in (0, end) at which the loop opens; end where it does not. `closest`: least room
+/// met before, or behind it the most by which it is missed.
+double dead_point(const FourBar& x, double end, double& closest) {
+  constexpr int parts = 4000;
+  closest = room(x, law_at(x.law, 0));
+  for (int i = 1; i <= parts; ++i) {
+    double low = end * (i - 1) / parts, high = end * i / parts;
+    const double here = room(x, law_at(x.law, high));
+    if (here > 0) {
+      closest = std::min(closest, here);
+      continue;
+    }
+    for (int k = 0; k < 60; ++k)
+      (room(x, law_at(x.law, 0.5 * (low + high))) > 0 ? low : high) = 0.5 * (low + high);
+    closest = 0;
+    for (int k = i; k <= parts; ++k)
+      closest = std::min(closest, room(x, law_at(x.law, end * k / parts)));
+    return low;
+  }
+  return end;
+}
+
+BodySpec rod_of(const std::string& name, double length) {
+  BodySpec body = rod(name);
+  body.com *= length;
+  body.inertia *= length * length;
+  return body;
+}
+
+Scene scene_of(const FourBar& x) {
+  Scene s;
+  s.name = "driven four-bar";
+  s.gravity = {0, -9.81, 0};
+  s.bodies = {rod_of("a", x.a), rod_of("b", x.b), rod_of("c", x.c)};
+  // Angles of coupler and rocker from the triangle A, B, C.
+  const Eigen::Vector2d A(x.a * std::cos(x.from), x.a * std::sin(x.from)), C(x.g, 0);
+  const Eigen::Vector2d way = C - A;
+  const double d = way.norm(), along = std::atan2(way.y(), way.x());
+  const double at_a = std::acos((d * d + x.b * x.b - x.c * x.c) / (2 * d * x.b));
+  const double coupler = along + (x.folded ? -at_a : at_a);
+  const Eigen::Vector2d B = A + x.b * Eigen::Vector2d(std::cos(coupler), std::sin(coupler));
+  const double rocker = std::atan2(B.y() - C.y(), B.x() - C.x());
+  LoopSpec loop;
+  loop.kind = LoopKind::revolute;
+  DriveSpec drive = x.law;
+  if (x.as_loop) {  // the tree: ground, rocker, coupler, crank
+    s.joints = {hinge("C", "ground", "c", {x.g, 0, 0}, rocker),
+                hinge("B", "c", "b", {x.c, 0, 0}, coupler - rocker)};
+    s.joints.back().origin_child = {x.b, 0, 0};
+    s.joints.push_back(hinge("A", "b", "a", {0, 0, 0}, x.from - coupler));
+    s.joints.back().origin_child = {x.a, 0, 0};
+    loop.name = drive.loop = "O";
+    loop.parent = "ground";
+    loop.child = "a";
+  } else {
+    s.joints = {hinge("O", "ground", "a", {0, 0, 0}, x.from),
+                hinge("A", "a", "b", {x.a, 0, 0}, coupler - x.from),
+                hinge("C", "ground", "c", {x.g, 0, 0}, rocker)};
+    loop.name = "B";
+    loop.parent = "b";
+    loop.child = "c";
+    loop.origin_parent = {x.b, 0, 0};
+    loop.origin_child = {x.c, 0, 0};
+    drive.joint = "O";
+  }
+  s.loops = {loop};
+  s.drives = {drive};
+  if (x.pendulum) {
+    s.bodies.push_back(rod("bob"));
+    s.joints.push_back(hinge("M", "b", "bob", {0.5 * x.b, 0, 0}, 0.3));
+  }
+  return s;
+}
+
+DriveSpec steady(double from, double rate) {
+  DriveSpec d;
+  d.kind = "polynomial";
+  d.coefficients = {from, rate};
+  return d;
+}
+
+RunResult run(const Mechanism& mechanism, const std::string& form, double end,
+              const std::string& integrator = "", bool project = false) {
+  RunRequest request;
+  request.settings.form = form;
+  request.settings.integrator = integrator.empty() ? default_integrator(form, 1e-8) : integrator;
+  request.settings.gauge = "leak:3";
+  request.settings.end_time = end;
+  request.settings.samples = 50;
+  request.settings.step = 1e-3;
+  request.settings.project = project;
+  request.max_cpu_seconds = 20;
+  return run_form(mechanism, start_of(mechanism), request);
+}
+
+TEST(InfeasibleDrives, EveryFormSaysTheSameTime) {
+  FourBar x;
+  x.law = steady(0.5, 1);
+  const double exact = std::acos((5 - 1.8 * 1.8) / 4) - 0.5;
+  for (const bool as_loop : {false, true})
+    for (const bool pendulum : {false, true}) {
+      x.as_loop = as_loop;
+      x.pendulum = pendulum;
+      const Mechanism mechanism(scene_of(x));
+      const auto expect = [&](const RunResult& r, const std::string& what) {
+        EXPECT_EQ(r.status, "failed") << what;
+        EXPECT_NEAR(r.stopped_at, exact, 1e-8) << what;
+        EXPECT_EQ(r.reason.rfind("drive of 'O' cannot go on at t = 0.615198 s: loop '", 0), 0U)
+            << what << ": " << r.reason;
+        EXPECT_GT(r.series.t.size(), 20U) << what;
+        EXPECT_LT(r.position_drift_max, 1e-4) << what;
+      };
+      for (const std::string& form : form_names()) expect(run(mechanism, form, 1), form);
+      for (const char* integrator : {"rk4", "dp5", "vern9", "gauss4"})
+        expect(run(mechanism, "momentum", 1, integrator), integrator);
+      expect(run(mechanism, "momentum", 1, "dop853", true), "momentum, projected");
+      expect(run(mechanism, "acceleration", 1, "rk4", true), "acceleration, projected");
+      expect(run(mechanism, "momentum-index2", 1, "radau5"), "radau5");
+    }
+  const Mechanism mechanism(scene_of({.law = steady(0.5, 1)}));
+  EXPECT_NE(run(mechanism, "projected", 1).reason.find("(dead point of 'b' and 'c')"),
+            std::string::npos);
+}
+
+/// A dead point is approached with rates that go to infinity, a change point is passed.
+TEST(InfeasibleDrives, ChangePointsArePassed) {
+  FourBar parallelogram{1, 2, 1, 2, 0.3, steady(0.3, 2), true};
+  const Mechanism mechanism(scene_of(parallelogram));
+  const auto start = start_of(mechanism);
+  const DriveReach reach = drive_reach(mechanism, start.t, start.q, 10);
+  EXPECT_EQ(reach.obstacle, "");
+  EXPECT_EQ(reach.until, 10);
+  EXPECT_TRUE(reach.determined);
+}
+
+/// Three rods of 1 m between the ground and a slider that leaves at 1 m/s: stretched at t = 2 s,
+/// with a freedom that forces move until then.
+TEST(InfeasibleDrives, LoopsWithAFreedomLeftAreStretched) {
+  Scene s;
+  s.name = "three rods pulled";
+  s.gravity = {0, -9.81, 0};
+  s.bodies = {rod("a"), rod("b"), rod("c"), rod("slider")};
+  s.joints = {hinge("A", "ground", "a", {0, 0, 0}, 0.9), hinge("B", "a", "b", {1, 0, 0}, -1.2),
+              hinge("C", "b", "c", {1, 0, 0}, -0.6)};
+  JointSpec slide = hinge("S", "ground", "slider", {1, 0, 0}, 0);
+  slide.kind = JointKind::prismatic;
+  slide.axis = {1, 0, 0};
+  s.joints.push_back(slide);
+  LoopSpec loop;
+  loop.name = "D";
+  loop.kind = LoopKind::revolute;
+  loop.parent = "c";
+  loop.child = "slider";
+  loop.origin_parent = {1, 0, 0};
+  s.loops = {loop};
+  DriveSpec drive = steady(0, 1);
+  drive.joint = "S";
+  s.drives = {drive};
+  const Mechanism mechanism(s);
+  EXPECT_FALSE(drive_reach(mechanism, 0, start_of(mechanism).q, 3).determined);
+  for (const std::string& form : form_names()) {
+    const RunResult r = run(mechanism, form, 3);
+    EXPECT_NE(r.status, "done") << form;
+    EXPECT_EQ(r.reason.rfind("drive of 'S' cannot go on at t = ", 0), 0U) << form << r.reason;
+    EXPECT_NEAR(r.stopped_at, 2, 2e-3) << form;
+  }
+}
+
+/// Random four-bars, random laws, a random form each: done exactly where the geometry says so, and
+/// else stopped at its time. MOMENTA_CASES: how many.
+TEST(InfeasibleDrives, RandomFourBars) {
+  const char* asked = std::getenv("MOMENTA_CASES");
+  const int cases = asked ? std::atoi(asked) : 250;
+  std::mt19937 random(2026);
+  const auto uniform = [&](double low, double high) {
+    return std::uniform_real_distribution(low, high)(random);
+  };
+  constexpr double end = 3;
+  int feasible = 0, infeasible = 0, close = 0;
+  for (int i = 0; i < cases; ++i) {
+    FourBar x{uniform(0.2, 2), uniform(0.2, 2), uniform(0.2, 2), uniform(0.5, 2), uniform(0, 6.28)};
+    x.folded = uniform(0, 1) < 0.5;
+    x.as_loop = uniform(0, 1) < 0.3;
+    x.pendulum = uniform(0, 1) < 0.3;
+    if (uniform(0, 1) < 0.5) {
+      x.law = steady(x.from, uniform(-3, 3));
+    } else {
+      x.law.kind = "harmonic";
+      x.law.amplitude = uniform(0.1, 2);
+      x.law.frequency = uniform(0.5, 4);
+      x.law.offset = x.from;
+    }
+    if (room(x, x.from) < 0.02) {  // next to a dead point at the start
+      --i;
+      continue;
+    }
+    double closest = 0;
+    const double exact = dead_point(x, end, closest);
+    const auto& forms = form_names();
+    const std::string form = forms[static_cast<std::size_t>(i) % forms.size()];
+    const Mechanism mechanism(scene_of(x));
+    const RunResult r = run(mechanism, form, end);
+    const std::string what = "case " + std::to_string(i) + ", " + form + ": " + r.status + ", " +
+                             r.reason + ", dead point at " + std::to_string(exact) + ", room " +
+                             std::to_string(closest);
+    // Touching a limit, or a motion between two limits too close to tell, is either.
+    if (std::abs(closest) < 1e-6) {
+      ++close;
+      continue;
+    }
+    if (exact < end) {
+      ++infeasible;
+      EXPECT_EQ(r.status, "failed") << what;
+      if (form == "partitioned" && asked && r.reason.find("dense output") != std::string::npos)
+        continue;
+      EXPECT_NEAR(r.stopped_at, exact, 1e-6) << what;
+      EXPECT_NE(r.reason.find("cannot go on"), std::string::npos) << what;
+    } else {
+      ++feasible;
+      // Close to a dead point forms may give up; none may be done with open loops. Where drives
+      // move all there is, `partitioned` has no unknowns and no error to choose steps by: it takes
+      // those its Newton method can follow, and gives up where the stages of a dense output can't
+      // (two of 1250).
+      if (closest > 0.01 && (form != "partitioned" || !asked)) {
+        EXPECT_EQ(r.status, "done") << what;
+      }
+      if (r.status == "done") {
+        EXPECT_LT(r.position_drift_max, 0.01) << what;
+      }
+      EXPECT_EQ(r.reason.find("cannot go on"), std::string::npos) << what;
+    }
+  }
+  EXPECT_GT(feasible, cases / 5);
+  EXPECT_GT(infeasible, cases / 5);
+  std::printf("%d feasible, %d infeasible, %d at a limit\n", feasible, infeasible, close);
+}
+
+}  // namespace
+}  // namespace momenta
