@@ -47,6 +47,11 @@ int OpenChain::level() const {
 
 bool OpenChain::rates(double t, const ConstVectorRef& q, const ConstVectorRef& p, VectorRef qdot,
                       VectorRef pdot) {
+  expect_size("rates", "q", q.size(), nq());
+  expect_size("rates", "p", p.size(), nv());
+  expect_size("rates", "qdot", qdot.size(), nq());
+  expect_size("rates", "pdot", pdot.size(), nv());
+  if (!inside_->finite(t, q, "p", p)) return false;
   return inside_->visit([&](auto& kernel) {
     if (!inside_->plan.quasi_velocities)  // q̇ = u
       return inside_->momentum(kernel, t, q.data(), p.data(), qdot.data(), pdot.data());
@@ -60,6 +65,15 @@ bool OpenChain::rates(double t, const ConstVectorRef& q, const ConstVectorRef& p
 bool OpenChain::rates_of_states(double t, const ConstStatesRef& q, const ConstStatesRef& p,
                                 StatesRef qdot, StatesRef pdot, int threads) {
   check_threads(threads);
+  expect_size("rates_of_states", "a column of q", q.rows(), nq());
+  expect_size("rates_of_states", "a column of p", p.rows(), nv());
+  expect_size("rates_of_states", "a column of qdot", qdot.rows(), nq());
+  expect_size("rates_of_states", "a column of pdot", pdot.rows(), nv());
+  expect_size("rates_of_states", "a row of p", p.cols(), q.cols());
+  expect_size("rates_of_states", "a row of qdot", qdot.cols(), q.cols());
+  expect_size("rates_of_states", "a row of pdot", pdot.cols(), q.cols());
+  if (!std::isfinite(t)) throw std::invalid_argument("rates_of_states: t is not finite");
+  inside_->not_a_number.clear();
   return inside_->visit([&](auto& kernel) {
     const auto stride = q.outerStride();
     if (!kernel.model->has_body_forces() && stride == p.outerStride() &&
@@ -83,6 +97,13 @@ bool OpenChain::rates_of_states(double t, const ConstStatesRef& q, const ConstSt
 bool OpenChain::accelerations_of_states(double t, const ConstStatesRef& q, const ConstStatesRef& u,
                                         StatesRef udot, int threads) {
   check_threads(threads);
+  expect_size("accelerations_of_states", "a column of q", q.rows(), nq());
+  expect_size("accelerations_of_states", "a column of u", u.rows(), nv());
+  expect_size("accelerations_of_states", "a column of udot", udot.rows(), nv());
+  expect_size("accelerations_of_states", "a row of u", u.cols(), q.cols());
+  expect_size("accelerations_of_states", "a row of udot", udot.cols(), q.cols());
+  if (!std::isfinite(t)) throw std::invalid_argument("accelerations_of_states: t is not finite");
+  inside_->not_a_number.clear();
   return inside_->visit([&](auto& kernel) {
     const auto stride = q.outerStride();
     if (!kernel.model->has_body_forces() && !kernel.model->has_joint_forces &&
@@ -104,6 +125,15 @@ bool OpenChain::accelerations_of_states(double t, const ConstStatesRef& q, const
 bool OpenChain::jacobian_times(double t, const ConstVectorRef& q, const ConstVectorRef& p,
                                const ConstVectorRef& dq, const ConstVectorRef& dp, VectorRef dqdot,
                                VectorRef dpdot) {
+  expect_size("jacobian_times", "q", q.size(), nq());
+  expect_size("jacobian_times", "p", p.size(), nv());
+  expect_size("jacobian_times", "dq", dq.size(), nq());
+  expect_size("jacobian_times", "dp", dp.size(), nv());
+  expect_size("jacobian_times", "dqdot", dqdot.size(), nq());
+  expect_size("jacobian_times", "dpdot", dpdot.size(), nv());
+  if (!inside_->finite(t, q, "p", p) || !inside_->finite("dq", dq.data(), dq.size()) ||
+      !inside_->finite("dp", dp.data(), dp.size()))
+    return false;
   return inside_->visit([&](auto& kernel) {
     return inside_->noted_one(*kernel.sweeps,
                               kernel.sweeps->derivative(t, q.data(), p.data(), dq.data(), dp.data(),
@@ -112,6 +142,11 @@ bool OpenChain::jacobian_times(double t, const ConstVectorRef& q, const ConstVec
 }
 
 bool OpenChain::jacobian(double t, const ConstVectorRef& q, const ConstVectorRef& p, MatrixRef J) {
+  expect_size("jacobian", "q", q.size(), nq());
+  expect_size("jacobian", "p", p.size(), nv());
+  expect_size("jacobian", "a row of J", J.cols(), nq() + nv());
+  expect_size("jacobian", "a column of J", J.rows(), nq() + nv());
+  if (!inside_->finite(t, q, "p", p)) return false;
   return inside_->visit([&](auto& kernel) {
     BatchSweeps& sweeps = *kernel.batches[0];
     return inside_->noted_one(sweeps,
@@ -126,6 +161,10 @@ Eigen::MatrixXd OpenChain::jacobian(double t, const ConstVectorRef& q, const Con
 
 bool OpenChain::velocities(double t, const ConstVectorRef& q, const ConstVectorRef& p,
                            VectorRef u) {
+  expect_size("velocities", "q", q.size(), nq());
+  expect_size("velocities", "p", p.size(), nv());
+  expect_size("velocities", "u", u.size(), nv());
+  if (!inside_->finite(t, q, "p", p)) return false;
   return inside_->visit([&](auto& kernel) {
     return inside_->momentum(kernel, t, q.data(), p.data(), u.data(), inside_->p.data());
   });
@@ -133,6 +172,10 @@ bool OpenChain::velocities(double t, const ConstVectorRef& q, const ConstVectorR
 
 bool OpenChain::inverse_mass_times(double t, const ConstVectorRef& q, const ConstVectorRef& x,
                                    VectorRef result) {
+  expect_size("inverse_mass_times", "q", q.size(), nq());
+  expect_size("inverse_mass_times", "x", x.size(), nv());
+  expect_size("inverse_mass_times", "result", result.size(), nv());
+  if (!inside_->finite(t, q, "x", x)) return false;
   return inside_->visit([&](auto& kernel) {
     return inside_->noted_one(
         *kernel.sweeps, kernel.sweeps->inverse_mass_times(t, q.data(), x.data(), result.data()));
@@ -140,12 +183,20 @@ bool OpenChain::inverse_mass_times(double t, const ConstVectorRef& q, const Cons
 }
 
 void OpenChain::momenta(double t, const ConstVectorRef& q, const ConstVectorRef& u, VectorRef p) {
+  expect_size("momenta", "q", q.size(), nq());
+  expect_size("momenta", "u", u.size(), nv());
+  expect_size("momenta", "p", p.size(), nv());
+  inside_->expect_finite("momenta", t, q, "u", u);
   inside_->visit(
       [&](auto& kernel) { momenta_from_rates(kernel.w, t, q.data(), u.data(), p.data()); });
 }
 
 bool OpenChain::accelerations(double t, const ConstVectorRef& q, const ConstVectorRef& u,
                               VectorRef udot) {
+  expect_size("accelerations", "q", q.size(), nq());
+  expect_size("accelerations", "u", u.size(), nv());
+  expect_size("accelerations", "udot", udot.size(), nv());
+  if (!inside_->finite(t, q, "u", u)) return false;
   return inside_->visit([&](auto& kernel) {
     return inside_->acceleration(kernel, t, q.data(), u.data(), udot.data());
   });
@@ -153,12 +204,17 @@ bool OpenChain::accelerations(double t, const ConstVectorRef& q, const ConstVect
 
 void OpenChain::coordinate_rates(const ConstVectorRef& q, const ConstVectorRef& u,
                                  VectorRef qdot) const {
+  expect_size("coordinate_rates", "q", q.size(), nq());
+  expect_size("coordinate_rates", "u", u.size(), nv());
+  expect_size("coordinate_rates", "qdot", qdot.size(), nq());
+  inside_->expect_finite("coordinate_rates", 0, q, "u", u);
   inside_->visit([&](auto& kernel) {
     momenta::coordinate_rates(*kernel.model, q.data(), u.data(), qdot.data());
   });
 }
 
 std::string OpenChain::failure() const {
+  if (!inside_->not_a_number.empty()) return inside_->not_a_number;
   if (inside_->singular < 0) return "";
   const Tree& t = inside_->tree;
   const auto& b = t.bodies[static_cast<std::size_t>(inside_->singular)];

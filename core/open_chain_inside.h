@@ -2,12 +2,14 @@
 // What an OpenChain holds: the tree, its plan and the kernel the plan has chosen. For the sources
 // of OpenChain alone.
 
+#include <momenta/core/arguments.h>
 #include <momenta/core/kernel/centroidal_sums.h>
 #include <momenta/core/kernel/levels/batch_sweeps.h>
 #include <momenta/core/kernel/levels/open_sweeps.h>
 #include <momenta/core/kernel/levels/when_asked.h>
 #include <momenta/core/kernel/reactions.h>
 #include <momenta/core/open_chain.h>
+#include <momenta/core/scalar/all_finite.h>
 #include <momenta/core/share.h>
 
 #include <algorithm>
@@ -51,6 +53,7 @@ struct OpenChain::Inside {
   bool has_user_joints = false;
   int singular = -1;
   Eigen::Index failed_state = -1;  ///< of the last batch
+  std::string not_a_number;        ///< of what the last call was given; empty: all were
 
   Inside(Tree t, Plan pl, const Scene& from, int level, bool branches_side_by_side)
       : tree(std::move(t)),
@@ -63,6 +66,29 @@ struct OpenChain::Inside {
         p(tree.nv) {
     if (plan.planar) flat = from;
     for (const auto& b : tree.bodies) has_user_joints |= b.kind == JointKind::user;
+  }
+
+  /// Whether t and the n numbers of `x` are finite; else failure() says which is not.
+  bool finite(const char* name, const double* x, Eigen::Index n) {
+    if (all_finite(x, static_cast<std::size_t>(n))) [[likely]]
+      return true;
+    for (Eigen::Index i = 0; i < n && not_a_number.empty(); ++i)
+      if (!std::isfinite(x[i])) not_a_number = not_finite(name, i, x[i]);
+    return false;
+  }
+  bool finite(double t, const ConstVectorRef& q, const char* name, const ConstVectorRef& x) {
+    if (!not_a_number.empty()) not_a_number.clear();
+    if (!std::isfinite(t)) [[unlikely]] {
+      not_a_number = "t is not finite, expected a time in seconds";
+      return false;
+    }
+    return finite("q", q.data(), q.size()) && finite(name, x.data(), x.size());
+  }
+  /// The same, thrown: of calls that return what they find.
+  void expect_finite(const char* call, double t, const ConstVectorRef& q, const char* name,
+                     const ConstVectorRef& x) {
+    if (!finite(t, q, name, x))
+      throw std::invalid_argument(std::string(call) + ": " + not_a_number);
   }
 
   /// The momentum recursion and its third sweep.

@@ -39,6 +39,9 @@ Reaction reaction_of(const Tree::Body& body, const Model<Planar>& model,
 }  // namespace
 
 Energies OpenChain::energies(double t, const ConstVectorRef& q, const ConstVectorRef& u) {
+  expect_size("energies", "q", q.size(), nq());
+  expect_size("energies", "u", u.size(), nv());
+  inside_->expect_finite("energies", t, q, "u", u);
   return inside_->visit([&](auto& kernel) {
     Energies e;
     momenta_from_rates(kernel.w, t, q.data(), u.data(), inside_->p.data());
@@ -66,6 +69,9 @@ bool OpenChain::centroidal(double t, const ConstVectorRef& q, const ConstVectorR
 
 std::vector<Reaction> OpenChain::reactions(double t, const ConstVectorRef& q,
                                            const ConstVectorRef& u) {
+  expect_size("reactions", "q", q.size(), nq());
+  expect_size("reactions", "u", u.size(), nv());
+  inside_->expect_finite("reactions", t, q, "u", u);
   return inside_->visit([&](auto& kernel) {
     std::vector<Reaction> all;
     Eigen::VectorXd p(nv()), rates(nv()), pdot(nv()), qdot(nq());
@@ -84,6 +90,8 @@ std::vector<Reaction> OpenChain::reactions(double t, const ConstVectorRef& q,
 }
 
 Eigen::MatrixXd OpenChain::mass_matrix(double t, const ConstVectorRef& q) {
+  expect_size("mass_matrix", "q", q.size(), nq());
+  inside_->expect_finite("mass_matrix", t, q, "q", q);
   Eigen::MatrixXd m = Eigen::MatrixXd::Zero(nv(), nv());
   inside_->visit([&](auto& kernel) {
     poses_outward(kernel.w, t, q.data(), false);
@@ -93,6 +101,8 @@ Eigen::MatrixXd OpenChain::mass_matrix(double t, const ConstVectorRef& q) {
 }
 
 std::vector<Eigen::Isometry3d> OpenChain::poses(double t, const ConstVectorRef& q) {
+  expect_size("poses", "q", q.size(), nq());
+  inside_->expect_finite("poses", t, q, "q", q);
   return inside_->visit([&](auto& kernel) {
     poses_outward(kernel.w, t, q.data(), true);
     std::vector<Eigen::Isometry3d> all;

@@ -158,14 +158,21 @@ std::string Mechanism::joint_without_inertia(bool swept) const {
   return "";
 }
 
+void Mechanism::expect_sweeps() const {
+  if (rows_ > 0 && visit([](const auto& cast) { return cast.swept.plan.fits(); })) return;
+  throw std::logic_error("no sweeps carry loops of '" + scene_.name +
+                         "': " + (rows_ == 0 ? "it has none" : kkt_reason_));
+}
 std::unique_ptr<LoopedSweeps> Mechanism::looped_sweeps(int level,
                                                        bool branches_side_by_side) const {
+  expect_sweeps();
   return visit([&](const auto& cast) {
     return make_looped_sweeps(cast.links, cast.swept, level > 0 ? level : best_level(),
                               branches_side_by_side);
   });
 }
 std::unique_ptr<LoopedSweeps> Mechanism::looped_sweeps_as_given() const {
+  expect_sweeps();
   return visit([](const auto& cast) {
     const auto& loops = cast.swept.shared.empty() ? cast.swept : cast.as_given;
     return make_looped_sweeps(cast.links, loops, best_level());

@@ -64,7 +64,8 @@ class Mechanism {
   double mass_spread() const { return mass_spread_; }
   /// The sweeps that carry this mechanism's loops, for one instruction level; 0: the machine's
   /// best. `branches_side_by_side`: in space, of one state, folded branches of one shape are swept
-  /// in the slots of a register. @pre kkt() is sweeps
+  /// in the slots of a register. @throws std::logic_error where there are no loops, or more open at
+  /// once than there are slots
   std::unique_ptr<LoopedSweeps> looped_sweeps(int level = 0,
                                               bool branches_side_by_side = true) const;
   /// The same with the loops paired as the scene has them.
@@ -117,6 +118,7 @@ class Mechanism {
   decltype(auto) visit(F&& f) const {
     return plan_.planar ? f(std::get<0>(cast_)) : f(std::get<1>(cast_));
   }
+  void expect_sweeps() const;
   void choose_kkt(KktChoice asked);
   void take_weights();
   std::string joint_without_inertia(bool swept) const;

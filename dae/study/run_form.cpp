@@ -1,3 +1,4 @@
+#include <momenta/core/arguments.h>
 #include <momenta/dae/form/ode_form.h>
 #include <momenta/dae/measure/drive_reach.h>
 #include <momenta/dae/solver/integrators.h>
@@ -143,6 +144,24 @@ double wall_now() {
 
 namespace {
 
+/// @throws std::invalid_argument
+void expect_start(const Mechanism& mechanism, const Start& s) {
+  const struct {
+    const char* name;
+    const Eigen::VectorXd& x;
+    int size;
+  } all[] = {{"q of the start", s.q, mechanism.nq()},
+             {"u of the start", s.u, mechanism.nv()},
+             {"udot of the start", s.udot, mechanism.nv()},
+             {"lambda of the start", s.lambda, mechanism.m()}};
+  for (const auto& [name, x, size] : all) {
+    expect_size("run_form", name, x.size(), size);
+    for (Eigen::Index i = 0; i < x.size(); ++i)
+      if (!std::isfinite(x[i]))
+        throw std::invalid_argument("run_form: " + not_finite(name, i, x[i]));
+  }
+}
+
 /// A run that ends where drives cannot go on says so, whatever its method met there: where drives
 /// alone move the loops that is known before it starts; else it is looked for next to the last
 /// state with closed loops.
@@ -174,6 +193,7 @@ void judge_drives(const Mechanism& mechanism, const DriveReach& reach,
 }  // namespace
 
 RunResult run_form(const Mechanism& mechanism, const Start& start, const RunRequest& request) {
+  expect_start(mechanism, start);
   RunResult result;
   result.scene = mechanism.scene().name;
   result.settings = request.settings;

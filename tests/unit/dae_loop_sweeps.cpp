@@ -338,6 +338,14 @@ TEST(LoopSweeps, BatchesOfEveryLoop) {
   EXPECT_GT(spatial, 400 * levels);
 }
 
+/// Where no sweeps carry loops there is a sentence, and nothing to call.
+TEST(LoopSweeps, AreRefusedWhereThereAreNone) {
+  Scene open = row_of_four_bars(1, 0.5);
+  open.loops.clear();
+  EXPECT_THROW(Mechanism(open).looped_sweeps(), std::logic_error);
+  EXPECT_THROW(Mechanism(open).looped_sweeps_as_given(), std::logic_error);
+}
+
 /// Records of a pack beyond the cache: the batch takes the states one by one, to the last bit.
 TEST(LoopSweeps, LargeBatchesGoStateByState) {
   RandomTree random(1);
