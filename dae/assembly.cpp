@@ -19,8 +19,12 @@ constexpr double rank_tolerance = LeastNorm::rank_tolerance;
 
 class Assembler {
  public:
-  explicit Assembler(const Mechanism& mechanism)
+  /// From q, u at time t [s].
+  Assembler(const Mechanism& mechanism, double t, Eigen::VectorXd q, Eigen::VectorXd u)
       : mechanism_(mechanism),
+        t_(t),
+        q_(std::move(q)),
+        u_(std::move(u)),
         e_(mechanism.evaluation<double>()),
         pattern_(mechanism.constraint_pattern()),
         steps_(pattern_, mechanism.m(), mechanism.nv()),
@@ -38,8 +42,9 @@ class Assembler {
 
   Assembly run() {
     Assembly a;
-    a.start.q = mechanism_.tree().q0;
-    a.start.u = mechanism_.tree().u0;
+    a.start.t = t_;
+    a.start.q = q_;
+    a.start.u = u_;
     if (mechanism_.m() > 0) {
       if (mechanism_.nv() == 0) nothing_moves();
       close_positions(a);
@@ -70,7 +75,7 @@ class Assembler {
   }
   Eigen::VectorXd gap(const Eigen::VectorXd& q) {
     Eigen::VectorXd phi(mechanism_.m());
-    e_->place(0, q.data());
+    e_->place(t_, q.data());
     e_->positions(phi.data());
     return phi.cwiseQuotient(row_);
   }
@@ -78,10 +83,10 @@ class Assembler {
   Eigen::VectorXd moved(const Eigen::VectorXd& q, const Eigen::VectorXd& step) {
     const Eigen::VectorXd rates = step.cwiseProduct(column_);
     Eigen::VectorXd qdot = Eigen::VectorXd::Zero(mechanism_.nq());
-    e_->place(0, q.data());
+    e_->place(t_, q.data());
     e_->coordinate_rates(q.data(), rates.data(), qdot.data());
     Eigen::VectorXd next = q + qdot;
-    normalise(next);
+    mechanism_.tree().normalise(next);
     return next;
   }
   /// Where a step leads, shortened until the loops close further; near rounding level they no
@@ -165,7 +170,7 @@ class Assembler {
       const Eigen::VectorXd reached = gap(next);
       if ((reached - phi - expected).norm() > bend * expected.norm()) {
         if ((part *= 0.5) < least_part) return false;
-        e_->place(0, q.data());
+        e_->place(t_, q.data());
         continue;
       }
       part = std::min(0.25, 1.5 * part);
@@ -319,12 +324,9 @@ class Assembler {
                      "weld nor driven");
   }
 
-  void normalise(Eigen::VectorXd& q) const {
-    for (const auto& b : mechanism_.tree().bodies)
-      if (b.nq >= 4) q.segment<4>(b.q + b.nq - 4).normalize();
-  }
-
   const Mechanism& mechanism_;
+  double t_;
+  Eigen::VectorXd q_, u_;  ///< the guess
   std::unique_ptr<Evaluation<double>> e_;
   const std::vector<KktPattern::Entry>& pattern_;  ///< of Φ_q
   LeastNorm steps_;
@@ -337,7 +339,12 @@ class Assembler {
 }  // namespace
 
 Assembly assemble(const Mechanism& mechanism) {
-  return Assembler(mechanism).run();
+  return assemble(mechanism, 0, mechanism.tree().q0, mechanism.tree().u0);
+}
+
+Assembly assemble(const Mechanism& mechanism, double t, const Eigen::VectorXd& q,
+                  const Eigen::VectorXd& u) {
+  return Assembler(mechanism, t, q, u).run();
 }
 
 }  // namespace momenta

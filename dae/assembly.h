@@ -39,5 +39,8 @@ struct Assembly {
 /// @throws SceneError naming the loops that stay open and by how much, the held rates that cannot
 /// be met, or a loop where no joint can move.
 Assembly assemble(const Mechanism& mechanism);
+/// The same at time t [s], from another guess: q (nq), u (nv).
+Assembly assemble(const Mechanism& mechanism, double t, const Eigen::VectorXd& q,
+                  const Eigen::VectorXd& u);
 
 }  // namespace momenta

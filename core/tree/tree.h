@@ -64,6 +64,11 @@ struct Tree {
   }
   /// "joint 'O'", and "coordinate 1 of joint 'O'" for a part of several. For messages.
   std::string joint_in_words(int k) const;
+  /// Makes the quaternions of q (nq) unit ones.
+  void normalise(Eigen::VectorXd& q) const {
+    for (const Body& b : bodies)
+      if (b.nq >= 4) q.segment<4>(b.q + b.nq - 4).normalize();
+  }
   /// Every body frame in ground axes with all joints at zero (drives too).
   std::vector<Eigen::Isometry3d> zero_poses() const;
   /// A point given in the scene's axes of a body (−1: ground), in the body frame.

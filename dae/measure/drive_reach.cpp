@@ -37,6 +37,7 @@ class Continuation {
   /// Leaves out groups that keep freedoms here; false where none is left.
   bool leave_free_groups(bool& all_determined);
   DriveReach follow(double end);
+  const Eigen::VectorXd& pose() const { return q_; }
 
  private:
   std::vector<double> jacobian() {
@@ -66,8 +67,7 @@ class Continuation {
     Eigen::VectorXd qdot = Eigen::VectorXd::Zero(mechanism_.nq());
     e_->coordinate_rates(q.data(), rates.data(), qdot.data());
     Eigen::VectorXd next = q + qdot;
-    for (const auto& b : mechanism_.tree().bodies)
-      if (b.nq >= 4) next.segment<4>(b.q + b.nq - 4).normalize();
+    mechanism_.tree().normalise(next);
     return next;
   }
   /// u in units at (t_, q_), and how fast drives alone open the loops there [1/s].
@@ -220,6 +220,7 @@ DriveReach drive_reach(const Mechanism& mechanism, double t, const Eigen::Vector
                        Followed followed) {
   DriveReach reach;
   reach.until = end;
+  reach.q = q;
   if (mechanism.scene().drives.empty() || mechanism.m() == 0 || !(end > t)) return reach;
   Continuation way(mechanism, t, q);
   bool all_determined = true;
@@ -228,8 +229,21 @@ DriveReach drive_reach(const Mechanism& mechanism, double t, const Eigen::Vector
     return reach;
   }
   reach = way.follow(end);
+  reach.q = way.pose();
   reach.determined = all_determined;
   return reach;
+}
+
+Assembly assemble_at(const Mechanism& mechanism, double t) {
+  const Assembly start = assemble(mechanism);
+  if (t == 0 || (mechanism.scene().drives.empty() && !mechanism.plan().drives)) return start;
+  Eigen::VectorXd q = start.start.q;
+  if (t > 0) {
+    DriveReach reach = drive_reach(mechanism, 0, q, t, Followed::all);
+    if (!reach.obstacle.empty()) throw SceneError(mechanism.scene().where({}) + reach.obstacle);
+    q = std::move(reach.q);
+  }
+  return assemble(mechanism, t, q, mechanism.tree().u0);
 }
 
 }  // namespace momenta

@@ -15,7 +15,7 @@
 // Groups with freedoms left move as forces say; there the continuation takes the least change, and
 // what it finds holds near the state it starts from alone.
 
-#include <momenta/dae/form/form.h>
+#include <momenta/dae/assembly.h>
 
 #include <string>
 
@@ -25,6 +25,7 @@ struct DriveReach {
   double until = 0;        ///< loops were closed up to here [s]
   std::string obstacle;    ///< one sentence: drives, time, loop; empty: none found up to `until`
   bool determined = true;  ///< drives alone move all joints of the loops
+  Eigen::VectorXd q;       ///< at `until`; of the start where nothing was followed
 };
 
 /// Which groups are followed: those that drives determine, or all.
@@ -34,5 +35,11 @@ enum class Followed { determined, all };
 /// factorisations of Φ_q a step. Without drives or loops: `end`, at once.
 DriveReach drive_reach(const Mechanism& mechanism, double t, const Eigen::VectorXd& q, double end,
                        Followed followed = Followed::determined);
+
+/// The start of the scene at another time: assembled at t = 0, then led along the drives with the
+/// least change of whatever they leave free, so that it stays on the branch of the start; before
+/// t = 0 assembled at once. Rates are those nearest to the scene's.
+/// @throws SceneError as assemble(), and where a drive cannot go on before t.
+Assembly assemble_at(const Mechanism& mechanism, double t);
 
 }  // namespace momenta

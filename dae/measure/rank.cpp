@@ -67,8 +67,7 @@ class RankScout {
     e_->place(t, q.data());
     e_->coordinate_rates(q.data(), u.data(), qdot.data());
     VectorXd next = q + qdot;
-    for (const auto& b : mechanism_.tree().bodies)
-      if (b.nq >= 4) next.segment<4>(b.q + b.nq - 4).normalize();
+    mechanism_.tree().normalise(next);
     return next;
   }
 

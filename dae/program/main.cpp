@@ -155,9 +155,10 @@ int answer(int argc, char** argv) {
           "Of a scene: stiffness, damping, mass ratio, size, speed, duration; built in: words of a "
           "ladder's name (default: all)")
       ->type_name("LADDER,...");
-  positive(stress_app->add_option("--within", stress_options.within,
-                                  "Largest position drift, energy error and error of what survives"),
-           "X")
+  positive(
+      stress_app->add_option("--within", stress_options.within,
+                             "Largest position drift, energy error and error of what survives"),
+      "X")
       ->capture_default_str();
   positive(stress_app->add_option("--rtol", o.rtol, "Relative and absolute tolerance"), "X")
       ->capture_default_str();
@@ -231,6 +232,10 @@ int answer(int argc, char** argv) {
          {"bash", "zsh", "fish"});
   CLI::App* manual_verb = app.add_subcommand("manual", "Prints momenta(1) in roff")->group("");
 
+  if (argc < 2) {
+    std::fputs(app.help().c_str(), stderr);
+    return bad_input;
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {

@@ -1,8 +1,8 @@
 #include "state_input.h"
 
 #include <momenta/core/scene/near_name.h>
-#include <momenta/dae/assembly.h>
 #include <momenta/dae/joint_places.h>
+#include <momenta/dae/measure/drive_reach.h>
 
 #include <algorithm>
 #include <array>
@@ -199,7 +199,7 @@ class StateReader {
     state.q = mechanism_.tree().q0;
     state.v = mechanism_.tree().u0;
     if (mechanism_.m() == 0 || !needed) return;
-    const Assembly assembly = assemble(mechanism_);
+    const Assembly assembly = assemble_at(mechanism_, state.t);
     state.q = assembly.start.q;
     state.v = assembly.start.u;
   }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <sstream>
 
 #include "families.h"
@@ -49,7 +50,13 @@ CLI::Option* one_of(CLI::Option* option, const std::vector<std::string>& words) 
 }
 
 CLI::Option* positive(CLI::Option* option, const std::string& type_name) {
-  return option->check(CLI::PositiveNumber.description(""))->type_name(type_name);
+  const auto check = [](const std::string& text) -> std::string {
+    double x = 0;
+    const bool is_number = CLI::detail::lexical_cast(text, x);
+    if (is_number && x > 0 && std::isfinite(x)) return {};
+    return "found " + (is_number ? text : "'" + text + "'") + ", expected a positive number";
+  };
+  return option->check(check)->type_name(type_name);
 }
 
 std::vector<const CLI::App*> verbs_of(const CLI::App& program) {

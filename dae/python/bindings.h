@@ -2,6 +2,7 @@
 // What the files of the Python module share. A mechanism is shared by what is made of it; vectors
 // go in and out without copies, as NumPy arrays of float64.
 
+#include <momenta/core/arguments.h>
 #include <momenta/core/open_chain.h>
 #include <momenta/dae/assembly.h>
 #include <momenta/dae/kkt/loop_solver.h>
@@ -18,11 +19,18 @@ namespace py = pybind11;
 using Vector = Eigen::VectorXd;
 using In = Eigen::Ref<const Eigen::VectorXd>;
 
-/// Refuses an array of the wrong length, by its name.
+/// Refuses an array of the wrong length or with numbers that are none, by its name.
 inline void expect_size(const In& x, int size, const char* name, const char* what) {
   if (x.size() != size)
     throw py::value_error(std::string(name) + " has " + std::to_string(x.size()) +
                           " numbers, expected " + std::to_string(size) + " (" + what + ")");
+  for (Eigen::Index i = 0; i < x.size(); ++i)
+    if (!std::isfinite(x[i])) throw py::value_error(not_finite(name, i, x[i]));
+}
+inline void expect_time(double t) {
+  if (!std::isfinite(t))
+    throw py::value_error("t is " + std::string(py::str(py::float_(t))) +
+                          ", expected a time in seconds");
 }
 
 /// A mechanism with the workspaces of one thread: evaluations, the solver of its loops, its tree.
@@ -42,7 +50,8 @@ class Bench {
     }
     return *chain_;
   }
-  void expect(const In* q, const In* u, const char* rates = "u") const {
+  void expect(double t, const In* q, const In* u, const char* rates = "u") const {
+    expect_time(t);
     if (q) expect_size(*q, mechanism->nq(), "q", "nq");
     if (u) expect_size(*u, mechanism->nv(), rates, "nv");
   }

@@ -2,6 +2,7 @@
 
 #include <momenta/core/scene/read_scene.h>
 #include <momenta/dae/kkt/dense_blocks.h>
+#include <momenta/dae/measure/drive_reach.h>
 #include <momenta/dae/study/state_values.h>
 
 #include <optional>
@@ -41,7 +42,7 @@ std::vector<std::string> labels(const std::vector<Column>& columns) {
 py::tuple momentum_rates(Bench& b, double t, const In& q, const In& p,
                          const std::optional<Vector>& centre, double leak) {
   const int nv = b.mechanism->nv(), m = b.mechanism->m();
-  b.expect(&q, &p, "p");
+  b.expect(t, &q, &p, "p");
   Vector u(nv), pdot(nv), sigma(m);
   if (centre) expect_size(*centre, m, "centre", "m");
   const bool ok =
@@ -55,7 +56,7 @@ py::tuple momentum_rates(Bench& b, double t, const In& q, const In& p,
 /// (u̇, λ) of (3).
 py::tuple accelerations(Bench& b, double t, const In& q, const In& u) {
   const int nv = b.mechanism->nv(), m = b.mechanism->m();
-  b.expect(&q, &u);
+  b.expect(t, &q, &u);
   Vector udot(nv), lambda(m);
   const bool ok = m == 0 ? b.e->open_accelerations(t, q.data(), u.data(), udot.data())
                          : b.solver->acceleration(t, q.data(), u.data(), nullptr, 0, 0, udot.data(),
@@ -66,7 +67,7 @@ py::tuple accelerations(Bench& b, double t, const In& q, const In& u) {
 
 Vector momenta_of(Bench& b, double t, const In& q, const In& u,
                   const std::optional<Vector>& sigma) {
-  b.expect(&q, &u);
+  b.expect(t, &q, &u);
   if (sigma) expect_size(*sigma, b.mechanism->m(), "sigma", "m");
   Vector p(b.mechanism->nv());
   b.e->place(t, q.data());
@@ -77,7 +78,7 @@ Vector momenta_of(Bench& b, double t, const In& q, const In& u,
 
 /// (Φ, Φ̇)
 py::tuple constraints(Bench& b, double t, const In& q, const In& u) {
-  b.expect(&q, &u);
+  b.expect(t, &q, &u);
   Vector phi(b.mechanism->m()), rate(b.mechanism->m());
   b.e->place(t, q.data());
   b.e->positions(phi.data());
@@ -88,35 +89,43 @@ py::tuple constraints(Bench& b, double t, const In& q, const In& u) {
 
 /// M and Φ_q, dense.
 py::tuple kkt(Bench& b, double t, const In& q) {
-  b.expect(&q, nullptr);
+  b.expect(t, &q, nullptr);
   b.e->place(t, q.data());
   return py::make_tuple(dense_mass(*b.mechanism, *b.e), dense_constraints(*b.mechanism, *b.e));
 }
 
 Vector inverse_mass_times(Bench& b, double t, const In& q, const In& x) {
-  b.expect(&q, &x, "x");
+  b.expect(t, &q, &x, "x");
   Vector result(b.mechanism->nv());
   if (!b.chain().inverse_mass_times(t, q, x, result)) throw SceneError(b.chain().failure());
   return result;
 }
 
 py::tuple energies(Bench& b, double t, const In& q, const In& u) {
-  b.expect(&q, &u);
+  b.expect(t, &q, &u);
   b.e->place(t, q.data());
   b.e->move(u.data());
   const double kinetic = b.e->kinetic();
   return py::make_tuple(kinetic, b.e->potential(q.data()));
 }
 
+/// What is left out is the start of the scene: with loops the assembled one, as of the program.
 py::dict evaluate(Bench& b, double t, const std::optional<Vector>& q,
                   const std::optional<Vector>& v, const std::optional<Vector>& p) {
   const Tree& tree = b.mechanism->tree();
   if (v && p) throw py::value_error("v and p are both given; expected one of them");
+  expect_time(t);
   GivenState given;
   given.t = t;
-  given.q = q.value_or(tree.q0);
-  given.v = v.value_or(tree.u0);
   given.tau = Vector::Zero(tree.nv);
+  if (b.mechanism->m() > 0 && (!q || (!v && !p))) {
+    const Assembly a = assemble_at(*b.mechanism, t);
+    given.q = q.value_or(a.start.q);
+    given.v = v.value_or(a.start.u);
+  } else {
+    given.q = q.value_or(tree.q0);
+    given.v = v.value_or(tree.u0);
+  }
   expect_size(given.q, tree.nq, "q", "nq");
   expect_size(given.v, tree.nv, "v", "nv");
   if (p) {
@@ -219,8 +228,10 @@ void bind_mechanism(py::module_& module) {
       .def("evaluate", &evaluate, "t"_a = 0.0, "q"_a = py::none(), "v"_a = py::none(),
            "p"_a = py::none(),
            "Everything at one state as a dict: momenta, accelerations, multipliers, energies, "
-           "reactions (force [N], torque [N m], axes of the child), M where it is small. What is "
-           "left out is the scene's guess.");
+           "reactions on the child (force [N], torque [N m] about the joint's point, ground axes), "
+           "M "
+           "where it is small. What is left out is the scene's start, assembled where there are "
+           "loops.");
   add_runs(mechanism);
   add_modes(mechanism);
 

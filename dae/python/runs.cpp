@@ -7,6 +7,9 @@
 #include <momenta/dae/study/own_reference.h>
 #include <momenta/dae/study/work_study.h>
 
+#include <cmath>
+#include <optional>
+
 #include "bindings.h"
 
 namespace momenta::python {
@@ -53,6 +56,36 @@ std::vector<RunPtr> wrapped(std::vector<RunResult> runs) {
   return all;
 }
 
+using Given = std::optional<double>;
+
+std::string written(double x) {
+  return py::str(py::float_(x));
+}
+/// What is given, or else `otherwise`. Raises ValueError unless it is positive and finite.
+double positive(const char* name, const Given& given, double otherwise, const char* what) {
+  if (!given) return otherwise;
+  if (*given > 0 && std::isfinite(*given)) return *given;
+  throw py::value_error(std::string(name) + " is " + written(*given) + ", expected " + what);
+}
+double not_negative(const char* name, double x, const char* what) {
+  if (x >= 0 && std::isfinite(x)) return x;
+  throw py::value_error(std::string(name) + " is " + written(x) + ", expected " + what);
+}
+double seconds(const char* name, const Given& given, double otherwise) {
+  return positive(name, given, otherwise, "a positive number of seconds");
+}
+double tolerance(const char* name, double x) {
+  return positive(name, x, x, "a positive tolerance");
+}
+double cpu_time(double x) {
+  return not_negative("cpu_limit", x, "seconds, not negative; 0: none");
+}
+int sample_count(const std::optional<int>& given, int otherwise) {
+  if (!given) return otherwise;
+  if (*given > 0) return *given;
+  throw py::value_error("samples is " + std::to_string(*given) + ", expected at least 1");
+}
+
 std::unique_ptr<Reference> reference_of(const std::string& file, const Mechanism& mechanism) {
   if (file.empty()) return nullptr;
   auto reference = std::make_unique<Reference>(file);
@@ -61,27 +94,29 @@ std::unique_ptr<Reference> reference_of(const std::string& file, const Mechanism
 }
 
 RunPtr run(const Bench& bench, const std::string& form, const std::string& integrator,
-           const std::string& gauge, double rtol, double atol, double step, double end, int samples,
-           bool project, double baumgarte_alpha, double baumgarte_beta, double beta, double penalty,
+           const std::string& gauge, double rtol, const Given& atol, const Given& step,
+           const Given& end, const std::optional<int>& samples, bool project,
+           double baumgarte_alpha, double baumgarte_beta, double beta, double penalty,
            const std::string& reference, double cpu_limit) {
   const Mechanism& mechanism = *bench.mechanism;
   const auto given = reference_of(reference, mechanism);
   RunRequest request;
   RunSettings& s = request.settings;
-  s = default_settings(mechanism.scene().run, form, integrator, rtol);
+  s = default_settings(mechanism.scene().run, form, integrator, tolerance("rtol", rtol));
   if (!gauge.empty()) s.gauge = gauge;
-  if (atol > 0) s.atol = atol;
-  if (step > 0) s.step = step;
-  if (end > 0) s.end_time = end;
-  if (samples > 0) s.samples = samples;
+  s.atol = positive("atol", atol, s.atol, "a positive tolerance");
+  s.step = seconds("step", step, s.step);
+  s.end_time = seconds("end", end, s.end_time);
+  s.samples = sample_count(samples, s.samples);
   s.project = project;
-  s.baumgarte_alpha = baumgarte_alpha;
-  s.baumgarte_beta = baumgarte_beta;
-  s.beta = beta;
-  s.penalty = penalty;
+  constexpr const char* rate = "a rate in 1/s, not negative; 0: the form's own";
+  s.baumgarte_alpha = not_negative("baumgarte_alpha", baumgarte_alpha, rate);
+  s.baumgarte_beta = not_negative("baumgarte_beta", baumgarte_beta, rate);
+  s.beta = not_negative("beta", beta, rate);
+  s.penalty = not_negative("penalty", penalty, "a penalty, not negative; 0: the form's own");
   request.reference = given.get();
   request.keep_trajectory = true;
-  request.max_cpu_seconds = cpu_limit;
+  request.max_cpu_seconds = cpu_time(cpu_limit);
   request.progress = [](double) { return going_on(); };
   RunPtr made;
   {
@@ -94,20 +129,21 @@ RunPtr run(const Bench& bench, const std::string& form, const std::string& integ
 }
 
 std::vector<RunPtr> drift(const Bench& bench, const Names& forms, const std::string& integrator,
-                          double rtol, double step, double end, int samples,
-                          const std::string& reference, double cpu_limit) {
+                          double rtol, const Given& step, const Given& end,
+                          const std::optional<int>& samples, const std::string& reference,
+                          double cpu_limit) {
   const Mechanism& mechanism = *bench.mechanism;
   const RunDefaults& defaults = mechanism.scene().run;
   const auto given = reference_of(reference, mechanism);
   DriftRequest request;
   request.forms = forms;
   request.integrator = integrator;
-  request.rtol = request.atol = rtol;
-  request.step = step > 0 ? step : defaults.step.value_or(0);
-  request.end_time = end > 0 ? end : defaults.end_time;
-  request.samples = samples > 0 ? samples : defaults.samples;
+  request.rtol = request.atol = tolerance("rtol", rtol);
+  request.step = seconds("step", step, defaults.step.value_or(0));
+  request.end_time = seconds("end", end, defaults.end_time);
+  request.samples = sample_count(samples, defaults.samples);
   request.reference = given.get();
-  request.max_cpu_seconds = cpu_limit;
+  request.max_cpu_seconds = cpu_time(cpu_limit);
   request.progress = [](int, int, const std::string&, double) { return going_on(); };
   std::vector<RunPtr> made;
   {
@@ -119,7 +155,7 @@ std::vector<RunPtr> drift(const Bench& bench, const Names& forms, const std::str
 }
 
 std::vector<RunPtr> work(const Bench& bench, const Names& forms, const Names& integrators,
-                         const std::vector<double>& tolerances, double end,
+                         const std::vector<double>& tolerances, const Given& end,
                          const std::string& reference, double cpu_limit) {
   constexpr int rows = 100;
   const Mechanism& mechanism = *bench.mechanism;
@@ -128,9 +164,10 @@ std::vector<RunPtr> work(const Bench& bench, const Names& forms, const Names& in
   request.forms = forms;
   request.integrators = integrators;
   request.tolerances = tolerances;
-  request.end_time = end > 0 ? end : mechanism.scene().run.end_time;
+  for (const double x : tolerances) tolerance("a tolerance", x);
+  request.end_time = seconds("end", end, mechanism.scene().run.end_time);
   request.samples = rows;
-  request.max_cpu_seconds = cpu_limit;
+  request.max_cpu_seconds = cpu_time(cpu_limit);
   request.progress = [](int, int, const std::string&, double) { return going_on(); };
   std::vector<RunPtr> made;
   {
@@ -184,7 +221,8 @@ void bind_runs(py::module_& module) {
   text(
       "project", [](const RunResult& r) { return r.settings.project; }, "");
   text(
-      "status", [](const RunResult& r) { return r.status; }, "done, failed, time limit");
+      "status", [](const RunResult& r) { return r.status; },
+      "done, failed, time limit, came apart");
   text(
       "reason", [](const RunResult& r) { return r.reason; }, "one sentence when not done");
   text(
@@ -254,17 +292,19 @@ void bind_runs(py::module_& module) {
 void add_runs(py::class_<Bench, BenchPtr>& mechanism) {
   using namespace py::literals;
   mechanism
-      .def("run", &run, py::kw_only(), "form"_a = "momentum", "integrator"_a = "", "gauge"_a = "",
-           "rtol"_a = 1e-8, "atol"_a = 0.0, "step"_a = 0.0, "end"_a = 0.0, "samples"_a = 0,
-           "project"_a = false, "baumgarte_alpha"_a = 0.0, "baumgarte_beta"_a = 0.0, "beta"_a = 0.0,
-           "penalty"_a = 0.0, "reference"_a = "", "cpu_limit"_a = 0.0,
-           "One form from the assembled start: a Run, failed ones too, with all samples up to "
-           "there. What is zero or empty is the scene's or the program's default.")
+      .def(
+          "run", &run, py::kw_only(), "form"_a = "momentum", "integrator"_a = "", "gauge"_a = "",
+          "rtol"_a = 1e-8, "atol"_a = py::none(), "step"_a = py::none(), "end"_a = py::none(),
+          "samples"_a = py::none(), "project"_a = false, "baumgarte_alpha"_a = 0.0,
+          "baumgarte_beta"_a = 0.0, "beta"_a = 0.0, "penalty"_a = 0.0, "reference"_a = "",
+          "cpu_limit"_a = 0.0,
+          "One form from the assembled start: a Run, failed ones too, with all samples up to "
+          "there. What is None, zero or empty is the scene's, the form's or the program's default.")
       .def("drift", &drift, py::kw_only(), "forms"_a = Names{}, "integrator"_a = "",
-           "rtol"_a = 1e-8, "step"_a = 0.0, "end"_a = 0.0, "samples"_a = 0, "reference"_a = "",
-           "cpu_limit"_a = 60.0, "Every form side by side: a list of Run.")
+           "rtol"_a = 1e-8, "step"_a = py::none(), "end"_a = py::none(), "samples"_a = py::none(),
+           "reference"_a = "", "cpu_limit"_a = 60.0, "Every form side by side: a list of Run.")
       .def("work", &work, py::kw_only(), "forms"_a = Names{}, "integrators"_a = Names{},
-           "tolerances"_a = std::vector<double>{1e-4, 1e-6, 1e-8, 1e-10}, "end"_a = 0.0,
+           "tolerances"_a = std::vector<double>{1e-4, 1e-6, 1e-8, 1e-10}, "end"_a = py::none(),
            "reference"_a = "", "cpu_limit"_a = 10.0,
            "Error against run time over a ladder of tolerances, judged by a reference file or, "
            "without one, by a solution in quadruple precision made here: a list of Run.");

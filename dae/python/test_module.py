@@ -229,5 +229,49 @@ class ExampleScripts(unittest.TestCase):
                 runpy.run_path(str(script), run_name="tested")
 
 
+class Arguments(unittest.TestCase):
+    """One sentence each, by name, before anything runs."""
+
+    def setUp(self):
+        self.m = load("four_bar")
+
+    def refused(self, sentence, call, *args, **named):
+        with self.assertRaises(ValueError) as caught:
+            call(*args, **named)
+        self.assertEqual(str(caught.exception), sentence)
+
+    def test_numbers_of_a_run(self):
+        m = self.m
+        self.refused("end is -5.0, expected a positive number of seconds", m.run, end=-5)
+        self.refused("end is 0.0, expected a positive number of seconds", m.drift, end=0)
+        self.refused("step is nan, expected a positive number of seconds", m.run, step=float("nan"))
+        self.refused("rtol is -1.0, expected a positive tolerance", m.run, rtol=-1)
+        self.refused("atol is inf, expected a positive tolerance", m.run, atol=float("inf"))
+        self.refused("samples is 0, expected at least 1", m.run, samples=0)
+        self.refused("cpu_limit is -1.0, expected seconds, not negative; 0: none", m.run, cpu_limit=-1)
+        self.refused("a tolerance is 0.0, expected a positive tolerance", m.work, tolerances=[0.0])
+
+    def test_numbers_of_a_state(self):
+        m = self.m
+        q, bad = m.assemble().q, np.zeros(m.nv)
+        bad[1] = np.nan
+        sentence = "u[1] is not a number, expected a finite number"
+        self.refused(sentence, m.accelerations, 0.0, q, bad)
+        self.refused(sentence, m.energies, 0.0, q, bad)
+        self.refused("t is inf, expected a time in seconds", m.constraints, float("inf"), q, bad)
+        self.refused("v[1] is not a number, expected a finite number", m.evaluate, v=bad)
+
+    def test_evaluate_takes_the_assembled_start(self):
+        m = self.m
+        start = m.assemble()
+        values = m.evaluate()
+        self.assertLess(np.abs(values["phi"]).max(), 1e-12)
+        np.testing.assert_array_equal(values["udot"], m.evaluate(q=start.q, v=start.u)["udot"])
+
+    def test_signatures_show_public_names(self):
+        for name in ("run", "drift", "work", "assemble", "evaluate", "modes"):
+            self.assertNotIn("::", getattr(momenta.Mechanism, name).__doc__, name)
+
+
 if __name__ == "__main__":
     unittest.main()

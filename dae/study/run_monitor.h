@@ -43,6 +43,7 @@ class RunMonitor {
       trouble_ = "at t = " + std::to_string(t) + " s the velocities cannot be read back";
       return false;
     }
+    mechanism_.tree().normalise(now_.q);  // interpolants leave |q| off by the tolerance
     e_->place(t, now_.q.data());
     e_->positions(phi_.data());
     const double position = phi_.norm();
@@ -172,6 +173,7 @@ class RunMonitor {
       if (t > t1 + rounding) return;
       between(std::min(t, t1), state_.data());
       if (!form_.read_coordinates(t, state_.data(), middle_)) return;
+      mechanism_.tree().normalise(middle_);
       film.frames.emplace_back(middle_.begin(), middle_.end());
     }
   }

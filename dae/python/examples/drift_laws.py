@@ -20,7 +20,7 @@ def exponent(run):
     return np.polyfit(np.log(run.t[late]), np.log(largest[late]), 1)[0]
 
 
-print(f"{'form':14} {'gauge':8} {'opened by [m]':>14} {'t^':>6}")
+print(f"{'form':14} {'gauge':8} {'pos. drift [m]':>14} {'t^':>6}")
 for form, gauge in [("momentum", "leak:3"), ("momentum", "reset"), ("acceleration", "")]:
     run = mechanism.run(form=form, gauge=gauge, integrator="rk4", step=0.01, end=100.0, samples=2000)
     print(f"{form:14} {gauge:8} {run.position_drift_max:14.2e} {exponent(run):6.2f}")
