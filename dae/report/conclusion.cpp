@@ -65,18 +65,18 @@ std::string drift_text(const RunResult& run) {
   return length_text(run.position_drift_max);
 }
 
-// "After 1000 s the loops of `a` have opened by 0.27 m, growing like t^1.98"
-std::string opening(const Named& n) {
+// "After 1000 s the position drift of `a` is 0.27 m, growing like t^1.98"
+std::string drift_clause(const Named& n) {
   const std::string start =
-      "After " + seconds(n.run->settings.end_time) + " the loops of " + n.name;
+      "After " + seconds(n.run->settings.end_time) + " the position drift of " + n.name;
   if (n.run->position_drift_max < rounding_level) {
-    return start + " are closed to " + drift_text(*n.run);
+    return start + " is at " + drift_text(*n.run);
   }
-  return start + " have opened by " + (largest_at_the_end(*n.run) ? "" : "up to ") +
+  return start + (largest_at_the_end(*n.run) ? " is " : " reached ") +
          length_text(n.run->position_drift_max) + growth_clause(*n.run);
 }
 
-// "`b` 3.5 µm, like t^1.01", in the tail of a sentence that began with opening().
+// "`b` 3.5 µm, like t^1.01", in the tail of a sentence that began with drift_clause().
 std::string tail(const Named& n, bool growth_was_said) {
   std::string growth = growth_clause(*n.run);
   const std::string said = ", growing like ";
@@ -135,7 +135,7 @@ std::optional<Pair> compared_pair(const std::vector<Named>& runs) {
 std::string pair_sentence(const Pair& pair) {
   const RunResult &a = *pair.acceleration.run, &m = *pair.momentum.run;
   std::string text =
-      opening(pair.acceleration) + "; " +
+      drift_clause(pair.acceleration) + "; " +
       tail(pair.momentum, growth_clause(a).find("growing like") != std::string::npos);
   if (!gauged(m.settings)) text += " (no gauge)";
   const bool above_rounding =
@@ -159,22 +159,22 @@ std::string first_sentence(const std::vector<Named>& done) {
                [](const Named& n) { return !std::isnan(n.run->position_drift_max); });
   if (const auto pair = compared_pair(drifting)) return pair_sentence(*pair);
   if (drifting.empty()) {
-    return "Position drift was not measured: there is no loop to open.";
+    return "Position drift was not measured: there are no loops.";
   }
   const auto less = [](const Named& x, const Named& y) {
     return x.run->position_drift_max < y.run->position_drift_max;
   };
   const Named best = *std::min_element(drifting.begin(), drifting.end(), less);
   const Named worst = *std::max_element(drifting.begin(), drifting.end(), less);
-  if (drifting.size() == 1) return opening(best) + ".";
+  if (drifting.size() == 1) return drift_clause(best) + ".";
   if (worst.run->position_drift_max < rounding_level) {
-    return "After " + seconds(worst.run->settings.end_time) + " the loops of all " +
-           std::to_string(drifting.size()) + " finished runs are closed to rounding level (" +
+    return "After " + seconds(worst.run->settings.end_time) + " the position drift of all " +
+           std::to_string(drifting.size()) + " finished runs is at rounding level (" +
            length_text(worst.run->position_drift_max) + " at most).";
   }
   const bool said = growth_clause(*worst.run).find("growing like") != std::string::npos;
-  return opening(worst) + ", the most of " + std::to_string(drifting.size()) + " finished runs; " +
-         tail(best, said) + ", the least.";
+  return drift_clause(worst) + ", the most of " + std::to_string(drifting.size()) +
+         " finished runs; " + tail(best, said) + ", the least.";
 }
 
 std::string time_clause(const RunResult& run) {

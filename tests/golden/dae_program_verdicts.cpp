@@ -1,0 +1,152 @@
+// What the program says of runs whose loops do not stay closed, and of what it is asked wrongly.
+
+#include "golden/program.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace {
+
+using namespace momenta::golden;
+using nlohmann::json;
+
+/// The four-bar of the examples, its crank driven; links of other lengths.
+std::string dead_point(const std::string& drive) {
+  return R"(name = "Four-bar driven past its reach"
+gravity = [0, -9.81, 0]
+run = { end = 1.0, step = 0.001, samples = 200 }
+[[body]]
+name = "a"
+mass = 1.0
+shape = { kind = "rod", length = 1.0, axis = "x" }
+[[body]]
+name = "b"
+mass = 1.2
+shape = { kind = "rod", length = 1.2, axis = "x" }
+[[body]]
+name = "c"
+mass = 0.6
+shape = { kind = "rod", length = 0.6, axis = "x" }
+[[joint]]
+name = "O"
+kind = "revolute"
+parent = "ground"
+child = "a"
+axis = "z"
+position = 1.0
+[[joint]]
+name = "A"
+kind = "revolute"
+parent = "a"
+child = "b"
+origin = { parent = [1, 0, 0] }
+axis = "z"
+position = -1.2
+[[joint]]
+name = "C"
+kind = "revolute"
+parent = "ground"
+child = "c"
+origin = { parent = [2, 0, 0] }
+axis = "z"
+position = 2.2
+[[loop]]
+name = "B"
+kind = "revolute"
+parent = "b"
+child = "c"
+origin = { parent = [1.2, 0, 0], child = [0.6, 0, 0] }
+axis = "z"
+[[drive]]
+joint = "O"
+)" + drive;
+}
+const char* const sentence =
+    "drive of 'O' cannot go on at t = 0.115198 s: loop 'B' does not close behind it (dead point of "
+    "'b' and 'c')";
+const double exact = std::acos(0.44) - 1;  // (1 + 4 − 4 cos φ)^½ = 1.2 + 0.6
+
+TEST_F(Program, SaysWhereADriveCannotGoOn) {
+  const std::string scene =
+      "'" +
+      write("dead.toml", dead_point("kind = \"polynomial\"\ncoefficients = [1, 1]\n")).string() +
+      "'";
+  for (const char* how : {"", " --form projected", " --form acceleration", " --project",
+                          " --form momentum-index2", " --integrator rk4"}) {
+    const fs::path out = folder_ / "run";
+    const Outcome o = call("run " + scene + how + " --quiet --out '" + out.string() + "'");
+    EXPECT_EQ(o.status, 1) << how;
+    EXPECT_EQ(o.err.rfind(std::string("momenta: the run stopped: ") + sentence, 0), 0U) << o.err;
+    const json summary = json::parse(text_of(out / "summary.json"));
+    EXPECT_EQ(summary.at("status"), "failed");
+    EXPECT_EQ(summary.at("reason"), sentence);
+    EXPECT_NEAR(summary.at("stopped_at").get<double>(), exact, 1e-8);
+    EXPECT_LT(summary.at("drift").at("position_max").get<double>(), 1e-4);
+  }
+  const Outcome study =
+      call("drift " + scene + " --out '" + (folder_ / "drift").string() + "' --timing none");
+  EXPECT_EQ(study.status, 1);
+  EXPECT_NE(study.out.find("all 21 runs stopped at 0.1152 s: "), std::string::npos) << study.out;
+  EXPECT_EQ(study.out.find("recommend"), std::string::npos) << study.out;
+  const Outcome check = call("check " + scene);
+  EXPECT_EQ(check.status, 0);
+  EXPECT_NE(check.out.find(std::string("Drives\n  ") + sentence), std::string::npos) << check.out;
+  const json drives = json::parse(call("check " + scene + " --json").out).at("drives");
+  EXPECT_EQ(drives.at("obstacle"), sentence);
+  EXPECT_NEAR(drives.at("until_s").get<double>(), exact, 1e-8);
+  expect_refused("evaluate " + scene + R"( --at '{"t": 0.5}')", sentence);
+}
+
+TEST_F(Program, FollowsDrivesWithinTheirReach) {
+  const std::string scene =
+      "'" +
+      write("within.toml", dead_point("kind = \"harmonic\"\noffset = 1\namplitude = 0.1\n"
+                                      "frequency = 20.0\n"))
+          .string() +
+      "'";
+  EXPECT_NE(call("check " + scene).out.find("loops close along the drives up to t = 1 s"),
+            std::string::npos);
+  EXPECT_EQ(call("run " + scene + " --quiet").status, 0);
+  const json at = json::parse(call("evaluate " + scene + R"( --at '{"t": 0.7}')").out);
+  const json& loop = at.at("loops").at("B");
+  for (const double phi : loop.at("phi")) EXPECT_LT(std::abs(phi), 1e-12);
+  for (const double rate : loop.at("phidot")) EXPECT_LT(std::abs(rate), 1e-11);
+}
+
+TEST_F(Program, SaysWhenLoopsComeApart) {
+  const fs::path out = folder_ / "run";
+  const Outcome o = call("run '" + example("four_bar") +
+                         "' --form acceleration --integrator rk4 --step 0.05 --end 300 --quiet "
+                         "--timing none --out '" +
+                         out.string() + "'");
+  EXPECT_EQ(o.status, 1);
+  EXPECT_NE(o.err.find("s the loops came apart: loop 'B' is open by "), std::string::npos) << o.err;
+  const json summary = json::parse(text_of(out / "summary.json"));
+  EXPECT_EQ(summary.at("status"), "came apart");
+  const double at = summary.at("stopped_at");
+  EXPECT_GT(at, 1);
+  EXPECT_LT(at, 300);
+  // Samples up to there: t every 0.15 s.
+  const std::string rows = text_of(out / "trajectory.csv");
+  EXPECT_GT(std::count(rows.begin(), rows.end(), '\n'), 10);
+}
+
+TEST_F(Program, PrintsItsHelpWhereNothingIsAsked) {
+  const Outcome o = call("");
+  EXPECT_EQ(o.status, 2);
+  EXPECT_EQ(o.out, "");
+  EXPECT_EQ(o.err, call("--help").out);
+}
+
+TEST_F(Program, NamesNumbersThatAreNotPositive) {
+  const std::string run = "run '" + example("four_bar") + "' ";
+  expect_refused(run + "--rtol -1", "momenta: --rtol: found -1, expected a positive number\n");
+  expect_refused(run + "--step nan", "momenta: --step: found nan, expected a positive number\n");
+  expect_refused(run + "--end abc", "momenta: --end: found 'abc', expected a positive number\n");
+}
+
+}  // namespace
