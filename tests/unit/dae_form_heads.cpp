@@ -18,7 +18,8 @@ TEST(FormHeads, StandInLinesOfTheirOwn) {
     std::ifstream in(entry.path());
     std::string line;
     std::getline(in, line);
-    const std::string name = line.size() > 3 ? line.substr(3) : "";
+    std::string name;
+    if (line.size() > 3) name.assign(line, 3);
     if (std::find(form_names().begin(), form_names().end(), name) == form_names().end()) continue;
     std::map<std::string, int> met;
     for (; line.rfind("//", 0) == 0; std::getline(in, line))
