@@ -6,6 +6,7 @@
 #include <momenta/dae/study/run_form.h>
 #include <momenta/dae/study/timing.h>
 
+#include <cmath>
 #include <cstdio>
 #include <map>
 #include <stdexcept>
@@ -31,6 +32,14 @@ void print_singular_crossings(const RunResult& result) {
       std::printf("Ambiguous: %s\n", ambiguous_from(crossing.t).c_str());
       break;
     }
+}
+
+void print_stiffness(const RunResult& result) {
+  if (std::isnan(result.stiff_from)) return;
+  std::printf(
+      "\nStiff from t = %s s: steps of %s are as long as its stability allows, shorter than its "
+      "tolerance asks for; implicit methods take fewer: --integrator bdf, or a form by ida\n",
+      compact(result.stiff_from, 4).c_str(), result.settings.integrator.c_str());
 }
 
 /// "C.lambda1, C.lambda2", and of the samples that they are not unique at how many.
@@ -146,6 +155,7 @@ int run(const Options& o) {
     std::fputs(drift_table(study).c_str(), stdout);
     print_singular_crossings(result);
     print_undetermined(result);
+    print_stiffness(result);
     if (!a.branch.empty()) std::printf("Started from %s\n", a.branch.c_str());
   }
   if (result.status != "done")

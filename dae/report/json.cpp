@@ -38,6 +38,7 @@ Json summary_json(const RunResult& run, const Environment& environment) {
   json["status"] = run.status;
   json["reason"] = run.reason;
   json["stopped_at"] = number_or_null(run.stopped_at);
+  json["stiff_from"] = number_or_null(run.stiff_from);
   json["project"] = s.project;
   json["jacobian"] = run.jacobian;
   json["linear_solver"] = run.linear_solver;

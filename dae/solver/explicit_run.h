@@ -21,6 +21,7 @@
 #include <momenta/dae/solver/integration.h>
 #include <momenta/dae/solver/output_cursor.h>
 #include <momenta/dae/solver/step_control.h>
+#include <momenta/dae/solver/stiffness.h>
 #include <momenta/dae/solver/stopping.h>
 
 #include <algorithm>
@@ -62,6 +63,7 @@ class ExplicitRun {
       result_.y.assign(step_.y(), step_.y() + sample_.size());
     }
     result_.counters.evaluations = step_.evaluations();
+    result_.stiff_from = stiffness_.from();
     return std::move(result_);
   }
 
@@ -111,6 +113,9 @@ class ExplicitRun {
         continue;
       }
       ++result_.counters.steps;
+      const bool looks = !fixed_ && stiffness_.looks(result_.counters.steps);
+      if (looks) step_.keep_last_stage();
+      const double began = t_;
       bool altered = false;
       if (!observe(t1)) return false;
       if (system_.wanted_handling() < handling_) care(system_.wanted_handling());
@@ -124,6 +129,7 @@ class ExplicitRun {
       if (t_ >= end_) return true;
       system_.begin_step(t_, step_.y());
       if (!kept && !step_.begin(t_)) return stop(evaluation_cause(system_.failure()));
+      if (looks && !altered) stiffness_.take((t1 - began) * step_.rate_of_change(), began);
     }
   }
 
@@ -331,6 +337,7 @@ class ExplicitRun {
   double h_ = 0;         ///< step tried next [s]
   bool fixed_;           ///< steps of options.step, no error control
   std::vector<double> sample_, unaltered_;
+  Stiffness stiffness_{stability_interval<Tableau>()};
   SingularityHandling handling_ = SingularityHandling::none;  ///< of the step under way
   double first_handled_ = 0;        ///< the step with which singularity handling began [s]
   int lengthened_ = 0;              ///< trials of this step

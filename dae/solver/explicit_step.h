@@ -21,6 +21,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <vector>
 
 namespace momenta::explicit_rk {
 
@@ -46,6 +47,8 @@ class ExplicitStep {
         argument_(stride_),
         k_(stored * stride_),
         r_(terms * stride_),
+        last_argument_(n_),
+        last_stage_(n_),
         relative_(atol) {
     std::copy_n(y0, n_, y_.data());
     // Padding weighs 1, and no weight is zero: a component at rest at 0 with atol 0 then passes.
@@ -89,6 +92,26 @@ class ExplicitStep {
     const bool good = finite(y_new_.data(), stride_) &&
                       (!Tableau::end_derivative_always || finite(stage(s), stride_));
     return good ? StageFailure::none : StageFailure::not_finite;
+  }
+
+  /// Keeps the last stage and its argument, both at t1, for rate_of_change(). Right after
+  /// attempt(), whose last argument is still there.
+  void keep_last_stage() {
+    std::copy_n(argument_.data(), n_, last_argument_.data());
+    std::copy_n(stage(s - 1), n_, last_stage_.data());
+  }
+  /// |f(y) − f(g)| / |y − g| [1/s] of the state and that stage; zero where they are the same. In
+  /// units of the tolerance.
+  double rate_of_change() const {
+    double rates = 0, ways = 0;
+    for (std::size_t i = 0; i < n_; ++i) {
+      const double weight = 1 / (atol_[i] + rtol_ * std::abs(y_[i]));
+      const double rate = weight * (stage(0)[i] - last_stage_[i]);
+      const double way = weight * (y_[i] - last_argument_[i]);
+      rates += rate * rate;
+      ways += way * way;
+    }
+    return ways > 0 ? std::sqrt(rates / ways) : 0;
   }
 
   /// Square of the local error over its tolerance, RMS over the unknowns; at most 1 passes. Not
@@ -252,6 +275,7 @@ class ExplicitStep {
   AlignedArray atol_, y_, y_new_, lost_, lost_new_, argument_;  ///< stride_ each
   AlignedArray k_;                                              ///< stages, stored × stride_
   AlignedArray r_;                                              ///< dense output, terms × stride_
+  std::vector<double> last_argument_, last_stage_;              ///< n_, where they were kept
   double relative_;                                             ///< atol of an unknown of scale 1
   double t_ = 0, t1_ = 0, h_ = 0;
   long evaluations_ = 0;

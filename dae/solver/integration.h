@@ -49,6 +49,9 @@ struct IntegrationResult {
   double end_time = 0;    ///< where the run stopped [s]
   std::vector<double> y;  ///< the state there
   Counters counters;
+  /// Since when an explicit method's steps were as long as its stability allows, not its tolerance
+  /// [s]; NaN: they were not.
+  double stiff_from = std::numeric_limits<double>::quiet_NaN();
   std::string linear_solver;  ///< implicit methods: "dense LU", "KLU"; else empty
   std::string jacobian;  ///< implicit methods: "dual numbers", "difference quotient"; else empty
 };

@@ -235,6 +235,7 @@ RunResult run_form(const Mechanism& mechanism, const Start& start, const RunRequ
     result.reason = monitor.came_apart();
   }
   judge_drives(mechanism, reach, times, monitor.last_closed(), result);
+  result.stiff_from = run.stiff_from;
   result.counters = run.counters;
   result.jacobian = run.jacobian;
   result.linear_solver = run.linear_solver;

@@ -82,13 +82,14 @@ void list(const Each& each, auto&& s) requires
 template <class Each>
 void list(const Each& each,
           auto&& s) requires std::is_same_v<std::remove_cvref_t<decltype(s)>, RunResult> {
-  auto& [scene, settings, status, reason, stopped_at, counters, partitions, jacobian, linear_solver,
-         cpu_s, wall_s, repeats, position_drift_max, velocity_drift_max, between_steps_max,
-         position_growth, velocity_growth, energy_error_max, kinetic_energy_max, energy_scale,
-         position_error_max, velocity_error_max, faded_rows, singular_crossings, least_pivot,
-         undetermined, series, trajectory, film] = s;
+  auto& [scene, settings, status, reason, stopped_at, stiff_from, counters, partitions, jacobian,
+         linear_solver, cpu_s, wall_s, repeats, position_drift_max, velocity_drift_max,
+         between_steps_max, position_growth, velocity_growth, energy_error_max, kinetic_energy_max,
+         energy_scale, position_error_max, velocity_error_max, faded_rows, singular_crossings,
+         least_pivot, undetermined, series, trajectory, film] = s;
   each("scene", scene), each("settings", settings), each("status", status), each("reason", reason);
-  each("stopped_at", stopped_at), each("counters", counters), each("partitions", partitions);
+  each("stopped_at", stopped_at), each("stiff_from", stiff_from), each("counters", counters),
+      each("partitions", partitions);
   each("jacobian", jacobian), each("linear_solver", linear_solver);
   each("cpu_s", cpu_s), each("wall_s", wall_s), each("repeats", repeats);
   each("position_drift_max", position_drift_max), each("velocity_drift_max", velocity_drift_max);
@@ -124,7 +125,8 @@ void list(const Each& each,
   auto& [contestant, rung, verdict, cause, at, position_drift, energy, error, velocity_drift, run] =
       s;
   each("contestant", contestant), each("rung", rung), each("verdict", verdict);
-  each("cause", cause), each("at", at), each("position_drift", position_drift), each("energy", energy);
+  each("cause", cause), each("at", at), each("position_drift", position_drift),
+      each("energy", energy);
   each("error", error), each("velocity_drift", velocity_drift), each("run", run);
 }
 

@@ -71,6 +71,8 @@ struct RunResult {
   std::string status = "done";
   std::string reason;     ///< one sentence when not done
   double stopped_at = 0;  ///< [s]
+  /// Since when the steps of an explicit method were held by stability (solver/stiffness.h) [s].
+  double stiff_from = not_measured;
   Counters counters;
   long partitions = 0;  ///< how often `partitioned` chose its coordinates, the start included
   std::string jacobian, linear_solver;

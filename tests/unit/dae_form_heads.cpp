@@ -12,7 +12,7 @@ namespace momenta {
 namespace {
 
 TEST(FormHeads, StandInLinesOfTheirOwn) {
-  const std::filesystem::path folder = std::string(MOMENTA_SOURCE_DIR) + "/dae/form";
+  const auto folder = std::filesystem::path(MOMENTA_SOURCE_DIR) / "dae" / "form";
   std::map<std::string, int> heads;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     std::ifstream in(entry.path());
