@@ -82,7 +82,7 @@ TEST_F(Results, AreReadBySnippetsFromCsv) {
     EXPECT_EQ(printed("/usr/bin/python3" + snippet("read_csv.py") + file + "/trajectory.csv'"),
               expected + "\n");
     EXPECT_EQ(printed("/usr/bin/python3" + snippet("read_summary.py") + file + "/summary.json'")
-                  .rfind("momentum done opened by ", 0),
+                  .rfind("momentum done position drift ", 0),
               0u);
   }
   if (answers("command -v octave-cli")) {
