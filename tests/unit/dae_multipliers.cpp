@@ -64,14 +64,60 @@ Scene beside_a_pendulum(Scene scene) {
   return scene;
 }
 
+/// A scissor lifts a platform, its foot on a slide; `actuator`, a second tie along the slide, is
+/// driven. In space ten of fifteen equations (eleven of sixteen) have no entries at all: across the
+/// plane of the scissor nothing moves, and on the slide nothing turns.
+Scene driven_scissor(LoopKind actuator) {
+  constexpr double slope = 0.6, pi = 3.14159265358979323846;
+  const double foot = std::cos(slope);
+  Scene s;
+  s.name = "driven scissor";
+  s.gravity = {0, -9.81, 0};
+  s.bodies = {rod("a"), rod("b"), rod("platform", 5), rod("roller", 0.2), rod("foot", 0.5)};
+  s.joints = {hinge("O", "ground", "a", {0, 0, 0}, slope),
+              hinge("M", "a", "b", {0.5, 0, 0}, pi - 2 * slope),
+              hinge("T", "a", "platform", {1, 0, 0}, pi - slope),
+              hinge("S", "platform", "roller", {0, 0, 0}, foot),
+              hinge("F", "ground", "foot", {0, 0, 0}, foot)};
+  s.joints[1].origin_child = {0.5, 0, 0};
+  for (const std::size_t i : {3u, 4u}) {
+    s.joints[i].kind = JointKind::prismatic;
+    s.joints[i].axis = {1, 0, 0};
+  }
+  LoopSpec top, bottom, along;
+  top.name = "top";
+  top.kind = bottom.kind = LoopKind::revolute;
+  top.parent = "b";
+  top.child = "roller";
+  top.origin_parent = {1, 0, 0};
+  bottom.name = "bottom";
+  bottom.parent = "foot";
+  bottom.child = "b";
+  along.name = "actuator";
+  along.kind = actuator;
+  along.axis = {1, 0, 0};
+  along.child = "foot";
+  s.loops = {top, bottom, along};
+  DriveSpec drive;
+  drive.loop = along.name;
+  drive.kind = "harmonic";
+  drive.offset = foot;
+  drive.amplitude = 0.1;
+  drive.frequency = 2 * pi;
+  s.drives = {drive};
+  return s;
+}
+
 TEST(UniqueMultipliers, AgreeWithSingularValuesWhateverSolves) {
   const Scene three = example("extremes/three_cranks.toml"), four = example("four_bar/scene.toml");
   Scene twice = four;
   twice.loops.push_back(twice.loops[0]);
   twice.loops.back().name = "again";
   int shared = 0, determined = 0, both = 0;
-  for (const Scene& scene : {three, four, twice, bricard(), row_of_four_bars(2, 0, 1),
-                             beside_a_pendulum(three), beside_a_pendulum(bricard()), platform(6)})
+  for (const Scene& scene :
+       {three, four, twice, bricard(), row_of_four_bars(2, 0, 1), beside_a_pendulum(three),
+        beside_a_pendulum(bricard()), platform(6), driven_scissor(LoopKind::cylindrical),
+        driven_scissor(LoopKind::prismatic)})
     for (const Algebra algebra : {Algebra::automatic, Algebra::spatial})
       for (const KktChoice kkt : {KktChoice::sweeps, KktChoice::sparse, KktChoice::dense}) {
         const Mechanism mechanism(scene, {.algebra = algebra, .kkt = kkt});
@@ -95,6 +141,55 @@ TEST(UniqueMultipliers, AgreeWithSingularValuesWhateverSolves) {
   EXPECT_GE(shared, 10);
   EXPECT_GE(determined, 9);
   EXPECT_GE(both, 10);
+}
+
+/// What drives a mechanism without freedoms is known from virtual work: λ ẋ + dE/dt = 0.
+TEST(UniqueMultipliers, OfADrivenScissorIsTheThrust) {
+  const Mechanism mechanism(driven_scissor(LoopKind::cylindrical), {.algebra = Algebra::spatial});
+  RunRequest request;
+  request.settings.form = "projected";
+  request.settings.integrator = "vern9";
+  request.settings.rtol = request.settings.atol = 1e-11;
+  request.settings.end_time = 0.2;
+  request.settings.samples = 400;
+  request.keep_trajectory = true;
+  const RunResult run = run_form(mechanism, equations::start_of(mechanism), request);
+  ASSERT_EQ(run.status, "done") << run.reason;
+  for (const auto& u : run.undetermined)
+    EXPECT_EQ(u.samples, static_cast<long>(run.series.t.size())) << u.column;
+  EXPECT_EQ(run.undetermined.size(), 10u);
+  const auto told = [&](const std::string& column) {
+    return std::any_of(run.undetermined.begin(), run.undetermined.end(),
+                       [&](const auto& u) { return u.column == column; });
+  };
+  const auto& columns = run.trajectory.columns;
+  const auto place = [&](const std::string& column) {
+    const auto at = std::find(columns.begin(), columns.end(), column);
+    EXPECT_NE(at, columns.end()) << column;
+    return static_cast<std::size_t>(at - columns.begin());
+  };
+  std::size_t thrust = 0;
+  for (const char* column : {"actuator.lambda1 [N]", "actuator.lambda2 [N]", "actuator.lambda3 [N]",
+                             "actuator.lambda4 [N]", "actuator.lambda5 [N]"})
+    if (std::find(columns.begin(), columns.end(), column) != columns.end() && !told(column))
+      thrust = place(column);
+  ASSERT_GT(thrust, 0u);
+  // Energies of the samples: kinetic and potential, from the mechanism at each state.
+  const auto e = mechanism.evaluation<double>();
+  const auto energy = [&](std::size_t row) {
+    const auto& x = run.trajectory.rows[row];
+    e->place(x[0], x.data() + 1);
+    e->move(x.data() + 1 + mechanism.nq());
+    return e->kinetic() + e->potential(x.data() + 1);
+  };
+  const double h = run.trajectory.rows[1][0];
+  const std::size_t slide = place("F.u [m/s]");
+  for (std::size_t i = 2; i + 2 < run.trajectory.rows.size(); i += 20) {
+    const double power =
+        (8 * (energy(i + 1) - energy(i - 1)) - (energy(i + 2) - energy(i - 2))) / (12 * h);
+    const auto& x = run.trajectory.rows[i];
+    EXPECT_NEAR(x[thrust] * x[slide], -power, 1e-6 * (1 + std::abs(power))) << x[0];
+  }
 }
 
 TEST(UniqueMultipliers, AgreeOnRandomLoopsWrittenTwice) {
