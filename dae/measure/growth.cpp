@@ -7,7 +7,8 @@ namespace momenta {
 namespace {
 
 constexpr double range =
-    20;                     // the fit looks at [T/20, T]: the first 5 % of a run are its transient
+    20;  // the fit looks at [T/20, T]: the first 5 % of a run are its transient
+constexpr double least_range = 4;
 constexpr int points = 60;  // log-spaced in that range
 
 double slope(const std::vector<double>& x, const std::vector<double>& y, std::size_t first,
@@ -25,16 +26,22 @@ double slope(const std::vector<double>& x, const std::vector<double>& y, std::si
 
 }  // namespace
 
-Growth fit_growth(const std::vector<double>& t, const std::vector<double>& drift) {
+Growth fit_growth(const std::vector<double>& t, const std::vector<double>& drift, double rounding) {
   Growth growth;
   if (t.size() < 40 || !(t.back() > 0)) return growth;
+  const auto above =
+      std::find_if(drift.begin(), drift.end(), [&](double d) { return d > rounding; });
+  if (above == drift.end()) return growth;
+  const double first = t[static_cast<std::size_t>(above - drift.begin())];
+  if (!(first * least_range <= t.back())) return growth;
   growth.to = t.back();
-  growth.from = t.back() / range;
+  growth.from = std::max(t.back() / range, first);
   std::vector<double> x, y;
   double running = 0;
   std::size_t sample = 0;
   for (int i = 0; i < points; ++i) {
-    const double at = growth.from * std::pow(range, static_cast<double>(i) / (points - 1));
+    const double at =
+        growth.from * std::pow(growth.to / growth.from, static_cast<double>(i) / (points - 1));
     for (; sample < t.size() && t[sample] <= at * (1 + 1e-12); ++sample)
       running = std::max(running, drift[sample]);
     if (!(running > 0) || !std::isfinite(running)) return growth;

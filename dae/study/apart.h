@@ -36,6 +36,15 @@ class Apart {
   double gap(const Eigen::VectorXd& phi) {
     return phi.cwiseAbs().cwiseQuotient(units_.equations).maxCoeff(&worst_);
   }
+  /// |Φ|₂ that rounding leaves, with room [m or rad].
+  double rounding() const {
+    constexpr double room = 10;
+    return room * units_.rounding * units_.equations.norm();
+  }
+  /// Largest rate of a joint, slides in lengths of the scene [1/s].
+  double speed(const Eigen::VectorXd& u) const {
+    return u.size() > 0 ? u.cwiseQuotient(units_.rates).cwiseAbs().maxCoeff() : 0;
+  }
   /// One sentence where the loops have come apart at t [s]; empty where they hold. `at_sample`:
   /// after all corrections.
   std::string found(double t, const Eigen::VectorXd& phi, bool at_sample) {

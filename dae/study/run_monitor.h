@@ -47,6 +47,7 @@ class RunMonitor {
     e_->place(t, now_.q.data());
     e_->positions(phi_.data());
     const double position = phi_.norm();
+    if (apart_) fastest_ = std::max(fastest_, apart_->speed(now_.u));
     if (apart_ && std::isfinite(position)) {
       came_apart_ = apart_->found(t, phi_, true);
       keep_closed(t, now_.q);
@@ -134,11 +135,10 @@ class RunMonitor {
       result_.position_drift_max = largest(s.position_drift);
       result_.velocity_drift_max = largest(s.velocity_drift);
       result_.between_steps_max = between_;
-      // What stays at rounding level has no growth law.
-      if (result_.position_drift_max > rounding_level)
-        result_.position_growth = fit_growth(s.t, s.position_drift);
-      if (result_.velocity_drift_max > rounding_level)
-        result_.velocity_growth = fit_growth(s.t, s.velocity_drift);
+      const double position = std::max(rounding_level, apart_->rounding()),
+                   velocity = std::max(rounding_level, apart_->rounding() * fastest_);
+      result_.position_growth = fit_growth(s.t, s.position_drift, position);
+      result_.velocity_growth = fit_growth(s.t, s.velocity_drift, velocity);
     }
     if (request_.reference && result_.status == "done" && compared_ > 0) {
       result_.position_error_max = largest(s.position_error);
@@ -256,6 +256,7 @@ class RunMonitor {
   std::string came_apart_;
   Closed closed_;
   double energy_at_start_ = 0, potential_at_start_ = 0, between_ = 0;
+  double fastest_ = 0;  ///< rate of a joint at the samples, in lengths of the scene [1/s]
   int compared_ = 0;
   long rows_ = 0;  ///< of the trajectory
   std::string trouble_;
