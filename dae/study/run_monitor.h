@@ -130,6 +130,7 @@ class RunMonitor {
         if (!std::isnan(x) && !(std::abs(x) <= m)) m = std::abs(x);
       return m;
     };
+    if (singular_crossings_) singular_crossings_->finish();
     result_.energy_error_max = largest(s.energy_error);
     if (mechanism_.m() > 0) {
       result_.position_drift_max = largest(s.position_drift);

@@ -1,6 +1,8 @@
 #pragma once
 // Where a run passes poses at which its loop equations lose rank: least pivots below 1e-2 of their
-// scale, one for each time the run goes there, and whether the motion was sure to stay its own.
+// scale and of the largest on the run, one for each time the run goes there, and whether the motion
+// was sure to stay its own. A pivot goes with the square of the distance to the singular pose:
+// loops that are weak throughout come near none.
 
 #include <momenta/dae/form/ode_form.h>
 #include <momenta/dae/study/run_form.h>
@@ -42,6 +44,13 @@ class SingularCrossings {
     note(t1, end, between, state);
   }
 
+  /// After the last step.
+  void finish() {
+    std::erase_if(result_.singular_crossings, [&](const RunResult::SingularCrossing& crossing) {
+      return !(crossing.pivot < near_singular * largest_);
+    });
+  }
+
  private:
   static constexpr double near_singular = 1e-2;
 
@@ -59,6 +68,7 @@ class SingularCrossings {
   void note(double t, double pivot, const Interpolant& between, std::vector<double>& state) {
     if (std::isnan(pivot)) return;
     if (!(result_.least_pivot <= pivot)) result_.least_pivot = pivot;
+    largest_ = std::max(largest_, pivot);
     if (pivot >= near_singular) {
       passing_ = false;
       return;
@@ -94,6 +104,7 @@ class SingularCrossings {
   Snapshot here_;
   double length_;  ///< of the scene [m]
   int always_faded_ = std::numeric_limits<int>::max();
+  double largest_ = 0;  ///< pivot on the run
   bool passing_ = false;
 };
 

@@ -3,6 +3,7 @@
 
 #include "equations/ensemble.h"
 #include "equations/linkages.h"
+#include "equations/scissor.h"
 
 #include <gtest/gtest.h>
 #include <momenta/core/scene/read_scene.h>
@@ -286,6 +287,20 @@ TEST(Extremes, SingularCrossingsAreListed) {
     EXPECT_NEAR(crank.singular_crossings[i].t, expected[i], 0.02);
     EXPECT_LT(crank.singular_crossings[i].pivot, 1e-2);
   }
+}
+
+// A lift that goes up and down by a few degrees: its pivots, small throughout, go with the shape of
+// it and come near no pose at which loops lose rank.
+TEST(Extremes, LoopsThatAreWeakThroughoutCrossNothing) {
+  const Mechanism mechanism(equations::driven_scissor(LoopKind::prismatic, 0.5),
+                            {.algebra = Algebra::spatial});
+  RunRequest request;
+  request.settings.form = "projected";
+  request.settings.end_time = 3;
+  const RunResult lift = run_form(mechanism, equations::start_of(mechanism), request);
+  ASSERT_EQ(lift.status, "done") << lift.reason;
+  EXPECT_LT(lift.least_pivot, 1e-2);
+  EXPECT_TRUE(lift.singular_crossings.empty());
 }
 
 }  // namespace
