@@ -15,8 +15,10 @@
 #include <momenta/dae/measure/drive_reach.h>
 #include <momenta/dae/study/run_form.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <functional>
 #include <numbers>
 #include <random>
 
@@ -48,23 +50,22 @@ double room(const FourBar& x, double phi) {
   return std::min(x.b + x.c - d, d - std::abs(x.b - x.c));
 }
 
-/// The first time in (0, end) at which the loop opens; end where it does not. `closest`: least room
-/// met before, or behind it the most by which it is missed.
-double dead_point(const FourBar& x, double end, double& closest) {
+/// The first time in (0, end) at which a loop opens, of its room over time; end where it does not.
+/// `closest`: least room met before, or behind it the most by which it is missed.
+double dead_point(const std::function<double(double)>& room_at, double end, double& closest) {
   constexpr int parts = 4000;
-  closest = room(x, law_at(x.law, 0));
+  closest = room_at(0);
   for (int i = 1; i <= parts; ++i) {
     double low = end * (i - 1) / parts, high = end * i / parts;
-    const double here = room(x, law_at(x.law, high));
+    const double here = room_at(high);
     if (here > 0) {
       closest = std::min(closest, here);
       continue;
     }
     for (int k = 0; k < 60; ++k)
-      (room(x, law_at(x.law, 0.5 * (low + high))) > 0 ? low : high) = 0.5 * (low + high);
+      (room_at(0.5 * (low + high)) > 0 ? low : high) = 0.5 * (low + high);
     closest = 0;
-    for (int k = i; k <= parts; ++k)
-      closest = std::min(closest, room(x, law_at(x.law, end * k / parts)));
+    for (int k = i; k <= parts; ++k) closest = std::min(closest, room_at(end * k / parts));
     return low;
   }
   return end;
@@ -216,43 +217,173 @@ TEST(InfeasibleDrives, LoopsWithAFreedomLeftAreStretched) {
   }
 }
 
-/// Random four-bars, random laws, a random form each: done exactly where the geometry says so, and
+using Uniform = std::function<double(double, double)>;
+
+DriveSpec random_law(const Uniform& uniform, double from) {
+  if (uniform(0, 1) < 0.5) return steady(from, uniform(-3, 3));
+  DriveSpec d;
+  d.kind = "harmonic";
+  d.amplitude = uniform(0.1, 2);
+  d.frequency = uniform(0.5, 4);
+  d.offset = from;
+  return d;
+}
+
+/// A scene and what geometry says of it: how far it is from where its loops open, in length.
+struct Linkage {
+  Scene scene;
+  std::function<double(double)> room_at;  ///< of time
+};
+
+Linkage random_four_bar(const Uniform& uniform) {
+  FourBar x{uniform(0.2, 2), uniform(0.2, 2), uniform(0.2, 2), uniform(0.5, 2), uniform(0, 6.28)};
+  x.folded = uniform(0, 1) < 0.5;
+  x.as_loop = uniform(0, 1) < 0.3;
+  x.pendulum = uniform(0, 1) < 0.3;
+  x.law = random_law(uniform, x.from);
+  const auto room_at = [x](double t) { return room(x, law_at(x.law, t)); };
+  return {room_at(0) > 0 ? scene_of(x) : Scene{}, room_at};
+}
+
+/// A crank a, a rod b, a slide along x at height e: closed where |a sin φ − e| ≤ b.
+Linkage random_slider_crank(const Uniform& uniform) {
+  const double a = uniform(0.2, 2), b = uniform(0.2, 2), e = uniform(-0.5, 0.5),
+               from = uniform(0, 6.28), side = uniform(0, 1) < 0.5 ? 1 : -1;
+  const DriveSpec law = random_law(uniform, from);
+  const auto room_at = [=](double t) { return b - std::abs(a * std::sin(law_at(law, t)) - e); };
+  if (!(room_at(0) > 0)) return {{}, room_at};
+  Scene s;
+  s.name = "slider-crank";
+  s.gravity = {0, -9.81, 0};
+  s.bodies = {rod_of("a", a), rod_of("b", b), rod("slider")};
+  const double rise = std::asin((e - a * std::sin(from)) / b);
+  const double coupler = side > 0 ? rise : std::numbers::pi - rise;
+  s.joints = {
+      hinge("O", "ground", "a", {0, 0, 0}, from), hinge("A", "a", "b", {a, 0, 0}, coupler - from),
+      hinge("S", "ground", "slider", {0, e, 0}, a * std::cos(from) + b * std::cos(coupler))};
+  s.joints.back().kind = JointKind::prismatic;
+  s.joints.back().axis = {1, 0, 0};
+  LoopSpec loop;
+  loop.name = "B";
+  loop.kind = LoopKind::revolute;
+  loop.parent = "b";
+  loop.child = "slider";
+  loop.origin_parent = {b, 0, 0};
+  s.loops = {loop};
+  s.drives = {law};
+  s.drives.back().joint = "O";
+  return {s, room_at};
+}
+
+/// The tip B of a four-bar's rocker carries on with two rods more, d and f, to a hinge at G.
+Linkage random_six_bar(const Uniform& uniform) {
+  FourBar x{uniform(0.2, 2), uniform(0.2, 2), uniform(0.2, 2), uniform(0.5, 2), uniform(0, 6.28)};
+  x.folded = uniform(0, 1) < 0.5;
+  x.law = random_law(uniform, x.from);
+  const double d = uniform(0.3, 2), f = uniform(0.3, 2);
+  const Eigen::Vector2d G(uniform(1, 4), uniform(-1, 1));
+  const double up = uniform(0, 1) < 0.5 ? 1 : -1;
+  const auto tip = [x](double phi) {
+    const Eigen::Vector2d A(x.a * std::cos(phi), x.a * std::sin(phi)), C(x.g, 0), way = C - A;
+    const double r = way.norm(), cosine = (r * r + x.b * x.b - x.c * x.c) / (2 * r * x.b);
+    const double at_a = std::acos(std::clamp(cosine, -1.0, 1.0));
+    const double coupler = std::atan2(way.y(), way.x()) + (x.folded ? -at_a : at_a);
+    return Eigen::Vector2d(A + x.b * Eigen::Vector2d(std::cos(coupler), std::sin(coupler)));
+  };
+  const auto room_at = [=](double t) {
+    const double phi = law_at(x.law, t), first = room(x, phi), r = (tip(phi) - G).norm();
+    return first > 0 ? std::min({first, d + f - r, r - std::abs(d - f)}) : first;
+  };
+  if (!(room_at(0) > 0)) return {{}, room_at};
+  Scene s = scene_of(x);
+  s.name = "six-bar";
+  s.bodies.push_back(rod_of("d", d));
+  s.bodies.push_back(rod_of("f", f));
+  const Eigen::Vector2d B = tip(x.from), way = G - B;
+  const double r = way.norm(), along = std::atan2(way.y(), way.x());
+  const double second = along + up * std::acos((r * r + d * d - f * f) / (2 * r * d));
+  const Eigen::Vector2d H = B + d * Eigen::Vector2d(std::cos(second), std::sin(second));
+  const double rocker = s.joints[2].position[0];
+  s.joints.push_back(hinge("E", "c", "d", {x.c, 0, 0}, second - rocker));
+  s.joints.push_back(
+      hinge("G", "ground", "f", {G.x(), G.y(), 0}, std::atan2(H.y() - G.y(), H.x() - G.x())));
+  LoopSpec loop = s.loops[0];
+  loop.name = "H";
+  loop.parent = "d";
+  loop.child = "f";
+  loop.origin_parent = {d, 0, 0};
+  loop.origin_child = {f, 0, 0};
+  s.loops.push_back(loop);
+  return {s, room_at};
+}
+
+/// In space: a crank a about z, a rocker c about x at (g, 0, h), their tips b apart. The rocker's
+/// circle is at distances from the crank's tip of
+///   √(Δx² + (ρ − c)²) … √(Δx² + (ρ + c)²),  ρ its distance from the rocker's axis.
+Linkage random_spatial(const Uniform& uniform) {
+  const double a = uniform(0.2, 2), b = uniform(0.5, 2.5), c = uniform(0.2, 2), g = uniform(0.3, 2),
+               h = uniform(-1, 1), from = uniform(0, 6.28), side = uniform(0, 1) < 0.5 ? 1 : -1;
+  const DriveSpec law = random_law(uniform, from);
+  const auto room_at = [=](double t) {
+    const double phi = law_at(law, t), dx = a * std::cos(phi) - g,
+                 rho = std::hypot(a * std::sin(phi), h);
+    return std::min(std::hypot(dx, rho + c) - b, b - std::hypot(dx, rho - c));
+  };
+  if (!(room_at(0) > 0)) return {{}, room_at};
+  Scene s;
+  s.name = "spatial four-bar";
+  s.gravity = {0, 0, -9.81};
+  s.bodies = {rod_of("a", a), rod_of("c", c)};
+  const double y = a * std::sin(from), dx = a * std::cos(from) - g, rho = std::hypot(y, h);
+  // |A − B|² = Δx² + ρ² + c² − 2 ρ c cos(ψ − angle of A about the rocker's axis)
+  const double cosine = (dx * dx + rho * rho + c * c - b * b) / (2 * rho * c);
+  const double psi = std::atan2(-h, y) + side * std::acos(std::clamp(cosine, -1.0, 1.0));
+  s.joints = {hinge("O", "ground", "a", {0, 0, 0}, from),
+              hinge("C", "ground", "c", {g, 0, h}, psi)};
+  // The rocker's rod, along its x, turns about the joint's x from the joint's y.
+  s.joints.back().axis = {1, 0, 0};
+  s.bodies.back().com = Eigen::Vector3d(0, s.bodies.back().com.x(), 0);
+  LoopSpec loop;
+  loop.name = "B";
+  loop.kind = LoopKind::distance;
+  loop.length = b;
+  loop.parent = "a";
+  loop.child = "c";
+  loop.origin_parent = {a, 0, 0};
+  loop.origin_child = {0, c, 0};
+  s.loops = {loop};
+  s.drives = {law};
+  s.drives.back().joint = "O";
+  return {s, room_at};
+}
+
+/// Random linkages, random laws, a form each in turn: done exactly where the geometry says so, and
 /// else stopped at its time. MOMENTA_CASES: how many.
-TEST(InfeasibleDrives, RandomFourBars) {
+void expect_verdicts_of(const std::function<Linkage(const Uniform&)>& make, unsigned seed,
+                        int cases_in_suite) {
   const char* asked = std::getenv("MOMENTA_CASES");
-  const int cases = asked ? std::atoi(asked) : 250;
-  std::mt19937 random(2026);
-  const auto uniform = [&](double low, double high) {
+  const int cases = asked ? std::atoi(asked) : cases_in_suite;
+  std::mt19937 random(seed);
+  const Uniform uniform = [&](double low, double high) {
     return std::uniform_real_distribution(low, high)(random);
   };
   constexpr double end = 3;
   int feasible = 0, infeasible = 0, close = 0;
   for (int i = 0; i < cases; ++i) {
-    FourBar x{uniform(0.2, 2), uniform(0.2, 2), uniform(0.2, 2), uniform(0.5, 2), uniform(0, 6.28)};
-    x.folded = uniform(0, 1) < 0.5;
-    x.as_loop = uniform(0, 1) < 0.3;
-    x.pendulum = uniform(0, 1) < 0.3;
-    if (uniform(0, 1) < 0.5) {
-      x.law = steady(x.from, uniform(-3, 3));
-    } else {
-      x.law.kind = "harmonic";
-      x.law.amplitude = uniform(0.1, 2);
-      x.law.frequency = uniform(0.5, 4);
-      x.law.offset = x.from;
-    }
-    if (room(x, x.from) < 0.02) {  // next to a dead point at the start
+    const Linkage x = make(uniform);
+    if (!(x.room_at(0) > 0.02)) {  // open, or next to a dead point, at the start
       --i;
       continue;
     }
     double closest = 0;
-    const double exact = dead_point(x, end, closest);
+    const double exact = dead_point(x.room_at, end, closest);
     const auto& forms = form_names();
     const std::string form = forms[static_cast<std::size_t>(i) % forms.size()];
-    const Mechanism mechanism(scene_of(x));
+    const Mechanism mechanism(x.scene);
     const RunResult r = run(mechanism, form, end);
-    const std::string what = "case " + std::to_string(i) + ", " + form + ": " + r.status + ", " +
-                             r.reason + ", dead point at " + std::to_string(exact) + ", room " +
-                             std::to_string(closest);
+    const std::string what = x.scene.name + ", case " + std::to_string(i) + ", " + form + ": " +
+                             r.status + ", " + r.reason + ", dead point at " +
+                             std::to_string(exact) + ", room " + std::to_string(closest);
     // Touching a limit, or a motion between two limits too close to tell, is either.
     if (std::abs(closest) < 1e-6) {
       ++close;
@@ -280,9 +411,25 @@ TEST(InfeasibleDrives, RandomFourBars) {
       EXPECT_EQ(r.reason.find("cannot go on"), std::string::npos) << what;
     }
   }
-  EXPECT_GT(feasible, cases / 5);
-  EXPECT_GT(infeasible, cases / 5);
+  EXPECT_GT(feasible, cases / 8);
+  EXPECT_GT(infeasible, cases / 8);
   std::printf("%d feasible, %d infeasible, %d at a limit\n", feasible, infeasible, close);
+}
+
+TEST(InfeasibleDrives, RandomFourBars) {
+  expect_verdicts_of(random_four_bar, 2026, 250);
+}
+
+TEST(InfeasibleDrives, RandomSliderCranks) {
+  expect_verdicts_of(random_slider_crank, 2027, 150);
+}
+
+TEST(InfeasibleDrives, RandomSixBars) {
+  expect_verdicts_of(random_six_bar, 2028, 150);
+}
+
+TEST(InfeasibleDrives, RandomSpatialLoops) {
+  expect_verdicts_of(random_spatial, 2029, 150);
 }
 
 }  // namespace
