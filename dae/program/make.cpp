@@ -13,11 +13,13 @@ std::span<const Family> families() {
   constexpr int many = 100'000, more = 1'000'000;
   static constexpr std::array all{
       Family{"chain", "N rods of 1 m in a plane, level", 1, more, 10, nullptr, print_chain},
-      Family{"random-chain", "N blocks on pins at random", 1, many, 10, print_random_chain},
+      Family{"random-chain", "N blocks on revolute joints at random", 1, many, 10,
+             print_random_chain},
       Family{"rope", "N links of 0.1 m, pinned across by turns", 1, many, 10, print_rope},
       Family{"spherical-chain", "N links on spherical joints", 1, many, 10, print_spherical_chain},
-      Family{"tree", "binary, N bodies on pins", 1, many, 10, print_tree},
-      Family{"star", "a free ball with N legs of six pins", 1, many / 5, 10, print_star},
+      Family{"tree", "binary, N bodies on revolute joints", 1, many, 10, print_tree},
+      Family{"star", "a free sphere with N legs of six revolute joints", 1, many / 5, 10,
+             print_star},
       Family{"humanoid", "a free pelvis and 30 hinges", 30, 30, 30, print_humanoid},
       Family{"n-four-bar", "N four-bars in a row", 1, more / 10, 10, nullptr, print_n_four_bar},
       Family{"scissor-ladder", "N pairs of crossed bars", 2, more / 10, 10, nullptr,

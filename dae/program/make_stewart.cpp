@@ -1,6 +1,6 @@
 // A platform on legs that slide: base points on a circle of 1 m, top points on one of 0.6 m, by
-// turns near to and far from each other; every leg a universal joint below, a sprung slide, and a
-// ball above, where its loop closes.
+// turns near to and far from each other; every leg a universal joint below, a sprung prismatic
+// joint, and a spherical joint above, where its loop closes.
 
 #include <cmath>
 
@@ -39,24 +39,24 @@ void print_stewart(int n) {
     universal.rpy = {0, -std::atan2(height, flat), std::atan2(way[1], way[0])};
     universal.axis = "y";
     print_joint(universal);
-    JointText slide;
-    slide.name = numbered("P", i);
-    slide.kind = "prismatic";
-    slide.parent = lower;
-    slide.child = upper;
-    slide.origin_parent = {length - half, 0, 0};
-    slide.axis = "x";
-    slide.stiffness = 5000;
-    slide.damping = 20;
-    print_joint(slide);
-    LoopText ball;
-    ball.name = numbered("S", i);
-    ball.kind = "spherical";
-    ball.parent = "platform";
-    ball.child = upper;
-    ball.origin_parent = head;
-    ball.origin_child = {half, 0, 0};
-    print_loop(ball);
+    JointText prismatic;
+    prismatic.name = numbered("P", i);
+    prismatic.kind = "prismatic";
+    prismatic.parent = lower;
+    prismatic.child = upper;
+    prismatic.origin_parent = {length - half, 0, 0};
+    prismatic.axis = "x";
+    prismatic.stiffness = 5000;
+    prismatic.damping = 20;
+    print_joint(prismatic);
+    LoopText spherical;
+    spherical.name = numbered("S", i);
+    spherical.kind = "spherical";
+    spherical.parent = "platform";
+    spherical.child = upper;
+    spherical.origin_parent = head;
+    spherical.origin_child = {half, 0, 0};
+    print_loop(spherical);
   }
   print_marker("centre", "platform", {0, 0, 0});
 }

@@ -19,7 +19,7 @@ const char* by_turns(int i) {
 }  // namespace
 
 void print_random_chain(int n) {
-  print_head(numbered("Blocks on pins, ", n) +
+  print_head(numbered("Blocks on revolute joints, ", n) +
                  " of them: axes, places and masses at random, the same ones every time.",
              numbered("Random chain of ", n), down, 5);
   Draw draw(7);
@@ -94,7 +94,7 @@ void print_spherical_chain(int n) {
 
 void print_tree(int n) {
   constexpr double length = 0.5, radius = 0.03, mass = 1;
-  print_head(numbered("A binary tree of pins, bodies: ", n) +
+  print_head(numbered("A binary tree on revolute joints, bodies: ", n) +
                  "; body i hangs on body i / 2, axes across by turns from level to level.",
              numbered("Binary tree of ", n), down, 5);
   for (int i = 1; i <= n; ++i) {
@@ -120,9 +120,9 @@ void print_star(int n) {
   constexpr int revolutes = 6;
   constexpr double hub = 0.5, length = 0.3, radius = 0.03, mass = 1;
   const double turn = 4 * std::acos(0.0) / n;
-  print_head(
-      numbered("A free ball with legs of six pins each, legs: ", n) + "; it falls, the legs wave.",
-      numbered("Star, legs: ", n), down, 2);
+  print_head(numbered("A free sphere with legs of six revolute joints each, legs: ", n) +
+                 "; it falls, the legs wave.",
+             numbered("Star, legs: ", n), down, 2);
   print_ball("hub", 20, hub, {});
   JointText base;
   base.name = "base";
