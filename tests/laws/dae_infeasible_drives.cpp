@@ -51,7 +51,7 @@ double room(const FourBar& x, double phi) {
 }
 
 /// The first time in (0, end) at which a loop opens, of its room over time; end where it does not.
-/// `closest`: least room met before, or behind it the most by which it is missed.
+/// `closest`: least room met before, or the most by which it is missed until it closes again.
 double dead_point(const std::function<double(double)>& room_at, double end, double& closest) {
   constexpr int parts = 4000;
   closest = room_at(0);
@@ -65,7 +65,8 @@ double dead_point(const std::function<double(double)>& room_at, double end, doub
     for (int k = 0; k < 60; ++k)
       (room_at(0.5 * (low + high)) > 0 ? low : high) = 0.5 * (low + high);
     closest = 0;
-    for (int k = i; k <= parts; ++k) closest = std::min(closest, room_at(end * k / parts));
+    for (int k = i; k <= parts && room_at(end * k / parts) <= 0; ++k)
+      closest = std::min(closest, room_at(end * k / parts));
     return low;
   }
   return end;
