@@ -97,6 +97,7 @@ int answer(int argc, char** argv) {
   evaluate_verb->footer(
       "Example: momenta evaluate examples/pendulum/scene.toml --at '{\"q\": {\"O\": 1.5}}'");
   add_scene(*evaluate_verb, o);
+  evaluate_verb->remove_option(evaluate_verb->get_option("--at"));
   evaluate_verb
       ->add_option("--at", state,
                    "State by joint name, {\"t\": 0, \"q\": {..}, \"v\" or \"p\": {..}, \"tau\": "
@@ -107,6 +108,7 @@ int answer(int argc, char** argv) {
       "index", "The differentiation index of each form, by numbers, and its hidden constraints");
   index_app->footer("Example: momenta index examples/four_bar/scene.toml --forms momentum-index2");
   add_scene(*index_app, o);
+  index_app->remove_option(index_app->get_option("--at"));
   std::string index_forms, index_state;
   index_app->add_option("--forms", index_forms, "Default: all")->type_name("FORM,...");
   index_app

@@ -21,6 +21,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "state_input.h"
 #include "values.h"
 
 namespace momenta::program {
@@ -45,6 +46,10 @@ void add_scene_file(CLI::App& verb, Options& o, bool required) {
   verb.add_option("--loops", o.reading.loops, "Of a URDF: its loops (default: the .yaml beside it)")
       ->type_name("FILE");
   verb.add_flag("--free-root", o.reading.free_root, "Of a URDF: the root link floats");
+  verb.add_option("--at", o.at,
+                  "Start values by joint name, {\"q\": {..}, \"v\": {..}}: a JSON file or the text "
+                  "itself (default: the scene's)")
+      ->type_name("STATE");
 }
 
 void add_scene(CLI::App& verb, Options& o) {
@@ -112,6 +117,7 @@ void add_results(CLI::App& verb, Options& o) {
 
 Scene read(const Options& o) {
   Scene scene = read_scene(o.scene, o.reading);
+  if (!o.at.empty()) start_at(o.at, scene);
   if (!o.quiet)
     for (const std::string& remark : scene.remarks)
       std::fprintf(stderr, "momenta: %s: %s\n", o.scene.c_str(), remark.c_str());
@@ -211,7 +217,7 @@ void expect_own_results(const std::filesystem::path& out, std::string_view own) 
 std::unique_ptr<Journal> keep_runs(const Options& o) {
   if (o.out.empty()) return nullptr;
   Journal::Study study{"", build_digest(), o.command};
-  for (const auto& file : {o.scene, o.reference, o.reading.loops})
+  for (const auto& file : {o.scene, o.reference, o.reading.loops, std::filesystem::path(o.at)})
     study.digest += digest(content_of(file)) + " ";
   study.digest = digest(study.digest + o.asked);
   auto journal = std::make_unique<Journal>(o.out / "runs.jsonl", study);

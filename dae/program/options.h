@@ -2,7 +2,7 @@
 // What the verbs share: the scene and common options, messages, exit status.
 
 #include <momenta/core/scene/read_scene.h>
-#include <momenta/dae/assembly.h>
+#include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/report/atomic_write.h>
 #include <momenta/dae/report/figure.h>
 #include <momenta/dae/report/json.h>
@@ -24,6 +24,7 @@ struct Options {
   std::string asked;    ///< the verb and its options, but for where and how results are told
   std::filesystem::path scene;
   ReadOptions reading;  ///< what a URDF does not say
+  std::string at;       ///< start values in place of the scene's; empty: its own
   std::string algebra = "auto", kkt = "auto";
   std::string level;  ///< of the kernels; empty: the machine's best, or MOMENTA_LEVEL
   std::string form = "momentum", integrator, gauge;

@@ -1,7 +1,7 @@
 #pragma once
 // What `momenta check` tells of how far drives can go.
 
-#include <momenta/dae/measure/drive_reach.h>
+#include <momenta/dae/assembly/drive_reach.h>
 
 #include <nlohmann/json.hpp>
 #include <string>

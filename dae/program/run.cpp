@@ -36,6 +36,15 @@ void print_singular_crossings(const RunResult& result) {
 
 void print_stiffness(const RunResult& result) {
   if (std::isnan(result.stiff_from)) return;
+  if (changed(result)) {
+    std::printf(
+        "\nStiff from t = %s s: steps of %s became as long as its stability allows, shorter than "
+        "its tolerance asks for; %s went on from t = %s s (--integrator %s: no change)\n",
+        compact(result.stiff_from, 4).c_str(), result.settings.integrator.c_str(),
+        result.settings.when_stiff.c_str(), compact(result.changed_at, 4).c_str(),
+        result.settings.integrator.c_str());
+    return;
+  }
   std::printf(
       "\nStiff from t = %s s: steps of %s are as long as its stability allows, shorter than its "
       "tolerance asks for; implicit methods take fewer: --integrator bdf, or a form by ida\n",

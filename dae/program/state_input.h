@@ -1,6 +1,7 @@
 #pragma once
-// STATE of `momenta evaluate`: {"t": 0, "q": {"O": [..], …}, "v": {…} or "p": {…}, "tau": {…}} by
-// joint name, from a file, from standard input ("-") or written out.
+// STATE of --at: {"t": 0, "q": {"O": [..], …}, "v": {…} or "p": {…}, "tau": {…}} by joint name,
+// from a file, from standard input ("-") or written out. Verbs that read a state take all of it,
+// verbs that start from one q and v.
 
 #include <momenta/dae/study/state_values.h>
 
@@ -12,5 +13,10 @@ namespace momenta::program {
 /// is looked for only if something of it is needed.
 /// @throws SceneError: one sentence with the source, the key or joint, what was found and expected
 GivenState read_state(const std::string& state, const Mechanism& mechanism);
+
+/// Other start values or first guesses for a scene, {"q": {"O": [..], …}, "v": {…}} by joint name,
+/// from a file or written out; joints that are left out keep theirs.
+/// @throws SceneError as read_state(), and where the scene does not take them
+void start_at(const std::string& state, Scene& scene);
 
 }  // namespace momenta::program

@@ -4,7 +4,7 @@
 
 #include <momenta/core/arguments.h>
 #include <momenta/core/open_chain.h>
-#include <momenta/dae/assembly.h>
+#include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/kkt/loop_solver.h>
 #include <pybind11/eigen.h>
 #include <pybind11/pybind11.h>

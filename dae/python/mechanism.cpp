@@ -2,7 +2,7 @@
 
 #include <momenta/core/scene/read_scene.h>
 #include <momenta/dae/kkt/dense_blocks.h>
-#include <momenta/dae/measure/drive_reach.h>
+#include <momenta/dae/assembly/drive_reach.h>
 #include <momenta/dae/study/state_values.h>
 
 #include <optional>

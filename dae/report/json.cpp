@@ -39,6 +39,8 @@ Json summary_json(const RunResult& run, const Environment& environment) {
   json["reason"] = run.reason;
   json["stopped_at"] = number_or_null(run.stopped_at);
   json["stiff_from"] = number_or_null(run.stiff_from);
+  json["changed_to"] = changed(run) ? Json(s.when_stiff) : Json(nullptr);
+  json["changed_at"] = number_or_null(run.changed_at);
   json["project"] = s.project;
   json["jacobian"] = run.jacobian;
   json["linear_solver"] = run.linear_solver;

@@ -27,7 +27,7 @@ std::string count(long n) {
 Row row_of(const RunResult& run) {
   const RunSettings& s = run.settings;
   return {s.form + (s.project ? "+project" : ""),
-          s.integrator,
+          s.integrator + (changed(run) ? "," + s.when_stiff : ""),
           s.gauge.empty() ? "-" : s.gauge,
           s.step > 0 ? "h=" + compact(s.step, 3) : tolerance_text(s),
           run.status == "time limit" ? "limit" : run.status,

@@ -118,7 +118,7 @@ class ExplicitRun {
       const double began = t_;
       bool altered = false;
       if (!observe(t1)) return false;
-      if (system_.wanted_handling() < handling_) care(system_.wanted_handling());
+      if (system_.wanted_handling() < handling_) take_handling(system_.wanted_handling());
       if (!correct(t1, altered)) return false;
       // Without a correction f at the end is the next first stage wherever it is there; with one,
       // only for methods that always have it, so that observing a run does not change it.
@@ -129,7 +129,13 @@ class ExplicitRun {
       if (t_ >= end_) return true;
       system_.begin_step(t_, step_.y());
       if (!kept && !step_.begin(t_)) return stop(evaluation_cause(system_.failure()));
-      if (looks && !altered) stiffness_.take((t1 - began) * step_.rate_of_change(), began);
+      if (!looks || altered) continue;
+      stiffness_.take((t1 - began) * step_.rate_of_change(), began);
+      if (options_.until_stiff && handling_ == SingularityHandling::none &&
+          !std::isnan(stiffness_.from())) {
+        result_.ended_stiff = true;
+        return stop("the problem is stiff");
+      }
     }
   }
 
@@ -155,7 +161,7 @@ class ExplicitRun {
     // Once more with singularity handling: f differs there from what these stages were.
     if (!fixed_ && system_.wanted_handling() > handling_) {
       const bool again = system_.wanted_handling() == SingularityHandling::position;
-      care(system_.wanted_handling());
+      take_handling(system_.wanted_handling());
       if (again) failure = step_.attempt(t_, t1, h_);
     }
     double error_squared = 0;
@@ -210,10 +216,10 @@ class ExplicitRun {
     return false;
   }
 
-  void care(SingularityHandling care) {
+  void take_handling(SingularityHandling handling) {
     if (handling_ == SingularityHandling::none) first_handled_ = h_;
-    handling_ = care;
-    system_.set_handling(care);
+    handling_ = handling;
+    system_.set_handling(handling);
   }
 
   /// Steps of their own from this one's start to t, each within the tolerance; uncounted, and not

@@ -21,6 +21,7 @@ struct IntegrationOptions {
   double spectral_radius = 0.8;  ///< generalised-alpha: at infinite frequency, in [0, 1)
   long max_steps = 50'000'000;
   double max_cpu_seconds = 0;  ///< 0: none; a run beyond it stops with status "time limit"
+  bool until_stiff = false;    ///< dp5, dop853, vern9: end where `stiff_from` is known
 };
 
 struct Counters {
@@ -28,6 +29,13 @@ struct Counters {
        newton_iterations = 0;
   long ode_restarts =
       0;  ///< of the steps, those of DAE methods taken as an ODE near singular poses
+
+  Counters& operator+=(const Counters& other) {
+    steps += other.steps, rejected += other.rejected, evaluations += other.evaluations;
+    jacobians += other.jacobians, factorizations += other.factorizations;
+    newton_iterations += other.newton_iterations, ode_restarts += other.ode_restarts;
+    return *this;
+  }
 };
 
 /// Interpolates the last accepted step: y (size of the system) at any t in [t0, t1].
@@ -52,6 +60,7 @@ struct IntegrationResult {
   /// Since when an explicit method's steps were as long as its stability allows, not its tolerance
   /// [s]; NaN: they were not.
   double stiff_from = std::numeric_limits<double>::quiet_NaN();
+  bool ended_stiff = false;   ///< not done for `until_stiff` alone; y is the state to go on from
   std::string linear_solver;  ///< implicit methods: "dense LU", "KLU"; else empty
   std::string jacobian;  ///< implicit methods: "dual numbers", "difference quotient"; else empty
 };

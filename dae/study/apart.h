@@ -10,7 +10,7 @@
 // The second is what their Newton iterations and their interpolants between steps leave, with room;
 // beyond it a form no longer does what it is for.
 
-#include <momenta/dae/assembly_units.h>
+#include <momenta/dae/assembly/units.h>
 #include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/study/run_result.h>
 

@@ -1,6 +1,6 @@
 #include <momenta/core/arguments.h>
+#include <momenta/dae/assembly/drive_reach.h>
 #include <momenta/dae/form/ode_form.h>
-#include <momenta/dae/measure/drive_reach.h>
 #include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/solver/stopping.h>
 #include <momenta/dae/study/run_monitor.h>
@@ -50,6 +50,9 @@ RunSettings default_settings(const RunDefaults& scene, const std::string& form,
   s.integrator = method.empty() ? default_integrator(form, rtol) : method;
   s.gauge = scene.leak ? Gauge{Gauge::Kind::leak, *scene.leak}.text() : "leak";
   s.rtol = s.atol = rtol;
+  if (method.empty() && !is_dae_form(form) && !needs_one_step_method(form) && s.gauge != "reset" &&
+      s.gauge != "flip")
+    s.when_stiff = "bdf";
   s.step = scene.step.value_or(0);
   s.end_time = scene.end_time;
   s.samples = scene.samples;
@@ -113,6 +116,11 @@ class Runner {
     options_.step = s.step;
     options_.spectral_radius = s.spectral_radius;
     options_.max_cpu_seconds = max_cpu_seconds;
+    // A larger dense Newton matrix may cost more than short steps.
+    constexpr int most_stiff_unknowns = 500;
+    if (dae || form_->ode()->size() > most_stiff_unknowns || s.step > 0) s.when_stiff.clear();
+    when_stiff_ = s.when_stiff;
+    options_.until_stiff = !when_stiff_.empty();
   }
 
   Form& form() { return *form_; }
@@ -126,14 +134,39 @@ class Runner {
     if (DaeSystem* dae = form_->dae())
       return momenta::integrate(integrator_, *dae, start_.t, times, options_, observer);
     const auto y0 = form_->initial(start_);
-    return momenta::integrate(integrator_, *form_->ode(), start_.t, y0, times, options_, observer);
+    const double began = thread_seconds();
+    IntegrationResult run =
+        momenta::integrate(integrator_, *form_->ode(), start_.t, y0, times, options_, observer);
+    changed_at_ = not_measured;
+    if (run.ended_stiff) go_on(run, times, observer, thread_seconds() - began);
+    return run;
   }
+  double changed_at() const { return changed_at_; }
 
  private:
+  /// The implicit method takes over where the explicit one ended.
+  void go_on(IntegrationResult& run, const std::vector<double>& times, const Observer& observer,
+             double cpu_s) {
+    changed_at_ = run.end_time;
+    std::vector<double> left;
+    std::copy_if(times.begin(), times.end(), std::back_inserter(left),
+                 [&](double t) { return t > run.end_time * (1 + 1e-14); });
+    IntegrationOptions options = options_;
+    if (options.max_cpu_seconds > 0)
+      options.max_cpu_seconds = std::max(1e-3, options.max_cpu_seconds - cpu_s);
+    const std::vector<double> y = std::move(run.y);
+    IntegrationResult rest =
+        momenta::integrate(when_stiff_, *form_->ode(), changed_at_, y, left, options, observer);
+    rest.stiff_from = run.stiff_from;
+    rest.counters += run.counters;
+    run = std::move(rest);
+  }
+
   const Start& start_;
   std::unique_ptr<Form> form_;
-  std::string integrator_;
+  std::string integrator_, when_stiff_;
   IntegrationOptions options_;
+  double changed_at_ = not_measured;
 };
 
 double wall_now() {
@@ -236,6 +269,7 @@ RunResult run_form(const Mechanism& mechanism, const Start& start, const RunRequ
   }
   judge_drives(mechanism, reach, times, monitor.last_closed(), result);
   result.stiff_from = run.stiff_from;
+  result.changed_at = runner.changed_at();
   result.counters = run.counters;
   result.jacobian = run.jacobian;
   result.linear_solver = run.linear_solver;

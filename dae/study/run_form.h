@@ -1,7 +1,7 @@
 #pragma once
 // One run: a form, an integrator, and everything measured on the way.
 
-#include <momenta/dae/assembly.h>
+#include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/measure/reference.h>
 #include <momenta/dae/study/run_result.h>
 

@@ -14,9 +14,10 @@ using Record = nlohmann::json;
 template <class Each>
 void list(const Each& each,
           auto&& s) requires std::is_same_v<std::remove_cvref_t<decltype(s)>, RunSettings> {
-  auto& [form, integrator, gauge, rtol, atol, step, end_time, samples, project, baumgarte_alpha,
-         baumgarte_beta, beta, penalty, spectral_radius, kkt] = s;
-  each("form", form), each("integrator", integrator), each("gauge", gauge);
+  auto& [form, integrator, when_stiff, gauge, rtol, atol, step, end_time, samples, project,
+         baumgarte_alpha, baumgarte_beta, beta, penalty, spectral_radius, kkt] = s;
+  each("form", form), each("integrator", integrator), each("when_stiff", when_stiff);
+  each("gauge", gauge);
   each("rtol", rtol), each("atol", atol), each("step", step), each("end_time", end_time);
   each("samples", samples), each("project", project);
   each("baumgarte_alpha", baumgarte_alpha), each("baumgarte_beta", baumgarte_beta);
@@ -82,14 +83,14 @@ void list(const Each& each, auto&& s) requires
 template <class Each>
 void list(const Each& each,
           auto&& s) requires std::is_same_v<std::remove_cvref_t<decltype(s)>, RunResult> {
-  auto& [scene, settings, status, reason, stopped_at, stiff_from, counters, partitions, jacobian,
-         linear_solver, cpu_s, wall_s, repeats, position_drift_max, velocity_drift_max,
+  auto& [scene, settings, status, reason, stopped_at, stiff_from, changed_at, counters, partitions,
+         jacobian, linear_solver, cpu_s, wall_s, repeats, position_drift_max, velocity_drift_max,
          between_steps_max, position_growth, velocity_growth, energy_error_max, kinetic_energy_max,
          energy_scale, position_error_max, velocity_error_max, faded_rows, singular_crossings,
          least_pivot, undetermined, series, trajectory, film] = s;
   each("scene", scene), each("settings", settings), each("status", status), each("reason", reason);
-  each("stopped_at", stopped_at), each("stiff_from", stiff_from), each("counters", counters),
-      each("partitions", partitions);
+  each("stopped_at", stopped_at), each("stiff_from", stiff_from), each("changed_at", changed_at),
+      each("counters", counters), each("partitions", partitions);
   each("jacobian", jacobian), each("linear_solver", linear_solver);
   each("cpu_s", cpu_s), each("wall_s", wall_s), each("repeats", repeats);
   each("position_drift_max", position_drift_max), each("velocity_drift_max", velocity_drift_max);

@@ -6,6 +6,7 @@
 #include <momenta/dae/study/picture.h>
 
 #include <array>
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <string>
@@ -22,6 +23,7 @@ inline constexpr double rounding_level = 1e-13;
 struct RunSettings {
   std::string form = "momentum";
   std::string integrator = "dop853";
+  std::string when_stiff;  ///< goes on from where the problem turns out stiff; empty: `integrator`
   std::string gauge = "none";  ///< none, leak:κ, reset, flip; empty for acceleration forms
   double rtol = 1e-8, atol = 1e-8;
   double step = 0;       ///< [s], 0 for adaptive integrators
@@ -73,6 +75,8 @@ struct RunResult {
   double stopped_at = 0;  ///< [s]
   /// Since when the steps of an explicit method were held by stability (solver/stiffness.h) [s].
   double stiff_from = not_measured;
+  /// Since when `settings.when_stiff` went on [s]; not_measured: it was not called.
+  double changed_at = not_measured;
   Counters counters;
   long partitions = 0;  ///< how often `partitioned` chose its coordinates, the start included
   std::string jacobian, linear_solver;
@@ -116,6 +120,11 @@ struct RunResult {
   Trajectory trajectory;
   Film film;  ///< empty where none was asked for
 };
+
+/// Whether a run changed its integrator on the way.
+inline bool changed(const RunResult& run) {
+  return !std::isnan(run.changed_at);
+}
 
 struct Environment {
   std::string cpu, compiler, flags, build_type;

@@ -1,5 +1,5 @@
 #include <momenta/core/scene/scene.h>
-#include <momenta/dae/assembly.h>
+#include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/solver/stopping.h>
 #include <momenta/dae/study/column_named.h>
 #include <momenta/dae/study/sweep_study.h>

@@ -8,11 +8,26 @@
 namespace momenta {
 namespace {
 
+RunSettings ladder(const Mechanism& mechanism, const WorkRequest& request, const std::string& form,
+                   const std::string& method) {
+  const bool loops = mechanism.m() > 0, dae = is_dae_form(form),
+             one_step = !dae && !integrator(method).multistep;
+  RunSettings s;
+  s.end_time = request.end_time;
+  s.samples = request.samples;
+  s.form = form;
+  s.integrator = method;
+  // What the theory of each recommends: a one-step method may reset the gauge and correct
+  // positions, which makes `projected` of `acceleration`; others have feedback instead.
+  if (takes_gauge(form) && loops)
+    s.gauge = !request.gauge.empty() ? request.gauge : one_step ? "reset" : "leak";
+  s.project = !dae && integrator(method).projects && loops &&
+              (form == "momentum" || form == "acceleration");
+  return s;
+}
+
 /// One ladder each: settings but for tolerance and step.
 std::vector<RunSettings> plan_ladders(const Mechanism& mechanism, const WorkRequest& request) {
-  RunSettings common;
-  common.end_time = request.end_time;
-  common.samples = request.samples;
   const bool loops = mechanism.m() > 0;
   // Of the methods asked for, those a form takes; its default where there is none among them.
   const auto methods_of = [&](const std::string& form) {
@@ -24,19 +39,6 @@ std::vector<RunSettings> plan_ladders(const Mechanism& mechanism, const WorkRequ
     return methods;
   };
   std::vector<RunSettings> ladders;
-  const auto add = [&](const std::string& form, const std::string& method) {
-    const bool dae = is_dae_form(form), one_step = !dae && !integrator(method).multistep;
-    RunSettings s = common;
-    s.form = form;
-    s.integrator = method;
-    // What the theory of each recommends: a one-step method may reset the gauge and correct
-    // positions, which makes `projected` of `acceleration`; others have feedback instead.
-    if (takes_gauge(form) && loops)
-      s.gauge = !request.gauge.empty() ? request.gauge : one_step ? "reset" : "leak";
-    s.project = !dae && integrator(method).projects && loops &&
-                (form == "momentum" || form == "acceleration");
-    ladders.push_back(s);
-  };
   for (const std::string& form : request.forms.empty() ? form_names() : request.forms) {
     // Without loops all forms are one of two ODEs.
     const bool asked = !request.forms.empty();
@@ -46,7 +48,7 @@ std::vector<RunSettings> plan_ladders(const Mechanism& mechanism, const WorkRequ
       // Not twice the same, and not what the method cannot take, unless asked for.
       if (!asked && loops && form == "acceleration" && one_step) continue;
       if (!asked && needs_one_step_method(form) && !one_step) continue;
-      add(form, method);
+      ladders.push_back(ladder(mechanism, request, form, method));
     }
   }
   return ladders;
@@ -56,11 +58,12 @@ std::vector<RunSettings> plan_ladders(const Mechanism& mechanism, const WorkRequ
 
 std::vector<RunResult> run_work_study(const Mechanism& mechanism, const Start& start,
                                       const WorkRequest& request) {
-  const auto ladders = plan_ladders(mechanism, request);
+  auto ladders = plan_ladders(mechanism, request);
   std::vector<RunResult> results;
   bool going = true;
   for (std::size_t i = 0; i < ladders.size() && going; ++i) {
     const bool fixed = integrator(ladders[i].integrator).step == Integrator::Step::fixed;
+    const std::size_t first = results.size();
     for (const double rung : fixed ? request.steps : request.tolerances) {
       RunRequest run;
       run.settings = ladders[i];
@@ -85,6 +88,12 @@ std::vector<RunResult> run_work_study(const Mechanism& mechanism, const Start& s
       // A tighter rung would need longer still; one that failed may be followed by one that works.
       if (!going || results.back().status == "time limit") break;
     }
+    // A method for stiff problems beside one that is held by its stability.
+    const bool stiff = std::any_of(results.begin() + static_cast<long>(first), results.end(),
+                                   [](const RunResult& r) { return !std::isnan(r.stiff_from); });
+    if (stiff && request.integrators.empty() && !needs_one_step_method(ladders[i].form))
+      ladders.insert(ladders.begin() + static_cast<long>(i) + 1,
+                     ladder(mechanism, request, ladders[i].form, "bdf"));
   }
   if (going)
     time_runs(mechanism, start, results,

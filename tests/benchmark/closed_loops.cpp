@@ -5,7 +5,7 @@
 
 #include <benchmark/benchmark.h>
 #include <momenta/core/scene/read_scene.h>
-#include <momenta/dae/assembly.h>
+#include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/kkt/loop_solver.h>
 
 #include "equations/linkages.h"

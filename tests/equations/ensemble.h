@@ -13,7 +13,7 @@
 // MOMENTA_JITTER=k in the environment, k = 1, 2, …, moves the starts of all runs in process by
 // pattern k: whatever fails then has drawn its bound around rounding.
 
-#include <momenta/dae/assembly.h>
+#include <momenta/dae/assembly/assembly.h>
 
 #include <vector>
 

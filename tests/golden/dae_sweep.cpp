@@ -4,7 +4,7 @@
 #include "golden/program.h"
 
 #include <gtest/gtest.h>
-#include <momenta/dae/assembly.h>
+#include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/report/sweep_report.h>
 
 #include <csignal>

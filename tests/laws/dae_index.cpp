@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 #include <momenta/core/scene/read_scene.h>
-#include <momenta/dae/assembly.h>
+#include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/form/dae_form.h>
 #include <momenta/dae/kkt/kkt.h>
 #include <momenta/dae/study/index_study.h>

@@ -12,7 +12,7 @@
 #include "equations/linkages.h"
 
 #include <gtest/gtest.h>
-#include <momenta/dae/measure/drive_reach.h>
+#include <momenta/dae/assembly/drive_reach.h>
 #include <momenta/dae/study/run_form.h>
 
 #include <algorithm>

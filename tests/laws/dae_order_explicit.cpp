@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 #include <momenta/core/scene/read_scene.h>
-#include <momenta/dae/assembly.h>
+#include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/form/form.h>
 #include <momenta/dae/solver/integration.h>
 

@@ -9,7 +9,7 @@
 #include <momenta/core/open_chain.h>
 #include <momenta/core/scene/read_scene.h>
 #include <momenta/core/scene/write_scene.h>
-#include <momenta/dae/assembly.h>
+#include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/cut/recut.h>
 #include <momenta/dae/cut/relative_motion.h>
 #include <momenta/dae/kkt/loop_solver.h>

@@ -10,7 +10,7 @@
 #include <malloc.h>
 
 #include <momenta/core/scalar/quad.h>
-#include <momenta/dae/assembly.h>
+#include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/form/form.h>
 #include <momenta/dae/kkt/loop_solver.h>
 #include <momenta/dae/solver/integration.h>

@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 #include <momenta/core/scene/read_scene.h>
-#include <momenta/dae/assembly.h>
+#include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/form/dae_form.h>
 #include <momenta/dae/solver/local_newton.h>
 #include <momenta/dae/study/run_form.h>

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <momenta/core/open_chain.h>
 #include <momenta/core/scene/read_scene.h>
-#include <momenta/dae/assembly.h>
+#include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/report/picture_data.h>
 #include <momenta/dae/study/motion.h>
 #include <momenta/dae/study/run_form.h>

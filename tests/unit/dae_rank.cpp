@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 #include <momenta/core/scene/read_scene.h>
-#include <momenta/dae/assembly.h>
+#include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/measure/rank.h>
 #include <momenta/dae/measure/reactions.h>
 

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 #include <momenta/core/scene/read_scene.h>
-#include <momenta/dae/assembly.h>
+#include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/report/atomic_write.h>
 #include <momenta/dae/report/page.h>
 #include <momenta/dae/study/modes_study.h>

@@ -29,7 +29,7 @@ TEST(SummaryJson, HasThePublicKeys) {
                  "jacobian",     "linear_solver", "kkt",         "project",
                  "stopped_at",   "stiff_from",    "faded_rows",  "beta",
                  "penalty",      "partitions",    "least_pivot", "singular_crossings",
-                 "undetermined", "passages"};
+                 "undetermined", "passages",      "changed_to",  "changed_at"};
   std::sort(expected.begin(), expected.end());
   EXPECT_EQ(keys(json), expected);
   EXPECT_EQ(keys(json["counters"]),

@@ -15,7 +15,7 @@
 // Groups with freedoms left move as forces say; there the continuation takes the least change, and
 // what it finds holds near the state it starts from alone.
 
-#include <momenta/dae/assembly.h>
+#include <momenta/dae/assembly/assembly.h>
 
 #include <string>
 

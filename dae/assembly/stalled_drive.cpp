@@ -1,4 +1,4 @@
-#include <momenta/dae/measure/stalled_drive.h>
+#include <momenta/dae/assembly/stalled_drive.h>
 
 #include <algorithm>
 #include <cstdio>

@@ -1,4 +1,4 @@
-#include <momenta/dae/assembly_units.h>
+#include <momenta/dae/assembly/units.h>
 
 #include <algorithm>
 #include <cmath>

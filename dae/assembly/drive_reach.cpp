@@ -1,7 +1,7 @@
-#include <momenta/dae/assembly_units.h>
+#include <momenta/dae/assembly/drive_reach.h>
+#include <momenta/dae/assembly/scaled_loops.h>
+#include <momenta/dae/assembly/stalled_drive.h>
 #include <momenta/dae/kkt/least_norm.h>
-#include <momenta/dae/measure/drive_reach.h>
-#include <momenta/dae/measure/stalled_drive.h>
 
 #include <algorithm>
 #include <cmath>
@@ -24,13 +24,10 @@ class Continuation {
  public:
   Continuation(const Mechanism& mechanism, double t, Eigen::VectorXd q)
       : mechanism_(mechanism),
-        e_(mechanism.evaluation<double>()),
-        pattern_(mechanism.constraint_pattern()),
+        loops_(mechanism),
+        pattern_(loops_.pattern()),
         steps_(pattern_, mechanism.m(), mechanism.nv()),
-        units_(mechanism),
-        closed_(std::max(closed, 4 * units_.rounding)),
-        column_in_(static_cast<std::size_t>(mechanism.nv()), true),
-        row_in_(static_cast<std::size_t>(mechanism.m()), true),
+        closed_(std::max(closed, 4 * loops_.units().rounding)),
         t_(t),
         q_(std::move(q)) {}
 
@@ -40,44 +37,14 @@ class Continuation {
   const Eigen::VectorXd& pose() const { return q_; }
 
  private:
-  std::vector<double> jacobian() {
-    std::vector<double> values(pattern_.size());
-    e_->constraint_entries(values.data());
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      const auto [row, column] = pattern_[i];
-      const bool in = column_in_[static_cast<std::size_t>(column)];
-      values[i] = in ? values[i] * units_.rates[column] / units_.equations[row] : 0;
-    }
-    return values;
-  }
-  Eigen::VectorXd of_followed_rows(Eigen::VectorXd x) const {
-    for (Eigen::Index i = 0; i < x.size(); ++i)
-      x[i] = row_in_[static_cast<std::size_t>(i)] ? x[i] / units_.equations[i] : 0;
-    return x;
-  }
-  Eigen::VectorXd gap(double t, const Eigen::VectorXd& q) {
-    Eigen::VectorXd phi(mechanism_.m());
-    e_->place(t, q.data());
-    e_->positions(phi.data());
-    return of_followed_rows(std::move(phi));
-  }
-  /// After gap(t, q).
-  Eigen::VectorXd moved(const Eigen::VectorXd& q, const Eigen::VectorXd& step) {
-    const Eigen::VectorXd rates = step.cwiseProduct(units_.rates);
-    Eigen::VectorXd qdot = Eigen::VectorXd::Zero(mechanism_.nq());
-    e_->coordinate_rates(q.data(), rates.data(), qdot.data());
-    Eigen::VectorXd next = q + qdot;
-    mechanism_.tree().normalise(next);
-    return next;
-  }
   /// u in units at (t_, q_), and how fast drives alone open the loops there [1/s].
   Eigen::VectorXd rates() {
-    gap(t_, q_);
-    const std::vector<double> j = jacobian();
+    loops_.gap(t_, q_);
+    const std::vector<double> j = loops_.jacobian();
     Eigen::VectorXd given(mechanism_.m());
-    e_->move(nullptr);
-    e_->velocities(given.data());
-    given = of_followed_rows(std::move(given));
+    loops_.evaluation().move(nullptr);
+    loops_.evaluation().velocities(given.data());
+    given = loops_.in_units(std::move(given));
     speed_ = std::max(speed_, given.cwiseAbs().maxCoeff());
     steps_.factor(j);
     return -steps_.solve(given);
@@ -90,12 +57,10 @@ class Continuation {
   bool passes(double step, double end);
 
   const Mechanism& mechanism_;
-  std::unique_ptr<Evaluation<double>> e_;
+  ScaledLoops loops_;
   const std::vector<KktPattern::Entry>& pattern_;
   LeastNorm steps_;
-  AssemblyUnits units_;
   double closed_;
-  std::vector<bool> column_in_, row_in_;
   double t_;
   Eigen::VectorXd q_;
   double speed_ = 0;      ///< largest |Φ_t| met
@@ -119,8 +84,8 @@ bool Continuation::leave_free_groups(bool& all_determined) {
     if (one < 0) one = column;
     root[static_cast<std::size_t>(root_of(column))] = root_of(one);
   }
-  gap(t_, q_);
-  const std::vector<double> all = jacobian();
+  loops_.gap(t_, q_);
+  const std::vector<double> all = loops_.jacobian();
   all_determined = true;
   bool any = false;
   for (int group = 0; group < mechanism_.nv(); ++group) {
@@ -135,12 +100,12 @@ bool Continuation::leave_free_groups(bool& all_determined) {
     any = any || determined;
     all_determined = all_determined && determined;
     for (std::size_t c = 0; c < columns; ++c)
-      if (root_of(static_cast<int>(c)) == group) column_in_[c] = determined;
-    for (std::size_t r = 0; r < row_in_.size(); ++r)
-      if (first[r] >= 0 && root_of(first[r]) == group) row_in_[r] = determined;
+      if (root_of(static_cast<int>(c)) == group) loops_.columns[c] = determined;
+    for (std::size_t r = 0; r < loops_.rows.size(); ++r)
+      if (first[r] >= 0 && root_of(first[r]) == group) loops_.rows[r] = determined;
   }
   // Rows without columns tie drives to the ground: they hold or they do not.
-  for (std::size_t r = 0; r < row_in_.size(); ++r) any = any || first[r] < 0;
+  for (std::size_t r = 0; r < loops_.rows.size(); ++r) any = any || first[r] < 0;
   return any;
 }
 
@@ -150,7 +115,7 @@ std::optional<Eigen::VectorXd> Continuation::corrected(double t, Eigen::VectorXd
   double way = 0, last = std::numeric_limits<double>::infinity();
   int slow = 0;
   for (int i = 0; i < most_iterations; ++i) {
-    const Eigen::VectorXd phi = gap(t, q);
+    const Eigen::VectorXd phi = loops_.gap(t, q);
     const double norm = phi.cwiseAbs().maxCoeff();
     if (!std::isfinite(norm)) return std::nullopt;
     if (norm <= closed_) return q;
@@ -158,13 +123,13 @@ std::optional<Eigen::VectorXd> Continuation::corrected(double t, Eigen::VectorXd
     slow = norm > 0.5 * last ? slow + 1 : 0;
     if (!damped && slow > 1) return std::nullopt;
     last = norm;
-    const std::vector<double> j = jacobian();
+    const std::vector<double> j = loops_.jacobian();
     steps_.factor(j, damped ? phi.norm() : 0);
     const Eigen::VectorXd step = -steps_.solve(phi);
     if (!step.allFinite()) return std::nullopt;
     way += step.size() > 0 ? step.cwiseAbs().maxCoeff() : 0;
     if (!(way <= most_way)) return std::nullopt;
-    q = moved(q, step);
+    q = loops_.moved(q, step);
   }
   return std::nullopt;
 }
@@ -194,9 +159,9 @@ DriveReach Continuation::follow(double end) {
     h = std::min(h, end - t_);
     if (fastest * h > longest_step) h = longest_step / fastest;
     for (;;) {
-      gap(t_, q_);
+      loops_.gap(t_, q_);
       const double most_way = most_correction * h * fastest + 1e-9;
-      if (const auto there = corrected(t_ + h, moved(q_, h * u), most_way, false)) {
+      if (const auto there = corrected(t_ + h, loops_.moved(q_, h * u), most_way, false)) {
         t_ = h < end - t_ ? t_ + h : end;
         q_ = *there;
         break;
@@ -205,7 +170,8 @@ DriveReach Continuation::follow(double end) {
       if (h > least) continue;
       if (++forks <= 100 && passes(std::max(least, 1e-12 * std::abs(t_)), end)) break;
       reach.until = t_;
-      reach.obstacle = stalled_drive(mechanism_, t_, open_.size() > 0 ? open_ : gap(t_ + h, q_));
+      reach.obstacle =
+          stalled_drive(mechanism_, t_, open_.size() > 0 ? open_ : loops_.gap(t_ + h, q_));
       return reach;
     }
     h *= 2;

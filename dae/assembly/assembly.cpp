@@ -1,0 +1,191 @@
+#include <momenta/dae/assembly/assembly.h>
+#include <momenta/dae/assembly/closing.h>
+#include <momenta/dae/kkt/least_norm.h>
+#include <momenta/dae/kkt/loop_solver.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+namespace momenta {
+namespace {
+
+class Assembler {
+ public:
+  /// From q, u at time t [s].
+  Assembler(const Mechanism& mechanism, double t, Eigen::VectorXd q, Eigen::VectorXd u)
+      : mechanism_(mechanism),
+        t_(t),
+        q_(std::move(q)),
+        u_(std::move(u)),
+        loops_(mechanism),
+        steps_(loops_.pattern(), mechanism.m(), mechanism.nv()) {
+    for (const auto& name : mechanism.scene().held) {
+      const Tree& tree = mechanism.tree();
+      const int last = tree.carried_by(name);
+      for (int k = last < 0 ? 0 : tree.first_part(last); k <= last; ++k) {
+        const auto& b = tree.bodies[static_cast<std::size_t>(k)];
+        for (int i = 0; i < b.nv; ++i) loops_.columns[static_cast<std::size_t>(b.u + i)] = false;
+      }
+    }
+  }
+
+  Assembly run() {
+    Assembly a;
+    a.start.t = t_;
+    a.start.q = q_;
+    a.start.u = u_;
+    if (mechanism_.m() > 0) {
+      if (mechanism_.nv() == 0) nothing_moves();
+      close_positions(a);
+      close_velocities(a);
+      judge_rank(a);
+    }
+    a.mobility = mechanism_.nv() - a.rank;
+    accelerations(a);
+    return a;
+  }
+
+ private:
+  Evaluation<double>& e() { return loops_.evaluation(); }
+
+  void close_positions(Assembly& a) {
+    Closing closing(loops_, steps_, t_);
+    const Eigen::VectorXd guess = a.start.q;
+    const Closing::Pose found = closing.close(guess);
+    a.iterations = closing.iterations();
+    a.branch = closing.branch();
+    a.start.q = found.q;
+    const Eigen::VectorXd phi = loops_.gap(t_, a.start.q).cwiseProduct(row_);
+    a.position_residual = phi.cwiseAbs().maxCoeff();
+    a.moved = (a.start.q - guess).cwiseAbs().maxCoeff();
+    if (!found.is_closed) refuse(phi, closing.tolerance());
+  }
+
+  [[noreturn]] void refuse(const Eigen::VectorXd& phi, double tolerance) const {
+    const Scene& scene = mechanism_.scene();
+    std::string open;
+    Location at;
+    int row = 0;
+    for (const auto& loop : scene.loops) {
+      double largest = 0;
+      for (; row < mechanism_.m() &&
+             mechanism_.rows()[static_cast<std::size_t>(row)].loop == loop.name;
+           ++row)
+        largest = std::max(largest, std::abs(phi[row]));
+      if (largest <= tolerance * row_[row - 1]) continue;
+      char text[32];
+      std::snprintf(text, sizeof text, "%.3g", largest);
+      if (open.empty()) at = loop.at;
+      open += (open.empty() ? "loop '" : ", loop '") + loop.name + "' stays open by " + text;
+    }
+    throw SceneError(
+        scene.where(at) + "the mechanism cannot be assembled from these positions: " + open +
+        (scene.held.empty() ? "" : " while joints are held") + " (" +
+        std::to_string(mechanism_.m()) + " equations, " +
+        std::to_string(std::count(loops_.columns.begin(), loops_.columns.end(), true)) +
+        " free rates); expected loops that close");
+  }
+
+  void close_velocities(Assembly& a) {
+    Eigen::VectorXd& u = a.start.u;
+    Eigen::VectorXd rate(mechanism_.m());
+    const std::vector<double> j = loops_.jacobian();
+    steps_.factor(j);
+    for (int pass = 0; pass < 2; ++pass) {
+      e().move(u.data());
+      e().velocities(rate.data());
+      u -= steps_.solve(rate.cwiseQuotient(row_)).cwiseProduct(column_);
+    }
+    e().move(u.data());
+    e().velocities(rate.data());
+    a.velocity_residual = rate.cwiseAbs().maxCoeff();
+    double largest = 0;
+    for (const double x : j) largest = std::max(largest, std::abs(x));
+    const double scale =
+        1 + (u.size() > 0 ? u.cwiseQuotient(column_).cwiseAbs().maxCoeff() : 0) * (1 + largest);
+    if (rate.cwiseQuotient(row_).cwiseAbs().maxCoeff() <= 1e-10 * scale) return;
+    Eigen::Index worst;
+    rate.cwiseAbs().maxCoeff(&worst);
+    const auto& name = mechanism_.rows()[static_cast<std::size_t>(worst)].loop;
+    char text[32];
+    std::snprintf(text, sizeof text, "%.3g", a.velocity_residual);
+    const Scene& scene = mechanism_.scene();
+    if (scene.held.empty() && !scene.drives.empty())
+      throw SceneError(scene.where(scene.drives.front().at) + "drives cannot start: loop '" + name +
+                       "' would open at a rate of " + text +
+                       ", whatever the other joints do; expected drives that the loops allow");
+    throw SceneError(scene.where({}) + "the velocities of the held joints tear loop '" + name +
+                     "' apart at a rate of " + text + "; expected rates that the loops allow");
+  }
+
+  void judge_rank(Assembly& a) {
+    LeastNorm::Rows rows = steps_.judge(loops_.whole_jacobian());
+    a.rank = rows.rank;
+    a.smallest_pivot = rows.smallest_pivot;
+    a.largest_neglected = rows.largest_neglected;
+    a.dependent_rows = std::move(rows.dependent);
+  }
+
+  void accelerations(Assembly& a) {
+    Start& s = a.start;
+    s.udot = Eigen::VectorXd::Zero(mechanism_.nv());
+    s.lambda = Eigen::VectorXd::Zero(mechanism_.m());
+    if (mechanism_.nv() == 0) return;
+    e().place(s.t, s.q.data());
+    if (mechanism_.m() == 0) {
+      if (!e().open_accelerations(s.t, s.q.data(), s.u.data(), s.udot.data()))
+        no_inertia(e().singular_joint());
+      return;
+    }
+    if (mechanism_.kkt() == KktChoice::sweeps && !mechanism_.dense_kkt()) {
+      const auto solver = make_loop_solver(mechanism_, e());
+      if (!solver->acceleration(s.t, s.q.data(), s.u.data(), nullptr, 0, 0, s.udot.data(),
+                                s.lambda.data()))
+        no_inertia(solver->singular_joint());
+      return;
+    }
+    const auto kkt = make_kkt(mechanism_);
+    if (!kkt->factor(e(), s.t, s.q.data(), fade_evaluation)) no_inertia(kkt->singular_joint());
+    e().move(s.u.data());
+    Eigen::VectorXd r(mechanism_.nv()), g(mechanism_.m());
+    e().joint_forces(s.q.data(), s.u.data(), nullptr, nullptr, r.data());
+    e().accelerations(g.data());
+    r = -r;
+    g = -g;
+    if (!kkt->solve(r.data(), g.data(), nullptr, s.udot.data(), s.lambda.data())) no_inertia(-1);
+  }
+
+  [[noreturn]] void no_inertia(int rate) const {
+    throw SceneError(mechanism_.scene().where({}) +
+                     "the mechanism cannot move at its start: " + mechanism_.no_inertia(rate));
+  }
+
+  [[noreturn]] void nothing_moves() const {
+    const LoopSpec& loop = mechanism_.scene().loops.front();
+    throw SceneError(mechanism_.scene().where(loop.at) + "loop '" + loop.name +
+                     "' ties bodies of which none can move: expected a joint that is neither a "
+                     "weld nor driven");
+  }
+
+  const Mechanism& mechanism_;
+  double t_;
+  Eigen::VectorXd q_, u_;  ///< the guess
+  ScaledLoops loops_;
+  LeastNorm steps_;
+  const Eigen::VectorXd &column_ = loops_.units().rates, &row_ = loops_.units().equations;
+};
+
+}  // namespace
+
+Assembly assemble(const Mechanism& mechanism) {
+  return assemble(mechanism, 0, mechanism.tree().q0, mechanism.tree().u0);
+}
+
+Assembly assemble(const Mechanism& mechanism, double t, const Eigen::VectorXd& q,
+                  const Eigen::VectorXd& u) {
+  return Assembler(mechanism, t, q, u).run();
+}
+
+}  // namespace momenta

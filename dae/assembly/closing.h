@@ -1,0 +1,61 @@
+#pragma once
+// Positions that close the loops, Φ(q, t) = 0, from a guess: the pose the guess means where it is
+// near, else one that exists. In units of the assembly, J = D⁻¹ Φ_q C, φ = D⁻¹ Φ:
+//
+//   damped      δ = −J⁺ φ, shortened until |φ| shrinks; where J⁺ asks, through pivots as small as
+//               the gap, for steps that lead nowhere, δ = −(JᵀJ + |φ|²)⁻¹ Jᵀ φ. It stays near the
+//               guess, and ends where |φ| has a least value other than zero.
+//   continued   q' = −(JᵀJ + |φ|²)⁻¹ Jᵀ φ in steps of at most 0.05: the gap closes continuously.
+//   undamped    δ = −J⁺ φ whether |φ| shrinks or not. At a stretched pose, q = 0 of many parallel
+//               robots, no short step closes the loops further, and long ones leave it.
+//   seeds       damped from starts around the guess, 0.3, 1 and 3 radians or lengths away: of the
+//               first distance at which some close the one nearest to the guess.
+//
+// The first two are tried wherever Newton's steps go far, the others only where both stay open.
+
+#include <momenta/dae/assembly/scaled_loops.h>
+#include <momenta/dae/kkt/least_norm.h>
+
+#include <string>
+
+namespace momenta {
+
+class Closing {
+ public:
+  /// Steps solved by `steps`; joints whose columns `loops` leaves out stay.
+  Closing(ScaledLoops& loops, LeastNorm& steps, double t);
+
+  struct Pose {
+    Eigen::VectorXd q;
+    double gap = 0;  ///< |Φ|∞, points in lengths
+    bool is_closed = false;
+  };
+  /// From the guess q. Cost: least-norm factorisations of Φ_q, 10 to 200 where it closes; up to
+  /// 5000 where nothing does.
+  Pose close(const Eigen::VectorXd& guess);
+
+  double tolerance() const { return tolerance_; }  ///< of |Φ|∞, in units
+  int iterations() const { return iterations_; }
+  /// Which of several assemblies this is, where the guess does not decide it at once: one sentence,
+  /// or empty.
+  const std::string& branch() const { return branch_; }
+
+ private:
+  struct Trial;
+  Eigen::VectorXd gap(const Eigen::VectorXd& q) { return loops_.gap(t_, q); }
+  Trial along(const Eigen::VectorXd& q, double norm, Eigen::VectorXd step);
+  Eigen::VectorXd damped_step(const std::vector<double>& j, const Eigen::VectorXd& phi);
+  Pose damped(Eigen::VectorXd q, int most_iterations);
+  bool follow(Eigen::VectorXd& q);
+  Pose undamped(Eigen::VectorXd q);
+  Pose from_seeds(const Eigen::VectorXd& guess);
+  Pose anywhere(const Eigen::VectorXd& guess, Pose open);
+
+  ScaledLoops& loops_;
+  LeastNorm& steps_;
+  double t_, tolerance_;
+  int iterations_ = 0;
+  std::string branch_;
+};
+
+}  // namespace momenta

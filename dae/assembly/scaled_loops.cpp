@@ -1,0 +1,65 @@
+#include <momenta/dae/assembly/scaled_loops.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace momenta {
+
+ScaledLoops::ScaledLoops(const Mechanism& mechanism)
+    : columns(static_cast<std::size_t>(mechanism.nv()), true),
+      rows(static_cast<std::size_t>(mechanism.m()), true),
+      mechanism_(mechanism),
+      e_(mechanism.evaluation<double>()),
+      pattern_(mechanism.constraint_pattern()),
+      units_(mechanism) {}
+
+Eigen::VectorXd ScaledLoops::gap(double t, const Eigen::VectorXd& q) {
+  Eigen::VectorXd phi(mechanism_.m());
+  e_->place(t, q.data());
+  e_->positions(phi.data());
+  return in_units(std::move(phi));
+}
+
+std::vector<double> ScaledLoops::whole_jacobian() {
+  std::vector<double> values(pattern_.size());
+  e_->constraint_entries(values.data());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const auto [row, column] = pattern_[i];
+    values[i] *= units_.rates[column] / units_.equations[row];
+  }
+  return values;
+}
+
+std::vector<double> ScaledLoops::jacobian() {
+  std::vector<double> values = whole_jacobian();
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (!columns[static_cast<std::size_t>(pattern_[i].column)]) values[i] = 0;
+  return values;
+}
+
+Eigen::VectorXd ScaledLoops::moved(const Eigen::VectorXd& q, const Eigen::VectorXd& step) {
+  const Eigen::VectorXd rates = step.cwiseProduct(units_.rates);
+  Eigen::VectorXd qdot = Eigen::VectorXd::Zero(mechanism_.nq());
+  e_->coordinate_rates(q.data(), rates.data(), qdot.data());
+  Eigen::VectorXd next = q + qdot;
+  mechanism_.tree().normalise(next);
+  return next;
+}
+
+Eigen::VectorXd ScaledLoops::in_units(Eigen::VectorXd x) const {
+  for (Eigen::Index i = 0; i < x.size(); ++i)
+    x[i] = rows[static_cast<std::size_t>(i)] ? x[i] / units_.equations[i] : 0;
+  return x;
+}
+
+double ScaledLoops::apart(const Eigen::VectorXd& a, const Eigen::VectorXd& b) const {
+  double largest = 0;
+  for (const auto& body : mechanism_.tree().bodies)
+    for (int i = 0; i < body.nq; ++i) {
+      const double unit = i < body.nv ? units_.rates[body.u + i] : 1;
+      largest = std::max(largest, std::abs(a[body.q + i] - b[body.q + i]) / unit);
+    }
+  return largest;
+}
+
+}  // namespace momenta

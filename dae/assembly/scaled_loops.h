@@ -1,0 +1,44 @@
+#pragma once
+// The loop equations in the units of an assembly: D⁻¹ Φ, and D⁻¹ Φ_q C with respect to steps
+// δ = C⁻¹ u, lengths counted in the length of the scene. Rows and columns can be left out.
+
+#include <momenta/dae/assembly/units.h>
+
+#include <memory>
+#include <vector>
+
+namespace momenta {
+
+class ScaledLoops {
+ public:
+  explicit ScaledLoops(const Mechanism& mechanism);
+
+  /// D⁻¹ Φ at time t [s] and q (nq), m; zero in rows that are left out. Places the evaluation.
+  Eigen::VectorXd gap(double t, const Eigen::VectorXd& q);
+  /// Entries of D⁻¹ Φ_q C where gap() was taken last, in the order of pattern(); zero in columns
+  /// that are left out.
+  std::vector<double> jacobian();
+  /// The same with all columns.
+  std::vector<double> whole_jacobian();
+  /// q after a step δ (nv) from there.
+  Eigen::VectorXd moved(const Eigen::VectorXd& q, const Eigen::VectorXd& step);
+  /// D⁻¹ x (m), zero in rows that are left out.
+  Eigen::VectorXd in_units(Eigen::VectorXd x) const;
+  /// Largest change of a coordinate between two poses, in units.
+  double apart(const Eigen::VectorXd& a, const Eigen::VectorXd& b) const;
+
+  const Mechanism& mechanism() const { return mechanism_; }
+  Evaluation<double>& evaluation() { return *e_; }
+  const std::vector<KktPattern::Entry>& pattern() const { return pattern_; }
+  const AssemblyUnits& units() const { return units_; }
+
+  std::vector<bool> columns, rows;  ///< that are in: all, until told otherwise
+
+ private:
+  const Mechanism& mechanism_;
+  std::unique_ptr<Evaluation<double>> e_;
+  const std::vector<KktPattern::Entry>& pattern_;  ///< of Φ_q
+  AssemblyUnits units_;
+};
+
+}  // namespace momenta
