@@ -10,8 +10,8 @@
 namespace momenta {
 namespace {
 
-constexpr double closed = 1e-12;  // |Φ|∞, in units; at least
-constexpr int most_iterations = 200;
+constexpr double closed_gap = 1e-12;  // |Φ|∞, in units; at least
+constexpr int damped_iterations = 200;
 constexpr double largest_step = 0.4;  // [rad or lengths]: stay on the branch of the guess
 constexpr double far = 0.1;           // [rad or lengths]: Newton's steps may leave the branch
 constexpr int undamped_iterations = 40, seed_iterations = 60;
@@ -31,7 +31,10 @@ double largest_of(const Eigen::VectorXd& x) {
 }  // namespace
 
 Closing::Closing(ScaledLoops& loops, LeastNorm& steps, double t)
-    : loops_(loops), steps_(steps), t_(t), tolerance_(std::max(closed, loops.units().rounding)) {}
+    : loops_(loops),
+      steps_(steps),
+      t_(t),
+      tolerance_(std::max(closed_gap, loops.units().rounding)) {}
 
 /// Where a step leads, shortened until the loops close further; near rounding level they no longer
 /// do, and the norm stays at infinity.
@@ -144,7 +147,8 @@ Closing::Pose Closing::from_seeds(const Eigen::VectorXd& guess) {
     for (int i = 0; i < seeds; ++i) {
       Eigen::VectorXd step(guess.size() > 0 ? loops_.mechanism().nv() : 0);
       for (Eigen::Index k = 0; k < step.size(); ++k) {
-        const double x = 2 * (random() / static_cast<double>(std::mt19937::max())) - 1;
+        const double x =
+            2 * (static_cast<double>(random()) / static_cast<double>(std::mt19937::max())) - 1;
         step[k] = loops_.columns[static_cast<std::size_t>(k)] ? distance * x : 0;
       }
       gap(guess);
@@ -183,12 +187,12 @@ Closing::Pose Closing::anywhere(const Eigen::VectorXd& guess, Pose open) {
 Closing::Pose Closing::close(const Eigen::VectorXd& guess) {
   iterations_ = 0;
   branch_.clear();
-  Pose found = damped(guess, most_iterations);
+  Pose found = damped(guess, damped_iterations);
   const double way = loops_.apart(found.q, guess);
   if (found.is_closed && way <= far) return found;
   Pose followed{guess, 0, false};
   const bool arrived = follow(followed.q);
-  followed = damped(followed.q, most_iterations);
+  followed = damped(followed.q, damped_iterations);
   const double other = loops_.apart(followed.q, guess);
   if (followed.is_closed && (!found.is_closed || other < 0.7 * way - far)) {
     char text[160];
