@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "state_text.h"
 
@@ -121,19 +122,53 @@ GivenState read_state(const std::string& state, const Mechanism& mechanism) {
   return StateReader(mechanism, state).read();
 }
 
+namespace {
+
+using JointValues = std::vector<double> JointSpec::*;
+
+JointSpec* joint_named(Scene& scene, const std::string& name) {
+  const auto joint = std::find_if(scene.joints.begin(), scene.joints.end(),
+                                  [&](const JointSpec& j) { return j.name == name; });
+  return joint == scene.joints.end() ? nullptr : &*joint;
+}
+
+/// Of a coupler Σ r_i q_i = c the one joint that was given no value, where the others were: so
+/// rotors turn with their joints.
+void follow_coupler(Scene& scene, const LoopSpec& coupler, std::set<std::string>& given,
+                    JointValues values, double sum) {
+  JointSpec* left = nullptr;
+  double ratio = 0;
+  for (std::size_t i = 0; i < coupler.joints.size(); ++i) {
+    JointSpec* joint = joint_named(scene, coupler.joints[i]);
+    if (!joint || coordinates_of(*joint) != 1) return;
+    if (given.count(joint->name)) {
+      sum -= coupler.ratios[i] * (joint->*values).front();
+    } else {
+      if (left) return;
+      left = joint;
+      ratio = coupler.ratios[i];
+    }
+  }
+  if (!left) return;
+  left->*values = {sum / ratio};
+  given.insert(left->name);
+}
+
+}  // namespace
+
 void start_at(const std::string& state, Scene& scene) {
   if (state == "-")
     throw SceneError(
         "--at: found -, expected a JSON file or the text itself");  // read again to go on
   const StateText text(state, start_keys);
   const auto put = [&](const std::string& key, int (*size_of)(const JointSpec&),
-                       std::vector<double> JointSpec::*values) {
+                       JointValues values) {
     const auto* table = text.table(key);
     if (!table) return;
+    std::set<std::string> given;
     for (const auto& [name, value] : table->items()) {
-      const auto joint = std::find_if(scene.joints.begin(), scene.joints.end(),
-                                      [&](const JointSpec& j) { return j.name == name; });
-      if (joint == scene.joints.end()) {
+      JointSpec* joint = joint_named(scene, name);
+      if (!joint) {
         std::vector<std::string_view> names;
         for (const JointSpec& j : scene.joints) names.push_back(j.name);
         text.unknown_joint(name, key, names);
@@ -146,9 +181,13 @@ void start_at(const std::string& state, Scene& scene) {
                         [&](const DriveSpec& d) { return d.joint == name; }));
       if (drives >= size)
         text.fail(where + ": the joint is driven, expected no value: t alone moves it");
-      ((*joint).*values).resize(size);
-      text.numbers(value, where, size, ((*joint).*values).data());
+      (joint->*values).resize(size);
+      text.numbers(value, where, size, (joint->*values).data());
+      given.insert(name);
     }
+    for (const LoopSpec& l : scene.loops)
+      if (l.kind == LoopKind::coupler)
+        follow_coupler(scene, l, given, values, key == "q" ? l.offset : 0);
   };
   put("q", coordinates_of, &JointSpec::position);
   put("v", rates_of, &JointSpec::velocity);

@@ -50,9 +50,7 @@ RunSettings default_settings(const RunDefaults& scene, const std::string& form,
   s.integrator = method.empty() ? default_integrator(form, rtol) : method;
   s.gauge = scene.leak ? Gauge{Gauge::Kind::leak, *scene.leak}.text() : "leak";
   s.rtol = s.atol = rtol;
-  if (method.empty() && !is_dae_form(form) && !needs_one_step_method(form) && s.gauge != "reset" &&
-      s.gauge != "flip")
-    s.when_stiff = "bdf";
+  if (method.empty()) s.when_stiff = "bdf";
   s.step = scene.step.value_or(0);
   s.end_time = scene.end_time;
   s.samples = scene.samples;
@@ -116,9 +114,7 @@ class Runner {
     options_.step = s.step;
     options_.spectral_radius = s.spectral_radius;
     options_.max_cpu_seconds = max_cpu_seconds;
-    // A larger dense Newton matrix may cost more than short steps.
-    constexpr int most_stiff_unknowns = 500;
-    if (dae || form_->ode()->size() > most_stiff_unknowns || s.step > 0) s.when_stiff.clear();
+    if (!s.when_stiff.empty() && !may_change(s, options.gauge)) s.when_stiff.clear();
     when_stiff_ = s.when_stiff;
     options_.until_stiff = !when_stiff_.empty();
   }
@@ -144,6 +140,16 @@ class Runner {
   double changed_at() const { return changed_at_; }
 
  private:
+  /// Whether `when_stiff`, a method with memory, takes the form as it is set.
+  bool may_change(const RunSettings& s, const Gauge& gauge) {
+    const Integrator& method = integrator(s.when_stiff);
+    constexpr int most_unknowns =
+        500;  // a larger dense Newton matrix may cost more than short steps
+    return !is_dae_form(s.form) && s.step == 0 && form_->ode()->size() <= most_unknowns &&
+           !needs_one_step_method(s.form) && (method.projects || !s.project) &&
+           gauge.kind != Gauge::Kind::reset && gauge.kind != Gauge::Kind::flip;
+  }
+
   /// The implicit method takes over where the explicit one ended.
   void go_on(IntegrationResult& run, const std::vector<double>& times, const Observer& observer,
              double cpu_s) {

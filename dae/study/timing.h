@@ -26,7 +26,9 @@ bool is_settled(std::vector<double> times);
 
 struct TimingRequest {
   Timing how = Timing::rounds;
-  double budget = 3;  ///< [s] of processor time a run, past which it takes no further round
+  /// [s] of processor time a run, past which it takes no further round: a run of more than a second
+  /// averages over its own steps.
+  double budget = 1;
   Journal* journal = nullptr;  ///< every time is recorded, and taken from it when a study goes on
   std::function<bool(std::size_t)> going_on;  ///< asked before each run, with its number
   std::function<bool()> at_step;              ///< asked after each step; false ends it all

@@ -2,6 +2,7 @@
 // mechanisms, the same as from the assembled matrix; trees as from the recursion; the cost of a
 // chain.
 
+#include "equations/decompositions.h"
 #include "equations/ensemble.h"
 #include "equations/linkages.h"
 #include "equations/random_loops.h"
