@@ -42,10 +42,10 @@ double growth(const Mechanism& mechanism, Evaluation<double>& e) {
   e.constraint_entries(values.data());
   for (std::size_t i = 0; i < pattern.constraint.size(); ++i)
     j(pattern.constraint[i].row, pattern.constraint[i].column) = values[i];
-  const VectorXd masses = m.selfadjointView<Eigen::Lower>().eigenvalues();
+  const VectorXd masses = eigenvalues_of(m);
   const double of_mass = masses.maxCoeff() / masses.minCoeff();
   if (mechanism.m() == 0) return of_mass;
-  const VectorXd s = m.llt().matrixL().solve(j.transpose().eval()).jacobiSvd().singularValues();
+  const VectorXd s = singular_values_in_mass(m, j);
   return of_mass * std::pow(s.maxCoeff() / s.minCoeff(), 2);
 }
 
