@@ -62,6 +62,14 @@ bool OpenChain::rates(double t, const ConstVectorRef& q, const ConstVectorRef& p
   });
 }
 
+bool OpenChain::rates(double t, const ConstVectorRef& q, const ConstVectorRef& p,
+                      const ConstVectorRef& tau, VectorRef qdot, VectorRef pdot) {
+  expect_size("rates", "tau", tau.size(), nv());
+  if (!inside_->finite(t, q, "tau", tau) || !rates(t, q, p, qdot, pdot)) return false;
+  pdot += tau;
+  return true;
+}
+
 bool OpenChain::rates_of_states(double t, const ConstStatesRef& q, const ConstStatesRef& p,
                                 StatesRef qdot, StatesRef pdot, int threads) {
   check_threads(threads);
@@ -199,6 +207,18 @@ bool OpenChain::accelerations(double t, const ConstVectorRef& q, const ConstVect
   if (!inside_->finite(t, q, "u", u)) return false;
   return inside_->visit([&](auto& kernel) {
     return inside_->acceleration(kernel, t, q.data(), u.data(), udot.data());
+  });
+}
+
+bool OpenChain::accelerations(double t, const ConstVectorRef& q, const ConstVectorRef& u,
+                              const ConstVectorRef& tau, VectorRef udot) {
+  expect_size("accelerations", "q", q.size(), nq());
+  expect_size("accelerations", "u", u.size(), nv());
+  expect_size("accelerations", "tau", tau.size(), nv());
+  expect_size("accelerations", "udot", udot.size(), nv());
+  if (!inside_->finite(t, q, "u", u) || !inside_->finite("tau", tau.data(), nv())) return false;
+  return inside_->visit([&](auto& kernel) {
+    return inside_->acceleration(kernel, t, q.data(), u.data(), udot.data(), tau.data());
   });
 }
 

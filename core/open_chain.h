@@ -65,6 +65,9 @@ class OpenChain {
   /// see failure().
   bool rates(double t, const ConstVectorRef& q, const ConstVectorRef& p, VectorRef qdot,
              VectorRef pdot);
+  /// The same with τ (nv), forces of joints beside the scene's own [N m or N]: ṗ + τ.
+  bool rates(double t, const ConstVectorRef& q, const ConstVectorRef& p, const ConstVectorRef& tau,
+             VectorRef qdot, VectorRef pdot);
   /// The same for many states at one time t: q (nq × states), p (nv × states), side by side in the
   /// lanes of vector registers. Where forces act between points of bodies, state by state. False
   /// when a state has no rates: its columns are NaN, those of all others are right; failure() names
@@ -97,6 +100,9 @@ class OpenChain {
   void momenta(double t, const ConstVectorRef& q, const ConstVectorRef& u, VectorRef p);
   /// u̇ (nv) from (q, u): the acceleration recursion, O(bodies). False as rates().
   bool accelerations(double t, const ConstVectorRef& q, const ConstVectorRef& u, VectorRef udot);
+  /// The same with τ (nv), forces of joints beside the scene's own [N m or N].
+  bool accelerations(double t, const ConstVectorRef& q, const ConstVectorRef& u,
+                     const ConstVectorRef& tau, VectorRef udot);
   /// q̇ (nq) from u (nv).
   void coordinate_rates(const ConstVectorRef& q, const ConstVectorRef& u, VectorRef qdot) const;
 

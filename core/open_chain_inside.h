@@ -108,8 +108,11 @@ struct OpenChain::Inside {
     return true;
   }
   template <class K>
-  bool acceleration(K& k, double t, const double* q, const double* rates, double* udot) {
+  bool acceleration(K& k, double t, const double* q, const double* rates, double* udot,
+                    const double* tau = nullptr) {
     applied_forces(k.w, t, q, rates);
+    if (tau)
+      for (int i = 0; i < tree.nv; ++i) k.w.generalised[static_cast<std::size_t>(i)] += tau[i];
     const bool ok = k.sweeps->acceleration(t, q, rates, k.w.generalised.data(), udot);
     singular = ok ? -1 : k.sweeps->singular_joint();
     return ok;

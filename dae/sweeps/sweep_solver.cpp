@@ -51,6 +51,8 @@ class SweepSolver final : public LoopSolver {
       e_.body_forces(t, q, u, tau_.data());
       for (std::size_t i = 0; i < tau_.size(); ++i) pdot[i] += tau_[i];
     }
+    if (pdot && pushed_)
+      for (std::size_t i = 0; i < tau_.size(); ++i) pdot[i] += pushed_[i];
     return all_finite(u, zero_.size()) && all_finite(sigma, nu_.size()) &&
            (!pdot || all_finite(pdot, zero_.size()));
   }
@@ -62,9 +64,11 @@ class SweepSolver final : public LoopSolver {
     right.beta = beta;
     right.body_forces = carried_;
     if (has_tau_) e_.applied_forces(t, q, u, tau_.data(), apart_);
+    const double* tau = has_tau_ ? tau_.data() : pushed_ ? pushed_ : zero_.data();
+    if (has_tau_ && pushed_)
+      for (std::size_t i = 0; i < tau_.size(); ++i) tau_[i] += pushed_[i];
     of_momentum_ = false;
-    const bool ok = noted(
-        sweeps_->acceleration(t, q, u, has_tau_ ? tau_.data() : zero_.data(), right, udot, lambda));
+    const bool ok = noted(sweeps_->acceleration(t, q, u, tau, right, udot, lambda));
     if (sweeps_->weak_looped_branch())
       return by_matrix().acceleration(t, q, u, centre, alpha, beta, udot, lambda);
     if (!ok) return false;
@@ -124,6 +128,7 @@ class SweepSolver final : public LoopSolver {
       matrix_->stabilise(beta_);
       if (!compliance_.empty()) matrix_->soften(compliance_);
     }
+    matrix_->push(pushed_);
     return *matrix_;
   }
 
