@@ -149,12 +149,11 @@ std::string Mechanism::joint_without_inertia(bool swept) const {
     const auto kkt = make_sparse_kkt(*this);
     return kkt->factor(*e, 0, tree_.q0.data(), fade_evaluation) || kkt->singular_joint() < 0
                ? ""
-               : no_inertia(kkt->singular_joint());
+               : light_before_loops(kkt->singular_joint());
   }
   const auto sweeps = looped_sweeps();
   if (!sweeps->momentum(0, tree_.q0.data(), p.data(), {}, u.data(), sigma.data(), nullptr))
-    return tree_.joint_in_words(sweeps->singular_joint()) +
-           " has no inertia before its loops close";
+    return light_before_loops(tree_.bodies[static_cast<std::size_t>(sweeps->singular_joint())].u);
   return "";
 }
 

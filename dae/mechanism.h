@@ -101,8 +101,9 @@ class Mechanism {
   /// Lines of the plan, core's and those of the loops.
   std::vector<std::pair<std::string, std::string>> plan_lines() const;
 
-  /// The sentence for the joint of a rate (place in u) along which nothing has mass.
-  std::string no_inertia(int rate) const;
+  /// Why nothing moves at (t, q), where a solution failed at a rate (place in u, −1: not known):
+  /// the joints that neither inertia nor a loop holds (measure/unheld_joints.h).
+  std::string no_inertia(int rate, double t, const double* q) const;
 
  private:
   /// What branches the sweeps take side by side; empty: none.
@@ -122,6 +123,7 @@ class Mechanism {
   void choose_kkt(KktChoice asked);
   void take_weights();
   std::string joint_without_inertia(bool swept) const;
+  std::string light_before_loops(int rate) const;
   template <class Space, class S>
   class SweepRows;
   template <class Space>

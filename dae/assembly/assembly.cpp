@@ -31,7 +31,7 @@ class Assembler {
     }
   }
 
-  Assembly run() {
+  Assembly run(Assembled what) {
     Assembly a;
     a.start.t = t_;
     a.start.q = q_;
@@ -43,7 +43,7 @@ class Assembler {
       judge_rank(a);
     }
     a.mobility = mechanism_.nv() - a.rank;
-    accelerations(a);
+    if (what == Assembled::motion) accelerations(a);
     return a;
   }
 
@@ -136,30 +136,30 @@ class Assembler {
     e().place(s.t, s.q.data());
     if (mechanism_.m() == 0) {
       if (!e().open_accelerations(s.t, s.q.data(), s.u.data(), s.udot.data()))
-        no_inertia(e().singular_joint());
+        no_inertia(s, e().singular_joint());
       return;
     }
     if (mechanism_.kkt() == KktChoice::sweeps && !mechanism_.dense_kkt()) {
       const auto solver = make_loop_solver(mechanism_, e());
       if (!solver->acceleration(s.t, s.q.data(), s.u.data(), nullptr, 0, 0, s.udot.data(),
                                 s.lambda.data()))
-        no_inertia(solver->singular_joint());
+        no_inertia(s, solver->singular_joint());
       return;
     }
     const auto kkt = make_kkt(mechanism_);
-    if (!kkt->factor(e(), s.t, s.q.data(), fade_evaluation)) no_inertia(kkt->singular_joint());
+    if (!kkt->factor(e(), s.t, s.q.data(), fade_evaluation)) no_inertia(s, kkt->singular_joint());
     e().move(s.u.data());
     Eigen::VectorXd r(mechanism_.nv()), g(mechanism_.m());
     e().joint_forces(s.q.data(), s.u.data(), nullptr, nullptr, r.data());
     e().accelerations(g.data());
     r = -r;
     g = -g;
-    if (!kkt->solve(r.data(), g.data(), nullptr, s.udot.data(), s.lambda.data())) no_inertia(-1);
+    if (!kkt->solve(r.data(), g.data(), nullptr, s.udot.data(), s.lambda.data())) no_inertia(s, -1);
   }
 
-  [[noreturn]] void no_inertia(int rate) const {
-    throw SceneError(mechanism_.scene().where({}) +
-                     "the mechanism cannot move at its start: " + mechanism_.no_inertia(rate));
+  [[noreturn]] void no_inertia(const Start& s, int rate) const {
+    throw SceneError(mechanism_.scene().where({}) + "the mechanism cannot move at its start: " +
+                     mechanism_.no_inertia(rate, s.t, s.q.data()));
   }
 
   [[noreturn]] void nothing_moves() const {
@@ -179,13 +179,13 @@ class Assembler {
 
 }  // namespace
 
-Assembly assemble(const Mechanism& mechanism) {
-  return assemble(mechanism, 0, mechanism.tree().q0, mechanism.tree().u0);
+Assembly assemble(const Mechanism& mechanism, Assembled what) {
+  return assemble(mechanism, 0, mechanism.tree().q0, mechanism.tree().u0, what);
 }
 
 Assembly assemble(const Mechanism& mechanism, double t, const Eigen::VectorXd& q,
-                  const Eigen::VectorXd& u) {
-  return Assembler(mechanism, t, q, u).run();
+                  const Eigen::VectorXd& u, Assembled what) {
+  return Assembler(mechanism, t, q, u).run(what);
 }
 
 }  // namespace momenta

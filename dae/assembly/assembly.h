@@ -27,6 +27,10 @@ struct Assembly {
   std::string branch;
 };
 
+/// What of a start is asked for: `rates` leaves out accelerations and multipliers, which joints
+/// without inertia do not have.
+enum class Assembled { rates, motion };
+
 /// Damped Gauss-Newton from the scene's positions, joints of `held` unmoved; steps of minimal
 /// change, lengths counted in the length of the scene, so that units do not matter; then the rates
 /// nearest to the scene's with Φ_q u + Φ_t = 0, held ones kept. |Φ|∞ ≤ 1e-12, points in lengths of
@@ -38,9 +42,9 @@ struct Assembly {
 /// so, or that it got stuck where the equations lose rank, so that the guess does not tell.
 /// @throws SceneError naming the loops that stay open and by how much, the held rates that cannot
 /// be met, or a loop where no joint can move.
-Assembly assemble(const Mechanism& mechanism);
+Assembly assemble(const Mechanism& mechanism, Assembled what = Assembled::motion);
 /// The same at time t [s], from another guess: q (nq), u (nv).
 Assembly assemble(const Mechanism& mechanism, double t, const Eigen::VectorXd& q,
-                  const Eigen::VectorXd& u);
+                  const Eigen::VectorXd& u, Assembled what = Assembled::motion);
 
 }  // namespace momenta

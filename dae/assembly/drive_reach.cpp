@@ -200,8 +200,8 @@ DriveReach drive_reach(const Mechanism& mechanism, double t, const Eigen::Vector
   return reach;
 }
 
-Assembly assemble_at(const Mechanism& mechanism, double t) {
-  const Assembly start = assemble(mechanism);
+Assembly assemble_at(const Mechanism& mechanism, double t, Assembled what) {
+  const Assembly start = assemble(mechanism, what);
   if (t == 0 || (mechanism.scene().drives.empty() && !mechanism.plan().drives)) return start;
   Eigen::VectorXd q = start.start.q;
   if (t > 0) {
@@ -209,7 +209,7 @@ Assembly assemble_at(const Mechanism& mechanism, double t) {
     if (!reach.obstacle.empty()) throw SceneError(mechanism.scene().where({}) + reach.obstacle);
     q = std::move(reach.q);
   }
-  return assemble(mechanism, t, q, mechanism.tree().u0);
+  return assemble(mechanism, t, q, mechanism.tree().u0, what);
 }
 
 }  // namespace momenta

@@ -260,7 +260,7 @@ class Partitioned final : public OdeForm {
   bool accelerate(double t) {
     if (!has_loops())
       return e_->open_accelerations(t, q_.data(), u_.data(), udot_.data()) ||
-             fail_at(t, mechanism_.no_inertia(e_->singular_joint()));
+             fail_at(t, mechanism_.no_inertia(e_->singular_joint(), t, q_.data()));
     return solver_->acceleration(t, q_.data(), u_.data(), centre_.data(), 0, 0, udot_.data(),
                                  multipliers_.data()) ||
            solver_failed(t, q_.data(), "the solution of (3)");

@@ -44,6 +44,7 @@ class Document {
     if (mechanism_.plan().drives) driven();
     if (loops_) loops();
     dense();
+    if (!s_.not_there.empty()) w_.text("not_there", s_.not_there);
     w_.open("energy");
     w_.number("T", s_.kinetic);
     w_.number("V", s_.potential);
@@ -197,6 +198,9 @@ int evaluate(const Options& o, const std::string& state) {
   const std::string json = Document(*mechanism, given, values).write();
   if (!o.out.empty() && !write_results({{o.out / "evaluate.json", json}})) return run_failed;
   if (o.out.empty() || o.json) std::fputs(json.c_str(), stdout);
+  if (!values.not_there.empty())
+    std::fprintf(stderr, "momenta: %s%s\n", mechanism->scene().where({}).c_str(),
+                 values.not_there.c_str());
   if (!o.out.empty() && !o.quiet)
     std::fprintf(stderr, "momenta: wrote %s\n", (o.out / "evaluate.json").c_str());
   return done;

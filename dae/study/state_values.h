@@ -11,6 +11,11 @@
 //               free:       M u̇ = −bias, as if no loop were there
 //               constrained: (3), M u̇ + Φ_qᵀλ = −bias, Φ_q u̇ = −(Φ̈ at u̇ = 0)
 //
+// Joints without inertia (measure/unheld_joints.h) have no accelerations, or any: with N the
+// motions that no inertia, and in (3) no loop, holds, M u̇ = r has a solution only where Nᵀr = 0,
+// and then those of the joints that take part in N are not determined, the others are. What does
+// not exist is NaN: all of u̇ and λ, or those joints' u̇.
+//
 // τ is a further generalised force along the joints; it counts among the applied ones everywhere.
 // Without loops everything but M is O(bodies), and no system of loops is built.
 
@@ -38,6 +43,8 @@ struct StateValues {
   Centroidal centroidal;
   Reactions reactions;
   std::vector<double> markers;  ///< per marker x y z and velocity
+  /// One sentence where something is not there: which joints have no inertia, what that takes away.
+  std::string not_there;
 
   bool dense = false;  ///< the rest is there: nv + m within `dense_state_limit`
   Eigen::MatrixXd mass;
@@ -47,8 +54,7 @@ struct StateValues {
 
 inline constexpr int dense_state_limit = 300;  ///< unknowns, nv + m
 
-/// @throws SceneError when the mechanism cannot move there: a joint without inertia, or numbers
-/// that overflow.
+/// @throws SceneError where numbers overflow.
 StateValues evaluate_state(const Mechanism& mechanism, const GivenState& given);
 
 }  // namespace momenta
