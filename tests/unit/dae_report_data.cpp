@@ -36,8 +36,10 @@ TEST(SummaryJson, HasThePublicKeys) {
             (Names{"detours", "evaluations", "factorizations", "jacobians", "newton_iterations",
                    "ode_restarts", "rejected", "steps"}));
   EXPECT_EQ(keys(json["time"]), (Names{"cpu_s", "repeats", "wall_s"}));
-  EXPECT_EQ(keys(json["drift"]), (Names{"between_steps_max", "position_exponent", "position_max",
-                                        "velocity_exponent", "velocity_max"}));
+  EXPECT_EQ(keys(json["drift"]),
+            (Names{"angle_between_steps_max", "angle_exponent", "angle_max", "angle_rate_exponent",
+                   "angle_rate_max", "between_steps_max", "position_exponent", "position_max",
+                   "unit", "velocity_exponent", "velocity_max"}));
   EXPECT_EQ(keys(json["energy"]), (Names{"error_max"}));
   EXPECT_EQ(keys(json["error"]), (Names{"position_max", "velocity_max"}));
   EXPECT_EQ(json["environment"]["versions"]["SUNDIALS"], "6.4.1");
