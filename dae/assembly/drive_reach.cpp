@@ -29,7 +29,13 @@ class Continuation {
         steps_(pattern_, mechanism.m(), mechanism.nv()),
         closed_(std::max(closed, 4 * loops_.units().rounding)),
         t_(t),
-        q_(std::move(q)) {}
+        q_(std::move(q)) {
+    // What redundant equations leave open where it begins they leave on the way.
+    const double open = loops_.gap(t_, q_).cwiseAbs().maxCoeff();
+    if (open > closed_ && open <= left_by_files &&
+        steps_.judge(loops_.jacobian()).rank < mechanism.m())
+      closed_ = 4 * open;
+  }
 
   /// Leaves out groups that keep freedoms here; false where none is left.
   bool leave_free_groups(bool& all_determined);

@@ -64,6 +64,7 @@ void OdeForm::note_pivots() {
   else if (pivots.weakest < approaching_ * weakest_at_best_)
     handling_ = std::max(handling_, SingularityHandling::norm);
   if (!watched_) return;
+  weak_evaluations_ += pivots.faded > redundant_;
   for (const int row : solver_->faded_rows()) ++(*watched_)[static_cast<std::size_t>(row)];
 }
 

@@ -26,6 +26,7 @@
 #include <momenta/dae/form/ode_form.h>
 #include <momenta/dae/kkt/coordinate_jacobian.h>
 #include <momenta/dae/kkt/coordinate_split.h>
+#include <momenta/dae/kkt/loop_rank.h>
 
 #include <algorithm>
 #include <cmath>
@@ -160,8 +161,8 @@ class Partitioned final : public OdeForm {
   bool choose(double t) {
     e_->place(t, q_.data());
     evaluate_jacobian();
+    if (rank_ < 0) rank_ = loop_rank(mechanism_, *e_).rank;
     if (!rates_->choose(rate_values_, rank_)) return false;
-    rank_ = rates_->rank();
     if (positions_ && !positions_->choose(values_, rank_ + jacobian_.balls())) return false;
     at_start_ = std::make_unique<SplitFactor>(positions());
     inside_ = std::make_unique<SplitFactor>(positions());

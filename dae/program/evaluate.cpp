@@ -1,6 +1,7 @@
 // Everything at one state, as one JSON document; keys and units: docs/reference/evaluate.md.
 
 #include <momenta/dae/joint_places.h>
+#include <momenta/dae/measure/rank.h>
 
 #include <array>
 #include <cstdio>
@@ -44,6 +45,7 @@ class Document {
     if (mechanism_.plan().drives) driven();
     if (loops_) loops();
     dense();
+    if (!given_.residue.empty()) w_.text("residue", given_.residue);
     if (!s_.not_there.empty()) w_.text("not_there", s_.not_there);
     w_.open("energy");
     w_.number("T", s_.kinetic);
@@ -155,9 +157,12 @@ class Document {
       return;
     }
     if (loops_) {
-      w_.whole_number("rank", s_.rank);
-      w_.whole_number("mobility", mechanism_.nv() - s_.rank);
-      w_.numbers("singular_values", s_.singular_values);
+      w_.whole_number("rank", s_.loops.rank);
+      w_.whole_number("mobility", mechanism_.nv() - s_.loops.rank);
+      std::vector<std::string> dependent;
+      for (const int row : s_.loops.dependent) dependent.push_back(row_in_words(mechanism_, row));
+      w_.texts("dependent_equations", dependent);
+      w_.numbers("singular_values", s_.loops.singular_values);
     }
     std::vector<std::string> names(static_cast<std::size_t>(mechanism_.nv()));
     for (const JointPlace& joint : places_)

@@ -95,6 +95,7 @@ class StateReader {
     const Assembly assembly = assemble_at(mechanism_, state.t, Assembled::rates);
     state.q = assembly.start.q;
     state.v = assembly.start.u;
+    if (!text_.json().contains("q")) state.residue = assembly.residue;
   }
 
   void unit_quaternions(Eigen::VectorXd& q, const std::vector<bool>& given) const {

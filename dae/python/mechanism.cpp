@@ -141,7 +141,9 @@ py::dict evaluate(Bench& b, double t, const std::optional<Vector>& q,
   put("udot_free", s.free), put("udot", b.mechanism->m() > 0 ? s.constrained : s.free);
   put("phi", s.phi), put("phidot", s.phidot), put("sigma", s.sigma), put("lambda_", s.lambda);
   put("T", s.kinetic), put("V", s.potential), put("H", s.hamiltonian);
-  if (s.dense) put("M", s.mass), put("rank", s.rank), put("singular_values", s.singular_values);
+  if (s.dense)
+    put("M", s.mass), put("rank", s.loops.rank), put("dependent_rows", s.loops.dependent),
+        put("singular_values", s.loops.singular_values);
   if (!s.not_there.empty()) put("not_there", s.not_there);
   py::dict reactions;
   for (const auto* list : {&s.reactions.joints, &s.reactions.loops})
@@ -177,6 +179,8 @@ void bind_mechanism(py::module_& module) {
       .def_readonly("dependent_rows", &Assembly::dependent_rows,
                     "loop equations that follow from the others, places in `equations`")
       .def_readonly("moved", &Assembly::moved, "largest move from the guess [rad or m]")
+      .def_readonly("residue", &Assembly::residue,
+                    "what redundant equations leave open, in one sentence, or empty")
       .def_readonly("branch", &Assembly::branch,
                     "which of several assemblies it is, where the guess does not decide it");
 

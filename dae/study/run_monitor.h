@@ -31,7 +31,8 @@ inline Drift drift_of(const Mechanism& mechanism, const Eigen::VectorXd& x) {
 /// Looks at states of a form: drifts, energy, errors.
 class RunMonitor {
  public:
-  RunMonitor(const Mechanism& mechanism, Form& form, const RunRequest& request, RunResult& result)
+  RunMonitor(const Mechanism& mechanism, Form& form, const Start& start, const RunRequest& request,
+             RunResult& result)
       : mechanism_(mechanism),
         form_(form),
         request_(request),
@@ -39,6 +40,7 @@ class RunMonitor {
         e_(mechanism.evaluation<double>()),
         lengths_(mechanism.has_lengths()),
         both_(lengths_ && mechanism.has_angles()),
+        residue_(start.residue),
         phi_(mechanism.m()),
         middle_(mechanism.nq()),
         markers_(static_cast<std::size_t>(6 * static_cast<int>(mechanism.scene().markers.size()))),
@@ -63,7 +65,7 @@ class RunMonitor {
     mechanism_.tree().normalise(now_.q);  // interpolants leave |q| off by the tolerance
     e_->place(t, now_.q.data());
     e_->positions(phi_.data());
-    const Drift position = drift_of(mechanism_, phi_);
+    const Drift position = drift_of(mechanism_, beyond_residue());
     if (apart_) fastest_ = std::max(fastest_, apart_->speed(now_.u));
     if (apart_ && position.finite()) {
       came_apart_ = apart_->found(t, phi_, true);
@@ -123,7 +125,7 @@ class RunMonitor {
       if (!form_.read_coordinates(middle, state_.data(), middle_)) return true;
       e_->place(middle, middle_.data());
       e_->positions(phi_.data());
-      const Drift drift = drift_of(mechanism_, phi_);
+      const Drift drift = drift_of(mechanism_, beyond_residue());
       if (!(drift.lengths <= between_.lengths)) between_.lengths = drift.lengths;
       if (!(drift.angles <= between_.angles)) between_.angles = drift.angles;
       if (drift.finite()) came_apart_ = apart_->found(middle, phi_, false);
@@ -161,7 +163,10 @@ class RunMonitor {
       const auto growth = [&](const std::vector<double>& drift, double rounding) {
         return fit_growth(s.t, drift, std::max(rounding_level, rounding));
       };
-      const double rounding = apart_->rounding(!lengths_), angles = apart_->rounding(true);
+      // What redundant equations leave open changes with the pose by about as much.
+      const Drift left = drift_of(mechanism_, residue_);
+      const double rounding = std::max(apart_->rounding(!lengths_), 4 * named(left)),
+                   angles = std::max(apart_->rounding(true), 4 * left.angles);
       result_.position_growth = growth(s.position_drift, rounding);
       result_.velocity_growth = growth(s.velocity_drift, rounding * fastest_);
       if (both_) {
@@ -189,6 +194,12 @@ class RunMonitor {
   const Closed& last_closed() const { return closed_; }
 
  private:
+  /// Φ less what the start leaves open.
+  const Eigen::VectorXd& beyond_residue() {
+    if (residue_.size() == 0) return phi_;
+    drift_ = phi_ - residue_;
+    return drift_;
+  }
   /// @pre phi_ is Φ at (t, q)
   void keep_closed(double t, const Eigen::VectorXd& q) {
     constexpr double closed = 1e-5;  // of the scene's length, or radians
@@ -283,8 +294,9 @@ class RunMonitor {
   std::unique_ptr<LoopSolver> solver_;
   std::optional<UniqueMultipliers> unique_;
   std::vector<bool> all_unique_;
-  bool lengths_, both_;  ///< rows in m; and others in rad
-  Eigen::VectorXd phi_, middle_;
+  bool lengths_, both_;      ///< rows in m; and others in rad
+  Eigen::VectorXd residue_;  ///< Φ at the start where redundant equations leave it open, or empty
+  Eigen::VectorXd phi_, drift_, middle_;
   std::vector<double> markers_, row_, state_;
   Snapshot now_;
   DissipatedEnergy dissipated_energy_;

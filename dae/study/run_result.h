@@ -99,8 +99,18 @@ struct RunResult {
   /// compare with.
   double kinetic_energy_max = not_measured, energy_scale = not_measured;
   double position_error_max = not_measured, velocity_error_max = not_measured;
-  /// Loop equations that were redundant or nearly so, in how many right-hand sides of the run; ODE
-  /// forms.
+  /// Of Φ_q at the start, and the rows that follow from the others there (kkt/loop_rank.h).
+  int rank = 0;
+  struct DependentRow {
+    std::string loop, row;
+  };
+  std::vector<DependentRow> dependent_rows;
+  /// What the start leaves open, one sentence; empty: nothing.
+  std::string residue;
+  /// Right-hand sides in which more rows faded than are redundant at the start: of ODE forms, near
+  /// singular poses, or where equations are nearly redundant.
+  long weak_evaluations = 0;
+  /// Rows that faded, in how many right-hand sides of the run; ODE forms.
   struct Faded {
     std::string loop, row;
     long evaluations = 0;

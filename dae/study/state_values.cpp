@@ -1,6 +1,5 @@
 #include <momenta/dae/kkt/dense_blocks.h>
 #include <momenta/dae/kkt/kkt.h>
-#include <momenta/dae/kkt/singular_values.h>
 #include <momenta/dae/kkt/tree_factor.h>
 #include <momenta/dae/measure/rank.h>
 #include <momenta/dae/measure/unheld_joints.h>
@@ -14,7 +13,6 @@ namespace {
 using Eigen::VectorXd;
 
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
-constexpr double rank_tolerance = 1e-9;  // of singular values, against the largest
 
 class StateEvaluator {
  public:
@@ -205,11 +203,8 @@ class StateEvaluator {
     e_->place(given_.t, given_.q.data());
     s_.mass = dense_mass(mechanism_, *e_);
     if (mechanism_.m() == 0 || mechanism_.nv() == 0) return;
-    const Eigen::MatrixXd j = dense_constraints(mechanism_, *e_);
-    if (!j.allFinite()) refuse();
-    s_.singular_values = Eigen::JacobiSVD<Eigen::MatrixXd>(j).singularValues();
-    const double least = rank_tolerance * s_.singular_values[0];
-    for (double value : s_.singular_values) s_.rank += value > least;
+    if (!dense_constraints(mechanism_, *e_).allFinite()) refuse();
+    s_.loops = loop_rank(mechanism_, *e_);
     mark_undetermined(s_.reactions, mechanism_, given_.t, given_.q,
                       idle_forces(mechanism_, given_.t, given_.q));
   }

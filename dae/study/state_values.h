@@ -20,6 +20,7 @@
 // Without loops everything but M is O(bodies), and no system of loops is built.
 
 #include <momenta/core/centroidal.h>
+#include <momenta/dae/kkt/loop_rank.h>
 #include <momenta/dae/measure/reactions.h>
 
 namespace momenta {
@@ -32,6 +33,7 @@ struct GivenState {
   Eigen::VectorXd p;          ///< nv, entries with `p_given` count, the others are those of M v
   std::vector<bool> p_given;  ///< nv, when of_momenta
   Eigen::VectorXd tau;        ///< nv
+  std::string residue;        ///< of the start that q is of (residue_in_words), or empty
 };
 
 struct StateValues {
@@ -48,8 +50,7 @@ struct StateValues {
 
   bool dense = false;  ///< the rest is there: nv + m within `dense_state_limit`
   Eigen::MatrixXd mass;
-  int rank = 0;                     ///< of Φ_q: singular values above 1e-9 of the largest
-  Eigen::VectorXd singular_values;  ///< of Φ_q, descending
+  LoopRank loops;  ///< of Φ_q
 };
 
 inline constexpr int dense_state_limit = 300;  ///< unknowns, nv + m

@@ -271,7 +271,9 @@ TEST(MasslessJoints, AreThoseOfTheNullSpace) {
         (svd.singularValues().array() <= 1e-10 * svd.singularValues()[0]).count();
     const Eigen::Index motions = found.joints.empty() ? 0 : found.motions.cols();
     EXPECT_EQ(motions, free);
-    if (motions > 0) EXPECT_LT((all * found.motions).norm(), 1e-9 * all.norm());
+    if (motions > 0) {
+      EXPECT_LT((all * found.motions).norm(), 1e-9 * all.norm());
+    }
     ++(free > 0 ? unheld : held);
   }
   EXPECT_GT(unheld, 10);
