@@ -87,7 +87,7 @@ bool OpenChain::rates_of_states(double t, const ConstStatesRef& q, const ConstSt
     if (!kernel.model->has_body_forces() && stride == p.outerStride() &&
         stride == qdot.outerStride() && stride == pdot.outerStride())
       return inside_->batch(
-          kernel, threads,
+          kernel, t, threads,
           {q.data(), p.data(), qdot.data(), pdot.data(), stride,
            static_cast<std::size_t>(q.cols())},
           [t](BatchSweeps& sweeps, const States& part) { return sweeps.momentum(t, part); });
@@ -117,7 +117,7 @@ bool OpenChain::accelerations_of_states(double t, const ConstStatesRef& q, const
     if (!kernel.model->has_body_forces() && !kernel.model->has_joint_forces &&
         stride == u.outerStride() && stride == udot.outerStride())
       return inside_->batch(
-          kernel, threads,
+          kernel, t, threads,
           {q.data(), u.data(), nullptr, udot.data(), stride, static_cast<std::size_t>(q.cols())},
           [t](BatchSweeps& sweeps, const States& part) { return sweeps.acceleration(t, part); });
     Eigen::VectorXd one(nv());
@@ -143,7 +143,7 @@ bool OpenChain::jacobian_times(double t, const ConstVectorRef& q, const ConstVec
       !inside_->finite("dp", dp.data(), dp.size()))
     return false;
   return inside_->visit([&](auto& kernel) {
-    return inside_->noted_one(*kernel.sweeps,
+    return inside_->noted_one(*kernel.sweeps, t, q.data(),
                               kernel.sweeps->derivative(t, q.data(), p.data(), dq.data(), dp.data(),
                                                         dqdot.data(), dpdot.data()));
   });
@@ -157,7 +157,7 @@ bool OpenChain::jacobian(double t, const ConstVectorRef& q, const ConstVectorRef
   if (!inside_->finite(t, q, "p", p)) return false;
   return inside_->visit([&](auto& kernel) {
     BatchSweeps& sweeps = *kernel.batches[0];
-    return inside_->noted_one(sweeps,
+    return inside_->noted_one(sweeps, t, q.data(),
                               sweeps.jacobian(t, q.data(), p.data(), J.data(), J.outerStride()));
   });
 }
@@ -186,7 +186,8 @@ bool OpenChain::inverse_mass_times(double t, const ConstVectorRef& q, const Cons
   if (!inside_->finite(t, q, "x", x)) return false;
   return inside_->visit([&](auto& kernel) {
     return inside_->noted_one(
-        *kernel.sweeps, kernel.sweeps->inverse_mass_times(t, q.data(), x.data(), result.data()));
+        *kernel.sweeps, t, q.data(),
+        kernel.sweeps->inverse_mass_times(t, q.data(), x.data(), result.data()));
   });
 }
 
@@ -236,14 +237,13 @@ void OpenChain::coordinate_rates(const ConstVectorRef& q, const ConstVectorRef& 
 std::string OpenChain::failure() const {
   if (!inside_->not_a_number.empty()) return inside_->not_a_number;
   if (inside_->singular < 0) return "";
-  const Tree& t = inside_->tree;
-  const auto& b = t.bodies[static_cast<std::size_t>(inside_->singular)];
-  const auto& carried = t.bodies[static_cast<std::size_t>(t.carried_by(b.joint))];
   const std::string state =
       inside_->failed_state < 0 ? "" : "state " + std::to_string(inside_->failed_state) + ": ";
-  return state + t.joint_in_words(inside_->singular) +
-         " has no inertia to move: the articulated inertia of body '" + carried.name +
-         "' along it is not positive";
+  const Eigen::VectorXd& q = inside_->failed_q;
+  for (Eigen::Index i = 0; i < q.size(); ++i)
+    if (!std::isfinite(q[i])) return state + not_finite("q", i, q[i]);
+  return state +
+         in_words(inside_->tree, inside_->visit([&](auto& k) { return inside_->massless(k); }));
 }
 
 }  // namespace momenta

@@ -83,6 +83,13 @@ class Mechanism {
   /// scale: group index of each row.
   const std::vector<int>& row_groups() const { return row_groups_; }
 
+  /// Whether each row is an angle [rad]: rows of axes, and couplers of angles alone. All others are
+  /// lengths [m].
+  const std::vector<bool>& angle_rows() const { return angle_rows_; }
+  /// Whether there are rows of lengths, and of angles.
+  bool has_lengths() const;
+  bool has_angles() const;
+
   /// Scale of each row of Φ_q M⁻¹ Φ_qᵀ (m) below which it is dust, whatever its loop's other rows
   /// are: LoopWeights::least_scales, by row. A slide along the axis of a cylindrical joint has four
   /// rows out of five that hold nothing but rounding. Zero for axes, whose size by nature is known,
@@ -101,8 +108,9 @@ class Mechanism {
   /// Lines of the plan, core's and those of the loops.
   std::vector<std::pair<std::string, std::string>> plan_lines() const;
 
-  /// The sentence for the joint of a rate (place in u) along which nothing has mass.
-  std::string no_inertia(int rate) const;
+  /// Why nothing moves at (t, q), where a solution failed at a rate (place in u, −1: not known):
+  /// the joints that neither inertia nor a loop holds (measure/unheld_joints.h).
+  std::string no_inertia(int rate, double t, const double* q) const;
 
  private:
   /// What branches the sweeps take side by side; empty: none.
@@ -122,6 +130,7 @@ class Mechanism {
   void choose_kkt(KktChoice asked);
   void take_weights();
   std::string joint_without_inertia(bool swept) const;
+  std::string light_before_loops(int rate) const;
   template <class Space, class S>
   class SweepRows;
   template <class Space>
@@ -141,6 +150,7 @@ class Mechanism {
   mutable std::once_flag mass_pattern_known_, constraint_pattern_known_;
   std::vector<RowName> row_names_;
   std::vector<int> row_groups_;
+  std::vector<bool> angle_rows_;
   std::vector<double> least_scales_;
 };
 

@@ -18,8 +18,6 @@ class ScaledLoops {
   /// Entries of D⁻¹ Φ_q C where gap() was taken last, in the order of pattern(); zero in columns
   /// that are left out.
   std::vector<double> jacobian();
-  /// The same with all columns.
-  std::vector<double> whole_jacobian();
   /// q after a step δ (nv) from there.
   Eigen::VectorXd moved(const Eigen::VectorXd& q, const Eigen::VectorXd& step);
   /// D⁻¹ x (m), zero in rows that are left out.

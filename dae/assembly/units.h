@@ -8,6 +8,9 @@
 
 namespace momenta {
 
+/// |Φ|∞ of redundant equations, in these units, that the rounding of a file may leave at the most.
+inline constexpr double left_by_files = 1e-8;
+
 struct AssemblyUnits {
   explicit AssemblyUnits(const Mechanism& mechanism);
 

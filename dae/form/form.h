@@ -37,11 +37,13 @@ struct FormOptions {
   double penalty = 0;  ///< augmented Lagrangians: α in effective masses of the loops; 0: 1e7
 };
 
-/// A consistent start: Φ(q, t) = 0, Φ_q u + Φ_t = 0.
+/// A consistent start: Φ(q, t) = 0, Φ_q u + Φ_t = 0; of redundant equations whose numbers
+/// contradict each other in the least-squares sense.
 struct Start {
   double t = 0;
   Eigen::VectorXd q, u;          ///< nq, nv
   Eigen::VectorXd udot, lambda;  ///< accelerations and force multipliers there: nv, m
+  Eigen::VectorXd residue;       ///< Φ that is left by contradictions (m); empty: none
 };
 
 /// q, u and the impulse (σ of momentum forms) or force (λ) multipliers read back from a form's

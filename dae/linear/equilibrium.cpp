@@ -97,7 +97,7 @@ class Searcher {
     p.q = q;
     if (!poses_.let_go(t, q, p.udot, p.lambda))
       throw SceneError(mechanism_.scene().where({}) + "the mechanism cannot be let go: " +
-                       mechanism_.no_inertia(poses_.singular_joint()));
+                       mechanism_.no_inertia(poses_.singular_joint(), t, q.data()));
     p.force.resize(mechanism_.nv());
     e_.place(t, q.data());
     e_.move(rest_.data());

@@ -1,6 +1,7 @@
 // Everything at one state, as one JSON document; keys and units: docs/reference/evaluate.md.
 
 #include <momenta/dae/joint_places.h>
+#include <momenta/dae/measure/rank.h>
 
 #include <array>
 #include <cstdio>
@@ -44,6 +45,8 @@ class Document {
     if (mechanism_.plan().drives) driven();
     if (loops_) loops();
     dense();
+    if (!given_.residue.empty()) w_.text("residue", given_.residue);
+    if (!s_.not_there.empty()) w_.text("not_there", s_.not_there);
     w_.open("energy");
     w_.number("T", s_.kinetic);
     w_.number("V", s_.potential);
@@ -154,9 +157,12 @@ class Document {
       return;
     }
     if (loops_) {
-      w_.whole_number("rank", s_.rank);
-      w_.whole_number("mobility", mechanism_.nv() - s_.rank);
-      w_.numbers("singular_values", s_.singular_values);
+      w_.whole_number("rank", s_.loops.rank);
+      w_.whole_number("mobility", mechanism_.nv() - s_.loops.rank);
+      std::vector<std::string> dependent;
+      for (const int row : s_.loops.dependent) dependent.push_back(row_in_words(mechanism_, row));
+      w_.texts("dependent_equations", dependent);
+      w_.numbers("singular_values", s_.loops.singular_values);
     }
     std::vector<std::string> names(static_cast<std::size_t>(mechanism_.nv()));
     for (const JointPlace& joint : places_)
@@ -197,6 +203,9 @@ int evaluate(const Options& o, const std::string& state) {
   const std::string json = Document(*mechanism, given, values).write();
   if (!o.out.empty() && !write_results({{o.out / "evaluate.json", json}})) return run_failed;
   if (o.out.empty() || o.json) std::fputs(json.c_str(), stdout);
+  if (!values.not_there.empty())
+    std::fprintf(stderr, "momenta: %s%s\n", mechanism->scene().where({}).c_str(),
+                 values.not_there.c_str());
   if (!o.out.empty() && !o.quiet)
     std::fprintf(stderr, "momenta: wrote %s\n", (o.out / "evaluate.json").c_str());
   return done;

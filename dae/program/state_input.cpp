@@ -93,9 +93,10 @@ class StateReader {
     state.q = mechanism_.tree().q0;
     state.v = mechanism_.tree().u0;
     if (mechanism_.m() == 0 || !needed) return;
-    const Assembly assembly = assemble_at(mechanism_, state.t);
+    const Assembly assembly = assemble_at(mechanism_, state.t, Assembled::rates);
     state.q = assembly.start.q;
     state.v = assembly.start.u;
+    if (!text_.json().contains("q")) state.residue = assembly.residue;
   }
 
   void unit_quaternions(Eigen::VectorXd& q, const std::vector<bool>& given) const {

@@ -55,11 +55,9 @@ class Bench {
     if (q) expect_size(*q, mechanism->nq(), "q", "nq");
     if (u) expect_size(*u, mechanism->nv(), rates, "nv");
   }
-  [[noreturn]] void fail() const {
-    throw SceneError(solver && solver->singular_joint() >= 0
-                         ? mechanism->no_inertia(solver->singular_joint())
-                     : e->singular_joint() >= 0 ? mechanism->no_inertia(e->singular_joint())
-                                                : "the solution is not finite");
+  [[noreturn]] void fail(double t, const In& q) const {
+    throw SceneError(mechanism->no_inertia(solver ? solver->singular_joint() : e->singular_joint(),
+                                           t, q.data()));
   }
 
   std::shared_ptr<const Mechanism> mechanism;

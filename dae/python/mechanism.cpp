@@ -1,8 +1,8 @@
 // Mechanism: what a scene is, its consistent start, and the equations at one state.
 
 #include <momenta/core/scene/read_scene.h>
-#include <momenta/dae/kkt/dense_blocks.h>
 #include <momenta/dae/assembly/drive_reach.h>
+#include <momenta/dae/kkt/dense_blocks.h>
 #include <momenta/dae/study/state_values.h>
 
 #include <optional>
@@ -49,7 +49,7 @@ py::tuple momentum_rates(Bench& b, double t, const In& q, const In& p,
       m == 0 ? b.e->open_momentum_rates(t, q.data(), p.data(), u.data(), pdot.data())
              : b.solver->momentum(t, q.data(), p.data(), centre ? centre->data() : nullptr,
                                   fade_evaluation, leak, u.data(), sigma.data(), pdot.data());
-  if (!ok) b.fail();
+  if (!ok) b.fail(t, q);
   return py::make_tuple(std::move(u), std::move(sigma), std::move(pdot));
 }
 
@@ -61,7 +61,7 @@ py::tuple accelerations(Bench& b, double t, const In& q, const In& u) {
   const bool ok = m == 0 ? b.e->open_accelerations(t, q.data(), u.data(), udot.data())
                          : b.solver->acceleration(t, q.data(), u.data(), nullptr, 0, 0, udot.data(),
                                                   lambda.data());
-  if (!ok) b.fail();
+  if (!ok) b.fail(t, q);
   return py::make_tuple(std::move(udot), std::move(lambda));
 }
 
@@ -119,7 +119,7 @@ py::dict evaluate(Bench& b, double t, const std::optional<Vector>& q,
   given.t = t;
   given.tau = Vector::Zero(tree.nv);
   if (b.mechanism->m() > 0 && (!q || (!v && !p))) {
-    const Assembly a = assemble_at(*b.mechanism, t);
+    const Assembly a = assemble_at(*b.mechanism, t, Assembled::rates);
     given.q = q.value_or(a.start.q);
     given.v = v.value_or(a.start.u);
   } else {
@@ -141,7 +141,10 @@ py::dict evaluate(Bench& b, double t, const std::optional<Vector>& q,
   put("udot_free", s.free), put("udot", b.mechanism->m() > 0 ? s.constrained : s.free);
   put("phi", s.phi), put("phidot", s.phidot), put("sigma", s.sigma), put("lambda_", s.lambda);
   put("T", s.kinetic), put("V", s.potential), put("H", s.hamiltonian);
-  if (s.dense) put("M", s.mass), put("rank", s.rank), put("singular_values", s.singular_values);
+  if (s.dense)
+    put("M", s.mass), put("rank", s.loops.rank), put("dependent_rows", s.loops.dependent),
+        put("singular_values", s.loops.singular_values);
+  if (!s.not_there.empty()) put("not_there", s.not_there);
   py::dict reactions;
   for (const auto* list : {&s.reactions.joints, &s.reactions.loops})
     for (const Transmitted& r : *list)
@@ -176,6 +179,8 @@ void bind_mechanism(py::module_& module) {
       .def_readonly("dependent_rows", &Assembly::dependent_rows,
                     "loop equations that follow from the others, places in `equations`")
       .def_readonly("moved", &Assembly::moved, "largest move from the guess [rad or m]")
+      .def_readonly("residue", &Assembly::residue,
+                    "what redundant equations leave open, in one sentence, or empty")
       .def_readonly("branch", &Assembly::branch,
                     "which of several assemblies it is, where the guess does not decide it");
 

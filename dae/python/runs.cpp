@@ -233,7 +233,16 @@ void bind_runs(py::module_& module) {
   text(
       "position_drift_max", [](const RunResult& r) { return r.position_drift_max; }, "[m]");
   text(
-      "velocity_drift_max", [](const RunResult& r) { return r.velocity_drift_max; }, "[m/s]");
+      "velocity_drift_max", [](const RunResult& r) { return r.velocity_drift_max; },
+      "[m/s], as position_drift_max");
+  text(
+      "drift_unit", [](const RunResult& r) { return r.drift_unit; },
+      "of position_drift_max: m, or rad where all loop equations are angles; empty without loops");
+  text(
+      "angle_drift_max", [](const RunResult& r) { return r.angle_drift_max; },
+      "of the equations in rad beside others in m [rad]");
+  text(
+      "angle_rate_drift_max", [](const RunResult& r) { return r.angle_rate_drift_max; }, "[rad/s]");
   text(
       "energy_error_max", [](const RunResult& r) { return r.energy_error_max; }, "[J]");
   text(
@@ -249,6 +258,9 @@ void bind_runs(py::module_& module) {
   };
   series("t", &Series::t, "output times [s]");
   series("position_drift", &Series::position_drift, "|Phi(q, t)| at the output times");
+  series("angle_drift", &Series::angle_drift,
+         "|Phi| of equations in rad beside others in m, at the output times");
+  series("angle_rate_drift", &Series::angle_rate_drift, "|Phidot| of these");
   series("velocity_drift", &Series::velocity_drift, "|Phidot| at the output times");
   series("energy", &Series::energy, "T + V less what was dissipated [J]; nan with drives");
   series("energy_error", &Series::energy_error, "[J]");

@@ -15,6 +15,7 @@
 #include <momenta/dae/study/run_result.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <string>
 
@@ -36,10 +37,14 @@ class Apart {
   double gap(const Eigen::VectorXd& phi) {
     return phi.cwiseAbs().cwiseQuotient(units_.equations).maxCoeff(&worst_);
   }
-  /// |Φ|₂ that rounding leaves, with room [m or rad].
-  double rounding() const {
+  /// |Φ|₂ that rounding leaves of rows of lengths [m], or of angles [rad], with room.
+  double rounding(bool angles) const {
     constexpr double room = 10;
-    return room * units_.rounding * units_.equations.norm();
+    double sum = 0;
+    for (Eigen::Index i = 0; i < units_.equations.size(); ++i)
+      if (mechanism_.angle_rows()[static_cast<std::size_t>(i)] == angles)
+        sum += units_.equations[i] * units_.equations[i];
+    return room * units_.rounding * std::sqrt(sum);
   }
   /// Largest rate of a joint, slides in lengths of the scene [1/s].
   double speed(const Eigen::VectorXd& u) const {
@@ -53,7 +58,8 @@ class Apart {
     const std::string& loop = mechanism_.rows()[static_cast<std::size_t>(worst_)].loop;
     char text[160];
     std::snprintf(
-        text, sizeof text, "' is open by %.3g of the scene's length or radians, %s %.2g", open,
+        text, sizeof text, "' is open by %.3g %s, %s %.2g", open,
+        mechanism_.angle_rows()[static_cast<std::size_t>(worst_)] ? "rad" : "of the scene's length",
         limit < most ? "where this form holds it within" : "the most a drift may be is", limit);
     char time[32];
     std::snprintf(time, sizeof time, "%.6g", t);

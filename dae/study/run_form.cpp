@@ -1,6 +1,7 @@
 #include <momenta/core/arguments.h>
 #include <momenta/dae/assembly/drive_reach.h>
 #include <momenta/dae/form/ode_form.h>
+#include <momenta/dae/kkt/loop_rank.h>
 #include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/solver/stopping.h>
 #include <momenta/dae/study/run_monitor.h>
@@ -193,12 +194,28 @@ void expect_start(const Mechanism& mechanism, const Start& s) {
              {"u of the start", s.u, mechanism.nv()},
              {"udot of the start", s.udot, mechanism.nv()},
              {"lambda of the start", s.lambda, mechanism.m()}};
+  if (s.residue.size() > 0)
+    expect_size("run_form", "residue of the start", s.residue.size(), mechanism.m());
   for (const auto& [name, x, size] : all) {
     expect_size("run_form", name, x.size(), size);
     for (Eigen::Index i = 0; i < x.size(); ++i)
       if (!std::isfinite(x[i]))
         throw std::invalid_argument("run_form: " + not_finite(name, i, x[i]));
   }
+}
+
+/// Rank, redundant rows and residue at the start.
+void judge_rank(const Mechanism& mechanism, const Start& start, RunResult& result) {
+  if (mechanism.m() == 0) return;
+  const auto e = mechanism.evaluation<double>();
+  e->place(start.t, start.q.data());
+  const LoopRank loops = loop_rank(mechanism, *e);
+  result.rank = loops.rank;
+  for (const int row : loops.dependent) {
+    const RowName& name = mechanism.rows()[static_cast<std::size_t>(row)];
+    result.dependent_rows.push_back({name.loop, name.what});
+  }
+  result.residue = residue_in_words(mechanism, start.residue);
 }
 
 /// A run that ends where drives cannot go on says so, whatever its method met there: where drives
@@ -246,15 +263,16 @@ RunResult run_form(const Mechanism& mechanism, const Start& start, const RunRequ
     return result;
   }
   Runner& runner = *made;
+  judge_rank(mechanism, start, result);
   const double end = result.settings.end_time;
   const DriveReach reach = drive_reach(mechanism, start.t, start.q, end);
   const double wall_start = wall_now(), cpu_start = thread_seconds();
-  RunMonitor monitor(mechanism, runner.form(), request, result);
+  RunMonitor monitor(mechanism, runner.form(), start, request, result);
   const auto y0 = runner.form().initial(start);
   monitor.sample(start.t, y0.data(), nullptr);
   auto* ode = dynamic_cast<OdeForm*>(&runner.form());
   std::vector<long> faded(static_cast<std::size_t>(mechanism.m()));
-  if (ode && mechanism.m() > 0) ode->watch_faded(&faded);
+  if (ode && mechanism.m() > 0) ode->watch_faded(&faded, mechanism.m() - result.rank);
   const std::vector<double> times = output_times(result.settings, request.reference, reach);
   const Observer observer{
       [&](double t, const double* y, const double* ydot) { return monitor.sample(t, y, ydot); },
@@ -285,6 +303,7 @@ RunResult run_form(const Mechanism& mechanism, const Start& start, const RunRequ
     if (faded[row] > 0)
       result.faded_rows.push_back(
           {mechanism.rows()[row].loop, mechanism.rows()[row].what, faded[row]});
+  if (ode) result.weak_evaluations = ode->weak_evaluations();
   monitor.finish();
   return result;
 }

@@ -48,9 +48,11 @@ struct Growth {
 /// Time series at the output times, all of one length; what the charts draw and trajectory.csv
 /// holds.
 struct Series {
-  std::vector<double> t;               ///< [s]
-  std::vector<double> position_drift;  ///< |Φ(q, t)|₂
-  std::vector<double> velocity_drift;  ///< |Φ̇(q, q̇, t)|₂
+  std::vector<double> t;                 ///< [s]
+  std::vector<double> position_drift;    ///< |Φ(q, t)|₂ of rows in `RunResult::drift_unit`
+  std::vector<double> velocity_drift;    ///< |Φ̇(q, q̇, t)|₂ of these
+  std::vector<double> angle_drift;       ///< of rows in rad, beside others in m [rad]
+  std::vector<double> angle_rate_drift;  ///< [rad/s]
   std::vector<double> energy;  ///< T + V less the work of dampers and of wrenches without potential
                                ///< [J]; NaN with drives
   std::vector<double> energy_error;  ///< energy − energy(0) [J]
@@ -82,16 +84,33 @@ struct RunResult {
   std::string jacobian, linear_solver;
   double cpu_s = not_measured, wall_s = not_measured;  ///< median of repeats, integration alone
   int repeats = 0;
+  /// Of the position drift and what follows it: m, or rad where all rows of Φ are angles; empty
+  /// without loops.
+  std::string drift_unit;
   double position_drift_max = not_measured, velocity_drift_max = not_measured,
          between_steps_max = not_measured;
   Growth position_growth, velocity_growth;
+  /// Of the rows in rad where others are in m [rad, rad/s, rad]; else not measured.
+  double angle_drift_max = not_measured, angle_rate_drift_max = not_measured,
+         angle_between_steps_max = not_measured;
+  Growth angle_growth, angle_rate_growth;
   double energy_error_max = not_measured;
   /// Largest T, and largest T + |V − V(0)|, at the samples [J]: what rates and energy errors
   /// compare with.
   double kinetic_energy_max = not_measured, energy_scale = not_measured;
   double position_error_max = not_measured, velocity_error_max = not_measured;
-  /// Loop equations that were redundant or nearly so, in how many right-hand sides of the run; ODE
-  /// forms.
+  /// Of Φ_q at the start, and the rows that follow from the others there (kkt/loop_rank.h).
+  int rank = 0;
+  struct DependentRow {
+    std::string loop, row;
+  };
+  std::vector<DependentRow> dependent_rows;
+  /// What the start leaves open, one sentence; empty: nothing.
+  std::string residue;
+  /// Right-hand sides in which more rows faded than are redundant at the start: of ODE forms, near
+  /// singular poses, or where equations are nearly redundant.
+  long weak_evaluations = 0;
+  /// Rows that faded, in how many right-hand sides of the run; ODE forms.
   struct Faded {
     std::string loop, row;
     long evaluations = 0;
@@ -120,6 +139,15 @@ struct RunResult {
   Trajectory trajectory;
   Film film;  ///< empty where none was asked for
 };
+
+/// Unit of what is called position drift.
+inline std::string drift_unit(const RunResult& run) {
+  return run.drift_unit.empty() ? "m" : run.drift_unit;
+}
+/// Whether a run has drifts of angles beside those of lengths.
+inline bool has_both_drifts(const RunResult& run) {
+  return !run.series.angle_drift.empty() || !std::isnan(run.angle_drift_max);
+}
 
 /// Whether a run changed its integrator on the way.
 inline bool changed(const RunResult& run) {

@@ -95,7 +95,7 @@ TEST(Assembly, RedundantLoopsClose) {
     EXPECT_EQ(a.rank, 4);
     EXPECT_EQ(a.mobility, 1);
     EXPECT_EQ(a.dependent_rows.size(), 1u);
-    EXPECT_LT(a.largest_neglected, 1e-7 * a.smallest_pivot);
+    EXPECT_LT(a.dropped, 1e-7 * a.kept);
     expect_consistent(mechanism, a);
 
     const Mechanism flat(turned(row_of_four_bars(3, 1.1, 1), r), {.algebra = Algebra::spatial});
