@@ -145,7 +145,7 @@ def main():
         panel.crank()
         panels.append(panel.text())
 
-    chart = Chart("Loops are open by, up to time t [m]", "t [s]", (0, END), (-16, 0), linear_x=True,
+    chart = Chart("Position drift up to time t [m]", "t [s]", (0, END), (-16, 0), linear_x=True,
                   size=(WIDTH - 2 * PANEL, HEIGHT, 146))
     for form, label, colour in (("acceleration", "acceleration", RED), ("momentum", "momentum, reset", BLUE),
                                 ("projected", "projected", GREEN)):
@@ -161,7 +161,7 @@ def main():
     drawn = chart.text_of().replace("<svg ", f'<svg x="{2 * PANEL}" width="{WIDTH - 2 * PANEL}" height="{HEIGHT}" ', 1)
 
     note = f"RK4, h = {1000 * float(STEP):g} ms. Dots: the joints that close the loops."
-    title = "Two legs of a Strandbeest on two forms, RK4 with h = 12.5 ms, and how far their loops are open"
+    title = "Two legs of a Strandbeest on two forms, RK4 with h = 12.5 ms, and their position drift"
     file = TOP / "docs/figures/strandbeest.svg"
     file.write_text("\n".join([
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT}" role="img" '
