@@ -10,12 +10,13 @@
 
 namespace momenta {
 
+/// A consistent start, and what it took to find it.
 struct Assembly {
-  Start start;
+  Start start;                   ///< positions, rates, accelerations and multipliers
   double position_residual = 0;  ///< |Φ|∞ reached
   double velocity_residual = 0;  ///< |Φ̇|∞ reached
-  double moved = 0;  ///< largest change of a joint coordinate against the guess [rad or m]
-  int iterations = 0;
+  double moved = 0;           ///< largest change of a joint coordinate against the guess [rad or m]
+  int iterations = 0;         ///< of Newton's method on the positions
   int rank = 0;               ///< of Φ_q at the start
   double smallest_pivot = 0;  ///< of the pivoted QR of Φ_q, the smallest that counts
   double largest_neglected =
