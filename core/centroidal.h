@@ -1,7 +1,7 @@
 #pragma once
 // The mechanism as one body: mass, centre of mass, linear and angular momentum, ground axes. All
 // bodies move as drives and rates say, so prescribed motion counts. The sums:
-// kernel/centroidal_sums.h.
+// centroidal_sums.h.
 
 #include <momenta/core/scene/scene.h>
 #include <momenta/core/tree/tree.h>

@@ -2,6 +2,7 @@
 // One run of one form by one integrator: what was asked, what came out. The rows of every table,
 // CSV, JSON and page.
 
+#include <momenta/dae/measure/growth.h>
 #include <momenta/dae/solver/integration.h>
 #include <momenta/dae/study/picture.h>
 
@@ -13,12 +14,6 @@
 #include <vector>
 
 namespace momenta {
-
-/// Of what was not measured: null in JSON, an empty cell in CSV.
-inline constexpr double not_measured = std::numeric_limits<double>::quiet_NaN();
-
-/// Drift below this is the rounding of Φ, or of Φ̇, itself: no growth law is read from it [m, m/s].
-inline constexpr double rounding_level = 1e-13;
 
 /// What a run was told.
 struct RunSettings {
@@ -39,14 +34,6 @@ struct RunSettings {
   double spectral_radius = 0.8;  ///< of generalised-alpha
   std::string kkt;  ///< how (7) is solved: dense, sparse, or empty (no loops, or solved inside
                     ///< IDA's Newton matrix)
-};
-
-/// A fitted power law running_max(t) ~ t^exponent (measure/growth.h).
-struct Growth {
-  double exponent = not_measured;    ///< NaN: no power law
-  double half_range = not_measured;  ///< half the spread of the slopes of sub-ranges
-  double from = 0;                   ///< fitted range of t [s]
-  double to = 0;                     ///< its end [s]
 };
 
 /// Time series at the output times, all of one length; what the charts draw and trajectory.csv
