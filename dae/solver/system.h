@@ -23,10 +23,9 @@ class OdeSystem {
   virtual bool rhs(double t, const double* y, double* ydot) = 0;
 
   /// Called once after every accepted step of a one-step method, before the next: gauge reset,
-  /// position correction, quaternion normalisation. `ydot` is f(t, y) at the unchanged y where the
-  /// method has it (FSAL), else null. Sets `changed` when y was altered in a way that makes f(t, y)
-  /// a different number (a gauge reset does; a position correction of the size of the local error
-  /// does not: the last stage may then still serve as the next first one).
+  /// position correction, quaternion normalisation. Sets `changed` when y was altered in a way that
+  /// makes f(t, y) a different number (a gauge reset does; a position correction of the size of the
+  /// local error does not: the last stage may then still serve as the next first one).
   virtual bool after_step(double /*t*/, double* /*y*/, bool& /*changed*/) { return true; }
   /// Whether after_step() does anything.
   virtual bool has_after_step() const { return false; }

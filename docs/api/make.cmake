@@ -1,5 +1,5 @@
 # The API reference by Doxygen, into FOLDER/api; every warning is an error. Before that, and without Doxygen too: what
-# documents and consumers include is public (headers.txt), and public headers exist.
+# programs in documents include is public (headers.txt), and public headers exist.
 #
 #     cmake -D SOURCE=<top of the project> -D INCLUDE=<folder of momenta/core and momenta/dae> -D FOLDER=<folder>
 #           -D VERSION=<version> -P docs/api/make.cmake
@@ -11,7 +11,7 @@ foreach(header IN LISTS headers)
   endif()
 endforeach()
 
-file(GLOB_RECURSE users ${SOURCE}/README.md ${SOURCE}/docs/how-to/*.md ${SOURCE}/docs/how-to/*.cpp ${SOURCE}/tests/consumer/*.cpp)
+file(GLOB_RECURSE users ${SOURCE}/README.md ${SOURCE}/docs/how-to/*.md)
 foreach(user IN LISTS users)
   file(STRINGS ${user} lines REGEX "^#include <momenta/")
   foreach(line IN LISTS lines)
