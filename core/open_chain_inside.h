@@ -3,7 +3,7 @@
 // of OpenChain alone.
 
 #include <momenta/core/arguments.h>
-#include <momenta/core/kernel/centroidal_sums.h>
+#include <momenta/core/centroidal_sums.h>
 #include <momenta/core/kernel/levels/batch_sweeps.h>
 #include <momenta/core/kernel/levels/open_sweeps.h>
 #include <momenta/core/kernel/levels/when_asked.h>

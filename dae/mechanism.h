@@ -16,29 +16,43 @@
 namespace momenta {
 
 /// How (7) is solved: loops carried by the sweeps, or the assembled matrix.
-enum class KktChoice { automatic, sweeps, sparse, dense };
+enum class KktChoice {
+  automatic,  ///< sweeps where they can, else by size
+  sweeps,     ///< loops carried by the sweeps, no matrix
+  sparse,     ///< a sparse matrix
+  dense       ///< a dense one
+};
+/// As `--kkt` spells it.
 const char* name_of(KktChoice choice);
 
+/// What a scene leaves open.
 struct MechanismOptions {
-  Algebra algebra = Algebra::automatic;
-  KktChoice kkt = KktChoice::automatic;
+  Algebra algebra = Algebra::automatic;  ///< which kernel
+  KktChoice kkt = KktChoice::automatic;  ///< how (7) is solved
 };
 
 /// Nonzeros of the two blocks of (7): M (upper triangle) and Φ_q, in the order in which an
 /// evaluation writes them.
 struct KktPattern {
+  /// One of them.
   struct Entry {
-    int row, column;
+    int row;     ///< from 0
+    int column;  ///< from 0
   };
   std::vector<Entry> mass;        ///< row ≤ column < nv
   std::vector<Entry> constraint;  ///< row < m, column < nv
 };
 
+/// A column of trajectory.csv.
 struct Column {
-  std::string name, unit;
+  std::string name;  ///< "O.q"
+  std::string unit;  ///< "rad"
+  /// "O.q [rad]".
   std::string label() const { return name + " [" + unit + "]"; }
 };
 
+/// A scene made ready to move, loops and all. Immutable, shared by threads; it must outlive what is
+/// made from it.
 class Mechanism {
  public:
   /// @throws SceneError
@@ -47,12 +61,12 @@ class Mechanism {
   Mechanism(const Mechanism&) = delete;
   Mechanism& operator=(const Mechanism&) = delete;
 
-  const Scene& scene() const { return scene_; }
-  const Tree& tree() const { return tree_; }
-  const Plan& plan() const { return plan_; }
-  int nq() const { return tree_.nq; }  ///< coordinates
-  int nv() const { return tree_.nv; }  ///< rates, momenta
-  int m() const { return rows_; }      ///< loop equations
+  const Scene& scene() const { return scene_; }  ///< as given
+  const Tree& tree() const { return tree_; }     ///< bodies in the order of the sweeps
+  const Plan& plan() const { return plan_; }     ///< what evaluations do and leave out
+  int nq() const { return tree_.nq; }            ///< coordinates
+  int nv() const { return tree_.nv; }            ///< rates, momenta
+  int m() const { return rows_; }                ///< loop equations
   /// How (7) is solved, when there are loops; never automatic.
   KktChoice kkt() const { return kkt_; }
   /// Whether an assembled matrix, where one is needed, is dense.
@@ -78,6 +92,7 @@ class Mechanism {
   const KktPattern& kkt_pattern() const;
   /// Of Φ_q alone, O(length of all loops).
   const std::vector<KktPattern::Entry>& constraint_pattern() const;
+  /// What each row of Φ is (m), in words.
   const std::vector<RowName>& rows() const { return row_names_; }
   /// Rows of one loop and one kind (points, axes, distance or coupling) share a unit and so a
   /// scale: group index of each row.
@@ -100,9 +115,11 @@ class Mechanism {
   template <class S>
   std::unique_ptr<Evaluation<S>> evaluation() const;
 
-  /// Names and units of q, u and of marker columns, in the order of trajectory.csv.
+  /// Names and units of q (nq), in the order of trajectory.csv.
   std::vector<Column> coordinate_columns() const;
+  /// Of u (nv).
   std::vector<Column> rate_columns() const;
+  /// Of markers: position and velocity of each.
   std::vector<Column> marker_columns() const;
 
   /// Lines of the plan, core's and those of the loops.
@@ -154,6 +171,7 @@ class Mechanism {
   std::vector<double> least_scales_;
 };
 
+/// In doubles.
 template <>
 std::unique_ptr<Evaluation<double>> Mechanism::evaluation<double>() const;
 extern template std::unique_ptr<Evaluation<Dual8>> Mechanism::evaluation<Dual8>() const;

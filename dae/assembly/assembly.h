@@ -10,12 +10,13 @@
 
 namespace momenta {
 
+/// A consistent start, and what it took to find it.
 struct Assembly {
-  Start start;
+  Start start;                   ///< positions, rates, accelerations and multipliers
   double position_residual = 0;  ///< |Φ|∞ reached
   double velocity_residual = 0;  ///< |Φ̇|∞ reached
-  double moved = 0;  ///< largest change of a joint coordinate against the guess [rad or m]
-  int iterations = 0;
+  double moved = 0;    ///< largest change of a joint coordinate against the guess [rad or m]
+  int iterations = 0;  ///< of Newton's method on the positions
   int rank = 0;        ///< of Φ_q at the start (kkt/loop_rank.h)
   double kept = 0;     ///< smallest singular value that counts, lengths in lengths of the scene
   double dropped = 0;  ///< and the largest that does not (0: the rows are independent)

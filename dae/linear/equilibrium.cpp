@@ -3,7 +3,7 @@
 #include <momenta/dae/linear/equilibrium.h>
 #include <momenta/dae/linear/local_pencil.h>
 #include <momenta/dae/linear/pose_motion.h>
-#include <momenta/dae/report/number_text.h>
+#include <momenta/dae/text/number_text.h>
 
 #include <algorithm>
 #include <cmath>

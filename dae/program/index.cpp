@@ -1,7 +1,7 @@
 // The index of each form, by numbers.
 
 #include <momenta/dae/report/index_report.h>
-#include <momenta/dae/report/number_text.h>
+#include <momenta/dae/text/number_text.h>
 
 #include <cmath>
 #include <cstdio>

@@ -1,11 +1,11 @@
 #include <momenta/dae/measure/rank.h>
 #include <momenta/dae/report/csv.h>
-#include <momenta/dae/report/number_text.h>
 #include <momenta/dae/report/page.h>
 #include <momenta/dae/report/part_file.h>
 #include <momenta/dae/report/table.h>
 #include <momenta/dae/study/run_form.h>
 #include <momenta/dae/study/timing.h>
+#include <momenta/dae/text/number_text.h>
 
 #include <cmath>
 #include <cstdio>

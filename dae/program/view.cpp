@@ -1,6 +1,6 @@
-#include <momenta/dae/report/number_text.h>
 #include <momenta/dae/report/page.h>
 #include <momenta/dae/report/picture_data.h>
+#include <momenta/dae/text/number_text.h>
 
 #include <algorithm>
 #include <cstdio>

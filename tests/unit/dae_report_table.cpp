@@ -1,8 +1,8 @@
 // The table on the terminal, and the numbers as text that every report is made of.
 #include <gtest/gtest.h>
-#include <momenta/dae/report/number_text.h>
 #include <momenta/dae/report/run_label.h>
 #include <momenta/dae/report/table.h>
+#include <momenta/dae/text/number_text.h>
 #include <unit/page/synthetic_study.h>
 
 #include <cstdlib>

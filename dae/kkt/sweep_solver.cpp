@@ -4,8 +4,8 @@
 
 #include <momenta/core/scalar/all_finite.h>
 #include <momenta/dae/kkt/assembled_solver.h>
+#include <momenta/dae/kkt/sweep_solver.h>
 #include <momenta/dae/sweeps/levels/loop_sweeps.h>
-#include <momenta/dae/sweeps/sweep_solver.h>
 
 #include <algorithm>
 #include <cmath>
