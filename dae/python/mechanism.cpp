@@ -1,6 +1,7 @@
 // Mechanism: what a scene is, its consistent start, and the equations at one state.
 
 #include <momenta/core/scene/read_scene.h>
+#include <momenta/core/scene/write_scene.h>
 #include <momenta/dae/assembly/drive_reach.h>
 #include <momenta/dae/kkt/dense_blocks.h>
 #include <momenta/dae/study/state_values.h>
@@ -10,8 +11,6 @@
 #include "bindings.h"
 
 namespace momenta::python {
-
-namespace {
 
 MechanismOptions options_of(const std::string& algebra, const std::string& kkt) {
   MechanismOptions options;
@@ -31,6 +30,8 @@ MechanismOptions options_of(const std::string& algebra, const std::string& kkt) 
     throw py::value_error("kkt '" + kkt + "': expected auto, sweeps, sparse or dense");
   return options;
 }
+
+namespace {
 
 std::vector<std::string> labels(const std::vector<Column>& columns) {
   std::vector<std::string> all;
@@ -185,9 +186,11 @@ void bind_mechanism(py::module_& module) {
                     "which of several assemblies it is, where the guess does not decide it");
 
   py::class_<Bench, BenchPtr> mechanism(module, "Mechanism",
-                                        "A scene made ready to move. Made by load() and parse().");
+                                        "A scene made ready to move. Made by load().");
   const auto of = [](auto f) { return [f](const Bench& b) { return f(*b.mechanism); }; };
-  mechanism.def_property_readonly("name", of([](const Mechanism& m) { return m.scene().name; }))
+  mechanism
+      .def_property_readonly("name", of([](const Mechanism& m) { return m.scene().name; }),
+                             "of the scene")
       .def_property_readonly("nq", of([](const Mechanism& m) { return m.nq(); }), "coordinates")
       .def_property_readonly("nv", of([](const Mechanism& m) { return m.nv(); }),
                              "rates and momenta")
@@ -209,6 +212,29 @@ void bind_mechanism(py::module_& module) {
                              "the scene's guess (nq)")
       .def_property_readonly("u0", of([](const Mechanism& m) { return m.tree().u0; }),
                              "the scene's guess (nv)")
+      .def_property_readonly(
+          "options",
+          [](const Bench& b) {
+            py::dict options;
+            options["algebra"] = b.algebra, options["kkt"] = b.kkt;
+            return options;
+          },
+          "algebra and kkt as load() was asked for")
+      .def_property_readonly("remarks", of([](const Mechanism& m) { return m.scene().remarks; }),
+                             "what the reader left out of a URDF or MJCF, one sentence a kind")
+      .def("to_toml", of([](const Mechanism& m) { return scene_text(m.scene()); }),
+           "The scene as TOML; read again it is the same, bit by bit.")
+      .def(py::pickle(
+          [](const Bench& b) {
+            const Scene& scene = b.mechanism->scene();
+            return py::make_tuple(scene_text(scene), scene.name, b.algebra, b.kkt);
+          },
+          [](const py::tuple& kept) {
+            if (kept.size() != 4) throw py::value_error("this is no pickled Mechanism");
+            return std::make_shared<Bench>(
+                parse_scene(kept[0].cast<std::string>(), kept[1].cast<std::string>()),
+                kept[2].cast<std::string>(), kept[3].cast<std::string>());
+          }))
       .def_property_readonly("plan", &plan, "what an evaluation does and leaves out, by topic")
       .def("__repr__", of([](const Mechanism& m) {
              return "<momenta.Mechanism '" + m.scene().name + "': " + std::to_string(m.nv()) +
@@ -239,22 +265,6 @@ void bind_mechanism(py::module_& module) {
            "loops.");
   add_runs(mechanism);
   add_modes(mechanism);
-
-  module.def(
-      "load",
-      [](const std::string& file, const std::string& algebra, const std::string& kkt) {
-        return std::make_shared<Bench>(read_scene(file), options_of(algebra, kkt));
-      },
-      "file"_a, "algebra"_a = "auto", "kkt"_a = "auto",
-      "Reads a scene file. Raises SceneError: one sentence with file, line and what is wrong.");
-  module.def(
-      "parse",
-      [](const std::string& text, const std::string& name, const std::string& algebra,
-         const std::string& kkt) {
-        return std::make_shared<Bench>(parse_scene(text, name), options_of(algebra, kkt));
-      },
-      "text"_a, "name"_a = "scene", "algebra"_a = "auto", "kkt"_a = "auto",
-      "The same from TOML text; `name` stands in messages.");
 }
 
 }  // namespace momenta::python

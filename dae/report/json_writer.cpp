@@ -1,8 +1,8 @@
-#include "json_writer.h"
+#include <momenta/dae/report/json_writer.h>
 
 #include <momenta/dae/report/json.h>
 
-namespace momenta::program {
+namespace momenta {
 namespace {
 
 std::string quoted(const std::string& text) {
@@ -70,4 +70,4 @@ std::string JsonWriter::take() {
   return std::move(out_) + "\n";
 }
 
-}  // namespace momenta::program
+}  // namespace momenta

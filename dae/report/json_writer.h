@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace momenta::program {
+namespace momenta {
 
 class JsonWriter {
  public:
@@ -62,4 +62,4 @@ class JsonWriter {
   bool first_ = true;  ///< nothing stands in the open object yet
 };
 
-}  // namespace momenta::program
+}  // namespace momenta

@@ -1,7 +1,6 @@
-#include "state_text.h"
-
 #include <momenta/core/scene/near_name.h>
 #include <momenta/core/scene/scene.h>
+#include <momenta/dae/study/state_text.h>
 
 #include <algorithm>
 #include <array>
@@ -12,12 +11,10 @@
 #include <set>
 #include <vector>
 
-namespace momenta::program {
+namespace momenta {
 namespace {
 
 using Json = nlohmann::json;
-using reading::digits;
-using reading::in_quotes;
 
 constexpr std::size_t largest_text = std::size_t{64} << 20;
 constexpr int deepest = 4;  // a state has three levels
@@ -58,8 +55,9 @@ Source source_of(const std::string& state) {
 std::string found(const Json& value) {
   if (value.is_array()) return "an array of " + std::to_string(value.size());
   if (value.is_object()) return "an object";
-  if (value.is_string()) return "the string " + in_quotes(value.get_ref<const std::string&>());
-  if (value.is_number()) return "the number " + digits(value.get<double>());
+  if (value.is_string())
+    return "the string " + reading::in_quotes(value.get_ref<const std::string&>());
+  if (value.is_number()) return "the number " + reading::digits(value.get<double>());
   if (value.is_boolean()) return value.get<bool>() ? "true" : "false";
   return "null";
 }
@@ -76,7 +74,7 @@ StateText::StateText(const std::string& state, std::span<const std::string_view>
     if (std::find(keys_.begin(), keys_.end(), key) == keys_.end()) {
       std::string which = reading::did_you_mean(key, keys_);
       if (which.empty()) which = "; expected " + listed();
-      fail("key " + in_quotes(key) + " is not known" + which);
+      fail("key " + reading::in_quotes(key) + " is not known" + which);
     }
 }
 
@@ -100,7 +98,7 @@ Json StateText::parse(const std::string& text) const {
     } else if (event == Json::parse_event_t::key) {
       const auto& key = value.get_ref<const std::string&>();
       if (!seen[level].insert(key).second)
-        fail("key " + in_quotes(key) + " stands twice, expected once");
+        fail("key " + reading::in_quotes(key) + " stands twice, expected once");
     }
     return true;
   };
@@ -148,11 +146,11 @@ void StateText::unknown_joint(const std::string& name, const std::string& key,
                               std::span<const std::string_view> names) const {
   std::string which = reading::did_you_mean(name, names);
   if (which.empty()) which = "; expected a joint of the scene";
-  fail("key '" + key + "': joint " + in_quotes(name) + " is not in the scene" + which);
+  fail("key '" + key + "': joint " + reading::in_quotes(name) + " is not in the scene" + which);
 }
 
 std::string place_in_state(const std::string& key, const std::string& joint) {
-  return "key '" + key + "', joint " + in_quotes(joint);
+  return "key '" + key + "', joint " + reading::in_quotes(joint);
 }
 
-}  // namespace momenta::program
+}  // namespace momenta

@@ -224,7 +224,7 @@ class Mistakes(unittest.TestCase):
 
 class ExampleScripts(unittest.TestCase):
     def test_they_run(self):
-        for script in sorted((pathlib.Path(__file__).parent / "examples").glob("*.py")):
+        for script in sorted((pathlib.Path(__file__).parents[1] / "examples").glob("*.py")):
             with self.subTest(script.name):
                 runpy.run_path(str(script), run_name="tested")
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-namespace momenta::program {
+namespace momenta {
 
 class StateText {
  public:
@@ -40,4 +40,4 @@ class StateText {
 /// "key 'q', joint 'O'"
 std::string place_in_state(const std::string& key, const std::string& joint);
 
-}  // namespace momenta::program
+}  // namespace momenta

@@ -1,8 +1,10 @@
-#include "state_input.h"
-
 #include <momenta/core/scene/near_name.h>
+#include <momenta/core/scene/read_scene.h>
 #include <momenta/dae/assembly/drive_reach.h>
 #include <momenta/dae/joint_places.h>
+#include <momenta/dae/study/state_input.h>
+#include <momenta/dae/study/state_text.h>
+#include <momenta/dae/text/number_text.h>
 
 #include <algorithm>
 #include <array>
@@ -10,11 +12,10 @@
 #include <map>
 #include <set>
 
-#include "state_text.h"
-
-namespace momenta::program {
+namespace momenta {
 namespace {
 
+constexpr double closed = 1e-8;      // |Φ|, |Φ̇| of a point that is given
 constexpr double norm_slack = 1e-6;  // of quaternions
 constexpr std::array<std::string_view, 5> state_keys = {"t", "q", "v", "p", "tau"};
 constexpr std::array<std::string_view, 2> start_keys = {"q", "v"};
@@ -123,6 +124,29 @@ GivenState read_state(const std::string& state, const Mechanism& mechanism) {
   return StateReader(mechanism, state).read();
 }
 
+Start start_of(const std::string& state, const Mechanism& mechanism) {
+  if (state.empty()) return assemble(mechanism).start;
+  const GivenState given = read_state(state, mechanism);
+  const StateValues s = evaluate_state(mechanism, given);
+  for (Eigen::Index i = 0; i < s.phi.size(); ++i) {
+    const auto& loop = mechanism.rows()[static_cast<std::size_t>(i)].loop;
+    if (!(std::abs(s.phi[i]) <= closed))
+      throw SceneError("--at: loop '" + loop + "' is open by " + compact(std::abs(s.phi[i]), 3) +
+                       "; expected positions that close the loops to 1e-8");
+    if (!(std::abs(s.phidot[i]) <= closed * (1 + s.v.cwiseAbs().maxCoeff())))
+      throw SceneError("--at: loop '" + loop + "' opens at a rate of " +
+                       compact(std::abs(s.phidot[i]), 3) +
+                       "; expected rates that the loops allow, as those from \"p\" are");
+  }
+  Start start;
+  start.t = given.t;
+  start.q = given.q;
+  start.u = s.v;
+  start.udot = mechanism.m() > 0 ? s.constrained : s.free;
+  start.lambda = s.lambda;
+  return start;
+}
+
 namespace {
 
 using JointValues = std::vector<double> JointSpec::*;
@@ -199,4 +223,4 @@ void start_at(const std::string& state, Scene& scene) {
   }
 }
 
-}  // namespace momenta::program
+}  // namespace momenta
