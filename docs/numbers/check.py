@@ -30,10 +30,11 @@ import os
 import re
 import sys
 from pathlib import Path
+from statistics import median
 
 sys.dont_write_bytecode = True  # the folder belongs to the reader
 
-from commands import TOP, Commands, options_of, parse
+from commands import STUDIES, TOP, Commands, options_of, parse, verb_of
 from printed import compare_lines
 from quantities import BRANCH_LOST, COLUMNS, COUNTED, COUNTS, VALUES, agree, written
 from reading import commands_run, links_lead_somewhere
@@ -89,7 +90,7 @@ class Page:
     def value(self, formula, **more):
         """(what a formula gives, the factor that two machines may differ by)."""
         self.commands.used.clear()
-        known = dict(self.names, abs=abs, max=max, min=min, round=round, len=len, all=all, any=any, **more)
+        known = dict(self.names, median=median, abs=abs, max=max, min=min, round=round, len=len, all=all, any=any, **more)
         value = eval(formula, {**known, "__builtins__": {}})  # pages of this repository, nobody else's
         kinds = [VALUES[run.kind] for run in self.commands.used]
         return value, max(kinds, default=1.0)
@@ -182,6 +183,9 @@ class Page:
                 self.differs(start + at, start + at + len(old), None, now)
             return
         formulas = dict(re.split(r"\s+= ", line, maxsplit=1) for line in more if " = " in line)
+        counts = re.search("|".join(COUNTED), block.splitlines()[0] + " ".join(formulas.values()))
+        if counts and verb_of(command) in STUDIES and not self.times:
+            command += " --timing once"
         self.table(start, block, command, formulas, within)
 
     def table(self, start, block, command, formulas, within):

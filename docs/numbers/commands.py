@@ -117,7 +117,8 @@ class Commands:
                 line += f" --out {folder}" + ("" if timed or "--timing" in command else " --timing none")
                 line += "" if "--cpu-limit" in command else f" --cpu-limit {LIMIT}"
             status, text = self.shell(line)
-            text = None if status == 127 else "\n".join(row for row in text.splitlines() if not row.startswith("momenta: wrote"))
+            rows = [row for row in text.splitlines() if not row.startswith("momenta: wrote")]
+            text = None if status == 127 else "\n".join(rows)  # 127: no such program
             if verb_of(command) in STUDIES and not (folder / "summary.json").exists():
                 raise LookupError(f"`{command}` gave no results: {(text or '').strip()[-300:]}")
             counted = command if "--timing" in command else command + " --timing once"

@@ -26,6 +26,7 @@ def commands_of(text):
 def shortened(command):
     """The same on a short span."""
     verb = verb_of(command)
+    command = re.sub(r"--n \d{3,}", "--n 50", command)
     if verb in (*STUDIES, "sweep"):
         command = without(command, "end", "samples", "rtol", "from", "to", "per-decade", "cpu-limit")
         command += " --end 0.003 --samples 3 --quiet"
