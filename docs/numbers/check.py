@@ -36,7 +36,7 @@ sys.dont_write_bytecode = True  # the folder belongs to the reader
 
 from commands import STUDIES, TOP, Commands, options_of, parse, verb_of
 from printed import compare_lines
-from quantities import BRANCH_LOST, COLUMNS, COUNTED, COUNTS, VALUES, agree, written
+from quantities import BRANCH_LOST, COLUMNS, COUNTED, SENSITIVE_COUNT, agree, written
 from reading import commands_run, links_lead_somewhere
 
 DOCUMENTS = ["README.md", "CONTRIBUTING.md", "docs/**/*.md", "examples/*/README.md", "tests/benchmark/README.md"]
@@ -92,8 +92,7 @@ class Page:
         self.commands.used.clear()
         known = dict(self.names, median=median, abs=abs, max=max, min=min, round=round, len=len, all=all, any=any, **more)
         value = eval(formula, {**known, "__builtins__": {}})  # pages of this repository, nobody else's
-        kinds = [VALUES[run.kind] for run in self.commands.used]
-        return value, max(kinds, default=1.0)
+        return value, max(self.commands.used, default=1.0)
 
     def define(self, name, parameters, text, at):
         command = self.command(text, at)
@@ -225,21 +224,18 @@ class Page:
 
     def cell(self, at, header, cell, row, run, answer, formulas, within):
         name = re.sub(r"\s*\[[^]]*\]", "", header).replace("`", "")
-        if header in formulas or name in formulas:
-            value, factor = self.value(formulas.get(header, formulas.get(name)), run=run, answer=answer,
-                                       row={key: parse(text) if parse(text) is not None else text.strip("`")
-                                            for key, text in row.items()})
-        elif name in COLUMNS and run is not None:
-            value = getattr(run, COLUMNS[name])
-            factor = (COUNTS if COLUMNS[name] in COUNTED else VALUES)[run.kind]
-        elif name.startswith("CPU"):
+        formula = formulas.get(name) or (f"run.{COLUMNS[name]}" if name in COLUMNS and run is not None else None)
+        if name.startswith("CPU"):
             self.time(at, header, cell, run)
+        if not formula:
             return
-        else:
-            return
+        value, factor = self.value(formula, run=run, answer=answer, row={
+            key: parse(text) if parse(text) is not None else text.strip("`") for key, text in row.items()})
+        if within:
+            factor = max(factor, min(within, SENSITIVE_COUNT) if COLUMNS.get(name) in COUNTED else within)
         if cell == "–" and run is not None and (not run.done or run.accuracy == BRANCH_LOST):
             return  # a motion that is not that of the mechanism has no numbers to compare
-        if not agree(cell, value, within or factor):
+        if not agree(cell, value, factor):
             self.differs(at, at + len(cell), value)
         elif self.write and cell not in ("–", "rounding") and written(value, cell) != cell:
             self.differs(at, at + len(cell), value)
