@@ -82,14 +82,17 @@ bool solve_beside(const UnheldJoints& unheld, const Mechanism& mechanism, Evalua
                   const VectorXd& r, const VectorXd& g, VectorXd& x, VectorXd& lambda) {
   constexpr double powerless = 1e-12;  // of the largest force
   const Eigen::Index n = mechanism.nv(), m = g.size();
-  if (unheld.motions.size() == 0 || n + m > 2 * most_pivots) return false;
-  const Eigen::HouseholderQR<MatrixXd> qr(unheld.motions);
-  const MatrixXd free = MatrixXd(qr.householderQ()).leftCols(unheld.motions.cols());
-  if (!((free.transpose() * r).cwiseAbs().maxCoeff() <= powerless * r.cwiseAbs().maxCoeff()))
-    return false;
+  const Eigen::Index motions = unheld.motions.cols();
+  if ((motions == 0 && !unheld.joints.empty()) || n + m > 2 * most_pivots) return false;
   MatrixXd mass = dense_mass(mechanism, e);
-  const double heaviest = mass.diagonal().maxCoeff();
-  mass += (heaviest > 0 ? heaviest : 1) * free * free.transpose();
+  if (motions > 0) {
+    const Eigen::HouseholderQR<MatrixXd> qr(unheld.motions);
+    const MatrixXd free = MatrixXd(qr.householderQ()).leftCols(motions);
+    if (!((free.transpose() * r).cwiseAbs().maxCoeff() <= powerless * r.cwiseAbs().maxCoeff()))
+      return false;
+    const double heaviest = mass.diagonal().maxCoeff();
+    mass += (heaviest > 0 ? heaviest : 1) * free * free.transpose();
+  }
   MatrixXd a = MatrixXd::Zero(n + m, n + m);
   a.topLeftCorner(n, n) = mass;
   if (m > 0) {
@@ -98,8 +101,9 @@ bool solve_beside(const UnheldJoints& unheld, const Mechanism& mechanism, Evalua
   }
   // Rows of Φ of one size beside inertias of one size.
   VectorXd scale = VectorXd::Ones(n + m), b(n + m);
+  const double least = 1e-12 * mass.diagonal().maxCoeff();  // of what loops alone hold
   for (Eigen::Index i = 0; i < n; ++i)
-    if (mass(i, i) > 0) scale[i] = 1 / std::sqrt(mass(i, i));
+    if (mass(i, i) > 0) scale[i] = 1 / std::sqrt(std::max(mass(i, i), least));
   for (Eigen::Index i = n; i < n + m; ++i) {
     const double size = a.row(i).head(n).cwiseProduct(scale.head(n).transpose()).norm();
     if (size > 0) scale[i] = 1 / size;

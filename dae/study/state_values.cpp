@@ -52,15 +52,14 @@ class StateEvaluator {
                      "smaller numbers");
   }
 
-  /// Notes why (45), (7) or (3) has no solution. `rate`: where it was met.
+  /// Notes why (45), (7) or (3) has no solution, if joints without inertia are why; else loops hold
+  /// those that a solver stopped at. `rate`: where it was met.
   void leave_out(int rate) {
     unheld_ = unheld_joints(mechanism_, *e_, given_.t, given_.q.data(), true, rate);
-    if (unheld_.joints.empty()) {
-      if (rate < 0) refuse();
-      s_.not_there = mechanism_.no_inertia(rate, given_.t, given_.q.data());
-      return;
-    }
-    s_.not_there = in_words(mechanism_.tree(), unheld_.joints);
+    if (!unheld_.joints.empty())
+      s_.not_there = in_words(mechanism_.tree(), unheld_.joints);
+    else if (rate < 0)
+      refuse();
   }
 
   /// v, p, σ, and the evaluation placed and moved there.
@@ -88,7 +87,6 @@ class StateEvaluator {
         no_rates(e_->singular_joint());
       return;
     }
-    if (!solvable_) return no_rates(-1);
     // Prescribed parts of M u and Φ̇ go to the right.
     VectorXd r(mechanism_.nv()), g(mechanism_.m());
     e_->move(nullptr);
@@ -96,7 +94,11 @@ class StateEvaluator {
     e_->velocities(g.data());
     r = s_.p - r;
     g = -g;
-    if (!kkt_->solve(r.data(), g.data(), nullptr, s_.v.data(), s_.sigma.data())) refuse();
+    if (solvable_ && kkt_->solve(r.data(), g.data(), nullptr, s_.v.data(), s_.sigma.data())) return;
+    if (solvable_) leave_out(-1);
+    solvable_ = false;
+    beside(unheld_, r, g, s_.v, s_.sigma);
+    if (!unheld_.joints.empty()) no_rates(-1);
   }
   void no_rates(int rate) {
     if (s_.not_there.empty()) leave_out(rate);
@@ -136,10 +138,12 @@ class StateEvaluator {
     g = -g;
     s_.constrained.setZero(mechanism_.nv());
     if (mechanism_.nv() == 0) return;
-    if (!solvable_)
-      beside(unheld_, r, g, s_.constrained, s_.lambda);
-    else if (!kkt_->solve(r.data(), g.data(), nullptr, s_.constrained.data(), s_.lambda.data()))
-      refuse();
+    if (solvable_ &&
+        kkt_->solve(r.data(), g.data(), nullptr, s_.constrained.data(), s_.lambda.data()))
+      return;
+    if (solvable_) leave_out(-1);
+    solvable_ = false;
+    beside(unheld_, r, g, s_.constrained, s_.lambda);
   }
 
   /// x and λ where joints without inertia leave motions free; NaN where there are none.
@@ -184,7 +188,7 @@ class StateEvaluator {
     TreeFactor factor(pattern, mechanism_.nv());
     if (const int rate = factor.factor(values); rate >= 0) {
       unheld_free_ = unheld_joints(mechanism_, *e_, given_.t, given_.q.data(), false, rate);
-      if (solvable_)
+      if (s_.not_there.empty())
         s_.not_there = without_inertia(mechanism_.tree(), unheld_free_.joints) +
                        " without the loops that hold what is on it: no acceleration.free";
       VectorXd nothing;

@@ -254,7 +254,7 @@ TEST_P(Models, AccelerationsWithLoopsClosed) {
           allowed,
           bits / step * deviation(evaluate_state(mechanism, moved).constrained, x.constrained));
     }
-    rank = x.rank;
+    rank = x.loops.rank;
     EXPECT_EQ(x.loops.rank, s.at("rank").get<int>());
   }
   if (std::getenv("MOMENTA_MODELS"))
