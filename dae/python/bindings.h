@@ -66,6 +66,7 @@ class Bench {
   }
 
   std::string algebra, kkt;  ///< as asked for
+  std::string text;          ///< TOML it was read from; empty: see toml_of()
   std::shared_ptr<const Mechanism> mechanism;
   std::unique_ptr<Evaluation<double>> e;
   std::unique_ptr<LoopSolver> solver;
@@ -79,6 +80,9 @@ void bind_mechanism(py::module_& module);
 void bind_runs(py::module_& module);
 /// What stands behind the package's functions that are named like the program's verbs.
 void bind_verbs(py::module_& module);
+/// The scene as TOML: its own text, so that what it leaves out may be varied, else one that reads
+/// back the same.
+std::string toml_of(const Bench& bench);
 /// Methods of Mechanism that run it.
 void add_runs(py::class_<Bench, BenchPtr>& mechanism);
 /// The one that finds its modes.

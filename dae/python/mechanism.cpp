@@ -31,6 +31,10 @@ MechanismOptions options_of(const std::string& algebra, const std::string& kkt) 
   return options;
 }
 
+std::string toml_of(const Bench& bench) {
+  return bench.text.empty() ? scene_text(bench.mechanism->scene()) : bench.text;
+}
+
 namespace {
 
 std::vector<std::string> labels(const std::vector<Column>& columns) {
@@ -226,14 +230,16 @@ void bind_mechanism(py::module_& module) {
            "The scene as TOML; read again it is the same, bit by bit.")
       .def(py::pickle(
           [](const Bench& b) {
-            const Scene& scene = b.mechanism->scene();
-            return py::make_tuple(scene_text(scene), scene.name, b.algebra, b.kkt);
+            return py::make_tuple(toml_of(b), b.mechanism->scene().name, b.algebra, b.kkt);
           },
           [](const py::tuple& kept) {
             if (kept.size() != 4) throw py::value_error("this is no pickled Mechanism");
-            return std::make_shared<Bench>(
-                parse_scene(kept[0].cast<std::string>(), kept[1].cast<std::string>()),
-                kept[2].cast<std::string>(), kept[3].cast<std::string>());
+            const auto text = kept[0].cast<std::string>();
+            auto bench =
+                std::make_shared<Bench>(parse_scene(text, kept[1].cast<std::string>()),
+                                        kept[2].cast<std::string>(), kept[3].cast<std::string>());
+            bench->text = text;
+            return bench;
           }))
       .def_property_readonly("plan", &plan, "what an evaluation does and leaves out, by topic")
       .def("__repr__", of([](const Mechanism& m) {

@@ -24,13 +24,25 @@ class Progress {
                    "[" + std::to_string(number) + "/" + std::to_string(total) + "] " + label);
   }
 
-  /// Tells that it is over, and raises what was left to raise. With the interpreter's lock.
-  void end() {
+  /// Calls work() without the interpreter's lock, tells that it is over, and raises what stopped
+  /// it.
+  template <class Work>
+  void during(const Work& work) {
+    try {
+      const py::gil_scoped_release unlocked;
+      work();
+    } catch (...) {
+      raise();
+      throw;
+    }
     if (PyErr_Occurred() == nullptr && next_ <= 1) tell(1, text_);
-    if (PyErr_Occurred() != nullptr) throw py::error_already_set();
+    raise();
   }
 
  private:
+  static void raise() {
+    if (PyErr_Occurred() != nullptr) throw py::error_already_set();
+  }
   bool tell(double fraction, const std::string& text) {
     fraction = std::clamp(fraction, 0.0, 1.0);
     if (told_.is_none() || fraction < next_) return true;

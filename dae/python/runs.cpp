@@ -68,12 +68,9 @@ RunPtr run(const Bench& bench, const std::string& form, const std::string& integ
   Progress progress(told);
   request.progress = [&](double t) { return progress(t / request.settings.end_time, form); };
   RunPtr made;
-  {
-    const py::gil_scoped_release unlocked;
-    const Assembly a = assemble(mechanism);
-    made = std::make_shared<Run>(run_form(mechanism, a.start, request));
-  }
-  progress.end();
+  progress.during([&] {
+    made = std::make_shared<Run>(run_form(mechanism, assemble(mechanism).start, request));
+  });
   return made;
 }
 
@@ -117,11 +114,7 @@ py::object drift(const Bench& bench, const Names& forms, const std::string& inte
     return progress.of_study(number, total, label, part);
   };
   std::vector<RunResult> made;
-  {
-    const py::gil_scoped_release unlocked;
-    made = run_drift_study(mechanism, assemble(mechanism).start, request);
-  }
-  progress.end();
+  progress.during([&] { made = run_drift_study(mechanism, assemble(mechanism).start, request); });
   return study_of(std::move(made), false);
 }
 
@@ -144,8 +137,7 @@ py::object work(const Bench& bench, const Names& forms, const Names& integrators
     return progress.of_study(number, total, label, part);
   };
   std::vector<RunResult> made;
-  {
-    const py::gil_scoped_release unlocked;
+  progress.during([&] {
     const Assembly a = assemble(mechanism);
     if (!given)
       given = std::make_unique<Reference>(
@@ -154,8 +146,7 @@ py::object work(const Bench& bench, const Names& forms, const Names& integrators
           }).reference);
     request.reference = given.get();
     made = run_work_study(mechanism, a.start, request);
-  }
-  progress.end();
+  });
   return study_of(std::move(made), true);
 }
 
@@ -261,7 +252,7 @@ void bind_runs(py::module_& module) {
             return py::array_t<double>({r.rows.size() / n}, {n * sizeof(double)},
                                        r.rows.data() + at, self);
           },
-          "A column of the trajectory, by its name with the unit or without.")
+          "name"_a, "A column of the trajectory, by its name with the unit or without.")
       .def(py::pickle(
           [](const Run& r) {
             const auto record = nlohmann::json::to_cbor(record_of(r.result));

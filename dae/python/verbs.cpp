@@ -24,26 +24,27 @@ namespace {
 
 using Names = std::vector<std::string>;
 
-BenchPtr ready(Scene scene, const std::string& at, const std::string& algebra,
-               const std::string& kkt) {
+/// `text`: the scene's own, empty where it was no TOML.
+BenchPtr ready(Scene scene, const std::string& text, const std::string& at,
+               const std::string& algebra, const std::string& kkt) {
   if (!at.empty()) start_at(at, scene);
-  return std::make_shared<Bench>(std::move(scene), algebra, kkt);
+  auto bench = std::make_shared<Bench>(std::move(scene), algebra, kkt);
+  if (at.empty()) bench->text = text;
+  return bench;
 }
 
 std::string index_text(const Bench& b, const Names& forms, const std::string& at,
                        const py::object& told) {
   Progress progress(told);
   IndexStudy study;
-  {
-    const py::gil_scoped_release unlocked;
+  progress.during([&] {
     const std::size_t total = forms.empty() ? form_names().size() : forms.size();
     std::size_t number = 0;
     study = run_index_study(
         *b.mechanism, start_of(at, *b.mechanism), forms, [&](const std::string& form) {
           return progress(static_cast<double>(number++) / static_cast<double>(total), form);
         });
-  }
-  progress.end();
+  });
   return index_json(study).dump();
 }
 
@@ -113,21 +114,17 @@ void bind_verbs(py::module_& module) {
       "read",
       [](const std::string& file, const std::string& loops, bool free_root, const std::string& at,
          const std::string& algebra, const std::string& kkt) {
-        return ready(read_scene(file, {loops, free_root}), at, algebra, kkt);
+        return ready(read_scene(file, {loops, free_root}),
+                     is_toml(file) ? reading::text_of(file) : "", at, algebra, kkt);
       },
       "file"_a, "loops"_a, "free_root"_a, "at"_a, "algebra"_a, "kkt"_a);
   module.def(
       "parse",
       [](const std::string& text, const std::string& name, const std::string& at,
          const std::string& algebra,
-         const std::string& kkt) { return ready(parse_scene(text, name), at, algebra, kkt); },
+         const std::string& kkt) { return ready(parse_scene(text, name), text, at, algebra, kkt); },
       "text"_a, "name"_a, "at"_a, "algebra"_a, "kkt"_a);
-  module.def(
-      "toml_of",
-      [](const std::string& file) {
-        return is_toml(file) ? reading::text_of(file) : scene_text(read_scene(file));
-      },
-      "file"_a);
+  module.def("toml_of", &toml_of, "mechanism"_a);
   module.def(
       "evaluate",
       [](const Bench& b, const std::string& at) {

@@ -12,7 +12,7 @@ import numpy
 from . import _momenta
 from .plots import axes, legend
 from .progress import teller
-from .verbs import _text_of
+from .verbs import _ready, _text_of
 
 # As the first line of Mechanism.run's help has them.
 _RUN_ARGUMENTS = set(re.findall(r"(\w+): ", _momenta.Mechanism.run.__doc__.partition("\n")[0]))
@@ -26,12 +26,8 @@ def sweep(scene, vary, *, watch=(), threads=0, progress=None, **run):
     columns of the trajectory; `threads`: 0, one for each processor; further arguments: those of
     Mechanism.run but for `reference`. Gives a Sweep.
     """
-    if isinstance(scene, _momenta.Mechanism):
-        text, name, options = scene.to_toml(), scene.name or "scene", scene.options
-    else:
-        (text, name), options = _text_of(scene), {"algebra": "auto", "kkt": "auto"}
-    if text is None:
-        text = _momenta.toml_of(name)
+    mechanism = _ready(scene)
+    name = mechanism.name if mechanism is scene else _text_of(scene)[1]
     if isinstance(vary, dict):
         vary = [f"{place}={_values(x)}" for place, x in vary.items()]
     if threads < 0:
@@ -39,7 +35,8 @@ def sweep(scene, vary, *, watch=(), threads=0, progress=None, **run):
     if unknown := run.keys() - _RUN_ARGUMENTS:
         names = ", ".join(sorted(unknown))
         raise TypeError(f"{names}: sweep takes the arguments of Mechanism.run but for reference")
-    cases = _momenta.Cases(text, name, vary=_listed(vary), watch=_listed(watch), **options, **run)
+    text, options = _momenta.toml_of(mechanism), mechanism.options | run
+    cases = _momenta.Cases(text, name, vary=_listed(vary), watch=_listed(watch), **options)
     total = len(cases)
     tell = teller(progress) or (lambda fraction, text: None)
     with concurrent.futures.ThreadPoolExecutor(threads or os.cpu_count()) as pool:
@@ -70,6 +67,7 @@ class Sweep:
         return list(self._columns)
 
     def __getitem__(self, name):
+        """A column, by its name with the unit or without."""
         column = self._columns[name if name in self._columns else self._with_unit(name)]
         if name in ("status", "reason"):
             return list(column)

@@ -86,6 +86,8 @@ class Built(unittest.TestCase):
     def test_arrays_become_lists_and_what_is_none_is_left_out(self):
         s = momenta.Scene(gravity=np.array([0, -9.81, 0])).body("b", mass=np.int64(1), com=None)
         self.assertEqual(s.to_dict(), {"gravity": [0, -9.81, 0], "body": [{"name": "b", "mass": 1}]})
+        s.body("c", mass=0.5, any_inertia=False).run(project=True)
+        self.assertEqual(tomllib.loads(s.to_toml()), s.to_dict())
         s.to_dict()["body"][0]["mass"] = 2
         self.assertEqual(s.to_dict()["body"][0]["mass"], 1)
 
@@ -130,7 +132,7 @@ class Mistakes(unittest.TestCase):
         self.expect("four-bar:", four_bar().body("crank", mass=1, inertia=1).load)
         self.expect("unknown key 'bodi'; did you mean 'body'?", momenta.Scene(bodi=[{}]).load)
         self.expect("mass is nan", momenta.Scene().body("x", mass=float("nan")).load)
-        self.expect("mass", momenta.Scene().body("x", mass=10**30).load)
+        self.expect("not representable in 64 bits", momenta.Scene().body("x", mass=10**30).load)
 
     def test_what_no_file_can_hold(self):
         self.expect("found (1+2j)", lambda: momenta.Scene().body("x", mass=1 + 2j), TypeError)
@@ -175,7 +177,7 @@ class Keys(unittest.TestCase):
         keys |= {key: table if key in ("assembly", "run") else [table]} if key else table
         with self.assertRaises(momenta.SceneError) as caught:
             momenta.load(keys)
-        self.assertIn("unknown key 'xyzzy'", str(caught.exception))
+        self.assertRegex(str(caught.exception), "unknown key '[a-z.]*xyzzy'")
         return set(str(caught.exception).partition("expected one of: ")[2].split(", "))
 
 
