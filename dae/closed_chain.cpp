@@ -32,20 +32,15 @@ struct ClosedChain::Inside {
       if (!std::isfinite(x[i])) failure = not_finite(name, i, x[i]);
     return failure.empty();
   }
-  bool noted(bool ok) {
-    if (ok) return true;
-    if (tree) {
-      failure = tree->failure();
-    } else if (const int joint = solver->singular_joint(); joint >= 0) {
-      failure = mechanism.no_inertia(joint);
-    } else {
-      failure = "the loop equations have no solution that is finite";
-    }
-    return false;
+  bool noted(bool ok, double t, const double* q) {
+    if (!ok)
+      failure = tree ? tree->failure() : mechanism.no_inertia(solver->singular_joint(), t, q);
+    return ok;
   }
   bool momentum(double t, const double* q, const double* p, double* rates, double* impulses,
                 double* pdot, double leak) {
-    return noted(solver->momentum(t, q, p, nullptr, fade_evaluation, leak, rates, impulses, pdot));
+    return noted(solver->momentum(t, q, p, nullptr, fade_evaluation, leak, rates, impulses, pdot),
+                 t, q);
   }
   void place(double t, const ConstVectorRef& q, const ConstVectorRef& rates) {
     e->place(t, q.data());
@@ -152,7 +147,7 @@ bool ClosedChain::rates(double t, const ConstVectorRef& q, const ConstVectorRef&
                {{"q", q.size()}, {"p", p.size()}, {"qdot", qdot.size()}, {"pdot", pdot.size()}},
                {nq(), nv(), nq(), nv()});
   if (!in.finite(t, "q", q) || !in.finite(t, "p", p)) return false;
-  if (in.tree) return in.noted(in.tree->rates(t, q, p, qdot, pdot));
+  if (in.tree) return in.noted(in.tree->rates(t, q, p, qdot, pdot), t, q.data());
   if (!in.momentum(t, q.data(), p.data(), in.u.data(), in.sigma.data(), pdot.data(), leak))
     return false;
   in.rates_of_coordinates(t, q.data(), in.u.data(), qdot.data());
@@ -185,7 +180,7 @@ bool ClosedChain::rates_of_states(double t, const ConstStatesRef& q, const Const
     throw std::invalid_argument("rates_of_states: threads is " + std::to_string(threads) +
                                 ", expected 1 or more");
   in.failure.clear();
-  if (in.tree) return in.noted(in.tree->rates_of_states(t, q, p, qdot, pdot, threads));
+  if (in.tree) return in.noted(in.tree->rates_of_states(t, q, p, qdot, pdot, threads), t, q.data());
   if (in.side_by_side(t, q, p, qdot, pdot, leak, threads)) return true;
   std::string first;
   Eigen::VectorXd one_qdot(nq()), one_pdot(nv());
@@ -209,7 +204,7 @@ bool ClosedChain::velocities(double t, const ConstVectorRef& q, const ConstVecto
                {{"q", q.size()}, {"p", p.size()}, {"u", u.size()}, {"sigma", sigma.size()}},
                {nq(), nv(), nv(), m()});
   if (!in.finite(t, "q", q) || !in.finite(t, "p", p)) return false;
-  if (in.tree) return in.noted(in.tree->velocities(t, q, p, u));
+  if (in.tree) return in.noted(in.tree->velocities(t, q, p, u), t, q.data());
   return in.momentum(t, q.data(), p.data(), u.data(), sigma.data(), nullptr, 0);
 }
 
@@ -226,9 +221,10 @@ bool ClosedChain::accelerations(double t, const ConstVectorRef& q, const ConstVe
                {{"q", q.size()}, {"u", u.size()}, {"udot", udot.size()}, {"lambda", lambda.size()}},
                {nq(), nv(), nv(), m()});
   if (!in.finite(t, "q", q) || !in.finite(t, "u", u)) return false;
-  if (in.tree) return in.noted(in.tree->accelerations(t, q, u, udot));
+  if (in.tree) return in.noted(in.tree->accelerations(t, q, u, udot), t, q.data());
   return in.noted(
-      in.solver->acceleration(t, q.data(), u.data(), nullptr, 0, 0, udot.data(), lambda.data()));
+      in.solver->acceleration(t, q.data(), u.data(), nullptr, 0, 0, udot.data(), lambda.data()), t,
+      q.data());
 }
 
 bool ClosedChain::accelerations(double t, const ConstVectorRef& q, const ConstVectorRef& u,
@@ -238,7 +234,7 @@ bool ClosedChain::accelerations(double t, const ConstVectorRef& q, const ConstVe
   if (!in.finite(t, "tau", tau)) return false;
   if (in.tree) {
     expect_size("accelerations", "lambda", lambda.size(), 0);
-    return in.noted(in.tree->accelerations(t, q, u, tau, udot));
+    return in.noted(in.tree->accelerations(t, q, u, tau, udot), t, q.data());
   }
   in.solver->push(tau.data());
   const bool ok = accelerations(t, q, u, udot, lambda);
@@ -290,7 +286,8 @@ bool ClosedChain::correct(double t, VectorRef q, VectorRef u) {
       return false;
     }
     last = open;
-    if (!in.noted(in.solver->position_correction(t, q.data(), delta.data()))) return false;
+    if (!in.noted(in.solver->position_correction(t, q.data(), delta.data()), t, q.data()))
+      return false;
     in.rates_of_coordinates(t, q.data(), delta.data(), qdot.data());
     moved = q + qdot;
     mechanism().tree().normalise(moved);
