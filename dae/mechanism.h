@@ -126,7 +126,7 @@ class Mechanism {
   std::vector<std::pair<std::string, std::string>> plan_lines() const;
 
   /// Why nothing moves at (t, q), where a solution failed at a rate (place in u, −1: not known):
-  /// the joints that neither inertia nor a loop holds (measure/unheld_joints.h).
+  /// the joints that neither inertia nor a loop holds (unheld_joints.h).
   std::string no_inertia(int rate, double t, const double* q) const;
 
  private:

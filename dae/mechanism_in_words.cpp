@@ -3,9 +3,9 @@
 #include <momenta/core/kernel/branches/branches.h>
 #include <momenta/core/kernel/levels/open_sweeps.h>
 #include <momenta/dae/kkt/kkt.h>
-#include <momenta/dae/measure/unheld_joints.h>
 #include <momenta/dae/mechanism.h>
 #include <momenta/dae/sweeps/branches/looped_branches.h>
+#include <momenta/dae/unheld_joints.h>
 
 namespace momenta {
 namespace {

@@ -188,7 +188,7 @@ class Assembler {
 
 std::string residue_in_words(const Mechanism& mechanism, const Eigen::VectorXd& phi) {
   if (phi.size() == 0) return "";
-  const Eigen::VectorXd open = phi.cwiseQuotient(AssemblyUnits(mechanism).equations).cwiseAbs();
+  const Eigen::VectorXd open = phi.cwiseQuotient(LoopUnits(mechanism).equations).cwiseAbs();
   Eigen::Index worst = 0;
   const double largest = open.maxCoeff(&worst);
   const auto loop_of = [&](Eigen::Index row) -> const std::string& {

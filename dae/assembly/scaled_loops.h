@@ -2,7 +2,7 @@
 // The loop equations in the units of an assembly: D⁻¹ Φ, and D⁻¹ Φ_q C with respect to steps
 // δ = C⁻¹ u, lengths counted in the length of the scene. Rows and columns can be left out.
 
-#include <momenta/dae/assembly/units.h>
+#include <momenta/dae/kkt/loop_units.h>
 
 #include <memory>
 #include <vector>
@@ -28,7 +28,7 @@ class ScaledLoops {
   const Mechanism& mechanism() const { return mechanism_; }
   Evaluation<double>& evaluation() { return *e_; }
   const std::vector<KktPattern::Entry>& pattern() const { return pattern_; }
-  const AssemblyUnits& units() const { return units_; }
+  const LoopUnits& units() const { return units_; }
 
   std::vector<bool> columns, rows;  ///< that are in: all, until told otherwise
 
@@ -36,7 +36,7 @@ class ScaledLoops {
   const Mechanism& mechanism_;
   std::unique_ptr<Evaluation<double>> e_;
   const std::vector<KktPattern::Entry>& pattern_;  ///< of Φ_q
-  AssemblyUnits units_;
+  LoopUnits units_;
 };
 
 }  // namespace momenta

@@ -13,7 +13,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 std::vector<double> scaled_entries(const Mechanism& mechanism, Evaluation<double>& e,
-                                   const AssemblyUnits& units) {
+                                   const LoopUnits& units) {
   const auto& pattern = mechanism.constraint_pattern();
   std::vector<double> values(pattern.size());
   e.constraint_entries(values.data());
@@ -23,7 +23,7 @@ std::vector<double> scaled_entries(const Mechanism& mechanism, Evaluation<double
 }
 
 ScaledJacobian scaled_jacobian(const Mechanism& mechanism, Evaluation<double>& e) {
-  const AssemblyUnits units(mechanism);
+  const LoopUnits units(mechanism);
   const auto& pattern = mechanism.constraint_pattern();
   const std::vector<double> values = scaled_entries(mechanism, e, units);
   ScaledJacobian scaled{MatrixXd::Zero(mechanism.m(), mechanism.nv()),
@@ -84,7 +84,7 @@ std::vector<int> reduce(MatrixXd& n, const std::vector<int>& first) {
 LoopRank loop_rank(const Mechanism& mechanism, Evaluation<double>& e) {
   if (mechanism.m() == 0) return {};
   LeastNorm rows(mechanism.constraint_pattern(), mechanism.m(), mechanism.nv());
-  return rows.judge(scaled_entries(mechanism, e, AssemblyUnits(mechanism)));
+  return rows.judge(scaled_entries(mechanism, e, LoopUnits(mechanism)));
 }
 
 MatrixXd idle_forces(const Mechanism& mechanism, double t, const VectorXd& q) {

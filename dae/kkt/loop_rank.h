@@ -23,7 +23,7 @@
 // Solvers of (7) fade pivots of Φ_q M⁻¹ Φ_qᵀ from about 3·10⁻⁴ of a singular value down, where
 // squares lose their digits (kkt.h): all that is redundant here, and near singular poses more.
 
-#include <momenta/dae/assembly/units.h>
+#include <momenta/dae/kkt/loop_units.h>
 
 #include <Eigen/Core>
 #include <vector>
@@ -34,7 +34,7 @@ inline constexpr double rank_tolerance = 1e-7;
 
 /// Entries of A in the order of the pattern, at the configuration placed in `e`.
 std::vector<double> scaled_entries(const Mechanism& mechanism, Evaluation<double>& e,
-                                   const AssemblyUnits& units);
+                                   const LoopUnits& units);
 
 struct ScaledJacobian {
   Eigen::MatrixXd a;           ///< A, m × nv

@@ -1,4 +1,4 @@
-#include <momenta/dae/assembly/units.h>
+#include <momenta/dae/kkt/loop_units.h>
 #include <momenta/dae/linear/pose_motion.h>
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 // When the loops of a run have come apart, so that what moves on is another mechanism.
 //
 // Each equation is judged in its own unit: points in lengths of the scene, axes in radians,
-// couplers in what their terms are by nature (AssemblyUnits). With |Φ|∞ so counted
+// couplers in what their terms are by nature (LoopUnits). With |Φ|∞ so counted
 //
 //   forms that drift                         |Φ|∞ ≤ 1/4
 //   forms that hold Φ = 0, adaptive steps    |Φ|∞ ≤ 10⁴ rtol, no less than 10⁻⁶, no more than 1/4
@@ -10,7 +10,7 @@
 // The second is what their Newton iterations and their interpolants between steps leave, with room;
 // beyond it a form no longer does what it is for.
 
-#include <momenta/dae/assembly/units.h>
+#include <momenta/dae/kkt/loop_units.h>
 #include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/study/run_result.h>
 
@@ -68,7 +68,7 @@ class Apart {
 
  private:
   const Mechanism& mechanism_;
-  AssemblyUnits units_;
+  LoopUnits units_;
   double least_ = most;
   Eigen::Index worst_ = 0;
 };

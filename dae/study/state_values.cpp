@@ -2,8 +2,8 @@
 #include <momenta/dae/kkt/kkt.h>
 #include <momenta/dae/kkt/tree_factor.h>
 #include <momenta/dae/measure/rank.h>
-#include <momenta/dae/measure/unheld_joints.h>
 #include <momenta/dae/study/state_values.h>
+#include <momenta/dae/unheld_joints.h>
 
 #include <limits>
 

@@ -11,7 +11,7 @@
 //               free:       M u̇ = −bias, as if no loop were there
 //               constrained: (3), M u̇ + Φ_qᵀλ = −bias, Φ_q u̇ = −(Φ̈ at u̇ = 0)
 //
-// Joints without inertia (measure/unheld_joints.h) have no accelerations, or any: with N the
+// Joints without inertia (unheld_joints.h) have no accelerations, or any: with N the
 // motions that no inertia, and in (3) no loop, holds, M u̇ = r has a solution only where Nᵀr = 0,
 // and then those of the joints that take part in N are not determined, the others are. What does
 // not exist is NaN: all of u̇ and λ, or those joints' u̇.

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 #include <momenta/core/scene/read_scene.h>
-#include <momenta/dae/closed_chain.h>
+#include <momenta/dae/chain/closed_chain.h>
 
 #include <cmath>
 #include <filesystem>

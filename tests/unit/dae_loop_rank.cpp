@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 #include <momenta/core/scene/read_scene.h>
 #include <momenta/dae/assembly/assembly.h>
-#include <momenta/dae/assembly/units.h>
+#include <momenta/dae/kkt/loop_units.h>
 #include <momenta/dae/linear/spectrum.h>
 #include <momenta/dae/measure/rank.h>
 #include <momenta/dae/study/extremes.h>

@@ -11,9 +11,9 @@
 #include <momenta/core/scene/read_scene.h>
 #include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/kkt/dense_blocks.h>
-#include <momenta/dae/measure/unheld_joints.h>
 #include <momenta/dae/study/run_form.h>
 #include <momenta/dae/study/state_values.h>
+#include <momenta/dae/unheld_joints.h>
 
 #include <Eigen/SVD>
 #include <filesystem>

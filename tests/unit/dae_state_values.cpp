@@ -232,7 +232,7 @@ void expect_loop_equations(const Scene& scene, double speed, unsigned seed) {
             tolerance * size);
   EXPECT_LT((s.mass * s.free + s.bias).norm(), tolerance * size);
   EXPECT_EQ(s.loops.rank, a.rank);
-  const AssemblyUnits units(mechanism);
+  const LoopUnits units(mechanism);
   const MatrixXd scaled =
       units.equations.cwiseInverse().asDiagonal() * jacobian * units.rates.asDiagonal();
   const VectorXd singular = scaled.jacobiSvd().singularValues();

@@ -1,6 +1,6 @@
 #include <momenta/core/arguments.h>
 #include <momenta/core/share.h>
-#include <momenta/dae/closed_chain.h>
+#include <momenta/dae/chain/closed_chain.h>
 #include <momenta/dae/kkt/dense_blocks.h>
 #include <momenta/dae/kkt/loop_solver.h>
 

@@ -1,5 +1,5 @@
 #pragma once
-// Units in which an assembly counts what joints move and how far loops are open: lengths of the
+// Units in which it is counted what joints move and how far loops are open: lengths of the
 // scene, and radians. Scaled so, neither depends on the units of the scene.
 
 #include <momenta/dae/mechanism.h>
@@ -11,8 +11,8 @@ namespace momenta {
 /// |Φ|∞ of redundant equations, in these units, that the rounding of a file may leave at the most.
 inline constexpr double left_by_files = 1e-8;
 
-struct AssemblyUnits {
-  explicit AssemblyUnits(const Mechanism& mechanism);
+struct LoopUnits {
+  explicit LoopUnits(const Mechanism& mechanism);
 
   Eigen::VectorXd rates;      ///< by rate u, nv [m or rad]
   Eigen::VectorXd equations;  ///< by loop equation, m; of a coupler what its terms are by nature

@@ -1,5 +1,5 @@
 #include <momenta/dae/kkt/dense_blocks.h>
-#include <momenta/dae/measure/unheld_joints.h>
+#include <momenta/dae/unheld_joints.h>
 
 #include <Eigen/Cholesky>
 #include <Eigen/QR>

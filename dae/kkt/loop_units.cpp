@@ -1,4 +1,4 @@
-#include <momenta/dae/assembly/units.h>
+#include <momenta/dae/kkt/loop_units.h>
 
 #include <algorithm>
 #include <cmath>
@@ -40,7 +40,7 @@ double rounding_of(const Tree& tree, double length) {
 
 }  // namespace
 
-AssemblyUnits::AssemblyUnits(const Mechanism& mechanism) {
+LoopUnits::LoopUnits(const Mechanism& mechanism) {
   const Tree& tree = mechanism.tree();
   const double length = length_of(mechanism.scene());
   rounding = rounding_of(tree, length);
