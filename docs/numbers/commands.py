@@ -37,6 +37,8 @@ class Answer:
 
     @property
     def summaries(self):
+        if not (self.folder / "summary.json").exists():
+            raise LookupError("the command makes no runs")
         with open(self.folder / "summary.json", encoding="utf-8") as file:
             found = json.load(file)
         return found if isinstance(found, list) else [found]
@@ -55,6 +57,8 @@ class Answer:
 
     @property
     def json(self):
+        if not self.text or "{" not in self.text:
+            raise LookupError(f"no JSON is printed, but '{self.text}'")
         return json.loads(self.text[self.text.index("{"):])
 
     def __call__(self, label="", integrator="", rtol=None):
@@ -93,7 +97,8 @@ class Commands:
             (self.folder / name).symlink_to(TOP / name)
         (self.folder / "bin").mkdir()
         program = Path(program).resolve()
-        for built in (program, *(program.parents[1] / "tests" / "benchmark").glob("momenta_*")):
+        (self.folder / "bin" / "momenta").symlink_to(program)
+        for built in (program.parents[1] / "tests" / "benchmark").glob("momenta_*"):
             (self.folder / "bin" / built.name).symlink_to(built)
 
     def close(self):
