@@ -26,6 +26,9 @@ std::string method(const RunResult& run, const std::string& label) {
 std::string advice(const StudyResult& study) {
   const bool reference = !study.reference.empty();
   const auto labels = run_labels(study, false);
+  if (std::none_of(study.runs.begin(), study.runs.end(),
+                   [](const RunResult& run) { return std::isfinite(run.cpu_s); }))
+    return "Runs were not timed, so none can be named that takes least.\n";
   std::string text;
   for (const double target : targets) {
     const std::string wanted = scientific(target, 1);

@@ -131,6 +131,9 @@ TEST_F(GivenStarts, WorkPutsAMethodForStiffProblemsBesideAnExplicitOne) {
                          out.string() + "'");
   EXPECT_EQ(o.status, 0) << o.err;
   const std::string csv = text_of(out / "study.csv");
+  const Outcome told = call("work " + scene + " --forms momentum --to 1e-4 --timing none" +
+                            " --reference '" + (exact / "trajectory.csv").string() + "'");
+  EXPECT_NE(told.out.find("Runs were not timed"), std::string::npos) << told.out;
   EXPECT_NE(csv.find(",dop853,"), std::string::npos) << csv;
   EXPECT_NE(csv.find(",bdf,"), std::string::npos) << csv;
 }
