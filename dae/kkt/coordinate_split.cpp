@@ -9,7 +9,7 @@ namespace momenta {
 namespace {
 
 constexpr double regular_pivot = 1e-9;  // of pivots, against the largest
-constexpr int dense_limit = 40;          // rows up to which dense LU is faster than KLU
+constexpr int dense_limit = 40;         // rows up to which dense LU is faster than KLU
 
 }  // namespace
 

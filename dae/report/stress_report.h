@@ -9,8 +9,9 @@
 
 namespace momenta {
 
-/// Per ladder a table contestants × rungs, the verdict and the largest of position drift, energy and error
-/// in each cell; then how often each contestant survived; then the cause of every first failure.
+/// Per ladder a table contestants × rungs, the verdict and the largest of position drift, energy
+/// and error in each cell; then how often each contestant survived; then the cause of every first
+/// failure.
 std::string stress_table(const StressResult&);
 /// One row per run.
 std::string stress_csv(const StressResult&);

@@ -15,10 +15,10 @@ struct WorkRequest {
   std::vector<std::string> forms;        ///< empty: all
   std::vector<std::string> integrators;  ///< each for the forms it takes; empty: dop853, ida, and
                                          ///< bdf where dop853 finds the problem stiff
-  std::string gauge;               ///< of the momentum forms; empty: by form and integrator
-  std::vector<double> tolerances;  ///< rtol = atol, falling
-  std::vector<double> steps;       ///< of rk4 [s], falling
-  double end_time = 10;            ///< [s]
+  std::string gauge;                     ///< of the momentum forms; empty: by form and integrator
+  std::vector<double> tolerances;        ///< rtol = atol, falling
+  std::vector<double> steps;             ///< of rk4 [s], falling
+  double end_time = 10;                  ///< [s]
   int samples = 100;
   const Reference* reference = nullptr;  ///< bound; errors are largest over its times
   Timing timing = Timing::rounds;

@@ -194,7 +194,7 @@ void expect_exact_jacobians(const Mechanism& mechanism, const Start& start, unsi
 Start anywhere(const Mechanism& mechanism, unsigned seed) {
   RandomTree random(seed);
   const TreeState s = random.state(mechanism.tree());
-  return {s.t, s.q, s.u, VectorXd::Zero(mechanism.nv()), VectorXd::Zero(mechanism.m())};
+  return {s.t, s.q, s.u, VectorXd::Zero(mechanism.nv()), VectorXd::Zero(mechanism.m()), {}};
 }
 
 TEST(Jacobians, FourBarAndSqueezer) {

@@ -278,8 +278,12 @@ TEST(Index, SeriesOfTheEquationsAreTheirDerivativesInTime) {
   int tried = 0;
   for (const Scene& scene : scenes) {
     const Mechanism mechanism(scene);
-    Start start{0, mechanism.tree().q0, mechanism.tree().u0, Eigen::VectorXd::Zero(mechanism.nv()),
-                Eigen::VectorXd::Zero(mechanism.m())};
+    Start start{0,
+                mechanism.tree().q0,
+                mechanism.tree().u0,
+                Eigen::VectorXd::Zero(mechanism.nv()),
+                Eigen::VectorXd::Zero(mechanism.m()),
+                {}};
     // The residual of redundant loops is regularised, their series are not.
     const auto e = mechanism.evaluation<double>();
     const auto kkt = make_dense_kkt(mechanism);
