@@ -98,8 +98,8 @@ TEST(LocalJacobian, IsThatOfRandomMechanisms) {
     RandomTree anywhere(seed);
     const TreeState s = anywhere.state(mechanism.tree());
     expect_same_matrix(
-        mechanism, {s.t, s.q, s.u, VectorXd::Zero(mechanism.nv()), VectorXd::Zero(mechanism.m())},
-        seed);
+        mechanism,
+        {s.t, s.q, s.u, VectorXd::Zero(mechanism.nv()), VectorXd::Zero(mechanism.m()), {}}, seed);
   }
 }
 

@@ -270,7 +270,8 @@ TEST_P(PlanarLoopRows, AgreeWithSpace) {
         condition = sv[0] / sv[sv.size() - 1];
         free = svd.matrixV().rightCols(mechanism.nv() - mechanism.m());
       }
-      const Start start{s.t, s.q, s.u, VectorXd::Zero(mechanism.nv()), VectorXd::Zero(j.rows())};
+      const Start start{s.t, s.q, s.u, VectorXd::Zero(mechanism.nv()), VectorXd::Zero(j.rows()),
+                        {}};
       FormOptions options;
       options.gauge = {Gauge::Kind::leak, 1.3};
       const auto form = make_form("momentum", mechanism, options, start);
