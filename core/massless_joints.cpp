@@ -6,7 +6,9 @@
 namespace momenta {
 namespace {
 
-constexpr double lost_pivot = 64 * std::numeric_limits<double>::epsilon();
+// Of M_jj. What is left of a row that is lost is rounding of what it was made of, arms much longer
+// than those of M_jj among it.
+constexpr double lost_pivot = 1e-11;
 constexpr std::size_t most_named = 6;
 
 int body_of(const Tree& tree, int rate) {
@@ -21,7 +23,8 @@ int body_of(const Tree& tree, int rate) {
 /// A mass on the axis is off it by rounding: of M_jj its square is left, beside the largest of the
 /// slides or of the turns.
 std::vector<bool> weightless(const Tree& tree, const Eigen::VectorXd& diagonal) {
-  constexpr double lost = lost_pivot * lost_pivot;
+  constexpr double off_axis = 64 * std::numeric_limits<double>::epsilon();
+  constexpr double lost = off_axis * off_axis;
   const auto slides = [&](const Tree::Body& b, int i) {
     return (b.nv == 1 && b.kind == JointKind::prismatic) || (b.nv == 6 && i < 3);
   };

@@ -76,11 +76,14 @@ Closing::Pose Closing::damped(Eigen::VectorXd q, int most) {
   for (int count = 0; count < most && norm > 1e-16 && stalled < 2; ++count, ++iterations_) {
     if (!settled) steps_.factor(j = loops_.jacobian());
     settled = largest_of(phi) <= tolerance_;
+    // What contradicts itself stays open: damped steps would lead along the mechanism's own motion
+    // to where it is a little less.
+    const bool contradicts = !settled && largest_of(phi) <= left_by_files && is_redundant(j);
     Trial next = along(q, norm, -steps_.solve(phi));
     // Redundant rows are redundant only where the loops are closed: off it they ask, through
     // pivots as small as the gap, for steps that lead nowhere. Damping by the gap is harmless
     // near the end, where it vanishes faster than what is left to do.
-    if (!settled && !(next.norm < 0.5 * norm))
+    if (!settled && !contradicts && !(next.norm < 0.5 * norm))
       if (Trial damped = along(q, norm, damped_step(j, phi)); damped.norm < next.norm)
         next = std::move(damped);
     const double next_norm = next.norm;
@@ -89,10 +92,15 @@ Closing::Pose Closing::damped(Eigen::VectorXd q, int most) {
     q = next.q;
     phi = gap(q);
     norm = next_norm;
+    if (contradicts && is_least(q, largest_of(phi))) break;
   }
   const double last = largest_of(phi);
   const bool least = last > tolerance_ && is_least(q, last);
   return {q, last, last <= tolerance_ || least, least};
+}
+
+bool Closing::is_redundant(const std::vector<double>& j) {
+  return steps_.judge(j).rank < static_cast<int>(loops_.rows.size());
 }
 
 /// Whether what is open, no more than a file leaves by rounding, is of redundant equations alone.
@@ -100,7 +108,7 @@ bool Closing::is_least(const Eigen::VectorXd& q, double open) {
   if (!(open <= left_by_files)) return false;
   const Eigen::VectorXd phi = gap(q);
   const std::vector<double> j = loops_.jacobian();
-  if (steps_.judge(j).rank == static_cast<int>(phi.size())) return false;
+  if (!is_redundant(j)) return false;
   steps_.factor(j);
   return largest_of(steps_.product(j, steps_.solve(phi))) <= tolerance_;
 }

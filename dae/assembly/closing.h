@@ -50,6 +50,7 @@ class Closing {
   Trial along(const Eigen::VectorXd& q, double norm, Eigen::VectorXd step);
   Eigen::VectorXd damped_step(const std::vector<double>& j, const Eigen::VectorXd& phi);
   Pose damped(Eigen::VectorXd q, int most_iterations);
+  bool is_redundant(const std::vector<double>& j);
   bool is_least(const Eigen::VectorXd& q, double gap);
   bool follow(Eigen::VectorXd& q);
   Pose undamped(Eigen::VectorXd q);

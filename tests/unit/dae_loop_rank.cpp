@@ -102,7 +102,7 @@ Verdicts verdicts(const Scene& scene) {
 }
 
 TEST(LoopRank, IsOneForAllWhoAsk) {
-  int refused = 0, redundant = 0, independent = 0;
+  int redundant = 0, independent = 0;
   for (const bool cranks : {true, false})
     for (double relative = 1e-4; relative > 0.5e-14; relative /= 10)
       for (unsigned seed = 0; seed < 4; ++seed) {
@@ -118,10 +118,7 @@ TEST(LoopRank, IsOneForAllWhoAsk) {
         std::set<int> freedoms;
         for (const Scene& one : written) {
           const Verdicts v = verdicts(one);
-          if (!v.refused.empty()) {
-            ++refused;
-            continue;
-          }
+          if (!v.refused.empty()) continue;
           for (const int rank : v.ranks) EXPECT_EQ(rank, v.ranks[0]);
           for (const auto& rows : v.rows) EXPECT_EQ(rows, v.rows[0]);
           const Mechanism mechanism(one);
@@ -136,8 +133,8 @@ TEST(LoopRank, IsOneForAllWhoAsk) {
           }
         }
       }
-  EXPECT_GT(refused, 10);
   EXPECT_GT(redundant, 100);
+  EXPECT_GT(independent, 10);
 }
 
 TEST(LoopRank, OfModesIsTheSame) {
@@ -204,20 +201,25 @@ TEST(LoopRank, ContradictingNumbersAreClosedInTheLeastSquaresSense) {
   EXPECT_EQ(assemble(Mechanism(three_cranks())).start.residue.size(), 0);
 }
 
-/// More than a file leaves is a mistake of the scene.
-TEST(LoopRank, BeyondWhatFilesLeaveItIsRefused) {
+/// More than a file leaves is a mistake of the scene: it is refused, or closed where it can be,
+/// elsewhere, which is told.
+TEST(LoopRank, BeyondWhatFilesLeaveNothingIsClosedInPart) {
   for (unsigned seed = 0; seed < 4; ++seed) {
     const Scene scene = off_by(three_cranks(), 3e-7, seed);
     try {
-      assemble(Mechanism(scene));
-      ADD_FAILURE() << seed;
+      const Assembly a = assemble(Mechanism(scene));
+      EXPECT_EQ(a.residue, "");
+      EXPECT_EQ(a.start.residue.size(), 0);
+      EXPECT_LT(a.position_residual, 1e-11);
+      EXPECT_NE(a.branch.find("leave the loops open by"), std::string::npos) << a.branch;
     } catch (const SceneError& e) {
       EXPECT_NE(std::string(e.what()).find("stays open by"), std::string::npos) << e.what();
     }
   }
 }
 
-/// Every form runs from there as from where the numbers agree, and drifts no more.
+/// Every form runs from there as from where the numbers agree, and drifts no more. The cranks hang
+/// and swing clear of the poses where they lie in one line.
 TEST(LoopRank, RunsGoOnWithWhatStaysOpen) {
   for (const std::string& form : form_names()) {
     SCOPED_TRACE(form);
@@ -228,7 +230,9 @@ TEST(LoopRank, RunsGoOnWithWhatStaysOpen) {
     request.settings.gauge = takes_gauge(form) ? "leak:3" : "none";
     request.keep_trajectory = true;
     const auto ran = [&](double relative, bool project) {
-      const Mechanism mechanism(off_by(three_cranks(), relative, 5));
+      Scene scene = off_by(three_cranks(), relative, 5);
+      for (JointSpec& j : scene.joints) j.position[0] = -j.position[0];
+      const Mechanism mechanism(scene);
       request.settings.project = project;
       return run_form(mechanism, assemble(mechanism).start, request);
     };
