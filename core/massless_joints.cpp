@@ -105,8 +105,11 @@ std::string in_words(const Tree& tree, const std::vector<MasslessJoint>& joints)
   const Tree::Body& b = tree.bodies[static_cast<std::size_t>(bodies.front())];
   const auto carried = static_cast<std::size_t>(tree.carried_by(b.joint));
   const std::string body = "body '" + tree.bodies[carried].name + "'";
+  const bool carries_none =
+      std::none_of(tree.bodies.begin(), tree.bodies.end(),
+                   [&](const auto& other) { return other.parent == static_cast<int>(carried); });
   return who +
-         (weightless
+         (weightless || carries_none
               ? body + " and what it carries have none " + along(b)
               : body + " has none " + along(b) + " that the joints it carries do not move alone") +
          "; expected a mass, a rotor's inertia, or a fixed joint";

@@ -47,9 +47,7 @@ void add_scene_file(CLI::App& verb, Options& o, bool required) {
   verb.add_option("--loops", o.reading.loops, "Of a URDF: its loops (default: the .yaml beside it)")
       ->type_name("FILE");
   verb.add_flag("--free-root", o.reading.free_root, "Of a URDF: the root link floats");
-  verb.add_option("--at", o.at,
-                  "Start values by joint name, {\"q\": {..}, \"v\": {..}}: a JSON file or the text "
-                  "itself (default: the scene's)")
+  verb.add_option("--at", o.at, "Start values: JSON {\"q\": {..}, \"v\": {..}}, or its file")
       ->type_name("STATE");
 }
 
@@ -70,8 +68,7 @@ void add_level(CLI::App& verb, Options& o) {
 }
 
 void add_timing(CLI::App& verb, Options& o) {
-  one_of(verb.add_option("--timing", o.timing, "Medians of rounds, one run each, or none"),
-         {"rounds", "once", "none"})
+  one_of(verb.add_option("--timing", o.timing, "How runs are timed"), {"rounds", "once", "none"})
       ->capture_default_str();
 }
 

@@ -53,7 +53,7 @@ std::map<std::string, double> end_of(const Mechanism& mechanism, const Way& how,
   for (std::size_t i = 0; i < run.trajectory.columns.size(); ++i)
     last[run.trajectory.columns[i]] = run.trajectory.rows.back()[i];
   if (how.form == "momentum" && mechanism.m() > 0) {
-    EXPECT_LT(last.at("velocity_drift [m/s]"), 1e-11);
+    EXPECT_LT(last.at("velocity_drift [" + run.drift_unit + "/s]"), 1e-11);
   }
   return last;
 }
