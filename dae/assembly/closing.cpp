@@ -92,7 +92,9 @@ Closing::Pose Closing::damped(Eigen::VectorXd q, int most) {
     q = next.q;
     phi = gap(q);
     norm = next_norm;
-    if (contradicts && is_least(q, largest_of(phi))) break;
+    // What closes goes on to rounding.
+    if (const double open = largest_of(phi); contradicts && open > tolerance_ && is_least(q, open))
+      break;
   }
   const double last = largest_of(phi);
   const bool least = last > tolerance_ && is_least(q, last);
