@@ -14,7 +14,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double motion_part = 1e-9;  // of a motion's largest rate
-constexpr double held_pivot = 1e-9;   // of pivots of Φ_q N, columns of one size
+constexpr double held_pivot = 1e-9;   // of pivots of Φ_q N, beside the largest terms of a column
 
 /// N of those `lost`.
 MatrixXd motions_without_momentum(const MatrixXd& mass, const std::vector<MasslessJoint>& joints) {
@@ -38,10 +38,9 @@ MatrixXd left_free(const MatrixXd& constraint, const MatrixXd& motions) {
     const double size = (constraint.cwiseAbs() * motions.col(k).cwiseAbs()).maxCoeff();
     if (size > 0) a.col(k) /= size;
   }
-  Eigen::ColPivHouseholderQR<MatrixXd> qr;
-  qr.setThreshold(held_pivot);
-  qr.compute(a.transpose());
-  const Eigen::Index rank = a.isZero(0) ? 0 : qr.rank();
+  // Beside what its terms are, not beside the largest: where all of them cancel, none holds.
+  const Eigen::ColPivHouseholderQR<MatrixXd> qr(a.transpose());
+  const Eigen::Index rank = (qr.matrixQR().diagonal().array().abs() > held_pivot).count();
   MatrixXd y = MatrixXd(qr.householderQ()).rightCols(a.cols() - rank);
   for (Eigen::Index k = 0; k < a.cols(); ++k) {
     const double size = (constraint.cwiseAbs() * motions.col(k).cwiseAbs()).maxCoeff();
