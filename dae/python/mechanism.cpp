@@ -141,7 +141,7 @@ py::dict evaluate(Bench& b, double t, const std::optional<Vector>& q,
   }
   StateValues s = evaluate_state(*b.mechanism, given);
   py::dict all;
-  const auto put = [&](const char* name, auto&& value) { all[name] = py::cast(std::move(value)); };
+  const auto put = [&](const char* name, const auto& value) { all[name] = py::cast(value); };
   put("v", s.v), put("p", s.p), put("qdot", s.qdot), put("pdot", s.pdot), put("bias", s.bias);
   put("udot_free", s.free), put("udot", b.mechanism->m() > 0 ? s.constrained : s.free);
   put("phi", s.phi), put("phidot", s.phidot), put("sigma", s.sigma), put("lambda_", s.lambda);
