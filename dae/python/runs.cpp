@@ -82,8 +82,9 @@ double cpu_time(double x) {
 }
 int sample_count(const std::optional<int>& given, int otherwise) {
   if (!given) return otherwise;
-  if (*given > 0) return *given;
-  throw py::value_error("samples is " + std::to_string(*given) + ", expected at least 1");
+  if (*given > 0 && *given <= most_samples) return *given;
+  throw py::value_error("samples is " + std::to_string(*given) + ", expected " +
+                        (*given < 1 ? "at least 1" : "at most " + std::to_string(most_samples)));
 }
 
 std::unique_ptr<Reference> reference_of(const std::string& file, const Mechanism& mechanism) {
@@ -103,7 +104,12 @@ RunPtr run(const Bench& bench, const std::string& form, const std::string& integ
   RunRequest request;
   RunSettings& s = request.settings;
   s = default_settings(mechanism.scene().run, form, integrator, tolerance("rtol", rtol));
-  if (!gauge.empty()) s.gauge = gauge;
+  if (!gauge.empty()) {
+    if (!takes_gauge(form))
+      throw py::value_error("gauge '" + gauge + "': form '" + form +
+                            "' has no impulses to gauge, expected none");
+    s.gauge = gauge;
+  }
   s.atol = positive("atol", atol, s.atol, "a positive tolerance");
   s.step = seconds("step", step, s.step);
   s.end_time = seconds("end", end, s.end_time);
@@ -165,6 +171,7 @@ std::vector<RunPtr> work(const Bench& bench, const Names& forms, const Names& in
   request.integrators = integrators;
   request.tolerances = tolerances;
   for (const double x : tolerances) tolerance("a tolerance", x);
+  if (tolerances.empty()) throw py::value_error("tolerances is empty, expected at least one");
   request.end_time = seconds("end", end, mechanism.scene().run.end_time);
   request.samples = rows;
   request.max_cpu_seconds = cpu_time(cpu_limit);

@@ -20,8 +20,10 @@ struct IntegrationOptions {
   int max_order = 0;             ///< multistep; 0: the method's own limit
   double spectral_radius = 0.8;  ///< generalised-alpha: at infinite frequency, in [0, 1)
   long max_steps = 50'000'000;
-  double max_cpu_seconds = 0;  ///< 0: none; a run beyond it stops with status "time limit"
-  bool until_stiff = false;    ///< dp5, dop853, vern9: end where `stiff_from` is known
+  double max_cpu_seconds = 0;       ///< 0: none; a run beyond it stops with status "time limit"
+  double spent_cpu_seconds = 0;     ///< of them, before a run that goes on
+  const Memory* carried = nullptr;  ///< what a run carried that goes on; null: from the start
+  bool until_stiff = false;         ///< dp5, dop853, vern9: end where `stiff_from` is known
 };
 
 struct Counters {
@@ -49,6 +51,9 @@ struct Observer {
   /// After each accepted step over [t0, t1] (before any after_step change is seen by the
   /// interpolant).
   std::function<bool(double t0, double t1, const Interpolant& between)> step;
+  /// Before steps of explicit Runge-Kutta methods, where the system can be put down: `carry` writes
+  /// down what there is at t, for IntegrationOptions::carried.
+  std::function<void(double t, const std::function<void(Memory&)>& carry)> before_step;
 };
 
 struct IntegrationResult {

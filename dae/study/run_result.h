@@ -20,6 +20,8 @@ inline constexpr double not_measured =
 /// Drift below this is the rounding of Φ, or of Φ̇, itself: no growth law is read from it [m, m/s].
 inline constexpr double rounding_level = 1e-13;
 
+inline constexpr int most_samples = 10'000'000;  ///< of a run
+
 struct RunSettings {
   std::string form = "momentum";
   std::string integrator = "dop853";
