@@ -1,5 +1,5 @@
 #include <momenta/core/centroidal.h>
-#include <momenta/core/kernel/centroidal_sums.h>
+#include <momenta/core/centroidal_sums.h>
 
 namespace momenta {
 

@@ -1,7 +1,7 @@
 #pragma once
 // The mechanism as one body: mass, centre of mass, linear and angular momentum, ground axes. All
 // bodies move as drives and rates say, so prescribed motion counts. The sums:
-// kernel/centroidal_sums.h.
+// centroidal_sums.h.
 
 #include <momenta/core/scene/scene.h>
 #include <momenta/core/tree/tree.h>
@@ -10,6 +10,7 @@
 
 namespace momenta {
 
+/// A mechanism as one body, ground axes.
 struct Centroidal {
   double mass = 0;                                             ///< [kg]
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();            ///< [m]; NaN without mass
@@ -21,9 +22,12 @@ struct Centroidal {
 /// its plane too. Owns its model and workspace; one object serves one thread.
 class CentroidalSweep {
  public:
+  /// Copies what it needs of both. O(bodies).
   CentroidalSweep(const Tree& tree, const Scene& scene);
   ~CentroidalSweep();
+  /// Sweeps move; the one moved from may only be destroyed or assigned to.
   CentroidalSweep(CentroidalSweep&&) noexcept;
+  /// As the constructor.
   CentroidalSweep& operator=(CentroidalSweep&&) noexcept;
 
   /// At (t, q, u), nq and nv numbers. O(bodies), no allocation.

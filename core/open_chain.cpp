@@ -63,6 +63,14 @@ bool OpenChain::rates(double t, const ConstVectorRef& q, const ConstVectorRef& p
   return found && inside_->found_finite(qdot) && inside_->found_finite(pdot);
 }
 
+bool OpenChain::rates(double t, const ConstVectorRef& q, const ConstVectorRef& p,
+                      const ConstVectorRef& tau, VectorRef qdot, VectorRef pdot) {
+  expect_size("rates", "tau", tau.size(), nv());
+  if (!inside_->finite(t, q, "tau", tau) || !rates(t, q, p, qdot, pdot)) return false;
+  pdot += tau;
+  return inside_->found_finite(pdot);
+}
+
 bool OpenChain::rates_of_states(double t, const ConstStatesRef& q, const ConstStatesRef& p,
                                 StatesRef qdot, StatesRef pdot, int threads) {
   check_threads(threads);
@@ -79,7 +87,7 @@ bool OpenChain::rates_of_states(double t, const ConstStatesRef& q, const ConstSt
     if (!kernel.model->has_body_forces() && stride == p.outerStride() &&
         stride == qdot.outerStride() && stride == pdot.outerStride())
       return inside_->batch(
-          kernel, threads,
+          kernel, t, threads,
           {q.data(), p.data(), qdot.data(), pdot.data(), stride,
            static_cast<std::size_t>(q.cols())},
           [t](BatchSweeps& sweeps, const States& part) { return sweeps.momentum(t, part); });
@@ -109,7 +117,7 @@ bool OpenChain::accelerations_of_states(double t, const ConstStatesRef& q, const
     if (!kernel.model->has_body_forces() && !kernel.model->has_joint_forces &&
         stride == u.outerStride() && stride == udot.outerStride())
       return inside_->batch(
-          kernel, threads,
+          kernel, t, threads,
           {q.data(), u.data(), nullptr, udot.data(), stride, static_cast<std::size_t>(q.cols())},
           [t](BatchSweeps& sweeps, const States& part) { return sweeps.acceleration(t, part); });
     Eigen::VectorXd one(nv());
@@ -136,7 +144,7 @@ bool OpenChain::jacobian_times(double t, const ConstVectorRef& q, const ConstVec
       !inside_->finite("dp", dp.data(), dp.size()))
     return false;
   const bool found = inside_->visit([&](auto& kernel) {
-    return inside_->noted_one(*kernel.sweeps,
+    return inside_->noted_one(*kernel.sweeps, t, q.data(),
                               kernel.sweeps->derivative(t, q.data(), p.data(), dq.data(), dp.data(),
                                                         dqdot.data(), dpdot.data()));
   });
@@ -151,7 +159,7 @@ bool OpenChain::jacobian(double t, const ConstVectorRef& q, const ConstVectorRef
   if (!inside_->finite(t, q, "p", p)) return false;
   const bool found = inside_->visit([&](auto& kernel) {
     BatchSweeps& sweeps = *kernel.batches[0];
-    return inside_->noted_one(sweeps,
+    return inside_->noted_one(sweeps, t, q.data(),
                               sweeps.jacobian(t, q.data(), p.data(), J.data(), J.outerStride()));
   });
   if (!found) return false;
@@ -184,7 +192,8 @@ bool OpenChain::inverse_mass_times(double t, const ConstVectorRef& q, const Cons
   if (!inside_->finite(t, q, "x", x)) return false;
   return inside_->visit([&](auto& kernel) {
     return inside_->noted_one(
-        *kernel.sweeps, kernel.sweeps->inverse_mass_times(t, q.data(), x.data(), result.data()));
+        *kernel.sweeps, t, q.data(),
+        kernel.sweeps->inverse_mass_times(t, q.data(), x.data(), result.data()));
   }) && inside_->found_finite(result);
 }
 
@@ -209,6 +218,18 @@ bool OpenChain::accelerations(double t, const ConstVectorRef& q, const ConstVect
   }) && inside_->found_finite(udot);
 }
 
+bool OpenChain::accelerations(double t, const ConstVectorRef& q, const ConstVectorRef& u,
+                              const ConstVectorRef& tau, VectorRef udot) {
+  expect_size("accelerations", "q", q.size(), nq());
+  expect_size("accelerations", "u", u.size(), nv());
+  expect_size("accelerations", "tau", tau.size(), nv());
+  expect_size("accelerations", "udot", udot.size(), nv());
+  if (!inside_->finite(t, q, "u", u) || !inside_->finite("tau", tau.data(), nv())) return false;
+  return inside_->visit([&](auto& kernel) {
+    return inside_->acceleration(kernel, t, q.data(), u.data(), udot.data(), tau.data());
+  }) && inside_->found_finite(udot);
+}
+
 void OpenChain::coordinate_rates(const ConstVectorRef& q, const ConstVectorRef& u,
                                  VectorRef qdot) const {
   expect_size("coordinate_rates", "q", q.size(), nq());
@@ -224,14 +245,13 @@ void OpenChain::coordinate_rates(const ConstVectorRef& q, const ConstVectorRef& 
 std::string OpenChain::failure() const {
   if (!inside_->not_a_number.empty()) return inside_->not_a_number;
   if (inside_->singular < 0) return "";
-  const Tree& t = inside_->tree;
-  const auto& b = t.bodies[static_cast<std::size_t>(inside_->singular)];
-  const auto& carried = t.bodies[static_cast<std::size_t>(t.carried_by(b.joint))];
   const std::string state =
       inside_->failed_state < 0 ? "" : "state " + std::to_string(inside_->failed_state) + ": ";
-  return state + t.joint_in_words(inside_->singular) +
-         " has no inertia to move: the articulated inertia of body '" + carried.name +
-         "' along it is not positive";
+  const Eigen::VectorXd& q = inside_->failed_q;
+  for (Eigen::Index i = 0; i < q.size(); ++i)
+    if (!std::isfinite(q[i])) return state + not_finite("q", i, q[i]);
+  return state +
+         in_words(inside_->tree, inside_->visit([&](auto& k) { return inside_->massless(k); }));
 }
 
 }  // namespace momenta

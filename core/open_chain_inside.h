@@ -3,11 +3,13 @@
 // of OpenChain alone.
 
 #include <momenta/core/arguments.h>
-#include <momenta/core/kernel/centroidal_sums.h>
+#include <momenta/core/centroidal_sums.h>
 #include <momenta/core/kernel/levels/batch_sweeps.h>
 #include <momenta/core/kernel/levels/open_sweeps.h>
 #include <momenta/core/kernel/levels/when_asked.h>
+#include <momenta/core/kernel/mass_matrix.h>
 #include <momenta/core/kernel/reactions.h>
+#include <momenta/core/massless_joints.h>
 #include <momenta/core/open_chain.h>
 #include <momenta/core/scalar/all_finite.h>
 #include <momenta/core/share.h>
@@ -53,6 +55,8 @@ struct OpenChain::Inside {
   bool has_user_joints = false;
   int singular = -1;
   Eigen::Index failed_state = -1;  ///< of the last batch
+  double failed_t = 0;             ///< where the last call failed for want of inertia [s]
+  Eigen::VectorXd failed_q;
   /// What of the last call's numbers is none, given or found; empty: all are.
   std::string not_a_number;
 
@@ -92,6 +96,26 @@ struct OpenChain::Inside {
       throw std::invalid_argument(std::string(call) + ": " + not_a_number);
   }
 
+  /// That a joint without inertia was met at (t, q), coordinates `stride` apart.
+  void note_place(double t, const double* q, Eigen::Index stride = 1) {
+    failed_t = t;
+    failed_q = Eigen::Map<const Eigen::VectorXd, 0, Eigen::InnerStride<>>(
+        q, tree.nq, Eigen::InnerStride<>(stride));
+  }
+  /// All joints without inertia there.
+  template <class K>
+  std::vector<MasslessJoint> massless(K& k) {
+    poses_outward(k.w, failed_t, failed_q.data(), false);
+    Eigen::VectorXd diagonal(tree.nv);
+    mass_diagonal_inward(k.w, diagonal.data());
+    Eigen::MatrixXd mass;
+    if (tree.nv <= most_pivots) {
+      mass.setZero(tree.nv, tree.nv);
+      mass_matrix_inward(k.w, [&](int i, int j, double x) { mass(i, j) = mass(j, i) = x; });
+    }
+    return massless_joints(tree, diagonal, mass, tree.bodies[static_cast<std::size_t>(singular)].u);
+  }
+
   /// Whether n numbers that were found are finite; else failure() says so.
   bool found_finite(const double* x, Eigen::Index n) {
     if (all_finite(x, static_cast<std::size_t>(n))) [[likely]]
@@ -128,6 +152,7 @@ struct OpenChain::Inside {
     failed_state = -1;
     if (!k.sweeps->momentum(t, q, momenta, rates, pdot)) {
       singular = k.sweeps->singular_joint();
+      note_place(t, q);
       return false;
     }
     singular = -1;
@@ -138,25 +163,36 @@ struct OpenChain::Inside {
     return true;
   }
   template <class K>
-  bool acceleration(K& k, double t, const double* q, const double* rates, double* udot) {
+  bool acceleration(K& k, double t, const double* q, const double* rates, double* udot,
+                    const double* tau = nullptr) {
     applied_forces(k.w, t, q, rates);
+    if (tau)
+      for (int i = 0; i < tree.nv; ++i) k.w.generalised[static_cast<std::size_t>(i)] += tau[i];
     const bool ok = k.sweeps->acceleration(t, q, rates, k.w.generalised.data(), udot);
     singular = ok ? -1 : k.sweeps->singular_joint();
     failed_state = -1;
+    if (!ok) note_place(t, q);
     return ok;
   }
 
   /// What a call on one state left behind.
   template <class Sweeps>
-  bool noted_one(const Sweeps& sweeps, bool ok) {
+  bool noted_one(const Sweeps& sweeps, double t, const double* q, bool ok) {
     singular = ok ? -1 : sweeps.singular_joint();
     failed_state = -1;
+    if (!ok) note_place(t, q);
     return ok;
   }
-  /// Many states by `run`, consecutive ones on each thread. Parts end where packs do: whatever
+  /// Many states at t by `run`, consecutive ones on each thread. Parts end where packs do: whatever
   /// shares a register shares it on any number of threads.
   template <class K, class Run>
-  bool batch(K& k, int threads, const States& all, Run&& run) {
+  bool batch(K& k, double t, int threads, const States& all, Run&& run) {
+    if (take_batch(k, threads, all, std::forward<Run>(run))) return true;
+    note_place(t, all.q + failed_state, all.stride);
+    return false;
+  }
+  template <class K, class Run>
+  bool take_batch(K& k, int threads, const States& all, Run&& run) {
     const auto width = static_cast<std::size_t>(k.batches[0]->width());
     const std::size_t packs = (all.count + width - 1) / width;
     std::size_t parts = has_user_joints ? 1 : static_cast<std::size_t>(threads);
@@ -194,13 +230,16 @@ struct OpenChain::Inside {
   bool one_by_one(Eigen::Index count, F&& f) {
     Eigen::Index failed = -1;
     int singular_joint = -1;
+    Eigen::VectorXd q;
     for (Eigen::Index i = 0; i < count; ++i)
       if (!f(i) && failed < 0) {
         failed = i;
         singular_joint = singular;
+        q = failed_q;
       }
     failed_state = failed;
     singular = singular_joint;
+    if (failed >= 0) failed_q = q;
     return failed < 0;
   }
 

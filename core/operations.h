@@ -7,6 +7,7 @@
 
 namespace momenta {
 
+/// Which of the two recursions.
 enum class Recursion {
   momentum,     ///< (q, p, t) → (u, ṗ)
   acceleration  ///< (q, u, t) → u̇

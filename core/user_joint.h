@@ -3,16 +3,15 @@
 // function of time and n = 1 … 6 coordinates, with q̇ = u. Everything else follows from it exactly
 // by dual numbers (kernel/user_motion.h): E and Ω_t of (13), Ė and dΩ_t/dt.
 //
-//   struct Crank {                                         // a revolute joint at the end of an arm
-//   of 0.2 m
-//     template <class S>
-//     momenta::JointPose<S> operator()(const S& /*t*/, const S* q) const {
-//       const auto R = momenta::turn_about<S>({0, 0, 1}, q[0]);
-//       return {R, R * momenta::Vec3<S>{{S(0.2), S(0.0), S(0.0)}}};
-//     }
-//   };
-//   joint.kind = momenta::JointKind::user;
-//   joint.law = std::make_shared<momenta::UserJoint>(1, Crank{});
+//     struct Crank {  // a revolute joint at the end of an arm of 0.2 m
+//       template <class S>
+//       momenta::JointPose<S> operator()(const S& t, const S* q) const {
+//         const auto R = momenta::turn_about<S>({0, 0, 1}, q[0]);
+//         return {R, R * momenta::Vec3<S>{{S(0.2), S(0.0), S(0.0)}}};
+//       }
+//     };
+//     joint.kind = momenta::JointKind::user;
+//     joint.law = std::make_shared<momenta::UserJoint>(1, Crank{});
 //
 // S has + − × ÷, sin, cos and sqrt in its namespace, a constructor from double and comparisons of
 // values. The matrix must be a rotation for all t and q; validate() looks at the start. The formula
@@ -26,6 +25,7 @@
 
 namespace momenta {
 
+/// Where the child's joint frame is in the parent's joint frame.
 template <class S>
 struct JointPose {
   Mat3<S> rotation;  ///< columns: the child's joint axes in the parent's joint frame
@@ -47,26 +47,34 @@ Mat3<S> turn_about(const Vec3<S>& a, const S& angle) {
   return r;
 }
 
+/// A formula of a program as the law of a joint; immutable, shared by chains and threads.
 class UserJoint {
  public:
-  /// `formula(t, q)` gives a JointPose<S> for any S; q has `coordinates` numbers.
+  /// `formula(t, q)` gives a `JointPose<S>` for any S; q has `coordinates` numbers.
   template <class Formula>
   UserJoint(int coordinates, Formula formula)
       : coordinates_(coordinates),
         law_(std::make_shared<LawOf<Formula>>(coordinates, std::move(formula))) {}
 
+  /// n, from 1 to 6.
   int coordinates() const { return coordinates_; }
 
   /// The pose at (t, q): nine numbers by columns, and three.
   void pose(double t, const double* q, double* rotation, double* position) const;
 
+  /// What the recursions take of the formula: the pose, E, Ω_t and their rates along u (null: no
+  /// rates), in each of their scalars.
   class Law {
    public:
     virtual ~Law();
+    /// At m.t and m.q.
     virtual void move(const double* u, UserMotion<double>& m) const = 0;
+    /// With one directional derivative.
     virtual void move(const Dual<double, 1>* u, UserMotion<Dual<double, 1>>& m) const = 0;
+    /// With eight.
     virtual void move(const Dual8* u, UserMotion<Dual8>& m) const = 0;
   };
+  /// For the recursions.
   const Law& law() const { return *law_; }
 
  private:

@@ -40,8 +40,9 @@ class EquationRows {
   /// Φ_qᵀ x (nv).
   virtual void constraint_forces(const S* x, S* result) = 0;
 
-  /// q̇ (nq) from u, and back. After place().
+  /// q̇ (nq) from u. After place().
   virtual void coordinate_rates(const S* q, const S* u, S* qdot) const = 0;
+  /// u (nv) from q̇, of unit quaternions.
   virtual void joint_rates(const S* q, const S* qdot, S* u) const = 0;
 
   /// Generalised forces (nv) at (t, q, u), all but the weights: those of the joints and, unless
@@ -50,6 +51,7 @@ class EquationRows {
   virtual void applied_forces(double t, const S* q, const S* u, S* tau, bool at_points = true) = 0;
 };
 
+/// What Mechanism::evaluation() makes: in other scalars than double the rows alone.
 template <class S>
 class Evaluation : public EquationRows<S> {};
 
@@ -63,6 +65,7 @@ class Evaluation<double> : public EquationRows<double> {
   virtual void mass_entries(double* values) = 0;
   /// Diagonal of M (nv), O(bodies). After place().
   virtual void mass_diagonal(double* values) = 0;
+  /// Values of Φ_q in that order. After place().
   virtual void constraint_entries(double* values) = 0;
 
   /// (q, p, t) → (u, ṗ) by the recursion of the paper: mechanisms without loops only. False when a
@@ -79,8 +82,9 @@ class Evaluation<double> : public EquationRows<double> {
   /// u). As applied_forces() it spoils what place() and move() left.
   virtual void body_forces(double t, const double* q, const double* u, double* tau) = 0;
 
-  /// T and V [J]; after place() and move().
+  /// T [J]; after place() and move().
   virtual double kinetic() = 0;
+  /// V [J]; after place().
   virtual double potential(const double* q) = 0;
   /// Power of everything the energy does not hold [W]: dampers, wrenches that have no potential.
   /// After move(u).

@@ -3,6 +3,8 @@
 #include <momenta/dae/loop/loop_weights.h>
 #include <momenta/dae/mechanism.h>
 
+#include <algorithm>
+
 namespace momenta {
 namespace {
 
@@ -20,6 +22,24 @@ Plan plan_with_loops(const Tree& tree, const Scene& scene, Algebra algebra) {
   plan = make_plan(tree, scene, Algebra::spatial);
   plan.planar_reason = why;
   return plan;
+}
+
+/// Couplers that tie angles alone, by place in the scene.
+std::vector<bool> couplers_of_angles(const Scene& scene, const Tree& tree) {
+  std::vector<bool> of_angles;
+  for (const LoopSpec& l : scene.loops) {
+    bool slides = l.kind != LoopKind::coupler;
+    for (std::size_t i = 0; i < l.joints.size(); ++i) {
+      const int last = tree.carried_by(l.joints[i]);
+      for (int k = tree.first_part(last); k <= last; ++k) {
+        const Tree::Body& b = tree.bodies[static_cast<std::size_t>(k)];
+        slides |= b.kind == JointKind::prismatic &&
+                  b.coordinate == (l.coordinates.empty() ? 0 : l.coordinates[i]);
+      }
+    }
+    of_angles.push_back(!slides);
+  }
+  return of_angles;
 }
 
 /// User joints move in open chains alone.
@@ -51,12 +71,16 @@ Mechanism::Mechanism(Scene scene, MechanismOptions options)
   plan_.drives |= visit([](const auto& cast) { return !cast.loops.motions.empty(); });
   dense_ = options.kkt == KktChoice::dense ||
            (options.kkt != KktChoice::sparse && tree_.nv + rows_ <= dense_limit);
+  const std::vector<bool> of_angles = couplers_of_angles(scene_, tree_);
   const auto group = [&](const auto& cast) {
     int index = 0;
     for (const auto& l : cast.loops.loops) {
       const int points = l.first_rows();
-      for (int i = 0; i < points; ++i) row_groups_.push_back(index);
-      for (int i = points; i < l.rows; ++i) row_groups_.push_back(index + 1);
+      const bool coupler = of_angles[static_cast<std::size_t>(index / 2)];
+      for (int i = 0; i < l.rows; ++i) {
+        row_groups_.push_back(i < points ? index : index + 1);
+        angle_rows_.push_back(i >= points || coupler);
+      }
       index += 2;
     }
   };
@@ -149,12 +173,11 @@ std::string Mechanism::joint_without_inertia(bool swept) const {
     const auto kkt = make_sparse_kkt(*this);
     return kkt->factor(*e, 0, tree_.q0.data(), fade_evaluation) || kkt->singular_joint() < 0
                ? ""
-               : no_inertia(kkt->singular_joint());
+               : light_before_loops(kkt->singular_joint());
   }
   const auto sweeps = looped_sweeps();
   if (!sweeps->momentum(0, tree_.q0.data(), p.data(), {}, u.data(), sigma.data(), nullptr))
-    return tree_.joint_in_words(sweeps->singular_joint()) +
-           " has no inertia before its loops close";
+    return light_before_loops(tree_.bodies[static_cast<std::size_t>(sweeps->singular_joint())].u);
   return "";
 }
 
@@ -180,6 +203,12 @@ std::unique_ptr<LoopedSweeps> Mechanism::looped_sweeps_as_given() const {
 }
 bool Mechanism::pairs_anew() const {
   return visit([](const auto& cast) { return !cast.swept.shared.empty(); });
+}
+bool Mechanism::has_lengths() const {
+  return std::find(angle_rows_.begin(), angle_rows_.end(), false) != angle_rows_.end();
+}
+bool Mechanism::has_angles() const {
+  return std::find(angle_rows_.begin(), angle_rows_.end(), true) != angle_rows_.end();
 }
 bool Mechanism::has_body_forces() const {
   return visit([](const auto& cast) { return cast.model.has_body_forces(); });

@@ -16,29 +16,43 @@
 namespace momenta {
 
 /// How (7) is solved: loops carried by the sweeps, or the assembled matrix.
-enum class KktChoice { automatic, sweeps, sparse, dense };
+enum class KktChoice {
+  automatic,  ///< sweeps where they can, else by size
+  sweeps,     ///< loops carried by the sweeps, no matrix
+  sparse,     ///< a sparse matrix
+  dense       ///< a dense one
+};
+/// As `--kkt` spells it.
 const char* name_of(KktChoice choice);
 
+/// What a scene leaves open.
 struct MechanismOptions {
-  Algebra algebra = Algebra::automatic;
-  KktChoice kkt = KktChoice::automatic;
+  Algebra algebra = Algebra::automatic;  ///< which kernel
+  KktChoice kkt = KktChoice::automatic;  ///< how (7) is solved
 };
 
 /// Nonzeros of the two blocks of (7): M (upper triangle) and Φ_q, in the order in which an
 /// evaluation writes them.
 struct KktPattern {
+  /// One of them.
   struct Entry {
-    int row, column;
+    int row;     ///< from 0
+    int column;  ///< from 0
   };
   std::vector<Entry> mass;        ///< row ≤ column < nv
   std::vector<Entry> constraint;  ///< row < m, column < nv
 };
 
+/// A column of trajectory.csv.
 struct Column {
-  std::string name, unit;
+  std::string name;  ///< "O.q"
+  std::string unit;  ///< "rad"
+  /// "O.q [rad]".
   std::string label() const { return name + " [" + unit + "]"; }
 };
 
+/// A scene made ready to move, loops and all. Immutable, shared by threads; it must outlive what is
+/// made from it.
 class Mechanism {
  public:
   /// @throws SceneError
@@ -47,12 +61,12 @@ class Mechanism {
   Mechanism(const Mechanism&) = delete;
   Mechanism& operator=(const Mechanism&) = delete;
 
-  const Scene& scene() const { return scene_; }
-  const Tree& tree() const { return tree_; }
-  const Plan& plan() const { return plan_; }
-  int nq() const { return tree_.nq; }  ///< coordinates
-  int nv() const { return tree_.nv; }  ///< rates, momenta
-  int m() const { return rows_; }      ///< loop equations
+  const Scene& scene() const { return scene_; }  ///< as given
+  const Tree& tree() const { return tree_; }     ///< bodies in the order of the sweeps
+  const Plan& plan() const { return plan_; }     ///< what evaluations do and leave out
+  int nq() const { return tree_.nq; }            ///< coordinates
+  int nv() const { return tree_.nv; }            ///< rates, momenta
+  int m() const { return rows_; }                ///< loop equations
   /// How (7) is solved, when there are loops; never automatic.
   KktChoice kkt() const { return kkt_; }
   /// Whether an assembled matrix, where one is needed, is dense.
@@ -78,10 +92,18 @@ class Mechanism {
   const KktPattern& kkt_pattern() const;
   /// Of Φ_q alone, O(length of all loops).
   const std::vector<KktPattern::Entry>& constraint_pattern() const;
+  /// What each row of Φ is (m), in words.
   const std::vector<RowName>& rows() const { return row_names_; }
   /// Rows of one loop and one kind (points, axes, distance or coupling) share a unit and so a
   /// scale: group index of each row.
   const std::vector<int>& row_groups() const { return row_groups_; }
+
+  /// Whether each row is an angle [rad]: rows of axes, and couplers of angles alone. All others are
+  /// lengths [m].
+  const std::vector<bool>& angle_rows() const { return angle_rows_; }
+  /// Whether there are rows of lengths, and of angles.
+  bool has_lengths() const;
+  bool has_angles() const;
 
   /// Scale of each row of Φ_q M⁻¹ Φ_qᵀ (m) below which it is dust, whatever its loop's other rows
   /// are: LoopWeights::least_scales, by row. A slide along the axis of a cylindrical joint has four
@@ -93,16 +115,19 @@ class Mechanism {
   template <class S>
   std::unique_ptr<Evaluation<S>> evaluation() const;
 
-  /// Names and units of q, u and of marker columns, in the order of trajectory.csv.
+  /// Names and units of q (nq), in the order of trajectory.csv.
   std::vector<Column> coordinate_columns() const;
+  /// Of u (nv).
   std::vector<Column> rate_columns() const;
+  /// Of markers: position and velocity of each.
   std::vector<Column> marker_columns() const;
 
   /// Lines of the plan, core's and those of the loops.
   std::vector<std::pair<std::string, std::string>> plan_lines() const;
 
-  /// The sentence for the joint of a rate (place in u) along which nothing has mass.
-  std::string no_inertia(int rate) const;
+  /// Why nothing moves at (t, q), where a solution failed at a rate (place in u, −1: not known):
+  /// the joints that neither inertia nor a loop holds (unheld_joints.h).
+  std::string no_inertia(int rate, double t, const double* q) const;
 
  private:
   /// What branches the sweeps take side by side; empty: none.
@@ -122,6 +147,7 @@ class Mechanism {
   void choose_kkt(KktChoice asked);
   void take_weights();
   std::string joint_without_inertia(bool swept) const;
+  std::string light_before_loops(int rate) const;
   template <class Space, class S>
   class SweepRows;
   template <class Space>
@@ -141,9 +167,11 @@ class Mechanism {
   mutable std::once_flag mass_pattern_known_, constraint_pattern_known_;
   std::vector<RowName> row_names_;
   std::vector<int> row_groups_;
+  std::vector<bool> angle_rows_;
   std::vector<double> least_scales_;
 };
 
+/// In doubles.
 template <>
 std::unique_ptr<Evaluation<double>> Mechanism::evaluation<double>() const;
 extern template std::unique_ptr<Evaluation<Dual8>> Mechanism::evaluation<Dual8>() const;

@@ -5,6 +5,7 @@
 #include <momenta/dae/kkt/kkt.h>
 #include <momenta/dae/mechanism.h>
 #include <momenta/dae/sweeps/branches/looped_branches.h>
+#include <momenta/dae/unheld_joints.h>
 
 namespace momenta {
 namespace {
@@ -97,15 +98,21 @@ std::vector<std::pair<std::string, std::string>> Mechanism::plan_lines() const {
   return lines;
 }
 
-std::string Mechanism::no_inertia(int rate) const {
+std::string Mechanism::no_inertia(int rate, double t, const double* q) const {
+  const auto e = evaluation<double>();
+  const UnheldJoints unheld = unheld_joints(*this, *e, t, q, true, rate);
+  if (!unheld.joints.empty()) return in_words(tree_, unheld.joints);
+  return rate < 0 ? "its equations overflow; expected smaller numbers"
+                  : light_before_loops(rate) + "; expected --kkt sparse";
+}
+
+std::string Mechanism::light_before_loops(int rate) const {
   for (std::size_t k = 0; k < tree_.bodies.size(); ++k) {
     const Tree::Body& b = tree_.bodies[k];
-    if (rate < b.u || rate >= b.u + b.nv) continue;
-    const auto carried = static_cast<std::size_t>(tree_.carried_by(b.joint));
-    return tree_.joint_in_words(static_cast<int>(k)) + " has no inertia to move: body '" +
-           tree_.bodies[carried].name + "' and what it carries weigh nothing along it";
+    if (rate >= b.u && rate < b.u + b.nv)
+      return tree_.joint_in_words(static_cast<int>(k)) + " has no inertia before its loops close";
   }
-  return "the mass matrix is not finite";
+  return "";
 }
 
 }  // namespace momenta

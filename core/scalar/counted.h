@@ -11,18 +11,27 @@
 
 namespace momenta {
 
+/// Operations by kind.
 struct Operations {
-  long adds = 0, multiplications = 0, divisions = 0, angles = 0;  ///< angles: a sine and a cosine
+  long adds = 0;             ///< subtractions too
+  long multiplications = 0;  ///< of two numbers
+  long divisions = 0;        ///< of two numbers
+  long angles = 0;           ///< a sine and a cosine each
+  /// Without the angles.
   long total() const { return adds + multiplications + divisions; }
 };
 
+/// Both counts.
 struct OperationCount {
-  Operations executed, needed;
+  Operations executed;  ///< what the code performs
+  Operations needed;    ///< what is left of it once constants are folded
 };
 
+/// A double that counts; constant unless made by variable().
 class Counted {
  public:
   Counted() = default;
+  /// A constant.
   Counted(double value) : value_(value) {}  // NOLINT: a constant of the model
   /// A number that changes from state to state.
   static Counted variable(double value) {
@@ -31,7 +40,7 @@ class Counted {
     return x;
   }
 
-  double value() const { return value_; }
+  double value() const { return value_; }  ///< the number itself
 
   friend Counted operator+(const Counted& a, const Counted& b) {
     ++count.executed.adds;
@@ -59,7 +68,9 @@ class Counted {
     if (!free(a, b) && !zero(a) && !unit(b)) ++count.needed.divisions;
     return result(a.value_ / b.value_, a, b);
   }
+  /// Counted as a sum.
   Counted& operator+=(const Counted& b) { return *this = *this + b; }
+  /// Counted as a sum.
   Counted& operator-=(const Counted& b) { return *this = *this - b; }
   friend bool operator<(const Counted& a, const Counted& b) { return a.value_ < b.value_; }
   friend bool operator>(const Counted& a, const Counted& b) { return a.value_ > b.value_; }
@@ -72,6 +83,7 @@ class Counted {
   friend Counted cos(const Counted& a) { return result(std::cos(a.value_), a, a); }
   friend Counted sqrt(const Counted& a) { return result(std::sqrt(a.value_), a, a); }
 
+  /// Of this thread, since it was last set to {}.
   static inline thread_local OperationCount count;
 
  private:
@@ -88,6 +100,7 @@ class Counted {
   bool constant_ = true;
 };
 
+/// The number itself, in the spelling of dual numbers.
 inline double value_of(const Counted& x) {
   return x.value();
 }

@@ -41,6 +41,8 @@ struct Shape {
   Eigen::Vector3d axis = Eigen::Vector3d::UnitX();  ///< rod, cylinder: direction in body axes
 };
 
+/// A rigid body.
+///
 /// In a file, inertia is [xx, yy, zz, xy, xz, yz], or [xx, yy, zz], or one number: the moment about
 /// z of a planar body, stored as diag(Izz/2, Izz/2, Izz), a thin plate. (diag(0, 0, Izz) belongs to
 /// no mass whatever: no principal moment exceeds the sum of the other two. Motion in the plane does
@@ -49,13 +51,13 @@ struct BodySpec {
   std::string name;                               ///< not "ground", which is what does not move
   double mass = 0;                                ///< [kg]
   Eigen::Vector3d com = Eigen::Vector3d::Zero();  ///< centre of mass in body axes [m]
-  /// About the centre of mass, body axes [kg m²]; its principal moments a <= b <= c satisfy
-  /// 0 <= a and c <= a + b.
+  /// About the centre of mass, body axes [kg m²]; its principal moments a ≤ b ≤ c satisfy
+  /// 0 ≤ a and c ≤ a + b.
   Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();
   /// The inertia is taken as it is, though no rigid body need have it: files of robots hold such.
   bool any_inertia = false;
-  Shape shape;
-  Location at;
+  Shape shape;  ///< how it is drawn, and what gives com and inertia where they are not written
+  Location at;  ///< where the file has it
 };
 
 /// A joint of the tree; its child is a body, its parent a body or "ground".
@@ -83,10 +85,10 @@ struct BodySpec {
 /// { quaternion = [w, x, y, z] }, or { axis = .., angle = .. }; an axis is three numbers, which are
 /// normalised, or "x", "-x", "y", ...
 struct JointSpec {
-  std::string name;
-  JointKind kind = JointKind::revolute;
-  std::string parent = "ground";
-  std::string child;
+  std::string name;                      ///< unique among joints and loops
+  JointKind kind = JointKind::revolute;  ///< which coordinates it has
+  std::string parent = "ground";         ///< a body, or "ground"
+  std::string child;                     ///< a body, the child of this joint alone
   Eigen::Vector3d origin_parent = Eigen::Vector3d::Zero();       ///< in parent axes [m]
   Eigen::Vector3d origin_child = Eigen::Vector3d::Zero();        ///< in child axes [m]
   Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();  ///< joint frame in parent axes
@@ -104,11 +106,12 @@ struct JointSpec {
   double stiffness = 0;                  ///< revolute, helical [N m/rad], prismatic [N/m]; else 0
   double rest = 0;                       ///< revolute, helical [rad], prismatic [m]; else 0
   double damping = 0;  ///< revolute, helical [N m s/rad], prismatic [N s/m]; else 0
-  Location at;
+  Location at;         ///< where the file has it
 };
 
-/// Sizes of q and u of a joint: of its kind, or of its law.
+/// Size of q of a joint: of its kind, or of its law.
 int coordinates_of(const JointSpec& joint);
+/// Size of u and p of a joint.
 int rates_of(const JointSpec& joint);
 
 /// The direction a joint takes where none is given: the coordinate axis that follows, in the order
@@ -116,17 +119,18 @@ int rates_of(const JointSpec& joint);
 /// So x for an axis along z, y for one along x, z for one along y.
 Eigen::Vector3d perpendicular_to(const Eigen::Vector3d& axis);
 
+/// What a loop ties; its equations: LoopSpec.
 enum class LoopKind {
-  point,
-  revolute,
-  spherical,
-  weld,
-  prismatic,
-  distance,
-  universal,
-  cylindrical,
-  planar,
-  coupler
+  point,        ///< 3 equations, 2 in a plane
+  revolute,     ///< 5
+  spherical,    ///< 3, as point
+  weld,         ///< 6
+  prismatic,    ///< 5
+  distance,     ///< 1
+  universal,    ///< 4
+  cylindrical,  ///< 4
+  planar,       ///< 3
+  coupler       ///< 1, between coordinates of joints
 };
 
 /// A joint that closes a loop; the same keys as a joint, without coordinates and what acts on them.
@@ -138,25 +142,25 @@ enum class LoopKind {
 ///   - `planar` keeps the child's point in the plane across `axis`, and `axis` common
 ///   - `coupler` ties no bodies but coordinates of joints: Σ ratios[i] q_i = offset
 struct LoopSpec {
-  std::string name;
-  LoopKind kind = LoopKind::point;
-  std::string parent = "ground";
-  std::string child;
-  Eigen::Vector3d origin_parent = Eigen::Vector3d::Zero();
-  Eigen::Vector3d origin_child = Eigen::Vector3d::Zero();
-  Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
-  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
+  std::string name;                                              ///< unique among joints and loops
+  LoopKind kind = LoopKind::point;                               ///< what it ties
+  std::string parent = "ground";                                 ///< a body, or "ground"
+  std::string child;                                             ///< a body, not the parent
+  Eigen::Vector3d origin_parent = Eigen::Vector3d::Zero();       ///< in parent axes [m]
+  Eigen::Vector3d origin_child = Eigen::Vector3d::Zero();        ///< in child axes [m]
+  Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();  ///< loop frame in parent axes
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();               ///< unit vector in the loop frame
   /// Universal: as of a joint; zero means perpendicular_to(axis).
   Eigen::Vector3d axis2 = Eigen::Vector3d::Zero();
   /// Planar: as of a joint, for what drives prescribe; zero means perpendicular_to(axis).
   Eigen::Vector3d direction = Eigen::Vector3d::Zero();
   double length = 0;  ///< distance [m]; no matter where a drive prescribes it
-  // Coupler: coordinates of joints whose rates are their q̇, no two the same, driven or not.
+  /// Coupler: coordinates of joints whose rates are their q̇, no two the same, driven or not.
   std::vector<std::string> joints;
   std::vector<int> coordinates;  ///< as of a drive, one for each joint; empty: all 0
   std::vector<double> ratios;    ///< [1, rad/m or m/rad], not zero, one for each joint
   double offset = 0;             ///< [rad or m]; no matter where a drive prescribes it
-  Location at;
+  Location at;                   ///< where the file has it
 };
 
 /// How many coordinates of a loop drives can prescribe: those that the joint of its kind has, the
@@ -199,16 +203,23 @@ constexpr int driven_coordinates_of(LoopKind kind) {
 ///   - table: natural cubic spline through (times, values); constant slope outside
 /// The laws are evaluated by MotionLaw, core/tree/drive.h.
 struct DriveSpec {
-  std::string joint;  ///< or
-  std::string loop;   ///< one of them is empty
-  int coordinate = 0;
+  std::string joint;   ///< or `loop`: one of them is empty
+  std::string loop;    ///< or `joint`
+  int coordinate = 0;  ///< which of that joint or loop, from 0
   std::string origin;  ///< loops: "x", "y" or "z" of origin_parent instead of a coordinate
-  std::string kind;
-  std::vector<double> coefficients;
-  double offset = 0, amplitude = 0, frequency = 0, phase = 0;
-  double from = 0, to = 0, start = 0, duration = 0;
-  std::vector<double> times, values;
-  Location at;
+  std::string kind;    ///< polynomial harmonic step table
+  std::vector<double> coefficients;  ///< polynomial: [rad or m, by s to the power]
+  double offset = 0;                 ///< harmonic [rad or m]
+  double amplitude = 0;              ///< harmonic [rad or m]
+  double frequency = 0;              ///< harmonic: ω [rad/s]
+  double phase = 0;                  ///< harmonic: φ [rad]
+  double from = 0;                   ///< step [rad or m]
+  double to = 0;                     ///< step [rad or m]
+  double start = 0;                  ///< step [s]
+  double duration = 0;               ///< step [s]
+  std::vector<double> times;         ///< table: ascending [s]
+  std::vector<double> values;        ///< table: one for each time [rad or m]
+  Location at;                       ///< where the file has it
 };
 
 /// What acts on the mechanism; the name is optional.
@@ -218,28 +229,31 @@ struct DriveSpec {
 ///   - "wrench": constant force at `point` of `body`, and torque, in ground axes, the default
 ///     (`axes = "ground"`), or in body axes (`axes = "body"`)
 struct ForceSpec {
-  std::string name;
-  std::string kind;
-  std::string parent = "ground", child;                     ///< spring-damper
+  std::string name;                                         ///< or empty
+  std::string kind;                                         ///< spring-damper torque wrench
+  std::string parent = "ground";                            ///< spring-damper: a body, or "ground"
+  std::string child;                                        ///< spring-damper: a body
   Eigen::Vector3d origin_parent = Eigen::Vector3d::Zero();  ///< spring-damper, in parent axes [m]
   Eigen::Vector3d origin_child = Eigen::Vector3d::Zero();   ///< spring-damper, in child axes [m]
-  double stiffness = 0, damping = 0, rest = 0;              ///< [N/m], [N s/m], [m]
-  std::string joint;                                        ///< torque
-  double value = 0;                                         ///< torque [N m or N]
-  std::string body;                                         ///< wrench
-  Eigen::Vector3d point = Eigen::Vector3d::Zero();          ///< wrench, in body axes [m]
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();          ///< wrench [N]
-  Eigen::Vector3d torque = Eigen::Vector3d::Zero();         ///< wrench [N m]
-  bool in_body_axes = false;                                ///< wrench
-  Location at;
+  double stiffness = 0;                                     ///< spring-damper: k [N/m]
+  double damping = 0;                                       ///< spring-damper: c [N s/m]
+  double rest = 0;                                   ///< spring-damper: length without force [m]
+  std::string joint;                                 ///< torque
+  double value = 0;                                  ///< torque [N m or N]
+  std::string body;                                  ///< wrench
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();   ///< wrench, in body axes [m]
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< wrench [N]
+  Eigen::Vector3d torque = Eigen::Vector3d::Zero();  ///< wrench [N m]
+  bool in_body_axes = false;                         ///< wrench; else ground axes
+  Location at;                                       ///< where the file has it
 };
 
 /// A named point of a body, or of "ground", whose position and velocity are reported, ground axes.
 struct MarkerSpec {
-  std::string name;
-  std::string body;
-  Eigen::Vector3d point = Eigen::Vector3d::Zero();
-  Location at;
+  std::string name;                                 ///< heads its columns of trajectory.csv
+  std::string body;                                 ///< or "ground"
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< in body axes [m]
+  Location at;                                      ///< where the file has it
 };
 
 /// What a run takes where the command line says nothing; `momenta drift` starts from these.
@@ -251,16 +265,17 @@ struct RunDefaults {
   bool project = false;  ///< correct positions after each step: scenes that pass singular poses
 };
 
+/// A mechanism as its author wrote it: what read_scene gives, OpenChain and Mechanism take.
 struct Scene {
-  std::string file;  ///< for messages; empty when built by hand
-  std::string name;
+  std::string file;                                   ///< for messages; empty when built by hand
+  std::string name;                                   ///< for titles and tables
   Eigen::Vector3d gravity = Eigen::Vector3d::Zero();  ///< [m/s²]
-  std::vector<BodySpec> bodies;
-  std::vector<JointSpec> joints;
-  std::vector<LoopSpec> loops;
-  std::vector<DriveSpec> drives;
-  std::vector<ForceSpec> forces;
-  std::vector<MarkerSpec> markers;
+  std::vector<BodySpec> bodies;                       ///< without the ground
+  std::vector<JointSpec> joints;                      ///< one for each body
+  std::vector<LoopSpec> loops;                        ///< none: an open chain
+  std::vector<DriveSpec> drives;                      ///< prescribed motion
+  std::vector<ForceSpec> forces;                      ///< what acts besides gravity and joints
+  std::vector<MarkerSpec> markers;                    ///< points to be reported
   std::vector<std::string> held;  ///< [assembly] hold: joints whose q and u assembly must keep
   Location held_at;               ///< of that list
   RunDefaults run;                ///< [run] end, step, leak, samples

@@ -33,6 +33,7 @@ namespace momenta {
 /// What makes a DriveSpec no motion law, in words, or empty.
 std::string law_fault(const DriveSpec& spec);
 
+/// A DriveSpec made ready: f(t) and its two derivatives. Immutable.
 class MotionLaw {
  public:
   /// Solves the spline of a table. @throws SceneError with the sentence of law_fault

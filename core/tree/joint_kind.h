@@ -11,6 +11,7 @@
 
 namespace momenta {
 
+/// The kinds of joints of a scene; their coordinates: JointSpec.
 enum class JointKind {
   revolute,
   prismatic,
@@ -19,9 +20,9 @@ enum class JointKind {
   universal,
   spherical,
   planar,
-  free,
-  weld,
-  user
+  free,  ///< all six: no joint at all
+  weld,  ///< none
+  user   ///< a formula of the program: core/user_joint.h
 };
 
 /// Size of q: a unit quaternion w x y z for spherical; position, then quaternion for free. Of a

@@ -13,6 +13,7 @@
 
 namespace momenta {
 
+/// Bodies, joints and drives in the order of the sweeps; q, u and p by joint.
 struct Tree {
   /// A body and the joint that carries it. Body frame: origin at the joint, on its axis; z along
   /// the axis of a revolute, prismatic or helical joint, else the axes of the scene's body.
@@ -21,35 +22,42 @@ struct Tree {
   /// consecutive indices. The last part carries the scene's body; those before it carry bodies
   /// without name, mass or extent, with scene axes that are the part's joint axes.
   struct Body {
-    std::string name;  ///< of the scene's body; empty before the last part
-    std::string joint;
-    int part = 0, parts = 1;  ///< this is part 0, 1, … of its joint
-    int coordinate = 0;       ///< which coordinate of its joint a part moves; 0 with quaternions
-    int parent = -1;          ///< −1: ground
-    JointKind kind = JointKind::revolute;
+    std::string name;    ///< of the scene's body; empty before the last part
+    std::string joint;   ///< of the scene, which carries it
+    int part = 0;        ///< this is part 0, 1, … of its joint
+    int parts = 1;       ///< of so many
+    int coordinate = 0;  ///< which coordinate of its joint a part moves; 0 with quaternions
+    int parent = -1;     ///< −1: ground
+    JointKind kind = JointKind::revolute;  ///< of this part
     int drive = -1;  ///< index into drives; then q and u of the joint are prescribed, nq = nv = 0
-    int q = 0, nq = 0;            ///< place and number of coordinates in q
-    int u = 0, nv = 0;            ///< place and number of rates in u and p
+    int q = 0;       ///< place of its coordinates in q
+    int nq = 0;      ///< how many
+    int u = 0;       ///< place of its rates in u and p
+    int nv = 0;      ///< how many
     Eigen::Isometry3d placement;  ///< body frame at joint position zero, in the parent's body frame
-    Eigen::Isometry3d scene_axes;                 ///< the scene's body frame in this body frame
-    double mass = 0;                              ///< [kg]
-    Eigen::Vector3d com;                          ///< in the body frame [m]
-    Eigen::Matrix3d inertia;                      ///< about the com, body frame [kg m²]
-    double pitch = 0;                             ///< of a helical joint [m/rad]
-    double stiffness = 0, rest = 0, damping = 0;  ///< of a one-dof joint
-    double torque = 0;                            ///< constant generalised force on a one-dof joint
-    std::shared_ptr<const UserJoint> law;         ///< of a user joint
+    Eigen::Isometry3d scene_axes;  ///< the scene's body frame in this body frame
+    double mass = 0;               ///< [kg]
+    Eigen::Vector3d com;           ///< in the body frame [m]
+    Eigen::Matrix3d inertia;       ///< about the com, body frame [kg m²]
+    double pitch = 0;              ///< of a helical joint [m/rad]
+    double stiffness = 0;          ///< of a joint of one coordinate, as in JointSpec
+    double rest = 0;               ///< likewise
+    double damping = 0;            ///< likewise
+    double torque = 0;             ///< constant generalised force on such a joint [N m or N]
+    std::shared_ptr<const UserJoint> law;  ///< of a user joint
   };
 
-  std::string name;
-  std::vector<Body> bodies;
-  std::vector<MotionLaw> drives;
+  std::string name;               ///< of the scene
+  std::vector<Body> bodies;       ///< a parent before its children, each subtree contiguous
+  std::vector<MotionLaw> drives;  ///< of joints, in the order of the scene
   Eigen::Vector3d gravity = Eigen::Vector3d::Zero();  ///< [m/s²]
   int nq = 0;                                         ///< size of q
   int nv = 0;                                         ///< size of u and p
-  Eigen::VectorXd q0, u0;                             ///< the scene's start values (q: nq, u: nv)
+  Eigen::VectorXd q0;                                 ///< the scene's start (nq)
+  Eigen::VectorXd u0;                                 ///< the scene's start (nv)
 
-  std::unordered_map<std::string, int> body_places, joint_places;  ///< of body() and carried_by()
+  std::unordered_map<std::string, int> body_places;   ///< of body()
+  std::unordered_map<std::string, int> joint_places;  ///< of carried_by()
 
   /// Index of a body by its scene name; −1 for "ground".
   int body(const std::string& scene_name) const;

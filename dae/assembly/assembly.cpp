@@ -1,6 +1,7 @@
 #include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/assembly/closing.h>
 #include <momenta/dae/kkt/least_norm.h>
+#include <momenta/dae/kkt/loop_rank.h>
 #include <momenta/dae/kkt/loop_solver.h>
 
 #include <algorithm>
@@ -31,7 +32,7 @@ class Assembler {
     }
   }
 
-  Assembly run() {
+  Assembly run(Assembled what) {
     Assembly a;
     a.start.t = t_;
     a.start.q = q_;
@@ -39,11 +40,11 @@ class Assembler {
     if (mechanism_.m() > 0) {
       if (mechanism_.nv() == 0) nothing_moves();
       close_positions(a);
-      close_velocities(a);
       judge_rank(a);
+      close_velocities(a);
     }
     a.mobility = mechanism_.nv() - a.rank;
-    accelerations(a);
+    if (what == Assembled::motion) accelerations(a);
     return a;
   }
 
@@ -61,6 +62,9 @@ class Assembler {
     a.position_residual = phi.cwiseAbs().maxCoeff();
     a.moved = (a.start.q - guess).cwiseAbs().maxCoeff();
     if (!found.is_closed) refuse(phi, closing.tolerance());
+    if (!found.is_least) return;
+    a.start.residue = phi;
+    a.residue = residue_in_words(mechanism_, phi);
   }
 
   [[noreturn]] void refuse(const Eigen::VectorXd& phi, double tolerance) const {
@@ -105,7 +109,10 @@ class Assembler {
     for (const double x : j) largest = std::max(largest, std::abs(x));
     const double scale =
         1 + (u.size() > 0 ? u.cwiseQuotient(column_).cwiseAbs().maxCoeff() : 0) * (1 + largest);
-    if (rate.cwiseQuotient(row_).cwiseAbs().maxCoeff() <= 1e-10 * scale) return;
+    // Of redundant equations rates keep what the singular values that do not count leave.
+    const bool known = a.rank == mechanism_.m() || a.kept > 0;
+    const double left = std::max(1e-10, known ? 2 * a.dropped : rank_tolerance);
+    if (rate.cwiseQuotient(row_).cwiseAbs().maxCoeff() <= left * scale) return;
     Eigen::Index worst;
     rate.cwiseAbs().maxCoeff(&worst);
     const auto& name = mechanism_.rows()[static_cast<std::size_t>(worst)].loop;
@@ -121,11 +128,11 @@ class Assembler {
   }
 
   void judge_rank(Assembly& a) {
-    LeastNorm::Rows rows = steps_.judge(loops_.whole_jacobian());
-    a.rank = rows.rank;
-    a.smallest_pivot = rows.smallest_pivot;
-    a.largest_neglected = rows.largest_neglected;
-    a.dependent_rows = std::move(rows.dependent);
+    LoopRank judged = loop_rank(mechanism_, e());
+    a.rank = judged.rank;
+    a.kept = judged.kept;
+    a.dropped = judged.dropped;
+    a.dependent_rows = std::move(judged.dependent);
   }
 
   void accelerations(Assembly& a) {
@@ -136,30 +143,30 @@ class Assembler {
     e().place(s.t, s.q.data());
     if (mechanism_.m() == 0) {
       if (!e().open_accelerations(s.t, s.q.data(), s.u.data(), s.udot.data()))
-        no_inertia(e().singular_joint());
+        no_inertia(s, e().singular_joint());
       return;
     }
     if (mechanism_.kkt() == KktChoice::sweeps && !mechanism_.dense_kkt()) {
       const auto solver = make_loop_solver(mechanism_, e());
       if (!solver->acceleration(s.t, s.q.data(), s.u.data(), nullptr, 0, 0, s.udot.data(),
                                 s.lambda.data()))
-        no_inertia(solver->singular_joint());
+        no_inertia(s, solver->singular_joint());
       return;
     }
     const auto kkt = make_kkt(mechanism_);
-    if (!kkt->factor(e(), s.t, s.q.data(), fade_evaluation)) no_inertia(kkt->singular_joint());
+    if (!kkt->factor(e(), s.t, s.q.data(), fade_evaluation)) no_inertia(s, kkt->singular_joint());
     e().move(s.u.data());
     Eigen::VectorXd r(mechanism_.nv()), g(mechanism_.m());
     e().joint_forces(s.q.data(), s.u.data(), nullptr, nullptr, r.data());
     e().accelerations(g.data());
     r = -r;
     g = -g;
-    if (!kkt->solve(r.data(), g.data(), nullptr, s.udot.data(), s.lambda.data())) no_inertia(-1);
+    if (!kkt->solve(r.data(), g.data(), nullptr, s.udot.data(), s.lambda.data())) no_inertia(s, -1);
   }
 
-  [[noreturn]] void no_inertia(int rate) const {
-    throw SceneError(mechanism_.scene().where({}) +
-                     "the mechanism cannot move at its start: " + mechanism_.no_inertia(rate));
+  [[noreturn]] void no_inertia(const Start& s, int rate) const {
+    throw SceneError(mechanism_.scene().where({}) + "the mechanism cannot move at its start: " +
+                     mechanism_.no_inertia(rate, s.t, s.q.data()));
   }
 
   [[noreturn]] void nothing_moves() const {
@@ -179,13 +186,41 @@ class Assembler {
 
 }  // namespace
 
-Assembly assemble(const Mechanism& mechanism) {
-  return assemble(mechanism, 0, mechanism.tree().q0, mechanism.tree().u0);
+std::string residue_in_words(const Mechanism& mechanism, const Eigen::VectorXd& phi) {
+  if (phi.size() == 0) return "";
+  const Eigen::VectorXd open = phi.cwiseQuotient(LoopUnits(mechanism).equations).cwiseAbs();
+  Eigen::Index worst = 0;
+  const double largest = open.maxCoeff(&worst);
+  const auto loop_of = [&](Eigen::Index row) -> const std::string& {
+    return mechanism.rows()[static_cast<std::size_t>(row)].loop;
+  };
+  // Those whose equations are open with it by a thousandth as much at least.
+  std::vector<std::string> others;
+  for (Eigen::Index i = 0; i < open.size(); ++i)
+    if (open[i] > 1e-3 * largest && loop_of(i) != loop_of(worst) &&
+        (others.empty() || others.back() != loop_of(i)))
+      others.push_back(loop_of(i));
+  constexpr std::size_t most_named = 6;
+  std::string with;
+  for (std::size_t i = 0; i < others.size() && i < most_named; ++i)
+    with += (i == 0 ? " and those of '" : ", '") + others[i] + "'";
+  if (others.size() > most_named) with += ", …";
+  char size[32];
+  std::snprintf(size, sizeof size, "%.2g", std::abs(phi[worst]));
+  return "loop '" + loop_of(worst) + "' stays open by " + size +
+         (mechanism.angle_rows()[static_cast<std::size_t>(worst)] ? " rad" : " m") +
+         ": its equations" + with +
+         " are redundant and differ by that in the scene's numbers; closed in the least-squares "
+         "sense";
+}
+
+Assembly assemble(const Mechanism& mechanism, Assembled what) {
+  return assemble(mechanism, 0, mechanism.tree().q0, mechanism.tree().u0, what);
 }
 
 Assembly assemble(const Mechanism& mechanism, double t, const Eigen::VectorXd& q,
-                  const Eigen::VectorXd& u) {
-  return Assembler(mechanism, t, q, u).run();
+                  const Eigen::VectorXd& u, Assembled what) {
+  return Assembler(mechanism, t, q, u).run(what);
 }
 
 }  // namespace momenta

@@ -62,7 +62,7 @@ Closing::Trial Closing::along(const Eigen::VectorXd& q, double norm, Eigen::Vect
 /// Minimises |J δ + φ|² + λ² |δ|², λ = |φ|, but not so small that rows which are dust beside the
 /// others count.
 Eigen::VectorXd Closing::damped_step(const std::vector<double>& j, const Eigen::VectorXd& phi) {
-  steps_.factor(j, std::max(phi.norm(), LeastNorm::rank_tolerance * largest_of(j)));
+  steps_.factor(j, std::max(phi.norm(), rank_tolerance * largest_of(j)));
   return -steps_.solve(phi);
 }
 
@@ -91,7 +91,18 @@ Closing::Pose Closing::damped(Eigen::VectorXd q, int most) {
     norm = next_norm;
   }
   const double last = largest_of(phi);
-  return {q, last, last <= tolerance_};
+  const bool least = last > tolerance_ && is_least(q, last);
+  return {q, last, last <= tolerance_ || least, least};
+}
+
+/// Whether what is open, no more than a file leaves by rounding, is of redundant equations alone.
+bool Closing::is_least(const Eigen::VectorXd& q, double open) {
+  if (!(open <= left_by_files)) return false;
+  const Eigen::VectorXd phi = gap(q);
+  const std::vector<double> j = loops_.jacobian();
+  if (steps_.judge(j).rank == static_cast<int>(phi.size())) return false;
+  steps_.factor(j);
+  return largest_of(steps_.product(j, steps_.solve(phi))) <= tolerance_;
 }
 
 /// The gap closed continuously, down to a hundredth; false where it gets stuck before.

@@ -8,6 +8,9 @@
 //   continued   q' = −(JᵀJ + |φ|²)⁻¹ Jᵀ φ in steps of at most 0.05: the gap closes continuously.
 //   undamped    δ = −J⁺ φ whether |φ| shrinks or not. At a stretched pose, q = 0 of many parallel
 //               robots, no short step closes the loops further, and long ones leave it.
+//   least squares   where the equations are redundant and the numbers of the scene, rounded in its
+//               file, contradict each other by 10⁻⁸ at the most, no pose closes the loops: one where
+//               nothing of φ can be closed, J J⁺ φ = 0, then stands for it.
 //   seeds       damped from starts around the guess, 0.3, 1 and 3 radians or lengths away: of the
 //               first distance at which some close the one nearest to the guess.
 //
@@ -29,6 +32,7 @@ class Closing {
     Eigen::VectorXd q;
     double gap = 0;  ///< |Φ|∞, points in lengths
     bool is_closed = false;
+    bool is_least = false;  ///< closed in the least-squares sense alone
   };
   /// From the guess q. Cost: least-norm factorisations of Φ_q, 10 to 200 where it closes; up to
   /// 5000 where nothing does.
@@ -46,6 +50,7 @@ class Closing {
   Trial along(const Eigen::VectorXd& q, double norm, Eigen::VectorXd step);
   Eigen::VectorXd damped_step(const std::vector<double>& j, const Eigen::VectorXd& phi);
   Pose damped(Eigen::VectorXd q, int most_iterations);
+  bool is_least(const Eigen::VectorXd& q, double gap);
   bool follow(Eigen::VectorXd& q);
   Pose undamped(Eigen::VectorXd q);
   Pose from_seeds(const Eigen::VectorXd& guess);

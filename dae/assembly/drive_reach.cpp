@@ -29,7 +29,13 @@ class Continuation {
         steps_(pattern_, mechanism.m(), mechanism.nv()),
         closed_(std::max(closed, 4 * loops_.units().rounding)),
         t_(t),
-        q_(std::move(q)) {}
+        q_(std::move(q)) {
+    // What redundant equations leave open where it begins they leave on the way.
+    const double open = loops_.gap(t_, q_).cwiseAbs().maxCoeff();
+    if (open > closed_ && open <= left_by_files &&
+        steps_.judge(loops_.jacobian()).rank < mechanism.m())
+      closed_ = 4 * open;
+  }
 
   /// Leaves out groups that keep freedoms here; false where none is left.
   bool leave_free_groups(bool& all_determined);
@@ -200,8 +206,8 @@ DriveReach drive_reach(const Mechanism& mechanism, double t, const Eigen::Vector
   return reach;
 }
 
-Assembly assemble_at(const Mechanism& mechanism, double t) {
-  const Assembly start = assemble(mechanism);
+Assembly assemble_at(const Mechanism& mechanism, double t, Assembled what) {
+  const Assembly start = assemble(mechanism, what);
   if (t == 0 || (mechanism.scene().drives.empty() && !mechanism.plan().drives)) return start;
   Eigen::VectorXd q = start.start.q;
   if (t > 0) {
@@ -209,7 +215,7 @@ Assembly assemble_at(const Mechanism& mechanism, double t) {
     if (!reach.obstacle.empty()) throw SceneError(mechanism.scene().where({}) + reach.obstacle);
     q = std::move(reach.q);
   }
-  return assemble(mechanism, t, q, mechanism.tree().u0);
+  return assemble(mechanism, t, q, mechanism.tree().u0, what);
 }
 
 }  // namespace momenta

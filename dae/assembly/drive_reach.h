@@ -40,6 +40,6 @@ DriveReach drive_reach(const Mechanism& mechanism, double t, const Eigen::Vector
 /// least change of whatever they leave free, so that it stays on the branch of the start; before
 /// t = 0 assembled at once. Rates are those nearest to the scene's.
 /// @throws SceneError as assemble(), and where a drive cannot go on before t.
-Assembly assemble_at(const Mechanism& mechanism, double t);
+Assembly assemble_at(const Mechanism& mechanism, double t, Assembled what = Assembled::motion);
 
 }  // namespace momenta

@@ -1,4 +1,5 @@
 #include <momenta/dae/assembly/scaled_loops.h>
+#include <momenta/dae/kkt/loop_rank.h>
 
 #include <algorithm>
 #include <cmath>
@@ -20,18 +21,8 @@ Eigen::VectorXd ScaledLoops::gap(double t, const Eigen::VectorXd& q) {
   return in_units(std::move(phi));
 }
 
-std::vector<double> ScaledLoops::whole_jacobian() {
-  std::vector<double> values(pattern_.size());
-  e_->constraint_entries(values.data());
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    const auto [row, column] = pattern_[i];
-    values[i] *= units_.rates[column] / units_.equations[row];
-  }
-  return values;
-}
-
 std::vector<double> ScaledLoops::jacobian() {
-  std::vector<double> values = whole_jacobian();
+  std::vector<double> values = scaled_entries(mechanism_, *e_, units_);
   for (std::size_t i = 0; i < values.size(); ++i)
     if (!columns[static_cast<std::size_t>(pattern_[i].column)]) values[i] = 0;
   return values;

@@ -2,7 +2,7 @@
 // The loop equations in the units of an assembly: D⁻¹ Φ, and D⁻¹ Φ_q C with respect to steps
 // δ = C⁻¹ u, lengths counted in the length of the scene. Rows and columns can be left out.
 
-#include <momenta/dae/assembly/units.h>
+#include <momenta/dae/kkt/loop_units.h>
 
 #include <memory>
 #include <vector>
@@ -18,8 +18,6 @@ class ScaledLoops {
   /// Entries of D⁻¹ Φ_q C where gap() was taken last, in the order of pattern(); zero in columns
   /// that are left out.
   std::vector<double> jacobian();
-  /// The same with all columns.
-  std::vector<double> whole_jacobian();
   /// q after a step δ (nv) from there.
   Eigen::VectorXd moved(const Eigen::VectorXd& q, const Eigen::VectorXd& step);
   /// D⁻¹ x (m), zero in rows that are left out.
@@ -30,7 +28,7 @@ class ScaledLoops {
   const Mechanism& mechanism() const { return mechanism_; }
   Evaluation<double>& evaluation() { return *e_; }
   const std::vector<KktPattern::Entry>& pattern() const { return pattern_; }
-  const AssemblyUnits& units() const { return units_; }
+  const LoopUnits& units() const { return units_; }
 
   std::vector<bool> columns, rows;  ///< that are in: all, until told otherwise
 
@@ -38,7 +36,7 @@ class ScaledLoops {
   const Mechanism& mechanism_;
   std::unique_ptr<Evaluation<double>> e_;
   const std::vector<KktPattern::Entry>& pattern_;  ///< of Φ_q
-  AssemblyUnits units_;
+  LoopUnits units_;
 };
 
 }  // namespace momenta

@@ -28,7 +28,7 @@ bool AccelerationForm::rhs(double t, const double* y, double* ydot) {
   double* udot = ydot + mechanism_.nq();
   if (!has_loops()) {
     if (!e_->open_accelerations(t, q, u, udot))
-      return fail_at(t, mechanism_.no_inertia(e_->singular_joint()));
+      return fail_at(t, mechanism_.no_inertia(e_->singular_joint(), t, q));
     coordinate_rates(q, u, ydot);
     return true;
   }

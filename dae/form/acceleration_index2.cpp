@@ -34,7 +34,7 @@ class AccelerationIndex2 final : public DaeFormOf<AccelerationIndex2>, public Ha
     double* vdot = f + layout_.x();
     if (!w.solver) {
       if (!w.e->open_accelerations(t, q, v, vdot))
-        return failed(mechanism_.no_inertia(w.e->singular_joint()));
+        return failed(mechanism_.no_inertia(w.e->singular_joint(), t, q));
     } else if (!w.solver->acceleration(t, q, v, centre(z), 0, 0, vdot, z)) {
       return failed("the solution of (3) is not finite");
     }

@@ -18,44 +18,59 @@ namespace momenta {
 /// constant c, so σ may be kept small at will; left alone it grows like t under a mean load, and
 /// the local error with it.
 struct Gauge {
-  enum class Kind { none, leak, reset, flip };
-  Kind kind = Kind::none;
-  double kappa =
-      0;  ///< leak [1/s]: ṗ −= κ Φ_qᵀσ, λ = σ̇ + κσ; 0: chosen from the start (see default_leak)
+  /// When, and how much of it goes.
+  enum class Kind {
+    none,   ///< nothing is done
+    leak,   ///< σ decays at the rate κ all the time
+    reset,  ///< σ = 0 after each step
+    flip    ///< σ → −σ after each step
+  };
+  Kind kind = Kind::none;  ///< which
+  /// Leak [1/s]: ṗ −= κ Φ_qᵀσ, λ = σ̇ + κσ; 0: chosen from the start (see default_leak).
+  double kappa = 0;
+  /// As parse_gauge reads it.
   std::string text() const;
 };
 /// "none", "leak", "leak:3", "reset", "flip". @throws std::invalid_argument with a sentence
 Gauge parse_gauge(const std::string& text);
 
+/// What a form may be told.
 struct FormOptions {
-  Gauge gauge;
-  bool project =
-      false;  ///< one mass-metric position correction after accepted steps (one-step methods)
+  Gauge gauge;  ///< of momentum forms
+  /// One mass-metric position correction after accepted steps (one-step methods).
+  bool project = false;
   double baumgarte_alpha = 0;  ///< [1/s]; 0: chosen by the form
   double baumgarte_beta = 0;   ///< [1/s]
   double beta = 0;     ///< momentum forms: Φ̇ = −βΦ in the second row of (7) [1/s]; 0: none
   double penalty = 0;  ///< augmented Lagrangians: α in effective masses of the loops; 0: 1e7
 };
 
-/// A consistent start: Φ(q, t) = 0, Φ_q u + Φ_t = 0.
+/// A consistent start: Φ(q, t) = 0, Φ_q u + Φ_t = 0; of redundant equations whose numbers
+/// contradict each other in the least-squares sense.
 struct Start {
-  double t = 0;
-  Eigen::VectorXd q, u;          ///< nq, nv
-  Eigen::VectorXd udot, lambda;  ///< accelerations and force multipliers there: nv, m
+  double t = 0;             ///< [s]
+  Eigen::VectorXd q;        ///< nq
+  Eigen::VectorXd u;        ///< nv
+  Eigen::VectorXd udot;     ///< accelerations there: nv
+  Eigen::VectorXd lambda;   ///< force multipliers there: m
+  Eigen::VectorXd residue;  ///< Φ that is left by contradictions (m); empty: none
 };
 
 /// q, u and the impulse (σ of momentum forms) or force (λ) multipliers read back from a form's
 /// state.
 struct Snapshot {
-  Eigen::VectorXd q, u, multipliers;
+  Eigen::VectorXd q;            ///< nq
+  Eigen::VectorXd u;            ///< nv
+  Eigen::VectorXd multipliers;  ///< m
 };
 
+/// A form of the equations of one mechanism, made by make_form.
 class Form {
  public:
   virtual ~Form() = default;
-  virtual const std::string& name() const = 0;
-  virtual bool momentum_like() const = 0;  ///< multipliers are σ
-  virtual bool is_dae() const = 0;
+  virtual const std::string& name() const = 0;  ///< as form_names() has it
+  virtual bool momentum_like() const = 0;       ///< multipliers are σ
+  virtual bool is_dae() const = 0;              ///< dae() is there, else ode()
   /// The state the form starts from.
   virtual std::vector<double> initial(const Start& start) = 0;
   /// Reads a state back. Momentum forms recompute u from (7), so Φ̇ of theirs is that of an
@@ -76,7 +91,9 @@ class Form {
   virtual double beta() const { return 0; }
   /// The penalty in force, in effective masses of the loops; zero for forms without one.
   virtual double penalty() const { return 0; }
+  /// What an ODE method integrates, owned by the form; null for DAE forms.
   virtual OdeSystem* ode() { return nullptr; }
+  /// What a DAE method integrates, owned by the form; null for ODE forms.
   virtual DaeSystem* dae() { return nullptr; }
 };
 

@@ -39,7 +39,7 @@ bool MomentumForm::rhs(double t, const double* y, double* ydot) {
   double* pdot = ydot + mechanism_.nq();
   if (!has_loops()) {
     if (!e_->open_momentum_rates(t, q, p, u_.data(), pdot))
-      return fail_at(t, mechanism_.no_inertia(e_->singular_joint()));
+      return fail_at(t, mechanism_.no_inertia(e_->singular_joint(), t, q));
   } else {
     if (corrects_) {
       place_.assign(q, q + mechanism_.nq());

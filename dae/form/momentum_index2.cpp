@@ -39,7 +39,7 @@ class MomentumIndex2 final : public DaeFormOf<MomentumIndex2>, public HalfExplic
     double* pdot = f + layout_.x();
     if (!w.solver) {
       if (!w.e->open_momentum_rates(t, q, p, w.u.data(), pdot))
-        return failed(mechanism_.no_inertia(w.e->singular_joint()));
+        return failed(mechanism_.no_inertia(w.e->singular_joint(), t, q));
     } else if (!w.solver->momentum(t, q, p, centre(z), fade_evaluation, leak(), w.u.data(), z,
                                    pdot)) {
       return failed("the solution of (7) is not finite");

@@ -34,7 +34,7 @@ bool OdeForm::solver_failed(double t, const double* q, const std::string& what) 
   for (int i = 0; i < mechanism_.nq(); ++i)
     if (!std::isfinite(q[i])) return fail_at(t, "a joint coordinate is not finite");
   if (solver_->singular_joint() >= 0)
-    return fail_at(t, mechanism_.no_inertia(solver_->singular_joint()));
+    return fail_at(t, mechanism_.no_inertia(solver_->singular_joint(), t, q));
   return fail_at(t, what + " is not finite");
 }
 
@@ -56,7 +56,7 @@ void OdeForm::look_on(bool looking) {
 
 void OdeForm::carry(Memory& memory) {
   memory(multipliers_), memory(centre_), memory(handling_), memory(weakest_at_best_);
-  memory(always_faded_);
+  memory(always_faded_), memory(weak_evaluations_);
   long solutions = factorizations();
   memory(solutions);
   if (solver_ && memory.reads()) looked_ = solver_->solutions() - solutions;
@@ -73,6 +73,7 @@ void OdeForm::note_pivots() {
   else if (pivots.weakest < approaching_ * weakest_at_best_)
     handling_ = std::max(handling_, SingularityHandling::norm);
   if (!watched_) return;
+  weak_evaluations_ += pivots.faded > redundant_;
   for (const int row : solver_->faded_rows()) ++(*watched_)[static_cast<std::size_t>(row)];
 }
 

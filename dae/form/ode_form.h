@@ -26,9 +26,14 @@ class OdeForm : public Form, public OdeSystem {
   double scale(int i) const override { return scale_[static_cast<std::size_t>(i)]; }
   /// Of the run itself; those made for looking at samples are not counted.
   long factorizations() const { return solver_ ? solver_->solutions() - looked_ : 0; }
-  /// Counts in `evaluations` (m), row of Φ by row, the right-hand sides in which it faded; null:
-  /// counts no longer. KLU can't tell which rows fade.
-  void watch_faded(std::vector<long>* evaluations) { watched_ = evaluations; }
+  /// Counts in `evaluations` (m), row of Φ by row, the right-hand sides in which it faded, and in
+  /// weak_evaluations() those in which more than `redundant` did; null: counts no longer. KLU can't
+  /// tell which rows fade.
+  void watch_faded(std::vector<long>* evaluations, int redundant = 0) {
+    watched_ = evaluations;
+    redundant_ = redundant;
+  }
+  long weak_evaluations() const { return weak_evaluations_; }
 
   /// The σ or λ (m) of a moment ago, which the next step keeps where rows fade.
   void centre_on(const double* multipliers) {
@@ -82,7 +87,9 @@ class OdeForm : public Form, public OdeSystem {
   std::vector<double> kept_;                                  ///< multipliers, while looking
   SingularityHandling handling_ = SingularityHandling::none;  ///< of the step under way
   double weakest_at_best_ = 0;  ///< largest that the weakest pivot has been on the run
-  int always_faded_ = 0;        ///< rows that are redundant wherever the mechanism has been
+  int redundant_ = 0;           ///< rows at the start
+  long weak_evaluations_ = 0;
+  int always_faded_ = 0;  ///< rows that are redundant wherever the mechanism has been
   std::vector<long>* watched_ = nullptr;
   std::string name_;
   const Mechanism& mechanism_;

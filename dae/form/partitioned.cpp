@@ -26,6 +26,7 @@
 #include <momenta/dae/form/ode_form.h>
 #include <momenta/dae/kkt/coordinate_jacobian.h>
 #include <momenta/dae/kkt/coordinate_split.h>
+#include <momenta/dae/kkt/loop_rank.h>
 
 #include <algorithm>
 #include <cmath>
@@ -162,8 +163,8 @@ class Partitioned final : public OdeForm {
   bool choose(double t) {
     e_->place(t, q_.data());
     evaluate_jacobian();
+    if (rank_ < 0) rank_ = loop_rank(mechanism_, *e_).rank;
     if (!rates_->choose(rate_values_, rank_)) return false;
-    rank_ = rates_->rank();
     if (positions_ && !positions_->choose(values_, rank_ + jacobian_.balls())) return false;
     at_start_ = std::make_unique<SplitFactor>(positions());
     inside_ = std::make_unique<SplitFactor>(positions());
@@ -262,7 +263,7 @@ class Partitioned final : public OdeForm {
   bool accelerate(double t) {
     if (!has_loops())
       return e_->open_accelerations(t, q_.data(), u_.data(), udot_.data()) ||
-             fail_at(t, mechanism_.no_inertia(e_->singular_joint()));
+             fail_at(t, mechanism_.no_inertia(e_->singular_joint(), t, q_.data()));
     return solver_->acceleration(t, q_.data(), u_.data(), centre_.data(), 0, 0, udot_.data(),
                                  multipliers_.data()) ||
            solver_failed(t, q_.data(), "the solution of (3)");

@@ -45,6 +45,8 @@ class AssembledSolver final : public LoopSolver {
       e_.move(u);
       e_.momenta(sigma, work_.data());
       e_.momentum_rates(q, u, sigma, leak, pdot);
+      if (pushed_)
+        for (std::size_t i = 0; i < r_.size(); ++i) pdot[i] += pushed_[i];
       return all_finite(pdot, r_.size());
     }
     return true;
@@ -56,6 +58,8 @@ class AssembledSolver final : public LoopSolver {
     e_.move(u);
     e_.joint_forces(q, u, nullptr, nullptr, r_.data());
     for (double& r : r_) r = -r;
+    if (pushed_)
+      for (std::size_t i = 0; i < r_.size(); ++i) r_[i] += pushed_[i];
     e_.accelerations(g_.data());
     for (double& g : g_) g = -g;
     if (alpha != 0 || beta != 0) {

@@ -8,7 +8,7 @@
 namespace momenta {
 namespace {
 
-constexpr double rank_tolerance = 1e-9;  // of pivots, against the largest
+constexpr double regular_pivot = 1e-9;  // of pivots, against the largest
 constexpr int dense_limit = 40;          // rows up to which dense LU is faster than KLU
 
 }  // namespace
@@ -32,7 +32,7 @@ bool CoordinateSplit::choose(const std::vector<double>& values, int rank) {
   }
   const Eigen::FullPivLU<Eigen::MatrixXd> lu(a);
   const Eigen::VectorXd pivots = lu.matrixLU().diagonal().cwiseAbs();
-  const double least = rank_tolerance * (pivots.size() > 0 ? pivots.maxCoeff() : 0);
+  const double least = regular_pivot * (pivots.size() > 0 ? pivots.maxCoeff() : 0);
   const auto found = static_cast<int>((pivots.array() > least).count());
   if (rank < 0) rank = found;
   if (found < rank) return false;

@@ -15,11 +15,13 @@
 
 namespace momenta {
 
-/// How weak a pivot may be, relative to its group's scale, before it fades.
-inline constexpr double fade_evaluation = 1e-8;  ///< in (7) and (3), recentred
-inline constexpr double fade_projection =
-    1e-13;  ///< in projections, which must remove what is there
+/// How weak a pivot may be, relative to its group's scale, before it fades: in (7) and (3),
+/// recentred.
+inline constexpr double fade_evaluation = 1e-8;
+/// The same in projections, which must remove what is there.
+inline constexpr double fade_projection = 1e-13;
 
+/// A factorised matrix of (7), with its workspace: one object a thread.
 class Kkt {
  public:
   virtual ~Kkt() = default;
@@ -39,20 +41,22 @@ class Kkt {
   /// Rows of Φ whose pivots faded at the last factor(): redundant or singular here. KLU can't tell,
   /// and lists none.
   const std::vector<int>& faded_rows() const { return faded_rows_; }
+  /// How many those are.
   int faded() const { return static_cast<int>(faded_rows_.size()); }
   /// Of the last factor(): the least pivot of a row of Φ that has not faded, relative to its
   /// group's scale; 1 where none is known.
   double weakest() const { return weakest_; }
+  /// Calls of factor() so far.
   long factorizations() const { return factorizations_; }
   /// Place in u of the joint at which the last factor() failed, or −1: something is not finite.
   int singular_joint() const { return singular_joint_; }
 
  protected:
-  std::vector<int> faded_rows_;
-  const double* compliance_ = nullptr;
-  double weakest_ = 1;
-  long factorizations_ = 0;
-  int singular_joint_ = -1;
+  std::vector<int> faded_rows_;         ///< faded_rows()
+  const double* compliance_ = nullptr;  ///< soften()
+  double weakest_ = 1;                  ///< weakest()
+  long factorizations_ = 0;             ///< factorizations()
+  int singular_joint_ = -1;             ///< singular_joint()
 };
 
 /// Dense or sparse by size, or as the mechanism's options say; sparse by the equations of the
@@ -62,13 +66,18 @@ std::unique_ptr<Kkt> make_kkt(const Mechanism& mechanism);
 /// Whether a sparse matrix is that of the bodies' equations: where bodies are more than
 /// `deep_tree` joints from the ground in the mean, the joints' own is the costlier one. O(bodies).
 bool solved_by_bodies(const Mechanism& mechanism);
+/// In joints from the ground, the mean over bodies.
 inline constexpr double deep_tree = 40;
 /// Whether the matrix of make_kkt() has a pivot for each row of Φ, to fade and to be told: KLU has
 /// none.
 bool filters_pivots(const Mechanism& mechanism);
+/// For small systems: u eliminated along the tree, then Φ_q M⁻¹ Φ_qᵀ, dense; O((nv + m)³).
 std::unique_ptr<Kkt> make_dense_kkt(const Mechanism& mechanism);
+/// For large ones: L D Lᵀ of the matrix of the joints' equations, pivots of σ filtered; O(fill).
 std::unique_ptr<Kkt> make_sparse_kkt(const Mechanism& mechanism);
+/// Where joints have no inertia before their loops close: LU of that matrix; no pivot fades.
 std::unique_ptr<Kkt> make_klu_kkt(const Mechanism& mechanism);
+/// For deep trees: LU of the matrix of the bodies' equations; no pivot fades.
 std::unique_ptr<Kkt> make_body_kkt(const Mechanism& mechanism);
 
 }  // namespace momenta

@@ -21,7 +21,7 @@ using Decomposition = Eigen::CompleteOrthogonalDecomposition<MatrixXd>;
 
 Decomposition decompose(const MatrixXd& a) {
   Decomposition d;
-  d.setThreshold(LeastNorm::rank_tolerance);
+  d.setThreshold(rank_tolerance);
   d.compute(a);
   return d;
 }
@@ -192,19 +192,15 @@ VectorXd LeastNorm::product(const std::vector<double>& values, const VectorXd& x
   return b;
 }
 
-/// Pivoting on the columns of Aᵀ orders the rows of A: those beyond the rank depend on the ones
-/// before. Dense pivots bound the singular values to a factor of about √n.
-LeastNorm::Rows LeastNorm::judge(const std::vector<double>& values) {
-  Rows rows;
+LoopRank LeastNorm::judge(const std::vector<double>& values) {
+  LoopRank rows;
   if (dense_) {
-    const auto d = decompose(filled(pattern_, values, rows_, columns_).transpose());
-    const VectorXd pivots = d.matrixQTZ().diagonal().cwiseAbs();
-    rows.rank = static_cast<int>(d.rank());
-    rows.smallest_pivot = rows.rank > 0 ? pivots[rows.rank - 1] : 0;
-    rows.largest_neglected =
-        rows.rank < pivots.size() ? pivots.tail(pivots.size() - rows.rank).maxCoeff() : 0;
-    const auto& order = d.colsPermutation().indices();
-    for (int i = rows.rank; i < rows_; ++i) rows.dependent.push_back(order[i]);
+    RankAndIdle all = rank_and_idle(filled(pattern_, values, rows_, columns_));
+    rows.rank = all.rank;
+    rows.kept = all.kept;
+    rows.dropped = all.dropped;
+    rows.singular_values = std::move(all.singular_values);
+    rows.dependent = reduce(all.left);
   } else {
     factor(values);
     const auto* f = sparse_->factors;

@@ -6,10 +6,11 @@
 // Few entries: complete orthogonal decomposition, and Householder's QR of ( A; λ 1 ). Many: sparse
 // QR of Aᵀ, from ( A  λ1 )ᵀ Π = Q R: x is the upper part of Q R⁻ᵀ Πᵀ b, the shortest ( x, y ) with
 // A x + λ y = b; its cost goes with the fill of m columns, whatever n is. Dependent rows are those
-// whose column of R is below 1e-9 of the largest column of Aᵀ; then A x = b is met in the others.
+// whose column of R is below rank_tolerance (loop_rank.h) of the largest column of Aᵀ; then A x = b
+// is met in the others.
 // Source: Davis, Algorithm 915, SuiteSparseQR, ACM TOMS 38 (2011) 8.
 
-#include <momenta/dae/mechanism.h>
+#include <momenta/dae/kkt/loop_rank.h>
 
 #include <Eigen/Core>
 #include <memory>
@@ -19,8 +20,6 @@ namespace momenta {
 
 class LeastNorm {
  public:
-  static constexpr double rank_tolerance = 1e-9;  ///< of pivots, against the largest
-
   /// Places of the entries of A, which must outlive this.
   LeastNorm(const std::vector<KktPattern::Entry>& pattern, int rows, int columns);
   ~LeastNorm();
@@ -33,13 +32,8 @@ class LeastNorm {
   /// A x
   Eigen::VectorXd product(const std::vector<double>& values, const Eigen::VectorXd& x) const;
 
-  struct Rows {
-    int rank = 0;
-    double smallest_pivot = 0;     ///< of those that count; 0: not known, A is sparse
-    double largest_neglected = 0;  ///< of the others; 0 as well
-    std::vector<int> dependent;    ///< ascending
-  };
-  Rows judge(const std::vector<double>& values);
+  /// Which rows of A follow from the others, and how many do not.
+  LoopRank judge(const std::vector<double>& values);
   /// How many there were, sparse ones.
   long factorizations() const;
   bool is_dense() const { return sparse_ == nullptr; }

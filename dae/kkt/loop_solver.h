@@ -27,6 +27,10 @@ class LoopSolver {
   /// g). `fade` is ignored.
   virtual void soften(std::vector<double> compliance) = 0;
 
+  /// From now on momentum() adds τ (nv) to ṗ and acceleration() to the joints' forces; null: none.
+  /// Kept by reference. MaximalSolver does not take it. @throws std::logic_error there
+  virtual void push(const double* tau) { pushed_ = tau; }
+
   /// u (nv) and σ (m) of (7) from p (nv) at (t, q). `centre` (m) null: zero. With `pdot` not null
   /// also ṗ (nv), eq. (8), −κ Φ_qᵀσ included.
   virtual bool momentum(double t, const double* q, const double* p, const double* centre,
@@ -57,6 +61,7 @@ class LoopSolver {
 
  protected:
   double beta_ = 0;
+  const double* pushed_ = nullptr;
   long solutions_ = 0;
   int singular_joint_ = -1;
 };

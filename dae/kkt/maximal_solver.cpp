@@ -44,6 +44,9 @@ class MaximalSolver final : public LoopSolver {
       for (int row = 0; row < loop.rows; ++row) columns_.push_back(column_of(loop));
   }
 
+  void push(const double*) override {
+    throw std::logic_error("maximal coordinates take no forces of joints beside the scene's");
+  }
   void soften(std::vector<double> compliance) override { compliance_ = std::move(compliance); }
 
   bool acceleration(double t, const double* q, const double* u, const double* centre, double alpha,

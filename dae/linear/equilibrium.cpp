@@ -3,7 +3,7 @@
 #include <momenta/dae/linear/equilibrium.h>
 #include <momenta/dae/linear/local_pencil.h>
 #include <momenta/dae/linear/pose_motion.h>
-#include <momenta/dae/report/number_text.h>
+#include <momenta/dae/text/number_text.h>
 
 #include <algorithm>
 #include <cmath>
@@ -97,7 +97,7 @@ class Searcher {
     p.q = q;
     if (!poses_.let_go(t, q, p.udot, p.lambda))
       throw SceneError(mechanism_.scene().where({}) + "the mechanism cannot be let go: " +
-                       mechanism_.no_inertia(poses_.singular_joint()));
+                       mechanism_.no_inertia(poses_.singular_joint(), t, q.data()));
     p.force.resize(mechanism_.nv());
     e_.place(t, q.data());
     e_.move(rest_.data());

@@ -1,5 +1,7 @@
+#include <momenta/dae/kkt/loop_units.h>
 #include <momenta/dae/linear/pose_motion.h>
 
+#include <algorithm>
 #include <limits>
 
 namespace momenta {
@@ -23,6 +25,12 @@ bool PoseMotion::move(double t, const VectorXd& from, const VectorXd& delta, Vec
   if (!delta.allFinite()) return false;
   motion_.move(*e_, from.data(), delta.data(), q.data());
   if (!solver_) return q.allFinite();
+  e_->place(t, from.data());
+  e_->positions(phi_.data());
+  const double open_before = phi_.cwiseAbs().maxCoeff();
+  const double closed = open_before <= left_by_files * std::max(1.0, length_of(mechanism_.scene()))
+                            ? std::max(closed_, 4 * open_before)  // what redundant equations leave
+                            : closed_;
   VectorXd next(q.size());
   double before = std::numeric_limits<double>::infinity();
   for (int pass = 0; pass < most_corrections; ++pass) {
@@ -30,7 +38,7 @@ bool PoseMotion::move(double t, const VectorXd& from, const VectorXd& delta, Vec
     e_->positions(phi_.data());
     const double open = phi_.cwiseAbs().maxCoeff();
     if (!std::isfinite(open)) return false;
-    if (open == 0 || (open <= closed_ && !(open < 0.5 * before))) return true;
+    if (open == 0 || (open <= closed && !(open < 0.5 * before))) return true;
     before = open;
     if (!solver_->position_correction(t, q.data(), delta_.data()) || !delta_.allFinite())
       return false;
@@ -39,7 +47,7 @@ bool PoseMotion::move(double t, const VectorXd& from, const VectorXd& delta, Vec
   }
   e_->place(t, q.data());
   e_->positions(phi_.data());
-  return phi_.cwiseAbs().maxCoeff() <= closed_;
+  return phi_.cwiseAbs().maxCoeff() <= closed;
 }
 
 bool PoseMotion::let_go(double t, const VectorXd& q, VectorXd& udot, VectorXd& lambda) {

@@ -22,7 +22,6 @@ using Eigen::VectorXd;
 constexpr int most_dense = 400;    // rates, or loop equations, of singular values
 constexpr int most_reduced = 300;  // degrees of freedom whose modes are all found
 constexpr int usual_count = 20;    // of more
-constexpr double counts = 1e-7;    // of the largest singular value
 
 /// Φ_q at the equilibrium in the units of kkt/axis_scale.h: D^(−1/2) Φ_q diag(M)^(−1/2).
 struct ScaledLoops {
@@ -51,18 +50,15 @@ ScaledLoops scaled_loops(const Mechanism& mechanism, const Equilibrium& at) {
 }
 
 /// The motions that the loops allow, by the right singular vectors that belong to no singular
-/// value.
-MatrixXd motions_dense(const Mechanism& mechanism, const ScaledLoops& s, int& rank) {
+/// value, Φ_q being of this rank.
+MatrixXd motions_dense(const Mechanism& mechanism, const ScaledLoops& s, int rank) {
   const int nv = mechanism.nv(), m = mechanism.m();
-  rank = 0;
   if (m == 0) return MatrixXd::Identity(nv, nv);
   MatrixXd a = MatrixXd::Zero(m, nv);
   const auto& pattern = mechanism.constraint_pattern();
   for (std::size_t i = 0; i < pattern.size(); ++i)
     a(pattern[i].row, pattern[i].column) = s.values[i];
   const Eigen::BDCSVD<MatrixXd> svd(a, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const VectorXd& values = svd.singularValues();
-  while (rank < values.size() && values[rank] > counts * values[0]) ++rank;
   return s.column.asDiagonal() * svd.matrixV().rightCols(nv - rank);
 }
 
@@ -158,19 +154,20 @@ Spectrum spectrum(const Mechanism& mechanism, const Equilibrium& at, int count, 
   refuse_springs_without_length(mechanism, at);
   const ScaledLoops scaled = scaled_loops(mechanism, at);
   if (mechanism.m() > 0) {
-    LeastNorm rows(mechanism.constraint_pattern(), mechanism.m(), mechanism.nv());
-    found.dependent_rows = rows.judge(scaled.values).dependent;
+    const auto e = mechanism.evaluation<double>();
+    e->place(at.t, at.q.data());
+    LoopRank loops = loop_rank(mechanism, *e);
+    found.rank = loops.rank;
+    found.dependent_rows = std::move(loops.dependent);
   }
+  found.mobility = mechanism.nv() - found.rank;
   found.dense =
       route == Route::dense ||
       (route == Route::automatic && mechanism.nv() <= most_dense && mechanism.m() <= most_dense);
   if (found.dense) {
     const MatrixXd N = motions_dense(mechanism, scaled, found.rank);
-    found.mobility = mechanism.nv() - found.rank;
     reduced_spectrum(mechanism, at, N, found);
   } else {
-    found.rank = mechanism.m() - static_cast<int>(found.dependent_rows.size());
-    found.mobility = mechanism.nv() - found.rank;
     if (found.mobility <= most_reduced) {
       reduced_spectrum(
           mechanism, at,

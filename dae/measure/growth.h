@@ -1,11 +1,24 @@
 #pragma once
 // How a drift grows: the exponent of its running maximum.
 
-#include <momenta/dae/study/run_result.h>
-
+#include <limits>
 #include <vector>
 
 namespace momenta {
+
+/// Of what was not measured: null in JSON, an empty cell in CSV.
+inline constexpr double not_measured = std::numeric_limits<double>::quiet_NaN();
+
+/// Drift below this is the rounding of Φ, or of Φ̇, itself: no growth law is read from it [m, m/s].
+inline constexpr double rounding_level = 1e-13;
+
+/// A fitted power law running_max(t) ~ t^exponent.
+struct Growth {
+  double exponent = not_measured;    ///< NaN: no power law
+  double half_range = not_measured;  ///< half the spread of the slopes of sub-ranges
+  double from = 0;                   ///< fitted range of t [s]
+  double to = 0;                     ///< its end [s]
+};
 
 /// Fits running_max(t) ~ t^exponent over the last factor 20 in t, on logarithmically spaced times,
 /// by least squares. The half-range is half the spread of the slopes of the two halves of that

@@ -1,7 +1,6 @@
 #include <momenta/dae/kkt/loop_solver.h>
 #include <momenta/dae/measure/rank.h>
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -18,12 +17,22 @@ constexpr double takes_part = 1e-6;  // of a dependency's largest coefficient
 
 class RankScout {
  public:
-  explicit RankScout(const Mechanism& mechanism)
-      : mechanism_(mechanism), e_(mechanism.evaluation<double>()) {}
+  RankScout(const Mechanism& mechanism, double t, const VectorXd& q)
+      : mechanism_(mechanism), e_(mechanism.evaluation<double>()) {
+    VectorXd phi(mechanism.m());
+    e_->place(t, q.data());
+    e_->positions(phi.data());
+    closed_ = std::max(1e-10, 4 * phi.cwiseAbs().maxCoeff());
+  }
 
   ScaledJacobian scaled(double t, const VectorXd& q) {
     e_->place(t, q.data());
     return scaled_jacobian(mechanism_, *e_);
+  }
+
+  LoopRank judged(double t, const VectorXd& q) {
+    e_->place(t, q.data());
+    return loop_rank(mechanism_, *e_);
   }
 
   /// M u
@@ -57,7 +66,7 @@ class RankScout {
     }
     e_->place(t, next.data());
     e_->positions(phi.data());
-    if (!(phi.cwiseAbs().maxCoeff() < 1e-10)) return {};
+    if (!(phi.cwiseAbs().maxCoeff() < closed_)) return {};
     return (next - q).norm() > 0.1 * way ? next : VectorXd();
   }
 
@@ -74,38 +83,8 @@ class RankScout {
   const Mechanism& mechanism_;
   std::unique_ptr<Evaluation<double>> e_;
   std::unique_ptr<LoopSolver> solver_;
+  double closed_;  ///< |Φ|∞: rounding, or what redundant equations leave open at the start
 };
-
-/// The reduced basis of the columns of `n`: each has a row of its own where it is 1 and all others
-/// are 0. Rows of `first` are taken before others, later ones before earlier.
-std::vector<int> reduce(MatrixXd& n, const std::vector<int>& first) {
-  std::vector<int> own;
-  const auto part = [&](Eigen::Index row, Eigen::Index from) {
-    return n.row(row).tail(n.cols() - from).norm();
-  };
-  for (Eigen::Index k = 0; k < n.cols(); ++k) {
-    double largest = 0;
-    for (Eigen::Index i = 0; i < n.rows(); ++i) largest = std::max(largest, part(i, k));
-    int best = -1;
-    const auto take = [&](int row) {
-      if (best < 0 && part(row, k) > 0.2 * largest) best = row;
-    };
-    for (auto row = first.rbegin(); row != first.rend(); ++row) take(*row);
-    for (auto row = static_cast<int>(n.rows()) - 1; row >= 0; --row) take(row);
-    // One column of those left takes all of that row.
-    const VectorXd direction = n.row(best).tail(n.cols() - k).transpose().normalized();
-    MatrixXd rest = n.rightCols(n.cols() - k);
-    const VectorXd column = rest * direction;
-    const MatrixXd all = Eigen::HouseholderQR<MatrixXd>(direction).householderQ();
-    const MatrixXd others = all.rightCols(rest.cols() - 1);
-    n.rightCols(n.cols() - k - 1) = rest * others;
-    n.col(k) = column / column[best];
-    own.push_back(best);
-    for (Eigen::Index j = 0; j < n.cols(); ++j)
-      if (j != k) n.col(j) -= n(best, j) * n.col(k);
-  }
-  return own;
-}
 
 /// What a loop becomes with some of its rows alone.
 struct Simplification {
@@ -194,9 +173,10 @@ RankReport rank_report(const Mechanism& mechanism, const Start& start) {
   const VectorXd& q = start.q;
   RankReport report;
   if (mechanism.m() == 0) return report;
-  RankScout scout(mechanism);
+  RankScout scout(mechanism, t, q);
   const auto [here, factor] = scout.scaled(t, q);
-  RankAndIdle own = rank_and_idle(here);
+  const LoopRank verdict = scout.judged(t, q);
+  RankAndIdle own = rank_and_idle(here, 0, verdict.rank);
   report.rank = report.rank_nearby = own.rank;
   report.kept = own.kept;
   report.dropped = own.dropped;
@@ -227,8 +207,8 @@ RankReport rank_report(const Mechanism& mechanism, const Start& start) {
     }
   }
 
-  const std::vector<int> everywhere = reduce(left_elsewhere, {});
-  const std::vector<int> rows = reduce(own.left, everywhere);
+  const std::vector<int> rows = reduce(own.left);
+  const std::vector<int> everywhere = reduce(left_elsewhere, rows);
   for (std::size_t k = 0; k < rows.size(); ++k) {
     Dependency d;
     d.row = rows[k];
@@ -241,7 +221,6 @@ RankReport rank_report(const Mechanism& mechanism, const Start& start) {
   }
   std::sort(report.dependencies.begin(), report.dependencies.end(),
             [](const Dependency& a, const Dependency& b) { return a.row < b.row; });
-  // νᵀ D^(−1/2) Φ_q = 0: the forces themselves.
   report.idle = factor.asDiagonal() * own.left;
 
   std::vector<bool> involved(static_cast<std::size_t>(mechanism.m()));
@@ -254,18 +233,29 @@ RankReport rank_report(const Mechanism& mechanism, const Start& start) {
   return report;
 }
 
+namespace {
+
+/// Within its loop, from 1.
+int number_of(const std::vector<RowName>& rows, int row) {
+  int k = row;
+  while (k > 0 &&
+         rows[static_cast<std::size_t>(k - 1)].loop == rows[static_cast<std::size_t>(row)].loop)
+    --k;
+  return row - k + 1;
+}
+
+}  // namespace
+
+std::string row_in_words(const Mechanism& mechanism, int row) {
+  const auto& rows = mechanism.rows();
+  const RowName& own = rows[static_cast<std::size_t>(row)];
+  return "loop '" + own.loop + "' row " + std::to_string(number_of(rows, row)) + ", " + own.what;
+}
+
 std::string in_words(const Mechanism& mechanism, const Dependency& dependency) {
   const auto& rows = mechanism.rows();
-  const auto number = [&](int row) {  // within its loop, from 1
-    int k = row;
-    while (k > 0 &&
-           rows[static_cast<std::size_t>(k - 1)].loop == rows[static_cast<std::size_t>(row)].loop)
-      --k;
-    return row - k + 1;
-  };
-  const auto& own = rows[static_cast<std::size_t>(dependency.row)];
-  std::string text =
-      "loop '" + own.loop + "' row " + std::to_string(number(dependency.row)) + ", " + own.what;
+  const auto number = [&](int row) { return number_of(rows, row); };
+  std::string text = row_in_words(mechanism, dependency.row);
   if (dependency.on.empty()) return text + ", asks for nothing that the others do not grant";
   text += ", follows from ";
   std::string loop;

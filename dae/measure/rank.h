@@ -2,15 +2,13 @@
 // Which loop equations depend on which: at a pose, and at poses nearby on Φ = 0, which tells what
 // is redundant wherever the mechanism goes from what is so only here, at a singular pose.
 //
-// Judged on the matrix without units of kkt/idle_forces.h, at the poses tried, where |Φ| is at
-// rounding level. Every dependency is a ν with νᵀA = 0; of these the reduced basis is taken, one
-// dependent row each, the last of the scene where there is a choice.
+// At the pose itself by the verdict of kkt/loop_rank.h, at others by the same singular values.
 //
 // Nearby poses are reached by steps of a tenth of a radian, along the mechanism's own velocities
 // and along random ones that the loops allow, in several walks, each step brought back to Φ = 0.
 
 #include <momenta/dae/form/form.h>
-#include <momenta/dae/kkt/idle_forces.h>
+#include <momenta/dae/kkt/loop_rank.h>
 
 #include <string>
 #include <vector>
@@ -51,6 +49,9 @@ struct RankReport {
 /// At a consistent pose; of its rates only the direction matters. Cost O((n + m)³), for mechanisms
 /// of some hundred equations.
 RankReport rank_report(const Mechanism& mechanism, const Start& start);
+
+/// "loop 'C' row 3, axis 3 against axis 1"
+std::string row_in_words(const Mechanism& mechanism, int row);
 
 /// "loop 'C' row 3, axis 3 against axis 1, follows from loop 'B' rows 1, 2"
 std::string in_words(const Mechanism& mechanism, const Dependency& dependency);

@@ -8,6 +8,7 @@
 
 namespace momenta {
 
+/// A reference solution, by time and column; immutable once bound.
 class Reference {
  public:
   Reference() = default;
@@ -21,11 +22,10 @@ class Reference {
         columns_(std::move(columns)),
         values_(std::move(values)) {}
 
-  const std::string& file() const { return file_; }
+  const std::string& file() const { return file_; }            ///< or where else it is from
   const std::vector<double>& times() const { return times_; }  ///< ascending [s]
-  const std::vector<std::string>& columns() const {
-    return columns_;
-  }  ///< without t, "name [unit]"
+  /// Without t, "name [unit]".
+  const std::vector<std::string>& columns() const { return columns_; }
   const std::vector<std::vector<double>>& values() const { return values_; }  ///< by time, column
 
   /// Matches the columns with those of a trajectory ("t [s]" first). @throws SceneError naming a
@@ -35,9 +35,10 @@ class Reference {
   /// As a file: what the constructor reads, numbers to the last digit.
   std::string csv() const;
 
+  /// How far a row is from the reference.
   struct Error {
-    double position = 0,
-           velocity = 0;  ///< max |value − ref| / (1 + |ref|) over columns in rad, m and rad/s, m/s
+    double position = 0;  ///< max |value − ref| / (1 + |ref|) over columns in rad and m
+    double velocity = 0;  ///< the same over columns in rad/s and m/s
   };
   /// Error of a trajectory row at reference time number `row`. After bind().
   Error error(std::size_t row, const std::vector<double>& trajectory_row) const;

@@ -153,7 +153,7 @@ int check(const Options& o) {
     j["loop_equations"] = mechanism->m();
     j["rank"] = a.rank;
     j["mobility"] = a.mobility;
-    j["assembly"] = {{"moved", a.moved}, {"branch", a.branch}};
+    j["assembly"] = {{"moved", a.moved}, {"branch", a.branch}, {"residue", a.residue}};
     for (const auto& [what, how] : mechanism->plan_lines()) j["plan"][what] = how;
     if (mechanism->m() == 0) {
       const auto counted = [&](Recursion recursion) {
@@ -222,6 +222,7 @@ int check(const Options& o) {
   if (mechanism->m() > 0)
     std::printf("  assembled with joints moved by at most %.3g from the guess%s%s\n", a.moved,
                 a.branch.empty() ? "" : ": ", a.branch.c_str());
+  if (!a.residue.empty()) std::printf("  %s\n", a.residue.c_str());
   if (ranked)
     print_rank(*mechanism, rank);
   else if (mechanism->m() > 0)
@@ -271,6 +272,7 @@ int assemble_verb(const Options& o) {
   j["velocity_residual"] = a.velocity_residual;
   j["moved"] = a.moved;
   j["branch"] = a.branch;
+  j["residue"] = a.residue;
   j["iterations"] = a.iterations;
   j["mobility"] = a.mobility;
   for (const auto& b : mechanism->tree().bodies) {
@@ -292,7 +294,8 @@ int assemble_verb(const Options& o) {
       "guess\n",
       mechanism->scene().name.c_str(), a.iterations, a.position_residual, a.velocity_residual,
       a.moved);
-  if (!a.branch.empty()) std::printf("  %s\n", a.branch.c_str());
+  for (const std::string* more : {&a.branch, &a.residue})
+    if (!more->empty()) std::printf("  %s\n", more->c_str());
   const Tree& tree = mechanism->tree();
   for (int last = 0; last < static_cast<int>(tree.bodies.size()); ++last) {
     if (!tree.carries_scene_body(last)) continue;

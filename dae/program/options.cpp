@@ -6,11 +6,13 @@
 #include <momenta/dae/report/csv.h>
 #include <momenta/dae/report/page.h>
 #include <momenta/dae/report/picture_data.h>
+#include <momenta/dae/report/still.h>
 #include <momenta/dae/report/table.h>
 #include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/study/environment.h>
 #include <momenta/dae/study/motion.h>
 #include <momenta/dae/study/run_record.h>
+#include <momenta/dae/study/state_input.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -21,7 +23,6 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "state_input.h"
 #include "values.h"
 
 namespace momenta::program {
@@ -180,22 +181,6 @@ void describe(StudyResult& study, const Options& o, const Mechanism& mechanism,
 int film_intervals_of(const Mechanism& mechanism, const Options& o, std::size_t runs) {
   if (o.out.empty() || mechanism.scene().bodies.size() > most_bodies_drawn) return 0;
   return film_intervals(picture_of(mechanism), runs);
-}
-
-void show(StudyResult& study, const Mechanism& mechanism, const Assembly& assembly) {
-  if (mechanism.scene().bodies.size() > most_bodies_drawn) return;
-  study.picture = picture_of(mechanism);
-  for (std::size_t i = 0; i < study.runs.size(); ++i) {
-    if (study.runs[i].film.frames.empty()) continue;
-    Motion motion = motion_of(mechanism, study.runs[i].film);
-    motion.run = static_cast<int>(i);
-    thin(motion, study.picture);
-    study.motions.push_back(std::move(motion));
-  }
-  if (!study.motions.empty()) return;
-  const auto& q = assembly.start.q;
-  study.motions.push_back(
-      motion_of(mechanism, {assembly.start.t, 0, {std::vector<double>(q.begin(), q.end())}}));
 }
 
 std::vector<std::string> names_in(const std::string& list) {

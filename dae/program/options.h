@@ -69,9 +69,6 @@ void describe(StudyResult& study, const Options& o, const Mechanism& mechanism,
 /// Intervals of the film of one of so many runs; 0 without --out and where nothing is drawn.
 int film_intervals_of(const Mechanism& mechanism, const Options& o, std::size_t runs);
 
-/// The mechanism's picture and the motions of the runs that were filmed, else its start.
-void show(StudyResult& study, const Mechanism& mechanism, const Assembly& assembly);
-
 /// "a,b,c" as a list.
 std::vector<std::string> names_in(const std::string& list);
 

@@ -1,6 +1,6 @@
 #include "reach_words.h"
 
-#include <momenta/dae/report/number_text.h>
+#include <momenta/dae/text/number_text.h>
 
 namespace momenta::program {
 

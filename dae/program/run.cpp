@@ -1,10 +1,11 @@
+#include <momenta/dae/measure/rank.h>
 #include <momenta/dae/report/csv.h>
-#include <momenta/dae/report/number_text.h>
 #include <momenta/dae/report/page.h>
 #include <momenta/dae/report/part_file.h>
 #include <momenta/dae/report/table.h>
 #include <momenta/dae/study/run_form.h>
 #include <momenta/dae/study/timing.h>
+#include <momenta/dae/text/number_text.h>
 
 #include <cmath>
 #include <cstdio>
@@ -32,6 +33,25 @@ void print_singular_crossings(const RunResult& result) {
       std::printf("Ambiguous: %s\n", ambiguous_from(crossing.t).c_str());
       break;
     }
+}
+
+/// What `check` says of the start, and what was met on the way.
+void print_rank(const Mechanism& mechanism, const Assembly& a, const RunResult& result) {
+  if (a.rank < mechanism.m()) {
+    constexpr std::size_t most = 6;
+    std::string rows;
+    for (std::size_t i = 0; i < a.dependent_rows.size() && i < most; ++i)
+      rows += (i == 0 ? "" : "; ") + row_in_words(mechanism, a.dependent_rows[i]);
+    std::printf("\nLoop equations: rank %d of %d at the start, redundant: %s%s\n", a.rank,
+                mechanism.m(), rows.c_str(), a.dependent_rows.size() > most ? "; …" : "");
+  }
+  if (!a.residue.empty()) std::printf("\n%s\n", a.residue.c_str());
+  if (result.weak_evaluations > 0)
+    std::printf(
+        "\nNear a singular pose, or with equations that are nearly redundant, in %ld of %ld "
+        "right-hand sides: more loop equations faded there than are redundant at the start "
+        "(faded_rows)\n",
+        result.weak_evaluations, result.counters.evaluations);
 }
 
 void print_stiffness(const RunResult& result) {
@@ -173,7 +193,7 @@ int run(const Options& o) {
   else if (interrupted() && result.status != "done")
     result.reason = "interrupted" + there;
   auto json = summary_json(result, study.environment);
-  json["assembly"] = {{"moved", a.moved}, {"branch", a.branch}};
+  json["assembly"] = {{"moved", a.moved}, {"branch", a.branch}, {"residue", a.residue}};
   const std::string summary = json.dump(2) + "\n";
   std::vector<ResultFile> others;
   if (!o.out.empty()) others.push_back({o.out / "index.html", run_page(study)});
@@ -184,6 +204,7 @@ int run(const Options& o) {
     std::fputs(summary.c_str(), stdout);
   } else if (!o.quiet) {
     std::fputs(drift_table(study).c_str(), stdout);
+    print_rank(*mechanism, a, result);
     print_singular_crossings(result);
     print_undetermined(result);
     print_stiffness(result);

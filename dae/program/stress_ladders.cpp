@@ -1,7 +1,7 @@
 #include "stress_ladders.h"
 
 #include <momenta/core/scene/read_scene.h>
-#include <momenta/dae/report/number_text.h>
+#include <momenta/dae/text/number_text.h>
 
 #include <algorithm>
 #include <cmath>

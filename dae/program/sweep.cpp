@@ -72,10 +72,10 @@ class Finished {
 };
 
 /// The scene as TOML: its own text, so that what it leaves out may be varied too, or, of another
-/// format, the text it converts to.
+/// format or started elsewhere, the text it converts to.
 std::string toml_of(const Options& o) {
   const Scene scene = read(o);
-  return is_toml(o.scene) ? reading::text_of(o.scene) : scene_text(scene);
+  return is_toml(o.scene) && o.at.empty() ? reading::text_of(o.scene) : scene_text(scene);
 }
 
 }  // namespace

@@ -1,9 +1,9 @@
 #include <momenta/dae/report/advice.h>
-#include <momenta/dae/report/number_text.h>
 #include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/study/own_reference.h>
 #include <momenta/dae/study/run_record.h>
 #include <momenta/dae/study/work_study.h>
+#include <momenta/dae/text/number_text.h>
 
 #include <cmath>
 

@@ -33,11 +33,16 @@ inline void expect_time(double t) {
                           ", expected a time in seconds");
 }
 
+/// Kernel and solver of (7) by name. @throws py::value_error
+MechanismOptions options_of(const std::string& algebra, const std::string& kkt);
+
 /// A mechanism with the workspaces of one thread: evaluations, the solver of its loops, its tree.
 class Bench {
  public:
-  Bench(Scene scene, const MechanismOptions& options)
-      : mechanism(std::make_shared<const Mechanism>(std::move(scene), options)),
+  Bench(Scene scene, const std::string& algebra_name, const std::string& kkt_name)
+      : algebra(algebra_name),
+        kkt(kkt_name),
+        mechanism(std::make_shared<const Mechanism>(std::move(scene), options_of(algebra, kkt))),
         e(mechanism->evaluation<double>()) {
     if (mechanism->m() > 0) solver = make_loop_solver(*mechanism, *e);
   }
@@ -61,13 +66,13 @@ class Bench {
     if (!(found.allFinite() && ...))
       throw SceneError("the result is not finite, expected smaller numbers to find it from");
   }
-  [[noreturn]] void fail() const {
-    throw SceneError(solver && solver->singular_joint() >= 0
-                         ? mechanism->no_inertia(solver->singular_joint())
-                     : e->singular_joint() >= 0 ? mechanism->no_inertia(e->singular_joint())
-                                                : "the solution is not finite");
+  [[noreturn]] void fail(double t, const In& q) const {
+    throw SceneError(mechanism->no_inertia(solver ? solver->singular_joint() : e->singular_joint(),
+                                           t, q.data()));
   }
 
+  std::string algebra, kkt;  ///< as asked for
+  std::string text;          ///< TOML it was read from; empty: see toml_of()
   std::shared_ptr<const Mechanism> mechanism;
   std::unique_ptr<Evaluation<double>> e;
   std::unique_ptr<LoopSolver> solver;
@@ -79,6 +84,11 @@ using BenchPtr = std::shared_ptr<Bench>;
 
 void bind_mechanism(py::module_& module);
 void bind_runs(py::module_& module);
+/// What stands behind the package's functions that are named like the program's verbs.
+void bind_verbs(py::module_& module);
+/// The scene as TOML: its own text, so that what it leaves out may be varied, else one that reads
+/// back the same.
+std::string toml_of(const Bench& bench);
 /// Methods of Mechanism that run it.
 void add_runs(py::class_<Bench, BenchPtr>& mechanism);
 /// The one that finds its modes.

@@ -1,6 +1,7 @@
 // Mechanism: what a scene is, its consistent start, and the equations at one state.
 
 #include <momenta/core/scene/read_scene.h>
+#include <momenta/core/scene/write_scene.h>
 #include <momenta/dae/assembly/drive_reach.h>
 #include <momenta/dae/kkt/dense_blocks.h>
 #include <momenta/dae/study/state_values.h>
@@ -10,8 +11,6 @@
 #include "bindings.h"
 
 namespace momenta::python {
-
-namespace {
 
 MechanismOptions options_of(const std::string& algebra, const std::string& kkt) {
   MechanismOptions options;
@@ -31,6 +30,12 @@ MechanismOptions options_of(const std::string& algebra, const std::string& kkt) 
     throw py::value_error("kkt '" + kkt + "': expected auto, sweeps, sparse or dense");
   return options;
 }
+
+std::string toml_of(const Bench& bench) {
+  return bench.text.empty() ? scene_text(bench.mechanism->scene()) : bench.text;
+}
+
+namespace {
 
 std::vector<std::string> labels(const std::vector<Column>& columns) {
   std::vector<std::string> all;
@@ -52,7 +57,7 @@ py::tuple momentum_rates(Bench& b, double t, const In& q, const In& p,
       m == 0 ? b.e->open_momentum_rates(t, q.data(), p.data(), u.data(), pdot.data())
              : b.solver->momentum(t, q.data(), p.data(), centre ? centre->data() : nullptr,
                                   fade_evaluation, leak, u.data(), sigma.data(), pdot.data());
-  if (!ok) b.fail();
+  if (!ok) b.fail(t, q);
   b.expect_finite(u, sigma, pdot);
   return py::make_tuple(std::move(u), std::move(sigma), std::move(pdot));
 }
@@ -65,7 +70,7 @@ py::tuple accelerations(Bench& b, double t, const In& q, const In& u) {
   const bool ok = m == 0 ? b.e->open_accelerations(t, q.data(), u.data(), udot.data())
                          : b.solver->acceleration(t, q.data(), u.data(), nullptr, 0, 0, udot.data(),
                                                   lambda.data());
-  if (!ok) b.fail();
+  if (!ok) b.fail(t, q);
   b.expect_finite(udot, lambda);
   return py::make_tuple(std::move(udot), std::move(lambda));
 }
@@ -130,7 +135,7 @@ py::dict evaluate(Bench& b, double t, const std::optional<Vector>& q,
   given.t = t;
   given.tau = Vector::Zero(tree.nv);
   if (b.mechanism->m() > 0 && (!q || (!v && !p))) {
-    const Assembly a = assemble_at(*b.mechanism, t);
+    const Assembly a = assemble_at(*b.mechanism, t, Assembled::rates);
     given.q = q.value_or(a.start.q);
     given.v = v.value_or(a.start.u);
   } else {
@@ -152,7 +157,10 @@ py::dict evaluate(Bench& b, double t, const std::optional<Vector>& q,
   put("udot_free", s.free), put("udot", b.mechanism->m() > 0 ? s.constrained : s.free);
   put("phi", s.phi), put("phidot", s.phidot), put("sigma", s.sigma), put("lambda_", s.lambda);
   put("T", s.kinetic), put("V", s.potential), put("H", s.hamiltonian);
-  if (s.dense) put("M", s.mass), put("rank", s.rank), put("singular_values", s.singular_values);
+  if (s.dense)
+    put("M", s.mass), put("rank", s.loops.rank), put("dependent_rows", s.loops.dependent),
+        put("singular_values", s.loops.singular_values);
+  if (!s.not_there.empty()) put("not_there", s.not_there);
   py::dict reactions;
   for (const auto* list : {&s.reactions.joints, &s.reactions.loops})
     for (const Transmitted& r : *list)
@@ -187,13 +195,17 @@ void bind_mechanism(py::module_& module) {
       .def_readonly("dependent_rows", &Assembly::dependent_rows,
                     "loop equations that follow from the others, places in `equations`")
       .def_readonly("moved", &Assembly::moved, "largest move from the guess [rad or m]")
+      .def_readonly("residue", &Assembly::residue,
+                    "what redundant equations leave open, in one sentence, or empty")
       .def_readonly("branch", &Assembly::branch,
                     "which of several assemblies it is, where the guess does not decide it");
 
   py::class_<Bench, BenchPtr> mechanism(module, "Mechanism",
-                                        "A scene made ready to move. Made by load() and parse().");
+                                        "A scene made ready to move. Made by load().");
   const auto of = [](auto f) { return [f](const Bench& b) { return f(*b.mechanism); }; };
-  mechanism.def_property_readonly("name", of([](const Mechanism& m) { return m.scene().name; }))
+  mechanism
+      .def_property_readonly("name", of([](const Mechanism& m) { return m.scene().name; }),
+                             "of the scene")
       .def_property_readonly("nq", of([](const Mechanism& m) { return m.nq(); }), "coordinates")
       .def_property_readonly("nv", of([](const Mechanism& m) { return m.nv(); }),
                              "rates and momenta")
@@ -215,6 +227,31 @@ void bind_mechanism(py::module_& module) {
                              "the scene's guess (nq)")
       .def_property_readonly("u0", of([](const Mechanism& m) { return m.tree().u0; }),
                              "the scene's guess (nv)")
+      .def_property_readonly(
+          "options",
+          [](const Bench& b) {
+            py::dict options;
+            options["algebra"] = b.algebra, options["kkt"] = b.kkt;
+            return options;
+          },
+          "algebra and kkt as load() was asked for")
+      .def_property_readonly("remarks", of([](const Mechanism& m) { return m.scene().remarks; }),
+                             "what the reader left out of a URDF or MJCF, one sentence a kind")
+      .def("to_toml", of([](const Mechanism& m) { return scene_text(m.scene()); }),
+           "The scene as TOML; read again it is the same, bit by bit.")
+      .def(py::pickle(
+          [](const Bench& b) {
+            return py::make_tuple(toml_of(b), b.mechanism->scene().name, b.algebra, b.kkt);
+          },
+          [](const py::tuple& kept) {
+            if (kept.size() != 4) throw py::value_error("this is no pickled Mechanism");
+            const auto text = kept[0].cast<std::string>();
+            auto bench =
+                std::make_shared<Bench>(parse_scene(text, kept[1].cast<std::string>()),
+                                        kept[2].cast<std::string>(), kept[3].cast<std::string>());
+            bench->text = text;
+            return bench;
+          }))
       .def_property_readonly("plan", &plan, "what an evaluation does and leaves out, by topic")
       .def("__repr__", of([](const Mechanism& m) {
              return "<momenta.Mechanism '" + m.scene().name + "': " + std::to_string(m.nv()) +
@@ -245,22 +282,6 @@ void bind_mechanism(py::module_& module) {
            "loops.");
   add_runs(mechanism);
   add_modes(mechanism);
-
-  module.def(
-      "load",
-      [](const std::string& file, const std::string& algebra, const std::string& kkt) {
-        return std::make_shared<Bench>(read_scene(file), options_of(algebra, kkt));
-      },
-      "file"_a, "algebra"_a = "auto", "kkt"_a = "auto",
-      "Reads a scene file. Raises SceneError: one sentence with file, line and what is wrong.");
-  module.def(
-      "parse",
-      [](const std::string& text, const std::string& name, const std::string& algebra,
-         const std::string& kkt) {
-        return std::make_shared<Bench>(parse_scene(text, name), options_of(algebra, kkt));
-      },
-      "text"_a, "name"_a = "scene", "algebra"_a = "auto", "kkt"_a = "auto",
-      "The same from TOML text; `name` stands in messages.");
 }
 
 }  // namespace momenta::python

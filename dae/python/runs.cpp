@@ -1,16 +1,18 @@
 // Runs and studies. A run's arrays are views of it: they keep it alive and are never copied. Long
 // calls release the interpreter, and Ctrl-C stops them at the next sample.
 
+#include <momenta/dae/report/table.h>
 #include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/study/column_named.h>
 #include <momenta/dae/study/drift_study.h>
 #include <momenta/dae/study/own_reference.h>
+#include <momenta/dae/study/run_record.h>
 #include <momenta/dae/study/work_study.h>
 
-#include <cmath>
-#include <optional>
+#include <cstring>
 
-#include "bindings.h"
+#include "progress.h"
+#include "run_arguments.h"
 
 namespace momenta::python {
 namespace {
@@ -40,53 +42,6 @@ py::array_t<double> view(const std::vector<double>& x, const py::object& owner) 
   return py::array_t<double>(static_cast<py::ssize_t>(x.size()), x.data(), owner);
 }
 
-/// False once Ctrl-C was pressed; to be called without the interpreter's lock.
-bool going_on() {
-  const py::gil_scoped_acquire lock;
-  return PyErr_CheckSignals() == 0;
-}
-/// What Ctrl-C left, raised.
-void raise_pending() {
-  if (PyErr_Occurred()) throw py::error_already_set();
-}
-
-std::vector<RunPtr> wrapped(std::vector<RunResult> runs) {
-  std::vector<RunPtr> all;
-  for (RunResult& run : runs) all.push_back(std::make_shared<Run>(std::move(run)));
-  return all;
-}
-
-using Given = std::optional<double>;
-
-std::string written(double x) {
-  return py::str(py::float_(x));
-}
-/// What is given, or else `otherwise`. Raises ValueError unless it is positive and finite.
-double positive(const char* name, const Given& given, double otherwise, const char* what) {
-  if (!given) return otherwise;
-  if (*given > 0 && std::isfinite(*given)) return *given;
-  throw py::value_error(std::string(name) + " is " + written(*given) + ", expected " + what);
-}
-double not_negative(const char* name, double x, const char* what) {
-  if (x >= 0 && std::isfinite(x)) return x;
-  throw py::value_error(std::string(name) + " is " + written(x) + ", expected " + what);
-}
-double seconds(const char* name, const Given& given, double otherwise) {
-  return positive(name, given, otherwise, "a positive number of seconds");
-}
-double tolerance(const char* name, double x) {
-  return positive(name, x, x, "a positive tolerance");
-}
-double cpu_time(double x) {
-  return not_negative("cpu_limit", x, "seconds, not negative; 0: none");
-}
-int sample_count(const std::optional<int>& given, int otherwise) {
-  if (!given) return otherwise;
-  if (*given > 0 && *given <= most_samples) return *given;
-  throw py::value_error("samples is " + std::to_string(*given) + ", expected " +
-                        (*given < 1 ? "at least 1" : "at most " + std::to_string(most_samples)));
-}
-
 std::unique_ptr<Reference> reference_of(const std::string& file, const Mechanism& mechanism) {
   if (file.empty()) return nullptr;
   auto reference = std::make_unique<Reference>(file);
@@ -96,48 +51,52 @@ std::unique_ptr<Reference> reference_of(const std::string& file, const Mechanism
 
 RunPtr run(const Bench& bench, const std::string& form, const std::string& integrator,
            const std::string& gauge, double rtol, const Given& atol, const Given& step,
-           const Given& end, const std::optional<int>& samples, bool project,
-           double baumgarte_alpha, double baumgarte_beta, double beta, double penalty,
-           const std::string& reference, double cpu_limit) {
+           const Given& end, const std::optional<int>& samples, double spectral_radius,
+           const std::optional<bool>& project, double baumgarte_alpha, double baumgarte_beta,
+           double beta, double penalty, double cpu_limit, const std::string& reference,
+           const py::object& told) {
   const Mechanism& mechanism = *bench.mechanism;
+  const RunArguments asked{
+      form,    integrator,      gauge,          rtol, atol,   step, end, samples, spectral_radius,
+      project, baumgarte_alpha, baumgarte_beta, beta, penalty};
   const auto given = reference_of(reference, mechanism);
   RunRequest request;
-  RunSettings& s = request.settings;
-  s = default_settings(mechanism.scene().run, form, integrator, tolerance("rtol", rtol));
-  if (!gauge.empty()) {
-    if (!takes_gauge(form))
-      throw py::value_error("gauge '" + gauge + "': form '" + form +
-                            "' has no impulses to gauge, expected none");
-    s.gauge = gauge;
-  }
-  s.atol = positive("atol", atol, s.atol, "a positive tolerance");
-  s.step = seconds("step", step, s.step);
-  s.end_time = seconds("end", end, s.end_time);
-  s.samples = sample_count(samples, s.samples);
-  s.project = project;
-  constexpr const char* rate = "a rate in 1/s, not negative; 0: the form's own";
-  s.baumgarte_alpha = not_negative("baumgarte_alpha", baumgarte_alpha, rate);
-  s.baumgarte_beta = not_negative("baumgarte_beta", baumgarte_beta, rate);
-  s.beta = not_negative("beta", beta, rate);
-  s.penalty = not_negative("penalty", penalty, "a penalty, not negative; 0: the form's own");
+  request.settings = asked.settings(mechanism.scene().run);
   request.reference = given.get();
   request.keep_trajectory = true;
   request.max_cpu_seconds = cpu_time(cpu_limit);
-  request.progress = [](double) { return going_on(); };
+  Progress progress(told);
+  request.progress = [&](double t) { return progress(t / request.settings.end_time, form); };
   RunPtr made;
-  {
-    const py::gil_scoped_release unlocked;
-    const Assembly a = assemble(mechanism);
-    made = std::make_shared<Run>(run_form(mechanism, a.start, request));
-  }
-  raise_pending();
+  progress.during([&] {
+    made = std::make_shared<Run>(run_form(mechanism, assemble(mechanism).start, request));
+  });
   return made;
 }
 
-std::vector<RunPtr> drift(const Bench& bench, const Names& forms, const std::string& integrator,
-                          double rtol, const Given& step, const Given& end,
-                          const std::optional<int>& samples, const std::string& reference,
-                          double cpu_limit) {
+RunPtr run_from(const py::tuple& kept) {
+  RunResult result;
+  const std::string record = kept.size() == 3 ? kept[0].cast<std::string>() : "";
+  if (!read_record(nlohmann::json::from_cbor(record, true, false), result))
+    throw py::value_error("this is no pickled Run of this version of momenta");
+  result.trajectory.columns = kept[1].cast<Names>();
+  auto run = std::make_shared<Run>(std::move(result));
+  const auto rows = kept[2].cast<std::string>();
+  run->rows.resize(rows.size() / sizeof(double));
+  std::memcpy(run->rows.data(), rows.data(), run->rows.size() * sizeof(double));
+  return run;
+}
+
+/// The runs of a study as the package's list of them.
+py::object study_of(std::vector<RunResult> runs, bool ladder) {
+  py::list all;
+  for (RunResult& run : runs) all.append(std::make_shared<Run>(std::move(run)));
+  return py::module_::import("momenta").attr("Study")(all, ladder);
+}
+
+py::object drift(const Bench& bench, const Names& forms, const std::string& integrator, double rtol,
+                 const Given& step, const Given& end, const std::optional<int>& samples,
+                 const std::string& reference, double cpu_limit, const py::object& told) {
   const Mechanism& mechanism = *bench.mechanism;
   const RunDefaults& defaults = mechanism.scene().run;
   const auto given = reference_of(reference, mechanism);
@@ -150,19 +109,18 @@ std::vector<RunPtr> drift(const Bench& bench, const Names& forms, const std::str
   request.samples = sample_count(samples, defaults.samples);
   request.reference = given.get();
   request.max_cpu_seconds = cpu_time(cpu_limit);
-  request.progress = [](int, int, const std::string&, double) { return going_on(); };
-  std::vector<RunPtr> made;
-  {
-    const py::gil_scoped_release unlocked;
-    made = wrapped(run_drift_study(mechanism, assemble(mechanism).start, request));
-  }
-  raise_pending();
-  return made;
+  Progress progress(told);
+  request.progress = [&](int number, int total, const std::string& label, double part) {
+    return progress.of_study(number, total, label, part);
+  };
+  std::vector<RunResult> made;
+  progress.during([&] { made = run_drift_study(mechanism, assemble(mechanism).start, request); });
+  return study_of(std::move(made), false);
 }
 
-std::vector<RunPtr> work(const Bench& bench, const Names& forms, const Names& integrators,
-                         const std::vector<double>& tolerances, const Given& end,
-                         const std::string& reference, double cpu_limit) {
+py::object work(const Bench& bench, const Names& forms, const Names& integrators,
+                const std::vector<double>& tolerances, const Given& end,
+                const std::string& reference, double cpu_limit, const py::object& told) {
   constexpr int rows = 100;
   const Mechanism& mechanism = *bench.mechanism;
   auto given = reference_of(reference, mechanism);
@@ -175,21 +133,22 @@ std::vector<RunPtr> work(const Bench& bench, const Names& forms, const Names& in
   request.end_time = seconds("end", end, mechanism.scene().run.end_time);
   request.samples = rows;
   request.max_cpu_seconds = cpu_time(cpu_limit);
-  request.progress = [](int, int, const std::string&, double) { return going_on(); };
-  std::vector<RunPtr> made;
-  {
-    const py::gil_scoped_release unlocked;
+  Progress progress(told);
+  request.progress = [&](int number, int total, const std::string& label, double part) {
+    return progress.of_study(number, total, label, part);
+  };
+  std::vector<RunResult> made;
+  progress.during([&] {
     const Assembly a = assemble(mechanism);
     if (!given)
       given = std::make_unique<Reference>(
-          own_reference(mechanism, a.start, request.end_time, rows, [](double) {
-            return going_on();
+          own_reference(mechanism, a.start, request.end_time, rows, [&](double) {
+            return progress(0, "reference");
           }).reference);
     request.reference = given.get();
-    made = wrapped(run_work_study(mechanism, a.start, request));
-  }
-  raise_pending();
-  return made;
+    made = run_work_study(mechanism, a.start, request);
+  });
+  return study_of(std::move(made), true);
 }
 
 py::dict counters(const RunResult& r) {
@@ -208,6 +167,7 @@ py::dict counters(const RunResult& r) {
 }  // namespace
 
 void bind_runs(py::module_& module) {
+  using namespace py::literals;
   py::class_<Run, RunPtr> run(module, "Run",
                               "One form by one integrator. run['B.x'] is a column of its "
                               "trajectory; arrays are views.");
@@ -216,17 +176,18 @@ void bind_runs(py::module_& module) {
         name, [get](const Run& r) { return get(r.result); }, doc);
   };
   text(
-      "form", [](const RunResult& r) { return r.settings.form; }, "");
+      "form", [](const RunResult& r) { return r.settings.form; }, "name of the form");
   text(
-      "integrator", [](const RunResult& r) { return r.settings.integrator; }, "");
+      "integrator", [](const RunResult& r) { return r.settings.integrator; }, "its name");
   text(
       "gauge", [](const RunResult& r) { return r.settings.gauge; }, "of momentum forms");
   text(
-      "rtol", [](const RunResult& r) { return r.settings.rtol; }, "");
+      "rtol", [](const RunResult& r) { return r.settings.rtol; }, "relative tolerance");
   text(
       "step", [](const RunResult& r) { return r.settings.step; }, "[s], 0: adaptive");
   text(
-      "project", [](const RunResult& r) { return r.settings.project; }, "");
+      "project", [](const RunResult& r) { return r.settings.project; },
+      "whether positions were corrected after each step");
   text(
       "status", [](const RunResult& r) { return r.status; },
       "done, failed, time limit, came apart");
@@ -240,7 +201,16 @@ void bind_runs(py::module_& module) {
   text(
       "position_drift_max", [](const RunResult& r) { return r.position_drift_max; }, "[m]");
   text(
-      "velocity_drift_max", [](const RunResult& r) { return r.velocity_drift_max; }, "[m/s]");
+      "velocity_drift_max", [](const RunResult& r) { return r.velocity_drift_max; },
+      "[m/s], as position_drift_max");
+  text(
+      "drift_unit", [](const RunResult& r) { return r.drift_unit; },
+      "of position_drift_max: m, or rad where all loop equations are angles; empty without loops");
+  text(
+      "angle_drift_max", [](const RunResult& r) { return r.angle_drift_max; },
+      "of the equations in rad beside others in m [rad]");
+  text(
+      "angle_rate_drift_max", [](const RunResult& r) { return r.angle_rate_drift_max; }, "[rad/s]");
   text(
       "energy_error_max", [](const RunResult& r) { return r.energy_error_max; }, "[J]");
   text(
@@ -256,6 +226,9 @@ void bind_runs(py::module_& module) {
   };
   series("t", &Series::t, "output times [s]");
   series("position_drift", &Series::position_drift, "|Phi(q, t)| at the output times");
+  series("angle_drift", &Series::angle_drift,
+         "|Phi| of equations in rad beside others in m, at the output times");
+  series("angle_rate_drift", &Series::angle_rate_drift, "|Phidot| of these");
   series("velocity_drift", &Series::velocity_drift, "|Phidot| at the output times");
   series("energy", &Series::energy, "T + V less what was dissipated [J]; nan with drives");
   series("energy_error", &Series::energy_error, "[J]");
@@ -280,11 +253,30 @@ void bind_runs(py::module_& module) {
             return py::array_t<double>({r.rows.size() / n}, {n * sizeof(double)},
                                        r.rows.data() + at, self);
           },
-          "A column of the trajectory, by its name with the unit or without.")
+          "name"_a, "A column of the trajectory, by its name with the unit or without.")
+      .def(py::pickle(
+          [](const Run& r) {
+            const auto record = nlohmann::json::to_cbor(record_of(r.result));
+            return py::make_tuple(
+                py::bytes(reinterpret_cast<const char*>(record.data()), record.size()),
+                r.result.trajectory.columns,
+                py::bytes(reinterpret_cast<const char*>(r.rows.data()),
+                          r.rows.size() * sizeof(double)));
+          },
+          &run_from))
       .def("__repr__", [](const Run& r) {
         return "<momenta.Run " + r.result.settings.form + ", " + r.result.settings.integrator +
                ": " + r.result.status + ">";
       });
+  module.def(
+      "table",
+      [](const std::vector<RunPtr>& runs, bool ladder) {
+        StudyResult study;
+        study.drift_study = !ladder;
+        for (const RunPtr& r : runs) study.runs.push_back(r->result);
+        return drift_table(study);
+      },
+      "runs"_a, "ladder"_a);
   module.def("forms", &form_names, "Names of all forms.");
   module.def(
       "integrators",
@@ -298,23 +290,23 @@ void bind_runs(py::module_& module) {
 
 void add_runs(py::class_<Bench, BenchPtr>& mechanism) {
   using namespace py::literals;
+  with_run_arguments([&](const auto&... arguments) {
+    mechanism.def(
+        "run", &run, py::kw_only(), arguments..., "reference"_a = "", "progress"_a = py::none(),
+        "One form from the assembled start: a Run, failed ones too, with all samples up to there. "
+        "What is None, zero or empty is the scene's, the form's or the program's default. "
+        "`progress`: True, a line on standard error, or a function of (fraction, text).");
+  });
   mechanism
-      .def(
-          "run", &run, py::kw_only(), "form"_a = "momentum", "integrator"_a = "", "gauge"_a = "",
-          "rtol"_a = 1e-8, "atol"_a = py::none(), "step"_a = py::none(), "end"_a = py::none(),
-          "samples"_a = py::none(), "project"_a = false, "baumgarte_alpha"_a = 0.0,
-          "baumgarte_beta"_a = 0.0, "beta"_a = 0.0, "penalty"_a = 0.0, "reference"_a = "",
-          "cpu_limit"_a = 0.0,
-          "One form from the assembled start: a Run, failed ones too, with all samples up to "
-          "there. What is None, zero or empty is the scene's, the form's or the program's default.")
       .def("drift", &drift, py::kw_only(), "forms"_a = Names{}, "integrator"_a = "",
            "rtol"_a = 1e-8, "step"_a = py::none(), "end"_a = py::none(), "samples"_a = py::none(),
-           "reference"_a = "", "cpu_limit"_a = 60.0, "Every form side by side: a list of Run.")
+           "reference"_a = "", "cpu_limit"_a = 60.0, "progress"_a = py::none(),
+           "Every form side by side: a Study, which is a list of Run.")
       .def("work", &work, py::kw_only(), "forms"_a = Names{}, "integrators"_a = Names{},
            "tolerances"_a = std::vector<double>{1e-4, 1e-6, 1e-8, 1e-10}, "end"_a = py::none(),
-           "reference"_a = "", "cpu_limit"_a = 10.0,
+           "reference"_a = "", "cpu_limit"_a = 10.0, "progress"_a = py::none(),
            "Error against run time over a ladder of tolerances, judged by a reference file or, "
-           "without one, by a solution in quadruple precision made here: a list of Run.");
+           "without one, by a solution in quadruple precision made here: a Study.");
 }
 
 }  // namespace momenta::python

@@ -1,7 +1,7 @@
 #include <momenta/dae/report/advice.h>
-#include <momenta/dae/report/number_text.h>
 #include <momenta/dae/report/run_label.h>
 #include <momenta/dae/study/work_study.h>
+#include <momenta/dae/text/number_text.h>
 
 #include <algorithm>
 #include <array>

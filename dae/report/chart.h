@@ -30,11 +30,13 @@ struct Chart {
 
 /// Quantities of a study over time, in the order of its page.
 struct History {
-  const char *key, *title, *axis, *unit;
+  const char *key, *title;
+  std::string axis, unit;
   std::vector<double> Series::*values;
   std::vector<double> slopes;
 };
-const std::vector<History>& histories();
+/// With the unit that the drifts of this run have.
+std::vector<History> histories(const RunResult& run);
 
 /// Of one run over time: what is logarithmic (drifts, energy error, error), then a chart for each
 /// unit of its trajectory. Empty charts are left out.

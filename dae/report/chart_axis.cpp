@@ -1,6 +1,6 @@
 #include <momenta/dae/report/chart_axis.h>
-#include <momenta/dae/report/number_text.h>
 #include <momenta/dae/report/svg.h>
+#include <momenta/dae/text/number_text.h>
 
 #include <algorithm>
 #include <array>

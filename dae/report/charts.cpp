@@ -22,7 +22,8 @@ std::vector<double> sizes_of(std::vector<double> y) {
   return y;
 }
 
-Chart over_time(const char* key, const char* title, const std::string& y_title, const char* unit) {
+Chart over_time(const char* key, const char* title, const std::string& y_title,
+                const std::string& unit) {
   Chart chart;
   chart.key = key;
   chart.title = title;
@@ -56,19 +57,32 @@ std::string remark(const RunResult& run, const std::string& column) {
 
 }  // namespace
 
-const std::vector<History>& histories() {
-  static const std::vector<History> all{
+std::vector<History> histories(const RunResult& run) {
+  const std::string unit = drift_unit(run);
+  return {
       {"position_drift",
        "Position drift",
-       "position drift |Φ| [m]",
-       "m",
+       "position drift |Φ| [" + unit + "]",
+       unit,
        &Series::position_drift,
        {1, 2}},
       {"velocity_drift",
        "Velocity drift",
-       "velocity drift |Φ̇| [m/s]",
-       "m/s",
+       "velocity drift |Φ̇| [" + unit + "/s]",
+       unit + "/s",
        &Series::velocity_drift,
+       {1, 2}},
+      {"angle_drift",
+       "Position drift of angles",
+       "drift |Φ| of angles [rad]",
+       "rad",
+       &Series::angle_drift,
+       {1, 2}},
+      {"angle_rate_drift",
+       "Velocity drift of angles",
+       "drift |Φ̇| of angles [rad/s]",
+       "rad/s",
+       &Series::angle_rate_drift,
        {1, 2}},
       {"energy_error", "Energy error", "energy error |E − E₀| [J]", "J", &Series::energy_error, {}},
       {"position_error",
@@ -78,12 +92,11 @@ const std::vector<History>& histories() {
        &Series::position_error,
        {}},
       {"impulse", "Loop impulses", "loop impulses |σ| [N s]", "N s", &Series::impulse, {}}};
-  return all;
 }
 
 std::vector<Chart> charts_of_run(const RunResult& run) {
   std::vector<Chart> charts;
-  for (const History& history : histories()) {
+  for (const History& history : histories(run)) {
     const std::vector<double>& y = run.series.*history.values;
     const std::string key = history.key;
     // Zero throughout is nothing to look at: drifts without loops.
@@ -102,7 +115,7 @@ std::vector<Chart> charts_of_run(const RunResult& run) {
     const auto bracket = label.rfind(" [");
     const std::string name = label.substr(0, bracket);
     if (name == "energy" || name == "position_drift" || name == "velocity_drift" ||
-        name.ends_with(".undetermined"))
+        name == "angle_drift" || name == "angle_rate_drift" || name.ends_with(".undetermined"))
       continue;
     by_unit[label.substr(bracket + 2, label.size() - bracket - 3)].push_back(c);
   }
@@ -130,7 +143,8 @@ namespace {
 
 /// One figure of a run against what it cost.
 struct Cost {
-  const char *key, *title, *x_title, *y_title, *unit;
+  const char *key, *title, *x_title;
+  std::string y_title, unit;
   double (*x)(const RunResult&);
   double (*y)(const RunResult&);
 };
@@ -185,7 +199,8 @@ std::vector<Chart> charts_of_study(const StudyResult& study) {
   const auto signs = signs_of(study);
   const auto labels = run_labels(study), ladder_labels = run_labels(study, false);
   std::vector<Chart> charts;
-  for (const History& history : histories()) {
+  if (study.runs.empty()) return charts;
+  for (const History& history : histories(study.runs.front())) {
     Chart chart = over_time(history.key, history.title, history.axis, history.unit);
     chart.log_x = chart.log_y = chart.running_maximum = true;
     chart.slopes = history.slopes;
@@ -204,9 +219,10 @@ std::vector<Chart> charts_of_study(const StudyResult& study) {
     return std::isfinite(run.position_error_max);
   });
   const char* time = "processor time [s]";
-  const char* error =
-      judged ? "error of positions max |err|/(1+|ref|)" : "largest position drift |Φ| [m]";
-  const char* unit = judged ? "1" : "m";
+  const std::string drift_in = drift_unit(study.runs.front());
+  const std::string drift = "largest position drift |Φ| [" + drift_in + "]";
+  const std::string error = judged ? "error of positions max |err|/(1+|ref|)" : drift;
+  const std::string unit = judged ? "1" : drift_in;
   const auto y = judged ? position_error : position_drift;
   std::vector<Cost> costs{
       {"error_cost", "Error against processor time", time, error, unit, processor_time, y}};
@@ -214,8 +230,8 @@ std::vector<Chart> charts_of_study(const StudyResult& study) {
     costs.push_back({"error_evaluations", "Error against evaluations",
                      "evaluations of the right-hand side or the residual", error, unit, evaluations,
                      y});
-    costs.push_back({"drift_cost", "Position drift against processor time", time,
-                     "largest position drift |Φ| [m]", "m", processor_time, position_drift});
+    costs.push_back({"drift_cost", "Position drift against processor time", time, drift, drift_in,
+                     processor_time, position_drift});
     costs.push_back({"energy_cost", "Energy error against processor time", time,
                      "largest energy error |E − E₀| [J]", "J", processor_time, energy_error});
   }

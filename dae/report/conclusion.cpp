@@ -1,6 +1,6 @@
 #include <momenta/dae/report/conclusion.h>
-#include <momenta/dae/report/number_text.h>
 #include <momenta/dae/report/run_label.h>
+#include <momenta/dae/text/number_text.h>
 
 #include <algorithm>
 #include <cmath>
@@ -13,7 +13,34 @@ namespace {
 struct Named {
   const RunResult* run;
   std::string name;  // in backquotes
+  bool by_angles = false;
 };
+
+// What runs are compared by is the drift of lengths, where there are any. Where these stay at
+// rounding level in all runs, and angles beside them do not, it is that of the angles.
+double judged(const Named& n) {
+  return n.by_angles ? n.run->angle_drift_max : n.run->position_drift_max;
+}
+std::string unit_of(const Named& n) {
+  return n.by_angles ? "rad" : drift_unit(*n.run);
+}
+std::string amount(const Named& n, double value) {
+  return unit_of(n) == "m" ? length_text(value) : compact(value, 2) + " rad";
+}
+// With the angles beside it.
+std::string amount(const Named& n) {
+  const bool both = !n.by_angles && !std::isnan(n.run->angle_drift_max);
+  return amount(n, judged(n)) + (both ? " and " + compact(n.run->angle_drift_max, 2) + " rad" : "");
+}
+void choose_drift(std::vector<Named>& runs) {
+  const bool lengths = std::any_of(runs.begin(), runs.end(), [](const Named& n) {
+    return n.run->position_drift_max >= rounding_level;
+  });
+  const bool angles = std::any_of(runs.begin(), runs.end(), [](const Named& n) {
+    return n.run->angle_drift_max >= rounding_level;
+  });
+  for (Named& n : runs) n.by_angles = !lengths && angles;
+}
 
 bool finished(const RunResult& run) {
   return run.status == "done";
@@ -40,14 +67,14 @@ std::string clause(std::string reason) {
 
 // The largest drift is what the loops have opened by only when they still are about that far open
 // at the end.
-bool largest_at_the_end(const RunResult& run) {
-  const auto& drift = run.series.position_drift;
-  return drift.empty() || !(std::abs(drift.back()) < 0.9 * run.position_drift_max);
+bool largest_at_the_end(const Named& n) {
+  const auto& all = n.by_angles ? n.run->series.angle_drift : n.run->series.position_drift;
+  return all.empty() || !(std::abs(all.back()) < 0.9 * judged(n));
 }
 
-std::string growth_clause(const RunResult& run) {
-  const Growth& g = run.position_growth;
-  if (!(run.position_drift_max >= rounding_level) || std::isnan(g.exponent)) return "";
+std::string growth_clause(const Named& n) {
+  const Growth& g = n.by_angles ? n.run->angle_growth : n.run->position_growth;
+  if (!(judged(n) >= rounding_level) || std::isnan(g.exponent)) return "";
   if (g.half_range > power_law_half_range) {
     return ", not as a power of t (slopes " + compact(g.exponent - g.half_range, 2) + " to " +
            compact(g.exponent + g.half_range, 2) + ")";
@@ -58,32 +85,25 @@ std::string growth_clause(const RunResult& run) {
   return ", growing like t^" + fixed(g.exponent, 2);
 }
 
-std::string drift_text(const RunResult& run) {
-  if (run.position_drift_max < rounding_level) {
-    return "rounding level (" + length_text(run.position_drift_max) + ")";
-  }
-  return length_text(run.position_drift_max);
+std::string drift_text(const Named& n) {
+  return judged(n) < rounding_level ? "rounding level (" + amount(n) + ")" : amount(n);
 }
 
 // "After 1000 s the position drift of `a` is 0.27 m, growing like t^1.98"
 std::string drift_clause(const Named& n) {
   const std::string start =
       "After " + seconds(n.run->settings.end_time) + " the position drift of " + n.name;
-  if (n.run->position_drift_max < rounding_level) {
-    return start + " is at " + drift_text(*n.run);
-  }
-  return start + (largest_at_the_end(*n.run) ? " is " : " reached ") +
-         length_text(n.run->position_drift_max) + growth_clause(*n.run);
+  if (judged(n) < rounding_level) return start + " is at " + drift_text(n);
+  return start + (largest_at_the_end(n) ? " is " : " reached ") + amount(n) + growth_clause(n);
 }
 
 // "`b` 3.5 µm, like t^1.01", in the tail of a sentence that began with drift_clause().
 std::string tail(const Named& n, bool growth_was_said) {
-  std::string growth = growth_clause(*n.run);
+  std::string growth = growth_clause(n);
   const std::string said = ", growing like ";
   if (growth_was_said && growth.rfind(said, 0) == 0)
     growth = ", like " + growth.substr(said.size());
-  return n.name + ' ' + (n.run->position_drift_max < rounding_level ? "stays at " : "") +
-         drift_text(*n.run) + growth;
+  return n.name + ' ' + (judged(n) < rounding_level ? "stays at " : "") + drift_text(n) + growth;
 }
 
 // Two decimals near one, two digits away from it.
@@ -134,17 +154,14 @@ std::optional<Pair> compared_pair(const std::vector<Named>& runs) {
 
 std::string pair_sentence(const Pair& pair) {
   const RunResult &a = *pair.acceleration.run, &m = *pair.momentum.run;
-  std::string text =
-      drift_clause(pair.acceleration) + "; " +
-      tail(pair.momentum, growth_clause(a).find("growing like") != std::string::npos);
+  std::string text = drift_clause(pair.acceleration) + "; " +
+                     tail(pair.momentum, growth_clause(pair.acceleration).find("growing like") !=
+                                             std::string::npos);
   if (!gauged(m.settings)) text += " (no gauge)";
-  const bool above_rounding =
-      std::max(a.position_drift_max, m.position_drift_max) >= rounding_level;
-  if (above_rounding && m.position_drift_max > a.position_drift_max) {
-    text += a.position_drift_max > 0
-                ? ", which is worse, " + ratio_text(m.position_drift_max / a.position_drift_max) +
-                      " times as much"
-                : ", which is worse";
+  const double drift_a = judged(pair.acceleration), drift_m = judged(pair.momentum);
+  if (std::max(drift_a, drift_m) >= rounding_level && drift_m > drift_a) {
+    text += drift_a > 0 ? ", which is worse, " + ratio_text(drift_m / drift_a) + " times as much"
+                        : ", which is worse";
   }
   return text + cost_clause(a, m) + ".";
 }
@@ -156,23 +173,21 @@ double score(double value, double floor) {
 std::string first_sentence(const std::vector<Named>& done) {
   std::vector<Named> drifting;
   std::copy_if(done.begin(), done.end(), std::back_inserter(drifting),
-               [](const Named& n) { return !std::isnan(n.run->position_drift_max); });
+               [](const Named& n) { return !std::isnan(judged(n)); });
   if (const auto pair = compared_pair(drifting)) return pair_sentence(*pair);
   if (drifting.empty()) {
     return "Position drift was not measured: there are no loops.";
   }
-  const auto less = [](const Named& x, const Named& y) {
-    return x.run->position_drift_max < y.run->position_drift_max;
-  };
+  const auto less = [](const Named& x, const Named& y) { return judged(x) < judged(y); };
   const Named best = *std::min_element(drifting.begin(), drifting.end(), less);
   const Named worst = *std::max_element(drifting.begin(), drifting.end(), less);
   if (drifting.size() == 1) return drift_clause(best) + ".";
-  if (worst.run->position_drift_max < rounding_level) {
+  if (judged(worst) < rounding_level) {
     return "After " + seconds(worst.run->settings.end_time) + " the position drift of all " +
            std::to_string(drifting.size()) + " finished runs is at rounding level (" +
-           length_text(worst.run->position_drift_max) + " at most).";
+           amount(worst, judged(worst)) + " at most).";
   }
-  const bool said = growth_clause(*worst.run).find("growing like") != std::string::npos;
+  const bool said = growth_clause(worst).find("growing like") != std::string::npos;
   return drift_clause(worst) + ", the most of " + std::to_string(drifting.size()) +
          " finished runs; " + tail(best, said) + ", the least.";
 }
@@ -191,12 +206,12 @@ std::string best_sentence(const std::vector<Named>& done) {
   const auto best_by = [&](auto measure) -> std::optional<Named> {
     std::optional<Named> best;
     for (const Named& n : done) {
-      if (std::isnan(measure(*n.run))) continue;
-      if (!best || measure(*n.run) < measure(*best->run)) best = n;
+      if (std::isnan(measure(n))) continue;
+      if (!best || measure(n) < measure(*best)) best = n;
     }
     return best;
   };
-  if (const auto best = best_by([](const RunResult& r) { return r.position_error_max; })) {
+  if (const auto best = best_by([](const Named& n) { return n.run->position_error_max; })) {
     return (done.size() == 1 ? "Against the reference its error is "
                              : "Closest to the reference is " + best->name +
                                    with_integrator(*best) + ": error ") +
@@ -204,9 +219,9 @@ std::string best_sentence(const std::vector<Named>& done) {
   }
   // No reference: drift in m and energy in J have no common unit, so their product is what is
   // compared.
-  const auto both = best_by([](const RunResult& r) {
-    if (std::isnan(r.position_drift_max) && std::isnan(r.energy_error_max)) return not_measured;
-    return score(r.position_drift_max, 1e-16) + score(r.energy_error_max, 1e-16);
+  const auto both = best_by([](const Named& n) {
+    if (std::isnan(judged(n)) && std::isnan(n.run->energy_error_max)) return not_measured;
+    return score(judged(n), 1e-16) + score(n.run->energy_error_max, 1e-16);
   });
   if (!both) return "";
   const RunResult& r = *both->run;
@@ -218,11 +233,10 @@ std::string best_sentence(const std::vector<Named>& done) {
       return std::isnan(r.cpu_s) ? "" : "It took " + time_text(r.cpu_s) + " of processor time.";
     return "It kept its " + energy + time_clause(r) + "; there is no reference to compare with.";
   }
-  std::string drift =
-      std::isnan(r.position_drift_max) ? "" : "drift " + length_text(r.position_drift_max);
-  if (!drift.empty() && !energy.empty()) drift += ", ";
+  std::string least = std::isnan(judged(*both)) ? "" : "drift " + amount(*both);
+  if (!least.empty() && !energy.empty()) least += ", ";
   return "Without a reference, the least drift times energy error is that of " + both->name +
-         with_integrator(*both) + ": " + drift + energy + time_clause(r) + ".";
+         with_integrator(*both) + ": " + least + energy + time_clause(r) + ".";
 }
 
 std::string failed_clause(const Named& n) {
@@ -270,8 +284,9 @@ std::vector<Named> runs_where(const StudyResult& study, bool done) {
 
 std::string answer(const StudyResult& study) {
   if (study.runs.empty()) return "No run was made.";
-  const auto done = runs_where(study, true);
+  auto done = runs_where(study, true);
   if (done.empty()) return "";
+  choose_drift(done);
   const std::string best = best_sentence(done);
   return first_sentence(done) + (best.empty() ? "" : ' ' + best);
 }

@@ -1,5 +1,5 @@
 #include <momenta/dae/report/csv.h>
-#include <momenta/dae/report/number_text.h>
+#include <momenta/dae/text/number_text.h>
 
 #include <algorithm>
 #include <charconv>
@@ -27,6 +27,7 @@ std::string csv_line(const std::vector<std::string>& cells) {
 }
 
 std::string study_csv(const StudyResult& study) {
+  const std::string unit = study.runs.empty() ? "m" : drift_unit(study.runs.front());
   std::string text = csv_line({"scene",
                                "form",
                                "integrator",
@@ -46,13 +47,20 @@ std::string study_csv(const StudyResult& study) {
                                "status",
                                "stopped_at [s]",
                                "reason",
-                               "position_drift_max [m]",
-                               "velocity_drift_max [m/s]",
-                               "between_steps_max [m]",
+                               "position_drift_max [" + unit + "]",
+                               "velocity_drift_max [" + unit + "/s]",
+                               "between_steps_max [" + unit + "]",
+                               "angle_drift_max [rad]",
+                               "angle_rate_drift_max [rad/s]",
+                               "angle_between_steps_max [rad]",
                                "position_exponent",
                                "position_exponent_half_range",
                                "velocity_exponent",
                                "velocity_exponent_half_range",
+                               "angle_exponent",
+                               "angle_exponent_half_range",
+                               "angle_rate_exponent",
+                               "angle_rate_exponent_half_range",
                                "energy_error_max [J]",
                                "position_error_max",
                                "velocity_error_max",
@@ -91,10 +99,17 @@ std::string study_csv(const StudyResult& study) {
                       round_trip(run.position_drift_max),
                       round_trip(run.velocity_drift_max),
                       round_trip(run.between_steps_max),
+                      round_trip(run.angle_drift_max),
+                      round_trip(run.angle_rate_drift_max),
+                      round_trip(run.angle_between_steps_max),
                       round_trip(run.position_growth.exponent),
                       round_trip(run.position_growth.half_range),
                       round_trip(run.velocity_growth.exponent),
                       round_trip(run.velocity_growth.half_range),
+                      round_trip(run.angle_growth.exponent),
+                      round_trip(run.angle_growth.half_range),
+                      round_trip(run.angle_rate_growth.exponent),
+                      round_trip(run.angle_rate_growth.half_range),
                       round_trip(run.energy_error_max),
                       round_trip(run.position_error_max),
                       round_trip(run.velocity_error_max),

@@ -1,6 +1,6 @@
 #include <momenta/dae/report/index_report.h>
 #include <momenta/dae/report/json.h>
-#include <momenta/dae/report/number_text.h>
+#include <momenta/dae/text/number_text.h>
 
 #include <algorithm>
 

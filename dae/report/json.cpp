@@ -62,11 +62,23 @@ Json summary_json(const RunResult& run, const Environment& environment) {
   json["drift"] = {{"position_max", number_or_null(run.position_drift_max)},
                    {"velocity_max", number_or_null(run.velocity_drift_max)},
                    {"between_steps_max", number_or_null(run.between_steps_max)},
+                   {"unit", run.drift_unit.empty() ? Json(nullptr) : Json(run.drift_unit)},
                    {"position_exponent", number_or_null(run.position_growth.exponent)},
-                   {"velocity_exponent", number_or_null(run.velocity_growth.exponent)}};
+                   {"velocity_exponent", number_or_null(run.velocity_growth.exponent)},
+                   {"angle_max", number_or_null(run.angle_drift_max)},
+                   {"angle_rate_max", number_or_null(run.angle_rate_drift_max)},
+                   {"angle_between_steps_max", number_or_null(run.angle_between_steps_max)},
+                   {"angle_exponent", number_or_null(run.angle_growth.exponent)},
+                   {"angle_rate_exponent", number_or_null(run.angle_rate_growth.exponent)}};
   json["energy"] = {{"error_max", number_or_null(run.energy_error_max)}};
   json["error"] = {{"position_max", number_or_null(run.position_error_max)},
                    {"velocity_max", number_or_null(run.velocity_error_max)}};
+  json["rank"] = run.drift_unit.empty() ? Json(nullptr) : Json(run.rank);
+  json["dependent_rows"] = Json::array();
+  for (const auto& row : run.dependent_rows)
+    json["dependent_rows"].push_back({{"loop", row.loop}, {"row", row.row}});
+  json["residue"] = run.residue;
+  json["weak_evaluations"] = run.weak_evaluations;
   json["faded_rows"] = Json::array();
   for (const auto& row : run.faded_rows)
     json["faded_rows"].push_back(

@@ -6,9 +6,9 @@
 // What is far is drawn first.
 
 #include <momenta/dae/report/figure.h>
-#include <momenta/dae/report/number_text.h>
 #include <momenta/dae/report/svg.h>
 #include <momenta/dae/study/motion.h>
+#include <momenta/dae/text/number_text.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 #include <momenta/dae/report/csv.h>
 #include <momenta/dae/report/json.h>
 #include <momenta/dae/report/modes_report.h>
-#include <momenta/dae/report/number_text.h>
+#include <momenta/dae/text/number_text.h>
 
 #include <algorithm>
 #include <cmath>

@@ -39,7 +39,7 @@ Json curve(const std::vector<double>& t, const std::vector<double>& y) {
 
 Json series_json(const RunResult& run) {
   Json series = Json::object();
-  for (const History& history : histories()) {
+  for (const History& history : histories(run)) {
     const std::vector<double>& y = run.series.*history.values;
     // |λ| is a force and |σ| an impulse: only forms with impulses share the axis.
     if (std::string_view(history.key) == "impulse" && !takes_gauge(run.settings.form)) continue;
@@ -62,9 +62,9 @@ Json pairs_json(const std::vector<std::pair<std::string, std::string>>& pairs) {
   return json;
 }
 
-Json histories_json() {
+Json histories_json(const StudyResult& study) {
   Json all = Json::array();
-  for (const History& h : histories())
+  for (const History& h : histories(study.runs.empty() ? RunResult() : study.runs.front()))
     all.push_back({{"key", h.key},
                    {"title", h.title},
                    {"yTitle", h.axis},
@@ -105,7 +105,9 @@ Json page_data(const StudyResult& study) {
     json["best"] = std::find(front.begin(), front.end(), i) != front.end();
     json["baumgarte"] = {run.settings.baumgarte_alpha, run.settings.baumgarte_beta};
     json["growth"] = {{"position", growth_json(run.position_growth)},
-                      {"velocity", growth_json(run.velocity_growth)}};
+                      {"velocity", growth_json(run.velocity_growth)},
+                      {"angle", growth_json(run.angle_growth)},
+                      {"angle_rate", growth_json(run.angle_rate_growth)}};
     const bool drawn = std::binary_search(curves.begin(), curves.end(), i);
     json["series"] = drawn ? series_json(run) : Json::object();
     runs.push_back(std::move(json));
@@ -119,7 +121,7 @@ Json page_data(const StudyResult& study) {
           {"plan", pairs_json(study.plan)},
           {"environment", environment_json(study.environment)},
           {"palette", palette},
-          {"histories", histories_json()},
+          {"histories", histories_json(study)},
           {"picture", picture_json(study.picture)},
           {"motions", motions_json(study)},
           {"csv", study_csv(study)},

@@ -1,5 +1,5 @@
-#include <momenta/dae/report/number_text.h>
 #include <momenta/dae/report/run_label.h>
+#include <momenta/dae/text/number_text.h>
 
 #include <algorithm>
 #include <array>

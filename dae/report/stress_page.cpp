@@ -1,7 +1,7 @@
 #include <momenta/dae/report/embedded.h>
-#include <momenta/dae/report/number_text.h>
 #include <momenta/dae/report/stress_report.h>
 #include <momenta/dae/report/template.h>
+#include <momenta/dae/text/number_text.h>
 
 #include <algorithm>
 

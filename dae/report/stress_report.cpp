@@ -1,7 +1,7 @@
 #include <momenta/dae/report/csv.h>
 #include <momenta/dae/report/json.h>
-#include <momenta/dae/report/number_text.h>
 #include <momenta/dae/report/stress_report.h>
+#include <momenta/dae/text/number_text.h>
 
 #include <algorithm>
 #include <cmath>
@@ -35,7 +35,7 @@ std::string verdict_text(const StressRun& r) {
 
 double worst_measure(const StressRun& r) {
   double worst = not_measured;
-  for (const double x : {r.position_drift, r.energy, r.error})
+  for (const double x : {r.position_drift, r.angle_drift, r.energy, r.error})
     if (std::isfinite(x) && !(x <= worst)) worst = x;
   return worst;
 }
@@ -115,7 +115,8 @@ std::string stress_table(const StressResult& study) {
 std::string stress_csv(const StressResult& study) {
   std::string text =
       "ladder,rung,form,integrator,gauge,project,rtol,step [s],end_time [s],verdict,cause,at [s],"
-      "position_drift,velocity_drift,energy,error,reference_accuracy,steps,evaluations,cpu [s]\n";
+      "position_drift,velocity_drift,angle_drift,angle_rate_drift,energy,error,reference_accuracy,"
+      "steps,evaluations,cpu [s]\n";
   for (const LadderResult& ladder : study.ladders)
     for (const auto& climb : ladder.runs)
       for (const StressRun& r : climb) {
@@ -126,6 +127,7 @@ std::string stress_csv(const StressResult& study) {
                 round_trip(s.rtol) + "," + round_trip(s.step) + "," + round_trip(s.end_time) + "," +
                 name_of(r.verdict) + "," + csv_cell(r.cause) + "," + round_trip(r.at) + "," +
                 round_trip(r.position_drift) + "," + round_trip(r.velocity_drift) + "," +
+                round_trip(r.angle_drift) + "," + round_trip(r.angle_rate_drift) + "," +
                 round_trip(r.energy) + "," + round_trip(r.error) + "," +
                 round_trip(ladder.reference[k]) + "," + std::to_string(r.run.counters.steps) + "," +
                 std::to_string(r.run.counters.evaluations) + "," + round_trip(r.run.cpu_s) + "\n";
@@ -173,6 +175,8 @@ nlohmann::ordered_json stress_json(const StressResult& study) {
                              {"at", number_or_null(r.at)},
                              {"position_drift", number_or_null(r.position_drift)},
                              {"velocity_drift", number_or_null(r.velocity_drift)},
+                             {"angle_drift", number_or_null(r.angle_drift)},
+                             {"angle_rate_drift", number_or_null(r.angle_rate_drift)},
                              {"opening", number_or_null(r.position_drift)},     // deprecated
                              {"loop_speed", number_or_null(r.velocity_drift)},  // deprecated
                              {"energy", number_or_null(r.energy)},

@@ -1,7 +1,7 @@
 #include <momenta/dae/report/csv.h>
 #include <momenta/dae/report/json.h>
-#include <momenta/dae/report/number_text.h>
 #include <momenta/dae/report/sweep_report.h>
+#include <momenta/dae/text/number_text.h>
 
 #include <algorithm>
 #include <map>
@@ -20,6 +20,8 @@ const std::vector<Measure>& measures() {
   static const std::vector<Measure> all{
       {"position_drift_max", [](const SweepCase& c) { return c.position_drift_max; }},
       {"velocity_drift_max", [](const SweepCase& c) { return c.velocity_drift_max; }},
+      {"angle_drift_max", [](const SweepCase& c) { return c.angle_drift_max; }},
+      {"angle_rate_drift_max", [](const SweepCase& c) { return c.angle_rate_drift_max; }},
       {"energy_error_max", [](const SweepCase& c) { return c.energy_error_max; }}};
   return all;
 }
@@ -52,10 +54,16 @@ std::string values_in_words(const SweepRequest& request, const SweepCase& c) {
 std::string sweep_csv(const SweepRequest& request, const std::vector<SweepCase>& cases) {
   std::vector<std::string> header{"case"};
   for (const Varied& v : request.varied) header.push_back(csv_cell(v.place));
-  for (const char* name :
-       {"status", "stopped_at [s]", "position_drift_max [m]", "velocity_drift_max [m/s]",
-        "energy_error_max [J]", "steps", "evaluations"})
-    header.emplace_back(name);
+  // Of the first case that has loops: what is varied are numbers, rows and their units stay.
+  const auto looped = std::find_if(cases.begin(), cases.end(),
+                                   [](const SweepCase& c) { return !c.drift_unit.empty(); });
+  const std::string unit = looped == cases.end() ? "m" : looped->drift_unit;
+  for (const std::string& name :
+       {std::string("status"), std::string("stopped_at [s]"), "position_drift_max [" + unit + "]",
+        "velocity_drift_max [" + unit + "/s]", std::string("angle_drift_max [rad]"),
+        std::string("angle_rate_drift_max [rad/s]"), std::string("energy_error_max [J]"),
+        std::string("steps"), std::string("evaluations")})
+    header.push_back(name);
   for (const std::string& name : request.watched)
     for (const char* which : {" last", " least", " greatest"})
       header.push_back(csv_cell(name + which));
@@ -67,7 +75,8 @@ std::string sweep_csv(const SweepRequest& request, const std::vector<SweepCase>&
     for (const double value : c.values) cells.push_back(round_trip(value));
     cells.insert(cells.end(),
                  {csv_cell(c.status), round_trip(c.stopped_at), round_trip(c.position_drift_max),
-                  round_trip(c.velocity_drift_max), round_trip(c.energy_error_max),
+                  round_trip(c.velocity_drift_max), round_trip(c.angle_drift_max),
+                  round_trip(c.angle_rate_drift_max), round_trip(c.energy_error_max),
                   std::to_string(c.steps), std::to_string(c.evaluations)});
     for (const auto& w : c.watched)
       cells.insert(cells.end(), {round_trip(w.last), round_trip(w.least), round_trip(w.greatest)});

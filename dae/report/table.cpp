@@ -1,18 +1,19 @@
-#include <momenta/dae/report/number_text.h>
 #include <momenta/dae/report/run_label.h>
 #include <momenta/dae/report/table.h>
+#include <momenta/dae/text/number_text.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <vector>
 
 namespace momenta {
 namespace {
 
-constexpr std::size_t columns = 14;
 constexpr std::size_t text_columns =
     5;  // these stand at the left of their column, numbers at the right
-using Row = std::array<std::string, columns>;
+using Row = std::vector<std::string>;
+
+constexpr std::ptrdiff_t after_drifts = 7;
 
 std::string growth(const Growth& g) {
   if (std::isnan(g.exponent)) return "-";
@@ -24,9 +25,10 @@ std::string count(long n) {
   return n < 10'000'000 ? std::to_string(n) : scientific(static_cast<double>(n), 3);
 }
 
-Row row_of(const RunResult& run) {
+/// `both`: with the drifts of angles behind those of lengths.
+Row row_of(const RunResult& run, bool both) {
   const RunSettings& s = run.settings;
-  return {s.form + (s.project ? "+project" : ""),
+  Row row{s.form + (s.project ? "+project" : ""),
           s.integrator + (changed(run) ? "," + s.when_stiff : ""),
           s.gauge.empty() ? "-" : s.gauge,
           s.step > 0 ? "h=" + compact(s.step, 3) : tolerance_text(s),
@@ -40,18 +42,32 @@ Row row_of(const RunResult& run) {
           count(run.counters.steps),
           count(run.counters.evaluations),
           compact(run.cpu_s, 3)};
+  if (both)
+    row.insert(row.begin() + after_drifts,
+               {scientific(run.angle_drift_max, 2), scientific(run.angle_rate_drift_max, 2)});
+  return row;
 }
 
 }  // namespace
 
 std::string drift_table(const StudyResult& study) {
+  const std::string unit = study.runs.empty() ? "m" : drift_unit(study.runs.front());
+  const bool both = std::any_of(study.runs.begin(), study.runs.end(), has_both_drifts);
   std::vector<Row> rows{{"", "integ-", "", "tol or", "", "pos.", "vel.", "energy", "growth",
-                         "growth", "error", "", "evalu-", "CPU"},
-                        {"form", "rator", "gauge", "step", "status", "drift", "drift", "error",
-                         "pos. t^", "vel. t^", "to ref.", "steps", "ations", "[s]"}};
-  for (const RunResult& run : study.runs) rows.push_back(row_of(run));
+                         "growth", "error", "", "evalu-", ""},
+                        {"", "rator", "", "step", "", "drift", "drift", "error", "pos.", "vel.",
+                         "to", "", "ations", "CPU"},
+                        {"form", "", "gauge", "", "status", "[" + unit + "]", "[" + unit + "/s]",
+                         "[J]", "t^", "t^", "ref.", "steps", "", "[s]"}};
+  if (both) {
+    const char* const more[3][2]{{"angle", "rate"}, {"drift", "drift"}, {"[rad]", "[rad/s]"}};
+    for (std::size_t i = 0; i < 3; ++i)
+      rows[i].insert(rows[i].begin() + after_drifts, {more[i][0], more[i][1]});
+  }
+  for (const RunResult& run : study.runs) rows.push_back(row_of(run, both));
 
-  std::array<std::size_t, columns> widest{};
+  const std::size_t columns = rows.front().size();
+  std::vector<std::size_t> widest(columns);
   for (const Row& row : rows) {
     for (std::size_t c = 0; c < columns; ++c) widest[c] = std::max(widest[c], width(row[c]));
   }

@@ -9,29 +9,36 @@
 
 namespace momenta {
 
+/// How an integrator is to go.
 struct IntegrationOptions {
-  double rtol = 1e-8;
+  double rtol = 1e-8;  ///< relative tolerance of the local error
   double atol = 1e-8;  ///< times the system's scale(i)
   double step = 0;     ///< fixed step [s]; needed by rk4, gauss, generalised-alpha. dp5, dop853,
                        ///< vern9, radau5: > 0 means steps of this length without error control.
                        ///< Ignored by the multistep methods
-  double initial_step = 0;       ///< 0: chosen by the method
-  double max_step = 0;           ///< 0: none
-  int max_order = 0;             ///< multistep; 0: the method's own limit
-  double spectral_radius = 0.8;  ///< generalised-alpha: at infinite frequency, in [0, 1)
-  long max_steps = 50'000'000;
+  double initial_step = 0;          ///< 0: chosen by the method
+  double max_step = 0;              ///< 0: none
+  int max_order = 0;                ///< multistep; 0: the method's own limit
+  double spectral_radius = 0.8;     ///< generalised-alpha: at infinite frequency, in [0, 1)
+  long max_steps = 50'000'000;      ///< a run of more fails
   double max_cpu_seconds = 0;       ///< 0: none; a run beyond it stops with status "time limit"
   double spent_cpu_seconds = 0;     ///< of them, before a run that goes on
   const Memory* carried = nullptr;  ///< what a run carried that goes on; null: from the start
   bool until_stiff = false;         ///< dp5, dop853, vern9: end where `stiff_from` is known
 };
 
+/// What an integration took.
 struct Counters {
-  long steps = 0, rejected = 0, evaluations = 0, jacobians = 0, factorizations = 0,
-       newton_iterations = 0;
-  long ode_restarts =
-      0;  ///< of the steps, those of DAE methods taken as an ODE near singular poses
+  long steps = 0;              ///< accepted
+  long rejected = 0;           ///< steps that were taken again
+  long evaluations = 0;        ///< of right-hand sides or residuals
+  long jacobians = 0;          ///< of Newton's matrices
+  long factorizations = 0;     ///< of (7), or of Newton's matrix
+  long newton_iterations = 0;  ///< of implicit methods
+  /// Of the steps, those of DAE methods taken as an ODE near singular poses.
+  long ode_restarts = 0;
 
+  /// One integration after another.
   Counters& operator+=(const Counters& other) {
     steps += other.steps, rejected += other.rejected, evaluations += other.evaluations;
     jacobians += other.jacobians, factorizations += other.factorizations;
@@ -56,12 +63,13 @@ struct Observer {
   std::function<void(double t, const std::function<void(Memory&)>& carry)> before_step;
 };
 
+/// How an integration ended.
 struct IntegrationResult {
-  bool done = false;
+  bool done = false;      ///< the end was reached
   std::string reason;     ///< one sentence when not done: what failed, at which time, why
   double end_time = 0;    ///< where the run stopped [s]
   std::vector<double> y;  ///< the state there
-  Counters counters;
+  Counters counters;      ///< of the whole of it
   /// Since when an explicit method's steps were as long as its stability allows, not its tolerance
   /// [s]; NaN: they were not.
   double stiff_from = std::numeric_limits<double>::quiet_NaN();

@@ -10,21 +10,28 @@
 
 namespace momenta {
 
+/// One integrator, by name.
 struct Integrator {
+  /// Which systems it takes.
   enum class Takes {
     ode,  ///< y' = f(t, y)
     dae,  ///< F(t, y, y') = 0
   };
-  enum class Step { adaptive, fixed };
+  /// Whether it chooses its steps.
+  enum class Step {
+    adaptive,  ///< by the local error
+    fixed      ///< IntegrationOptions::step
+  };
 
-  std::string name;
-  Takes takes;
-  Step step;
+  std::string name;                ///< as options and tables have it
+  Takes takes;                     ///< ODE or DAE
+  Step step;                       ///< adaptive or fixed
   bool multistep;                  ///< carries a history: a gauge reset or flip would spoil it
   bool projects;                   ///< states may be corrected onto the constraints after each step
   std::string method;              ///< one line
   std::vector<std::string> forms;  ///< those it is for; empty: all of its kind
 
+  /// Whether it is for the named form, a DAE or not.
   bool takes_form(const std::string& wanted, bool dae) const {
     return (takes == Takes::dae) == dae &&
            (forms.empty() || std::find(forms.begin(), forms.end(), wanted) != forms.end());

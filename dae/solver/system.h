@@ -15,20 +15,21 @@ namespace momenta {
 /// errors measured by what they change of the motion, f at the corrected position as well.
 enum class SingularityHandling { none, norm, position };
 
+/// y' = f(t, y). One object serves one thread.
 class OdeSystem {
  public:
   virtual ~OdeSystem() = default;
-  virtual int size() const = 0;
+  virtual int size() const = 0;  ///< of y
 
   /// y' at (t, y); both of size().
   virtual bool rhs(double t, const double* y, double* ydot) = 0;
 
   /// Called once after every accepted step of a one-step method, before the next: gauge reset,
-  /// position correction, quaternion normalisation. `ydot` is f(t, y) at the unchanged y where the
-  /// method has it (FSAL), else null. Sets `changed` when y was altered in a way that makes f(t, y)
-  /// a different number (a gauge reset does; a position correction of the size of the local error
-  /// does not: the last stage may then still serve as the next first one).
+  /// position correction, quaternion normalisation. Sets `changed` when y was altered in a way that
+  /// makes f(t, y) a different number (a gauge reset does; a position correction of the size of the
+  /// local error does not: the last stage may then still serve as the next first one).
   virtual bool after_step(double /*t*/, double* /*y*/, bool& /*changed*/) { return true; }
+  /// Whether after_step() does anything.
   virtual bool has_after_step() const { return false; }
 
   /// Tells the system that a new step starts at (t, y): the σ_ref of recentred pivots is taken
@@ -65,9 +66,11 @@ class OdeSystem {
   /// |y_i|.
   virtual double scale(int /*i*/) const { return 1.0; }
 
+  /// One sentence on the last call that returned false.
   const std::string& failure() const { return failure_; }
 
  protected:
+  /// Keeps the sentence; false.
   bool fail(std::string sentence) {
     failure_ = std::move(sentence);
     return false;
@@ -80,6 +83,7 @@ class OdeSystem {
 /// While it lives the system is looked at, not run.
 class Looking {
  public:
+  /// From now on.
   explicit Looking(OdeSystem& system) : system_(system) { system_.look_on(true); }
   ~Looking() { system_.look_on(false); }
   Looking(const Looking&) = delete;
@@ -104,15 +108,17 @@ class LocalJacobian {
   virtual bool evaluate(double t, const double* y, const double* ydot, double c) = 0;
   /// Of the last evaluation. The version tells that the pattern is another than before.
   virtual const JacobianPattern& pattern() const = 0;
-  virtual const std::vector<double>& values() const = 0;
-  virtual int version() const = 0;
+  virtual const std::vector<double>& values() const = 0;  ///< in the order of pattern()
+  virtual int version() const = 0;                        ///< of the pattern, ascending
 };
 
+/// F(t, y, y') = 0. One object serves one thread.
 class DaeSystem {
  public:
   virtual ~DaeSystem() = default;
-  virtual int size() const = 0;
+  virtual int size() const = 0;  ///< of y and of F
 
+  /// r = F(t, y, y').
   virtual bool residual(double t, const double* y, const double* ydot, double* r) = 0;
 
   /// J = ∂F/∂y + c ∂F/∂y', exact. Dense: column-major size() × size(). Sparse: the values in the
@@ -139,9 +145,10 @@ class DaeSystem {
   /// scale + rtol |y_i|. A variable that loses a power of the step (the velocities of an index-3
   /// form) gets it back by power 1; power −1 keeps y_i out (multipliers).
   struct Weight {
-    int power;
-    double scale;
+    int power;     ///< of h
+    double scale;  ///< times atol
   };
+  /// Of y_i.
   virtual Weight weight(int i) const { return {differential(i) ? 0 : -1, scale(i)}; }
 
   /// Whether the coordinates that lead y, and the states below, are near a pose where loop
@@ -152,15 +159,18 @@ class DaeSystem {
   virtual OdeSystem* ode_restart(double /*t*/, const double* /*y*/, double* /*state*/) {
     return nullptr;
   }
+  /// Size of that state; 0: there is none.
   virtual int ode_restart_size() const { return 0; }
   /// y and y' from a state of that ODE; y comes with the multipliers of a moment ago.
   virtual bool rejoin(double /*t*/, const double* /*state*/, double* /*y*/, double* /*ydot*/) {
     return false;
   }
 
+  /// One sentence on the last call that returned false.
   const std::string& failure() const { return failure_; }
 
  protected:
+  /// Keeps the sentence; false.
   bool fail(std::string sentence) {
     failure_ = std::move(sentence);
     return false;

@@ -2,7 +2,7 @@
 // When the loops of a run have come apart, so that what moves on is another mechanism.
 //
 // Each equation is judged in its own unit: points in lengths of the scene, axes in radians,
-// couplers in what their terms are by nature (AssemblyUnits). With |Φ|∞ so counted
+// couplers in what their terms are by nature (LoopUnits). With |Φ|∞ so counted
 //
 //   forms that drift                         |Φ|∞ ≤ 1/4
 //   forms that hold Φ = 0, adaptive steps    |Φ|∞ ≤ 10⁴ rtol, no less than 10⁻⁶, no more than 1/4
@@ -10,11 +10,12 @@
 // The second is what their Newton iterations and their interpolants between steps leave, with room;
 // beyond it a form no longer does what it is for.
 
-#include <momenta/dae/assembly/units.h>
+#include <momenta/dae/kkt/loop_units.h>
 #include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/study/run_result.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <string>
 
@@ -36,10 +37,14 @@ class Apart {
   double gap(const Eigen::VectorXd& phi) {
     return phi.cwiseAbs().cwiseQuotient(units_.equations).maxCoeff(&worst_);
   }
-  /// |Φ|₂ that rounding leaves, with room [m or rad].
-  double rounding() const {
+  /// |Φ|₂ that rounding leaves of rows of lengths [m], or of angles [rad], with room.
+  double rounding(bool angles) const {
     constexpr double room = 10;
-    return room * units_.rounding * units_.equations.norm();
+    double sum = 0;
+    for (Eigen::Index i = 0; i < units_.equations.size(); ++i)
+      if (mechanism_.angle_rows()[static_cast<std::size_t>(i)] == angles)
+        sum += units_.equations[i] * units_.equations[i];
+    return room * units_.rounding * std::sqrt(sum);
   }
   /// Largest rate of a joint, slides in lengths of the scene [1/s].
   double speed(const Eigen::VectorXd& u) const {
@@ -53,7 +58,8 @@ class Apart {
     const std::string& loop = mechanism_.rows()[static_cast<std::size_t>(worst_)].loop;
     char text[160];
     std::snprintf(
-        text, sizeof text, "' is open by %.3g of the scene's length or radians, %s %.2g", open,
+        text, sizeof text, "' is open by %.3g %s, %s %.2g", open,
+        mechanism_.angle_rows()[static_cast<std::size_t>(worst_)] ? "rad" : "of the scene's length",
         limit < most ? "where this form holds it within" : "the most a drift may be is", limit);
     char time[32];
     std::snprintf(time, sizeof time, "%.6g", t);
@@ -62,7 +68,7 @@ class Apart {
 
  private:
   const Mechanism& mechanism_;
-  AssemblyUnits units_;
+  LoopUnits units_;
   double least_ = most;
   Eigen::Index worst_ = 0;
 };

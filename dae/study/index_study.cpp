@@ -1,5 +1,6 @@
 #include <momenta/dae/form/dae_form.h>
 #include <momenta/dae/kkt/dense_blocks.h>
+#include <momenta/dae/kkt/loop_rank.h>
 #include <momenta/dae/kkt/singular_values.h>
 #include <momenta/dae/study/index_study.h>
 
@@ -32,6 +33,19 @@ RankFound rank_of(Eigen::MatrixXd matrix) {
   equilibrate(matrix, none);
   const Eigen::BDCSVD<Eigen::MatrixXd> svd(matrix);
   return rank_by_gap(svd.singularValues(), svd.singularValues()[0]);
+}
+
+/// The verdict of kkt/loop_rank.h.
+RankFound rank_of_loops(const Mechanism& mechanism, const Start& start) {
+  const auto e = mechanism.evaluation<double>();
+  e->place(start.t, start.q.data());
+  const LoopRank loops = loop_rank(mechanism, *e);
+  RankFound found;
+  found.rank = loops.rank;
+  if (!(loops.singular_values.size() > 0 && loops.singular_values[0] > 0)) return found;
+  found.kept = loops.kept / loops.singular_values[0];
+  found.dropped = loops.dropped / loops.singular_values[0];
+  return found;
 }
 
 double time_scale(const Mechanism& mechanism, const Start& start) {
@@ -145,7 +159,7 @@ IndexStudy run_index_study(const Mechanism& mechanism, const Start& start,
   study.nv = mechanism.nv();
   study.m = mechanism.m();
   const Matrices at = matrices(mechanism, start);
-  if (mechanism.m() > 0) study.loops = rank_of(at.constraint);
+  if (mechanism.m() > 0) study.loops = rank_of_loops(mechanism, start);
   const double time = time_scale(mechanism, start);
   for (const auto& name : forms) {
     if (progress && !progress(name)) break;

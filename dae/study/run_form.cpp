@@ -1,6 +1,7 @@
 #include <momenta/core/arguments.h>
 #include <momenta/dae/assembly/drive_reach.h>
 #include <momenta/dae/form/ode_form.h>
+#include <momenta/dae/kkt/loop_rank.h>
 #include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/solver/stopping.h>
 #include <momenta/dae/study/run_monitor.h>
@@ -50,9 +51,7 @@ RunSettings default_settings(const RunDefaults& scene, const std::string& form,
   s.integrator = method.empty() ? default_integrator(form, rtol) : method;
   s.gauge = scene.leak ? Gauge{Gauge::Kind::leak, *scene.leak}.text() : "leak";
   s.rtol = s.atol = rtol;
-  if (method.empty() && !is_dae_form(form) && !needs_one_step_method(form) && s.gauge != "reset" &&
-      s.gauge != "flip")
-    s.when_stiff = "bdf";
+  if (method.empty()) s.when_stiff = "bdf";
   s.step = scene.step.value_or(0);
   s.end_time = scene.end_time;
   s.samples = scene.samples;
@@ -142,9 +141,7 @@ class Runner {
     options_.step = s.step;
     options_.spectral_radius = s.spectral_radius;
     options_.max_cpu_seconds = max_cpu_seconds;
-    // A larger dense Newton matrix may cost more than short steps.
-    constexpr int most_stiff_unknowns = 500;
-    if (dae || form_->ode()->size() > most_stiff_unknowns || s.step > 0) s.when_stiff.clear();
+    if (!s.when_stiff.empty() && !may_change(s, options.gauge)) s.when_stiff.clear();
     when_stiff_ = s.when_stiff;
     options_.until_stiff = !when_stiff_.empty();
   }
@@ -176,6 +173,16 @@ class Runner {
   }
 
  private:
+  /// Whether `when_stiff`, a method with memory, takes the form as it is set.
+  bool may_change(const RunSettings& s, const Gauge& gauge) {
+    const Integrator& method = integrator(s.when_stiff);
+    constexpr int most_unknowns =
+        500;  // a larger dense Newton matrix may cost more than short steps
+    return !is_dae_form(s.form) && s.step == 0 && form_->ode()->size() <= most_unknowns &&
+           !needs_one_step_method(s.form) && (method.projects || !s.project) &&
+           gauge.kind != Gauge::Kind::reset && gauge.kind != Gauge::Kind::flip;
+  }
+
   /// The implicit method takes over where the explicit one ended.
   void go_on(IntegrationResult& run, const std::vector<double>& times, const Observer& observer,
              double cpu_s) {
@@ -222,12 +229,28 @@ void expect_start(const Mechanism& mechanism, const Start& s) {
              {"u of the start", s.u, mechanism.nv()},
              {"udot of the start", s.udot, mechanism.nv()},
              {"lambda of the start", s.lambda, mechanism.m()}};
+  if (s.residue.size() > 0)
+    expect_size("run_form", "residue of the start", s.residue.size(), mechanism.m());
   for (const auto& [name, x, size] : all) {
     expect_size("run_form", name, x.size(), size);
     for (Eigen::Index i = 0; i < x.size(); ++i)
       if (!std::isfinite(x[i]))
         throw std::invalid_argument("run_form: " + not_finite(name, i, x[i]));
   }
+}
+
+/// Rank, redundant rows and residue at the start.
+void judge_rank(const Mechanism& mechanism, const Start& start, RunResult& result) {
+  if (mechanism.m() == 0) return;
+  const auto e = mechanism.evaluation<double>();
+  e->place(start.t, start.q.data());
+  const LoopRank loops = loop_rank(mechanism, *e);
+  result.rank = loops.rank;
+  for (const int row : loops.dependent) {
+    const RowName& name = mechanism.rows()[static_cast<std::size_t>(row)];
+    result.dependent_rows.push_back({name.loop, name.what});
+  }
+  result.residue = residue_in_words(mechanism, start.residue);
 }
 
 /// A run that ends where drives cannot go on says so, whatever its method met there: where drives
@@ -278,18 +301,19 @@ RunResult run_form(const Mechanism& mechanism, const Start& start, const RunRequ
     return result;
   }
   Runner& runner = *made;
+  judge_rank(mechanism, start, result);
   const double end = result.settings.end_time;
   const DriveReach reach = drive_reach(mechanism, start.t, start.q, end);
   const Checkpoint* from = request.from;
   if (from) result = from->so_far;
   const double wall_start = wall_now() - (from ? result.wall_s : 0),
                cpu_start = thread_seconds() - (from ? result.cpu_s : 0);
-  RunMonitor monitor(mechanism, runner.form(), request, result);
+  RunMonitor monitor(mechanism, runner.form(), start, request, result);
   const auto y0 = runner.form().initial(start);
   if (!from) monitor.sample(start.t, y0.data(), nullptr);
   auto* ode = dynamic_cast<OdeForm*>(&runner.form());
   std::vector<long> faded(static_cast<std::size_t>(mechanism.m()));
-  if (ode && mechanism.m() > 0) ode->watch_faded(&faded);
+  if (ode && mechanism.m() > 0) ode->watch_faded(&faded, mechanism.m() - result.rank);
   const std::vector<double> times = output_times(result.settings, request.reference, reach);
   Observer observer{
       [&](double t, const double* y, const double* ydot) { return monitor.sample(t, y, ydot); },
@@ -343,6 +367,7 @@ RunResult run_form(const Mechanism& mechanism, const Start& start, const RunRequ
     if (faded[row] > 0)
       result.faded_rows.push_back(
           {mechanism.rows()[row].loop, mechanism.rows()[row].what, faded[row]});
+  if (ode) result.weak_evaluations = ode->weak_evaluations();
   monitor.finish();
   return result;
 }

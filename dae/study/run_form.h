@@ -17,11 +17,12 @@ struct Checkpoint {
   RunResult so_far;
 };
 
+/// One run: what to do, what to keep, whom to tell.
 struct RunRequest {
-  RunSettings settings;
+  RunSettings settings;                  ///< form, integrator, tolerances, times
   const Reference* reference = nullptr;  ///< bound to trajectory_columns(mechanism)
-  bool keep_trajectory = false;
-  int keep_every = 1;  ///< of its rows, from the first
+  bool keep_trajectory = false;          ///< RunResult::trajectory is filled
+  int keep_every = 1;                    ///< of its rows, from the first
   /// Called with every row of the trajectory, where one is kept; return false to stop the run.
   std::function<bool(const std::vector<double>& row)> on_row;
   /// The film has the start and this many equal intervals more; a run that fails, fewer. 0: none.
@@ -53,8 +54,9 @@ std::string ambiguous_from(double t);
 
 /// A run with nobody looking, and what it costs.
 struct TimedRun {
-  double cpu_s = not_measured, wall_s = not_measured;
-  Counters counters;
+  double cpu_s = not_measured;   ///< of the integration alone
+  double wall_s = not_measured;  ///< likewise
+  Counters counters;             ///< without what looking on takes
 };
 /// `settings`: those of a run that is done. `at_step` is asked after each step; false ends it.
 TimedRun time_run(const Mechanism& mechanism, const Start& start, RunSettings settings,

@@ -14,21 +14,40 @@
 
 namespace momenta {
 
+/// |x|₂ of rows in m, and of rows in rad.
+struct Drift {
+  double lengths = 0, angles = 0;
+  bool finite() const { return std::isfinite(lengths) && std::isfinite(angles); }
+};
+inline Drift drift_of(const Mechanism& mechanism, const Eigen::VectorXd& x) {
+  if (!mechanism.has_angles()) return {x.norm(), 0};
+  if (!mechanism.has_lengths()) return {0, x.norm()};
+  Drift sum;
+  for (Eigen::Index i = 0; i < x.size(); ++i)
+    (mechanism.angle_rows()[static_cast<std::size_t>(i)] ? sum.angles : sum.lengths) += x[i] * x[i];
+  return {std::sqrt(sum.lengths), std::sqrt(sum.angles)};
+}
+
 /// Looks at states of a form: drifts, energy, errors.
 class RunMonitor {
  public:
-  RunMonitor(const Mechanism& mechanism, Form& form, const RunRequest& request, RunResult& result)
+  RunMonitor(const Mechanism& mechanism, Form& form, const Start& start, const RunRequest& request,
+             RunResult& result)
       : mechanism_(mechanism),
         form_(form),
         request_(request),
         result_(result),
         e_(mechanism.evaluation<double>()),
+        lengths_(mechanism.has_lengths()),
+        both_(lengths_ && mechanism.has_angles()),
+        residue_(start.residue),
         phi_(mechanism.m()),
         middle_(mechanism.nq()),
         markers_(static_cast<std::size_t>(6 * static_cast<int>(mechanism.scene().markers.size()))),
         dissipated_energy_(mechanism.scene()) {
     if (request.keep_trajectory) result.trajectory.columns = trajectory_columns(mechanism);
     if (mechanism.m() > 0) {
+      result.drift_unit = lengths_ ? "m" : "rad";
       apart_.emplace(mechanism, result.settings);
       solver_ = make_loop_solver(mechanism, *e_);
       unique_.emplace(mechanism, *e_, *solver_);
@@ -46,19 +65,19 @@ class RunMonitor {
     mechanism_.tree().normalise(now_.q);  // interpolants leave |q| off by the tolerance
     e_->place(t, now_.q.data());
     e_->positions(phi_.data());
-    const double position = phi_.norm();
+    const Drift position = drift_of(mechanism_, beyond_residue());
     if (apart_) fastest_ = std::max(fastest_, apart_->speed(now_.u));
-    if (apart_ && std::isfinite(position)) {
+    if (apart_ && position.finite()) {
       came_apart_ = apart_->found(t, phi_, true);
       keep_closed(t, now_.q);
     }
     e_->move(now_.u.data());
     e_->velocities(phi_.data());
-    const double velocity = phi_.norm();
+    const Drift velocity = drift_of(mechanism_, phi_);
     const double kinetic = e_->kinetic(), potential = e_->potential(now_.q.data());
     const double energy =
         mechanism_.plan().drives ? not_measured : kinetic + potential - dissipated_energy_.until(t);
-    if (!std::isfinite(position) || !std::isfinite(velocity)) {
+    if (!position.finite() || !velocity.finite()) {
       trouble_ = "at t = " + std::to_string(t) + " s the state is not finite";
       return false;
     }
@@ -71,8 +90,12 @@ class RunMonitor {
     if (!(kinetic <= result_.kinetic_energy_max)) result_.kinetic_energy_max = kinetic;
     if (!(exchanged <= result_.energy_scale)) result_.energy_scale = exchanged;
     s.t.push_back(t);
-    s.position_drift.push_back(position);
-    s.velocity_drift.push_back(velocity);
+    s.position_drift.push_back(named(position));
+    s.velocity_drift.push_back(named(velocity));
+    if (both_) {
+      s.angle_drift.push_back(position.angles);
+      s.angle_rate_drift.push_back(velocity.angles);
+    }
     s.energy.push_back(energy);
     s.energy_error.push_back(energy - energy_at_start_);
     s.impulse.push_back(now_.multipliers.norm());
@@ -102,9 +125,10 @@ class RunMonitor {
       if (!form_.read_coordinates(middle, state_.data(), middle_)) return true;
       e_->place(middle, middle_.data());
       e_->positions(phi_.data());
-      const double drift = phi_.norm();
-      if (!(drift <= between_)) between_ = drift;
-      if (std::isfinite(drift)) came_apart_ = apart_->found(middle, phi_, false);
+      const Drift drift = drift_of(mechanism_, beyond_residue());
+      if (!(drift.lengths <= between_.lengths)) between_.lengths = drift.lengths;
+      if (!(drift.angles <= between_.angles)) between_.angles = drift.angles;
+      if (drift.finite()) came_apart_ = apart_->found(middle, phi_, false);
       if (!came_apart_.empty()) return false;
       keep_closed(middle, middle_);
     }
@@ -127,7 +151,8 @@ class RunMonitor {
   void carry(Memory& memory) {
     dissipated_energy_.carry(memory);
     if (singular_crossings_) singular_crossings_->carry(memory);
-    memory(energy_at_start_), memory(potential_at_start_), memory(between_), memory(fastest_);
+    memory(energy_at_start_), memory(potential_at_start_);
+    memory(between_.lengths), memory(between_.angles), memory(fastest_);
     memory(compared_), memory(rows_);
     bool closed = closed_.q.size() > 0;
     memory(closed);
@@ -150,11 +175,23 @@ class RunMonitor {
     if (mechanism_.m() > 0) {
       result_.position_drift_max = largest(s.position_drift);
       result_.velocity_drift_max = largest(s.velocity_drift);
-      result_.between_steps_max = between_;
-      const double position = std::max(rounding_level, apart_->rounding()),
-                   velocity = std::max(rounding_level, apart_->rounding() * fastest_);
-      result_.position_growth = fit_growth(s.t, s.position_drift, position);
-      result_.velocity_growth = fit_growth(s.t, s.velocity_drift, velocity);
+      result_.between_steps_max = named(between_);
+      const auto growth = [&](const std::vector<double>& drift, double rounding) {
+        return fit_growth(s.t, drift, std::max(rounding_level, rounding));
+      };
+      // What redundant equations leave open changes with the pose by about as much.
+      const Drift left = drift_of(mechanism_, residue_);
+      const double rounding = std::max(apart_->rounding(!lengths_), 4 * named(left)),
+                   angles = std::max(apart_->rounding(true), 4 * left.angles);
+      result_.position_growth = growth(s.position_drift, rounding);
+      result_.velocity_growth = growth(s.velocity_drift, rounding * fastest_);
+      if (both_) {
+        result_.angle_drift_max = largest(s.angle_drift);
+        result_.angle_rate_drift_max = largest(s.angle_rate_drift);
+        result_.angle_between_steps_max = between_.angles;
+        result_.angle_growth = growth(s.angle_drift, angles);
+        result_.angle_rate_growth = growth(s.angle_rate_drift, angles * fastest_);
+      }
     }
     if (request_.reference && result_.status == "done" && compared_ > 0) {
       result_.position_error_max = largest(s.position_error);
@@ -173,6 +210,12 @@ class RunMonitor {
   const Closed& last_closed() const { return closed_; }
 
  private:
+  /// Φ less what the start leaves open.
+  const Eigen::VectorXd& beyond_residue() {
+    if (residue_.size() == 0) return phi_;
+    drift_ = phi_ - residue_;
+    return drift_;
+  }
   /// @pre phi_ is Φ at (t, q)
   void keep_closed(double t, const Eigen::VectorXd& q) {
     constexpr double closed = 1e-5;  // of the scene's length, or radians
@@ -193,7 +236,10 @@ class RunMonitor {
       film.frames.emplace_back(middle_.begin(), middle_.end());
     }
   }
-  void row(double t, double energy, double position, double velocity) {
+  /// What is called the position or the velocity drift: of lengths, where there are any.
+  double named(const Drift& drift) const { return lengths_ ? drift.lengths : drift.angles; }
+
+  void row(double t, double energy, const Drift& position, const Drift& velocity) {
     row_.clear();
     row_.push_back(t);
     row_.insert(row_.end(), now_.q.begin(), now_.q.end());
@@ -202,8 +248,9 @@ class RunMonitor {
     row_.insert(row_.end(), markers_.begin(), markers_.end());
     row_.push_back(energy);
     if (mechanism_.m() == 0) return;
-    row_.push_back(position);
-    row_.push_back(velocity);
+    row_.push_back(named(position));
+    row_.push_back(named(velocity));
+    if (both_) row_.insert(row_.end(), {position.angles, velocity.angles});
     if (request_.keep_trajectory) {
       Eigen::VectorXd udot(mechanism_.nv()), lambda(mechanism_.m());
       if (!solver_->acceleration(t, now_.q.data(), now_.u.data(), nullptr, 0, 0, udot.data(),
@@ -263,7 +310,9 @@ class RunMonitor {
   std::unique_ptr<LoopSolver> solver_;
   std::optional<UniqueMultipliers> unique_;
   std::vector<bool> all_unique_;
-  Eigen::VectorXd phi_, middle_;
+  bool lengths_, both_;      ///< rows in m; and others in rad
+  Eigen::VectorXd residue_;  ///< Φ at the start where redundant equations leave it open, or empty
+  Eigen::VectorXd phi_, drift_, middle_;
   std::vector<double> markers_, row_, state_;
   Snapshot now_;
   DissipatedEnergy dissipated_energy_;
@@ -271,7 +320,8 @@ class RunMonitor {
   std::optional<Apart> apart_;
   std::string came_apart_;
   Closed closed_;
-  double energy_at_start_ = 0, potential_at_start_ = 0, between_ = 0;
+  double energy_at_start_ = 0, potential_at_start_ = 0;
+  Drift between_;
   double fastest_ = 0;  ///< rate of a joint at the samples, in lengths of the scene [1/s]
   int compared_ = 0;
   long rows_ = 0;  ///< of the trajectory

@@ -45,9 +45,10 @@ void list(const Each& each,
 template <class Each>
 void list(const Each& each,
           auto&& s) requires std::is_same_v<std::remove_cvref_t<decltype(s)>, Series> {
-  auto& [t, position_drift, velocity_drift, energy, energy_error, impulse, position_error,
-         velocity_error] = s;
+  auto& [t, position_drift, velocity_drift, angle_drift, angle_rate_drift, energy, energy_error,
+         impulse, position_error, velocity_error] = s;
   each("t", t), each("position_drift", position_drift), each("velocity_drift", velocity_drift);
+  each("angle_drift", angle_drift), each("angle_rate_drift", angle_rate_drift);
   each("energy", energy), each("energy_error", energy_error), each("impulse", impulse);
   each("position_error", position_error), each("velocity_error", velocity_error);
 }
@@ -57,6 +58,13 @@ void list(const Each& each,
           auto&& s) requires std::is_same_v<std::remove_cvref_t<decltype(s)>, Film> {
   auto& [start, every, frames] = s;
   each("start", start), each("every", every), each("frames", frames);
+}
+
+template <class Each>
+void list(const Each& each, auto&& s) requires
+    std::is_same_v<std::remove_cvref_t<decltype(s)>, RunResult::DependentRow> {
+  auto& [loop, row] = s;
+  each("loop", loop), each("row", row);
 }
 
 template <class Each>
@@ -84,21 +92,29 @@ template <class Each>
 void list(const Each& each,
           auto&& s) requires std::is_same_v<std::remove_cvref_t<decltype(s)>, RunResult> {
   auto& [scene, settings, status, reason, stopped_at, stiff_from, changed_at, counters, partitions,
-         jacobian, linear_solver, cpu_s, wall_s, repeats, position_drift_max, velocity_drift_max,
-         between_steps_max, position_growth, velocity_growth, energy_error_max, kinetic_energy_max,
-         energy_scale, position_error_max, velocity_error_max, faded_rows, singular_crossings,
+         jacobian, linear_solver, cpu_s, wall_s, repeats, drift_unit, position_drift_max,
+         velocity_drift_max, between_steps_max, position_growth, velocity_growth, angle_drift_max,
+         angle_rate_drift_max, angle_between_steps_max, angle_growth, angle_rate_growth,
+         energy_error_max, kinetic_energy_max, energy_scale, position_error_max, velocity_error_max,
+         rank, dependent_rows, residue, weak_evaluations, faded_rows, singular_crossings,
          least_pivot, undetermined, series, trajectory, film] = s;
   each("scene", scene), each("settings", settings), each("status", status), each("reason", reason);
   each("stopped_at", stopped_at), each("stiff_from", stiff_from), each("changed_at", changed_at),
       each("counters", counters), each("partitions", partitions);
   each("jacobian", jacobian), each("linear_solver", linear_solver);
   each("cpu_s", cpu_s), each("wall_s", wall_s), each("repeats", repeats);
+  each("drift_unit", drift_unit);
   each("position_drift_max", position_drift_max), each("velocity_drift_max", velocity_drift_max);
   each("between_steps_max", between_steps_max);
+  each("angle_drift_max", angle_drift_max), each("angle_rate_drift_max", angle_rate_drift_max);
+  each("angle_between_steps_max", angle_between_steps_max);
+  each("angle_growth", angle_growth), each("angle_rate_growth", angle_rate_growth);
   each("position_growth", position_growth), each("velocity_growth", velocity_growth);
   each("energy_error_max", energy_error_max), each("kinetic_energy_max", kinetic_energy_max);
   each("energy_scale", energy_scale);
   each("position_error_max", position_error_max), each("velocity_error_max", velocity_error_max);
+  each("rank", rank), each("dependent_rows", dependent_rows), each("residue", residue);
+  each("weak_evaluations", weak_evaluations);
   each("faded_rows", faded_rows), each("singular_crossings", singular_crossings),
       each("least_pivot", least_pivot);
   each("undetermined", undetermined);
@@ -123,12 +139,13 @@ void list(const Each& each,
 template <class Each>
 void list(const Each& each,
           auto&& s) requires std::is_same_v<std::remove_cvref_t<decltype(s)>, StressRun> {
-  auto& [contestant, rung, verdict, cause, at, position_drift, energy, error, velocity_drift, run] =
-      s;
+  auto& [contestant, rung, verdict, cause, at, position_drift, energy, error, velocity_drift,
+         angle_drift, angle_rate_drift, run] = s;
   each("contestant", contestant), each("rung", rung), each("verdict", verdict);
   each("cause", cause), each("at", at), each("position_drift", position_drift),
       each("energy", energy);
-  each("error", error), each("velocity_drift", velocity_drift), each("run", run);
+  each("error", error), each("velocity_drift", velocity_drift);
+  each("angle_drift", angle_drift), each("angle_rate_drift", angle_rate_drift), each("run", run);
 }
 
 template <class Each>
@@ -141,11 +158,14 @@ void list(const Each& each,
 template <class Each>
 void list(const Each& each,
           auto&& s) requires std::is_same_v<std::remove_cvref_t<decltype(s)>, SweepCase> {
-  auto& [values, status, reason, stopped_at, position_drift_max, velocity_drift_max,
-         energy_error_max, steps, evaluations, watched, cpu_s] = s;
+  auto& [values, status, reason, stopped_at, drift_unit, position_drift_max, velocity_drift_max,
+         angle_drift_max, angle_rate_drift_max, energy_error_max, steps, evaluations, watched,
+         cpu_s] = s;
   each("values", values), each("status", status), each("reason", reason);
-  each("stopped_at", stopped_at), each("position_drift_max", position_drift_max);
-  each("velocity_drift_max", velocity_drift_max), each("energy_error_max", energy_error_max);
+  each("stopped_at", stopped_at), each("drift_unit", drift_unit);
+  each("position_drift_max", position_drift_max), each("velocity_drift_max", velocity_drift_max);
+  each("angle_drift_max", angle_drift_max), each("angle_rate_drift_max", angle_rate_drift_max);
+  each("energy_error_max", energy_error_max);
   each("steps", steps), each("evaluations", evaluations), each("watched", watched);
   each("cpu_s", cpu_s);
 }

@@ -2,6 +2,7 @@
 // One run of one form by one integrator: what was asked, what came out. The rows of every table,
 // CSV, JSON and page.
 
+#include <momenta/dae/measure/growth.h>
 #include <momenta/dae/solver/integration.h>
 #include <momenta/dae/study/picture.h>
 
@@ -14,52 +15,44 @@
 
 namespace momenta {
 
-inline constexpr double not_measured =
-    std::numeric_limits<double>::quiet_NaN();  ///< JSON null, empty CSV cell
-
-/// Drift below this is the rounding of Φ, or of Φ̇, itself: no growth law is read from it [m, m/s].
-inline constexpr double rounding_level = 1e-13;
-
 inline constexpr int most_samples = 10'000'000;  ///< of a run
 
+/// What a run was told.
 struct RunSettings {
-  std::string form = "momentum";
-  std::string integrator = "dop853";
+  std::string form = "momentum";      ///< of form_names()
+  std::string integrator = "dop853";  ///< of integrators()
   std::string when_stiff;  ///< goes on from where the problem turns out stiff; empty: `integrator`
-  std::string gauge = "none";  ///< none, leak:κ, reset, flip; empty for acceleration forms
-  double rtol = 1e-8, atol = 1e-8;
-  double step = 0;       ///< [s], 0 for adaptive integrators
-  double end_time = 10;  ///< [s]
-  int samples = 1000;    ///< output intervals
-  bool project = false;  ///< one mass-metric position correction after each accepted step
-  double baumgarte_alpha = 0, baumgarte_beta = 0;  ///< [1/s]: Φ̈ + 2αΦ̇ + β²Φ = 0
-  double beta = 0;                                 ///< [1/s]: Φ̇ = −βΦ of momentum forms
+  std::string gauge = "none";    ///< none, leak:κ, reset, flip; empty for acceleration forms
+  double rtol = 1e-8;            ///< relative tolerance
+  double atol = 1e-8;            ///< absolute one, in scales of the unknowns
+  double step = 0;               ///< [s], 0 for adaptive integrators
+  double end_time = 10;          ///< [s]
+  int samples = 1000;            ///< output intervals
+  bool project = false;          ///< one mass-metric position correction after each accepted step
+  double baumgarte_alpha = 0;    ///< α of Φ̈ + 2αΦ̇ + β²Φ = 0 [1/s]
+  double baumgarte_beta = 0;     ///< β of it [1/s]
+  double beta = 0;               ///< [1/s]: Φ̇ = −βΦ of momentum forms
   double penalty = 0;            ///< of augmented Lagrangians, in effective masses of the loops
   double spectral_radius = 0.8;  ///< of generalised-alpha
   std::string kkt;  ///< how (7) is solved: dense, sparse, or empty (no loops, or solved inside
                     ///< IDA's Newton matrix)
 };
 
-/// A fitted power law running_max(t) ~ t^exponent (measure/growth.h).
-struct Growth {
-  double exponent = not_measured;
-  double half_range = not_measured;  ///< half the spread of the slopes of sub-ranges
-  double from = 0, to = 0;           ///< fitted range of t [s]
-};
-
 /// Time series at the output times, all of one length; what the charts draw and trajectory.csv
 /// holds.
 struct Series {
-  std::vector<double> t;               ///< [s]
-  std::vector<double> position_drift;  ///< |Φ(q, t)|₂
-  std::vector<double> velocity_drift;  ///< |Φ̇(q, q̇, t)|₂
+  std::vector<double> t;                 ///< [s]
+  std::vector<double> position_drift;    ///< |Φ(q, t)|₂ of rows in `RunResult::drift_unit`
+  std::vector<double> velocity_drift;    ///< |Φ̇(q, q̇, t)|₂ of these
+  std::vector<double> angle_drift;       ///< of rows in rad, beside others in m [rad]
+  std::vector<double> angle_rate_drift;  ///< [rad/s]
   std::vector<double> energy;  ///< T + V less the work of dampers and of wrenches without potential
                                ///< [J]; NaN with drives
   std::vector<double> energy_error;  ///< energy − energy(0) [J]
   std::vector<double> impulse;       ///< |σ|₂ of momentum forms, |λ|₂ of the others
-  std::vector<double>
-      position_error;  ///< against the reference, max |err|/(1+|ref|); empty without one
-  std::vector<double> velocity_error;
+  /// Against the reference, max |err|/(1+|ref|); empty without one.
+  std::vector<double> position_error;
+  std::vector<double> velocity_error;  ///< the same of rates
 };
 
 /// trajectory.csv: one column per quantity, rows at the output times.
@@ -68,9 +61,10 @@ struct Trajectory {
   std::vector<std::vector<double>> rows;  ///< each of columns.size()
 };
 
+/// What came out of a run.
 struct RunResult {
-  std::string scene;
-  RunSettings settings;
+  std::string scene;     ///< its name
+  RunSettings settings;  ///< as it was told, defaults filled in
   /// done, failed, time limit; came apart: the loops opened by more than a form may leave (apart.h)
   std::string status = "done";
   std::string reason;     ///< one sentence when not done
@@ -79,26 +73,53 @@ struct RunResult {
   double stiff_from = not_measured;
   /// Since when `settings.when_stiff` went on [s]; not_measured: it was not called.
   double changed_at = not_measured;
-  Counters counters;
-  long partitions = 0;  ///< how often `partitioned` chose its coordinates, the start included
-  std::string jacobian, linear_solver;
-  double cpu_s = not_measured, wall_s = not_measured;  ///< median of repeats, integration alone
-  int repeats = 0;
-  double position_drift_max = not_measured, velocity_drift_max = not_measured,
-         between_steps_max = not_measured;
-  Growth position_growth, velocity_growth;
-  double energy_error_max = not_measured;
-  /// Largest T, and largest T + |V − V(0)|, at the samples [J]: what rates and energy errors
-  /// compare with.
-  double kinetic_energy_max = not_measured, energy_scale = not_measured;
-  double position_error_max = not_measured, velocity_error_max = not_measured;
-  /// Loop equations that were redundant or nearly so, in how many right-hand sides of the run; ODE
-  /// forms.
-  struct Faded {
-    std::string loop, row;
-    long evaluations = 0;
+  Counters counters;          ///< of the run
+  long partitions = 0;        ///< how often `partitioned` chose its coordinates, the start included
+  std::string jacobian;       ///< of implicit methods: "dual numbers", "difference quotient"
+  std::string linear_solver;  ///< of implicit methods: "dense LU", "KLU"
+  double cpu_s = not_measured;   ///< median of repeats, integration alone
+  double wall_s = not_measured;  ///< likewise
+  int repeats = 0;               ///< how many
+  /// Of the position drift and what follows it: m, or rad where all rows of Φ are angles; empty
+  /// without loops.
+  std::string drift_unit;
+  /// Largest |Φ|₂ at the samples.
+  double position_drift_max = not_measured;
+  double velocity_drift_max = not_measured;  ///< largest |Φ̇|₂ there
+  double between_steps_max = not_measured;   ///< largest |Φ|₂ between steps, before corrections
+  Growth position_growth;                    ///< power law of the position drift
+  Growth velocity_growth;                    ///< of the velocity drift
+  /// Of the rows in rad where others are in m [rad]; else not measured, likewise the next four.
+  double angle_drift_max = not_measured;
+  double angle_rate_drift_max = not_measured;     ///< [rad/s]
+  double angle_between_steps_max = not_measured;  ///< [rad]
+  Growth angle_growth;                            ///< power law of the angles' drift
+  Growth angle_rate_growth;                       ///< of its rate
+  double energy_error_max = not_measured;    ///< largest |energy − energy(0)| at the samples [J]
+  double kinetic_energy_max = not_measured;  ///< largest T at the samples [J]: rates compare to it
+  /// Largest T + |V − V(0)| at the samples [J]: energy errors compare to it.
+  double energy_scale = not_measured;
+  double position_error_max = not_measured;  ///< largest of Series::position_error
+  double velocity_error_max = not_measured;  ///< largest of Series::velocity_error
+  int rank = 0;                              ///< of Φ_q at the start (kkt/loop_rank.h)
+  /// A row that follows from the others at the start.
+  struct DependentRow {
+    std::string loop;  ///< its name
+    std::string row;   ///< which of its equations
   };
-  std::vector<Faded> faded_rows;
+  std::vector<DependentRow> dependent_rows;  ///< none: the equations are independent there
+  /// What the start leaves open, one sentence; empty: nothing.
+  std::string residue;
+  /// Right-hand sides in which more rows faded than are redundant at the start: of ODE forms, near
+  /// singular poses, or where equations are nearly redundant.
+  long weak_evaluations = 0;
+  /// A row that faded, in how many right-hand sides of the run; ODE forms.
+  struct Faded {
+    std::string loop;      ///< its name
+    std::string row;       ///< which of its equations
+    long evaluations = 0;  ///< in how many right-hand sides
+  };
+  std::vector<Faded> faded_rows;  ///< none: the equations were independent
   /// Where loop equations came near to losing rank, beyond what is redundant everywhere: the least
   /// pivot on the way, relative to what it would be without other loops; it goes with the square of
   /// the distance to the singular pose. Not where (7) is solved by KLU.
@@ -109,28 +130,42 @@ struct RunResult {
     /// the pose are no longer told apart, and which one went on is chance.
     bool ambiguous = false;
   };
-  std::vector<SingularCrossing> singular_crossings;
-  double least_pivot = not_measured;  ///< of the whole run
+  std::vector<SingularCrossing> singular_crossings;  ///< in the order of time
+  double least_pivot = not_measured;                 ///< of the whole run
   /// Loop forces of the trajectory that are not unique (measure/multipliers.h), where one is kept.
   struct Undetermined {
-    std::string column;
-    long samples = 0;         ///< how many
-    double from = 0, to = 0;  ///< the first and the last of them [s]
+    std::string column;  ///< of the trajectory
+    long samples = 0;    ///< how many
+    double from = 0;     ///< the first of them [s]
+    double to = 0;       ///< the last [s]
   };
-  std::vector<Undetermined> undetermined;
-  Series series;
-  Trajectory trajectory;
-  Film film;  ///< empty where none was asked for
+  std::vector<Undetermined> undetermined;  ///< none: all are unique
+  Series series;                           ///< measures at the output times
+  Trajectory trajectory;                   ///< empty where none was asked for
+  Film film;                               ///< empty where none was asked for
 };
+
+/// Unit of what is called position drift.
+inline std::string drift_unit(const RunResult& run) {
+  return run.drift_unit.empty() ? "m" : run.drift_unit;
+}
+/// Whether a run has drifts of angles beside those of lengths.
+inline bool has_both_drifts(const RunResult& run) {
+  return !run.series.angle_drift.empty() || !std::isnan(run.angle_drift_max);
+}
 
 /// Whether a run changed its integrator on the way.
 inline bool changed(const RunResult& run) {
   return !std::isnan(run.changed_at);
 }
 
+/// Where and how a result was made.
 struct Environment {
-  std::string cpu, compiler, flags, build_type;
-  int level = 1;  ///< x86-64 level of the kernels
+  std::string cpu;         ///< its name
+  std::string compiler;    ///< name and version
+  std::string flags;       ///< of what is not a kernel
+  std::string build_type;  ///< "Release"
+  int level = 1;           ///< x86-64 level of the kernels
   std::vector<std::pair<std::string, std::string>>
       versions;      ///< momenta, SUNDIALS, SuiteSparse, Eigen
   std::string date;  ///< ISO 8601
@@ -138,16 +173,16 @@ struct Environment {
 
 /// What `momenta run`, `momenta drift` and `momenta work` produce.
 struct StudyResult {
-  std::string scene;  ///< its name
-  std::string scene_file;
+  std::string scene;       ///< its name
+  std::string scene_file;  ///< its file, or empty
   std::string scene_hash;  ///< hex digest of the scene text
   std::string command;     ///< as typed
   std::string reference;   ///< file name of the reference, or empty
   std::vector<std::pair<std::string, std::string>>
-      plan;  ///< lines of the plan, as `momenta check` prints them
-  Picture picture;
+      plan;                     ///< lines of the plan, as `momenta check` prints them
+  Picture picture;              ///< what the page draws
   std::vector<Motion> motions;  ///< of each run with a film, or one of the start alone
-  Environment environment;
+  Environment environment;      ///< where it was made
   std::vector<RunResult> runs;  ///< the drift runs, one per form, then (work) further rungs
   bool drift_study = true;      ///< false: a ladder of tolerances
 };

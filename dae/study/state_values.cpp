@@ -1,16 +1,18 @@
 #include <momenta/dae/kkt/dense_blocks.h>
 #include <momenta/dae/kkt/kkt.h>
-#include <momenta/dae/kkt/singular_values.h>
 #include <momenta/dae/kkt/tree_factor.h>
 #include <momenta/dae/measure/rank.h>
 #include <momenta/dae/study/state_values.h>
+#include <momenta/dae/unheld_joints.h>
+
+#include <limits>
 
 namespace momenta {
 namespace {
 
 using Eigen::VectorXd;
 
-constexpr double rank_tolerance = 1e-9;  // of singular values, against the largest
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 class StateEvaluator {
  public:
@@ -25,9 +27,9 @@ class StateEvaluator {
     if (m > 0) {
       kkt_ = make_kkt(mechanism_);
       e_->place(given_.t, given_.q.data());
-      if (nv > 0 && !kkt_->factor(*e_, given_.t, given_.q.data(), fade_evaluation))
-        refuse(kkt_->singular_joint());
+      solvable_ = nv == 0 || kkt_->factor(*e_, given_.t, given_.q.data(), fade_evaluation);
       s_.faded = kkt_->faded();
+      if (!solvable_) leave_out(kkt_->singular_joint());
     }
     rates_and_momenta();
     forces();
@@ -36,15 +38,28 @@ class StateEvaluator {
     s_.centroidal = centroidal(mechanism_.tree(), mechanism_.scene(), given_.t, given_.q, s_.v);
     s_.reactions = reactions(mechanism_, given_.t, given_.q, s_.v, m > 0 ? s_.constrained : s_.free,
                              s_.lambda);
+    // What transmits nothing moves without forces: reactions are there all the same.
+    blank(m > 0 ? unheld_free_ : unheld_, s_.free);
+    blank(unheld_, s_.constrained);
     if (nv + m <= dense_state_limit) dense_parts();
     return std::move(s_);
   }
 
  private:
-  [[noreturn]] void refuse(int rate) const {
-    throw SceneError(mechanism_.scene().where({}) + "the mechanism cannot move at this state: " +
-                     (rate < 0 ? "its equations overflow; expected smaller numbers"
-                               : mechanism_.no_inertia(rate)));
+  [[noreturn]] void refuse() const {
+    throw SceneError(mechanism_.scene().where({}) +
+                     "the mechanism cannot move at this state: its equations overflow; expected "
+                     "smaller numbers");
+  }
+
+  /// Notes why (45), (7) or (3) has no solution, if joints without inertia are why; else loops hold
+  /// those that a solver stopped at. `rate`: where it was met.
+  void leave_out(int rate) {
+    unheld_ = unheld_joints(mechanism_, *e_, given_.t, given_.q.data(), true, rate);
+    if (!unheld_.joints.empty())
+      s_.not_there = in_words(mechanism_.tree(), unheld_.joints);
+    else if (rate < 0)
+      refuse();
   }
 
   /// v, p, σ, and the evaluation placed and moved there.
@@ -69,7 +84,7 @@ class StateEvaluator {
     if (mechanism_.m() == 0) {
       if (!e_->open_momentum_rates(given_.t, given_.q.data(), s_.p.data(), s_.v.data(),
                                    s_.pdot.data()))
-        refuse(e_->singular_joint());
+        no_rates(e_->singular_joint());
       return;
     }
     // Prescribed parts of M u and Φ̇ go to the right.
@@ -79,7 +94,16 @@ class StateEvaluator {
     e_->velocities(g.data());
     r = s_.p - r;
     g = -g;
-    if (!kkt_->solve(r.data(), g.data(), nullptr, s_.v.data(), s_.sigma.data())) refuse(-1);
+    if (solvable_ && kkt_->solve(r.data(), g.data(), nullptr, s_.v.data(), s_.sigma.data())) return;
+    if (solvable_) leave_out(-1);
+    solvable_ = false;
+    beside(unheld_, r, g, s_.v, s_.sigma);
+    if (!unheld_.joints.empty()) no_rates(-1);
+  }
+  void no_rates(int rate) {
+    if (s_.not_there.empty()) leave_out(rate);
+    s_.v.setConstant(not_a_number);
+    s_.sigma.setConstant(not_a_number);
   }
 
   /// What needs poses and velocities alone, and ṗ.
@@ -114,8 +138,21 @@ class StateEvaluator {
     g = -g;
     s_.constrained.setZero(mechanism_.nv());
     if (mechanism_.nv() == 0) return;
-    if (!kkt_->solve(r.data(), g.data(), nullptr, s_.constrained.data(), s_.lambda.data()))
-      refuse(-1);
+    if (solvable_ &&
+        kkt_->solve(r.data(), g.data(), nullptr, s_.constrained.data(), s_.lambda.data()))
+      return;
+    if (solvable_) leave_out(-1);
+    solvable_ = false;
+    beside(unheld_, r, g, s_.constrained, s_.lambda);
+  }
+
+  /// x and λ where joints without inertia leave motions free; NaN where there are none.
+  void beside(const UnheldJoints& unheld, const VectorXd& r, const VectorXd& g, VectorXd& x,
+              VectorXd& lambda) {
+    e_->place(given_.t, given_.q.data());
+    if (solve_beside(unheld, mechanism_, *e_, r, g, x, lambda)) return;
+    x.setConstant(mechanism_.nv(), not_a_number);
+    lambda.setConstant(g.size(), not_a_number);
   }
 
   /// Without loops by the recursion; M⁻¹τ is what τ as a momentum gives beyond zero momentum.
@@ -123,27 +160,41 @@ class StateEvaluator {
     if (mechanism_.nv() == 0) return;
     if (mechanism_.m() > 0) return free_of_loops();
     const double *q = given_.q.data(), t = given_.t;
-    if (!e_->open_accelerations(t, q, s_.v.data(), s_.free.data())) refuse(e_->singular_joint());
+    if (!e_->open_accelerations(t, q, s_.v.data(), s_.free.data()))
+      return no_inertia(e_->singular_joint());
     if (given_.tau.isZero(0)) return;
     VectorXd with(mechanism_.nv()), without = VectorXd::Zero(mechanism_.nv());
     VectorXd unused(mechanism_.nv());
     if (!e_->open_momentum_rates(t, q, given_.tau.data(), with.data(), unused.data()))
-      refuse(e_->singular_joint());
+      return no_inertia(e_->singular_joint());
     if (mechanism_.plan().drives) {
       const VectorXd zero = VectorXd::Zero(mechanism_.nv());
       e_->open_momentum_rates(t, q, zero.data(), without.data(), unused.data());
     }
     s_.free += with - without;
   }
+  void no_inertia(int rate) {
+    if (s_.not_there.empty()) leave_out(rate);
+    VectorXd nothing;
+    beside(unheld_, -s_.bias, {}, s_.free, nothing);
+  }
 
   /// M = Lᵀ D L along the tree.
   void free_of_loops() {
     const auto& pattern = mechanism_.kkt_pattern();
     std::vector<double> values(pattern.mass.size());
+    e_->place(given_.t, given_.q.data());
     e_->mass_entries(values.data());
     TreeFactor factor(pattern, mechanism_.nv());
-    if (const int singular_joint = factor.factor(values); singular_joint >= 0)
-      refuse(singular_joint);
+    if (const int rate = factor.factor(values); rate >= 0) {
+      unheld_free_ = unheld_joints(mechanism_, *e_, given_.t, given_.q.data(), false, rate);
+      if (s_.not_there.empty())
+        s_.not_there = without_inertia(mechanism_.tree(), unheld_free_.joints) +
+                       " without the loops that hold what is on it: no acceleration.free";
+      VectorXd nothing;
+      beside(unheld_free_, -s_.bias, {}, s_.free, nothing);
+      return;
+    }
     s_.free = -s_.bias;
     factor.inward(s_.free.data());
     for (int i = 0; i < mechanism_.nv(); ++i)
@@ -156,11 +207,8 @@ class StateEvaluator {
     e_->place(given_.t, given_.q.data());
     s_.mass = dense_mass(mechanism_, *e_);
     if (mechanism_.m() == 0 || mechanism_.nv() == 0) return;
-    const Eigen::MatrixXd j = dense_constraints(mechanism_, *e_);
-    if (!j.allFinite()) refuse(-1);
-    s_.singular_values = Eigen::JacobiSVD<Eigen::MatrixXd>(j).singularValues();
-    const double least = rank_tolerance * s_.singular_values[0];
-    for (double value : s_.singular_values) s_.rank += value > least;
+    if (!dense_constraints(mechanism_, *e_).allFinite()) refuse();
+    s_.loops = loop_rank(mechanism_, *e_);
     mark_undetermined(s_.reactions, mechanism_, given_.t, given_.q,
                       idle_forces(mechanism_, given_.t, given_.q));
   }
@@ -169,6 +217,8 @@ class StateEvaluator {
   const GivenState& given_;
   std::unique_ptr<Evaluation<double>> e_;
   std::unique_ptr<Kkt> kkt_;
+  bool solvable_ = true;               ///< (7) and (3), by kkt_
+  UnheldJoints unheld_, unheld_free_;  ///< with the loops, and without them
   StateValues s_;
 };
 

@@ -11,10 +11,16 @@
 //               free:       M u̇ = −bias, as if no loop were there
 //               constrained: (3), M u̇ + Φ_qᵀλ = −bias, Φ_q u̇ = −(Φ̈ at u̇ = 0)
 //
+// Joints without inertia (unheld_joints.h) have no accelerations, or any: with N the
+// motions that no inertia, and in (3) no loop, holds, M u̇ = r has a solution only where Nᵀr = 0,
+// and then those of the joints that take part in N are not determined, the others are. What does
+// not exist is NaN: all of u̇ and λ, or those joints' u̇.
+//
 // τ is a further generalised force along the joints; it counts among the applied ones everywhere.
 // Without loops everything but M is O(bodies), and no system of loops is built.
 
 #include <momenta/core/centroidal.h>
+#include <momenta/dae/kkt/loop_rank.h>
 #include <momenta/dae/measure/reactions.h>
 
 namespace momenta {
@@ -27,6 +33,7 @@ struct GivenState {
   Eigen::VectorXd p;          ///< nv, entries with `p_given` count, the others are those of M v
   std::vector<bool> p_given;  ///< nv, when of_momenta
   Eigen::VectorXd tau;        ///< nv
+  std::string residue;        ///< of the start that q is of (residue_in_words), or empty
 };
 
 struct StateValues {
@@ -38,17 +45,17 @@ struct StateValues {
   Centroidal centroidal;
   Reactions reactions;
   std::vector<double> markers;  ///< per marker x y z and velocity
+  /// One sentence where something is not there: which joints have no inertia, what that takes away.
+  std::string not_there;
 
   bool dense = false;  ///< the rest is there: nv + m within `dense_state_limit`
   Eigen::MatrixXd mass;
-  int rank = 0;                     ///< of Φ_q: singular values above 1e-9 of the largest
-  Eigen::VectorXd singular_values;  ///< of Φ_q, descending
+  LoopRank loops;  ///< of Φ_q
 };
 
 inline constexpr int dense_state_limit = 300;  ///< unknowns, nv + m
 
-/// @throws SceneError when the mechanism cannot move there: a joint without inertia, or numbers
-/// that overflow.
+/// @throws SceneError where numbers overflow.
 StateValues evaluate_state(const Mechanism& mechanism, const GivenState& given);
 
 }  // namespace momenta

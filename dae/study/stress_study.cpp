@@ -114,8 +114,12 @@ void judge(StressRun& r, const Ground& ground, double bound, double cpu_limit) {
   // Where nothing moves, rounding is no failure: a millionth of its length over the run is rest.
   const double rest = 1e-6 * ground.length / run.settings.end_time;
   const double energy_scale = std::max(run.energy_scale, 0.5 * ground.mass * rest * rest);
-  r.position_drift = run.position_drift_max / ground.length;
-  r.velocity_drift = run.velocity_drift_max / std::sqrt(2 * run.kinetic_energy_max / ground.mass);
+  const double speed = std::sqrt(2 * run.kinetic_energy_max / ground.mass);
+  const bool lengths = run.drift_unit != "rad";
+  r.position_drift = run.position_drift_max / (lengths ? ground.length : 1);
+  r.velocity_drift = run.velocity_drift_max / speed * (lengths ? 1 : ground.length);
+  r.angle_drift = run.angle_drift_max;
+  r.angle_rate_drift = run.angle_rate_drift_max / speed * ground.length;
   r.energy = run.energy_error_max / energy_scale;
   r.error = run.position_error_max;
   if (run.status == "time limit") {
@@ -130,13 +134,16 @@ void judge(StressRun& r, const Ground& ground, double bound, double cpu_limit) {
   struct Measure {
     const std::vector<double>& values;
     double scale;
-    const char* what;
+    const char *what, *unit;
   };
   const Series& s = run.series;
   double earliest = std::numeric_limits<double>::infinity();
-  for (const Measure& m : {Measure{s.position_error, 1, "error against the reference "},
-                           Measure{s.position_drift, ground.length, "loops open by "},
-                           Measure{s.energy_error, energy_scale, "energy off by "}}) {
+  for (const Measure& m :
+       {Measure{s.position_error, 1, "error against the reference ", ""},
+        Measure{s.position_drift, lengths ? ground.length : 1, "loops open by ",
+                lengths ? " of its length" : " rad"},
+        Measure{s.angle_drift, 1, "axes of loops apart by ", " rad"},
+        Measure{s.energy_error, energy_scale, "energy off by ", " of what is exchanged"}}) {
     const double at = first_beyond(s, m.values, bound * m.scale);
     if (!(at < earliest)) continue;
     earliest = at;
@@ -144,10 +151,7 @@ void judge(StressRun& r, const Ground& ground, double bound, double cpu_limit) {
     for (double x : m.values) largest = std::max(largest, std::isnan(x) ? 0 : std::abs(x));
     r.verdict = Verdict::wrong;
     r.at = at;
-    r.cause = m.what + digits(largest / m.scale) +
-              (m.scale == 1       ? ""
-               : m.what[0] == 'l' ? " of its length"
-                                  : " of what is exchanged") +
+    r.cause = m.what + digits(largest / m.scale) + m.unit +
               " at the most, beyond the bound from t = " + digits(at) + " s";
   }
   for (const RunResult::SingularCrossing& crossing : run.singular_crossings)

@@ -52,7 +52,9 @@ struct StressRun {
   double position_drift = not_measured, energy = not_measured, error = not_measured;
   double velocity_drift =
       not_measured;  ///< max |Φ̇| / √(2 T / m), largest kinetic energy T, whole mass m
-  RunResult run;     ///< without series
+  /// Of rows in rad beside others in m [rad]; times length / √(2 T / m).
+  double angle_drift = not_measured, angle_rate_drift = not_measured;
+  RunResult run;  ///< without series
 };
 
 struct LadderResult {

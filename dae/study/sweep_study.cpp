@@ -126,7 +126,10 @@ void make(const SweepRequest& request, SweepCase& result) {
   result.status = run.status;
   result.reason = run.reason;
   result.stopped_at = run.stopped_at;
+  result.drift_unit = run.drift_unit;
   result.position_drift_max = run.position_drift_max;
+  result.angle_drift_max = run.angle_drift_max;
+  result.angle_rate_drift_max = run.angle_rate_drift_max;
   result.velocity_drift_max = run.velocity_drift_max;
   result.energy_error_max = run.energy_error_max;
   result.steps = run.counters.steps;

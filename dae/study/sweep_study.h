@@ -43,7 +43,9 @@ struct SweepCase {
   std::string status = "done";  ///< done, failed, time limit; refused: there is no such mechanism
   std::string reason;           ///< one sentence when not done
   double stopped_at = 0;        ///< [s]
+  std::string drift_unit;       ///< and the drifts: as of RunResult
   double position_drift_max = not_measured, velocity_drift_max = not_measured,
+         angle_drift_max = not_measured, angle_rate_drift_max = not_measured,
          energy_error_max = not_measured;
   long steps = 0, evaluations = 0;
   struct Watched {

@@ -13,20 +13,24 @@
 
 namespace momenta {
 
+/// How runs are timed.
 enum class Timing {
   none,   ///< not at all: times are not_measured
   once,   ///< one run each
   rounds  ///< until medians are settled
 };
-/// @throws std::invalid_argument
+/// By name: none, once, rounds. @throws std::invalid_argument
 Timing timing_named(const std::string& name);
 
 /// Whether more times would hardly move the median of these.
 bool is_settled(std::vector<double> times);
 
+/// How time_runs is to go.
 struct TimingRequest {
-  Timing how = Timing::rounds;
-  double budget = 3;  ///< [s] of processor time a run, past which it takes no further round
+  Timing how = Timing::rounds;  ///< how often
+  /// [s] of processor time a run, past which it takes no further round: a run of more than a second
+  /// averages over its own steps.
+  double budget = 1;
   Journal* journal = nullptr;  ///< every time is recorded, and taken from it when a study goes on
   std::function<bool(std::size_t)> going_on;  ///< asked before each run, with its number
   std::function<bool()> at_step;              ///< asked after each step; false ends it all

@@ -5,6 +5,7 @@
 
 namespace momenta {
 
+/// Options of one solution by the sweeps; as made: drives move, nothing else is asked for.
 template <class S>
 struct RightSide {
   const S* centre = nullptr;  ///< σ (m) towards which weak rows fade; null: zero
@@ -14,7 +15,8 @@ struct RightSide {
   bool rates = false;         ///< ṗ too
   double leak = 0;            ///< κ [1/s]
   bool body_forces = false;   ///< springs and wrenches at points of bodies too: sweeps in a plane
-  double alpha = 0, beta = 0;     ///< Φ̈ + 2α Φ̇ + β² Φ = 0 [1/s]
+  double alpha = 0;           ///< α of Φ̈ + 2α Φ̇ + β² Φ = 0 [1/s]
+  double beta = 0;            ///< β of it [1/s]
   const S* compliance = nullptr;  ///< second row … + (σ − centre) · this (m); null: zero
 
   /// The same for another scalar, with these rows.

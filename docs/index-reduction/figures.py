@@ -43,22 +43,24 @@ def running_max(rows, column, after, start=None):
 class Chart:
     """Curves on logarithmic axes (x linear if asked), each with a label at its right end."""
 
-    def __init__(self, title, x_label, x, y, linear_x=False):
+    def __init__(self, title, x_label, x, y, linear_x=False, size=(W, H, RIGHT)):
         self.x, self.y, self.linear_x = x, y, linear_x
-        self.left, self.right, self.top, self.bottom = 64, W - RIGHT, 40, H - 54
-        self.out = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {W} {H}" role="img" '
+        width, height, labels = size
+        self.left, self.right, self.top, self.bottom = 64, width - labels, 40, height - 54
+        self.out = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" role="img" '
                     'font-family="system-ui, sans-serif" font-size="14">', f"<title>{title}</title>",
                     "<style>.bg{fill:#fff}.ink{fill:#222}.grid{stroke:#ddd}.slope{stroke:#999}"
                     "@media (prefers-color-scheme:dark){.bg{fill:#16181c}.ink{fill:#e6e6e6}"
                     ".grid{stroke:#3a3d44}.slope{stroke:#777}}</style>",
-                    f'<rect class="bg" width="{W}" height="{H}"/>',
+                    f'<rect class="bg" width="{width}" height="{height}"/>',
                     f'<text class="ink" x="{self.left}" y="24" font-weight="600">{title}</text>']
         self.ends = []
         for e in range(y[0], y[1] + 1, 2):
             v = self.at_y(10.0**e)
             self.line("grid", self.left, v, self.right, v)
             self.text(self.left - 8, v + 5, self.power(e), "end")
-        ticks = range(math.ceil(x[0]), math.floor(x[1]) + 1) if linear_x else range(x[0], x[1] + 1)
+        every = 2 if linear_x and x[1] - x[0] > 10 else 1
+        ticks = range(math.ceil(x[0]), math.floor(x[1]) + 1, every) if linear_x else range(x[0], x[1] + 1)
         for e in ticks:
             u = self.at_x(e if linear_x else 10.0**e)
             self.line("grid", u, self.top, u, self.bottom)
@@ -89,7 +91,7 @@ class Chart:
         self.line("slope", self.at_x(x), self.at_y(y), self.at_x(8 * x), self.at_y(y * 8**power))
         self.text(self.at_x(8.3 * x), self.at_y(y * 8**power) + 4, "t" + ("²" if power == 2 else ""))
 
-    def curve(self, points, label, colour, dash="", dots=False):
+    def curve(self, points, label, colour, dash="", dots=False, more=""):
         thin, last = [], -1e9
         for x, y in points:
             if y > 0 and (dots or self.at_x(x) > last + 1.5 or (x, y) == points[-1]):
@@ -97,12 +99,12 @@ class Chart:
                 last = thin[-1][0]
         path = "M" + "L".join(f"{x:.1f} {y:.1f}" for x, y in thin)
         self.out.append(f'<path d="{path}" fill="none" stroke="{colour}" stroke-width="2"'
-                        + (f' stroke-dasharray="{dash}"' if dash else "") + "/>")
+                        + (f' stroke-dasharray="{dash}"' if dash else "") + more + "/>")
         if dots:
             self.out += [f'<circle cx="{x:.1f}" cy="{y:.1f}" r="3.5" fill="{colour}"/>' for x, y in thin]
         self.ends.append((thin[-1][1], thin[-1][0], label, colour))
 
-    def write(self, file):
+    def text_of(self):
         self.ends.sort()
         places = [y for y, _, _, _ in self.ends]
         for _ in range(300):  # labels push one another apart
@@ -115,7 +117,10 @@ class Chart:
             self.out.append(f'<path d="M{x:.1f} {y:.1f}L{self.right + 12} {place:.1f}" stroke="{colour}" '
                             'stroke-width="0.7" fill="none"/>')
             self.text(self.right + 16, place + 5, label)
-        (TOP / "docs/index-reduction" / file).write_text("\n".join([*self.out, "</svg>", ""]), encoding="utf-8")
+        return "\n".join([*self.out, "</svg>", ""])
+
+    def write(self, file):
+        (TOP / "docs/index-reduction" / file).write_text(self.text_of(), encoding="utf-8")
 
 
 def lesson2(program, folder):
@@ -203,4 +208,5 @@ def main():
             lessons[number](program, folder)
 
 
-main()
+if __name__ == "__main__":
+    main()

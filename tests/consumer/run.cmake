@@ -1,10 +1,35 @@
 # Installs a build of momenta to a prefix of its own, then configures, builds and runs the consumer
-# there, as a user would. Where an including script sets CONFIGURE, that build is made first.
+# there, as a user would: every program of README.md and of docs/how-to/use-the-library.md. Where an
+# including script sets CONFIGURE, that build is made first.
 #
 #   cmake -D BUILD=<build folder> -D WORK=<folder to use> -D SOURCE=<top of the project>
 #         [-D FLAGS=<compiler flags>] -P run.cmake
+cmake_minimum_required(VERSION 3.25)
 function(step)
-  execute_process(COMMAND ${ARGN} COMMAND_ERROR_IS_FATAL ANY)
+  execute_process(COMMAND ${ARGN} WORKING_DIRECTORY ${SOURCE} COMMAND_ERROR_IS_FATAL ANY)
+endfunction()
+
+# The C++ blocks of a Markdown file that are programs: ${WORK}/from_documents/<file>_<number>.cpp.
+function(take_programs document)
+  file(READ ${SOURCE}/${document} text)
+  cmake_path(GET document STEM name)
+  set(number 0)
+  string(FIND "${text}" "```cpp\n" begin)
+  while(NOT begin EQUAL -1)
+    math(EXPR begin "${begin} + 7")
+    string(SUBSTRING "${text}" ${begin} -1 text)
+    string(FIND "${text}" "```" end)
+    string(SUBSTRING "${text}" 0 ${end} program)
+    string(SUBSTRING "${text}" ${end} -1 text)
+    if(program MATCHES "int main")
+      math(EXPR number "${number} + 1")
+      file(WRITE ${WORK}/from_documents/${name}_${number}.cpp "${program}")
+    endif()
+    string(FIND "${text}" "```cpp\n" begin)
+  endwhile()
+  if(number EQUAL 0)
+    message(FATAL_ERROR "${document}: no program in C++; expected one or more")
+  endif()
 endfunction()
 
 if(CONFIGURE)
@@ -12,14 +37,19 @@ if(CONFIGURE)
   step(${CMAKE_COMMAND} --build ${BUILD} --parallel 2)
 endif()
 file(REMOVE_RECURSE ${WORK})
+take_programs(README.md)
+take_programs(docs/how-to/use-the-library.md)
 step(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix)
 step(${CMAKE_COMMAND} -S ${SOURCE}/tests/consumer -B ${WORK}/build -D CMAKE_PREFIX_PATH=${WORK}/prefix
-     -D CMAKE_BUILD_TYPE=Debug -D CMAKE_CXX_FLAGS=${FLAGS})
+     -D CMAKE_BUILD_TYPE=Debug -D CMAKE_CXX_FLAGS=${FLAGS} -D PROGRAMS=${WORK}/from_documents)
 step(${CMAKE_COMMAND} --build ${WORK}/build --parallel 2)
-step(${WORK}/build/open_chain ${SOURCE}/examples/chain/scene.toml)
-if(EXISTS ${WORK}/build/closed_loop)
-  step(${WORK}/build/closed_loop ${SOURCE}/examples/four_bar/scene.toml)
+file(GLOB programs ${WORK}/build/programs/*)
+if(NOT programs)
+  message(FATAL_ERROR "${WORK}/build/programs: no program; expected those of the documents")
 endif()
+foreach(program IN LISTS programs)
+  step(${program})
+endforeach()
 if(EXISTS ${WORK}/prefix/bin/momenta)
   step(${WORK}/prefix/bin/momenta check ${SOURCE}/examples/four_bar/scene.toml)
 endif()

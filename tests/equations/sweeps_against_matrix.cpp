@@ -1,11 +1,12 @@
 #include "equations/sweeps_against_matrix.h"
+#include "equations/decompositions.h"
 
 #include "equations/kkt_blocks.h"
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
 #include <momenta/dae/kkt/assembled_solver.h>
-#include <momenta/dae/sweeps/sweep_solver.h>
+#include <momenta/dae/kkt/sweep_solver.h>
 
 #include <Eigen/Dense>
 
@@ -21,9 +22,8 @@ struct Conditions {
 };
 Conditions conditions(const Mechanism& mechanism, Evaluation<double>& e) {
   const auto [M, J] = KktBlocks(mechanism, e);
-  const VectorXd masses = M.selfadjointView<Eigen::Lower>().eigenvalues();
-  const VectorXd loops =
-      MatrixXd(M.llt().matrixL().solve(J.transpose())).jacobiSvd().singularValues();
+  const VectorXd masses = eigenvalues_of(M);
+  const VectorXd loops = singular_values_in_mass(M, J);
   return {masses.maxCoeff() / masses.minCoeff(),
           loops.size() > 0 && loops.minCoeff() > 0 ? loops.maxCoeff() / loops.minCoeff() : 1e300};
 }

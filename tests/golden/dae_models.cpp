@@ -254,8 +254,8 @@ TEST_P(Models, AccelerationsWithLoopsClosed) {
           allowed,
           bits / step * deviation(evaluate_state(mechanism, moved).constrained, x.constrained));
     }
-    rank = x.rank;
-    EXPECT_EQ(x.rank, s.at("rank").get<int>());
+    rank = x.loops.rank;
+    EXPECT_EQ(x.loops.rank, s.at("rank").get<int>());
   }
   if (std::getenv("MOMENTA_MODELS"))
     std::printf("| %s/%s | loops %d rows, rank %d | open %.0e | speed %.0e | %.0e |\n",

@@ -7,7 +7,7 @@
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/kernel/centroidal_sums.h>
+#include <momenta/core/centroidal_sums.h>
 #include <momenta/core/open_chain.h>
 
 namespace momenta {

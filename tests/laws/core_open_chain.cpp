@@ -1,6 +1,7 @@
 // Laws any open chain obeys, whatever its equations look like: power, symmetry of the Hamiltonian
 // Jacobian, M M⁻¹ = 1, indifference to where the scene stands in space.
 
+#include "equations/decompositions.h"
 #include "equations/dense_lagrangian.h"
 #include "equations/random_tree.h"
 #include "equations/recursions.h"
@@ -16,12 +17,6 @@ namespace momenta {
 namespace {
 
 using namespace equations;
-
-/// ‖|M⁻¹| |M|‖: what a solve may lose.
-double condition(const Eigen::MatrixXd& m) {
-  if (m.size() == 0) return 1;
-  return (m.inverse().cwiseAbs() * m.cwiseAbs()).rowwise().sum().maxCoeff();
-}
 
 /// d/dt (T + V) along the motion is the power of dampers, drives and forces that follow bodies.
 TEST(Laws, EnergyRateIsPower) {

@@ -5,6 +5,7 @@
 #include "equations/linkages.h"
 
 #include <gtest/gtest.h>
+#include <momenta/core/scene/read_scene.h>
 #include <momenta/dae/solver/stiffness.h>
 #include <momenta/dae/solver/tableau_dop853.h>
 #include <momenta/dae/solver/tableau_dp5.h>
@@ -12,6 +13,7 @@
 #include <momenta/dae/study/run_form.h>
 
 #include <cmath>
+#include <filesystem>
 
 namespace momenta {
 namespace {
@@ -19,15 +21,19 @@ namespace {
 using namespace equations;
 
 /// A pendulum of two rods, the second damped: |λ| of that mode goes with the damping.
-RunResult damped(double damping, const std::string& integrator,
-                 const std::string& form = "momentum") {
+Scene finger(double damping) {
   Scene s;
   s.name = "damped finger";
   s.gravity = {0, -9.81, 0};
   s.bodies = {rod("a"), rod("b")};
   s.joints = {hinge("A", "ground", "a", {0, 0, 0}, 0.5), hinge("B", "a", "b", {1, 0, 0}, 0.2)};
   s.joints[1].damping = damping;
-  const Mechanism mechanism(s);
+  return s;
+}
+
+RunResult damped(double damping, const std::string& integrator,
+                 const std::string& form = "momentum") {
+  const Mechanism mechanism(finger(damping));
   RunRequest request;
   request.settings.form = form;
   request.settings.integrator = integrator;
@@ -74,6 +80,75 @@ TEST(Stiffness, IsNotSeenInTheExamples) {
       EXPECT_TRUE(std::isnan(r.stiff_from)) << name << " " << method << " " << r.stiff_from;
     }
   }
+}
+
+/// The crank-rocker of the examples with a damped rod on its crank.
+Scene four_bar_with_finger() {
+  Scene s = read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples/four_bar/scene.toml");
+  s.bodies.push_back(rod("finger"));
+  s.joints.push_back(hinge("F", s.joints.front().child, "finger", {0.2, 0, 0}, 0.2));
+  s.joints.back().damping = 3000;
+  return s;
+}
+
+/// As `momenta run` does it where no integrator is named, or where one is.
+RunResult run_of(const Scene& scene, const std::string& form, const std::string& method,
+                 const std::string& gauge = "", double rtol = 1e-8) {
+  const Mechanism mechanism(scene);
+  RunDefaults defaults = scene.run;
+  defaults.end_time = 2;
+  defaults.samples = 40;
+  RunRequest request;
+  request.settings = default_settings(defaults, form, method, rtol);
+  if (!gauge.empty()) request.settings.gauge = gauge;
+  request.keep_trajectory = true;
+  return run_form(mechanism, start_of(mechanism), request);
+}
+
+/// Largest difference of coordinates and rates, samples at the same times.
+double apart(const RunResult& a, const RunResult& b, std::size_t unknowns) {
+  double largest = 0;
+  EXPECT_EQ(a.trajectory.rows.size(), b.trajectory.rows.size());
+  for (std::size_t i = 0; i < std::min(a.trajectory.rows.size(), b.trajectory.rows.size()); ++i) {
+    const auto &x = a.trajectory.rows[i], &y = b.trajectory.rows[i];
+    EXPECT_EQ(x[0], y[0]);
+    for (std::size_t k = 1; k <= unknowns; ++k) largest = std::max(largest, std::abs(x[k] - y[k]));
+  }
+  return largest;
+}
+
+TEST(Stiffness, AnotherMethodGoesOnWhereNoneWasNamed) {
+  const Scene bar = four_bar_with_finger();
+  for (const char* form : {"momentum", "acceleration", "baumgarte"})
+    for (const bool loops : {false, true}) {
+      if (!loops && std::string(form) == "baumgarte") continue;
+      const Scene scene = loops ? bar : finger(3000);
+      const std::string where = std::string(form) + (loops ? ", loops" : "");
+      const RunResult changing = run_of(scene, form, ""), named = run_of(scene, form, "dop853"),
+                      tight = run_of(scene, form, "dop853", "", 1e-11);
+      ASSERT_EQ(changing.status, "done") << where << changing.reason;
+      EXPECT_TRUE(changed(changing)) << where;
+      EXPECT_FALSE(changed(named)) << where;
+      EXPECT_GE(changing.changed_at, changing.stiff_from) << where;
+      EXPECT_LT(changing.changed_at, 0.5) << where;
+      EXPECT_EQ(changing.series.t.size(), 41u) << where;
+      EXPECT_LT(5 * changing.counters.steps, named.counters.steps) << where;
+      // As accurate as the method that went on.
+      const RunResult implicit = run_of(scene, form, "bdf");
+      const std::size_t unknowns = 2 * scene.joints.size();
+      EXPECT_LT(apart(changing, tight, unknowns), 5 * apart(implicit, tight, unknowns)) << where;
+    }
+}
+
+TEST(Stiffness, NothingChangesWhereAMethodWithMemoryIsOutOfPlace) {
+  const Scene bar = four_bar_with_finger();
+  for (const char* gauge : {"reset", "flip"}) {
+    const RunResult r = run_of(bar, "momentum", "", gauge);
+    EXPECT_EQ(r.status, "done") << r.reason;
+    EXPECT_FALSE(changed(r)) << gauge;
+  }
+  EXPECT_FALSE(changed(run_of(bar, "projected", "")));
+  EXPECT_FALSE(changed(run_of(finger(0.1), "momentum", "")));
 }
 
 }  // namespace

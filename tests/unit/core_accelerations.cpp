@@ -1,6 +1,7 @@
 // (q, u) → u̇ by the articulated recursion against d'Alembert's principle in its dense form,
 // against Newton-Euler inward, and against the momentum recursion: ṗ = d/dt p(q(t), u(t), t).
 
+#include "equations/decompositions.h"
 #include "equations/dense_lagrangian.h"
 #include "equations/random_tree.h"
 #include "equations/recursions.h"
@@ -48,7 +49,7 @@ void compare(const Scene& scene, RandomTree& random, Worst& worst) {
   const RealVector forces = m.cwiseAbs() * expected.cwiseAbs();
   double growth = 1;
   if (tree.nv > 0) {
-    const RealVector moved = m.inverse().cwiseAbs() * forces;
+    const RealVector moved = spread_by_inverse(m, forces);
     const Real size = std::max(Real(1), expected.cwiseAbs().maxCoeff());
     growth = std::max(1.0, static_cast<double>(moved.maxCoeff() / size));
   }

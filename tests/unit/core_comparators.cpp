@@ -2,6 +2,7 @@
 // itself, from composite bodies. Against d'Alembert's principle in its dense form and against the
 // recursions; what they cost.
 
+#include "equations/decompositions.h"
 #include "equations/dense_lagrangian.h"
 #include "equations/random_tree.h"
 #include "equations/recursions.h"
@@ -61,7 +62,9 @@ struct Worst {
 /// How much rounding in forces of size |M| |u̇| may move u̇, up to |M⁻¹| |M| |u̇| ε.
 template <class Matrix, class Vector>
 double growth_of(const Matrix& m, const Vector& udot) {
-  const Vector moved = m.inverse().cwiseAbs() * (m.cwiseAbs() * udot.cwiseAbs());
+  const LongVector moved =
+      spread_by_inverse(m.template cast<long double>(),
+                        (m.cwiseAbs() * udot.cwiseAbs()).template cast<long double>());
   return std::max(1.0, static_cast<double>(moved.maxCoeff()) /
                            std::max(1.0, static_cast<double>(udot.cwiseAbs().maxCoeff())));
 }

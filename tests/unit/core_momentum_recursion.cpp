@@ -4,6 +4,7 @@
 // That rounding alone moves u by up to |M⁻¹| |p| ε, whatever the algorithm: errors of u and of ṗ,
 // which hangs on u, are counted in units of growth = max(1, ‖|M⁻¹| |p|‖ / ‖u‖).
 
+#include "equations/decompositions.h"
 #include "equations/dense_lagrangian.h"
 #include "equations/random_tree.h"
 #include "equations/tolerance.h"
@@ -23,7 +24,7 @@ struct Worst {
 
 double rounding_growth(const RealMatrix& m, const RealVector& p, const Eigen::VectorXd& u) {
   if (u.size() == 0) return 1;
-  const RealVector moved = m.inverse().cwiseAbs() * p.cwiseAbs();
+  const RealVector moved = spread_by_inverse(m, p);
   return std::max(1.0, static_cast<double>(moved.maxCoeff()) / u.cwiseAbs().maxCoeff());
 }
 

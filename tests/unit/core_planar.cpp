@@ -1,5 +1,6 @@
 // The planar kernel against the spatial one, on scenes that move in any plane.
 
+#include "equations/decompositions.h"
 #include "equations/dense_lagrangian.h"
 #include "equations/random_tree.h"
 #include "equations/tolerance.h"
@@ -42,7 +43,9 @@ void compare(const Scene& scene, RandomTree& random, Worst& worst) {
 
   // The same p for both; its rounding moves u by |M⁻¹| |p| ε.
   double growth = 1;
-  if (n > 0) growth += (m.inverse().cwiseAbs() * p.cwiseAbs()).maxCoeff();
+  if (n > 0)
+    growth += static_cast<double>(
+        spread_by_inverse(m.cast<long double>(), p.cast<long double>()).maxCoeff());
   ASSERT_TRUE(planar.rates(s.t, s.q, p, qdot, pdot));
   ASSERT_TRUE(spatial.rates(s.t, s.q, p, qdot_spatial, pdot_spatial));
   note(worst.rates, relative_error(qdot, qdot_spatial) / growth);
@@ -53,7 +56,10 @@ void compare(const Scene& scene, RandomTree& random, Worst& worst) {
   double acceleration_growth = 1;
   if (n > 0)
     acceleration_growth +=
-        (m.inverse().cwiseAbs() * (m.cwiseAbs() * qdot_spatial.cwiseAbs())).maxCoeff() /
+        static_cast<double>(
+            spread_by_inverse(m.cast<long double>(),
+                              (m.cwiseAbs() * qdot_spatial.cwiseAbs()).cast<long double>())
+                .maxCoeff()) /
         std::max(1.0, qdot_spatial.cwiseAbs().maxCoeff());
   note(worst.accelerations, relative_error(qdot, qdot_spatial) / acceleration_growth);
 

@@ -2,6 +2,7 @@
 // the carried subtree in ground axes from positions alone, and one dual-number pass of the momentum
 // kernel, T_r = d/dt P* + Ω × P* − T* in the direction (q̇, ṗ, 1).
 
+#include "equations/decompositions.h"
 #include "equations/dense_lagrangian.h"
 #include "equations/random_tree.h"
 #include "equations/recursions.h"
@@ -22,7 +23,7 @@ double growth_of(const DenseLagrangian& twin, const TreeState& s) {
   if (twin.nv() == 0) return 1;
   const RealMatrix m = twin.mass_matrix(s.t, s.q);
   const RealVector udot = twin.accelerations(s.t, s.q, s.u);
-  const RealVector moved = m.inverse().cwiseAbs() * (m.cwiseAbs() * udot.cwiseAbs());
+  const RealVector moved = spread_by_inverse(m, m.cwiseAbs() * udot.cwiseAbs());
   const Real size = std::max(Real(1), udot.cwiseAbs().maxCoeff());
   return std::max(1.0, static_cast<double>(moved.maxCoeff() / size));
 }

@@ -54,8 +54,9 @@ TEST(UserJoint, WithoutInertiaItIsNamed) {
     return by_momenta;
   };
   const char* expected =
-      "joint 'U' has no inertia to move: the articulated inertia of body 'a' along it is not "
-      "positive";
+      "joint 'U' has no inertia: body 'a' and what it carries have none in some direction; "
+      "expected "
+      "a mass, a rotor's inertia, or a fixed joint";
   EXPECT_EQ(failure(alone({{{hinge, slanted}, {hinge, slanted}}})), expected);
   Scene rod = alone({{{hinge, Z}, {hinge, Y}, {hinge, X}}});
   rod.bodies[0].com = rod.joints[0].origin_child + slanted;

@@ -1,6 +1,7 @@
 // The solvers of (7) against dense factorisations in longer arithmetic: regular systems, redundant
 // rows, nearly singular poses in every orientation.
 
+#include "equations/decompositions.h"
 #include "equations/kkt_blocks.h"
 #include "equations/large_scenes.h"
 #include "equations/linkages.h"
@@ -38,10 +39,7 @@ struct Assembled : KktBlocks {
     return a;
   }
   /// Singular values of Φ_q M^(−1/2).
-  VectorXd singular_values() const {
-    const MatrixXd g = M.llt().matrixL().solve(J.transpose());
-    return g.jacobiSvd().singularValues();
-  }
+  VectorXd singular_values() const { return singular_values_in_mass(M, J); }
 };
 
 struct Solution {
@@ -92,7 +90,7 @@ TEST(Kkt, RegularSystemsAgreeWithDenseLu) {
     const VectorXd u = exact.head(r.size()).cast<double>(),
                    sigma = exact.tail(g.size()).cast<double>();
     // Rounding moves the answer by the condition of M and of Φ_q M^(−1/2), squared in σ.
-    const VectorXd masses = a.M.selfadjointView<Eigen::Lower>().eigenvalues();
+    const VectorXd masses = eigenvalues_of(a.M);
     const double growth = std::sqrt(masses.maxCoeff() / masses.minCoeff()) *
                           std::pow(values.maxCoeff() / values.minCoeff(), 2);
     const double scale =

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 #include <momenta/dae/kkt/least_norm.h>
+#include <momenta/dae/kkt/loop_rank.h>
 
 #include <Eigen/QR>
 #include <random>
@@ -44,7 +45,7 @@ TEST(LeastNorm, SparseIsDense) {
     ASSERT_FALSE(steps.is_dense());
     const VectorXd b = s.dense * VectorXd::LinSpaced(420, -1, 2);  // consistent
     Eigen::CompleteOrthogonalDecomposition<MatrixXd> cod;
-    cod.setThreshold(LeastNorm::rank_tolerance);
+    cod.setThreshold(rank_tolerance);
     cod.compute(s.dense);
     steps.factor(s.values);
     const VectorXd x = steps.solve(b), expected = cod.solve(b);
@@ -83,7 +84,7 @@ TEST(LeastNorm, FactorisesWhatIsNew) {
 TEST(LeastNorm, FindsDependentRows) {
   const System s = banded(300, 420, 20);
   LeastNorm steps(s.pattern, 300, 420);
-  const LeastNorm::Rows rows = steps.judge(s.values);
+  const LoopRank rows = steps.judge(s.values);
   EXPECT_EQ(rows.rank, 280);
   ASSERT_EQ(rows.dependent.size(), 20u);
   // Without them the others are independent.

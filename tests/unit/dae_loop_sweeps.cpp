@@ -12,7 +12,7 @@
 
 #include <gtest/gtest.h>
 #include <momenta/dae/kkt/assembled_solver.h>
-#include <momenta/dae/sweeps/sweep_solver.h>
+#include <momenta/dae/kkt/sweep_solver.h>
 
 #include <Eigen/Dense>
 

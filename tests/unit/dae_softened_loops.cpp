@@ -2,6 +2,7 @@
 // literature writes: (M + Φ_qᵀ α Φ_q) assembled and solved in longer arithmetic, two iterations;
 // and the choice of independent coordinates against its definition.
 
+#include "equations/decompositions.h"
 #include "equations/linkages.h"
 #include "equations/random_loops.h"
 #include "equations/tolerance.h"
@@ -130,7 +131,7 @@ TEST(SoftenedLoops, AreThePenaltyEquationsOfTheLiterature) {
       ASSERT_TRUE(solver->acceleration(s.t, s.q.data(), s.u.data(), centre.data(), alpha, omega,
                                        udot.data(), lambda.data()));
       ++tried;
-      const VectorXd masses = K.cast<double>().selfadjointView<Eigen::Lower>().eigenvalues();
+      const VectorXd masses = eigenvalues_of(K.cast<double>());
       const double growth = masses.maxCoeff() / masses.minCoeff();
       const auto note = [&](double& to, const VectorXd& found, const RealVector& exact) {
         to = std::max(to, relative_error(found, VectorXd(exact.cast<double>())) / growth);
@@ -159,8 +160,7 @@ TEST(SoftenedLoops, IterationsContractAsOneOverThePenalty) {
            rate(mechanism.m());
   const Assembled a(mechanism, *e, {0, q, mechanism.tree().u0});
   const RealMatrix W = a.J * a.M.llt().solve(RealMatrix(a.J.transpose()));
-  const double slowest =
-      c / (c + W.cast<double>().selfadjointView<Eigen::Lower>().eigenvalues().minCoeff());
+  const double slowest = c / (c + eigenvalues_of(W.cast<double>()).minCoeff());
   double before = 0;
   for (int k = 0; k < 4; ++k) {
     ASSERT_TRUE(solver->momentum(0, q.data(), p.data(), sigma.data(), 0, 0, u.data(), next.data(),

@@ -27,8 +27,11 @@
     line("corrected after each step", run.project ? "yes" : "no");
     line("(7) is solved by", run.kkt);
     line("status", run.status === "done" ? "done" : `${run.status} at ${number(run.stopped_at, 4)} s: ${run.reason}`);
-    line("largest position drift", measured(run.drift.position_max) ? `${number(run.drift.position_max)} m` : "");
-    line("largest velocity drift", measured(run.drift.velocity_max) ? `${number(run.drift.velocity_max)} m/s` : "");
+    const drift = (value, unit) => (measured(value) ? `${number(value)} ${unit}` : "");
+    line("largest position drift", drift(run.drift.position_max, run.drift.unit));
+    line("largest velocity drift", drift(run.drift.velocity_max, `${run.drift.unit}/s`));
+    line("largest position drift of angles", drift(run.drift.angle_max, "rad"));
+    line("largest velocity drift of angles", drift(run.drift.angle_rate_max, "rad/s"));
     line("largest energy error", measured(run.energy.error_max) ? `${number(run.energy.error_max)} J` : "");
     line("largest position error", measured(run.error.position_max) ? number(run.error.position_max) : "");
     line("steps", `${count(run.counters.steps)}, ${count(run.counters.rejected)} rejected, ${count(run.counters.evaluations)} evaluations`);

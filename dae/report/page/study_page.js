@@ -13,16 +13,28 @@ const largest = (what) => `${what}; strong lines are the largest value so far, f
 const anyFailed = runs.some((run) => run.status !== "done");
 const withReference = runs.some((run) => measured(run.error.position_max));
 
+/** Of the position drift: m, or rad where all loop equations are angles. */
+const driftUnit = runs[0]?.drift.unit || "m";
+
 /** Captions and columns of the histories that the data name. */
 const told = {
   position_drift: [largest("How far the loops are open"), [
-    numeric("largest drift", "m", (run) => run.drift.position_max),
-    optional(numeric("between steps", "m", (run) => run.drift.between_steps_max)),
+    numeric("largest drift", driftUnit, (run) => run.drift.position_max),
+    optional(numeric("between steps", driftUnit, (run) => run.drift.between_steps_max)),
     ...growth((run) => run.growth.position),
   ]],
   velocity_drift: [largest("How fast the loops open"), [
-    numeric("largest drift", "m/s", (run) => run.drift.velocity_max),
+    numeric("largest drift", `${driftUnit}/s`, (run) => run.drift.velocity_max),
     ...growth((run) => run.growth.velocity),
+  ]],
+  angle_drift: [largest("How far the axes of loops, and what else of them is an angle, are apart"), [
+    numeric("largest drift", "rad", (run) => run.drift.angle_max),
+    optional(numeric("between steps", "rad", (run) => run.drift.angle_between_steps_max)),
+    ...growth((run) => run.growth.angle),
+  ]],
+  angle_rate_drift: [largest("How fast these come apart"), [
+    numeric("largest drift", "rad/s", (run) => run.drift.angle_rate_max),
+    ...growth((run) => run.growth.angle_rate),
   ]],
   energy_error: [largest("Energy, less the work done on the mechanism, against its value at the start"), [
     numeric("largest energy error", "J", (run) => run.energy.error_max),
@@ -42,13 +54,14 @@ const costs = {
   caption: (study.drift_study ? "" : "The wide line joins the runs that no other beats in both. ") + (withReference
     ? "Left and low is better. Largest position error against the reference; time of the integration alone."
     : "Left and low is better. Without a reference the largest position drift stands for the error; time of the integration alone."),
-  yTitle: withReference ? "error of positions max |err|/(1+|ref|)" : "largest position drift |Φ| [m]",
-  unit: withReference ? "1" : "m",
+  yTitle: withReference ? "error of positions max |err|/(1+|ref|)" : `largest position drift |Φ| [${driftUnit}]`,
+  unit: withReference ? "1" : driftUnit,
   value: (run) => (withReference ? run.error.position_max : run.drift.position_max),
   columns: [
     optional(numeric("position error", "", (run) => run.error.position_max)),
     optional(numeric("velocity error", "", (run) => run.error.velocity_max)),
-    optional(numeric("largest drift", "m", (run) => run.drift.position_max)),
+    optional(numeric("largest drift", driftUnit, (run) => run.drift.position_max)),
+    optional(numeric("of angles", "rad", (run) => run.drift.angle_max)),
     numeric("processor time", "s", (run) => run.time.cpu_s, true, 3),
     optional(numeric("wall time", "s", (run) => run.time.wall_s, true, 3)),
     counted("steps", (run) => run.counters.steps),
@@ -72,7 +85,7 @@ const furtherCosts = [
   {
     ...time, title: "Position drift against processor time",
     caption: "CPU time against the largest position drift.",
-    yTitle: "largest position drift |Φ| [m]", unit: "m", value: (run) => run.drift.position_max, columns: [],
+    yTitle: `largest position drift |Φ| [${driftUnit}]`, unit: driftUnit, value: (run) => run.drift.position_max, columns: [],
   },
   {
     ...time, title: "Energy error against processor time",

@@ -17,12 +17,17 @@ namespace momenta {
 
 /// States side by side: coordinate i of state s is at base[i * stride + s].
 struct LoopedStates {
-  const double *q, *p;
-  double *u, *sigma, *pdot;
-  std::ptrdiff_t stride;
-  std::size_t count;
+  const double* q;        ///< nq rows
+  const double* p;        ///< nv rows
+  double* u;              ///< nv rows
+  double* sigma;          ///< m rows
+  double* pdot;           ///< nv rows
+  std::ptrdiff_t stride;  ///< from one row to the next
+  std::size_t count;      ///< how many states
 };
 
+/// The sweeps that carry the loops of one mechanism, with their workspace: one object a thread.
+/// Made by Mechanism::looped_sweeps().
 class LoopedSweeps {
  public:
   virtual ~LoopedSweeps() = default;
@@ -44,12 +49,14 @@ class LoopedSweeps {
   virtual std::size_t faded_rows(int* rows, bool of_momentum) const = 0;
   /// The weakest pivot of that solution which has not faded, over τ, and how many have.
   struct Pivots {
-    double weakest = std::numeric_limits<double>::infinity();
-    int faded = 0;
+    double weakest = std::numeric_limits<double>::infinity();  ///< none: infinite
+    int faded = 0;                                             ///< how many
   };
+  /// Of the last momentum(), or acceleration(), of one state.
   virtual Pivots pivots(bool of_momentum) const = 0;
-  virtual int slots() const = 0;
-  virtual int width() const = 0;
+  virtual int slots() const = 0;  ///< equations open at once, at most
+  virtual int width() const = 0;  ///< states side by side
+  /// Place in u of the joint at which the last call failed.
   virtual int singular_joint() const = 0;
   /// Whether the last call closed a folded branch, of one state or of some of many, on too weak a
   /// pivot: its solution is then wrong.
@@ -58,14 +65,15 @@ class LoopedSweeps {
 
 /// The same loops with points and axes in the frames of the links. In space these are the model's.
 LoopModel<Planar> in_link_frames(LoopModel<Planar> loops, const PlanarTree& tree);
+/// The same in space.
 LoopModel<Spatial> in_link_frames(LoopModel<Spatial> loops, const LinkTree& tree);
 
 /// Loops as the sweeps carry them.
 template <class Space>
 struct SweptLoops {
   LoopModel<Space> loops;  ///< points and axes in the frames of the links
-  LoopPlan plan;
-  SharedPoints shared;  ///< empty: the loops are those of the scene
+  LoopPlan plan;           ///< the order in which bodies and loops are eliminated
+  SharedPoints shared;     ///< empty: the loops are those of the scene
 };
 
 /// The plan of a model's loops; in space branches may be folded.
@@ -101,6 +109,7 @@ SweptLoops<Space> swept_loops(const Model<Space>& model, LoopModel<Space> loops)
 std::unique_ptr<LoopedSweeps> make_looped_sweeps(const PlanarTree& tree,
                                                  const SweptLoops<Planar>& swept, int level,
                                                  bool branches_side_by_side = true);
+/// The same in space.
 std::unique_ptr<LoopedSweeps> make_looped_sweeps(const LinkTree& tree,
                                                  const SweptLoops<Spatial>& swept, int level,
                                                  bool branches_side_by_side = true);

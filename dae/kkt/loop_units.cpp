@@ -1,0 +1,63 @@
+#include <momenta/dae/kkt/loop_units.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+namespace momenta {
+namespace {
+
+/// Of the equation of a coupler: what its terms are by nature.
+double size_of(const LoopSpec& l, const Tree& tree, const Eigen::VectorXd& rates) {
+  double size = 0;
+  for (std::size_t i = 0; i < l.joints.size(); ++i) {
+    const int last = tree.carried_by(l.joints[i]);
+    for (int k = tree.first_part(last); k <= last; ++k) {
+      const Tree::Body& b = tree.bodies[static_cast<std::size_t>(k)];
+      if (b.coordinate == (l.coordinates.empty() ? 0 : l.coordinates[i]))
+        size = std::max(size, std::abs(l.ratios[i]) * (b.nv > 0 ? rates[b.u] : 1));
+    }
+  }
+  return size > 0 ? size : 1;
+}
+
+/// Of the way from the ground to each body.
+double rounding_of(const Tree& tree, double length) {
+  double rounding = 0;
+  std::vector<double> reach;
+  std::vector<int> depth;
+  for (const auto& b : tree.bodies) {
+    const double step = b.placement.translation().norm();
+    const auto parent = static_cast<std::size_t>(b.parent);
+    reach.push_back(b.parent < 0 ? step : reach[parent] + step);
+    depth.push_back(b.parent < 0 ? 1 : depth[parent] + 1);
+    rounding = std::max(rounding, 4 * std::numeric_limits<double>::epsilon() *
+                                      std::sqrt(depth.back()) * reach.back() / length);
+  }
+  return rounding;
+}
+
+}  // namespace
+
+LoopUnits::LoopUnits(const Mechanism& mechanism) {
+  const Tree& tree = mechanism.tree();
+  const double length = length_of(mechanism.scene());
+  rounding = rounding_of(tree, length);
+  rates.setOnes(mechanism.nv());
+  for (const auto& b : tree.bodies) {
+    if (b.kind == JointKind::prismatic && b.nv == 1) rates[b.u] = length;
+    if (b.nv == 6) rates.segment<3>(b.u).setConstant(length);
+  }
+  equations.setOnes(mechanism.m());
+  std::map<std::string, const LoopSpec*> couplers;
+  for (const LoopSpec& l : mechanism.scene().loops)
+    if (l.kind == LoopKind::coupler) couplers.emplace(l.name, &l);
+  for (int i = 0; i < mechanism.m(); ++i)
+    if (mechanism.row_groups()[static_cast<std::size_t>(i)] % 2 == 0) {
+      const auto coupler = couplers.find(mechanism.rows()[static_cast<std::size_t>(i)].loop);
+      equations[i] = coupler == couplers.end() ? length : size_of(*coupler->second, tree, rates);
+    }
+}
+
+}  // namespace momenta

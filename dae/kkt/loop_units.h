@@ -1,0 +1,24 @@
+#pragma once
+// Units in which it is counted what joints move and how far loops are open: lengths of the
+// scene, and radians. Scaled so, neither depends on the units of the scene.
+
+#include <momenta/dae/mechanism.h>
+
+#include <Eigen/Core>
+
+namespace momenta {
+
+/// |Φ|∞ of redundant equations, in these units, that the rounding of a file may leave at the most.
+inline constexpr double left_by_files = 1e-8;
+
+struct LoopUnits {
+  explicit LoopUnits(const Mechanism& mechanism);
+
+  Eigen::VectorXd rates;      ///< by rate u, nv [m or rad]
+  Eigen::VectorXd equations;  ///< by loop equation, m; of a coupler what its terms are by nature
+  /// What rounding leaves open of loops that close, in these units. It grows with the way from the
+  /// ground: a sum of k terms of size up to R is off by √k R ε.
+  double rounding = 0;
+};
+
+}  // namespace momenta

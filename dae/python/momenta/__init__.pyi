@@ -1,0 +1,376 @@
+# What momenta offers, for editors and type checkers; a test holds it against the package.
+
+import os
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any, Literal, TypedDict
+
+import numpy
+from numpy.typing import ArrayLike, NDArray
+from typing_extensions import Unpack
+
+__version__: str
+
+_Array = NDArray[numpy.float64]
+_Path = str | os.PathLike[str]
+_State = Mapping[str, Any] | _Path | None
+_Progress = bool | Callable[[float, str], object] | None
+_Vector = Sequence[float] | _Array
+_Direction = Literal["x", "-x", "y", "-y", "z", "-z"] | _Vector
+
+class SceneError(ValueError): ...
+
+class _Origin(TypedDict, total=False):
+    parent: _Vector
+    child: _Vector
+
+class _Rotation(TypedDict, total=False):
+    rpy: _Vector
+    quaternion: Sequence[float]
+    axis: _Direction
+    angle: float
+
+class _Shape(TypedDict, total=False):
+    kind: Literal["rod", "box", "cylinder", "sphere", "point"]
+    length: float
+    radius: float
+    size: _Vector
+    axis: _Direction
+
+class _SceneKeys(TypedDict, total=False):
+    gravity: _Vector
+    body: Sequence[Mapping[str, Any]]
+    joint: Sequence[Mapping[str, Any]]
+    loop: Sequence[Mapping[str, Any]]
+    drive: Sequence[Mapping[str, Any]]
+    force: Sequence[Mapping[str, Any]]
+    marker: Sequence[Mapping[str, Any]]
+    assembly: Mapping[str, Any]
+    run: Mapping[str, Any]
+
+class _BodyKeys(TypedDict, total=False):
+    mass: float
+    shape: _Shape
+    com: _Vector
+    inertia: float | Sequence[float]
+    any_inertia: bool
+
+class _JointKeys(TypedDict, total=False):
+    parent: str
+    child: str
+    origin: _Origin
+    rotation: _Rotation
+    axis: _Direction
+    axis2: _Direction
+    direction: _Direction
+    pitch: float
+    position: float | Sequence[float]
+    velocity: float | Sequence[float]
+    stiffness: float
+    rest: float
+    damping: float
+
+class _LoopKeys(TypedDict, total=False):
+    parent: str
+    child: str
+    origin: _Origin
+    rotation: _Rotation
+    axis: _Direction
+    axis2: _Direction
+    direction: _Direction
+    length: float
+    joints: Sequence[str]
+    ratios: Sequence[float]
+    coordinates: Sequence[int]
+    offset: float
+
+class _DriveKeys(TypedDict, total=False):
+    joint: str
+    loop: str
+    coordinate: int
+    origin: Literal["x", "y", "z"]
+    coefficients: Sequence[float]
+    amplitude: float
+    frequency: float
+    offset: float
+    phase: float
+    to: float
+    duration: float
+    start: float
+    times: Sequence[float]
+    values: Sequence[float]
+
+class _SpringKeys(TypedDict, total=False):
+    name: str
+    parent: str
+    child: str
+    origin: _Origin
+    stiffness: float
+    damping: float
+    rest: float
+
+class _ForceKeys(_SpringKeys, total=False):
+    joint: str
+    value: float
+    body: str
+    point: _Vector
+    force: _Vector
+    torque: _Vector
+    axes: Literal["ground", "body"]
+
+class _MarkerKeys(TypedDict, total=False):
+    point: _Vector
+
+class _AssemblyKeys(TypedDict, total=False):
+    hold: Sequence[str]
+
+class _RunTableKeys(TypedDict, total=False):
+    end: float
+    step: float
+    leak: float
+    samples: int
+    project: bool
+
+class _RunKeys(TypedDict, total=False):
+    form: str
+    integrator: str
+    gauge: str
+    rtol: float
+    atol: float | None
+    step: float | None
+    end: float | None
+    samples: int | None
+    spectral_radius: float
+    project: bool | None
+    baumgarte_alpha: float
+    baumgarte_beta: float
+    beta: float
+    penalty: float
+    cpu_limit: float
+
+class Scene:
+    def __init__(self, name: str = "", **keys: Unpack[_SceneKeys]) -> None: ...
+    def body(self, name: str, **keys: Unpack[_BodyKeys]) -> Scene: ...
+    def joint(self, name: str, kind: str, **keys: Unpack[_JointKeys]) -> Scene: ...
+    def loop(self, name: str, kind: str, **keys: Unpack[_LoopKeys]) -> Scene: ...
+    def drive(self, kind: str, **keys: Unpack[_DriveKeys]) -> Scene: ...
+    def force(self, kind: str, **keys: Unpack[_ForceKeys]) -> Scene: ...
+    def spring(self, **keys: Unpack[_SpringKeys]) -> Scene: ...
+    def marker(self, name: str, body: str, **keys: Unpack[_MarkerKeys]) -> Scene: ...
+    def assembly(self, **keys: Unpack[_AssemblyKeys]) -> Scene: ...
+    def run(self, **keys: Unpack[_RunTableKeys]) -> Scene: ...
+    @classmethod
+    def from_dict(cls, keys: Mapping[str, Any]) -> Scene: ...
+    def to_dict(self) -> dict[str, Any]: ...
+    def to_toml(self) -> str: ...
+    def save(self, file: _Path) -> None: ...
+    def load(self, algebra: str = "auto", kkt: str = "auto", *, at: _State = None) -> Mechanism: ...
+    def __eq__(self, other: object) -> bool: ...
+
+class Start:
+    @property
+    def t(self) -> float: ...
+    @property
+    def q(self) -> _Array: ...
+    @property
+    def u(self) -> _Array: ...
+    @property
+    def udot(self) -> _Array: ...
+    @property
+    def lambda_(self) -> _Array: ...
+    @property
+    def rank(self) -> int: ...
+    @property
+    def mobility(self) -> int: ...
+    @property
+    def dependent_rows(self) -> list[int]: ...
+    @property
+    def moved(self) -> float: ...
+    @property
+    def branch(self) -> str: ...
+
+class Mechanism:
+    @property
+    def name(self) -> str: ...
+    @property
+    def nq(self) -> int: ...
+    @property
+    def nv(self) -> int: ...
+    @property
+    def m(self) -> int: ...
+    @property
+    def coordinates(self) -> list[str]: ...
+    @property
+    def rates(self) -> list[str]: ...
+    @property
+    def equations(self) -> list[str]: ...
+    @property
+    def q0(self) -> _Array: ...
+    @property
+    def u0(self) -> _Array: ...
+    @property
+    def plan(self) -> dict[str, str]: ...
+    @property
+    def options(self) -> dict[str, str]: ...
+    @property
+    def remarks(self) -> list[str]: ...
+    def to_toml(self) -> str: ...
+    def assemble(self) -> Start: ...
+    def momentum_rates(
+        self, t: float, q: ArrayLike, p: ArrayLike, centre: ArrayLike | None = None, leak: float = 0.0
+    ) -> tuple[_Array, _Array, _Array]: ...
+    def accelerations(self, t: float, q: ArrayLike, u: ArrayLike) -> tuple[_Array, _Array]: ...
+    def momenta(self, t: float, q: ArrayLike, u: ArrayLike, sigma: ArrayLike | None = None) -> _Array: ...
+    def constraints(self, t: float, q: ArrayLike, u: ArrayLike) -> tuple[_Array, _Array]: ...
+    def kkt(self, t: float, q: ArrayLike) -> tuple[_Array, _Array]: ...
+    def inverse_mass_times(self, t: float, q: ArrayLike, x: ArrayLike) -> _Array: ...
+    def energies(self, t: float, q: ArrayLike, u: ArrayLike) -> tuple[float, float]: ...
+    def evaluate(
+        self, t: float = 0.0, q: ArrayLike | None = None, v: ArrayLike | None = None, p: ArrayLike | None = None
+    ) -> dict[str, Any]: ...
+    def modes(self, equilibrium: str = "settle", drives: str = "held", count: int = 0) -> dict[str, Any]: ...
+    def run(
+        self,
+        *,
+        form: str = "momentum",
+        integrator: str = "",
+        gauge: str = "",
+        rtol: float = 1e-8,
+        atol: float | None = None,
+        step: float | None = None,
+        end: float | None = None,
+        samples: int | None = None,
+        spectral_radius: float = 0.8,
+        project: bool | None = None,
+        baumgarte_alpha: float = 0.0,
+        baumgarte_beta: float = 0.0,
+        beta: float = 0.0,
+        penalty: float = 0.0,
+        cpu_limit: float = 0.0,
+        reference: str = "",
+        progress: _Progress = None,
+    ) -> Run: ...
+    def drift(
+        self,
+        *,
+        forms: Sequence[str] = (),
+        integrator: str = "",
+        rtol: float = 1e-8,
+        step: float | None = None,
+        end: float | None = None,
+        samples: int | None = None,
+        reference: str = "",
+        cpu_limit: float = 60.0,
+        progress: _Progress = None,
+    ) -> Study: ...
+    def work(
+        self,
+        *,
+        forms: Sequence[str] = (),
+        integrators: Sequence[str] = (),
+        tolerances: Sequence[float] = (1e-4, 1e-6, 1e-8, 1e-10),
+        end: float | None = None,
+        reference: str = "",
+        cpu_limit: float = 10.0,
+        progress: _Progress = None,
+    ) -> Study: ...
+
+class Run:
+    @property
+    def form(self) -> str: ...
+    @property
+    def integrator(self) -> str: ...
+    @property
+    def gauge(self) -> str: ...
+    @property
+    def rtol(self) -> float: ...
+    @property
+    def step(self) -> float: ...
+    @property
+    def project(self) -> bool: ...
+    @property
+    def status(self) -> str: ...
+    @property
+    def reason(self) -> str: ...
+    @property
+    def stopped_at(self) -> float: ...
+    @property
+    def counters(self) -> dict[str, int]: ...
+    @property
+    def cpu_s(self) -> float: ...
+    @property
+    def position_drift_max(self) -> float: ...
+    @property
+    def velocity_drift_max(self) -> float: ...
+    @property
+    def energy_error_max(self) -> float: ...
+    @property
+    def position_error_max(self) -> float: ...
+    @property
+    def t(self) -> _Array: ...
+    @property
+    def position_drift(self) -> _Array: ...
+    @property
+    def velocity_drift(self) -> _Array: ...
+    @property
+    def energy(self) -> _Array: ...
+    @property
+    def energy_error(self) -> _Array: ...
+    @property
+    def impulse(self) -> _Array: ...
+    @property
+    def position_error(self) -> _Array: ...
+    @property
+    def columns(self) -> list[str]: ...
+    @property
+    def trajectory(self) -> _Array: ...
+    def __getitem__(self, name: str) -> _Array: ...
+    def plot(self, *columns: str, ax: Any = None) -> Any: ...
+
+_Loaded = Scene | Mechanism | Mapping[str, Any] | str | os.PathLike[str]
+
+class Study(list[Run]):
+    ladder: bool
+    @property
+    def table(self) -> str: ...
+    def __init__(self, runs: Iterable[Run] = (), ladder: bool = False) -> None: ...
+    def plot(self, what: str | None = None, *, ax: Any = None) -> Any: ...
+
+class Sweep:
+    csv: str
+    json: dict[str, Any]
+    table: str
+    @property
+    def columns(self) -> list[str]: ...
+    def __getitem__(self, name: str) -> _Array | list[str]: ...
+    def __len__(self) -> int: ...
+    def plot(self, column: str = "position_drift_max", *, ax: Any = None) -> Any: ...
+
+class Page(str):
+    def save(self, file: _Path) -> None: ...
+
+def load(
+    scene: Scene | Mapping[str, Any] | _Path,
+    algebra: str = "auto",
+    kkt: str = "auto",
+    *,
+    loops: _Path = "",
+    free_root: bool = False,
+    at: _State = None,
+) -> Mechanism: ...
+def parse(text: str, name: str = "scene", algebra: str = "auto", kkt: str = "auto") -> Mechanism: ...
+def evaluate(scene: _Loaded, at: _State = None) -> dict[str, Any]: ...
+def index(
+    scene: _Loaded, forms: Iterable[str] = (), at: _State = None, *, progress: _Progress = None
+) -> dict[str, Any]: ...
+def view(scene: _Loaded) -> Page: ...
+def sweep(
+    scene: _Loaded,
+    vary: Mapping[str, str | ArrayLike] | Iterable[str],
+    *,
+    watch: str | Iterable[str] = (),
+    threads: int = 0,
+    progress: _Progress = None,
+    **run: Unpack[_RunKeys],
+) -> Sweep: ...
+def forms() -> list[str]: ...
+def integrators() -> list[str]: ...

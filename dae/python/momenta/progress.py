@@ -1,0 +1,23 @@
+"""How far a long call is, as one line of plain text: on terminals and in notebooks alike."""
+
+import sys
+
+
+def teller(progress):
+    """The function of (fraction, text) that an argument `progress` means; None: tell nothing."""
+    if progress is None or progress is False:
+        return None
+    if progress is True:
+        return _line
+    if not callable(progress):
+        raise TypeError(
+            f"progress is {progress!r:.100}, expected True, a function of (fraction, text) or None"
+        )
+    return progress
+
+
+def _line(fraction, text):
+    """Writes on standard error, over what it wrote before; a fraction of 1 ends the line."""
+    end = "\n" if fraction >= 1 else ""
+    sys.stderr.write(f"\r{100 * fraction:3.0f} %  {text[:60]:60}{end}")
+    sys.stderr.flush()

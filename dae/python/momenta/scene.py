@@ -1,0 +1,167 @@
+"""A scene put together in Python: tables of keys, as docs/reference/scene.md has them, written as TOML.
+
+What the keys mean and what they may hold is decided where scene files are read, and nowhere else.
+"""
+
+import copy
+import json
+import os
+import re
+
+from . import _momenta
+
+# Of a scene's keys those that are lists of tables, and those that are one table.
+_LISTS = ("body", "joint", "loop", "drive", "force", "marker")
+_TABLES = ("assembly", "run")
+
+
+class Scene:
+    """A scene, built table by table; keywords are the keys of docs/reference/scene.md.
+
+    s = momenta.Scene('pendulum', gravity=[0, -9.81, 0])
+    s.body('rod', mass=1, shape={'kind': 'rod', 'length': 1})
+    s.joint('O', 'revolute', child='rod', position=0.5)
+    run = s.load().run(end=10)
+
+    Every call gives the scene back, so that calls may be chained. Keys that are None are left out.
+    Mistakes are told by load(): one sentence, a SceneError.
+    """
+
+    def __init__(self, name="", **keys):
+        self._keys = {}
+        self._put(self._keys, {"name": name or None, **keys})
+
+    def body(self, name, **keys):
+        """Adds a body: mass [kg], shape, com [m], inertia [kg m^2], any_inertia."""
+        return self._add("body", name=name, **keys)
+
+    def joint(self, name, kind, **keys):
+        """Adds a joint of the tree: parent, child, origin [m], rotation, axis, position, velocity,
+        stiffness, rest, damping, pitch, axis2, direction."""
+        return self._add("joint", name=name, kind=kind, **keys)
+
+    def loop(self, name, kind, **keys):
+        """Adds what closes a loop: parent, child, origin [m], rotation, axis, axis2, direction; length
+        [m] of a distance; joints, ratios, coordinates, offset of a coupler."""
+        return self._add("loop", name=name, kind=kind, **keys)
+
+    def drive(self, kind, **keys):
+        """Adds a motion prescribed to a joint or a loop by the law polynomial, harmonic, step or
+        table: joint or loop, coordinate, and the keys of the law."""
+        return self._add("drive", kind=kind, **keys)
+
+    def force(self, kind, **keys):
+        """Adds a spring-damper; a torque along a joint: joint, value; or a wrench on a body: body,
+        point [m], force [N], torque [N m], axes."""
+        return self._add("force", kind=kind, **keys)
+
+    def spring(self, **keys):
+        """Adds a force of kind spring-damper: parent, child, origin [m], stiffness [N/m], damping
+        [N s/m], rest [m]."""
+        return self.force("spring-damper", **keys)
+
+    def marker(self, name, body, **keys):
+        """Adds a point whose motion is recorded: point [m], body axes."""
+        return self._add("marker", name=name, body=body, **keys)
+
+    def assembly(self, **keys):
+        """Sets keys of [assembly]: hold, the joints that assembly leaves where they are."""
+        return self._put(self._keys.setdefault("assembly", {}), keys)
+
+    def run(self, **keys):
+        """Sets keys of [run], what a run takes where nothing else is said: end [s], step [s], samples,
+        leak [1/s], project."""
+        return self._put(self._keys.setdefault("run", {}), keys)
+
+    @classmethod
+    def from_dict(cls, keys):
+        """The scene of a dict like the one that tomllib reads from a scene file."""
+        if not isinstance(keys, dict):
+            raise TypeError(f"a scene is made from a dict, found {type(keys).__name__}")
+        return cls(**keys)
+
+    def to_dict(self):
+        """The scene as a dict of dicts, lists, strings and numbers."""
+        return copy.deepcopy(self._keys)
+
+    def to_toml(self):
+        """The scene as the text of a scene file."""
+        top = {key: x for key, x in self._keys.items() if not _is_table(key, x)}
+        text = "".join(_line(key, x) for key, x in top.items())
+        for key, tables in self._keys.items():
+            if key not in top:
+                head = f"[[{key}]]" if key in _LISTS else f"[{key}]"
+                for table in tables if key in _LISTS else [tables]:
+                    text += f"\n{head}\n" + "".join(_line(k, x) for k, x in table.items())
+        return text
+
+    def save(self, file):
+        """Writes the scene file, whole or not at all."""
+        _momenta.write(os.fspath(file), self.to_toml())
+
+    def load(self, algebra="auto", kkt="auto", *, at=None):
+        """The Mechanism of this scene: momenta.load(scene, ...)."""
+        from .verbs import load
+
+        return load(self, algebra, kkt, at=at)
+
+    def __eq__(self, other):
+        return isinstance(other, Scene) and self._keys == other._keys
+
+    def __repr__(self):
+        counts = (f"{len(self._keys.get(key, []))} [[{key}]]" for key in ("body", "joint", "loop"))
+        return f"<momenta.Scene {self._keys.get('name', '')!r}: {', '.join(counts)}>"
+
+    def _add(self, key, **keys):
+        self._put(table := {}, keys)
+        self._keys.setdefault(key, []).append(table)
+        return self
+
+    def _put(self, table, keys):
+        table.update({key: _plain(x) for key, x in keys.items() if x is not None})
+        return self
+
+
+def _is_table(key, x):
+    if key in _LISTS:
+        return isinstance(x, list) and all(isinstance(table, dict) for table in x)
+    return key in _TABLES and isinstance(x, dict)
+
+
+def _plain(x):
+    """Arrays and numbers of NumPy as Python's own; copies, so that a scene is nobody else's."""
+    if hasattr(x, "tolist"):
+        x = x.tolist()
+    if isinstance(x, dict):
+        return {key: _plain(value) for key, value in x.items() if value is not None}
+    if isinstance(x, (list, tuple)):
+        return [_plain(value) for value in x]
+    if isinstance(x, str):
+        x.encode()  # files are UTF-8: refuses half a character
+    if isinstance(x, (bool, int, float, str)):
+        return x
+    raise TypeError(f"a scene holds numbers, strings, lists and dicts, found {x!r:.100}")
+
+
+def _line(key, x):
+    return f"{_name(key)} = {_value(x)}\n"
+
+
+def _name(key):
+    return key if re.fullmatch("[A-Za-z0-9_-]+", key) else _text(key)
+
+
+def _text(x):
+    return json.dumps(x, ensure_ascii=False).replace("\x7f", "\\u007f")
+
+
+def _value(x):
+    if isinstance(x, bool):
+        return "true" if x else "false"
+    if isinstance(x, str):
+        return _text(x)
+    if isinstance(x, list):
+        return "[" + ", ".join(map(_value, x)) + "]"
+    if isinstance(x, dict):
+        return "{ " + ", ".join(f"{_name(key)} = {_value(value)}" for key, value in x.items()) + " }"
+    return repr(x)  # inf and nan are TOML too: the reader refuses them by name

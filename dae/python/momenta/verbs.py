@@ -1,0 +1,104 @@
+"""Scenes from wherever they are, and the program's verbs evaluate, index and view."""
+
+import html
+import json
+import os
+
+from . import _momenta
+from .scene import Scene
+
+
+def load(scene, algebra="auto", kkt="auto", *, loops="", free_root=False, at=None):
+    """A Mechanism from a scene file (TOML, URDF or MJCF), TOML text, a Scene or a dict of its keys.
+
+    A string with a line break is text, any other a path. `algebra`: auto, planar or spatial; `kkt`:
+    auto, sweeps, sparse or dense; `loops`, `free_root`: of a URDF, a file with its loops, and whether
+    its root floats; `at`: start values in place of the scene's, {'q': {joint: ...}, 'v': {...}}.
+    Raises SceneError: one sentence with file, line and what is wrong.
+    """
+    at = _state(at)
+    text, name = _text_of(scene)
+    if text is None:
+        return _momenta.read(name, os.fspath(loops), free_root, at, algebra, kkt)
+    if loops or free_root:
+        raise ValueError(
+            "loops and free_root are of a URDF file; expected neither with a scene given as text"
+        )
+    return _momenta.parse(text, name, at, algebra, kkt)
+
+
+def parse(text, name="scene", algebra="auto", kkt="auto"):
+    """A Mechanism from TOML text; `name` stands in messages."""
+    return _momenta.parse(text, name, "", algebra, kkt)
+
+
+def evaluate(scene, at=None):
+    """Everything at one state, as the program's verb writes it; keys: docs/reference/evaluate.md.
+
+    `scene`: a Mechanism, or what load() takes. `at`: {'t': 0, 'q': {joint: ...}, 'v' or 'p': {...},
+    'tau': {...}}, a JSON file or its text; what is left out is the start of the scene.
+    """
+    return json.loads(_momenta.evaluate(_ready(scene), _state(at) or "{}"))
+
+
+def index(scene, forms=(), at=None, *, progress=None):
+    """The differentiation index of each form, by numbers, and its hidden constraints, as the
+    program's verb writes it.
+
+    `forms`: names, all if empty; `at`: a consistent state, as for evaluate(), else the start.
+    """
+    return json.loads(_momenta.index(_ready(scene), list(forms), _state(at), progress))
+
+
+def view(scene):
+    """A Page that shows the assembled mechanism, to turn and to zoom, as the program's verb writes it."""
+    name = "" if isinstance(scene, _momenta.Mechanism) else _text_of(scene)[1]
+    return Page(_momenta.page(_ready(scene), name))
+
+
+class Page(str):
+    """One HTML page, complete in itself. A notebook shows it; save() writes it."""
+
+    def save(self, file):
+        """Writes the page, whole or not at all."""
+        _momenta.write(os.fspath(file), str(self))
+
+    def _repr_html_(self):
+        style = "width: 100%; height: 640px; border: 0"
+        return f'<iframe srcdoc="{html.escape(self)}" style="{style}"></iframe>'
+
+    def __repr__(self):
+        return f"<momenta.Page of {len(self)} characters>"
+
+
+def _ready(scene):
+    return scene if isinstance(scene, _momenta.Mechanism) else load(scene)
+
+
+def _text_of(scene):
+    """(TOML text, its name in messages); of a file (None, its path)."""
+    if isinstance(scene, dict):
+        scene = Scene.from_dict(scene)
+    if isinstance(scene, Scene):
+        return scene.to_toml(), scene.to_dict().get("name", "scene")
+    if isinstance(scene, str) and "\n" in scene:
+        return scene, "scene"
+    if isinstance(scene, (str, os.PathLike)):
+        return None, os.fspath(scene)
+    found = type(scene).__name__
+    raise TypeError(f"a scene is a path, TOML text, a Scene or a dict, found {found}")
+
+
+def _numbers(x):
+    if hasattr(x, "tolist"):
+        return x.tolist()
+    raise TypeError(f"a state holds numbers and lists of them, found {x!r:.100}")
+
+
+def _state(at):
+    """A state as the reader of states takes it: text, or the path of a file."""
+    if at is None:
+        return ""
+    if isinstance(at, dict):
+        return json.dumps(at, default=_numbers)
+    return os.fspath(at)

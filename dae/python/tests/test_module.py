@@ -1,0 +1,277 @@
+"""The Python module: laws of the equations, views without copies, sentences for what is wrong."""
+
+import gc
+import os
+import pathlib
+import runpy
+import signal
+import threading
+import time
+import unittest
+
+import momenta
+import numpy as np
+
+EXAMPLES = pathlib.Path(os.environ["MOMENTA_EXAMPLES"])
+
+
+def load(name):
+    return momenta.load(str(EXAMPLES / name / "scene.toml"))
+
+
+class Equations(unittest.TestCase):
+    def setUp(self):
+        self.m = load("andrews")
+        self.start = self.m.assemble()
+        self.rng = np.random.default_rng(1)
+
+    def test_kkt_solution_solves_the_kkt_system(self):
+        m, q = self.m, self.start.q
+        p = self.rng.normal(size=m.nv) * 1e-5
+        u, sigma, pdot = m.momentum_rates(0.0, q, p)
+        M, J = m.kkt(0.0, q)
+        self.assertEqual((M.shape, J.shape), ((m.nv, m.nv), (m.m, m.nv)))
+        scale = np.abs(p).max()
+        np.testing.assert_allclose(M @ u + J.T @ sigma, p, atol=1e-12 * scale)
+        np.testing.assert_allclose(J @ u, 0, atol=1e-12 * np.abs(J).max() * np.abs(u).max())
+        np.testing.assert_allclose(m.momenta(0.0, q, u, sigma), p, atol=1e-12 * scale)
+        udot, lam = m.accelerations(0.0, q, np.zeros(m.nv))
+        np.testing.assert_allclose(J @ udot, 0, atol=1e-9 * np.abs(udot).max())
+        np.testing.assert_allclose(udot, self.start.udot, rtol=1e-8, atol=1e-8)
+
+    def test_inverse_mass(self):
+        M, _ = self.m.kkt(0.0, self.start.q)
+        x = self.rng.normal(size=self.m.nv)
+        np.testing.assert_allclose(M @ self.m.inverse_mass_times(0.0, self.start.q, x), x, atol=1e-10)
+
+    def test_constraints_hold_and_energy_is_that_of_the_mass_matrix(self):
+        m, s = self.m, self.start
+        phi, rate = m.constraints(0.0, s.q, s.u)
+        self.assertLess(np.abs(phi).max(), 1e-12)
+        self.assertLess(np.abs(rate).max(), 1e-12)
+        u = self.rng.normal(size=m.nv)
+        kinetic, _ = m.energies(0.0, s.q, u)
+        M, _ = m.kkt(0.0, s.q)
+        self.assertAlmostEqual(kinetic, u @ M @ u / 2, delta=1e-12 * kinetic)
+
+    def test_evaluate_agrees(self):
+        values = self.m.evaluate(q=self.start.q, p=np.zeros(self.m.nv))
+        u, sigma, pdot = self.m.momentum_rates(0.0, self.start.q, np.zeros(self.m.nv))
+        np.testing.assert_allclose(values["pdot"], pdot, atol=1e-12)
+        self.assertIn("O", values["reactions"])
+        self.assertEqual(values["rank"], self.m.m)
+
+    def test_names(self):
+        m = self.m
+        self.assertEqual([len(m.coordinates), len(m.rates), len(m.equations)], [m.nq, m.nv, m.m])
+        self.assertEqual(m.coordinates[0], "O.q [rad]")
+        self.assertIn("loops", m.plan)
+        self.assertIn("6 loop equations", repr(m))
+
+    def test_open_chain(self):
+        m = load("chain")
+        self.assertEqual(m.m, 0)
+        q = self.rng.normal(size=m.nq) if m.nq == m.nv else m.assemble().q
+        u = self.rng.normal(size=m.nv)
+        p = m.momenta(0.0, q, u)
+        back, sigma, _ = m.momentum_rates(0.0, q, p)
+        np.testing.assert_allclose(back, u, atol=1e-9)
+        self.assertEqual(sigma.size, 0)
+
+
+class SmallMotions(unittest.TestCase):
+    def test_shapes_solve_the_linearised_equations_of_unit_mass(self):
+        m = load("four_bar")
+        found = m.modes()
+        self.assertEqual((found["nature"], found["degrees_of_freedom"]), ("stable", 1))
+        M, J = m.kkt(0.0, found["q"])
+        phi = found["shapes"]
+        self.assertEqual(phi.shape, (m.nv, 1))
+        np.testing.assert_allclose(phi.conj().T @ M @ phi, 1, atol=1e-12)
+        np.testing.assert_allclose(J @ phi, 0, atol=1e-12)
+        # Let go a little beside it, it accelerates by s^2 times the way.
+        step = 1e-6 * phi[:, 0].real
+        udot, _ = m.accelerations(0.0, found["q"] + step, np.zeros(m.nv))
+        s = found["s"][0]
+        np.testing.assert_allclose(udot, (s * s).real * step, rtol=1e-4)
+        np.testing.assert_allclose(found["frequency"], s.imag / (2 * np.pi))
+        np.testing.assert_array_equal(found["damping_ratio"], 0)
+
+    def test_drives_are_held_or_running(self):
+        text = """
+            gravity = [0, 0, -9.81]
+            [[body]]
+            name = "shaft"
+            mass = 1
+            inertia = [1, 1, 1]
+            [[body]]
+            name = "bob"
+            mass = 2
+            com = [0, 0, -0.5]
+            inertia = [0, 0, 0]
+            [[joint]]
+            name = "S"
+            kind = "revolute"
+            child = "shaft"
+            axis = "z"
+            [[joint]]
+            name = "O"
+            kind = "revolute"
+            parent = "shaft"
+            child = "bob"
+            axis = "y"
+            position = 0.1
+            [[drive]]
+            joint = "S"
+            kind = "polynomial"
+            coefficients = [0, 3]
+        """
+        m = momenta.parse(text)
+        np.testing.assert_allclose(m.modes()["s"].imag ** 2, 9.81 / 0.5)
+        np.testing.assert_allclose(m.modes(drives="running")["s"].imag ** 2, 9.81 / 0.5 - 9)
+
+    def test_what_is_wrong_is_said(self):
+        with self.assertRaisesRegex(momenta.SceneError, "no equilibrium: joint"):
+            load("four_bar").modes(equilibrium="start")
+        with self.assertRaisesRegex(ValueError, "expected settle, nearest or start"):
+            load("four_bar").modes(equilibrium="up")
+
+
+class Runs(unittest.TestCase):
+    def test_arrays_are_views_that_outlive_the_name(self):
+        run = load("four_bar").run(end=1.0, samples=50)
+        self.assertEqual(run.status, "done", run.reason)
+        self.assertEqual(run.trajectory.shape, (51, len(run.columns)))
+        for x in (run.t, run.trajectory, run["O.q"], run.energy_error):
+            self.assertFalse(x.flags.owndata)
+        self.assertTrue(np.shares_memory(run["O.q"], run.trajectory))
+        self.assertTrue(np.shares_memory(run.t, run.t))
+        np.testing.assert_array_equal(run["t"], run.t)
+        q = run["O.q"]
+        copy = q.copy()
+        del run
+        gc.collect()
+        np.testing.assert_array_equal(q, copy)
+
+    def test_states_go_in_without_copies_of_their_kind(self):
+        m = load("four_bar")
+        q = m.assemble().q
+        wide = np.zeros((m.nq, 2))
+        wide[:, 0] = q  # a column with a stride, and whole numbers, are taken too
+        a = m.constraints(0.0, wide[:, 0], np.zeros(m.nv, dtype=int))
+        b = m.constraints(0.0, q, np.zeros(m.nv))
+        np.testing.assert_array_equal(a[0], b[0])
+
+    def test_same_as_ever(self):
+        m = load("four_bar")
+        a, b = (m.run(form="momentum", integrator="dop853", rtol=1e-9, end=2.0) for _ in range(2))
+        np.testing.assert_array_equal(a.trajectory, b.trajectory)
+        self.assertGreater(a.counters["steps"], 5)
+
+    def test_drift_and_work(self):
+        m = load("four_bar")
+        runs = m.drift(forms=["momentum", "acceleration"], end=2.0, samples=20)
+        self.assertEqual({r.form for r in runs}, {"momentum", "acceleration"})
+        ladder = m.work(forms=["momentum"], integrators=["dop853"], tolerances=[1e-5, 1e-8], end=1.0)
+        self.assertEqual([r.rtol for r in ladder], [1e-5, 1e-8])
+        self.assertLess(ladder[1].position_error_max, ladder[0].position_error_max)
+
+    def test_other_threads_go_on_during_a_run(self):
+        counted, stop = [0], threading.Event()
+
+        def count():
+            while not stop.is_set():
+                counted[0] += 1
+                time.sleep(0.001)
+
+        thread = threading.Thread(target=count)
+        thread.start()
+        before = counted[0]
+        load("four_bar").run(end=200.0, samples=10, rtol=1e-12)
+        during = counted[0] - before
+        stop.set()
+        thread.join()
+        self.assertGreater(during, 3)
+
+    def test_ctrl_c_stops_a_run(self):
+        timer = threading.Timer(0.3, lambda: os.kill(os.getpid(), signal.SIGINT))
+        timer.start()
+        with self.assertRaises(KeyboardInterrupt):
+            load("four_bar").run(end=1e6, samples=10_000_000, rtol=1e-12)
+        timer.join()
+
+
+class Mistakes(unittest.TestCase):
+    def expect(self, words, call, *arguments, **named):
+        with self.assertRaises(ValueError) as caught:
+            call(*arguments, **named)
+        self.assertIn(words, str(caught.exception))
+        self.assertNotIn("\n", str(caught.exception))
+
+    def test_sentences(self):
+        m = load("four_bar")
+        self.expect("nowhere.toml", momenta.load, "nowhere.toml")
+        self.expect("no body", momenta.parse, "name = 'nothing'")
+        self.expect("q has 2 numbers, expected 3 (nq)", m.constraints, 0.0, np.zeros(2), np.zeros(3))
+        self.expect("p has 4 numbers", m.momentum_rates, 0.0, np.zeros(3), np.zeros(4))
+        self.expect("'momentm'", m.run, form="momentm")
+        self.expect("expected auto, planar or spatial", momenta.load,
+                    str(EXAMPLES / "four_bar" / "scene.toml"), algebra="flat")
+        self.assertTrue(issubclass(momenta.SceneError, ValueError))
+        with self.assertRaises(KeyError):
+            m.run(end=0.1)["speed"]
+
+
+class ExampleScripts(unittest.TestCase):
+    def test_they_run(self):
+        for script in sorted((pathlib.Path(__file__).parents[1] / "examples").glob("*.py")):
+            with self.subTest(script.name):
+                runpy.run_path(str(script), run_name="tested")
+
+
+class Arguments(unittest.TestCase):
+    """One sentence each, by name, before anything runs."""
+
+    def setUp(self):
+        self.m = load("four_bar")
+
+    def refused(self, sentence, call, *args, **named):
+        with self.assertRaises(ValueError) as caught:
+            call(*args, **named)
+        self.assertEqual(str(caught.exception), sentence)
+
+    def test_numbers_of_a_run(self):
+        m = self.m
+        self.refused("end is -5.0, expected a positive number of seconds", m.run, end=-5)
+        self.refused("end is 0.0, expected a positive number of seconds", m.drift, end=0)
+        self.refused("step is nan, expected a positive number of seconds", m.run, step=float("nan"))
+        self.refused("rtol is -1.0, expected a positive tolerance", m.run, rtol=-1)
+        self.refused("atol is inf, expected a positive tolerance", m.run, atol=float("inf"))
+        self.refused("samples is 0, expected at least 1", m.run, samples=0)
+        self.refused("cpu_limit is -1.0, expected seconds, not negative; 0: none", m.run, cpu_limit=-1)
+        self.refused("a tolerance is 0.0, expected a positive tolerance", m.work, tolerances=[0.0])
+
+    def test_numbers_of_a_state(self):
+        m = self.m
+        q, bad = m.assemble().q, np.zeros(m.nv)
+        bad[1] = np.nan
+        sentence = "u[1] is not a number, expected a finite number"
+        self.refused(sentence, m.accelerations, 0.0, q, bad)
+        self.refused(sentence, m.energies, 0.0, q, bad)
+        self.refused("t is inf, expected a time in seconds", m.constraints, float("inf"), q, bad)
+        self.refused("v[1] is not a number, expected a finite number", m.evaluate, v=bad)
+
+    def test_evaluate_takes_the_assembled_start(self):
+        m = self.m
+        start = m.assemble()
+        values = m.evaluate()
+        self.assertLess(np.abs(values["phi"]).max(), 1e-12)
+        np.testing.assert_array_equal(values["udot"], m.evaluate(q=start.q, v=start.u)["udot"])
+
+    def test_signatures_show_public_names(self):
+        for name in ("run", "drift", "work", "assemble", "evaluate", "modes"):
+            self.assertNotIn("::", getattr(momenta.Mechanism, name).__doc__, name)
+
+
+if __name__ == "__main__":
+    unittest.main()

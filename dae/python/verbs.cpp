@@ -1,0 +1,156 @@
+// The program's verbs evaluate, index, sweep and view, and the reading of scenes: what the
+// functions of the package call. States and results go as text, in the words of the program.
+
+#include <momenta/core/scene/file_text.h>
+#include <momenta/core/scene/read_scene.h>
+#include <momenta/core/scene/write_scene.h>
+#include <momenta/dae/form/form.h>
+#include <momenta/dae/report/atomic_write.h>
+#include <momenta/dae/report/index_report.h>
+#include <momenta/dae/report/page.h>
+#include <momenta/dae/report/state_report.h>
+#include <momenta/dae/report/still.h>
+#include <momenta/dae/report/sweep_report.h>
+#include <momenta/dae/study/environment.h>
+#include <momenta/dae/study/state_input.h>
+
+#include <atomic>
+
+#include "progress.h"
+#include "run_arguments.h"
+
+namespace momenta::python {
+namespace {
+
+using Names = std::vector<std::string>;
+
+/// `text`: the scene's own, empty where it was no TOML.
+BenchPtr ready(Scene scene, const std::string& text, const std::string& at,
+               const std::string& algebra, const std::string& kkt) {
+  if (!at.empty()) start_at(at, scene);
+  auto bench = std::make_shared<Bench>(std::move(scene), algebra, kkt);
+  if (at.empty()) bench->text = text;
+  return bench;
+}
+
+std::string index_text(const Bench& b, const Names& forms, const std::string& at,
+                       const py::object& told) {
+  Progress progress(told);
+  IndexStudy study;
+  progress.during([&] {
+    const std::size_t total = forms.empty() ? form_names().size() : forms.size();
+    std::size_t number = 0;
+    study = run_index_study(
+        *b.mechanism, start_of(at, *b.mechanism), forms, [&](const std::string& form) {
+          return progress(static_cast<double>(number++) / static_cast<double>(total), form);
+        });
+  });
+  return index_json(study).dump();
+}
+
+std::string page(const Bench& b, const std::string& file) {
+  const Mechanism& mechanism = *b.mechanism;
+  expect_drawable(mechanism);
+  const Assembly assembly = assemble(mechanism);
+  StudyResult study;
+  study.scene = mechanism.scene().name;
+  study.scene_file = file;
+  study.plan = mechanism.plan_lines();
+  study.environment = environment();
+  show(study, mechanism, assembly);
+  return view_page(study, still_words(mechanism, assembly));
+}
+
+/// The cases of a sweep; several threads may make them.
+class Cases {
+ public:
+  Cases(const std::string& text, const std::string& file, const std::string& algebra,
+        const std::string& kkt, const Names& vary, const Names& watch, double cpu_limit,
+        const RunArguments& asked) {
+    const Scene scene = parse_scene(text, file);
+    static_cast<void>(asked.settings(scene.run));  // what is wrong with every case is said once
+    request_.text = text;
+    request_.file = file;
+    request_.mechanism = options_of(algebra, kkt);
+    for (const std::string& place : vary) request_.varied.emplace_back(place);
+    request_.watched = watch;
+    request_.max_cpu_seconds = cpu_time(cpu_limit);
+    request_.settings = [asked](const RunDefaults& defaults) { return asked.settings(defaults); };
+    request_.going_on = [this] { return !stopped_; };
+    cases_.resize(request_.cases());
+  }
+  std::size_t count() const { return cases_.size(); }
+  void make(std::size_t number) { cases_.at(number) = run_case(request_, number); }
+  void stop() { stopped_ = true; }
+  std::string csv() const { return sweep_csv(request_, cases_); }
+  std::string json() const { return sweep_json(request_, cases_).dump(); }
+  std::string table() const { return sweep_table(request_, cases_); }
+
+ private:
+  SweepRequest request_;
+  std::vector<SweepCase> cases_;
+  std::atomic<bool> stopped_{false};
+};
+
+std::unique_ptr<Cases> cases(const std::string& text, const std::string& file,
+                             const std::string& algebra, const std::string& kkt, const Names& vary,
+                             const Names& watch, const std::string& form,
+                             const std::string& integrator, const std::string& gauge, double rtol,
+                             const Given& atol, const Given& step, const Given& end,
+                             const std::optional<int>& samples, double spectral_radius,
+                             const std::optional<bool>& project, double baumgarte_alpha,
+                             double baumgarte_beta, double beta, double penalty, double cpu_limit) {
+  return std::make_unique<Cases>(
+      text, file, algebra, kkt, vary, watch, cpu_limit,
+      RunArguments{form, integrator, gauge, rtol, atol, step, end, samples, spectral_radius,
+                   project, baumgarte_alpha, baumgarte_beta, beta, penalty});
+}
+
+}  // namespace
+
+void bind_verbs(py::module_& module) {
+  using namespace py::literals;
+  module.def(
+      "read",
+      [](const std::string& file, const std::string& loops, bool free_root, const std::string& at,
+         const std::string& algebra, const std::string& kkt) {
+        return ready(read_scene(file, {loops, free_root}),
+                     is_toml(file) ? reading::text_of(file) : "", at, algebra, kkt);
+      },
+      "file"_a, "loops"_a, "free_root"_a, "at"_a, "algebra"_a, "kkt"_a);
+  module.def(
+      "parse",
+      [](const std::string& text, const std::string& name, const std::string& at,
+         const std::string& algebra,
+         const std::string& kkt) { return ready(parse_scene(text, name), text, at, algebra, kkt); },
+      "text"_a, "name"_a, "at"_a, "algebra"_a, "kkt"_a);
+  module.def("toml_of", &toml_of, "mechanism"_a);
+  module.def(
+      "evaluate",
+      [](const Bench& b, const std::string& at) {
+        const GivenState given = read_state(at, *b.mechanism);
+        return state_json(*b.mechanism, given, evaluate_state(*b.mechanism, given));
+      },
+      "mechanism"_a, "at"_a);
+  module.def("index", &index_text, "mechanism"_a, "forms"_a, "at"_a, "progress"_a);
+  module.def("page", &page, "mechanism"_a, "file"_a);
+  module.def(
+      "write",
+      [](const std::string& file, const std::string& text) {
+        if (const auto problem = atomic_write({{file, text}})) throw py::value_error(*problem);
+      },
+      "file"_a, "text"_a);
+  py::class_<Cases> all(module, "Cases");
+  with_run_arguments([&](const auto&... arguments) {
+    all.def(py::init(&cases), "text"_a, "file"_a, "algebra"_a, "kkt"_a, "vary"_a, "watch"_a,
+            arguments...);
+  });
+  all.def("__len__", &Cases::count)
+      .def("make", &Cases::make, "number"_a, py::call_guard<py::gil_scoped_release>())
+      .def("stop", &Cases::stop)
+      .def("csv", &Cases::csv)
+      .def("json", &Cases::json)
+      .def("table", &Cases::table);
+}
+
+}  // namespace momenta::python

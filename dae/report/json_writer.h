@@ -1,0 +1,65 @@
+#pragma once
+// JSON written as it comes, in the order it comes: objects indented, arrays of numbers on one line,
+// matrices one row a line. Tables of many thousand joints cost what their text costs.
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace momenta {
+
+class JsonWriter {
+ public:
+  JsonWriter();
+
+  void open(const std::string& key);
+  void close();
+
+  void text(const std::string& key, const std::string& value);
+  void texts(const std::string& key, const std::vector<std::string>& values);
+  void whole_number(const std::string& key, int value);
+  /// Digits that read back as the same double; null where not finite.
+  void number(const std::string& key, double value);
+  template <class Numbers>
+  void numbers(const std::string& key, const Numbers& values) {
+    start(key);
+    row(values);
+  }
+  template <class Matrix>
+  void rows(const std::string& key, const Matrix& matrix) {
+    start(key);
+    out_ += '[';
+    for (long i = 0; i < matrix.rows(); ++i) {
+      out_ += i == 0 ? "\n" : ",\n";
+      out_.append(2 * depth_ + 2, ' ');
+      row(matrix.row(i));
+    }
+    if (matrix.rows() > 0) line();
+    out_ += ']';
+  }
+
+  /// Closes the document and hands it over.
+  std::string take();
+
+ private:
+  void line();
+  void start(const std::string& key);
+  void put(double value);
+  template <class Numbers>
+  void row(const Numbers& values) {
+    out_ += '[';
+    bool first = true;
+    for (const double value : values) {
+      if (!first) out_ += ", ";
+      put(value);
+      first = false;
+    }
+    out_ += ']';
+  }
+
+  std::string out_;
+  std::size_t depth_ = 1;
+  bool first_ = true;  ///< nothing stands in the open object yet
+};
+
+}  // namespace momenta

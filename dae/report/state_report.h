@@ -1,0 +1,14 @@
+#pragma once
+// Everything at one state, as one JSON document; keys and units: docs/reference/evaluate.md.
+
+#include <momenta/dae/mechanism.h>
+#include <momenta/dae/study/state_values.h>
+
+#include <string>
+
+namespace momenta {
+
+std::string state_json(const Mechanism& mechanism, const GivenState& given,
+                       const StateValues& values);
+
+}  // namespace momenta

@@ -1,0 +1,60 @@
+#include <momenta/dae/report/picture_data.h>
+#include <momenta/dae/report/still.h>
+#include <momenta/dae/study/motion.h>
+#include <momenta/dae/text/number_text.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace momenta {
+namespace {
+
+std::string counted(std::size_t n, const std::string& one, const std::string& more) {
+  return std::to_string(n) + " " + (n == 1 ? one : more);
+}
+
+}  // namespace
+
+std::string still_words(const Mechanism& mechanism, const Assembly& a) {
+  const Scene& scene = mechanism.scene();
+  const auto couplers = static_cast<std::size_t>(
+      std::count_if(scene.loops.begin(), scene.loops.end(),
+                    [](const LoopSpec& l) { return l.kind == LoopKind::coupler; }));
+  std::string words =
+      counted(scene.bodies.size(), "body", "bodies") + ", " +
+      counted(scene.joints.size(), "joint", "joints") + ", " +
+      counted(scene.loops.size() - couplers, "loop", "loops") +
+      (couplers > 0 ? ", " + counted(couplers, "coupler", "couplers") : "") + "; " +
+      counted(static_cast<std::size_t>(mechanism.nv()), "rate", "rates") + ", " +
+      counted(static_cast<std::size_t>(mechanism.m()), "loop equation", "loop equations") +
+      (mechanism.plan().planar ? ", in a plane." : ", in space.");
+  if (mechanism.m() > 0)
+    words += " Assembly moved the joints by up to " + compact(a.moved, 2) +
+             " against the guess (rad or m).";
+  return words;
+}
+
+void expect_drawable(const Mechanism& mechanism) {
+  const std::size_t bodies = mechanism.scene().bodies.size();
+  if (bodies > most_bodies_drawn)
+    throw std::invalid_argument("view: found " + std::to_string(bodies) +
+                                " bodies, expected at most " + std::to_string(most_bodies_drawn));
+}
+
+void show(StudyResult& study, const Mechanism& mechanism, const Assembly& assembly) {
+  if (mechanism.scene().bodies.size() > most_bodies_drawn) return;
+  study.picture = picture_of(mechanism);
+  for (std::size_t i = 0; i < study.runs.size(); ++i) {
+    if (study.runs[i].film.frames.empty()) continue;
+    Motion motion = motion_of(mechanism, study.runs[i].film);
+    motion.run = static_cast<int>(i);
+    thin(motion, study.picture);
+    study.motions.push_back(std::move(motion));
+  }
+  if (!study.motions.empty()) return;
+  const auto& q = assembly.start.q;
+  study.motions.push_back(
+      motion_of(mechanism, {assembly.start.t, 0, {std::vector<double>(q.begin(), q.end())}}));
+}
+
+}  // namespace momenta

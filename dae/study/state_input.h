@@ -1,0 +1,27 @@
+#pragma once
+// STATE of --at: {"t": 0, "q": {"O": [..], …}, "v": {…} or "p": {…}, "tau": {…}} by joint name,
+// from a file, from standard input ("-") or written out. What reads a state takes all of it,
+// what starts from one q and v.
+
+#include <momenta/dae/assembly/assembly.h>
+#include <momenta/dae/study/state_values.h>
+
+#include <string>
+
+namespace momenta {
+
+/// What is left out is the scene's start: where loops close, the start that assembly finds, which
+/// is looked for only if something of it is needed.
+/// @throws SceneError: one sentence with the source, the key or joint, what was found and expected
+GivenState read_state(const std::string& state, const Mechanism& mechanism);
+
+/// A consistent point: the start that assembly finds, or the state, if it closes the loops.
+/// @throws SceneError as read_state(), and where a loop is open or opens
+Start start_of(const std::string& state, const Mechanism& mechanism);
+
+/// Other start values or first guesses for a scene, {"q": {"O": [..], …}, "v": {…}} by joint name,
+/// from a file or written out; joints that are left out keep theirs.
+/// @throws SceneError as read_state(), and where the scene does not take them
+void start_at(const std::string& state, Scene& scene);
+
+}  // namespace momenta

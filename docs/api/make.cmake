@@ -1,0 +1,45 @@
+# The API reference by Doxygen, into FOLDER/api; every warning is an error. Before that, and without Doxygen too: what
+# programs in documents include is public (headers.txt), and public headers exist.
+#
+#     cmake -D SOURCE=<top of the project> -D INCLUDE=<folder of momenta/core and momenta/dae> -D FOLDER=<folder>
+#           -D VERSION=<version> -P docs/api/make.cmake
+cmake_minimum_required(VERSION 3.25)
+file(STRINGS ${SOURCE}/docs/api/headers.txt headers REGEX "^[^#]")
+foreach(header IN LISTS headers)
+  if(NOT EXISTS ${SOURCE}/${header})
+    list(APPEND faults "docs/api/headers.txt: '${header}' is no file, expected a header, from the top of the source")
+  endif()
+endforeach()
+
+file(GLOB_RECURSE users ${SOURCE}/README.md ${SOURCE}/docs/how-to/*.md)
+foreach(user IN LISTS users)
+  file(STRINGS ${user} lines REGEX "^#include <momenta/")
+  foreach(line IN LISTS lines)
+    string(REGEX REPLACE "^#include <momenta/([^>]*)>.*" "\\1" header "${line}")
+    if(NOT header IN_LIST headers)
+      cmake_path(RELATIVE_PATH user BASE_DIRECTORY ${SOURCE})
+      list(APPEND faults "${user}: includes '${header}', which is not public, expected one of docs/api/headers.txt")
+    endif()
+  endforeach()
+endforeach()
+
+if(faults)
+  list(JOIN faults "\n" faults)
+  message("${faults}")
+  message(FATAL_ERROR "Public headers and what includes them do not agree.")
+endif()
+
+find_program(DOXYGEN doxygen)
+if(NOT DOXYGEN)
+  message("doxygen is not installed: no API reference is made")
+  return()
+endif()
+list(TRANSFORM headers PREPEND ${INCLUDE}/momenta/)
+list(JOIN headers " " PUBLIC_HEADERS)
+configure_file(${SOURCE}/docs/api/Doxyfile.in ${FOLDER}/Doxyfile @ONLY)
+file(REMOVE_RECURSE ${FOLDER}/api)
+execute_process(COMMAND ${DOXYGEN} ${FOLDER}/Doxyfile WORKING_DIRECTORY ${SOURCE} RESULT_VARIABLE failed)
+if(failed)
+  message(FATAL_ERROR "doxygen warned of what stands above; expected none")
+endif()
+message("${FOLDER}/api/index.html")

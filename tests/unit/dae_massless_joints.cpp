@@ -1,0 +1,284 @@
+// Joints that no inertia holds: named, all of them, by whatever meets them; and what of a state is
+// there all the same. Against the null space of M and Φ_q, and against the same mechanism without
+// those joints.
+
+#include "equations/random_loops.h"
+#include "equations/random_tree.h"
+#include "equations/tolerance.h"
+
+#include <gtest/gtest.h>
+#include <momenta/core/open_chain.h>
+#include <momenta/core/scene/read_scene.h>
+#include <momenta/dae/assembly/assembly.h>
+#include <momenta/dae/kkt/dense_blocks.h>
+#include <momenta/dae/study/run_form.h>
+#include <momenta/dae/study/state_values.h>
+#include <momenta/dae/unheld_joints.h>
+
+#include <Eigen/SVD>
+#include <filesystem>
+
+namespace momenta {
+namespace {
+
+using namespace equations;
+using Eigen::MatrixXd;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+Scene four_bar() {
+  return read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples/four_bar/scene.toml");
+}
+
+/// A body without mass on a joint of its own.
+void add_finger(Scene& scene, const std::string& name, const std::string& parent,
+                const Vector3d& axis = Vector3d::UnitZ(), JointKind kind = JointKind::revolute) {
+  BodySpec body;
+  body.name = name + " link";
+  JointSpec joint;
+  joint.name = name;
+  joint.kind = kind;
+  joint.parent = parent;
+  joint.child = body.name;
+  joint.origin_parent = {0.3, 0.1, 0.2};
+  joint.axis = axis;
+  scene.bodies.push_back(body);
+  scene.joints.push_back(joint);
+}
+
+Scene arm() {
+  Scene scene;
+  BodySpec body;
+  body.name = "arm";
+  body.mass = 1;
+  body.com = {0.3, 0, 0};
+  body.inertia = Vector3d(0.01, 0.05, 0.05).asDiagonal();
+  JointSpec joint;
+  joint.name = "shoulder";
+  joint.child = "arm";
+  joint.axis = {0, 1, 0};
+  scene.bodies = {body};
+  scene.joints = {joint};
+  scene.gravity = {0, 0, -9.81};
+  return scene;
+}
+
+GivenState at_start(const Mechanism& mechanism) {
+  GivenState given;
+  const Assembly a = assemble(mechanism, Assembled::rates);
+  given.q = a.start.q;
+  given.v = a.start.u;
+  given.p = given.tau = VectorXd::Zero(mechanism.nv());
+  return given;
+}
+
+std::string refusal(const Scene& scene) {
+  try {
+    assemble(Mechanism(scene));
+  } catch (const SceneError& e) {
+    return e.what();
+  }
+  return "";
+}
+
+TEST(MasslessJoints, OpenChainsNameThem) {
+  Scene scene = arm();
+  add_finger(scene, "tip", "arm", {1, 2, 3.0});
+  scene.joints.back().axis.normalize();
+  const std::string sentence =
+      "joint 'tip' has no inertia: body 'tip link' and what it carries have none about its axis; "
+      "expected a mass, a rotor's inertia, or a fixed joint";
+  for (const bool on_the_axis : {false, true}) {
+    if (on_the_axis) {  // a point mass
+      scene.bodies.back().mass = 0.5;
+      scene.bodies.back().com = 0.7 * scene.joints.back().axis;
+    }
+    OpenChain chain(scene);
+    VectorXd q = chain.tree().q0, u = chain.tree().u0, udot(2), qdot(2), pdot(2);
+    EXPECT_FALSE(chain.accelerations(0, q, u, udot));
+    EXPECT_EQ(chain.failure(), sentence);
+    EXPECT_FALSE(chain.rates(0, q, u, qdot, pdot));
+    EXPECT_EQ(chain.failure(), sentence);
+    StateMatrix many = StateMatrix::Zero(2, 5), out(2, 5), other(2, 5);
+    EXPECT_FALSE(chain.rates_of_states(0, many, many, out, other));
+    EXPECT_EQ(chain.failure(), "state 0: " + sentence);
+    EXPECT_EQ(refusal(scene), "the mechanism cannot move at its start: " + sentence);
+  }
+}
+
+TEST(MasslessJoints, SixAreNamedAndTheOthersCounted) {
+  Scene scene = arm();
+  for (int i = 0; i < 3; ++i) {
+    const std::string finger = "f" + std::to_string(i);
+    add_finger(scene, finger + "a", "arm", Vector3d::UnitX(),
+               i == 1 ? JointKind::spherical : JointKind::revolute);
+    add_finger(scene, finger + "b", finger + "a link", Vector3d::UnitY(),
+               i == 2 ? JointKind::prismatic : JointKind::revolute);
+  }
+  const std::string why =
+      " have no inertia: the bodies on them and what those carry have none along their freedoms; "
+      "expected masses, rotors' inertias, or fixed joints";
+  EXPECT_EQ(refusal(scene),
+            "the mechanism cannot move at its start: joints 'f0a', 'f0b', 'f1a', "
+            "'f1b', 'f2a', 'f2b'" +
+                why);
+  OpenChain chain(scene);
+  VectorXd udot(chain.nv());
+  EXPECT_FALSE(chain.accelerations(0, chain.tree().q0, chain.tree().u0, udot));
+  EXPECT_EQ(chain.failure(), "joints 'f0a', 'f0b', 'f1a', 'f1b', 'f2a', 'f2b'" + why);
+  add_finger(scene, "thumb", "arm");
+  EXPECT_EQ(refusal(scene),
+            "the mechanism cannot move at its start: joints 'f0a', 'f0b', 'f1a', "
+            "'f1b', 'f2a', 'f2b', … (7)" +
+                why);
+}
+
+TEST(MasslessJoints, WhatOthersMoveAloneIsNoInertia) {
+  Scene scene = arm();  // two joints on one axis, nothing between them
+  add_finger(scene, "inner", "arm", Vector3d::UnitX());
+  add_finger(scene, "outer", "inner link", Vector3d::UnitX());
+  scene.joints.back().origin_parent = Vector3d::Zero();
+  scene.bodies.back().mass = 1;
+  scene.bodies.back().inertia = Vector3d(0.1, 0.2, 0.2).asDiagonal();
+  OpenChain chain(scene);
+  VectorXd udot(chain.nv());
+  EXPECT_FALSE(chain.accelerations(0, chain.tree().q0, chain.tree().u0, udot));
+  EXPECT_EQ(chain.failure(),
+            "joint 'inner' has no inertia: body 'inner link' has none about its axis that the "
+            "joints it carries do not move alone; expected a mass, a rotor's inertia, or a fixed "
+            "joint");
+}
+
+TEST(MasslessJoints, LoopsElsewhereDoNotHideThem) {
+  Scene scene = four_bar();
+  scene.loops[0].axis = Vector3d::UnitZ();
+  add_finger(scene, "index", "rocker");
+  add_finger(scene, "thumb", "crank", Vector3d::UnitX());
+  for (const KktChoice kkt : {KktChoice::automatic, KktChoice::sparse, KktChoice::dense}) try {
+      assemble(Mechanism(scene, {.kkt = kkt}));
+      FAIL() << name_of(kkt);
+    } catch (const SceneError& e) {
+      EXPECT_NE(std::string(e.what()).find("joints 'index', 'thumb' have no inertia"),
+                std::string::npos)
+          << e.what();
+    }
+}
+
+/// Accelerations of all joints that have inertia are those of the mechanism without the others.
+void expect_the_rest(const Scene& scene, const Scene& without) {
+  const Mechanism whole(scene), rest(without);
+  const StateValues s = evaluate_state(whole, at_start(whole)),
+                    r = evaluate_state(rest, at_start(rest));
+  EXPECT_NE(s.not_there.find("no inertia"), std::string::npos) << s.not_there;
+  EXPECT_TRUE(s.mass.allFinite() && s.bias.allFinite() && s.pdot.allFinite());
+  EXPECT_TRUE(std::isfinite(s.kinetic) && std::isfinite(s.potential));
+  const auto expect_same = [&](const VectorXd& of_whole, const VectorXd& of_rest) {
+    int at = 0;
+    for (const auto& b : rest.tree().bodies) {
+      const int k = whole.tree().carried_by(b.joint);
+      ASSERT_GE(k, 0);
+      const int u = whole.tree().bodies[static_cast<std::size_t>(k)].u;
+      for (int i = 0; i < b.nv; ++i, ++at)
+        EXPECT_NEAR(of_whole[u + i], of_rest[at], 1e-9 * (1 + std::abs(of_rest[at]))) << b.joint;
+    }
+    EXPECT_EQ((of_whole.array() != of_whole.array()).count(), whole.nv() - rest.nv());
+  };
+  expect_same(s.free, r.free);
+  if (whole.m() == 0) return;
+  expect_same(s.constrained, r.constrained);
+  EXPECT_LT(relative_error(s.lambda, r.lambda), 1e-9);
+  for (std::size_t i = 0; i < r.reactions.loops.size(); ++i)
+    EXPECT_LT((s.reactions.loops[i].force - r.reactions.loops[i].force).norm(),
+              1e-9 * (1 + r.reactions.loops[i].force.norm()));
+  EXPECT_TRUE(s.reactions.joints[0].force.allFinite());
+}
+
+TEST(MasslessJoints, TheOthersAccelerateAllTheSame) {
+  Scene chain = arm();
+  chain.joints[0].velocity = {1.3};
+  Scene more = chain;
+  add_finger(more, "a", "arm", Vector3d::UnitX());
+  add_finger(more, "b", "a link", Vector3d::UnitY(), JointKind::prismatic);
+  expect_the_rest(more, chain);
+  Scene loops = four_bar();
+  more = loops;
+  add_finger(more, "a", "rocker", Vector3d::UnitX());
+  add_finger(more, "b", "a link", Vector3d::UnitX(), JointKind::spherical);
+  expect_the_rest(more, loops);
+}
+
+TEST(MasslessJoints, AForceOnWhatHasNoInertiaLeavesNothing) {
+  Scene scene = arm();
+  add_finger(scene, "tip", "arm", Vector3d::UnitX());
+  scene.joints.back().stiffness = 3;
+  scene.joints.back().rest = 0.1;
+  const Mechanism mechanism(scene);
+  const StateValues s = evaluate_state(mechanism, at_start(mechanism));
+  EXPECT_TRUE((s.free.array() != s.free.array()).all());
+  EXPECT_NEAR(s.bias[1], -0.3, 1e-15);
+  EXPECT_TRUE(s.mass.allFinite());
+  EXPECT_NE(s.not_there.find("joint 'tip' has no inertia"), std::string::npos);
+}
+
+/// A coupler without mass between crank and rocker: M is singular, (3) is not.
+TEST(MasslessJoints, WhatLoopsHoldIsEvaluatedAsItRuns) {
+  Scene scene = four_bar();
+  scene.bodies[1].mass = 0;
+  scene.bodies[1].inertia.setZero();
+  const Mechanism mechanism(scene);
+  const Assembly a = assemble(mechanism);
+  const StateValues s = evaluate_state(mechanism, at_start(mechanism));
+  EXPECT_LT(relative_error(s.constrained, a.start.udot), 1e-12);
+  EXPECT_LT(relative_error(s.lambda, a.start.lambda), 1e-12);
+  EXPECT_EQ(s.not_there,
+            "joint 'A' has no inertia without the loops that hold what is on it: no "
+            "acceleration.free");
+  EXPECT_TRUE(std::isnan(s.free[1]));
+  for (const Transmitted& r : s.reactions.joints) EXPECT_TRUE(r.force.allFinite()) << r.name;
+  GivenState moving = at_start(mechanism);
+  moving.of_momenta = true;
+  moving.p = s.p;
+  moving.p_given.assign(3, true);
+  EXPECT_LT((evaluate_state(mechanism, moving).v - s.v).norm(), 1e-12);
+}
+
+/// Random trees and loops some of whose bodies have no mass: the joints named are those of the null
+/// space of ( M ; Φ_q ), by its singular values.
+TEST(MasslessJoints, AreThoseOfTheNullSpace) {
+  int unheld = 0, held = 0;
+  for (unsigned seed = 0; seed < 60; ++seed) {
+    SCOPED_TRACE(seed);
+    RandomTree random(seed);
+    TreeRecipe recipe;
+    recipe.drives = false;
+    Scene scene = random.scene(recipe);
+    if (seed % 3 > 0)
+      scene.loops.push_back(random_loop(random, scene, loop_kinds[seed % loop_kinds.size()]));
+    for (BodySpec& body : scene.bodies)
+      if (random.uniform(0, 1) < 0.5) {
+        body.mass = 0;
+        body.inertia.setZero();
+      }
+    const Mechanism mechanism(scene);
+    const TreeState at = random.state(mechanism.tree());
+    const auto e = mechanism.evaluation<double>();
+    const UnheldJoints found = unheld_joints(mechanism, *e, at.t, at.q.data());
+    e->place(at.t, at.q.data());
+    MatrixXd all(mechanism.nv() + mechanism.m(), mechanism.nv());
+    all << dense_mass(mechanism, *e), dense_constraints(mechanism, *e);
+    const Eigen::JacobiSVD<MatrixXd> svd(all, Eigen::ComputeFullV);
+    const Eigen::Index free =
+        (svd.singularValues().array() <= 1e-10 * svd.singularValues()[0]).count();
+    const Eigen::Index motions = found.joints.empty() ? 0 : found.motions.cols();
+    EXPECT_EQ(motions, free);
+    if (motions > 0) {
+      EXPECT_LT((all * found.motions).norm(), 1e-9 * all.norm());
+    }
+    ++(free > 0 ? unheld : held);
+  }
+  EXPECT_GT(unheld, 10);
+  EXPECT_GT(held, 10);
+}
+
+}  // namespace
+}  // namespace momenta
