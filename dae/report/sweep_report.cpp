@@ -11,18 +11,19 @@ namespace {
 
 constexpr std::size_t most_lines = 40;
 
-/// A measure of a case by name.
+/// A measure of a case, by its name and as tables head it.
 struct Measure {
-  std::string name;
+  std::string name, heading;
   double (*of)(const SweepCase&);
 };
 const std::vector<Measure>& measures() {
   static const std::vector<Measure> all{
-      {"position_drift_max", [](const SweepCase& c) { return c.position_drift_max; }},
-      {"velocity_drift_max", [](const SweepCase& c) { return c.velocity_drift_max; }},
-      {"angle_drift_max", [](const SweepCase& c) { return c.angle_drift_max; }},
-      {"angle_rate_drift_max", [](const SweepCase& c) { return c.angle_rate_drift_max; }},
-      {"energy_error_max", [](const SweepCase& c) { return c.energy_error_max; }}};
+      {"position_drift_max", "|Φ| [m]", [](const SweepCase& c) { return c.position_drift_max; }},
+      {"velocity_drift_max", "|Φ̇| [m/s]", [](const SweepCase& c) { return c.velocity_drift_max; }},
+      {"angle_drift_max", "|Φ| [rad]", [](const SweepCase& c) { return c.angle_drift_max; }},
+      {"angle_rate_drift_max", "|Φ̇| [rad/s]",
+       [](const SweepCase& c) { return c.angle_rate_drift_max; }},
+      {"energy_error_max", "energy [J]", [](const SweepCase& c) { return c.energy_error_max; }}};
   return all;
 }
 
@@ -42,6 +43,13 @@ const SweepCase* greatest(const std::vector<SweepCase>& cases, const Measure& me
   return best;
 }
 
+/// Of the first case that has loops: what is varied are numbers, rows and their units stay.
+std::string drift_unit(const std::vector<SweepCase>& cases) {
+  const auto looped = std::find_if(cases.begin(), cases.end(),
+                                   [](const SweepCase& c) { return !c.drift_unit.empty(); });
+  return looped == cases.end() ? "m" : looped->drift_unit;
+}
+
 std::string values_in_words(const SweepRequest& request, const SweepCase& c) {
   std::string words;
   for (std::size_t i = 0; i < c.values.size(); ++i)
@@ -54,10 +62,7 @@ std::string values_in_words(const SweepRequest& request, const SweepCase& c) {
 std::string sweep_csv(const SweepRequest& request, const std::vector<SweepCase>& cases) {
   std::vector<std::string> header{"case"};
   for (const Varied& v : request.varied) header.push_back(csv_cell(v.place));
-  // Of the first case that has loops: what is varied are numbers, rows and their units stay.
-  const auto looped = std::find_if(cases.begin(), cases.end(),
-                                   [](const SweepCase& c) { return !c.drift_unit.empty(); });
-  const std::string unit = looped == cases.end() ? "m" : looped->drift_unit;
+  const std::string unit = drift_unit(cases);
   for (const std::string& name :
        {std::string("status"), std::string("stopped_at [s]"), "position_drift_max [" + unit + "]",
         "velocity_drift_max [" + unit + "/s]", std::string("angle_drift_max [rad]"),
@@ -115,14 +120,21 @@ std::string sweep_table(const SweepRequest& request, const std::vector<SweepCase
   if (cases.size() <= most_lines) {
     std::vector<std::vector<std::string>> rows(1);
     for (const Varied& v : request.varied) rows[0].push_back(v.place);
-    for (const char* name : {"status", "|Φ| [m]", "|Φ̇| [m/s]", "energy [J]", "steps"})
-      rows[0].emplace_back(name);
+    rows[0].emplace_back("status");
+    for (const Measure& measure : measures())
+      if (greatest(cases, measure)) {
+        rows[0].push_back(measure.heading);
+        if (const auto at = measure.heading.find("[m"); at != std::string::npos)
+          rows[0].back().replace(at + 1, 1, drift_unit(cases));
+      }
+    rows[0].emplace_back("steps");
     for (const std::string& name : request.watched) rows[0].push_back(name + " at the end");
     for (const SweepCase& c : cases) {
       auto& row = rows.emplace_back();
       for (const double value : c.values) row.push_back(compact(value, 6));
       row.push_back(c.status);
-      for (const Measure& measure : measures()) row.push_back(scientific(measure.of(c), 2));
+      for (const Measure& measure : measures())
+        if (greatest(cases, measure)) row.push_back(scientific(measure.of(c), 2));
       row.push_back(std::to_string(c.steps));
       for (const auto& w : c.watched) row.push_back(compact(w.last, 6));
     }

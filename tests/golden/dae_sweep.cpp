@@ -112,6 +112,39 @@ TEST(Sweep, WhatIsWrongWithACaseIsInTheCase) {
   EXPECT_THROW(made(0), std::invalid_argument);
 }
 
+TEST(Sweep, TablesHaveAHeadingForEachColumn) {
+  SweepRequest request = small_sweep();
+  request.watched = {"A.q", "energy"};
+  std::vector<SweepCase> cases;
+  const auto expect_columns = [&](std::size_t columns) {
+    std::istringstream table(sweep_table(request, cases));
+    for (std::size_t i = 0; i <= cases.size(); ++i) {
+      std::string line, cell;
+      std::getline(table, line);
+      std::size_t cells = 0;  // two blanks and more between them
+      for (std::size_t at = 0; at != std::string::npos; ++cells) {
+        at = line.find("  ", at);
+        at = line.find_first_not_of(' ', at);
+      }
+      EXPECT_EQ(cells, columns) << line;
+    }
+  };
+  cases.assign(1, run_case(request, 0));
+  const std::size_t varied = request.varied.size();
+  expect_columns(varied + 1 + 3 + 1 + 2);  // status, two drifts and the energy, steps
+  cases.back().angle_drift_max = cases.back().angle_rate_drift_max = 1e-3;
+  cases.push_back(run_case(request, 1));
+  expect_columns(varied + 1 + 5 + 1 + 2);
+  for (SweepCase& c : cases) {
+    const std::vector<double> values = c.values;
+    c = SweepCase();
+    c.values = values;
+    c.status = "refused";
+    c.watched.resize(2);
+  }
+  expect_columns(varied + 1 + 0 + 1 + 2);
+}
+
 class SweepProgram : public Program {
  protected:
   std::string sweep(const std::string& out) const {
