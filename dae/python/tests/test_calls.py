@@ -9,6 +9,7 @@ import random
 import resource
 import subprocess
 import sys
+import tempfile
 import unittest
 
 EXAMPLES = pathlib.Path(os.environ["MOMENTA_EXAMPLES"])
@@ -113,11 +114,52 @@ class Round:
             ("parse", lambda: momenta.parse(r.choice([self.text[:r.randrange(len(self.text))], self.text,
                                                       "\0", "[[body]]"] + OTHERS), **self.some(
                 {"name": ["scene", ""], "algebra": ["spatial", "planar"], "kkt": ["dense", "sparse", ""]}))),
+            ("evaluate()", lambda: momenta.evaluate(r.choice([m, m, self.text, self.scene()] + OTHERS),
+                                                    **self.some({"at": self.states()}))),
+            ("index", lambda: momenta.index(r.choice([m, m, self.scene()]), **self.some(
+                {"forms": [["momentum"], "momentum", ["x"], [r.choice(forms)]], "at": self.states()}))),
+            ("view", lambda: momenta.view(r.choice([m, self.text, self.scene()] + OTHERS))),
+            ("sweep", lambda: momenta.sweep(self.text, r.choice([
+                {"gravity.1": [-9.81, 1]}, {"gravity.1": "0:-9:2"}, ["gravity.1=1"], {"nowhere": [1]},
+                {"gravity.1": []}, {"gravity.1": [NAN]}, {"gravity.9": [1]}, "gravity.1=0:1:0"] + OTHERS),
+                **{"end": 0.01, "cpu_limit": 0.3, **self.some(
+                    {"watch": ["energy", ["x"], []], "threads": [0, 1, -1], **gains, "form": forms,
+                     "samples": [1, 0], "x": [1]})})),
+            ("scene", lambda: self.scene().load()),
+            ("to_toml", lambda: r.choice([m, self.scene()]).to_toml()),
+            ("save", lambda: r.choice([self.scene(), momenta.view(m)]).save(r.choice(
+                ["", "/dev/null/x", "/proc/x", str(self.example), "\0"] + OTHERS[-6:]))),
             ("run[...]", lambda: self.run[r.choice(self.run.columns + ["t", "x", ""] + OTHERS)]),
             ("attribute", lambda: getattr(r.choice([self.run, m, self.start]), r.choice(
                 [n for n in dir(r.choice([self.run, m, self.start])) if not n.startswith("_")] or ["t"]))),
             ("set", lambda: setattr(r.choice([self.run, m, self.start]), "t", 3)),
         ]
+
+    def states(self):
+        """For `at`."""
+        names = [n.split(".")[0] for n in self.m.coordinates]
+        name = self.rng.choice(names + ["x"])
+        return [{}, {"q": {name: self.number()}}, {"v": {name: self.number()}, "t": self.number()},
+                {"p": {name: [1, 2]}}, {"q": 3}, {"x": {}}, "{", "{}", '{"q": {}}', "nowhere.json", "[]",
+                {"q": {name: NAN}}, {"tau": {name: 1}}, {"q": {name: 1e300}}]
+
+    def scene(self):
+        """A scene built with some mistake, or none."""
+        r = self.rng
+        wild = lambda usual: usual if r.random() < 0.9 else r.choice(NUMBERS + OTHERS[:-6])
+        try:
+            s = self.momenta.Scene(wild("s"), gravity=wild([0, -9.81, 0]))
+            s.body(wild("rod"), mass=wild(1), shape=wild({"kind": "rod", "length": 1}))
+            s.joint(wild("O"), wild("revolute"), child=wild("rod"), position=wild(0.3), damping=wild(None))
+            if r.random() < 0.5:
+                s.loop("L", wild("point"), parent=wild("ground"), child="rod", origin=wild({"parent": [1, 0, 0]}))
+            if r.random() < 0.3:
+                s.drive(wild("polynomial"), joint=wild("O"), coefficients=wild([0.3, 1]))
+            if r.random() < 0.3:
+                s.spring(parent="ground", child=wild("rod"), stiffness=wild(3))
+            return s
+        except (TypeError, ValueError):
+            return self.momenta.Scene("empty")
 
     def finite(self, x):
         """Nothing that is no number in a result of the equations."""
@@ -154,9 +196,19 @@ class Round:
                 if run.status == "done":
                     assert self.np.isfinite(run.t).all(), name
                     assert self.np.isfinite(run.position_drift).all(), name
-        elif name in ("load", "parse"):
+        elif name in ("load", "parse", "scene"):
             assert result.nq >= 0
-        elif name not in ("run[...]", "attribute", "set", "assemble"):
+        elif name == "sweep":
+            assert len(result) == len(result["status"]) > 0
+            for status, reason in zip(result["status"], result["reason"]):
+                assert status == "done" or one_sentence(reason), (status, reason)
+        elif name in ("view", "to_toml"):
+            assert isinstance(result, str) and result
+        elif name == "save":
+            pass
+        elif name == "modes":  # damping ratios of modes at s = 0 are none
+            assert all(self.finite(v) for k, v in result.items() if k != "damping_ratio")
+        elif name not in ("run[...]", "attribute", "set", "assemble", "index"):
             assert self.finite(result), (name, result)
 
     def go(self, calls):
@@ -180,6 +232,8 @@ if __name__ == "__main__":
     if sys.argv[1:2] == ["round"]:
         faulthandler.enable()
         resource.setrlimit(resource.RLIMIT_AS, (4 << 30, 4 << 30))
-        Round(int(sys.argv[2])).go(250)
+        with tempfile.TemporaryDirectory() as folder:
+            os.chdir(folder)  # for what is saved under any name
+            Round(int(sys.argv[2])).go(250)
     else:
         unittest.main()
