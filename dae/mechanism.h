@@ -101,8 +101,9 @@ class Mechanism {
   /// Whether each row is an angle [rad]: rows of axes, and couplers of angles alone. All others are
   /// lengths [m].
   const std::vector<bool>& angle_rows() const { return angle_rows_; }
-  /// Whether there are rows of lengths, and of angles.
+  /// Whether there are rows of lengths.
   bool has_lengths() const;
+  /// Whether there are rows of angles.
   bool has_angles() const;
 
   /// Scale of each row of Φ_q M⁻¹ Φ_qᵀ (m) below which it is dust, whatever its loop's other rows

@@ -30,19 +30,22 @@
 
 namespace momenta {
 
+/// A mechanism with closed loops, and its dynamics at one state.
 class ClosedChain {
  public:
   /// @throws SceneError
   explicit ClosedChain(const Scene& scene, MechanismOptions options = {});
   ~ClosedChain();
+  /// What was moved from is not to be used.
   ClosedChain(ClosedChain&&) noexcept;
+  /// Likewise.
   ClosedChain& operator=(ClosedChain&&) noexcept;
 
   /// What forms, runs and studies take: lives as long as this object, wherever it is moved.
   const Mechanism& mechanism() const;
-  int nq() const { return mechanism().nq(); }
-  int nv() const { return mechanism().nv(); }
-  int m() const { return mechanism().m(); }  ///< loop equations
+  int nq() const { return mechanism().nq(); }  ///< coordinates
+  int nv() const { return mechanism().nv(); }  ///< rates, momenta
+  int m() const { return mechanism().m(); }    ///< loop equations
 
   /// A consistent start from the scene's positions and rates. @throws SceneError: assemble()
   Assembly assemble() const;

@@ -27,6 +27,7 @@ struct Transmitted {
   bool unique = true;  ///< false: redundant loops share this load in a way that nothing here tells
 };
 
+/// What all joints and loops transmit.
 struct Reactions {
   std::vector<Transmitted> joints;  ///< in the order of joint_places()
   std::vector<Transmitted> loops;   ///< in the order of the scene
