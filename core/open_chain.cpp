@@ -52,7 +52,7 @@ bool OpenChain::rates(double t, const ConstVectorRef& q, const ConstVectorRef& p
   expect_size("rates", "qdot", qdot.size(), nq());
   expect_size("rates", "pdot", pdot.size(), nv());
   if (!inside_->finite(t, q, "p", p)) return false;
-  return inside_->visit([&](auto& kernel) {
+  const bool found = inside_->visit([&](auto& kernel) {
     if (!inside_->plan.quasi_velocities)  // q̇ = u
       return inside_->momentum(kernel, t, q.data(), p.data(), qdot.data(), pdot.data());
     const bool ok =
@@ -60,6 +60,7 @@ bool OpenChain::rates(double t, const ConstVectorRef& q, const ConstVectorRef& p
     if (ok) momenta::coordinate_rates(*kernel.model, q.data(), inside_->u.data(), qdot.data());
     return ok;
   });
+  return found && inside_->found_finite(qdot) && inside_->found_finite(pdot);
 }
 
 bool OpenChain::rates(double t, const ConstVectorRef& q, const ConstVectorRef& p,
@@ -67,7 +68,7 @@ bool OpenChain::rates(double t, const ConstVectorRef& q, const ConstVectorRef& p
   expect_size("rates", "tau", tau.size(), nv());
   if (!inside_->finite(t, q, "tau", tau) || !rates(t, q, p, qdot, pdot)) return false;
   pdot += tau;
-  return true;
+  return inside_->found_finite(pdot);
 }
 
 bool OpenChain::rates_of_states(double t, const ConstStatesRef& q, const ConstStatesRef& p,
@@ -81,8 +82,7 @@ bool OpenChain::rates_of_states(double t, const ConstStatesRef& q, const ConstSt
   expect_size("rates_of_states", "a row of qdot", qdot.cols(), q.cols());
   expect_size("rates_of_states", "a row of pdot", pdot.cols(), q.cols());
   if (!std::isfinite(t)) throw std::invalid_argument("rates_of_states: t is not finite");
-  inside_->not_a_number.clear();
-  return inside_->visit([&](auto& kernel) {
+  const bool all = inside_->visit([&](auto& kernel) {
     const auto stride = q.outerStride();
     if (!kernel.model->has_body_forces() && stride == p.outerStride() &&
         stride == qdot.outerStride() && stride == pdot.outerStride())
@@ -100,6 +100,7 @@ bool OpenChain::rates_of_states(double t, const ConstStatesRef& q, const ConstSt
       return ok;
     });
   });
+  return inside_->told_of_state(all, q, "p", p);
 }
 
 bool OpenChain::accelerations_of_states(double t, const ConstStatesRef& q, const ConstStatesRef& u,
@@ -111,8 +112,7 @@ bool OpenChain::accelerations_of_states(double t, const ConstStatesRef& q, const
   expect_size("accelerations_of_states", "a row of u", u.cols(), q.cols());
   expect_size("accelerations_of_states", "a row of udot", udot.cols(), q.cols());
   if (!std::isfinite(t)) throw std::invalid_argument("accelerations_of_states: t is not finite");
-  inside_->not_a_number.clear();
-  return inside_->visit([&](auto& kernel) {
+  const bool all = inside_->visit([&](auto& kernel) {
     const auto stride = q.outerStride();
     if (!kernel.model->has_body_forces() && !kernel.model->has_joint_forces &&
         stride == u.outerStride() && stride == udot.outerStride())
@@ -128,6 +128,7 @@ bool OpenChain::accelerations_of_states(double t, const ConstStatesRef& q, const
       return ok;
     });
   });
+  return inside_->told_of_state(all, q, "u", u);
 }
 
 bool OpenChain::jacobian_times(double t, const ConstVectorRef& q, const ConstVectorRef& p,
@@ -142,11 +143,12 @@ bool OpenChain::jacobian_times(double t, const ConstVectorRef& q, const ConstVec
   if (!inside_->finite(t, q, "p", p) || !inside_->finite("dq", dq.data(), dq.size()) ||
       !inside_->finite("dp", dp.data(), dp.size()))
     return false;
-  return inside_->visit([&](auto& kernel) {
+  const bool found = inside_->visit([&](auto& kernel) {
     return inside_->noted_one(*kernel.sweeps, t, q.data(),
                               kernel.sweeps->derivative(t, q.data(), p.data(), dq.data(), dp.data(),
                                                         dqdot.data(), dpdot.data()));
   });
+  return found && inside_->found_finite(dqdot) && inside_->found_finite(dpdot);
 }
 
 bool OpenChain::jacobian(double t, const ConstVectorRef& q, const ConstVectorRef& p, MatrixRef J) {
@@ -155,11 +157,15 @@ bool OpenChain::jacobian(double t, const ConstVectorRef& q, const ConstVectorRef
   expect_size("jacobian", "a row of J", J.cols(), nq() + nv());
   expect_size("jacobian", "a column of J", J.rows(), nq() + nv());
   if (!inside_->finite(t, q, "p", p)) return false;
-  return inside_->visit([&](auto& kernel) {
+  const bool found = inside_->visit([&](auto& kernel) {
     BatchSweeps& sweeps = *kernel.batches[0];
     return inside_->noted_one(sweeps, t, q.data(),
                               sweeps.jacobian(t, q.data(), p.data(), J.data(), J.outerStride()));
   });
+  if (!found) return false;
+  for (Eigen::Index i = 0; i < J.cols(); ++i)
+    if (!inside_->found_finite(J.col(i).data(), J.rows())) return false;
+  return true;
 }
 Eigen::MatrixXd OpenChain::jacobian(double t, const ConstVectorRef& q, const ConstVectorRef& p) {
   Eigen::MatrixXd J(nq() + nv(), nq() + nv());
@@ -175,7 +181,7 @@ bool OpenChain::velocities(double t, const ConstVectorRef& q, const ConstVectorR
   if (!inside_->finite(t, q, "p", p)) return false;
   return inside_->visit([&](auto& kernel) {
     return inside_->momentum(kernel, t, q.data(), p.data(), u.data(), inside_->p.data());
-  });
+  }) && inside_->found_finite(u);
 }
 
 bool OpenChain::inverse_mass_times(double t, const ConstVectorRef& q, const ConstVectorRef& x,
@@ -188,7 +194,7 @@ bool OpenChain::inverse_mass_times(double t, const ConstVectorRef& q, const Cons
     return inside_->noted_one(
         *kernel.sweeps, t, q.data(),
         kernel.sweeps->inverse_mass_times(t, q.data(), x.data(), result.data()));
-  });
+  }) && inside_->found_finite(result);
 }
 
 void OpenChain::momenta(double t, const ConstVectorRef& q, const ConstVectorRef& u, VectorRef p) {
@@ -198,6 +204,7 @@ void OpenChain::momenta(double t, const ConstVectorRef& q, const ConstVectorRef&
   inside_->expect_finite("momenta", t, q, "u", u);
   inside_->visit(
       [&](auto& kernel) { momenta_from_rates(kernel.w, t, q.data(), u.data(), p.data()); });
+  inside_->expect_found_finite("momenta", p.data(), p.size());
 }
 
 bool OpenChain::accelerations(double t, const ConstVectorRef& q, const ConstVectorRef& u,
@@ -208,7 +215,7 @@ bool OpenChain::accelerations(double t, const ConstVectorRef& q, const ConstVect
   if (!inside_->finite(t, q, "u", u)) return false;
   return inside_->visit([&](auto& kernel) {
     return inside_->acceleration(kernel, t, q.data(), u.data(), udot.data());
-  });
+  }) && inside_->found_finite(udot);
 }
 
 bool OpenChain::accelerations(double t, const ConstVectorRef& q, const ConstVectorRef& u,
@@ -220,7 +227,7 @@ bool OpenChain::accelerations(double t, const ConstVectorRef& q, const ConstVect
   if (!inside_->finite(t, q, "u", u) || !inside_->finite("tau", tau.data(), nv())) return false;
   return inside_->visit([&](auto& kernel) {
     return inside_->acceleration(kernel, t, q.data(), u.data(), udot.data(), tau.data());
-  });
+  }) && inside_->found_finite(udot);
 }
 
 void OpenChain::coordinate_rates(const ConstVectorRef& q, const ConstVectorRef& u,
@@ -232,6 +239,7 @@ void OpenChain::coordinate_rates(const ConstVectorRef& q, const ConstVectorRef& 
   inside_->visit([&](auto& kernel) {
     momenta::coordinate_rates(*kernel.model, q.data(), u.data(), qdot.data());
   });
+  inside_->expect_found_finite("coordinate_rates", qdot.data(), qdot.size());
 }
 
 std::string OpenChain::failure() const {

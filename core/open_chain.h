@@ -7,6 +7,9 @@
 // q: size nq, u and p: size nv, by joint as JointSpec says; SI units. The kernel, planar or
 // spatial, is chosen by the plan. One object serves one thread: it owns the workspace. No call
 // allocates unless it returns a matrix or a list.
+//
+// Arguments of wrong size are thrown, std::invalid_argument with one sentence. Where a number given
+// or found is not finite, calls that return bool are false and failure() says which; others throw.
 
 #include <momenta/core/centroidal.h>
 #include <momenta/core/plan.h>
@@ -131,8 +134,8 @@ class OpenChain {
   /// Pose of every body of the tree in ground axes, in the tree's order.
   std::vector<Eigen::Isometry3d> poses(double t, const ConstVectorRef& q);
 
-  /// One sentence on the last failed call: which joints have no inertia (massless_joints.h). O(nv³)
-  /// up to 600 rates.
+  /// One sentence on the last failed call: which joints have no inertia (massless_joints.h), or
+  /// what is not finite. O(nv³) up to 600 rates.
   std::string failure() const;
 
  private:

@@ -57,7 +57,8 @@ struct OpenChain::Inside {
   Eigen::Index failed_state = -1;  ///< of the last batch
   double failed_t = 0;             ///< where the last call failed for want of inertia [s]
   Eigen::VectorXd failed_q;
-  std::string not_a_number;  ///< of what the last call was given; empty: all were
+  /// What of the last call's numbers is none, given or found; empty: all are.
+  std::string not_a_number;
 
   Inside(Tree t, Plan pl, const Scene& from, int level, bool branches_side_by_side)
       : tree(std::move(t)),
@@ -115,17 +116,46 @@ struct OpenChain::Inside {
     return massless_joints(tree, diagonal, mass, tree.bodies[static_cast<std::size_t>(singular)].u);
   }
 
+  /// Whether n numbers that were found are finite; else failure() says so.
+  bool found_finite(const double* x, Eigen::Index n) {
+    if (all_finite(x, static_cast<std::size_t>(n))) [[likely]]
+      return true;
+    singular = -1;
+    failed_state = -1;
+    not_a_number = too_large;
+    return false;
+  }
+  bool found_finite(const VectorRef& x) { return found_finite(x.data(), x.size()); }
+  void expect_found_finite(const char* call, const double* x, Eigen::Index n) {
+    if (!found_finite(x, n)) throw std::invalid_argument(std::string(call) + ": " + not_a_number);
+  }
+  static constexpr const char* too_large =
+      "the result is not finite, expected smaller numbers to find it from";
+
+  /// Why the first of many states has no result.
+  bool told_of_state(bool ok, const ConstStatesRef& q, const char* name, const ConstStatesRef& x) {
+    not_a_number.clear();
+    if (ok) return true;
+    const Eigen::VectorXd of_q = q.col(failed_state), of_x = x.col(failed_state);
+    if (finite("q", of_q.data(), of_q.size()) && finite(name, of_x.data(), of_x.size()) &&
+        singular < 0)
+      not_a_number = too_large;
+    if (!not_a_number.empty())
+      not_a_number = "state " + std::to_string(failed_state) + ": " + not_a_number;
+    return false;
+  }
+
   /// The momentum recursion and its third sweep.
   template <class K>
   bool momentum(K& k, double t, const double* q, const double* momenta, double* rates,
                 double* pdot) {
+    failed_state = -1;
     if (!k.sweeps->momentum(t, q, momenta, rates, pdot)) {
       singular = k.sweeps->singular_joint();
       note_place(t, q);
       return false;
     }
     singular = -1;
-    failed_state = -1;
     if (k.model->has_body_forces()) {
       body_force_rates(k.w, t, q, static_cast<const double*>(rates));
       for (int i = 0; i < tree.nv; ++i) pdot[i] += k.w.generalised[static_cast<std::size_t>(i)];
@@ -140,6 +170,7 @@ struct OpenChain::Inside {
       for (int i = 0; i < tree.nv; ++i) k.w.generalised[static_cast<std::size_t>(i)] += tau[i];
     const bool ok = k.sweeps->acceleration(t, q, rates, k.w.generalised.data(), udot);
     singular = ok ? -1 : k.sweeps->singular_joint();
+    failed_state = -1;
     if (!ok) note_place(t, q);
     return ok;
   }

@@ -42,7 +42,7 @@ Energies OpenChain::energies(double t, const ConstVectorRef& q, const ConstVecto
   expect_size("energies", "q", q.size(), nq());
   expect_size("energies", "u", u.size(), nv());
   inside_->expect_finite("energies", t, q, "u", u);
-  return inside_->visit([&](auto& kernel) {
+  const Energies all = inside_->visit([&](auto& kernel) {
     Energies e;
     momenta_from_rates(kernel.w, t, q.data(), u.data(), inside_->p.data());
     poses_outward(kernel.w, t, q.data(), true);
@@ -51,6 +51,9 @@ Energies OpenChain::energies(double t, const ConstVectorRef& q, const ConstVecto
     e.hamiltonian = inside_->p.dot(u) - e.kinetic + e.potential;
     return e;
   });
+  const double found[] = {all.kinetic, all.potential, all.hamiltonian};
+  inside_->expect_found_finite("energies", found, 3);
+  return all;
 }
 
 bool OpenChain::centroidal(double t, const ConstVectorRef& q, const ConstVectorRef& p,
@@ -59,12 +62,14 @@ bool OpenChain::centroidal(double t, const ConstVectorRef& q, const ConstVectorR
   if (!velocities(t, q, p, inside_->u)) return false;
   if (auto* in_space = std::get_if<Kernel<Spatial>>(&inside_->kernel)) {
     all = centroidal_of(centroidal_sums(in_space->w, t, q.data(), u));
-    return true;
+  } else {
+    if (!inside_->in_space)
+      inside_->in_space = std::make_unique<CentroidalSweep>(inside_->tree, *inside_->flat);
+    all = (*inside_->in_space)(t, q.data(), u);
   }
-  if (!inside_->in_space)
-    inside_->in_space = std::make_unique<CentroidalSweep>(inside_->tree, *inside_->flat);
-  all = (*inside_->in_space)(t, q.data(), u);
-  return true;
+  return (all.mass == 0 || inside_->found_finite(all.centre.data(), 3)) &&
+         inside_->found_finite(all.linear_momentum.data(), 3) &&
+         inside_->found_finite(all.angular_momentum.data(), 3);
 }
 
 std::vector<Reaction> OpenChain::reactions(double t, const ConstVectorRef& q,
@@ -72,7 +77,7 @@ std::vector<Reaction> OpenChain::reactions(double t, const ConstVectorRef& q,
   expect_size("reactions", "q", q.size(), nq());
   expect_size("reactions", "u", u.size(), nv());
   inside_->expect_finite("reactions", t, q, "u", u);
-  return inside_->visit([&](auto& kernel) {
+  const std::vector<Reaction> found = inside_->visit([&](auto& kernel) {
     std::vector<Reaction> all;
     Eigen::VectorXd p(nv()), rates(nv()), pdot(nv()), qdot(nq());
     momenta_from_rates(kernel.w, t, q.data(), u.data(), p.data());
@@ -87,6 +92,11 @@ std::vector<Reaction> OpenChain::reactions(double t, const ConstVectorRef& q,
         all.push_back(reaction_of(tree().bodies[k], *kernel.model, kernel.w, k, pass.reaction(k)));
     return all;
   });
+  for (const Reaction& r : found) {
+    inside_->expect_found_finite("reactions", r.force.data(), 3);
+    inside_->expect_found_finite("reactions", r.torque.data(), 3);
+  }
+  return found;
 }
 
 Eigen::MatrixXd OpenChain::mass_matrix(double t, const ConstVectorRef& q) {
@@ -97,19 +107,23 @@ Eigen::MatrixXd OpenChain::mass_matrix(double t, const ConstVectorRef& q) {
     poses_outward(kernel.w, t, q.data(), false);
     mass_matrix_inward(kernel.w, [&](int i, int j, double value) { m(i, j) = m(j, i) = value; });
   });
+  inside_->expect_found_finite("mass_matrix", m.data(), m.size());
   return m;
 }
 
 std::vector<Eigen::Isometry3d> OpenChain::poses(double t, const ConstVectorRef& q) {
   expect_size("poses", "q", q.size(), nq());
   inside_->expect_finite("poses", t, q, "q", q);
-  return inside_->visit([&](auto& kernel) {
+  const std::vector<Eigen::Isometry3d> found = inside_->visit([&](auto& kernel) {
     poses_outward(kernel.w, t, q.data(), true);
     std::vector<Eigen::Isometry3d> all;
     for (std::size_t k = 0; k < tree().bodies.size(); ++k)
       all.push_back(pose_of(tree().bodies[k], *kernel.model, kernel.w, k));
     return all;
   });
+  for (const Eigen::Isometry3d& pose : found)
+    inside_->expect_found_finite("poses", pose.data(), 16);
+  return found;
 }
 
 }  // namespace momenta

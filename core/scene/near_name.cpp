@@ -34,18 +34,44 @@ std::size_t distance(std::string_view a, std::string_view b) {
 
 }  // namespace
 
+namespace {
+
+/// Bytes of the UTF-8 character that `text` begins with; 0: none does.
+std::size_t character(std::string_view text) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  const std::size_t size = byte(0) < 0x80                       ? 1
+                           : byte(0) >= 0xc2 && byte(0) < 0xe0  ? 2
+                           : byte(0) >= 0xe0 && byte(0) < 0xf0  ? 3
+                           : byte(0) >= 0xf0 && byte(0) <= 0xf4 ? 4
+                                                                : 0;
+  if (size > text.size()) return 0;
+  for (std::size_t i = 1; i < size; ++i)
+    if ((byte(i) & 0xc0) != 0x80) return 0;
+  // Too long for what it says, half of a pair, or beyond the last character.
+  if (size > 2) {
+    const unsigned second = byte(1);
+    if ((byte(0) == 0xe0 && second < 0xa0) || (byte(0) == 0xed && second > 0x9f) ||
+        (byte(0) == 0xf0 && second < 0x90) || (byte(0) == 0xf4 && second > 0x8f))
+      return 0;
+  }
+  return size;
+}
+
+}  // namespace
+
 std::string on_one_line(std::string_view text) {
   constexpr std::string_view hex = "0123456789abcdef";
   std::string line;
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (byte < 0x20 || byte == 0x7f) {
+  for (std::size_t i = 0; i < text.size();) {
+    const auto byte = static_cast<unsigned char>(text[i]);
+    const std::size_t size = byte < 0x20 || byte == 0x7f ? 0 : character(text.substr(i));
+    if (size == 0) {
       line += "\\x";
       line += hex[byte >> 4];
       line += hex[byte & 15];
-    } else {
-      line += c;
     }
+    line += text.substr(i, size);
+    i += std::max<std::size_t>(1, size);
   }
   return line;
 }

@@ -14,7 +14,8 @@ std::string in_quotes(std::string_view name);
 /// "'a', 'b'"; of more than `most` names the first, and how many more there are.
 std::string all_in_quotes(std::span<const std::string> names, std::size_t most = std::string::npos);
 
-/// The same text with control characters written \xNN, uncut and without quotes.
+/// The same text with control characters and bytes that are not UTF-8 written \xNN, uncut and
+/// without quotes.
 std::string on_one_line(std::string_view text);
 
 /// "a, b, c".

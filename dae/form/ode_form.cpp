@@ -54,6 +54,15 @@ void OdeForm::look_on(bool looking) {
   }
 }
 
+void OdeForm::carry(Memory& memory) {
+  memory(multipliers_), memory(centre_), memory(handling_), memory(weakest_at_best_);
+  memory(always_faded_), memory(weak_evaluations_);
+  long solutions = factorizations();
+  memory(solutions);
+  if (solver_ && memory.reads()) looked_ = solver_->solutions() - solutions;
+  if (watched_) memory(*watched_);
+}
+
 void OdeForm::note_pivots() {
   if (looking_ > 0) return;
   const LoopSolver::Pivots pivots = solver_->pivots();

@@ -42,6 +42,8 @@ class OdeForm : public Form, public OdeSystem {
   void begin_step(double t, const double* y) override;
   SingularityHandling wanted_handling() const override { return handling_; }
   void look_on(bool looking) override;
+  bool can_be_put_down() const override { return !solver_ || !solver_->remembers(); }
+  void carry(Memory& memory) override;
 
  protected:
   /// Where singularity handling begins: a pivot goes with the square of the distance to the

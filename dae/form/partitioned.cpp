@@ -128,6 +128,8 @@ class Partitioned final : public OdeForm {
     centre_ = multipliers_;
   }
   SingularityHandling wanted_handling() const override { return SingularityHandling::none; }
+  /// A partition, and factors at the start of a step, are no numbers to be listed.
+  bool can_be_put_down() const override { return false; }
 
   bool read_coordinates(double t, const double* y, Eigen::VectorXd& q) override {
     if (!close(t, y, true)) return false;

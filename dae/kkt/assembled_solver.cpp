@@ -1,6 +1,7 @@
 // The forms' right-hand sides from an assembled matrix: factorise at q, form the right-hand side by
 // the staged sweeps, solve.
 
+#include <momenta/core/scalar/all_finite.h>
 #include <momenta/dae/kkt/assembled_solver.h>
 
 #include <algorithm>
@@ -12,6 +13,7 @@ class AssembledSolver final : public LoopSolver {
  public:
   AssembledSolver(const Mechanism& mechanism, Evaluation<double>& e)
       : drives_(mechanism.plan().drives),
+        by_klu_(!filters_pivots(mechanism)),
         e_(e),
         kkt_(make_kkt(mechanism)),
         r_(static_cast<std::size_t>(mechanism.nv())),
@@ -45,6 +47,7 @@ class AssembledSolver final : public LoopSolver {
       e_.momentum_rates(q, u, sigma, leak, pdot);
       if (pushed_)
         for (std::size_t i = 0; i < r_.size(); ++i) pdot[i] += pushed_[i];
+      return all_finite(pdot, r_.size());
     }
     return true;
   }
@@ -88,6 +91,7 @@ class AssembledSolver final : public LoopSolver {
   }
 
   Pivots pivots() const override { return {kkt_->weakest(), kkt_->faded()}; }
+  bool remembers() const override { return by_klu_; }
 
  private:
   bool factor(double t, const double* q, double fade, bool softens = true) {
@@ -98,7 +102,7 @@ class AssembledSolver final : public LoopSolver {
     return ok;
   }
 
-  bool drives_;
+  bool drives_, by_klu_;
   Evaluation<double>& e_;
   std::unique_ptr<Kkt> kkt_;
   std::vector<double> r_, work_, g_, phi_, nu_, compliance_;

@@ -54,6 +54,8 @@ class LoopSolver {
     int faded = 0;
   };
   virtual Pivots pivots() const = 0;
+  /// Whether a solution depends on those before: KLU keeps its choice of pivots.
+  virtual bool remembers() const = 0;
   /// Place in u of the joint at which the last call failed, or −1: a result is not finite.
   int singular_joint() const { return singular_joint_; }
 

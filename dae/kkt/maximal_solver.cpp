@@ -128,6 +128,7 @@ class MaximalSolver final : public LoopSolver {
   Pivots pivots() const override {
     return {loops_.weakest(), static_cast<int>(loops_.faded_rows().size())};
   }
+  bool remembers() const override { return false; }
 
  private:
   using Tree = MaximalTree<Space>;

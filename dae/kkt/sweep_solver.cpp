@@ -108,6 +108,7 @@ class SweepSolver final : public LoopSolver {
     const LoopedSweeps::Pivots p = sweeps_->pivots(of_momentum_);
     return {p.weakest * fade_evaluation, p.faded};
   }
+  bool remembers() const override { return matrix_ && matrix_->remembers(); }
 
  private:
   RightSide<double> of_rows(const double* centre, double fade) const {

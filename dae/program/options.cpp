@@ -33,12 +33,12 @@ extern "C" void take_signal(int) {
   signal_came = 1;
 }
 
+}  // namespace
+
 std::string content_of(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), {}};
 }
-
-}  // namespace
 
 void add_scene_file(CLI::App& verb, Options& o, bool required) {
   verb.add_option("scene", o.scene, "TOML, URDF (.urdf) or MJCF (.xml, .mjcf)")
@@ -90,7 +90,7 @@ void add_run_options(CLI::App& verb, Options& o, const char* cpu_limit) {
          "X", 0.0, 1.0)
       ->capture_default_str();
   positive(verb.add_option("--end", o.end, "End time [s]"), "S");
-  within(verb.add_option("--samples", o.samples, "Output intervals"), "N", 1, 10'000'000);
+  within(verb.add_option("--samples", o.samples, "Output intervals"), "N", 1, most_samples);
   auto* project =
       verb.add_flag("--project", o.project, "Correct positions after each step (ODE forms)");
   verb.add_flag("--no-project", o.no_project, "Do not, even if the scene asks for it")
@@ -196,13 +196,17 @@ void expect_own_results(const std::filesystem::path& out, std::string_view own) 
                                   " of another verb; expected a directory of its own");
 }
 
-std::unique_ptr<Journal> keep_runs(const Options& o) {
-  if (o.out.empty()) return nullptr;
+Journal::Study study_of(const Options& o) {
   Journal::Study study{"", build_digest(), o.command};
   for (const auto& file : {o.scene, o.reference, o.reading.loops, std::filesystem::path(o.at)})
     study.digest += digest(content_of(file)) + " ";
   study.digest = digest(study.digest + o.asked);
-  auto journal = std::make_unique<Journal>(o.out / "runs.jsonl", study);
+  return study;
+}
+
+std::unique_ptr<Journal> keep_runs(const Options& o) {
+  if (o.out.empty()) return nullptr;
+  auto journal = std::make_unique<Journal>(o.out / "runs.jsonl", study_of(o));
   if (!o.quiet && journal->of_another_build())
     std::fprintf(stderr, "momenta: %s is of another build of the program: begun anew\n",
                  journal->file().c_str());
@@ -226,7 +230,8 @@ bool write_results(const std::vector<ResultFile>& files) {
 }
 
 std::unique_ptr<TrajectoryFile> trajectory_file(const Options& o, const Mechanism& mechanism,
-                                                const RunSettings& settings) {
+                                                const RunSettings& settings,
+                                                std::string_view before) {
   const bool hdf5 = o.data == "hdf5";
   if (hdf5 && !writes_hdf5())
     throw std::invalid_argument(
@@ -236,7 +241,7 @@ std::unique_ptr<TrajectoryFile> trajectory_file(const Options& o, const Mechanis
     throw std::invalid_argument("--data hdf5: expected --out DIR for run.h5");
   if (o.out.empty()) return nullptr;
   const auto columns = trajectory_columns(mechanism);
-  auto file = !hdf5 ? csv_trajectory(o.out / "trajectory.csv", columns)
+  auto file = !hdf5 ? csv_trajectory(o.out / "trajectory.csv", columns, before)
                     : hdf5_trajectory(o.out / "run.h5", columns,
                                       {{"scene", scene_text(mechanism.scene())},
                                        {"command", o.command},

@@ -75,16 +75,21 @@ std::vector<std::string> names_in(const std::string& list);
 /// Writes result files, all or none; on failure prints the sentence and returns false.
 bool write_results(const std::vector<ResultFile>& files);
 
-/// The run's trajectory, where --out asks for one, as text or as HDF5. @throws
-/// std::invalid_argument; std::runtime_error where it cannot be written
+/// The run's trajectory, where --out asks for one, as text, which begins with `before`, or as HDF5.
+/// @throws std::invalid_argument; std::runtime_error where it cannot be written
 std::unique_ptr<TrajectoryFile> trajectory_file(const Options& o, const Mechanism& mechanism,
-                                                const RunSettings& settings);
+                                                const RunSettings& settings,
+                                                std::string_view before);
 
 /// Where figures are asked for there must be a place for them. @throws std::invalid_argument
 void expect_place_for_figures(const Options& o);
 /// Adds them, as files of figures/ where --out says.
 void add_figures(std::vector<ResultFile>& files, std::vector<Figure> figures, const Options& o);
 
+/// The bytes of a file; empty where there is none.
+std::string content_of(const std::filesystem::path& file);
+/// What was asked, and which program was.
+Journal::Study study_of(const Options& o);
 /// Finished runs of this study, kept beside its results until it is over; null without --out.
 std::unique_ptr<Journal> keep_runs(const Options& o);
 

@@ -12,7 +12,7 @@
 #include <map>
 #include <stdexcept>
 
-#include "options.h"
+#include "kept_run.h"
 
 namespace momenta::program {
 namespace {
@@ -92,29 +92,46 @@ class RunFiles {
  public:
   /// @throws std::invalid_argument, std::runtime_error
   RunFiles(const Options& o, const Mechanism& mechanism, const RunSettings& settings)
-      : o_(o), trajectory_(trajectory_file(o, mechanism, settings)) {
+      : o_(o),
+        kept_(o, trajectory_columns(mechanism).size()),
+        trajectory_(trajectory_file(o, mechanism, settings, kept_.trajectory())) {
     if (!trajectory_) return;
     summary_.emplace(o.out / "summary.json");
     if (!summary_->reserve(summary_room)) throw std::runtime_error(summary_->problem());
+    kept_.begin();
+    if (kept_.from()) last_row_ = kept_.from()->so_far.trajectory.rows.back();
   }
 
-  bool write(const std::vector<double>& row) { return !trajectory_ || trajectory_->write(row); }
+  bool write(const std::vector<double>& row) {
+    if (!trajectory_) return true;
+    last_row_ = row;
+    return trajectory_->write(row);
+  }
+  /// Where the run goes on; null: at its start.
+  const Checkpoint* from() const { return kept_.from(); }
+  /// Between two steps.
+  void note(const std::function<Checkpoint()>& make) {
+    if (trajectory_) kept_.note(*trajectory_, last_row_, make);
+  }
   bool flush() { return !trajectory_ || trajectory_->flush(); }
   /// Why rows could not be written; empty: all were.
   std::string problem() const { return trajectory_ ? trajectory_->problem() : ""; }
 
   /// Gives all files their names, those of `others` too where there is room for them; else prints
-  /// the sentence and returns false.
-  bool finish(const std::string& summary, const std::vector<ResultFile>& others) {
+  /// the sentence and returns false. `over`: the run does not go on from where it was left.
+  bool finish(const std::string& summary, const std::vector<ResultFile>& others, bool over) {
     if (!trajectory_) return true;
     const bool told = !problem().empty();  // as the reason why the run stopped
-    bool all = trajectory_->finish(summary) || (!told && complain(problem()));
+    if (!trajectory_->finish(summary)) return !told && complain(problem());
     summary_->append(summary);
-    all = (summary_->put_in_place() || complain(summary_->problem())) && all;
+    const bool all = summary_->put_in_place() || complain(summary_->problem());
     // What stands there of an earlier run would contradict them.
     std::error_code ignored;
     std::filesystem::remove(o_.out / (o_.data == "hdf5" ? "trajectory.csv" : "run.h5"), ignored);
-    if (write_results(others)) return all;
+    if (write_results(others)) {
+      if (all && over) kept_.remove();
+      return all;
+    }
     for (const ResultFile& other : others) std::filesystem::remove(other.path, ignored);
     return false;
   }
@@ -127,7 +144,9 @@ class RunFiles {
   }
 
   const Options& o_;
+  KeptRun kept_;
   std::unique_ptr<TrajectoryFile> trajectory_;
+  std::vector<double> last_row_;
   std::optional<PartFile> summary_;
 };
 
@@ -149,12 +168,14 @@ int run(const Options& o) {
   // What the page draws is a part of it; memory does not grow with the trajectory.
   if (o.data == "hdf5") request.keep_every = 1 + s.samples / most_drawn;
   request.on_row = [&](const std::vector<double>& row) { return files.write(row); };
+  request.from = files.from();
+  if (!o.out.empty()) request.between_steps = [&](const auto& make) { files.note(make); };
   ProgressLine line(o.quiet);
   request.progress = [&](double t) {
     line.show(s.form + "  t = " + std::to_string(t) + " s");
     return !interrupted();
   };
-  request.going_on = [] { return !interrupted(); };
+  request.going_on = [&] { return !interrupted() && files.problem().empty(); };
   watch_signals();
   StudyResult study;
   study.runs.push_back(run_form(*mechanism, a.start, request));
@@ -177,7 +198,8 @@ int run(const Options& o) {
   std::vector<ResultFile> others;
   if (!o.out.empty()) others.push_back({o.out / "index.html", run_page(study)});
   if (!o.figures.empty()) add_figures(others, figures_of_run(study), o);
-  const bool written = files.finish(summary, others);
+  const bool over = files.problem().empty() && (result.status == "done" || !interrupted());
+  const bool written = files.finish(summary, others, over);
   if (o.json) {
     std::fputs(summary.c_str(), stdout);
   } else if (!o.quiet) {

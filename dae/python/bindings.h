@@ -60,6 +60,12 @@ class Bench {
     if (q) expect_size(*q, mechanism->nq(), "q", "nq");
     if (u) expect_size(*u, mechanism->nv(), rates, "nv");
   }
+  /// What was found, unless a number of it is none. Raises SceneError.
+  template <class... Found>
+  void expect_finite(const Found&... found) const {
+    if (!(found.allFinite() && ...))
+      throw SceneError("the result is not finite, expected smaller numbers to find it from");
+  }
   [[noreturn]] void fail(double t, const In& q) const {
     throw SceneError(mechanism->no_inertia(solver ? solver->singular_joint() : e->singular_joint(),
                                            t, q.data()));

@@ -50,11 +50,15 @@ py::tuple momentum_rates(Bench& b, double t, const In& q, const In& p,
   b.expect(t, &q, &p, "p");
   Vector u(nv), pdot(nv), sigma(m);
   if (centre) expect_size(*centre, m, "centre", "m");
+  if (!std::isfinite(leak) || leak < 0)
+    throw py::value_error("leak is " + std::string(py::str(py::float_(leak))) +
+                          ", expected a rate in 1/s, not negative");
   const bool ok =
       m == 0 ? b.e->open_momentum_rates(t, q.data(), p.data(), u.data(), pdot.data())
              : b.solver->momentum(t, q.data(), p.data(), centre ? centre->data() : nullptr,
                                   fade_evaluation, leak, u.data(), sigma.data(), pdot.data());
   if (!ok) b.fail(t, q);
+  b.expect_finite(u, sigma, pdot);
   return py::make_tuple(std::move(u), std::move(sigma), std::move(pdot));
 }
 
@@ -67,6 +71,7 @@ py::tuple accelerations(Bench& b, double t, const In& q, const In& u) {
                          : b.solver->acceleration(t, q.data(), u.data(), nullptr, 0, 0, udot.data(),
                                                   lambda.data());
   if (!ok) b.fail(t, q);
+  b.expect_finite(udot, lambda);
   return py::make_tuple(std::move(udot), std::move(lambda));
 }
 
@@ -78,6 +83,7 @@ Vector momenta_of(Bench& b, double t, const In& q, const In& u,
   b.e->place(t, q.data());
   b.e->move(u.data());
   b.e->momenta(sigma ? sigma->data() : nullptr, p.data());
+  b.expect_finite(p);
   return p;
 }
 
@@ -89,6 +95,7 @@ py::tuple constraints(Bench& b, double t, const In& q, const In& u) {
   b.e->positions(phi.data());
   b.e->move(u.data());
   b.e->velocities(rate.data());
+  b.expect_finite(phi, rate);
   return py::make_tuple(std::move(phi), std::move(rate));
 }
 
@@ -96,7 +103,10 @@ py::tuple constraints(Bench& b, double t, const In& q, const In& u) {
 py::tuple kkt(Bench& b, double t, const In& q) {
   b.expect(t, &q, nullptr);
   b.e->place(t, q.data());
-  return py::make_tuple(dense_mass(*b.mechanism, *b.e), dense_constraints(*b.mechanism, *b.e));
+  Eigen::MatrixXd mass = dense_mass(*b.mechanism, *b.e),
+                  constraints = dense_constraints(*b.mechanism, *b.e);
+  b.expect_finite(mass, constraints);
+  return py::make_tuple(std::move(mass), std::move(constraints));
 }
 
 Vector inverse_mass_times(Bench& b, double t, const In& q, const In& x) {
@@ -110,8 +120,9 @@ py::tuple energies(Bench& b, double t, const In& q, const In& u) {
   b.expect(t, &q, &u);
   b.e->place(t, q.data());
   b.e->move(u.data());
-  const double kinetic = b.e->kinetic();
-  return py::make_tuple(kinetic, b.e->potential(q.data()));
+  const Eigen::Vector2d found(b.e->kinetic(), b.e->potential(q.data()));
+  b.expect_finite(found);
+  return py::make_tuple(found[0], found[1]);
 }
 
 /// What is left out is the start of the scene: with loops the assembled one, as of the program.

@@ -1,5 +1,6 @@
 #include "bindings.h"
 
+#include <momenta/core/scene/near_name.h>
 #include <momenta/core/scene/scene.h>
 #include <momenta/dae/study/environment.h>
 
@@ -19,6 +20,23 @@ PYBIND11_MODULE(_momenta, module) {
   module.attr("__version__") = momenta::version();
   py::register_exception<momenta::SceneError>(module, "SceneError", PyExc_ValueError)
       .attr("__module__") = "momenta";
+  // Names in messages may be bytes that are no UTF-8, and so no text of Python's.
+  py::register_exception_translator([](std::exception_ptr thrown) {
+    const auto raise = [](PyObject* kind, const char* what) {
+      PyErr_SetString(kind, momenta::reading::on_one_line(what).c_str());
+    };
+    try {
+      if (thrown) std::rethrow_exception(thrown);
+    } catch (const momenta::SceneError& e) {
+      raise(py::module_::import("momenta").attr("SceneError").ptr(), e.what());
+    } catch (const py::value_error& e) {
+      raise(PyExc_ValueError, e.what());
+    } catch (const py::key_error& e) {
+      raise(PyExc_KeyError, e.what());
+    } catch (const std::invalid_argument& e) {
+      raise(PyExc_ValueError, e.what());
+    }
+  });
   bind_runs(module);  // first: names of its classes stand in the signatures of Mechanism
   bind_mechanism(module);
   bind_verbs(module);

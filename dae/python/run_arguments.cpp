@@ -31,13 +31,19 @@ double cpu_time(double x) {
 }
 int sample_count(const std::optional<int>& given, int otherwise) {
   if (!given) return otherwise;
-  if (*given > 0) return *given;
-  throw py::value_error("samples is " + std::to_string(*given) + ", expected at least 1");
+  if (*given > 0 && *given <= most_samples) return *given;
+  throw py::value_error("samples is " + std::to_string(*given) + ", expected " +
+                        (*given < 1 ? "at least 1" : "at most " + std::to_string(most_samples)));
 }
 
 RunSettings RunArguments::settings(const RunDefaults& defaults) const {
   RunSettings s = default_settings(defaults, form, integrator, tolerance("rtol", rtol));
-  if (!gauge.empty()) s.gauge = gauge;
+  if (!gauge.empty()) {
+    if (!takes_gauge(form))
+      throw py::value_error("gauge '" + gauge + "': form '" + form +
+                            "' has no impulses to gauge, expected none");
+    s.gauge = gauge;
+  }
   s.atol = positive("atol", atol, s.atol, "a positive tolerance");
   s.step = seconds("step", step, s.step);
   s.end_time = seconds("end", end, s.end_time);

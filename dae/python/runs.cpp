@@ -129,6 +129,7 @@ py::object work(const Bench& bench, const Names& forms, const Names& integrators
   request.integrators = integrators;
   request.tolerances = tolerances;
   for (const double x : tolerances) tolerance("a tolerance", x);
+  if (tolerances.empty()) throw py::value_error("tolerances is empty, expected at least one");
   request.end_time = seconds("end", end, mechanism.scene().run.end_time);
   request.samples = rows;
   request.max_cpu_seconds = cpu_time(cpu_limit);

@@ -1,7 +1,10 @@
 #include <momenta/dae/report/csv.h>
 #include <momenta/dae/text/number_text.h>
 
+#include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <system_error>
 
 namespace momenta {
 std::string csv_cell(std::string_view text) {
@@ -128,6 +131,26 @@ std::string trajectory_head(const std::vector<std::string>& columns) {
   std::vector<std::string> cells;
   for (const std::string& column : columns) cells.push_back(csv_cell(column));
   return csv_line(cells);
+}
+
+bool read_trajectory_rows(std::string_view text, std::size_t columns,
+                          std::vector<std::vector<double>>& rows) {
+  rows.clear();
+  for (std::size_t at = text.find('\n') + 1, end = 0; at < text.size(); at = end + 1) {
+    end = text.find('\n', at);
+    if (end == std::string_view::npos) return false;
+    std::vector<double>& row = rows.emplace_back();
+    for (std::size_t cell = at; cell <= end;) {
+      const std::size_t stop = std::min(text.find(',', cell), end);
+      double value = not_measured;
+      const auto read = std::from_chars(text.data() + cell, text.data() + stop, value);
+      if (cell < stop && (read.ec != std::errc() || read.ptr != text.data() + stop)) return false;
+      row.push_back(value);
+      cell = stop + 1;
+    }
+    if (row.size() != columns) return false;
+  }
+  return true;
 }
 
 std::string trajectory_line(const std::vector<double>& row) {

@@ -16,6 +16,9 @@ std::string study_csv(const StudyResult&);
 /// The lines of trajectory.csv: its header from the columns, and one of an output time.
 std::string trajectory_head(const std::vector<std::string>& columns);
 std::string trajectory_line(const std::vector<double>& row);
+/// The rows below the header of a text of such lines, bit for bit. False where one is not whole.
+bool read_trajectory_rows(std::string_view text, std::size_t columns,
+                          std::vector<std::vector<double>>& rows);
 
 /// The text as one cell: quoted when it holds a comma, a quote or a line break, its quotes doubled.
 std::string csv_cell(std::string_view text);

@@ -6,47 +6,84 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <system_error>
+#include <utility>
 
 namespace momenta {
 
-PartFile::PartFile(std::filesystem::path file) : file_(std::move(file)), part_(file_) {
+PartFile::PartFile(std::filesystem::path file, std::string_view before)
+    : file_(std::move(file)), target_(file_) {
+  std::error_code unknown;
+  is_device_ = is_other(std::filesystem::status(file_, unknown));
+  if (is_symlink(file_, unknown)) target_ = canonical(file_, unknown);
+  if (target_.empty()) target_ = file_;
+  part_ = target_;
   part_ += ".part";
   const auto directory = file_.parent_path();
   std::error_code failure;
   if (!directory.empty()) made_directory_ = create_directories(directory, failure);
   if (failure)
     problem_ = "Cannot make the directory " + directory.string() + ": " + failure.message() + ".";
+  else if (is_device_)
+    open_device();
   else
-    open();
+    open(before);
 }
 
 PartFile::~PartFile() {
   if (descriptor_ >= 0) {
-    ::unlink(part_.c_str());
+    if (!stood_there_ && !is_device_ && has_its_name()) ::unlink(part_.c_str());
     ::close(descriptor_);
   }
   std::error_code not_empty;
   if (made_directory_) std::filesystem::remove(file_.parent_path(), not_empty);
 }
 
-bool PartFile::open() {
+bool PartFile::open_device() {
+  descriptor_ = ::open(file_.c_str(), O_WRONLY | O_CLOEXEC);
+  return descriptor_ >= 0 || fail(errno);
+}
+
+bool PartFile::has_its_name() const {
+  struct stat own {
+  }, named{};
+  return ::fstat(descriptor_, &own) == 0 && ::stat(part_.c_str(), &named) == 0 &&
+         own.st_ino == named.st_ino && own.st_dev == named.st_dev;
+}
+
+bool PartFile::begins_with(std::string_view before) const {
+  char piece[1 << 16];
+  while (!before.empty()) {
+    const ssize_t size = ::read(descriptor_, piece, std::min(sizeof piece, before.size()));
+    if (size < 0 && errno == EINTR) continue;
+    if (size <= 0 || !before.starts_with({piece, static_cast<std::size_t>(size)})) return false;
+    before.remove_prefix(static_cast<std::size_t>(size));
+  }
+  return true;
+}
+
+bool PartFile::open(std::string_view before) {
   // A lock, not O_EXCL: it goes with its process, whatever ends that. Where the file system knows
   // no locks, two at once are the user's to avoid.
   while (true) {
     descriptor_ = ::open(part_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
     if (descriptor_ < 0) return fail(errno);
-    struct stat own {
-    }, named{};
     if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
       problem_ = "Cannot write " + file_.string() + ": another process is writing it.";
-    } else if (::fstat(descriptor_, &own) != 0 || ::stat(part_.c_str(), &named) != 0 ||
-               own.st_ino != named.st_ino || own.st_dev != named.st_dev) {
+    } else if (!has_its_name()) {
       ::close(descriptor_);  // another process had it, and has just put it in place
       continue;
-    } else if (::ftruncate(descriptor_, 0) != 0) {
-      fail(errno);
+    } else {
+      stood_there_ = !before.empty() && begins_with(before);
+      size_ = stood_there_ ? before.size() : 0;
+      const auto end = static_cast<off_t>(size_);
+      if (::ftruncate(descriptor_, end) != 0 || ::lseek(descriptor_, end, SEEK_SET) < 0)
+        fail(errno);
+      else
+        append(before.substr(size_));
+      if (!problem_.empty() && !stood_there_) ::unlink(part_.c_str());
     }
     if (problem_.empty()) return true;
     ::close(descriptor_);
@@ -64,6 +101,7 @@ bool PartFile::fail(int error) {
 
 bool PartFile::append(std::string_view text) {
   if (!problem_.empty()) return false;
+  if (!is_device_ && !has_its_name()) return fail(ENOENT);
   while (!text.empty()) {
     const ssize_t written = ::write(descriptor_, text.data(), text.size());
     if (written < 0 && errno == EINTR) continue;
@@ -95,8 +133,12 @@ bool PartFile::sync() {
 
 bool PartFile::put_in_place() {
   if (descriptor_ < 0) return false;
+  if (is_device_) {
+    const int error = ::close(std::exchange(descriptor_, -1)) == 0 ? 0 : errno;
+    return problem_.empty() && (error == 0 || fail(error));
+  }
   if (::ftruncate(descriptor_, static_cast<off_t>(size_)) != 0) return fail(errno);  // reserved
-  const auto trouble = momenta::put_in_place(part_, file_);
+  const auto trouble = momenta::put_in_place(part_, target_);
   ::close(descriptor_);
   descriptor_ = -1;
   if (!trouble) return true;

@@ -1,7 +1,8 @@
 #pragma once
 // FILE.part, which becomes FILE once it is whole: a reader never sees half a result, nor does a
 // kill or a full disk leave one. What a killed process left of a FILE.part, the next that writes
-// FILE replaces.
+// FILE replaces. A device or a pipe cannot be whole or not: it is written to. So is what a link
+// leads to.
 
 #include <filesystem>
 #include <optional>
@@ -15,8 +16,10 @@ namespace momenta {
 class PartFile {
  public:
   /// Makes FILE.part, and directories that are missing. It is this process's own while it lives.
-  explicit PartFile(std::filesystem::path file);
-  /// Not put in place: removes FILE.part, and a directory made for it that is empty.
+  /// It begins with `before`: what stands there is kept so far where it does, else replaced.
+  explicit PartFile(std::filesystem::path file, std::string_view before = {});
+  /// Not put in place: removes FILE.part, unless it stood there with its beginning, and a directory
+  /// made for it that is empty.
   ~PartFile();
   PartFile(const PartFile&) = delete;
   PartFile& operator=(const PartFile&) = delete;
@@ -39,13 +42,16 @@ class PartFile {
   const std::string& problem() const { return problem_; }
 
  private:
-  bool open();
+  bool open(std::string_view before);
+  bool open_device();
+  bool has_its_name() const;  ///< nobody has removed or moved it
+  bool begins_with(std::string_view before) const;
   bool fail(int error);
 
-  std::filesystem::path file_, part_;
+  std::filesystem::path file_, target_, part_;  ///< as asked for; what it leads to
   int descriptor_ = -1;
   std::size_t size_ = 0;
-  bool made_directory_ = false;
+  bool made_directory_ = false, stood_there_ = false, is_device_ = false;
   std::string problem_;
 };
 

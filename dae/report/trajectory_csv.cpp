@@ -10,8 +10,9 @@ namespace {
 
 class CsvTrajectory final : public TrajectoryFile {
  public:
-  CsvTrajectory(std::filesystem::path file, const std::vector<std::string>& labels)
-      : part_(std::move(file)), held_(trajectory_head(labels)) {
+  CsvTrajectory(std::filesystem::path file, const std::vector<std::string>& labels,
+                std::string_view before)
+      : part_(std::move(file), before), held_(before.empty() ? trajectory_head(labels) : "") {
     problem_ = part_.problem();
     flush();  // the head, so that a full disk shows at once
   }
@@ -37,6 +38,8 @@ class CsvTrajectory final : public TrajectoryFile {
     return problem_.empty();
   }
 
+  std::size_t size() const override { return part_.size(); }
+
   bool finish(const std::string&) override {
     if (part_.put_in_place()) return true;
     if (problem_.empty()) problem_ = part_.problem();
@@ -56,8 +59,9 @@ class CsvTrajectory final : public TrajectoryFile {
 }  // namespace
 
 std::unique_ptr<TrajectoryFile> csv_trajectory(std::filesystem::path file,
-                                               const std::vector<std::string>& labels) {
-  return std::make_unique<CsvTrajectory>(std::move(file), labels);
+                                               const std::vector<std::string>& labels,
+                                               std::string_view before) {
+  return std::make_unique<CsvTrajectory>(std::move(file), labels, before);
 }
 
 }  // namespace momenta

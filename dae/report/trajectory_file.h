@@ -9,12 +9,13 @@
 //   attributes of /    texts: scene, settings, environment; once it is over, summary
 //
 // Either is written as FILE.part, whole lines or chunks at a time, and gets its name once the run
-// is over. What a kill leaves is a FILE.part with the samples until shortly before; the next run
-// replaces it.
+// is over. What a kill leaves is a FILE.part with the samples until shortly before: a run that goes
+// on begins with it, any other replaces it.
 
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -36,14 +37,17 @@ class TrajectoryFile {
   /// After a problem: with the samples that are in it whole. False where not even that is possible.
   virtual bool finish(const std::string& summary) = 0;
   const std::string& problem() const { return problem_; }
+  /// Bytes in FILE.part, from which a run can go on; 0: not in this format. @pre flush()
+  virtual std::size_t size() const { return 0; }
 
  protected:
   std::string problem_;
 };
 
-/// Columns are labels, "O.q [rad]".
+/// Columns are labels, "O.q [rad]". `before`: how the file begins, of a run that goes on.
 std::unique_ptr<TrajectoryFile> csv_trajectory(std::filesystem::path file,
-                                               const std::vector<std::string>& columns);
+                                               const std::vector<std::string>& columns,
+                                               std::string_view before = {});
 
 /// Whether this build can write HDF5.
 bool writes_hdf5();

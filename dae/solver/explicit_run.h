@@ -44,7 +44,7 @@ class ExplicitRun {
         observer_(observer),
         outputs_(t0, output_times),
         step_(system, options.rtol, options.atol, y0.data()),
-        cpu_(options.max_cpu_seconds),
+        cpu_(options.max_cpu_seconds, options.spent_cpu_seconds),
         t0_(t0),
         t_(t0),
         end_(outputs_.end()),
@@ -53,11 +53,19 @@ class ExplicitRun {
         corrected_(system.has_after_step()) {
     if (corrected_) unaltered_.resize(y0.size());
     if (observer.sample && !fixed_) look_.emplace(system, options.rtol, options.atol, y0.data());
+    if (observer.before_step) carry_ = [this](Memory& memory) { carry(memory); };
     if (observer.step) between_ = [this](double t, double* y) { step_.interpolate(t, y); };
   }
 
   IntegrationResult run() {
-    result_.done = sample_until(t_) && (t_ == end_ || (start() && steps()));
+    if (options_.carried) {
+      Memory memory = *options_.carried;
+      carry(memory);
+      system_.set_handling(handling_);
+      result_.done = steps();
+    } else {
+      result_.done = sample_until(t_) && (t_ == end_ || (start() && steps()));
+    }
     if (!stopped_elsewhere_) {
       result_.end_time = t_;
       result_.y.assign(step_.y(), step_.y() + sample_.size());
@@ -98,8 +106,20 @@ class ExplicitRun {
     return true;
   }
 
+  /// Between two steps, or two trials of one.
+  void carry(Memory& memory) {
+    step_.carry(memory);
+    control_.carry(memory);
+    stiffness_.carry(memory);
+    outputs_.carry(memory);
+    memory(t_), memory(h_), memory(handling_), memory(first_handled_), memory(lengthened_);
+    memory(result_.counters.steps), memory(result_.counters.rejected);
+    system_.carry(memory);
+  }
+
   bool steps() {
     while (true) {
+      if (carry_ && system_.can_be_put_down()) observer_.before_step(t_, carry_);
       const long attempts = result_.counters.steps + result_.counters.rejected;
       if (attempts >= options_.max_steps)
         return stop("the limit of " + std::to_string(options_.max_steps) + " steps is reached");
@@ -339,6 +359,7 @@ class ExplicitRun {
   StepControl<Tableau> control_;
   CpuLimit cpu_;
   Interpolant between_;
+  std::function<void(Memory&)> carry_;
   double t0_, t_, end_;  ///< start, current step's start, end [s]
   double h_ = 0;         ///< step tried next [s]
   bool fixed_;           ///< steps of options.step, no error control

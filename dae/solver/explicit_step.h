@@ -72,6 +72,10 @@ class ExplicitStep {
     std::copy_n(y, n_, y_.data());
     std::fill_n(lost_.data(), stride_, 0.0);
   }
+  /// Between two steps: y, what rounding took off it, and f there.
+  void carry(Memory& memory) {
+    memory(y_.data(), n_), memory(lost_.data(), n_), memory(stage(0), n_), memory(evaluations_);
+  }
   /// k_0 = f(t, y).
   bool begin(double t) { return evaluate(t, y_.data(), stage(0)); }
 

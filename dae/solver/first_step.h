@@ -48,7 +48,9 @@ double first_step(int order, double t, const double* y, const double* f0, const 
   const double largest = std::max(slope, bend);
   const double by_error =
       largest > 1e-15 ? std::pow(0.01 / largest, 1.0 / order) : std::max(1e-6 * longest, h * 1e-3);
-  return std::min({100 * h, by_error, longest});
+  const double first = std::min({100 * h, by_error, longest});
+  // Tolerances so small that sizes over them overflow: whatever it is, it is soon shorter.
+  return first > 0 && std::isfinite(first) ? first : 1e-6 * longest;
 }
 
 }  // namespace momenta::explicit_rk

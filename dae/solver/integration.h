@@ -16,13 +16,15 @@ struct IntegrationOptions {
   double step = 0;     ///< fixed step [s]; needed by rk4, gauss, generalised-alpha. dp5, dop853,
                        ///< vern9, radau5: > 0 means steps of this length without error control.
                        ///< Ignored by the multistep methods
-  double initial_step = 0;       ///< 0: chosen by the method
-  double max_step = 0;           ///< 0: none
-  int max_order = 0;             ///< multistep; 0: the method's own limit
-  double spectral_radius = 0.8;  ///< generalised-alpha: at infinite frequency, in [0, 1)
-  long max_steps = 50'000'000;   ///< a run of more fails
-  double max_cpu_seconds = 0;    ///< 0: none; a run beyond it stops with status "time limit"
-  bool until_stiff = false;      ///< dp5, dop853, vern9: end where `stiff_from` is known
+  double initial_step = 0;          ///< 0: chosen by the method
+  double max_step = 0;              ///< 0: none
+  int max_order = 0;                ///< multistep; 0: the method's own limit
+  double spectral_radius = 0.8;     ///< generalised-alpha: at infinite frequency, in [0, 1)
+  long max_steps = 50'000'000;      ///< a run of more fails
+  double max_cpu_seconds = 0;       ///< 0: none; a run beyond it stops with status "time limit"
+  double spent_cpu_seconds = 0;     ///< of them, before a run that goes on
+  const Memory* carried = nullptr;  ///< what a run carried that goes on; null: from the start
+  bool until_stiff = false;         ///< dp5, dop853, vern9: end where `stiff_from` is known
 };
 
 /// What an integration took.
@@ -56,6 +58,9 @@ struct Observer {
   /// After each accepted step over [t0, t1] (before any after_step change is seen by the
   /// interpolant).
   std::function<bool(double t0, double t1, const Interpolant& between)> step;
+  /// Before steps of explicit Runge-Kutta methods, where the system can be put down: `carry` writes
+  /// down what there is at t, for IntegrationOptions::carried.
+  std::function<void(double t, const std::function<void(Memory&)>& carry)> before_step;
 };
 
 /// How an integration ended.

@@ -1,6 +1,8 @@
 #pragma once
 // Walks through the requested output times in order.
 
+#include <momenta/dae/solver/memory.h>
+
 #include <cmath>
 #include <cstddef>
 #include <stdexcept>
@@ -27,6 +29,8 @@ class OutputCursor {
 
   /// Whether there is a next output time and it is not after t.
   bool due(double t) const { return !done() && time() <= t; }
+
+  void carry(Memory& memory) { memory(next_); }
 
  private:
   const std::vector<double>& times_;

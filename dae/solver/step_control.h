@@ -10,6 +10,8 @@
 // Source: Gustafsson, ACM TOMS 17 (1991) 533-554; Hairer, Wanner, Solving Ordinary Differential
 // Equations II, IV.2; the bounds and the treatment of rejections: I, II.4.
 
+#include <momenta/dae/solver/memory.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -44,6 +46,8 @@ class StepControl {
     rejected_ = true;
     return 0.25;
   }
+
+  void carry(Memory& memory) { memory(log_old_error_), memory(rejected_); }
 
  private:
   static constexpr double log_smallest_error = -9.210340371976182;  ///< ln 1e-4

@@ -10,6 +10,8 @@
 // of the stability function R(z) = 1 + z Σ b_j k_j, k_i = 1 + z Σ a_ij k_j, itself: the first z < 0
 // with |R| > 1. Source: Hairer, Wanner, Solving Ordinary Differential Equations II, IV.2.
 
+#include <momenta/dae/solver/memory.h>
+
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -49,6 +51,8 @@ class Stiffness {
   }
   /// Since when the problem is stiff [s]; NaN: it is not.
   double from() const { return from_; }
+
+  void carry(Memory& memory) { memory(suspects_), memory(clear_), memory(first_), memory(from_); }
 
  private:
   double limit_;

@@ -50,7 +50,9 @@ inline double thread_seconds() {
 /// calls, which is what a clock read of 0.2-1 us may cost beside steps of the same length.
 class CpuLimit {
  public:
-  explicit CpuLimit(double seconds) : limit_(seconds), start_(seconds > 0 ? thread_seconds() : 0) {}
+  /// `spent`: of the limit, before.
+  explicit CpuLimit(double seconds, double spent = 0)
+      : limit_(seconds), start_(seconds > 0 ? thread_seconds() - spent : 0) {}
   double seconds() const { return limit_; }
   bool exceeded() {
     if (!(limit_ > 0) || ++calls_ % 64 != 0) return false;

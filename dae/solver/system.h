@@ -3,6 +3,8 @@
 // values: a call returns false and `failure()` then holds one sentence (which constraint, which
 // time, which cause).
 
+#include <momenta/dae/solver/memory.h>
+
 #include <limits>
 #include <string>
 #include <vector>
@@ -54,6 +56,11 @@ class OdeSystem {
   /// Evaluations from true to false are an observer's: they count nowhere, and no later step
   /// depends on them. Pairs may stand within each other.
   virtual void look_on(bool /*looking*/) {}
+
+  /// Whether carry() lists all that evaluations to come depend on.
+  virtual bool can_be_put_down() const { return false; }
+  /// Between two steps.
+  virtual void carry(Memory& /*memory*/) {}
 
   /// Typical size of y_i, for absolute tolerances: the error weight is atol · scale_i + rtol ·
   /// |y_i|.

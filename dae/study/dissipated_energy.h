@@ -4,6 +4,7 @@
 // time inside the step.
 
 #include <momenta/core/scene/scene.h>
+#include <momenta/dae/solver/memory.h>
 
 #include <array>
 
@@ -26,6 +27,10 @@ class DissipatedEnergy {
     for (std::size_t i = 0; i < points.size(); ++i)
       if (!power(t0 + points[i] * (t1 - t0), power_[i])) return false;
     return true;
+  }
+
+  void carry(Memory& memory) {
+    memory(work_), memory(from_), memory(end_), memory(power_.data(), power_.size());
   }
 
   /// Up to a time in the last step [J].

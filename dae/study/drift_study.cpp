@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <mutex>
+#include <stdexcept>
 
 namespace momenta {
 namespace {
@@ -72,6 +73,9 @@ std::vector<RunSettings> plan_runs(const Mechanism& mechanism, const DriftReques
     if (form == "momentum" && loops && projects && !request.project)
       add(form, !request.gauge.empty() ? request.gauge : one_step ? "reset" : leak, true);
   }
+  if (runs.empty())
+    throw std::invalid_argument("integrator '" + explicit_method +
+                                "' takes none of the forms asked for");
   return runs;
 }
 

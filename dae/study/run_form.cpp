@@ -61,12 +61,41 @@ RunSettings default_settings(const RunDefaults& scene, const std::string& form,
 
 namespace {
 
+/// @throws std::invalid_argument
+void expect(bool holds, const char* name, double found, const char* expected) {
+  if (!holds)
+    throw std::invalid_argument(std::string(name) + " is " + in_words(found) + ", expected " +
+                                expected);
+}
+void expect_numbers(const RunSettings& s) {
+  const auto positive = [](double x) { return x > 0 && std::isfinite(x); };
+  const auto not_negative = [](double x) { return x >= 0 && std::isfinite(x); };
+  expect(positive(s.end_time), "the end time", s.end_time, "a positive number of seconds");
+  expect(s.samples >= 1 && s.samples <= most_samples, "the number of samples", s.samples,
+         "1 to 10000000");
+  expect(not_negative(s.rtol), "rtol", s.rtol, "a tolerance, not negative");
+  expect(not_negative(s.atol), "atol", s.atol, "a tolerance, not negative");
+  expect(not_negative(s.step), "the step", s.step, "a positive number of seconds, or 0: none");
+  const struct {
+    const char* name;
+    double x;
+  } gains[] = {{"baumgarte_alpha", s.baumgarte_alpha},
+               {"baumgarte_beta", s.baumgarte_beta},
+               {"beta", s.beta},
+               {"penalty", s.penalty}};
+  for (const auto& [name, x] : gains)
+    expect(not_negative(x), name, x, "a number, not negative; 0: the form's own");
+  expect(s.spectral_radius >= 0 && s.spectral_radius < 1, "the spectral radius", s.spectral_radius,
+         "0 or more, below 1");
+}
+
 /// A form with its integrator, ready to go; shared by the watched run and the timed ones.
 class Runner {
  public:
   /// Completes the settings: default integrator, the gauge in force, gains, how (7) is solved.
   Runner(const Mechanism& mechanism, const Start& start, RunSettings& s, double max_cpu_seconds)
       : start_(start) {
+    expect_numbers(s);
     const bool dae = is_dae_form(s.form);
     if (s.integrator.empty()) s.integrator = default_integrator(s.form, s.rtol);
     const Integrator& method = integrator(s.integrator);
@@ -90,9 +119,6 @@ class Runner {
       throw std::invalid_argument("'" + s.integrator + "' is a multistep method: gauge " + s.gauge +
                                   " after each step would spoil its history; use leak or none");
     if (s.integrator == "rattle") s.gauge = "reset";  // its last stage does it
-    if (!(s.end_time > 0) || !std::isfinite(s.end_time))
-      throw std::invalid_argument("the end time must be positive and finite");
-    if (s.samples < 1) throw std::invalid_argument("expected at least one sample");
     FormOptions options;
     options.gauge = parse_gauge(s.gauge.empty() ? "none" : s.gauge);
     options.project = s.project;
@@ -135,10 +161,16 @@ class Runner {
     IntegrationResult run =
         momenta::integrate(integrator_, *form_->ode(), start_.t, y0, times, options_, observer);
     changed_at_ = not_measured;
-    if (run.ended_stiff) go_on(run, times, observer, thread_seconds() - began);
+    if (run.ended_stiff)
+      go_on(run, times, observer, options_.spent_cpu_seconds + thread_seconds() - began);
     return run;
   }
   double changed_at() const { return changed_at_; }
+  /// The next integration goes on with what another one carried.
+  void go_on_from(const Memory& carried, double spent_cpu_seconds) {
+    options_.carried = &carried;
+    options_.spent_cpu_seconds = spent_cpu_seconds;
+  }
 
  private:
   /// Whether `when_stiff`, a method with memory, takes the form as it is set.
@@ -159,6 +191,8 @@ class Runner {
     std::copy_if(times.begin(), times.end(), std::back_inserter(left),
                  [&](double t) { return t > run.end_time * (1 + 1e-14); });
     IntegrationOptions options = options_;
+    options.carried = nullptr;
+    options.spent_cpu_seconds = 0;
     if (options.max_cpu_seconds > 0)
       options.max_cpu_seconds = std::max(1e-3, options.max_cpu_seconds - cpu_s);
     const std::vector<double> y = std::move(run.y);
@@ -186,6 +220,7 @@ namespace {
 
 /// @throws std::invalid_argument
 void expect_start(const Mechanism& mechanism, const Start& s) {
+  expect(std::isfinite(s.t), "t of the start", s.t, "a time in seconds");
   const struct {
     const char* name;
     const Eigen::VectorXd& x;
@@ -250,6 +285,9 @@ void judge_drives(const Mechanism& mechanism, const DriveReach& reach,
 
 RunResult run_form(const Mechanism& mechanism, const Start& start, const RunRequest& request) {
   expect_start(mechanism, start);
+  expect(request.keep_every >= 1, "keep_every", request.keep_every, "1 or more");
+  expect(request.max_cpu_seconds >= 0, "the limit of CPU time", request.max_cpu_seconds,
+         "seconds, or 0: none");
   RunResult result;
   result.scene = mechanism.scene().name;
   result.settings = request.settings;
@@ -266,19 +304,45 @@ RunResult run_form(const Mechanism& mechanism, const Start& start, const RunRequ
   judge_rank(mechanism, start, result);
   const double end = result.settings.end_time;
   const DriveReach reach = drive_reach(mechanism, start.t, start.q, end);
-  const double wall_start = wall_now(), cpu_start = thread_seconds();
+  const Checkpoint* from = request.from;
+  if (from) result = from->so_far;
+  const double wall_start = wall_now() - (from ? result.wall_s : 0),
+               cpu_start = thread_seconds() - (from ? result.cpu_s : 0);
   RunMonitor monitor(mechanism, runner.form(), start, request, result);
   const auto y0 = runner.form().initial(start);
-  monitor.sample(start.t, y0.data(), nullptr);
+  if (!from) monitor.sample(start.t, y0.data(), nullptr);
   auto* ode = dynamic_cast<OdeForm*>(&runner.form());
   std::vector<long> faded(static_cast<std::size_t>(mechanism.m()));
   if (ode && mechanism.m() > 0) ode->watch_faded(&faded, mechanism.m() - result.rank);
   const std::vector<double> times = output_times(result.settings, request.reference, reach);
-  const Observer observer{
+  Observer observer{
       [&](double t, const double* y, const double* ydot) { return monitor.sample(t, y, ydot); },
       [&](double t0, double t1, const Interpolant& between) {
         return monitor.step(t0, t1, between);
-      }};
+      },
+      {}};
+  if (request.between_steps)
+    observer.before_step = [&](double t, const std::function<void(Memory&)>& carry) {
+      if (!monitor.can_be_put_down()) return;
+      request.between_steps([&] {
+        Memory memory;
+        monitor.carry(memory);
+        carry(memory);
+        result.cpu_s = thread_seconds() - cpu_start;
+        result.wall_s = wall_now() - wall_start;
+        std::vector<std::vector<double>> rows;
+        std::swap(rows, result.trajectory.rows);
+        Checkpoint made_here{t, memory.numbers(), result};
+        std::swap(rows, result.trajectory.rows);
+        return made_here;
+      });
+    };
+  Memory carried;
+  if (from) {
+    carried = Memory(from->memory);
+    monitor.carry(carried);
+    runner.go_on_from(carried, result.cpu_s);
+  }
   IntegrationResult run;
   if (!times.empty()) run = runner.integrate(times, observer);
   result.cpu_s = thread_seconds() - cpu_start;

@@ -9,6 +9,14 @@
 
 namespace momenta {
 
+/// A run between two of its steps.
+struct Checkpoint {
+  double t = 0;                ///< [s]
+  std::vector<double> memory;  ///< what integrator, form and measures carry
+  /// What was measured until then, but the rows of the trajectory: these are the caller's.
+  RunResult so_far;
+};
+
 /// One run: what to do, what to keep, whom to tell.
 struct RunRequest {
   RunSettings settings;                  ///< form, integrator, tolerances, times
@@ -24,14 +32,21 @@ struct RunRequest {
   std::function<bool(double t)> progress;
   /// Asked after each step; false stops the run.
   std::function<bool()> going_on;
+  /// Called between steps of a run that can go on from there in another process, to the last bit:
+  /// one by an explicit Runge-Kutta method, unless its form or solver carries what is no list of
+  /// numbers (`partitioned`; KLU). `make`, or not.
+  std::function<void(const std::function<Checkpoint()>& make)> between_steps;
+  /// Where the run goes on, of the same mechanism, start, settings, reference and program; null:
+  /// from the start.
+  const Checkpoint* from = nullptr;
 };
 
 /// Columns of trajectory.csv: t, q, u, markers, energy, drifts, loop forces.
 std::vector<std::string> trajectory_columns(const Mechanism& mechanism);
 
 /// Runs once, every sample looked at. Failures are in the result: status, reason and all samples up
-/// to there; cpu_s is that of the watched run. @throws std::invalid_argument for settings that do
-/// not fit together.
+/// to there; cpu_s is that of the watched run. @throws std::invalid_argument for settings that are
+/// no numbers or do not fit together, and for a start of wrong size or that is none.
 RunResult run_form(const Mechanism& mechanism, const Start& start, const RunRequest& request);
 
 /// The sentence for a run past an ambiguous singular pose.

@@ -145,6 +145,22 @@ class RunMonitor {
     return !request_.going_on || request_.going_on();
   }
 
+  /// Whether what is looked at does not depend on what was looked at before.
+  bool can_be_put_down() const { return !solver_ || !solver_->remembers(); }
+  /// Between two steps; beside what is in the result.
+  void carry(Memory& memory) {
+    dissipated_energy_.carry(memory);
+    if (singular_crossings_) singular_crossings_->carry(memory);
+    memory(energy_at_start_), memory(potential_at_start_);
+    memory(between_.lengths), memory(between_.angles), memory(fastest_);
+    memory(compared_), memory(rows_);
+    bool closed = closed_.q.size() > 0;
+    memory(closed);
+    if (!closed) return;
+    closed_.q.conservativeResize(mechanism_.nq());
+    memory(closed_.t), memory(closed_.q.data(), static_cast<std::size_t>(closed_.q.size()));
+  }
+
   void finish() {
     const Series& s = result_.series;
     // Of what was measured: errors are, at the reference's times alone.

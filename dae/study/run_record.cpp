@@ -170,6 +170,13 @@ void list(const Each& each,
   each("cpu_s", cpu_s);
 }
 
+template <class Each>
+void list(const Each& each,
+          auto&& s) requires std::is_same_v<std::remove_cvref_t<decltype(s)>, Checkpoint> {
+  auto& [t, memory, so_far] = s;
+  each("t", t), each("memory", memory), each("so_far", so_far);
+}
+
 template <class T>
 Record written(const T& value);
 template <class T>
@@ -258,6 +265,9 @@ Record record_of(const StressRun& run) {
 Record record_of(const SweepCase& run) {
   return written(run);
 }
+Record record_of(const Checkpoint& checkpoint) {
+  return written(checkpoint);
+}
 Record record_of(const OwnReference& own) {
   return {{"accuracy", written(own.accuracy)},
           {"source", own.reference.file()},
@@ -277,6 +287,9 @@ bool read_record(const Record& record, StressRun& run) {
 }
 bool read_record(const Record& record, SweepCase& run) {
   return read_whole(record, run);
+}
+bool read_record(const Record& record, Checkpoint& checkpoint) {
+  return read_whole(record, checkpoint);
 }
 bool read_record(const Record& record, OwnReference& own) {
   std::vector<std::string> columns;

@@ -21,6 +21,7 @@ nlohmann::json record_of(const TimedRun& run);
 nlohmann::json record_of(const StressRun& run);
 nlohmann::json record_of(const SweepCase& run);
 nlohmann::json record_of(const OwnReference& reference);
+nlohmann::json record_of(const Checkpoint& checkpoint);
 
 /// Reads a record back; false, and the value is not to be used, where it is none of that kind.
 bool read_record(const nlohmann::json& record, RunResult& run);
@@ -28,6 +29,7 @@ bool read_record(const nlohmann::json& record, TimedRun& run);
 bool read_record(const nlohmann::json& record, StressRun& run);
 bool read_record(const nlohmann::json& record, SweepCase& run);
 bool read_record(const nlohmann::json& record, OwnReference& reference);
+bool read_record(const nlohmann::json& record, Checkpoint& checkpoint);
 
 /// What the journal holds under a key; nothing without a journal.
 template <class T>

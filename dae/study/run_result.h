@@ -15,6 +15,8 @@
 
 namespace momenta {
 
+inline constexpr int most_samples = 10'000'000;  ///< of a run
+
 /// What a run was told.
 struct RunSettings {
   std::string form = "momentum";      ///< of form_names()

@@ -44,6 +44,9 @@ class SingularCrossings {
     note(t1, end, between, state);
   }
 
+  /// Between two steps; beside what is in the result.
+  void carry(Memory& memory) { memory(always_faded_), memory(largest_), memory(passing_); }
+
   /// After the last step.
   void finish() {
     std::erase_if(result_.singular_crossings, [&](const RunResult::SingularCrossing& crossing) {

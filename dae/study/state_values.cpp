@@ -5,6 +5,7 @@
 #include <momenta/dae/study/state_values.h>
 #include <momenta/dae/unheld_joints.h>
 
+#include <cmath>
 #include <limits>
 
 namespace momenta {
@@ -38,6 +39,7 @@ class StateEvaluator {
     s_.centroidal = centroidal(mechanism_.tree(), mechanism_.scene(), given_.t, given_.q, s_.v);
     s_.reactions = reactions(mechanism_, given_.t, given_.q, s_.v, m > 0 ? s_.constrained : s_.free,
                              s_.lambda);
+    if (s_.not_there.empty() && !all_finite()) refuse();
     // What transmits nothing moves without forces: reactions are there all the same.
     blank(m > 0 ? unheld_free_ : unheld_, s_.free);
     blank(unheld_, s_.constrained);
@@ -50,6 +52,14 @@ class StateEvaluator {
     throw SceneError(mechanism_.scene().where({}) +
                      "the mechanism cannot move at this state: its equations overflow; expected "
                      "smaller numbers");
+  }
+
+  bool all_finite() const {
+    for (const VectorXd* x : {&s_.v, &s_.p, &s_.qdot, &s_.pdot, &s_.bias, &s_.free, &s_.constrained,
+                              &s_.phi, &s_.phidot})
+      if (!x->allFinite()) return false;
+    return std::isfinite(s_.kinetic) && std::isfinite(s_.potential) &&
+           std::isfinite(s_.hamiltonian);
   }
 
   /// Notes why (45), (7) or (3) has no solution, if joints without inertia are why; else loops hold

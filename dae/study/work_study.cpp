@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 namespace momenta {
 namespace {
@@ -63,6 +64,9 @@ std::vector<RunResult> run_work_study(const Mechanism& mechanism, const Start& s
   bool going = true;
   for (std::size_t i = 0; i < ladders.size() && going; ++i) {
     const bool fixed = integrator(ladders[i].integrator).step == Integrator::Step::fixed;
+    if (fixed && request.steps.empty())
+      throw std::invalid_argument("integrator '" + ladders[i].integrator +
+                                  "' is of fixed steps, expected some");
     const std::size_t first = results.size();
     for (const double rung : fixed ? request.steps : request.tolerances) {
       RunRequest run;

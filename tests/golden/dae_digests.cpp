@@ -139,14 +139,8 @@ TEST_F(Digests, OfEveryLevelAreThoseOnRecord) {
     of_level["chain"] = chain_digest();
     const nlohmann::json recorded =
         record["levels"][compiler].value(std::to_string(level), nlohmann::json::object());
-    for (const auto& [name, value] : of_level.items()) {
-      if (recorded.contains(name))
-        EXPECT_EQ(value, recorded[name]) << "level " << level << ", " << name;
-      else
-        std::printf("not on record: level %d, %s: %s\n", level, name.c_str(),
-                    value.get<std::string>().c_str());
-    }
-    EXPECT_GE(recorded.size(), 15u) << level;
+    for (const auto& [name, value] : of_level.items())
+      EXPECT_EQ(value, recorded.value(name, "")) << "level " << level << ", " << name;
   }
   if (HasFailure()) std::printf("found, %s:\n%s\n", compiler.c_str(), found.dump(1).c_str());
 }

@@ -67,6 +67,64 @@ TEST_F(Part, OfAKilledProcessIsReplaced) {
   EXPECT_EQ(entries(), 1);
 }
 
+TEST_F(Part, KeepsItsBeginningWhereItStandsThere) {
+  const fs::path file = directory_ / "x.csv", stands = directory_ / "x.csv.part";
+  const std::string before(200000, 'b');  // more than is read at once
+  std::ofstream(stands) << before << "what was not reported";
+  {
+    PartFile part(file, before);
+    EXPECT_EQ(part.size(), before.size());
+    EXPECT_EQ(content(stands), before);
+  }
+  // Not put in place it is left: there is work in it.
+  EXPECT_EQ(content(stands), before);
+  for (const std::string& other : {before.substr(1), before + "c", std::string(200000, 'c')}) {
+    {
+      PartFile part(file, other);
+      EXPECT_EQ(content(stands), other);
+      EXPECT_TRUE(part.append("more"));
+      EXPECT_EQ(content(stands), other + "more");
+    }
+    EXPECT_EQ(fs::exists(stands), other.size() < before.size());
+    std::ofstream(stands) << before;
+  }
+}
+
+TEST_F(Part, DevicesAndPipesAreWrittenToAndLinksFollowed) {
+  for (const char* device : {"/dev/null", "/dev/full"}) {
+    if (!fs::is_character_file(device)) GTEST_SKIP() << "no " << device;
+    PartFile part(device);
+    EXPECT_EQ(part.append("text") && part.put_in_place(), device == std::string("/dev/null"));
+    EXPECT_EQ(part.problem(), device == std::string("/dev/null")
+                                  ? ""
+                                  : "Cannot write /dev/full: No space left on device.");
+    EXPECT_TRUE(fs::is_character_file(device));
+    EXPECT_FALSE(fs::exists(device + std::string(".part")));
+  }
+  const fs::path file = directory_ / "file", link = directory_ / "link";
+  std::ofstream(file) << "old";
+  fs::create_symlink(file, link);
+  {
+    PartFile part(link);
+    EXPECT_TRUE(part.append("new") && part.put_in_place()) << part.problem();
+  }
+  EXPECT_TRUE(fs::is_symlink(link));
+  EXPECT_EQ(content(file), "new");
+  EXPECT_EQ(entries(), 2);
+}
+
+TEST_F(Part, RemovedUnderneathIsTold) {
+  const fs::path folder = directory_ / "out";
+  PartFile part(folder / "x.csv");
+  EXPECT_TRUE(part.append("text"));
+  fs::remove_all(folder);
+  EXPECT_FALSE(part.append("more"));
+  EXPECT_FALSE(part.put_in_place());
+  EXPECT_EQ(part.problem(),
+            "Cannot write " + (folder / "x.csv").string() + ": No such file or directory.");
+  EXPECT_FALSE(fs::exists(folder));
+}
+
 TEST_F(Part, NotPutInPlaceLeavesNothingNorADirectory) {
   const fs::path file = directory_ / "made" / "x.csv";
   {

@@ -35,7 +35,7 @@ class BatchSweeps {
                         std::ptrdiff_t stride) = 0;
 
   virtual int width() const = 0;
-  /// Body whose joint had no inertia in the last failed call.
+  /// Body whose joint had no inertia in the last failed call; −1: a result is not finite.
   virtual int singular_joint() const = 0;
   virtual std::size_t failed_state() const = 0;
 };

@@ -32,11 +32,11 @@ class BatchSweepsAt final : public BatchSweeps {
       const StridedOut<Many> u{direct ? qdot : rates_.data(), direct ? stride : lanes};
       if (!momenta_.get(tree_)(Many(t), StridedIn<Many>{q, stride}, StridedIn<Many>{p, stride}, u,
                                StridedOut<Many>{pdot, stride})) {
-        singular_joint_ = momenta_.get(tree_).singular_joint();
+        joint_ = momenta_.get(tree_).singular_joint();
         return false;
       }
       if (!direct) coordinate_rates(q, qdot, stride);
-      return true;
+      return finite(qdot, tree_.model->nq, stride) && finite(pdot, tree_.model->nv, stride);
     });
   }
   bool acceleration(double t, const States& s) override {
@@ -45,8 +45,8 @@ class BatchSweepsAt final : public BatchSweeps {
           const bool ok = accelerations_.get(tree_)(Many(t), StridedIn<Many>{q, stride},
                                                     StridedIn<Many>{u, stride}, Nothing{},
                                                     StridedOut<Many>{udot, stride});
-          if (!ok) singular_joint_ = accelerations_.get(tree_).singular_joint();
-          return ok;
+          if (!ok) joint_ = accelerations_.get(tree_).singular_joint();
+          return ok && finite(udot, tree_.model->nv, stride);
         });
   }
 
@@ -66,7 +66,17 @@ class BatchSweepsAt final : public BatchSweeps {
     MOMENTA_INLINE Many operator[](int) const { return Many(0.0); }
   };
 
-  void coordinate_rates(const double* q, double* qdot, std::ptrdiff_t stride) {
+  /// Whether so many rows of a pack are: 0 x is 0 of a finite x and NaN of any other.
+  bool finite(const double* x, int rows, std::ptrdiff_t stride) {
+    Many sum(1.0);
+    for (int i = 0; i < rows; ++i) sum += Many::load(x + i * stride) * Many(0.0);
+    const bool all = all_positive(sum);
+    if (!all) joint_ = -1;
+    return all;
+  }
+
+  // A function of its own: inlined everywhere g++ 12 warns of stores that are not made.
+  [[gnu::noinline]] void coordinate_rates(const double* q, double* qdot, std::ptrdiff_t stride) {
     for (const auto& b : tree_.model->bodies) {
       if (b.nv == 0) continue;
       if (b.nq == b.nv) {
@@ -130,7 +140,10 @@ class BatchSweepsAt final : public BatchSweeps {
     bool all = true;
     for (std::size_t state = first; state < first + count; ++state) {
       if (copied(s, state, 1, nq, nv, f)) continue;
-      if (none_failed_yet && all) failed_state_ = state;
+      if (none_failed_yet && all) {
+        failed_state_ = state;
+        singular_joint_ = joint_;
+      }
       all = false;
       const double nothing = __builtin_nan("");
       const auto place = static_cast<std::ptrdiff_t>(state);
@@ -157,7 +170,7 @@ class BatchSweepsAt final : public BatchSweeps {
   WhenAsked<AccelerationSweeps<Space, Many>> accelerations_;
   WhenAsked<JacobianPass<Space, Many>> jacobian_;
   Buffer rates_, padded_;
-  int singular_joint_ = -1;
+  int singular_joint_ = -1, joint_ = -1;  ///< of the first state that failed, of the last
   std::size_t failed_state_ = 0;
   bool quasi_velocities_ = false;
 };
