@@ -69,7 +69,7 @@ int answer(int argc, char** argv) {
   drift_verb->remove_option(drift_verb->get_option("--spectral-radius"));
   drift_verb->get_option("--integrator")->description("Of ODE forms (default: rk4, else dop853)");
   CLI::App* work_verb =
-      app.add_subcommand("work", "Error against run time: every form over a ladder of tolerances");
+      app.add_subcommand("work", "Error against run time: every form over a series of tolerances");
   work_verb->footer("Example: momenta work examples/four_bar/scene.toml --forms momentum --end 1");
   add_scene(*work_verb, o);
   work_verb->add_option("--forms", w.forms, "Default: all")->type_name("FORM,...");
@@ -82,7 +82,8 @@ int answer(int argc, char** argv) {
   within(work_verb->add_option("--per-decade", w.per_decade, "Tolerances in a decade"), "X", 0.25,
          100.0)
       ->capture_default_str();
-  within(work_verb->add_option("--step-rungs", w.step_rungs, "Fixed steps: 2 --step, and halves"),
+  within(work_verb->add_option("--step-rungs", w.step_rungs,
+                               "Number of step sizes: 2*step, step, step/2 ..."),
          "N", 1, 40)
       ->capture_default_str();
   work_verb->add_flag("--no-reference", w.no_reference, "Judge by the largest drift alone");
@@ -115,13 +116,13 @@ int answer(int argc, char** argv) {
       ->add_option("--at", index_state, "Consistent state, as for evaluate (default: the start)")
       ->type_name("STATE");
   index_app->add_option("--out", o.out, "Directory for index.json")->type_name("DIR");
-  CLI::App* modes_app = app.add_subcommand(
-      "modes", "Where it rests, and small motions there: frequencies, damping, shapes");
+  CLI::App* modes_app =
+      app.add_subcommand("modes", "Equilibrium; natural frequencies, damping, mode shapes");
   modes_app->footer("Example: momenta modes examples/four_bar/scene.toml --out results");
   ModesOptions modes_options;
   add_scene(*modes_app, o);
   one_of(modes_app->add_option("--equilibrium", modes_options.equilibrium,
-                               "Downhill; by Newton, saddles too; or as assembled"),
+                               "Descend to a rest pose; Newton (also saddles); start pose"),
          {"settle", "nearest", "start"})
       ->capture_default_str();
   one_of(modes_app->add_option("--drives", modes_options.drives,
@@ -134,7 +135,7 @@ int answer(int argc, char** argv) {
   modes_app->add_option("--out", o.out, "Directory for modes.csv, modes.json, index.html")
       ->type_name("DIR");
   CLI::App* view_verb =
-      app.add_subcommand("view", "A page that shows the assembled mechanism, to turn and to zoom");
+      app.add_subcommand("view", "A page that shows the assembled mechanism, to turn and zoom");
   view_verb->footer(
       "Example: momenta view examples/models/agility_cassie/cassie.xml --out results");
   add_scene(*view_verb, o);
@@ -143,7 +144,7 @@ int answer(int argc, char** argv) {
   view_verb->add_option("--out", o.out, "Directory for index.html (default: standard output)")
       ->type_name("DIR");
   CLI::App* stress_app = app.add_subcommand(
-      "stress", "Which form survives which extreme: of a scene, else of built-in ladders");
+      "stress", "Stress tests of a scene, or built-in ones: which form fails where");
   stress_app->footer("Example: momenta stress examples/four_bar/scene.toml --along size --end 1");
   add_scene_file(*stress_app, o, false);
   stress_app->add_option("--forms", stress_options.forms, "Default: all")->type_name("FORM,...");
@@ -157,10 +158,9 @@ int answer(int argc, char** argv) {
           "Of a scene: stiffness, damping, mass ratio, size, speed, duration; built in: words of a "
           "ladder's name (default: all)")
       ->type_name("LADDER,...");
-  positive(
-      stress_app->add_option("--within", stress_options.within,
-                             "Largest position drift, energy error and error of what survives"),
-      "X")
+  positive(stress_app->add_option("--within", stress_options.within,
+                                  "Bound on drift, energy error and error to survive"),
+           "X")
       ->capture_default_str();
   positive(stress_app->add_option("--rtol", o.rtol, "Relative and absolute tolerance"), "X")
       ->capture_default_str();
@@ -209,13 +209,13 @@ int answer(int argc, char** argv) {
       app.add_subcommand("convert", "Writes a scene, URDF or MJCF as a scene in TOML");
   convert_verb->footer("Example: momenta convert examples/models/ur5/ur5_robot.urdf ur5.toml");
   add_scene_file(*convert_verb, o);
-  convert_verb->add_flag("--quiet", o.quiet, "Do not tell what was left out");
+  convert_verb->add_flag("--quiet", o.quiet, "No messages about what was skipped");
   ConvertOptions convert_options;
   convert_verb
       ->add_option("out", convert_options.out, "TOML file to write (default: standard output)")
       ->type_name("FILE");
   convert_verb->add_flag("--recut", convert_options.recut,
-                         "Assembled, and its loops cut where they are least work");
+                         "Assemble it, and move loop cuts to where they cost less");
   convert_verb
       ->add_option("--keep", convert_options.keep,
                    "With --recut: a joint or loop to leave; repeatable")
@@ -225,7 +225,7 @@ int answer(int argc, char** argv) {
   make_verb->add_option("family", family, "Which mechanism")->required()->type_name("FAMILY");
   make_verb->add_option("--n", n, "Size (each family has its own default)")->type_name("N");
   bool turned = false;
-  make_verb->add_flag("--turned", turned, "Planar families: in a plane across all axes");
+  make_verb->add_flag("--turned", turned, "Planar families: in a plane oblique to all axes");
   CLI::App* completion_verb =
       app.add_subcommand("completion", "Prints a script that completes this command line");
   completion_verb->footer("Example: momenta completion bash > momenta");

@@ -55,7 +55,7 @@ void add_scene(CLI::App& verb, Options& o) {
   add_scene_file(verb, o);
   one_of(verb.add_option("--algebra", o.algebra, "Kernel (default: auto)"),
          {"auto", "planar", "spatial"});
-  one_of(verb.add_option("--kkt", o.kkt, "How (7) is solved (default: auto)"),
+  one_of(verb.add_option("--kkt", o.kkt, "Solver of the loop equations (default: auto)"),
          {"auto", "sweeps", "sparse", "dense"});
   add_level(verb, o);
   verb.add_flag("--json", o.json, "One JSON document on standard output");
@@ -79,11 +79,11 @@ void add_run_options(CLI::App& verb, Options& o, const char* cpu_limit) {
                          "Default: ida, or dp5, dop853, vern9 by --rtol"),
          names)
       ->type_name("INTEGRATOR");
-  verb.add_option("--gauge", o.gauge, "Of momentum forms, rate in 1/s")
+  verb.add_option("--gauge", o.gauge, "How momentum forms keep σ small [1/s]")
       ->type_name("none|reset|flip|leak|leak:RATE");
   positive(verb.add_option("--rtol", o.rtol, "Relative tolerance"), "X")->capture_default_str();
   positive(
-      verb.add_option("--atol", o.atol, "Absolute, times each unknown's scale (default: rtol)"),
+      verb.add_option("--atol", o.atol, "Absolute tolerance, scaled per unknown (default: rtol)"),
       "X");
   positive(verb.add_option("--step", o.step, "Step of the fixed-step integrators [s]"), "S");
   within(verb.add_option("--spectral-radius", o.spectral_radius, "Of generalised-alpha, below 1"),
@@ -93,7 +93,7 @@ void add_run_options(CLI::App& verb, Options& o, const char* cpu_limit) {
   within(verb.add_option("--samples", o.samples, "Output intervals"), "N", 1, most_samples);
   auto* project =
       verb.add_flag("--project", o.project, "Correct positions after each step (ODE forms)");
-  verb.add_flag("--no-project", o.no_project, "Do not, even if the scene asks for it")
+  verb.add_flag("--no-project", o.no_project, "No correction, even if the scene asks for it")
       ->excludes(project);
   positive(verb.add_option("--baumgarte-alpha", o.baumgarte_alpha, "α of Φ̈ + 2αΦ̇ + β²Φ = 0 [1/s]"),
            "X");
