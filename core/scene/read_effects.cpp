@@ -1,9 +1,9 @@
 // [[drive]] and [[force]]: what acts on the mechanism.
 
+#include <momenta/core/scene/drive.h>
 #include <momenta/core/scene/kinds.h>
 #include <momenta/core/scene/near_name.h>
 #include <momenta/core/scene/read_tables.h>
-#include <momenta/core/tree/drive.h>
 
 #include <vector>
 

@@ -2,7 +2,7 @@
 // A scene: the mechanism as its author wrote it, before any analysis. Plain data, SI units, angles
 // in rad. Readers (read_scene) fill it from files; programs may fill it by hand.
 
-#include <momenta/core/tree/joint_kind.h>
+#include <momenta/core/scene/joint_kind.h>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -201,7 +201,7 @@ constexpr int driven_coordinates_of(LoopKind kind) {
 ///   - harmonic: f = offset + amplitude sin(ω t + φ), with ω = frequency [rad/s], φ = phase [rad]
 ///   - step: `from` → `to` between start and start + duration, by the quintic 10x³ − 15x⁴ + 6x⁵
 ///   - table: natural cubic spline through (times, values); constant slope outside
-/// The laws are evaluated by MotionLaw, core/tree/drive.h.
+/// The laws are evaluated by MotionLaw, core/scene/drive.h.
 struct DriveSpec {
   std::string joint;   ///< or `loop`: one of them is empty
   std::string loop;    ///< or `joint`

@@ -3,8 +3,8 @@
 // contiguous), joints with their places in q and u, everything in SI units. Independent of the
 // algebra that will move it; immutable once built.
 
+#include <momenta/core/scene/drive.h>
 #include <momenta/core/scene/scene.h>
-#include <momenta/core/tree/drive.h>
 
 #include <Eigen/Geometry>
 #include <string>

@@ -1,30 +1,21 @@
-#include <momenta/core/tree/drive.h>
-
-#include <algorithm>
-#include <cmath>
+#include <momenta/core/scalar/all_finite.h>
+#include <momenta/core/scene/drive.h>
 
 namespace momenta {
-namespace {
-
-bool finite(const std::vector<double>& numbers) {
-  return std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::isfinite(x); });
-}
-
-}  // namespace
 
 std::string law_fault(const DriveSpec& spec) {
   if (spec.kind == "polynomial") {
     if (spec.coefficients.empty())
       return "coefficients is empty, expected c0, c1, ... of f = c0 + c1 t + ...";
-    if (!finite(spec.coefficients)) return "coefficients must be finite";
+    if (!all_finite(spec.coefficients)) return "coefficients must be finite";
     return "";
   }
   if (spec.kind == "harmonic")
-    return finite({spec.offset, spec.amplitude, spec.frequency, spec.phase})
+    return all_finite({spec.offset, spec.amplitude, spec.frequency, spec.phase})
                ? ""
                : "offset, amplitude, frequency and phase must be finite";
   if (spec.kind == "step") {
-    if (!finite({spec.from, spec.to, spec.start, spec.duration}))
+    if (!all_finite({spec.from, spec.to, spec.start, spec.duration}))
       return "from, to, start and duration must be finite";
     return spec.duration > 0 ? "" : "duration must be > 0 [s]";
   }
@@ -34,7 +25,8 @@ std::string law_fault(const DriveSpec& spec) {
     if (spec.values.size() != n)
       return "values has " + std::to_string(spec.values.size()) + " entries and times " +
              std::to_string(n) + ", expected as many";
-    if (!finite(spec.times) || !finite(spec.values)) return "times and values must be finite";
+    if (!all_finite(spec.times) || !all_finite(spec.values))
+      return "times and values must be finite";
     for (std::size_t i = 1; i < n; ++i)
       if (!(spec.times[i - 1] < spec.times[i]))
         return "times[" + std::to_string(i) + "] is not after times[" + std::to_string(i - 1) +
