@@ -1,4 +1,4 @@
-#include <momenta/core/scene/set_numbers.h>
+#include <momenta/core/scene/toml/set_numbers.h>
 
 #include <algorithm>
 #include <charconv>

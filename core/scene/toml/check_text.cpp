@@ -1,4 +1,5 @@
-#include <momenta/core/scene/toml_values.h>
+#include <momenta/core/scene/file_text.h>
+#include <momenta/core/scene/toml/toml_values.h>
 
 #include <array>
 

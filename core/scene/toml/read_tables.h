@@ -2,8 +2,8 @@
 // One function per table of the scene format. Each checks keys, types and the values which can be
 // judged alone; what concerns several tables is left to validate().
 
-#include <momenta/core/scene/fields.h>
 #include <momenta/core/scene/scene.h>
+#include <momenta/core/scene/toml/fields.h>
 
 #include <cstddef>
 #include <span>

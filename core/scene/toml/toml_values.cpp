@@ -1,5 +1,6 @@
+#include <momenta/core/scene/file_text.h>
 #include <momenta/core/scene/near_name.h>
-#include <momenta/core/scene/toml_values.h>
+#include <momenta/core/scene/toml/toml_values.h>
 
 #include <algorithm>
 #include <stdexcept>
@@ -108,12 +109,6 @@ std::string_view described(Value::Type type) {
       return "a table";
   }
   return "something else";
-}
-
-void fail(const std::string& file, Location at, const std::string& sentence) {
-  Scene scene;
-  scene.file = file;
-  throw SceneError(scene.where(at) + sentence);
 }
 
 Value parse_toml(std::string_view text, const std::string& file) {

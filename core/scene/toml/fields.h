@@ -2,7 +2,7 @@
 // The keys of one TOML table, read by type. Every complaint names the owner of the key, the key,
 // what was found and what was expected, and points to the value.
 
-#include <momenta/core/scene/toml_values.h>
+#include <momenta/core/scene/toml/toml_values.h>
 
 #include <Eigen/Core>
 #include <cstddef>

@@ -48,9 +48,4 @@ Value parse_toml(std::string_view text, const std::string& file);
 /// Cost O(size). @throws SceneError
 void check_text(std::string_view text, const std::string& file);
 
-inline constexpr std::size_t largest_text = std::size_t{64} << 20;  ///< [byte]
-
-/// Throws the sentence "file:line:column: sentence".
-[[noreturn]] void fail(const std::string& file, Location at, const std::string& sentence);
-
 }  // namespace momenta::reading

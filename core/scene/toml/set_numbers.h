@@ -1,6 +1,6 @@
 #pragma once
-#include <momenta/core/scene/setting.h>
-#include <momenta/core/scene/toml_values.h>
+#include <momenta/core/scene/toml/setting.h>
+#include <momenta/core/scene/toml/toml_values.h>
 
 namespace momenta::reading {
 
