@@ -2,7 +2,6 @@
 
 #include <momenta/core/kernel/branches/branches.h>
 #include <momenta/core/kernel/levels/open_sweeps.h>
-#include <momenta/dae/kkt/kkt.h>
 #include <momenta/dae/mechanism.h>
 #include <momenta/dae/sweeps/branches/looped_branches.h>
 #include <momenta/dae/unheld_joints.h>
@@ -88,7 +87,7 @@ std::vector<std::pair<std::string, std::string>> Mechanism::plan_lines() const {
           (looped_branches.empty() ? "" : ", " + looped_branches);
   else if (kkt_ == KktChoice::sparse)
     how = std::string(
-              solved_by_bodies(*this)
+              solved_by_bodies()
                   ? "sparse: KLU on the equations of the bodies, the tree being deep; poses are "
                     "not filtered,"
               : leaves_first() ? "sparse: filtered LDLᵀ"

@@ -320,7 +320,7 @@ TEST(Kkt, DeepTreesAreSolvedByTheirBodies) {
   for (const Scene& scene : {crossed_bars(60), arch(120)}) {
     const Mechanism by_sweeps(scene), by_bodies(scene, {.kkt = KktChoice::sparse}),
         in_space(scene, {.algebra = Algebra::spatial, .kkt = KktChoice::sparse});
-    ASSERT_TRUE(solved_by_bodies(by_bodies));
+    ASSERT_TRUE(by_bodies.solved_by_bodies());
     ASSERT_EQ(by_sweeps.kkt(), KktChoice::sweeps);
     const auto e = by_sweeps.evaluation<double>(), f = by_bodies.evaluation<double>(),
                g = in_space.evaluation<double>();

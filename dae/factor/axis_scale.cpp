@@ -1,17 +1,19 @@
-#include <momenta/dae/kkt/axis_scale.h>
+#include <momenta/dae/factor/axis_scale.h>
 #include <momenta/dae/loop/loop_weights.h>
 
 #include <algorithm>
 
 namespace momenta {
 
-AxisScale::AxisScale(const Mechanism& mechanism)
-    : pattern_(mechanism.constraint_pattern()),
-      groups_(mechanism.row_groups()),
-      least_(mechanism.least_scales()),
-      far_apart_(std::max(1.0, mechanism.mass_spread() / masses_far_apart)) {
-  std::vector<bool> turns(static_cast<std::size_t>(mechanism.nv()), false);
-  for (const auto& b : mechanism.tree().bodies) {
+AxisScale::AxisScale(const Tree& tree, const std::vector<KktPattern::Entry>& constraint,
+                     const std::vector<int>& groups, const std::vector<double>& least,
+                     double spread)
+    : pattern_(constraint),
+      groups_(groups),
+      least_(least),
+      far_apart_(std::max(1.0, spread / masses_far_apart)) {
+  std::vector<bool> turns(static_cast<std::size_t>(tree.nv), false);
+  for (const auto& b : tree.bodies) {
     const int angular = b.nv == 6 ? 3 : 0;
     if (b.nv == 1 && b.kind == JointKind::prismatic) continue;
     for (int i = angular; i < b.nv; ++i) turns[static_cast<std::size_t>(b.u + i)] = true;
@@ -73,15 +75,6 @@ MassDiagonal::MassDiagonal(const KktPattern& pattern, int nv)
 const std::vector<double>& MassDiagonal::of(const std::vector<double>& mass) {
   for (std::size_t j = 0; j < place_.size(); ++j) inertia_[j] = mass[place_[j]];
   return inertia_;
-}
-
-std::vector<double> row_scales(const Mechanism& mechanism, Evaluation<double>& e) {
-  std::vector<double> constraint(mechanism.constraint_pattern().size()),
-      inertia(static_cast<std::size_t>(mechanism.nv())), scale(mechanism.row_groups().size());
-  e.constraint_entries(constraint.data());
-  e.mass_diagonal(inertia.data());
-  AxisScale(mechanism).of_groups(inertia, constraint, scale);
-  return scale;
 }
 
 }  // namespace momenta

@@ -1,5 +1,5 @@
-#include <momenta/dae/kkt/faded_pivot.h>
-#include <momenta/dae/kkt/filtered_factor.h>
+#include <momenta/dae/factor/faded_pivot.h>
+#include <momenta/dae/factor/filtered_factor.h>
 #include <suitesparse/amd.h>
 
 #include <algorithm>
@@ -8,22 +8,22 @@
 #include <set>
 
 namespace momenta {
-FilteredFactor::FilteredFactor(const Mechanism& mechanism)
-    : pattern_(mechanism.kkt_pattern()), n_(mechanism.nv()), m_(mechanism.m()) {
-  order(mechanism);
-  analyse(mechanism);
+FilteredFactor::FilteredFactor(const KktPattern& pattern, int nv, const std::vector<int>& groups)
+    : pattern_(pattern), n_(nv), m_(static_cast<int>(groups.size())) {
+  order(groups);
+  analyse();
 }
 
 /// Blocks in the order of elimination: by depth of the joint, deepest first, a loop after the
 /// topmost joints it hangs on.
-void FilteredFactor::order(const Mechanism& mechanism) {
+void FilteredFactor::order(const std::vector<int>& groups) {
   const auto at = [](int i) { return static_cast<std::size_t>(i); };
   std::vector<int> depth(at(n_), 0);  // coordinates from the ground down to it
   for (const auto& e : pattern_.mass) ++depth[at(e.column)];
   // Loops, and of each its rows and topmost columns.
   std::vector<int> loop_of(at(m_)), first_row;
   for (int i = 0; i < m_; ++i) {
-    if (i == 0 || mechanism.rows()[at(i)].loop != mechanism.rows()[at(i - 1)].loop)
+    if (i == 0 || groups[at(i)] / 2 != groups[at(i - 1)] / 2)  // points and axes of one loop
       first_row.push_back(i);
     loop_of[at(i)] = static_cast<int>(first_row.size()) - 1;
   }
@@ -84,7 +84,7 @@ void FilteredFactor::order(const Mechanism& mechanism) {
   }
 }
 
-void FilteredFactor::analyse(const Mechanism&) {
+void FilteredFactor::analyse() {
   const auto at = [](int i) { return static_cast<std::size_t>(i); };
   const std::size_t unknowns = place_.size();
   // Rows below each block in A, then by the blocks whose first row below falls into it.

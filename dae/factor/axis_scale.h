@@ -3,7 +3,8 @@
 // equations for its axes vanish to rounding in every entry: they are redundant, not weak, and what
 // is left of them is no scale for anything.
 
-#include <momenta/dae/mechanism.h>
+#include <momenta/core/tree/tree.h>
+#include <momenta/dae/factor/kkt_pattern.h>
 
 #include <vector>
 
@@ -11,10 +12,13 @@ namespace momenta {
 
 class AxisScale {
  public:
-  explicit AxisScale(const Mechanism& mechanism);
+  /// `constraint`: pattern of Φ_q; `groups`, `least` (m): Mechanism::row_groups, least_scales;
+  /// `spread`: LoopWeights::spread. All but the last are kept by reference.
+  AxisScale(const Tree& tree, const std::vector<KktPattern::Entry>& constraint,
+            const std::vector<int>& groups, const std::vector<double>& least, double spread);
 
   /// Per row (m): Σ_j 1/M_jj over the rotations that an axis row hangs on, whose entries are at
-  /// most 1: its W_ii when the axes are anyhow; the mechanism's least scale for rows of points and
+  /// most 1: its W_ii when the axes are anyhow; the least scale for rows of points and
   /// distances. `inertia`: M_jj (nv).
   void measure(const std::vector<double>& inertia, std::vector<double>& scale) const;
   /// Per row (m) the mean over the rows of its group of max(Σ_j Φ_ij² / M_jj, the above);
@@ -49,10 +53,5 @@ class MassDiagonal {
   std::vector<std::size_t> place_;
   std::vector<double> inertia_;
 };
-
-/// Scale of each row of Φ_q M⁻¹ Φ_qᵀ (m) at the configuration placed in `e`: the mean of Σ_j Φ_ij²
-/// / M_jj over the rows of its group, since a row may vanish in every entry; where a whole group of
-/// axis rows does, what is natural for them. [1/kg, or 1/(kg m²)]
-std::vector<double> row_scales(const Mechanism& mechanism, Evaluation<double>& e);
 
 }  // namespace momenta

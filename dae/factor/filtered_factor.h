@@ -17,7 +17,7 @@
 // Source: Davis, Direct Methods for Sparse Linear Systems, ch. 4; Amestoy, Davis, Duff, ACM TOMS 30
 // (2004) 381, for the order.
 
-#include <momenta/dae/mechanism.h>
+#include <momenta/dae/factor/kkt_pattern.h>
 
 #include <vector>
 
@@ -25,7 +25,8 @@ namespace momenta {
 
 class FilteredFactor {
  public:
-  explicit FilteredFactor(const Mechanism& mechanism);
+  /// `nv` columns of M; `groups` (m): Mechanism::row_groups. The pattern is kept by reference.
+  FilteredFactor(const KktPattern& pattern, int nv, const std::vector<int>& groups);
 
   /// From M and Φ_q in the order of the KKT pattern, E (m, null: 0) and τ (m, 0: no filter). False
   /// where a pivot of u is not positive or not finite: singular_joint() is its place in u. O(fill),
@@ -50,8 +51,8 @@ class FilteredFactor {
     int size() const { return last - first; }
     std::size_t height() const { return end - row; }
   };
-  void order(const Mechanism& mechanism);
-  void analyse(const Mechanism& mechanism);
+  void order(const std::vector<int>& groups);
+  void analyse();
   bool eliminate(const Block& block, const double* tau);
   void update(const Block& from, std::size_t at, const Block& to);
 
