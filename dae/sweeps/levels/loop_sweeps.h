@@ -7,8 +7,8 @@
 #include <momenta/core/kernel/planar_link.h>
 #include <momenta/dae/loop/loop_model.h>
 #include <momenta/dae/loop/shared_points.h>
-#include <momenta/dae/sweeps/loop_plan.h>
-#include <momenta/dae/sweeps/right_side.h>
+#include <momenta/dae/sweeps/slots/loop_plan.h>
+#include <momenta/dae/sweeps/slots/right_side.h>
 
 #include <limits>
 #include <memory>

@@ -8,7 +8,7 @@
 // every group, and groups outside the mask hold anything.
 
 #include <momenta/core/scalar/sine_cosine.h>
-#include <momenta/dae/sweeps/open_slots.h>
+#include <momenta/dae/sweeps/slots/open_slots.h>
 
 #include <type_traits>
 

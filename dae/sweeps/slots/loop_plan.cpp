@@ -1,4 +1,4 @@
-#include <momenta/dae/sweeps/loop_plan.h>
+#include <momenta/dae/sweeps/slots/loop_plan.h>
 
 #include <algorithm>
 #include <bit>

@@ -2,7 +2,7 @@
 // Which slots are in use where: of a pack of states each slot is a pack of its own, and work on
 // slots of no open loop would be work for nothing. Slots stand in groups of two.
 
-#include <momenta/dae/sweeps/loop_plan.h>
+#include <momenta/dae/sweeps/slots/loop_plan.h>
 
 namespace momenta {
 

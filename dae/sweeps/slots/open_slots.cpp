@@ -1,4 +1,4 @@
-#include <momenta/dae/sweeps/open_slots.h>
+#include <momenta/dae/sweeps/slots/open_slots.h>
 
 #include <algorithm>
 
