@@ -2,7 +2,7 @@
 #include <momenta/dae/factor/faded_pivot.h>
 #include <momenta/dae/factor/filtered_matrix.h>
 #include <momenta/dae/loop/loop_weights.h>
-#include <momenta/dae/mechanism.h>
+#include <momenta/dae/mechanism_inside.h>
 
 #include <algorithm>
 
@@ -59,15 +59,16 @@ Tree open_or_closed(const Scene& scene) {
 Mechanism::Mechanism(Scene scene, MechanismOptions options)
     : scene_(std::move(scene)),
       tree_(open_or_closed(scene_)),
-      plan_(plan_with_loops(tree_, scene_, options.algebra)) {
+      plan_(plan_with_loops(tree_, scene_, options.algebra)),
+      casts_(std::make_unique<Casts>()) {
   const auto cast_into = [&](auto& cast, auto&& model) {
     cast.model = std::move(model);
     cast.loops = build_loops(scene_, tree_, cast.model);
   };
   if (plan_.planar)
-    cast_into(cast_.emplace<0>(), build_planar_model(tree_, scene_, plan_.basis));
+    cast_into(casts_->cast.emplace<0>(), build_planar_model(tree_, scene_, plan_.basis));
   else
-    cast_into(cast_.emplace<1>(), build_spatial_model(tree_, scene_));
+    cast_into(casts_->cast.emplace<1>(), build_spatial_model(tree_, scene_));
   row_names_ = row_names(scene_, plan_.planar);
   rows_ = static_cast<int>(row_names_.size());
   plan_.loops = rows_ > 0;
@@ -122,9 +123,9 @@ void Mechanism::choose_kkt(KktChoice asked) {
           " loop equations are open at once, more than " + std::to_string(LoopPlan::most_slots);
   };
   if (plan_.planar)
-    plan(std::get<0>(cast_));
+    plan(std::get<0>(casts_->cast));
   else
-    plan(std::get<1>(cast_));
+    plan(std::get<1>(casts_->cast));
   const bool far_apart = !light_.empty();
   if (!far_apart) light_ = joint_without_inertia(kkt_reason_.empty());
   kkt_ = dense_ ? KktChoice::dense : KktChoice::sparse;
@@ -161,9 +162,9 @@ void Mechanism::take_weights() {
     light_ = weights.light;
   };
   if (plan_.planar)
-    take(std::get<0>(cast_));
+    take(std::get<0>(casts_->cast));
   else
-    take(std::get<1>(cast_));
+    take(std::get<1>(casts_->cast));
 }
 
 /// A joint may have no inertia until a loop closes above it: one solution at the start tells.

@@ -7,12 +7,14 @@
 #include <momenta/core/scalar/power_series.h>
 #include <momenta/dae/evaluation.h>
 #include <momenta/dae/factor/kkt_pattern.h>
-#include <momenta/dae/loop/loop_model.h>
-#include <momenta/dae/sweeps/levels/loop_sweeps.h>
+#include <momenta/dae/loop/row_name.h>
+#include <momenta/dae/sweeps/levels/looped_sweeps.h>
 
 #include <memory>
 #include <mutex>
-#include <variant>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace momenta {
 
@@ -130,16 +132,10 @@ class Mechanism {
   /// What branches the sweeps take side by side; empty: none.
   std::string looped_branches_in_words() const;
   template <class Space>
-  struct Cast {
-    Model<Space> model;
-    LoopModel<Space> loops;
-    SweptLoops<Space> swept, as_given;  ///< as_given: only where `swept` pairs ties anew
-    decltype(build_links(std::declval<const Model<Space>&>())) links;
-  };
+  struct Cast;
+  struct Casts;
   template <class F>
-  decltype(auto) visit(F&& f) const {
-    return plan_.planar ? f(std::get<0>(cast_)) : f(std::get<1>(cast_));
-  }
+  decltype(auto) visit(F&& f) const;
   void expect_sweeps() const;
   void choose_kkt(KktChoice asked);
   void take_weights();
@@ -153,7 +149,7 @@ class Mechanism {
   Scene scene_;
   Tree tree_;
   Plan plan_;
-  std::variant<Cast<Planar>, Cast<Spatial>> cast_;
+  std::unique_ptr<Casts> casts_;  ///< mechanism_inside.h
   int rows_ = 0;
   bool dense_ = true;
   KktChoice kkt_ = KktChoice::dense;

@@ -4,6 +4,7 @@
 #include <momenta/dae/cut/recut.h>
 #include <momenta/dae/factor/filtered_factor.h>
 #include <momenta/dae/kkt/kkt.h>
+#include <momenta/dae/sweeps/levels/loop_sweeps.h>
 
 #include <algorithm>
 #include <optional>

@@ -13,6 +13,7 @@
 #include <momenta/dae/cut/recut.h>
 #include <momenta/dae/cut/relative_motion.h>
 #include <momenta/dae/kkt/loop_solver.h>
+#include <momenta/dae/sweeps/slots/loop_plan.h>
 
 #include <map>
 

@@ -1,8 +1,6 @@
 #pragma once
 // What a solution of (7), (3) or a projection asks for beside its joint-space right-hand side.
 
-#include <momenta/core/scalar/sine_cosine.h>
-
 namespace momenta {
 
 /// Options of one solution by the sweeps; as made: drives move, nothing else is asked for.
