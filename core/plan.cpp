@@ -1,3 +1,4 @@
+#include <momenta/core/kernel/model.h>
 #include <momenta/core/plan.h>
 
 #include <cstdio>

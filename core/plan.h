@@ -2,8 +2,9 @@
 // What a scene needs, and so what every evaluation of it does: decided once, printed by `momenta
 // check`.
 
-#include <momenta/core/kernel/model.h>
+#include <momenta/core/tree/tree.h>
 
+#include <Eigen/Core>
 #include <string>
 #include <utility>
 #include <vector>

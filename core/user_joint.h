@@ -48,7 +48,7 @@ Mat3<S> turn_about(const Vec3<S>& a, const S& angle) {
 }
 
 /// A formula of a program as the law of a joint; immutable, shared by chains and threads.
-class UserJoint {
+class UserJoint final : public UserFormula {
  public:
   /// `formula(t, q)` gives a `JointPose<S>` for any S; q has `coordinates` numbers.
   template <class Formula>
@@ -57,27 +57,25 @@ class UserJoint {
         law_(std::make_shared<LawOf<Formula>>(coordinates, std::move(formula))) {}
 
   /// n, from 1 to 6.
-  int coordinates() const { return coordinates_; }
-
+  int coordinates() const override { return coordinates_; }
   /// The pose at (t, q): nine numbers by columns, and three.
-  void pose(double t, const double* q, double* rotation, double* position) const;
+  void pose(double t, const double* q, double* rotation, double* position) const override;
 
-  /// What the recursions take of the formula: the pose, E, Ω_t and their rates along u (null: no
-  /// rates), in each of their scalars.
+  /// What the recursions take of the formula, at m.t and m.q: pose, E, Ω_t and their rates along u.
+  void move(const double* u, UserMotion<double>& m) const override;
+  /// With one directional derivative.
+  void move(const Dual<double, 1>* u, UserMotion<Dual<double, 1>>& m) const override;
+  /// With eight.
+  void move(const Dual8* u, UserMotion<Dual8>& m) const override;
+
+ private:
   class Law {
    public:
     virtual ~Law();
-    /// At m.t and m.q.
     virtual void move(const double* u, UserMotion<double>& m) const = 0;
-    /// With one directional derivative.
     virtual void move(const Dual<double, 1>* u, UserMotion<Dual<double, 1>>& m) const = 0;
-    /// With eight.
     virtual void move(const Dual8* u, UserMotion<Dual8>& m) const = 0;
   };
-  /// For the recursions.
-  const Law& law() const { return *law_; }
-
- private:
   template <class Formula>
   class LawOf final : public Law {
    public:

@@ -29,8 +29,9 @@ const std::vector<KktPattern::Entry>& Mechanism::constraint_pattern() const {
 
 template <>
 std::unique_ptr<Evaluation<double>> Mechanism::evaluation<double>() const {
-  if (plan_.planar) return std::make_unique<SweepEvaluation<Planar>>(*this, std::get<0>(cast_));
-  return std::make_unique<SweepEvaluation<Spatial>>(*this, std::get<1>(cast_));
+  return visit([&]<class Space>(const Cast<Space>& cast) -> std::unique_ptr<Evaluation<double>> {
+    return std::make_unique<SweepEvaluation<Space>>(*this, cast);
+  });
 }
 
 }  // namespace momenta

@@ -1,7 +1,8 @@
 #include <momenta/core/kernel/levels/open_sweeps.h>
-#include <momenta/dae/kkt/kkt.h>
+#include <momenta/dae/factor/faded_pivot.h>
+#include <momenta/dae/factor/filtered_matrix.h>
 #include <momenta/dae/loop/loop_weights.h>
-#include <momenta/dae/mechanism.h>
+#include <momenta/dae/mechanism_inside.h>
 
 #include <algorithm>
 
@@ -11,6 +12,8 @@ namespace {
 // Below this size a dense Cholesky of M and a pivoted LDLᵀ of the loops' small matrix beat sparse
 // bookkeeping.
 constexpr int dense_limit = 60;
+// In joints from the ground, the mean over bodies.
+constexpr double deep_tree = 40;
 
 Plan plan_with_loops(const Tree& tree, const Scene& scene, Algebra algebra) {
   Plan plan = make_plan(tree, scene, algebra);
@@ -56,15 +59,16 @@ Tree open_or_closed(const Scene& scene) {
 Mechanism::Mechanism(Scene scene, MechanismOptions options)
     : scene_(std::move(scene)),
       tree_(open_or_closed(scene_)),
-      plan_(plan_with_loops(tree_, scene_, options.algebra)) {
+      plan_(plan_with_loops(tree_, scene_, options.algebra)),
+      casts_(std::make_unique<Casts>()) {
   const auto cast_into = [&](auto& cast, auto&& model) {
     cast.model = std::move(model);
     cast.loops = build_loops(scene_, tree_, cast.model);
   };
   if (plan_.planar)
-    cast_into(cast_.emplace<0>(), build_planar_model(tree_, scene_, plan_.basis));
+    cast_into(casts_->cast.emplace<0>(), build_planar_model(tree_, scene_, plan_.basis));
   else
-    cast_into(cast_.emplace<1>(), build_spatial_model(tree_, scene_));
+    cast_into(casts_->cast.emplace<1>(), build_spatial_model(tree_, scene_));
   row_names_ = row_names(scene_, plan_.planar);
   rows_ = static_cast<int>(row_names_.size());
   plan_.loops = rows_ > 0;
@@ -119,9 +123,9 @@ void Mechanism::choose_kkt(KktChoice asked) {
           " loop equations are open at once, more than " + std::to_string(LoopPlan::most_slots);
   };
   if (plan_.planar)
-    plan(std::get<0>(cast_));
+    plan(std::get<0>(casts_->cast));
   else
-    plan(std::get<1>(cast_));
+    plan(std::get<1>(casts_->cast));
   const bool far_apart = !light_.empty();
   if (!far_apart) light_ = joint_without_inertia(kkt_reason_.empty());
   kkt_ = dense_ ? KktChoice::dense : KktChoice::sparse;
@@ -158,9 +162,9 @@ void Mechanism::take_weights() {
     light_ = weights.light;
   };
   if (plan_.planar)
-    take(std::get<0>(cast_));
+    take(std::get<0>(casts_->cast));
   else
-    take(std::get<1>(cast_));
+    take(std::get<1>(casts_->cast));
 }
 
 /// A joint may have no inertia until a loop closes above it: one solution at the start tells.
@@ -168,17 +172,34 @@ std::string Mechanism::joint_without_inertia(bool swept) const {
   const auto size = static_cast<std::size_t>(tree_.nv);
   std::vector<double> p(size, 0.0), u(size), sigma(row_names_.size());
   if (!swept) {
+    if (solved_by_bodies()) return "";  // pivots are sought there
+    FilteredMatrix matrix(kkt_pattern(), axis_scale(), nv(), row_groups_);
     const auto e = evaluation<double>();
-    if (solved_by_bodies(*this)) return "";  // pivots are sought there
-    const auto kkt = make_sparse_kkt(*this);
-    return kkt->factor(*e, 0, tree_.q0.data(), fade_evaluation) || kkt->singular_joint() < 0
-               ? ""
-               : light_before_loops(kkt->singular_joint());
+    e->place(0, tree_.q0.data());
+    e->mass_entries(matrix.mass());
+    e->constraint_entries(matrix.constraint());
+    const bool factorised = matrix.factor(nullptr, fade_evaluation);
+    const int rate = matrix.factors().singular_joint();
+    return factorised || rate < 0 ? "" : light_before_loops(rate);
   }
   const auto sweeps = looped_sweeps();
   if (!sweeps->momentum(0, tree_.q0.data(), p.data(), {}, u.data(), sigma.data(), nullptr))
     return light_before_loops(tree_.bodies[static_cast<std::size_t>(sweeps->singular_joint())].u);
   return "";
+}
+
+bool Mechanism::solved_by_bodies() const {
+  std::vector<int> depth;
+  double sum = 0;
+  for (const auto& b : tree_.bodies) {
+    depth.push_back(b.parent < 0 ? 1 : 1 + depth[static_cast<std::size_t>(b.parent)]);
+    sum += depth.back();
+  }
+  return sum > deep_tree * static_cast<double>(depth.size());
+}
+
+AxisScale Mechanism::axis_scale() const {
+  return {tree_, constraint_pattern(), row_groups_, least_scales_, mass_spread_};
 }
 
 void Mechanism::expect_sweeps() const {

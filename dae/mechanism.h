@@ -6,14 +6,19 @@
 #include <momenta/core/scalar/local_dual.h>
 #include <momenta/core/scalar/power_series.h>
 #include <momenta/dae/evaluation.h>
-#include <momenta/dae/loop/loop_model.h>
-#include <momenta/dae/sweeps/levels/loop_sweeps.h>
+#include <momenta/dae/factor/kkt_pattern.h>
+#include <momenta/dae/loop/row_name.h>
+#include <momenta/dae/sweeps/levels/looped_sweeps.h>
 
 #include <memory>
 #include <mutex>
-#include <variant>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace momenta {
+
+class AxisScale;  // dae/factor/axis_scale.h
 
 /// How (7) is solved: loops carried by the sweeps, or the assembled matrix.
 enum class KktChoice {
@@ -29,18 +34,6 @@ const char* name_of(KktChoice choice);
 struct MechanismOptions {
   Algebra algebra = Algebra::automatic;  ///< which kernel
   KktChoice kkt = KktChoice::automatic;  ///< how (7) is solved
-};
-
-/// Nonzeros of the two blocks of (7): M (upper triangle) and Φ_q, in the order in which an
-/// evaluation writes them.
-struct KktPattern {
-  /// One of them.
-  struct Entry {
-    int row;     ///< from 0
-    int column;  ///< from 0
-  };
-  std::vector<Entry> mass;        ///< row ≤ column < nv
-  std::vector<Entry> constraint;  ///< row < m, column < nv
 };
 
 /// A column of trajectory.csv.
@@ -74,6 +67,9 @@ class Mechanism {
   /// Whether joints can be eliminated before the loops that hold them: each has inertia by then,
   /// and enough beside its neighbours not to take their digits.
   bool leaves_first() const { return light_.empty(); }
+  /// Whether a sparse matrix is that of the bodies' equations: where bodies are more than 40 joints
+  /// from the ground in the mean, the joints' own is the costlier one. O(bodies)
+  bool solved_by_bodies() const;
   /// LoopWeights::spread
   double mass_spread() const { return mass_spread_; }
   /// The sweeps that carry this mechanism's loops, for one instruction level; 0: the machine's
@@ -111,6 +107,8 @@ class Mechanism {
   /// rows out of five that hold nothing but rounding. Zero for axes, whose size by nature is known,
   /// and for couplers. [1/kg]
   const std::vector<double>& least_scales() const { return least_scales_; }
+  /// What rows are measured by, from these.
+  AxisScale axis_scale() const;
 
   /// A workspace for one thread; S is double, Dual8, LocalDual or Jet.
   template <class S>
@@ -134,16 +132,10 @@ class Mechanism {
   /// What branches the sweeps take side by side; empty: none.
   std::string looped_branches_in_words() const;
   template <class Space>
-  struct Cast {
-    Model<Space> model;
-    LoopModel<Space> loops;
-    SweptLoops<Space> swept, as_given;  ///< as_given: only where `swept` pairs ties anew
-    decltype(build_links(std::declval<const Model<Space>&>())) links;
-  };
+  struct Cast;
+  struct Casts;
   template <class F>
-  decltype(auto) visit(F&& f) const {
-    return plan_.planar ? f(std::get<0>(cast_)) : f(std::get<1>(cast_));
-  }
+  decltype(auto) visit(F&& f) const;
   void expect_sweeps() const;
   void choose_kkt(KktChoice asked);
   void take_weights();
@@ -157,7 +149,7 @@ class Mechanism {
   Scene scene_;
   Tree tree_;
   Plan plan_;
-  std::variant<Cast<Planar>, Cast<Spatial>> cast_;
+  std::unique_ptr<Casts> casts_;  ///< mechanism_inside.h
   int rows_ = 0;
   bool dense_ = true;
   KktChoice kkt_ = KktChoice::dense;

@@ -2,8 +2,7 @@
 
 #include <momenta/core/kernel/branches/branches.h>
 #include <momenta/core/kernel/levels/open_sweeps.h>
-#include <momenta/dae/kkt/kkt.h>
-#include <momenta/dae/mechanism.h>
+#include <momenta/dae/mechanism_inside.h>
 #include <momenta/dae/sweeps/branches/looped_branches.h>
 #include <momenta/dae/unheld_joints.h>
 
@@ -56,7 +55,7 @@ std::vector<Column> Mechanism::marker_columns() const {
 
 std::string Mechanism::looped_branches_in_words() const {
   if (plan_.planar) return "";
-  const auto& cast = std::get<Cast<Spatial>>(cast_);
+  const auto& cast = std::get<Cast<Spatial>>(casts_->cast);
   return momenta::looped_branches_in_words(find_looped_branches(
       cast.links, cast.swept.loops, cast.swept.plan, looped_branch_lanes_at(best_level())));
 }
@@ -64,7 +63,7 @@ std::string Mechanism::looped_branches_in_words() const {
 std::vector<std::pair<std::string, std::string>> Mechanism::plan_lines() const {
   auto lines = plan_.lines();
   if (!plan_.planar) {
-    const LinkTree links = build_links(std::get<Cast<Spatial>>(cast_).model);
+    const LinkTree links = build_links(std::get<Cast<Spatial>>(casts_->cast).model);
     lines.emplace_back("joints", links_in_words(links));
     if (rows_ == 0) {
       const std::string branches = branches_in_words(links, branch_lanes_at(best_level()));
@@ -88,7 +87,7 @@ std::vector<std::pair<std::string, std::string>> Mechanism::plan_lines() const {
           (looped_branches.empty() ? "" : ", " + looped_branches);
   else if (kkt_ == KktChoice::sparse)
     how = std::string(
-              solved_by_bodies(*this)
+              solved_by_bodies()
                   ? "sparse: KLU on the equations of the bodies, the tree being deep; poses are "
                     "not filtered,"
               : leaves_first() ? "sparse: filtered LDLᵀ"

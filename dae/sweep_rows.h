@@ -7,7 +7,7 @@
 #include <momenta/core/kernel/momentum_recursion.h>
 #include <momenta/core/scalar/power_series.h>
 #include <momenta/dae/loop/loop_rows.h>
-#include <momenta/dae/mechanism.h>
+#include <momenta/dae/mechanism_inside.h>
 
 namespace momenta {
 
@@ -103,8 +103,9 @@ class Mechanism::SweepRows : public Evaluation<S> {
 
 template <class S>
 std::unique_ptr<Evaluation<S>> Mechanism::evaluation() const {
-  if (plan_.planar) return std::make_unique<SweepRows<Planar, S>>(*this, std::get<0>(cast_));
-  return std::make_unique<SweepRows<Spatial, S>>(*this, std::get<1>(cast_));
+  return visit([&]<class Space>(const Cast<Space>& cast) -> std::unique_ptr<Evaluation<S>> {
+    return std::make_unique<SweepRows<Space, S>>(*this, cast);
+  });
 }
 
 }  // namespace momenta

@@ -1,4 +1,4 @@
-#include <momenta/dae/kkt/dense_blocks.h>
+#include <momenta/dae/dense_blocks.h>
 #include <momenta/dae/unheld_joints.h>
 
 #include <Eigen/Cholesky>

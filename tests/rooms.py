@@ -3,9 +3,9 @@
 
     tests/rooms.py [TOP]
 
-The drawing's first table has one row a room, a room below those it includes; its second table has the arrows that go the
-other way, and so close circles. One line for each arrow that the drawing does not have, or has without cause, and exit
-status 1. Standard library alone. With --table it prints the first table's last column as the source has it.
+The drawing's table has one row a room, a room below those it includes: so there is no circle. One line for each arrow
+that the drawing does not have, has without cause, or has against its order, and exit status 1. Standard library alone.
+With --table it prints the table's last column as the source has it.
 """
 import re
 import sys
@@ -33,17 +33,15 @@ def arrows(top):
 
 
 def drawing(text):
-    """Rooms in their order, the arrows of the first table, and those of the second."""
-    rooms, drawn, back = [], set(), set()
+    """Rooms in their order, and the arrows."""
+    rooms, drawn = [], set()
     for line in text.split("\n"):
         cells = [cell.strip() for cell in line.strip().strip("|").split("|")] if line.startswith("| `") else []
         names = [re.findall(r"`([^`]+)`", cell) for cell in cells]
-        if cells and "→" in cells[0]:
-            back.add(tuple(names[0]))
-        elif cells:
+        if cells:
             rooms.append(names[0][0])
             drawn.update((names[0][0], name) for name in names[-1])
-    return rooms, drawn, back
+    return rooms, drawn
 
 
 def main():
@@ -54,17 +52,17 @@ def main():
         for room in sorted({a for pair in found for a in pair}):
             print(f"{room}: " + " ".join(f"`{b}`" for a, b in sorted(found) if a == room))
         return 0
-    rooms, drawn, back = drawing((top / DRAWING).read_text(encoding="utf-8"))
+    rooms, drawn = drawing((top / DRAWING).read_text(encoding="utf-8"))
     faults = []
     for (a, b), files in sorted(found.items()):
         example = f"{files[0][0]} includes {files[0][1]}"
-        if (a, b) not in drawn | back:
+        if (a, b) not in drawn:
             faults.append(f"'{a}' → '{b}': {example}; expected an arrow that {DRAWING} has")
-        elif (a, b) in drawn and b in rooms and rooms.index(b) > rooms.index(a):
-            faults.append(f"'{a}' → '{b}': {example}, against the order of {DRAWING}; expected it below '{b}', or no circle")
-    faults += [f"'{a}' → '{b}' is in {DRAWING}; no file includes so" for a, b in sorted((drawn | back) - set(found))]
+        elif a in rooms and b in rooms and rooms.index(b) > rooms.index(a):
+            faults.append(f"'{a}' → '{b}': {example}, against the order of {DRAWING}; expected '{b}' above '{a}'")
+    faults += [f"'{a}' → '{b}' is in {DRAWING}; no file includes so" for a, b in sorted(drawn - set(found))]
     faults += [f"'{room}' has no row in {DRAWING}" for room in sorted({a for pair in found for a in pair} - set(rooms))]
-    print("\n".join([*faults, f"{len(rooms)} rooms, {len(found)} arrows, {len(back)} of them in known circles, {len(faults)} faults"]))
+    print("\n".join([*faults, f"{len(rooms)} rooms, {len(found)} arrows, {len(faults)} faults"]))
     return 1 if faults or not found else 0
 
 

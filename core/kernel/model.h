@@ -12,6 +12,8 @@
 
 namespace momenta {
 
+class UserFormula;  // core/kernel/user_motion.h
+
 template <class Space>
 struct Model {
   using Vector = typename Space::template Vector<double>;
@@ -27,8 +29,8 @@ struct Model {
     typename Space::template RigidInertia<double> inertia;
     double subtree_mass = 0;  ///< of the body and all it carries [kg]
     double stiffness = 0, rest = 0, damping = 0, torque = 0;
-    const UserJoint* law = nullptr;  ///< user joints: one of `laws`
-    int user = -1;                   ///< and its place among them
+    const UserFormula* law = nullptr;  ///< user joints: one of `laws`
+    int user = -1;                     ///< and its place among them
   };
   /// Spring-damper between two points; offset2 is the squared distance across the plane of a planar
   /// scene.
@@ -49,7 +51,7 @@ struct Model {
   std::vector<Spring> springs;
   std::vector<Wrench> wrenches;
   std::vector<MotionLaw> drives;
-  std::vector<std::shared_ptr<const UserJoint>> laws;
+  std::vector<std::shared_ptr<const JointFormula>> laws;
   Vector gravity;
   int nq = 0, nv = 0;
   bool has_gravity = false, has_joint_forces = false;

@@ -5,7 +5,7 @@
 // rotation of com and joint vectors per body replaces all congruences. Body frames are parallel to
 // the plane's axes when every joint is at zero.
 
-#include <momenta/core/tree/joint_kind.h>
+#include <momenta/core/scene/joint_kind.h>
 
 namespace momenta {
 

@@ -4,7 +4,7 @@
 // from one state as eight derivatives of one evaluation.
 
 #include <momenta/core/scalar/dual.h>
-#include <momenta/core/tree/drive.h>
+#include <momenta/core/scene/drive.h>
 
 namespace momenta {
 

@@ -9,7 +9,7 @@
 // general ones.
 
 #include <momenta/core/kernel/spatial_algebra.h>
-#include <momenta/core/tree/joint_kind.h>
+#include <momenta/core/scene/joint_kind.h>
 
 #include <type_traits>
 

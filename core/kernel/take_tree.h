@@ -3,6 +3,7 @@
 // masses and forces. Included only where models are built.
 
 #include <momenta/core/kernel/model.h>
+#include <momenta/core/kernel/user_motion.h>
 
 namespace momenta {
 
@@ -31,7 +32,7 @@ void take_joints(const Tree& tree, Model<Space>& model) {
     m.damping = b.damping;
     m.torque = b.torque;
     if (b.kind == JointKind::user) {
-      m.law = b.law.get();
+      m.law = static_cast<const UserFormula*>(b.law.get());  // as JointFormula sees to
       m.user = static_cast<int>(model.laws.size());
       model.laws.push_back(b.law);
     }

@@ -14,10 +14,9 @@
 #include <momenta/core/kernel/spatial.h>
 #include <momenta/core/scalar/dual.h>
 #include <momenta/core/scalar/pack.h>
+#include <momenta/core/scene/joint_formula.h>
 
 namespace momenta {
-
-class UserJoint;
 
 template <class S>
 struct UserMotion {
@@ -44,29 +43,40 @@ void each_number(UserMotion<S>& m, F&& f) {
 }
 constexpr int user_numbers = 12 + 2 * 7 * 6;
 
+/// What the recursions take of the formula: the pose, E, Ω_t and their rates along u (null: no
+/// rates), in each of their scalars.
+class UserFormula : public JointFormula {
+ public:
+  /// At m.t and m.q.
+  virtual void move(const double* u, UserMotion<double>& m) const = 0;
+  /// With one directional derivative.
+  virtual void move(const Dual<double, 1>* u, UserMotion<Dual<double, 1>>& m) const = 0;
+  /// With eight.
+  virtual void move(const Dual8* u, UserMotion<Dual8>& m) const = 0;
+};
+
 /// R, r, E and Ω_t at (m.t, m.q); with u not null their rates along (u, 1), else zeros there.
-void user_motion(const UserJoint& joint, const double* u, UserMotion<double>& m);
-void user_motion(const UserJoint& joint, const Dual<double, 1>* u, UserMotion<Dual<double, 1>>& m);
-void user_motion(const UserJoint& joint, const Dual8* u, UserMotion<Dual8>& m);
+void user_motion(const UserFormula& joint, const double* u, UserMotion<double>& m);
+void user_motion(const UserFormula& joint, const Dual<double, 1>* u,
+                 UserMotion<Dual<double, 1>>& m);
+void user_motion(const UserFormula& joint, const Dual8* u, UserMotion<Dual8>& m);
 /// The same in plain arrays: six q and u, and user_numbers results.
-void user_motion(const UserJoint& joint, double t, const double* q, const double* u,
+void user_motion(const UserFormula& joint, double t, const double* q, const double* u,
                  double* numbers);
 
 /// The same on Dual8 in plain arrays: t, six q and u, user_numbers results, each its value and
 /// eight derivatives.
-void user_motion(const UserJoint& joint, const double* t, const double* q, const double* u,
+void user_motion(const UserFormula& joint, const double* t, const double* q, const double* u,
                  double* numbers);
 
-int coordinates_of(const UserJoint& joint);
-
 template <int W, int L>
-void user_motion(const UserJoint& joint, const Directions<W, L>* u,
+void user_motion(const UserFormula& joint, const Directions<W, L>* u,
                  UserMotion<Directions<W, L>>& m) {
   double t[dual8_numbers]{}, q[6 * dual8_numbers]{}, rates[6 * dual8_numbers]{},
       numbers[user_numbers * dual8_numbers];
   spread(m.t, t);
   for (int i = 0; i < 6; ++i) spread(m.q[i], q + i * dual8_numbers);
-  const int n = u ? coordinates_of(joint) : 0;
+  const int n = u ? joint.coordinates() : 0;
   for (int i = 0; i < 6 && i < n; ++i) spread(u[i], rates + i * dual8_numbers);
   user_motion(joint, static_cast<const double*>(t), static_cast<const double*>(q),
               static_cast<const double*>(u ? rates : nullptr), numbers);
@@ -78,7 +88,7 @@ void user_motion(const UserJoint& joint, const Directions<W, L>* u,
 }
 
 template <int W, int L>
-void user_motion(const UserJoint& joint, const Pack<W, L>* u, UserMotion<Pack<W, L>>& m) {
+void user_motion(const UserFormula& joint, const Pack<W, L>* u, UserMotion<Pack<W, L>>& m) {
   for (int lane = 0; lane < W; ++lane) {
     double q[6], rates[6], numbers[user_numbers];
     for (int i = 0; i < 6; ++i) {
@@ -97,10 +107,10 @@ template <class T, int N>
 constexpr bool is_dual<Dual<T, N>> = true;
 
 template <class T, int N>
-void user_motion(const UserJoint& joint, const Dual<T, N>* u, UserMotion<Dual<T, N>>& m) {
+void user_motion(const UserFormula& joint, const Dual<T, N>* u, UserMotion<Dual<T, N>>& m) {
   static_assert(!is_dual<T>, "a user joint has no second derivatives");
   using D = Dual<double, 1>;
-  const int n = coordinates_of(joint);
+  const int n = joint.coordinates();
   for (std::size_t direction = 0; direction < N; ++direction) {
     const auto along = [direction](const Dual<T, N>& x) {
       D y(value_of(x.a));
@@ -126,8 +136,8 @@ void user_motion(const UserJoint& joint, const Dual<T, N>* u, UserMotion<Dual<T,
 }
 
 template <class S>
-void user_motion(const UserJoint& joint, const S* u, UserMotion<S>& m) {
-  const int n = coordinates_of(joint);
+void user_motion(const UserFormula& joint, const S* u, UserMotion<S>& m) {
+  const int n = joint.coordinates();
   double q[6]{}, rates[6]{}, numbers[user_numbers];
   for (int i = 0; i < n; ++i) {
     q[i] = value_of(m.q[i]);

@@ -2,6 +2,7 @@
 // Whether numbers are numbers.
 
 #include <cstddef>
+#include <vector>
 
 namespace momenta {
 
@@ -14,6 +15,9 @@ inline bool all_finite(const double* x, std::size_t n) {
     for (std::size_t j = 0; j < 4; ++j) sums[j] += x[i + j] * 0.0;
   for (; i < n; ++i) sums[0] += x[i] * 0.0;
   return sums[0] + sums[1] + sums[2] + sums[3] == 0;
+}
+inline bool all_finite(const std::vector<double>& x) {
+  return all_finite(x.data(), x.size());
 }
 
 }  // namespace momenta

@@ -1,9 +1,9 @@
 // What drives prescribe: of joints coordinates, of loops coordinates and components of the origin.
 
+#include <momenta/core/scene/drive.h>
 #include <momenta/core/scene/kinds.h>
 #include <momenta/core/scene/near_name.h>
 #include <momenta/core/scene/validate_parts.h>
-#include <momenta/core/tree/drive.h>
 
 #include <set>
 #include <span>

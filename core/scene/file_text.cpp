@@ -1,5 +1,4 @@
 #include <momenta/core/scene/file_text.h>
-#include <momenta/core/scene/toml_values.h>
 
 #include <fstream>
 #include <system_error>
@@ -30,6 +29,12 @@ std::string text_of(const std::filesystem::path& file) {
   }
   if (stream.bad()) fail(name, {}, "the file cannot be read to its end");
   return text;
+}
+
+void fail(const std::string& file, Location at, const std::string& sentence) {
+  Scene scene;
+  scene.file = file;
+  throw SceneError(scene.where(at) + sentence);
 }
 
 }  // namespace momenta::reading

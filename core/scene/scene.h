@@ -2,7 +2,7 @@
 // A scene: the mechanism as its author wrote it, before any analysis. Plain data, SI units, angles
 // in rad. Readers (read_scene) fill it from files; programs may fill it by hand.
 
-#include <momenta/core/tree/joint_kind.h>
+#include <momenta/core/scene/joint_kind.h>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -16,7 +16,7 @@
 
 namespace momenta {
 
-class UserJoint;  // core/user_joint.h
+class JointFormula;  // core/scene/joint_formula.h
 
 /// Where a thing stands in its file; line 0 means it did not come from a file.
 struct Location {
@@ -99,14 +99,14 @@ struct JointSpec {
   /// Planar: q1 counts along the part of this that is perpendicular to `axis`; zero means
   /// perpendicular_to(axis). A unit vector in the joint frame, not parallel to `axis`.
   Eigen::Vector3d direction = Eigen::Vector3d::Zero();
-  double pitch = 0;                      ///< helical: way along `axis` [m] per angle about it [rad]
-  std::shared_ptr<const UserJoint> law;  ///< user: its pose, a formula of t and q
-  std::vector<double> position;          ///< start value or first guess, size nq (empty: q = 0)
-  std::vector<double> velocity;          ///< start value or first guess, size nv (empty: zero)
-  double stiffness = 0;                  ///< revolute, helical [N m/rad], prismatic [N/m]; else 0
-  double rest = 0;                       ///< revolute, helical [rad], prismatic [m]; else 0
-  double damping = 0;  ///< revolute, helical [N m s/rad], prismatic [N s/m]; else 0
-  Location at;         ///< where the file has it
+  double pitch = 0;  ///< helical: way along `axis` [m] per angle about it [rad]
+  std::shared_ptr<const JointFormula> law;  ///< user: a UserJoint, its pose as a formula of t and q
+  std::vector<double> position;             ///< start value or first guess, size nq (empty: q = 0)
+  std::vector<double> velocity;             ///< start value or first guess, size nv (empty: zero)
+  double stiffness = 0;  ///< revolute, helical [N m/rad], prismatic [N/m]; else 0
+  double rest = 0;       ///< revolute, helical [rad], prismatic [m]; else 0
+  double damping = 0;    ///< revolute, helical [N m s/rad], prismatic [N s/m]; else 0
+  Location at;           ///< where the file has it
 };
 
 /// Size of q of a joint: of its kind, or of its law.
@@ -201,7 +201,7 @@ constexpr int driven_coordinates_of(LoopKind kind) {
 ///   - harmonic: f = offset + amplitude sin(ω t + φ), with ω = frequency [rad/s], φ = phase [rad]
 ///   - step: `from` → `to` between start and start + duration, by the quintic 10x³ − 15x⁴ + 6x⁵
 ///   - table: natural cubic spline through (times, values); constant slope outside
-/// The laws are evaluated by MotionLaw, core/tree/drive.h.
+/// The laws are evaluated by MotionLaw, core/scene/drive.h.
 struct DriveSpec {
   std::string joint;   ///< or `loop`: one of them is empty
   std::string loop;    ///< or `joint`

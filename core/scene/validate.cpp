@@ -1,9 +1,10 @@
+#include <momenta/core/scalar/all_finite.h>
+#include <momenta/core/scene/joint_formula.h>
 #include <momenta/core/scene/kinds.h>
 #include <momenta/core/scene/near_name.h>
-#include <momenta/core/scene/read_scene.h>
 #include <momenta/core/scene/shapes.h>
+#include <momenta/core/scene/validate.h>
 #include <momenta/core/scene/validate_parts.h>
-#include <momenta/core/user_joint.h>
 
 #include <algorithm>
 #include <cmath>
@@ -17,10 +18,6 @@ using reading::Census;
 using reading::in_quotes;
 using reading::name_of;
 using reading::require;
-
-bool finite(const std::vector<double>& numbers) {
-  return std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::isfinite(x); });
-}
 
 void check_bodies(const Scene& scene) {
   for (const BodySpec& body : scene.bodies) {
@@ -118,7 +115,7 @@ void check_joints(const Scene& scene, const Census& census) {
     require(joint.velocity.empty() ||
                 joint.velocity.size() == static_cast<std::size_t>(rates_of(joint)),
             scene, joint.at, who, "velocity must be empty or of the size of its kind");
-    require(finite(joint.position) && finite(joint.velocity), scene, joint.at, who,
+    require(all_finite(joint.position) && all_finite(joint.velocity), scene, joint.at, who,
             "position and velocity must be finite");
     if (joint.kind == JointKind::spherical || joint.kind == JointKind::free)
       check_quaternion(scene, joint, who);

@@ -1,4 +1,4 @@
-#include <momenta/core/scene/read_scene.h>
+#include <momenta/core/scene/validate.h>
 #include <momenta/core/tree/tree.h>
 
 #include <map>

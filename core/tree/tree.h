@@ -3,8 +3,8 @@
 // contiguous), joints with their places in q and u, everything in SI units. Independent of the
 // algebra that will move it; immutable once built.
 
+#include <momenta/core/scene/drive.h>
 #include <momenta/core/scene/scene.h>
-#include <momenta/core/tree/drive.h>
 
 #include <Eigen/Geometry>
 #include <string>
@@ -44,7 +44,7 @@ struct Tree {
     double rest = 0;               ///< likewise
     double damping = 0;            ///< likewise
     double torque = 0;             ///< constant generalised force on such a joint [N m or N]
-    std::shared_ptr<const UserJoint> law;  ///< of a user joint
+    std::shared_ptr<const JointFormula> law;  ///< of a user joint
   };
 
   std::string name;               ///< of the scene

@@ -1,7 +1,7 @@
 #include <momenta/core/arguments.h>
 #include <momenta/core/share.h>
 #include <momenta/dae/chain/closed_chain.h>
-#include <momenta/dae/kkt/dense_blocks.h>
+#include <momenta/dae/dense_blocks.h>
 #include <momenta/dae/kkt/loop_solver.h>
 
 #include <algorithm>

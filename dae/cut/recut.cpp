@@ -2,8 +2,9 @@
 #include <momenta/dae/cut/cycles.h>
 #include <momenta/dae/cut/interchange.h>
 #include <momenta/dae/cut/recut.h>
-#include <momenta/dae/kkt/filtered_factor.h>
+#include <momenta/dae/factor/filtered_factor.h>
 #include <momenta/dae/kkt/kkt.h>
+#include <momenta/dae/sweeps/levels/loop_sweeps.h>
 
 #include <algorithm>
 #include <optional>
@@ -154,7 +155,8 @@ CutCost cut_cost(const Mechanism& mechanism) {
   cost.open = loops.slots;
   cost.work = loops.work;
   if (mechanism.kkt() == KktChoice::sparse && filters_pivots(mechanism))
-    cost.factor_entries = FilteredFactor(mechanism).entries();
+    cost.factor_entries =
+        FilteredFactor(mechanism.kkt_pattern(), mechanism.nv(), mechanism.row_groups()).entries();
   return cost;
 }
 

@@ -3,8 +3,8 @@
 // 1/W at the start, W = Φ_q M⁻¹ Φ_qᵀ, one for all rows of a loop that share a unit.
 
 #include <momenta/dae/form/form.h>
-#include <momenta/dae/kkt/axis_scale.h>
 #include <momenta/dae/kkt/loop_solver.h>
+#include <momenta/dae/kkt/row_scales.h>
 
 namespace momenta {
 

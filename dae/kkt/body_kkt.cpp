@@ -1,7 +1,7 @@
 // Deep trees: (7) by the equations of its bodies (body_matrix.h), whose entries grow like the
 // bodies, factorised by KLU (klu_solver.h). Poses are not filtered: faded rows are not told.
 
-#include <momenta/dae/kkt/axis_scale.h>
+#include <momenta/dae/factor/axis_scale.h>
 #include <momenta/dae/kkt/body_matrix.h>
 #include <momenta/dae/kkt/kkt.h>
 #include <momenta/dae/kkt/klu_solver.h>
@@ -16,7 +16,7 @@ class BodyKkt final : public Kkt {
  public:
   BodyKkt(const Mechanism& mechanism, std::unique_ptr<BodyMatrix<Space>> equations)
       : equations_(std::move(equations)),
-        axis_scale_(mechanism),
+        axis_scale_(mechanism.axis_scale()),
         n_(mechanism.nv()),
         m_(mechanism.m()),
         inertia_(static_cast<std::size_t>(n_)),
@@ -65,16 +65,6 @@ class BodyKkt final : public Kkt {
 };
 
 }  // namespace
-
-bool solved_by_bodies(const Mechanism& mechanism) {
-  std::vector<int> depth;
-  double sum = 0;
-  for (const auto& b : mechanism.tree().bodies) {
-    depth.push_back(b.parent < 0 ? 1 : 1 + depth[static_cast<std::size_t>(b.parent)]);
-    sum += depth.back();
-  }
-  return sum > deep_tree * static_cast<double>(depth.size());
-}
 
 std::unique_ptr<Kkt> make_body_kkt(const Mechanism& mechanism) {
   return with_body_matrix(

@@ -3,7 +3,7 @@
 // In this order and form the error of u is about ε/δ near a pose where a singular value δ of Φ_q
 // M^(−1/2) vanishes, as small as any algorithm can make it: W squares the condition of σ, not of u.
 
-#include <momenta/dae/kkt/axis_scale.h>
+#include <momenta/dae/factor/axis_scale.h>
 #include <momenta/dae/kkt/kkt.h>
 #include <momenta/dae/kkt/loop_matrix.h>
 #include <momenta/dae/kkt/tree_factor.h>
@@ -18,7 +18,7 @@ class DenseKkt final : public Kkt {
  public:
   explicit DenseKkt(const Mechanism& mechanism)
       : pattern_(mechanism.kkt_pattern()),
-        axis_scale_(mechanism),
+        axis_scale_(mechanism.axis_scale()),
         diagonal_of_mass_(pattern_, mechanism.nv()),
         n_(mechanism.nv()),
         m_(mechanism.m()),
@@ -119,12 +119,12 @@ std::unique_ptr<Kkt> make_dense_kkt(const Mechanism& mechanism) {
 }
 
 bool filters_pivots(const Mechanism& mechanism) {
-  return mechanism.dense_kkt() || (mechanism.leaves_first() && !solved_by_bodies(mechanism));
+  return mechanism.dense_kkt() || (mechanism.leaves_first() && !mechanism.solved_by_bodies());
 }
 
 std::unique_ptr<Kkt> make_kkt(const Mechanism& mechanism) {
   if (mechanism.dense_kkt()) return make_dense_kkt(mechanism);
-  if (solved_by_bodies(mechanism)) return make_body_kkt(mechanism);
+  if (mechanism.solved_by_bodies()) return make_body_kkt(mechanism);
   return mechanism.leaves_first() ? make_sparse_kkt(mechanism) : make_klu_kkt(mechanism);
 }
 

@@ -6,20 +6,15 @@
 //
 // Redundant loop equations and singular poses make Φ_q lose rank; u stays well defined, σ does not.
 // Weak directions of σ are therefore faded out, towards `centre` (the σ of the step's start): see
-// dense_kkt.cpp, filtered_factor.h, and klu_solver.h.
+// dense_kkt.cpp, dae/factor/filtered_factor.h, and klu_solver.h.
 
+#include <momenta/dae/factor/faded_pivot.h>
 #include <momenta/dae/mechanism.h>
 
 #include <memory>
 #include <vector>
 
 namespace momenta {
-
-/// How weak a pivot may be, relative to its group's scale, before it fades: in (7) and (3),
-/// recentred.
-inline constexpr double fade_evaluation = 1e-8;
-/// The same in projections, which must remove what is there.
-inline constexpr double fade_projection = 1e-13;
 
 /// A factorised matrix of (7), with its workspace: one object a thread.
 class Kkt {
@@ -63,11 +58,6 @@ class Kkt {
 /// bodies where the tree is deep, else by KLU where joints have no inertia before their loops
 /// close. Needs loops (m > 0).
 std::unique_ptr<Kkt> make_kkt(const Mechanism& mechanism);
-/// Whether a sparse matrix is that of the bodies' equations: where bodies are more than
-/// `deep_tree` joints from the ground in the mean, the joints' own is the costlier one. O(bodies).
-bool solved_by_bodies(const Mechanism& mechanism);
-/// In joints from the ground, the mean over bodies.
-inline constexpr double deep_tree = 40;
 /// Whether the matrix of make_kkt() has a pivot for each row of Φ, to fade and to be told: KLU has
 /// none.
 bool filters_pivots(const Mechanism& mechanism);

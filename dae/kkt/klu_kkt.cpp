@@ -8,7 +8,7 @@
 // Beside entries of Φ_q what is light then is small, and goes after the loop that holds it; with M
 // as it is, a row of 1 kg would go before its loop, and take the digits of one of 10⁹ kg.
 
-#include <momenta/dae/kkt/axis_scale.h>
+#include <momenta/dae/factor/axis_scale.h>
 #include <momenta/dae/kkt/kkt.h>
 #include <momenta/dae/kkt/klu_solver.h>
 
@@ -29,7 +29,7 @@ class KluKkt final : public Kkt {
  public:
   explicit KluKkt(const Mechanism& mechanism)
       : pattern_(mechanism.kkt_pattern()),
-        axis_scale_(mechanism),
+        axis_scale_(mechanism.axis_scale()),
         diagonal_of_mass_(pattern_, mechanism.nv()),
         n_(mechanism.nv()),
         m_(mechanism.m()),

@@ -1,4 +1,4 @@
-#include <momenta/dae/kkt/faded_pivot.h>
+#include <momenta/dae/factor/faded_pivot.h>
 #include <momenta/dae/kkt/loop_matrix.h>
 
 #include <algorithm>

@@ -7,7 +7,7 @@
 // joints get no right-hand side. W as in dense_kkt.cpp.
 
 #include <momenta/core/kernel/accelerations.h>
-#include <momenta/dae/kkt/axis_scale.h>
+#include <momenta/dae/factor/axis_scale.h>
 #include <momenta/dae/kkt/loop_matrix.h>
 #include <momenta/dae/kkt/maximal_solver.h>
 #include <momenta/dae/kkt/maximal_tree.h>
@@ -30,7 +30,7 @@ class MaximalSolver final : public LoopSolver {
         rows_(loop_model_, w_),
         tree_(w_),
         loops_(mechanism),
-        axis_scale_(mechanism),
+        axis_scale_(mechanism.axis_scale()),
         n_(model_.bodies.size()),
         still_(static_cast<std::size_t>(model_.nv)),
         torque_(still_.size()),

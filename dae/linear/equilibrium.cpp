@@ -1,4 +1,4 @@
-#include <momenta/dae/kkt/axis_scale.h>
+#include <momenta/dae/kkt/row_scales.h>
 #include <momenta/dae/linear/downward_ways.h>
 #include <momenta/dae/linear/equilibrium.h>
 #include <momenta/dae/linear/local_pencil.h>

@@ -1,4 +1,4 @@
-#include <momenta/core/tree/drive.h>
+#include <momenta/core/scene/drive.h>
 #include <momenta/dae/linear/linearisation.h>
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include <momenta/core/poses.h>
-#include <momenta/dae/kkt/axis_scale.h>
 #include <momenta/dae/kkt/least_norm.h>
+#include <momenta/dae/kkt/row_scales.h>
 #include <momenta/dae/kkt/singular_values.h>
 #include <momenta/dae/linear/lanczos_spectrum.h>
 #include <momenta/dae/linear/local_pencil.h>
@@ -23,7 +23,7 @@ constexpr int most_dense = 400;    // rates, or loop equations, of singular valu
 constexpr int most_reduced = 300;  // degrees of freedom whose modes are all found
 constexpr int usual_count = 20;    // of more
 
-/// Φ_q at the equilibrium in the units of kkt/axis_scale.h: D^(−1/2) Φ_q diag(M)^(−1/2).
+/// Φ_q at the equilibrium in the units of kkt/row_scales.h: D^(−1/2) Φ_q diag(M)^(−1/2).
 struct ScaledLoops {
   std::vector<double> values;  ///< by the mechanism's pattern
   VectorXd column;             ///< diag(M)^(−1/2), rates without inertia as the heaviest

@@ -1,6 +1,7 @@
 #include <momenta/core/scene/kinds.h>
 #include <momenta/dae/loop/loop_choice.h>
 #include <momenta/dae/loop/loop_model.h>
+#include <momenta/dae/loop/row_name.h>
 
 #include <algorithm>
 #include <cmath>

@@ -101,19 +101,11 @@ struct LoopModel {
   int rows = 0;  ///< m, size of Φ
 };
 
-/// One row of Φ by name: what a rank report or a failure message calls it.
-struct RowName {
-  std::string loop;
-  std::string what;  ///< "point along axis 1", "axis 3 against axis 1", "distance, driven"
-};
-
 LoopModel<Spatial> build_loops(const Scene& scene, const Tree& tree, const Model<Spatial>& model);
 /// @throws SceneError when a loop's two sides lie apart across the plane.
 LoopModel<Planar> build_loops(const Scene& scene, const Tree& tree, const Model<Planar>& model);
 
 /// Why a loop leaves the plane with this basis; empty when all stay in it.
 std::string loops_leave_plane(const Scene& scene, const Tree& tree, const Eigen::Matrix3d& basis);
-
-std::vector<RowName> row_names(const Scene& scene, bool planar);
 
 }  // namespace momenta

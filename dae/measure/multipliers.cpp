@@ -1,4 +1,4 @@
-#include <momenta/dae/kkt/axis_scale.h>
+#include <momenta/dae/kkt/row_scales.h>
 #include <momenta/dae/measure/multipliers.h>
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // Any scene as TOML, as it is or cut anew.
 
-#include <momenta/core/scene/write_scene.h>
+#include <momenta/core/scene/toml/write_scene.h>
 #include <momenta/dae/cut/recut.h>
 
 #include <cstdio>

@@ -1,7 +1,7 @@
 #include "options.h"
 
-#include <momenta/core/scene/read_scene.h>
-#include <momenta/core/scene/write_scene.h>
+#include <momenta/core/scene/files/read_scene.h>
+#include <momenta/core/scene/toml/write_scene.h>
 #include <momenta/dae/report/atomic_write.h>
 #include <momenta/dae/report/csv.h>
 #include <momenta/dae/report/page.h>

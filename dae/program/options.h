@@ -1,7 +1,7 @@
 #pragma once
 // What the verbs share: the scene and common options, messages, exit status.
 
-#include <momenta/core/scene/read_scene.h>
+#include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/report/atomic_write.h>
 #include <momenta/dae/report/figure.h>

@@ -1,4 +1,3 @@
-#include <momenta/core/scene/read_scene.h>
 #include <momenta/dae/report/stress_report.h>
 #include <momenta/dae/solver/integrators.h>
 

@@ -1,5 +1,5 @@
 #include <momenta/core/scene/file_text.h>
-#include <momenta/core/scene/write_scene.h>
+#include <momenta/core/scene/toml/write_scene.h>
 #include <momenta/dae/report/json.h>
 #include <momenta/dae/report/sweep_report.h>
 #include <momenta/dae/study/environment.h>

@@ -1,9 +1,9 @@
 // Mechanism: what a scene is, its consistent start, and the equations at one state.
 
-#include <momenta/core/scene/read_scene.h>
-#include <momenta/core/scene/write_scene.h>
+#include <momenta/core/scene/toml/parse_scene.h>
+#include <momenta/core/scene/toml/write_scene.h>
 #include <momenta/dae/assembly/drive_reach.h>
-#include <momenta/dae/kkt/dense_blocks.h>
+#include <momenta/dae/dense_blocks.h>
 #include <momenta/dae/study/state_values.h>
 
 #include <optional>

@@ -2,8 +2,8 @@
 // functions of the package call. States and results go as text, in the words of the program.
 
 #include <momenta/core/scene/file_text.h>
-#include <momenta/core/scene/read_scene.h>
-#include <momenta/core/scene/write_scene.h>
+#include <momenta/core/scene/files/read_scene.h>
+#include <momenta/core/scene/toml/write_scene.h>
 #include <momenta/dae/form/form.h>
 #include <momenta/dae/report/atomic_write.h>
 #include <momenta/dae/report/index_report.h>

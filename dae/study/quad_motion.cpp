@@ -1,4 +1,5 @@
 #include <momenta/dae/study/quad_motion.h>
+#include <momenta/dae/sweeps/levels/loop_sweeps.h>
 #include <momenta/dae/sweeps/planar_loop_sweeps.h>
 #include <momenta/dae/sweeps/spatial_loop_sweeps.h>
 

@@ -1,4 +1,4 @@
-#include <momenta/dae/kkt/dense_blocks.h>
+#include <momenta/dae/dense_blocks.h>
 #include <momenta/dae/kkt/kkt.h>
 #include <momenta/dae/kkt/tree_factor.h>
 #include <momenta/dae/measure/rank.h>

@@ -4,7 +4,7 @@
 // Cases are numbered from 0, the last varied number changing fastest. A case depends on its number
 // alone, so that threads, processes and interrupted studies all come to the same results.
 
-#include <momenta/core/scene/setting.h>
+#include <momenta/core/scene/toml/setting.h>
 #include <momenta/dae/mechanism.h>
 #include <momenta/dae/study/run_form.h>
 

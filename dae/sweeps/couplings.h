@@ -2,8 +2,8 @@
 // Couplers in the sweeps: the joints a row ties, what the right-hand side asks of it, and its leak.
 
 #include <momenta/dae/loop/loop_model.h>
-#include <momenta/dae/sweeps/loop_plan.h>
-#include <momenta/dae/sweeps/right_side.h>
+#include <momenta/dae/sweeps/slots/loop_plan.h>
+#include <momenta/dae/sweeps/slots/right_side.h>
 
 namespace momenta {
 

@@ -16,7 +16,7 @@
 // row's whole moment, and no closing takes from it. It is a measure even where a row is redundant
 // and W nothing but rounding.
 
-#include <momenta/dae/sweeps/slots.h>
+#include <momenta/dae/sweeps/slots/slots.h>
 
 namespace momenta {
 

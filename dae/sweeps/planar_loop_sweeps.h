@@ -30,8 +30,8 @@
 #include <momenta/dae/loop/loops_in_time.h>
 #include <momenta/dae/sweeps/closed_pair.h>
 #include <momenta/dae/sweeps/couplings.h>
-#include <momenta/dae/sweeps/loop_plan.h>
-#include <momenta/dae/sweeps/right_side.h>
+#include <momenta/dae/sweeps/slots/loop_plan.h>
+#include <momenta/dae/sweeps/slots/right_side.h>
 
 #include <optional>
 

@@ -17,10 +17,10 @@
 #include <momenta/dae/loop/loops_in_time.h>
 #include <momenta/dae/sweeps/branches/looped_branch_pack.h>
 #include <momenta/dae/sweeps/couplings.h>
-#include <momenta/dae/sweeps/loop_plan.h>
-#include <momenta/dae/sweeps/right_side.h>
+#include <momenta/dae/sweeps/slots/loop_plan.h>
+#include <momenta/dae/sweeps/slots/right_side.h>
+#include <momenta/dae/sweeps/slots/spatial_loop_place.h>
 #include <momenta/dae/sweeps/spatial_columns.h>
-#include <momenta/dae/sweeps/spatial_loop_place.h>
 
 #include <algorithm>
 

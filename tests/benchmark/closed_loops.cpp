@@ -4,7 +4,8 @@
 // carried by the sweeps; _sparse and _dense assemble the matrix. 16 states in turn, near the start.
 
 #include <benchmark/benchmark.h>
-#include <momenta/core/scene/read_scene.h>
+#include <momenta/core/kernel/levels/level.h>
+#include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/kkt/loop_solver.h>
 

@@ -10,10 +10,10 @@
 //
 // Usage: momenta_factorizations [MOST]   mechanisms of at most so many cells or pairs; 1000
 
-#include <momenta/dae/kkt/axis_scale.h>
 #include <momenta/dae/kkt/body_matrix.h>
 #include <momenta/dae/kkt/kkt.h>
 #include <momenta/dae/kkt/loop_solver.h>
+#include <momenta/dae/kkt/row_scales.h>
 
 #include <cmath>
 #include <cstdio>

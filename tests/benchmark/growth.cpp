@@ -20,7 +20,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <momenta/core/scene/read_scene.h>
+#include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/kkt/loop_solver.h>
 #include <momenta/dae/study/run_form.h>
 

@@ -1,5 +1,5 @@
 # Installs a build of momenta to a prefix of its own, then configures, builds and runs the consumer
-# there, as a user would: every program of README.md and of docs/how-to/use-the-library.md. Where an
+# there, as a user would: every program of README.md and of docs/how-to/use-the-library.md, and every public header. Where an
 # including script sets CONFIGURE, that build is made first.
 #
 #   cmake -D BUILD=<build folder> -D WORK=<folder to use> -D SOURCE=<top of the project>
@@ -32,6 +32,17 @@ function(take_programs document)
   endif()
 endfunction()
 
+# Programs that include every public header: those of core, and all.
+function(include_public_headers)
+  file(STRINGS ${SOURCE}/docs/api/headers.txt headers REGEX "^[a-z]")
+  list(TRANSFORM headers REPLACE "(.+)" "#include <momenta/\\1>\n")
+  string(JOIN "" all ${headers})
+  file(WRITE ${WORK}/from_documents/all_headers.cpp "${all}int main() {}\n")
+  list(FILTER headers INCLUDE REGEX "<momenta/core/")
+  string(JOIN "" all ${headers})
+  file(WRITE ${WORK}/from_documents/core_headers.cpp "${all}int main() {}\n")
+endfunction()
+
 if(CONFIGURE)
   step(${CMAKE_COMMAND} -S ${SOURCE} -B ${BUILD} ${CONFIGURE})
   step(${CMAKE_COMMAND} --build ${BUILD} --parallel 2)
@@ -39,6 +50,7 @@ endif()
 file(REMOVE_RECURSE ${WORK})
 take_programs(README.md)
 take_programs(docs/how-to/use-the-library.md)
+include_public_headers()
 step(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix)
 step(${CMAKE_COMMAND} -S ${SOURCE}/tests/consumer -B ${WORK}/build -D CMAKE_PREFIX_PATH=${WORK}/prefix
      -D CMAKE_BUILD_TYPE=Debug -D CMAKE_CXX_FLAGS=${FLAGS} -D PROGRAMS=${WORK}/from_documents)

@@ -4,8 +4,8 @@
 #include "equations/dense_lagrangian.h"
 #include "equations/random_loops.h"
 
+#include <momenta/core/scene/files/read_scene.h>
 #include <momenta/core/scene/kinds.h>
-#include <momenta/core/scene/read_scene.h>
 #include <momenta/dae/measure/rank.h>
 #include <momenta/dae/study/extremes.h>
 #include <momenta/dae/study/run_form.h>

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 #include <momenta/core/kernel/levels/level.h>
 #include <momenta/core/open_chain.h>
-#include <momenta/core/scene/read_scene.h>
+#include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/study/environment.h>
 #include <momenta/dae/study/run_form.h>
 

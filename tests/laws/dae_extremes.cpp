@@ -6,7 +6,7 @@
 #include "equations/scissor.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/read_scene.h>
+#include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/study/extremes.h>
 #include <momenta/dae/study/run_form.h>
 

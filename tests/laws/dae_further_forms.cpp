@@ -8,7 +8,7 @@
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/read_scene.h>
+#include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/study/drift_study.h>
 #include <momenta/dae/study/run_form.h>
 

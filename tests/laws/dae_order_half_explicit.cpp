@@ -6,7 +6,7 @@
 #include "equations/linkages.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/read_scene.h>
+#include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/solver/implicit_methods.h>
 #include <momenta/dae/solver/tableau_hem5.h>
 #include <momenta/dae/study/run_form.h>

@@ -8,7 +8,7 @@
 //                       is not v: 2; a pivot that moves as prescribed
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/read_scene.h>
+#include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/form/form.h>
 #include <momenta/dae/solver/implicit_methods.h>

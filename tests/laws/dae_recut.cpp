@@ -7,12 +7,13 @@
 
 #include <gtest/gtest.h>
 #include <momenta/core/open_chain.h>
-#include <momenta/core/scene/read_scene.h>
-#include <momenta/core/scene/write_scene.h>
+#include <momenta/core/scene/files/read_scene.h>
+#include <momenta/core/scene/toml/write_scene.h>
 #include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/cut/recut.h>
 #include <momenta/dae/cut/relative_motion.h>
 #include <momenta/dae/kkt/loop_solver.h>
+#include <momenta/dae/sweeps/slots/loop_plan.h>
 
 #include <map>
 

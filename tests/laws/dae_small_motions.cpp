@@ -7,7 +7,7 @@
 #include "equations/recut.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/read_scene.h>
+#include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/linear/linearisation.h>
 #include <momenta/dae/study/extremes.h>
 #include <momenta/dae/study/modes_study.h>

@@ -2,7 +2,7 @@
 // two continuous derivatives everywhere.
 
 #include <gtest/gtest.h>
-#include <momenta/core/tree/drive.h>
+#include <momenta/core/scene/drive.h>
 
 #include <cmath>
 #include <limits>

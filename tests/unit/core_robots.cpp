@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 #include <momenta/core/open_chain.h>
-#include <momenta/core/scene/read_scene.h>
+#include <momenta/core/scene/files/read_scene.h>
 
 #include <filesystem>
 #include <fstream>

@@ -2,8 +2,8 @@
 // broken_scenes/ opens with "# expect: " lines, the parts its sentence must contain.
 
 #include <gtest/gtest.h>
+#include <momenta/core/scene/files/read_scene.h>
 #include <momenta/core/scene/near_name.h>
-#include <momenta/core/scene/read_scene.h>
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 #include <momenta/core/open_chain.h>
 #include <momenta/core/operations.h>
-#include <momenta/core/scene/read_scene.h>
+#include <momenta/core/scene/files/read_scene.h>
 
 #include "equations/tolerance.h"
 #include "equations/user_chain.h"

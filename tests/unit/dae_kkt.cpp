@@ -10,7 +10,7 @@
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/read_scene.h>
+#include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/kkt/body_matrix.h>
 #include <momenta/dae/kkt/kkt.h>
 #include <momenta/dae/kkt/klu_solver.h>
@@ -320,7 +320,7 @@ TEST(Kkt, DeepTreesAreSolvedByTheirBodies) {
   for (const Scene& scene : {crossed_bars(60), arch(120)}) {
     const Mechanism by_sweeps(scene), by_bodies(scene, {.kkt = KktChoice::sparse}),
         in_space(scene, {.algebra = Algebra::spatial, .kkt = KktChoice::sparse});
-    ASSERT_TRUE(solved_by_bodies(by_bodies));
+    ASSERT_TRUE(by_bodies.solved_by_bodies());
     ASSERT_EQ(by_sweeps.kkt(), KktChoice::sweeps);
     const auto e = by_sweeps.evaluation<double>(), f = by_bodies.evaluation<double>(),
                g = in_space.evaluation<double>();

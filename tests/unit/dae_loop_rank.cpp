@@ -6,7 +6,7 @@
 #include "equations/recut.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/read_scene.h>
+#include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/kkt/loop_units.h>
 #include <momenta/dae/linear/spectrum.h>

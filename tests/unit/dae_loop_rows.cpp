@@ -5,6 +5,7 @@
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
+#include <momenta/core/kernel/model.h>
 #include <momenta/dae/form/form.h>
 
 namespace momenta {

@@ -11,6 +11,7 @@
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
+#include <momenta/core/kernel/model.h>
 #include <momenta/dae/kkt/assembled_solver.h>
 #include <momenta/dae/kkt/sweep_solver.h>
 

@@ -8,9 +8,9 @@
 
 #include <gtest/gtest.h>
 #include <momenta/core/open_chain.h>
-#include <momenta/core/scene/read_scene.h>
+#include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/assembly/assembly.h>
-#include <momenta/dae/kkt/dense_blocks.h>
+#include <momenta/dae/dense_blocks.h>
 #include <momenta/dae/study/run_form.h>
 #include <momenta/dae/study/state_values.h>
 #include <momenta/dae/unheld_joints.h>

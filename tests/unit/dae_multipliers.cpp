@@ -8,7 +8,7 @@
 #include "equations/small_scenes.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/read_scene.h>
+#include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/measure/multipliers.h>
 #include <momenta/dae/measure/rank.h>
 #include <momenta/dae/report/chart.h>

@@ -3,7 +3,7 @@
 // is given reads back to all of it within its quantisation.
 #include <gtest/gtest.h>
 #include <momenta/core/open_chain.h>
-#include <momenta/core/scene/read_scene.h>
+#include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/report/picture_data.h>
 #include <momenta/dae/study/motion.h>

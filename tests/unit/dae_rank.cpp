@@ -5,7 +5,7 @@
 #include "equations/linkages.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/read_scene.h>
+#include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/measure/rank.h>
 #include <momenta/dae/measure/reactions.h>

@@ -6,7 +6,7 @@
 #include "equations/small_scenes.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/read_scene.h>
+#include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/report/page.h>
 #include <momenta/dae/report/table.h>
 #include <momenta/dae/study/drift_study.h>

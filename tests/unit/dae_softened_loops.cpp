@@ -8,6 +8,7 @@
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
+#include <momenta/core/kernel/model.h>
 #include <momenta/dae/kkt/coordinate_split.h>
 #include <momenta/dae/kkt/loop_solver.h>
 

@@ -6,7 +6,7 @@
 #include "equations/ensemble.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/read_scene.h>
+#include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/solver/integration.h>
 

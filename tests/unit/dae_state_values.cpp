@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 #include <momenta/core/open_chain.h>
-#include <momenta/core/scene/read_scene.h>
+#include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/joint_places.h>
 #include <momenta/dae/study/state_values.h>

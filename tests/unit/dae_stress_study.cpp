@@ -1,5 +1,5 @@
 #include <gtest/gtest.h>
-#include <momenta/core/scene/read_scene.h>
+#include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/report/stress_report.h>
 
 #include <filesystem>

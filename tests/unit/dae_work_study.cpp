@@ -4,7 +4,7 @@
 #include "equations/linkages.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/read_scene.h>
+#include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/kkt/loop_solver.h>
 #include <momenta/dae/report/advice.h>
 #include <momenta/dae/solver/extrapolation.h>

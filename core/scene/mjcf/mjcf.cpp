@@ -3,7 +3,7 @@
 #include <momenta/core/scene/mjcf/mjcf.h>
 #include <momenta/core/scene/mjcf/mjcf_model.h>
 #include <momenta/core/scene/near_name.h>
-#include <momenta/core/scene/read_scene.h>
+#include <momenta/core/scene/validate.h>
 
 #include <algorithm>
 #include <array>

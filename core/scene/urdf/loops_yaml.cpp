@@ -5,7 +5,6 @@
 
 #include <momenta/core/scene/file_text.h>
 #include <momenta/core/scene/near_name.h>
-#include <momenta/core/scene/toml_values.h>
 #include <momenta/core/scene/urdf/urdf.h>
 #include <yaml-cpp/yaml.h>
 

@@ -1,10 +1,10 @@
 // <robot>: links become bodies, joints become joints, mimic becomes a coupler.
 
+#include <momenta/core/scene/file_text.h>
 #include <momenta/core/scene/kinds.h>
 #include <momenta/core/scene/near_name.h>
-#include <momenta/core/scene/read_scene.h>
-#include <momenta/core/scene/toml_values.h>
 #include <momenta/core/scene/urdf/urdf.h>
+#include <momenta/core/scene/validate.h>
 
 #include <algorithm>
 #include <array>

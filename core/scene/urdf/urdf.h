@@ -2,7 +2,8 @@
 // URDF, with the tags that URDF+ adds for loops and gears, and the YAML file that may stand beside
 // it. What is read, what is left out and what is refused: docs/reference/formats.md.
 
-#include <momenta/core/scene/read_scene.h>
+#include <momenta/core/scene/scene.h>
+#include <momenta/core/scene/urdf/read_options.h>
 #include <momenta/core/scene/xml/made_scene.h>
 #include <momenta/core/scene/xml/xml_node.h>
 

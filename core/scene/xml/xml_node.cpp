@@ -1,6 +1,6 @@
+#include <momenta/core/scene/file_text.h>
 #include <momenta/core/scene/kinds.h>
 #include <momenta/core/scene/near_name.h>
-#include <momenta/core/scene/toml_values.h>
 #include <momenta/core/scene/xml/xml_node.h>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
+#include <momenta/core/scene/file_text.h>
 #include <momenta/core/scene/near_name.h>
-#include <momenta/core/scene/toml_values.h>
 #include <momenta/core/scene/xml/xml_values.h>
 #include <tinyxml2.h>
 

@@ -3,9 +3,9 @@
 // back, and what branches and the body they fold into hand to each other.
 
 #include <momenta/dae/sweeps/branches/looped_branch_tree.h>
-#include <momenta/dae/sweeps/right_side.h>
-#include <momenta/dae/sweeps/slots.h>
-#include <momenta/dae/sweeps/spatial_loop_place.h>
+#include <momenta/dae/sweeps/slots/right_side.h>
+#include <momenta/dae/sweeps/slots/slots.h>
+#include <momenta/dae/sweeps/slots/spatial_loop_place.h>
 
 namespace momenta {
 

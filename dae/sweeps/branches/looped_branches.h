@@ -13,7 +13,7 @@
 
 #include <momenta/core/kernel/link.h>
 #include <momenta/dae/loop/loop_model.h>
-#include <momenta/dae/sweeps/loop_plan.h>
+#include <momenta/dae/sweeps/slots/loop_plan.h>
 
 #include <string>
 

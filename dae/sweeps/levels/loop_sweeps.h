@@ -7,61 +7,12 @@
 #include <momenta/core/kernel/planar_link.h>
 #include <momenta/dae/loop/loop_model.h>
 #include <momenta/dae/loop/shared_points.h>
-#include <momenta/dae/sweeps/loop_plan.h>
-#include <momenta/dae/sweeps/right_side.h>
+#include <momenta/dae/sweeps/levels/looped_sweeps.h>
+#include <momenta/dae/sweeps/slots/loop_plan.h>
 
-#include <limits>
 #include <memory>
 
 namespace momenta {
-
-/// States side by side: coordinate i of state s is at base[i * stride + s].
-struct LoopedStates {
-  const double* q;        ///< nq rows
-  const double* p;        ///< nv rows
-  double* u;              ///< nv rows
-  double* sigma;          ///< m rows
-  double* pdot;           ///< nv rows
-  std::ptrdiff_t stride;  ///< from one row to the next
-  std::size_t count;      ///< how many states
-};
-
-/// The sweeps that carry the loops of one mechanism, with their workspace: one object a thread.
-/// Made by Mechanism::looped_sweeps().
-class LoopedSweeps {
- public:
-  virtual ~LoopedSweeps() = default;
-
-  /// u (nv) and σ (m) of (7) from p (nv); with right.rates ṗ (nv) of (8), forces between points of
-  /// bodies left out. False when a joint has no inertia: singular_joint().
-  virtual bool momentum(double t, const double* q, const double* p, const RightSide<double>& right,
-                        double* u, double* sigma, double* pdot) = 0;
-  /// u̇ (nv) and λ (m) of (3) from u and all generalised forces τ (nv) but the weights'.
-  /// @pre No compliance where ties are paired anew, here and in momentum().
-  virtual bool acceleration(double t, const double* q, const double* u, const double* tau,
-                            const RightSide<double>& right, double* udot, double* lambda) = 0;
-  /// momentum() with rates for many states, `width()` at a time; no centre. False when some state
-  /// has a joint without inertia.
-  virtual bool momentum(double t, const LoopedStates& states, double fade, double leak) = 0;
-
-  /// Rows of Φ that faded in the last solution of one state: that of momentum(), or acceleration().
-  /// Returns their number; `rows` has room for m.
-  virtual std::size_t faded_rows(int* rows, bool of_momentum) const = 0;
-  /// The weakest pivot of that solution which has not faded, over τ, and how many have.
-  struct Pivots {
-    double weakest = std::numeric_limits<double>::infinity();  ///< none: infinite
-    int faded = 0;                                             ///< how many
-  };
-  /// Of the last momentum(), or acceleration(), of one state.
-  virtual Pivots pivots(bool of_momentum) const = 0;
-  virtual int slots() const = 0;  ///< equations open at once, at most
-  virtual int width() const = 0;  ///< states side by side
-  /// Place in u of the joint at which the last call failed.
-  virtual int singular_joint() const = 0;
-  /// Whether the last call closed a folded branch, of one state or of some of many, on too weak a
-  /// pivot: its solution is then wrong.
-  virtual bool weak_looped_branch() const = 0;
-};
 
 /// The same loops with points and axes in the frames of the links. In space these are the model's.
 LoopModel<Planar> in_link_frames(LoopModel<Planar> loops, const PlanarTree& tree);

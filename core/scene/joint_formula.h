@@ -1,0 +1,27 @@
+#pragma once
+// What a scene knows of a joint of a program's own: its coordinates and its pose. The recursions
+// take derivatives of the same formula (core/kernel/user_motion.h).
+
+namespace momenta {
+
+/// The formula of a user joint, immutable. Programs make one as a UserJoint, core/user_joint.h: no
+/// other class can derive from this one.
+class JointFormula {
+ public:
+  virtual ~JointFormula() = default;
+
+  /// n, from 1 to 6.
+  virtual int coordinates() const = 0;
+
+  /// The pose of the child's joint frame in the parent's at (t, q): nine numbers by columns, and
+  /// three.
+  virtual void pose(double t, const double* q, double* rotation, double* position) const = 0;
+
+ private:
+  friend class UserFormula;  // so that the recursions know what every formula is
+  JointFormula() = default;
+  JointFormula(const JointFormula&) = default;
+  JointFormula& operator=(const JointFormula&) = default;
+};
+
+}  // namespace momenta

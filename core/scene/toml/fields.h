@@ -1,0 +1,78 @@
+#pragma once
+// The keys of one TOML table, read by type. Every complaint names the owner of the key, the key,
+// what was found and what was expected, and points to the value.
+
+#include <momenta/core/scene/toml/toml_values.h>
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace momenta::reading {
+
+enum class Bound { none, not_negative, positive };
+
+/// What a number means: its unit (empty: none) and its sign.
+struct Quantity {
+  std::string_view unit;
+  Bound bound = Bound::none;
+};
+
+class Fields {
+ public:
+  /// `owner` opens every sentence ("body 'crank'"). @throws SceneError unless `value` is a table
+  Fields(const Value& value, std::string owner, const std::string& file, std::string path = "");
+
+  /// Refuses every key but these. The first unknown one is named, with the nearest known key.
+  void allow(const std::vector<std::string_view>& known) const;
+
+  /// Refuses `key` with the reason why it has no place here.
+  void refuse(std::string_view key, const std::string& reason) const;
+
+  bool has(std::string_view key) const { return find(key) != nullptr; }
+  const Value* find(std::string_view key) const;
+  Location at() const { return value_.at; }
+
+  // Without `otherwise` the key must be there.
+  double number(std::string_view key, Quantity quantity) const;
+  double number(std::string_view key, Quantity quantity, double otherwise) const;
+  int count(std::string_view key, int otherwise) const;  ///< a whole number > 0
+  int index(std::string_view key, int otherwise) const;  ///< a whole number >= 0
+  bool flag(std::string_view key, bool otherwise) const;
+  std::string text(std::string_view key) const;
+  std::string text(std::string_view key, const std::string& otherwise) const;
+  std::vector<double> numbers(std::string_view key, Quantity quantity) const;
+  std::vector<std::string> texts(std::string_view key) const;  ///< empty when the key is missing
+  Eigen::Vector3d vector(std::string_view key, Quantity quantity) const;
+  Eigen::Vector3d vector(std::string_view key, Quantity quantity,
+                         const Eigen::Vector3d& otherwise) const;
+
+  /// A unit vector: three numbers, normalised, or "x", "-x", "y", ...
+  Eigen::Vector3d direction(std::string_view key, const Eigen::Vector3d& otherwise) const;
+
+  /// The table below `key`, if any.
+  std::optional<Fields> table(std::string_view key) const;
+
+  /// The tables of [[key]]; `title` and their name, or their number, become their owner.
+  std::vector<Fields> tables(std::string_view key, std::string_view title) const;
+
+  [[noreturn]] void fail_at(Location at, const std::string& sentence) const;
+  [[noreturn]] void fail_key(std::string_view key, const std::string& sentence) const;
+
+ private:
+  const Value& required(std::string_view key, const std::string& expected) const;
+  [[noreturn]] void mismatch(const Value& found, const std::string& key,
+                             const std::string& expected) const;
+  int centroidal(std::string_view key, int otherwise, int least) const;
+  double number_of(const Value& value, const std::string& key, Quantity quantity) const;
+
+  const Value& value_;
+  std::string owner_;
+  const std::string& file_;
+  std::string path_;  ///< "origin." inside the table of the key `origin`
+};
+
+}  // namespace momenta::reading

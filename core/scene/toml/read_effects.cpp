@@ -1,0 +1,100 @@
+// [[drive]] and [[force]]: what acts on the mechanism.
+
+#include <momenta/core/scene/drive.h>
+#include <momenta/core/scene/kinds.h>
+#include <momenta/core/scene/near_name.h>
+#include <momenta/core/scene/toml/read_tables.h>
+
+#include <vector>
+
+namespace momenta::reading {
+
+DriveSpec read_drive(const Fields& table) {
+  DriveSpec drive;
+  drive.at = table.at();
+  drive.kind = drive_kinds.at(read_kind(table, drive_kinds));
+
+  // the unit is that of what is driven, rad or m, which is not known here
+  constexpr Quantity coordinate{};
+  const auto allow = [&](std::vector<std::string_view> keys) {
+    keys.insert(keys.end(), {"joint", "loop", "coordinate", "origin", "kind"});
+    table.allow(keys);
+  };
+  if (drive.kind == "polynomial") {
+    allow({"coefficients"});
+    drive.coefficients = table.numbers("coefficients", coordinate);
+  } else if (drive.kind == "harmonic") {
+    allow({"offset", "amplitude", "frequency", "phase"});
+    drive.offset = table.number("offset", coordinate, 0);
+    drive.amplitude = table.number("amplitude", coordinate);
+    drive.frequency = table.number("frequency", {"rad/s"});
+    drive.phase = table.number("phase", {"rad"}, 0);
+  } else if (drive.kind == "step") {
+    allow({"from", "to", "start", "duration"});
+    drive.from = table.number("from", coordinate, 0);
+    drive.to = table.number("to", coordinate);
+    drive.start = table.number("start", {"s"}, 0);
+    drive.duration = table.number("duration", {"s", Bound::positive});
+  } else {
+    allow({"times", "values"});
+    drive.times = table.numbers("times", {"s"});
+    drive.values = table.numbers("values", coordinate);
+  }
+  if (table.has("joint") && table.has("loop"))
+    table.fail_key("loop", "is given beside joint, expected one of them");
+  drive.coordinate = table.index("coordinate", 0);
+  if (!table.has("loop")) {
+    table.refuse("origin", "belongs to the drive of a loop, expected none on that of a joint");
+    drive.joint = table.text("joint");
+  } else {
+    drive.loop = table.text("loop");
+    if (table.has("origin")) {
+      drive.origin = table.text("origin");
+      if (drive.origin != "x" && drive.origin != "y" && drive.origin != "z")
+        table.fail_key("origin",
+                       "is " + in_quotes(drive.origin) +
+                           ", expected \"x\", \"y\" or \"z\" of the loop's origin.parent");
+      table.refuse("coordinate", "is given beside origin, expected one of them");
+    }
+  }
+  if (const std::string fault = law_fault(drive); !fault.empty()) table.fail_at(table.at(), fault);
+  return drive;
+}
+
+ForceSpec read_force(const Fields& table) {
+  ForceSpec force;
+  force.at = table.at();
+  force.kind = force_kinds.at(read_kind(table, force_kinds));
+  if (force.kind == "spring-damper") {
+    table.allow({"name", "kind", "parent", "child", "origin", "stiffness", "damping", "rest"});
+    force.parent = table.text("parent", force.parent);
+    force.child = table.text("child");
+    const Origins origins = read_origins(table);
+    force.origin_parent = origins.parent;
+    force.origin_child = origins.child;
+    force.stiffness = table.number("stiffness", {"N/m"}, 0);
+    force.damping = table.number("damping", {"N s/m"}, 0);
+    force.rest = table.number("rest", {"m", Bound::not_negative}, 0);
+  } else if (force.kind == "torque") {
+    table.allow({"name", "kind", "joint", "value"});
+    force.joint = table.text("joint");
+    force.value = table.number("value", {"N m or N"});
+  } else {
+    table.allow({"name", "kind", "body", "point", "force", "torque", "axes"});
+    force.body = table.text("body");
+    force.point = table.vector("point", {"m"}, force.point);
+    force.force = table.vector("force", {"N"}, force.force);
+    force.torque = table.vector("torque", {"N m"}, force.torque);
+    const std::string axes = table.text("axes", "ground");
+    if (axes != "ground" && axes != "body")
+      table.fail_key("axes", "is " + in_quotes(axes) + ", expected \"ground\" or \"body\"");
+    force.in_body_axes = axes == "body";
+  }
+  if (table.has("name")) {
+    force.name = table.text("name");
+    if (force.name.empty()) table.fail_key("name", "is empty, expected a name or no such key");
+  }
+  return force;
+}
+
+}  // namespace momenta::reading

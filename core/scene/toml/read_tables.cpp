@@ -1,0 +1,263 @@
+// [[body]], [[joint]], [[loop]], [[marker]], [run]: the mechanism itself.
+
+#include <momenta/core/scene/kinds.h>
+#include <momenta/core/scene/near_name.h>
+#include <momenta/core/scene/shapes.h>
+#include <momenta/core/scene/toml/read_tables.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace momenta::reading {
+namespace {
+
+Shape read_shape(const Fields& table) {
+  Shape shape;
+  shape.kind = shape_kinds.at(read_kind(table, shape_kinds));
+  constexpr Quantity extent{"m", Bound::positive};
+  if (shape.kind == "rod") {
+    table.allow({"kind", "length", "axis"});
+    shape.size.x() = table.number("length", extent);
+  } else if (shape.kind == "box") {
+    table.allow({"kind", "size"});
+    shape.size = table.vector("size", extent);
+  } else if (shape.kind == "cylinder") {
+    table.allow({"kind", "length", "radius", "axis"});
+    shape.size = {table.number("length", extent), table.number("radius", extent), 0};
+  } else if (shape.kind == "sphere") {
+    table.allow({"kind", "radius"});
+    shape.size.x() = table.number("radius", extent);
+  } else {
+    table.allow({"kind"});
+  }
+  shape.axis = table.direction("axis", shape.axis);
+  return shape;
+}
+
+/// inertia = [xx, yy, zz, xy, xz, yz] | [xx, yy, zz] | Izz of a planar body
+Eigen::Matrix3d read_inertia(const Fields& table) {
+  constexpr Quantity moment{"kg m²"};
+  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();
+  if (const Value* value = table.find("inertia"); value->type != Value::Type::array) {
+    if (value->type != Value::Type::number && value->type != Value::Type::integer)
+      table.fail_key("inertia",
+                     "is " + std::string(described(value->type)) +
+                         ", expected xx, yy, zz, xy, xz, yz in an array, or one number [kg m²]");
+    const double izz = table.number("inertia", {"kg m²", Bound::not_negative});
+    inertia.diagonal() << izz / 2, izz / 2, izz;
+    return inertia;
+  }
+  const std::vector<double> m = table.numbers("inertia", moment);
+  if (m.size() != 3 && m.size() != 6)
+    table.fail_key(
+        "inertia",
+        "has " + std::to_string(m.size()) +
+            " entries, expected 6 (xx, yy, zz, xy, xz, yz), 3 (xx, yy, zz) or one number [kg m²]");
+  inertia.diagonal() << m[0], m[1], m[2];
+  if (m.size() == 6) {
+    inertia(0, 1) = inertia(1, 0) = m[3];
+    inertia(0, 2) = inertia(2, 0) = m[4];
+    inertia(1, 2) = inertia(2, 1) = m[5];
+  }
+  return inertia;
+}
+
+/// position, velocity: one number for one degree of freedom, else an array.
+std::vector<double> read_state(const Fields& table, std::string_view key, std::size_t size,
+                               const std::string& kind, Quantity quantity) {
+  const Value* value = table.find(key);
+  if (value == nullptr) return {};
+  if (size == 1 && value->type != Value::Type::array) return {table.number(key, quantity)};
+  std::vector<double> state = table.numbers(key, size == 1 ? quantity : Quantity{});
+  if (state.size() != size)
+    table.fail_key(key, "has " + std::to_string(state.size()) + " entries, expected " +
+                            std::to_string(size) + " for a " + kind + " joint");
+  return state;
+}
+
+/// The last four of a position are a quaternion: normalised here when nearly so, so that no solver
+/// meets a scaled one.
+void normalise_quaternion(const Fields& table, std::vector<double>& position) {
+  if (position.size() < 4) return;
+  Eigen::Map<Eigen::Vector4d> quaternion(position.data() + position.size() - 4);
+  const double norm = quaternion.norm();
+  if (!(std::abs(norm - 1) <= norm_slack))
+    table.fail_key("position",
+                   "has a quaternion of norm " + digits(norm) + ", expected 1 within 1e-6");
+  if (!is_unit(quaternion)) quaternion /= norm;
+}
+
+}  // namespace
+
+BodySpec read_body(const Fields& table) {
+  table.allow({"name", "mass", "com", "inertia", "any_inertia", "shape"});
+  BodySpec body;
+  body.at = table.at();
+  body.name = table.text("name");
+  body.mass = table.number("mass", {"kg", Bound::not_negative});
+
+  if (const auto shape = table.table("shape")) {
+    body.shape = read_shape(*shape);
+  } else if (body.mass > 0 && !table.has("inertia")) {
+    table.fail_at(
+        table.at(),
+        "a mass with neither shape nor inertia, expected one of them (a point mass is shape = { "
+        "kind = \"point\" })");
+  }
+
+  // what is written out wins over the shape
+  body.com = table.vector("com", {"m"}, centre_of(body.shape));
+  body.inertia = table.has("inertia") ? read_inertia(table) : inertia_of(body.shape, body.mass);
+  body.any_inertia = table.flag("any_inertia", false);
+  if (const std::string fault = inertia_fault(body.inertia); !fault.empty() && !body.any_inertia)
+    table.fail_key(table.has("inertia") ? "inertia" : "shape", fault);
+  return body;
+}
+
+JointSpec read_joint(const Fields& table) {
+  JointSpec joint;
+  joint.at = table.at();
+  joint.kind = static_cast<JointKind>(read_kind(table, joint_kinds, loop_kinds, "[[loop]]"));
+  const std::string kind(name_of(joint.kind));
+  if (!has_axis(joint.kind))
+    table.refuse("axis", "has no meaning for a " + kind +
+                             " joint, expected on revolute, prismatic, helical, cylindrical, "
+                             "universal and planar only");
+  if (!has_one_coordinate(joint.kind))
+    for (const std::string_view key : {"stiffness", "rest", "damping"})
+      table.refuse(key, "has no meaning for a " + kind +
+                            " joint, expected on revolute, prismatic and helical only");
+  const auto only = [&](std::string_view key, JointKind owner) {
+    if (joint.kind != owner)
+      table.refuse(key, "has no meaning for a " + kind + " joint, expected on " +
+                            std::string(name_of(owner)) + " only");
+  };
+  only("pitch", JointKind::helical);
+  only("axis2", JointKind::universal);
+  only("direction", JointKind::planar);
+  table.refuse("length", "belongs to a [[loop]] of kind distance, expected none on a joint");
+  table.allow({"name", "kind", "parent", "child", "origin", "rotation", "axis", "axis2",
+               "direction", "pitch", "position", "velocity", "stiffness", "rest", "damping"});
+
+  joint.name = table.text("name");
+  joint.parent = table.text("parent", joint.parent);
+  joint.child = table.text("child");
+  const Origins origins = read_origins(table);
+  joint.origin_parent = origins.parent;
+  joint.origin_child = origins.child;
+  joint.rotation = read_rotation(table);
+  joint.axis = table.direction("axis", joint.axis);
+  joint.axis2 = table.direction("axis2", joint.axis2);
+  joint.direction = table.direction("direction", joint.direction);
+  for (const char* key : {"axis2", "direction"})
+    if (table.has(key) && joint.axis.cross(table.direction(key, {})).norm() < parallel_slack)
+      table.fail_key(key, "is parallel to axis, expected another direction");
+  if (joint.kind == JointKind::helical) joint.pitch = table.number("pitch", {"m/rad"});
+
+  const bool turns = joint.kind != JointKind::prismatic;
+  joint.position =
+      read_state(table, "position", static_cast<std::size_t>(coordinates_of(joint.kind)), kind,
+                 {turns ? "rad" : "m"});
+  joint.velocity = read_state(table, "velocity", static_cast<std::size_t>(rates_of(joint.kind)),
+                              kind, {turns ? "rad/s" : "m/s"});
+  normalise_quaternion(table, joint.position);
+
+  joint.stiffness = table.number("stiffness", {turns ? "N m/rad" : "N/m"}, 0);
+  joint.rest = table.number("rest", {turns ? "rad" : "m"}, 0);
+  joint.damping = table.number("damping", {turns ? "N m s/rad" : "N s/m"}, 0);
+  return joint;
+}
+
+namespace {
+
+/// The keys of a coupler, which ties coordinates and no bodies.
+void read_coupler(const Fields& table, LoopSpec& loop) {
+  table.allow({"name", "kind", "joints", "coordinates", "ratios", "offset"});
+  loop.name = table.text("name");
+  loop.joints = table.texts("joints");
+  if (loop.joints.empty()) table.fail_key("joints", "names no joint, expected at least one");
+  loop.ratios = table.numbers("ratios", {});
+  if (table.has("coordinates"))
+    for (const double x : table.numbers("coordinates", {})) {
+      const int coordinate = x >= 0 && x < 10 ? static_cast<int>(x) : -1;
+      if (coordinate != x)
+        table.fail_key("coordinates",
+                       "has " + digits(x) + ", expected whole numbers >= 0, one for each joint");
+      loop.coordinates.push_back(coordinate);
+    }
+  loop.offset = table.number("offset", {"rad or m"}, 0);
+}
+
+}  // namespace
+
+LoopSpec read_loop(const Fields& table, std::span<const DriveSpec> drives) {
+  LoopSpec loop;
+  loop.at = table.at();
+  loop.kind = static_cast<LoopKind>(read_kind(table, loop_kinds, joint_kinds, "[[joint]]"));
+  const std::string kind(name_of(loop.kind));
+  if (loop.kind == LoopKind::coupler) {
+    read_coupler(table, loop);
+    return loop;
+  }
+  for (const std::string_view key : {"joints", "coordinates", "ratios", "offset"})
+    table.refuse(key, "has no meaning for a " + kind + " loop, expected on coupler only");
+  for (const std::string_view key : {"position", "velocity", "stiffness", "rest", "damping"})
+    table.refuse(key,
+                 "belongs to a [[joint]], expected none on a loop (a loop has no coordinates)");
+  if (!has_axis(loop.kind))
+    table.refuse("axis", "has no meaning for a " + kind +
+                             " loop, expected on revolute, prismatic, "
+                             "universal, cylindrical and planar only");
+  if (loop.kind != LoopKind::universal)
+    table.refuse("axis2", "has no meaning for a " + kind + " loop, expected on universal only");
+  if (loop.kind != LoopKind::planar)
+    table.refuse("direction", "has no meaning for a " + kind + " loop, expected on planar only");
+  if (loop.kind != LoopKind::distance)
+    table.refuse("length", "has no meaning for a " + kind + " loop, expected on distance only");
+  table.allow({"name", "kind", "parent", "child", "origin", "rotation", "axis", "axis2",
+               "direction", "length"});
+
+  loop.name = table.text("name");
+  loop.parent = table.text("parent", loop.parent);
+  loop.child = table.text("child");
+  const Origins origins = read_origins(table);
+  loop.origin_parent = origins.parent;
+  loop.origin_child = origins.child;
+  loop.rotation = read_rotation(table);
+  loop.axis = table.direction("axis", loop.axis);
+  loop.axis2 = table.direction("axis2", loop.axis2);
+  loop.direction = table.direction("direction", loop.direction);
+  for (const char* key : {"axis2", "direction"})
+    if (table.has(key) && loop.axis.cross(table.direction(key, {})).norm() < parallel_slack)
+      table.fail_key(key, "is parallel to axis, expected another direction");
+  const auto prescribes_length = [&](const DriveSpec& drive) {
+    return drive.loop == loop.name && drive.origin.empty();
+  };
+  if (loop.kind == LoopKind::distance &&
+      (table.has("length") || std::none_of(drives.begin(), drives.end(), prescribes_length)))
+    loop.length = table.number("length", {"m", Bound::positive});
+  return loop;
+}
+
+MarkerSpec read_marker(const Fields& table) {
+  table.allow({"name", "body", "point"});
+  MarkerSpec marker;
+  marker.at = table.at();
+  marker.name = table.text("name");
+  marker.body = table.text("body");
+  marker.point = table.vector("point", {"m"}, marker.point);
+  return marker;
+}
+
+RunDefaults read_run(const Fields& table) {
+  table.allow({"end", "step", "leak", "samples", "project"});
+  RunDefaults run;
+  run.end_time = table.number("end", {"s", Bound::positive}, run.end_time);
+  if (table.has("step")) run.step = table.number("step", {"s", Bound::positive});
+  if (table.has("leak")) run.leak = table.number("leak", {"1/s", Bound::positive});
+  run.samples = table.count("samples", run.samples);
+  run.project = table.flag("project", run.project);
+  return run;
+}
+
+}  // namespace momenta::reading

@@ -1,0 +1,112 @@
+#include <momenta/core/scene/toml/set_numbers.h>
+
+#include <algorithm>
+#include <charconv>
+#include <stdexcept>
+
+namespace momenta::reading {
+namespace {
+
+Value* find(Value& table, std::string_view key) {
+  for (Entry& e : table.entries)
+    if (e.key == key) return &e.value;
+  return nullptr;
+}
+
+std::string_view name_of(Value& table) {
+  const Value* name = find(table, "name");
+  return name && name->type == Value::Type::text ? std::string_view(name->text) : "";
+}
+
+/// One way through a scene's values, key by key.
+class Way {
+ public:
+  explicit Way(const Setting& setting) : setting_(setting), rest_(setting.place) {}
+
+  void set(Value& root) {
+    Value* at = &root;
+    while (!rest_.empty()) {
+      if (at->type == Value::Type::array)
+        at = is_list_of_tables(*at) ? &named(*at) : &element(*at);
+      else if (at->type == Value::Type::table)
+        at = &member(*at);
+      else
+        refuse("a number", at->type);
+    }
+    if (at->type != Value::Type::number && at->type != Value::Type::integer)
+      refuse("more keys", at->type);
+    at->type = Value::Type::number;
+    at->number = setting_.value;
+  }
+
+ private:
+  static bool is_list_of_tables(const Value& v) {
+    return !v.items.empty() && v.items.front().type == Value::Type::table;
+  }
+  [[noreturn]] void fail(const std::string& sentence) const {
+    throw std::invalid_argument("'" + setting_.place + "': " + sentence);
+  }
+  [[noreturn]] void refuse(const std::string& expected, Value::Type found) const {
+    fail(std::string(taken()) + " is " + std::string(described(found)) + ", expected " +
+         (rest_.empty() ? expected + " after it" : "nothing after it"));
+  }
+  std::string_view taken() const {
+    std::string_view all = setting_.place;
+    all.remove_suffix(rest_.size());
+    if (all.ends_with('.')) all.remove_suffix(1);
+    return all;
+  }
+  std::string_view next() {
+    const std::size_t dot = rest_.find('.');
+    const std::string_view key = rest_.substr(0, dot);
+    rest_.remove_prefix(dot == rest_.npos ? rest_.size() : dot + 1);
+    return key;
+  }
+
+  /// The table of this name; names may have dots in them, and of several the longest counts.
+  Value& named(Value& list) {
+    Value* best = nullptr;
+    std::size_t length = 0;
+    for (Value& table : list.items) {
+      const std::string_view name = name_of(table);
+      if (name.empty() || name.size() < length || !rest_.starts_with(name)) continue;
+      if (rest_.size() > name.size() && rest_[name.size()] != '.') continue;
+      best = &table;
+      length = name.size();
+    }
+    if (!best) fail("the scene has no " + std::string(taken()) + " of that name");
+    rest_.remove_prefix(std::min(rest_.size(), length + 1));
+    if (rest_.empty()) fail("expected a key after the name");
+    return *best;
+  }
+  Value& element(Value& list) {
+    const std::string_view key = next();
+    std::size_t i = 0;
+    const auto [end, error] = std::from_chars(key.data(), key.data() + key.size(), i);
+    if (error != std::errc{} || end != key.data() + key.size() || i >= list.items.size())
+      fail(std::string(taken()) + " is no element, expected 0 to " +
+           std::to_string(list.items.size() - 1));
+    return list.items[i];
+  }
+  Value& member(Value& table) {
+    const std::string_view key = next();
+    if (Value* v = find(table, key)) return *v;
+    if (!rest_.empty()) fail("the scene has no " + std::string(taken()));
+    Value v;
+    v.type = Value::Type::number;
+    v.at = table.at;
+    table.entries.push_back({std::string(key), table.at, v});
+    return table.entries.back().value;
+  }
+
+  const Setting& setting_;
+  std::string_view rest_;
+};
+
+}  // namespace
+
+void set_numbers(Value& root, const std::vector<Setting>& settings) {
+  for (const Setting& setting : settings) Way(setting).set(root);
+}
+
+}  // namespace momenta::reading

@@ -1,0 +1,11 @@
+#pragma once
+#include <momenta/core/scene/toml/setting.h>
+#include <momenta/core/scene/toml/toml_values.h>
+
+namespace momenta::reading {
+
+/// Puts the numbers in their places. A key that the text leaves out is added to its table, for the
+/// reader to judge. @throws std::invalid_argument
+void set_numbers(Value& root, const std::vector<Setting>& settings);
+
+}  // namespace momenta::reading

@@ -1,0 +1,51 @@
+#pragma once
+// TOML as plain values with their places. The parser behind it, toml++, is seen by toml_values.cpp
+// alone.
+
+#include <momenta/core/scene/scene.h>
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace momenta::reading {
+
+struct Entry;
+
+/// One TOML value. Only the members which belong to its type are filled.
+struct Value {
+  enum class Type { text, integer, number, boolean, date, time, date_time, array, table };
+  Type type = Type::table;
+  Location at;
+  std::string text;            ///< text
+  double number = 0;           ///< integer, number
+  bool truth = false;          ///< boolean
+  std::vector<Value> items;    ///< array
+  std::vector<Entry> entries;  ///< table, in the order of the file
+};
+
+struct Entry {
+  std::string key;
+  Location at;
+  Value value;
+};
+
+/// What a value is, for "... is a string, expected ...".
+std::string_view described(Value::Type type);
+
+/// The root table of a TOML text. `file` only names it in messages.
+/// @throws SceneError for whatever is no UTF-8, no TOML, or beyond the limits of check_text.
+Value parse_toml(std::string_view text, const std::string& file);
+
+/// Refuses, before any parser sees it, text that is no scene whatever it says:
+///   - empty, over 64 MiB, not UTF-8, or holding NUL
+///   - brackets nested, or keys dotted, more than 16 deep (a scene needs 3; the parser and the
+///     destructors recurse over this depth)
+///   - more than 4 million values, which bounds memory
+///   - malformed in a way toml++ 3.3 meets with undefined behaviour: characters outside ASCII
+///     outside strings and comments, table headers without a name, brackets that do not match
+///
+/// Cost O(size). @throws SceneError
+void check_text(std::string_view text, const std::string& file);
+
+}  // namespace momenta::reading

@@ -1,0 +1,248 @@
+#include <momenta/core/scene/kinds.h>
+#include <momenta/core/scene/near_name.h>
+#include <momenta/core/scene/toml/write_scene.h>
+
+#include <cmath>
+
+namespace momenta {
+namespace {
+
+using Eigen::Vector3d;
+
+/// TOML in the making: tables with keys that differ from their default.
+class TomlText {
+ public:
+  std::string text;
+
+  void open(const char* header) { text += std::string("\n") + header + "\n"; }
+  void put(const char* key, const std::string& value) {
+    text += std::string(key) + " = " + value + "\n";
+  }
+  void word(const char* key, const std::string& value) { put(key, quoted(value)); }
+  void number(const char* key, double value, double otherwise = 0) {
+    if (!same(value, otherwise)) put(key, digits(value));
+  }
+  void numbers(const char* key, const std::vector<double>& values) { put(key, list(values)); }
+  void vector(const char* key, const Vector3d& v, const Vector3d& otherwise = Vector3d::Zero()) {
+    if (!same(v, otherwise)) put(key, list({v[0], v[1], v[2]}));
+  }
+
+  /// TOML's whole numbers have no minus zero and end at 2^63.
+  static std::string digits(double value) {
+    const bool large = std::abs(value) >= 1e15, minus_zero = value == 0 && std::signbit(value);
+    std::string text = reading::digits(value);
+    if ((large || minus_zero) && text.find_first_of(".e") == std::string::npos) text += ".0";
+    return text;
+  }
+  static std::string list(const std::vector<double>& values) {
+    std::string all;
+    for (const double value : values) all += (all.empty() ? "" : ", ") + digits(value);
+    return "[" + all + "]";
+  }
+  static std::string words(const std::vector<std::string>& values) {
+    std::string all;
+    for (const std::string& value : values) all += (all.empty() ? "" : ", ") + quoted(value);
+    return "[" + all + "]";
+  }
+  static std::string quoted(const std::string& value) {
+    static constexpr char hex[] = "0123456789abcdef";
+    std::string all = "\"";
+    for (const char c : value) {
+      const auto byte = static_cast<unsigned char>(c);
+      if (c == '"' || c == '\\') all += '\\';
+      if (byte < 0x20 || byte == 0x7f) {
+        all += "\\u00";
+        all += hex[byte >> 4];
+        all += hex[byte & 15];
+      } else {
+        all += c;
+      }
+    }
+    return all + "\"";
+  }
+  static bool same(double a, double b) { return a == b && std::signbit(a) == std::signbit(b); }
+  static bool same(const Vector3d& a, const Vector3d& b) {
+    return same(a[0], b[0]) && same(a[1], b[1]) && same(a[2], b[2]);
+  }
+};
+
+void write_body(const BodySpec& body, TomlText& t) {
+  t.open("[[body]]");
+  t.word("name", body.name);
+  t.put("mass", TomlText::digits(body.mass));
+  // what a shape would give is written out, so that nothing is computed once more
+  const bool shaped = !body.shape.kind.empty();
+  if (shaped || !TomlText::same(body.com, Vector3d::Zero()))
+    t.numbers("com", {body.com[0], body.com[1], body.com[2]});
+  const Eigen::Matrix3d& m = body.inertia;
+  if (shaped || body.mass > 0 || !m.isZero(0))
+    t.numbers("inertia", {m(0, 0), m(1, 1), m(2, 2), m(0, 1), m(0, 2), m(1, 2)});
+  if (body.any_inertia) t.put("any_inertia", "true");
+  if (!shaped) return;
+  std::string shape = "{ kind = " + TomlText::quoted(body.shape.kind);
+  const auto size = [&](const char* key, int i) {
+    shape += std::string(", ") + key + " = " + TomlText::digits(body.shape.size[i]);
+  };
+  const bool box = body.shape.kind == "box", point = body.shape.kind == "point";
+  const Vector3d &s = body.shape.size, &a = body.shape.axis;
+  if (box) shape += ", size = " + TomlText::list({s[0], s[1], s[2]});
+  if (body.shape.kind == "sphere") size("radius", 0);
+  if (body.shape.kind == "rod" || body.shape.kind == "cylinder") {
+    size("length", 0);
+    if (body.shape.kind == "cylinder") size("radius", 1);
+  }
+  if (!box && !point && body.shape.kind != "sphere" && !TomlText::same(a, Vector3d::UnitX()))
+    shape += ", axis = " + TomlText::list({a[0], a[1], a[2]});
+  t.put("shape", shape + " }");
+}
+
+/// Two bodies and a point on each.
+template <class Edge>
+void write_ends(const Edge& e, TomlText& t) {
+  if (e.parent != "ground") t.word("parent", e.parent);
+  t.word("child", e.child);
+  const bool one = !TomlText::same(e.origin_parent, Vector3d::Zero());
+  const bool two = !TomlText::same(e.origin_child, Vector3d::Zero());
+  const auto three = [](const Vector3d& v) { return TomlText::list({v[0], v[1], v[2]}); };
+  if (one || two)
+    t.put("origin", "{ " + (one ? "parent = " + three(e.origin_parent) : std::string()) +
+                        (one && two ? ", " : "") +
+                        (two ? "child = " + three(e.origin_child) : std::string()) + " }");
+}
+
+/// What joints and loops have alike. `has_axis`: of this kind.
+template <class Edge>
+void write_frames(const Edge& e, bool has_axis, TomlText& t) {
+  write_ends(e, t);
+  const Eigen::Quaterniond& r = e.rotation;
+  if (!TomlText::same(r.w(), 1) || !TomlText::same(r.vec(), Vector3d::Zero()))
+    t.put("rotation", "{ quaternion = " + TomlText::list({r.w(), r.x(), r.y(), r.z()}) + " }");
+  if (!has_axis) return;
+  t.vector("axis", e.axis, Vector3d::UnitZ());
+  t.vector("axis2", e.axis2);
+  t.vector("direction", e.direction);
+}
+
+void write_joint(const JointSpec& joint, TomlText& t) {
+  t.open("[[joint]]");
+  t.word("name", joint.name);
+  t.word("kind", std::string(reading::name_of(joint.kind)));
+  write_frames(joint, reading::has_axis(joint.kind), t);
+  if (joint.kind == JointKind::helical) t.put("pitch", TomlText::digits(joint.pitch));
+  if (!joint.position.empty()) t.numbers("position", joint.position);
+  if (!joint.velocity.empty()) t.numbers("velocity", joint.velocity);
+  t.number("stiffness", joint.stiffness);
+  t.number("rest", joint.rest);
+  t.number("damping", joint.damping);
+}
+
+void write_loop(const LoopSpec& loop, TomlText& t) {
+  t.open("[[loop]]");
+  t.word("name", loop.name);
+  t.word("kind", std::string(reading::name_of(loop.kind)));
+  if (loop.kind == LoopKind::coupler) {
+    t.put("joints", TomlText::words(loop.joints));
+    t.numbers("ratios", loop.ratios);
+    if (!loop.coordinates.empty())
+      t.numbers("coordinates", {loop.coordinates.begin(), loop.coordinates.end()});
+    t.number("offset", loop.offset);
+    return;
+  }
+  write_frames(loop, reading::has_axis(loop.kind), t);
+  if (loop.kind == LoopKind::distance) t.number("length", loop.length);
+}
+
+void write_drive(const DriveSpec& drive, TomlText& t) {
+  t.open("[[drive]]");
+  if (drive.joint.empty())
+    t.word("loop", drive.loop);
+  else
+    t.word("joint", drive.joint);
+  if (!drive.origin.empty())
+    t.word("origin", drive.origin);
+  else if (drive.coordinate != 0)
+    t.put("coordinate", std::to_string(drive.coordinate));
+  t.word("kind", drive.kind);
+  if (drive.kind == "polynomial") t.numbers("coefficients", drive.coefficients);
+  if (drive.kind == "harmonic") {
+    t.put("amplitude", TomlText::digits(drive.amplitude));
+    t.put("frequency", TomlText::digits(drive.frequency));
+    t.number("offset", drive.offset);
+    t.number("phase", drive.phase);
+  }
+  if (drive.kind == "step") {
+    t.put("to", TomlText::digits(drive.to));
+    t.put("duration", TomlText::digits(drive.duration));
+    t.number("from", drive.from);
+    t.number("start", drive.start);
+  }
+  if (drive.kind == "table") {
+    t.numbers("times", drive.times);
+    t.numbers("values", drive.values);
+  }
+}
+
+void write_force(const ForceSpec& force, TomlText& t) {
+  t.open("[[force]]");
+  if (!force.name.empty()) t.word("name", force.name);
+  t.word("kind", force.kind);
+  if (force.kind == "spring-damper") {
+    write_ends(force, t);
+    t.number("stiffness", force.stiffness);
+    t.number("damping", force.damping);
+    t.number("rest", force.rest);
+  } else if (force.kind == "torque") {
+    t.word("joint", force.joint);
+    t.put("value", TomlText::digits(force.value));
+  } else {
+    t.word("body", force.body);
+    t.vector("point", force.point);
+    t.vector("force", force.force);
+    t.vector("torque", force.torque);
+    if (force.in_body_axes) t.word("axes", "body");
+  }
+}
+
+void write_run(const RunDefaults& run, TomlText& t) {
+  const RunDefaults usual;
+  t.open("[run]");
+  t.number("end", run.end_time, usual.end_time);
+  if (run.step) t.put("step", TomlText::digits(*run.step));
+  if (run.leak) t.put("leak", TomlText::digits(*run.leak));
+  if (run.samples != usual.samples) t.put("samples", std::to_string(run.samples));
+  if (run.project) t.put("project", "true");
+}
+
+}  // namespace
+
+std::string scene_text(const Scene& scene) {
+  TomlText t;
+  for (const std::string& remark : scene.remarks)
+    t.text += "# " + reading::on_one_line(remark) + "\n";
+  if (!scene.name.empty()) t.word("name", scene.name);
+  t.vector("gravity", scene.gravity);
+  for (const BodySpec& body : scene.bodies) write_body(body, t);
+  for (const JointSpec& joint : scene.joints) {
+    if (joint.kind == JointKind::user)
+      throw SceneError(scene.where(joint.at) + "joint " + reading::in_quotes(joint.name) +
+                       " is a user joint, whose formula no file can hold; expected another kind");
+    write_joint(joint, t);
+  }
+  for (const LoopSpec& loop : scene.loops) write_loop(loop, t);
+  for (const DriveSpec& drive : scene.drives) write_drive(drive, t);
+  for (const ForceSpec& force : scene.forces) write_force(force, t);
+  for (const MarkerSpec& marker : scene.markers) {
+    t.open("[[marker]]");
+    t.word("name", marker.name);
+    t.word("body", marker.body);
+    t.vector("point", marker.point);
+  }
+  if (!scene.held.empty()) {
+    t.open("[assembly]");
+    t.put("hold", TomlText::words(scene.held));
+  }
+  write_run(scene.run, t);
+  return t.text;
+}
+
+}  // namespace momenta

@@ -1,0 +1,80 @@
+#include <momenta/dae/factor/axis_scale.h>
+#include <momenta/dae/loop/loop_weights.h>
+
+#include <algorithm>
+
+namespace momenta {
+
+AxisScale::AxisScale(const Tree& tree, const std::vector<KktPattern::Entry>& constraint,
+                     const std::vector<int>& groups, const std::vector<double>& least,
+                     double spread)
+    : pattern_(constraint),
+      groups_(groups),
+      least_(least),
+      far_apart_(std::max(1.0, spread / masses_far_apart)) {
+  std::vector<bool> turns(static_cast<std::size_t>(tree.nv), false);
+  for (const auto& b : tree.bodies) {
+    const int angular = b.nv == 6 ? 3 : 0;
+    if (b.nv == 1 && b.kind == JointKind::prismatic) continue;
+    for (int i = angular; i < b.nv; ++i) turns[static_cast<std::size_t>(b.u + i)] = true;
+  }
+  for (const auto& entry : pattern_) {
+    const auto row = static_cast<std::size_t>(entry.row),
+               column = static_cast<std::size_t>(entry.column);
+    const bool ties_axes = groups_[row] % 2 == 1;  // each loop: points, then axes
+    if (ties_axes && turns[column]) hanging_.push_back({row, column});
+  }
+  std::stable_sort(hanging_.begin(), hanging_.end(),
+                   [](const Hanging& a, const Hanging& b) { return a.row < b.row; });
+}
+
+void AxisScale::measure(const std::vector<double>& inertia, std::vector<double>& scale) const {
+  scale = least_;
+  for (const auto& h : hanging_)
+    if (inertia[h.rate] > 0) scale[h.row] += 1 / inertia[h.rate];
+}
+
+void AxisScale::of_groups(const std::vector<double>& inertia, const std::vector<double>& constraint,
+                          std::vector<double>& scale) const {
+  std::fill(scale.begin(), scale.end(), 0.0);
+  for (std::size_t i = 0; i < constraint.size(); ++i) {
+    const auto& entry = pattern_[i];
+    const double own = inertia[static_cast<std::size_t>(entry.column)];
+    if (own > 0) scale[static_cast<std::size_t>(entry.row)] += constraint[i] * constraint[i] / own;
+  }
+  for (std::size_t h = 0, row = 0; row < scale.size(); ++row) {
+    double natural = least_[row];
+    for (; h < hanging_.size() && hanging_[h].row == row; ++h)
+      if (inertia[hanging_[h].rate] > 0) natural += 1 / inertia[hanging_[h].rate];
+    scale[row] = std::max(scale[row], natural);
+  }
+  for (std::size_t first = 0; first < groups_.size();) {
+    std::size_t last = first;
+    double sum = 0;
+    for (; last < groups_.size() && groups_[last] == groups_[first]; ++last) sum += scale[last];
+    std::fill(scale.begin() + static_cast<std::ptrdiff_t>(first),
+              scale.begin() + static_cast<std::ptrdiff_t>(last),
+              sum / static_cast<double>(last - first));
+    first = last;
+  }
+}
+
+void AxisScale::softness(const std::vector<double>& inertia, const std::vector<double>& constraint,
+                         double fade, std::vector<double>& epsilon) const {
+  of_groups(inertia, constraint, epsilon);
+  for (double& e : epsilon) e *= 1e-2 * fade / far_apart_;
+}
+
+MassDiagonal::MassDiagonal(const KktPattern& pattern, int nv)
+    : place_(static_cast<std::size_t>(nv)), inertia_(place_.size()) {
+  for (std::size_t i = 0; i < pattern.mass.size(); ++i)
+    if (pattern.mass[i].row == pattern.mass[i].column)
+      place_[static_cast<std::size_t>(pattern.mass[i].row)] = i;
+}
+
+const std::vector<double>& MassDiagonal::of(const std::vector<double>& mass) {
+  for (std::size_t j = 0; j < place_.size(); ++j) inertia_[j] = mass[place_[j]];
+  return inertia_;
+}
+
+}  // namespace momenta

@@ -1,0 +1,57 @@
+#pragma once
+// How large rows that tie axes are by nature. Where all hinges of a loop are parallel, the
+// equations for its axes vanish to rounding in every entry: they are redundant, not weak, and what
+// is left of them is no scale for anything.
+
+#include <momenta/core/tree/tree.h>
+#include <momenta/dae/factor/kkt_pattern.h>
+
+#include <vector>
+
+namespace momenta {
+
+class AxisScale {
+ public:
+  /// `constraint`: pattern of Φ_q; `groups`, `least` (m): Mechanism::row_groups, least_scales;
+  /// `spread`: LoopWeights::spread. All but the last are kept by reference.
+  AxisScale(const Tree& tree, const std::vector<KktPattern::Entry>& constraint,
+            const std::vector<int>& groups, const std::vector<double>& least, double spread);
+
+  /// Per row (m): Σ_j 1/M_jj over the rotations that an axis row hangs on, whose entries are at
+  /// most 1: its W_ii when the axes are anyhow; the least scale for rows of points and
+  /// distances. `inertia`: M_jj (nv).
+  void measure(const std::vector<double>& inertia, std::vector<double>& scale) const;
+  /// Per row (m) the mean over the rows of its group of max(Σ_j Φ_ij² / M_jj, the above);
+  /// `constraint`: values of Φ_q in the order of the pattern.
+  void of_groups(const std::vector<double>& inertia, const std::vector<double>& constraint,
+                 std::vector<double>& scale) const;
+  /// ε of KluSolver (m), from the same. An added block, once refined, costs (ε/W)² on every row: so
+  /// it is a hundred times weaker than the filter of pivots, which costs (τ/W)⁴. The scale is what
+  /// the lightest body of a loop lets a row move; where masses are further apart than
+  /// masses_far_apart, the heaviest's is still above ε.
+  void softness(const std::vector<double>& inertia, const std::vector<double>& constraint,
+                double fade, std::vector<double>& epsilon) const;
+
+ private:
+  struct Hanging {
+    std::size_t row, rate;  ///< row of Φ, j
+  };
+  const std::vector<KktPattern::Entry>& pattern_;  ///< of Φ_q
+  const std::vector<int>& groups_;
+  const std::vector<double>& least_;
+  double far_apart_;  ///< mass spread over masses_far_apart, at least 1
+  std::vector<Hanging> hanging_;
+};
+
+/// M_jj out of the values of M.
+class MassDiagonal {
+ public:
+  MassDiagonal(const KktPattern& pattern, int nv);
+  const std::vector<double>& of(const std::vector<double>& mass);
+
+ private:
+  std::vector<std::size_t> place_;
+  std::vector<double> inertia_;
+};
+
+}  // namespace momenta

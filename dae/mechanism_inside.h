@@ -1,0 +1,36 @@
+#pragma once
+// What a mechanism holds in the algebra of its plan: models, links and loops as evaluations and
+// sweeps read them.
+
+#include <momenta/core/kernel/link.h>
+#include <momenta/core/kernel/model.h>
+#include <momenta/core/kernel/planar_link.h>
+#include <momenta/dae/loop/loop_model.h>
+#include <momenta/dae/mechanism.h>
+#include <momenta/dae/sweeps/levels/loop_sweeps.h>
+
+#include <utility>
+#include <variant>
+
+namespace momenta {
+
+template <class Space>
+struct Mechanism::Cast {
+  Model<Space> model;
+  LoopModel<Space> loops;
+  SweptLoops<Space> swept, as_given;  ///< as_given: only where `swept` pairs ties anew
+  decltype(build_links(std::declval<const Model<Space>&>())) links;
+};
+
+struct Mechanism::Casts {
+  std::variant<Cast<Planar>, Cast<Spatial>> cast;
+};
+
+/// f of the one there is.
+template <class F>
+decltype(auto) Mechanism::visit(F&& f) const {
+  const auto& cast = casts_->cast;
+  return plan_.planar ? f(std::get<0>(cast)) : f(std::get<1>(cast));
+}
+
+}  // namespace momenta

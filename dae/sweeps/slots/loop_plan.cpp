@@ -1,0 +1,217 @@
+#include <momenta/dae/sweeps/slots/loop_plan.h>
+
+#include <algorithm>
+#include <bit>
+#include <functional>
+#include <set>
+
+namespace momenta {
+namespace {
+
+/// Bodies whose fronts a loop is open in, and the body that closes it (−1: the ground).
+struct Way {
+  std::vector<int> fronts;
+  int closes_at = -1;
+  int root_a = -1, root_b = -1;
+};
+
+Way way_of(const std::vector<int>& parents, const LoopShape& loop) {
+  Way way;
+  int a = loop.a, b = loop.b;
+  const auto up = [&](int& k, int& root) {
+    way.fronts.push_back(k);
+    root = k;
+    k = parents[static_cast<std::size_t>(k)];
+  };
+  // In depth-first order the later body is no ancestor of the earlier one: climb from it.
+  while (a != b) {
+    if (a > b)
+      up(a, way.root_a);
+    else
+      up(b, way.root_b);
+  }
+  way.closes_at = a;
+  if (a >= 0) way.fronts.push_back(a);
+  return way;
+}
+
+/// Climbs from all joints at once, the last body first, until every way has passed its joint and
+/// they have met.
+Way way_of_coupler(const std::vector<int>& parents, const LoopShape& coupler) {
+  std::set<int> at, joints;
+  for (const auto& [body, ratio] : coupler.joints) joints.insert(body);
+  at = joints;
+  Way way;
+  while (*at.rbegin() >= 0 && (at.size() > 1 || *at.rbegin() >= *joints.begin())) {
+    const int k = *at.rbegin();
+    at.erase(k);
+    way.fronts.push_back(k);
+    const int parent = parents[static_cast<std::size_t>(k)];
+    if (parent < 0) {
+      way.root_b = way.root_b < 0 ? k : way.root_b;  // the last root
+      way.root_a = k;
+    }
+    at.insert(parent);
+  }
+  way.closes_at = *at.rbegin();
+  if (way.closes_at >= 0) way.fronts.push_back(way.closes_at);
+  return way;
+}
+
+/// Place of `rows` neighbouring free slots; pairs stand at even places, where registers hold them
+/// together.
+int first_fit(std::uint64_t used, int rows) {
+  const std::uint64_t block = (std::uint64_t{1} << rows) - 1;
+  const int stride = rows == 2 ? 2 : 1;
+  int slot = 0;
+  while (slot + rows <= 64 && (used & (block << slot)) != 0) slot += stride;
+  return slot;
+}
+
+template <class T>
+std::vector<LoopPlan::Range> ranges(const std::vector<std::vector<T>>& lists,
+                                    std::vector<T>& flat) {
+  std::vector<LoopPlan::Range> all;
+  for (const auto& list : lists) {
+    const int first = static_cast<int>(flat.size());
+    flat.insert(flat.end(), list.begin(), list.end());
+    all.push_back({first, static_cast<int>(flat.size())});
+  }
+  return all;
+}
+
+}  // namespace
+
+namespace {
+
+/// The root above each body, −1 above the ground.
+class Roots {
+ public:
+  explicit Roots(const std::vector<int>& parents) {
+    for (std::size_t k = 0; k < parents.size(); ++k)
+      root_.push_back(parents[k] < 0 ? static_cast<int>(k) : of(parents[k]));
+  }
+  int of(int body) const { return body < 0 ? -1 : root_[static_cast<std::size_t>(body)]; }
+
+ private:
+  std::vector<int> root_;
+};
+
+/// Per body: of a root whose loops to other trees all end on one body before it, that body.
+std::vector<int> foldable_looped_branches(const std::vector<int>& parents,
+                                          const std::vector<LoopShape>& loops) {
+  constexpr int none = -1, several = -2;
+  const Roots roots(parents);
+  std::vector<int> onto(parents.size(), none);
+  const auto tie = [&](int root, int other) {
+    if (root < 0) return;
+    int& at = onto[static_cast<std::size_t>(root)];
+    at = other < 0 || other > root || (at != none && at != other) ? several : other;
+  };
+  for (const LoopShape& loop : loops) {
+    const int a = roots.of(loop.a), b = roots.of(loop.b);
+    if (a == b) continue;
+    tie(a, loop.b);
+    tie(b, loop.a);
+  }
+  for (int& k : onto) k = std::max(k, none);
+  return onto;
+}
+
+LoopPlan planned(const std::vector<int>& parents, const std::vector<LoopShape>& loops,
+                 std::vector<int> folded_onto) {
+  const std::size_t n = parents.size();
+  LoopPlan plan;
+  plan.slot.resize(loops.size());
+  plan.posed.assign(n, 0);
+  plan.takes_branches.assign(n, 0);
+  for (const int k : folded_onto)
+    if (k >= 0) plan.takes_branches[static_cast<std::size_t>(k)] = 1;
+  std::vector<std::uint64_t> used(n, 0), used_at_ground(n, 0);
+  std::vector<std::vector<LoopPlan::End>> ends(n);
+  std::vector<std::vector<LoopPlan::Coupling>> couplings(n);
+  std::vector<std::vector<int>> closings(n), ground_closings(n);
+  const Roots root(parents);
+  std::vector<int> roots;  // ascending
+  for (std::size_t k = 0; k < n; ++k)
+    if (parents[k] < 0) roots.push_back(static_cast<int>(k));
+
+  for (std::size_t i = 0; i < loops.size(); ++i) {
+    const LoopShape& loop = loops[i];
+    const int root_a = root.of(loop.a), root_b = root.of(loop.b);
+    // The branch of a folded loop: its root; the loop is open in the branch alone.
+    int looped_branch = -1;
+    if (root_a != root_b)
+      for (const int end : {root_a, root_b})
+        if (end >= 0 && folded_onto[static_cast<std::size_t>(end)] >= 0)
+          looped_branch = std::max(looped_branch, end);
+    LoopShape open = loop;
+    if (looped_branch >= 0) (looped_branch == root_a ? open.b : open.a) = -1;
+    const Way way = loop.joints.empty() ? way_of(parents, open) : way_of_coupler(parents, loop);
+    std::vector<int> gathered;
+    if (way.closes_at < 0) {
+      const int a = way.root_a < 0 ? way.root_b : way.root_a,
+                b = way.root_b < 0 ? way.root_a : way.root_b;
+      const auto from = std::lower_bound(roots.begin(), roots.end(), std::min(a, b));
+      const auto to = std::upper_bound(roots.begin(), roots.end(), std::max(a, b));
+      gathered.assign(from, to);
+      ground_closings[static_cast<std::size_t>(gathered.front())].push_back(static_cast<int>(i));
+    } else {
+      closings[static_cast<std::size_t>(way.closes_at)].push_back(static_cast<int>(i));
+    }
+    if (looped_branch >= 0) gathered.clear();
+    std::uint64_t taken = 0;
+    for (const int k : way.fronts) taken |= used[static_cast<std::size_t>(k)];
+    for (const int k : gathered) taken |= used_at_ground[static_cast<std::size_t>(k)];
+    const int slot = first_fit(taken, loop.rows);
+    plan.slot[i] = slot;
+    plan.slots = std::max(plan.slots, slot + loop.rows);
+    if (slot + loop.rows <= 64) {
+      const std::uint64_t own = ((std::uint64_t{1} << loop.rows) - 1) << slot;
+      for (const int k : way.fronts) used[static_cast<std::size_t>(k)] |= own;
+      for (const int k : gathered) used_at_ground[static_cast<std::size_t>(k)] |= own;
+    }
+    plan.pair.push_back(loop.pair);
+    for (const auto& [body, ratio] : loop.joints)
+      couplings[static_cast<std::size_t>(body)].push_back(
+          {static_cast<int>(i), ratio, body == loop.joints.front().first});
+    for (int end : {loop.a, loop.b})
+      for (int k = end; k >= 0 && !plan.posed[static_cast<std::size_t>(k)];
+           k = parents[static_cast<std::size_t>(k)])
+        plan.posed[static_cast<std::size_t>(k)] = 1;
+    // The end that sweeps inward meet first brings the right-hand side along: that of the branch,
+    // where there is one.
+    if (open.a >= 0)
+      ends[static_cast<std::size_t>(open.a)].push_back(
+          {static_cast<int>(i), true, open.a >= open.b});
+    if (open.b >= 0)
+      ends[static_cast<std::size_t>(open.b)].push_back(
+          {static_cast<int>(i), false, open.b > open.a});
+  }
+  for (const auto& fronts : {std::cref(used), std::cref(used_at_ground)})
+    for (const std::uint64_t open : fronts.get()) {
+      const std::int64_t equations = std::popcount(open);
+      plan.work += equations * equations;
+    }
+  plan.ends_of = ranges(ends, plan.ends);
+  plan.couplings_of = ranges(couplings, plan.couplings);
+  plan.closings_of = ranges(closings, plan.closings);
+  plan.ground_closings_of = ranges(ground_closings, plan.closings);
+  plan.folded_onto = std::move(folded_onto);
+  return plan;
+}
+
+}  // namespace
+
+LoopPlan plan_loops(const std::vector<int>& parents, const std::vector<LoopShape>& loops,
+                    bool may_fold) {
+  LoopPlan plan = planned(parents, loops, std::vector<int>(parents.size(), -1));
+  if (plan.fits() || !may_fold || plan.couples()) return plan;
+  return plan_folded(parents, loops);
+}
+
+LoopPlan plan_folded(const std::vector<int>& parents, const std::vector<LoopShape>& loops) {
+  return planned(parents, loops, foldable_looped_branches(parents, loops));
+}
+
+}  // namespace momenta

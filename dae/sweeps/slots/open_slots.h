@@ -1,0 +1,45 @@
+#pragma once
+// Which slots are in use where: of a pack of states each slot is a pack of its own, and work on
+// slots of no open loop would be work for nothing. Slots stand in groups of two.
+
+#include <momenta/dae/sweeps/slots/loop_plan.h>
+
+namespace momenta {
+
+using SlotGroups = unsigned;  ///< bit g: slots 2g and 2g + 1
+
+struct OpenSlots {
+  struct Front {
+    SlotGroups all = 0;                       ///< of loops open at the body, those it closes too
+    SlotGroups open = 0;                      ///< of those that go on to its parent
+    SlotGroups fresh = 0;                     ///< of those its first child did not bring
+    SlotGroups slot = 0;                      ///< of those its other children bring
+    SlotGroups born = 0;                      ///< of those no child brought, where no loop closes
+    SlotGroups ground = 0, ground_fresh = 0;  ///< at the ground, when this root arrives
+  };
+  std::vector<Front> fronts;       ///< per body
+  std::vector<SlotGroups> beside;  ///< per loop: of those still open once it has closed
+
+  /// From the parents of all bodies and the rows of all loops. O(length of all loops). Out of line
+  /// like the destructor: the sweeps that call them are compiled for several instruction levels.
+  /// @pre plan.fits()
+  OpenSlots(const LoopPlan& plan, const std::vector<int>& parents, const std::vector<int>& rows);
+  ~OpenSlots();
+  OpenSlots(const OpenSlots&) = delete;
+  OpenSlots& operator=(const OpenSlots&) = delete;
+};
+
+template <class Tree>
+__attribute__((always_inline)) inline std::vector<int> parents_of(const Tree& tree) {
+  std::vector<int> parents(tree.links.size());
+  for (std::size_t k = 0; k < parents.size(); ++k) parents[k] = tree.links[k].parent;
+  return parents;
+}
+template <class Loops>
+__attribute__((always_inline)) inline std::vector<int> rows_of(const Loops& loops) {
+  std::vector<int> rows(loops.loops.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = loops.loops[i].rows;
+  return rows;
+}
+
+}  // namespace momenta
