@@ -1,8 +1,8 @@
+#include <momenta/dae/dense/least_squares.h>
 #include <momenta/dae/dense_blocks.h>
 #include <momenta/dae/unheld_joints.h>
 
 #include <Eigen/Cholesky>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -39,9 +39,7 @@ MatrixXd left_free(const MatrixXd& constraint, const MatrixXd& motions) {
     if (size > 0) a.col(k) /= size;
   }
   // Beside what its terms are, not beside the largest: where all of them cancel, none holds.
-  const Eigen::ColPivHouseholderQR<MatrixXd> qr(a.transpose());
-  const Eigen::Index rank = (qr.matrixQR().diagonal().array().abs() > held_pivot).count();
-  MatrixXd y = MatrixXd(qr.householderQ()).rightCols(a.cols() - rank);
+  MatrixXd y = left_null_space(a.transpose(), held_pivot);
   for (Eigen::Index k = 0; k < a.cols(); ++k) {
     const double size = (constraint.cwiseAbs() * motions.col(k).cwiseAbs()).maxCoeff();
     if (size > 0) y.row(k) /= size;
@@ -85,8 +83,7 @@ bool solve_beside(const UnheldJoints& unheld, const Mechanism& mechanism, Evalua
   if ((motions == 0 && !unheld.joints.empty()) || n + m > 2 * most_pivots) return false;
   MatrixXd mass = dense_mass(mechanism, e);
   if (motions > 0) {
-    const Eigen::HouseholderQR<MatrixXd> qr(unheld.motions);
-    const MatrixXd free = MatrixXd(qr.householderQ()).leftCols(motions);
+    const MatrixXd free = orthogonal_factor(unheld.motions).leftCols(motions);
     if (!((free.transpose() * r).cwiseAbs().maxCoeff() <= powerless * r.cwiseAbs().maxCoeff()))
       return false;
     const double heaviest = mass.diagonal().maxCoeff();
@@ -109,8 +106,9 @@ bool solve_beside(const UnheldJoints& unheld, const Mechanism& mechanism, Evalua
   }
   b << r, g;
   a = scale.asDiagonal() * a * scale.asDiagonal();
-  const VectorXd all = scale.asDiagonal() *
-                       a.completeOrthogonalDecomposition().solve(VectorXd(scale.asDiagonal() * b));
+  DenseLeastSquares system;
+  system.compute(a);
+  const VectorXd all = scale.asDiagonal() * system.solve(VectorXd(scale.asDiagonal() * b));
   x = all.head(n);
   lambda = all.tail(m);
   return all.allFinite();

@@ -18,8 +18,9 @@
 // Where loop equations are redundant or nearly so, their σ and λ are least in norm of what is left.
 //
 // One object serves one thread: it owns the workspace. No call allocates unless it returns
-// something, or works on many states. Sizes are checked (std::invalid_argument); where a call
-// returns false, failure() says why in one sentence and outputs are not to be used.
+// something, or works on many states. Arguments of wrong size are thrown, std::invalid_argument
+// with one sentence. Where a number given or found is not finite, calls that return bool are false
+// and failure() says which, outputs are not to be used then; other calls throw.
 
 #include <momenta/core/open_chain.h>
 #include <momenta/dae/assembly/assembly.h>

@@ -27,7 +27,7 @@ const std::vector<Entry>& registry() {
   static const std::vector<Entry> entries{
       {"momentum", Kind::ode, true, false, make_momentum},
       {"momentum-index1", Kind::dae, true, false, make_momentum_index1},
-      {"momentum-index2", Kind::dae, true, false, make_momentum_index2},
+      {"momentum-index2", Kind::dae, true, true, make_momentum_index2},
       {"momentum-stabilised", Kind::dae, true, true, make_momentum_stabilised},
       {"momentum-index3", Kind::dae, false, true, make_momentum_index3},
       {"augmented-lagrangian-canonical", Kind::ode, true, false,

@@ -1,7 +1,7 @@
+#include <momenta/dae/dense/least_squares.h>
 #include <momenta/dae/kkt/least_norm.h>
 #include <suitesparse/SuiteSparseQR.hpp>
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -17,20 +17,10 @@ constexpr int most_dense_columns = 400;
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-using Decomposition = Eigen::CompleteOrthogonalDecomposition<MatrixXd>;
-
-Decomposition decompose(const MatrixXd& a) {
-  Decomposition d;
-  d.setThreshold(rank_tolerance);
-  d.compute(a);
-  return d;
-}
-
 }  // namespace
 
 struct LeastNorm::Dense {
-  Decomposition plain;
-  Eigen::HouseholderQR<MatrixXd> damped;
+  DenseLeastSquares factors;
   bool is_damped = false;
 };
 
@@ -156,18 +146,18 @@ void LeastNorm::factor(const std::vector<double>& values, double damping) {
   if (damping > 0) {
     MatrixXd stacked(rows_ + columns_, columns_);
     stacked << a, damping * MatrixXd::Identity(columns_, columns_);
-    dense_->damped.compute(stacked);
+    dense_->factors.compute_full_rank(stacked);
   } else {
-    dense_->plain = decompose(a);
+    dense_->factors.compute(a, rank_tolerance);
   }
 }
 
 VectorXd LeastNorm::solve(const VectorXd& b) {
   if (dense_) {
-    if (!dense_->is_damped) return dense_->plain.solve(b);
+    if (!dense_->is_damped) return dense_->factors.solve(b);
     VectorXd right = VectorXd::Zero(rows_ + columns_);
     right.head(rows_) = b;
-    return dense_->damped.solve(right);
+    return dense_->factors.solve(right);
   }
   Sparse& s = *sparse_;
   cholmod_dense right{};

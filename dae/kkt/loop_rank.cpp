@@ -1,8 +1,8 @@
+#include <momenta/dae/dense/least_squares.h>
+#include <momenta/dae/dense/singular_values.h>
 #include <momenta/dae/kkt/least_norm.h>
 #include <momenta/dae/kkt/loop_rank.h>
-#include <momenta/dae/kkt/singular_values.h>
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -70,8 +70,7 @@ std::vector<int> reduce(MatrixXd& n, const std::vector<int>& first) {
     const VectorXd direction = n.row(best).tail(n.cols() - k).transpose().normalized();
     MatrixXd rest = n.rightCols(n.cols() - k);
     const VectorXd column = rest * direction;
-    const MatrixXd all = Eigen::HouseholderQR<MatrixXd>(direction).householderQ();
-    const MatrixXd others = all.rightCols(rest.cols() - 1);
+    const MatrixXd others = orthogonal_factor(direction).rightCols(rest.cols() - 1);
     n.rightCols(n.cols() - k - 1) = rest * others;
     n.col(k) = column / column[best];
     own.push_back(best);

@@ -1,7 +1,7 @@
 #include <momenta/core/poses.h>
+#include <momenta/dae/dense/singular_values.h>
 #include <momenta/dae/kkt/least_norm.h>
 #include <momenta/dae/kkt/row_scales.h>
-#include <momenta/dae/kkt/singular_values.h>
 #include <momenta/dae/linear/lanczos_spectrum.h>
 #include <momenta/dae/linear/local_pencil.h>
 #include <momenta/dae/linear/reduced_spectrum.h>

@@ -1,4 +1,4 @@
-#include <momenta/dae/kkt/singular_values.h>
+#include <momenta/dae/dense/singular_values.h>
 #include <momenta/dae/measure/derivative_array.h>
 
 #include <algorithm>

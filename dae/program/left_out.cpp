@@ -1,4 +1,4 @@
-// The verbs that a build for the main job alone has not: it compiles in half the time.
+// The verbs that momenta_main_job has not: it compiles in half the time.
 
 #include <cstdio>
 
@@ -9,8 +9,8 @@ namespace {
 
 int left_out(const char* verb) {
   std::fprintf(stderr,
-               "momenta: this build has run, view, drift and make alone; for '%s' build all verbs:"
-               " cmake --preset release && cmake --build --preset release\n",
+               "momenta: this program has run, view, drift and make alone; for '%s' build all verbs:"
+               " cmake --build --preset release --target momenta\n",
                verb);
   return bad_input;
 }

@@ -15,13 +15,13 @@
 // Hairer, Lubich, Wanner, Geometric Numerical Integration, VII.1.4.
 
 #include <momenta/core/scalar/all_finite.h>
+#include <momenta/dae/dense/least_squares.h>
 #include <momenta/dae/solver/constrained_hamiltonian.h>
 #include <momenta/dae/solver/fixed_grid.h>
 #include <momenta/dae/solver/implicit_methods.h>
 #include <momenta/dae/solver/multistep_run.h>
 
 #include <Eigen/Cholesky>
-#include <Eigen/QR>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -140,12 +140,9 @@ class Rattle {
     Eigen::Map<VectorXd>(y + nq_, nv_) = state.p;
   }
 
-  static Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposed(
-      const Eigen::MatrixXd& w) {
-    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> cod;
-    cod.setThreshold(dependent_rows);
-    cod.compute(w);
-    return cod;
+  const DenseLeastSquares& decomposed(const Eigen::MatrixXd& w) {
+    least_squares_.compute(w, dependent_rows);
+    return least_squares_;
   }
 
   /// The last line of the step: p onto Φ_q u + Φ_t = 0, and u.
@@ -153,7 +150,7 @@ class Rattle {
     state.u = place.rates(state.p);
     if (parts_.multipliers() == 0) return;
     const Eigen::MatrixXd w = place.constraint * place.cholesky.solve(place.constraint.transpose());
-    const VectorXd mu = decomposed(w).solve(place.constraint * state.u + place.phi_t);
+    const VectorXd mu = decomposed(w).solve(VectorXd(place.constraint * state.u + place.phi_t));
     state.p -= place.constraint.transpose() * mu;
     state.u = place.rates(state.p);
   }
@@ -186,7 +183,7 @@ class Rattle {
       if (m > 0) {
         const Eigen::MatrixXd w =
             there_.constraint * there_.cholesky.solve(here_.constraint.transpose());
-        const VectorXd change = decomposed(w).solve(2 / (h * h) * there_.phi);
+        const VectorXd change = decomposed(w).solve(VectorXd(2 / (h * h) * there_.phi));
         lambda += change;
         open = 0.5 * h * h *
                here_.cholesky.solve(here_.constraint.transpose() * change).cwiseAbs().maxCoeff();
@@ -213,6 +210,7 @@ class Rattle {
   }
 
   ConstrainedHamiltonian& parts_;
+  DenseLeastSquares least_squares_;
   FixedGrid grid_;
   int nq_, nv_;
   Place here_, there_;

@@ -1,7 +1,7 @@
+#include <momenta/dae/dense/singular_values.h>
 #include <momenta/dae/dense_blocks.h>
 #include <momenta/dae/form/dae_form.h>
 #include <momenta/dae/kkt/loop_rank.h>
-#include <momenta/dae/kkt/singular_values.h>
 #include <momenta/dae/study/index_study.h>
 
 #include <algorithm>

@@ -4,7 +4,9 @@
 #include <momenta/dae/kkt/loop_rank.h>
 #include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/solver/stopping.h>
+#include <momenta/dae/study/form_runner.h>
 #include <momenta/dae/study/run_monitor.h>
+#include <momenta/dae/study/run_settings.h>
 
 #include <algorithm>
 #include <chrono>
@@ -36,187 +38,9 @@ std::vector<double> output_times(const RunSettings& s, const Reference* referenc
   return times;
 }
 
-}  // namespace
-
-std::string default_integrator(const std::string& form, double rtol) {
-  if (is_dae_form(form)) return "ida";
-  // A tolerance typed as 1e-4 or 1e-9 may come by way of a logarithm.
-  return rtol > 0.99e-4 ? "dp5" : rtol < 1.01e-9 ? "vern9" : "dop853";
-}
-
-RunSettings default_settings(const RunDefaults& scene, const std::string& form,
-                             const std::string& method, double rtol) {
-  RunSettings s;
-  s.form = form;
-  s.integrator = method.empty() ? default_integrator(form, rtol) : method;
-  s.gauge = scene.leak ? Gauge{Gauge::Kind::leak, *scene.leak}.text() : "leak";
-  s.rtol = s.atol = rtol;
-  if (method.empty()) s.when_stiff = "bdf";
-  s.step = scene.step.value_or(0);
-  s.end_time = scene.end_time;
-  s.samples = scene.samples;
-  s.project = scene.project && integrator(s.integrator).projects;
-  return s;
-}
-
-namespace {
-
-/// @throws std::invalid_argument
-void expect(bool holds, const char* name, double found, const char* expected) {
-  if (!holds)
-    throw std::invalid_argument(std::string(name) + " is " + in_words(found) + ", expected " +
-                                expected);
-}
-void expect_numbers(const RunSettings& s) {
-  const auto positive = [](double x) { return x > 0 && std::isfinite(x); };
-  const auto not_negative = [](double x) { return x >= 0 && std::isfinite(x); };
-  expect(positive(s.end_time), "the end time", s.end_time, "a positive number of seconds");
-  expect(s.samples >= 1 && s.samples <= most_samples, "the number of samples", s.samples,
-         "1 to 10000000");
-  expect(not_negative(s.rtol), "rtol", s.rtol, "a tolerance, not negative");
-  expect(not_negative(s.atol), "atol", s.atol, "a tolerance, not negative");
-  expect(not_negative(s.step), "the step", s.step, "a positive number of seconds, or 0: none");
-  const struct {
-    const char* name;
-    double x;
-  } gains[] = {{"baumgarte_alpha", s.baumgarte_alpha},
-               {"baumgarte_beta", s.baumgarte_beta},
-               {"beta", s.beta},
-               {"penalty", s.penalty}};
-  for (const auto& [name, x] : gains)
-    expect(not_negative(x), name, x, "a number, not negative; 0: the form's own");
-  expect(s.spectral_radius >= 0 && s.spectral_radius < 1, "the spectral radius", s.spectral_radius,
-         "0 or more, below 1");
-}
-
-/// A form with its integrator, ready to go; shared by the watched run and the timed ones.
-class Runner {
- public:
-  /// Completes the settings: default integrator, the gauge in force, gains, how (7) is solved.
-  Runner(const Mechanism& mechanism, const Start& start, RunSettings& s, double max_cpu_seconds)
-      : start_(start) {
-    expect_numbers(s);
-    const bool dae = is_dae_form(s.form);
-    if (s.integrator.empty()) s.integrator = default_integrator(s.form, s.rtol);
-    const Integrator& method = integrator(s.integrator);
-    const auto wanted = dae ? Integrator::Takes::dae : Integrator::Takes::ode;
-    if (method.takes != wanted)
-      throw std::invalid_argument("form '" + s.form + "' is " + (dae ? "a DAE" : "an ODE") +
-                                  ": expected integrator " + integrator_names(wanted) +
-                                  ", found '" + s.integrator + "'");
-    if (!method.takes_form(s.form, dae))
-      throw std::invalid_argument("'" + s.integrator + "' is for form " + listed(method.forms) +
-                                  ", found '" + s.form + "'");
-    if (method.multistep && needs_one_step_method(s.form))
-      throw std::invalid_argument("form '" + s.form + "' alters its state after steps, and '" +
-                                  s.integrator + "' is a multistep method: expected rk4, dp5, " +
-                                  "dop853 or vern9");
-    if (s.project && !dae && !method.projects)
-      throw std::invalid_argument(
-          "'" + s.integrator + "' takes no correction after each step: expected no --project" +
-          (method.multistep ? ", it would spoil the method's history" : ""));
-    if (!dae && method.multistep && (s.gauge == "reset" || s.gauge == "flip"))
-      throw std::invalid_argument("'" + s.integrator + "' is a multistep method: gauge " + s.gauge +
-                                  " after each step would spoil its history; use leak or none");
-    if (s.integrator == "rattle") s.gauge = "reset";  // its last stage does it
-    FormOptions options;
-    options.gauge = parse_gauge(s.gauge.empty() ? "none" : s.gauge);
-    options.project = s.project;
-    options.baumgarte_alpha = s.baumgarte_alpha;
-    options.baumgarte_beta = s.baumgarte_beta;
-    options.beta = s.beta;
-    options.penalty = s.penalty;
-    form_ = make_form(s.form, mechanism, options, start);
-    s.form = form_->name();
-    if (needs_one_step_method(s.form)) s.project = false;  // it corrects by its nature
-    s.gauge = form_->momentum_like() && mechanism.m() > 0 ? form_->gauge().text() : "";
-    std::tie(s.baumgarte_alpha, s.baumgarte_beta) = form_->baumgarte_gains();
-    s.beta = form_->beta();
-    s.penalty = form_->penalty();
-    s.kkt = mechanism.m() == 0 || dae ? "" : name_of(mechanism.kkt());
-    if (method.step == Integrator::Step::adaptive) s.step = 0;
-    integrator_ = s.integrator;
-    options_.rtol = s.rtol;
-    options_.atol = s.atol;
-    options_.step = s.step;
-    options_.spectral_radius = s.spectral_radius;
-    options_.max_cpu_seconds = max_cpu_seconds;
-    if (!s.when_stiff.empty() && !may_change(s, options.gauge)) s.when_stiff.clear();
-    when_stiff_ = s.when_stiff;
-    options_.until_stiff = !when_stiff_.empty();
-  }
-
-  Form& form() { return *form_; }
-  /// Systems solved by an ODE form.
-  long factorizations() const {
-    const auto* ode = dynamic_cast<const OdeForm*>(form_.get());
-    return ode ? ode->factorizations() : 0;
-  }
-
-  IntegrationResult integrate(const std::vector<double>& times, const Observer& observer) {
-    if (DaeSystem* dae = form_->dae())
-      return momenta::integrate(integrator_, *dae, start_.t, times, options_, observer);
-    const auto y0 = form_->initial(start_);
-    const double began = thread_seconds();
-    IntegrationResult run =
-        momenta::integrate(integrator_, *form_->ode(), start_.t, y0, times, options_, observer);
-    changed_at_ = not_measured;
-    if (run.ended_stiff)
-      go_on(run, times, observer, options_.spent_cpu_seconds + thread_seconds() - began);
-    return run;
-  }
-  double changed_at() const { return changed_at_; }
-  /// The next integration goes on with what another one carried.
-  void go_on_from(const Memory& carried, double spent_cpu_seconds) {
-    options_.carried = &carried;
-    options_.spent_cpu_seconds = spent_cpu_seconds;
-  }
-
- private:
-  /// Whether `when_stiff`, a method with memory, takes the form as it is set.
-  bool may_change(const RunSettings& s, const Gauge& gauge) {
-    const Integrator& method = integrator(s.when_stiff);
-    constexpr int most_unknowns =
-        500;  // a larger dense Newton matrix may cost more than short steps
-    return !is_dae_form(s.form) && s.step == 0 && form_->ode()->size() <= most_unknowns &&
-           !needs_one_step_method(s.form) && (method.projects || !s.project) &&
-           gauge.kind != Gauge::Kind::reset && gauge.kind != Gauge::Kind::flip;
-  }
-
-  /// The implicit method takes over where the explicit one ended.
-  void go_on(IntegrationResult& run, const std::vector<double>& times, const Observer& observer,
-             double cpu_s) {
-    changed_at_ = run.end_time;
-    std::vector<double> left;
-    std::copy_if(times.begin(), times.end(), std::back_inserter(left),
-                 [&](double t) { return t > run.end_time * (1 + 1e-14); });
-    IntegrationOptions options = options_;
-    options.carried = nullptr;
-    options.spent_cpu_seconds = 0;
-    if (options.max_cpu_seconds > 0)
-      options.max_cpu_seconds = std::max(1e-3, options.max_cpu_seconds - cpu_s);
-    const std::vector<double> y = std::move(run.y);
-    IntegrationResult rest =
-        momenta::integrate(when_stiff_, *form_->ode(), changed_at_, y, left, options, observer);
-    rest.stiff_from = run.stiff_from;
-    rest.counters += run.counters;
-    run = std::move(rest);
-  }
-
-  const Start& start_;
-  std::unique_ptr<Form> form_;
-  std::string integrator_, when_stiff_;
-  IntegrationOptions options_;
-  double changed_at_ = not_measured;
-};
-
 double wall_now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
-
-}  // namespace
-
-namespace {
 
 /// @throws std::invalid_argument
 void expect_start(const Mechanism& mechanism, const Start& s) {
@@ -291,7 +115,7 @@ RunResult run_form(const Mechanism& mechanism, const Start& start, const RunRequ
   RunResult result;
   result.scene = mechanism.scene().name;
   result.settings = request.settings;
-  std::optional<Runner> made;
+  std::optional<FormRunner> made;
   try {
     made.emplace(mechanism, start, result.settings, request.max_cpu_seconds);
   } catch (const NoStateAtStart& none) {
@@ -300,7 +124,7 @@ RunResult run_form(const Mechanism& mechanism, const Start& start, const RunRequ
     result.stopped_at = start.t;
     return result;
   }
-  Runner& runner = *made;
+  FormRunner& runner = *made;
   judge_rank(mechanism, start, result);
   const double end = result.settings.end_time;
   const DriveReach reach = drive_reach(mechanism, start.t, start.q, end);
@@ -384,7 +208,7 @@ TimedRun time_run(const Mechanism& mechanism, const Start& start, RunSettings se
                   const std::function<bool()>& at_step) {
   Observer observer;
   if (at_step) observer.step = [&](double, double, const Interpolant&) { return at_step(); };
-  Runner runner(mechanism, start, settings, 0);
+  FormRunner runner(mechanism, start, settings, 0);
   TimedRun timed;
   const double wall_start = wall_now(), cpu_start = thread_seconds();
   const IntegrationResult run = runner.integrate({settings.end_time}, observer);

@@ -1,12 +1,13 @@
-// Any call of run_form and of the loops' solvers, with any arguments: finite results, false or a
-// status with one sentence, or std::invalid_argument with one. MOMENTA_CALLS=n makes n times as
-// many.
+// Any call of run_form, of ClosedChain and of the loops' solvers, with any arguments: finite
+// results, false or a status with one sentence, or std::invalid_argument with one. MOMENTA_CALLS=n
+// makes n times as many.
 
 #include "equations/ensemble.h"
 #include "equations/wild.h"
 
 #include <gtest/gtest.h>
 #include <momenta/core/scene/read_scene.h>
+#include <momenta/dae/chain/closed_chain.h>
 #include <momenta/dae/form/form.h>
 #include <momenta/dae/kkt/kkt.h>
 #include <momenta/dae/kkt/loop_solver.h>
@@ -116,6 +117,117 @@ TEST(CallsFuzz, OfRuns) {
     }
   }
   EXPECT_GT(done, all / 20);
+}
+
+class ChainCaller {
+ public:
+  ChainCaller(unsigned seed, const Scene& scene)
+      : wild_(seed),
+        chain_(scene),
+        start_(chain_.assemble().start),
+        nq_(chain_.nq()),
+        nv_(chain_.nv()),
+        m_(chain_.m()) {}
+
+  /// One call, and whether it gave a result.
+  bool call() {
+    const double t = wild_.chance(0.9) ? 0.1 * std::abs(wild_.sound()) : wild_.wild();
+    const double leak = wild_.chance(0.9) ? 3 : wild_.wild();
+    const VectorXd q = coordinates(), x = wild_.vector(nv_), y = wild_.vector(nv_),
+                   z = wild_.vector(m_);
+    VectorXd of_q(wild_.size(nq_)), of_v(wild_.size(nv_)), of_m(wild_.size(m_)),
+        of_m2(wild_.size(m_));
+    switch (wild_.below(13)) {
+      case 0:
+        return told([&] { return chain_.rates(t, q, x, of_q, of_v, leak); }, of_q, of_v);
+      case 1:
+        return told([&] { return chain_.rates(t, q, x, y, of_q, of_v, leak); }, of_q, of_v);
+      case 2:
+        return told([&] { return chain_.velocities(t, q, x, of_v, of_m); }, of_v, of_m);
+      case 3:
+        return told([&] { return chain_.accelerations(t, q, x, of_v, of_m); }, of_v, of_m);
+      case 4:
+        return told([&] { return chain_.accelerations(t, q, x, y, of_v, of_m); }, of_v, of_m);
+      case 5:
+        return told([&] { return chain_.momenta(t, q, x, of_v), true; }, of_v);
+      case 6:
+        return told([&] { return chain_.joint_forces(t, q, x, y, z, of_v), true; }, of_v);
+      case 7:
+        return told([&] { return chain_.constraints(t, q, x, of_m, of_m2), true; }, of_m, of_m2);
+      case 8: {
+        VectorXd moved = q, rates = x;
+        return told([&] { return chain_.correct(t, moved, rates); }, moved, rates);
+      }
+      case 9: {
+        Eigen::MatrixXd of;
+        return told([&] { return of = chain_.jacobian(t, q), true; }, of);
+      }
+      case 10: {
+        Eigen::MatrixXd of;
+        return told([&] { return of = chain_.mass_matrix(t, q), true; }, of);
+      }
+      case 11: {
+        VectorXd of(3);
+        return told(
+            [&] {
+              const Energies e = chain_.energies(t, q, x);
+              of << e.kinetic, e.potential, e.hamiltonian;
+              return true;
+            },
+            of);
+      }
+      default:
+        return told([&] { return chain_.coordinate_rates(t, q, x, of_q), true; }, of_q);
+    }
+  }
+
+  /// Nothing of the calls before is left: the start's accelerations are what they were.
+  VectorXd accelerations() {
+    VectorXd udot(nv_), lambda(m_);
+    EXPECT_TRUE(chain_.accelerations(0, start_.q, start_.u, udot, lambda)) << chain_.failure();
+    return udot;
+  }
+
+ private:
+  VectorXd coordinates() {
+    if (wild_.chance(0.5)) return start_.q;
+    return wild_.vector(nq_);
+  }
+  template <class... Result>
+  bool told(const std::function<bool()>& call, const Result&... results) {
+    try {
+      if (call()) {
+        EXPECT_TRUE((results.allFinite() && ...));
+        return true;
+      }
+      EXPECT_TRUE(is_sentence(chain_.failure())) << "'" << chain_.failure() << "'";
+    } catch (const std::invalid_argument& e) {
+      EXPECT_TRUE(is_sentence(e.what())) << e.what();
+    }
+    return false;
+  }
+
+  Wild wild_;
+  ClosedChain chain_;
+  Start start_;
+  int nq_, nv_, m_;
+};
+
+TEST(CallsFuzz, OfClosedChains) {
+  int found = 0, all = 0;
+  for (const char* name : {"four_bar", "andrews", "bricard", "driven", "chain", "free_body"}) {
+    const Scene scene = example(name);
+    for (unsigned seed = 0; seed < 2u * static_cast<unsigned>(times_more()); ++seed) {
+      SCOPED_TRACE(std::string(name) + " seed " + std::to_string(seed));
+      ChainCaller caller(seed, scene);
+      const VectorXd before = caller.accelerations();
+      for (int k = 0; k < 150; ++k, ++all) found += caller.call();
+      // KLU keeps its choice of pivots from one call to the next.
+      EXPECT_LT((caller.accelerations() - before).norm(), 1e-9 * (1 + before.norm()));
+      if (testing::Test::HasFailure()) return;
+    }
+  }
+  EXPECT_GT(found, all / 5);
 }
 
 TEST(CallsFuzz, OfLoopSolvers) {

@@ -1,0 +1,15 @@
+#pragma once
+// Settings of a run: what is taken where nothing is said, and what is no setting.
+
+#include <momenta/dae/study/run_result.h>
+
+#include <string>
+
+namespace momenta {
+
+/// @throws std::invalid_argument "rtol is -1, expected a tolerance, not negative" unless it `holds`
+void expect(bool holds, const char* name, double found, const char* expected);
+/// Whether all numbers of the settings are what they may be. @throws std::invalid_argument
+void expect_numbers(const RunSettings& s);
+
+}  // namespace momenta
