@@ -6,7 +6,7 @@
 #include "equations/wild.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/read_scene.h>
+#include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/chain/closed_chain.h>
 #include <momenta/dae/form/form.h>
 #include <momenta/dae/kkt/kkt.h>

@@ -5,7 +5,7 @@
 #include "equations/linkages.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/read_scene.h>
+#include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/form/form.h>
 #include <momenta/dae/report/csv.h>
 #include <momenta/dae/study/run_record.h>
