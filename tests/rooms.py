@@ -5,13 +5,15 @@
 
 The drawing's table has one row a room, a room below those it includes: so there is no circle. One line for each arrow
 that the drawing does not have, has without cause, or has against its order, and exit status 1. Standard library alone.
-With --table it prints the table's last column as the source has it.
+With --table it prints the table's last column as the source has it, with --svg the picture, docs/figures/rooms.svg:
+rooms in layers, each below those it includes, without arrows that follow from others.
 """
 import re
 import sys
 from pathlib import Path
 
 DRAWING = "docs/reference/rooms.md"
+PICTURE = "docs/figures/rooms.svg"
 INCLUDE = re.compile(r'^\s*#\s*include\s+[<"]([^">]+)[">]', re.MULTILINE)
 
 
@@ -44,6 +46,55 @@ def drawing(text):
     return rooms, drawn
 
 
+def reached(room, below):
+    """All rooms that one needs, itself left out."""
+    seen, left = set(), list(below[room])
+    while left:
+        if (b := left.pop()) not in seen:
+            seen.add(b)
+            left += below[b]
+    return seen
+
+
+def picture(rooms, drawn):
+    """The layers as SVG. @pre no circle, rooms in their order"""
+    below = {room: {b for a, b in drawn if a == room} for room in rooms}
+    depth = {}
+    for room in rooms:  # what it includes stands before it
+        depth[room] = 1 + max((depth[b] for b in below[room]), default=-1)
+    high, gap, letter, step = 26, 18, 7.4, 62
+    layers = [[r for r in rooms if depth[r] == k] for k in range(max(depth.values()) + 1)]
+    wide = {room: letter * len(room) + 18 for room in rooms}
+    across = max(sum(wide[r] + gap for r in layer) for layer in layers) + gap
+    place = {}
+    for k, layer in enumerate(layers):
+        x = (across - sum(wide[r] + gap for r in layer) + gap) / 2
+        for room in layer:
+            place[room] = (x, 14 + k * step)
+            x += wide[room] + gap
+    lines = []
+    for a in rooms:
+        for b in sorted(below[a], key=rooms.index):
+            if any(b in reached(c, below) for c in below[a] - {b}):
+                continue
+            (xa, ya), (xb, yb) = place[a], place[b]
+            xa, xb, yb = xa + wide[a] / 2, xb + wide[b] / 2, yb + high
+            bend = (ya - yb) / 2
+            lines.append(f'<path d="M{xa:.0f} {ya:.0f}C{xa:.0f} {ya - bend:.0f} {xb:.0f} {yb + bend:.0f} {xb:.0f} {yb + 5:.0f}"'
+                         ' marker-end="url(#tip)"/>')
+    boxes = [f'<rect x="{x:.0f}" y="{y:.0f}" width="{wide[r]:.0f}" height="{high}" rx="4" class="{r[:4].strip("/")}"/>'
+             f'<text x="{x + wide[r] / 2:.0f}" y="{y + 17:.0f}">{r}</text>' for r, (x, y) in place.items()]
+    size = f"{across:.0f} {28 + (len(layers) - 1) * step + high}"
+    return "\n".join([
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {size}" role="img"'
+        ' aria-label="Rooms of core and dae: an arrow leads from a room to one that it includes">',
+        "<style>text{font:12px ui-monospace,monospace;text-anchor:middle;fill:#1b1f24}path{fill:none;stroke:#8a94a0}"
+        "rect{stroke:#8a94a0}.core{fill:#e3eefb}.dae{fill:#fdf0dc}</style>",
+        f'<rect width="100%" height="100%" style="fill:#fff;stroke:none"/>',
+        '<marker id="tip" viewBox="0 0 8 8" refX="4" refY="4" markerWidth="7" markerHeight="7" orient="auto">'
+        '<path d="M0 0L8 4L0 8z" style="fill:#8a94a0;stroke:none"/></marker>', *lines, *boxes, "</svg>", ""])
+
+
 def main():
     asked = [a for a in sys.argv[1:] if not a.startswith("--")]
     top = Path(asked[0] if asked else Path(__file__).parents[1]).resolve()
@@ -53,6 +104,9 @@ def main():
             print(f"{room}: " + " ".join(f"`{b}`" for a, b in sorted(found) if a == room))
         return 0
     rooms, drawn = drawing((top / DRAWING).read_text(encoding="utf-8"))
+    if "--svg" in sys.argv:
+        print(picture(rooms, drawn), end="")
+        return 0
     faults = []
     for (a, b), files in sorted(found.items()):
         example = f"{files[0][0]} includes {files[0][1]}"
@@ -62,6 +116,9 @@ def main():
             faults.append(f"'{a}' → '{b}': {example}, against the order of {DRAWING}; expected '{b}' above '{a}'")
     faults += [f"'{a}' → '{b}' is in {DRAWING}; no file includes so" for a, b in sorted(drawn - set(found))]
     faults += [f"'{room}' has no row in {DRAWING}" for room in sorted({a for pair in found for a in pair} - set(rooms))]
+    file = top / PICTURE
+    if not faults and (not file.is_file() or file.read_text(encoding="utf-8") != picture(rooms, drawn)):
+        faults.append(f"{PICTURE} is not the picture of {DRAWING}; expected that of tests/rooms.py --svg")
     print("\n".join([*faults, f"{len(rooms)} rooms, {len(found)} arrows, {len(faults)} faults"]))
     return 1 if faults or not found else 0
 
