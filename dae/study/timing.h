@@ -32,11 +32,10 @@ struct TimingRequest {
   /// Processor time per run [s] after which the run takes part in no further round: a run of more
   /// than a second already averages over its own steps.
   double budget = 1;
-  Journal* journal =
-      nullptr;  ///< times are recorded in it, and taken from it when a study continues
-  std::function<bool(std::size_t)>
-      going_on;                   ///< called before each run with its number; false ends all
-  std::function<bool()> at_step;  ///< called after each step; false ends all
+  /// Every time is recorded in it, and taken from it when a study continues.
+  Journal* journal = nullptr;
+  std::function<bool(std::size_t)> going_on;  ///< asked before each run, by number; false: stop
+  std::function<bool()> at_step;              ///< asked after each step; false: stop
 };
 
 /// Sets cpu_s and wall_s of all runs that are done to their medians, and their counters to those of

@@ -52,7 +52,7 @@ def index(scene, forms=(), at=None, *, progress=None):
 
 
 def view(scene):
-    """A Page with the assembled mechanism, which can be turned and zoomed, as the verb `view` writes it."""
+    """A Page of the assembled mechanism, to be turned and zoomed, as the verb `view` writes it."""
     name = "" if isinstance(scene, _momenta.Mechanism) else _text_of(scene)[1]
     return Page(_momenta.page(_ready(scene), name))
 
