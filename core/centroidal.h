@@ -1,7 +1,6 @@
 #pragma once
-// The mechanism as one body: mass, centre of mass, linear and angular momentum, ground axes. All
-// bodies move as drives and rates say, so prescribed motion counts. The sums:
-// centroidal_sums.h.
+// Centroidal momentum: mass, centre of mass, linear and angular momentum of all bodies together, in
+// ground axes. Motion prescribed by drives is included. The sums: centroidal_sums.h.
 
 #include <momenta/core/scene/scene.h>
 #include <momenta/core/tree/tree.h>
@@ -10,7 +9,7 @@
 
 namespace momenta {
 
-/// A mechanism as one body, ground axes.
+/// Centroidal quantities of a mechanism, in ground axes.
 struct Centroidal {
   double mass = 0;                                             ///< [kg]
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();            ///< [m]; NaN without mass
@@ -18,19 +17,20 @@ struct Centroidal {
   Eigen::Vector3d angular_momentum = Eigen::Vector3d::Zero();  ///< [kg m²/s], about the origin
 };
 
-/// Always in space: a planar scene whose bodies lie at different heights has angular momentum in
-/// its plane too. Owns its model and workspace; one object serves one thread.
+/// Computes centroidal quantities, with its own model and workspace: one object per thread. It is
+/// always spatial: where the bodies of a planar scene lie at different heights, the angular
+/// momentum has components in the plane too.
 class CentroidalSweep {
  public:
-  /// Copies what it needs of both. O(bodies).
+  /// Copies what it needs from both. O(bodies).
   CentroidalSweep(const Tree& tree, const Scene& scene);
   ~CentroidalSweep();
-  /// Sweeps move; the one moved from may only be destroyed or assigned to.
+  /// Movable. A moved-from sweep may only be destroyed or assigned to.
   CentroidalSweep(CentroidalSweep&&) noexcept;
-  /// As the constructor.
+  /// As the move constructor.
   CentroidalSweep& operator=(CentroidalSweep&&) noexcept;
 
-  /// At (t, q, u), nq and nv numbers. O(bodies), no allocation.
+  /// The quantities at (t, q, u); q has nq numbers, u has nv. O(bodies), no allocation.
   Centroidal operator()(double t, const double* q, const double* u);
 
  private:
@@ -38,7 +38,7 @@ class CentroidalSweep {
   std::unique_ptr<Inside> inside_;
 };
 
-/// At one state (t, q, u), model and all.
+/// The same at one state (t, q, u), building the model for this call.
 Centroidal centroidal(const Tree& tree, const Scene& scene, double t, const Eigen::VectorXd& q,
                       const Eigen::VectorXd& u);
 

@@ -1,5 +1,5 @@
 #pragma once
-// What one evaluation of an open chain costs in operations, counted by running the kernels
+// The number of operations of one evaluation of an open chain, counted by running the kernels
 // themselves on counting numbers.
 
 #include <momenta/core/plan.h>
@@ -7,14 +7,14 @@
 
 namespace momenta {
 
-/// Which of the two recursions.
+/// The two recursions.
 enum class Recursion {
   momentum,     ///< (q, p, t) → (u, ṗ)
   acceleration  ///< (q, u, t) → u̇
 };
 
-/// Forces between points of bodies are left out. Cost O(bodies).
-/// @pre the tree and plan of the scene.
+/// Counts the operations of one evaluation. Forces between points of bodies are left out. Cost
+/// O(bodies). @pre the tree and plan of the scene.
 OperationCount count_operations(const Tree& tree, const Scene& scene, const Plan& plan,
                                 Recursion recursion);
 

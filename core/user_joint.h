@@ -1,7 +1,8 @@
 #pragma once
-// A joint of a program's own: one formula, the pose of the child's joint frame in the parent's as a
-// function of time and n = 1 … 6 coordinates, with q̇ = u. Everything else follows from it exactly
-// by dual numbers (kernel/user_motion.h): E and Ω_t of (13), Ė and dΩ_t/dt.
+// A user joint: a joint that a program defines by one formula, the pose of the child's joint frame
+// in the parent's joint frame as a function of time and n = 1 … 6 coordinates, with q̇ = u. Dual
+// numbers give everything else from it exactly (kernel/user_motion.h): E and Ω_t of (13), Ė and
+// dΩ_t/dt.
 //
 //     struct Crank {  // a revolute joint at the end of an arm of 0.2 m
 //       template <class S>
@@ -13,9 +14,9 @@
 //     joint.kind = momenta::JointKind::user;
 //     joint.law = std::make_shared<momenta::UserJoint>(1, Crank{});
 //
-// S has + − × ÷, sin, cos and sqrt in its namespace, a constructor from double and comparisons of
-// values. The matrix must be a rotation for all t and q; validate() looks at the start. The formula
-// is shared by all chains made from the scene, so it must not change.
+// S has the operators + − × ÷, the functions sin, cos and sqrt in its namespace, a constructor from
+// double, and comparisons of values. The matrix must be a rotation for all t and q; validate()
+// checks it at the start. All chains made from the scene share the formula, so it must not change.
 
 #include <momenta/core/kernel/user_motion.h>
 
@@ -25,11 +26,11 @@
 
 namespace momenta {
 
-/// Where the child's joint frame is in the parent's joint frame.
+/// Pose of the child's joint frame in the parent's joint frame.
 template <class S>
 struct JointPose {
   Mat3<S> rotation;  ///< columns: the child's joint axes in the parent's joint frame
-  Vec3<S> position;  ///< of the child's joint point there [m]
+  Vec3<S> position;  ///< of the child's joint point in the parent's joint frame [m]
 };
 
 /// The rotation by `angle` about a unit vector: cos + (1 − cos) a aᵀ + sin ã.
@@ -47,7 +48,7 @@ Mat3<S> turn_about(const Vec3<S>& a, const S& angle) {
   return r;
 }
 
-/// A formula of a program as the law of a joint; immutable, shared by chains and threads.
+/// The formula of a user joint as the law of that joint; immutable, shared by chains and threads.
 class UserJoint final : public UserFormula {
  public:
   /// `formula(t, q)` gives a `JointPose<S>` for any S; q has `coordinates` numbers.
@@ -58,14 +59,15 @@ class UserJoint final : public UserFormula {
 
   /// n, from 1 to 6.
   int coordinates() const override { return coordinates_; }
-  /// The pose at (t, q): nine numbers by columns, and three.
+  /// The pose at (t, q): the rotation, nine numbers by columns, and the position, three numbers.
   void pose(double t, const double* q, double* rotation, double* position) const override;
 
-  /// What the recursions take of the formula, at m.t and m.q: pose, E, Ω_t and their rates along u.
+  /// What the recursions take from the formula at m.t and m.q: pose, E, Ω_t and the rates of E and
+  /// Ω_t along u.
   void move(const double* u, UserMotion<double>& m) const override;
-  /// With one directional derivative.
+  /// The same with one directional derivative.
   void move(const Dual<double, 1>* u, UserMotion<Dual<double, 1>>& m) const override;
-  /// With eight.
+  /// The same with eight directional derivatives.
   void move(const Dual8* u, UserMotion<Dual8>& m) const override;
 
  private:
@@ -87,7 +89,7 @@ class UserJoint final : public UserFormula {
     void move(const Dual8* u, UserMotion<Dual8>& m) const override { along(u, m); }
 
    private:
-    /// E and Ω_t at (m.t, m.q); with u not null at numbers whose ε is time along (u, 1).
+    /// E and Ω_t at (m.t, m.q); where u is not null also their rates along (q̇, ṫ) = (u, 1).
     template <class S>
     void along(const S* u, UserMotion<S>& m) const;
     template <class S>

@@ -1,8 +1,8 @@
 #pragma once
-// Everything a form needs of a mechanism at one state, computed by sweeps: no call assembles M or
-// Φ_q unless it is asked to. S is double, or a dual number for exact derivatives. Calls are in
-// order: place, move, then the rest; each leaves its results in the workspace for the next. One
-// object serves one thread; no call allocates.
+// Everything that a form needs from a mechanism at one state, computed by sweeps; M and Φ_q are
+// assembled only by the calls that return their entries. S is double, or a dual number for exact
+// derivatives. Call place() first, then move(), then the rest: each call uses what the ones before
+// left in the workspace. One object serves one thread; no call allocates.
 
 #include <momenta/core/scalar/dual.h>
 
@@ -10,23 +10,23 @@
 
 namespace momenta {
 
-/// The rows of the equations, which are wanted in every scalar.
+/// The equations of motion and of the loops, row by row, for every scalar S.
 template <class S>
 class EquationRows {
  public:
   virtual ~EquationRows() = default;
 
-  /// Configuration q (nq) at time t.
+  /// Sets the configuration q (nq) at time t.
   virtual void place(double t, const S* q) = 0;
   /// Φ (m), eq. (1b).
   virtual void positions(S* phi) = 0;
 
-  /// Rates u (nv): velocities of all bodies. Null: zero rates, so that only prescribed motion is
-  /// left.
+  /// Sets the rates u (nv), and so the velocities of all bodies. Null: zero rates, so that only
+  /// prescribed motion moves the bodies.
   virtual void move(const S* u) = 0;
   /// Φ̇ = Φ_q u + Φ_t (m).
   virtual void velocities(S* rate) = 0;
-  /// M u + Φ_qᵀσ + prescribed part (nv): row 1 of (7). `sigma` (m) null: no loops' impulses.
+  /// M u + Φ_qᵀσ + prescribed part (nv): row 1 of (7). `sigma` (m) null: zero.
   virtual void momenta(const S* sigma, S* p) = 0;
   /// ṗ (nv), eq. (8), with the leak −κ Φ_qᵀσ. After momenta(sigma, …).
   virtual void momentum_rates(const S* q, const S* u, const S* sigma, double leak, S* pdot) = 0;
@@ -42,21 +42,21 @@ class EquationRows {
 
   /// q̇ (nq) from u. After place().
   virtual void coordinate_rates(const S* q, const S* u, S* qdot) const = 0;
-  /// u (nv) from q̇, of unit quaternions.
+  /// u (nv) from q̇; quaternions in q have unit length.
   virtual void joint_rates(const S* q, const S* qdot, S* u) const = 0;
 
-  /// Generalised forces (nv) at (t, q, u), all but the weights: those of the joints and, unless
-  /// `at_points` is false, of springs, dampers and wrenches between points of bodies. Needs neither
-  /// place() nor move(), and spoils what they left.
+  /// Generalised forces (nv) at (t, q, u), weights excluded: those of the joints and, unless
+  /// `at_points` is false, those of springs, dampers and wrenches at points of bodies. Needs
+  /// neither place() nor move(), and overwrites what they left.
   virtual void applied_forces(double t, const S* q, const S* u, S* tau, bool at_points = true) = 0;
 };
 
-/// What Mechanism::evaluation() makes: in other scalars than double the rows alone.
+/// What Mechanism::evaluation() returns. For scalars other than double it has the equations alone.
 template <class S>
 class Evaluation : public EquationRows<S> {};
 
-/// In doubles also what no form differentiates: the entries of (7), the recursions of mechanisms
-/// without loops, forces, energies, markers.
+/// In doubles it also has what no form differentiates: the entries of (7), the recursions for
+/// mechanisms without loops, forces, energies, markers.
 template <>
 class Evaluation<double> : public EquationRows<double> {
  public:
@@ -65,7 +65,7 @@ class Evaluation<double> : public EquationRows<double> {
   virtual void mass_entries(double* values) = 0;
   /// Diagonal of M (nv), O(bodies). After place().
   virtual void mass_diagonal(double* values) = 0;
-  /// Values of Φ_q in that order. After place().
+  /// Values of Φ_q in the order of the constraint pattern. After place().
   virtual void constraint_entries(double* values) = 0;
 
   /// (q, p, t) → (u, ṗ) by the recursion of the paper: mechanisms without loops only. False when a
@@ -75,21 +75,21 @@ class Evaluation<double> : public EquationRows<double> {
   /// (q, u, t) → u̇ by the articulated recursion: mechanisms without loops only.
   virtual bool open_accelerations(double t, const double* q, const double* u, double* udot) = 0;
 
-  /// Place in u of the joint at which one of these two failed.
+  /// Place in u of the joint at which the last call of these two failed.
   virtual int singular_joint() const = 0;
 
-  /// Generalised forces (nv) of springs, dampers and wrenches between points of bodies at (t, q,
-  /// u). As applied_forces() it spoils what place() and move() left.
+  /// Generalised forces (nv) of springs, dampers and wrenches at points of bodies, at (t, q, u).
+  /// Like applied_forces(), it overwrites what place() and move() left.
   virtual void body_forces(double t, const double* q, const double* u, double* tau) = 0;
 
   /// T [J]; after place() and move().
   virtual double kinetic() = 0;
   /// V [J]; after place().
   virtual double potential(const double* q) = 0;
-  /// Power of everything the energy does not hold [W]: dampers, wrenches that have no potential.
-  /// After move(u).
+  /// Power of the forces without potential [W]: dampers, and wrenches that have no potential. After
+  /// move(u).
   virtual double dissipated_power(const double* u) = 0;
-  /// Per marker x y z [m] and its velocity [m/s], ground axes; after move().
+  /// For each marker its position x y z [m] and its velocity [m/s], in ground axes. After move().
   virtual void markers(double* values) = 0;
 };
 

@@ -1,6 +1,6 @@
 #pragma once
-// A scene made ready to move: its tree, its loops, and the plan that says what every evaluation
-// does. Immutable; every form, solver and measure takes it by const reference.
+// A mechanism, made from a scene: its tree, its loops, and the plan that says what every evaluation
+// computes. Immutable; every form, solver and measure takes it by const reference.
 
 #include <momenta/core/plan.h>
 #include <momenta/core/scalar/local_dual.h>
@@ -20,17 +20,17 @@ namespace momenta {
 
 class AxisScale;  // dae/factor/axis_scale.h
 
-/// How (7) is solved: loops carried by the sweeps, or the assembled matrix.
+/// How (7) is solved: by sweeps that carry the loops, or by an assembled matrix.
 enum class KktChoice {
   automatic,  ///< sweeps where they can, else by size
-  sweeps,     ///< loops carried by the sweeps, no matrix
+  sweeps,     ///< by sweeps that carry the loops, no matrix
   sparse,     ///< a sparse matrix
-  dense       ///< a dense one
+  dense       ///< a dense matrix
 };
-/// As `--kkt` spells it.
+/// The name that `--kkt` takes.
 const char* name_of(KktChoice choice);
 
-/// What a scene leaves open.
+/// Options that a scene does not contain.
 struct MechanismOptions {
   Algebra algebra = Algebra::automatic;  ///< which kernel
   KktChoice kkt = KktChoice::automatic;  ///< how (7) is solved
@@ -44,8 +44,8 @@ struct Column {
   std::string label() const { return name + " [" + unit + "]"; }
 };
 
-/// A scene made ready to move, loops and all. Immutable, shared by threads; it must outlive what is
-/// made from it.
+/// A mechanism, loops included. Immutable, so threads may share it; it must outlive everything made
+/// from it.
 class Mechanism {
  public:
   /// @throws SceneError
@@ -56,42 +56,44 @@ class Mechanism {
 
   const Scene& scene() const { return scene_; }  ///< as given
   const Tree& tree() const { return tree_; }     ///< bodies in the order of the sweeps
-  const Plan& plan() const { return plan_; }     ///< what evaluations do and leave out
+  const Plan& plan() const { return plan_; }     ///< what evaluations compute and leave out
   int nq() const { return tree_.nq; }            ///< coordinates
   int nv() const { return tree_.nv; }            ///< rates, momenta
   int m() const { return rows_; }                ///< loop equations
-  /// How (7) is solved, when there are loops; never automatic.
+  /// How (7) is solved where there are loops; never `automatic`.
   KktChoice kkt() const { return kkt_; }
-  /// Whether an assembled matrix, where one is needed, is dense.
+  /// Whether an assembled matrix is dense, where one is needed.
   bool dense_kkt() const { return dense_; }
-  /// Whether joints can be eliminated before the loops that hold them: each has inertia by then,
-  /// and enough beside its neighbours not to take their digits.
+  /// Whether every joint can be eliminated before the loops that hold it close: each has inertia at
+  /// that point, and not so little beside others of its loop that digits are lost.
   bool leaves_first() const { return light_.empty(); }
-  /// Whether a sparse matrix is that of the bodies' equations: where bodies are more than 40 joints
-  /// from the ground in the mean, the joints' own is the costlier one. O(bodies)
+  /// Whether a sparse matrix is that of the bodies' equations. It is where bodies are on average
+  /// more than 40 joints from the ground: there the matrix of the joints' equations costs more.
+  /// O(bodies)
   bool solved_by_bodies() const;
   /// LoopWeights::spread
   double mass_spread() const { return mass_spread_; }
-  /// The sweeps that carry this mechanism's loops, for one instruction level; 0: the machine's
-  /// best. `branches_side_by_side`: in space, of one state, folded branches of one shape are swept
-  /// in the slots of a register. @throws std::logic_error where there are no loops, or more open at
-  /// once than there are slots
+  /// The sweeps that carry this mechanism's loops, for one instruction level; 0: the best of the
+  /// machine. `branches_side_by_side`: for one state, the spatial sweeps take folded branches of
+  /// one shape side by side in the lanes of a register. @throws std::logic_error where there are no
+  /// loops, or where more loop equations are open at once than there are slots
   std::unique_ptr<LoopedSweeps> looped_sweeps(int level = 0,
                                               bool branches_side_by_side = true) const;
-  /// The same with the loops paired as the scene has them.
+  /// The same with the loops between the pairs of bodies that the scene gives.
   std::unique_ptr<LoopedSweeps> looped_sweeps_as_given() const;
-  /// Whether ties that meet in one point are paired anew.
+  /// Whether loops that meet in one point are tied between other pairs of bodies than in the scene.
   bool pairs_anew() const;
   bool has_body_forces() const;   ///< springs, dampers or wrenches between points of bodies
   bool has_joint_forces() const;  ///< springs, dampers or torques of joints
-  /// Found when first asked for: a long chain never fills its M, O(Σ depth).
+  /// Nonzeros of M and Φ_q in (7). Computed at the first call, so that long chains whose M is never
+  /// assembled do not pay for it. O(Σ depth)
   const KktPattern& kkt_pattern() const;
-  /// Of Φ_q alone, O(length of all loops).
+  /// Nonzeros of Φ_q alone. O(length of all loops)
   const std::vector<KktPattern::Entry>& constraint_pattern() const;
-  /// What each row of Φ is (m), in words.
+  /// The name of each row of Φ (m).
   const std::vector<RowName>& rows() const { return row_names_; }
-  /// Rows of one loop and one kind (points, axes, distance or coupling) share a unit and so a
-  /// scale: group index of each row.
+  /// Group index of each row. Rows of one loop and one kind (points, axes, distance or coupling)
+  /// form a group: they share a unit and so a scale.
   const std::vector<int>& row_groups() const { return row_groups_; }
 
   /// Whether each row is an angle [rad]: rows of axes, and couplers of angles alone. All others are
@@ -102,30 +104,30 @@ class Mechanism {
   /// Whether there are rows of angles.
   bool has_angles() const;
 
-  /// Scale of each row of Φ_q M⁻¹ Φ_qᵀ (m) below which it is dust, whatever its loop's other rows
-  /// are: LoopWeights::least_scales, by row. A slide along the axis of a cylindrical joint has four
-  /// rows out of five that hold nothing but rounding. Zero for axes, whose size by nature is known,
-  /// and for couplers. [1/kg]
+  /// The size of each row of Φ_q M⁻¹ Φ_qᵀ (m) below which the row is rounding alone, whatever the
+  /// other rows of its loop are: LoopWeights::least_scales, by row. For example, four of the five
+  /// rows of a slide along the axis of a cylindrical joint contain only rounding. Zero for rows of
+  /// axes, whose natural size is known, and for couplers. [1/kg]
   const std::vector<double>& least_scales() const { return least_scales_; }
-  /// What rows are measured by, from these.
+  /// The scales by which the rows are measured, made from these.
   AxisScale axis_scale() const;
 
   /// A workspace for one thread; S is double, Dual8, LocalDual or Jet.
   template <class S>
   std::unique_ptr<Evaluation<S>> evaluation() const;
 
-  /// Names and units of q (nq), in the order of trajectory.csv.
+  /// Names and units of q (nq), in the order of their columns in trajectory.csv.
   std::vector<Column> coordinate_columns() const;
-  /// Of u (nv).
+  /// The same for u (nv).
   std::vector<Column> rate_columns() const;
-  /// Of markers: position and velocity of each.
+  /// The same for the position and velocity of each marker.
   std::vector<Column> marker_columns() const;
 
-  /// Lines of the plan, core's and those of the loops.
+  /// Lines of the plan: those of core and those of the loops.
   std::vector<std::pair<std::string, std::string>> plan_lines() const;
 
-  /// Why nothing moves at (t, q), where a solution failed at a rate (place in u, −1: not known):
-  /// the joints that neither inertia nor a loop holds (unheld_joints.h).
+  /// Why a solution failed at (t, q): one sentence naming the joints that neither inertia nor a
+  /// loop holds (unheld_joints.h). `rate`: the place in u at which it failed; −1: not known.
   std::string no_inertia(int rate, double t, const double* q) const;
 
  private:
@@ -164,7 +166,7 @@ class Mechanism {
   std::vector<double> least_scales_;
 };
 
-/// In doubles.
+/// The evaluation in doubles.
 template <>
 std::unique_ptr<Evaluation<double>> Mechanism::evaluation<double>() const;
 extern template std::unique_ptr<Evaluation<Dual8>> Mechanism::evaluation<Dual8>() const;

@@ -1,11 +1,11 @@
 #pragma once
-// A number that counts what is done with it, twice:
+// A number that counts the operations done with it, in two ways:
 //   executed  every addition, multiplication and division the code performs
 //   needed    the same after constants are folded: an operation of two constants costs nothing, nor
 //             does one with a constant 0 or ±1; what straight-line code for this very model would
 //             do
-// Signs are free, subtractions are additions; sines and cosines are counted apart. One count a
-// thread.
+// Changes of sign are free, subtractions count as additions; sines and cosines are counted
+// separately. There is one count per thread.
 
 #include <cmath>
 
@@ -13,21 +13,21 @@ namespace momenta {
 
 /// Operations by kind.
 struct Operations {
-  long adds = 0;             ///< subtractions too
+  long adds = 0;             ///< subtractions included
   long multiplications = 0;  ///< of two numbers
   long divisions = 0;        ///< of two numbers
-  long angles = 0;           ///< a sine and a cosine each
-  /// Without the angles.
+  long angles = 0;           ///< one for each pair of sine and cosine
+  /// The sum without angles.
   long total() const { return adds + multiplications + divisions; }
 };
 
-/// Both counts.
+/// The two counts.
 struct OperationCount {
   Operations executed;  ///< what the code performs
-  Operations needed;    ///< what is left of it once constants are folded
+  Operations needed;    ///< what is left once constants are folded
 };
 
-/// A double that counts; constant unless made by variable().
+/// A double that counts its operations; a constant unless made by variable().
 class Counted {
  public:
   Counted() = default;
@@ -74,7 +74,7 @@ class Counted {
   Counted& operator-=(const Counted& b) { return *this = *this - b; }
   friend bool operator<(const Counted& a, const Counted& b) { return a.value_ < b.value_; }
   friend bool operator>(const Counted& a, const Counted& b) { return a.value_ > b.value_; }
-  /// The pair is counted once, with the sine.
+  /// A sine and cosine of one angle count once, with the sine.
   friend Counted sin(const Counted& a) {
     ++count.executed.angles;
     if (!a.constant_) ++count.needed.angles;
@@ -83,7 +83,7 @@ class Counted {
   friend Counted cos(const Counted& a) { return result(std::cos(a.value_), a, a); }
   friend Counted sqrt(const Counted& a) { return result(std::sqrt(a.value_), a, a); }
 
-  /// Of this thread, since it was last set to {}.
+  /// The count of this thread since it was last set to {}.
   static inline thread_local OperationCount count;
 
  private:
@@ -100,7 +100,7 @@ class Counted {
   bool constant_ = true;
 };
 
-/// The number itself, in the spelling of dual numbers.
+/// The number itself, by the name that dual numbers use.
 inline double value_of(const Counted& x) {
   return x.value();
 }

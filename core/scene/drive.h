@@ -18,8 +18,8 @@
 //   Continuity of ḟ: hᵢ₋₁ mᵢ₋₁ + 2 (hᵢ₋₁ + hᵢ) mᵢ + hᵢ mᵢ₊₁ = 6 (Δyᵢ/hᵢ − Δyᵢ₋₁/hᵢ₋₁);
 //   m = 0 at both ends. Outside, the straight line of the end slope; f̈ is continuous there too.
 //
-// Within a branch of step and table the derivatives are exact; a dual number takes the branch of
-// its value.
+// Within each piece of a step or a table the derivatives are exact; a dual number takes the piece
+// of its value.
 
 #include <momenta/core/scene/scene.h>
 
@@ -30,18 +30,18 @@
 
 namespace momenta {
 
-/// What makes a DriveSpec no motion law, in words, or empty.
+/// Why a DriveSpec is not a valid motion law, in words; empty where it is valid.
 std::string law_fault(const DriveSpec& spec);
 
-/// A DriveSpec made ready: f(t) and its two derivatives. Immutable.
+/// The motion law of a DriveSpec: f(t) and its first two derivatives. Immutable.
 class MotionLaw {
  public:
   /// Solves the spline of a table. @throws SceneError with the sentence of law_fault
   explicit MotionLaw(const DriveSpec& spec);
 
-  /// f [rad or m], its rate [1/s] and the rate of that [1/s²] at time t [s]. No allocation.
-  /// Cost O(coefficients); for a table O(log points).
-  /// S needs + − ×, a constructor from double, S < double, and sin and cos in its namespace.
+  /// f [rad or m], ḟ [rad/s or m/s] and f̈ [rad/s² or m/s²] at time t [s]. No allocation. Cost
+  /// O(coefficients); for a table O(log points). S needs + − ×, a constructor from double, S <
+  /// double, and sin and cos in its namespace.
   template <class S>
   void evaluate(S t, S& f, S& fdot, S& fddot) const {
     switch (kind_) {

@@ -1,11 +1,11 @@
 #pragma once
-// What a scene knows of a joint of a program's own: its coordinates and its pose. The recursions
-// take derivatives of the same formula (core/kernel/user_motion.h).
+// What a scene knows of a user joint: its number of coordinates and its pose. The recursions take
+// derivatives of the same formula (core/kernel/user_motion.h).
 
 namespace momenta {
 
-/// The formula of a user joint, immutable. Programs make one as a UserJoint, core/user_joint.h: no
-/// other class can derive from this one.
+/// The formula of a user joint, immutable. A program makes one as a UserJoint (core/user_joint.h);
+/// no other class can derive from this one.
 class JointFormula {
  public:
   virtual ~JointFormula() = default;
@@ -13,8 +13,8 @@ class JointFormula {
   /// n, from 1 to 6.
   virtual int coordinates() const = 0;
 
-  /// The pose of the child's joint frame in the parent's at (t, q): nine numbers by columns, and
-  /// three.
+  /// The pose of the child's joint frame in the parent's at (t, q): the rotation, nine numbers by
+  /// columns, and the position, three numbers.
   virtual void pose(double t, const double* q, double* rotation, double* position) const = 0;
 
  private:

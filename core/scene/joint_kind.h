@@ -1,13 +1,13 @@
 #pragma once
-// The joints a scene may have, and how many numbers each brings to the state. q and u differ in
-// number where the rates are quasi-velocities (angular velocities in body axes): there p = Eᵀ P* =
+// The kinds of joints of a scene, and how many numbers each adds to the state. q and u differ in
+// size where the rates are quasi-velocities (angular velocities in body axes): there p = Eᵀ P* =
 // ∂T/∂u is not canonical, and (35) holds unchanged.
 //
-// A tree knows fewer: cylindrical, universal and planar joints, and fully driven spherical and free
-// ones, become chains of revolute and prismatic joints with massless bodies between them. Then E is
-// constant in body axes for every joint of a tree, and q, p, q̇, ṗ are those of the joint as a
-// whole. A user joint is a formula of a program (core/user_joint.h): its E moves in body axes, and
-// its numbers are those of its formula.
+// A tree has fewer kinds: cylindrical, universal and planar joints, and fully driven spherical and
+// free joints, become chains of revolute and prismatic joints with massless bodies between them. So
+// E is constant in body axes for every such joint, and q, p, q̇, ṗ are those of the joint as a
+// whole. A user joint is a formula of a program (core/user_joint.h): its E varies in body axes, and
+// the formula says how many numbers it has.
 
 namespace momenta {
 
@@ -20,13 +20,13 @@ enum class JointKind {
   universal,
   spherical,
   planar,
-  free,  ///< all six: no joint at all
-  weld,  ///< none
+  free,  ///< all six degrees of freedom
+  weld,  ///< no degree of freedom
   user   ///< a formula of the program: core/user_joint.h
 };
 
-/// Size of q: a unit quaternion w x y z for spherical; position, then quaternion for free. Of a
-/// user joint the kind alone does not know it: coordinates_of(JointSpec) does.
+/// Size of q: a unit quaternion w x y z for spherical; position, then quaternion for free. For user
+/// joints, whose size the kind does not tell, it is 0: use coordinates_of(JointSpec).
 constexpr int coordinates_of(JointKind kind) {
   switch (kind) {
     case JointKind::revolute:
@@ -49,9 +49,9 @@ constexpr int coordinates_of(JointKind kind) {
   return 0;
 }
 
-/// Size of u and p: columns of the joint matrix E, eq. (13). Also how many coordinates drives can
-/// prescribe: those of a spherical joint are then roll, pitch, yaw, those of a free one x, y, z and
-/// these.
+/// Size of u and p: the number of columns of the joint matrix E, eq. (13). Also how many
+/// coordinates drives can prescribe: roll, pitch, yaw for a spherical joint; x, y, z, roll, pitch,
+/// yaw for a free one.
 constexpr int rates_of(JointKind kind) {
   switch (kind) {
     case JointKind::revolute:
@@ -73,7 +73,7 @@ constexpr int rates_of(JointKind kind) {
   return 0;
 }
 
-/// One coordinate, which a spring, a damper or a torque can act along.
+/// Whether the joint has one coordinate, along which a spring, a damper or a torque can act.
 constexpr bool has_one_coordinate(JointKind kind) {
   return rates_of(kind) == 1;
 }

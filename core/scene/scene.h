@@ -18,7 +18,7 @@ namespace momenta {
 
 class JointFormula;  // core/scene/joint_formula.h
 
-/// Where a thing stands in its file; line 0 means it did not come from a file.
+/// A place in a file; line 0 means that the thing did not come from a file.
 struct Location {
   int line = 0;    ///< from 1
   int column = 0;  ///< from 1, in characters; 0: not known
@@ -30,10 +30,10 @@ class SceneError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// A solid of uniform density: how a body is drawn and, where com or inertia are not written out,
-/// what gives them. A rod is slender and reaches from the body origin along its axis, com half way.
-/// The others are centred on the body origin, or on `com` where that is given. A point has no
-/// inertia. `com` and `inertia` written out win, each for itself.
+/// A solid of uniform density. A body is drawn with it, and it gives `com` and `inertia` where
+/// these are not written out; what is written out takes precedence, each for itself. A rod is
+/// slender and reaches from the body origin along its axis, its centre of mass half way. The other
+/// shapes are centred on the body origin, or on `com` where that is given. A point has no inertia.
 struct Shape {
   std::string kind;  ///< rod box cylinder sphere point, or empty
   /// rod: length, 0, 0; box: x, y, z; cylinder: length, radius, 0; sphere: radius, 0, 0 [m]
@@ -44,25 +44,28 @@ struct Shape {
 /// A rigid body.
 ///
 /// In a file, inertia is [xx, yy, zz, xy, xz, yz], or [xx, yy, zz], or one number: the moment about
-/// z of a planar body, stored as diag(Izz/2, Izz/2, Izz), a thin plate. (diag(0, 0, Izz) belongs to
-/// no mass whatever: no principal moment exceeds the sum of the other two. Motion in the plane does
-/// not feel Ixx and Iyy.) A body with a mass has a shape or an inertia; mass 0 is a massless body.
+/// z of a planar body, stored as that of a thin plate, diag(Izz/2, Izz/2, Izz). (No distribution of
+/// mass has the inertia diag(0, 0, Izz): no principal moment exceeds the sum of the other two. Ixx
+/// and Iyy have no effect on motion in the plane.) A body with a mass has a shape or an inertia; a
+/// body with mass 0 is massless.
 struct BodySpec {
-  std::string name;                               ///< not "ground", which is what does not move
+  std::string name;                               ///< any but "ground"
   double mass = 0;                                ///< [kg]
   Eigen::Vector3d com = Eigen::Vector3d::Zero();  ///< centre of mass in body axes [m]
   /// About the centre of mass, body axes [kg m²]; its principal moments a ≤ b ≤ c satisfy
   /// 0 ≤ a and c ≤ a + b.
   Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();
-  /// The inertia is taken as it is, though no rigid body need have it: files of robots hold such.
+  /// The inertia is taken as it is, even if no rigid body can have it: some robot files contain
+  /// such inertias.
   bool any_inertia = false;
-  Shape shape;  ///< how it is drawn, and what gives com and inertia where they are not written
+  Shape shape;  ///< how it is drawn; gives com and inertia where they are not written
   Location at;  ///< where the file has it
 };
 
-/// A joint of the tree; its child is a body, its parent a body or "ground".
-/// The joint frame sits in the parent at `origin_parent`, turned by `rotation`; in the child at
-/// `origin_child`, parallel to the child's axes. At q = 0 (quaternion 1, 0, 0, 0) the two coincide.
+/// A joint of the tree; its child is a body, its parent a body or "ground". It has two joint
+/// frames. The one in the parent has its origin at `origin_parent` and is turned by `rotation`; the
+/// one in the child has its origin at `origin_child` and is parallel to the child's axes. At q = 0
+/// (quaternion 1, 0, 0, 0) the two coincide.
 ///
 /// q, by kind:
 ///   - revolute, helical [rad], prismatic [m]; weld: none
@@ -93,13 +96,13 @@ struct JointSpec {
   Eigen::Vector3d origin_child = Eigen::Vector3d::Zero();        ///< in child axes [m]
   Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();  ///< joint frame in parent axes
   Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();               ///< unit vector in the joint frame
-  /// Universal: the second axis, a unit vector not parallel to `axis`; zero means
+  /// Universal: the second axis, a unit vector, not parallel to `axis`; zero means
   /// perpendicular_to(axis).
   Eigen::Vector3d axis2 = Eigen::Vector3d::Zero();
   /// Planar: q1 counts along the part of this that is perpendicular to `axis`; zero means
   /// perpendicular_to(axis). A unit vector in the joint frame, not parallel to `axis`.
   Eigen::Vector3d direction = Eigen::Vector3d::Zero();
-  double pitch = 0;  ///< helical: way along `axis` [m] per angle about it [rad]
+  double pitch = 0;  ///< helical: displacement along `axis` per angle about it [m/rad]
   std::shared_ptr<const JointFormula> law;  ///< user: a UserJoint, its pose as a formula of t and q
   std::vector<double> position;             ///< start value or first guess, size nq (empty: q = 0)
   std::vector<double> velocity;             ///< start value or first guess, size nv (empty: zero)
@@ -109,17 +112,17 @@ struct JointSpec {
   Location at;           ///< where the file has it
 };
 
-/// Size of q of a joint: of its kind, or of its law.
+/// Size of q of a joint: by its kind, or by its law.
 int coordinates_of(const JointSpec& joint);
 /// Size of u and p of a joint.
 int rates_of(const JointSpec& joint);
 
-/// The direction a joint takes where none is given: the coordinate axis that follows, in the order
-/// x y z x, the one nearest to `axis` (the first of equally near ones), made perpendicular to it.
-/// So x for an axis along z, y for one along x, z for one along y.
+/// The default direction of a joint. Of the coordinate axes, find the one nearest to `axis` (the
+/// first of equally near ones), take the next in the order x y z x, and make it perpendicular to
+/// `axis`: x for an axis along z, y for one along x, z for one along y.
 Eigen::Vector3d perpendicular_to(const Eigen::Vector3d& axis);
 
-/// What a loop ties; its equations: LoopSpec.
+/// The kinds of loops, with their number of equations; the equations: LoopSpec.
 enum class LoopKind {
   point,        ///< 3 equations, 2 in a plane
   revolute,     ///< 5
@@ -133,38 +136,39 @@ enum class LoopKind {
   coupler       ///< 1, between coordinates of joints
 };
 
-/// A joint that closes a loop; the same keys as a joint, without coordinates and what acts on them.
-/// Its child is a body, its parent another one or "ground".
+/// A joint that closes a loop. It has the keys of a joint, but no coordinates and no forces along
+/// them. Its child is a body, its parent another body or "ground".
 ///   - `point` and `spherical` are the same three equations
 ///   - `distance` keeps |origin_parent − origin_child| = length
 ///   - `universal` keeps the points together and `axis`, held by the parent, at its angle to
 ///     `axis2`, held by the child
 ///   - `planar` keeps the child's point in the plane across `axis`, and `axis` common
-///   - `coupler` ties no bodies but coordinates of joints: Σ ratios[i] q_i = offset
+///   - `coupler` ties coordinates of joints, not bodies: Σ ratios[i] q_i = offset
 struct LoopSpec {
   std::string name;                                              ///< unique among joints and loops
-  LoopKind kind = LoopKind::point;                               ///< what it ties
+  LoopKind kind = LoopKind::point;                               ///< point, revolute, …
   std::string parent = "ground";                                 ///< a body, or "ground"
   std::string child;                                             ///< a body, not the parent
   Eigen::Vector3d origin_parent = Eigen::Vector3d::Zero();       ///< in parent axes [m]
   Eigen::Vector3d origin_child = Eigen::Vector3d::Zero();        ///< in child axes [m]
   Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();  ///< loop frame in parent axes
   Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();               ///< unit vector in the loop frame
-  /// Universal: as of a joint; zero means perpendicular_to(axis).
+  /// Universal: as for a joint; zero means perpendicular_to(axis).
   Eigen::Vector3d axis2 = Eigen::Vector3d::Zero();
-  /// Planar: as of a joint, for what drives prescribe; zero means perpendicular_to(axis).
+  /// Planar: as for a joint, used where drives prescribe coordinates; zero means
+  /// perpendicular_to(axis).
   Eigen::Vector3d direction = Eigen::Vector3d::Zero();
-  double length = 0;  ///< distance [m]; no matter where a drive prescribes it
-  /// Coupler: coordinates of joints whose rates are their q̇, no two the same, driven or not.
+  double length = 0;  ///< distance [m]; no effect where a drive prescribes it
+  /// Coupler: joints whose rates are their q̇, driven or not; no coordinate occurs twice.
   std::vector<std::string> joints;
-  std::vector<int> coordinates;  ///< as of a drive, one for each joint; empty: all 0
+  std::vector<int> coordinates;  ///< counted as for a drive, one for each joint; empty: all 0
   std::vector<double> ratios;    ///< [1, rad/m or m/rad], not zero, one for each joint
-  double offset = 0;             ///< [rad or m]; no matter where a drive prescribes it
+  double offset = 0;             ///< [rad or m]; no effect where a drive prescribes it
   Location at;                   ///< where the file has it
 };
 
-/// How many coordinates of a loop drives can prescribe: those that the joint of its kind has, the
-/// length of a distance, the offset of a coupler.
+/// How many coordinates of a loop drives can prescribe: the coordinates of a joint of the same
+/// kind, the length of a distance, the offset of a coupler.
 constexpr int driven_coordinates_of(LoopKind kind) {
   switch (kind) {
     case LoopKind::revolute:
@@ -185,23 +189,23 @@ constexpr int driven_coordinates_of(LoopKind kind) {
   return 0;
 }
 
-/// One number of a joint or of a loop as a function of time.
+/// A drive: one number of a joint or of a loop as a function of time.
 ///
-/// Of a joint: a coordinate, counted from 0 as in the joint's q. Cylindrical, universal and planar
-/// joints: any of them, each by its own drive. Spherical joints are driven in all of roll, pitch,
-/// yaw, which are coordinates 0, 1, 2: child axes = Rz(yaw) Ry(pitch) Rx(roll) in the joint frame;
-/// free joints in all of x, y, z, roll, pitch, yaw. A driven free joint on a body without mass is a
-/// moving base.
+/// A drive of a joint prescribes a coordinate, counted from 0 as in the joint's q. In cylindrical,
+/// universal and planar joints any coordinate can be driven, each by its own drive. A driven
+/// spherical joint has drives for all of roll, pitch and yaw, which are coordinates 0, 1, 2: child
+/// axes = Rz(yaw) Ry(pitch) Rx(roll) in the joint frame. A driven free joint has drives for all of
+/// x, y, z, roll, pitch, yaw; on a body without mass it is a moving base.
 ///
-/// Of a loop: a coordinate, counted as of the joint of the same kind (driven_coordinates_of), which
-/// is then no longer free; or a component of its `origin_parent`, which then moves. What is written
-/// in the loop for a number that a drive prescribes has no effect.
+/// A drive of a loop prescribes a coordinate, counted as in a joint of the same kind
+/// (driven_coordinates_of), which is then no longer free; or a component of `origin_parent`, which
+/// then moves. The value that the loop itself gives for a driven number has no effect.
 ///
 ///   - polynomial: f = Σ cᵢ tⁱ, coefficients = [c0, c1, ...]
 ///   - harmonic: f = offset + amplitude sin(ω t + φ), with ω = frequency [rad/s], φ = phase [rad]
 ///   - step: `from` → `to` between start and start + duration, by the quintic 10x³ − 15x⁴ + 6x⁵
 ///   - table: natural cubic spline through (times, values); constant slope outside
-/// The laws are evaluated by MotionLaw, core/scene/drive.h.
+/// MotionLaw (core/scene/drive.h) evaluates these laws.
 struct DriveSpec {
   std::string joint;   ///< or `loop`: one of them is empty
   std::string loop;    ///< or `joint`
@@ -222,12 +226,12 @@ struct DriveSpec {
   Location at;                       ///< where the file has it
 };
 
-/// What acts on the mechanism; the name is optional.
+/// A force on the mechanism; the name is optional.
 ///   - "spring-damper": between a point of `parent` and a point of `child`, k (l − rest) + c dl/dt
 ///     along the line
 ///   - "torque": generalised force `value` on a revolute or helical [N m] or prismatic [N] joint
-///   - "wrench": constant force at `point` of `body`, and torque, in ground axes, the default
-///     (`axes = "ground"`), or in body axes (`axes = "body"`)
+///   - "wrench": constant force at `point` of `body`, and constant torque: in ground axes
+///     (`axes = "ground"`, the default) or in body axes (`axes = "body"`)
 struct ForceSpec {
   std::string name;                                         ///< or empty
   std::string kind;                                         ///< spring-damper torque wrench
@@ -248,7 +252,8 @@ struct ForceSpec {
   Location at;                                       ///< where the file has it
 };
 
-/// A named point of a body, or of "ground", whose position and velocity are reported, ground axes.
+/// A named point of a body, or of "ground", whose position and velocity are reported in ground
+/// axes.
 struct MarkerSpec {
   std::string name;                                 ///< heads its columns of trajectory.csv
   std::string body;                                 ///< or "ground"
@@ -256,7 +261,8 @@ struct MarkerSpec {
   Location at;                                      ///< where the file has it
 };
 
-/// What a run takes where the command line says nothing; `momenta drift` starts from these.
+/// The defaults of a run, for options that the command line does not give; also for `momenta
+/// drift`.
 struct RunDefaults {
   double end_time = 10;        ///< [s]
   std::optional<double> step;  ///< fixed-step integrators [s]
@@ -265,32 +271,33 @@ struct RunDefaults {
   bool project = false;  ///< correct positions after each step: scenes that pass singular poses
 };
 
-/// A mechanism as its author wrote it: what read_scene gives, OpenChain and Mechanism take.
+/// A mechanism as its author wrote it. read_scene() returns it; OpenChain and Mechanism take it.
 struct Scene {
   std::string file;                                   ///< for messages; empty when built by hand
   std::string name;                                   ///< for titles and tables
   Eigen::Vector3d gravity = Eigen::Vector3d::Zero();  ///< [m/s²]
   std::vector<BodySpec> bodies;                       ///< without the ground
   std::vector<JointSpec> joints;                      ///< one for each body
-  std::vector<LoopSpec> loops;                        ///< none: an open chain
+  std::vector<LoopSpec> loops;                        ///< empty: an open chain
   std::vector<DriveSpec> drives;                      ///< prescribed motion
-  std::vector<ForceSpec> forces;                      ///< what acts besides gravity and joints
-  std::vector<MarkerSpec> markers;                    ///< points to be reported
-  std::vector<std::string> held;  ///< [assembly] hold: joints whose q and u assembly must keep
-  Location held_at;               ///< of that list
-  RunDefaults run;                ///< [run] end, step, leak, samples
-  /// What a reader of another format left out, or read in a way to be known: a sentence a kind.
+  std::vector<ForceSpec> forces;    ///< forces besides gravity and those of joints
+  std::vector<MarkerSpec> markers;  ///< points to be reported
+  std::vector<std::string> held;    ///< [assembly] hold: joints whose q and u assembly keeps
+  Location held_at;                 ///< where the file has that list
+  RunDefaults run;                  ///< [run] end, step, leak, samples
+  /// What the reader of another format left out or changed: one sentence per kind.
   std::vector<std::string> remarks;
 
-  /// The sentence prefix "file:line:column: " of a place in this scene; without line and column
-  /// for a thing that came from no file, and "scene: " where the scene itself did.
+  /// The prefix of a message about a place in this scene: "file:line:column: ", without line and
+  /// column for a thing that did not come from a file, and "scene: " where the scene did not come
+  /// from one.
   std::string where(Location at) const;
 };
 
-/// A length that is natural to the scene [m]: the largest diagonal of the boxes, along its axes,
-/// around the points of one body, or of the ground, where joints, loops, springs, wrenches and
-/// markers are, and its centre of mass; no less than the length of a loop; 1 when all of these are
-/// zero. Gaps of loops are judged by it.
+/// The length of the scene [m], the unit in which gaps of loops are judged. For each body and for
+/// the ground take the box, along its axes, around its centre of mass and its points of joints,
+/// loops, springs, wrenches and markers. The length is the largest diagonal of these boxes, or the
+/// largest `length` of a loop if that is more; 1 when all of these are zero.
 double length_of(const Scene& scene);
 
 }  // namespace momenta

@@ -1,7 +1,7 @@
 #pragma once
 // The tree of a scene: bodies in depth-first order (a parent before its children, each subtree
-// contiguous), joints with their places in q and u, everything in SI units. Independent of the
-// algebra that will move it; immutable once built.
+// contiguous), joints with their places in q and u, everything in SI units. It does not depend on
+// the algebra; immutable once built.
 
 #include <momenta/core/scene/drive.h>
 #include <momenta/core/scene/scene.h>
@@ -13,19 +13,20 @@
 
 namespace momenta {
 
-/// Bodies, joints and drives in the order of the sweeps; q, u and p by joint.
+/// Bodies, joints and drives in the order of the sweeps, with the layout of q, u and p.
 struct Tree {
-  /// A body and the joint that carries it. Body frame: origin at the joint, on its axis; z along
-  /// the axis of a revolute, prismatic or helical joint, else the axes of the scene's body.
+  /// A body and the joint that carries it. Body frame: its origin is at the joint, on the joint's
+  /// axis; its z is along the axis of a revolute, prismatic or helical joint; for other joints it
+  /// has the axes of the scene's body.
   ///
-  /// A joint of the scene may be a chain of `parts` such joints, one below the other, with
-  /// consecutive indices. The last part carries the scene's body; those before it carry bodies
-  /// without name, mass or extent, with scene axes that are the part's joint axes.
+  /// A joint of the scene may become a chain of `parts` such joints, each the child of the one
+  /// before, with consecutive indices. The last part carries the scene's body; the parts before it
+  /// carry bodies without name, mass or extent, whose scene axes are the joint axes of the part.
   struct Body {
-    std::string name;    ///< of the scene's body; empty before the last part
-    std::string joint;   ///< of the scene, which carries it
+    std::string name;    ///< of the scene's body; empty for all but the last part
+    std::string joint;   ///< of the scene: the joint that carries it
     int part = 0;        ///< this is part 0, 1, … of its joint
-    int parts = 1;       ///< of so many
+    int parts = 1;       ///< of how many parts
     int coordinate = 0;  ///< which coordinate of its joint a part moves; 0 with quaternions
     int parent = -1;     ///< −1: ground
     JointKind kind = JointKind::revolute;  ///< of this part
@@ -61,27 +62,29 @@ struct Tree {
 
   /// Index of a body by its scene name; −1 for "ground".
   int body(const std::string& scene_name) const;
-  /// Index of the scene's body carried by the joint of this name: of its last part; or −1.
+  /// Index of the body that the joint of this name carries, by its last part; −1 for an unknown
+  /// name.
   int carried_by(const std::string& joint_name) const;
-  /// Index of the first part of the joint that body `k` belongs to: k where joints have one part.
+  /// Index of the first part of the joint that body `k` belongs to; k itself where that joint has
+  /// one part.
   int first_part(int k) const { return k - bodies[static_cast<std::size_t>(k)].part; }
-  /// True for the last part of a joint, which carries the scene's body.
+  /// Whether body `k` is the last part of a joint, which carries the scene's body.
   bool carries_scene_body(int k) const {
     const Body& b = bodies[static_cast<std::size_t>(k)];
     return b.part + 1 == b.parts;
   }
-  /// "joint 'O'", and "coordinate 1 of joint 'O'" for a part of several. For messages.
+  /// "joint 'O'", or "coordinate 1 of joint 'O'" where the joint has several parts. For messages.
   std::string joint_in_words(int k) const;
-  /// Makes the quaternions of q (nq) unit ones.
+  /// Normalises the quaternions in q (nq).
   void normalise(Eigen::VectorXd& q) const {
     for (const Body& b : bodies)
       if (b.nq >= 4) q.segment<4>(b.q + b.nq - 4).normalize();
   }
-  /// Every body frame in ground axes with all joints at zero (drives too).
+  /// Every body frame in ground axes with all joints at zero, driven ones too.
   std::vector<Eigen::Isometry3d> zero_poses() const;
-  /// A point given in the scene's axes of a body (−1: ground), in the body frame.
+  /// A point in the body frame, from its coordinates in the axes of the scene's body (−1: ground).
   Eigen::Vector3d point(int body, const Eigen::Vector3d& scene_point) const;
-  /// A direction, likewise.
+  /// The same for a direction.
   Eigen::Vector3d direction(int body, const Eigen::Vector3d& scene_direction) const;
 };
 

@@ -6,7 +6,7 @@
 // Hidden        Φ(q, t) = 0 and Φ_q u + Φ_t = 0
 // Multipliers   λ, a force
 // Drifts        Φ̇ like t, Φ like t²: Φ̈ = 0 is integrated twice
-// Projection    with --project it is the form `projected`
+// Projection    with --project this form is `projected`
 // Source        paper, eqs. (2), (3).
 
 #include <momenta/dae/form/acceleration_form.h>

@@ -1,6 +1,7 @@
 #pragma once
-// What the ODE forms in q, u share: (3) with feedback of Φ and Φ̇, solved once or, in a softened
-// solver, repeated around the multiplier just found; corrections of q and u after steps.
+// What the ODE forms in q, u share: (3) with feedback of Φ and Φ̇, and corrections of q and u after
+// steps. (3) is solved once or, with a softened solver, repeatedly, each time around the
+// multipliers just found.
 
 #include <momenta/dae/form/ode_form.h>
 

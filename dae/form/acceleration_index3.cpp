@@ -6,8 +6,8 @@
 // Hidden        Φ̇ = 0 and Φ̈ = 0
 // Multipliers   λ, a force
 // Drifts        Φ at the Newton tolerance; Φ̇ at the local error of v, one power of the step worse
-// Source        paper, eqs. (1)-(3); Brenan, Campbell, Petzold, Numerical Solution of Initial-Value
-// Problems in DAEs
+// Source        paper, eqs. (1)-(3); Brenan, Campbell, Petzold, Numerical Solution of
+//               Initial-Value Problems in DAEs
 
 #include <momenta/dae/form/coordinate_motion.h>
 #include <momenta/dae/form/dae_form.h>

@@ -5,12 +5,12 @@
 //                 M u̇ + Φ_qᵀλ = Q + L_q − Ṁ u,  Φ_q u̇ = −Φ̇_q u − Φ̇_t − 2α Φ̇ − β² Φ;  q̇ = u
 // Index         an ODE
 // Hidden        Φ(q, t) = 0 and Φ_q u + Φ_t = 0
-// Multipliers   λ, a force, with the correction in it
-// Drifts        Φ and Φ̇ stay bounded, at a level set by α, β and the step; energy is not conserved
-//               by the correction
-// Gains         α = β = 1/T unless given, critically damped, T the mechanism's own time scale
-//               (default_leak's): larger gains make an explicit method stiff, smaller ones let the
-//               loops open
+// Multipliers   λ, a force, the correction included
+// Drifts        Φ and Φ̇ stay bounded, at a level set by α, β and the step; the correction
+//               does not conserve energy
+// Gains         α = β = 1/T unless given, which is critical damping, with T the time scale of the
+//               mechanism (1/default_leak): larger gains make the problem stiff for an explicit
+//               method, smaller ones let the loops open
 // Source        Baumgarte, Comput. Methods Appl. Mech. Eng. 1 (1972).
 
 #include <momenta/dae/form/acceleration_form.h>

@@ -1,6 +1,7 @@
 #pragma once
-// q ∘ exp δ: where constant rates δ lead in a unit of time. Exact where q' = u; for quaternions one
-// step of the classical Runge-Kutta method, of fourth order in δ, and unit length.
+// q ∘ exp δ: the coordinates that constant rates δ reach from q in a unit of time. Exact where q' =
+// u; for quaternions one step of the classical Runge-Kutta method, fourth order in δ, normalised to
+// unit length.
 
 #include <momenta/dae/mechanism.h>
 

@@ -1,7 +1,7 @@
 #pragma once
-// A form: one way to write the equations of motion of a mechanism for an integrator. This is what
-// all forms share: options, the start they take, and how a state of theirs is read back as q, u and
-// impulses for the measures.
+// A form: one way to write the equations of motion of a mechanism for an integrator. Here is what
+// all forms share: their options, the start they take, and how their state is read back as q, u and
+// multipliers for the measures.
 
 #include <momenta/dae/mechanism.h>
 #include <momenta/dae/solver/system.h>
@@ -14,30 +14,31 @@
 
 namespace momenta {
 
-/// What is done about the free part of σ. (p, σ) → (p + Φ_qᵀc, σ + c) leaves q(t) unchanged for
-/// constant c, so σ may be kept small at will; left alone it grows like t under a mean load, and
-/// the local error with it.
+/// The gauge: the rule that chooses the free part of σ. (p, σ) → (p + Φ_qᵀc, σ + c) leaves q(t)
+/// unchanged for constant c, so a gauge can keep σ small. Without one, σ grows like t under a mean
+/// load, and the local error grows with it.
 struct Gauge {
-  /// When, and how much of it goes.
+  /// The rules.
   enum class Kind {
     none,   ///< nothing is done
     leak,   ///< σ decays at the rate κ all the time
     reset,  ///< σ = 0 after each step
     flip    ///< σ → −σ after each step
   };
-  Kind kind = Kind::none;  ///< which
+  Kind kind = Kind::none;  ///< the rule
   /// Leak [1/s]: ṗ −= κ Φ_qᵀσ, λ = σ̇ + κσ; 0: chosen from the start (see default_leak).
   double kappa = 0;
-  /// As parse_gauge reads it.
+  /// The text that parse_gauge reads.
   std::string text() const;
 };
-/// "none", "leak", "leak:3", "reset", "flip". @throws std::invalid_argument with a sentence
+/// Reads "none", "leak", "leak:3", "reset", "flip". @throws std::invalid_argument with one
+/// sentence.
 Gauge parse_gauge(const std::string& text);
 
-/// What a form may be told.
+/// Options of a form.
 struct FormOptions {
   Gauge gauge;  ///< of momentum forms
-  /// One mass-metric position correction after accepted steps (one-step methods).
+  /// One position correction in the mass metric after each accepted step (one-step methods).
   bool project = false;
   double baumgarte_alpha = 0;  ///< [1/s]; 0: chosen by the form
   double baumgarte_beta = 0;   ///< [1/s]
@@ -45,19 +46,19 @@ struct FormOptions {
   double penalty = 0;  ///< augmented Lagrangians: α in effective masses of the loops; 0: 1e7
 };
 
-/// A consistent start: Φ(q, t) = 0, Φ_q u + Φ_t = 0; of redundant equations whose numbers
-/// contradict each other in the least-squares sense.
+/// A consistent start: Φ(q, t) = 0, Φ_q u + Φ_t = 0. Redundant equations whose numbers contradict
+/// each other are met in the least-squares sense.
 struct Start {
   double t = 0;             ///< [s]
   Eigen::VectorXd q;        ///< nq
   Eigen::VectorXd u;        ///< nv
   Eigen::VectorXd udot;     ///< accelerations there: nv
   Eigen::VectorXd lambda;   ///< force multipliers there: m
-  Eigen::VectorXd residue;  ///< Φ that is left by contradictions (m); empty: none
+  Eigen::VectorXd residue;  ///< Φ that contradictions leave (m); empty: none
 };
 
-/// q, u and the impulse (σ of momentum forms) or force (λ) multipliers read back from a form's
-/// state.
+/// q, u and the multipliers, read back from the state of a form: the impulse multipliers σ of
+/// momentum forms, the force multipliers λ of the others.
 struct Snapshot {
   Eigen::VectorXd q;            ///< nq
   Eigen::VectorXd u;            ///< nv
@@ -68,61 +69,63 @@ struct Snapshot {
 class Form {
  public:
   virtual ~Form() = default;
-  virtual const std::string& name() const = 0;  ///< as form_names() has it
-  virtual bool momentum_like() const = 0;       ///< multipliers are σ
-  virtual bool is_dae() const = 0;              ///< dae() is there, else ode()
+  virtual const std::string& name() const = 0;  ///< as in form_names()
+  virtual bool momentum_like() const = 0;       ///< whether the multipliers are σ
+  virtual bool is_dae() const = 0;              ///< whether it has dae(); else it has ode()
   /// The state the form starts from.
   virtual std::vector<double> initial(const Start& start) = 0;
-  /// Reads a state back. Momentum forms recompute u from (7), so Φ̇ of theirs is that of an
-  /// algebraic solve.
+  /// Reads a state back. Momentum forms recompute u from (7), so their Φ̇ is that of an algebraic
+  /// solve.
   virtual bool read(double t, const double* y, const double* ydot, Snapshot& out) = 0;
-  /// q alone (nq): what Φ is evaluated at between steps, before any correction.
+  /// Reads q alone (nq), at which Φ is evaluated between steps, before any correction.
   virtual bool read_coordinates(double /*t*/, const double* y, Eigen::VectorXd& q) {
     std::copy_n(y, q.size(), q.begin());
     return true;
   }
-  /// How often coordinates were chosen, the first time included; zero for forms that choose none.
+  /// How often the form chose its independent coordinates, the first time included; zero for forms
+  /// that choose none.
   virtual long partitions() const { return 0; }
   /// The gauge in force, with its κ.
   virtual Gauge gauge() const { return {}; }
-  /// α, β of Φ̈ + 2αΦ̇ + β²Φ = 0 [1/s]; zero for forms without feedback.
+  /// The gains α, β of Φ̈ + 2αΦ̇ + β²Φ = 0 [1/s]; zero for forms without feedback.
   virtual std::pair<double, double> baumgarte_gains() const { return {0, 0}; }
-  /// β of Φ̇ = −βΦ in force [1/s]; zero for forms that do not take it.
+  /// The β in force of Φ̇ = −βΦ [1/s]; zero for forms that do not take it.
   virtual double beta() const { return 0; }
   /// The penalty in force, in effective masses of the loops; zero for forms without one.
   virtual double penalty() const { return 0; }
-  /// What an ODE method integrates, owned by the form; null for DAE forms.
+  /// The system that an ODE method integrates, owned by the form; null for DAE forms.
   virtual OdeSystem* ode() { return nullptr; }
-  /// What a DAE method integrates, owned by the form; null for ODE forms.
+  /// The system that a DAE method integrates, owned by the form; null for ODE forms.
   virtual DaeSystem* dae() { return nullptr; }
 };
 
-/// Names, in the order tables list them.
+/// The names of all forms, in the order of the tables.
 const std::vector<std::string>& form_names();
-/// Whether the named form has impulses σ, and so a gauge. @throws std::invalid_argument for an
-/// unknown name.
+/// Whether the named form has impulse multipliers σ, and so takes a gauge. @throws
+/// std::invalid_argument for an unknown name.
 bool takes_gauge(const std::string& name);
-/// Whether the named form alters its state after each step, so that only one-step methods take it.
-/// @throws std::invalid_argument for an unknown name.
+/// Whether the named form alters its state after each step, so that only one-step methods can
+/// integrate it. @throws std::invalid_argument for an unknown name.
 bool needs_one_step_method(const std::string& name);
-/// Whether the named form has Φ = 0 among its equations, or meets it after each step by its nature.
-/// @throws std::invalid_argument for an unknown name.
+/// Whether the named form has Φ = 0 among its equations, or meets it after each step by
+/// construction. @throws std::invalid_argument for an unknown name.
 bool holds_positions(const std::string& name);
 /// Whether the named form is integrated as a DAE by IDA. @throws std::invalid_argument for an
 /// unknown name.
 bool is_dae_form(const std::string& name);
-/// @throws std::invalid_argument with a sentence for an unknown name or an option the form does not
-/// take.
+/// Makes the named form. @throws std::invalid_argument with one sentence for an unknown name or an
+/// option that the form does not take.
 std::unique_ptr<Form> make_form(const std::string& name, const Mechanism& mechanism,
                                 const FormOptions& options, const Start& start);
 
-/// How large each momentum is (nv) at the configuration placed in `e`: its own inertia M_ii times a
-/// rate of 1 rad/s or 1 m/s. A joint that moves nothing heavy, a massless coupler's, has loops'
-/// impulses alone for a momentum, and they are as large as those of others: then the largest M_ii.
+/// The typical size of each momentum (nv) at the configuration placed in `e`: M_ii times a rate of
+/// 1 rad/s or 1 m/s. The momentum of a joint that moves no mass, such as that of a massless
+/// coupler, consists of loop impulses alone, which are as large as those of other joints; there the
+/// size is that of the largest M_ii.
 void momentum_scales(Evaluation<double>& e, int nv, double* scale);
 
-/// A leak rate that fits the mechanism: the root of the largest acceleration the loops cause at the
-/// start, [1/s]. The optimum is flat over a decade on either side.
+/// A leak rate that fits the mechanism [1/s]: the square root of the largest acceleration that the
+/// loops cause at the start. The optimum is flat over a decade on either side.
 double default_leak(const Mechanism& mechanism, const Start& start);
 
 }  // namespace momenta

@@ -1,7 +1,8 @@
 #pragma once
-// What the two forms of index 2 share as half-explicit systems: evaluations and solvers, taken when
-// first asked for. z of a stage from the hidden constraint is the one of the ODE form's right-hand
-// side; z that leads onto the constraint at the next stage is solved for by SplitKkt.
+// What the two forms of index 2 share as half-explicit systems: evaluations and solvers, made at
+// their first use. The multipliers z of a stage that satisfy the hidden constraint are those of the
+// right-hand side of the ODE form; SplitKkt solves for the z that lead onto the constraint at the
+// next stage.
 
 #include <momenta/dae/kkt/loop_solver.h>
 #include <momenta/dae/kkt/split_kkt.h>

@@ -1,6 +1,6 @@
 #pragma once
-// The parts of a mechanism's Hamiltonian, dense, for RATTLE: a mixin of the form `momentum`. Takes
-// no memory before it is asked.
+// The parts of the Hamiltonian of a mechanism, dense, for RATTLE: a base class of the form
+// `momentum`. It takes no memory before its first use.
 
 #include <momenta/dae/form/coordinate_motion.h>
 #include <momenta/dae/solver/constrained_hamiltonian.h>

@@ -1,5 +1,6 @@
-// Newton matrices of the DAE forms and their patterns: dense for few unknowns, columns that share
-// no row along one direction, and for many unknowns a local matrix in the place of J.
+// Newton matrices of the DAE forms and their patterns: up to dense_limit unknowns a dense J; up to
+// local_limit a sparse J, whose columns without a common row share one direction of the dual
+// numbers; above it a local matrix in place of J.
 
 #include <momenta/dae/form/dae_form.h>
 

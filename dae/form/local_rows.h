@@ -4,8 +4,8 @@
 //   ( A  B ) ( dy )   ( dr )
 //   ( C  T ) ( dz ) = (  0 ),     ∂r/∂y = A − B T⁻¹ C,
 //
-// and the pattern of ∂r/∂y itself, which follows from it: row i has an entry for every y that a
-// way through rows of z leads to.
+// and the pattern of ∂r/∂y itself, which follows from it: row i has an entry for every y that it
+// reaches, directly or through rows of z.
 
 #include <momenta/core/scalar/local_dual.h>
 #include <momenta/dae/solver/system.h>

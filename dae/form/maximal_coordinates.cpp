@@ -1,24 +1,22 @@
 // maximal-coordinates
 //
 // Unknowns      q, u
-// Equations     for every body a 6- (3-) vector of acceleration A_k, for every joint the reactions
-// y_k
-//               in the directions S_k it holds, for every loop λ:
-//                 M_k A_k + S_kᵀ y_k − Σ 𝒯ᶠ S_cᵀ y_c + J_kᵀ λ = T_k − Ω_k × M_k Ω_k + joints'
-//                 forces S_k (A_k − 𝒯ⱽ A_parent − c_k) = 0,   Σ J_k A_k + … = Φ̈ = −2α Φ̇ − β² Φ
+// Equations     for every body the acceleration A_k, 6 (planar 3) components; for every joint the
+//               reactions y_k in the directions S_k that it constrains; for every loop λ:
+//                 M_k A_k + S_kᵀ y_k − Σ 𝒯ᶠ S_cᵀ y_c + J_kᵀ λ = T_k − Ω_k × M_k Ω_k + joint forces,
+//                 S_k (A_k − 𝒯ⱽ A_parent − c_k) = 0,   Σ J_k A_k + … = Φ̈ = −2α Φ̇ − β² Φ
 //               with q̇ = u, u̇ from A_k − 𝒯ⱽ A_parent − c_k = E u̇
 // Index         an ODE
-// Hidden        Φ(q, t) = 0 and Φ_q u + Φ_t = 0; those of the joints hold by the choice of q
-// Multipliers   λ, a force, with the correction in it; reactions y_k of the joints beside, not kept
-// Drifts        as `baumgarte`, whose motion it is to rounding: Φ and Φ̇ bounded
-// Solution      block LDLᵀ ordered along the tree, nothing fills in: O(bodies) for a tree. Loops
-// are
-//               the source's auxiliary constraints: m solutions along their ways to the ground and
-//               one matrix m × m
-// Left out      body coordinates as the state. It is q, u here, taken to and from velocities and
-//               accelerations of bodies at each evaluation without loss: joints can't open, need no
-//               feedback, and errors compare with those of other forms. Six coordinates a body
-//               would drift at every joint as λ's loops do.
+// Hidden        Φ(q, t) = 0 and Φ_q u + Φ_t = 0; the constraints of joints hold by the choice of q
+// Multipliers   λ, a force, the correction included; the reactions y_k of the joints are not kept
+// Drifts        as `baumgarte`, with the same motion to rounding: Φ and Φ̇ bounded
+// Solution      block LDLᵀ ordered along the tree, without fill-in: O(bodies) for a tree. Loops are
+//               the auxiliary constraints of the source: m solutions along their paths to the
+//               ground, and one m × m matrix
+// Left out      body coordinates as the state. The state is q, u here; each evaluation converts it
+//               to velocities and accelerations of bodies and back without loss. So joints cannot
+//               open and need no feedback, and errors can be compared with other forms. With six
+//               coordinates per body every joint would drift as the loops of λ do.
 // Gains         as in `baumgarte`
 // Source        Baraff, Linear-time dynamics using Lagrange multipliers, SIGGRAPH 1996.
 

@@ -8,15 +8,15 @@
 // Hidden        Φ(q, t) = 0
 // Multipliers   σ, an impulse; the constraint force is λ = σ̇ + κ σ
 // Drifts        Φ like t, because Φ̇ = 0 holds to rounding at every evaluation and only its integral
-//               errs. Without a gauge σ grows like t under a mean load, the local error with it,
-//               and Φ like t².
+//               has an error. Without a gauge σ grows like t under a mean load, the local error
+//               grows with it, and Φ grows like t².
 // Gauge         none; leak κ; reset (p ← M u, σ ← 0 after each step: exact, since the gauge is a
-//               symmetry); flip (p −= 2 Φ_qᵀσ, σ ← −σ after each step: σ swings about zero. An
-//               involution R that commutes with reversal of time: a symmetric method stays
-//               reversible, which reset, a projection, spoils. Both keep dq∧dp on Φ_q dq = 0.)
-// Stabilised    with β the second row is Φ_q u = −Φ_t − βΦ: Φ decays like e^(−βt) between errors
-//               and stays level, Φ̇ = −βΦ. The motion is that of (7), (8) where Φ = 0; off it u has
-//               a part of the size βΦ that no force made.
+//               symmetry); flip (p −= 2 Φ_qᵀσ, σ ← −σ after each step: σ oscillates about zero.
+//               Flip is an involution that commutes with time reversal, so a symmetric method stays
+//               reversible; with reset, a projection, it does not. Both keep dq∧dp on Φ_q dq = 0.)
+// Stabilised    with β the second row is Φ_q u = −Φ_t − βΦ, so Φ̇ = −βΦ: errors of Φ decay like
+//               e^(−βt), and Φ stays bounded. The motion is that of (7), (8) where Φ = 0;
+//               elsewhere u has a part of the size βΦ that comes from no force.
 // Without loops there is no σ: (q, p) → (q̇, ṗ) is the recursion (35)-(48), momentum_recursion.h.
 // Source        Naudet, Lefeber, Terze, eqs. (6)-(8); Bayo, Avello, Nonlinear Dynamics 5 (1994).
 

@@ -1,6 +1,7 @@
 #pragma once
-// What the ODE forms in q, p share: (7) solved once or, in a softened solver, repeated around the
-// multiplier just found; (8); gauge and correction of positions after steps.
+// What the ODE forms in q, p share: (7), (8), and the gauge and the correction of positions after
+// steps. (7) is solved once or, with a softened solver, repeatedly, each time around the
+// multipliers just found.
 
 #include <momenta/dae/form/ode_form.h>
 

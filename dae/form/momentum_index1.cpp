@@ -3,10 +3,10 @@
 // Unknowns      q, p; σ
 // Equations     M u + Φ_qᵀσ = p with u the rates of q̇ (7), ṗ = L_q + Q + Φ̇_qᵀσ − κ Φ_qᵀσ (8),
 //               Φ̇ = 0, or with β Φ̇ = −βΦ
-// Index         1: differentiating nothing, σ and q̇ follow from (7) at once
+// Index         1: σ and q̇ follow from (7) without differentiation
 // Hidden        Φ(q, t) = 0
 // Multipliers   σ, an impulse; λ = σ̇ + κ σ
-// Drifts        Φ like t, with β level; Φ̇ at rounding, with β −βΦ
+// Drifts        Φ like t, with β bounded; Φ̇ at rounding, with β equal to −βΦ
 // Source        paper, eqs. (6)-(8)
 
 #include <momenta/dae/form/dae_form.h>

@@ -2,11 +2,11 @@
 //
 // Unknowns      q, p; σ
 // Equations     M u + Φ_qᵀσ = p with u the rates of q̇ (first row of 7), (8), Φ(q, t) = 0
-// Index         2: Φ = 0 once differentiated gives σ. It is σ that lowers the index: (5a)-(5c) with
-//               λ has index 3
+// Index         2: Φ = 0, differentiated once, gives σ. With λ in place of σ, as in (5a)-(5c), the
+//               index is 3
 // Hidden        Φ_q u + Φ_t = 0
-// Multipliers   σ, an impulse; λ = σ̇ + κ σ. Its noise, rounding over step, enters ṗ through κ: keep
-//               κ near 1/T
+// Multipliers   σ, an impulse; λ = σ̇ + κ σ. The noise of σ, rounding over step, enters ṗ through κ:
+//               keep κ near 1/T
 // Drifts        Φ at the Newton tolerance; Φ̇ at rounding once u is recomputed from (7)
 // Source        paper, eqs. (6)-(8), with the constraint at position level
 

@@ -3,12 +3,12 @@
 // Unknowns      q, p; λ
 // Equations     (5a)-(5c): M u = p with u the rates of q̇,  ṗ = L_q + Q − Φ_qᵀλ,  Φ(q, t) = 0.
 //               Here p = ∂L/∂u (4), without Φ_qᵀσ; −∂H/∂q of (5b) is L_q at u.
-// Index         3: Φ, then Φ̇ = Φ_q M⁻¹p + Φ_t, then λ. The paper gives it 2, which holds with σ in
-//               place of λ: `momentum-index2`.
+// Index         3: Φ gives Φ̇ = Φ_q M⁻¹p + Φ_t, and that gives λ. The paper states index 2, which is
+//               true with σ in place of λ: `momentum-index2`.
 // Hidden        Φ̇ = 0 and Φ̈ = 0
 // Multipliers   λ, a force
 // Drifts        Φ at the Newton tolerance; Φ̇ at the local error of p, one power of the step worse.
-//               u is read from M u = p: nothing brings it back to Φ̇ = 0.
+//               u comes from M u = p: nothing corrects it to Φ̇ = 0.
 // Source        paper, eqs. (5a)-(5c); Brenan, Campbell, Petzold, Numerical Solution of
 //               Initial-Value Problems in DAEs
 

@@ -2,12 +2,12 @@
 //
 // Unknowns      q, p; v, σ, μ
 // Equations     q̇ = v − Φ_qᵀμ,  M v + Φ_qᵀσ = p,  ṗ as (8) at v,  Φ_q v + Φ_t = 0,  Φ = 0
-// Index         2; both levels of the constraint stand in the equations
+// Index         2; the equations contain both levels of the constraint
 // Hidden        none at position or velocity level
-// Multipliers   σ, an impulse; μ, the position correction per time, zero in exact arithmetic
+// Multipliers   σ, an impulse; μ, the position correction per unit time, zero in exact arithmetic
 // Drifts        nothing: Φ and Φ̇ at the Newton tolerance
 // Source        (7)-(8) with the extra multiplier of Gear, Gupta, Leimkuhler, J. Comput. Appl.
-// Math. 12 (1985)
+//               Math. 12 (1985)
 
 #include <momenta/dae/form/dae_form.h>
 

@@ -1,6 +1,6 @@
 #pragma once
-// What the ODE forms share: state y = (q, x) with x = p or u, the loops' linear system, position
-// correction.
+// What the ODE forms share: the state y = (q, x) with x = p or u, the linear system of the loops,
+// the position correction.
 
 #include <momenta/dae/form/form.h>
 #include <momenta/dae/kkt/loop_solver.h>

@@ -1,25 +1,25 @@
 // partitioned
 //
-// Unknowns      independent q_i, u_i: as many as the mechanism has degrees of freedom, twice
+// Unknowns      independent q_i, u_i: as many of each as the mechanism has degrees of freedom
 // Equations     q̇_i = u_i and u̇_i of (3), at the whole state that belongs to them:
 //                 Φ(q_i, q_d, t) = 0 for q_d,  Φ_d u_d = −Φ_t − Φ_i u_i for u_d,
-//               Φ_d a square block of Φ_q with as many rows and columns as its rank. Balls: q_i and
-//               u_i are chosen apart, q_i among the components of quaternions too, whose lengths
-//               are further equations.
-// Index         an ODE of the least size
+//               Φ_d is a square block of Φ_q, of the size of its rank. With spherical and free
+//               joints q_i and u_i are chosen separately; q_i may be components of quaternions,
+//               whose unit lengths are further equations.
+// Index         an ODE, of the smallest possible size
 // Hidden        none: Φ = 0 and Φ̇ = 0 at every evaluation
 // Multipliers   λ, a force
 // Drifts        nothing: Φ at the Newton tolerance, Φ̇ at rounding
-// Partition     by LU with full pivoting of Φ_q, columns weighed by their inertia. After each step
-//               |∂q_d/∂q_i|, |∂u_d/∂u_i|, weighed likewise, are looked at; where one has passed 1.5
-//               (or 1.5 times what the best choice had) the partition is chosen anew and the state
-//               loaded from the same q, u. Only methods without memory can take that. Later choices
-//               cost accuracy: errors of q_i come back magnified, and grow steeply near dead
-//               points.
-// Newton        starts at the state of the step's start with the block factorised there, whose
-//               first correction is the tangent; a step is too long where the next one is not small
-//               or corrections do not shrink, and a method with step control tries a shorter one.
-// Fails         where no block is regular: singular poses, which partitions cannot pass
+// Partition     by LU with full pivoting of Φ_q, columns weighed by their inertia. Each step ends
+//               with a check of |∂q_d/∂q_i| and |∂u_d/∂u_i|, weighed likewise: where one is above
+//               1.5 (or 1.5 times its value at the best choice) the partition is chosen anew, with
+//               the same q, u. Only one-step methods allow that. A later choice costs accuracy:
+//               q_d magnifies the errors of q_i, steeply so near dead points.
+// Newton        begins at the state of the start of the step, with the block factorised there, so
+//               that the first correction is the tangent. The step is too long where the second
+//               correction is not small or the corrections do not shrink; a method with step
+//               control then tries a shorter step.
+// Fails         where no block is regular: a partition cannot pass a singular pose
 // Source        Wehage, Haug, J. Mech. Design 104 (1982); Nikravesh, Computer-Aided Analysis of
 //               Mechanical Systems (1988), with Euler parameters.
 

@@ -2,17 +2,17 @@
 //
 // Unknowns      q, u
 // Equations     (3) as in `acceleration`; after each step, and wherever a state is read,
-//                 q ← q + δ,  M δ + Φ_qᵀν = 0,  Φ_q δ = −Φ        repeated while the steps count
+//                 q ← q + δ,  M δ + Φ_qᵀν = 0,  Φ_q δ = −Φ        repeated: see Iteration
 //                 u ← v,      M v + Φ_qᵀν = M u,  Φ_q v = −Φ_t     linear: once
-//               the nearest states on the manifold in the mass metric
+//               These are the nearest states on the manifold in the mass metric.
 // Index         an ODE on the manifold Φ = 0, Φ̇ = 0
-// Hidden        none after a step; inside a step both, for its length
+// Hidden        none after a step; Φ = 0 and Φ̇ = 0 during a step
 // Multipliers   λ, a force
 // Drifts        nothing: Φ and Φ̇ at rounding after each step. The order of the method is kept: a
 //               correction is as large as the local error.
-// Iteration     Newton's error after a correction δ is of the order δ²: corrections below 1e-8 rad
-//               or m are the last, larger ones are repeated as long as each is less than half the
-//               one before. At a singular pose they stop being so, and the state stays where it is.
+// Iteration     Newton's error after a correction δ is of the order δ²: a correction below 1e-8
+//               rad or m is the last; a larger one is repeated as long as each is less than half
+//               the one before. At a singular pose this fails, and the state is not changed.
 // Source        Eich, SIAM J. Numer. Anal. 30 (1993), projection until consistent; Blajer,
 //               Multibody System Dynamics 7 (2002), and Terze, Lefeber, Muftić, Multibody System
 //               Dynamics 6 (2001), the mass metric.

@@ -4,7 +4,7 @@
 // Equations     q̇ = v − Φ_qᵀμ,  (1a) at v,  Φ_q v + Φ_t = 0,  Φ = 0
 // Index         2
 // Hidden        Φ̈ = 0
-// Multipliers   λ, a force; μ, the position correction per time, zero in exact arithmetic
+// Multipliers   λ, a force; μ, the position correction per unit time, zero in exact arithmetic
 // Drifts        nothing: Φ and Φ̇ at the Newton tolerance
 // Source        Gear, Gupta, Leimkuhler, J. Comput. Appl. Math. 12 (1985)
 

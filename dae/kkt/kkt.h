@@ -1,12 +1,12 @@
 #pragma once
-// The system of (7), and with other right-hand sides of (3) and of every projection:
+// The linear system of (7). With other right-hand sides it is that of (3) and of every projection:
 //
 //   ( M    Φ_qᵀ ) ( u )   ( r )
 //   ( Φ_q  0    ) ( σ ) = ( g )
 //
-// Redundant loop equations and singular poses make Φ_q lose rank; u stays well defined, σ does not.
-// Weak directions of σ are therefore faded out, towards `centre` (the σ of the step's start): see
-// dense_kkt.cpp, dae/factor/filtered_factor.h, and klu_solver.h.
+// Where loop equations are redundant or the pose is singular, Φ_q loses rank: u stays well defined,
+// σ does not. Weak directions of σ therefore fade towards `centre` (σ at the start of the step):
+// see dense_kkt.cpp, dae/factor/filtered_factor.h, and klu_solver.h.
 
 #include <momenta/dae/factor/faded_pivot.h>
 #include <momenta/dae/mechanism.h>
@@ -16,7 +16,7 @@
 
 namespace momenta {
 
-/// A factorised matrix of (7), with its workspace: one object a thread.
+/// A factorised matrix of (7), with its workspace: one object per thread.
 class Kkt {
  public:
   virtual ~Kkt() = default;
@@ -25,23 +25,23 @@ class Kkt {
   /// definite, or when an entry is not finite. Cost: dense O((nv + m)³); sparse O(fill) on a
   /// pattern analysed once.
   virtual bool factor(Evaluation<double>& e, double t, const double* q, double fade) = 0;
-  /// For the factorisations from now on: −compliance (m) in place of the zero block, Φ_q u −
-  /// compliance (σ − centre) = g, and no row fades. Null: as before.
+  /// From the next factorisation on, −compliance (m) is in place of the zero block, Φ_q u −
+  /// compliance (σ − centre) = g, and no row fades. Null: the zero block again.
   void soften(const double* compliance) { compliance_ = compliance; }
   /// Solves for u (nv) and σ (m); r (nv), g (m), centre (m, null: zero). False when the result is
   /// not finite.
   virtual bool solve(const double* r, const double* g, const double* centre, double* u,
                      double* sigma) = 0;
 
-  /// Rows of Φ whose pivots faded at the last factor(): redundant or singular here. KLU can't tell,
-  /// and lists none.
+  /// Rows of Φ whose pivots faded at the last factor(): redundant or singular at this pose. KLU
+  /// cannot tell them, and lists none.
   const std::vector<int>& faded_rows() const { return faded_rows_; }
-  /// How many those are.
+  /// The number of faded rows.
   int faded() const { return static_cast<int>(faded_rows_.size()); }
-  /// Of the last factor(): the least pivot of a row of Φ that has not faded, relative to its
-  /// group's scale; 1 where none is known.
+  /// The least pivot at the last factor() of a row of Φ that has not faded, relative to the scale
+  /// of its group; 1 where none is known.
   double weakest() const { return weakest_; }
-  /// Calls of factor() so far.
+  /// Number of calls of factor() so far.
   long factorizations() const { return factorizations_; }
   /// Place in u of the joint at which the last factor() failed, or −1: something is not finite.
   int singular_joint() const { return singular_joint_; }
@@ -54,16 +54,18 @@ class Kkt {
   int singular_joint_ = -1;             ///< singular_joint()
 };
 
-/// Dense or sparse by size, or as the mechanism's options say; sparse by the equations of the
-/// bodies where the tree is deep, else by KLU where joints have no inertia before their loops
-/// close. Needs loops (m > 0).
+/// A solver of (7): dense or sparse by size, or as the options of the mechanism say. A sparse one
+/// takes the equations of the bodies where the tree is deep, else KLU where joints have no inertia
+/// before their loops close. Needs loops (m > 0).
 std::unique_ptr<Kkt> make_kkt(const Mechanism& mechanism);
-/// Whether the matrix of make_kkt() has a pivot for each row of Φ, to fade and to be told: KLU has
-/// none.
+/// Whether the matrix of make_kkt() has a pivot for each row of Φ, which can fade and be reported:
+/// KLU has none.
 bool filters_pivots(const Mechanism& mechanism);
-/// For small systems: u eliminated along the tree, then Φ_q M⁻¹ Φ_qᵀ, dense; O((nv + m)³).
+/// For small systems: eliminates u along the tree, then factorises Φ_q M⁻¹ Φ_qᵀ, dense; O((nv +
+/// m)³).
 std::unique_ptr<Kkt> make_dense_kkt(const Mechanism& mechanism);
-/// For large ones: L D Lᵀ of the matrix of the joints' equations, pivots of σ filtered; O(fill).
+/// For large systems: L D Lᵀ of the matrix of the joints' equations, with the pivots of σ filtered;
+/// O(fill).
 std::unique_ptr<Kkt> make_sparse_kkt(const Mechanism& mechanism);
 /// Where joints have no inertia before their loops close: LU of that matrix; no pivot fades.
 std::unique_ptr<Kkt> make_klu_kkt(const Mechanism& mechanism);

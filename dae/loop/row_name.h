@@ -6,13 +6,13 @@
 
 namespace momenta {
 
-/// One row of Φ by name: what a rank report or a failure message calls it.
+/// The name of one row of Φ, for rank reports and messages.
 struct RowName {
   std::string loop;  ///< of the scene
   std::string what;  ///< "point along axis 1", "axis 3 against axis 1", "distance, driven"
 };
 
-/// Of all rows of a scene's loops, in their order.
+/// The names of all rows of a scene's loops, in the order of Φ.
 std::vector<RowName> row_names(const Scene& scene, bool planar);
 
 }  // namespace momenta

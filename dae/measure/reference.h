@@ -14,7 +14,8 @@ class Reference {
   Reference() = default;
   /// Reads the file. @throws SceneError: file, line, what was found, what was expected.
   explicit Reference(const std::filesystem::path& file);
-  /// Values by time, by column (without t), of a solution from elsewhere: `source` names it.
+  /// A solution that is not from a file: values by time and by column (without t); `source` names
+  /// it.
   Reference(std::string source, std::vector<std::string> columns, std::vector<double> times,
             std::vector<std::vector<double>> values)
       : file_(std::move(source)),
@@ -22,9 +23,9 @@ class Reference {
         columns_(std::move(columns)),
         values_(std::move(values)) {}
 
-  const std::string& file() const { return file_; }            ///< or where else it is from
+  const std::string& file() const { return file_; }            ///< the file, or another source
   const std::vector<double>& times() const { return times_; }  ///< ascending [s]
-  /// Without t, "name [unit]".
+  /// Names of the columns without t, "name [unit]".
   const std::vector<std::string>& columns() const { return columns_; }
   const std::vector<std::vector<double>>& values() const { return values_; }  ///< by time, column
 
@@ -32,15 +33,15 @@ class Reference {
   /// column that the trajectory does not have.
   void bind(const std::vector<std::string>& trajectory_columns);
 
-  /// As a file: what the constructor reads, numbers to the last digit.
+  /// The text of the CSV file that the constructor reads, with all digits of each number.
   std::string csv() const;
 
-  /// How far a row is from the reference.
+  /// The error of a row against the reference.
   struct Error {
     double position = 0;  ///< max |value − ref| / (1 + |ref|) over columns in rad and m
     double velocity = 0;  ///< the same over columns in rad/s and m/s
   };
-  /// Error of a trajectory row at reference time number `row`. After bind().
+  /// The error of a trajectory row at the reference time of index `row`. After bind().
   Error error(std::size_t row, const std::vector<double>& trajectory_row) const;
 
  private:

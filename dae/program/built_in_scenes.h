@@ -1,5 +1,5 @@
 #pragma once
-// Scenes of examples/ as bytes of the program: what `momenta stress` climbs when no scene is given.
+// Scenes of examples/ compiled into the program: `momenta stress` runs them when no scene is given.
 
 #include <string_view>
 

@@ -1,5 +1,5 @@
-// Completion scripts of bash, zsh and fish. Each is a table of what follows which word, made from
-// the options themselves; the shells do the rest.
+// Completion scripts for bash, zsh and fish. Each is a table of the words that can follow a word,
+// made from the options themselves; the shells do the rest.
 
 #include <algorithm>
 #include <map>

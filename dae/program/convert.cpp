@@ -1,4 +1,4 @@
-// Any scene as TOML, as it is or cut anew.
+// The verb `convert`: writes any scene as TOML, as it is or with other joints cut.
 
 #include <momenta/core/scene/toml/write_scene.h>
 #include <momenta/dae/cut/recut.h>

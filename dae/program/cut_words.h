@@ -1,5 +1,5 @@
 #pragma once
-// How much another choice of cuts would save, in words.
+// How much another choice of cut joints would save, in words.
 
 #include <momenta/dae/cut/recut.h>
 

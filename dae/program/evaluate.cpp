@@ -1,4 +1,4 @@
-// Everything at one state.
+// The verb `evaluate`: all values at one state.
 
 #include <momenta/dae/report/state_report.h>
 #include <momenta/dae/study/state_input.h>

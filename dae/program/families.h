@@ -1,6 +1,6 @@
 #pragma once
-// The families that `momenta make` prints. The same family, n and plane give the same text
-// everywhere.
+// The families of scenes that `momenta make` prints. The same family, n and plane give the same
+// text on every machine.
 
 #include <span>
 

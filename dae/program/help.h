@@ -1,6 +1,6 @@
 #pragma once
-// Help on a screen of 80 columns, the man page and completions: all three made from the options
-// themselves, so that they cannot differ from what the program takes.
+// Help for a screen of 80 columns, the man page and the completions. All three are made from the
+// options themselves, so that they cannot differ from what the program accepts.
 
 #include <CLI/CLI.hpp>
 #include <string>

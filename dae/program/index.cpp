@@ -1,4 +1,4 @@
-// The index of each form, by numbers.
+// The verb `index`: the differentiation index of each form, found numerically.
 
 #include <momenta/dae/report/index_report.h>
 #include <momenta/dae/study/state_input.h>

@@ -1,6 +1,6 @@
 #pragma once
-// A run that goes on after it was killed: while it is at work DIR/checkpoint.json has a checkpoint,
-// replaced whole now and then, and how much of the trajectory belongs to it.
+// A run that can continue after it was killed. While it runs, DIR/checkpoint.json has a checkpoint
+// and the length of the trajectory up to it; the file is replaced as a whole from time to time.
 
 #include <momenta/dae/study/journal.h>
 #include <momenta/dae/study/run_form.h>

@@ -1,4 +1,4 @@
-// The program: one verb a file.
+// The program `momenta`: one file per verb.
 
 #include <momenta/core/kernel/levels/level.h>
 #include <momenta/core/scene/scene.h>

@@ -1,4 +1,4 @@
-// Families of scenes, printed as TOML: which there are.
+// The verb `make`: the list of the families of scenes, which are printed as TOML.
 
 #include <algorithm>
 #include <array>

@@ -1,8 +1,9 @@
-// A floating person of 75 kg and 1.75 m on 30 hinges: 6 a leg, 7 an arm, 3 in the torso, 1 in the
-// neck. x forward, y left, z up. Masses and lengths are fractions of the whole as in D. Winter,
+// A floating person of 75 kg and 1.75 m with 30 hinges: 6 per leg, 7 per arm, 3 in the torso, 1 in
+// the neck. x forward, y left, z up. Masses and lengths are fractions of the whole as in D. Winter,
 // Biomechanics and Motor Control of Human Movement, table 4.1 and figure 4.1; moments of inertia
-// are those of the shapes. Hinges at one place are held apart by small balls, a share of the mass
-// of the segment they carry, so that no body is massless. Springs and dampers hold the pose.
+// are those of the shapes. Between hinges at one place there are small balls, which take a share of
+// the mass of the segment that the hinges carry, so that no body is massless. Springs and dampers
+// hold the pose.
 
 #include "families.h"
 #include "scene_text.h"

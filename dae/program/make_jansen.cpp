@@ -1,5 +1,5 @@
-// Jansen's walking linkage: legs on one crank, evenly out of step. Published proportions, in units
-// of 10 mm; every bar 1 kg/m, triangles of three bars.
+// Jansen's walking linkage: legs on one crank, at equal differences of phase. Published
+// proportions, in units of 10 mm; every bar has 1 kg/m, and triangles consist of three bars.
 //
 //         E            O  crank's axle       crank m = OP
 //        /|\  j        B  fixed, left of O by a and below it by l

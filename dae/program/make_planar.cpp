@@ -1,5 +1,5 @@
-// Mechanisms in a plane, which may lie anywhere: only what hangs on the ground, and gravity, know
-// where. Angles are against the plane's x, counted from parent to child.
+// Planar mechanisms, in a plane of any orientation: only the joints at the ground and gravity
+// depend on it. Angles are measured from the x of the plane, from parent to child.
 
 #include <cmath>
 

@@ -1,6 +1,6 @@
-// A platform on legs that slide: base points on a circle of 1 m, top points on one of 0.6 m, by
-// turns near to and far from each other; every leg a universal joint below, a sprung prismatic
-// joint, and a spherical joint above, where its loop closes.
+// The Stewart platform: base points on a circle of 1 m, top points on one of 0.6 m, at alternately
+// small and large distances. Every leg has a universal joint below, a prismatic joint with a
+// spring, and a spherical joint above, where its loop closes.
 
 #include <cmath>
 

@@ -1,5 +1,5 @@
-// Open chains and trees in space, z up. Cylinders, not slender rods: no body lacks inertia about
-// its own axis.
+// Spatial open chains and trees, z up. The bodies are cylinders, not slender rods, so that every
+// body has inertia about its own axis.
 
 #include <cmath>
 

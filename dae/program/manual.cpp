@@ -1,5 +1,5 @@
-// momenta(1) in roff, from the options themselves. An option that several verbs take alike stands
-// once, with their names.
+// The man page momenta(1) in roff, made from the options themselves. An option that is the same in
+// several verbs is listed once, with their names.
 
 #include <algorithm>
 #include <sstream>

@@ -1,4 +1,4 @@
-// Equilibrium, frequencies and shapes of small motions.
+// The verb `modes`: an equilibrium, and the frequencies and shapes of small motions about it.
 
 #include <momenta/dae/linear/linearisation.h>
 #include <momenta/dae/report/modes_report.h>

@@ -1,5 +1,5 @@
 #pragma once
-// What the verbs share: the scene and common options, messages, exit status.
+// What the verbs share: the scene, common options, messages and the exit status.
 
 #include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/assembly/assembly.h>

@@ -1,5 +1,5 @@
 #pragma once
-// Joints of mechanisms in a plane, as text.
+// The joints of planar mechanisms, as text.
 
 #include <string>
 

@@ -1,7 +1,7 @@
 #pragma once
-// Processes of one `mpirun -n K momenta …`, which share the cases of a study. Rank 0 hands out
-// numbers and keeps what comes back, on a thread beside its own work; the others ask, make, and
-// send. Built without MPI there is one rank.
+// The processes of one `mpirun -n K momenta …`, which share the cases of a study. Rank 0 hands out
+// the numbers of cases and keeps the results, on a thread beside its own work; the other ranks ask
+// for a number, make the case and send the result. Without MPI there is one rank.
 
 #include <cstddef>
 #include <functional>

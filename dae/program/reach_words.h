@@ -1,5 +1,5 @@
 #pragma once
-// What `momenta check` tells of how far drives can go.
+// How far drives can go, in the words of `momenta check`.
 
 #include <momenta/dae/assembly/drive_reach.h>
 

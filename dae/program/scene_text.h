@@ -1,6 +1,6 @@
 #pragma once
-// Scenes as TOML, table by table on standard output, so that a scene of any size costs no memory.
-// Numbers have the shortest digits that read back as the same double.
+// Writes scenes as TOML, table by table on standard output, so that a scene of any size needs no
+// memory. Numbers have the fewest digits that read back as the same double.
 
 #include <array>
 #include <cstdint>

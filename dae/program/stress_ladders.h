@@ -1,5 +1,5 @@
 #pragma once
-// The ladders of `momenta stress`: the built-in ones, and those of a given scene.
+// The ladders of `momenta stress`: the built-in ladders, and those of a given scene.
 
 #include <momenta/dae/study/stress_study.h>
 

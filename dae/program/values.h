@@ -1,5 +1,5 @@
 #pragma once
-// What an option takes, as its type name says it: in help, in the man page and for completion.
+// The values of an option, described by its type name, for help, the man page and completion:
 //
 //   a|b|c      one of these words
 //   FORM       a word in capitals stands for names the program knows: FORM, INTEGRATOR, FAMILY;

@@ -1,4 +1,4 @@
-// Mechanism: what a scene is, its consistent start, and the equations at one state.
+// Mechanism: the data of a scene, its consistent start, and the equations at one state.
 
 #include <momenta/core/scene/toml/parse_scene.h>
 #include <momenta/core/scene/toml/write_scene.h>
@@ -125,7 +125,8 @@ py::tuple energies(Bench& b, double t, const In& q, const In& u) {
   return py::make_tuple(found[0], found[1]);
 }
 
-/// What is left out is the start of the scene: with loops the assembled one, as of the program.
+/// Values left out are those of the start of the scene, assembled where there are loops, as in the
+/// program.
 py::dict evaluate(Bench& b, double t, const std::optional<Vector>& q,
                   const std::optional<Vector>& v, const std::optional<Vector>& p) {
   const Tree& tree = b.mechanism->tree();
@@ -179,37 +180,43 @@ py::dict plan(const Bench& b) {
 
 void bind_mechanism(py::module_& module) {
   using namespace py::literals;
-  py::class_<Assembly>(module, "Start", "A consistent start: the loops closed, rates with them.")
+  py::class_<Assembly>(module, "Start",
+                       "A consistent start: positions and rates that satisfy the loop equations.")
       .def_property_readonly(
-          "t", [](const Assembly& a) { return a.start.t; }, "[s]")
+          "t", [](const Assembly& a) { return a.start.t; }, "time [s]")
       .def_property_readonly(
-          "q", [](const Assembly& a) { return a.start.q; }, "(nq)")
+          "q", [](const Assembly& a) { return a.start.q; }, "coordinates (nq)")
       .def_property_readonly(
-          "u", [](const Assembly& a) { return a.start.u; }, "(nv)")
+          "u", [](const Assembly& a) { return a.start.u; }, "rates (nv)")
       .def_property_readonly(
-          "udot", [](const Assembly& a) { return a.start.udot; }, "(nv)")
+          "udot", [](const Assembly& a) { return a.start.udot; }, "accelerations (nv)")
       .def_property_readonly(
-          "lambda_", [](const Assembly& a) { return a.start.lambda; }, "(m)")
-      .def_readonly("rank", &Assembly::rank, "of the loop equations")
-      .def_readonly("mobility", &Assembly::mobility, "nv - rank")
+          "lambda_", [](const Assembly& a) { return a.start.lambda; }, "force multipliers (m)")
+      .def_readonly("rank", &Assembly::rank, "rank of the loop equations")
+      .def_readonly("mobility", &Assembly::mobility, "degrees of freedom: nv - rank")
       .def_readonly("dependent_rows", &Assembly::dependent_rows,
-                    "loop equations that follow from the others, places in `equations`")
-      .def_readonly("moved", &Assembly::moved, "largest move from the guess [rad or m]")
+                    "loop equations that follow from the others, as indices of `equations`")
+      .def_readonly("moved", &Assembly::moved,
+                    "largest change of a coordinate from the guess [rad or m]")
       .def_readonly("residue", &Assembly::residue,
-                    "what redundant equations leave open, in one sentence, or empty")
-      .def_readonly("branch", &Assembly::branch,
-                    "which of several assemblies it is, where the guess does not decide it");
+                    "one sentence on what redundant equations leave open, or empty")
+      .def_readonly(
+          "branch", &Assembly::branch,
+          "one sentence on which of several assemblies it is, where the guess does not decide "
+          "it, or empty");
 
   py::class_<Bench, BenchPtr> mechanism(module, "Mechanism",
-                                        "A scene made ready to move. Made by load().");
+                                        "A mechanism, made from a scene by load().");
   const auto of = [](auto f) { return [f](const Bench& b) { return f(*b.mechanism); }; };
   mechanism
       .def_property_readonly("name", of([](const Mechanism& m) { return m.scene().name; }),
-                             "of the scene")
-      .def_property_readonly("nq", of([](const Mechanism& m) { return m.nq(); }), "coordinates")
+                             "name of the scene")
+      .def_property_readonly("nq", of([](const Mechanism& m) { return m.nq(); }),
+                             "number of coordinates")
       .def_property_readonly("nv", of([](const Mechanism& m) { return m.nv(); }),
-                             "rates and momenta")
-      .def_property_readonly("m", of([](const Mechanism& m) { return m.m(); }), "loop equations")
+                             "number of rates, and of momenta")
+      .def_property_readonly("m", of([](const Mechanism& m) { return m.m(); }),
+                             "number of loop equations")
       .def_property_readonly("coordinates",
                              of([](const Mechanism& m) { return labels(m.coordinate_columns()); }),
                              "names of q with units")
@@ -224,9 +231,9 @@ void bind_mechanism(py::module_& module) {
                              }),
                              "names of the loop equations")
       .def_property_readonly("q0", of([](const Mechanism& m) { return m.tree().q0; }),
-                             "the scene's guess (nq)")
+                             "coordinates of the scene, the guess of assemble() (nq)")
       .def_property_readonly("u0", of([](const Mechanism& m) { return m.tree().u0; }),
-                             "the scene's guess (nv)")
+                             "rates of the scene, the guess of assemble() (nv)")
       .def_property_readonly(
           "options",
           [](const Bench& b) {
@@ -234,11 +241,12 @@ void bind_mechanism(py::module_& module) {
             options["algebra"] = b.algebra, options["kkt"] = b.kkt;
             return options;
           },
-          "algebra and kkt as load() was asked for")
-      .def_property_readonly("remarks", of([](const Mechanism& m) { return m.scene().remarks; }),
-                             "what the reader left out of a URDF or MJCF, one sentence a kind")
+          "the arguments algebra and kkt of load()")
+      .def_property_readonly(
+          "remarks", of([](const Mechanism& m) { return m.scene().remarks; }),
+          "what the reader of a URDF or MJCF left out or changed, one sentence per kind")
       .def("to_toml", of([](const Mechanism& m) { return scene_text(m.scene()); }),
-           "The scene as TOML; read again it is the same, bit by bit.")
+           "The scene as TOML text, from which parse() reads the same scene, bit by bit.")
       .def(py::pickle(
           [](const Bench& b) {
             return py::make_tuple(toml_of(b), b.mechanism->scene().name, b.algebra, b.kkt);
@@ -252,34 +260,34 @@ void bind_mechanism(py::module_& module) {
             bench->text = text;
             return bench;
           }))
-      .def_property_readonly("plan", &plan, "what an evaluation does and leaves out, by topic")
+      .def_property_readonly("plan", &plan, "what an evaluation computes and leaves out, by topic")
       .def("__repr__", of([](const Mechanism& m) {
              return "<momenta.Mechanism '" + m.scene().name + "': " + std::to_string(m.nv()) +
                     " rates, " + std::to_string(m.m()) + " loop equations>";
            }))
       .def(
           "assemble", [](const Bench& b) { return assemble(*b.mechanism); },
-          "Closes the loops from the scene's guess. Raises SceneError where they stay open.")
+          "A Start: closes the loops, beginning at q0 and u0. Raises SceneError where they stay "
+          "open.")
       .def("momentum_rates", &momentum_rates, "t"_a, "q"_a, "p"_a, "centre"_a = py::none(),
            "leak"_a = 0.0,
-           "(u, sigma, pdot) from (t, q, p): eqs. (7), (8). `centre` (m): what sigma of weak "
-           "equations fades towards; `leak` [1/s]. O(bodies).")
+           "(u, sigma, pdot) from (t, q, p): eqs. (7), (8). `centre` (m): the value towards which "
+           "sigma fades in weak equations; `leak` [1/s]: kappa. O(bodies).")
       .def("accelerations", &accelerations, "t"_a, "q"_a, "u"_a,
            "(udot, lambda_) from (t, q, u): eq. (3). O(bodies).")
       .def("momenta", &momenta_of, "t"_a, "q"_a, "u"_a, "sigma"_a = py::none(),
-           "p = M u + Phi_q' sigma and what is prescribed (nv). O(bodies).")
+           "p = M u + Phi_q' sigma, plus the part of prescribed motion (nv). O(bodies).")
       .def("constraints", &constraints, "t"_a, "q"_a, "u"_a, "(Phi, Phidot), both (m).")
       .def("kkt", &kkt, "t"_a, "q"_a, "(M, Phi_q), dense: (nv, nv) and (m, nv).")
       .def("inverse_mass_times", &inverse_mass_times, "t"_a, "q"_a, "x"_a,
-           "M^-1 x (nv) of the tree, its loops left out. O(bodies).")
+           "M^-1 x (nv) of the tree, without its loops. O(bodies).")
       .def("energies", &energies, "t"_a, "q"_a, "u"_a, "(T, V) [J].")
       .def("evaluate", &evaluate, "t"_a = 0.0, "q"_a = py::none(), "v"_a = py::none(),
            "p"_a = py::none(),
-           "Everything at one state as a dict: momenta, accelerations, multipliers, energies, "
+           "All values at one state as a dict: momenta, accelerations, multipliers, energies, "
            "reactions on the child (force [N], torque [N m] about the joint's point, ground axes), "
-           "M "
-           "where it is small. What is left out is the scene's start, assembled where there are "
-           "loops.");
+           "and M of small mechanisms. Arguments left out are those of the start of the scene, "
+           "assembled where there are loops.");
   add_runs(mechanism);
   add_modes(mechanism);
 }

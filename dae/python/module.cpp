@@ -4,11 +4,11 @@
 #include <momenta/core/scene/scene.h>
 #include <momenta/dae/study/environment.h>
 
-// The compiled part of the package momenta, which names what is public.
+// The compiled part of the package momenta; the package itself says what is public.
 PYBIND11_MODULE(_momenta, module) {
   using namespace momenta::python;
   module.doc() = "The compiled part of momenta.";
-  // Where users find what is defined here: signatures, messages and pickles say so.
+  // Signatures, messages and pickles name the package, where users find what is defined here.
   module.attr("__module__") = "momenta";
   try {
     py::module_::import("numpy");
@@ -20,7 +20,7 @@ PYBIND11_MODULE(_momenta, module) {
   module.attr("__version__") = momenta::version();
   py::register_exception<momenta::SceneError>(module, "SceneError", PyExc_ValueError)
       .attr("__module__") = "momenta";
-  // Names in messages may be bytes that are no UTF-8, and so no text of Python's.
+  // Names in messages may contain bytes that are not UTF-8, from which Python makes no string.
   py::register_exception_translator([](std::exception_ptr thrown) {
     const auto raise = [](PyObject* kind, const char* what) {
       PyErr_SetString(kind, momenta::reading::on_one_line(what).c_str());

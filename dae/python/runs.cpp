@@ -1,5 +1,5 @@
-// Runs and studies. A run's arrays are views of it: they keep it alive and are never copied. Long
-// calls release the interpreter, and Ctrl-C stops them at the next sample.
+// Runs and studies. The arrays of a run are views of its data: they keep the run alive and are not
+// copied. Long calls release the lock of the interpreter, and Ctrl-C stops them at the next sample.
 
 #include <momenta/dae/report/table.h>
 #include <momenta/dae/solver/integrators.h>
@@ -37,7 +37,7 @@ struct Run {
 };
 using RunPtr = std::shared_ptr<Run>;
 
-/// A view of numbers that `owner` keeps.
+/// A view of numbers that `owner` keeps alive.
 py::array_t<double> view(const std::vector<double>& x, const py::object& owner) {
   return py::array_t<double>(static_cast<py::ssize_t>(x.size()), x.data(), owner);
 }
@@ -87,7 +87,7 @@ RunPtr run_from(const py::tuple& kept) {
   return run;
 }
 
-/// The runs of a study as the package's list of them.
+/// The runs of a study as a Study of the package.
 py::object study_of(std::vector<RunResult> runs, bool ladder) {
   py::list all;
   for (RunResult& run : runs) all.append(std::make_shared<Run>(std::move(run)));
@@ -169,8 +169,8 @@ py::dict counters(const RunResult& r) {
 void bind_runs(py::module_& module) {
   using namespace py::literals;
   py::class_<Run, RunPtr> run(module, "Run",
-                              "One form by one integrator. run['B.x'] is a column of its "
-                              "trajectory; arrays are views.");
+                              "The result of one form by one integrator. run['B.x'] is a "
+                              "column of its trajectory; arrays are views.");
   const auto text = [&](const char* name, auto get, const char* doc) {
     run.def_property_readonly(
         name, [get](const Run& r) { return get(r.result); }, doc);
@@ -178,44 +178,50 @@ void bind_runs(py::module_& module) {
   text(
       "form", [](const RunResult& r) { return r.settings.form; }, "name of the form");
   text(
-      "integrator", [](const RunResult& r) { return r.settings.integrator; }, "its name");
+      "integrator", [](const RunResult& r) { return r.settings.integrator; },
+      "name of the integrator");
   text(
-      "gauge", [](const RunResult& r) { return r.settings.gauge; }, "of momentum forms");
+      "gauge", [](const RunResult& r) { return r.settings.gauge; }, "gauge of momentum forms");
   text(
       "rtol", [](const RunResult& r) { return r.settings.rtol; }, "relative tolerance");
   text(
-      "step", [](const RunResult& r) { return r.settings.step; }, "[s], 0: adaptive");
+      "step", [](const RunResult& r) { return r.settings.step; }, "fixed step [s]; 0: adaptive");
   text(
       "project", [](const RunResult& r) { return r.settings.project; },
       "whether positions were corrected after each step");
   text(
       "status", [](const RunResult& r) { return r.status; },
-      "done, failed, time limit, came apart");
+      "done, failed, time limit or came apart");
   text(
       "reason", [](const RunResult& r) { return r.reason; }, "one sentence when not done");
   text(
-      "stopped_at", [](const RunResult& r) { return r.stopped_at; }, "[s]");
-  text("counters", counters, "steps, evaluations, ... by name");
+      "stopped_at", [](const RunResult& r) { return r.stopped_at; },
+      "time at which it stopped [s]");
+  text("counters", counters, "numbers of steps, evaluations, ... by name");
   text(
       "cpu_s", [](const RunResult& r) { return r.cpu_s; }, "processor time [s]");
   text(
-      "position_drift_max", [](const RunResult& r) { return r.position_drift_max; }, "[m]");
+      "position_drift_max", [](const RunResult& r) { return r.position_drift_max; },
+      "largest |Phi| at the output times, in drift_unit");
   text(
       "velocity_drift_max", [](const RunResult& r) { return r.velocity_drift_max; },
-      "[m/s], as position_drift_max");
+      "largest |Phidot| at the output times, in drift_unit/s");
   text(
       "drift_unit", [](const RunResult& r) { return r.drift_unit; },
-      "of position_drift_max: m, or rad where all loop equations are angles; empty without loops");
+      "unit of the position drift: m, or rad where all loop equations are angles; empty without "
+      "loops");
   text(
       "angle_drift_max", [](const RunResult& r) { return r.angle_drift_max; },
-      "of the equations in rad beside others in m [rad]");
+      "largest |Phi| of the equations in rad, where others are in m [rad]");
   text(
-      "angle_rate_drift_max", [](const RunResult& r) { return r.angle_rate_drift_max; }, "[rad/s]");
+      "angle_rate_drift_max", [](const RunResult& r) { return r.angle_rate_drift_max; },
+      "largest |Phidot| of the same equations [rad/s]");
   text(
-      "energy_error_max", [](const RunResult& r) { return r.energy_error_max; }, "[J]");
+      "energy_error_max", [](const RunResult& r) { return r.energy_error_max; },
+      "largest |energy - energy(0)| [J]");
   text(
       "position_error_max", [](const RunResult& r) { return r.position_error_max; },
-      "against the reference, max |err| / (1 + |ref|); nan without one");
+      "error against the reference, max |err| / (1 + |ref|); nan without a reference");
   const auto series = [&](const char* name, std::vector<double> Series::*member, const char* doc) {
     run.def_property_readonly(
         name,
@@ -227,13 +233,14 @@ void bind_runs(py::module_& module) {
   series("t", &Series::t, "output times [s]");
   series("position_drift", &Series::position_drift, "|Phi(q, t)| at the output times");
   series("angle_drift", &Series::angle_drift,
-         "|Phi| of equations in rad beside others in m, at the output times");
-  series("angle_rate_drift", &Series::angle_rate_drift, "|Phidot| of these");
+         "|Phi| of equations in rad, where others are in m, at the output times [rad]");
+  series("angle_rate_drift", &Series::angle_rate_drift, "|Phidot| of the same equations [rad/s]");
   series("velocity_drift", &Series::velocity_drift, "|Phidot| at the output times");
-  series("energy", &Series::energy, "T + V less what was dissipated [J]; nan with drives");
-  series("energy_error", &Series::energy_error, "[J]");
-  series("impulse", &Series::impulse, "|sigma| or |lambda|");
-  series("position_error", &Series::position_error, "against the reference; empty without one");
+  series("energy", &Series::energy, "T + V less the dissipated energy [J]; nan with drives");
+  series("energy_error", &Series::energy_error, "energy - energy(0) [J]");
+  series("impulse", &Series::impulse, "|sigma| of momentum forms, |lambda| of the others");
+  series("position_error", &Series::position_error,
+         "error against the reference, max |err| / (1 + |ref|); empty without a reference");
   run.def_property_readonly(
          "columns", [](const Run& r) { return r.result.trajectory.columns; },
          "names of the trajectory's columns, with units")
@@ -244,7 +251,7 @@ void bind_runs(py::module_& module) {
             const std::size_t n = r.columns();
             return py::array_t<double>({n == 0 ? 0 : r.rows.size() / n, n}, r.rows.data(), self);
           },
-          "(samples, columns)")
+          "rows at the output times: (samples, columns)")
       .def(
           "__getitem__",
           [](const py::object& self, const std::string& name) {
@@ -293,20 +300,23 @@ void add_runs(py::class_<Bench, BenchPtr>& mechanism) {
   with_run_arguments([&](const auto&... arguments) {
     mechanism.def(
         "run", &run, py::kw_only(), arguments..., "reference"_a = "", "progress"_a = py::none(),
-        "One form from the assembled start: a Run, failed ones too, with all samples up to there. "
-        "What is None, zero or empty is the scene's, the form's or the program's default. "
-        "`progress`: True, a line on standard error, or a function of (fraction, text).");
+        "Runs one form from the assembled start. Returns a Run; a failed one has all samples up to "
+        "the failure. Arguments that are None, zero or empty take the default of the scene, the "
+        "form or the program. `progress`: True for a line on standard error, or a function of "
+        "(fraction, text).");
   });
   mechanism
       .def("drift", &drift, py::kw_only(), "forms"_a = Names{}, "integrator"_a = "",
            "rtol"_a = 1e-8, "step"_a = py::none(), "end"_a = py::none(), "samples"_a = py::none(),
            "reference"_a = "", "cpu_limit"_a = 60.0, "progress"_a = py::none(),
-           "Every form side by side: a Study, which is a list of Run.")
-      .def("work", &work, py::kw_only(), "forms"_a = Names{}, "integrators"_a = Names{},
-           "tolerances"_a = std::vector<double>{1e-4, 1e-6, 1e-8, 1e-10}, "end"_a = py::none(),
-           "reference"_a = "", "cpu_limit"_a = 10.0, "progress"_a = py::none(),
-           "Error against run time over a ladder of tolerances, judged by a reference file or, "
-           "without one, by a solution in quadruple precision made here: a Study.");
+           "Runs every form. Returns a Study, a list of Run.")
+      .def(
+          "work", &work, py::kw_only(), "forms"_a = Names{}, "integrators"_a = Names{},
+          "tolerances"_a = std::vector<double>{1e-4, 1e-6, 1e-8, 1e-10}, "end"_a = py::none(),
+          "reference"_a = "", "cpu_limit"_a = 10.0, "progress"_a = py::none(),
+          "Error against run time over a ladder of tolerances. Errors are against a reference file "
+          "or, without one, against a solution in quadruple precision that this call computes. "
+          "Returns a Study.");
 }
 
 }  // namespace momenta::python

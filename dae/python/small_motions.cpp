@@ -68,13 +68,14 @@ py::dict modes(const Bench& b, const std::string& equilibrium, const std::string
 
 void add_modes(py::class_<Bench, BenchPtr>& mechanism) {
   using namespace py::literals;
-  mechanism.def("modes", &modes, "equilibrium"_a = "settle", "drives"_a = "held", "count"_a = 0,
-                "Where it rests and its small motions there, as a dict: nature, q (nq), lambda_ "
-                "(m), potential [J], moved [rad or m], degrees_of_freedom, complete, singular, s "
-                "[1/s], frequency [Hz], damping_ratio, all (modes), shapes (nv, modes) with modal "
-                "mass 1 kg m^2, shape_names. `equilibrium`: settle, nearest or start; `drives`: "
-                "held or running; `count`: the modes nearest to s = 0 (0: all of up to 300, else "
-                "20). Raises SceneError where no pose rests.");
+  mechanism.def(
+      "modes", &modes, "equilibrium"_a = "settle", "drives"_a = "held", "count"_a = 0,
+      "An equilibrium and the modes of small motions about it, as a dict: nature, q (nq), "
+      "lambda_ (m), potential [J], moved [rad or m], degrees_of_freedom, complete, "
+      "singular; s [1/s], frequency [Hz] and damping_ratio, (modes) each; shapes (nv, "
+      "modes) with modal mass 1 kg m^2, shape_names. `equilibrium`: settle, nearest or "
+      "start; `drives`: held or running; `count`: how many modes, those nearest to s = 0 "
+      "(0: all of up to 300, else 20). Raises SceneError where there is no equilibrium.");
 }
 
 }  // namespace momenta::python

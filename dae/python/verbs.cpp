@@ -1,5 +1,5 @@
-// The program's verbs evaluate, index, sweep and view, and the reading of scenes: what the
-// functions of the package call. States and results go as text, in the words of the program.
+// Reading of scenes, and the verbs evaluate, index, sweep and view of the program, for the
+// functions of the package. States and results are text in the formats of the program.
 
 #include <momenta/core/scene/file_text.h>
 #include <momenta/core/scene/files/read_scene.h>
@@ -24,7 +24,7 @@ namespace {
 
 using Names = std::vector<std::string>;
 
-/// `text`: the scene's own, empty where it was no TOML.
+/// `text`: the TOML of the scene; empty where it was in another format.
 BenchPtr ready(Scene scene, const std::string& text, const std::string& at,
                const std::string& algebra, const std::string& kkt) {
   if (!at.empty()) start_at(at, scene);
@@ -61,7 +61,7 @@ std::string page(const Bench& b, const std::string& file) {
   return view_page(study, still_words(mechanism, assembly));
 }
 
-/// The cases of a sweep; several threads may make them.
+/// The cases of a sweep; several threads may run them.
 class Cases {
  public:
   Cases(const std::string& text, const std::string& file, const std::string& algebra,

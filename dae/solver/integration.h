@@ -1,5 +1,5 @@
 #pragma once
-// What every integrator takes and gives, whatever its method.
+// What every integrator takes and returns: options, counters, observers and the result.
 
 #include <momenta/dae/solver/system.h>
 
@@ -9,7 +9,7 @@
 
 namespace momenta {
 
-/// How an integrator is to go.
+/// Options of an integrator.
 struct IntegrationOptions {
   double rtol = 1e-8;  ///< relative tolerance of the local error
   double atol = 1e-8;  ///< times the system's scale(i)
@@ -20,14 +20,14 @@ struct IntegrationOptions {
   double max_step = 0;              ///< 0: none
   int max_order = 0;                ///< multistep; 0: the method's own limit
   double spectral_radius = 0.8;     ///< generalised-alpha: at infinite frequency, in [0, 1)
-  long max_steps = 50'000'000;      ///< a run of more fails
+  long max_steps = 50'000'000;      ///< a run that needs more fails
   double max_cpu_seconds = 0;       ///< 0: none; a run beyond it stops with status "time limit"
-  double spent_cpu_seconds = 0;     ///< of them, before a run that goes on
-  const Memory* carried = nullptr;  ///< what a run carried that goes on; null: from the start
-  bool until_stiff = false;         ///< dp5, dop853, vern9: end where `stiff_from` is known
+  double spent_cpu_seconds = 0;     ///< spent before, where a run continues
+  const Memory* carried = nullptr;  ///< what the run carried that continues; null: from the start
+  bool until_stiff = false;         ///< dp5, dop853, vern9: stop as soon as `stiff_from` is known
 };
 
-/// What an integration took.
+/// The work of an integration.
 struct Counters {
   long steps = 0;              ///< accepted
   long rejected = 0;           ///< steps that were taken again
@@ -35,10 +35,10 @@ struct Counters {
   long jacobians = 0;          ///< of Newton's matrices
   long factorizations = 0;     ///< of (7), or of Newton's matrix
   long newton_iterations = 0;  ///< of implicit methods
-  /// Of the steps, those of DAE methods taken as an ODE near singular poses.
+  /// Steps of DAE methods that were taken as an ODE near singular poses; they are among `steps`.
   long ode_restarts = 0;
 
-  /// One integration after another.
+  /// Adds the work of another integration.
   Counters& operator+=(const Counters& other) {
     steps += other.steps, rejected += other.rejected, evaluations += other.evaluations;
     jacobians += other.jacobians, factorizations += other.factorizations;
@@ -47,19 +47,20 @@ struct Counters {
   }
 };
 
-/// Interpolates the last accepted step: y (size of the system) at any t in [t0, t1].
+/// Interpolates the last accepted step: writes y (size of the system) at any t in [t0, t1].
 using Interpolant = std::function<void(double t, double* y)>;
 
-/// Looks on while a run goes; return false to stop the run. Either may be empty.
+/// Functions that an integrator calls during a run; `sample` and `step` return false to stop it.
+/// Each may be empty.
 struct Observer {
-  /// At each requested output time, in order: the state there (step end where it coincides, else
-  /// dense output). `ydot` is null for ODE systems.
+  /// Called at each requested output time, in order, with the state there: that of the end of the
+  /// step where the times coincide, else from dense output. `ydot` is null for ODE systems.
   std::function<bool(double t, const double* y, const double* ydot)> sample;
-  /// After each accepted step over [t0, t1] (before any after_step change is seen by the
-  /// interpolant).
+  /// Called after each accepted step over [t0, t1]. The interpolant does not include changes made
+  /// by after_step().
   std::function<bool(double t0, double t1, const Interpolant& between)> step;
-  /// Before steps of explicit Runge-Kutta methods, where the system can be put down: `carry` writes
-  /// down what there is at t, for IntegrationOptions::carried.
+  /// Called before steps of explicit Runge-Kutta methods, where can_be_put_down() holds. `carry`
+  /// writes all that the run carries at t, for IntegrationOptions::carried.
   std::function<void(double t, const std::function<void(Memory&)>& carry)> before_step;
 };
 
@@ -67,34 +68,34 @@ struct Observer {
 struct IntegrationResult {
   bool done = false;      ///< the end was reached
   std::string reason;     ///< one sentence when not done: what failed, at which time, why
-  double end_time = 0;    ///< where the run stopped [s]
+  double end_time = 0;    ///< time at which the run stopped [s]
   std::vector<double> y;  ///< the state there
-  Counters counters;      ///< of the whole of it
-  /// Since when an explicit method's steps were as long as its stability allows, not its tolerance
-  /// [s]; NaN: they were not.
+  Counters counters;      ///< of the whole integration
+  /// Time [s] since which stability, not the tolerance, limits the steps of an explicit method;
+  /// NaN: it does not.
   double stiff_from = std::numeric_limits<double>::quiet_NaN();
-  bool ended_stiff = false;   ///< not done for `until_stiff` alone; y is the state to go on from
+  bool ended_stiff = false;   ///< stopped by `until_stiff` alone; y is the state to continue from
   std::string linear_solver;  ///< implicit methods: "dense LU", "KLU"; else empty
   std::string jacobian;  ///< implicit methods: "dual numbers", "difference quotient"; else empty
 };
 
-/// Integrates from y0 at t0 through output_times (ascending, the last is the end). Names: rk4 dp5
-/// dop853 vern9. Hot loop allocates nothing. @throws std::invalid_argument for a name it does not
-/// know.
+/// Integrates by an explicit Runge-Kutta method from y0 at t0 through output_times (ascending; the
+/// last one is the end). Names: rk4 dp5 dop853 vern9. Steps do not allocate. @throws
+/// std::invalid_argument for an unknown name.
 IntegrationResult integrate_explicit(const std::string& method, OdeSystem&, double t0,
                                      const std::vector<double>& y0,
                                      const std::vector<double>& output_times,
                                      const IntegrationOptions&, const Observer&);
 
-/// CVODE; names: adams bdf. Newton with difference-quotient dense Jacobian for bdf, fixed-point for
-/// adams.
+/// Integrates by CVODE; names: adams bdf. bdf uses Newton's method with a dense Jacobian by
+/// difference quotients, adams fixed-point iteration.
 IntegrationResult integrate_cvode(const std::string& method, OdeSystem&, double t0,
                                   const std::vector<double>& y0,
                                   const std::vector<double>& output_times,
                                   const IntegrationOptions&, const Observer&);
 
-/// IDA, started by system.start(t0); dense LU or KLU by the system's pattern, always with the
-/// system's exact Jacobian.
+/// Integrates by IDA from system.start(t0), always with the exact Jacobian of the system; dense LU
+/// or KLU, by the pattern of the system.
 IntegrationResult integrate_ida(DaeSystem&, double t0, const std::vector<double>& output_times,
                                 const IntegrationOptions&, const Observer&);
 

@@ -11,8 +11,9 @@
 
 namespace momenta {
 
-/// What a method with error control does about singular poses, in order of what it costs: nothing,
-/// errors measured by what they change of the motion, f at the corrected position as well.
+/// What a method with error control does near singular poses, in order of cost: `none`, nothing;
+/// `norm`, it measures errors by their effect on the motion; `position`, it also evaluates f at the
+/// corrected position.
 enum class SingularityHandling { none, norm, position };
 
 /// y' = f(t, y). One object serves one thread.
@@ -24,42 +25,44 @@ class OdeSystem {
   /// y' at (t, y); both of size().
   virtual bool rhs(double t, const double* y, double* ydot) = 0;
 
-  /// Called once after every accepted step of a one-step method, before the next: gauge reset,
-  /// position correction, quaternion normalisation. Sets `changed` when y was altered in a way that
-  /// makes f(t, y) a different number (a gauge reset does; a position correction of the size of the
-  /// local error does not: the last stage may then still serve as the next first one).
+  /// Called once after every accepted step of a one-step method, before the next step: gauge reset,
+  /// position correction, quaternion normalisation. Sets `changed` when y was altered so that f(t,
+  /// y) changes: a gauge reset does; a position correction of the size of the local error does not,
+  /// and the last stage may then still serve as the first stage of the next step.
   virtual bool after_step(double /*t*/, double* /*y*/, bool& /*changed*/) { return true; }
   /// Whether after_step() does anything.
   virtual bool has_after_step() const { return false; }
 
-  /// Tells the system that a new step starts at (t, y): the σ_ref of recentred pivots is taken
-  /// here, so that within a step f is a pure function of (t, y).
+  /// Tells the system that a new step starts at (t, y). The centre of σ, towards which faded rows
+  /// go, is taken here, so that within a step f is a pure function of (t, y).
   virtual void begin_step(double /*t*/, const double* /*y*/) {}
 
-  /// f at the state after_step() left, where it came along; false: still to be evaluated.
+  /// f at the state that after_step() left, where after_step() computed it; false: it is still to
+  /// be evaluated.
   virtual bool first_derivative(double* /*ydot*/) { return false; }
 
-  /// What evaluations since begin_step() ask for: where loop equations become dependent, a stage a
-  /// little off the manifold is far off in its rates. A method that controls its error repeats the
-  /// step where f changes with it.
+  /// The singularity handling that the evaluations since begin_step() require. Where loop equations
+  /// become dependent, the rates of a stage slightly off the manifold are far off. A method with
+  /// error control repeats the step where the handling changes f.
   virtual SingularityHandling wanted_handling() const { return SingularityHandling::none; }
-  /// SingularityHandling::position alone changes f.
+  /// Sets the handling. Of the three, only SingularityHandling::position changes f.
   virtual void set_handling(SingularityHandling /*singularity handling*/) {}
-  /// Square of a norm of the local error at (t, y), root mean square over the unknowns, of what
-  /// changes the motion alone: not of the gauge of σ. The weight of an unknown is atol · scale +
-  /// rtol · size. Not finite when it cannot be had. In use while there is singularity handling.
+  /// Square of a norm of the local error at (t, y): root mean square over the unknowns, of the part
+  /// that changes the motion, so not of the gauge of σ. The weight of an unknown is atol · scale +
+  /// rtol · size. Not finite where it cannot be computed. Used while singularity handling is on.
   virtual double motion_error_squared(double /*t*/, const double* /*y*/, const double* /*error*/,
                                       double /*rtol*/, double /*atol*/) {
     return std::numeric_limits<double>::quiet_NaN();
   }
 
-  /// Evaluations from true to false are an observer's: they count nowhere, and no later step
-  /// depends on them. Pairs may stand within each other.
+  /// Evaluations between look_on(true) and look_on(false) are for an observer: no counter counts
+  /// them, and no later step depends on them. Pairs may be nested.
   virtual void look_on(bool /*looking*/) {}
 
-  /// Whether carry() lists all that evaluations to come depend on.
+  /// Whether carry() lists everything on which later evaluations depend, so that a run can be saved
+  /// and continued.
   virtual bool can_be_put_down() const { return false; }
-  /// Between two steps.
+  /// Writes or reads what the system carries from step to step. To be called between two steps.
   virtual void carry(Memory& /*memory*/) {}
 
   /// Typical size of y_i, for absolute tolerances: the error weight is atol · scale_i + rtol ·
@@ -80,10 +83,10 @@ class OdeSystem {
   std::string failure_;
 };
 
-/// While it lives the system is looked at, not run.
+/// While this object lives, evaluations of the system are for an observer: look_on().
 class Looking {
  public:
-  /// From now on.
+  /// Calls look_on(true).
   explicit Looking(OdeSystem& system) : system_(system) { system_.look_on(true); }
   ~Looking() { system_.look_on(false); }
   Looking(const Looking&) = delete;
@@ -99,14 +102,15 @@ struct JacobianPattern {
   std::vector<long> row;           ///< row of each stored entry, ascending in each column
 };
 
-/// A matrix with unknowns z beside y that has J = ∂F/∂y + c ∂F/∂y' once they are eliminated, and
-/// far fewer entries: rows and columns of y come first, ( A B; C T ), J = A − B T⁻¹ C.
+/// A matrix with further unknowns z after y, and far fewer entries than J = ∂F/∂y + c ∂F/∂y'. Its
+/// rows and columns of y come first, ( A B; C T ); eliminating z gives J = A − B T⁻¹ C.
 class LocalJacobian {
  public:
   virtual ~LocalJacobian() = default;
-  /// Exact, at the arguments of jacobian(); O(entries). False when it is not finite.
+  /// Computes the matrix, exactly, at the arguments of jacobian(); O(entries). False when it is not
+  /// finite.
   virtual bool evaluate(double t, const double* y, const double* ydot, double c) = 0;
-  /// Of the last evaluation. The version tells that the pattern is another than before.
+  /// The pattern of the last evaluation. version() changes when the pattern changes.
   virtual const JacobianPattern& pattern() const = 0;
   virtual const std::vector<double>& values() const = 0;  ///< in the order of pattern()
   virtual int version() const = 0;                        ///< of the pattern, ascending
@@ -127,41 +131,42 @@ class DaeSystem {
                         double* values) = 0;
   /// Valid from start() on.
   virtual const JacobianPattern& pattern() const = 0;
-  /// What to factorise in place of J where that is large; else null. Whoever takes it asks for no
-  /// pattern().
+  /// The matrix to factorise in place of J where J is large; else null. A method that takes it does
+  /// not call pattern().
   virtual LocalJacobian* local() { return nullptr; }
 
   /// Consistent start: y and y' with F(t, y, y') = 0.
   virtual bool start(double t, double* y, double* ydot) = 0;
 
-  /// Whether y_i takes part in the local error test (differential variables of the form's
-  /// convergence theory).
+  /// Whether y_i takes part in the local error test, as the differential variables of the form's
+  /// convergence theory do.
   virtual bool differential(int i) const = 0;
   /// Absolute tolerance of y_i is atol · scale(i); infinity keeps y_i out of the Newton norm too
   /// (multipliers).
   virtual double scale(int i) const = 0;
 
-  /// How methods that know the index weigh y_i in their norms: the error times h^power over atol ·
-  /// scale + rtol |y_i|. A variable that loses a power of the step (the velocities of an index-3
-  /// form) gets it back by power 1; power −1 keeps y_i out (multipliers).
+  /// The weight of y_i in the norms of methods that know the index: error times h^power over atol ·
+  /// scale + rtol |y_i|. A variable whose error is one power of the step worse, such as the
+  /// velocities of an index-3 form, has power 1; power −1 keeps y_i out of the norm (multipliers).
   struct Weight {
     int power;     ///< of h
     double scale;  ///< times atol
   };
-  /// Of y_i.
+  /// The weight of y_i.
   virtual Weight weight(int i) const { return {differential(i) ? 0 : -1, scale(i)}; }
 
-  /// Whether the coordinates that lead y, and the states below, are near a pose where loop
-  /// equations lose rank: the Newton matrix of any method whose step spans it may be singular.
+  /// Whether y, or a state of ode_restart(), is near a pose where loop equations lose rank; either
+  /// begins with the coordinates. There the Newton matrix of a method may be singular if its step
+  /// spans the pose.
   virtual bool near_singular(double /*t*/, const double* /*y*/) { return false; }
-  /// There: the same motion as an ODE whose steps are taken with singularity handling, and its
-  /// `state` (ode_restart_size()) at (t, y).
+  /// The ODE that carries the motion past a singular pose, with singularity handling, and its
+  /// `state` (of size ode_restart_size()) at (t, y); null: there is none.
   virtual OdeSystem* ode_restart(double /*t*/, const double* /*y*/, double* /*state*/) {
     return nullptr;
   }
-  /// Size of that state; 0: there is none.
+  /// Size of the state of ode_restart(); 0: there is none.
   virtual int ode_restart_size() const { return 0; }
-  /// y and y' from a state of that ODE; y comes with the multipliers of a moment ago.
+  /// Computes y and y' from a state of that ODE. On entry y holds the last known multipliers.
   virtual bool rejoin(double /*t*/, const double* /*state*/, double* /*y*/, double* /*ydot*/) {
     return false;
   }

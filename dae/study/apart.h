@@ -1,14 +1,14 @@
 #pragma once
-// When the loops of a run have come apart, so that what moves on is another mechanism.
+// When the loops of a run have come apart, so that the run continues with another mechanism.
 //
 // Each equation is judged in its own unit: points in lengths of the scene, axes in radians,
-// couplers in what their terms are by nature (LoopUnits). With |Φ|∞ so counted
+// couplers in the natural size of their terms (LoopUnits). With |Φ|∞ in these units
 //
 //   forms that drift                         |Φ|∞ ≤ 1/4
 //   forms that hold Φ = 0, adaptive steps    |Φ|∞ ≤ 10⁴ rtol, no less than 10⁻⁶, no more than 1/4
 //
-// The second is what their Newton iterations and their interpolants between steps leave, with room;
-// beyond it a form no longer does what it is for.
+// The second bound is what the Newton iterations and the interpolants between steps leave, with a
+// margin; beyond it a form no longer holds Φ = 0.
 
 #include <momenta/dae/kkt/loop_units.h>
 #include <momenta/dae/solver/integrators.h>

@@ -1,7 +1,7 @@
 #pragma once
-// What each form's equations say of its unknowns alone, in the order in which differentiation shows
-// it. The numbers beside it come from the derivative array (dae/measure/derivative_array.h), which
-// knows nothing of these words; a test counts one against the other.
+// The constraints that the equations of each form put on its unknowns, in words, in the order in
+// which differentiation finds them. Their numbers come independently from the derivative array
+// (dae/measure/derivative_array.h); a test compares the two counts.
 
 #include <string>
 #include <vector>

@@ -1,7 +1,7 @@
 #pragma once
-// Work done by what the energy does not hold, dampers and moments, along a run: the power is taken
-// at the five Gauss points of each step, and the polynomial through it gives the work up to any
-// time inside the step.
+// The work, along a run, of the forces without potential: dampers and moments. The power is
+// evaluated at the five Gauss points of each step, and the polynomial through these values gives
+// the work up to any time inside the step.
 
 #include <momenta/core/scene/scene.h>
 #include <momenta/dae/solver/memory.h>

@@ -1,12 +1,12 @@
 #pragma once
-// A scene driven to extremes, and a scene in other units. Both are scenes again: whatever runs the
-// one runs the other.
+// A scene with one of its properties made extreme, and a scene in other units. The results are
+// scenes again, to be run like any other.
 //
 // In other units, lengths s, times τ and masses μ stand for one metre, second and kilogram. Every
-// quantity of the scene takes the factor of its dimension: gravity s/τ², inertia μs², a spring
-// μ/τ², a spring of a joint that turns μs²/τ², and so on. The motion is the same: q(t) of the one
-// is q(τt) of the other, lengths times s. Two of the extremes are of this kind and so have an exact
-// answer:
+// quantity of the scene is multiplied by the factor of its dimension: gravity by s/τ², inertia by
+// μs², the stiffness of a spring by μ/τ², that of a revolute joint by μs²/τ², and so on. The motion
+// is the same: q(t) of the one is q(τt) of the other, lengths times s. Two of the extremes are of
+// this kind and so have an exact solution:
 //
 //   size f     s = f, τ = √f, μ = 1: gravity stays what it is
 //   speed f    from rest: τ = 1/f, forces and weights grow like f²
@@ -14,13 +14,13 @@
 // The others change the problem:
 //
 //   stiffness f    every spring times f
-//   damping f      every damper times f; a scene without gets one at each joint of one coordinate,
-//                  that takes the speed of the whole about a second to lose at f = 1
+//   damping f      every damper times f; a scene without dampers gets one at each joint of one
+//                  coordinate, such that the whole loses its speed in about a second at f = 1
 //   mass ratio f   every second body times f, in the order of the file
 //   speed f        in motion at the start: its rates times f, gravity and springs as they are
 //   duration f     end times f
 //
-// At a speed f the end comes f times sooner: the way travelled stays comparable.
+// At speed f the end time is f times smaller, so that the distance travelled stays comparable.
 
 #include <momenta/core/scene/scene.h>
 

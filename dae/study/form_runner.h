@@ -1,5 +1,6 @@
 #pragma once
-// A form with its integrator, and what takes over where that finds the problem stiff.
+// A form with its integrator, and with the integrator that takes over where the first finds the
+// problem stiff.
 
 #include <momenta/dae/form/ode_form.h>
 #include <momenta/dae/solver/integration.h>

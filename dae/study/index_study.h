@@ -1,5 +1,6 @@
 #pragma once
-// The index of each form of one mechanism at one consistent point, and what IDA may assume of it.
+// The index of each form of one mechanism at one consistent state, and whether the convergence
+// theory of IDA's method covers it.
 
 #include <momenta/dae/measure/derivative_array.h>
 #include <momenta/dae/mechanism.h>

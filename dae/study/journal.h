@@ -1,10 +1,11 @@
 #pragma once
-// Finished runs of a study, kept in a file while it goes on: started again after it was killed, it
-// takes them over and makes the others.
+// The finished runs of a study, kept in a file while the study continues. A study that is started
+// again after it was killed takes them from there and makes the others.
 //
-// One line of JSON each: first which study it is and by which build of the program, then every
-// finished run under its key, appended in one piece. What a kill left of a last line counts as not
-// there. Runs of another build are not taken over: its numbers may be others.
+// The file has lines of JSON: the first says which study it is and which build of the program made
+// it; then each finished run has a line under its key, appended in one piece. An incomplete last
+// line, left when the study was killed, is ignored. Runs of another build are not taken, because
+// its numbers may differ.
 
 #include <atomic>
 #include <filesystem>

@@ -1,5 +1,5 @@
 #pragma once
-// An equilibrium of a mechanism, its small motions about it, and pictures of them.
+// An equilibrium of a mechanism, the small motions about it, and pictures of them.
 
 #include <momenta/dae/linear/spectrum.h>
 #include <momenta/dae/study/picture.h>

@@ -1,5 +1,5 @@
 #pragma once
-// From a mechanism to its picture, from the coordinates of a film to its motion.
+// Makes the picture of a mechanism, and its motion from the coordinates of a film.
 
 #include <momenta/dae/mechanism.h>
 #include <momenta/dae/study/picture.h>

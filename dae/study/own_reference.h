@@ -1,7 +1,7 @@
 #pragma once
-// A reference solution made by the program itself: form and integrator differ from those it judges
-// (acceleration form projected at every step, extrapolation in quadruple precision), and a second
-// solution with a looser tolerance tells how far it can be trusted.
+// A reference solution made by the program itself. Its form and integrator differ from those that
+// it judges: the acceleration form, projected at every step, with extrapolation in quadruple
+// precision. A second solution with a looser tolerance gives an estimate of its error.
 
 #include <momenta/dae/form/form.h>
 #include <momenta/dae/measure/reference.h>

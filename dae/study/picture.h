@@ -1,16 +1,16 @@
 #pragma once
-// What is drawn of a mechanism, and how it moved: for pages and figures.
+// The picture of a mechanism and its motion, for pages and figures.
 //
-// A body hangs on its parent by its joint. The place of body k, with R its axes and x its origin:
+// The pose of a body follows from that of its parent and from their joint. For body k with axes R
+// and origin x:
 //
 //   R_k = R_j T(t),   x_k = x_j + R_j s(t) − R_k c        j: parent, T: turn, s: slide
 //
-// c is the joint's point in the child. With T and s sampled, the ends of two links that share a
-// joint coincide at every instant, between the samples too: interpolating T and s cannot tear a
-// joint apart, as interpolating poses would. Of loops nothing of the kind is true; their gap is
-// sampled itself:
+// c is the point of the joint in the child. T and s are sampled, not poses: interpolated poses
+// would separate the two bodies at a joint, while with T and s their points coincide at every
+// instant, between the samples too. For loops this is not true; their gap is sampled:
 //
-//   g(t) = what of x_A − x_B the loop does not allow,   ground axes
+//   g(t) = the part of x_A − x_B that the loop does not allow,   ground axes
 
 #include <momenta/core/scene/scene.h>
 

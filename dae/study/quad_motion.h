@@ -1,8 +1,8 @@
 #pragma once
 // The motion of a mechanism in quadruple precision, for references: the acceleration form (3) with
-// its state (q, u) brought back onto Φ = 0, Φ̇ = 0, by the sweeps on 113 bits. Constants of the
-// model stay what they are in doubles, and so do drives: the motion is that of a mechanism whose
-// lengths and masses differ from the scene's by rounding.
+// its state (q, u) projected onto Φ = 0, Φ̇ = 0, by the sweeps with numbers of 113 bits. The
+// constants of the model and the drives stay in doubles: the motion is that of a mechanism whose
+// lengths and masses differ from those of the scene by rounding.
 
 #include <momenta/core/scalar/quad.h>
 #include <momenta/dae/mechanism.h>

@@ -1,6 +1,6 @@
 #pragma once
-// What is measured along a run: drift, energy, errors, rows that fade, at the output times and
-// between the steps. Of run_form.cpp alone.
+// The run monitor: measures drift, energy, errors and faded rows along a run, at the output times
+// and between the steps. Only run_form.cpp uses it.
 
 #include <momenta/dae/measure/growth.h>
 #include <momenta/dae/measure/multipliers.h>

@@ -1,5 +1,5 @@
 #pragma once
-// Runs as JSON that reads back bit for bit, for journals: all of a run but its trajectory.
+// A run as JSON that reads back bit by bit, for journals: all of a run except its trajectory.
 
 #include <momenta/dae/study/journal.h>
 #include <momenta/dae/study/own_reference.h>

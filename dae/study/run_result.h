@@ -1,5 +1,5 @@
 #pragma once
-// One run of one form by one integrator: what was asked, what came out. The rows of every table,
+// The settings and the result of one run of one form by one integrator: the rows of every table,
 // CSV, JSON and page.
 
 #include <momenta/dae/measure/growth.h>
@@ -15,16 +15,16 @@
 
 namespace momenta {
 
-inline constexpr int most_samples = 10'000'000;  ///< of a run
+inline constexpr int most_samples = 10'000'000;  ///< the most samples of a run
 
-/// What a run was told.
+/// The settings of a run.
 struct RunSettings {
   std::string form = "momentum";      ///< of form_names()
   std::string integrator = "dop853";  ///< of integrators()
-  std::string when_stiff;  ///< goes on from where the problem turns out stiff; empty: `integrator`
+  std::string when_stiff;  ///< integrator that takes over where the problem is stiff; empty: none
   std::string gauge = "none";    ///< none, leak:κ, reset, flip; empty for acceleration forms
   double rtol = 1e-8;            ///< relative tolerance
-  double atol = 1e-8;            ///< absolute one, in scales of the unknowns
+  double atol = 1e-8;            ///< absolute tolerance, in scales of the unknowns
   double step = 0;               ///< [s], 0 for adaptive integrators
   double end_time = 10;          ///< [s]
   int samples = 1000;            ///< output intervals
@@ -38,19 +38,19 @@ struct RunSettings {
                     ///< IDA's Newton matrix)
 };
 
-/// Time series at the output times, all of one length; what the charts draw and trajectory.csv
-/// holds.
+/// Time series at the output times, all of the same length; the charts draw them and trajectory.csv
+/// has them.
 struct Series {
   std::vector<double> t;                 ///< [s]
   std::vector<double> position_drift;    ///< |Φ(q, t)|₂ of rows in `RunResult::drift_unit`
-  std::vector<double> velocity_drift;    ///< |Φ̇(q, q̇, t)|₂ of these
-  std::vector<double> angle_drift;       ///< of rows in rad, beside others in m [rad]
+  std::vector<double> velocity_drift;    ///< |Φ̇(q, q̇, t)|₂ of the same rows
+  std::vector<double> angle_drift;       ///< of rows in rad, where others are in m [rad]
   std::vector<double> angle_rate_drift;  ///< [rad/s]
   std::vector<double> energy;  ///< T + V less the work of dampers and of wrenches without potential
                                ///< [J]; NaN with drives
   std::vector<double> energy_error;  ///< energy − energy(0) [J]
   std::vector<double> impulse;       ///< |σ|₂ of momentum forms, |λ|₂ of the others
-  /// Against the reference, max |err|/(1+|ref|); empty without one.
+  /// Position error against the reference, max |err|/(1+|ref|); empty without a reference.
   std::vector<double> position_error;
   std::vector<double> velocity_error;  ///< the same of rates
 };
@@ -61,27 +61,27 @@ struct Trajectory {
   std::vector<std::vector<double>> rows;  ///< each of columns.size()
 };
 
-/// What came out of a run.
+/// The result of a run.
 struct RunResult {
   std::string scene;     ///< its name
-  RunSettings settings;  ///< as it was told, defaults filled in
-  /// done, failed, time limit; came apart: the loops opened by more than a form may leave (apart.h)
+  RunSettings settings;  ///< as given, with defaults filled in
+  /// done, failed, time limit, or came apart: the loops opened by more than a form is allowed to
+  /// leave (apart.h)
   std::string status = "done";
   std::string reason;     ///< one sentence when not done
   double stopped_at = 0;  ///< [s]
-  /// Since when the steps of an explicit method were held by stability (solver/stiffness.h) [s].
+  /// Time [s] since which stability limited the steps of an explicit method (solver/stiffness.h).
   double stiff_from = not_measured;
-  /// Since when `settings.when_stiff` went on [s]; not_measured: it was not called.
+  /// Time [s] at which `settings.when_stiff` took over; not_measured: it did not.
   double changed_at = not_measured;
-  Counters counters;          ///< of the run
-  long partitions = 0;        ///< how often `partitioned` chose its coordinates, the start included
-  std::string jacobian;       ///< of implicit methods: "dual numbers", "difference quotient"
-  std::string linear_solver;  ///< of implicit methods: "dense LU", "KLU"
+  Counters counters;             ///< of the run
+  long partitions = 0;           ///< how often `partitioned` chose coordinates, the start included
+  std::string jacobian;          ///< of implicit methods: "dual numbers", "difference quotient"
+  std::string linear_solver;     ///< of implicit methods: "dense LU", "KLU"
   double cpu_s = not_measured;   ///< median of repeats, integration alone
   double wall_s = not_measured;  ///< likewise
   int repeats = 0;               ///< how many
-  /// Of the position drift and what follows it: m, or rad where all rows of Φ are angles; empty
-  /// without loops.
+  /// Unit of the position drift: m, or rad where all rows of Φ are angles; empty without loops.
   std::string drift_unit;
   /// Largest |Φ|₂ at the samples.
   double position_drift_max = not_measured;
@@ -89,14 +89,15 @@ struct RunResult {
   double between_steps_max = not_measured;   ///< largest |Φ|₂ between steps, before corrections
   Growth position_growth;                    ///< power law of the position drift
   Growth velocity_growth;                    ///< of the velocity drift
-  /// Of the rows in rad where others are in m [rad]; else not measured, likewise the next four.
+  /// Largest drift at the samples of the rows in rad, where other rows are in m [rad]; else not
+  /// measured, as are the next four.
   double angle_drift_max = not_measured;
   double angle_rate_drift_max = not_measured;     ///< [rad/s]
   double angle_between_steps_max = not_measured;  ///< [rad]
   Growth angle_growth;                            ///< power law of the angles' drift
   Growth angle_rate_growth;                       ///< of its rate
   double energy_error_max = not_measured;    ///< largest |energy − energy(0)| at the samples [J]
-  double kinetic_energy_max = not_measured;  ///< largest T at the samples [J]: rates compare to it
+  double kinetic_energy_max = not_measured;  ///< largest T at the samples [J], the scale of rates
   /// Largest T + |V − V(0)| at the samples [J]: energy errors compare to it.
   double energy_scale = not_measured;
   double position_error_max = not_measured;  ///< largest of Series::position_error
@@ -107,49 +108,51 @@ struct RunResult {
     std::string loop;  ///< its name
     std::string row;   ///< which of its equations
   };
-  std::vector<DependentRow> dependent_rows;  ///< none: the equations are independent there
-  /// What the start leaves open, one sentence; empty: nothing.
+  std::vector<DependentRow> dependent_rows;  ///< empty: the equations are independent there
+  /// One sentence on the residue of the start; empty where there is none.
   std::string residue;
-  /// Right-hand sides in which more rows faded than are redundant at the start: of ODE forms, near
-  /// singular poses, or where equations are nearly redundant.
+  /// Number of right-hand sides in which more rows faded than are redundant at the start: in ODE
+  /// forms, near singular poses, or where equations are nearly redundant.
   long weak_evaluations = 0;
-  /// A row that faded, in how many right-hand sides of the run; ODE forms.
+  /// A row that faded during the run; ODE forms.
   struct Faded {
     std::string loop;      ///< its name
     std::string row;       ///< which of its equations
     long evaluations = 0;  ///< in how many right-hand sides
   };
-  std::vector<Faded> faded_rows;  ///< none: the equations were independent
-  /// Where loop equations came near to losing rank, beyond what is redundant everywhere: the least
-  /// pivot on the way, relative to what it would be without other loops; it goes with the square of
-  /// the distance to the singular pose. Not where (7) is solved by KLU.
+  std::vector<Faded> faded_rows;  ///< empty: the equations were independent
+  /// A singular crossing: the run came near a pose where the loop equations lose more rank than
+  /// they lack everywhere. The least pivot is relative to its value without other loops; it is
+  /// proportional to the square of the distance to the singular pose. Not measured where KLU solves
+  /// (7).
   struct SingularCrossing {
     double t = 0;      ///< [s]
     double pivot = 0;  ///< least, 0: faded
-    /// The loops were open, in lengths of the scene, by as much as the pivot: motions that meet at
-    /// the pose are no longer told apart, and which one went on is chance.
+    /// The loops were open, in lengths of the scene, by as much as the pivot. Motions that meet at
+    /// the pose can then not be told apart, and chance decides which of them the run follows.
     bool ambiguous = false;
   };
   std::vector<SingularCrossing> singular_crossings;  ///< in the order of time
   double least_pivot = not_measured;                 ///< of the whole run
-  /// Loop forces of the trajectory that are not unique (measure/multipliers.h), where one is kept.
+  /// Loop forces of the trajectory that are not unique (measure/multipliers.h), where a trajectory
+  /// is kept.
   struct Undetermined {
     std::string column;  ///< of the trajectory
     long samples = 0;    ///< how many
     double from = 0;     ///< the first of them [s]
     double to = 0;       ///< the last [s]
   };
-  std::vector<Undetermined> undetermined;  ///< none: all are unique
+  std::vector<Undetermined> undetermined;  ///< empty: all are unique
   Series series;                           ///< measures at the output times
   Trajectory trajectory;                   ///< empty where none was asked for
   Film film;                               ///< empty where none was asked for
 };
 
-/// Unit of what is called position drift.
+/// Unit of the position drift of a run.
 inline std::string drift_unit(const RunResult& run) {
   return run.drift_unit.empty() ? "m" : run.drift_unit;
 }
-/// Whether a run has drifts of angles beside those of lengths.
+/// Whether a run has drifts of angles besides those of lengths.
 inline bool has_both_drifts(const RunResult& run) {
   return !run.series.angle_drift.empty() || !std::isnan(run.angle_drift_max);
 }
@@ -159,11 +162,11 @@ inline bool changed(const RunResult& run) {
   return !std::isnan(run.changed_at);
 }
 
-/// Where and how a result was made.
+/// The machine and the build that made a result.
 struct Environment {
   std::string cpu;         ///< its name
   std::string compiler;    ///< name and version
-  std::string flags;       ///< of what is not a kernel
+  std::string flags;       ///< compiler flags, kernels excepted
   std::string build_type;  ///< "Release"
   int level = 1;           ///< x86-64 level of the kernels
   std::vector<std::pair<std::string, std::string>>
@@ -171,7 +174,7 @@ struct Environment {
   std::string date;  ///< ISO 8601
 };
 
-/// What `momenta run`, `momenta drift` and `momenta work` produce.
+/// The result of `momenta run`, `momenta drift` and `momenta work`.
 struct StudyResult {
   std::string scene;       ///< its name
   std::string scene_file;  ///< its file, or empty
@@ -181,7 +184,7 @@ struct StudyResult {
   std::vector<std::pair<std::string, std::string>>
       plan;                     ///< lines of the plan, as `momenta check` prints them
   Picture picture;              ///< what the page draws
-  std::vector<Motion> motions;  ///< of each run with a film, or one of the start alone
+  std::vector<Motion> motions;  ///< one for each run with a film, or one of the start alone
   Environment environment;      ///< where it was made
   std::vector<RunResult> runs;  ///< the drift runs, one per form, then (work) further rungs
   bool drift_study = true;      ///< false: a ladder of tolerances

@@ -1,5 +1,5 @@
 #pragma once
-// Settings of a run: what is taken where nothing is said, and what is no setting.
+// Settings of a run: the defaults, and the check that the settings are valid.
 
 #include <momenta/dae/study/run_result.h>
 

@@ -1,8 +1,9 @@
 #pragma once
-// Where a run passes poses at which its loop equations lose rank: least pivots below 1e-2 of their
-// scale and of the largest on the run, one for each time the run goes there, and whether the motion
-// was sure to stay its own. A pivot goes with the square of the distance to the singular pose:
-// loops that are weak throughout come near none.
+// Singular crossings: where a run passes poses at which its loop equations lose rank. A crossing is
+// a least pivot below 1e-2 of its scale and below 1e-2 of the largest pivot of the run; there is
+// one for each passage, with a mark where the motion may have changed to another one. A pivot is
+// proportional to the square of the distance to the singular pose. Loops that are weak during the
+// whole run have no crossing.
 
 #include <momenta/dae/form/ode_form.h>
 #include <momenta/dae/study/run_form.h>

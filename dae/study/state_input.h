@@ -1,7 +1,7 @@
 #pragma once
-// STATE of --at: {"t": 0, "q": {"O": [..], …}, "v": {…} or "p": {…}, "tau": {…}} by joint name,
-// from a file, from standard input ("-") or written out. What reads a state takes all of it,
-// what starts from one q and v.
+// The STATE of --at: {"t": 0, "q": {"O": [..], …}, "v": {…} or "p": {…}, "tau": {…}}, by joint
+// name, from a file, from standard input ("-") or as the text itself. Evaluations at a state take
+// all of it; starts from a state take q and v.
 
 #include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/study/state_values.h>

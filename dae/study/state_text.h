@@ -1,6 +1,6 @@
 #pragma once
-// A STATE as text: JSON with values by joint name, from a file, from standard input ("-") or
-// written out.
+// A STATE as text: JSON with values by joint name, from a file, from standard input ("-") or as the
+// text itself.
 
 #include <nlohmann/json.hpp>
 #include <span>

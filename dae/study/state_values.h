@@ -1,23 +1,23 @@
 #pragma once
-// Everything there is to know of a mechanism at one state: what each equation of the paper gives
-// there, energies and whole momenta, and what joints and loops transmit.
+// All values of a mechanism at one state: the results of each equation of the paper, energies,
+// centroidal momentum, and the wrenches that joints and loops transmit.
 //
 //   given v     p = M v (34), σ = 0 (the gauge in which p has no loop impulses)
 //   given p     without loops v by (45); with loops v and σ solve (7): M v + Φ_qᵀσ = p,
-//               Φ_q v = −Φ_t. p then has Φ_qᵀσ in it
+//               Φ_q v = −Φ_t. p then includes Φ_qᵀσ
 //   both        ṗ by (35), with loops by (8) without a leak;
-//               bias:       M u̇ + bias = 0 moves the tree without loops: what must be added along
-//                           the joints to hold u̇ = 0
+//               bias:       M u̇ + bias = 0 moves the tree without loops: bias is the joint force to
+//                           add for u̇ = 0
 //               free:       M u̇ = −bias, as if no loop were there
 //               constrained: (3), M u̇ + Φ_qᵀλ = −bias, Φ_q u̇ = −(Φ̈ at u̇ = 0)
 //
-// Joints without inertia (unheld_joints.h) have no accelerations, or any: with N the
-// motions that no inertia, and in (3) no loop, holds, M u̇ = r has a solution only where Nᵀr = 0,
-// and then those of the joints that take part in N are not determined, the others are. What does
-// not exist is NaN: all of u̇ and λ, or those joints' u̇.
+// Joints without inertia (unheld_joints.h) have no accelerations, or undetermined ones. Let N be
+// the motions that no inertia, and in (3) no loop, holds. M u̇ = r has a solution only where Nᵀr =
+// 0; then the accelerations of the joints that take part in N are not determined, the others are.
+// What does not exist is NaN: all of u̇ and λ, or u̇ of those joints.
 //
-// τ is a further generalised force along the joints; it counts among the applied ones everywhere.
-// Without loops everything but M is O(bodies), and no system of loops is built.
+// τ is a further generalised force along the joints; it is one of the applied forces everywhere.
+// Without loops everything except M is O(bodies), and no system of loops is built.
 
 #include <momenta/core/centroidal.h>
 #include <momenta/dae/kkt/loop_rank.h>

@@ -1,15 +1,16 @@
 #pragma once
-// Which form survives what: ladders of ever harder scenes, every contestant up each of them until
-// it fails, and how it failed.
+// The stress study: which form survives which scenes. A ladder is a series of scenes of increasing
+// difficulty; each form with its integrator is run up each ladder until it fails, and the kind of
+// failure is recorded.
 //
-// A run has survived when it came to its end within the time allowed and
+// A run has survived when it reached its end within the time limit and
 //
 //   position drift   max |Φ| / length of the scene
 //   energy    max |E(t) − E(0)| / max (T + |V − V(0)|)
 //   error     max |q − q_ref| / (1 + |q_ref|), where there is a reference
 //
-// are all within one bound. Else the verdict tells the two kinds of failure apart: a run that
-// stopped, or took too long, said so; one that went wrong did not.
+// are all within one bound. Otherwise the verdict distinguishes two kinds of failure: a run that
+// stopped or took too long reported it; a run with wrong results did not.
 
 #include <momenta/dae/study/extremes.h>
 #include <momenta/dae/study/journal.h>

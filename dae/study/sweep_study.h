@@ -1,8 +1,8 @@
 #pragma once
-// A scene with some of its numbers varied: one run for each combination of values.
+// The sweep study: some numbers of a scene are varied, with one run for each combination of values.
 //
-// Cases are numbered from 0, the last varied number changing fastest. A case depends on its number
-// alone, so that threads, processes and interrupted studies all come to the same results.
+// Cases are numbered from 0; the last varied number changes fastest. A case depends on its number
+// alone, so threads, processes and continued studies give the same results.
 
 #include <momenta/core/scene/toml/setting.h>
 #include <momenta/dae/mechanism.h>

@@ -1,8 +1,9 @@
 #pragma once
-// How long finished runs take with nobody looking: rounds over all of them, so that a drifting
-// clock hurts all alike, and medians. A run takes part until its median is settled. Of n times with
-// quartiles q1, q3 the standard error of the median m is about 0.93 (q3 − q1) / √n (of normal
-// scatter); a run has settled where that is below 2 % of m, after two rounds at the earliest.
+// The time of finished runs without measuring. They are timed in rounds over all of them, so that a
+// drift of the clock affects all alike, and the median is taken. A run takes part until its median
+// is settled. For n times with quartiles q1, q3 and normal scatter, the standard error of the
+// median m is about 0.93 (q3 − q1) / √n; the median is settled when that is below 2 % of m, after
+// two rounds at the earliest.
 
 #include <momenta/dae/study/journal.h>
 #include <momenta/dae/study/run_form.h>
@@ -15,29 +16,30 @@ namespace momenta {
 
 /// How runs are timed.
 enum class Timing {
-  none,   ///< not at all: times are not_measured
+  none,   ///< no timing: times are not_measured
   once,   ///< one run each
   rounds  ///< until medians are settled
 };
-/// By name: none, once, rounds. @throws std::invalid_argument
+/// Reads none, once or rounds. @throws std::invalid_argument
 Timing timing_named(const std::string& name);
 
-/// Whether more times would hardly move the median of these.
+/// Whether the median of these times is settled.
 bool is_settled(std::vector<double> times);
 
-/// How time_runs is to go.
+/// Options of time_runs.
 struct TimingRequest {
   Timing how = Timing::rounds;  ///< how often
-  /// [s] of processor time a run, past which it takes no further round: a run of more than a second
-  /// averages over its own steps.
+  /// Processor time per run [s] after which the run takes part in no further round: a run of more
+  /// than a second already averages over its own steps.
   double budget = 1;
-  Journal* journal = nullptr;  ///< every time is recorded, and taken from it when a study goes on
-  std::function<bool(std::size_t)> going_on;  ///< asked before each run, with its number
-  std::function<bool()> at_step;              ///< asked after each step; false ends it all
+  /// Every time is recorded in it, and taken from it when a study continues.
+  Journal* journal = nullptr;
+  std::function<bool(std::size_t)> going_on;  ///< asked before each run, by number; false: stop
+  std::function<bool()> at_step;              ///< asked after each step; false: stop
 };
 
-/// Medians in cpu_s, wall_s of all runs that are done; counters become those of a run with nobody
-/// looking: without the stages and solutions that looking on takes.
+/// Sets cpu_s and wall_s of all runs that are done to their medians, and their counters to those of
+/// a run without measuring: without the stages and solutions that measuring takes.
 void time_runs(const Mechanism& mechanism, const Start& start, std::vector<RunResult>& runs,
                const TimingRequest& request);
 

@@ -1,6 +1,6 @@
 #pragma once
-// Error against run time: every form and integrator asked for, each over a ladder of tolerances, or
-// of steps where a method has no error control.
+// The work-precision study: error against run time, for every requested form and integrator, over a
+// ladder of tolerances, or of steps where a method has no error control.
 
 #include <momenta/dae/study/journal.h>
 #include <momenta/dae/study/timing.h>

@@ -1,6 +1,6 @@
 #pragma once
-// A scene from a file, in whichever format. The readers of the formats stand below; with this
-// header come parse_scene() for TOML that is no file, and validate().
+// Reads a scene from a file of any supported format. This header also brings parse_scene(), for
+// TOML text that is not in a file, and validate().
 
 #include <momenta/core/scene/scene.h>
 #include <momenta/core/scene/toml/parse_scene.h>
@@ -11,13 +11,13 @@
 
 namespace momenta {
 
-/// Reads a scene: URDF or MJCF where the file ends in .urdf, .xml or .mjcf, by its root element,
-/// else TOML. @throws SceneError: one sentence with file, line and column, the key or name at
-/// fault, what was found and what was expected. Cost O(size of file); files over 64 MiB are refused
-/// unread.
+/// Reads a scene. A file whose name ends in .urdf, .xml or .mjcf is URDF or MJCF, as its root
+/// element says; any other is TOML. @throws SceneError: one sentence with file, line and column,
+/// the key or name at fault, what was found and what was expected. Cost O(size of file); files over
+/// 64 MiB are refused without reading them.
 Scene read_scene(const std::filesystem::path& file, const ReadOptions& options = {});
 
-/// False for the endings .urdf, .xml and .mjcf.
+/// Whether read_scene() reads this file as TOML: false for the endings .urdf, .xml and .mjcf.
 bool is_toml(const std::filesystem::path& file);
 
 }  // namespace momenta

@@ -3,11 +3,11 @@
 
 namespace momenta {
 
-/// What a URDF does not say.
+/// Options for URDF files: what the format itself cannot say.
 struct ReadOptions {
-  /// YAML file with the loops; empty: the one beside the URDF under its name, if there is one.
+  /// YAML file with the loops; empty: the file of the same name beside the URDF, if there is one.
   std::filesystem::path loops;
-  bool free_root = false;  ///< the root link floats; else it is fixed to the ground
+  bool free_root = false;  ///< true: the root link floats; false: it is fixed to the ground
 };
 
 }  // namespace momenta

@@ -1,16 +1,16 @@
-"""Constrained multibody systems on canonical momenta: open chains, closed loops, and how far they drift.
+"""Constrained multibody systems on canonical momenta: open chains, closed loops, and their drift.
 
     m = momenta.load('examples/four_bar/scene.toml')
     run = m.run(form='momentum', end=10)
     run.t, run['B.x']
     run.plot()
 
-A scene is a file, TOML text, or a Scene built here. SI units and radians; arrays are float64.
+A scene is a file, TOML text, or a Scene built in Python. SI units and radians; arrays are float64.
 t: time [s]; q: coordinates (nq); u: rates (nv); p: momenta (nv); sigma, lambda_: impulse and force
 multipliers of the loops (m). One Mechanism serves one thread at a time.
 
-Methods of Mechanism take and give NumPy arrays. The functions evaluate, index, sweep and view are the
-program's verbs: they take what it takes and give what it writes.
+Methods of Mechanism take and return NumPy arrays. The functions evaluate, index, sweep and view are the
+verbs of the program: they take the same input and return what the program writes.
 """
 
 from ._momenta import Mechanism, Run, SceneError, Start, __version__, forms, integrators

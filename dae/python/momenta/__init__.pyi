@@ -1,4 +1,4 @@
-# What momenta offers, for editors and type checkers; a test holds it against the package.
+# Types of the package momenta, for editors and type checkers; a test compares them with the package.
 
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence

@@ -1,4 +1,4 @@
-"""Plots in one call, by matplotlib where it is: run.plot(), study.plot(), sweep.plot()."""
+"""Plots in one call, by matplotlib where it is installed: run.plot(), study.plot(), sweep.plot()."""
 
 import numpy
 
@@ -6,7 +6,7 @@ from . import _momenta
 
 
 class Study(list):
-    """Runs side by side, a list of Run: of Mechanism.drift, or the ladders of Mechanism.work."""
+    """A list of Run, from Mechanism.drift or, as ladders of tolerances, from Mechanism.work."""
 
     def __init__(self, runs=(), ladder=False):
         super().__init__(runs)
@@ -14,16 +14,16 @@ class Study(list):
 
     @property
     def table(self):
-        """A row for each run, as the program prints them."""
+        """The table of the runs, one row each, as the program prints it."""
         return _momenta.table(list(self), self.ladder)
 
     def __repr__(self):
         return self.table.rstrip()
 
     def plot(self, what=None, *, ax=None):
-        """Draws the runs of drift over time, position_drift if `what` names nothing else of
-        theirs, such as velocity_drift or energy_error; the runs of work by error and processor
-        time. Gives the axes."""
+        """Draws the runs. For a drift study it draws `what` over time: position_drift by default, or
+        another series of the runs, such as velocity_drift or energy_error. For the runs of work it
+        draws processor time over error. Returns the axes."""
         ax = axes(ax)
         if self.ladder and what is None:
             for name in dict.fromkeys(map(_name, self)):
@@ -42,8 +42,8 @@ class Study(list):
 
 
 def plot_run(self, *columns, ax=None):
-    """Draws columns of the trajectory over time, by their names; without names the drifts and the
-    energy error. Gives the axes."""
+    """Draws columns of the trajectory over time, by their names; without names it draws the drifts
+    and the energy error. Returns the axes."""
     ax = axes(ax)
     for name in columns:
         ax.plot(self.t, self[name], label=name)
@@ -67,7 +67,7 @@ def _name(run):
 
 
 def axes(given):
-    """Those that are given, else new ones. Raises ImportError where there is no matplotlib."""
+    """The given axes, else new ones. Raises ImportError where there is no matplotlib."""
     if given is not None:
         return given
     try:

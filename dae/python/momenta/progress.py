@@ -1,10 +1,10 @@
-"""How far a long call is, as one line of plain text: on terminals and in notebooks alike."""
+"""The progress of a long call as one line of plain text, on terminals and in notebooks."""
 
 import sys
 
 
 def teller(progress):
-    """The function of (fraction, text) that an argument `progress` means; None: tell nothing."""
+    """The function of (fraction, text) for an argument `progress`; None: no progress is shown."""
     if progress is None or progress is False:
         return None
     if progress is True:
@@ -17,7 +17,7 @@ def teller(progress):
 
 
 def _line(fraction, text):
-    """Writes on standard error, over what it wrote before; a fraction of 1 ends the line."""
+    """Writes on standard error, over the line written before; a fraction of 1 ends the line."""
     end = "\n" if fraction >= 1 else ""
     sys.stderr.write(f"\r{100 * fraction:3.0f} %  {text[:60]:60}{end}")
     sys.stderr.flush()

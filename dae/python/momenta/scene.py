@@ -1,6 +1,6 @@
-"""A scene put together in Python: tables of keys, as docs/reference/scene.md has them, written as TOML.
+"""A scene built in Python: tables of keys, as in docs/reference/scene.md, written as TOML.
 
-What the keys mean and what they may hold is decided where scene files are read, and nowhere else.
+The reader of scene files alone decides what the keys mean and which values they may have.
 """
 
 import copy
@@ -10,7 +10,7 @@ import re
 
 from . import _momenta
 
-# Of a scene's keys those that are lists of tables, and those that are one table.
+# Keys of a scene whose value is a list of tables, and keys whose value is one table.
 _LISTS = ("body", "joint", "loop", "drive", "force", "marker")
 _TABLES = ("assembly", "run")
 
@@ -23,8 +23,8 @@ class Scene:
     s.joint('O', 'revolute', child='rod', position=0.5)
     run = s.load().run(end=10)
 
-    Every call gives the scene back, so that calls may be chained. Keys that are None are left out.
-    Mistakes are told by load(): one sentence, a SceneError.
+    body, joint, loop, drive, force, spring, marker, assembly and run return the scene, so that calls
+    can be chained. Keys that are None are left out. load() reports mistakes: a SceneError, one sentence.
     """
 
     def __init__(self, name="", **keys):
@@ -41,13 +41,13 @@ class Scene:
         return self._add("joint", name=name, kind=kind, **keys)
 
     def loop(self, name, kind, **keys):
-        """Adds what closes a loop: parent, child, origin [m], rotation, axis, axis2, direction; length
-        [m] of a distance; joints, ratios, coordinates, offset of a coupler."""
+        """Adds a joint that closes a loop, or a coupler: parent, child, origin [m], rotation, axis, axis2,
+        direction; length [m] of a distance; joints, ratios, coordinates, offset of a coupler."""
         return self._add("loop", name=name, kind=kind, **keys)
 
     def drive(self, kind, **keys):
-        """Adds a motion prescribed to a joint or a loop by the law polynomial, harmonic, step or
-        table: joint or loop, coordinate, and the keys of the law."""
+        """Adds a drive, which prescribes a motion of a joint or a loop. `kind` is its law: polynomial,
+        harmonic, step or table. Keys: joint or loop, coordinate, and the keys of the law."""
         return self._add("drive", kind=kind, **keys)
 
     def force(self, kind, **keys):
@@ -61,21 +61,20 @@ class Scene:
         return self.force("spring-damper", **keys)
 
     def marker(self, name, body, **keys):
-        """Adds a point whose motion is recorded: point [m], body axes."""
+        """Adds a point of a body whose motion is recorded: point [m], in body axes."""
         return self._add("marker", name=name, body=body, **keys)
 
     def assembly(self, **keys):
-        """Sets keys of [assembly]: hold, the joints that assembly leaves where they are."""
+        """Sets keys of [assembly]: hold, the joints that assembly does not move."""
         return self._put(self._keys.setdefault("assembly", {}), keys)
 
     def run(self, **keys):
-        """Sets keys of [run], what a run takes where nothing else is said: end [s], step [s], samples,
-        leak [1/s], project."""
+        """Sets keys of [run], the defaults of a run: end [s], step [s], samples, leak [1/s], project."""
         return self._put(self._keys.setdefault("run", {}), keys)
 
     @classmethod
     def from_dict(cls, keys):
-        """The scene of a dict like the one that tomllib reads from a scene file."""
+        """A scene from a dict like the one that tomllib reads from a scene file."""
         if not isinstance(keys, dict):
             raise TypeError(f"a scene is made from a dict, found {type(keys).__name__}")
         return cls(**keys)
@@ -96,7 +95,7 @@ class Scene:
         return text
 
     def save(self, file):
-        """Writes the scene file, whole or not at all."""
+        """Writes the scene file completely, or not at all."""
         _momenta.write(os.fspath(file), self.to_toml())
 
     def load(self, algebra="auto", kkt="auto", *, at=None):
@@ -129,7 +128,8 @@ def _is_table(key, x):
 
 
 def _plain(x):
-    """Arrays and numbers of NumPy as Python's own; copies, so that a scene is nobody else's."""
+    """Converts arrays and numbers of NumPy to Python's types; copies lists and dicts, so that no other
+    object shares them."""
     if hasattr(x, "tolist"):
         x = x.tolist()
     if isinstance(x, dict):

@@ -1,4 +1,4 @@
-"""Sweeps over numbers of a scene, as the program's verb makes them."""
+"""Sweeps over numbers of a scene, as in the verb `sweep` of the program."""
 
 import concurrent.futures
 import csv
@@ -22,9 +22,9 @@ _RUN_ARGUMENTS -= {"self", "reference", "progress"}
 def sweep(scene, vary, *, watch=(), threads=0, progress=None, **run):
     """One run for each combination of varied numbers of a scene: docs/reference/sweep.md.
 
-    `vary`: {'body.crank.mass': [1, 2], 'gravity.1': '0:-9.81:5'}, or texts 'PLACE=VALUES'; `watch`:
-    columns of the trajectory; `threads`: 0, one for each processor; further arguments: those of
-    Mechanism.run but for `reference`. Gives a Sweep.
+    `vary`: {'body.crank.mass': [1, 2], 'gravity.1': '0:-9.81:5'}, or strings 'PLACE=VALUES'; `watch`:
+    columns of the trajectory; `threads`: how many run at a time, 0: one for each processor. Further
+    arguments are those of Mechanism.run except `reference`. Returns a Sweep.
     """
     mechanism = _ready(scene)
     name = mechanism.name if mechanism is scene else _text_of(scene)[1]
@@ -51,9 +51,10 @@ def sweep(scene, vary, *, watch=(), threads=0, progress=None, **run):
 
 
 class Sweep:
-    """What came of each case of a sweep: sweep['B.y last'] is a column, an array or a list of strings.
+    """The results of a sweep, one row per case: sweep['B.y last'] is a column, an array or a list of
+    strings.
 
-    `csv`, `json`, `table`: what the program writes into sweep.csv and sweep.json and prints.
+    `csv` and `json`: what the program writes into sweep.csv and sweep.json; `table`: what it prints.
     """
 
     def __init__(self, csv_text, json_dict, table):
@@ -80,7 +81,8 @@ class Sweep:
         return self.table.rstrip()
 
     def plot(self, column="position_drift_max", *, ax=None):
-        """Draws a column over the number varied first, one line for each combination of the others."""
+        """Draws a column over the first varied number, one line for each combination of the others.
+        Returns the axes."""
         first, *others = [varied["place"] for varied in self.json["varied"]]
         ax = axes(ax)
         x, y = self[first], self[column]

@@ -1,4 +1,4 @@
-"""Scenes from wherever they are, and the program's verbs evaluate, index and view."""
+"""Reading of scenes, and the verbs evaluate, index and view of the program."""
 
 import html
 import json
@@ -11,10 +11,10 @@ from .scene import Scene
 def load(scene, algebra="auto", kkt="auto", *, loops="", free_root=False, at=None):
     """A Mechanism from a scene file (TOML, URDF or MJCF), TOML text, a Scene or a dict of its keys.
 
-    A string with a line break is text, any other a path. `algebra`: auto, planar or spatial; `kkt`:
-    auto, sweeps, sparse or dense; `loops`, `free_root`: of a URDF, a file with its loops, and whether
-    its root floats; `at`: start values in place of the scene's, {'q': {joint: ...}, 'v': {...}}.
-    Raises SceneError: one sentence with file, line and what is wrong.
+    A string with a line break is text, any other string is a path. `algebra`: auto, planar or spatial;
+    `kkt`: auto, sweeps, sparse or dense; `loops`: a file with the loops of a URDF; `free_root`: whether
+    the root link of a URDF floats; `at`: start values instead of the scene's, {'q': {joint: ...},
+    'v': {...}}. Raises SceneError: one sentence with file, line and what is wrong.
     """
     at = _state(at)
     text, name = _text_of(scene)
@@ -28,39 +28,40 @@ def load(scene, algebra="auto", kkt="auto", *, loops="", free_root=False, at=Non
 
 
 def parse(text, name="scene", algebra="auto", kkt="auto"):
-    """A Mechanism from TOML text; `name` stands in messages."""
+    """A Mechanism from TOML text; messages name the text by `name`."""
     return _momenta.parse(text, name, "", algebra, kkt)
 
 
 def evaluate(scene, at=None):
-    """Everything at one state, as the program's verb writes it; keys: docs/reference/evaluate.md.
+    """All values at one state, as the verb `evaluate` writes them; keys: docs/reference/evaluate.md.
 
     `scene`: a Mechanism, or what load() takes. `at`: {'t': 0, 'q': {joint: ...}, 'v' or 'p': {...},
-    'tau': {...}}, a JSON file or its text; what is left out is the start of the scene.
+    'tau': {...}}, a JSON file or its text; values left out are those of the start of the scene.
     """
     return json.loads(_momenta.evaluate(_ready(scene), _state(at) or "{}"))
 
 
 def index(scene, forms=(), at=None, *, progress=None):
-    """The differentiation index of each form, by numbers, and its hidden constraints, as the
-    program's verb writes it.
+    """The differentiation index of each form, found numerically, and its hidden constraints, as the verb
+    `index` writes them.
 
-    `forms`: names, all if empty; `at`: a consistent state, as for evaluate(), else the start.
+    `forms`: names of forms, empty: all; `at`: a consistent state, as for evaluate(), by default the
+    start.
     """
     return json.loads(_momenta.index(_ready(scene), list(forms), _state(at), progress))
 
 
 def view(scene):
-    """A Page that shows the assembled mechanism, to turn and to zoom, as the program's verb writes it."""
+    """A Page of the assembled mechanism, to be turned and zoomed, as the verb `view` writes it."""
     name = "" if isinstance(scene, _momenta.Mechanism) else _text_of(scene)[1]
     return Page(_momenta.page(_ready(scene), name))
 
 
 class Page(str):
-    """One HTML page, complete in itself. A notebook shows it; save() writes it."""
+    """An HTML page without external files. A notebook shows it; save() writes it."""
 
     def save(self, file):
-        """Writes the page, whole or not at all."""
+        """Writes the page completely, or not at all."""
         _momenta.write(os.fspath(file), str(self))
 
     def _repr_html_(self):
@@ -76,7 +77,7 @@ def _ready(scene):
 
 
 def _text_of(scene):
-    """(TOML text, its name in messages); of a file (None, its path)."""
+    """(TOML text, its name in messages); for a file (None, its path)."""
     if isinstance(scene, dict):
         scene = Scene.from_dict(scene)
     if isinstance(scene, Scene):
@@ -96,7 +97,7 @@ def _numbers(x):
 
 
 def _state(at):
-    """A state as the reader of states takes it: text, or the path of a file."""
+    """A state in the form that the reader of states takes: text, or the path of a file."""
     if at is None:
         return ""
     if isinstance(at, dict):

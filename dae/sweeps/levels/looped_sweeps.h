@@ -1,5 +1,6 @@
 #pragma once
-// What the sweeps that carry loops can do, whatever the algebra, the level and the number of slots.
+// The interface of the sweeps that carry loops, the same for every algebra, level and number of
+// slots.
 
 #include <momenta/dae/sweeps/slots/right_side.h>
 
@@ -19,40 +20,42 @@ struct LoopedStates {
   std::size_t count;      ///< how many states
 };
 
-/// The sweeps that carry the loops of one mechanism, with their workspace: one object a thread.
+/// The sweeps that carry the loops of one mechanism, with their workspace: one object per thread.
 /// Made by Mechanism::looped_sweeps().
 class LoopedSweeps {
  public:
   virtual ~LoopedSweeps() = default;
 
-  /// u (nv) and σ (m) of (7) from p (nv); with right.rates ṗ (nv) of (8), forces between points of
-  /// bodies left out. False when a joint has no inertia: singular_joint().
+  /// u (nv) and σ (m) of (7) from p (nv); with right.rates also ṗ (nv) of (8), without forces
+  /// between points of bodies unless right.body_forces. False when a joint has no inertia:
+  /// singular_joint().
   virtual bool momentum(double t, const double* q, const double* p, const RightSide<double>& right,
                         double* u, double* sigma, double* pdot) = 0;
-  /// u̇ (nv) and λ (m) of (3) from u and all generalised forces τ (nv) but the weights'.
-  /// @pre No compliance where ties are paired anew, here and in momentum().
+  /// u̇ (nv) and λ (m) of (3) from u and the generalised forces τ (nv), weights excluded. @pre No
+  /// compliance where loops are paired anew (Mechanism::pairs_anew), here and in momentum().
   virtual bool acceleration(double t, const double* q, const double* u, const double* tau,
                             const RightSide<double>& right, double* udot, double* lambda) = 0;
-  /// momentum() with rates for many states, `width()` at a time; no centre. False when some state
-  /// has a joint without inertia.
+  /// momentum() with rates for many states, `width()` at a time, with centre zero. False when a
+  /// joint has no inertia in some state.
   virtual bool momentum(double t, const LoopedStates& states, double fade, double leak) = 0;
 
-  /// Rows of Φ that faded in the last solution of one state: that of momentum(), or acceleration().
-  /// Returns their number; `rows` has room for m.
+  /// Rows of Φ that faded in the last solution of one state by momentum(), or by acceleration()
+  /// where `of_momentum` is false. Returns their number; `rows` has room for m.
   virtual std::size_t faded_rows(int* rows, bool of_momentum) const = 0;
-  /// The weakest pivot of that solution which has not faded, over τ, and how many have.
+  /// The pivots of a solution: the weakest that has not faded, over its scale τ, and the number of
+  /// faded ones.
   struct Pivots {
     double weakest = std::numeric_limits<double>::infinity();  ///< none: infinite
     int faded = 0;                                             ///< how many
   };
-  /// Of the last momentum(), or acceleration(), of one state.
+  /// The pivots of the last solution of one state by momentum(), or by acceleration().
   virtual Pivots pivots(bool of_momentum) const = 0;
   virtual int slots() const = 0;  ///< equations open at once, at most
   virtual int width() const = 0;  ///< states side by side
   /// Place in u of the joint at which the last call failed.
   virtual int singular_joint() const = 0;
-  /// Whether the last call closed a folded branch, of one state or of some of many, on too weak a
-  /// pivot: its solution is then wrong.
+  /// Whether the last call closed a folded branch on too weak a pivot, in its state or in one of
+  /// many: the solution is then wrong.
   virtual bool weak_looped_branch() const = 0;
 };
 
