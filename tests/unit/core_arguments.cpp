@@ -2,9 +2,13 @@
 // name, before anything is read or written.
 #include <gtest/gtest.h>
 #include <momenta/core/open_chain.h>
+#include <momenta/core/scalar/all_finite.h>
 
+#include <cmath>
 #include <functional>
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include "equations/random_tree.h"
 
@@ -95,6 +99,23 @@ TEST_F(Arguments, ThatAreNoNumbersAreTold) {
   // The next good call is good again.
   EXPECT_TRUE(chain_.rates(0, q_, p_, qdot_, pdot_)) << chain_.failure();
   EXPECT_EQ(chain_.failure(), "");
+}
+
+TEST(AllFinite, IsTheQuestionAskedOfEachNumber) {
+  const double limits[] = {
+      0.0, -0.0, 5e-324, -1.0, 1.7976931348623157e308, -1.7976931348623157e308};
+  for (const double none : {std::numeric_limits<double>::quiet_NaN(),
+                            -std::numeric_limits<double>::quiet_NaN(), HUGE_VAL, -HUGE_VAL})
+    for (std::size_t n = 0; n < 9; ++n) {
+      std::vector<double> x(n);
+      for (std::size_t i = 0; i < n; ++i) x[i] = limits[i % 6];
+      EXPECT_TRUE(all_finite(x.data(), n));
+      for (std::size_t i = 0; i < n; ++i) {
+        const double was = std::exchange(x[i], none);
+        EXPECT_FALSE(all_finite(x.data(), n)) << i << " of " << n << ", " << none;
+        x[i] = was;
+      }
+    }
 }
 
 }  // namespace
