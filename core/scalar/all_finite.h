@@ -4,6 +4,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 namespace momenta {
 
@@ -15,6 +16,10 @@ inline bool all_finite(const double* x, std::size_t n) {
   std::uint64_t met = 0;
   for (std::size_t i = 0; i < n; ++i) met |= (std::bit_cast<std::uint64_t>(x[i]) & exponent) + one;
   return met >> 63 == 0;
+}
+/// Likewise.
+inline bool all_finite(const std::vector<double>& x) {
+  return all_finite(x.data(), x.size());
 }
 
 }  // namespace momenta
