@@ -15,8 +15,6 @@ struct DenseLeastSquares::Factors {
 
 DenseLeastSquares::DenseLeastSquares() : factors_(std::make_unique<Factors>()) {}
 DenseLeastSquares::~DenseLeastSquares() = default;
-DenseLeastSquares::DenseLeastSquares(DenseLeastSquares&&) noexcept = default;
-DenseLeastSquares& DenseLeastSquares::operator=(DenseLeastSquares&&) noexcept = default;
 
 void DenseLeastSquares::compute(const MatrixXd& a, double threshold) {
   factors_->complete.setThreshold(threshold);
@@ -33,10 +31,6 @@ void DenseLeastSquares::compute(const MatrixXd& a) {
 void DenseLeastSquares::compute_full_rank(const MatrixXd& a) {
   factors_->of_full_rank.compute(a);
   factors_->full_rank = true;
-}
-
-Eigen::Index DenseLeastSquares::rank() const {
-  return factors_->complete.rank();
 }
 
 MatrixXd DenseLeastSquares::solve(const MatrixXd& b) const {

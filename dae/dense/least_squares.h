@@ -11,8 +11,6 @@ class DenseLeastSquares {
  public:
   DenseLeastSquares();
   ~DenseLeastSquares();
-  DenseLeastSquares(DenseLeastSquares&&) noexcept;
-  DenseLeastSquares& operator=(DenseLeastSquares&&) noexcept;
 
   /// Of A (m × n), A P = Q (R 0; 0 0) Z: pivots below `threshold` of the largest are none.
   /// O(m n min(m, n)).
@@ -22,8 +20,6 @@ class DenseLeastSquares {
   /// Of A of full column rank, m ≥ n: A = Q R.
   void compute_full_rank(const Eigen::MatrixXd& a);
 
-  /// @pre not after compute_full_rank()
-  Eigen::Index rank() const;
   /// The x of least |x| among those of least |A x − b|, for each column b.
   Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const;
   Eigen::VectorXd solve(const Eigen::VectorXd& b) const;
