@@ -17,7 +17,7 @@
 #include <string>
 #include <vector>
 
-namespace momenta {
+namespace momenta::dae_digests {
 namespace {
 
 const std::filesystem::path source = MOMENTA_SOURCE_DIR;
@@ -156,4 +156,4 @@ TEST_F(Digests, OfTheSameRunAreTheSame) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::dae_digests

@@ -11,7 +11,7 @@
 #include <string>
 #include <utility>
 
-namespace momenta {
+namespace momenta::dae_examples {
 namespace {
 
 const std::filesystem::path examples = std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples";
@@ -257,4 +257,4 @@ TEST(Examples, LightCartMeetsItsReference) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::dae_examples

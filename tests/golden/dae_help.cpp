@@ -11,9 +11,8 @@
 
 #include "golden/program.h"
 
+namespace momenta::golden::dae_help {
 namespace {
-
-using namespace momenta::golden;
 
 std::vector<std::string> lines_of(const std::string& text) {
   std::vector<std::string> lines;
@@ -261,3 +260,5 @@ TEST_F(Help, ZshCompletes) {
 }
 
 }  // namespace
+
+}  // namespace momenta::golden::dae_help

@@ -15,7 +15,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-namespace momenta {
+namespace momenta::dae_models {
 namespace {
 
 namespace fs = std::filesystem;
@@ -335,4 +335,4 @@ INSTANTIATE_TEST_SUITE_P(ByOthers, Models, testing::Range(std::size_t{0}, models
                          });
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::dae_models

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-namespace momenta::golden {
+namespace momenta::golden::dae_modes {
 namespace {
 
 using ModesOfTheProgram = Program;
@@ -87,4 +87,4 @@ TEST_F(ModesOfTheProgram, OfDrivesHeldAndManyJoints) {
 }
 
 }  // namespace
-}  // namespace momenta::golden
+}  // namespace momenta::golden::dae_modes

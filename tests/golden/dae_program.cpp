@@ -17,9 +17,8 @@
 #include <string>
 #include <vector>
 
+namespace momenta::golden::dae_program {
 namespace {
-
-using namespace momenta::golden;
 
 TEST_F(Program, RefusesEveryBrokenSceneAndWritesNothing) {
   int scenes = 0;
@@ -596,3 +595,5 @@ TEST_F(Program, CheckNamesWhatIsRedundantAndWhatIsSingular) {
 }
 
 }  // namespace
+
+}  // namespace momenta::golden::dae_program

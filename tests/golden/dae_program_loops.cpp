@@ -8,9 +8,9 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+namespace momenta::golden::dae_program_loops {
 namespace {
 
-using namespace momenta::golden;
 using nlohmann::json;
 
 const char* const hand = R"(name = "hand"
@@ -122,3 +122,5 @@ TEST_F(Program, HeadsDriftsWithTheirUnits) {
 }
 
 }  // namespace
+
+}  // namespace momenta::golden::dae_program_loops

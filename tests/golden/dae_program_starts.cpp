@@ -9,9 +9,9 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+namespace momenta::golden::dae_program_starts {
 namespace {
 
-using namespace momenta::golden;
 using nlohmann::json;
 
 std::string model(const std::string& name) {
@@ -139,3 +139,5 @@ TEST_F(GivenStarts, WorkPutsAMethodForStiffProblemsBesideAnExplicitOne) {
 }
 
 }  // namespace
+
+}  // namespace momenta::golden::dae_program_starts

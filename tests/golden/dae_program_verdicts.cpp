@@ -9,9 +9,9 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+namespace momenta::golden::dae_program_verdicts {
 namespace {
 
-using namespace momenta::golden;
 using nlohmann::json;
 
 /// The four-bar of the examples, its crank driven; links of other lengths.
@@ -150,3 +150,5 @@ TEST_F(Program, NamesNumbersThatAreNotPositive) {
 }
 
 }  // namespace
+
+}  // namespace momenta::golden::dae_program_verdicts

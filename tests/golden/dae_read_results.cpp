@@ -13,7 +13,7 @@
 #include <sstream>
 #include <vector>
 
-namespace momenta::golden {
+namespace momenta::golden::dae_read_results {
 namespace {
 
 class Results : public Program {
@@ -265,4 +265,4 @@ TEST_F(Results, OfHdf5AreRefusedByABuildWithoutIt) {
 #endif
 
 }  // namespace
-}  // namespace momenta::golden
+}  // namespace momenta::golden::dae_read_results

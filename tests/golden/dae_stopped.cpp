@@ -14,7 +14,7 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
-namespace momenta::golden {
+namespace momenta::golden::dae_stopped {
 namespace {
 
 using nlohmann::json;
@@ -571,4 +571,4 @@ INSTANTIATE_TEST_SUITE_P(Verbs, Killed, testing::ValuesIn(verbs),
                          [](const auto& verb) { return std::string(verb.param.name); });
 
 }  // namespace
-}  // namespace momenta::golden
+}  // namespace momenta::golden::dae_stopped

@@ -10,10 +10,8 @@
 #include <csignal>
 #include <set>
 
+namespace momenta::golden::dae_sweep {
 namespace {
-
-using namespace momenta;
-using namespace momenta::golden;
 
 std::string four_bar() {
   return text_of(std::string(MOMENTA_SOURCE_DIR) + "/examples/four_bar/scene.toml");
@@ -202,3 +200,5 @@ TEST_F(SweepProgram, RefusesWhatItCannotVary) {
 }
 
 }  // namespace
+
+}  // namespace momenta::golden::dae_sweep

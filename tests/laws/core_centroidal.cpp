@@ -10,7 +10,7 @@
 #include <momenta/core/centroidal_sums.h>
 #include <momenta/core/open_chain.h>
 
-namespace momenta {
+namespace momenta::core_centroidal {
 namespace {
 
 using namespace equations;
@@ -161,4 +161,4 @@ TEST(Centroidal, OfAJointWithoutInertiaIsNone) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::core_centroidal

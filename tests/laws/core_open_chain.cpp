@@ -13,7 +13,7 @@
 #include <momenta/core/kernel/momentum_recursion.h>
 #include <momenta/core/open_chain.h>
 
-namespace momenta {
+namespace momenta::core_open_chain {
 namespace {
 
 using namespace equations;
@@ -273,4 +273,4 @@ TEST(Laws, SpaceHasNoPreferredPlace) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::core_open_chain

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 #include <momenta/core/open_chain.h>
 
-namespace momenta {
+namespace momenta::core_trajectories {
 namespace {
 
 using namespace equations;
@@ -178,4 +178,4 @@ TEST(Trajectories, PendulumByHand) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::core_trajectories

@@ -12,7 +12,7 @@
 
 #include <filesystem>
 
-namespace momenta {
+namespace momenta::dae_cut_anywhere {
 namespace {
 
 using namespace equations;
@@ -98,4 +98,4 @@ TEST(SameMotion, TurnedBricard) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::dae_cut_anywhere

@@ -10,7 +10,7 @@
 
 #include <filesystem>
 
-namespace momenta {
+namespace momenta::dae_drift_growth {
 namespace {
 
 using namespace equations;
@@ -111,4 +111,4 @@ TEST(Order, MomentumWithRk4IsOfOrderFour) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::dae_drift_growth

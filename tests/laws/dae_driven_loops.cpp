@@ -16,7 +16,7 @@
 #include <filesystem>
 #include <numbers>
 
-namespace momenta {
+namespace momenta::dae_driven_loops {
 namespace {
 
 using namespace equations;
@@ -440,4 +440,4 @@ TEST(DrivenLoops, PowerOfWhatIsPrescribed) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::dae_driven_loops

@@ -13,7 +13,7 @@
 #include <cmath>
 #include <filesystem>
 
-namespace momenta {
+namespace momenta::dae_dust {
 namespace {
 
 /// A body that slides along the axis of a cylindrical joint, kept from turning by a slide along the
@@ -153,4 +153,4 @@ TEST(Dust, RedundantLoopWithMassesFarApart) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::dae_dust

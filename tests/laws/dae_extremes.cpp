@@ -13,7 +13,7 @@
 #include <cmath>
 #include <filesystem>
 
-namespace momenta {
+namespace momenta::dae_extremes {
 namespace {
 
 Scene example(const std::string& name) {
@@ -304,4 +304,4 @@ TEST(Extremes, LoopsThatAreWeakThroughoutCrossNothing) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::dae_extremes

@@ -12,7 +12,7 @@
 
 #include <filesystem>
 
-namespace momenta {
+namespace momenta::dae_forms_agree {
 namespace {
 
 using namespace equations;
@@ -275,4 +275,4 @@ TEST(Starts, SatisfyTheEquationsOfTheirForm) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::dae_forms_agree

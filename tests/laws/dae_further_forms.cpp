@@ -15,7 +15,7 @@
 #include <filesystem>
 #include <numbers>
 
-namespace momenta {
+namespace momenta::dae_further_forms {
 namespace {
 
 using namespace equations;
@@ -420,4 +420,4 @@ TEST(DriftStudy, ListsEveryFormOnceAndItsTwins) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::dae_further_forms

@@ -18,7 +18,7 @@
 #include <filesystem>
 #include <random>
 
-namespace momenta {
+namespace momenta::dae_index {
 namespace {
 
 using namespace equations;
@@ -329,4 +329,4 @@ TEST(Index, SeriesOfTheEquationsAreTheirDerivativesInTime) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::dae_index

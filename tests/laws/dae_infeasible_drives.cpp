@@ -22,7 +22,7 @@
 #include <numbers>
 #include <random>
 
-namespace momenta {
+namespace momenta::dae_infeasible_drives {
 namespace {
 
 using namespace equations;
@@ -434,4 +434,4 @@ TEST(InfeasibleDrives, RandomSpatialLoops) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::dae_infeasible_drives

@@ -13,7 +13,7 @@
 
 #include <filesystem>
 
-namespace momenta {
+namespace momenta::dae_momenta {
 namespace {
 
 using namespace equations;
@@ -171,4 +171,4 @@ TEST(Energy, ChangesByTheDissipatedPower) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::dae_momenta

@@ -10,7 +10,7 @@
 #include <cmath>
 #include <vector>
 
-namespace momenta {
+namespace momenta::dae_order_arkode {
 namespace {
 
 /// Planar Kepler orbit of eccentricity 0.3 in a field that turns slowly with time: nonlinear and
@@ -97,4 +97,4 @@ TEST(ExplicitAgainstArkode, TightTolerancesMeet) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::dae_order_arkode

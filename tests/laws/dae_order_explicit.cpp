@@ -19,9 +19,8 @@
 #include <string>
 #include <vector>
 
+namespace momenta::dae_order_explicit {
 namespace {
-
-using namespace momenta;
 
 class Spiral : public OdeSystem {
  public:
@@ -127,3 +126,5 @@ TEST(ExplicitOrder, MechanismWithCorrectedStates) {
 }
 
 }  // namespace
+
+}  // namespace momenta::dae_order_explicit

@@ -15,7 +15,7 @@
 #include <filesystem>
 #include <numbers>
 
-namespace momenta {
+namespace momenta::dae_order_half_explicit {
 namespace {
 
 using namespace equations;
@@ -273,4 +273,4 @@ TEST(HalfExplicit, RefusesOtherForms) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::dae_order_half_explicit

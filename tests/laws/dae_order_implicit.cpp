@@ -21,7 +21,7 @@
 #include <filesystem>
 #include <numbers>
 
-namespace momenta {
+namespace momenta::dae_order_implicit {
 namespace {
 
 using namespace equations;
@@ -159,4 +159,4 @@ TEST(ImplicitOrder, MethodsOfSecondOrderOnMechanisms) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::dae_order_implicit

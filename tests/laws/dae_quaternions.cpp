@@ -13,7 +13,7 @@
 
 #include <cmath>
 
-namespace momenta {
+namespace momenta::dae_quaternions {
 namespace {
 
 using namespace equations;
@@ -114,4 +114,4 @@ TEST(Quaternions, StayUnitInLoops) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::dae_quaternions

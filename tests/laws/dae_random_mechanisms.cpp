@@ -19,7 +19,7 @@
 #include <optional>
 #include <vector>
 
-namespace momenta {
+namespace momenta::dae_random_mechanisms {
 namespace {
 
 using namespace equations;
@@ -199,4 +199,4 @@ RC_GTEST_PROP(RandomMechanisms, MoveAlikeCutAnywhere, (const Bytes& bytes, unsig
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::dae_random_mechanisms

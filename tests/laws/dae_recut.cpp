@@ -17,7 +17,7 @@
 
 #include <map>
 
-namespace momenta {
+namespace momenta::dae_recut {
 namespace {
 
 using namespace equations;
@@ -243,4 +243,4 @@ TEST(Recut, PlatformOnManyLegsAndOtherGivenScenes) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::dae_recut

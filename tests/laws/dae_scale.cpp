@@ -18,7 +18,7 @@
 
 #include <memory>
 
-namespace momenta {
+namespace momenta::dae_scale {
 namespace {
 
 using namespace equations;
@@ -148,4 +148,4 @@ INSTANTIATE_TEST_SUITE_P(Families, Scale, testing::ValuesIn(all),
                          [](const auto& family) { return std::string(family.param.name); });
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::dae_scale

@@ -13,7 +13,7 @@
 #include <filesystem>
 #include <numbers>
 
-namespace momenta {
+namespace momenta::dae_singular_everywhere {
 namespace {
 
 constexpr double end_of_runs = 10;  // [s]
@@ -247,4 +247,4 @@ TEST(SingularEverywhere, WhoLosesTheBranchSaysSo) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::dae_singular_everywhere

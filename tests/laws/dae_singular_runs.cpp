@@ -17,7 +17,7 @@
 #include <filesystem>
 #include <numbers>
 
-namespace momenta {
+namespace momenta::dae_singular_runs {
 namespace {
 
 using namespace equations;
@@ -140,4 +140,4 @@ TEST(SingularRuns, BricardAlwaysRedundant) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::dae_singular_runs

@@ -15,7 +15,7 @@
 #include <filesystem>
 #include <random>
 
-namespace momenta {
+namespace momenta::dae_singularity_handling {
 namespace {
 
 using Eigen::VectorXd;
@@ -208,4 +208,4 @@ TEST(SingularityHandling, SamplesFollowTheTolerance) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::dae_singularity_handling

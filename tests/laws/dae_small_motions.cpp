@@ -17,7 +17,7 @@
 #include <numbers>
 #include <sstream>
 
-namespace momenta {
+namespace momenta::dae_small_motions {
 namespace {
 
 using namespace equations;
@@ -291,4 +291,4 @@ TEST(SmallMotions, AreWhatARunDoes) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::dae_small_motions

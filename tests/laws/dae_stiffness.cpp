@@ -15,7 +15,7 @@
 #include <cmath>
 #include <filesystem>
 
-namespace momenta {
+namespace momenta::dae_stiffness {
 namespace {
 
 using namespace equations;
@@ -152,4 +152,4 @@ TEST(Stiffness, NothingChangesWhereAMethodWithMemoryIsOutOfPlace) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::dae_stiffness

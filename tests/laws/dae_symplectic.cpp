@@ -18,7 +18,7 @@
 #include <numbers>
 #include <numeric>
 
-namespace momenta {
+namespace momenta::dae_symplectic {
 namespace {
 
 using namespace equations;
@@ -209,4 +209,4 @@ TEST(EnergyOverLongTimes, HasNoTrendWithGauss) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::dae_symplectic

@@ -12,7 +12,7 @@
 #include <momenta/core/kernel/momentum_recursion.h>
 #include <momenta/core/open_chain.h>
 
-namespace momenta {
+namespace momenta::core_accelerations {
 namespace {
 
 using namespace equations;
@@ -151,4 +151,4 @@ TEST(Accelerations, PlanarChains) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::core_accelerations

@@ -12,7 +12,7 @@
 
 #include "equations/random_tree.h"
 
-namespace momenta {
+namespace momenta::core_arguments {
 namespace {
 
 using Eigen::VectorXd;
@@ -119,4 +119,4 @@ TEST(AllFinite, IsTheQuestionAskedOfEachNumber) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::core_arguments

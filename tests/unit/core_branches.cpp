@@ -10,7 +10,7 @@
 #include "equations/random_tree.h"
 #include "equations/tolerance.h"
 
-namespace momenta {
+namespace momenta::core_branches {
 namespace {
 
 using namespace equations;
@@ -207,4 +207,4 @@ TEST(Branches, RefuseAJointWithoutInertiaByName) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::core_branches

@@ -10,7 +10,7 @@
 #include <cstdlib>
 #include <functional>
 
-namespace momenta {
+namespace momenta::core_calls_fuzz {
 namespace {
 
 using namespace equations;
@@ -220,4 +220,4 @@ TEST(CallsFuzz, OfOpenChains) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::core_calls_fuzz

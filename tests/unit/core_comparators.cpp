@@ -50,7 +50,7 @@ __attribute__((weak)) void operator delete[](void* p, std::size_t) noexcept {
 
 #endif
 
-namespace momenta {
+namespace momenta::core_comparators {
 namespace {
 
 using namespace equations;
@@ -393,4 +393,4 @@ TEST(Comparators, Operations) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::core_comparators

@@ -5,8 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace momenta {
-namespace equations {
+namespace momenta::equations::core_dense_lagrangian {
 namespace {
 
 /// A cart of mass M on x and a point of mass m on a massless bar of length l, angle θ from below:
@@ -46,5 +45,4 @@ TEST(DenseLagrangian, SliderPendulumByHand) {
 }
 
 }  // namespace
-}  // namespace equations
-}  // namespace momenta
+}  // namespace momenta::equations::core_dense_lagrangian

@@ -8,7 +8,7 @@
 #include <limits>
 #include <vector>
 
-namespace momenta {
+namespace momenta::core_drive {
 namespace {
 
 /// v + d ε with ε² = 0, enough of it for MotionLaw.
@@ -228,4 +228,4 @@ TEST(MotionLaw, RefusesWhatIsNoLaw) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::core_drive

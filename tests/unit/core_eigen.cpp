@@ -5,7 +5,7 @@
 
 #include <Eigen/Dense>
 
-namespace momenta {
+namespace momenta::core_eigen {
 namespace {
 
 TEST(Eigen, BlockedAlgorithmsOfAnySize) {
@@ -20,4 +20,4 @@ TEST(Eigen, BlockedAlgorithmsOfAnySize) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::core_eigen

@@ -10,7 +10,7 @@
 
 #include <numbers>
 
-namespace momenta {
+namespace momenta::core_frames {
 namespace {
 
 using namespace equations;
@@ -165,4 +165,4 @@ TEST(Frames, RotationNotQuiteUnit) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::core_frames

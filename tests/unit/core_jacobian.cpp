@@ -8,7 +8,7 @@
 #include "equations/random_tree.h"
 #include "equations/tolerance.h"
 
-namespace momenta {
+namespace momenta::core_jacobian {
 namespace {
 
 using namespace equations;
@@ -157,4 +157,4 @@ TEST(InverseMass, TimesMassMatrixIsOne) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::core_jacobian

@@ -32,7 +32,7 @@ extern "C" void* aligned_alloc(std::size_t alignment, std::size_t size) noexcept
 }
 #endif
 
-namespace momenta {
+namespace momenta::core_kernel_scalars {
 namespace {
 
 using namespace equations;
@@ -301,4 +301,4 @@ TEST(Kernel, NoCallAllocates) {
 #endif
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::core_kernel_scalars

@@ -14,7 +14,7 @@
 #include "equations/random_tree.h"
 #include "equations/tolerance.h"
 
-namespace momenta {
+namespace momenta::core_levels {
 namespace {
 
 using namespace equations;
@@ -193,4 +193,4 @@ TEST(Levels, CodeOfALevelIsItsOwn) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::core_levels

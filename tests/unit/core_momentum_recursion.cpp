@@ -12,7 +12,7 @@
 #include <gtest/gtest.h>
 #include <momenta/core/open_chain.h>
 
-namespace momenta {
+namespace momenta::core_momentum_recursion {
 namespace {
 
 using namespace equations;
@@ -179,4 +179,4 @@ TEST(MomentumRecursion, OneBody) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::core_momentum_recursion

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace momenta {
+namespace momenta::core_operations {
 namespace {
 
 TEST(Counted, FoldsConstants) {
@@ -83,4 +83,4 @@ TEST(Operations, MomentumTakesFewerThanAcceleration) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::core_operations

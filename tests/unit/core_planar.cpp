@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 #include <momenta/core/open_chain.h>
 
-namespace momenta {
+namespace momenta::core_planar {
 namespace {
 
 using namespace equations;
@@ -161,4 +161,4 @@ TEST(Planar, SpatialScenesAreSeen) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::core_planar

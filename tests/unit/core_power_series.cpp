@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <momenta/core/scalar/power_series.h>
 
-namespace momenta {
+namespace momenta::core_power_series {
 namespace {
 
 using S = PowerSeries<6>;
@@ -97,4 +97,4 @@ TEST(PowerSeries, TimeRunsAlongTheCurve) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::core_power_series

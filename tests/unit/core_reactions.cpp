@@ -13,7 +13,7 @@
 #include <momenta/core/kernel/reactions.h>
 #include <momenta/core/open_chain.h>
 
-namespace momenta {
+namespace momenta::core_reactions {
 namespace {
 
 using namespace equations;
@@ -170,4 +170,4 @@ TEST(Reactions, AlongTheJoint) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::core_reactions

@@ -12,7 +12,7 @@
 #include <random>
 #include <string>
 
-namespace momenta {
+namespace momenta::core_robots {
 namespace {
 
 namespace fs = std::filesystem;
@@ -286,4 +286,4 @@ TEST_F(Robots, MjcfOptionsEqualityAndRemarks) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::core_robots

@@ -12,7 +12,7 @@
 #include <random>
 #include <string>
 
-namespace momenta {
+namespace momenta::core_robots_broken {
 namespace {
 
 namespace fs = std::filesystem;
@@ -314,4 +314,4 @@ TEST_F(Files, DamagedModels) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::core_robots_broken

@@ -9,7 +9,7 @@
 #include <numbers>
 #include <string>
 
-namespace momenta {
+namespace momenta::core_scene {
 namespace {
 
 using Eigen::Matrix3d;
@@ -517,4 +517,4 @@ TEST(Scene, LongChain) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::core_scene

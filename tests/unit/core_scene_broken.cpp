@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-namespace momenta {
+namespace momenta::core_scene_broken {
 namespace {
 
 namespace fs = std::filesystem;
@@ -333,4 +333,4 @@ TEST(Words, NamesInQuotesSayHowManyMoreThereAre) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::core_scene_broken

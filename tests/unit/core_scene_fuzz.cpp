@@ -8,7 +8,7 @@
 #include <random>
 #include <string>
 
-namespace momenta {
+namespace momenta::core_scene_fuzz {
 namespace {
 
 const std::string valid = R"(# ü
@@ -176,4 +176,4 @@ TEST(DamagedScene, PiecesShuffled) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::core_scene_fuzz

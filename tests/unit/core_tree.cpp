@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 #include <momenta/core/open_chain.h>
 
-namespace momenta {
+namespace momenta::core_tree {
 namespace {
 
 using Eigen::Vector3d;
@@ -188,4 +188,4 @@ TEST(Tree, ForcesOnDrivenJointsAreRefused) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::core_tree

@@ -7,7 +7,7 @@
 #include "equations/tolerance.h"
 #include "equations/user_chain.h"
 
-namespace momenta {
+namespace momenta::core_user_joint {
 namespace {
 
 using namespace equations;
@@ -162,4 +162,4 @@ TEST(UserJoint, EulerAnglesAreTheSphericalJoint) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::core_user_joint

@@ -8,7 +8,7 @@
 #include "equations/tolerance.h"
 #include "equations/user_chain.h"
 
-namespace momenta {
+namespace momenta::core_user_joint_in_time {
 namespace {
 
 using namespace equations;
@@ -151,4 +151,4 @@ TEST(UserJoint, JacobianAgainstDifferences) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::core_user_joint_in_time

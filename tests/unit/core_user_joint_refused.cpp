@@ -7,7 +7,7 @@
 #include "equations/tolerance.h"
 #include "equations/user_chain.h"
 
-namespace momenta {
+namespace momenta::core_user_joint_refused {
 namespace {
 
 using namespace equations;
@@ -140,4 +140,4 @@ TEST(UserJoint, StartsWhereTheSceneSays) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::core_user_joint_refused

@@ -9,7 +9,7 @@
 
 #include <filesystem>
 
-namespace momenta {
+namespace momenta::core_write_scene {
 namespace {
 
 namespace fs = std::filesystem;
@@ -244,4 +244,4 @@ TEST(WriteScene, RandomTrees) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::core_write_scene

@@ -11,7 +11,7 @@
 #include <filesystem>
 #include <numbers>
 
-namespace momenta {
+namespace momenta::dae_assembly {
 namespace {
 
 using namespace equations;
@@ -348,4 +348,4 @@ TEST(Assembly, UnitsDoNotMatter) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::dae_assembly

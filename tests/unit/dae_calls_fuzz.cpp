@@ -17,7 +17,7 @@
 #include <cstdlib>
 #include <filesystem>
 
-namespace momenta {
+namespace momenta::dae_calls_fuzz {
 namespace {
 
 using namespace equations;
@@ -275,4 +275,4 @@ TEST(CallsFuzz, OfLoopSolvers) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::dae_calls_fuzz

@@ -13,7 +13,7 @@
 #include <cmath>
 #include <filesystem>
 
-namespace momenta {
+namespace momenta::dae_closed_chain {
 namespace {
 
 using namespace equations;
@@ -236,4 +236,4 @@ TEST(ClosedChain, SaysWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::dae_closed_chain

@@ -6,7 +6,7 @@
 
 #include <random>
 
-namespace momenta {
+namespace momenta::dae_cycles {
 namespace {
 
 std::size_t at(int i) {
@@ -160,4 +160,4 @@ TEST(Cycles, OneLongCycleIsCutInTheMiddle) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::dae_cycles

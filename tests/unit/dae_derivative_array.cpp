@@ -8,7 +8,7 @@
 
 #include <random>
 
-namespace momenta {
+namespace momenta::dae_derivative_array {
 namespace {
 
 using Eigen::MatrixXd;
@@ -277,4 +277,4 @@ TEST(DerivativeArray, RanksByGap) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::dae_derivative_array

@@ -19,7 +19,7 @@
 #include <filesystem>
 #include <sstream>
 
-namespace momenta {
+namespace momenta::dae_drift_units {
 namespace {
 
 Scene example(const std::string& name) {
@@ -201,4 +201,4 @@ TEST(DriftUnits, WhatComesApartHasItsUnit) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::dae_drift_units

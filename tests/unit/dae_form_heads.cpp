@@ -8,7 +8,7 @@
 #include <map>
 #include <string>
 
-namespace momenta {
+namespace momenta::dae_form_heads {
 namespace {
 
 TEST(FormHeads, StandInLinesOfTheirOwn) {
@@ -38,4 +38,4 @@ TEST(FormHeads, StandInLinesOfTheirOwn) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::dae_form_heads

@@ -15,7 +15,7 @@
 #include <limits>
 #include <random>
 
-namespace momenta {
+namespace momenta::dae_going_on {
 namespace {
 
 using namespace equations;
@@ -206,4 +206,4 @@ TEST(GoingOn, RowsReadBackBitForBit) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::dae_going_on

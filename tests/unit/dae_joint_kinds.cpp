@@ -9,7 +9,7 @@
 
 #include <numbers>
 
-namespace momenta {
+namespace momenta::dae_joint_kinds {
 namespace {
 
 using Eigen::Vector3d;
@@ -169,4 +169,4 @@ TEST(JointKinds, CoordinateWithoutInertiaIsNamed) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::dae_joint_kinds

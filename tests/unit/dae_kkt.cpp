@@ -17,7 +17,7 @@
 
 #include <Eigen/Dense>
 
-namespace momenta {
+namespace momenta::dae_kkt {
 namespace {
 
 using namespace equations;
@@ -405,4 +405,4 @@ TEST(Kkt, ReportsWhatCannotBeFactorised) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::dae_kkt

@@ -7,7 +7,7 @@
 #include <Eigen/QR>
 #include <random>
 
-namespace momenta {
+namespace momenta::dae_least_norm {
 namespace {
 
 using Eigen::MatrixXd;
@@ -98,4 +98,4 @@ TEST(LeastNorm, FindsDependentRows) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::dae_least_norm

@@ -16,7 +16,7 @@
 
 #include <Eigen/LU>
 
-namespace momenta {
+namespace momenta::dae_local_jacobian {
 namespace {
 
 using namespace equations;
@@ -200,4 +200,4 @@ TEST(LocalJacobian, SameMotion) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::dae_local_jacobian

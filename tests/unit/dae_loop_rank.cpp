@@ -20,7 +20,7 @@
 #include <filesystem>
 #include <set>
 
-namespace momenta {
+namespace momenta::dae_loop_rank {
 namespace {
 
 using namespace equations;
@@ -252,4 +252,4 @@ TEST(LoopRank, RunsGoOnWithWhatStaysOpen) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::dae_loop_rank

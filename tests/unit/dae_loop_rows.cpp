@@ -8,7 +8,7 @@
 #include <momenta/core/kernel/model.h>
 #include <momenta/dae/form/form.h>
 
-namespace momenta {
+namespace momenta::dae_loop_rows {
 namespace {
 
 using namespace equations;
@@ -387,4 +387,4 @@ INSTANTIATE_TEST_SUITE_P(Kinds, LoopRows, testing::ValuesIn(loop_kinds), kind_na
 INSTANTIATE_TEST_SUITE_P(Kinds, PlanarLoopRows, testing::ValuesIn(planar_loop_kinds), kind_name);
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::dae_loop_rows

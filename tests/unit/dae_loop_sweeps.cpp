@@ -17,7 +17,7 @@
 
 #include <Eigen/Dense>
 
-namespace momenta {
+namespace momenta::dae_loop_sweeps {
 namespace {
 
 using namespace equations;
@@ -435,4 +435,4 @@ TEST(LoopSweeps, PlanSaysWhatItCannotCarry) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::dae_loop_sweeps

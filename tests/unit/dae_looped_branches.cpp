@@ -15,7 +15,7 @@
 
 #include <Eigen/Dense>
 
-namespace momenta {
+namespace momenta::dae_looped_branches {
 namespace {
 
 using namespace equations;
@@ -263,4 +263,4 @@ TEST(LoopedBranches, SingularJointIsTheOneThatIs) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::dae_looped_branches

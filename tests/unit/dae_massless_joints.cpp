@@ -18,7 +18,7 @@
 #include <Eigen/SVD>
 #include <filesystem>
 
-namespace momenta {
+namespace momenta::dae_massless_joints {
 namespace {
 
 using namespace equations;
@@ -281,4 +281,4 @@ TEST(MasslessJoints, AreThoseOfTheNullSpace) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::dae_massless_joints

@@ -16,7 +16,7 @@
 
 #include <chrono>
 
-namespace momenta {
+namespace momenta::dae_maximal {
 namespace {
 
 using namespace equations;
@@ -251,4 +251,4 @@ TEST(Maximal, CostOfAChainGrowsWithItsLength) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::dae_maximal

@@ -11,7 +11,7 @@
 #include <fstream>
 #include <random>
 
-namespace momenta {
+namespace momenta::dae_measure {
 namespace {
 
 Growth fit(double exponent, double noise, int samples = 1000) {
@@ -203,4 +203,4 @@ ratios = [1, 3]
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::dae_measure

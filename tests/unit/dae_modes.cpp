@@ -13,7 +13,7 @@
 #include <numbers>
 #include <sstream>
 
-namespace momenta {
+namespace momenta::dae_modes {
 namespace {
 
 using std::numbers::pi;
@@ -440,4 +440,4 @@ stiffness = 4
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::dae_modes

@@ -19,7 +19,7 @@
 #include <map>
 #include <random>
 
-namespace momenta {
+namespace momenta::dae_multipliers {
 namespace {
 
 using namespace equations;
@@ -261,4 +261,4 @@ TEST(UniqueMultipliers, OfAPoseOnTheWayAreToldThere) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::dae_multipliers

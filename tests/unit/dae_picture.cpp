@@ -14,7 +14,7 @@
 #include <numbers>
 #include <random>
 
-namespace momenta {
+namespace momenta::dae_picture {
 namespace {
 
 namespace fs = std::filesystem;
@@ -367,4 +367,4 @@ TEST(Film, LargeMechanismsStayWithinTheirShareOfAPage) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::dae_picture

@@ -12,7 +12,7 @@
 
 #include <filesystem>
 
-namespace momenta {
+namespace momenta::dae_rank {
 namespace {
 
 using namespace equations;
@@ -211,4 +211,4 @@ TEST(Rank, ReactionsThatRedundantLoopsShareAreMarked) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::dae_rank

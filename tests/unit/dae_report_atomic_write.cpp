@@ -9,7 +9,7 @@
 #include <iterator>
 #include <string>
 
-namespace momenta {
+namespace momenta::dae_report_atomic_write {
 namespace {
 
 namespace fs = std::filesystem;
@@ -83,4 +83,4 @@ TEST_F(AtomicWrite, FailsOnANameThatIsTooLong) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::dae_report_atomic_write

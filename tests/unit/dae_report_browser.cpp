@@ -20,7 +20,7 @@
 #include <tuple>
 #include <utility>
 
-namespace momenta {
+namespace momenta::dae_report_browser {
 namespace {
 
 namespace fs = std::filesystem;
@@ -345,4 +345,4 @@ INSTANTIATE_TEST_SUITE_P(Widths, Browser,
                                             ::testing::Values(360, 1600)));
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::dae_report_browser

@@ -3,7 +3,7 @@
 #include <momenta/dae/report/conclusion.h>
 #include <unit/page/synthetic_study.h>
 
-namespace momenta {
+namespace momenta::dae_report_conclusion {
 namespace {
 
 // A run by its numbers alone, without histories.
@@ -185,4 +185,4 @@ TEST(Conclusion, TakesTheTightestRungOfALadder) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::dae_report_conclusion

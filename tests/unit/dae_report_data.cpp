@@ -8,7 +8,7 @@
 #include <limits>
 #include <sstream>
 
-namespace momenta {
+namespace momenta::dae_report_data {
 namespace {
 
 std::vector<std::string> keys(const nlohmann::ordered_json& json) {
@@ -96,4 +96,4 @@ TEST(Csv, StudyHasOneRowPerRunAndAsManyCellsAsNames) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::dae_report_data

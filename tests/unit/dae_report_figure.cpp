@@ -8,7 +8,7 @@
 #include <regex>
 #include <set>
 
-namespace momenta {
+namespace momenta::dae_report_figure {
 namespace {
 
 /// What is wrong with it as XML, or nothing: tags closed in order, one root, quotes closed, no bare
@@ -181,4 +181,4 @@ TEST(Figure, TheMechanismIsDrawnWithinItsFrame) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::dae_report_figure

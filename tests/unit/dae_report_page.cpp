@@ -10,7 +10,7 @@
 
 #include <string>
 
-namespace momenta {
+namespace momenta::dae_report_page {
 namespace {
 
 nlohmann::json island_of(const std::string& page) {
@@ -118,4 +118,4 @@ TEST(Thinning, KeepsExtremesAndTheLastPoint) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::dae_report_page

@@ -11,7 +11,7 @@
 #include <fstream>
 #include <iterator>
 
-namespace momenta {
+namespace momenta::dae_report_part_file {
 namespace {
 
 namespace fs = std::filesystem;
@@ -210,4 +210,4 @@ TEST_F(Part, TrajectoriesEndWithAWholeLineWhereverTheRoomEnds) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::dae_report_part_file

@@ -9,7 +9,7 @@
 #include <limits>
 #include <sstream>
 
-namespace momenta {
+namespace momenta::dae_report_table {
 namespace {
 
 TEST(NumberText, RoundTripReadsBackToTheSameDouble) {
@@ -107,4 +107,4 @@ TEST(DriftTable, PrintsADashWhereNothingWasMeasured) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::dae_report_table

@@ -17,7 +17,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace momenta {
+namespace momenta::dae_resume {
 namespace {
 
 namespace fs = std::filesystem;
@@ -299,4 +299,4 @@ TEST_F(Resume, StressStudyTakesOverRunsAndReferences) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::dae_resume

@@ -11,7 +11,7 @@
 #include <algorithm>
 #include <numeric>
 
-namespace momenta {
+namespace momenta::dae_shared_points {
 namespace {
 
 using namespace equations;
@@ -160,4 +160,4 @@ TEST(SharedPoints, OnlyTreesOfOnePoint) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::dae_shared_points

@@ -19,7 +19,7 @@
 #include <string>
 #include <vector>
 
-namespace momenta {
+namespace momenta::dae_small_scenes {
 namespace {
 
 using namespace equations;
@@ -215,4 +215,4 @@ TEST(NothingMoves, ALoopThereIsRefused) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::dae_small_scenes

@@ -14,7 +14,7 @@
 
 #include <Eigen/Dense>
 
-namespace momenta {
+namespace momenta::dae_softened_loops {
 namespace {
 
 using namespace equations;
@@ -260,4 +260,4 @@ TEST(CoordinateSplit, SolvesForDependentColumnsWhateverTheRank) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::dae_softened_loops

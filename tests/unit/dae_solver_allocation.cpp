@@ -67,9 +67,8 @@ __attribute__((weak)) void operator delete[](void* p, std::size_t, std::align_va
   std::free(p);
 }
 
+namespace momenta::dae_solver_allocation {
 namespace {
-
-using namespace momenta;
 
 /// One call of new that no compiler may leave out.
 void touch_heap() {
@@ -155,5 +154,6 @@ TEST(Allocation, NoneInStepsOfForms) {
 }
 
 }  // namespace
+}  // namespace momenta::dae_solver_allocation
 
 #endif

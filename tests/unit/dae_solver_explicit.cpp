@@ -11,9 +11,8 @@
 #include <string>
 #include <vector>
 
+namespace momenta::dae_solver_explicit {
 namespace {
-
-using namespace momenta;
 
 /// A system from a function; counts its hooks.
 class Given : public OdeSystem {
@@ -492,3 +491,5 @@ TEST(Explicit, SumsOfManyStepsLoseNothing) {
 }
 
 }  // namespace
+
+}  // namespace momenta::dae_solver_explicit

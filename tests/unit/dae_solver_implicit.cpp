@@ -16,7 +16,7 @@
 #include <filesystem>
 #include <random>
 
-namespace momenta {
+namespace momenta::dae_solver_implicit {
 namespace {
 
 using namespace equations;
@@ -490,4 +490,4 @@ TEST(NewtonMatrix, DenseAndSparseSolveTheSame) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::dae_solver_implicit

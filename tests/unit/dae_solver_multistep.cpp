@@ -12,9 +12,9 @@
 #include <string>
 #include <vector>
 
+namespace momenta::dae_solver_multistep {
 namespace {
 
-using namespace momenta;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 IntegrationOptions tolerance(double tol) {
@@ -497,3 +497,5 @@ TEST(Ida, LimitsStopsAndArguments) {
 }
 
 }  // namespace
+
+}  // namespace momenta::dae_solver_multistep

@@ -20,6 +20,7 @@
 #include <cmath>
 #include <vector>
 
+namespace momenta::dae_solver_tableaux {
 namespace {
 
 using namespace momenta::explicit_rk;
@@ -194,3 +195,5 @@ TEST(Tableaux, OrderOfTheDenseOutput) {
 }
 
 }  // namespace
+
+}  // namespace momenta::dae_solver_tableaux

@@ -15,7 +15,7 @@
 
 #include <filesystem>
 
-namespace momenta {
+namespace momenta::dae_state_values {
 namespace {
 
 using namespace equations;
@@ -336,4 +336,4 @@ TEST(StateValues, JointWithoutInertiaIsNamed) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::dae_state_values

@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-namespace momenta {
+namespace momenta::dae_stress_study {
 namespace {
 
 Scene four_bar(double end) {
@@ -171,4 +171,4 @@ TEST(StressStudy, ReportsAgree) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::dae_stress_study

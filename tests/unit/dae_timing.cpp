@@ -11,7 +11,7 @@
 #include <filesystem>
 #include <random>
 
-namespace momenta {
+namespace momenta::dae_timing {
 namespace {
 
 /// Rounds until the median of times around 1 s with normal scatter `sigma` has settled; the mean of
@@ -125,4 +125,4 @@ TEST(Timing, NamesWhatItKnows) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::dae_timing

@@ -14,7 +14,7 @@
 
 #include <filesystem>
 
-namespace momenta {
+namespace momenta::dae_work_study {
 namespace {
 
 std::filesystem::path example(const std::string& name, const std::string& file) {
@@ -148,4 +148,4 @@ TEST(WorkStudy, LaddersHaveTheirRungsAndErrorsFollow) {
 }
 
 }  // namespace
-}  // namespace momenta
+}  // namespace momenta::dae_work_study
