@@ -58,6 +58,12 @@ MOMENTA_INLINE void turn_revolute(Eliminated<S>& r, const S& c, const S& s, cons
   r.ny = r.ny + (m.Hxy * w.clx + m.Hyy * w.cly + m.Hzy * w.clz + m.Ixy * w.cox + m.Iyy * w.coy);
 }
 
+/// What a rotor's k, turned, adds to D'_nz = … + (M' c)_nz.
+template <class S>
+MOMENTA_INLINE S rotor_bias(const Spatial::Force<S>& k, const RevoluteAcceleration<S>& w) {
+  return k.f[0] * w.clx + k.f[1] * w.cly + k.f[2] * w.clz + k.n[0] * w.cox + k.n[1] * w.coy;
+}
+
 template <class S>
 template <Turn turn, class InTau>
 std::size_t AccelerationSweeps<Spatial, S>::chain_inward(std::size_t end, const InTau& tau,
@@ -120,18 +126,29 @@ std::size_t AccelerationSweeps<Spatial, S>::revolutes_inward(std::size_t end, co
       add_body(articulated.M, l);
       add_bias(articulated, w);
       if (l.slot >= 0) add<false>(articulated, slots_[static_cast<std::size_t>(l.slot)]);
-      if (!all_positive(articulated.M.Izz)) {
+      const S pivot = pivot_of(l, articulated.M.Izz);
+      if (!all_positive(pivot)) {
         singular_joint_ = static_cast<int>(k);
         return k;
       }
-      inverse = S(1.0) / articulated.M.Izz;
+      inverse = S(1.0) / pivot;
       eliminate_revolute(articulated.M, inverse, h, r.M);
     }
     w.h = h;
     eliminate_bias(articulated, S(tau[l.u]), inverse, w, r);
     if (l.parent < 0) continue;
-    turn_revolute(r, angles_.cosine(k), angles_.sine(k), l.d, w);
-    carry_any<false>(l, body(k).edge, r, articulated);
+    const S c = angles_.cosine(k), s = angles_.sine(k);
+    if (l.has_rotor) w.inverse = inverse, r.nz = tau[l.u] - l.rotor * w.y0;
+    turn_revolute(r, c, s, l.d, w);
+    if (!l.has_rotor) {
+      carry_any<false>(l, body(k).edge, r, articulated);
+    } else {
+      Spatial::Force<S> column = rotor_column(h, l.rotor, inverse);
+      turn_rotor(column, c, s, l.d);
+      r.nz = r.nz + rotor_bias(column, w);
+      carry_any<false>(l, body(k).edge, r, articulated);
+      carry_rotor(body(k).edge, column, articulated);
+    }
     if (!l.first) leave<false>(l, slot_of_parent(l), articulated);
   } while (k > 0 && links[k - 1].path == Path::any && links[k - 1].kind == LinkKind::revolute);
   from = articulated;

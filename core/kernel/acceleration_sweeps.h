@@ -14,6 +14,7 @@
 //   c = R ω × (ω × r) + the joint's part,  α part of c = ω × z q̇ = (ω_y q̇, −ω_x q̇, 0).
 
 #include <momenta/core/kernel/place_links.h>
+#include <momenta/core/kernel/rotor.h>
 #include <momenta/core/kernel/spherical.h>
 
 namespace momenta {
@@ -21,7 +22,7 @@ namespace momenta {
 template <class S>
 struct RevoluteAcceleration {
   RevoluteColumn<S> h;
-  S y0;                            ///< M_j⁻¹ e
+  S y0, inverse;                   ///< M_j⁻¹ e; with a rotor M_j⁻¹
   S bfx, bfy, bfz, bnx, bny, bnz;  ///< bias wrench
   S clx, cly, clz, cox, coy;       ///< c, in the frame before the revolute joint's screw
 };
@@ -173,6 +174,7 @@ MOMENTA_INLINE void accelerate_revolute(const Link& l, const Edge& edge,
   oy = oy + w.coy;
   screw_outward(c, s, l.d, vx, vy, ox, oy);
   wz = w.y0 - (w.h.fx * vx + w.h.fy * vy + w.h.fz * vz + w.h.nx * ox + w.h.ny * oy);
+  if (l.has_rotor) wz = wz + l.rotor * w.inverse * oz;
 }
 
 template <class S>

@@ -5,7 +5,7 @@
 //
 //   A_K = 𝒯ⱽ A_L + E u̇ + c_K,  c_K: velocity products and prescribed accelerations       derivative
 //   of (23) F_K = M_K A_K + b_K − T_K + Σ 𝒯ᶠ F_child,  b_K = Ω_K × (M_K Ω_K) (17), (21) τ_K = Eᵀ
-//   F_K
+//   F_K + I_r u̇
 // F_K is the whole wrench through joint K about O_K: the reaction T_r of (28) plus what acts along
 // the joint.
 
@@ -49,6 +49,7 @@ void accelerations_outward(Workspace<Space, S>& w, const S* u, const S* udot) {
                                          w.body[static_cast<std::size_t>(b.parent)].A);
     s.A += prescribed_acceleration(w, k, u);
     if (b.nv > 0 && udot) Joint<Space>::add_motion(b, s.edge, udot + b.u, s.A);
+    if (b.has_rotor()) s.rotor_acceleration = udot ? udot[b.u] : S(0.0);
   }
 }
 
@@ -64,7 +65,13 @@ void newton_euler_inward(Workspace<Space, S>& w, const S* q, const S* u, S* tau)
     s.P += Space::velocity_wrench(w.inertia(k), s.V);
     s.P -= s.T;
   }
-  momenta_inward(w, tau);
+  sum_inward(w, [&](std::size_t k) {
+    const auto& b = model.bodies[k];
+    const auto& s = w.body[k];
+    if (b.drive >= 0) return;
+    Joint<Space>::project(b, s.edge, s.P, tau + b.u);
+    if (b.has_rotor()) tau[b.u] += b.rotor * s.rotor_acceleration;
+  });
   if (model.has_joint_forces)
     for (const auto& b : model.bodies)
       if (b.nv == 1) tau[b.u] -= joint_force(b, q[b.q], u[b.u]);

@@ -3,7 +3,8 @@
 // (e_f ẑ; e_n ẑ), (0, 1) of a revolute joint, (1, 0) of a prismatic joint, (pitch, 1) of a screw,
 // and U = M*E:
 //
-//   free      M_j = EᵀU, h = U / M_j, M' = M* − U hᵀ, D' = D + h (r − Eᵀ D)    (46)-(48)
+//   free      M_j = EᵀU + I_r, h = U / M_j, M' = M* − U hᵀ, D' = D + h (r − Eᵀ D)   (46)-(48);
+//             I_r: rotor.h
 //   driven    M' = M*, D' = D + U f', of momenta, f the law of motion          (44)
 //   welded    M' = M*, D' = D
 //
@@ -42,7 +43,7 @@ MOMENTA_INLINE bool eliminate_axis(const Body& b, const S& r, Articulated<S>& ar
   Full<S>& m = articulated.M;
   const bool slides = b.kind == JointKind::prismatic;
   const AxisColumn<S> U = axis_column(b, m);
-  const S mass = slides ? U.fz : b.pitch * U.fz + U.nz;
+  const S mass = (slides ? U.fz : b.pitch * U.fz + U.nz) + b.rotor;
   const S along = slides ? articulated.Dfz : b.pitch * articulated.Dfz + articulated.Dnz;
   const auto least = rounding * b.subtree_mass;
   if (!all_positive(slides
@@ -65,7 +66,19 @@ MOMENTA_INLINE bool eliminate_axis(const Body& b, const S& r, Articulated<S>& ar
   m.Ixx = m.Ixx - U.nx * h.nx;
   m.Ixy = m.Ixy - U.nx * h.ny;
   m.Iyy = m.Iyy - U.ny * h.ny;
-  if (slides) {
+  if (b.has_rotor()) {
+    m.Axz = m.Axz - U.fx * h.fz;
+    m.Ayz = m.Ayz - U.fy * h.fz;
+    m.Azz = m.Azz - U.fz * h.fz;
+    m.Hxz = m.Hxz - U.fx * h.nz;
+    m.Hyz = m.Hyz - U.fy * h.nz;
+    m.Hzx = m.Hzx - U.fz * h.nx;
+    m.Hzy = m.Hzy - U.fz * h.ny;
+    m.Hzz = m.Hzz - U.fz * h.nz;
+    m.Ixz = m.Ixz - U.nx * h.nz;
+    m.Iyz = m.Iyz - U.ny * h.nz;
+    m.Izz = m.Izz - U.nz * h.nz;
+  } else if (slides) {
     m.Hxz = m.Hxz - U.fx * h.nz;
     m.Hyz = m.Hyz - U.fy * h.nz;
     m.Ixz = m.Ixz - U.nx * h.nz;

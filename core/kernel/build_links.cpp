@@ -40,7 +40,7 @@ Leaf leaf_of(const Link& l) {
   Full<double> m;
   set_body(m, l);
   Leaf t;
-  t.inverse = 1 / m.Izz;
+  t.inverse = 1 / (m.Izz + l.rotor);
   RevoluteColumn<double> h;
   eliminate_revolute(m, t.inverse, h, t.M);
   t.h[0] = h.fx;
@@ -78,6 +78,9 @@ LinkTree build_links(const Model<Spatial>& model) {
     l.d = b.d0;
     l.screwed = b.edge.about_z;
     l.m = b.inertia.m;
+    l.rotor = b.rotor;
+    l.has_rotor = b.has_rotor();
+    if (l.has_rotor) tree.rotors.emplace_back(b.u, b.rotor);
     for (int i = 0; i < 3; ++i) l.c[i] = b.inertia.mc[i];
     for (int i = 0; i < 3; ++i) l.moment[i] += b.inertia.mc[i];
     for (int i = 0; i < 6; ++i) l.J[i] = b.inertia.J.x[i];
@@ -109,13 +112,12 @@ LinkTree build_links(const Model<Spatial>& model) {
   }
   for (std::size_t k = n; k-- > 0;) {
     Link& l = tree.links[k];
-    if (l.kind == LinkKind::revolute && l.first && !l.leaf && l.slot < 0 && !l.screwed &&
-        l.turn != Turn::tilted)
-      l.path = static_cast<Path>(l.turn);
+    l.path = path_of(l);
     if (!l.leaf || l.kind != LinkKind::revolute) continue;
     l.record = static_cast<int>(tree.leaves.size());
     tree.leaves.push_back(leaf_of(l));
-    if (!(l.J[5] > 0) && tree.singular_joint < 0) tree.singular_joint = static_cast<int>(k);
+    if (!(l.J[5] + l.rotor > 0) && tree.singular_joint < 0)
+      tree.singular_joint = static_cast<int>(k);
   }
   mark_openers(tree.links);
   return tree;

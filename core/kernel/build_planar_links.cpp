@@ -40,6 +40,8 @@ PlanarTree build_links(const Model<Planar>& model) {
     l.u = b.u;
     l.parent = b.parent;
     l.m = b.inertia.m;
+    l.rotor = b.rotor;
+    l.has_rotor = b.has_rotor();
     l.J = b.inertia.J;
     const double c = std::cos(phi[k]), s = std::sin(phi[k]);
     l.cx = b.inertia.mc[0];

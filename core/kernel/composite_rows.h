@@ -135,7 +135,7 @@ void CompositeSweeps<Spatial, S>::rows_inward() {
       const auto depth = static_cast<std::size_t>(dofs_[dof].depth);
       S* row = rows_.data() + start(dof) + depth;
       const S turning = m.xx + m.yy;
-      *row = turning;
+      *row = pivot_of(l, turning);
       scale_[dof] = turning;
       if (l.parent < 0) continue;
       const Vec3<S>&X = stations_[k].X, &Y = stations_[k].Y, &Z = stations_[k].Z;
@@ -183,6 +183,7 @@ void CompositeSweeps<Spatial, S>::any_rows(std::size_t k, const CompositeMoments
     Joint<Spatial>::project(b, Spatial::Edge<S>{}, F, own);
     const auto above = static_cast<std::size_t>(dofs_[dof].depth - column);
     S* row = rows_.data() + start(dof) + above;
+    if (b.nv == 1) own[0] += b.rotor;
     for (int i = 0; i <= column; ++i) row[i] = own[i];
     // What rounding may leave of an entry is as large as the joint's largest.
     scale_[dof] = b.nv == 1 ? own[0] : b.nv == 6 && column < 3 ? mass : Jx + Jy + Jz;

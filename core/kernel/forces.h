@@ -79,8 +79,11 @@ void apply_forces(Workspace<Space, S>& w, bool also_body_forces) {
 template <class Space, class S>
 S kinetic_energy(const Workspace<Space, S>& w) {
   S twice{};
-  for (std::size_t k = 0; k < w.body.size(); ++k)
+  for (std::size_t k = 0; k < w.body.size(); ++k) {
     twice += Space::power(Space::momentum(w.inertia(k), w.body[k].V), w.body[k].V);
+    if (const auto& b = w.model->bodies[k]; b.has_rotor())
+      twice += b.rotor * (w.body[k].rotor_rate * w.body[k].rotor_rate);
+  }
   return 0.5 * twice;
 }
 

@@ -2,7 +2,7 @@
 // The elimination of one joint of any kind, one record a joint: what both recursions do wherever
 // the fast path for revolute joints does not apply.
 //
-//   M_j = Eᵀ M* E,  M' = M* − M*E M_j⁻¹ EᵀM*                 (46), (47)
+//   M_j = Eᵀ M* E + I_r,  M' = M* − M*E M_j⁻¹ EᵀM*           (46), (47); I_r: rotor.h
 //   e = r − Eᵀ D,   D' = D + M*E M_j⁻¹ e                     (48)
 //   u = M_j⁻¹ (e − EᵀM* W),  Ω = W + E u                     (45)
 //
@@ -21,6 +21,12 @@ namespace momenta {
 
 template <class Space, class S>
 struct JointRecord;
+
+/// M_j of a revolute joint, by its link, from what its body and all it carries have about it.
+template <class Link, class S>
+MOMENTA_INLINE S pivot_of(const Link& l, const S& inertia) {
+  return l.has_rotor ? inertia + l.rotor : inertia;
+}
 
 template <class S>
 struct JointRecord<Spatial, S> {
@@ -104,7 +110,7 @@ bool eliminate(const typename Model<Space>::Body& b, JointRecord<Space, S>& x,
     if (b.law) return eliminate_user<S>(b, *x.user, reduced);
   if (b.nv == 1) {
     const auto U = Joint<Space>::column(b, x.edge, x.M);
-    const S joint_mass = Joint<Space>::along(b, x.edge, U);  // M_j, (46)
+    const S joint_mass = Joint<Space>::along(b, x.edge, U) + b.rotor;  // M_j, (46)
     if (!all_positive(Joint<Space>::inertia_margin(b, x.M, joint_mass))) return false;
     x.pivot = S(1.0) / joint_mass;
     for (int i = 0; i < Space::dimension; ++i) x.h[i] = x.pivot * U[i];

@@ -47,6 +47,7 @@ class InverseDynamicsSweeps<Spatial, S> {
     place(t, q);
     outward<true>(u, udot);
     inward(tau);
+    for (const auto& [u_at, rotor] : tree_->rotors) tau[u_at] = S(tau[u_at]) + rotor * udot[u_at];
   }
 
   /// Sines, cosines and edges at (q, t): for `bias` and for who shares them.

@@ -60,6 +60,7 @@ void MomentumSweeps<Spatial, S>::inverse_mass_times(MassSolution<Spatial, X>& so
       if (l.parent < 0) continue;
       D.f += Vec3<X>{{in(w.h.fx) * e, in(w.h.fy) * e, in(w.h.fz) * e}};
       D.n += Vec3<X>{{in(w.h.nx) * e, in(w.h.ny) * e, e}};
+      if (l.has_rotor) D.n[2] -= l.rotor * solution.y0[k];
       const S c = angles_.cosine(k), s = angles_.sine(k);
       Spatial::force_inward<2>(D, in(c), in(s), X(l.d));
       Spatial::constants_inward(b.edge, D);
@@ -106,6 +107,7 @@ void MomentumSweeps<Spatial, S>::inverse_mass_times(MassSolution<Spatial, X>& so
         Spatial::motion_outward<2>(V, in(c), in(s), X(l.d));
         turning -= in(w.h.fx) * V.v[0] + in(w.h.fy) * V.v[1] + in(w.h.fz) * V.v[2] +
                    in(w.h.nx) * V.w[0] + in(w.h.ny) * V.w[1];
+        if (l.has_rotor) turning += l.rotor * in(w.inverse) * V.w[2];
         result[l.u] = turning - V.w[2];
       } else {
         result[l.u] = turning;
@@ -155,6 +157,7 @@ void MomentumSweeps<Planar, S>::inverse_mass_times(MassSolution<Planar, X>& solu
       if (l.parent < 0) continue;
       D.f += Vec2<X>{{in(w.hx) * e, in(w.hy) * e}};
       D.n = n + (in(w.rx) * D.f[1] - in(w.ry) * D.f[0]);
+      if (l.has_rotor) D.n -= l.rotor * solution.y0[k];
     } else if constexpr (any_joint) {
       const auto& b = Base::body(k);
       auto& joint = joints_[static_cast<std::size_t>(l.record)];
@@ -184,6 +187,7 @@ void MomentumSweeps<Planar, S>::inverse_mass_times(MassSolution<Planar, X>& solu
       if (l.parent >= 0) {
         V.v += cross(V.w, Vec2<X>{{in(w.rx), in(w.ry)}});
         turning -= in(w.hx) * V.v[0] + in(w.hy) * V.v[1];
+        if (l.has_rotor) turning += l.rotor * in(w.inverse) * V.w;
         own = turning - V.w;
       }
       V.w = turning;

@@ -17,6 +17,7 @@
 
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace momenta {
@@ -28,8 +29,8 @@ enum class LinkKind : std::uint8_t { revolute, spherical, general };
 enum class Turn : std::uint8_t { general, right, parallel, tilted };
 
 /// How the inward sweep takes a link. Most lie inside a chain: a revolute joint with one child,
-/// itself the first of its parent, without a screw about the parent's z. Neighbours of one kind of
-/// turn run through a loop without branches; the others go one by one.
+/// itself the first of its parent, without a screw about the parent's z and without a rotor.
+/// Neighbours of one kind of turn run through a loop without branches; the others go one by one.
 enum class Path : std::uint8_t { chain_general, chain_right, chain_parallel, any };
 
 struct Link {
@@ -41,6 +42,7 @@ struct Link {
   double moment[3]{};  ///< constant part of the subtree's first moment about O [kg m]
   double c[3]{};       ///< the body's own first moment m OG [kg m]
   double J[6]{};       ///< about O: xx xy xz yy yz zz [kg m²]
+  double rotor = 0;    ///< inertia on the joint's rate: rotor.h [kg m² or kg]
   int q = 0, u = 0;
   int parent = -1;
   int slot = -1;  ///< where children beside the first leave what they carry; −1: none do
@@ -56,8 +58,16 @@ struct Link {
   bool screwed = false;    ///< a screw about the parent's z comes first
   bool one_axis = false;   ///< general links: a screw about z, driven or not, or a weld
   bool has_force = false;  ///< spring, damper or torque on the joint
+  bool has_rotor = false;
   Path path = Path::any;
 };
+
+/// Of a revolute joint with one child on it and none before it: see Path.
+inline Path path_of(const Link& l) {
+  const bool in_chain = l.kind == LinkKind::revolute && l.first && !l.leaf && l.slot < 0 &&
+                        !l.screwed && l.turn != Turn::tilted && !l.has_rotor;
+  return in_chain ? static_cast<Path>(l.turn) : Path::any;
+}
 
 /// What is constant of a revolute joint that carries nothing.
 struct Leaf {
@@ -82,6 +92,7 @@ struct LinkTree {
       theta0;  ///< by link: of a revolute joint, the angle of its frame at q = 0 [rad]
   std::vector<Vec3<double>> weight;  ///< by link: for revolute joints on the ground, gravity in
                                      ///< their frame before the turn [m/s²]
+  std::vector<std::pair<int, double>> rotors;  ///< place in u and inertia: rotor.h
   int slots = 0, records = 0, users = 0;
   /// Joint whose reduced or joint inertia is not positive although constant: a leaf without inertia
   /// about its revolute joint; −1: none.

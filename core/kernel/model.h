@@ -29,6 +29,8 @@ struct Model {
     typename Space::template RigidInertia<double> inertia;
     double subtree_mass = 0;  ///< of the body and all it carries [kg]
     double stiffness = 0, rest = 0, damping = 0, torque = 0;
+    double rotor = 0;  ///< inertia on the joint's rate: rotor.h [kg m² or kg]
+    bool has_rotor() const { return rotor != 0; }
     const UserFormula* law = nullptr;  ///< user joints: one of `laws`
     int user = -1;                     ///< and its place among them
   };

@@ -138,11 +138,12 @@ std::size_t MomentumSweeps<Spatial, S>::revolutes_inward(std::size_t end, const 
       if (l.carries_branches_alone) articulated = {};
       add_body<Gravity>(articulated, l);
       if (l.slot >= 0) add<Gravity>(articulated, slots_[static_cast<std::size_t>(l.slot)]);
-      if (!all_positive(articulated.M.Izz)) {
+      const S pivot = pivot_of(l, articulated.M.Izz);
+      if (!all_positive(pivot)) {
         singular_joint_ = static_cast<int>(k);
         return k;
       }
-      const S inverse = S(1.0) / articulated.M.Izz;
+      const S inverse = S(1.0) / pivot;
       if (l.parent < 0) {  // nothing is passed on to the ground
         w.inverse = inverse;
         w.y0 = (pk - articulated.Dnz) * inverse;
@@ -154,8 +155,11 @@ std::size_t MomentumSweeps<Spatial, S>::revolutes_inward(std::size_t end, const 
       }
       eliminate_revolute<Gravity>(articulated, pk, inverse, w, r);
     }
-    turn_revolute<Gravity>(r, angles_.cosine(k), angles_.sine(k), l.d, w);
+    const S c = angles_.cosine(k), s = angles_.sine(k);
+    if (l.has_rotor) r.nz = pk - l.rotor * w.y0;
+    turn_revolute<Gravity>(r, c, s, l.d, w);
     carry_any<Gravity>(l, body(k).edge, r, articulated);
+    if (l.has_rotor) hand_on_rotor(l, body(k).edge, w.h, w.inverse, c, s, articulated);
     if (!l.first) leave<Gravity>(l, slot_of_parent(l), articulated);
   } while (k > 0 && links[k - 1].path == Path::any && links[k - 1].kind == LinkKind::revolute);
   from = articulated;

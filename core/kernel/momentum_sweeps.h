@@ -19,6 +19,7 @@
 
 #include <momenta/core/kernel/forces.h>
 #include <momenta/core/kernel/place_links.h>
+#include <momenta/core/kernel/rotor.h>
 #include <momenta/core/kernel/spherical.h>
 #include <momenta/core/kernel/sweeps.h>
 
@@ -155,6 +156,10 @@ MOMENTA_INLINE void move_revolute(const Link& l, const Edge& edge, const Revolut
     rate = rate + w.Gx * gy - w.Gy * gx;
   }
   wz = w.y0 - (w.h.fx * vx + w.h.fy * vy + w.h.fz * vz + w.h.nx * ox + w.h.ny * oy);
+  if (l.has_rotor) {
+    rate = rate + rotor_rate(w.h, l.rotor, vx, vy, ox, oy, oz);
+    wz = wz + l.rotor * w.inverse * oz;
+  }
 }
 
 template <class S>

@@ -98,11 +98,12 @@ bool AccelerationSweeps<Planar, S>::inward(const InTau& tau) {
     a.Dy = a.Dy + w.Dy;
     if (l.slot >= 0) Base::add(a, slots_[static_cast<std::size_t>(l.slot)]);
     if (l.revolute) {
-      if (!all_positive(a.I)) {
+      const S pivot = pivot_of(l, a.I);
+      if (!all_positive(pivot)) {
         singular_joint_ = static_cast<int>(k);
         return false;
       }
-      w.inverse = S(1.0) / a.I;
+      w.inverse = S(1.0) / pivot;
       const S n = l.sign < 0 ? -tau[l.u] : S(tau[l.u]), e = n - a.Dn;
       w.y0 = e * w.inverse;
       w.hx = a.Hx * w.inverse;
@@ -113,7 +114,11 @@ bool AccelerationSweeps<Planar, S>::inward(const InTau& tau) {
       a.Ayy = a.Ayy - a.Hy * w.hy;
       a.Dx = a.Dx + w.hx * e + (a.Axx * w.Axx + a.Axy * w.Axy);
       a.Dy = a.Dy + w.hy * e + (a.Axy * w.Axx + a.Ayy * w.Axy);
-      Base::carry(a, w.rx, w.ry, n);
+      if (l.has_rotor)
+        Base::carry_with_rotor(a, l, w.hx, w.hy, w.inverse, w.rx, w.ry,
+                               n + l.rotor * (w.hx * w.Axx + w.hy * w.Axy - w.y0));
+      else
+        Base::carry(a, w.rx, w.ry, n);
     } else {
       const auto& b = Base::body(k);
       auto& x = joints_[static_cast<std::size_t>(l.record)];
@@ -159,7 +164,9 @@ void AccelerationSweeps<Planar, S>::outward(Out udot) {
         vx = vx - alpha * w.ry + w.Axx;
         vy = vy + alpha * w.rx + w.Axy;
       }
-      const S turning = w.y0 - (w.hx * vx + w.hy * vy), own = turning - alpha;
+      S turning = w.y0 - (w.hx * vx + w.hy * vy);
+      if (l.has_rotor) turning = turning + l.rotor * w.inverse * alpha;
+      const S own = turning - alpha;
       udot[l.u] = l.sign < 0 ? -own : own;
       alpha = turning;
     } else {

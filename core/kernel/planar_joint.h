@@ -88,7 +88,7 @@ struct Joint<Planar> {
     m.H[0] -= u.f[0] * h.n;
     m.H[1] -= u.f[1] * h.n;
     m.I -= u.n * h.n;
-    if (b.kind == JointKind::revolute) {
+    if (b.kind == JointKind::revolute && !b.has_rotor()) {
       m.H = {};
       m.I = S(0.0);
     }

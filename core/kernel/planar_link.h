@@ -16,13 +16,14 @@ struct PlanarLink {
   double cx = 0, cy = 0;  ///< own first moment, body frame [kg m]
   double wx = 0, wy = 0;  ///< moment of the weight of all that stays in place: wx cos + wy sin
   double prismatic_x = 0, prismatic_y = 0;  ///< of a slider, in the parent's frame
+  double rotor = 0;                         ///< inertia on the joint's rate: rotor.h [kg m² or kg]
   double sign = 1;  ///< of a revolute joint: +1 when its axis is the plane's normal
   int q = 0, u = 0;
   int parent = -1;
   int slot = -1;
   int record = -1;
   bool revolute = true;  ///< undriven revolute joint
-  bool first = false, leaf = false, has_force = false;
+  bool first = false, leaf = false, has_force = false, has_rotor = false;
   bool forced = false;  ///< springs or wrenches at points of its own
   bool opens = false;   ///< the last child of its parent, which the inward sweep meets first
 };

@@ -84,11 +84,12 @@ bool MomentumSweeps<Planar, S>::inward(const In& p) {
     Base::add_body(a, l, kx, ky);
     a.G = a.G + (l.wx * c + l.wy * s);
     if (l.slot >= 0) Base::add(a, slots_[static_cast<std::size_t>(l.slot)]);
-    if (!all_positive(a.I)) {
+    const S pivot = pivot_of(l, a.I);
+    if (!all_positive(pivot)) {
       singular_joint_ = static_cast<int>(k);
       return false;
     }
-    w.inverse = S(1.0) / a.I;
+    w.inverse = S(1.0) / pivot;
     const S pk = l.sign < 0 ? -p[l.u] : S(p[l.u]);
     const S e = pk - a.Dn;
     w.y0 = e * w.inverse;
@@ -109,7 +110,10 @@ bool MomentumSweeps<Planar, S>::inward(const In& p) {
     const Vec2<S> r = Base::step(l);
     w.rx = r[0];
     w.ry = r[1];
-    Base::carry(a, w.rx, w.ry, pk);
+    if (l.has_rotor)
+      Base::carry_with_rotor(a, l, w.hx, w.hy, w.inverse, w.rx, w.ry, pk - l.rotor * w.y0);
+    else
+      Base::carry(a, w.rx, w.ry, pk);
     if (!l.first) Base::leave(l, Base::slot_of_parent(l), a);
   }
   return true;
@@ -179,6 +183,10 @@ bool MomentumSweeps<Planar, S>::outward(const In& q, Out u, Out pdot) {
         const S Px = w.Axx * vx + w.Axy * vy + w.Dx, Py = w.Axy * vx + w.Ayy * vy + w.Dy;
         rate = w.G + (vy * Px - vx * Py);
         turning = w.y0 - (w.hx * vx + w.hy * vy);
+        if (l.has_rotor) {
+          rate = rate + l.rotor * omega * (vy * w.hx - vx * w.hy);
+          turning = turning + l.rotor * w.inverse * omega;
+        }
         own = turning - omega;
       }
       omega = turning;

@@ -133,6 +133,16 @@ class PlanarPlaces {
     a.I = rx * a.Hy - ry * a.Hx;
     a.Dn = n + (rx * a.Dy - ry * a.Dx);
   }
+  /// The same with a rotor, whose H' = I_r h and I' = I_r (1 − I_r M_j⁻¹) remain: rotor.h.
+  static MOMENTA_INLINE void carry_with_rotor(PlanarArticulated<S>& a, const PlanarLink& l,
+                                              const S& hx, const S& hy, const S& inverse,
+                                              const S& rx, const S& ry, const S& n) {
+    carry(a, rx, ry, n);
+    const S Hx = l.rotor * hx, Hy = l.rotor * hy, across = rx * Hy - ry * Hx;
+    a.Hx = a.Hx + Hx;
+    a.Hy = a.Hy + Hy;
+    a.I = a.I + (l.rotor * (1.0 - l.rotor * inverse) + (across + across));
+  }
   /// The same for M' and D' of any joint.
   static void carry(PlanarArticulated<S>& a, const JointRecord<Planar, S>& x,
                     const Planar::ArticulatedInertia<S>& M, const Planar::Force<S>& D) {

@@ -143,9 +143,9 @@ struct Spatial : SpatialAlgebra {
     return f;
   }
   /// The constant screws of that way alone.
-  template <class S>
-  static void constants_inward(const EdgeConstants& k, Force<S>& f) {
-    if (k.about_y) force_inward<1>(f, k.cos_beta, k.sin_beta, 0.0);
+  template <class Constants, class S>
+  static void constants_inward(const Constants& k, Force<S>& f) {
+    if (k.about_y) force_inward<1>(f, k.cos_beta, k.sin_beta, decltype(k.cos_beta)(0.0));
     if (k.about_x) force_inward<0>(f, k.cos_alpha, k.sin_alpha, k.a);
     if (k.about_z) force_inward<2>(f, k.cos_gamma, k.sin_gamma, k.delta);
   }

@@ -198,8 +198,9 @@ struct Joint<Spatial> {
     return joint_mass - (b.pitch * b.pitch * least + rounding * turning);
   }
 
-  /// M* − U hᵀ with h = U / M_j, eq. (47). The joint's own row and column vanish exactly: dust left
-  /// there would pass for the inertia of a joint that has none. See reduce_screw for helical ones.
+  /// M* − U hᵀ with h = U / M_j, eq. (47). Without a rotor the joint's own row and column vanish
+  /// exactly: dust left there would pass for the inertia of a joint that has none. See reduce_screw
+  /// for helical ones.
   template <class S>
   static void reduce(const Body& b, Spatial::ArticulatedInertia<S>& m, const Spatial::Force<S>& u,
                      const Spatial::Force<S>& h) {
@@ -210,6 +211,7 @@ struct Joint<Spatial> {
       }
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) m.H(i, j) -= u.f[i] * h.n[j];
+    if (b.has_rotor()) return;
     if (b.kind == JointKind::helical) return reduce_screw(b.pitch, m);
     for (int i = 0; i < 3; ++i)
       if (b.kind == JointKind::revolute)

@@ -3,7 +3,7 @@
 // first, "inward" children first; depth-first numbering makes both a plain loop.
 //
 //   Ω_K = 𝒯ⱽ Ω_L + E u + Ω_t                                (23)
-//   P*_K = M_K Ω_K + w_K + Σ 𝒯ᶠ P*_child,  p_K = Eᵀ P*_K     (26), (34)
+//   P*_K = M_K Ω_K + w_K + Σ 𝒯ᶠ P*_child,  p_K = Eᵀ P*_K     (26), (34); + I_r u of a rotor
 //   ṗ_K = Eᵀ (T*_K − Ω_K × P*_K) + Ėᵀ P*_K + Q_joint          (35)
 //
 // w: loop impulses on the body, if any. Ė = 0 for all joints but user joints.
@@ -74,6 +74,7 @@ void move_body(Workspace<Space, S>& w, std::size_t k, const S* u) {
     add_drive<Space, S>(b, s, s.V);
   else
     Joint<Space>::add_motion(b, s.edge, u + b.u, s.V);
+  if (b.has_rotor()) s.rotor_rate = u[b.u];
   if (b.law) add_drive<Space, S>(b, s, s.V);
 }
 
@@ -104,17 +105,28 @@ void body_momenta(Workspace<Space, S>& w) {
     w.body[k].P = Space::momentum(w.inertia(k), w.body[k].V);
 }
 
-/// Accumulates P*_K, eq. (26), and projects: p = Eᵀ P*, eq. (34).
+/// Sums body[k].P over subtrees, eq. (26), and calls visit(k) once that of body k is complete.
+template <class Space, class S, class Visit>
+void sum_inward(Workspace<Space, S>& w, Visit&& visit) {
+  for (std::size_t k = w.body.size(); k-- > 0;) {
+    const auto& b = w.model->bodies[k];
+    visit(k);
+    if (b.parent >= 0)
+      w.body[static_cast<std::size_t>(b.parent)].P +=
+          Space::to_parent(b.edge, b.kind, w.body[k].edge, w.body[k].P);
+  }
+}
+
+/// P*_K, eq. (26), and p = Eᵀ P* + I_r u, eq. (34).
 template <class Space, class S>
 void momenta_inward(Workspace<Space, S>& w, S* p) {
-  const auto& model = *w.model;
-  for (std::size_t k = w.body.size(); k-- > 0;) {
-    const auto& b = model.bodies[k];
-    auto& s = w.body[k];
-    if (b.drive < 0 && p) Joint<Space>::project(b, s.edge, s.P, p + b.u);
-    if (b.parent >= 0)
-      w.body[static_cast<std::size_t>(b.parent)].P += Space::to_parent(b.edge, b.kind, s.edge, s.P);
-  }
+  sum_inward(w, [&](std::size_t k) {
+    const auto& b = w.model->bodies[k];
+    const auto& s = w.body[k];
+    if (b.drive >= 0 || !p) return;
+    Joint<Space>::project(b, s.edge, s.P, p + b.u);
+    if (b.has_rotor()) p[b.u] += b.rotor * s.rotor_rate;
+  });
 }
 
 /// Generalised force of a joint's own spring, damper and torque.

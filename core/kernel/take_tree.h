@@ -31,6 +31,7 @@ void take_joints(const Tree& tree, Model<Space>& model) {
     m.rest = b.rest;
     m.damping = b.damping;
     m.torque = b.torque;
+    m.rotor = b.rotor;
     if (b.kind == JointKind::user) {
       m.law = static_cast<const UserFormula*>(b.law.get());  // as JointFormula sees to
       m.user = static_cast<int>(model.laws.size());

@@ -9,6 +9,8 @@
 // whole. A user joint is a formula of a program (core/user_joint.h): its E varies in body axes, and
 // the formula says how many numbers it has.
 
+#include <cstddef>
+
 namespace momenta {
 
 /// The kinds of joints of a scene; their coordinates: JointSpec.
@@ -71,6 +73,12 @@ constexpr int rates_of(JointKind kind) {
       return 0;
   }
   return 0;
+}
+
+/// How many of its rates can have a rotor's inertia (JointSpec::rotor_inertia): all where q̇ = u and
+/// the joint is one of, or a chain of, revolute, prismatic and helical ones.
+constexpr std::size_t rotors_of(JointKind kind) {
+  return coordinates_of(kind) == rates_of(kind) ? static_cast<std::size_t>(rates_of(kind)) : 0;
 }
 
 /// Whether the joint has one coordinate, along which a spring, a damper or a torque can act.

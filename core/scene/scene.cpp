@@ -23,6 +23,11 @@ int rates_of(const JointSpec& joint) {
   return joint.kind == JointKind::user ? coordinates_of(joint) : rates_of(joint.kind);
 }
 
+bool has_rotor(const JointSpec& joint) {
+  return std::any_of(joint.rotor_inertia.begin(), joint.rotor_inertia.end(),
+                     [](double x) { return x != 0; });
+}
+
 Eigen::Vector3d perpendicular_to(const Eigen::Vector3d& axis) {
   constexpr double tie = 1e-9;  // so that rounding does not choose
   const Eigen::Vector3d a = axis.normalized();

@@ -109,13 +109,20 @@ struct JointSpec {
   double stiffness = 0;  ///< revolute, helical [N m/rad], prismatic [N/m]; else 0
   double rest = 0;       ///< revolute, helical [rad], prismatic [m]; else 0
   double damping = 0;    ///< revolute, helical [N m s/rad], prismatic [N s/m]; else 0
-  Location at;           ///< where the file has it
+  /// Inertia on each coordinate's rate, as of a motor's rotor behind its gear (gear ratio squared
+  /// times its own): ½ I q̇² of kinetic energy beside that of the bodies. Of revolute and helical
+  /// joints [kg m²], prismatic ones [kg], and of each coordinate of cylindrical, universal and
+  /// planar joints; empty: none. On a driven coordinate it has no effect on the motion.
+  std::vector<double> rotor_inertia;
+  Location at;  ///< where the file has it
 };
 
 /// Size of q of a joint: by its kind, or by its law.
 int coordinates_of(const JointSpec& joint);
 /// Size of u and p of a joint.
 int rates_of(const JointSpec& joint);
+/// Whether a rotor turns with one of its coordinates.
+bool has_rotor(const JointSpec& joint);
 
 /// The default direction of a joint. Of the coordinate axes, find the one nearest to `axis` (the
 /// first of equally near ones), take the next in the order x y z x, and make it perpendicular to

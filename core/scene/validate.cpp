@@ -127,6 +127,13 @@ void check_joints(const Scene& scene, const Census& census) {
                 (joint.stiffness == 0 && joint.rest == 0 && joint.damping == 0),
             scene, joint.at, who,
             "stiffness, rest and damping are for revolute, prismatic and helical joints only");
+    require(joint.rotor_inertia.empty() || joint.rotor_inertia.size() == rotors_of(joint.kind),
+            scene, joint.at, who,
+            "rotor_inertia must be empty or of one number for each coordinate of a revolute, "
+            "prismatic, helical, cylindrical, universal or planar joint");
+    require(std::all_of(joint.rotor_inertia.begin(), joint.rotor_inertia.end(),
+                        [](double x) { return std::isfinite(x) && x >= 0; }),
+            scene, joint.at, who, "rotor_inertia must be finite and >= 0 [kg m² or kg]");
     require(std::isfinite(joint.pitch), scene, joint.at, who, "pitch must be finite [m/rad]");
     require(joint.kind == JointKind::helical || joint.pitch == 0, scene, joint.at, who,
             "pitch is for helical joints only");

@@ -189,6 +189,8 @@ class TreeBuilder {
       b.stiffness = joint.stiffness;
       b.rest = joint.rest;
       b.damping = joint.damping;
+      if (b.nv == 1 && !joint.rotor_inertia.empty())
+        b.rotor = joint.rotor_inertia[static_cast<std::size_t>(part.coordinate)];
 
       const bool last = i + 1 == parts.size();
       b.scene_axes =

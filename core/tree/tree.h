@@ -45,6 +45,7 @@ struct Tree {
     double rest = 0;               ///< likewise
     double damping = 0;            ///< likewise
     double torque = 0;             ///< constant generalised force on such a joint [N m or N]
+    double rotor = 0;              ///< inertia on the rate of such a joint [kg m² or kg]
     std::shared_ptr<const JointFormula> law;  ///< of a user joint
   };
 

@@ -2,7 +2,7 @@
 // (7) with the bodies' velocities and momenta kept as unknowns, nothing eliminated:
 //
 //   (  M   0  −𝒦ᵀ  Jᵀ ) ( Ω  )   ( 0 )     M_k Ω_k + J_kᵀσ + Σ_children 𝒯ᶠ_c P*_c = P*_k    (26)
-//   (  0   0   Eᵀ  Rᵀ ) ( u  ) = ( r )     E_kᵀ P*_k + (R σ)_k = r_k                          (34)
+//   (  0   I_r Eᵀ  Rᵀ ) ( u  ) = ( r )     E_kᵀ P*_k + I_r u_k + (R σ)_k = r_k                (34)
 //   ( −𝒦   E   0   0  ) ( P* )   ( 0 )     Ω_k = 𝒯ⱽ_k Ω_parent + E_k u_k                      (23)
 //   (  J   R   0   −ε ) ( σ  )   ( g )     Σ J_k Ω_k + R u = g
 //
@@ -111,6 +111,7 @@ class BodyMatrix {
         for (int e = 0; e < d; ++e)
           if (reaches(e, c)) entry(momentum(k, e), velocity(b.parent, c), carried[e]);
       }
+    if (b.has_rotor()) entry(rate(b.u), rate(b.u), b.rotor);
     for (int j = 0; j < b.nv; ++j) {
       double one[6] = {};
       one[j] = 1;

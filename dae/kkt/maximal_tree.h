@@ -16,7 +16,11 @@
 // direction (a thin rod about itself, the cross of a universal joint) has no Cholesky factor: SᵀΣS
 // is added to its A, which changes y by Σ S 𝒯ⱽ a_parent and no motion, so that Σ is taken off again
 // on the way to the parent. A joint that moves nothing by itself hands on A and f as they are.
-// Source: Baraff, Linear-time dynamics using Lagrange multipliers, SIGGRAPH 1996.
+//
+// A rotor's inertia I_r (rotor.h) is a row of S that gives way, u = S_d (a − 𝒯ⱽ a_parent) = y_d /
+// I_r: YᵀY + diag(0, 1/I_r) = R Rᵀ, and h has one more number, g_d / (R_dd √I_r) with g = B L⁻¹ f,
+// for the energy of u. Source: Baraff, Linear-time dynamics using Lagrange multipliers, SIGGRAPH
+// 1996.
 
 #include <momenta/core/kernel/sweeps.h>
 #include <momenta/dae/kkt/inertia_blocks.h>
@@ -36,7 +40,8 @@ class MaximalTree {
   using Motion = typename Space::template Motion<double>;
   using Force = typename Space::template Force<double>;
   using Inertia = typename Space::template ArticulatedInertia<double>;
-  using Column = std::array<double, d>;  ///< of a wrench, an acceleration, or h
+  /// Of a wrench, an acceleration, or h; its last number is of h alone.
+  using Column = std::array<double, d + 1>;
 
   explicit MaximalTree(const Work& w) : w_(w), joint_(w.body.size()), a_(w.body.size()) {
     for (std::size_t k = 0; k < joint_.size(); ++k) {
@@ -58,7 +63,7 @@ class MaximalTree {
     }
     for (std::size_t k = joint_.size(); k-- > 0;) {
       bool ok = true;
-      with_rows(k, [&](auto s) { ok = eliminate<s.value>(k); });
+      with_rows(k, [&](auto s, auto gives) { ok = eliminate<s.value, gives.value>(k); });
       if (ok) continue;
       singular_joint_ = static_cast<int>(k);
       return false;
@@ -69,12 +74,12 @@ class MaximalTree {
 
   /// The wrench f on body k into h, and what it leaves to the parent; children first.
   void inward(std::size_t k, Column* f, Column* h) const {
-    with_rows(k, [&](auto s) { inward<s.value>(k, f, h); });
+    with_rows(k, [&](auto s, auto gives) { inward<s.value, gives.value>(k, f, h); });
   }
   /// h into the rates u (nv) of joints.
   void outward(const Column* h, double* u) {
     for (std::size_t k = 0; k < joint_.size(); ++k)
-      with_rows(k, [&](auto s) { outward<s.value>(k, h, u); });
+      with_rows(k, [&](auto s, auto gives) { outward<s.value, gives.value>(k, h, u); });
   }
 
   /// Wrenches on body k and its parent that do the torques r (n_k) at its joint and nothing else.
@@ -111,21 +116,25 @@ class MaximalTree {
     int held[d];
     int moved = -1;
     double along = 1;
+    double give = 0;     ///< 1 / (R_dd √I_r) of a rotor
     bool light = false;  ///< the body alone resists nothing in some direction
   };
 
-  /// Calls with the number of rows of S as a constant.
+  /// Calls with the number of rows of S, and whether the last gives way, as constants.
   template <class F>
   void with_rows(std::size_t k, F&& f) const {
+    const std::false_type none;
+    if (w_.model->bodies[k].has_rotor())
+      return f(std::integral_constant<int, d>(), std::true_type());
     switch (d - w_.model->bodies[k].nv) {
       case d - 1:
-        return f(std::integral_constant<int, d - 1>());
+        return f(std::integral_constant<int, d - 1>(), none);
       case d:
-        return f(std::integral_constant<int, d>());
+        return f(std::integral_constant<int, d>(), none);
       case 0:
-        return f(std::integral_constant<int, 0>());
+        return f(std::integral_constant<int, 0>(), none);
       default:
-        return f(std::integral_constant<int, 3>());
+        return f(std::integral_constant<int, 3>(), none);
     }
   }
 
@@ -160,26 +169,28 @@ class MaximalTree {
       }
   }
 
-  template <int s>
+  template <int s, bool gives>
   bool eliminate(std::size_t k) {
+    constexpr int hard = gives ? s - 1 : s;
     const auto& b = w_.model->bodies[k];
     auto& j = joint_[k];
-    if constexpr (s == d) {
+    if constexpr (hard == d) {
       if (b.parent >= 0) hand_on(k, j.A);
       return true;
     } else {
       expand(j.A, j.L);
       double stiffened[d] = {};
-      if (j.light) stiffen<s>(j, stiffened);
+      if (j.light) stiffen<hard>(j, stiffened);
       if (!small::cholesky(j.L, j.light ? 1e-13 : 0)) return false;
       if constexpr (s > 0) {
         // the joint: Y = L⁻¹Sᵀ, YᵀY = R Rᵀ
         double Y[d][s] = {}, R[s][s];
         const bool slanted = j.moved < d;
-        for (int i = 0; i < s; ++i) {
+        for (int i = 0; i < hard; ++i) {
           Y[j.held[i]][i] = 1;
           if (slanted) Y[j.moved][i] = j.slant[i];
         }
+        if constexpr (gives) Y[j.moved][hard] = j.along;
         small::forward(j.L, Y);
         for (int i = 0; i < s; ++i)
           for (int l = 0; l <= i; ++l) {
@@ -187,7 +198,9 @@ class MaximalTree {
             for (int r = 0; r < d; ++r) sum += Y[r][i] * Y[r][l];
             R[i][l] = sum;
           }
+        if constexpr (gives) R[hard][hard] += 1 / b.rotor;
         if (!small::cholesky(R, 0)) return false;
+        if constexpr (gives) j.give = 1 / (R[hard][hard] * std::sqrt(b.rotor));
         // what solutions need of it: B = R⁻¹Yᵀ, T = R⁻¹S
         for (int i = 0; i < s; ++i)
           for (int r = 0; r < d; ++r) j.B[i][r] = Y[r][i], j.T[i][r] = 0;
@@ -197,6 +210,10 @@ class MaximalTree {
         small::forward(R, inverse);
         for (int i = 0; i < s; ++i)
           for (int l = 0; l <= i; ++l) {
+            if (l == hard) {
+              j.T[i][j.moved] += inverse[i][l] * j.along;
+              continue;
+            }
             j.T[i][j.held[l]] = inverse[i][l];
             if (slanted) j.T[i][j.moved] += inverse[i][l] * j.slant[l];
           }
@@ -209,7 +226,7 @@ class MaximalTree {
             for (int i = 0; i < s; ++i) sum += j.T[i][a] * j.T[i][c];
             left[a][c] = sum;
           }
-        if (j.light) add_held<s>(j, stiffened, -1, left);
+        if (j.light) add_held<hard>(j, stiffened, -1, left);
         hand_on(k, compress<Inertia>(left));
       }
       return true;
@@ -249,11 +266,11 @@ class MaximalTree {
     add_held<s>(j, sigma, 1, j.L);
   }
 
-  template <int s>
+  template <int s, bool gives>
   void inward(std::size_t k, Column* f, Column* h) const {
     const auto& j = joint_[k];
     const int parent = w_.model->bodies[k].parent;
-    if constexpr (s == d) {
+    if constexpr (s == d && !gives) {
       h[k] = {};
       if (parent >= 0) add(to_parent(k, f[k]), f[parent]);
     } else {
@@ -264,6 +281,7 @@ class MaximalTree {
         g[i] = 0;
         for (int r = 0; r < d; ++r) g[i] += j.B[i][r] * h[k][static_cast<std::size_t>(r)];
       }
+      if constexpr (gives) h[k][d] = j.give * g[d - 1];
       Column left{};
       for (int i = 0; i < s; ++i)
         for (int r = 0; r < d; ++r) {
@@ -274,14 +292,14 @@ class MaximalTree {
     }
   }
 
-  template <int s>
+  template <int s, bool gives>
   void outward(std::size_t k, const Column* h, double* u) {
     const auto& b = w_.model->bodies[k];
     const auto& j = joint_[k];
     Column& a = a_[k];
     const Column carried =
         b.parent < 0 ? Column{} : to_child(k, a_[static_cast<std::size_t>(b.parent)]);
-    if constexpr (s == d) {
+    if constexpr (s == d && !gives) {
       a = carried;
     } else {
       a = h[k];

@@ -126,6 +126,8 @@ Scene in_units(Scene scene, const Units& units) {
     j.stiffness *= slides ? force / s : torque;
     j.damping *= slides ? force / speed : torque * tau;
     if (slides) j.rest *= s;
+    for (std::size_t i = 0; i < j.rotor_inertia.size(); ++i)
+      j.rotor_inertia[i] *= is_length(j.kind, static_cast<int>(i)) ? mu : mu * s * s;
   }
   for (LoopSpec& l : scene.loops) {
     l.origin_parent *= s;

@@ -160,11 +160,13 @@ bool LoopSweeps<Planar, S, Rows, Momentum>::inward(const In& r, const RightSide<
       a = here.articulated;
       o = here.blocks;
     } else {
-      if (!all_positive(a.I)) {
+      const S pivot = pivot_of(l, a.I);
+      if (!all_positive(pivot)) {
         singular_joint_ = static_cast<int>(k);
         return false;
       }
-      const S inverse = S(1.0) / a.I;
+      const S inverse = S(1.0) / pivot;
+      w.inverse = inverse;
       S pk;
       if (couples) [[unlikely]] {
         Blocks here = o;
@@ -189,17 +191,20 @@ bool LoopSweeps<Planar, S, Rows, Momentum>::inward(const In& r, const RightSide<
         a.Dx = a.Dx + hx * e;
         a.Dy = a.Dy + hy * e;
         const S rx = w.rx, ry = w.ry;
+        const S kept = l.rotor * inverse;
         each_open<S, Rows>(front.open, [&](auto i) MOMENTA_INLINED {
           const auto n = o.C[2].v[i], x = o.C[0].v[i] - n * Column::all(hx),
                      y = o.C[1].v[i] - n * Column::all(hy);
           o.C[0].v[i] = x;
           o.C[1].v[i] = y;
           o.C[2].v[i] = y * Column::all(rx) - x * Column::all(ry);
+          if (l.has_rotor) o.C[2].v[i] = o.C[2].v[i] + n * Column::all(kept);
           if constexpr (Momentum) {
             w.Cx.v[i] = x;
             w.Cy.v[i] = y;
           }
         });
+        S bias(0.0);  // hᵀ c of a rotor
         if constexpr (Momentum) {
           w.Axx = a.Axx;
           w.Axy = a.Axy;
@@ -209,13 +214,17 @@ bool LoopSweeps<Planar, S, Rows, Momentum>::inward(const In& r, const RightSide<
         } else {
           const LoopedRevolute<S, Rows>& from = revolutes_[static_cast<std::size_t>(l.parent)];
           const S w2 = from.omega * from.omega, bx = -(w2 * rx), by = -(w2 * ry);
+          if (l.has_rotor) bias = hx * bx + hy * by;
           a.Dx = a.Dx + (a.Axx * bx + a.Axy * by);
           a.Dy = a.Dy + (a.Axy * bx + a.Ayy * by);
           each_open<S, Rows>(front.open, [&](auto i) MOMENTA_INLINED {
             o.d.v[i] = o.d.v[i] + (o.C[0].v[i] * Column::all(bx) + o.C[1].v[i] * Column::all(by));
           });
         }
-        Base::carry(a, rx, ry, pk);
+        if (l.has_rotor) [[unlikely]]
+          Base::carry_with_rotor(a, l, hx, hy, inverse, rx, ry, pk - l.rotor * (w.y0 - bias));
+        else
+          Base::carry(a, rx, ry, pk);
         if (couples) [[unlikely]] {
           Column here = o.C[2];
           uncouple(k, here);

@@ -86,8 +86,10 @@ void LoopSweeps<Planar, S, Rows, Momentum>::outward(const RightSide<S>& right, O
           vy = vy - w2 * w.ry;
         }
         turning = turning - (w.hx * vx + w.hy * vy);
+        if (l.has_rotor) turning = turning + l.rotor * w.inverse * omega;
         own = turning - omega;
       }
+      const S before = omega;
       omega = turning;
       u[l.u] = l.sign < 0 ? -own : own;
       if (rates) {
@@ -96,6 +98,7 @@ void LoopSweeps<Planar, S, Rows, Momentum>::outward(const RightSide<S>& right, O
           const S Px = plus_dot(w.Axx * vx + w.Axy * vy + w.Dx, w.Cx, sigma, open),
                   Py = plus_dot(w.Axy * vx + w.Ayy * vy + w.Dy, w.Cy, sigma, open);
           turned = vy * Px - vx * Py;
+          if (l.has_rotor) turned = turned + l.rotor * before * (vy * w.hx - vx * w.hy);
         }
         rate[l.u] = turned;  // about the plane's normal, until the last sweep
       }

@@ -41,9 +41,10 @@ namespace momenta {
 template <class S, int Rows>
 struct LoopedRevolute {
   Slots<S, Rows> Cx, Cy, g;
-  S rx, ry;                             ///< O_K − O_L
-  S Axx, Axy, Ayy, Dx, Dy, hx, hy, y0;  ///< M', D', h, M_j⁻¹ e
-  S vx, vy, omega;                      ///< Ω (momentum form); prescribed ones (acceleration)
+  S rx, ry;                         ///< O_K − O_L
+  S Axx, Axy, Ayy, Dx, Dy, hx, hy;  ///< M', D', h
+  S y0, inverse;                    ///< M_j⁻¹ e, M_j⁻¹
+  S vx, vy, omega;                  ///< Ω (momentum form); prescribed ones (acceleration)
 };
 template <class S, int Rows>
 struct LoopedJoint {

@@ -15,7 +15,8 @@ bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::revolute_inward(std::size_t k, 
   RevoluteRecord& w = revolutes_[k];
   Articulated<S>& m = a.articulated;
   Blocks& o = a.blocks;
-  if (!all_positive(m.M.Izz)) return false;
+  const S pivot = pivot_of(l, m.M.Izz);
+  if (!all_positive(pivot)) return false;
   const bool couples = plan_->couples();
   S own = S(r[l.u]);
   if (couples) {
@@ -25,8 +26,9 @@ bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::revolute_inward(std::size_t k, 
       if (right.centre) own = own - j.ratio * right.centre[loops_->loops[loop].row];
     });
   }
-  const S inverse = S(1.0) / m.M.Izz, e = own - m.Dnz;
+  const S inverse = S(1.0) / pivot, e = own - m.Dnz;
   w.y0 = e * inverse;
+  w.inverse = inverse;
   Eliminated<S> left;
   eliminate_revolute(m.M, inverse, w.h, left.M);
   left.fx = m.Dfx + w.h.fx * e;
@@ -34,7 +36,7 @@ bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::revolute_inward(std::size_t k, 
   left.fz = m.Dfz + w.h.fz * e;
   left.nx = m.Dnx + w.h.nx * e;
   left.ny = m.Dny + w.h.ny * e;
-  left.nz = own;
+  left.nz = l.has_rotor ? own - l.rotor * w.y0 : own;
   left.Gx = w.Gx = m.Gx;
   left.Gy = w.Gy = m.Gy;
   left.Gz = m.Gz;
@@ -65,6 +67,7 @@ bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::revolute_inward(std::size_t k, 
     C[3] = C[3] - c * Column::all(w.h.nx);
     C[4] = C[4] - c * Column::all(w.h.ny);
     C[5] = couplers.v[i];
+    if (l.has_rotor) C[5] = C[5] + c * Column::all(l.rotor * inverse);
     if constexpr (Momentum) {
       w.C[0].v[i] = C[0];
       w.C[1].v[i] = C[1];
@@ -103,6 +106,11 @@ bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::revolute_inward(std::size_t k, 
   x = cosine * left.Gx - sine * left.Gy;
   left.Gy = sine * left.Gx + cosine * left.Gy;
   left.Gx = x;
+  Force column;
+  if (l.has_rotor) {
+    column = rotor_column(w.h, l.rotor, inverse);
+    turn_rotor(column, cosine, sine, l.d);
+  }
   if constexpr (!Momentum) {
     // D' += M'c
     const Reduced<S>& M = left.M;
@@ -112,9 +120,11 @@ bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::revolute_inward(std::size_t k, 
     left.fz += M.Axz * v[0] + M.Ayz * v[1] + M.Azz * v[2] + M.Hzx * n[0] + M.Hzy * n[1];
     left.nx += M.Hxx * v[0] + M.Hyx * v[1] + M.Hzx * v[2] + M.Ixx * n[0] + M.Ixy * n[1];
     left.ny += M.Hxy * v[0] + M.Hyy * v[1] + M.Hzy * v[2] + M.Ixy * n[0] + M.Iyy * n[1];
+    if (l.has_rotor) left.nz += dot(column.f, v) + column.n[0] * n[0] + column.n[1] * n[1];
     if (l.parent < 0) return true;
   }
   carry_any<Momentum>(l, edge, left, m);
+  if (l.has_rotor) carry_rotor(edge, column, m);
   return true;
 }
 

@@ -108,8 +108,12 @@ void SpatialLoopSweeps<S, Rows, Momentum, Tree>::revolute_outward(std::size_t k,
     momenta::turn_back<2>(m.g, c, s);
     turned = turned + (w.Gx * m.g[1] - w.Gy * m.g[0]);
   }
-  const S turning = w.y0 - along(w.g) -
-                    (w.h.fx * v[0] + w.h.fy * v[1] + w.h.fz * v[2] + w.h.nx * o[0] + w.h.ny * o[1]);
+  S turning = w.y0 - along(w.g) -
+              (w.h.fx * v[0] + w.h.fy * v[1] + w.h.fz * v[2] + w.h.nx * o[0] + w.h.ny * o[1]);
+  if (l.has_rotor) {
+    if (rates) turned = turned + rotor_rate(w.h, l.rotor, v[0], v[1], o[0], o[1], o[2]);
+    turning = turning + l.rotor * w.inverse * o[2];
+  }
   const S own = turning - o[2];
   o[2] = turning;
   u[l.u] = own;

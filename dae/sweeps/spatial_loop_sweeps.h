@@ -12,6 +12,7 @@
 // the ground falls upward with −g, c the velocity products of acceleration_sweeps.h.
 
 #include <momenta/core/kernel/place_links.h>
+#include <momenta/core/kernel/rotor.h>
 #include <momenta/core/kernel/spherical.h>
 #include <momenta/core/kernel/sweeps.h>
 #include <momenta/dae/loop/loops_in_time.h>
@@ -117,7 +118,7 @@ class SpatialLoopSweeps {
   struct RevoluteRecord {
     RevoluteTurning<S> M;  ///< of M'
     RevoluteColumn<S> h;
-    S Dfx, Dfy, Dnx, Dny, y0, Gx, Gy;
+    S Dfx, Dfy, Dnx, Dny, y0, Gx, Gy, inverse;
     Column C[4], g;  ///< rows fx, fy, nx, ny of C'
     Motion c;        ///< acceleration form: velocity product, before the revolute joint's screw
   };

@@ -5,7 +5,11 @@
 namespace momenta::equations {
 
 DenseLagrangian::DenseLagrangian(const Scene& scene, const Tree& tree)
-    : scene_(scene), places_(scene.bodies.size()), nq_(tree.nq), nv_(tree.nv) {
+    : scene_(scene),
+      places_(scene.bodies.size()),
+      rotors_(static_cast<std::size_t>(tree.nv)),
+      nq_(tree.nq),
+      nv_(tree.nv) {
   for (std::size_t k = 0; k < scene.bodies.size(); ++k)
     bodies_[scene.bodies[k].name] = static_cast<int>(k);
   for (const JointSpec& joint : scene.joints) {
@@ -21,6 +25,9 @@ DenseLagrangian::DenseLagrangian(const Scene& scene, const Tree& tree)
     p.nv = rates_of(joint.kind) - static_cast<int>(p.drives.size());
     p.quaternion =
         p.nv > 0 && (joint.kind == JointKind::spherical || joint.kind == JointKind::free);
+    auto rate = static_cast<std::size_t>(p.u);  // driven coordinates have none
+    for (std::size_t i = 0; i < joint.rotor_inertia.size(); ++i)
+      if (!p.drives.contains(static_cast<int>(i))) rotors_[rate++] = joint.rotor_inertia[i];
   }
   std::vector<bool> placed(places_.size(), false);
   while (order_.size() < places_.size())
@@ -219,6 +226,7 @@ S DenseLagrangian::kinetic_energy(const S& t, const List<S>& q, const List<S>& u
     const Moving<S>& b = bodies[k];
     twice += inner(h[k].f, b.v - outer(b.w, b.origin)) + inner(h[k].n, b.w);
   }
+  for (std::size_t i = 0; i < u.size(); ++i) twice += lift<S>(rotors_[i]) * u[i] * u[i];
   return lift<S>(0.5L) * twice;
 }
 
@@ -347,6 +355,7 @@ RealMatrix DenseLagrangian::mass_matrix(Real t, const Eigen::VectorXd& q) const 
     unit[static_cast<std::size_t>(j)] = 1;
     const List<Real> column = projected(t, at, body_momenta(moving(t, at, unit, false)));
     m.col(j) = Eigen::Map<const RealVector>(column.data(), nv_);
+    m(j, j) += rotors_[static_cast<std::size_t>(j)];
   }
   return m;
 }

@@ -217,7 +217,9 @@ class DenseLagrangian {
   List<S> projected(const S& t, const List<S>& q, const List<Wrench<S>>& wrenches) const;
   template <class S>
   List<S> momenta(const S& t, const List<S>& q, const List<S>& u) const {
-    return projected(t, q, body_momenta(moving(t, q, u, true)));
+    List<S> p = projected(t, q, body_momenta(moving(t, q, u, true)));
+    for (std::size_t i = 0; i < p.size(); ++i) p[i] += lift<S>(rotors_[i]) * u[i];
+    return p;
   }
   template <class S>
   S kinetic_energy(const S& t, const List<S>& q, const List<S>& u) const;
@@ -263,6 +265,7 @@ class DenseLagrangian {
   std::map<std::string, int> bodies_;
   List<Place> places_;       ///< by body, in the scene's order
   List<std::size_t> order_;  ///< parents first
+  List<double> rotors_;      ///< by rate
   int nq_ = 0, nv_ = 0;
 };
 

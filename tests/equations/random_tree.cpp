@@ -185,6 +185,19 @@ double RandomTree::tilt() {
   }
 }
 
+/// Choices of its own: whether rotors are asked for changes nothing else.
+void RandomTree::rotors(JointSpec& j) {
+  const std::size_t count = rotors_of(j.kind);
+  if (count == 0) return;
+  if (!bytes_.empty()) {
+    if (chance(0.3)) j.rotor_inertia.assign(count, uniform(0, 2));
+    return;
+  }
+  if (rotor_bits_() % 3 != 0) return;
+  for (std::size_t i = 0; i < count; ++i)
+    j.rotor_inertia.push_back(static_cast<double>(rotor_bits_() % 1000) / 500);
+}
+
 void RandomTree::effects(const TreeRecipe& recipe, Scene& s, int k) {
   JointSpec& j = s.joints.back();
   const bool together = j.kind == JointKind::spherical || j.kind == JointKind::free;
@@ -205,6 +218,7 @@ void RandomTree::effects(const TreeRecipe& recipe, Scene& s, int k) {
     torque.value = uniform(-3, 3);
     s.forces.push_back(torque);
   }
+  if (recipe.rotors) rotors(j);
   if (!recipe.body_forces) return;
   if (chance(0.3)) {
     ForceSpec spring;

@@ -31,6 +31,7 @@ struct TreeRecipe {
   bool drives = true;        ///< every fourth coordinate or so; of balls and free joints, all
   bool joint_forces = true;  ///< springs, dampers, torques
   bool body_forces = true;   ///< spring-dampers between points, wrenches
+  bool rotors = true;        ///< on every third joint that can have some
 };
 
 /// The kinds without quaternions: q̇ = u, and p is canonical.
@@ -45,7 +46,7 @@ struct TreeState {
 
 class RandomTree {
  public:
-  explicit RandomTree(unsigned seed) : bits_(seed) {}
+  explicit RandomTree(unsigned seed) : bits_(seed), rotor_bits_(seed + 1) {}
   /// From bytes, one for each choice, then from a generator: what searches for scenes or makes them
   /// smaller works on bytes. Zeros mostly mean less: nothing that chance() decides on.
   explicit RandomTree(std::span<const unsigned char> bytes) : bytes_(bytes) {}
@@ -94,6 +95,7 @@ class RandomTree {
   double tilt();
 
   void effects(const TreeRecipe& recipe, Scene& s, int k);
+  void rotors(JointSpec& j);
 
   std::uint64_t bits() {
     if (bytes_.empty()) return bits_();
@@ -102,7 +104,7 @@ class RandomTree {
     return ~all;
   }
 
-  std::mt19937_64 bits_;
+  std::mt19937_64 bits_, rotor_bits_;
   std::span<const unsigned char> bytes_;
 };
 

@@ -63,6 +63,7 @@ inline std::string difference(const Scene& a, const Scene& b) {
     number(x.stiffness, y.stiffness, what + " stiffness");
     number(x.rest, y.rest, what + " rest");
     number(x.damping, y.damping, what + " damping");
+    numbers(x.rotor_inertia, y.rotor_inertia, what + " rotor_inertia");
   });
   each(a.loops, b.loops, "loop", [&](const LoopSpec& x, const LoopSpec& y, const auto& what) {
     frames(x, y, what);

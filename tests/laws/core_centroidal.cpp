@@ -107,6 +107,7 @@ void follow(const Vector3d& gravity) {
     ASSERT_EQ(base.parent, "ground");
     base.kind = JointKind::free;
     base.pitch = base.stiffness = base.rest = base.damping = 0;
+    base.rotor_inertia.clear();
     base.axis2.setZero();
     base.direction.setZero();
     std::erase_if(scene.forces, [&](const ForceSpec& f) { return f.joint == base.name; });
@@ -152,6 +153,7 @@ TEST(Centroidal, OfAJointWithoutInertiaIsNone) {
   RandomTree random(3);
   Scene scene = random.scene(
       {.bodies = 1, .kinds = {JointKind::revolute}, .drives = false, .body_forces = false});
+  scene.joints[0].rotor_inertia.clear();
   scene.bodies[0].mass = 0;
   scene.bodies[0].inertia.setZero();
   OpenChain chain(scene, Algebra::spatial);

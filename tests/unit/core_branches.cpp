@@ -197,6 +197,7 @@ TEST(Branches, RefuseAJointWithoutInertiaByName) {
   scene.bodies.back().mass = 0;
   scene.bodies.back().com.setZero();
   scene.bodies.back().inertia.setZero();
+  scene.joints.back().rotor_inertia.clear();
   OpenChain limbed(scene, Algebra::spatial), plain(scene, Algebra::spatial, 0, false);
   const TreeState s = random.state(plain.tree());
   Eigen::VectorXd rates(plain.nq()), pdot(plain.nv());

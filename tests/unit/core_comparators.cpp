@@ -248,6 +248,7 @@ TEST(Comparators, NameTheJointWithoutInertia) {
   const double at_rest[4] = {1, 0, 0, 0}, none[3] = {0, 0, 0}, *q = at_rest, *zero = none;
   double udot[3];
   Scene scene = revolutes(3, 1, Branching::serial);
+  for (JointSpec& j : scene.joints) j.rotor_inertia.clear();
   BodySpec& body = scene.bodies[0];
   JointSpec& joint = scene.joints[0];
   joint.kind = JointKind::spherical;
@@ -347,6 +348,7 @@ Costs operations(int n, double lean) {
     j.origin_child.setZero();
     j.origin_parent = {0.5, 0.1, 0.2};
     j.rotation = Eigen::AngleAxisd(lean, Eigen::Vector3d::UnitX());
+    j.rotor_inertia.clear();
   }
   const Tree tree = build_tree(scene);
   const Model<Spatial> model = build_spatial_model(tree, scene);

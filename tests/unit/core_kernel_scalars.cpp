@@ -106,7 +106,8 @@ TEST(Kernel, MasslessBodiesBetweenAllKinds) {
                                   .branching = Branching::serial,
                                   .kinds = {JointKind::revolute},
                                   .drives = false,
-                                  .joint_forces = false});
+                                  .joint_forces = false,
+                                  .rotors = false});
       scene.bodies[1].mass = 0;
       scene.bodies[1].inertia.setZero();
       for (const auto& [joint, kind] : {std::pair{1, inner}, std::pair{2, outer}}) {
@@ -153,7 +154,8 @@ TEST(Kernel, MasslessChainOnAMovingBase) {
         random.scene({.bodies = 5,
                       .branching = Branching::serial,
                       .kinds = {JointKind::revolute, JointKind::helical, JointKind::prismatic},
-                      .drives = false});
+                      .drives = false,
+                      .rotors = false});
     JointSpec& base = scene.joints.front();
     base.kind = JointKind::free;
     base.pitch = base.stiffness = base.rest = base.damping = 0;
@@ -202,7 +204,8 @@ TEST(Kernel, JointWithoutInertiaIsNamed) {
                                 .kinds = {kind},
                                 .drives = false,
                                 .joint_forces = false,
-                                .body_forces = false});
+                                .body_forces = false,
+                                .rotors = false});
     scene.bodies[1].mass = 0;
     scene.bodies[1].inertia.setZero();
     OpenChain chain(scene, Algebra::spatial);
@@ -226,7 +229,8 @@ TEST(Kernel, RoundingIsNoInertia) {
                                 .kinds = {JointKind::revolute},
                                 .drives = false,
                                 .joint_forces = false,
-                                .body_forces = false});
+                                .body_forces = false,
+                                .rotors = false});
     scene.bodies[0].mass = 0;
     scene.bodies[0].inertia.setZero();
     scene.joints[1].rotation = Eigen::Quaterniond::Identity();
@@ -243,7 +247,8 @@ TEST(Kernel, RoundingIsNoInertia) {
                                     .kinds = {JointKind::spherical},
                                     .drives = false,
                                     .joint_forces = false,
-                                    .body_forces = false});
+                                    .body_forces = false,
+                                    .rotors = false});
     spherical.bodies[0].inertia.setZero();
     if (seed % 2 == 0) {  // a slender rod along com instead
       const Eigen::Vector3d n = spherical.bodies[0].com.normalized();

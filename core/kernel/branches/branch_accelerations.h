@@ -103,17 +103,28 @@ bool BranchAccelerations<S>::sweep_inward() {
       add_body(articulated.M, l);
       add_bias(articulated, w);
       if (l.slot >= 0) add<false>(articulated, slots_[static_cast<std::size_t>(l.slot)]);
-      if (!all_positive(articulated.M.Izz)) {
-        singular_joint_ = branches_.singular_joint_at(k, articulated.M.Izz);
+      const S pivot = pivot_of(l, articulated.M.Izz);
+      if (!all_positive(pivot)) {
+        singular_joint_ = branches_.singular_joint_at(k, pivot);
         return false;
       }
-      inverse = S(1.0) / articulated.M.Izz;
+      inverse = S(1.0) / pivot;
       eliminate_revolute(articulated.M, inverse, h, r.M);
     }
     w.h = h;
     eliminate_bias(articulated, tau_[k], inverse, w, r);
-    turn_revolute(r, branches_.cosine(k), branches_.sine(k), l.d, w);
-    carry_any<false>(l, l.edge, r, articulated);
+    const S c = branches_.cosine(k), s = branches_.sine(k);
+    if (l.has_rotor) w.inverse = inverse, r.nz = tau_[k] - l.rotor * w.y0;
+    turn_revolute(r, c, s, l.d, w);
+    if (!l.has_rotor) {
+      carry_any<false>(l, l.edge, r, articulated);
+    } else {
+      Spatial::Force<S> column = rotor_column(h, l.rotor, inverse);
+      turn_rotor(column, c, s, l.d);
+      r.nz = r.nz + rotor_bias(column, w);
+      carry_any<false>(l, l.edge, r, articulated);
+      carry_rotor(l.edge, column, articulated);
+    }
     if (!l.first && !l.root)
       leave<false>(l, slots_[static_cast<std::size_t>(l.parent_slot)], articulated);
   }

@@ -70,14 +70,18 @@ bool BranchMomenta<S>::sweep_inward() {
     } else {
       add_body<Gravity>(articulated, l);
       if (l.slot >= 0) add<Gravity>(articulated, slots_[static_cast<std::size_t>(l.slot)]);
-      if (!all_positive(articulated.M.Izz)) {
-        singular_joint_ = branches_.singular_joint_at(k, articulated.M.Izz);
+      const S pivot = pivot_of(l, articulated.M.Izz);
+      if (!all_positive(pivot)) {
+        singular_joint_ = branches_.singular_joint_at(k, pivot);
         return false;
       }
-      eliminate_revolute<Gravity>(articulated, p_[k], S(1.0) / articulated.M.Izz, w, r);
+      eliminate_revolute<Gravity>(articulated, p_[k], S(1.0) / pivot, w, r);
     }
-    turn_revolute<Gravity>(r, branches_.cosine(k), branches_.sine(k), l.d, w);
+    const S c = branches_.cosine(k), s = branches_.sine(k);
+    if (l.has_rotor) r.nz = p_[k] - l.rotor * w.y0;
+    turn_revolute<Gravity>(r, c, s, l.d, w);
     carry_any<Gravity>(l, l.edge, r, articulated);
+    if (l.has_rotor) hand_on_rotor(l, l.edge, w.h, w.inverse, c, s, articulated);
     if (!l.first && !l.root)
       leave<Gravity>(l, slots_[static_cast<std::size_t>(l.parent_slot)], articulated);
   }

@@ -38,6 +38,7 @@ class BranchPack {
       l.opens = place.opens;
       l.screwed = place.screwed;
       l.has_force = place.has_force;
+      l.has_rotor = place.has_rotor;
       l.edge.about_z = l.screwed;
       l.edge.about_x = true;
       l.edge.about_y = l.turn == Turn::tilted;
@@ -50,7 +51,7 @@ class BranchPack {
       if (!l.leaf) continue;
       Full<S> M;
       set_body(M, l);
-      leaves_[k].inverse = S(1.0) / M.Izz;
+      leaves_[k].inverse = S(1.0) / (M.Izz + l.rotor);
       eliminate_revolute(M, leaves_[k].inverse, leaves_[k].h, leaves_[k].M);
     }
   }

@@ -166,6 +166,7 @@ BranchGroup group_of(const LinkTree& tree, const Shapes& s, const int* roots, in
       place.turn = common_turn(place.turn, l.turn);
       place.screwed |= l.screwed;
       place.has_force |= l.has_force;
+      place.has_rotor |= l.has_rotor;
       g.links.push_back(link);
       g.q.push_back(l.q);
       g.u.push_back(l.u);
@@ -240,9 +241,7 @@ void build_remaining_tree(const LinkTree& tree, const std::vector<char>& in_bran
                       remaining_tree.links[k + 1].parent != static_cast<int>(k);
     l.carries_branches_alone = bare && reached[k];
     if (l.carries_branches_alone && l.kind != LinkKind::revolute) l.leaf = true;
-    const bool in_chain = l.kind == LinkKind::revolute && l.first && !l.leaf && l.slot < 0 &&
-                          !l.screwed && l.turn != Turn::tilted;
-    l.path = in_chain ? static_cast<Path>(l.turn) : Path::any;
+    l.path = path_of(l);
   }
 }
 

@@ -86,7 +86,6 @@ Scene read_mjcf(const Element& element, const std::string& file) {
   for (const Node& node : root.children("default")) model.defaults.take(node);
   for (const Node& node : root.children("worldbody")) read_worldbody(node, model);
   for (const Node& node : root.children("equality")) read_equality(node, model);
-  add_rotors(model);
   for (const Node& node : root.children()) {
     constexpr std::array<std::string_view, 5> read{"compiler", "option", "default", "worldbody",
                                                    "equality"};

@@ -153,7 +153,7 @@ class BodyReader {
         joint.origin_parent = first ? frame * anchor : anchor;
         if (first) joint.rotation = frame.turn;
       }
-      read_mechanics(node, joint, inside.at);
+      read_mechanics(node, joint);
       if (!last) {
         BodySpec between;
         between.name = joint.child;
@@ -167,7 +167,7 @@ class BodyReader {
 
   /// Axis, spring, damper, armature. Torque −k (q − springref) − c q̇, where the scene's q is the
   /// file's less `ref`.
-  void read_mechanics(const Node& node, JointSpec& joint, const MjcfFrame& at) {
+  void read_mechanics(const Node& node, JointSpec& joint) {
     const bool one = has_one_coordinate(joint.kind);
     if (node.name() == "freejoint") return;
     if (has_axis(joint.kind)) joint.axis = node.direction("axis", Vector3d::UnitZ());
@@ -191,8 +191,7 @@ class BodyReader {
     const double unit = joint.kind == JointKind::revolute ? model_.angles.unit : 1;
     if (stiffness != 0) joint.rest = unit * (node.number("springref", 0) - node.number("ref", 0));
     if (armature < 0) node.fail("armature", "is negative, expected a number >= 0");
-    if (armature > 0)
-      model_.rotors.push_back({joint.name, at.turn * joint.axis, armature, joint.at});
+    if (armature > 0) joint.rotor_inertia = {armature};
   }
 
   MjcfModel& model_;
@@ -204,31 +203,6 @@ class BodyReader {
 void read_worldbody(const Node& world, MjcfModel& model) {
   BodyReader(model).children_of(world,
                                 {"world", {}, model.defaults.active_class(world, "main"), false});
-}
-
-void add_rotors(MjcfModel& model) {
-  for (const MjcfModel::Rotor& rotor : model.rotors) {
-    const Eigen::Matrix3d along = rotor.axis * rotor.axis.transpose();
-    BodySpec body;
-    body.at = rotor.at;
-    body.name = model.bodies.free(rotor.joint + " rotor");
-    body.inertia = 0.5 * rotor.inertia * (Eigen::Matrix3d::Identity() + along);
-    JointSpec pin;
-    pin.at = rotor.at;
-    pin.name = model.edges.free(rotor.joint + " rotor");
-    pin.child = body.name;
-    pin.axis = rotor.axis;
-    LoopSpec gear;
-    gear.at = rotor.at;
-    gear.name = model.edges.free(rotor.joint + " armature");
-    gear.kind = LoopKind::coupler;
-    gear.joints = {rotor.joint, pin.name};
-    gear.ratios = {1, -1};
-    model.scene.bodies.push_back(body);
-    model.scene.joints.push_back(pin);
-    model.scene.loops.push_back(gear);
-    model.remarks.count("armatures as rotors, on the ground and coupled to their joints");
-  }
 }
 
 }  // namespace momenta::reading

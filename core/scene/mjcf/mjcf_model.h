@@ -29,26 +29,12 @@ struct MjcfModel {
   };
   std::map<std::string, Site> sites;
 
-  /// Rotors that stand for armatures: they come after everything else.
-  struct Rotor {
-    std::string joint;
-    Eigen::Vector3d axis;  ///< in ground axes at qpos0
-    double inertia = 0;
-    Location at;
-  };
-  std::vector<Rotor> rotors;
-
   /// The name of a body in the scene.
   static std::string in_scene(const std::string& body) { return body == "world" ? "ground" : body; }
 };
 
 /// The bodies of a <worldbody>, with joints, springs, dampers and sites.
 void read_worldbody(const Node& world, MjcfModel& model);
-
-/// An armature a adds a to the joint's diagonal entry of M. A rotor does the same: on the ground,
-/// without mass, with the inertia a about an axis of its own, coupled to the joint one to one. Its
-/// energy is ½ a q̇², and no other joint feels it.
-void add_rotors(MjcfModel& model);
 
 /// <equality>: connect, weld and joint become loops.
 void read_equality(const Node& equality, MjcfModel& model);

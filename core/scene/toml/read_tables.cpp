@@ -137,7 +137,8 @@ JointSpec read_joint(const Fields& table) {
   only("direction", JointKind::planar);
   table.refuse("length", "belongs to a [[loop]] of kind distance, expected none on a joint");
   table.allow({"name", "kind", "parent", "child", "origin", "rotation", "axis", "axis2",
-               "direction", "pitch", "position", "velocity", "stiffness", "rest", "damping"});
+               "direction", "pitch", "position", "velocity", "stiffness", "rest", "damping",
+               "rotor_inertia"});
 
   joint.name = table.text("name");
   joint.parent = table.text("parent", joint.parent);
@@ -165,6 +166,8 @@ JointSpec read_joint(const Fields& table) {
   joint.stiffness = table.number("stiffness", {turns ? "N m/rad" : "N/m"}, 0);
   joint.rest = table.number("rest", {turns ? "rad" : "m"}, 0);
   joint.damping = table.number("damping", {turns ? "N m s/rad" : "N s/m"}, 0);
+  joint.rotor_inertia = read_state(table, "rotor_inertia", rotors_of(joint.kind), kind,
+                                   {turns ? "kg m²" : "kg", Bound::not_negative});
   return joint;
 }
 

@@ -134,6 +134,7 @@ void write_joint(const JointSpec& joint, TomlText& t) {
   t.number("stiffness", joint.stiffness);
   t.number("rest", joint.rest);
   t.number("damping", joint.damping);
+  if (!joint.rotor_inertia.empty()) t.numbers("rotor_inertia", joint.rotor_inertia);
 }
 
 void write_loop(const LoopSpec& loop, TomlText& t) {

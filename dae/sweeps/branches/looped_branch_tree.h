@@ -25,7 +25,9 @@ struct LoopedBranchTree {
     int nv = 1, q = 0, u = 0;
     static constexpr int drive = -1;
     static constexpr double pitch = 0;
-    S subtree_mass, theta0, d0, stiffness, rest, damping, torque;
+    S subtree_mass, theta0, d0, stiffness, rest, damping, torque, rotor;
+    bool with_rotor = false;
+    bool has_rotor() const { return with_rotor; }
   };
   struct Model {
     std::vector<Body> bodies;
@@ -62,7 +64,7 @@ LoopedBranchTree<S>::LoopedBranchTree(const LinkTree& tree, const LoopedBranchGr
     l.root = k == 1;
     l.first = !l.root;
     l.leaf = k == group.bodies;
-    l.opens = l.screwed = l.has_force = false;
+    l.opens = l.screwed = l.has_force = l.has_rotor = false;
     l.parent = l.root ? -1 : k - 1;
     l.q = l.u = b.q = b.u = k - 1;
     for (int lane = 0; lane < group.lanes; ++lane) {
@@ -79,6 +81,7 @@ LoopedBranchTree<S>::LoopedBranchTree(const LinkTree& tree, const LoopedBranchGr
       l.turn = common_turn(l.turn, from.turn);
       l.screwed |= from.screwed;
       l.has_force |= from.has_force;
+      l.has_rotor |= from.has_rotor;
       l.take(from, body, tree.theta0[link], lane);
       b.subtree_mass.set_lane(lane, body.subtree_mass);
       b.theta0.set_lane(lane, body.theta0);
@@ -95,6 +98,8 @@ LoopedBranchTree<S>::LoopedBranchTree(const LinkTree& tree, const LoopedBranchGr
     b.rest = l.rest;
     b.damping = l.damping;
     b.torque = l.torque;
+    b.rotor = l.rotor;
+    b.with_rotor = l.has_rotor;
   }
 }
 

@@ -1,0 +1,84 @@
+#pragma once
+// The inertia I_r of a rotor on a joint's rate: ½ I_r u² of kinetic energy beside that of the
+// bodies, as of a motor's armature seen through its gear. It adds one number to the pivot and to p,
+//
+//   p = Eᵀ P* + I_r u,  M_j = Eᵀ M* E + I_r                                   (34), (46)
+//
+// and M' = M* − M*E M_j⁻¹ EᵀM* keeps what vanishes without it. About a revolute joint's ẑ, with
+// h = M*E M_j⁻¹, γ = I_r M_j⁻¹, h_z = 1 − γ, and R what M' is without its row and column of ω_z:
+//
+//   M' = R + k ẑᵀ + ẑ kᵀ,  k = I_r (h − ½ h_z ẑ)                              (47)
+//   D'_z = p − I_r M_j⁻¹ e                                                    (48)
+//   Ω_z = M_j⁻¹ e − (h − h_z ẑ)ᵀ W + γ W_z                                    (45)
+//   P* = R W + D' + I_r W_z h across ẑ                                        (42)
+//
+// The pair (k, ẑ) goes to the parent as two wrenches do. ẑ is a couple: only H and I take from it.
+
+#include <momenta/core/kernel/revolute.h>
+
+namespace momenta {
+
+/// k of (47), in the axes of a wrench.
+template <class Inertia, class S>
+MOMENTA_INLINE Spatial::Force<S> rotor_column(const RevoluteColumn<S>& h, const Inertia& rotor,
+                                              const S& inverse) {
+  return {{{rotor * h.fx, rotor * h.fy, rotor * h.fz}},
+          {{rotor * h.nx, rotor * h.ny, 0.5 * rotor * (1.0 - rotor * inverse)}}};
+}
+
+/// What W_z of the body before the joint's own turning adds to −Eᵀ(Ω × P*) of (35).
+template <class Inertia, class S>
+MOMENTA_INLINE S rotor_rate(const RevoluteColumn<S>& h, const Inertia& rotor, const S& vx,
+                            const S& vy, const S& ox, const S& oy, const S& oz) {
+  return rotor * oz * (vy * h.fx - vx * h.fy + oy * h.nx - ox * h.ny);
+}
+
+/// k over the joint's own screw.
+template <class S, class C>
+MOMENTA_INLINE void turn_rotor(Spatial::Force<S>& k, const S& c, const S& s, const C& d) {
+  S x = c * k.f[0] - s * k.f[1];
+  k.f[1] = s * k.f[0] + c * k.f[1];
+  k.f[0] = x;
+  x = c * k.n[0] - s * k.n[1];
+  k.n[1] = s * k.n[0] + c * k.n[1] + d * k.f[0];
+  k.n[0] = x - d * k.f[1];
+}
+
+/// M_L += k ẑᵀ + ẑ kᵀ over the constant screws to the parent.
+template <class Edge, class S>
+MOMENTA_INLINE void carry_rotor(const Edge& e, Spatial::Force<S> k, Articulated<S>& parent) {
+  using Constant = std::decay_t<decltype(e.cos_alpha)>;
+  Spatial::constants_inward(e, k);
+  Vec3<Constant> z{{Constant(0.0), Constant(0.0), Constant(1.0)}};
+  if (e.about_y) turn<1>(z, e.cos_beta, e.sin_beta);
+  if (e.about_x) turn<0>(z, e.cos_alpha, e.sin_alpha);
+  if (e.about_z) turn<2>(z, e.cos_gamma, e.sin_gamma);
+  Full<S>& m = parent.M;
+  m.Hxx = m.Hxx + k.f[0] * z[0];
+  m.Hxy = m.Hxy + k.f[0] * z[1];
+  m.Hxz = m.Hxz + k.f[0] * z[2];
+  m.Hyx = m.Hyx + k.f[1] * z[0];
+  m.Hyy = m.Hyy + k.f[1] * z[1];
+  m.Hyz = m.Hyz + k.f[1] * z[2];
+  m.Hzx = m.Hzx + k.f[2] * z[0];
+  m.Hzy = m.Hzy + k.f[2] * z[1];
+  m.Hzz = m.Hzz + k.f[2] * z[2];
+  m.Ixx = m.Ixx + 2.0 * (k.n[0] * z[0]);
+  m.Ixy = m.Ixy + (k.n[0] * z[1] + k.n[1] * z[0]);
+  m.Ixz = m.Ixz + (k.n[0] * z[2] + k.n[2] * z[0]);
+  m.Iyy = m.Iyy + 2.0 * (k.n[1] * z[1]);
+  m.Iyz = m.Iyz + (k.n[1] * z[2] + k.n[2] * z[1]);
+  m.Izz = m.Izz + 2.0 * (k.n[2] * z[2]);
+}
+
+/// Both: what is left of a revolute joint's rotor, into what arrives at the parent.
+template <class Link, class Edge, class S>
+MOMENTA_INLINE void hand_on_rotor(const Link& l, const Edge& e, const RevoluteColumn<S>& h,
+                                  const S& inverse, const S& c, const S& s,
+                                  Articulated<S>& parent) {
+  Spatial::Force<S> k = rotor_column(h, l.rotor, inverse);
+  turn_rotor(k, c, s, l.d);
+  carry_rotor(e, k, parent);
+}
+
+}  // namespace momenta
