@@ -183,7 +183,9 @@ std::string Mechanism::joint_without_inertia(bool swept) const {
     return factorised || rate < 0 ? "" : light_before_loops(rate);
   }
   const auto sweeps = looped_sweeps();
-  if (!sweeps->momentum(0, tree_.q0.data(), p.data(), {}, u.data(), sigma.data(), nullptr))
+  RightSide<double> right;
+  right.fade = fade_evaluation;  // rows that depend on others leave dust for inertia otherwise
+  if (!sweeps->momentum(0, tree_.q0.data(), p.data(), right, u.data(), sigma.data(), nullptr))
     return light_before_loops(tree_.bodies[static_cast<std::size_t>(sweeps->singular_joint())].u);
   return "";
 }

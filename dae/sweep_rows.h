@@ -64,7 +64,7 @@ class Mechanism::SweepRows : public Evaluation<S> {
   void constraint_forces(const S* x, S* result) override {
     for (auto& body : w_.body) body.P = {};
     loops_.add_wrenches(x, 1.0, [](auto& body) -> Force& { return body.P; });
-    momenta_inward(w_, result);
+    project_inward(w_, result);
     loops_.add_couplings(x, 1.0, result);
   }
 

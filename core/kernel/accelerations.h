@@ -65,13 +65,11 @@ void newton_euler_inward(Workspace<Space, S>& w, const S* q, const S* u, S* tau)
     s.P += Space::velocity_wrench(w.inertia(k), s.V);
     s.P -= s.T;
   }
-  sum_inward(w, [&](std::size_t k) {
-    const auto& b = model.bodies[k];
-    const auto& s = w.body[k];
-    if (b.drive >= 0) return;
-    Joint<Space>::project(b, s.edge, s.P, tau + b.u);
-    if (b.has_rotor()) tau[b.u] += b.rotor * s.rotor_acceleration;
-  });
+  project_inward(w, tau);
+  if (model.has_rotors)
+    for (std::size_t k = 0; k < w.body.size(); ++k)
+      if (const auto& b = model.bodies[k]; b.has_rotor())
+        tau[b.u] += b.rotor * w.body[k].rotor_acceleration;
   if (model.has_joint_forces)
     for (const auto& b : model.bodies)
       if (b.nv == 1) tau[b.u] -= joint_force(b, q[b.q], u[b.u]);

@@ -56,7 +56,7 @@ struct Model {
   std::vector<std::shared_ptr<const JointFormula>> laws;
   Vector gravity;
   int nq = 0, nv = 0;
-  bool has_gravity = false, has_joint_forces = false;
+  bool has_gravity = false, has_joint_forces = false, has_rotors = false;
 
   bool has_body_forces() const { return !springs.empty() || !wrenches.empty(); }
 

@@ -105,28 +105,26 @@ void body_momenta(Workspace<Space, S>& w) {
     w.body[k].P = Space::momentum(w.inertia(k), w.body[k].V);
 }
 
-/// Sums body[k].P over subtrees, eq. (26), and calls visit(k) once that of body k is complete.
-template <class Space, class S, class Visit>
-void sum_inward(Workspace<Space, S>& w, Visit&& visit) {
+/// Sums the wrenches or momenta body[k].P over subtrees, eq. (26), and projects them: Eᵀ P*.
+template <class Space, class S>
+void project_inward(Workspace<Space, S>& w, S* along) {
+  const auto& model = *w.model;
   for (std::size_t k = w.body.size(); k-- > 0;) {
-    const auto& b = w.model->bodies[k];
-    visit(k);
+    const auto& b = model.bodies[k];
+    auto& s = w.body[k];
+    if (b.drive < 0 && along) Joint<Space>::project(b, s.edge, s.P, along + b.u);
     if (b.parent >= 0)
-      w.body[static_cast<std::size_t>(b.parent)].P +=
-          Space::to_parent(b.edge, b.kind, w.body[k].edge, w.body[k].P);
+      w.body[static_cast<std::size_t>(b.parent)].P += Space::to_parent(b.edge, b.kind, s.edge, s.P);
   }
 }
 
 /// P*_K, eq. (26), and p = Eᵀ P* + I_r u, eq. (34).
 template <class Space, class S>
 void momenta_inward(Workspace<Space, S>& w, S* p) {
-  sum_inward(w, [&](std::size_t k) {
-    const auto& b = w.model->bodies[k];
-    const auto& s = w.body[k];
-    if (b.drive >= 0 || !p) return;
-    Joint<Space>::project(b, s.edge, s.P, p + b.u);
-    if (b.has_rotor()) p[b.u] += b.rotor * s.rotor_rate;
-  });
+  project_inward(w, p);
+  if (!w.model->has_rotors || !p) return;
+  for (std::size_t k = 0; k < w.body.size(); ++k)
+    if (const auto& b = w.model->bodies[k]; b.has_rotor()) p[b.u] += b.rotor * w.body[k].rotor_rate;
 }
 
 /// Generalised force of a joint's own spring, damper and torque.

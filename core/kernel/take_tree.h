@@ -32,6 +32,7 @@ void take_joints(const Tree& tree, Model<Space>& model) {
     m.damping = b.damping;
     m.torque = b.torque;
     m.rotor = b.rotor;
+    model.has_rotors |= m.has_rotor();
     if (b.kind == JointKind::user) {
       m.law = static_cast<const UserFormula*>(b.law.get());  // as JointFormula sees to
       m.user = static_cast<int>(model.laws.size());

@@ -200,7 +200,7 @@ class MaximalTree {
           }
         if constexpr (gives) R[hard][hard] += 1 / b.rotor;
         if (!small::cholesky(R, 0)) return false;
-        if constexpr (gives) j.give = 1 / (R[hard][hard] * std::sqrt(b.rotor));
+        if constexpr (gives) j.give = R[hard][hard] / std::sqrt(b.rotor);  // R holds 1/R_dd
         // what solutions need of it: B = R⁻¹Yᵀ, T = R⁻¹S
         for (int i = 0; i < s; ++i)
           for (int r = 0; r < d; ++r) j.B[i][r] = Y[r][i], j.T[i][r] = 0;

@@ -3,12 +3,14 @@
 namespace momenta {
 void register_open_chains();
 void register_closed_loops();
+void register_robots();
 void register_threads();
 }  // namespace momenta
 
 int main(int argc, char** argv) {
   momenta::register_open_chains();
   momenta::register_closed_loops();
+  momenta::register_robots();
   momenta::register_threads();
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;

@@ -177,7 +177,8 @@ std::map<std::string, double> turns(const RunResult& run) {
 }
 
 RC_GTEST_PROP(RandomMechanisms, MoveAlikeCutAnywhere, (const Bytes& bytes, unsigned char where)) {
-  const Scene scene = sound_scene(bytes, true);
+  Scene scene = sound_scene(bytes, true);
+  for (JointSpec& j : scene.joints) j.rotor_inertia.clear();  // they keep a joint from being a loop
   RC_LOG() << outline(scene);
   const auto r = regular(scene);
   RC_PRE(r.has_value());
