@@ -25,6 +25,7 @@ Plan make_plan(const Tree& tree, const Scene& scene, Algebra algebra) {
   plan.drives = !tree.drives.empty();
   for (const auto& b : tree.bodies) {
     plan.quasi_velocities |= b.nq != b.nv;
+    plan.rotors += b.rotor != 0;
     plan.joint_forces |= b.stiffness != 0 || b.damping != 0 || b.torque != 0;
   }
   for (const auto& force : scene.forces) plan.third_sweep |= force.kind != "torque";
@@ -35,7 +36,7 @@ std::vector<std::pair<std::string, std::string>> Plan::lines() const {
   char normal[96];
   std::snprintf(normal, sizeof normal, "planar, normal (%.4g, %.4g, %.4g)", basis(0, 2),
                 basis(1, 2), basis(2, 2));
-  return {
+  std::vector<std::pair<std::string, std::string>> all{
       {"kernel", planar ? normal : "spatial (" + planar_reason + ")"},
       {"gravity", !gravity ? "none, left out"
                   : loops  ? "weights on bodies"
@@ -48,6 +49,10 @@ std::vector<std::pair<std::string, std::string>> Plan::lines() const {
                       : third_sweep ? "forces between points of bodies"
                                     : "none, left out"},
   };
+  if (rotors > 0)
+    all.emplace_back("rotors", "on " + std::to_string(rotors) + (rotors == 1 ? " rate" : " rates") +
+                                   ", added to the inertias of their joints");
+  return all;
 }
 
 }  // namespace momenta

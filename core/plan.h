@@ -26,6 +26,7 @@ struct Plan {
   bool drives = false;            ///< rheonomic: Ω_t, Φ_t
   bool quasi_velocities = false;  ///< spherical or free joints: quaternions, p not canonical
   bool third_sweep = false;       ///< springs, dampers or wrenches on bodies
+  int rotors = 0;                 ///< rates with a rotor's inertia
   bool joint_forces = false;      ///< springs, dampers or torques of joints
   /// The scene has loops: velocities come from (7), not from the sweeps. Mechanism sets it;
   /// make_plan() does not.

@@ -83,6 +83,14 @@ void expect_all_forms_agree(const Scene& scene, Algebra algebra, double end, dou
 TEST(AllForms, FourBar) {
   expect_all_forms_agree(example("four_bar"), Algebra::automatic, 2, 1e-7, 3e-5);
 }
+TEST(AllForms, FourBarWithRotors) {
+  Scene scene = example("four_bar");
+  double inertia = 0.3;
+  for (JointSpec& j : scene.joints) j.rotor_inertia = {inertia += 0.4};
+  expect_all_forms_agree(scene, Algebra::automatic, 2, 1e-7, 3e-5);
+  const Eigen::Quaterniond r(Eigen::AngleAxisd(0.7, Eigen::Vector3d(2, 1, 1).normalized()));
+  expect_all_forms_agree(turned(scene, r), Algebra::spatial, 1, 1e-7, 1e-4);
+}
 TEST(AllForms, Squeezer) {
   expect_all_forms_agree(example("andrews"), Algebra::automatic, 0.02, 1e-7, 3e-5);
 }

@@ -37,7 +37,7 @@ class Scene:
 
     def joint(self, name, kind, **keys):
         """Adds a joint of the tree: parent, child, origin [m], rotation, axis, position, velocity,
-        stiffness, rest, damping, pitch, axis2, direction."""
+        stiffness, rest, damping, rotor_inertia, pitch, axis2, direction."""
         return self._add("joint", name=name, kind=kind, **keys)
 
     def loop(self, name, kind, **keys):

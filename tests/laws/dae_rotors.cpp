@@ -1,0 +1,155 @@
+// What a rotor's inertia on a joint stands for: a wheel on the ground, without mass, that a gear
+// one to one turns with the joint. The same accelerations and kinetic energy, with the wheel as a
+// number and as a body behind a coupler; and joints that have no other inertia.
+
+#include "equations/linkages.h"
+#include "equations/random_tree.h"
+#include "equations/tolerance.h"
+
+#include <gtest/gtest.h>
+#include <momenta/core/scene/files/read_scene.h>
+#include <momenta/dae/factor/faded_pivot.h>
+#include <momenta/dae/kkt/loop_solver.h>
+#include <momenta/dae/study/state_values.h>
+
+#include <filesystem>
+
+namespace momenta::dae_rotors {
+namespace {
+
+using namespace equations;
+using Eigen::VectorXd;
+
+/// Each rotor as a body on the ground, turning about z, coupled to its coordinate.
+Scene with_wheels(Scene scene) {
+  const std::vector<JointSpec> joints = scene.joints;
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    scene.joints[i].rotor_inertia.clear();
+    for (std::size_t k = 0; k < joints[i].rotor_inertia.size(); ++k) {
+      const double inertia = joints[i].rotor_inertia[k];
+      const bool driven =
+          std::any_of(scene.drives.begin(), scene.drives.end(), [&](const DriveSpec& d) {
+            return d.joint == joints[i].name && d.coordinate == static_cast<int>(k);
+          });
+      if (inertia == 0 || driven) continue;
+      BodySpec wheel;
+      wheel.name = "wheel " + std::to_string(k) + " of " + joints[i].name;
+      wheel.inertia = inertia * Eigen::Vector3d(0.5, 0.5, 1).asDiagonal().toDenseMatrix();
+      JointSpec pin;
+      pin.name = wheel.name;
+      pin.child = wheel.name;
+      if (!joints[i].position.empty()) pin.position = {joints[i].position[k]};
+      if (!joints[i].velocity.empty()) pin.velocity = {joints[i].velocity[k]};
+      LoopSpec gear;
+      gear.name = "gear of " + wheel.name;
+      gear.kind = LoopKind::coupler;
+      gear.joints = {joints[i].name, pin.name};
+      gear.coordinates = {static_cast<int>(k), 0};
+      gear.ratios = {1, -1};
+      scene.bodies.push_back(wheel);
+      scene.joints.push_back(pin);
+      scene.loops.push_back(gear);
+    }
+  }
+  return scene;
+}
+
+StateValues at_start(const Mechanism& mechanism) {
+  GivenState given;
+  given.q = mechanism.tree().q0;
+  given.v = mechanism.tree().u0;
+  given.p = given.tau = VectorXd::Zero(mechanism.nv());
+  return evaluate_state(mechanism, given);
+}
+
+/// A random tree, in the plane or in space, that starts anywhere.
+Scene anywhere(unsigned seed, bool flat) {
+  RandomTree random(seed);
+  const TreeRecipe recipe{.bodies = 5, .drives = false};
+  Scene scene = flat ? random.planar_scene(recipe) : random.scene(recipe);
+  for (JointSpec& j : scene.joints) {
+    if (rotors_of(j.kind) == 0) continue;
+    j.position.assign(rotors_of(j.kind), random.uniform(-1, 1));
+    j.velocity.assign(rotors_of(j.kind), random.uniform(-1, 1));
+  }
+  return scene;
+}
+
+TEST(Rotors, MoveAsWheelsOnTheGround) {
+  int rotors = 0;
+  for (unsigned seed = 0; seed < 60; ++seed) {
+    const Scene scene = anywhere(seed, seed % 2);
+    const Scene geared = with_wheels(scene);
+    const int wheels = static_cast<int>(geared.loops.size());
+    if (wheels == 0) continue;
+    rotors += wheels;
+    const Mechanism as_number(scene), as_bodies(geared);
+    const StateValues number = at_start(as_number), bodies = at_start(as_bodies);
+    const double size = 1 + bodies.constrained.cwiseAbs().maxCoeff();
+    EXPECT_LT((number.free - bodies.constrained.head(as_number.nv())).cwiseAbs().maxCoeff(),
+              1e-9 * size)
+        << seed;
+    EXPECT_NEAR(number.kinetic, bodies.kinetic, algebra_tol(10) * (1 + bodies.kinetic)) << seed;
+  }
+  EXPECT_GT(rotors, 60);
+}
+
+/// Torque or force over rotor inertia, where neither the body nor what it carries has any.
+TEST(Rotors, AreAllTheInertiaThereIs) {
+  for (const JointKind kind : {JointKind::revolute, JointKind::prismatic, JointKind::helical})
+    for (const Algebra algebra : {Algebra::spatial, Algebra::planar}) {
+      if (kind == JointKind::helical && algebra == Algebra::planar) continue;
+      Scene scene;
+      scene.gravity = {0, -9.81, 0};
+      for (const char* name : {"first", "second"}) {
+        BodySpec body;
+        body.name = name;
+        JointSpec joint;
+        joint.name = std::string(name) + " joint";
+        joint.kind = kind;
+        joint.child = name;
+        joint.parent = scene.bodies.empty() ? "ground" : "first";
+        joint.rotor_inertia = {scene.bodies.empty() ? 2.0 : 0.5};
+        if (kind == JointKind::prismatic) joint.axis = {1, 0, 0};
+        if (kind == JointKind::helical) joint.pitch = 0.1;
+        if (!scene.bodies.empty()) joint.origin_parent = {0.3, 0.1, 0};
+        ForceSpec torque;
+        torque.kind = "torque";
+        torque.joint = joint.name;
+        torque.value = 3;
+        scene.bodies.push_back(body);
+        scene.joints.push_back(joint);
+        scene.forces.push_back(torque);
+      }
+      const StateValues s = at_start(Mechanism(scene, {.algebra = algebra}));
+      EXPECT_TRUE(s.not_there.empty()) << s.not_there;
+      ASSERT_EQ(s.free.size(), 2);
+      EXPECT_NEAR(s.free[0], 1.5, 1e-14);
+      EXPECT_NEAR(s.free[1], 6, 1e-13);
+    }
+}
+
+/// A leg linkage on a moving base has rows that depend on others at every pose: the sweeps fade
+/// them, and it is they that carry its loops.
+TEST(Rotors, AndDependentRowsLeaveCassieToTheSweeps) {
+  const Scene scene = read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) /
+                                 "examples/models/agility_cassie/cassie.xml");
+  EXPECT_EQ(scene.bodies.size(), 25U);  // no body stands for a rotor
+  const Mechanism mechanism(scene);
+  EXPECT_EQ(mechanism.kkt(), KktChoice::sweeps);
+  const Mechanism sparse(scene, {.kkt = KktChoice::sparse});
+  const VectorXd p = VectorXd::LinSpaced(mechanism.nv(), -1, 1);
+  const auto rates = [&](const Mechanism& m) {
+    const auto e = m.evaluation<double>();
+    VectorXd u(m.nv()), pdot(m.nv()), sigma(m.m());
+    EXPECT_TRUE(make_loop_solver(m, *e)->momentum(0, m.tree().q0.data(), p.data(), nullptr,
+                                                  fade_evaluation, 0, u.data(), sigma.data(),
+                                                  pdot.data()));
+    return u;
+  };
+  const VectorXd swept = rates(mechanism), assembled = rates(sparse);
+  EXPECT_LT((swept - assembled).norm(), 1e-9 * (1 + assembled.norm()));
+}
+
+}  // namespace
+}  // namespace momenta::dae_rotors
