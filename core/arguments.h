@@ -1,9 +1,15 @@
 #pragma once
-// Sizes of what public calls take. A wrong one is a mistake of the caller's and would corrupt
-// memory: it is thrown, in one sentence. The checks are one comparison each.
+// What public calls take and give. A list of a wrong size is a mistake of the caller's and would
+// corrupt memory: it is thrown, in one sentence. Of numbers that are not finite `failure` says
+// which they are: calls that return bool return false, others throw. A size is one comparison, and
+// all numbers that a call takes, or gives, are one more (scalar/all_finite.h): the first that is
+// not finite is looked for only then.
+
+#include <momenta/core/scalar/all_finite.h>
 
 #include <Eigen/Core>
 #include <cmath>
+#include <cstdio>
 #include <stdexcept>
 #include <string>
 
@@ -30,6 +36,81 @@ inline std::string not_finite(const std::string& name, Eigen::Index at, double v
           : value > 0       ? "infinite"
                             : "minus infinite") +
          ", expected a finite number";
+}
+
+/// The sentence for a result that is not finite.
+inline constexpr const char* too_large =
+    "the result is not finite, expected smaller numbers to find it from";
+
+/// A list of numbers with its name; made without one: no numbers.
+struct Numbers {
+  Numbers() = default;
+  template <class List>
+  Numbers(const char* called, const List& list)
+      : name(called), x(list.data()), n(static_cast<std::size_t>(list.size())) {}
+
+  const char* name = "";
+  const double* x = nullptr;
+  std::size_t n = 0;
+};
+
+/// The sentence for the first number of these that is not finite.
+[[gnu::cold]] inline std::string first_not_finite(double t, const Numbers& a, const Numbers& b,
+                                                  const Numbers& c, const Numbers& d) {
+  if (!std::isfinite(t)) return "t is not finite, expected a time in seconds";
+  for (const Numbers* list : {&a, &b, &c, &d})
+    for (std::size_t i = 0; i < list->n; ++i)
+      if (!std::isfinite(list->x[i]))
+        return not_finite(list->name, static_cast<Eigen::Index>(i), list->x[i]);
+  return "";
+}
+
+/// Whether t [s] and all numbers that a call is given are finite. `failure` names the first that is
+/// not; else it is empty.
+inline bool given_finite(std::string& failure, double t, const Numbers& a, const Numbers& b = {},
+                         const Numbers& c = {}, const Numbers& d = {}) {
+  FiniteSum sum;
+  sum.take(t);
+  sum.take(a.x, a.n), sum.take(b.x, b.n), sum.take(c.x, c.n), sum.take(d.x, d.n);
+  if (!failure.empty()) failure.clear();
+  if (sum.finite()) [[likely]]
+    return true;
+  failure = first_not_finite(t, a, b, c, d);
+  return false;
+}
+/// The same, thrown: of calls that return what they find.
+inline void expect_given_finite(const char* call, std::string& failure, double t, const Numbers& a,
+                                const Numbers& b = {}, const Numbers& c = {},
+                                const Numbers& d = {}) {
+  if (!given_finite(failure, t, a, b, c, d))
+    throw std::invalid_argument(std::string(call) + ": " + failure);
+}
+
+/// Whether all numbers of what was found are finite; else `failure` says that they are not. Lists
+/// have data() and size().
+template <class... Lists>
+bool found_finite(std::string& failure, const Lists&... lists) {
+  FiniteSum sum;
+  (sum.take(lists.data(), static_cast<std::size_t>(lists.size())), ...);
+  if (sum.finite()) [[likely]]
+    return true;
+  failure = too_large;
+  return false;
+}
+template <class... Lists>
+void expect_found_finite(const char* call, std::string& failure, const Lists&... lists) {
+  if (!found_finite(failure, lists...))
+    throw std::invalid_argument(std::string(call) + ": " + failure);
+}
+
+/// @throws std::invalid_argument "rates: leak is -1, expected a rate in 1/s, not negative"
+inline void expect_leak(const char* call, double leak) {
+  if (leak >= 0 && std::isfinite(leak)) [[likely]]
+    return;
+  char digits[32];
+  std::snprintf(digits, sizeof digits, "%.6g", leak);
+  throw std::invalid_argument(std::string(call) + ": leak is " + digits +
+                              ", expected a rate in 1/s, not negative");
 }
 
 }  // namespace momenta

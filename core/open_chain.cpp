@@ -51,7 +51,7 @@ bool OpenChain::rates(double t, const ConstVectorRef& q, const ConstVectorRef& p
   expect_size("rates", "p", p.size(), nv());
   expect_size("rates", "qdot", qdot.size(), nq());
   expect_size("rates", "pdot", pdot.size(), nv());
-  if (!inside_->finite(t, q, "p", p)) return false;
+  if (!given_finite(inside_->not_a_number, t, {"q", q}, {"p", p})) return false;
   const bool found = inside_->visit([&](auto& kernel) {
     if (!inside_->plan.quasi_velocities)  // q̇ = u
       return inside_->momentum(kernel, t, q.data(), p.data(), qdot.data(), pdot.data());
@@ -60,15 +60,17 @@ bool OpenChain::rates(double t, const ConstVectorRef& q, const ConstVectorRef& p
     if (ok) momenta::coordinate_rates(*kernel.model, q.data(), inside_->u.data(), qdot.data());
     return ok;
   });
-  return found && inside_->found_finite(qdot) && inside_->found_finite(pdot);
+  return found && found_finite(inside_->not_a_number, qdot, pdot);
 }
 
 bool OpenChain::rates(double t, const ConstVectorRef& q, const ConstVectorRef& p,
                       const ConstVectorRef& tau, VectorRef qdot, VectorRef pdot) {
   expect_size("rates", "tau", tau.size(), nv());
-  if (!inside_->finite(t, q, "tau", tau) || !rates(t, q, p, qdot, pdot)) return false;
+  if (!given_finite(inside_->not_a_number, t, {"q", q}, {"tau", tau}) ||
+      !rates(t, q, p, qdot, pdot))
+    return false;
   pdot += tau;
-  return inside_->found_finite(pdot);
+  return found_finite(inside_->not_a_number, pdot);
 }
 
 bool OpenChain::rates_of_states(double t, const ConstStatesRef& q, const ConstStatesRef& p,
@@ -140,15 +142,14 @@ bool OpenChain::jacobian_times(double t, const ConstVectorRef& q, const ConstVec
   expect_size("jacobian_times", "dp", dp.size(), nv());
   expect_size("jacobian_times", "dqdot", dqdot.size(), nq());
   expect_size("jacobian_times", "dpdot", dpdot.size(), nv());
-  if (!inside_->finite(t, q, "p", p) || !inside_->finite("dq", dq.data(), dq.size()) ||
-      !inside_->finite("dp", dp.data(), dp.size()))
+  if (!given_finite(inside_->not_a_number, t, {"q", q}, {"p", p}, {"dq", dq}, {"dp", dp}))
     return false;
   const bool found = inside_->visit([&](auto& kernel) {
     return inside_->noted_one(*kernel.sweeps, t, q.data(),
                               kernel.sweeps->derivative(t, q.data(), p.data(), dq.data(), dp.data(),
                                                         dqdot.data(), dpdot.data()));
   });
-  return found && inside_->found_finite(dqdot) && inside_->found_finite(dpdot);
+  return found && found_finite(inside_->not_a_number, dqdot, dpdot);
 }
 
 bool OpenChain::jacobian(double t, const ConstVectorRef& q, const ConstVectorRef& p, MatrixRef J) {
@@ -156,7 +157,7 @@ bool OpenChain::jacobian(double t, const ConstVectorRef& q, const ConstVectorRef
   expect_size("jacobian", "p", p.size(), nv());
   expect_size("jacobian", "a row of J", J.cols(), nq() + nv());
   expect_size("jacobian", "a column of J", J.rows(), nq() + nv());
-  if (!inside_->finite(t, q, "p", p)) return false;
+  if (!given_finite(inside_->not_a_number, t, {"q", q}, {"p", p})) return false;
   const bool found = inside_->visit([&](auto& kernel) {
     BatchSweeps& sweeps = *kernel.batches[0];
     return inside_->noted_one(sweeps, t, q.data(),
@@ -164,7 +165,7 @@ bool OpenChain::jacobian(double t, const ConstVectorRef& q, const ConstVectorRef
   });
   if (!found) return false;
   for (Eigen::Index i = 0; i < J.cols(); ++i)
-    if (!inside_->found_finite(J.col(i).data(), J.rows())) return false;
+    if (!found_finite(inside_->not_a_number, J.col(i))) return false;
   return true;
 }
 Eigen::MatrixXd OpenChain::jacobian(double t, const ConstVectorRef& q, const ConstVectorRef& p) {
@@ -178,10 +179,10 @@ bool OpenChain::velocities(double t, const ConstVectorRef& q, const ConstVectorR
   expect_size("velocities", "q", q.size(), nq());
   expect_size("velocities", "p", p.size(), nv());
   expect_size("velocities", "u", u.size(), nv());
-  if (!inside_->finite(t, q, "p", p)) return false;
+  if (!given_finite(inside_->not_a_number, t, {"q", q}, {"p", p})) return false;
   return inside_->visit([&](auto& kernel) {
     return inside_->momentum(kernel, t, q.data(), p.data(), u.data(), inside_->p.data());
-  }) && inside_->found_finite(u);
+  }) && found_finite(inside_->not_a_number, u);
 }
 
 bool OpenChain::inverse_mass_times(double t, const ConstVectorRef& q, const ConstVectorRef& x,
@@ -189,22 +190,22 @@ bool OpenChain::inverse_mass_times(double t, const ConstVectorRef& q, const Cons
   expect_size("inverse_mass_times", "q", q.size(), nq());
   expect_size("inverse_mass_times", "x", x.size(), nv());
   expect_size("inverse_mass_times", "result", result.size(), nv());
-  if (!inside_->finite(t, q, "x", x)) return false;
+  if (!given_finite(inside_->not_a_number, t, {"q", q}, {"x", x})) return false;
   return inside_->visit([&](auto& kernel) {
     return inside_->noted_one(
         *kernel.sweeps, t, q.data(),
         kernel.sweeps->inverse_mass_times(t, q.data(), x.data(), result.data()));
-  }) && inside_->found_finite(result);
+  }) && found_finite(inside_->not_a_number, result);
 }
 
 void OpenChain::momenta(double t, const ConstVectorRef& q, const ConstVectorRef& u, VectorRef p) {
   expect_size("momenta", "q", q.size(), nq());
   expect_size("momenta", "u", u.size(), nv());
   expect_size("momenta", "p", p.size(), nv());
-  inside_->expect_finite("momenta", t, q, "u", u);
+  expect_given_finite("momenta", inside_->not_a_number, t, {"q", q}, {"u", u});
   inside_->visit(
       [&](auto& kernel) { momenta_from_rates(kernel.w, t, q.data(), u.data(), p.data()); });
-  inside_->expect_found_finite("momenta", p.data(), p.size());
+  expect_found_finite("momenta", inside_->not_a_number, p);
 }
 
 bool OpenChain::accelerations(double t, const ConstVectorRef& q, const ConstVectorRef& u,
@@ -212,10 +213,10 @@ bool OpenChain::accelerations(double t, const ConstVectorRef& q, const ConstVect
   expect_size("accelerations", "q", q.size(), nq());
   expect_size("accelerations", "u", u.size(), nv());
   expect_size("accelerations", "udot", udot.size(), nv());
-  if (!inside_->finite(t, q, "u", u)) return false;
+  if (!given_finite(inside_->not_a_number, t, {"q", q}, {"u", u})) return false;
   return inside_->visit([&](auto& kernel) {
     return inside_->acceleration(kernel, t, q.data(), u.data(), udot.data());
-  }) && inside_->found_finite(udot);
+  }) && found_finite(inside_->not_a_number, udot);
 }
 
 bool OpenChain::accelerations(double t, const ConstVectorRef& q, const ConstVectorRef& u,
@@ -224,10 +225,10 @@ bool OpenChain::accelerations(double t, const ConstVectorRef& q, const ConstVect
   expect_size("accelerations", "u", u.size(), nv());
   expect_size("accelerations", "tau", tau.size(), nv());
   expect_size("accelerations", "udot", udot.size(), nv());
-  if (!inside_->finite(t, q, "u", u) || !inside_->finite("tau", tau.data(), nv())) return false;
+  if (!given_finite(inside_->not_a_number, t, {"q", q}, {"u", u}, {"tau", tau})) return false;
   return inside_->visit([&](auto& kernel) {
     return inside_->acceleration(kernel, t, q.data(), u.data(), udot.data(), tau.data());
-  }) && inside_->found_finite(udot);
+  }) && found_finite(inside_->not_a_number, udot);
 }
 
 void OpenChain::coordinate_rates(const ConstVectorRef& q, const ConstVectorRef& u,
@@ -235,11 +236,11 @@ void OpenChain::coordinate_rates(const ConstVectorRef& q, const ConstVectorRef& 
   expect_size("coordinate_rates", "q", q.size(), nq());
   expect_size("coordinate_rates", "u", u.size(), nv());
   expect_size("coordinate_rates", "qdot", qdot.size(), nq());
-  inside_->expect_finite("coordinate_rates", 0, q, "u", u);
+  expect_given_finite("coordinate_rates", inside_->not_a_number, 0, {"q", q}, {"u", u});
   inside_->visit([&](auto& kernel) {
     momenta::coordinate_rates(*kernel.model, q.data(), u.data(), qdot.data());
   });
-  inside_->expect_found_finite("coordinate_rates", qdot.data(), qdot.size());
+  expect_found_finite("coordinate_rates", inside_->not_a_number, qdot);
 }
 
 std::string OpenChain::failure() const {

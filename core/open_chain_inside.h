@@ -11,7 +11,6 @@
 #include <momenta/core/kernel/reactions.h>
 #include <momenta/core/massless_joints.h>
 #include <momenta/core/open_chain.h>
-#include <momenta/core/scalar/all_finite.h>
 #include <momenta/core/share.h>
 
 #include <algorithm>
@@ -73,29 +72,6 @@ struct OpenChain::Inside {
     for (const auto& b : tree.bodies) has_user_joints |= b.kind == JointKind::user;
   }
 
-  /// Whether t and the n numbers of `x` are finite; else failure() says which is not.
-  bool finite(const char* name, const double* x, Eigen::Index n) {
-    if (all_finite(x, static_cast<std::size_t>(n))) [[likely]]
-      return true;
-    for (Eigen::Index i = 0; i < n && not_a_number.empty(); ++i)
-      if (!std::isfinite(x[i])) not_a_number = not_finite(name, i, x[i]);
-    return false;
-  }
-  bool finite(double t, const ConstVectorRef& q, const char* name, const ConstVectorRef& x) {
-    if (!not_a_number.empty()) not_a_number.clear();
-    if (!std::isfinite(t)) [[unlikely]] {
-      not_a_number = "t is not finite, expected a time in seconds";
-      return false;
-    }
-    return finite("q", q.data(), q.size()) && finite(name, x.data(), x.size());
-  }
-  /// The same, thrown: of calls that return what they find.
-  void expect_finite(const char* call, double t, const ConstVectorRef& q, const char* name,
-                     const ConstVectorRef& x) {
-    if (!finite(t, q, name, x))
-      throw std::invalid_argument(std::string(call) + ": " + not_a_number);
-  }
-
   /// That a joint without inertia was met at (t, q), coordinates `stride` apart.
   void note_place(double t, const double* q, Eigen::Index stride = 1) {
     failed_t = t;
@@ -116,29 +92,12 @@ struct OpenChain::Inside {
     return massless_joints(tree, diagonal, mass, tree.bodies[static_cast<std::size_t>(singular)].u);
   }
 
-  /// Whether n numbers that were found are finite; else failure() says so.
-  bool found_finite(const double* x, Eigen::Index n) {
-    if (all_finite(x, static_cast<std::size_t>(n))) [[likely]]
-      return true;
-    singular = -1;
-    failed_state = -1;
-    not_a_number = too_large;
-    return false;
-  }
-  bool found_finite(const VectorRef& x) { return found_finite(x.data(), x.size()); }
-  void expect_found_finite(const char* call, const double* x, Eigen::Index n) {
-    if (!found_finite(x, n)) throw std::invalid_argument(std::string(call) + ": " + not_a_number);
-  }
-  static constexpr const char* too_large =
-      "the result is not finite, expected smaller numbers to find it from";
-
   /// Why the first of many states has no result.
   bool told_of_state(bool ok, const ConstStatesRef& q, const char* name, const ConstStatesRef& x) {
     not_a_number.clear();
     if (ok) return true;
     const Eigen::VectorXd of_q = q.col(failed_state), of_x = x.col(failed_state);
-    if (finite("q", of_q.data(), of_q.size()) && finite(name, of_x.data(), of_x.size()) &&
-        singular < 0)
+    if (given_finite(not_a_number, 0, {"q", of_q}, {name, of_x}) && singular < 0)
       not_a_number = too_large;
     if (!not_a_number.empty())
       not_a_number = "state " + std::to_string(failed_state) + ": " + not_a_number;

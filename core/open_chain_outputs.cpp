@@ -6,6 +6,8 @@
 #include <momenta/core/kernel/pose_of.h>
 #include <momenta/core/open_chain_inside.h>
 
+#include <array>
+
 namespace momenta {
 namespace {
 
@@ -41,7 +43,7 @@ Reaction reaction_of(const Tree::Body& body, const Model<Planar>& model,
 Energies OpenChain::energies(double t, const ConstVectorRef& q, const ConstVectorRef& u) {
   expect_size("energies", "q", q.size(), nq());
   expect_size("energies", "u", u.size(), nv());
-  inside_->expect_finite("energies", t, q, "u", u);
+  expect_given_finite("energies", inside_->not_a_number, t, {"q", q}, {"u", u});
   const Energies all = inside_->visit([&](auto& kernel) {
     Energies e;
     momenta_from_rates(kernel.w, t, q.data(), u.data(), inside_->p.data());
@@ -51,8 +53,8 @@ Energies OpenChain::energies(double t, const ConstVectorRef& q, const ConstVecto
     e.hamiltonian = inside_->p.dot(u) - e.kinetic + e.potential;
     return e;
   });
-  const double found[] = {all.kinetic, all.potential, all.hamiltonian};
-  inside_->expect_found_finite("energies", found, 3);
+  const std::array found{all.kinetic, all.potential, all.hamiltonian};
+  expect_found_finite("energies", inside_->not_a_number, found);
   return all;
 }
 
@@ -67,16 +69,16 @@ bool OpenChain::centroidal(double t, const ConstVectorRef& q, const ConstVectorR
       inside_->in_space = std::make_unique<CentroidalSweep>(inside_->tree, *inside_->flat);
     all = (*inside_->in_space)(t, q.data(), u);
   }
-  return (all.mass == 0 || inside_->found_finite(all.centre.data(), 3)) &&
-         inside_->found_finite(all.linear_momentum.data(), 3) &&
-         inside_->found_finite(all.angular_momentum.data(), 3);
+  std::string& failure = inside_->not_a_number;
+  return (all.mass == 0 || found_finite(failure, all.centre)) &&
+         found_finite(failure, all.linear_momentum, all.angular_momentum);
 }
 
 std::vector<Reaction> OpenChain::reactions(double t, const ConstVectorRef& q,
                                            const ConstVectorRef& u) {
   expect_size("reactions", "q", q.size(), nq());
   expect_size("reactions", "u", u.size(), nv());
-  inside_->expect_finite("reactions", t, q, "u", u);
+  expect_given_finite("reactions", inside_->not_a_number, t, {"q", q}, {"u", u});
   const std::vector<Reaction> found = inside_->visit([&](auto& kernel) {
     std::vector<Reaction> all;
     Eigen::VectorXd p(nv()), rates(nv()), pdot(nv()), qdot(nq());
@@ -92,28 +94,26 @@ std::vector<Reaction> OpenChain::reactions(double t, const ConstVectorRef& q,
         all.push_back(reaction_of(tree().bodies[k], *kernel.model, kernel.w, k, pass.reaction(k)));
     return all;
   });
-  for (const Reaction& r : found) {
-    inside_->expect_found_finite("reactions", r.force.data(), 3);
-    inside_->expect_found_finite("reactions", r.torque.data(), 3);
-  }
+  for (const Reaction& r : found)
+    expect_found_finite("reactions", inside_->not_a_number, r.force, r.torque);
   return found;
 }
 
 Eigen::MatrixXd OpenChain::mass_matrix(double t, const ConstVectorRef& q) {
   expect_size("mass_matrix", "q", q.size(), nq());
-  inside_->expect_finite("mass_matrix", t, q, "q", q);
+  expect_given_finite("mass_matrix", inside_->not_a_number, t, {"q", q});
   Eigen::MatrixXd m = Eigen::MatrixXd::Zero(nv(), nv());
   inside_->visit([&](auto& kernel) {
     poses_outward(kernel.w, t, q.data(), false);
     mass_matrix_inward(kernel.w, [&](int i, int j, double value) { m(i, j) = m(j, i) = value; });
   });
-  inside_->expect_found_finite("mass_matrix", m.data(), m.size());
+  expect_found_finite("mass_matrix", inside_->not_a_number, m);
   return m;
 }
 
 std::vector<Eigen::Isometry3d> OpenChain::poses(double t, const ConstVectorRef& q) {
   expect_size("poses", "q", q.size(), nq());
-  inside_->expect_finite("poses", t, q, "q", q);
+  expect_given_finite("poses", inside_->not_a_number, t, {"q", q});
   const std::vector<Eigen::Isometry3d> found = inside_->visit([&](auto& kernel) {
     poses_outward(kernel.w, t, q.data(), true);
     std::vector<Eigen::Isometry3d> all;
@@ -122,7 +122,7 @@ std::vector<Eigen::Isometry3d> OpenChain::poses(double t, const ConstVectorRef& 
     return all;
   });
   for (const Eigen::Isometry3d& pose : found)
-    inside_->expect_found_finite("poses", pose.data(), 16);
+    expect_found_finite("poses", inside_->not_a_number, pose.matrix());
   return found;
 }
 

@@ -3,16 +3,6 @@
 #include <limits>
 
 namespace momenta {
-namespace {
-
-/// @throws std::invalid_argument
-void expect_leak(const char* call, double leak) {
-  if (!(leak >= 0 && std::isfinite(leak)))
-    throw std::invalid_argument(std::string(call) + ": leak is " + std::to_string(leak) +
-                                ", expected a rate in 1/s, not negative");
-}
-
-}  // namespace
 
 ClosedChain::ClosedChain(const Scene& scene, MechanismOptions options)
     : inside_(std::make_unique<Inside>(scene, options)) {}
@@ -37,20 +27,22 @@ bool ClosedChain::rates(double t, const ConstVectorRef& q, const ConstVectorRef&
                {{"q", q.size()}, {"p", p.size()}, {"qdot", qdot.size()}, {"pdot", pdot.size()}},
                {nq(), nv(), nq(), nv()});
   expect_leak("rates", leak);
-  if (!in.finite(t, q, "p", p)) return false;
+  if (!given_finite(in.failure, t, {"q", q}, {"p", p})) return false;
   if (in.tree) return in.noted(in.tree->rates(t, q, p, qdot, pdot), t, q.data());
   if (!in.momentum(t, q.data(), p.data(), in.u.data(), in.sigma.data(), pdot.data(), leak))
     return false;
   in.rates_of_coordinates(t, q.data(), in.u.data(), qdot.data());
-  return in.found_finite(qdot);
+  return !mechanism().plan().quasi_velocities || found_finite(in.failure, qdot);
 }
 
 bool ClosedChain::rates(double t, const ConstVectorRef& q, const ConstVectorRef& p,
                         const ConstVectorRef& tau, VectorRef qdot, VectorRef pdot, double leak) {
   expect_size("rates", "tau", tau.size(), nv());
-  if (!inside_->finite(t, q, "tau", tau) || !rates(t, q, p, qdot, pdot, leak)) return false;
+  if (!given_finite(inside_->failure, t, {"q", q}, {"tau", tau}) ||
+      !rates(t, q, p, qdot, pdot, leak))
+    return false;
   pdot += tau;  // u and σ follow from p alone
-  return inside_->found_finite(pdot);
+  return found_finite(inside_->failure, pdot);
 }
 
 bool ClosedChain::rates_of_states(double t, const ConstStatesRef& q, const ConstStatesRef& p,
@@ -96,7 +88,7 @@ bool ClosedChain::velocities(double t, const ConstVectorRef& q, const ConstVecto
   expect_sizes("velocities",
                {{"q", q.size()}, {"p", p.size()}, {"u", u.size()}, {"sigma", sigma.size()}},
                {nq(), nv(), nv(), m()});
-  if (!in.finite(t, q, "p", p)) return false;
+  if (!given_finite(in.failure, t, {"q", q}, {"p", p})) return false;
   if (in.tree) return in.noted(in.tree->velocities(t, q, p, u), t, q.data());
   return in.momentum(t, q.data(), p.data(), u.data(), sigma.data(), nullptr, 0);
 }
@@ -107,12 +99,12 @@ bool ClosedChain::accelerations(double t, const ConstVectorRef& q, const ConstVe
   expect_sizes("accelerations",
                {{"q", q.size()}, {"u", u.size()}, {"udot", udot.size()}, {"lambda", lambda.size()}},
                {nq(), nv(), nv(), m()});
-  if (!in.finite(t, q, "u", u)) return false;
+  if (!given_finite(in.failure, t, {"q", q}, {"u", u})) return false;
   if (in.tree) return in.noted(in.tree->accelerations(t, q, u, udot), t, q.data());
   return in.noted(in.solver->acceleration(t, q.data(), u.data(), nullptr, 0, 0, udot.data(),
                                           lambda.data()),
                   t, q.data()) &&
-         in.found_finite(udot) && in.found_finite(lambda);
+         found_finite(in.failure, udot, lambda);
 }
 
 bool ClosedChain::accelerations(double t, const ConstVectorRef& q, const ConstVectorRef& u,
@@ -125,7 +117,7 @@ bool ClosedChain::accelerations(double t, const ConstVectorRef& q, const ConstVe
                 {"udot", udot.size()},
                 {"lambda", lambda.size()}},
                {nv(), nq(), nv(), nv(), m()});
-  if (!in.finite(t, q, "tau", tau)) return false;
+  if (!given_finite(in.failure, t, {"q", q}, {"tau", tau})) return false;
   if (in.tree) {
     return in.noted(in.tree->accelerations(t, q, u, tau, udot), t, q.data());
   }
@@ -139,7 +131,7 @@ bool ClosedChain::correct(double t, VectorRef q, VectorRef u) {
   constexpr int most_steps = 20;
   Inside& in = *inside_;
   expect_sizes("correct", {{"q", q.size()}, {"u", u.size()}}, {nq(), nv()});
-  if (!in.finite(t, q, "u", u)) return false;
+  if (!given_finite(in.failure, t, {"q", q}, {"u", u})) return false;
   if (in.tree) return true;
   Eigen::VectorXd p(nv()), delta(nv()), qdot(nq()), moved(nq()), phi(m());
   double last = std::numeric_limits<double>::infinity();

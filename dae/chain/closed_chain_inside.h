@@ -2,7 +2,6 @@
 // What a ClosedChain consists of, for the files that implement it.
 
 #include <momenta/core/arguments.h>
-#include <momenta/core/scalar/all_finite.h>
 #include <momenta/core/share.h>
 #include <momenta/dae/chain/closed_chain.h>
 #include <momenta/dae/kkt/loop_solver.h>
@@ -11,7 +10,7 @@
 #include <atomic>
 #include <cmath>
 #include <memory>
-#include <stdexcept>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -29,51 +28,21 @@ struct ClosedChain::Inside {
     }
   }
 
-  /// Whether what a call was given is finite; else failure() names what is not.
-  bool finite(const char* name, const ConstVectorRef& x) {
-    if (all_finite(x.data(), static_cast<std::size_t>(x.size()))) [[likely]]
-      return true;
-    for (Eigen::Index i = 0; i < x.size() && failure.empty(); ++i)
-      if (!std::isfinite(x[i])) failure = not_finite(name, i, x[i]);
-    return false;
-  }
-  bool finite(double t, const ConstVectorRef& q, const char* name, const ConstVectorRef& x) {
-    failure.clear();
-    if (!std::isfinite(t)) [[unlikely]] {
-      failure = "t is not finite, expected a time in seconds";
-      return false;
-    }
-    return finite("q", q) && finite(name, x);
-  }
-  /// The same, thrown: of calls that return what they find.
-  void expect_finite(const char* call, double t, const ConstVectorRef& q, const char* name,
-                     const ConstVectorRef& x) {
-    if (!finite(t, q, name, x)) throw std::invalid_argument(std::string(call) + ": " + failure);
-  }
-  /// Whether n numbers that were found are finite; else failure() says so.
-  bool found_finite(const double* x, Eigen::Index n) {
-    if (all_finite(x, static_cast<std::size_t>(n))) [[likely]]
-      return true;
-    failure = "the result is not finite, expected smaller numbers to find it from";
-    return false;
-  }
-  bool found_finite(const VectorRef& x) { return found_finite(x.data(), x.size()); }
-  void expect_found_finite(const char* call, const double* x, Eigen::Index n) {
-    if (!found_finite(x, n)) throw std::invalid_argument(std::string(call) + ": " + failure);
-  }
-
   /// The solver's verdict, in words.
   bool noted(bool ok, double t, const double* q) {
     if (!ok)
       failure = tree ? tree->failure() : mechanism.no_inertia(solver->singular_joint(), t, q);
     return ok;
   }
+  static std::span<const double> list(const double* x, int n) {
+    return {x, static_cast<std::size_t>(n)};
+  }
   bool momentum(double t, const double* q, const double* p, double* rates, double* impulses,
                 double* pdot, double leak) {
     return noted(solver->momentum(t, q, p, nullptr, fade_evaluation, leak, rates, impulses, pdot),
                  t, q) &&
-           found_finite(rates, mechanism.nv()) && found_finite(impulses, mechanism.m()) &&
-           (!pdot || found_finite(pdot, mechanism.nv()));
+           found_finite(failure, list(rates, mechanism.nv()), list(impulses, mechanism.m()),
+                        list(pdot, pdot ? mechanism.nv() : 0));
   }
   void place(double t, const ConstVectorRef& q, const ConstVectorRef& rates) {
     e->place(t, q.data());

@@ -1,14 +1,16 @@
 #include <momenta/dae/chain/closed_chain_inside.h>
 #include <momenta/dae/dense_blocks.h>
 
+#include <array>
+
 namespace momenta {
 
 void ClosedChain::momenta(double t, const ConstVectorRef& q, const ConstVectorRef& u, VectorRef p) {
   expect_sizes("momenta", {{"q", q.size()}, {"u", u.size()}, {"p", p.size()}}, {nq(), nv(), nv()});
-  inside_->expect_finite("momenta", t, q, "u", u);
+  expect_given_finite("momenta", inside_->failure, t, {"q", q}, {"u", u});
   inside_->place(t, q, u);
   inside_->e->momenta(nullptr, p.data());
-  inside_->expect_found_finite("momenta", p.data(), p.size());
+  expect_found_finite("momenta", inside_->failure, p);
 }
 
 void ClosedChain::joint_forces(double t, const ConstVectorRef& q, const ConstVectorRef& u,
@@ -21,13 +23,12 @@ void ClosedChain::joint_forces(double t, const ConstVectorRef& q, const ConstVec
                 {"lambda", lambda.size()},
                 {"tau", tau.size()}},
                {nq(), nv(), nv(), m(), nv()});
-  inside_->expect_finite("joint_forces", t, q, "u", u);
-  if (!inside_->finite("udot", udot) || !inside_->finite("lambda", lambda))
-    throw std::invalid_argument("joint_forces: " + failure());
+  expect_given_finite("joint_forces", inside_->failure, t, {"q", q}, {"u", u}, {"udot", udot},
+                      {"lambda", lambda});
   inside_->place(t, q, u);
   inside_->e->joint_forces(q.data(), u.data(), udot.data(), m() > 0 ? lambda.data() : nullptr,
                            tau.data());
-  inside_->expect_found_finite("joint_forces", tau.data(), tau.size());
+  expect_found_finite("joint_forces", inside_->failure, tau);
 }
 
 void ClosedChain::constraints(double t, const ConstVectorRef& q, const ConstVectorRef& u,
@@ -35,29 +36,28 @@ void ClosedChain::constraints(double t, const ConstVectorRef& q, const ConstVect
   expect_sizes("constraints",
                {{"q", q.size()}, {"u", u.size()}, {"phi", phi.size()}, {"phidot", phidot.size()}},
                {nq(), nv(), m(), m()});
-  inside_->expect_finite("constraints", t, q, "u", u);
+  expect_given_finite("constraints", inside_->failure, t, {"q", q}, {"u", u});
   inside_->place(t, q, u);
   inside_->e->positions(phi.data());
   inside_->e->velocities(phidot.data());
-  inside_->expect_found_finite("constraints", phi.data(), m());
-  inside_->expect_found_finite("constraints", phidot.data(), m());
+  expect_found_finite("constraints", inside_->failure, phi, phidot);
 }
 
 Eigen::MatrixXd ClosedChain::jacobian(double t, const ConstVectorRef& q) {
   expect_size("jacobian", "q", q.size(), nq());
-  inside_->expect_finite("jacobian", t, q, "q", q);
+  expect_given_finite("jacobian", inside_->failure, t, {"q", q});
   inside_->e->place(t, q.data());
   Eigen::MatrixXd found = dense_constraints(inside_->mechanism, *inside_->e);
-  inside_->expect_found_finite("jacobian", found.data(), found.size());
+  expect_found_finite("jacobian", inside_->failure, found);
   return found;
 }
 
 Eigen::MatrixXd ClosedChain::mass_matrix(double t, const ConstVectorRef& q) {
   expect_size("mass_matrix", "q", q.size(), nq());
-  inside_->expect_finite("mass_matrix", t, q, "q", q);
+  expect_given_finite("mass_matrix", inside_->failure, t, {"q", q});
   inside_->e->place(t, q.data());
   Eigen::MatrixXd found = dense_mass(inside_->mechanism, *inside_->e);
-  inside_->expect_found_finite("mass_matrix", found.data(), found.size());
+  expect_found_finite("mass_matrix", inside_->failure, found);
   return found;
 }
 
@@ -68,8 +68,8 @@ Energies ClosedChain::energies(double t, const ConstVectorRef& q, const ConstVec
   all.kinetic = in.e->kinetic();
   all.potential = in.e->potential(q.data());
   all.hamiltonian = in.u.dot(u) - all.kinetic + all.potential;
-  const double found[] = {all.kinetic, all.potential, all.hamiltonian};
-  in.expect_found_finite("energies", found, 3);
+  const std::array found{all.kinetic, all.potential, all.hamiltonian};
+  expect_found_finite("energies", in.failure, found);
   return all;
 }
 
@@ -83,9 +83,9 @@ void ClosedChain::coordinate_rates(double t, const ConstVectorRef& q, const Cons
                                    VectorRef qdot) {
   expect_sizes("coordinate_rates", {{"q", q.size()}, {"u", u.size()}, {"qdot", qdot.size()}},
                {nq(), nv(), nq()});
-  inside_->expect_finite("coordinate_rates", t, q, "u", u);
+  expect_given_finite("coordinate_rates", inside_->failure, t, {"q", q}, {"u", u});
   inside_->rates_of_coordinates(t, q.data(), u.data(), qdot.data());
-  inside_->expect_found_finite("coordinate_rates", qdot.data(), qdot.size());
+  expect_found_finite("coordinate_rates", inside_->failure, qdot);
 }
 
 }  // namespace momenta

@@ -17,6 +17,7 @@ MomentumForm::MomentumForm(std::string name, const Mechanism& mechanism, const F
   if (gauge_.kind == Gauge::Kind::leak && gauge_.kappa == 0)
     gauge_.kappa = default_leak(mechanism, start);
   if (has_loops()) solver_->stabilise(beta_);
+  if (solutions_ > 1 && start.residue.size() > 0) not_closed_.assign(multipliers_.size(), 0.0);
   e_->place(start.t, start.q.data());
   momentum_scales(*e_, mechanism.nv(), scale_.data() + mechanism.nq());
 }
@@ -101,7 +102,14 @@ double MomentumForm::motion_error_squared(double t, const double* y, const doubl
 
 void MomentumForm::begin_step(double t, const double* y) {
   OdeForm::begin_step(t, y);
-  if (gauge_.kind != Gauge::Kind::reset) centre_ = multipliers_;
+  if (gauge_.kind == Gauge::Kind::reset) return;
+  centre_ = multipliers_;
+  for (std::size_t i = 0; i < not_closed_.size(); ++i) centre_[i] -= not_closed_[i];
+}
+
+void MomentumForm::carry(Memory& memory) {
+  OdeForm::carry(memory);
+  memory(not_closed_);
 }
 
 bool MomentumForm::read(double t, const double* y, const double*, Snapshot& out) {
@@ -131,6 +139,8 @@ bool MomentumForm::solve(double t, const double* q, const double* p, double* pdo
     std::copy(multipliers_.begin(), multipliers_.end(), around_.begin());
     centre = around_.data();
   }
+  for (std::size_t i = 0; looking_ == 0 && i < not_closed_.size(); ++i)
+    not_closed_[i] = solutions_ * (multipliers_[i] - around_[i]);
   return true;
 }
 

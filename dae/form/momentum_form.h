@@ -2,6 +2,11 @@
 // What the ODE forms in q, p share: (7), (8), and the gauge and the correction of positions after
 // steps. (7) is solved once or, with a softened solver, repeatedly, each time around the
 // multipliers just found.
+//
+// Where redundant equations contradict each other (Start::residue), a part w of βΦ is that of no
+// velocity, wᵀ Φ_q = 0: each of the k solutions adds the same α w to σ, and σ of one step's end as
+// σ₀ of the next would grow with the number of steps. That part is what the last of them added; the
+// next step begins with σ₀ = σ_k − k (σ_k − σ_{k−1}).
 
 #include <momenta/dae/form/ode_form.h>
 
@@ -26,6 +31,7 @@ class MomentumForm : public OdeForm {
   }
   bool after_step(double t, double* y, bool& changed) override;
   bool first_derivative(double* ydot) override;
+  void carry(Memory& memory) override;
   void begin_step(double t, const double* y) override;
   void set_handling(SingularityHandling care) override {
     corrects_ = care == SingularityHandling::position;
@@ -45,6 +51,7 @@ class MomentumForm : public OdeForm {
   bool corrects_ = false;
   bool reset_ = false;  ///< work_ and correction_ hold f after a reset
   std::vector<double> around_, place_;
+  std::vector<double> not_closed_;  ///< k (σ_k − σ_{k−1}) of the last evaluation; empty: not asked
 };
 
 }  // namespace momenta

@@ -2,6 +2,7 @@
 #include <momenta/dae/report/csv.h>
 #include <momenta/dae/report/page.h>
 #include <momenta/dae/report/part_file.h>
+#include <momenta/dae/report/stiffness_in_words.h>
 #include <momenta/dae/report/table.h>
 #include <momenta/dae/study/run_form.h>
 #include <momenta/dae/study/timing.h>
@@ -52,23 +53,6 @@ void print_rank(const Mechanism& mechanism, const Assembly& a, const RunResult& 
         "right-hand sides: more loop equations faded there than are redundant at the start "
         "(faded_rows)\n",
         result.weak_evaluations, result.counters.evaluations);
-}
-
-void print_stiffness(const RunResult& result) {
-  if (std::isnan(result.stiff_from)) return;
-  if (changed(result)) {
-    std::printf(
-        "\nStiff from t = %s s: steps of %s became as long as its stability allows, shorter than "
-        "its tolerance asks for; %s went on from t = %s s (--integrator %s: no change)\n",
-        compact(result.stiff_from, 4).c_str(), result.settings.integrator.c_str(),
-        result.settings.when_stiff.c_str(), compact(result.changed_at, 4).c_str(),
-        result.settings.integrator.c_str());
-    return;
-  }
-  std::printf(
-      "\nStiff from t = %s s: steps of %s are as long as its stability allows, shorter than its "
-      "tolerance asks for; implicit methods take fewer: --integrator bdf, or a form by ida\n",
-      compact(result.stiff_from, 4).c_str(), result.settings.integrator.c_str());
 }
 
 /// "C.lambda1, C.lambda2", and of the samples that they are not unique at how many.
@@ -207,7 +191,8 @@ int run(const Options& o) {
     print_rank(*mechanism, a, result);
     print_singular_crossings(result);
     print_undetermined(result);
-    print_stiffness(result);
+    if (const std::string stiff = stiffness_in_words(result); !stiff.empty())
+      std::printf("\n%s\n", stiff.c_str());
     if (!a.branch.empty()) std::printf("Started from %s\n", a.branch.c_str());
   }
   if (result.status != "done")

@@ -68,11 +68,8 @@ int work(const Options& o, const WorkOptions& w) {
                                                return !interrupted();
                                              });
       if (journal && !known) journal->add("reference", record_of(own));
+      study.reference = in_words(own);
       reference = std::make_unique<Reference>(std::move(own.reference));
-      study.reference =
-          "quadruple precision: acceleration form projected at each step, extrapolation; two "
-          "tolerances agree to " +
-          scientific(own.accuracy, 2);
     }
     request.reference = reference.get();
     request.progress = [&](int number, int total, const std::string& label, double fraction) {

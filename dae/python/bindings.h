@@ -63,8 +63,8 @@ class Bench {
   /// What was found, unless a number of it is none. Raises SceneError.
   template <class... Found>
   void expect_finite(const Found&... found) const {
-    if (!(found.allFinite() && ...))
-      throw SceneError("the result is not finite, expected smaller numbers to find it from");
+    std::string failure;
+    if (!found_finite(failure, found...)) throw SceneError(failure);
   }
   [[noreturn]] void fail(double t, const In& q) const {
     throw SceneError(mechanism->no_inertia(solver ? solver->singular_joint() : e->singular_joint(),

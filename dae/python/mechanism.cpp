@@ -50,9 +50,7 @@ py::tuple momentum_rates(Bench& b, double t, const In& q, const In& p,
   b.expect(t, &q, &p, "p");
   Vector u(nv), pdot(nv), sigma(m);
   if (centre) expect_size(*centre, m, "centre", "m");
-  if (!std::isfinite(leak) || leak < 0)
-    throw py::value_error("leak is " + std::string(py::str(py::float_(leak))) +
-                          ", expected a rate in 1/s, not negative");
+  expect_leak("momentum_rates", leak);
   const bool ok =
       m == 0 ? b.e->open_momentum_rates(t, q.data(), p.data(), u.data(), pdot.data())
              : b.solver->momentum(t, q.data(), p.data(), centre ? centre->data() : nullptr,

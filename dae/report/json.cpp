@@ -1,4 +1,5 @@
 #include <momenta/dae/report/json.h>
+#include <momenta/dae/report/stiffness_in_words.h>
 
 #include <cmath>
 
@@ -41,6 +42,7 @@ Json summary_json(const RunResult& run, const Environment& environment) {
   json["stiff_from"] = number_or_null(run.stiff_from);
   json["changed_to"] = changed(run) ? Json(s.when_stiff) : Json(nullptr);
   json["changed_at"] = number_or_null(run.changed_at);
+  json["stiffness"] = stiffness_in_words(run);
   json["project"] = s.project;
   json["jacobian"] = run.jacobian;
   json["linear_solver"] = run.linear_solver;

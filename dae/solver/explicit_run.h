@@ -51,7 +51,7 @@ class ExplicitRun {
         fixed_(options.step > 0),
         sample_(y0.size()),
         corrected_(system.has_after_step()) {
-    if (corrected_) unaltered_.resize(y0.size());
+    if (corrected_) unaltered_.resize(y0.size()), end_rate_.resize(y0.size());
     if (observer.sample && !fixed_) look_.emplace(system, options.rtol, options.atol, y0.data());
     if (observer.before_step) carry_ = [this](Memory& memory) { carry(memory); };
     if (observer.step) between_ = [this](double t, double* y) { step_.interpolate(t, y); };
@@ -138,6 +138,7 @@ class ExplicitRun {
       const double began = t_;
       bool altered = false;
       if (!observe(t1)) return false;
+      const double uncorrected = looks && corrected_ ? rate_of_change_at_end(t1) : 0;
       if (system_.wanted_handling() < handling_) take_handling(system_.wanted_handling());
       if (!correct(t1, altered)) return false;
       // Without a correction f at the end is the next first stage wherever it is there; with one,
@@ -149,8 +150,8 @@ class ExplicitRun {
       if (t_ >= end_) return true;
       system_.begin_step(t_, step_.y());
       if (!kept && !step_.begin(t_)) return stop(evaluation_cause(system_.failure()));
-      if (!looks || altered) continue;
-      stiffness_.take((t1 - began) * step_.rate_of_change(), began);
+      if (!looks) continue;
+      stiffness_.take((t1 - began) * (altered ? uncorrected : step_.rate_of_change()), began);
       if (options_.until_stiff && handling_ == SingularityHandling::none &&
           !std::isnan(stiffness_.from())) {
         result_.ended_stiff = true;
@@ -300,6 +301,14 @@ class ExplicitRun {
     return true;
   }
 
+  /// |λ| at the step's end, which is about to be corrected: what a gauge makes of it is farther
+  /// from the last stage than their motions are. f there serves this alone and is not counted.
+  double rate_of_change_at_end(double t1) {
+    const Looking looking(system_);
+    if (!system_.rhs(t1, step_.y_new(), end_rate_.data())) return 0;
+    return step_.rate_of_change(step_.y_new(), end_rate_.data());
+  }
+
   bool correct(double t1, bool& altered) {
     if (!corrected_) return true;
     std::copy_n(step_.y_new(), unaltered_.size(), unaltered_.data());
@@ -363,7 +372,7 @@ class ExplicitRun {
   double t0_, t_, end_;  ///< start, current step's start, end [s]
   double h_ = 0;         ///< step tried next [s]
   bool fixed_;           ///< steps of options.step, no error control
-  std::vector<double> sample_, unaltered_;
+  std::vector<double> sample_, unaltered_, end_rate_;
   Stiffness stiffness_{stability_interval<Tableau>()};
   SingularityHandling handling_ = SingularityHandling::none;  ///< of the step under way
   double first_handled_ = 0;        ///< the step with which singularity handling began [s]

@@ -106,12 +106,14 @@ class ExplicitStep {
   }
   /// |f(y) − f(g)| / |y − g| [1/s] of the state and that stage; zero where they are the same. In
   /// units of the tolerance.
-  double rate_of_change() const {
+  double rate_of_change() const { return rate_of_change(y_.data(), stage(0)); }
+  /// The same of y and f = f(y) at that time.
+  double rate_of_change(const double* y, const double* f) const {
     double rates = 0, ways = 0;
     for (std::size_t i = 0; i < n_; ++i) {
-      const double weight = 1 / (atol_[i] + rtol_ * std::abs(y_[i]));
-      const double rate = weight * (stage(0)[i] - last_stage_[i]);
-      const double way = weight * (y_[i] - last_argument_[i]);
+      const double weight = 1 / (atol_[i] + rtol_ * std::abs(y[i]));
+      const double rate = weight * (f[i] - last_stage_[i]);
+      const double way = weight * (y[i] - last_argument_[i]);
       rates += rate * rate;
       ways += way * way;
     }

@@ -60,7 +60,7 @@ FormRunner::FormRunner(const Mechanism& mechanism, const Start& start, RunSettin
   options_.step = s.step;
   options_.spectral_radius = s.spectral_radius;
   options_.max_cpu_seconds = max_cpu_seconds;
-  if (!s.when_stiff.empty() && !may_change(s, options.gauge)) s.when_stiff.clear();
+  if (!s.when_stiff.empty() && !may_change(s)) s.when_stiff.clear();
   when_stiff_ = s.when_stiff;
   options_.until_stiff = !when_stiff_.empty();
 }
@@ -79,12 +79,12 @@ IntegrationResult FormRunner::integrate(const std::vector<double>& times,
   return run;
 }
 
-bool FormRunner::may_change(const RunSettings& s, const Gauge& gauge) {
+bool FormRunner::may_change(const RunSettings& s) {
   const Integrator& method = integrator(s.when_stiff);
   constexpr int most_unknowns = 500;  // a larger dense Newton matrix may cost more than short steps
   return !is_dae_form(s.form) && s.step == 0 && form_->ode()->size() <= most_unknowns &&
-         !needs_one_step_method(s.form) && (method.projects || !s.project) &&
-         gauge.kind != Gauge::Kind::reset && gauge.kind != Gauge::Kind::flip;
+         !needs_one_step_method(s.form) && (method.projects || !s.project) && s.gauge != "reset" &&
+         s.gauge != "flip";
 }
 
 void FormRunner::go_on(IntegrationResult& run, const std::vector<double>& times,

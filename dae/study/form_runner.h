@@ -36,7 +36,7 @@ class FormRunner {
 
  private:
   /// Whether `when_stiff`, a method with memory, takes the form as it is set.
-  bool may_change(const RunSettings& s, const Gauge& gauge);
+  bool may_change(const RunSettings& s);
 
   /// The implicit method takes over where the explicit one ended.
   void go_on(IntegrationResult& run, const std::vector<double>& times, const Observer& observer,

@@ -269,11 +269,9 @@ Record record_of(const Checkpoint& checkpoint) {
   return written(checkpoint);
 }
 Record record_of(const OwnReference& own) {
-  return {{"accuracy", written(own.accuracy)},
-          {"source", own.reference.file()},
-          {"columns", own.reference.columns()},
-          {"times", written(own.reference.times())},
-          {"values", written(own.reference.values())}};
+  return {{"accuracy", written(own.accuracy)},       {"implicit", own.implicit},
+          {"source", own.reference.file()},          {"columns", own.reference.columns()},
+          {"times", written(own.reference.times())}, {"values", written(own.reference.values())}};
 }
 
 bool read_record(const Record& record, RunResult& run) {
@@ -297,6 +295,7 @@ bool read_record(const Record& record, OwnReference& own) {
   std::vector<std::vector<double>> values;
   try {
     read(record.at("accuracy"), own.accuracy);
+    own.implicit = record.at("implicit").get<bool>();
     read(record.at("columns"), columns);
     read(record.at("times"), times);
     read(record.at("values"), values);

@@ -118,6 +118,49 @@ TEST_F(GivenStarts, ARunSaysWhenItsMethodChanged) {
   EXPECT_TRUE(json::parse(call(run + " --integrator dop853 --json").out)["changed_to"].is_null());
 }
 
+/// Where no method with memory can take over.
+TEST_F(GivenStarts, ARunHeldByStabilitySaysWhatToChoose) {
+  const std::string bar = text_of(fs::path(MOMENTA_SOURCE_DIR) / "examples/four_bar/scene.toml") +
+                          R"([[body]]
+name = "finger"
+mass = 1.0
+shape = { kind = "rod", length = 1.0, axis = "x" }
+[[joint]]
+name = "F"
+kind = "revolute"
+parent = "crank"
+child = "finger"
+origin = { parent = [0.2, 0, 0] }
+axis = [0, 0, 1]
+position = 0.2
+damping = 3000.0
+)";
+  const std::string run = "run '" + write("bar.toml", bar).string() + "' --end 1 --samples 10 ";
+  const std::string held =
+      "s: steps of dop853 are as long as its stability allows, shorter than "
+      "its tolerance asks for; implicit methods take fewer: ";
+  for (const auto& [options, choice] :
+       {std::pair{"--gauge reset", "--integrator bdf --gauge leak, or a form by ida"},
+        std::pair{"--gauge flip", "--integrator bdf --gauge leak, or a form by ida"},
+        std::pair{"--gauge leak --project", "--integrator bdf --no-project, or a form by ida"},
+        std::pair{"--form projected", "--form momentum --integrator bdf, or a form by ida"}}) {
+    const Outcome o = call(run + options + " --timing none");
+    EXPECT_EQ(o.status, 0) << o.err;
+    EXPECT_NE(o.out.find(held + choice), std::string::npos) << options << o.out;
+    const json summary = json::parse(call(run + options + " --timing none --json").out);
+    EXPECT_NE(summary["stiffness"].get<std::string>().find(held + choice), std::string::npos);
+    EXPECT_LT(summary["stiff_from"].get<double>(), 0.5) << options;
+    EXPECT_TRUE(summary["changed_to"].is_null()) << options;
+  }
+  // What it names is taken.
+  for (const char* options :
+       {"--integrator bdf --gauge leak --no-project", "--form momentum --integrator bdf"})
+    EXPECT_EQ(call(run + options + " --timing none --quiet").status, 0) << options;
+  EXPECT_EQ(json::parse(call("run '" + example("four_bar") + "' --end 1 --timing none --json").out)
+                .at("stiffness"),
+            "");
+}
+
 TEST_F(GivenStarts, WorkPutsAMethodForStiffProblemsBesideAnExplicitOne) {
   const fs::path out = folder_ / "work", exact = folder_ / "exact";
   const std::string scene = "'" + write("finger.toml", finger).string() + "'";

@@ -90,6 +90,12 @@ TEST_F(Arguments, ThatAreNoNumbersAreTold) {
   EXPECT_EQ(chain_.failure(), "u[2] is minus infinite, expected a finite number");
   EXPECT_FALSE(chain_.jacobian_times(0, q_, p_, qdot_, bad, qdot_, pdot_));
   EXPECT_EQ(chain_.failure(), "dp[2] is minus infinite, expected a finite number");
+  EXPECT_FALSE(chain_.jacobian_times(0, q_, p_, bad_q, p_, qdot_, pdot_));
+  EXPECT_EQ(chain_.failure(), "dq[1] is not a number, expected a finite number");
+  EXPECT_FALSE(chain_.rates(0, q_, p_, bad, qdot_, pdot_));
+  EXPECT_EQ(chain_.failure(), "tau[2] is minus infinite, expected a finite number");
+  EXPECT_FALSE(chain_.accelerations(0, q_, u_, bad, pdot_));
+  EXPECT_EQ(chain_.failure(), "tau[2] is minus infinite, expected a finite number");
   EXPECT_EQ(chain_.jacobian(0, bad_q, p_).size(), 0);
   EXPECT_EQ(chain_.failure(), of_q);
   EXPECT_EQ(thrown([&] { chain_.momenta(0, bad_q, u_, p_); }), "momenta: " + of_q);

@@ -7,6 +7,9 @@
 #include <gtest/gtest.h>
 #include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/assembly/assembly.h>
+#include <momenta/dae/kkt/loop_rank.h>
+
+#include <Eigen/SVD>
 
 #include <filesystem>
 #include <numbers>
@@ -105,6 +108,96 @@ TEST(Assembly, RedundantLoopsClose) {
     EXPECT_EQ(b.dependent_rows.size(), 9u);
     expect_consistent(flat, b);
   }
+}
+
+/// The closed pose `at` (nq), and a start from which the loops are open by 0.8 · 10⁻⁸ lengths, less
+/// than a file may leave of redundant equations: along the weakest motion that they forbid, σ the
+/// singular value of Φ_q there. One step of Newton's leaves (δ² / 2), δ = 0.8 · 10⁻⁸ / σ.
+VectorXd slightly_open(const Mechanism& mechanism, const VectorXd& at) {
+  const auto e = mechanism.evaluation<double>();
+  e->place(0, at.data());
+  const Eigen::MatrixXd a = scaled_jacobian(mechanism, *e).a;
+  const Eigen::BDCSVD<Eigen::MatrixXd> svd(a, Eigen::ComputeFullV);
+  const int rank = rank_and_idle(a).rank;
+  EXPECT_LT(rank, mechanism.m());
+  const LoopUnits units(mechanism);
+  const VectorXd step = 0.8 * left_by_files / svd.singularValues()[rank - 1] *
+                        svd.matrixV().col(rank - 1).cwiseProduct(units.rates);
+  VectorXd phi(mechanism.m());
+  const VectorXd q = at + step;
+  e->place(0, q.data());
+  e->positions(phi.data());
+  const double open = phi.cwiseQuotient(units.equations).cwiseAbs().maxCoeff();
+  EXPECT_GT(open, 1e-10);
+  EXPECT_LT(open, left_by_files);
+  return q;
+}
+
+/// What is open by less than a file leaves is closed all the same, where it can be.
+TEST(Assembly, SmallGapsOfRedundantLoopsThatCloseAreClosed) {
+  for (const double angle : {1e-3, 2e-3})
+    for (unsigned seed = 0; seed < 6; ++seed) {
+      SCOPED_TRACE(testing::Message() << angle << ", " << seed);
+      const Eigen::Quaterniond r(
+          Eigen::AngleAxisd(0.4 * seed, Eigen::Vector3d(1, 2, 0.3 * seed).normalized()));
+      const Mechanism mechanism(turned(row_of_four_bars(3, angle, 1), r),
+                                {.algebra = Algebra::spatial});
+      const Assembly closed = assemble(mechanism);
+      const VectorXd q = slightly_open(mechanism, closed.start.q);
+      const Assembly a = assemble(mechanism, 0, q, closed.start.u, Assembled::rates);
+      EXPECT_EQ(a.residue, "");
+      EXPECT_LT(a.position_residual, 1e-14);
+    }
+}
+
+/// Numbers that contradict each other are closed as far as they can be: to where no step of any
+/// joint takes some of |Φ| away, the end of the dense Gauss-Newton steps
+///
+///   q ← q − A⁺ D⁻¹ Φ.
+TEST(Assembly, SmallGapsOfContradictingLoopsEndAtTheLeastSquares) {
+  for (const double angle : {6e-4, 8e-4})
+    for (unsigned seed = 0; seed < 6; ++seed) {
+      SCOPED_TRACE(testing::Message() << angle << ", " << seed);
+      RandomTree random(seed);
+      Scene scene = read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) /
+                               "examples/extremes/three_cranks.toml");
+      for (JointSpec& j : scene.joints) j.position = {std::copysign(angle, j.position[0])};
+      for (LoopSpec& l : scene.loops) l.origin_child[0] += 2e-9 * random.uniform(-1, 1);
+      const Mechanism mechanism(scene);
+      const LoopUnits units(mechanism);
+      const auto e = mechanism.evaluation<double>();
+      // Φ in units, what of it can be closed, and the step that does.
+      const auto open = [&](const VectorXd& q, VectorXd* in_range, VectorXd* step) {
+        VectorXd phi(mechanism.m());
+        e->place(0, q.data());
+        e->positions(phi.data());
+        phi = phi.cwiseQuotient(units.equations);
+        const Eigen::MatrixXd a = scaled_jacobian(mechanism, *e).a;
+        const Eigen::BDCSVD<Eigen::MatrixXd> svd(a, Eigen::ComputeThinU | Eigen::ComputeThinV);
+        const Eigen::MatrixXd u = svd.matrixU().leftCols(3), v = svd.matrixV().leftCols(3);
+        *in_range = u * (u.transpose() * phi);
+        const VectorXd parts = (u.transpose() * phi).cwiseQuotient(svd.singularValues().head(3));
+        *step = -(v * parts).cwiseProduct(units.rates);
+        return phi;
+      };
+      VectorXd in_range, step;
+      const Assembly closed = assemble(mechanism);
+      ASSERT_EQ(closed.rank, 3);
+      const VectorXd q = slightly_open(mechanism, closed.start.q);
+      VectorXd least_q = q;
+      for (int i = 0; i < 20; ++i) {
+        open(least_q, &in_range, &step);
+        least_q += step;
+      }
+      const VectorXd least = open(least_q, &in_range, &step);
+      ASSERT_LT(in_range.norm(), 1e-14);
+      const Assembly a = assemble(mechanism, 0, q, closed.start.u, Assembled::rates);
+      const VectorXd found = open(a.start.q, &in_range, &step);
+      EXPECT_NE(a.residue, "");
+      EXPECT_LT(in_range.cwiseAbs().maxCoeff(), 2e-12);
+      EXPECT_LT((found - least).norm(), 1e-11);
+      EXPECT_LT((a.start.residue - found.cwiseProduct(units.equations)).norm(), 1e-15);
+    }
 }
 
 TEST(Assembly, SingularPoseIsSeen) {

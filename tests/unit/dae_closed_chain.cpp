@@ -131,8 +131,9 @@ TEST(ClosedChain, ManyStatesAreAsOne) {
       const State s = moving(chain, random);
       VectorXd one(chain.nv());
       chain.momenta(s.t, s.q, s.u, one);
+      // With impulses of the loops: of σ = 0 nothing leaks.
       q.col(i) = s.q;
-      p.col(i) = one;
+      p.col(i) = one + chain.jacobian(s.t, s.q).transpose() * any(random, chain.m());
     }
     ASSERT_TRUE(chain.rates_of_states(0, q, p, qdot, pdot, 2)) << chain.failure();
     for (int i = 0; i < count; ++i) {
@@ -224,6 +225,27 @@ TEST(ClosedChain, SaysWhatIsWrong) {
   p[1] = HUGE_VAL;
   EXPECT_FALSE(chain.rates(0, a.start.q, p, qdot, pdot));
   EXPECT_EQ(chain.failure(), "p[1] is infinite, expected a finite number");
+
+  p[1] = 0;
+  two.resize(3);
+  two << 0, NAN, 0;
+  EXPECT_FALSE(chain.rates(0, a.start.q, p, two, qdot, pdot));
+  EXPECT_EQ(chain.failure(), "tau[1] is not a number, expected a finite number");
+  EXPECT_EQ(sentence([&] { chain.joint_forces(0, a.start.q, p, two, lambda, pdot); }),
+            "joint_forces: udot[1] is not a number, expected a finite number");
+  lambda << 0, -HUGE_VAL;
+  EXPECT_EQ(sentence([&] { chain.joint_forces(0, a.start.q, p, p, lambda, pdot); }),
+            "joint_forces: lambda[1] is minus infinite, expected a finite number");
+  p.setConstant(1e200);
+  EXPECT_EQ(sentence([&] { chain.energies(0, a.start.q, p); }),
+            "energies: the result is not finite, expected smaller numbers to find it from");
+  const StateMatrix many = a.start.q, of_p = StateMatrix::Zero(3, 1);
+  StateMatrix many_qdot(3, 1), many_pdot(3, 1);
+  EXPECT_EQ(sentence([&] { chain.rates(0, a.start.q, p, qdot, pdot, -1); }),
+            "rates: leak is -1, expected a rate in 1/s, not negative");
+  EXPECT_EQ(sentence([&] { chain.rates_of_states(0, many, of_p, many_qdot, many_pdot, NAN); }),
+            "rates_of_states: leak is nan, expected a rate in 1/s, not negative");
+  chain.momenta(0, a.start.q, a.start.u, p);
 
   // Moved, it works on: nothing inside points at the object.
   p[1] = 0;

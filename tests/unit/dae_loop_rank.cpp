@@ -239,6 +239,7 @@ TEST(LoopRank, RunsGoOnWithWhatStaysOpen) {
       const RunResult exact = ran(0, project), open = ran(2e-9, project);
       ASSERT_EQ(exact.status, "done") << exact.reason;
       ASSERT_EQ(open.status, "done") << open.reason;
+      EXPECT_LT(open.counters.evaluations, 3 * exact.counters.evaluations);
       EXPECT_EQ(exact.residue, "");
       EXPECT_NE(open.residue, "");
       EXPECT_LT(open.position_drift_max, 2 * exact.position_drift_max + 4e-8);

@@ -106,6 +106,35 @@ TEST(MasslessJoints, OpenChainsNameThem) {
   }
 }
 
+/// A mass on its joint's axis is off it by rounding, about any axis; one that is off it by more has
+/// inertia, however little.
+TEST(MasslessJoints, AMassOnTheAxisIsToldFromOneBesideIt) {
+  RandomTree random(3);
+  for (int i = 0; i < 40; ++i)
+    for (const double off : {0.0, 1e-12, 1e-9, 1e-6}) {
+      SCOPED_TRACE(testing::Message() << i << ", " << off);
+      const Vector3d axis =
+          Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(0.1, 1))
+              .normalized();
+      Scene scene = arm();
+      add_finger(scene, "bare", "arm");
+      add_finger(scene, "tip", "arm", axis);
+      scene.bodies.back().mass = 0.5;
+      scene.bodies.back().com =
+          random.uniform(-2, 2) * axis + off * axis.cross(Vector3d::UnitX()).normalized();
+      OpenChain chain(scene);
+      VectorXd udot(chain.nv());
+      EXPECT_FALSE(chain.accelerations(0, chain.tree().q0, chain.tree().u0, udot));
+      EXPECT_EQ(chain.failure(),
+                off > 0 ? "joint 'bare' has no inertia: body 'bare link' and what it carries have "
+                          "none about its axis; expected a mass, a rotor's inertia, or a fixed "
+                          "joint"
+                        : "joints 'bare', 'tip' have no inertia: the bodies on them and what those "
+                          "carry have none along their freedoms; expected masses, rotors' "
+                          "inertias, or fixed joints");
+    }
+}
+
 TEST(MasslessJoints, SixAreNamedAndTheOthersCounted) {
   Scene scene = arm();
   for (int i = 0; i < 3; ++i) {

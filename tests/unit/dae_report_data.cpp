@@ -30,7 +30,8 @@ TEST(SummaryJson, HasThePublicKeys) {
                  "stopped_at",   "stiff_from",     "faded_rows",  "beta",
                  "penalty",      "partitions",     "least_pivot", "singular_crossings",
                  "undetermined", "passages",       "changed_to",  "changed_at",
-                 "rank",         "dependent_rows", "residue",     "weak_evaluations"};
+                 "rank",         "dependent_rows", "residue",     "weak_evaluations",
+                 "stiffness"};
   std::sort(expected.begin(), expected.end());
   EXPECT_EQ(keys(json), expected);
   EXPECT_EQ(keys(json["counters"]),

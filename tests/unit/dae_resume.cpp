@@ -227,6 +227,7 @@ TEST_F(Resume, WorkStudyTakesOverRungsAndItsReference) {
   ASSERT_TRUE(read_record(nlohmann::json::parse(record_of(own).dump()), back));
   EXPECT_EQ(back.reference.csv(), own.reference.csv());
   EXPECT_EQ(back.accuracy, own.accuracy);
+  EXPECT_EQ(back.implicit, own.implicit);
   back.reference.bind(trajectory_columns(mechanism_));
   WorkRequest request;
   request.forms = {"momentum", "projected"};

@@ -8,6 +8,7 @@
 #include <momenta/dae/kkt/loop_solver.h>
 #include <momenta/dae/report/advice.h>
 #include <momenta/dae/solver/extrapolation.h>
+#include <momenta/dae/solver/radau_collocation.h>
 #include <momenta/dae/study/own_reference.h>
 #include <momenta/dae/study/quad_motion.h>
 #include <momenta/dae/study/work_study.h>
@@ -43,6 +44,58 @@ TEST(Extrapolation, RefusesAStepTooLong) {
     return true;
   };
   EXPECT_FALSE(method.step(0, 1.0, y, 1e-12, stiff));
+  EXPECT_EQ(y[0], 1.0);
+  EXPECT_FALSE(method.step(0, 1.0, y, 1e-12, [](double, const double*, double*) { return false; }));
+}
+
+TEST(RadauCollocation, HasTheNodesAndWeightsOfRadau) {
+  const RadauNodes<Quad> two(2), nine(9);
+  const double exact[2][2] = {{5.0 / 12, -1.0 / 12}, {3.0 / 4, 1.0 / 4}};
+  for (std::size_t i = 0; i < 2; ++i)
+    for (std::size_t j = 0; j < 2; ++j) EXPECT_NEAR(value_of(two.a[i][j]), exact[i][j], 1e-16);
+  // The last row integrates powers up to 2s − 2, the others up to s − 1.
+  for (int power = 0; power <= 16; ++power) {
+    Quad sum = 0.0, at_start = 0.0;
+    for (std::size_t j = 0; j < 9; ++j) {
+      Quad term = 1.0;
+      for (int k = 0; k < power; ++k) term *= nine.c[j];
+      sum += nine.a[8][j] * term;
+      at_start += nine.at_start[j] * term;
+    }
+    EXPECT_LT(std::abs(value_of(sum - Quad(1.0) / Quad(power + 1.0))), 1e-26) << power;
+    if (power < 9) {
+      EXPECT_LT(std::abs(value_of(at_start - Quad(power == 0 ? 1.0 : 0.0))), 1e-26) << power;
+    }
+  }
+}
+
+// The problem of Prothero and Robinson, x' = λ (x − cos t) − sin t, x = cos t, and beside it
+// y' = −x y: steps are as long as cos t lets them be, whatever λ.
+TEST(RadauCollocation, TakesStiffProblemsInLongSteps) {
+  for (const double lambda : {-1.0, -1e3, -1e6, -1e9}) {
+    std::vector<Quad> y{1.0, 1.0};
+    RadauCollocation<Quad> method(2);
+    const auto rhs = [&](double t, const Quad* x, Quad* rate) {
+      rate[0] = Quad(lambda) * (x[0] - cos(Quad(t))) - sin(Quad(t));
+      rate[1] = -x[0] * x[1];
+      return true;
+    };
+    const double h = 0.125;
+    for (int i = 0; i < 16; ++i) ASSERT_TRUE(method.step(i * h, h, y, 1e-14, rhs)) << lambda << i;
+    // Stages are at times that are doubles.
+    EXPECT_LT(std::abs(value_of(y[0] - cos(Quad(2.0)))), 1e-14) << lambda;
+    EXPECT_NEAR(value_of(y[1]), std::exp(-std::sin(2.0)), 1e-14) << lambda;
+  }
+}
+
+TEST(RadauCollocation, RefusesAStepTooLong) {
+  std::vector<double> y{1.0};
+  RadauCollocation<double> method(1);
+  const auto fast = [](double t, const double*, double* rate) {
+    rate[0] = std::cos(40 * t);
+    return true;
+  };
+  EXPECT_FALSE(method.step(0, 1.0, y, 1e-12, fast));
   EXPECT_EQ(y[0], 1.0);
   EXPECT_FALSE(method.step(0, 1.0, y, 1e-12, [](double, const double*, double*) { return false; }));
 }
@@ -88,6 +141,48 @@ TEST(OwnReference, AgreesWithThoseOfOthers) {
     const RunResult by_other = run_form(mechanism, start, request);
     EXPECT_LT(by_own.position_error_max, bound) << name;
     EXPECT_NEAR(by_own.position_error_max, by_other.position_error_max, bound) << name;
+  }
+}
+
+/// A pendulum of two rods with a damper between them.
+Scene finger(double damping) {
+  Scene s;
+  s.name = "damped finger";
+  s.gravity = {0, -9.81, 0};
+  s.bodies = {equations::rod("a"), equations::rod("b")};
+  s.joints = {equations::hinge("A", "ground", "a", {0, 0, 0}, 0.5),
+              equations::hinge("B", "a", "b", {1, 0, 0}, 0.2)};
+  s.joints[1].damping = damping;
+  return s;
+}
+
+/// Errors of runs in doubles are the same by either; only a stiff motion is taken implicitly.
+TEST(OwnReference, OfStiffMotionsIsMadeImplicitly) {
+  EXPECT_FALSE(
+      own_reference(Mechanism(finger(0.1)), equations::start_of(Mechanism(finger(0.1))), 1, 10)
+          .implicit);
+  Scene bar = read_scene(example("four_bar", "scene.toml"));
+  bar.bodies.push_back(equations::rod("finger"));
+  bar.joints.push_back(equations::hinge("F", bar.joints.front().child, "finger", {0.2, 0, 0}, 0.2));
+  bar.joints.back().damping = 3000;
+  for (const Scene& scene : {finger(3000), bar}) {
+    const Mechanism mechanism(scene);
+    const Start start = equations::start_of(mechanism);
+    const OwnReference own = own_reference(mechanism, start, 1, 10);
+    EXPECT_TRUE(own.implicit) << scene.name;
+    EXPECT_LT(own.accuracy, 1e-14) << scene.name;
+    EXPECT_NE(in_words(own).find("Radau"), std::string::npos);
+    RunRequest request;
+    request.settings.form = "acceleration";
+    request.settings.project = mechanism.m() > 0;
+    request.settings.rtol = request.settings.atol = 1e-12;
+    request.settings.end_time = 1;
+    request.settings.samples = 10;
+    request.reference = &own.reference;
+    const RunResult tight = run_form(mechanism, start, request);
+    EXPECT_EQ(tight.status, "done") << tight.reason;
+    EXPECT_LT(tight.position_error_max, 1e-10) << scene.name;
+    EXPECT_LT(tight.velocity_error_max, 1e-8) << scene.name;
   }
 }
 

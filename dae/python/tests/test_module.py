@@ -259,6 +259,8 @@ class Arguments(unittest.TestCase):
         self.refused(sentence, m.accelerations, 0.0, q, bad)
         self.refused(sentence, m.energies, 0.0, q, bad)
         self.refused("t is inf, expected a time in seconds", m.constraints, float("inf"), q, bad)
+        self.refused("momentum_rates: leak is -1, expected a rate in 1/s, not negative",
+                     m.momentum_rates, 0.0, q, np.zeros(m.nv), leak=-1.0)
         self.refused("v[1] is not a number, expected a finite number", m.evaluate, v=bad)
 
     def test_evaluate_takes_the_assembled_start(self):
