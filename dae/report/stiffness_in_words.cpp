@@ -11,8 +11,7 @@ namespace {
 std::string implicit_instead(const RunSettings& s) {
   if (needs_one_step_method(s.form)) return "--form momentum --integrator bdf";
   const bool altering = s.gauge == "reset" || s.gauge == "flip";
-  return std::string("--integrator bdf") + (altering ? " --gauge leak" : "") +
-         (s.project ? " --no-project" : "");
+  return std::string("--integrator bdf") + (altering ? " --gauge leak" : "");
 }
 
 }  // namespace

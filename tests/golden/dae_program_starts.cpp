@@ -142,7 +142,6 @@ damping = 3000.0
   for (const auto& [options, choice] :
        {std::pair{"--gauge reset", "--integrator bdf --gauge leak, or a form by ida"},
         std::pair{"--gauge flip", "--integrator bdf --gauge leak, or a form by ida"},
-        std::pair{"--gauge leak --project", "--integrator bdf --no-project, or a form by ida"},
         std::pair{"--form projected", "--form momentum --integrator bdf, or a form by ida"}}) {
     const Outcome o = call(run + options + " --timing none");
     EXPECT_EQ(o.status, 0) << o.err;
@@ -153,8 +152,7 @@ damping = 3000.0
     EXPECT_TRUE(summary["changed_to"].is_null()) << options;
   }
   // What it names is taken.
-  for (const char* options :
-       {"--integrator bdf --gauge leak --no-project", "--form momentum --integrator bdf"})
+  for (const char* options : {"--integrator bdf --gauge leak", "--form momentum --integrator bdf"})
     EXPECT_EQ(call(run + options + " --timing none --quiet").status, 0) << options;
   EXPECT_EQ(json::parse(call("run '" + example("four_bar") + "' --end 1 --timing none --json").out)
                 .at("stiffness"),

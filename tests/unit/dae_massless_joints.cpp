@@ -106,12 +106,12 @@ TEST(MasslessJoints, OpenChainsNameThem) {
   }
 }
 
-/// A mass on its joint's axis is off it by rounding, about any axis; one that is off it by more has
-/// inertia, however little.
+/// A mass on its joint's axis is off it by rounding, about any axis. One that is off it by 1e-6 has
+/// inertia: the moment about the origin, of arms a million times longer, leaves four digits of it.
 TEST(MasslessJoints, AMassOnTheAxisIsToldFromOneBesideIt) {
   RandomTree random(3);
   for (int i = 0; i < 40; ++i)
-    for (const double off : {0.0, 1e-12, 1e-9, 1e-6}) {
+    for (const double off : {0.0, 1e-6}) {
       SCOPED_TRACE(testing::Message() << i << ", " << off);
       const Vector3d axis =
           Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(0.1, 1))
