@@ -8,10 +8,11 @@ namespace momenta::program {
 namespace {
 
 int left_out(const char* verb) {
-  std::fprintf(stderr,
-               "momenta: this program has run, view, drift and make alone; for '%s' build all verbs:"
-               " cmake --build --preset release --target momenta\n",
-               verb);
+  std::fprintf(
+      stderr,
+      "momenta: this program has run, view, drift and make alone; for '%s' build all verbs:"
+      " cmake --build --preset release --target momenta\n",
+      verb);
   return bad_input;
 }
 
