@@ -68,6 +68,7 @@ class _JointKeys(TypedDict, total=False):
     stiffness: float
     rest: float
     damping: float
+    rotor_inertia: float | Sequence[float]
 
 class _LoopKeys(TypedDict, total=False):
     parent: str
