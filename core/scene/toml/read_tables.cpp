@@ -135,6 +135,11 @@ JointSpec read_joint(const Fields& table) {
   only("pitch", JointKind::helical);
   only("axis2", JointKind::universal);
   only("direction", JointKind::planar);
+  if (rotors_of(joint.kind) == 0)
+    table.refuse("rotor_inertia",
+                 "has no meaning for a " + kind +
+                     " joint, expected on revolute, prismatic, helical, cylindrical, "
+                     "universal and planar joints only");
   table.refuse("length", "belongs to a [[loop]] of kind distance, expected none on a joint");
   table.allow({"name", "kind", "parent", "child", "origin", "rotation", "axis", "axis2",
                "direction", "pitch", "position", "velocity", "stiffness", "rest", "damping",
