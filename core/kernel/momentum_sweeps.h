@@ -156,7 +156,7 @@ MOMENTA_INLINE void move_revolute(const Link& l, const Edge& edge, const Revolut
     rate = rate + w.Gx * gy - w.Gy * gx;
   }
   wz = w.y0 - (w.h.fx * vx + w.h.fy * vy + w.h.fz * vz + w.h.nx * ox + w.h.ny * oy);
-  if (l.has_rotor) {
+  if (l.has_rotor) [[unlikely]] {
     rate = rate + rotor_rate(w.h, l.rotor, vx, vy, ox, oy, oz);
     wz = wz + l.rotor * w.inverse * oz;
   }

@@ -71,11 +71,12 @@ MOMENTA_INLINE void carry_rotor(const Edge& e, Spatial::Force<S> k, Articulated<
   m.Izz = m.Izz + 2.0 * (k.n[2] * z[2]);
 }
 
-/// Both: what is left of a revolute joint's rotor, into what arrives at the parent.
+/// Both: what is left of a revolute joint's rotor, into what arrives at the parent. Out of line:
+/// the sweeps that call it keep their registers for joints without rotors.
 template <class Link, class Edge, class S>
-MOMENTA_INLINE void hand_on_rotor(const Link& l, const Edge& e, const RevoluteColumn<S>& h,
-                                  const S& inverse, const S& c, const S& s,
-                                  Articulated<S>& parent) {
+__attribute__((noinline)) void hand_on_rotor(const Link& l, const Edge& e,
+                                             const RevoluteColumn<S>& h, const S& inverse,
+                                             const S& c, const S& s, Articulated<S>& parent) {
   Spatial::Force<S> k = rotor_column(h, l.rotor, inverse);
   turn_rotor(k, c, s, l.d);
   carry_rotor(e, k, parent);
