@@ -138,17 +138,16 @@ std::size_t AccelerationSweeps<Spatial, S>::revolutes_inward(std::size_t end, co
     eliminate_bias(articulated, S(tau[l.u]), inverse, w, r);
     if (l.parent < 0) continue;
     const S c = angles_.cosine(k), s = angles_.sine(k);
-    if (l.has_rotor) w.inverse = inverse, r.nz = tau[l.u] - l.rotor * w.y0;
     turn_revolute(r, c, s, l.d, w);
-    if (!l.has_rotor) {
-      carry_any<false>(l, body(k).edge, r, articulated);
-    } else {
-      Spatial::Force<S> column = rotor_column(h, l.rotor, inverse);
-      turn_rotor(column, c, s, l.d);
-      r.nz = r.nz + rotor_bias(column, w);
-      carry_any<false>(l, body(k).edge, r, articulated);
-      carry_rotor(body(k).edge, column, articulated);
+    Spatial::Force<S> column;
+    if (l.has_rotor) [[unlikely]] {
+      w.inverse = inverse;
+      column = turned_rotor(l, h, inverse, c, s);
+      r.nz = tau[l.u] - l.rotor * w.y0 + rotor_bias(column, w);
     }
+    carry_any<false>(l, body(k).edge, r, articulated);
+    if (l.has_rotor) [[unlikely]]
+      hand_on_rotor(body(k).edge, column, articulated);
     if (!l.first) leave<false>(l, slot_of_parent(l), articulated);
   } while (k > 0 && links[k - 1].path == Path::any && links[k - 1].kind == LinkKind::revolute);
   from = articulated;

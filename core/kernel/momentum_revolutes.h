@@ -159,11 +159,8 @@ std::size_t MomentumSweeps<Spatial, S>::revolutes_inward(std::size_t end, const 
     if (l.has_rotor) r.nz = pk - l.rotor * w.y0;
     turn_revolute<Gravity>(r, c, s, l.d, w);
     carry_any<Gravity>(l, body(k).edge, r, articulated);
-    if (l.has_rotor) [[unlikely]] {
-      Articulated<S> here = articulated;  // whose address is taken
-      hand_on_rotor(l, body(k).edge, w.h, w.inverse, c, s, here);
-      articulated = here;
-    }
+    if (l.has_rotor) [[unlikely]]
+      hand_on_rotor(body(k).edge, turned_rotor(l, w.h, w.inverse, c, s), articulated);
     if (!l.first) leave<Gravity>(l, slot_of_parent(l), articulated);
   } while (k > 0 && links[k - 1].path == Path::any && links[k - 1].kind == LinkKind::revolute);
   from = articulated;

@@ -18,12 +18,15 @@
 
 namespace momenta {
 
-/// k of (47), in the axes of a wrench.
-template <class Inertia, class S>
-MOMENTA_INLINE Spatial::Force<S> rotor_column(const RevoluteColumn<S>& h, const Inertia& rotor,
-                                              const S& inverse) {
-  return {{{rotor * h.fx, rotor * h.fy, rotor * h.fz}},
-          {{rotor * h.nx, rotor * h.ny, 0.5 * rotor * (1.0 - rotor * inverse)}}};
+/// k of (47), in the axes of a wrench, over the joint's own screw.
+template <class Link, class S>
+MOMENTA_INLINE Spatial::Force<S> turned_rotor(const Link& l, const RevoluteColumn<S>& h,
+                                              const S& inverse, const S& c, const S& s) {
+  Spatial::Force<S> k{
+      {{l.rotor * h.fx, l.rotor * h.fy, l.rotor * h.fz}},
+      {{l.rotor * h.nx, l.rotor * h.ny, 0.5 * l.rotor * (1.0 - l.rotor * inverse)}}};
+  Spatial::force_inward<2>(k, c, s, S(l.d));
+  return k;
 }
 
 /// What W_z of the body before the joint's own turning adds to −Eᵀ(Ω × P*) of (35).
@@ -33,20 +36,10 @@ MOMENTA_INLINE S rotor_rate(const RevoluteColumn<S>& h, const Inertia& rotor, co
   return rotor * oz * (vy * h.fx - vx * h.fy + oy * h.nx - ox * h.ny);
 }
 
-/// k over the joint's own screw.
-template <class S, class C>
-MOMENTA_INLINE void turn_rotor(Spatial::Force<S>& k, const S& c, const S& s, const C& d) {
-  S x = c * k.f[0] - s * k.f[1];
-  k.f[1] = s * k.f[0] + c * k.f[1];
-  k.f[0] = x;
-  x = c * k.n[0] - s * k.n[1];
-  k.n[1] = s * k.n[0] + c * k.n[1] + d * k.f[0];
-  k.n[0] = x - d * k.f[1];
-}
-
 /// M_L += k ẑᵀ + ẑ kᵀ over the constant screws to the parent.
 template <class Edge, class S>
-MOMENTA_INLINE void carry_rotor(const Edge& e, Spatial::Force<S> k, Articulated<S>& parent) {
+__attribute__((noinline)) void carry_rotor(const Edge& e, Spatial::Force<S> k,
+                                           Articulated<S>& parent) {
   using Constant = std::decay_t<decltype(e.cos_alpha)>;
   Spatial::constants_inward(e, k);
   Vec3<Constant> z{{Constant(0.0), Constant(0.0), Constant(1.0)}};
@@ -71,15 +64,14 @@ MOMENTA_INLINE void carry_rotor(const Edge& e, Spatial::Force<S> k, Articulated<
   m.Izz = m.Izz + 2.0 * (k.n[2] * z[2]);
 }
 
-/// Both: what is left of a revolute joint's rotor, into what arrives at the parent. Out of line:
-/// the sweeps that call it keep their registers for joints without rotors.
-template <class Link, class Edge, class S>
-__attribute__((noinline)) void hand_on_rotor(const Link& l, const Edge& e,
-                                             const RevoluteColumn<S>& h, const S& inverse,
-                                             const S& c, const S& s, Articulated<S>& parent) {
-  Spatial::Force<S> k = rotor_column(h, l.rotor, inverse);
-  turn_rotor(k, c, s, l.d);
-  carry_rotor(e, k, parent);
+/// The same out of line and on a copy: the sweeps that call it keep their registers for joints
+/// without rotors.
+template <class Edge, class S>
+MOMENTA_INLINE void hand_on_rotor(const Edge& e, const Spatial::Force<S>& k,
+                                  Articulated<S>& parent) {
+  Articulated<S> here = parent;
+  carry_rotor(e, k, here);
+  parent = here;
 }
 
 }  // namespace momenta

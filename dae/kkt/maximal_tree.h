@@ -16,11 +16,11 @@
 // direction (a thin rod about itself, the cross of a universal joint) has no Cholesky factor: SᵀΣS
 // is added to its A, which changes y by Σ S 𝒯ⱽ a_parent and no motion, so that Σ is taken off again
 // on the way to the parent. A joint that moves nothing by itself hands on A and f as they are.
+// Source: Baraff, Linear-time dynamics using Lagrange multipliers, SIGGRAPH 1996.
 //
-// A rotor's inertia I_r (rotor.h) is a row of S that gives way, u = S_d (a − 𝒯ⱽ a_parent) = y_d /
-// I_r: YᵀY + diag(0, 1/I_r) = R Rᵀ, and h has one more number, g_d / (R_dd √I_r) with g = B L⁻¹ f,
-// for the energy of u. Source: Baraff, Linear-time dynamics using Lagrange multipliers, SIGGRAPH
-// 1996.
+// A rotor's inertia I_r (rotor.h) is a row of S that gives way, u = S_d (a − 𝒯ⱽ a_parent) =
+// y_d/I_r: YᵀY + diag(0, 1/I_r) = R Rᵀ, and h has one more number, g_d / (R_dd √I_r) with g = B L⁻¹
+// f, for the energy of u.
 
 #include <momenta/core/kernel/sweeps.h>
 #include <momenta/dae/kkt/inertia_blocks.h>

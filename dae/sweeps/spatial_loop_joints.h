@@ -107,10 +107,7 @@ bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::revolute_inward(std::size_t k, 
   left.Gy = sine * left.Gx + cosine * left.Gy;
   left.Gx = x;
   Force column;
-  if (l.has_rotor) {
-    column = rotor_column(w.h, l.rotor, inverse);
-    turn_rotor(column, cosine, sine, l.d);
-  }
+  if (l.has_rotor) column = turned_rotor(l, w.h, inverse, cosine, sine);
   if constexpr (!Momentum) {
     // D' += M'c
     const Reduced<S>& M = left.M;
@@ -120,11 +117,11 @@ bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::revolute_inward(std::size_t k, 
     left.fz += M.Axz * v[0] + M.Ayz * v[1] + M.Azz * v[2] + M.Hzx * n[0] + M.Hzy * n[1];
     left.nx += M.Hxx * v[0] + M.Hyx * v[1] + M.Hzx * v[2] + M.Ixx * n[0] + M.Ixy * n[1];
     left.ny += M.Hxy * v[0] + M.Hyy * v[1] + M.Hzy * v[2] + M.Ixy * n[0] + M.Iyy * n[1];
-    if (l.has_rotor) left.nz += dot(column.f, v) + column.n[0] * n[0] + column.n[1] * n[1];
+    if (l.has_rotor) left.nz += Spatial::power(column, w.c);
     if (l.parent < 0) return true;
   }
   carry_any<Momentum>(l, edge, left, m);
-  if (l.has_rotor) carry_rotor(edge, column, m);
+  if (l.has_rotor) hand_on_rotor(edge, column, m);
   return true;
 }
 

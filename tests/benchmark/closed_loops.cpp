@@ -12,6 +12,7 @@
 #include "equations/linkages.h"
 #include "equations/quad_loops.h"
 #include "models.h"
+#include "nanoseconds.h"
 
 namespace momenta {
 namespace {
@@ -60,9 +61,7 @@ struct States16 {
 };
 
 void finish(benchmark::State& state, double evaluations) {
-  state.counters["ns_per_evaluation"] =
-      benchmark::Counter(static_cast<double>(state.iterations()) * evaluations * 1e-9,
-                         benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+  benchmark_models::count_nanoseconds(state, "ns_per_evaluation", evaluations);
 }
 
 double error(const Eigen::VectorXd& x, const Eigen::VectorXd& exact) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "models.h"
+#include "nanoseconds.h"
 
 namespace momenta {
 namespace {
@@ -47,9 +48,7 @@ struct States64 {
 };
 
 void finish(benchmark::State& state, double bodies) {
-  state.counters["ns_per_body"] =
-      benchmark::Counter(static_cast<double>(state.iterations()) * bodies * 1e-9,
-                         benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+  benchmark_models::count_nanoseconds(state, "ns_per_body", bodies);
 }
 
 enum class Algorithm { momentum, acceleration };

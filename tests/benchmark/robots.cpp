@@ -13,6 +13,8 @@
 #include <filesystem>
 #include <set>
 
+#include "nanoseconds.h"
+
 namespace momenta {
 namespace {
 
@@ -20,9 +22,7 @@ namespace fs = std::filesystem;
 
 void finish(benchmark::State& state, const std::string& label) {
   state.SetLabel(label);
-  state.counters["ns_per_evaluation"] =
-      benchmark::Counter(static_cast<double>(state.iterations()) * 1e-9,
-                         benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+  benchmark_models::count_nanoseconds(state, "ns_per_evaluation", 1);
 }
 
 void time_tree(benchmark::State& state, const Scene& scene, bool momentum) {

@@ -114,17 +114,16 @@ bool BranchAccelerations<S>::sweep_inward() {
     w.h = h;
     eliminate_bias(articulated, tau_[k], inverse, w, r);
     const S c = branches_.cosine(k), s = branches_.sine(k);
-    if (l.has_rotor) w.inverse = inverse, r.nz = tau_[k] - l.rotor * w.y0;
     turn_revolute(r, c, s, l.d, w);
-    if (!l.has_rotor) {
-      carry_any<false>(l, l.edge, r, articulated);
-    } else {
-      Spatial::Force<S> column = rotor_column(h, l.rotor, inverse);
-      turn_rotor(column, c, s, l.d);
-      r.nz = r.nz + rotor_bias(column, w);
-      carry_any<false>(l, l.edge, r, articulated);
-      carry_rotor(l.edge, column, articulated);
+    Spatial::Force<S> column;
+    if (l.has_rotor) [[unlikely]] {
+      w.inverse = inverse;
+      column = turned_rotor(l, h, inverse, c, s);
+      r.nz = tau_[k] - l.rotor * w.y0 + rotor_bias(column, w);
     }
+    carry_any<false>(l, l.edge, r, articulated);
+    if (l.has_rotor) [[unlikely]]
+      hand_on_rotor(l.edge, column, articulated);
     if (!l.first && !l.root)
       leave<false>(l, slots_[static_cast<std::size_t>(l.parent_slot)], articulated);
   }

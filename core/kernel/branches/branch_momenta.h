@@ -81,7 +81,8 @@ bool BranchMomenta<S>::sweep_inward() {
     if (l.has_rotor) r.nz = p_[k] - l.rotor * w.y0;
     turn_revolute<Gravity>(r, c, s, l.d, w);
     carry_any<Gravity>(l, l.edge, r, articulated);
-    if (l.has_rotor) hand_on_rotor(l, l.edge, w.h, w.inverse, c, s, articulated);
+    if (l.has_rotor) [[unlikely]]
+      hand_on_rotor(l.edge, turned_rotor(l, w.h, w.inverse, c, s), articulated);
     if (!l.first && !l.root)
       leave<Gravity>(l, slots_[static_cast<std::size_t>(l.parent_slot)], articulated);
   }
