@@ -3,6 +3,7 @@
 #include <momenta/dae/cut/fold_welds.h>
 #include <momenta/dae/cut/merged_body.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <optional>
 #include <set>
@@ -11,20 +12,46 @@
 namespace momenta {
 namespace {
 
+using Eigen::Matrix3d;
 using Eigen::Vector3d;
+
+constexpr double rounding = 1e-14;
 
 /// Whether the centre of mass is on the axis of the joint, but for rounding.
 bool balanced(const JointSpec& joint, const BodySpec& body) {
-  constexpr double rounding = 1e-14;
   const double across = joint.axis.normalized().cross(body.com - joint.origin_child).norm();
   return body.mass == 0 || across <= rounding * (body.com.norm() + joint.origin_child.norm());
 }
 
-/// A coupler by which one joint follows another: q = ratio q' + offset.
+/// Whether the body's inertia is the same however it is turned about the joint, but for rounding.
+bool symmetric(const JointSpec& joint, const BodySpec& body) {
+  const Vector3d a = joint.axis.normalized(), x = perpendicular_to(a), y = a.cross(x);
+  const Matrix3d& I = body.inertia;
+  const double most = std::max({std::abs(a.dot(I * x)), std::abs(a.dot(I * y)),
+                                std::abs(x.dot(I * y)), std::abs(x.dot(I * x) - y.dot(I * y))});
+  return most <= rounding * I.trace();
+}
+
+/// The axis of the joint in axes of its parent.
+Vector3d axis_in_parent(const JointSpec& joint) {
+  return joint.rotation.normalized() * joint.axis.normalized();
+}
+
+/// Whether a coordinate of a joint is all its child turns by, about its axis.
+bool turns_about_axis(const JointSpec& joint, int coordinate) {
+  return joint.kind == JointKind::revolute || joint.kind == JointKind::helical ||
+         (joint.kind == JointKind::cylindrical && coordinate == 1) ||
+         (joint.kind == JointKind::planar && coordinate == 2);
+}
+
+/// A coupler by which one joint follows another, q = ratio q' + offset, and K of (*).
 struct Gear {
   std::size_t coupler = 0, leader = 0;
   int coordinate = 0;  ///< of the leader
   double ratio = 0, offset = 0;
+  double shifted = 0;         ///< K [kg m²]
+  std::string to = "ground";  ///< the other body of the leader
+  Vector3d axis = Vector3d::Zero(), axis_there = Vector3d::Zero();  ///< in axes of B, of the other
 };
 
 class RotorFold {
@@ -61,8 +88,9 @@ class RotorFold {
     while (!pending.empty()) {
       const std::size_t joint = pending.back();
       pending.pop_back();
-      const auto gear = gear_of(joint);
-      if (!gear || !can_take(gear->leader, joint, gear->ratio)) continue;
+      auto gear = gear_of(joint);
+      if (!gear || !can_shift(joint, *gear) || !can_take(gear->leader, joint, gear->ratio))
+        continue;
       take(joint, *gear);
       pending.push_back(gear->leader);  // in one coupler less, it may be a rotor's itself
     }
@@ -97,7 +125,7 @@ class RotorFold {
   std::optional<Gear> gear_of(std::size_t i) {
     const JointSpec& j = joint(i);
     if (j.kind != JointKind::revolute || couplers_[i].size() != 1 || tied_.contains(j.child) ||
-        driven_.contains(j.name) || turns(j.parent) || !balanced(j, body(j.child)))
+        driven_.contains(j.name) || !balanced(j, body(j.child)))
       return std::nullopt;
     const std::size_t coupler = couplers_[i].front();
     const LoopSpec& loop = result_.scene.loops[coupler];
@@ -113,6 +141,52 @@ class RotorFold {
     return gear;
   }
 
+  /// Finds K; false where the rotor's carrier turns and what (*) asks for is not there.
+  bool can_shift(std::size_t i, Gear& gear) {
+    const JointSpec &j = joint(i), &leader = joint(gear.leader);
+    const BodySpec& rotor = body(j.child);
+    if (!turns(j.parent)) return true;
+    constexpr double parallel = 1e-12;
+    const bool outer = leader.child == j.parent;
+    if ((!outer && leader.parent != j.parent) || !symmetric(j, rotor) ||
+        !turns_about_axis(leader, gear.coordinate))
+      return false;
+    gear.to = outer ? leader.parent : leader.child;
+    gear.axis = axis_in_parent(j);
+    const Vector3d inner_axis = axis_in_parent(leader), outer_axis = leader.axis.normalized();
+    gear.axis_there = outer ? inner_axis : outer_axis;
+    const Vector3d& other = outer ? outer_axis : inner_axis;
+    if (gear.axis.cross(other).norm() > parallel) return false;
+    const double sense = (gear.axis.dot(other) > 0 ? 1 : -1) * (outer ? -1 : 1);
+    gear.shifted = sense * gear.ratio * axial(j, rotor);
+    // the rate's own share, and what remains of the inertia of the body that gives
+    if (sense * gear.ratio > 0 && sense * gear.ratio < 1) return false;
+    if (gear.shifted > 0)
+      return is_inertia(carrier_of(i).inertia - moment(gear.shifted, gear.axis));
+    return gear.to == "ground" ||
+           is_inertia(body(gear.to).inertia + moment(gear.shifted, gear.axis_there));
+  }
+
+  static double axial(const JointSpec& joint, const BodySpec& rotor) {
+    const Vector3d axis = joint.axis.normalized();
+    return axis.dot(rotor.inertia * axis);
+  }
+  static Matrix3d moment(double about, const Vector3d& axis) {
+    return about * axis * axis.transpose();
+  }
+  static bool is_inertia(const Matrix3d& m) {
+    const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(m, Eigen::EigenvaluesOnly);
+    return solver.eigenvalues()[0] >= -rounding * solver.eigenvalues()[2];
+  }
+
+  /// The body that carries a rotor, with the rotor fixed to it as at angle zero.
+  BodySpec carrier_of(std::size_t i) {
+    const JointSpec& j = joint(i);
+    const Eigen::Quaterniond turn = j.rotation.normalized();
+    return merged_body(body(j.parent), body(j.child), turn,
+                       j.origin_parent - turn * j.origin_child);
+  }
+
   /// Whether the leader can take the forces along the rotor's joint.
   bool can_take(std::size_t leader, std::size_t i, double ratio) {
     const JointSpec &j = joint(i), &l = joint(leader);
@@ -126,17 +200,17 @@ class RotorFold {
     JointSpec &j = joint(i), &leader = joint(gear.leader);
     const BodySpec& rotor = body(j.child);
     const double squared = gear.ratio * gear.ratio;
-    const Vector3d axis = j.axis.normalized();
-    const double moment = axis.dot(rotor.inertia * axis);
+    const double own = axial(j, rotor);
+    const double armature = j.rotor_inertia.empty() ? 0 : j.rotor_inertia[0];
     leader.rotor_inertia.resize(rotors_of(leader.kind));
     leader.rotor_inertia[static_cast<std::size_t>(gear.coordinate)] +=
-        (moment + (j.rotor_inertia.empty() ? 0 : j.rotor_inertia[0])) * squared;
+        std::max(own * squared - gear.shifted, 0.0) + armature * squared;
     leader.damping += j.damping * squared;
     if (j.stiffness != 0) {
-      const double own = leader.stiffness, taken = j.stiffness * squared;
+      const double before = leader.stiffness, taken = j.stiffness * squared;
       leader.stiffness += taken;
       leader.rest =
-          (own * leader.rest + taken * (j.rest - gear.offset) / gear.ratio) / leader.stiffness;
+          (before * leader.rest + taken * (j.rest - gear.offset) / gear.ratio) / leader.stiffness;
     }
     for (const std::size_t k : torques_[i]) {
       ForceSpec& torque = result_.scene.forces[k];
@@ -145,11 +219,10 @@ class RotorFold {
       torques_[gear.leader].push_back(k);
     }
     if (j.parent != "ground") {
-      // as at angle zero: its mass is on the axis, and what carries it does not turn
-      const Eigen::Quaterniond turn = j.rotation.normalized();
-      BodySpec& carrier = body(j.parent);
-      carrier = merged_body(carrier, rotor, turn, j.origin_parent - turn * j.origin_child);
+      body(j.parent) = carrier_of(i);
+      shift(body(j.parent), -gear.shifted, gear.axis);
     }
+    if (gear.to != "ground") shift(body(gear.to), gear.shifted, gear.axis_there);
     if (leaders_.contains(j.name))
       for (FollowingJoint& f : result_.following)
         if (f.leader == j.name) follow(f, leader, gear);
@@ -158,13 +231,19 @@ class RotorFold {
     following.joint = j.name;
     following.body = rotor.name;
     following.ratio = 1;
-    following.inertia = moment;
+    following.inertia = own;
     follow(following, leader, gear);
     result_.following.push_back(following);
     std::erase(couplers_[gear.leader], gear.coupler);
     couplers_[i].clear();
     gone_.insert({j.name, result_.scene.loops[gear.coupler].name});
     gone_bodies_.insert(rotor.name);
+  }
+
+  static void shift(BodySpec& body, double about, const Vector3d& axis) {
+    if (about == 0) return;
+    body.inertia += moment(about, axis);
+    body.any_inertia = true;
   }
 
   /// What followed a joint that follows by `gear` follows its leader.

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 #include <momenta/core/open_chain.h>
 #include <momenta/core/scene/drive.h>
+#include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/cut/fold_rotors.h>
 #include <momenta/dae/cut/fold_welds.h>
@@ -61,14 +62,17 @@ std::vector<int> rates_of_in(const Mechanism& one, const Mechanism& other) {
   return all;
 }
 
-/// The scene that starts where it is assembled; nothing where it is near a singular pose.
-std::optional<Scene> started(const Scene& scene) {
+/// The scene that starts where it is assembled; nothing where it is near a singular pose, or its
+/// drives ask for what loops do not let them.
+std::optional<Scene> started(const Scene& scene) try {
   const Mechanism mechanism(scene);
   const Assembly a = assemble(mechanism);
   if (a.kept > 0 && a.kept < 1e-3) return std::nullopt;
   Scene s = scene;
   s.joints = joints_at(mechanism, a.start);
   return s;
+} catch (const SceneError&) {
+  return std::nullopt;
 }
 
 double largest(const VectorXd& x) {
@@ -231,11 +235,7 @@ TEST(Fold, LoopsOfWeldedBodiesHoldTheirCarriers) {
         for (const std::string& joint : c.joints) any_driven |= d.joint == joint;
       if (!any_driven) scene.loops.push_back(c);
     }
-    std::optional<Scene> written;
-    try {
-      written = started(scene);
-    } catch (const SceneError&) {
-    }
+    const auto written = started(scene);
     if (!written) continue;
     const FoldedScene folded = fold_welds(*written);
     if (!folded.folds()) continue;
@@ -388,6 +388,105 @@ TEST(Fold, WheelsBehindGearsAreNumbersOnJoints) {
   EXPECT_GT(rotors, 200);
 }
 
+/// A wheel on one of the two bodies of a joint, about its axis or against it, that a gear turns
+/// with its angle.
+void add_rotor(RandomTree& random, Scene& scene, const std::string& name, const JointSpec& leader,
+               int coordinate, const std::string& carrier) {
+  const bool outer = carrier == leader.child;
+  add_wheel(random, scene, name, carrier);
+  BodySpec& wheel = scene.bodies.back();
+  JointSpec& pin = scene.joints.back();
+  const Vector3d axis = outer ? leader.axis : leader.rotation * leader.axis;
+  const double sense = random.chance(0.5) ? 1 : -1;
+  pin.rotation = Quaterniond::FromTwoVectors(pin.axis, sense * axis);
+  pin.rotation.normalize();
+  const double along = random.uniform(0.0005, 0.002), across = random.uniform(0.5, 2) * along;
+  wheel.inertia =
+      across * Matrix3d::Identity() + (along - across) * pin.axis * pin.axis.transpose();
+  wheel.mass *= 0.2;
+  add_gear(random, scene, leader.name, coordinate, pin.name);
+  LoopSpec& gear = scene.loops.back();
+  gear.ratios[gear.joints[0] == pin.name ? 1 : 0] *= 3;
+}
+
+/// What turns, and about one axis, in trees in the plane or in space; loops in half of them.
+TEST(Fold, RotorsOnBodiesThatTurnAreMomentsOfBothBodies) {
+  int rotors = 0, all = 0, looped = 0, spatial = 0;
+  for (unsigned seed = 0; seed < 240; ++seed) {
+    RandomTree random(5000 + seed);
+    const bool flat = seed % 3 == 0;
+    const TreeRecipe recipe{.bodies = 5, .rotors = false};
+    Scene scene = flat ? random.planar_scene(recipe) : random.scene(recipe);
+    const Mechanism open(scene);
+    Start start;
+    const TreeState state = random.state(open.tree());
+    start.q = state.q;
+    start.u = state.u;
+    scene.joints = joints_at(open, start);
+    if (seed % 2 == 0)
+      scene.loops.push_back(closed_loop(random, scene, LoopKind::distance, poses_of(scene)));
+    int wheels = 0;
+    const std::vector<JointSpec> leaders = scene.joints;
+    for (const JointSpec& leader : leaders) {
+      const bool turns = leader.kind == JointKind::revolute || leader.kind == JointKind::helical ||
+                         leader.kind == JointKind::cylindrical || leader.kind == JointKind::planar;
+      if (!turns) continue;
+      const int coordinate = rates_of(leader.kind) - 1;
+      for (int k = random.below(3); k > 0; --k, ++wheels)
+        add_rotor(random, scene, "rotor" + std::to_string(wheels), leader, coordinate,
+                  random.chance(0.5) ? leader.parent : leader.child);
+    }
+    if (wheels == 0) continue;
+    const auto written = started(marked(scene));
+    if (!written) continue;
+    const FoldedScene folded = fold_rotors(*written);
+    all += wheels;
+    rotors += static_cast<int>(folded.following.size());
+    if (!folded.folds()) continue;
+    looped += folded.scene.loops.size() == 1;
+    bool driven = false;
+    for (const FollowingJoint& f : folded.following)
+      for (const DriveSpec& d : scene.drives)
+        driven |= d.joint == f.leader && d.coordinate == f.coordinate;
+    expect_alike(*written, folded.scene, false, !driven, seed);
+    EXPECT_EQ(Mechanism(folded.scene).plan().planar, Mechanism(*written).plan().planar) << seed;
+    spatial += !Mechanism(folded.scene).plan().planar;
+    if (HasFailure()) break;
+  }
+  // ratios between 0 and 1, and moments that bodies do not have, stay
+  EXPECT_GT(rotors, all / 2);
+  EXPECT_GT(rotors, 200);
+  EXPECT_GT(looped, 30);
+  EXPECT_GT(spatial, 80);
+}
+
+TEST(Fold, RobotsLoseTheirRotorsAndFrames) {
+  const std::filesystem::path models =
+      std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples" / "models";
+  struct Robot {
+    const char* file;
+    std::size_t bodies, rotors;
+  };
+  for (const Robot& robot :
+       {Robot{"urdfplus/mini_cheetah.urdf", 13, 12},
+        Robot{"urdfplus/revolute_rotor_chain.urdf", 3, 3}, Robot{"panda_urdf/panda.urdf", 9, 0}}) {
+    RandomTree random(7);
+    Scene scene = read_scene(models / robot.file);
+    const Mechanism open(scene);
+    const TreeState state = random.state(open.tree());
+    Start start;
+    start.q = state.q;
+    start.u = state.u;
+    scene.joints = joints_at(open, start);
+    const auto written = started(marked(scene));
+    ASSERT_TRUE(written) << robot.file;
+    const FoldedScene folded = fold(*written);
+    EXPECT_EQ(folded.scene.bodies.size(), robot.bodies) << robot.file;
+    EXPECT_EQ(folded.following.size(), robot.rotors) << robot.file;
+    expect_alike(*written, folded.scene, false, true, 0);
+  }
+}
+
 /// A hinged link, and a wheel on the ground that a gear turns with it.
 Scene link_and_wheel() {
   Scene scene;
@@ -430,7 +529,6 @@ TEST(Fold, WhatIsNoRotorStays) {
   stays("its weight works", [](Scene& s) { s.bodies[1].com = {0, 1e-9, 0}; });
   stays("it has a child", [](Scene& s) { s.joints[0].parent = "wheel"; });
   stays("a slide", [](Scene& s) { s.joints[1].kind = JointKind::prismatic; });
-  stays("on what turns", [](Scene& s) { s.joints[1].parent = "link"; });
   stays("a loop on it", [](Scene& s) {
     LoopSpec tie;
     tie.name = "tie";
@@ -470,6 +568,50 @@ TEST(Fold, WhatIsNoRotorStays) {
     s.joints[0].stiffness = -9;
     s.joints[1].stiffness = 1;
   });
+}
+
+TEST(Fold, WhatIsNoRotorOnABodyThatTurnsStays) {
+  Scene scene = link_and_wheel();
+  scene.joints[1].parent = "link";
+  scene.bodies[0].inertia.setIdentity();
+  const auto folds = [](const Scene& s) { return fold_rotors(s).following.size() == 1; };
+  const auto with_ratio = [&](double ratio) {
+    Scene s = scene;
+    s.loops[0].ratios = {ratio, -1};
+    return s;
+  };
+  // fixed to the link it would turn with it already: (1 + ρ)² J
+  const FoldedScene folded = fold_rotors(scene);
+  ASSERT_EQ(folded.scene.joints.size(), 1U);
+  EXPECT_DOUBLE_EQ(
+      folded.scene.joints[0].rotor_inertia.at(0) + folded.scene.bodies[0].inertia(2, 2),
+      1 + 16 * 0.02 + 0.5 * 0.25);
+  EXPECT_TRUE(folds(with_ratio(-3)));
+  EXPECT_FALSE(folds(with_ratio(-0.5)));  // faster than fixed to the ground, not than to the link
+  EXPECT_TRUE(folds(with_ratio(-1)));
+  Scene other = with_ratio(-3);
+  other.bodies[1].inertia *= 100;  // takes more moments than the link has
+  EXPECT_FALSE(folds(other));
+  other = scene;
+  other.bodies[1].inertia(0, 0) = 0.03;  // another one however it is turned
+  EXPECT_FALSE(folds(other));
+  other = scene;
+  other.joints[1].axis = {0, 0.6, 0.8};
+  EXPECT_FALSE(folds(other));
+  other = scene;
+  other.joints[0].kind = JointKind::universal;  // not all the link turns by
+  EXPECT_FALSE(folds(other));
+  // behind a joint of other bodies
+  other = scene;
+  other.bodies.push_back(other.bodies[0]);
+  other.bodies.back().name = "tip";
+  other.joints.push_back(other.joints[0]);
+  other.joints.back().name = other.joints.back().child = "tip";
+  other.joints.back().parent = "link";
+  other.loops[0].joints[0] = "tip";
+  EXPECT_TRUE(folds(other));
+  other.joints.back().parent = "ground";
+  EXPECT_FALSE(folds(other));
 }
 
 TEST(Fold, WeldsAloneStayAndWordsTellTheOthers) {
