@@ -76,13 +76,13 @@ Sayings::Sayings(const Scene& scene, const std::vector<std::string>& keep)
                        ", to be kept, is not in the scene");
 }
 
-std::optional<JointSpec> joint_of(const LoopSpec& loop, const Mechanism& mechanism,
-                                  const BodyMotions& bodies, double length) {
-  const auto kind = as_joint(loop.kind, mechanism.plan().planar);
-  if (!kind) return std::nullopt;
+namespace {
+
+/// A joint of this kind in the place of a loop.
+JointSpec with_frames_of(const LoopSpec& loop, JointKind kind) {
   JointSpec joint;
   joint.name = loop.name;
-  joint.kind = *kind;
+  joint.kind = kind;
   joint.parent = loop.parent;
   joint.child = loop.child;
   joint.origin_parent = loop.origin_parent;
@@ -91,6 +91,16 @@ std::optional<JointSpec> joint_of(const LoopSpec& loop, const Mechanism& mechani
   joint.axis = loop.axis;
   joint.axis2 = loop.axis2;
   joint.direction = loop.direction;
+  return joint;
+}
+
+}  // namespace
+
+std::optional<JointSpec> joint_of(const LoopSpec& loop, const Mechanism& mechanism,
+                                  const BodyMotions& bodies, double length) {
+  const auto kind = as_joint(loop.kind, mechanism.plan().planar);
+  if (!kind) return std::nullopt;
+  JointSpec joint = with_frames_of(loop, *kind);
   const BodyMotion &parent = bodies.of(loop.parent), &child = bodies.of(loop.child);
   if (*kind == JointKind::revolute && loop.kind != LoopKind::revolute)
     joint.axis = (parent.pose.linear() * loop.rotation.toRotationMatrix()).transpose() *
@@ -117,6 +127,20 @@ LoopSpec loop_of(const JointSpec& joint) {
   loop.axis2 = joint.axis2;
   loop.direction = joint.direction;
   return loop;
+}
+
+LoopSpec turned_round(const LoopSpec& loop) {
+  LoopSpec turned = loop;
+  std::swap(turned.parent, turned.child);
+  std::swap(turned.origin_parent, turned.origin_child);
+  const auto kind = as_joint(loop.kind, false);
+  if (!kind) return turned;
+  const JointSpec joint = turned_round(with_frames_of(loop, *kind));
+  turned.rotation = joint.rotation;
+  turned.axis = joint.axis;
+  turned.axis2 = joint.axis2;
+  turned.direction = joint.direction;
+  return turned;
 }
 
 std::vector<JointSpec> joints_at(const Mechanism& mechanism, const Start& start) {

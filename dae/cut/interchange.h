@@ -32,6 +32,8 @@ struct Sayings {
 std::optional<JointSpec> joint_of(const LoopSpec& loop, const Mechanism& mechanism,
                                   const BodyMotions& bodies, double length);
 LoopSpec loop_of(const JointSpec& joint);
+/// The same loop seen from its child. @pre not driven, no coupler
+LoopSpec turned_round(const LoopSpec& loop);
 
 /// The joints of the scene with the q and u of the start.
 std::vector<JointSpec> joints_at(const Mechanism& mechanism, const Start& start);

@@ -1,4 +1,6 @@
 #include <momenta/dae/assembly/assembly.h>
+#include <momenta/dae/cut/fold_rotors.h>
+#include <momenta/dae/cut/interchange.h>
 #include <momenta/dae/cut/swept_scene.h>
 
 namespace momenta {
@@ -20,24 +22,32 @@ bool pays(const Mechanism& written, const Recut& cuts) {
 
 SweptScene::SweptScene(const Mechanism& written, const Start& start)
     : written_(written), written_start_(start) {
+  folded_.scene = written.scene();
   const MechanismOptions& options = written.options();
   if (options.cut == CutChoice::scene || options.kkt == KktChoice::dense ||
-      options.kkt == KktChoice::sparse || written.m() == 0)
+      options.kkt == KktChoice::sparse)
     return;
-  Recut found = recut(written, start);
-  if (!found.gains() || !pays(written, found)) return;
+  Scene there = written.scene();
+  there.joints = joints_at(written, start);
+  FoldedScene folded = fold(there);
+  if (folded.folds() && take(folded.scene)) folded_ = std::move(folded);
+  Recut found = recut(mechanism(), this->start());
+  if (found.gains() && pays(mechanism(), found) && take(found.scene)) cuts_ = std::move(found);
+}
+
+bool SweptScene::take(Scene scene) {
   try {
-    auto mechanism = std::make_unique<Mechanism>(found.scene, options);
+    auto mechanism = std::make_unique<Mechanism>(std::move(scene), written_.options());
     const Tree& tree = mechanism->tree();
-    Assembly assembly = assemble(*mechanism, start.t, tree.q0, tree.u0);
+    Assembly assembly = assemble(*mechanism, written_start_.t, tree.q0, tree.u0);
     // Where equations contradict each other the pose is that of least squares, another one.
     constexpr double same_pose = 1e-9;
-    if (assembly.moved > same_pose) return;
+    if (assembly.moved > same_pose) return false;
     start_ = std::move(assembly.start);
     mechanism_ = std::move(mechanism);
-    cuts_ = std::move(found);
+    return true;
   } catch (const SceneError&) {
-    return;  // what cannot start so is swept as it is written
+    return false;  // what cannot start so is swept as it is written
   }
 }
 

@@ -1,7 +1,8 @@
 #pragma once
 // Coordinates and rates of the scene as written, from those of the scene that is swept. A joint
 // that is one in both scenes has the same numbers there, in other places. A joint that was cut has
-// those of the motion of its two bodies (relative_motion.h); what its equations leave open, the
+// those of the motion of its two bodies (relative_motion.h), and one that was folded away those of
+// the joint it follows (folded_scene.h); what its equations leave open, the
 // drift of the swept scene, then shows at the loops of the scene as written. Angles are known but
 // for whole turns: of them that one is taken which is nearest to
 //
@@ -11,6 +12,7 @@
 // before.
 
 #include <momenta/dae/cut/body_motions.h>
+#include <momenta/dae/cut/folded_scene.h>
 #include <momenta/dae/solver/memory.h>
 
 #include <memory>
@@ -21,9 +23,10 @@ namespace momenta {
 /// One object serves one thread and one run.
 class WrittenMotion {
  public:
-  /// `start` of the mechanism as written, from which angles are counted. The mechanisms need not
-  /// outlive it.
-  WrittenMotion(const Mechanism& written, const Start& start, const Mechanism& swept);
+  /// `start` of the mechanism as written, from which angles are counted. `folded`: its scene, with
+  /// the joints as they were before others were cut. Nothing of all that need outlive it.
+  WrittenMotion(const Mechanism& written, const Start& start, const FoldedScene& folded,
+                const Mechanism& swept);
 
   /// q (nq), u (nv) of the scene as written, from those of the swept scene. O(bodies)
   void read(double t, const Eigen::VectorXd& swept_q, const Eigen::VectorXd& swept_u,
@@ -37,6 +40,11 @@ class WrittenMotion {
   struct Copied {
     int from, to, count;
   };
+  /// q = ratio q' + offset.
+  struct Following {
+    int q, u, leader_q, leader_u;
+    double ratio, offset;
+  };
   /// A part of a joint, with its places in q and u and in JointMotion.
   struct Part {
     int q, nq, u, nv, coordinate;
@@ -46,13 +54,15 @@ class WrittenMotion {
     JointSpec joint;
     std::vector<Part> parts;
   };
-  static void take_coordinates(const Part& part, const JointMotion& motion, Eigen::VectorXd& q);
-  /// Whole turns and signs; `rates`: by which q changed since the time before.
-  void take_turns(const Part& part, const Eigen::VectorXd& rates, double t,
-                  Eigen::VectorXd& q) const;
+  /// All q, and the rates of joints that were cut. @pre the bodies are where they are at t
+  void take_all(double t, const Eigen::VectorXd& swept_q, Eigen::VectorXd* u,
+                Eigen::VectorXd& q) const;
+  /// Whole turns and signs; `rate`: of an angle since the time before.
+  void take_turns(const Part& part, double t, double rate, Eigen::VectorXd& q) const;
 
   std::vector<Copied> copied_q_, copied_u_;
   std::vector<Cut> cut_;
+  std::vector<Following> following_;
   std::unique_ptr<BodyMotions> bodies_;  ///< null: no joint was cut
   double last_t_;
   Eigen::VectorXd last_q_, last_u_;

@@ -2,6 +2,7 @@
 // every form, as the run that cuts what the scene cuts.
 
 #include "equations/large_scenes.h"
+#include "equations/linkages.h"
 #include "equations/recut.h"
 
 #include <gtest/gtest.h>
@@ -24,11 +25,56 @@ Scene example(const std::string& name) {
   return read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples" / name / "scene.toml");
 }
 
-/// An example of hinges, written with another joint cut.
-Scene badly_cut(const std::string& name, const std::string& cut, const std::string& joined) {
-  const Mechanism mechanism(example(name));
-  return equations::recut(mechanism.scene(), mechanism.tree(), assemble(mechanism).start.q, cut,
-                          joined);
+/// A scene of hinges, with other joints cut: {made a loop, made a joint}, one after the other.
+Scene written_otherwise(Scene scene,
+                        const std::vector<std::pair<std::string, std::string>>& exchanged) {
+  for (const auto& [cut, joined] : exchanged) {
+    const Mechanism mechanism(scene);
+    scene = equations::recut(scene, mechanism.tree(), assemble(mechanism).start.q, cut, joined);
+  }
+  return scene;
+}
+
+/// A row of four-bars as one chain of rods with loops to the ground.
+Scene chained_row(int n) {
+  std::vector<std::pair<std::string, std::string>> exchanged;
+  for (int i = 1; i <= n; ++i)
+    exchanged.push_back({"O" + std::to_string(i), "C" + std::to_string(i - 1)});
+  return written_otherwise(row_of_four_bars(n, 1.1), exchanged);
+}
+
+/// Crossed bars, cut at the pins in their middle.
+Scene bars_cut_in_the_middle(int n) {
+  std::vector<std::pair<std::string, std::string>> exchanged;
+  for (int i = 1; i < n; ++i)
+    exchanged.push_back({"B" + std::to_string(i), "C" + std::to_string(i)});
+  return written_otherwise(crossed_bars(n), exchanged);
+}
+
+/// A four-bar whose rocker has a weight welded to it and whose crank turns a wheel.
+Scene geared_four_bar() {
+  Scene s = example("four_bar");
+  s.joints.front().velocity = {3};
+  BodySpec weight = rod("weight", 0.2), wheel = rod("wheel", 0.3);
+  wheel.com.setZero();
+  s.bodies.insert(s.bodies.begin(), weight);
+  s.bodies.push_back(wheel);
+  JointSpec held;
+  held.name = "held";
+  held.kind = JointKind::weld;
+  held.parent = "rocker";
+  held.child = "weight";
+  held.origin_parent = {0.5, 0.2, 0};
+  s.joints.push_back(held);
+  s.joints.push_back(hinge("shaft", "ground", "wheel", {-1, 0, 0}, 0.3));
+  LoopSpec gear;
+  gear.name = "gear";
+  gear.kind = LoopKind::coupler;
+  gear.joints = {"shaft", "O"};
+  gear.ratios = {1, 4};
+  gear.offset = 0.3 + 4 * s.joints.front().position.at(0);
+  s.loops.push_back(gear);
+  return s;
 }
 
 RunResult run_of(const Mechanism& mechanism, const Start& start, const std::string& form,
@@ -66,9 +112,10 @@ struct Case {
 };
 std::vector<Case> cases() {
   return {{arch(20), 1},
-          {badly_cut("andrews", "F", "E2"), 0.02},
-          {badly_cut("andrews", "A5", "E4"), 0.02},
-          {badly_cut("andrews", "H", "E6"), 0.02}};
+          {chained_row(5), 1},
+          {bars_cut_in_the_middle(4), 0.5},
+          {geared_four_bar(), 5},
+          {written_otherwise(example("andrews"), {{"F", "E2"}}), 0.02}};
 }
 
 TEST(SweptScene, RunsReportTheSceneAsWritten) {
@@ -82,18 +129,25 @@ TEST(SweptScene, RunsReportTheSceneAsWritten) {
       expect_same(run_of(chosen, start, form, end, 1e-10), run_of(kept, start, form, end, 1e-10),
                   form == "stabilised-index2" ? 1e-4 : 1e-6, 1e-7, scene.name + " " + form);
   }
-  EXPECT_GE(anew, 2);
+  EXPECT_EQ(anew, 4);  // of Andrews' the gain is too small
 }
 
 /// An angle is counted in whole turns, as an integrated one is.
 TEST(SweptScene, AnglesOfCutJointsCountTurns) {
-  const Mechanism written(badly_cut("four_bar", "A", "B")), swept(example("four_bar"));
+  Scene spinning = example("four_bar");
+  spinning.gravity.setZero();
+  spinning.joints[0].velocity = {9};
+  Scene other = written_otherwise(spinning, {{"A", "B"}});
+  for (JointSpec& joint : other.joints)
+    if (joint.name == "O") joint.velocity = {9};
+  other.held = {"O"};
+  const Mechanism swept(spinning), written(other);
   const Start start = assemble(written).start;
   const Assembly a = assemble(swept);
-  WrittenMotion motion(written, start, swept);
+  WrittenMotion motion(written, start, {written.scene(), {}, {}}, swept);
   RunRequest request;
   request.settings = default_settings({}, "projected", "", 1e-10);
-  request.settings.end_time = 30;
+  request.settings.end_time = 10;
   request.settings.samples = 40;
   request.keep_trajectory = true;
   const RunResult by_itself = run_form(written, start, request),
@@ -124,7 +178,7 @@ TEST(SweptScene, TheStartIsTheSceneS) {
     const Start start = assemble(written).start;
     const SweptScene swept(written, start);
     if (!swept.anew()) continue;
-    WrittenMotion motion(written, start, swept.mechanism());
+    WrittenMotion motion(written, start, swept.folded(), swept.mechanism());
     VectorXd q, u;
     motion.read(start.t, swept.start().q, swept.start().u, q, u);
     EXPECT_LT((q - start.q).lpNorm<Eigen::Infinity>(), 1e-9) << scene.name;
