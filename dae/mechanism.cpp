@@ -58,6 +58,7 @@ Tree open_or_closed(const Scene& scene) {
 
 Mechanism::Mechanism(Scene scene, MechanismOptions options)
     : scene_(std::move(scene)),
+      options_(options),
       tree_(open_or_closed(scene_)),
       plan_(plan_with_loops(tree_, scene_, options.algebra)),
       casts_(std::make_unique<Casts>()) {

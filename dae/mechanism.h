@@ -30,10 +30,17 @@ enum class KktChoice {
 /// The name that `--kkt` takes.
 const char* name_of(KktChoice choice);
 
+/// Which joints runs cut (dae/cut/swept_scene.h).
+enum class CutChoice {
+  automatic,  ///< those with the least work found
+  scene       ///< those of the scene
+};
+
 /// Options that a scene does not contain.
 struct MechanismOptions {
   Algebra algebra = Algebra::automatic;  ///< which kernel
   KktChoice kkt = KktChoice::automatic;  ///< how (7) is solved
+  CutChoice cut = CutChoice::automatic;           ///< which joints runs cut
 };
 
 /// A column of trajectory.csv.
@@ -54,12 +61,13 @@ class Mechanism {
   Mechanism(const Mechanism&) = delete;
   Mechanism& operator=(const Mechanism&) = delete;
 
-  const Scene& scene() const { return scene_; }  ///< as given
-  const Tree& tree() const { return tree_; }     ///< bodies in the order of the sweeps
-  const Plan& plan() const { return plan_; }     ///< what evaluations compute and leave out
-  int nq() const { return tree_.nq; }            ///< coordinates
-  int nv() const { return tree_.nv; }            ///< rates, momenta
-  int m() const { return rows_; }                ///< loop equations
+  const Scene& scene() const { return scene_; }                 ///< as given
+  const MechanismOptions& options() const { return options_; }  ///< as given
+  const Tree& tree() const { return tree_; }  ///< bodies in the order of the sweeps
+  const Plan& plan() const { return plan_; }  ///< what evaluations compute and leave out
+  int nq() const { return tree_.nq; }         ///< coordinates
+  int nv() const { return tree_.nv; }         ///< rates, momenta
+  int m() const { return rows_; }             ///< loop equations
   /// How (7) is solved where there are loops; never `automatic`.
   KktChoice kkt() const { return kkt_; }
   /// Whether an assembled matrix is dense, where one is needed.
@@ -149,6 +157,7 @@ class Mechanism {
   class SweepEvaluation;
 
   Scene scene_;
+  MechanismOptions options_;
   Tree tree_;
   Plan plan_;
   std::unique_ptr<Casts> casts_;  ///< mechanism_inside.h

@@ -1,4 +1,3 @@
-#include <momenta/core/poses.h>
 #include <momenta/core/scene/near_name.h>
 #include <momenta/dae/cut/interchange.h>
 
@@ -75,47 +74,6 @@ Sayings::Sayings(const Scene& scene, const std::vector<std::string>& keep)
     if (!known.contains(name))
       throw SceneError(scene.where({}) + "joint or loop " + reading::in_quotes(name) +
                        ", to be kept, is not in the scene");
-}
-
-BodyMotions::BodyMotions(const Mechanism& mechanism, const Start& start) {
-  Scene open = mechanism.scene();
-  open.loops.clear();
-  open.markers.clear();
-  std::erase_if(open.drives, [](const DriveSpec& drive) { return !drive.loop.empty(); });
-  // Of four points of a body, one from its origin along each axis, velocities give v and ω.
-  for (const BodySpec& body : open.bodies)
-    for (int i = 0; i < 4; ++i) {
-      MarkerSpec marker;
-      marker.name = body.name + " " + std::to_string(i);
-      marker.body = body.name;
-      if (i < 3) marker.point[i] = 1;
-      open.markers.push_back(marker);
-    }
-  const Mechanism tree(open);
-  const auto poses = Poses(open)(start.t, start.q.data());
-  const auto e = tree.evaluation<double>();
-  e->place(start.t, start.q.data());
-  e->move(start.u.data());
-  std::vector<double> values(6 * open.markers.size());
-  e->markers(values.data());
-  motion_["ground"] = {};
-  for (std::size_t i = 0; i < open.bodies.size(); ++i) {
-    const std::string& name = open.bodies[i].name;
-    const auto velocity = [&](std::size_t point) {
-      const double* at = values.data() + 6 * (4 * i + point) + 3;
-      return Eigen::Vector3d(at[0], at[1], at[2]);
-    };
-    BodyMotion m;
-    m.pose = poses[static_cast<std::size_t>(mechanism.tree().body(name))];
-    m.v = velocity(3);
-    Eigen::Vector3d omega = Eigen::Vector3d::Zero();
-    for (int k = 0; k < 3; ++k) {
-      const Eigen::Vector3d axis = m.pose.linear().col(k);
-      omega += 0.5 * axis.cross(Eigen::Vector3d(velocity(static_cast<std::size_t>(k)) - m.v));
-    }
-    m.omega = omega;
-    motion_[name] = m;
-  }
 }
 
 namespace {

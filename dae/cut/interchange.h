@@ -2,13 +2,11 @@
 // Joints and loops in each other's place: which kind of loop a joint would be and the other way
 // round, where its bodies stand then, and what of a scene is said of coordinates that would go.
 
-#include <momenta/dae/cut/relative_motion.h>
-#include <momenta/dae/form/form.h>
+#include <momenta/dae/cut/body_motions.h>
 
 #include <optional>
 #include <set>
 #include <string>
-#include <unordered_map>
 #include <vector>
 
 namespace momenta {
@@ -27,16 +25,6 @@ struct Sayings {
 
   /// @throws SceneError where `keep` names neither a joint nor a loop
   Sayings(const Scene& scene, const std::vector<std::string>& keep);
-};
-
-/// The motion of bodies at the start, by their names.
-class BodyMotions {
- public:
-  BodyMotions(const Mechanism& mechanism, const Start& start);
-  const BodyMotion& of(const std::string& body) const { return motion_.at(body); }
-
- private:
-  std::unordered_map<std::string, BodyMotion> motion_;
 };
 
 /// The joint that a loop would be; nothing where it is none or its bodies do not stand like that.

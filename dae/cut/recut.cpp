@@ -183,14 +183,14 @@ Recut recut(const Mechanism& mechanism, const Start& start, const std::vector<st
       Cycles cycles(graph.vertices(), std::move(first));
       cycles.balance(cycles.descend(most_effort));
       if (cycles.edges() == graph.edges) break;
-      if (!bodies) bodies.emplace(mechanism, start);
+      if (!bodies) bodies.emplace(mechanism).take(start.t, start.q, start.u);
       Recut found;
       found.before = best.before;
       found.scene = mechanism.scene();
       obstacle = rebuild(mechanism, start, graph, cycles.edges(), said, *bodies, found);
       if (obstacle >= 0) graph.edges[static_cast<std::size_t>(obstacle)].fixed = true;
       if (obstacle != none) continue;
-      const Mechanism anew(found.scene);
+      const Mechanism anew(found.scene, {mechanism.options().algebra});
       found.after = cut_cost(anew);
       const bool as_well_carried = anew.kkt() == mechanism.kkt() || anew.kkt() == KktChoice::sweeps;
       if (as_well_carried && better(found.after, best.after)) best = std::move(found);

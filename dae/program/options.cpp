@@ -57,6 +57,8 @@ void add_scene(CLI::App& verb, Options& o) {
          {"auto", "planar", "spatial"});
   one_of(verb.add_option("--kkt", o.kkt, "Solver of the loop equations (default: auto)"),
          {"auto", "sweeps", "sparse", "dense"});
+  one_of(verb.add_option("--cut", o.cut, "Joints that runs cut (default: auto, the least work)"),
+         {"auto", "scene"});
   add_level(verb, o);
   verb.add_flag("--json", o.json, "One JSON document on standard output");
   verb.add_flag("--quiet", o.quiet, "No progress, no table");
@@ -131,6 +133,7 @@ MechanismOptions mechanism_options(const Options& o) {
                 : o.kkt == "sweeps" ? KktChoice::sweeps
                 : o.kkt == "sparse" ? KktChoice::sparse
                                     : KktChoice::automatic;
+  options.cut = o.cut == "scene" ? CutChoice::scene : CutChoice::automatic;
   return options;
 }
 

@@ -25,7 +25,7 @@ struct Options {
   std::filesystem::path scene;
   ReadOptions reading;  ///< what a URDF does not say
   std::string at;       ///< start values in place of the scene's; empty: its own
-  std::string algebra = "auto", kkt = "auto";
+  std::string algebra = "auto", kkt = "auto", cut = "auto";
   std::string level;  ///< of the kernels; empty: the machine's best, or MOMENTA_LEVEL
   std::string form = "momentum", integrator, gauge;
   double rtol = 1e-8;

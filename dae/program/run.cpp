@@ -140,8 +140,10 @@ int run(const Options& o) {
   const auto mechanism = load(o);
   const auto reference = load_reference(o, *mechanism);
   const Assembly a = assemble(*mechanism);
+  const SweptScene swept(*mechanism, a.start);
   RunRequest request;
   request.settings = run_settings(o, mechanism->scene().run);
+  request.swept = &swept;
   const RunSettings& s = request.settings;
   request.reference = reference.get();
   request.keep_trajectory = true;
@@ -166,7 +168,7 @@ int run(const Options& o) {
   RunResult& result = study.runs.front();
   if (!files.flush()) result.status = "failed";
   if (!interrupted())
-    time_runs(*mechanism, a.start, study.runs,
+    time_runs(swept.mechanism(), swept.start(), study.runs,
               {timing_named(o.timing), 3, nullptr, {}, request.going_on});
   line.show("");
   study.reference = o.reference.string();

@@ -84,6 +84,7 @@ std::vector<RunSettings> plan_runs(const Mechanism& mechanism, const DriftReques
 std::vector<RunResult> run_drift_study(const Mechanism& mechanism, const Start& start,
                                        const DriftRequest& request) {
   const auto runs = plan_runs(mechanism, request);
+  const SweptScene swept(mechanism, start);
   const int total = static_cast<int>(runs.size());
   std::vector<RunResult> results(runs.size());
   std::vector<char> there(runs.size(), 0);
@@ -104,6 +105,7 @@ std::vector<RunResult> run_drift_study(const Mechanism& mechanism, const Start& 
     if (!result) {
       RunRequest run;
       run.settings = runs[i];
+      run.swept = &swept;
       run.reference = request.reference;
       run.max_cpu_seconds = request.max_cpu_seconds;
       run.film_intervals = request.film_intervals;
@@ -125,7 +127,7 @@ std::vector<RunResult> run_drift_study(const Mechanism& mechanism, const Start& 
     }
   results.resize(kept);
   if (going)
-    time_runs(mechanism, start, results,
+    time_runs(swept.mechanism(), swept.start(), results,
               {request.timing,
                0.8,
                request.journal,

@@ -63,12 +63,16 @@ void expect_start(const Mechanism& mechanism, const Start& s) {
   }
 }
 
+LoopRank rank_at(const Mechanism& mechanism, const Start& start) {
+  const auto e = mechanism.evaluation<double>();
+  e->place(start.t, start.q.data());
+  return loop_rank(mechanism, *e);
+}
+
 /// Rank, redundant rows and residue at the start.
 void judge_rank(const Mechanism& mechanism, const Start& start, RunResult& result) {
   if (mechanism.m() == 0) return;
-  const auto e = mechanism.evaluation<double>();
-  e->place(start.t, start.q.data());
-  const LoopRank loops = loop_rank(mechanism, *e);
+  const LoopRank loops = rank_at(mechanism, start);
   result.rank = loops.rank;
   for (const int row : loops.dependent) {
     const RowName& name = mechanism.rows()[static_cast<std::size_t>(row)];
@@ -115,9 +119,12 @@ RunResult run_form(const Mechanism& mechanism, const Start& start, const RunRequ
   RunResult result;
   result.scene = mechanism.scene().name;
   result.settings = request.settings;
+  std::optional<SweptScene> chosen;
+  const SweptScene& swept = request.swept ? *request.swept : chosen.emplace(mechanism, start);
+  const Mechanism& integrated = swept.mechanism();
   std::optional<FormRunner> made;
   try {
-    made.emplace(mechanism, start, result.settings, request.max_cpu_seconds);
+    made.emplace(integrated, swept.start(), result.settings, request.max_cpu_seconds);
   } catch (const NoStateAtStart& none) {
     result.status = "failed";
     result.reason = none.what();
@@ -132,12 +139,15 @@ RunResult run_form(const Mechanism& mechanism, const Start& start, const RunRequ
   if (from) result = from->so_far;
   const double wall_start = wall_now() - (from ? result.wall_s : 0),
                cpu_start = thread_seconds() - (from ? result.cpu_s : 0);
-  RunMonitor monitor(mechanism, runner.form(), start, request, result);
-  const auto y0 = runner.form().initial(start);
+  RunMonitor monitor(mechanism, swept, runner.form(), start, request, result);
+  const auto y0 = runner.form().initial(swept.start());
   if (!from) monitor.sample(start.t, y0.data(), nullptr);
   auto* ode = dynamic_cast<OdeForm*>(&runner.form());
-  std::vector<long> faded(static_cast<std::size_t>(mechanism.m()));
-  if (ode && mechanism.m() > 0) ode->watch_faded(&faded, mechanism.m() - result.rank);
+  std::vector<long> faded(static_cast<std::size_t>(integrated.m()));
+  if (ode && integrated.m() > 0) {
+    const int rank = swept.anew() ? rank_at(integrated, swept.start()).rank : result.rank;
+    ode->watch_faded(&faded, integrated.m() - rank);
+  }
   const std::vector<double> times = output_times(result.settings, request.reference, reach);
   Observer observer{
       [&](double t, const double* y, const double* ydot) { return monitor.sample(t, y, ydot); },
@@ -190,7 +200,7 @@ RunResult run_form(const Mechanism& mechanism, const Start& start, const RunRequ
   for (std::size_t row = 0; row < faded.size(); ++row)
     if (faded[row] > 0)
       result.faded_rows.push_back(
-          {mechanism.rows()[row].loop, mechanism.rows()[row].what, faded[row]});
+          {integrated.rows()[row].loop, integrated.rows()[row].what, faded[row]});
   if (ode) result.weak_evaluations = ode->weak_evaluations();
   monitor.finish();
   return result;

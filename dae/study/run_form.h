@@ -2,6 +2,7 @@
 // A run: a form, an integrator, and everything measured during the integration.
 
 #include <momenta/dae/assembly/assembly.h>
+#include <momenta/dae/cut/swept_scene.h>
 #include <momenta/dae/measure/reference.h>
 #include <momenta/dae/study/run_result.h>
 
@@ -19,7 +20,9 @@ struct Checkpoint {
 
 /// The request for one run: its settings, what it keeps, and the functions it calls.
 struct RunRequest {
-  RunSettings settings;                  ///< form, integrator, tolerances, times
+  RunSettings settings;  ///< form, integrator, tolerances, times
+  /// Which joints the run cuts, of the same mechanism and start; null: chosen for this run.
+  const SweptScene* swept = nullptr;
   const Reference* reference = nullptr;  ///< bound to trajectory_columns(mechanism)
   bool keep_trajectory = false;          ///< RunResult::trajectory is filled
   int keep_every = 1;                    ///< keep every n-th row, from the first
@@ -45,10 +48,10 @@ struct RunRequest {
 /// Columns of trajectory.csv: t, q, u, markers, energy, drifts, loop forces.
 std::vector<std::string> trajectory_columns(const Mechanism& mechanism);
 
-/// Runs once and measures at every sample. A failure is in the result: status, reason and all
-/// samples up to it. cpu_s includes the measuring. @throws std::invalid_argument for settings that
-/// are not finite or do not fit together, and for a start of wrong size or with numbers that are
-/// not finite.
+/// Runs once and measures at every sample; all that is measured is of the scene as written,
+/// whatever joints the run cuts. A failure is in the result: status, reason and all samples up to
+/// it. cpu_s includes the measuring. @throws std::invalid_argument for settings that are not finite
+/// or do not fit together, and for a start of wrong size or with numbers that are not finite.
 RunResult run_form(const Mechanism& mechanism, const Start& start, const RunRequest& request);
 
 /// The sentence for a run that passed an ambiguous singular pose at time t [s].
@@ -60,8 +63,9 @@ struct TimedRun {
   double wall_s = not_measured;  ///< elapsed time of it [s]
   Counters counters;             ///< without the work of measuring
 };
-/// Times a run without measuring. `settings`: those of a run that is done. `at_step` is called
-/// after each step; return false to end the run.
+/// Times a run without measuring, of a mechanism as it is written: to time one of run_form(), give
+/// SweptScene::mechanism() and start(). `settings`: those of a run that is done. `at_step` is
+/// called after each step; return false to end the run.
 TimedRun time_run(const Mechanism& mechanism, const Start& start, RunSettings settings,
                   const std::function<bool()>& at_step = {});
 

@@ -1,7 +1,10 @@
 #pragma once
 // The run monitor: measures drift, energy, errors and faded rows along a run, at the output times
-// and between the steps. Only run_form.cpp uses it.
+// and between the steps: those of the scene as written, whatever joints the run cuts. Only
+// run_form.cpp uses it.
 
+#include <momenta/dae/cut/swept_scene.h>
+#include <momenta/dae/cut/written_motion.h>
 #include <momenta/dae/measure/growth.h>
 #include <momenta/dae/measure/multipliers.h>
 #include <momenta/dae/study/apart.h>
@@ -31,8 +34,8 @@ inline Drift drift_of(const Mechanism& mechanism, const Eigen::VectorXd& x) {
 /// Looks at states of a form: drifts, energy, errors.
 class RunMonitor {
  public:
-  RunMonitor(const Mechanism& mechanism, Form& form, const Start& start, const RunRequest& request,
-             RunResult& result)
+  RunMonitor(const Mechanism& mechanism, const SweptScene& swept, Form& form, const Start& start,
+             const RunRequest& request, RunResult& result)
       : mechanism_(mechanism),
         form_(form),
         request_(request),
@@ -52,17 +55,24 @@ class RunMonitor {
       solver_ = make_loop_solver(mechanism, *e_);
       unique_.emplace(mechanism, *e_, *solver_);
       all_unique_.assign(static_cast<std::size_t>(mechanism.m()), true);
-      if (mechanism.kkt() == KktChoice::sweeps || filters_pivots(mechanism))
-        singular_crossings_.emplace(mechanism, form, *e_, *solver_, result);
     }
+    if (swept.anew()) {
+      written_.emplace(mechanism, start, swept.mechanism());
+      of_form_.q.resize(swept.mechanism().nq());
+      swept_e_ = swept.mechanism().evaluation<double>();
+      swept_solver_ = make_loop_solver(swept.mechanism(), *swept_e_);
+    }
+    const Mechanism& followed = swept.mechanism();
+    if (followed.m() > 0 && (followed.kkt() == KktChoice::sweeps || filters_pivots(followed)))
+      singular_crossings_.emplace(followed, form, written_ ? *swept_e_ : *e_,
+                                  written_ ? *swept_solver_ : *solver_, result);
   }
 
   bool sample(double t, const double* y, const double* ydot) {
-    if (!form_.read(t, y, ydot, now_)) {
+    if (!read(t, y, ydot)) {
       trouble_ = "at t = " + std::to_string(t) + " s the velocities cannot be read back";
       return false;
     }
-    mechanism_.tree().normalise(now_.q);  // interpolants leave |q| off by the tolerance
     e_->place(t, now_.q.data());
     e_->positions(phi_.data());
     const Drift position = drift_of(mechanism_, beyond_residue());
@@ -122,7 +132,7 @@ class RunMonitor {
     const double middle = 0.5 * (t0 + t1);
     if (mechanism_.m() > 0) {
       between(middle, state_.data());
-      if (!form_.read_coordinates(middle, state_.data(), middle_)) return true;
+      if (!read_coordinates(middle)) return true;
       e_->place(middle, middle_.data());
       e_->positions(phi_.data());
       const Drift drift = drift_of(mechanism_, beyond_residue());
@@ -135,7 +145,7 @@ class RunMonitor {
     if (singular_crossings_) singular_crossings_->step(t0, t1, between, state_);
     if (dissipated_energy_.any() && !dissipated_energy_.step(t0, t1, [&](double t, double& watts) {
           between(t, state_.data());
-          if (!form_.read(t, state_.data(), nullptr, now_)) return false;
+          if (!read(t, state_.data(), nullptr)) return false;
           e_->place(t, now_.q.data());
           e_->move(now_.u.data());
           watts = e_->dissipated_power(now_.u.data());
@@ -146,11 +156,14 @@ class RunMonitor {
   }
 
   /// Whether what is looked at does not depend on what was looked at before.
-  bool can_be_put_down() const { return !solver_ || !solver_->remembers(); }
+  bool can_be_put_down() const {
+    return (!solver_ || !solver_->remembers()) && (!swept_solver_ || !swept_solver_->remembers());
+  }
   /// Between two steps; beside what is in the result.
   void carry(Memory& memory) {
     dissipated_energy_.carry(memory);
     if (singular_crossings_) singular_crossings_->carry(memory);
+    if (written_) written_->carry(memory);
     memory(energy_at_start_), memory(potential_at_start_);
     memory(between_.lengths), memory(between_.angles), memory(fastest_);
     memory(compared_), memory(rows_);
@@ -210,6 +223,24 @@ class RunMonitor {
   const Closed& last_closed() const { return closed_; }
 
  private:
+  /// The state as `now_`, with unit quaternions: interpolants leave them off by the tolerance.
+  bool read(double t, const double* y, const double* ydot) {
+    Snapshot& of_form = written_ ? of_form_ : now_;
+    if (!form_.read(t, y, ydot, of_form)) return false;
+    if (written_) {
+      written_->read(t, of_form.q, of_form.u, now_.q, now_.u);
+      now_.multipliers = of_form.multipliers;
+    }
+    mechanism_.tree().normalise(now_.q);
+    return true;
+  }
+  /// The coordinates alone, of `state_`, as `middle_`.
+  bool read_coordinates(double t) {
+    Eigen::VectorXd& of_form = written_ ? of_form_.q : middle_;
+    if (!form_.read_coordinates(t, state_.data(), of_form)) return false;
+    if (written_) written_->read_coordinates(t, of_form, middle_);
+    return true;
+  }
   /// Φ less what the start leaves open.
   const Eigen::VectorXd& beyond_residue() {
     if (residue_.size() == 0) return phi_;
@@ -231,7 +262,7 @@ class RunMonitor {
       const double t = film.start + film.every * static_cast<double>(film.frames.size());
       if (t > t1 + rounding) return;
       between(std::min(t, t1), state_.data());
-      if (!form_.read_coordinates(t, state_.data(), middle_)) return;
+      if (!read_coordinates(t)) return;
       mechanism_.tree().normalise(middle_);
       film.frames.emplace_back(middle_.begin(), middle_.end());
     }
@@ -308,6 +339,10 @@ class RunMonitor {
   RunResult& result_;
   std::unique_ptr<Evaluation<double>> e_;
   std::unique_ptr<LoopSolver> solver_;
+  std::optional<WrittenMotion> written_;  ///< where the run cuts other joints than the scene
+  std::unique_ptr<Evaluation<double>> swept_e_;
+  std::unique_ptr<LoopSolver> swept_solver_;
+  Snapshot of_form_;  ///< of the swept scene
   std::optional<UniqueMultipliers> unique_;
   std::vector<bool> all_unique_;
   bool lengths_, both_;      ///< rows in m; and others in rad

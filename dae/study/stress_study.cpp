@@ -38,6 +38,7 @@ std::string power_of_ten(double x) {
 struct Ground {
   std::unique_ptr<Mechanism> mechanism;
   Start start;
+  std::unique_ptr<SweptScene> swept;
   std::unique_ptr<Reference> reference;
   double accuracy = not_measured;
   double length = 1, mass = 1;

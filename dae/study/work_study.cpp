@@ -60,6 +60,7 @@ std::vector<RunSettings> plan_ladders(const Mechanism& mechanism, const WorkRequ
 std::vector<RunResult> run_work_study(const Mechanism& mechanism, const Start& start,
                                       const WorkRequest& request) {
   auto ladders = plan_ladders(mechanism, request);
+  const SweptScene swept(mechanism, start);
   std::vector<RunResult> results;
   bool going = true;
   for (std::size_t i = 0; i < ladders.size() && going; ++i) {
@@ -71,6 +72,7 @@ std::vector<RunResult> run_work_study(const Mechanism& mechanism, const Start& s
     for (const double rung : fixed ? request.steps : request.tolerances) {
       RunRequest run;
       run.settings = ladders[i];
+      run.swept = &swept;
       (fixed ? run.settings.step : run.settings.rtol) = rung;
       if (!fixed) run.settings.atol = rung;
       run.reference = request.reference;
@@ -100,7 +102,7 @@ std::vector<RunResult> run_work_study(const Mechanism& mechanism, const Start& s
                      ladder(mechanism, request, ladders[i].form, "bdf"));
   }
   if (going)
-    time_runs(mechanism, start, results,
+    time_runs(swept.mechanism(), swept.start(), results,
               {request.timing,
                1,
                request.journal,

@@ -1,0 +1,46 @@
+#pragma once
+// What runs integrate in place of a mechanism as it is written: the same mechanism without bodies
+// that have no coordinate of their own (fold_welds.h, fold_rotors.h), and with joints cut where
+// that is less work (recut.h). What is reported is of the scene as written (written_motion.h).
+//
+// An evaluation by sweeps costs about c₀ a body and c₁ for each of the squared numbers of equations
+// that are open at it, J in all (cycles.h), with c₀ / c₁ about 8 in the plane and 30 in space.
+// Other cuts are taken where they are a tenth of that cheaper, where the sweeps carry loops that
+// they cannot carry as written, or where the tree becomes so much shallower at next to the same
+// work that rounding adds up less.
+
+#include <momenta/dae/cut/folded_scene.h>
+#include <momenta/dae/cut/recut.h>
+
+#include <memory>
+#include <string>
+
+namespace momenta {
+
+class SweptScene {
+ public:
+  /// Folds and chooses the cuts, unless the mechanism's options keep those of the scene or ask for
+  /// an assembled matrix. `written` and `start` must outlive it. Cost: recut().
+  SweptScene(const Mechanism& written, const Start& start);
+
+  const Mechanism& mechanism() const { return mechanism_ ? *mechanism_ : written_; }
+  const Start& start() const { return mechanism_ ? start_ : written_start_; }
+  /// Whether it is another scene than the one written.
+  bool anew() const { return mechanism_ != nullptr; }
+  /// What was folded; its scene is the one written where nothing was.
+  const FoldedScene& folded() const { return folded_; }
+  /// Which joints of it are cut in place of others; gains() is false where none are.
+  const Recut& cuts() const { return cuts_; }
+
+ private:
+  const Mechanism& written_;
+  const Start& written_start_;
+  bool take(Scene scene);
+
+  FoldedScene folded_;
+  Recut cuts_;
+  std::unique_ptr<Mechanism> mechanism_;
+  Start start_;
+};
+
+}  // namespace momenta

@@ -1,0 +1,72 @@
+#pragma once
+// Coordinates and rates of the scene as written, from those of the scene that is swept. A joint
+// that is one in both scenes has the same numbers there, in other places. A joint that was cut has
+// those of the motion of its two bodies (relative_motion.h), and one that was folded away those of
+// the joint it follows (folded_scene.h); what its equations leave open, the
+// drift of the swept scene, then shows at the loops of the scene as written. Angles are known but
+// for whole turns: of them that one is taken which is nearest to
+//
+//   q(t₀) + (t − t₀) (u(t₀) + u(t)) / 2
+//
+// with t₀ the time before at which rates were read; of unit quaternions the sign nearest to the one
+// before.
+
+#include <momenta/dae/cut/body_motions.h>
+#include <momenta/dae/cut/folded_scene.h>
+#include <momenta/dae/solver/memory.h>
+
+#include <memory>
+#include <vector>
+
+namespace momenta {
+
+/// One object serves one thread and one run.
+class WrittenMotion {
+ public:
+  /// `start` of the mechanism as written, from which angles are counted. `folded`: its scene, with
+  /// the joints as they were before others were cut. Nothing of all that need outlive it.
+  WrittenMotion(const Mechanism& written, const Start& start, const FoldedScene& folded,
+                const Mechanism& swept);
+
+  /// q (nq), u (nv) of the scene as written, from those of the swept scene. O(bodies)
+  void read(double t, const Eigen::VectorXd& swept_q, const Eigen::VectorXd& swept_u,
+            Eigen::VectorXd& q, Eigen::VectorXd& u);
+  /// q alone.
+  void read_coordinates(double t, const Eigen::VectorXd& swept_q, Eigen::VectorXd& q);
+  /// The time before.
+  void carry(Memory& memory);
+
+ private:
+  struct Copied {
+    int from, to, count;
+  };
+  /// q = ratio q' + offset.
+  struct Following {
+    int q, u, leader_q, leader_u;
+    double ratio, offset;
+  };
+  /// A part of a joint, with its places in q and u and in JointMotion.
+  struct Part {
+    int q, nq, u, nv, coordinate;
+    JointKind kind;
+  };
+  struct Cut {
+    JointSpec joint;
+    std::vector<Part> parts;
+  };
+  /// All q, and the rates of joints that were cut. @pre the bodies are where they are at t
+  void take_all(double t, const Eigen::VectorXd& swept_q, Eigen::VectorXd* u,
+                Eigen::VectorXd& q) const;
+  /// Whole turns and signs; `rate`: of an angle since the time before.
+  void take_turns(const Part& part, double t, double rate, Eigen::VectorXd& q) const;
+
+  std::vector<Copied> copied_q_, copied_u_;
+  std::vector<Cut> cut_;
+  std::vector<Following> following_;
+  std::unique_ptr<BodyMotions> bodies_;  ///< null: no joint was cut
+  double last_t_;
+  Eigen::VectorXd last_q_, last_u_;
+  Eigen::VectorXd at_rest_;  ///< rates of the swept scene, all zero
+};
+
+}  // namespace momenta

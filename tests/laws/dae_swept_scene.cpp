@@ -1,0 +1,190 @@
+// A run that cuts other joints than the scene reports the scene as it is written: every column, in
+// every form, as the run that cuts what the scene cuts.
+
+#include "equations/large_scenes.h"
+#include "equations/linkages.h"
+#include "equations/recut.h"
+
+#include <gtest/gtest.h>
+#include <momenta/core/scene/files/read_scene.h>
+#include <momenta/dae/assembly/assembly.h>
+#include <momenta/dae/cut/swept_scene.h>
+#include <momenta/dae/cut/written_motion.h>
+#include <momenta/dae/study/run_form.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace momenta::dae_swept_scene {
+namespace {
+
+using namespace equations;
+using Eigen::VectorXd;
+
+Scene example(const std::string& name) {
+  return read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples" / name / "scene.toml");
+}
+
+/// A scene of hinges, with other joints cut: {made a loop, made a joint}, one after the other.
+Scene written_otherwise(Scene scene,
+                        const std::vector<std::pair<std::string, std::string>>& exchanged) {
+  for (const auto& [cut, joined] : exchanged) {
+    const Mechanism mechanism(scene);
+    scene = equations::recut(scene, mechanism.tree(), assemble(mechanism).start.q, cut, joined);
+  }
+  return scene;
+}
+
+/// A row of four-bars as one chain of rods with loops to the ground.
+Scene chained_row(int n) {
+  std::vector<std::pair<std::string, std::string>> exchanged;
+  for (int i = 1; i <= n; ++i)
+    exchanged.push_back({"O" + std::to_string(i), "C" + std::to_string(i - 1)});
+  return written_otherwise(row_of_four_bars(n, 1.1), exchanged);
+}
+
+/// Crossed bars, cut at the pins in their middle.
+Scene bars_cut_in_the_middle(int n) {
+  std::vector<std::pair<std::string, std::string>> exchanged;
+  for (int i = 1; i < n; ++i)
+    exchanged.push_back({"B" + std::to_string(i), "C" + std::to_string(i)});
+  return written_otherwise(crossed_bars(n), exchanged);
+}
+
+/// A four-bar whose rocker has a weight welded to it and whose crank turns a wheel.
+Scene geared_four_bar() {
+  Scene s = example("four_bar");
+  s.joints.front().velocity = {3};
+  BodySpec weight = rod("weight", 0.2), wheel = rod("wheel", 0.3);
+  wheel.com.setZero();
+  s.bodies.insert(s.bodies.begin(), weight);
+  s.bodies.push_back(wheel);
+  JointSpec held;
+  held.name = "held";
+  held.kind = JointKind::weld;
+  held.parent = "rocker";
+  held.child = "weight";
+  held.origin_parent = {0.5, 0.2, 0};
+  s.joints.push_back(held);
+  s.joints.push_back(hinge("shaft", "ground", "wheel", {-1, 0, 0}, 0.3));
+  LoopSpec gear;
+  gear.name = "gear";
+  gear.kind = LoopKind::coupler;
+  gear.joints = {"shaft", "O"};
+  gear.ratios = {1, 4};
+  gear.offset = 0.3 + 4 * s.joints.front().position.at(0);
+  s.loops.push_back(gear);
+  return s;
+}
+
+RunResult run_of(const Mechanism& mechanism, const Start& start, const std::string& form,
+                 double end, double rtol) {
+  RunRequest request;
+  request.settings = default_settings({}, form, "", rtol);
+  request.settings.atol = rtol;
+  request.settings.end_time = end;
+  request.settings.samples = 25;
+  request.keep_trajectory = true;
+  return run_form(mechanism, start, request);
+}
+
+/// Columns of two runs agree within `bound` of the column's size, drifts within `drift`.
+void expect_same(const RunResult& a, const RunResult& b, double bound, double drift,
+                 const std::string& what) {
+  ASSERT_EQ(a.status, "done") << what << ": " << a.reason;
+  ASSERT_EQ(b.status, "done") << what << ": " << b.reason;
+  ASSERT_EQ(a.trajectory.columns, b.trajectory.columns) << what;
+  ASSERT_EQ(a.trajectory.rows.size(), b.trajectory.rows.size()) << what;
+  for (std::size_t c = 0; c < a.trajectory.columns.size(); ++c) {
+    const std::string& name = a.trajectory.columns[c];
+    const bool drifts = name.find("drift") != std::string::npos;
+    double size = 1;
+    for (const auto& row : b.trajectory.rows) size = std::max(size, std::abs(row[c]));
+    for (std::size_t i = 0; i < a.trajectory.rows.size(); ++i)
+      ASSERT_NEAR(a.trajectory.rows[i][c], b.trajectory.rows[i][c], drifts ? drift : bound * size)
+          << what << ": " << name << " in row " << i;
+  }
+}
+
+struct Case {
+  Scene scene;
+  double end;
+};
+std::vector<Case> cases() {
+  return {{arch(20), 1},
+          {chained_row(5), 1},
+          {bars_cut_in_the_middle(4), 0.5},
+          {geared_four_bar(), 5},
+          {written_otherwise(example("andrews"), {{"F", "E2"}}), 0.02}};
+}
+
+TEST(SweptScene, RunsReportTheSceneAsWritten) {
+  int anew = 0;
+  for (const auto& [scene, end] : cases()) {
+    const Mechanism chosen(scene), kept(scene, {.cut = CutChoice::scene});
+    const Start start = assemble(chosen).start;
+    anew += SweptScene(chosen, start).anew();
+    EXPECT_FALSE(SweptScene(kept, start).anew());
+    for (const std::string form : {"momentum", "projected", "stabilised-index2"})
+      expect_same(run_of(chosen, start, form, end, 1e-10), run_of(kept, start, form, end, 1e-10),
+                  form == "stabilised-index2" ? 1e-4 : 1e-6, 1e-7, scene.name + " " + form);
+  }
+  EXPECT_EQ(anew, 4);  // of Andrews' the gain is too small
+}
+
+/// An angle is counted in whole turns, as an integrated one is.
+TEST(SweptScene, AnglesOfCutJointsCountTurns) {
+  Scene spinning = example("four_bar");
+  spinning.gravity.setZero();
+  spinning.joints[0].velocity = {9};
+  Scene other = written_otherwise(spinning, {{"A", "B"}});
+  for (JointSpec& joint : other.joints)
+    if (joint.name == "O") joint.velocity = {9};
+  other.held = {"O"};
+  const Mechanism swept(spinning), written(other);
+  const Start start = assemble(written).start;
+  const Assembly a = assemble(swept);
+  WrittenMotion motion(written, start, {written.scene(), {}, {}}, swept);
+  RunRequest request;
+  request.settings = default_settings({}, "projected", "", 1e-10);
+  request.settings.end_time = 10;
+  request.settings.samples = 40;
+  request.keep_trajectory = true;
+  const RunResult by_itself = run_form(written, start, request),
+                  by_other = run_form(swept, a.start, request);
+  ASSERT_EQ(by_itself.status, "done");
+  ASSERT_EQ(by_other.status, "done");
+  VectorXd q, u;
+  double turns = 0;
+  for (std::size_t i = 0; i < by_other.trajectory.rows.size(); ++i) {
+    const auto& row = by_other.trajectory.rows[i];
+    const VectorXd swept_q = Eigen::Map<const VectorXd>(row.data() + 1, swept.nq()),
+                   swept_u = Eigen::Map<const VectorXd>(row.data() + 1 + swept.nq(), swept.nv());
+    motion.read(row[0], swept_q, swept_u, q, u);
+    const auto& expected = by_itself.trajectory.rows[i];
+    for (int k = 0; k < written.nq(); ++k) {
+      ASSERT_NEAR(q[k], expected[static_cast<std::size_t>(1 + k)], 1e-4) << i << " " << k;
+      turns = std::max(turns, std::abs(q[k]) / (2 * std::numbers::pi));
+    }
+    for (int k = 0; k < written.nv(); ++k)
+      ASSERT_NEAR(u[k], expected[static_cast<std::size_t>(1 + written.nq() + k)], 1e-3);
+  }
+  EXPECT_GT(turns, 2);
+}
+
+TEST(SweptScene, TheStartIsTheSceneS) {
+  for (const auto& [scene, end] : cases()) {
+    const Mechanism written(scene);
+    const Start start = assemble(written).start;
+    const SweptScene swept(written, start);
+    if (!swept.anew()) continue;
+    WrittenMotion motion(written, start, swept.folded(), swept.mechanism());
+    VectorXd q, u;
+    motion.read(start.t, swept.start().q, swept.start().u, q, u);
+    EXPECT_LT((q - start.q).lpNorm<Eigen::Infinity>(), 1e-9) << scene.name;
+    EXPECT_LT((u - start.u).lpNorm<Eigen::Infinity>(), 1e-8 * (1 + start.u.norm())) << scene.name;
+  }
+}
+
+}  // namespace
+}  // namespace momenta::dae_swept_scene
