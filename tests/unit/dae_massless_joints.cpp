@@ -135,6 +135,30 @@ TEST(MasslessJoints, AMassOnTheAxisIsToldFromOneBesideIt) {
     }
 }
 
+/// The same of what a joint carries: its own mass is none, a slider's point mass comes to lie on
+/// its axis from two lengths along it, and M_jj is what rounding leaves of that.
+TEST(MasslessJoints, AMassThatComesToTheAxisIsNoInertiaEither) {
+  RandomTree random(3);
+  for (int i = 0; i < 40; ++i) {
+    SCOPED_TRACE(i);
+    const Vector3d axis =
+        Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(0.1, 1)).normalized();
+    Scene scene = arm();
+    add_finger(scene, "tip", "arm", axis);
+    add_finger(scene, "slide", "tip link", axis, JointKind::prismatic);
+    scene.joints.back().origin_parent = random.uniform(-2, 2) * axis;
+    scene.bodies.back().mass = 0.5;
+    scene.bodies.back().com = random.uniform(-2, 2) * axis;
+    add_finger(scene, "bare", "arm");  // where the sweeps stop
+    OpenChain chain(scene);
+    VectorXd udot(chain.nv());
+    EXPECT_FALSE(chain.accelerations(0, chain.tree().q0, chain.tree().u0, udot));
+    EXPECT_EQ(chain.failure(),
+              "joints 'tip', 'bare' have no inertia: the bodies on them and what those carry have "
+              "none along their freedoms; expected masses, rotors' inertias, or fixed joints");
+  }
+}
+
 TEST(MasslessJoints, SixAreNamedAndTheOthersCounted) {
   Scene scene = arm();
   for (int i = 0; i < 3; ++i) {
