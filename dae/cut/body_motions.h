@@ -17,6 +17,10 @@ namespace momenta {
 class BodyMotions {
  public:
   explicit BodyMotions(const Mechanism& mechanism);
+  /// At a start.
+  BodyMotions(const Mechanism& mechanism, const Start& start) : BodyMotions(mechanism) {
+    take(start.t, start.q, start.u);
+  }
   /// Of some bodies alone; "ground" may be among them.
   BodyMotions(const Mechanism& mechanism, const std::set<std::string>& wanted);
 

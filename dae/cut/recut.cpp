@@ -183,7 +183,7 @@ Recut recut(const Mechanism& mechanism, const Start& start, const std::vector<st
       Cycles cycles(graph.vertices(), std::move(first));
       cycles.balance(cycles.descend(most_effort));
       if (cycles.edges() == graph.edges) break;
-      if (!bodies) bodies.emplace(mechanism).take(start.t, start.q, start.u);
+      if (!bodies) bodies.emplace(mechanism, start);
       Recut found;
       found.before = best.before;
       found.scene = mechanism.scene();

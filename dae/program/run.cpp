@@ -1,3 +1,4 @@
+#include <momenta/dae/cut/swept_scene.h>
 #include <momenta/dae/measure/rank.h>
 #include <momenta/dae/report/csv.h>
 #include <momenta/dae/report/page.h>

@@ -1,4 +1,5 @@
 #include <momenta/core/share.h>
+#include <momenta/dae/cut/swept_scene.h>
 #include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/study/drift_study.h>
 #include <momenta/dae/study/run_record.h>

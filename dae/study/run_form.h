@@ -2,13 +2,14 @@
 // A run: a form, an integrator, and everything measured during the integration.
 
 #include <momenta/dae/assembly/assembly.h>
-#include <momenta/dae/cut/swept_scene.h>
 #include <momenta/dae/measure/reference.h>
 #include <momenta/dae/study/run_result.h>
 
 #include <functional>
 
 namespace momenta {
+
+class SweptScene;  // dae/cut/swept_scene.h
 
 /// The state of a run between two steps, from which the run can continue.
 struct Checkpoint {

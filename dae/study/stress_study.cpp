@@ -1,5 +1,6 @@
 #include <momenta/core/scene/validate.h>
 #include <momenta/core/share.h>
+#include <momenta/dae/cut/swept_scene.h>
 #include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/solver/stopping.h>
 #include <momenta/dae/study/environment.h>

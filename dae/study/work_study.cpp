@@ -1,3 +1,4 @@
+#include <momenta/dae/cut/swept_scene.h>
 #include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/study/run_record.h>
 #include <momenta/dae/study/work_study.h>
