@@ -62,13 +62,13 @@ class Assembler {
     const Eigen::VectorXd phi = loops_.gap(t_, a.start.q).cwiseProduct(row_);
     a.position_residual = phi.cwiseAbs().maxCoeff();
     a.moved = (a.start.q - guess).cwiseAbs().maxCoeff();
-    if (!found.is_closed) refuse(phi, closing.tolerance());
+    if (!found.is_closed) refuse(phi, closing.tolerance(), found.is_stretched);
     if (!found.is_least) return;
     a.start.residue = phi;
     a.residue = residue_in_words(mechanism_, phi);
   }
 
-  [[noreturn]] void refuse(const Eigen::VectorXd& phi, double tolerance) const {
+  [[noreturn]] void refuse(const Eigen::VectorXd& phi, double tolerance, bool stretched) const {
     const Scene& scene = mechanism_.scene();
     std::string open;
     Location at;
@@ -87,7 +87,8 @@ class Assembler {
     }
     throw SceneError(
         scene.where(at) + "the mechanism cannot be assembled from these positions: " + open +
-        (scene.held.empty() ? "" : " while joints are held") + " (" +
+        (scene.held.empty() ? "" : " while joints are held") +
+        (stretched ? ", stretched: no motion closes it further" : "") + " (" +
         std::to_string(mechanism_.m()) + " equations, " +
         std::to_string(std::count(loops_.columns.begin(), loops_.columns.end(), true)) +
         " free rates); expected loops that close");

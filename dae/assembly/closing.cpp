@@ -1,3 +1,4 @@
+#include <momenta/dae/assembly/bending.h>
 #include <momenta/dae/assembly/closing.h>
 
 #include <algorithm>
@@ -112,7 +113,29 @@ bool Closing::is_least(const Eigen::VectorXd& q, double open) {
   const std::vector<double> j = loops_.jacobian();
   if (!is_redundant(j)) return false;
   steps_.factor(j);
-  return largest_of(steps_.product(j, steps_.solve(phi))) <= tolerance_;
+  return largest_of(steps_.product(j, steps_.solve(phi))) <= tolerance_ &&
+         !bending(loops_, steps_, t_, q, tolerance_).bends;
+}
+
+/// Whether loops that stay open at q do so because they are stretched, and no motion closes them.
+bool Closing::is_stretched(const Eigen::VectorXd& q) {
+  constexpr double flat = 0.03;  // |Jᵀ Φ| beside |J| |Φ|
+  const Eigen::VectorXd phi = gap(q);
+  const std::vector<double> j = loops_.jacobian();
+  Eigen::VectorXd pull = Eigen::VectorXd::Zero(loops_.mechanism().nv());
+  for (std::size_t i = 0; i < j.size(); ++i)
+    pull[loops_.pattern()[i].column] += j[i] * phi[loops_.pattern()[i].row];
+  if (!(pull.norm() <= flat * largest_of(j) * phi.norm())) return false;
+  const Bending found = bending(loops_, steps_, t_, q, tolerance_);
+  return found.bends && !found.closes;
+}
+
+/// From a stretched pose to one beside it that closes.
+Closing::Pose Closing::bent(const Pose& open) {
+  if (open.gap <= left_by_files)
+    for (const Eigen::VectorXd& start : bending(loops_, steps_, t_, open.q, tolerance_).nearer)
+      if (Pose pose = damped(start, seed_iterations); pose.is_closed) return pose;
+  return open;
 }
 
 /// The gap closed continuously, down to a hundredth; false where it gets stuck before.
@@ -188,13 +211,23 @@ Closing::Pose Closing::from_seeds(const Eigen::VectorXd& guess) {
 
 /// Where steps that stay near the guess leave the loops open.
 Closing::Pose Closing::anywhere(const Eigen::VectorXd& guess, Pose open) {
+  if (Pose beside = bent(open); beside.is_closed) {
+    branch_ =
+        "one of several assemblies, the guess does not tell which: it is stretched, and the loops "
+        "close where it bends to one side or another";
+    return beside;
+  }
   const char* how = "by undamped steps from it";
   Pose found = undamped(guess);
   if (!found.is_closed) {
     how = "from one of several starts around it";
     found = from_seeds(guess);
   }
-  if (!found.is_closed) return found.gap < open.gap ? found : open;
+  if (!found.is_closed) {
+    if (found.gap < open.gap) open = std::move(found);
+    open.is_stretched = is_stretched(open.q);
+    return open;
+  }
   char text[240];
   std::snprintf(
       text, sizeof text,

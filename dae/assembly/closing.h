@@ -10,7 +10,9 @@
 //               robots, no short step closes the loops further, and long ones leave it.
 //   least squares   where the equations are redundant and the numbers of the scene, rounded in its
 //               file, contradict each other by 10⁻⁸ at the most, no pose closes the loops: one where
-//               nothing of φ can be closed, J J⁺ φ = 0, then stands for it.
+//               nothing of φ can be closed, J J⁺ φ = 0, then stands for it. Rows that lose rank
+//               because rods are stretched contradict nothing (bending.h): the pose beside it that
+//               closes is taken, or the loop is too short.
 //   seeds       damped from starts around the guess, 0.3, 1 and 3 radians or lengths away: of the
 //               first distance at which some close the one nearest to the guess.
 //
@@ -32,7 +34,8 @@ class Closing {
     Eigen::VectorXd q;
     double gap = 0;  ///< |Φ|∞, points in lengths
     bool is_closed = false;
-    bool is_least = false;  ///< closed in the least-squares sense alone
+    bool is_least = false;      ///< closed in the least-squares sense alone
+    bool is_stretched = false;  ///< open, and no motion closes it further
   };
   /// From the guess q. Cost: least-norm factorisations of Φ_q, 10 to 200 where it closes; up to
   /// 5000 where nothing does.
@@ -52,6 +55,8 @@ class Closing {
   Pose damped(Eigen::VectorXd q, int most_iterations);
   bool is_redundant(const std::vector<double>& j);
   bool is_least(const Eigen::VectorXd& q, double gap);
+  bool is_stretched(const Eigen::VectorXd& q);
+  Pose bent(const Pose& open);
   bool follow(Eigen::VectorXd& q);
   Pose undamped(Eigen::VectorXd q);
   Pose from_seeds(const Eigen::VectorXd& guess);

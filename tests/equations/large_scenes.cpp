@@ -71,4 +71,21 @@ Scene arch(int n) {
   return s;
 }
 
+Scene stretched_chain(int n, double reach, bool spherical) {
+  Scene s = hanging("stretched chain");
+  for (int i = 0; i < n; ++i) {
+    const auto name = "rod" + std::to_string(i), before = "rod" + std::to_string(i - 1);
+    s.bodies.push_back(rod(name, 0.1));
+    s.joints.push_back(hinge("J" + std::to_string(i), i == 0 ? "ground" : before, name,
+                             {i == 0 ? 0.0 : 1.0, 0, 0}, 0));
+    if (!spherical) continue;
+    s.joints.back().kind = JointKind::spherical;
+    s.joints.back().position.clear();
+    s.joints.back().velocity.clear();
+  }
+  s.loops.push_back(closing("tip", "ground", s.bodies.back().name, {reach, 0, 0}, {1, 0, 0}));
+  if (spherical) s.loops.back().kind = LoopKind::spherical;
+  return s;
+}
+
 }  // namespace momenta::equations

@@ -12,4 +12,8 @@ Scene crossed_bars(int n);
 /// n rods on an arc between two fixed points: one loop.
 Scene arch(int n);
 
+/// n rods of 1 m in line along x from the ground, the last one's tip to be held at (reach, 0, 0);
+/// hinges, or spherical joints.
+Scene stretched_chain(int n, double reach, bool spherical = false);
+
 }  // namespace momenta::equations

@@ -1,5 +1,6 @@
 // A consistent start from a guess: positions close, held joints stay, what cannot close is said.
 
+#include "equations/large_scenes.h"
 #include "equations/linkages.h"
 #include "equations/random_tree.h"
 #include "equations/tolerance.h"
@@ -303,33 +304,12 @@ TEST(Assembly, ClosesFromAnywhereOrSaysWhatStaysOpen) {
   EXPECT_GT(closed, 100);
 }
 
-/// n rods in line along x from the ground, the last one's tip to be held at (reach, 0, 0).
-Scene stretched(int n, double reach) {
-  Scene s;
-  s.name = "stretched chain";
-  s.gravity = {0, -9.81, 0};
-  for (int i = 0; i < n; ++i) {
-    const auto name = "rod" + std::to_string(i), before = "rod" + std::to_string(i - 1);
-    s.bodies.push_back(rod(name, 0.1));
-    s.joints.push_back(hinge("J" + std::to_string(i), i == 0 ? "ground" : before, name,
-                             {i == 0 ? 0.0 : 1.0, 0, 0}, 0));
-  }
-  LoopSpec l;
-  l.name = "tip";
-  l.kind = LoopKind::revolute;
-  l.child = s.bodies.back().name;
-  l.origin_parent = {reach, 0, 0};
-  l.origin_child = {1, 0, 0};
-  s.loops.push_back(l);
-  return s;
-}
-
 // Rods in line: Φ_qᵀ Φ = 0 though Φ is not, so no step, however short, closes the loop further.
 TEST(Assembly, LeavesPosesWhereNoShortStepCloses) {
   for (const int n : {3, 4, 6, 12})
     for (const double part : {0.3, 0.6, 0.9})
       for (const bool in_space : {false, true}) {
-        Scene scene = stretched(n, part * n);
+        Scene scene = stretched_chain(n, part * n);
         if (in_space)
           scene = turned(scene, Eigen::Quaterniond(
                                     Eigen::AngleAxisd(1, Eigen::Vector3d(1, 2, 3).normalized())));
@@ -342,7 +322,7 @@ TEST(Assembly, LeavesPosesWhereNoShortStepCloses) {
             << n << " " << part << a.branch;
       }
   for (const int n : {3, 6}) {
-    const std::string what = complaint(stretched(n, n + 0.25));
+    const std::string what = complaint(stretched_chain(n, n + 0.25));
     EXPECT_NE(what.find("loop 'tip' stays open by 0.25"), std::string::npos) << what;
   }
 }
