@@ -261,27 +261,19 @@ std::int64_t Cycles::balance(std::int64_t effort) {
   return effort - looked_at_;
 }
 
-std::vector<CutEdge> shallow_tree(int vertices, std::vector<CutEdge> edges) {
-  std::vector<int> level(at(vertices), vertices), reached{0};
-  level[0] = 0;
-  const auto beside = edges_at(vertices, edges);
-  for (std::size_t i = 0; i < reached.size(); ++i)
-    for (const int edge : beside[at(reached[i])]) {
-      if (edges[at(edge)].fixed && !edges[at(edge)].in_tree) continue;
-      const int next = other_end(edges[at(edge)], reached[i]);
-      if (level[at(next)] < vertices) continue;
-      level[at(next)] = level[at(reached[i])] + 1;
-      reached.push_back(next);
-    }
+namespace {
+
+/// The spanning tree of the edges with the least keys; fixed joints are in it, fixed loops are not.
+template <class Key>
+std::vector<CutEdge> least_tree(int vertices, std::vector<CutEdge> edges, Key&& key) {
   std::vector<int> order(edges.size()), group(at(vertices));
   std::iota(order.begin(), order.end(), 0);
   std::iota(group.begin(), group.end(), 0);
-  const auto key = [&](int i) {
+  const auto whole_key = [&](int i) {
     const CutEdge& e = edges[at(i)];
-    return std::tuple(!(e.fixed && e.in_tree), -e.rows, std::min(level[at(e.a)], level[at(e.b)]),
-                      i);
+    return std::tuple(!(e.fixed && e.in_tree), key(i), i);
   };
-  std::sort(order.begin(), order.end(), [&](int i, int j) { return key(i) < key(j); });
+  std::sort(order.begin(), order.end(), [&](int i, int j) { return whole_key(i) < whole_key(j); });
   const auto group_of = [&](int v) {
     while (group[at(v)] != v) v = group[at(v)] = group[at(group[at(v)])];
     return v;
@@ -294,6 +286,58 @@ std::vector<CutEdge> shallow_tree(int vertices, std::vector<CutEdge> edges) {
     group[at(a)] = b;
   }
   return edges;
+}
+
+bool may_be_joint(const CutEdge& edge) {
+  return !edge.fixed || edge.in_tree;
+}
+
+}  // namespace
+
+std::vector<CutEdge> shallow_tree(int vertices, const std::vector<CutEdge>& edges) {
+  std::vector<int> level(at(vertices), vertices), reached{0};
+  level[0] = 0;
+  const auto beside = edges_at(vertices, edges);
+  for (std::size_t i = 0; i < reached.size(); ++i)
+    for (const int edge : beside[at(reached[i])]) {
+      if (!may_be_joint(edges[at(edge)])) continue;
+      const int next = other_end(edges[at(edge)], reached[i]);
+      if (level[at(next)] < vertices) continue;
+      level[at(next)] = level[at(reached[i])] + 1;
+      reached.push_back(next);
+    }
+  return least_tree(vertices, edges, [&](int i) {
+    const CutEdge& e = edges[at(i)];
+    return std::pair(-e.rows, std::min(level[at(e.a)], level[at(e.b)]));
+  });
+}
+
+std::vector<CutEdge> deep_tree(int vertices, const std::vector<CutEdge>& edges) {
+  const auto beside = edges_at(vertices, edges);
+  std::vector<char> chosen(edges.size(), 0), reached(at(vertices), 0);
+  std::vector<int> ties(at(vertices), 0), way;  // ties: to vertices that are reached
+  const auto reach = [&](int v) {
+    reached[at(v)] = 1;
+    way.push_back(v);
+    for (const int edge : beside[at(v)]) ++ties[at(other_end(edges[at(edge)], v))];
+  };
+  reach(0);
+  while (!way.empty()) {
+    int best = -1, next = -1;
+    for (const int edge : beside[at(way.back())]) {
+      if (!may_be_joint(edges[at(edge)])) continue;
+      const int v = other_end(edges[at(edge)], way.back());
+      if (reached[at(v)] || (best >= 0 && ties[at(v)] <= ties[at(next)])) continue;
+      best = edge, next = v;
+    }
+    if (best < 0) {
+      way.pop_back();
+      continue;
+    }
+    chosen[at(best)] = 1;
+    reach(next);
+  }
+  return least_tree(vertices, edges, [&](int i) { return chosen[at(i)] ? 0 : 1; });
 }
 
 }  // namespace momenta

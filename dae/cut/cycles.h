@@ -69,6 +69,11 @@ std::int64_t length_of_cycles(int vertices, const std::vector<CutEdge>& edges, s
 
 /// The same edges with another tree to start from: fixed joints, then of the others those that
 /// would be the most equations, the nearest to the ground first.
-std::vector<CutEdge> shallow_tree(int vertices, std::vector<CutEdge> edges);
+std::vector<CutEdge> shallow_tree(int vertices, const std::vector<CutEdge>& edges);
+
+/// Likewise: from each vertex on to the one beside it that most edges tie to the way there, back
+/// where there is none. In a band, such as a ladder, what is tied together then lies together, and
+/// cycles are short where those of a shallow tree are as long as the band.
+std::vector<CutEdge> deep_tree(int vertices, const std::vector<CutEdge>& edges);
 
 }  // namespace momenta

@@ -14,7 +14,7 @@ namespace momenta {
 namespace {
 
 constexpr std::int64_t most_effort = 20'000'000;
-constexpr int long_cycles = 30;  ///< joints on a cycle of a shallow tree, in the mean
+constexpr int long_cycles = 30;  ///< joints on a cycle of another tree than given, in the mean
 
 /// The graph of a scene: its joints, then its loops that tie two bodies.
 class SceneGraph {
@@ -171,11 +171,13 @@ Recut recut(const Mechanism& mechanism, const Start& start, const std::vector<st
   // Loops found to be no joints as their bodies stand are fixed, and the search is made once more.
   constexpr int most_searches = 50;
   int searches = 0;
-  for (const bool shallow : {false, true})
+  enum class From { scene, shallow, deep };
+  for (const From from : {From::scene, From::shallow, From::deep})
     for (int obstacle = 0; obstacle >= 0 && searches < most_searches; ++searches) {
       std::vector<CutEdge> first = graph.edges;
-      if (shallow) {
-        first = shallow_tree(graph.vertices(), first);
+      if (from != From::scene) {
+        first = from == From::shallow ? shallow_tree(graph.vertices(), graph.edges)
+                                      : deep_tree(graph.vertices(), graph.edges);
         const auto most = std::max(length_of_cycles(graph.vertices(), graph.edges, most_effort),
                                    long_cycles * static_cast<std::int64_t>(first.size()));
         if (length_of_cycles(graph.vertices(), first, most) > most) break;

@@ -40,10 +40,10 @@ struct Recut {
 /// How the loops of a mechanism lie in its tree. O(bodies + length of all loops).
 CutCost cut_cost(const Mechanism& mechanism);
 
-/// The best cuts found, by descent from the given tree and from a shallow one; those given where
-/// that lowers neither the work by two hundredths nor, at next to the same work, the entries of M
-/// by a quarter. Where the sweeps can't carry the loops either way, the entries of L decide
-/// instead. Bounded effort: of a hundred thousand bodies some seconds.
+/// The best cuts found, by descent from the given tree, from a shallow and from a deep one; those
+/// given where that lowers neither the work by two hundredths nor, at next to the same work, the
+/// entries of M by a quarter. Where the sweeps can't carry the loops either way, the entries of L
+/// decide instead. Bounded effort: of a hundred thousand bodies some seconds.
 /// @throws SceneError where `keep` names neither a joint nor a loop
 Recut recut(const Mechanism& mechanism, const Start& start,
             const std::vector<std::string>& keep = {});
