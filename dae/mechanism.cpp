@@ -3,6 +3,7 @@
 #include <momenta/dae/factor/filtered_matrix.h>
 #include <momenta/dae/loop/loop_weights.h>
 #include <momenta/dae/mechanism_inside.h>
+#include <momenta/dae/unheld_joints.h>
 
 #include <algorithm>
 
@@ -43,6 +44,28 @@ std::vector<bool> couplers_of_angles(const Scene& scene, const Tree& tree) {
     of_angles.push_back(!slides);
   }
   return of_angles;
+}
+
+/// Whether a joint without a rotor carries a body that has no mass, together with what is welded to
+/// it, and carries others on joints of their own.
+bool carries_on_no_mass(const Tree& tree) {
+  const std::size_t count = tree.bodies.size();
+  std::vector<char> heavy(count), carries(count);
+  for (std::size_t k = count; k-- > 0;) {
+    const Tree::Body& b = tree.bodies[k];
+    heavy[k] |= b.mass > 0 || !b.inertia.isZero(0) || b.rotor > 0;
+    if (b.nv > 0 && !heavy[k] && carries[k] && tree.carries_scene_body(static_cast<int>(k)))
+      return true;
+    if (b.parent < 0) continue;
+    const auto parent = static_cast<std::size_t>(b.parent);
+    if (b.nv == 0) {
+      heavy[parent] |= heavy[k];
+      carries[parent] |= carries[k];
+    } else {
+      carries[parent] = 1;
+    }
+  }
+  return false;
 }
 
 /// User joints move in open chains alone.
@@ -168,7 +191,9 @@ void Mechanism::take_weights() {
     take(std::get<1>(casts_->cast));
 }
 
-/// A joint may have no inertia until a loop closes above it: one solution at the start tells.
+/// A joint may have no inertia until a loop closes above it: one solution at the start tells. Where
+/// a body without mass carries what its own joints move alone, rounding is left in place of zero,
+/// and pivots beside M_jj tell.
 std::string Mechanism::joint_without_inertia(bool swept) const {
   const auto size = static_cast<std::size_t>(tree_.nv);
   std::vector<double> p(size, 0.0), u(size), sigma(row_names_.size());
@@ -188,7 +213,10 @@ std::string Mechanism::joint_without_inertia(bool swept) const {
   right.fade = fade_evaluation;  // rows that depend on others leave dust for inertia otherwise
   if (!sweeps->momentum(0, tree_.q0.data(), p.data(), right, u.data(), sigma.data(), nullptr))
     return light_before_loops(tree_.bodies[static_cast<std::size_t>(sweeps->singular_joint())].u);
-  return "";
+  if (!carries_on_no_mass(tree_)) return "";
+  const auto e = evaluation<double>();
+  const UnheldJoints unheld = unheld_joints(*this, *e, 0, tree_.q0.data(), false);
+  return unheld.joints.empty() ? "" : light_before_loops(unheld.joints.front().rate);
 }
 
 bool Mechanism::solved_by_bodies() const {

@@ -3,6 +3,7 @@
 #include <momenta/dae/kkt/least_norm.h>
 #include <momenta/dae/kkt/loop_rank.h>
 #include <momenta/dae/kkt/loop_solver.h>
+#include <momenta/dae/unheld_joints.h>
 
 #include <algorithm>
 #include <cmath>
@@ -142,6 +143,11 @@ class Assembler {
     if (mechanism_.nv() == 0) return;
     e().place(s.t, s.q.data());
     if (mechanism_.m() == 0) {
+      Eigen::VectorXd diagonal(mechanism_.nv());
+      e().mass_diagonal(diagonal.data());
+      // Rounding may leave a pivot above zero of what has no inertia.
+      if (diagonal.allFinite() && !massless_joints(mechanism_.tree(), diagonal, {}).empty())
+        no_inertia(s, -1);
       if (!e().open_accelerations(s.t, s.q.data(), s.u.data(), s.udot.data()))
         no_inertia(s, e().singular_joint());
       return;

@@ -27,7 +27,7 @@ std::optional<JointKind> as_joint(LoopKind kind, bool planar) {
   return std::nullopt;
 }
 
-std::optional<LoopKind> as_loop(JointKind kind) {
+std::optional<LoopKind> as_loop(JointKind kind, bool planar) {
   switch (kind) {
     case JointKind::revolute:
       return LoopKind::revolute;
@@ -40,6 +40,7 @@ std::optional<LoopKind> as_loop(JointKind kind) {
     case JointKind::spherical:
       return LoopKind::spherical;
     case JointKind::planar:
+      if (planar) break;
       return LoopKind::planar;
     case JointKind::weld:
       return LoopKind::weld;
@@ -117,7 +118,7 @@ std::optional<JointSpec> joint_of(const LoopSpec& loop, const Mechanism& mechani
 LoopSpec loop_of(const JointSpec& joint) {
   LoopSpec loop;
   loop.name = joint.name;
-  loop.kind = *as_loop(joint.kind);
+  loop.kind = *as_loop(joint.kind, false);
   loop.parent = joint.parent;
   loop.child = joint.child;
   loop.origin_parent = joint.origin_parent;

@@ -13,7 +13,8 @@ namespace momenta {
 
 /// The kind a loop would have as a joint and the other way round; nothing where there is none.
 std::optional<JointKind> as_joint(LoopKind kind, bool planar);
-std::optional<LoopKind> as_loop(JointKind kind);
+/// A planar joint of a planar mechanism ties nothing: no loop.
+std::optional<LoopKind> as_loop(JointKind kind, bool planar);
 /// Equations of a loop of the kind a joint has.
 int rows_of(JointKind kind, bool planar);
 

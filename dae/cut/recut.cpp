@@ -26,7 +26,7 @@ class SceneGraph {
       vertex_.emplace(body.name, static_cast<int>(vertex_.size()));
     for (const JointSpec& joint : scene_.joints) {
       CutEdge& e = add(joint.parent, joint.child, true);
-      const auto loop = as_loop(joint.kind);
+      const auto loop = as_loop(joint.kind, planar_);
       e.rows = rows_of(joint.kind, planar_);
       e.fixed = !loop || said.of_coordinates.contains(joint.name) || said.kept.contains(joint.name);
     }

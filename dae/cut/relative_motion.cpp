@@ -125,6 +125,7 @@ JointSpec turned_round(const JointSpec& joint) {
     t.axis = -(joint.rotation * second);
     std::reverse(t.position.begin(), t.position.end());
     std::reverse(t.velocity.begin(), t.velocity.end());
+    std::reverse(t.rotor_inertia.begin(), t.rotor_inertia.end());
   } else if (joint.kind == JointKind::planar && !joint.direction.isZero()) {
     t.direction = joint.rotation * joint.direction;
   }

@@ -31,6 +31,9 @@ class SweptScene {
   const FoldedScene& folded() const { return folded_; }
   /// Which joints of it are cut in place of others; gains() is false where none are.
   const Recut& cuts() const { return cuts_; }
+  /// "welded into 'B': 'C'; cut at 'J3', with 'end' in the tree"; empty where it is the scene as
+  /// written.
+  std::string in_words() const;
 
  private:
   const Mechanism& written_;

@@ -19,6 +19,10 @@ std::vector<double> scaled_entries(const Mechanism& mechanism, Evaluation<double
   e.constraint_entries(values.data());
   for (std::size_t i = 0; i < values.size(); ++i)
     values[i] *= units.rates[pattern[i].column] / units.equations[pattern[i].row];
+  constexpr double least = 1e-12;
+  const bool says_nothing =
+      std::all_of(values.begin(), values.end(), [](double a) { return std::abs(a) < least; });
+  if (says_nothing) std::fill(values.begin(), values.end(), 0.0);
   return values;
 }
 

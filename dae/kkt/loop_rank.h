@@ -10,11 +10,12 @@
 //
 //   rank_tolerance = 1e-7
 //
-// of the largest count. Of an exactly redundant equation rounding leaves 10⁻¹⁵, of one whose
-// numbers a file has rounded to 10⁻⁸ lengths some 10⁻⁸: both are redundant, and neither Newton's
-// steps nor multipliers may be asked of them. At x rad from a singular pose x is left: a pose
-// closer than 10⁻⁷ is singular. Joints or loops 10⁷ times smaller than others are out of reach of
-// this matrix.
+// of the largest count. Where no entry of A reaches 1e-12, no joint moves any loop: all is
+// rounding, and nothing counts. Of an exactly redundant equation rounding leaves 10⁻¹⁵, of one
+// whose numbers a file has rounded to 10⁻⁸ lengths some 10⁻⁸: both are redundant, and neither
+// Newton's steps nor multipliers may be asked of them. At x rad from a singular pose x is left: a
+// pose closer than 10⁻⁷ is singular. Joints or loops 10⁷ times smaller than others are out of reach
+// of this matrix.
 //
 // Forces of the loops that move nothing, νᵀΦ_q = 0, are ν = D⁻¹ y with yᵀA = 0: λ and σ are
 // determined but for these. Of the y the reduced basis is taken, one dependent row each, the last

@@ -1,6 +1,7 @@
 #include <momenta/dae/kkt/tree_factor.h>
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 
 namespace momenta {
@@ -10,7 +11,8 @@ TreeFactor::TreeFactor(const KktPattern& pattern, int nv)
       row_(pattern.mass.size()),
       value_(row_.size()),
       place_(row_.size()),
-      inverse_(static_cast<std::size_t>(nv)) {
+      inverse_(static_cast<std::size_t>(nv)),
+      diagonal_(inverse_.size()) {
   // Column by column, rows descending. The ancestors of an ancestor are then the tail of the list.
   std::vector<std::size_t> order(row_.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -28,11 +30,14 @@ TreeFactor::TreeFactor(const KktPattern& pattern, int nv)
 }
 
 int TreeFactor::factor(const std::vector<double>& mass) {
+  // What descendants move alone leaves that much of M_kk in place of zero.
+  constexpr double rounding = 64 * std::numeric_limits<double>::epsilon();
   for (std::size_t i = 0; i < mass.size(); ++i) value_[place_[i]] = mass[i];
+  for (std::size_t k = 0; k < diagonal_.size(); ++k) diagonal_[k] = value_[start_[k]];
   for (std::size_t k = inverse_.size(); k-- > 0;) {
     const std::size_t first = start_[k], last = start_[k + 1];
     const double pivot = value_[first];
-    if (!(pivot > 0)) return static_cast<int>(k);
+    if (!(pivot > rounding * diagonal_[k])) return static_cast<int>(k);
     inverse_[k] = 1 / pivot;
     for (std::size_t i = first + 1; i < last; ++i) {
       const double l = value_[i] * inverse_[k];

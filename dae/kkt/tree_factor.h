@@ -42,6 +42,7 @@ class TreeFactor {
   std::vector<double> value_;
   std::vector<std::size_t> place_;  ///< of each pattern entry in value_
   std::vector<double> inverse_;
+  std::vector<double> diagonal_;  ///< M_kk
 };
 
 }  // namespace momenta

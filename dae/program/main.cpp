@@ -139,7 +139,7 @@ int answer(int argc, char** argv) {
   view_verb->footer(
       "Example: momenta view examples/models/agility_cassie/cassie.xml --out results");
   add_scene(*view_verb, o);
-  for (const char* unused : {"--json", "--kkt"})
+  for (const char* unused : {"--json", "--kkt", "--cut"})
     view_verb->remove_option(view_verb->get_option(unused));
   view_verb->add_option("--out", o.out, "Directory for index.html (default: standard output)")
       ->type_name("DIR");

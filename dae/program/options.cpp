@@ -172,10 +172,22 @@ void describe(StudyResult& study, const Options& o, const Mechanism& mechanism,
   study.scene_hash = digest(content_of(o.scene));
   study.command = o.command;
   study.plan = mechanism.plan_lines();
+  if (const auto swept = std::find_if(study.runs.begin(), study.runs.end(),
+                                      [](const RunResult& run) { return !run.swept.empty(); });
+      swept != study.runs.end())
+    study.plan.emplace_back("integrated", swept->swept);
   if (!o.out.empty()) show(study, mechanism, assembly);
   study.environment = environment();
   if (interrupted() && !study.runs.empty() && study.runs.back().status != "done")
     study.runs.back().reason = "interrupted";
+}
+
+void print_swept(const StudyResult& study) {
+  if (!study.runs.empty() && !study.runs.front().swept.empty())
+    std::printf(
+        "\nIntegrated in place of the scene as written, for less work: %s (--cut scene: as "
+        "written)\n",
+        study.runs.front().swept.c_str());
 }
 
 int film_intervals_of(const Mechanism& mechanism, const Options& o, std::size_t runs) {
@@ -279,6 +291,7 @@ int publish(const StudyResult& study, const std::string& words, const Options& o
     std::fputs(json.c_str(), stdout);
   else if (!o.quiet)
     std::printf("%s\n%s", drift_table(study).c_str(), words.c_str());
+  print_swept(study);
   if (!o.out.empty() && !o.quiet)
     std::fprintf(stderr, "momenta: wrote %s\n", (o.out / "index.html").c_str());
   const bool any = std::any_of(study.runs.begin(), study.runs.end(),

@@ -190,6 +190,7 @@ int run(const Options& o) {
     std::fputs(summary.c_str(), stdout);
   } else if (!o.quiet) {
     std::fputs(drift_table(study).c_str(), stdout);
+    print_swept(study);
     print_rank(*mechanism, a, result);
     print_singular_crossings(result);
     print_undetermined(result);

@@ -33,16 +33,20 @@ inline void expect_time(double t) {
                           ", expected a time in seconds");
 }
 
-/// Kernel and solver of (7) by name. @throws py::value_error
-MechanismOptions options_of(const std::string& algebra, const std::string& kkt);
+/// Kernel, solver of (7) and cuts of runs by name. @throws py::value_error
+MechanismOptions options_of(const std::string& algebra, const std::string& kkt,
+                            const std::string& cut);
 
 /// A mechanism with the workspaces of one thread: evaluations, the solver of its loops, its tree.
 class Bench {
  public:
-  Bench(Scene scene, const std::string& algebra_name, const std::string& kkt_name)
+  Bench(Scene scene, const std::string& algebra_name, const std::string& kkt_name,
+        const std::string& cut_name)
       : algebra(algebra_name),
         kkt(kkt_name),
-        mechanism(std::make_shared<const Mechanism>(std::move(scene), options_of(algebra, kkt))),
+        cut(cut_name),
+        mechanism(
+            std::make_shared<const Mechanism>(std::move(scene), options_of(algebra, kkt, cut))),
         e(mechanism->evaluation<double>()) {
     if (mechanism->m() > 0) solver = make_loop_solver(*mechanism, *e);
   }
@@ -71,8 +75,8 @@ class Bench {
                                            t, q.data()));
   }
 
-  std::string algebra, kkt;  ///< as asked for
-  std::string text;          ///< TOML it was read from; empty: see toml_of()
+  std::string algebra, kkt, cut;  ///< as asked for
+  std::string text;               ///< TOML it was read from; empty: see toml_of()
   std::shared_ptr<const Mechanism> mechanism;
   std::unique_ptr<Evaluation<double>> e;
   std::unique_ptr<LoopSolver> solver;

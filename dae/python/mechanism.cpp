@@ -12,7 +12,8 @@
 
 namespace momenta::python {
 
-MechanismOptions options_of(const std::string& algebra, const std::string& kkt) {
+MechanismOptions options_of(const std::string& algebra, const std::string& kkt,
+                            const std::string& cut) {
   MechanismOptions options;
   if (algebra == "planar")
     options.algebra = Algebra::planar;
@@ -28,6 +29,10 @@ MechanismOptions options_of(const std::string& algebra, const std::string& kkt) 
     options.kkt = KktChoice::dense;
   else if (kkt != "auto")
     throw py::value_error("kkt '" + kkt + "': expected auto, sweeps, sparse or dense");
+  if (cut == "scene")
+    options.cut = CutChoice::scene;
+  else if (cut != "auto")
+    throw py::value_error("cut '" + cut + "': expected auto or scene");
   return options;
 }
 
@@ -236,10 +241,10 @@ void bind_mechanism(py::module_& module) {
           "options",
           [](const Bench& b) {
             py::dict options;
-            options["algebra"] = b.algebra, options["kkt"] = b.kkt;
+            options["algebra"] = b.algebra, options["kkt"] = b.kkt, options["cut"] = b.cut;
             return options;
           },
-          "the arguments algebra and kkt of load()")
+          "the arguments algebra, kkt and cut of load()")
       .def_property_readonly(
           "remarks", of([](const Mechanism& m) { return m.scene().remarks; }),
           "what the reader of a URDF or MJCF left out or changed, one sentence per kind")
@@ -247,14 +252,14 @@ void bind_mechanism(py::module_& module) {
            "The scene as TOML text, from which parse() reads the same scene, bit by bit.")
       .def(py::pickle(
           [](const Bench& b) {
-            return py::make_tuple(toml_of(b), b.mechanism->scene().name, b.algebra, b.kkt);
+            return py::make_tuple(toml_of(b), b.mechanism->scene().name, b.algebra, b.kkt, b.cut);
           },
           [](const py::tuple& kept) {
-            if (kept.size() != 4) throw py::value_error("this is no pickled Mechanism");
+            if (kept.size() != 5) throw py::value_error("this is no pickled Mechanism");
             const auto text = kept[0].cast<std::string>();
-            auto bench =
-                std::make_shared<Bench>(parse_scene(text, kept[1].cast<std::string>()),
-                                        kept[2].cast<std::string>(), kept[3].cast<std::string>());
+            auto bench = std::make_shared<Bench>(
+                parse_scene(text, kept[1].cast<std::string>()), kept[2].cast<std::string>(),
+                kept[3].cast<std::string>(), kept[4].cast<std::string>());
             bench->text = text;
             return bench;
           }))

@@ -26,9 +26,9 @@ using Names = std::vector<std::string>;
 
 /// `text`: the TOML of the scene; empty where it was in another format.
 BenchPtr ready(Scene scene, const std::string& text, const std::string& at,
-               const std::string& algebra, const std::string& kkt) {
+               const std::string& algebra, const std::string& kkt, const std::string& cut) {
   if (!at.empty()) start_at(at, scene);
-  auto bench = std::make_shared<Bench>(std::move(scene), algebra, kkt);
+  auto bench = std::make_shared<Bench>(std::move(scene), algebra, kkt, cut);
   if (at.empty()) bench->text = text;
   return bench;
 }
@@ -65,13 +65,13 @@ std::string page(const Bench& b, const std::string& file) {
 class Cases {
  public:
   Cases(const std::string& text, const std::string& file, const std::string& algebra,
-        const std::string& kkt, const Names& vary, const Names& watch, double cpu_limit,
-        const RunArguments& asked) {
+        const std::string& kkt, const std::string& cut, const Names& vary, const Names& watch,
+        double cpu_limit, const RunArguments& asked) {
     const Scene scene = parse_scene(text, file);
     static_cast<void>(asked.settings(scene.run));  // what is wrong with every case is said once
     request_.text = text;
     request_.file = file;
-    request_.mechanism = options_of(algebra, kkt);
+    request_.mechanism = options_of(algebra, kkt, cut);
     for (const std::string& place : vary) request_.varied.emplace_back(place);
     request_.watched = watch;
     request_.max_cpu_seconds = cpu_time(cpu_limit);
@@ -93,15 +93,16 @@ class Cases {
 };
 
 std::unique_ptr<Cases> cases(const std::string& text, const std::string& file,
-                             const std::string& algebra, const std::string& kkt, const Names& vary,
-                             const Names& watch, const std::string& form,
-                             const std::string& integrator, const std::string& gauge, double rtol,
-                             const Given& atol, const Given& step, const Given& end,
-                             const std::optional<int>& samples, double spectral_radius,
-                             const std::optional<bool>& project, double baumgarte_alpha,
-                             double baumgarte_beta, double beta, double penalty, double cpu_limit) {
+                             const std::string& algebra, const std::string& kkt,
+                             const std::string& cut, const Names& vary, const Names& watch,
+                             const std::string& form, const std::string& integrator,
+                             const std::string& gauge, double rtol, const Given& atol,
+                             const Given& step, const Given& end, const std::optional<int>& samples,
+                             double spectral_radius, const std::optional<bool>& project,
+                             double baumgarte_alpha, double baumgarte_beta, double beta,
+                             double penalty, double cpu_limit) {
   return std::make_unique<Cases>(
-      text, file, algebra, kkt, vary, watch, cpu_limit,
+      text, file, algebra, kkt, cut, vary, watch, cpu_limit,
       RunArguments{form, integrator, gauge, rtol, atol, step, end, samples, spectral_radius,
                    project, baumgarte_alpha, baumgarte_beta, beta, penalty});
 }
@@ -113,17 +114,18 @@ void bind_verbs(py::module_& module) {
   module.def(
       "read",
       [](const std::string& file, const std::string& loops, bool free_root, const std::string& at,
-         const std::string& algebra, const std::string& kkt) {
+         const std::string& algebra, const std::string& kkt, const std::string& cut) {
         return ready(read_scene(file, {loops, free_root}),
-                     is_toml(file) ? reading::text_of(file) : "", at, algebra, kkt);
+                     is_toml(file) ? reading::text_of(file) : "", at, algebra, kkt, cut);
       },
-      "file"_a, "loops"_a, "free_root"_a, "at"_a, "algebra"_a, "kkt"_a);
+      "file"_a, "loops"_a, "free_root"_a, "at"_a, "algebra"_a, "kkt"_a, "cut"_a);
   module.def(
       "parse",
       [](const std::string& text, const std::string& name, const std::string& at,
-         const std::string& algebra,
-         const std::string& kkt) { return ready(parse_scene(text, name), text, at, algebra, kkt); },
-      "text"_a, "name"_a, "at"_a, "algebra"_a, "kkt"_a);
+         const std::string& algebra, const std::string& kkt, const std::string& cut) {
+        return ready(parse_scene(text, name), text, at, algebra, kkt, cut);
+      },
+      "text"_a, "name"_a, "at"_a, "algebra"_a, "kkt"_a, "cut"_a);
   module.def("toml_of", &toml_of, "mechanism"_a);
   module.def(
       "evaluate",
@@ -142,8 +144,8 @@ void bind_verbs(py::module_& module) {
       "file"_a, "text"_a);
   py::class_<Cases> all(module, "Cases");
   with_run_arguments([&](const auto&... arguments) {
-    all.def(py::init(&cases), "text"_a, "file"_a, "algebra"_a, "kkt"_a, "vary"_a, "watch"_a,
-            arguments...);
+    all.def(py::init(&cases), "text"_a, "file"_a, "algebra"_a, "kkt"_a, "cut"_a, "vary"_a,
+            "watch"_a, arguments...);
   });
   all.def("__len__", &Cases::count)
       .def("make", &Cases::make, "number"_a, py::call_guard<py::gil_scoped_release>())

@@ -11,6 +11,31 @@
 
 namespace momenta {
 
+namespace {
+
+/// Why a method cannot take the form as it is set, one sentence; empty: it can.
+std::string refusal(const Integrator& method, const RunSettings& s) {
+  const bool dae = is_dae_form(s.form);
+  const auto wanted = dae ? Integrator::Takes::dae : Integrator::Takes::ode;
+  if (method.takes != wanted)
+    return "form '" + s.form + "' is " + (dae ? "a DAE" : "an ODE") + ": expected integrator " +
+           integrator_names(wanted) + ", found '" + method.name + "'";
+  if (!method.takes_form(s.form, dae))
+    return "'" + method.name + "' is for form " + listed(method.forms) + ", found '" + s.form + "'";
+  if (method.multistep && needs_one_step_method(s.form))
+    return "form '" + s.form + "' alters its state after steps, and '" + method.name +
+           "' is a multistep method: expected rk4, dp5, dop853 or vern9";
+  if (s.project && !dae && !method.projects)
+    return "'" + method.name + "' takes no correction after each step: expected no --project" +
+           (method.multistep ? ", it would spoil the method's history" : "");
+  if (!dae && method.multistep && (s.gauge == "reset" || s.gauge == "flip"))
+    return "'" + method.name + "' is a multistep method: gauge " + s.gauge +
+           " after each step would spoil its history; use leak or none";
+  return "";
+}
+
+}  // namespace
+
 FormRunner::FormRunner(const Mechanism& mechanism, const Start& start, RunSettings& s,
                        double max_cpu_seconds)
     : start_(start) {
@@ -18,25 +43,8 @@ FormRunner::FormRunner(const Mechanism& mechanism, const Start& start, RunSettin
   const bool dae = is_dae_form(s.form);
   if (s.integrator.empty()) s.integrator = default_integrator(s.form, s.rtol);
   const Integrator& method = integrator(s.integrator);
-  const auto wanted = dae ? Integrator::Takes::dae : Integrator::Takes::ode;
-  if (method.takes != wanted)
-    throw std::invalid_argument("form '" + s.form + "' is " + (dae ? "a DAE" : "an ODE") +
-                                ": expected integrator " + integrator_names(wanted) + ", found '" +
-                                s.integrator + "'");
-  if (!method.takes_form(s.form, dae))
-    throw std::invalid_argument("'" + s.integrator + "' is for form " + listed(method.forms) +
-                                ", found '" + s.form + "'");
-  if (method.multistep && needs_one_step_method(s.form))
-    throw std::invalid_argument("form '" + s.form + "' alters its state after steps, and '" +
-                                s.integrator + "' is a multistep method: expected rk4, dp5, " +
-                                "dop853 or vern9");
-  if (s.project && !dae && !method.projects)
-    throw std::invalid_argument("'" + s.integrator +
-                                "' takes no correction after each step: expected no --project" +
-                                (method.multistep ? ", it would spoil the method's history" : ""));
-  if (!dae && method.multistep && (s.gauge == "reset" || s.gauge == "flip"))
-    throw std::invalid_argument("'" + s.integrator + "' is a multistep method: gauge " + s.gauge +
-                                " after each step would spoil its history; use leak or none");
+  if (const std::string reason = refusal(method, s); !reason.empty())
+    throw std::invalid_argument(reason);
   if (s.integrator == "rattle") s.gauge = "reset";  // its last stage does it
   FormOptions options;
   options.gauge = parse_gauge(s.gauge.empty() ? "none" : s.gauge);
@@ -80,11 +88,9 @@ IntegrationResult FormRunner::integrate(const std::vector<double>& times,
 }
 
 bool FormRunner::may_change(const RunSettings& s) {
-  const Integrator& method = integrator(s.when_stiff);
   constexpr int most_unknowns = 500;  // a larger dense Newton matrix may cost more than short steps
   return !is_dae_form(s.form) && s.step == 0 && form_->ode()->size() <= most_unknowns &&
-         !needs_one_step_method(s.form) && (method.projects || !s.project) && s.gauge != "reset" &&
-         s.gauge != "flip";
+         refusal(integrator(s.when_stiff), s).empty();
 }
 
 void FormRunner::go_on(IntegrationResult& run, const std::vector<double>& times,

@@ -122,6 +122,7 @@ RunResult run_form(const Mechanism& mechanism, const Start& start, const RunRequ
   std::optional<SweptScene> chosen;
   const SweptScene& swept = request.swept ? *request.swept : chosen.emplace(mechanism, start);
   const Mechanism& integrated = swept.mechanism();
+  result.swept = swept.in_words();
   std::optional<FormRunner> made;
   try {
     made.emplace(integrated, swept.start(), result.settings, request.max_cpu_seconds);

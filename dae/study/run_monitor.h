@@ -57,7 +57,7 @@ class RunMonitor {
       all_unique_.assign(static_cast<std::size_t>(mechanism.m()), true);
     }
     if (swept.anew()) {
-      written_.emplace(mechanism, start, swept.mechanism());
+      written_.emplace(mechanism, start, swept.folded(), swept.mechanism());
       of_form_.q.resize(swept.mechanism().nq());
       swept_e_ = swept.mechanism().evaluation<double>();
       swept_solver_ = make_loop_solver(swept.mechanism(), *swept_e_);

@@ -203,7 +203,7 @@ void start_at(const std::string& state, Scene& scene) {
       if (size == 0) text.fail(where + ": the joint has no coordinates, expected no value");
       const auto drives = static_cast<std::size_t>(
           std::count_if(scene.drives.begin(), scene.drives.end(),
-                        [&](const DriveSpec& d) { return d.joint == name; }));
+                        [joint](const DriveSpec& d) { return d.joint == joint->name; }));
       if (drives >= size)
         text.fail(where + ": the joint is driven, expected no value: t alone moves it");
       (joint->*values).resize(size);

@@ -37,7 +37,7 @@ std::string power_of_ten(double x) {
 /// A rung made ready: what all contestants share.
 struct Ground {
   std::unique_ptr<Mechanism> mechanism;
-  Start start;
+  std::unique_ptr<Start> start;
   std::unique_ptr<SweptScene> swept;
   std::unique_ptr<Reference> reference;
   double accuracy = not_measured;
@@ -51,7 +51,8 @@ Ground prepare(const Rung& rung, const std::string& name, const StressRequest& r
   try {
     validate(rung.scene);
     g.mechanism = std::make_unique<Mechanism>(rung.scene, rung.options);
-    g.start = assemble(*g.mechanism).start;
+    g.start = std::make_unique<Start>(assemble(*g.mechanism).start);
+    g.swept = std::make_unique<SweptScene>(*g.mechanism, *g.start);
   } catch (const SceneError& e) {
     g.refused = e.what();
     return g;
@@ -67,7 +68,7 @@ Ground prepare(const Rung& rung, const std::string& name, const StressRequest& r
     const double from = thread_seconds();
     try {
       own = own_reference(
-          *g.mechanism, g.start, rung.scene.run.end_time, reference_rows, [&](double) {
+          *g.mechanism, *g.start, rung.scene.run.end_time, reference_rows, [&](double) {
             return thread_seconds() - from < request.reference_cpu_limit && going_on();
           });
     } catch (const std::runtime_error&) {
@@ -275,12 +276,13 @@ StressResult run_stress_study(const StressRequest& request) {
       RunRequest run;
       run.settings = settings_of(contestant, *g.mechanism, request.rtol);
       run.reference = g.reference.get();
+      run.swept = g.swept.get();
       run.max_cpu_seconds = request.cpu_limit;
       run.progress = [&](double) { return going.load(); };
       const std::string key = name + key_of(run.settings);
       auto r = recall<StressRun>(request.journal, key);
       if (!r) {
-        r.emplace().run = run_form(*g.mechanism, g.start, run);
+        r.emplace().run = run_form(*g.mechanism, *g.start, run);
         if (!going) return;
         judge(*r, g, request.bound, request.cpu_limit);
         r->run.series = {};

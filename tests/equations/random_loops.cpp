@@ -95,17 +95,27 @@ LoopSpec into_plane(RandomTree& random, const Scene& scene, LoopSpec l,
   return l;
 }
 
-void level(LoopSpec& l, const Scene& scene, const Tree& tree, const Eigen::Vector3d& normal) {
-  const DenseLagrangian motion(scene, tree);
-  const auto poses = motion.poses(0, tree.q0);
+Ends ends_at_start(const LoopSpec& l, const Scene& scene, const Tree& tree) {
+  const auto poses = DenseLagrangian(scene, tree).poses(0, tree.q0);
   const auto pose = [&](const std::string& name) -> Eigen::Isometry3d {
     for (std::size_t k = 0; k < scene.bodies.size(); ++k)
       if (scene.bodies[k].name == name) return poses[k];
     return Eigen::Isometry3d::Identity();
   };
-  const Eigen::Isometry3d a = pose(l.child), b = pose(l.parent);
+  return {pose(l.child), pose(l.parent)};
+}
+
+void level(LoopSpec& l, const Scene& scene, const Tree& tree, const Eigen::Vector3d& normal) {
+  const auto [a, b] = ends_at_start(l, scene, tree);
   const double apart = normal.dot(a * l.origin_child - b * l.origin_parent);
   l.origin_parent += apart * (b.linear().transpose() * normal);
+}
+
+void close(LoopSpec& l, const Scene& scene, const Tree& tree) {
+  const auto [child, parent] = ends_at_start(l, scene, tree);
+  l.origin_parent = parent.inverse() * (child * l.origin_child);
+  l.rotation = Eigen::Quaterniond(parent.linear().transpose() * child.linear());
+  l.rotation.normalize();
 }
 
 }  // namespace momenta::equations

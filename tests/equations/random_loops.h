@@ -37,7 +37,16 @@ std::map<std::string, Eigen::Quaterniond> axes_at_zero(const Scene& scene);
 LoopSpec into_plane(RandomTree& random, const Scene& scene, LoopSpec l,
                     const Eigen::Vector3d& normal);
 
+/// Poses of the two bodies of a loop at the start.
+struct Ends {
+  Eigen::Isometry3d child, parent;
+};
+Ends ends_at_start(const LoopSpec& l, const Scene& scene, const Tree& tree);
+
 /// Moves the parent's point along the normal until both sides lie at one height.
 void level(LoopSpec& l, const Scene& scene, const Tree& tree, const Eigen::Vector3d& normal);
+
+/// Moves the parent's point to where the child's is at the start and turns its frame likewise.
+void close(LoopSpec& l, const Scene& scene, const Tree& tree);
 
 }  // namespace momenta::equations

@@ -1,7 +1,6 @@
 #include "equations/small_scenes.h"
 
 #include "equations/any_text.h"
-#include "equations/dense_lagrangian.h"
 #include "equations/random_loops.h"
 
 #include <momenta/core/scene/files/read_scene.h>
@@ -15,19 +14,6 @@
 
 namespace momenta::equations {
 namespace {
-
-/// The parent's point where the child's is at the start.
-void close(LoopSpec& l, const Scene& scene, const Tree& tree) {
-  const auto poses = DenseLagrangian(scene, tree).poses(0, tree.q0);
-  Eigen::Isometry3d child = Eigen::Isometry3d::Identity(), parent = child;
-  for (std::size_t k = 0; k < scene.bodies.size(); ++k) {
-    if (scene.bodies[k].name == l.child) child = poses[k];
-    if (scene.bodies[k].name == l.parent) parent = poses[k];
-  }
-  l.origin_parent = parent.inverse() * (child * l.origin_child);
-  l.rotation = Eigen::Quaterniond(parent.linear().transpose() * child.linear());
-  l.rotation.normalize();
-}
 
 void add_loop(RandomTree& random, Scene& s, bool planar) {
   if (random.chance(0.15)) {

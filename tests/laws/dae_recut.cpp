@@ -10,6 +10,7 @@
 #include <momenta/core/scene/files/read_scene.h>
 #include <momenta/core/scene/toml/write_scene.h>
 #include <momenta/dae/assembly/assembly.h>
+#include <momenta/dae/cut/interchange.h>
 #include <momenta/dae/cut/recut.h>
 #include <momenta/dae/cut/relative_motion.h>
 #include <momenta/dae/kkt/loop_solver.h>
@@ -230,6 +231,40 @@ TEST(Recut, JointsTurnedRoundHoldTheSamePose) {
     ++tried;
   }
   EXPECT_EQ(tried, 120);
+}
+
+/// Of a planar mechanism a planar joint ties nothing: as a loop it would make a spatial one of it.
+TEST(Recut, PlanarMechanismsStayPlanar) {
+  Scene scene = crossed_bars(4);
+  BodySpec plate = rod("plate");
+  JointSpec floats = hinge("floats", "ground", "plate", {0, 0, 0}, 0);
+  floats.kind = JointKind::planar;
+  floats.position = {0.5, -0.7, 0.2};
+  scene.bodies.push_back(plate);
+  scene.joints.push_back(floats);
+  // it carries a second chain, whose loops are better cut there
+  for (int i = 0; i < 6; ++i) {
+    const std::string name = "link" + std::to_string(i),
+                      parent = i == 0 ? "plate" : "link" + std::to_string(i - 1);
+    scene.bodies.push_back(rod(name));
+    scene.joints.push_back(hinge("K" + std::to_string(i), parent, name, {1, 0, 0}, 0.3));
+  }
+  LoopSpec closing;
+  closing.name = "closing";
+  closing.kind = LoopKind::revolute;
+  closing.parent = "ground";
+  closing.child = "link5";
+  closing.origin_child = {1, 0, 0};
+  closing.origin_parent = {4, 1, 0};
+  scene.loops.push_back(closing);
+  const Mechanism mechanism(scene);
+  ASSERT_TRUE(mechanism.plan().planar);
+  const Recut found = recut(mechanism, assemble(mechanism).start);
+  ASSERT_TRUE(found.gains());
+  EXPECT_TRUE(Mechanism(found.scene).plan().planar);
+  EXPECT_EQ(std::count(found.cut.begin(), found.cut.end(), "floats"), 0);
+  EXPECT_FALSE(as_loop(JointKind::planar, true).has_value());
+  EXPECT_TRUE(as_loop(JointKind::planar, false).has_value());
 }
 
 TEST(Recut, PlatformOnManyLegsAndOtherGivenScenes) {

@@ -1,7 +1,8 @@
 // What a rotor's inertia on a joint stands for: a wheel on the ground, without mass, that a gear
-// one to one turns with the joint. The same accelerations and kinetic energy, with the wheel as a
-// number and as a body behind a coupler; and joints that have no other inertia.
+// turns with the joint. The same accelerations and kinetic energy, with the wheel as a number and as
+// a body behind a coupler; and joints that have no other inertia.
 
+#include "equations/descriptions.h"
 #include "equations/linkages.h"
 #include "equations/random_tree.h"
 #include "equations/tolerance.h"
@@ -19,40 +20,6 @@ namespace {
 
 using namespace equations;
 using Eigen::VectorXd;
-
-/// Each rotor as a body on the ground, turning about z, coupled to its coordinate.
-Scene with_wheels(Scene scene) {
-  const std::vector<JointSpec> joints = scene.joints;
-  for (std::size_t i = 0; i < joints.size(); ++i) {
-    scene.joints[i].rotor_inertia.clear();
-    for (std::size_t k = 0; k < joints[i].rotor_inertia.size(); ++k) {
-      const double inertia = joints[i].rotor_inertia[k];
-      const bool driven =
-          std::any_of(scene.drives.begin(), scene.drives.end(), [&](const DriveSpec& d) {
-            return d.joint == joints[i].name && d.coordinate == static_cast<int>(k);
-          });
-      if (inertia == 0 || driven) continue;
-      BodySpec wheel;
-      wheel.name = "wheel " + std::to_string(k) + " of " + joints[i].name;
-      wheel.inertia = inertia * Eigen::Vector3d(0.5, 0.5, 1).asDiagonal().toDenseMatrix();
-      JointSpec pin;
-      pin.name = wheel.name;
-      pin.child = wheel.name;
-      if (!joints[i].position.empty()) pin.position = {joints[i].position[k]};
-      if (!joints[i].velocity.empty()) pin.velocity = {joints[i].velocity[k]};
-      LoopSpec gear;
-      gear.name = "gear of " + wheel.name;
-      gear.kind = LoopKind::coupler;
-      gear.joints = {joints[i].name, pin.name};
-      gear.coordinates = {static_cast<int>(k), 0};
-      gear.ratios = {1, -1};
-      scene.bodies.push_back(wheel);
-      scene.joints.push_back(pin);
-      scene.loops.push_back(gear);
-    }
-  }
-  return scene;
-}
 
 StateValues at_start(const Mechanism& mechanism) {
   GivenState given;
@@ -79,7 +46,9 @@ TEST(Rotors, MoveAsWheelsOnTheGround) {
   int rotors = 0;
   for (unsigned seed = 0; seed < 60; ++seed) {
     const Scene scene = anywhere(seed, seed % 2);
-    const Scene geared = with_wheels(scene);
+    Scene geared = scene;
+    RandomTree random(seed);
+    turn_rotors_into_wheels(random, geared);
     const int wheels = static_cast<int>(geared.loops.size());
     if (wheels == 0) continue;
     rotors += wheels;

@@ -153,10 +153,13 @@ TEST(Stiffness, NothingChangesWhereAMethodWithMemoryIsOutOfPlace) {
     EXPECT_EQ(r.status, "done") << r.reason;
     EXPECT_LT(r.stiff_from, 0.5) << gauge;
     EXPECT_FALSE(changed(r)) << gauge;
+    EXPECT_EQ(r.settings.when_stiff, "") << gauge;  // it is decided before the first step
   }
+  EXPECT_EQ(run_of(bar, "momentum", "", "leak:3").settings.when_stiff, "bdf");
   const RunResult projected = run_of(bar, "projected", "");
   EXPECT_LT(projected.stiff_from, 0.5);
   EXPECT_FALSE(changed(projected));
+  EXPECT_EQ(projected.settings.when_stiff, "");
   EXPECT_FALSE(changed(run_of(finger(0.1), "momentum", "")));
 }
 

@@ -2,6 +2,7 @@
 // and loops that no pose closes because a file has rounded their numbers.
 
 #include "equations/linkages.h"
+#include "equations/random_loops.h"
 #include "equations/random_tree.h"
 #include "equations/recut.h"
 
@@ -249,6 +250,38 @@ TEST(LoopRank, RunsGoOnWithWhatStaysOpen) {
       for (int i = 1; i <= 4; ++i)
         EXPECT_NEAR(a[static_cast<std::size_t>(i)], b[static_cast<std::size_t>(i)], 1e-4) << i;
     }
+  }
+}
+
+/// A body on two slides, tied to its own plane: no joint moves the loop, its matrix is rounding.
+TEST(LoopRank, LoopsThatNothingMovesHaveNone) {
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    RandomTree random(seed);
+    Scene scene;
+    std::string parent = "ground";
+    const Vector3d normal = random.direction();
+    for (const char* name : {"first", "second"}) {
+      BodySpec body = rod(name, 0.1);
+      JointSpec slide = hinge(std::string("along ") + name, parent, name, random.vector(0.7), 0.4);
+      slide.kind = JointKind::prismatic;
+      slide.axis = normal.cross(random.direction()).normalized();
+      scene.bodies.push_back(body);
+      scene.joints.push_back(slide);
+      parent = name;
+    }
+    LoopSpec loop;
+    loop.name = "table";
+    loop.kind = LoopKind::planar;
+    loop.child = "second";
+    loop.axis = normal;
+    loop.origin_child = random.vector(0.5);
+    close(loop, scene, build_tree(scene));
+    scene.loops.push_back(loop);
+    const Mechanism mechanism(scene, {.algebra = Algebra::spatial});
+    const Assembly a = assemble(mechanism);
+    EXPECT_EQ(a.rank, 0) << seed;
+    EXPECT_EQ(a.moved, 0) << seed;
+    EXPECT_EQ(a.mobility, 2) << seed;
   }
 }
 

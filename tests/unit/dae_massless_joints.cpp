@@ -63,6 +63,13 @@ Scene arm() {
   return scene;
 }
 
+Scene arm_in_plane() {
+  Scene scene = arm();
+  scene.joints.front().axis = {0, 0, 1};
+  scene.gravity = {0, -9.81, 0};
+  return scene;
+}
+
 GivenState at_start(const Mechanism& mechanism) {
   GivenState given;
   const Assembly a = assemble(mechanism, Assembled::rates);
@@ -133,6 +140,36 @@ TEST(MasslessJoints, AMassOnTheAxisIsToldFromOneBesideIt) {
                           "carry have none along their freedoms; expected masses, rotors' "
                           "inertias, or fixed joints");
     }
+}
+
+/// The same of what a joint carries: its own mass is none, a slider's point mass comes to lie on
+/// its axis from two lengths along it, and M_jj is what rounding leaves of that.
+TEST(MasslessJoints, AMassThatComesToTheAxisIsNoInertiaEither) {
+  RandomTree random(3);
+  for (int i = 0; i < 40; ++i) {
+    SCOPED_TRACE(i);
+    const Vector3d axis =
+        Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(0.1, 1)).normalized();
+    Scene scene = arm();
+    add_finger(scene, "tip", "arm", axis);
+    add_finger(scene, "slide", "tip link", axis, JointKind::prismatic);
+    scene.joints.back().origin_parent = random.uniform(-2, 2) * axis;
+    scene.bodies.back().mass = 0.5;
+    scene.bodies.back().com = random.uniform(-2, 2) * axis;
+    const std::string start = refusal(scene);  // whatever sign rounding gives M_jj
+    EXPECT_NE(
+        start.find("joint 'tip' has no inertia: body 'tip link' and what it carries have none "
+                   "about its axis"),
+        std::string::npos)
+        << start;
+    add_finger(scene, "bare", "arm");  // where the sweeps stop
+    OpenChain chain(scene);
+    VectorXd udot(chain.nv());
+    EXPECT_FALSE(chain.accelerations(0, chain.tree().q0, chain.tree().u0, udot));
+    EXPECT_EQ(chain.failure(),
+              "joints 'tip', 'bare' have no inertia: the bodies on them and what those carry have "
+              "none along their freedoms; expected masses, rotors' inertias, or fixed joints");
+  }
 }
 
 TEST(MasslessJoints, SixAreNamedAndTheOthersCounted) {
@@ -307,6 +344,53 @@ TEST(MasslessJoints, AreThoseOfTheNullSpace) {
   }
   EXPECT_GT(unheld, 10);
   EXPECT_GT(held, 10);
+}
+
+/// A massless body on a hinge carries another on a planar joint, which moves alone what has mass:
+/// of the hinge's inertia rounding is left, until the weld closes that holds the massless body.
+TEST(MasslessJoints, RoundingIsNoInertiaBeforeLoopsClose) {
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    RandomTree random(seed);
+    const double at = random.uniform(-1, 1), to = random.uniform(-1, 1);
+    const Vector3d arm(random.uniform(-1, 1), random.uniform(-1, 1), 0),
+        pin(random.uniform(-1, 1), random.uniform(-1, 1), 0);
+    Scene scene = arm_in_plane();
+    BodySpec frame, mass = scene.bodies.front();
+    frame.name = "frame";
+    mass.name = "mass";
+    JointSpec hinge, floats;
+    hinge.name = "hinge";
+    hinge.parent = "arm";
+    hinge.child = "frame";
+    hinge.origin_parent = pin;
+    hinge.position = {at};
+    hinge.velocity = {random.uniform(-1, 1)};
+    floats.name = "floats";
+    floats.kind = JointKind::planar;
+    floats.parent = "frame";
+    floats.child = "mass";
+    floats.origin_parent = arm;
+    floats.position = {to, -at, to + at};
+    scene.bodies.insert(scene.bodies.end(), {frame, mass});
+    scene.joints.insert(scene.joints.end(), {hinge, floats});
+    LoopSpec held;
+    held.name = "held";
+    held.kind = LoopKind::weld;
+    held.child = "frame";
+    close(held, scene, build_tree(scene));
+    scene.loops.push_back(held);
+    const Mechanism mechanism(scene);
+    EXPECT_TRUE(mechanism.plan().planar);
+    EXPECT_EQ(mechanism.kkt(), KktChoice::sparse) << seed;
+    EXPECT_FALSE(mechanism.leaves_first());
+    // The frame is held, and the arm with it: the mass alone moves, and falls.
+    const Start start = assemble(mechanism).start;
+    EXPECT_EQ(start.udot.size(), 5);
+    EXPECT_NEAR(start.udot.head(2).norm(), 0, 1e-9) << seed;
+    EXPECT_NEAR(start.udot.tail(3).head(2).norm(), 9.81, 1e-9) << seed;
+    const Mechanism dense(scene, {.kkt = KktChoice::dense});
+    EXPECT_THROW(assemble(dense), SceneError) << seed;
+  }
 }
 
 }  // namespace

@@ -98,11 +98,11 @@ class Scene:
         """Writes the scene file completely, or not at all."""
         _momenta.write(os.fspath(file), self.to_toml())
 
-    def load(self, algebra="auto", kkt="auto", *, at=None):
+    def load(self, algebra="auto", kkt="auto", *, cut="auto", at=None):
         """The Mechanism of this scene: momenta.load(scene, ...)."""
         from .verbs import load
 
-        return load(self, algebra, kkt, at=at)
+        return load(self, algebra, kkt, cut=cut, at=at)
 
     def __eq__(self, other):
         return isinstance(other, Scene) and self._keys == other._keys

@@ -8,28 +8,29 @@ from . import _momenta
 from .scene import Scene
 
 
-def load(scene, algebra="auto", kkt="auto", *, loops="", free_root=False, at=None):
+def load(scene, algebra="auto", kkt="auto", *, cut="auto", loops="", free_root=False, at=None):
     """A Mechanism from a scene file (TOML, URDF or MJCF), TOML text, a Scene or a dict of its keys.
 
     A string with a line break is text, any other string is a path. `algebra`: auto, planar or spatial;
-    `kkt`: auto, sweeps, sparse or dense; `loops`: a file with the loops of a URDF; `free_root`: whether
+    `kkt`: auto, sweeps, sparse or dense; `cut`: joints that runs cut, auto for the least work or scene;
+    `loops`: a file with the loops of a URDF; `free_root`: whether
     the root link of a URDF floats; `at`: start values instead of the scene's, {'q': {joint: ...},
     'v': {...}}. Raises SceneError: one sentence with file, line and what is wrong.
     """
     at = _state(at)
     text, name = _text_of(scene)
     if text is None:
-        return _momenta.read(name, os.fspath(loops), free_root, at, algebra, kkt)
+        return _momenta.read(name, os.fspath(loops), free_root, at, algebra, kkt, cut)
     if loops or free_root:
         raise ValueError(
             "loops and free_root are of a URDF file; expected neither with a scene given as text"
         )
-    return _momenta.parse(text, name, at, algebra, kkt)
+    return _momenta.parse(text, name, at, algebra, kkt, cut)
 
 
-def parse(text, name="scene", algebra="auto", kkt="auto"):
+def parse(text, name="scene", algebra="auto", kkt="auto", *, cut="auto"):
     """A Mechanism from TOML text; messages name the text by `name`."""
-    return _momenta.parse(text, name, "", algebra, kkt)
+    return _momenta.parse(text, name, "", algebra, kkt, cut)
 
 
 def evaluate(scene, at=None):
