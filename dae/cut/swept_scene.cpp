@@ -68,6 +68,8 @@ bool SweptScene::take(Scene scene) {
   // Where equations contradict each other the pose is that of least squares, another one.
   constexpr double same_pose = 1e-9;
   if (assembly.moved > same_pose) return false;
+  // Loops none of whose equations are independent leave every method rounding alone to divide by.
+  if (mechanism->m() > 0 && assembly.rank == 0) return false;
   start_ = std::move(assembly.start);
   mechanism_ = std::move(mechanism);
   return true;
