@@ -123,6 +123,10 @@ void expect_same(const RunResult& a, const RunResult& b, double bound, double dr
   for (std::size_t c = 0; c < a.trajectory.columns.size(); ++c) {
     const std::string& name = a.trajectory.columns[c];
     const bool drifts = name.find("drift") != std::string::npos;
+    // drives leave energy undefined, in both
+    if (name == "energy [J]" && std::isnan(a.trajectory.rows[0][c]) &&
+        std::isnan(b.trajectory.rows[0][c]))
+      continue;
     double size = 1;
     for (const auto& row : b.trajectory.rows) size = std::max(size, std::abs(row[c]));
     for (std::size_t i = 0; i < a.trajectory.rows.size(); ++i)
