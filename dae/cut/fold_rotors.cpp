@@ -261,6 +261,10 @@ class RotorFold {
   void drop_what_went() {
     Scene& s = result_.scene;
     const auto went = [&](const auto& x) { return gone_.contains(x.name); };
+    std::sort(result_.following.begin(), result_.following.end(),
+              [&](const FollowingJoint& a, const FollowingJoint& b) {
+                return joints_.at(a.joint) < joints_.at(b.joint);
+              });
     std::erase_if(s.joints, went);
     std::erase_if(s.loops, went);
     std::erase_if(s.bodies, [&](const BodySpec& b) { return gone_bodies_.contains(b.name); });
@@ -282,6 +286,9 @@ class RotorFold {
 
 FoldedScene fold_rotors(const Scene& scene) {
   validate(scene);
+  const bool couples = std::any_of(scene.loops.begin(), scene.loops.end(),
+                                   [](const LoopSpec& l) { return l.kind == LoopKind::coupler; });
+  if (!couples) return {scene, {}, {}};
   return RotorFold(scene).fold();
 }
 

@@ -26,9 +26,9 @@
 //
 // Rotors behind rotors fold one after the other. Left as they are: rotors with children, loops,
 // springs or wrenches on them; in two couplers, or in one of three joints, such as a differential;
-// behind a driven coupler; driven ones; on a body that turns, behind another joint than its own, or
-// about another axis; and whatever else a coupler ties (a crank, a slide): where
-// its moment of inertia depends on its angle, no number on a rate stands for it.
+// behind a driven coupler; driven ones; on a body that turns, behind another joint than its own or
+// about another axis; and whatever else a coupler ties (a crank, a slide): where its moment of
+// inertia depends on its angle, no number on a rate stands for it.
 
 #include <momenta/dae/cut/folded_scene.h>
 

@@ -153,11 +153,11 @@ FoldedScene fold_welds(const Scene& given) {
   validate(given);
   FoldedScene result;
   result.scene = given;
-  const DrivenLoops driven(given);
   std::unordered_map<std::string, std::string> weld_of;
   for (const JointSpec& joint : given.joints)
     if (joint.kind == JointKind::weld) weld_of[joint.child] = joint.name;
-  if (weld_of.size() == given.joints.size()) return result;
+  if (weld_of.empty() || weld_of.size() == given.joints.size()) return result;
+  const DrivenLoops driven(given);
   std::set<std::string> kept;
   Places places(given, kept);
   for (auto held = held_by_loops(given, places, driven); !held.empty();

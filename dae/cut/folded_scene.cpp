@@ -2,6 +2,7 @@
 #include <momenta/dae/cut/folded_scene.h>
 
 #include <algorithm>
+#include <cstdio>
 
 namespace momenta {
 
@@ -25,7 +26,9 @@ std::string in_words(const FoldedScene& folded) {
     add("others into " + std::to_string(by_carrier.size() - most_named) + " more bodies");
   for (std::size_t i = 0; i < folded.following.size() && i < most_named; ++i) {
     const FollowingJoint& f = folded.following[i];
-    add("rotor " + reading::in_quotes(f.body) + " taken as " + reading::digits(f.inertia) +
+    char inertia[32];
+    std::snprintf(inertia, sizeof inertia, "%.4g", f.inertia);
+    add("rotor " + reading::in_quotes(f.body) + " taken as " + inertia +
         (f.slides ? " kg" : " kg m²") + " at joint " + reading::in_quotes(f.leader));
   }
   if (folded.following.size() > most_named)

@@ -32,7 +32,7 @@ struct FollowingJoint {
 struct FoldedScene {
   Scene scene;
   std::vector<CarriedBody> carried;       ///< in the order of the given scene
-  std::vector<FollowingJoint> following;  ///< as they were folded
+  std::vector<FollowingJoint> following;  ///< likewise
   bool folds() const { return !carried.empty() || !following.empty(); }
 };
 

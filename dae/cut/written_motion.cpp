@@ -52,7 +52,9 @@ WrittenMotion::WrittenMotion(const Mechanism& written, const Start& start,
   for (const FollowingJoint& f : folded.following) {
     const Tree::Body &own = part_of(written.tree(), f.joint, 0),
                      &leader = part_of(written.tree(), f.leader, f.coordinate);
-    following_.push_back({own.q, own.u, leader.q, leader.u, f.ratio, f.offset});
+    following_.push_back({own.q, own.u, leader.q, leader.u, f.ratio, f.offset, {}});
+    if (leader.drive >= 0)
+      following_.back().drive = written.tree().drives[static_cast<std::size_t>(leader.drive)];
   }
   if (!cut_.empty()) bodies_ = std::make_unique<BodyMotions>(swept, bodies);
 }
@@ -63,7 +65,6 @@ void WrittenMotion::read(double t, const Eigen::VectorXd& swept_q, const Eigen::
   for (const Copied& c : copied_u_) u.segment(c.to, c.count) = swept_u.segment(c.from, c.count);
   if (bodies_) bodies_->take(t, swept_q, swept_u);
   take_all(t, swept_q, &u, q);
-  for (const Following& f : following_) u[f.u] = f.ratio * u[f.leader_u];
   if (!q.allFinite() || !u.allFinite()) return;
   last_t_ = t;
   last_q_ = q;
@@ -94,7 +95,16 @@ void WrittenMotion::take_all(double t, const Eigen::VectorXd& swept_q, Eigen::Ve
       }
     }
   }
-  for (const Following& f : following_) q[f.q] = f.ratio * q[f.leader_q] + f.offset;
+  follow(t, q, u);
+}
+
+void WrittenMotion::follow(double t, Eigen::VectorXd& q, Eigen::VectorXd* u) const {
+  for (const Following& f : following_) {
+    double value = 0, rate = 0, second = 0;
+    if (f.drive) f.drive->evaluate(t, value, rate, second);
+    q[f.q] = f.ratio * (f.drive ? value : q[f.leader_q]) + f.offset;
+    if (u) (*u)[f.u] = f.ratio * (f.drive ? rate : (*u)[f.leader_u]);
+  }
 }
 
 void WrittenMotion::take_turns(const Part& part, double t, double rate, Eigen::VectorXd& q) const {

@@ -2,20 +2,22 @@
 // Coordinates and rates of the scene as written, from those of the scene that is swept. A joint
 // that is one in both scenes has the same numbers there, in other places. A joint that was cut has
 // those of the motion of its two bodies (relative_motion.h), and one that was folded away those of
-// the joint it follows (folded_scene.h); what its equations leave open, the
-// drift of the swept scene, then shows at the loops of the scene as written. Angles are known but
-// for whole turns: of them that one is taken which is nearest to
+// the joint it follows (folded_scene.h); what its equations leave open, the drift of the swept
+// scene, then shows at the loops of the scene as written. Angles are known but for whole turns: of
+// them that one is taken which is nearest to
 //
 //   q(t₀) + (t − t₀) (u(t₀) + u(t)) / 2
 //
 // with t₀ the time before at which rates were read; of unit quaternions the sign nearest to the one
 // before.
 
+#include <momenta/core/scene/drive.h>
 #include <momenta/dae/cut/body_motions.h>
 #include <momenta/dae/cut/folded_scene.h>
 #include <momenta/dae/solver/memory.h>
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace momenta {
@@ -40,10 +42,11 @@ class WrittenMotion {
   struct Copied {
     int from, to, count;
   };
-  /// q = ratio q' + offset.
+  /// q = ratio q' + offset, of a joint that may be driven.
   struct Following {
     int q, u, leader_q, leader_u;
     double ratio, offset;
+    std::optional<MotionLaw> drive;
   };
   /// A part of a joint, with its places in q and u and in JointMotion.
   struct Part {
@@ -54,9 +57,12 @@ class WrittenMotion {
     JointSpec joint;
     std::vector<Part> parts;
   };
-  /// All q, and the rates of joints that were cut. @pre the bodies are where they are at t
+  /// All q, and the rates of joints that were cut or folded away. @pre the bodies are where they
+  /// are at t
   void take_all(double t, const Eigen::VectorXd& swept_q, Eigen::VectorXd* u,
                 Eigen::VectorXd& q) const;
+  /// Of joints that were folded away; `u`: or null.
+  void follow(double t, Eigen::VectorXd& q, Eigen::VectorXd* u) const;
   /// Whole turns and signs; `rate`: of an angle since the time before.
   void take_turns(const Part& part, double t, double rate, Eigen::VectorXd& q) const;
 

@@ -77,6 +77,31 @@ Scene geared_four_bar() {
   return s;
 }
 
+/// A wheel on `carrier` that turns by `ratio` times the angle of a joint, which starts at `angle`.
+void add_rotor(Scene& s, const std::string& carrier, const std::string& joint, double ratio,
+               double angle) {
+  BodySpec rotor;
+  rotor.name = "rotor of " + joint;
+  rotor.mass = 0.2;
+  rotor.inertia.diagonal() << 0.005, 0.005, 0.01;
+  s.bodies.push_back(rotor);
+  s.joints.push_back(hinge("shaft of " + joint, carrier, rotor.name, {0.3, 0, 0}, ratio * angle));
+  LoopSpec gear;
+  gear.name = "gear of " + joint;
+  gear.kind = LoopKind::coupler;
+  gear.joints = {"shaft of " + joint, joint};
+  gear.ratios = {1, -ratio};
+  s.loops.push_back(gear);
+}
+
+/// A driven crank with a rotor on the ground, a pendulum with one on the moving coupler.
+Scene shaken_pendulum_with_rotors() {
+  Scene s = example("driven");
+  add_rotor(s, "ground", "O", 5, s.drives.front().offset);
+  add_rotor(s, "coupler", "M", -6, -0.5108);
+  return s;
+}
+
 RunResult run_of(const Mechanism& mechanism, const Start& start, const std::string& form,
                  double end, double rtol) {
   RunRequest request;
@@ -98,6 +123,10 @@ void expect_same(const RunResult& a, const RunResult& b, double bound, double dr
   for (std::size_t c = 0; c < a.trajectory.columns.size(); ++c) {
     const std::string& name = a.trajectory.columns[c];
     const bool drifts = name.find("drift") != std::string::npos;
+    // drives leave energy undefined, in both
+    if (name == "energy [J]" && std::isnan(a.trajectory.rows[0][c]) &&
+        std::isnan(b.trajectory.rows[0][c]))
+      continue;
     double size = 1;
     for (const auto& row : b.trajectory.rows) size = std::max(size, std::abs(row[c]));
     for (std::size_t i = 0; i < a.trajectory.rows.size(); ++i)
@@ -115,6 +144,7 @@ std::vector<Case> cases() {
           {chained_row(5), 1},
           {bars_cut_in_the_middle(4), 0.5},
           {geared_four_bar(), 5},
+          {shaken_pendulum_with_rotors(), 3},
           {written_otherwise(example("andrews"), {{"F", "E2"}}), 0.02}};
 }
 
@@ -129,7 +159,7 @@ TEST(SweptScene, RunsReportTheSceneAsWritten) {
       expect_same(run_of(chosen, start, form, end, 1e-10), run_of(kept, start, form, end, 1e-10),
                   form == "stabilised-index2" ? 1e-4 : 1e-6, 1e-7, scene.name + " " + form);
   }
-  EXPECT_EQ(anew, 4);  // of Andrews' the gain is too small
+  EXPECT_EQ(anew, 5);  // of Andrews' the gain is too small
 }
 
 /// An angle is counted in whole turns, as an integrated one is.
