@@ -171,6 +171,7 @@ Recut recut(const Mechanism& mechanism, const Start& start, const std::vector<st
   // Loops found to be no joints as their bodies stand are fixed, and the search is made once more.
   constexpr int most_searches = 50;
   int searches = 0;
+  bool swept = mechanism.kkt() == KktChoice::sweeps;
   enum class From { scene, shallow, deep };
   for (const From from : {From::scene, From::shallow, From::deep})
     for (int obstacle = 0; obstacle >= 0 && searches < most_searches; ++searches) {
@@ -183,19 +184,30 @@ Recut recut(const Mechanism& mechanism, const Start& start, const std::vector<st
         if (length_of_cycles(graph.vertices(), first, most) > most) break;
       }
       Cycles cycles(graph.vertices(), std::move(first));
-      cycles.balance(cycles.descend(most_effort));
-      if (cycles.edges() == graph.edges) break;
-      if (!bodies) bodies.emplace(mechanism, start);
-      Recut found;
-      found.before = best.before;
-      found.scene = mechanism.scene();
-      obstacle = rebuild(mechanism, start, graph, cycles.edges(), said, *bodies, found);
-      if (obstacle >= 0) graph.edges[static_cast<std::size_t>(obstacle)].fixed = true;
-      if (obstacle != none) continue;
-      const Mechanism anew(found.scene, {mechanism.options().algebra});
-      found.after = cut_cost(anew);
-      const bool as_well_carried = anew.kkt() == mechanism.kkt() || anew.kkt() == KktChoice::sweeps;
-      if (as_well_carried && better(found.after, best.after)) best = std::move(found);
+      const std::int64_t left = cycles.descend(most_effort);
+      const std::vector<CutEdge> lowered = cycles.edges();
+      cycles.balance(left);
+      // Joints of a balanced tree may be too light for the sweeps.
+      obstacle = none;
+      for (const auto& edges : {cycles.edges(), lowered}) {
+        if (edges == graph.edges) continue;
+        if (!bodies) bodies.emplace(mechanism, start);
+        Recut found;
+        found.before = best.before;
+        found.scene = mechanism.scene();
+        obstacle = rebuild(mechanism, start, graph, edges, said, *bodies, found);
+        if (obstacle >= 0) graph.edges[static_cast<std::size_t>(obstacle)].fixed = true;
+        if (obstacle != none) break;
+        const Mechanism anew(found.scene, {mechanism.options().algebra});
+        found.after = cut_cost(anew);
+        const bool now_swept = anew.kkt() == KktChoice::sweeps;
+        const bool carried_anew = now_swept && !swept;
+        if (carried_anew || (now_swept == swept && better(found.after, best.after))) {
+          best = std::move(found);
+          swept = now_swept;
+        }
+        if (now_swept || cycles.edges() == lowered) break;
+      }
     }
   return best;
 }
