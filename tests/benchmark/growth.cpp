@@ -35,23 +35,14 @@
 #include <string>
 #include <vector>
 
+#include "made_scenes.h"
 #include "processor_time.h"
 #include "pushed_state.h"
 
 namespace momenta {
 namespace {
 
-struct Family {
-  const char* name;
-  int (*size)(int bodies);  ///< N of `momenta make` for about so many bodies
-};
-const Family families[] = {
-    {"n-four-bar", [](int bodies) { return (bodies - 1) / 2; }},
-    {"scissor-ladder", [](int bodies) { return bodies / 2; }},
-    {"closed-chain", [](int bodies) { return bodies; }},
-    {"grid",
-     [](int bodies) { return static_cast<int>(std::lround(std::sqrt(bodies / 2.0) - 0.25)); }},
-};
+using benchmark_models::Family, benchmark_models::families_with_loops;
 
 enum Cost { load, assembling, evaluation, run, memory, check, check_memory, costs };
 constexpr std::array<const char*, costs> titles{
@@ -228,7 +219,7 @@ int main(int argc, char** argv) {
   using namespace momenta;
   const int most = argc > 1 ? std::atoi(argv[1]) : 100'000;
   for (int i = 2; i < argc; ++i)
-    if (std::none_of(std::begin(families), std::end(families),
+    if (std::none_of(families_with_loops.begin(), families_with_loops.end(),
                      [&](const Family& f) { return std::string(argv[i]) == f.name; })) {
       std::fprintf(stderr,
                    "momenta_growth: found family '%s', expected n-four-bar, scissor-ladder, "
@@ -251,7 +242,7 @@ int main(int argc, char** argv) {
   std::printf("\n|---|---|");
   for (std::size_t i = 0; i < titles.size(); ++i) std::printf("---|");
   std::printf("\n");
-  for (const Family& family : families) {
+  for (const Family& family : families_with_loops) {
     bool asked = argc <= 2;
     for (int i = 2; i < argc; ++i) asked |= std::string(argv[i]) == family.name;
     if (asked) table(family, most, folder);

@@ -10,11 +10,8 @@
 #include <momenta/dae/cut/swept_scene.h>
 #include <momenta/dae/kkt/loop_solver.h>
 
-#include <cstdlib>
-#include <filesystem>
-#include <set>
-
 #include "nanoseconds.h"
+#include "robot_files.h"
 
 namespace momenta {
 namespace {
@@ -74,20 +71,10 @@ void time_loops(benchmark::State& state, const Scene& scene, bool momentum) {
 }  // namespace
 
 void register_robots() {
-  std::set<fs::path> files;
-  const auto take = [&](const fs::path& folder) {
-    if (!fs::is_directory(folder)) return;
-    for (const auto& entry : fs::recursive_directory_iterator(folder))
-      if (const auto end = entry.path().extension(); end == ".urdf" || end == ".xml")
-        files.insert(entry.path());
-  };
-  take(fs::path(MOMENTA_SOURCE_DIR) / "examples/models");
-  if (const char* folder = std::getenv("MOMENTA_MODELS")) take(folder);
-  for (const fs::path& file : files)
+  for (const fs::path& file : robot_files())
     for (const bool momentum : {true, false}) {
-      const std::string name = std::string("robots/") + (momentum ? "momentum/" : "acceleration/") +
-                               file.parent_path().filename().string() + "/" +
-                               file.filename().string();
+      const std::string name =
+          std::string("robots/") + (momentum ? "momentum/" : "acceleration/") + short_name(file);
       benchmark::RegisterBenchmark(name.c_str(), [file, momentum](benchmark::State& state) {
         try {
           const Scene scene = read_scene(file);
