@@ -12,6 +12,7 @@
 #include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/cut/recut.h>
+#include <momenta/dae/cut/swept_scene.h>
 #include <momenta/dae/kkt/loop_solver.h>
 #include <momenta/dae/study/run_form.h>
 
@@ -29,15 +30,18 @@ namespace {
 
 constexpr int in_different_trees = 10;
 
-/// One description, ready to be evaluated.
+/// One description, as runs integrate it, ready to be evaluated.
 class Evaluated {
  public:
   Evaluated(const Scene& scene, std::string how)
       : how_(std::move(how)),
-        mechanism_(scene),
+        written_(scene),
+        start_(assemble(written_, Assembled::motion).start),
+        swept_(written_, start_),
+        mechanism_(swept_.mechanism()),
         e_(mechanism_.evaluation<double>()),
         solver_(make_loop_solver(mechanism_, *e_)),
-        state_(pushed_state(mechanism_, assemble(mechanism_, Assembled::rates).start.q)),
+        state_(pushed_state(mechanism_, swept_.start().q)),
         u_(mechanism_.nv()),
         rate_(mechanism_.nv()),
         sigma_(mechanism_.m()) {}
@@ -60,7 +64,10 @@ class Evaluated {
 
  private:
   std::string how_;
-  Mechanism mechanism_;
+  Mechanism written_;
+  Start start_;
+  SweptScene swept_;
+  const Mechanism& mechanism_;
   std::unique_ptr<Evaluation<double>> e_;
   std::unique_ptr<LoopSolver> solver_;
   PushedState state_;
