@@ -2,6 +2,7 @@
 #include <momenta/dae/cut/cycles.h>
 #include <momenta/dae/cut/interchange.h>
 #include <momenta/dae/cut/recut.h>
+#include <momenta/dae/cut/root_order.h>
 #include <momenta/dae/factor/filtered_factor.h>
 #include <momenta/dae/kkt/kkt.h>
 #include <momenta/dae/sweeps/levels/loop_sweeps.h>
@@ -133,6 +134,50 @@ bool better(const CutCost& a, const CutCost& b) {
   return less_work || (hardly_more && 4 * a.mass_entries < 3 * b.mass_entries);
 }
 
+/// Takes the best of the scenes that enter, each with its trees on the ground in three orders.
+class Contest {
+ public:
+  Contest(const Mechanism& given, Recut& best)
+      : algebra_(given.options().algebra), swept_(given.kkt() == KktChoice::sweeps), best_(best) {}
+
+  /// Whether the sweeps carry its loops.
+  bool enter(const Recut& found) {
+    bool now_swept = enter_as_it_is(found);
+    for (const RootOrder order : {RootOrder::from_an_end, RootOrder::from_the_centre}) {
+      Recut other = found;
+      other.scene = with_roots_ordered(found.scene, order);
+      if (same_order(other.scene, found.scene)) continue;
+      other.reordered = true;
+      now_swept |= enter_as_it_is(other);
+    }
+    return now_swept;
+  }
+
+ private:
+  static bool same_order(const Scene& a, const Scene& b) {
+    const auto same = [](const auto& x, const auto& y) {
+      return x.name == y.name && x.parent == y.parent;
+    };
+    return std::equal(a.joints.begin(), a.joints.end(), b.joints.begin(), same) &&
+           std::equal(a.loops.begin(), a.loops.end(), b.loops.begin(), same);
+  }
+  bool enter_as_it_is(Recut found) {
+    if (!found.gains()) return swept_;  // the given scene
+    const Mechanism anew(found.scene, {algebra_});
+    found.after = cut_cost(anew);
+    const bool now_swept = anew.kkt() == KktChoice::sweeps;
+    if ((now_swept && !swept_) || (now_swept == swept_ && better(found.after, best_.after))) {
+      best_ = std::move(found);
+      swept_ = now_swept;
+    }
+    return now_swept;
+  }
+
+  Algebra algebra_;
+  bool swept_;
+  Recut& best_;
+};
+
 }  // namespace
 
 CutCost cut_cost(const Mechanism& mechanism) {
@@ -171,7 +216,8 @@ Recut recut(const Mechanism& mechanism, const Start& start, const std::vector<st
   // Loops found to be no joints as their bodies stand are fixed, and the search is made once more.
   constexpr int most_searches = 50;
   int searches = 0;
-  bool swept = mechanism.kkt() == KktChoice::sweeps;
+  Contest contest(mechanism, best);
+  contest.enter(Recut(best));
   enum class From { scene, shallow, deep };
   for (const From from : {From::scene, From::shallow, From::deep})
     for (int obstacle = 0; obstacle >= 0 && searches < most_searches; ++searches) {
@@ -198,14 +244,7 @@ Recut recut(const Mechanism& mechanism, const Start& start, const std::vector<st
         obstacle = rebuild(mechanism, start, graph, edges, said, *bodies, found);
         if (obstacle >= 0) graph.edges[static_cast<std::size_t>(obstacle)].fixed = true;
         if (obstacle != none) break;
-        const Mechanism anew(found.scene, {mechanism.options().algebra});
-        found.after = cut_cost(anew);
-        const bool now_swept = anew.kkt() == KktChoice::sweeps;
-        const bool carried_anew = now_swept && !swept;
-        if (carried_anew || (now_swept == swept && better(found.after, best.after))) {
-          best = std::move(found);
-          swept = now_swept;
-        }
+        const bool now_swept = contest.enter(found);
         if (now_swept || cycles.edges() == lowered) break;
       }
     }

@@ -32,18 +32,20 @@ struct CutCost {
 struct Recut {
   std::vector<std::string> cut;     ///< joints that became loops, in the order of the scene
   std::vector<std::string> joined;  ///< loops that became joints
+  bool reordered = false;           ///< trees on the ground stand in another order (root_order.h)
   CutCost before, after;
   Scene scene;  ///< with the remarks; the given one where nothing is gained
-  bool gains() const { return !cut.empty(); }
+  bool gains() const { return !cut.empty() || reordered; }
 };
 
 /// How the loops of a mechanism lie in its tree. O(bodies + length of all loops).
 CutCost cut_cost(const Mechanism& mechanism);
 
-/// The best cuts found, by descent from the given tree, from a shallow and from a deep one; those
-/// given where that lowers neither the work by two hundredths nor, at next to the same work, the
-/// entries of M by a quarter. Where the sweeps can't carry the loops either way, the entries of L
-/// decide instead. Bounded effort: of a hundred thousand bodies some seconds.
+/// The best cuts found, and the best order of the trees on the ground: by descent from the given
+/// tree, from a shallow and from a deep one; those given where that lowers neither the work by two
+/// hundredths nor, at next to the same work, the entries of M by a quarter. Where the sweeps can't
+/// carry the loops either way, the entries of L decide instead. Bounded effort: of a hundred
+/// thousand bodies some seconds.
 /// @throws SceneError where `keep` names neither a joint nor a loop
 Recut recut(const Mechanism& mechanism, const Start& start,
             const std::vector<std::string>& keep = {});

@@ -55,6 +55,8 @@ std::string SweptScene::in_words() const {
   if (!anew()) return "";
   std::string words = momenta::in_words(folded_);
   if (!cuts_.gains()) return words;
+  if (cuts_.cut.empty())
+    return words + (words.empty() ? "" : "; ") + "trees on the ground in another order";
   constexpr std::size_t most_named = 4;
   return words + (words.empty() ? "" : "; ") + "cut at " +
          reading::all_in_quotes(cuts_.cut, most_named) + ", with " +
