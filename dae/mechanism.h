@@ -40,7 +40,7 @@ enum class CutChoice {
 struct MechanismOptions {
   Algebra algebra = Algebra::automatic;  ///< which kernel
   KktChoice kkt = KktChoice::automatic;  ///< how (7) is solved
-  CutChoice cut = CutChoice::automatic;           ///< which joints runs cut
+  CutChoice cut = CutChoice::automatic;  ///< which joints runs cut
 };
 
 /// A column of trajectory.csv.

@@ -28,7 +28,8 @@ std::string cuts_in_words(const Recut& recut) {
                   static_cast<double>(b.factor_entries), static_cast<double>(a.factor_entries));
     factors = text;
   }
-  if (recut.cut.empty()) return std::string("trees on the ground in another order: ") + numbers + factors;
+  if (recut.cut.empty())
+    return std::string("trees on the ground in another order: ") + numbers + factors;
   return "cut at " + reading::all_in_quotes(recut.cut, most_named) + ", with " +
          reading::all_in_quotes(recut.joined, most_named) + " in the tree: " + numbers + factors;
 }

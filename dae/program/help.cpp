@@ -50,7 +50,8 @@ std::string help_of_verb(const CLI::App& verb) {
                     wrapped("", verb.get_description() + ".", 0) + "\n";
   for (const CLI::Option* o : verb.get_options())
     if (o != verb.get_help_ptr()) out += row(name_and_type(*o), shown_text(*o));
-  for (const std::string& sentence : names_behind(verb.get_options())) out += wrapped("", sentence, 2);
+  for (const std::string& sentence : names_behind(verb.get_options()))
+    out += wrapped("", sentence, 2);
   if (any_takes(verb.get_options(), "FAMILY")) {
     out += "\nFAMILY:\n";
     for (const Family& f : families()) out += row(f.name, f.what);

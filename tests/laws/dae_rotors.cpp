@@ -1,6 +1,6 @@
 // What a rotor's inertia on a joint stands for: a wheel on the ground, without mass, that a gear
-// turns with the joint. The same accelerations and kinetic energy, with the wheel as a number and as
-// a body behind a coupler; and joints that have no other inertia.
+// turns with the joint. The same accelerations and kinetic energy, with the wheel as a number and
+// as a body behind a coupler; and joints that have no other inertia.
 
 #include "equations/descriptions.h"
 #include "equations/linkages.h"
