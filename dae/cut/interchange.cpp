@@ -28,7 +28,6 @@ std::optional<JointKind> as_joint(LoopKind kind, bool planar) {
 }
 
 std::optional<LoopKind> as_loop(JointKind kind, bool planar) {
-  (void)planar;
   switch (kind) {
     case JointKind::revolute:
       return LoopKind::revolute;
