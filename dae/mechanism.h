@@ -30,17 +30,17 @@ enum class KktChoice {
 /// The name that `--kkt` takes.
 const char* name_of(KktChoice choice);
 
-/// Which joints runs cut (dae/cut/swept_scene.h).
+/// What runs integrate (dae/cut/integrated_scene.h).
 enum class CutChoice {
-  automatic,  ///< those with the least work found
-  scene       ///< those of the scene
+  automatic,  ///< bodies folded and joints cut for the least work found
+  scene       ///< the scene as it is written
 };
 
 /// Options that a scene does not contain.
 struct MechanismOptions {
   Algebra algebra = Algebra::automatic;  ///< which kernel
   KktChoice kkt = KktChoice::automatic;  ///< how (7) is solved
-  CutChoice cut = CutChoice::automatic;  ///< which joints runs cut
+  CutChoice cut = CutChoice::automatic;  ///< what runs integrate
 };
 
 /// A column of trajectory.csv.

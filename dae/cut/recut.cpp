@@ -180,6 +180,14 @@ class Contest {
 
 }  // namespace
 
+std::string in_words(const Recut& recut) {
+  constexpr std::size_t most_named = 4;
+  if (!recut.gains()) return "";
+  if (recut.cut.empty()) return "trees on the ground in another order";
+  return "cut at " + reading::all_in_quotes(recut.cut, most_named) + ", with " +
+         reading::all_in_quotes(recut.joined, most_named) + " in the tree";
+}
+
 CutCost cut_cost(const Mechanism& mechanism) {
   CutCost cost;
   const Tree& tree = mechanism.tree();

@@ -38,6 +38,9 @@ struct Recut {
   bool gains() const { return !cut.empty() || reordered; }
 };
 
+/// "cut at 'J3', with 'end' in the tree"; empty where nothing is gained.
+std::string in_words(const Recut& recut);
+
 /// How the loops of a mechanism lie in its tree. O(bodies + length of all loops).
 CutCost cut_cost(const Mechanism& mechanism);
 

@@ -22,25 +22,25 @@ const Tree::Body& part_of(const Tree& tree, const std::string& joint, int coordi
 }  // namespace
 
 WrittenMotion::WrittenMotion(const Mechanism& written, const Start& start,
-                             const FoldedScene& folded, const Mechanism& swept)
+                             const FoldedScene& folded, const Mechanism& integrated)
     : last_t_(start.t),
       last_q_(start.q),
       last_u_(start.u),
-      at_rest_(Eigen::VectorXd::Zero(swept.nv())) {
-  std::unordered_map<std::string, const JointSpec*> in_swept, in_folded;
-  for (const JointSpec& joint : swept.scene().joints) in_swept[joint.name] = &joint;
+      at_rest_(Eigen::VectorXd::Zero(integrated.nv())) {
+  std::unordered_map<std::string, const JointSpec*> in_integrated, in_folded;
+  for (const JointSpec& joint : integrated.scene().joints) in_integrated[joint.name] = &joint;
   for (const JointSpec& joint : folded.scene.joints) in_folded[joint.name] = &joint;
   std::set<std::string> bodies;
   for (const Tree::Body& b : written.tree().bodies) {
     const auto before = in_folded.find(b.joint);
     if (before == in_folded.end()) continue;  // folded away: a weld, or it follows another
     const JointSpec& joint = *before->second;
-    const auto found = in_swept.find(b.joint);
-    const bool turned = found != in_swept.end() && found->second->parent != joint.parent;
-    if (found != in_swept.end() && (!turned || keeps_coordinates(joint.kind))) {
+    const auto found = in_integrated.find(b.joint);
+    const bool turned = found != in_integrated.end() && found->second->parent != joint.parent;
+    if (found != in_integrated.end() && (!turned || keeps_coordinates(joint.kind))) {
       const bool places_changed = turned && joint.kind == JointKind::universal;
       const Tree::Body& from =
-          part_of(swept.tree(), b.joint, places_changed ? 1 - b.coordinate : b.coordinate);
+          part_of(integrated.tree(), b.joint, places_changed ? 1 - b.coordinate : b.coordinate);
       copied_q_.push_back({from.q, b.q, b.nq});
       copied_u_.push_back({from.u, b.u, b.nv});
       continue;
@@ -56,30 +56,34 @@ WrittenMotion::WrittenMotion(const Mechanism& written, const Start& start,
     if (leader.drive >= 0)
       following_.back().drive = written.tree().drives[static_cast<std::size_t>(leader.drive)];
   }
-  if (!cut_.empty()) bodies_ = std::make_unique<BodyMotions>(swept, bodies);
+  if (!cut_.empty()) bodies_ = std::make_unique<BodyMotions>(integrated, bodies);
 }
 
-void WrittenMotion::read(double t, const Eigen::VectorXd& swept_q, const Eigen::VectorXd& swept_u,
-                         Eigen::VectorXd& q, Eigen::VectorXd& u) {
+void WrittenMotion::read(double t, const Eigen::VectorXd& integrated_q,
+                         const Eigen::VectorXd& integrated_u, Eigen::VectorXd& q,
+                         Eigen::VectorXd& u) {
   u.resize(last_u_.size());
-  for (const Copied& c : copied_u_) u.segment(c.to, c.count) = swept_u.segment(c.from, c.count);
-  if (bodies_) bodies_->take(t, swept_q, swept_u);
-  take_all(t, swept_q, &u, q);
+  for (const Copied& c : copied_u_)
+    u.segment(c.to, c.count) = integrated_u.segment(c.from, c.count);
+  if (bodies_) bodies_->take(t, integrated_q, integrated_u);
+  take_all(t, integrated_q, &u, q);
   if (!q.allFinite() || !u.allFinite()) return;
   last_t_ = t;
   last_q_ = q;
   last_u_ = u;
 }
 
-void WrittenMotion::read_coordinates(double t, const Eigen::VectorXd& swept_q, Eigen::VectorXd& q) {
-  if (bodies_) bodies_->take(t, swept_q, at_rest_);
-  take_all(t, swept_q, nullptr, q);
+void WrittenMotion::read_coordinates(double t, const Eigen::VectorXd& integrated_q,
+                                     Eigen::VectorXd& q) {
+  if (bodies_) bodies_->take(t, integrated_q, at_rest_);
+  take_all(t, integrated_q, nullptr, q);
 }
 
-void WrittenMotion::take_all(double t, const Eigen::VectorXd& swept_q, Eigen::VectorXd* u,
+void WrittenMotion::take_all(double t, const Eigen::VectorXd& integrated_q, Eigen::VectorXd* u,
                              Eigen::VectorXd& q) const {
   q.resize(last_q_.size());
-  for (const Copied& c : copied_q_) q.segment(c.to, c.count) = swept_q.segment(c.from, c.count);
+  for (const Copied& c : copied_q_)
+    q.segment(c.to, c.count) = integrated_q.segment(c.from, c.count);
   for (const Cut& cut : cut_) {
     const JointMotion motion =
         joint_motion(cut.joint, bodies_->of(cut.joint.parent), bodies_->of(cut.joint.child));

@@ -1,10 +1,10 @@
 #pragma once
-// Coordinates and rates of the scene as written, from those of the scene that is swept. A joint
-// that is one in both scenes has the same numbers there, in other places. A joint that was cut has
-// those of the motion of its two bodies (relative_motion.h), and one that was folded away those of
-// the joint it follows (folded_scene.h); what its equations leave open, the drift of the swept
-// scene, then shows at the loops of the scene as written. Angles are known but for whole turns: of
-// them that one is taken which is nearest to
+// Coordinates and rates of the scene as written, from those of the scene that is integrated. A
+// joint that is one in both scenes has the same numbers there, in other places. A joint that was
+// cut has those of the motion of its two bodies (relative_motion.h), and one that was folded away
+// those of the joint it follows (folded_scene.h); what its equations leave open then shows at the
+// loops of the scene as written. Angles are known but for whole turns: of them that one is taken
+// which is nearest to
 //
 //   q(t₀) + (t − t₀) (u(t₀) + u(t)) / 2
 //
@@ -28,13 +28,13 @@ class WrittenMotion {
   /// `start` of the mechanism as written, from which angles are counted. `folded`: its scene, with
   /// the joints as they were before others were cut. Nothing of all that need outlive it.
   WrittenMotion(const Mechanism& written, const Start& start, const FoldedScene& folded,
-                const Mechanism& swept);
+                const Mechanism& integrated);
 
-  /// q (nq), u (nv) of the scene as written, from those of the swept scene. O(bodies)
-  void read(double t, const Eigen::VectorXd& swept_q, const Eigen::VectorXd& swept_u,
+  /// q (nq), u (nv) of the scene as written, from those of the integrated scene. O(bodies)
+  void read(double t, const Eigen::VectorXd& integrated_q, const Eigen::VectorXd& integrated_u,
             Eigen::VectorXd& q, Eigen::VectorXd& u);
   /// q alone.
-  void read_coordinates(double t, const Eigen::VectorXd& swept_q, Eigen::VectorXd& q);
+  void read_coordinates(double t, const Eigen::VectorXd& integrated_q, Eigen::VectorXd& q);
   /// The time before.
   void carry(Memory& memory);
 
@@ -59,7 +59,7 @@ class WrittenMotion {
   };
   /// All q, and the rates of joints that were cut or folded away. @pre the bodies are where they
   /// are at t
-  void take_all(double t, const Eigen::VectorXd& swept_q, Eigen::VectorXd* u,
+  void take_all(double t, const Eigen::VectorXd& integrated_q, Eigen::VectorXd* u,
                 Eigen::VectorXd& q) const;
   /// Of joints that were folded away; `u`: or null.
   void follow(double t, Eigen::VectorXd& q, Eigen::VectorXd* u) const;
@@ -72,7 +72,7 @@ class WrittenMotion {
   std::unique_ptr<BodyMotions> bodies_;  ///< null: no joint was cut
   double last_t_;
   Eigen::VectorXd last_q_, last_u_;
-  Eigen::VectorXd at_rest_;  ///< rates of the swept scene, all zero
+  Eigen::VectorXd at_rest_;  ///< rates of the integrated scene, all zero
 };
 
 }  // namespace momenta

@@ -1,7 +1,7 @@
 #include <momenta/core/operations.h>
 #include <momenta/core/scene/kinds.h>
+#include <momenta/dae/cut/integrated_scene.h>
 #include <momenta/dae/cut/recut.h>
-#include <momenta/dae/cut/swept_scene.h>
 #include <momenta/dae/measure/rank.h>
 
 #include <cstdio>
@@ -175,8 +175,9 @@ int check(const Options& o) {
     }
     if (ranked) j["loops"] = rank_json(*mechanism, rank);
     if (has_reach(*mechanism)) j["drives"] = reach_json(reach);
-    if (mechanism->m() > 0) j["cuts"] = cut_json(recut(*mechanism, a.start));
-    j["integrated"] = SweptScene(*mechanism, a.start).in_words();
+    const Recut cuts = recut(*mechanism, a.start);
+    if (mechanism->m() > 0) j["cuts"] = cut_json(cuts);
+    j["integrated"] = IntegratedScene(*mechanism, a.start, &cuts).in_words();
     std::printf("%s\n", j.dump(2).c_str());
     return done;
   }
@@ -238,13 +239,12 @@ int check(const Options& o) {
   std::printf("\nPlan\n");
   for (const auto& [what, how] : mechanism->plan_lines())
     std::printf("  %-17s %s\n", what.c_str(), how.c_str());
-  if (mechanism->m() > 0) {
-    const Recut cuts = recut(*mechanism, a.start);
+  const Recut cuts = recut(*mechanism, a.start);
+  if (mechanism->m() > 0)
     std::printf("  %-17s %s%s\n", "cuts", cuts_in_words(cuts).c_str(),
                 cuts.gains() ? " (momenta convert SCENE OUT --recut)" : "");
-  }
-  if (const SweptScene swept(*mechanism, a.start); swept.anew())
-    std::printf("  %-17s %s\n", "runs integrate", swept.in_words().c_str());
+  if (const IntegratedScene integrated(*mechanism, a.start, &cuts); integrated.anew())
+    std::printf("  %-17s %s\n", "runs integrate", integrated.in_words().c_str());
   if (mechanism->m() == 0) {
     std::printf("\nOperations of one evaluation\n");
     const auto print = [&](const char* name, Recursion recursion) {

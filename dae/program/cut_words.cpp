@@ -1,16 +1,8 @@
 #include "cut_words.h"
 
-#include <momenta/core/scene/near_name.h>
-
 #include <cstdio>
 
 namespace momenta::program {
-namespace {
-
-constexpr std::size_t most_named = 4;
-
-}  // namespace
-
 std::string cuts_in_words(const Recut& recut) {
   const CutCost &a = recut.before, &b = recut.after;
   if (!recut.gains()) return "no other cuts found that would be less work";
@@ -28,10 +20,7 @@ std::string cuts_in_words(const Recut& recut) {
                   static_cast<double>(b.factor_entries), static_cast<double>(a.factor_entries));
     factors = text;
   }
-  if (recut.cut.empty())
-    return std::string("trees on the ground in another order: ") + numbers + factors;
-  return "cut at " + reading::all_in_quotes(recut.cut, most_named) + ", with " +
-         reading::all_in_quotes(recut.joined, most_named) + " in the tree: " + numbers + factors;
+  return in_words(recut) + ": " + numbers + factors;
 }
 
 }  // namespace momenta::program

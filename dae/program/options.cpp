@@ -57,7 +57,7 @@ void add_scene(CLI::App& verb, Options& o) {
          {"auto", "planar", "spatial"});
   one_of(verb.add_option("--kkt", o.kkt, "Solver of the loop equations (default: auto)"),
          {"auto", "sweeps", "sparse", "dense"});
-  one_of(verb.add_option("--cut", o.cut, "Joints that runs cut (default: auto, the least work)"),
+  one_of(verb.add_option("--cut", o.cut, "What runs integrate (default: auto, the least work)"),
          {"auto", "scene"});
   add_level(verb, o);
   verb.add_flag("--json", o.json, "One JSON document on standard output");
@@ -172,22 +172,20 @@ void describe(StudyResult& study, const Options& o, const Mechanism& mechanism,
   study.scene_hash = digest(content_of(o.scene));
   study.command = o.command;
   study.plan = mechanism.plan_lines();
-  if (const auto swept = std::find_if(study.runs.begin(), study.runs.end(),
-                                      [](const RunResult& run) { return !run.swept.empty(); });
-      swept != study.runs.end())
-    study.plan.emplace_back("integrated", swept->swept);
+  if (!study.runs.empty() && !study.runs.front().integrated.empty())
+    study.plan.emplace_back("integrated", study.runs.front().integrated);
   if (!o.out.empty()) show(study, mechanism, assembly);
   study.environment = environment();
   if (interrupted() && !study.runs.empty() && study.runs.back().status != "done")
     study.runs.back().reason = "interrupted";
 }
 
-void print_swept(const StudyResult& study) {
-  if (!study.runs.empty() && !study.runs.front().swept.empty())
+void print_integrated(const StudyResult& study) {
+  if (!study.runs.empty() && !study.runs.front().integrated.empty())
     std::printf(
         "\nIntegrated in place of the scene as written, for less work: %s (--cut scene: as "
         "written)\n",
-        study.runs.front().swept.c_str());
+        study.runs.front().integrated.c_str());
 }
 
 int film_intervals_of(const Mechanism& mechanism, const Options& o, std::size_t runs) {
@@ -287,11 +285,12 @@ int publish(const StudyResult& study, const std::string& words, const Options& o
     if (!write_results(files)) return run_failed;
   }
   close(journal, study.runs.size(), !interrupted(), o);
-  if (o.json)
+  if (o.json) {
     std::fputs(json.c_str(), stdout);
-  else if (!o.quiet)
+  } else if (!o.quiet) {
     std::printf("%s\n%s", drift_table(study).c_str(), words.c_str());
-  print_swept(study);
+    print_integrated(study);
+  }
   if (!o.out.empty() && !o.quiet)
     std::fprintf(stderr, "momenta: wrote %s\n", (o.out / "index.html").c_str());
   const bool any = std::any_of(study.runs.begin(), study.runs.end(),

@@ -67,7 +67,7 @@ void describe(StudyResult& study, const Options& o, const Mechanism& mechanism,
               const Assembly& assembly);
 
 /// Prints what its runs integrated in place of the scene as written, if that is another one.
-void print_swept(const StudyResult& study);
+void print_integrated(const StudyResult& study);
 
 /// Intervals of the film of one of so many runs; 0 without --out and where nothing is drawn.
 int film_intervals_of(const Mechanism& mechanism, const Options& o, std::size_t runs);

@@ -1,4 +1,4 @@
-#include <momenta/dae/cut/swept_scene.h>
+#include <momenta/dae/cut/integrated_scene.h>
 #include <momenta/dae/measure/rank.h>
 #include <momenta/dae/report/csv.h>
 #include <momenta/dae/report/page.h>
@@ -141,10 +141,10 @@ int run(const Options& o) {
   const auto mechanism = load(o);
   const auto reference = load_reference(o, *mechanism);
   const Assembly a = assemble(*mechanism);
-  const SweptScene swept(*mechanism, a.start);
+  const IntegratedScene integrated(*mechanism, a.start);
   RunRequest request;
   request.settings = run_settings(o, mechanism->scene().run);
-  request.swept = &swept;
+  request.integrated = &integrated;
   const RunSettings& s = request.settings;
   request.reference = reference.get();
   request.keep_trajectory = true;
@@ -169,7 +169,7 @@ int run(const Options& o) {
   RunResult& result = study.runs.front();
   if (!files.flush()) result.status = "failed";
   if (!interrupted())
-    time_runs(swept.mechanism(), swept.start(), study.runs,
+    time_runs(integrated.mechanism(), integrated.start(), study.runs,
               {timing_named(o.timing), 3, nullptr, {}, request.going_on});
   line.show("");
   study.reference = o.reference.string();
@@ -191,7 +191,7 @@ int run(const Options& o) {
     std::fputs(summary.c_str(), stdout);
   } else if (!o.quiet) {
     std::fputs(drift_table(study).c_str(), stdout);
-    print_swept(study);
+    print_integrated(study);
     print_rank(*mechanism, a, result);
     print_singular_crossings(result);
     print_undetermined(result);

@@ -75,7 +75,7 @@ Json summary_json(const RunResult& run, const Environment& environment) {
   json["energy"] = {{"error_max", number_or_null(run.energy_error_max)}};
   json["error"] = {{"position_max", number_or_null(run.position_error_max)},
                    {"velocity_max", number_or_null(run.velocity_error_max)}};
-  json["swept"] = run.swept;
+  json["integrated"] = run.integrated;
   json["rank"] = run.drift_unit.empty() ? Json(nullptr) : Json(run.rank);
   json["dependent_rows"] = Json::array();
   for (const auto& row : run.dependent_rows)

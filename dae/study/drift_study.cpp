@@ -1,5 +1,5 @@
 #include <momenta/core/share.h>
-#include <momenta/dae/cut/swept_scene.h>
+#include <momenta/dae/cut/integrated_scene.h>
 #include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/study/drift_study.h>
 #include <momenta/dae/study/run_record.h>
@@ -85,7 +85,7 @@ std::vector<RunSettings> plan_runs(const Mechanism& mechanism, const DriftReques
 std::vector<RunResult> run_drift_study(const Mechanism& mechanism, const Start& start,
                                        const DriftRequest& request) {
   const auto runs = plan_runs(mechanism, request);
-  const SweptScene swept(mechanism, start);
+  const IntegratedScene integrated(mechanism, start);
   const int total = static_cast<int>(runs.size());
   std::vector<RunResult> results(runs.size());
   std::vector<char> there(runs.size(), 0);
@@ -106,7 +106,7 @@ std::vector<RunResult> run_drift_study(const Mechanism& mechanism, const Start& 
     if (!result) {
       RunRequest run;
       run.settings = runs[i];
-      run.swept = &swept;
+      run.integrated = &integrated;
       run.reference = request.reference;
       run.max_cpu_seconds = request.max_cpu_seconds;
       run.film_intervals = request.film_intervals;
@@ -128,7 +128,7 @@ std::vector<RunResult> run_drift_study(const Mechanism& mechanism, const Start& 
     }
   results.resize(kept);
   if (going)
-    time_runs(swept.mechanism(), swept.start(), results,
+    time_runs(integrated.mechanism(), integrated.start(), results,
               {request.timing,
                0.8,
                request.journal,

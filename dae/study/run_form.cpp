@@ -119,13 +119,14 @@ RunResult run_form(const Mechanism& mechanism, const Start& start, const RunRequ
   RunResult result;
   result.scene = mechanism.scene().name;
   result.settings = request.settings;
-  std::optional<SweptScene> chosen;
-  const SweptScene& swept = request.swept ? *request.swept : chosen.emplace(mechanism, start);
-  const Mechanism& integrated = swept.mechanism();
-  result.swept = swept.in_words();
+  std::optional<IntegratedScene> chosen;
+  const IntegratedScene& scene =
+      request.integrated ? *request.integrated : chosen.emplace(mechanism, start);
+  const Mechanism& integrated = scene.mechanism();
+  result.integrated = scene.in_words();
   std::optional<FormRunner> made;
   try {
-    made.emplace(integrated, swept.start(), result.settings, request.max_cpu_seconds);
+    made.emplace(integrated, scene.start(), result.settings, request.max_cpu_seconds);
   } catch (const NoStateAtStart& none) {
     result.status = "failed";
     result.reason = none.what();
@@ -140,13 +141,13 @@ RunResult run_form(const Mechanism& mechanism, const Start& start, const RunRequ
   if (from) result = from->so_far;
   const double wall_start = wall_now() - (from ? result.wall_s : 0),
                cpu_start = thread_seconds() - (from ? result.cpu_s : 0);
-  RunMonitor monitor(mechanism, swept, runner.form(), start, request, result);
-  const auto y0 = runner.form().initial(swept.start());
+  RunMonitor monitor(mechanism, scene, runner.form(), start, request, result);
+  const auto y0 = runner.form().initial(scene.start());
   if (!from) monitor.sample(start.t, y0.data(), nullptr);
   auto* ode = dynamic_cast<OdeForm*>(&runner.form());
   std::vector<long> faded(static_cast<std::size_t>(integrated.m()));
   if (ode && integrated.m() > 0) {
-    const int rank = swept.anew() ? rank_at(integrated, swept.start()).rank : result.rank;
+    const int rank = scene.anew() ? rank_at(integrated, scene.start()).rank : result.rank;
     ode->watch_faded(&faded, integrated.m() - rank);
   }
   const std::vector<double> times = output_times(result.settings, request.reference, reach);

@@ -9,7 +9,7 @@
 
 namespace momenta {
 
-class SweptScene;  // dae/cut/swept_scene.h
+class IntegratedScene;  // dae/cut/integrated_scene.h
 
 /// The state of a run between two steps, from which the run can continue.
 struct Checkpoint {
@@ -22,8 +22,8 @@ struct Checkpoint {
 /// The request for one run: its settings, what it keeps, and the functions it calls.
 struct RunRequest {
   RunSettings settings;  ///< form, integrator, tolerances, times
-  /// Which joints the run cuts, of the same mechanism and start; null: chosen for this run.
-  const SweptScene* swept = nullptr;
+  /// What the run integrates, made of the same mechanism and start; null: chosen for this run.
+  const IntegratedScene* integrated = nullptr;
   const Reference* reference = nullptr;  ///< bound to trajectory_columns(mechanism)
   bool keep_trajectory = false;          ///< RunResult::trajectory is filled
   int keep_every = 1;                    ///< keep every n-th row, from the first
@@ -65,7 +65,7 @@ struct TimedRun {
   Counters counters;             ///< without the work of measuring
 };
 /// Times a run without measuring, of a mechanism as it is written: to time one of run_form(), give
-/// SweptScene::mechanism() and start(). `settings`: those of a run that is done. `at_step` is
+/// IntegratedScene::mechanism() and start(). `settings`: those of a run that is done. `at_step` is
 /// called after each step; return false to end the run.
 TimedRun time_run(const Mechanism& mechanism, const Start& start, RunSettings settings,
                   const std::function<bool()>& at_step = {});

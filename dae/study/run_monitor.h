@@ -3,7 +3,7 @@
 // and between the steps: those of the scene as written, whatever joints the run cuts. Only
 // run_form.cpp uses it.
 
-#include <momenta/dae/cut/swept_scene.h>
+#include <momenta/dae/cut/integrated_scene.h>
 #include <momenta/dae/cut/written_motion.h>
 #include <momenta/dae/measure/growth.h>
 #include <momenta/dae/measure/multipliers.h>
@@ -34,8 +34,8 @@ inline Drift drift_of(const Mechanism& mechanism, const Eigen::VectorXd& x) {
 /// Looks at states of a form: drifts, energy, errors.
 class RunMonitor {
  public:
-  RunMonitor(const Mechanism& mechanism, const SweptScene& swept, Form& form, const Start& start,
-             const RunRequest& request, RunResult& result)
+  RunMonitor(const Mechanism& mechanism, const IntegratedScene& scene, Form& form,
+             const Start& start, const RunRequest& request, RunResult& result)
       : mechanism_(mechanism),
         form_(form),
         request_(request),
@@ -56,16 +56,16 @@ class RunMonitor {
       unique_.emplace(mechanism, *e_, *solver_);
       all_unique_.assign(static_cast<std::size_t>(mechanism.m()), true);
     }
-    if (swept.anew()) {
-      written_.emplace(mechanism, start, swept.folded(), swept.mechanism());
-      of_form_.q.resize(swept.mechanism().nq());
-      swept_e_ = swept.mechanism().evaluation<double>();
-      swept_solver_ = make_loop_solver(swept.mechanism(), *swept_e_);
+    const Mechanism& integrated = scene.mechanism();
+    if (scene.anew()) {
+      written_.emplace(mechanism, start, scene.folded(), integrated);
+      of_form_.q.resize(integrated.nq());
+      integrated_e_ = integrated.evaluation<double>();
+      integrated_solver_ = make_loop_solver(integrated, *integrated_e_);
     }
-    const Mechanism& followed = swept.mechanism();
-    if (followed.m() > 0 && (followed.kkt() == KktChoice::sweeps || filters_pivots(followed)))
-      singular_crossings_.emplace(followed, form, written_ ? *swept_e_ : *e_,
-                                  written_ ? *swept_solver_ : *solver_, result);
+    if (integrated.m() > 0 && (integrated.kkt() == KktChoice::sweeps || filters_pivots(integrated)))
+      singular_crossings_.emplace(integrated, form, written_ ? *integrated_e_ : *e_,
+                                  written_ ? *integrated_solver_ : *solver_, result);
   }
 
   bool sample(double t, const double* y, const double* ydot) {
@@ -157,7 +157,8 @@ class RunMonitor {
 
   /// Whether what is looked at does not depend on what was looked at before.
   bool can_be_put_down() const {
-    return (!solver_ || !solver_->remembers()) && (!swept_solver_ || !swept_solver_->remembers());
+    return (!solver_ || !solver_->remembers()) &&
+           (!integrated_solver_ || !integrated_solver_->remembers());
   }
   /// Between two steps; beside what is in the result.
   void carry(Memory& memory) {
@@ -339,10 +340,10 @@ class RunMonitor {
   RunResult& result_;
   std::unique_ptr<Evaluation<double>> e_;
   std::unique_ptr<LoopSolver> solver_;
-  std::optional<WrittenMotion> written_;  ///< where the run cuts other joints than the scene
-  std::unique_ptr<Evaluation<double>> swept_e_;
-  std::unique_ptr<LoopSolver> swept_solver_;
-  Snapshot of_form_;  ///< of the swept scene
+  std::optional<WrittenMotion> written_;  ///< where the run integrates another scene
+  std::unique_ptr<Evaluation<double>> integrated_e_;
+  std::unique_ptr<LoopSolver> integrated_solver_;
+  Snapshot of_form_;  ///< of the integrated scene
   std::optional<UniqueMultipliers> unique_;
   std::vector<bool> all_unique_;
   bool lengths_, both_;      ///< rows in m; and others in rad

@@ -96,8 +96,8 @@ void list(const Each& each,
          velocity_drift_max, between_steps_max, position_growth, velocity_growth, angle_drift_max,
          angle_rate_drift_max, angle_between_steps_max, angle_growth, angle_rate_growth,
          energy_error_max, kinetic_energy_max, energy_scale, position_error_max, velocity_error_max,
-         swept, rank, dependent_rows, residue, weak_evaluations, faded_rows, singular_crossings,
-         least_pivot, undetermined, series, trajectory, film] = s;
+         integrated, rank, dependent_rows, residue, weak_evaluations, faded_rows,
+         singular_crossings, least_pivot, undetermined, series, trajectory, film] = s;
   each("scene", scene), each("settings", settings), each("status", status), each("reason", reason);
   each("stopped_at", stopped_at), each("stiff_from", stiff_from), each("changed_at", changed_at),
       each("counters", counters), each("partitions", partitions);
@@ -113,7 +113,7 @@ void list(const Each& each,
   each("energy_error_max", energy_error_max), each("kinetic_energy_max", kinetic_energy_max);
   each("energy_scale", energy_scale);
   each("position_error_max", position_error_max), each("velocity_error_max", velocity_error_max);
-  each("swept", swept), each("rank", rank), each("dependent_rows", dependent_rows),
+  each("integrated", integrated), each("rank", rank), each("dependent_rows", dependent_rows),
       each("residue", residue);
   each("weak_evaluations", weak_evaluations);
   each("faded_rows", faded_rows), each("singular_crossings", singular_crossings),

@@ -102,8 +102,9 @@ struct RunResult {
   double energy_scale = not_measured;
   double position_error_max = not_measured;  ///< largest of Series::position_error
   double velocity_error_max = not_measured;  ///< largest of Series::velocity_error
-  /// What the run integrated in place of the scene as written (cut/swept_scene.h); empty: that.
-  std::string swept;
+  /// What the run integrated in place of the scene as written (cut/integrated_scene.h); empty:
+  /// that.
+  std::string integrated;
   int rank = 0;  ///< of Φ_q at the start (kkt/loop_rank.h)
   /// A row that follows from the others at the start.
   struct DependentRow {

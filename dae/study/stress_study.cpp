@@ -1,6 +1,6 @@
 #include <momenta/core/scene/validate.h>
 #include <momenta/core/share.h>
-#include <momenta/dae/cut/swept_scene.h>
+#include <momenta/dae/cut/integrated_scene.h>
 #include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/solver/stopping.h>
 #include <momenta/dae/study/environment.h>
@@ -39,7 +39,7 @@ std::string power_of_ten(double x) {
 struct Ground {
   std::unique_ptr<Mechanism> mechanism;
   std::unique_ptr<Start> start;
-  std::unique_ptr<SweptScene> swept;
+  std::unique_ptr<IntegratedScene> integrated;
   std::unique_ptr<Reference> reference;
   double accuracy = not_measured;
   double length = 1, mass = 1;
@@ -53,7 +53,7 @@ Ground prepare(const Rung& rung, const std::string& name, const StressRequest& r
     validate(rung.scene);
     g.mechanism = std::make_unique<Mechanism>(rung.scene, rung.options);
     g.start = std::make_unique<Start>(assemble(*g.mechanism).start);
-    g.swept = std::make_unique<SweptScene>(*g.mechanism, *g.start);
+    g.integrated = std::make_unique<IntegratedScene>(*g.mechanism, *g.start);
   } catch (const SceneError& e) {
     g.refused = e.what();
     return g;
@@ -277,7 +277,7 @@ StressResult run_stress_study(const StressRequest& request) {
       RunRequest run;
       run.settings = settings_of(contestant, *g.mechanism, request.rtol);
       run.reference = g.reference.get();
-      run.swept = g.swept.get();
+      run.integrated = g.integrated.get();
       run.max_cpu_seconds = request.cpu_limit;
       run.progress = [&](double) { return going.load(); };
       const std::string key = name + key_of(run.settings);

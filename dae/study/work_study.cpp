@@ -1,4 +1,4 @@
-#include <momenta/dae/cut/swept_scene.h>
+#include <momenta/dae/cut/integrated_scene.h>
 #include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/study/run_record.h>
 #include <momenta/dae/study/work_study.h>
@@ -61,7 +61,7 @@ std::vector<RunSettings> plan_ladders(const Mechanism& mechanism, const WorkRequ
 std::vector<RunResult> run_work_study(const Mechanism& mechanism, const Start& start,
                                       const WorkRequest& request) {
   auto ladders = plan_ladders(mechanism, request);
-  const SweptScene swept(mechanism, start);
+  const IntegratedScene integrated(mechanism, start);
   std::vector<RunResult> results;
   bool going = true;
   for (std::size_t i = 0; i < ladders.size() && going; ++i) {
@@ -73,7 +73,7 @@ std::vector<RunResult> run_work_study(const Mechanism& mechanism, const Start& s
     for (const double rung : fixed ? request.steps : request.tolerances) {
       RunRequest run;
       run.settings = ladders[i];
-      run.swept = &swept;
+      run.integrated = &integrated;
       (fixed ? run.settings.step : run.settings.rtol) = rung;
       if (!fixed) run.settings.atol = rung;
       run.reference = request.reference;
@@ -103,7 +103,7 @@ std::vector<RunResult> run_work_study(const Mechanism& mechanism, const Start& s
                      ladder(mechanism, request, ladders[i].form, "bdf"));
   }
   if (going)
-    time_runs(swept.mechanism(), swept.start(), results,
+    time_runs(integrated.mechanism(), integrated.start(), results,
               {request.timing,
                1,
                request.journal,

@@ -11,8 +11,8 @@
 #include <benchmark/benchmark.h>
 #include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/assembly/assembly.h>
+#include <momenta/dae/cut/integrated_scene.h>
 #include <momenta/dae/cut/recut.h>
-#include <momenta/dae/cut/swept_scene.h>
 #include <momenta/dae/kkt/loop_solver.h>
 #include <momenta/dae/study/run_form.h>
 
@@ -66,7 +66,7 @@ class Evaluated {
   std::string how_;
   Mechanism written_;
   Start start_;
-  SweptScene swept_;
+  IntegratedScene swept_;
   const Mechanism& mechanism_;
   std::unique_ptr<Evaluation<double>> e_;
   std::unique_ptr<LoopSolver> solver_;

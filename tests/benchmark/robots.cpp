@@ -1,13 +1,13 @@
 // Rows robots/<form>/<file>: one right-hand side of each robot of examples/models, and of the
 // folder that MOMENTA_MODELS names, counter ns_per_evaluation; the label says how many rates and
 // equations there are and what solves them. Trees take OpenChain's calls, (q, p) → (q̇, ṗ) and (q,
-// u) → u̇; loops what runs integrate (dae/cut/swept_scene.h), (7)-(8) and (3).
+// u) → u̇; loops what runs integrate (dae/cut/integrated_scene.h), (7)-(8) and (3).
 
 #include <benchmark/benchmark.h>
 #include <momenta/core/open_chain.h>
 #include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/assembly/assembly.h>
-#include <momenta/dae/cut/swept_scene.h>
+#include <momenta/dae/cut/integrated_scene.h>
 #include <momenta/dae/kkt/loop_solver.h>
 
 #include "nanoseconds.h"
@@ -41,10 +41,10 @@ void time_tree(benchmark::State& state, const Scene& scene, bool momentum) {
 void time_loops(benchmark::State& state, const Scene& scene, bool momentum) {
   const Mechanism written(scene);
   const Start written_start = assemble(written).start;
-  const SweptScene swept(written, written_start);
-  const Mechanism& mechanism = swept.mechanism();
+  const IntegratedScene integrated(written, written_start);
+  const Mechanism& mechanism = integrated.mechanism();
   if (mechanism.m() == 0) return time_tree(state, mechanism.scene(), momentum);
-  const Start& start = swept.start();
+  const Start& start = integrated.start();
   const auto e = mechanism.evaluation<double>();
   const auto solver = make_loop_solver(mechanism, *e);
   const Eigen::VectorXd centre = Eigen::VectorXd::Zero(mechanism.m());

@@ -48,4 +48,9 @@ void mark_bodies(Scene& scene) {
     }
 }
 
+Scene marked(Scene scene) {
+  mark_bodies(scene);
+  return scene;
+}
+
 }  // namespace momenta::equations

@@ -31,5 +31,6 @@ class PointMotions {
 
 /// Three markers on every body, off its axes, in place of those of the scene.
 void mark_bodies(Scene& scene);
+Scene marked(Scene scene);
 
 }  // namespace momenta::equations

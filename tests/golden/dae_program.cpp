@@ -117,6 +117,26 @@ TEST_F(Program, ConvertCutsAnewWhereThatIsLessWork) {
   expect_refused("convert '" + chain.string() + "' --recut --keep nobody", "'nobody'");
 }
 
+// What runs integrate in place of the scene is told, but not among the numbers of --json.
+TEST_F(Program, TellsWhatIsIntegrated) {
+  const fs::path chain = write("chain.toml", call("make closed-chain --n 60").out);
+  const std::string scene = " '" + chain.string() + "' ", told = "cut at 'J31', with 'end'",
+                    few = "--end 0.01 --timing none";
+  EXPECT_NE(call("check" + scene).out.find("runs integrate    " + told), std::string::npos);
+  const std::string forms = "--forms momentum,projected ";
+  for (const std::string& asked : {"run" + scene + few, "drift" + scene + forms + few}) {
+    EXPECT_NE(call(asked).out.find(told), std::string::npos) << asked;
+    EXPECT_EQ(call(asked + " --cut scene").out.find("as written"), std::string::npos) << asked;
+    EXPECT_EQ(call(asked + " --quiet").out, "") << asked;
+    auto json = nlohmann::json::parse(call(asked + " --json").out);
+    if (json.is_array()) json = json.at(0);
+    EXPECT_EQ(json.at("integrated").get<std::string>().find(told), 0u) << asked;
+    json = nlohmann::json::parse(call(asked + " --json --cut scene").out);
+    if (json.is_array()) json = json.at(0);
+    EXPECT_EQ(json.at("integrated"), "") << asked;
+  }
+}
+
 // A robot moves as the scene it is converted to; what is left out is told unless --quiet is given.
 TEST_F(Program, ReadsAndConvertsRobots) {
   const std::string models = std::string(MOMENTA_SOURCE_DIR) + "/examples/models/";

@@ -2,6 +2,7 @@
 // bodies behind a gear, beside the same scene with them folded away. Random scenes with loops,
 // drives and forces of every kind, closed at their start.
 
+#include "equations/point_motions.h"
 #include "equations/random_loops.h"
 #include "equations/random_tree.h"
 #include "equations/tolerance.h"
@@ -27,20 +28,6 @@ using Eigen::Matrix3d;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
-
-/// Three points of every body off its axes.
-Scene marked(Scene scene) {
-  scene.markers.clear();
-  for (const BodySpec& body : scene.bodies)
-    for (int i = 0; i < 3; ++i) {
-      MarkerSpec m;
-      m.name = body.name + std::to_string(i);
-      m.body = body.name;
-      m.point[i] = 0.7;
-      scene.markers.push_back(m);
-    }
-  return scene;
-}
 
 StateValues at(const Mechanism& mechanism, double t, const VectorXd& q, const VectorXd& u) {
   GivenState given;
@@ -164,19 +151,23 @@ void drive_closed(RandomTree& random, Scene& scene, const LoopSpec& l) {
   }
 }
 
-/// A random tree, half of whose joints are welds, at a random state.
-Scene welded(RandomTree& random, bool flat, int bodies) {
-  TreeRecipe recipe{.bodies = bodies};
-  if (!flat) recipe.kinds.insert(recipe.kinds.end(), 6, JointKind::weld);
-  recipe.kinds.insert(recipe.kinds.end(), 3, JointKind::weld);
-  Scene scene = flat ? random.planar_scene(recipe) : random.scene(recipe);
+/// The scene with its joints anywhere, loops open.
+Scene at_random_state(RandomTree& random, Scene scene) {
   const Mechanism mechanism(scene);
   const TreeState s = random.state(mechanism.tree());
   Start start;
   start.q = s.q;
   start.u = s.u;
   scene.joints = joints_at(mechanism, start);
-  return marked(scene);
+  return scene;
+}
+
+/// A random tree, half of whose joints are welds, at a random state.
+Scene welded(RandomTree& random, bool flat, int bodies) {
+  TreeRecipe recipe{.bodies = bodies};
+  if (!flat) recipe.kinds.insert(recipe.kinds.end(), 6, JointKind::weld);
+  recipe.kinds.insert(recipe.kinds.end(), 3, JointKind::weld);
+  return marked(at_random_state(random, flat ? random.planar_scene(recipe) : random.scene(recipe)));
 }
 
 std::map<std::string, Isometry3d> poses_of(const Scene& scene) {
@@ -471,13 +462,7 @@ TEST(Fold, RobotsLoseTheirRotorsAndFrames) {
        {Robot{"urdfplus/mini_cheetah.urdf", 13, 12},
         Robot{"urdfplus/revolute_rotor_chain.urdf", 3, 3}, Robot{"panda_urdf/panda.urdf", 9, 0}}) {
     RandomTree random(7);
-    Scene scene = read_scene(models / robot.file);
-    const Mechanism open(scene);
-    const TreeState state = random.state(open.tree());
-    Start start;
-    start.q = state.q;
-    start.u = state.u;
-    scene.joints = joints_at(open, start);
+    const Scene scene = at_random_state(random, read_scene(models / robot.file));
     const auto written = started(marked(scene));
     ASSERT_TRUE(written) << robot.file;
     const FoldedScene folded = fold(*written);

@@ -2,6 +2,7 @@
 
 #include "equations/large_scenes.h"
 #include "equations/linkages.h"
+#include "equations/point_motions.h"
 #include "equations/random_tree.h"
 #include "equations/recut.h"
 
@@ -26,20 +27,6 @@ using Eigen::VectorXd;
 
 Scene example(const std::string& name) {
   return read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples" / name / "scene.toml");
-}
-
-/// Three points of every body off its axes.
-Scene marked(Scene scene) {
-  scene.markers.clear();
-  for (const BodySpec& body : scene.bodies)
-    for (int i = 0; i < 3; ++i) {
-      MarkerSpec m;
-      m.name = body.name + std::to_string(i);
-      m.body = body.name;
-      m.point[i] = 0.7;
-      scene.markers.push_back(m);
-    }
-  return scene;
 }
 
 /// Places and velocities of the markers at the assembled start, and a little later along the

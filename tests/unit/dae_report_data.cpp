@@ -31,7 +31,7 @@ TEST(SummaryJson, HasThePublicKeys) {
                  "penalty",      "partitions",     "least_pivot", "singular_crossings",
                  "undetermined", "passages",       "changed_to",  "changed_at",
                  "rank",         "dependent_rows", "residue",     "weak_evaluations",
-                 "stiffness",    "swept"};
+                 "stiffness",    "integrated"};
   std::sort(expected.begin(), expected.end());
   EXPECT_EQ(keys(json), expected);
   EXPECT_EQ(keys(json["counters"]),

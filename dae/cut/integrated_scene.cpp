@@ -1,8 +1,7 @@
-#include <momenta/core/scene/near_name.h>
 #include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/cut/fold_rotors.h>
+#include <momenta/dae/cut/integrated_scene.h>
 #include <momenta/dae/cut/interchange.h>
-#include <momenta/dae/cut/swept_scene.h>
 
 #include <algorithm>
 
@@ -30,9 +29,8 @@ bool may_fold(const Scene& scene) {
 
 }  // namespace
 
-SweptScene::SweptScene(const Mechanism& written, const Start& start)
+IntegratedScene::IntegratedScene(const Mechanism& written, const Start& start, const Recut* known)
     : written_(written), written_start_(start) {
-  folded_.scene = written.scene();
   const MechanismOptions& options = written.options();
   if (options.cut == CutChoice::scene || options.kkt == KktChoice::dense ||
       options.kkt == KktChoice::sparse)
@@ -44,26 +42,22 @@ SweptScene::SweptScene(const Mechanism& written, const Start& start)
       FoldedScene folded = fold(there);
       if (folded.folds() && take(folded.scene)) folded_ = std::move(folded);
     }
-    Recut found = recut(mechanism(), this->start());
-    if (found.gains() && pays(mechanism(), found) && take(found.scene)) cuts_ = std::move(found);
+    Recut found = known && !anew() ? *known : recut(mechanism(), this->start());
+    if (!found.gains() || !pays(mechanism(), found) || !take(found.scene)) return;
+    cuts_ = std::move(found);
+    if (!folded_.folds()) folded_.scene = written.scene();
   } catch (const SceneError&) {
-    return;  // what cannot start so is swept as it is written
+    return;  // what cannot start so is integrated as it is written
   }
 }
 
-std::string SweptScene::in_words() const {
-  if (!anew()) return "";
-  std::string words = momenta::in_words(folded_);
-  if (!cuts_.gains()) return words;
-  if (cuts_.cut.empty())
-    return words + (words.empty() ? "" : "; ") + "trees on the ground in another order";
-  constexpr std::size_t most_named = 4;
-  return words + (words.empty() ? "" : "; ") + "cut at " +
-         reading::all_in_quotes(cuts_.cut, most_named) + ", with " +
-         reading::all_in_quotes(cuts_.joined, most_named) + " in the tree";
+std::string IntegratedScene::in_words() const {
+  const std::string words = momenta::in_words(folded_);
+  const std::string cuts = momenta::in_words(cuts_);
+  return words + (words.empty() || cuts.empty() ? "" : "; ") + cuts;
 }
 
-bool SweptScene::take(Scene scene) {
+bool IntegratedScene::take(Scene scene) {
   auto mechanism = std::make_unique<Mechanism>(std::move(scene), written_.options());
   const Tree& tree = mechanism->tree();
   Assembly assembly = assemble(*mechanism, written_start_.t, tree.q0, tree.u0);

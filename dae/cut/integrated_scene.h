@@ -5,9 +5,9 @@
 //
 // An evaluation by sweeps costs about c₀ a body and c₁ for each of the squared numbers of equations
 // that are open at it, J in all (cycles.h), with c₀ / c₁ about 8 in the plane and 30 in space.
-// Other cuts are taken where they are a tenth of that cheaper, where the sweeps carry loops that
-// they cannot carry as written, or where the tree becomes so much shallower at next to the same
-// work that rounding adds up less.
+// Of the cuts that recut() proposes those are taken that are a tenth of that cheaper, or where the
+// sweeps carry loops that they cannot carry as written, or where the tree becomes so much shallower
+// at next to the same work that rounding adds up less.
 
 #include <momenta/dae/cut/folded_scene.h>
 #include <momenta/dae/cut/recut.h>
@@ -17,17 +17,18 @@
 
 namespace momenta {
 
-class SweptScene {
+class IntegratedScene {
  public:
   /// Folds and chooses the cuts, unless the mechanism's options keep those of the scene or ask for
-  /// an assembled matrix. `written` and `start` must outlive it. Cost: recut().
-  SweptScene(const Mechanism& written, const Start& start);
+  /// an assembled matrix. `written` and `start` must outlive it. `known`: recut() of these; null:
+  /// not known. Cost: recut(); an assembly for each of the two steps that is taken.
+  IntegratedScene(const Mechanism& written, const Start& start, const Recut* known = nullptr);
 
   const Mechanism& mechanism() const { return mechanism_ ? *mechanism_ : written_; }
   const Start& start() const { return mechanism_ ? start_ : written_start_; }
   /// Whether it is another scene than the one written.
   bool anew() const { return mechanism_ != nullptr; }
-  /// What was folded; its scene is the one written where nothing was.
+  /// What was folded; where nothing was, its scene is the one written. @pre anew()
   const FoldedScene& folded() const { return folded_; }
   /// Which joints of it are cut in place of others; gains() is false where none are.
   const Recut& cuts() const { return cuts_; }

@@ -9,15 +9,15 @@
 #include <gtest/gtest.h>
 #include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/assembly/assembly.h>
+#include <momenta/dae/cut/integrated_scene.h>
 #include <momenta/dae/cut/interchange.h>
-#include <momenta/dae/cut/swept_scene.h>
 #include <momenta/dae/cut/written_motion.h>
 #include <momenta/dae/study/run_form.h>
 
 #include <cmath>
 #include <numbers>
 
-namespace momenta::dae_swept_scene {
+namespace momenta::dae_integrated_scene {
 namespace {
 
 using namespace equations;
@@ -161,13 +161,13 @@ std::vector<Case> cases() {
           {written_otherwise(example("andrews"), {{"F", "E2"}}), 0.02}};
 }
 
-TEST(SweptScene, RunsReportTheSceneAsWritten) {
+TEST(IntegratedScene, RunsReportTheSceneAsWritten) {
   int anew = 0;
   for (const auto& [scene, end] : cases()) {
     const Mechanism chosen(scene), kept(scene, {.cut = CutChoice::scene});
     const Start start = assemble(chosen).start;
-    anew += SweptScene(chosen, start).anew();
-    EXPECT_FALSE(SweptScene(kept, start).anew());
+    anew += IntegratedScene(chosen, start).anew();
+    EXPECT_FALSE(IntegratedScene(kept, start).anew());
     for (const std::string form : {"momentum", "projected", "stabilised-index2"})
       expect_same(run_of(chosen, start, form, end, 1e-10), run_of(kept, start, form, end, 1e-10),
                   form == "stabilised-index2" ? 1e-4 : 1e-6, 1e-7, scene.name + " " + form);
@@ -176,16 +176,17 @@ TEST(SweptScene, RunsReportTheSceneAsWritten) {
 }
 
 /// Loops between trees on the ground are open over all that stand between.
-TEST(SweptScene, TheOrderOfTreesDoesNotMatter) {
+TEST(IntegratedScene, TheOrderOfTreesDoesNotMatter) {
   int carried_anew = 0;
   for (unsigned seed = 0; seed < 5; ++seed)
     for (const Scene& scene : {row_of_four_bars(25, 1.1), platform(6)}) {
       const Mechanism written(shuffled(scene, seed));
       const Start start = assemble(written).start;
-      const SweptScene swept(written, start);
+      const IntegratedScene integrated(written, start);
       const Mechanism good(scene);
-      EXPECT_EQ(swept.mechanism().kkt(), KktChoice::sweeps) << scene.name << " " << seed;
-      EXPECT_LE(cut_cost(swept.mechanism()).work, cut_cost(good).work) << scene.name << " " << seed;
+      EXPECT_EQ(integrated.mechanism().kkt(), KktChoice::sweeps) << scene.name << " " << seed;
+      EXPECT_LE(cut_cost(integrated.mechanism()).work, cut_cost(good).work)
+          << scene.name << " " << seed;
       carried_anew += written.kkt() != KktChoice::sweeps;
       const Mechanism kept(written.scene(), {.cut = CutChoice::scene});
       expect_same(run_of(written, start, "momentum", 0.1, 1e-10),
@@ -194,8 +195,18 @@ TEST(SweptScene, TheOrderOfTreesDoesNotMatter) {
   EXPECT_GE(carried_anew, 5);
 }
 
+/// A band cut across has as many loops open as it is long; along it, two.
+TEST(IntegratedScene, ALadderCutAcrossIsCarriedBySweeps) {
+  const Mechanism written(bars_cut_in_the_middle(60));
+  EXPECT_NE(written.kkt(), KktChoice::sweeps);
+  const Start start = assemble(written).start;
+  const IntegratedScene integrated(written, start);
+  EXPECT_EQ(integrated.mechanism().kkt(), KktChoice::sweeps);
+  EXPECT_LE(cut_cost(integrated.mechanism()).work, cut_cost(Mechanism(crossed_bars(60))).work);
+}
+
 /// An angle is counted in whole turns, as an integrated one is.
-TEST(SweptScene, AnglesOfCutJointsCountTurns) {
+TEST(IntegratedScene, AnglesOfCutJointsCountTurns) {
   Scene spinning = example("four_bar");
   spinning.gravity.setZero();
   spinning.joints[0].velocity = {9};
@@ -234,19 +245,19 @@ TEST(SweptScene, AnglesOfCutJointsCountTurns) {
   EXPECT_GT(turns, 2);
 }
 
-TEST(SweptScene, TheStartIsTheSceneS) {
+TEST(IntegratedScene, TheStartIsTheSceneS) {
   for (const auto& [scene, end] : cases()) {
     const Mechanism written(scene);
     const Start start = assemble(written).start;
-    const SweptScene swept(written, start);
-    if (!swept.anew()) continue;
-    WrittenMotion motion(written, start, swept.folded(), swept.mechanism());
+    const IntegratedScene integrated(written, start);
+    if (!integrated.anew()) continue;
+    WrittenMotion motion(written, start, integrated.folded(), integrated.mechanism());
     VectorXd q, u;
-    motion.read(start.t, swept.start().q, swept.start().u, q, u);
+    motion.read(start.t, integrated.start().q, integrated.start().u, q, u);
     EXPECT_LT((q - start.q).lpNorm<Eigen::Infinity>(), 1e-9) << scene.name;
     EXPECT_LT((u - start.u).lpNorm<Eigen::Infinity>(), 1e-8 * (1 + start.u.norm())) << scene.name;
   }
 }
 
 }  // namespace
-}  // namespace momenta::dae_swept_scene
+}  // namespace momenta::dae_integrated_scene
