@@ -159,5 +159,43 @@ TEST(Cycles, OneLongCycleIsCutInTheMiddle) {
   EXPECT_EQ(length_of_cycles(bodies + 1, cycles.edges(), 1000), bodies);
 }
 
+/// A ladder: two uprights of n joints, tied by n rungs, one of them to the ground.
+std::vector<CutEdge> ladder_graph(int n) {
+  std::vector<CutEdge> edges;
+  for (int i = 0; i < n; ++i) {
+    const int left = 2 * i + 1, right = left + 1;
+    edges.push_back({i == 0 ? 0 : left - 2, left, 2, true, false});
+    edges.push_back({i == 0 ? 0 : right - 2, right, 2, true, false});
+    edges.push_back({left, right, 2, false, false});
+  }
+  return edges;
+}
+
+TEST(Cycles, ADeepTreeOfABandHasShortCycles) {
+  const auto work = [](int n, bool deep) {
+    const auto edges = ladder_graph(n);
+    const int vertices = 2 * n + 1;
+    return Cycles(vertices, deep ? deep_tree(vertices, edges) : shallow_tree(vertices, edges))
+        .work();
+  };
+  // along the band the same at every rung; across it all loops are open at its foot
+  EXPECT_EQ(work(40, true) - work(30, true), work(30, true) - work(20, true));
+  EXPECT_GT(work(40, false) - work(30, false), 10 * (work(40, true) - work(30, true)));
+}
+
+TEST(Cycles, ADeepTreeKeepsWhatIsFixed) {
+  std::mt19937 bits(3);
+  for (int seed = 0; seed < 50; ++seed) {
+    const auto edges = random_graph(bits, 30, 20), deep = deep_tree(30, edges);
+    int joints = 0;
+    for (std::size_t i = 0; i < edges.size(); ++i) {
+      joints += deep[i].in_tree;
+      EXPECT_TRUE(!edges[i].fixed || deep[i].in_tree == edges[i].in_tree) << seed << " " << i;
+    }
+    EXPECT_EQ(joints, 29) << seed;
+    EXPECT_EQ(Cycles(30, deep).work(), counted_work(30, deep)) << seed;
+  }
+}
+
 }  // namespace
 }  // namespace momenta::dae_cycles
