@@ -1,13 +1,10 @@
 #include <momenta/core/open_chain_inside.h>
 
 #include <algorithm>
-#include <limits>
 #include <stdexcept>
 
 namespace momenta {
 namespace {
-
-constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 
 Tree checked_tree(const Scene& scene) {
   if (!scene.loops.empty())
@@ -16,11 +13,6 @@ Tree checked_tree(const Scene& scene) {
   return build_tree(scene);
 }
 
-void check_threads(int threads) {
-  if (threads < 1)
-    throw std::invalid_argument("found " + std::to_string(threads) +
-                                " threads for a batch of states, expected 1 or more");
-}
 }  // namespace
 
 OpenChain::OpenChain(const Scene& scene, Algebra algebra, int level, bool branches_side_by_side) {
@@ -71,66 +63,6 @@ bool OpenChain::rates(double t, const ConstVectorRef& q, const ConstVectorRef& p
     return false;
   pdot += tau;
   return found_finite(inside_->not_a_number, pdot);
-}
-
-bool OpenChain::rates_of_states(double t, const ConstStatesRef& q, const ConstStatesRef& p,
-                                StatesRef qdot, StatesRef pdot, int threads) {
-  check_threads(threads);
-  expect_size("rates_of_states", "a column of q", q.rows(), nq());
-  expect_size("rates_of_states", "a column of p", p.rows(), nv());
-  expect_size("rates_of_states", "a column of qdot", qdot.rows(), nq());
-  expect_size("rates_of_states", "a column of pdot", pdot.rows(), nv());
-  expect_size("rates_of_states", "a row of p", p.cols(), q.cols());
-  expect_size("rates_of_states", "a row of qdot", qdot.cols(), q.cols());
-  expect_size("rates_of_states", "a row of pdot", pdot.cols(), q.cols());
-  if (!std::isfinite(t)) throw std::invalid_argument("rates_of_states: t is not finite");
-  const bool all = inside_->visit([&](auto& kernel) {
-    const auto stride = q.outerStride();
-    if (!kernel.model->has_body_forces() && stride == p.outerStride() &&
-        stride == qdot.outerStride() && stride == pdot.outerStride())
-      return inside_->batch(
-          kernel, t, threads,
-          {q.data(), p.data(), qdot.data(), pdot.data(), stride,
-           static_cast<std::size_t>(q.cols())},
-          [t](BatchSweeps& sweeps, const States& part) { return sweeps.momentum(t, part); });
-    Eigen::VectorXd one_qdot(nq()), one_pdot(nv());
-    return inside_->one_by_one(q.cols(), [&](Eigen::Index i) {
-      const bool ok = rates(t, q.col(i), p.col(i), one_qdot, one_pdot);
-      if (!ok) one_qdot.setConstant(nothing), one_pdot.setConstant(nothing);
-      qdot.col(i) = one_qdot;
-      pdot.col(i) = one_pdot;
-      return ok;
-    });
-  });
-  return inside_->told_of_state(all, q, "p", p);
-}
-
-bool OpenChain::accelerations_of_states(double t, const ConstStatesRef& q, const ConstStatesRef& u,
-                                        StatesRef udot, int threads) {
-  check_threads(threads);
-  expect_size("accelerations_of_states", "a column of q", q.rows(), nq());
-  expect_size("accelerations_of_states", "a column of u", u.rows(), nv());
-  expect_size("accelerations_of_states", "a column of udot", udot.rows(), nv());
-  expect_size("accelerations_of_states", "a row of u", u.cols(), q.cols());
-  expect_size("accelerations_of_states", "a row of udot", udot.cols(), q.cols());
-  if (!std::isfinite(t)) throw std::invalid_argument("accelerations_of_states: t is not finite");
-  const bool all = inside_->visit([&](auto& kernel) {
-    const auto stride = q.outerStride();
-    if (!kernel.model->has_body_forces() && !kernel.model->has_joint_forces &&
-        stride == u.outerStride() && stride == udot.outerStride())
-      return inside_->batch(
-          kernel, t, threads,
-          {q.data(), u.data(), nullptr, udot.data(), stride, static_cast<std::size_t>(q.cols())},
-          [t](BatchSweeps& sweeps, const States& part) { return sweeps.acceleration(t, part); });
-    Eigen::VectorXd one(nv());
-    return inside_->one_by_one(q.cols(), [&](Eigen::Index i) {
-      const bool ok = accelerations(t, q.col(i), u.col(i), one);
-      if (!ok) one.setConstant(nothing);
-      udot.col(i) = one;
-      return ok;
-    });
-  });
-  return inside_->told_of_state(all, q, "u", u);
 }
 
 bool OpenChain::jacobian_times(double t, const ConstVectorRef& q, const ConstVectorRef& p,
@@ -192,9 +124,27 @@ bool OpenChain::inverse_mass_times(double t, const ConstVectorRef& q, const Cons
   expect_size("inverse_mass_times", "result", result.size(), nv());
   if (!given_finite(inside_->not_a_number, t, {"q", q}, {"x", x})) return false;
   return inside_->visit([&](auto& kernel) {
-    return inside_->noted_one(
-        *kernel.sweeps, t, q.data(),
-        kernel.sweeps->inverse_mass_times(t, q.data(), x.data(), result.data()));
+    inside_->placed =
+        inside_->noted_one(*kernel.sweeps, t, q.data(),
+                           kernel.sweeps->inverse_mass_times(t, q.data(), x.data(), result.data()));
+    return inside_->placed;
+  }) && found_finite(inside_->not_a_number, result);
+}
+
+bool OpenChain::inverse_mass_times(const ConstVectorRef& x, VectorRef result) {
+  expect_size("inverse_mass_times", "x", x.size(), nv());
+  expect_size("inverse_mass_times", "result", result.size(), nv());
+  if (!inside_->placed) {
+    inside_->not_a_number =
+        "inverse_mass_times: found no evaluation that succeeded, expected one of rates(), "
+        "velocities() or inverse_mass_times(t, q, x, result) before";
+    return false;
+  }
+  if (!given_finite(inside_->not_a_number, 0, {"x", x})) return false;
+  return inside_->visit([&](auto& kernel) {
+    const bool ok = kernel.sweeps->inverse_mass_times(x.data(), result.data());
+    inside_->placed = ok;
+    return ok;
   }) && found_finite(inside_->not_a_number, result);
 }
 

@@ -97,12 +97,23 @@ class OpenChain {
   /// std::invalid_argument for fewer than one thread.
   bool rates_of_states(double t, const ConstStatesRef& q, const ConstStatesRef& p, StatesRef qdot,
                        StatesRef pdot, int threads = 1);
+  /// The same with τ (nv × states), joint forces in addition to those of the scene.
+  bool rates_of_states(double t, const ConstStatesRef& q, const ConstStatesRef& p,
+                       const ConstStatesRef& tau, StatesRef qdot, StatesRef pdot, int threads = 1);
   /// u̇ of many states at one time, by the acceleration recursion; otherwise as rates_of_states.
   bool accelerations_of_states(double t, const ConstStatesRef& q, const ConstStatesRef& u,
                                StatesRef udot, int threads = 1);
+  /// The same with τ (nv × states).
+  bool accelerations_of_states(double t, const ConstStatesRef& q, const ConstStatesRef& u,
+                               const ConstStatesRef& tau, StatesRef udot, int threads = 1);
   /// M⁻¹ x (nv), without prescribed motion: eqs. (44), (45) without Ω_t. False as for rates().
   bool inverse_mass_times(double t, const ConstVectorRef& q, const ConstVectorRef& x,
                           VectorRef result);
+  /// The same at the place of the last call of rates(), velocities() or inverse_mass_times(), for
+  /// the price of two sweeps without what M* costs; after rates() and velocities() of a tree that
+  /// is swept in branches side by side, the first one takes an evaluation. @throws std::logic_error
+  /// where none of these calls came before, or the last of them failed
+  bool inverse_mass_times(const ConstVectorRef& x, VectorRef result);
   /// Derivative of (q̇, ṗ) along (δq, δp): one evaluation on dual numbers, at about the cost of two
   /// in doubles. False as for rates().
   bool jacobian_times(double t, const ConstVectorRef& q, const ConstVectorRef& p,

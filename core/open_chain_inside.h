@@ -52,6 +52,7 @@ struct OpenChain::Inside {
   std::unique_ptr<CentroidalSweep> in_space;
   Eigen::VectorXd u, p;  // scratch, nv
   bool has_user_joints = false;
+  bool placed = false;  ///< the sweeps hold, or can find, M* of the last call's place
   int singular = -1;
   Eigen::Index failed_state = -1;  ///< of the last batch
   double failed_t = 0;             ///< where the last call failed for want of inertia [s]
@@ -92,12 +93,15 @@ struct OpenChain::Inside {
     return massless_joints(tree, diagonal, mass, tree.bodies[static_cast<std::size_t>(singular)].u);
   }
 
-  /// Why the first of many states has no result.
-  bool told_of_state(bool ok, const ConstStatesRef& q, const char* name, const ConstStatesRef& x) {
+  /// Why the first of many states has no result, given x and y besides q.
+  bool told_of_state(bool ok, const ConstStatesRef& q, const char* x_name, const ConstStatesRef& x,
+                     const char* y_name = "", const ConstStatesRef& y = StateMatrix()) {
     not_a_number.clear();
     if (ok) return true;
-    const Eigen::VectorXd of_q = q.col(failed_state), of_x = x.col(failed_state);
-    if (given_finite(not_a_number, 0, {"q", of_q}, {name, of_x}) && singular < 0)
+    const Eigen::VectorXd of_q = q.col(failed_state), of_x = x.col(failed_state),
+                          of_y = y.size() > 0 ? Eigen::VectorXd(y.col(failed_state))
+                                              : Eigen::VectorXd();
+    if (given_finite(not_a_number, 0, {"q", of_q}, {x_name, of_x}, {y_name, of_y}) && singular < 0)
       not_a_number = too_large;
     if (!not_a_number.empty())
       not_a_number = "state " + std::to_string(failed_state) + ": " + not_a_number;
@@ -109,7 +113,8 @@ struct OpenChain::Inside {
   bool momentum(K& k, double t, const double* q, const double* momenta, double* rates,
                 double* pdot) {
     failed_state = -1;
-    if (!k.sweeps->momentum(t, q, momenta, rates, pdot)) {
+    placed = k.sweeps->momentum(t, q, momenta, rates, pdot);
+    if (!placed) {
       singular = k.sweeps->singular_joint();
       note_place(t, q);
       return false;
@@ -173,8 +178,13 @@ struct OpenChain::Inside {
     std::vector<char> failed(parts, 0);
     share(static_cast<int>(parts), parts, [&](std::size_t i) {
       const std::size_t first = begin(i);
-      const States part{all.q + first,    all.p + first, all.qdot ? all.qdot + first : nullptr,
-                        all.pdot + first, all.stride,    begin(i + 1) - first};
+      const States part{all.q + first,
+                        all.p + first,
+                        all.qdot ? all.qdot + first : nullptr,
+                        all.pdot + first,
+                        all.stride,
+                        begin(i + 1) - first,
+                        all.tau ? all.tau + first : nullptr};
       failed[i] = !run(*k.batches[i], part);
     });
     for (std::size_t i = 0; i < parts && failed_state < 0; ++i)
@@ -184,6 +194,9 @@ struct OpenChain::Inside {
       }
     return failed_state < 0;
   }
+  bool accelerations_of_states(OpenChain& chain, double t, const ConstStatesRef& q,
+                               const ConstStatesRef& rates, const ConstStatesRef* tau,
+                               StatesRef udot, int threads);
   /// Forces between bodies: state by state.
   template <class F>
   bool one_by_one(Eigen::Index count, F&& f) {

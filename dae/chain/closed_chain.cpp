@@ -45,43 +45,6 @@ bool ClosedChain::rates(double t, const ConstVectorRef& q, const ConstVectorRef&
   return found_finite(inside_->failure, pdot);
 }
 
-bool ClosedChain::rates_of_states(double t, const ConstStatesRef& q, const ConstStatesRef& p,
-                                  StatesRef qdot, StatesRef pdot, double leak, int threads) {
-  Inside& in = *inside_;
-  const char* call = "rates_of_states";
-  expect_sizes(call,
-               {{"a column of q", q.rows()},
-                {"a column of p", p.rows()},
-                {"a column of qdot", qdot.rows()},
-                {"a column of pdot", pdot.rows()}},
-               {nq(), nv(), nq(), nv()});
-  const Eigen::Index count = q.cols();
-  expect_size(call, "a row of p", p.cols(), count);
-  expect_size(call, "a row of qdot", qdot.cols(), count);
-  expect_size(call, "a row of pdot", pdot.cols(), count);
-  expect_leak(call, leak);
-  if (threads < 1)
-    throw std::invalid_argument("rates_of_states: threads is " + std::to_string(threads) +
-                                ", expected 1 or more");
-  if (!std::isfinite(t)) throw std::invalid_argument("rates_of_states: t is not finite");
-  in.failure.clear();
-  if (in.tree) return in.noted(in.tree->rates_of_states(t, q, p, qdot, pdot, threads), t, q.data());
-  if (in.side_by_side(t, q, p, qdot, pdot, leak, threads)) return true;
-  std::string first;
-  Eigen::VectorXd one_qdot(nq()), one_pdot(nv());
-  for (Eigen::Index i = 0; i < count; ++i) {
-    if (!rates(t, q.col(i), p.col(i), one_qdot, one_pdot, leak)) {
-      one_qdot.setConstant(std::numeric_limits<double>::quiet_NaN());
-      one_pdot.setConstant(std::numeric_limits<double>::quiet_NaN());
-      if (first.empty()) first = "state " + std::to_string(i) + ": " + in.failure;
-    }
-    qdot.col(i) = one_qdot;
-    pdot.col(i) = one_pdot;
-  }
-  in.failure = first;
-  return first.empty();
-}
-
 bool ClosedChain::velocities(double t, const ConstVectorRef& q, const ConstVectorRef& p,
                              VectorRef u, VectorRef sigma) {
   Inside& in = *inside_;

@@ -62,12 +62,17 @@ class ClosedChain {
   bool rates(double t, const ConstVectorRef& q, const ConstVectorRef& p, const ConstVectorRef& tau,
              VectorRef qdot, VectorRef pdot, double leak = 0);
   /// The same for many states at one time: q (nq × states), p (nv × states), one column per state.
-  /// The states are side by side in vector registers where the sweeps carry the loops and no forces
-  /// act between points of bodies. `threads`: how many threads share the states, each with its own
-  /// sweeps. False where a state has no rates: its columns are NaN, the columns of all other states
-  /// are right. Allocates. @throws std::invalid_argument for fewer than one thread
+  /// The states are side by side in vector registers where the sweeps carry the loops, and in space
+  /// only where no forces act between points of bodies; elsewhere one by one. `threads`: how many
+  /// threads share the states, each with its own sweeps. False where a state has no rates: its
+  /// columns are NaN, the columns of all other states are right. Allocates. @throws
+  /// std::invalid_argument for fewer than one thread
   bool rates_of_states(double t, const ConstStatesRef& q, const ConstStatesRef& p, StatesRef qdot,
                        StatesRef pdot, double leak = 0, int threads = 1);
+  /// The same with τ (nv × states).
+  bool rates_of_states(double t, const ConstStatesRef& q, const ConstStatesRef& p,
+                       const ConstStatesRef& tau, StatesRef qdot, StatesRef pdot, double leak = 0,
+                       int threads = 1);
   /// u (nv) and the impulse multipliers σ (m) from p: (7). False as for rates().
   bool velocities(double t, const ConstVectorRef& q, const ConstVectorRef& p, VectorRef u,
                   VectorRef sigma);
@@ -80,6 +85,13 @@ class ClosedChain {
   /// The same with τ.
   bool accelerations(double t, const ConstVectorRef& q, const ConstVectorRef& u,
                      const ConstVectorRef& tau, VectorRef udot, VectorRef lambda);
+  /// The same for many states at one time, as rates_of_states: u̇ (nv × states), λ (m × states).
+  bool accelerations_of_states(double t, const ConstStatesRef& q, const ConstStatesRef& u,
+                               StatesRef udot, StatesRef lambda, int threads = 1);
+  /// The same with τ (nv × states).
+  bool accelerations_of_states(double t, const ConstStatesRef& q, const ConstStatesRef& u,
+                               const ConstStatesRef& tau, StatesRef udot, StatesRef lambda,
+                               int threads = 1);
   /// Inverse dynamics: the joint forces τ (nv) that give the accelerations u̇ at (q, u) when the
   /// loops have the multipliers λ: τ = M u̇ + bias − Q + Φ_qᵀ λ. O(bodies + loops). The caller
   /// chooses how joints and loops share the load: τ + Φ_qᵀ μ with λ + μ is the same motion for any

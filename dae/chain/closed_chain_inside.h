@@ -58,52 +58,18 @@ struct ClosedChain::Inside {
     e->coordinate_rates(q, rates, qdot);
   }
 
-  /// Many states in the lanes of the sweeps' registers. False where they do not carry the loops,
-  /// or some state has no rates or asks for the matrix.
-  bool side_by_side(double t, const ConstStatesRef& q, const ConstStatesRef& p, StatesRef qdot,
-                    StatesRef pdot, double leak, int threads) {
-    const Eigen::Index count = q.cols();
-    if (mechanism.kkt() != KktChoice::sweeps || mechanism.has_body_forces() || count == 0 ||
-        !std::isfinite(t))
-      return false;
-    const StateMatrix from_q = q, from_p = p;  // rows of one stride
-    StateMatrix rates(mechanism.nv(), count), impulses(mechanism.m(), count),
-        forces(mechanism.nv(), count);
-    if (batches.empty()) batches.push_back(mechanism.looped_sweeps());
-    // Packs are whole, so that the number of threads does not change the bits.
-    const auto width = static_cast<Eigen::Index>(batches.front()->width());
-    const Eigen::Index packs = (count + width - 1) / width,
-                       parts = std::min<Eigen::Index>(threads, packs);
-    while (static_cast<Eigen::Index>(batches.size()) < parts)
-      batches.push_back(mechanism.looped_sweeps());
-    std::atomic<bool> all = true;
-    share(static_cast<int>(parts), static_cast<std::size_t>(parts), [&](std::size_t part) {
-      const auto k = static_cast<Eigen::Index>(part);
-      const Eigen::Index first = packs * k / parts * width,
-                         last = std::min(count, packs * (k + 1) / parts * width);
-      LoopedSweeps& sweeps = *batches[part];
-      const bool ok =
-          sweeps.momentum(t,
-                          {from_q.data() + first, from_p.data() + first, rates.data() + first,
-                           impulses.data() + first, forces.data() + first, count,
-                           static_cast<std::size_t>(last - first)},
-                          fade_evaluation, leak);
-      if (!ok || sweeps.weak_looped_branch()) all = false;
-    });
-    if (!all || !rates.allFinite() || !forces.allFinite()) return false;
-    pdot = forces;
-    if (!mechanism.plan().quasi_velocities) {
-      qdot = rates;
-      return true;
-    }
-    Eigen::VectorXd one_qdot(mechanism.nq());
-    for (Eigen::Index i = 0; i < count; ++i) {
-      const Eigen::VectorXd one_q = q.col(i), one_u = rates.col(i);
-      rates_of_coordinates(t, one_q.data(), one_u.data(), one_qdot.data());
-      qdot.col(i) = one_qdot;
-    }
-    return true;
-  }
+  /// Many states in the lanes of the sweeps' registers, on momenta or on accelerations. False where
+  /// the sweeps do not carry the loops or the forces, or some state has no result or asks for the
+  /// matrix.
+  bool side_by_side(double t, const LoopedStates& all, bool of_momenta, double leak, int threads);
+  template <class Act>
+  bool one_by_one(Act&& act, StatesRef a, StatesRef b);
+  bool rates_of_states(ClosedChain& chain, double t, const ConstStatesRef& q,
+                       const ConstStatesRef& p, const ConstStatesRef* tau, StatesRef qdot,
+                       StatesRef pdot, double leak, int threads);
+  bool accelerations_of_states(ClosedChain& chain, double t, const ConstStatesRef& q,
+                               const ConstStatesRef& rates, const ConstStatesRef* tau,
+                               StatesRef udot, StatesRef lambda, int threads);
 
   Mechanism mechanism;
   std::unique_ptr<Evaluation<double>> e;

@@ -67,6 +67,8 @@ class LoopSweeps<Planar, S, Rows, Momentum> : PlanarPlaces<S> {
   static constexpr bool pairs_in_registers = Rows <= 8;
 
  public:
+  static constexpr bool of_momenta = Momentum;
+
   LoopSweeps(const PlanarTree& tree, const LoopModel<Planar>& loops, const LoopPlan& plan);
 
   /// Momentum form: u (nv) and σ (m) of (7) from p; with `rate` ṗ (nv) of (8). Acceleration form:

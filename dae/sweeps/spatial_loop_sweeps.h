@@ -50,6 +50,8 @@ class SpatialLoopSweeps {
   using Force = Spatial::Force<S>;
 
  public:
+  static constexpr bool of_momenta = Momentum;
+
   /// `looped_branches`: those to take side by side; null: none.
   SpatialLoopSweeps(const Tree& tree, const Loops& loops, const LoopPlan& plan,
                     const LoopedBranchGroups* looped_branches = nullptr);

@@ -128,18 +128,22 @@ void evaluate_batch(benchmark::State& state, Row row) {
   const auto sweeps = mechanism.looped_sweeps(row.level);
   const auto nq = mechanism.nq(), nv = mechanism.nv(), m = mechanism.m();
   using States = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  States q(nq, states_in_turn), p(nv, states_in_turn), u(nv, states_in_turn),
-      pdot(nv, states_in_turn), sigma(m, states_in_turn);
+  const bool momentum = std::string(row.form) == "momentum";
+  States q(nq, states_in_turn), x(nv, states_in_turn), found(nv, states_in_turn),
+      pdot(nv, states_in_turn), multipliers(m, states_in_turn);
   for (int i = 0; i < states_in_turn; ++i) {
-    q.col(i) = s.q[static_cast<std::size_t>(i)];
-    p.col(i) = s.p[static_cast<std::size_t>(i)];
+    const auto k = static_cast<std::size_t>(i);
+    q.col(i) = s.q[k];
+    x.col(i) = momentum ? s.p[k] : s.v[k];
   }
+  const LoopedStates states{q.data(),    x.data(),       found.data(),  multipliers.data(),
+                            pdot.data(), states_in_turn, states_in_turn};
   for (auto _ : state) {
-    sweeps->momentum(
-        0,
-        {q.data(), p.data(), u.data(), sigma.data(), pdot.data(), states_in_turn, states_in_turn},
-        fade_evaluation, leak);
-    benchmark::DoNotOptimize(pdot.data());
+    if (momentum)
+      sweeps->momentum(0, states, fade_evaluation, leak);
+    else
+      sweeps->acceleration(0, states, fade_evaluation);
+    benchmark::DoNotOptimize(found.data());
   }
   finish(state, states_in_turn);
 }
@@ -227,10 +231,11 @@ void register_closed_loops() {
                                                                           : 2);
   const auto add_batch = [&](const std::string& model, Scene (*made)(int), std::vector<long> sizes,
                              Algebra algebra = Algebra::automatic) {
-    for (const long n : sizes)
-      benchmark::RegisterBenchmark(("closed/momentum/" + model + batch).c_str(), evaluate_batch,
-                                   Row{"momentum", made, algebra})
-          ->Arg(n);
+    for (const char* form : {"momentum", "acceleration"})
+      for (const long n : sizes)
+        benchmark::RegisterBenchmark(("closed/" + std::string(form) + "/" + model + batch).c_str(),
+                                     evaluate_batch, Row{form, made, algebra})
+            ->Arg(n);
   };
   add_batch("four_bar", one_four_bar, {1});
   add_batch("andrews", andrews, {1});

@@ -104,13 +104,21 @@ void classical(benchmark::State& state, Row row, bool inverse) {
 }
 
 /// What else the sweeps give, per call.
-enum class Call { velocities_to_momenta, inverse_mass, jacobian_times, jacobian, reactions };
+enum class Call {
+  velocities_to_momenta,
+  inverse_mass,
+  inverse_mass_there,
+  jacobian_times,
+  jacobian,
+  reactions
+};
 
 void further(benchmark::State& state, Row row, Call call) {
   OpenChain chain(row.model(static_cast<int>(state.range(0))), row.algebra);
   const States64 states(chain);
   const Eigen::VectorXd q = states.q.col(0), u = states.u.col(0), p = states.p.col(0);
   Eigen::VectorXd x(chain.nv()), qdot(chain.nq());
+  chain.inverse_mass_times(0, q, p, x);
   for (auto _ : state) {
     switch (call) {
       case Call::velocities_to_momenta:
@@ -118,6 +126,9 @@ void further(benchmark::State& state, Row row, Call call) {
         break;
       case Call::inverse_mass:
         chain.inverse_mass_times(0, q, p, x);
+        break;
+      case Call::inverse_mass_there:
+        chain.inverse_mass_times(p, x);
         break;
       case Call::jacobian_times:
         chain.jacobian_times(0, q, p, q, p, qdot, x);
@@ -226,11 +237,13 @@ void register_open_chains() {
                                  inverse)
         ->Arg(31);
   }
-  const std::pair<const char*, Call> calls[] = {{"momenta", Call::velocities_to_momenta},
-                                                {"inverse_mass_times", Call::inverse_mass},
-                                                {"jacobian_times", Call::jacobian_times},
-                                                {"jacobian", Call::jacobian},
-                                                {"reactions", Call::reactions}};
+  const std::pair<const char*, Call> calls[] = {
+      {"momenta", Call::velocities_to_momenta},
+      {"inverse_mass_times", Call::inverse_mass},
+      {"inverse_mass_times_there", Call::inverse_mass_there},
+      {"jacobian_times", Call::jacobian_times},
+      {"jacobian", Call::jacobian},
+      {"reactions", Call::reactions}};
   for (const auto& [name, call] : calls)
     for (const int n : {7, 32})
       benchmark::RegisterBenchmark((std::string("open/") + name + "/random_chain").c_str(), further,

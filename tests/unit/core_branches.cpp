@@ -90,6 +90,11 @@ std::size_t expect_sound_branches(const Scene& scene, int lanes) {
   return side_by_side;
 }
 
+double growth_of(OpenChain& chain, const TreeState& s) {
+  const Eigen::VectorXd singular = chain.mass_matrix(s.t, s.q).jacobiSvd().singularValues();
+  return singular[0] / singular[singular.size() - 1];
+}
+
 void compare(const Scene& scene, RandomTree& random, int level) {
   OpenChain limbed(scene, Algebra::spatial, level), plain(scene, Algebra::spatial, level, false);
   // Twice: what the first evaluation leaves in slots must not show in the second.
@@ -104,12 +109,24 @@ void compare(const Scene& scene, RandomTree& random, int level) {
     ASSERT_TRUE(limbed.accelerations(s.t, s.q, s.u, udot2));
     ASSERT_TRUE(plain.inverse_mass_times(s.t, s.q, p, solved));
     ASSERT_TRUE(limbed.inverse_mass_times(s.t, s.q, p, solved2));
-    const Eigen::VectorXd singular = plain.mass_matrix(s.t, s.q).jacobiSvd().singularValues();
-    const double tolerance = algebra_tol(12) * singular[0] / singular[singular.size() - 1];
+    const double tolerance = algebra_tol(12) * growth_of(plain, s);
     EXPECT_LT(relative_error(qdot2, qdot), tolerance);
     EXPECT_LT(relative_error(pdot2, pdot), tolerance);
     EXPECT_LT(relative_error(udot2, udot), tolerance);
     EXPECT_EQ(solved2, solved);
+    // At the place of the last evaluation, whichever it was.
+    for (OpenChain* chain : {&plain, &limbed}) {
+      ASSERT_TRUE(chain->inverse_mass_times(p, solved2));
+      EXPECT_EQ(solved2, solved);
+      const TreeState other = random.state(plain.tree());
+      ASSERT_TRUE(chain->rates(other.t, other.q, p, qdot2, pdot2));
+      ASSERT_TRUE(chain->accelerations(s.t, s.q, s.u, udot2));
+      for (int again = 0; again < 2; ++again) {
+        ASSERT_TRUE(chain->inverse_mass_times(s.u, solved2));
+        EXPECT_LT(relative_error(plain.mass_matrix(other.t, other.q) * solved2, s.u),
+                  algebra_tol(12) * growth_of(plain, other));
+      }
+    }
   }
 }
 

@@ -42,7 +42,12 @@ class Caller {
             "accelerations", [&] { return chain_.accelerations(t, q, x, of_v); }, of_v);
       case 3:
         return told(
-            "inverse_mass_times", [&] { return chain_.inverse_mass_times(t, q, x, of_v); }, of_v);
+            "inverse_mass_times",
+            [&] {
+              return wild_.chance(0.5) ? chain_.inverse_mass_times(t, q, x, of_v)
+                                       : chain_.inverse_mass_times(x, of_v);
+            },
+            of_v);
       case 4: {
         const VectorXd dq = wild_.vector(nq_), dp = wild_.vector(nv_);
         return told(

@@ -20,14 +20,16 @@ namespace {
 using namespace equations;
 
 struct Batch {
-  StateMatrix q, u, p, qdot, pdot, udot;
+  StateMatrix q, u, p, tau, qdot, pdot, udot, udot_pushed;
   Batch(OpenChain& chain, RandomTree& random, Eigen::Index count)
       : q(chain.nq(), count),
         u(chain.nv(), count),
         p(chain.nv(), count),
+        tau(chain.nv(), count),
         qdot(chain.nq(), count),
         pdot(chain.nv(), count),
-        udot(chain.nv(), count) {
+        udot(chain.nv(), count),
+        udot_pushed(chain.nv(), count) {
     for (Eigen::Index i = 0; i < count; ++i) {
       const TreeState s = random.state(chain.tree());
       Eigen::VectorXd momenta(chain.nv());
@@ -35,6 +37,7 @@ struct Batch {
       q.col(i) = s.q;
       u.col(i) = s.u;
       p.col(i) = momenta;
+      for (int k = 0; k < chain.nv(); ++k) tau(k, i) = random.uniform(-1, 1);
     }
   }
 };
@@ -53,22 +56,30 @@ void compare(const Scene& scene, unsigned seed, Algebra algebra) {
   ASSERT_EQ(plain.level(), least);
   const Eigen::Index count = 1 + static_cast<Eigen::Index>(seed % 19);
   Batch b(plain, random, count);
-  Eigen::VectorXd qdot(plain.nq()), pdot(plain.nv()), udot(plain.nv());
+  Eigen::VectorXd qdot(plain.nq()), pdot(plain.nv()), udot(plain.nv()), udot_pushed(plain.nv());
+  StateMatrix qdot_pushed = b.qdot, pdot_pushed = b.pdot;
   for (const int level : equations::levels()) {
     OpenChain chain(scene, algebra, level);
     EXPECT_EQ(chain.level(), level);
     ASSERT_TRUE(chain.rates_of_states(0.3, b.q, b.p, b.qdot, b.pdot)) << chain.failure();
     ASSERT_TRUE(chain.accelerations_of_states(0.3, b.q, b.u, b.udot)) << chain.failure();
+    ASSERT_TRUE(chain.accelerations_of_states(0.3, b.q, b.u, b.tau, b.udot_pushed));
+    ASSERT_TRUE(chain.rates_of_states(0.3, b.q, b.p, b.tau, qdot_pushed, pdot_pushed));
+    EXPECT_EQ(qdot_pushed, b.qdot);
+    EXPECT_EQ(pdot_pushed, b.pdot + b.tau);
     for (Eigen::Index i = 0; i < count; ++i) {
       const Eigen::VectorXd q = b.q.col(i), p = b.p.col(i), u = b.u.col(i);
       ASSERT_TRUE(plain.rates(0.3, q, p, qdot, pdot));
       ASSERT_TRUE(plain.accelerations(0.3, q, u, udot));
+      ASSERT_TRUE(plain.accelerations(0.3, q, u, b.tau.col(i), udot_pushed));
       const double tolerance = algebra_tol(12) * growth_of(plain, q);
       EXPECT_LT(relative_error(Eigen::VectorXd(b.qdot.col(i)), qdot), tolerance)
           << "level " << level;
       EXPECT_LT(relative_error(Eigen::VectorXd(b.pdot.col(i)), pdot), tolerance)
           << "level " << level;
       EXPECT_LT(relative_error(Eigen::VectorXd(b.udot.col(i)), udot), tolerance)
+          << "level " << level;
+      EXPECT_LT(relative_error(Eigen::VectorXd(b.udot_pushed.col(i)), udot_pushed), tolerance)
           << "level " << level;
       Eigen::VectorXd one_qdot(plain.nq()), one_pdot(plain.nv());
       ASSERT_TRUE(chain.rates(0.3, q, p, one_qdot, one_pdot));
@@ -129,6 +140,19 @@ TEST(Levels, OneBadStateSpoilsNoOther) {
   q(1, 3) = std::numeric_limits<double>::quiet_NaN();  // an inertia of NaN is not positive
   EXPECT_FALSE(other.rates_of_states(0, q, p, qdot, pdot));
   EXPECT_NE(other.failure().find("state 3"), std::string::npos) << other.failure();
+  const std::string of_q = other.failure();
+  StateMatrix tau = StateMatrix::Zero(2, 5);
+  EXPECT_FALSE(other.rates_of_states(0, q, p, tau, qdot, pdot));
+  EXPECT_EQ(other.failure(), of_q);
+  tau(0, 1) = std::numeric_limits<double>::infinity();
+  for (const bool of_momenta : {true, false}) {
+    EXPECT_FALSE(of_momenta ? other.rates_of_states(0, q, p, tau, qdot, pdot)
+                            : other.accelerations_of_states(0, q, p, tau, pdot));
+    EXPECT_EQ(other.failure(), "state 1: tau[0] is infinite, expected a finite number");
+    for (Eigen::Index i = 0; i < 5; ++i)
+      EXPECT_EQ(pdot.col(i).array().isNaN().any(), i == 1 || i == 3) << "state " << i;
+  }
+  ASSERT_FALSE(other.rates_of_states(0, q, p, qdot, pdot));
   for (Eigen::Index i = 0; i < 5; ++i)
     EXPECT_EQ(qdot.col(i).array().isNaN().any(), i == 3) << "state " << i;
 }

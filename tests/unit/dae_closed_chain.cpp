@@ -126,32 +126,69 @@ TEST(ClosedChain, ManyStatesAreAsOne) {
   for (const Scene& scene : scenes()) {
     ClosedChain chain(scene);
     constexpr int count = 21;
-    StateMatrix q(chain.nq(), count), p(chain.nv(), count), qdot = q, pdot = p;
+    const int nq = chain.nq(), nv = chain.nv(), m = chain.m();
+    StateMatrix q(nq, count), u(nv, count), p = u, tau = u, qdot = q, pdot = u, pushed = u,
+                                            udot = u, lambda(m, count);
     for (int i = 0; i < count; ++i) {
       const State s = moving(chain, random);
-      VectorXd one(chain.nv());
+      VectorXd one(nv);
       chain.momenta(s.t, s.q, s.u, one);
       // With impulses of the loops: of σ = 0 nothing leaks.
       q.col(i) = s.q;
-      p.col(i) = one + chain.jacobian(s.t, s.q).transpose() * any(random, chain.m());
+      u.col(i) = s.u;
+      p.col(i) = one + chain.jacobian(s.t, s.q).transpose() * any(random, m);
+      tau.col(i) = any(random, nv);
     }
     ASSERT_TRUE(chain.rates_of_states(0, q, p, qdot, pdot, 2)) << chain.failure();
+    StateMatrix qdot_pushed = q;
+    ASSERT_TRUE(chain.rates_of_states(0, q, p, tau, qdot_pushed, pushed, 2)) << chain.failure();
+    EXPECT_EQ(qdot_pushed, qdot) << scene.name;
+    EXPECT_EQ(pushed, pdot + tau) << scene.name;
+    const auto expect_accelerations = [&](bool with_tau) {
+      for (int i = 0; i < count; ++i) {
+        VectorXd one_udot(nv), one_lambda(m);
+        ASSERT_TRUE(
+            with_tau ? chain.accelerations(0, q.col(i), u.col(i), tau.col(i), one_udot, one_lambda)
+                     : chain.accelerations(0, q.col(i), u.col(i), one_udot, one_lambda));
+        EXPECT_LT(relative_error(udot.col(i), one_udot), 1e-9) << scene.name;
+        // λ of redundant rows is not unique: what it does to the joints is.
+        const Eigen::MatrixXd J = chain.jacobian(0, q.col(i));
+        EXPECT_LT(relative_error(J.transpose() * lambda.col(i), J.transpose() * one_lambda), 1e-8)
+            << scene.name;
+      }
+    };
+    ASSERT_TRUE(chain.accelerations_of_states(0, q, u, udot, lambda)) << chain.failure();
+    expect_accelerations(false);
+    ASSERT_TRUE(chain.accelerations_of_states(0, q, u, tau, udot, lambda)) << chain.failure();
+    expect_accelerations(true);
     for (int i = 0; i < count; ++i) {
-      VectorXd one_qdot(chain.nq()), one_pdot(chain.nv());
+      VectorXd one_qdot(nq), one_pdot(nv);
       ASSERT_TRUE(chain.rates(0, q.col(i), p.col(i), one_qdot, one_pdot, 2));
       EXPECT_LT(relative_error(qdot.col(i), one_qdot), 1e-9) << scene.name;
       EXPECT_LT(relative_error(pdot.col(i), one_pdot), 1e-9) << scene.name;
     }
-    StateMatrix qdot_shared = q, pdot_shared = p;
+    StateMatrix qdot_shared = q, pdot_shared = p, udot_shared = u, lambda_shared = lambda;
     ASSERT_TRUE(chain.rates_of_states(0, q, p, qdot_shared, pdot_shared, 2, 3));
     EXPECT_EQ(qdot, qdot_shared) << scene.name;
     EXPECT_EQ(pdot, pdot_shared) << scene.name;
+    ASSERT_TRUE(chain.accelerations_of_states(0, q, u, tau, udot_shared, lambda_shared, 3));
+    EXPECT_EQ(udot, udot_shared) << scene.name;
+    EXPECT_EQ(lambda, lambda_shared) << scene.name;
 
     p(0, 4) = NAN;
     EXPECT_FALSE(chain.rates_of_states(0, q, p, qdot_shared, pdot_shared, 2, 2));
     EXPECT_NE(chain.failure().find("state 4"), std::string::npos) << chain.failure();
     EXPECT_TRUE(std::isnan(qdot_shared(0, 4)) && std::isnan(pdot_shared(0, 4)));
     EXPECT_LT(relative_error(pdot_shared.col(5), pdot.col(5)), 1e-9) << scene.name;
+    tau(0, 3) = HUGE_VAL;
+    const std::string of_tau = "state 3: tau[0] is infinite, expected a finite number";
+    EXPECT_FALSE(chain.rates_of_states(0, q, p, tau, qdot_shared, pdot_shared));
+    EXPECT_EQ(chain.failure(), of_tau);
+    EXPECT_TRUE(std::isnan(pdot_shared(0, 3)) && std::isnan(pdot_shared(0, 4)));
+    EXPECT_FALSE(chain.accelerations_of_states(0, q, u, tau, udot_shared, lambda_shared));
+    EXPECT_EQ(chain.failure(), of_tau);
+    EXPECT_TRUE(std::isnan(udot_shared(0, 3)));
+    EXPECT_LT(relative_error(udot_shared.col(4), udot.col(4)), 1e-9) << scene.name;
   }
 }
 

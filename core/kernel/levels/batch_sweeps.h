@@ -17,6 +17,7 @@ struct States {
   double *qdot, *pdot;
   std::ptrdiff_t stride;
   std::size_t count;
+  const double* tau = nullptr;  ///< of acceleration(): joint forces; null: none
 };
 
 class BatchSweeps {
@@ -26,7 +27,8 @@ class BatchSweeps {
   /// q̇ and ṗ of many states, `width()` at a time. False when some state has a joint without
   /// inertia: its index is in failed_state(), its results are NaN, those of all others are right.
   virtual bool momentum(double t, const States& states) = 0;
-  /// u̇ of many states; p holds u, and the weights are the only forces. As momentum().
+  /// u̇ of many states; p holds u, pdot takes u̇. Forces: weights, τ, those of the joints' springs,
+  /// dampers and torques. As momentum().
   virtual bool acceleration(double t, const States& states) = 0;
 
   /// ∂(q̇, ṗ)/∂(q, p), forces between points of bodies included: columns of nq + nv numbers, each

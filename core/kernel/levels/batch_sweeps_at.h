@@ -25,29 +25,31 @@ class BatchSweepsAt final : public BatchSweeps {
   }
 
   bool momentum(double t, const States& s) override {
-    return each_pack(s, [&](const double* q, const double* p, double* qdot, double* pdot,
-                            std::ptrdiff_t stride) {
+    return each_pack(s, [&](const States& pack) {
+      const std::ptrdiff_t stride = pack.stride;
       const bool direct = !quasi_velocities_;  // q̇ = u
       if (!direct) rates_.resize(static_cast<std::size_t>(tree_.model->nv) * lanes);
-      const StridedOut<Many> u{direct ? qdot : rates_.data(), direct ? stride : lanes};
-      if (!momenta_.get(tree_)(Many(t), StridedIn<Many>{q, stride}, StridedIn<Many>{p, stride}, u,
-                               StridedOut<Many>{pdot, stride})) {
+      const StridedOut<Many> u{direct ? pack.qdot : rates_.data(), direct ? stride : lanes};
+      if (!momenta_.get(tree_)(Many(t), StridedIn<Many>{pack.q, stride},
+                               StridedIn<Many>{pack.p, stride}, u,
+                               StridedOut<Many>{pack.pdot, stride})) {
         joint_ = momenta_.get(tree_).singular_joint();
         return false;
       }
-      if (!direct) coordinate_rates(q, qdot, stride);
-      return finite(qdot, tree_.model->nq, stride) && finite(pdot, tree_.model->nv, stride);
+      if (!direct) coordinate_rates(pack.q, pack.qdot, stride);
+      return finite(pack.qdot, tree_.model->nq, stride) &&
+             finite(pack.pdot, tree_.model->nv, stride);
     });
   }
   bool acceleration(double t, const States& s) override {
-    return each_pack(
-        s, [&](const double* q, const double* u, double*, double* udot, std::ptrdiff_t stride) {
-          const bool ok = accelerations_.get(tree_)(Many(t), StridedIn<Many>{q, stride},
-                                                    StridedIn<Many>{u, stride}, Nothing{},
-                                                    StridedOut<Many>{udot, stride});
-          if (!ok) joint_ = accelerations_.get(tree_).singular_joint();
-          return ok && finite(udot, tree_.model->nv, stride);
-        });
+    return each_pack(s, [&](const States& pack) {
+      const std::ptrdiff_t stride = pack.stride;
+      const StridedIn<Many> q{pack.q, stride}, u{pack.p, stride};
+      const bool ok = accelerations_.get(tree_)(Many(t), q, u, joint_forces(pack, q, u),
+                                                StridedOut<Many>{pack.pdot, stride});
+      if (!ok) joint_ = accelerations_.get(tree_).singular_joint();
+      return ok && finite(pack.pdot, tree_.model->nv, stride);
+    });
   }
 
   bool jacobian(double t, const double* q, const double* p, double* J,
@@ -62,9 +64,23 @@ class BatchSweepsAt final : public BatchSweeps {
   std::size_t failed_state() const override { return failed_state_; }
 
  private:
-  struct Nothing {
-    MOMENTA_INLINE Many operator[](int) const { return Many(0.0); }
-  };
+  /// τ and what the joints' own springs, dampers and torques do. Not inlined: as
+  /// coordinate_rates().
+  [[gnu::noinline]] StridedIn<Many> joint_forces(const States& pack, const StridedIn<Many>& q,
+                                                 const StridedIn<Many>& u) {
+    const bool own = tree_.model->has_joint_forces;
+    if (!own && pack.tau) return {pack.tau, pack.stride};
+    if (!own) return {no_force_, 0};
+    forces_.resize(static_cast<std::size_t>(tree_.model->nv) * lanes);
+    for (const auto& b : tree_.model->bodies)
+      for (int i = b.u; i < b.u + b.nv; ++i) {
+        Many force(0.0);
+        if (pack.tau) force = Many::load(pack.tau + i * pack.stride);
+        if (b.nv == 1) force += joint_force(b, q[b.q], u[b.u]);
+        force.store(forces_.data() + i * lanes);
+      }
+    return {forces_.data(), lanes};
+  }
 
   /// Whether so many rows of a pack are: 0 x is 0 of a finite x and NaN of any other.
   bool finite(const double* x, int rows, std::ptrdiff_t stride) {
@@ -93,65 +109,66 @@ class BatchSweepsAt final : public BatchSweeps {
     }
   }
 
+  /// The states of s from `first` on.
+  static States from(const States& s, std::size_t first, std::size_t count) {
+    return {s.q + first, s.p + first, s.qdot ? s.qdot + first : nullptr, s.pdot + first,
+            s.stride,    count,       s.tau ? s.tau + first : nullptr};
+  }
   /// Calls f on every full pack in place, and on the rest in a padded copy. A pack that fails is
   /// repeated state by state, so that one bad state spoils no other.
   template <class F>
   bool each_pack(const States& s, F&& f) {
-    const auto nq = static_cast<std::size_t>(tree_.model->nq);
-    const auto nv = static_cast<std::size_t>(tree_.model->nv);
     bool all = true;
-    std::size_t first = 0;
-    for (; first + lanes <= s.count; first += lanes)
-      if (!f(s.q + first, s.p + first, s.qdot ? s.qdot + first : nullptr, s.pdot + first, s.stride))
-        all &= one_by_one(s, first, lanes, nq, nv, f, all);
-    if (first < s.count && !copied(s, first, s.count - first, nq, nv, f))
-      all &= one_by_one(s, first, s.count - first, nq, nv, f, all);
+    for (std::size_t first = 0; first < s.count; first += lanes) {
+      const States part = from(s, first, s.count - first < lanes ? s.count - first : lanes);
+      if (part.count == lanes ? f(part) : copied(part, f)) continue;
+      all &= one_by_one(part, first, f, all);
+    }
     return all;
   }
 
-  /// `count` states from `first` on copied into one pack, the last repeated.
+  /// The states copied into one pack, the last repeated.
   template <class F>
-  bool copied(const States& s, std::size_t first, std::size_t count, std::size_t nq, std::size_t nv,
-              F&& f) {
-    padded_.resize((2 * nq + 2 * nv) * lanes);
+  bool copied(const States& s, F&& f) {
+    const auto nq = static_cast<std::size_t>(tree_.model->nq);
+    const auto nv = static_cast<std::size_t>(tree_.model->nv);
+    padded_.resize((2 * nq + 3 * nv) * lanes);
     double* const q = padded_.data();
     double* const p = q + nq * lanes;
     double* const qdot = p + nv * lanes;
     double* const pdot = qdot + nq * lanes;
+    double* const tau = pdot + nv * lanes;
     const auto at = [&](std::size_t i, std::size_t state) {
       return static_cast<std::ptrdiff_t>(i) * s.stride + static_cast<std::ptrdiff_t>(state);
     };
     for (std::size_t lane = 0; lane < lanes; ++lane) {
-      const std::size_t state = first + (lane < count ? lane : count - 1);
+      const std::size_t state = lane < s.count ? lane : s.count - 1;
       for (std::size_t i = 0; i < nq; ++i) q[i * lanes + lane] = s.q[at(i, state)];
       for (std::size_t i = 0; i < nv; ++i) p[i * lanes + lane] = s.p[at(i, state)];
+      for (std::size_t i = 0; s.tau && i < nv; ++i) tau[i * lanes + lane] = s.tau[at(i, state)];
     }
-    if (!f(q, p, qdot, pdot, lanes)) return false;
-    for (std::size_t lane = 0; lane < count; ++lane) {
-      if (s.qdot)
-        for (std::size_t i = 0; i < nq; ++i) s.qdot[at(i, first + lane)] = qdot[i * lanes + lane];
-      for (std::size_t i = 0; i < nv; ++i) s.pdot[at(i, first + lane)] = pdot[i * lanes + lane];
+    if (!f(States{q, p, qdot, pdot, lanes, lanes, s.tau ? tau : nullptr})) return false;
+    for (std::size_t lane = 0; lane < s.count; ++lane) {
+      for (std::size_t i = 0; s.qdot && i < nq; ++i) s.qdot[at(i, lane)] = qdot[i * lanes + lane];
+      for (std::size_t i = 0; i < nv; ++i) s.pdot[at(i, lane)] = pdot[i * lanes + lane];
     }
     return true;
   }
+  /// @post failed_state() is the first that failed, where `none_failed_yet`
   template <class F>
-  bool one_by_one(const States& s, std::size_t first, std::size_t count, std::size_t nq,
-                  std::size_t nv, F&& f, bool none_failed_yet) {
+  bool one_by_one(const States& s, std::size_t first, F&& f, bool none_failed_yet) {
     bool all = true;
-    for (std::size_t state = first; state < first + count; ++state) {
-      if (copied(s, state, 1, nq, nv, f)) continue;
+    for (std::size_t i = 0; i < s.count; ++i) {
+      const States one = from(s, i, 1);
+      if (copied(one, f)) continue;
       if (none_failed_yet && all) {
-        failed_state_ = state;
+        failed_state_ = first + i;
         singular_joint_ = joint_;
       }
       all = false;
       const double nothing = __builtin_nan("");
-      const auto place = static_cast<std::ptrdiff_t>(state);
-      if (s.qdot)
-        for (std::size_t i = 0; i < nq; ++i)
-          s.qdot[static_cast<std::ptrdiff_t>(i) * s.stride + place] = nothing;
-      for (std::size_t i = 0; i < nv; ++i)
-        s.pdot[static_cast<std::ptrdiff_t>(i) * s.stride + place] = nothing;
+      for (int k = 0; s.qdot && k < tree_.model->nq; ++k) one.qdot[k * s.stride] = nothing;
+      for (int k = 0; k < tree_.model->nv; ++k) one.pdot[k * s.stride] = nothing;
     }
     return all;
   }
@@ -169,7 +186,8 @@ class BatchSweepsAt final : public BatchSweeps {
   WhenAsked<MomentumSweeps<Space, Many>> momenta_;
   WhenAsked<AccelerationSweeps<Space, Many>> accelerations_;
   WhenAsked<JacobianPass<Space, Many>> jacobian_;
-  Buffer rates_, padded_;
+  Buffer rates_, padded_, forces_;
+  double no_force_[lanes] = {};
   int singular_joint_ = -1, joint_ = -1;  ///< of the first state that failed, of the last
   std::size_t failed_state_ = 0;
   bool quasi_velocities_ = false;

@@ -19,6 +19,9 @@ class OpenSweeps {
   virtual bool momentum(double t, const double* q, const double* p, double* u, double* pdot) = 0;
   /// M⁻¹ x (nv).
   virtual bool inverse_mass_times(double t, const double* q, const double* x, double* result) = 0;
+  /// The same at the place of the last call of momentum() or inverse_mass_times().
+  /// @pre there was one, and it returned true
+  virtual bool inverse_mass_times(const double* x, double* result) = 0;
   /// The derivative of (q̇, ṗ) along (δq, δp), forces between points of bodies included.
   virtual bool derivative(double t, const double* q, const double* p, const double* dq,
                           const double* dp, double* dqdot, double* dpdot) = 0;

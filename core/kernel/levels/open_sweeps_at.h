@@ -28,7 +28,8 @@ class OpenSweepsAt final : public OpenSweeps {
       : tree_(tree),
         momentum_(tree),
         acceleration_(tree),
-        scratch_(3 * static_cast<std::size_t>(tree.model->nv)) {
+        scratch_(3 * static_cast<std::size_t>(tree.model->nv)),
+        place_(static_cast<std::size_t>(tree.model->nq)) {
     for (const auto& b : tree.model->bodies) has_user_joints_ |= b.kind == JointKind::user;
     if (!branches) return;
     if constexpr (Space::dimension == 6) {
@@ -41,24 +42,24 @@ class OpenSweepsAt final : public OpenSweeps {
   bool momentum(double t, const double* q, const double* p, double* u, double* pdot) override {
     if constexpr (Space::dimension == 6)
       if (branched_momenta_) {
+        keep_place(t, q);
         const bool ok = (*branched_momenta_)(t, StridedIn<One>{q, 1}, StridedIn<One>{p, 1},
                                              StridedOut<One>{u, 1}, StridedOut<One>{pdot, 1});
         if (!ok) singular_joint_ = branched_momenta_->singular_joint();
         return ok;
       }
-    const bool ok = momentum_(One(t), StridedIn<One>{q, 1}, StridedIn<One>{p, 1},
-                              StridedOut<One>{u, 1}, StridedOut<One>{pdot, 1});
-    if (!ok) singular_joint_ = momentum_.singular_joint();
-    return ok;
+    return body_by_body(t, q, p, u, pdot);
   }
   bool inverse_mass_times(double t, const double* q, const double* x, double* result) override {
-    const auto nv = static_cast<std::size_t>(tree_.model->nv);
-    double *const u = &scratch_.data()->v, *const pdot = u + nv, *const no_momenta = pdot + nv;
-    for (std::size_t i = 0; i < nv; ++i) no_momenta[i] = 0;
-    if (!momentum_(One(t), StridedIn<One>{q, 1}, StridedIn<One>{no_momenta, 1},
-                   StridedOut<One>{u, 1}, StridedOut<One>{pdot, 1})) {
-      singular_joint_ = momentum_.singular_joint();
-      return false;
+    keep_place(t, q);
+    return inverse_mass_times(x, result);
+  }
+  bool inverse_mass_times(const double* x, double* result) override {
+    if (place_kept_) {
+      const auto nv = static_cast<std::size_t>(tree_.model->nv);
+      double *const u = &scratch_.data()->v, *const pdot = u + nv, *const no_momenta = pdot + nv;
+      for (std::size_t i = 0; i < nv; ++i) no_momenta[i] = 0;
+      if (!body_by_body(t_, &place_.data()->v, no_momenta, u, pdot)) return false;
     }
     momentum_.inverse_mass_times(StridedIn<One>{x, 1}, StridedOut<One>{result, 1});
     return true;
@@ -117,6 +118,20 @@ class OpenSweepsAt final : public OpenSweeps {
   int singular_joint() const override { return singular_joint_; }
 
  private:
+  bool body_by_body(double t, const double* q, const double* p, double* u, double* pdot) {
+    place_kept_ = false;
+    const bool ok = momentum_(One(t), StridedIn<One>{q, 1}, StridedIn<One>{p, 1},
+                              StridedOut<One>{u, 1}, StridedOut<One>{pdot, 1});
+    if (!ok) singular_joint_ = momentum_.singular_joint();
+    return ok;
+  }
+  /// M* of this place is not in momentum_; inverse_mass_times() will ask for it.
+  void keep_place(double t, const double* q) {
+    place_kept_ = true;
+    t_ = t;
+    for (std::size_t i = 0; i < place_.size(); ++i) place_[i] = One(q[i]);
+  }
+
   const Tree& tree_;
   std::unique_ptr<BranchedMomenta<Branch, One>> branched_momenta_;
   std::unique_ptr<BranchedAccelerations<Branch, One>> branched_accelerations_;
@@ -128,7 +143,9 @@ class OpenSweepsAt final : public OpenSweeps {
   InSpace<CompositeSweeps<Spatial, One>> composite_;
   InSpace<InverseDynamicsSweeps<Spatial, One>> inverse_;
   WhenAsked<DirectionalPass<Space, 1, One>> along_;
-  std::vector<One> scratch_;
+  std::vector<One> scratch_, place_;
+  double t_ = 0;
+  bool place_kept_ = false;
   int singular_joint_ = -1;
   bool has_user_joints_ = false;
 };

@@ -49,30 +49,10 @@ class LoopedSweepsAt final : public LoopedSweeps {
     return ok;
   }
   bool momentum(double t, const LoopedStates& s, double fade, double leak) override {
-    if (decltype(many_)::element_type::bytes(tree_, loops_) > most_bytes)
-      return one_by_one(t, s, fade, leak);
-    auto& sweeps = made(many_);
-    RightSide<Many> right;
-    right.fade = fade;
-    right.leak = leak;
-    right.rates = true;
-    constexpr std::size_t slots = abreast;
-    bool all = true;
-    weak_looped_branch_ = false;
-    const auto pack = [&](const double* q, const double* p, double* u, double* sigma, double* pdot,
-                          std::ptrdiff_t stride) {
-      const StridedIn<Many> x{p, stride};
-      all &= sweeps(Many(t), StridedIn<Many>{q, stride}, x, x, right, StridedOut<Many>{u, stride},
-                    StridedOut<Many>{sigma, stride}, StridedOut<Many>{pdot, stride});
-      if (!all) singular_joint_ = sweeps.singular_joint();
-      weak_looped_branch_ |= sweeps.weak_looped_branch();
-    };
-    std::size_t first = 0;
-    for (; first + slots <= s.count; first += slots)
-      pack(s.q + first, s.p + first, s.u + first, s.sigma + first, s.pdot + first, s.stride);
-    if (first < s.count) rest(s, first, pack);
-    to_given(s);
-    return all;
+    return each_pack(t, s, momenta_of_many_, momentum_, fade, leak);
+  }
+  bool acceleration(double t, const LoopedStates& s, double fade) override {
+    return each_pack(t, s, accelerations_of_many_, made(acceleration_), fade, 0);
   }
 
   std::size_t faded_rows(int* rows, bool of_momentum) const override {
@@ -105,10 +85,6 @@ class LoopedSweepsAt final : public LoopedSweeps {
     return right.of_rows(reinterpret_cast<const One*>(centre),
                          reinterpret_cast<const One*>(right.compliance));
   }
-  void to_given(const LoopedStates& s) {
-    if (shared_.empty()) return;
-    for (std::size_t i = 0; i < s.count; ++i) shared_.to_given(s.sigma + i, s.stride);
-  }
   template <class Report>
   void each_pivot(bool of_momentum, Report&& report) const {
     if (of_momentum)
@@ -131,51 +107,105 @@ class LoopedSweepsAt final : public LoopedSweeps {
 
   /// Packs whose records leave the cache take longer than the same states one after the other.
   static constexpr std::size_t most_bytes = 16 << 20;
-  bool one_by_one(double t, const LoopedStates& s, double fade, double leak) {
-    RightSide<One> right;
-    right.fade = fade;
-    right.leak = leak;
-    right.rates = true;
-    bool all = true, weak = false;
-    for (std::size_t i = 0; i < s.count; ++i) {
-      const StridedIn<One> x{s.p + i, s.stride};
-      all &= momentum_(One(t), StridedIn<One>{s.q + i, s.stride}, x, x, right,
-                       StridedOut<One>{s.u + i, s.stride}, StridedOut<One>{s.sigma + i, s.stride},
-                       StridedOut<One>{s.pdot + i, s.stride});
-      if (!all) singular_joint_ = momentum_.singular_joint();
-      weak |= momentum_.weak_looped_branch();
+  /// The states in packs by `many`, which is made when asked for, or one by one.
+  template <class OfMany, class OfOne>
+  bool each_pack(double t, const LoopedStates& s, std::unique_ptr<OfMany>& many, OfOne& one,
+                 double fade, double leak) {
+    weak_looped_branch_ = false;
+    bool all = true;
+    if (OfMany::bytes(tree_, loops_) > most_bytes) {
+      for (std::size_t i = 0; i < s.count; ++i)
+        all &= taken<One>(one, t, from(s, i, 1), fade, leak);
+    } else {
+      constexpr std::size_t width = abreast;
+      OfMany& sweeps = made(many);
+      std::size_t first = 0;
+      for (; first + width <= s.count; first += width)
+        all &= taken<Many>(sweeps, t, from(s, first, width), fade, leak);
+      if (first < s.count)
+        padded(from(s, first, s.count - first),
+               [&](const LoopedStates& rest) { all &= taken<Many>(sweeps, t, rest, fade, leak); });
     }
-    weak_looped_branch_ = weak;
-    to_given(s);
+    if (!shared_.empty())
+      for (std::size_t i = 0; i < s.count; ++i) shared_.to_given(s.sigma + i, s.stride);
     return all;
   }
+  /// One pack.
+  template <class X, class Sweeps>
+  bool taken(Sweeps& sweeps, double t, const LoopedStates& s, double fade, double leak) {
+    RightSide<X> right;
+    right.fade = fade;
+    right.leak = leak;
+    right.rates = Sweeps::of_momenta;
+    right.body_forces = s.body_forces;
+    const StridedIn<X> q{s.q, s.stride}, x{s.p, s.stride};
+    const StridedIn<X> tau = Sweeps::of_momenta ? x : joint_forces<X>(s, q, x);
+    const bool ok = sweeps(X(t), q, x, tau, right, StridedOut<X>{s.u, s.stride},
+                           StridedOut<X>{s.sigma, s.stride},
+                           StridedOut<X>{Sweeps::of_momenta ? s.pdot : s.u, s.stride});
+    if (!ok) singular_joint_ = sweeps.singular_joint();
+    weak_looped_branch_ |= sweeps.weak_looped_branch();
+    return ok;
+  }
+  /// τ and what the joints' own springs, dampers and torques do, of one pack.
+  template <class X>
+  [[gnu::noinline]] StridedIn<X> joint_forces(const LoopedStates& s, const StridedIn<X>& q,
+                                              const StridedIn<X>& u) {
+    constexpr std::size_t width = sizeof(X) / sizeof(double);
+    const bool own = tree_.model->has_joint_forces;
+    if (!own && s.tau) return {s.tau, s.stride};
+    const auto nv = static_cast<std::size_t>(tree_.model->nv);
+    if (forces_.size() < nv * abreast) forces_.resize(nv * abreast);
+    double* const at = &forces_.data()->v;
+    for (const auto& b : tree_.model->bodies)
+      for (int i = b.u; i < b.u + b.nv; ++i) {
+        X force(0.0);
+        if (s.tau) force = X::load(s.tau + i * s.stride);
+        if (own && b.nv == 1) force += joint_force(b, q[b.q], u[b.u]);
+        force.store(at + static_cast<std::size_t>(i) * width);
+      }
+    return {at, width};
+  }
 
-  /// The states that fill no pack, copied into one; its last slots repeat the last state.
-  template <class PackOf>
-  void rest(const LoopedStates& s, std::size_t first, PackOf&& pack) {
-    constexpr std::size_t slots = abreast;
+  /// The states of s from `first` on.
+  static LoopedStates from(const LoopedStates& s, std::size_t first, std::size_t count) {
+    return {s.q + first,
+            s.p + first,
+            s.u + first,
+            s.sigma + first,
+            s.pdot ? s.pdot + first : nullptr,
+            s.stride,
+            count,
+            s.tau ? s.tau + first : nullptr,
+            s.body_forces};
+  }
+  /// Calls act on states that fill no pack, copied into one; its last slots repeat the last state.
+  template <class Act>
+  void padded(const LoopedStates& s, Act&& act) {
+    constexpr std::size_t width = abreast;
     const auto nq = static_cast<std::size_t>(tree_.model->nq),
                nv = static_cast<std::size_t>(tree_.model->nv),
                m = static_cast<std::size_t>(loops_.rows);
-    if (padded_.size() < (nq + 3 * nv + m) * slots) padded_.resize((nq + 3 * nv + m) * slots);
-    double *q = &padded_.data()->v, *p = q + nq * slots, *u = p + nv * slots,
-           *pdot = u + nv * slots, *sigma = pdot + nv * slots;
+    if (padded_.size() < (nq + 4 * nv + m) * width) padded_.resize((nq + 4 * nv + m) * width);
+    double *q = &padded_.data()->v, *p = q + nq * width, *u = p + nv * width,
+           *pdot = u + nv * width, *tau = pdot + nv * width, *sigma = tau + nv * width;
     const auto at = [&](std::size_t i, std::size_t state) {
       return static_cast<std::ptrdiff_t>(i) * s.stride + static_cast<std::ptrdiff_t>(state);
     };
-    const std::size_t count = s.count - first;
-    for (std::size_t slot = 0; slot < slots; ++slot) {
-      const std::size_t state = first + (slot < count ? slot : count - 1);
-      for (std::size_t i = 0; i < nq; ++i) q[i * slots + slot] = s.q[at(i, state)];
-      for (std::size_t i = 0; i < nv; ++i) p[i * slots + slot] = s.p[at(i, state)];
+    for (std::size_t slot = 0; slot < width; ++slot) {
+      const std::size_t state = slot < s.count ? slot : s.count - 1;
+      for (std::size_t i = 0; i < nq; ++i) q[i * width + slot] = s.q[at(i, state)];
+      for (std::size_t i = 0; i < nv; ++i) p[i * width + slot] = s.p[at(i, state)];
+      for (std::size_t i = 0; s.tau && i < nv; ++i) tau[i * width + slot] = s.tau[at(i, state)];
     }
-    pack(q, p, u, sigma, pdot, static_cast<std::ptrdiff_t>(slots));
-    for (std::size_t slot = 0; slot < count; ++slot) {
+    act(LoopedStates{q, p, u, sigma, pdot, static_cast<std::ptrdiff_t>(width), width,
+                     s.tau ? tau : nullptr, s.body_forces});
+    for (std::size_t slot = 0; slot < s.count; ++slot) {
       for (std::size_t i = 0; i < nv; ++i) {
-        s.u[at(i, first + slot)] = u[i * slots + slot];
-        s.pdot[at(i, first + slot)] = pdot[i * slots + slot];
+        s.u[at(i, slot)] = u[i * width + slot];
+        if (s.pdot) s.pdot[at(i, slot)] = pdot[i * width + slot];
       }
-      for (std::size_t i = 0; i < m; ++i) s.sigma[at(i, first + slot)] = sigma[i * slots + slot];
+      for (std::size_t i = 0; i < m; ++i) s.sigma[at(i, slot)] = sigma[i * width + slot];
     }
   }
 
@@ -186,8 +216,9 @@ class LoopedSweepsAt final : public LoopedSweeps {
   LoopedBranchGroups looped_branches_;
   LoopSweeps<Space, One, Rows, true> momentum_;
   std::unique_ptr<LoopSweeps<Space, One, Rows, false>> acceleration_;
-  std::unique_ptr<LoopSweeps<Space, Many, Rows, true>> many_;
-  std::vector<One> padded_;
+  std::unique_ptr<LoopSweeps<Space, Many, Rows, true>> momenta_of_many_;
+  std::unique_ptr<LoopSweeps<Space, Many, Rows, false>> accelerations_of_many_;
+  std::vector<One> padded_, forces_;
   int singular_joint_ = -1;
   bool weak_looped_branch_ = false;
 };

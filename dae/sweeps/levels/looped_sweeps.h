@@ -11,13 +11,15 @@ namespace momenta {
 
 /// States side by side: coordinate i of state s is at base[i * stride + s].
 struct LoopedStates {
-  const double* q;        ///< nq rows
-  const double* p;        ///< nv rows
-  double* u;              ///< nv rows
-  double* sigma;          ///< m rows
-  double* pdot;           ///< nv rows
-  std::ptrdiff_t stride;  ///< from one row to the next
-  std::size_t count;      ///< how many states
+  const double* q;              ///< nq rows
+  const double* p;              ///< nv rows; of acceleration() u
+  double* u;                    ///< nv rows; of acceleration() u̇
+  double* sigma;                ///< m rows; of acceleration() λ
+  double* pdot;                 ///< nv rows; of acceleration() not used
+  std::ptrdiff_t stride;        ///< from one row to the next
+  std::size_t count;            ///< how many states
+  const double* tau = nullptr;  ///< of acceleration(): nv rows; null: zero
+  bool body_forces = false;     ///< RightSide::body_forces
 };
 
 /// The sweeps that carry the loops of one mechanism, with their workspace: one object per thread.
@@ -38,6 +40,9 @@ class LoopedSweeps {
   /// momentum() with rates for many states, `width()` at a time, with centre zero. False when a
   /// joint has no inertia in some state.
   virtual bool momentum(double t, const LoopedStates& states, double fade, double leak) = 0;
+  /// acceleration() of many states likewise; τ and what the joints' own springs, dampers and
+  /// torques do.
+  virtual bool acceleration(double t, const LoopedStates& states, double fade) = 0;
 
   /// Rows of Φ that faded in the last solution of one state by momentum(), or by acceleration()
   /// where `of_momentum` is false. Returns their number; `rows` has room for m.
