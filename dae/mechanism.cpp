@@ -135,7 +135,7 @@ const char* name_of(KktChoice choice) {
 void Mechanism::choose_kkt(KktChoice asked) {
   const auto plan = [&](auto& cast) {
     cast.links = build_links(cast.model);
-    cast.swept = swept_loops(cast.model, in_link_frames(cast.loops, cast.links));
+    cast.swept = swept_loops(tree_, cast.model, in_link_frames(cast.loops, cast.links));
     if (!cast.swept.shared.empty()) {
       cast.as_given.loops = in_link_frames(cast.loops, cast.links);
       cast.as_given.plan = plan_loops(cast.model, cast.as_given.loops);

@@ -198,7 +198,7 @@ CutCost cut_cost(const Mechanism& mechanism) {
     cost.mass_entries += depth.back();
   }
   const auto plan = [&](const auto& model) {
-    return swept_loops(model, build_loops(mechanism.scene(), tree, model)).plan;
+    return swept_loops(tree, model, build_loops(mechanism.scene(), tree, model)).plan;
   };
   if (mechanism.m() == 0) return cost;
   const LoopPlan loops =

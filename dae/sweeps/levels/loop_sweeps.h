@@ -5,6 +5,7 @@
 #include <momenta/core/kernel/levels/open_sweeps.h>
 #include <momenta/core/kernel/link.h>
 #include <momenta/core/kernel/planar_link.h>
+#include <momenta/dae/loop/carried_rows.h>
 #include <momenta/dae/loop/loop_model.h>
 #include <momenta/dae/loop/shared_points.h>
 #include <momenta/dae/sweeps/levels/looped_sweeps.h>
@@ -24,7 +25,8 @@ template <class Space>
 struct SweptLoops {
   LoopModel<Space> loops;  ///< points and axes in the frames of the links
   LoopPlan plan;           ///< the order in which bodies and loops are eliminated
-  SharedPoints shared;     ///< empty: the loops are those of the scene
+  SharedPoints shared;     ///< not empty: ties paired anew, in the plane
+  CarriedRows carried;     ///< not all: rows left out, in space
 };
 
 /// The plan of a model's loops; in space branches may be folded.
@@ -40,12 +42,16 @@ LoopPlan plan_loops(const Model<Space>& model, const LoopModel<Space>& loops) {
   return plan_loops(parents, shapes, Space::dimension == 6);
 }
 
-/// `loops` in the frames of the links and their plan; ties that meet in one point are paired anew
-/// where that is less work and both plans fit.
+/// `loops` in the frames of the links and their plan. In space without the rows that no joint
+/// moves; in a plane, ties that meet in one point are paired anew where that is less work and both
+/// plans fit.
 template <class Space>
-SweptLoops<Space> swept_loops(const Model<Space>& model, LoopModel<Space> loops) {
-  SweptLoops<Space> given{std::move(loops), {}, {}}, anew;
+SweptLoops<Space> swept_loops([[maybe_unused]] const Tree& tree, const Model<Space>& model,
+                              LoopModel<Space> loops) {
+  SweptLoops<Space> given{std::move(loops), {}, {}, {}}, anew;
+  if constexpr (Space::dimension == 6) given.carried = CarriedRows(tree, model, given.loops);
   given.plan = plan_loops(model, given.loops);
+  if constexpr (Space::dimension == 6) return given;
   std::vector<int> parents;
   for (const auto& b : model.bodies) parents.push_back(b.parent);
   anew.shared = SharedPoints(parents, given.loops, anew.loops);

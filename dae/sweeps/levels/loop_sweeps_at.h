@@ -24,6 +24,7 @@ class LoopedSweepsAt final : public LoopedSweeps {
         loops_(swept.loops),
         plan_(swept.plan),
         shared_(swept.shared),
+        carried_(swept.carried),
         looped_branches_(std::move(looped_branches)),
         momentum_(swept_by<LoopSweeps<Space, One, Rows, true>>()) {}
 
@@ -32,7 +33,7 @@ class LoopedSweepsAt final : public LoopedSweeps {
     const bool ok = momentum_(One(t), StridedIn<One>{q, 1}, StridedIn<One>{p, 1},
                               StridedIn<One>{p, 1}, one(right), StridedOut<One>{u, 1},
                               StridedOut<One>{sigma, 1}, StridedOut<One>{pdot, 1});
-    if (!shared_.empty()) shared_.to_given(sigma, 1);
+    to_given(sigma, 1, right.centre);
     singular_joint_ = momentum_.singular_joint();
     weak_looped_branch_ = momentum_.weak_looped_branch();
     return ok;
@@ -43,7 +44,7 @@ class LoopedSweepsAt final : public LoopedSweeps {
     const bool ok = sweeps(One(t), StridedIn<One>{q, 1}, StridedIn<One>{u, 1},
                            StridedIn<One>{tau, 1}, one(right), StridedOut<One>{udot, 1},
                            StridedOut<One>{lambda, 1}, StridedOut<One>{udot, 1});
-    if (!shared_.empty()) shared_.to_given(lambda, 1);
+    to_given(lambda, 1, right.centre);
     singular_joint_ = sweeps.singular_joint();
     weak_looped_branch_ = sweeps.weak_looped_branch();
     return ok;
@@ -58,12 +59,14 @@ class LoopedSweepsAt final : public LoopedSweeps {
   std::size_t faded_rows(int* rows, bool of_momentum) const override {
     std::size_t count = 0;
     each_pivot(of_momentum, [&](int row, double w, double tau) {
-      if (has_faded(w, tau)) rows[count++] = row;
+      if (has_faded(w, tau)) rows[count++] = carried_.given(row);
     });
+    for (const int row : carried_.left_out()) rows[count++] = row;
     return count;
   }
   Pivots pivots(bool of_momentum) const override {
     Pivots p;
+    p.faded = static_cast<int>(carried_.left_out().size());
     each_pivot(of_momentum, [&](int, double w, double tau) {
       if (has_faded(w, tau))
         ++p.faded;
@@ -80,10 +83,17 @@ class LoopedSweepsAt final : public LoopedSweeps {
  private:
   RightSide<One> one(const RightSide<double>& right) {
     static_assert(sizeof(One) == sizeof(double));
-    const bool paired = right.centre && !shared_.empty();
-    const double* centre = paired ? shared_.to_paired(right.centre) : right.centre;
+    const double *centre = right.centre, *compliance = right.compliance;
+    if (centre && !shared_.empty()) centre = shared_.to_paired(centre);
+    if (centre && !carried_.all()) centre = carried_.to_carried(centre, 0);
+    if (compliance && !carried_.all()) compliance = carried_.to_carried(compliance, 1);
     return right.of_rows(reinterpret_cast<const One*>(centre),
-                         reinterpret_cast<const One*>(right.compliance));
+                         reinterpret_cast<const One*>(compliance));
+  }
+  /// Multipliers of the rows as they are swept to those of Φ, in place.
+  void to_given(double* sigma, std::ptrdiff_t stride, const double* centre) {
+    if (!shared_.empty()) shared_.to_given(sigma, stride);
+    if (!carried_.all()) carried_.to_given(sigma, stride, centre);
   }
   template <class Report>
   void each_pivot(bool of_momentum, Report&& report) const {
@@ -126,8 +136,8 @@ class LoopedSweepsAt final : public LoopedSweeps {
         padded(from(s, first, s.count - first),
                [&](const LoopedStates& rest) { all &= taken<Many>(sweeps, t, rest, fade, leak); });
     }
-    if (!shared_.empty())
-      for (std::size_t i = 0; i < s.count; ++i) shared_.to_given(s.sigma + i, s.stride);
+    if (!shared_.empty() || !carried_.all())
+      for (std::size_t i = 0; i < s.count; ++i) to_given(s.sigma + i, s.stride, nullptr);
     return all;
   }
   /// One pack.
@@ -213,6 +223,7 @@ class LoopedSweepsAt final : public LoopedSweeps {
   const LoopModel<Space>& loops_;
   const LoopPlan& plan_;
   SharedPoints shared_;
+  CarriedRows carried_;
   LoopedBranchGroups looped_branches_;
   LoopSweeps<Space, One, Rows, true> momentum_;
   std::unique_ptr<LoopSweeps<Space, One, Rows, false>> acceleration_;
