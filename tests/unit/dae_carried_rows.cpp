@@ -1,0 +1,65 @@
+// Rows of loops around planar cycles that no joint moves are left out of the sweeps in space: the
+// rows that stay are those of the plane, multipliers of the others are the centre's, and the motion
+// is that of the whole matrix. Cycles that leave a plane keep all rows.
+
+#include "equations/linkages.h"
+#include "equations/random_loops.h"
+#include "equations/tolerance.h"
+
+#include <gtest/gtest.h>
+#include <momenta/core/scene/files/read_scene.h>
+#include <momenta/dae/kkt/loop_solver.h>
+
+#include <filesystem>
+
+namespace momenta::dae_carried_rows {
+namespace {
+
+using namespace equations;
+using Eigen::VectorXd;
+
+Scene four_bar() {
+  return read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples/four_bar/scene.toml");
+}
+
+/// u and σ of (7) from momenta of the given rates, and the rows that faded.
+struct Solved {
+  VectorXd u, sigma, pdot;
+  std::vector<int> faded;
+};
+Solved solve(const Mechanism& mechanism, const VectorXd& q, const VectorXd& p,
+             const VectorXd& centre) {
+  const auto e = mechanism.evaluation<double>();
+  const auto solver = make_loop_solver(mechanism, *e);
+  Solved s{VectorXd(mechanism.nv()), VectorXd(mechanism.m()), VectorXd(mechanism.nv()), {}};
+  EXPECT_TRUE(solver->momentum(0, q.data(), p.data(), centre.data(), fade_evaluation, 0, s.u.data(),
+                               s.sigma.data(), s.pdot.data()));
+  s.faded = solver->faded_rows();
+  std::sort(s.faded.begin(), s.faded.end());
+  return s;
+}
+
+TEST(CarriedRows, OfAPlanarCycleInSpaceAreTwo) {
+  const Mechanism swept(four_bar(), {.algebra = Algebra::spatial, .kkt = KktChoice::sweeps}),
+      dense(four_bar(), {.algebra = Algebra::spatial, .kkt = KktChoice::dense});
+  ASSERT_EQ(swept.m(), 5);
+  EXPECT_LE(swept.looped_sweeps()->slots(), 4);
+  const VectorXd q = start_of(swept).q;
+  VectorXd p(3), centre(5);
+  p << 0.3, -0.2, 0.1;
+  centre << 0.5, -0.25, 2, 3, 5;
+  const Solved a = solve(swept, q, p, centre), b = solve(dense, q, p, centre);
+  EXPECT_LT(relative_error(a.u, b.u), 1e-12);
+  EXPECT_LT(relative_error(a.pdot, b.pdot), 1e-10);
+  EXPECT_LT(relative_error(a.sigma.head(2), b.sigma.head(2)), 1e-10);
+  EXPECT_EQ(a.sigma.tail(3), centre.tail(3));
+  EXPECT_EQ(a.faded, (std::vector<int>{2, 3, 4}));
+}
+
+TEST(CarriedRows, OfACycleOutOfThePlaneAreAll) {
+  const Mechanism bricard_loop(bricard(), {.kkt = KktChoice::sweeps});
+  EXPECT_GT(bricard_loop.looped_sweeps()->slots(), 4);
+}
+
+}  // namespace
+}  // namespace momenta::dae_carried_rows
