@@ -142,9 +142,11 @@ bool OpenChain::inverse_mass_times(const ConstVectorRef& x, VectorRef result) {
   }
   if (!given_finite(inside_->not_a_number, 0, {"x", x})) return false;
   return inside_->visit([&](auto& kernel) {
-    const bool ok = kernel.sweeps->inverse_mass_times(x.data(), result.data());
-    inside_->placed = ok;
-    return ok;
+    inside_->placed = kernel.sweeps->inverse_mass_times(x.data(), result.data());
+    if (!inside_->placed)
+      inside_->not_a_number = tree().joint_in_words(kernel.sweeps->singular_joint()) +
+                              " has no inertia at the place of the last evaluation";
+    return inside_->placed;
   }) && found_finite(inside_->not_a_number, result);
 }
 

@@ -111,8 +111,8 @@ class OpenChain {
                           VectorRef result);
   /// The same at the place of the last call of rates(), velocities() or inverse_mass_times(), for
   /// the price of two sweeps without what M* costs; after rates() and velocities() of a tree that
-  /// is swept in branches side by side, the first one takes an evaluation. @throws std::logic_error
-  /// where none of these calls came before, or the last of them failed
+  /// is swept in branches side by side, the first one takes an evaluation. False also where none
+  /// of these calls came before, or the last of them returned false.
   bool inverse_mass_times(const ConstVectorRef& x, VectorRef result);
   /// Derivative of (q̇, ṗ) along (δq, δp): one evaluation on dual numbers, at about the cost of two
   /// in doubles. False as for rates().

@@ -178,14 +178,7 @@ struct OpenChain::Inside {
     std::vector<char> failed(parts, 0);
     share(static_cast<int>(parts), parts, [&](std::size_t i) {
       const std::size_t first = begin(i);
-      const States part{all.q + first,
-                        all.p + first,
-                        all.qdot ? all.qdot + first : nullptr,
-                        all.pdot + first,
-                        all.stride,
-                        begin(i + 1) - first,
-                        all.tau ? all.tau + first : nullptr};
-      failed[i] = !run(*k.batches[i], part);
+      failed[i] = !run(*k.batches[i], all.part(first, begin(i + 1) - first));
     });
     for (std::size_t i = 0; i < parts && failed_state < 0; ++i)
       if (failed[i]) {

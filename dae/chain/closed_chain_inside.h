@@ -2,12 +2,10 @@
 // What a ClosedChain consists of, for the files that implement it.
 
 #include <momenta/core/arguments.h>
-#include <momenta/core/share.h>
 #include <momenta/dae/chain/closed_chain.h>
 #include <momenta/dae/kkt/loop_solver.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <memory>
 #include <span>

@@ -1,8 +1,10 @@
 // Many states of a mechanism at once: in the lanes of the sweeps' registers and shared among
 // threads where they carry the loops, else one by one.
 
+#include <momenta/core/share.h>
 #include <momenta/dae/chain/closed_chain_inside.h>
 
+#include <atomic>
 #include <limits>
 
 namespace momenta {
@@ -36,15 +38,8 @@ bool ClosedChain::Inside::side_by_side(double t, const LoopedStates& all, bool o
   share(static_cast<int>(parts), parts, [&](std::size_t part) {
     const std::size_t first = packs * part / parts * width,
                       last = std::min(all.count, packs * (part + 1) / parts * width);
-    const LoopedStates states{all.q + first,
-                              all.p + first,
-                              all.u + first,
-                              all.sigma + first,
-                              all.pdot ? all.pdot + first : nullptr,
-                              all.stride,
-                              last - first,
-                              all.tau ? all.tau + first : nullptr,
-                              mechanism.has_body_forces()};
+    LoopedStates states = all.part(first, last - first);
+    states.body_forces = mechanism.has_body_forces();
     LoopedSweeps& sweeps = *batches[part];
     const bool ok = of_momenta ? sweeps.momentum(t, states, fade_evaluation, leak)
                                : sweeps.acceleration(t, states, fade_evaluation);

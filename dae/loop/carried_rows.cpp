@@ -1,5 +1,6 @@
 #include <momenta/dae/loop/carried_rows.h>
 
+#include <cmath>
 #include <optional>
 
 namespace momenta {

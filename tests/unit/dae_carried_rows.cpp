@@ -56,6 +56,44 @@ TEST(CarriedRows, OfAPlanarCycleInSpaceAreTwo) {
   EXPECT_EQ(a.faded, (std::vector<int>{2, 3, 4}));
 }
 
+/// On a body that flies, its crank free or driven: the cycle's first body need not be the ground.
+TEST(CarriedRows, OfALinkageThatFliesAreTwo) {
+  for (const bool driven : {false, true}) {
+    Scene scene = four_bar();
+    BodySpec base;
+    base.name = "base";
+    base.mass = 5;
+    base.inertia = Eigen::Vector3d(1, 2, 1.5).asDiagonal();
+    scene.bodies.push_back(base);
+    for (JointSpec& joint : scene.joints)
+      if (joint.parent == "ground") joint.parent = "base";
+    JointSpec flight;
+    flight.name = "F";
+    flight.kind = JointKind::free;
+    flight.child = "base";
+    flight.position = {0.1, 0.2, 0.3, 0.5, 0.5, -0.5, 0.5};
+    flight.velocity = {0.3, -0.2, 0.5, 0.7, -0.4, 0.6};
+    scene.joints.push_back(flight);
+    if (driven) {
+      scene.joints[0].position.clear();
+      DriveSpec drive;
+      drive.joint = "O";
+      drive.kind = "polynomial";
+      drive.coefficients = {1.5707963267948966, 0.4, 0.3};
+      scene.drives.push_back(drive);
+    }
+    const Mechanism swept(scene, {.kkt = KktChoice::sweeps}),
+        dense(scene, {.kkt = KktChoice::dense});
+    EXPECT_LE(swept.looped_sweeps()->slots(), 4);
+    const Start start = start_of(swept);
+    const VectorXd p = VectorXd::LinSpaced(swept.nv(), -1, 1), none = VectorXd::Zero(5);
+    const Solved a = solve(swept, start.q, p, none), b = solve(dense, start.q, p, none);
+    EXPECT_LT(relative_error(a.u, b.u), 1e-11) << driven;
+    EXPECT_LT(relative_error(a.pdot, b.pdot), 1e-10) << driven;
+    EXPECT_EQ(a.faded, b.faded) << driven;
+  }
+}
+
 TEST(CarriedRows, OfACycleOutOfThePlaneAreAll) {
   const Mechanism bricard_loop(bricard(), {.kkt = KktChoice::sweeps});
   EXPECT_GT(bricard_loop.looped_sweeps()->slots(), 4);

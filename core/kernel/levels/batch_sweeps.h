@@ -18,6 +18,12 @@ struct States {
   std::ptrdiff_t stride;
   std::size_t count;
   const double* tau = nullptr;  ///< of acceleration(): joint forces; null: none
+
+  /// `of` states from `first` on.
+  MOMENTA_INLINE States part(std::size_t first, std::size_t of) const {
+    return {q + first, p + first, qdot ? qdot + first : nullptr, pdot + first,
+            stride,    of,        tau ? tau + first : nullptr};
+  }
 };
 
 class BatchSweeps {

@@ -5,6 +5,7 @@
 #include <momenta/core/kernel/acceleration_sweeps.h>
 #include <momenta/core/kernel/jacobian_pass.h>
 #include <momenta/core/kernel/levels/batch_sweeps.h>
+#include <momenta/core/kernel/levels/joint_forces.h>
 #include <momenta/core/kernel/levels/strided.h>
 #include <momenta/core/kernel/levels/when_asked.h>
 #include <momenta/core/kernel/momentum_sweeps.h>
@@ -45,8 +46,10 @@ class BatchSweepsAt final : public BatchSweeps {
     return each_pack(s, [&](const States& pack) {
       const std::ptrdiff_t stride = pack.stride;
       const StridedIn<Many> q{pack.q, stride}, u{pack.p, stride};
-      const bool ok = accelerations_.get(tree_)(Many(t), q, u, joint_forces(pack, q, u),
-                                                StridedOut<Many>{pack.pdot, stride});
+      forces_.resize((static_cast<std::size_t>(tree_.model->nv) + 1) * lanes);
+      const bool ok = accelerations_.get(tree_)(
+          Many(t), q, u, joint_forces(*tree_.model, pack.tau, stride, q, u, forces_.data()),
+          StridedOut<Many>{pack.pdot, stride});
       if (!ok) joint_ = accelerations_.get(tree_).singular_joint();
       return ok && finite(pack.pdot, tree_.model->nv, stride);
     });
@@ -64,24 +67,6 @@ class BatchSweepsAt final : public BatchSweeps {
   std::size_t failed_state() const override { return failed_state_; }
 
  private:
-  /// τ and what the joints' own springs, dampers and torques do. Not inlined: as
-  /// coordinate_rates().
-  [[gnu::noinline]] StridedIn<Many> joint_forces(const States& pack, const StridedIn<Many>& q,
-                                                 const StridedIn<Many>& u) {
-    const bool own = tree_.model->has_joint_forces;
-    if (!own && pack.tau) return {pack.tau, pack.stride};
-    if (!own) return {no_force_, 0};
-    forces_.resize(static_cast<std::size_t>(tree_.model->nv) * lanes);
-    for (const auto& b : tree_.model->bodies)
-      for (int i = b.u; i < b.u + b.nv; ++i) {
-        Many force(0.0);
-        if (pack.tau) force = Many::load(pack.tau + i * pack.stride);
-        if (b.nv == 1) force += joint_force(b, q[b.q], u[b.u]);
-        force.store(forces_.data() + i * lanes);
-      }
-    return {forces_.data(), lanes};
-  }
-
   /// Whether so many rows of a pack are: 0 x is 0 of a finite x and NaN of any other.
   bool finite(const double* x, int rows, std::ptrdiff_t stride) {
     Many sum(1.0);
@@ -109,18 +94,13 @@ class BatchSweepsAt final : public BatchSweeps {
     }
   }
 
-  /// The states of s from `first` on.
-  static States from(const States& s, std::size_t first, std::size_t count) {
-    return {s.q + first, s.p + first, s.qdot ? s.qdot + first : nullptr, s.pdot + first,
-            s.stride,    count,       s.tau ? s.tau + first : nullptr};
-  }
   /// Calls f on every full pack in place, and on the rest in a padded copy. A pack that fails is
   /// repeated state by state, so that one bad state spoils no other.
   template <class F>
   bool each_pack(const States& s, F&& f) {
     bool all = true;
     for (std::size_t first = 0; first < s.count; first += lanes) {
-      const States part = from(s, first, s.count - first < lanes ? s.count - first : lanes);
+      const States part = s.part(first, s.count - first < lanes ? s.count - first : lanes);
       if (part.count == lanes ? f(part) : copied(part, f)) continue;
       all &= one_by_one(part, first, f, all);
     }
@@ -159,7 +139,7 @@ class BatchSweepsAt final : public BatchSweeps {
   bool one_by_one(const States& s, std::size_t first, F&& f, bool none_failed_yet) {
     bool all = true;
     for (std::size_t i = 0; i < s.count; ++i) {
-      const States one = from(s, i, 1);
+      const States one = s.part(i, 1);
       if (copied(one, f)) continue;
       if (none_failed_yet && all) {
         failed_state_ = first + i;
@@ -187,7 +167,6 @@ class BatchSweepsAt final : public BatchSweeps {
   WhenAsked<AccelerationSweeps<Space, Many>> accelerations_;
   WhenAsked<JacobianPass<Space, Many>> jacobian_;
   Buffer rates_, padded_, forces_;
-  double no_force_[lanes] = {};
   int singular_joint_ = -1, joint_ = -1;  ///< of the first state that failed, of the last
   std::size_t failed_state_ = 0;
   bool quasi_velocities_ = false;

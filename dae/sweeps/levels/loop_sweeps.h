@@ -48,16 +48,21 @@ LoopPlan plan_loops(const Model<Space>& model, const LoopModel<Space>& loops) {
 template <class Space>
 SweptLoops<Space> swept_loops([[maybe_unused]] const Tree& tree, const Model<Space>& model,
                               LoopModel<Space> loops) {
-  SweptLoops<Space> given{std::move(loops), {}, {}, {}}, anew;
-  if constexpr (Space::dimension == 6) given.carried = CarriedRows(tree, model, given.loops);
-  given.plan = plan_loops(model, given.loops);
-  if constexpr (Space::dimension == 6) return given;
-  std::vector<int> parents;
-  for (const auto& b : model.bodies) parents.push_back(b.parent);
-  anew.shared = SharedPoints(parents, given.loops, anew.loops);
-  if (anew.shared.empty()) return given;
-  anew.plan = plan_loops(model, anew.loops);
-  return given.plan.fits() && anew.plan.work < given.plan.work ? anew : given;
+  SweptLoops<Space> given{std::move(loops), {}, {}, {}};
+  if constexpr (Space::dimension == 6) {
+    given.carried = CarriedRows(tree, model, given.loops);
+    given.plan = plan_loops(model, given.loops);
+    return given;
+  } else {
+    given.plan = plan_loops(model, given.loops);
+    std::vector<int> parents;
+    for (const auto& b : model.bodies) parents.push_back(b.parent);
+    SweptLoops<Space> anew;
+    anew.shared = SharedPoints(parents, given.loops, anew.loops);
+    if (anew.shared.empty()) return given;
+    anew.plan = plan_loops(model, anew.loops);
+    return given.plan.fits() && anew.plan.work < given.plan.work ? anew : given;
+  }
 }
 
 /// `branches_side_by_side`: in space, of one state, folded branches of one shape

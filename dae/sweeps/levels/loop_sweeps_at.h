@@ -2,6 +2,7 @@
 // LoopedSweeps at one level; included by the files that are compiled for it, and nowhere else, as
 // core/kernel/levels/open_sweeps_at.h says why.
 
+#include <momenta/core/kernel/levels/joint_forces.h>
 #include <momenta/core/kernel/levels/strided.h>
 #include <momenta/dae/sweeps/branches/looped_branches.h>
 #include <momenta/dae/sweeps/levels/loop_sweeps.h>
@@ -124,16 +125,15 @@ class LoopedSweepsAt final : public LoopedSweeps {
     weak_looped_branch_ = false;
     bool all = true;
     if (OfMany::bytes(tree_, loops_) > most_bytes) {
-      for (std::size_t i = 0; i < s.count; ++i)
-        all &= taken<One>(one, t, from(s, i, 1), fade, leak);
+      for (std::size_t i = 0; i < s.count; ++i) all &= taken<One>(one, t, s.part(i, 1), fade, leak);
     } else {
       constexpr std::size_t width = abreast;
       OfMany& sweeps = made(many);
       std::size_t first = 0;
       for (; first + width <= s.count; first += width)
-        all &= taken<Many>(sweeps, t, from(s, first, width), fade, leak);
+        all &= taken<Many>(sweeps, t, s.part(first, width), fade, leak);
       if (first < s.count)
-        padded(from(s, first, s.count - first),
+        padded(s.part(first, s.count - first),
                [&](const LoopedStates& rest) { all &= taken<Many>(sweeps, t, rest, fade, leak); });
     }
     if (!shared_.empty() || !carried_.all())
@@ -149,45 +149,17 @@ class LoopedSweepsAt final : public LoopedSweeps {
     right.rates = Sweeps::of_momenta;
     right.body_forces = s.body_forces;
     const StridedIn<X> q{s.q, s.stride}, x{s.p, s.stride};
-    const StridedIn<X> tau = Sweeps::of_momenta ? x : joint_forces<X>(s, q, x);
+    StridedIn<X> tau = x;
+    if constexpr (!Sweeps::of_momenta) {
+      forces_.resize((static_cast<std::size_t>(tree_.model->nv) + 1) * abreast);
+      tau = joint_forces(*tree_.model, s.tau, s.stride, q, x, &forces_.data()->v);
+    }
     const bool ok = sweeps(X(t), q, x, tau, right, StridedOut<X>{s.u, s.stride},
                            StridedOut<X>{s.sigma, s.stride},
                            StridedOut<X>{Sweeps::of_momenta ? s.pdot : s.u, s.stride});
     if (!ok) singular_joint_ = sweeps.singular_joint();
     weak_looped_branch_ |= sweeps.weak_looped_branch();
     return ok;
-  }
-  /// τ and what the joints' own springs, dampers and torques do, of one pack.
-  template <class X>
-  [[gnu::noinline]] StridedIn<X> joint_forces(const LoopedStates& s, const StridedIn<X>& q,
-                                              const StridedIn<X>& u) {
-    constexpr std::size_t width = sizeof(X) / sizeof(double);
-    const bool own = tree_.model->has_joint_forces;
-    if (!own && s.tau) return {s.tau, s.stride};
-    const auto nv = static_cast<std::size_t>(tree_.model->nv);
-    if (forces_.size() < nv * abreast) forces_.resize(nv * abreast);
-    double* const at = &forces_.data()->v;
-    for (const auto& b : tree_.model->bodies)
-      for (int i = b.u; i < b.u + b.nv; ++i) {
-        X force(0.0);
-        if (s.tau) force = X::load(s.tau + i * s.stride);
-        if (own && b.nv == 1) force += joint_force(b, q[b.q], u[b.u]);
-        force.store(at + static_cast<std::size_t>(i) * width);
-      }
-    return {at, width};
-  }
-
-  /// The states of s from `first` on.
-  static LoopedStates from(const LoopedStates& s, std::size_t first, std::size_t count) {
-    return {s.q + first,
-            s.p + first,
-            s.u + first,
-            s.sigma + first,
-            s.pdot ? s.pdot + first : nullptr,
-            s.stride,
-            count,
-            s.tau ? s.tau + first : nullptr,
-            s.body_forces};
   }
   /// Calls act on states that fill no pack, copied into one; its last slots repeat the last state.
   template <class Act>

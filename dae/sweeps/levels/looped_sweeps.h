@@ -2,6 +2,7 @@
 // The interface of the sweeps that carry loops, the same for every algebra, level and number of
 // slots.
 
+#include <momenta/core/scalar/pack.h>
 #include <momenta/dae/sweeps/slots/right_side.h>
 
 #include <cstddef>
@@ -20,6 +21,19 @@ struct LoopedStates {
   std::size_t count;            ///< how many states
   const double* tau = nullptr;  ///< of acceleration(): nv rows; null: zero
   bool body_forces = false;     ///< RightSide::body_forces
+
+  /// `of` states from `first` on.
+  MOMENTA_INLINE LoopedStates part(std::size_t first, std::size_t of) const {
+    return {q + first,
+            p + first,
+            u + first,
+            sigma + first,
+            pdot ? pdot + first : nullptr,
+            stride,
+            of,
+            tau ? tau + first : nullptr,
+            body_forces};
+  }
 };
 
 /// The sweeps that carry the loops of one mechanism, with their workspace: one object per thread.
