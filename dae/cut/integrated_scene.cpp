@@ -71,4 +71,14 @@ bool IntegratedScene::take(Scene scene) {
   return true;
 }
 
+Scene integrated_scene(const Scene& scene) {
+  const Mechanism written(scene);
+  const Start start = assemble(written).start;
+  const IntegratedScene integrated(written, start);
+  if (!integrated.anew()) return scene;
+  Scene anew = integrated.mechanism().scene();
+  anew.joints = joints_at(integrated.mechanism(), integrated.start());
+  return anew;
+}
+
 }  // namespace momenta

@@ -47,4 +47,12 @@ class IntegratedScene {
   Start start_;
 };
 
+/// The scene that runs integrate, for programs with integrators of their own: ClosedChain and
+/// OpenChain take every scene as it is written, whatever its cuts cost. The same motion; joints
+/// keep their names, those that stay joints their coordinates, which joints and loops stand in each
+/// other's place its remarks tell. It starts where the given scene starts, loops closed; the given
+/// scene where no other is less work.
+/// @throws SceneError as Mechanism and assemble(). Cost: as IntegratedScene
+Scene integrated_scene(const Scene& scene);
+
 }  // namespace momenta

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 #include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/assembly/assembly.h>
+#include <momenta/dae/chain/closed_chain.h>
 #include <momenta/dae/cut/integrated_scene.h>
 #include <momenta/dae/cut/interchange.h>
 #include <momenta/dae/cut/written_motion.h>
@@ -218,6 +219,29 @@ TEST(IntegratedScene, BranchesOfOneShapeGoSideBySideHoweverTheirLoopsAreWritten)
     const Start start = assemble(written).start;
     EXPECT_EQ(how(IntegratedScene(written, start).mechanism()), how(good)) << seed;
   }
+}
+
+/// For programs with integrators of their own: the accelerations of joints that are in both.
+TEST(IntegratedScene, OfAProgramHasTheSameAccelerations) {
+  int compared = 0;
+  for (const auto& [scene, end] : cases()) {
+    ClosedChain written(scene), integrated(integrated_scene(scene));
+    const Start a = written.assemble().start, b = integrated.assemble().start;
+    VectorXd a_udot(written.nv()), a_lambda(written.m()), b_udot(integrated.nv()),
+        b_lambda(integrated.m());
+    ASSERT_TRUE(written.accelerations(0, a.q, a.u, a_udot, a_lambda)) << written.failure();
+    ASSERT_TRUE(integrated.accelerations(0, b.q, b.u, b_udot, b_lambda)) << integrated.failure();
+    const double size = a_udot.lpNorm<Eigen::Infinity>();
+    for (const Tree::Body& body : written.mechanism().tree().bodies)
+      for (const Tree::Body& other : integrated.mechanism().tree().bodies)
+        if (body.joint == other.joint && body.nv == other.nv)
+          for (int i = 0; i < body.nv; ++i, ++compared) {
+            EXPECT_NEAR(a.u[body.u + i], b.u[other.u + i], 1e-8) << scene.name << body.joint;
+            EXPECT_NEAR(a_udot[body.u + i], b_udot[other.u + i], 1e-8 * size)
+                << scene.name << " " << body.joint;
+          }
+  }
+  EXPECT_GE(compared, 40);
 }
 
 /// Other coordinates for a gain of less than a tenth are nobody's wish.
