@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -102,6 +103,7 @@ std::string listed(std::span<const std::string_view> names) {
 }
 
 std::string digits(double number) {
+  if (std::isnan(number)) return "nan";  // with a sign on some machines
   std::array<char, 40> text{};
   const auto end = std::to_chars(text.data(), text.data() + text.size(), number).ptr;
   return {text.data(), end};

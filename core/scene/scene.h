@@ -268,6 +268,13 @@ struct MarkerSpec {
   Location at;                                      ///< where the file has it
 };
 
+/// A number with a name, of which the file made others; here its value.
+struct ParameterSpec {
+  std::string name;
+  double value = 0;
+  bool used = false;  ///< whether a formula of the scene takes it
+};
+
 /// The defaults of a run, for options that the command line does not give; also for `momenta
 /// drift`.
 struct RunDefaults {
@@ -287,11 +294,12 @@ struct Scene {
   std::vector<JointSpec> joints;                      ///< one for each body
   std::vector<LoopSpec> loops;                        ///< empty: an open chain
   std::vector<DriveSpec> drives;                      ///< prescribed motion
-  std::vector<ForceSpec> forces;    ///< forces besides gravity and those of joints
-  std::vector<MarkerSpec> markers;  ///< points to be reported
-  std::vector<std::string> held;    ///< [assembly] hold: joints whose q and u assembly keeps
-  Location held_at;                 ///< where the file has that list
-  RunDefaults run;                  ///< [run] end, step, leak, samples
+  std::vector<ForceSpec> forces;          ///< forces besides gravity and those of joints
+  std::vector<MarkerSpec> markers;        ///< points to be reported
+  std::vector<std::string> held;          ///< [assembly] hold: joints whose q and u assembly keeps
+  Location held_at;                       ///< where the file has that list
+  RunDefaults run;                        ///< [run] end, step, leak, samples
+  std::vector<ParameterSpec> parameters;  ///< [parameters]; for reports: numbers here are values
   /// What the reader of another format left out or changed: one sentence per kind.
   std::vector<std::string> remarks;
 

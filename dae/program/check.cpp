@@ -1,5 +1,6 @@
 #include <momenta/core/operations.h>
 #include <momenta/core/scene/kinds.h>
+#include <momenta/core/scene/rod_ends.h>
 #include <momenta/dae/cut/integrated_scene.h>
 #include <momenta/dae/cut/recut.h>
 #include <momenta/dae/measure/rank.h>
@@ -218,6 +219,11 @@ int check(const Options& o) {
   }
   if (const auto loops = static_cast<int>(mechanism->scene().loops.size()); loops > most_lines)
     std::printf("  … and %d loops more\n", loops - most_lines);
+  for (const std::string& rod : rods_that_miss_their_pins(mechanism->scene()))
+    std::printf("  %s\n", rod.c_str());
+  for (const ParameterSpec& p : mechanism->scene().parameters)
+    std::printf("  parameter %s = %.17g%s\n", p.name.c_str(), p.value,
+                p.used ? "" : ", which no formula takes");
   std::printf(
       "\n  %zu bodies, %d coordinates, %d rates, %d loop equations of rank %d: mobility %d\n",
       mechanism->scene().bodies.size(), mechanism->nq(), mechanism->nv(), mechanism->m(), a.rank,

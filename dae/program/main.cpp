@@ -189,7 +189,7 @@ int answer(int argc, char** argv) {
   add_scene(*sweep_app, o);
   sweep_app
       ->add_option("--vary", sweep_options.vary,
-                   "Say body.crank.mass=1,2 or gravity.1=0:10:5[:log]")
+                   "Say body.crank.mass=1,2 or gravity.1=0:10:5[:log] or, of a parameter, a=1,2")
       ->type_name("PLACE=VALUES")
       ->required();
   sweep_app

@@ -16,6 +16,8 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <charconv>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <fstream>
@@ -47,6 +49,8 @@ void add_scene_file(CLI::App& verb, Options& o, bool required) {
   verb.add_option("--loops", o.reading.loops, "Of a URDF: its loops (default: the .yaml beside it)")
       ->type_name("FILE");
   verb.add_flag("--free-root", o.reading.free_root, "Of a URDF: the root link floats");
+  verb.add_option("--set", o.set, "A number in place of the scene's: PLACE=NUMBER; repeatable")
+      ->type_name("SETTING");
   verb.add_option("--at", o.at, "Start values: JSON {\"q\": {..}, \"v\": {..}}, or its file")
       ->type_name("STATE");
 }
@@ -115,8 +119,26 @@ void add_results(CLI::App& verb, Options& o) {
          {"svg"});
 }
 
+std::vector<Setting> settings_of(const Options& o) {
+  std::vector<Setting> settings;
+  for (const std::string& text : o.set) {
+    const std::size_t equals = text.rfind('=');
+    Setting setting{text.substr(0, equals), 0};
+    const char* end = text.data() + text.size();
+    const char* begin = equals == text.npos ? end : text.data() + equals + 1;
+    const auto [read, error] = std::from_chars(begin, end, setting.value);
+    if (equals == 0 || begin == end || error != std::errc{} || read != end ||
+        !std::isfinite(setting.value))
+      throw std::invalid_argument("--set '" + text +
+                                  "': expected PLACE=NUMBER, as in body.crank.mass=2 or, of a "
+                                  "parameter, a=0.6");
+    settings.push_back(setting);
+  }
+  return settings;
+}
+
 Scene read(const Options& o) {
-  Scene scene = read_scene(o.scene, o.reading);
+  Scene scene = read_scene(o.scene, o.reading, settings_of(o));
   if (!o.at.empty()) start_at(o.at, scene);
   if (!o.quiet)
     for (const std::string& remark : scene.remarks)

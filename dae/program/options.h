@@ -23,8 +23,9 @@ struct Options {
   std::string command;  ///< as typed
   std::string asked;    ///< the verb and its options, but for where and how results are told
   std::filesystem::path scene;
-  ReadOptions reading;  ///< what a URDF does not say
-  std::string at;       ///< start values in place of the scene's; empty: its own
+  ReadOptions reading;           ///< what a URDF does not say
+  std::vector<std::string> set;  ///< numbers in place of the scene's: PLACE=NUMBER
+  std::string at;                ///< start values in place of the scene's; empty: its own
   std::string algebra = "auto", kkt = "auto", cut = "auto";
   std::string level;  ///< of the kernels; empty: the machine's best, or MOMENTA_LEVEL
   std::string form = "momentum", integrator, gauge;
@@ -53,6 +54,8 @@ void add_timing(CLI::App& verb, Options& o);
 void add_run_options(CLI::App& verb, Options& o, const char* cpu_limit = "none");
 void add_results(CLI::App& verb, Options& o);
 
+/// --set. @throws std::invalid_argument
+std::vector<Setting> settings_of(const Options& o);
 MechanismOptions mechanism_options(const Options& o);
 /// Reads the scene, and tells what its reader remarked unless --quiet is given.
 Scene read(const Options& o);

@@ -73,9 +73,11 @@ class Finished {
 
 /// The scene as TOML: its own text, so that what it leaves out may be varied too, or, of another
 /// format or started elsewhere, the text it converts to.
-std::string toml_of(const Options& o) {
+void take_scene(const Options& o, SweepRequest& request) {
   const Scene scene = read(o);
-  return is_toml(o.scene) && o.at.empty() ? reading::text_of(o.scene) : scene_text(scene);
+  const bool own = is_toml(o.scene) && o.at.empty();
+  request.text = own ? reading::text_of(o.scene) : scene_text(scene);
+  if (own) request.fixed = settings_of(o);
 }
 
 }  // namespace
@@ -84,7 +86,7 @@ int sweep(const Options& o, const SweepOptions& s) {
   Ranks ranks;
   watch_signals();
   SweepRequest request;
-  request.text = toml_of(o);
+  take_scene(o, request);
   request.file = o.scene.string();
   request.mechanism = mechanism_options(o);
   for (const std::string& text : s.vary) request.varied.emplace_back(text);

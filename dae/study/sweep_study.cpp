@@ -110,7 +110,7 @@ void watch(const RunResult& run, const std::vector<std::size_t>& columns, SweepC
 }
 
 void make(const SweepRequest& request, SweepCase& result) {
-  std::vector<Setting> settings;
+  std::vector<Setting> settings = request.fixed;
   for (std::size_t i = 0; i < request.varied.size(); ++i)
     settings.push_back({request.varied[i].place, result.values[i]});
   Scene scene = parse_scene(request.text, request.file, settings);

@@ -26,6 +26,7 @@ struct SweepRequest {
   std::string text, file;  ///< the scene, and what messages call it
   MechanismOptions mechanism;
   std::vector<Varied> varied;
+  std::vector<Setting> fixed;  ///< numbers of the scene that are the same in all cases
   /// The run of a case, from what its scene asks for.
   std::function<RunSettings(const RunDefaults&)> settings;
   std::vector<std::string> watched;  ///< columns of the trajectory: "P.x", with the unit or without

@@ -5,6 +5,7 @@
 #include <momenta/core/scene/urdf/urdf.h>
 
 #include <new>
+#include <stdexcept>
 
 namespace momenta {
 namespace {
@@ -31,6 +32,15 @@ bool is_toml(const std::filesystem::path& file) {
 }
 
 Scene read_scene(const std::filesystem::path& file, const ReadOptions& options) {
+  return read_scene(file, options, {});
+}
+
+Scene read_scene(const std::filesystem::path& file, const ReadOptions& options,
+                 const std::vector<Setting>& settings) {
+  if (!settings.empty() && !is_toml(file))
+    throw std::invalid_argument(reading::in_quotes(settings.front().place) +
+                                ": the scene is no TOML, expected one where numbers are set "
+                                "(momenta convert)");
   const std::string name = file.string(), text = reading::text_of(file);
   if (!is_toml(file)) {
     try {
@@ -41,7 +51,7 @@ Scene read_scene(const std::filesystem::path& file, const ReadOptions& options) 
   }
   if (!options.loops.empty() || options.free_root)
     reading::fail(name, {}, "no URDF, expected one where a file of loops or a free root is given");
-  return parse_scene(text, name);
+  return parse_scene(text, name, settings);
 }
 
 }  // namespace momenta

@@ -4,6 +4,7 @@
 
 #include <momenta/core/scene/scene.h>
 #include <momenta/core/scene/toml/parse_scene.h>
+#include <momenta/core/scene/toml/setting.h>
 #include <momenta/core/scene/urdf/read_options.h>
 #include <momenta/core/scene/validate.h>
 
@@ -16,6 +17,10 @@ namespace momenta {
 /// the key or name at fault, what was found and what was expected. Cost O(size of file); files over
 /// 64 MiB are refused without reading them.
 Scene read_scene(const std::filesystem::path& file, const ReadOptions& options = {});
+/// With other numbers in it. @throws std::invalid_argument for a place that the scene does not
+/// have, and for a file that is not TOML
+Scene read_scene(const std::filesystem::path& file, const ReadOptions& options,
+                 const std::vector<Setting>& settings);
 
 /// Whether read_scene() reads this file as TOML: false for the endings .urdf, .xml and .mjcf.
 bool is_toml(const std::filesystem::path& file);

@@ -33,8 +33,13 @@ std::string expected_three(Quantity quantity) {
 
 }  // namespace
 
-Fields::Fields(const Value& value, std::string owner, const std::string& file, std::string path)
-    : value_(value), owner_(std::move(owner)), file_(file), path_(std::move(path)) {
+Fields::Fields(const Value& value, std::string owner, const std::string& file,
+               const Parameters* parameters, std::string path)
+    : value_(value),
+      owner_(std::move(owner)),
+      file_(file),
+      parameters_(parameters),
+      path_(std::move(path)) {
   if (value.type != Value::Type::table)
     fail_at(value.at, "is " + std::string(described(value.type)) + ", expected a table");
 }
@@ -84,15 +89,31 @@ const Value& Fields::required(std::string_view key, const std::string& expected)
 }
 
 double Fields::number_of(const Value& value, const std::string& key, Quantity quantity) const {
-  if (value.type != Value::Type::number && value.type != Value::Type::integer)
+  const bool formula = value.type == Value::Type::text && parameters_;
+  if (!formula && value.type != Value::Type::number && value.type != Value::Type::integer)
     mismatch(value, key, expected_number(quantity));
-  const double number = value.number;
+  const double number = formula ? value_of(value, key, quantity) : value.number;
   const bool in_bound = quantity.bound == Bound::none || number > 0 ||
                         (quantity.bound == Bound::not_negative && number == 0);
   if (!std::isfinite(number) || !in_bound)
-    fail_at(value.at, path_ + key + " is " + digits(number) + ", expected " +
+    fail_at(value.at, path_ + key + " is " + digits(number) +
+                          (formula ? " by " + in_quotes(value.text) : "") + ", expected " +
                           (std::isfinite(number) ? "" : "finite: ") + expected_number(quantity));
   return number;
+}
+
+double Fields::value_of(const Value& formula, const std::string& key, Quantity quantity) const {
+  try {
+    const Expression read = parameters_->formula(formula.text);
+    if (read.is_truth())
+      fail_at(formula.at, path_ + key + " is a comparison, " + in_quotes(formula.text) +
+                              ", expected " + expected_number(quantity) + " or a formula of one");
+    return parameters_->value(read);
+  } catch (const ExpressionError& error) {
+    fail_at(place_in(formula, error.place()),
+            path_ + key + " is a string (" + in_quotes(formula.text) + "), expected " +
+                expected_number(quantity) + " or a formula of one: " + error.what());
+  }
 }
 
 double Fields::number(std::string_view key, Quantity quantity) const {
@@ -103,7 +124,7 @@ double Fields::number(std::string_view key, Quantity quantity, double otherwise)
   return has(key) ? number(key, quantity) : otherwise;
 }
 
-int Fields::centroidal(std::string_view key, int otherwise, int least) const {
+int Fields::whole(std::string_view key, int otherwise, int least) const {
   const Value* value = find(key);
   if (value == nullptr) return otherwise;
   const std::string expected = least > 0 ? "a whole number > 0" : "a whole number >= 0";
@@ -114,11 +135,11 @@ int Fields::centroidal(std::string_view key, int otherwise, int least) const {
 }
 
 int Fields::count(std::string_view key, int otherwise) const {
-  return centroidal(key, otherwise, 1);
+  return whole(key, otherwise, 1);
 }
 
 int Fields::index(std::string_view key, int otherwise) const {
-  return centroidal(key, otherwise, 0);
+  return whole(key, otherwise, 0);
 }
 
 bool Fields::flag(std::string_view key, bool otherwise) const {
@@ -205,7 +226,7 @@ std::optional<Fields> Fields::table(std::string_view key) const {
   const Value* value = find(key);
   if (value == nullptr) return std::nullopt;
   if (value->type != Value::Type::table) mismatch(*value, std::string(key), "a table");
-  return Fields(*value, owner_, file_, path_ + std::string(key) + ".");
+  return Fields(*value, owner_, file_, parameters_, path_ + std::string(key) + ".");
 }
 
 std::vector<Fields> Fields::tables(std::string_view key, std::string_view title) const {
@@ -222,7 +243,7 @@ std::vector<Fields> Fields::tables(std::string_view key, std::string_view title)
     for (const Entry& entry : item.entries)
       if (entry.key == "name" && entry.value.type == Value::Type::text && !entry.value.text.empty())
         owner = std::string(title) + " " + in_quotes(entry.value.text);
-    tables.emplace_back(item, owner, file_);
+    tables.emplace_back(item, owner, file_, parameters_);
   }
   return tables;
 }

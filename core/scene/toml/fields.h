@@ -2,7 +2,7 @@
 // The keys of one TOML table, read by type. Every complaint names the owner of the key, the key,
 // what was found and what was expected, and points to the value.
 
-#include <momenta/core/scene/toml/toml_values.h>
+#include <momenta/core/scene/toml/parameters.h>
 
 #include <Eigen/Core>
 #include <cstddef>
@@ -23,8 +23,10 @@ struct Quantity {
 
 class Fields {
  public:
-  /// `owner` opens every sentence ("body 'crank'"). @throws SceneError unless `value` is a table
-  Fields(const Value& value, std::string owner, const std::string& file, std::string path = "");
+  /// `owner` opens every sentence ("body 'crank'"). `parameters`: what formulas in place of numbers
+  /// may name; null: no formulas. @throws SceneError unless `value` is a table
+  Fields(const Value& value, std::string owner, const std::string& file,
+         const Parameters* parameters = nullptr, std::string path = "");
 
   /// Refuses every key but these. The first unknown one is named, with the nearest known key.
   void allow(const std::vector<std::string_view>& known) const;
@@ -66,12 +68,14 @@ class Fields {
   const Value& required(std::string_view key, const std::string& expected) const;
   [[noreturn]] void mismatch(const Value& found, const std::string& key,
                              const std::string& expected) const;
-  int centroidal(std::string_view key, int otherwise, int least) const;
+  int whole(std::string_view key, int otherwise, int least) const;
   double number_of(const Value& value, const std::string& key, Quantity quantity) const;
+  double value_of(const Value& formula, const std::string& key, Quantity quantity) const;
 
   const Value& value_;
   std::string owner_;
   const std::string& file_;
+  const Parameters* parameters_;
   std::string path_;  ///< "origin." inside the table of the key `origin`
 };
 

@@ -1,6 +1,7 @@
 // The tables of a scene, in the order of its members.
 
 #include <momenta/core/scene/file_text.h>
+#include <momenta/core/scene/toml/parameters.h>
 #include <momenta/core/scene/toml/parse_scene.h>
 #include <momenta/core/scene/toml/read_tables.h>
 #include <momenta/core/scene/toml/set_numbers.h>
@@ -18,9 +19,11 @@ Scene parse_scene(std::string_view text, const std::string& file,
                   const std::vector<Setting>& settings) try {
   reading::Value root = reading::parse_toml(text, file);
   reading::set_numbers(root, settings);
-  const reading::Fields table(root, "", file);
-  table.allow(
-      {"name", "gravity", "body", "joint", "loop", "drive", "force", "marker", "assembly", "run"});
+  const reading::Parameters parameters(root, file);
+  const reading::Fields table(root, "", file, &parameters);
+  table.allow({"name", "gravity", "parameters", "require", "body", "joint", "loop", "drive",
+               "force", "marker", "assembly", "run"});
+  reading::check_requirements(root, parameters, file);
 
   Scene scene;
   scene.file = file;
@@ -44,6 +47,9 @@ Scene parse_scene(std::string_view text, const std::string& file,
     if (const reading::Value* hold = assembly->find("hold")) scene.held_at = hold->at;
   }
   if (const auto run = table.table("run")) scene.run = reading::read_run(*run);
+
+  for (std::size_t i = 0; i < parameters.names().size(); ++i)
+    scene.parameters.push_back({parameters.names()[i], parameters[i], parameters.used(i)});
 
   if (scene.bodies.empty()) reading::fail(file, {1, 1}, "no body, expected at least one [[body]]");
   validate(scene);

@@ -1,3 +1,4 @@
+#include <momenta/core/scene/near_name.h>
 #include <momenta/core/scene/toml/set_numbers.h>
 
 #include <algorithm>
@@ -25,6 +26,12 @@ class Way {
 
   void set(Value& root) {
     Value* at = &root;
+    if (Value* parameters = find(root, "parameters");
+        parameters && parameters->type == Value::Type::table && rest_.find('.') == rest_.npos &&
+        !find(root, rest_)) {
+      if (!find(*parameters, rest_)) no_parameter(*parameters);
+      at = parameters;
+    }
     while (!rest_.empty()) {
       if (at->type == Value::Type::array)
         at = is_list_of_tables(*at) ? &named(*at) : &element(*at);
@@ -33,13 +40,22 @@ class Way {
       else
         refuse("a number", at->type);
     }
-    if (at->type != Value::Type::number && at->type != Value::Type::integer)
+    // A text may be a formula; where it is a word, the reader says what it expects there.
+    if (at->type != Value::Type::number && at->type != Value::Type::integer &&
+        at->type != Value::Type::text)
       refuse("more keys", at->type);
     at->type = Value::Type::number;
     at->number = setting_.value;
   }
 
  private:
+  [[noreturn]] void no_parameter(const Value& parameters) const {
+    std::vector<std::string_view> names;
+    for (const Entry& e : parameters.entries) names.push_back(e.key);
+    const std::string near = did_you_mean(rest_, names);
+    fail("the scene has no parameter of that name" +
+         (near.empty() ? ", expected one of: " + listed(names) : near));
+  }
   static bool is_list_of_tables(const Value& v) {
     return !v.items.empty() && v.items.front().type == Value::Type::table;
   }

@@ -12,7 +12,8 @@ namespace momenta {
 /// A number in place of the one that a scene's text has, or leaves out.
 struct Setting {
   /// KIND.NAME.KEY of a table with a name, KEY or TABLE.KEY of the others; an element of an array
-  /// by its number: "body.crank.mass", "loop.E2.origin.parent.0", "gravity.1", "run.end". SI units.
+  /// by its number: "body.crank.mass", "loop.E2.origin.parent.0", "gravity.1", "run.end"; the name
+  /// of a parameter, in place of its number or formula. SI units.
   std::string place;
   double value = 0;
 };
