@@ -222,7 +222,7 @@ int check(const Options& o) {
   for (const std::string& rod : rods_that_miss_their_pins(mechanism->scene()))
     std::printf("  %s\n", rod.c_str());
   for (const ParameterSpec& p : mechanism->scene().parameters)
-    std::printf("  parameter %s = %.17g%s\n", p.name.c_str(), p.value,
+    std::printf("  parameter %s = %.10g%s\n", p.name.c_str(), p.value,
                 p.used ? "" : ", which no formula takes");
   std::printf(
       "\n  %zu bodies, %d coordinates, %d rates, %d loop equations of rank %d: mobility %d\n",
