@@ -1,11 +1,14 @@
 #include <momenta/core/kernel/levels/open_sweeps.h>
 #include <momenta/dae/factor/faded_pivot.h>
 #include <momenta/dae/factor/filtered_matrix.h>
+#include <momenta/dae/leaves_first.h>
 #include <momenta/dae/loop/loop_weights.h>
 #include <momenta/dae/mechanism_inside.h>
 #include <momenta/dae/unheld_joints.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdio>
 
 namespace momenta {
 namespace {
@@ -150,8 +153,8 @@ void Mechanism::choose_kkt(KktChoice asked) {
     plan(std::get<0>(casts_->cast));
   else
     plan(std::get<1>(casts_->cast));
-  const bool far_apart = !light_.empty();
-  if (!far_apart) light_ = joint_without_inertia(kkt_reason_.empty());
+  light_ = joint_without_inertia(kkt_reason_.empty());
+  const bool far_apart = light_.empty() && !(light_ = loops_missed(kkt_reason_.empty())).empty();
   kkt_ = dense_ ? KktChoice::dense : KktChoice::sparse;
   if (far_apart && asked == KktChoice::dense)
     throw SceneError(scene_.where({}) + "dense matrices were asked to solve (7), but " + light_ +
@@ -183,7 +186,8 @@ void Mechanism::take_weights() {
         least_scales_.push_back(i < l.first_rows() ? l.least_scale : 0.0);
     }
     mass_spread_ = weights.spread;
-    light_ = weights.light;
+    masses_apart_ = weights.apart;
+    furthest_apart_ = weights.light;
   };
   if (plan_.planar)
     take(std::get<0>(casts_->cast));
@@ -210,13 +214,72 @@ std::string Mechanism::joint_without_inertia(bool swept) const {
   }
   const auto sweeps = looped_sweeps();
   RightSide<double> right;
-  right.fade = fade_evaluation;  // rows that depend on others leave dust for inertia otherwise
+  right.fade =
+      fade_beside(fade_evaluation,
+                  masses_apart_);  // rows that depend on others leave dust for inertia otherwise
   if (!sweeps->momentum(0, tree_.q0.data(), p.data(), right, u.data(), sigma.data(), nullptr))
     return light_before_loops(tree_.bodies[static_cast<std::size_t>(sweeps->singular_joint())].u);
   if (!carries_on_no_mass(tree_)) return "";
   const auto e = evaluation<double>();
   const UnheldJoints unheld = unheld_joints(*this, *e, 0, tree_.q0.data(), false);
   return unheld.joints.empty() ? "" : light_before_loops(unheld.joints.front().rate);
+}
+
+/// What a solution with the joints before the loops misses, where masses are apart.
+std::string Mechanism::loops_missed(bool swept) const {
+  constexpr double nothing_lost = 1e4;
+  if (masses_apart_ < nothing_lost) return "";
+  const auto e = evaluation<double>();
+  double error = 0;
+  if (swept) {
+    const auto sweeps = looped_sweeps();
+    error = leaves_first_error(*this, *e,
+                               [&](const double* q, const double* p, double beta, double fade,
+                                   double* v, double* sigma) -> std::optional<bool> {
+                                 RightSide<double> right;
+                                 right.fade = fade_beside(fade, masses_apart_);
+                                 right.drives = false;
+                                 right.positions = beta;
+                                 const bool ok =
+                                     sweeps->momentum(0, q, p, right, v, sigma, nullptr);
+                                 if (sweeps->weak_looped_branch()) return std::nullopt;
+                                 return ok;
+                               });
+  } else if (solved_by_bodies()) {
+    return masses_apart_ > masses_far_apart ? furthest_apart_ : "";
+  } else {
+    FilteredMatrix matrix(kkt_pattern(), axis_scale(), nv(), row_groups_);
+    const auto own = evaluation<double>();
+    std::vector<double> x(static_cast<std::size_t>(nv() + m()));
+    error = leaves_first_error(*this, *e,
+                               [&](const double* q, const double* p, double beta, double fade,
+                                   double* v, double* sigma) -> std::optional<bool> {
+                                 own->place(0, q);
+                                 own->mass_entries(matrix.mass());
+                                 own->constraint_entries(matrix.constraint());
+                                 if (!matrix.factor(nullptr, fade)) return false;
+                                 own->positions(x.data() + nv());
+                                 std::copy_n(p, nv(), x.data());
+                                 for (int i = nv(); i < nv() + m(); ++i)
+                                   x[static_cast<std::size_t>(i)] *= -beta;
+                                 matrix.solve(x.data());
+                                 std::copy_n(x.data(), nv(), v);
+                                 std::copy_n(x.data() + nv(), m(), sigma);
+                                 return true;
+                               });
+  }
+  if (error <= most_leaves_first_error) return "";
+  char missed[160];
+  if (std::isfinite(error))
+    std::snprintf(missed, sizeof missed,
+                  "joints eliminated before their loops miss (7) by %.0e of its terms, more than "
+                  "%.0e, as ",
+                  error, most_leaves_first_error);
+  else
+    std::snprintf(missed, sizeof missed,
+                  "joints eliminated before their loops leave (7) without a solution near the "
+                  "start, as ");
+  return missed + furthest_apart_;
 }
 
 bool Mechanism::solved_by_bodies() const {
@@ -230,7 +293,7 @@ bool Mechanism::solved_by_bodies() const {
 }
 
 AxisScale Mechanism::axis_scale() const {
-  return {tree_, constraint_pattern(), row_groups_, least_scales_, mass_spread_};
+  return {tree_, constraint_pattern(), row_groups_, least_scales_, mass_spread_, masses_apart_};
 }
 
 void Mechanism::expect_sweeps() const {

@@ -73,7 +73,7 @@ class Mechanism {
   /// Whether an assembled matrix is dense, where one is needed.
   bool dense_kkt() const { return dense_; }
   /// Whether every joint can be eliminated before the loops that hold it close: each has inertia at
-  /// that point, and not so little beside others of its loop that digits are lost.
+  /// that point, and a solution so made is right to most_leaves_first_error (leaves_first.h).
   bool leaves_first() const { return light_.empty(); }
   /// Whether a sparse matrix is that of the bodies' equations. It is where bodies are on average
   /// more than 40 joints from the ground: there the matrix of the joints' equations costs more.
@@ -81,6 +81,8 @@ class Mechanism {
   bool solved_by_bodies() const;
   /// LoopWeights::spread
   double mass_spread() const { return mass_spread_; }
+  /// LoopWeights::apart
+  double masses_apart() const { return masses_apart_; }
   /// The sweeps that carry this mechanism's loops, for one instruction level; 0: the best of the
   /// machine. `branches_side_by_side`: for one state, the spatial sweeps take folded branches of
   /// one shape side by side in the lanes of a register. @throws std::logic_error where there are no
@@ -150,6 +152,7 @@ class Mechanism {
   void choose_kkt(KktChoice asked);
   void take_weights();
   std::string joint_without_inertia(bool swept) const;
+  std::string loops_missed(bool swept) const;
   std::string light_before_loops(int rate) const;
   template <class Space, class S>
   class SweepRows;
@@ -165,7 +168,8 @@ class Mechanism {
   bool dense_ = true;
   KktChoice kkt_ = KktChoice::dense;
   std::string kkt_reason_;  ///< why the sweeps do not carry the loops; empty when they do
-  double mass_spread_ = 1;
+  double mass_spread_ = 1, masses_apart_ = 1;
+  std::string furthest_apart_;  ///< LoopWeights::light
   std::string light_;  ///< which joint has too little inertia before its loops close, or empty
   mutable KktPattern pattern_;
   mutable std::once_flag mass_pattern_known_, constraint_pattern_known_;

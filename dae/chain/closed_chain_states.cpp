@@ -41,8 +41,9 @@ bool ClosedChain::Inside::side_by_side(double t, const LoopedStates& all, bool o
     LoopedStates states = all.part(first, last - first);
     states.body_forces = mechanism.has_body_forces();
     LoopedSweeps& sweeps = *batches[part];
-    const bool ok = of_momenta ? sweeps.momentum(t, states, fade_evaluation, leak)
-                               : sweeps.acceleration(t, states, fade_evaluation);
+    const double fade = fade_beside(fade_evaluation, mechanism.masses_apart());
+    const bool ok =
+        of_momenta ? sweeps.momentum(t, states, fade, leak) : sweeps.acceleration(t, states, fade);
     if (!ok || sweeps.weak_looped_branch()) done = false;
   });
   return done;

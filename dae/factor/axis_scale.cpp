@@ -1,4 +1,5 @@
 #include <momenta/dae/factor/axis_scale.h>
+#include <momenta/dae/factor/faded_pivot.h>
 #include <momenta/dae/loop/loop_weights.h>
 
 #include <algorithm>
@@ -7,11 +8,12 @@ namespace momenta {
 
 AxisScale::AxisScale(const Tree& tree, const std::vector<KktPattern::Entry>& constraint,
                      const std::vector<int>& groups, const std::vector<double>& least,
-                     double spread)
+                     double spread, double apart)
     : pattern_(constraint),
       groups_(groups),
       least_(least),
-      far_apart_(std::max(1.0, spread / masses_far_apart)) {
+      far_apart_(std::max(1.0, spread / masses_far_apart)),
+      apart_(apart) {
   std::vector<bool> turns(static_cast<std::size_t>(tree.nv), false);
   for (const auto& b : tree.bodies) {
     const int angular = b.nv == 6 ? 3 : 0;
@@ -26,6 +28,10 @@ AxisScale::AxisScale(const Tree& tree, const std::vector<KktPattern::Entry>& con
   }
   std::stable_sort(hanging_.begin(), hanging_.end(),
                    [](const Hanging& a, const Hanging& b) { return a.row < b.row; });
+}
+
+double AxisScale::fading(double fade) const {
+  return fade_beside(fade, apart_);
 }
 
 void AxisScale::measure(const std::vector<double>& inertia, std::vector<double>& scale) const {

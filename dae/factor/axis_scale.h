@@ -13,9 +13,13 @@ namespace momenta {
 class AxisScale {
  public:
   /// `constraint`: pattern of Φ_q; `groups`, `least` (m): Mechanism::row_groups, least_scales;
-  /// `spread`: LoopWeights::spread. All but the last are kept by reference.
+  /// `spread`, `apart`: LoopWeights. The first four are kept by reference, but for the tree.
   AxisScale(const Tree& tree, const std::vector<KktPattern::Entry>& constraint,
-            const std::vector<int>& groups, const std::vector<double>& least, double spread);
+            const std::vector<int>& groups, const std::vector<double>& least, double spread,
+            double apart);
+
+  /// Below which share of its scale a pivot fades, where masses are apart: fade_beside().
+  double fading(double fade) const;
 
   /// Per row (m): Σ_j 1/M_jj over the rotations that an axis row hangs on, whose entries are at
   /// most 1: its W_ii when the axes are anyhow; the least scale for rows of points and
@@ -40,6 +44,7 @@ class AxisScale {
   const std::vector<int>& groups_;
   const std::vector<double>& least_;
   double far_apart_;  ///< mass spread over masses_far_apart, at least 1
+  double apart_;      ///< LoopWeights::apart
   std::vector<Hanging> hanging_;
 };
 

@@ -17,7 +17,7 @@ FilteredMatrix::FilteredMatrix(const KktPattern& pattern, AxisScale scale, int n
 bool FilteredMatrix::factor(const double* compliance, double fade) {
   scale_.of_groups(diagonal_of_mass_.of(mass_), constraint_, tau_);
   for (double& tau : tau_) {
-    tau = compliance ? 0 : tau * fade;
+    tau = compliance ? 0 : tau * scale_.fading(fade);
     if (!std::isfinite(tau)) return false;
   }
   return factor_.factor(mass_, constraint_, compliance, tau_.data());

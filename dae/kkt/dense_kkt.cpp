@@ -94,9 +94,10 @@ class DenseKkt final : public Kkt {
         for (int k = 0; k < n_; ++k) s += g_[at(i, k, n_)] * scaled_[at(j, k, n_)];
         loops_.at(i, j) = s;
       }
-    const bool finite = loops_.eliminate(fade, natural_.data(), compliance_);
+    const double fading = axis_scale_.fading(fade);
+    const bool finite = loops_.eliminate(fading, natural_.data(), compliance_);
     faded_rows_ = loops_.faded_rows();
-    weakest_ = loops_.weakest();
+    weakest_ = std::min(1.0, loops_.weakest() * fade / fading);
     return finite;
   }
 

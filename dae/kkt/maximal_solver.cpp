@@ -175,7 +175,7 @@ class MaximalSolver final : public LoopSolver {
             inner(columns_[i].bodies.size() < columns_[j].bodies.size() ? columns_[i].bodies
                                                                         : columns_[j].bodies,
                   columns_[i].h, columns_[j].h);
-    return loops_.eliminate(fade, natural_.data(),
+    return loops_.eliminate(axis_scale_.fading(fade), natural_.data(),
                             softens && !compliance_.empty() ? compliance_.data() : nullptr);
   }
   static double inner(const std::vector<std::size_t>& bodies, const Columns& a, const Columns& b) {

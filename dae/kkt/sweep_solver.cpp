@@ -77,7 +77,7 @@ class SweepSolver final : public LoopSolver {
 
   bool free_velocity(double t, const double* q, const double* p, double* u) override {
     RightSide<double> right;
-    right.fade = fade_evaluation;
+    right.fade = fade_beside(fade_evaluation, mechanism_.masses_apart());
     right.drives = false;
     of_momentum_ = true;
     const bool ok = noted(sweeps_->momentum(t, q, p, right, u, nu_.data(), nullptr));
@@ -115,7 +115,7 @@ class SweepSolver final : public LoopSolver {
     RightSide<double> right;
     right.centre = centre;
     if (compliance_.empty())
-      right.fade = fade;
+      right.fade = fade_beside(fade, mechanism_.masses_apart());
     else
       right.compliance = compliance_.data();
     return right;

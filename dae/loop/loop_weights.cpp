@@ -77,9 +77,10 @@ LoopWeights weigh_loops(const LoopModel<Space>& loops, const Tree& tree,
     if (w.lightest < 0) continue;
     lightest = std::min(lightest, w.of_lightest);
     heaviest = std::max(heaviest, w.of_heaviest);
-    if (!weights.light.empty() || !(w.of_heaviest > masses_far_apart * w.of_lightest)) continue;
+    if (!(w.of_heaviest > weights.apart * w.of_lightest)) continue;
+    weights.apart = w.of_heaviest / w.of_lightest;
     char times[32];
-    std::snprintf(times, sizeof times, "%.0e", w.of_heaviest / w.of_lightest);
+    std::snprintf(times, sizeof times, "%.0e", weights.apart);
     weights.light = "what turns about " + tree.joint_in_words(w.lightest) + " is " + times +
                     " times lighter than what turns about " + tree.joint_in_words(w.heaviest) +
                     " in its loop";

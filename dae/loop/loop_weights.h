@@ -1,8 +1,8 @@
 #pragma once
 // What turns and slides in loops, weighed at the loops' points at the start: scales below which
-// rows of points are dust, and masses too far apart for joints to be eliminated before the loops
-// that hold them. A joint's inertia is weighed at the end of the way from it to the loop's point:
-// so a uniform chain stays a chain of equals, whatever its length.
+// rows of points are dust, and how far masses are apart. A joint's inertia is weighed at the end of
+// the way from it to the loop's point: so a uniform chain stays a chain of equals, whatever its
+// length.
 
 #include <momenta/dae/loop/loop_model.h>
 
@@ -11,8 +11,8 @@
 
 namespace momenta {
 
-/// Heavier by this, a joint is not to be taken together with a lighter one of its loop: beside a
-/// mobility so much larger the filter of the pivots takes what it has of a row.
+/// Of masses further apart what keeps the matrices of KLU and of the DAE forms regular is less by
+/// as much.
 inline constexpr double masses_far_apart = 1e6;
 
 struct LoopWeights {
@@ -21,7 +21,9 @@ struct LoopWeights {
   std::vector<double> least_scales;
   /// Of all loops: heaviest over lightest, at least 1.
   double spread = 1;
-  /// Which joint is `masses_far_apart` from another of its loop, in words; empty: none.
+  /// Of the loop where that is the most: heaviest over lightest, at least 1.
+  double apart = 1;
+  /// Its lightest and its heaviest joint in words; empty where no loop has joints that weigh.
   std::string light;
 };
 

@@ -1,0 +1,132 @@
+#include <momenta/dae/factor/faded_pivot.h>
+#include <momenta/dae/leaves_first.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+
+namespace momenta {
+namespace {
+
+constexpr int poses = 3;
+constexpr double way = 0.2;  // from pose to pose [rad, lengths of the scene]
+
+class LeavesFirstError {
+ public:
+  LeavesFirstError(const Mechanism& mechanism, Evaluation<double>& e, const LeavesFirst& solve)
+      : mechanism_(mechanism),
+        e_(e),
+        solve_(solve),
+        pattern_(mechanism.constraint_pattern()),
+        size_(static_cast<std::size_t>(mechanism.nv()), 1),
+        inertia_(size_.size()),
+        v_(size_.size()),
+        v0_(size_.size()),
+        p_(size_.size()),
+        held_(size_.size()),
+        sigma_(static_cast<std::size_t>(mechanism.m())),
+        entries_(pattern_.size()) {
+    const double length = length_of(mechanism.scene());
+    for (const auto& b : mechanism.tree().bodies)
+      for (int i = 0; i < b.nv; ++i)
+        if (b.nv == 6 ? i < 3 : b.nv == 1 && b.kind == JointKind::prismatic)
+          size_[static_cast<std::size_t>(b.u + i)] = length;
+  }
+
+  double largest() {
+    Eigen::VectorXd q = mechanism_.tree().q0;
+    double error = 0;
+    for (int pose = 0; pose < poses; ++pose) {
+      const double here = at(q.data());
+      error = std::max(error, here);
+      if (!std::isfinite(here) || !move(q)) break;
+    }
+    return error;
+  }
+
+ private:
+  double at(const double* q) {
+    e_.place(0, q);
+    e_.mass_diagonal(inertia_.data());
+    e_.constraint_entries(entries_.data());
+    const double any = static_cast<double>(std::mt19937::max());
+    for (std::size_t i = 0; i < v0_.size(); ++i)
+      v0_[i] = size_[i] * (2 * static_cast<double>(random_()) / any - 1);
+    momentum_of(v0_, nullptr, p_);
+    const auto solved = solve_(q, p_.data(), 0, fade_evaluation, v_.data(), sigma_.data());
+    if (!solved) return 0;
+    if (!*solved) return std::numeric_limits<double>::infinity();
+    e_.place(0, q);
+    momentum_of(v_, sigma_.data(), held_);
+    std::vector<double> terms(v_.size()), row(sigma_.size(), 0.0), row_terms(sigma_.size(), 0.0);
+    for (std::size_t i = 0; i < v_.size(); ++i)
+      terms[i] = inertia_[i] * (std::abs(v_[i]) + std::abs(v0_[i]));
+    for (std::size_t k = 0; k < entries_.size(); ++k) {
+      const auto of = static_cast<std::size_t>(pattern_[k].row),
+                 i = static_cast<std::size_t>(pattern_[k].column);
+      terms[i] += std::abs(entries_[k] * sigma_[of]);
+      row[of] += entries_[k] * v_[i];
+      row_terms[of] += std::abs(entries_[k]) * (std::abs(v_[i]) + std::abs(v0_[i]));
+    }
+    double error = 0;
+    const auto take = [&](double off, double size) {
+      if (!std::isfinite(off)) error = std::numeric_limits<double>::infinity();
+      if (size > 0) error = std::max(error, std::abs(off) / size);
+    };
+    for (std::size_t i = 0; i < v_.size(); ++i) take(held_[i] - p_[i], terms[i]);
+    for (std::size_t k = 0; k < row.size(); ++k) take(row[k], row_terms[k]);
+    return error;
+  }
+
+  /// M v + Φ_qᵀσ without what drives prescribe.
+  void momentum_of(const std::vector<double>& v, const double* sigma, std::vector<double>& p) {
+    std::vector<double> prescribed(p.size());
+    e_.move(nullptr);
+    e_.momenta(nullptr, prescribed.data());
+    e_.move(v.data());
+    e_.momenta(sigma, p.data());
+    for (std::size_t i = 0; i < p.size(); ++i) p[i] -= prescribed[i];
+  }
+
+  /// Along v, and back onto the loops.
+  bool move(Eigen::VectorXd& q) {
+    constexpr int corrections = 3;
+    double fastest = 0;
+    for (std::size_t i = 0; i < v_.size(); ++i)
+      fastest = std::max(fastest, std::abs(v_[i]) / size_[i]);
+    if (!(fastest > 0)) return false;
+    const std::vector<double> none(v_.size(), 0.0);
+    Eigen::VectorXd rates(q.size());
+    double length = way / fastest;
+    for (int k = 0; k <= corrections; ++k) {
+      e_.place(0, q.data());
+      e_.coordinate_rates(q.data(), v_.data(), rates.data());
+      q += length * rates;
+      mechanism_.tree().normalise(q);
+      length = 1;
+      if (k == corrections) break;
+      const auto solved =
+          solve_(q.data(), none.data(), 1, fade_projection, v_.data(), sigma_.data());
+      if (!solved || !*solved) return false;
+    }
+    return q.allFinite();
+  }
+
+  const Mechanism& mechanism_;
+  Evaluation<double>& e_;
+  const LeavesFirst& solve_;
+  const std::vector<KktPattern::Entry>& pattern_;
+  std::vector<double> size_;  ///< of the rates: 1 rad/s or a length of the scene per second
+  std::vector<double> inertia_, v_, v0_, p_, held_, sigma_, entries_;
+  std::mt19937 random_{1};  // the same motions every time
+};
+
+}  // namespace
+
+double leaves_first_error(const Mechanism& mechanism, Evaluation<double>& e,
+                          const LeavesFirst& solve) {
+  return LeavesFirstError(mechanism, e, solve).largest();
+}
+
+}  // namespace momenta

@@ -1,0 +1,45 @@
+#pragma once
+// Whether every joint can be eliminated before the loops that hold it. Where a joint turns or
+// slides next to nothing, a row of its loop that it moves has a pivot of 1/m, and the rows that
+// close after it have what the product of that one leaves,
+//
+//   w' = W_kk − W_ki f(w_i) W_ik:
+//
+// rounding of w' is ε of the larger, and the filter's τ (front.h) is a share of the mobility along
+// the row, the light joint's. Both make the impulse of the row, and by it Φ_q v, off by
+//
+//   ε s/w' + (τ/w')⁴,         s = Σ M_j⁻¹|C_n|².
+//
+// What that comes to depends on where the light joint sits: at the foot of a ladder on nothing. So
+// it is measured. A motion v₀ is put onto the loops, M v + Φ_qᵀσ = M v₀, Φ_q v = 0, and each row
+// asked by how much of the size of its terms it is missed:
+//
+//   ω = max |M (v − v₀) + Φ_qᵀσ|_i / (M_ii (|v_i| + |v₀_i|) + Σ|Φ_ki σ_k|),
+//           |Φ_q v|_k / Σ|Φ_ki|(|v_i| + |v₀_i|).
+//
+// To ω the solution is that of a mechanism whose numbers differ so much from this one's. A row that
+// is redundant, or lost at a singular pose, holds with the others: it has no part in ω. The largest
+// ω counts, at the start and at two poses that motions lead to from there.
+// Source: Oettli, Prager, Numer. Math. 6 (1964) 405.
+
+#include <momenta/dae/mechanism.h>
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+namespace momenta {
+
+/// The ω that a run at the tightest tolerances of use does not notice.
+inline constexpr double most_leaves_first_error = 1e-9;
+
+/// v (nv) and σ (m) of M v + Φ_qᵀσ = p, Φ_q v = −βΦ at q, drives at rest. False: not solved; none:
+/// solved by other means.
+using LeavesFirst = std::function<std::optional<bool>(const double* q, const double* p, double beta,
+                                                      double fade, double* v, double* sigma)>;
+
+/// ω; infinite where there is no solution. A few solutions and O(bodies + length of all loops).
+double leaves_first_error(const Mechanism& mechanism, Evaluation<double>& e,
+                          const LeavesFirst& solve);
+
+}  // namespace momenta
