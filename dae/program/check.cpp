@@ -10,6 +10,7 @@
 
 #include "cut_words.h"
 #include "options.h"
+#include "passed_limits.h"
 #include "reach_words.h"
 
 namespace momenta::program {

@@ -15,6 +15,7 @@
 #include <stdexcept>
 
 #include "kept_run.h"
+#include "passed_limits.h"
 
 namespace momenta::program {
 namespace {
