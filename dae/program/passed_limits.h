@@ -2,7 +2,7 @@
 // Joints beyond their `limits`, which exert no force: told, once a joint, with the time of the
 // first sample at which it is beyond.
 
-#include <momenta/dae/mechanism.h>
+#include <momenta/dae/assembly/assembly.h>
 
 #include <string>
 #include <vector>
