@@ -26,14 +26,17 @@ void PassedLimits::look(double t, const double* q) {
 }
 
 std::vector<std::string> PassedLimits::sentences() const {
+  constexpr std::size_t most = 4;
   std::vector<std::string> all;
+  std::size_t more = 0;
   for (const Limited& joint : joints_) {
-    if (!joint.passed) continue;
+    if (!joint.passed || (all.size() == most && ++more > 0)) continue;
     const std::string unit = joint.slides ? " m" : " rad";
     all.push_back("joint " + reading::in_quotes(joint.name) + " is beyond its limits [" +
                   compact(joint.least, 4) + ", " + compact(joint.largest, 4) + "]" + unit +
                   " from t = " + compact(joint.at, 4) + " s on: " + compact(joint.value, 4) + unit);
   }
+  if (more > 0) all.push_back("so are " + std::to_string(more) + " joints more");
   return all;
 }
 

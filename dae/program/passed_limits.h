@@ -15,7 +15,8 @@ class PassedLimits {
 
   /// Takes a sample: q (nq) at t [s]. O(joints with limits)
   void look(double t, const double* q);
-  /// "joint 'k' is beyond its limits [-1, 2] rad from t = 0.3 s on: 2.1 rad", one each.
+  /// "joint 'k' is beyond its limits [-1, 2] rad from t = 0.3 s on: 2.1 rad", one each, the first
+  /// four; and how many more.
   std::vector<std::string> sentences() const;
 
  private:

@@ -65,6 +65,8 @@ void read_mechanics(const Node& node, JointSpec& joint, MjcfModel& model) {
   const double unit = joint.kind == JointKind::prismatic ? 1 : model.angles.unit;
   const double ref = one ? unit * node.number("ref", 0) : 0;
   if (ref != 0) model.refs[joint.name] = ref;
+  const double rest = one ? unit * node.number("springref", 0) - ref : 0;
+  if (rest != 0) model.rests[joint.name] = rest;
   read_limits(node, unit, ref, joint, model);
   if (node.has("actuatorfrcrange")) model.remarks.left_out("force ranges of actuators");
   const double stiffness = node.number("stiffness", 0), damping = node.number("damping", 0),
@@ -84,8 +86,7 @@ void read_mechanics(const Node& node, JointSpec& joint, MjcfModel& model) {
   }
   joint.stiffness = stiffness;
   joint.damping = damping;
-  if (stiffness != 0 || node.has("springdamper"))
-    joint.rest = unit * node.number("springref", 0) - ref;
+  if (stiffness != 0 || node.has("springdamper")) joint.rest = rest;
   if (armature > 0) joint.rotor_inertia = {armature};
   if (friction == 0) return;
   joint.friction = friction;

@@ -30,6 +30,8 @@ struct MjcfModel {
   std::map<std::string, Site> sites;
   /// `ref` of hinges and slides [rad or m]: q of the file less that of the scene; none: 0.
   std::map<std::string, double> refs;
+  /// `springref` less `ref`: q of the scene where tendons have their resting lengths; none: 0.
+  std::map<std::string, double> rests;
   /// Of `springdamper`: until all inertias are known.
   struct SpringDamper {
     std::string joint;

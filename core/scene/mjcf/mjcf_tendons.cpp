@@ -1,10 +1,13 @@
 // <tendon>: a fixed tendon is a sum of joint coordinates, L = Σ coef q; where it has stiffness or
 // damping, a coordinate spring. A spatial tendon between two sites is a spring-damper. L of the
-// scene counts from qpos0: L_file − Σ coef ref.
+// scene counts from qpos0: L_file − Σ coef ref. Without `springlength` a spring rests where every
+// joint is at its `springref`.
 
 #include <momenta/core/scene/kinds.h>
 #include <momenta/core/scene/mjcf/mjcf_model.h>
 #include <momenta/core/scene/near_name.h>
+
+#include <algorithm>
 
 namespace momenta::reading {
 namespace {
@@ -32,7 +35,7 @@ class TendonReader {
  private:
   bool acts() const { return stiffness_ != 0 || damping_ != 0; }
 
-  /// `springlength`, or nothing where it is that of qpos0.
+  /// `springlength`, or nothing where it is that at the springrefs.
   std::optional<double> rest() const {
     if (!node_.has("springlength")) return std::nullopt;
     const std::vector<double> x = node_.numbers("springlength");
@@ -74,8 +77,36 @@ class TendonReader {
     }
     const std::optional<double> length = rest();
     f.rest = length ? *length - tendon.ref : 0;
+    for (const auto& [joint, ratio] : tendon.ratios)
+      if (const auto at = model_.rests.find(joint); !length && at != model_.rests.end())
+        f.rest += ratio * at->second;
     model_.scene.forces.push_back(f);
     return tendon;
+  }
+
+  /// A body with every joint at its springref.
+  MjcfFrame at_rest(const std::string& body) const {
+    MjcfFrame frame;
+    std::string name = body;
+    while (name != "world" && name != "ground") {
+      const auto joint = std::find_if(model_.scene.joints.begin(), model_.scene.joints.end(),
+                                      [&](const JointSpec& j) { return j.child == name; });
+      const JointSpec& j = *joint;
+      const auto rest = model_.rests.find(j.name);
+      const double q = rest == model_.rests.end() ? 0 : rest->second;
+      MjcfFrame moved;
+      if (j.kind == JointKind::revolute)
+        moved.turn = Eigen::AngleAxisd(q, j.axis);
+      else if (j.kind == JointKind::prismatic)
+        moved.at = q * j.axis;
+      else if (j.kind == JointKind::free)
+        moved = {{j.position[0], j.position[1], j.position[2]},
+                 Eigen::Quaterniond(j.position[3], j.position[4], j.position[5], j.position[6])};
+      frame = MjcfFrame{j.origin_parent, j.rotation} * moved *
+              MjcfFrame{-j.origin_child, Eigen::Quaterniond::Identity()} * frame;
+      name = j.parent;
+    }
+    return frame;
   }
 
   MjcfModel::Tendon spatial() {
@@ -104,9 +135,7 @@ class TendonReader {
       model_.remarks.left_out("spatial tendons without spring or damper");
       return tendon;
     }
-    const auto place = [&](const MjcfModel::Site& s) {
-      return model_.frames.at(s.body) * s.frame.at;
-    };
+    const auto place = [&](const MjcfModel::Site& s) { return at_rest(s.body) * s.frame.at; };
     const MjcfModel::Site *one = sites[0], *two = sites[1];
     if (one->body == two->body) return tendon;  // of one length for ever
     const double length = (place(*one) - place(*two)).norm();
