@@ -143,7 +143,9 @@ void Mechanism::choose_kkt(KktChoice asked) {
       cast.as_given.loops = in_link_frames(cast.loops, cast.links);
       cast.as_given.plan = plan_loops(cast.model, cast.as_given.loops);
     }
-    if (!cast.swept.plan.fits())
+    if (!cast.swept.plan.linear)
+      kkt_reason_ = "a coupler has powers of a coordinate, and the sweeps carry linear ones";
+    else if (!cast.swept.plan.fits())
       kkt_reason_ =
           (cast.swept.plan.slots > 64 ? std::string("more than 64")  // no more are counted
                                       : std::to_string(cast.swept.plan.slots)) +
@@ -327,6 +329,9 @@ bool Mechanism::has_angles() const {
 }
 bool Mechanism::has_body_forces() const {
   return visit([](const auto& cast) { return cast.model.has_body_forces(); });
+}
+bool Mechanism::has_coordinate_springs() const {
+  return visit([](const auto& cast) { return !cast.model.coordinate_springs.empty(); });
 }
 bool Mechanism::has_joint_forces() const {
   return visit([](const auto& cast) { return cast.model.has_joint_forces; });

@@ -51,7 +51,7 @@ class Mechanism::SweepEvaluation final : public SweepRows<Space, double> {
   void each_constraint_entry(Entry&& entry) {
     for (std::size_t i = 0; i < loops_.model().loops.size(); ++i) {
       const auto& l = loops_.model().loops[i];
-      for (const auto& c : l.joints) entry(l.row, c.u, c.ratio);
+      for (const auto& c : l.joints) entry(l.row, c.u, loops_.ratio(c));
       for (int row = 0; row < l.rows; ++row) {
         Force on_a, on_b;
         loops_.unit_wrench(i, row, on_a, on_b);
@@ -100,11 +100,17 @@ class Mechanism::SweepEvaluation final : public SweepRows<Space, double> {
   double kinetic() override { return kinetic_energy(w_); }
   double potential(const double* q) override { return potential_energy(w_, q); }
   double dissipated_power(const double* u) override {
-    // Dampers and body-axes wrenches or torques: all applied power less that of the potentials.
+    // Dampers, friction and body-axes wrenches or torques: all applied power less that of the
+    // potentials.
     double power = 0;
     for (const auto& b : model_.bodies)
-      if (b.nv == 1) power -= b.damping * (u[b.u] * u[b.u]);
+      if (b.nv == 1) {
+        power -= b.damping * (u[b.u] * u[b.u]);
+        if (b.has_friction)
+          power -= b.friction * (u[b.u] * u[b.u] / std::hypot(u[b.u], b.friction_rate));
+      }
     if (!model_.has_body_forces()) return power;
+    power += bushing_power(w_) + coordinate_spring_power(w_);
     for (const auto& spring : model_.springs) {
       const SpringLine<Space, double> line(w_, spring);
       if (value_of(line.length) == 0) continue;

@@ -47,6 +47,7 @@ class Mechanism::SweepRows : public Evaluation<S> {
       if (leak != 0) loops_.add_wrenches(sigma, -leak, [](auto& body) -> Force& { return body.T; });
     }
     momentum_rates_inward(w_, q, u, pdot);
+    if (sigma) loops_.add_coupling_rates(sigma, pdot);
     if (sigma && leak != 0) loops_.add_couplings(sigma, -leak, pdot);
   }
 

@@ -89,7 +89,7 @@ LinkTree build_links(const Model<Spatial>& model) {
     l.parent = b.parent;
     l.first = b.parent >= 0 && b.parent + 1 == static_cast<int>(k);
     l.leaf = k + 1 == n || model.bodies[k + 1].parent != static_cast<int>(k);
-    l.has_force = b.nv == 1 && (b.stiffness != 0 || b.damping != 0 || b.torque != 0);
+    l.has_force = b.has_force();
     tree.theta0[k] = b.theta0;
     if (l.kind == LinkKind::general) l.record = tree.records++;
     l.one_axis = l.kind == LinkKind::general && b.nv <= 1 && !b.law;

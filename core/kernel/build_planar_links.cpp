@@ -34,7 +34,7 @@ PlanarTree build_links(const Model<Planar>& model) {
     l.first = b.parent >= 0 && b.parent + 1 == static_cast<int>(k);
     l.leaf = k + 1 == n || model.bodies[k + 1].parent != static_cast<int>(k);
     l.revolute = b.kind == JointKind::revolute && b.drive < 0;
-    l.has_force = b.nv == 1 && (b.stiffness != 0 || b.damping != 0 || b.torque != 0);
+    l.has_force = b.has_force();
     l.sign = b.edge.sign;
     l.q = b.q;
     l.u = b.u;
@@ -77,6 +77,10 @@ PlanarTree build_links(const Model<Planar>& model) {
   for (const auto& spring : model.springs) {
     mark(spring.parent);
     mark(spring.child);
+  }
+  for (const auto& bushing : model.bushings) {
+    mark(bushing.parent);
+    mark(bushing.child);
   }
   for (const auto& wrench : model.wrenches) mark(wrench.body);
   mark_openers(tree.links);

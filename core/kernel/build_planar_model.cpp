@@ -68,6 +68,9 @@ PlaneFinding find_plane(const Tree& tree, const Scene& scene) {
     if (other.norm() == 0 || parallel(line, other.normalized())) other = line.unitOrthogonal();
     normal = line.cross(other).normalized();
   }
+  for (const ForceSpec& f : scene.forces)
+    if (f.kind == "bushing" && f.rotational_stiffness != 0)
+      return {{}, "bushing '" + f.name + "' has a rotational stiffness, which only space has"};
   for (std::size_t k = 0; k < poses.size(); ++k) {
     const Tree::Body& b = tree.bodies[k];
     const Eigen::Vector3d z = poses[k].linear().col(2);

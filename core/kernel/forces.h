@@ -1,7 +1,9 @@
 #pragma once
-// Applied wrenches T_K of (17): weights, point-to-point spring-dampers, constant wrenches; and the
-// energies they store.
+// Applied wrenches T_K of (17): weights, point-to-point spring-dampers, bushings, coordinate
+// springs, constant wrenches; and the energies they store.
 
+#include <momenta/core/kernel/bushing.h>
+#include <momenta/core/kernel/coordinate_spring.h>
 #include <momenta/core/kernel/points.h>
 #include <momenta/core/kernel/sweeps.h>
 #include <momenta/core/scalar/dual.h>
@@ -23,7 +25,7 @@ struct SpringLine {
   }
 };
 
-/// Adds springs and constant wrenches to body[k].T. Needs poses and velocities.
+/// Adds springs, bushings and constant wrenches to body[k].T. Needs poses and velocities.
 template <class Space, class S>
 void add_body_forces(Workspace<Space, S>& w) {
   for (const auto& spring : w.model->springs) {
@@ -43,6 +45,8 @@ void add_body_forces(Workspace<Space, S>& w) {
       add_force(w, spring.parent, line.parent, f,
                 w.body[static_cast<std::size_t>(spring.parent)].T);
   }
+  add_bushings(w);
+  add_coordinate_springs(w);
   for (const auto& wrench : w.model->wrenches) {
     const int k = wrench.body;
     auto& T = w.body[static_cast<std::size_t>(k)].T;
@@ -110,6 +114,7 @@ S potential_energy(const Workspace<Space, S>& w, const S* q) {
     const S stretch = SpringLine<Space, S>(w, spring).length - spring.rest;
     energy += 0.5 * spring.stiffness * (stretch * stretch);
   }
+  energy += bushing_energy(w) + coordinate_spring_energy(w);
   for (const auto& wrench : model.wrenches)
     if (!wrench.in_body_axes)
       energy -= dot(to_ground(w, -1, wrench.force), point_position(w, wrench.body, wrench.at));

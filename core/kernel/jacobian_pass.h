@@ -63,8 +63,12 @@ class DirectionalPass {
 template <class Space>
 bool is_hamiltonian(const Model<Space>& model) {
   for (const auto& b : model.bodies)
-    if (b.nq != b.nv) return false;
+    if (b.nq != b.nv || b.has_friction) return false;
   for (const auto& spring : model.springs)
+    if (spring.damping != 0) return false;
+  for (const auto& bushing : model.bushings)
+    if (bushing.damping != 0 || bushing.rotational_damping != 0) return false;
+  for (const auto& spring : model.coordinate_springs)
     if (spring.damping != 0) return false;
   return model.wrenches.empty();  // in body axes, or with a torque, one need not have a potential
 }

@@ -6,6 +6,7 @@
 #include <momenta/core/kernel/spatial.h>
 #include <momenta/core/tree/tree.h>
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -29,8 +30,14 @@ struct Model {
     typename Space::template RigidInertia<double> inertia;
     double subtree_mass = 0;  ///< of the body and all it carries [kg]
     double stiffness = 0, rest = 0, damping = 0, torque = 0;
+    double friction = 0, friction_rate = 1;  ///< joint_force() in sweeps.h
+    bool has_friction = false;
+    int sprung = -1;   ///< place in Workspace::sprung, where a coordinate spring looks at the joint
     double rotor = 0;  ///< inertia on the joint's rate: rotor.h [kg m² or kg]
     bool has_rotor() const { return rotor != 0; }
+    bool has_force() const {
+      return nv == 1 && (stiffness != 0 || damping != 0 || torque != 0 || has_friction);
+    }
     const UserFormula* law = nullptr;  ///< user joints: one of `laws`
     int user = -1;                     ///< and its place among them
   };
@@ -40,6 +47,25 @@ struct Model {
     int parent = -1, child = -1;
     Vector at_parent, at_child;
     double offset2 = 0, stiffness = 0, damping = 0, rest = 0;
+  };
+  /// bushing.h; offset2 as of a spring. rest_axes: the axes of the child's frame without couple, in
+  /// the parent's; in space alone.
+  struct Bushing {
+    int parent = -1, child = -1;
+    Vector at_parent, at_child;
+    std::array<Vector, 3> rest_axes;
+    double offset2 = 0, stiffness = 0, damping = 0, rotational_stiffness = 0,
+           rotational_damping = 0;
+  };
+  /// coordinate_spring.h
+  struct CoordinateSpring {
+    struct Term {
+      int body = 0;   ///< whose joint it is
+      int place = 0;  ///< in Workspace::sprung
+      double ratio = 0;
+    };
+    std::vector<Term> terms;
+    double stiffness = 0, damping = 0, rest = 0;
   };
   /// Constant wrench. `torque` in space; in a plane only its normal component `normal_torque`.
   struct Wrench {
@@ -51,6 +77,9 @@ struct Model {
 
   std::vector<Body> bodies;
   std::vector<Spring> springs;
+  std::vector<Bushing> bushings;
+  std::vector<CoordinateSpring> coordinate_springs;
+  int sprung = 0;  ///< joints at which coordinate springs look
   std::vector<Wrench> wrenches;
   std::vector<MotionLaw> drives;
   std::vector<std::shared_ptr<const JointFormula>> laws;
@@ -58,7 +87,10 @@ struct Model {
   int nq = 0, nv = 0;
   bool has_gravity = false, has_joint_forces = false, has_rotors = false;
 
-  bool has_body_forces() const { return !springs.empty() || !wrenches.empty(); }
+  bool has_body_forces() const {
+    return !springs.empty() || !wrenches.empty() || !bushings.empty() ||
+           !coordinate_springs.empty();
+  }
 
   /// A point of a body, given in the tree's body frame (−1: ground axes), in this model's frame of
   /// the body.

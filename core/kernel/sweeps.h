@@ -28,6 +28,7 @@ void place_body(Workspace<Space, S>& w, std::size_t k, const S& t, const S* q, b
     if (b.law)
       Joint<Space>::place(b, t, q + b.q, w.users[static_cast<std::size_t>(b.user)], s.edge);
   const S value = b.drive >= 0 ? s.drive : (b.nq == 1 ? q[b.q] : S(0.0));
+  if (b.sprung >= 0) w.sprung[static_cast<std::size_t>(b.sprung)].coordinate = value;
   if (!b.law)
     Joint<Space>::template place<S>(b, parent ? &parent->edge : nullptr, value, q + b.q, s.edge);
   if constexpr (Space::dimension == 3) s.inertia = Planar::turned(b.inertia, s.edge);
@@ -75,6 +76,8 @@ void move_body(Workspace<Space, S>& w, std::size_t k, const S* u) {
   else
     Joint<Space>::add_motion(b, s.edge, u + b.u, s.V);
   if (b.has_rotor()) s.rotor_rate = u[b.u];
+  if (b.sprung >= 0)
+    w.sprung[static_cast<std::size_t>(b.sprung)].rate = b.drive >= 0 ? s.drive_rate : u[b.u];
   if (b.law) add_drive<Space, S>(b, s, s.V);
 }
 
@@ -127,10 +130,15 @@ void momenta_inward(Workspace<Space, S>& w, S* p) {
     if (const auto& b = w.model->bodies[k]; b.has_rotor()) p[b.u] += b.rotor * w.body[k].rotor_rate;
 }
 
-/// Generalised force of a joint's own spring, damper and torque.
+/// Generalised force of a joint's own spring, damper, torque and friction
+/// −friction · u / √(u² + friction_rate²).
 template <class Body, class S>
 S joint_force(const Body& b, const S& q, const S& u) {
-  return b.torque - b.stiffness * (q - b.rest) - b.damping * u;
+  const S force = b.torque - b.stiffness * (q - b.rest) - b.damping * u;
+  if (!b.has_friction) return force;
+  using std::sqrt;
+  const S size = sqrt(u * u + S(b.friction_rate * b.friction_rate));
+  return force - b.friction * (u / size);
 }
 
 /// Accumulates T*_K, eq. (27), from body[k].T and writes ṗ, eq. (35), with body[k].P = P*_K and the

@@ -31,6 +31,9 @@ void take_joints(const Tree& tree, Model<Space>& model) {
     m.rest = b.rest;
     m.damping = b.damping;
     m.torque = b.torque;
+    m.friction = b.nv == 1 ? b.friction : 0;
+    m.friction_rate = b.friction_rate;
+    m.has_friction = m.friction != 0;
     m.rotor = b.rotor;
     model.has_rotors |= m.has_rotor();
     if (b.kind == JointKind::user) {
@@ -38,14 +41,22 @@ void take_joints(const Tree& tree, Model<Space>& model) {
       m.user = static_cast<int>(model.laws.size());
       model.laws.push_back(b.law);
     }
-    model.has_joint_forces |= m.stiffness != 0 || m.damping != 0 || m.torque != 0;
+    model.has_joint_forces |= m.stiffness != 0 || m.damping != 0 || m.torque != 0 || m.has_friction;
     m.subtree_mass += b.mass;
     if (m.parent >= 0)
       model.bodies[static_cast<std::size_t>(m.parent)].subtree_mass += m.subtree_mass;
   }
 }
 
-/// Springs and wrenches; needs the frames of all bodies.
+/// The part of a joint that moves one of its coordinates. @pre the scene is valid
+inline int part_of(const Tree& tree, const std::string& joint, int coordinate) {
+  const int last = tree.carried_by(joint);
+  for (int k = tree.first_part(last); k < last; ++k)
+    if (tree.bodies[static_cast<std::size_t>(k)].coordinate == coordinate) return k;
+  return last;
+}
+
+/// Springs, bushings and wrenches; needs the frames of all bodies.
 template <class Space>
 void take_forces(const Tree& tree, const Scene& scene, Model<Space>& model) {
   constexpr bool in_plane = Space::dimension == 3;
@@ -72,6 +83,47 @@ void take_forces(const Tree& tree, const Scene& scene, Model<Space>& model) {
         spring.offset2 = offset * offset;
       }
       model.springs.push_back(spring);
+    } else if (f.kind == "bushing") {
+      typename Model<Space>::Bushing bushing;
+      bushing.parent = tree.body(f.parent);
+      bushing.child = tree.body(f.child);
+      const Eigen::Vector3d at_parent = tree.point(bushing.parent, f.origin_parent);
+      const Eigen::Vector3d at_child = tree.point(bushing.child, f.origin_child);
+      bushing.at_parent = model.point(bushing.parent, at_parent);
+      bushing.at_child = model.point(bushing.child, at_child);
+      bushing.stiffness = f.stiffness;
+      bushing.damping = f.damping;
+      bushing.rotational_stiffness = f.rotational_stiffness;
+      bushing.rotational_damping = f.rotational_damping;
+      if constexpr (in_plane) {
+        const double offset =
+            across(bushing.child, at_child, true) - across(bushing.parent, at_parent, true);
+        bushing.offset2 = offset * offset;
+      } else {  // Σ p_i c_iᵀ: axes of the scene's child without couple, and as they are on the
+                // child
+        const Eigen::Quaterniond turn = f.rotation.normalized();
+        for (int i = 0; i < 3; ++i) {
+          const Eigen::Vector3d unit = Eigen::Vector3d::Unit(i);
+          const auto on_parent =
+              model.direction(bushing.parent, tree.direction(bushing.parent, turn * unit));
+          const auto on_child = model.direction(bushing.child, tree.direction(bushing.child, unit));
+          for (int j = 0; j < 3; ++j)
+            bushing.rest_axes[static_cast<std::size_t>(j)] += on_child[j] * on_parent;
+        }
+      }
+      model.bushings.push_back(bushing);
+    } else if (f.kind == "coordinate-spring") {
+      typename Model<Space>::CoordinateSpring spring;
+      spring.stiffness = f.stiffness;
+      spring.damping = f.damping;
+      spring.rest = f.rest;
+      for (std::size_t i = 0; i < f.joints.size(); ++i) {
+        const int k = part_of(tree, f.joints[i], f.coordinates.empty() ? 0 : f.coordinates[i]);
+        int& place = model.bodies[static_cast<std::size_t>(k)].sprung;
+        if (place < 0) place = model.sprung++;
+        spring.terms.push_back({k, place, f.ratios[i]});
+      }
+      model.coordinate_springs.push_back(spring);
     } else if (f.kind == "wrench") {
       typename Model<Space>::Wrench wrench;
       wrench.body = tree.body(f.body);

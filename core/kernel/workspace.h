@@ -34,10 +34,15 @@ struct Workspace {
     Force P;  ///< P*_K, eq. (26)
     Force T;  ///< T*_K, eq. (27)
   };
+  /// A joint at which a coordinate spring looks.
+  struct Sprung {
+    S coordinate{}, rate{};
+  };
   explicit Workspace(const Model<Space>& m)
       : model(&m),
         body(m.bodies.size()),
         generalised(static_cast<std::size_t>(m.nv)),
+        sprung(static_cast<std::size_t>(m.sprung)),
         users(m.laws.size()) {
     std::vector<char> carries(m.bodies.size());
     const auto mark = [&](int k) {
@@ -49,6 +54,12 @@ struct Workspace {
       mark(spring.child);
       mark(spring.parent);
     }
+    for (const auto& bushing : m.bushings) {
+      mark(bushing.child);
+      mark(bushing.parent);
+    }
+    for (const auto& spring : m.coordinate_springs)
+      for (const auto& term : spring.terms) mark(term.body);
     for (const auto& wrench : m.wrenches) mark(wrench.body);
     for (std::size_t k = 0; k < carries.size(); ++k)
       if (carries[k]) forced.push_back(static_cast<int>(k));
@@ -57,6 +68,7 @@ struct Workspace {
   const Model<Space>* model;
   std::vector<Body> body;
   std::vector<S> generalised;  ///< scratch, nv: generalised forces
+  std::vector<Sprung> sprung;  ///< poses_outward, velocities_outward
   std::vector<int>
       forced;  ///< bodies with forces at points of theirs, and all on their ways to the ground
   std::vector<UserMotion<S>> users;  ///< what the edges of user joints point to

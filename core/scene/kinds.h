@@ -19,7 +19,8 @@ inline constexpr std::array<std::string_view, 10> loop_kinds{
     "distance", "universal", "cylindrical", "planar", "coupler"};
 inline constexpr std::array<std::string_view, 4> drive_kinds{"polynomial", "harmonic", "step",
                                                              "table"};
-inline constexpr std::array<std::string_view, 3> force_kinds{"spring-damper", "torque", "wrench"};
+inline constexpr std::array<std::string_view, 5> force_kinds{
+    "spring-damper", "bushing", "coordinate-spring", "torque", "wrench"};
 inline constexpr std::array<std::string_view, 5> shape_kinds{"rod", "box", "cylinder", "sphere",
                                                              "point"};
 

@@ -23,6 +23,10 @@ int rates_of(const JointSpec& joint) {
   return joint.kind == JointKind::user ? coordinates_of(joint) : rates_of(joint.kind);
 }
 
+bool has_powers(const LoopSpec& loop) {
+  return std::any_of(loop.powers.begin(), loop.powers.end(), [](double x) { return x != 0; });
+}
+
 bool has_rotor(const JointSpec& joint) {
   return std::any_of(joint.rotor_inertia.begin(), joint.rotor_inertia.end(),
                      [](double x) { return x != 0; });
@@ -62,7 +66,7 @@ double length_of(const Scene& scene) {
     if (l.kind != LoopKind::coupler) ends(l);
   }
   for (const ForceSpec& f : scene.forces) {
-    if (f.kind == "spring-damper") ends(f);
+    if (f.kind == "spring-damper" || f.kind == "bushing") ends(f);
     if (f.kind == "wrench") on(f.body, f.point);
   }
   for (const MarkerSpec& m : scene.markers) on(m.body, m.point);

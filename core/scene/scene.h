@@ -109,11 +109,18 @@ struct JointSpec {
   double stiffness = 0;  ///< revolute, helical [N m/rad], prismatic [N/m]; else 0
   double rest = 0;       ///< revolute, helical [rad], prismatic [m]; else 0
   double damping = 0;    ///< revolute, helical [N m s/rad], prismatic [N s/m]; else 0
+  /// Coulomb friction made smooth, −friction · u / √(u² + friction_rate²): of revolute, helical
+  /// joints [N m], prismatic ones [N]; else 0.
+  double friction = 0;
+  double friction_rate = 0.1;  ///< rate at which it has 0.7 of its force [rad/s or m/s], > 0
   /// Inertia on each coordinate's rate, as of a motor's rotor behind its gear (gear ratio squared
   /// times its own): ½ I q̇² of kinetic energy beside that of the bodies. Of revolute and helical
   /// joints [kg m²], prismatic ones [kg], and of each coordinate of cylindrical, universal and
   /// planar joints; empty: none. On a driven coordinate it has no effect on the motion.
   std::vector<double> rotor_inertia;
+  /// Least and largest q of a revolute, helical [rad] or prismatic [m] joint. They exert no force:
+  /// programs tell when they are passed.
+  std::optional<std::array<double, 2>> limits;
   Location at;  ///< where the file has it
 };
 
@@ -150,7 +157,8 @@ enum class LoopKind {
 ///   - `universal` keeps the points together and `axis`, held by the parent, at its angle to
 ///     `axis2`, held by the child
 ///   - `planar` keeps the child's point in the plane across `axis`, and `axis` common
-///   - `coupler` ties coordinates of joints, not bodies: Σ ratios[i] q_i = offset
+///   - `coupler` ties coordinates of joints, not bodies: Σ ratios[i] q_i + Σ powers[k] x^(k+2) =
+///     offset, x the coordinate of the last joint
 struct LoopSpec {
   std::string name;                                              ///< unique among joints and loops
   LoopKind kind = LoopKind::point;                               ///< point, revolute, …
@@ -170,9 +178,15 @@ struct LoopSpec {
   std::vector<std::string> joints;
   std::vector<int> coordinates;  ///< counted as for a drive, one for each joint; empty: all 0
   std::vector<double> ratios;    ///< [1, rad/m or m/rad], not zero, one for each joint
-  double offset = 0;             ///< [rad or m]; no effect where a drive prescribes it
-  Location at;                   ///< where the file has it
+  /// Of the second to fourth power of the last joint's coordinate, at most three; where one is not
+  /// zero that joint's ratio may be.
+  std::vector<double> powers;
+  double offset = 0;  ///< [rad or m]; no effect where a drive prescribes it
+  Location at;        ///< where the file has it
 };
+
+/// Whether a coupler is not linear.
+bool has_powers(const LoopSpec& loop);
 
 /// How many coordinates of a loop drives can prescribe: the coordinates of a joint of the same
 /// kind, the length of a distance, the offset of a coupler.
@@ -236,22 +250,35 @@ struct DriveSpec {
 /// A force on the mechanism; the name is optional.
 ///   - "spring-damper": between a point of `parent` and a point of `child`, k (l − rest) + c dl/dt
 ///     along the line
+///   - "bushing": at the point x of `child`, D from the point of `parent` to x, u the velocity of x
+///     and ω the angular velocity of the child relative to the parent, θ the rotation vector of the
+///     child's axes from `rotation`, |θ| <= π: force −k D − c u at x and couple −k_r θ − c_r ω on
+///     the child, their opposites on the parent
+///   - "coordinate-spring": along l = Σ ratios[i] q_i, coordinates as of a coupler: generalised
+///     forces −ratios[i] (k (l − rest) + c dl/dt)
 ///   - "torque": generalised force `value` on a revolute or helical [N m] or prismatic [N] joint
 ///   - "wrench": constant force at `point` of `body`, and constant torque: in ground axes
 ///     (`axes = "ground"`, the default) or in body axes (`axes = "body"`)
 struct ForceSpec {
-  std::string name;                                         ///< or empty
-  std::string kind;                                         ///< spring-damper torque wrench
-  std::string parent = "ground";                            ///< spring-damper: a body, or "ground"
-  std::string child;                                        ///< spring-damper: a body
-  Eigen::Vector3d origin_parent = Eigen::Vector3d::Zero();  ///< spring-damper, in parent axes [m]
-  Eigen::Vector3d origin_child = Eigen::Vector3d::Zero();   ///< spring-damper, in child axes [m]
-  double stiffness = 0;                                     ///< spring-damper: k [N/m]
-  double damping = 0;                                       ///< spring-damper: c [N s/m]
-  double rest = 0;                                   ///< spring-damper: length without force [m]
-  std::string joint;                                 ///< torque
-  double value = 0;                                  ///< torque [N m or N]
-  std::string body;                                  ///< wrench
+  std::string name;               ///< or empty
+  std::string kind;               ///< spring-damper bushing coordinate-spring torque wrench
+  std::string parent = "ground";  ///< spring-damper, bushing: a body, or "ground"
+  std::string child;              ///< spring-damper, bushing: a body
+  Eigen::Vector3d origin_parent = Eigen::Vector3d::Zero();  ///< of the parent, its axes [m]
+  Eigen::Vector3d origin_child = Eigen::Vector3d::Zero();   ///< of the child, its axes [m]
+  /// Bushing: child axes without couple, in parent axes.
+  Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
+  double stiffness = 0;  ///< k [N/m]; coordinate-spring: [N m/rad or N/m] for a ratio of 1
+  double damping = 0;    ///< c [N s/m]; coordinate-spring: [N m s/rad or N s/m] for a ratio of 1
+  double rest = 0;       ///< spring-damper [m], coordinate-spring [rad or m]: l without force
+  double rotational_stiffness = 0;  ///< bushing: k_r [N m/rad]
+  double rotational_damping = 0;    ///< bushing: c_r [N m s/rad]
+  std::vector<std::string> joints;  ///< coordinate-spring: whose rates are their q̇
+  std::vector<int> coordinates;     ///< coordinate-spring: as of a coupler; empty: all 0
+  std::vector<double> ratios;       ///< coordinate-spring: not zero, one for each joint
+  std::string joint;                ///< torque
+  double value = 0;                 ///< torque [N m or N]
+  std::string body;                 ///< wrench
   Eigen::Vector3d point = Eigen::Vector3d::Zero();   ///< wrench, in body axes [m]
   Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< wrench [N]
   Eigen::Vector3d torque = Eigen::Vector3d::Zero();  ///< wrench [N m]

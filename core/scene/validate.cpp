@@ -127,6 +127,16 @@ void check_joints(const Scene& scene, const Census& census) {
                 (joint.stiffness == 0 && joint.rest == 0 && joint.damping == 0),
             scene, joint.at, who,
             "stiffness, rest and damping are for revolute, prismatic and helical joints only");
+    require(std::isfinite(joint.friction) && joint.friction >= 0, scene, joint.at, who,
+            "friction must be finite and >= 0 [N m or N]");
+    require(std::isfinite(joint.friction_rate) && joint.friction_rate > 0, scene, joint.at, who,
+            "friction_rate must be finite and > 0 [rad/s or m/s]");
+    require(has_one_coordinate(joint.kind) || (joint.friction == 0 && !joint.limits), scene,
+            joint.at, who,
+            "friction and limits are for revolute, prismatic and helical joints only");
+    require(!joint.limits ||
+                (all_finite(joint.limits->data(), 2) && (*joint.limits)[0] < (*joint.limits)[1]),
+            scene, joint.at, who, "limits must be finite, the first below the second [rad or m]");
     require(joint.rotor_inertia.empty() || joint.rotor_inertia.size() == rotors_of(joint.kind),
             scene, joint.at, who,
             "rotor_inertia must be empty or of one number for each coordinate of a revolute, "
@@ -174,6 +184,26 @@ void check_forces(const Scene& scene, const Census& census) {
               "stiffness [N/m] and damping [N s/m] must be finite");
       require(std::isfinite(force.rest) && force.rest >= 0, scene, force.at, who,
               "rest must be finite and >= 0 [m]");
+    } else if (force.kind == "bushing") {
+      census.require_body(force.parent, true, force.at, who, "parent");
+      census.require_body(force.child, false, force.at, who, "child");
+      require(force.parent != force.child, scene, force.at, who,
+              "parent and child must be two bodies");
+      require(force.origin_parent.allFinite() && force.origin_child.allFinite(), scene, force.at,
+              who, "origin must be finite [m]");
+      require(std::abs(force.rotation.norm() - 1) <= reading::norm_slack, scene, force.at, who,
+              "rotation must be a unit quaternion within 1e-6");
+      require(std::isfinite(force.stiffness) && std::isfinite(force.damping) &&
+                  std::isfinite(force.rotational_stiffness) &&
+                  std::isfinite(force.rotational_damping),
+              scene, force.at, who,
+              "stiffness [N/m], damping [N s/m], rotational_stiffness [N m/rad] and "
+              "rotational_damping [N m s/rad] must be finite");
+    } else if (force.kind == "coordinate-spring") {
+      reading::check_coordinates(scene, census, force, who);
+      require(std::isfinite(force.stiffness) && std::isfinite(force.damping) &&
+                  std::isfinite(force.rest),
+              scene, force.at, who, "stiffness, damping and rest must be finite");
     } else if (force.kind == "torque") {
       census.require_one_coordinate(force.joint, force.at, who);
       require(std::isfinite(force.value), scene, force.at, who, "value must be finite [N m or N]");
@@ -182,7 +212,8 @@ void check_forces(const Scene& scene, const Census& census) {
       require(force.point.allFinite() && force.force.allFinite() && force.torque.allFinite(), scene,
               force.at, who, "point, force and torque must be finite");
     } else {
-      require(false, scene, force.at, who, "kind must be spring-damper, torque or wrench");
+      require(false, scene, force.at, who,
+              "kind must be spring-damper, bushing, coordinate-spring, torque or wrench");
     }
   }
 }

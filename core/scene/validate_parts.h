@@ -50,7 +50,14 @@ class Census {
 const DriveSpec* drive_of(const Scene& scene, std::string DriveSpec::*owner,
                           const std::string& name, int coordinate);
 
-/// Joints known, none of their coordinates a part of a quaternion, none twice, not all driven.
+/// Joints known, as many coordinates and ratios, none a part of a quaternion, none twice. Returns
+/// whether all are driven.
+bool check_coordinates(const Scene& scene, const Census& census, const LoopSpec& coupler,
+                       const std::string& who);
+bool check_coordinates(const Scene& scene, const Census& census, const ForceSpec& spring,
+                       const std::string& who);
+
+/// check_coordinates(); finite numbers, not all driven.
 void check_coupler(const Scene& scene, const Census& census, const LoopSpec& loop);
 
 /// Joints, loops and coordinates known, none driven twice, laws without fault, spherical and free

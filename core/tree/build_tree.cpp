@@ -189,6 +189,8 @@ class TreeBuilder {
       b.stiffness = joint.stiffness;
       b.rest = joint.rest;
       b.damping = joint.damping;
+      b.friction = joint.friction;
+      b.friction_rate = joint.friction_rate;
       if (b.nv == 1 && !joint.rotor_inertia.empty())
         b.rotor = joint.rotor_inertia[static_cast<std::size_t>(part.coordinate)];
 
@@ -213,13 +215,13 @@ class TreeBuilder {
 
   /// A driven joint moves as it is told; a force along it would change nothing but the drive.
   void refuse_forces(const JointSpec& joint) const {
-    bool forced = joint.stiffness != 0 || joint.damping != 0;
+    bool forced = joint.stiffness != 0 || joint.damping != 0 || joint.friction != 0;
     for (const auto& force : scene_.forces)
       forced |= force.kind == "torque" && force.joint == joint.name;
     if (forced)
-      throw SceneError(
-          scene_.where(joint.at) + "joint '" + joint.name +
-          "' is driven, so a spring, damper or torque on it has no effect; expected none");
+      throw SceneError(scene_.where(joint.at) + "joint '" + joint.name +
+                       "' is driven, so a spring, damper, friction or torque on it has no effect; "
+                       "expected none");
   }
 
   const Scene& scene_;

@@ -44,6 +44,8 @@ struct Tree {
     double stiffness = 0;          ///< of a joint of one coordinate, as in JointSpec
     double rest = 0;               ///< likewise
     double damping = 0;            ///< likewise
+    double friction = 0;           ///< likewise
+    double friction_rate = 0.1;    ///< likewise
     double torque = 0;             ///< constant generalised force on such a joint [N m or N]
     double rotor = 0;              ///< inertia on the rate of such a joint [kg m² or kg]
     std::shared_ptr<const JointFormula> law;  ///< of a user joint

@@ -76,6 +76,8 @@ class RotorFold {
       const ForceSpec& force = s.forces[i];
       if (force.kind == "torque")
         torques_[joints_.at(force.joint)].push_back(i);
+      else if (force.kind == "coordinate-spring")
+        sprung_.insert(force.joints.begin(), force.joints.end());
       else
         tied_.insert({force.parent, force.child, force.body});
     }
@@ -125,11 +127,13 @@ class RotorFold {
   std::optional<Gear> gear_of(std::size_t i) {
     const JointSpec& j = joint(i);
     if (j.kind != JointKind::revolute || couplers_[i].size() != 1 || tied_.contains(j.child) ||
-        driven_.contains(j.name) || !balanced(j, body(j.child)))
+        driven_.contains(j.name) || j.friction != 0 || sprung_.contains(j.name) ||
+        !balanced(j, body(j.child)))
       return std::nullopt;
     const std::size_t coupler = couplers_[i].front();
     const LoopSpec& loop = result_.scene.loops[coupler];
-    if (loop.joints.size() != 2 || driven_.contains(loop.name)) return std::nullopt;
+    if (loop.joints.size() != 2 || has_powers(loop) || driven_.contains(loop.name))
+      return std::nullopt;
     const std::size_t own = loop.joints[0] == j.name ? 0 : 1, other = 1 - own;
     if (loop.joints[other] == j.name) return std::nullopt;
     Gear gear;
@@ -278,6 +282,7 @@ class RotorFold {
   std::vector<std::vector<std::size_t>> couplers_, torques_;  // of each joint
   std::set<std::string> tied_;    // bodies with children, loops, springs or wrenches
   std::set<std::string> driven_;  // joints and loops
+  std::set<std::string> sprung_;  // joints that coordinate springs look at
   std::set<std::string> gone_;    // joints and loops
   std::set<std::string> gone_bodies_, leaders_;
 };

@@ -123,20 +123,25 @@ void merge_bodies(const Scene& given, const Places& places, Scene& scene) {
 }
 
 void fold_forces(const Places& places, Scene& scene) {
+  const auto has_ends = [](const ForceSpec& f) {
+    return f.kind == "spring-damper" || f.kind == "bushing";
+  };
   std::erase_if(scene.forces, [&](const ForceSpec& f) {
-    if (f.kind == "spring-damper") return places.of(f.parent).carrier == places.of(f.child).carrier;
+    if (has_ends(f)) return places.of(f.parent).carrier == places.of(f.child).carrier;
     return f.kind == "wrench" && places.of(f.body).carrier == "ground";
   });
   for (ForceSpec& f : scene.forces)
-    if (f.kind == "spring-damper") {
+    if (has_ends(f)) {
       const Place &parent = places.of(f.parent), &child = places.of(f.child);
       f.origin_parent = parent.point(f.origin_parent);
       f.origin_child = child.point(f.origin_child);
+      f.rotation = (parent.turn * f.rotation * child.turn.conjugate()).normalized();
       f.parent = parent.carrier;
       f.child = child.carrier;
       if (f.child != "ground") continue;
       std::swap(f.parent, f.child);
       std::swap(f.origin_parent, f.origin_child);
+      f.rotation = f.rotation.conjugate();
     } else if (f.kind == "wrench") {
       const Place& place = places.of(f.body);
       f.body = place.carrier;

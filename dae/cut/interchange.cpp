@@ -59,12 +59,15 @@ int rows_of(JointKind kind, bool planar) {
 Sayings::Sayings(const Scene& scene, const std::vector<std::string>& keep)
     : kept(keep.begin(), keep.end()) {
   for (const JointSpec& joint : scene.joints)
-    if (joint.stiffness != 0 || joint.damping != 0 || has_rotor(joint))
+    if (joint.stiffness != 0 || joint.damping != 0 || joint.friction != 0 || has_rotor(joint))
       of_coordinates.insert(joint.name);
   for (const DriveSpec& drive : scene.drives)
     (drive.joint.empty() ? driven_loops.insert(drive.loop) : of_coordinates.insert(drive.joint));
   for (const ForceSpec& force : scene.forces)
-    if (force.kind == "torque") of_coordinates.insert(force.joint);
+    if (force.kind == "torque")
+      of_coordinates.insert(force.joint);
+    else if (force.kind == "coordinate-spring")
+      of_coordinates.insert(force.joints.begin(), force.joints.end());
   for (const LoopSpec& loop : scene.loops)
     of_coordinates.insert(loop.joints.begin(), loop.joints.end());
   of_coordinates.insert(scene.held.begin(), scene.held.end());
@@ -189,6 +192,12 @@ bool turn_round(JointSpec& joint, Scene& scene, const Sayings& said, const BodyM
       if (loop.joints[i] == joint.name) {
         loop.coordinates.resize(loop.joints.size());
         loop.coordinates[i] = 1 - loop.coordinates[i];
+      }
+  for (ForceSpec& force : scene.forces)
+    for (std::size_t i = 0; i < force.joints.size(); ++i)
+      if (force.joints[i] == joint.name) {
+        force.coordinates.resize(force.joints.size());
+        force.coordinates[i] = 1 - force.coordinates[i];
       }
   scene.remarks.push_back("joint '" + joint.name +
                           "' is counted from its other body: its two angles have changed places");

@@ -58,7 +58,7 @@ class BodyMatrix {
     for (int k = 0; k < bodies(); ++k) of_body(k, entry);
     for (std::size_t l = 0; l < loop_model_.loops.size(); ++l) {
       const auto& loop = loop_model_.loops[l];
-      for (const auto& c : loop.joints) entry(impulse(loop.row), rate(c.u), c.ratio);
+      for (const auto& c : loop.joints) entry(impulse(loop.row), rate(c.u), rows_.ratio(c));
       for (int i = 0; i < loop.rows && loop.joints.empty(); ++i) {
         typename Space::template Force<double> on_a{}, on_b{};
         rows_.unit_wrench(l, i, on_a, on_b);

@@ -200,7 +200,7 @@ class MaximalSolver final : public LoopSolver {
     if (l.a >= 0) Tree::add(on_a, f_[static_cast<std::size_t>(l.a)]);
     if (l.b >= 0) Tree::add(on_b, f_[static_cast<std::size_t>(l.b)]);
     for (const auto& coupled : l.joints)
-      tree_.add_torque(static_cast<std::size_t>(coupled.body), coupled.ratio, f_.data());
+      tree_.add_torque(static_cast<std::size_t>(coupled.body), rows_.ratio(coupled), f_.data());
     for (std::size_t i = column.bodies.size(); i-- > 0;)
       tree_.inward(column.bodies[i], f_.data(), column.h.data());
   }

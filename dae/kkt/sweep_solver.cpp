@@ -19,7 +19,8 @@ class SweepSolver final : public LoopSolver {
       : mechanism_(mechanism),
         e_(e),
         sweeps_(mechanism.looped_sweeps()),
-        carried_(mechanism.has_body_forces() && mechanism.plan().planar),
+        carried_(mechanism.has_body_forces() && mechanism.plan().planar &&
+                 !mechanism.has_coordinate_springs()),
         apart_(mechanism.has_body_forces() && !carried_),
         has_tau_(apart_ || mechanism.has_joint_forces()),
         zero_(static_cast<std::size_t>(mechanism.nv())),

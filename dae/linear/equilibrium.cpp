@@ -274,7 +274,15 @@ VectorXd force_scales(const Mechanism& mechanism, Evaluation<double>& e) {
   const double mass = whole_mass(mechanism), length = length_of(scene);
   double force = scene.gravity.norm() * mass, torque = 0;
   for (const ForceSpec& f : scene.forces) {
-    force += f.kind == "spring-damper" ? f.stiffness * (f.rest + length) : f.force.norm();
+    if (f.kind == "spring-damper") force += f.stiffness * (f.rest + length);
+    if (f.kind == "bushing") {
+      force += std::abs(f.stiffness) * length;
+      torque += std::abs(f.rotational_stiffness);
+    }
+    if (f.kind == "coordinate-spring")
+      for (const double ratio : f.ratios)
+        torque += std::abs(ratio * f.stiffness) * (std::abs(ratio) + std::abs(f.rest));
+    force += f.force.norm();
     torque += f.kind == "torque" ? std::abs(f.value) : f.torque.norm();
   }
   force += 2 * e.kinetic() / length;  // of running drives

@@ -36,8 +36,8 @@ bool meet_at_ground(const Tree& tree, int a, int b) {
 
 /// Σ rᵢ qᵢ = c. Driven coordinates go to the other side.
 template <class Space>
-void couple(const LoopSpec& spec, const Tree& tree, typename LoopModel<Space>::Loop& l,
-            typename LoopModel<Space>::Motion& motion) {
+void couple(const LoopSpec& spec, const Tree& tree, LoopModel<Space>& all,
+            typename LoopModel<Space>::Loop& l, typename LoopModel<Space>::Motion& motion) {
   l.given = spec.offset;
   for (std::size_t i = 0; i < spec.joints.size(); ++i) {
     const int coordinate = spec.coordinates.empty() ? 0 : spec.coordinates[i];
@@ -49,9 +49,13 @@ void couple(const LoopSpec& spec, const Tree& tree, typename LoopModel<Space>::L
         motion.numbers.emplace_back(-spec.ratios[i],
                                     tree.drives[static_cast<std::size_t>(b.drive)]);
       else
-        l.joints.push_back({k, b.q, b.u, spec.ratios[i]});
+        l.joints.push_back({k, b.q, b.u, spec.ratios[i], {}, -1});
     }
   }
+  if (!has_powers(spec)) return;
+  typename LoopModel<Space>::Coupled& last = l.joints.back();
+  std::copy(spec.powers.begin(), spec.powers.end(), last.powers.begin());
+  last.curve = all.curves++;
 }
 
 /// What drives prescribe of a loop whose points, axes and numbers are in place. `along` and `about`
@@ -116,7 +120,7 @@ LoopModel<Spatial> build_loops(const Scene& scene, const Tree& tree, const Model
     LoopModel<Spatial>::Motion motion;
     take_rows(choice, l);
     if (spec.kind == LoopKind::coupler) {
-      couple<Spatial>(spec, tree, l, motion);
+      couple(spec, tree, all, l, motion);
     } else {
       l.a = tree.body(spec.child);
       l.b = tree.body(spec.parent);
@@ -167,7 +171,7 @@ LoopModel<Planar> build_loops(const Scene& scene, const Tree& tree, const Model<
     LoopModel<Planar>::Motion motion;
     take_rows(choice, l);
     if (spec.kind == LoopKind::coupler) {
-      couple<Planar>(spec, tree, l, motion);
+      couple(spec, tree, all, l, motion);
       const auto none = [](const auto&...) { return Vec2<double>{}; };
       const auto no_axis = [](const auto&...) { return 0.0; };
       prescribe(spec, tree, model, own, choice, none, no_axis, std::move(motion), all, l);

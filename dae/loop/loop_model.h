@@ -6,7 +6,8 @@
 //   D_j    b_j · D                      point on a plane through x_B
 //   O_ij   a_i · b_j − γ                two axes at a fixed angle, mostly a right one
 //   L      (D · D − l²) / (2 l₀)        distance, in metres; l₀: l at the start
-//   Q      Σ rᵢ qᵢ − c                  coordinates of joints
+//   Q      Σ rᵢ qᵢ − c                  coordinates of joints; r₂ x² + r₃ x³ + r₄ x⁴ besides, x the
+//                                      last of them, of couplers that are not linear
 //
 //   point, spherical  D1 D2 D3          revolute about axis 3   D1 D2 D3, O31 O32
 //   weld              D1 D2 D3, O12 O23 O31      prismatic along axis 3   D1 D2, O12 O23 O31
@@ -45,6 +46,24 @@ struct LoopModel {
     int body = 0;  ///< whose joint it is
     int q = 0, u = 0;
     double ratio = 0;
+    std::array<double, 3> powers{};  ///< r₂, r₃, r₄
+    int curve = -1;                  ///< place among the coordinates with powers; −1: none
+
+    template <class S>
+    S value(const S& x) const {
+      if (curve < 0) return ratio * x;
+      return x * (ratio + x * (powers[0] + x * (powers[1] + powers[2] * x)));
+    }
+    /// Its first derivative,
+    template <class S>
+    S slope(const S& x) const {
+      return ratio + x * (2 * powers[0] + x * (3 * powers[1] + (4 * powers[2]) * x));
+    }
+    /// and its second.
+    template <class S>
+    S bend(const S& x) const {
+      return 2 * powers[0] + x * (6 * powers[1] + (12 * powers[2]) * x);
+    }
   };
   struct Loop {
     int a = -1, b = -1;                    ///< bodies, −1: ground, and both of a coupler
@@ -98,7 +117,8 @@ struct LoopModel {
 
   std::vector<Loop> loops;
   std::vector<Motion> motions;
-  int rows = 0;  ///< m, size of Φ
+  int rows = 0;    ///< m, size of Φ
+  int curves = 0;  ///< coordinates that couplers take powers of: Φ_q changes with q there
 };
 
 LoopModel<Spatial> build_loops(const Scene& scene, const Tree& tree, const Model<Spatial>& model);

@@ -10,7 +10,7 @@
 //   L     Φ̇ = (D·(u_A − u_B) − l l̇)/l₀               impulse on A: force D s/l₀ at x_A
 //         N on A: force (u_A − u_B) s/l₀ at x_A, couple u_A × D s/l₀
 //   Q     Φ̇ = Σ rᵢ uᵢ − ċ                            no impulse on bodies: pᵢ += rᵢ s
-//         N: none
+//         N: none; where rᵢ depends on qᵢ (LoopModel::Coupled): ṗᵢ += ṙᵢ s
 //
 // N is the inertial rate of the impulse at fixed σ.
 //
@@ -48,6 +48,7 @@ class LoopRows {
       : model_(&model),
         w_(w),
         at_(model.loops.size()),
+        curves_(static_cast<std::size_t>(model.curves)),
         driven_(model.motions.size()),
         lost_(w.body.size()) {}
 
@@ -61,7 +62,10 @@ class LoopRows {
       auto& s = at_[i];
       if (l.is_coupler()) {
         s.position = -S(given(l));
-        for (const auto& c : l.joints) s.position += c.ratio * q[c.q];
+        for (const auto& c : l.joints) {
+          s.position += c.value(q[c.q]);
+          if (c.curve >= 0) curve(c) = {c.slope(q[c.q]), c.bend(q[c.q]), S(0.0)};
+        }
         continue;
       }
       const Vector arm_a = to_ground(w_, l.a, l.at_a);
@@ -88,8 +92,13 @@ class LoopRows {
       auto& s = at_[i];
       if (l.is_coupler()) {
         s.rate = -S(given_rate(l));
-        for (const auto& c : l.joints)
-          if (u) s.rate += c.ratio * u[c.u];
+        s.bending = S(0.0);
+        for (const auto& c : l.joints) {
+          if (u) s.rate += ratio(c) * u[c.u];
+          if (c.curve < 0) continue;
+          curve(c).turning = u ? curve(c).bend * u[c.u] : S(0.0);
+          if (u) s.bending += curve(c).turning * u[c.u];
+        }
         continue;
       }
       s.u_a = point_velocity(w_, l.a, s.x_a);
@@ -111,8 +120,9 @@ class LoopRows {
       if (!l.is_coupler()) continue;
       S& second = at_[i].second;
       second = l.motion < 0 ? S(0.0) : -S(motion(l).given_second);
+      second += at_[i].bending;
       for (const auto& c : l.joints)
-        if (udot) second += c.ratio * udot[c.u];
+        if (udot) second += ratio(c) * udot[c.u];
     }
   }
 
@@ -199,7 +209,20 @@ class LoopRows {
   /// Adds the impulses of couplers, times `factor`, to the momenta or forces of joints (nv).
   void add_couplings(const S* sigma, double factor, S* on_joints) const {
     for (const auto& l : model_->loops)
-      for (const auto& c : l.joints) on_joints[c.u] += (factor * c.ratio) * sigma[l.row];
+      for (const auto& c : l.joints) on_joints[c.u] += (factor * ratio(c)) * sigma[l.row];
+  }
+
+  /// Adds ṙ σ of couplers whose ratios change; needs move().
+  void add_coupling_rates(const S* sigma, S* on_joints) const {
+    if (curves_.empty()) return;
+    for (const auto& l : model_->loops)
+      for (const auto& c : l.joints)
+        if (c.curve >= 0) on_joints[c.u] += curve(c).turning * sigma[l.row];
+  }
+
+  /// ∂Φ/∂q of a coupler: what its joint is multiplied by at the last place().
+  S ratio(const typename LoopModel<Space>::Coupled& c) const {
+    return c.curve < 0 ? S(c.ratio) : curve(c).slope;
   }
 
   /// Unit wrench of a row on its bodies, none of couplers, in the axes of the sweeps: the start of
@@ -234,7 +257,18 @@ class LoopRows {
     Angular w_a{}, w_b{};
     std::array<Vector, 3> a, b;
     S position{}, rate{}, second{};  ///< of a coupler
+    S bending{};  ///< of a coupler: what of Φ̈ has no u̇ in it, drives left out
   };
+  /// Of a coordinate with powers: r, dr/dq and ṙ.
+  struct Curve {
+    S slope{}, bend{}, turning{};
+  };
+  Curve& curve(const typename LoopModel<Space>::Coupled& c) {
+    return curves_[static_cast<std::size_t>(c.curve)];
+  }
+  const Curve& curve(const typename LoopModel<Space>::Coupled& c) const {
+    return curves_[static_cast<std::size_t>(c.curve)];
+  }
   using Loop = typename LoopModel<Space>::Loop;
 
   /// Derivatives are right to their own size.
@@ -351,6 +385,7 @@ class LoopRows {
   const LoopModel<Space>* model_;
   Workspace<Space, S>& w_;
   std::vector<At> at_;
+  std::vector<Curve> curves_;
   std::vector<Driven> driven_;  ///< at the time of place()
   LostPlaces<Space> lost_;
 };

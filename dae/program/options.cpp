@@ -49,8 +49,13 @@ void add_scene_file(CLI::App& verb, Options& o, bool required) {
   verb.add_option("--loops", o.reading.loops, "Of a URDF: its loops (default: the .yaml beside it)")
       ->type_name("FILE");
   verb.add_flag("--free-root", o.reading.free_root, "Of a URDF: the root link floats");
-  verb.add_option("--set", o.set, "A number in place of the scene's: PLACE=NUMBER; repeatable")
-      ->type_name("SETTING");
+  verb.add_option("--set", o.set, "PLACE=NUMBER in place of the scene's; repeatable")
+      ->type_name("SETTING")
+      ->allow_extra_args(false);
+  verb.add_option("--control", o.reading.controls,
+                  "Of an MJCF: its actuators act, at this control (NAME=VALUE; VALUE: all)")
+      ->type_name("CONTROL")
+      ->allow_extra_args(false);
   verb.add_option("--at", o.at, "Start values: JSON {\"q\": {..}, \"v\": {..}}, or its file")
       ->type_name("STATE");
 }

@@ -15,6 +15,7 @@
 #include <stdexcept>
 
 #include "kept_run.h"
+#include "passed_limits.h"
 
 namespace momenta::program {
 namespace {
@@ -154,7 +155,11 @@ int run(const Options& o) {
   RunFiles files(o, *mechanism, s);
   // What the page draws is a part of it; memory does not grow with the trajectory.
   if (o.data == "hdf5") request.keep_every = 1 + s.samples / most_drawn;
-  request.on_row = [&](const std::vector<double>& row) { return files.write(row); };
+  PassedLimits limits(*mechanism);
+  request.on_row = [&](const std::vector<double>& row) {
+    limits.look(row[0], row.data() + 1);
+    return files.write(row);
+  };
   request.from = files.from();
   if (!o.out.empty()) request.between_steps = [&](const auto& make) { files.note(make); };
   ProgressLine line(o.quiet);
@@ -199,6 +204,8 @@ int run(const Options& o) {
       std::printf("\n%s\n", stiff.c_str());
     if (!a.branch.empty()) std::printf("Started from %s\n", a.branch.c_str());
   }
+  for (const std::string& sentence : o.quiet ? std::vector<std::string>{} : limits.sentences())
+    std::fprintf(stderr, "momenta: %s\n", sentence.c_str());
   if (result.status != "done")
     std::fprintf(stderr, "momenta: the run stopped: %s\n", result.reason.c_str());
   return written && result.status == "done" ? done : run_failed;

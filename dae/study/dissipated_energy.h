@@ -52,9 +52,10 @@ class DissipatedEnergy {
 
   static bool loses_energy(const Scene& scene) {
     for (const auto& joint : scene.joints)
-      if (joint.damping != 0) return true;
+      if (joint.damping != 0 || joint.friction != 0) return true;
     for (const auto& f : scene.forces)
-      if ((f.kind == "spring-damper" && f.damping != 0) ||
+      if (((f.kind == "spring-damper" || f.kind == "coordinate-spring") && f.damping != 0) ||
+          (f.kind == "bushing" && (f.damping != 0 || f.rotational_damping != 0)) ||
           (f.kind == "wrench" && (f.in_body_axes || f.torque.norm() > 0)))
         return true;
     return false;

@@ -88,13 +88,19 @@ double total_mass(const Scene& scene) {
 
 void stiffen(Scene& scene, double factor) {
   for (JointSpec& j : scene.joints) j.stiffness *= factor;
-  for (ForceSpec& f : scene.forces) f.stiffness *= factor;
+  for (ForceSpec& f : scene.forces) {
+    f.stiffness *= factor;
+    f.rotational_stiffness *= factor;
+  }
 }
 
 void damp(Scene& scene, double factor) {
   bool any = false;
   for (JointSpec& j : scene.joints) any = (j.damping *= factor) > 0 || any;
-  for (ForceSpec& f : scene.forces) any = (f.damping *= factor) > 0 || any;
+  for (ForceSpec& f : scene.forces) {
+    any = (f.damping *= factor) > 0 || any;
+    any = (f.rotational_damping *= factor) > 0 || any;
+  }
   if (any) return;
   const double length = length_of(scene), mass = total_mass(scene);  // over one second
   for (JointSpec& j : scene.joints)
@@ -125,7 +131,11 @@ Scene in_units(Scene scene, const Units& units) {
       j.velocity[i] *= is_length(j.kind, static_cast<int>(i)) ? speed : 1 / tau;
     j.stiffness *= slides ? force / s : torque;
     j.damping *= slides ? force / speed : torque * tau;
+    j.friction *= slides ? force : torque;
+    j.friction_rate *= slides ? speed : 1 / tau;
     if (slides) j.rest *= s;
+    if (slides && j.limits)
+      for (double& limit : *j.limits) limit *= s;
     for (std::size_t i = 0; i < j.rotor_inertia.size(); ++i)
       j.rotor_inertia[i] *= is_length(j.kind, static_cast<int>(i)) ? mu : mu * s * s;
   }
@@ -137,15 +147,29 @@ Scene in_units(Scene scene, const Units& units) {
       if (const JointSpec* j = joint_named(scene, l.joints[i]);
           j && is_length(j->kind, i < l.coordinates.size() ? l.coordinates[i] : 0))
         l.ratios[i] /= s;
+    // the last joint's coordinate x takes the unit, and Σ powers x^k keeps that of the sum
+    if (!l.powers.empty())
+      if (const JointSpec* j = joint_named(scene, l.joints.back());
+          j && is_length(j->kind, l.coordinates.empty() ? 0 : l.coordinates.back())) {
+        double unit = s;
+        for (double& power : l.powers) power /= unit *= s;
+      }
   }
   for (DriveSpec& d : scene.drives) stretch(d, drives_a_length(scene, d) ? s : 1, tau);
   for (ForceSpec& f : scene.forces) {
     f.origin_parent *= s;
     f.origin_child *= s;
     f.point *= s;
-    f.rest *= s;
-    f.stiffness *= force / s;
-    f.damping *= force / speed;
+    const bool of_sum = f.kind == "coordinate-spring";  // its ratios take the unit, l is an angle
+    for (std::size_t i = 0; i < f.joints.size(); ++i)
+      if (const JointSpec* of = joint_named(scene, f.joints[i]);
+          of && is_length(of->kind, i < f.coordinates.size() ? f.coordinates[i] : 0))
+        f.ratios[i] /= s;
+    if (!of_sum) f.rest *= s;
+    f.stiffness *= of_sum ? torque : force / s;
+    f.damping *= of_sum ? torque * tau : force / speed;
+    f.rotational_stiffness *= torque;
+    f.rotational_damping *= torque * tau;
     f.force *= force;
     f.torque *= torque;
     const JointSpec* j = joint_named(scene, f.joint);
@@ -170,7 +194,10 @@ Scene turned(Scene scene, const Eigen::Quaterniond& rotation) {
   for (MarkerSpec& m : scene.markers)
     if (m.body == "ground") m.point = rotation * m.point;
   for (ForceSpec& f : scene.forces) {
-    if (f.parent == "ground") f.origin_parent = rotation * f.origin_parent;
+    if (f.parent == "ground") {
+      f.origin_parent = rotation * f.origin_parent;
+      f.rotation = rotation * f.rotation;
+    }
     if (f.in_body_axes) continue;
     f.force = rotation * f.force;
     f.torque = rotation * f.torque;
@@ -201,7 +228,8 @@ std::string lacks(const Scene& scene, Extreme extreme) {
     case Extreme::stiffness: {
       bool any = false;
       for (const JointSpec& j : scene.joints) any = any || j.stiffness > 0;
-      for (const ForceSpec& f : scene.forces) any = any || f.stiffness > 0;
+      for (const ForceSpec& f : scene.forces)
+        any = any || f.stiffness > 0 || f.rotational_stiffness > 0;
       return any ? "" : "no spring in it";
     }
     case Extreme::damping:

@@ -161,6 +161,7 @@ JointSpec* joint_named(Scene& scene, const std::string& name) {
 /// rotors turn with their joints.
 void follow_coupler(Scene& scene, const LoopSpec& coupler, std::set<std::string>& given,
                     JointValues values, double sum) {
+  if (has_powers(coupler)) return;
   JointSpec* left = nullptr;
   double ratio = 0;
   for (std::size_t i = 0; i < coupler.joints.size(); ++i) {

@@ -63,6 +63,9 @@ inline std::string difference(const Scene& a, const Scene& b) {
     number(x.stiffness, y.stiffness, what + " stiffness");
     number(x.rest, y.rest, what + " rest");
     number(x.damping, y.damping, what + " damping");
+    number(x.friction, y.friction, what + " friction");
+    number(x.friction_rate, y.friction_rate, what + " friction_rate");
+    note(x.limits == y.limits, what + " limits");
     numbers(x.rotor_inertia, y.rotor_inertia, what + " rotor_inertia");
   });
   each(a.loops, b.loops, "loop", [&](const LoopSpec& x, const LoopSpec& y, const auto& what) {
@@ -70,6 +73,7 @@ inline std::string difference(const Scene& a, const Scene& b) {
     number(x.length, y.length, what + " length");
     number(x.offset, y.offset, what + " offset");
     numbers(x.ratios, y.ratios, what + " ratios");
+    numbers(x.powers, y.powers, what + " powers");
     note(x.joints == y.joints && x.coordinates == y.coordinates, what + " joints");
   });
   each(a.drives, b.drives, "drive", [&](const DriveSpec& x, const DriveSpec& y, const auto& what) {
@@ -88,8 +92,12 @@ inline std::string difference(const Scene& a, const Scene& b) {
     ends(x, y, what);
     note(x.joint == y.joint && x.body == y.body && x.in_body_axes == y.in_body_axes, what);
     for (const auto member :
-         {&ForceSpec::stiffness, &ForceSpec::damping, &ForceSpec::rest, &ForceSpec::value})
+         {&ForceSpec::stiffness, &ForceSpec::damping, &ForceSpec::rest, &ForceSpec::value,
+          &ForceSpec::rotational_stiffness, &ForceSpec::rotational_damping})
       number(x.*member, y.*member, what);
+    note(x.joints == y.joints && x.coordinates == y.coordinates, what + " joints");
+    numbers(x.ratios, y.ratios, what + " ratios");
+    numbers(x.rotation.coeffs(), y.rotation.coeffs(), what + " rotation");
     numbers(x.point, y.point, what + " point");
     numbers(x.force, y.force, what + " force");
     numbers(x.torque, y.torque, what + " torque");

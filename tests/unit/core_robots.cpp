@@ -108,7 +108,8 @@ TEST_F(Robots, UrdfMimicRootAndRemarks) {
   EXPECT_EQ(scene.loops[0].joints, (std::vector<std::string>{"k", "j"}));
   EXPECT_EQ(scene.loops[0].ratios, (std::vector<double>{1, 2.5}));  // q_k + 2.5 q_j = 0.1
   EXPECT_EQ(scene.loops[0].offset, 0.1);
-  EXPECT_EQ(scene.remarks, (std::vector<std::string>{"left out: joint limits (1)"}));
+  EXPECT_EQ(scene.remarks,
+            (std::vector<std::string>{"left out: joint limits without a range (1)"}));
 }
 
 // The frame of each end, R1 of the predecessor and R2 of the successor, has the axis a in it.
@@ -278,11 +279,10 @@ TEST_F(Robots, MjcfOptionsEqualityAndRemarks) {
   EXPECT_EQ(scene.loops[0].ratios, (std::vector<double>{1, 2}));
   EXPECT_EQ(scene.loops[0].offset, 0.1);
   EXPECT_EQ(scene.loops[1].joints, std::vector<std::string>{"k"});
-  EXPECT_EQ(
-      scene.remarks,
-      (std::vector<std::string>{
-          "left out: joint limits (1)", "left out: geoms as shapes to see and to touch (1)",
-          "left out: equality constraints that are not active (1)", "left out: actuators (2)"}));
+  EXPECT_EQ(scene.remarks,
+            (std::vector<std::string>{"left out: geoms as shapes to see and to touch (1)",
+                                      "left out: actuators, which --control lets act (2)",
+                                      "left out: equality constraints that are not active (1)"}));
 }
 
 }  // namespace

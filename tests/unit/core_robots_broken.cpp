@@ -201,7 +201,7 @@ const Case wrong_mjcf[] = {
     {"tendon_equality",
      "<mujoco><worldbody><body name='b'/></worldbody><equality>\n<tendon "
      "tendon1='t'/></equality></mujoco>",
-     ":2: equality: <tendon> is not read, expected connect, weld or joint"},
+     ":2: equality: <tendon> tendon1 is 't', expected the name of a tendon"},
     {"site",
      "<mujoco><worldbody><body name='b'/></worldbody><equality>\n<connect site1='s' "
      "site2='t'/></equality></mujoco>",
@@ -212,8 +212,8 @@ const Case wrong_mjcf[] = {
      ":2: equality: <connect> body1 is 'baz', expected the name of a <body>; did you mean 'bar'?"},
     {"polynomial",
      "<mujoco><worldbody><body name='b'><joint name='j'/><joint name='k'/></body></worldbody>"
-     "<equality>\n<joint joint1='j' joint2='k' polycoef='0 1 2 0 0'/></equality></mujoco>",
-     ":2: equality: <joint> polycoef has powers above the first, expected a linear coupling"},
+     "<equality>\n<joint joint1='j' joint2='k' polycoef='0 1 2 0 0 1'/></equality></mujoco>",
+     ":2: equality: <joint> polycoef has 6 numbers, expected 5"},
     {"flag", "<mujoco><option>\n<flag equality='disable'/></option></mujoco>",
      ":2: <flag> equality is not enable"},
 };

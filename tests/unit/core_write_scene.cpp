@@ -142,6 +142,9 @@ name = "G"
 kind = "prismatic"
 parent = "any"
 child = "planar"
+limits = [-0.1, 0.3]
+friction = 0.1
+friction_rate = 0.3
 [[joint]]
 name = "H"
 kind = "weld"
@@ -160,6 +163,7 @@ kind = "coupler"
 joints = ["A", "D"]
 coordinates = [0, 2]
 ratios = [1, -0.1]
+powers = [0.1, 0, -0.3]
 offset = 0.3
 [[loop]]
 name = "N"
@@ -172,7 +176,8 @@ kind = "planar"
 child = "point"
 direction = "y"
 [[drive]]
-joint = "G"
+joint = "F"
+coordinate = 0
 kind = "harmonic"
 amplitude = 0.1
 frequency = 3
@@ -206,6 +211,24 @@ origin = { parent = [1, 0, 0], child = [0, 0.1, 0] }
 stiffness = 0.1
 damping = 0.2
 rest = 0.3
+[[force]]
+kind = "bushing"
+parent = "rod"
+child = "point"
+origin = { parent = [1, 0, 0], child = [0, 0.1, 0] }
+rotation = { quaternion = [0.6, 0, 0.8, 0] }
+stiffness = 0.1
+damping = 0.2
+rotational_stiffness = 0.3
+rotational_damping = 0.4
+[[force]]
+kind = "coordinate-spring"
+joints = ["A", "D"]
+coordinates = [0, 2]
+ratios = [1, -0.1]
+stiffness = 0.1
+damping = 0.2
+rest = -0.3
 [[force]]
 kind = "torque"
 joint = "A"

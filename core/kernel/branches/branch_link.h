@@ -21,10 +21,10 @@ struct BranchLink {
   S ca, sa, a, cc, cs, ss, cs2, ss2, d, m, moment[3], c[3], J[6];
   S theta0;
   Edge edge;
-  S stiffness, rest, damping, torque, rotor;
+  S stiffness, rest, damping, torque, friction, friction_rate, rotor;
   int slot, parent_slot;  ///< within the branch
   Turn turn;
-  bool root, first, leaf, opens, screwed, has_force, has_rotor;
+  bool root, first, leaf, opens, screwed, has_force, has_friction, has_rotor;
 
   /// The numbers of one body into one lane.
   void take(const Link& l, const Model<Spatial>::Body& b, double angle, int lane) {
@@ -42,6 +42,7 @@ struct BranchLink {
     set(edge.cos_beta, e.cos_beta), set(edge.sin_beta, e.sin_beta);
     set(stiffness, b.stiffness), set(rest, b.rest);
     set(damping, b.damping), set(torque, b.torque);
+    set(friction, b.friction), set(friction_rate, b.friction_rate);
     set(rotor, l.rotor);
   }
 };

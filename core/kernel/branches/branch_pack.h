@@ -38,6 +38,7 @@ class BranchPack {
       l.opens = place.opens;
       l.screwed = place.screwed;
       l.has_force = place.has_force;
+      l.has_friction = place.has_friction;
       l.has_rotor = place.has_rotor;
       l.edge.about_z = l.screwed;
       l.edge.about_x = true;

@@ -166,6 +166,7 @@ BranchGroup group_of(const LinkTree& tree, const Shapes& s, const int* roots, in
       place.turn = common_turn(place.turn, l.turn);
       place.screwed |= l.screwed;
       place.has_force |= l.has_force;
+      place.has_friction |= tree.model->bodies[static_cast<std::size_t>(link)].has_friction;
       place.has_rotor |= l.has_rotor;
       g.links.push_back(link);
       g.q.push_back(l.q);

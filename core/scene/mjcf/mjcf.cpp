@@ -56,7 +56,6 @@ void read_option(const Node& node, MjcfModel& model) {
 
 void count_left_out(const Node& section, Remarks& remarks) {
   static const std::map<std::string, std::string> kinds{
-      {"actuator", "actuators"},          {"tendon", "tendons"},
       {"contact", "pairs for contact"},   {"sensor", "sensors"},
       {"keyframe", "keyframes"},          {"asset", "meshes, textures and materials"},
       {"visual", "settings of pictures"}, {"statistic", "settings of pictures"},
@@ -72,7 +71,8 @@ void count_left_out(const Node& section, Remarks& remarks) {
 
 }  // namespace
 
-Scene read_mjcf(const Element& element, const std::string& file) {
+Scene read_mjcf(const Element& element, const std::string& file,
+                const std::vector<std::string>& controls) {
   const Node root(element, "", file);
   MjcfModel model;
   model.scene.file = file;
@@ -85,10 +85,13 @@ Scene read_mjcf(const Element& element, const std::string& file) {
   for (const Node& node : root.children("option")) read_option(node, model);
   for (const Node& node : root.children("default")) model.defaults.take(node);
   for (const Node& node : root.children("worldbody")) read_worldbody(node, model);
+  settle_spring_dampers(model);
+  for (const Node& node : root.children("tendon")) read_tendons(node, model);
+  read_actuators(root.children("actuator"), controls, model);
   for (const Node& node : root.children("equality")) read_equality(node, model);
   for (const Node& node : root.children()) {
-    constexpr std::array<std::string_view, 5> read{"compiler", "option", "default", "worldbody",
-                                                   "equality"};
+    constexpr std::array<std::string_view, 7> read{"compiler", "option",   "default", "worldbody",
+                                                   "tendon",   "actuator", "equality"};
     if (std::find(read.begin(), read.end(), node.name()) == read.end())
       count_left_out(node, model.remarks);
   }

@@ -1,15 +1,18 @@
 #pragma once
-// MJCF, as far as it speaks of bodies, joints, inertias, springs and equality constraints. What is
+// MJCF, as far as it speaks of bodies, joints, inertias, springs, tendons, actuators and equality
+// constraints. What is
 // read, what is left out and what is refused: docs/reference/formats.md.
 
 #include <momenta/core/scene/scene.h>
 #include <momenta/core/scene/xml/xml_node.h>
 
 #include <string>
+#include <vector>
 
 namespace momenta::reading {
 
-/// The scene of a <mujoco>. @throws SceneError
-Scene read_mjcf(const Element& mujoco, const std::string& file);
+/// The scene of a <mujoco>; `controls` as ReadOptions::controls. @throws SceneError
+Scene read_mjcf(const Element& mujoco, const std::string& file,
+                const std::vector<std::string>& controls = {});
 
 }  // namespace momenta::reading

@@ -153,7 +153,7 @@ class BodyReader {
         joint.origin_parent = first ? frame * anchor : anchor;
         if (first) joint.rotation = frame.turn;
       }
-      read_mechanics(node, joint);
+      read_mechanics(node, joint, model_);
       if (!last) {
         BodySpec between;
         between.name = joint.child;
@@ -163,35 +163,6 @@ class BodyReader {
       parent = joint.child;
       model_.scene.joints.push_back(joint);
     }
-  }
-
-  /// Axis, spring, damper, armature. Torque −k (q − springref) − c q̇, where the scene's q is the
-  /// file's less `ref`.
-  void read_mechanics(const Node& node, JointSpec& joint) {
-    const bool one = has_one_coordinate(joint.kind);
-    if (node.name() == "freejoint") return;
-    if (has_axis(joint.kind)) joint.axis = node.direction("axis", Vector3d::UnitZ());
-    if (node.has("springdamper")) node.fail("springdamper", "is not read, expected stiffness");
-    for (const char* key : {"range", "actuatorfrcrange"})
-      if (node.has(key)) model_.remarks.left_out("joint limits");
-    if (node.number("frictionloss", 0) != 0) model_.remarks.left_out("friction of joints");
-    const double stiffness = node.number("stiffness", 0), damping = node.number("damping", 0),
-                 armature = node.number("armature", 0);
-    if (!one) {
-      if (stiffness != 0) model_.remarks.left_out("springs of ball and free joints");
-      if (damping != 0) model_.remarks.left_out("dampers of ball and free joints");
-      if (armature != 0)
-        node.fail("armature",
-                  "is " + digits(armature) +
-                      " on a ball or free joint, expected it on hinges and slides alone");
-      return;
-    }
-    joint.stiffness = stiffness;
-    joint.damping = damping;
-    const double unit = joint.kind == JointKind::revolute ? model_.angles.unit : 1;
-    if (stiffness != 0) joint.rest = unit * (node.number("springref", 0) - node.number("ref", 0));
-    if (armature < 0) node.fail("armature", "is negative, expected a number >= 0");
-    if (armature > 0) joint.rotor_inertia = {armature};
   }
 
   MjcfModel& model_;

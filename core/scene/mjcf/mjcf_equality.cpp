@@ -1,9 +1,10 @@
-// <equality>: connect is a point, weld a weld, joint a coupler.
+// <equality>: connect is a point, weld a weld, joint and tendon a coupler.
 
 #include <momenta/core/scene/mjcf/mjcf_model.h>
 #include <momenta/core/scene/near_name.h>
 
 #include <algorithm>
+#include <array>
 
 namespace momenta::reading {
 namespace {
@@ -27,7 +28,10 @@ class EqualityReader {
     loop_.at = node_.at();
     loop_.name = model_.edges.free(node_.text("name", node_.name() + " equality"));
     if (node_.name() == "joint")
-      couple();
+      couple_joints();
+    else if (node_.name() == "tendon")
+      couple(tendon("tendon1"),
+             node_.has("tendon2") ? tendon("tendon2") : std::map<std::string, double>{}, "tendon");
     else
       tie();
     model_.scene.loops.push_back(loop_);
@@ -94,37 +98,69 @@ class EqualityReader {
     if (turns) loop_.rotation = (e.at_one.turn * e.at_two.turn.conjugate()).normalized();
   }
 
-  std::string joint(const char* key) const {
-    const std::string name = node_.text(key);
-    for (const JointSpec& j : model_.scene.joints)
-      if (j.name == name) {
-        if (has_one_coordinate(j.kind)) return name;
-        node_.fail(key, "is " + in_quotes(name) + ", expected a hinge or a slide");
-      }
-    node_.fail(key, "is " + in_quotes(name) + ", expected the name of a joint");
+  /// c0 … c4 of `polycoef`.
+  std::array<double, 5> polynomial() const {
+    std::array<double, 5> c{0, 1, 0, 0, 0};
+    if (!node_.has("polycoef")) return c;
+    const std::vector<double> given = node_.numbers("polycoef");
+    if (given.size() > c.size())
+      node_.fail("polycoef", "has " + std::to_string(given.size()) + " numbers, expected 5");
+    std::copy(given.begin(), given.end(), c.begin());
+    return c;
   }
 
-  /// q1 − ref1 = c0 + c1 (q2 − ref2); the scene's q are those differences.
-  void couple() {
+  /// Σ ratios₁ q − c0 − Σ c_k (Σ ratios₂ q)^k: the scene's q count from qpos0, as the file's
+  /// lengths and joints do here. `what` is joint or tendon.
+  void couple(std::map<std::string, double> one, const std::map<std::string, double>& two,
+              const char* what) {
+    const std::array<double, 5> c = polynomial();
     loop_.kind = LoopKind::coupler;
-    std::vector<double> c{0, 1, 0, 0, 0};
-    if (node_.has("polycoef")) {
-      const std::vector<double> given = node_.numbers("polycoef");
-      if (given.size() > c.size())
-        node_.fail("polycoef", "has " + std::to_string(given.size()) + " numbers, expected 5");
-      std::copy(given.begin(), given.end(), c.begin());
-    }
-    loop_.joints = {joint("joint1")};
-    loop_.ratios = {1};
     loop_.offset = c[0];
-    if (!node_.has("joint2")) return;
-    if (c[2] != 0 || c[3] != 0 || c[4] != 0)
-      node_.fail("polycoef", "has powers above the first, expected a linear coupling");
-    if (const std::string other = joint("joint2"); c[1] != 0) {
-      if (other == loop_.joints[0]) node_.fail("ties a joint to itself, expected two joints");
-      loop_.joints.push_back(other);
-      loop_.ratios.push_back(-c[1]);
+    const bool curved = !two.empty() && (c[2] != 0 || c[3] != 0 || c[4] != 0);
+    if (curved && two.size() > 1)
+      node_.fail("polycoef",
+                 "has powers above the first of a sum of joints, expected a linear coupling");
+    for (const auto& [joint, ratio] : two) {
+      if (curved && one.contains(joint))
+        node_.fail(std::string("ties a ") + what + " to itself, expected two of them");
+      if (c[1] != 0) one[joint] -= c[1] * ratio;
     }
+    std::erase_if(one, [](const auto& term) { return term.second == 0; });
+    const std::string last = curved ? two.begin()->first : "";
+    for (const auto& [joint, ratio] : one) {
+      if (joint == last) continue;
+      loop_.joints.push_back(joint);
+      loop_.ratios.push_back(ratio);
+    }
+    if (curved) {
+      const double r = two.begin()->second;
+      loop_.joints.push_back(last);
+      loop_.ratios.push_back(c[1] == 0 ? 0 : -c[1] * r);
+      loop_.powers = {-c[2] * r * r, -c[3] * r * r * r, -c[4] * r * r * r * r};
+      while (loop_.powers.back() == 0) loop_.powers.pop_back();
+    }
+    if (loop_.joints.empty())
+      node_.fail(std::string("ties a ") + what + " to itself, expected two of them");
+  }
+
+  void couple_joints() {
+    const std::string one = coordinate_of(node_, "joint1", model_);
+    std::map<std::string, double> two;
+    if (node_.has("joint2")) {
+      two[coordinate_of(node_, "joint2", model_)] = 1;
+      if (two.contains(one)) node_.fail("ties a joint to itself, expected two joints");
+    }
+    couple({{one, 1.0}}, two, "joint");
+  }
+
+  const std::map<std::string, double>& tendon(const char* key) const {
+    const std::string name = node_.text(key);
+    const auto found = model_.tendons.find(name);
+    if (found == model_.tendons.end())
+      node_.fail(key, "is " + in_quotes(name) + ", expected the name of a tendon");
+    if (found->second.ratios.empty())
+      node_.fail(key, "is " + in_quotes(name) + ", expected a fixed tendon");
+    return found->second.ratios;
   }
 
   const Node& node_;
@@ -136,8 +172,9 @@ class EqualityReader {
 
 void read_equality(const Node& equality, MjcfModel& model) {
   for (const Node& part : equality.children()) {
-    if (part.name() != "connect" && part.name() != "weld" && part.name() != "joint")
-      part.of("equality").fail("is not read, expected connect, weld or joint");
+    constexpr std::array<std::string_view, 4> kinds{"connect", "weld", "joint", "tendon"};
+    if (std::find(kinds.begin(), kinds.end(), part.name()) == kinds.end())
+      part.of("equality").fail("is not read, expected one of: " + listed(kinds));
     const Element full = model.defaults.with_defaults(part, "equality", MjcfDefaults::main_class);
     const std::string name = part.text("name", "");
     const Node node(full, name.empty() ? std::string("equality") : "equality " + in_quotes(name),

@@ -28,6 +28,23 @@ struct MjcfModel {
     MjcfFrame frame;  ///< in the body
   };
   std::map<std::string, Site> sites;
+  /// `ref` of hinges and slides [rad or m]: q of the file less that of the scene; none: 0.
+  std::map<std::string, double> refs;
+  /// `springref` less `ref`: q of the scene where tendons have their resting lengths; none: 0.
+  std::map<std::string, double> rests;
+  /// Of `springdamper`: until all inertias are known.
+  struct SpringDamper {
+    std::string joint;
+    double time_constant, damping_ratio;  ///< [s], [1], > 0
+  };
+  std::vector<SpringDamper> spring_dampers;
+  /// A fixed tendon: L of the scene is Σ ratio · q; empty of a spatial one.
+  struct Tendon {
+    std::map<std::string, double> ratios;  ///< by joint, none zero
+    double ref = 0;                        ///< L of the file less that of the scene
+    Location at;
+  };
+  std::map<std::string, Tendon> tendons;
 
   /// The name of a body in the scene.
   static std::string in_scene(const std::string& body) { return body == "world" ? "ground" : body; }
@@ -36,7 +53,25 @@ struct MjcfModel {
 /// The bodies of a <worldbody>, with joints, springs, dampers and sites.
 void read_worldbody(const Node& world, MjcfModel& model);
 
-/// <equality>: connect, weld and joint become loops.
+/// Axis, spring, damper, friction, armature and limits of a joint whose frames are known.
+void read_mechanics(const Node& node, JointSpec& joint, MjcfModel& model);
+/// Those of a ball or free joint, as a bushing.
+void add_spring_and_damper(const JointSpec& joint, double stiffness, double damping,
+                           MjcfModel& model);
+/// Stiffness and damping of the joints with `springdamper`. After all bodies.
+void settle_spring_dampers(MjcfModel& model);
+
+/// The name of a hinge or slide that an attribute names. @throws SceneError
+std::string coordinate_of(const Node& node, const char* key, const MjcfModel& model);
+
+/// <tendon>: springs. After all bodies.
+void read_tendons(const Node& tendons, MjcfModel& model);
+
+/// <actuator> sections at the controls that are given, as text; none: left out. After the tendons.
+void read_actuators(const std::vector<Node>& sections, const std::vector<std::string>& controls,
+                    MjcfModel& model);
+
+/// <equality>: connect, weld, joint and tendon become loops. After the tendons.
 void read_equality(const Node& equality, MjcfModel& model);
 
 }  // namespace momenta::reading

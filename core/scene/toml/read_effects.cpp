@@ -75,6 +75,26 @@ ForceSpec read_force(const Fields& table) {
     force.stiffness = table.number("stiffness", {"N/m"}, 0);
     force.damping = table.number("damping", {"N s/m"}, 0);
     force.rest = table.number("rest", {"m", Bound::not_negative}, 0);
+  } else if (force.kind == "bushing") {
+    table.allow({"name", "kind", "parent", "child", "origin", "rotation", "stiffness", "damping",
+                 "rotational_stiffness", "rotational_damping"});
+    force.parent = table.text("parent", force.parent);
+    force.child = table.text("child");
+    const Origins origins = read_origins(table);
+    force.origin_parent = origins.parent;
+    force.origin_child = origins.child;
+    force.rotation = read_rotation(table);
+    force.stiffness = table.number("stiffness", {"N/m"}, 0);
+    force.damping = table.number("damping", {"N s/m"}, 0);
+    force.rotational_stiffness = table.number("rotational_stiffness", {"N m/rad"}, 0);
+    force.rotational_damping = table.number("rotational_damping", {"N m s/rad"}, 0);
+  } else if (force.kind == "coordinate-spring") {
+    table.allow(
+        {"name", "kind", "joints", "coordinates", "ratios", "stiffness", "damping", "rest"});
+    read_sum(table, force.joints, force.coordinates, force.ratios);
+    force.stiffness = table.number("stiffness", {"N m/rad or N/m"}, 0);
+    force.damping = table.number("damping", {"N m s/rad or N s/m"}, 0);
+    force.rest = table.number("rest", {"rad or m"}, 0);
   } else if (force.kind == "torque") {
     table.allow({"name", "kind", "joint", "value"});
     force.joint = table.text("joint");

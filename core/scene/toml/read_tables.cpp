@@ -125,7 +125,8 @@ JointSpec read_joint(const Fields& table) {
                              " joint, expected on revolute, prismatic, helical, cylindrical, "
                              "universal and planar only");
   if (!has_one_coordinate(joint.kind))
-    for (const std::string_view key : {"stiffness", "rest", "damping"})
+    for (const std::string_view key :
+         {"stiffness", "rest", "damping", "friction", "friction_rate", "limits"})
       table.refuse(key, "has no meaning for a " + kind +
                             " joint, expected on revolute, prismatic and helical only");
   const auto only = [&](std::string_view key, JointKind owner) {
@@ -144,7 +145,7 @@ JointSpec read_joint(const Fields& table) {
   table.refuse("length", "belongs to a [[loop]] of kind distance, expected none on a joint");
   table.allow({"name", "kind", "parent", "child", "origin", "rotation", "axis", "axis2",
                "direction", "pitch", "position", "velocity", "stiffness", "rest", "damping",
-               "rotor_inertia"});
+               "friction", "friction_rate", "rotor_inertia", "limits"});
 
   joint.name = table.text("name");
   joint.parent = table.text("parent", joint.parent);
@@ -172,28 +173,52 @@ JointSpec read_joint(const Fields& table) {
   joint.stiffness = table.number("stiffness", {turns ? "N m/rad" : "N/m"}, 0);
   joint.rest = table.number("rest", {turns ? "rad" : "m"}, 0);
   joint.damping = table.number("damping", {turns ? "N m s/rad" : "N s/m"}, 0);
+  joint.friction = table.number("friction", {turns ? "N m" : "N", Bound::not_negative}, 0);
+  joint.friction_rate = table.number("friction_rate", {turns ? "rad/s" : "m/s", Bound::positive},
+                                     joint.friction_rate);
+  if (table.has("limits")) {
+    const std::vector<double> limits = table.numbers("limits", {turns ? "rad" : "m"});
+    if (limits.size() != 2 || !(limits[0] < limits[1]))
+      table.fail_key("limits", limits.size() == 2 ? "has its first number not below its second"
+                                                  : "has " + std::to_string(limits.size()) +
+                                                        " entries, expected the least and the "
+                                                        "largest coordinate");
+    joint.limits = {limits[0], limits[1]};
+  }
   joint.rotor_inertia = read_state(table, "rotor_inertia", rotors_of(joint.kind), kind,
                                    {turns ? "kg m²" : "kg", Bound::not_negative});
   return joint;
 }
 
-namespace {
-
-/// The keys of a coupler, which ties coordinates and no bodies.
-void read_coupler(const Fields& table, LoopSpec& loop) {
-  table.allow({"name", "kind", "joints", "coordinates", "ratios", "offset"});
-  loop.name = table.text("name");
-  loop.joints = table.texts("joints");
-  if (loop.joints.empty()) table.fail_key("joints", "names no joint, expected at least one");
-  loop.ratios = table.numbers("ratios", {});
+void read_sum(const Fields& table, std::vector<std::string>& joints, std::vector<int>& coordinates,
+              std::vector<double>& ratios) {
+  joints = table.texts("joints");
+  if (joints.empty()) table.fail_key("joints", "names no joint, expected at least one");
+  ratios = table.numbers("ratios", {});
   if (table.has("coordinates"))
     for (const double x : table.numbers("coordinates", {})) {
       const int coordinate = x >= 0 && x < 10 ? static_cast<int>(x) : -1;
       if (coordinate != x)
         table.fail_key("coordinates",
                        "has " + digits(x) + ", expected whole numbers >= 0, one for each joint");
-      loop.coordinates.push_back(coordinate);
+      coordinates.push_back(coordinate);
     }
+}
+
+namespace {
+
+/// The keys of a coupler, which ties coordinates and no bodies.
+void read_coupler(const Fields& table, LoopSpec& loop) {
+  table.allow({"name", "kind", "joints", "coordinates", "ratios", "powers", "offset"});
+  loop.name = table.text("name");
+  read_sum(table, loop.joints, loop.coordinates, loop.ratios);
+  if (table.has("powers")) {
+    loop.powers = table.numbers("powers", {});
+    if (loop.powers.size() > 3)
+      table.fail_key("powers", "has " + std::to_string(loop.powers.size()) +
+                                   " entries, expected at most 3: of the second to fourth power "
+                                   "of the last joint's coordinate");
+  }
   loop.offset = table.number("offset", {"rad or m"}, 0);
 }
 
@@ -208,7 +233,7 @@ LoopSpec read_loop(const Fields& table, std::span<const DriveSpec> drives) {
     read_coupler(table, loop);
     return loop;
   }
-  for (const std::string_view key : {"joints", "coordinates", "ratios", "offset"})
+  for (const std::string_view key : {"joints", "coordinates", "ratios", "powers", "offset"})
     table.refuse(key, "has no meaning for a " + kind + " loop, expected on coupler only");
   for (const std::string_view key : {"position", "velocity", "stiffness", "rest", "damping"})
     table.refuse(key,

@@ -27,6 +27,10 @@ std::size_t read_kind(const Fields& table, std::span<const std::string_view> kin
                       std::span<const std::string_view> others = {},
                       std::string_view table_of_others = {});
 
+/// joints, coordinates and ratios of a coupler or a coordinate spring.
+void read_sum(const Fields& table, std::vector<std::string>& joints, std::vector<int>& coordinates,
+              std::vector<double>& ratios);
+
 /// origin = { parent = [..], child = [..] }, both zero by default.
 struct Origins {
   Eigen::Vector3d parent = Eigen::Vector3d::Zero();

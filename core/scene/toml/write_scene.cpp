@@ -110,13 +110,16 @@ void write_ends(const Edge& e, TomlText& t) {
                         (two ? "child = " + three(e.origin_child) : std::string()) + " }");
 }
 
+void write_rotation(const Eigen::Quaterniond& r, TomlText& t) {
+  if (!TomlText::same(r.w(), 1) || !TomlText::same(r.vec(), Vector3d::Zero()))
+    t.put("rotation", "{ quaternion = " + TomlText::list({r.w(), r.x(), r.y(), r.z()}) + " }");
+}
+
 /// What joints and loops have alike. `has_axis`: of this kind.
 template <class Edge>
 void write_frames(const Edge& e, bool has_axis, TomlText& t) {
   write_ends(e, t);
-  const Eigen::Quaterniond& r = e.rotation;
-  if (!TomlText::same(r.w(), 1) || !TomlText::same(r.vec(), Vector3d::Zero()))
-    t.put("rotation", "{ quaternion = " + TomlText::list({r.w(), r.x(), r.y(), r.z()}) + " }");
+  write_rotation(e.rotation, t);
   if (!has_axis) return;
   t.vector("axis", e.axis, Vector3d::UnitZ());
   t.vector("axis2", e.axis2);
@@ -134,7 +137,19 @@ void write_joint(const JointSpec& joint, TomlText& t) {
   t.number("stiffness", joint.stiffness);
   t.number("rest", joint.rest);
   t.number("damping", joint.damping);
+  t.number("friction", joint.friction);
+  t.number("friction_rate", joint.friction_rate, JointSpec{}.friction_rate);
   if (!joint.rotor_inertia.empty()) t.numbers("rotor_inertia", joint.rotor_inertia);
+  if (joint.limits) t.numbers("limits", {(*joint.limits)[0], (*joint.limits)[1]});
+}
+
+/// Σ ratios q of joints.
+template <class Sum>
+void write_sum(const Sum& sum, TomlText& t) {
+  t.put("joints", TomlText::words(sum.joints));
+  t.numbers("ratios", sum.ratios);
+  if (!sum.coordinates.empty())
+    t.numbers("coordinates", {sum.coordinates.begin(), sum.coordinates.end()});
 }
 
 void write_loop(const LoopSpec& loop, TomlText& t) {
@@ -142,10 +157,8 @@ void write_loop(const LoopSpec& loop, TomlText& t) {
   t.word("name", loop.name);
   t.word("kind", std::string(reading::name_of(loop.kind)));
   if (loop.kind == LoopKind::coupler) {
-    t.put("joints", TomlText::words(loop.joints));
-    t.numbers("ratios", loop.ratios);
-    if (!loop.coordinates.empty())
-      t.numbers("coordinates", {loop.coordinates.begin(), loop.coordinates.end()});
+    write_sum(loop, t);
+    if (!loop.powers.empty()) t.numbers("powers", loop.powers);
     t.number("offset", loop.offset);
     return;
   }
@@ -189,6 +202,18 @@ void write_force(const ForceSpec& force, TomlText& t) {
   t.word("kind", force.kind);
   if (force.kind == "spring-damper") {
     write_ends(force, t);
+    t.number("stiffness", force.stiffness);
+    t.number("damping", force.damping);
+    t.number("rest", force.rest);
+  } else if (force.kind == "bushing") {
+    write_ends(force, t);
+    write_rotation(force.rotation, t);
+    t.number("stiffness", force.stiffness);
+    t.number("damping", force.damping);
+    t.number("rotational_stiffness", force.rotational_stiffness);
+    t.number("rotational_damping", force.rotational_damping);
+  } else if (force.kind == "coordinate-spring") {
+    write_sum(force, t);
     t.number("stiffness", force.stiffness);
     t.number("damping", force.damping);
     t.number("rest", force.rest);

@@ -80,6 +80,17 @@ LoopSpec read_mimic(const Node& mimic, const std::string& joint, FreeNames& edge
   return loop;
 }
 
+/// `lower` and `upper` of a revolute or prismatic joint; a range that is not one is left out, since
+/// files have 0, 0 where nothing is known.
+void read_limits(const Node& limit, const std::string& type, JointSpec& joint, Remarks& remarks) {
+  if (type != "revolute" && type != "prismatic") return;
+  const double lower = limit.number("lower", 0), upper = limit.number("upper", 0);
+  if (lower < upper)
+    joint.limits = {lower, upper};
+  else
+    remarks.left_out("joint limits without a range");
+}
+
 JointSpec read_joint(const Node& node, Remarks& remarks) {
   JointSpec joint;
   joint.at = node.at();
@@ -99,7 +110,7 @@ JointSpec read_joint(const Node& node, Remarks& remarks) {
                                                  "axis",   "dynamics", "mimic"};
   for (const Node& part : node.children()) {
     if (part.name() == "limit")
-      remarks.left_out("joint limits");
+      read_limits(part, node.text("type"), joint, remarks);
     else if (std::find(read.begin(), read.end(), part.name()) == read.end())
       remarks.left_out("<" + part.name() + "> of joints");
   }
@@ -109,7 +120,15 @@ JointSpec read_joint(const Node& node, Remarks& remarks) {
       joint.damping = damping;
     else if (damping != 0)
       remarks.left_out("dampers of joints of several degrees of freedom");
-    if (dynamics->number("friction", 0) != 0) remarks.left_out("friction of joints");
+    if (const double friction = dynamics->number("friction", 0); friction != 0) {
+      if (friction < 0) dynamics->fail("friction", "is negative, expected a number >= 0");
+      if (has_one_coordinate(joint.kind)) {
+        joint.friction = friction;
+        remarks.count("taken as smooth friction: friction of joints");
+      } else {
+        remarks.left_out("friction of joints of several degrees of freedom");
+      }
+    }
   }
   return joint;
 }

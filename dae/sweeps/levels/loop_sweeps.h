@@ -39,7 +39,9 @@ LoopPlan plan_loops(const Model<Space>& model, const LoopModel<Space>& loops) {
     shapes.push_back({l.a, l.b, l.rows, l.n_points == 2 && l.n_axes == 0});
     for (const auto& c : l.joints) shapes.back().joints.emplace_back(c.body, c.ratio);
   }
-  return plan_loops(parents, shapes, Space::dimension == 6);
+  LoopPlan plan = plan_loops(parents, shapes, Space::dimension == 6);
+  plan.linear = loops.curves == 0;
+  return plan;
 }
 
 /// `loops` in the frames of the links and their plan. In space without the rows that no joint

@@ -53,7 +53,9 @@ struct LoopPlan {
   int slots = 0;                     ///< slots needed
   std::int64_t work = 0;             ///< Σ over the fronts of the squared number of open equations
   bool couples() const { return !couplings.empty(); }
-  bool fits() const { return slots <= most_slots; }
+  /// Couplers with powers are not carried: their ratios change with q.
+  bool fits() const { return slots <= most_slots && linear; }
+  bool linear = true;
 };
 
 /// A loop's bodies (−1: ground) and how many equations it has; of a coupler the bodies whose joints

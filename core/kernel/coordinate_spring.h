@@ -1,0 +1,89 @@
+#pragma once
+// Springs and dampers along a sum of joint coordinates, l = Σ rᵢ qᵢ:
+//
+//   f = −k (l − rest) − c l̇,   Qᵢ = rᵢ f,   V = ½ k (l − rest)²
+//
+// Q_i is handed to the bodies as a wrench on what joint i carries and its opposite on what carries
+// it, along the joint's axis: a force of a slide, a couple of an angle. Eᵀ of such a pair is Q_i at
+// joint i and zero at every other, so these springs go wherever wrenches on bodies do.
+
+#include <momenta/core/kernel/points.h>
+
+namespace momenta {
+
+/// l − rest and l̇. Needs poses, and velocities for the rate.
+template <class Space, class S>
+S coordinate_stretch(const Workspace<Space, S>& w,
+                     const typename Model<Space>::CoordinateSpring& spring) {
+  S stretch(-spring.rest);
+  for (const auto& term : spring.terms)
+    stretch += term.ratio * w.sprung[static_cast<std::size_t>(term.place)].coordinate;
+  return stretch;
+}
+template <class Space, class S>
+S coordinate_stretch_rate(const Workspace<Space, S>& w,
+                          const typename Model<Space>::CoordinateSpring& spring) {
+  S rate{};
+  for (const auto& term : spring.terms)
+    rate += term.ratio * w.sprung[static_cast<std::size_t>(term.place)].rate;
+  return rate;
+}
+
+/// Adds a generalised force at the joint of body k to body[k].T and to that of its parent.
+template <class Space, class S>
+void add_along_joint(Workspace<Space, S>& w, int k, const S& value) {
+  const auto& b = w.model->bodies[static_cast<std::size_t>(k)];
+  auto& s = w.body[static_cast<std::size_t>(k)];
+  const auto act = [&](int on, const S& amount) {
+    if (on < 0) return;
+    auto& T = w.body[static_cast<std::size_t>(on)].T;
+    if constexpr (Space::dimension == 3) {
+      if (b.kind == JointKind::prismatic)
+        add_force(w, on, s.pose.origin, amount * s.edge.prismatic, T);
+      else
+        add_couple(w, on, amount * s.edge.sign, T);
+    } else {
+      const Vec3<S> along = amount * to_ground(w, k, Vec3<double>{{0, 0, 1}});
+      if (b.kind == JointKind::prismatic)
+        add_force(w, on, s.pose.origin, along, T);
+      else
+        add_couple(w, on, along, T);
+    }
+  };
+  act(k, value);
+  act(b.parent, -value);
+}
+
+/// Adds the forces of coordinate springs to body[k].T. Needs poses and velocities.
+template <class Space, class S>
+void add_coordinate_springs(Workspace<Space, S>& w) {
+  for (const auto& spring : w.model->coordinate_springs) {
+    const S tension = spring.stiffness * coordinate_stretch(w, spring) +
+                      spring.damping * coordinate_stretch_rate(w, spring);
+    for (const auto& term : spring.terms) add_along_joint(w, term.body, S((-term.ratio) * tension));
+  }
+}
+
+/// ½ k (l − rest)² of all [J].
+template <class Space, class S>
+S coordinate_spring_energy(const Workspace<Space, S>& w) {
+  S twice{};
+  for (const auto& spring : w.model->coordinate_springs) {
+    const S stretch = coordinate_stretch(w, spring);
+    twice += spring.stiffness * (stretch * stretch);
+  }
+  return 0.5 * twice;
+}
+
+/// −c l̇² of all [W].
+template <class Space, class S>
+S coordinate_spring_power(const Workspace<Space, S>& w) {
+  S power{};
+  for (const auto& spring : w.model->coordinate_springs) {
+    const S rate = coordinate_stretch_rate(w, spring);
+    power -= spring.damping * (rate * rate);
+  }
+  return power;
+}
+
+}  // namespace momenta

@@ -1,0 +1,96 @@
+// What acts at a joint of MJCF: spring, damper, friction, armature, limits. Of hinges and slides
+// −k (q − springref) − c q̇, where the scene's q is the file's less `ref`; of ball and free joints
+// −k times the rotation vector (and displacement) from qpos0 and −c times all rates, which is a
+// bushing.
+
+#include <momenta/core/scene/kinds.h>
+#include <momenta/core/scene/mjcf/mjcf_model.h>
+#include <momenta/core/scene/near_name.h>
+
+namespace momenta::reading {
+namespace {
+
+/// `limited` is auto where it is not written: a range limits.
+void read_limits(const Node& node, double unit, double ref, JointSpec& joint, MjcfModel& model) {
+  constexpr std::array<std::string_view, 3> words{"auto", "false", "true"};
+  const std::size_t limited = node.word("limited", words, 0);
+  if (limited == 1 || !node.has("range")) return;
+  const std::vector<double> range = node.numbers("range", 2);
+  if (!has_one_coordinate(joint.kind)) {
+    if (range[1] > 0) model.remarks.left_out("limits of ball joints");
+    return;
+  }
+  if (limited == 0 && range[0] == 0 && range[1] == 0) return;
+  if (!(range[0] < range[1]))
+    node.fail("range", "has its first number not below its second, expected limits of the joint");
+  joint.limits = {unit * range[0] - ref, unit * range[1] - ref};
+}
+
+}  // namespace
+
+ForceSpec bushing_at(const JointSpec& joint) {
+  ForceSpec f;
+  f.at = joint.at;
+  f.kind = "bushing";
+  f.parent = joint.parent;
+  f.child = joint.child;
+  f.origin_parent = joint.origin_parent;
+  f.origin_child = joint.origin_child;
+  f.rotation = joint.rotation;
+  if (joint.kind == JointKind::free) {
+    const std::vector<double>& x = joint.position;
+    f.origin_parent = {x[0], x[1], x[2]};
+    f.rotation = Eigen::Quaterniond(x[3], x[4], x[5], x[6]);
+  }
+  return f;
+}
+
+void add_spring_and_damper(const JointSpec& joint, double stiffness, double damping,
+                           MjcfModel& model) {
+  if (stiffness == 0 && damping == 0) return;
+  ForceSpec f = bushing_at(joint);
+  f.rotational_stiffness = stiffness;
+  f.rotational_damping = damping;
+  if (joint.kind == JointKind::free) {
+    f.stiffness = stiffness;
+    f.damping = damping;
+  }
+  model.scene.forces.push_back(f);
+}
+
+void read_mechanics(const Node& node, JointSpec& joint, MjcfModel& model) {
+  const bool one = has_one_coordinate(joint.kind);
+  if (node.name() == "freejoint") return;
+  if (has_axis(joint.kind)) joint.axis = node.direction("axis", Eigen::Vector3d::UnitZ());
+  const double unit = joint.kind == JointKind::prismatic ? 1 : model.angles.unit;
+  const double ref = one ? unit * node.number("ref", 0) : 0;
+  if (ref != 0) model.refs[joint.name] = ref;
+  const double rest = one ? unit * node.number("springref", 0) - ref : 0;
+  if (rest != 0) model.rests[joint.name] = rest;
+  read_limits(node, unit, ref, joint, model);
+  if (node.has("actuatorfrcrange")) model.remarks.left_out("force ranges of actuators");
+  const double stiffness = node.number("stiffness", 0), damping = node.number("damping", 0),
+               armature = node.number("armature", 0), friction = node.number("frictionloss", 0);
+  if (armature < 0) node.fail("armature", "is negative, expected a number >= 0");
+  if (friction < 0) node.fail("frictionloss", "is negative, expected a number >= 0");
+  if (node.has("springdamper")) {
+    const std::vector<double> x = node.numbers("springdamper", 2);
+    if (x[0] > 0 && x[1] > 0) model.spring_dampers.push_back({joint.name, x[0], x[1]});
+  }
+  if (!one) {
+    if (friction != 0) model.remarks.left_out("friction of ball and free joints");
+    if (armature != 0)
+      node.fail("armature", "is " + digits(armature) +
+                                " on a ball or free joint, expected it on hinges and slides alone");
+    return add_spring_and_damper(joint, stiffness, damping, model);
+  }
+  joint.stiffness = stiffness;
+  joint.damping = damping;
+  if (stiffness != 0 || node.has("springdamper")) joint.rest = rest;
+  if (armature > 0) joint.rotor_inertia = {armature};
+  if (friction == 0) return;
+  joint.friction = friction;
+  model.remarks.count("taken as smooth friction: frictionloss of joints");
+}
+
+}  // namespace momenta::reading

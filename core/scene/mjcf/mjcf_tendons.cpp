@@ -1,0 +1,183 @@
+// <tendon>: a fixed tendon is a sum of joint coordinates, L = Σ coef q; where it has stiffness or
+// damping, a coordinate spring. A spatial tendon between two sites is a spring-damper. L of the
+// scene counts from qpos0: L_file − Σ coef ref. Without `springlength` a spring rests where every
+// joint is at its `springref`.
+
+#include <momenta/core/scene/kinds.h>
+#include <momenta/core/scene/mjcf/mjcf_model.h>
+#include <momenta/core/scene/near_name.h>
+
+#include <algorithm>
+
+namespace momenta::reading {
+namespace {
+
+class TendonReader {
+ public:
+  TendonReader(const Node& node, MjcfModel& model)
+      : node_(node),
+        model_(model),
+        stiffness_(node.number("stiffness", 0)),
+        damping_(node.number("damping", 0)) {}
+
+  void read() {
+    if (node_.number("armature", 0) != 0)
+      node_.fail("armature", "is not zero, expected a tendon without inertia");
+    if (node_.number("frictionloss", 0) != 0) model_.remarks.left_out("friction of tendons");
+    if (node_.has("range") && node_.text("limited", "auto") != "false")
+      model_.remarks.left_out("limits of tendons");
+    const MjcfModel::Tendon tendon = node_.name() == "fixed" ? fixed() : spatial();
+    const std::string name = node_.text("name", "");
+    if (!name.empty() && !model_.tendons.emplace(name, tendon).second)
+      node_.fail("has a name that is taken, expected each name once among tendons");
+  }
+
+ private:
+  bool acts() const { return stiffness_ != 0 || damping_ != 0; }
+
+  /// `springlength`, or nothing where it is that at the springrefs.
+  std::optional<double> rest() const {
+    if (!node_.has("springlength")) return std::nullopt;
+    const std::vector<double> x = node_.numbers("springlength");
+    if (x.empty() || x.size() > 2 || (x.size() == 2 && x[0] != x[1]))
+      node_.fail("springlength",
+                 "has a dead band between two lengths, expected one length: springs here have one");
+    if (x[0] == -1) return std::nullopt;
+    return x[0];
+  }
+
+  ForceSpec force(const char* kind) const {
+    ForceSpec f;
+    f.at = node_.at();
+    f.kind = kind;
+    f.name = node_.text("name", "");
+    f.stiffness = stiffness_;
+    f.damping = damping_;
+    return f;
+  }
+
+  MjcfModel::Tendon fixed() {
+    MjcfModel::Tendon tendon;
+    tendon.at = node_.at();
+    for (const Node& part : node_.children()) {
+      if (part.name() != "joint") part.fail("is not read in a fixed tendon, expected joint");
+      const std::string joint = coordinate_of(part, "joint", model_);
+      const double coef = part.number("coef");
+      if (coef == 0) continue;
+      tendon.ratios[joint] += coef;
+      if (const auto ref = model_.refs.find(joint); ref != model_.refs.end())
+        tendon.ref += coef * ref->second;
+    }
+    std::erase_if(tendon.ratios, [](const auto& term) { return term.second == 0; });
+    if (!acts() || tendon.ratios.empty()) return tendon;
+    ForceSpec f = force("coordinate-spring");
+    for (const auto& [joint, ratio] : tendon.ratios) {
+      f.joints.push_back(joint);
+      f.ratios.push_back(ratio);
+    }
+    const std::optional<double> length = rest();
+    f.rest = length ? *length - tendon.ref : 0;
+    for (const auto& [joint, ratio] : tendon.ratios)
+      if (const auto at = model_.rests.find(joint); !length && at != model_.rests.end())
+        f.rest += ratio * at->second;
+    model_.scene.forces.push_back(f);
+    return tendon;
+  }
+
+  /// A body with every joint at its springref.
+  MjcfFrame at_rest(const std::string& body) const {
+    MjcfFrame frame;
+    std::string name = body;
+    while (name != "world" && name != "ground") {
+      const auto joint = std::find_if(model_.scene.joints.begin(), model_.scene.joints.end(),
+                                      [&](const JointSpec& j) { return j.child == name; });
+      const JointSpec& j = *joint;
+      const auto rest = model_.rests.find(j.name);
+      const double q = rest == model_.rests.end() ? 0 : rest->second;
+      MjcfFrame moved;
+      if (j.kind == JointKind::revolute)
+        moved.turn = Eigen::AngleAxisd(q, j.axis);
+      else if (j.kind == JointKind::prismatic)
+        moved.at = q * j.axis;
+      else if (j.kind == JointKind::free)
+        moved = {{j.position[0], j.position[1], j.position[2]},
+                 Eigen::Quaterniond(j.position[3], j.position[4], j.position[5], j.position[6])};
+      frame = MjcfFrame{j.origin_parent, j.rotation} * moved *
+              MjcfFrame{-j.origin_child, Eigen::Quaterniond::Identity()} * frame;
+      name = j.parent;
+    }
+    return frame;
+  }
+
+  MjcfModel::Tendon spatial() {
+    MjcfModel::Tendon tendon;
+    tendon.at = node_.at();
+    std::vector<const MjcfModel::Site*> sites;
+    for (const Node& part : node_.children()) {
+      if (part.name() == "site") {
+        const std::string name = part.text("site");
+        const auto found = model_.sites.find(name);
+        if (found == model_.sites.end())
+          part.fail("site", "is " + in_quotes(name) + ", expected the name of a <site>");
+        sites.push_back(&found->second);
+      } else if (acts()) {
+        part.fail("is not read in a tendon with stiffness or damping, expected two sites alone");
+      }
+    }
+    if (sites.size() != 2) {
+      if (acts())
+        node_.fail("has stiffness or damping and goes by " + std::to_string(sites.size()) +
+                   " sites, expected two: a spring here is straight");
+      model_.remarks.left_out("spatial tendons without spring or damper");
+      return tendon;
+    }
+    if (!acts()) {
+      model_.remarks.left_out("spatial tendons without spring or damper");
+      return tendon;
+    }
+    const auto place = [&](const MjcfModel::Site& s) { return at_rest(s.body) * s.frame.at; };
+    const MjcfModel::Site *one = sites[0], *two = sites[1];
+    if (one->body == two->body) return tendon;  // of one length for ever
+    const double length = (place(*one) - place(*two)).norm();
+    if (two->body == "world") std::swap(one, two);
+    ForceSpec f = force("spring-damper");
+    f.parent = MjcfModel::in_scene(one->body);
+    f.child = MjcfModel::in_scene(two->body);
+    f.origin_parent = one->frame.at;
+    f.origin_child = two->frame.at;
+    f.rest = rest().value_or(length);
+    model_.scene.forces.push_back(f);
+    return tendon;
+  }
+
+  const Node& node_;
+  MjcfModel& model_;
+  double stiffness_, damping_;
+};
+
+}  // namespace
+
+std::string coordinate_of(const Node& node, const char* key, const MjcfModel& model) {
+  const std::string name = node.text(key);
+  for (const JointSpec& j : model.scene.joints)
+    if (j.name == name) {
+      if (has_one_coordinate(j.kind)) return name;
+      node.fail(key, "is " + in_quotes(name) + ", expected a hinge or a slide");
+    }
+  node.fail(key, "is " + in_quotes(name) + ", expected the name of a joint");
+}
+
+void read_tendons(const Node& tendons, MjcfModel& model) {
+  for (const Node& part : tendons.children()) {
+    const std::string& kind = part.name();
+    if (kind != "fixed" && kind != "spatial")
+      part.of("tendon").fail("is not read, expected fixed or spatial");
+    const Element full = model.defaults.with_defaults(part, "tendon", MjcfDefaults::main_class);
+    const std::string name = part.text("name", "");
+    const Node node(full, name.empty() ? std::string("tendon") : "tendon " + in_quotes(name),
+                    model.scene.file);
+    TendonReader(node, model).read();
+  }
+}
+
+}  // namespace momenta::reading

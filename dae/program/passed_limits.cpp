@@ -1,0 +1,43 @@
+#include "passed_limits.h"
+#include <momenta/core/scene/near_name.h>
+#include <momenta/dae/text/number_text.h>
+
+namespace momenta::program {
+
+PassedLimits::PassedLimits(const Mechanism& mechanism) {
+  for (const JointSpec& joint : mechanism.scene().joints) {
+    if (!joint.limits) continue;
+    const auto& body =
+        mechanism.tree().bodies[static_cast<std::size_t>(mechanism.tree().carried_by(joint.name))];
+    if (body.nq != 1) continue;  // driven
+    joints_.push_back({joint.name, (*joint.limits)[0], (*joint.limits)[1], body.q,
+                       joint.kind == JointKind::prismatic});
+  }
+}
+
+void PassedLimits::look(double t, const double* q) {
+  for (Limited& joint : joints_) {
+    const double value = q[joint.q];
+    if (joint.passed || (joint.least <= value && value <= joint.largest)) continue;
+    joint.passed = true;
+    joint.at = t;
+    joint.value = value;
+  }
+}
+
+std::vector<std::string> PassedLimits::sentences() const {
+  constexpr std::size_t most = 4;
+  std::vector<std::string> all;
+  std::size_t more = 0;
+  for (const Limited& joint : joints_) {
+    if (!joint.passed || (all.size() == most && ++more > 0)) continue;
+    const std::string unit = joint.slides ? " m" : " rad";
+    all.push_back("joint " + reading::in_quotes(joint.name) + " is beyond its limits [" +
+                  compact(joint.least, 4) + ", " + compact(joint.largest, 4) + "]" + unit +
+                  " from t = " + compact(joint.at, 4) + " s on: " + compact(joint.value, 4) + unit);
+  }
+  if (more > 0) all.push_back("so are " + std::to_string(more) + " joints more");
+  return all;
+}
+
+}  // namespace momenta::program
