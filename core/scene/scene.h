@@ -22,6 +22,7 @@ class JointFormula;  // core/scene/joint_formula.h
 struct Location {
   int line = 0;    ///< from 1
   int column = 0;  ///< from 1, in characters; 0: not known
+  int file = 0;    ///< 0: Scene::file; from 1: the files of Scene::included
 };
 
 /// Bad input. what() is one sentence: "file:line:column: what was found, what was expected".
@@ -314,8 +315,9 @@ struct RunDefaults {
 
 /// A mechanism as its author wrote it. read_scene() returns it; OpenChain and Mechanism take it.
 struct Scene {
-  std::string file;                                   ///< for messages; empty when built by hand
-  std::string name;                                   ///< for titles and tables
+  std::string file;                   ///< for messages; empty when built by hand
+  std::vector<std::string> included;  ///< files that this one includes, for messages
+  std::string name;                   ///< for titles and tables
   Eigen::Vector3d gravity = Eigen::Vector3d::Zero();  ///< [m/s²]
   std::vector<BodySpec> bodies;                       ///< without the ground
   std::vector<JointSpec> joints;                      ///< one for each body

@@ -56,6 +56,8 @@ void add_scene_file(CLI::App& verb, Options& o, bool required) {
                   "Of an MJCF: its actuators act, at this control (NAME=VALUE; VALUE: all)")
       ->type_name("CONTROL")
       ->allow_extra_args(false);
+  verb.add_option("--key", o.reading.key, "Of an MJCF: start at this <key>, by name or number")
+      ->type_name("KEY");
   verb.add_option("--at", o.at, "Start values: JSON {\"q\": {..}, \"v\": {..}}, or its file")
       ->type_name("STATE");
 }

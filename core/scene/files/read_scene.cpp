@@ -10,22 +10,34 @@
 namespace momenta {
 namespace {
 
+/// Options of another format have no meaning here.
+void expect_own_options(const std::string& file, const ReadOptions& options, bool urdf, bool mjcf) {
+  const auto expect = [&](const char* format, bool given, const char* what) {
+    if (given)
+      reading::fail(file, {},
+                    std::string("no ") + format + ", expected one where " + what + " given");
+  };
+  if (!urdf) {
+    expect("URDF", !options.loops.empty(), "a file of loops is");
+    expect("URDF", options.free_root, "a free root is");
+  }
+  if (!mjcf) {
+    expect("MJCF", !options.key.empty(), "a key is");
+    expect("MJCF", !options.controls.empty(), "controls of actuators are");
+  }
+}
+
 /// URDF or MJCF, by the root element.
 Scene parse_robot(std::string_view text, const std::string& file, const ReadOptions& options) {
   const reading::Element root = reading::parse_xml(text, file);
-  if (root.name == "robot") {
-    if (!options.controls.empty())
-      reading::fail(file, {}, "no MJCF, expected one where controls of actuators are given");
-    return reading::read_urdf(root, file, options);
-  }
-  const std::string asked = !options.loops.empty() ? "a file of loops"
-                            : options.free_root    ? "a free root"
-                                                   : "";
-  if (!asked.empty()) reading::fail(file, {}, "no URDF, expected one where " + asked + " is given");
-  if (root.name == "mujoco") return reading::read_mjcf(root, file, options.controls);
-  reading::fail(file, {root.line, 0},
-                "the root element is <" + reading::on_one_line(root.name) +
-                    ">, expected <robot> (URDF) or <mujoco> (MJCF)");
+  const bool urdf = root.name == "robot", mjcf = root.name == "mujoco";
+  if (!urdf && !mjcf)
+    reading::fail(file, {root.line, 0},
+                  "the root element is <" + reading::on_one_line(root.name) +
+                      ">, expected <robot> (URDF) or <mujoco> (MJCF)");
+  expect_own_options(file, options, urdf, mjcf);
+  return urdf ? reading::read_urdf(root, file, options)
+              : reading::read_mjcf(root, file, options.key, options.controls);
 }
 
 }  // namespace
@@ -53,10 +65,7 @@ Scene read_scene(const std::filesystem::path& file, const ReadOptions& options,
       reading::fail(name, {}, "the scene does not fit into memory");
     }
   }
-  if (!options.loops.empty() || options.free_root)
-    reading::fail(name, {}, "no URDF, expected one where a file of loops or a free root is given");
-  if (!options.controls.empty())
-    reading::fail(name, {}, "no MJCF, expected one where controls of actuators are given");
+  expect_own_options(name, options, false, false);
   return parse_scene(text, name, settings);
 }
 

@@ -11,8 +11,9 @@
 
 namespace momenta::reading {
 
-/// The scene of a <mujoco>; `controls` as ReadOptions::controls. @throws SceneError
-Scene read_mjcf(const Element& mujoco, const std::string& file,
+/// The scene of a <mujoco>, which begins at the <key> of that name or number; empty: as it is
+/// drawn. `controls` as ReadOptions::controls. @throws SceneError
+Scene read_mjcf(const Element& mujoco, const std::string& file, const std::string& key = "",
                 const std::vector<std::string>& controls = {});
 
 }  // namespace momenta::reading

@@ -51,7 +51,7 @@ Vector3d size_of(const Node& geom, Shape shape) {
 }
 
 struct Solid {
-  double volume = 0;
+  double volume = 0;                    ///< [m³], or the area of a shell [m²]
   Vector3d moments = Vector3d::Zero();  ///< per mass, principal, z last
 };
 
@@ -72,7 +72,41 @@ Solid solid_of(Shape shape, const Vector3d& s) {
   return {cylinder + ball, {x, x, part * 0.4 * r * r + (1 - part) * along}};
 }
 
+/// The surface alone: its area, and moments per mass.
+Solid shell_of(Shape shape, const Vector3d& s) {
+  const double pi = std::numbers::pi;
+  if (shape == Shape::box) {
+    const double ab = s[0] * s[1], bc = s[1] * s[2], ca = s[2] * s[0];
+    const Vector3d squares(bc + (ab + ca) / 3, ca + (ab + bc) / 3, ab + (bc + ca) / 3);
+    const Vector3d means = squares.cwiseProduct(s.cwiseAbs2()) / (ab + bc + ca);
+    return {8 * (ab + bc + ca), {means[1] + means[2], means[0] + means[2], means[0] + means[1]}};
+  }
+  const double r = s[0], h = shape == Shape::sphere ? 0 : s[1];
+  const double side = 4 * pi * r * h, disc = pi * r * r;
+  double area = side, polar = side * r * r, axial = side * h * h / 3;
+  if (shape == Shape::cylinder) {
+    area += 2 * disc;
+    polar += disc * r * r;
+    axial += 2 * disc * h * h;
+  } else {
+    area += 4 * disc;
+    polar += 8 * disc * r * r / 3;
+    axial += 4 * disc * (h * h + h * r + r * r / 3);
+  }
+  const double across = (polar / 2 + axial) / area;
+  return {area, {across, across, polar / area}};
+}
+
+/// Of a mass on a mesh: the geom's frame is that of the mesh's points.
+MjcfInertia weighed(const MeshMass& mesh, double mass) {
+  return {mass, mesh.com, mass / mesh.measure * mesh.inertia};
+}
+
 }  // namespace
+
+MjcfInertia operator*(const MjcfFrame& frame, const MjcfInertia& inner) {
+  return {inner.mass, frame * inner.com, rotated(inner.inertia, frame.turn)};
+}
 
 void MjcfInertia::add(const MjcfInertia& other) {
   if (other.mass == 0) return;
@@ -98,28 +132,34 @@ MjcfInertia read_inertial(const Node& node, const MjcfAngles& angles) {
   return body;
 }
 
-MjcfInertia read_geom(const Node& geom, const MjcfAngles& angles, bool at_rest) {
-  MjcfInertia body;
+MjcfInertia read_geom(const Node& geom, const MjcfAngles& angles, bool at_rest, MjcfMeshes& meshes,
+                      Remarks& remarks) {
   const auto shape = static_cast<Shape>(geom.word("type", shapes, 0));
-  if (shape == Shape::plane || shape == Shape::hfield) return body;
+  if (shape == Shape::plane || shape == Shape::hfield) return {};
   const bool by_mass = geom.has("mass");
   const double given = by_mass ? geom.number("mass") : geom.number("density", 1000);
   if (given < 0) geom.fail(by_mass ? "mass" : "density", "is negative, expected a number >= 0");
-  if (given == 0) return body;
-  if (shape == Shape::mesh || shape == Shape::sdf || geom.has("mesh")) {
-    if (at_rest) return body;
-    geom.fail(
-        "gives its body the mass of a mesh, and meshes are not read; expected an <inertial> "
-        "of the body");
+  if (given == 0) return {};
+  const bool shell = geom.flag("shellinertia", false);
+  if (shape == Shape::mesh) {
+    if (at_rest) return {};
+    const MeshMass& mesh = meshes.of(geom, shell, remarks);
+    return read_frame(geom, angles) * weighed(mesh, by_mass ? given : given * mesh.measure);
   }
-  if (geom.flag("shellinertia", false))
-    geom.fail("shellinertia", "is true, expected a solid: shells are not read");
+  if (shape == Shape::sdf || geom.has("mesh")) {
+    if (at_rest) return {};
+    geom.fail("type", "is " + std::string(shapes[static_cast<std::size_t>(shape)]) +
+                          " with a mesh to fit, which is not read; expected the type mesh, or an "
+                          "<inertial> of the body");
+  }
+  if (shell && shape == Shape::ellipsoid)
+    geom.fail("shellinertia", "is true for an ellipsoid, which is not read; expected a solid");
   const MjcfFrame frame = read_frame(geom, angles);
-  const Solid solid = solid_of(shape, size_of(geom, shape));
-  body.mass = by_mass ? given : given * solid.volume;
-  body.com = frame.at;
-  body.inertia = rotated((body.mass * solid.moments).asDiagonal().toDenseMatrix(), frame.turn);
-  return body;
+  const Vector3d size = size_of(geom, shape);
+  const Solid solid = shell ? shell_of(shape, size) : solid_of(shape, size);
+  const double mass = by_mass ? given : given * solid.volume;
+  return frame *
+         MjcfInertia{mass, Vector3d::Zero(), (mass * solid.moments).asDiagonal().toDenseMatrix()};
 }
 
 }  // namespace momenta::reading

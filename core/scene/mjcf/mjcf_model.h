@@ -3,7 +3,8 @@
 // and the scene that grows.
 
 #include <momenta/core/scene/mjcf/mjcf_defaults.h>
-#include <momenta/core/scene/mjcf/mjcf_frames.h>
+#include <momenta/core/scene/mjcf/mjcf_meshes.h>
+#include <momenta/core/scene/mjcf/mjcf_settings.h>
 #include <momenta/core/scene/xml/made_scene.h>
 
 #include <map>
@@ -12,14 +13,14 @@
 
 namespace momenta::reading {
 
-struct MjcfModel {
+/// The settings are those that hold where it is read.
+struct MjcfModel : MjcfSettings {
   Scene scene;
   Remarks remarks;
   FreeNames bodies, edges;
-  MjcfAngles angles;
   MjcfDefaults defaults;
-  bool geoms_weigh = true, always_geoms = false;   ///< inertiafromgeom
-  double least_group = -1e9, largest_group = 1e9;  ///< of geoms that weigh
+  MjcfMeshes meshes;
+  std::map<std::string, MjcfSettings> attached;  ///< of attached models, by the `model` of <attach>
 
   /// Bodies by name with their frames at qpos0; "world" is the ground.
   std::map<std::string, MjcfFrame> frames{{"world", {}}};

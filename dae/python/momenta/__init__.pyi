@@ -371,6 +371,7 @@ def load(
     cut: str = "auto",
     loops: _Path = "",
     free_root: bool = False,
+    key: str | int = "",
     at: _State = None,
 ) -> Mechanism: ...
 def parse(
