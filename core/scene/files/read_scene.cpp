@@ -2,14 +2,21 @@
 #include <momenta/core/scene/files/read_scene.h>
 #include <momenta/core/scene/mjcf/mjcf.h>
 #include <momenta/core/scene/near_name.h>
+#include <momenta/core/scene/sdf/sdf.h>
 #include <momenta/core/scene/urdf/urdf.h>
 
+#include <algorithm>
+#include <array>
 #include <new>
 
 namespace momenta {
 namespace {
 
-/// URDF or MJCF, by the root element.
+/// The endings of files that are XML.
+constexpr std::array<std::string_view, 6> xml_endings{".urdf", ".xml",   ".mjcf",
+                                                      ".sdf",  ".world", ".xacro"};
+
+/// URDF, MJCF or SDF, by the root element.
 Scene parse_robot(std::string_view text, const std::string& file, const ReadOptions& options) {
   const reading::Element root = reading::parse_xml(text, file);
   if (root.name == "robot") return reading::read_urdf(root, file, options);
@@ -18,16 +25,17 @@ Scene parse_robot(std::string_view text, const std::string& file, const ReadOpti
                                                    : "";
   if (!asked.empty()) reading::fail(file, {}, "no URDF, expected one where " + asked + " is given");
   if (root.name == "mujoco") return reading::read_mjcf(root, file);
+  if (root.name == "sdf") return reading::read_sdf(root, file);
   reading::fail(file, {root.line, 0},
                 "the root element is <" + reading::on_one_line(root.name) +
-                    ">, expected <robot> (URDF) or <mujoco> (MJCF)");
+                    ">, expected <robot> (URDF), <mujoco> (MJCF) or <sdf> (SDF)");
 }
 
 }  // namespace
 
 bool is_toml(const std::filesystem::path& file) {
   const std::string ending = file.extension().string();
-  return ending != ".urdf" && ending != ".xml" && ending != ".mjcf";
+  return std::find(xml_endings.begin(), xml_endings.end(), ending) == xml_endings.end();
 }
 
 Scene read_scene(const std::filesystem::path& file, const ReadOptions& options) {

@@ -12,10 +12,10 @@ struct Attribute {
   std::string name, text;
 };
 
-/// One element: its attributes and the elements in it. Text between elements and comments are
-/// dropped: neither URDF nor MJCF say anything there.
+/// One element: its attributes, its text without comments, and the elements in it.
 struct Element {
   std::string name;
+  std::string text;
   int line = 0;
   std::vector<Attribute> attributes;
   std::vector<Element> children;
