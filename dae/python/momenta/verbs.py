@@ -9,7 +9,7 @@ from .scene import Scene
 
 
 def load(scene, algebra="auto", kkt="auto", *, cut="auto", loops="", free_root=False, at=None):
-    """A Mechanism from a scene file (TOML, URDF or MJCF), TOML text, a Scene or a dict of its keys.
+    """A Mechanism from a scene file (TOML, URDF, MJCF or SDF), TOML text, a Scene or a dict of its keys.
 
     A string with a line break is text, any other string is a path. `algebra`: auto, planar or spatial;
     `kkt`: auto, sweeps, sparse or dense; `cut`: joints that runs cut, auto for the least work or scene;
