@@ -1,4 +1,4 @@
-"""Reading of scenes, and the verbs evaluate, index and view of the program."""
+"""Reading of scenes, and the verbs evaluate, index, run and view of the program."""
 
 import html
 import json
@@ -31,6 +31,14 @@ def load(scene, algebra="auto", kkt="auto", *, cut="auto", loops="", free_root=F
 def parse(text, name="scene", algebra="auto", kkt="auto", *, cut="auto"):
     """A Mechanism from TOML text; messages name the text by `name`."""
     return _momenta.parse(text, name, "", algebra, kkt, cut)
+
+
+def run(scene, **arguments):
+    """A Run of one form, as the verb `run` makes it: Mechanism.run of what load() makes of the scene.
+
+    `scene`: a Mechanism, or what load() takes. `arguments`: those of Mechanism.run.
+    """
+    return _ready(scene).run(**arguments)
 
 
 def evaluate(scene, at=None):
