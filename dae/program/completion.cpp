@@ -11,7 +11,7 @@
 namespace momenta::program {
 namespace {
 
-constexpr const char* scene_endings[] = {"toml", "urdf", "xml", "mjcf"};
+constexpr const char* scene_endings[] = {"toml", "urdf", "xml", "mjcf", "sdf"};
 
 std::string joined(const std::vector<std::string>& words, const char* between) {
   std::string text;

@@ -43,7 +43,7 @@ std::string content_of(const std::filesystem::path& file) {
 }
 
 void add_scene_file(CLI::App& verb, Options& o, bool required) {
-  verb.add_option("scene", o.scene, "TOML, URDF (.urdf) or MJCF (.xml, .mjcf)")
+  verb.add_option("scene", o.scene, "TOML, URDF (.urdf), MJCF (.xml, .mjcf) or SDF (.sdf)")
       ->required(required)
       ->type_name("SCENE");
   verb.add_option("--loops", o.reading.loops, "Of a URDF: its loops (default: the .yaml beside it)")

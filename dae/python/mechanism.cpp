@@ -247,7 +247,7 @@ void bind_mechanism(py::module_& module) {
           "the arguments algebra, kkt and cut of load()")
       .def_property_readonly(
           "remarks", of([](const Mechanism& m) { return m.scene().remarks; }),
-          "what the reader of a URDF or MJCF left out or changed, one sentence per kind")
+          "what the reader of a URDF, MJCF or SDF left out or changed, one sentence per kind")
       .def("to_toml", of([](const Mechanism& m) { return scene_text(m.scene()); }),
            "The scene as TOML text, from which parse() reads the same scene, bit by bit.")
       .def(py::pickle(

@@ -66,8 +66,8 @@ const Case wrong_urdf[] = {
     {"empty", "", "not valid XML: empty document"},
     {"open_tag", "<robot>\n<link name='a'>\n</robot>", ":2: not valid XML: mismatched element"},
     {"two_values", "<robot>\n<link name='a' name/></robot>", "not valid XML"},
-    {"other_root", "\n<sdf version='1.7'/>",
-     ":2: the root element is <sdf>, expected <robot> (URDF) or <mujoco> (MJCF)"},
+    {"other_root", "\n<svg version='1.7'/>",
+     ":2: the root element is <svg>, expected <robot> (URDF), <mujoco> (MJCF) or <sdf> (SDF)"},
     {"no_link", "<robot name='r'/>", ":1: <robot> has no <link>, expected at least one"},
     {"nameless", "<robot>\n<link/></robot>", ":2: link 'without a name': <link> has no name"},
     {"joint_type",
@@ -145,7 +145,7 @@ const Case wrong_urdf[] = {
      "<ratio value='2'/></coupling></robot>",
      ":2: coupling 'c': <coupling> couples no joint"},
     {"macro", "<robot><link name='a'/>\n<xacro:include filename='x'/></robot>",
-     ":2: <xacro:include> is a xacro macro, expected a URDF that xacro has expanded"},
+     ":2: <xacro:include> is for xacro, expected a URDF: expand the file by"},
 };
 
 const Case wrong_mjcf[] = {

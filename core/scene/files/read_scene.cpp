@@ -2,13 +2,20 @@
 #include <momenta/core/scene/files/read_scene.h>
 #include <momenta/core/scene/mjcf/mjcf.h>
 #include <momenta/core/scene/near_name.h>
+#include <momenta/core/scene/sdf/sdf.h>
 #include <momenta/core/scene/urdf/urdf.h>
 
+#include <algorithm>
+#include <array>
 #include <new>
 #include <stdexcept>
 
 namespace momenta {
 namespace {
+
+/// The endings of files that are XML.
+constexpr std::array<std::string_view, 6> xml_endings{".urdf", ".xml",   ".mjcf",
+                                                      ".sdf",  ".world", ".xacro"};
 
 /// Options of another format have no meaning here.
 void expect_own_options(const std::string& file, const ReadOptions& options, bool urdf, bool mjcf) {
@@ -27,15 +34,17 @@ void expect_own_options(const std::string& file, const ReadOptions& options, boo
   }
 }
 
-/// URDF or MJCF, by the root element.
+/// URDF, MJCF or SDF, by the root element.
 Scene parse_robot(std::string_view text, const std::string& file, const ReadOptions& options) {
   const reading::Element root = reading::parse_xml(text, file);
-  const bool urdf = root.name == "robot", mjcf = root.name == "mujoco";
-  if (!urdf && !mjcf)
+  const bool urdf = root.name == "robot", mjcf = root.name == "mujoco",
+             sdf = root.name == "sdf";
+  if (!urdf && !mjcf && !sdf)
     reading::fail(file, {root.line, 0},
                   "the root element is <" + reading::on_one_line(root.name) +
-                      ">, expected <robot> (URDF) or <mujoco> (MJCF)");
+                      ">, expected <robot> (URDF), <mujoco> (MJCF) or <sdf> (SDF)");
   expect_own_options(file, options, urdf, mjcf);
+  if (sdf) return reading::read_sdf(root, file);
   return urdf ? reading::read_urdf(root, file, options)
               : reading::read_mjcf(root, file, options.key, options.controls);
 }
@@ -44,7 +53,7 @@ Scene parse_robot(std::string_view text, const std::string& file, const ReadOpti
 
 bool is_toml(const std::filesystem::path& file) {
   const std::string ending = file.extension().string();
-  return ending != ".urdf" && ending != ".xml" && ending != ".mjcf";
+  return std::find(xml_endings.begin(), xml_endings.end(), ending) == xml_endings.end();
 }
 
 Scene read_scene(const std::filesystem::path& file, const ReadOptions& options) {

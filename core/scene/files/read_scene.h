@@ -12,17 +12,17 @@
 
 namespace momenta {
 
-/// Reads a scene. A file whose name ends in .urdf, .xml or .mjcf is URDF or MJCF, as its root
-/// element says; any other is TOML. @throws SceneError: one sentence with file, line and column,
-/// the key or name at fault, what was found and what was expected. Cost O(size of file); files over
-/// 64 MiB are refused without reading them.
+/// Reads a scene. A file whose name ends in .urdf, .xml, .mjcf, .sdf, .world or .xacro is URDF,
+/// MJCF or SDF, as its root element says; any other is TOML. @throws SceneError: one sentence with
+/// file, line and column, the key or name at fault, what was found and what was expected. Cost
+/// O(size of file); files over 64 MiB are refused without reading them.
 Scene read_scene(const std::filesystem::path& file, const ReadOptions& options = {});
 /// With other numbers in it. @throws std::invalid_argument for a place that the scene does not
 /// have, and for a file that is not TOML
 Scene read_scene(const std::filesystem::path& file, const ReadOptions& options,
                  const std::vector<Setting>& settings);
 
-/// Whether read_scene() reads this file as TOML: false for the endings .urdf, .xml and .mjcf.
+/// Whether read_scene() reads this file as TOML: false for the endings of XML above.
 bool is_toml(const std::filesystem::path& file);
 
 }  // namespace momenta

@@ -8,8 +8,6 @@
 
 #include <algorithm>
 #include <array>
-#include <map>
-#include <set>
 
 namespace momenta::reading {
 namespace {
@@ -22,6 +20,10 @@ constexpr std::array<std::string_view, 7> urdf_joints{
 constexpr std::array joint_kind_of{JointKind::revolute, JointKind::revolute, JointKind::prismatic,
                                    JointKind::weld,     JointKind::free,     JointKind::planar,
                                    JointKind::spherical};
+
+/// Tags of Drake that join links.
+constexpr std::array<std::string_view, 4> drake_ties{
+    "drake:joint", "drake:ball_constraint", "drake:linear_bushing_rpy", "drake:tendon_constraint"};
 
 /// "link 'arm'" of a <link name="arm">.
 Node owned(const Node& node, const char* title) {
@@ -133,48 +135,17 @@ JointSpec read_joint(const Node& node, Remarks& remarks) {
   return joint;
 }
 
-/// Hangs the root, the only link that is no joint's child, on the ground. A root called "ground" is
-/// the ground itself.
-void hang_root(Scene& scene, const Node& robot, const std::vector<Node>& links, bool free,
-               FreeNames& edges) {
-  std::map<std::string, const Node*> roots;
-  for (const Node& link : links) roots.emplace(link.text("name"), &link);
-  for (const JointSpec& joint : scene.joints) {
-    const auto known = [&](const std::string& link, const char* what) {
-      if (roots.contains(link)) return;
-      std::vector<std::string_view> names;
-      for (const BodySpec& body : scene.bodies) names.push_back(body.name);
-      throw SceneError(scene.where(joint.at) + "joint " + in_quotes(joint.name) + ": " + what +
-                       " is " + in_quotes(link) + ", expected the name of a link" +
-                       did_you_mean(link, names));
-    };
-    known(joint.parent, "parent");
-    known(joint.child, "child");
-  }
-  for (const JointSpec& joint : scene.joints) roots.erase(joint.child);
-  if (roots.empty()) {  // the joints form a cycle, which the sentence names
-    validate(scene);
-    return;
-  }
-  if (roots.size() > 1)
-    robot.fail("has two links that are no joint's child, " + in_quotes(roots.begin()->first) +
-               " and " + in_quotes(std::next(roots.begin())->first) +
-               ", expected one root and a tree below it");
-  const std::string root = roots.begin()->first;
-  if (root == "ground") {
-    if (free)
-      roots.begin()->second->fail(
-          "is the root and called ground, which cannot be free; expected "
-          "another name");
-    std::erase_if(scene.bodies, [](const BodySpec& body) { return body.name == "ground"; });
-    return;
-  }
-  JointSpec joint;
-  joint.at = roots.begin()->second->at();
-  joint.name = edges.free("root");
-  joint.kind = free ? JointKind::free : JointKind::weld;
-  joint.child = root;
-  scene.joints.insert(scene.joints.begin(), joint);
+/// Refuses what xacro has not expanded: an element of its own, or an expression in an attribute.
+void refuse_xacro(const Node& node) {
+  const bool expression =
+      std::any_of(node.element().attributes.begin(), node.element().attributes.end(),
+                  [](const Attribute& attribute) {
+                    return attribute.text.find("${") != std::string::npos ||
+                           attribute.text.find("$(") != std::string::npos;
+                  });
+  if (expression || node.name().starts_with("xacro:"))
+    node.fail("is for xacro, expected a URDF: expand the file by \"xacro FILE > robot.urdf\"");
+  for (const Node& part : node.children()) refuse_xacro(part);
 }
 
 }  // namespace
@@ -192,6 +163,7 @@ Origin read_origin(const Node& node) {
 
 Scene read_urdf(const Element& element, const std::string& file, const ReadOptions& options) {
   const Node robot(element, "", file);
+  refuse_xacro(robot);
   Scene scene;
   scene.file = file;
   scene.name = robot.text("name", "");
@@ -210,23 +182,28 @@ Scene read_urdf(const Element& element, const std::string& file, const ReadOptio
     edges.take(scene.joints.back().name);
     if (joint.child("mimic")) mimics.push_back(joint);
   }
-  hang_root(scene, robot, links, options.free_root, edges);
+  const bool welded = hang_root(scene, robot, links, options.free_root, edges);
   for (const Node& joint : mimics)
     scene.loops.push_back(read_mimic(*joint.child("mimic"), joint.text("name"), edges));
+  std::vector<Node> transmissions;
   for (const Node& node : robot.children()) {
     if (node.name() == "loop")
       read_loop_tag(owned(node, "loop"), scene, edges);
     else if (node.name() == "coupling")
       read_coupling_tag(owned(node, "coupling"), scene, edges);
-    else if (node.name().find("xacro:") == 0)
-      node.fail("is a xacro macro, expected a URDF that xacro has expanded");
+    else if (node.name() == "transmission")
+      transmissions.push_back(owned(node, "transmission"));
+    else if (std::find(drake_ties.begin(), drake_ties.end(), node.name()) != drake_ties.end())
+      node.fail("ties links and is not read, expected <loop>, or loops in a YAML file");
     else if (node.name() != "link" && node.name() != "joint")
       remarks.left_out("<" + node.name() + "> of the robot");
   }
-  read_loops_beside(file, options, scene, edges, remarks);
-  scene.remarks = remarks.sentences();
+  read_beside(file, options, scene, edges, remarks);
+  for (const Node& node : transmissions) read_transmission(node, scene, remarks);
   if (scene.bodies.empty()) robot.fail("has one link only, the ground, expected a body");
   validate(scene);
+  if (welded) tell_of_fixed_root(scene, remarks);
+  scene.remarks = remarks.sentences();
   return scene;
 }
 

@@ -22,14 +22,30 @@ struct Origin {
 };
 Origin read_origin(const Node& node);
 
+/// Hangs the root, the only link that is no joint's child, on the ground by a joint in front of all
+/// others: a weld, or a free joint. A root called "ground" is the ground itself. @returns whether
+/// it was welded @throws SceneError for links that are not there, and unless the joints make one
+/// tree
+bool hang_root(Scene& scene, const Node& robot, const std::vector<Node>& links, bool free,
+               FreeNames& edges);
+
+/// Says so where a root that hang_root() welded looks like that of a robot which floats: it has a
+/// mass, and at least two branches of moving joints that no loop ties together. @pre the scene is
+/// valid
+void tell_of_fixed_root(const Scene& scene, Remarks& remarks);
+
+/// <transmission>: adds to the rotor_inertia of its joint. @throws SceneError
+void read_transmission(const Node& transmission, Scene& scene, Remarks& remarks);
+
 /// URDF+: <loop> and <coupling>, whose links stand in `scene` already.
 void read_loop_tag(const Node& loop, Scene& scene, FreeNames& edges);
 void read_coupling_tag(const Node& coupling, Scene& scene, FreeNames& edges);
 
-/// The loops of a YAML file, `options.loops` or, where that is empty, the one that stands beside
-/// the URDF under its name and has the key `closed_loop`: pairs of joints or links whose frames
-/// stay together; `type` is "3d" for their origins alone, "6d" for their axes as well.
-void read_loops_beside(const std::string& urdf, const ReadOptions& options, Scene& scene,
-                       FreeNames& edges, Remarks& remarks);
+/// A YAML file beside the URDF: `options.loops` or, where that is empty, the file under the URDF's
+/// name that has `closed_loop` or `joint_name`. It gives joints the types that a URDF cannot say,
+/// and loops: pairs of joints or links whose frames stay together, "3d" for their origins alone,
+/// "6d" for their axes as well. `scene` has its joints already. @throws SceneError
+void read_beside(const std::string& urdf, const ReadOptions& options, Scene& scene,
+                 FreeNames& edges, Remarks& remarks);
 
 }  // namespace momenta::reading

@@ -17,7 +17,8 @@ void Remarks::count(const std::string& sentence) {
 std::vector<std::string> Remarks::sentences() const {
   std::vector<std::string> all;
   for (const auto& [sentence, count] : counts_)
-    all.push_back(on_one_line(sentence) + " (" + std::to_string(count) + ")");
+    all.push_back(on_one_line(sentence) +
+                  (count > 0 ? " (" + std::to_string(count) + ")" : std::string()));
   return all;
 }
 

@@ -11,6 +11,8 @@ namespace momenta::reading {
 class Remarks {
  public:
   void count(const std::string& sentence);
+  /// A sentence of its own, without a count.
+  void say(const std::string& sentence) { counts_.emplace_back(sentence, 0); }
   /// `kind` is a plural: "joint limits".
   void left_out(const std::string& kind) { count("left out: " + kind); }
   /// "left out: joint limits (12)".

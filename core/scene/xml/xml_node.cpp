@@ -44,12 +44,10 @@ std::string Node::text(std::string_view attribute, const std::string& otherwise)
   return found == nullptr ? otherwise : std::string(trimmed(*found));
 }
 
-std::vector<double> Node::numbers(std::string_view attribute) const {
-  const std::string* found = element_->find(attribute);
-  if (found == nullptr) fail("has no " + std::string(attribute) + ", expected numbers");
+std::vector<double> Node::numbers_of(const std::string& text, const std::string& what) const {
   std::vector<double> all;
-  const char* at = found->data();
-  const char* const end = at + found->size();
+  const char* at = text.data();
+  const char* const end = at + text.size();
   for (;;) {
     while (at != end && is_space(*at)) ++at;
     if (at == end) return all;
@@ -60,17 +58,47 @@ std::vector<double> Node::numbers(std::string_view attribute) const {
     const bool plus = word.size() > 1 && word[0] == '+' && word[1] != '-';
     const auto [stop, error] = std::from_chars(from + plus, at, value);
     if (stop != at || error != std::errc() || !std::isfinite(value))
-      fail(attribute, "has " + in_quotes(word) + ", expected finite numbers");
+      fail(what + "has " + in_quotes(word) + ", expected finite numbers");
     all.push_back(value);
   }
 }
 
+void Node::expect_count(std::size_t found, std::size_t expected, const std::string& what) const {
+  if (found != expected)
+    fail(what + "has " + std::to_string(found) + " numbers, expected " + std::to_string(expected));
+}
+
+std::vector<double> Node::numbers(std::string_view attribute) const {
+  const std::string* found = element_->find(attribute);
+  if (found == nullptr) fail("has no " + std::string(attribute) + ", expected numbers");
+  return numbers_of(*found, std::string(attribute) + " ");
+}
+
 std::vector<double> Node::numbers(std::string_view attribute, std::size_t count) const {
   std::vector<double> all = numbers(attribute);
-  if (all.size() != count)
-    fail(attribute,
-         "has " + std::to_string(all.size()) + " numbers, expected " + std::to_string(count));
+  expect_count(all.size(), count, std::string(attribute) + " ");
   return all;
+}
+
+std::string Node::content() const {
+  const std::string words(trimmed(element_->text));
+  if (words.empty()) fail("is empty, expected a name or a value");
+  return words;
+}
+double Node::content_number() const {
+  return content_numbers(1).front();
+}
+std::vector<double> Node::content_numbers(std::size_t count) const {
+  std::vector<double> all = numbers_of(element_->text, "");
+  expect_count(all.size(), count, "");
+  return all;
+}
+bool Node::content_flag() const {
+  constexpr std::array<std::string_view, 4> words{"false", "true", "0", "1"};
+  return content_word(words) % 2 == 1;
+}
+std::size_t Node::content_word(std::span<const std::string_view> words) const {
+  return word_of(content(), words, "");
 }
 
 double Node::number(std::string_view attribute) const {
@@ -106,11 +134,15 @@ Eigen::Vector3d Node::direction(std::string_view attribute,
 std::size_t Node::word(std::string_view attribute, std::span<const std::string_view> words,
                        std::size_t otherwise) const {
   if (!has(attribute)) return otherwise;
-  const std::string found = text(attribute);
+  return word_of(text(attribute), words, std::string(attribute) + " ");
+}
+
+std::size_t Node::word_of(const std::string& found, std::span<const std::string_view> words,
+                          const std::string& what) const {
   const auto known = std::find(words.begin(), words.end(), found);
   if (known == words.end())
-    fail(attribute, "is " + in_quotes(found) + ", expected one of: " + listed(words) +
-                        did_you_mean(found, words));
+    fail(what + "is " + in_quotes(found) + ", expected one of: " + listed(words) +
+         did_you_mean(found, words));
   return static_cast<std::size_t>(known - words.begin());
 }
 

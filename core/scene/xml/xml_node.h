@@ -45,6 +45,13 @@ class Node {
   std::size_t word(std::string_view attribute, std::span<const std::string_view> words,
                    std::size_t otherwise) const;
 
+  // The text of the element itself, read in the same way.
+  std::string content() const;
+  double content_number() const;
+  std::vector<double> content_numbers(std::size_t count) const;
+  bool content_flag() const;  ///< true, false, 1 or 0
+  std::size_t content_word(std::span<const std::string_view> words) const;
+
   /// The elements in this one, in the order of the file; they keep its owner.
   std::vector<Node> children() const;
   std::vector<Node> children(std::string_view name) const;
@@ -59,6 +66,12 @@ class Node {
   [[noreturn]] void fail(std::string_view attribute, const std::string& sentence) const;
 
  private:
+  /// `what`: "mass has", in front of what is wrong with the text.
+  std::vector<double> numbers_of(const std::string& text, const std::string& what) const;
+  void expect_count(std::size_t found, std::size_t expected, const std::string& what) const;
+  std::size_t word_of(const std::string& found, std::span<const std::string_view> words,
+                      const std::string& what) const;
+
   const Element* element_;
   std::string owner_;
   const std::string* file_;

@@ -16,6 +16,8 @@ Element copied(const tinyxml2::XMLElement& from, int depth, const std::string& f
     fail(file, {element.line, 0}, "elements nested more than 200 deep, expected no such depth");
   for (auto* a = from.FirstAttribute(); a; a = a->Next())
     element.attributes.push_back({a->Name(), a->Value()});
+  for (auto* part = from.FirstChild(); part; part = part->NextSibling())
+    if (part->ToText()) element.text += part->Value();
   for (auto* child = from.FirstChildElement(); child; child = child->NextSiblingElement())
     element.children.push_back(copied(*child, depth + 1, file));
   return element;
@@ -49,7 +51,7 @@ Element parse_xml(std::string_view text, const std::string& file) {
     fail(file, {document.ErrorLineNum(), 0},
          "not valid XML: " + in_words(document.ErrorName()) + ", expected well-formed elements");
   if (document.RootElement() == nullptr)
-    fail(file, {1, 0}, "no XML element, expected <robot> or <mujoco>");
+    fail(file, {1, 0}, "no XML element, expected <robot>, <mujoco> or <sdf>");
   return copied(*document.RootElement(), 1, file);
 }
 

@@ -19,10 +19,10 @@ struct IncludedFile {
   int number = 0;  ///< Location::file
 };
 
-/// One element: its attributes and the elements in it. Text between elements and comments are
-/// dropped: neither URDF nor MJCF say anything there.
+/// One element: its attributes, its text without comments, and the elements in it.
 struct Element {
   std::string name;
+  std::string text;
   int line = 0;
   std::shared_ptr<const IncludedFile> file;  ///< where it stands; null: in the file that is read
   std::vector<Attribute> attributes;

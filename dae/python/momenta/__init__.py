@@ -9,7 +9,7 @@ A scene is a file, TOML text, or a Scene built in Python. SI units and radians; 
 t: time [s]; q: coordinates (nq); u: rates (nv); p: momenta (nv); sigma, lambda_: impulse and force
 multipliers of the loops (m). One Mechanism serves one thread at a time.
 
-Methods of Mechanism take and return NumPy arrays. The functions evaluate, index, sweep and view are the
+Methods of Mechanism take and return NumPy arrays. The functions evaluate, index, run, sweep and view are the
 verbs of the program: they take the same input and return what the program writes.
 """
 
@@ -17,15 +17,15 @@ from ._momenta import Mechanism, Run, SceneError, Start, __version__, forms, int
 from .plots import Study, plot_run
 from .scene import Scene
 from .sweeps import Sweep, sweep
-from .verbs import Page, evaluate, index, load, parse, view
+from .verbs import Page, evaluate, index, load, parse, run, view
 
 __all__ = [
     "Mechanism", "Page", "Run", "Scene", "SceneError", "Start", "Study", "Sweep", "__version__",
-    "evaluate", "forms", "index", "integrators", "load", "parse", "sweep", "view",
+    "evaluate", "forms", "index", "integrators", "load", "parse", "run", "sweep", "view",
 ]  # fmt: skip
 
 Run.plot = plot_run
-for _public in (Page, Scene, Study, Sweep, evaluate, index, load, parse, plot_run, sweep, view):
+for _public in (Page, Scene, Study, Sweep, evaluate, index, load, parse, plot_run, run, sweep, view):
     _public.__module__ = __name__
 plot_run.__name__, plot_run.__qualname__ = "plot", "Run.plot"
 del _public, plot_run

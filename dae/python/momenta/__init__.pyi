@@ -85,6 +85,7 @@ class _LoopKeys(TypedDict, total=False):
     offset: float
 
 class _DriveKeys(TypedDict, total=False):
+    from_: float
     joint: str
     loop: str
     coordinate: int
@@ -381,6 +382,7 @@ def evaluate(scene: _Loaded, at: _State = None) -> dict[str, Any]: ...
 def index(
     scene: _Loaded, forms: Iterable[str] = (), at: _State = None, *, progress: _Progress = None
 ) -> dict[str, Any]: ...
+def run(scene: _Loaded, **arguments: Any) -> Run: ...
 def view(scene: _Loaded) -> Page: ...
 def sweep(
     scene: _Loaded,

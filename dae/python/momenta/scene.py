@@ -24,7 +24,8 @@ class Scene:
     run = s.load().run(end=10)
 
     body, joint, loop, drive, force, spring, marker, assembly and run return the scene, so that calls
-    can be chained. Keys that are None are left out. load() reports mistakes: a SceneError, one sentence.
+    can be chained. Keys that are None are left out, and an underscore
+    at the end of one, as in from_, which Python keeps for itself. load() reports mistakes: a SceneError, one sentence.
     """
 
     def __init__(self, name="", **keys):
@@ -47,7 +48,7 @@ class Scene:
 
     def drive(self, kind, **keys):
         """Adds a drive, which prescribes a motion of a joint or a loop. `kind` is its law: polynomial,
-        harmonic, step or table. Keys: joint or loop, coordinate, and the keys of the law."""
+        harmonic, step or table. Keys: joint or loop, coordinate, and the keys of the law (from_ of a step)."""
         return self._add("drive", kind=kind, **keys)
 
     def force(self, kind, **keys):
@@ -117,7 +118,7 @@ class Scene:
         return self
 
     def _put(self, table, keys):
-        table.update({key: _plain(x) for key, x in keys.items() if x is not None})
+        table.update({key.removesuffix("_"): _plain(x) for key, x in keys.items() if x is not None})
         return self
 
 

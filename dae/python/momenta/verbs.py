@@ -1,4 +1,4 @@
-"""Reading of scenes, and the verbs evaluate, index and view of the program."""
+"""Reading of scenes, and the verbs evaluate, index, run and view of the program."""
 
 import html
 import json
@@ -11,7 +11,7 @@ from .scene import Scene
 def load(
     scene, algebra="auto", kkt="auto", *, cut="auto", loops="", free_root=False, key="", at=None
 ):
-    """A Mechanism from a scene file (TOML, URDF or MJCF), TOML text, a Scene or a dict of its keys.
+    """A Mechanism from a scene file (TOML, URDF, MJCF or SDF), TOML text, a Scene or a dict of its keys.
 
     A string with a line break is text, any other string is a path. `algebra`: auto, planar or spatial;
     `kkt`: auto, sweeps, sparse or dense; `cut`: joints that runs cut, auto for the least work or scene;
@@ -33,6 +33,14 @@ def load(
 def parse(text, name="scene", algebra="auto", kkt="auto", *, cut="auto"):
     """A Mechanism from TOML text; messages name the text by `name`."""
     return _momenta.parse(text, name, "", algebra, kkt, cut)
+
+
+def run(scene, **arguments):
+    """A Run of one form, as the verb `run` makes it: Mechanism.run of what load() makes of the scene.
+
+    `scene`: a Mechanism, or what load() takes. `arguments`: those of Mechanism.run.
+    """
+    return _ready(scene).run(**arguments)
 
 
 def evaluate(scene, at=None):

@@ -106,6 +106,20 @@ class Built(unittest.TestCase):
         self.assertEqual(set(texts), {s.load().to_toml()})
         self.assertEqual(s.load().run().status, "done")
 
+    def test_every_verb_takes_it(self):
+        s = four_bar()
+        run = momenta.run(s, form="projected", end=1)
+        self.assertEqual((run.status, run.t[-1]), ("done", 1))
+        np.testing.assert_array_equal(run["B.x"], s.load().run(form="projected", end=1)["B.x"])
+        self.assertIn("q", momenta.evaluate(s))
+        self.assertIn("<html", momenta.view(s))
+        self.assertEqual(len(momenta.sweep(s, {"body.crank.mass": [1, 2]}, watch="B.x", end=0.1)["B.x last"]), 2)
+
+    def test_a_key_that_is_a_word_of_python(self):
+        s = momenta.Scene().drive("step", joint="O", from_=0.5, to=1, duration=1)
+        self.assertEqual(s.to_dict()["drive"][0]["from"], 0.5)
+        self.assertIn("\nfrom = 0.5\n", s.to_toml())
+
     def test_it_starts_elsewhere(self):
         m = momenta.load(EXAMPLES / "four_bar" / "scene.toml", at={"v": {"O": np.float64(0.5)}})
         self.assertEqual(m.u0[0], 0.5)
@@ -148,7 +162,7 @@ class Keys(unittest.TestCase):
         "_BodyKeys": ("body", [None], {"name"}),
         "_JointKeys": ("joint", ["revolute"], {"name", "kind"}),
         "_LoopKeys": ("loop", ["distance", "coupler"], {"name", "kind"}),
-        "_DriveKeys": ("drive", ["polynomial", "harmonic", "step", "table"], {"kind", "from"}),
+        "_DriveKeys": ("drive", ["polynomial", "harmonic", "step", "table"], {"kind"}),
         "_ForceKeys": ("force", ["spring-damper", "torque", "wrench"], {"kind"}),
         "_SpringKeys": ("force", ["spring-damper"], {"kind"}),
         "_MarkerKeys": ("marker", [None], {"name", "body"}),
@@ -162,7 +176,7 @@ class Keys(unittest.TestCase):
         written = {c.name: c for c in stub.body if isinstance(c, ast.ClassDef)}
 
         def keys_of(name):
-            own = {item.target.id for item in written[name].body if isinstance(item, ast.AnnAssign)}
+            own = {item.target.id.removesuffix("_") for item in written[name].body if isinstance(item, ast.AnnAssign)}
             return own.union(*(keys_of(b.id) for b in written[name].bases if b.id in written))
 
         for name, (key, kinds, others) in self.tables.items():

@@ -1,0 +1,220 @@
+// <joint>: two links, a pose, and axes.
+//
+// Gears: <joint type="gearbox"> has θ1 = −ratio θ2, θ1 the angle from the reference body to the
+// parent about `axis`, θ2 that from the reference body to the child about `axis2`; these angles are
+// coordinates of joints that the file has between the same links. <mimic> has
+// q = multiplier (q_leader − reference) + offset.
+
+#include <momenta/core/scene/kinds.h>
+#include <momenta/core/scene/near_name.h>
+#include <momenta/core/scene/sdf/sdf_model.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace momenta::reading {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr std::array<std::string_view, 9> types{"revolute",  "continuous", "prismatic",
+                                                "fixed",     "ball",       "universal",
+                                                "revolute2", "screw",      "gearbox"};
+constexpr std::array kind_of_type{JointKind::revolute,  JointKind::revolute,  JointKind::prismatic,
+                                  JointKind::weld,      JointKind::spherical, JointKind::universal,
+                                  JointKind::universal, JointKind::helical};
+
+/// The direction in <axis> or <axis2>, in world axes.
+Vector3d read_axis(const Node& axis, const std::string& scope, const std::string& joint,
+                   SdfModel& model) {
+  Vector3d along = Vector3d::UnitZ();
+  std::string in = joint;
+  const auto whole_model = axis.child("use_parent_model_frame");
+  if (model.older_than(5) || (whole_model && whole_model->content_flag()))
+    in = scope.empty() ? "world" : model.frames.full(scope, "__model__", axis);
+  if (const auto xyz = axis.child("xyz")) {
+    const std::vector<double> three = xyz->content_numbers(3);
+    along = {three[0], three[1], three[2]};
+    const double largest = along.lpNorm<Eigen::Infinity>();
+    if (largest == 0) xyz->fail("is the zero vector, expected a direction");
+    if (!is_unit(along)) along = (along / largest).normalized();
+    if (const std::string frame = xyz->text("expressed_in", ""); !frame.empty())
+      in = model.frames.full(scope, frame, *xyz);
+  }
+  return model.frames.world(in, axis).turn * along;
+}
+
+/// Springs and dampers of an axis.
+void read_dynamics(const Node& axis, JointSpec& joint, Remarks& remarks) {
+  if (axis.child("limit")) remarks.left_out("joint limits");
+  const auto dynamics = axis.child("dynamics");
+  if (!dynamics) return;
+  const auto number = [&](const char* name) {
+    const auto node = dynamics->child(name);
+    return node ? node->content_number() : 0;
+  };
+  joint.damping = number("damping");
+  joint.stiffness = number("spring_stiffness");
+  joint.rest = joint.stiffness == 0 ? 0 : number("spring_reference");
+  if (number("friction") != 0) remarks.left_out("friction of joints");
+}
+
+/// n² I of the motor's rotor, as Drake writes it.
+void read_rotor(const Node& node, JointSpec& joint) {
+  const auto inertia = node.child("drake:rotor_inertia"), ratio = node.child("drake:gear_ratio");
+  if (!inertia) return;
+  const double n = ratio ? ratio->content_number() : 1, own = inertia->content_number();
+  if (own < 0) inertia->fail("is " + digits(own) + ", expected a number >= 0 [kg m² or kg]");
+  if (!has_one_coordinate(joint.kind))
+    inertia->fail(
+        "is of a joint that has no rate of its own for a rotor, expected a revolute, "
+        "prismatic or screw joint");
+  joint.rotor_inertia = {n * n * own};
+}
+
+/// Displacement per angle [m/rad].
+double read_pitch(const Node& node) {
+  if (const auto turn = node.child("screw_thread_pitch"))
+    return turn->content_number() / (2 * std::numbers::pi);
+  if (const auto old = node.child("thread_pitch")) {
+    if (old->content_number() == 0) old->fail("is 0, expected another number");
+    return -1 / old->content_number();
+  }
+  node.fail("has no <screw_thread_pitch>, expected one [m/turn]");
+}
+
+void read_mimic(const Node& axis, int number, const std::string& scope, SdfJoint& joint,
+                const SdfModel& model, std::vector<SdfCoupler>& couplers) {
+  const auto mimic = axis.child("mimic");
+  if (!mimic) return;
+  const auto value = [&](const char* name, double otherwise) {
+    const auto node = mimic->child(name);
+    return node ? node->content_number() : otherwise;
+  };
+  constexpr std::array<std::string_view, 2> axes{"axis", "axis2"};
+  const double multiplier = value("multiplier", 1);
+  SdfCoupler coupler;
+  coupler.node = *mimic;
+  coupler.name = joint.spec.name + " mimic";
+  coupler.terms.push_back({joint.scoped, number, 1});
+  if (multiplier != 0)
+    coupler.terms.push_back({model.frames.full(scope, mimic->text("joint"), *mimic),
+                             static_cast<int>(mimic->word("axis", axes, 0)), -multiplier});
+  coupler.offset = value("offset", 0) - multiplier * value("reference", 0);
+  couplers.push_back(coupler);
+}
+
+/// A universal joint with springs or dampers is two revolute ones and a body without mass between,
+/// so that each axis has its own.
+void split(SdfJoint joint, const JointSpec& first, const JointSpec& second, SdfModel& model) {
+  BodySpec cross;
+  cross.at = joint.spec.at;
+  cross.name = model.bodies.free(joint.spec.name + " cross");
+  model.poses[cross.name] = {joint.origin, Eigen::Quaterniond::Identity()};
+  model.scene.bodies.push_back(cross);
+  SdfJoint outer = joint;
+  joint.spec.kind = outer.spec.kind = JointKind::revolute;
+  joint.spec.damping = first.damping, outer.spec.damping = second.damping;
+  joint.spec.stiffness = first.stiffness, outer.spec.stiffness = second.stiffness;
+  joint.spec.rest = first.rest, outer.spec.rest = second.rest;
+  joint.child = outer.parent = cross.name;
+  outer.axis = joint.axis2;
+  outer.spec.name = model.edges.free(joint.spec.name + " axis2");
+  outer.scoped += " axis2";
+  joint.carries = outer.carries = true;
+  model.joints.push_back(joint);
+  model.joints.push_back(outer);
+}
+
+}  // namespace
+
+std::string SdfModel::body(const std::string& scope, const std::string& frame,
+                           const Node& asked) const {
+  const std::string link = frames.link(frames.full(scope, frame, asked), asked);
+  return link == "world" ? "ground" : body_of.at(link);
+}
+
+void read_sdf_joint(const Node& node, const std::string& scope, SdfModel& model,
+                    std::vector<SdfCoupler>& couplers) {
+  node.text("type");
+  const std::size_t type = node.word("type", types, 0);
+  if (type == kind_of_type.size()) {
+    model.gears.emplace_back(scope, node);
+    return;
+  }
+  SdfJoint joint;
+  joint.node = node;
+  joint.spec.at = node.at();
+  joint.spec.kind = kind_of_type[type];
+  joint.spec.name = model.edges.free(node.text("name"));
+  joint.scoped = scope + node.text("name");
+  const Node parent = node.required("parent"), child = node.required("child");
+  joint.parent = model.body(scope, parent.content(), parent);
+  joint.child = model.body(scope, child.content(), child);
+  if (joint.parent == joint.child)
+    node.fail("joins link " + in_quotes(joint.parent) + " to itself, expected two links");
+  const auto still = [&](const std::string& body) {
+    return body == "ground" || model.fixed.contains(body);
+  };
+  if (still(joint.parent) && still(joint.child))
+    return model.remarks.left_out("joints between links that do not move");
+  const std::string frame =
+      model.frames.has(joint.scoped + " joint") ? joint.scoped + " joint" : joint.scoped;
+  joint.origin = model.frames.world(frame, node).origin;
+  if (joint.spec.kind == JointKind::helical) joint.spec.pitch = read_pitch(node);
+  read_rotor(node, joint.spec);
+
+  std::array<JointSpec, 2> springs;
+  const bool two = joint.spec.kind == JointKind::universal;
+  constexpr std::array<const char*, 2> names{"axis", "axis2"};
+  for (int i = 0; has_axis(joint.spec.kind) && i < (two ? 2 : 1); ++i) {
+    const Node axis = node.required(names[static_cast<std::size_t>(i)]);
+    (i == 0 ? joint.axis : joint.axis2) = read_axis(axis, scope, frame, model);
+    read_dynamics(axis, springs[static_cast<std::size_t>(i)], model.remarks);
+    read_mimic(axis, i, scope, joint, model, couplers);
+  }
+  if (two && joint.axis.cross(joint.axis2).norm() < parallel_slack)
+    node.fail("has axes that are parallel, expected two directions");
+  const auto sprung = [](const JointSpec& s) { return s.damping != 0 || s.stiffness != 0; };
+  if (two && (sprung(springs[0]) || sprung(springs[1])))
+    return split(joint, springs[0], springs[1], model);
+  joint.spec.damping = springs[0].damping;
+  joint.spec.stiffness = springs[0].stiffness;
+  joint.spec.rest = springs[0].rest;
+  joint.carries =
+      joint.spec.kind == JointKind::helical || sprung(springs[0]) || has_rotor(joint.spec);
+  model.joints.push_back(joint);
+}
+
+SdfCoupler read_sdf_gearbox(const Node& node, const std::string& scope, SdfModel& model) {
+  SdfCoupler coupler;
+  coupler.node = node;
+  coupler.name = model.edges.free(node.text("name"));
+  const Node reference = node.required("gearbox_reference_body"),
+             ratio = node.required("gearbox_ratio");
+  if (ratio.content_number() == 0) ratio.fail("is 0, expected another number");
+  const std::string body = model.body(scope, reference.content(), reference);
+  const auto term = [&](const char* link, const char* axis, double factor) {
+    const Node at = node.required(link);
+    const std::string other = model.body(scope, at.content(), at);
+    const std::string frame = scope + node.text("name");
+    const Vector3d along = read_axis(node.required(axis), scope, frame, model);
+    for (const SdfJoint& joint : model.joints) {
+      const bool ahead = joint.parent == body && joint.child == other;
+      const bool back = joint.parent == other && joint.child == body;
+      if ((!ahead && !back) || joint.spec.kind != JointKind::revolute) continue;
+      if (joint.axis.cross(along).norm() > parallel_slack) continue;
+      const double sign = (joint.axis.dot(along) > 0) == ahead ? 1 : -1;
+      coupler.terms.push_back({joint.scoped, 0, sign * factor});
+      return;
+    }
+    at.fail("has no revolute joint about the same axis with the reference body " + in_quotes(body) +
+            ", expected one whose angle the gear takes");
+  };
+  term("parent", "axis", 1);
+  term("child", "axis2", ratio.content_number());
+  return coupler;
+}
+
+}  // namespace momenta::reading

@@ -1,0 +1,120 @@
+// The root of a URDF, the only link that is no joint's child, hangs on the ground: welded, or free
+// where that is asked for. URDF has no way to say which.
+
+#include <momenta/core/scene/near_name.h>
+#include <momenta/core/scene/urdf/urdf.h>
+#include <momenta/core/scene/validate.h>
+
+#include <algorithm>
+#include <map>
+
+namespace momenta::reading {
+
+bool hang_root(Scene& scene, const Node& robot, const std::vector<Node>& links, bool free,
+               FreeNames& edges) {
+  std::map<std::string, const Node*> roots;
+  for (const Node& link : links) roots.emplace(link.text("name"), &link);
+  for (const JointSpec& joint : scene.joints) {
+    const auto known = [&](const std::string& link, const char* what) {
+      if (roots.contains(link)) return;
+      std::vector<std::string_view> names;
+      for (const BodySpec& body : scene.bodies) names.push_back(body.name);
+      throw SceneError(scene.where(joint.at) + "joint " + in_quotes(joint.name) + ": " + what +
+                       " is " + in_quotes(link) + ", expected the name of a link" +
+                       did_you_mean(link, names));
+    };
+    known(joint.parent, "parent");
+    known(joint.child, "child");
+  }
+  for (const JointSpec& joint : scene.joints) roots.erase(joint.child);
+  if (roots.empty()) {  // the joints form a cycle, which the sentence names
+    validate(scene);
+    return false;
+  }
+  if (roots.size() > 1)
+    robot.fail("has two links that are no joint's child, " + in_quotes(roots.begin()->first) +
+               " and " + in_quotes(std::next(roots.begin())->first) +
+               ", expected one root and a tree below it");
+  const std::string root = roots.begin()->first;
+  if (root == "ground") {
+    if (free)
+      roots.begin()->second->fail(
+          "is the root and called ground, which cannot be free; expected "
+          "another name");
+    std::erase_if(scene.bodies, [](const BodySpec& body) { return body.name == "ground"; });
+    return false;
+  }
+  JointSpec joint;
+  joint.at = roots.begin()->second->at();
+  joint.name = edges.free("root");
+  joint.kind = free ? JointKind::free : JointKind::weld;
+  joint.child = root;
+  scene.joints.insert(scene.joints.begin(), joint);
+  return !free;
+}
+
+namespace {
+
+/// The joints from the root outwards fall into branches, one for each joint of the root that moves.
+/// Two branches are tied where a loop closes from one to the other, or to the root or the ground.
+class Branches {
+ public:
+  explicit Branches(const Scene& scene) {
+    for (const JointSpec& joint : scene.joints) inward_[joint.child] = &joint;
+    for (const JointSpec& joint : scene.joints)
+      if (const std::string branch = of(joint.child); !branch.empty())
+        tied_.emplace(branch, branch);
+    for (const LoopSpec& loop : scene.loops)
+      if (loop.kind != LoopKind::coupler) tie(of(loop.parent), of(loop.child));
+  }
+  /// How many there are, those that are tied counted as one; none for those tied to the ground.
+  int count() const {
+    int all = 0;
+    for (const auto& [branch, to] : tied_) all += branch == to && !branch.empty();
+    return all;
+  }
+
+ private:
+  /// The link at which a branch begins; empty for the ground, and what is welded to it.
+  std::string of(const std::string& link) {
+    std::vector<const JointSpec*> way;  // inwards, to a link whose branch is known
+    for (std::string at = link; !begin_.contains(at); at = way.back()->parent)
+      way.push_back(inward_.at(at));
+    for (; !way.empty(); way.pop_back()) {
+      const JointSpec& joint = *way.back();
+      const std::string& inner = begin_.at(joint.parent);
+      const bool moves = joint.kind != JointKind::weld;
+      begin_[joint.child] = inner.empty() && moves ? joint.child : inner;
+    }
+    return begin_.at(link);
+  }
+  std::string top(std::string branch) const {
+    for (auto at = tied_.find(branch); at != tied_.end() && at->second != branch;
+         at = tied_.find(branch))
+      branch = at->second;
+    return branch;
+  }
+  void tie(const std::string& one, const std::string& two) {
+    const std::string a = top(one), b = top(two);
+    if (a != b) tied_[std::max(a, b)] = std::min(a, b);  // the empty name, the ground, is least
+  }
+
+  std::map<std::string, const JointSpec*> inward_;
+  std::map<std::string, std::string> begin_{{"ground", ""}};
+  std::map<std::string, std::string> tied_;  ///< a branch to one it is tied to, or to itself
+};
+
+}  // namespace
+
+void tell_of_fixed_root(const Scene& scene, Remarks& remarks) {
+  const JointSpec& root = scene.joints.front();
+  const auto link = std::find_if(scene.bodies.begin(), scene.bodies.end(),
+                                 [&](const BodySpec& body) { return body.name == root.child; });
+  const int branches = Branches(scene).count();
+  if (link == scene.bodies.end() || link->mass == 0 || branches < 2) return;
+  remarks.say("root link " + in_quotes(link->name) +
+              " is fixed to the ground, but has a mass and " + std::to_string(branches) +
+              " branches that no loop ties to each other: if it floats, give --free-root");
+}
+
+}  // namespace momenta::reading
