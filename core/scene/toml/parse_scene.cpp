@@ -19,8 +19,8 @@ Scene parse_scene(std::string_view text, const std::string& file,
   reading::Value root = reading::parse_toml(text, file);
   reading::set_numbers(root, settings);
   const reading::Fields table(root, "", file);
-  table.allow(
-      {"name", "gravity", "body", "joint", "loop", "drive", "force", "marker", "assembly", "run"});
+  table.allow({"name", "gravity", "body", "joint", "loop", "drive", "force", "marker", "visual",
+               "assembly", "run"});
 
   Scene scene;
   scene.file = file;
@@ -38,6 +38,8 @@ Scene parse_scene(std::string_view text, const std::string& file,
     scene.forces.push_back(reading::read_force(t));
   for (const reading::Fields& t : table.tables("marker", "marker"))
     scene.markers.push_back(reading::read_marker(t));
+  for (const reading::Fields& t : table.tables("visual", "visual"))
+    scene.visuals.push_back(reading::read_visual(t));
   if (const auto assembly = table.table("assembly")) {
     assembly->allow({"hold"});
     scene.held = assembly->texts("hold");
