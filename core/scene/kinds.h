@@ -1,5 +1,5 @@
 #pragma once
-// The kinds of joints, loops, drives, forces and shapes, by name.
+// The kinds of joints, loops, drives, forces, shapes and visuals, by name.
 
 #include <momenta/core/scene/scene.h>
 
@@ -23,6 +23,8 @@ inline constexpr std::array<std::string_view, 5> force_kinds{
     "spring-damper", "bushing", "coordinate-spring", "torque", "wrench"};
 inline constexpr std::array<std::string_view, 5> shape_kinds{"rod", "box", "cylinder", "sphere",
                                                              "point"};
+inline constexpr std::array<std::string_view, 6> visual_kinds{"box",      "sphere",    "capsule",
+                                                              "cylinder", "ellipsoid", "mesh"};
 
 static_assert(static_cast<std::size_t>(JointKind::user) == joint_kinds.size());
 static_assert(static_cast<std::size_t>(LoopKind::coupler) + 1 == loop_kinds.size());

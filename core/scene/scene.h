@@ -3,6 +3,8 @@
 // in rad. Readers (read_scene) fill it from files; programs may fill it by hand.
 
 #include <momenta/core/scene/joint_kind.h>
+#include <momenta/core/scene/location.h>
+#include <momenta/core/scene/visual.h>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -17,13 +19,6 @@
 namespace momenta {
 
 class JointFormula;  // core/scene/joint_formula.h
-
-/// A place in a file; line 0 means that the thing did not come from a file.
-struct Location {
-  int line = 0;    ///< from 1
-  int column = 0;  ///< from 1, in characters; 0: not known
-  int file = 0;    ///< 0: Scene::file; from 1: the files of Scene::included
-};
 
 /// Bad input. what() is one sentence: "file:line:column: what was found, what was expected".
 class SceneError : public std::runtime_error {
@@ -325,6 +320,7 @@ struct Scene {
   std::vector<DriveSpec> drives;                      ///< prescribed motion
   std::vector<ForceSpec> forces;          ///< forces besides gravity and those of joints
   std::vector<MarkerSpec> markers;        ///< points to be reported
+  std::vector<VisualSpec> visuals;        ///< solids to be drawn; no effect on motion
   std::vector<std::string> held;          ///< [assembly] hold: joints whose q and u assembly keeps
   Location held_at;                       ///< where the file has that list
   RunDefaults run;                        ///< [run] end, step, leak, samples

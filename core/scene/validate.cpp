@@ -218,6 +218,26 @@ void check_forces(const Scene& scene, const Census& census) {
   }
 }
 
+void check_visuals(const Scene& scene, const Census& census) {
+  for (const VisualSpec& visual : scene.visuals) {
+    const std::string who = "visual of body " + in_quotes(visual.body);
+    census.require_body(visual.body, true, visual.at, who, "body");
+    const auto& kinds = reading::visual_kinds;
+    require(std::find(kinds.begin(), kinds.end(), visual.kind) != kinds.end(), scene, visual.at,
+            who, "kind must be box, sphere, capsule, cylinder, ellipsoid or mesh");
+    const bool mesh = visual.kind == "mesh";
+    require(visual.size.allFinite() && (mesh || visual.size.minCoeff() >= 0), scene, visual.at, who,
+            "size must be finite and >= 0 [m]");
+    require(mesh != visual.file.empty(), scene, visual.at, who,
+            "file must be given for a mesh, and for no other kind");
+    require(visual.position.allFinite(), scene, visual.at, who, "position must be finite [m]");
+    require(std::abs(visual.rotation.norm() - 1) <= reading::norm_slack, scene, visual.at, who,
+            "rotation must be a unit quaternion within 1e-6");
+    require(!visual.colour || (visual.colour->minCoeff() >= 0 && visual.colour->maxCoeff() <= 1),
+            scene, visual.at, who, "colour must be red, green, blue from 0 to 1");
+  }
+}
+
 void check_rest(const Scene& scene, const Census& census) {
   for (const MarkerSpec& marker : scene.markers) {
     const std::string who = "marker " + in_quotes(marker.name);
@@ -250,6 +270,7 @@ void validate(const Scene& scene) {
   check_loops(scene, census);
   reading::check_drives(scene, census);
   check_forces(scene, census);
+  check_visuals(scene, census);
   check_rest(scene, census);
   reading::check_tree(scene);
 }

@@ -273,6 +273,7 @@ class RotorFold {
     std::erase_if(s.loops, went);
     std::erase_if(s.bodies, [&](const BodySpec& b) { return gone_bodies_.contains(b.name); });
     std::erase_if(s.markers, [&](const MarkerSpec& m) { return gone_bodies_.contains(m.body); });
+    s.visuals.clear();  // what runs integrate is not drawn
     std::erase_if(s.held, [&](const std::string& name) { return gone_.contains(name); });
   }
 

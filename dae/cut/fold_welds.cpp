@@ -188,6 +188,7 @@ FoldedScene fold_welds(const Scene& given) {
     marker.body = place.carrier;
     marker.point = place.point(marker.point);
   }
+  scene.visuals.clear();  // what runs integrate is not drawn
   std::erase_if(scene.held, [&](const std::string& joint) {
     return std::any_of(weld_of.begin(), weld_of.end(), [&](const auto& weld) {
       return weld.second == joint && !kept.contains(joint);

@@ -107,6 +107,16 @@ inline std::string difference(const Scene& a, const Scene& b) {
          note(x.name == y.name && x.body == y.body, what);
          numbers(x.point, y.point, what);
        });
+  each(a.visuals, b.visuals, "visual",
+       [&](const VisualSpec& x, const VisualSpec& y, const auto& what) {
+         note(x.body == y.body && x.kind == y.kind && x.file == y.file &&
+                  x.colour.has_value() == y.colour.has_value(),
+              what);
+         numbers(x.size, y.size, what + " size");
+         numbers(x.position, y.position, what + " position");
+         numbers(x.rotation.coeffs(), y.rotation.coeffs(), what + " rotation");
+         if (x.colour && y.colour) numbers(*x.colour, *y.colour, what + " colour");
+       });
   number(a.run.end_time, b.run.end_time, "run end");
   number(a.run.step.value_or(-1), b.run.step.value_or(-1), "run step");
   number(a.run.leak.value_or(-1), b.run.leak.value_or(-1), "run leak");

@@ -144,7 +144,9 @@ TEST_F(Program, ReadsAndConvertsRobots) {
   const std::string written = (folder_ / "gripper.toml").string();
   const Outcome told = call("convert " + gripper + " '" + written + "'");
   EXPECT_EQ(told.status, 0) << told.err;
-  EXPECT_NE(told.err.find("2f85.xml: left out: actuators, which --control lets act (1)\n"), std::string::npos) << told.err;
+  EXPECT_NE(told.err.find("2f85.xml: left out: actuators, which --control lets act (1)\n"),
+            std::string::npos)
+      << told.err;
   EXPECT_EQ(call("convert " + gripper + " --quiet").err, "");
   EXPECT_EQ(call("convert " + gripper).out, text_of(written));
   for (const std::string verb : {"check ", "assemble "}) {

@@ -244,6 +244,40 @@ axes = "body"
 name = "m"
 body = "rod"
 point = [0.1, 0, 0]
+[[visual]]
+body = "rod"
+kind = "box"
+size = [0.1, 0.2, 0.3]
+position = [1, -0.0, 2]
+rotation = { rpy = [0.1, 0.2, 0.3] }
+colour = [0.1, 0, 1]
+[[visual]]
+body = "ground"
+kind = "sphere"
+radius = 0.1
+[[visual]]
+body = "rod"
+kind = "capsule"
+length = 0.1
+radius = 0.3
+[[visual]]
+body = "rod"
+kind = "cylinder"
+length = 0.3
+radius = 0.7
+[[visual]]
+body = "box"
+kind = "ellipsoid"
+size = [0.1, 0.2, 0.3]
+[[visual]]
+body = "box"
+kind = "mesh"
+file = "meshes/a \"b\".stl"
+scale = [0.001, 1, -1]
+[[visual]]
+body = "box"
+kind = "mesh"
+file = "a.obj"
 [assembly]
 hold = ["A"]
 [run]

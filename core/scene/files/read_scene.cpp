@@ -37,8 +37,7 @@ void expect_own_options(const std::string& file, const ReadOptions& options, boo
 /// URDF, MJCF or SDF, by the root element.
 Scene parse_robot(std::string_view text, const std::string& file, const ReadOptions& options) {
   const reading::Element root = reading::parse_xml(text, file);
-  const bool urdf = root.name == "robot", mjcf = root.name == "mujoco",
-             sdf = root.name == "sdf";
+  const bool urdf = root.name == "robot", mjcf = root.name == "mujoco", sdf = root.name == "sdf";
   if (!urdf && !mjcf && !sdf)
     reading::fail(file, {root.line, 0},
                   "the root element is <" + reading::on_one_line(root.name) +

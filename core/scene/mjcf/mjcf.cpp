@@ -92,9 +92,9 @@ Scene read_mjcf(const Element& element, const std::string& file, const std::stri
   for (const Node& node : root.children("equality")) read_equality(node, model);
   read_keys(root.children("keyframe"), key, model);
   for (const Node& node : root.children()) {
-    constexpr std::array<std::string_view, 9> read{
-        "compiler", "option",   "default",  "worldbody",   "tendon",
-        "actuator", "equality", "keyframe", attached_model};
+    constexpr std::array<std::string_view, 9> read{"compiler",  "option",   "default",
+                                                   "worldbody", "tendon",   "actuator",
+                                                   "equality",  "keyframe", attached_model};
     if (std::find(read.begin(), read.end(), node.name()) == read.end())
       count_left_out(node, model.remarks);
   }

@@ -22,7 +22,7 @@ Scene parse_scene(std::string_view text, const std::string& file,
   const reading::Parameters parameters(root, file);
   const reading::Fields table(root, "", file, &parameters);
   table.allow({"name", "gravity", "parameters", "require", "body", "joint", "loop", "drive",
-               "force", "marker", "assembly", "run"});
+               "force", "marker", "visual", "assembly", "run"});
   reading::check_requirements(root, parameters, file);
 
   Scene scene;
@@ -41,6 +41,8 @@ Scene parse_scene(std::string_view text, const std::string& file,
     scene.forces.push_back(reading::read_force(t));
   for (const reading::Fields& t : table.tables("marker", "marker"))
     scene.markers.push_back(reading::read_marker(t));
+  for (const reading::Fields& t : table.tables("visual", "visual"))
+    scene.visuals.push_back(reading::read_visual(t));
   if (const auto assembly = table.table("assembly")) {
     assembly->allow({"hold"});
     scene.held = assembly->texts("hold");

@@ -18,6 +18,7 @@ LoopSpec read_loop(const Fields& table, std::span<const DriveSpec> drives);
 DriveSpec read_drive(const Fields& table);
 ForceSpec read_force(const Fields& table);
 MarkerSpec read_marker(const Fields& table);
+VisualSpec read_visual(const Fields& table);
 RunDefaults read_run(const Fields& table);
 
 /// The value of `kind`, one of `kinds`; else fails with the kinds there are. `others` are those of

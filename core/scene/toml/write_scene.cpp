@@ -27,6 +27,11 @@ class TomlText {
     if (!same(v, otherwise)) put(key, list({v[0], v[1], v[2]}));
   }
 
+  void rotation(const Eigen::Quaterniond& r) {
+    if (!same(r.w(), 1) || !same(r.vec(), Vector3d::Zero()))
+      put("rotation", "{ quaternion = " + list({r.w(), r.x(), r.y(), r.z()}) + " }");
+  }
+
   /// TOML's whole numbers have no minus zero and end at 2^63.
   static std::string digits(double value) {
     const bool large = std::abs(value) >= 1e15, minus_zero = value == 0 && std::signbit(value);
@@ -110,16 +115,11 @@ void write_ends(const Edge& e, TomlText& t) {
                         (two ? "child = " + three(e.origin_child) : std::string()) + " }");
 }
 
-void write_rotation(const Eigen::Quaterniond& r, TomlText& t) {
-  if (!TomlText::same(r.w(), 1) || !TomlText::same(r.vec(), Vector3d::Zero()))
-    t.put("rotation", "{ quaternion = " + TomlText::list({r.w(), r.x(), r.y(), r.z()}) + " }");
-}
-
 /// What joints and loops have alike. `has_axis`: of this kind.
 template <class Edge>
 void write_frames(const Edge& e, bool has_axis, TomlText& t) {
   write_ends(e, t);
-  write_rotation(e.rotation, t);
+  t.rotation(e.rotation);
   if (!has_axis) return;
   t.vector("axis", e.axis, Vector3d::UnitZ());
   t.vector("axis2", e.axis2);
@@ -207,7 +207,7 @@ void write_force(const ForceSpec& force, TomlText& t) {
     t.number("rest", force.rest);
   } else if (force.kind == "bushing") {
     write_ends(force, t);
-    write_rotation(force.rotation, t);
+    t.rotation(force.rotation);
     t.number("stiffness", force.stiffness);
     t.number("damping", force.damping);
     t.number("rotational_stiffness", force.rotational_stiffness);
@@ -227,6 +227,26 @@ void write_force(const ForceSpec& force, TomlText& t) {
     t.vector("torque", force.torque);
     if (force.in_body_axes) t.word("axes", "body");
   }
+}
+
+void write_visual(const VisualSpec& visual, TomlText& t) {
+  t.open("[[visual]]");
+  t.word("body", visual.body);
+  t.word("kind", visual.kind);
+  const Vector3d& s = visual.size;
+  if (visual.kind == "mesh") {
+    t.word("file", visual.file);
+    t.vector("scale", s, Vector3d::Ones());
+  } else if (visual.kind == "box" || visual.kind == "ellipsoid") {
+    t.numbers("size", {s[0], s[1], s[2]});
+  } else {
+    const bool round = visual.kind == "sphere";
+    if (!round) t.put("length", TomlText::digits(s[0]));
+    t.put("radius", TomlText::digits(s[round ? 0 : 1]));
+  }
+  t.vector("position", visual.position);
+  t.rotation(visual.rotation);
+  if (visual.colour) t.numbers("colour", {visual.colour->begin(), visual.colour->end()});
 }
 
 void write_run(const RunDefaults& run, TomlText& t) {
@@ -263,6 +283,7 @@ std::string scene_text(const Scene& scene) {
     t.word("body", marker.body);
     t.vector("point", marker.point);
   }
+  for (const VisualSpec& visual : scene.visuals) write_visual(visual, t);
   if (!scene.held.empty()) {
     t.open("[assembly]");
     t.put("hold", TomlText::words(scene.held));

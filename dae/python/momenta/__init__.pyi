@@ -44,6 +44,7 @@ class _SceneKeys(TypedDict, total=False):
     drive: Sequence[Mapping[str, Any]]
     force: Sequence[Mapping[str, Any]]
     marker: Sequence[Mapping[str, Any]]
+    visual: Sequence[Mapping[str, Any]]
     assembly: Mapping[str, Any]
     run: Mapping[str, Any]
 
@@ -122,6 +123,16 @@ class _ForceKeys(_SpringKeys, total=False):
 class _MarkerKeys(TypedDict, total=False):
     point: _Vector
 
+class _VisualKeys(TypedDict, total=False):
+    size: _Vector
+    length: float
+    radius: float
+    file: str
+    scale: _Vector
+    position: _Vector
+    rotation: _Rotation
+    colour: _Vector
+
 class _AssemblyKeys(TypedDict, total=False):
     hold: Sequence[str]
 
@@ -158,6 +169,7 @@ class Scene:
     def force(self, kind: str, **keys: Unpack[_ForceKeys]) -> Scene: ...
     def spring(self, **keys: Unpack[_SpringKeys]) -> Scene: ...
     def marker(self, name: str, body: str, **keys: Unpack[_MarkerKeys]) -> Scene: ...
+    def visual(self, body: str, kind: str, **keys: Unpack[_VisualKeys]) -> Scene: ...
     def assembly(self, **keys: Unpack[_AssemblyKeys]) -> Scene: ...
     def run(self, **keys: Unpack[_RunTableKeys]) -> Scene: ...
     @classmethod

@@ -11,7 +11,7 @@ import re
 from . import _momenta
 
 # Keys of a scene whose value is a list of tables, and keys whose value is one table.
-_LISTS = ("body", "joint", "loop", "drive", "force", "marker")
+_LISTS = ("body", "joint", "loop", "drive", "force", "marker", "visual")
 _TABLES = ("assembly", "run")
 
 
@@ -23,7 +23,7 @@ class Scene:
     s.joint('O', 'revolute', child='rod', position=0.5)
     run = s.load().run(end=10)
 
-    body, joint, loop, drive, force, spring, marker, assembly and run return the scene, so that calls
+    body, joint, loop, drive, force, spring, marker, visual, assembly and run return the scene, so that calls
     can be chained. Keys that are None are left out, and an underscore
     at the end of one, as in from_, which Python keeps for itself. load() reports mistakes: a SceneError, one sentence.
     """
@@ -64,6 +64,11 @@ class Scene:
     def marker(self, name, body, **keys):
         """Adds a point of a body whose motion is recorded: point [m], in body axes."""
         return self._add("marker", name=name, body=body, **keys)
+
+    def visual(self, body, kind, **keys):
+        """Adds a solid that is drawn and has no effect on motion: position [m], rotation, colour; size,
+        length, radius [m] by its kind; file and scale of a mesh."""
+        return self._add("visual", body=body, kind=kind, **keys)
 
     def assembly(self, **keys):
         """Sets keys of [assembly]: hold, the joints that assembly does not move."""

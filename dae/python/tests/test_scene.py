@@ -166,6 +166,7 @@ class Keys(unittest.TestCase):
         "_ForceKeys": ("force", ["spring-damper", "torque", "wrench"], {"kind"}),
         "_SpringKeys": ("force", ["spring-damper"], {"kind"}),
         "_MarkerKeys": ("marker", [None], {"name", "body"}),
+        "_VisualKeys": ("visual", ["box", "capsule", "mesh"], {"body", "kind"}),
         "_AssemblyKeys": ("assembly", [None], set()),
         "_RunTableKeys": ("run", [None], set()),
         "_SceneKeys": (None, [None], {"name"}),
