@@ -8,6 +8,7 @@
 #include <momenta/dae/study/state_values.h>
 
 #include <cmath>
+#include <map>
 
 namespace momenta::dae_sdf {
 namespace {
@@ -28,6 +29,20 @@ StateValues values_at(const Mechanism& mechanism, const VectorXd& q, const Vecto
   given.v = u;
   given.p = given.tau = VectorXd::Zero(mechanism.nv());
   return evaluate_state(mechanism, given);
+}
+
+/// The place of a joint's rate.
+Eigen::Index place(const Mechanism& mechanism, const std::string& joint) {
+  for (const Tree::Body& body : mechanism.tree().bodies)
+    if (body.joint == joint) return body.u;
+  throw std::out_of_range(joint);
+}
+VectorXd in_order(const Mechanism& mechanism, const std::map<std::string, double>& rates) {
+  VectorXd u(mechanism.nv());
+  for (const auto& [joint, rate] : rates)
+    for (const JointSpec& in_tree : mechanism.scene().joints)
+      if (in_tree.name == joint) u[place(mechanism, joint)] = rate;
+  return u;
 }
 
 /// Uniform rods, as of examples/four_bar, at an angle to the ground's x axis.
@@ -83,39 +98,37 @@ TEST_F(SdfLoops, FourBarAsInToml) {
   ASSERT_EQ(scene.loops.size(), 1U);
   EXPECT_EQ(scene.loops[0].name, "B");
   const Mechanism sdf(scene);
-  const VectorXd mine = VectorXd(Vector3d(u[0], u[2], u[1]));  // O, C, A: breadth first
-  const StateValues found = values_at(sdf, VectorXd::Zero(3), mine);
+  const std::map<std::string, double> rates{
+      {"O", u[0]}, {"A", u[1]}, {"C", u[2]}, {"B", turning[1] - turning[0]}};
+  const StateValues found = values_at(sdf, VectorXd::Zero(3), in_order(sdf, rates));
   EXPECT_LE(found.phi.norm(), 1e-14);
   EXPECT_LE(found.phidot.norm(), 1e-12);
-  Eigen::PermutationMatrix<3> order(Eigen::Vector3i(0, 2, 1));
-  EXPECT_LE((found.mass - order * expected.mass * order.transpose()).norm(),
-            1e-13 * expected.mass.norm());
-  EXPECT_LE((found.constrained - order * expected.constrained).norm(),
-            1e-12 * expected.constrained.norm());
+  for (const char* i : {"O", "A", "C"})
+    for (const char* k : {"O", "A", "C"})
+      EXPECT_NEAR(found.mass(place(sdf, i), place(sdf, k)),
+                  expected.mass(place(toml, i), place(toml, k)), 1e-13 * expected.mass.norm());
+  for (const char* i : {"O", "A", "C"})
+    EXPECT_NEAR(found.constrained[place(sdf, i)], expected.constrained[place(toml, i)],
+                1e-12 * expected.constrained.norm());
 
-  // a damper at B has B in the tree, written from its far side: the same mechanism, cut elsewhere
+  // a damper at B has B in the tree, from its far side: the same mechanism, cut at A instead
   const std::string damper = "<dynamics><damping>1e-300</damping></dynamics>";
   const Scene other =
       world(links + hinge("O", "world", "crank") + hinge("C", "world", "rocker") +
-            hinge("A", "crank", "coupler") + hinge("B", "rocker", "coupler", damper, b_pose));
+            hinge("A", "crank", "coupler") + hinge("B", "coupler", "rocker", damper, b_pose));
   ASSERT_EQ(other.loops.size(), 1U);
-  EXPECT_EQ(other.loops[0].name, "C");
+  EXPECT_EQ(other.loops[0].name, "A");
+  EXPECT_EQ(joint_of(other, "B").child, "coupler");
+  EXPECT_EQ(joint_of(other, "B").axis[2], -1);  // its angle counts as the file has it
   const Mechanism cut(other);
-  EXPECT_EQ(joint_of(other, "A").parent, "crank");
-  VectorXd there(3);
-  for (std::size_t i = 0; i < 3; ++i) {
-    const std::string& name = other.joints[i].name;
-    there[static_cast<Eigen::Index>(i)] = name == "O"   ? u[0]
-                                          : name == "A" ? u[1]
-                                                        : -(turning[1] - turning[0]);
-  }
-  // the axis of B turns round with it: q counts as the file has it, coupler against rocker
-  EXPECT_EQ(joint_of(other, "B").child, "rocker");
-  EXPECT_EQ(joint_of(other, "B").axis[2], -1);
-  const StateValues again = values_at(cut, VectorXd::Zero(3), there);
+  const StateValues again = values_at(cut, VectorXd::Zero(3), in_order(cut, rates));
   EXPECT_LE(again.phidot.norm(), 1e-12);
-  ASSERT_EQ(other.joints[0].name, "O");
-  EXPECT_NEAR(again.constrained[0], expected.constrained[0], 1e-11);
+  const double tolerance = 1e-12 * expected.constrained.norm();
+  const VectorXd& e = expected.constrained;
+  EXPECT_NEAR(again.constrained[place(cut, "O")], e[place(toml, "O")], tolerance);
+  EXPECT_NEAR(again.constrained[place(cut, "C")], e[place(toml, "C")], tolerance);
+  EXPECT_NEAR(again.constrained[place(cut, "B")],
+              e[place(toml, "C")] - e[place(toml, "O")] - e[place(toml, "A")], tolerance);
 }
 
 // θ1 = −ratio θ2 of a wheel's and an arm's angle about their axes, seen from the ground.
