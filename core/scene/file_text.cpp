@@ -5,16 +5,17 @@
 
 namespace momenta::reading {
 
-std::string text_of(const std::filesystem::path& file) {
+std::string text_of(const std::filesystem::path& file, const std::string& kind) {
   const std::string name = file.string();
   std::error_code error;
   const auto status = std::filesystem::status(file, error);
-  if (!std::filesystem::exists(status)) fail(name, {}, "no such file, expected a scene");
-  if (std::filesystem::is_directory(status)) fail(name, {}, "a directory, expected a scene file");
+  if (!std::filesystem::exists(status)) fail(name, {}, "no such file, expected a " + kind);
+  if (std::filesystem::is_directory(status))
+    fail(name, {}, "a directory, expected a " + kind + " file");
   if (std::filesystem::is_regular_file(status)) {
     const auto size = std::filesystem::file_size(file, error);
     if (!error && size > largest_text)
-      fail(name, {}, "the file is over 64 MiB, expected a scene of at most 64 MiB");
+      fail(name, {}, "the file is over 64 MiB, expected a " + kind + " of at most 64 MiB");
   }
 
   std::ifstream stream(file, std::ios::binary);

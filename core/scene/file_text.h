@@ -12,8 +12,8 @@ namespace momenta::reading {
 inline constexpr std::size_t largest_text = std::size_t{64} << 20;  ///< [byte]
 
 /// The whole file. Its size is asked before a byte is read; what has no size (a pipe) is read up to
-/// the limit of 64 MiB. @throws SceneError
-std::string text_of(const std::filesystem::path& file);
+/// the limit of 64 MiB. `kind` says what it should be. @throws SceneError
+std::string text_of(const std::filesystem::path& file, const std::string& kind = "scene");
 
 /// Throws the sentence "file:line:column: sentence".
 [[noreturn]] void fail(const std::string& file, Location at, const std::string& sentence);

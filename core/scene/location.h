@@ -7,6 +7,7 @@ namespace momenta {
 struct Location {
   int line = 0;    ///< from 1
   int column = 0;  ///< from 1, in characters; 0: not known
+  int file = 0;    ///< 0: Scene::file; from 1: the files of Scene::included
 };
 
 }  // namespace momenta

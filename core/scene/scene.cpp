@@ -9,7 +9,9 @@
 namespace momenta {
 
 std::string Scene::where(Location at) const {
-  std::string prefix = file.empty() ? std::string("scene") : reading::on_one_line(file);
+  const auto other = static_cast<std::size_t>(at.file);
+  const std::string& from = other > 0 && other <= included.size() ? included[other - 1] : file;
+  std::string prefix = from.empty() ? std::string("scene") : reading::on_one_line(from);
   if (at.line > 0) prefix += ":" + std::to_string(at.line);
   if (at.line > 0 && at.column > 0) prefix += ":" + std::to_string(at.column);
   return prefix + ": ";

@@ -276,8 +276,9 @@ struct RunDefaults {
 
 /// A mechanism as its author wrote it. read_scene() returns it; OpenChain and Mechanism take it.
 struct Scene {
-  std::string file;                                   ///< for messages; empty when built by hand
-  std::string name;                                   ///< for titles and tables
+  std::string file;                   ///< for messages; empty when built by hand
+  std::vector<std::string> included;  ///< files that this one includes, for messages
+  std::string name;                   ///< for titles and tables
   Eigen::Vector3d gravity = Eigen::Vector3d::Zero();  ///< [m/s²]
   std::vector<BodySpec> bodies;                       ///< without the ground
   std::vector<JointSpec> joints;                      ///< one for each body

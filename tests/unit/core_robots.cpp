@@ -281,7 +281,7 @@ TEST_F(Robots, MjcfOptionsEqualityAndRemarks) {
   EXPECT_EQ(
       scene.remarks,
       (std::vector<std::string>{
-          "left out: joint limits (1)", "left out: geoms as shapes to see and to touch (1)",
+          "left out: joint limits (1)", "left out: geoms as shapes to touch (1)",
           "left out: equality constraints that are not active (1)", "left out: actuators (2)"}));
 }
 

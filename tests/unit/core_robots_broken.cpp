@@ -150,10 +150,6 @@ const Case wrong_urdf[] = {
 
 const Case wrong_mjcf[] = {
     {"no_body", "<mujoco><worldbody/></mujoco>", ":1: <mujoco> has no <body>"},
-    {"include", "<mujoco>\n<include file='x.xml'/></mujoco>", ":2: <include> is not read"},
-    {"inner_include",
-     "<mujoco><worldbody><body name='b'>\n<include file='x.xml'/></body></worldbody></mujoco>",
-     ":2: <include> is not read, expected bodies written out"},
     {"joint_type",
      "<mujoco><worldbody><body name='b'>\n<joint name='j' "
      "type='hing'/></body></worldbody></mujoco>",
@@ -181,11 +177,6 @@ const Case wrong_mjcf[] = {
      "<mujoco><worldbody><body name='b'>\n<joint name='j' type='ball' "
      "armature='1'/></body></worldbody></mujoco>",
      ":2: joint 'j': <joint> armature is 1 on a ball or free joint"},
-    {"mesh",
-     "<mujoco><worldbody><body name='b'><joint/>\n<geom type='mesh' "
-     "mesh='m'/></body></worldbody></mujoco>",
-     ":2: body 'b': <geom> gives its body the mass of a mesh, and meshes are not read; expected an "
-     "<inertial> of the body"},
     {"size",
      "<mujoco><worldbody><body name='b'><joint/>\n<geom type='box' size='1 "
      "1'/></body></worldbody></mujoco>",

@@ -12,12 +12,15 @@ namespace {
 /// URDF or MJCF, by the root element.
 Scene parse_robot(std::string_view text, const std::string& file, const ReadOptions& options) {
   const reading::Element root = reading::parse_xml(text, file);
-  if (root.name == "robot") return reading::read_urdf(root, file, options);
+  if (root.name == "robot") {
+    if (!options.key.empty()) reading::fail(file, {}, "no MJCF, expected one where a key is given");
+    return reading::read_urdf(root, file, options);
+  }
   const std::string asked = !options.loops.empty() ? "a file of loops"
                             : options.free_root    ? "a free root"
                                                    : "";
   if (!asked.empty()) reading::fail(file, {}, "no URDF, expected one where " + asked + " is given");
-  if (root.name == "mujoco") return reading::read_mjcf(root, file);
+  if (root.name == "mujoco") return reading::read_mjcf(root, file, options.key);
   reading::fail(file, {root.line, 0},
                 "the root element is <" + reading::on_one_line(root.name) +
                     ">, expected <robot> (URDF) or <mujoco> (MJCF)");
@@ -41,6 +44,7 @@ Scene read_scene(const std::filesystem::path& file, const ReadOptions& options) 
   }
   if (!options.loops.empty() || options.free_root)
     reading::fail(name, {}, "no URDF, expected one where a file of loops or a free root is given");
+  if (!options.key.empty()) reading::fail(name, {}, "no MJCF, expected one where a key is given");
   return parse_scene(text, name);
 }
 

@@ -1,7 +1,9 @@
 // <mujoco>: settings, then defaults, bodies and constraints; what is left out is counted.
 
 #include <momenta/core/scene/mjcf/mjcf.h>
-#include <momenta/core/scene/mjcf/mjcf_model.h>
+#include <momenta/core/scene/mjcf/mjcf_copies.h>
+#include <momenta/core/scene/mjcf/mjcf_keys.h>
+#include <momenta/core/scene/mjcf/mjcf_visuals.h>
 #include <momenta/core/scene/near_name.h>
 #include <momenta/core/scene/validate.h>
 
@@ -11,36 +13,6 @@
 
 namespace momenta::reading {
 namespace {
-
-void read_compiler(const Node& node, MjcfModel& model) {
-  constexpr std::array<std::string_view, 2> units{"degree", "radian"};
-  if (node.has("angle"))
-    model.angles.unit = node.word("angle", units, 0) == 1 ? 1 : std::numbers::pi / 180;
-  if (node.has("eulerseq")) {
-    const std::string order = node.text("eulerseq");
-    if (order.size() != 3 || order.find_first_not_of("xyzXYZ") != std::string::npos)
-      node.fail("eulerseq", "is " + in_quotes(order) + ", expected three of x y z X Y Z");
-    model.angles.euler_order = order;
-  }
-  constexpr std::array<std::string_view, 3> sources{"auto", "false", "true"};
-  if (node.has("inertiafromgeom")) {
-    const std::size_t source = node.word("inertiafromgeom", sources, 0);
-    model.geoms_weigh = source != 1;
-    model.always_geoms = source == 2;
-  }
-  if (node.has("inertiagrouprange")) {
-    const std::vector<double> range = node.numbers("inertiagrouprange", 2);
-    model.least_group = range[0];
-    model.largest_group = range[1];
-  }
-  for (const char* key : {"boundmass", "boundinertia"})
-    if (node.number(key, 0) != 0) node.fail(key, "changes inertias, expected none");
-  if (node.number("settotalmass", -1) > 0)
-    node.fail("settotalmass", "changes masses, expected none");
-  if (node.flag("balanceinertia", false)) node.fail("balanceinertia", "is true, expected false");
-  if (node.text("coordinate", "local") != "local")
-    node.fail("coordinate", "is not local, expected frames in their parents");
-}
 
 void read_option(const Node& node, MjcfModel& model) {
   model.scene.gravity = node.vector("gravity", model.scene.gravity);
@@ -56,11 +28,15 @@ void read_option(const Node& node, MjcfModel& model) {
 
 void count_left_out(const Node& section, Remarks& remarks) {
   static const std::map<std::string, std::string> kinds{
-      {"actuator", "actuators"},          {"tendon", "tendons"},
-      {"contact", "pairs for contact"},   {"sensor", "sensors"},
-      {"keyframe", "keyframes"},          {"asset", "meshes, textures and materials"},
-      {"visual", "settings of pictures"}, {"statistic", "settings of pictures"},
-      {"size", "sizes of memory"},        {"custom", "custom entries"},
+      {"actuator", "actuators"},
+      {"tendon", "tendons"},
+      {"contact", "pairs for contact"},
+      {"sensor", "sensors"},
+      {"asset", "meshes, textures and materials"},
+      {"visual", "settings of pictures"},
+      {"statistic", "settings of pictures"},
+      {"size", "sizes of memory"},
+      {"custom", "custom entries"},
       {"extension", "plugins"},
   };
   const auto kind = kinds.find(section.name());
@@ -70,28 +46,58 @@ void count_left_out(const Node& section, Remarks& remarks) {
   for ([[maybe_unused]] const Node& part : section.children()) remarks.left_out(kind->second);
 }
 
+/// <mesh>es of an <asset>, which lie where the model's settings say.
+void read_asset(const Node& asset, const MjcfFiles& files, MjcfModel& model) {
+  const std::string* const attached = asset.element().find(of_model);
+  std::filesystem::path folder = files.folder();
+  if (attached != nullptr) folder = files.folder_of(asset);
+  read_materials(asset, model);
+  for (const Node& part : asset.children("mesh")) {
+    const Element full = model.defaults.with_defaults(part, "mesh", MjcfDefaults::main_class);
+    const Node mesh(full, "mesh " + in_quotes(part.text("name", "")), model.scene.file);
+    const MjcfSettings& now = attached != nullptr ? model.attached.at(*attached) : model;
+    model.meshes.take(mesh, folder, now);
+  }
+}
+
+/// What <compiler> and <default> of an attached model say.
+void read_attached(const Node& node, MjcfModel& model) {
+  MjcfSettings& settings = model.attached[*node.element().find("model")];
+  for (const Node& part : node.children("compiler")) read_compiler(part, settings);
+  MjcfDefaults defaults;
+  for (const Node& part : node.children("default")) defaults.take(part);
+  model.defaults.take(defaults, *node.element().find("prefix"));
+}
+
 }  // namespace
 
-Scene read_mjcf(const Element& element, const std::string& file) {
-  const Node root(element, "", file);
+Scene read_mjcf(const Element& element, const std::string& file, const std::string& key) {
   MjcfModel model;
+  MjcfFiles files(file);
+  const Element whole = assembled(element, file, files, model.remarks);
+  const Node root(whole, "", file);
   model.scene.file = file;
+  model.scene.included = files.names();
   model.scene.name = root.text("model", "");
   model.scene.gravity = {0, 0, -9.81};
-  for (const char* refused : {"include", "deformable", "flex"})
+  for (const char* refused : {"deformable", "flex"})
     if (const auto found = root.children(refused); !found.empty())
-      found.front().fail("is not read, expected one file with everything in it");
+      found.front().fail("is not read, expected rigid bodies");
   for (const Node& node : root.children("compiler")) read_compiler(node, model);
   for (const Node& node : root.children("option")) read_option(node, model);
   for (const Node& node : root.children("default")) model.defaults.take(node);
+  for (const Node& node : root.children(attached_model)) read_attached(node, model);
+  for (const Node& node : root.children("asset")) read_asset(node, files, model);
   for (const Node& node : root.children("worldbody")) read_worldbody(node, model);
   for (const Node& node : root.children("equality")) read_equality(node, model);
+  read_keys(root.children("keyframe"), key, model);
   for (const Node& node : root.children()) {
-    constexpr std::array<std::string_view, 5> read{"compiler", "option", "default", "worldbody",
-                                                   "equality"};
+    constexpr std::array<std::string_view, 7> read{
+        "compiler", "option", "default", "worldbody", "equality", "keyframe", attached_model};
     if (std::find(read.begin(), read.end(), node.name()) == read.end())
       count_left_out(node, model.remarks);
   }
+  take_drawn(model);
   model.scene.remarks = model.remarks.sentences();
   if (model.scene.bodies.empty()) root.fail("has no <body>, expected at least one");
   validate(model.scene);

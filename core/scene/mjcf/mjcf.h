@@ -9,7 +9,9 @@
 
 namespace momenta::reading {
 
-/// The scene of a <mujoco>. @throws SceneError
-Scene read_mjcf(const Element& mujoco, const std::string& file);
+/// The scene of a <mujoco>, which begins at the <key> of that name or number; empty: as it is
+/// drawn.
+/// @throws SceneError
+Scene read_mjcf(const Element& mujoco, const std::string& file, const std::string& key);
 
 }  // namespace momenta::reading

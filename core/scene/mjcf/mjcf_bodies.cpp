@@ -3,7 +3,8 @@
 
 #include <momenta/core/scene/kinds.h>
 #include <momenta/core/scene/mjcf/mjcf_inertia.h>
-#include <momenta/core/scene/mjcf/mjcf_model.h>
+#include <momenta/core/scene/mjcf/mjcf_parts.h>
+#include <momenta/core/scene/mjcf/mjcf_visuals.h>
 #include <momenta/core/scene/near_name.h>
 
 #include <algorithm>
@@ -31,36 +32,40 @@ class BodyReader {
   explicit BodyReader(MjcfModel& model) : model_(model) {}
 
   void children_of(const Node& node, const Place& place) {
-    for (const Node& part : node.children()) {
-      const std::string& what = part.name();
+    children_of(parts_of(node, place.active, model_), place);
+  }
+
+ private:
+  void children_of(const std::vector<MjcfPart>& parts, const Place& place) {
+    for (const MjcfPart& part : parts) {
+      const SettingsOf settings(part, model_);
+      const std::string& what = part.node.name();
       if (what == "body")
         body(part, place);
       else if (what == "site")
         site(part, place);
       else if (what == "geom")
-        model_.remarks.left_out("geoms as shapes to see and to touch");
+        draw_geom(part, MjcfModel::in_scene(place.parent), model_);
       else if (what == "camera" || what == "light")
         model_.remarks.left_out(what + "s");
-      else if (what == "frame" || what == "replicate" || what == "composite" ||
-               what == "flexcomp" || what == "attach" || what == "include")
-        part.of("").fail("is not read, expected bodies written out");
       else if (what != "joint" && what != "freejoint" && what != "inertial")
         model_.remarks.left_out("<" + what + "> of bodies");
     }
   }
 
- private:
-  void site(const Node& node, const Place& place) {
-    const Element full = model_.defaults.with_defaults(node, "site", place.active);
+  void site(const MjcfPart& part, const Place& place) {
+    const Node& node = part.node;
+    const Element full = model_.defaults.with_defaults(node, "site", part.active);
     const std::string name = node.text("name", "");
     const Node site(full, "site " + in_quotes(name), model_.scene.file);
     if (name.empty()) return;
-    const auto [known, fresh] =
-        model_.sites.emplace(name, MjcfModel::Site{place.parent, read_frame(site, model_.angles)});
+    const auto [known, fresh] = model_.sites.emplace(
+        name, MjcfModel::Site{place.parent, part.in * read_frame(site, model_.angles)});
     if (!fresh) site.fail("has a name that is taken, expected each name once among sites");
   }
 
-  void body(const Node& node, const Place& place) {
+  void body(const MjcfPart& part, const Place& place) {
+    const Node& node = part.node;
     ++count_;
     const bool named = node.has("name");
     const std::string name =
@@ -70,46 +75,52 @@ class BodyReader {
       self.fail("has a name that is reserved, expected another");
     if (named) model_.bodies.take(name);
 
-    Place inside{name, {}, model_.defaults.active_class(self, place.active), place.moves};
-    const MjcfFrame frame{self.vector("pos", Vector3d::Zero()), read_turn(self, model_.angles)};
+    Place inside{name, {}, model_.defaults.active_class(self, part.active), place.moves};
+    const MjcfFrame frame =
+        part.in * MjcfFrame{self.vector("pos", Vector3d::Zero()), read_turn(self, model_.angles)};
     inside.at = place.at * frame;
     if (!model_.frames.emplace(name, inside.at).second)
       self.fail("has a name that is taken, expected each name once among bodies");
-    std::vector<Node> joints;
-    for (const Node& part : self.children())
-      if (part.name() == "joint" || part.name() == "freejoint") joints.push_back(part);
+    const std::vector<MjcfPart> parts = parts_of(self, inside.active, model_);
+    std::vector<MjcfPart> joints;
+    for (const MjcfPart& inner : parts)
+      if (inner.node.name() == "joint" || inner.node.name() == "freejoint") joints.push_back(inner);
     inside.moves |= !joints.empty();
 
     BodySpec spec;
     spec.name = name;
     spec.at = self.at();
-    weigh_body(spec, self, inside);
+    weigh_body(spec, self, parts, inside);
     hang(self, joints, frame, place, inside);
     model_.scene.bodies.push_back(spec);
     if (self.number("gravcomp", 0) != 0) model_.remarks.left_out("gravity compensation of bodies");
     if (self.flag("mocap", false)) model_.remarks.count("left at rest: bodies of motion capture");
-    children_of(self, inside);
+    children_of(parts, inside);
   }
 
-  void weigh_body(BodySpec& spec, const Node& self, const Place& inside) {
+  void weigh_body(BodySpec& spec, const Node& self, const std::vector<MjcfPart>& parts,
+                  const Place& inside) {
     const auto inertial = self.child("inertial");
     MjcfInertia sum;
     if (inertial && !model_.always_geoms) {
       sum = read_inertial(*inertial, model_.angles);
     } else if (model_.geoms_weigh) {
-      for (const Node& part : self.children("geom")) {
-        const Element full = model_.defaults.with_defaults(part, "geom", inside.active);
+      for (const MjcfPart& part : parts) {
+        if (part.node.name() != "geom") continue;
+        const SettingsOf settings(part, model_);
+        const Element full = model_.defaults.with_defaults(part.node, "geom", part.active);
         const Node geom(full, self.owner(), model_.scene.file);
         const double group = geom.number("group", 0);
         if (group < model_.least_group || group > model_.largest_group) continue;
-        sum.add(read_geom(geom, model_.angles, !inside.moves));
+        sum.add(part.in *
+                read_geom(geom, model_.angles, !inside.moves, model_.meshes, model_.remarks));
       }
     }
     weigh(spec, sum.mass, sum.com, sum.inertia, inertial ? *inertial : self, model_.remarks);
   }
 
   /// The joints between a body and its parent, the first next to the parent; none: a weld.
-  void hang(const Node& self, const std::vector<Node>& joints, const MjcfFrame& frame,
+  void hang(const Node& self, const std::vector<MjcfPart>& joints, const MjcfFrame& frame,
             const Place& place, const Place& inside) {
     std::string parent = MjcfModel::in_scene(place.parent);
     if (joints.empty()) {
@@ -125,10 +136,11 @@ class BodyReader {
     }
     for (std::size_t i = 0; i < joints.size(); ++i) {
       const bool first = i == 0, last = i + 1 == joints.size();
-      const bool free_tag = joints[i].name() == "freejoint";
-      const Element full = free_tag
-                               ? joints[i].element()
-                               : model_.defaults.with_defaults(joints[i], "joint", inside.active);
+      const Node& tag = joints[i].node;
+      const SettingsOf settings(joints[i], model_);
+      const bool free_tag = tag.name() == "freejoint";
+      const Element full =
+          free_tag ? tag.element() : model_.defaults.with_defaults(tag, "joint", joints[i].active);
       const Node written(full, self.owner(), model_.scene.file);
       const std::size_t type = free_tag ? 3 : written.word("type", joint_types, 0);
       JointSpec joint;
@@ -148,12 +160,14 @@ class BodyReader {
         const Vector3d& x = inside.at.at;
         joint.position = {x[0], x[1], x[2], q.w(), q.x(), q.y(), q.z()};
       } else {
-        const Vector3d anchor = node.vector("pos", Vector3d::Zero());
+        const Vector3d anchor = joints[i].in * node.vector("pos", Vector3d::Zero());
         joint.origin_child = anchor;
         joint.origin_parent = first ? frame * anchor : anchor;
         if (first) joint.rotation = frame.turn;
       }
       read_mechanics(node, joint);
+      if (has_axis(joint.kind)) joint.axis = joints[i].in.turn * joint.axis;
+      model_.refs[joint.name] = node.number("ref", 0) * unit_of(joint.kind);
       if (!last) {
         BodySpec between;
         between.name = joint.child;
@@ -188,10 +202,14 @@ class BodyReader {
     }
     joint.stiffness = stiffness;
     joint.damping = damping;
-    const double unit = joint.kind == JointKind::revolute ? model_.angles.unit : 1;
+    const double unit = unit_of(joint.kind);
     if (stiffness != 0) joint.rest = unit * (node.number("springref", 0) - node.number("ref", 0));
     if (armature < 0) node.fail("armature", "is negative, expected a number >= 0");
     if (armature > 0) joint.rotor_inertia = {armature};
+  }
+
+  double unit_of(JointKind kind) const {
+    return kind == JointKind::revolute ? model_.angles.unit : 1;
   }
 
   MjcfModel& model_;

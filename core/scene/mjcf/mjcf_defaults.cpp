@@ -36,6 +36,10 @@ void MjcfDefaults::take(const Node& node) {
   if (name != main_class) classes_[name] = classes_[main_class];
 }
 
+void MjcfDefaults::take(const MjcfDefaults& attached, const std::string& prefix) {
+  for (const auto& [name, attributes] : attached.classes_) classes_[prefix + name] = attributes;
+}
+
 void MjcfDefaults::take(const Node& node, const std::string& name) {
   for (const Node& part : node.children())
     if (part.name() != "default") {

@@ -18,6 +18,9 @@ class MjcfDefaults {
 
   /// Takes a top <default>. A class inherits what its parent says, wherever in it that stands.
   void take(const Node& node);
+  /// Takes the classes of an attached model, with its prefix before their names. Its main class
+  /// inherits nothing.
+  void take(const MjcfDefaults& attached, const std::string& prefix);
 
   /// The element with what its class adds to it: that of its `class`, else `active`. `kind` names
   /// it among the defaults: "joint", "geom", "site", "equality". Of the ways to say an orientation

@@ -45,8 +45,10 @@ Quaterniond z_to(const Vector3d& direction) {
       Turn(angle, across.norm() > 0 ? Vector3d(across.normalized()) : Vector3d(Vector3d::UnitX())));
 }
 
-Quaterniond from_euler(const Node& node, const MjcfAngles& angles) {
-  const Vector3d e = angles.unit * node.vector("euler");
+}  // namespace
+
+Quaterniond turn_by_euler(const Vector3d& euler, const MjcfAngles& angles) {
+  const Vector3d e = angles.unit * euler;
   Quaterniond turn = Quaterniond::Identity();
   for (int i = 0; i < 3; ++i) {
     const char letter = angles.euler_order[static_cast<std::size_t>(i)];
@@ -56,8 +58,6 @@ Quaterniond from_euler(const Node& node, const MjcfAngles& angles) {
   }
   return turn;
 }
-
-}  // namespace
 
 Quaterniond read_turn(const Node& node, const MjcfAngles& angles) {
   std::string_view way;
@@ -72,7 +72,7 @@ Quaterniond read_turn(const Node& node, const MjcfAngles& angles) {
   if (way == "axisangle") return from_axis_and_angle(node, angles);
   if (way == "xyaxes") return from_x_and_y(node);
   if (way == "zaxis") return z_to(node.direction("zaxis", Vector3d::UnitZ()));
-  if (way == "euler") return from_euler(node, angles);
+  if (way == "euler") return turn_by_euler(node.vector("euler"), angles);
   return Quaterniond::Identity();
 }
 

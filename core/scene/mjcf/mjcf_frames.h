@@ -31,6 +31,8 @@ struct MjcfFrame {
   MjcfFrame inverse() const { return {-(turn.conjugate() * at), turn.conjugate()}; }
 };
 
+/// The turn of three angles, as written, about the axes that `euler_order` says.
+Eigen::Quaterniond turn_by_euler(const Eigen::Vector3d& euler, const MjcfAngles& angles);
 /// The orientation an element gives, else none. @throws SceneError where it gives two
 Eigen::Quaterniond read_turn(const Node& node, const MjcfAngles& angles);
 /// `pos` and the orientation; or, by `fromto`, the middle of the two points with z along them.

@@ -10,10 +10,6 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-enum class Shape { sphere, capsule, ellipsoid, cylinder, box, plane, hfield, mesh, sdf };
-constexpr std::array<std::string_view, 9> shapes{
-    "sphere", "capsule", "ellipsoid", "cylinder", "box", "plane", "hfield", "mesh", "sdf"};
-
 Matrix3d rotated(const Matrix3d& m, const Eigen::Quaterniond& turn) {
   const Matrix3d r = turn.toRotationMatrix();
   if (r == Matrix3d::Identity()) return m;
@@ -26,17 +22,73 @@ Matrix3d steiner(double mass, const Vector3d& r) {
   return mass * (r.squaredNorm() * Matrix3d::Identity() - r * r.transpose());
 }
 
-/// Radius and half length, or the three half lengths, as the shape has them; `fromto` gives the one
-/// along z.
-Vector3d size_of(const Node& geom, Shape shape) {
+struct Solid {
+  double volume = 0;                    ///< [m³], or the area of a shell [m²]
+  Vector3d moments = Vector3d::Zero();  ///< per mass, principal, z last
+};
+
+Solid solid_of(GeomShape shape, const Vector3d& s) {
+  const double pi = std::numbers::pi;
+  const Vector3d squares = s.cwiseAbs2();
+  const Vector3d others(squares[1] + squares[2], squares[0] + squares[2], squares[0] + squares[1]);
+  if (shape == GeomShape::box) return {8 * s.prod(), others / 3};
+  if (shape == GeomShape::ellipsoid) return {4 * pi / 3 * s.prod(), others / 5};
+  const double r = s[0], h = s[1];
+  if (shape == GeomShape::sphere) return {4 * pi / 3 * r * r * r, Vector3d::Constant(0.4 * r * r)};
+  const double cylinder = 2 * pi * r * r * h, ball = 4 * pi / 3 * r * r * r;
+  const double across = (3 * r * r + 4 * h * h) / 12, along = r * r / 2;
+  if (shape == GeomShape::cylinder) return {cylinder, {across, across, along}};
+  const double part = ball / (cylinder + ball);
+  const double ends = 0.4 * r * r + h * h + 0.75 * h * r;
+  const double x = part * ends + (1 - part) * across;
+  return {cylinder + ball, {x, x, part * 0.4 * r * r + (1 - part) * along}};
+}
+
+/// The surface alone: its area, and moments per mass.
+Solid shell_of(GeomShape shape, const Vector3d& s) {
+  const double pi = std::numbers::pi;
+  if (shape == GeomShape::box) {
+    const double ab = s[0] * s[1], bc = s[1] * s[2], ca = s[2] * s[0];
+    const Vector3d squares(bc + (ab + ca) / 3, ca + (ab + bc) / 3, ab + (bc + ca) / 3);
+    const Vector3d means = squares.cwiseProduct(s.cwiseAbs2()) / (ab + bc + ca);
+    return {8 * (ab + bc + ca), {means[1] + means[2], means[0] + means[2], means[0] + means[1]}};
+  }
+  const double r = s[0], h = shape == GeomShape::sphere ? 0 : s[1];
+  const double side = 4 * pi * r * h, disc = pi * r * r;
+  double area = side, polar = side * r * r, axial = side * h * h / 3;
+  if (shape == GeomShape::cylinder) {
+    area += 2 * disc;
+    polar += disc * r * r;
+    axial += 2 * disc * h * h;
+  } else {
+    area += 4 * disc;
+    polar += 8 * disc * r * r / 3;
+    axial += 4 * disc * (h * h + h * r + r * r / 3);
+  }
+  const double across = (polar / 2 + axial) / area;
+  return {area, {across, across, polar / area}};
+}
+
+/// Of a mass on a mesh: the geom's frame is that of the mesh's points.
+MjcfInertia weighed(const MeshMass& mesh, double mass) {
+  return {mass, mesh.com, mass / mesh.measure * mesh.inertia};
+}
+
+}  // namespace
+
+MjcfInertia operator*(const MjcfFrame& frame, const MjcfInertia& inner) {
+  return {inner.mass, frame * inner.com, rotated(inner.inertia, frame.turn)};
+}
+
+Vector3d geom_size(const Node& geom, GeomShape shape) {
   const std::vector<double> given = geom.numbers("size");
   const bool by_ends = geom.has("fromto");
-  const bool of_three = shape == Shape::ellipsoid || shape == Shape::box;
-  const std::size_t needed = shape == Shape::sphere || by_ends ? 1 : (of_three ? 3 : 2);
+  const bool of_three = shape == GeomShape::ellipsoid || shape == GeomShape::box;
+  const std::size_t needed = shape == GeomShape::sphere || by_ends ? 1 : (of_three ? 3 : 2);
   if (given.size() < needed)
     geom.fail("size", "has " + std::to_string(given.size()) + " numbers, expected " +
                           std::to_string(needed) + " for a " +
-                          std::string(shapes[static_cast<std::size_t>(shape)]));
+                          std::string(geom_shapes[static_cast<std::size_t>(shape)]));
   Vector3d size = Vector3d::Zero();
   for (std::size_t i = 0; i < needed; ++i) size[static_cast<Eigen::Index>(i)] = given[i];
   if (by_ends) {
@@ -49,30 +101,6 @@ Vector3d size_of(const Node& geom, Shape shape) {
       geom.fail("size", "is not positive, expected numbers > 0 [m]");
   return size;
 }
-
-struct Solid {
-  double volume = 0;
-  Vector3d moments = Vector3d::Zero();  ///< per mass, principal, z last
-};
-
-Solid solid_of(Shape shape, const Vector3d& s) {
-  const double pi = std::numbers::pi;
-  const Vector3d squares = s.cwiseAbs2();
-  const Vector3d others(squares[1] + squares[2], squares[0] + squares[2], squares[0] + squares[1]);
-  if (shape == Shape::box) return {8 * s.prod(), others / 3};
-  if (shape == Shape::ellipsoid) return {4 * pi / 3 * s.prod(), others / 5};
-  const double r = s[0], h = s[1];
-  if (shape == Shape::sphere) return {4 * pi / 3 * r * r * r, Vector3d::Constant(0.4 * r * r)};
-  const double cylinder = 2 * pi * r * r * h, ball = 4 * pi / 3 * r * r * r;
-  const double across = (3 * r * r + 4 * h * h) / 12, along = r * r / 2;
-  if (shape == Shape::cylinder) return {cylinder, {across, across, along}};
-  const double part = ball / (cylinder + ball);
-  const double ends = 0.4 * r * r + h * h + 0.75 * h * r;
-  const double x = part * ends + (1 - part) * across;
-  return {cylinder + ball, {x, x, part * 0.4 * r * r + (1 - part) * along}};
-}
-
-}  // namespace
 
 void MjcfInertia::add(const MjcfInertia& other) {
   if (other.mass == 0) return;
@@ -98,28 +126,34 @@ MjcfInertia read_inertial(const Node& node, const MjcfAngles& angles) {
   return body;
 }
 
-MjcfInertia read_geom(const Node& geom, const MjcfAngles& angles, bool at_rest) {
-  MjcfInertia body;
-  const auto shape = static_cast<Shape>(geom.word("type", shapes, 0));
-  if (shape == Shape::plane || shape == Shape::hfield) return body;
+MjcfInertia read_geom(const Node& geom, const MjcfAngles& angles, bool at_rest, MjcfMeshes& meshes,
+                      Remarks& remarks) {
+  const auto shape = static_cast<GeomShape>(geom.word("type", geom_shapes, 0));
+  if (shape == GeomShape::plane || shape == GeomShape::hfield) return {};
   const bool by_mass = geom.has("mass");
   const double given = by_mass ? geom.number("mass") : geom.number("density", 1000);
   if (given < 0) geom.fail(by_mass ? "mass" : "density", "is negative, expected a number >= 0");
-  if (given == 0) return body;
-  if (shape == Shape::mesh || shape == Shape::sdf || geom.has("mesh")) {
-    if (at_rest) return body;
-    geom.fail(
-        "gives its body the mass of a mesh, and meshes are not read; expected an <inertial> "
-        "of the body");
+  if (given == 0) return {};
+  const bool shell = geom.flag("shellinertia", false);
+  if (shape == GeomShape::mesh) {
+    if (at_rest) return {};
+    const MeshMass& mesh = meshes.of(geom, shell, remarks);
+    return read_frame(geom, angles) * weighed(mesh, by_mass ? given : given * mesh.measure);
   }
-  if (geom.flag("shellinertia", false))
-    geom.fail("shellinertia", "is true, expected a solid: shells are not read");
+  if (shape == GeomShape::sdf || geom.has("mesh")) {
+    if (at_rest) return {};
+    geom.fail("type", "is " + std::string(geom_shapes[static_cast<std::size_t>(shape)]) +
+                          " with a mesh to fit, which is not read; expected the type mesh, or an "
+                          "<inertial> of the body");
+  }
+  if (shell && shape == GeomShape::ellipsoid)
+    geom.fail("shellinertia", "is true for an ellipsoid, which is not read; expected a solid");
   const MjcfFrame frame = read_frame(geom, angles);
-  const Solid solid = solid_of(shape, size_of(geom, shape));
-  body.mass = by_mass ? given : given * solid.volume;
-  body.com = frame.at;
-  body.inertia = rotated((body.mass * solid.moments).asDiagonal().toDenseMatrix(), frame.turn);
-  return body;
+  const Vector3d size = geom_size(geom, shape);
+  const Solid solid = shell ? shell_of(shape, size) : solid_of(shape, size);
+  const double mass = by_mass ? given : given * solid.volume;
+  return frame *
+         MjcfInertia{mass, Vector3d::Zero(), (mass * solid.moments).asDiagonal().toDenseMatrix()};
 }
 
 }  // namespace momenta::reading

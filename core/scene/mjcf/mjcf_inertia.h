@@ -1,9 +1,19 @@
 #pragma once
 // Masses and inertias of MJCF: <inertial>, or the sum over a body's geoms.
 
-#include <momenta/core/scene/mjcf/mjcf_frames.h>
+#include <momenta/core/scene/mjcf/mjcf_meshes.h>
+
+#include <array>
+#include <string_view>
 
 namespace momenta::reading {
+
+enum class GeomShape { sphere, capsule, ellipsoid, cylinder, box, plane, hfield, mesh, sdf };
+inline constexpr std::array<std::string_view, 9> geom_shapes{
+    "sphere", "capsule", "ellipsoid", "cylinder", "box", "plane", "hfield", "mesh", "sdf"};
+/// Radius and half length, or the three half lengths, as the shape has them; `fromto` gives the one
+/// along z. @throws SceneError for numbers that are missing or not positive
+Eigen::Vector3d geom_size(const Node& geom, GeomShape shape);
 
 /// Mass, centre of mass and the inertia about it, in axes of the body.
 struct MjcfInertia {
@@ -15,19 +25,32 @@ struct MjcfInertia {
   void add(const MjcfInertia& other);
 };
 
+/// What is known in a frame, in the axes around it.
+MjcfInertia operator*(const MjcfFrame& frame, const MjcfInertia& inner);
+
 /// <inertial pos mass (diaginertia, orientation | fullinertia)>.
 MjcfInertia read_inertial(const Node& node, const MjcfAngles& angles);
 
-/// A <geom> with its defaults, solid, of its `mass` or of `density` (1000 kg/m³ where neither is
-/// given):
+/// A <geom> with its defaults, of its `mass` or of `density` (1000 kg/m³ where neither is given).
+/// Solid:
 ///   sphere r            V = 4/3 π r³                  2/5 m r²
 ///   ellipsoid a b c     V = 4/3 π a b c               m/5 (b² + c²), …
 ///   box a b c (halves)  V = 8 a b c                   m/3 (b² + c²), …
 ///   cylinder r, half h  V = 2 π r² h                  m (3 r² + (2h)²)/12, m r²/2 about z
 ///   capsule r, half h   a cylinder and two half balls: of these, with their mass s,
 ///                       s (2/5 r² + h² + 3/4 h r) across, 2/5 s r² about z
-/// Planes and height fields have no mass. A mesh has one that is not known here: it is refused
-/// unless its mass or density is 0, or `at_rest`, where no inertia matters.
-MjcfInertia read_geom(const Node& geom, const MjcfAngles& angles, bool at_rest);
+///   mesh                see MjcfMeshes
+/// With `shellinertia` the surface alone, and `density` is per area: with P = ∫ x² + y² and Z = ∫
+/// z² over its area A, m P/A about z and m (P/2 + Z)/A across:
+///   sphere              A = 4 π r²                    P = 2/3 r² A, Z = 1/3 r² A
+///   cylinder            A = 4 π r h + 2 π r²          P = 4 π r h r² + π r⁴,
+///                                                     Z = 4/3 π r h³ + 2 π r² h²
+///   capsule             A = 4 π r h + 4 π r²          P = 4 π r h r² + 8/3 π r⁴,
+///                                                     Z = 4/3 π r h³ + 4 π r² (h² + h r + r²/3)
+///   box                 A = 8 (ab + bc + ca)          ∫ x² = 8 a² (bc + (ab + ca)/3), …
+/// That of an ellipsoid has no such formula and is refused. Planes and height fields have no mass.
+/// A mesh of a body that is `at_rest` is not weighed: no inertia matters there.
+MjcfInertia read_geom(const Node& geom, const MjcfAngles& angles, bool at_rest, MjcfMeshes& meshes,
+                      Remarks& remarks);
 
 }  // namespace momenta::reading

@@ -3,7 +3,8 @@
 // and the scene that grows.
 
 #include <momenta/core/scene/mjcf/mjcf_defaults.h>
-#include <momenta/core/scene/mjcf/mjcf_frames.h>
+#include <momenta/core/scene/mjcf/mjcf_meshes.h>
+#include <momenta/core/scene/mjcf/mjcf_settings.h>
 #include <momenta/core/scene/xml/made_scene.h>
 
 #include <map>
@@ -12,14 +13,14 @@
 
 namespace momenta::reading {
 
-struct MjcfModel {
+/// The settings are those that hold where it is read.
+struct MjcfModel : MjcfSettings {
   Scene scene;
   Remarks remarks;
   FreeNames bodies, edges;
-  MjcfAngles angles;
   MjcfDefaults defaults;
-  bool geoms_weigh = true, always_geoms = false;   ///< inertiafromgeom
-  double least_group = -1e9, largest_group = 1e9;  ///< of geoms that weigh
+  MjcfMeshes meshes;
+  std::map<std::string, MjcfSettings> attached;  ///< of attached models, by the `model` of <attach>
 
   /// Bodies by name with their frames at qpos0; "world" is the ground.
   std::map<std::string, MjcfFrame> frames{{"world", {}}};
@@ -28,6 +29,11 @@ struct MjcfModel {
     MjcfFrame frame;  ///< in the body
   };
   std::map<std::string, Site> sites;
+  std::map<std::string, double> refs;  ///< `ref` of each joint that has coordinates [rad or m]
+
+  /// Geoms that can be drawn, and whether MuJoCo draws them by default.
+  std::vector<std::pair<VisualSpec, bool>> drawn;
+  std::map<std::string, Eigen::Vector3d> materials;  ///< colours by name
 
   /// The name of a body in the scene.
   static std::string in_scene(const std::string& body) { return body == "world" ? "ground" : body; }

@@ -1,13 +1,17 @@
 #pragma once
 #include <filesystem>
+#include <string>
 
 namespace momenta {
 
-/// Options for URDF files: what the format itself cannot say.
+/// Options for files of robots: what the formats themselves cannot say.
 struct ReadOptions {
-  /// YAML file with the loops; empty: the file of the same name beside the URDF, if there is one.
+  /// URDF: YAML file with the loops; empty: the file of the same name beside the URDF, if there is
+  /// one.
   std::filesystem::path loops;
-  bool free_root = false;  ///< true: the root link floats; false: it is fixed to the ground
+  bool free_root = false;  ///< URDF: true: the root link floats; false: it is fixed to the ground
+  /// MJCF: the <key> at whose state the scene starts, by name or by number from 0; empty: as drawn
+  std::string key;
 };
 
 }  // namespace momenta

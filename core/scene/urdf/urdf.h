@@ -22,6 +22,10 @@ struct Origin {
 };
 Origin read_origin(const Node& node);
 
+/// The solids of a link: boxes, cylinders and spheres of its <visual>s, or of its <collision>s
+/// where those are all meshes. What is not drawn is counted.
+void draw_link(const Node& link, std::vector<VisualSpec>& visuals, Remarks& remarks);
+
 /// URDF+: <loop> and <coupling>, whose links stand in `scene` already.
 void read_loop_tag(const Node& loop, Scene& scene, FreeNames& edges);
 void read_coupling_tag(const Node& coupling, Scene& scene, FreeNames& edges);

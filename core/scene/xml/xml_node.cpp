@@ -23,7 +23,7 @@ std::string_view trimmed(std::string_view text) {
 }  // namespace
 
 void Node::fail(const std::string& sentence) const {
-  momenta::reading::fail(*file_, at(),
+  momenta::reading::fail(file(), {element_->line, 0},
                          (owner_.empty() ? "" : owner_ + ": ") + "<" + name() + "> " + sentence);
 }
 

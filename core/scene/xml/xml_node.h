@@ -24,7 +24,8 @@ class Node {
   const std::string& name() const { return element_->name; }
   const Element& element() const { return *element_; }
   const std::string& owner() const { return owner_; }
-  Location at() const { return {element_->line, 0}; }
+  Location at() const { return {element_->line, 0, element_->file ? element_->file->number : 0}; }
+  const std::string& file() const { return element_->file ? element_->file->name : *file_; }
   bool has(std::string_view attribute) const { return element_->find(attribute) != nullptr; }
 
   // Without `otherwise` the attribute must be there. Numbers are finite; lists are parted by white

@@ -383,6 +383,7 @@ def load(
     cut: str = "auto",
     loops: _Path = "",
     free_root: bool = False,
+    key: str | int = "",
     at: _State = None,
 ) -> Mechanism: ...
 def parse(

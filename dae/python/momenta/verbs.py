@@ -8,22 +8,24 @@ from . import _momenta
 from .scene import Scene
 
 
-def load(scene, algebra="auto", kkt="auto", *, cut="auto", loops="", free_root=False, at=None):
+def load(
+    scene, algebra="auto", kkt="auto", *, cut="auto", loops="", free_root=False, key="", at=None
+):
     """A Mechanism from a scene file (TOML, URDF or MJCF), TOML text, a Scene or a dict of its keys.
 
     A string with a line break is text, any other string is a path. `algebra`: auto, planar or spatial;
     `kkt`: auto, sweeps, sparse or dense; `cut`: joints that runs cut, auto for the least work or scene;
     `loops`: a file with the loops of a URDF; `free_root`: whether
-    the root link of a URDF floats; `at`: start values instead of the scene's, {'q': {joint: ...},
+    the root link of a URDF floats; `key`: the <key> of an MJCF to start at, by name or number; `at`: start values instead of the scene's, {'q': {joint: ...},
     'v': {...}}. Raises SceneError: one sentence with file, line and what is wrong.
     """
     at = _state(at)
     text, name = _text_of(scene)
     if text is None:
-        return _momenta.read(name, os.fspath(loops), free_root, at, algebra, kkt, cut)
-    if loops or free_root:
+        return _momenta.read(name, os.fspath(loops), free_root, str(key), at, algebra, kkt, cut)
+    if loops or free_root or key != "":
         raise ValueError(
-            "loops and free_root are of a URDF file; expected neither with a scene given as text"
+            "loops, free_root and key are of a robot's file; expected none with a scene given as text"
         )
     return _momenta.parse(text, name, at, algebra, kkt, cut)
 

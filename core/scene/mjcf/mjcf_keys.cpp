@@ -1,0 +1,108 @@
+#include <momenta/core/scene/file_text.h>
+#include <momenta/core/scene/mjcf/mjcf_keys.h>
+#include <momenta/core/scene/near_name.h>
+
+#include <algorithm>
+#include <charconv>
+
+namespace momenta::reading {
+namespace {
+
+std::string name_of(const std::vector<Node>& keys, std::size_t i) {
+  return keys[i].text("name", std::to_string(i));
+}
+
+/// The key of that name, else of that number.
+const Node& find(const std::vector<Node>& keys, const std::string& chosen, const MjcfModel& model) {
+  for (const Node& key : keys)
+    if (key.text("name", "") == chosen) return key;
+  std::size_t number = 0;
+  const char* const end = chosen.data() + chosen.size();
+  const auto [stop, error] = std::from_chars(chosen.data(), end, number);
+  if (stop == end && error == std::errc() && number < keys.size()) return keys[number];
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < keys.size(); ++i) names.push_back(name_of(keys, i));
+  const std::vector<std::string_view> views(names.begin(), names.end());
+  fail(model.scene.file, {},
+       "has no key " + in_quotes(chosen) +
+           (keys.empty() ? ", expected a <keyframe> with keys where one is asked for"
+                         : ", expected one of " + all_in_quotes(names, 20) +
+                               " or a number from 0 to " + std::to_string(keys.size() - 1)) +
+           did_you_mean(chosen, views));
+}
+
+/// The numbers of `attribute`, dealt out to the joints: `size(joint)` to each.
+template <class Size, class Give>
+void deal(const Node& key, const char* attribute, MjcfModel& model, const Size& size,
+          const Give& give) {
+  if (!key.has(attribute)) return;
+  const std::vector<double> numbers = key.numbers(attribute);
+  std::size_t all = 0;
+  for (const JointSpec& joint : model.scene.joints)
+    if (model.refs.contains(joint.name)) all += size(joint);
+  if (numbers.size() != all)
+    key.fail(attribute, "has " + std::to_string(numbers.size()) + " numbers, expected " +
+                            std::to_string(all) + " for the joints of the model");
+  auto from = numbers.begin();
+  for (JointSpec& joint : model.scene.joints)
+    if (model.refs.contains(joint.name)) {
+      const auto count = static_cast<std::ptrdiff_t>(size(joint));
+      give(joint, std::vector<double>(from, from + count));
+      from += count;
+    }
+}
+
+/// The quaternion that begins at `at`, of length one.
+void normalise(const Node& key, const JointSpec& joint, std::vector<double>& q, std::size_t at) {
+  Eigen::Map<Eigen::Vector4d> quaternion(q.data() + at);
+  if (!(quaternion.norm() > 0))
+    key.fail("qpos",
+             "has a zero quaternion for joint " + in_quotes(joint.name) + ", expected w x y z");
+  quaternion /= quaternion.norm();
+}
+
+void start_at(const Node& key, MjcfModel& model) {
+  deal(
+      key, "qpos", model,
+      [](const JointSpec& joint) { return static_cast<std::size_t>(coordinates_of(joint)); },
+      [&](JointSpec& joint, std::vector<double> q) {
+        if (joint.kind == JointKind::spherical) normalise(key, joint, q, 0);
+        if (joint.kind == JointKind::free) normalise(key, joint, q, 3);
+        if (q.size() == 1) q[0] -= model.refs.at(joint.name);
+        joint.position = std::move(q);
+      });
+  deal(
+      key, "qvel", model,
+      [](const JointSpec& joint) { return static_cast<std::size_t>(rates_of(joint)); },
+      [](JointSpec& joint, std::vector<double> u) {
+        if (joint.kind == JointKind::free) {
+          const std::vector<double>& q = joint.position;
+          const Eigen::Quaterniond turn(q[3], q[4], q[5], q[6]);
+          Eigen::Map<Eigen::Vector3d> along(u.data());
+          along = turn.conjugate() * Eigen::Vector3d(along);
+        }
+        joint.velocity = std::move(u);
+      });
+}
+
+}  // namespace
+
+void read_keys(const std::vector<Node>& keyframes, const std::string& chosen, MjcfModel& model) {
+  std::vector<Node> keys;
+  for (const Node& keyframe : keyframes)
+    for (const Node& key : keyframe.children("key"))
+      keys.push_back(key.of(key.has("name") ? "key " + in_quotes(key.text("name", "")) : "key"));
+  if (!chosen.empty()) {
+    const Node& key = find(keys, chosen, model);
+    start_at(key, model);
+    for (const char* other : {"act", "ctrl", "mpos", "mquat"})
+      if (key.has(other)) model.remarks.left_out(std::string(other) + " of the key");
+  } else if (!keys.empty()) {
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < keys.size(); ++i) names.push_back(name_of(keys, i));
+    for (std::size_t i = 0; i < keys.size(); ++i)
+      model.remarks.count("not taken as start, as --key would: " + all_in_quotes(names, 20));
+  }
+}
+
+}  // namespace momenta::reading

@@ -1,0 +1,17 @@
+#pragma once
+// <keyframe>: states of the model by name. One may be chosen as the start (--key); else they are
+// told.
+
+#include <momenta/core/scene/mjcf/mjcf_model.h>
+
+namespace momenta::reading {
+
+/// Makes the state of a <key> the start: `chosen` by its name, or by its number from 0; empty:
+/// none, and a remark names what there is. `qpos` and `qvel` count over the joints in the order of
+/// the file: hinges and slides count from 0, not from `ref`; a ball has a quaternion w x y z and
+/// the angular velocity in body axes; a free joint position, quaternion, velocity in axes of the
+/// world and angular velocity in body axes. What a key does not give is as the model stands.
+/// @throws SceneError for an unknown name, and for other sizes
+void read_keys(const std::vector<Node>& keyframes, const std::string& chosen, MjcfModel& model);
+
+}  // namespace momenta::reading

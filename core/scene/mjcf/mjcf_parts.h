@@ -1,0 +1,35 @@
+#pragma once
+// What a body holds once frames, replicas and attached models are seen through: its bodies, joints,
+// geoms and sites, each with the frame it stands in. <frame> moves what is in it, in the body, and
+// may give it another class of defaults.
+
+#include <momenta/core/scene/mjcf/mjcf_model.h>
+
+namespace momenta::reading {
+
+struct MjcfPart {
+  Node node;
+  MjcfFrame in;                            ///< frame around it, in the body
+  std::string active;                      ///< class of defaults
+  const MjcfSettings* settings = nullptr;  ///< of an attached model; null: as around
+};
+
+/// What stands in a body, in the order of the file. @throws SceneError for composites and flexes
+std::vector<MjcfPart> parts_of(const Node& body, const std::string& active, const MjcfModel& model);
+
+/// Makes the settings of a part hold, and those before it when it ends.
+class SettingsOf {
+ public:
+  SettingsOf(const MjcfPart& part, MjcfSettings& now) : now_(now), before_(now) {
+    if (part.settings != nullptr) now_ = *part.settings;
+  }
+  ~SettingsOf() { now_ = before_; }
+  SettingsOf(const SettingsOf&) = delete;
+  SettingsOf& operator=(const SettingsOf&) = delete;
+
+ private:
+  MjcfSettings& now_;
+  const MjcfSettings before_;
+};
+
+}  // namespace momenta::reading

@@ -1,0 +1,22 @@
+#pragma once
+// What <compiler> says: how angles are written, what weighs a body, where meshes lie. It holds for
+// one model; an attached model has its own.
+
+#include <momenta/core/scene/mjcf/mjcf_frames.h>
+
+#include <filesystem>
+
+namespace momenta::reading {
+
+struct MjcfSettings {
+  MjcfAngles angles;
+  bool geoms_weigh = true, always_geoms = false;   ///< inertiafromgeom
+  double least_group = -1e9, largest_group = 1e9;  ///< of geoms that weigh
+  std::filesystem::path meshes;                    ///< folder of meshes, from that of the model
+  bool bare_names = false;                         ///< strippath: names of files without folders
+};
+
+/// Takes what a <compiler> says over what is there. @throws SceneError for what would change masses
+void read_compiler(const Node& node, MjcfSettings& settings);
+
+}  // namespace momenta::reading
