@@ -232,12 +232,13 @@ TEST_F(MjcfMeshes, HullsOfDentedMeshesAreSaid) {
   mesh.triangles.push_back({6, 4, 8});
   write("dent.obj", obj(mesh));
   const std::string geom = "<geom type='mesh' mesh='dent' density='1'/>";
-  const auto model = [&](const std::string& inertia) {
-    return mjcf("<asset><mesh file='dent.obj'" + inertia + "/></asset><worldbody><body><joint/>" +
-                geom + "</body></worldbody>");
+  const auto model = [&](const std::string& inertia, const std::string& compiler = "") {
+    return mjcf("<compiler " + compiler + "/><asset><mesh file='dent.obj'" + inertia +
+                "/></asset><worldbody><body><joint/>" + geom + "</body></worldbody>");
   };
   EXPECT_NEAR(model("").bodies[0].mass, 8, 1e-14);
   EXPECT_NEAR(model(" inertia='exact'").bodies[0].mass, 8 - 2. / 3, 1e-14);
+  EXPECT_NEAR(model("", "exactmeshinertia='true'").bodies[0].mass, 8 - 2. / 3, 1e-14);
   const auto said = [](const Scene& scene) {
     int count = 0;
     for (const std::string& remark : scene.remarks) count += remark.starts_with("weighed by their");

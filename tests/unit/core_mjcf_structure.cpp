@@ -230,7 +230,7 @@ TEST_F(MjcfStructure, WrongFiles) {
           "file is 'gone.xml', which does not exist, expected a file in '" + folder.string() + "'");
   include("m.xml", "file is 'm.xml', which this element is a part of");
   include("../m.xml", "file is '../m.xml', which is not in the folder");
-  include("/etc/passwd", "which is not in the folder");
+  include("/etc/passwd", "file is '/etc/passwd', which is not in the folder");
   include("", "file is empty, expected a name");
   std::filesystem::create_symlink("/etc/passwd", folder / "link.xml");
   include("link.xml", "file is 'link.xml', which is not in the folder");
@@ -293,15 +293,23 @@ TEST_F(MjcfStructure, WrongReplicates) {
   refused("count='1e300'", "count is 1e+300, expected a whole number");
   refused("count='100000'", ":2: <replicate> takes the model over 200000 elements or 64 MiB");
   refused("count='2'",
-          ":2: equality: <joint> refers to 'j' in a <replicate> and to 'k' elsewhere, expected all "
+          ":3: equality: <joint> refers to 'j' in a <replicate> and to 'k' elsewhere, expected all "
           "of it in the same <replicate>",
           "<equality>\n<joint joint1='j' joint2='k'/></equality>");
   std::string nested = "<body/>";
   for (int i = 0; i < 6; ++i) nested = "<replicate count='50'>" + nested + "</replicate>";
   expect_refused("<worldbody>" + nested + "</worldbody>", "m.xml", "over 200000 elements");
-  nested = "<body><geom size='1'/></body>";
-  for (int i = 0; i < 300; ++i) nested = "<frame>" + nested + "</frame>";
-  expect_refused("<worldbody>" + nested + "</worldbody>", "m.xml", "nested more than 200 deep");
+  // Deep where the files are put together, though none of them is.
+  const auto framed = [](std::string inside) {
+    for (int i = 0; i < 60; ++i) inside = "<frame>" + inside + "</frame>";
+    return inside;
+  };
+  for (int i = 0; i < 4; ++i)
+    write("deep" + std::to_string(i) + ".xml",
+          "<x>" + framed("<include file='deep" + std::to_string(i + 1) + ".xml'/>") + "</x>");
+  write("deep4.xml", "<x><body name='b'><joint/><geom size='1'/></body></x>");
+  expect_refused("<worldbody><include file='deep0.xml'/></worldbody>", "deep3.xml",
+                 ":1: <frame> is nested more than 200 deep, expected no such depth");
   for (const char* soft : {"composite", "flexcomp"})
     expect_refused("<worldbody><body name='b'>\n<" + std::string(soft) + "/></body></worldbody>",
                    "m.xml",

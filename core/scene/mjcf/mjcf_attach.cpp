@@ -22,6 +22,13 @@ void set(Element& element, const std::string& attribute, const std::string& text
   element.attributes.push_back({attribute, text});
 }
 
+/// A file alone is not that deep: parse_xml sees to it.
+void refuse_depth(const Node& node, int depth) {
+  constexpr int deepest = 200;
+  if (depth > deepest) node.fail("is nested more than 200 deep, expected no such depth");
+  for (const Node& child : node.children()) refuse_depth(child, depth + 1);
+}
+
 class Assembler {
  public:
   Assembler(MjcfFiles& files, Remarks& remarks) : files_(files), remarks_(remarks) {}
@@ -224,7 +231,10 @@ class Assembler {
 Element assembled(const Element& model, const std::string& file, MjcfFiles& files,
                   Remarks& remarks) {
   std::error_code error;
-  return Assembler(files, remarks).assemble(model, file, {fs::weakly_canonical(file, error)});
+  Element whole =
+      Assembler(files, remarks).assemble(model, file, {fs::weakly_canonical(file, error)});
+  refuse_depth(Node(whole, "", file), 1);
+  return whole;
 }
 
 }  // namespace momenta::reading

@@ -86,8 +86,9 @@ const MeshMass& MjcfMeshes::of(const Node& geom, bool shell, Remarks& remarks) {
   }
   Asset& asset = found->second;
   const Node node(asset.element, "mesh " + in_quotes(name), asset.file);
-  const auto inertia =
-      shell ? Inertia::shell : static_cast<Inertia>(node.word("inertia", inertias, 0));
+  const auto inertia = shell ? Inertia::shell
+                             : static_cast<Inertia>(node.word("inertia", inertias,
+                                                              asset.settings.exact_meshes ? 1 : 0));
   std::optional<MeshMass>& mass = inertia == Inertia::shell ? asset.shell : asset.solid;
   if (mass) return *mass;
   std::string what, fault;

@@ -13,7 +13,8 @@ struct MjcfSettings {
   bool geoms_weigh = true, always_geoms = false;   ///< inertiafromgeom
   double least_group = -1e9, largest_group = 1e9;  ///< of geoms that weigh
   std::filesystem::path meshes;                    ///< folder of meshes, from that of the model
-  bool bare_names = false;                         ///< strippath: names of files without folders
+  bool exact_meshes = false;  ///< exactmeshinertia: meshes are solids as they are, not their hulls
+  bool bare_names = false;    ///< strippath: names of files without folders
 };
 
 /// Takes what a <compiler> says over what is there. @throws SceneError for what would change masses
