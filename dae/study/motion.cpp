@@ -141,6 +141,8 @@ Picture picture_of(const Mechanism& mechanism) {
     body.translations = can_translation(joint->kind);
     body.rest = joint->rotation;
     body.axis = joint->axis.normalized();
+    body.sprung = joint->stiffness != 0;
+    body.damped = joint->damping != 0;
     body.shape = spec.shape;
     body.mass = spec.mass;
     body.com = spec.com;
@@ -168,8 +170,34 @@ Picture picture_of(const Mechanism& mechanism) {
   for (const LoopSpec& loop : scene.loops)
     if (loop.kind != LoopKind::coupler)
       picture.loops.push_back(pair(loop, std::string(reading::name_of(loop.kind))));
-  for (const ForceSpec& force : scene.forces)
-    if (force.kind == "spring-damper") picture.springs.push_back(pair(force, force.kind));
+    else
+      picture.couplers.push_back({loop.name, {}, loop.ratios});
+  std::size_t coupler = 0;
+  std::map<std::string, int> by_joint;
+  for (std::size_t k = 0; k < picture.bodies.size(); ++k)
+    by_joint[picture.bodies[k].joint] = static_cast<int>(k);
+  for (const LoopSpec& loop : scene.loops) {
+    if (loop.kind != LoopKind::coupler) continue;
+    for (const std::string& joint : loop.joints)
+      picture.couplers[coupler].bodies.push_back(by_joint.at(joint));
+    ++coupler;
+  }
+  for (const DriveSpec& drive : scene.drives)
+    if (!drive.joint.empty())
+      picture.bodies[static_cast<std::size_t>(by_joint.at(drive.joint))].driven = true;
+  for (const ForceSpec& force : scene.forces) {
+    if (force.kind == "spring-damper")
+      picture.springs.push_back(pair(force, force.damping == 0     ? "spring"
+                                            : force.stiffness == 0 ? "damper"
+                                                                   : force.kind));
+    if (force.kind == "torque")
+      picture.bodies[static_cast<std::size_t>(by_joint.at(force.joint))].pushed = true;
+    if (force.kind == "wrench")
+      picture.loads.push_back(
+          {order.place.at(force.body), force.point, force.force, force.torque, force.in_body_axes});
+  }
+  for (const VisualSpec& visual : scene.visuals)
+    picture.solids.push_back({order.place.at(visual.body), visual});
   for (const MarkerSpec& marker : scene.markers)
     picture.markers.push_back({marker.name, order.place.at(marker.body), marker.point});
   for (Picture::Body& body : picture.bodies) {

@@ -31,6 +31,8 @@ struct Picture {
     bool translations = false;
     Eigen::Quaterniond rest = Eigen::Quaterniond::Identity();
     Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< in the joint frame
+    /// Of its joint: a spring, a damper, a drive, a torque.
+    bool sprung = false, damped = false, driven = false, pushed = false;
     Shape shape;
     double mass = 0;
     Eigen::Vector3d com = Eigen::Vector3d::Zero();
@@ -42,6 +44,24 @@ struct Picture {
     std::string name, kind;
     int parent = -1, child = -1;
     Eigen::Vector3d at_parent = Eigen::Vector3d::Zero(), at_child = Eigen::Vector3d::Zero();
+  };
+  /// A solid fixed in a body, or −1: in the ground.
+  struct Solid {
+    int body = -1;
+    VisualSpec visual;
+  };
+  /// Bodies whose joints a coupler ties: Σ ratios[i] q_i.
+  struct Coupler {
+    std::string name;
+    std::vector<int> bodies;
+    std::vector<double> ratios;
+  };
+  /// A constant force and torque on a point of a body.
+  struct Load {
+    int body = -1;
+    Eigen::Vector3d at = Eigen::Vector3d::Zero(), force = Eigen::Vector3d::Zero(),
+                    torque = Eigen::Vector3d::Zero();
+    bool in_body_axes = false;
   };
   struct Marker {
     std::string name;
@@ -55,7 +75,10 @@ struct Picture {
   double length = 1;  ///< natural length of the scene [m]
   std::vector<Body> bodies;
   std::vector<Pair> loops;    ///< all but couplers
-  std::vector<Pair> springs;  ///< between points of bodies
+  std::vector<Pair> springs;  ///< between points of bodies: spring, damper or spring-damper
+  std::vector<Solid> solids;
+  std::vector<Coupler> couplers;
+  std::vector<Load> loads;
   std::vector<Marker> markers;
 };
 

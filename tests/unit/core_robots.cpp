@@ -279,7 +279,7 @@ TEST_F(Robots, MjcfOptionsEqualityAndRemarks) {
   EXPECT_EQ(scene.loops[0].offset, 0.1);
   EXPECT_EQ(scene.loops[1].joints, std::vector<std::string>{"k"});
   EXPECT_EQ(scene.remarks,
-            (std::vector<std::string>{"left out: geoms as shapes to see and to touch (1)",
+            (std::vector<std::string>{"left out: geoms as shapes to touch (1)",
                                       "left out: actuators, which --control lets act (2)",
                                       "left out: equality constraints that are not active (1)"}));
 }

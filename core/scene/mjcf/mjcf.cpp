@@ -3,6 +3,7 @@
 #include <momenta/core/scene/mjcf/mjcf.h>
 #include <momenta/core/scene/mjcf/mjcf_copies.h>
 #include <momenta/core/scene/mjcf/mjcf_keys.h>
+#include <momenta/core/scene/mjcf/mjcf_visuals.h>
 #include <momenta/core/scene/near_name.h>
 #include <momenta/core/scene/validate.h>
 
@@ -48,6 +49,7 @@ void read_asset(const Node& asset, const MjcfFiles& files, MjcfModel& model) {
   const std::string* const attached = asset.element().find(of_model);
   std::filesystem::path folder = files.folder();
   if (attached != nullptr) folder = files.folder_of(asset);
+  read_materials(asset, model);
   for (const Node& part : asset.children("mesh")) {
     const Element full = model.defaults.with_defaults(part, "mesh", MjcfDefaults::main_class);
     const Node mesh(full, "mesh " + in_quotes(part.text("name", "")), model.scene.file);
@@ -98,6 +100,7 @@ Scene read_mjcf(const Element& element, const std::string& file, const std::stri
     if (std::find(read.begin(), read.end(), node.name()) == read.end())
       count_left_out(node, model.remarks);
   }
+  take_drawn(model);
   model.scene.remarks = model.remarks.sentences();
   if (model.scene.bodies.empty()) root.fail("has no <body>, expected at least one");
   validate(model.scene);

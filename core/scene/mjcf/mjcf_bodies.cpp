@@ -4,6 +4,7 @@
 #include <momenta/core/scene/kinds.h>
 #include <momenta/core/scene/mjcf/mjcf_inertia.h>
 #include <momenta/core/scene/mjcf/mjcf_parts.h>
+#include <momenta/core/scene/mjcf/mjcf_visuals.h>
 #include <momenta/core/scene/near_name.h>
 
 #include <algorithm>
@@ -44,7 +45,7 @@ class BodyReader {
       else if (what == "site")
         site(part, place);
       else if (what == "geom")
-        model_.remarks.left_out("geoms as shapes to see and to touch");
+        draw_geom(part, MjcfModel::in_scene(place.parent), model_);
       else if (what == "camera" || what == "light")
         model_.remarks.left_out(what + "s");
       else if (what != "joint" && what != "freejoint" && what != "inertial")

@@ -10,10 +10,6 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-enum class Shape { sphere, capsule, ellipsoid, cylinder, box, plane, hfield, mesh, sdf };
-constexpr std::array<std::string_view, 9> shapes{
-    "sphere", "capsule", "ellipsoid", "cylinder", "box", "plane", "hfield", "mesh", "sdf"};
-
 Matrix3d rotated(const Matrix3d& m, const Eigen::Quaterniond& turn) {
   const Matrix3d r = turn.toRotationMatrix();
   if (r == Matrix3d::Identity()) return m;
@@ -26,46 +22,22 @@ Matrix3d steiner(double mass, const Vector3d& r) {
   return mass * (r.squaredNorm() * Matrix3d::Identity() - r * r.transpose());
 }
 
-/// Radius and half length, or the three half lengths, as the shape has them; `fromto` gives the one
-/// along z.
-Vector3d size_of(const Node& geom, Shape shape) {
-  const std::vector<double> given = geom.numbers("size");
-  const bool by_ends = geom.has("fromto");
-  const bool of_three = shape == Shape::ellipsoid || shape == Shape::box;
-  const std::size_t needed = shape == Shape::sphere || by_ends ? 1 : (of_three ? 3 : 2);
-  if (given.size() < needed)
-    geom.fail("size", "has " + std::to_string(given.size()) + " numbers, expected " +
-                          std::to_string(needed) + " for a " +
-                          std::string(shapes[static_cast<std::size_t>(shape)]));
-  Vector3d size = Vector3d::Zero();
-  for (std::size_t i = 0; i < needed; ++i) size[static_cast<Eigen::Index>(i)] = given[i];
-  if (by_ends) {
-    const std::vector<double> n = geom.numbers("fromto", 6);
-    const double half = 0.5 * Vector3d(n[3] - n[0], n[4] - n[1], n[5] - n[2]).norm();
-    size = of_three ? Vector3d(given[0], given[0], half) : Vector3d(given[0], half, 0);
-  }
-  for (std::size_t i = 0; i < (by_ends ? (of_three ? 3 : 2) : needed); ++i)
-    if (!(size[static_cast<Eigen::Index>(i)] > 0))
-      geom.fail("size", "is not positive, expected numbers > 0 [m]");
-  return size;
-}
-
 struct Solid {
   double volume = 0;                    ///< [m³], or the area of a shell [m²]
   Vector3d moments = Vector3d::Zero();  ///< per mass, principal, z last
 };
 
-Solid solid_of(Shape shape, const Vector3d& s) {
+Solid solid_of(GeomShape shape, const Vector3d& s) {
   const double pi = std::numbers::pi;
   const Vector3d squares = s.cwiseAbs2();
   const Vector3d others(squares[1] + squares[2], squares[0] + squares[2], squares[0] + squares[1]);
-  if (shape == Shape::box) return {8 * s.prod(), others / 3};
-  if (shape == Shape::ellipsoid) return {4 * pi / 3 * s.prod(), others / 5};
+  if (shape == GeomShape::box) return {8 * s.prod(), others / 3};
+  if (shape == GeomShape::ellipsoid) return {4 * pi / 3 * s.prod(), others / 5};
   const double r = s[0], h = s[1];
-  if (shape == Shape::sphere) return {4 * pi / 3 * r * r * r, Vector3d::Constant(0.4 * r * r)};
+  if (shape == GeomShape::sphere) return {4 * pi / 3 * r * r * r, Vector3d::Constant(0.4 * r * r)};
   const double cylinder = 2 * pi * r * r * h, ball = 4 * pi / 3 * r * r * r;
   const double across = (3 * r * r + 4 * h * h) / 12, along = r * r / 2;
-  if (shape == Shape::cylinder) return {cylinder, {across, across, along}};
+  if (shape == GeomShape::cylinder) return {cylinder, {across, across, along}};
   const double part = ball / (cylinder + ball);
   const double ends = 0.4 * r * r + h * h + 0.75 * h * r;
   const double x = part * ends + (1 - part) * across;
@@ -73,18 +45,18 @@ Solid solid_of(Shape shape, const Vector3d& s) {
 }
 
 /// The surface alone: its area, and moments per mass.
-Solid shell_of(Shape shape, const Vector3d& s) {
+Solid shell_of(GeomShape shape, const Vector3d& s) {
   const double pi = std::numbers::pi;
-  if (shape == Shape::box) {
+  if (shape == GeomShape::box) {
     const double ab = s[0] * s[1], bc = s[1] * s[2], ca = s[2] * s[0];
     const Vector3d squares(bc + (ab + ca) / 3, ca + (ab + bc) / 3, ab + (bc + ca) / 3);
     const Vector3d means = squares.cwiseProduct(s.cwiseAbs2()) / (ab + bc + ca);
     return {8 * (ab + bc + ca), {means[1] + means[2], means[0] + means[2], means[0] + means[1]}};
   }
-  const double r = s[0], h = shape == Shape::sphere ? 0 : s[1];
+  const double r = s[0], h = shape == GeomShape::sphere ? 0 : s[1];
   const double side = 4 * pi * r * h, disc = pi * r * r;
   double area = side, polar = side * r * r, axial = side * h * h / 3;
-  if (shape == Shape::cylinder) {
+  if (shape == GeomShape::cylinder) {
     area += 2 * disc;
     polar += disc * r * r;
     axial += 2 * disc * h * h;
@@ -106,6 +78,28 @@ MjcfInertia weighed(const MeshMass& mesh, double mass) {
 
 MjcfInertia operator*(const MjcfFrame& frame, const MjcfInertia& inner) {
   return {inner.mass, frame * inner.com, rotated(inner.inertia, frame.turn)};
+}
+
+Vector3d geom_size(const Node& geom, GeomShape shape) {
+  const std::vector<double> given = geom.numbers("size");
+  const bool by_ends = geom.has("fromto");
+  const bool of_three = shape == GeomShape::ellipsoid || shape == GeomShape::box;
+  const std::size_t needed = shape == GeomShape::sphere || by_ends ? 1 : (of_three ? 3 : 2);
+  if (given.size() < needed)
+    geom.fail("size", "has " + std::to_string(given.size()) + " numbers, expected " +
+                          std::to_string(needed) + " for a " +
+                          std::string(geom_shapes[static_cast<std::size_t>(shape)]));
+  Vector3d size = Vector3d::Zero();
+  for (std::size_t i = 0; i < needed; ++i) size[static_cast<Eigen::Index>(i)] = given[i];
+  if (by_ends) {
+    const std::vector<double> n = geom.numbers("fromto", 6);
+    const double half = 0.5 * Vector3d(n[3] - n[0], n[4] - n[1], n[5] - n[2]).norm();
+    size = of_three ? Vector3d(given[0], given[0], half) : Vector3d(given[0], half, 0);
+  }
+  for (std::size_t i = 0; i < (by_ends ? (of_three ? 3 : 2) : needed); ++i)
+    if (!(size[static_cast<Eigen::Index>(i)] > 0))
+      geom.fail("size", "is not positive, expected numbers > 0 [m]");
+  return size;
 }
 
 void MjcfInertia::add(const MjcfInertia& other) {
@@ -134,28 +128,28 @@ MjcfInertia read_inertial(const Node& node, const MjcfAngles& angles) {
 
 MjcfInertia read_geom(const Node& geom, const MjcfAngles& angles, bool at_rest, MjcfMeshes& meshes,
                       Remarks& remarks) {
-  const auto shape = static_cast<Shape>(geom.word("type", shapes, 0));
-  if (shape == Shape::plane || shape == Shape::hfield) return {};
+  const auto shape = static_cast<GeomShape>(geom.word("type", geom_shapes, 0));
+  if (shape == GeomShape::plane || shape == GeomShape::hfield) return {};
   const bool by_mass = geom.has("mass");
   const double given = by_mass ? geom.number("mass") : geom.number("density", 1000);
   if (given < 0) geom.fail(by_mass ? "mass" : "density", "is negative, expected a number >= 0");
   if (given == 0) return {};
   const bool shell = geom.flag("shellinertia", false);
-  if (shape == Shape::mesh) {
+  if (shape == GeomShape::mesh) {
     if (at_rest) return {};
     const MeshMass& mesh = meshes.of(geom, shell, remarks);
     return read_frame(geom, angles) * weighed(mesh, by_mass ? given : given * mesh.measure);
   }
-  if (shape == Shape::sdf || geom.has("mesh")) {
+  if (shape == GeomShape::sdf || geom.has("mesh")) {
     if (at_rest) return {};
-    geom.fail("type", "is " + std::string(shapes[static_cast<std::size_t>(shape)]) +
+    geom.fail("type", "is " + std::string(geom_shapes[static_cast<std::size_t>(shape)]) +
                           " with a mesh to fit, which is not read; expected the type mesh, or an "
                           "<inertial> of the body");
   }
-  if (shell && shape == Shape::ellipsoid)
+  if (shell && shape == GeomShape::ellipsoid)
     geom.fail("shellinertia", "is true for an ellipsoid, which is not read; expected a solid");
   const MjcfFrame frame = read_frame(geom, angles);
-  const Vector3d size = size_of(geom, shape);
+  const Vector3d size = geom_size(geom, shape);
   const Solid solid = shell ? shell_of(shape, size) : solid_of(shape, size);
   const double mass = by_mass ? given : given * solid.volume;
   return frame *

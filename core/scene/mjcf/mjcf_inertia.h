@@ -3,7 +3,17 @@
 
 #include <momenta/core/scene/mjcf/mjcf_meshes.h>
 
+#include <array>
+#include <string_view>
+
 namespace momenta::reading {
+
+enum class GeomShape { sphere, capsule, ellipsoid, cylinder, box, plane, hfield, mesh, sdf };
+inline constexpr std::array<std::string_view, 9> geom_shapes{
+    "sphere", "capsule", "ellipsoid", "cylinder", "box", "plane", "hfield", "mesh", "sdf"};
+/// Radius and half length, or the three half lengths, as the shape has them; `fromto` gives the one
+/// along z. @throws SceneError for numbers that are missing or not positive
+Eigen::Vector3d geom_size(const Node& geom, GeomShape shape);
 
 /// Mass, centre of mass and the inertia about it, in axes of the body.
 struct MjcfInertia {

@@ -47,6 +47,10 @@ struct MjcfModel : MjcfSettings {
   };
   std::map<std::string, Tendon> tendons;
 
+  /// Geoms that can be drawn, and whether MuJoCo draws them by default.
+  std::vector<std::pair<VisualSpec, bool>> drawn;
+  std::map<std::string, Eigen::Vector3d> materials;  ///< colours by name
+
   /// The name of a body in the scene.
   static std::string in_scene(const std::string& body) { return body == "world" ? "ground" : body; }
 };

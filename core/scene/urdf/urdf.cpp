@@ -37,9 +37,9 @@ BodySpec read_link(const Node& link, Remarks& remarks) {
   body.at = link.at();
   for (const Node& part : link.children()) {
     if (part.name() == "inertial") continue;
-    if (part.name() == "visual" || part.name() == "collision")
-      remarks.left_out(part.name() + " shapes");
-    else
+    if (part.name() == "collision")
+      remarks.left_out("collision shapes");
+    else if (part.name() != "visual")
       remarks.left_out("<" + part.name() + "> of links");
   }
   const auto inertial = link.child("inertial");
@@ -174,6 +174,7 @@ Scene read_urdf(const Element& element, const std::string& file, const ReadOptio
   for (const Node& node : robot.children("link")) {
     links.push_back(owned(node, "link"));
     scene.bodies.push_back(read_link(links.back(), remarks));
+    draw_link(links.back(), scene.visuals, remarks);
   }
   if (links.empty()) robot.fail("has no <link>, expected at least one");
   for (const Node& node : robot.children("joint")) {

@@ -37,6 +37,10 @@ void tell_of_fixed_root(const Scene& scene, Remarks& remarks);
 /// <transmission>: adds to the rotor_inertia of its joint. @throws SceneError
 void read_transmission(const Node& transmission, Scene& scene, Remarks& remarks);
 
+/// The solids of a link: boxes, cylinders and spheres of its <visual>s, or of its <collision>s
+/// where those are all meshes. What is not drawn is counted.
+void draw_link(const Node& link, std::vector<VisualSpec>& visuals, Remarks& remarks);
+
 /// URDF+: <loop> and <coupling>, whose links stand in `scene` already.
 void read_loop_tag(const Node& loop, Scene& scene, FreeNames& edges);
 void read_coupling_tag(const Node& coupling, Scene& scene, FreeNames& edges);

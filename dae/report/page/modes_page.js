@@ -6,7 +6,7 @@
   const filmed = study.motions.filter((motion) => motion.run >= 0);
   const stage = element("div");
   const left = element("div", { class: "left" }, stage), right = element("div", { class: "right" });
-  main.append(element("section", { class: "beside" }, left, right));
+  main.append(element("section", { class: "beside modes" }, left, right));
 
   const swings = (mode) => mode.s[1] > 0;
   const title = (i) => {
@@ -64,7 +64,7 @@
     const cells = [mode.kind, swings(mode) ? number(mode.frequency, 5) : "–", swings(mode) ? number(mode.s[1], 5) : "–",
       measured(mode.damping_ratio) ? number(mode.damping_ratio, 3) : "–", number(mode.s[0], 3), mode.moves];
     return element("tr", {}, element("th", { scope: "row" }, name),
-      ...cells.map((text, k) => element("td", k === 0 || k === 5 ? { class: "text" } : {}, text)));
+      ...cells.map((text, k) => element("td", k === 5 ? { class: "text moves" } : k === 0 ? { class: "text" } : {}, text)));
   });
   const head = element("tr", {}, ...["mode", "kind", "f [Hz]", "ω [rad/s]", "damping ratio", "growth [1/s]", "moves most"].map((text) =>
     element("th", { scope: "col", class: "text plain" }, text)));

@@ -5,7 +5,7 @@
   const films = study.motions.map(filmOf);
   const until = Math.max(0, ...study.timeline.map((chart) => chart.t.at(-1)));
   const player = films.length && picture.bodies.length
-    ? moviePlayer(films, () => null, runs.length ? usualBoxes : [...usualBoxes, "masses"], until) : null;
+    ? moviePlayer(films, () => null, runs.length || picture.solids.length ? usualBoxes : [...usualBoxes, "masses"], until) : null;
   const clock = player?.clock ?? clockOf([{ start: 0, end: 0, every: 0 }], until);
   const factor = player?.factor() ?? 0;
   const magnified = factor > 1 ? ` Gaps of loops are drawn ${factor < 1e4 ? factor : `10${raised(Math.round(Math.log10(factor)))}`} times as wide as they are.`

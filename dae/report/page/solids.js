@@ -18,30 +18,57 @@ function around(corners) {
     .sort((a, b) => a[0] - b[0]).map(([, c]) => c);
 }
 
-/** What a body is drawn of, in its axes: faces of its solid, a ball, bars between the points that hold it. */
-const solids = picture.bodies.map((body) => {
-  const [a, b, c] = body.size;
-  const faces = [], bars = [];
-  let ball = null;
-  if (body.shape === "box") {
-    const corner = (i, j, k) => plus(body.com, [(i * a) / 2, (j * b) / 2, (k * c) / 2]);
-    for (const s of [-1, 1]) {
-      faces.push([corner(s, -1, -1), corner(s, 1, -1), corner(s, 1, 1), corner(s, -1, 1)],
-        [corner(-1, s, -1), corner(-1, s, 1), corner(1, s, 1), corner(1, s, -1)],
-        [corner(-1, -1, s), corner(1, -1, s), corner(1, 1, s), corner(-1, 1, s)]);
-    }
-  } else if (body.shape === "cylinder") {
-    const along = unit(body.along);
-    const x = unit(cross(along, Math.abs(along[0]) < 0.8 ? [1, 0, 0] : [0, 1, 0])), y = cross(along, x);
-    const sides = 14;
-    const rim = (s, k) => plus(plus(body.com, scaled(along, (s * a) / 2)),
-      plus(scaled(x, b * Math.cos((2 * Math.PI * k) / sides)), scaled(y, b * Math.sin((2 * Math.PI * k) / sides))));
-    for (const s of [-1, 1]) faces.push(Array.from({ length: sides }, (_, k) => rim(s, k)));
-    for (let k = 0; k < sides; ++k) faces.push([rim(-1, k), rim(-1, k + 1), rim(1, k + 1), rim(1, k)]);
-  } else if (body.shape === "sphere") {
-    ball = { at: body.com, r: a };
+/** A convex solid in axes of its own: corners, and faces as lists of them; `edged`: its edges are lines. */
+function convex(kind, [a, b, c]) {
+  if (kind === "box") {
+    const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((i) => [((i & 1) - 0.5) * a, (((i >> 1) & 1) - 0.5) * b, ((i >> 2) - 0.5) * c]);
+    return { corners, faces: [[0, 1, 3, 2], [4, 5, 7, 6], [0, 1, 5, 4], [2, 3, 7, 6], [0, 2, 6, 4], [1, 3, 7, 5]], edged: true };
   }
-  const solid = faces.length > 0 || ball;
+  // A profile of [radius, z], turned about z; factors stretch an ellipsoid.
+  const arc = (n, from, to, r, z) => Array.from({ length: n + 1 }, (_, k) => from + ((to - from) * k) / n).map((w) => [r * Math.cos(w), z + r * Math.sin(w)]);
+  const half = Math.PI / 2, sides = 14;
+  const profile = kind === "cylinder" ? [[b, -a / 2], [b, a / 2]]
+    : kind === "capsule" ? [...arc(3, -half, 0, b, -a / 2), ...arc(3, 0, half, b, a / 2)] : arc(8, -half, half, 1, 0);
+  const factors = kind === "ellipsoid" ? [a, b, c] : [1, 1, 1];
+  const corners = [], rings = profile.map(([r, z]) => Array.from({ length: sides }, (_, k) => {
+    const w = (2 * Math.PI * k) / sides;
+    return corners.push([r * Math.cos(w) * factors[0], r * Math.sin(w) * factors[1], z * factors[2]]) - 1;
+  }));
+  const faces = kind === "cylinder" ? [rings[0], rings[1]] : [];
+  for (let i = 1; i < rings.length; ++i) for (let k = 0; k < sides; ++k) {
+    faces.push([rings[i - 1][k], rings[i - 1][(k + 1) % sides], rings[i][(k + 1) % sides], rings[i][k]]);
+  }
+  return { corners, faces, edged: false };
+}
+
+/** Solids to be drawn, each with the body (−1: ground) whose axes its corners, normals and middle are in. */
+const parts = [];
+function addPart(body, kind, size, at, turn, colour) {
+  if (kind === "sphere") return parts.push({ body, ball: size[0], middle: at, colour });
+  const { corners, faces, edged } = convex(kind, size);
+  const normals = faces.map((face) => {
+    // The diagonals span a face, of a triangle with a doubled corner too.
+    const [p, q, r, s] = [0, 1, 2, 3].map((i) => corners[face[Math.floor((i * face.length) / 4)]]);
+    const n = unit(cross(minus(r, p), minus(s, q)));
+    return inner(n, face.map((i) => corners[i]).reduce(plus)) < 0 ? scaled(n, -1) : n;
+  });
+  parts.push({ body, middle: at, faces, edged, colour,
+    corners: corners.map((c) => plus(at, turned(turn, c))), normals: normals.map((n) => turned(turn, n)) });
+}
+for (const s of picture.solids) addPart(s.body, s.kind, s.size, s.at ?? [0, 0, 0], s.turn ?? [1, 0, 0, 0], s.colour);
+const seenBodies = new Set(picture.solids.map((s) => s.body));
+picture.bodies.forEach((body, k) => {
+  if (seenBodies.has(k) || !["box", "cylinder", "sphere"].includes(body.shape)) return;
+  const along = unit(body.along), n = cross([0, 0, 1], along);  // of a cylinder, turned from z
+  const turn = body.shape !== "cylinder" ? [1, 0, 0, 0] : norm(n) < 1e-9 ? [1, 0, 0, 0] : about(unit(n), Math.acos(Math.max(-1, Math.min(1, along[2]))));
+  addPart(k, body.shape, body.size, body.com, turn);
+});
+
+/** What a body is drawn of where no solid hides it: bars between the points that hold it, a sheet between them. */
+const solids = picture.bodies.map((body, k) => {
+  const [a, b, c] = body.size, bars = [];
+  const solid = ["box", "cylinder", "sphere"].includes(body.shape);
+  if (seenBodies.has(k)) return { bars, sheet: null };
   const outline = !solid && body.ends.length > 2 ? around(body.ends) : null;
   if (solid) {
     // Arms from the solid to what holds it, where that is outside.
@@ -64,8 +91,28 @@ const solids = picture.bodies.map((body) => {
   } else if (body.ends.length === 2) {
     bars.push([body.ends[0], body.ends[1]]);
   }
-  return { faces, ball, bars, sheet: outline };
+  return { bars, sheet: outline };
 });
+
+/**
+ * Wheels of couplers, in axes of their bodies. Of two joints about parallel axes on one body, with ratios of one sign,
+ * ρ₁q₁ + ρ₂q₂ = c, the pitch circles touch: r₁ : r₂ = ρ₁ : ρ₂ and r₁ + r₂ is the distance of the axes. rim(part,
+ * factor): a point of the circle of factor times the radius.
+ */
+const wheels = [];
+for (const { bodies: tied, ratios } of picture.couplers) {
+  const at = tied.map((k) => picture.bodies[k]);
+  if (at.length !== 2 || at[0].parent !== at[1].parent || at.some((b) => b.turn !== "axis" || b.slides) || !(ratios[0] * ratios[1] > 0)) continue;
+  const [p, q] = at.map((b) => turned(b.rest, b.axis));
+  if (norm(cross(p, q)) > 1e-6) continue;
+  const between = minus(at[1].at_parent, at[0].at_parent), apart = norm(minus(between, scaled(p, inner(between, p))));
+  at.forEach((body, i) => {
+    const radius = (apart * Math.abs(ratios[i])) / (Math.abs(ratios[0]) + Math.abs(ratios[1]));
+    const x = unit(cross(body.axis, Math.abs(body.axis[0]) < 0.8 ? [1, 0, 0] : [0, 1, 0])), y = cross(body.axis, x);
+    const rim = (part, factor) => plus(body.at_child, plus(scaled(x, factor * radius * Math.cos(2 * Math.PI * part)), scaled(y, factor * radius * Math.sin(2 * Math.PI * part))));
+    if (radius > 0) wheels.push({ body: tied[i], middle: body.at_child, rim });
+  });
+}
 
 /** Points that a picture must hold, of a few frames of each film. */
 function extentOf(films) {
@@ -75,18 +122,29 @@ function extentOf(films) {
     for (let i = 0; i < looks; ++i) {
       const state = film.frame(Math.floor((i * (film.count - 1)) / Math.max(1, looks - 1)), 0);
       picture.bodies.forEach((body, k) => {
-        for (const end of body.ends) points.push(pointOf(state, k, end));
-        for (const face of solids[k].faces) for (const corner of face) points.push(pointOf(state, k, corner));
-        if (solids[k].ball) for (const axis of [0, 1, 2]) for (const s of [-1, 1]) {
-          const p = pointOf(state, k, solids[k].ball.at);
-          p[axis] += s * solids[k].ball.r;
+        for (const end of seenBodies.has(k) ? [body.at_child] : body.ends) points.push(pointOf(state, k, end));
+      });
+      for (const part of parts) {
+        if (part.body < 0) continue;  // a floor is wider than what moves on it
+        for (const corner of part.corners ?? []) points.push(pointOf(state, part.body, corner));
+        if (part.ball) for (const axis of [0, 1, 2]) for (const s of [-1, 1]) {
+          const p = [...pointOf(state, part.body, part.middle)];
+          p[axis] += s * part.ball;
           points.push(p);
         }
-      });
+      }
+      for (const wheel of wheels) for (let i = 0; i < 4; ++i) points.push(pointOf(state, wheel.body, wheel.rim(i / 4, 1)));
     }
   }
-  for (const pair of [...picture.loops, ...picture.springs]) if (pair.parent < 0) points.push(pair.at_parent);
+  for (const pair of picture.loops) if (pair.parent < 0) points.push(pair.at_parent);
   for (const body of picture.bodies) if (body.parent < 0) points.push(body.at_parent);
+  // The ground's end of a spring, unless it is so far away that the mechanism would be a dot.
+  const low = [0, 1, 2].map((i) => points.reduce((m, p) => Math.min(m, p[i]), Infinity));
+  const high = [0, 1, 2].map((i) => points.reduce((m, p) => Math.max(m, p[i]), -Infinity));
+  const reach = 0.5 * norm(minus(high, low));
+  for (const { parent, at_parent: p } of picture.springs) {
+    if (parent < 0 && p.every((x, i) => x > low[i] - reach && x < high[i] + reach)) points.push(p);
+  }
   return points.filter((p) => p.every(Number.isFinite));
 }
 

@@ -2,6 +2,7 @@
 // nearer ones pass in front of it.
 
 const gapColour = "#d55e00";
+const driveColour = "#009e73", loadColour = "#cc79a7";
 const traceColour = () => theme("--accent");
 
 /**
@@ -69,38 +70,15 @@ function stageOf(canvas, film, camera, show, magnified) {
     };
     const light = unit(plus(plus(scaled(eye.right, -0.35), scaled(eye.up, 0.75)), scaled(eye.toEye(camera.world(camera.middle)), 0.6)));
 
-    picture.bodies.forEach((body, k) => {
-      const { faces, ball, bars, sheet } = solids[k];
-      const place = (p) => pointOf(state, k, p);
-      const centre = faces.length ? place(body.com) : null;
-      for (const face of faces) {
-        const corners = face.map(place);
-        const middle = scaled(corners.reduce(plus), 1 / corners.length);
-        let normal = unit(cross(minus(corners[1], corners[0]), minus(corners[2], corners[1])));
-        if (inner(normal, minus(middle, centre)) < 0) normal = scaled(normal, -1);
-        if (inner(normal, eye.toEye(middle)) <= 0) continue;
-        const projected = corners.map(eye.project);
-        const depth = projected.reduce((m, p) => m + p[2], 0) / projected.length;
-        const shade = inner(normal, light);
-        const lit = shade > 0 ? blend(colours.body, "#ffffff", 0.3 * shade) : blend(colours.body, "#000000", -0.4 * shade);
-        items.push({ depth, draw: () => {
-          trace(ctx, projected);
-          const hex = "#" + lit.match(/\d+/g).map((x) => Number(x).toString(16).padStart(2, "0")).join("");
-          ctx.fillStyle = ctx.strokeStyle = blend(hex, colours.ground, fog(depth));
-          ctx.fill();
-          ctx.lineJoin = "round";
-          ctx.lineWidth = 0.8;
-          if (faces.length < 12 || face.length > 4) ctx.strokeStyle = blend(colours.ink, colours.ground, 0.45 + fog(depth));
-          ctx.stroke();
-        } });
-      }
-      if (ball) {
-        const p = eye.project(place(ball.at));
+    for (const part of parts) {
+      const base = part.colour ?? colours.body, turn = part.body < 0 ? [1, 0, 0, 0] : state.turns[part.body];
+      if (part.ball) {
+        const p = eye.project(pointOf(state, part.body, part.middle));
         items.push({ depth: p[2], draw: () => {
-          const r = Math.max(2, ball.r * p[3]);
+          const r = Math.max(2, part.ball * p[3]);
           const glow = ctx.createRadialGradient(p[0] - 0.35 * r, p[1] - 0.4 * r, 0.1 * r, p[0], p[1], r);
-          glow.addColorStop(0, blend(colours.body, "#ffffff", 0.45));
-          glow.addColorStop(1, blend(colours.body, colours.ground, fog(p[2])));
+          glow.addColorStop(0, blend(base, "#ffffff", 0.45));
+          glow.addColorStop(1, blend(base, colours.ground, fog(p[2])));
           ctx.fillStyle = glow;
           ctx.strokeStyle = blend(colours.ink, colours.ground, 0.45 + fog(p[2]));
           ctx.lineWidth = 1;
@@ -108,7 +86,42 @@ function stageOf(canvas, film, camera, show, magnified) {
           ctx.fill();
           ctx.stroke();
         } });
+        continue;
       }
+      const corners = part.corners.map((c) => pointOf(state, part.body, c)), projected = corners.map(eye.project);
+      part.faces.forEach((face, i) => {
+        const normal = turned(turn, part.normals[i]);
+        if (inner(normal, eye.toEye(corners[face[0]])) <= 0) return;
+        const outline = face.map((k) => projected[k]);
+        const depth = outline.reduce((m, p) => m + p[2], 0) / outline.length, shade = inner(normal, light);
+        items.push({ depth, draw: () => {
+          trace(ctx, outline);
+          ctx.fillStyle = ctx.strokeStyle = blend(shadedHex(base, shade), colours.ground, fog(depth));
+          ctx.fill();
+          ctx.lineJoin = "round";
+          ctx.lineWidth = 0.8;
+          if (part.edged || face.length > 4) ctx.strokeStyle = blend(colours.ink, colours.ground, 0.45 + fog(depth));
+          ctx.stroke();
+        } });
+      });
+    }
+    for (const wheel of wheels) {
+      const teeth = 24, middle = eye.project(pointOf(state, wheel.body, wheel.middle));
+      const rim = Array.from({ length: 4 * teeth }, (_, k) => eye.project(pointOf(state, wheel.body, wheel.rim(k / (4 * teeth), k % 4 < 2 ? 1.03 : 0.97))));
+      items.push({ depth: middle[2] + 1e-9, draw: () => {
+        trace(ctx, rim);
+        ctx.globalAlpha = 0.35;
+        ctx.fillStyle = colours.body;
+        ctx.fill();
+        ctx.globalAlpha = 1;
+        stroke(ctx, [...rim, rim[0]], blend(colours.ink, colours.ground, 0.35), 1.4);
+        stroke(ctx, [middle, rim[0]], blend(colours.ink, colours.ground, 0.35), 1.4);  // shows how far it turned
+      } });
+    }
+
+    picture.bodies.forEach((body, k) => {
+      const { bars, sheet } = solids[k];
+      const place = (p) => pointOf(state, k, p);
       if (sheet) {
         const projected = sheet.map((c) => eye.project(place(c)));
         const depth = projected.reduce((m, p) => Math.max(m, p[2]), -Infinity) + 1e-6;
@@ -120,7 +133,7 @@ function stageOf(canvas, film, camera, show, magnified) {
           ctx.globalAlpha = 1;
         } });
       }
-      const metres = body.shape === "cylinder" || body.shape === "box" || ball ? 0.5 * barWidth : barWidth;
+      const metres = ["cylinder", "box", "sphere"].includes(body.shape) ? 0.5 * barWidth : barWidth;
       for (const [a, b] of bars) bar(place(a), place(b), colours.body, metres, 2, camera.planar ? 9 : 13);
       if (show.frames) {
         const origin = place([0, 0, 0]);
@@ -138,8 +151,27 @@ function stageOf(canvas, film, camera, show, magnified) {
     for (const spring of picture.springs) {
       const a = pointOf(state, spring.parent, spring.at_parent), b = pointOf(state, spring.child, spring.at_child);
       const p = eye.project(a), q = eye.project(b);
-      items.push({ depth: (p[2] + q[2]) / 2, draw: () => coil(ctx, p, q, blend(colours.muted, colours.ground, 0.5 * fog((p[2] + q[2]) / 2))) });
+      items.push({ depth: (p[2] + q[2]) / 2, draw: () => between(ctx, p, q, spring.kind, blend(colours.muted, colours.ground, 0.5 * fog((p[2] + q[2]) / 2))) });
     }
+    for (const load of picture.loads) {
+      const at = pointOf(state, load.body, load.at), p = eye.project(at);
+      const way = load.in_body && load.body >= 0 ? turned(state.turns[load.body], load.force) : load.force;
+      if (norm(way) > 0) {
+        const tip = eye.project(plus(at, scaled(unit(way), 0.15 * Math.max(...camera.span))));
+        items.push({ depth: -1e9, draw: () => arrow(ctx, p, tip, loadColour) });
+      }
+      if (norm(load.torque) > 0) items.push({ depth: -1e9, draw: () => roundArrow(ctx, p, 15 * small, loadColour) });
+    }
+    picture.bodies.forEach((body, k) => {
+      if (!show.joints || !(body.spring || body.damper || body.drive || body.torque)) return;
+      const at = eye.project(pointOf(state, k, body.at_child));
+      items.push({ depth: at[2] - 2.4 * barWidth, draw: () => {
+        if (body.spring) spiral(ctx, at, 11 * small, colours.muted);
+        if (body.damper) cup(ctx, at, 13 * small, colours.muted);
+        if (body.drive) roundArrow(ctx, at, 15 * small, driveColour);
+        if (body.torque) roundArrow(ctx, at, 18 * small, loadColour);
+      } });
+    });
 
     const labels = [];
     const nearer = camera.planar ? 0 : 1.2 * barWidth;

@@ -7,6 +7,12 @@ function blend(from, to, part) {
   return `rgb(${a.map((x, i) => Math.round(x + (b[i] - x) * Math.min(1, Math.max(0, part)))).join(" ")})`;
 }
 
+/** "#rrggbb" lit from where `shade`, the cosine to the light, is positive. */
+function shadedHex(hex, shade) {
+  const lit = shade > 0 ? blend(hex, "#ffffff", 0.3 * shade) : blend(hex, "#000000", -0.4 * shade);
+  return "#" + lit.match(/\d+/g).map((x) => Number(x).toString(16).padStart(2, "0")).join("");
+}
+
 /** step of a grid or a scale bar: 1, 2 or 5 times a power of ten, at most `most`. */
 function roundLength(most) {
   const decade = decadeFloor(most);
@@ -78,6 +84,56 @@ function coil(ctx, p, q, colour) {
     points.push([p[0] + along[0] * at + across[0] * off, p[1] + along[1] * at + across[1] * off]);
   }
   stroke(ctx, [...points, q], colour, 1.5);
+}
+
+/** A damper: a rod with a piston in a cup. */
+function dashpot(ctx, p, q, colour) {
+  const length = Math.hypot(q[0] - p[0], q[1] - p[1]) || 1, wide = Math.min(7, 0.12 * length);
+  const at = (along, across) => [p[0] + ((q[0] - p[0]) * along) + ((p[1] - q[1]) * across) / length, p[1] + ((q[1] - p[1]) * along) + ((q[0] - p[0]) * across) / length];
+  stroke(ctx, [p, at(0.35, 0)], colour, 1.5);
+  stroke(ctx, [at(0.62, wide), at(0.35, wide), at(0.35, -wide), at(0.62, -wide)], colour, 1.5);
+  stroke(ctx, [at(0.5, 0.7 * wide), at(0.5, -0.7 * wide)], colour, 2);
+  stroke(ctx, [at(0.5, 0), q], colour, 1.5);
+}
+/** What acts between two points: a spring, a damper, or both side by side. */
+function between(ctx, p, q, kind, colour) {
+  if (kind !== "spring-damper") return kind === "damper" ? dashpot(ctx, p, q, colour) : coil(ctx, p, q, colour);
+  const length = Math.hypot(q[0] - p[0], q[1] - p[1]) || 1, off = [(-6 * (q[1] - p[1])) / length, (6 * (q[0] - p[0])) / length];
+  const beside = (x, s) => [x[0] + s * off[0], x[1] + s * off[1]];
+  coil(ctx, beside(p, 1), beside(q, 1), colour);
+  dashpot(ctx, beside(p, -1), beside(q, -1), colour);
+  for (const x of [p, q]) stroke(ctx, [beside(x, 1), beside(x, -1)], colour, 1.5);
+}
+/** A spring about a joint. */
+function spiral(ctx, [x, y], r, colour) {
+  stroke(ctx, Array.from({ length: 49 }, (_, k) => {
+    const w = (2.5 * 2 * Math.PI * k) / 48, s = r * (0.45 + (0.75 * k) / 48);
+    return [x + s * Math.cos(w), y - s * Math.sin(w)];
+  }), colour, 1.5);
+}
+/** A damper about a joint: an arc with its ends closed. */
+function cup(ctx, [x, y], r, colour) {
+  const arc = (s, n) => Array.from({ length: n }, (_, k) => [x + s * Math.cos(0.5 + k / (n - 1) * 1.6), y + s * Math.sin(0.5 + k / (n - 1) * 1.6)]);
+  const [inside, outside] = [arc(0.8 * r, 12), arc(1.25 * r, 12)];
+  stroke(ctx, [...inside, ...outside.reverse()], colour, 1.5);
+}
+function arrowHead(ctx, tip, angle, colour) {
+  ctx.beginPath();
+  ctx.moveTo(...tip);
+  for (const s of [-0.42, 0.42]) ctx.lineTo(tip[0] - 9 * Math.cos(angle + s), tip[1] - 9 * Math.sin(angle + s));
+  ctx.closePath();
+  ctx.fillStyle = colour;
+  ctx.fill();
+}
+function arrow(ctx, p, q, colour) {
+  stroke(ctx, [p, q], colour, 2.4);
+  arrowHead(ctx, q, Math.atan2(q[1] - p[1], q[0] - p[0]), colour);
+}
+/** What turns a joint: three quarters of a circle with a head. */
+function roundArrow(ctx, [x, y], r, colour) {
+  const way = Array.from({ length: 25 }, (_, k) => 0.4 - (k / 24) * 1.5 * Math.PI).map((w) => [x + r * Math.cos(w), y + r * Math.sin(w)]);
+  stroke(ctx, way, colour, 2);
+  arrowHead(ctx, way[24], Math.atan2(way[24][1] - way[22][1], way[24][0] - way[22][0]), colour);
 }
 
 /** Squares of a round length on the plane, behind everything. */

@@ -54,6 +54,12 @@ function download(label, file, text) {
   return link;
 }
 
+// A frame that is narrower than its table says so.
+for (const event of ["load", "resize"]) {
+  addEventListener(event, () => document.querySelectorAll(".frame").forEach((frame) =>
+    frame.classList.toggle("wide", frame.scrollWidth > frame.clientWidth + 1)));
+}
+
 const csvCell = (text) => (/[",\r\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text);
 const csvNumber = (value) => (measured(value) ? String(value) : "");
 
