@@ -116,7 +116,7 @@ void bind_verbs(py::module_& module) {
       [](const std::string& file, const std::string& loops, bool free_root, const std::string& key,
          const std::string& at, const std::string& algebra, const std::string& kkt,
          const std::string& cut) {
-        return ready(read_scene(file, {loops, free_root, key}),
+        return ready(read_scene(file, {loops, free_root, key, {}}),
                      is_toml(file) ? reading::text_of(file) : "", at, algebra, kkt, cut);
       },
       "file"_a, "loops"_a, "free_root"_a, "key"_a, "at"_a, "algebra"_a, "kkt"_a, "cut"_a);
