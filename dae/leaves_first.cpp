@@ -34,13 +34,14 @@ class LeavesFirstError {
           size_[static_cast<std::size_t>(b.u + i)] = length;
   }
 
-  double largest() {
+  double least() {
     Eigen::VectorXd q = mechanism_.tree().q0;
-    double error = 0;
-    for (int pose = 0; pose < poses; ++pose) {
+    bool there = close(q);
+    double error = std::numeric_limits<double>::infinity();
+    for (int pose = 0; there && pose < poses; ++pose) {
       const double here = at(q.data());
-      error = std::max(error, here);
-      if (!std::isfinite(here) || !move(q)) break;
+      error = std::min(error, here);
+      there = std::isfinite(here) && move(q);
     }
     return error;
   }
@@ -91,26 +92,33 @@ class LeavesFirstError {
 
   /// Along v, and back onto the loops.
   bool move(Eigen::VectorXd& q) {
-    constexpr int corrections = 3;
     double fastest = 0;
     for (std::size_t i = 0; i < v_.size(); ++i)
       fastest = std::max(fastest, std::abs(v_[i]) / size_[i]);
     if (!(fastest > 0)) return false;
+    step(q, way / fastest);
+    return close(q);
+  }
+
+  /// By Newton's steps.
+  bool close(Eigen::VectorXd& q) {
+    constexpr int corrections = 6;
     const std::vector<double> none(v_.size(), 0.0);
-    Eigen::VectorXd rates(q.size());
-    double length = way / fastest;
-    for (int k = 0; k <= corrections; ++k) {
-      e_.place(0, q.data());
-      e_.coordinate_rates(q.data(), v_.data(), rates.data());
-      q += length * rates;
-      mechanism_.tree().normalise(q);
-      length = 1;
-      if (k == corrections) break;
+    for (int k = 0; k < corrections; ++k) {
       const auto solved =
           solve_(q.data(), none.data(), 1, fade_projection, v_.data(), sigma_.data());
       if (!solved || !*solved) return false;
+      step(q, 1);
     }
     return q.allFinite();
+  }
+
+  void step(Eigen::VectorXd& q, double by) {
+    Eigen::VectorXd rates(q.size());
+    e_.place(0, q.data());
+    e_.coordinate_rates(q.data(), v_.data(), rates.data());
+    q += by * rates;
+    mechanism_.tree().normalise(q);
   }
 
   const Mechanism& mechanism_;
@@ -126,7 +134,7 @@ class LeavesFirstError {
 
 double leaves_first_error(const Mechanism& mechanism, Evaluation<double>& e,
                           const LeavesFirst& solve) {
-  return LeavesFirstError(mechanism, e, solve).largest();
+  return LeavesFirstError(mechanism, e, solve).least();
 }
 
 }  // namespace momenta

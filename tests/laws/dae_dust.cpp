@@ -104,22 +104,23 @@ Scene with_coupler(double factor) {
   return s;
 }
 
-// Beside a joint that turns next to nothing the sweeps would take the rows of the others for weak.
-// Motions have limits for couplers without mass and for all the mass in the coupler.
+// Beside a joint that turns next to nothing the sweeps lose the digits of the others. Motions have
+// limits for couplers without mass and for all the mass in the coupler.
 TEST(Dust, LoopsOfLightAndHeavyLinksAreLeftToKlu) {
   for (const double sign : {-1.0, 1.0}) {
     const Mechanism limit(with_coupler(std::pow(10, sign * 5)));
     EXPECT_TRUE(limit.leaves_first());
     EXPECT_EQ(limit.kkt(), KktChoice::sweeps);
     const double angle = two_seconds(limit, "momentum").trajectory.rows.back()[1];
-    for (const double power : {7, 9, 12}) {
+    for (const double power : {9, 12}) {
       const Scene scene = with_coupler(std::pow(10, sign * power));
       const Mechanism mechanism(scene);
       EXPECT_FALSE(mechanism.leaves_first());
       EXPECT_EQ(mechanism.kkt(), KktChoice::sparse);
       const auto lines = mechanism.plan_lines();
       EXPECT_TRUE(std::any_of(lines.begin(), lines.end(), [](const auto& line) {
-        return line.second.find("times lighter than") != std::string::npos;
+        return line.second.find("before their loops miss (7) by") != std::string::npos &&
+               line.second.find("times lighter than") != std::string::npos;
       }));
       for (const char* form : {"momentum", "projected", "baumgarte", "stabilised-index2"}) {
         const RunResult r = two_seconds(mechanism, form);
