@@ -45,11 +45,24 @@ std::string name_and_type(const CLI::Option& o) {
   return shown_name(o) + (is_flag(o) || !o.nonpositional() ? "" : " " + o.get_type_name());
 }
 
+/// Flags --x and --no-x have one row. Of --no-x with `prefix` "no-" the name of --x, of --x with ""
+/// that of --no-x; empty: it has none.
+std::string opposite_of(const CLI::App& verb, const CLI::Option& option,
+                        const std::string& prefix) {
+  const std::string own = shown_name(option), opening = "--" + prefix;
+  if (!is_flag(option) || !own.starts_with(opening)) return "";
+  const std::string other = (prefix.empty() ? "--no-" : "--") + own.substr(opening.size());
+  return verb.get_option_no_throw(other) == nullptr ? "" : other;
+}
+
 std::string help_of_verb(const CLI::App& verb) {
   std::string out = wrapped("Usage: ", "momenta " + synopsis_of(verb), 7) +
                     wrapped("", verb.get_description() + ".", 0) + "\n";
-  for (const CLI::Option* o : verb.get_options())
-    if (o != verb.get_help_ptr()) out += row(name_and_type(*o), shown_text(*o));
+  for (const CLI::Option* o : verb.get_options()) {
+    if (o == verb.get_help_ptr() || !opposite_of(verb, *o, "no-").empty()) continue;
+    const std::string opposite = opposite_of(verb, *o, "");
+    out += row(name_and_type(*o) + (opposite.empty() ? "" : ", " + opposite), shown_text(*o));
+  }
   for (const std::string& sentence : names_behind(verb.get_options()))
     out += wrapped("", sentence, 2);
   if (any_takes(verb.get_options(), "FAMILY")) {

@@ -47,8 +47,7 @@ void add_scene_file(CLI::App& verb, Options& o, bool required) {
   verb.add_option("--loops", o.reading.loops, "Of a URDF: its loops (default: the .yaml beside it)")
       ->type_name("FILE");
   verb.add_flag("--free-root", o.reading.free_root, "Of a URDF: the root link floats");
-  verb.add_option("--control", o.reading.controls,
-                  "Of an MJCF: its actuators act, at this control (NAME=VALUE; VALUE: all)")
+  verb.add_option("--control", o.reading.controls, "Of an MJCF: its actuators act, at NAME=VALUE")
       ->type_name("CONTROL")
       ->allow_extra_args(false);
   verb.add_option("--at", o.at, "Start values: JSON {\"q\": {..}, \"v\": {..}}, or its file")
@@ -98,7 +97,7 @@ void add_run_options(CLI::App& verb, Options& o, const char* cpu_limit) {
   positive(verb.add_option("--end", o.end, "End time [s]"), "S");
   within(verb.add_option("--samples", o.samples, "Output intervals"), "N", 1, most_samples);
   auto* project =
-      verb.add_flag("--project", o.project, "Correct positions after each step (ODE forms)");
+      verb.add_flag("--project", o.project, "Correct positions after each step, or not");
   verb.add_flag("--no-project", o.no_project, "No correction, even if the scene asks for it")
       ->excludes(project);
   positive(verb.add_option("--baumgarte-alpha", o.baumgarte_alpha, "α of Φ̈ + 2αΦ̇ + β²Φ = 0 [1/s]"),
