@@ -52,7 +52,8 @@ std::string opposite_of(const CLI::App& verb, const CLI::Option& option,
   const std::string own = shown_name(option), opening = "--" + prefix;
   if (!is_flag(option) || !own.starts_with(opening)) return "";
   const std::string other = (prefix.empty() ? "--no-" : "--") + own.substr(opening.size());
-  return verb.get_option_no_throw(other) == nullptr ? "" : other;
+  const CLI::Option* found = verb.get_option_no_throw(other);
+  return found && is_flag(*found) ? other : "";
 }
 
 std::string help_of_verb(const CLI::App& verb) {
