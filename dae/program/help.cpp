@@ -1,7 +1,10 @@
 #include "help.h"
 
 #include <algorithm>
+#include <array>
 #include <sstream>
+#include <string_view>
+#include <utility>
 
 #include "families.h"
 #include "values.h"
@@ -45,11 +48,32 @@ std::string name_and_type(const CLI::Option& o) {
   return shown_name(o) + (is_flag(o) || !o.nonpositional() ? "" : " " + o.get_type_name());
 }
 
+/// Options that have one row: the text of the first speaks of both.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 3> one_row{{
+    {"--project", "--no-project"},
+    {"--baumgarte-alpha", "--baumgarte-beta"},
+    {"--rtol", "--atol"},
+}};
+
+/// The option in the row of this one; null: none.
+const CLI::Option* beside(const CLI::App& verb, const CLI::Option& option) {
+  for (const auto& [first, second] : one_row)
+    if (shown_name(option) == first) return verb.get_option_no_throw(std::string(second));
+  return nullptr;
+}
+bool is_beside(const CLI::Option& option) {
+  return std::any_of(one_row.begin(), one_row.end(),
+                     [&](const auto& pair) { return shown_name(option) == pair.second; });
+}
+
 std::string help_of_verb(const CLI::App& verb) {
   std::string out = wrapped("Usage: ", "momenta " + synopsis_of(verb), 7) +
                     wrapped("", verb.get_description() + ".", 0) + "\n";
-  for (const CLI::Option* o : verb.get_options())
-    if (o != verb.get_help_ptr()) out += row(name_and_type(*o), shown_text(*o));
+  for (const CLI::Option* o : verb.get_options()) {
+    if (o == verb.get_help_ptr() || is_beside(*o)) continue;
+    const CLI::Option* other = beside(verb, *o);
+    out += row(name_and_type(*o) + (other ? ", " + name_and_type(*other) : ""), shown_text(*o));
+  }
   for (const std::string& sentence : names_behind(verb.get_options()))
     out += wrapped("", sentence, 2);
   if (any_takes(verb.get_options(), "FAMILY")) {

@@ -52,8 +52,7 @@ void add_scene_file(CLI::App& verb, Options& o, bool required) {
   verb.add_option("--set", o.set, "PLACE=NUMBER in place of the scene's; repeatable")
       ->type_name("SETTING")
       ->allow_extra_args(false);
-  verb.add_option("--control", o.reading.controls,
-                  "Of an MJCF: its actuators act, at this control (NAME=VALUE; VALUE: all)")
+  verb.add_option("--control", o.reading.controls, "Of an MJCF: its actuators act, at NAME=VALUE")
       ->type_name("CONTROL")
       ->allow_extra_args(false);
   verb.add_option("--key", o.reading.key, "Of an MJCF: start at this <key>, by name or number")
@@ -94,7 +93,8 @@ void add_run_options(CLI::App& verb, Options& o, const char* cpu_limit) {
       ->type_name("INTEGRATOR");
   verb.add_option("--gauge", o.gauge, "How momentum forms keep σ small [1/s]")
       ->type_name("none|reset|flip|leak|leak:RATE");
-  positive(verb.add_option("--rtol", o.rtol, "Relative tolerance"), "X")->capture_default_str();
+  positive(verb.add_option("--rtol", o.rtol, "Relative and absolute, scaled per unknown"), "X")
+      ->capture_default_str();
   positive(
       verb.add_option("--atol", o.atol, "Absolute tolerance, scaled per unknown (default: rtol)"),
       "X");
@@ -105,11 +105,12 @@ void add_run_options(CLI::App& verb, Options& o, const char* cpu_limit) {
   positive(verb.add_option("--end", o.end, "End time [s]"), "S");
   within(verb.add_option("--samples", o.samples, "Output intervals"), "N", 1, most_samples);
   auto* project =
-      verb.add_flag("--project", o.project, "Correct positions after each step (ODE forms)");
+      verb.add_flag("--project", o.project, "Correct positions after each step, or not");
   verb.add_flag("--no-project", o.no_project, "No correction, even if the scene asks for it")
       ->excludes(project);
-  positive(verb.add_option("--baumgarte-alpha", o.baumgarte_alpha, "α of Φ̈ + 2αΦ̇ + β²Φ = 0 [1/s]"),
-           "X");
+  positive(
+      verb.add_option("--baumgarte-alpha", o.baumgarte_alpha, "α, β of Φ̈ + 2αΦ̇ + β²Φ = 0 [1/s]"),
+      "X");
   positive(verb.add_option("--baumgarte-beta", o.baumgarte_beta, "β of it [1/s]"), "X");
   positive(verb.add_option("--beta", o.beta, "Momentum forms: Φ̇ = −βΦ [1/s] (default: 0)"), "X");
   positive(verb.add_option("--penalty", o.penalty, "Of augmented Lagrangians (default: 1e7)"), "X");
