@@ -93,7 +93,7 @@ void add_run_options(CLI::App& verb, Options& o, const char* cpu_limit) {
       ->type_name("INTEGRATOR");
   verb.add_option("--gauge", o.gauge, "How momentum forms keep σ small [1/s]")
       ->type_name("none|reset|flip|leak|leak:RATE");
-  positive(verb.add_option("--rtol", o.rtol, "Relative and absolute, scaled per unknown"), "X")
+  positive(verb.add_option("--rtol", o.rtol, "Relative, absolute tolerance"), "X")
       ->capture_default_str();
   positive(
       verb.add_option("--atol", o.atol, "Absolute tolerance, scaled per unknown (default: rtol)"),

@@ -2,6 +2,7 @@
 // rows that stay are those of the plane, multipliers of the others are the centre's, and the motion
 // is that of the whole matrix. Cycles that leave a plane keep all rows.
 
+#include "equations/ensemble.h"
 #include "equations/linkages.h"
 #include "equations/random_loops.h"
 #include "equations/tolerance.h"
