@@ -50,18 +50,19 @@ class Help : public Program {
     const int raw = std::system(all.c_str());  // NOLINT: the command is this test's own
     return {WIFEXITED(raw) ? WEXITSTATUS(raw) : -WTERMSIG(raw), text_of(out), text_of(err)};
   }
-  /// First words of rows, more where commas part them: verbs of the program's help, options of a
+  /// First words of rows and further options beside them: verbs of the program's help, options of a
   /// verb's.
   std::vector<std::string> rows_of(const std::string& help) const {
     std::vector<std::string> names;
     for (const std::string& line : lines_of(help))
-      if (line.size() > 2 && line.starts_with("  ") && line[2] != ' ')
-        for (std::size_t at = 2; at != std::string::npos;) {
-          const std::size_t end = line.find(' ', at);
-          const bool more = line[end - 1] == ',';
-          names.push_back(line.substr(at, end - at - more));
-          at = more ? end + 1 : std::string::npos;
+      if (line.size() > 2 && line.starts_with("  ") && line[2] != ' ') {
+        std::istringstream words(line.substr(0, line.find("  ", 2)));
+        bool first = true;
+        for (std::string word; words >> word; first = false) {
+          if (word.back() == ',') word.pop_back();
+          if (first || word.starts_with("--")) names.push_back(word);
         }
+      }
     return names;
   }
   std::vector<std::string> verbs() const {

@@ -1,3 +1,4 @@
+#include <momenta/core/expression/expression.h>
 #include <momenta/core/scene/near_name.h>
 #include <momenta/core/scene/toml/set_numbers.h>
 
@@ -40,15 +41,26 @@ class Way {
       else
         refuse("a number", at->type);
     }
-    // A text may be a formula; where it is a word, the reader says what it expects there.
-    if (at->type != Value::Type::number && at->type != Value::Type::integer &&
-        at->type != Value::Type::text)
+    const bool formula = at->type == Value::Type::text && is_formula(root, at->text);
+    if (at->type != Value::Type::number && at->type != Value::Type::integer && !formula)
       refuse("more keys", at->type);
     at->type = Value::Type::number;
     at->number = setting_.value;
   }
 
  private:
+  /// Whether a text may stand for a number; others are names and words.
+  static bool is_formula(Value& root, const std::string& text) {
+    std::vector<std::string> names;
+    if (const Value* parameters = find(root, "parameters"))
+      for (const Entry& e : parameters->entries) names.push_back(e.key);
+    try {
+      (void)Expression(text, names);
+      return true;
+    } catch (const ExpressionError&) {
+      return false;
+    }
+  }
   [[noreturn]] void no_parameter(const Value& parameters) const {
     std::vector<std::string_view> names;
     for (const Entry& e : parameters.entries) names.push_back(e.key);

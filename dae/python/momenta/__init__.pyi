@@ -38,6 +38,8 @@ class _Shape(TypedDict, total=False):
 
 class _SceneKeys(TypedDict, total=False):
     gravity: _Vector
+    parameters: Mapping[str, float | str]
+    require: Sequence[Mapping[str, str]]
     body: Sequence[Mapping[str, Any]]
     joint: Sequence[Mapping[str, Any]]
     loop: Sequence[Mapping[str, Any]]
@@ -70,6 +72,9 @@ class _JointKeys(TypedDict, total=False):
     rest: float
     damping: float
     rotor_inertia: float | Sequence[float]
+    friction: float
+    friction_rate: float
+    limits: Sequence[float]
 
 class _LoopKeys(TypedDict, total=False):
     parent: str
@@ -82,6 +87,7 @@ class _LoopKeys(TypedDict, total=False):
     length: float
     joints: Sequence[str]
     ratios: Sequence[float]
+    powers: Sequence[int]
     coordinates: Sequence[int]
     offset: float
 
@@ -119,6 +125,12 @@ class _ForceKeys(_SpringKeys, total=False):
     force: _Vector
     torque: _Vector
     axes: Literal["ground", "body"]
+    rotation: _Rotation
+    rotational_stiffness: float
+    rotational_damping: float
+    joints: Sequence[str]
+    coordinates: Sequence[int]
+    ratios: Sequence[float]
 
 class _MarkerKeys(TypedDict, total=False):
     point: _Vector

@@ -38,12 +38,12 @@ class Scene:
 
     def joint(self, name, kind, **keys):
         """Adds a joint of the tree: parent, child, origin [m], rotation, axis, position, velocity,
-        stiffness, rest, damping, rotor_inertia, pitch, axis2, direction."""
+        stiffness, rest, damping, friction, friction_rate, limits, rotor_inertia, pitch, axis2, direction."""
         return self._add("joint", name=name, kind=kind, **keys)
 
     def loop(self, name, kind, **keys):
         """Adds a joint that closes a loop, or a coupler: parent, child, origin [m], rotation, axis, axis2,
-        direction; length [m] of a distance; joints, ratios, coordinates, offset of a coupler."""
+        direction; length [m] of a distance; joints, ratios, powers, coordinates, offset of a coupler."""
         return self._add("loop", name=name, kind=kind, **keys)
 
     def drive(self, kind, **keys):
@@ -52,8 +52,8 @@ class Scene:
         return self._add("drive", kind=kind, **keys)
 
     def force(self, kind, **keys):
-        """Adds a spring-damper; a torque along a joint: joint, value; or a wrench on a body: body,
-        point [m], force [N], torque [N m], axes."""
+        """Adds a spring-damper; a bushing; a coordinate-spring: joints, ratios, coordinates; a torque along a
+        joint: joint, value; or a wrench on a body: body, point [m], force [N], torque [N m], axes."""
         return self._add("force", kind=kind, **keys)
 
     def spring(self, **keys):

@@ -129,7 +129,7 @@ class Built(unittest.TestCase):
     def test_urdf_says_what_was_left_out(self):
         file = next((EXAMPLES / "models").glob("*/*.urdf"))
         self.assertIsInstance(momenta.load(file, free_root=True).remarks, list)
-        with self.assertRaisesRegex(ValueError, "expected neither with a scene given as text"):
+        with self.assertRaisesRegex(ValueError, "expected none with a scene given as text"):
             momenta.load(four_bar(), free_root=True)
 
 
@@ -163,7 +163,11 @@ class Keys(unittest.TestCase):
         "_JointKeys": ("joint", ["revolute"], {"name", "kind"}),
         "_LoopKeys": ("loop", ["distance", "coupler"], {"name", "kind"}),
         "_DriveKeys": ("drive", ["polynomial", "harmonic", "step", "table"], {"kind"}),
-        "_ForceKeys": ("force", ["spring-damper", "torque", "wrench"], {"kind"}),
+        "_ForceKeys": (
+            "force",
+            ["spring-damper", "bushing", "coordinate-spring", "torque", "wrench"],
+            {"kind"},
+        ),
         "_SpringKeys": ("force", ["spring-damper"], {"kind"}),
         "_MarkerKeys": ("marker", [None], {"name", "body"}),
         "_VisualKeys": ("visual", ["box", "capsule", "mesh"], {"body", "kind"}),
