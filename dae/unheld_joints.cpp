@@ -40,6 +40,7 @@ MatrixXd left_free(const MatrixXd& constraint, const MatrixXd& motions) {
   }
   // Beside what its terms are, not beside the largest: where all of them cancel, none holds.
   MatrixXd y = left_null_space(a.transpose(), held_pivot);
+  if (y.cols() == 0) return y;  // all are held; rows of nothing lie nowhere
   for (Eigen::Index k = 0; k < a.cols(); ++k) {
     const double size = (constraint.cwiseAbs() * motions.col(k).cwiseAbs()).maxCoeff();
     if (size > 0) y.row(k) /= size;
