@@ -293,8 +293,8 @@ struct MarkerSpec {
 
 /// A number with a name, of which the file made others; here its value.
 struct ParameterSpec {
-  std::string name;
-  double value = 0;
+  std::string name;   ///< as formulas have it
+  double value = 0;   ///< in the units of what is made of it
   bool used = false;  ///< whether a formula of the scene takes it
 };
 

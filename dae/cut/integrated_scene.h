@@ -17,6 +17,7 @@
 
 namespace momenta {
 
+/// The mechanism that a run integrates, and what it differs in from the one written.
 class IntegratedScene {
  public:
   /// Folds and chooses the cuts, unless the mechanism's options keep those of the scene or ask for
@@ -24,7 +25,9 @@ class IntegratedScene {
   /// not known. Cost: recut(); an assembly for each of the two steps that is taken.
   IntegratedScene(const Mechanism& written, const Start& start, const Recut* known = nullptr);
 
+  /// What is integrated. It lives as long as this object, or is the one written.
   const Mechanism& mechanism() const { return mechanism_ ? *mechanism_ : written_; }
+  /// Where it starts.
   const Start& start() const { return mechanism_ ? start_ : written_start_; }
   /// Whether it is another scene than the one written.
   bool anew() const { return mechanism_ != nullptr; }

@@ -11,7 +11,8 @@ struct ReadOptions {
   /// one.
   std::filesystem::path loops;
   bool free_root = false;  ///< URDF: true: the root link floats; false: it is fixed to the ground
-  /// MJCF: the <key> at whose state the scene starts, by name or by number from 0; empty: as drawn
+  /// MJCF: the `<key>` at whose state the scene starts, by name or by number from 0; empty: as
+  /// drawn
   std::string key;
   /// MJCF: constant controls of actuators, "NAME=VALUE", or "VALUE" for all; the others are at 0.
   /// Empty: actuators are left out.
