@@ -194,8 +194,8 @@ class Parser {
     constexpr double largest = 1000;
     if (e.operation == Operation::number && e.number == std::floor(e.number) &&
         std::abs(e.number) <= largest)
-      return {tape_.add({Operation::whole_power, number(base), static_cast<int>(e.number), -1, 0}),
-              false, base.place};
+      return {tape_.add({Operation::whole_power, number(base), -1, -1, e.number}), false,
+              base.place};
     return of_numbers(Operation::power, base, exponent);
   }
   Term primary() {
@@ -329,10 +329,9 @@ double Expression::operator()(std::span<const double> x) const {
   const auto at = [&](int i) { return i < 0 ? 0 : value[static_cast<std::size_t>(i)]; };
   for (std::size_t i = 0; i < tape_.size(); ++i) {
     const Instruction& in = tape_[i];
-    value[i] = in.operation == Operation::number     ? in.number
-               : in.operation == Operation::variable ? x[static_cast<std::size_t>(in.a)]
-               : in.operation == Operation::whole_power
-                   ? formula::value_of(in, at(in.a), 0, 0)
+    value[i] = in.operation == Operation::number ? in.number
+               : in.operation == Operation::variable
+                   ? x[static_cast<std::size_t>(in.a)]
                    : formula::value_of(in, at(in.a), at(in.b), at(in.c));
   }
   return value.back();

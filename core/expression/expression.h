@@ -82,9 +82,8 @@ class Expression {
   };
   struct Instruction {
     Operation operation = Operation::number;
-    int a = -1, b = -1, c = -1;  ///< instructions before; of a variable a is its number, of a
-                                 ///< whole power b the exponent
-    double number = 0;
+    int a = -1, b = -1, c = -1;  ///< instructions before; of a variable a is its number
+    double number = 0;           ///< of a whole power the exponent
   };
 
   /// The names of the variables x₀, x₁, … @throws ExpressionError. O(length) and lookups of names

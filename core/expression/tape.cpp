@@ -124,7 +124,7 @@ double of_two(Operation operation, double a, double b) {
 double value_of(const Instruction& in, double a, double b, double c) {
   switch (in.operation) {
     case Operation::whole_power:
-      return whole_power(a, in.b);
+      return whole_power(a, static_cast<int>(in.number));
     case Operation::choice:
       return a != 0 ? b : c;
     default:
@@ -145,11 +145,10 @@ bool Tape::Equal::operator()(const Instruction& x, const Instruction& y) const {
 }
 
 int Tape::add(Instruction in) {
-  const bool whole = in.operation == Operation::whole_power;
   if (in.operation != Operation::number && in.operation != Operation::variable && is_number(in.a) &&
-      (whole || is_number(in.b)) && is_number(in.c)) {
+      is_number(in.b) && is_number(in.c)) {
     const auto at = [&](int i) { return i < 0 ? 0 : (*this)[i].number; };
-    return number(value_of(in, at(in.a), whole ? 0 : at(in.b), at(in.c)));
+    return number(value_of(in, at(in.a), at(in.b), at(in.c)));
   }
   const auto [known, fresh] = known_.try_emplace(in, static_cast<int>(all_.size()));
   if (fresh) all_.push_back(in);

@@ -75,9 +75,7 @@ void Fields::refuse(std::string_view key, const std::string& reason) const {
 }
 
 const Value* Fields::find(std::string_view key) const {
-  for (const Entry& entry : value_.entries)
-    if (entry.key == key) return &entry.value;
-  return nullptr;
+  return reading::find(value_, key);
 }
 
 const Value& Fields::required(std::string_view key, const std::string& expected) const {
@@ -90,8 +88,7 @@ const Value& Fields::required(std::string_view key, const std::string& expected)
 
 double Fields::number_of(const Value& value, const std::string& key, Quantity quantity) const {
   const bool formula = value.type == Value::Type::text && parameters_;
-  if (!formula && value.type != Value::Type::number && value.type != Value::Type::integer)
-    mismatch(value, key, expected_number(quantity));
+  if (!formula && !is_number(value)) mismatch(value, key, expected_number(quantity));
   const double number = formula ? value_of(value, key, quantity) : value.number;
   const bool in_bound = quantity.bound == Bound::none || number > 0 ||
                         (quantity.bound == Bound::not_negative && number == 0);

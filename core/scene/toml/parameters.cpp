@@ -11,16 +11,6 @@
 namespace momenta::reading {
 namespace {
 
-const Value* find(const Value& table, std::string_view key) {
-  for (const Entry& e : table.entries)
-    if (e.key == key) return &e.value;
-  return nullptr;
-}
-
-bool is_number(const Value& v) {
-  return v.type == Value::Type::number || v.type == Value::Type::integer;
-}
-
 /// A name as formulas have it, without dots.
 bool is_name(std::string_view word) {
   const auto letter = [](char c) {

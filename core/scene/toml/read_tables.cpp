@@ -39,8 +39,7 @@ Eigen::Matrix3d read_inertia(const Fields& table) {
   constexpr Quantity moment{"kg m²"};
   Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();
   if (const Value* value = table.find("inertia"); value->type != Value::Type::array) {
-    if (value->type != Value::Type::number && value->type != Value::Type::integer &&
-        value->type != Value::Type::text)
+    if (!is_number(*value) && value->type != Value::Type::text)
       table.fail_key("inertia",
                      "is " + std::string(described(value->type)) +
                          ", expected xx, yy, zz, xy, xz, yz in an array, or one number [kg m²]");

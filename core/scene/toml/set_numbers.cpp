@@ -9,12 +9,6 @@
 namespace momenta::reading {
 namespace {
 
-Value* find(Value& table, std::string_view key) {
-  for (Entry& e : table.entries)
-    if (e.key == key) return &e.value;
-  return nullptr;
-}
-
 std::string_view name_of(Value& table) {
   const Value* name = find(table, "name");
   return name && name->type == Value::Type::text ? std::string_view(name->text) : "";
@@ -42,8 +36,7 @@ class Way {
         refuse("a number", at->type);
     }
     const bool formula = at->type == Value::Type::text && is_formula(root, at->text);
-    if (at->type != Value::Type::number && at->type != Value::Type::integer && !formula)
-      refuse("more keys", at->type);
+    if (!is_number(*at) && !formula) refuse("more keys", at->type);
     at->type = Value::Type::number;
     at->number = setting_.value;
   }

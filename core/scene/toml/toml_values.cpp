@@ -87,6 +87,20 @@ Value copied(const toml::node& node, Location otherwise) {
 
 }  // namespace
 
+const Value* find(const Value& table, std::string_view key) {
+  for (const Entry& entry : table.entries)
+    if (entry.key == key) return &entry.value;
+  return nullptr;
+}
+
+Value* find(Value& table, std::string_view key) {
+  return const_cast<Value*>(find(std::as_const(table), key));
+}
+
+bool is_number(const Value& value) {
+  return value.type == Value::Type::number || value.type == Value::Type::integer;
+}
+
 std::string_view described(Value::Type type) {
   switch (type) {
     case Value::Type::text:

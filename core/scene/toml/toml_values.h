@@ -30,6 +30,13 @@ struct Entry {
   Value value;
 };
 
+/// The value of a key of a table; null: it has none.
+const Value* find(const Value& table, std::string_view key);
+Value* find(Value& table, std::string_view key);
+
+/// Whether it is one, whole or not.
+bool is_number(const Value& value);
+
 /// What a value is, for "... is a string, expected ...".
 std::string_view described(Value::Type type);
 
