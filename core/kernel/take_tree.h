@@ -65,42 +65,35 @@ void take_forces(const Tree& tree, const Scene& scene, Model<Space>& model) {
     const Eigen::Isometry3d& frame = model.frames[static_cast<std::size_t>(body)];
     return is_point ? (frame * v).z() : (frame.linear() * v).z();
   };
+  // What springs and bushings have alike: two points of bodies, k and c.
+  const auto take_points = [&](const ForceSpec& f, auto& between) {
+    between.parent = tree.body(f.parent);
+    between.child = tree.body(f.child);
+    const Eigen::Vector3d at_parent = tree.point(between.parent, f.origin_parent);
+    const Eigen::Vector3d at_child = tree.point(between.child, f.origin_child);
+    between.at_parent = model.point(between.parent, at_parent);
+    between.at_child = model.point(between.child, at_child);
+    between.stiffness = f.stiffness;
+    between.damping = f.damping;
+    if constexpr (in_plane) {
+      const double offset =
+          across(between.child, at_child, true) - across(between.parent, at_parent, true);
+      between.offset2 = offset * offset;
+    }
+  };
   for (const ForceSpec& f : scene.forces) {
     if (f.kind == "spring-damper") {
       typename Model<Space>::Spring spring;
-      spring.parent = tree.body(f.parent);
-      spring.child = tree.body(f.child);
-      const Eigen::Vector3d at_parent = tree.point(spring.parent, f.origin_parent);
-      const Eigen::Vector3d at_child = tree.point(spring.child, f.origin_child);
-      spring.at_parent = model.point(spring.parent, at_parent);
-      spring.at_child = model.point(spring.child, at_child);
-      spring.stiffness = f.stiffness;
-      spring.damping = f.damping;
+      take_points(f, spring);
       spring.rest = f.rest;
-      if constexpr (in_plane) {
-        const double offset =
-            across(spring.child, at_child, true) - across(spring.parent, at_parent, true);
-        spring.offset2 = offset * offset;
-      }
       model.springs.push_back(spring);
     } else if (f.kind == "bushing") {
       typename Model<Space>::Bushing bushing;
-      bushing.parent = tree.body(f.parent);
-      bushing.child = tree.body(f.child);
-      const Eigen::Vector3d at_parent = tree.point(bushing.parent, f.origin_parent);
-      const Eigen::Vector3d at_child = tree.point(bushing.child, f.origin_child);
-      bushing.at_parent = model.point(bushing.parent, at_parent);
-      bushing.at_child = model.point(bushing.child, at_child);
-      bushing.stiffness = f.stiffness;
-      bushing.damping = f.damping;
+      take_points(f, bushing);
       bushing.rotational_stiffness = f.rotational_stiffness;
       bushing.rotational_damping = f.rotational_damping;
-      if constexpr (in_plane) {
-        const double offset =
-            across(bushing.child, at_child, true) - across(bushing.parent, at_parent, true);
-        bushing.offset2 = offset * offset;
-      } else {  // Σ p_i c_iᵀ: axes of the scene's child without couple, and as they are on the
-                // child
+      if constexpr (!in_plane) {
+        // Σ p_i c_iᵀ: p_i the axes of the child without couple, c_i those it has
         const Eigen::Quaterniond turn = f.rotation.normalized();
         for (int i = 0; i < 3; ++i) {
           const Eigen::Vector3d unit = Eigen::Vector3d::Unit(i);
