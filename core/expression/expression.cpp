@@ -1,6 +1,6 @@
 // The grammar of expression.h, one function a line of it.
 
-#include <momenta/core/expression/expression.h>
+#include <momenta/core/expression/evaluate.h>
 #include <momenta/core/expression/tape.h>
 #include <momenta/core/scene/near_name.h>
 
@@ -33,6 +33,11 @@ constexpr std::array functions{
     Function{"hypot", Operation::hypot}, Function{"min", Operation::min},
     Function{"max", Operation::max},     Function{"if", Operation::choice}};
 
+bool has_corner(Operation o) {
+  return o == Operation::abs || o == Operation::sign || o == Operation::floor ||
+         o == Operation::min || o == Operation::max || o == Operation::choice;
+}
+
 /// An instruction, and what it gives.
 struct Term {
   int at;
@@ -54,7 +59,7 @@ class Parser {
       fail(at_, "found " + reading::in_quotes(word_at(at_)) + ", expected an operator or the end");
     return t;
   }
-  std::vector<Instruction> tape_for(const Term& t) const { return tape_.for_value(t.at); }
+  const Tape& tape() const { return tape_; }
 
  private:
   [[noreturn]] void fail(std::size_t place, const std::string& sentence) const {
@@ -312,8 +317,19 @@ class Parser {
 Expression::Expression(std::string_view text, std::span<const std::string> names) {
   formula::Parser parser(text, names);
   const formula::Term t = parser.whole();
-  tape_ = parser.tape_for(t);
+  outputs_ = {t.at};
+  tape_ = parser.tape().needed_for(outputs_);
   truth_ = t.truth;
+}
+
+Expression Expression::with_derivatives(std::span<const int> variables) const {
+  formula::Tape tape(tape_);
+  Expression all;
+  all.outputs_ = {outputs_.front()};
+  const std::vector<int> slopes = formula::add_gradient(tape, outputs_.front(), variables);
+  all.outputs_.insert(all.outputs_.end(), slopes.begin(), slopes.end());
+  all.tape_ = tape.needed_for(all.outputs_);
+  return all;
 }
 
 std::vector<int> Expression::variables() const {
@@ -324,17 +340,17 @@ std::vector<int> Expression::variables() const {
   return all;
 }
 
+std::string_view Expression::corner() const {
+  for (const formula::Function& f : formula::functions)
+    for (const Instruction& in : tape_)
+      if (in.operation == f.operation && formula::has_corner(f.operation)) return f.name;
+  return {};
+}
+
 double Expression::operator()(std::span<const double> x) const {
-  std::vector<double> value(tape_.size());
-  const auto at = [&](int i) { return i < 0 ? 0 : value[static_cast<std::size_t>(i)]; };
-  for (std::size_t i = 0; i < tape_.size(); ++i) {
-    const Instruction& in = tape_[i];
-    value[i] = in.operation == Operation::number ? in.number
-               : in.operation == Operation::variable
-                   ? x[static_cast<std::size_t>(in.a)]
-                   : formula::value_of(in, at(in.a), at(in.b), at(in.c));
-  }
-  return value.back();
+  std::vector<double> line(tape_.size()), values(outputs_.size());
+  evaluate(*this, x.data(), line.data(), values.data());
+  return values.front();
 }
 
 }  // namespace momenta

@@ -15,7 +15,8 @@
 //
 // A formula is kept as a tape: one instruction a line, each of numbers found by those before it;
 // what occurs twice is computed once, what is made of numbers alone when it is read. Both values of
-// if() are computed and one is taken.
+// if() are computed and one is taken. Derivatives are tapes too, so that they have derivatives
+// again (evaluate.h computes a tape in any scalar).
 
 #include <cmath>
 #include <cstddef>
@@ -39,7 +40,7 @@ class ExpressionError : public std::invalid_argument {
   std::size_t place_;
 };
 
-/// A formula read: y = f(x₀, x₁, …).
+/// A formula read: y = f(x₀, x₁, …), or such with its derivatives.
 class Expression {
  public:
   enum class Operation : std::uint8_t {
@@ -94,12 +95,23 @@ class Expression {
   /// Which variables it takes, ascending.
   std::vector<int> variables() const;
   const std::vector<Instruction>& tape() const { return tape_; }
+  /// Where its values stand on the tape: f, then its derivatives.
+  const std::vector<int>& outputs() const { return outputs_; }
+
+  /// f and ∂f/∂x_v of each of these variables, exact: of abs, sign, floor, min, max and if() that
+  /// of the piece they are on. O(tape) instructions for any number of variables.
+  Expression with_derivatives(std::span<const int> variables) const;
+  /// A function in it that has corners or jumps, by its name; empty: none, f is smooth where it is
+  /// finite.
+  std::string_view corner() const;
 
   /// Its value; infinite or not a number where arithmetic makes it so. O(tape)
   double operator()(std::span<const double> x) const;
 
  private:
+  Expression() = default;
   std::vector<Instruction> tape_;
+  std::vector<int> outputs_;
   bool truth_ = false;
 };
 

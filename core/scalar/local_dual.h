@@ -113,11 +113,6 @@ struct LocalDual {
     return chain(x, root, 0.5 / root);
   }
 
- private:
-  bool folds() const {
-    return terms == 0 && a == 0 && (Cuts::now == nullptr || Cuts::now->folds());
-  }
-
   /// f(x) with f' at x.
   static LocalDual chain(const LocalDual& x, double value, double slope) {
     LocalDual r(value);
@@ -151,6 +146,11 @@ struct LocalDual {
       r.b[place(k)] = b[k];
     }
     return r;
+  }
+
+ private:
+  bool folds() const {
+    return terms == 0 && a == 0 && (Cuts::now == nullptr || Cuts::now->folds());
   }
   static std::size_t place(int i) { return static_cast<std::size_t>(i); }
 };
