@@ -236,6 +236,10 @@ class TreeBuilder {
 
 Tree build_tree(const Scene& scene) {
   validate(scene);
+  return build_valid_tree(scene);
+}
+
+Tree build_valid_tree(const Scene& scene) {
   return TreeBuilder(scene).build();
 }
 

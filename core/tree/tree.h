@@ -93,5 +93,7 @@ struct Tree {
 
 /// Builds the tree. @throws SceneError where validate() would. Cost O(bodies).
 Tree build_tree(const Scene& scene);
+/// The same of a scene that is known to be valid.
+Tree build_valid_tree(const Scene& scene);
 
 }  // namespace momenta

@@ -130,7 +130,7 @@ class Assembler {
   }
 
   void judge_rank(Assembly& a) {
-    LoopRank judged = loop_rank(mechanism_, e());
+    LoopRank judged = loop_rank(mechanism_, e(), Judged::dependence);
     a.rank = judged.rank;
     a.kept = judged.kept;
     a.dropped = judged.dropped;

@@ -18,7 +18,9 @@ struct Assembly {
   double moved = 0;    ///< largest change of a joint coordinate against the guess [rad or m]
   int iterations = 0;  ///< of Newton's method on the positions
   int rank = 0;        ///< of Φ_q at the start (kkt/loop_rank.h)
-  double kept = 0;     ///< smallest singular value that counts, lengths in lengths of the scene
+  /// Smallest singular value of Φ_q that counts, lengths in lengths of the scene; 0: not known, as
+  /// where no row is near to following from the others.
+  double kept = 0;
   double dropped = 0;  ///< largest singular value that does not count; 0: the rows are independent
   std::vector<int> dependent_rows;  ///< rows of Φ that follow from the others at the start
   int mobility = 0;                 ///< nv − rank

@@ -17,7 +17,7 @@ class Bend {
     Bending found;
     const VectorXd phi = loops_.gap(t_, q);
     if (phi.size() == 0) return found;
-    std::vector<int> dropped = steps_.judge(loops_.jacobian()).dependent;
+    std::vector<int> dropped = steps_.judge(loops_.jacobian(), Judged::dependence).dependent;
     if (dropped.empty()) {
       Eigen::Index worst = 0;
       phi.cwiseAbs().maxCoeff(&worst);

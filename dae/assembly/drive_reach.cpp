@@ -33,7 +33,7 @@ class Continuation {
     // What redundant equations leave open where it begins they leave on the way.
     const double open = loops_.gap(t_, q_).cwiseAbs().maxCoeff();
     if (open > closed_ && open <= left_by_files &&
-        steps_.judge(loops_.jacobian()).rank < mechanism.m())
+        steps_.judge(loops_.jacobian(), Judged::dependence).rank < mechanism.m())
       closed_ = 4 * open;
   }
 
@@ -102,7 +102,7 @@ bool Continuation::leave_free_groups(bool& all_determined) {
       if (root_of(pattern_[i].column) != group) values[i] = 0;
     for (std::size_t c = 0; c < columns; ++c)
       size += met[c] && root_of(static_cast<int>(c)) == group;
-    const bool determined = steps_.judge(values).rank == size;
+    const bool determined = steps_.judge(values, Judged::dependence).rank == size;
     any = any || determined;
     all_determined = all_determined && determined;
     for (std::size_t c = 0; c < columns; ++c)

@@ -134,11 +134,33 @@ bool better(const CutCost& a, const CutCost& b) {
   return less_work || (hardly_more && 4 * a.mass_entries < 3 * b.mass_entries);
 }
 
+/// How the loops of a scene lie in its tree, L left out.
+CutCost swept_cost(const Scene& scene, const Tree& tree, const Plan& plan) {
+  CutCost cost;
+  std::vector<int> depth;
+  for (const Tree::Body& b : tree.bodies) {
+    depth.push_back(b.parent < 0 ? 1 : 1 + depth[static_cast<std::size_t>(b.parent)]);
+    cost.depth = std::max(cost.depth, depth.back());
+    cost.mass_entries += depth.back();
+  }
+  if (scene.loops.empty()) return cost;
+  const auto take = [&](const auto& model) {
+    const LoopPlan loops = swept_loops(tree, model, build_loops(scene, tree, model)).plan;
+    cost.open = loops.slots;
+    cost.work = loops.work;
+  };
+  if (plan.planar)
+    take(build_planar_model(tree, scene, plan.basis));
+  else
+    take(build_spatial_model(tree, scene));
+  return cost;
+}
+
 /// Takes the best of the scenes that enter, each with its trees on the ground in three orders.
 class Contest {
  public:
   Contest(const Mechanism& given, Recut& best)
-      : algebra_(given.options().algebra), swept_(given.kkt() == KktChoice::sweeps), best_(best) {}
+      : given_(given), swept_(given.kkt() == KktChoice::sweeps), best_(best) {}
 
   /// Whether the sweeps carry its loops.
   bool enter(const Recut& found) {
@@ -163,7 +185,11 @@ class Contest {
   }
   bool enter_as_it_is(Recut found) {
     if (!found.gains()) return swept_;  // the given scene
-    const Mechanism anew(found.scene, {algebra_});
+    if (swept_) {  // most that enter are no better: that is seen without their sweeps
+      const CutCost cost = swept_cost(found.scene, build_valid_tree(found.scene), given_.plan());
+      if (cost.open <= LoopPlan::most_slots && !better(cost, best_.after)) return true;
+    }
+    const Mechanism anew(found.scene, {given_.options().algebra});
     found.after = cut_cost(anew);
     const bool now_swept = anew.kkt() == KktChoice::sweeps;
     if ((now_swept && !swept_) || (now_swept == swept_ && better(found.after, best_.after))) {
@@ -173,7 +199,7 @@ class Contest {
     return now_swept;
   }
 
-  Algebra algebra_;
+  const Mechanism& given_;
   bool swept_;
   Recut& best_;
 };
@@ -189,24 +215,7 @@ std::string in_words(const Recut& recut) {
 }
 
 CutCost cut_cost(const Mechanism& mechanism) {
-  CutCost cost;
-  const Tree& tree = mechanism.tree();
-  std::vector<int> depth;
-  for (const Tree::Body& b : tree.bodies) {
-    depth.push_back(b.parent < 0 ? 1 : 1 + depth[static_cast<std::size_t>(b.parent)]);
-    cost.depth = std::max(cost.depth, depth.back());
-    cost.mass_entries += depth.back();
-  }
-  const auto plan = [&](const auto& model) {
-    return swept_loops(tree, model, build_loops(mechanism.scene(), tree, model)).plan;
-  };
-  if (mechanism.m() == 0) return cost;
-  const LoopPlan loops =
-      mechanism.plan().planar
-          ? plan(build_planar_model(tree, mechanism.scene(), mechanism.plan().basis))
-          : plan(build_spatial_model(tree, mechanism.scene()));
-  cost.open = loops.slots;
-  cost.work = loops.work;
+  CutCost cost = swept_cost(mechanism.scene(), mechanism.tree(), mechanism.plan());
   if (mechanism.kkt() == KktChoice::sparse && filters_pivots(mechanism))
     cost.factor_entries =
         FilteredFactor(mechanism.kkt_pattern(), mechanism.nv(), mechanism.row_groups()).entries();

@@ -41,7 +41,7 @@ DaeForm::DaeForm(std::string name, const Mechanism& mechanism, DaeLayout layout,
 void DaeForm::find_redundancy(const Start& start) {
   if (!mechanism_.leaves_first()) {  // no pivot of the loops tells
     plain_.e->place(start.t, start.q.data());
-    if (loop_rank(mechanism_, *plain_.e).rank == layout_.m) return;
+    if (loop_rank(mechanism_, *plain_.e, Judged::dependence).rank == layout_.m) return;
   } else if (mechanism_.dense_kkt() || mechanism_.kkt() != KktChoice::sweeps) {
     const auto kkt = make_dense_kkt(mechanism_);
     if (!kkt->factor(*plain_.e, start.t, start.q.data(), fade_evaluation) || kkt->faded() == 0)

@@ -163,7 +163,7 @@ class Partitioned final : public OdeForm {
   bool choose(double t) {
     e_->place(t, q_.data());
     evaluate_jacobian();
-    if (rank_ < 0) rank_ = loop_rank(mechanism_, *e_).rank;
+    if (rank_ < 0) rank_ = loop_rank(mechanism_, *e_, Judged::dependence).rank;
     if (!rates_->choose(rate_values_, rank_)) return false;
     if (positions_ && !positions_->choose(values_, rank_ + jacobian_.balls())) return false;
     at_start_ = std::make_unique<SplitFactor>(positions());

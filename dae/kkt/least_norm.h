@@ -33,7 +33,7 @@ class LeastNorm {
   Eigen::VectorXd product(const std::vector<double>& values, const Eigen::VectorXd& x) const;
 
   /// Which rows of A follow from the others, and how many do not.
-  LoopRank judge(const std::vector<double>& values);
+  LoopRank judge(const std::vector<double>& values, Judged judged = Judged::singular_values);
   /// How many there were, sparse ones.
   long factorizations() const;
   bool is_dense() const { return sparse_ == nullptr; }

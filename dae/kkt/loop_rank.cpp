@@ -84,10 +84,10 @@ std::vector<int> reduce(MatrixXd& n, const std::vector<int>& first) {
   return own;
 }
 
-LoopRank loop_rank(const Mechanism& mechanism, Evaluation<double>& e) {
+LoopRank loop_rank(const Mechanism& mechanism, Evaluation<double>& e, Judged judged) {
   if (mechanism.m() == 0) return {};
   LeastNorm rows(mechanism.constraint_pattern(), mechanism.m(), mechanism.nv());
-  return rows.judge(scaled_entries(mechanism, e, LoopUnits(mechanism)));
+  return rows.judge(scaled_entries(mechanism, e, LoopUnits(mechanism)), judged);
 }
 
 MatrixXd idle_forces(const Mechanism& mechanism, double t, const VectorXd& q) {

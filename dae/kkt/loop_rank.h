@@ -66,10 +66,15 @@ struct LoopRank {
   Eigen::VectorXd singular_values;  ///< of A, descending; empty: not known
   std::vector<int> dependent;       ///< rows that follow from the others, ascending
 };
+/// What is asked for: singular values cost some ten times as much as to see that rows are far from
+/// dependent.
+enum class Judged { singular_values, dependence };
+
 /// The verdict where `e` is placed: LeastNorm::judge() of A. Up to 10⁵ numbers of A by singular
-/// values; of more by the pivots of a sparse QR factorisation of Aᵀ, which far from the border tell
-/// the same.
-LoopRank loop_rank(const Mechanism& mechanism, Evaluation<double>& e);
+/// values; of more, and where dependence alone is asked for and is far away, by the pivots of a QR
+/// factorisation of Aᵀ, which far from the border tell the same.
+LoopRank loop_rank(const Mechanism& mechanism, Evaluation<double>& e,
+                   Judged judged = Judged::singular_values);
 
 /// Forces of the loops (m × n, independent columns) that move nothing at (t, q): Φ_qᵀν = 0. None
 /// where the equations are independent. O((m + nv)³)

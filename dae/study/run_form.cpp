@@ -66,7 +66,7 @@ void expect_start(const Mechanism& mechanism, const Start& s) {
 LoopRank rank_at(const Mechanism& mechanism, const Start& start) {
   const auto e = mechanism.evaluation<double>();
   e->place(start.t, start.q.data());
-  return loop_rank(mechanism, *e);
+  return loop_rank(mechanism, *e, Judged::dependence);
 }
 
 /// Rank, redundant rows and residue at the start.
