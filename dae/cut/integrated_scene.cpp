@@ -8,16 +8,11 @@
 namespace momenta {
 namespace {
 
-/// Whether an evaluation is worth other coordinates.
+/// Whether an evaluation is worth other coordinates: a tenth less, or swept at all. Another order
+/// of the same is worth anything.
 bool pays(const Mechanism& written, const Recut& cuts) {
-  const double per_body = written.plan().planar ? 8 : 30;
-  const auto cost = [&](const CutCost& cut) {
-    return per_body * static_cast<double>(written.tree().bodies.size()) +
-           static_cast<double>(cut.work);
-  };
-  const bool carried = written.kkt() == KktChoice::sweeps;
-  return !carried || cost(cuts.after) < 0.9 * cost(cuts.before) ||
-         4 * cuts.after.mass_entries < 3 * cuts.before.mass_entries;
+  return written.kkt() != KktChoice::sweeps || 10 * cuts.after.sweeps < 9 * cuts.before.sweeps ||
+         (cuts.cut.empty() && cuts.after.sweeps < cuts.before.sweeps);
 }
 
 bool may_fold(const Scene& scene) {

@@ -5,6 +5,7 @@
 #include <momenta/dae/cut/root_order.h>
 #include <momenta/dae/factor/filtered_factor.h>
 #include <momenta/dae/kkt/kkt.h>
+#include <momenta/dae/sweeps/branches/looped_branches.h>
 #include <momenta/dae/sweeps/levels/loop_sweeps.h>
 
 #include <algorithm>
@@ -123,15 +124,29 @@ int rebuild(const Mechanism& mechanism, const Start& start, const SceneGraph& gr
   return none;
 }
 
-/// Less work; or entries of M saved at next to no work: loops that close at the ground count there
-/// once more.
+/// Less cost; or entries of M saved at none: bodies nearer to the ground gather less rounding.
 bool better(const CutCost& a, const CutCost& b) {
   constexpr int most = LoopPlan::most_slots;
   if ((a.open > most) != (b.open > most)) return a.open <= most;
   // the bodies' own equations are the same whatever is cut
   if (a.open > most) return a.factor_entries > 0 && 100 * a.factor_entries < 90 * b.factor_entries;
-  const bool less_work = 100 * a.work < 98 * b.work, hardly_more = 100 * a.work < 105 * b.work;
-  return less_work || (hardly_more && 4 * a.mass_entries < 3 * b.mass_entries);
+  return 100 * a.sweeps < 98 * b.sweeps ||
+         (a.sweeps <= b.sweeps && 4 * a.mass_entries < 3 * b.mass_entries);
+}
+
+/// Bodies that the sweeps take one by one, where those of branches side by side in lanes count as
+/// two and a half branches (find_looped_branches).
+std::int64_t taken_one_by_one(const Model<Spatial>& model, const SweptLoops<Spatial>& swept) {
+  constexpr int lanes = 8;
+  const LinkTree links = build_links(model);
+  auto twice = 2 * static_cast<std::int64_t>(model.bodies.size());
+  for (const LoopedBranchGroup& g :
+       find_looped_branches(links, swept.loops, swept.plan, lanes).groups)
+    twice -= (2 * g.count - 5) * g.bodies;
+  return twice / 2;
+}
+std::int64_t taken_one_by_one(const Model<Planar>& model, const SweptLoops<Planar>&) {
+  return static_cast<std::int64_t>(model.bodies.size());
 }
 
 /// How the loops of a scene lie in its tree, L left out.
@@ -145,9 +160,11 @@ CutCost swept_cost(const Scene& scene, const Tree& tree, const Plan& plan) {
   }
   if (scene.loops.empty()) return cost;
   const auto take = [&](const auto& model) {
-    const LoopPlan loops = swept_loops(tree, model, build_loops(scene, tree, model)).plan;
-    cost.open = loops.slots;
-    cost.work = loops.work;
+    const auto swept = swept_loops(tree, model, build_loops(scene, tree, model));
+    cost.open = swept.plan.slots;
+    cost.work = swept.plan.work;
+    cost.sweeps = cost.work + taken_one_by_one(model, swept) * (plan.planar ? 4 : 15) *
+                                  lanes_for(cost.open, plan.planar);
   };
   if (plan.planar)
     take(build_planar_model(tree, scene, plan.basis));
@@ -162,8 +179,18 @@ class Contest {
   Contest(const Mechanism& given, Recut& best)
       : given_(given), swept_(given.kkt() == KktChoice::sweeps), best_(best) {}
 
-  /// Whether the sweeps carry its loops.
-  bool enter(const Recut& found) {
+  /// Whether the sweeps carry its loops; `edges`: its tree.
+  bool enter(const Recut& found, const std::vector<CutEdge>& edges) {
+    const auto best_before = best_.after;
+    const bool swept = enter_in_three_orders(found);
+    if (best_.after.sweeps != best_before.sweeps) best_edges_ = edges;
+    return swept;
+  }
+  /// The tree of the best.
+  const std::vector<CutEdge>& edges() const { return best_edges_; }
+
+ private:
+  bool enter_in_three_orders(const Recut& found) {
     bool now_swept = enter_as_it_is(found);
     for (const RootOrder order : {RootOrder::from_an_end, RootOrder::from_the_centre}) {
       Recut other = found;
@@ -174,8 +201,6 @@ class Contest {
     }
     return now_swept;
   }
-
- private:
   static bool same_order(const Scene& a, const Scene& b) {
     const auto same = [](const auto& x, const auto& y) {
       return x.name == y.name && x.parent == y.parent;
@@ -202,6 +227,7 @@ class Contest {
   const Mechanism& given_;
   bool swept_;
   Recut& best_;
+  std::vector<CutEdge> best_edges_;
 };
 
 }  // namespace
@@ -234,7 +260,13 @@ Recut recut(const Mechanism& mechanism, const Start& start, const std::vector<st
   constexpr int most_searches = 50;
   int searches = 0;
   Contest contest(mechanism, best);
-  contest.enter(Recut(best));
+  contest.enter(Recut(best), graph.edges);
+  const auto rebuilt = [&](const std::vector<CutEdge>& edges, Recut& found) {
+    if (!bodies) bodies.emplace(mechanism, start);
+    found.before = best.before;
+    found.scene = mechanism.scene();
+    return rebuild(mechanism, start, graph, edges, said, *bodies, found);
+  };
   enum class From { scene, shallow, deep };
   for (const From from : {From::scene, From::shallow, From::deep})
     for (int obstacle = 0; obstacle >= 0 && searches < most_searches; ++searches) {
@@ -254,17 +286,41 @@ Recut recut(const Mechanism& mechanism, const Start& start, const std::vector<st
       obstacle = none;
       for (const auto& edges : {cycles.edges(), lowered}) {
         if (edges == graph.edges) continue;
-        if (!bodies) bodies.emplace(mechanism, start);
         Recut found;
-        found.before = best.before;
-        found.scene = mechanism.scene();
-        obstacle = rebuild(mechanism, start, graph, edges, said, *bodies, found);
+        obstacle = rebuilt(edges, found);
         if (obstacle >= 0) graph.edges[static_cast<std::size_t>(obstacle)].fixed = true;
         if (obstacle != none) break;
-        const bool now_swept = contest.enter(found);
+        const bool now_swept = contest.enter(found, edges);
         if (now_swept || cycles.edges() == lowered) break;
       }
     }
+  // J knows nothing of lanes. Of small mechanisms the trees one exchange away are tried themselves,
+  // where all that are open might go into fewer.
+  constexpr int most_tried = 700;  // times bodies
+  int tried = 0;
+  const bool planar = mechanism.plan().planar;
+  for (bool improved = true; improved;) {
+    improved = false;
+    const std::vector<CutEdge> from = contest.edges().empty() ? graph.edges : contest.edges();
+    const int lanes = lanes_for(best.after.open, planar);
+    if (best.after.open > LoopPlan::most_slots || lanes == lanes_for(1, planar)) break;
+    const Cycles around(graph.vertices(), from);
+    for (std::size_t e = 0; e < from.size() && !improved; ++e) {
+      if (from[e].in_tree || from[e].fixed) continue;
+      for (const int f : around.cycle(static_cast<int>(e))) {
+        if (improved || (tried += graph.vertices()) > most_tried) break;
+        if (from[static_cast<std::size_t>(f)].fixed) continue;
+        std::vector<CutEdge> edges = from;
+        edges[e].in_tree = true;
+        edges[static_cast<std::size_t>(f)].in_tree = false;
+        Recut found;
+        if (edges == graph.edges || rebuilt(edges, found) != none) continue;
+        const std::int64_t before = best.after.sweeps;
+        contest.enter(found, edges);
+        improved = best.after.sweeps < before;
+      }
+    }
+  }
   return best;
 }
 

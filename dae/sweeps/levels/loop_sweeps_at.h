@@ -210,15 +210,16 @@ class LoopedSweepsAt final : public LoopedSweeps {
 template <int Level, class Space, class Tree>
 std::unique_ptr<LoopedSweeps> looped_sweeps_at(const Tree& tree, const SweptLoops<Space>& swept,
                                                LoopedBranchGroups looped_branches) {
-  const LoopPlan& plan = swept.plan;
+  constexpr bool planar = Space::dimension == 3;
+  const int lanes = lanes_for(swept.plan.slots, planar);
   const auto make = [&]<int Rows>() -> std::unique_ptr<LoopedSweeps> {
     return std::make_unique<LoopedSweepsAt<Tree, Space, Level, Rows>>(tree, swept,
                                                                       std::move(looped_branches));
   };
-  if constexpr (Space::dimension == 3)
-    if (plan.slots <= 2) return make.template operator()<2>();
-  if (plan.slots <= 4) return make.template operator()<4>();
-  if (plan.slots <= 8) return make.template operator()<8>();
+  if constexpr (planar)
+    if (lanes == 2) return make.template operator()<2>();
+  if (lanes == 4) return make.template operator()<4>();
+  if (lanes == 8) return make.template operator()<8>();
   return make.template operator()<16>();
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <functional>
+#include <numeric>
 #include <set>
 
 namespace momenta {
@@ -118,11 +119,54 @@ std::vector<int> foldable_looped_branches(const std::vector<int>& parents,
   return onto;
 }
 
+/// The fronts that a loop is open in: bodies, and roots where fronts are gathered at the ground.
+struct Opened {
+  std::vector<int> fronts, gathered;
+  int closes_at = -1;
+};
+
+/// Colours the fronts. They are vertices of a tree, roots one behind the other above their own
+/// fronts, and each loop is open in a part of it that hangs together: taken from the top, a loop
+/// meets at its topmost front all that were taken before and are open anywhere with it, so that as
+/// many slots do as are open at once (of loops of one size: their graph is chordal; Gavril, J.
+/// Combin. Theory B 16 (1974) 47).
+void take_slots(const std::vector<int>& parents, const std::vector<LoopShape>& loops,
+                const std::vector<Opened>& opened, LoopPlan& plan, std::vector<std::uint64_t>& used,
+                std::vector<std::uint64_t>& used_at_ground) {
+  const auto n = static_cast<int>(parents.size());
+  std::vector<int> depth;
+  for (const int parent : parents)
+    depth.push_back(parent < 0 ? n : 1 + depth[static_cast<std::size_t>(parent)]);
+  const auto top = [&](const Opened& o) {
+    return o.closes_at >= 0     ? depth[static_cast<std::size_t>(o.closes_at)]
+           : o.gathered.empty() ? 0  // of a folded branch: within it alone
+                                : o.gathered.front();
+  };
+  std::vector<std::size_t> from_the_top(loops.size());
+  std::iota(from_the_top.begin(), from_the_top.end(), std::size_t{0});
+  std::stable_sort(from_the_top.begin(), from_the_top.end(),
+                   [&](std::size_t a, std::size_t b) { return top(opened[a]) < top(opened[b]); });
+  plan.slot.resize(loops.size());
+  for (const std::size_t i : from_the_top) {
+    const auto each_front = [&](auto&& act) {
+      for (const int k : opened[i].fronts) act(used[static_cast<std::size_t>(k)]);
+      for (const int k : opened[i].gathered) act(used_at_ground[static_cast<std::size_t>(k)]);
+    };
+    std::uint64_t taken = 0;
+    each_front([&](std::uint64_t of_front) { taken |= of_front; });
+    const int rows = loops[i].rows, slot = first_fit(taken, rows);
+    plan.slot[i] = slot;
+    plan.slots = std::max(plan.slots, slot + rows);
+    if (slot + rows > 64) continue;
+    const std::uint64_t own = ((std::uint64_t{1} << rows) - 1) << slot;
+    each_front([&](std::uint64_t& of_front) { of_front |= own; });
+  }
+}
+
 LoopPlan planned(const std::vector<int>& parents, const std::vector<LoopShape>& loops,
                  std::vector<int> folded_onto) {
   const std::size_t n = parents.size();
   LoopPlan plan;
-  plan.slot.resize(loops.size());
   plan.posed.assign(n, 0);
   plan.takes_branches.assign(n, 0);
   for (const int k : folded_onto)
@@ -136,6 +180,7 @@ LoopPlan planned(const std::vector<int>& parents, const std::vector<LoopShape>& 
   for (std::size_t k = 0; k < n; ++k)
     if (parents[k] < 0) roots.push_back(static_cast<int>(k));
 
+  std::vector<Opened> opened;
   for (std::size_t i = 0; i < loops.size(); ++i) {
     const LoopShape& loop = loops[i];
     const int root_a = root.of(loop.a), root_b = root.of(loop.b);
@@ -160,17 +205,7 @@ LoopPlan planned(const std::vector<int>& parents, const std::vector<LoopShape>& 
       closings[static_cast<std::size_t>(way.closes_at)].push_back(static_cast<int>(i));
     }
     if (looped_branch >= 0) gathered.clear();
-    std::uint64_t taken = 0;
-    for (const int k : way.fronts) taken |= used[static_cast<std::size_t>(k)];
-    for (const int k : gathered) taken |= used_at_ground[static_cast<std::size_t>(k)];
-    const int slot = first_fit(taken, loop.rows);
-    plan.slot[i] = slot;
-    plan.slots = std::max(plan.slots, slot + loop.rows);
-    if (slot + loop.rows <= 64) {
-      const std::uint64_t own = ((std::uint64_t{1} << loop.rows) - 1) << slot;
-      for (const int k : way.fronts) used[static_cast<std::size_t>(k)] |= own;
-      for (const int k : gathered) used_at_ground[static_cast<std::size_t>(k)] |= own;
-    }
+    opened.push_back({way.fronts, std::move(gathered), way.closes_at});
     plan.pair.push_back(loop.pair);
     for (const auto& [body, ratio] : loop.joints)
       couplings[static_cast<std::size_t>(body)].push_back(
@@ -188,6 +223,7 @@ LoopPlan planned(const std::vector<int>& parents, const std::vector<LoopShape>& 
       ends[static_cast<std::size_t>(open.b)].push_back(
           {static_cast<int>(i), false, open.b > open.a});
   }
+  take_slots(parents, loops, opened, plan, used, used_at_ground);
   for (const auto& fronts : {std::cref(used), std::cref(used_at_ground)})
     for (const std::uint64_t open : fronts.get()) {
       const std::int64_t equations = std::popcount(open);

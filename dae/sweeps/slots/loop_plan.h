@@ -5,10 +5,10 @@
 // A coupler has no ends. It is open where its joints are eliminated and above, and closes once all
 // of them are: at the lowest common ancestor of their parents.
 //
-// Two loops that are open in one front need different slots: greedy colouring of the fronts, loop
-// by loop in the order of the scene. At the ground, fronts of the tree's roots are gathered one
-// after the other, last root first; a loop between roots is open there from the later root to the
-// earlier one.
+// Two loops that are open in one front need different slots: greedy colouring of the fronts, the
+// loops that close nearest to the ground first. At the ground, fronts of the tree's roots are
+// gathered one after the other, last root first; a loop between roots is open there from the later
+// root to the earlier one.
 //
 // A branch may be folded: a root's subtree that all its open loops tie to one other body L. With
 // the branch's own W the loops close into L at once, M*_L += J W⁻¹ Jᵀ, so that the slots of all
@@ -20,6 +20,11 @@
 #include <vector>
 
 namespace momenta {
+
+/// The width of the fronts that hold `slots` slots: each is computed whole.
+constexpr int lanes_for(int slots, bool planar) {
+  return planar && slots <= 2 ? 2 : slots <= 4 ? 4 : slots <= 8 ? 8 : 16;
+}
 
 struct LoopPlan {
   static constexpr int most_slots = 16;
