@@ -124,14 +124,15 @@ int rebuild(const Mechanism& mechanism, const Start& start, const SceneGraph& gr
   return none;
 }
 
-/// Less cost; or entries of M saved at none: bodies nearer to the ground gather less rounding.
+/// Less cost; or entries of M saved at next to none, as bodies nearer to the ground gather less
+/// rounding: loops that close at the ground count there once more.
 bool better(const CutCost& a, const CutCost& b) {
   constexpr int most = LoopPlan::most_slots;
   if ((a.open > most) != (b.open > most)) return a.open <= most;
   // the bodies' own equations are the same whatever is cut
   if (a.open > most) return a.factor_entries > 0 && 100 * a.factor_entries < 90 * b.factor_entries;
   return 100 * a.sweeps < 98 * b.sweeps ||
-         (a.sweeps <= b.sweeps && 4 * a.mass_entries < 3 * b.mass_entries);
+         (100 * a.sweeps < 102 * b.sweeps && 4 * a.mass_entries < 3 * b.mass_entries);
 }
 
 /// Bodies that the sweeps take one by one, where those of branches side by side in lanes count as

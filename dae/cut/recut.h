@@ -49,7 +49,7 @@ CutCost cut_cost(const Mechanism& mechanism);
 
 /// The best cuts found, and the best order of the trees on the ground: by descent from the given
 /// tree, from a shallow and from a deep one; those given where that lowers neither the cost of the
-/// sweeps by two hundredths nor, at no more cost, the entries of M by a quarter. Where the sweeps
+/// sweeps by two hundredths nor, at as much more, the entries of M by a quarter. Where the sweeps
 /// can't carry the loops either way, the entries of L decide instead. Bounded effort: of a hundred
 /// thousand bodies some seconds.
 /// @throws SceneError where `keep` names neither a joint nor a loop
