@@ -18,13 +18,18 @@
 //   Continuity of ḟ: hᵢ₋₁ mᵢ₋₁ + 2 (hᵢ₋₁ + hᵢ) mᵢ + hᵢ mᵢ₊₁ = 6 (Δyᵢ/hᵢ − Δyᵢ₋₁/hᵢ₋₁);
 //   m = 0 at both ends. Outside, the straight line of the end slope; f̈ is continuous there too.
 //
-// Within each piece of a step or a table the derivatives are exact; a dual number takes the piece
-// of its value.
+// formula
+//   f by the instructions of its tape, ḟ and f̈ by those of its derivatives (core/expression).
+//
+// Within each piece of a step, a table or a formula with corners the derivatives are exact; a dual
+// number takes the piece of its value.
 
+#include <momenta/core/expression/evaluate.h>
 #include <momenta/core/scene/scene.h>
 
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,6 +37,9 @@ namespace momenta {
 
 /// Why a DriveSpec is not a valid motion law, in words; empty where it is valid.
 std::string law_fault(const DriveSpec& spec);
+/// Where the formula of a drive has corners or jumps, so that ḟ or f̈ do, the function that makes
+/// them; empty: it has none. @pre no fault
+std::string law_corner(const DriveSpec& spec);
 
 /// The motion law of a DriveSpec: f(t) and its first two derivatives. Immutable.
 class MotionLaw {
@@ -39,9 +47,10 @@ class MotionLaw {
   /// Solves the spline of a table. @throws SceneError with the sentence of law_fault
   explicit MotionLaw(const DriveSpec& spec);
 
-  /// f [rad or m], ḟ [rad/s or m/s] and f̈ [rad/s² or m/s²] at time t [s]. No allocation. Cost
-  /// O(coefficients); for a table O(log points). S needs + − ×, a constructor from double, S <
-  /// double, and sin and cos in its namespace.
+  /// f [rad or m], ḟ [rad/s or m/s] and f̈ [rad/s² or m/s²] at time t [s]. No allocation
+  /// after a thread's first call. Cost
+  /// O(coefficients); for a table O(log points), for a formula O(its length). S needs + − ×, a
+  /// constructor from double, S < double, sin and cos in its namespace, and formula::Functions.
   template <class S>
   void evaluate(S t, S& f, S& fdot, S& fddot) const {
     switch (kind_) {
@@ -53,11 +62,13 @@ class MotionLaw {
         return step(t, f, fdot, fddot);
       case Kind::table:
         return table(t, f, fdot, fddot);
+      case Kind::formula:
+        return by_tape(t, f, fdot, fddot);
     }
   }
 
  private:
-  enum class Kind { polynomial, harmonic, step, table };
+  enum class Kind { polynomial, harmonic, step, table, formula };
 
   /// A cubic in t − from.
   struct Segment {
@@ -123,6 +134,18 @@ class MotionLaw {
     horner(segment.c, 4, x, f, fdot, fddot);
   }
 
+  /// The room of the tape is kept from call to call, one a thread.
+  template <class S>
+  void by_tape(const S& t, S& f, S& fdot, S& fddot) const {
+    thread_local std::vector<S> line;
+    if (line.size() < formula_->tape().size()) line.resize(formula_->tape().size());
+    S values[3];
+    momenta::evaluate(*formula_, &t, line.data(), values);
+    f = values[0];
+    fdot = values[1];
+    fddot = values[2];
+  }
+
   void solve_spline(const std::vector<double>& times, const std::vector<double>& values);
 
   Kind kind_ = Kind::polynomial;
@@ -132,6 +155,7 @@ class MotionLaw {
   std::vector<double> knots_;
   std::vector<Segment>
       segments_;  ///< one more than knots_: the first and last are the lines outside
+  std::optional<Expression> formula_;  ///< f, ḟ, f̈
 };
 
 }  // namespace momenta

@@ -1,3 +1,4 @@
+#include <momenta/core/scene/formula.h>
 #include <momenta/dae/kkt/row_scales.h>
 #include <momenta/dae/linear/downward_ways.h>
 #include <momenta/dae/linear/equilibrium.h>
@@ -264,8 +265,9 @@ class Searcher {
 bool has_potential(const Mechanism& mechanism) {
   return std::none_of(
       mechanism.scene().forces.begin(), mechanism.scene().forces.end(), [&](const ForceSpec& f) {
-        return f.kind == "wrench" &&
-               (f.in_body_axes || (!mechanism.plan().planar && !f.torque.isZero(0)));
+        return (has_formula(f) && f.kind != "potential") ||
+               (f.kind == "wrench" &&
+                (f.in_body_axes || (!mechanism.plan().planar && !f.torque.isZero(0))));
       });
 }
 
