@@ -134,6 +134,8 @@ class Mechanism::SweepEvaluation final : public SweepRows<Space, double> {
     return power;
   }
 
+  double formula_size() override { return momenta::formula_size(w_); }
+
   void markers(double* values) override {
     for (const auto& marker : markers_) {
       const auto x = point_position(w_, marker.body, marker.at);

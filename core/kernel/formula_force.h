@@ -86,6 +86,19 @@ S formula_energy(const Workspace<Space, S>& w) {
   return energy;
 }
 
+/// Σ |V| and Σ |y| of what acts: how large the forces of formulas are, whether they balance or not
+/// [N, N m]. Needs velocities.
+template <class Space>
+double formula_size(const Workspace<Space, double>& w) {
+  double size = 0;
+  for (const auto& force : w.model->formula_forces) {
+    const double* const y = outputs_of(w, force);
+    if (force.is_potential) size += std::abs(y[0]);
+    for (const auto& act : force.acts) size += std::abs(y[act.output]);
+  }
+  return size;
+}
+
 /// Power of the forces without potential, and ∂V/∂t of those with one [W]. Needs velocities.
 template <class Space, class S>
 S formula_power(const Workspace<Space, S>& w) {

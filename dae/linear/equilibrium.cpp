@@ -287,6 +287,7 @@ VectorXd force_scales(const Mechanism& mechanism, Evaluation<double>& e) {
     force += f.force.norm();
     torque += f.kind == "torque" ? std::abs(f.value) : f.torque.norm();
   }
+  torque += e.formula_size();
   force += 2 * e.kinetic() / length;  // of running drives
   for (const JointSpec& j : scene.joints) torque += std::abs(j.stiffness) * (1 + std::abs(j.rest));
   VectorXd scale(mechanism.nv());

@@ -59,6 +59,13 @@ void read_formulas(const Fields& root, Scene& scene) {
     drive.law = formula.text;
     if (const std::string fault = law_fault(drive); !fault.empty())
       table.fail_at(value_at(table, "law").at, fault);
+    if (const std::string corner = law_corner(drive); !corner.empty())
+      scene.remarks.push_back("drive of " +
+                              (drive.joint.empty() ? "loop " + in_quotes(drive.loop)
+                                                   : "joint " + in_quotes(drive.joint)) +
+                              ": " + in_quotes(corner) +
+                              " in its law may have corners or jumps, "
+                              "where no acceleration exists; expected a smooth law");
   }
 }
 
