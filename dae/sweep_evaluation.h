@@ -20,7 +20,7 @@ class Mechanism::SweepEvaluation final : public SweepRows<Space, double> {
 
  public:
   SweepEvaluation(const Mechanism& mechanism, const Cast<Space>& cast)
-      : Rows(mechanism, cast), links_(build_links(cast.model)) {
+      : Rows(mechanism, cast), scene_(mechanism.scene()), links_(build_links(cast.model)) {
     if (cast.loops.loops.empty()) {
       momentum_.emplace(links_);
       acceleration_.emplace(links_);
@@ -134,6 +134,14 @@ class Mechanism::SweepEvaluation final : public SweepRows<Space, double> {
     return power;
   }
 
+  std::string formula_without_value() override {
+    const auto* found = momenta::formula_without_value(w_);
+    if (!found) return "";
+    const ForceSpec& force = scene_.forces[static_cast<std::size_t>(found->force)];
+    return scene_.where(force.at) +
+           (force.name.empty() ? "force of kind '" + force.kind : "force '" + force.name) +
+           "': " + found->key;
+  }
   double formula_size() override { return momenta::formula_size(w_); }
 
   void markers(double* values) override {
@@ -164,6 +172,7 @@ class Mechanism::SweepEvaluation final : public SweepRows<Space, double> {
     double height;
   };
 
+  const Scene& scene_;
   decltype(build_links(std::declval<const Model<Space>&>())) links_;
   std::optional<MomentumSweeps<Space, double>> momentum_;  ///< mechanisms without loops
   std::optional<AccelerationSweeps<Space, double>> acceleration_;

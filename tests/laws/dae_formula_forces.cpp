@@ -67,7 +67,7 @@ Scene four_bar_by_formulas() {
   push.kind = "wrench";
   push.body = "coupler";
   push.point = {0.2, 0, 0};
-  push.force_law = {"-0.2 * M.vx * abs(N.vy)", "A.u * t", ""};
+  push.force_law = {"-0.2 * M.vx * abs(N.vy)", "0.3 * O.u * t", ""};
   push.torque_law[2] = "0.1 * S.rate";
   push.in_body_axes = true;
   s.forces.push_back(push);
@@ -312,7 +312,8 @@ TEST(FormulaForcesInLoops, SmallMotionsOfPotentialsAreThoseOfSprings) {
   s.damping = 0.4;
   s.rest = 0.6;
   springs.forces = {s};
-  ForceSpec damper = spring("coupler", "0.4 * rate");
+  ForceSpec damper = spring("coupler", "");
+  damper.damping = 0.4;
   damper.name = "S";
   formulas.forces = {damper, by_law("potential", "45 * (S.length - 0.6)^2")};
   const auto modes = [](const Scene& scene) {
