@@ -60,6 +60,7 @@ class Parser {
     return t;
   }
   const Tape& tape() const { return tape_; }
+  std::vector<std::shared_ptr<const CubicSpline>> take_splines() { return std::move(splines_); }
 
  private:
   [[noreturn]] void fail(std::size_t place, const std::string& sentence) const {
@@ -250,6 +251,8 @@ class Parser {
     const auto* function = std::find_if(functions.begin(), functions.end(),
                                         [&](const Function& f) { return f.name == word; });
     if (called && function != functions.end()) return call(*function, from);
+    if (called)
+      if (auto spline = names_.function(word)) return value_of(std::move(spline), word, from);
     if (!called)
       if (const auto known = names_.meaning(word, from))
         return {known->variable < 0 ? tape_.number(known->number)
@@ -262,11 +265,12 @@ class Parser {
     if (!called) fail(from, "unknown name " + reading::in_quotes(word) + names_.expected(word));
     std::vector<std::string_view> near;
     for (const Function& f : functions) near.push_back(f.name);
+    for (const std::string_view name : names_.functions()) near.push_back(name);
     const std::string meant = reading::did_you_mean(word, near);
     fail(from, "unknown function " + reading::in_quotes(word) +
                    (!meant.empty() ? meant : ", expected one of: " + reading::listed(near)));
   }
-  Term call(const Function& f, std::size_t from) {
+  std::vector<Term> arguments_of(std::string_view name, int expected, std::size_t from) {
     take("(");
     std::vector<Term> arguments;
     if (!take(")")) {
@@ -275,13 +279,23 @@ class Parser {
       if (!take(")"))
         fail(at_, at_ < text_.size()
                       ? "found " + reading::in_quotes(word_at(at_)) + ", expected ',' or ')'"
-                      : "the bracket of function " + reading::in_quotes(f.name) + " is not closed");
+                      : "the bracket of function " + reading::in_quotes(name) + " is not closed");
     }
-    const int expected = operands_of(f.operation);
     if (static_cast<int>(arguments.size()) != expected)
-      fail(from, "function " + reading::in_quotes(f.name) + " has " +
+      fail(from, "function " + reading::in_quotes(name) + " has " +
                      std::to_string(arguments.size()) + " arguments, expected " +
                      std::to_string(expected));
+    return arguments;
+  }
+  Term value_of(std::shared_ptr<const CubicSpline> spline, std::string_view name,
+                std::size_t from) {
+    const int x = number(arguments_of(name, 1, from).front());
+    splines_.push_back(std::move(spline));
+    return {tape_.add({Operation::spline, x, -1, -1, 0, splines_.back().get()}), false, from};
+  }
+  Term call(const Function& f, std::size_t from) {
+    const int expected = operands_of(f.operation);
+    const std::vector<Term> arguments = arguments_of(f.name, expected, from);
     Instruction in{f.operation, -1, -1, -1, 0};
     if (f.operation != Operation::choice) {
       in.a = number(arguments[0]);
@@ -317,6 +331,7 @@ class Parser {
   std::size_t at_ = 0;
   int depth_ = 0;
   Tape tape_;
+  std::vector<std::shared_ptr<const CubicSpline>> splines_;
 };
 
 /// The variables of a formula by their names.
@@ -342,6 +357,21 @@ class Listed final : public FormulaNames {
 }  // namespace
 }  // namespace formula
 
+bool is_plain_name(std::string_view name) {
+  const auto letter = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+  };
+  return !name.empty() && letter(name.front()) &&
+         std::all_of(name.begin(), name.end(),
+                     [&](char c) { return letter(c) || (c >= '0' && c <= '9'); });
+}
+
+bool is_reserved_name(std::string_view name) {
+  return name == "pi" || name == "t" || name == "and" || name == "or" || name == "not" ||
+         std::any_of(formula::functions.begin(), formula::functions.end(),
+                     [&](const formula::Function& f) { return f.name == name; });
+}
+
 Expression::Expression(std::string_view text, std::span<const std::string> names) {
   formula::Listed listed(names);
   *this = Expression(text, listed);
@@ -353,11 +383,13 @@ Expression::Expression(std::string_view text, FormulaNames& names) {
   outputs_ = {t.at};
   tape_ = parser.tape().needed_for(outputs_);
   truth_ = t.truth;
+  splines_ = parser.take_splines();
 }
 
 Expression Expression::with_derivatives(std::span<const int> variables) const {
   formula::Tape tape(tape_);
   Expression all;
+  all.splines_ = splines_;
   all.outputs_ = {outputs_.front()};
   const std::vector<int> slopes = formula::add_gradient(tape, outputs_.front(), variables);
   all.outputs_.insert(all.outputs_.end(), slopes.begin(), slopes.end());
@@ -368,6 +400,7 @@ Expression Expression::with_derivatives(std::span<const int> variables) const {
 Expression Expression::with_two_derivatives(int variable) const {
   formula::Tape tape(tape_);
   Expression all;
+  all.splines_ = splines_;
   all.outputs_ = {outputs_.front()};
   for (int i = 0; i < 2; ++i)
     all.outputs_.push_back(

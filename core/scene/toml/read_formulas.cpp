@@ -1,4 +1,4 @@
-// Formulas of forces and drives, read when the whole scene is known.
+// Functions, and formulas of forces and drives, read when the whole scene is known.
 
 #include <momenta/core/scene/drive.h>
 #include <momenta/core/scene/formula.h>
@@ -34,6 +34,18 @@ Formula read_at(const Fields& table, const std::string& key, std::string& text, 
 }
 
 }  // namespace
+
+FunctionSpec read_function(const Fields& table) {
+  table.allow({"name", "x", "y"});
+  FunctionSpec function;
+  function.at = table.at();
+  function.name = table.text("name");
+  function.x = table.numbers("x", {});
+  function.y = table.numbers("y", {});
+  if (const std::string fault = spline_fault(function.x, function.y, "x", "y"); !fault.empty())
+    table.fail_at(table.at(), fault);
+  return function;
+}
 
 void read_formulas(const Fields& root, Scene& scene) {
   const FormulaReader reader(scene);

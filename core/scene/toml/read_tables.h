@@ -17,6 +17,7 @@ JointSpec read_joint(const Fields& table);
 LoopSpec read_loop(const Fields& table, std::span<const DriveSpec> drives);
 DriveSpec read_drive(const Fields& table);
 ForceSpec read_force(const Fields& table);
+FunctionSpec read_function(const Fields& table);
 MarkerSpec read_marker(const Fields& table);
 VisualSpec read_visual(const Fields& table);
 RunDefaults read_run(const Fields& table);
