@@ -313,27 +313,4 @@ std::string formula_fault(const Scene& scene, const ForceSpec& force, const Form
                   "force; expected one of them";
 }
 
-NamedInFormulas::NamedInFormulas(const Scene& scene) {
-  if (std::none_of(scene.forces.begin(), scene.forces.end(), has_formula)) return;
-  const FormulaReader reader(scene);
-  for (const ForceSpec& force : scene.forces) {
-    if (!has_formula(force)) continue;
-    const auto own = reader.own_names(force);
-    if (!force.joint.empty()) joints.insert(force.joint);
-    each_formula(force, [&](const std::string&, const std::string& text) {
-      for (const Signal& s : reader.read(text, own).signals) {
-        const auto which = static_cast<std::size_t>(s.which);
-        if (s.kind == Kind::coordinate || s.kind == Kind::rate)
-          joints.insert(scene.joints[which].name);
-        if (s.kind == Kind::position || s.kind == Kind::velocity)
-          bodies.insert(scene.markers[which].body);
-        if (s.kind != Kind::length && s.kind != Kind::length_rate) continue;
-        const ForceSpec& spring = scene.forces[which];
-        if (&spring != &force) springs.insert(spring.name);
-        joints.insert(spring.joints.begin(), spring.joints.end());
-      }
-    });
-  }
-}
-
 }  // namespace momenta
