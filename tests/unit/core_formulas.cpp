@@ -176,7 +176,7 @@ TEST(Formulas, FunctionsAreSplines) {
     double expected[3], found[3], line[64], slopes[3];
     law.evaluate(t, expected[0], expected[1], expected[2]);
     evaluate(derivatives, &t, line, found);
-    for (int i = 0; i < 3; ++i) EXPECT_EQ(found[i], expected[i]) << t;
+    for (int i = 0; i < 3; ++i) EXPECT_NEAR(found[i], expected[i], 1e-14) << t;
     const double x[2]{t, 0.7};
     evaluate(gradient, x, line, slopes);
     EXPECT_NEAR(slopes[1], 2 * expected[0] * expected[1] * 0.7, 1e-15);
