@@ -270,10 +270,14 @@ TEST(Formulas, DrivesAreTheOtherLawsWhereTheyAreWrittenSo) {
   }
 }
 
-TEST(Formulas, DrivesTellTheirCorners) {
+TEST(Formulas, DrivesTellTheirCornersAndPotentialsTheTime) {
   EXPECT_EQ(law_corner(by_formula("sin(t)^2 + exp(-t)")), "");
   EXPECT_EQ(law_corner(by_formula("max(t, 1)")), "max");
   EXPECT_EQ(law_corner(by_formula("if(t < 1, 0, t)")), "if");
+  const Scene timed =
+      parse_scene(base + "[[force]]\nkind = \"potential\"\nV = \"t * A.q\"\n", "timed.toml");
+  ASSERT_EQ(timed.remarks.size(), 1U);
+  EXPECT_EQ(timed.remarks[0].find("a potential takes the time"), 0U);
   const std::string driven = base +
                              "[[drive]]\njoint = \"hip.left\"\nkind = \"formula\"\nlaw = "
                              "\"third * abs(t - 1)\"\n";

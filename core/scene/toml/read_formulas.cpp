@@ -5,6 +5,7 @@
 #include <momenta/core/scene/toml/read_tables.h>
 #include <momenta/core/text/near_name.h>
 
+#include <algorithm>
 #include <vector>
 
 namespace momenta::reading {
@@ -31,6 +32,11 @@ Formula read_at(const Fields& table, const std::string& key, std::string& text, 
     table.fail_at(place_in(value_at(table, key), e.place()),
                   key + ", " + in_quotes(text) + ": " + e.what());
   }
+}
+
+bool takes_time(const Formula& formula) {
+  return std::any_of(formula.signals.begin(), formula.signals.end(),
+                     [](const Signal& s) { return s.kind == Signal::Kind::time; });
 }
 
 }  // namespace
@@ -60,6 +66,11 @@ void read_formulas(const Fields& root, Scene& scene) {
       if (const std::string fault = formula_fault(scene, force, formula); !fault.empty())
         table.fail_at(value_at(table, key).at, key + ", " + in_quotes(text) + ", " + fault);
       text = formula.text;
+      if (force.kind == "potential" && takes_time(formula))
+        scene.remarks.push_back(
+            (force.name.empty() ? "a potential" : "potential " + in_quotes(force.name)) +
+            " takes the time, so that it keeps no energy: ∂V/∂t counts as work of forces without "
+            "potential");
     });
   }
   which = 0;
