@@ -20,7 +20,7 @@ class Mechanism::SweepEvaluation final : public SweepRows<Space, double> {
 
  public:
   SweepEvaluation(const Mechanism& mechanism, const Cast<Space>& cast)
-      : Rows(mechanism, cast), links_(build_links(cast.model)) {
+      : Rows(mechanism, cast), scene_(mechanism.scene()), links_(build_links(cast.model)) {
     if (cast.loops.loops.empty()) {
       momentum_.emplace(links_);
       acceleration_.emplace(links_);
@@ -100,8 +100,8 @@ class Mechanism::SweepEvaluation final : public SweepRows<Space, double> {
   double kinetic() override { return kinetic_energy(w_); }
   double potential(const double* q) override { return potential_energy(w_, q); }
   double dissipated_power(const double* u) override {
-    // Dampers, friction and body-axes wrenches or torques: all applied power less that of the
-    // potentials.
+    // Dampers, friction, body-axes wrenches or torques, formulas: all applied power less that of
+    // the potentials, and what potentials gain with time.
     double power = 0;
     for (const auto& b : model_.bodies)
       if (b.nv == 1) {
@@ -110,13 +110,11 @@ class Mechanism::SweepEvaluation final : public SweepRows<Space, double> {
           power -= b.friction * (u[b.u] * u[b.u] / std::hypot(u[b.u], b.friction_rate));
       }
     if (!model_.has_body_forces()) return power;
-    power += bushing_power(w_) + coordinate_spring_power(w_);
+    power += bushing_power(w_) + coordinate_spring_power(w_) + formula_power(w_);
     for (const auto& spring : model_.springs) {
       const SpringLine<Space, double> line(w_, spring);
-      if (value_of(line.length) == 0) continue;
-      const double rate = dot(line.D, point_velocity(w_, spring.child, line.child) -
-                                          point_velocity(w_, spring.parent, line.parent)) /
-                          line.length;
+      if (!line.has_direction()) continue;
+      const double rate = line.rate(w_, spring);
       power -= spring.damping * (rate * rate);
     }
     for (const auto& wrench : model_.wrenches) {
@@ -135,6 +133,16 @@ class Mechanism::SweepEvaluation final : public SweepRows<Space, double> {
     }
     return power;
   }
+
+  std::string formula_without_value() override {
+    const auto* found = momenta::formula_without_value(w_);
+    if (!found) return "";
+    const ForceSpec& force = scene_.forces[static_cast<std::size_t>(found->force)];
+    return scene_.where(force.at) +
+           (force.name.empty() ? "force of kind '" + force.kind : "force '" + force.name) +
+           "': " + found->key;
+  }
+  double formula_size() override { return momenta::formula_size(w_); }
 
   void markers(double* values) override {
     for (const auto& marker : markers_) {
@@ -164,6 +172,7 @@ class Mechanism::SweepEvaluation final : public SweepRows<Space, double> {
     double height;
   };
 
+  const Scene& scene_;
   decltype(build_links(std::declval<const Model<Space>&>())) links_;
   std::optional<MomentumSweeps<Space, double>> momentum_;  ///< mechanisms without loops
   std::optional<AccelerationSweeps<Space, double>> acceleration_;

@@ -1,6 +1,6 @@
 #include <momenta/core/scene/kinds.h>
-#include <momenta/core/scene/near_name.h>
 #include <momenta/core/scene/validate_parts.h>
+#include <momenta/core/text/near_name.h>
 
 #include <algorithm>
 #include <vector>
@@ -69,6 +69,9 @@ Census::Census(const Scene& scene) : scene_(scene) {
 
   Names markers(scene, "markers");
   for (const MarkerSpec& marker : scene.markers) markers.add("marker", marker.name, marker.at);
+
+  Names functions(scene, "functions");
+  for (const FunctionSpec& f : scene.functions) functions.add("function", f.name, f.at);
 
   Names forces(scene, "forces");
   for (const ForceSpec& force : scene.forces)

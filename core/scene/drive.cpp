@@ -1,7 +1,15 @@
 #include <momenta/core/scalar/all_finite.h>
 #include <momenta/core/scene/drive.h>
+#include <momenta/core/text/near_name.h>
+
+#include <array>
 
 namespace momenta {
+namespace {
+
+const std::array<std::string, 1> of_time{"t"};
+
+}  // namespace
 
 std::string law_fault(const DriveSpec& spec) {
   if (spec.kind == "polynomial") {
@@ -19,21 +27,20 @@ std::string law_fault(const DriveSpec& spec) {
       return "from, to, start and duration must be finite";
     return spec.duration > 0 ? "" : "duration must be > 0 [s]";
   }
-  if (spec.kind == "table") {
-    const std::size_t n = spec.times.size();
-    if (n < 2) return "times has fewer than 2 entries, expected at least 2";
-    if (spec.values.size() != n)
-      return "values has " + std::to_string(spec.values.size()) + " entries and times " +
-             std::to_string(n) + ", expected as many";
-    if (!all_finite(spec.times) || !all_finite(spec.values))
-      return "times and values must be finite";
-    for (std::size_t i = 1; i < n; ++i)
-      if (!(spec.times[i - 1] < spec.times[i]))
-        return "times[" + std::to_string(i) + "] is not after times[" + std::to_string(i - 1) +
-               "], expected increasing times";
-    return "";
-  }
-  return "kind must be polynomial, harmonic, step or table";
+  if (spec.kind == "table") return spline_fault(spec.times, spec.values, "times", "values");
+  if (spec.kind == "formula") try {
+      if (!Expression(spec.law, of_time).is_truth()) return "";
+      return "law, " + reading::in_quotes(spec.law) +
+             ", is a comparison, expected a formula of a number";
+    } catch (const ExpressionError& e) {
+      return "law, " + reading::in_quotes(spec.law) + ": " + e.what();
+    }
+  return "kind must be polynomial, harmonic, step, table or formula";
+}
+
+std::string law_corner(const DriveSpec& spec) {
+  return spec.kind == "formula" ? std::string(Expression(spec.law, of_time).corner())
+                                : std::string();
 }
 
 MotionLaw::MotionLaw(const DriveSpec& spec)
@@ -54,37 +61,12 @@ MotionLaw::MotionLaw(const DriveSpec& spec)
   if (spec.kind == "step") kind_ = Kind::step;
   if (spec.kind == "table") {
     kind_ = Kind::table;
-    solve_spline(spec.times, spec.values);
+    spline_ = CubicSpline(spec.times, spec.values);
   }
-}
-
-void MotionLaw::solve_spline(const std::vector<double>& times, const std::vector<double>& values) {
-  const std::size_t n = times.size();
-  const auto gap = [&](std::size_t i) { return times[i + 1] - times[i]; };
-  const auto slope = [&](std::size_t i) { return (values[i + 1] - values[i]) / gap(i); };
-
-  // the tridiagonal system of the inner second derivatives, eliminated forwards: mᵢ = right[i] −
-  // upper[i] mᵢ₊₁. It is diagonally dominant, so no pivoting is needed.
-  std::vector<double> m(n, 0.0), upper(n, 0.0), right(n, 0.0);
-  for (std::size_t i = 1; i + 1 < n; ++i) {
-    const double pivot = 2 * (gap(i - 1) + gap(i)) - gap(i - 1) * upper[i - 1];
-    upper[i] = gap(i) / pivot;
-    right[i] = (6 * (slope(i) - slope(i - 1)) - gap(i - 1) * right[i - 1]) / pivot;
+  if (spec.kind == "formula") {
+    kind_ = Kind::formula;
+    formula_ = Expression(spec.law, of_time).with_two_derivatives(0);
   }
-  for (std::size_t i = n - 1; i-- > 1;) m[i] = right[i] - upper[i] * m[i + 1];
-
-  // one cubic per gap, and a line on either side
-  knots_ = times;
-  segments_.resize(n + 1);
-  for (std::size_t i = 0; i + 1 < n; ++i) {
-    const double h = gap(i);
-    segments_[i + 1] = {times[i],
-                        {values[i], slope(i) - h * (2 * m[i] + m[i + 1]) / 6, m[i] / 2,
-                         (m[i + 1] - m[i]) / (6 * h)}};
-  }
-  const double last = slope(n - 2) + gap(n - 2) * (m[n - 2] + 2 * m[n - 1]) / 6;
-  segments_.front() = {times.front(), {values.front(), segments_[1].c[1], 0, 0}};
-  segments_.back() = {times.back(), {values.back(), last, 0, 0}};
 }
 
 }  // namespace momenta

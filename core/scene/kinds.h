@@ -17,10 +17,10 @@ inline constexpr std::array<std::string_view, 9> joint_kinds{
 inline constexpr std::array<std::string_view, 10> loop_kinds{
     "point",    "revolute",  "spherical",   "weld",   "prismatic",
     "distance", "universal", "cylindrical", "planar", "coupler"};
-inline constexpr std::array<std::string_view, 4> drive_kinds{"polynomial", "harmonic", "step",
-                                                             "table"};
-inline constexpr std::array<std::string_view, 5> force_kinds{
-    "spring-damper", "bushing", "coordinate-spring", "torque", "wrench"};
+inline constexpr std::array<std::string_view, 5> drive_kinds{"polynomial", "harmonic", "step",
+                                                             "table", "formula"};
+inline constexpr std::array<std::string_view, 6> force_kinds{
+    "spring-damper", "bushing", "coordinate-spring", "torque", "wrench", "potential"};
 inline constexpr std::array<std::string_view, 5> shape_kinds{"rod", "box", "cylinder", "sphere",
                                                              "point"};
 inline constexpr std::array<std::string_view, 6> visual_kinds{"box",      "sphere",    "capsule",

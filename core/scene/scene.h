@@ -222,13 +222,14 @@ constexpr int driven_coordinates_of(LoopKind kind) {
 ///   - harmonic: f = offset + amplitude sin(ω t + φ), with ω = frequency [rad/s], φ = phase [rad]
 ///   - step: `from` → `to` between start and start + duration, by the quintic 10x³ − 15x⁴ + 6x⁵
 ///   - table: natural cubic spline through (times, values); constant slope outside
+///   - formula: `law`, of t
 /// MotionLaw (core/scene/drive.h) evaluates these laws.
 struct DriveSpec {
   std::string joint;   ///< or `loop`: one of them is empty
   std::string loop;    ///< or `joint`
   int coordinate = 0;  ///< which of that joint or loop, from 0
   std::string origin;  ///< loops: "x", "y" or "z" of origin_parent instead of a coordinate
-  std::string kind;    ///< polynomial harmonic step table
+  std::string kind;    ///< polynomial harmonic step table formula
   std::vector<double> coefficients;  ///< polynomial: [rad or m, by s to the power]
   double offset = 0;                 ///< harmonic [rad or m]
   double amplitude = 0;              ///< harmonic [rad or m]
@@ -240,6 +241,7 @@ struct DriveSpec {
   double duration = 0;               ///< step [s]
   std::vector<double> times;         ///< table: ascending [s]
   std::vector<double> values;        ///< table: one for each time [rad or m]
+  std::string law;                   ///< formula, of t [rad or m]
   Location at;                       ///< where the file has it
 };
 
@@ -255,9 +257,14 @@ struct DriveSpec {
 ///   - "torque": generalised force `value` on a revolute or helical [N m] or prismatic [N] joint
 ///   - "wrench": constant force at `point` of `body`, and constant torque: in ground axes
 ///     (`axes = "ground"`, the default) or in body axes (`axes = "body"`)
+///   - "potential": −∂V/∂s along every signal s of the formula V in `law`
+/// Formulas (core/scene/formula.h) may stand in place of constants: `law` of a spring-damper or a
+/// coordinate spring for its tension, of a torque for its value, `force_law` and `torque_law` for
+/// components of a wrench. What they do counts as work done from outside, a potential's not.
 struct ForceSpec {
-  std::string name;               ///< or empty
-  std::string kind;               ///< spring-damper bushing coordinate-spring torque wrench
+  std::string name;  ///< or empty
+  std::string kind;  ///< spring-damper bushing coordinate-spring torque wrench potential
+  std::string law;   ///< a formula, or empty [N, N m or J]
   std::string parent = "ground";  ///< spring-damper, bushing: a body, or "ground"
   std::string child;              ///< spring-damper, bushing: a body
   Eigen::Vector3d origin_parent = Eigen::Vector3d::Zero();  ///< of the parent, its axes [m]
@@ -279,7 +286,9 @@ struct ForceSpec {
   Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< wrench [N]
   Eigen::Vector3d torque = Eigen::Vector3d::Zero();  ///< wrench [N m]
   bool in_body_axes = false;                         ///< wrench; else ground axes
-  Location at;                                       ///< where the file has it
+  std::array<std::string, 3> force_law;   ///< wrench: formulas in place of components, or empty
+  std::array<std::string, 3> torque_law;  ///< wrench, likewise
+  Location at;                            ///< where the file has it
 };
 
 /// A named point of a body, or of "ground", whose position and velocity are reported in ground
@@ -296,6 +305,15 @@ struct ParameterSpec {
   std::string name;   ///< as formulas have it
   double value = 0;   ///< in the units of what is made of it
   bool used = false;  ///< whether a formula of the scene takes it
+};
+
+/// A function of one number that formulas of forces call by its name: the natural cubic spline
+/// through points, straight outside (core/expression/spline.h).
+struct FunctionSpec {
+  std::string name;       ///< letters, digits and _, a letter first; none of those formulas have
+  std::vector<double> x;  ///< increasing, at least two
+  std::vector<double> y;  ///< one for each x
+  Location at;            ///< where the file has it
 };
 
 /// The defaults of a run, for options that the command line does not give; also for `momenta
@@ -319,6 +337,7 @@ struct Scene {
   std::vector<LoopSpec> loops;                        ///< empty: an open chain
   std::vector<DriveSpec> drives;                      ///< prescribed motion
   std::vector<ForceSpec> forces;          ///< forces besides gravity and those of joints
+  std::vector<FunctionSpec> functions;    ///< what formulas may call
   std::vector<MarkerSpec> markers;        ///< points to be reported
   std::vector<VisualSpec> visuals;        ///< solids to be drawn; no effect on motion
   std::vector<std::string> held;          ///< [assembly] hold: joints whose q and u assembly keeps

@@ -1,7 +1,7 @@
 #include <momenta/core/scene/file_text.h>
 #include <momenta/core/scene/kinds.h>
-#include <momenta/core/scene/near_name.h>
 #include <momenta/core/scene/toml/fields.h>
+#include <momenta/core/text/near_name.h>
 
 #include <algorithm>
 #include <cmath>
@@ -194,6 +194,34 @@ Eigen::Vector3d Fields::vector(std::string_view key, Quantity quantity) const {
 Eigen::Vector3d Fields::vector(std::string_view key, Quantity quantity,
                                const Eigen::Vector3d& otherwise) const {
   return has(key) ? vector(key, quantity) : otherwise;
+}
+
+bool Fields::is_of_parameters(const std::string& formula) const {
+  if (!parameters_ || formula.empty()) return true;
+  try {
+    parameters_->formula(formula);
+    return true;
+  } catch (const ExpressionError&) {
+    return false;
+  }
+}
+
+void Fields::vector_or_formulas(std::string_view key, Quantity quantity, Eigen::Vector3d& numbers,
+                                std::array<std::string, 3>& formulas) const {
+  const Value* value = find(key);
+  if (value == nullptr) return;
+  if (value->type != Value::Type::array || value->items.size() != 3) {
+    numbers = vector(key, quantity);  // says what is expected
+    return;
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Value& item = value->items[i];
+    if (item.type == Value::Type::text && !is_of_parameters(item.text))
+      formulas[i] = item.text;
+    else
+      numbers[static_cast<Eigen::Index>(i)] =
+          number_of(item, std::string(key) + "[" + std::to_string(i) + "]", quantity);
+  }
 }
 
 Eigen::Vector3d Fields::direction(std::string_view key, const Eigen::Vector3d& otherwise) const {

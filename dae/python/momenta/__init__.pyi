@@ -45,6 +45,7 @@ class _SceneKeys(TypedDict, total=False):
     loop: Sequence[Mapping[str, Any]]
     drive: Sequence[Mapping[str, Any]]
     force: Sequence[Mapping[str, Any]]
+    function: Sequence[Mapping[str, Any]]
     marker: Sequence[Mapping[str, Any]]
     visual: Sequence[Mapping[str, Any]]
     assembly: Mapping[str, Any]
@@ -107,6 +108,7 @@ class _DriveKeys(TypedDict, total=False):
     start: float
     times: Sequence[float]
     values: Sequence[float]
+    law: str
 
 class _SpringKeys(TypedDict, total=False):
     name: str
@@ -116,14 +118,16 @@ class _SpringKeys(TypedDict, total=False):
     stiffness: float
     damping: float
     rest: float
+    law: str
 
 class _ForceKeys(_SpringKeys, total=False):
     joint: str
     value: float
+    V: str
     body: str
     point: _Vector
-    force: _Vector
-    torque: _Vector
+    force: Sequence[float | str]
+    torque: Sequence[float | str]
     axes: Literal["ground", "body"]
     rotation: _Rotation
     rotational_stiffness: float
@@ -181,6 +185,7 @@ class Scene:
     def force(self, kind: str, **keys: Unpack[_ForceKeys]) -> Scene: ...
     def spring(self, **keys: Unpack[_SpringKeys]) -> Scene: ...
     def marker(self, name: str, body: str, **keys: Unpack[_MarkerKeys]) -> Scene: ...
+    def function(self, name: str, x: Sequence[float], y: Sequence[float]) -> Scene: ...
     def visual(self, body: str, kind: str, **keys: Unpack[_VisualKeys]) -> Scene: ...
     def assembly(self, **keys: Unpack[_AssemblyKeys]) -> Scene: ...
     def run(self, **keys: Unpack[_RunTableKeys]) -> Scene: ...

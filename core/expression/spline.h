@@ -1,0 +1,86 @@
+#pragma once
+// The natural cubic spline through points (xᵢ, yᵢ). With z = x − xᵢ, h = xᵢ₊₁ − xᵢ and mᵢ = f"(xᵢ),
+// in each gap
+//
+//   f = yᵢ + bᵢ z + mᵢ/2 z² + (mᵢ₊₁ − mᵢ)/(6h) z³,  bᵢ = (yᵢ₊₁ − yᵢ)/h − h (2mᵢ + mᵢ₊₁)/6
+//
+// Continuity of f': hᵢ₋₁ mᵢ₋₁ + 2 (hᵢ₋₁ + hᵢ) mᵢ + hᵢ mᵢ₊₁ = 6 (Δyᵢ/hᵢ − Δyᵢ₋₁/hᵢ₋₁); m = 0 at both
+// ends. Outside, the straight line of the end slope: f" is continuous there too. Within a gap the
+// derivatives are exact; a dual number takes the gap of its value.
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace momenta {
+
+/// p, ṗ, p̈ of Σ cᵢ xⁱ. The second derivative is accumulated halved.
+template <class S>
+void horner(const double* c, std::size_t count, const S& x, S& p, S& pdot, S& pddot) {
+  S value(0.0), rate(0.0), half(0.0);
+  for (std::size_t i = count; i-- > 0;) {
+    half = half * x + rate;
+    rate = rate * x + value;
+    value = value * x + S(c[i]);
+  }
+  p = value;
+  pdot = rate;
+  pddot = half + half;
+}
+
+/// Why points are none of a spline, in words with the names of both lists; empty where they are.
+std::string spline_fault(const std::vector<double>& x, const std::vector<double>& y,
+                         const std::string& x_name, const std::string& y_name);
+
+class CubicSpline {
+ public:
+  CubicSpline() = default;
+  /// @pre spline_fault() is empty. O(points)
+  CubicSpline(const std::vector<double>& x, const std::vector<double>& y);
+
+  /// f, f' and f". O(log points)
+  template <class S>
+  void evaluate(const S& x, S& f, S& first, S& second) const {
+    const Segment& segment = at(x);
+    horner(segment.c, 4, S(x - S(segment.from)), f, first, second);
+  }
+  /// The derivative of an order from 0: f itself. O(log points)
+  template <class S>
+  S derivative(const S& x, int order) const {
+    const Segment& segment = at(x);
+    const S z = x - S(segment.from);
+    S sum(0.0);
+    for (int i = 3; i >= order; --i) {
+      double c = segment.c[i];
+      for (int k = 0; k < order; ++k) c *= i - k;
+      sum = sum * z + S(c);
+    }
+    return sum;
+  }
+
+ private:
+  /// A cubic in x − from.
+  struct Segment {
+    double from = 0;
+    double c[4] = {0, 0, 0, 0};
+  };
+  template <class S>
+  const Segment& at(const S& x) const {
+    // segments_[k] holds between knots k − 1 and k; find the number k of knots at or before x
+    std::size_t low = 0, high = knots_.size();
+    while (low < high) {
+      const std::size_t middle = (low + high) / 2;
+      if (x < knots_[middle])
+        high = middle;
+      else
+        low = middle + 1;
+    }
+    return segments_[low];
+  }
+
+  std::vector<double> knots_;
+  std::vector<Segment>
+      segments_;  ///< one more than knots_: the first and last are the lines outside
+};
+
+}  // namespace momenta
