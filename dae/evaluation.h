@@ -88,7 +88,7 @@ class Evaluation<double> : public EquationRows<double> {
   virtual double potential(const double* q) = 0;
   /// Power of the forces without potential [W]: dampers, and wrenches that have no potential. After
   /// move(u).
-  virtual double dissipated_power(const double* u) = 0;
+  virtual double dissipated_power(const double* q, const double* u) = 0;
   /// For each marker its position x y z [m] and its velocity [m/s], in ground axes. After move().
   virtual void markers(double* values) = 0;
 };

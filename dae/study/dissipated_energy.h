@@ -52,7 +52,8 @@ class DissipatedEnergy {
 
   static bool loses_energy(const Scene& scene) {
     for (const auto& joint : scene.joints)
-      if (joint.damping != 0 || joint.friction != 0) return true;
+      if (joint.damping != 0 || joint.friction != 0 || (joint.limits && joint.stop_damping != 0))
+        return true;
     for (const auto& f : scene.forces)
       if (((f.kind == "spring-damper" || f.kind == "coordinate-spring") && f.damping != 0) ||
           (f.kind == "bushing" && (f.damping != 0 || f.rotational_damping != 0)) ||
