@@ -260,9 +260,10 @@ TEST_F(Sdf, WhatItTakesForGrantedAndLeavesOutIsTold) {
   EXPECT_EQ(scene.bodies.at(0).inertia, Eigen::Matrix3d::Identity());
   EXPECT_EQ(scene.remarks,
             (std::vector<std::string>{
-                "left out: plugins (1)", "left out: visual shapes (1)", "left out: sensors (1)",
+                "left out: sensors (1)", "left out: visual shapes without a geometry (1)",
                 "taken as SDF has it: 1 kg and 1 kg m² of links without <inertial> (1)",
-                "left out: joint limits (1)", "left out: friction of joints (1)"}));
+                "taken as smooth friction: friction of joints (1)",
+                "left out: <plugin> of <model> (1)"}));
 }
 
 TEST_F(Sdf, WrongFiles) {
@@ -278,8 +279,7 @@ TEST_F(Sdf, WrongFiles) {
   expect("<sdf version='1.7'/>", "<sdf> has 0 <world> and 0 <model>, expected one of them");
   expect("<sdf version='1.7'><model name='m'/></sdf>",
          ":1: model 'm': <model> has no <link>, expected at least one");
-  wrong("<include><uri>x</uri></include>",
-        ":3: model 'm': <include> is not read, expected one file with everything in it");
+  wrong("<include><uri>x</uri></include>", ":3: <uri> is 'x', which does not exist, expected a");
   wrong(link("b", "<pose>1 2 3</pose>"), ":3: link 'b': <pose> has 3 numbers, expected 6");
   wrong(link("b", "<pose>1 2 3 nan 0 0</pose>"), "<pose> has 'nan', expected finite numbers");
   wrong(link("b", "<pose rotation_format='quat_xyzw'>0 0 0 0 0 0 2</pose>"),
