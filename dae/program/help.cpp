@@ -49,10 +49,11 @@ std::string name_and_type(const CLI::Option& o) {
 }
 
 /// Options that have one row: the text of the first speaks of both.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 3> one_row{{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 4> one_row{{
     {"--project", "--no-project"},
     {"--baumgarte-alpha", "--baumgarte-beta"},
     {"--rtol", "--atol"},
+    {"--out", "--mesh-bytes"},
 }};
 
 /// The option in the row of this one; null: none.

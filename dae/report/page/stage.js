@@ -175,6 +175,14 @@ function stageOf(canvas, film, camera, show, magnified) {
 
     const labels = [];
     const nearer = camera.planar ? 0 : 1.2 * barWidth;
+    if (show.joints) for (const range of ranges) {
+      const ends = range.points(state).map(eye.project), now = range.now(state).map(eye.project);
+      items.push({ depth: -1e8, draw: () => {
+        stroke(ctx, ends, colours.muted, 1.2);
+        for (const bound of [ends.slice(0, 2), ends.slice(-2)]) stroke(ctx, bound, colours.muted, 1.6);
+        stroke(ctx, now, range.passed(state) ? gapColour : colours.muted, range.passed(state) ? 2.4 : 1.2);
+      } });
+    }
     if (show.joints) {
       picture.bodies.forEach((body, k) => {
         if (body.kind === "free") return;
