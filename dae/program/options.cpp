@@ -52,12 +52,12 @@ void add_scene_file(CLI::App& verb, Options& o, bool required) {
   verb.add_option("--set", o.set, "PLACE=NUMBER in place of the scene's; repeatable")
       ->type_name("SETTING")
       ->allow_extra_args(false);
-  verb.add_option("--control", o.reading.controls, "Of an MJCF: its actuators act, at NAME=VALUE")
+  verb.add_option("--control", o.reading.controls, "Of an MJCF: actuators act; start at a <key>")
       ->type_name("CONTROL")
       ->allow_extra_args(false);
   verb.add_option("--key", o.reading.key, "Of an MJCF: start at this <key>, by name or number")
       ->type_name("KEY");
-  verb.add_option("--stops", o.stops, "Limits of joints push back: N m/rad or N/m, and damping")
+  verb.add_option("--stops", o.stops, "Limits push back: stiffness, damping (SI units)")
       ->type_name("K[,C]");
   verb.add_option("--at", o.at, "Start values: JSON {\"q\": {..}, \"v\": {..}}, or its file")
       ->type_name("STATE");
@@ -72,7 +72,7 @@ void add_scene(CLI::App& verb, Options& o) {
   one_of(verb.add_option("--cut", o.cut, "What runs integrate (default: auto, the least work)"),
          {"auto", "scene"});
   add_level(verb, o);
-  verb.add_flag("--json", o.json, "One JSON document on standard output");
+  verb.add_flag("--json", o.json, "JSON on standard output; no progress, no table");
   verb.add_flag("--quiet", o.quiet, "No progress, no table");
 }
 
@@ -130,7 +130,8 @@ void add_mesh_bytes(CLI::App& verb, Options& o) {
 }
 
 void add_results(CLI::App& verb, Options& o) {
-  verb.add_option("--out", o.out, "Directory for results")->type_name("DIR");
+  verb.add_option("--out", o.out, "Directory for results; bytes of meshes in a page")
+      ->type_name("DIR");
   add_mesh_bytes(verb, o);
   one_of(verb.add_option("--figures", o.figures, "Every chart for papers, in DIR/figures"),
          {"svg"});

@@ -51,6 +51,10 @@ std::string still_words(const Mechanism& mechanism, const Assembly& a) {
   if (mechanism.m() > 0)
     words += " Assembly moved the joints by up to " + compact(a.moved, 2) +
              " against the guess (rad or m).";
+  if (!scene.drives.empty())
+    words +=
+        " It moves as its drives say, up to the end of its run; what they leave free moves as "
+        "little as it can.";
   return words;
 }
 

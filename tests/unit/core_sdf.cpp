@@ -207,19 +207,21 @@ TEST_F(Sdf, JointsWrittenFromTheFarSide) {
 
 // Springs on the two axes of a universal joint: two hinges with a body without mass between.
 TEST_F(Sdf, SpringsOfUniversalJoints) {
-  const auto dynamics = [](const std::string& k, const std::string& c) {
+  const auto dynamics = [](const std::string& k, const std::string& c, const std::string& rest,
+                           const std::string& friction) {
     return "<dynamics><spring_stiffness>" + k + "</spring_stiffness><damping>" + c +
-           "</damping></dynamics>";
+           "</damping><spring_reference>" + rest + "</spring_reference><friction>" + friction +
+           "</friction></dynamics>";
   };
-  const Scene scene = chain(
-      joint("j", "universal", "a", "b",
-            axis("1 2 2", dynamics("3", "0.1")) + axis("0 1 1", dynamics("0", "0.4"), "axis2")));
+  const Scene scene = chain(joint("j", "universal", "a", "b",
+                                  axis("1 2 2", dynamics("3", "0.1", "0.4", "0.5")) +
+                                      axis("0 1 1", dynamics("2", "0.4", "-0.3", "0.7"), "axis2")));
   const Scene two = toml(
       "[[body]]\nname = 'x'\nmass = 0\n[[joint]]\nname = 'j'\nparent = 'a'\nchild = 'x'\n"
       "kind = 'revolute'\norigin.parent = [0.5, 0.1, -0.3]\nrotation.rpy = [0.2, 0.6, -0.1]\n"
-      "axis = [1, 2, 2]\nstiffness = 3\ndamping = 0.1\n"
+      "axis = [1, 2, 2]\nstiffness = 3\ndamping = 0.1\nrest = 0.4\nfriction = 0.5\n"
       "[[joint]]\nname = 'k'\nparent = 'x'\nchild = 'b'\nkind = 'revolute'\naxis = [0, 1, 1]\n"
-      "damping = 0.4\n");
+      "damping = 0.4\nstiffness = 2\nrest = -0.3\nfriction = 0.7\n");
   EXPECT_LE(differs(scene, two), rounding);
 }
 

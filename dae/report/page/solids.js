@@ -192,7 +192,7 @@ const ranges = picture.bodies.flatMap((body, k) => {
   if (body.turn !== "axis" || high - low >= 2 * Math.PI) return [];
   const arm = minus(body.com, body.at_child), flat = minus(arm, scaled(body.axis, inner(arm, body.axis)));
   const out = norm(flat) > 1e-6 * picture.length ? unit(flat) : unit(cross(body.axis, Math.abs(body.axis[0]) < 0.8 ? [1, 0, 0] : [0, 1, 0]));
-  const radius = 2.2 * barWidth, steps = Math.max(2, Math.ceil((high - low) / 0.15));
+  const radius = Math.max(2.2 * barWidth, 0.5 * norm(flat)), steps = Math.max(2, Math.ceil((high - low) / 0.15));
   const ray = (state, angle, r) => plus(centre(state), scaled(turned(product(parent(state), body.rest), turned(about(body.axis, angle), out)), r));
   const angle = (state) => {
     const [w, ...v] = product(inverse(body.rest), product(inverse(parent(state)), state.turns[k]));
