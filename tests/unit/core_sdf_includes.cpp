@@ -111,6 +111,24 @@ TEST_F(SdfIncludes, LimitsAndFrictionOfJoints) {
   EXPECT_EQ(universal.remarks.back(), "left out: limits of universal joints (1)");
 }
 
+// A joint that closes a loop has no coordinate: its limits and its friction are told.
+TEST_F(SdfIncludes, LoopsHaveNoLimits) {
+  const std::string two =
+      "<link name='a'/><link name='b'/><joint name='i' "
+      "type='revolute'><parent>world</parent><child>a"
+      "</child><axis><xyz>0 0 1</xyz></axis></joint><joint name='j' type='revolute'><parent>world"
+      "</parent><child>b</child><axis><xyz>0 0 1</xyz></axis></joint><joint name='k' "
+      "type='revolute'>"
+      "<parent>a</parent><child>b</child><axis><xyz>0 0 1</xyz><limit><lower>-1</lower></limit>"
+      "<dynamics><friction>1</friction></dynamics></axis></joint>";
+  const Scene scene = world("<model name='m'>" + two + "</model>");
+  ASSERT_EQ(scene.loops.size(), 1U);
+  EXPECT_EQ(scene.loops[0].name, "k");
+  EXPECT_EQ(std::vector<std::string>(scene.remarks.end() - 2, scene.remarks.end()),
+            (std::vector<std::string>{"left out: limits of joints that close loops (1)",
+                                      "left out: friction of joints that close loops (1)"}));
+}
+
 // The pose relative to a link is that of the body; colours and sizes are those of the file.
 TEST_F(SdfIncludes, VisualsAreDrawn) {
   const Scene scene = world(

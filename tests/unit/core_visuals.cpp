@@ -57,7 +57,7 @@ TEST(Visuals, OfLinks) {
   const Scene scene = read(".urdf", R"(<robot name="r"><link name="base"/>
     <link name="a"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"/></inertial>
       <visual><origin xyz="1 2 3" rpy="1.5707963267948966 0 0"/><geometry><cylinder length="4" radius="5"/></geometry>
-        <material name="m"><color rgba="0 1 0 1"/></material></visual>
+        <material name=""><color rgba="0 1 0 1"/></material></visual>
       <visual><geometry><mesh filename="a.stl"/></geometry></visual>
       <visual><geometry><box size="1 2 3"/></geometry></visual>
       <visual><geometry><sphere radius="4"/></geometry></visual>

@@ -78,7 +78,7 @@ std::optional<VisualSpec> solid_of(const Node& part, const LinkDrawing& drawing,
 std::map<std::string, Eigen::Vector3d> colours_of(const Node& robot) {
   std::map<std::string, Eigen::Vector3d> colours;
   const auto take = [&](const Node& material) {
-    if (const auto colour = colour_in(material); colour && material.has("name"))
+    if (const auto colour = colour_in(material); colour && !material.text("name", "").empty())
       colours.emplace(material.text("name"), *colour);
   };
   for (const Node& material : robot.children("material")) take(material);

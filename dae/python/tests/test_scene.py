@@ -159,12 +159,12 @@ class Loaded(unittest.TestCase):
             return np.asarray(m.accelerations(0, m.q0, m.u0)[0])
 
         all_at_one = momenta.load(file, control=0.2)
-        one = momenta.load(file, control={"right_knee": 0.2})
+        one = momenta.load(file, control={"knee_right": 0.2})
         self.assertGreater(abs(at(all_at_one) - at(free)).max(), 1)
         self.assertGreater(abs(at(one) - at(free)).max(), 1)
         self.assertGreater(abs(at(one) - at(all_at_one)).max(), 1)
         self.assertEqual(abs(at(momenta.load(file, control={})) - at(momenta.load(file, control=0))).max(), 0)
-        with self.assertRaisesRegex(momenta.SceneError, "actuator 'knee' is not in the file"):
+        with self.assertRaisesRegex(momenta.SceneError, "actuator .knee. is not in the file"):
             momenta.load(file, control={"knee": 1})
         with self.assertRaisesRegex(ValueError, "control are of a robot's file"):
             momenta.load(four_bar().to_toml(), control=1)
