@@ -92,6 +92,13 @@ TEST_F(PageMeshes, OnesThatCannotBeReadAreTold) {
   EXPECT_TRUE(p.meshes.empty());
 }
 
+TEST_F(PageMeshes, LimitsAreInThePicture) {
+  const std::string limits = "limits = [-0.5, 1.25]\n";
+  const auto json = picture_json(picture(read("l.toml", one_body + limits)));
+  EXPECT_EQ(json["bodies"][0]["limits"], nlohmann::json::array({-0.5, 1.25}));
+  EXPECT_FALSE(picture_json(picture(read("n.toml", one_body)))["bodies"][0].contains("limits"));
+}
+
 /// Where the picture has the point (0, 0, 1) of the mesh's file, body axes.
 Vector3d drawn_point(const Picture& p) {
   const VisualSpec& v = p.solids.at(0).visual;
