@@ -4,6 +4,7 @@
 #include "equations/random_tree.h"
 
 #include <gtest/gtest.h>
+#include <momenta/core/kernel/branches/branches.h>
 #include <momenta/core/open_chain.h>
 #include <momenta/core/scene/files/read_scene.h>
 
@@ -195,6 +196,15 @@ TEST(Stops, ActInBranchesOfOneShape) {
       body("b" + std::to_string(3 * leg + k),
            k == 0 ? "trunk" : "b" + std::to_string(3 * leg + k - 1), JointKind::revolute,
            0.15 * (leg + 1));
+  const auto side_by_side = [](const Scene& scene) {
+    const Tree tree = build_tree(scene);
+    const Model<Spatial> model = build_spatial_model(tree, scene);
+    return branches_in_words(build_links(model), 4);
+  };
+  EXPECT_EQ(side_by_side(legs), "");
+  Scene bare_legs = legs;
+  for (JointSpec& j : bare_legs.joints) j.stop_stiffness = j.stop_damping = 0;
+  EXPECT_NE(side_by_side(bare_legs), "");
   OpenChain chain(legs);
   const VectorXd& q = chain.tree().q0;
   VectorXd udot(chain.nv()), bare(chain.nv());
@@ -202,9 +212,7 @@ TEST(Stops, ActInBranchesOfOneShape) {
   VectorXd p = VectorXd::Zero(chain.nv()), qdot(chain.nq()), pdot(chain.nv());
   ASSERT_TRUE(chain.rates(0, q, p, qdot, pdot));  // at rest ṗ = M u̇
   EXPECT_LE((chain.mass_matrix(0, q) * udot - pdot).norm(), 1e-10 * pdot.norm());
-  Scene without = legs;
-  for (JointSpec& j : without.joints) j.stop_stiffness = j.stop_damping = 0;
-  OpenChain free(without);
+  OpenChain free(bare_legs);
   VectorXd less(chain.nv());
   ASSERT_TRUE(free.rates(0, q, p, qdot, less));
   int pushed = 0;

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 #include <momenta/core/scene/files/read_scene.h>
+#include <momenta/dae/kkt/loop_solver.h>
 #include <momenta/dae/study/passed_limits.h>
 #include <momenta/dae/study/run_form.h>
 
@@ -97,6 +98,68 @@ TEST(Stops, BounceWithoutLoss) {
   EXPECT_EQ(result.status, "done");
   EXPECT_LE(result.energy_error_max, 1e-6);
   EXPECT_GT(result.kinetic_energy_max, 10);
+}
+
+// Eight equal arms with a loop each hang on a body that flies: where sweeps take such branches side
+// by side, they must not forget the stops that push each arm.
+TEST(Stops, ActInBranchesWithLoops) {
+  Scene scene;
+  const auto body = [&](const std::string& name, double mass) {
+    BodySpec b;
+    b.name = name;
+    b.mass = mass;
+    b.com = {0.4, 0.1, 0.05};
+    b.inertia = Eigen::Vector3d(0.2, 0.3, 0.25).asDiagonal();
+    scene.bodies.push_back(b);
+  };
+  const auto hinge = [&](const std::string& name, const std::string& parent,
+                         const std::string& child, const Eigen::Vector3d& at, double most) {
+    JointSpec j;
+    j.name = name;
+    j.parent = parent;
+    j.child = child;
+    j.origin_parent = at;
+    j.axis = {0, 0.6, 0.8};
+    j.limits = {-2, -most};
+    j.stop_stiffness = 50;
+    j.stop_damping = 3;
+    scene.joints.push_back(j);
+  };
+  body("trunk", 3);
+  JointSpec flies;
+  flies.name = "flies";
+  flies.kind = JointKind::free;
+  flies.child = "trunk";
+  scene.joints.push_back(flies);
+  for (int i = 0; i < 8; ++i) {
+    const std::string n = std::to_string(i);
+    body("a" + n, 1);
+    body("b" + n, 1);
+    hinge("A" + n, "trunk", "a" + n, {0.1 * i, 0.3, 0}, 0.05 * (i + 1));
+    hinge("B" + n, "a" + n, "b" + n, {1, 0, 0}, 0.02 * (i + 1));
+    LoopSpec rod;
+    rod.name = "L" + n;
+    rod.kind = LoopKind::distance;
+    rod.parent = "trunk";
+    rod.child = "b" + n;
+    rod.origin_parent = {0.1 * i, 1.3, 0};
+    rod.origin_child = {1, 0, 0};
+    rod.length = std::sqrt(5.0);
+    scene.loops.push_back(rod);
+  }
+  const auto accelerations = [](const Scene& of, KktChoice kkt) {
+    const Mechanism mechanism(of, {.kkt = kkt});
+    const auto e = mechanism.evaluation<double>();
+    const auto solver = make_loop_solver(mechanism, *e);
+    Eigen::VectorXd u = Eigen::VectorXd::Zero(mechanism.nv()), udot = u, lambda(mechanism.m());
+    EXPECT_TRUE(solver->acceleration(0, mechanism.tree().q0.data(), u.data(), nullptr, 0, 0,
+                                     udot.data(), lambda.data()));
+    return udot;
+  };
+  const Eigen::VectorXd sweeps = accelerations(scene, KktChoice::sweeps),
+                        dense = accelerations(scene, KktChoice::dense);
+  EXPECT_GT(dense.norm(), 1);
+  EXPECT_LE((sweeps - dense).norm(), 1e-9 * dense.norm());
 }
 
 }  // namespace

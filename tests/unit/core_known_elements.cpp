@@ -150,7 +150,7 @@ TEST_F(KnownElements, KeysHaveTimeAndControls) {
   const std::string text =
       "<mujoco><worldbody><body><joint name='h'/><geom size='1'/></body></worldbody><actuator>"
       "<motor name='p' joint='h'/><motor name='q' joint='h' ctrlrange='-1 1'/></actuator><keyframe>"
-      "<key name='k' time='3' ctrl='2 5'/><key name='short' ctrl='2'/></keyframe></mujoco>";
+      "<key name='k' time='3' ctrl='2 0.5'/><key name='short' ctrl='2'/></keyframe></mujoco>";
   const auto torque = [&](const std::vector<std::string>& controls, const std::string& key) {
     double sum = 0;
     ReadOptions o;
@@ -159,9 +159,9 @@ TEST_F(KnownElements, KeysHaveTimeAndControls) {
     for (const ForceSpec& f : read("k.xml", text, o).forces) sum += f.value;
     return sum;
   };
-  EXPECT_EQ(torque({"p=7"}, "k"), 7 + 1);  // q at 5, clamped
-  EXPECT_EQ(torque({"p=7"}, ""), 7);       // q at 0
-  EXPECT_EQ(torque({"4"}, "k"), 4 + 1);    // both at 4
+  EXPECT_EQ(torque({"p=7"}, "k"), 7 + 0.5);  // q at that of the key
+  EXPECT_EQ(torque({"p=7"}, ""), 7);         // q at 0
+  EXPECT_EQ(torque({"4"}, "k"), 4 + 1);      // both at 4, q clamped
   ReadOptions o;
   o.key = "k";
   EXPECT_EQ(read("k.xml", text, o).remarks,
