@@ -26,7 +26,8 @@ Plan make_plan(const Tree& tree, const Scene& scene, Algebra algebra) {
   for (const auto& b : tree.bodies) {
     plan.quasi_velocities |= b.nq != b.nv;
     plan.rotors += b.rotor != 0;
-    plan.joint_forces |= b.stiffness != 0 || b.damping != 0 || b.torque != 0 || b.friction != 0;
+    plan.joint_forces |= b.stiffness != 0 || b.damping != 0 || b.torque != 0 || b.friction != 0 ||
+                         b.stop_stiffness != 0 || b.stop_damping != 0;
   }
   for (const auto& force : scene.forces) plan.third_sweep |= force.kind != "torque" || !force.law.empty();
   return plan;

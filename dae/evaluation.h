@@ -89,7 +89,7 @@ class Evaluation<double> : public EquationRows<double> {
   virtual double potential(const double* q) = 0;
   /// Power of the forces without potential [W]: dampers, wrenches that have no potential, formulas;
   /// and ∂V/∂t of potentials. After move(u).
-  virtual double dissipated_power(const double* u) = 0;
+  virtual double dissipated_power(const double* q, const double* u) = 0;
   /// How large the forces of formulas are, whether they balance or not [N, N m]. After move().
   virtual double formula_size() = 0;
   /// Of which force a formula is not finite, and which: "file:line:column: force 'motor': law".

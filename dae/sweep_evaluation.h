@@ -99,15 +99,16 @@ class Mechanism::SweepEvaluation final : public SweepRows<Space, double> {
 
   double kinetic() override { return kinetic_energy(w_); }
   double potential(const double* q) override { return potential_energy(w_, q); }
-  double dissipated_power(const double* u) override {
-    // Dampers, friction, body-axes wrenches or torques, formulas: all applied power less that of
-    // the potentials, and what potentials gain with time.
+  double dissipated_power(const double* q, const double* u) override {
+    // Dampers, friction, stops, body-axes wrenches or torques, formulas: all applied power less
+    // that of the potentials, and what potentials gain with time.
     double power = 0;
     for (const auto& b : model_.bodies)
       if (b.nv == 1) {
         power -= b.damping * (u[b.u] * u[b.u]);
-        if (b.has_friction)
-          power -= b.friction * (u[b.u] * u[b.u] / std::hypot(u[b.u], b.friction_rate));
+        if (b.is_curved)
+          power -= b.friction * (u[b.u] * u[b.u] / std::hypot(u[b.u], b.friction_rate)) +
+                   (b.stop.acts() ? stop_loss(b.stop, q[b.q], u[b.u]) : 0);
       }
     if (!model_.has_body_forces()) return power;
     power += bushing_power(w_) + coordinate_spring_power(w_) + formula_power(w_);

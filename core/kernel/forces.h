@@ -69,8 +69,8 @@ S kinetic_energy(const Workspace<Space, S>& w) {
   return 0.5 * twice;
 }
 
-/// V [J]: gravity, springs, joint springs; constant joint torques and constant ground-axes forces
-/// count as potentials −τ q and −F·x. Needs poses with ground positions.
+/// V [J]: gravity, springs, joint springs and stops; constant joint torques and constant
+/// ground-axes forces count as potentials −τ q and −F·x. Needs poses with ground positions.
 template <class Space, class S>
 S potential_energy(const Workspace<Space, S>& w, const S* q) {
   const auto& model = *w.model;
@@ -86,6 +86,7 @@ S potential_energy(const Workspace<Space, S>& w, const S* q) {
     if (b.nv == 1) {
       const S stretch = q[b.q] - b.rest;
       energy += 0.5 * b.stiffness * (stretch * stretch) - b.torque * q[b.q];
+      if (b.stop.acts()) energy += stored_energy(b.stop, q[b.q]);
     }
   }
   for (const auto& spring : model.springs) {

@@ -63,7 +63,7 @@ class DirectionalPass {
 template <class Space>
 bool is_hamiltonian(const Model<Space>& model) {
   for (const auto& b : model.bodies)
-    if (b.nq != b.nv || b.has_friction) return false;
+    if (b.nq != b.nv || b.is_curved) return false;
   for (const auto& spring : model.springs)
     if (spring.damping != 0) return false;
   for (const auto& bushing : model.bushings)

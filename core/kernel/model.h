@@ -3,6 +3,7 @@
 // the forces that act, gravity. Built once, shared by all evaluations, never changed.
 
 #include <momenta/core/expression/expression.h>
+#include <momenta/core/kernel/joint_stop.h>
 #include <momenta/core/kernel/planar.h>
 #include <momenta/core/kernel/spatial.h>
 #include <momenta/core/tree/tree.h>
@@ -33,15 +34,16 @@ struct Model {
     double subtree_mass = 0;  ///< of the body and all it carries [kg]
     double stiffness = 0, rest = 0, damping = 0, torque = 0;
     double friction = 0, friction_rate = 1;  ///< joint_force() in sweeps.h
-    bool has_friction = false;
+    bool is_curved = false;                  ///< its force is not linear: friction, stops
     int sprung = -1;   ///< place in Workspace::sprung, where a spring or signal looks at the joint
     double rotor = 0;  ///< inertia on the joint's rate: rotor.h [kg m² or kg]
     bool has_rotor() const { return rotor != 0; }
     bool has_force() const {
-      return nv == 1 && (stiffness != 0 || damping != 0 || torque != 0 || has_friction);
+      return nv == 1 && (stiffness != 0 || damping != 0 || torque != 0 || is_curved);
     }
     const UserFormula* law = nullptr;  ///< user joints: one of `laws`
     int user = -1;                     ///< and its place among them
+    JointStop stop;
   };
   /// Spring-damper between two points; offset2 is the squared distance across the plane of a planar
   /// scene.

@@ -131,15 +131,18 @@ void momenta_inward(Workspace<Space, S>& w, S* p) {
     if (const auto& b = w.model->bodies[k]; b.has_rotor()) p[b.u] += b.rotor * w.body[k].rotor_rate;
 }
 
-/// Generalised force of a joint's own spring, damper, torque and friction
-/// −friction · u / √(u² + friction_rate²).
+/// Generalised force of a joint's own spring, damper, torque, friction
+/// −friction · u / √(u² + friction_rate²) and stops (joint_stop.h).
 template <class Body, class S>
 S joint_force(const Body& b, const S& q, const S& u) {
   const S force = b.torque - b.stiffness * (q - b.rest) - b.damping * u;
-  if (!b.has_friction) return force;
+  if (!b.is_curved) return force;
   using std::sqrt;
   const S size = sqrt(u * u + S(b.friction_rate * b.friction_rate));
-  return force - b.friction * (u / size);
+  const S rubbed = force - b.friction * (u / size);
+  if constexpr (requires { b.stop; })
+    if (b.stop.acts()) return rubbed + stop_force(b.stop, q, u);
+  return rubbed;
 }
 
 /// Accumulates T*_K, eq. (27), from body[k].T and writes ṗ, eq. (35), with body[k].P = P*_K and the

@@ -33,7 +33,8 @@ void take_joints(const Tree& tree, Model<Space>& model) {
     m.torque = b.torque;
     m.friction = b.nv == 1 ? b.friction : 0;
     m.friction_rate = b.friction_rate;
-    m.has_friction = m.friction != 0;
+    if (b.nv == 1) m.stop = {b.least, b.largest, b.stop_stiffness, b.stop_damping, b.stop_width};
+    m.is_curved = m.friction != 0 || m.stop.acts();
     m.rotor = b.rotor;
     model.has_rotors |= m.has_rotor();
     if (b.kind == JointKind::user) {
@@ -41,7 +42,7 @@ void take_joints(const Tree& tree, Model<Space>& model) {
       m.user = static_cast<int>(model.laws.size());
       model.laws.push_back(b.law);
     }
-    model.has_joint_forces |= m.stiffness != 0 || m.damping != 0 || m.torque != 0 || m.has_friction;
+    model.has_joint_forces |= m.stiffness != 0 || m.damping != 0 || m.torque != 0 || m.is_curved;
     m.subtree_mass += b.mass;
     if (m.parent >= 0)
       model.bodies[static_cast<std::size_t>(m.parent)].subtree_mass += m.subtree_mass;

@@ -29,6 +29,9 @@ bool has_powers(const LoopSpec& loop) {
   return std::any_of(loop.powers.begin(), loop.powers.end(), [](double x) { return x != 0; });
 }
 
+bool has_stops(const JointSpec& joint) {
+  return joint.limits && (joint.stop_stiffness != 0 || joint.stop_damping != 0);
+}
 bool has_rotor(const JointSpec& joint) {
   return std::any_of(joint.rotor_inertia.begin(), joint.rotor_inertia.end(),
                      [](double x) { return x != 0; });

@@ -114,10 +114,17 @@ struct JointSpec {
   /// joints [kg m²], prismatic ones [kg], and of each coordinate of cylindrical, universal and
   /// planar joints; empty: none. On a driven coordinate it has no effect on the motion.
   std::vector<double> rotor_inertia;
-  /// Least and largest q of a revolute, helical [rad] or prismatic [m] joint. They exert no force:
-  /// programs tell when they are passed.
+  /// Least and largest q of a revolute, helical [rad] or prismatic [m] joint. Without stops they
+  /// exert no force: programs tell when they are passed.
   std::optional<std::array<double, 2>> limits;
-  Location at;  ///< where the file has it
+  /// Stops at the limits: beyond one by x the joint is pushed back by a spring stop_stiffness
+  /// [N m/rad or N/m] and a damper stop_damping [N m s/rad or N s/m], both of which grow from 0 at
+  /// the limit to all of it at x = stop_width [rad or m], with a continuous derivative:
+  /// k x²/2w for x < w, then k (x − w/2). Of joints with limits.
+  double stop_stiffness = 0;
+  double stop_damping = 0;   ///< of the stops, at least 0
+  double stop_width = 0.01;  ///< of the stops, w > 0
+  Location at;               ///< where the file has it
 };
 
 /// Size of q of a joint: by its kind, or by its law.
@@ -126,6 +133,8 @@ int coordinates_of(const JointSpec& joint);
 int rates_of(const JointSpec& joint);
 /// Whether a rotor turns with one of its coordinates.
 bool has_rotor(const JointSpec& joint);
+/// Whether its limits push back.
+bool has_stops(const JointSpec& joint);
 
 /// The default direction of a joint. Of the coordinate axes, find the one nearest to `axis` (the
 /// first of equally near ones), take the next in the order x y z x, and make it perpendicular to

@@ -137,6 +137,13 @@ void check_joints(const Scene& scene, const Census& census) {
     require(!joint.limits ||
                 (all_finite(joint.limits->data(), 2) && (*joint.limits)[0] < (*joint.limits)[1]),
             scene, joint.at, who, "limits must be finite, the first below the second [rad or m]");
+    require(all_finite(
+                std::vector<double>{joint.stop_stiffness, joint.stop_damping, joint.stop_width}) &&
+                joint.stop_stiffness >= 0 && joint.stop_damping >= 0 && joint.stop_width > 0,
+            scene, joint.at, who,
+            "stop_stiffness and stop_damping must be finite and >= 0, stop_width finite and > 0");
+    require(joint.limits || (joint.stop_stiffness == 0 && joint.stop_damping == 0), scene, joint.at,
+            who, "stop_stiffness and stop_damping are for joints with limits only");
     require(joint.rotor_inertia.empty() || joint.rotor_inertia.size() == rotors_of(joint.kind),
             scene, joint.at, who,
             "rotor_inertia must be empty or of one number for each coordinate of a revolute, "

@@ -191,6 +191,13 @@ class TreeBuilder {
       b.damping = joint.damping;
       b.friction = joint.friction;
       b.friction_rate = joint.friction_rate;
+      if (has_stops(joint)) {
+        b.least = (*joint.limits)[0];
+        b.largest = (*joint.limits)[1];
+        b.stop_stiffness = joint.stop_stiffness;
+        b.stop_damping = joint.stop_damping;
+        b.stop_width = joint.stop_width;
+      }
       if (b.nv == 1 && !joint.rotor_inertia.empty())
         b.rotor = joint.rotor_inertia[static_cast<std::size_t>(part.coordinate)];
 
@@ -215,13 +222,15 @@ class TreeBuilder {
 
   /// A driven joint moves as it is told; a force along it would change nothing but the drive.
   void refuse_forces(const JointSpec& joint) const {
-    bool forced = joint.stiffness != 0 || joint.damping != 0 || joint.friction != 0;
+    bool forced =
+        joint.stiffness != 0 || joint.damping != 0 || joint.friction != 0 || has_stops(joint);
     for (const auto& force : scene_.forces)
       forced |= force.kind == "torque" && force.joint == joint.name;
     if (forced)
-      throw SceneError(scene_.where(joint.at) + "joint '" + joint.name +
-                       "' is driven, so a spring, damper, friction or torque on it has no effect; "
-                       "expected none");
+      throw SceneError(
+          scene_.where(joint.at) + "joint '" + joint.name +
+          "' is driven, so a spring, damper, friction, stop or torque on it has no effect; "
+          "expected none");
   }
 
   const Scene& scene_;

@@ -46,6 +46,11 @@ struct Tree {
     double damping = 0;            ///< likewise
     double friction = 0;           ///< likewise
     double friction_rate = 0.1;    ///< likewise
+    double least = 0;              ///< limit at which a stop begins
+    double largest = 0;            ///< likewise
+    double stop_stiffness = 0;     ///< as in JointSpec; 0 without limits
+    double stop_damping = 0;       ///< likewise
+    double stop_width = 0.01;      ///< likewise
     double torque = 0;             ///< constant generalised force on such a joint [N m or N]
     double rotor = 0;              ///< inertia on the rate of such a joint [kg m² or kg]
     std::shared_ptr<const JointFormula> law;  ///< of a user joint

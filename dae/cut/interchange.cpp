@@ -60,7 +60,8 @@ int rows_of(JointKind kind, bool planar) {
 Sayings::Sayings(const Scene& scene, const std::vector<std::string>& keep)
     : kept(keep.begin(), keep.end()) {
   for (const JointSpec& joint : scene.joints)
-    if (joint.stiffness != 0 || joint.damping != 0 || joint.friction != 0 || has_rotor(joint))
+    if (joint.stiffness != 0 || joint.damping != 0 || joint.friction != 0 || has_stops(joint) ||
+        has_rotor(joint))
       of_coordinates.insert(joint.name);
   for (const DriveSpec& drive : scene.drives)
     (drive.joint.empty() ? driven_loops.insert(drive.loop) : of_coordinates.insert(drive.joint));

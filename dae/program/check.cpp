@@ -4,6 +4,7 @@
 #include <momenta/dae/cut/integrated_scene.h>
 #include <momenta/dae/cut/recut.h>
 #include <momenta/dae/measure/rank.h>
+#include <momenta/dae/study/passed_limits.h>
 
 #include <cstdio>
 #include <map>
@@ -11,7 +12,6 @@
 
 #include "cut_words.h"
 #include "options.h"
-#include "passed_limits.h"
 #include "reach_words.h"
 
 namespace momenta::program {
@@ -233,9 +233,9 @@ int check(const Options& o) {
     std::printf("  assembled with joints moved by at most %.3g from the guess%s%s\n", a.moved,
                 a.branch.empty() ? "" : ": ", a.branch.c_str());
   if (!a.residue.empty()) std::printf("  %s\n", a.residue.c_str());
-  PassedLimits limits(*mechanism);
-  limits.look(0, a.start.q.data());
-  for (const std::string& sentence : limits.sentences()) std::printf("  %s\n", sentence.c_str());
+  std::vector<PassedLimit> passed;
+  PassedLimits(*mechanism).look(0, a.start.q.data(), passed);
+  for (const std::string& sentence : in_words(passed)) std::printf("  %s\n", sentence.c_str());
   if (ranked)
     print_rank(*mechanism, rank);
   else if (mechanism->m() > 0)

@@ -49,10 +49,13 @@ std::string name_and_type(const CLI::Option& o) {
 }
 
 /// Options that have one row: the text of the first speaks of both.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 3> one_row{{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 6> one_row{{
     {"--project", "--no-project"},
     {"--baumgarte-alpha", "--baumgarte-beta"},
     {"--rtol", "--atol"},
+    {"--out", "--mesh-bytes"},
+    {"--control", "--key"},
+    {"--json", "--quiet"},
 }};
 
 /// The option in the row of this one; null: none.
@@ -61,16 +64,18 @@ const CLI::Option* beside(const CLI::App& verb, const CLI::Option& option) {
     if (shown_name(option) == first) return verb.get_option_no_throw(std::string(second));
   return nullptr;
 }
-bool is_beside(const CLI::Option& option) {
-  return std::any_of(one_row.begin(), one_row.end(),
-                     [&](const auto& pair) { return shown_name(option) == pair.second; });
+bool is_beside(const CLI::App& verb, const CLI::Option& option) {
+  return std::any_of(one_row.begin(), one_row.end(), [&](const auto& pair) {
+    return shown_name(option) == pair.second &&
+           verb.get_option_no_throw(std::string(pair.first)) != nullptr;
+  });
 }
 
 std::string help_of_verb(const CLI::App& verb) {
   std::string out = wrapped("Usage: ", "momenta " + synopsis_of(verb), 7) +
                     wrapped("", verb.get_description() + ".", 0) + "\n";
   for (const CLI::Option* o : verb.get_options()) {
-    if (o == verb.get_help_ptr() || is_beside(*o)) continue;
+    if (o == verb.get_help_ptr() || is_beside(verb, *o)) continue;
     const CLI::Option* other = beside(verb, *o);
     out += row(name_and_type(*o) + (other ? ", " + name_and_type(*other) : ""), shown_text(*o));
   }

@@ -143,6 +143,7 @@ int answer(int argc, char** argv) {
     view_verb->remove_option(view_verb->get_option(unused));
   view_verb->add_option("--out", o.out, "Directory for index.html (default: standard output)")
       ->type_name("DIR");
+  add_mesh_bytes(*view_verb, o);
   CLI::App* stress_app = app.add_subcommand(
       "stress", "Stress tests of a scene, or built-in ones: which form fails where");
   stress_app->footer("Example: momenta stress examples/four_bar/scene.toml --along size --end 1");

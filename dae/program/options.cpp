@@ -52,11 +52,13 @@ void add_scene_file(CLI::App& verb, Options& o, bool required) {
   verb.add_option("--set", o.set, "PLACE=NUMBER in place of the scene's; repeatable")
       ->type_name("SETTING")
       ->allow_extra_args(false);
-  verb.add_option("--control", o.reading.controls, "Of an MJCF: its actuators act, at NAME=VALUE")
+  verb.add_option("--control", o.reading.controls, "Of an MJCF: actuators act; start at a <key>")
       ->type_name("CONTROL")
       ->allow_extra_args(false);
   verb.add_option("--key", o.reading.key, "Of an MJCF: start at this <key>, by name or number")
       ->type_name("KEY");
+  verb.add_option("--stops", o.stops, "Limits push back: stiffness, damping (SI units)")
+      ->type_name("K[,C]");
   verb.add_option("--at", o.at, "Start values: JSON {\"q\": {..}, \"v\": {..}}, or its file")
       ->type_name("STATE");
 }
@@ -70,7 +72,7 @@ void add_scene(CLI::App& verb, Options& o) {
   one_of(verb.add_option("--cut", o.cut, "What runs integrate (default: auto, the least work)"),
          {"auto", "scene"});
   add_level(verb, o);
-  verb.add_flag("--json", o.json, "One JSON document on standard output");
+  verb.add_flag("--json", o.json, "JSON on standard output; no progress, no table");
   verb.add_flag("--quiet", o.quiet, "No progress, no table");
 }
 
@@ -121,8 +123,16 @@ void add_run_options(CLI::App& verb, Options& o, const char* cpu_limit) {
   add_results(verb, o);
 }
 
+void add_mesh_bytes(CLI::App& verb, Options& o) {
+  verb.add_option("--mesh-bytes", o.mesh_bytes, "Of meshes in a page; 0: none")
+      ->type_name("N")
+      ->capture_default_str();
+}
+
 void add_results(CLI::App& verb, Options& o) {
-  verb.add_option("--out", o.out, "Directory for results")->type_name("DIR");
+  verb.add_option("--out", o.out, "Directory for results; bytes of meshes in a page")
+      ->type_name("DIR");
+  add_mesh_bytes(verb, o);
   one_of(verb.add_option("--figures", o.figures, "Every chart for papers, in DIR/figures"),
          {"svg"});
 }
@@ -145,8 +155,33 @@ std::vector<Setting> settings_of(const Options& o) {
   return settings;
 }
 
+namespace {
+
+/// --stops. @throws std::invalid_argument
+std::optional<std::array<double, 2>> stops_of(const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  std::array<double, 2> stops{0, 0};
+  const char *at = text.data(), *end = at + text.size();
+  bool good = true;
+  for (std::size_t i = 0; i < 2 && good && at != nullptr; ++i) {
+    const auto [stop, error] = std::from_chars(at, end, stops[i]);
+    good = error == std::errc{} && stops[i] >= 0 && std::isfinite(stops[i]) &&
+           (stop == end || (*stop == ',' && i == 0));
+    at = good && stop != end ? stop + 1 : nullptr;
+  }
+  if (!good || !(stops[0] > 0))
+    throw std::invalid_argument("--stops '" + text +
+                                "': expected STIFFNESS or STIFFNESS,DAMPING, numbers >= 0, as in "
+                                "1e4,100");
+  return stops;
+}
+
+}  // namespace
+
 Scene read(const Options& o) {
-  Scene scene = read_scene(o.scene, o.reading, settings_of(o));
+  ReadOptions reading = o.reading;
+  reading.stops = stops_of(o.stops);
+  Scene scene = read_scene(o.scene, reading, settings_of(o));
   if (!o.at.empty()) start_at(o.at, scene);
   if (!o.quiet)
     for (const std::string& remark : scene.remarks)
@@ -195,6 +230,12 @@ std::unique_ptr<Reference> load_reference(const Options& o, const Mechanism& mec
   return reference;
 }
 
+void show(StudyResult& study, const Options& o, const Mechanism& mechanism,
+          const Assembly& assembly) {
+  for (const std::string& remark : momenta::show(study, mechanism, assembly, o.mesh_bytes))
+    if (!o.quiet) std::fprintf(stderr, "momenta: %s: %s\n", o.scene.c_str(), remark.c_str());
+}
+
 void describe(StudyResult& study, const Options& o, const Mechanism& mechanism,
               const Assembly& assembly) {
   study.scene = mechanism.scene().name;
@@ -204,7 +245,7 @@ void describe(StudyResult& study, const Options& o, const Mechanism& mechanism,
   study.plan = mechanism.plan_lines();
   if (!study.runs.empty() && !study.runs.front().integrated.empty())
     study.plan.emplace_back("integrated", study.runs.front().integrated);
-  if (!o.out.empty()) show(study, mechanism, assembly);
+  if (!o.out.empty()) show(study, o, mechanism, assembly);
   study.environment = environment();
   if (interrupted() && !study.runs.empty() && study.runs.back().status != "done")
     study.runs.back().reason = "interrupted";

@@ -6,6 +6,7 @@
 #include <momenta/dae/report/atomic_write.h>
 #include <momenta/dae/report/figure.h>
 #include <momenta/dae/report/json.h>
+#include <momenta/dae/report/meshes.h>
 #include <momenta/dae/report/trajectory_file.h>
 #include <momenta/dae/study/journal.h>
 #include <momenta/dae/study/run_form.h>
@@ -25,6 +26,7 @@ struct Options {
   std::filesystem::path scene;
   ReadOptions reading;           ///< what a URDF does not say
   std::vector<std::string> set;  ///< numbers in place of the scene's: PLACE=NUMBER
+  std::string stops;             ///< at limits: STIFFNESS[,DAMPING]; empty: none
   std::string at;                ///< start values in place of the scene's; empty: its own
   std::string algebra = "auto", kkt = "auto", cut = "auto";
   std::string level;  ///< of the kernels; empty: the machine's best, or MOMENTA_LEVEL
@@ -39,8 +41,9 @@ struct Options {
   std::optional<double> cpu_limit;
   std::string timing = "rounds";
   std::filesystem::path reference, out;
-  std::string figures;       ///< svg or none
-  std::string data = "csv";  ///< of run: csv or hdf5
+  std::string figures;                        ///< svg or none
+  std::string data = "csv";                   ///< of run: csv or hdf5
+  std::size_t mesh_bytes = usual_mesh_bytes;  ///< of a page
   bool json = false, quiet = false;
 };
 
@@ -53,6 +56,8 @@ void add_timing(CLI::App& verb, Options& o);
 /// `cpu_limit`: that of a run of this verb, in words.
 void add_run_options(CLI::App& verb, Options& o, const char* cpu_limit = "none");
 void add_results(CLI::App& verb, Options& o);
+/// Of verbs that write pages.
+void add_mesh_bytes(CLI::App& verb, Options& o);
 
 /// --set. @throws std::invalid_argument
 std::vector<Setting> settings_of(const Options& o);
@@ -68,6 +73,10 @@ std::unique_ptr<Reference> load_reference(const Options& o, const Mechanism& mec
 /// What a study tells of its scene, its command and the machine; and that it was interrupted.
 void describe(StudyResult& study, const Options& o, const Mechanism& mechanism,
               const Assembly& assembly);
+
+/// The picture of a study, as show() makes it, and what it leaves out told unless --quiet is given.
+void show(StudyResult& study, const Options& o, const Mechanism& mechanism,
+          const Assembly& assembly);
 
 /// Prints what its runs integrated in place of the scene as written, if that is another one.
 void print_integrated(const StudyResult& study);

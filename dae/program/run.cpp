@@ -5,6 +5,7 @@
 #include <momenta/dae/report/part_file.h>
 #include <momenta/dae/report/stiffness_in_words.h>
 #include <momenta/dae/report/table.h>
+#include <momenta/dae/study/passed_limits.h>
 #include <momenta/dae/study/run_form.h>
 #include <momenta/dae/study/timing.h>
 #include <momenta/dae/text/number_text.h>
@@ -15,7 +16,6 @@
 #include <stdexcept>
 
 #include "kept_run.h"
-#include "passed_limits.h"
 
 namespace momenta::program {
 namespace {
@@ -155,11 +155,7 @@ int run(const Options& o) {
   RunFiles files(o, *mechanism, s);
   // What the page draws is a part of it; memory does not grow with the trajectory.
   if (o.data == "hdf5") request.keep_every = 1 + s.samples / most_drawn;
-  PassedLimits limits(*mechanism);
-  request.on_row = [&](const std::vector<double>& row) {
-    limits.look(row[0], row.data() + 1);
-    return files.write(row);
-  };
+  request.on_row = [&](const std::vector<double>& row) { return files.write(row); };
   request.from = files.from();
   if (!o.out.empty()) request.between_steps = [&](const auto& make) { files.note(make); };
   ProgressLine line(o.quiet);
@@ -204,7 +200,8 @@ int run(const Options& o) {
       std::printf("\n%s\n", stiff.c_str());
     if (!a.branch.empty()) std::printf("Started from %s\n", a.branch.c_str());
   }
-  for (const std::string& sentence : o.quiet ? std::vector<std::string>{} : limits.sentences())
+  for (const std::string& sentence :
+       o.quiet ? std::vector<std::string>{} : in_words(result.passed_limits))
     std::fprintf(stderr, "momenta: %s\n", sentence.c_str());
   if (result.status != "done")
     std::fprintf(stderr, "momenta: the run stopped: %s\n", result.reason.c_str());

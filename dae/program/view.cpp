@@ -14,7 +14,7 @@ int view(const Options& o) {
   const Assembly a = assemble(*mechanism);
   StudyResult study;
   describe(study, o, *mechanism, a);
-  if (o.out.empty()) show(study, *mechanism, a);
+  if (o.out.empty()) show(study, o, *mechanism, a);
   const std::string page = view_page(study, still_words(*mechanism, a));
   if (o.out.empty()) {
     std::fputs(page.c_str(), stdout);

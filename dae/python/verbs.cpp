@@ -14,7 +14,10 @@
 #include <momenta/dae/study/environment.h>
 #include <momenta/dae/study/state_input.h>
 
+#include <array>
 #include <atomic>
+#include <cmath>
+#include <optional>
 
 #include "progress.h"
 #include "run_arguments.h"
@@ -23,6 +26,18 @@ namespace momenta::python {
 namespace {
 
 using Names = std::vector<std::string>;
+using Numbers = std::vector<std::pair<std::string, double>>;
+using Stops = std::optional<std::array<double, 2>>;
+
+std::vector<Setting> settings_from(const Numbers& set) {
+  std::vector<Setting> settings;
+  for (const auto& [place, value] : set) {
+    if (!std::isfinite(value))
+      throw py::value_error("set '" + place + "': expected a finite number");
+    settings.push_back({place, value});
+  }
+  return settings;
+}
 
 /// `text`: the TOML of the scene; empty where it was in another format.
 BenchPtr ready(Scene scene, const std::string& text, const std::string& at,
@@ -114,19 +129,25 @@ void bind_verbs(py::module_& module) {
   module.def(
       "read",
       [](const std::string& file, const std::string& loops, bool free_root, const std::string& key,
-         const std::string& at, const std::string& algebra, const std::string& kkt,
-         const std::string& cut) {
-        return ready(read_scene(file, {loops, free_root, key, {}}),
-                     is_toml(file) ? reading::text_of(file) : "", at, algebra, kkt, cut);
+         const Names& controls, const Stops& stops, const Numbers& set, const std::string& at,
+         const std::string& algebra, const std::string& kkt, const std::string& cut) {
+        // With numbers set, or stops, the text of the file is another scene.
+        const bool as_written = set.empty() && !stops && is_toml(file);
+        return ready(read_scene(file, {loops, free_root, key, controls, stops}, settings_from(set)),
+                     as_written ? reading::text_of(file) : "", at, algebra, kkt, cut);
       },
-      "file"_a, "loops"_a, "free_root"_a, "key"_a, "at"_a, "algebra"_a, "kkt"_a, "cut"_a);
+      "file"_a, "loops"_a, "free_root"_a, "key"_a, "controls"_a, "stops"_a, "set"_a, "at"_a,
+      "algebra"_a, "kkt"_a, "cut"_a);
   module.def(
       "parse",
-      [](const std::string& text, const std::string& name, const std::string& at,
-         const std::string& algebra, const std::string& kkt, const std::string& cut) {
-        return ready(parse_scene(text, name), text, at, algebra, kkt, cut);
+      [](const std::string& text, const std::string& name, const Stops& stops, const Numbers& set,
+         const std::string& at, const std::string& algebra, const std::string& kkt,
+         const std::string& cut) {
+        Scene scene = parse_scene(text, name, settings_from(set));
+        if (stops) stop_at_limits(scene, *stops);
+        return ready(std::move(scene), set.empty() && !stops ? text : "", at, algebra, kkt, cut);
       },
-      "text"_a, "name"_a, "at"_a, "algebra"_a, "kkt"_a, "cut"_a);
+      "text"_a, "name"_a, "stops"_a, "set"_a, "at"_a, "algebra"_a, "kkt"_a, "cut"_a);
   module.def("toml_of", &toml_of, "mechanism"_a);
   module.def(
       "evaluate",

@@ -97,6 +97,13 @@ Json summary_json(const RunResult& run, const Environment& environment) {
   for (const auto& u : run.undetermined)
     json["undetermined"].push_back(
         {{"column", u.column}, {"samples", u.samples}, {"from", u.from}, {"to", u.to}});
+  json["passed_limits"] = Json::array();
+  for (const PassedLimit& p : run.passed_limits)
+    json["passed_limits"].push_back({{"joint", p.joint},
+                                     {"limits", {p.least, p.largest}},
+                                     {"since", p.since},
+                                     {"farthest", p.farthest},
+                                     {"farthest_at", p.farthest_at}});
   json["environment"] = environment_json(environment);
   return json;
 }

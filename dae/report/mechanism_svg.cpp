@@ -1,18 +1,19 @@
-// The mechanism as a figure: the eye of the pages (page/camera.js), lines for solids.
-//
-//   in the plane  x = s e₁·r, y = −s e₂·r;   in space  x = f a·d/(c·d), y = −f b·d/(c·d),  d = r −
-//   eye
-//
+// The mechanism as a figure: solids, bars where a body has none, signs of joints and loops, names.
 // What is far is drawn first.
 
 #include <momenta/dae/report/figure.h>
+#include <momenta/dae/report/figure_eye.h>
+#include <momenta/dae/report/figure_names.h>
+#include <momenta/dae/report/meshes.h>
+#include <momenta/dae/report/solid_faces.h>
 #include <momenta/dae/report/svg.h>
 #include <momenta/dae/study/motion.h>
 #include <momenta/dae/text/number_text.h>
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
+#include <cstdio>
+#include <numbers>
 
 namespace momenta {
 namespace {
@@ -21,68 +22,8 @@ using Eigen::Isometry3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double picture_width = 560, most_height = 480, margin = 48;
 constexpr const char *body_colour = "#8fa3bb", *rim = "#3c4653", *gap_colour = "#d55e00",
                      *dark = "#17191d";
-
-struct Projected {
-  Vector2d at;
-  double depth, scale;  ///< scale: pixels per metre there
-};
-
-class Eye {
- public:
-  Eye(const Picture& picture, const std::vector<Vector3d>& points) : planar_(picture.planar) {
-    Vector3d low = Vector3d::Constant(INFINITY), high = -low;
-    for (const Vector3d& p : points) {
-      const Vector3d c = picture.view.transpose() * p;
-      low = low.cwiseMin(c);
-      high = high.cwiseMax(c);
-    }
-    if (points.empty()) low = high = Vector3d::Zero();
-    const Vector3d middle = 0.5 * (low + high);
-    const double size = std::max({(high - low).maxCoeff(), 0.5 * picture.length, 1e-9});
-    centre_ = picture.view * middle;
-    const double inner_width = picture_width - 2 * margin, inner_height = most_height - 2 * margin;
-    if (planar_) {
-      const double across = high.x() - low.x() > 0 ? high.x() - low.x() : size,
-                   along = high.y() - low.y() > 0 ? high.y() - low.y() : size;
-      scale_ = std::min(inner_width / across, inner_height / along);
-      height_ = std::max(180.0, along * scale_ + 2 * margin);
-      axes_ = picture.view;
-      return;
-    }
-    constexpr double yaw = 0.62, pitch = 0.42, focal = 2.6;
-    double radius = 0;
-    for (const Vector3d& p : points) radius = std::max(radius, (p - centre_).norm());
-    if (!(radius > 0)) radius = size;
-    const Vector3d right = picture.view.col(0), up = picture.view.col(1),
-                   toward = picture.view.col(2);
-    const Vector3d ahead = -std::sin(yaw) * std::cos(pitch) * right - std::sin(pitch) * up -
-                           std::cos(yaw) * std::cos(pitch) * toward;
-    axes_.col(0) = std::cos(yaw) * right - std::sin(yaw) * toward;
-    axes_.col(1) = axes_.col(0).cross(ahead);
-    axes_.col(2) = ahead;
-    height_ = most_height;
-    scale_ = focal * inner_height / 2;
-    eye_ = centre_ - 1.05 * focal * radius * ahead;
-  }
-
-  Projected project(const Vector3d& p) const {
-    const Vector3d d = axes_.transpose() * (p - (planar_ ? centre_ : eye_));
-    const double scale = planar_ ? scale_ : scale_ / d.z();
-    return {Vector2d(picture_width / 2 + d.x() * scale, height_ / 2 - d.y() * scale),
-            planar_ ? -d.z() : d.z(), scale};
-  }
-  double height() const { return height_; }
-  bool planar() const { return planar_; }
-
- private:
-  bool planar_;
-  Vector3d centre_ = Vector3d::Zero(), eye_ = Vector3d::Zero();
-  Eigen::Matrix3d axes_ = Eigen::Matrix3d::Identity();
-  double scale_ = 1, height_ = most_height;
-};
 
 /// A thing to be drawn, the farthest first.
 struct Item {
@@ -142,11 +83,30 @@ Vector3d corner(const Picture::Body& body, int i) {
                              (i & 4) != 0 ? half.z() : -half.z());
 }
 
+/// Bodies that are drawn by solids of their own.
+std::vector<bool> with_solids(const Picture& picture) {
+  std::vector<bool> seen(picture.bodies.size(), false);
+  for (const Picture::Solid& solid : picture.solids)
+    if (solid.body >= 0 && (solid.visual.kind != "mesh" || solid.mesh >= 0))
+      seen[static_cast<std::size_t>(solid.body)] = true;
+  return seen;
+}
+
 /// Everything that has to be within the picture, ground axes.
 std::vector<Vector3d> extent(const Picture& picture, const std::vector<Isometry3d>& at) {
   std::vector<Vector3d> points;
+  const std::vector<bool> solid = with_solids(picture);
+  for (const Picture::Solid& s : picture.solids)
+    if (s.body >= 0)
+      for (const Face& face : faces_of(picture, s))
+        for (const Vector3d& corner : face)
+          points.push_back(at[static_cast<std::size_t>(s.body)] * corner);
   for (std::size_t k = 0; k < at.size(); ++k) {
     const Picture::Body& body = picture.bodies[k];
+    if (solid[k]) {
+      points.push_back(at[k] * body.at_child);
+      continue;
+    }
     for (const Vector3d& end : body.ends) points.push_back(at[k] * end);
     for (int i = 0; i < 8 && body.shape.kind == "box"; ++i)
       points.push_back(at[k] * corner(body, i));
@@ -159,9 +119,17 @@ std::vector<Vector3d> extent(const Picture& picture, const std::vector<Isometry3
         points.push_back(at[k] * (body.com + s * body.shape.size.x() * body.shape.axis));
     if (body.parent < 0 && body.joint_kind != "free") points.push_back(body.at_parent);
   }
-  for (const auto* pairs : {&picture.loops, &picture.springs})
-    for (const Picture::Pair& pair : *pairs)
-      if (pair.parent < 0) points.push_back(pair.at_parent);
+  for (const Picture::Pair& loop : picture.loops)
+    if (loop.parent < 0) points.push_back(loop.at_parent);
+  // The ground's end of a spring, unless it is so far away that the mechanism would be a dot.
+  Vector3d low = Vector3d::Constant(INFINITY), high = -low;
+  for (const Vector3d& p : points) low = low.cwiseMin(p), high = high.cwiseMax(p);
+  const double reach = points.empty() ? INFINITY : 0.5 * (high - low).norm();
+  for (const Picture::Pair& spring : picture.springs)
+    if (const Vector3d& p = spring.at_parent;
+        spring.parent < 0 && (points.empty() || ((p.array() > low.array() - reach).all() &&
+                                                 (p.array() < high.array() + reach).all())))
+      points.push_back(p);
   return points;
 }
 
@@ -178,7 +146,7 @@ double usual_length(const Picture& picture) {
 }
 
 void add_body(std::vector<Item>& items, const Picture::Body& body, const Isometry3d& at,
-              const Eye& eye, double width) {
+              const FigureEye& eye, double width) {
   const auto project = [&](const Vector3d& p) { return eye.project(at * p); };
   const auto add_bar = [&](const Vector3d& a, const Vector3d& b, double metres) {
     // In pieces, each at its own depth.
@@ -229,29 +197,66 @@ void add_body(std::vector<Item>& items, const Picture::Body& body, const Isometr
   }
 }
 
+/// A colour of eight bits each, darker by less light.
+std::string shaded(const std::optional<Vector3d>& colour, double light) {
+  const Vector3d base = colour.value_or(Vector3d(0x8f, 0xa3, 0xbb) / 255);
+  char hex[8];
+  const auto part = [&](int i) {
+    return static_cast<unsigned>(std::lround(255 * std::min(1.0, base[i] * (0.55 + 0.6 * light))));
+  };
+  std::snprintf(hex, sizeof hex, "#%02x%02x%02x", part(0) & 255U, part(1) & 255U, part(2) & 255U);
+  return hex;
+}
+
+/// The faces of a solid that are seen.
+void add_solid(std::vector<Item>& items, const Picture& picture, const Picture::Solid& solid,
+               const Isometry3d& at, const FigureEye& eye) {
+  for (const Face& face : faces_of(picture, solid)) {
+    Vector3d outward = Vector3d::Zero();  // of any polygon, degenerate corners too
+    for (std::size_t i = 0; i < face.size(); ++i)
+      outward += face[i].cross(face[(i + 1) % face.size()]);
+    outward = at.linear() * outward.normalized();
+    if (!outward.allFinite() || !eye.sees(at * face[0], outward)) continue;
+    std::string points;
+    double depth = 0;
+    for (const Vector3d& corner : face) {
+      const Projected p = eye.project(at * corner);
+      points += (points.empty() ? "" : " ") + svg::number(p.at.x()) + "," + svg::number(p.at.y());
+      depth += p.depth / static_cast<double>(face.size());
+    }
+    const std::string fill = shaded(solid.visual.colour, eye.light(outward));
+    items.push_back({depth, svg::element("polygon", {{"points", points},
+                                                     {"fill", fill},
+                                                     {"stroke", fill},
+                                                     {"stroke-width", "0.6"},
+                                                     {"stroke-linejoin", "round"}})});
+  }
+}
+
 }  // namespace
 
-std::string mechanism_svg(const Picture& picture, const Motion::Frame& frame) {
+std::string mechanism_svg(const Picture& whole, const Motion::Frame& frame) {
+  constexpr std::size_t mesh_bytes = 24'000;  // some 200 kB of polygons
+  Picture picture = whole;
+  coarsen_meshes(picture, mesh_bytes);
   const std::vector<Isometry3d> at = places(picture, frame);
-  const Eye eye(picture, extent(picture, at));
+  const FigureEye eye(picture, extent(picture, at));
   const auto point = [&](int body, const Vector3d& p) -> Vector3d {
     return body < 0 ? p : Vector3d(at[static_cast<std::size_t>(body)] * p);
   };
   const double width = 0.1 * usual_length(picture), nearer = picture.planar ? 1e-9 : 1.2 * width;
   std::vector<Item> items;
-  std::string names;
+  FigureNames names(figure_width, eye.height());
   const bool named = picture.bodies.size() + picture.loops.size() <= 16;
   const auto name = [&](const Projected& p, const std::string& words) {
-    if (!named) return;
-    names += svg::text(p.at.x() + 10, p.at.y() - 9, words, "start",
-                       {{"stroke", "#ffffff"},
-                        {"stroke-width", "4"},
-                        {"stroke-linejoin", "round"},
-                        {"paint-order", "stroke"}});
+    if (named) names.add(p.at, words);
   };
+  const std::vector<bool> solid = with_solids(picture);
+  for (const Picture::Solid& s : picture.solids)
+    if (s.body >= 0) add_solid(items, picture, s, at[static_cast<std::size_t>(s.body)], eye);
   for (std::size_t k = 0; k < at.size(); ++k) {
     const Picture::Body& body = picture.bodies[k];
-    add_body(items, body, at[k], eye, width);
+    if (!solid[k]) add_body(items, body, at[k], eye, width);
     if (body.joint_kind == "free") continue;
     const Projected p = eye.project(at[k] * body.at_child);
     items.push_back({p.depth - nearer,
@@ -278,10 +283,10 @@ std::string mechanism_svg(const Picture& picture, const Motion::Frame& frame) {
                    [](const Item& a, const Item& b) { return a.depth > b.depth; });
   std::string inside;
   for (const Item& item : items) inside += item.markup;
-  return svg::document(picture_width, eye.height(), "The mechanism",
+  return svg::document(figure_width, eye.height(), "The mechanism",
                        std::to_string(picture.bodies.size()) + " bodies, " +
                            std::to_string(picture.loops.size()) + " loops",
-                       inside + names);
+                       inside + names.markup());
 }
 
 }  // namespace momenta

@@ -43,9 +43,13 @@ double five_digits(double x) {
 }
 Json solids_of(const Picture& picture) {
   Json all = Json::array();
-  for (const auto& [body, v] : picture.solids) {
-    if (v.kind == "mesh") continue;  // no reader here gives its triangles
-    Json solid{{"body", body}, {"kind", v.kind}, {"size", numbers_of(v.size)}};
+  for (const auto& [body, v, mesh] : picture.solids) {
+    if (v.kind == "mesh" && mesh < 0) continue;
+    Json solid{{"body", body}, {"kind", v.kind}};
+    if (v.kind == "mesh")
+      solid["mesh"] = mesh;
+    else
+      solid["size"] = numbers_of(v.size);
     if (!v.position.isZero()) solid["at"] = numbers_of(v.position);
     const Eigen::Quaterniond& r = v.rotation;
     if (!r.vec().isZero())
@@ -64,23 +68,6 @@ Json solids_of(const Picture& picture) {
   }
   return all;
 }
-Json couplers_of(const Picture& picture) {
-  Json all = Json::array();
-  for (const Picture::Coupler& c : picture.couplers)
-    all.push_back({{"name", c.name}, {"bodies", c.bodies}, {"ratios", c.ratios}});
-  return all;
-}
-Json loads_of(const Picture& picture) {
-  Json all = Json::array();
-  for (const Picture::Load& l : picture.loads)
-    all.push_back({{"body", l.body},
-                   {"at", numbers_of(l.at)},
-                   {"force", numbers_of(l.force)},
-                   {"torque", numbers_of(l.torque)},
-                   {"in_body", l.in_body_axes}});
-  return all;
-}
-
 std::string base64(const std::vector<std::int16_t>& numbers) {
   static constexpr char digits[] =
       "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -105,6 +92,46 @@ std::int16_t part_of(double x, double whole) {
   const double part = whole > 0 ? std::round(whole_short * x / whole) : 0;
   return static_cast<std::int16_t>(std::clamp(part, -whole_short, whole_short));
 }
+/// Points as three shorts, in parts of `scale` from the middle; corners as three unsigned shorts.
+Json meshes_of(const Picture& picture) {
+  Json all = Json::array();
+  for (const Picture::Triangles& mesh : picture.meshes) {
+    Eigen::Vector3d low = Eigen::Vector3d::Constant(INFINITY), high = -low;
+    for (const Eigen::Vector3d& p : mesh.points) low = low.cwiseMin(p), high = high.cwiseMax(p);
+    const Eigen::Vector3d middle = mesh.points.empty() ? low.setZero() : 0.5 * (low + high);
+    double scale = 0;
+    for (const Eigen::Vector3d& p : mesh.points)
+      scale = std::max(scale, (p - middle).lpNorm<Eigen::Infinity>());
+    std::vector<std::int16_t> points, corners;
+    for (const Eigen::Vector3d& p : mesh.points)
+      for (Eigen::Index i = 0; i < 3; ++i) points.push_back(part_of(p[i] - middle[i], scale));
+    for (const auto& corner : mesh.corners)
+      for (const std::uint32_t c : corner)
+        corners.push_back(static_cast<std::int16_t>(static_cast<std::uint16_t>(c)));
+    all.push_back({{"middle", numbers_of(middle)},
+                   {"scale", seven_digits(scale)},
+                   {"points", base64(points)},
+                   {"corners", base64(corners)}});
+  }
+  return all;
+}
+Json couplers_of(const Picture& picture) {
+  Json all = Json::array();
+  for (const Picture::Coupler& c : picture.couplers)
+    all.push_back({{"name", c.name}, {"bodies", c.bodies}, {"ratios", c.ratios}});
+  return all;
+}
+Json loads_of(const Picture& picture) {
+  Json all = Json::array();
+  for (const Picture::Load& l : picture.loads)
+    all.push_back({{"body", l.body},
+                   {"at", numbers_of(l.at)},
+                   {"force", numbers_of(l.force)},
+                   {"torque", numbers_of(l.torque)},
+                   {"in_body", l.in_body_axes}});
+  return all;
+}
+
 /// In units of 2π/65536; whole turns are left out.
 std::int16_t angle_of(double angle) {
   const double units = std::round(angle * 32768 / std::numbers::pi);
@@ -146,6 +173,7 @@ Json picture_json(const Picture& picture) {
   }
   for (std::size_t k = 0; k < picture.bodies.size(); ++k) {
     const Picture::Body& b = picture.bodies[k];
+    if (b.limits) bodies[k]["limits"] = {(*b.limits)[0], (*b.limits)[1]};
     if (b.sprung) bodies[k]["spring"] = true;
     if (b.damped) bodies[k]["damper"] = true;
     if (b.driven) bodies[k]["drive"] = true;
@@ -156,16 +184,18 @@ Json picture_json(const Picture& picture) {
   Json view = Json::array();
   for (int i = 0; i < 3; ++i)
     view.push_back({picture.view(0, i), picture.view(1, i), picture.view(2, i)});
-  return {{"planar", picture.planar},
-          {"length", picture.length},
-          {"view", view},
-          {"bodies", bodies},
-          {"loops", pairs_of(picture.loops)},
-          {"springs", pairs_of(picture.springs)},
-          {"solids", solids_of(picture)},
-          {"couplers", couplers_of(picture)},
-          {"loads", loads_of(picture)},
-          {"markers", markers}};
+  Json json{{"planar", picture.planar},
+            {"length", picture.length},
+            {"view", view},
+            {"bodies", bodies},
+            {"loops", pairs_of(picture.loops)},
+            {"springs", pairs_of(picture.springs)},
+            {"solids", solids_of(picture)},
+            {"couplers", couplers_of(picture)},
+            {"loads", loads_of(picture)},
+            {"markers", markers}};
+  if (!picture.meshes.empty()) json["meshes"] = meshes_of(picture);
+  return json;
 }
 
 Json motion_json(const Picture& picture, const Motion& motion) {

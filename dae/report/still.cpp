@@ -1,3 +1,4 @@
+#include <momenta/dae/assembly/drive_reach.h>
 #include <momenta/dae/report/picture_data.h>
 #include <momenta/dae/report/still.h>
 #include <momenta/dae/study/motion.h>
@@ -11,6 +12,25 @@ namespace {
 
 std::string counted(std::size_t n, const std::string& one, const std::string& more) {
   return std::to_string(n) + " " + (n == 1 ? one : more);
+}
+
+/// Where drives take the mechanism from its start, what they leave free moving as little as it can;
+/// the start alone without drives.
+Film driven_film(const Mechanism& mechanism, const Assembly& assembly) {
+  constexpr int frames = 400;
+  Eigen::VectorXd q = assembly.start.q;
+  Film film{assembly.start.t, 0, {std::vector<double>(q.begin(), q.end())}};
+  if (mechanism.scene().drives.empty()) return film;
+  const double end = mechanism.scene().run.end_time;
+  film.every = (end - film.start) / frames;
+  for (int i = 1; i <= frames; ++i) {
+    const double from = film.start + (i - 1) * film.every, to = film.start + i * film.every;
+    const DriveReach reach = drive_reach(mechanism, from, q, to, Followed::all);
+    if (!reach.obstacle.empty() || !reach.q.allFinite()) break;
+    q = reach.q;
+    film.frames.emplace_back(q.begin(), q.end());
+  }
+  return film;
 }
 
 }  // namespace
@@ -31,6 +51,10 @@ std::string still_words(const Mechanism& mechanism, const Assembly& a) {
   if (mechanism.m() > 0)
     words += " Assembly moved the joints by up to " + compact(a.moved, 2) +
              " against the guess (rad or m).";
+  if (!scene.drives.empty())
+    words +=
+        " It moves as its drives say, up to the end of its run; what they leave free moves as "
+        "little as it can.";
   return words;
 }
 
@@ -41,9 +65,12 @@ void expect_drawable(const Mechanism& mechanism) {
                                 " bodies, expected at most " + std::to_string(most_bodies_drawn));
 }
 
-void show(StudyResult& study, const Mechanism& mechanism, const Assembly& assembly) {
-  if (mechanism.scene().bodies.size() > most_bodies_drawn) return;
+std::vector<std::string> show(StudyResult& study, const Mechanism& mechanism,
+                              const Assembly& assembly, std::size_t mesh_bytes) {
+  if (mechanism.scene().bodies.size() > most_bodies_drawn) return {};
   study.picture = picture_of(mechanism);
+  std::vector<std::string> left_out =
+      take_meshes(study.picture, mechanism.scene().file, mesh_bytes);
   for (std::size_t i = 0; i < study.runs.size(); ++i) {
     if (study.runs[i].film.frames.empty()) continue;
     Motion motion = motion_of(mechanism, study.runs[i].film);
@@ -51,10 +78,10 @@ void show(StudyResult& study, const Mechanism& mechanism, const Assembly& assemb
     thin(motion, study.picture);
     study.motions.push_back(std::move(motion));
   }
-  if (!study.motions.empty()) return;
-  const auto& q = assembly.start.q;
-  study.motions.push_back(
-      motion_of(mechanism, {assembly.start.t, 0, {std::vector<double>(q.begin(), q.end())}}));
+  if (!study.motions.empty()) return left_out;
+  study.motions.push_back(motion_of(mechanism, driven_film(mechanism, assembly)));
+  thin(study.motions.back(), study.picture);
+  return left_out;
 }
 
 }  // namespace momenta

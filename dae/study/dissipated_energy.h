@@ -59,7 +59,8 @@ class DissipatedEnergy {
   }
   static bool loses_energy(const Scene& scene) {
     for (const auto& joint : scene.joints)
-      if (joint.damping != 0 || joint.friction != 0) return true;
+      if (joint.damping != 0 || joint.friction != 0 || (joint.limits && joint.stop_damping != 0))
+        return true;
     for (const auto& f : scene.forces)
       if ((has_formula(f) && (f.kind != "potential" || takes_time(scene, f))) ||
           ((f.kind == "spring-damper" || f.kind == "coordinate-spring") && f.damping != 0) ||

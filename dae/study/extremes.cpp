@@ -141,6 +141,9 @@ Scene in_units(Scene scene, const Units& units) {
     j.friction *= slides ? force : torque;
     j.friction_rate *= slides ? speed : 1 / tau;
     if (slides) j.rest *= s;
+    j.stop_stiffness *= slides ? force / s : torque;
+    j.stop_damping *= slides ? force / speed : torque * tau;
+    if (slides) j.stop_width *= s;
     if (slides && j.limits)
       for (double& limit : *j.limits) limit *= s;
     for (std::size_t i = 0; i < j.rotor_inertia.size(); ++i)

@@ -137,6 +137,7 @@ Picture picture_of(const Mechanism& mechanism) {
     body.parent = order.place.at(joint->parent);
     body.at_parent = joint->origin_parent;
     body.at_child = joint->origin_child;
+    body.limits = joint->limits;
     body.turn = turn_of(joint->kind);
     body.translations = can_translation(joint->kind);
     body.rest = joint->rotation;

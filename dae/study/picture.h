@@ -14,6 +14,9 @@
 
 #include <momenta/core/scene/scene.h>
 
+#include <array>
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,6 +34,7 @@ struct Picture {
     bool translations = false;
     Eigen::Quaterniond rest = Eigen::Quaterniond::Identity();
     Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< in the joint frame
+    std::optional<std::array<double, 2>> limits;      ///< of its joint [rad or m]
     /// Of its joint: a spring, a damper, a drive, a torque.
     bool sprung = false, damped = false, driven = false, pushed = false;
     Shape shape;
@@ -49,6 +53,12 @@ struct Picture {
   struct Solid {
     int body = -1;
     VisualSpec visual;
+    int mesh = -1;  ///< of a mesh: place among `meshes`; −1: not drawn
+  };
+  /// Triangles of a mesh, scaled: in axes of its solid [m].
+  struct Triangles {
+    std::vector<Eigen::Vector3d> points;
+    std::vector<std::array<std::uint32_t, 3>> corners;  ///< counter-clockwise from outside
   };
   /// Bodies whose joints a coupler ties: Σ ratios[i] q_i.
   struct Coupler {
@@ -77,6 +87,7 @@ struct Picture {
   std::vector<Pair> loops;    ///< all but couplers
   std::vector<Pair> springs;  ///< between points of bodies: spring, damper or spring-damper
   std::vector<Solid> solids;
+  std::vector<Triangles> meshes;
   std::vector<Coupler> couplers;
   std::vector<Load> loads;
   std::vector<Marker> markers;

@@ -9,6 +9,7 @@
 #include <momenta/dae/measure/multipliers.h>
 #include <momenta/dae/study/apart.h>
 #include <momenta/dae/study/dissipated_energy.h>
+#include <momenta/dae/study/passed_limits.h>
 #include <momenta/dae/study/run_form.h>
 #include <momenta/dae/study/singular_crossings.h>
 
@@ -47,7 +48,8 @@ class RunMonitor {
         phi_(mechanism.m()),
         middle_(mechanism.nq()),
         markers_(static_cast<std::size_t>(6 * static_cast<int>(mechanism.scene().markers.size()))),
-        dissipated_energy_(mechanism.scene()) {
+        dissipated_energy_(mechanism.scene()),
+        limits_(mechanism) {
     if (request.keep_trajectory) result.trajectory.columns = trajectory_columns(mechanism);
     if (mechanism.m() > 0) {
       result.drift_unit = lengths_ ? "m" : "rad";
@@ -93,6 +95,7 @@ class RunMonitor {
     }
     Series& s = result_.series;
     if (s.t.empty()) {
+      limits_.look(t, now_.q.data(), result_.passed_limits);
       energy_at_start_ = energy;
       potential_at_start_ = potential;
     }
@@ -143,12 +146,20 @@ class RunMonitor {
       keep_closed(middle, middle_);
     }
     if (singular_crossings_) singular_crossings_->step(t0, t1, between, state_);
+    if (limits_.any())
+      limits_.step(
+          t1,
+          [&](double t) -> const double* {
+            between(t, state_.data());
+            return read_coordinates(t) ? middle_.data() : nullptr;
+          },
+          result_.passed_limits);
     if (dissipated_energy_.any() && !dissipated_energy_.step(t0, t1, [&](double t, double& watts) {
           between(t, state_.data());
           if (!read(t, state_.data(), nullptr)) return false;
           e_->place(t, now_.q.data());
           e_->move(now_.u.data());
-          watts = e_->dissipated_power(now_.u.data());
+          watts = e_->dissipated_power(now_.q.data(), now_.u.data());
           return true;
         }))
       return true;
@@ -168,6 +179,7 @@ class RunMonitor {
     memory(energy_at_start_), memory(potential_at_start_);
     memory(between_.lengths), memory(between_.angles), memory(fastest_);
     memory(compared_), memory(rows_);
+    limits_.carry(memory);
     bool closed = closed_.q.size() > 0;
     memory(closed);
     if (!closed) return;
@@ -352,6 +364,7 @@ class RunMonitor {
   std::vector<double> markers_, row_, state_;
   Snapshot now_;
   DissipatedEnergy dissipated_energy_;
+  PassedLimits limits_;
   std::optional<SingularCrossings> singular_crossings_;
   std::optional<Apart> apart_;
   std::string came_apart_;

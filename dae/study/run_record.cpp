@@ -90,6 +90,15 @@ void list(const Each& each, auto&& s) requires
 
 template <class Each>
 void list(const Each& each,
+          auto&& s) requires std::is_same_v<std::remove_cvref_t<decltype(s)>, PassedLimit> {
+  auto& [joint, least, largest, since, farthest, farthest_at, slides, stops] = s;
+  each("joint", joint), each("least", least), each("largest", largest), each("since", since);
+  each("farthest", farthest), each("farthest_at", farthest_at);
+  each("slides", slides), each("stops", stops);
+}
+
+template <class Each>
+void list(const Each& each,
           auto&& s) requires std::is_same_v<std::remove_cvref_t<decltype(s)>, RunResult> {
   auto& [scene, settings, status, reason, stopped_at, stiff_from, changed_at, counters, partitions,
          jacobian, linear_solver, cpu_s, wall_s, repeats, drift_unit, position_drift_max,
@@ -97,7 +106,8 @@ void list(const Each& each,
          angle_rate_drift_max, angle_between_steps_max, angle_growth, angle_rate_growth,
          energy_error_max, kinetic_energy_max, energy_scale, position_error_max, velocity_error_max,
          integrated, rank, dependent_rows, residue, weak_evaluations, faded_rows,
-         singular_crossings, least_pivot, undetermined, series, trajectory, film] = s;
+         singular_crossings, least_pivot, undetermined, passed_limits, series, trajectory, film] =
+      s;
   each("scene", scene), each("settings", settings), each("status", status), each("reason", reason);
   each("stopped_at", stopped_at), each("stiff_from", stiff_from), each("changed_at", changed_at),
       each("counters", counters), each("partitions", partitions);
@@ -118,7 +128,7 @@ void list(const Each& each,
   each("weak_evaluations", weak_evaluations);
   each("faded_rows", faded_rows), each("singular_crossings", singular_crossings),
       each("least_pivot", least_pivot);
-  each("undetermined", undetermined);
+  each("undetermined", undetermined), each("passed_limits", passed_limits);
   each("series", series), each("film", film);
   static_cast<void>(trajectory);  // no study keeps one
 }

@@ -61,6 +61,17 @@ struct Trajectory {
   std::vector<std::vector<double>> rows;  ///< each of columns.size()
 };
 
+/// A joint that went beyond its limits.
+struct PassedLimit {
+  std::string joint;              ///< its name
+  double least = 0, largest = 0;  ///< its limits [rad or m]
+  double since = 0;               ///< when it was beyond for the first time [s]
+  double farthest = 0;            ///< the coordinate farthest beyond [rad or m]
+  double farthest_at = 0;         ///< when that was [s]
+  bool slides = false;            ///< in m, else rad
+  bool stops = false;             ///< its limits push back
+};
+
 /// The result of a run.
 struct RunResult {
   std::string scene;     ///< its name
@@ -146,6 +157,7 @@ struct RunResult {
     double to = 0;       ///< the last [s]
   };
   std::vector<Undetermined> undetermined;  ///< empty: all are unique
+  std::vector<PassedLimit> passed_limits;  ///< joints beyond their limits, in the order of time
   Series series;                           ///< measures at the output times
   Trajectory trajectory;                   ///< empty where none was asked for
   Film film;                               ///< empty where none was asked for

@@ -66,6 +66,9 @@ inline std::string difference(const Scene& a, const Scene& b) {
     number(x.friction, y.friction, what + " friction");
     number(x.friction_rate, y.friction_rate, what + " friction_rate");
     note(x.limits == y.limits, what + " limits");
+    number(x.stop_stiffness, y.stop_stiffness, what + " stop_stiffness");
+    number(x.stop_damping, y.stop_damping, what + " stop_damping");
+    number(x.stop_width, y.stop_width, what + " stop_width");
     numbers(x.rotor_inertia, y.rotor_inertia, what + " rotor_inertia");
   });
   each(a.loops, b.loops, "loop", [&](const LoopSpec& x, const LoopSpec& y, const auto& what) {

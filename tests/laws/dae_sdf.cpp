@@ -131,7 +131,7 @@ TEST_F(SdfLoops, FourBarAsInToml) {
               e[place(toml, "C")] - e[place(toml, "O")] - e[place(toml, "A")], tolerance);
 }
 
-// θ1 = −ratio θ2 of a wheel's and an arm's angle about their axes, seen from the ground.
+// θ2 = −ratio θ1 of a wheel's and an arm's angle about their axes, seen from the ground.
 TEST_F(SdfLoops, GearsTieAngles) {
   const auto wheels = [&](const std::string& second_joint, const std::string& axis2) {
     return world(link({"one", 1, 1, 0, 0, 0.3}) + link({"two", 3, 0.5, 2, 0, -0.4}) +
@@ -146,15 +146,29 @@ TEST_F(SdfLoops, GearsTieAngles) {
     EXPECT_EQ(mechanism.m(), 1);
     const VectorXd q = VectorXd::Zero(2);
     double found = 0;
-    for (const double rate : {-1. / 3, 1. / 3}) {
+    for (const double rate : {-1. / 3, 1. / 3, -3., 3.}) {
       const StateValues values = values_at(mechanism, q, VectorXd(Eigen::Vector2d(1, rate)));
       if (values.phidot.norm() < 1e-14) found = rate;
     }
     return found;
   };
   const std::string ahead = hinge("k", "world", "two");
-  EXPECT_EQ(speed(wheels(ahead, "0 0 1")), -1. / 3);
-  EXPECT_EQ(speed(wheels(ahead, "0 0 -1")), 1. / 3);
+  EXPECT_EQ(speed(wheels(ahead, "0 0 1")), -3);
+  EXPECT_EQ(speed(wheels(ahead, "0 0 -1")), 3);
+  // An axis that is not given is that of the joint. A joint from the wheel to the reference body
+  // counts the reference's angle seen from the wheel: the other sign.
+  const auto on_a_base = [&](const std::string& second_joint) {
+    return world(link({"one", 1, 1, 0, 0, 0.3}) + link({"two", 3, 0.5, 2, 0, -0.4}) +
+                 link({"base", 1, 1, 0, 0, 0}) +
+                 "<joint name='f' type='fixed'><parent>world"
+                 "</parent><child>base</child></joint>" +
+                 hinge("j", "base", "one") + second_joint +
+                 "<joint name='g' type='gearbox'><parent>one</parent><child>two</child>"
+                 "<gearbox_ratio>3</gearbox_ratio><gearbox_reference_body>base"
+                 "</gearbox_reference_body></joint>");
+  };
+  EXPECT_EQ(speed(on_a_base(hinge("k", "base", "two"))), -3);
+  EXPECT_EQ(speed(on_a_base(hinge("k", "two", "base"))), 3);
 }
 
 // q = multiplier (q_leader − reference) + offset, on axes of universal joints too.

@@ -176,7 +176,7 @@ const Case wrong_mjcf[] = {
     {"ball_armature",
      "<mujoco><worldbody><body name='b'>\n<joint name='j' type='ball' "
      "armature='1'/></body></worldbody></mujoco>",
-     ":2: joint 'j': <joint> armature is 1 on a ball or free joint"},
+     ":2: joint 'j': armature is 1 on a ball joint between bodies that move"},
     {"size",
      "<mujoco><worldbody><body name='b'><joint/>\n<geom type='box' size='1 "
      "1'/></body></worldbody></mujoco>",

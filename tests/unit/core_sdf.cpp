@@ -207,19 +207,21 @@ TEST_F(Sdf, JointsWrittenFromTheFarSide) {
 
 // Springs on the two axes of a universal joint: two hinges with a body without mass between.
 TEST_F(Sdf, SpringsOfUniversalJoints) {
-  const auto dynamics = [](const std::string& k, const std::string& c) {
+  const auto dynamics = [](const std::string& k, const std::string& c, const std::string& rest,
+                           const std::string& friction) {
     return "<dynamics><spring_stiffness>" + k + "</spring_stiffness><damping>" + c +
-           "</damping></dynamics>";
+           "</damping><spring_reference>" + rest + "</spring_reference><friction>" + friction +
+           "</friction></dynamics>";
   };
-  const Scene scene = chain(
-      joint("j", "universal", "a", "b",
-            axis("1 2 2", dynamics("3", "0.1")) + axis("0 1 1", dynamics("0", "0.4"), "axis2")));
+  const Scene scene = chain(joint("j", "universal", "a", "b",
+                                  axis("1 2 2", dynamics("3", "0.1", "0.4", "0.5")) +
+                                      axis("0 1 1", dynamics("2", "0.4", "-0.3", "0.7"), "axis2")));
   const Scene two = toml(
       "[[body]]\nname = 'x'\nmass = 0\n[[joint]]\nname = 'j'\nparent = 'a'\nchild = 'x'\n"
       "kind = 'revolute'\norigin.parent = [0.5, 0.1, -0.3]\nrotation.rpy = [0.2, 0.6, -0.1]\n"
-      "axis = [1, 2, 2]\nstiffness = 3\ndamping = 0.1\n"
+      "axis = [1, 2, 2]\nstiffness = 3\ndamping = 0.1\nrest = 0.4\nfriction = 0.5\n"
       "[[joint]]\nname = 'k'\nparent = 'x'\nchild = 'b'\nkind = 'revolute'\naxis = [0, 1, 1]\n"
-      "damping = 0.4\n");
+      "damping = 0.4\nstiffness = 2\nrest = -0.3\nfriction = 0.7\n");
   EXPECT_LE(differs(scene, two), rounding);
 }
 
@@ -260,9 +262,10 @@ TEST_F(Sdf, WhatItTakesForGrantedAndLeavesOutIsTold) {
   EXPECT_EQ(scene.bodies.at(0).inertia, Eigen::Matrix3d::Identity());
   EXPECT_EQ(scene.remarks,
             (std::vector<std::string>{
-                "left out: plugins (1)", "left out: visual shapes (1)", "left out: sensors (1)",
+                "left out: sensors (1)", "left out: visual shapes without a geometry (1)",
                 "taken as SDF has it: 1 kg and 1 kg m² of links without <inertial> (1)",
-                "left out: joint limits (1)", "left out: friction of joints (1)"}));
+                "taken as smooth friction: friction of joints (1)",
+                "left out: <plugin> of <model> (1)"}));
 }
 
 TEST_F(Sdf, WrongFiles) {
@@ -278,8 +281,7 @@ TEST_F(Sdf, WrongFiles) {
   expect("<sdf version='1.7'/>", "<sdf> has 0 <world> and 0 <model>, expected one of them");
   expect("<sdf version='1.7'><model name='m'/></sdf>",
          ":1: model 'm': <model> has no <link>, expected at least one");
-  wrong("<include><uri>x</uri></include>",
-        ":3: model 'm': <include> is not read, expected one file with everything in it");
+  wrong("<include><uri>x</uri></include>", ":3: <uri> is 'x', which does not exist, expected a");
   wrong(link("b", "<pose>1 2 3</pose>"), ":3: link 'b': <pose> has 3 numbers, expected 6");
   wrong(link("b", "<pose>1 2 3 nan 0 0</pose>"), "<pose> has 'nan', expected finite numbers");
   wrong(link("b", "<pose rotation_format='quat_xyzw'>0 0 0 0 0 0 2</pose>"),

@@ -57,11 +57,15 @@ TEST(Visuals, OfLinks) {
   const Scene scene = read(".urdf", R"(<robot name="r"><link name="base"/>
     <link name="a"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1"/></inertial>
       <visual><origin xyz="1 2 3" rpy="1.5707963267948966 0 0"/><geometry><cylinder length="4" radius="5"/></geometry>
-        <material name="m"><color rgba="0 1 0 1"/></material></visual>
+        <material name=""><color rgba="0 1 0 1"/></material></visual>
       <visual><geometry><mesh filename="a.stl"/></geometry></visual>
+      <visual><geometry><box size="1 2 3"/></geometry></visual>
+      <visual><geometry><sphere radius="4"/></geometry></visual>
       <collision><geometry><sphere radius="1"/></geometry></collision></link>
     <joint name="j" type="continuous"><parent link="base"/><child link="a"/></joint></robot>)");
-  ASSERT_EQ(scene.visuals.size(), 1U);
+  ASSERT_EQ(scene.visuals.size(), 3U);
+  EXPECT_EQ(scene.visuals[1].size, Vector3d(1, 2, 3));
+  EXPECT_EQ(scene.visuals[2].size, Vector3d(4, 0, 0));
   const VisualSpec& v = scene.visuals[0];
   EXPECT_EQ(v.body, "a");
   EXPECT_EQ(v.size, Vector3d(4, 5, 0));

@@ -143,6 +143,9 @@ kind = "prismatic"
 parent = "any"
 child = "planar"
 limits = [-0.1, 0.3]
+stop_stiffness = 1000.1
+stop_damping = 0.7
+stop_width = 0.003
 friction = 0.1
 friction_rate = 0.3
 [[joint]]

@@ -22,16 +22,16 @@ using Names = std::vector<std::string>;
 
 TEST(SummaryJson, HasThePublicKeys) {
   const auto json = summary_json(synthetic::run_of({}), synthetic::study_of({}).environment);
-  Names expected{"scene",        "form",           "integrator",  "gauge",
-                 "rtol",         "atol",           "step",        "end_time",
-                 "status",       "reason",         "counters",    "time",
-                 "drift",        "energy",         "error",       "environment",
-                 "jacobian",     "linear_solver",  "kkt",         "project",
-                 "stopped_at",   "stiff_from",     "faded_rows",  "beta",
-                 "penalty",      "partitions",     "least_pivot", "singular_crossings",
-                 "undetermined", "passages",       "changed_to",  "changed_at",
-                 "rank",         "dependent_rows", "residue",     "weak_evaluations",
-                 "stiffness",    "integrated"};
+  Names expected{"scene",        "form",           "integrator",   "gauge",
+                 "rtol",         "atol",           "step",         "end_time",
+                 "status",       "reason",         "counters",     "time",
+                 "drift",        "energy",         "error",        "environment",
+                 "jacobian",     "linear_solver",  "kkt",          "project",
+                 "stopped_at",   "stiff_from",     "faded_rows",   "beta",
+                 "penalty",      "partitions",     "least_pivot",  "singular_crossings",
+                 "undetermined", "passages",       "changed_to",   "changed_at",
+                 "rank",         "dependent_rows", "residue",      "weak_evaluations",
+                 "stiffness",    "integrated",     "passed_limits"};
   std::sort(expected.begin(), expected.end());
   EXPECT_EQ(keys(json), expected);
   EXPECT_EQ(keys(json["counters"]),

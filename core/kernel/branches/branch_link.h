@@ -24,7 +24,7 @@ struct BranchLink {
   S stiffness, rest, damping, torque, friction, friction_rate, rotor;
   int slot, parent_slot;  ///< within the branch
   Turn turn;
-  bool root, first, leaf, opens, screwed, has_force, has_friction, has_rotor;
+  bool root, first, leaf, opens, screwed, has_force, is_curved, has_rotor;
 
   /// The numbers of one body into one lane.
   void take(const Link& l, const Model<Spatial>::Body& b, double angle, int lane) {

@@ -38,7 +38,7 @@ class BranchPack {
       l.opens = place.opens;
       l.screwed = place.screwed;
       l.has_force = place.has_force;
-      l.has_friction = place.has_friction;
+      l.is_curved = place.is_curved;
       l.has_rotor = place.has_rotor;
       l.edge.about_z = l.screwed;
       l.edge.about_x = true;

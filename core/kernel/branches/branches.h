@@ -34,7 +34,7 @@ struct BranchGroup {
     int parent = -1, slot = -1;
     Turn turn = Turn::general;
     bool first = false, leaf = false, opens = false, screwed = false, has_force = false,
-         has_friction = false, has_rotor = false;
+         is_curved = false, has_rotor = false;
   };
   std::vector<Place> places;
   int slots = 0;                          ///< within the branch

@@ -33,7 +33,8 @@ Shapes shapes_of(const LinkTree& tree) {
   for (std::size_t k = n; k-- > 0;) {
     const Link& l = tree.links[k];
     const auto parent = static_cast<std::size_t>(l.parent);
-    possible[k] = possible[k] && l.kind == LinkKind::revolute;
+    possible[k] = possible[k] && l.kind == LinkKind::revolute &&
+                  !tree.model->bodies[k].stop.acts();  // lanes have no stops
     if (possible[k]) {
       auto& children = s.children[k];
       std::sort(children.begin(), children.end(), [&](int a, int b) {
@@ -166,7 +167,7 @@ BranchGroup group_of(const LinkTree& tree, const Shapes& s, const int* roots, in
       place.turn = common_turn(place.turn, l.turn);
       place.screwed |= l.screwed;
       place.has_force |= l.has_force;
-      place.has_friction |= tree.model->bodies[static_cast<std::size_t>(link)].has_friction;
+      place.is_curved |= tree.model->bodies[static_cast<std::size_t>(link)].is_curved;
       place.has_rotor |= l.has_rotor;
       g.links.push_back(link);
       g.q.push_back(l.q);

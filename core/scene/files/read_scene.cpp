@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <new>
+#include <set>
 #include <stdexcept>
 
 namespace momenta {
@@ -48,7 +49,32 @@ Scene parse_robot(std::string_view text, const std::string& file, const ReadOpti
               : reading::read_mjcf(root, file, options.key, options.controls);
 }
 
+Scene read_any(const std::filesystem::path& file, const ReadOptions& options,
+               const std::vector<Setting>& settings) {
+  const std::string name = file.string(), text = reading::text_of(file);
+  if (!is_toml(file)) {
+    try {
+      return parse_robot(text, name, options);
+    } catch (const std::bad_alloc&) {
+      reading::fail(name, {}, "the scene does not fit into memory");
+    }
+  }
+  expect_own_options(name, options, false, false);
+  return parse_scene(text, name, settings);
+}
+
 }  // namespace
+
+void stop_at_limits(Scene& scene, const std::array<double, 2>& stops) {
+  std::set<std::string> driven;
+  for (const DriveSpec& drive : scene.drives) driven.insert(drive.joint);
+  for (JointSpec& joint : scene.joints) {
+    if (!joint.limits || has_stops(joint) || driven.contains(joint.name)) continue;
+    joint.stop_stiffness = stops[0];
+    joint.stop_damping = stops[1];
+  }
+  validate(scene);
+}
 
 bool is_toml(const std::filesystem::path& file) {
   const std::string ending = file.extension().string();
@@ -65,16 +91,9 @@ Scene read_scene(const std::filesystem::path& file, const ReadOptions& options,
     throw std::invalid_argument(reading::in_quotes(settings.front().place) +
                                 ": the scene is no TOML, expected one where numbers are set "
                                 "(momenta convert)");
-  const std::string name = file.string(), text = reading::text_of(file);
-  if (!is_toml(file)) {
-    try {
-      return parse_robot(text, name, options);
-    } catch (const std::bad_alloc&) {
-      reading::fail(name, {}, "the scene does not fit into memory");
-    }
-  }
-  expect_own_options(name, options, false, false);
-  return parse_scene(text, name, settings);
+  Scene scene = read_any(file, options, settings);
+  if (options.stops) stop_at_limits(scene, *options.stops);
+  return scene;
 }
 
 }  // namespace momenta

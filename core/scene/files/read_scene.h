@@ -8,6 +8,7 @@
 #include <momenta/core/scene/urdf/read_options.h>
 #include <momenta/core/scene/validate.h>
 
+#include <array>
 #include <filesystem>
 
 namespace momenta {
@@ -21,6 +22,11 @@ Scene read_scene(const std::filesystem::path& file, const ReadOptions& options =
 /// have, and for a file that is not TOML
 Scene read_scene(const std::filesystem::path& file, const ReadOptions& options,
                  const std::vector<Setting>& settings);
+
+/// Gives the limits of joints stops: stiffness [N m/rad or N/m] and damping [N m s/rad or N s/m],
+/// of joints that have none of their own and are not driven. @throws SceneError for numbers that
+/// are negative or not finite
+void stop_at_limits(Scene& scene, const std::array<double, 2>& stops);
 
 /// Whether read_scene() reads this file as TOML: false for the endings of XML above.
 bool is_toml(const std::filesystem::path& file);

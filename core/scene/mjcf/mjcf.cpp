@@ -5,10 +5,9 @@
 #include <momenta/core/scene/mjcf/mjcf_keys.h>
 #include <momenta/core/scene/mjcf/mjcf_visuals.h>
 #include <momenta/core/scene/validate.h>
+#include <momenta/core/scene/xml/known_elements.h>
 #include <momenta/core/text/near_name.h>
 
-#include <algorithm>
-#include <array>
 #include <map>
 
 namespace momenta::reading {
@@ -18,9 +17,15 @@ void read_option(const Node& node, MjcfModel& model) {
   model.scene.gravity = node.vector("gravity", model.scene.gravity);
   for (const char* key : {"density", "viscosity"})
     if (node.number(key, 0) != 0) model.remarks.left_out("forces of a fluid");
+  model.disabled_groups |= !node.text("actuatorgroupdisable", "").empty();
   for (const Node& flag : node.children("flag")) {
-    if (flag.text("gravity", "enable") == "disable") model.scene.gravity.setZero();
-    for (const char* key : {"equality", "passive", "spring", "damper"})
+    const auto off = [&](const char* key) { return flag.text(key, "enable") == "disable"; };
+    if (off("gravity")) model.scene.gravity.setZero();
+    model.rubs &= !off("frictionloss");
+    model.limits &= !off("limit");
+    model.clamps &= !off("clampctrl");
+    model.actuates &= !off("actuation");
+    for (const char* key : {"constraint", "equality", "passive", "spring", "damper"})
       if (flag.text(key, "enable") != "enable")
         flag.fail(key, "is not enable, expected what the model holds to act");
   }
@@ -28,17 +33,13 @@ void read_option(const Node& node, MjcfModel& model) {
 
 void count_left_out(const Node& section, Remarks& remarks) {
   static const std::map<std::string, std::string> kinds{
-      {"contact", "pairs for contact"},
-      {"sensor", "sensors"},
-      {"asset", "meshes, textures and materials"},
-      {"visual", "settings of pictures"},
-      {"statistic", "settings of pictures"},
-      {"size", "sizes of memory"},
-      {"custom", "custom entries"},
+      {"contact", "pairs for contact"},   {"sensor", "sensors"},
+      {"visual", "settings of pictures"}, {"statistic", "settings of pictures"},
+      {"size", "sizes of memory"},        {"custom", "custom entries"},
       {"extension", "plugins"},
   };
   const auto kind = kinds.find(section.name());
-  if (kind == kinds.end()) return remarks.left_out("<" + section.name() + "> of the model");
+  if (kind == kinds.end()) return;
   if (section.children().empty() || kind->second.starts_with("settings"))
     return remarks.left_out(kind->second);
   for ([[maybe_unused]] const Node& part : section.children()) remarks.left_out(kind->second);
@@ -76,6 +77,7 @@ Scene read_mjcf(const Element& element, const std::string& file, const std::stri
   const Element whole = assembled(element, file, files, model.remarks);
   const Node root(whole, "", file);
   model.scene.file = file;
+  model.folder = files.folder();
   model.scene.included = files.names();
   model.scene.name = root.text("model", "");
   model.scene.gravity = {0, 0, -9.81};
@@ -88,18 +90,20 @@ Scene read_mjcf(const Element& element, const std::string& file, const std::stri
   for (const Node& node : root.children(attached_model)) read_attached(node, model);
   for (const Node& node : root.children("asset")) read_asset(node, files, model);
   for (const Node& node : root.children("worldbody")) read_worldbody(node, model);
+  settle_ball_armatures(model);
   settle_spring_dampers(model);
   for (const Node& node : root.children("tendon")) read_tendons(node, model);
-  read_actuators(root.children("actuator"), controls, model);
+  const std::vector<Node> keyframes = root.children("keyframe");
+  read_actuators(root.children("actuator"), controls, controls_of_key(keyframes, key, model),
+                 model);
   for (const Node& node : root.children("equality")) read_equality(node, model);
-  read_keys(root.children("keyframe"), key, model);
+  read_keys(keyframes, key, !controls.empty(), model);
   for (const Node& node : root.children()) {
-    constexpr std::array<std::string_view, 9> read{"compiler",  "option",   "default",
-                                                   "worldbody", "tendon",   "actuator",
-                                                   "equality",  "keyframe", attached_model};
-    if (std::find(read.begin(), read.end(), node.name()) == read.end())
-      count_left_out(node, model.remarks);
+    count_left_out(node, model.remarks);
+    if (node.name() == "actuator" && !controls.empty())
+      tell_unread(node, mjcf_actuator_elements(), model.remarks);
   }
+  tell_unread(root, mjcf_elements(), model.remarks);
   take_drawn(model);
   model.scene.remarks = model.remarks.sentences();
   if (model.scene.bodies.empty()) root.fail("has no <body>, expected at least one");

@@ -11,6 +11,7 @@
 // On the coordinate acts g f: a spring of stiffness K = −g² B about where g A + g² B q vanishes, a
 // damper −g² C, a torque where B = 0. q of the file is the scene's and `ref`.
 
+#include <momenta/core/scene/file_text.h>
 #include <momenta/core/scene/kinds.h>
 #include <momenta/core/scene/mjcf/mjcf_model.h>
 #include <momenta/core/text/near_name.h>
@@ -43,12 +44,12 @@ class Controls {
     }
   }
   bool any() const { return !values_.empty(); }
-  /// Of the actuator of this name; 0 where nothing is said.
-  double of(const std::string& name) {
+  /// Of the actuator of this name, else `otherwise`.
+  double of(const std::string& name, double otherwise) {
     met_.insert(name);
     if (const auto own = values_.find(name); own != values_.end()) return own->second;
     const auto all = values_.find("");
-    return all == values_.end() ? 0 : all->second;
+    return all == values_.end() ? otherwise : all->second;
   }
   void refuse_unknown() const {
     std::vector<std::string_view> known(met_.begin(), met_.end());
@@ -76,6 +77,8 @@ class ActuatorReader {
   void read(double control) {
     if (node_.text("dyntype", "none") != "none" || node_.number("timeconst", 0) != 0)
       node_.fail("has a state of its own, expected an actuator without dynamics under --control");
+    if (node_.number("inheritrange", 0) != 0)
+      node_.fail("inheritrange", "is not 0, expected the range of the control as ctrlrange");
     const Affine f = force(clamped(control));
     const std::vector<double> gears = node_.has("gear") ? node_.numbers("gear") : std::vector{1.0};
     if (gears.empty()) node_.fail("gear", "is empty, expected a number");
@@ -92,10 +95,10 @@ class ActuatorReader {
  private:
   bool limited(const char* flag, const char* range) const {
     const std::string word = node_.text(flag, "auto");
-    return word == "true" || (word == "auto" && node_.has(range));
+    return word == "true" || (word == "auto" && model_.auto_limits && node_.has(range));
   }
   double clamped(double control) const {
-    if (!limited("ctrllimited", "ctrlrange")) return control;
+    if (!model_.clamps || !limited("ctrllimited", "ctrlrange")) return control;
     const std::vector<double> range = node_.numbers("ctrlrange", 2);
     if (!(range[0] <= range[1]))
       node_.fail("ctrlrange", "has its first number above its second, expected a range");
@@ -200,8 +203,19 @@ class ActuatorReader {
 }  // namespace
 
 void read_actuators(const std::vector<Node>& sections, const std::vector<std::string>& given,
-                    MjcfModel& model) {
+                    const std::vector<double>& of_key, MjcfModel& model) {
   Controls controls(given);
+  std::size_t count = 0;
+  for (const Node& section : sections) count += section.children().size();
+  if (controls.any() && !of_key.empty() && of_key.size() != count)
+    fail(model.scene.file, {},
+         "ctrl of the key has " + std::to_string(of_key.size()) + " numbers, expected " +
+             std::to_string(count) + " for the actuators of the model");
+  if (controls.any() && count > 0 && (!model.actuates || model.disabled_groups))
+    fail(model.scene.file, {},
+         "the options of the model keep actuators from acting, by actuation or "
+         "actuatorgroupdisable; expected neither under --control");
+  std::size_t place = 0;
   constexpr std::array<std::string_view, 5> kinds{"motor", "position", "velocity", "damper",
                                                   "general"};
   for (const Node& section : sections)
@@ -213,7 +227,8 @@ void read_actuators(const std::vector<Node>& sections, const std::vector<std::st
       const std::string name = part.text("name", "");
       const std::string who =
           name.empty() ? std::string("actuator") : "actuator " + in_quotes(name);
-      const double control = controls.of(name);
+      const double control = controls.of(name, of_key.empty() ? 0 : of_key[place]);
+      ++place;
       if (std::find(kinds.begin(), kinds.end(), part.name()) == kinds.end())
         part.of(who).fail("is not read under --control, expected one of: " + listed(kinds));
       Element full = model.defaults.with_defaults(part, part.name(), MjcfDefaults::main_class);

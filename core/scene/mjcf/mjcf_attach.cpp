@@ -1,6 +1,7 @@
 #include <momenta/core/scene/mjcf/mjcf_copies.h>
 #include <momenta/core/scene/mjcf/mjcf_defaults.h>
 #include <momenta/core/scene/mjcf/mjcf_names.h>
+#include <momenta/core/scene/xml/file_inside.h>
 #include <momenta/core/text/near_name.h>
 
 #include <algorithm>
@@ -188,11 +189,24 @@ class Assembler {
     root.children.push_back(std::move(settings));
   }
 
+  /// What does not come along with a part of the model.
+  void tell_dropped(const Element& section, bool fresh) {
+    constexpr std::array<std::string_view, 10> along{
+        "tendon",  "equality", "contact",   "actuator", "asset",
+        "default", "compiler", "worldbody", "keyframe", attached_model};
+    if (section.name == "keyframe")
+      for ([[maybe_unused]] const Element& key : section.children)
+        remarks_.left_out("keys of attached models");
+    else if (fresh && std::find(along.begin(), along.end(), section.name) == along.end())
+      remarks_.left_out("<" + section.name + "> of attached models");
+  }
+
   /// What a section of the model says of the part, to the root.
   void follow(const Element& section, const std::string& prefix, const std::string& key, bool fresh,
               std::set<MjcfName>& inside, Element& root) {
     constexpr std::array<std::string_view, 4> ties{"tendon", "equality", "contact", "actuator"};
     const bool tie = std::find(ties.begin(), ties.end(), section.name) != ties.end();
+    tell_dropped(section, fresh);
     if (section.name == "asset" ? !fresh : !tie) return;
     Element copy = section;
     copy.children.clear();

@@ -48,8 +48,6 @@ class BodyReader {
         draw_geom(part, MjcfModel::in_scene(place.parent), model_);
       else if (what == "camera" || what == "light")
         model_.remarks.left_out(what + "s");
-      else if (what != "joint" && what != "freejoint" && what != "inertial")
-        model_.remarks.left_out("<" + what + "> of bodies");
     }
   }
 

@@ -1,5 +1,6 @@
 #include <momenta/core/scene/file_text.h>
 #include <momenta/core/scene/mjcf/mjcf_files.h>
+#include <momenta/core/scene/xml/file_inside.h>
 #include <momenta/core/text/near_name.h>
 
 #include <algorithm>
@@ -9,28 +10,6 @@ namespace momenta::reading {
 namespace {
 
 namespace fs = std::filesystem;
-
-bool lies_in(const fs::path& file, const fs::path& folder) {
-  const fs::path way = file.lexically_relative(folder);
-  return !way.empty() && *way.begin() != ".." && way != ".";
-}
-
-void mark(Element& element, const std::shared_ptr<const IncludedFile>& file) {
-  element.file = file;
-  for (Element& child : element.children) mark(child, file);
-}
-
-/// Elements and bytes of an element with all in it.
-std::pair<std::size_t, std::size_t> size_of(const Element& element) {
-  std::pair<std::size_t, std::size_t> size{1, element.name.size()};
-  for (const Attribute& a : element.attributes) size.second += a.name.size() + a.text.size();
-  for (const Element& child : element.children) {
-    const auto [elements, bytes] = size_of(child);
-    size.first += elements;
-    size.second += bytes;
-  }
-  return size;
-}
 
 /// Puts the elements of files in the place of each <include>.
 class Includer {
@@ -99,23 +78,6 @@ class Includer {
 };
 
 }  // namespace
-
-std::filesystem::path file_inside(const Node& node, const char* attribute, const std::string& name,
-                                  const std::filesystem::path& folder) {
-  std::error_code error;
-  const fs::path home = fs::weakly_canonical(folder.empty() ? fs::path(".") : folder, error);
-  const fs::path file = fs::weakly_canonical(home / name, error);
-  if (error || !lies_in(file, home))
-    node.fail(attribute, "is " + in_quotes(name) + ", which is not in the folder " +
-                             in_quotes(home.string()) + ", expected a file there or below");
-  const fs::file_status status = fs::status(file, error);
-  if (!fs::exists(status))
-    node.fail(attribute, "is " + in_quotes(name) + ", which does not exist, expected a file in " +
-                             in_quotes(home.string()));
-  if (!fs::is_regular_file(status))
-    node.fail(attribute, "is " + in_quotes(name) + ", which is no plain file, expected one");
-  return file;
-}
 
 MjcfFiles::MjcfFiles(const std::string& model) : written_(fs::path(model).parent_path()) {
   std::error_code error;

@@ -1,7 +1,6 @@
 #pragma once
-// Files that an MJCF names: parts of the model to include, models to attach, meshes. None may lie
-// outside the folder it is looked for in, by `..` or by a symbolic link: a model from elsewhere
-// does not read what it was not given. And how much a model may hold once all its parts are in it.
+// Files that an MJCF names: parts of the model to include, models to attach, meshes. And how much a
+// model may hold once all its parts are in it.
 
 #include <momenta/core/scene/xml/xml_node.h>
 
@@ -11,11 +10,6 @@
 #include <vector>
 
 namespace momenta::reading {
-
-/// The file that an attribute names, from `folder`, with its symbolic links followed.
-/// @throws SceneError where there is none, where it is no plain file, or out of `folder`
-std::filesystem::path file_inside(const Node& node, const char* attribute, const std::string& name,
-                                  const std::filesystem::path& folder);
 
 class MjcfFiles {
  public:

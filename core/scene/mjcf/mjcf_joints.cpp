@@ -10,11 +10,11 @@
 namespace momenta::reading {
 namespace {
 
-/// `limited` is auto where it is not written: a range limits.
+/// `limited` is auto where it is not written: a range limits, unless autolimits is false.
 void read_limits(const Node& node, double unit, double ref, JointSpec& joint, MjcfModel& model) {
   constexpr std::array<std::string_view, 3> words{"auto", "false", "true"};
   const std::size_t limited = node.word("limited", words, 0);
-  if (limited == 1 || !node.has("range")) return;
+  if (limited == 1 || (limited == 0 && !model.auto_limits) || !node.has("range")) return;
   const std::vector<double> range = node.numbers("range", 2);
   if (!has_one_coordinate(joint.kind)) {
     if (range[1] > 0) model.remarks.left_out("limits of ball joints");
@@ -23,7 +23,7 @@ void read_limits(const Node& node, double unit, double ref, JointSpec& joint, Mj
   if (limited == 0 && range[0] == 0 && range[1] == 0) return;
   if (!(range[0] < range[1]))
     node.fail("range", "has its first number not below its second, expected limits of the joint");
-  joint.limits = {unit * range[0] - ref, unit * range[1] - ref};
+  if (model.limits) joint.limits = {unit * range[0] - ref, unit * range[1] - ref};
 }
 
 }  // namespace
@@ -70,7 +70,8 @@ void read_mechanics(const Node& node, JointSpec& joint, MjcfModel& model) {
   read_limits(node, unit, ref, joint, model);
   if (node.has("actuatorfrcrange")) model.remarks.left_out("force ranges of actuators");
   const double stiffness = node.number("stiffness", 0), damping = node.number("damping", 0),
-               armature = node.number("armature", 0), friction = node.number("frictionloss", 0);
+               armature = node.number("armature", 0),
+               friction = model.rubs ? node.number("frictionloss", 0) : 0;
   if (armature < 0) node.fail("armature", "is negative, expected a number >= 0");
   if (friction < 0) node.fail("frictionloss", "is negative, expected a number >= 0");
   if (node.has("springdamper")) {
@@ -79,9 +80,7 @@ void read_mechanics(const Node& node, JointSpec& joint, MjcfModel& model) {
   }
   if (!one) {
     if (friction != 0) model.remarks.left_out("friction of ball and free joints");
-    if (armature != 0)
-      node.fail("armature", "is " + digits(armature) +
-                                " on a ball or free joint, expected it on hinges and slides alone");
+    if (armature != 0) model.ball_armatures.push_back({joint.name, armature});
     return add_spring_and_damper(joint, stiffness, damping, model);
   }
   joint.stiffness = stiffness;

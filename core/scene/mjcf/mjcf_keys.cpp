@@ -87,15 +87,37 @@ void start_at(const Node& key, MjcfModel& model) {
 
 }  // namespace
 
-void read_keys(const std::vector<Node>& keyframes, const std::string& chosen, MjcfModel& model) {
+namespace {
+
+std::vector<Node> keys_in(const std::vector<Node>& keyframes) {
   std::vector<Node> keys;
   for (const Node& keyframe : keyframes)
     for (const Node& key : keyframe.children("key"))
       keys.push_back(key.of(key.has("name") ? "key " + in_quotes(key.text("name", "")) : "key"));
+  return keys;
+}
+
+}  // namespace
+
+std::vector<double> controls_of_key(const std::vector<Node>& keyframes, const std::string& chosen,
+                                    const MjcfModel& model) {
+  if (chosen.empty()) return {};
+  const std::vector<Node> keys = keys_in(keyframes);
+  const Node& key = find(keys, chosen, model);
+  return key.has("ctrl") ? key.numbers("ctrl") : std::vector<double>{};
+}
+
+void read_keys(const std::vector<Node>& keyframes, const std::string& chosen, bool acts,
+               MjcfModel& model) {
+  const std::vector<Node> keys = keys_in(keyframes);
   if (!chosen.empty()) {
     const Node& key = find(keys, chosen, model);
     start_at(key, model);
-    for (const char* other : {"act", "ctrl", "mpos", "mquat"})
+    if (key.number("time", 0) != 0)
+      model.remarks.left_out("time of the key: runs begin at 0, and nothing depends on time");
+    if (key.has("ctrl") && !acts)
+      model.remarks.left_out("ctrl of the key, which --control lets act");
+    for (const char* other : {"act", "mpos", "mquat"})
       if (key.has(other)) model.remarks.left_out(std::string(other) + " of the key");
   } else if (!keys.empty()) {
     std::vector<std::string> names;

@@ -6,12 +6,19 @@
 
 namespace momenta::reading {
 
+/// `ctrl` of the <key> that is chosen as below; empty: it says none. @throws SceneError for an
+/// unknown name
+std::vector<double> controls_of_key(const std::vector<Node>& keyframes, const std::string& chosen,
+                                    const MjcfModel& model);
+
 /// Makes the state of a <key> the start: `chosen` by its name, or by its number from 0; empty:
-/// none, and a remark names what there is. `qpos` and `qvel` count over the joints in the order of
-/// the file: hinges and slides count from 0, not from `ref`; a ball has a quaternion w x y z and
-/// the angular velocity in body axes; a free joint position, quaternion, velocity in axes of the
-/// world and angular velocity in body axes. What a key does not give is as the model stands.
+/// none, and a remark names what there is. `acts`: its controls are taken. `time` is left out: a
+/// run begins at 0, and nothing here depends on time. `qpos` and `qvel` count over the joints in
+/// the order of the file: hinges and slides count from 0, not from `ref`; a ball has a quaternion w
+/// x y z and the angular velocity in body axes; a free joint position, quaternion, velocity in axes
+/// of the world and angular velocity in body axes. What a key does not give is as the model stands.
 /// @throws SceneError for an unknown name, and for other sizes
-void read_keys(const std::vector<Node>& keyframes, const std::string& chosen, MjcfModel& model);
+void read_keys(const std::vector<Node>& keyframes, const std::string& chosen, bool acts,
+               MjcfModel& model);
 
 }  // namespace momenta::reading

@@ -1,5 +1,6 @@
 #include <momenta/core/scene/mjcf/mjcf_files.h>
 #include <momenta/core/scene/mjcf/mjcf_meshes.h>
+#include <momenta/core/scene/xml/file_inside.h>
 #include <momenta/core/text/near_name.h>
 
 #include <array>
@@ -75,7 +76,7 @@ void MjcfMeshes::take(const Node& mesh, const fs::path& folder, const MjcfSettin
     mesh.fail("is called " + in_quotes(name) + " as another, expected each name once among meshes");
 }
 
-const MeshMass& MjcfMeshes::of(const Node& geom, bool shell, Remarks& remarks) {
+const MjcfMeshes::Asset& MjcfMeshes::asset(const Node& geom) const {
   const std::string name = geom.text("mesh");
   const auto found = assets_.find(name);
   if (found == assets_.end()) {
@@ -84,7 +85,48 @@ const MeshMass& MjcfMeshes::of(const Node& geom, bool shell, Remarks& remarks) {
     geom.fail("mesh", "is " + in_quotes(name) + ", expected the name of a <mesh> of <asset>" +
                           did_you_mean(name, known));
   }
-  Asset& asset = found->second;
+  return found->second;
+}
+
+// x = at (scale · Rᵀ (p − refpos)) is position + rotation · (size · p) where R = 1, or where the
+// scale is the same along all axes and commutes with R.
+std::optional<VisualSpec> MjcfMeshes::drawn(const Node& geom, const MjcfFrame& at,
+                                            const fs::path& scene, std::string& why) const {
+  const auto known = assets_.find(geom.text("mesh", ""));
+  why = "meshes to draw that have no <mesh> with a file";
+  if (known == assets_.end() || known->second.element.find("file") == nullptr) return std::nullopt;
+  const Asset& mesh = known->second;
+  const Node node(mesh.element, geom.owner(), mesh.file);
+  fs::path written = node.text("file");
+  if (mesh.settings.bare_names) written = written.filename();
+  std::error_code error;
+  const fs::path file = fs::weakly_canonical(mesh.folder / mesh.settings.meshes / written, error);
+  why = "meshes to draw whose files are not there";
+  if (!fs::is_regular_file(file, error)) return std::nullopt;
+  why = "meshes to draw that are no STL, OBJ or MSH";
+  if (!is_mesh_file(file.string())) return std::nullopt;
+  const Vector3d scale = node.vector("scale", Vector3d::Ones());
+  Eigen::Quaterniond turn = Eigen::Quaterniond::Identity();
+  if (node.has("refquat")) {
+    const std::vector<double> q = node.numbers("refquat", 4);
+    turn = Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
+    why = "meshes to draw that are turned and stretched";
+    if (!(turn.norm() > 0) || scale[0] != scale[1] || scale[1] != scale[2]) return std::nullopt;
+    turn = turn.normalized().conjugate();
+  }
+  VisualSpec visual;
+  visual.kind = "mesh";
+  visual.file = file.lexically_relative(scene).string();
+  visual.size = scale;
+  visual.rotation = (at.turn * turn).normalized();
+  const Vector3d from = node.vector("refpos", Vector3d::Zero());
+  visual.position = at * Vector3d(-(turn * scale.cwiseProduct(from)));
+  return visual;
+}
+
+const MeshMass& MjcfMeshes::of(const Node& geom, bool shell, Remarks& remarks) {
+  const std::string name = geom.text("mesh");
+  const Asset& asset = this->asset(geom);
   const Node node(asset.element, "mesh " + in_quotes(name), asset.file);
   const auto inertia = shell ? Inertia::shell
                              : static_cast<Inertia>(node.word("inertia", inertias,

@@ -6,6 +6,7 @@
 #include <momenta/core/scene/mjcf/mjcf_settings.h>
 #include <momenta/core/scene/xml/remarks.h>
 
+#include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
@@ -25,15 +26,22 @@ class MjcfMeshes {
   /// said), of its own inside (exact), by pyramids (legacy), of the surface (shell, or `shell`).
   const MeshMass& of(const Node& geom, bool shell, Remarks& remarks);
 
+  /// The mesh that a geom names, to be drawn where `at` puts the geom in its body; its file from
+  /// `scene`, the folder of the model. Nothing, and the reason as a plural: one whose file is not
+  /// there or of no kind that is read, or which no factors and one turn place.
+  std::optional<VisualSpec> drawn(const Node& geom, const MjcfFrame& at,
+                                  const std::filesystem::path& scene, std::string& why) const;
+
  private:
   struct Asset {
     Element element;
     std::string file;  ///< where the element stands
     std::filesystem::path folder;
     MjcfSettings settings;
-    std::optional<MeshMass> solid, shell;
+    mutable std::optional<MeshMass> solid, shell;  ///< weighed when asked for
   };
   static Mesh read(const Node& node, const Asset& asset, std::string& what);
+  const Asset& asset(const Node& geom) const;
   std::map<std::string, Asset> assets_;
 };
 

@@ -17,6 +17,10 @@ namespace momenta::reading {
 struct MjcfModel : MjcfSettings {
   Scene scene;
   Remarks remarks;
+  std::filesystem::path folder;         ///< of the model
+  bool rubs = true, limits = true;      ///< flags frictionloss, limit
+  bool clamps = true, actuates = true;  ///< flags clampctrl, actuation
+  bool disabled_groups = false;         ///< actuatorgroupdisable names some
   FreeNames bodies, edges;
   MjcfDefaults defaults;
   MjcfMeshes meshes;
@@ -39,6 +43,12 @@ struct MjcfModel : MjcfSettings {
     double time_constant, damping_ratio;  ///< [s], [1], > 0
   };
   std::vector<SpringDamper> spring_dampers;
+  /// `armature` of ball and free joints.
+  struct BallArmature {
+    std::string joint;
+    double inertia;  ///< a > 0 [kg m² and kg]
+  };
+  std::vector<BallArmature> ball_armatures;
   /// A fixed tendon: L of the scene is Σ ratio · q; empty of a spatial one.
   struct Tendon {
     std::map<std::string, double> ratios;  ///< by joint, none zero
@@ -66,15 +76,20 @@ void add_spring_and_damper(const JointSpec& joint, double stiffness, double damp
 /// Stiffness and damping of the joints with `springdamper`. After all bodies.
 void settle_spring_dampers(MjcfModel& model);
 
+/// The armature of ball and free joints, as inertia of their bodies (mjcf_armature.cpp). After all
+/// bodies. @throws SceneError where it is none
+void settle_ball_armatures(MjcfModel& model);
+
 /// The name of a hinge or slide that an attribute names. @throws SceneError
 std::string coordinate_of(const Node& node, const char* key, const MjcfModel& model);
 
 /// <tendon>: springs. After all bodies.
 void read_tendons(const Node& tendons, MjcfModel& model);
 
-/// <actuator> sections at the controls that are given, as text; none: left out. After the tendons.
+/// <actuator> sections at the controls that are given, as text; none: left out. Actuators without
+/// one have that of the <key>, `of_key` in the order of the file, else 0. After the tendons.
 void read_actuators(const std::vector<Node>& sections, const std::vector<std::string>& controls,
-                    MjcfModel& model);
+                    const std::vector<double>& of_key, MjcfModel& model);
 
 /// <equality>: connect, weld, joint and tendon become loops. After the tendons.
 void read_equality(const Node& equality, MjcfModel& model);

@@ -26,6 +26,7 @@ void read_compiler(const Node& node, MjcfSettings& settings) {
   }
   if (node.has("assetdir")) settings.meshes = node.text("assetdir", "");
   if (node.has("meshdir")) settings.meshes = node.text("meshdir", "");
+  settings.auto_limits = node.flag("autolimits", settings.auto_limits);
   settings.exact_meshes = node.flag("exactmeshinertia", settings.exact_meshes);
   settings.bare_names = node.flag("strippath", settings.bare_names);
   for (const char* key : {"boundmass", "boundinertia"})

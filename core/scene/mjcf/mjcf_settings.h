@@ -14,6 +14,7 @@ struct MjcfSettings {
   double least_group = -1e9, largest_group = 1e9;  ///< of geoms that weigh
   std::filesystem::path meshes;                    ///< folder of meshes, from that of the model
   bool exact_meshes = false;  ///< exactmeshinertia: meshes are solids as they are, not their hulls
+  bool auto_limits = true;    ///< autolimits: a range limits where nothing else is said
   bool bare_names = false;    ///< strippath: names of files without folders
 };
 

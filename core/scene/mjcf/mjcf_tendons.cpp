@@ -24,7 +24,8 @@ class TendonReader {
     if (node_.number("armature", 0) != 0)
       node_.fail("armature", "is not zero, expected a tendon without inertia");
     if (node_.number("frictionloss", 0) != 0) model_.remarks.left_out("friction of tendons");
-    if (node_.has("range") && node_.text("limited", "auto") != "false")
+    const std::string limited = node_.text("limited", "auto");
+    if (node_.has("range") && limited != "false" && (limited == "true" || model_.auto_limits))
       model_.remarks.left_out("limits of tendons");
     const MjcfModel::Tendon tendon = node_.name() == "fixed" ? fixed() : spatial();
     const std::string name = node_.text("name", "");

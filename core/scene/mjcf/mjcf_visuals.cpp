@@ -32,23 +32,30 @@ void draw_geom(const MjcfPart& part, const std::string& body, MjcfModel& model) 
   const Element full = model.defaults.with_defaults(part.node, "geom", part.active);
   const Node geom(full, part.node.owner(), model.scene.file);
   const auto shape = static_cast<GeomShape>(geom.word("type", geom_shapes, 0));
-  if (geom.has("mesh") || shape == GeomShape::plane || shape == GeomShape::hfield ||
-      shape == GeomShape::mesh || shape == GeomShape::sdf)
+  if (shape == GeomShape::plane || shape == GeomShape::hfield || shape == GeomShape::sdf ||
+      (geom.has("mesh") && shape != GeomShape::mesh))
     return;
-  const Vector3d s = geom_size(geom, shape);
   VisualSpec visual;
+  const MjcfFrame frame = part.in * read_frame(geom, model.angles);
+  if (shape == GeomShape::mesh) {
+    std::string why;
+    const auto mesh = model.meshes.drawn(geom, frame, model.folder, why);
+    if (!mesh) return model.remarks.left_out(why);
+    visual = *mesh;
+  } else {
+    const Vector3d s = geom_size(geom, shape);
+    visual.kind = geom_shapes[static_cast<std::size_t>(shape)];
+    if (shape == GeomShape::box)
+      visual.size = 2 * s;
+    else if (shape == GeomShape::capsule || shape == GeomShape::cylinder)
+      visual.size = {2 * s[1], s[0], 0};
+    else
+      visual.size = s;
+    visual.position = frame.at;
+    visual.rotation = frame.turn.normalized();
+  }
   visual.at = geom.at();
   visual.body = body;
-  visual.kind = geom_shapes[static_cast<std::size_t>(shape)];
-  if (shape == GeomShape::box)
-    visual.size = 2 * s;
-  else if (shape == GeomShape::capsule || shape == GeomShape::cylinder)
-    visual.size = {2 * s[1], s[0], 0};
-  else
-    visual.size = s;
-  const MjcfFrame frame = part.in * read_frame(geom, model.angles);
-  visual.position = frame.at;
-  visual.rotation = frame.turn.normalized();
   visual.colour = colour_of(geom);
   if (const auto known = model.materials.find(geom.text("material", ""));
       !visual.colour && known != model.materials.end())

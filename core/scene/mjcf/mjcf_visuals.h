@@ -12,7 +12,7 @@ namespace momenta::reading {
 /// The colours of the <material>s of an <asset>.
 void read_materials(const Node& asset, MjcfModel& model);
 
-/// A <geom> of `body`, a name of the scene. Planes, height fields and meshes are not drawn.
+/// A <geom> of `body`, a name of the scene. Planes and height fields are not drawn.
 void draw_geom(const MjcfPart& part, const std::string& body, MjcfModel& model);
 
 /// The visuals of the scene: of each body the geoms that MuJoCo draws, if there are any, else all.

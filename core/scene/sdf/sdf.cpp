@@ -4,10 +4,8 @@
 #include <momenta/core/scene/sdf/sdf.h>
 #include <momenta/core/scene/sdf/sdf_model.h>
 #include <momenta/core/scene/validate.h>
+#include <momenta/core/scene/xml/known_elements.h>
 #include <momenta/core/text/near_name.h>
-
-#include <algorithm>
-#include <charconv>
 
 namespace momenta::reading {
 namespace {
@@ -26,17 +24,6 @@ Node called(const Node& node, const char* title) {
   return node.of(std::string(title) + " " + in_quotes(name ? *name : "without a name"));
 }
 
-std::array<int, 2> read_version(const Node& sdf) {
-  const std::string text = sdf.text("version");
-  std::array<int, 2> version{0, 0};
-  const char *at = text.data(), *end = at + text.size();
-  const auto major = std::from_chars(at, end, version[0]);
-  const auto minor = std::from_chars(std::min(major.ptr + 1, end), end, version[1]);
-  if (major.ec != std::errc() || minor.ec != std::errc() || version[0] != 1 || *major.ptr != '.')
-    sdf.fail("version", "is " + in_quotes(text) + ", expected 1.4 to 1.12");
-  return version;
-}
-
 /// @returns whether the flag is there and set
 bool flagged(const Node& node, const char* name) {
   const auto flag = node.child(name);
@@ -47,20 +34,6 @@ void refuse(const Node& node, std::initializer_list<const char*> names, const ch
   for (const char* name : names)
     if (const auto found = node.children(name); !found.empty())
       found.front().fail("is not read, expected " + std::string(expected));
-}
-
-/// What is left out of an element: all but `read`.
-void count_left_out(const Node& node, std::initializer_list<const char*> read, const char* owners,
-                    Remarks& remarks) {
-  for (const Node& part : node.children()) {
-    if (std::find(read.begin(), read.end(), part.name()) != read.end()) continue;
-    if (part.name() == "visual" || part.name() == "collision")
-      remarks.left_out(part.name() + " shapes");
-    else if (part.name() == "sensor" || part.name() == "plugin")
-      remarks.left_out(part.name() + "s");
-    else
-      remarks.left_out("<" + part.name() + "> of " + owners);
-  }
 }
 
 void weigh_link(const Node& link, BodySpec& body, Remarks& remarks) {
@@ -100,10 +73,10 @@ void read_link(const Scoped& scoped, SdfModel& model) {
   if (const auto gravity = link.child("gravity"); gravity && !gravity->content_flag())
     gravity->fail("is false, expected gravity on every link");
   if (flagged(link, "kinematic")) link.child("kinematic")->fail("is true, expected false");
-  count_left_out(link,
-                 {"pose", "inertial", "gravity", "kinematic", "must_be_base_link", "self_collide",
-                  "enable_wind"},
-                 "links", model.remarks);
+  for (const char* kind : {"collision", "sensor", "plugin"})
+    for (const Node& part : link.children(kind))
+      model.remarks.left_out(part.name() + (part.name() == "collision" ? " shapes" : "s"));
+  draw_sdf_link(link, body.name, model);
   weigh_link(link, body, model.remarks);
   model.poses[body.name] = model.frames.world(name, link);
   model.scene.bodies.push_back(body);
@@ -121,7 +94,6 @@ void take_frames(const Node& owner, const std::string& scope, bool still, SdfMod
 void take_model(const Node& node, const std::string& scope, bool still, SdfModel& model,
                 Waiting& waiting) {
   const std::string name = node.text("name"), inside = scope + name + "::";
-  refuse(node, {"include"}, "one file with everything in it");
   refuse(node, {"drake:joint", "drake:linear_bushing_rpy", "drake:ball_constraint"}, "<joint>s");
   still |= flagged(node, "static");
   const std::vector<Node> links = node.children("link"), nested = node.children("model");
@@ -147,10 +119,6 @@ void take_model(const Node& node, const std::string& scope, bool still, SdfModel
     waiting.links.emplace_back(full, mine);
   }
   take_frames(node, inside, still, model, waiting);
-  count_left_out(node,
-                 {"link", "joint", "frame", "model", "pose", "static", "self_collide",
-                  "allow_auto_disable", "enable_wind"},
-                 "models", model.remarks);
 }
 
 /// <model>, <frame> and <joint> of a model or a world, with all that is in them.
@@ -183,19 +151,18 @@ void read_world(const Node& world, SdfModel& model) {
   };
   for (const Node& physics : world.children("physics")) gravity_of(physics);
   gravity_of(world);
-  refuse(world, {"include", "population", "actor"}, "one file with everything in it");
-  count_left_out(world, {"model", "frame", "joint", "gravity", "physics"}, "the world",
-                 model.remarks);
+  refuse(world, {"population", "actor"}, "models alone");
 }
 
 }  // namespace
 
 Scene read_sdf(const Element& element, const std::string& file) {
-  const Node sdf(element, "", file);
   SdfModel model;
   model.scene.file = file;
+  const Element whole = with_sdf_includes(element, file, model.scene.included);
+  const Node sdf(whole, "", file);
   model.scene.gravity = {0, 0, -9.8};
-  model.version = read_version(sdf);
+  model.version = read_sdf_version(sdf);
   const std::vector<Node> worlds = sdf.children("world"), models = sdf.children("model");
   if (worlds.size() + models.size() != 1)
     sdf.fail("has " + std::to_string(worlds.size()) + " <world> and " +
@@ -217,6 +184,7 @@ Scene read_sdf(const Element& element, const std::string& file) {
     couplers.push_back(read_sdf_gearbox(gear, scope, model));
   if (model.scene.bodies.empty()) sdf.fail("has no <link>, expected at least one");
   make_tree(model, couplers);
+  tell_unread(sdf, sdf_elements(), model.remarks);
   model.scene.remarks = model.remarks.sentences();
   validate(model.scene);
   return std::move(model.scene);

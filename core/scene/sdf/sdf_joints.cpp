@@ -1,8 +1,9 @@
 // <joint>: two links, a pose, and axes.
 //
-// Gears: <joint type="gearbox"> has θ1 = −ratio θ2, θ1 the angle from the reference body to the
+// Gears: <joint type="gearbox"> has θ2 = −ratio θ1, θ1 the angle from the reference body to the
 // parent about `axis`, θ2 that from the reference body to the child about `axis2`; these angles are
-// coordinates of joints that the file has between the same links. <mimic> has
+// coordinates of joints that the file has between the same links. An axis that is not given is that
+// of its joint. <mimic> has
 // q = multiplier (q_leader − reference) + offset.
 
 #include <momenta/core/scene/kinds.h>
@@ -25,6 +26,8 @@ constexpr std::array kind_of_type{JointKind::revolute,  JointKind::revolute,  Jo
                                   JointKind::weld,      JointKind::spherical, JointKind::universal,
                                   JointKind::universal, JointKind::helical};
 
+constexpr double no_bound = 1e16;  // [rad or m]
+
 /// The direction in <axis> or <axis2>, in world axes.
 Vector3d read_axis(const Node& axis, const std::string& scope, const std::string& joint,
                    SdfModel& model) {
@@ -45,9 +48,34 @@ Vector3d read_axis(const Node& axis, const std::string& scope, const std::string
   return model.frames.world(in, axis).turn * along;
 }
 
-/// Springs and dampers of an axis.
+/// A bound of <limit>; nothing: there is none, which files write as an infinity or as 1e16.
+std::optional<double> bound(const Node& limit, const char* name) {
+  const auto node = limit.child(name);
+  if (!node) return std::nullopt;
+  const std::string text = node->content();
+  for (const char* none : {"inf", "+inf", "-inf", "INF", "-INF", "infinity", "-infinity"})
+    if (text == none) return std::nullopt;
+  const double value = node->content_number();
+  if (std::abs(value) >= no_bound) return std::nullopt;
+  return value;
+}
+
+/// Least and largest coordinate; a range that is none is left out.
+void read_limits(const Node& limit, JointSpec& joint, Remarks& remarks) {
+  if (limit.child("lower") || limit.child("upper")) {
+    const auto lower = bound(limit, "lower"), upper = bound(limit, "upper");
+    if (!lower && !upper) return;
+    const std::array<double, 2> limits{lower.value_or(-no_bound), upper.value_or(no_bound)};
+    if (limits[0] < limits[1])
+      joint.limits = limits;
+    else
+      remarks.left_out("joint limits without a range");
+  }
+}
+
+/// Limits, springs, dampers and friction of an axis.
 void read_dynamics(const Node& axis, JointSpec& joint, Remarks& remarks) {
-  if (axis.child("limit")) remarks.left_out("joint limits");
+  if (const auto limit = axis.child("limit")) read_limits(*limit, joint, remarks);
   const auto dynamics = axis.child("dynamics");
   if (!dynamics) return;
   const auto number = [&](const char* name) {
@@ -57,7 +85,8 @@ void read_dynamics(const Node& axis, JointSpec& joint, Remarks& remarks) {
   joint.damping = number("damping");
   joint.stiffness = number("spring_stiffness");
   joint.rest = joint.stiffness == 0 ? 0 : number("spring_reference");
-  if (number("friction") != 0) remarks.left_out("friction of joints");
+  joint.friction = number("friction");
+  if (joint.friction < 0) dynamics->child("friction")->fail("is negative, expected a number >= 0");
 }
 
 /// n² I of the motor's rotor, as Drake writes it.
@@ -118,6 +147,8 @@ void split(SdfJoint joint, const JointSpec& first, const JointSpec& second, SdfM
   joint.spec.damping = first.damping, outer.spec.damping = second.damping;
   joint.spec.stiffness = first.stiffness, outer.spec.stiffness = second.stiffness;
   joint.spec.rest = first.rest, outer.spec.rest = second.rest;
+  joint.spec.friction = first.friction, outer.spec.friction = second.friction;
+  joint.spec.limits = first.limits, outer.spec.limits = second.limits;
   joint.child = outer.parent = cross.name;
   outer.axis = joint.axis2;
   outer.spec.name = model.edges.free(joint.spec.name + " axis2");
@@ -176,9 +207,18 @@ void read_sdf_joint(const Node& node, const std::string& scope, SdfModel& model,
   }
   if (two && joint.axis.cross(joint.axis2).norm() < parallel_slack)
     node.fail("has axes that are parallel, expected two directions");
+  if (node.text("type") == "continuous") springs[0].limits.reset();
   const auto sprung = [](const JointSpec& s) { return s.damping != 0 || s.stiffness != 0; };
   if (two && (sprung(springs[0]) || sprung(springs[1])))
     return split(joint, springs[0], springs[1], model);
+  for (const JointSpec& s : springs) {
+    if (two && s.limits) model.remarks.left_out("limits of universal joints");
+    if (two && s.friction != 0) model.remarks.left_out("friction of universal joints");
+  }
+  if (!two) {
+    joint.spec.limits = springs[0].limits;
+    joint.spec.friction = springs[0].friction;
+  }
   joint.spec.damping = springs[0].damping;
   joint.spec.stiffness = springs[0].stiffness;
   joint.spec.rest = springs[0].rest;
@@ -199,11 +239,12 @@ SdfCoupler read_sdf_gearbox(const Node& node, const std::string& scope, SdfModel
     const Node at = node.required(link);
     const std::string other = model.body(scope, at.content(), at);
     const std::string frame = scope + node.text("name");
-    const Vector3d along = read_axis(node.required(axis), scope, frame, model);
+    const auto given = node.child(axis);
     for (const SdfJoint& joint : model.joints) {
       const bool ahead = joint.parent == body && joint.child == other;
       const bool back = joint.parent == other && joint.child == body;
       if ((!ahead && !back) || joint.spec.kind != JointKind::revolute) continue;
+      const Vector3d along = given ? read_axis(*given, scope, frame, model) : joint.axis;
       if (joint.axis.cross(along).norm() > parallel_slack) continue;
       const double sign = (joint.axis.dot(along) > 0) == ahead ? 1 : -1;
       coupler.terms.push_back({joint.scoped, 0, sign * factor});
@@ -212,8 +253,8 @@ SdfCoupler read_sdf_gearbox(const Node& node, const std::string& scope, SdfModel
     at.fail("has no revolute joint about the same axis with the reference body " + in_quotes(body) +
             ", expected one whose angle the gear takes");
   };
-  term("parent", "axis", 1);
-  term("child", "axis2", ratio.content_number());
+  term("parent", "axis", ratio.content_number());
+  term("child", "axis2", 1);
   return coupler;
 }
 

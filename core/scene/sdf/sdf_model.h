@@ -65,6 +65,18 @@ void read_sdf_joint(const Node& node, const std::string& scope, SdfModel& model,
 /// <joint type="gearbox">, after all other joints.
 SdfCoupler read_sdf_gearbox(const Node& node, const std::string& scope, SdfModel& model);
 
+/// <visual>s of a link as solids to be drawn; what is not drawn is counted.
+void draw_sdf_link(const Node& link, const std::string& body, SdfModel& model);
+
+/// `version` of an <sdf>: 1, and the number behind the dot.
+std::array<int, 2> read_sdf_version(const Node& sdf);
+
+/// The elements with the models of other files in the place of each <include>, whose `name`,
+/// `static`, `pose` and `placement_frame` go before those of the model. A file is named by a path
+/// from the folder of the file, or by "model://FOLDER"; it lies there or below, at most 10 files
+/// deep; a folder stands for its model.sdf. `files` gets their names. @throws SceneError
+Element with_sdf_includes(Element sdf, const std::string& file, std::vector<std::string>& files);
+
 /// Makes joints and loops of the scene of what has been read.
 void make_tree(SdfModel& model, const std::vector<SdfCoupler>& couplers);
 

@@ -156,6 +156,7 @@ class TreeMaker {
 
   JointSpec joint(const SdfJoint& from, bool back) const {
     JointSpec joint = from.spec;
+    if (joint.friction != 0) model_.remarks.count("taken as smooth friction: friction of joints");
     frames(from, back, joint);
     return joint;
   }
@@ -168,6 +169,8 @@ class TreeMaker {
     LoopSpec loop;
     loop.name = from.spec.name;
     loop.at = from.spec.at;
+    if (from.spec.limits) model_.remarks.left_out("limits of joints that close loops");
+    if (from.spec.friction != 0) model_.remarks.left_out("friction of joints that close loops");
     loop.kind = kinds.at(from.spec.kind);
     frames(from, from.child == "ground", loop);  // what does not move is the parent
     return loop;

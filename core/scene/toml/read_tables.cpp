@@ -124,8 +124,8 @@ JointSpec read_joint(const Fields& table) {
                              " joint, expected on revolute, prismatic, helical, cylindrical, "
                              "universal and planar only");
   if (!has_one_coordinate(joint.kind))
-    for (const std::string_view key :
-         {"stiffness", "rest", "damping", "friction", "friction_rate", "limits"})
+    for (const std::string_view key : {"stiffness", "rest", "damping", "friction", "friction_rate",
+                                       "limits", "stop_stiffness", "stop_damping", "stop_width"})
       table.refuse(key, "has no meaning for a " + kind +
                             " joint, expected on revolute, prismatic and helical only");
   const auto only = [&](std::string_view key, JointKind owner) {
@@ -142,9 +142,11 @@ JointSpec read_joint(const Fields& table) {
                      " joint, expected on revolute, prismatic, helical, cylindrical, "
                      "universal and planar joints only");
   table.refuse("length", "belongs to a [[loop]] of kind distance, expected none on a joint");
-  table.allow({"name", "kind", "parent", "child", "origin", "rotation", "axis", "axis2",
-               "direction", "pitch", "position", "velocity", "stiffness", "rest", "damping",
-               "friction", "friction_rate", "rotor_inertia", "limits"});
+  table.allow({"name",         "kind",          "parent",        "child",     "origin",
+               "rotation",     "axis",          "axis2",         "direction", "pitch",
+               "position",     "velocity",      "stiffness",     "rest",      "damping",
+               "friction",     "friction_rate", "rotor_inertia", "limits",    "stop_stiffness",
+               "stop_damping", "stop_width"});
 
   joint.name = table.text("name");
   joint.parent = table.text("parent", joint.parent);
@@ -184,6 +186,14 @@ JointSpec read_joint(const Fields& table) {
                                                         "largest coordinate");
     joint.limits = {limits[0], limits[1]};
   }
+  for (const char* key : {"stop_stiffness", "stop_damping", "stop_width"})
+    if (!joint.limits) table.refuse(key, "is there without limits, expected limits to stop at");
+  joint.stop_stiffness =
+      table.number("stop_stiffness", {turns ? "N m/rad" : "N/m", Bound::not_negative}, 0);
+  joint.stop_damping =
+      table.number("stop_damping", {turns ? "N m s/rad" : "N s/m", Bound::not_negative}, 0);
+  joint.stop_width =
+      table.number("stop_width", {turns ? "rad" : "m", Bound::positive}, joint.stop_width);
   joint.rotor_inertia = read_state(table, "rotor_inertia", rotors_of(joint.kind), kind,
                                    {turns ? "kg m²" : "kg", Bound::not_negative});
   return joint;

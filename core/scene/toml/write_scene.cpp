@@ -143,6 +143,9 @@ void write_joint(const JointSpec& joint, TomlText& t) {
   t.number("friction_rate", joint.friction_rate, JointSpec{}.friction_rate);
   if (!joint.rotor_inertia.empty()) t.numbers("rotor_inertia", joint.rotor_inertia);
   if (joint.limits) t.numbers("limits", {(*joint.limits)[0], (*joint.limits)[1]});
+  t.number("stop_stiffness", joint.stop_stiffness);
+  t.number("stop_damping", joint.stop_damping);
+  t.number("stop_width", joint.stop_width, JointSpec{}.stop_width);
 }
 
 /// Σ ratios q of joints.

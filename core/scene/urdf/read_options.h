@@ -1,11 +1,14 @@
 #pragma once
+#include <array>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace momenta {
 
-/// Options for files of robots: what the formats themselves cannot say.
+/// Options for files of robots: what the formats themselves cannot say. `stops` are for any
+/// format.
 struct ReadOptions {
   /// URDF: YAML file with the loops; empty: the file of the same name beside the URDF, if there is
   /// one.
@@ -17,6 +20,9 @@ struct ReadOptions {
   /// MJCF: constant controls of actuators, "NAME=VALUE", or "VALUE" for all; the others are at 0.
   /// Empty: actuators are left out.
   std::vector<std::string> controls;
+  /// Stops at the limits of joints that say none of their own: stop_stiffness [N m/rad or N/m] and
+  /// stop_damping [N m s/rad or N s/m]. Empty: limits exert no force. Driven joints get none.
+  std::optional<std::array<double, 2>> stops;
 };
 
 }  // namespace momenta

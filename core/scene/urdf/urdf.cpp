@@ -4,6 +4,7 @@
 #include <momenta/core/scene/kinds.h>
 #include <momenta/core/scene/urdf/urdf.h>
 #include <momenta/core/scene/validate.h>
+#include <momenta/core/scene/xml/known_elements.h>
 #include <momenta/core/text/near_name.h>
 
 #include <algorithm>
@@ -37,10 +38,7 @@ BodySpec read_link(const Node& link, Remarks& remarks) {
   body.at = link.at();
   for (const Node& part : link.children()) {
     if (part.name() == "inertial") continue;
-    if (part.name() == "collision")
-      remarks.left_out("collision shapes");
-    else if (part.name() != "visual")
-      remarks.left_out("<" + part.name() + "> of links");
+    if (part.name() == "collision") remarks.left_out("collision shapes");
   }
   const auto inertial = link.child("inertial");
   if (!inertial) return body;
@@ -108,14 +106,8 @@ JointSpec read_joint(const Node& node, Remarks& remarks) {
     const auto axis = node.child("axis");
     joint.axis = axis ? axis->direction("xyz", Vector3d::UnitX()) : Vector3d(Vector3d::UnitX());
   }
-  constexpr std::array<std::string_view, 6> read{"parent", "child",    "origin",
-                                                 "axis",   "dynamics", "mimic"};
-  for (const Node& part : node.children()) {
-    if (part.name() == "limit")
-      read_limits(part, node.text("type"), joint, remarks);
-    else if (std::find(read.begin(), read.end(), part.name()) == read.end())
-      remarks.left_out("<" + part.name() + "> of joints");
-  }
+  if (const auto limit = node.child("limit"))
+    read_limits(*limit, node.text("type"), joint, remarks);
   if (const auto dynamics = node.child("dynamics")) {
     const double damping = dynamics->number("damping", 0);
     if (has_one_coordinate(joint.kind))
@@ -155,6 +147,14 @@ Origin read_origin(const Node& node) {
   const auto given = node.child("origin");
   if (!given) return origin;
   origin.xyz = given->vector("xyz", origin.xyz);
+  if (given->has("quat_xyzw")) {
+    if (given->has("rpy")) given->fail("has rpy and quat_xyzw, expected one of them");
+    const std::vector<double> x = given->numbers("quat_xyzw", 4);
+    const Eigen::Quaterniond turn(x[3], x[0], x[1], x[2]);
+    if (!(turn.norm() > 0)) given->fail("quat_xyzw", "is zero, expected a quaternion x y z w");
+    origin.turn = turn.normalized();
+    return origin;
+  }
   const Vector3d rpy = given->vector("rpy", Vector3d::Zero());
   origin.turn = Turn(rpy[2], Vector3d::UnitZ()) * Turn(rpy[1], Vector3d::UnitY()) *
                 Turn(rpy[0], Vector3d::UnitX());
@@ -171,10 +171,11 @@ Scene read_urdf(const Element& element, const std::string& file, const ReadOptio
   Remarks remarks;
   FreeNames edges;
   std::vector<Node> links, mimics;
+  const auto materials = colours_of(robot);
   for (const Node& node : robot.children("link")) {
     links.push_back(owned(node, "link"));
     scene.bodies.push_back(read_link(links.back(), remarks));
-    draw_link(links.back(), scene.visuals, remarks);
+    draw_link(links.back(), {scene.bodies.back().name, file, materials}, scene.visuals, remarks);
   }
   if (links.empty()) robot.fail("has no <link>, expected at least one");
   for (const Node& node : robot.children("joint")) {
@@ -196,9 +197,8 @@ Scene read_urdf(const Element& element, const std::string& file, const ReadOptio
       transmissions.push_back(owned(node, "transmission"));
     else if (std::find(drake_ties.begin(), drake_ties.end(), node.name()) != drake_ties.end())
       node.fail("ties links and is not read, expected <loop>, or loops in a YAML file");
-    else if (node.name() != "link" && node.name() != "joint")
-      remarks.left_out("<" + node.name() + "> of the robot");
   }
+  tell_unread(robot, urdf_elements(), remarks);
   read_beside(file, options, scene, edges, remarks);
   for (const Node& node : transmissions) read_transmission(node, scene, remarks);
   if (scene.bodies.empty()) robot.fail("has one link only, the ground, expected a body");

@@ -7,6 +7,7 @@
 #include <momenta/core/scene/xml/made_scene.h>
 #include <momenta/core/scene/xml/xml_node.h>
 
+#include <map>
 #include <string>
 
 namespace momenta::reading {
@@ -14,8 +15,8 @@ namespace momenta::reading {
 /// The scene of a <robot>. `robot` and `file` outlive the call only. @throws SceneError
 Scene read_urdf(const Element& robot, const std::string& file, const ReadOptions& options);
 
-/// <origin xyz rpy> of an element: position, and R = Rz(y) Ry(p) Rx(r). Both are zero where it, or
-/// its attribute, is missing.
+/// <origin xyz rpy> of an element: position, and R = Rz(y) Ry(p) Rx(r), or by quat_xyzw a
+/// quaternion. Both are zero where it, or its attribute, is missing.
 struct Origin {
   Eigen::Vector3d xyz = Eigen::Vector3d::Zero();
   Eigen::Quaterniond turn = Eigen::Quaterniond::Identity();
@@ -37,9 +38,19 @@ void tell_of_fixed_root(const Scene& scene, Remarks& remarks);
 /// <transmission>: adds to the rotor_inertia of its joint. @throws SceneError
 void read_transmission(const Node& transmission, Scene& scene, Remarks& remarks);
 
-/// The solids of a link: boxes, cylinders and spheres of its <visual>s, or of its <collision>s
-/// where those are all meshes. What is not drawn is counted.
-void draw_link(const Node& link, std::vector<VisualSpec>& visuals, Remarks& remarks);
+/// Colours of <material>s by name, of the robot and of its links.
+std::map<std::string, Eigen::Vector3d> colours_of(const Node& robot);
+
+/// What the solids of a link are read with.
+struct LinkDrawing {
+  std::string body;  ///< its name
+  const std::string& file;
+  const std::map<std::string, Eigen::Vector3d>& materials;
+};
+/// The solids of a link: boxes, cylinders, spheres and meshes of its <visual>s, or of its
+/// <collision>s where none of those can be drawn. What is not drawn is counted.
+void draw_link(const Node& link, const LinkDrawing& drawing, std::vector<VisualSpec>& visuals,
+               Remarks& remarks);
 
 /// URDF+: <loop> and <coupling>, whose links stand in `scene` already.
 void read_loop_tag(const Node& loop, Scene& scene, FreeNames& edges);

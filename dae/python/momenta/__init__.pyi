@@ -76,6 +76,9 @@ class _JointKeys(TypedDict, total=False):
     friction: float
     friction_rate: float
     limits: Sequence[float]
+    stop_stiffness: float
+    stop_damping: float
+    stop_width: float
 
 class _LoopKeys(TypedDict, total=False):
     parent: str
@@ -195,7 +198,14 @@ class Scene:
     def to_toml(self) -> str: ...
     def save(self, file: _Path) -> None: ...
     def load(
-        self, algebra: str = "auto", kkt: str = "auto", *, cut: str = "auto", at: _State = None
+        self,
+        algebra: str = "auto",
+        kkt: str = "auto",
+        *,
+        cut: str = "auto",
+        at: _State = None,
+        set: Mapping[str, float] | None = None,
+        stops: float | Sequence[float] | None = None,
     ) -> Mechanism: ...
     def __eq__(self, other: object) -> bool: ...
 
@@ -403,6 +413,9 @@ def load(
     free_root: bool = False,
     key: str | int = "",
     at: _State = None,
+    set: Mapping[str, float] | None = None,
+    control: Mapping[str, float] | float | None = None,
+    stops: float | Sequence[float] | None = None,
 ) -> Mechanism: ...
 def parse(
     text: str, name: str = "scene", algebra: str = "auto", kkt: str = "auto", *, cut: str = "auto"

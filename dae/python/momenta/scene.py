@@ -38,7 +38,8 @@ class Scene:
 
     def joint(self, name, kind, **keys):
         """Adds a joint of the tree: parent, child, origin [m], rotation, axis, position, velocity,
-        stiffness, rest, damping, friction, friction_rate, limits, rotor_inertia, pitch, axis2, direction."""
+        stiffness, rest, damping, friction, friction_rate, limits, stop_stiffness, stop_damping,
+        stop_width, rotor_inertia, pitch, axis2, direction."""
         return self._add("joint", name=name, kind=kind, **keys)
 
     def loop(self, name, kind, **keys):
@@ -110,11 +111,11 @@ class Scene:
         """Writes the scene file completely, or not at all."""
         _momenta.write(os.fspath(file), self.to_toml())
 
-    def load(self, algebra="auto", kkt="auto", *, cut="auto", at=None):
+    def load(self, algebra="auto", kkt="auto", *, cut="auto", at=None, set=None, stops=None):
         """The Mechanism of this scene: momenta.load(scene, ...)."""
         from .verbs import load
 
-        return load(self, algebra, kkt, cut=cut, at=at)
+        return load(self, algebra, kkt, cut=cut, at=at, set=set, stops=stops)
 
     def __eq__(self, other):
         return isinstance(other, Scene) and self._keys == other._keys

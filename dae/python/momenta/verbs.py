@@ -9,7 +9,18 @@ from .scene import Scene
 
 
 def load(
-    scene, algebra="auto", kkt="auto", *, cut="auto", loops="", free_root=False, key="", at=None
+    scene,
+    algebra="auto",
+    kkt="auto",
+    *,
+    cut="auto",
+    loops="",
+    free_root=False,
+    key="",
+    at=None,
+    set=None,
+    control=None,
+    stops=None,
 ):
     """A Mechanism from a scene file (TOML, URDF, MJCF or SDF), TOML text, a Scene or a dict of its keys.
 
@@ -17,22 +28,28 @@ def load(
     `kkt`: auto, sweeps, sparse or dense; `cut`: joints that runs cut, auto for the least work or scene;
     `loops`: a file with the loops of a URDF; `free_root`: whether
     the root link of a URDF floats; `key`: the <key> of an MJCF to start at, by name or number; `at`: start values instead of the scene's, {'q': {joint: ...},
-    'v': {...}}. Raises SceneError: one sentence with file, line and what is wrong.
+    'v': {...}}; `set`: numbers of a TOML scene in place of its own, {'body.crank.mass': 2}, or of its
+    parameters, {'a': 0.6}; `control`: actuators of an MJCF act, at {name: value} and the others at the
+    key's control or 0, or all of them at one number; `stops`: limits of joints push back, with a
+    stiffness [N m/rad or N/m], or (stiffness, damping [N m s/rad or N s/m]). Raises SceneError: one
+    sentence with file, line and what is wrong; ValueError for a place that the scene does not have.
     """
     at = _state(at)
+    numbers = [(str(place), float(value)) for place, value in dict(set or {}).items()]
     text, name = _text_of(scene)
+    more = _controls(control), _stops(stops), numbers, at, algebra, kkt, cut
     if text is None:
-        return _momenta.read(name, os.fspath(loops), free_root, str(key), at, algebra, kkt, cut)
-    if loops or free_root or key != "":
+        return _momenta.read(name, os.fspath(loops), free_root, str(key), *more)
+    if loops or free_root or key != "" or control is not None:
         raise ValueError(
-            "loops, free_root and key are of a robot's file; expected none with a scene given as text"
+            "loops, free_root, key and control are of a robot's file; expected none with a scene given as text"
         )
-    return _momenta.parse(text, name, at, algebra, kkt, cut)
+    return _momenta.parse(text, name, *more[1:])
 
 
 def parse(text, name="scene", algebra="auto", kkt="auto", *, cut="auto"):
     """A Mechanism from TOML text; messages name the text by `name`."""
-    return _momenta.parse(text, name, "", algebra, kkt, cut)
+    return _momenta.parse(text, name, None, [], "", algebra, kkt, cut)
 
 
 def run(scene, **arguments):
@@ -99,6 +116,25 @@ def _text_of(scene):
         return None, os.fspath(scene)
     found = type(scene).__name__
     raise TypeError(f"a scene is a path, TOML text, a Scene or a dict, found {found}")
+
+
+def _controls(control):
+    """The texts of --control."""
+    if control is None:
+        return []
+    if isinstance(control, dict):
+        return [f"{name}={float(value)!r}" for name, value in control.items()] or ["0"]
+    return [repr(float(control))]
+
+
+def _stops(stops):
+    """(stiffness, damping), or None."""
+    if stops is None:
+        return None
+    pair = tuple(stops) if hasattr(stops, "__len__") else (stops, 0)
+    if len(pair) != 2:
+        raise ValueError(f"stops are a stiffness, or (stiffness, damping), found {stops!r:.100}")
+    return [float(x) for x in pair]
 
 
 def _numbers(x):

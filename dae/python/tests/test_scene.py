@@ -133,6 +133,53 @@ class Built(unittest.TestCase):
             momenta.load(four_bar(), free_root=True)
 
 
+class Loaded(unittest.TestCase):
+    """What --set, --control and --stops do, from Python."""
+
+    def test_numbers_are_set(self):
+        file = EXAMPLES / "four_bar" / "scene.toml"
+        text = file.read_text()
+        for scene in (file, text, tomllib.loads(text)):
+            m = momenta.load(scene, set={"body.crank.mass": 3.5, "gravity.1": -1})
+            self.assertEqual(tomllib.loads(m.to_toml())["body"][0]["mass"], 3.5)
+            self.assertNotEqual(m.to_toml(), momenta.load(scene).to_toml())
+        text = "[parameters]\na = 2\n[[body]]\nname='b'\nmass='3*a'\ninertia=1\n[[joint]]\nname='j'\nkind='revolute'\nchild='b'\n"
+        m = momenta.load(text, set={"a": 5})
+        self.assertEqual(tomllib.loads(m.to_toml())["body"][0]["mass"], 15)
+        with self.assertRaisesRegex(ValueError, "'b': the scene has no parameter of that name"):
+            momenta.load(text, set={"b": 5})
+        with self.assertRaisesRegex(ValueError, "expected a finite number"):
+            momenta.load(text, set={"a": float("nan")})
+
+    def test_actuators_act(self):
+        file = EXAMPLES / "models" / "mujoco_small" / "humanoid.xml"
+        free = momenta.load(file)
+
+        def at(m):
+            return np.asarray(m.accelerations(0, m.q0, m.u0)[0])
+
+        all_at_one = momenta.load(file, control=0.2)
+        one = momenta.load(file, control={"knee_right": 0.2})
+        self.assertGreater(abs(at(all_at_one) - at(free)).max(), 1)
+        self.assertGreater(abs(at(one) - at(free)).max(), 1)
+        self.assertGreater(abs(at(one) - at(all_at_one)).max(), 1)
+        self.assertEqual(abs(at(momenta.load(file, control={})) - at(momenta.load(file, control=0))).max(), 0)
+        with self.assertRaisesRegex(momenta.SceneError, "actuator .knee. is not in the file"):
+            momenta.load(file, control={"knee": 1})
+        with self.assertRaisesRegex(ValueError, "control are of a robot's file"):
+            momenta.load(four_bar().to_toml(), control=1)
+
+    def test_limits_stop(self):
+        file = EXAMPLES / "models" / "panda_urdf" / "panda.urdf"
+        joint = tomllib.loads(momenta.load(file, stops=(1e4, 100)).to_toml())["joint"][1]
+        self.assertEqual((joint["stop_stiffness"], joint["stop_damping"]), (1e4, 100))
+        self.assertNotIn("stop_damping", tomllib.loads(momenta.load(file, stops=1e4).to_toml())["joint"][1])
+        with self.assertRaisesRegex(momenta.SceneError, "stop_stiffness and stop_damping must be finite and >= 0"):
+            momenta.load(file, stops=-1)
+        with self.assertRaisesRegex(ValueError, "stops are a stiffness"):
+            momenta.load(file, stops=(1, 2, 3))
+
+
 class Mistakes(unittest.TestCase):
     def expect(self, words, make, kind=momenta.SceneError):
         with self.assertRaises(kind) as caught:

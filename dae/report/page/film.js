@@ -18,6 +18,7 @@ function turned([w, ...v], a) {
   const t = scaled(cross(v, a), 2);
   return plus(a, plus(scaled(t, w), cross(v, t)));
 }
+const inverse = ([w, x, y, z]) => [w, -x, -y, -z];
 const about = (axis, angle) => [Math.cos(angle / 2), ...scaled(axis, Math.sin(angle / 2))];
 
 /** Along the shorter great circle, at constant rate. */

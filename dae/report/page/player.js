@@ -94,7 +94,7 @@ function moviePlayer(films, titleOf, ticked, until) {
   const fitting = gapFactor(films, camera.size);
   let factor = fitting;
   const has = { names: true, joints: true, loops: picture.loops.length > 0, traces: picture.markers.length > 0 && moving,
-    masses: true, frames: true, grid: true };
+    limits: ranges.length > 0, masses: true, frames: true, grid: true };
   const show = Object.fromEntries(Object.keys(has).map((key) => [key, has[key] && ticked.includes(key)]));
   const panels = element("div", { class: "panels" + (films.length > 1 ? " several" : "") });
   const stages = films.map((film, i) => {
@@ -132,7 +132,7 @@ function moviePlayer(films, titleOf, ticked, until) {
   charts.push({ shown: [], show: () => {}, redraw: draw });
 
   const boxes = element("div", { class: "boxes" });
-  const words = { names: "names", joints: "joints", loops: "loops", traces: "traces", masses: "mass centres", frames: "body axes", grid: "grid" };
+  const words = { names: "names", joints: "joints", loops: "loops", traces: "traces", limits: "limits", masses: "mass centres", frames: "body axes", grid: "grid" };
   for (const key of Object.keys(has).filter((k) => has[k])) {
     const box = element("input", { type: "checkbox", ...(show[key] ? { checked: "" } : {}) });
     box.addEventListener("change", () => { show[key] = box.checked; soon(); });
@@ -174,7 +174,7 @@ function moviePlayer(films, titleOf, ticked, until) {
 }
 
 /** Boxes that a single picture starts with: names only where they leave it readable. */
-const usualBoxes = ["joints", "loops", "traces", "grid", ...(picture.bodies.length + picture.loops.length <= 16 ? ["names"] : [])];
+const usualBoxes = ["joints", "loops", "traces", "grid", ...(ranges.length <= 8 ? ["limits"] : []), ...(picture.bodies.length + picture.loops.length <= 16 ? ["names"] : [])];
 
 /** What can be done with the picture, in a sentence. */
 function steeringWords() {

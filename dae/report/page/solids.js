@@ -41,12 +41,28 @@ function convex(kind, [a, b, c]) {
   return { corners, faces, edged: false };
 }
 
+/** Meshes of the picture: corners, and triangles as lists of them, counter-clockwise from outside. */
+const meshes = (picture.meshes ?? []).map(({ middle, scale, points, corners }) => {
+  const shorts = (text, kind) => new kind(Uint8Array.from(atob(text), (c) => c.charCodeAt(0)).buffer);
+  const places = shorts(points, Int16Array), numbers = shorts(corners, Uint16Array);
+  const three = (array, i) => [array[3 * i], array[3 * i + 1], array[3 * i + 2]];
+  return {
+    corners: Array.from({ length: places.length / 3 }, (_, i) => plus(middle, scaled(three(places, i), scale / 32767))),
+    faces: Array.from({ length: numbers.length / 3 }, (_, i) => three(numbers, i)),
+    edged: false,
+  };
+});
+
 /** Solids to be drawn, each with the body (−1: ground) whose axes its corners, normals and middle are in. */
 const parts = [];
 function addPart(body, kind, size, at, turn, colour) {
   if (kind === "sphere") return parts.push({ body, ball: size[0], middle: at, colour });
-  const { corners, faces, edged } = convex(kind, size);
+  const { corners, faces, edged } = kind === "mesh" ? meshes[size] : convex(kind, size);
   const normals = faces.map((face) => {
+    if (kind === "mesh") {
+      const [p, q, r] = face.map((i) => corners[i]);
+      return unit(cross(minus(q, p), minus(r, p)));
+    }
     // The diagonals span a face, of a triangle with a doubled corner too.
     const [p, q, r, s] = [0, 1, 2, 3].map((i) => corners[face[Math.floor((i * face.length) / 4)]]);
     const n = unit(cross(minus(r, p), minus(s, q)));
@@ -55,7 +71,7 @@ function addPart(body, kind, size, at, turn, colour) {
   parts.push({ body, middle: at, faces, edged, colour,
     corners: corners.map((c) => plus(at, turned(turn, c))), normals: normals.map((n) => turned(turn, n)) });
 }
-for (const s of picture.solids) addPart(s.body, s.kind, s.size, s.at ?? [0, 0, 0], s.turn ?? [1, 0, 0, 0], s.colour);
+for (const s of picture.solids) addPart(s.body, s.kind, s.mesh ?? s.size, s.at ?? [0, 0, 0], s.turn ?? [1, 0, 0, 0], s.colour);
 const seenBodies = new Set(picture.solids.map((s) => s.body));
 picture.bodies.forEach((body, k) => {
   if (seenBodies.has(k) || !["box", "cylinder", "sphere"].includes(body.shape)) return;
@@ -153,3 +169,39 @@ const barWidth = (() => {
   const lengths = solids.flatMap(({ bars }) => bars.map(([a, b]) => norm(minus(a, b)))).filter((l) => l > 0).sort((a, b) => a - b);
   return 0.1 * (lengths[lengths.length >> 1] || picture.length);
 })();
+
+/**
+ * Limits of joints: of an angle a sector between its bounds, from the joint outwards towards the body's mass; of a
+ * displacement the way between them. points(state): the outline; now(state): where the joint stands.
+ */
+const ranges = picture.bodies.flatMap((body, k) => {
+  if (!body.limits) return [];
+  const [low, high] = body.limits, parent = (state) => (body.parent < 0 ? [1, 0, 0, 0] : state.turns[body.parent]);
+  const centre = (state) => pointOf(state, k, body.at_child);
+  if (body.kind === "prismatic") {
+    if (high - low > 20 * picture.length) return [];
+    const along = turned(body.rest, body.axis), across = unit(cross(along, Math.abs(along[0]) < 0.8 ? [1, 0, 0] : [0, 1, 0]));
+    const at = (state, q, off) => pointOf(state, body.parent, plus(body.at_parent, plus(scaled(along, q), scaled(across, off * barWidth))));
+    const where = (state) => inner(along, turned(inverse(parent(state)), minus(centre(state), pointOf(state, body.parent, body.at_parent))));
+    return [{
+      points: (state) => [at(state, low, -0.6), at(state, low, 0.6), at(state, low, 0), at(state, high, 0), at(state, high, -0.6), at(state, high, 0.6)],
+      now: (state) => [at(state, where(state), -0.4), at(state, where(state), 0.4)],
+      passed: (state) => where(state) < low - 1e-6 || where(state) > high + 1e-6,
+    }];
+  }
+  if (body.turn !== "axis" || high - low >= 2 * Math.PI) return [];
+  const arm = minus(body.com, body.at_child), flat = minus(arm, scaled(body.axis, inner(arm, body.axis)));
+  const out = norm(flat) > 1e-6 * picture.length ? unit(flat) : unit(cross(body.axis, Math.abs(body.axis[0]) < 0.8 ? [1, 0, 0] : [0, 1, 0]));
+  const radius = Math.max(2.2 * barWidth, 0.5 * norm(flat)), steps = Math.max(2, Math.ceil((high - low) / 0.15));
+  const ray = (state, angle, r) => plus(centre(state), scaled(turned(product(parent(state), body.rest), turned(about(body.axis, angle), out)), r));
+  const angle = (state) => {
+    const [w, ...v] = product(inverse(body.rest), product(inverse(parent(state)), state.turns[k]));
+    return 2 * Math.atan2(inner(v, body.axis), w);
+  };
+  const middle = (low + high) / 2, turn = 2 * Math.PI;
+  return [{
+    points: (state) => [centre(state), ...Array.from({ length: steps + 1 }, (_, i) => ray(state, low + ((high - low) * i) / steps, radius)), centre(state)],
+    now: (state) => [centre(state), plus(centre(state), scaled(turned(state.turns[k], out), 1.25 * radius))],
+    passed: (state) => Math.abs(angle(state) - middle - turn * Math.round((angle(state) - middle) / turn)) > (high - low) / 2 + 1e-4,
+  }];
+});

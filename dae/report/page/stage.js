@@ -6,7 +6,7 @@ const driveColour = "#009e73", loadColour = "#cc79a7";
 const traceColour = () => theme("--accent");
 
 /**
- * A canvas that shows a film at a time. show: {names, joints, loops, masses, frames, traces, grid}; magnified(): the
+ * A canvas that shows a film at a time. show: {names, joints, loops, limits, masses, frames, traces, grid}; magnified(): the
  * factor of gaps. draw(t) returns what it drew, for those who read the page by program.
  */
 function stageOf(canvas, film, camera, show, magnified) {
@@ -175,6 +175,14 @@ function stageOf(canvas, film, camera, show, magnified) {
 
     const labels = [];
     const nearer = camera.planar ? 0 : 1.2 * barWidth;
+    if (show.limits) for (const range of ranges) {
+      const ends = range.points(state).map(eye.project), now = range.now(state).map(eye.project);
+      items.push({ depth: -1e8, draw: () => {
+        stroke(ctx, ends, colours.muted, 1.2);
+        for (const bound of [ends.slice(0, 2), ends.slice(-2)]) stroke(ctx, bound, colours.muted, 1.6);
+        stroke(ctx, now, range.passed(state) ? gapColour : colours.muted, range.passed(state) ? 2.4 : 1.2);
+      } });
+    }
     if (show.joints) {
       picture.bodies.forEach((body, k) => {
         if (body.kind === "free") return;

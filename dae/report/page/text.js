@@ -32,8 +32,21 @@ const count = (value) => (measured(value) ? String(value).replace(/\B(?=(\d{3})+
 function element(name, attributes = {}, ...children) {
   const node = document.createElement(name);
   for (const [key, value] of Object.entries(attributes)) node.setAttribute(key, value);
-  node.append(...children);
+  for (const child of children) node.append(...(typeof child === "string" ? dotted(child) : [child]));
   return node;
+}
+
+/** Text in which the dot of Φ̇ stands above its letter: fonts put it inside. */
+function dotted(text) {
+  return text.split("Φ\u0307").flatMap((part, i) => {
+    if (!i) return [part];
+    const rate = document.createElement("span"), dot = document.createElement("span");
+    rate.className = "rate";
+    dot.className = "hidden";
+    dot.textContent = "\u0307";
+    rate.append("Φ", dot);
+    return [rate, part];
+  });
 }
 
 function drawing(name, attributes = {}, ...children) {

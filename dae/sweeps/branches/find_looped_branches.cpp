@@ -65,7 +65,8 @@ std::map<int, LoopedBranch> folded_looped_branches(const LinkTree& tree,
     looped_branch.root = looped_branch_of[k];
     looped_branch.end = here + 1;
     looped_branch.fits = looped_branch.fits && (here == looped_branch.root || l.first) &&
-                         (l.kind == LinkKind::revolute || is_slide(tree.model->bodies[k]));
+                         (l.kind == LinkKind::revolute || is_slide(tree.model->bodies[k])) &&
+                         !tree.model->bodies[k].stop.acts();  // lanes have no stops
   }
   for (std::size_t i = 0; i < loops.loops.size(); ++i) {
     const auto& l = loops.loops[i];

@@ -26,7 +26,7 @@ struct LoopedBranchTree {
     static constexpr int drive = -1;
     static constexpr double pitch = 0;
     S subtree_mass, theta0, d0, stiffness, rest, damping, torque, friction, friction_rate, rotor;
-    bool with_rotor = false, has_friction = false;
+    bool with_rotor = false, is_curved = false;
     bool has_rotor() const { return with_rotor; }
   };
   struct Model {
@@ -64,7 +64,7 @@ LoopedBranchTree<S>::LoopedBranchTree(const LinkTree& tree, const LoopedBranchGr
     l.root = k == 1;
     l.first = !l.root;
     l.leaf = k == group.bodies;
-    l.opens = l.screwed = l.has_force = l.has_friction = l.has_rotor = false;
+    l.opens = l.screwed = l.has_force = l.is_curved = l.has_rotor = false;
     l.parent = l.root ? -1 : k - 1;
     l.q = l.u = b.q = b.u = k - 1;
     for (int lane = 0; lane < group.lanes; ++lane) {
@@ -81,7 +81,7 @@ LoopedBranchTree<S>::LoopedBranchTree(const LinkTree& tree, const LoopedBranchGr
       l.turn = common_turn(l.turn, from.turn);
       l.screwed |= from.screwed;
       l.has_force |= from.has_force;
-      l.has_friction |= body.has_friction;
+      l.is_curved |= body.is_curved;
       l.has_rotor |= from.has_rotor;
       l.take(from, body, tree.theta0[link], lane);
       b.subtree_mass.set_lane(lane, body.subtree_mass);
@@ -101,7 +101,7 @@ LoopedBranchTree<S>::LoopedBranchTree(const LinkTree& tree, const LoopedBranchGr
     b.torque = l.torque;
     b.friction = l.friction;
     b.friction_rate = l.friction_rate;
-    b.has_friction = l.has_friction;
+    b.is_curved = l.is_curved;
     b.rotor = l.rotor;
     b.with_rotor = l.has_rotor;
   }

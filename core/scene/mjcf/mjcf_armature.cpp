@@ -1,0 +1,67 @@
+// `armature` a of ball and free joints: ½ a |ω|² of kinetic energy, and ½ a |v|² of a free joint,
+// with ω the body's angular velocity against its parent and v the velocity of its point. Where the
+// parent does not move, ω is the body's own, and the same energy is that of the body with
+//
+//   I + a 1   about its centre of mass,    and, of a free joint, with a mass a at the point of v,
+//
+// whose weight a constant force −a g there takes back. Against a parent that moves no body has such
+// an energy.
+
+#include <momenta/core/scene/mjcf/mjcf_inertia.h>
+#include <momenta/core/scene/mjcf/mjcf_model.h>
+#include <momenta/core/text/near_name.h>
+
+#include <algorithm>
+
+namespace momenta::reading {
+namespace {
+
+template <class All, class Named>
+auto& named(All& all, const std::string& name, const Named& name_of) {
+  return *std::find_if(all.begin(), all.end(), [&](const auto& x) { return name_of(x) == name; });
+}
+
+bool moves(const std::string& body, const Scene& scene) {
+  std::string at = body;
+  while (at != "ground") {
+    const auto& joint = named(scene.joints, at, [](const JointSpec& j) { return j.child; });
+    if (joint.kind != JointKind::weld) return true;
+    at = joint.parent;
+  }
+  return false;
+}
+
+}  // namespace
+
+void settle_ball_armatures(MjcfModel& model) {
+  Scene& scene = model.scene;
+  for (const auto& [name, a] : model.ball_armatures) {
+    const auto& joint = named(scene.joints, name, [](const JointSpec& j) { return j.name; });
+    BodySpec& body = named(scene.bodies, joint.child, [](const BodySpec& b) { return b.name; });
+    if (moves(joint.parent, scene) || body.mass == 0)
+      throw SceneError(scene.where(joint.at) + "joint " + in_quotes(name) + ": armature is " +
+                       digits(a) +
+                       " on a ball joint between bodies that move, or with other joints of its "
+                       "body; expected it on hinges and slides, or on a ball alone on the ground");
+    MjcfInertia sum{body.mass, body.com, body.inertia};
+    sum.inertia += a * Eigen::Matrix3d::Identity();
+    if (joint.kind == JointKind::free) {
+      sum.add({a, joint.origin_child, Eigen::Matrix3d::Zero()});
+      if (!scene.gravity.isZero()) {
+        ForceSpec lift;
+        lift.at = joint.at;
+        lift.kind = "wrench";
+        lift.body = body.name;
+        lift.point = joint.origin_child;
+        lift.force = -a * scene.gravity;
+        scene.forces.push_back(lift);
+      }
+    }
+    body.mass = sum.mass;
+    body.com = sum.com;
+    body.inertia = sum.inertia;
+    model.remarks.count("taken as inertia of their bodies: armature of ball and free joints");
+  }
+}
+
+}  // namespace momenta::reading

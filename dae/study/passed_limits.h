@@ -1,0 +1,53 @@
+#pragma once
+// Joints beyond their `limits`: since when, and how far. Times between the samples come from the
+// integrator's dense output: of each step its middle and its end are looked at, and the vertex of
+// the parabola through the three where that lies further out; the time at which a limit is passed
+// is bisected on the dense output.
+
+#include <momenta/dae/mechanism.h>
+#include <momenta/dae/solver/memory.h>
+#include <momenta/dae/study/run_result.h>
+
+#include <array>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace momenta {
+
+class PassedLimits {
+ public:
+  /// Joints that are driven move as they are told, and are not looked at.
+  explicit PassedLimits(const Mechanism& mechanism);
+  bool any() const { return !joints_.empty(); }
+
+  /// Takes q (nq) at t [s] without what was before: the start. O(joints with limits)
+  void look(double t, const double* q, std::vector<PassedLimit>& passed);
+
+  /// Takes the step from where it was looked at last to t1; `q_at(t)` gives q within it, null: it
+  /// cannot be read. Two evaluations of it, and about 50 where a limit is passed first.
+  void step(double t1, const std::function<const double*(double)>& q_at,
+            std::vector<PassedLimit>& passed);
+  void carry(Memory& memory) { memory(last_time_), memory(last_.data(), last_.size()); }
+
+ private:
+  struct Limited {
+    std::string name;
+    std::array<double, 2> limits;
+    int q;
+    bool slides, stops;
+  };
+  static double beyond(const Limited& joint, double q);
+  static PassedLimit& entry(const Limited& joint, double t, double q,
+                            std::vector<PassedLimit>& passed);
+
+  std::vector<Limited> joints_;
+  double last_time_ = 0;
+  std::vector<double> last_, middle_, end_;  ///< coordinates of joints_
+};
+
+/// "joint 'k' is beyond its limits [-1, 2] rad from t = 0.3 s on, farthest at t = 0.4 s: 2.1 rad",
+/// one each, the first four; and how many more.
+std::vector<std::string> in_words(const std::vector<PassedLimit>& passed);
+
+}  // namespace momenta

@@ -1,0 +1,166 @@
+// Runs against stops and beyond limits: the balance of energy, the time at which a limit is passed
+// between the samples, and what is said of it.
+
+#include <gtest/gtest.h>
+#include <momenta/core/scene/files/read_scene.h>
+#include <momenta/dae/kkt/loop_solver.h>
+#include <momenta/dae/study/passed_limits.h>
+#include <momenta/dae/study/run_form.h>
+
+#include <cmath>
+
+namespace momenta::dae_stops {
+namespace {
+
+/// A slide in free fall from rest: q = −g t²/2.
+Scene slide(const std::string& keys) {
+  return parse_scene(R"(
+gravity = [0, 0, -10]
+[[body]]
+name = "a"
+mass = 2
+shape = { kind = "sphere", radius = 0.1 }
+[[joint]]
+name = "A"
+kind = "prismatic"
+child = "a"
+)" + keys,
+                     "slide.toml");
+}
+
+RunResult run(const Scene& scene, double end, int samples, const std::string& form = "momentum",
+              const std::string& integrator = "dop853") {
+  const Mechanism mechanism(scene);
+  RunRequest request;
+  request.settings.form = form;
+  request.settings.integrator = integrator;
+  request.settings.rtol = request.settings.atol = 1e-10;
+  request.settings.end_time = end;
+  request.settings.samples = samples;
+  if (form == "acceleration") request.settings.gauge.clear();
+  return run_form(mechanism, assemble(mechanism).start, request);
+}
+
+// Out and back between two samples: q = 3 t − 5 t², farthest 0.45 at 0.3, within [−9, 0.4] up to
+// t = 0.2 and from 0.4 on; samples at 0 and 0.6 alone see nothing.
+TEST(PassedLimits, AreToldBetweenTheSamples) {
+  const Scene scene = slide("velocity = 3\nlimits = [-9, 0.4]\n");
+  for (const char* integrator : {"dop853", "dp5"}) {
+    const RunResult result = run(scene, 0.6, 1, "momentum", integrator);
+    ASSERT_EQ(result.status, "done");
+    ASSERT_EQ(result.passed_limits.size(), 1U) << integrator;
+    const PassedLimit& passed = result.passed_limits[0];
+    EXPECT_EQ(passed.joint, "A");
+    EXPECT_NEAR(passed.since, 0.2, 1e-8);
+    EXPECT_NEAR(passed.farthest, 0.45, 1e-9);
+    EXPECT_NEAR(passed.farthest_at, 0.3, 1e-6);
+    EXPECT_EQ(in_words(result.passed_limits),
+              std::vector<std::string>{"joint 'A' is beyond its limits [-9, 0.4] m from t = 0.2 s "
+                                       "on, farthest at t = 0.3 s: 0.45 m"});
+  }
+  EXPECT_TRUE(run(slide("velocity = 3\nlimits = [-9, 0.46]\n"), 0.6, 1).passed_limits.empty());
+}
+
+TEST(PassedLimits, CountFromTheStartWhereItIsBeyond) {
+  const RunResult result = run(slide("position = 1\nlimits = [0, 0.5]\n"), 0.1, 4);
+  ASSERT_EQ(result.passed_limits.size(), 1U);
+  EXPECT_EQ(result.passed_limits[0].since, 0);
+  EXPECT_EQ(result.passed_limits[0].farthest, 1);
+}
+
+// With a damper the energy balance counts what it takes; the body comes to rest where k (x − w/2)
+// carries its weight.
+TEST(Stops, BalanceTheEnergyOfARunAndCarryTheWeight) {
+  const Scene scene = slide(
+      "position = 0.5\nlimits = [-0.1, 9]\nstop_stiffness = 4000\nstop_damping = 60\n"
+      "stop_width = 0.002\n");
+  for (const char* form : {"momentum", "acceleration"}) {
+    const RunResult result = run(scene, 4, 200, form);
+    ASSERT_EQ(result.status, "done") << result.reason;
+    EXPECT_LE(result.energy_error_max, 1e-6) << form;  // of 10 J that are lost
+    ASSERT_EQ(result.passed_limits.size(), 1U);
+    EXPECT_TRUE(result.passed_limits[0].stops);
+    EXPECT_NEAR(result.passed_limits[0].since, std::sqrt(2 * 0.6 / 10), 1e-8);
+    EXPECT_EQ(in_words(result.passed_limits)[0].substr(0, 41),
+              "joint 'A' is at its stops beyond [-0.1, 9");
+  }
+  Scene rest = scene;
+  rest.joints[0].position = {-0.1 - (20.0 / 4000 + 0.001)};
+  const RunResult still = run(rest, 1, 10);
+  EXPECT_LE(still.kinetic_energy_max, 1e-12);  // J, of the tolerance
+}
+
+// Without a damper it bounces for ever with the energy it has.
+TEST(Stops, BounceWithoutLoss) {
+  const RunResult result =
+      run(slide("position = 0.5\nlimits = [-0.1, 9]\nstop_stiffness = 4000\nstop_width = 0.01\n"),
+          5, 500);
+  EXPECT_EQ(result.status, "done");
+  EXPECT_LE(result.energy_error_max, 1e-6);
+  EXPECT_GT(result.kinetic_energy_max, 10);
+}
+
+// Eight equal arms with a loop each hang on a body that flies: where sweeps take such branches side
+// by side, they must not forget the stops that push each arm.
+TEST(Stops, ActInBranchesWithLoops) {
+  Scene scene;
+  const auto body = [&](const std::string& name, double mass) {
+    BodySpec b;
+    b.name = name;
+    b.mass = mass;
+    b.com = {0.4, 0.1, 0.05};
+    b.inertia = Eigen::Vector3d(0.2, 0.3, 0.25).asDiagonal();
+    scene.bodies.push_back(b);
+  };
+  const auto hinge = [&](const std::string& name, const std::string& parent,
+                         const std::string& child, const Eigen::Vector3d& at, double most) {
+    JointSpec j;
+    j.name = name;
+    j.parent = parent;
+    j.child = child;
+    j.origin_parent = at;
+    j.axis = {0, 0.6, 0.8};
+    j.limits = {-2, -most};
+    j.stop_stiffness = 50;
+    j.stop_damping = 3;
+    scene.joints.push_back(j);
+  };
+  body("trunk", 3);
+  JointSpec flies;
+  flies.name = "flies";
+  flies.kind = JointKind::free;
+  flies.child = "trunk";
+  scene.joints.push_back(flies);
+  for (int i = 0; i < 8; ++i) {
+    const std::string n = std::to_string(i);
+    body("a" + n, 1);
+    body("b" + n, 1);
+    hinge("A" + n, "trunk", "a" + n, {0.1 * i, 0.3, 0}, 0.05 * (i + 1));
+    hinge("B" + n, "a" + n, "b" + n, {1, 0, 0}, 0.02 * (i + 1));
+    LoopSpec rod;
+    rod.name = "L" + n;
+    rod.kind = LoopKind::distance;
+    rod.parent = "trunk";
+    rod.child = "b" + n;
+    rod.origin_parent = {0.1 * i, 1.3, 0};
+    rod.origin_child = {1, 0, 0};
+    rod.length = std::sqrt(5.0);
+    scene.loops.push_back(rod);
+  }
+  const auto accelerations = [](const Scene& of, KktChoice kkt) {
+    const Mechanism mechanism(of, {.kkt = kkt});
+    const auto e = mechanism.evaluation<double>();
+    const auto solver = make_loop_solver(mechanism, *e);
+    Eigen::VectorXd u = Eigen::VectorXd::Zero(mechanism.nv()), udot = u, lambda(mechanism.m());
+    EXPECT_TRUE(solver->acceleration(0, mechanism.tree().q0.data(), u.data(), nullptr, 0, 0,
+                                     udot.data(), lambda.data()));
+    return udot;
+  };
+  const Eigen::VectorXd sweeps = accelerations(scene, KktChoice::sweeps),
+                        dense = accelerations(scene, KktChoice::dense);
+  EXPECT_GT(dense.norm(), 1);
+  EXPECT_LE((sweeps - dense).norm(), 1e-9 * dense.norm());
+}
+
+}  // namespace
+}  // namespace momenta::dae_stops
