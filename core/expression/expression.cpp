@@ -233,6 +233,15 @@ class Parser {
                      ", expected an operator after the number");
     return x;
   }
+  /// "der(x)" from a name and the brackets behind it, without blanks; empty: they do not close.
+  std::string with_brackets(std::size_t from) const {
+    const std::size_t close = text_.find(')', from);
+    std::string whole;
+    if (close != std::string_view::npos)
+      for (const char c : text_.substr(from, close + 1 - from))
+        if (c != ' ' && c != '\t' && c != '\n') whole += c;
+    return whole;
+  }
   Term named(std::size_t from) {
     const std::string_view word = word_at(from);
     at_ += word.size();
@@ -242,6 +251,13 @@ class Parser {
     const auto* function = std::find_if(functions.begin(), functions.end(),
                                         [&](const Function& f) { return f.name == word; });
     if (called && function != functions.end()) return call(*function, from);
+    const std::string bracketed = called ? with_brackets(from) : std::string();
+    if (const auto whole = std::find(names_.begin(), names_.end(), bracketed);
+        !bracketed.empty() && whole != names_.end()) {
+      at_ = text_.find(')', at_) + 1;
+      return {tape_.add({Operation::variable, static_cast<int>(whole - names_.begin()), -1, -1, 0}),
+              false, from};
+    }
     if (known != names_.end() && !called)
       return {tape_.add({Operation::variable, static_cast<int>(known - names_.begin()), -1, -1, 0}),
               false, from};
@@ -250,6 +266,16 @@ class Parser {
       fail(from,
            "function " + reading::in_quotes(word) + " stands without '(', expected its arguments");
     std::vector<std::string_view> near;
+    const std::string opened = std::string(word) + "(";
+    if (called)
+      for (const std::string& name : names_)
+        if (name.starts_with(opened)) near.push_back(name);
+    if (!near.empty()) {
+      const std::string_view said = bracketed.empty() ? word : std::string_view(bracketed);
+      const std::string meant = reading::did_you_mean(said, near);
+      fail(from, "unknown name " + reading::in_quotes(said) +
+                     (!meant.empty() ? meant : ", expected one of: " + reading::listed(near)));
+    }
     if (called)
       for (const Function& f : functions) near.push_back(f.name);
     else

@@ -10,7 +10,8 @@
 //   product:    sign { (* /) sign }
 //
 // So −a^2 = −(a²), 2^3^2 = 2^9, a < b < c is refused. Names are letters, digits and _, begin with a
-// letter, and may have dots between. Comparisons give truths, which and, or, not and if() take and
+// letter, and may have dots between. A caller may know names with brackets, "der(x)"; they are no
+// calls. Comparisons give truths, which and, or, not and if() take and
 // nothing else does; a truth is no number.
 //
 // A formula is kept as a tape: one instruction a line, each of numbers found by those before it;
