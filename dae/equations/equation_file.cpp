@@ -16,9 +16,7 @@ using namespace reading;
 
 constexpr int most_unknowns = 450;
 
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
+using structure::at;
 
 bool is_name(std::string_view word) {
   const auto letter = [](char c) {

@@ -21,9 +21,7 @@
 namespace momenta {
 namespace {
 
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
+using structure::at;
 
 SystemJacobian system_jacobian(const EquationFile& file, const structure::Offsets& offsets,
                                double t, const Eigen::VectorXd& y, const Eigen::VectorXd& ydot) {

@@ -13,9 +13,9 @@ namespace {
 using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
 
-constexpr double of_corrections = 1e-8;  // singular values that corrections use
-constexpr double solved = 1e-13, solved_enough = 1e-10;
-constexpr int most_corrections = 60, most_halvings = 10;
+constexpr double usable = 1e-8;  // singular values, of the largest
+constexpr double met = 1e-13, met_enough = 1e-10;
+constexpr int most_newton_steps = 60, most_halvings = 10;
 
 }  // namespace
 
@@ -56,10 +56,10 @@ CurveCorrection::CurveCorrection(const CurveBlocks& at, int nu, double time_scal
   // Unknowns keep their own scale: what is least must not depend on how F is written.
   f.by_y = all.rightCols(n) * columns.tail(n).cwiseInverse().asDiagonal();
   f.svd.compute(all.leftCols(size), Eigen::ComputeFullU | Eigen::ComputeFullV);
-  f.svd.setThreshold(of_corrections);
+  f.svd.setThreshold(usable);
   f.rank = f.svd.rank();
   const auto null = f.svd.matrixU().rightCols(size - f.rank);
-  f.constraints.compute(null.transpose() * f.by_y, of_corrections);
+  f.constraints.compute(null.transpose() * f.by_y, usable);
 }
 
 CurveCorrection::~CurveCorrection() = default;
@@ -102,8 +102,8 @@ double meet(const CurveSystem& system, double t, int nu, const Vector& scale, do
     const CurveCorrection correction(blocks, nu, time_scale, scale);
     const Matrix f = blocks.f.leftCols(nu + 1);
     const double size = correction.size(f);
-    if (size <= solved || count == most_corrections ||
-        (size <= solved_enough && size > 0.5 * before))
+    if (size <= met || count == most_newton_steps ||
+        (size <= met_enough && size > 0.5 * before))
       return size;
     before = size;
     const Matrix change = correction.of(f);
@@ -137,7 +137,7 @@ ConsistentPoint consistent_point(const CurveSystem& system, double t, const Vect
       point.why = "the equations are not finite near the guess";
       return point;
     }
-    if (!(left <= solved_enough)) {
+    if (!(left <= met_enough)) {
       char text[160];
       std::snprintf(text, sizeof text,
                     "Newton's method found no point near the guess that meets the equations and "

@@ -7,16 +7,12 @@ namespace {
 
 constexpr double rounding_only =
     1e-9;  // rows and columns below this, of the largest, are not scaled up
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
-
 }  // namespace
 
 /// Unknown by unknown, direction 0 along y, direction 1 along y'.
 CurveBlocks::CurveBlocks(const CurveSystem& system, double t, const Eigen::MatrixXd& curve) {
   const int n = system.size;
+  const auto at = [](int i) { return static_cast<std::size_t>(i); };
   std::vector<Jet> y(at(n)), ydot(at(n)), r(at(n));
   for (int i = 0; i < n; ++i)
     for (int k = 0; k <= jet_order; ++k) {
@@ -42,6 +38,7 @@ CurveBlocks::CurveBlocks(const CurveSystem& system, double t, const Eigen::Matri
 
 Eigen::MatrixXd CurveBlocks::by(int i, int j) const {
   if (j > i + 1) return Eigen::MatrixXd::Zero(f.rows(), f.rows());
+  const auto at = [](int k) { return static_cast<std::size_t>(k); };
   if (j == 0) return a[at(i)];
   Eigen::MatrixXd block = j * b[at(i - j + 1)];
   if (i >= j) block += a[at(i - j)];

@@ -12,9 +12,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
+using structure::at;
 
 /// "(1) - 2·(3)'": a combination, its small parts left out.
 std::string combination_of(const Eigen::VectorXd& parts, const structure::Offsets& offsets) {

@@ -5,10 +5,6 @@
 namespace momenta::structure {
 namespace {
 
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
-
 /// Looks for an augmenting path from an equation; `seen` are the variables it has met.
 bool augment(const Signature& s, int equation, std::vector<char>& seen, std::vector<int>& variable,
              std::vector<int>& equation_of) {

@@ -5,13 +5,6 @@
 #include <numeric>
 
 namespace momenta::structure {
-namespace {
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
-
-}  // namespace
 
 std::optional<Offsets> sigma_method(const Signature& s) {
   const int n = s.size();

@@ -12,13 +12,18 @@
 
 namespace momenta::structure {
 
+/// A number of an equation or a variable, as vectors take it.
+inline std::size_t at(int i) {
+  return static_cast<std::size_t>(i);
+}
+
 class Signature {
  public:
   static constexpr int absent = std::numeric_limits<int>::min();
 
   explicit Signature(int size)
       : size_(size),
-        order_(static_cast<std::size_t>(size) * static_cast<std::size_t>(size), absent) {}
+        order_(at(size) * at(size), absent) {}
 
   int size() const { return size_; }  ///< of equations, and of variables
   int& operator()(int equation, int variable) { return order_[place(equation, variable)]; }
@@ -27,8 +32,7 @@ class Signature {
 
  private:
   std::size_t place(int equation, int variable) const {
-    return static_cast<std::size_t>(equation) * static_cast<std::size_t>(size_) +
-           static_cast<std::size_t>(variable);
+    return at(equation) * at(size_) + at(variable);
   }
   int size_;
   std::vector<int> order_;
