@@ -127,11 +127,15 @@ class QuadSystem {
 
 constexpr double tight = 1e-18, loose = 1e-16;  // of the estimates, whose order is that of s alone
 
-std::vector<Quad> solution(const EquationFile& file, std::vector<Quad> y, std::vector<Quad> ydot,
-                           double end, double tolerance, long& steps,
+std::vector<Quad> solution(const EquationFile& file, const EquationStart& start,
+                           std::vector<Quad> y, std::vector<Quad> ydot, double end,
+                           double tolerance, long& steps,
                            const std::function<bool(double)>& going_on) {
   QuadSystem system(file);
-  RadauDaeCollocation<Quad> radau(y.size());
+  std::vector<char> estimated(y.size(), 1);
+  for (std::size_t i = 0; i < y.size(); ++i)
+    estimated[i] = start.index_of[i] == 1 || start.appears[i] ? 1 : 0;
+  RadauDaeCollocation<Quad> radau(start.index_of, std::move(estimated));
   const double span = end - file.start;
   double t = file.start, h = 1e-6 * span;
   for (steps = 0; t < end;) {
@@ -206,8 +210,8 @@ QuadReference quad_reference(const EquationFile& file, const EquationStart& star
   QuadReference found;
   found.t = t;
   long loose_steps = 0;
-  const std::vector<Quad> rough = solution(file, y, ydot, t, loose, loose_steps, going_on);
-  found.values = solution(file, y, ydot, t, tight, found.steps, going_on);
+  const std::vector<Quad> rough = solution(file, start, y, ydot, t, loose, loose_steps, going_on);
+  found.values = solution(file, start, y, ydot, t, tight, found.steps, going_on);
   for (std::size_t i = 0; i < rough.size(); ++i) {
     const double apart = std::abs(value_of(found.values[i] - rough[i]));
     found.apart.push_back(apart / (file.scales[i] + std::abs(value_of(found.values[i]))));

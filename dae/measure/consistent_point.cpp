@@ -102,8 +102,7 @@ double meet(const CurveSystem& system, double t, int nu, const Vector& scale, do
     const CurveCorrection correction(blocks, nu, time_scale, scale);
     const Matrix f = blocks.f.leftCols(nu + 1);
     const double size = correction.size(f);
-    if (size <= met || count == most_newton_steps ||
-        (size <= met_enough && size > 0.5 * before))
+    if (size <= met || count == most_newton_steps || (size <= met_enough && size > 0.5 * before))
       return size;
     before = size;
     const Matrix change = correction.of(f);

@@ -10,12 +10,16 @@
 //
 //   e = h γ (∂F/∂y' + h γ ∂F/∂y)⁻¹ ∂F/∂y' (y' − p(0)),   γ = a_ss,
 //
-// of order s; multipliers, which ∂F/∂y' has no columns for, are not in it. Order on y, on variables
+// of order s. Errors of a variable of index k are one power of h worse for each index above 1: in
+// the norms of estimate and iteration they count h^(k−1) times, and where it has no rate in F it is
+// not in the estimate, as ∂F/∂y' has no column for it. Order on y, on variables
 // of index 2, of index 3: 2s − 1, s in index-2 systems, 2s − 2, s, s − 1 in those of index 3.
 // Source: Hairer, Lubich, Roche, The Numerical Solution of Differential-Algebraic Systems by
 // Runge-Kutta Methods; Hairer, Wanner, Solving Ordinary Differential Equations II, IV.8.
 
 #include <momenta/dae/solver/radau_collocation.h>
+
+#include <array>
 
 namespace momenta {
 
@@ -24,19 +28,12 @@ namespace momenta {
 template <class S>
 class RadauDaeCollocation {
  public:
-  explicit RadauDaeCollocation(std::size_t size, std::size_t stages = 9)
-      : n_(size),
-        s_(stages),
-        nodes_(stages),
-        by_y_(size * size),
-        by_rate_(size * size),
-        right_(stages * size),
-        row_(stages * size),
-        at_(size),
-        r_(size),
-        k_(stages, std::vector<S>(size)),
-        newton_(make_newton_matrix<double>(static_cast<int>(stages * size), none_)),
-        filter_(make_newton_matrix<double>(static_cast<int>(size), none_)) {}
+  /// `index` of each variable, from 1; `estimated`: whether it is in the estimate.
+  RadauDaeCollocation(std::vector<int> index, std::vector<char> estimated, std::size_t stages = 9)
+      : RadauDaeCollocation(index.size(), stages) {
+    index_ = std::move(index);
+    estimated_ = std::move(estimated);
+  }
 
   RadauDaeCollocation(const RadauDaeCollocation&) = delete;
   RadauDaeCollocation& operator=(const RadauDaeCollocation&) = delete;
@@ -60,7 +57,23 @@ class RadauDaeCollocation {
   double last_estimate() const { return estimate_; }
 
  private:
+  RadauDaeCollocation(std::size_t size, std::size_t stages)
+      : n_(size),
+        s_(stages),
+        nodes_(stages),
+        by_y_(size * size),
+        by_rate_(size * size),
+        right_(stages * size),
+        row_(stages * size),
+        at_(size),
+        r_(size),
+        k_(stages, std::vector<S>(size)),
+        newton_(make_newton_matrix<double>(static_cast<int>(stages * size), none_)),
+        filter_(make_newton_matrix<double>(static_cast<int>(size), none_)) {}
+
   static constexpr int most_iterations = 60;
+  /// h^(k−1) of variable l of index k.
+  double weight(std::size_t l, double h) const { return std::pow(h, index_[l] - 1); }
   double gamma() const { return value_of(nodes_.a[s_ - 1][s_ - 1]); }
 
   template <class System>
@@ -79,11 +92,13 @@ class RadauDaeCollocation {
         for (std::size_t i = 0; i < s_; ++i)
           for (std::size_t l = 0; l < n_; ++l) {
             double& entry = newton[(j * n_ + c) * size + i * n_ + l];
-            entry = (i == j ? by_rate_[c * n_ + l] : 0.0) +
-                    length * value_of(nodes_.a[i][j]) * by_y_[c * n_ + l];
+            entry = ((i == j ? by_rate_[c * n_ + l] : 0.0) +
+                     length * value_of(nodes_.a[i][j]) * by_y_[c * n_ + l]) /
+                    weight(c, length);
             row_[i * n_ + l] = std::max(row_[i * n_ + l], std::abs(entry));
           }
-    // Rows of equations without rates are smaller by h: pivots are looked for among equals.
+    // With rates of index k in units of h^(1−k), and rows brought to one size, the matrix stays
+    // regular for short steps.
     for (double& largest : row_) largest = largest > 0 ? largest : 1.0;
     for (std::size_t c = 0; c < size; ++c)
       for (std::size_t l = 0; l < size; ++l) newton[c * size + l] /= row_[l];
@@ -106,7 +121,9 @@ class RadauDaeCollocation {
   template <class System>
   bool iterate(const S& t, const S& h, const std::vector<S>& y, const std::vector<double>& scale,
                double tolerance, System& system) {
-    double before = 0;
+    // Of index k the iteration takes up to k turns to gain: what one unknown misses the next one
+    // takes over.
+    std::array<double, 3> before{};
     const double length = value_of(h);
     for (int count = 0; count < most_iterations; ++count) {
       for (std::size_t i = 0; i < s_; ++i) {
@@ -120,15 +137,17 @@ class RadauDaeCollocation {
       double change = 0;
       for (std::size_t i = 0; i < s_; ++i)
         for (std::size_t l = 0; l < n_; ++l) {
-          const double dk = right_[i * n_ + l];
-          k_[i][l] += S(dk);
-          const double relative = std::abs(length * dk) / (scale[l] + std::abs(value_of(y[l])));
+          const double weighed = right_[i * n_ + l];
+          k_[i][l] += S(weighed / weight(l, length));
+          const double relative =
+              std::abs(length * weighed) / (scale[l] + std::abs(value_of(y[l])));
           if (!std::isfinite(relative)) return false;
           change = std::max(change, relative);
         }
       if (change <= tolerance) return true;
-      if (count > 2 && change > 0.5 * before) return false;
-      before = change;
+      double& earlier = before[static_cast<std::size_t>(count) % before.size()];
+      if (count > 3 && change > 0.5 * earlier) return false;
+      earlier = change;
     }
     return false;
   }
@@ -146,7 +165,9 @@ class RadauDaeCollocation {
     filter_->solve(filtered.data());
     double largest = 0;
     for (std::size_t l = 0; l < n_; ++l) {
-      const double relative = std::abs(filtered[l]) / (scale[l] + std::abs(value_of(y[l])));
+      if (!estimated_[l]) continue;
+      const double relative =
+          std::abs(filtered[l]) * weight(l, value_of(h)) / (scale[l] + std::abs(value_of(y[l])));
       if (!std::isfinite(relative)) return relative;
       largest = std::max(largest, relative);
     }
@@ -155,6 +176,8 @@ class RadauDaeCollocation {
 
   std::size_t n_, s_;
   RadauNodes<S> nodes_;
+  std::vector<int> index_;
+  std::vector<char> estimated_;
   std::vector<double> by_y_, by_rate_, right_, row_;
   std::vector<S> at_, r_;
   std::vector<std::vector<S>> k_;  ///< stage by stage

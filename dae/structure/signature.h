@@ -21,9 +21,7 @@ class Signature {
  public:
   static constexpr int absent = std::numeric_limits<int>::min();
 
-  explicit Signature(int size)
-      : size_(size),
-        order_(at(size) * at(size), absent) {}
+  explicit Signature(int size) : size_(size), order_(at(size) * at(size), absent) {}
 
   int size() const { return size_; }  ///< of equations, and of variables
   int& operator()(int equation, int variable) { return order_[place(equation, variable)]; }
