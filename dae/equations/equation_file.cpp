@@ -96,7 +96,8 @@ class Reader {
     for (std::size_t i = 0; i < texts.size(); ++i)
       out_.equations.push_back({texts[i], list->items[i].at, formula_of(list->items[i], i)});
     if (texts.size() != out_.variables.size())
-      dae.fail_key("equations", "has " + std::to_string(texts.size()) + " equations for " +
+      dae.fail_key("equations", "has " + std::to_string(texts.size()) +
+                                    (texts.size() == 1 ? " equation for " : " equations for ") +
                                     std::to_string(out_.variables.size()) +
                                     " variables, expected as many");
   }

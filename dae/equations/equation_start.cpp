@@ -15,6 +15,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <numeric>
 
@@ -102,6 +103,15 @@ CurveSystem curve_system(const EquationFile& file) {
           }};
 }
 
+Eigen::VectorXd start_scales(const EquationFile& file, const std::vector<char>& appears) {
+  Eigen::VectorXd scale(file.size());
+  for (int j = 0; j < file.size(); ++j)
+    scale[j] = file.held[at(j)]  ? 0
+               : !appears[at(j)] ? std::numeric_limits<double>::infinity()
+                                 : file.scales[at(j)];
+  return scale;
+}
+
 EquationStart equation_start(const EquationFile& file) {
   const int n = file.size();
   EquationStart start;
@@ -125,11 +135,9 @@ EquationStart equation_start(const EquationFile& file) {
     return Eigen::VectorXd(
         Eigen::Map<const Eigen::VectorXd>(x.data(), static_cast<Eigen::Index>(x.size())));
   };
-  Eigen::VectorXd scale = vector(file.scales);
-  for (int j = 0; j < n; ++j)
-    if (file.held[at(j)]) scale[j] = 0;
-  start.point = consistent_point(curve_system(file), file.start, vector(file.values),
-                                 vector(file.rates), scale, start.time_scale);
+  start.point =
+      consistent_point(curve_system(file), file.start, vector(file.values), vector(file.rates),
+                       start_scales(file, start.appears), start.time_scale);
   if (!start.point.why.empty()) {
     start.index_of.assign(at(n), 1);
     return start;

@@ -40,6 +40,10 @@ struct EquationStart {
 /// @throws SceneError where an equation is not finite at the guess. Cost of consistent_point().
 EquationStart equation_start(const EquationFile& file);
 
+/// How much unknowns may change on the way to a consistent start: 0 what is held; infinite what has
+/// no derivative in the equations and is found from the rest.
+Eigen::VectorXd start_scales(const EquationFile& file, const std::vector<char>& appears);
+
 /// F of a file on curves; the file must outlive it.
 CurveSystem curve_system(const EquationFile& file);
 

@@ -169,9 +169,7 @@ void refine_start(const EquationFile& file, const EquationStart& start, std::vec
     curve[1][i] = Quad(start.point.ydot[static_cast<Eigen::Index>(i)]);
   }
   const CurveSystem system = curve_system(file);
-  Eigen::VectorXd scale(file.size());
-  for (std::size_t i = 0; i < n; ++i)
-    scale[static_cast<Eigen::Index>(i)] = file.held[i] ? 0 : file.scales[i];
+  const Eigen::VectorXd scale = start_scales(file, start.appears);
   double before = std::numeric_limits<double>::infinity();
   constexpr int most = 60;
   for (int count = 0; count < most; ++count) {

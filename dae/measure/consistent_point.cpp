@@ -22,9 +22,10 @@ constexpr int most_newton_steps = 60, most_halvings = 10;
 struct CurveCorrection::Factors {
   int n = 0, nu = 0;
   double time = 1;
-  Vector rows, columns, scale;  ///< of F_0 …, of y_1 …, of y_0
-  Matrix by_y;                  ///< J_0 of scaled rows and unknowns
-  Eigen::BDCSVD<Matrix> svd;    ///< of J_+
+  std::vector<int> least, free;  ///< unknowns of y_0 that change least, and those that are free
+  Vector rows, columns, scale;   ///< of F_0 …; of y_1 … and what is free; of what changes least
+  Matrix by_y;                   ///< J_0 of scaled rows and unknowns
+  Eigen::BDCSVD<Matrix> svd;     ///< of J_+
   Eigen::Index rank = 0;
   DenseLeastSquares constraints;  ///< N J_0
 
@@ -42,43 +43,58 @@ CurveCorrection::CurveCorrection(const CurveBlocks& at, int nu, double time_scal
   const int n = f.n = static_cast<int>(at.f.rows());
   f.nu = nu;
   f.time = time_scale;
-  f.scale = scale;
+  for (int j = 0; j < n; ++j)
+    if (scale[j] != 0) (std::isinf(scale[j]) ? f.free : f.least).push_back(j);
+  const auto least = static_cast<Eigen::Index>(f.least.size()),
+             free = static_cast<Eigen::Index>(f.free.size());
+  f.scale.resize(least);
+  for (Eigen::Index k = 0; k < least; ++k) f.scale[k] = scale[f.least[static_cast<std::size_t>(k)]];
   const int size = (nu + 1) * n;
-  Matrix all = Matrix::Zero(size, size + n);  // J_+ before J_0
+  // J_+, with it what is free of y_0, then the rest of J_0.
+  Matrix all = Matrix::Zero(size, size + free + least);
   for (int i = 0; i <= nu; ++i) {
     for (int j = 1; j <= i + 1; ++j)
       all.block(i * n, (j - 1) * n, n, n) = at.by(i, j) * std::pow(time_scale, i - j);
-    all.block(i * n, size, n, n) = at.by(i, 0) * std::pow(time_scale, i) * scale.asDiagonal();
+    const Matrix by_y = at.by(i, 0) * std::pow(time_scale, i);
+    for (Eigen::Index k = 0; k < free; ++k)
+      all.col(size + k).segment(i * n, n) = by_y.col(f.free[static_cast<std::size_t>(k)]);
+    for (Eigen::Index k = 0; k < least; ++k)
+      all.col(size + free + k).segment(i * n, n) =
+          by_y.col(f.least[static_cast<std::size_t>(k)]) * f.scale[k];
   }
   f.rows = Vector::Ones(size);
   const Vector columns = equilibrate(all, f.rows);
-  f.columns = columns.head(size);
+  f.columns = columns.head(size + free);
   // Unknowns keep their own scale: what is least must not depend on how F is written.
-  f.by_y = all.rightCols(n) * columns.tail(n).cwiseInverse().asDiagonal();
-  f.svd.compute(all.leftCols(size), Eigen::ComputeFullU | Eigen::ComputeFullV);
+  f.by_y = all.rightCols(least) * columns.tail(least).cwiseInverse().asDiagonal();
+  f.svd.compute(all.leftCols(size + free), Eigen::ComputeFullU | Eigen::ComputeFullV);
   f.svd.setThreshold(usable);
   f.rank = f.svd.rank();
   const auto null = f.svd.matrixU().rightCols(size - f.rank);
-  f.constraints.compute(null.transpose() * f.by_y, usable);
+  if (least > 0) f.constraints.compute(null.transpose() * f.by_y, usable);
 }
 
 CurveCorrection::~CurveCorrection() = default;
 
 Matrix CurveCorrection::of(const Matrix& f) const {
   const Factors& k = *factors_;
-  const Vector right = -k.stacked(f);
-  const Eigen::Index size = right.size();
+  Vector rest = -k.stacked(f);
+  const Eigen::Index size = rest.size();
   Matrix change = Matrix::Zero(k.n, k.nu + 2);
-  Vector rest = right;
-  if (k.rank < size) {
-    const Vector of_y = k.svd.matrixU().rightCols(size - k.rank).transpose() * right;
+  if (k.rank < size && !k.least.empty()) {
+    const Vector of_y = k.svd.matrixU().rightCols(size - k.rank).transpose() * rest;
     const Vector scaled = k.constraints.solve(of_y);
-    change.col(0) = scaled.cwiseProduct(k.scale);
+    for (std::size_t j = 0; j < k.least.size(); ++j) {
+      const auto place = static_cast<Eigen::Index>(j);
+      change(k.least[j], 0) = scaled[place] * k.scale[place];
+    }
     rest -= k.by_y * scaled;
   }
   const Vector further = k.svd.solve(rest).cwiseProduct(k.columns);
   for (int j = 1; j <= k.nu + 1; ++j)
     change.col(j) = further.segment((j - 1) * k.n, k.n) / std::pow(k.time, j);
+  for (std::size_t j = 0; j < k.free.size(); ++j)
+    change(k.free[j], 0) = further[size + static_cast<Eigen::Index>(j)];
   return change;
 }
 

@@ -8,8 +8,10 @@
 //   N J_0 δ_0 = −N F,
 //
 // and δ_0 is their solution of least size, in units of each unknown's scale; then δ_+ is the least
-// one. An unknown of scale 0 stays as it was guessed. ν rises from 0 until the index is found at
-// the point: then no further differentiation says anything more of y.
+// one. An unknown of scale 0 stays as it was guessed. One of infinite scale, such as a multiplier,
+// is found from the others and stands with y_1, …, not with those that are to change least. ν rises
+// from 0 until the index is found at the point: then no further differentiation says anything more
+// of y.
 
 #include <momenta/dae/measure/derivative_array.h>
 
@@ -21,7 +23,7 @@ namespace momenta {
 /// One Newton correction of y_0 … y_(ν+1).
 class CurveCorrection {
  public:
-  /// `scale`: of each unknown, 0: held. O((ν n)³)
+  /// `scale`: of each unknown, 0: held, infinite: free. O((ν n)³)
   CurveCorrection(const CurveBlocks& at, int nu, double time_scale, const Eigen::VectorXd& scale);
   ~CurveCorrection();
 
