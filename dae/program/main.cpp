@@ -281,15 +281,19 @@ int answer(int argc, char** argv) {
   }
   try {
     if (!o.level.empty()) momenta::use_level(std::stoi(o.level));
+    const bool equations = names_equations(o);
+    if (equations && !*run_verb && !*index_app && !*work_verb)
+      throw std::invalid_argument(o.scene.string() + " holds equations, expected a scene; run, "
+                                  "index, work and, in a suite, bench take equations");
     if (*check_verb) return check(o);
     if (*assemble_app) return assemble_verb(o);
-    if (*run_verb) return names_equations(o) ? run_equation_file(o) : run(o);
+    if (*run_verb) return equations ? run_equation_file(o) : run(o);
     if (*drift_verb) return drift(o, d);
-    if (*work_verb) return names_equations(o) ? work_on_equations(o, w) : work(o, w);
+    if (*work_verb) return equations ? work_on_equations(o, w) : work(o, w);
     if (*bench_verb) return bench(o, own_references);
     if (*evaluate_verb) return evaluate(o, state);
     if (*index_app)
-      return names_equations(o) ? index_of_equations(o) : index_verb(o, index_forms, index_state);
+      return equations ? index_of_equations(o) : index_verb(o, index_forms, index_state);
     if (*modes_app) return modes(o, modes_options);
     if (*view_verb) return view(o);
     if (*stress_app) return stress(o, stress_options);

@@ -282,8 +282,8 @@ EquationRun run(const EquationFile& file, const std::string& integrator, double 
 }
 
 TEST(EquationRuns, HaveTheOrderOfRadau) {
-  // x' = −x + z, z³ + z = sin t: order 5. The pendulum of index 3: 4 for positions, 3 for
-  // velocities, 2 for λ.
+  // x' = −x + z, z³ + z = sin t: order 5. The pendulum of index 3: at least 4 for
+  // positions, 3 for velocities, 2 for λ.
   const EquationFile one =
       file_of({"x", "z"}, {"der(x) = -x + z", "z^3 + z = sin(t)"}, "[run]\nend = 2\n");
   const EquationFile three = read_equations(example("suites/ivp/pendulum.toml"), {{"run.end", 1}});
@@ -301,9 +301,9 @@ TEST(EquationRuns, HaveTheOrderOfRadau) {
     return std::log2(error(h) / error(h / 2));
   };
   EXPECT_NEAR(order(one, 0, 2, 0.2), 5, 0.4);
-  EXPECT_NEAR(order(three, 0, 2, 0.02), 4, 0.5);
-  EXPECT_NEAR(order(three, 2, 2, 0.02), 3, 0.5);
-  EXPECT_NEAR(order(three, 4, 1, 0.02), 2, 0.5);
+  EXPECT_GT(order(three, 0, 2, 0.05), 3.8);
+  EXPECT_NEAR(order(three, 2, 2, 0.05), 3, 0.3);
+  EXPECT_NEAR(order(three, 4, 1, 0.05), 2, 0.3);
 }
 
 TEST(EquationRuns, OfBothMethodsEndAlike) {
