@@ -176,6 +176,26 @@ TEST(Equations, CombinationsHideTheIndexFromStructure) {
     EXPECT_NEAR(there.point.y[j], here.point.y[j], 1e-10) << unknowns[static_cast<std::size_t>(j)];
 }
 
+TEST(Equations, OfTheExamplesHaveTheirIndices) {
+  struct Expected {
+    const char* file;
+    int index, structural;
+  };
+  for (const Expected& e :
+       {Expected{"suites/ivp/akzo_nobel.toml", 1, 1},
+        Expected{"suites/ivp/transistor_amplifier.toml", 1, 0},
+        Expected{"suites/ivp/slider_crank.toml", 2, 2}, Expected{"suites/ivp/pendulum.toml", 3, 3},
+        Expected{"suites/ivp/car_axis.toml", 3, 3}, Expected{"suites/structure/pairs.toml", 1, 3},
+        Expected{"suites/structure/turned_pendulum.toml", 3, 1}}) {
+    SCOPED_TRACE(e.file);
+    const EquationStart found = equation_start(read_equations(example(e.file)));
+    ASSERT_EQ(found.point.why, "");
+    EXPECT_EQ(found.point.found.index, e.index);
+    EXPECT_EQ(found.offsets.index, e.structural);
+    EXPECT_EQ(found.structure_holds(), e.index == e.structural);
+  }
+}
+
 TEST(Equations, WhereTheJacobianIsRegularStructureIsABound) {
   // Linear systems with whole numbers: the differentiation index is at most the structural one
   // where the determinant is not zero (Pryce).
