@@ -24,6 +24,25 @@ namespace {
 
 using structure::at;
 
+/// About the time of the motion: of an equation that has both, ∂F/∂y' over ∂F/∂y at the guess; the
+/// geometric mean over equations.
+double time_scale(const EquationFile& file) {
+  Slopes<double> slopes(file);
+  slopes.evaluate_at(file.start, file.values.data(), file.rates.data());
+  std::vector<double> by_y(at(file.size())), by_rate(at(file.size()));
+  for (std::size_t k = 0; k < slopes.entries().size(); ++k) {
+    const auto& e = slopes.entries()[k];
+    double& largest = (e.of_rate ? by_rate : by_y)[at(e.equation)];
+    largest = std::max(largest, std::abs(slopes.values()[k]) * file.scales[at(e.variable)]);
+  }
+  double sum = 0;
+  int count = 0;
+  for (std::size_t i = 0; i < by_y.size(); ++i)
+    if (const double ratio = by_rate[i] / by_y[i]; std::isfinite(ratio) && ratio > 0)
+      sum += std::log(ratio), ++count;
+  return count > 0 ? std::exp(sum / count) : (file.end - file.start) / 100;
+}
+
 SystemJacobian system_jacobian(const EquationFile& file, const structure::Offsets& offsets,
                                double t, const Eigen::VectorXd& y, const Eigen::VectorXd& ydot) {
   const int n = file.size();
@@ -115,7 +134,7 @@ Eigen::VectorXd start_scales(const EquationFile& file, const std::vector<char>& 
 EquationStart equation_start(const EquationFile& file) {
   const int n = file.size();
   EquationStart start;
-  start.time_scale = (file.end - file.start) / 100;
+  start.time_scale = time_scale(file);
   const structure::Signature signature = file.signature();
   start.offsets = *structure::sigma_method(signature);  // the reader saw to an assignment
   start.pantelides = structure::pantelides(signature);

@@ -112,6 +112,32 @@ TEST(Equations, OrderIsNothingToTheIndex) {
   }
 }
 
+TEST(Equations, NeitherUnitsOfTimeNorTheEndAreAnythingToTheIndex) {
+  // The pendulum with time in units of k seconds: x' = k u and so on.
+  for (const double k : {1e-4, 1e-2, 1e2, 1e4}) {
+    SCOPED_TRACE(k);
+    const std::string unit = reading::digits(k) + "*";
+    const EquationStart found = equation_start(file_of(
+        unknowns,
+        {"der(x) = " + unit + "u", "der(y) = " + unit + "v", "der(u) = -" + unit + "x*lambda",
+         "der(v) = " + unit + "(-y*lambda - 9.81)", "x^2 + y^2 = 1"},
+        swinging));
+    ASSERT_EQ(found.point.why, "");
+    EXPECT_EQ(found.point.found.index, 3);
+    EXPECT_TRUE(found.structure_holds());
+  }
+  for (const double end : {1e-4, 1e4})
+    for (const char* name : {"ivp/car_axis", "ivp/transistor_amplifier", "ivp/akzo_nobel",
+                             "structure/turned_pendulum"}) {
+      SCOPED_TRACE(name);
+      const std::string file = std::string("suites/") + name + ".toml";
+      EquationFile here = read_equations(example(file));
+      const int index = equation_start(here).point.found.index;
+      here.end = end;
+      EXPECT_EQ(equation_start(here).point.found.index, index);
+    }
+}
+
 // ---- where structure and index part ------------------------------------------------------------
 
 TEST(Equations, StructureMayDifferentiateMoreThanIndexOne) {
