@@ -459,6 +459,25 @@ TEST(EquationReferences, StartOnHiddenConstraintsToTheLastDigit) {
   EXPECT_LT(std::abs(value_of(rate[4] + Quad(3.0) * g * y[3])), 1e-27);
 }
 
+TEST(EquationRuns, CountDigitsAsTheTestSetDoes) {
+  EquationFile file =
+      file_of({"x", "y", "z"}, {"der(x) = 1", "der(y) = 1", "der(z) = 1"}, "scales = { y = 10 }\n");
+  EquationRun run;
+  run.done = true;
+  run.rtol = 1e-6;
+  run.atol = 1e-7;
+  run.last = {1.001, 2e-3, 5};
+  const Digits all = digits_of(run, file, {1, 1e-3, 1}, {1, 1, 0});
+  EXPECT_NEAR(all.scd, 0, 1e-9) << "y by as much as it is";
+  EXPECT_NEAR(all.mescd, -std::log10(1e-3 / 1.001), 1e-9) << "y over atol/rtol · 10 + |r|";
+  const Digits first = digits_of(run, file, {1, 1e-3, 1}, {1, 0, 0});
+  EXPECT_NEAR(first.scd, 3, 1e-9);
+  EXPECT_NEAR(first.mescd, -std::log10(1e-3 / 1.1), 1e-9);
+  EXPECT_EQ(digits_of(run, file, {1.001, 0, 0}, {1, 0, 0}).scd, 17);
+  run.done = false;
+  EXPECT_TRUE(std::isnan(digits_of(run, file, {1, 1e-3, 1}, {1, 1, 0}).scd));
+}
+
 TEST(EquationRuns, GainDigitsWithTheTolerance) {
   for (const char* name :
        {"akzo_nobel.toml", "slider_crank.toml", "pendulum.toml", "car_axis.toml"}) {
