@@ -283,7 +283,8 @@ int answer(int argc, char** argv) {
     if (!o.level.empty()) momenta::use_level(std::stoi(o.level));
     const bool equations = names_equations(o);
     if (equations && !*run_verb && !*index_app && !*work_verb)
-      throw std::invalid_argument(o.scene.string() + " holds equations, expected a scene; run, "
+      throw std::invalid_argument(o.scene.string() +
+                                  " holds equations, expected a scene; run, "
                                   "index, work and, in a suite, bench take equations");
     if (*check_verb) return check(o);
     if (*assemble_app) return assemble_verb(o);

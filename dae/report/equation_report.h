@@ -22,6 +22,8 @@ std::string equation_run_table(const EquationFile&, const EquationStart&, const 
                                const Digits&);
 nlohmann::ordered_json equation_run_json(const EquationFile&, const EquationStart&,
                                          const EquationRun&, const Digits&, const Environment&);
+/// One run of summary.json or of a suite: method, tolerances, status, counters, digits.
+nlohmann::ordered_json equation_run_json(const EquationRun&, const Digits&);
 /// trajectory.csv: t and a column for each variable, one row an output time.
 std::string equation_trajectory(const EquationFile&, const EquationRun&);
 
