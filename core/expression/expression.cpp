@@ -22,6 +22,15 @@ class Listed final : public FormulaNames {
     const std::string meant = reading::did_you_mean(name, near);
     return !meant.empty() ? meant : ", expected one of: " + reading::listed(near);
   }
+  std::string expected_in_brackets(std::string_view word, std::string_view name) const override {
+    std::vector<std::string_view> near;
+    const std::string opened = std::string(word) + "(";
+    for (const std::string& one : names_)
+      if (one.starts_with(opened)) near.push_back(one);
+    if (near.empty()) return "";
+    const std::string meant = reading::did_you_mean(name, near);
+    return !meant.empty() ? meant : ", expected one of: " + reading::listed(near);
+  }
 
  private:
   std::span<const std::string> names_;

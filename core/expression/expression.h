@@ -11,7 +11,8 @@
 //
 // So −a^2 = −(a²), 2^3^2 = 2^9, a < b < c is refused. Names are letters, digits and _, begin with a
 // letter, and may have dots between; the first of them may stand in single quotes and then has any
-// other characters: 'left-knee'.q. Comparisons give truths, which and, or, not and if() take and
+// other characters: 'left-knee'.q. A caller may know names with brackets, "der(x)"; they are no
+// calls. Comparisons give truths, which and, or, not and if() take and
 // nothing else does; a truth is no number.
 //
 // A formula is kept as a tape: one instruction a line, each of numbers found by those before it;
@@ -67,6 +68,9 @@ class FormulaNames {
   virtual std::vector<std::string_view> functions() const { return {}; }
   /// How the sentence about an unknown name ends: "; did you mean …?", or ", expected …".
   virtual std::string expected(std::string_view name) const = 0;
+  /// The same of a name with brackets, "der(x)", where there are such that begin with the word,
+  /// "der"; empty: there are none.
+  virtual std::string expected_in_brackets(std::string_view, std::string_view) const { return {}; }
 };
 
 /// A formula read: y = f(x₀, x₁, …), or such with its derivatives.

@@ -239,6 +239,20 @@ class Parser {
                      ", expected an operator after the number");
     return x;
   }
+  /// "der(x)" from a name and the brackets behind it, without blanks; empty: they do not close.
+  std::string with_brackets(std::size_t from) const {
+    const std::size_t close = text_.find(')', from);
+    std::string whole;
+    if (close != std::string_view::npos)
+      for (const char c : text_.substr(from, close + 1 - from))
+        if (c != ' ' && c != '\t' && c != '\n') whole += c;
+    return whole;
+  }
+  Term of_name(const FormulaNames::Meaning& known, std::size_t from) {
+    return {known.variable < 0 ? tape_.number(known.number)
+                               : tape_.add({Operation::variable, known.variable, -1, -1, 0}),
+            false, from};
+  }
   Term named(std::size_t from) {
     const std::string_view word = word_at(from);
     at_ += word.size();
@@ -250,10 +264,18 @@ class Parser {
     if (called)
       if (auto spline = names_.function(word)) return value_of(std::move(spline), word, from);
     if (!called)
-      if (const auto known = names_.meaning(word, from))
-        return {known->variable < 0 ? tape_.number(known->number)
-                                    : tape_.add({Operation::variable, known->variable, -1, -1, 0}),
-                false, from};
+      if (const auto known = names_.meaning(word, from)) return of_name(*known, from);
+    if (called) {
+      const std::string whole = with_brackets(from);
+      const std::string_view name = whole.empty() ? word : std::string_view(whole);
+      const std::string expected = names_.expected_in_brackets(word, name);
+      if (!expected.empty()) {
+        const auto known = names_.meaning(name, from);
+        if (!known) fail(from, "unknown name " + reading::in_quotes(name) + expected);
+        at_ = text_.find(')', at_) + 1;
+        return of_name(*known, from);
+      }
+    }
     if (word == "pi" && !called) return {tape_.number(std::numbers::pi), false, from};
     if (function != functions.end())
       fail(from,

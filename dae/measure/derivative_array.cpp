@@ -5,12 +5,11 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <optional>
 
 namespace momenta {
 namespace {
 
-constexpr double rounding_only =
-    1e-9;  // rows and columns below this, of the largest, are not scaled up
 constexpr double clear_zero = 1e-9;  // what a rank leaves out is below this
 constexpr double consistent = 1e-9;  // equilibrated residual of the derivatives
 constexpr double solved = 1e-13;
@@ -41,10 +40,10 @@ class Array {
     double before = std::numeric_limits<double>::infinity();
     Eigen::BDCSVD<Matrix> svd;
     for (int correction = 0;; ++correction) {
-      evaluate();
+      blocks_.emplace(system_, t_, curve_);
       Matrix g = jacobian(nu);
       Vector f(rows);
-      for (int i = 0; i <= nu; ++i) f.segment(i * n, n) = f_.col(i) * std::pow(time_, i);
+      for (int i = 0; i <= nu; ++i) f.segment(i * n, n) = blocks_->f.col(i) * std::pow(time_, i);
       if (!g.allFinite() || !f.allFinite()) {
         found.residual = std::numeric_limits<double>::infinity();
         return found;
@@ -73,49 +72,20 @@ class Array {
   /// Whether y'_i stands in F: column i of B_0 is not zero. After level().
   std::vector<bool> appears() const {
     std::vector<bool> there;
-    for (const auto& column : b_[0].colwise()) there.push_back(column.any());
+    for (const auto& column : blocks_->b[0].colwise()) there.push_back(column.any());
     return there;
   }
+  /// y' as the last level() found it.
+  Vector rate() const { return curve_.col(1); }
 
  private:
-  /// F and its blocks A_i, B_i: unknown by unknown, direction 0 along y, direction 1 along y'.
-  void evaluate() {
-    const int n = system_.size;
-    const auto at = [](int i) { return static_cast<std::size_t>(i); };
-    std::vector<Jet> y(at(n)), ydot(at(n)), r(at(n));
-    for (int i = 0; i < n; ++i)
-      for (int k = 0; k <= jet_order; ++k) {
-        y[at(i)].a.c[at(k)] = curve_(i, k);
-        if (k > 0) ydot[at(i)].a.c[at(k - 1)] = k * curve_(i, k);
-      }
-    f_ = Matrix::Zero(n, jet_order);
-    a_.assign(at(jet_order), Matrix::Zero(n, n));
-    b_.assign(at(jet_order), Matrix::Zero(n, n));
-    for (int j = 0; j < n; ++j) {
-      y[at(j)].b[0] = PowerSeries<jet_order>(1.0);
-      ydot[at(j)].b[1] = PowerSeries<jet_order>(1.0);
-      system_.equations(t_, y.data(), ydot.data(), r.data());
-      y[at(j)].b[0] = ydot[at(j)].b[1] = PowerSeries<jet_order>(0.0);
-      for (int i = 0; i < n; ++i)
-        for (int k = 0; k < jet_order; ++k) {
-          a_[at(k)](i, j) = r[at(i)].b[0].c[at(k)];
-          b_[at(k)](i, j) = r[at(i)].b[1].c[at(k)];
-          if (j == 0) f_(i, k) = r[at(i)].a.c[at(k)];
-        }
-    }
-  }
-
   /// G_ν with time in units of the time scale.
   Matrix jacobian(int nu) const {
     const int n = system_.size;
     Matrix g = Matrix::Zero((nu + 1) * n, (nu + 1) * n);
     for (int i = 0; i <= nu; ++i)
-      for (int j = 1; j <= std::min(i + 1, nu + 1); ++j) {
-        auto block = g.block(i * n, (j - 1) * n, n, n);
-        block = j * b_[static_cast<std::size_t>(i - j + 1)];
-        if (i >= j) block += a_[static_cast<std::size_t>(i - j)];
-        block *= std::pow(time_, i - j);
-      }
+      for (int j = 1; j <= i + 1; ++j)
+        g.block(i * n, (j - 1) * n, n, n) = blocks_->by(i, j) * std::pow(time_, i - j);
     return g;
   }
 
@@ -144,8 +114,7 @@ class Array {
   const CurveSystem& system_;
   double t_, time_;
   Matrix curve_;
-  Matrix f_;                   ///< F_i, one column each
-  std::vector<Matrix> a_, b_;  ///< A_i, B_i
+  std::optional<CurveBlocks> blocks_;
 };
 
 std::string text(const char* format, double x) {
@@ -175,26 +144,6 @@ RankFound rank_by_gap(const Eigen::VectorXd& values, double largest) {
   return found;
 }
 
-Eigen::VectorXd equilibrate(Eigen::MatrixXd& matrix, Eigen::VectorXd& right) {
-  Vector columns = Vector::Ones(matrix.cols());
-  for (int pass = 0; pass < 12; ++pass) {
-    const Vector row = matrix.rowwise().lpNorm<Eigen::Infinity>();
-    const Vector column = matrix.colwise().lpNorm<Eigen::Infinity>().transpose();
-    const double largest = row.maxCoeff();
-    for (Eigen::Index i = 0; i < matrix.rows(); ++i)
-      if (row[i] > rounding_only * largest) {
-        matrix.row(i) /= std::sqrt(row[i]);
-        right[i] /= std::sqrt(row[i]);
-      }
-    for (Eigen::Index j = 0; j < matrix.cols(); ++j)
-      if (column[j] > rounding_only * largest) {
-        matrix.col(j) /= std::sqrt(column[j]);
-        columns[j] /= std::sqrt(column[j]);
-      }
-  }
-  return columns;
-}
-
 IndexFound find_index(const CurveSystem& system, double t, const Eigen::VectorXd& y,
                       const Eigen::VectorXd& ydot, double time_scale, int most) {
   IndexFound found;
@@ -207,6 +156,7 @@ IndexFound find_index(const CurveSystem& system, double t, const Eigen::VectorXd
   for (int nu = 0; nu <= std::min(most, most_differentiations); ++nu) {
     found.levels.push_back(array.level(nu));
     const ArrayLevel& level = found.levels.back();
+    found.ydot = array.rate();
     if (nu == 0) found.appears = array.appears();
     const std::string after = " after " + std::to_string(nu) + " differentiations";
     if (!(level.residual <= consistent)) {

@@ -3,8 +3,7 @@
 //
 // Along a solution y(t + s) = Σ y_k s^k, F(t + s) = Σ F_i s^i, the equations F_0 = … = F_ν = 0 are
 // F and its first ν total derivatives: the derivative array. It is a system in the unknowns (y_1,
-// …, y_(ν+1)), with y_1 = y'. Let A(s) = ∂F/∂y and B(s) = ∂F/∂y' along the solution. A change δy_j
-// s^j of y changes F by (A(s) + B(s) j/s) s^j δy_j, so
+// …, y_(ν+1)), with y_1 = y', and has the matrix (measure/curve_blocks.h)
 //
 //   G_ν:  ∂F_i/∂y_j = A_(i−j) + j B_(i−j+1),        i = 0 … ν,  j = 1 … ν + 1
 //
@@ -13,28 +12,18 @@
 // constraints, given and hidden: (ν+1) N − rank G_ν of them, when its rows are independent in all
 // of (y, y_1, …).
 //
-// A and B come from F evaluated on series with two directions, exact to rounding; y_1 … from
-// Gauss-Newton on the array itself, so that nothing need be known of F but its values. Ranks are
-// read off singular values of the equilibrated matrix, and told with their gap.
+// y_1 … come from Gauss-Newton on the array itself, so that nothing need be known of F but its
+// values. Ranks are read off singular values of the equilibrated matrix, and told with their gap.
 //
 // Source: Campbell, Gear, The index of general nonlinear DAEs, Numer. Math. 72 (1995); Brenan,
 // Campbell, Petzold, Numerical Solution of Initial-Value Problems in DAEs, chapter 2.
 
-#include <momenta/core/scalar/power_series.h>
+#include <momenta/dae/measure/curve_blocks.h>
 
-#include <Eigen/Core>
-#include <functional>
 #include <string>
 #include <vector>
 
 namespace momenta {
-
-/// F(t, y, y') = 0 of `size` equations in as many unknowns, on curves: y, y' and F are arrays of
-/// `size`, y' that of the same curve.
-struct CurveSystem {
-  int size = 0;
-  std::function<void(double t, const Jet* y, const Jet* ydot, Jet* r)> equations;
-};
 
 /// A rank with what speaks for it: the smallest singular value that counts and the largest that
 /// does not, over the largest of all (no less than rounding).
@@ -47,9 +36,6 @@ struct RankFound {
 /// Cuts descending singular values where the ratio of neighbours is largest. `largest`: the value
 /// rounding is measured against.
 RankFound rank_by_gap(const Eigen::VectorXd& values, double largest);
-/// Rows and columns brought to a largest entry near 1 (Ruiz 2001), those that are nothing but
-/// rounding left alone. @return the column factors
-Eigen::VectorXd equilibrate(Eigen::MatrixXd& matrix, Eigen::VectorXd& right);
 
 /// The array after `differentiations`.
 struct ArrayLevel {
@@ -68,6 +54,7 @@ struct IndexFound {
   std::string why;  ///< one sentence when there is no index
   std::vector<ArrayLevel> levels;
   std::vector<bool> appears;  ///< whether y'_i stands in F; the others are algebraic unknowns
+  Eigen::VectorXd ydot;       ///< y' that meets the last level
 };
 
 inline constexpr int most_differentiations = jet_order - 1;

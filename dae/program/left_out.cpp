@@ -42,6 +42,18 @@ int evaluate(const Options&, const std::string&) {
 int index_verb(const Options&, const std::string&, const std::string&) {
   return left_out("index");
 }
+int run_equation_file(const Options&) {
+  return left_out("run of equations");
+}
+int index_of_equations(const Options&) {
+  return left_out("index");
+}
+int work_on_equations(const Options&, const WorkOptions&) {
+  return left_out("work");
+}
+int bench(const Options&, bool) {
+  return left_out("bench");
+}
 int convert(const Options&, const ConvertOptions&) {
   return left_out("convert");
 }

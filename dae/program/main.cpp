@@ -93,6 +93,22 @@ int answer(int argc, char** argv) {
        {"--integrator", "--rtol", "--atol", "--spectral-radius", "--project", "--no-project",
         "--baumgarte-alpha", "--baumgarte-beta", "--beta", "--penalty"})
     work_verb->remove_option(work_verb->get_option(unused));
+  CLI::App* bench_verb = app.add_subcommand("bench", "A suite of files of equations, scored");
+  bench_verb->footer("Example: momenta bench examples/suites/ivp/suite.toml --out results");
+  bool own_references = false;
+  bench_verb->add_option("suite", o.scene, "TOML file that lists problems, methods, tolerances")
+      ->required()
+      ->type_name("FILE");
+  bench_verb->add_flag("--own-references", own_references,
+                       "References are made anew, in quadruple precision");
+  positive(
+      bench_verb->add_option("--cpu-limit", o.cpu_limit, "CPU time of a run [s] (default: 60)"),
+      "S");
+  add_timing(*bench_verb, o);
+  bench_verb->add_option("--out", o.out, "Directory for bench.csv, bench.json, index.html")
+      ->type_name("DIR");
+  bench_verb->add_flag("--json", o.json, "One JSON document on standard output");
+  bench_verb->add_flag("--quiet", o.quiet, "No progress, no table");
   CLI::App* evaluate_verb =
       app.add_subcommand("evaluate", "Everything at one state, as one JSON document");
   evaluate_verb->footer(
@@ -257,6 +273,7 @@ int answer(int argc, char** argv) {
     o.asked = verb->get_name();
     for (const CLI::Option* option : verb->get_options()) {
       const std::string name = option->get_name();
+      if (option->count() > 0 && name.starts_with("--")) o.given.push_back(name);
       if (option->count() == 0 || name == "scene" || name == "--reference" || name == "--out" ||
           name == "--figures" || name == "--json" || name == "--quiet" || name == "--threads")
         continue;
@@ -265,13 +282,20 @@ int answer(int argc, char** argv) {
   }
   try {
     if (!o.level.empty()) momenta::use_level(std::stoi(o.level));
+    const bool equations = names_equations(o);
+    if (equations && !*run_verb && !*index_app && !*work_verb)
+      throw std::invalid_argument(o.scene.string() +
+                                  " holds equations, expected a scene; run, "
+                                  "index, work and, in a suite, bench take equations");
     if (*check_verb) return check(o);
     if (*assemble_app) return assemble_verb(o);
-    if (*run_verb) return run(o);
+    if (*run_verb) return equations ? run_equation_file(o) : run(o);
     if (*drift_verb) return drift(o, d);
-    if (*work_verb) return work(o, w);
+    if (*work_verb) return equations ? work_on_equations(o, w) : work(o, w);
+    if (*bench_verb) return bench(o, own_references);
     if (*evaluate_verb) return evaluate(o, state);
-    if (*index_app) return index_verb(o, index_forms, index_state);
+    if (*index_app)
+      return equations ? index_of_equations(o) : index_verb(o, index_forms, index_state);
     if (*modes_app) return modes(o, modes_options);
     if (*view_verb) return view(o);
     if (*stress_app) return stress(o, stress_options);

@@ -2,6 +2,7 @@
 
 #include <momenta/core/scene/files/read_scene.h>
 #include <momenta/core/scene/toml/write_scene.h>
+#include <momenta/dae/equations/holds_equations.h>
 #include <momenta/dae/report/atomic_write.h>
 #include <momenta/dae/report/csv.h>
 #include <momenta/dae/report/page.h>
@@ -202,6 +203,12 @@ MechanismOptions mechanism_options(const Options& o) {
   return options;
 }
 
+bool names_equations(const Options& o) {
+  std::error_code error;
+  return o.scene.extension() == ".toml" && std::filesystem::is_regular_file(o.scene, error) &&
+         holds_equations(content_of(o.scene));
+}
+
 std::unique_ptr<Mechanism> load(const Options& o) {
   expect_place_for_figures(o);
   return std::make_unique<Mechanism>(read(o), mechanism_options(o));
@@ -272,8 +279,8 @@ std::vector<std::string> names_in(const std::string& list) {
 }
 
 void expect_own_results(const std::filesystem::path& out, std::string_view own) {
-  for (const std::string_view name :
-       {"trajectory.csv", "run.h5", "study.csv", "stress.json", "sweep.csv", "modes.csv"})
+  for (const std::string_view name : {"trajectory.csv", "run.h5", "study.csv", "stress.json",
+                                      "sweep.csv", "modes.csv", "bench.csv"})
     if (name != own && !(name == "run.h5" && own == "trajectory.csv") && !out.empty() &&
         std::filesystem::exists(out / name))
       throw std::invalid_argument("--out " + out.string() + " holds the " + std::string(name) +

@@ -23,6 +23,7 @@ inline constexpr int done = 0, run_failed = 1, bad_input = 2;
 struct Options {
   std::string command;  ///< as typed
   std::string asked;    ///< the verb and its options, but for where and how results are told
+  std::vector<std::string> given;  ///< names of the options that were given
   std::filesystem::path scene;
   ReadOptions reading;           ///< what a URDF does not say
   std::vector<std::string> set;  ///< numbers in place of the scene's: PLACE=NUMBER
@@ -156,6 +157,8 @@ struct WorkOptions {
   bool no_reference = false;  ///< judge by drift alone
 };
 int work(const Options& o, const WorkOptions& w);
+/// 1e-4, 1e-5, … through the tolerances asked for. @throws std::invalid_argument
+std::vector<double> tolerance_rungs(const WorkOptions& w);
 struct StressOptions {
   std::string forms, integrators, along;  ///< comma-separated; empty: the usual ones, all ladders
   double within = 1e-3;
@@ -180,6 +183,14 @@ int modes(const Options& o, const ModesOptions& m);
 int evaluate(const Options& o, const std::string& state);
 /// `forms`: comma-separated, empty: all. `state`: as for evaluate; empty: the start.
 int index_verb(const Options& o, const std::string& forms, const std::string& state);
+/// Whether the file that is named holds equations in place of a scene.
+bool names_equations(const Options& o);
+/// The verbs, of files of equations.
+int run_equation_file(const Options& o);
+int index_of_equations(const Options& o);
+int work_on_equations(const Options& o, const WorkOptions& w);
+/// Runs a suite of files of equations; `own`: references are made anew.
+int bench(const Options& o, bool own);
 struct ConvertOptions {
   std::filesystem::path out;      ///< empty or "-": standard output
   bool recut = false;             ///< loops cut where they are carried with the least work

@@ -14,8 +14,9 @@ namespace {
 
 constexpr int own_reference_rows = 100;
 
-/// 1e-4, 1e-5, … through the tolerances asked for.
-std::vector<double> rungs(const WorkOptions& w) {
+}  // namespace
+
+std::vector<double> tolerance_rungs(const WorkOptions& w) {
   if (!(w.tightest <= w.loosest))
     throw std::invalid_argument("--from " + compact(w.loosest, 3) + " --to " +
                                 compact(w.tightest, 3) +
@@ -28,8 +29,6 @@ std::vector<double> rungs(const WorkOptions& w) {
   return tolerances;
 }
 
-}  // namespace
-
 int work(const Options& o, const WorkOptions& w) {
   const auto mechanism = load(o);
   auto reference = load_reference(o, *mechanism);
@@ -41,7 +40,7 @@ int work(const Options& o, const WorkOptions& w) {
   request.integrators = names_in(w.integrators);
   for (const auto& name : request.integrators) integrator(name);
   if (!o.gauge.empty()) request.gauge = parse_gauge(o.gauge).text();
-  request.tolerances = rungs(w);
+  request.tolerances = tolerance_rungs(w);
   request.end_time = o.end.value_or(defaults.end_time);
   const double step = o.step.value_or(defaults.step.value_or(request.end_time / 500));
   for (int i = 0; i < w.step_rungs; ++i) request.steps.push_back(std::ldexp(step, 1 - i));

@@ -7,34 +7,6 @@
 namespace momenta {
 namespace {
 
-/// "4 2 0": one number for each level.
-std::string over_levels(const IndexFound& found, int ArrayLevel::*number) {
-  std::string all;
-  for (const ArrayLevel& level : found.levels)
-    all += (all.empty() ? "" : " ") + std::to_string(level.*number);
-  return all;
-}
-
-double smallest_gap(const IndexFound& found) {
-  double gap = found.levels.empty() ? 0 : found.levels.front().gap;
-  for (const ArrayLevel& level : found.levels) gap = std::min(gap, level.gap);
-  return gap;
-}
-
-std::string rows_of(const std::vector<std::vector<std::string>>& table) {
-  std::vector<std::size_t> widths(table.front().size(), 0);
-  for (const auto& row : table)
-    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], width(row[i]));
-  std::string text;
-  for (const auto& row : table) {
-    std::string line;
-    for (std::size_t i = 0; i < row.size(); ++i) line += padded(row[i], widths[i] + 2);
-    line.erase(line.find_last_not_of(' ') + 1);
-    text += line + "\n";
-  }
-  return text;
-}
-
 std::string unknowns_text(const FormIndex& f) {
   if (!f.dae) return "q, " + (f.words.x.empty() ? "x" : f.words.x);
   std::string text;
@@ -96,6 +68,19 @@ std::string lambda_or_sigma(const IndexStudy& study) {
 
 }  // namespace
 
+std::string over_levels(const IndexFound& found, int ArrayLevel::*number) {
+  std::string all;
+  for (const ArrayLevel& level : found.levels)
+    all += (all.empty() ? "" : " ") + std::to_string(level.*number);
+  return all;
+}
+
+double smallest_gap(const IndexFound& found) {
+  double gap = found.levels.empty() ? 0 : found.levels.front().gap;
+  for (const ArrayLevel& level : found.levels) gap = std::min(gap, level.gap);
+  return gap;
+}
+
 std::string index_table(const IndexStudy& study) {
   std::string text = study.scene + ": " + std::to_string(study.nq) + " coordinates, " +
                      std::to_string(study.nv) + " rates, " + std::to_string(study.m) +
@@ -124,7 +109,7 @@ std::string index_table(const IndexStudy& study) {
                      over_levels(f.found, &ArrayLevel::constraints), std::to_string(f.unknowns),
                      scientific(smallest_gap(f.found), 1)});
   }
-  text += rows_of(table);
+  text += in_columns(table);
   text +=
       "\ny' free: directions of y' that F = 0 and its first ν = 0, 1, … time derivatives leave "
       "open; "
@@ -132,6 +117,19 @@ std::string index_table(const IndexStudy& study) {
       "smallest singular value that counts over largest that does not, the least of all ranks.\n";
   for (const auto& f : study.forms) text += details(f, study.m);
   return text + lambda_or_sigma(study);
+}
+
+nlohmann::ordered_json levels_json(const IndexFound& found) {
+  auto levels = nlohmann::ordered_json::array();
+  for (const ArrayLevel& level : found.levels)
+    levels.push_back({{"differentiations", level.differentiations},
+                      {"equations", level.equations},
+                      {"rank", level.rank},
+                      {"constraints", level.constraints},
+                      {"free", level.undetermined},
+                      {"gap", number_or_null(level.gap)},
+                      {"residual", number_or_null(level.residual)}});
+  return levels;
 }
 
 nlohmann::ordered_json index_json(const IndexStudy& study) {
@@ -164,15 +162,7 @@ nlohmann::ordered_json index_json(const IndexStudy& study) {
       form["index"] = f.found.index < 0 ? Json(nullptr) : Json(f.found.index);
       form["decided"] = f.found.decided;
       form["why"] = f.found.why;
-      form["levels"] = Json::array();
-      for (const ArrayLevel& level : f.found.levels)
-        form["levels"].push_back({{"differentiations", level.differentiations},
-                                  {"equations", level.equations},
-                                  {"rank", level.rank},
-                                  {"constraints", level.constraints},
-                                  {"free", level.undetermined},
-                                  {"gap", number_or_null(level.gap)},
-                                  {"residual", number_or_null(level.residual)}});
+      form["levels"] = levels_json(f.found);
       form["blocks"] = Json::array();
       for (const UnknownBlock& b : f.blocks)
         form["blocks"].push_back(

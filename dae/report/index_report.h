@@ -13,4 +13,11 @@ std::string index_table(const IndexStudy&);
 
 nlohmann::ordered_json index_json(const IndexStudy&);
 
+/// "4 2 0": one number for each level of the array.
+std::string over_levels(const IndexFound&, int ArrayLevel::*number);
+/// Smallest gap of all ranks; 0 without levels.
+double smallest_gap(const IndexFound&);
+/// One object a level.
+nlohmann::ordered_json levels_json(const IndexFound&);
+
 }  // namespace momenta

@@ -23,20 +23,6 @@ const Mode* lowest(const ModesResult& r) {
   return nullptr;
 }
 
-std::string table_of(const std::vector<std::vector<std::string>>& rows) {
-  std::vector<std::size_t> widest(rows.front().size(), 0);
-  for (const auto& row : rows)
-    for (std::size_t i = 0; i < row.size(); ++i) widest[i] = std::max(widest[i], width(row[i]));
-  std::string text;
-  for (const auto& row : rows) {
-    std::string line;
-    for (std::size_t i = 0; i < row.size(); ++i) line += padded(row[i], widest[i] + 2);
-    line.erase(line.find_last_not_of(' ') + 1);
-    text += line + "\n";
-  }
-  return text;
-}
-
 bool any_complex(const ModesResult& r) {
   return std::any_of(r.spectrum.modes.begin(), r.spectrum.modes.end(),
                      [](const Mode& mode) { return !mode.real; });
@@ -108,7 +94,7 @@ std::string modes_table(const ModesResult& r) {
                     swings ? compact(mode.damping_ratio(), 4) : "-", compact(mode.s.real(), 4),
                     largest_entries(r, mode)});
   }
-  return text + "\n" + table_of(rows);
+  return text + "\n" + in_columns(rows);
 }
 
 std::string modes_csv(const ModesResult& r) {

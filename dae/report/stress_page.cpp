@@ -178,6 +178,8 @@ std::string stress_page(const StressResult& study, const std::string& title) {
   for (const LadderResult& ladder : study.ladders) main += ladder_section(study, ladder);
   return filled(embedded::stress_html(),
                 {{"title", escape_html(title)},
+                 {"kind", "Extremes"},
+                 {"about", "extremes"},
                  {"answer", answer(study)},
                  {"main", main + how_section(study)},
                  {"page_css", std::string(embedded::page_css())},

@@ -3,6 +3,7 @@
 // decimal point.
 
 #include <string>
+#include <vector>
 
 namespace momenta {
 
@@ -31,5 +32,7 @@ std::string time_text(double seconds);
 std::size_t width(const std::string& text);
 /// With spaces behind it to that width.
 std::string padded(const std::string& text, std::size_t to);
+/// Rows of a table, one a line, each column as wide as its widest cell and two blanks.
+std::string in_columns(const std::vector<std::vector<std::string>>& rows);
 
 }  // namespace momenta

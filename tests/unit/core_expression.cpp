@@ -253,6 +253,29 @@ TEST(Expression, MistakesAreNamedWithTheirPlace) {
   }
 }
 
+TEST(Expression, NamesMayHaveBrackets) {
+  const std::vector<std::string> with{"x", "der(x)", "der"};
+  const double values[]{3, 5, 7};
+  const auto value = [&](const char* text) { return Expression(text, with)(values); };
+  EXPECT_EQ(value("der(x) - x"), 2);
+  EXPECT_EQ(value("2*der ( x )^2"), 50);
+  EXPECT_EQ(value("sin(der(x))"), std::sin(5.0));
+  EXPECT_EQ(value("der + (x)"), 10);
+  EXPECT_EQ(Expression("der(x) + der(x)*x", with).variables(), (std::vector<int>{0, 1}));
+  const auto sentence = [&](const char* text) {
+    try {
+      (void)Expression(text, with);
+    } catch (const ExpressionError& e) {
+      return std::to_string(e.place()) + " " + e.what();
+    }
+    return std::string("is read");
+  };
+  EXPECT_EQ(sentence("1 + der(y)"), "4 unknown name 'der(y)'; did you mean 'der(x)'?");
+  EXPECT_EQ(sentence("der(x + 1)"), "0 unknown name 'der(x+1)'; did you mean 'der(x)'?");
+  EXPECT_EQ(sentence("der(x"), "0 unknown name 'der', expected one of: der(x)");
+  EXPECT_EQ(sentence("dot(x)").substr(0, 24), "0 unknown function 'dot'");
+}
+
 TEST(Expression, BoundsHowDeepAndHowLongItIs) {
   EXPECT_THROW(Expression(std::string(5000, '(') + "1" + std::string(5000, ')'), names),
                ExpressionError);

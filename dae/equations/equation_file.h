@@ -1,0 +1,72 @@
+#pragma once
+// A file of equations F(t, y, y') = 0: what it says, checked, its formulas read.
+//
+//   [dae]
+//   name = "pendulum"
+//   variables = ["x", "y", "u", "v", "lambda"]
+//   equations = ["der(x) = u", "der(y) = v", "der(u) = -x*lambda", "der(v) = -y*lambda - g",
+//                "x^2 + y^2 = 1"]
+//   values = { x = 1 }           # a guess of the start; 0 where none is given
+//   [parameters]
+//   g = 9.81
+//
+// An equation is two formulas (core/expression/expression.h) with = between, or one that is to be
+// zero, of t, variables, der() of variables and parameters.
+
+#include <momenta/core/expression/expression.h>
+#include <momenta/core/scene/location.h>
+#include <momenta/core/scene/toml/setting.h>
+#include <momenta/dae/structure/signature.h>
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace momenta {
+
+struct EquationFile {
+  struct Equation {
+    std::string text;
+    Location at;
+    Expression formula;  ///< left side less right side
+  };
+  /// The solution at one time, as far as it is given.
+  struct Reference {
+    double t = 0;
+    std::vector<double> values;  ///< by variable; NaN: not given
+    std::vector<char> judged;    ///< whether errors are measured in it
+  };
+
+  std::string file, name;
+  std::vector<std::string> variables;
+  std::vector<Equation> equations;    ///< as many as variables
+  std::vector<double> parameters;     ///< their values
+  std::vector<double> values, rates;  ///< the guess of the start, by variable
+  std::vector<double> scales;         ///< typical sizes, by variable
+  std::vector<char> held;             ///< start values that stay as they are
+  double start = 0, end = 1;
+  int samples = 1000;
+  std::string integrator;  ///< empty: by the index
+  std::optional<Reference> reference;
+
+  int size() const { return static_cast<int>(variables.size()); }
+  /// Numbers that formulas take: t, then y, y', parameters.
+  std::size_t arguments() const { return 1 + 2 * variables.size() + parameters.size(); }
+  /// σ_ij: 1 where der(x_j) stands in equation i, 0 where x_j does.
+  structure::Signature signature() const;
+  /// "equation 3, 'x^2 + y^2 = 1'".
+  std::string name_of(int equation) const;
+  /// "file:line: ".
+  std::string where(Location at) const;
+};
+
+/// @throws SceneError: one sentence with file, line, what was found and what was expected;
+/// structurally singular systems are refused with the equations and variables to blame
+EquationFile parse_equations(std::string_view text, const std::string& file,
+                             const std::vector<Setting>& settings = {});
+EquationFile read_equations(const std::filesystem::path& file,
+                            const std::vector<Setting>& settings = {});
+
+}  // namespace momenta

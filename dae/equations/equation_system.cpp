@@ -1,0 +1,91 @@
+#include <momenta/dae/equations/equation_system.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace momenta {
+
+namespace {
+constexpr int largest_dense = 40;
+}  // namespace
+
+EquationSystem::EquationSystem(const EquationFile& file, const EquationStart& start)
+    : file_(file), start_(start), residual_(file), slopes_(file) {
+  const auto n = static_cast<std::size_t>(file.size());
+  const auto& entries = slopes_.entries();
+  place_.resize(entries.size());
+  if (file.size() <= largest_dense) {
+    stored_ = n * n;
+    for (std::size_t k = 0; k < entries.size(); ++k)
+      place_[k] = static_cast<std::size_t>(entries[k].variable) * n +
+                  static_cast<std::size_t>(entries[k].equation);
+    return;
+  }
+  std::vector<std::vector<long>> rows(n);
+  for (const auto& e : entries) rows[static_cast<std::size_t>(e.variable)].push_back(e.equation);
+  pattern_.column_start.push_back(0);
+  for (auto& column : rows) {
+    std::sort(column.begin(), column.end());
+    column.erase(std::unique(column.begin(), column.end()), column.end());
+    pattern_.row.insert(pattern_.row.end(), column.begin(), column.end());
+    pattern_.column_start.push_back(static_cast<long>(pattern_.row.size()));
+  }
+  stored_ = pattern_.row.size();
+  for (std::size_t k = 0; k < entries.size(); ++k) {
+    const auto j = static_cast<std::size_t>(entries[k].variable);
+    const auto begin = pattern_.row.begin() + pattern_.column_start[j],
+               end = pattern_.row.begin() + pattern_.column_start[j + 1];
+    place_[k] = static_cast<std::size_t>(std::lower_bound(begin, end, entries[k].equation) -
+                                         pattern_.row.begin());
+  }
+}
+
+bool EquationSystem::residual(double t, const double* y, const double* ydot, double* r) {
+  residual_(t, y, ydot, r);
+  for (int i = 0; i < size(); ++i)
+    if (!std::isfinite(r[i]))
+      return fail(file_.name_of(i) + ", line " +
+                  std::to_string(file_.equations[static_cast<std::size_t>(i)].at.line) +
+                  ", is not a finite number");
+  return true;
+}
+
+bool EquationSystem::jacobian(double t, const double* y, const double* ydot, double c,
+                              double* values) {
+  std::fill_n(values, stored_, 0.0);
+  slopes_.evaluate_at(t, y, ydot);
+  const auto& entries = slopes_.entries();
+  for (std::size_t k = 0; k < entries.size(); ++k) {
+    const double slope = slopes_.values()[k];
+    if (!std::isfinite(slope))
+      return fail("a derivative of " + file_.name_of(entries[k].equation) +
+                  ", is not a finite number");
+    values[place_[k]] += entries[k].of_rate ? c * slope : slope;
+  }
+  return true;
+}
+
+bool EquationSystem::start(double /*t*/, double* y, double* ydot) {
+  std::copy_n(start_.point.y.data(), size(), y);
+  std::copy_n(start_.point.ydot.data(), size(), ydot);
+  return true;
+}
+
+bool EquationSystem::differential(int i) const {
+  const auto k = static_cast<std::size_t>(i);
+  return start_.point.found.index <= 1 || (start_.appears[k] && start_.index_of[k] == 1);
+}
+
+double EquationSystem::scale(int i) const {
+  const auto k = static_cast<std::size_t>(i);
+  return start_.index_of[k] > 1 && !start_.appears[k] ? std::numeric_limits<double>::infinity()
+                                                      : file_.scales[k];
+}
+
+DaeSystem::Weight EquationSystem::weight(int i) const {
+  const auto k = static_cast<std::size_t>(i);
+  return {start_.index_of[k] - 1, file_.scales[k]};
+}
+
+}  // namespace momenta

@@ -1,0 +1,37 @@
+#pragma once
+// A file of equations as integrators of DAEs see it.
+
+#include <momenta/dae/equations/equation_start.h>
+#include <momenta/dae/solver/system.h>
+
+namespace momenta {
+
+/// F(t, y, y') = 0 with its exact Jacobian, dense up to 40 unknowns, from the start found before.
+/// Errors of variables of index k are weighed by h^(k−1), as implicit Runge-Kutta methods need; BDF
+/// of index 2 tests no variable of index 2 and none without a derivative, and leaves those of index
+/// 2 out of Newton's norm.
+class EquationSystem final : public DaeSystem {
+ public:
+  /// Both must outlive it. @pre start.point.why is empty
+  EquationSystem(const EquationFile& file, const EquationStart& start);
+
+  int size() const override { return file_.size(); }
+  bool residual(double t, const double* y, const double* ydot, double* r) override;
+  bool jacobian(double t, const double* y, const double* ydot, double c, double* values) override;
+  const JacobianPattern& pattern() const override { return pattern_; }
+  bool start(double t, double* y, double* ydot) override;
+  bool differential(int i) const override;
+  double scale(int i) const override;
+  Weight weight(int i) const override;
+
+ private:
+  const EquationFile& file_;
+  const EquationStart& start_;
+  Residual<double> residual_;
+  Slopes<double> slopes_;
+  JacobianPattern pattern_;         ///< empty: dense
+  std::vector<std::size_t> place_;  ///< of each entry of slopes_ among the values
+  std::size_t stored_ = 0;
+};
+
+}  // namespace momenta

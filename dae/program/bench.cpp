@@ -1,0 +1,56 @@
+// The verb `bench`: a suite of files of equations, and what it shares with `work` on one of them.
+
+#include <momenta/dae/report/equation_report.h>
+#include <momenta/dae/study/environment.h>
+
+#include <cstdio>
+
+#include "options.h"
+#include "publish_suite.h"
+
+namespace momenta::program {
+
+int publish_suite(const Options& o, SuiteResult& result, bool own_references,
+                  const std::function<void(const SuiteRequest&)>& run) {
+  expect_own_results(o.out, "bench.csv");
+  watch_signals();
+  SuiteRequest request;
+  request.own_references = own_references;
+  request.max_cpu_seconds = o.cpu_limit.value_or(request.max_cpu_seconds);
+  request.timing = o.timing == "none"   ? SuiteRequest::Timing::none
+                   : o.timing == "once" ? SuiteRequest::Timing::once
+                                        : SuiteRequest::Timing::rounds;
+  {
+    ProgressLine line(o.quiet);
+    request.progress = [&](int number, int total, const std::string& what) {
+      return line.going(number, total, what, static_cast<double>(number - 1) / total);
+    };
+    run(request);
+  }
+  const Environment made = environment();
+  const std::string json = suite_json(result, made).dump(2) + "\n";
+  if (!o.out.empty() &&
+      !write_results({{o.out / "bench.csv", suite_csv(result)},
+                      {o.out / "bench.json", json},
+                      {o.out / "index.html", suite_page(result, made, o.command)}}))
+    return run_failed;
+  if (o.json)
+    std::fputs(json.c_str(), stdout);
+  else if (!o.quiet)
+    std::fputs(suite_table(result).c_str(), stdout);
+  if (!o.out.empty() && !o.quiet)
+    std::fprintf(stderr, "momenta: wrote %s\n", (o.out / "index.html").c_str());
+  std::size_t ran = 0;
+  for (const ProblemResult& p : result.problems)
+    for (const EquationRun& r : p.runs) ran += r.done ? 1 : 0;
+  return ran > 0 && result.complete ? done : run_failed;
+}
+
+int bench(const Options& o, bool own_references) {
+  const Suite suite = read_suite(o.scene);
+  SuiteResult result;
+  return publish_suite(o, result, own_references,
+                       [&](const SuiteRequest& request) { result = run_suite(suite, request); });
+}
+
+}  // namespace momenta::program

@@ -1,0 +1,15 @@
+#pragma once
+#include <momenta/dae/equations/suite.h>
+
+#include <functional>
+
+namespace momenta::program {
+
+struct Options;
+
+/// Calls `run`, which fills the result, prints it and writes its files where --out says; the exit
+/// status.
+int publish_suite(const Options& o, SuiteResult& result, bool own_references,
+                  const std::function<void(const SuiteRequest&)>& run);
+
+}  // namespace momenta::program

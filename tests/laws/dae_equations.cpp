@@ -1,0 +1,500 @@
+// Files of equations: their index is that of the same equations elsewhere, whatever order they are
+// written in; structure and index part where they are known to; starts are consistent and moved
+// least; runs have their methods' order and end where published references do.
+
+#include <gtest/gtest.h>
+#include <momenta/core/scene/files/read_scene.h>
+#include <momenta/core/text/near_name.h>
+#include <momenta/dae/assembly/assembly.h>
+#include <momenta/dae/equations/equation_run.h>
+#include <momenta/dae/equations/quad_reference.h>
+#include <momenta/dae/study/index_study.h>
+
+#include <Eigen/LU>
+
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <numeric>
+#include <random>
+
+namespace momenta::dae_equations {
+namespace {
+
+using structure::at;
+
+std::filesystem::path example(const std::string& file) {
+  return std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples" / file;
+}
+
+std::string quoted(const std::vector<std::string>& words) {
+  std::string all;
+  for (const std::string& word : words) all += (all.empty() ? "\"" : ", \"") + word + "\"";
+  return "[" + all + "]";
+}
+
+EquationFile file_of(const std::vector<std::string>& variables,
+                     const std::vector<std::string>& equations, const std::string& more = "") {
+  return parse_equations("[dae]\nvariables = " + quoted(variables) +
+                             "\nequations = " + quoted(equations) + "\n" + more,
+                         "equations.toml");
+}
+
+// ---- the pendulum in four forms ----------------------------------------------------------------
+
+const std::vector<std::string> dynamics{"der(x) = u", "der(y) = v", "der(u) = -x*lambda",
+                                        "der(v) = -y*lambda - 9.81"};
+const std::vector<std::string> unknowns{"x", "y", "u", "v", "lambda"};
+const std::string swinging = "values = { x = 0.6, y = -0.8, u = 1.6, v = 1.2 }\n";
+
+EquationFile pendulum(const std::string& last) {
+  std::vector<std::string> equations = dynamics;
+  equations.push_back(last);
+  return file_of(unknowns, equations, swinging);
+}
+
+std::map<std::string, EquationFile> forms() {
+  return {{"acceleration-index3", pendulum("x^2 + y^2 = 1")},
+          {"acceleration-index2", pendulum("x*u + y*v = 0")},
+          {"acceleration-index1", pendulum("u^2 + v^2 - (x^2 + y^2)*lambda - 9.81*y = 0")},
+          {"stabilised-index2", file_of({"x", "y", "u", "v", "lambda", "mu"},
+                                        {"der(x) = u - x*mu", "der(y) = v - y*mu", dynamics[2],
+                                         dynamics[3], "x^2 + y^2 = 1", "x*u + y*v = 0"},
+                                        swinging)}};
+}
+
+TEST(Equations, HaveTheIndexOfTheSceneInTheSameForm) {
+  const Mechanism mechanism(read_scene(example("pendulum/cartesian.toml")));
+  const Start start = assemble(mechanism).start;
+  for (const auto& [name, file] : forms()) {
+    SCOPED_TRACE(name);
+    const IndexStudy study = run_index_study(mechanism, start, {name});
+    const EquationStart found = equation_start(file);
+    ASSERT_EQ(found.point.why, "");
+    EXPECT_EQ(found.point.found.index, study.forms[0].found.index);
+    EXPECT_EQ(found.offsets.index, found.point.found.index);
+    EXPECT_TRUE(found.structure_holds());
+    ASSERT_EQ(found.point.found.levels.size(), study.forms[0].found.levels.size());
+    for (std::size_t k = 0; k < found.point.found.levels.size(); ++k) {
+      EXPECT_EQ(found.point.found.levels[k].constraints,
+                study.forms[0].found.levels[k].constraints);
+      EXPECT_EQ(found.point.found.levels[k].undetermined,
+                study.forms[0].found.levels[k].undetermined);
+    }
+    // What is left of the unknowns when the constraints are met is the freedom of structure.
+    EXPECT_EQ(file.size() - found.point.found.levels.back().constraints, found.offsets.freedom);
+  }
+}
+
+TEST(Equations, OrderIsNothingToTheIndex) {
+  std::mt19937 random(7);
+  for (const auto& [name, file] : forms()) {
+    SCOPED_TRACE(name);
+    const EquationStart here = equation_start(file);
+    std::vector<std::string> variables = file.variables, equations;
+    for (const auto& e : file.equations) equations.push_back(e.text);
+    std::shuffle(variables.begin(), variables.end(), random);
+    std::shuffle(equations.begin(), equations.end(), random);
+    const EquationFile shuffled = file_of(variables, equations, swinging);
+    const EquationStart there = equation_start(shuffled);
+    EXPECT_EQ(there.point.found.index, here.point.found.index);
+    EXPECT_EQ(there.offsets.index, here.offsets.index);
+    EXPECT_EQ(there.offsets.freedom, here.offsets.freedom);
+    EXPECT_NEAR(std::abs(there.jacobian.determinant), std::abs(here.jacobian.determinant), 1e-12);
+    for (std::size_t j = 0; j < variables.size(); ++j) {
+      const auto before = static_cast<std::size_t>(
+          std::find(file.variables.begin(), file.variables.end(), variables[j]) -
+          file.variables.begin());
+      EXPECT_EQ(there.index_of[j], here.index_of[before]) << variables[j];
+      EXPECT_NEAR(there.point.y[static_cast<Eigen::Index>(j)],
+                  here.point.y[static_cast<Eigen::Index>(before)], 1e-12);
+    }
+  }
+}
+
+TEST(Equations, NeitherUnitsOfTimeNorTheEndAreAnythingToTheIndex) {
+  // The pendulum with time in units of k seconds: x' = k u and so on.
+  for (const double k : {1e-4, 1e-2, 1e2, 1e4}) {
+    SCOPED_TRACE(k);
+    const std::string unit = reading::digits(k) + "*";
+    const EquationStart found = equation_start(file_of(
+        unknowns,
+        {"der(x) = " + unit + "u", "der(y) = " + unit + "v", "der(u) = -" + unit + "x*lambda",
+         "der(v) = " + unit + "(-y*lambda - 9.81)", "x^2 + y^2 = 1"},
+        swinging));
+    ASSERT_EQ(found.point.why, "");
+    EXPECT_EQ(found.point.found.index, 3);
+    EXPECT_TRUE(found.structure_holds());
+  }
+  for (const double end : {1e-4, 1e4})
+    for (const char* name : {"ivp/car_axis", "ivp/transistor_amplifier", "ivp/akzo_nobel",
+                             "structure/turned_pendulum"}) {
+      SCOPED_TRACE(name);
+      const std::string file = std::string("suites/") + name + ".toml";
+      EquationFile here = read_equations(example(file));
+      const int index = equation_start(here).point.found.index;
+      here.end = end;
+      EXPECT_EQ(equation_start(here).point.found.index, index);
+    }
+}
+
+// ---- where structure and index part ------------------------------------------------------------
+
+TEST(Equations, StructureMayDifferentiateMoreThanIndexOne) {
+  // Reißig, Martinson, Barton: x_1 + x_2' + x_3', x_2 + x_2' + x_3', and so on, the last one given:
+  // each difference of a pair is algebraic, and one differentiation of the last gives all.
+  for (int pairs = 1; pairs <= 3; ++pairs) {
+    const int n = 2 * pairs + 1;
+    std::vector<std::string> variables, equations;
+    for (int k = 1; k <= n; ++k) variables.push_back("x" + std::to_string(k));
+    for (int k = 1; k < n; k += 2)
+      for (int row = 0; row < 2; ++row)
+        equations.push_back("x" + std::to_string(k + row) + " + der(x" + std::to_string(k + 1) +
+                            ") + der(x" + std::to_string(k + 2) + ") = cos(t)");
+    equations.push_back("x" + std::to_string(n) + " = sin(t)");
+    const EquationStart found = equation_start(file_of(variables, equations));
+    ASSERT_EQ(found.point.why, "");
+    EXPECT_EQ(found.point.found.index, 1) << pairs;
+    EXPECT_EQ(found.offsets.index, pairs + 1);
+    EXPECT_EQ(found.pantelides, found.offsets.equation);
+    EXPECT_TRUE(found.jacobian.regular(n)) << "so the structural index is a bound";
+    EXPECT_FALSE(found.structure_holds());
+    for (const int index : found.index_of) EXPECT_EQ(index, 1);
+  }
+}
+
+TEST(Equations, CombinationsHideTheIndexFromStructure) {
+  // F multiplied by a regular matrix has the same solutions and the same index; its signature is
+  // full, and no equation is differentiated.
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> entry(-1, 1);
+  const EquationFile plain = pendulum("x^2 + y^2 = 1");
+  const EquationStart here = equation_start(plain);
+  Eigen::MatrixXd m(5, 5);
+  for (auto& x : m.reshaped()) x = entry(random);
+  ASSERT_GT(std::abs(m.determinant()), 1e-2);
+  std::vector<std::string> mixed;
+  for (int i = 0; i < 5; ++i) {
+    std::string sum;
+    for (int k = 0; k < 5; ++k) {
+      const std::string& text = plain.equations[at(k)].text;
+      const std::size_t equals = text.find('=');
+      sum +=
+          (k == 0 ? "" : " + ") + ("(" + reading::digits(m(i, k)) + ")*(" + text.substr(0, equals) +
+                                   "- (" + text.substr(equals + 1) + "))");
+    }
+    mixed.push_back(sum);
+  }
+  const EquationFile turned = file_of(unknowns, mixed, swinging);
+  const EquationStart there = equation_start(turned);
+  ASSERT_EQ(there.point.why, "");
+  EXPECT_EQ(there.point.found.index, 3);
+  EXPECT_LT(there.offsets.index, 3);
+  EXPECT_FALSE(there.structure_holds());
+  // The determinant's check sees it: five equations for four rates.
+  EXPECT_EQ(there.jacobian.rank.rank, 4);
+  ASSERT_EQ(there.jacobian.cancelling.size(), 1u);
+  // The combination without rates is the constraint: its row of m⁻¹.
+  const Eigen::VectorXd row = m.inverse().row(4).transpose();
+  const Eigen::VectorXd found = there.jacobian.cancelling[0];
+  EXPECT_LT((found / found.norm() - row / row.norm() * (found.dot(row) > 0 ? 1 : -1)).norm(), 1e-9);
+  for (Eigen::Index j = 0; j < 5; ++j)
+    EXPECT_NEAR(there.point.y[j], here.point.y[j], 1e-10) << unknowns[static_cast<std::size_t>(j)];
+}
+
+TEST(Equations, OfTheExamplesHaveTheirIndices) {
+  struct Expected {
+    const char* file;
+    int index, structural;
+    bool regular = true;  ///< the system Jacobian
+  };
+  for (const Expected& e :
+       {Expected{"suites/ivp/akzo_nobel.toml", 1, 1},
+        Expected{"suites/ivp/transistor_amplifier.toml", 1, 0, false},
+        Expected{"suites/ivp/slider_crank.toml", 2, 2}, Expected{"suites/ivp/pendulum.toml", 3, 3},
+        Expected{"suites/ivp/car_axis.toml", 3, 3},
+        Expected{"suites/ivp/charge_pump.toml", 2, 2, false},
+        Expected{"suites/structure/pairs.toml", 1, 3},
+        Expected{"suites/structure/turned_pendulum.toml", 3, 1, false}}) {
+    SCOPED_TRACE(e.file);
+    const EquationStart found = equation_start(read_equations(example(e.file)));
+    ASSERT_EQ(found.point.why, "");
+    EXPECT_EQ(found.point.found.index, e.index);
+    EXPECT_EQ(found.offsets.index, e.structural);
+    EXPECT_EQ(found.jacobian.regular(static_cast<int>(found.index_of.size())), e.regular);
+    EXPECT_EQ(found.structure_holds(), e.regular && e.index == e.structural);
+  }
+}
+
+TEST(Equations, WhereTheJacobianIsRegularStructureIsABound) {
+  // Linear systems with whole numbers: the differentiation index is at most the structural one
+  // where the determinant is not zero (Pryce).
+  std::mt19937 random(13);
+  std::uniform_int_distribution<int> number(-2, 2), choice(0, 5);
+  int regular = 0, higher = 0, below = 0;
+  for (int trial = 0; trial < 300; ++trial) {
+    const int n = 3 + trial % 3;
+    std::vector<std::string> variables, equations;
+    for (int k = 0; k < n; ++k) variables.push_back("x" + std::to_string(k));
+    for (int i = 0; i < n; ++i) {
+      std::string sum = "sin(t)*0";
+      for (int j = 0; j < n; ++j) {
+        const int c = number(random), pick = choice(random);
+        if (c == 0 || pick > 3) continue;
+        sum += " + (" + std::to_string(c) + ")*" +
+               (pick == 0 ? "der(x" + std::to_string(j) + ")" : "x" + std::to_string(j));
+      }
+      equations.push_back(sum);
+    }
+    EquationStart found;
+    try {
+      found = equation_start(file_of(variables, equations));
+    } catch (const SceneError&) {
+      continue;  // structurally singular
+    }
+    if (!found.point.why.empty() || !found.jacobian.regular(n)) continue;
+    ++regular;
+    EXPECT_LE(found.point.found.index, found.offsets.index) << trial;
+    below += found.point.found.index < found.offsets.index;
+    higher += found.point.found.index > 1;
+    EXPECT_EQ(n - found.point.found.levels.back().constraints, found.offsets.freedom) << trial;
+  }
+  EXPECT_GT(regular, 60);
+  EXPECT_GT(higher, 5);
+  EXPECT_GT(below, 0);
+}
+
+// ---- starts
+// --------------------------------------------------------------------------------------
+
+TEST(EquationStarts, MeetHiddenConstraintsWithTheLeastChange) {
+  const EquationFile off =
+      file_of(unknowns, {dynamics[0], dynamics[1], dynamics[2], dynamics[3], "x^2 + y^2 = 1"},
+              "values = { x = 1.2, y = -0.5 }\n");
+  const EquationStart found = equation_start(off);
+  ASSERT_EQ(found.point.why, "");
+  const Eigen::VectorXd& y = found.point.y;
+  // Nearest to the guess on the circle, at rest as it was.
+  EXPECT_NEAR(y[0], 1.2 / 1.3, 1e-12);
+  EXPECT_NEAR(y[1], -0.5 / 1.3, 1e-12);
+  EXPECT_NEAR(y[2], 0, 1e-12);
+  EXPECT_NEAR(y[3], 0, 1e-12);
+  EXPECT_NEAR(y[4], 9.81 * 0.5 / 1.3, 1e-11) << "λ of rest: −g y";
+  EXPECT_NEAR(found.point.ydot[3], -y[1] * y[4] - 9.81, 1e-11);
+  EXPECT_NEAR(found.point.ydot[4], 0, 1e-9) << "λ' = −3 g v";
+}
+
+TEST(EquationStarts, KeepWhatIsHeld) {
+  const EquationFile held =
+      file_of(unknowns, {dynamics[0], dynamics[1], dynamics[2], dynamics[3], "x^2 + y^2 = 1"},
+              "values = { x = 0.28, y = -0.5, u = 2, v = -3 }\nhold = [\"x\", \"u\"]\n");
+  const EquationStart found = equation_start(held);
+  ASSERT_EQ(found.point.why, "");
+  const Eigen::VectorXd& y = found.point.y;
+  EXPECT_EQ(y[0], 0.28);
+  EXPECT_EQ(y[2], 2);
+  EXPECT_NEAR(y[1], -0.96, 1e-12);
+  EXPECT_NEAR(y[0] * y[2] + y[1] * y[3], 0, 1e-12);
+  EXPECT_NEAR(y[4], y[2] * y[2] + y[3] * y[3] - 9.81 * y[1], 1e-10);
+  // Both coordinates held off the circle: no point.
+  const EquationStart none = equation_start(
+      file_of(unknowns, {dynamics[0], dynamics[1], dynamics[2], dynamics[3], "x^2 + y^2 = 1"},
+              "values = { x = 1, y = 1 }\nhold = [\"x\", \"y\"]\n"));
+  EXPECT_NE(none.point.why.find("no point near the guess"), std::string::npos) << none.point.why;
+}
+
+TEST(EquationStarts, SayWhenThereIsNone) {
+  const EquationStart none =
+      equation_start(file_of({"x"}, {"x^2 + 1 = 0"}, "values = { x = 1 }\n"));
+  EXPECT_NE(none.point.why.find("no point near the guess"), std::string::npos) << none.point.why;
+  const EquationStart singular =
+      equation_start(file_of({"x", "y"}, {"x + y = 0", "2*x + 2*y = 0"}));
+  EXPECT_NE(singular.point.why.find("of y' not determined"), std::string::npos)
+      << singular.point.why;
+}
+
+// ---- runs
+// ----------------------------------------------------------------------------------------
+
+EquationRun run(const EquationFile& file, const std::string& integrator, double tolerance,
+                double step = 0) {
+  const EquationStart start = equation_start(file);
+  EXPECT_EQ(start.point.why, "");
+  EquationRunRequest request;
+  request.integrator = integrator;
+  request.rtol = request.atol = tolerance;
+  request.step = step;
+  request.samples = 10;
+  request.end = file.end;
+  EquationRun done = run_equations(file, start, request);
+  EXPECT_TRUE(done.done) << done.reason;
+  return done;
+}
+
+TEST(EquationRuns, HaveTheOrderOfRadau) {
+  // x' = −x + z, z³ + z = sin t: order 5. The pendulum of index 3: at least 4 for
+  // positions, 3 for velocities, 2 for λ.
+  const EquationFile one =
+      file_of({"x", "z"}, {"der(x) = -x + z", "z^3 + z = sin(t)"}, "[run]\nend = 2\n");
+  const EquationFile three = read_equations(example("suites/ivp/pendulum.toml"), {{"run.end", 1}});
+  // From the largest errors of the variables over the run.
+  const auto order = [](const EquationFile& file, std::size_t first, std::size_t count, double h) {
+    const EquationRun exact = run(file, "radau5", 1e-12, h / 16);
+    const auto error = [&](double step) {
+      const EquationRun r = run(file, "radau5", 1e-12, step);
+      double largest = 0;
+      for (std::size_t k = 0; k < r.y.size(); ++k)
+        for (std::size_t j = first; j < first + count; ++j)
+          largest = std::max(largest, std::abs(r.y[k][j] - exact.y[k][j]));
+      return largest;
+    };
+    return std::log2(error(h) / error(h / 2));
+  };
+  EXPECT_NEAR(order(one, 0, 2, 0.2), 5, 0.4);
+  EXPECT_GT(order(three, 0, 2, 0.05), 3.8);
+  EXPECT_NEAR(order(three, 2, 2, 0.05), 3, 0.3);
+  EXPECT_NEAR(order(three, 4, 1, 0.05), 2, 0.3);
+}
+
+TEST(EquationRuns, OfBothMethodsEndAlike) {
+  const EquationFile file = read_equations(example("suites/ivp/slider_crank.toml"));
+  const EquationRun bdf = run(file, "ida", 1e-9), radau = run(file, "radau5", 1e-9);
+  for (std::size_t j = 0; j < 6; ++j)
+    EXPECT_NEAR(bdf.last[j], radau.last[j], 1e-5 * (1 + std::abs(radau.last[j])))
+        << file.variables[j];
+  const EquationFile three = read_equations(example("suites/ivp/pendulum.toml"));
+  const EquationStart start = equation_start(three);
+  EquationRunRequest request;
+  request.integrator = "ida";
+  EXPECT_THROW(run_equations(three, start, request), std::invalid_argument);
+}
+
+TEST(EquationRuns, OfLargeSystemsTakeASparseMatrix) {
+  // The heat equation in 60 cells with the flux at the end as an algebraic unknown.
+  const int n = 60;
+  std::vector<std::string> variables, equations;
+  for (int k = 0; k < n; ++k) variables.push_back("c" + std::to_string(k));
+  variables.push_back("q");
+  for (int k = 0; k < n; ++k) {
+    const std::string c = "c" + std::to_string(k);
+    const std::string left = k > 0 ? "c" + std::to_string(k - 1) : "1",
+                      right = k + 1 < n ? "c" + std::to_string(k + 1) : c;
+    equations.push_back("der(" + c + ") = " + left + " - 2*" + c + " + " + right +
+                        (k + 1 < n ? "" : " - q"));
+  }
+  equations.push_back("q = 0.1*c" + std::to_string(n - 1));
+  const EquationFile file = file_of(variables, equations, "[run]\nend = 50\n");
+  const EquationRun sparse = run(file, "ida", 1e-9), radau = run(file, "radau5", 1e-9);
+  EXPECT_EQ(sparse.linear_solver, "KLU");
+  for (std::size_t j = 0; j < variables.size(); ++j)
+    EXPECT_NEAR(sparse.last[j], radau.last[j], 1e-6) << variables[j];
+}
+
+// ---- references
+// ----------------------------------------------------------------------------------
+
+struct Published {
+  const char* file;
+  double error;  ///< of the published values, of which the last digits are not all right
+  std::vector<double> values;
+};
+
+TEST(EquationReferences, AreThePublishedEnds) {
+  // Test Set for IVP Solvers, release 2.4.
+  const Published all[]{
+      {"akzo_nobel.toml",
+       1e-16,
+       {0.1150794920661702, 0.1203831471567715e-2, 0.1611562887407974, 0.3656156421249283e-3,
+        0.1708010885264404e-1, 0.4873531310307455e-2}},
+      {"transistor_amplifier.toml",
+       2e-15,
+       {-0.5562145012262709e-2, 0.3006522471903042e1, 0.2849958788608128e1, 0.2926422536206241e1,
+        0.2704617865010554e1, 0.2761837778393145e1, 0.4770927631616772e1, 0.1236995868091548e1}},
+      {"car_axis.toml",
+       5e-12,
+       {0.4934557842755629e-1, 0.4969894602303324, 0.1041742524885400e1, 0.3739110272652214,
+        -0.7705836840321485e-1, 0.7446866596327776e-2, 0.1755681574942899e-1, 0.7703410437794031}}};
+  for (const Published& p : all) {
+    const EquationFile file = read_equations(example(std::string("suites/ivp/") + p.file));
+    for (std::size_t j = 0; j < p.values.size(); ++j)
+      EXPECT_NEAR(file.reference->values[j], p.values[j], p.error)
+          << p.file << " " << file.variables[j];
+  }
+}
+
+TEST(EquationReferences, AreMadeAnew) {
+  for (const char* name : {"akzo_nobel.toml", "slider_crank.toml", "car_axis.toml"}) {
+    SCOPED_TRACE(name);
+    const EquationFile file = read_equations(example(std::string("suites/ivp/") + name));
+    const QuadReference own = quad_reference(file, equation_start(file), file.reference->t);
+    EXPECT_LT(own.accuracy, 1e-18);
+    for (std::size_t j = 0; j < own.values.size(); ++j) {
+      if (!file.reference->judged[j]) continue;
+      EXPECT_NEAR(value_of(own.values[j]) / file.reference->values[j], 1, 4e-16);
+    }
+  }
+}
+
+TEST(EquationReferences, KeepWhatThePendulumKeeps) {
+  const EquationFile file = read_equations(example("suites/ivp/pendulum.toml"));
+  const EquationStart start = equation_start(file);
+  std::vector<Quad> y0, rate0;
+  refine_start(file, start, y0, rate0);
+  const QuadReference own = quad_reference(file, start, 3);
+  const std::vector<Quad>& y = own.values;
+  const Quad g(file.parameters[0]);
+  const auto energy = [&](const std::vector<Quad>& s) {
+    return Quad(0.5) * (s[2] * s[2] + s[3] * s[3]) + g * s[1];
+  };
+  EXPECT_LT(std::abs(value_of(energy(y) - energy(y0))), 1e-17);
+  EXPECT_LT(std::abs(value_of(y[0] * y[0] + y[1] * y[1] - Quad(1.0))), 1e-22);
+  EXPECT_LT(std::abs(value_of(y[0] * y[2] + y[1] * y[3])), 1e-17);
+  EXPECT_LT(std::abs(value_of(y[2] * y[2] + y[3] * y[3] - g * y[1] - y[4])), 1e-10);
+}
+
+TEST(EquationReferences, StartOnHiddenConstraintsToTheLastDigit) {
+  const EquationFile file = pendulum("x^2 + y^2 = 1");
+  std::vector<Quad> y, rate;
+  refine_start(file, equation_start(file), y, rate);
+  const Quad g(9.81);
+  EXPECT_LT(std::abs(value_of(y[0] * y[0] + y[1] * y[1] - Quad(1.0))), 1e-31);
+  EXPECT_LT(std::abs(value_of(y[0] * y[2] + y[1] * y[3])), 1e-31);
+  EXPECT_LT(std::abs(value_of(y[2] * y[2] + y[3] * y[3] - g * y[1] - y[4])), 1e-29);
+  EXPECT_LT(std::abs(value_of(rate[4] + Quad(3.0) * g * y[3])), 1e-27);
+}
+
+TEST(EquationRuns, CountDigitsAsTheTestSetDoes) {
+  EquationFile file =
+      file_of({"x", "y", "z"}, {"der(x) = 1", "der(y) = 1", "der(z) = 1"}, "scales = { y = 10 }\n");
+  EquationRun run;
+  run.done = true;
+  run.rtol = 1e-6;
+  run.atol = 1e-7;
+  run.last = {1.001, 2e-3, 5};
+  const Digits all = digits_of(run, file, {1, 1e-3, 1}, {1, 1, 0});
+  EXPECT_NEAR(all.scd, 0, 1e-9) << "y by as much as it is";
+  EXPECT_NEAR(all.mescd, -std::log10(1e-3 / 1.001), 1e-9) << "y over atol/rtol · 10 + |r|";
+  const Digits first = digits_of(run, file, {1, 1e-3, 1}, {1, 0, 0});
+  EXPECT_NEAR(first.scd, 3, 1e-9);
+  EXPECT_NEAR(first.mescd, -std::log10(1e-3 / 1.1), 1e-9);
+  EXPECT_EQ(digits_of(run, file, {1.001, 0, 0}, {1, 0, 0}).scd, 17);
+  run.done = false;
+  EXPECT_TRUE(std::isnan(digits_of(run, file, {1, 1e-3, 1}, {1, 1, 0}).scd));
+}
+
+TEST(EquationRuns, GainDigitsWithTheTolerance) {
+  for (const char* name :
+       {"akzo_nobel.toml", "slider_crank.toml", "pendulum.toml", "car_axis.toml"}) {
+    const EquationFile file = read_equations(example(std::string("suites/ivp/") + name));
+    const auto digits = [&](double tolerance) {
+      return digits_of(run(file, "radau5", tolerance), file, file.reference->values,
+                       file.reference->judged);
+    };
+    const Digits loose = digits(1e-5), tight = digits(1e-9);
+    EXPECT_GT(tight.mescd, loose.mescd + 2) << name;
+    EXPECT_GE(loose.mescd, loose.scd) << name;
+  }
+}
+
+}  // namespace
+}  // namespace momenta::dae_equations
