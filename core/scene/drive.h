@@ -13,18 +13,17 @@
 //   s' and s" vanish at both ends: f is twice continuously differentiable.
 //
 // table
-//   Natural cubic spline through (tᵢ, yᵢ). With x = t − tᵢ, h = tᵢ₊₁ − tᵢ, mᵢ = f̈(tᵢ), in each gap
-//   f = yᵢ + bᵢ x + mᵢ/2 x² + (mᵢ₊₁ − mᵢ)/(6h) x³,  bᵢ = (yᵢ₊₁ − yᵢ)/h − h (2mᵢ + mᵢ₊₁)/6
-//   Continuity of ḟ: hᵢ₋₁ mᵢ₋₁ + 2 (hᵢ₋₁ + hᵢ) mᵢ + hᵢ mᵢ₊₁ = 6 (Δyᵢ/hᵢ − Δyᵢ₋₁/hᵢ₋₁);
-//   m = 0 at both ends. Outside, the straight line of the end slope; f̈ is continuous there too.
+//   Natural cubic spline through (tᵢ, yᵢ), straight outside (cubic_spline.h).
 //
 // Within each piece of a step or a table the derivatives are exact; a dual number takes the piece
 // of its value.
 
+#include <momenta/core/scene/cubic_spline.h>
 #include <momenta/core/scene/scene.h>
 
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -52,32 +51,12 @@ class MotionLaw {
       case Kind::step:
         return step(t, f, fdot, fddot);
       case Kind::table:
-        return table(t, f, fdot, fddot);
+        return table_->evaluate(t, f, fdot, fddot);
     }
   }
 
  private:
   enum class Kind { polynomial, harmonic, step, table };
-
-  /// A cubic in t − from.
-  struct Segment {
-    double from = 0;
-    double c[4] = {0, 0, 0, 0};
-  };
-
-  /// p, ṗ, p̈ of Σ cᵢ xⁱ. The second derivative is accumulated halved.
-  template <class S>
-  static void horner(const double* c, std::size_t count, const S& x, S& p, S& pdot, S& pddot) {
-    S value(0.0), rate(0.0), half(0.0);
-    for (std::size_t i = count; i-- > 0;) {
-      half = half * x + rate;
-      rate = rate * x + value;
-      value = value * x + S(c[i]);
-    }
-    p = value;
-    pdot = rate;
-    pddot = half + half;
-  }
 
   template <class S>
   void harmonic(const S& t, S& f, S& fdot, S& fddot) const {
@@ -107,31 +86,11 @@ class MotionLaw {
     fddot = S(60 * rise / (duration_ * duration_)) * x * rest * (rest - x);
   }
 
-  template <class S>
-  void table(const S& t, S& f, S& fdot, S& fddot) const {
-    // segments_[k] holds between knots k − 1 and k; find the number k of knots at or before t
-    std::size_t low = 0, high = knots_.size();
-    while (low < high) {
-      const std::size_t middle = (low + high) / 2;
-      if (t < knots_[middle])
-        high = middle;
-      else
-        low = middle + 1;
-    }
-    const Segment& segment = segments_[low];
-    const S x = t - S(segment.from);
-    horner(segment.c, 4, x, f, fdot, fddot);
-  }
-
-  void solve_spline(const std::vector<double>& times, const std::vector<double>& values);
-
   Kind kind_ = Kind::polynomial;
   std::vector<double> coefficients_;
   double offset_ = 0, amplitude_ = 0, frequency_ = 0, phase_ = 0;
   double from_ = 0, to_ = 0, start_ = 0, duration_ = 1;
-  std::vector<double> knots_;
-  std::vector<Segment>
-      segments_;  ///< one more than knots_: the first and last are the lines outside
+  std::optional<CubicSpline> table_;
 };
 
 }  // namespace momenta
