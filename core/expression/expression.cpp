@@ -2,7 +2,7 @@
 
 #include <momenta/core/expression/evaluate.h>
 #include <momenta/core/expression/tape.h>
-#include <momenta/core/scene/near_name.h>
+#include <momenta/core/text/near_name.h>
 
 #include <algorithm>
 #include <array>

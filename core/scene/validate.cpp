@@ -1,10 +1,10 @@
 #include <momenta/core/scalar/all_finite.h>
 #include <momenta/core/scene/joint_formula.h>
 #include <momenta/core/scene/kinds.h>
-#include <momenta/core/scene/near_name.h>
 #include <momenta/core/scene/shapes.h>
 #include <momenta/core/scene/validate.h>
 #include <momenta/core/scene/validate_parts.h>
+#include <momenta/core/text/near_name.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include <momenta/core/scene/near_name.h>
+#include <momenta/core/text/near_name.h>
 #include <momenta/dae/cut/cycles.h>
 #include <momenta/dae/cut/interchange.h>
 #include <momenta/dae/cut/recut.h>

@@ -1,5 +1,5 @@
 #include "passed_limits.h"
-#include <momenta/core/scene/near_name.h>
+#include <momenta/core/text/near_name.h>
 #include <momenta/dae/text/number_text.h>
 
 namespace momenta::program {

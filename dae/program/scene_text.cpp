@@ -1,6 +1,6 @@
 #include "scene_text.h"
 
-#include <momenta/core/scene/near_name.h>
+#include <momenta/core/text/near_name.h>
 
 #include <cmath>
 #include <cstdio>

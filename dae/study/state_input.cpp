@@ -1,5 +1,5 @@
-#include <momenta/core/scene/near_name.h>
 #include <momenta/core/scene/validate.h>
+#include <momenta/core/text/near_name.h>
 #include <momenta/dae/assembly/drive_reach.h>
 #include <momenta/dae/joint_places.h>
 #include <momenta/dae/study/state_input.h>

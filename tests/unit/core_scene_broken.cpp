@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 #include <momenta/core/scene/files/read_scene.h>
-#include <momenta/core/scene/near_name.h>
+#include <momenta/core/text/near_name.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
 #include <momenta/core/scene/file_text.h>
 #include <momenta/core/scene/files/read_scene.h>
 #include <momenta/core/scene/mjcf/mjcf.h>
-#include <momenta/core/scene/near_name.h>
 #include <momenta/core/scene/sdf/sdf.h>
 #include <momenta/core/scene/urdf/urdf.h>
+#include <momenta/core/text/near_name.h>
 
 #include <algorithm>
 #include <array>

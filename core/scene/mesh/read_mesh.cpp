@@ -3,7 +3,7 @@
 #include <momenta/core/scene/file_text.h>
 #include <momenta/core/scene/mesh/mesh.h>
 #include <momenta/core/scene/mesh/numbers.h>
-#include <momenta/core/scene/near_name.h>
+#include <momenta/core/text/near_name.h>
 
 namespace momenta::reading {
 

@@ -4,8 +4,8 @@
 #include <momenta/core/scene/mjcf/mjcf_copies.h>
 #include <momenta/core/scene/mjcf/mjcf_keys.h>
 #include <momenta/core/scene/mjcf/mjcf_visuals.h>
-#include <momenta/core/scene/near_name.h>
 #include <momenta/core/scene/validate.h>
+#include <momenta/core/text/near_name.h>
 
 #include <algorithm>
 #include <array>

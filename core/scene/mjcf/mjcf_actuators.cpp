@@ -13,7 +13,7 @@
 
 #include <momenta/core/scene/kinds.h>
 #include <momenta/core/scene/mjcf/mjcf_model.h>
-#include <momenta/core/scene/near_name.h>
+#include <momenta/core/text/near_name.h>
 
 #include <algorithm>
 #include <charconv>

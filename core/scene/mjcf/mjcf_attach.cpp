@@ -1,7 +1,7 @@
 #include <momenta/core/scene/mjcf/mjcf_copies.h>
 #include <momenta/core/scene/mjcf/mjcf_defaults.h>
 #include <momenta/core/scene/mjcf/mjcf_names.h>
-#include <momenta/core/scene/near_name.h>
+#include <momenta/core/text/near_name.h>
 
 #include <algorithm>
 #include <array>

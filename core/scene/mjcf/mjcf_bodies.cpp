@@ -5,7 +5,7 @@
 #include <momenta/core/scene/mjcf/mjcf_inertia.h>
 #include <momenta/core/scene/mjcf/mjcf_parts.h>
 #include <momenta/core/scene/mjcf/mjcf_visuals.h>
-#include <momenta/core/scene/near_name.h>
+#include <momenta/core/text/near_name.h>
 
 #include <algorithm>
 #include <array>

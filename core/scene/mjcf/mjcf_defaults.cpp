@@ -1,6 +1,6 @@
 #include <momenta/core/scene/mjcf/mjcf_defaults.h>
 #include <momenta/core/scene/mjcf/mjcf_frames.h>
-#include <momenta/core/scene/near_name.h>
+#include <momenta/core/text/near_name.h>
 
 #include <algorithm>
 

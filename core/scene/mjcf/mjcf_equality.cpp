@@ -1,7 +1,7 @@
 // <equality>: connect is a point, weld a weld, joint and tendon a coupler.
 
 #include <momenta/core/scene/mjcf/mjcf_model.h>
-#include <momenta/core/scene/near_name.h>
+#include <momenta/core/text/near_name.h>
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
 #include <momenta/core/scene/file_text.h>
 #include <momenta/core/scene/mjcf/mjcf_keys.h>
-#include <momenta/core/scene/near_name.h>
+#include <momenta/core/text/near_name.h>
 
 #include <algorithm>
 #include <charconv>

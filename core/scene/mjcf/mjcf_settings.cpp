@@ -1,5 +1,5 @@
 #include <momenta/core/scene/mjcf/mjcf_settings.h>
-#include <momenta/core/scene/near_name.h>
+#include <momenta/core/text/near_name.h>
 
 namespace momenta::reading {
 

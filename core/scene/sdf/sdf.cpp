@@ -1,10 +1,10 @@
 // <sdf>: worlds, models and links. Frames and links of all models are taken first, then joints,
 // which may name any of them.
 
-#include <momenta/core/scene/near_name.h>
 #include <momenta/core/scene/sdf/sdf.h>
 #include <momenta/core/scene/sdf/sdf_model.h>
 #include <momenta/core/scene/validate.h>
+#include <momenta/core/text/near_name.h>
 
 #include <algorithm>
 #include <charconv>

@@ -1,6 +1,6 @@
 #include <momenta/core/scene/kinds.h>
-#include <momenta/core/scene/near_name.h>
 #include <momenta/core/scene/sdf/sdf_frames.h>
+#include <momenta/core/text/near_name.h>
 
 #include <cmath>
 #include <numbers>

@@ -6,8 +6,8 @@
 // q = multiplier (q_leader − reference) + offset.
 
 #include <momenta/core/scene/kinds.h>
-#include <momenta/core/scene/near_name.h>
 #include <momenta/core/scene/sdf/sdf_model.h>
+#include <momenta/core/text/near_name.h>
 
 #include <algorithm>
 #include <cmath>

@@ -2,8 +2,8 @@
 
 #include <momenta/core/scene/drive.h>
 #include <momenta/core/scene/kinds.h>
-#include <momenta/core/scene/near_name.h>
 #include <momenta/core/scene/toml/read_tables.h>
+#include <momenta/core/text/near_name.h>
 
 #include <vector>
 

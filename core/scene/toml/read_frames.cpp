@@ -1,8 +1,8 @@
 // Keys shared by joints, loops and forces: kind, origin, rotation.
 
 #include <momenta/core/scene/kinds.h>
-#include <momenta/core/scene/near_name.h>
 #include <momenta/core/scene/toml/read_tables.h>
+#include <momenta/core/text/near_name.h>
 
 #include <algorithm>
 #include <cmath>

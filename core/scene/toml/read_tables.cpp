@@ -1,9 +1,9 @@
 // [[body]], [[joint]], [[loop]], [[marker]], [run]: the mechanism itself.
 
 #include <momenta/core/scene/kinds.h>
-#include <momenta/core/scene/near_name.h>
 #include <momenta/core/scene/shapes.h>
 #include <momenta/core/scene/toml/read_tables.h>
+#include <momenta/core/text/near_name.h>
 
 #include <algorithm>
 #include <cmath>

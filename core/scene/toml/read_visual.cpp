@@ -1,8 +1,8 @@
 // [[visual]]: solids to be drawn.
 
 #include <momenta/core/scene/kinds.h>
-#include <momenta/core/scene/near_name.h>
 #include <momenta/core/scene/toml/read_tables.h>
+#include <momenta/core/text/near_name.h>
 
 #include <vector>
 

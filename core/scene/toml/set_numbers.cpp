@@ -1,6 +1,6 @@
 #include <momenta/core/expression/expression.h>
-#include <momenta/core/scene/near_name.h>
 #include <momenta/core/scene/toml/set_numbers.h>
+#include <momenta/core/text/near_name.h>
 
 #include <algorithm>
 #include <charconv>

@@ -1,9 +1,9 @@
 // The root of a URDF, the only link that is no joint's child, hangs on the ground: welded, or free
 // where that is asked for. URDF has no way to say which.
 
-#include <momenta/core/scene/near_name.h>
 #include <momenta/core/scene/urdf/urdf.h>
 #include <momenta/core/scene/validate.h>
+#include <momenta/core/text/near_name.h>
 
 #include <algorithm>
 #include <map>

@@ -6,8 +6,8 @@
 // <rotorInertia>, n beside it or in the <transmission> as <mechanicalReduction>; or as
 // <drake:rotor_inertia> and <drake:gear_ratio>. n is 1 where it is not given.
 
-#include <momenta/core/scene/near_name.h>
 #include <momenta/core/scene/urdf/urdf.h>
+#include <momenta/core/text/near_name.h>
 
 #include <algorithm>
 #include <array>

@@ -2,9 +2,9 @@
 
 #include <momenta/core/scene/file_text.h>
 #include <momenta/core/scene/kinds.h>
-#include <momenta/core/scene/near_name.h>
 #include <momenta/core/scene/urdf/urdf.h>
 #include <momenta/core/scene/validate.h>
+#include <momenta/core/text/near_name.h>
 
 #include <algorithm>
 #include <array>

@@ -2,8 +2,8 @@
 // arXiv 2411.19753.
 
 #include <momenta/core/scene/kinds.h>
-#include <momenta/core/scene/near_name.h>
 #include <momenta/core/scene/urdf/urdf.h>
+#include <momenta/core/text/near_name.h>
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
-#include <momenta/core/scene/near_name.h>
 #include <momenta/core/scene/xml/remarks.h>
+#include <momenta/core/text/near_name.h>
 
 #include <algorithm>
 

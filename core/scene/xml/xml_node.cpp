@@ -1,7 +1,7 @@
 #include <momenta/core/scene/file_text.h>
 #include <momenta/core/scene/kinds.h>
-#include <momenta/core/scene/near_name.h>
 #include <momenta/core/scene/xml/xml_node.h>
+#include <momenta/core/text/near_name.h>
 
 #include <algorithm>
 #include <charconv>
