@@ -7,6 +7,7 @@
 #include <momenta/core/scalar/dual.h>
 
 #include <memory>
+#include <string>
 
 namespace momenta {
 
@@ -74,6 +75,13 @@ class Evaluation<double> : public EquationRows<double> {
                                    double* pdot) = 0;
   /// (q, u, t) → u̇ by the articulated recursion: mechanisms without loops only.
   virtual bool open_accelerations(double t, const double* q, const double* u, double* udot) = 0;
+
+  /// Why a slot or a cam has no derivatives at the last place(), one sentence that names it; empty
+  /// where all have: then Φ, Φ_q or Φ̈ are not numbers.
+  virtual std::string lost_pair() const = 0;
+  /// Where on its curve the point of each slot on a spline is, by place among the scene's loops
+  /// [m, along the chords]; of other loops not a number. After place().
+  virtual void slot_places(double* places) const = 0;
 
   /// Place in u of the joint at which the last call of these two failed.
   virtual int singular_joint() const = 0;

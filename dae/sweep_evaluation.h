@@ -20,7 +20,7 @@ class Mechanism::SweepEvaluation final : public SweepRows<Space, double> {
 
  public:
   SweepEvaluation(const Mechanism& mechanism, const Cast<Space>& cast)
-      : Rows(mechanism, cast), links_(build_links(cast.model)) {
+      : Rows(mechanism, cast), scene_(mechanism.scene()), links_(build_links(cast.model)) {
     if (cast.loops.loops.empty()) {
       momentum_.emplace(links_);
       acceleration_.emplace(links_);
@@ -91,6 +91,32 @@ class Mechanism::SweepEvaluation final : public SweepRows<Space, double> {
   void body_forces(double t, const double* q, const double* u, double* tau) override {
     body_force_rates(w_, t, q, u);
     std::copy(w_.generalised.begin(), w_.generalised.end(), tau);
+  }
+
+  std::string lost_pair() const override {
+    const int loop = loops_.lost_pair();
+    if (loop < 0) return "";
+    const auto at = static_cast<std::size_t>(loop);
+    const LoopSpec& spec = scene_.loops[at];
+    const bool cam = spec.kind == LoopKind::cam;
+    const std::string what =
+        loops_.pair_place(at).lost == PairPlace::Lost::no_normal
+            ? (cam ? "its outlines have no common normal" : "its point has no foot on the curve")
+        : cam ? "its outlines curve alike where they touch, and where the contact goes is not "
+                "determined"
+              : "its point is at a centre of curvature of the curve";
+    return "loop '" + spec.name + "': " + what;
+  }
+  void slot_places(double* places) const override {
+    const auto& model = loops_.model();
+    for (std::size_t i = 0; i < model.loops.size(); ++i) {
+      const auto& l = model.loops[i];
+      places[i] =
+          l.is_pair() && model.pairs[static_cast<std::size_t>(l.pair)]->kind ==
+                             HigherPair::Kind::curve
+              ? loops_.pair_place(i).of_b
+              : std::nan("");
+    }
   }
 
   int singular_joint() const override {
@@ -164,6 +190,7 @@ class Mechanism::SweepEvaluation final : public SweepRows<Space, double> {
     double height;
   };
 
+  const Scene& scene_;
   decltype(build_links(std::declval<const Model<Space>&>())) links_;
   std::optional<MomentumSweeps<Space, double>> momentum_;  ///< mechanisms without loops
   std::optional<AccelerationSweeps<Space, double>> acceleration_;

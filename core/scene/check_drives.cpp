@@ -61,7 +61,7 @@ void check_loop_drive(const Scene& scene, const Census& census, const DriveSpec&
             "origin has no meaning for a coupler, expected none: a drive prescribes its offset");
     return;
   }
-  const int count = driven_coordinates_of(loop.kind);
+  const int count = has_curves(loop) ? 0 : driven_coordinates_of(loop.kind);
   if (count == 0)
     throw SceneError(scene.where(drive.at) + who + ": a " + kind +
                      " loop has no coordinate to drive, expected origin = \"x\", \"y\" or \"z\"" +

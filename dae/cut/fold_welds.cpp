@@ -83,7 +83,7 @@ std::set<std::string> held_by_loops(const Scene& scene, const Places& places,
       bodies.insert(places.carries(loop.child) ? loop.parent : loop.child);
     else if (driven.origins.contains(loop.name) && !places.carries(loop.parent))
       bodies.insert(loop.parent);
-    else if (driven.any.contains(loop.name) &&
+    else if ((driven.any.contains(loop.name) || loop.kind == LoopKind::slot || has_curves(loop)) &&
              (child.carrier == "ground" || (loop.kind == LoopKind::spherical && child.turned())))
       bodies.insert(loop.child);
   }
@@ -100,8 +100,14 @@ LoopSpec folded(LoopSpec loop, const Places& places) {
   if (child.turned()) {
     if (loop.kind == LoopKind::universal && loop.axis2.isZero())
       loop.axis2 = perpendicular_to(loop.axis);
-    if (loop.kind == LoopKind::planar && loop.direction.isZero())
+    if ((loop.kind == LoopKind::planar || loop.kind == LoopKind::rack) && loop.direction.isZero())
       loop.direction = perpendicular_to(loop.axis);
+    for (CurveSpec* curve : {&loop.curve, &loop.child_curve}) {
+      if (curve->kind == "ellipse" && curve->direction.isZero())
+        curve->direction = perpendicular_to(loop.axis);
+      curve->direction = child.turn * curve->direction;
+      for (Vector3d& point : curve->points) point = child.turn * point;
+    }
     loop.rotation = loop.rotation * child.turn.conjugate();
     for (Vector3d* a : {&loop.axis, &loop.axis2, &loop.direction}) *a = child.turn * *a;
   }

@@ -22,6 +22,9 @@ std::optional<JointKind> as_joint(LoopKind kind, bool planar) {
       return JointKind::planar;
     case LoopKind::distance:
     case LoopKind::coupler:
+    case LoopKind::slot:
+    case LoopKind::cam:
+    case LoopKind::rack:
       break;
   }
   return std::nullopt;

@@ -71,7 +71,7 @@ CarriedRows::CarriedRows(const Tree& tree, const Model<Spatial>& model, LoopMode
     l.row = static_cast<int>(rows_.size());
     const auto keep = [&](int row) { rows_.push_back(first + row); };
     const auto normal =
-        l.is_distance() || l.is_coupler() || l.motion >= 0 ? std::nullopt : zero.normal(l.a, l.b);
+        l.is_distance() || l.is_coupler() || l.is_pair() || l.motion >= 0 ? std::nullopt : zero.normal(l.a, l.b);
     const auto across = [&](int body, const Vec3<double>& axis) {
       return parallel(zero.direction(body, axis), *normal);
     };

@@ -70,6 +70,15 @@ Json couplers_of(const Picture& picture) {
     all.push_back({{"name", c.name}, {"bodies", c.bodies}, {"ratios", c.ratios}});
   return all;
 }
+Json strokes_of(const Picture& picture) {
+  Json all = Json::array();
+  for (const Picture::Stroke& s : picture.strokes) {
+    Json points = Json::array();
+    for (const auto& point : s.points) points.push_back(numbers_of(point));
+    all.push_back({{"body", s.body}, {"points", points}, {"closed", s.closed}});
+  }
+  return all;
+}
 Json loads_of(const Picture& picture) {
   Json all = Json::array();
   for (const Picture::Load& l : picture.loads)
@@ -156,16 +165,18 @@ Json picture_json(const Picture& picture) {
   Json view = Json::array();
   for (int i = 0; i < 3; ++i)
     view.push_back({picture.view(0, i), picture.view(1, i), picture.view(2, i)});
-  return {{"planar", picture.planar},
-          {"length", picture.length},
-          {"view", view},
-          {"bodies", bodies},
-          {"loops", pairs_of(picture.loops)},
-          {"springs", pairs_of(picture.springs)},
-          {"solids", solids_of(picture)},
-          {"couplers", couplers_of(picture)},
-          {"loads", loads_of(picture)},
-          {"markers", markers}};
+  Json all{{"planar", picture.planar},
+           {"length", picture.length},
+           {"view", view},
+           {"bodies", bodies},
+           {"loops", pairs_of(picture.loops)},
+           {"springs", pairs_of(picture.springs)},
+           {"solids", solids_of(picture)},
+           {"couplers", couplers_of(picture)},
+           {"loads", loads_of(picture)},
+           {"markers", markers}};
+  if (!picture.strokes.empty()) all["strokes"] = strokes_of(picture);
+  return all;
 }
 
 Json motion_json(const Picture& picture, const Motion& motion) {

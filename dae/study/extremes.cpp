@@ -26,6 +26,7 @@ bool is_length(LoopKind kind, int i) {
   switch (kind) {
     case LoopKind::prismatic:
     case LoopKind::distance:
+    case LoopKind::slot:
       return true;
     case LoopKind::cylindrical:
       return i == 0;
@@ -143,6 +144,12 @@ Scene in_units(Scene scene, const Units& units) {
     l.origin_parent *= s;
     l.origin_child *= s;
     l.length *= s;
+    l.radius *= s;
+    for (CurveSpec* curve : {&l.curve, &l.child_curve}) {
+      curve->radius *= s;
+      for (double& axis : curve->semi_axes) axis *= s;
+      for (Eigen::Vector3d& point : curve->points) point *= s;
+    }
     for (std::size_t i = 0; i < l.joints.size(); ++i)
       if (const JointSpec* j = joint_named(scene, l.joints[i]);
           j && is_length(j->kind, i < l.coordinates.size() ? l.coordinates[i] : 0))

@@ -51,6 +51,8 @@ class Fields {
   Eigen::Vector3d vector(std::string_view key, Quantity quantity) const;
   Eigen::Vector3d vector(std::string_view key, Quantity quantity,
                          const Eigen::Vector3d& otherwise) const;
+  /// An array of vectors.
+  std::vector<Eigen::Vector3d> vectors(std::string_view key, Quantity quantity) const;
 
   /// A unit vector: three numbers, normalised, or "x", "-x", "y", ...
   Eigen::Vector3d direction(std::string_view key, const Eigen::Vector3d& otherwise) const;

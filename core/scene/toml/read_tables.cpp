@@ -117,7 +117,7 @@ BodySpec read_body(const Fields& table) {
 JointSpec read_joint(const Fields& table) {
   JointSpec joint;
   joint.at = table.at();
-  joint.kind = static_cast<JointKind>(read_kind(table, joint_kinds, loop_kinds, "[[loop]]"));
+  joint.kind = static_cast<JointKind>(read_kind(table, joint_kinds, "kind", loop_kinds, "[[loop]]"));
   const std::string kind(name_of(joint.kind));
   if (!has_axis(joint.kind))
     table.refuse("axis", "has no meaning for a " + kind +
@@ -226,17 +226,23 @@ void read_coupler(const Fields& table, LoopSpec& loop) {
 LoopSpec read_loop(const Fields& table, std::span<const DriveSpec> drives) {
   LoopSpec loop;
   loop.at = table.at();
-  loop.kind = static_cast<LoopKind>(read_kind(table, loop_kinds, joint_kinds, "[[joint]]"));
+  loop.kind = static_cast<LoopKind>(read_kind(table, loop_kinds, "kind", joint_kinds, "[[joint]]"));
   const std::string kind(name_of(loop.kind));
   if (loop.kind == LoopKind::coupler) {
     read_coupler(table, loop);
     return loop;
   }
-  for (const std::string_view key : {"joints", "coordinates", "ratios", "powers", "offset"})
-    table.refuse(key, "has no meaning for a " + kind + " loop, expected on coupler only");
   for (const std::string_view key : {"position", "velocity", "stiffness", "rest", "damping"})
     table.refuse(key,
                  "belongs to a [[joint]], expected none on a loop (a loop has no coordinates)");
+  if (loop.kind == LoopKind::slot || loop.kind == LoopKind::cam || loop.kind == LoopKind::rack) {
+    (loop.kind == LoopKind::slot  ? read_slot
+     : loop.kind == LoopKind::cam ? read_cam
+                                  : read_rack)(table, loop);
+    return loop;
+  }
+  for (const std::string_view key : {"joints", "coordinates", "ratios", "powers", "offset"})
+    table.refuse(key, "has no meaning for a " + kind + " loop, expected on coupler only");
   if (!has_axis(loop.kind))
     table.refuse("axis", "has no meaning for a " + kind +
                              " loop, expected on revolute, prismatic, "

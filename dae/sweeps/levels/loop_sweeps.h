@@ -40,7 +40,7 @@ LoopPlan plan_loops(const Model<Space>& model, const LoopModel<Space>& loops) {
     for (const auto& c : l.joints) shapes.back().joints.emplace_back(c.body, c.ratio);
   }
   LoopPlan plan = plan_loops(parents, shapes, Space::dimension == 6);
-  plan.linear = loops.curves == 0;
+  plan.linear = loops.swept();
   return plan;
 }
 
