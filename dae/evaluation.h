@@ -94,9 +94,11 @@ class Evaluation<double> : public EquationRows<double> {
   virtual double kinetic() = 0;
   /// V [J]; after place().
   virtual double potential(const double* q) = 0;
-  /// Power of the forces without potential [W]: dampers, and wrenches that have no potential. After
-  /// move(u).
+  /// Power of the forces without potential [W]: dampers, wrenches that have no potential, formulas;
+  /// and ∂V/∂t of potentials. After move(u).
   virtual double dissipated_power(const double* u) = 0;
+  /// How large the forces of formulas are, whether they balance or not [N, N m]. After move().
+  virtual double formula_size() = 0;
   /// For each marker its position x y z [m] and its velocity [m/s], in ground axes. After move().
   virtual void markers(double* values) = 0;
 };

@@ -332,8 +332,8 @@ bool Mechanism::has_angles() const {
 bool Mechanism::has_body_forces() const {
   return visit([](const auto& cast) { return cast.model.has_body_forces(); });
 }
-bool Mechanism::has_coordinate_springs() const {
-  return visit([](const auto& cast) { return !cast.model.coordinate_springs.empty(); });
+bool Mechanism::has_forces_apart() const {
+  return visit([](const auto& cast) { return cast.model.has_forces_apart(); });
 }
 bool Mechanism::has_joint_forces() const {
   return visit([](const auto& cast) { return cast.model.has_joint_forces; });

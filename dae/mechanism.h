@@ -93,9 +93,9 @@ class Mechanism {
   std::unique_ptr<LoopedSweeps> looped_sweeps_as_given() const;
   /// Whether loops that meet in one point are tied between other pairs of bodies than in the scene.
   bool pairs_anew() const;
-  bool has_body_forces() const;         ///< springs, bushings or wrenches on bodies
-  bool has_coordinate_springs() const;  ///< among them, along sums of joint coordinates
-  bool has_joint_forces() const;        ///< springs, dampers, friction or torques of joints
+  bool has_body_forces() const;   ///< springs, bushings, wrenches or formulas
+  bool has_forces_apart() const;  ///< among them coordinate springs or formulas
+  bool has_joint_forces() const;  ///< springs, dampers, friction or torques of joints
   /// Nonzeros of M and Φ_q in (7). Computed at the first call, so that long chains whose M is never
   /// assembled do not pay for it. O(Σ depth)
   const KktPattern& kkt_pattern() const;

@@ -126,8 +126,8 @@ class Mechanism::SweepEvaluation final : public SweepRows<Space, double> {
   double kinetic() override { return kinetic_energy(w_); }
   double potential(const double* q) override { return potential_energy(w_, q); }
   double dissipated_power(const double* u) override {
-    // Dampers, friction and body-axes wrenches or torques: all applied power less that of the
-    // potentials.
+    // Dampers, friction, body-axes wrenches or torques, formulas: all applied power less that of
+    // the potentials, and what potentials gain with time.
     double power = 0;
     for (const auto& b : model_.bodies)
       if (b.nv == 1) {
@@ -136,13 +136,11 @@ class Mechanism::SweepEvaluation final : public SweepRows<Space, double> {
           power -= b.friction * (u[b.u] * u[b.u] / std::hypot(u[b.u], b.friction_rate));
       }
     if (!model_.has_body_forces()) return power;
-    power += bushing_power(w_) + coordinate_spring_power(w_);
+    power += bushing_power(w_) + coordinate_spring_power(w_) + formula_power(w_);
     for (const auto& spring : model_.springs) {
       const SpringLine<Space, double> line(w_, spring);
-      if (value_of(line.length) == 0) continue;
-      const double rate = dot(line.D, point_velocity(w_, spring.child, line.child) -
-                                          point_velocity(w_, spring.parent, line.parent)) /
-                          line.length;
+      if (!line.has_direction()) continue;
+      const double rate = line.rate(w_, spring);
       power -= spring.damping * (rate * rate);
     }
     for (const auto& wrench : model_.wrenches) {
@@ -161,6 +159,8 @@ class Mechanism::SweepEvaluation final : public SweepRows<Space, double> {
     }
     return power;
   }
+
+  double formula_size() override { return momenta::formula_size(w_); }
 
   void markers(double* values) override {
     for (const auto& marker : markers_) {

@@ -63,7 +63,7 @@ inline void execute(const Expression::Instruction& in, const S* x, const S* line
       y = truth(value_of(a()) == 0);
       break;
     case O::choice:
-      y = value_of(a()) != 0 ? b() : line[in.c];
+      y = chosen(value_of(a()) != 0, b(), line[in.c]);
       break;
     case O::abs:
       y = std::signbit(value_of(a())) ? -a() : a();
@@ -75,10 +75,10 @@ inline void execute(const Expression::Instruction& in, const S* x, const S* line
       y = S(std::floor(value_of(a())));
       break;
     case O::min:  // NaN is both the least and the largest of two
-      y = std::isnan(value_of(b())) || value_of(b()) < value_of(a()) ? b() : a();
+      y = chosen(std::isnan(value_of(b())) || value_of(b()) < value_of(a()), b(), a());
       break;
     case O::max:
-      y = std::isnan(value_of(b())) || value_of(b()) > value_of(a()) ? b() : a();
+      y = chosen(std::isnan(value_of(b())) || value_of(b()) > value_of(a()), b(), a());
       break;
     case O::power:
     case O::atan2:

@@ -47,7 +47,7 @@ struct Term {
 
 class Parser {
  public:
-  Parser(std::string_view text, std::span<const std::string> names) : text_(text), names_(names) {}
+  Parser(std::string_view text, FormulaNames& names) : text_(text), names_(names) {}
 
   Term whole() {
     if (text_.size() > longest)
@@ -76,12 +76,17 @@ class Parser {
   /// A name and the names after its dots, or one character.
   std::string_view word_at(std::size_t from) const {
     std::size_t end = from;
-    if (end < text_.size() && letter(text_[end]))
+    if (end < text_.size() && text_[end] == '\'') {
+      end = text_.find('\'', from + 1);
+      if (end == std::string_view::npos) return text_.substr(from, 1);
+      ++end;
+    }
+    if (end < text_.size() && (end > from ? text_[end] == '.' : letter(text_[end])))
       while (end < text_.size() &&
              (letter(text_[end]) || digit(text_[end]) ||
               (text_[end] == '.' && end + 1 < text_.size() && letter(text_[end + 1]))))
         ++end;
-    else if (end < text_.size())
+    else if (end < text_.size() && end == from)
       ++end;
     while (end < text_.size() && (text_[end] & 0xC0) == 0x80) ++end;  // the rest of a character
     return text_.substr(from, end - from);
@@ -218,6 +223,10 @@ class Parser {
     if (digit(text_[at_]) || (text_[at_] == '.' && at_ + 1 < text_.size() && digit(text_[at_ + 1])))
       return {tape_.number(written_number()), false, from};
     if (letter(text_[at_])) return named(from);
+    if (text_[at_] == '\'') {
+      if (word_at(at_).size() == 1) fail(from, "a quote ' is not closed");
+      return named(from);
+    }
     fail(from, "found " + reading::in_quotes(word_at(from)) + ", expected a number or a name");
   }
   double written_number() {
@@ -236,26 +245,25 @@ class Parser {
   Term named(std::size_t from) {
     const std::string_view word = word_at(from);
     at_ += word.size();
-    const auto known = std::find(names_.begin(), names_.end(), word);
     skip();
     const bool called = at_ < text_.size() && text_[at_] == '(';
     const auto* function = std::find_if(functions.begin(), functions.end(),
                                         [&](const Function& f) { return f.name == word; });
     if (called && function != functions.end()) return call(*function, from);
-    if (known != names_.end() && !called)
-      return {tape_.add({Operation::variable, static_cast<int>(known - names_.begin()), -1, -1, 0}),
-              false, from};
+    if (!called)
+      if (const auto known = names_.meaning(word, from))
+        return {known->variable < 0 ? tape_.number(known->number)
+                                    : tape_.add({Operation::variable, known->variable, -1, -1, 0}),
+                false, from};
     if (word == "pi" && !called) return {tape_.number(std::numbers::pi), false, from};
     if (function != functions.end())
       fail(from,
            "function " + reading::in_quotes(word) + " stands without '(', expected its arguments");
+    if (!called) fail(from, "unknown name " + reading::in_quotes(word) + names_.expected(word));
     std::vector<std::string_view> near;
-    if (called)
-      for (const Function& f : functions) near.push_back(f.name);
-    else
-      near.assign(names_.begin(), names_.end()), near.push_back("pi");
+    for (const Function& f : functions) near.push_back(f.name);
     const std::string meant = reading::did_you_mean(word, near);
-    fail(from, (called ? "unknown function " : "unknown name ") + reading::in_quotes(word) +
+    fail(from, "unknown function " + reading::in_quotes(word) +
                    (!meant.empty() ? meant : ", expected one of: " + reading::listed(near)));
   }
   Term call(const Function& f, std::size_t from) {
@@ -305,16 +313,41 @@ class Parser {
   };
 
   std::string_view text_;
-  std::span<const std::string> names_;
+  FormulaNames& names_;
   std::size_t at_ = 0;
   int depth_ = 0;
   Tape tape_;
+};
+
+/// The variables of a formula by their names.
+class Listed final : public FormulaNames {
+ public:
+  explicit Listed(std::span<const std::string> names) : names_(names) {}
+  std::optional<Meaning> meaning(std::string_view name, std::size_t) override {
+    const auto known = std::find(names_.begin(), names_.end(), name);
+    if (known == names_.end()) return {};
+    return Meaning{static_cast<int>(known - names_.begin()), 0};
+  }
+  std::string expected(std::string_view name) const override {
+    std::vector<std::string_view> near(names_.begin(), names_.end());
+    near.push_back("pi");
+    const std::string meant = reading::did_you_mean(name, near);
+    return !meant.empty() ? meant : ", expected one of: " + reading::listed(near);
+  }
+
+ private:
+  std::span<const std::string> names_;
 };
 
 }  // namespace
 }  // namespace formula
 
 Expression::Expression(std::string_view text, std::span<const std::string> names) {
+  formula::Listed listed(names);
+  *this = Expression(text, listed);
+}
+
+Expression::Expression(std::string_view text, FormulaNames& names) {
   formula::Parser parser(text, names);
   const formula::Term t = parser.whole();
   outputs_ = {t.at};
@@ -328,6 +361,17 @@ Expression Expression::with_derivatives(std::span<const int> variables) const {
   all.outputs_ = {outputs_.front()};
   const std::vector<int> slopes = formula::add_gradient(tape, outputs_.front(), variables);
   all.outputs_.insert(all.outputs_.end(), slopes.begin(), slopes.end());
+  all.tape_ = tape.needed_for(all.outputs_);
+  return all;
+}
+
+Expression Expression::with_two_derivatives(int variable) const {
+  formula::Tape tape(tape_);
+  Expression all;
+  all.outputs_ = {outputs_.front()};
+  for (int i = 0; i < 2; ++i)
+    all.outputs_.push_back(
+        formula::add_gradient(tape, all.outputs_.back(), std::span(&variable, 1)).front());
   all.tape_ = tape.needed_for(all.outputs_);
   return all;
 }

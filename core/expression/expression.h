@@ -10,7 +10,8 @@
 //   product:    sign { (* /) sign }
 //
 // So −a^2 = −(a²), 2^3^2 = 2^9, a < b < c is refused. Names are letters, digits and _, begin with a
-// letter, and may have dots between. Comparisons give truths, which and, or, not and if() take and
+// letter, and may have dots between; the first of them may stand in single quotes and then has any
+// other characters: 'left-knee'.q. Comparisons give truths, which and, or, not and if() take and
 // nothing else does; a truth is no number.
 //
 // A formula is kept as a tape: one instruction a line, each of numbers found by those before it;
@@ -21,6 +22,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -38,6 +40,21 @@ class ExpressionError : public std::invalid_argument {
 
  private:
   std::size_t place_;
+};
+
+/// What the names in a formula stand for.
+class FormulaNames {
+ public:
+  /// A variable, or a number.
+  struct Meaning {
+    int variable = -1;  ///< its number; −1: none
+    double number = 0;  ///< where it is no variable
+  };
+  virtual ~FormulaNames() = default;
+  /// Of a name as it is written at a place; nothing: it is unknown. @throws ExpressionError
+  virtual std::optional<Meaning> meaning(std::string_view name, std::size_t place) = 0;
+  /// How the sentence about an unknown name ends: "; did you mean …?", or ", expected …".
+  virtual std::string expected(std::string_view name) const = 0;
 };
 
 /// A formula read: y = f(x₀, x₁, …), or such with its derivatives.
@@ -89,6 +106,8 @@ class Expression {
 
   /// The names of the variables x₀, x₁, … @throws ExpressionError. O(length) and lookups of names
   Expression(std::string_view text, std::span<const std::string> names);
+  /// Names of any meaning. @throws ExpressionError
+  Expression(std::string_view text, FormulaNames& names);
 
   /// Whether the formula is a comparison or made of such: its value is then 1 or 0.
   bool is_truth() const { return truth_; }
@@ -101,6 +120,8 @@ class Expression {
   /// f and ∂f/∂x_v of each of these variables, exact: of abs, sign, floor, min, max and if() that
   /// of the piece they are on. O(tape) instructions for any number of variables.
   Expression with_derivatives(std::span<const int> variables) const;
+  /// f, ∂f/∂x_v and ∂²f/∂x_v², as exact as those.
+  Expression with_two_derivatives(int variable) const;
   /// A function in it that has corners or jumps, by its name; empty: none, f is smooth where it is
   /// finite.
   std::string_view corner() const;

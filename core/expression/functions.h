@@ -51,6 +51,16 @@ S whole_power(const S& x, int n) {
   return n < 0 ? S(1.0) / result : result;
 }
 
+/// One of two. Sparse duals hang on both whichever it is, so that a pattern holds at every state.
+template <class S>
+const S& chosen(bool first, const S& a, const S& b) {
+  return first ? a : b;
+}
+inline LocalDual chosen(bool first, const LocalDual& a, const LocalDual& b) {
+  const LocalDual &taken = first ? a : b, &left = first ? b : a;
+  return LocalDual::sum(taken.a, taken, 1, LocalDual::chain(left, 0, 0), 1);
+}
+
 /// f'(x), where y = f(x).
 template <class S>
 S slope(Operation o, const S& x, const S& y) {

@@ -11,6 +11,7 @@ namespace momenta {
 /// the others keep no meaning. O(these bodies + nv).
 template <class Space, class S>
 void body_force_rates(Workspace<Space, S>& w, const S& t, const S* q, const S* u) {
+  w.time = t;
   for (const int at : w.forced) {
     const auto k = static_cast<std::size_t>(at);
     place_body(w, k, t, q, true);

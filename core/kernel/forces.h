@@ -1,52 +1,30 @@
 #pragma once
 // Applied wrenches T_K of (17): weights, point-to-point spring-dampers, bushings, coordinate
-// springs, constant wrenches; and the energies they store.
+// springs, constant wrenches, formulas; and the energies they store.
 
 #include <momenta/core/kernel/bushing.h>
-#include <momenta/core/kernel/coordinate_spring.h>
-#include <momenta/core/kernel/points.h>
+#include <momenta/core/kernel/formula_force.h>
 #include <momenta/core/kernel/sweeps.h>
-#include <momenta/core/scalar/dual.h>
 
 namespace momenta {
 
-/// The line of a spring: end points, D = x_child − x_parent and its length (across the plane too,
-/// where offset).
-template <class Space, class S>
-struct SpringLine {
-  typename Space::template Vector<S> parent, child, D;
-  S length;
-  SpringLine(const Workspace<Space, S>& w, const typename Model<Space>::Spring& spring)
-      : parent(point_position(w, spring.parent, spring.at_parent)),
-        child(point_position(w, spring.child, spring.at_child)),
-        D(child - parent) {
-    using std::sqrt;
-    length = sqrt(dot(D, D) + spring.offset2);
-  }
-};
-
-/// Adds springs, bushings and constant wrenches to body[k].T. Needs poses and velocities.
+/// Adds springs, bushings, wrenches and formulas to body[k].T. Needs poses and velocities.
 template <class Space, class S>
 void add_body_forces(Workspace<Space, S>& w) {
   for (const auto& spring : w.model->springs) {
     const SpringLine<Space, S> line(w, spring);
-    if (value_of(line.length) == 0)
-      continue;  // direction undefined; a spring of zero length pulls nowhere
+    if (!line.has_direction()) continue;  // a spring of zero length pulls nowhere
     const S inverse = S(1.0) / line.length;
     S tension = spring.stiffness * (line.length - spring.rest);
     if (spring.damping != 0)
       tension += spring.damping * inverse *
                  dot(line.D, point_velocity(w, spring.child, line.child) -
                                  point_velocity(w, spring.parent, line.parent));
-    const auto f = (tension * inverse) * line.D;
-    if (spring.child >= 0)
-      add_force(w, spring.child, line.child, -f, w.body[static_cast<std::size_t>(spring.child)].T);
-    if (spring.parent >= 0)
-      add_force(w, spring.parent, line.parent, f,
-                w.body[static_cast<std::size_t>(spring.parent)].T);
+    line.pull(w, spring, S(tension * inverse));
   }
   add_bushings(w);
   add_coordinate_springs(w);
+  add_formula_forces(w);
   for (const auto& wrench : w.model->wrenches) {
     const int k = wrench.body;
     auto& T = w.body[static_cast<std::size_t>(k)].T;
@@ -115,6 +93,7 @@ S potential_energy(const Workspace<Space, S>& w, const S* q) {
     energy += 0.5 * spring.stiffness * (stretch * stretch);
   }
   energy += bushing_energy(w) + coordinate_spring_energy(w);
+  if (!model.formula_forces.empty()) energy += formula_energy(w);
   for (const auto& wrench : model.wrenches)
     if (!wrench.in_body_axes)
       energy -= dot(to_ground(w, -1, wrench.force), point_position(w, wrench.body, wrench.at));

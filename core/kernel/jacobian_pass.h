@@ -70,6 +70,7 @@ bool is_hamiltonian(const Model<Space>& model) {
     if (bushing.damping != 0 || bushing.rotational_damping != 0) return false;
   for (const auto& spring : model.coordinate_springs)
     if (spring.damping != 0) return false;
+  if (!model.formula_forces.empty()) return false;  // they may take rates
   return model.wrenches.empty();  // in body axes, or with a torque, one need not have a potential
 }
 /// The same, and all joints are revolute joints. Out of line: compiled for any machine.

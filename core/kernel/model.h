@@ -2,6 +2,7 @@
 // A tree cast into one algebra: canonical constants of every edge, inertias in canonical frames,
 // the forces that act, gravity. Built once, shared by all evaluations, never changed.
 
+#include <momenta/core/expression/expression.h>
 #include <momenta/core/kernel/planar.h>
 #include <momenta/core/kernel/spatial.h>
 #include <momenta/core/tree/tree.h>
@@ -32,7 +33,7 @@ struct Model {
     double stiffness = 0, rest = 0, damping = 0, torque = 0;
     double friction = 0, friction_rate = 1;  ///< joint_force() in sweeps.h
     bool has_friction = false;
-    int sprung = -1;   ///< place in Workspace::sprung, where a coordinate spring looks at the joint
+    int sprung = -1;   ///< place in Workspace::sprung, where a spring or signal looks at the joint
     double rotor = 0;  ///< inertia on the joint's rate: rotor.h [kg m² or kg]
     bool has_rotor() const { return rotor != 0; }
     bool has_force() const {
@@ -75,11 +76,42 @@ struct Model {
     bool in_body_axes = false;
   };
 
+  /// signals.h. One of several, by `of`:
+  ///   - sum: of `terms`
+  ///   - point: at_child of the body `ends.child`, along the direction `along`, `across` more
+  ///   - distance: of the two points of `ends`
+  ///   - turn: of the body `ends.child`, about `along`, in a plane `across` about its normal
+  struct Signal {
+    enum class Of { time, sum, point, distance, turn };
+    Of of = Of::time;
+    bool is_rate = false;
+    std::vector<typename CoordinateSpring::Term> terms;
+    Spring ends;
+    Vector along{};
+    double across = 0;
+    bool in_body_axes = false;  ///< `along`; else ground axes
+  };
+  /// formula_force.h: of the formula's outputs y, forces factor · y along signals.
+  struct FormulaForce {
+    struct Act {
+      int output = 0;
+      double factor = 1;
+      int signal = 0;
+    };
+    Expression formula;       ///< a potential: V and its derivatives
+    std::vector<int> inputs;  ///< signals, in the order of its variables
+    std::vector<Act> acts;
+    bool is_potential = false;
+    int by_time = -1;  ///< the output ∂V/∂t; −1: none
+  };
+
   std::vector<Body> bodies;
   std::vector<Spring> springs;
   std::vector<Bushing> bushings;
   std::vector<CoordinateSpring> coordinate_springs;
-  int sprung = 0;  ///< joints at which coordinate springs look
+  int sprung = 0;  ///< joints at which coordinate springs and signals look
+  std::vector<Signal> signals;
+  std::vector<FormulaForce> formula_forces;
   std::vector<Wrench> wrenches;
   std::vector<MotionLaw> drives;
   std::vector<std::shared_ptr<const JointFormula>> laws;
@@ -88,9 +120,10 @@ struct Model {
   bool has_gravity = false, has_joint_forces = false, has_rotors = false;
 
   bool has_body_forces() const {
-    return !springs.empty() || !wrenches.empty() || !bushings.empty() ||
-           !coordinate_springs.empty();
+    return !springs.empty() || !wrenches.empty() || !bushings.empty() || has_forces_apart();
   }
+  /// Those among them that the sweeps of packs and of loops do not take.
+  bool has_forces_apart() const { return !coordinate_springs.empty() || !formula_forces.empty(); }
 
   /// A point of a body, given in the tree's body frame (−1: ground axes), in this model's frame of
   /// the body.

@@ -51,6 +51,7 @@ void place_body(Workspace<Space, S>& w, std::size_t k, const S& t, const S* q, b
 /// revolute joint.
 template <class Space, class S>
 void poses_outward(Workspace<Space, S>& w, const S& t, const S* q, bool with_poses) {
+  w.time = t;
   for (std::size_t k = 0; k < w.body.size(); ++k) place_body(w, k, t, q, with_poses);
 }
 

@@ -2,7 +2,7 @@
 // What a model takes over from the tree and the scene as it stands, whatever its algebra: joints,
 // masses and forces. Included only where models are built.
 
-#include <momenta/core/kernel/model.h>
+#include <momenta/core/kernel/take_formulas.h>
 #include <momenta/core/kernel/user_motion.h>
 
 namespace momenta {
@@ -48,40 +48,19 @@ void take_joints(const Tree& tree, Model<Space>& model) {
   }
 }
 
-/// The part of a joint that moves one of its coordinates. @pre the scene is valid
-inline int part_of(const Tree& tree, const std::string& joint, int coordinate) {
-  const int last = tree.carried_by(joint);
-  for (int k = tree.first_part(last); k < last; ++k)
-    if (tree.bodies[static_cast<std::size_t>(k)].coordinate == coordinate) return k;
-  return last;
-}
-
-/// Springs, bushings and wrenches; needs the frames of all bodies.
+/// Springs, bushings, wrenches and formulas; needs the frames of all bodies.
 template <class Space>
 void take_forces(const Tree& tree, const Scene& scene, Model<Space>& model) {
   constexpr bool in_plane = Space::dimension == 3;
-  const auto across = [&](int body, const Eigen::Vector3d& v, bool is_point) {
-    if (body < 0) return model.basis.col(2).dot(v);
-    const Eigen::Isometry3d& frame = model.frames[static_cast<std::size_t>(body)];
-    return is_point ? (frame * v).z() : (frame.linear() * v).z();
-  };
+  SignalTaker<Space> taker(tree, scene, model);
   // What springs and bushings have alike: two points of bodies, k and c.
   const auto take_points = [&](const ForceSpec& f, auto& between) {
-    between.parent = tree.body(f.parent);
-    between.child = tree.body(f.child);
-    const Eigen::Vector3d at_parent = tree.point(between.parent, f.origin_parent);
-    const Eigen::Vector3d at_child = tree.point(between.child, f.origin_child);
-    between.at_parent = model.point(between.parent, at_parent);
-    between.at_child = model.point(between.child, at_child);
+    taker.take_points(f, between);
     between.stiffness = f.stiffness;
     between.damping = f.damping;
-    if constexpr (in_plane) {
-      const double offset =
-          across(between.child, at_child, true) - across(between.parent, at_parent, true);
-      between.offset2 = offset * offset;
-    }
   };
   for (const ForceSpec& f : scene.forces) {
+    if (!f.law.empty()) continue;  // take_formulas.h
     if (f.kind == "spring-damper") {
       typename Model<Space>::Spring spring;
       take_points(f, spring);
@@ -110,12 +89,7 @@ void take_forces(const Tree& tree, const Scene& scene, Model<Space>& model) {
       spring.stiffness = f.stiffness;
       spring.damping = f.damping;
       spring.rest = f.rest;
-      for (std::size_t i = 0; i < f.joints.size(); ++i) {
-        const int k = part_of(tree, f.joints[i], f.coordinates.empty() ? 0 : f.coordinates[i]);
-        int& place = model.bodies[static_cast<std::size_t>(k)].sprung;
-        if (place < 0) place = model.sprung++;
-        spring.terms.push_back({k, place, f.ratios[i]});
-      }
+      spring.terms = taker.sum(f);
       model.coordinate_springs.push_back(spring);
     } else if (f.kind == "wrench") {
       typename Model<Space>::Wrench wrench;
@@ -126,12 +100,13 @@ void take_forces(const Tree& tree, const Scene& scene, Model<Space>& model) {
       const Eigen::Vector3d torque = tree.direction(axes_of, f.torque);
       wrench.force = model.direction(axes_of, tree.direction(axes_of, f.force));
       if constexpr (in_plane)
-        wrench.normal_torque = across(axes_of, torque, false);
+        wrench.normal_torque = taker.across(axes_of, torque, false);
       else
         wrench.torque = model.direction(axes_of, torque);
       model.wrenches.push_back(wrench);
     }
   }
+  take_formulas(scene, taker, model);
 }
 
 }  // namespace momenta

@@ -5,6 +5,7 @@
 #include <momenta/core/kernel/model.h>
 #include <momenta/core/kernel/user_motion.h>
 
+#include <algorithm>
 #include <vector>
 
 namespace momenta {
@@ -43,7 +44,8 @@ struct Workspace {
         body(m.bodies.size()),
         generalised(static_cast<std::size_t>(m.nv)),
         sprung(static_cast<std::size_t>(m.sprung)),
-        users(m.laws.size()) {
+        users(m.laws.size()),
+        formulas(room_of(m)) {
     std::vector<char> carries(m.bodies.size());
     const auto mark = [&](int k) {
       for (; k >= 0 && !carries[static_cast<std::size_t>(k)];
@@ -61,6 +63,11 @@ struct Workspace {
     for (const auto& spring : m.coordinate_springs)
       for (const auto& term : spring.terms) mark(term.body);
     for (const auto& wrench : m.wrenches) mark(wrench.body);
+    for (const auto& signal : m.signals) {
+      mark(signal.ends.child);
+      mark(signal.ends.parent);
+      for (const auto& term : signal.terms) mark(term.body);
+    }
     for (std::size_t k = 0; k < carries.size(); ++k)
       if (carries[k]) forced.push_back(static_cast<int>(k));
   }
@@ -72,6 +79,8 @@ struct Workspace {
   std::vector<int>
       forced;  ///< bodies with forces at points of theirs, and all on their ways to the ground
   std::vector<UserMotion<S>> users;  ///< what the edges of user joints point to
+  mutable std::vector<S> formulas;   ///< scratch: formula_force.h
+  S time{};                          ///< poses_outward
 
   /// The rigid inertia of body k in the axes the sweeps work in.
   const auto& inertia(std::size_t k) const {
@@ -79,6 +88,16 @@ struct Workspace {
       return body[k].inertia;
     else
       return model->bodies[k].inertia;
+  }
+
+ private:
+  /// Of the longest formula: its variables, its values, its tape.
+  static std::size_t room_of(const Model<Space>& m) {
+    std::size_t most = 0;
+    for (const auto& force : m.formula_forces)
+      most = std::max(
+          most, force.inputs.size() + force.formula.outputs().size() + force.formula.tape().size());
+    return most;
   }
 };
 

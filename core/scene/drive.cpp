@@ -1,7 +1,15 @@
 #include <momenta/core/scalar/all_finite.h>
 #include <momenta/core/scene/drive.h>
+#include <momenta/core/text/near_name.h>
+
+#include <array>
 
 namespace momenta {
+namespace {
+
+const std::array<std::string, 1> of_time{"t"};
+
+}  // namespace
 
 std::string law_fault(const DriveSpec& spec) {
   if (spec.kind == "polynomial") {
@@ -33,7 +41,19 @@ std::string law_fault(const DriveSpec& spec) {
                "], expected increasing times";
     return "";
   }
-  return "kind must be polynomial, harmonic, step or table";
+  if (spec.kind == "formula") try {
+      if (!Expression(spec.law, of_time).is_truth()) return "";
+      return "law, " + reading::in_quotes(spec.law) +
+             ", is a comparison, expected a formula of a number";
+    } catch (const ExpressionError& e) {
+      return "law, " + reading::in_quotes(spec.law) + ": " + e.what();
+    }
+  return "kind must be polynomial, harmonic, step, table or formula";
+}
+
+std::string law_corner(const DriveSpec& spec) {
+  return spec.kind == "formula" ? std::string(Expression(spec.law, of_time).corner())
+                                : std::string();
 }
 
 MotionLaw::MotionLaw(const DriveSpec& spec)
@@ -55,6 +75,10 @@ MotionLaw::MotionLaw(const DriveSpec& spec)
   if (spec.kind == "table") {
     kind_ = Kind::table;
     table_.emplace(spec.times, spec.values);
+  }
+  if (spec.kind == "formula") {
+    kind_ = Kind::formula;
+    formula_ = Expression(spec.law, of_time).with_two_derivatives(0);
   }
 }
 

@@ -15,9 +15,13 @@
 // table
 //   Natural cubic spline through (tᵢ, yᵢ), straight outside (cubic_spline.h).
 //
-// Within each piece of a step or a table the derivatives are exact; a dual number takes the piece
-// of its value.
+// formula
+//   f by the instructions of its tape, ḟ and f̈ by those of its derivatives (core/expression).
+//
+// Within each piece of a step, a table or a formula with corners the derivatives are exact; a dual
+// number takes the piece of its value.
 
+#include <momenta/core/expression/evaluate.h>
 #include <momenta/core/scene/cubic_spline.h>
 #include <momenta/core/scene/scene.h>
 
@@ -31,6 +35,9 @@ namespace momenta {
 
 /// Why a DriveSpec is not a valid motion law, in words; empty where it is valid.
 std::string law_fault(const DriveSpec& spec);
+/// Where the formula of a drive has corners or jumps, so that ḟ or f̈ do, the function that makes
+/// them; empty: it has none. @pre no fault
+std::string law_corner(const DriveSpec& spec);
 
 /// The motion law of a DriveSpec: f(t) and its first two derivatives. Immutable.
 class MotionLaw {
@@ -38,9 +45,10 @@ class MotionLaw {
   /// Solves the spline of a table. @throws SceneError with the sentence of law_fault
   explicit MotionLaw(const DriveSpec& spec);
 
-  /// f [rad or m], ḟ [rad/s or m/s] and f̈ [rad/s² or m/s²] at time t [s]. No allocation. Cost
-  /// O(coefficients); for a table O(log points). S needs + − ×, a constructor from double, S <
-  /// double, and sin and cos in its namespace.
+  /// f [rad or m], ḟ [rad/s or m/s] and f̈ [rad/s² or m/s²] at time t [s]. No allocation
+  /// after a thread's first call. Cost
+  /// O(coefficients); for a table O(log points), for a formula O(its length). S needs + − ×, a
+  /// constructor from double, S < double, sin and cos in its namespace, and formula::Functions.
   template <class S>
   void evaluate(S t, S& f, S& fdot, S& fddot) const {
     switch (kind_) {
@@ -52,11 +60,13 @@ class MotionLaw {
         return step(t, f, fdot, fddot);
       case Kind::table:
         return table_->evaluate(t, f, fdot, fddot);
+      case Kind::formula:
+        return by_tape(t, f, fdot, fddot);
     }
   }
 
  private:
-  enum class Kind { polynomial, harmonic, step, table };
+  enum class Kind { polynomial, harmonic, step, table, formula };
 
   template <class S>
   void harmonic(const S& t, S& f, S& fdot, S& fddot) const {
@@ -86,11 +96,24 @@ class MotionLaw {
     fddot = S(60 * rise / (duration_ * duration_)) * x * rest * (rest - x);
   }
 
+  /// The room of the tape is kept from call to call, one a thread.
+  template <class S>
+  void by_tape(const S& t, S& f, S& fdot, S& fddot) const {
+    thread_local std::vector<S> line;
+    if (line.size() < formula_->tape().size()) line.resize(formula_->tape().size());
+    S values[3];
+    momenta::evaluate(*formula_, &t, line.data(), values);
+    f = values[0];
+    fdot = values[1];
+    fddot = values[2];
+  }
+
   Kind kind_ = Kind::polynomial;
   std::vector<double> coefficients_;
   double offset_ = 0, amplitude_ = 0, frequency_ = 0, phase_ = 0;
   double from_ = 0, to_ = 0, start_ = 0, duration_ = 1;
   std::optional<CubicSpline> table_;
+  std::optional<Expression> formula_;  ///< f, ḟ, f̈
 };
 
 }  // namespace momenta

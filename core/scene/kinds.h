@@ -20,10 +20,10 @@ inline constexpr std::array<std::string_view, 13> loop_kinds{
 // Of slots a straight one has no curve to describe.
 inline constexpr std::array<std::string_view, 3> slot_curves{"line", "circle", "spline"};
 inline constexpr std::array<std::string_view, 4> cam_curves{"circle", "ellipse", "spline", "flat"};
-inline constexpr std::array<std::string_view, 4> drive_kinds{"polynomial", "harmonic", "step",
-                                                             "table"};
-inline constexpr std::array<std::string_view, 5> force_kinds{
-    "spring-damper", "bushing", "coordinate-spring", "torque", "wrench"};
+inline constexpr std::array<std::string_view, 5> drive_kinds{"polynomial", "harmonic", "step",
+                                                             "table", "formula"};
+inline constexpr std::array<std::string_view, 6> force_kinds{
+    "spring-damper", "bushing", "coordinate-spring", "torque", "wrench", "potential"};
 inline constexpr std::array<std::string_view, 5> shape_kinds{"rod", "box", "cylinder", "sphere",
                                                              "point"};
 inline constexpr std::array<std::string_view, 6> visual_kinds{"box",      "sphere",    "capsule",

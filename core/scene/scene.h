@@ -244,13 +244,14 @@ constexpr int driven_coordinates_of(LoopKind kind) {
 ///   - harmonic: f = offset + amplitude sin(ω t + φ), with ω = frequency [rad/s], φ = phase [rad]
 ///   - step: `from` → `to` between start and start + duration, by the quintic 10x³ − 15x⁴ + 6x⁵
 ///   - table: natural cubic spline through (times, values); constant slope outside
+///   - formula: `law`, of t
 /// MotionLaw (core/scene/drive.h) evaluates these laws.
 struct DriveSpec {
   std::string joint;   ///< or `loop`: one of them is empty
   std::string loop;    ///< or `joint`
   int coordinate = 0;  ///< which of that joint or loop, from 0
   std::string origin;  ///< loops: "x", "y" or "z" of origin_parent instead of a coordinate
-  std::string kind;    ///< polynomial harmonic step table
+  std::string kind;    ///< polynomial harmonic step table formula
   std::vector<double> coefficients;  ///< polynomial: [rad or m, by s to the power]
   double offset = 0;                 ///< harmonic [rad or m]
   double amplitude = 0;              ///< harmonic [rad or m]
@@ -262,6 +263,7 @@ struct DriveSpec {
   double duration = 0;               ///< step [s]
   std::vector<double> times;         ///< table: ascending [s]
   std::vector<double> values;        ///< table: one for each time [rad or m]
+  std::string law;                   ///< formula, of t [rad or m]
   Location at;                       ///< where the file has it
 };
 
@@ -277,9 +279,14 @@ struct DriveSpec {
 ///   - "torque": generalised force `value` on a revolute or helical [N m] or prismatic [N] joint
 ///   - "wrench": constant force at `point` of `body`, and constant torque: in ground axes
 ///     (`axes = "ground"`, the default) or in body axes (`axes = "body"`)
+///   - "potential": −∂V/∂s along every signal s of the formula V in `law`
+/// Formulas (core/scene/formula.h) may stand in place of constants: `law` of a spring-damper or a
+/// coordinate spring for its tension, of a torque for its value, `force_law` and `torque_law` for
+/// components of a wrench. What they do counts as work done from outside, a potential's not.
 struct ForceSpec {
-  std::string name;               ///< or empty
-  std::string kind;               ///< spring-damper bushing coordinate-spring torque wrench
+  std::string name;  ///< or empty
+  std::string kind;  ///< spring-damper bushing coordinate-spring torque wrench potential
+  std::string law;   ///< a formula, or empty [N, N m or J]
   std::string parent = "ground";  ///< spring-damper, bushing: a body, or "ground"
   std::string child;              ///< spring-damper, bushing: a body
   Eigen::Vector3d origin_parent = Eigen::Vector3d::Zero();  ///< of the parent, its axes [m]
@@ -301,7 +308,9 @@ struct ForceSpec {
   Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< wrench [N]
   Eigen::Vector3d torque = Eigen::Vector3d::Zero();  ///< wrench [N m]
   bool in_body_axes = false;                         ///< wrench; else ground axes
-  Location at;                                       ///< where the file has it
+  std::array<std::string, 3> force_law;   ///< wrench: formulas in place of components, or empty
+  std::array<std::string, 3> torque_law;  ///< wrench, likewise
+  Location at;                            ///< where the file has it
 };
 
 /// A named point of a body, or of "ground", whose position and velocity are reported in ground

@@ -200,55 +200,6 @@ void check_loops(const Scene& scene, const Census& census) {
   }
 }
 
-void check_forces(const Scene& scene, const Census& census) {
-  for (const ForceSpec& force : scene.forces) {
-    const std::string who = "force" + (force.name.empty() ? " of kind " + in_quotes(force.kind)
-                                                          : " " + in_quotes(force.name));
-    if (force.kind == "spring-damper") {
-      census.require_body(force.parent, true, force.at, who, "parent");
-      census.require_body(force.child, false, force.at, who, "child");
-      require(force.parent != force.child, scene, force.at, who,
-              "parent and child must be two bodies");
-      require(force.origin_parent.allFinite() && force.origin_child.allFinite(), scene, force.at,
-              who, "origin must be finite [m]");
-      require(std::isfinite(force.stiffness) && std::isfinite(force.damping), scene, force.at, who,
-              "stiffness [N/m] and damping [N s/m] must be finite");
-      require(std::isfinite(force.rest) && force.rest >= 0, scene, force.at, who,
-              "rest must be finite and >= 0 [m]");
-    } else if (force.kind == "bushing") {
-      census.require_body(force.parent, true, force.at, who, "parent");
-      census.require_body(force.child, false, force.at, who, "child");
-      require(force.parent != force.child, scene, force.at, who,
-              "parent and child must be two bodies");
-      require(force.origin_parent.allFinite() && force.origin_child.allFinite(), scene, force.at,
-              who, "origin must be finite [m]");
-      require(std::abs(force.rotation.norm() - 1) <= reading::norm_slack, scene, force.at, who,
-              "rotation must be a unit quaternion within 1e-6");
-      require(std::isfinite(force.stiffness) && std::isfinite(force.damping) &&
-                  std::isfinite(force.rotational_stiffness) &&
-                  std::isfinite(force.rotational_damping),
-              scene, force.at, who,
-              "stiffness [N/m], damping [N s/m], rotational_stiffness [N m/rad] and "
-              "rotational_damping [N m s/rad] must be finite");
-    } else if (force.kind == "coordinate-spring") {
-      reading::check_coordinates(scene, census, force, who);
-      require(std::isfinite(force.stiffness) && std::isfinite(force.damping) &&
-                  std::isfinite(force.rest),
-              scene, force.at, who, "stiffness, damping and rest must be finite");
-    } else if (force.kind == "torque") {
-      census.require_one_coordinate(force.joint, force.at, who);
-      require(std::isfinite(force.value), scene, force.at, who, "value must be finite [N m or N]");
-    } else if (force.kind == "wrench") {
-      census.require_body(force.body, false, force.at, who, "body");
-      require(force.point.allFinite() && force.force.allFinite() && force.torque.allFinite(), scene,
-              force.at, who, "point, force and torque must be finite");
-    } else {
-      require(false, scene, force.at, who,
-              "kind must be spring-damper, bushing, coordinate-spring, torque or wrench");
-    }
-  }
-}
-
 void check_visuals(const Scene& scene, const Census& census) {
   for (const VisualSpec& visual : scene.visuals) {
     const std::string who = "visual of body " + in_quotes(visual.body);
@@ -300,10 +251,11 @@ void validate(const Scene& scene) {
   check_joints(scene, census);
   check_loops(scene, census);
   reading::check_drives(scene, census);
-  check_forces(scene, census);
+  reading::check_forces(scene, census);
   check_visuals(scene, census);
   check_rest(scene, census);
   reading::check_tree(scene);
+  reading::check_formulas(scene);
 }
 
 }  // namespace momenta

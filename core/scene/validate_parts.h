@@ -64,6 +64,13 @@ void check_coupler(const Scene& scene, const Census& census, const LoopSpec& loo
 /// joints and spherical loops driven as a whole, lengths positive at the start.
 void check_drives(const Scene& scene, const Census& census);
 
+/// Bodies and joints of forces known, numbers finite.
+void check_forces(const Scene& scene, const Census& census);
+
+/// What formulas of forces stand in place of, and what they name. @pre the scene is valid without
+/// them
+void check_formulas(const Scene& scene);
+
 /// Every body is the child of exactly one joint and no joints form a cycle. @pre the names are
 /// known and unique
 void check_tree(const Scene& scene);

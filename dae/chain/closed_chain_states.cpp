@@ -26,8 +26,7 @@ void expect_states(const char* call, double t, Eigen::Index count, int threads,
 bool ClosedChain::Inside::side_by_side(double t, const LoopedStates& all, bool of_momenta,
                                        double leak, int threads) {
   if (all.count == 0 || mechanism.kkt() != KktChoice::sweeps ||
-      (mechanism.has_body_forces() && !mechanism.plan().planar) ||
-      mechanism.has_coordinate_springs())
+      (mechanism.has_body_forces() && !mechanism.plan().planar) || mechanism.has_forces_apart())
     return false;
   if (batches.empty()) batches.push_back(mechanism.looped_sweeps());
   // Packs are whole, so that the number of threads does not change the bits.

@@ -1,3 +1,4 @@
+#include <momenta/core/scene/formula.h>
 #include <momenta/core/scene/validate.h>
 #include <momenta/dae/cut/fold_rotors.h>
 #include <momenta/dae/cut/fold_welds.h>
@@ -74,13 +75,16 @@ class RotorFold {
     }
     for (std::size_t i = 0; i < s.forces.size(); ++i) {
       const ForceSpec& force = s.forces[i];
-      if (force.kind == "torque")
+      if (force.kind == "torque" && force.law.empty())
         torques_[joints_.at(force.joint)].push_back(i);
       else if (force.kind == "coordinate-spring")
         sprung_.insert(force.joints.begin(), force.joints.end());
       else
         tied_.insert({force.parent, force.child, force.body});
     }
+    const NamedInFormulas named(s);
+    sprung_.insert(named.joints.begin(), named.joints.end());
+    tied_.insert(named.bodies.begin(), named.bodies.end());
     for (const DriveSpec& drive : s.drives) driven_.insert({drive.joint, drive.loop});
   }
 
@@ -283,7 +287,7 @@ class RotorFold {
   std::vector<std::vector<std::size_t>> couplers_, torques_;  // of each joint
   std::set<std::string> tied_;    // bodies with children, loops, springs or wrenches
   std::set<std::string> driven_;  // joints and loops
-  std::set<std::string> sprung_;  // joints that coordinate springs look at
+  std::set<std::string> sprung_;  // joints that coordinate springs and formulas look at
   std::set<std::string> gone_;    // joints and loops
   std::set<std::string> gone_bodies_, leaders_;
 };

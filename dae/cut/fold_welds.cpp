@@ -1,3 +1,4 @@
+#include <momenta/core/scene/formula.h>
 #include <momenta/core/scene/validate.h>
 #include <momenta/dae/cut/fold_welds.h>
 #include <momenta/dae/cut/interchange.h>
@@ -90,6 +91,24 @@ std::set<std::string> held_by_loops(const Scene& scene, const Places& places,
   return bodies;
 }
 
+bool has_ends(const ForceSpec& f) {
+  return f.kind == "spring-damper" || f.kind == "bushing";
+}
+
+/// Bodies whose own weld must stay for formulas: those of springs whose length they name, which one
+/// body would have both ends of, and those in whose axes components are.
+std::set<std::string> held_by_formulas(const Scene& scene, const NamedInFormulas& named,
+                                       const Places& places) {
+  std::set<std::string> bodies;
+  for (const ForceSpec& f : scene.forces) {
+    if (has_ends(f) && named.springs.contains(f.name) &&
+        places.of(f.parent).carrier == places.of(f.child).carrier)
+      bodies.insert(places.carries(f.child) ? f.parent : f.child);
+    if (f.in_body_axes && has_formula(f) && places.of(f.body).turned()) bodies.insert(f.body);
+  }
+  return bodies;
+}
+
 LoopSpec folded(LoopSpec loop, const Places& places) {
   const Place &parent = places.of(loop.parent), &child = places.of(loop.child);
   loop.parent = parent.carrier;
@@ -129,9 +148,6 @@ void merge_bodies(const Scene& given, const Places& places, Scene& scene) {
 }
 
 void fold_forces(const Places& places, Scene& scene) {
-  const auto has_ends = [](const ForceSpec& f) {
-    return f.kind == "spring-damper" || f.kind == "bushing";
-  };
   std::erase_if(scene.forces, [&](const ForceSpec& f) {
     if (has_ends(f)) return places.of(f.parent).carrier == places.of(f.child).carrier;
     return f.kind == "wrench" && places.of(f.body).carrier == "ground";
@@ -171,8 +187,13 @@ FoldedScene fold_welds(const Scene& given) {
   const DrivenLoops driven(given);
   std::set<std::string> kept;
   Places places(given, kept);
-  for (auto held = held_by_loops(given, places, driven); !held.empty();
-       held = held_by_loops(given, places, driven)) {
+  const NamedInFormulas named(given);
+  const auto held_now = [&] {
+    std::set<std::string> held = held_by_loops(given, places, driven);
+    held.merge(held_by_formulas(given, named, places));
+    return held;
+  };
+  for (auto held = held_now(); !held.empty(); held = held_now()) {
     for (const std::string& body : held) kept.insert(weld_of.at(body));
     places = Places(given, kept);
   }

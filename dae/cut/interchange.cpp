@@ -1,3 +1,4 @@
+#include <momenta/core/scene/formula.h>
 #include <momenta/core/text/near_name.h>
 #include <momenta/dae/cut/interchange.h>
 
@@ -74,6 +75,8 @@ Sayings::Sayings(const Scene& scene, const std::vector<std::string>& keep)
   for (const LoopSpec& loop : scene.loops)
     of_coordinates.insert(loop.joints.begin(), loop.joints.end());
   of_coordinates.insert(scene.held.begin(), scene.held.end());
+  in_formulas = NamedInFormulas(scene).joints;
+  of_coordinates.insert(in_formulas.begin(), in_formulas.end());
   std::set<std::string> known;
   for (const JointSpec& joint : scene.joints) known.insert(joint.name);
   for (const LoopSpec& loop : scene.loops) known.insert(loop.name);
@@ -186,6 +189,8 @@ bool turn_round(JointSpec& joint, Scene& scene, const Sayings& said, const BodyM
                             "' is counted from its other body: its coordinates mean others");
     return true;
   }
+  // formulas name the two angles of a universal joint as they are
+  if (joint.kind == JointKind::universal && said.in_formulas.contains(joint.name)) return false;
   joint = turned_round(joint);
   if (joint.kind != JointKind::universal) return true;
   for (DriveSpec& drive : scene.drives)

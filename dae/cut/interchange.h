@@ -23,6 +23,7 @@ struct Sayings {
   std::set<std::string> of_coordinates;  ///< these joints stay joints
   std::set<std::string> driven_loops;
   std::set<std::string> kept;
+  std::set<std::string> in_formulas;  ///< of_coordinates, those that formulas name
 
   /// @throws SceneError where `keep` names neither a joint nor a loop
   Sayings(const Scene& scene, const std::vector<std::string>& keep);

@@ -20,7 +20,7 @@ class SweepSolver final : public LoopSolver {
         e_(e),
         sweeps_(mechanism.looped_sweeps()),
         carried_(mechanism.has_body_forces() && mechanism.plan().planar &&
-                 !mechanism.has_coordinate_springs()),
+                 !mechanism.has_forces_apart()),
         apart_(mechanism.has_body_forces() && !carried_),
         has_tau_(apart_ || mechanism.has_joint_forces()),
         zero_(static_cast<std::size_t>(mechanism.nv())),

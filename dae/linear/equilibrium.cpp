@@ -1,3 +1,4 @@
+#include <momenta/core/scene/formula.h>
 #include <momenta/dae/kkt/row_scales.h>
 #include <momenta/dae/linear/downward_ways.h>
 #include <momenta/dae/linear/equilibrium.h>
@@ -264,8 +265,9 @@ class Searcher {
 bool has_potential(const Mechanism& mechanism) {
   return std::none_of(
       mechanism.scene().forces.begin(), mechanism.scene().forces.end(), [&](const ForceSpec& f) {
-        return f.kind == "wrench" &&
-               (f.in_body_axes || (!mechanism.plan().planar && !f.torque.isZero(0)));
+        return (has_formula(f) && f.kind != "potential") ||
+               (f.kind == "wrench" &&
+                (f.in_body_axes || (!mechanism.plan().planar && !f.torque.isZero(0))));
       });
 }
 
@@ -285,6 +287,7 @@ VectorXd force_scales(const Mechanism& mechanism, Evaluation<double>& e) {
     force += f.force.norm();
     torque += f.kind == "torque" ? std::abs(f.value) : f.torque.norm();
   }
+  torque += e.formula_size();
   force += 2 * e.kinetic() / length;  // of running drives
   for (const JointSpec& j : scene.joints) torque += std::abs(j.stiffness) * (1 + std::abs(j.rest));
   VectorXd scale(mechanism.nv());

@@ -105,7 +105,7 @@ void refuse_springs_without_length(const Mechanism& mechanism, const Equilibrium
     return k < 0 ? point : Eigen::Vector3d(poses[static_cast<std::size_t>(k)] * point);
   };
   for (const ForceSpec& f : scene.forces) {
-    if (!is_spring(f) || (f.stiffness == 0 && f.damping == 0)) continue;
+    if (!is_spring(f) || (f.stiffness == 0 && f.damping == 0 && f.law.empty())) continue;
     const double length =
         (place(f.child, f.origin_child) - place(f.parent, f.origin_parent)).norm();
     if (length <= 1e-9 * length_of(scene))

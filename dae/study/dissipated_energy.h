@@ -1,11 +1,13 @@
 #pragma once
-// The work, along a run, of the forces without potential: dampers and moments. The power is
+// The work, along a run, of the forces without potential: dampers, moments, formulas; and of what
+// changes potentials with time. The power is
 // evaluated at the five Gauss points of each step, and the polynomial through these values gives
 // the work up to any time inside the step.
 
-#include <momenta/core/scene/scene.h>
+#include <momenta/core/scene/formula.h>
 #include <momenta/dae/solver/memory.h>
 
+#include <algorithm>
 #include <array>
 
 namespace momenta {
@@ -50,11 +52,17 @@ class DissipatedEnergy {
                                                  0.28444444444444444, 0.23931433524968324,
                                                  0.11846344252809454};
 
+  static bool takes_time(const Scene& scene, const ForceSpec& potential) {
+    const auto signals = FormulaReader(scene).read(potential.law).signals;
+    return std::any_of(signals.begin(), signals.end(),
+                       [](const Signal& s) { return s.kind == Signal::Kind::time; });
+  }
   static bool loses_energy(const Scene& scene) {
     for (const auto& joint : scene.joints)
       if (joint.damping != 0 || joint.friction != 0) return true;
     for (const auto& f : scene.forces)
-      if (((f.kind == "spring-damper" || f.kind == "coordinate-spring") && f.damping != 0) ||
+      if ((has_formula(f) && (f.kind != "potential" || takes_time(scene, f))) ||
+          ((f.kind == "spring-damper" || f.kind == "coordinate-spring") && f.damping != 0) ||
           (f.kind == "bushing" && (f.damping != 0 || f.rotational_damping != 0)) ||
           (f.kind == "wrench" && (f.in_body_axes || f.torque.norm() > 0)))
         return true;

@@ -1,3 +1,4 @@
+#include <momenta/core/scene/formula.h>
 #include <momenta/dae/study/extremes.h>
 
 #include <algorithm>
@@ -73,6 +74,12 @@ bool drives_a_length(const Scene& scene, const DriveSpec& drive) {
   for (const LoopSpec& l : scene.loops)
     if (l.name == drive.loop) return is_length(l.kind, drive.coordinate);
   return false;
+}
+
+bool has_formulas(const Scene& scene) {
+  return std::any_of(scene.forces.begin(), scene.forces.end(), has_formula) ||
+         std::any_of(scene.drives.begin(), scene.drives.end(),
+                     [](const DriveSpec& d) { return d.kind == "formula"; });
 }
 
 bool at_rest(const Scene& scene) {
@@ -245,6 +252,9 @@ std::string lacks(const Scene& scene, Extreme extreme) {
                  : "no joint of one coordinate in it";
     case Extreme::mass_ratio:
       return scene.bodies.size() > 1 ? "" : "one body only";
+    case Extreme::size:
+    case Extreme::speed:
+      return has_formulas(scene) ? "formulas in it, whose numbers have units of their own" : "";
     default:
       return "";
   }

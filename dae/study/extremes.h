@@ -32,10 +32,11 @@ namespace momenta {
 struct Units {
   double length = 1, time = 1, mass = 1;
 };
+/// @pre no formulas in it
 Scene in_units(Scene scene, const Units& units);
 
 /// The same scene in a room turned by `rotation`: ground's axes are others, the motion is the same.
-/// @pre no drive moves a loop's point of the ground
+/// @pre no drive moves a loop's point of the ground, no formula takes a marker's place
 Scene turned(Scene scene, const Eigen::Quaterniond& rotation);
 
 enum class Extreme { stiffness, damping, mass_ratio, size, speed, duration };

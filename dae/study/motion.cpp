@@ -223,7 +223,8 @@ Picture picture_of(const Mechanism& mechanism) {
       picture.bodies[static_cast<std::size_t>(by_joint.at(drive.joint))].driven = true;
   for (const ForceSpec& force : scene.forces) {
     if (force.kind == "spring-damper")
-      picture.springs.push_back(pair(force, force.damping == 0     ? "spring"
+      picture.springs.push_back(pair(force, !force.law.empty()     ? force.kind
+                                            : force.damping == 0   ? "spring"
                                             : force.stiffness == 0 ? "damper"
                                                                    : force.kind));
     if (force.kind == "torque")

@@ -85,6 +85,7 @@ inline std::string difference(const Scene& a, const Scene& b) {
           &DriveSpec::from, &DriveSpec::to, &DriveSpec::start, &DriveSpec::duration})
       number(x.*member, y.*member, what);
     numbers(x.coefficients, y.coefficients, what + " coefficients");
+    note(x.law == y.law, what + " law");
     numbers(x.times, y.times, what + " times");
     numbers(x.values, y.values, what + " values");
   });
@@ -96,6 +97,8 @@ inline std::string difference(const Scene& a, const Scene& b) {
           &ForceSpec::rotational_stiffness, &ForceSpec::rotational_damping})
       number(x.*member, y.*member, what);
     note(x.joints == y.joints && x.coordinates == y.coordinates, what + " joints");
+    note(x.law == y.law && x.force_law == y.force_law && x.torque_law == y.torque_law,
+         what + " formulas");
     numbers(x.ratios, y.ratios, what + " ratios");
     numbers(x.rotation.coeffs(), y.rotation.coeffs(), what + " rotation");
     numbers(x.point, y.point, what + " point");

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 #include <type_traits>
+#include <vector>
 
 namespace momenta {
 
@@ -62,6 +63,27 @@ void prescribed_motion(const MotionLaw& law, const double* t, double* f) {
   gather(t, time);
   law.evaluate(time, motion[0], motion[1], motion[2]);
   for (int i = 0; i < 3; ++i) spread(motion[i], f + i * dual8_numbers);
+}
+
+double* formula_room(std::size_t size) {
+  thread_local std::vector<double> room;
+  if (room.size() < size) room.resize(size);
+  return room.data();
+}
+void formula_in_doubles(const Expression& formula, const double* x, double* values) {
+  thread_local std::vector<double> line;
+  if (line.size() < formula.tape().size()) line.resize(formula.tape().size());
+  evaluate(formula, x, line.data(), values);
+}
+void formula_in_dual8(const Expression& formula, const double* x, int count, double* values) {
+  thread_local std::vector<Dual8> room;
+  const auto n = static_cast<std::size_t>(count);
+  const std::size_t outputs = formula.outputs().size();
+  if (const std::size_t size = n + outputs + formula.tape().size(); room.size() < size)
+    room.resize(size);
+  for (std::size_t i = 0; i < n; ++i) gather(x + i * dual8_numbers, room[i]);
+  evaluate(formula, room.data(), room.data() + n + outputs, room.data() + n);
+  for (std::size_t i = 0; i < outputs; ++i) spread(room[n + i], values + i * dual8_numbers);
 }
 
 }  // namespace momenta

@@ -216,6 +216,34 @@ std::vector<Eigen::Vector3d> Fields::vectors(std::string_view key, Quantity quan
   return vectors;
 }
 
+bool Fields::is_of_parameters(const std::string& formula) const {
+  if (!parameters_ || formula.empty()) return true;
+  try {
+    parameters_->formula(formula);
+    return true;
+  } catch (const ExpressionError&) {
+    return false;
+  }
+}
+
+void Fields::vector_or_formulas(std::string_view key, Quantity quantity, Eigen::Vector3d& numbers,
+                                std::array<std::string, 3>& formulas) const {
+  const Value* value = find(key);
+  if (value == nullptr) return;
+  if (value->type != Value::Type::array || value->items.size() != 3) {
+    numbers = vector(key, quantity);  // says what is expected
+    return;
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Value& item = value->items[i];
+    if (item.type == Value::Type::text && !is_of_parameters(item.text))
+      formulas[i] = item.text;
+    else
+      numbers[static_cast<Eigen::Index>(i)] =
+          number_of(item, std::string(key) + "[" + std::to_string(i) + "]", quantity);
+  }
+}
+
 Eigen::Vector3d Fields::direction(std::string_view key, const Eigen::Vector3d& otherwise) const {
   const Value* value = find(key);
   if (value == nullptr) return otherwise;

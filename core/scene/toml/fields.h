@@ -5,6 +5,7 @@
 #include <momenta/core/scene/toml/parameters.h>
 
 #include <Eigen/Core>
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -54,6 +55,12 @@ class Fields {
   /// An array of vectors.
   std::vector<Eigen::Vector3d> vectors(std::string_view key, Quantity quantity) const;
 
+  /// A vector whose components may be formulas of the scene (core/scene/formula.h): those that
+  /// parameters alone do not give go to `formulas`, the others to `numbers`; nothing where the key
+  /// is missing.
+  void vector_or_formulas(std::string_view key, Quantity quantity, Eigen::Vector3d& numbers,
+                          std::array<std::string, 3>& formulas) const;
+
   /// A unit vector: three numbers, normalised, or "x", "-x", "y", ...
   Eigen::Vector3d direction(std::string_view key, const Eigen::Vector3d& otherwise) const;
 
@@ -73,6 +80,7 @@ class Fields {
   int whole(std::string_view key, int otherwise, int least) const;
   double number_of(const Value& value, const std::string& key, Quantity quantity) const;
   double value_of(const Value& formula, const std::string& key, Quantity quantity) const;
+  bool is_of_parameters(const std::string& formula) const;
 
   const Value& value_;
   std::string owner_;

@@ -53,6 +53,8 @@ Scene parse_scene(std::string_view text, const std::string& file,
   for (std::size_t i = 0; i < parameters.names().size(); ++i)
     scene.parameters.push_back({parameters.names()[i], parameters[i], parameters.used(i)});
 
+  reading::read_formulas(table, scene);
+
   if (scene.bodies.empty()) reading::fail(file, {1, 1}, "no body, expected at least one [[body]]");
   validate(scene);
   return scene;

@@ -5,9 +5,21 @@
 #include <momenta/core/scene/toml/read_tables.h>
 #include <momenta/core/text/near_name.h>
 
+#include <initializer_list>
+#include <string_view>
 #include <vector>
 
 namespace momenta::reading {
+namespace {
+
+/// A formula, which read_formulas() reads when the whole scene is known.
+std::string read_formula(const Fields& table, std::string_view key) {
+  const std::string text = table.text(key);
+  if (text.empty()) table.fail_key(key, "is empty, expected a formula");
+  return text;
+}
+
+}  // namespace
 
 DriveSpec read_drive(const Fields& table) {
   DriveSpec drive;
@@ -35,10 +47,13 @@ DriveSpec read_drive(const Fields& table) {
     drive.to = table.number("to", coordinate);
     drive.start = table.number("start", {"s"}, 0);
     drive.duration = table.number("duration", {"s", Bound::positive});
-  } else {
+  } else if (drive.kind == "table") {
     allow({"times", "values"});
     drive.times = table.numbers("times", {"s"});
     drive.values = table.numbers("values", coordinate);
+  } else {
+    allow({"law"});
+    drive.law = read_formula(table, "law");
   }
   if (table.has("joint") && table.has("loop"))
     table.fail_key("loop", "is given beside joint, expected one of them");
@@ -57,21 +72,36 @@ DriveSpec read_drive(const Fields& table) {
       table.refuse("coordinate", "is given beside origin, expected one of them");
     }
   }
+  if (drive.kind == "formula") return drive;  // read_formulas() judges it
   if (const std::string fault = law_fault(drive); !fault.empty()) table.fail_at(table.at(), fault);
   return drive;
 }
+
+namespace {
+
+/// The formula in `law`, and none of the keys in whose place it stands; empty: there is none.
+std::string read_law(const Fields& table, std::initializer_list<std::string_view> instead_of) {
+  if (!table.has("law")) return "";
+  for (const std::string_view key : instead_of)
+    table.refuse(key, "is given beside law, expected one of them");
+  return read_formula(table, "law");
+}
+
+}  // namespace
 
 ForceSpec read_force(const Fields& table) {
   ForceSpec force;
   force.at = table.at();
   force.kind = force_kinds.at(read_kind(table, force_kinds));
   if (force.kind == "spring-damper") {
-    table.allow({"name", "kind", "parent", "child", "origin", "stiffness", "damping", "rest"});
+    table.allow(
+        {"name", "kind", "parent", "child", "origin", "stiffness", "damping", "rest", "law"});
     force.parent = table.text("parent", force.parent);
     force.child = table.text("child");
     const Origins origins = read_origins(table);
     force.origin_parent = origins.parent;
     force.origin_child = origins.child;
+    force.law = read_law(table, {"stiffness", "damping", "rest"});
     force.stiffness = table.number("stiffness", {"N/m"}, 0);
     force.damping = table.number("damping", {"N s/m"}, 0);
     force.rest = table.number("rest", {"m", Bound::not_negative}, 0);
@@ -90,21 +120,26 @@ ForceSpec read_force(const Fields& table) {
     force.rotational_damping = table.number("rotational_damping", {"N m s/rad"}, 0);
   } else if (force.kind == "coordinate-spring") {
     table.allow(
-        {"name", "kind", "joints", "coordinates", "ratios", "stiffness", "damping", "rest"});
+        {"name", "kind", "joints", "coordinates", "ratios", "stiffness", "damping", "rest", "law"});
     read_sum(table, force.joints, force.coordinates, force.ratios);
+    force.law = read_law(table, {"stiffness", "damping", "rest"});
     force.stiffness = table.number("stiffness", {"N m/rad or N/m"}, 0);
     force.damping = table.number("damping", {"N m s/rad or N s/m"}, 0);
     force.rest = table.number("rest", {"rad or m"}, 0);
   } else if (force.kind == "torque") {
-    table.allow({"name", "kind", "joint", "value"});
+    table.allow({"name", "kind", "joint", "value", "law"});
     force.joint = table.text("joint");
-    force.value = table.number("value", {"N m or N"});
+    force.law = read_law(table, {"value"});
+    if (force.law.empty()) force.value = table.number("value", {"N m or N"});
+  } else if (force.kind == "potential") {
+    table.allow({"name", "kind", "V"});
+    force.law = read_formula(table, "V");
   } else {
     table.allow({"name", "kind", "body", "point", "force", "torque", "axes"});
     force.body = table.text("body");
     force.point = table.vector("point", {"m"}, force.point);
-    force.force = table.vector("force", {"N"}, force.force);
-    force.torque = table.vector("torque", {"N m"}, force.torque);
+    table.vector_or_formulas("force", {"N"}, force.force, force.force_law);
+    table.vector_or_formulas("torque", {"N m"}, force.torque, force.torque_law);
     const std::string axes = table.text("axes", "ground");
     if (axes != "ground" && axes != "body")
       table.fail_key("axes", "is " + in_quotes(axes) + ", expected \"ground\" or \"body\"");

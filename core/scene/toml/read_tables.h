@@ -25,6 +25,11 @@ MarkerSpec read_marker(const Fields& table);
 VisualSpec read_visual(const Fields& table);
 RunDefaults read_run(const Fields& table);
 
+/// The formulas of forces and drives, of which the tables above keep the text: judged, with numbers
+/// in place of parameters. `root` is the scene's table. @pre parameters, joints, markers and forces
+/// of the scene are read
+void read_formulas(const Fields& root, Scene& scene);
+
 /// The value of `key`, one of `kinds`; else fails with the kinds there are. `others` are those of
 /// another table, whose name the sentence says when they are asked for here. @return its index in
 /// `kinds`

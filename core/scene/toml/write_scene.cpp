@@ -2,6 +2,8 @@
 #include <momenta/core/scene/toml/write_scene.h>
 #include <momenta/core/text/near_name.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace momenta {
@@ -236,12 +238,27 @@ void write_drive(const DriveSpec& drive, TomlText& t) {
     t.numbers("times", drive.times);
     t.numbers("values", drive.values);
   }
+  if (drive.kind == "formula") t.word("law", drive.law);
+}
+
+/// Three components, each a number or a formula.
+void write_components(const char* key, const Vector3d& numbers,
+                      const std::array<std::string, 3>& formulas, TomlText& t) {
+  if (std::all_of(formulas.begin(), formulas.end(), [](const auto& f) { return f.empty(); }))
+    return t.vector(key, numbers);
+  std::string all;
+  for (std::size_t i = 0; i < 3; ++i)
+    all += (i > 0 ? ", " : "") + (formulas[i].empty()
+                                      ? TomlText::digits(numbers[static_cast<Eigen::Index>(i)])
+                                      : TomlText::quoted(formulas[i]));
+  t.put(key, "[" + all + "]");
 }
 
 void write_force(const ForceSpec& force, TomlText& t) {
   t.open("[[force]]");
   if (!force.name.empty()) t.word("name", force.name);
   t.word("kind", force.kind);
+  if (!force.law.empty()) t.word(force.kind == "potential" ? "V" : "law", force.law);
   if (force.kind == "spring-damper") {
     write_ends(force, t);
     t.number("stiffness", force.stiffness);
@@ -261,12 +278,12 @@ void write_force(const ForceSpec& force, TomlText& t) {
     t.number("rest", force.rest);
   } else if (force.kind == "torque") {
     t.word("joint", force.joint);
-    t.put("value", TomlText::digits(force.value));
-  } else {
+    if (force.law.empty()) t.put("value", TomlText::digits(force.value));
+  } else if (force.kind == "wrench") {
     t.word("body", force.body);
     t.vector("point", force.point);
-    t.vector("force", force.force);
-    t.vector("torque", force.torque);
+    write_components("force", force.force, force.force_law, t);
+    write_components("torque", force.torque, force.torque_law, t);
     if (force.in_body_axes) t.word("axes", "body");
   }
 }

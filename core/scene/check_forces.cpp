@@ -1,0 +1,109 @@
+// Forces: what they act on, and that their numbers and formulas can be such.
+
+#include <momenta/core/scene/formula.h>
+#include <momenta/core/scene/kinds.h>
+#include <momenta/core/scene/validate_parts.h>
+#include <momenta/core/text/near_name.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace momenta::reading {
+namespace {
+
+bool not_empty(const std::string& text) {
+  return !text.empty();
+}
+
+std::string owner_of(const ForceSpec& force) {
+  return force.name.empty() ? "force of kind " + in_quotes(force.kind)
+                            : "force " + in_quotes(force.name);
+}
+
+}  // namespace
+
+void check_forces(const Scene& scene, const Census& census) {
+  for (const ForceSpec& force : scene.forces) {
+    const std::string who = owner_of(force);
+    if (force.kind == "spring-damper") {
+      census.require_body(force.parent, true, force.at, who, "parent");
+      census.require_body(force.child, false, force.at, who, "child");
+      require(force.parent != force.child, scene, force.at, who,
+              "parent and child must be two bodies");
+      require(force.origin_parent.allFinite() && force.origin_child.allFinite(), scene, force.at,
+              who, "origin must be finite [m]");
+      require(std::isfinite(force.stiffness) && std::isfinite(force.damping), scene, force.at, who,
+              "stiffness [N/m] and damping [N s/m] must be finite");
+      require(std::isfinite(force.rest) && force.rest >= 0, scene, force.at, who,
+              "rest must be finite and >= 0 [m]");
+    } else if (force.kind == "bushing") {
+      census.require_body(force.parent, true, force.at, who, "parent");
+      census.require_body(force.child, false, force.at, who, "child");
+      require(force.parent != force.child, scene, force.at, who,
+              "parent and child must be two bodies");
+      require(force.origin_parent.allFinite() && force.origin_child.allFinite(), scene, force.at,
+              who, "origin must be finite [m]");
+      require(std::abs(force.rotation.norm() - 1) <= norm_slack, scene, force.at, who,
+              "rotation must be a unit quaternion within 1e-6");
+      require(std::isfinite(force.stiffness) && std::isfinite(force.damping) &&
+                  std::isfinite(force.rotational_stiffness) &&
+                  std::isfinite(force.rotational_damping),
+              scene, force.at, who,
+              "stiffness [N/m], damping [N s/m], rotational_stiffness [N m/rad] and "
+              "rotational_damping [N m s/rad] must be finite");
+    } else if (force.kind == "coordinate-spring") {
+      check_coordinates(scene, census, force, who);
+      require(std::isfinite(force.stiffness) && std::isfinite(force.damping) &&
+                  std::isfinite(force.rest),
+              scene, force.at, who, "stiffness, damping and rest must be finite");
+    } else if (force.kind == "torque") {
+      census.require_one_coordinate(force.joint, force.at, who);
+      require(std::isfinite(force.value), scene, force.at, who, "value must be finite [N m or N]");
+    } else if (force.kind == "wrench") {
+      census.require_body(force.body, false, force.at, who, "body");
+      require(force.point.allFinite() && force.force.allFinite() && force.torque.allFinite(), scene,
+              force.at, who, "point, force and torque must be finite");
+    } else {
+      require(
+          force.kind == "potential", scene, force.at, who,
+          "kind must be spring-damper, bushing, coordinate-spring, torque, wrench or potential");
+      require(!force.law.empty(), scene, force.at, who, "law is empty, expected the formula of V");
+    }
+  }
+}
+
+void check_formulas(const Scene& scene) {
+  if (std::none_of(scene.forces.begin(), scene.forces.end(), has_formula)) return;
+  const FormulaReader reader(scene);
+  for (const ForceSpec& force : scene.forces) {
+    if (!has_formula(force)) continue;
+    const std::string who = owner_of(force);
+    const bool in_components =
+        std::any_of(force.force_law.begin(), force.force_law.end(), not_empty) ||
+        std::any_of(force.torque_law.begin(), force.torque_law.end(), not_empty);
+    require(!in_components || force.kind == "wrench", scene, force.at, who,
+            "force_law and torque_law are for wrenches only");
+    require(force.law.empty() || (force.kind != "wrench" && force.kind != "bushing"), scene,
+            force.at, who,
+            "law is for torques, spring-dampers, coordinate springs and potentials only");
+    require(force.law.empty() ||
+                (force.stiffness == 0 && force.damping == 0 && force.rest == 0 && force.value == 0),
+            scene, force.at, who,
+            "law is given beside stiffness, damping, rest or value, expected one of them");
+    const std::vector<OwnName> own = reader.own_names(force);
+    each_formula(force, [&](const std::string& key, const std::string& text) {
+      std::string fault;
+      try {
+        fault = formula_fault(scene, force, reader.read(text, own));
+        if (!fault.empty()) fault = ", " + fault;
+      } catch (const ExpressionError& e) {
+        fault = std::string(": ") + e.what();
+      }
+      require(fault.empty(), scene, force.at, who, (key + ", " + in_quotes(text) + fault).c_str());
+    });
+  }
+}
+
+}  // namespace momenta::reading

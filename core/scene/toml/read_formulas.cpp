@@ -1,0 +1,72 @@
+// Formulas of forces and drives, read when the whole scene is known.
+
+#include <momenta/core/scene/drive.h>
+#include <momenta/core/scene/formula.h>
+#include <momenta/core/scene/toml/read_tables.h>
+#include <momenta/core/text/near_name.h>
+
+#include <vector>
+
+namespace momenta::reading {
+namespace {
+
+/// The value of a key "law" or "force[1]".
+const Value& value_at(const Fields& table, const std::string& key) {
+  const std::size_t bracket = key.find('[');
+  const Value& value = *table.find(key.substr(0, bracket));
+  if (bracket == std::string::npos) return value;
+  return value.items[static_cast<std::size_t>(key[bracket + 1] - '0')];
+}
+
+/// Reads one by read(text) and leaves it with numbers in place of parameters.
+template <class Read>
+Formula read_at(const Fields& table, const std::string& key, std::string& text, Scene& scene,
+                Read&& read) {
+  try {
+    Formula formula = read(text);
+    for (const int i : formula.parameters)
+      scene.parameters[static_cast<std::size_t>(i)].used = true;
+    return formula;
+  } catch (const ExpressionError& e) {
+    table.fail_at(place_in(value_at(table, key), e.place()),
+                  key + ", " + in_quotes(text) + ": " + e.what());
+  }
+}
+
+}  // namespace
+
+void read_formulas(const Fields& root, Scene& scene) {
+  const FormulaReader reader(scene);
+  std::size_t which = 0;
+  for (const Fields& table : root.tables("force", "force")) {
+    ForceSpec& force = scene.forces[which++];
+    if (!has_formula(force)) continue;
+    const std::vector<OwnName> own = reader.own_names(force);
+    each_formula(force, [&](const std::string& key, std::string& text) {
+      const Formula formula =
+          read_at(table, key, text, scene, [&](const auto& t) { return reader.read(t, own); });
+      if (const std::string fault = formula_fault(scene, force, formula); !fault.empty())
+        table.fail_at(value_at(table, key).at, key + ", " + in_quotes(text) + ", " + fault);
+      text = formula.text;
+    });
+  }
+  which = 0;
+  for (const Fields& table : root.tables("drive", "drive")) {
+    DriveSpec& drive = scene.drives[which++];
+    if (drive.kind != "formula") continue;
+    const Formula formula = read_at(table, "law", drive.law, scene,
+                                    [&](const auto& t) { return reader.read_of_time(t); });
+    drive.law = formula.text;
+    if (const std::string fault = law_fault(drive); !fault.empty())
+      table.fail_at(value_at(table, "law").at, fault);
+    if (const std::string corner = law_corner(drive); !corner.empty())
+      scene.remarks.push_back("drive of " +
+                              (drive.joint.empty() ? "loop " + in_quotes(drive.loop)
+                                                   : "joint " + in_quotes(drive.joint)) +
+                              ": " + in_quotes(corner) +
+                              " in its law may have corners or jumps, "
+                              "where no acceleration exists; expected a smooth law");
+  }
+}
+
+}  // namespace momenta::reading
