@@ -160,6 +160,14 @@ class Mechanism::SweepEvaluation final : public SweepRows<Space, double> {
     return power;
   }
 
+  std::string formula_without_value() override {
+    const auto* found = momenta::formula_without_value(w_);
+    if (!found) return "";
+    const ForceSpec& force = scene_.forces[static_cast<std::size_t>(found->force)];
+    return scene_.where(force.at) +
+           (force.name.empty() ? "force of kind '" + force.kind : "force '" + force.name) +
+           "': " + found->key;
+  }
   double formula_size() override { return momenta::formula_size(w_); }
 
   void markers(double* values) override {

@@ -99,6 +99,19 @@ double formula_size(const Workspace<Space, double>& w) {
   return size;
 }
 
+/// The first formula that, or a derivative of which, is not finite; null: all are. Needs
+/// velocities.
+template <class Space>
+const typename Model<Space>::FormulaForce* formula_without_value(
+    const Workspace<Space, double>& w) {
+  for (const auto& force : w.model->formula_forces) {
+    const double* const y = outputs_of(w, force);
+    for (std::size_t i = 0; i < force.formula.outputs().size(); ++i)
+      if (!std::isfinite(y[i])) return &force;
+  }
+  return nullptr;
+}
+
 /// Power of the forces without potential, and ∂V/∂t of those with one [W]. Needs velocities.
 template <class Space, class S>
 S formula_power(const Workspace<Space, S>& w) {

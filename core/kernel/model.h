@@ -10,6 +10,7 @@
 #include <array>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace momenta {
@@ -103,6 +104,8 @@ struct Model {
     std::vector<Act> acts;
     bool is_potential = false;
     int by_time = -1;  ///< the output ∂V/∂t; −1: none
+    int force = 0;     ///< of the scene's forces
+    std::string key;   ///< and of its formulas
   };
 
   std::vector<Body> bodies;

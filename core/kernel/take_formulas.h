@@ -144,9 +144,11 @@ void take_formulas(const Scene& scene, SignalTaker<Space>& taker, Model<Space>& 
   for (const ForceSpec& f : scene.forces) {
     if (!has_formula(f)) continue;
     const std::vector<OwnName> own = reader.own_names(f);
-    const auto add = [&](const std::string& text, int signal, double factor) {
+    const auto which = static_cast<int>(&f - scene.forces.data());
+    const auto add = [&](const std::string& key, const std::string& text, int signal,
+                         double factor) {
       Formula formula = reader.read(text, own);
-      Force force{std::move(formula.expression), {}, {{0, factor, signal}}, false, -1};
+      Force force{std::move(formula.expression), {}, {{0, factor, signal}}, false, -1, which, key};
       for (const Signal& s : formula.signals) force.inputs.push_back(taker.take(s));
       model.formula_forces.push_back(std::move(force));
     };
@@ -154,7 +156,7 @@ void take_formulas(const Scene& scene, SignalTaker<Space>& taker, Model<Space>& 
       const Formula formula = reader.read(f.law);
       std::vector<int> all;
       for (std::size_t v = 0; v < formula.signals.size(); ++v) all.push_back(static_cast<int>(v));
-      Force force{formula.expression.with_derivatives(all), {}, {}, true, -1};
+      Force force{formula.expression.with_derivatives(all), {}, {}, true, -1, which, "V"};
       for (const int v : all) {
         const Signal& s = formula.signals[static_cast<std::size_t>(v)];
         force.inputs.push_back(taker.take(s));
@@ -166,12 +168,15 @@ void take_formulas(const Scene& scene, SignalTaker<Space>& taker, Model<Space>& 
       model.formula_forces.push_back(std::move(force));
     } else if (!f.law.empty()) {
       // the first of its own names is what it acts along
-      add(f.law, taker.take(own.front().signal), f.kind == "torque" ? 1 : -1);
+      add("law", f.law, taker.take(own.front().signal), f.kind == "torque" ? 1 : -1);
     }
     for (int i = 0; i < 3; ++i) {
       const auto at = static_cast<std::size_t>(i);
-      if (!f.force_law[at].empty()) add(f.force_law[at], taker.take_component(f, i, false), 1);
-      if (!f.torque_law[at].empty()) add(f.torque_law[at], taker.take_component(f, i, true), 1);
+      const std::string component = "[" + std::to_string(i) + "]";
+      if (!f.force_law[at].empty())
+        add("force" + component, f.force_law[at], taker.take_component(f, i, false), 1);
+      if (!f.torque_law[at].empty())
+        add("torque" + component, f.torque_law[at], taker.take_component(f, i, true), 1);
     }
   }
 }

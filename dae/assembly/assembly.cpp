@@ -152,6 +152,13 @@ class Assembler {
     s.lambda = Eigen::VectorXd::Zero(mechanism_.m());
     if (mechanism_.nv() == 0) return;
     e().place(s.t, s.q.data());
+    if (mechanism_.has_forces_apart()) {
+      e().move(s.u.data());
+      if (const std::string formula = e().formula_without_value(); !formula.empty())
+        throw SceneError(formula +
+                         ", or a derivative of it, is not finite at the start; expected "
+                         "a start where it has a value");
+    }
     if (mechanism_.m() == 0) {
       Eigen::VectorXd diagonal(mechanism_.nv());
       e().mass_diagonal(diagonal.data());

@@ -18,6 +18,7 @@ BodyMotions::BodyMotions(const Mechanism& mechanism, const std::set<std::string>
   Scene open = mechanism.scene();
   open.loops.clear();
   open.markers.clear();
+  open.forces.clear();  // which may name them, and move nothing here
   std::erase_if(open.drives, [](const DriveSpec& drive) { return !drive.loop.empty(); });
   motion_["ground"] = {};
   // Of four points of a body, its origin and one along each axis, velocities give v and ω.

@@ -2,8 +2,10 @@
 // local_limit a sparse J, whose columns without a common row share one direction of the dual
 // numbers; above it a local matrix in place of J.
 
+#include <momenta/core/scene/formula.h>
 #include <momenta/dae/form/dae_form.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace momenta {
@@ -17,10 +19,13 @@ constexpr int local_limit = 500;  // above which J itself is not formed
 
 class DaeForm::Local final : public LocalJacobian {
  public:
-  explicit Local(DaeForm& form) : form_(form), s_(form.mechanism_, form.size()) {}
+  explicit Local(DaeForm& form)
+      : form_(form),
+        in_time_(form.mechanism_.plan().drives || has_formulas(form.mechanism_.scene())),
+        s_(form.mechanism_, form.size()) {}
 
   bool evaluate(double t, const double* y, const double* ydot, double c) override {
-    cuts_.begin(form_.size(), !form_.mechanism_.plan().drives);
+    cuts_.begin(form_.size(), !in_time_);
     for (int i = 0; i < form_.size(); ++i) {
       const auto at = static_cast<std::size_t>(i);
       s_.y[at] = LocalDual::variable(y[i], i);
@@ -40,7 +45,12 @@ class DaeForm::Local final : public LocalJacobian {
   JacobianPattern eliminated() const { return rows_.eliminated(form_.size()); }
 
  private:
+  static bool has_formulas(const Scene& scene) {
+    return std::any_of(scene.forces.begin(), scene.forces.end(), has_formula);
+  }
+
   DaeForm& form_;
+  bool in_time_;  ///< whether what is zero now may not be later
   DaeScratch<LocalDual> s_;
   Cuts cuts_;
   LocalRows rows_;

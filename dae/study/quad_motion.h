@@ -4,7 +4,7 @@
 // constants of the model and the drives stay in doubles: the motion is that of a mechanism whose
 // lengths and masses differ from those of the scene by rounding.
 
-#include <momenta/core/scalar/quad.h>
+#include <momenta/core/expression/functions_quad.h>
 #include <momenta/dae/mechanism.h>
 
 #include <memory>

@@ -4,9 +4,9 @@
 // corrected by the residual until it is exact, so that constants they keep rounded (squares of
 // cosines, leaves) do not enter. No forces but weights.
 
+#include <momenta/core/expression/functions_quad.h>
 #include <momenta/core/kernel/accelerations.h>
 #include <momenta/core/kernel/momentum_recursion.h>
-#include <momenta/core/scalar/quad.h>
 
 #include <cmath>
 #include <stdexcept>

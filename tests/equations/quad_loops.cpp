@@ -1,6 +1,6 @@
 #include "equations/quad_loops.h"
 
-#include <momenta/core/scalar/quad.h>
+#include <momenta/core/expression/functions_quad.h>
 #include <momenta/dae/sweeps/levels/loop_sweeps.h>
 #include <momenta/dae/sweeps/planar_loop_sweeps.h>
 #include <momenta/dae/sweeps/spatial_loop_sweeps.h>

@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 #include <malloc.h>
 
-#include <momenta/core/scalar/quad.h>
+#include <momenta/core/expression/functions_quad.h>
 #include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/form/form.h>
 #include <momenta/dae/kkt/loop_solver.h>

@@ -107,6 +107,7 @@ class _DriveKeys(TypedDict, total=False):
     start: float
     times: Sequence[float]
     values: Sequence[float]
+    law: str
 
 class _SpringKeys(TypedDict, total=False):
     name: str
@@ -116,14 +117,16 @@ class _SpringKeys(TypedDict, total=False):
     stiffness: float
     damping: float
     rest: float
+    law: str
 
 class _ForceKeys(_SpringKeys, total=False):
     joint: str
     value: float
+    V: str
     body: str
     point: _Vector
-    force: _Vector
-    torque: _Vector
+    force: Sequence[float | str]
+    torque: Sequence[float | str]
     axes: Literal["ground", "body"]
     rotation: _Rotation
     rotational_stiffness: float

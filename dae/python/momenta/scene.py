@@ -48,12 +48,14 @@ class Scene:
 
     def drive(self, kind, **keys):
         """Adds a drive, which prescribes a motion of a joint or a loop. `kind` is its law: polynomial,
-        harmonic, step or table. Keys: joint or loop, coordinate, and the keys of the law (from_ of a step)."""
+        harmonic, step, table or formula. Keys: joint or loop, coordinate, and the keys of the law (from_ of a
+        step)."""
         return self._add("drive", kind=kind, **keys)
 
     def force(self, kind, **keys):
         """Adds a spring-damper; a bushing; a coordinate-spring: joints, ratios, coordinates; a torque along a
-        joint: joint, value; or a wrench on a body: body, point [m], force [N], torque [N m], axes."""
+        joint: joint, value; a wrench on a body: body, point [m], force [N], torque [N m], axes; or a potential: V.
+        `law`, a formula, stands in place of the numbers of all but bushings and wrenches."""
         return self._add("force", kind=kind, **keys)
 
     def spring(self, **keys):

@@ -162,10 +162,10 @@ class Keys(unittest.TestCase):
         "_BodyKeys": ("body", [None], {"name"}),
         "_JointKeys": ("joint", ["revolute"], {"name", "kind"}),
         "_LoopKeys": ("loop", ["distance", "coupler"], {"name", "kind"}),
-        "_DriveKeys": ("drive", ["polynomial", "harmonic", "step", "table"], {"kind"}),
+        "_DriveKeys": ("drive", ["polynomial", "harmonic", "step", "table", "formula"], {"kind"}),
         "_ForceKeys": (
             "force",
-            ["spring-damper", "bushing", "coordinate-spring", "torque", "wrench"],
+            ["spring-damper", "bushing", "coordinate-spring", "torque", "wrench", "potential"],
             {"kind"},
         ),
         "_SpringKeys": ("force", ["spring-damper"], {"kind"}),
