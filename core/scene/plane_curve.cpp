@@ -1,4 +1,5 @@
 #include <momenta/core/scene/plane_curve.h>
+#include <momenta/core/text/near_name.h>
 
 #include <numbers>
 
@@ -8,11 +9,6 @@ namespace {
 constexpr double flat_slack = 1e-9;        // points off the plane, of the largest coordinate
 constexpr double direction_slack = 1e-6;   // directions off the plane, and of unit length
 constexpr std::size_t samples_of_turn = 96, samples_of_chord = 8;
-
-std::string number(double x) {
-  std::string text = std::to_string(x);
-  return text;
-}
 
 std::string spline_fault(const CurveSpec& spec, const Eigen::Vector3d& axis) {
   const auto& p = spec.points;
@@ -26,7 +22,7 @@ std::string spline_fault(const CurveSpec& spec, const Eigen::Vector3d& axis) {
   for (std::size_t i = 0; i < p.size(); ++i) {
     const std::string which = "points[" + std::to_string(i) + "]";
     if (const double off = std::abs(axis.dot(p[i])); off > flat_slack * size)
-      return which + " is " + number(off) + " m off the plane through the origin across axis, expected points of that plane";
+      return which + " is " + reading::digits(off) + " m off the plane through the origin across axis, expected points of that plane";
     const std::size_t next = i + 1 < p.size() ? i + 1 : 0;
     if ((next > 0 || spec.closed) && !((p[next] - p[i]).norm() > flat_slack * size))
       return "points[" + std::to_string(next) + "] is the same as " + which +
@@ -111,6 +107,7 @@ PlaneCurve::PlaneCurve(const CurveSpec& spec, const Eigen::Vector3d& e1,
     const auto p = at(samples_[k]).p, next = at(samples_[(k + 1) % samples_.size()]).p;
     twice_area += p[0] * next[1] - p[1] * next[0];
     reach_ = std::max(reach_, std::hypot(p[0], p[1]));
+    sampled_.push_back(at(samples_[k]));
   }
   outward_ = twice_area > 0 ? -1 : 1;
 }

@@ -40,6 +40,8 @@ class PlaneCurve {
   /// Parameters from one to the next of which the curve turns little, ascending: of a spline from
   /// end to end. None of a line.
   const std::vector<double>& samples() const { return samples_; }
+  /// Where the curve is there.
+  const std::vector<CurvePoint<double>>& sampled() const { return sampled_; }
   /// Largest distance of its samples from the origin [m]; of a line 0.
   double reach() const { return reach_; }
   /// +1: what it bounds is to the right of p', −1: to the left.
@@ -78,6 +80,7 @@ class PlaneCurve {
   std::array<double, 2> e_{1, 0}, semi_axes_{};
   std::vector<CubicSpline> coordinates_;
   std::vector<double> samples_;
+  std::vector<CurvePoint<double>> sampled_;
 };
 
 }  // namespace momenta

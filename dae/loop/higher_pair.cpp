@@ -171,8 +171,20 @@ struct Touch {
         take(dot(e, {p[0] - y[0], p[1] - y[1]}), b);
       }
     } else {
-      for (const double a : pair.of_a.samples())
-        for (const double b : pair.of_b.samples()) take(a, b);
+      const auto& of_a = pair.of_a.sampled();
+      const auto& of_b = pair.of_b.sampled();
+      for (std::size_t i = 0; i < of_a.size(); ++i) {
+        const Two p = turned(y, of_a[i].p), d = turned(y, of_a[i].d);
+        const double out_a = pair.of_a.outward() / norm(d);
+        for (std::size_t k = 0; k < of_b.size(); ++k) {
+          const Two g{y[0] + p[0] - of_b[k].p[0], y[1] + p[1] - of_b[k].p[1]};
+          const double out_b = pair.of_b.outward() / std::sqrt(dot(of_b[k].d, of_b[k].d));
+          const double misfit =
+              dot(g, g) + reach * reach * (2 + 2 * out_a * out_b * dot(d, of_b[k].d));
+          if (misfit < least)
+            least = misfit, s_a = pair.of_a.samples()[i], s_b = pair.of_b.samples()[k];
+        }
+      }
     }
     return from(s_a, s_b);
   }

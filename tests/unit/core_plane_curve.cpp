@@ -97,7 +97,8 @@ TEST(PlaneCurve, FaultsAreWords) {
   for (const CurveSpec& spec : all_curves()) EXPECT_EQ(curve_fault(spec, z), "") << spec.kind;
   CurveSpec off = spline(true);
   off.points[2].z() = 0.1;
-  EXPECT_NE(curve_fault(off, z).find("points[2] is 0.1 m off the plane"), std::string::npos);
+  EXPECT_NE(curve_fault(off, z).find("points[2] is 0.1 m off the plane"), std::string::npos)
+      << curve_fault(off, z);
   CurveSpec twice = spline(false);
   twice.points[1] = twice.points[0];
   EXPECT_NE(curve_fault(twice, z).find("points[1] is the same as points[0]"), std::string::npos);
