@@ -24,7 +24,7 @@ class Pins {
     for (const LoopSpec& loop : scene.loops)
       if (loop.kind == LoopKind::slot)
         add(loop.child, loop.origin_child);
-      else if (loop.kind != LoopKind::coupler && !has_curves(loop))
+      else if (ties_bodies(loop) && !has_curves(loop))
         take(loop);
     for (const ForceSpec& force : scene.forces)
       if (force.kind == "spring-damper") take(force);

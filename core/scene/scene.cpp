@@ -29,6 +29,10 @@ bool has_powers(const LoopSpec& loop) {
   return std::any_of(loop.powers.begin(), loop.powers.end(), [](double x) { return x != 0; });
 }
 
+bool ties_bodies(const LoopSpec& loop) {
+  return loop.kind != LoopKind::coupler && loop.kind != LoopKind::equation;
+}
+
 bool has_curves(const LoopSpec& loop) {
   return loop.kind == LoopKind::cam || loop.kind == LoopKind::rack ||
          (loop.kind == LoopKind::slot && !loop.curve.kind.empty());
@@ -76,7 +80,7 @@ double length_of(const Scene& scene) {
   };
   for (const LoopSpec& l : scene.loops) {
     length = std::max(length, l.length);
-    if (l.kind == LoopKind::coupler) continue;
+    if (!ties_bodies(l)) continue;
     ends(l);
     if (!l.curve.kind.empty()) outline(l.parent, l.origin_parent, l.rotation, l.curve);
     if (!l.child_curve.kind.empty())

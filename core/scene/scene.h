@@ -147,7 +147,8 @@ enum class LoopKind {
   coupler,      ///< 1, between coordinates of joints
   slot,         ///< 2, in a plane 1
   cam,          ///< 1
-  rack          ///< 1
+  rack,         ///< 1
+  equation      ///< 1, between coordinates, positions of markers and the time
 };
 
 /// A joint that closes a loop. It has the keys of a joint, but no coordinates and no forces along
@@ -168,6 +169,8 @@ enum class LoopKind {
 ///     through origin_parent along `direction`, on its side axis × direction: the angle of the
 ///     child about `axis` is `offset` − displacement / radius. The distance from the line is not
 ///     held
+///   - `equation`: the formula `equation` is zero, of joint coordinates, positions of markers and t
+///     (core/scene/formula.h); it ties what its names stand for, and has no bodies of its own
 struct LoopSpec {
   std::string name;                                              ///< unique among joints and loops
   LoopKind kind = LoopKind::point;                               ///< point, revolute, …
@@ -194,11 +197,15 @@ struct LoopSpec {
   CurveSpec curve;    ///< slot: circle or spline, or none; cam: outline of the parent
   CurveSpec child_curve;  ///< cam: outline of the child
   double radius = 0;      ///< rack [m], > 0
+  std::string equation;   ///< equation: a formula, without corners
   Location at;        ///< where the file has it
 };
 
 /// Whether a coupler is not linear.
 bool has_powers(const LoopSpec& loop);
+
+/// Whether a loop ties its parent and its child, and not what coordinates or formulas name.
+bool ties_bodies(const LoopSpec& loop);
 
 /// Whether a loop is a higher pair of curves: a slot that is not straight, a cam, a rack.
 bool has_curves(const LoopSpec& loop);
@@ -223,6 +230,7 @@ constexpr int driven_coordinates_of(LoopKind kind) {
     case LoopKind::weld:
     case LoopKind::cam:
     case LoopKind::rack:
+    case LoopKind::equation:
       return 0;
   }
   return 0;

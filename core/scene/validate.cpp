@@ -1,5 +1,6 @@
 #include <momenta/core/scalar/all_finite.h>
 #include <momenta/core/scene/joint_formula.h>
+#include <momenta/core/scene/formula.h>
 #include <momenta/core/scene/kinds.h>
 #include <momenta/core/scene/plane_curve.h>
 #include <momenta/core/scene/shapes.h>
@@ -180,9 +181,26 @@ void check_curves(const Scene& scene, const LoopSpec& loop, const std::string& w
             loop.at, who, "radius must be finite and > 0 [m], and offset finite [rad]");
 }
 
+void check_equation(const Scene& scene, const LoopSpec& loop, const std::string& who) {
+  std::string fault;
+  try {
+    fault = equation_fault(scene, FormulaReader(scene).read(loop.equation));
+  } catch (const ExpressionError& e) {
+    fault = e.what();
+  }
+  require(fault.empty(), scene, loop.at, who,
+          ("equation, " + in_quotes(loop.equation) + ", " + fault).c_str());
+}
+
 void check_loops(const Scene& scene, const Census& census) {
   for (const LoopSpec& loop : scene.loops) {
     const std::string who = "loop " + in_quotes(loop.name);
+    require((loop.kind == LoopKind::equation) != loop.equation.empty(), scene, loop.at, who,
+            "equation must be given for an equation, and for no other kind");
+    if (loop.kind == LoopKind::equation) {
+      check_equation(scene, loop, who);
+      continue;
+    }
     if (loop.kind == LoopKind::coupler) {
       reading::check_coupler(scene, census, loop);
       continue;

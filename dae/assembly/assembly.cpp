@@ -70,7 +70,7 @@ class Assembler {
 
   [[noreturn]] void refuse(const Eigen::VectorXd& phi, double tolerance, bool stretched) {
     const Scene& scene = mechanism_.scene();
-    refuse_lost_pair();
+    refuse_lost_loop();
     std::string open;
     Location at;
     int row = 0;
@@ -96,11 +96,11 @@ class Assembler {
   }
 
   /// At the pose that was evaluated last.
-  void refuse_lost_pair() {
-    if (const std::string lost = e().lost_pair(); !lost.empty())
+  void refuse_lost_loop() {
+    if (const std::string lost = e().lost_loop(); !lost.empty())
       throw SceneError(mechanism_.scene().where({}) +
                        "the mechanism cannot be assembled from these positions: " + lost +
-                       "; expected positions near to where they touch");
+                       "; expected a start where it has both");
   }
 
   void close_velocities(Assembly& a) {
@@ -188,7 +188,7 @@ class Assembler {
   }
 
   [[noreturn]] void no_inertia(const Start& s, int rate) {
-    refuse_lost_pair();
+    refuse_lost_loop();
     throw SceneError(mechanism_.scene().where({}) + "the mechanism cannot move at its start: " +
                      mechanism_.no_inertia(rate, s.t, s.q.data()));
   }

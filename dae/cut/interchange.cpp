@@ -26,6 +26,7 @@ std::optional<JointKind> as_joint(LoopKind kind, bool planar) {
     case LoopKind::slot:
     case LoopKind::cam:
     case LoopKind::rack:
+    case LoopKind::equation:
       break;
   }
   return std::nullopt;
@@ -137,6 +138,10 @@ LoopSpec loop_of(const JointSpec& joint) {
   loop.axis2 = joint.axis2;
   loop.direction = joint.direction;
   return loop;
+}
+
+bool can_turn_round(const LoopSpec& loop) {
+  return loop.kind == LoopKind::distance || as_joint(loop.kind, false);
 }
 
 LoopSpec turned_round(const LoopSpec& loop) {

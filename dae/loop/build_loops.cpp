@@ -3,6 +3,7 @@
 #include <momenta/dae/loop/loop_model.h>
 #include <momenta/dae/loop/pair_of_loop.h>
 #include <momenta/dae/loop/row_name.h>
+#include <momenta/dae/loop/take_equation.h>
 
 #include <algorithm>
 #include <cmath>
@@ -127,7 +128,9 @@ LoopModel<Spatial> build_loops(const Scene& scene, const Tree& tree, const Model
     LoopModel<Spatial>::Loop l;
     LoopModel<Spatial>::Motion motion;
     take_rows(choice, l);
-    if (spec.kind == LoopKind::coupler) {
+    if (spec.kind == LoopKind::equation) {
+      take_equation(scene, spec, tree, model, all, l);
+    } else if (spec.kind == LoopKind::coupler) {
       couple(spec, tree, all, l, motion);
     } else {
       l.a = tree.body(spec.child);
@@ -179,6 +182,11 @@ LoopModel<Planar> build_loops(const Scene& scene, const Tree& tree, const Model<
     LoopModel<Planar>::Loop l;
     LoopModel<Planar>::Motion motion;
     take_rows(choice, l);
+    if (spec.kind == LoopKind::equation) {
+      take_equation(scene, spec, tree, model, all, l);
+      append(std::move(l), all);
+      continue;
+    }
     if (spec.kind == LoopKind::coupler) {
       couple(spec, tree, all, l, motion);
       const auto none = [](const auto&...) { return Vec2<double>{}; };
@@ -268,7 +276,7 @@ std::string loops_leave_plane(const Scene& scene, const Tree& tree, const Eigen:
   constexpr double angle_tolerance = 1e-10;
   DrivesOfLoops drives = drives_of_loops(scene);
   for (const LoopSpec& spec : scene.loops) {
-    if (spec.kind == LoopKind::coupler) continue;
+    if (!ties_bodies(spec)) continue;
     const LoopDrives& own = drives[spec.name];
     for (int i = 0; i < 3; ++i) {
       const Eigen::Vector3d along = zero_rotation(tree, poses, tree.body(spec.parent)).col(i);

@@ -93,6 +93,7 @@ class Choosing {
         break;
       case LoopKind::distance:
       case LoopKind::coupler:
+      case LoopKind::equation:
         break;
     }
     return c_;
@@ -128,7 +129,9 @@ class Choosing {
   }
 
   LoopChoice of_number() {
-    const std::string what = loop_.kind == LoopKind::distance ? "distance" : "coupling";
+    const std::string what = loop_.kind == LoopKind::distance  ? "distance"
+                             : loop_.kind == LoopKind::coupler ? "coupling"
+                                                               : "equation";
     c_.names.push_back(drives_.coordinate[0] ? what + ", driven" : what);
     return c_;
   }
@@ -223,7 +226,7 @@ DrivesOfLoops drives_of_loops(const Scene& scene) {
 
 LoopChoice choose_rows(const LoopSpec& loop, const LoopDrives& drives, bool planar) {
   Choosing choosing(loop, drives);
-  if (loop.kind == LoopKind::distance || loop.kind == LoopKind::coupler)
+  if (loop.kind == LoopKind::distance || !ties_bodies(loop))
     return choosing.of_number();
   return planar ? choosing.in_plane() : choosing.in_space();
 }

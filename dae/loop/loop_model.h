@@ -9,12 +9,14 @@
 //   Q      Σ rᵢ qᵢ − c                  coordinates of joints; r₂ x² + r₃ x³ + r₄ x⁴ besides, x the
 //                                      last of them, of couplers that are not linear
 //   F      F(b_1·D, b_2·D, a_1·b_1, a_1·b_2)    higher pairs: higher_pair.h
+//   E      any formula                 coordinates, positions of points, t: loop_equation.h
 //
 //   point, spherical  D1 D2 D3          revolute about axis 3   D1 D2 D3, O31 O32
 //   weld              D1 D2 D3, O12 O23 O31      prismatic along axis 3   D1 D2, O12 O23 O31
 //   universal, axes b_3, a_1  D1 D2 D3, O13          cylindrical along axis 3   D1 D2, O31 O32
 //   planar across axis 3      D3, O31 O32            distance                   L
-//   coupler                   Q                      slot on a line along axis 3        D1 D2
+//   coupler                   Q                      equation                 E
+//   slot on a line along axis 3  D1 D2
 //   slot on a circle or spline across axis 3  D3, F  cam, rack across axis 3            F
 // In a plane: point, spherical, revolute D1 D2; weld D1 D2 O12; prismatic D (across), O12; distance
 // L; slot on a line D (across), on a circle L, on a spline F; cam, rack F. The D1 D2 of a plane that come alone, that no drive moves and whose bodies no third one
@@ -39,6 +41,8 @@
 namespace momenta {
 
 struct HigherPair;  // dae/loop/higher_pair.h
+template <class Space>
+struct LoopEquation;  // dae/loop/loop_equation.h
 
 template <class Space>
 struct LoopModel {
@@ -52,7 +56,7 @@ struct LoopModel {
     int q = 0, u = 0;
     double ratio = 0;
     std::array<double, 3> powers{};  ///< r₂, r₃, r₄
-    int curve = -1;                  ///< place among the coordinates with powers; −1: none
+    int curve = -1;                  ///< place among such `curves`; −1: none
 
     template <class S>
     S value(const S& x) const {
@@ -86,13 +90,16 @@ struct LoopModel {
     double across2 = 0;           ///< squared distance across the plane of a planar scene
     std::vector<Coupled> joints;  ///< coupler: then Q is the only row
     int pair = -1;                ///< place in `pairs`; then F follows the rows of points
+    int equation = -1;            ///< place in `equations`; `joints` are its coordinates
     int motion = -1;              ///< place in `motions`; −1: nothing is prescribed
     double least_scale = 0;       ///< of rows of points: Mechanism::least_scales()
 
     /// Whose axes the b_j are.
     int axes_of_b() const { return is_tie ? -1 : b; }
     bool is_distance() const { return per_length > 0; }
-    bool is_coupler() const { return !joints.empty(); }
+    bool is_equation() const { return equation >= 0; }
+    /// Of coordinates, or an equation: no two bodies.
+    bool is_coupler() const { return !joints.empty() || is_equation(); }
     bool is_pair() const { return pair >= 0; }
     /// Rows of the first unit: points, a distance, a coupling, a higher pair. Those of axes follow.
     int first_rows() const {
@@ -128,10 +135,11 @@ struct LoopModel {
   std::vector<Loop> loops;
   std::vector<Motion> motions;
   std::vector<std::shared_ptr<const HigherPair>> pairs;
+  std::vector<std::shared_ptr<const LoopEquation<Space>>> equations;
   int rows = 0;    ///< m, size of Φ
-  int curves = 0;  ///< coordinates that couplers take powers of: Φ_q changes with q there
+  int curves = 0;  ///< coordinates whose column of Φ_q changes: of powers and equations
   /// Whether all rows are of the kinds that sweeps carry.
-  bool swept() const { return curves == 0 && pairs.empty(); }
+  bool swept() const { return curves == 0 && pairs.empty() && equations.empty(); }
 };
 
 LoopModel<Spatial> build_loops(const Scene& scene, const Tree& tree, const Model<Spatial>& model);

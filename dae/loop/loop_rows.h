@@ -14,6 +14,7 @@
 //   F     Φ̇ = Σ F_k ẏ_k, Φ̈ = Σ F_k ÿ_k + Σ F_kl ẏ_k ẏ_l, F_k = ∂F/∂y_k, y of D_j and O_ij
 //         impulse on A: those of its measures, with s_k = F_k s
 //         N on A: those of its measures, and the impulses of ṡ_k = Σ F_kl ẏ_l s
+//   E     loop_equation.h
 //
 // N is the inertial rate of the impulse at fixed σ.
 //
@@ -27,6 +28,7 @@
 #include <momenta/core/scalar/dual.h>
 #include <momenta/dae/loop/driven_loop.h>
 #include <momenta/dae/loop/higher_pair.h>
+#include <momenta/dae/loop/loop_equation.h>
 #include <momenta/dae/loop/lost_places.h>
 
 namespace momenta {
@@ -47,6 +49,7 @@ class LoopRows {
   using Vector = typename Space::template Vector<S>;
   using Force = typename Space::template Force<S>;
   using Angular = decltype(cross(Vector{}, Vector{}));  ///< Vec3 in space, S in the plane
+  using Loop = typename LoopModel<Space>::Loop;
 
   LoopRows(const LoopModel<Space>& model, Workspace<Space, S>& w)
       : model_(&model),
@@ -56,6 +59,7 @@ class LoopRows {
         pairs_(model.pairs.size()),
         driven_(model.motions.size()),
         lost_(w.body.size()) {
+    for (const auto& equation : model.equations) equations_.emplace_back(*equation);
     for (std::size_t i = 0; i < pairs_.size(); ++i)
       pairs_[i].measures = model.pairs[i]->turns() ? 4 : 2;
   }
@@ -68,6 +72,14 @@ class LoopRows {
     for (std::size_t i = 0; i < at_.size(); ++i) {
       const auto& l = model_->loops[i];
       auto& s = at_[i];
+      if (l.is_equation()) {
+        EquationRow<Space, S>& row = equation(l);
+        row.place(w_, t, q);
+        s.position = row.position();
+        for (std::size_t j = 0; j < l.joints.size(); ++j)
+          curve(l.joints[j]).slope = row.slope_of(j);
+        continue;
+      }
       if (l.is_coupler()) {
         s.position = -S(given(l));
         for (const auto& c : l.joints) {
@@ -97,14 +109,23 @@ class LoopRows {
     }
   }
 
-  /// The first pair that the last place() found no derivatives of, by place among the loops; −1:
-  /// none.
-  int lost_pair() const {
-    for (std::size_t i = 0; i < at_.size() && !pairs_.empty(); ++i)
-      if (const auto& l = model_->loops[i];
-          l.is_pair() && pair(l).place.lost != PairPlace::Lost::no)
+  /// The first pair or equation that the last place() found no numbers of, by place among the
+  /// loops; −1: none.
+  int lost_loop() const {
+    if (pairs_.empty() && equations_.empty()) return -1;
+    for (std::size_t i = 0; i < at_.size(); ++i) {
+      const auto& l = model_->loops[i];
+      if ((l.is_pair() && pair(l).place.lost != PairPlace::Lost::no) ||
+          (l.is_equation() && !equation(l).finite()))
         return static_cast<int>(i);
+    }
     return -1;
+  }
+  /// Calls act(body, wrench) for the unit impulse of an equation on each body with points of it;
+  /// of other loops nothing.
+  template <class Act>
+  void each_point_wrench(const Loop& l, Act&& act) const {
+    if (l.is_equation()) equation(l).each_wrench(w_, S(1.0), false, act);
   }
   /// Where the curves of a pair touched at the last place(), by place of its loop.
   const PairPlace& pair_place(std::size_t loop) const { return pair(model_->loops[loop]).place; }
@@ -114,6 +135,14 @@ class LoopRows {
     for (std::size_t i = 0; i < at_.size(); ++i) {
       const auto& l = model_->loops[i];
       auto& s = at_[i];
+      if (l.is_equation()) {
+        EquationRow<Space, S>& row = equation(l);
+        row.move(w_, u);
+        s.rate = row.rate();
+        for (std::size_t j = 0; j < l.joints.size(); ++j)
+          curve(l.joints[j]).turning = row.turning_of(j);
+        continue;
+      }
       if (l.is_coupler()) {
         s.rate = -S(given_rate(l));
         s.bending = S(0.0);
@@ -139,12 +168,16 @@ class LoopRows {
     }
   }
 
-  /// Accelerations of couplers; `udot` null: zero.
+  /// Accelerations of couplers and equations; `udot` null: zero. The latter need accelerations.
   void accelerate(const S* udot) {
     for (std::size_t i = 0; i < at_.size(); ++i) {
       const auto& l = model_->loops[i];
       if (!l.is_coupler()) continue;
       S& second = at_[i].second;
+      if (l.is_equation()) {
+        second = equation(l).second(w_, udot);
+        continue;
+      }
       second = l.motion < 0 ? S(0.0) : -S(motion(l).given_second);
       second += at_[i].bending;
       for (const auto& c : l.joints)
@@ -241,13 +274,13 @@ class LoopRows {
         true);
   }
 
-  /// Adds the impulses of couplers, times `factor`, to the momenta or forces of joints (nv).
+  /// Adds the impulses of couplers and equations on coordinates, times `factor`, to the momenta or forces of joints (nv).
   void add_couplings(const S* sigma, double factor, S* on_joints) const {
     for (const auto& l : model_->loops)
       for (const auto& c : l.joints) on_joints[c.u] += (factor * ratio(c)) * sigma[l.row];
   }
 
-  /// Adds ṙ σ of couplers whose ratios change; needs move().
+  /// Adds ṙ σ of coordinates whose ratios change; needs move().
   void add_coupling_rates(const S* sigma, S* on_joints) const {
     if (curves_.empty()) return;
     for (const auto& l : model_->loops)
@@ -318,7 +351,12 @@ class LoopRows {
   const Curve& curve(const typename LoopModel<Space>::Coupled& c) const {
     return curves_[static_cast<std::size_t>(c.curve)];
   }
-  using Loop = typename LoopModel<Space>::Loop;
+  EquationRow<Space, S>& equation(const Loop& l) {
+    return equations_[static_cast<std::size_t>(l.equation)];
+  }
+  const EquationRow<Space, S>& equation(const Loop& l) const {
+    return equations_[static_cast<std::size_t>(l.equation)];
+  }
   Pair& pair(const Loop& l) { return pairs_[static_cast<std::size_t>(l.pair)]; }
   const Pair& pair(const Loop& l) const { return pairs_[static_cast<std::size_t>(l.pair)]; }
   const HigherPair& law(const Loop& l) const {
@@ -431,6 +469,11 @@ class LoopRows {
     for (std::size_t i = 0; i < at_.size(); ++i) {
       const auto& l = model_->loops[i];
       const At& s = at_[i];
+      if (l.is_equation())
+        equation(l).each_wrench(w_, S(factor * sigma[l.row]), rate,
+                                [&](int body, const Force& on) {
+                                  field(w_.body[static_cast<std::size_t>(body)]) += on;
+                                });
       if (l.is_coupler()) continue;
       Vector force{}, impulse{};
       Angular couple{};
@@ -493,6 +536,7 @@ class LoopRows {
   std::vector<At> at_;
   std::vector<Curve> curves_;
   std::vector<Pair> pairs_;
+  std::vector<EquationRow<Space, S>> equations_;
   std::vector<Driven> driven_;  ///< at the time of place()
   LostPlaces<Space> lost_;
 };

@@ -79,7 +79,9 @@ bool drives_a_length(const Scene& scene, const DriveSpec& drive) {
 bool has_formulas(const Scene& scene) {
   return std::any_of(scene.forces.begin(), scene.forces.end(), has_formula) ||
          std::any_of(scene.drives.begin(), scene.drives.end(),
-                     [](const DriveSpec& d) { return d.kind == "formula"; });
+                     [](const DriveSpec& d) { return d.kind == "formula"; }) ||
+         std::any_of(scene.loops.begin(), scene.loops.end(),
+                     [](const LoopSpec& l) { return l.kind == LoopKind::equation; });
 }
 
 bool at_rest(const Scene& scene) {

@@ -204,9 +204,9 @@ Picture picture_of(const Mechanism& mechanism) {
     draw(loop.child, curves.of_child);
   }
   for (const LoopSpec& loop : scene.loops)
-    if (loop.kind != LoopKind::coupler)
+    if (ties_bodies(loop))
       picture.loops.push_back(pair(loop, std::string(reading::name_of(loop.kind))));
-    else
+    else if (loop.kind == LoopKind::coupler)
       picture.couplers.push_back({loop.name, {}, loop.ratios});
   std::size_t coupler = 0;
   std::map<std::string, int> by_joint;
@@ -259,7 +259,7 @@ Motion motion_of(const Mechanism& mechanism, const Film& film) {
   std::vector<LoopGap> gaps;
   std::vector<std::pair<int, int>> sides;
   for (const LoopSpec& loop : mechanism.scene().loops)
-    if (loop.kind != LoopKind::coupler) {
+    if (ties_bodies(loop)) {
       gaps.emplace_back(mechanism.scene(), loop);
       sides.push_back({order.place.at(loop.parent), order.place.at(loop.child)});
     }

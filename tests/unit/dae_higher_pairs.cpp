@@ -169,7 +169,7 @@ void compare_with_differences(const Mechanism& mechanism, double t, equations::R
   // Φ and Φ_qᵀσ
   VectorXd phi(m), force(nv), later(nv), sooner(nv);
   e->place(t, q.data());
-  ASSERT_EQ(e->lost_pair(), "");
+  ASSERT_EQ(e->lost_loop(), "");
   e->positions(phi.data());
   EXPECT_LE((phi - doubles(twin.positions(t, quad(q)))).norm(), 1e-13);
   e->constraint_forces(sigma.data(), force.data());

@@ -205,6 +205,7 @@ void write_loop(const LoopSpec& loop, TomlText& t) {
     t.number("offset", loop.offset);
     return;
   }
+  if (loop.kind == LoopKind::equation) return t.word("equation", loop.equation);
   write_frames(loop, reading::has_axis(loop.kind), t);
   if (loop.kind == LoopKind::distance) t.number("length", loop.length);
   write_curves(loop, t);
