@@ -2,6 +2,7 @@
 // Values of a formula in every scalar: one pass over its tape.
 
 #include <momenta/core/expression/functions.h>
+#include <momenta/core/expression/spline.h>
 
 #include <cmath>
 
@@ -79,6 +80,9 @@ inline void execute(const Expression::Instruction& in, const S* x, const S* line
       break;
     case O::max:
       y = chosen(std::isnan(value_of(b())) || value_of(b()) > value_of(a()), b(), a());
+      break;
+    case O::spline:
+      y = in.spline->derivative(a(), static_cast<int>(in.number));
       break;
     case O::power:
     case O::atan2:

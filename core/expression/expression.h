@@ -22,6 +22,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <stdexcept>
@@ -30,6 +31,8 @@
 #include <vector>
 
 namespace momenta {
+
+class CubicSpline;  // core/expression/spline.h
 
 /// A formula that is none: one sentence; the place counts characters from 0.
 class ExpressionError : public std::invalid_argument {
@@ -42,6 +45,11 @@ class ExpressionError : public std::invalid_argument {
   std::size_t place_;
 };
 
+/// Whether it is letters, digits and _, a letter or _ first: a name that formulas take as it is.
+bool is_plain_name(std::string_view name);
+/// Whether formulas have a function, a number or a word of this name by themselves.
+bool is_reserved_name(std::string_view name);
+
 /// What the names in a formula stand for.
 class FormulaNames {
  public:
@@ -53,6 +61,10 @@ class FormulaNames {
   virtual ~FormulaNames() = default;
   /// Of a name as it is written at a place; nothing: it is unknown. @throws ExpressionError
   virtual std::optional<Meaning> meaning(std::string_view name, std::size_t place) = 0;
+  /// A function of one number by its name; null: unknown.
+  virtual std::shared_ptr<const CubicSpline> function(std::string_view) { return nullptr; }
+  /// The names of these functions.
+  virtual std::vector<std::string_view> functions() const { return {}; }
   /// How the sentence about an unknown name ends: "; did you mean …?", or ", expected …".
   virtual std::string expected(std::string_view name) const = 0;
 };
@@ -96,12 +108,14 @@ class Expression {
     atan2,
     hypot,
     min,
-    max
+    max,
+    spline
   };
   struct Instruction {
     Operation operation = Operation::number;
     int a = -1, b = -1, c = -1;  ///< instructions before; of a variable a is its number
-    double number = 0;           ///< of a whole power the exponent
+    double number = 0;           ///< exponent of a whole power, order of a spline's derivative
+    const CubicSpline* spline = nullptr;  ///< kept by the formula
   };
 
   /// The names of the variables x₀, x₁, … @throws ExpressionError. O(length) and lookups of names
@@ -135,6 +149,7 @@ class Expression {
   Expression() = default;
   std::vector<Instruction> tape_;
   std::vector<int> outputs_;
+  std::vector<std::shared_ptr<const CubicSpline>> splines_;  ///< those that it takes
   bool truth_ = false;
 };
 

@@ -127,6 +127,10 @@ class Backward {
                     negative(tape_.add(O::divide, bar, tape_.add(O::sqrt, one_minus(square(a))))));
       case O::atan:
         return give(a, tape_.add(O::divide, bar, tape_.add(O::add, tape_.number(1), square(a))));
+      case O::spline:
+        if (in.number < 3)
+          give(a, times(bar, tape_.add({O::spline, a, -1, -1, in.number + 1, in.spline})));
+        return;
       default:  // numbers, variables; truths, sign and floor have no slope
         return;
     }

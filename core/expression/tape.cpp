@@ -40,13 +40,14 @@ Tape::Tape(const std::vector<Instruction>& written) {
 std::size_t Tape::Hash::operator()(const Instruction& in) const {
   std::size_t h = static_cast<std::size_t>(in.operation);
   for (const int i : {in.a, in.b, in.c}) h = h * 1'000'003 + static_cast<std::size_t>(i + 2);
+  h = h * 1'000'003 + reinterpret_cast<std::uintptr_t>(in.spline);
   return h * 1'000'003 + std::bit_cast<std::uint64_t>(in.number);
 }
 
 bool Tape::Equal::operator()(const Instruction& x, const Instruction& y) const {
   const auto bits = [](double number) { return std::bit_cast<std::uint64_t>(number); };
   return x.operation == y.operation && x.a == y.a && x.b == y.b && x.c == y.c &&
-         bits(x.number) == bits(y.number);
+         bits(x.number) == bits(y.number) && x.spline == y.spline;
 }
 
 int Tape::add(Instruction in) {

@@ -70,6 +70,9 @@ Census::Census(const Scene& scene) : scene_(scene) {
   Names markers(scene, "markers");
   for (const MarkerSpec& marker : scene.markers) markers.add("marker", marker.name, marker.at);
 
+  Names functions(scene, "functions");
+  for (const FunctionSpec& f : scene.functions) functions.add("function", f.name, f.at);
+
   Names forces(scene, "forces");
   for (const ForceSpec& force : scene.forces)
     if (!force.name.empty()) forces.add("force", force.name, force.at);

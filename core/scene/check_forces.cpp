@@ -1,5 +1,6 @@
 // Forces: what they act on, and that their numbers and formulas can be such.
 
+#include <momenta/core/expression/spline.h>
 #include <momenta/core/scene/formula.h>
 #include <momenta/core/scene/kinds.h>
 #include <momenta/core/scene/validate_parts.h>
@@ -71,6 +72,17 @@ void check_forces(const Scene& scene, const Census& census) {
           "kind must be spring-damper, bushing, coordinate-spring, torque, wrench or potential");
       require(!force.law.empty(), scene, force.at, who, "law is empty, expected the formula of V");
     }
+  }
+}
+
+void check_functions(const Scene& scene) {
+  for (const FunctionSpec& f : scene.functions) {
+    const std::string who = "function " + in_quotes(f.name);
+    require(is_plain_name(f.name) && !is_reserved_name(f.name), scene, f.at, who,
+            "the name is none that formulas can call, expected letters, digits and _, a letter "
+            "first, and no function of theirs");
+    const std::string fault = spline_fault(f.x, f.y, "x", "y");
+    require(fault.empty(), scene, f.at, who, fault.c_str());
   }
 }
 

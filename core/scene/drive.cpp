@@ -27,20 +27,7 @@ std::string law_fault(const DriveSpec& spec) {
       return "from, to, start and duration must be finite";
     return spec.duration > 0 ? "" : "duration must be > 0 [s]";
   }
-  if (spec.kind == "table") {
-    const std::size_t n = spec.times.size();
-    if (n < 2) return "times has fewer than 2 entries, expected at least 2";
-    if (spec.values.size() != n)
-      return "values has " + std::to_string(spec.values.size()) + " entries and times " +
-             std::to_string(n) + ", expected as many";
-    if (!all_finite(spec.times) || !all_finite(spec.values))
-      return "times and values must be finite";
-    for (std::size_t i = 1; i < n; ++i)
-      if (!(spec.times[i - 1] < spec.times[i]))
-        return "times[" + std::to_string(i) + "] is not after times[" + std::to_string(i - 1) +
-               "], expected increasing times";
-    return "";
-  }
+  if (spec.kind == "table") return spline_fault(spec.times, spec.values, "times", "values");
   if (spec.kind == "formula") try {
       if (!Expression(spec.law, of_time).is_truth()) return "";
       return "law, " + reading::in_quotes(spec.law) +
@@ -74,7 +61,7 @@ MotionLaw::MotionLaw(const DriveSpec& spec)
   if (spec.kind == "step") kind_ = Kind::step;
   if (spec.kind == "table") {
     kind_ = Kind::table;
-    table_.emplace(spec.times, spec.values);
+    spline_ = CubicSpline(spec.times, spec.values);
   }
   if (spec.kind == "formula") {
     kind_ = Kind::formula;

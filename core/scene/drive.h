@@ -13,7 +13,7 @@
 //   s' and s" vanish at both ends: f is twice continuously differentiable.
 //
 // table
-//   Natural cubic spline through (tᵢ, yᵢ), straight outside (cubic_spline.h).
+//   The natural cubic spline through (tᵢ, yᵢ): core/expression/spline.h.
 //
 // formula
 //   f by the instructions of its tape, ḟ and f̈ by those of its derivatives (core/expression).
@@ -22,7 +22,7 @@
 // number takes the piece of its value.
 
 #include <momenta/core/expression/evaluate.h>
-#include <momenta/core/scene/cubic_spline.h>
+#include <momenta/core/expression/spline.h>
 #include <momenta/core/scene/scene.h>
 
 #include <cmath>
@@ -59,7 +59,7 @@ class MotionLaw {
       case Kind::step:
         return step(t, f, fdot, fddot);
       case Kind::table:
-        return table_->evaluate(t, f, fdot, fddot);
+        return spline_.evaluate(t, f, fdot, fddot);
       case Kind::formula:
         return by_tape(t, f, fdot, fddot);
     }
@@ -112,7 +112,7 @@ class MotionLaw {
   std::vector<double> coefficients_;
   double offset_ = 0, amplitude_ = 0, frequency_ = 0, phase_ = 0;
   double from_ = 0, to_ = 0, start_ = 0, duration_ = 1;
-  std::optional<CubicSpline> table_;
+  CubicSpline spline_;
   std::optional<Expression> formula_;  ///< f, ḟ, f̈
 };
 

@@ -1,3 +1,4 @@
+#include <momenta/core/expression/spline.h>
 #include <momenta/core/scene/formula.h>
 #include <momenta/core/scene/kinds.h>
 #include <momenta/core/text/near_name.h>
@@ -15,19 +16,10 @@ using reading::in_quotes;
 
 constexpr std::array<std::string_view, 6> of_markers{"x", "y", "z", "vx", "vy", "vz"};
 
-bool is_plain(std::string_view name) {
-  const auto letter = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
-  };
-  return !name.empty() && letter(name.front()) &&
-         std::all_of(name.begin(), name.end(),
-                     [&](char c) { return letter(c) || (c >= '0' && c <= '9'); });
-}
-
 /// "J.q" or "'left-knee'.q".
 std::string named(std::string_view owner, std::string_view component) {
   const std::string name(owner);
-  return (is_plain(owner) ? name : "'" + name + "'") + "." + std::string(component);
+  return (is_plain_name(owner) ? name : "'" + name + "'") + "." + std::string(component);
 }
 
 /// Coordinates that are angles and displacements by themselves.
@@ -67,6 +59,9 @@ FormulaReader::FormulaReader(const Scene& scene) : scene_(scene) {
   take(scene.markers, markers_);
   take(scene.forces, forces_);
   take(scene.parameters, parameters_);
+  for (const FunctionSpec& f : scene.functions)
+    if (spline_fault(f.x, f.y, "x", "y").empty())
+      functions_.emplace(f.name, std::make_shared<const CubicSpline>(f.x, f.y));
 }
 
 /// What the names of one formula mean.
@@ -100,6 +95,16 @@ class FormulaReader::Names final : public FormulaNames {
     return {};
   }
 
+  std::shared_ptr<const CubicSpline> function(std::string_view name) override {
+    const auto found = r_.functions_.find(name);
+    return of_time_alone_ || found == r_.functions_.end() ? nullptr : found->second;
+  }
+  std::vector<std::string_view> functions() const override {
+    std::vector<std::string_view> all;
+    if (!of_time_alone_)
+      for (const FunctionSpec& f : r_.scene_.functions) all.push_back(f.name);
+    return all;
+  }
   std::string expected(std::string_view name) const override {
     std::vector<std::string> all{"t", "pi"};
     for (const OwnName& o : own_) all.emplace_back(o.name);
@@ -327,40 +332,6 @@ std::string equation_fault(const Scene& scene, const Formula& formula) {
   return ties ? ""
               : "takes no coordinate and no position of a marker, so that it ties nothing; expected "
                 "one of them";
-}
-
-NamedInFormulas::NamedInFormulas(const Scene& scene) {
-  const auto is_equation = [](const LoopSpec& l) { return l.kind == LoopKind::equation; };
-  if (std::none_of(scene.forces.begin(), scene.forces.end(), has_formula) &&
-      std::none_of(scene.loops.begin(), scene.loops.end(), is_equation))
-    return;
-  const FormulaReader reader(scene);
-  for (const LoopSpec& loop : scene.loops) {
-    if (!is_equation(loop)) continue;
-    for (const Signal& s : reader.read(loop.equation).signals) {
-      const auto which = static_cast<std::size_t>(s.which);
-      if (s.kind == Kind::coordinate) joints.insert(scene.joints[which].name);
-      if (s.kind == Kind::position) bodies.insert(scene.markers[which].body);
-    }
-  }
-  for (const ForceSpec& force : scene.forces) {
-    if (!has_formula(force)) continue;
-    const auto own = reader.own_names(force);
-    if (!force.joint.empty()) joints.insert(force.joint);
-    each_formula(force, [&](const std::string&, const std::string& text) {
-      for (const Signal& s : reader.read(text, own).signals) {
-        const auto which = static_cast<std::size_t>(s.which);
-        if (s.kind == Kind::coordinate || s.kind == Kind::rate)
-          joints.insert(scene.joints[which].name);
-        if (s.kind == Kind::position || s.kind == Kind::velocity)
-          bodies.insert(scene.markers[which].body);
-        if (s.kind != Kind::length && s.kind != Kind::length_rate) continue;
-        const ForceSpec& spring = scene.forces[which];
-        if (&spring != &force) springs.insert(spring.name);
-        joints.insert(spring.joints.begin(), spring.joints.end());
-      }
-    });
-  }
 }
 
 }  // namespace momenta

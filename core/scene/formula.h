@@ -8,6 +8,8 @@
 //   C.l  C.rate                      the sum l of coordinate spring C and its rate
 //
 // A name with other characters than letters, digits and _ stands in single quotes: 'left-knee'.q.
+// [[function]] gives splines names: f(J.q).
+//
 // Joints are those whose coordinates are angles and displacements by themselves, driven or not.
 // Scenes keep formulas as text, so that they hold wherever joints stand in other order; numbers
 // stand in place of parameters there.
@@ -15,6 +17,7 @@
 #include <momenta/core/expression/expression.h>
 #include <momenta/core/scene/scene.h>
 
+#include <memory>
 #include <set>
 #include <span>
 #include <string>
@@ -53,7 +56,8 @@ struct Formula {
   std::string text;             ///< as written, numbers in place of parameters
 };
 
-/// Reads formulas of a scene, which must outlive it. O(scene) once, O(length) a formula.
+/// Reads formulas of a scene, which must outlive it. Functions that are none are left out. O(scene)
+/// once, O(length) a formula.
 class FormulaReader {
  public:
   explicit FormulaReader(const Scene& scene);
@@ -72,6 +76,7 @@ class FormulaReader {
   using Places = std::unordered_map<std::string_view, int>;
   const Scene& scene_;
   Places joints_, markers_, forces_, parameters_;
+  std::unordered_map<std::string_view, std::shared_ptr<const CubicSpline>> functions_;
 };
 
 /// The signal as formulas name it.

@@ -337,6 +337,15 @@ struct ParameterSpec {
   bool used = false;  ///< whether a formula of the scene takes it
 };
 
+/// A function of one number that formulas of forces call by its name: the natural cubic spline
+/// through points, straight outside (core/expression/spline.h).
+struct FunctionSpec {
+  std::string name;       ///< letters, digits and _, a letter first; none of those formulas have
+  std::vector<double> x;  ///< increasing, at least two
+  std::vector<double> y;  ///< one for each x
+  Location at;            ///< where the file has it
+};
+
 /// The defaults of a run, for options that the command line does not give; also for `momenta
 /// drift`.
 struct RunDefaults {
@@ -358,6 +367,7 @@ struct Scene {
   std::vector<LoopSpec> loops;                        ///< empty: an open chain
   std::vector<DriveSpec> drives;                      ///< prescribed motion
   std::vector<ForceSpec> forces;          ///< forces besides gravity and those of joints
+  std::vector<FunctionSpec> functions;    ///< what formulas may call
   std::vector<MarkerSpec> markers;        ///< points to be reported
   std::vector<VisualSpec> visuals;        ///< solids to be drawn; no effect on motion
   std::vector<std::string> held;          ///< [assembly] hold: joints whose q and u assembly keeps

@@ -270,6 +270,7 @@ void validate(const Scene& scene) {
   check_loops(scene, census);
   reading::check_drives(scene, census);
   reading::check_forces(scene, census);
+  reading::check_functions(scene);
   check_visuals(scene, census);
   check_rest(scene, census);
   reading::check_tree(scene);

@@ -17,8 +17,8 @@ inline void require(bool condition, const Scene& scene, Location at, const std::
 }
 
 /// Who is called what. Construction checks the names themselves: none empty, none twice among
-/// bodies, among joints and loops together, among markers, among named forces; none with control
-/// characters; no body called "ground".
+/// bodies, among joints and loops together, among markers, functions, named forces; none with
+/// control characters; no body called "ground".
 class Census {
  public:
   explicit Census(const Scene& scene);
@@ -66,6 +66,9 @@ void check_drives(const Scene& scene, const Census& census);
 
 /// Bodies and joints of forces known, numbers finite.
 void check_forces(const Scene& scene, const Census& census);
+
+/// Functions have names that formulas can take, and points of a spline.
+void check_functions(const Scene& scene);
 
 /// What formulas of forces stand in place of, and what they name. @pre the scene is valid without
 /// them

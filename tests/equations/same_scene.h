@@ -105,6 +105,11 @@ inline std::string difference(const Scene& a, const Scene& b) {
     numbers(x.force, y.force, what + " force");
     numbers(x.torque, y.torque, what + " torque");
   });
+  each(a.functions, b.functions, "function",
+       [&](const FunctionSpec& x, const FunctionSpec& y, const auto& what) {
+         numbers(x.x, y.x, what + " x");
+         numbers(x.y, y.y, what + " y");
+       });
   each(a.markers, b.markers, "marker",
        [&](const MarkerSpec& x, const MarkerSpec& y, const auto& what) {
          note(x.name == y.name && x.body == y.body, what);

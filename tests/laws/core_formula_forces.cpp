@@ -10,6 +10,8 @@
 #include <momenta/core/open_chain.h>
 #include <momenta/core/scene/toml/parse_scene.h>
 
+#include <cmath>
+#include <cstdio>
 #include <string>
 
 namespace momenta::core_formula_forces {
@@ -320,6 +322,39 @@ TEST(FormulaForces, ExactDerivatives) {
       differences.col(k) = (f[1] - f[0]) / (2 * h);
     }
     EXPECT_LE((J - differences).norm(), 1e-7 * J.norm());
+  }
+}
+
+/// A torque at a time, and one of a driven joint's motion, are the numbers they are there.
+TEST(FormulaForces, TakeTheTimeAndDrivenCoordinates) {
+  const std::string drive = R"toml(
+[[drive]]
+joint = "E"
+coordinate = 1
+kind = "harmonic"
+amplitude = 0.7
+frequency = 3
+)toml";
+  const auto with = [&](const std::string& torque) {
+    return scene_of(drive + "[[force]]\nkind = \"torque\"\njoint = \"A\"\n" + torque + "\n");
+  };
+  OpenChain chain(with("law = \"2 * sin(3 * t) + E.q1 * E.u1\""));
+  equations::RandomTree random(9);
+  for (int i = 0; i < 10; ++i) {
+    const State s = random_state(random, chain);
+    const double q = 0.7 * std::sin(3 * s.t), u = 2.1 * std::cos(3 * s.t);
+    char value[40];
+    std::snprintf(value, sizeof value, "value = %.17g", 2 * std::sin(3 * s.t) + q * u);
+    OpenChain plain(with(value));
+    VectorXd one(chain.nv()), two(chain.nv()), p(chain.nv()), qdot(chain.nq()), pdot(chain.nv());
+    ASSERT_TRUE(chain.accelerations(s.t, s.q, s.u, one));
+    ASSERT_TRUE(plain.accelerations(s.t, s.q, s.u, two));
+    EXPECT_LE((one - two).norm(), 1e-12 * (1 + one.norm()));
+    chain.momenta(s.t, s.q, s.u, p);
+    VectorXd other(chain.nv());
+    ASSERT_TRUE(chain.rates(s.t, s.q, p, qdot, pdot));
+    ASSERT_TRUE(plain.rates(s.t, s.q, p, qdot, other));
+    EXPECT_LE((pdot - other).norm(), 1e-12 * (1 + pdot.norm()));
   }
 }
 

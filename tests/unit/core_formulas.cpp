@@ -11,6 +11,7 @@
 #include <momenta/core/scene/toml/write_scene.h>
 #include <momenta/core/scene/validate.h>
 
+#include <array>
 #include <string>
 #include <utility>
 #include <vector>
@@ -148,6 +149,49 @@ TEST(Formulas, AreWrittenAndReadAgain) {
   EXPECT_EQ(wrench.force[2], 2.0 / 3);
 }
 
+const std::string with_curve = base + R"toml(
+[[function]]
+name = "curve"
+x = [-1, 0, 0.5, 2]
+y = [3, 0.1, -0.4, 1]
+[[force]]
+kind = "torque"
+joint = "A"
+law = "curve(k * u) + curve(curve(q))"
+)toml";
+
+/// The spline of a drive's table, with its derivatives as formulas of their own.
+TEST(Formulas, FunctionsAreSplines) {
+  const Scene scene = parse_scene(with_curve, "curve.toml");
+  DriveSpec table;
+  table.kind = "table";
+  table.times = scene.functions[0].x;
+  table.values = scene.functions[0].y;
+  const MotionLaw law(table);
+  const FormulaReader reader(scene);
+  const Formula f = reader.read("curve(t)"), square = reader.read("curve(t)^2 * A.q");
+  const Expression derivatives = f.expression.with_two_derivatives(0);
+  const Expression gradient = square.expression.with_derivatives(std::array{0, 1});
+  for (const double t : {-1.7, -0.4, 0.0, 0.3, 1.9, 2.6}) {
+    double expected[3], found[3], line[64], slopes[3];
+    law.evaluate(t, expected[0], expected[1], expected[2]);
+    evaluate(derivatives, &t, line, found);
+    for (int i = 0; i < 3; ++i) EXPECT_NEAR(found[i], expected[i], 1e-14) << t;
+    const double x[2]{t, 0.7};
+    evaluate(gradient, x, line, slopes);
+    EXPECT_NEAR(slopes[1], 2 * expected[0] * expected[1] * 0.7, 1e-15);
+    EXPECT_NEAR(slopes[2], expected[0] * expected[0], 1e-15);
+    // a dual number's derivative is that of the derivative's tape
+    Dual<double, 1> at(t), dual[3], duals[64];
+    at.b[0] = 1;
+    evaluate(derivatives, &at, duals, dual);
+    EXPECT_NEAR(dual[0].b[0], expected[1], 1e-14);
+    EXPECT_NEAR(dual[1].b[0], expected[2], 1e-13);
+  }
+  const std::string text = scene_text(scene);
+  EXPECT_EQ(equations::difference(scene, parse_scene(text, "written.toml")), "");
+}
+
 std::string refused(const Scene& scene) {
   try {
     validate(scene);
@@ -226,10 +270,14 @@ TEST(Formulas, DrivesAreTheOtherLawsWhereTheyAreWrittenSo) {
   }
 }
 
-TEST(Formulas, DrivesTellTheirCorners) {
+TEST(Formulas, DrivesTellTheirCornersAndPotentialsTheTime) {
   EXPECT_EQ(law_corner(by_formula("sin(t)^2 + exp(-t)")), "");
   EXPECT_EQ(law_corner(by_formula("max(t, 1)")), "max");
   EXPECT_EQ(law_corner(by_formula("if(t < 1, 0, t)")), "if");
+  const Scene timed =
+      parse_scene(base + "[[force]]\nkind = \"potential\"\nV = \"t * A.q\"\n", "timed.toml");
+  ASSERT_EQ(timed.remarks.size(), 1U);
+  EXPECT_EQ(timed.remarks[0].find("a potential takes the time"), 0U);
   const std::string driven = base +
                              "[[drive]]\njoint = \"hip.left\"\nkind = \"formula\"\nlaw = "
                              "\"third * abs(t - 1)\"\n";

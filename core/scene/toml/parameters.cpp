@@ -4,23 +4,11 @@
 #include <momenta/core/text/near_name.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <optional>
 
 namespace momenta::reading {
 namespace {
-
-/// A name as formulas have it, without dots.
-bool is_name(std::string_view word) {
-  const auto letter = [](char c) {
-    return std::isalpha(static_cast<unsigned char>(c)) || c == '_';
-  };
-  return !word.empty() && letter(word.front()) &&
-         std::all_of(word.begin(), word.end(), [&](char c) {
-           return letter(c) || std::isdigit(static_cast<unsigned char>(c));
-         });
-}
 
 /// Values of parameters, each after those it is made of.
 class Resolver {
@@ -118,7 +106,7 @@ Parameters::Parameters(const Value& root, const std::string& file) {
     fail(file, table->at,
          "parameters is " + std::string(described(table->type)) + ", expected a table");
   for (const Entry& e : table->entries) {
-    if (!is_name(e.key) || e.key == "pi" || e.key == "t" || e.key == "and" || e.key == "or" ||
+    if (!is_plain_name(e.key) || e.key == "pi" || e.key == "t" || e.key == "and" || e.key == "or" ||
         e.key == "not" || e.key == "if")
       fail(file, e.at,
            "parameter " + in_quotes(e.key) +

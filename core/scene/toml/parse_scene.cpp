@@ -22,7 +22,7 @@ Scene parse_scene(std::string_view text, const std::string& file,
   const reading::Parameters parameters(root, file);
   const reading::Fields table(root, "", file, &parameters);
   table.allow({"name", "gravity", "parameters", "require", "body", "joint", "loop", "drive",
-               "force", "marker", "visual", "assembly", "run"});
+               "force", "function", "marker", "visual", "assembly", "run"});
   reading::check_requirements(root, parameters, file);
 
   Scene scene;
@@ -39,6 +39,8 @@ Scene parse_scene(std::string_view text, const std::string& file,
     scene.loops.push_back(reading::read_loop(t, scene.drives));
   for (const reading::Fields& t : table.tables("force", "force"))
     scene.forces.push_back(reading::read_force(t));
+  for (const reading::Fields& t : table.tables("function", "function"))
+    scene.functions.push_back(reading::read_function(t));
   for (const reading::Fields& t : table.tables("marker", "marker"))
     scene.markers.push_back(reading::read_marker(t));
   for (const reading::Fields& t : table.tables("visual", "visual"))

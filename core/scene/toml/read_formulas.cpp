@@ -1,10 +1,11 @@
-// Formulas of forces and drives, read when the whole scene is known.
+// Functions, and formulas of forces and drives, read when the whole scene is known.
 
 #include <momenta/core/scene/drive.h>
 #include <momenta/core/scene/formula.h>
 #include <momenta/core/scene/toml/read_tables.h>
 #include <momenta/core/text/near_name.h>
 
+#include <algorithm>
 #include <vector>
 
 namespace momenta::reading {
@@ -33,7 +34,24 @@ Formula read_at(const Fields& table, const std::string& key, std::string& text, 
   }
 }
 
+bool takes_time(const Formula& formula) {
+  return std::any_of(formula.signals.begin(), formula.signals.end(),
+                     [](const Signal& s) { return s.kind == Signal::Kind::time; });
+}
+
 }  // namespace
+
+FunctionSpec read_function(const Fields& table) {
+  table.allow({"name", "x", "y"});
+  FunctionSpec function;
+  function.at = table.at();
+  function.name = table.text("name");
+  function.x = table.numbers("x", {});
+  function.y = table.numbers("y", {});
+  if (const std::string fault = spline_fault(function.x, function.y, "x", "y"); !fault.empty())
+    table.fail_at(table.at(), fault);
+  return function;
+}
 
 void read_formulas(const Fields& root, Scene& scene) {
   const FormulaReader reader(scene);
@@ -48,6 +66,11 @@ void read_formulas(const Fields& root, Scene& scene) {
       if (const std::string fault = formula_fault(scene, force, formula); !fault.empty())
         table.fail_at(value_at(table, key).at, key + ", " + in_quotes(text) + ", " + fault);
       text = formula.text;
+      if (force.kind == "potential" && takes_time(formula))
+        scene.remarks.push_back(
+            (force.name.empty() ? "a potential" : "potential " + in_quotes(force.name)) +
+            " takes the time, so that it keeps no energy: ∂V/∂t counts as work of forces without "
+            "potential");
     });
   }
   which = 0;

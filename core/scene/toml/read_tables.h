@@ -21,6 +21,7 @@ void read_cam(const Fields& table, LoopSpec& loop);
 void read_rack(const Fields& table, LoopSpec& loop);
 DriveSpec read_drive(const Fields& table);
 ForceSpec read_force(const Fields& table);
+FunctionSpec read_function(const Fields& table);
 MarkerSpec read_marker(const Fields& table);
 VisualSpec read_visual(const Fields& table);
 RunDefaults read_run(const Fields& table);

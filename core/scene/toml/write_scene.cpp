@@ -337,6 +337,12 @@ std::string scene_text(const Scene& scene) {
   for (const LoopSpec& loop : scene.loops) write_loop(loop, t);
   for (const DriveSpec& drive : scene.drives) write_drive(drive, t);
   for (const ForceSpec& force : scene.forces) write_force(force, t);
+  for (const FunctionSpec& function : scene.functions) {
+    t.open("[[function]]");
+    t.word("name", function.name);
+    t.numbers("x", function.x);
+    t.numbers("y", function.y);
+  }
   for (const MarkerSpec& marker : scene.markers) {
     t.open("[[marker]]");
     t.word("name", marker.name);

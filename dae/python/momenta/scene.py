@@ -11,7 +11,7 @@ import re
 from . import _momenta
 
 # Keys of a scene whose value is a list of tables, and keys whose value is one table.
-_LISTS = ("body", "joint", "loop", "drive", "force", "marker", "visual")
+_LISTS = ("body", "joint", "loop", "drive", "force", "function", "marker", "visual")
 _TABLES = ("assembly", "run")
 
 
@@ -23,7 +23,7 @@ class Scene:
     s.joint('O', 'revolute', child='rod', position=0.5)
     run = s.load().run(end=10)
 
-    body, joint, loop, drive, force, spring, marker, visual, assembly and run return the scene, so that calls
+    body, joint, loop, drive, force, spring, function, marker, visual, assembly and run return the scene, so that calls
     can be chained. Keys that are None are left out, and an underscore
     at the end of one, as in from_, which Python keeps for itself. load() reports mistakes: a SceneError, one sentence.
     """
@@ -64,6 +64,10 @@ class Scene:
         """Adds a force of kind spring-damper: parent, child, origin [m], stiffness [N/m], damping
         [N s/m], rest [m]."""
         return self.force("spring-damper", **keys)
+
+    def function(self, name, x, y):
+        """Adds a function that formulas of forces call: the natural cubic spline through the points (x, y)."""
+        return self._add("function", name=name, x=x, y=y)
 
     def marker(self, name, body, **keys):
         """Adds a point of a body whose motion is recorded: point [m], in body axes."""

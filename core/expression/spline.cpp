@@ -1,11 +1,27 @@
-#include <momenta/core/scene/cubic_spline.h>
+#include <momenta/core/expression/spline.h>
+#include <momenta/core/scalar/all_finite.h>
 
 namespace momenta {
 
-CubicSpline::CubicSpline(const std::vector<double>& times, const std::vector<double>& values) {
-  const std::size_t n = times.size();
-  const auto gap = [&](std::size_t i) { return times[i + 1] - times[i]; };
-  const auto slope = [&](std::size_t i) { return (values[i + 1] - values[i]) / gap(i); };
+std::string spline_fault(const std::vector<double>& x, const std::vector<double>& y,
+                         const std::string& x_name, const std::string& y_name) {
+  const std::size_t n = x.size();
+  if (n < 2) return x_name + " has fewer than 2 entries, expected at least 2";
+  if (y.size() != n)
+    return y_name + " has " + std::to_string(y.size()) + " entries and " + x_name + " " +
+           std::to_string(n) + ", expected as many";
+  if (!all_finite(x) || !all_finite(y)) return x_name + " and " + y_name + " must be finite";
+  for (std::size_t i = 1; i < n; ++i)
+    if (!(x[i - 1] < x[i]))
+      return x_name + "[" + std::to_string(i) + "] is not after " + x_name + "[" +
+             std::to_string(i - 1) + "], expected increasing " + x_name;
+  return "";
+}
+
+CubicSpline::CubicSpline(const std::vector<double>& x, const std::vector<double>& y) {
+  const std::size_t n = x.size();
+  const auto gap = [&](std::size_t i) { return x[i + 1] - x[i]; };
+  const auto slope = [&](std::size_t i) { return (y[i + 1] - y[i]) / gap(i); };
 
   // the tridiagonal system of the inner second derivatives, eliminated forwards: mᵢ = right[i] −
   // upper[i] mᵢ₊₁. It is diagonally dominant, so no pivoting is needed.
@@ -18,17 +34,17 @@ CubicSpline::CubicSpline(const std::vector<double>& times, const std::vector<dou
   for (std::size_t i = n - 1; i-- > 1;) m[i] = right[i] - upper[i] * m[i + 1];
 
   // one cubic per gap, and a line on either side
-  knots_ = times;
+  knots_ = x;
   segments_.resize(n + 1);
   for (std::size_t i = 0; i + 1 < n; ++i) {
     const double h = gap(i);
-    segments_[i + 1] = {times[i],
-                        {values[i], slope(i) - h * (2 * m[i] + m[i + 1]) / 6, m[i] / 2,
-                         (m[i + 1] - m[i]) / (6 * h)}};
+    segments_[i + 1] = {
+        x[i],
+        {y[i], slope(i) - h * (2 * m[i] + m[i + 1]) / 6, m[i] / 2, (m[i + 1] - m[i]) / (6 * h)}};
   }
   const double last = slope(n - 2) + gap(n - 2) * (m[n - 2] + 2 * m[n - 1]) / 6;
-  segments_.front() = {times.front(), {values.front(), segments_[1].c[1], 0, 0}};
-  segments_.back() = {times.back(), {values.back(), last, 0, 0}};
+  segments_.front() = {x.front(), {y.front(), segments_[1].c[1], 0, 0}};
+  segments_.back() = {x.back(), {y.back(), last, 0, 0}};
 }
 
 CubicSpline::CubicSpline(const std::vector<double>& times, const std::vector<double>& values,
@@ -68,7 +84,7 @@ CubicSpline::CubicSpline(const std::vector<double>& times, const std::vector<dou
                         {values[i], slope(i) - h * (2 * m[i] + m[i + 1]) / 6, m[i] / 2,
                          (m[i + 1] - m[i]) / (6 * h)}};
   }
-  segments_.front() = segments_[1];  // never behind within(), but by rounding
+  segments_.front() = segments_[1];  // before the first by rounding alone
 }
 
 }  // namespace momenta

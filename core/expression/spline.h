@@ -1,0 +1,101 @@
+#pragma once
+// Cubic splines through points (xᵢ, yᵢ). With z = x − xᵢ, h = xᵢ₊₁ − xᵢ and mᵢ = f"(xᵢ),
+// in each gap
+//
+//   f = yᵢ + bᵢ z + mᵢ/2 z² + (mᵢ₊₁ − mᵢ)/(6h) z³,  bᵢ = (yᵢ₊₁ − yᵢ)/h − h (2mᵢ + mᵢ₊₁)/6
+//
+// Continuity of f': hᵢ₋₁ mᵢ₋₁ + 2 (hᵢ₋₁ + hᵢ) mᵢ + hᵢ mᵢ₊₁ = 6 (Δyᵢ/hᵢ − Δyᵢ₋₁/hᵢ₋₁).
+//
+// Natural: m = 0 at both ends. Outside, the straight line of the end slope: f" is continuous there
+// too. Periodic: a last gap leads back to y₀ at x₀ + period, and the indices go round. Within a gap
+// the derivatives are exact; a dual number takes the gap of its value.
+
+#include <momenta/core/scalar/dual.h>
+
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace momenta {
+
+/// p, ṗ, p̈ of Σ cᵢ xⁱ. The second derivative is accumulated halved.
+template <class S>
+void horner(const double* c, std::size_t count, const S& x, S& p, S& pdot, S& pddot) {
+  S value(0.0), rate(0.0), half(0.0);
+  for (std::size_t i = count; i-- > 0;) {
+    half = half * x + rate;
+    rate = rate * x + value;
+    value = value * x + S(c[i]);
+  }
+  p = value;
+  pdot = rate;
+  pddot = half + half;
+}
+
+/// Why points are none of a spline, in words with the names of both lists; empty where they are.
+std::string spline_fault(const std::vector<double>& x, const std::vector<double>& y,
+                         const std::string& x_name, const std::string& y_name);
+
+class CubicSpline {
+ public:
+  CubicSpline() = default;
+  /// Natural. @pre spline_fault() is empty. O(points)
+  CubicSpline(const std::vector<double>& x, const std::vector<double>& y);
+  /// Periodic. @pre the same, three points at least, x[0] + period beyond the last. O(points)
+  CubicSpline(const std::vector<double>& x, const std::vector<double>& y, double period);
+
+  /// f, f' and f". O(log points)
+  template <class S>
+  void evaluate(const S& x, S& f, S& first, S& second) const {
+    if (period_ > 0)
+      if (const double turns = std::floor((value_of(x) - knots_.front()) / period_); turns != 0)
+        return in_gap(S(x - S(turns) * S(period_)), f, first, second);
+    in_gap(x, f, first, second);
+  }
+  /// The derivative of an order from 0: f itself. @pre natural. O(log points)
+  template <class S>
+  S derivative(const S& x, int order) const {
+    const Segment& segment = at(x);
+    const S z = x - S(segment.from);
+    S sum(0.0);
+    for (int i = 3; i >= order; --i) {
+      double c = segment.c[i];
+      for (int k = 0; k < order; ++k) c *= i - k;
+      sum = sum * z + S(c);
+    }
+    return sum;
+  }
+
+ private:
+  /// A cubic in x − from.
+  struct Segment {
+    double from = 0;
+    double c[4] = {0, 0, 0, 0};
+  };
+  template <class S>
+  void in_gap(const S& x, S& f, S& first, S& second) const {
+    const Segment& segment = at(x);
+    horner(segment.c, 4, S(x - S(segment.from)), f, first, second);
+  }
+  template <class S>
+  const Segment& at(const S& x) const {
+    // segments_[k] holds between knots k − 1 and k; find the number k of knots at or before x
+    std::size_t low = 0, high = knots_.size();
+    while (low < high) {
+      const std::size_t middle = (low + high) / 2;
+      if (x < knots_[middle])
+        high = middle;
+      else
+        low = middle + 1;
+    }
+    return segments_[low];
+  }
+
+  double period_ = 0;  ///< 0: natural
+  std::vector<double> knots_;
+  std::vector<Segment>
+      segments_;  ///< one more than knots_: the first and last are the lines outside
+};
+
+}  // namespace momenta
