@@ -1,4 +1,4 @@
-// Slots, cams and racks: Φ against slow twins that know positions alone; Φ_q, Φ̇, Φ̈ and the
+// Slots, cams, racks and equations: Φ against slow twins that know positions alone; Φ_q, Φ̇, Φ̈ and the
 // impulses' rates against differences of Φ in quad precision, in a plane and in space, with moving
 // origins; Jacobians in every scalar; what has no derivatives is told.
 
@@ -22,8 +22,11 @@ const std::string outline = "points = [[0.5, 0, 0], [0.3, 0.35, 0], [-0.1, 0.45,
                             "0], [-0.3, -0.4, 0], [0.2, -0.35, 0]]";
 const std::string path = "points = [[-1, 0.2, 0], [-0.3, 0.6, 0], [0.4, 0.5, 0], [1.2, 0.9, 0]]";
 
-/// Two arms, the second on a slide of the first, and a third body that turns on the ground: seven
-/// ways in which the second and the third can lie.
+bool is_equation(const std::string& loop) {
+  return loop.starts_with("kind = \"equation\"");
+}
+
+/// Two arms in a row, and a third body that turns on the ground; a loop between the last two.
 Scene arms(const std::string& loop, const std::string& rest = "") {
   return parse_scene(R"(
 gravity = [0.3, -9.81, 0]
@@ -57,13 +60,26 @@ name = "C"
 kind = "revolute"
 child = "c"
 origin = { parent = [0.4, -0.7, 0] }
+[[marker]]
+name = "P"
+body = "b"
+point = [0.4, 0.3, 0]
+[[marker]]
+name = "R"
+body = "b"
+point = [-0.2, 0.1, 0]
+[[marker]]
+name = "far-off"
+body = "c"
+point = [0.5, -0.2, 0]
 [[loop]]
 name = "K"
+)" + std::string(is_equation(loop) ? "" : R"(
 parent = "c"
 child = "b"
 origin = { parent = [0.1, 0.05, 0], child = [0.2, -0.1, 0] }
 rotation = { axis = "z", angle = 0.3 }
-)" + loop + "\n" + rest,
+)") + loop + "\n" + rest,
                      "arms.toml");
 }
 
@@ -92,8 +108,15 @@ std::vector<Case> all_pairs() {
           {"flat on ellipse", cam(ellipse, flat)},
           {"spline on flat", cam(flat, spline)},
           {"ellipse on spline", cam(spline, ellipse)},
-          {"spline on circle from behind",
-           cam(circle, spline) + "\naxis = \"-z\""}};
+          {"spline on circle from behind", cam(circle, spline) + "\naxis = \"-z\""},
+          {"equation of markers",
+           "kind = \"equation\"\nequation = \"(P.x - 'far-off'.x)^2 + (P.y - 'far-off'.y)^2 = "
+           "0.7\""},
+          {"equation of coordinates",
+           "kind = \"equation\"\nequation = \"sin(A.q) * B.q - exp(0.3 * C.q) + 0.2\""},
+          {"equation of everything",
+           "kind = \"equation\"\nequation = \"P.x * R.y + tanh(B.q) * 'far-off'.x = 0.1 * cos(A.q) "
+           "+ 0.05 * P.y^2\""}};
 }
 
 /// The rows of the last loop at q and along q + t u + t²/2 u̇ as numbers of S.
@@ -146,7 +169,7 @@ VectorXd near_contact(const Mechanism& mechanism, equations::RandomTree& random)
   const auto e = mechanism.evaluation<double>();
   VectorXd best(mechanism.nq());
   double least = HUGE_VAL;
-  for (int i = 0; i < 300; ++i) {
+  for (int i = 0; i < 100; ++i) {
     VectorXd q(mechanism.nq()), phi(mechanism.m());
     for (double& x : q) x = random.uniform(-3, 3);
     e->place(0, q.data());
@@ -265,11 +288,36 @@ coefficients = [0.1, 0.5]
   for (const Case& c : all_pairs())
     for (const Algebra algebra : {Algebra::planar, Algebra::spatial}) {
       SCOPED_TRACE(c.name + (algebra == Algebra::planar ? " in a plane" : " in space"));
+      if (is_equation(c.loop)) continue;
       const Mechanism mechanism(arms(c.loop, drive), {.algebra = algebra});
       equations::RandomTree random(8);
       compare_with_differences(mechanism, 0.25, random);
       if (HasFatalFailure()) return;
     }
+}
+
+/// With the time in them, and with a coordinate that a drive prescribes.
+TEST(HigherPairs, EquationsInTime) {
+  const std::string drive = R"(
+[[drive]]
+joint = "C"
+kind = "harmonic"
+amplitude = 0.7
+frequency = 2
+)";
+  for (const char* equation :
+       {"P.x * R.y + B.q^2 = 0.3 * sin(3 * t)", "(P.x - 'far-off'.x)^2 + P.y * C.q = 0.7 + t^2"})
+    for (const std::string& driven : {std::string(), drive})
+      for (const Algebra algebra : {Algebra::planar, Algebra::spatial}) {
+        SCOPED_TRACE(equation + driven);
+        const Mechanism mechanism(
+            arms(std::string("kind = \"equation\"\nequation = \"") + equation + "\"", driven),
+            {.algebra = algebra});
+        EXPECT_TRUE(mechanism.plan().drives);
+        equations::RandomTree random(12);
+        compare_with_differences(mechanism, 0.25, random);
+        if (HasFatalFailure()) return;
+      }
 }
 
 /// In space with bodies that tilt: slots alone, whose points need no common plane.
