@@ -78,10 +78,9 @@ void expect_same_motion(const Scene& one, const Scene& other,
   }
 }
 
-const std::string yoke =
-    body("crank", 1, "[0.1, 0, 0]") + body("yoke", 2) +
-    joint("O", "revolute", "crank", "position = 0.4\nvelocity = 5") +
-    joint("S", "prismatic", "yoke", "axis = \"x\"\nposition = 0.27");
+const std::string yoke = body("crank", 1, "[0.1, 0, 0]") + body("yoke", 2) +
+                         joint("O", "revolute", "crank", "position = 0.4\nvelocity = 5") +
+                         joint("S", "prismatic", "yoke", "axis = \"x\"\nposition = 0.27");
 
 TEST(Slots, AreBlocksOnSlides) {
   const Scene slot = scene_of(yoke + loop("pin", R"(
@@ -90,10 +89,10 @@ parent = "yoke"
 child = "crank"
 origin = { child = [0.3, 0, 0] }
 axis = "y")"));
-  const Scene block = scene_of(yoke + body("block", 0) +
-                               joint("B", "prismatic", "block",
-                                     "parent = \"yoke\"\naxis = \"y\"\nposition = 0.1") +
-                               loop("pin", R"(
+  const Scene block =
+      scene_of(yoke + body("block", 0) +
+               joint("B", "prismatic", "block", "parent = \"yoke\"\naxis = \"y\"\nposition = 0.1") +
+               loop("pin", R"(
 kind = "revolute"
 parent = "block"
 child = "crank"
@@ -107,9 +106,11 @@ TEST(Slots, OnCirclesAreDistances) {
       body("a", 1, "[0.3, 0, 0]") + body("b", 2, "[0.1, 0.2, 0]") +
       joint("A", "revolute", "a", "position = 0.3\nvelocity = 1") +
       joint("B", "revolute", "b", "origin = { parent = [1.1, 0.2, 0] }\nposition = 2");
-  const std::string ends = "parent = \"a\"\nchild = \"b\"\norigin = { parent = [0.5, 0.1, 0], "
-                           "child = [0.3, 0, 0] }\n";
-  const Scene slot = scene_of(arms + loop("L", ends + "kind = \"slot\"\ncurve = \"circle\"\nradius = 0.45"));
+  const std::string ends =
+      "parent = \"a\"\nchild = \"b\"\norigin = { parent = [0.5, 0.1, 0], "
+      "child = [0.3, 0, 0] }\n";
+  const Scene slot =
+      scene_of(arms + loop("L", ends + "kind = \"slot\"\ncurve = \"circle\"\nradius = 0.45"));
   const Scene distance = scene_of(arms + loop("L", ends + "kind = \"distance\"\nlength = 0.45"));
   const Mechanism one(slot), other(distance);
   EXPECT_EQ(one.kkt(), KktChoice::sweeps);
@@ -130,9 +131,9 @@ curve = "circle"
 radius = 0.7
 child = "b"
 origin = { child = [0.2, 0, 0] })"));
-  const Scene link = scene_of(free + body("link", 0) +
-                              joint("R", "revolute", "link", turn + "position = 0.2") +
-                              loop("L", R"(
+  const Scene link =
+      scene_of(free + body("link", 0) + joint("R", "revolute", "link", turn + "position = 0.2") +
+               loop("L", R"(
 kind = "spherical"
 parent = "link"
 child = "b"
@@ -165,8 +166,9 @@ TEST(Cams, OfCirclesAreDistances) {
       body("a", 1, "[0.3, 0, 0]") + body("b", 2, "[0.1, 0.2, 0]") +
       joint("A", "revolute", "a", "position = 0.3\nvelocity = 1") +
       joint("B", "revolute", "b", "origin = { parent = [1.1, 0.2, 0] }\nposition = 2");
-  const std::string ends = "parent = \"a\"\nchild = \"b\"\norigin = { parent = [0.5, 0.1, 0], "
-                           "child = [0.3, 0, 0] }\n";
+  const std::string ends =
+      "parent = \"a\"\nchild = \"b\"\norigin = { parent = [0.5, 0.1, 0], "
+      "child = [0.3, 0, 0] }\n";
   const Scene cam = scene_of(arms + loop("L", ends + R"(kind = "cam"
 profile = { parent = { kind = "circle", radius = 0.25 }, child = { kind = "circle", radius = 0.2 } })"));
   const Scene distance = scene_of(arms + loop("L", ends + "kind = \"distance\"\nlength = 0.45"));
@@ -178,8 +180,9 @@ const std::string slide_and_turn =
     joint("P", "planar", "b", "position = [0.6, -0.8, 0.3]\nvelocity = [0.8, 0.6, 2]");
 
 TEST(Equations, OfCirclesAreDistances) {
-  const Scene equation = scene_of(slide_and_turn + marker("A", "b", "[0, 0, 0]") +
-                                  loop("E", "kind = \"equation\"\nequation = \"A.x^2 + A.y^2 = 1\""));
+  const Scene equation =
+      scene_of(slide_and_turn + marker("A", "b", "[0, 0, 0]") +
+               loop("E", "kind = \"equation\"\nequation = \"A.x^2 + A.y^2 = 1\""));
   const Scene distance =
       scene_of(slide_and_turn + loop("E", "kind = \"distance\"\nchild = \"b\"\nlength = 1"));
   const std::vector<Column> all = Mechanism(distance).coordinate_columns();
@@ -187,21 +190,23 @@ TEST(Equations, OfCirclesAreDistances) {
 }
 
 TEST(Equations, OfCoordinatesAreCouplers) {
-  const std::string arms = body("a", 1, "[0.3, 0, 0]") + body("b", 2, "[0.1, 0.2, 0]") +
-                           joint("A", "revolute", "a", "position = 0.3\nvelocity = 1") +
-                           joint("B", "revolute", "b", "parent = \"a\"\norigin = { parent = [1, 0, 0] }");
+  const std::string arms =
+      body("a", 1, "[0.3, 0, 0]") + body("b", 2, "[0.1, 0.2, 0]") +
+      joint("A", "revolute", "a", "position = 0.3\nvelocity = 1") +
+      joint("B", "revolute", "b", "parent = \"a\"\norigin = { parent = [1, 0, 0] }");
   const Scene equation =
       scene_of(arms + loop("E", "kind = \"equation\"\nequation = \"A.q - 2 * B.q = 0.2\""));
   const Scene coupler = scene_of(
-      arms + loop("E", "kind = \"coupler\"\njoints = [\"A\", \"B\"]\nratios = [1, -2]\noffset = 0.2"));
+      arms +
+      loop("E", "kind = \"coupler\"\njoints = [\"A\", \"B\"]\nratios = [1, -2]\noffset = 0.2"));
   expect_same_motion(equation, coupler, {"A.q", "B.q", "B.u"}, 1);
 }
 
 /// Φ_t: the time in an equation, and the same motion by a drive.
 TEST(Equations, InTimeAreDrives) {
-  const std::string arms = body("a", 1, "[0.3, 0, 0]") + body("b", 2, "[0.1, 0.2, 0]") +
-                           joint("A", "revolute", "a") +
-                           joint("B", "revolute", "b", "parent = \"a\"\norigin = { parent = [1, 0, 0] }");
+  const std::string arms =
+      body("a", 1, "[0.3, 0, 0]") + body("b", 2, "[0.1, 0.2, 0]") + joint("A", "revolute", "a") +
+      joint("B", "revolute", "b", "parent = \"a\"\norigin = { parent = [1, 0, 0] }");
   const Scene equation =
       scene_of(arms + loop("E", "kind = \"equation\"\nequation = \"A.q = 0.5 * sin(3 * t)\""));
   const Scene driven = scene_of(arms + R"(
@@ -214,8 +219,9 @@ frequency = 3
   const Mechanism a(equation), b(driven);
   const RunResult truth = run_of(b, "acceleration", 1);
   ASSERT_EQ(truth.status, "done") << truth.reason;
-  for (const char* form : {"momentum", "acceleration", "projected", "baumgarte", "stabilised-index2",
-                           "momentum-index2", "augmented-lagrangian", "maximal-coordinates"}) {
+  for (const char* form :
+       {"momentum", "acceleration", "projected", "baumgarte", "stabilised-index2",
+        "momentum-index2", "augmented-lagrangian", "maximal-coordinates"}) {
     SCOPED_TRACE(form);
     const RunResult run = run_of(a, form, 1);
     ASSERT_EQ(run.status, "done") << run.reason;
@@ -245,7 +251,8 @@ TEST(Textbook, EllipticTrammel) {
       body("bar", 1, "[0.5, 0, 0]") +
       joint("P", "planar", "bar", "position = [0.8, 0, 2.4]\nvelocity = [0.1, 0, 1]") +
       loop("along x", "kind = \"slot\"\nchild = \"bar\"\naxis = \"x\"") +
-      loop("along y", "kind = \"slot\"\nchild = \"bar\"\naxis = \"y\"\norigin = { child = [1, 0, 0] }") +
+      loop("along y",
+           "kind = \"slot\"\nchild = \"bar\"\naxis = \"y\"\norigin = { child = [1, 0, 0] }") +
       marker("M", "bar", "[0.3, 0, 0]")));
   const RunResult run = run_of(mechanism, "momentum", 2);
   ASSERT_EQ(run.status, "done") << run.reason;
@@ -259,10 +266,10 @@ TEST(Textbook, EllipticTrammel) {
 /// below; the arm's angle is atan2(d + r sin θ, r cos θ), and the arm is slow for 2 π − 2 acos(r/d)
 /// of the crank's turn … here d > r.
 TEST(Textbook, WhitworthQuickReturn) {
-  const Mechanism mechanism(scene_of(
-      body("crank", 1) + body("arm", 1, "[0.3, 0, 0]") +
-      joint("O", "revolute", "crank", "origin = { parent = [0, 0.4, 0] }") +
-      joint("Q", "revolute", "arm", "position = 1.1") + R"(
+  const Mechanism mechanism(
+      scene_of(body("crank", 1) + body("arm", 1, "[0.3, 0, 0]") +
+               joint("O", "revolute", "crank", "origin = { parent = [0, 0.4, 0] }") +
+               joint("Q", "revolute", "arm", "position = 1.1") + R"(
 [[drive]]
 joint = "O"
 kind = "polynomial"
@@ -289,8 +296,8 @@ TEST(Textbook, DiscCamWithFlatFollower) {
     return scene_of(body("cam", 2) + body("follower", 0.5) +
                     joint("O", "revolute", "cam", "position = 0.3\nvelocity = 6") +
                     joint("S", "prismatic", "follower", "axis = \"y\"\nposition = 0.1") +
-                    loop("contact", "kind = \"cam\"\nparent = \"cam\"\nchild = \"follower\"\n" + at +
-                                        "profile = { parent = { " + profile +
+                    loop("contact", "kind = \"cam\"\nparent = \"cam\"\nchild = \"follower\"\n" +
+                                        at + "profile = { parent = { " + profile +
                                         " }, child = { kind = \"flat\", normal = \"-y\" } }"));
   };
   const Mechanism ellipse(cam("kind = \"ellipse\", semi_axes = [0.1, 0.06]", ""));
@@ -316,11 +323,15 @@ TEST(Textbook, DiscCamWithFlatFollower) {
 /// both motions, x = g sin(slope) t² / (2 (1 + I / (m r²))).
 TEST(Textbook, WheelRollsDown) {
   const double slope = 0.4, r = 0.25;
-  const Mechanism mechanism(scene_of(
-      body("wheel", 2) + joint("P", "planar", "wheel", "position = [0.0974, 0.2303, 0]") +
-      loop("height", "kind = \"slot\"\nchild = \"wheel\"\naxis = \"x\"\nrotation = { axis = \"z\", angle = -0.4 }\n"
-                     "origin = { parent = [0.09735458557716263, 0.23026524850072128, 0] }") +
-      loop("rolling", "kind = \"rack\"\nchild = \"wheel\"\nradius = 0.25\nrotation = { axis = \"z\", angle = -0.4 }\noffset = 0.4")));
+  const Mechanism mechanism(
+      scene_of(body("wheel", 2) + joint("P", "planar", "wheel", "position = [0.0974, 0.2303, 0]") +
+               loop("height",
+                    "kind = \"slot\"\nchild = \"wheel\"\naxis = \"x\"\nrotation = { axis = \"z\", "
+                    "angle = -0.4 }\n"
+                    "origin = { parent = [0.09735458557716263, 0.23026524850072128, 0] }") +
+               loop("rolling",
+                    "kind = \"rack\"\nchild = \"wheel\"\nradius = 0.25\nrotation = { axis = \"z\", "
+                    "angle = -0.4 }\noffset = 0.4")));
   const RunResult run = run_of(mechanism, "momentum", 2);
   ASSERT_EQ(run.status, "done") << run.reason;
   const auto columns = mechanism.coordinate_columns();
@@ -332,9 +343,10 @@ TEST(Textbook, WheelRollsDown) {
 /// Forms that hold Φ̈ = 0 alone drift with t², those on momenta with t at most; splines too, whose
 /// third derivatives jump.
 TEST(Slots, OnSplinesDriftAsLoopsDo) {
-  const Mechanism mechanism(scene_of(
-      body("b", 1, "[0.1, 0, 0]") +
-      joint("P", "planar", "b", "position = [0.4, 0.1, 0]\nvelocity = [0, 1, 3]") + loop("groove", R"(
+  const Mechanism mechanism(
+      scene_of(body("b", 1, "[0.1, 0, 0]") +
+               joint("P", "planar", "b", "position = [0.4, 0.1, 0]\nvelocity = [0, 1, 3]") +
+               loop("groove", R"(
 kind = "slot"
 curve = "spline"
 closed = true
