@@ -149,11 +149,11 @@ void Mechanism::choose_kkt(KktChoice asked) {
       cast.as_given.plan = plan_loops(cast.model, cast.as_given.loops);
     }
     if (!cast.swept.plan.linear)
-      kkt_reason_ =
-          !cast.loops.equations.empty() ? "a loop is an equation, which the sweeps do not carry"
-          : !cast.loops.pairs.empty()
-              ? "a loop is a pair of curves, which the sweeps do not carry"
-              : "a coupler has powers of a coordinate, and the sweeps carry linear ones";
+      kkt_reason_ = !cast.loops.equations.empty()
+                        ? "a loop is an equation, which the sweeps do not carry"
+                    : !cast.loops.pairs.empty()
+                        ? "a loop is a pair of curves, which the sweeps do not carry"
+                        : "a coupler has powers of a coordinate, and the sweeps carry linear ones";
     else if (!cast.swept.plan.fits())
       kkt_reason_ =
           (cast.swept.plan.slots > 64 ? std::string("more than 64")  // no more are counted

@@ -117,11 +117,10 @@ class Mechanism::SweepEvaluation final : public SweepRows<Space, double> {
     const auto& model = loops_.model();
     for (std::size_t i = 0; i < model.loops.size(); ++i) {
       const auto& l = model.loops[i];
-      places[i] =
-          l.is_pair() && model.pairs[static_cast<std::size_t>(l.pair)]->kind ==
-                             HigherPair::Kind::curve
-              ? loops_.pair_place(i).of_b
-              : std::nan("");
+      places[i] = l.is_pair() && model.pairs[static_cast<std::size_t>(l.pair)]->kind ==
+                                     HigherPair::Kind::curve
+                      ? loops_.pair_place(i).of_b
+                      : std::nan("");
     }
   }
 
@@ -201,8 +200,7 @@ class Mechanism::SweepEvaluation final : public SweepRows<Space, double> {
   /// Forces at the points inward, and ratios where coordinates are: each joint on the ways once.
   template <class Entry>
   void each_entry_of_equation(const typename LoopModel<Space>::Loop& l, Entry&& entry) {
-    const auto& equation =
-        *loops_.model().equations[static_cast<std::size_t>(l.equation)];
+    const auto& equation = *loops_.model().equations[static_cast<std::size_t>(l.equation)];
     inward_.resize(w_.body.size());  // once
     for (const int k : equation.way) inward_[static_cast<std::size_t>(k)] = {};
     loops_.each_point_wrench(

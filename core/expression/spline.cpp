@@ -71,9 +71,8 @@ CubicSpline::CubicSpline(const std::vector<double>& times, const std::vector<dou
     right[i] -= upper[i] * right[i + 1];
     round[i] -= upper[i] * round[i + 1];
   }
-  m[0] = m[n] =
-      (jump(0) - gap(n - 1) * right[n - 1] - gap(0) * right[1]) /
-      (2 * (gap(n - 1) + gap(0)) - gap(n - 1) * round[n - 1] - gap(0) * round[1]);
+  m[0] = m[n] = (jump(0) - gap(n - 1) * right[n - 1] - gap(0) * right[1]) /
+                (2 * (gap(n - 1) + gap(0)) - gap(n - 1) * round[n - 1] - gap(0) * round[1]);
   for (std::size_t i = 1; i < n; ++i) m[i] = right[i] - round[i] * m[0];
 
   knots_ = times;

@@ -314,7 +314,8 @@ std::string formula_fault(const Scene& scene, const ForceSpec& force, const Form
 }
 
 std::string equation_fault(const Scene& scene, const Formula& formula) {
-  if (formula.expression.is_truth()) return "is a comparison, expected a formula that is to be zero";
+  if (formula.expression.is_truth())
+    return "is a comparison, expected a formula that is to be zero";
   if (const std::string_view corner = formula.expression.corner(); !corner.empty())
     return "has " + in_quotes(corner) +
            ", where no second derivative may exist; expected a smooth formula";
@@ -329,9 +330,10 @@ std::string equation_fault(const Scene& scene, const Formula& formula) {
              "positions of two markers";
     ties |= signal.kind != Kind::time;
   }
-  return ties ? ""
-              : "takes no coordinate and no position of a marker, so that it ties nothing; expected "
-                "one of them";
+  return ties
+             ? ""
+             : "takes no coordinate and no position of a marker, so that it ties nothing; expected "
+               "one of them";
 }
 
 }  // namespace momenta

@@ -101,7 +101,8 @@ std::string formula_fault(const Scene& scene, const ForceSpec& force, const Form
 /// where it can.
 std::string equation_fault(const Scene& scene, const Formula& formula);
 
-/// What the formulas of forces and equations name, their own names included. @pre the scene is valid
+/// What the formulas of forces and equations name, their own names included. @pre the scene is
+/// valid
 struct NamedInFormulas {
   explicit NamedInFormulas(const Scene& scene);
   std::set<std::string> joints;   ///< whose coordinates or rates they take

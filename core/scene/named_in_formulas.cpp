@@ -1,5 +1,5 @@
-// What the formulas of a scene's forces and equations name: what may neither go nor change its meaning where the
-// scene is written in another way.
+// What the formulas of a scene's forces and equations name: what may neither go nor change its
+// meaning where the scene is written in another way.
 
 #include <momenta/core/scene/formula.h>
 

@@ -6,8 +6,8 @@
 namespace momenta {
 namespace {
 
-constexpr double flat_slack = 1e-9;        // points off the plane, of the largest coordinate
-constexpr double direction_slack = 1e-6;   // directions off the plane, and of unit length
+constexpr double flat_slack = 1e-9;       // points off the plane, of the largest coordinate
+constexpr double direction_slack = 1e-6;  // directions off the plane, and of unit length
 constexpr std::size_t samples_of_turn = 96, samples_of_chord = 8;
 
 std::string spline_fault(const CurveSpec& spec, const Eigen::Vector3d& axis) {
@@ -22,7 +22,8 @@ std::string spline_fault(const CurveSpec& spec, const Eigen::Vector3d& axis) {
   for (std::size_t i = 0; i < p.size(); ++i) {
     const std::string which = "points[" + std::to_string(i) + "]";
     if (const double off = std::abs(axis.dot(p[i])); off > flat_slack * size)
-      return which + " is " + reading::digits(off) + " m off the plane through the origin across axis, expected points of that plane";
+      return which + " is " + reading::digits(off) +
+             " m off the plane through the origin across axis, expected points of that plane";
     const std::size_t next = i + 1 < p.size() ? i + 1 : 0;
     if ((next > 0 || spec.closed) && !((p[next] - p[i]).norm() > flat_slack * size))
       return "points[" + std::to_string(next) + "] is the same as " + which +
@@ -96,8 +97,8 @@ PlaneCurve::PlaneCurve(const CurveSpec& spec, const Eigen::Vector3d& e1,
   } else {
     kind_ = Kind::ellipse;
     if (!spec.direction.isZero(0)) e_ = in_plane(spec.direction);
-    semi_axes_ = spec.kind == "circle" ? std::array<double, 2>{spec.radius, spec.radius}
-                                       : spec.semi_axes;
+    semi_axes_ =
+        spec.kind == "circle" ? std::array<double, 2>{spec.radius, spec.radius} : spec.semi_axes;
     period_ = 2 * std::numbers::pi;
     for (std::size_t k = 0; k < samples_of_turn; ++k)
       samples_.push_back(period_ * static_cast<double>(k) / static_cast<double>(samples_of_turn));

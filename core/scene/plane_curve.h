@@ -4,7 +4,8 @@
 //   line      p = s e
 //   ellipse   p = a cos s e_a + b sin s e_b, e_b = e_a turned by a right angle from e₁ to e₂; a
 //             circle has a = b
-//   spline    cubic splines of both coordinates over the length of the chords (core/expression/spline.h): p''
+//   spline    cubic splines of both coordinates over the length of the chords
+//   (core/expression/spline.h): p''
 //             is continuous
 //
 // To the left of p' is J p' with J (x, y) = (−y, x).

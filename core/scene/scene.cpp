@@ -75,7 +75,8 @@ double length_of(const Scene& scene) {
   const auto outline = [&](const std::string& body, const Eigen::Vector3d& at,
                            const Eigen::Quaterniond& turn, const CurveSpec& curve) {
     const double reach = std::max({curve.radius, curve.semi_axes[0], curve.semi_axes[1]});
-    for (const double r : {-reach, reach}) on(body, at + Eigen::Vector3d::Constant(r / std::sqrt(3)));
+    for (const double r : {-reach, reach})
+      on(body, at + Eigen::Vector3d::Constant(r / std::sqrt(3)));
     for (const auto& point : curve.points) on(body, at + turn * point);
   };
   for (const LoopSpec& l : scene.loops) {

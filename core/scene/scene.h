@@ -193,12 +193,12 @@ struct LoopSpec {
   /// Of the second to fourth power of the last joint's coordinate, at most three; where one is not
   /// zero that joint's ratio may be.
   std::vector<double> powers;
-  double offset = 0;  ///< [rad or m]; no effect where a drive prescribes it
-  CurveSpec curve;    ///< slot: circle or spline, or none; cam: outline of the parent
+  double offset = 0;      ///< [rad or m]; no effect where a drive prescribes it
+  CurveSpec curve;        ///< slot: circle or spline, or none; cam: outline of the parent
   CurveSpec child_curve;  ///< cam: outline of the child
   double radius = 0;      ///< rack [m], > 0
   std::string equation;   ///< equation: a formula, without corners
-  Location at;        ///< where the file has it
+  Location at;            ///< where the file has it
 };
 
 /// Whether a coupler is not linear.

@@ -1,6 +1,6 @@
 #include <momenta/core/scalar/all_finite.h>
-#include <momenta/core/scene/joint_formula.h>
 #include <momenta/core/scene/formula.h>
+#include <momenta/core/scene/joint_formula.h>
 #include <momenta/core/scene/kinds.h>
 #include <momenta/core/scene/plane_curve.h>
 #include <momenta/core/scene/shapes.h>

@@ -104,8 +104,7 @@ double length_at_start(const LoopSpec& spec, const LoopDrives& drives) {
 }
 
 template <class Space>
-void add_pair(const LoopSpec& spec, LoopModel<Space>& all,
-              typename LoopModel<Space>::Loop& l) {
+void add_pair(const LoopSpec& spec, LoopModel<Space>& all, typename LoopModel<Space>::Loop& l) {
   l.pair = static_cast<int>(all.pairs.size());
   all.pairs.push_back(std::make_shared<const HigherPair>(pair_of(spec)));
 }

@@ -146,8 +146,7 @@ struct Touch {
       const double cut = std::min({1.0, most_a / std::abs(da), most_b / std::abs(db)});
       s_a += cut * da;
       s_b += cut * db;
-      if (std::abs(da) <= found * range_a && std::abs(db) <= found * range_b)
-        return now.facing < 2;
+      if (std::abs(da) <= found * range_a && std::abs(db) <= found * range_b) return now.facing < 2;
     }
     return false;
   }

@@ -226,8 +226,7 @@ DrivesOfLoops drives_of_loops(const Scene& scene) {
 
 LoopChoice choose_rows(const LoopSpec& loop, const LoopDrives& drives, bool planar) {
   Choosing choosing(loop, drives);
-  if (loop.kind == LoopKind::distance || !ties_bodies(loop))
-    return choosing.of_number();
+  if (loop.kind == LoopKind::distance || !ties_bodies(loop)) return choosing.of_number();
   return planar ? choosing.in_plane() : choosing.in_space();
 }
 

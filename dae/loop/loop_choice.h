@@ -29,11 +29,11 @@ struct LoopChoice {
   };
   /// Axes 1, 2, 3 in the joint frame: in space, and of loops with curves, whose axis is the third.
   Eigen::Matrix3d frame = Eigen::Matrix3d::Identity();
-  std::vector<int> points;                              ///< j of the D_j rows
-  std::vector<std::pair<int, int>> axes;                ///< (i, j) of the O_ij rows
-  std::vector<std::string> names;                       ///< of all rows
-  std::vector<Along> translations;                      ///< of x_B
-  std::vector<Along> turns_a, turns_b;  ///< of the axes of A and B, one after the other
+  std::vector<int> points;                ///< j of the D_j rows
+  std::vector<std::pair<int, int>> axes;  ///< (i, j) of the O_ij rows
+  std::vector<std::string> names;         ///< of all rows
+  std::vector<Along> translations;        ///< of x_B
+  std::vector<Along> turns_a, turns_b;    ///< of the axes of A and B, one after the other
 };
 
 /// Rows and prescribed motion; of a distance or a coupler only the name, and of the row of a higher

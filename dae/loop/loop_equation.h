@@ -42,8 +42,8 @@ struct LoopEquation {
   std::vector<int> input_of_joint;
   std::vector<Point> points;
   std::vector<int> bodies;  ///< that have points, each once
-  std::vector<int> way;     ///< these and the joints' bodies, and all towards the ground, last first
-  bool moves = false;       ///< ∂F/∂t may be there
+  std::vector<int> way;  ///< these and the joints' bodies, and all towards the ground, last first
+  bool moves = false;    ///< ∂F/∂t may be there
 
   LoopEquation(Expression f) : formula(std::move(f)) {}
 };
@@ -118,7 +118,9 @@ class EquationRow {
   }
 
   S position() const { return values_[0]; }
-  S rate() const { return sum([&](std::size_t k) { return slope(k) * rate_[k]; }); }
+  S rate() const {
+    return sum([&](std::size_t k) { return slope(k) * rate_[k]; });
+  }
   /// Needs accelerations. `udot` null: zero.
   S second(const Workspace<Space, S>& w, const S* udot) const {
     return sum([&](std::size_t k) {

@@ -19,10 +19,11 @@
 //   slot on a line along axis 3  D1 D2
 //   slot on a circle or spline across axis 3  D3, F  cam, rack across axis 3            F
 // In a plane: point, spherical, revolute D1 D2; weld D1 D2 O12; prismatic D (across), O12; distance
-// L; slot on a line D (across), on a circle L, on a spline F; cam, rack F. The D1 D2 of a plane that come alone, that no drive moves and whose bodies no third one
-// carries are a tie: their b_j are the axes of the ground, so that Φ = x_A − x_B, and the impulse σ
-// is the one on A at x_A and, negated, on B at x_B, whatever its axes. (A body that carried both
-// would turn Φ, and be felt in it where the loop is open.)
+// L; slot on a line D (across), on a circle L, on a spline F; cam, rack F. The D1 D2 of a plane
+// that come alone, that no drive moves and whose bodies no third one carries are a tie: their b_j
+// are the axes of the ground, so that Φ = x_A − x_B, and the impulse σ is the one on A at x_A and,
+// negated, on B at x_B, whatever its axes. (A body that carried both would turn Φ, and be felt in
+// it where the loop is open.)
 //
 // Drives make these functions of time: x_B and b_j move relative to B as prescribed, a_i relative
 // to A, l and c change. A driven coordinate of a loop adds a row: a driven slide the D along it,

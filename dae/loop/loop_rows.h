@@ -103,9 +103,9 @@ class LoopRows {
                               : to_ground(w_, l.b, motion(l).axis_b[j]);
       }
       if (l.is_pair())
-        law(l).evaluate({dot(s.b[0], s.D), dot(s.b[1], s.D), dot(s.a[0], s.b[0]),
-                         dot(s.a[0], s.b[1])},
-                        pair(l).place, pair(l).terms);
+        law(l).evaluate(
+            {dot(s.b[0], s.D), dot(s.b[1], s.D), dot(s.a[0], s.b[0]), dot(s.a[0], s.b[1])},
+            pair(l).place, pair(l).terms);
     }
   }
 
@@ -220,33 +220,31 @@ class LoopRows {
   /// Φ̈ (m) for the accelerations body[k].A and of accelerate(): with u̇ = 0 the bias (d/dt Φ_q) u +
   /// d/dt Φ_t.
   void accelerations(S* rate) const {
-    each_row(
-        [&](int row, const auto& l, const At& s, const Vector& b) {
-          rate[row] = point_second(l, s, b);
-        },
-        [&](int row, const auto& l, const At& s, const Vector& a, const Vector& b) {
-          rate[row] = axes_second(l, s, a, b);
-        },
-        [&](int row, const auto& l, const At& s) {
-          const Vector rel = s.u_a - s.u_b;
-          S second = dot(s.D, acceleration_apart(l, s)) + dot(rel, rel);
-          if (l.motion >= 0) {
-            const auto& m = motion(l);
-            second -= S(m.given_rate * m.given_rate + m.given * m.given_second);
-          }
-          rate[row] = second * l.per_length;
-        },
-        [&](int row, const At& s) { rate[row] = s.second; },
-        [&](int row, const auto& l, const At& s) {
-          const Pair& p = pair(l);
-          S second = p.terms.slope[0] * point_second(l, s, s.b[0]) +
-                     p.terms.slope[1] * point_second(l, s, s.b[1]);
-          if (p.measures == 4)
-            second += p.terms.slope[2] * axes_second(l, s, s.a[0], s.b[0]) +
-                      p.terms.slope[3] * axes_second(l, s, s.a[0], s.b[1]);
-          for (std::size_t k = 0; k < p.measures; ++k) second += p.slope_rate[k] * p.rate[k];
-          rate[row] = second;
-        });
+    each_row([&](int row, const auto& l, const At& s,
+                 const Vector& b) { rate[row] = point_second(l, s, b); },
+             [&](int row, const auto& l, const At& s, const Vector& a, const Vector& b) {
+               rate[row] = axes_second(l, s, a, b);
+             },
+             [&](int row, const auto& l, const At& s) {
+               const Vector rel = s.u_a - s.u_b;
+               S second = dot(s.D, acceleration_apart(l, s)) + dot(rel, rel);
+               if (l.motion >= 0) {
+                 const auto& m = motion(l);
+                 second -= S(m.given_rate * m.given_rate + m.given * m.given_second);
+               }
+               rate[row] = second * l.per_length;
+             },
+             [&](int row, const At& s) { rate[row] = s.second; },
+             [&](int row, const auto& l, const At& s) {
+               const Pair& p = pair(l);
+               S second = p.terms.slope[0] * point_second(l, s, s.b[0]) +
+                          p.terms.slope[1] * point_second(l, s, s.b[1]);
+               if (p.measures == 4)
+                 second += p.terms.slope[2] * axes_second(l, s, s.a[0], s.b[0]) +
+                           p.terms.slope[3] * axes_second(l, s, s.a[0], s.b[1]);
+               for (std::size_t k = 0; k < p.measures; ++k) second += p.slope_rate[k] * p.rate[k];
+               rate[row] = second;
+             });
   }
 
   /// Adds the wrenches of the impulses `sigma`, times `factor`, to the bodies' forces chosen by
@@ -274,7 +272,8 @@ class LoopRows {
         true);
   }
 
-  /// Adds the impulses of couplers and equations on coordinates, times `factor`, to the momenta or forces of joints (nv).
+  /// Adds the impulses of couplers and equations on coordinates, times `factor`, to the momenta or
+  /// forces of joints (nv).
   void add_couplings(const S* sigma, double factor, S* on_joints) const {
     for (const auto& l : model_->loops)
       for (const auto& c : l.joints) on_joints[c.u] += (factor * ratio(c)) * sigma[l.row];
@@ -470,10 +469,9 @@ class LoopRows {
       const auto& l = model_->loops[i];
       const At& s = at_[i];
       if (l.is_equation())
-        equation(l).each_wrench(w_, S(factor * sigma[l.row]), rate,
-                                [&](int body, const Force& on) {
-                                  field(w_.body[static_cast<std::size_t>(body)]) += on;
-                                });
+        equation(l).each_wrench(w_, S(factor * sigma[l.row]), rate, [&](int body, const Force& on) {
+          field(w_.body[static_cast<std::size_t>(body)]) += on;
+        });
       if (l.is_coupler()) continue;
       Vector force{}, impulse{};
       Angular couple{};

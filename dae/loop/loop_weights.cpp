@@ -74,8 +74,8 @@ LoopWeights weigh_loops(const LoopModel<Space>& loops, const Tree& tree,
   LoopWeights weights;
   double lightest = HUGE_VAL, heaviest = 0;
   for (const auto& l : loops.loops) {
-    const Weighed w = scales.of(
-        l, l.is_pair() ? loops.pairs[static_cast<std::size_t>(l.pair)].get() : nullptr);
+    const Weighed w =
+        scales.of(l, l.is_pair() ? loops.pairs[static_cast<std::size_t>(l.pair)].get() : nullptr);
     weights.least_scales.push_back(l.is_coupler() ? 0 : least_lever * least_lever * w.mobility);
     if (w.lightest < 0) continue;
     lightest = std::min(lightest, w.of_lightest);

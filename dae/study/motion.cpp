@@ -114,8 +114,7 @@ class LoopGap {
   /// and the normal.
   Vector3d of_pair(const Eigen::Matrix3d& axes, const Isometry3d& child, const Vector3d& apart) {
     const Vector3d in_axes = axes.transpose() * apart;
-    const Vector3d turned =
-        axes.transpose() * (child.linear() * frame_across(loop_).col(0));
+    const Vector3d turned = axes.transpose() * (child.linear() * frame_across(loop_).col(0));
     PairTerms<double> terms;
     pair_->evaluate({in_axes[0], in_axes[1], turned[0], turned[1]}, place_, terms);
     const double square = terms.slope[0] * terms.slope[0] + terms.slope[1] * terms.slope[1];

@@ -1,6 +1,6 @@
-// Slots, cams, racks and equations: Φ against slow twins that know positions alone; Φ_q, Φ̇, Φ̈ and the
-// impulses' rates against differences of Φ in quad precision, in a plane and in space, with moving
-// origins; Jacobians in every scalar; what has no derivatives is told.
+// Slots, cams, racks and equations: Φ against slow twins that know positions alone; Φ_q, Φ̇, Φ̈ and
+// the impulses' rates against differences of Φ in quad precision, in a plane and in space, with
+// moving origins; Jacobians in every scalar; what has no derivatives is told.
 
 #include "equations/random_tree.h"
 
@@ -18,8 +18,9 @@ namespace {
 
 using Eigen::VectorXd;
 
-const std::string outline = "points = [[0.5, 0, 0], [0.3, 0.35, 0], [-0.1, 0.45, 0], [-0.45, 0.1, "
-                            "0], [-0.3, -0.4, 0], [0.2, -0.35, 0]]";
+const std::string outline =
+    "points = [[0.5, 0, 0], [0.3, 0.35, 0], [-0.1, 0.45, 0], [-0.45, 0.1, "
+    "0], [-0.3, -0.4, 0], [0.2, -0.35, 0]]";
 const std::string path = "points = [[-1, 0.2, 0], [-0.3, 0.6, 0], [0.4, 0.5, 0], [1.2, 0.9, 0]]";
 
 bool is_equation(const std::string& loop) {
@@ -99,8 +100,7 @@ std::vector<Case> all_pairs() {
           {"round slot", "kind = \"slot\"\ncurve = \"circle\"\nradius = 0.6"},
           {"closed slot", "kind = \"slot\"\ncurve = \"spline\"\nclosed = true\n" + outline},
           {"open slot", "kind = \"slot\"\ncurve = \"spline\"\n" + path},
-          {"slot seen from behind",
-           "kind = \"slot\"\ncurve = \"spline\"\naxis = \"-z\"\n" + path},
+          {"slot seen from behind", "kind = \"slot\"\ncurve = \"spline\"\naxis = \"-z\"\n" + path},
           {"rack", "kind = \"rack\"\nradius = 0.4\noffset = 0.2\ndirection = [0.6, 0.8, 0]"},
           {"circles", cam(circle, circle)},
           {"circle on ellipse", cam(ellipse, circle)},
@@ -198,8 +198,8 @@ void compare_with_differences(const Mechanism& mechanism, double t, equations::R
   e->constraint_forces(sigma.data(), force.data());
   for (int k = 0; k < nv; ++k) {
     const VectorXd unit = VectorXd::Unit(nv, k);
-    const VectorXd column = difference(twin.positions(t, moved(q, h, unit)),
-                                       twin.positions(t, moved(q, -h, unit)), h);
+    const VectorXd column =
+        difference(twin.positions(t, moved(q, h, unit)), twin.positions(t, moved(q, -h, unit)), h);
     EXPECT_NEAR(force[k], column.dot(sigma), 1e-12) << k;
   }
   std::vector<double> entries(mechanism.constraint_pattern().size());
@@ -236,8 +236,9 @@ void compare_with_differences(const Mechanism& mechanism, double t, equations::R
   e->accelerations(second.data());
   EXPECT_LE((second - difference(rate_at(tick), rate_at(-tick), tick)).norm(), 1e-6);
   if (!mechanism.plan().drives) {
-    EXPECT_LE((rate - difference(twin.positions(t, moved(q, h, u)),
-                                 twin.positions(t, moved(q, -h, u)), h)).norm(),
+    EXPECT_LE((rate -
+               difference(twin.positions(t, moved(q, h, u)), twin.positions(t, moved(q, -h, u)), h))
+                  .norm(),
               1e-12);
     EXPECT_LE((second - difference(rate_at(h), rate_at(-h), h)).norm(), 1e-11);
   }
@@ -247,13 +248,13 @@ void compare_with_differences(const Mechanism& mechanism, double t, equations::R
   e->momentum_rates(q.data(), u.data(), sigma.data(), 0, with.data());
   e->momenta(nullptr, without.data());
   e->momentum_rates(q.data(), u.data(), nullptr, 0, without.data());
-  const VectorXd impulse =
-      difference(twin.load(t + tick, moved(q, tick, u), quad(sigma)),
-                 twin.load(t - tick, moved(q, -tick, u), quad(sigma)), tick);
+  const VectorXd impulse = difference(twin.load(t + tick, moved(q, tick, u), quad(sigma)),
+                                      twin.load(t - tick, moved(q, -tick, u), quad(sigma)), tick);
   EXPECT_LE((with - without - impulse).norm(), 1e-6);
   if (!mechanism.plan().drives) {
-    EXPECT_LE((with - without - difference(twin.load(t, moved(q, h, u), quad(sigma)),
-                                           twin.load(t, moved(q, -h, u), quad(sigma)), h))
+    EXPECT_LE((with - without -
+               difference(twin.load(t, moved(q, h, u), quad(sigma)),
+                          twin.load(t, moved(q, -h, u), quad(sigma)), h))
                   .norm(),
               1e-11);
   }
@@ -322,9 +323,8 @@ frequency = 2
 
 /// In space with bodies that tilt: slots alone, whose points need no common plane.
 TEST(HigherPairs, SlotsInSpaceOnBodiesThatTilt) {
-  for (const char* slot :
-       {"kind = \"slot\"\ncurve = \"circle\"\nradius = 0.6",
-        "kind = \"slot\"\naxis = [0.8, 0.6, 0]"}) {
+  for (const char* slot : {"kind = \"slot\"\ncurve = \"circle\"\nradius = 0.6",
+                           "kind = \"slot\"\naxis = [0.8, 0.6, 0]"}) {
     Scene scene = arms(slot);
     scene.joints[1].rotation = Eigen::AngleAxisd(0.7, Eigen::Vector3d(0.6, 0, 0.8));
     scene.joints[2].axis = Eigen::Vector3d(0, 0.6, 0.8);

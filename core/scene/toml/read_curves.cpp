@@ -67,13 +67,15 @@ void read_ends(const Fields& table, LoopSpec& loop) {
 }  // namespace
 
 void read_slot(const Fields& table, LoopSpec& loop) {
-  const std::string kind =
-      table.has("curve") ? std::string(slot_curves[read_kind(table, slot_curves, "curve")]) : "line";
+  const std::string kind = table.has("curve")
+                               ? std::string(slot_curves[read_kind(table, slot_curves, "curve")])
+                               : "line";
   for (const std::string_view key : {"points", "closed"})
     if (kind != "spline")
       table.refuse(key, "has no meaning for a slot on a " + kind + ", expected on a spline only");
   if (kind != "circle")
-    table.refuse("radius", "has no meaning for a slot on a " + kind + ", expected on a circle only");
+    table.refuse("radius",
+                 "has no meaning for a slot on a " + kind + ", expected on a circle only");
   table.allow({"name", "kind", "parent", "child", "origin", "rotation", "axis", "curve", "radius",
                "points", "closed"});
   read_ends(table, loop);
@@ -87,8 +89,9 @@ void read_cam(const Fields& table, LoopSpec& loop) {
   read_ends(table, loop);
   const auto profile = table.table("profile");
   if (!profile)
-    table.fail_at(table.at(), "profile is missing, expected { parent = { kind = .. }, child = { "
-                              "kind = .. } }, the outlines that touch");
+    table.fail_at(table.at(),
+                  "profile is missing, expected { parent = { kind = .. }, child = { "
+                  "kind = .. } }, the outlines that touch");
   profile->allow({"parent", "child"});
   const auto outline = [&](std::string_view side) {
     const auto found = profile->table(side);

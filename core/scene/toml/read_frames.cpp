@@ -19,8 +19,7 @@ std::size_t read_kind(const Fields& table, std::span<const std::string_view> kin
   std::string sentence = "is " + in_quotes(kind);
   if (std::find(others.begin(), others.end(), kind) != others.end())
     sentence += ", which only a " + std::string(table_of_others) + " can be";
-  table.fail_key(key,
-                 sentence + ", expected one of: " + listed(kinds) + did_you_mean(kind, kinds));
+  table.fail_key(key, sentence + ", expected one of: " + listed(kinds) + did_you_mean(kind, kinds));
 }
 
 Origins read_origins(const Fields& table) {

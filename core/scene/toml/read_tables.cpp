@@ -117,7 +117,8 @@ BodySpec read_body(const Fields& table) {
 JointSpec read_joint(const Fields& table) {
   JointSpec joint;
   joint.at = table.at();
-  joint.kind = static_cast<JointKind>(read_kind(table, joint_kinds, "kind", loop_kinds, "[[loop]]"));
+  joint.kind =
+      static_cast<JointKind>(read_kind(table, joint_kinds, "kind", loop_kinds, "[[loop]]"));
   const std::string kind(name_of(joint.kind));
   if (!has_axis(joint.kind))
     table.refuse("axis", "has no meaning for a " + kind +
@@ -228,8 +229,9 @@ std::string as_difference(const Fields& table, const std::string& text) {
   for (std::size_t i = 0; i < text.size(); ++i) {
     if (text[i] == '\'') quoted = !quoted;
     if (quoted || text[i] != '=') continue;
-    const bool compares = (i > 0 && std::string_view("=<>!").find(text[i - 1]) != std::string::npos) ||
-                          (i + 1 < text.size() && text[i + 1] == '=');
+    const bool compares =
+        (i > 0 && std::string_view("=<>!").find(text[i - 1]) != std::string::npos) ||
+        (i + 1 < text.size() && text[i + 1] == '=');
     if (compares) continue;
     if (sign != std::string::npos)
       table.fail_key("equation", "has two '=', expected one, or a formula that is to be zero");
