@@ -76,6 +76,13 @@ class Evaluation<double> : public EquationRows<double> {
   /// (q, u, t) → u̇ by the articulated recursion: mechanisms without loops only.
   virtual bool open_accelerations(double t, const double* q, const double* u, double* udot) = 0;
 
+  /// Why a slot, a cam or an equation has no value or no derivatives at the last place(), one
+  /// sentence that names it; empty where all have them.
+  virtual std::string lost_loop() const = 0;
+  /// Where on its curve the point of each slot on a spline is, by place among the scene's loops
+  /// [m, along the chords]; of other loops not a number. After place().
+  virtual void slot_places(double* places) const = 0;
+
   /// Place in u of the joint at which the last call of these two failed.
   virtual int singular_joint() const = 0;
 

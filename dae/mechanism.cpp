@@ -2,6 +2,7 @@
 #include <momenta/dae/factor/faded_pivot.h>
 #include <momenta/dae/factor/filtered_matrix.h>
 #include <momenta/dae/leaves_first.h>
+#include <momenta/dae/loop/loop_equation.h>
 #include <momenta/dae/loop/loop_weights.h>
 #include <momenta/dae/mechanism_inside.h>
 #include <momenta/dae/unheld_joints.h>
@@ -99,7 +100,11 @@ Mechanism::Mechanism(Scene scene, MechanismOptions options)
   row_names_ = row_names(scene_, plan_.planar);
   rows_ = static_cast<int>(row_names_.size());
   plan_.loops = rows_ > 0;
-  plan_.drives |= visit([](const auto& cast) { return !cast.loops.motions.empty(); });
+  plan_.drives |= visit([](const auto& cast) {
+    const auto& equations = cast.loops.equations;
+    return !cast.loops.motions.empty() ||
+           std::any_of(equations.begin(), equations.end(), [](const auto& e) { return e->moves; });
+  });
   dense_ = options.kkt == KktChoice::dense ||
            (options.kkt != KktChoice::sparse && tree_.nv + rows_ <= dense_limit);
   const std::vector<bool> of_angles = couplers_of_angles(scene_, tree_);
@@ -144,7 +149,11 @@ void Mechanism::choose_kkt(KktChoice asked) {
       cast.as_given.plan = plan_loops(cast.model, cast.as_given.loops);
     }
     if (!cast.swept.plan.linear)
-      kkt_reason_ = "a coupler has powers of a coordinate, and the sweeps carry linear ones";
+      kkt_reason_ = !cast.loops.equations.empty()
+                        ? "a loop is an equation, which the sweeps do not carry"
+                    : !cast.loops.pairs.empty()
+                        ? "a loop is a pair of curves, which the sweeps do not carry"
+                        : "a coupler has powers of a coordinate, and the sweeps carry linear ones";
     else if (!cast.swept.plan.fits())
       kkt_reason_ =
           (cast.swept.plan.slots > 64 ? std::string("more than 64")  // no more are counted

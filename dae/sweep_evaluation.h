@@ -51,6 +51,10 @@ class Mechanism::SweepEvaluation final : public SweepRows<Space, double> {
   void each_constraint_entry(Entry&& entry) {
     for (std::size_t i = 0; i < loops_.model().loops.size(); ++i) {
       const auto& l = loops_.model().loops[i];
+      if (l.is_equation()) {
+        each_entry_of_equation(l, entry);
+        continue;
+      }
       for (const auto& c : l.joints) entry(l.row, c.u, loops_.ratio(c));
       for (int row = 0; row < l.rows; ++row) {
         Force on_a, on_b;
@@ -91,6 +95,33 @@ class Mechanism::SweepEvaluation final : public SweepRows<Space, double> {
   void body_forces(double t, const double* q, const double* u, double* tau) override {
     body_force_rates(w_, t, q, u);
     std::copy(w_.generalised.begin(), w_.generalised.end(), tau);
+  }
+
+  std::string lost_loop() const override {
+    const int loop = loops_.lost_loop();
+    if (loop < 0) return "";
+    const auto at = static_cast<std::size_t>(loop);
+    const LoopSpec& spec = scene_.loops[at];
+    if (spec.kind == LoopKind::equation)
+      return "loop '" + spec.name + "': its equation has no value or no derivatives here";
+    const bool cam = spec.kind == LoopKind::cam;
+    const std::string what =
+        loops_.pair_place(at).lost == PairPlace::Lost::no_normal
+            ? (cam ? "its outlines have no common normal" : "its point has no foot on the curve")
+        : cam ? "its outlines curve alike where they touch, and where the contact goes is not "
+                "determined"
+              : "its point is at a centre of curvature of the curve";
+    return "loop '" + spec.name + "': " + what;
+  }
+  void slot_places(double* places) const override {
+    const auto& model = loops_.model();
+    for (std::size_t i = 0; i < model.loops.size(); ++i) {
+      const auto& l = model.loops[i];
+      places[i] = l.is_pair() && model.pairs[static_cast<std::size_t>(l.pair)]->kind ==
+                                     HigherPair::Kind::curve
+                      ? loops_.pair_place(i).of_b
+                      : std::nan("");
+    }
   }
 
   int singular_joint() const override {
@@ -167,6 +198,30 @@ class Mechanism::SweepEvaluation final : public SweepRows<Space, double> {
   }
 
  private:
+  /// Forces at the points inward, and ratios where coordinates are: each joint on the ways once.
+  template <class Entry>
+  void each_entry_of_equation(const typename LoopModel<Space>::Loop& l, Entry&& entry) {
+    const auto& equation = *loops_.model().equations[static_cast<std::size_t>(l.equation)];
+    inward_.resize(w_.body.size());  // once
+    for (const int k : equation.way) inward_[static_cast<std::size_t>(k)] = {};
+    loops_.each_point_wrench(
+        l, [&](int k, const Force& f) { inward_[static_cast<std::size_t>(k)] += f; });
+    for (const int k : equation.way) {
+      const auto at = static_cast<std::size_t>(k);
+      const auto& body = model_.bodies[at];
+      const auto& edge = w_.body[at].edge;
+      double column[6];
+      Joint<Space>::project(body, edge, inward_[at], column);
+      for (const auto& c : l.joints)
+        if (c.body == k) column[c.u - body.u] += loops_.ratio(c);
+      for (int j = 0; j < body.nv; ++j) entry(l.row, body.u + j, column[j]);
+      if (body.parent >= 0)
+        inward_[static_cast<std::size_t>(body.parent)] +=
+            Space::to_parent(body.edge, body.kind, edge, inward_[at]);
+    }
+  }
+  std::vector<Force> inward_;
+
   struct Marker {
     int body;
     typename Space::template Vector<double> at;

@@ -88,6 +88,21 @@ Expression Expression::with_two_derivatives(int variable) const {
   return all;
 }
 
+Expression Expression::with_second_derivatives(std::span<const int> variables) const {
+  formula::Tape tape(tape_);
+  Expression all;
+  all.outputs_ = {outputs_.front()};
+  const std::vector<int> slopes = formula::add_gradient(tape, outputs_.front(), variables);
+  all.outputs_.insert(all.outputs_.end(), slopes.begin(), slopes.end());
+  for (std::size_t v = 0; v < slopes.size(); ++v) {
+    const std::vector<int> bends =
+        formula::add_gradient(tape, slopes[v], variables.subspan(0, v + 1));
+    all.outputs_.insert(all.outputs_.end(), bends.begin(), bends.end());
+  }
+  all.tape_ = tape.needed_for(all.outputs_);
+  return all;
+}
+
 std::vector<int> Expression::variables() const {
   std::vector<int> all;
   for (const Instruction& in : tape_)

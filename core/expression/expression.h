@@ -140,6 +140,8 @@ class Expression {
   Expression with_derivatives(std::span<const int> variables) const;
   /// f, ∂f/∂x_v and ∂²f/∂x_v², as exact as those.
   Expression with_two_derivatives(int variable) const;
+  /// f, ∂f/∂x_v of each of these variables, and ∂²f/∂x_v∂x_w for w up to v, v by v.
+  Expression with_second_derivatives(std::span<const int> variables) const;
   /// A function in it that has corners or jumps, by its name; empty: none, f is smooth where it is
   /// finite.
   std::string_view corner() const;

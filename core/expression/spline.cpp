@@ -47,4 +47,43 @@ CubicSpline::CubicSpline(const std::vector<double>& x, const std::vector<double>
   segments_.back() = {x.back(), {y.back(), last, 0, 0}};
 }
 
+CubicSpline::CubicSpline(const std::vector<double>& times, const std::vector<double>& values,
+                         double period)
+    : period_(period) {
+  const std::size_t n = times.size();
+  const auto gap = [&](std::size_t i) {
+    return (i + 1 < n ? times[i + 1] : times[0] + period) - times[i];
+  };
+  const auto slope = [&](std::size_t i) { return (values[(i + 1) % n] - values[i]) / gap(i); };
+  const auto jump = [&](std::size_t i) { return 6 * (slope(i) - slope((i + n - 1) % n)); };
+
+  // Rows 1 … n − 1 forwards, mᵢ = right[i] − upper[i] mᵢ₊₁ − round[i] m₀, then backwards from m_n =
+  // m₀ to mᵢ = right[i] − round[i] m₀; row 0 gives m₀.
+  std::vector<double> upper(n, 0.0), right(n + 1, 0.0), round(n + 1, 0.0), m(n + 1);
+  round[0] = round[n] = -1;
+  for (std::size_t i = 1; i < n; ++i) {
+    const double pivot = 2 * (gap(i - 1) + gap(i)) - gap(i - 1) * upper[i - 1];
+    upper[i] = gap(i) / pivot;
+    right[i] = (jump(i) - gap(i - 1) * right[i - 1]) / pivot;
+    round[i] = -gap(i - 1) * round[i - 1] / pivot;
+  }
+  for (std::size_t i = n; i-- > 1;) {
+    right[i] -= upper[i] * right[i + 1];
+    round[i] -= upper[i] * round[i + 1];
+  }
+  m[0] = m[n] = (jump(0) - gap(n - 1) * right[n - 1] - gap(0) * right[1]) /
+                (2 * (gap(n - 1) + gap(0)) - gap(n - 1) * round[n - 1] - gap(0) * round[1]);
+  for (std::size_t i = 1; i < n; ++i) m[i] = right[i] - round[i] * m[0];
+
+  knots_ = times;
+  segments_.resize(n + 1);
+  for (std::size_t i = 0; i < n; ++i) {
+    const double h = gap(i);
+    segments_[i + 1] = {times[i],
+                        {values[i], slope(i) - h * (2 * m[i] + m[i + 1]) / 6, m[i] / 2,
+                         (m[i + 1] - m[i]) / (6 * h)}};
+  }
+  segments_.front() = segments_[1];  // before the first by rounding alone
+}
+
 }  // namespace momenta

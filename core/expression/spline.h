@@ -1,13 +1,18 @@
 #pragma once
-// The natural cubic spline through points (xᵢ, yᵢ). With z = x − xᵢ, h = xᵢ₊₁ − xᵢ and mᵢ = f"(xᵢ),
+// Cubic splines through points (xᵢ, yᵢ). With z = x − xᵢ, h = xᵢ₊₁ − xᵢ and mᵢ = f"(xᵢ),
 // in each gap
 //
 //   f = yᵢ + bᵢ z + mᵢ/2 z² + (mᵢ₊₁ − mᵢ)/(6h) z³,  bᵢ = (yᵢ₊₁ − yᵢ)/h − h (2mᵢ + mᵢ₊₁)/6
 //
-// Continuity of f': hᵢ₋₁ mᵢ₋₁ + 2 (hᵢ₋₁ + hᵢ) mᵢ + hᵢ mᵢ₊₁ = 6 (Δyᵢ/hᵢ − Δyᵢ₋₁/hᵢ₋₁); m = 0 at both
-// ends. Outside, the straight line of the end slope: f" is continuous there too. Within a gap the
-// derivatives are exact; a dual number takes the gap of its value.
+// Continuity of f': hᵢ₋₁ mᵢ₋₁ + 2 (hᵢ₋₁ + hᵢ) mᵢ + hᵢ mᵢ₊₁ = 6 (Δyᵢ/hᵢ − Δyᵢ₋₁/hᵢ₋₁).
+//
+// Natural: m = 0 at both ends. Outside, the straight line of the end slope: f" is continuous there
+// too. Periodic: a last gap leads back to y₀ at x₀ + period, and the indices go round. Within a gap
+// the derivatives are exact; a dual number takes the gap of its value.
 
+#include <momenta/core/scalar/dual.h>
+
+#include <cmath>
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -35,16 +40,20 @@ std::string spline_fault(const std::vector<double>& x, const std::vector<double>
 class CubicSpline {
  public:
   CubicSpline() = default;
-  /// @pre spline_fault() is empty. O(points)
+  /// Natural. @pre spline_fault() is empty. O(points)
   CubicSpline(const std::vector<double>& x, const std::vector<double>& y);
+  /// Periodic. @pre the same, three points at least, x[0] + period beyond the last. O(points)
+  CubicSpline(const std::vector<double>& x, const std::vector<double>& y, double period);
 
   /// f, f' and f". O(log points)
   template <class S>
   void evaluate(const S& x, S& f, S& first, S& second) const {
-    const Segment& segment = at(x);
-    horner(segment.c, 4, S(x - S(segment.from)), f, first, second);
+    if (period_ > 0)
+      if (const double turns = std::floor((value_of(x) - knots_.front()) / period_); turns != 0)
+        return in_gap(S(x - S(turns) * S(period_)), f, first, second);
+    in_gap(x, f, first, second);
   }
-  /// The derivative of an order from 0: f itself. O(log points)
+  /// The derivative of an order from 0: f itself. @pre natural. O(log points)
   template <class S>
   S derivative(const S& x, int order) const {
     const Segment& segment = at(x);
@@ -65,6 +74,11 @@ class CubicSpline {
     double c[4] = {0, 0, 0, 0};
   };
   template <class S>
+  void in_gap(const S& x, S& f, S& first, S& second) const {
+    const Segment& segment = at(x);
+    horner(segment.c, 4, S(x - S(segment.from)), f, first, second);
+  }
+  template <class S>
   const Segment& at(const S& x) const {
     // segments_[k] holds between knots k − 1 and k; find the number k of knots at or before x
     std::size_t low = 0, high = knots_.size();
@@ -78,6 +92,7 @@ class CubicSpline {
     return segments_[low];
   }
 
+  double period_ = 0;  ///< 0: natural
   std::vector<double> knots_;
   std::vector<Segment>
       segments_;  ///< one more than knots_: the first and last are the lines outside

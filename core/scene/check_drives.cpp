@@ -57,11 +57,16 @@ void check_loop_drive(const Scene& scene, const Census& census, const DriveSpec&
   if (!drive.origin.empty()) {
     require(drive.origin == "x" || drive.origin == "y" || drive.origin == "z", scene, drive.at, who,
             "origin must be x, y or z");
+    require(loop.kind != LoopKind::equation, scene, drive.at, who,
+            "origin has no meaning for an equation, expected a formula with t in it");
     require(loop.kind != LoopKind::coupler, scene, drive.at, who,
             "origin has no meaning for a coupler, expected none: a drive prescribes its offset");
     return;
   }
-  const int count = driven_coordinates_of(loop.kind);
+  const int count = has_curves(loop) ? 0 : driven_coordinates_of(loop.kind);
+  if (loop.kind == LoopKind::equation)
+    throw SceneError(scene.where(drive.at) + who +
+                     ": an equation has no coordinate to drive, expected a formula with t in it");
   if (count == 0)
     throw SceneError(scene.where(drive.at) + who + ": a " + kind +
                      " loop has no coordinate to drive, expected origin = \"x\", \"y\" or \"z\"" +

@@ -313,4 +313,27 @@ std::string formula_fault(const Scene& scene, const ForceSpec& force, const Form
                   "force; expected one of them";
 }
 
+std::string equation_fault(const Scene& scene, const Formula& formula) {
+  if (formula.expression.is_truth())
+    return "is a comparison, expected a formula that is to be zero";
+  if (const std::string_view corner = formula.expression.corner(); !corner.empty())
+    return "has " + in_quotes(corner) +
+           ", where no second derivative may exist; expected a smooth formula";
+  bool ties = false;
+  for (const Signal& signal : formula.signals) {
+    if (is_rate(signal.kind))
+      return "takes the rate " + in_quotes(in_words(scene, signal)) +
+             ", expected coordinates, positions of markers and t alone: an equation of positions";
+    if (signal.kind == Kind::length)
+      return "takes " + in_quotes(in_words(scene, signal)) +
+             ", expected coordinates, positions of markers and t alone: a length is that of the "
+             "positions of two markers";
+    ties |= signal.kind != Kind::time;
+  }
+  return ties
+             ? ""
+             : "takes no coordinate and no position of a marker, so that it ties nothing; expected "
+               "one of them";
+}
+
 }  // namespace momenta

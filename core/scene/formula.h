@@ -97,7 +97,12 @@ bool has_formula(const ForceSpec& force);
 /// Why a formula of a force cannot be one, in words; empty where it can.
 std::string formula_fault(const Scene& scene, const ForceSpec& force, const Formula& formula);
 
-/// What the formulas of forces name, their own names included. @pre the scene is valid
+/// Why a formula cannot be an equation that holds coordinates and points together, in words; empty
+/// where it can.
+std::string equation_fault(const Scene& scene, const Formula& formula);
+
+/// What the formulas of forces and equations name, their own names included. @pre the scene is
+/// valid
 struct NamedInFormulas {
   explicit NamedInFormulas(const Scene& scene);
   std::set<std::string> joints;   ///< whose coordinates or rates they take

@@ -1,5 +1,5 @@
-// What the formulas of a scene's forces name: what may neither go nor change its meaning where the
-// scene is written in another way.
+// What the formulas of a scene's forces and equations name: what may neither go nor change its
+// meaning where the scene is written in another way.
 
 #include <momenta/core/scene/formula.h>
 
@@ -8,8 +8,19 @@
 namespace momenta {
 
 NamedInFormulas::NamedInFormulas(const Scene& scene) {
-  if (std::none_of(scene.forces.begin(), scene.forces.end(), has_formula)) return;
+  const auto is_equation = [](const LoopSpec& l) { return l.kind == LoopKind::equation; };
+  if (std::none_of(scene.forces.begin(), scene.forces.end(), has_formula) &&
+      std::none_of(scene.loops.begin(), scene.loops.end(), is_equation))
+    return;
   const FormulaReader reader(scene);
+  for (const LoopSpec& loop : scene.loops) {
+    if (!is_equation(loop)) continue;
+    for (const Signal& s : reader.read(loop.equation).signals) {
+      const auto which = static_cast<std::size_t>(s.which);
+      if (s.kind == Signal::Kind::coordinate) joints.insert(scene.joints[which].name);
+      if (s.kind == Signal::Kind::position) bodies.insert(scene.markers[which].body);
+    }
+  }
   for (const ForceSpec& force : scene.forces) {
     if (!has_formula(force)) continue;
     const auto own = reader.own_names(force);

@@ -22,7 +22,10 @@ class Pins {
     };
     for (const JointSpec& joint : scene.joints) take(joint);
     for (const LoopSpec& loop : scene.loops)
-      if (loop.kind != LoopKind::coupler) take(loop);
+      if (loop.kind == LoopKind::slot)
+        add(loop.child, loop.origin_child);
+      else if (ties_bodies(loop) && !has_curves(loop))
+        take(loop);
     for (const ForceSpec& force : scene.forces)
       if (force.kind == "spring-damper") take(force);
   }

@@ -32,6 +32,16 @@ bool has_powers(const LoopSpec& loop) {
 bool has_stops(const JointSpec& joint) {
   return joint.limits && (joint.stop_stiffness != 0 || joint.stop_damping != 0);
 }
+
+bool ties_bodies(const LoopSpec& loop) {
+  return loop.kind != LoopKind::coupler && loop.kind != LoopKind::equation;
+}
+
+bool has_curves(const LoopSpec& loop) {
+  return loop.kind == LoopKind::cam || loop.kind == LoopKind::rack ||
+         (loop.kind == LoopKind::slot && !loop.curve.kind.empty());
+}
+
 bool has_rotor(const JointSpec& joint) {
   return std::any_of(joint.rotor_inertia.begin(), joint.rotor_inertia.end(),
                      [](double x) { return x != 0; });
@@ -66,9 +76,20 @@ double length_of(const Scene& scene) {
     on(x.child, x.origin_child);
   };
   for (const JointSpec& j : scene.joints) ends(j);
+  const auto outline = [&](const std::string& body, const Eigen::Vector3d& at,
+                           const Eigen::Quaterniond& turn, const CurveSpec& curve) {
+    const double reach = std::max({curve.radius, curve.semi_axes[0], curve.semi_axes[1]});
+    for (const double r : {-reach, reach})
+      on(body, at + Eigen::Vector3d::Constant(r / std::sqrt(3)));
+    for (const auto& point : curve.points) on(body, at + turn * point);
+  };
   for (const LoopSpec& l : scene.loops) {
     length = std::max(length, l.length);
-    if (l.kind != LoopKind::coupler) ends(l);
+    if (!ties_bodies(l)) continue;
+    ends(l);
+    if (!l.curve.kind.empty()) outline(l.parent, l.origin_parent, l.rotation, l.curve);
+    if (!l.child_curve.kind.empty())
+      outline(l.child, l.origin_child, Eigen::Quaterniond::Identity(), l.child_curve);
   }
   for (const ForceSpec& f : scene.forces) {
     if (f.kind == "spring-damper" || f.kind == "bushing") ends(f);

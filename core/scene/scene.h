@@ -2,6 +2,7 @@
 // A scene: the mechanism as its author wrote it, before any analysis. Plain data, SI units, angles
 // in rad. Readers (read_scene) fill it from files; programs may fill it by hand.
 
+#include <momenta/core/scene/curve_spec.h>
 #include <momenta/core/scene/joint_kind.h>
 #include <momenta/core/scene/location.h>
 #include <momenta/core/scene/visual.h>
@@ -152,7 +153,11 @@ enum class LoopKind {
   universal,    ///< 4
   cylindrical,  ///< 4
   planar,       ///< 3
-  coupler       ///< 1, between coordinates of joints
+  coupler,      ///< 1, between coordinates of joints
+  slot,         ///< 2, in a plane 1
+  cam,          ///< 1
+  rack,         ///< 1
+  equation      ///< 1, between coordinates, positions of markers and the time
 };
 
 /// A joint that closes a loop. It has the keys of a joint, but no coordinates and no forces along
@@ -164,6 +169,17 @@ enum class LoopKind {
 ///   - `planar` keeps the child's point in the plane across `axis`, and `axis` common
 ///   - `coupler` ties coordinates of joints, not bodies: Σ ratios[i] q_i + Σ powers[k] x^(k+2) =
 ///     offset, x the coordinate of the last joint
+///   - `slot` keeps the child's point on a curve of the parent: without `curve` on the line along
+///     `axis`, else on a circle or spline in the plane across `axis`
+///   - `cam` keeps the outlines `curve` of the parent and `child_curve` of the child, both in the
+///     plane across `axis`, in contact: no gap along their common normal. It pulls as well as
+///     pushes. Both bodies move across `axis`
+///   - `rack`: the circle of the child with `radius` about origin_child rolls on the parent's line
+///     through origin_parent along `direction`, on its side axis × direction: the angle of the
+///     child about `axis` is `offset` − displacement / radius. The distance from the line is not
+///     held
+///   - `equation`: the formula `equation` is zero, of joint coordinates, positions of markers and t
+///     (core/scene/formula.h); it ties what its names stand for, and has no bodies of its own
 struct LoopSpec {
   std::string name;                                              ///< unique among joints and loops
   LoopKind kind = LoopKind::point;                               ///< point, revolute, …
@@ -175,7 +191,7 @@ struct LoopSpec {
   Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();               ///< unit vector in the loop frame
   /// Universal: as for a joint; zero means perpendicular_to(axis).
   Eigen::Vector3d axis2 = Eigen::Vector3d::Zero();
-  /// Planar: as for a joint, used where drives prescribe coordinates; zero means
+  /// Planar: as for a joint, used where drives prescribe coordinates; rack: its line; zero means
   /// perpendicular_to(axis).
   Eigen::Vector3d direction = Eigen::Vector3d::Zero();
   double length = 0;  ///< distance [m]; no effect where a drive prescribes it
@@ -186,21 +202,32 @@ struct LoopSpec {
   /// Of the second to fourth power of the last joint's coordinate, at most three; where one is not
   /// zero that joint's ratio may be.
   std::vector<double> powers;
-  double offset = 0;  ///< [rad or m]; no effect where a drive prescribes it
-  Location at;        ///< where the file has it
+  double offset = 0;      ///< [rad or m]; no effect where a drive prescribes it
+  CurveSpec curve;        ///< slot: circle or spline, or none; cam: outline of the parent
+  CurveSpec child_curve;  ///< cam: outline of the child
+  double radius = 0;      ///< rack [m], > 0
+  std::string equation;   ///< equation: a formula, without corners
+  Location at;            ///< where the file has it
 };
 
 /// Whether a coupler is not linear.
 bool has_powers(const LoopSpec& loop);
 
+/// Whether a loop ties its parent and its child, and not what coordinates or formulas name.
+bool ties_bodies(const LoopSpec& loop);
+
+/// Whether a loop is a higher pair of curves: a slot that is not straight, a cam, a rack.
+bool has_curves(const LoopSpec& loop);
+
 /// How many coordinates of a loop drives can prescribe: the coordinates of a joint of the same
-/// kind, the length of a distance, the offset of a coupler.
+/// kind, the length of a distance, the offset of a coupler, the displacement in a straight slot.
 constexpr int driven_coordinates_of(LoopKind kind) {
   switch (kind) {
     case LoopKind::revolute:
     case LoopKind::prismatic:
     case LoopKind::distance:
     case LoopKind::coupler:
+    case LoopKind::slot:
       return 1;
     case LoopKind::universal:
     case LoopKind::cylindrical:
@@ -210,6 +237,9 @@ constexpr int driven_coordinates_of(LoopKind kind) {
       return 3;
     case LoopKind::point:
     case LoopKind::weld:
+    case LoopKind::cam:
+    case LoopKind::rack:
+    case LoopKind::equation:
       return 0;
   }
   return 0;

@@ -1,6 +1,8 @@
 #include <momenta/core/scalar/all_finite.h>
+#include <momenta/core/scene/formula.h>
 #include <momenta/core/scene/joint_formula.h>
 #include <momenta/core/scene/kinds.h>
+#include <momenta/core/scene/plane_curve.h>
 #include <momenta/core/scene/shapes.h>
 #include <momenta/core/scene/validate.h>
 #include <momenta/core/scene/validate_parts.h>
@@ -159,9 +161,53 @@ void check_joints(const Scene& scene, const Census& census) {
   }
 }
 
+/// Curves of slots and cams, radius and offset of a rack; no other loop has any.
+void check_curves(const Scene& scene, const LoopSpec& loop, const std::string& who) {
+  const auto check = [&](const CurveSpec& curve, bool of_this_kind, const std::string& what) {
+    require(of_this_kind || curve.kind.empty(), scene, loop.at, who,
+            (what + " is for slots and cams only").c_str());
+    if (curve.kind.empty()) return;
+    const std::string fault = curve_fault(curve, loop.axis);
+    require(fault.empty(), scene, loop.at, who, (what + ": " + fault).c_str());
+  };
+  const bool cam = loop.kind == LoopKind::cam, slot = loop.kind == LoopKind::slot;
+  check(loop.curve, cam || slot, "curve");
+  check(loop.child_curve, cam, "child_curve");
+  if (slot && !loop.curve.kind.empty())
+    require(loop.curve.kind == "circle" || loop.curve.kind == "spline", scene, loop.at, who,
+            "curve of a slot must be a circle, a spline or none");
+  if (cam) {
+    for (const CurveSpec* curve : {&loop.curve, &loop.child_curve})
+      require(!curve->kind.empty() && (curve->kind != "spline" || curve->closed), scene, loop.at,
+              who, "a cam must have two outlines, splines closed");
+    require(loop.curve.kind != "flat" || loop.child_curve.kind != "flat", scene, loop.at, who,
+            "a cam must have an outline that is curved");
+  }
+  if (loop.kind == LoopKind::rack)
+    require(std::isfinite(loop.radius) && loop.radius > 0 && std::isfinite(loop.offset), scene,
+            loop.at, who, "radius must be finite and > 0 [m], and offset finite [rad]");
+}
+
+void check_equation(const Scene& scene, const LoopSpec& loop, const std::string& who) {
+  std::string fault;
+  try {
+    fault = equation_fault(scene, FormulaReader(scene).read(loop.equation));
+  } catch (const ExpressionError& e) {
+    fault = e.what();
+  }
+  require(fault.empty(), scene, loop.at, who,
+          ("equation, " + in_quotes(loop.equation) + ", " + fault).c_str());
+}
+
 void check_loops(const Scene& scene, const Census& census) {
   for (const LoopSpec& loop : scene.loops) {
     const std::string who = "loop " + in_quotes(loop.name);
+    require((loop.kind == LoopKind::equation) != loop.equation.empty(), scene, loop.at, who,
+            "equation must be given for an equation, and for no other kind");
+    if (loop.kind == LoopKind::equation) {
+      check_equation(scene, loop, who);
+      continue;
+    }
     if (loop.kind == LoopKind::coupler) {
       reading::check_coupler(scene, census, loop);
       continue;
@@ -172,7 +218,10 @@ void check_loops(const Scene& scene, const Census& census) {
                  reading::drive_of(scene, &DriveSpec::loop, loop.name, 0) != nullptr),
             scene, loop.at, who, "length must be finite and > 0 [m]");
     check_second_direction(scene, loop, loop.axis2, LoopKind::universal, who + ": axis2");
-    check_second_direction(scene, loop, loop.direction, LoopKind::planar, who + ": direction");
+    check_second_direction(scene, loop, loop.direction,
+                           loop.kind == LoopKind::rack ? LoopKind::rack : LoopKind::planar,
+                           who + ": direction");
+    check_curves(scene, loop, who);
   }
 }
 

@@ -68,8 +68,9 @@ class Assembler {
     a.residue = residue_in_words(mechanism_, phi);
   }
 
-  [[noreturn]] void refuse(const Eigen::VectorXd& phi, double tolerance, bool stretched) const {
+  [[noreturn]] void refuse(const Eigen::VectorXd& phi, double tolerance, bool stretched) {
     const Scene& scene = mechanism_.scene();
+    refuse_lost_loop();
     std::string open;
     Location at;
     int row = 0;
@@ -92,6 +93,14 @@ class Assembler {
         std::to_string(mechanism_.m()) + " equations, " +
         std::to_string(std::count(loops_.columns.begin(), loops_.columns.end(), true)) +
         " free rates); expected loops that close");
+  }
+
+  /// At the pose that was evaluated last.
+  void refuse_lost_loop() {
+    if (const std::string lost = e().lost_loop(); !lost.empty())
+      throw SceneError(mechanism_.scene().where({}) +
+                       "the mechanism cannot be assembled from these positions: " + lost +
+                       "; expected a start where it has both");
   }
 
   void close_velocities(Assembly& a) {
@@ -178,7 +187,8 @@ class Assembler {
     if (!kkt->solve(r.data(), g.data(), nullptr, s.udot.data(), s.lambda.data())) no_inertia(s, -1);
   }
 
-  [[noreturn]] void no_inertia(const Start& s, int rate) const {
+  [[noreturn]] void no_inertia(const Start& s, int rate) {
+    refuse_lost_loop();
     throw SceneError(mechanism_.scene().where({}) + "the mechanism cannot move at its start: " +
                      mechanism_.no_inertia(rate, s.t, s.q.data()));
   }

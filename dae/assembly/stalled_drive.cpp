@@ -32,7 +32,7 @@ class Ways {
 
   Around around(const LoopSpec& loop) const {
     Around found;
-    if (loop.kind == LoopKind::coupler) {
+    if (!ties_bodies(loop)) {
       for (const std::string& name : loop.joints)
         if (const auto j = by_name_.find(name); j != by_name_.end())
           found.joints.push_back(j->second);

@@ -71,7 +71,7 @@ class RotorFold {
     for (std::size_t i = 0; i < s.loops.size(); ++i) {
       const LoopSpec& loop = s.loops[i];
       for (const std::string& joint : loop.joints) couplers_[joints_.at(joint)].push_back(i);
-      if (loop.kind != LoopKind::coupler) tied_.insert({loop.parent, loop.child});
+      if (ties_bodies(loop)) tied_.insert({loop.parent, loop.child});
     }
     for (std::size_t i = 0; i < s.forces.size(); ++i) {
       const ForceSpec& force = s.forces[i];

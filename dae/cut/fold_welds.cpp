@@ -78,13 +78,13 @@ std::set<std::string> held_by_loops(const Scene& scene, const Places& places,
                                     const DrivenLoops& driven) {
   std::set<std::string> bodies;
   for (const LoopSpec& loop : scene.loops) {
-    if (loop.kind == LoopKind::coupler) continue;
+    if (!ties_bodies(loop)) continue;
     const Place &parent = places.of(loop.parent), &child = places.of(loop.child);
     if (parent.carrier == child.carrier)
       bodies.insert(places.carries(loop.child) ? loop.parent : loop.child);
     else if (driven.origins.contains(loop.name) && !places.carries(loop.parent))
       bodies.insert(loop.parent);
-    else if (driven.any.contains(loop.name) &&
+    else if ((driven.any.contains(loop.name) || !can_turn_round(loop)) &&
              (child.carrier == "ground" || (loop.kind == LoopKind::spherical && child.turned())))
       bodies.insert(loop.child);
   }
@@ -119,8 +119,14 @@ LoopSpec folded(LoopSpec loop, const Places& places) {
   if (child.turned()) {
     if (loop.kind == LoopKind::universal && loop.axis2.isZero())
       loop.axis2 = perpendicular_to(loop.axis);
-    if (loop.kind == LoopKind::planar && loop.direction.isZero())
+    if ((loop.kind == LoopKind::planar || loop.kind == LoopKind::rack) && loop.direction.isZero())
       loop.direction = perpendicular_to(loop.axis);
+    for (CurveSpec* curve : {&loop.curve, &loop.child_curve}) {
+      if (curve->kind == "ellipse" && curve->direction.isZero())
+        curve->direction = perpendicular_to(loop.axis);
+      curve->direction = child.turn * curve->direction;
+      for (Vector3d& point : curve->points) point = child.turn * point;
+    }
     loop.rotation = loop.rotation * child.turn.conjugate();
     for (Vector3d* a : {&loop.axis, &loop.axis2, &loop.direction}) *a = child.turn * *a;
   }
@@ -202,7 +208,7 @@ FoldedScene fold_welds(const Scene& given) {
     if (parent.turned()) joint.rotation = parent.turn * joint.rotation;
   }
   for (LoopSpec& loop : scene.loops)
-    if (loop.kind != LoopKind::coupler) loop = folded(loop, places);
+    if (ties_bodies(loop)) loop = folded(loop, places);
   fold_forces(places, scene);
   for (MarkerSpec& marker : scene.markers) {
     const Place& place = places.of(marker.body);

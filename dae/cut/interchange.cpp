@@ -23,6 +23,10 @@ std::optional<JointKind> as_joint(LoopKind kind, bool planar) {
       return JointKind::planar;
     case LoopKind::distance:
     case LoopKind::coupler:
+    case LoopKind::slot:
+    case LoopKind::cam:
+    case LoopKind::rack:
+    case LoopKind::equation:
       break;
   }
   return std::nullopt;
@@ -135,6 +139,10 @@ LoopSpec loop_of(const JointSpec& joint) {
   loop.axis2 = joint.axis2;
   loop.direction = joint.direction;
   return loop;
+}
+
+bool can_turn_round(const LoopSpec& loop) {
+  return loop.kind == LoopKind::distance || as_joint(loop.kind, false);
 }
 
 LoopSpec turned_round(const LoopSpec& loop) {

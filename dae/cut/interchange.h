@@ -34,7 +34,9 @@ struct Sayings {
 std::optional<JointSpec> joint_of(const LoopSpec& loop, const Mechanism& mechanism,
                                   const BodyMotions& bodies, double length);
 LoopSpec loop_of(const JointSpec& joint);
-/// The same loop seen from its child. @pre not driven, no coupler
+/// Whether a loop has a child and a parent that can change places.
+bool can_turn_round(const LoopSpec& loop);
+/// The same loop seen from its child. @pre not driven, can_turn_round(loop)
 LoopSpec turned_round(const LoopSpec& loop);
 
 /// The joints of the scene with the q and u of the start.

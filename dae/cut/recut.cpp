@@ -34,11 +34,11 @@ class SceneGraph {
     }
     for (const LoopSpec& loop : scene_.loops) {
       loop_at_.push_back(-1);
-      if (loop.kind == LoopKind::coupler || loop.parent == loop.child) continue;
+      if (!ties_bodies(loop) || loop.parent == loop.child) continue;
       loop_at_.back() = static_cast<int>(edges.size());
       CutEdge& e = add(loop.parent, loop.child, false);
       const auto joint = as_joint(loop.kind, planar_);
-      e.rows = joint ? rows_of(*joint, planar_) : 1;
+      e.rows = joint ? rows_of(*joint, planar_) : loop.kind == LoopKind::slot && !planar_ ? 2 : 1;
       e.fixed = !joint || said.driven_loops.contains(loop.name) || said.kept.contains(loop.name);
     }
   }

@@ -132,7 +132,7 @@ Scene with_roots_ordered(const Scene& scene, RootOrder order) {
   // Branches of one shape go side by side if their loops are written alike.
   for (LoopSpec& loop : ordered.loops) {
     const std::vector<std::size_t> tied = trees.of(loop);
-    if (loop.kind != LoopKind::coupler && tied.size() == 2 && place[tied[1]] < place[tied[0]] &&
+    if (can_turn_round(loop) && tied.size() == 2 && place[tied[1]] < place[tied[0]] &&
         !driven(scene, loop.name))
       loop = turned_round(loop);
   }

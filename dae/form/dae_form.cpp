@@ -199,7 +199,10 @@ bool DaeForm::residual(double t, const double* y, const double* ydot, double* r)
   equations(plain_, t, y, ydot, r);
   regularise(y, r);
   for (int i = 0; i < size(); ++i)
-    if (!std::isfinite(r[i])) return fail("the residual is not finite");
+    if (!std::isfinite(r[i])) {
+      const std::string lost = plain_.e->lost_loop();
+      return fail(lost.empty() ? "the residual is not finite" : lost);
+    }
   return true;
 }
 

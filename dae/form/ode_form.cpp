@@ -33,6 +33,8 @@ bool OdeForm::fail_at(double t, const std::string& why) {
 bool OdeForm::solver_failed(double t, const double* q, const std::string& what) {
   for (int i = 0; i < mechanism_.nq(); ++i)
     if (!std::isfinite(q[i])) return fail_at(t, "a joint coordinate is not finite");
+  e_->place(t, q);
+  if (const std::string lost = e_->lost_loop(); !lost.empty()) return fail_at(t, lost);
   if (solver_->singular_joint() >= 0)
     return fail_at(t, mechanism_.no_inertia(solver_->singular_joint(), t, q));
   return fail_at(t, what + " is not finite");

@@ -59,7 +59,10 @@ class BodyMatrix {
     for (std::size_t l = 0; l < loop_model_.loops.size(); ++l) {
       const auto& loop = loop_model_.loops[l];
       for (const auto& c : loop.joints) entry(impulse(loop.row), rate(c.u), rows_.ratio(c));
-      for (int i = 0; i < loop.rows && loop.joints.empty(); ++i) {
+      rows_.each_point_wrench(loop, [&](int k, const auto& f) {
+        for (int c = 0; c < d; ++c) entry(impulse(loop.row), velocity(k, c), f[c]);
+      });
+      for (int i = 0; i < loop.rows && !loop.is_coupler(); ++i) {
         typename Space::template Force<double> on_a{}, on_b{};
         rows_.unit_wrench(l, i, on_a, on_b);
         // axes turn, they do not move

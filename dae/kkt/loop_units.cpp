@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <set>
 
 namespace momenta {
 namespace {
@@ -38,6 +39,28 @@ double rounding_of(const Tree& tree, double length) {
   return rounding;
 }
 
+/// By row, of equations the largest |∂Φ/∂u_j| times the unit of u_j where joints stand as they are
+/// given; zero of other rows and where that is no number. Empty: no equations.
+std::vector<double> sizes_of_equations(const Mechanism& mechanism, const Eigen::VectorXd& rates) {
+  std::set<std::string> names;
+  for (const LoopSpec& l : mechanism.scene().loops)
+    if (l.kind == LoopKind::equation) names.insert(l.name);
+  if (names.empty()) return {};
+  std::vector<double> sizes(static_cast<std::size_t>(mechanism.m()), 0.0);
+  const auto& pattern = mechanism.constraint_pattern();
+  std::vector<double> entries(pattern.size());
+  const auto e = mechanism.evaluation<double>();
+  e->place(0, mechanism.tree().q0.data());
+  e->constraint_entries(entries.data());
+  for (std::size_t k = 0; k < entries.size(); ++k) {
+    const auto row = static_cast<std::size_t>(pattern[k].row);
+    if (!names.contains(mechanism.rows()[row].loop)) continue;
+    const double size = std::abs(entries[k]) * rates[pattern[k].column];
+    if (std::isfinite(size)) sizes[row] = std::max(sizes[row], size);
+  }
+  return sizes;
+}
+
 }  // namespace
 
 LoopUnits::LoopUnits(const Mechanism& mechanism) {
@@ -50,6 +73,7 @@ LoopUnits::LoopUnits(const Mechanism& mechanism) {
     if (b.nv == 6) rates.segment<3>(b.u).setConstant(length);
   }
   equations.setOnes(mechanism.m());
+  const std::vector<double> of_equations = sizes_of_equations(mechanism, rates);
   std::map<std::string, const LoopSpec*> couplers;
   for (const LoopSpec& l : mechanism.scene().loops)
     if (l.kind == LoopKind::coupler) couplers.emplace(l.name, &l);
@@ -57,6 +81,8 @@ LoopUnits::LoopUnits(const Mechanism& mechanism) {
     if (mechanism.row_groups()[static_cast<std::size_t>(i)] % 2 == 0) {
       const auto coupler = couplers.find(mechanism.rows()[static_cast<std::size_t>(i)].loop);
       equations[i] = coupler == couplers.end() ? length : size_of(*coupler->second, tree, rates);
+      if (!of_equations.empty() && of_equations[static_cast<std::size_t>(i)] > 0)
+        equations[i] = of_equations[static_cast<std::size_t>(i)];
     }
 }
 

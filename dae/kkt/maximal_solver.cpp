@@ -148,6 +148,9 @@ class MaximalSolver final : public LoopSolver {
     climb(loop.a);
     climb(loop.b);
     for (const auto& coupled : loop.joints) climb(coupled.body);
+    if (loop.is_equation())
+      for (const int k : loop_model_.equations[static_cast<std::size_t>(loop.equation)]->bodies)
+        climb(k);
     LoopColumn column;
     for (std::size_t k = 0; k < n_; ++k)
       if (on_way[k]) column.bodies.push_back(k);
@@ -199,6 +202,8 @@ class MaximalSolver final : public LoopSolver {
     rows_.unit_wrench(loop, row, on_a, on_b);
     if (l.a >= 0) Tree::add(on_a, f_[static_cast<std::size_t>(l.a)]);
     if (l.b >= 0) Tree::add(on_b, f_[static_cast<std::size_t>(l.b)]);
+    rows_.each_point_wrench(
+        l, [&](int k, const auto& f) { Tree::add(f, f_[static_cast<std::size_t>(k)]); });
     for (const auto& coupled : l.joints)
       tree_.add_torque(static_cast<std::size_t>(coupled.body), rows_.ratio(coupled), f_.data());
     for (std::size_t i = column.bodies.size(); i-- > 0;)

@@ -1,7 +1,9 @@
 #include <momenta/core/scene/kinds.h>
 #include <momenta/dae/loop/loop_choice.h>
 #include <momenta/dae/loop/loop_model.h>
+#include <momenta/dae/loop/pair_of_loop.h>
 #include <momenta/dae/loop/row_name.h>
+#include <momenta/dae/loop/take_equation.h>
 
 #include <algorithm>
 #include <cmath>
@@ -102,6 +104,12 @@ double length_at_start(const LoopSpec& spec, const LoopDrives& drives) {
 }
 
 template <class Space>
+void add_pair(const LoopSpec& spec, LoopModel<Space>& all, typename LoopModel<Space>::Loop& l) {
+  l.pair = static_cast<int>(all.pairs.size());
+  all.pairs.push_back(std::make_shared<const HigherPair>(pair_of(spec)));
+}
+
+template <class Space>
 void append(typename LoopModel<Space>::Loop&& l, LoopModel<Space>& all) {
   l.row = all.rows;
   all.rows += l.rows;
@@ -119,7 +127,9 @@ LoopModel<Spatial> build_loops(const Scene& scene, const Tree& tree, const Model
     LoopModel<Spatial>::Loop l;
     LoopModel<Spatial>::Motion motion;
     take_rows(choice, l);
-    if (spec.kind == LoopKind::coupler) {
+    if (spec.kind == LoopKind::equation) {
+      take_equation(scene, spec, tree, model, all, l);
+    } else if (spec.kind == LoopKind::coupler) {
       couple(spec, tree, all, l, motion);
     } else {
       l.a = tree.body(spec.child);
@@ -143,6 +153,7 @@ LoopModel<Spatial> build_loops(const Scene& scene, const Tree& tree, const Model
       l.given = length_at_start(spec, own);
       l.per_length = 1 / l.given;
     }
+    if (has_curves(spec)) add_pair(spec, all, l);
     if (spec.kind == LoopKind::universal && !own.drives_coordinates()) {
       const Eigen::Vector3d axis = spec.axis.normalized();
       const Eigen::Vector3d second =
@@ -170,6 +181,11 @@ LoopModel<Planar> build_loops(const Scene& scene, const Tree& tree, const Model<
     LoopModel<Planar>::Loop l;
     LoopModel<Planar>::Motion motion;
     take_rows(choice, l);
+    if (spec.kind == LoopKind::equation) {
+      take_equation(scene, spec, tree, model, all, l);
+      append(std::move(l), all);
+      continue;
+    }
     if (spec.kind == LoopKind::coupler) {
       couple(spec, tree, all, l, motion);
       const auto none = [](const auto&...) { return Vec2<double>{}; };
@@ -204,7 +220,8 @@ LoopModel<Planar> build_loops(const Scene& scene, const Tree& tree, const Model<
             scene.where(spec.at) + "loop '" + spec.name + "' cannot close: its two sides lie " +
             std::to_string(std::abs(across)) +
             " m apart across the plane in which the scene moves; expected the same height");
-      const bool translations = spec.kind == LoopKind::prismatic;
+      const bool translations =
+          spec.kind == LoopKind::prismatic || (spec.kind == LoopKind::slot && !has_curves(spec));
       // Axes in the plane: for a slide, 1 along it and 2 across; else the plane's own.
       const Eigen::Matrix3d in_joint =
           zero_rotation(tree, poses, l.b) * spec.rotation.toRotationMatrix();
@@ -220,6 +237,17 @@ LoopModel<Planar> build_loops(const Scene& scene, const Tree& tree, const Model<
       };
       l.axis_b = {in_plane(first), in_plane(second), {}};
       l.axis_a = {in_plane(child_from_joint * first), in_plane(child_from_joint * second), {}};
+      if (has_curves(spec)) {
+        const auto of = [&](int i) { return Eigen::Vector3d(in_joint * choice.frame.col(i)); };
+        l.axis_b = {in_plane(of(0)), in_plane(of(1)), {}};
+        l.axis_a = {in_plane(child_from_joint * of(0)), in_plane(child_from_joint * of(1)), {}};
+        if (spec.kind == LoopKind::slot && spec.curve.kind == "circle") {  // carried by the sweeps
+          l.given = spec.curve.radius;
+          l.per_length = 1 / l.given;
+        } else {
+          add_pair(spec, all, l);
+        }
+      }
     }
     // The axis of a hinge is along the normal or against it.
     prescribe(
@@ -247,7 +275,7 @@ std::string loops_leave_plane(const Scene& scene, const Tree& tree, const Eigen:
   constexpr double angle_tolerance = 1e-10;
   DrivesOfLoops drives = drives_of_loops(scene);
   for (const LoopSpec& spec : scene.loops) {
-    if (spec.kind == LoopKind::coupler) continue;
+    if (!ties_bodies(spec)) continue;
     const LoopDrives& own = drives[spec.name];
     for (int i = 0; i < 3; ++i) {
       const Eigen::Vector3d along = zero_rotation(tree, poses, tree.body(spec.parent)).col(i);
@@ -278,6 +306,12 @@ std::string loops_leave_plane(const Scene& scene, const Tree& tree, const Eigen:
       return "loop '" + spec.name + "' slides out of the plane of the joints";
     if (spec.kind == LoopKind::weld && sides_differ)
       return "loop '" + spec.name + "' is welded out of the plane";
+    if (spec.kind == LoopKind::slot && !has_curves(spec) && off_plane(axis_b))
+      return "the slot of loop '" + spec.name + "' leaves the plane of the joints";
+    if (has_curves(spec) &&
+        (off_normal(axis_b) ||
+         (spec.kind != LoopKind::slot && (off_normal(axis_a) || axis_a.dot(axis_b) < 0))))
+      return "the axis of loop '" + spec.name + "' is not normal to the plane of the joints";
     if (spec.kind == LoopKind::universal || spec.kind == LoopKind::cylindrical ||
         spec.kind == LoopKind::planar)
       return "loop '" + spec.name + "' is of a kind that only space has";

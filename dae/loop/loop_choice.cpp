@@ -33,6 +33,7 @@ class Choosing {
   LoopChoice in_space() {
     const auto& driven = drives_.coordinate;
     if (reading::has_axis(loop_.kind)) c_.frame = frame_about(loop_.axis);
+    if (has_curves(loop_)) displacements_as_axes();
     switch (loop_.kind) {
       case LoopKind::point:
         points({0, 1, 2});
@@ -75,8 +76,24 @@ class Choosing {
         points({0, 1, 2});
         universal();
         break;
+      case LoopKind::slot:
+        if (has_curves(loop_)) {
+          points({2});
+          higher("point on the " + loop_.curve.kind);
+        } else {
+          points({0, 1});
+          translation(driven[0], 2);
+        }
+        break;
+      case LoopKind::cam:
+        higher("contact");
+        break;
+      case LoopKind::rack:
+        higher("rolling");
+        break;
       case LoopKind::distance:
       case LoopKind::coupler:
+      case LoopKind::equation:
         break;
     }
     return c_;
@@ -84,13 +101,22 @@ class Choosing {
 
   LoopChoice in_plane() {
     const DriveSpec* driven = drives_.coordinate[0];
-    if (loop_.kind == LoopKind::prismatic) {
-      point(1, "point across the slide");
+    const bool slot = loop_.kind == LoopKind::slot && !has_curves(loop_);
+    if (loop_.kind == LoopKind::prismatic || slot) {
+      const std::string what = slot ? "the slot" : "the slide";
+      point(1, "point across " + what);
       if (driven) {
-        point(0, "point along the slide, driven");
+        point(0, "point along " + what + ", driven");
         c_.translations.push_back({driven, loop_.axis.normalized()});
       }
-      axes(0, 1, "angle");
+      if (!slot) axes(0, 1, "angle");
+      return c_;
+    }
+    if (has_curves(loop_)) {
+      displacements_as_axes();
+      higher(loop_.kind == LoopKind::slot  ? "point on the " + loop_.curve.kind
+             : loop_.kind == LoopKind::cam ? "contact"
+                                           : "rolling");
       return c_;
     }
     points({0, 1});
@@ -103,7 +129,9 @@ class Choosing {
   }
 
   LoopChoice of_number() {
-    const std::string what = loop_.kind == LoopKind::distance ? "distance" : "coupling";
+    const std::string what = loop_.kind == LoopKind::distance  ? "distance"
+                             : loop_.kind == LoopKind::coupler ? "coupling"
+                                                               : "equation";
     c_.names.push_back(drives_.coordinate[0] ? what + ", driven" : what);
     return c_;
   }
@@ -123,6 +151,8 @@ class Choosing {
     c_.axes.emplace_back(i, j);
     c_.names.push_back(name);
   }
+  /// Behind the rows of points; there are none of axes.
+  void higher(const std::string& name) { c_.names.push_back(name); }
   void across(int i, int j, const std::string& note) {
     axes(i, j, "axis " + number(i) + " against axis " + number(j) + note);
   }
@@ -149,13 +179,7 @@ class Choosing {
   void turn_back(const DriveSpec* drive, const Eigen::Vector3d& axis) {
     c_.turns_a.push_back({drive, -axis.normalized()});
   }
-  void displacements_as_axes() {
-    const Eigen::Vector3d third = loop_.axis.normalized(), given = loop_.direction;
-    const Eigen::Vector3d first =
-        given.isZero() ? perpendicular_to(third)
-                       : Eigen::Vector3d((given - given.dot(third) * third).normalized());
-    c_.frame << first, third.cross(first), third;
-  }
+  void displacements_as_axes() { c_.frame = frame_across(loop_); }
   void universal() {
     const DriveSpec *outer = drives_.coordinate[0], *inner = drives_.coordinate[1];
     const Eigen::Vector3d second =
@@ -177,6 +201,16 @@ class Choosing {
 
 }  // namespace
 
+Eigen::Matrix3d frame_across(const LoopSpec& loop) {
+  const Eigen::Vector3d third = loop.axis.normalized(), given = loop.direction;
+  const Eigen::Vector3d first =
+      given.isZero() ? perpendicular_to(third)
+                     : Eigen::Vector3d((given - given.dot(third) * third).normalized());
+  Eigen::Matrix3d frame;
+  frame << first, third.cross(first), third;
+  return frame;
+}
+
 DrivesOfLoops drives_of_loops(const Scene& scene) {
   DrivesOfLoops all;
   for (const DriveSpec& drive : scene.drives) {
@@ -192,8 +226,7 @@ DrivesOfLoops drives_of_loops(const Scene& scene) {
 
 LoopChoice choose_rows(const LoopSpec& loop, const LoopDrives& drives, bool planar) {
   Choosing choosing(loop, drives);
-  if (loop.kind == LoopKind::distance || loop.kind == LoopKind::coupler)
-    return choosing.of_number();
+  if (loop.kind == LoopKind::distance || !ties_bodies(loop)) return choosing.of_number();
   return planar ? choosing.in_plane() : choosing.in_space();
 }
 

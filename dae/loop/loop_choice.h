@@ -19,21 +19,26 @@ struct LoopDrives {
 using DrivesOfLoops = std::map<std::string, LoopDrives>;
 DrivesOfLoops drives_of_loops(const Scene& scene);
 
+/// In the joint frame: `direction` or its default, across that, and `axis`.
+Eigen::Matrix3d frame_across(const LoopSpec& loop);
+
 struct LoopChoice {
   struct Along {
     const DriveSpec* drive;
     Eigen::Vector3d axis;  ///< in the joint frame
   };
-  Eigen::Matrix3d frame = Eigen::Matrix3d::Identity();  ///< space: axes 1, 2, 3 in the joint frame
-  std::vector<int> points;                              ///< j of the D_j rows
-  std::vector<std::pair<int, int>> axes;                ///< (i, j) of the O_ij rows
-  std::vector<std::string> names;                       ///< of all rows
-  std::vector<Along> translations;                      ///< of x_B
-  std::vector<Along> turns_a, turns_b;  ///< of the axes of A and B, one after the other
+  /// Axes 1, 2, 3 in the joint frame: in space, and of loops with curves, whose axis is the third.
+  Eigen::Matrix3d frame = Eigen::Matrix3d::Identity();
+  std::vector<int> points;                ///< j of the D_j rows
+  std::vector<std::pair<int, int>> axes;  ///< (i, j) of the O_ij rows
+  std::vector<std::string> names;         ///< of all rows
+  std::vector<Along> translations;        ///< of x_B
+  std::vector<Along> turns_a, turns_b;    ///< of the axes of A and B, one after the other
 };
 
-/// Rows and prescribed motion; of a distance or a coupler only the name. In a plane axis 1 is that
-/// of the slide, axis 2 stands across it.
+/// Rows and prescribed motion; of a distance or a coupler only the name, and of the row of a higher
+/// pair, which is the last. In a plane axis 1 is that of the slide or of the slot, axis 2 stands
+/// across it.
 LoopChoice choose_rows(const LoopSpec& loop, const LoopDrives& drives, bool planar);
 
 }  // namespace momenta

@@ -8,17 +8,22 @@
 //   L      (D · D − l²) / (2 l₀)        distance, in metres; l₀: l at the start
 //   Q      Σ rᵢ qᵢ − c                  coordinates of joints; r₂ x² + r₃ x³ + r₄ x⁴ besides, x the
 //                                      last of them, of couplers that are not linear
+//   F      F(b_1·D, b_2·D, a_1·b_1, a_1·b_2)    higher pairs: higher_pair.h
+//   E      any formula                 coordinates, positions of points, t: loop_equation.h
 //
 //   point, spherical  D1 D2 D3          revolute about axis 3   D1 D2 D3, O31 O32
 //   weld              D1 D2 D3, O12 O23 O31      prismatic along axis 3   D1 D2, O12 O23 O31
 //   universal, axes b_3, a_1  D1 D2 D3, O13          cylindrical along axis 3   D1 D2, O31 O32
 //   planar across axis 3      D3, O31 O32            distance                   L
-//   coupler                   Q
+//   coupler                   Q                      equation                 E
+//   slot on a line along axis 3  D1 D2
+//   slot on a circle or spline across axis 3  D3, F  cam, rack across axis 3            F
 // In a plane: point, spherical, revolute D1 D2; weld D1 D2 O12; prismatic D (across), O12; distance
-// L. The D1 D2 of a plane that come alone, that no drive moves and whose bodies no third one
-// carries are a tie: their b_j are the axes of the ground, so that Φ = x_A − x_B, and the impulse σ
-// is the one on A at x_A and, negated, on B at x_B, whatever its axes. (A body that carried both
-// would turn Φ, and be felt in it where the loop is open.)
+// L; slot on a line D (across), on a circle L, on a spline F; cam, rack F. The D1 D2 of a plane
+// that come alone, that no drive moves and whose bodies no third one carries are a tie: their b_j
+// are the axes of the ground, so that Φ = x_A − x_B, and the impulse σ is the one on A at x_A and,
+// negated, on B at x_B, whatever its axes. (A body that carried both would turn Φ, and be felt in
+// it where the loop is open.)
 //
 // Drives make these functions of time: x_B and b_j move relative to B as prescribed, a_i relative
 // to A, l and c change. A driven coordinate of a loop adds a row: a driven slide the D along it,
@@ -29,11 +34,16 @@
 #include <momenta/core/kernel/model.h>
 
 #include <array>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace momenta {
+
+struct HigherPair;  // dae/loop/higher_pair.h
+template <class Space>
+struct LoopEquation;  // dae/loop/loop_equation.h
 
 template <class Space>
 struct LoopModel {
@@ -47,7 +57,7 @@ struct LoopModel {
     int q = 0, u = 0;
     double ratio = 0;
     std::array<double, 3> powers{};  ///< r₂, r₃, r₄
-    int curve = -1;                  ///< place among the coordinates with powers; −1: none
+    int curve = -1;                  ///< place among such `curves`; −1: none
 
     template <class S>
     S value(const S& x) const {
@@ -80,15 +90,23 @@ struct LoopModel {
     double given = 0;             ///< l or c
     double across2 = 0;           ///< squared distance across the plane of a planar scene
     std::vector<Coupled> joints;  ///< coupler: then Q is the only row
+    int pair = -1;                ///< place in `pairs`; then F follows the rows of points
+    int equation = -1;            ///< place in `equations`; `joints` are its coordinates
     int motion = -1;              ///< place in `motions`; −1: nothing is prescribed
     double least_scale = 0;       ///< of rows of points: Mechanism::least_scales()
 
     /// Whose axes the b_j are.
     int axes_of_b() const { return is_tie ? -1 : b; }
     bool is_distance() const { return per_length > 0; }
-    bool is_coupler() const { return !joints.empty(); }
-    /// Rows of the first unit: points, a distance or a coupling. Those of axes follow.
-    int first_rows() const { return is_distance() || is_coupler() ? 1 : n_points; }
+    bool is_equation() const { return equation >= 0; }
+    /// Of coordinates, or an equation: no two bodies.
+    bool is_coupler() const { return !joints.empty() || is_equation(); }
+    bool is_pair() const { return pair >= 0; }
+    /// Rows of the first unit: points, a distance, a coupling, a higher pair. Those of axes follow.
+    int first_rows() const {
+      if (is_distance() || is_coupler()) return 1;
+      return pair < 0 ? n_points : n_points + 1;
+    }
   };
 
   /// What drives prescribe of one loop, and where that stands at one time.
@@ -117,8 +135,12 @@ struct LoopModel {
 
   std::vector<Loop> loops;
   std::vector<Motion> motions;
+  std::vector<std::shared_ptr<const HigherPair>> pairs;
+  std::vector<std::shared_ptr<const LoopEquation<Space>>> equations;
   int rows = 0;    ///< m, size of Φ
-  int curves = 0;  ///< coordinates that couplers take powers of: Φ_q changes with q there
+  int curves = 0;  ///< coordinates whose column of Φ_q changes: of powers and equations
+  /// Whether all rows are of the kinds that sweeps carry.
+  bool swept() const { return curves == 0 && pairs.empty() && equations.empty(); }
 };
 
 LoopModel<Spatial> build_loops(const Scene& scene, const Tree& tree, const Model<Spatial>& model);

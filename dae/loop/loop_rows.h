@@ -11,6 +11,10 @@
 //         N on A: force (u_A − u_B) s/l₀ at x_A, couple u_A × D s/l₀
 //   Q     Φ̇ = Σ rᵢ uᵢ − ċ                            no impulse on bodies: pᵢ += rᵢ s
 //         N: none; where rᵢ depends on qᵢ (LoopModel::Coupled): ṗᵢ += ṙᵢ s
+//   F     Φ̇ = Σ F_k ẏ_k, Φ̈ = Σ F_k ÿ_k + Σ F_kl ẏ_k ẏ_l, F_k = ∂F/∂y_k, y of D_j and O_ij
+//         impulse on A: those of its measures, with s_k = F_k s
+//         N on A: those of its measures, and the impulses of ṡ_k = Σ F_kl ẏ_l s
+//   E     loop_equation.h
 //
 // N is the inertial rate of the impulse at fixed σ.
 //
@@ -23,6 +27,8 @@
 #include <momenta/core/kernel/points.h>
 #include <momenta/core/scalar/dual.h>
 #include <momenta/dae/loop/driven_loop.h>
+#include <momenta/dae/loop/higher_pair.h>
+#include <momenta/dae/loop/loop_equation.h>
 #include <momenta/dae/loop/lost_places.h>
 
 namespace momenta {
@@ -43,14 +49,20 @@ class LoopRows {
   using Vector = typename Space::template Vector<S>;
   using Force = typename Space::template Force<S>;
   using Angular = decltype(cross(Vector{}, Vector{}));  ///< Vec3 in space, S in the plane
+  using Loop = typename LoopModel<Space>::Loop;
 
   LoopRows(const LoopModel<Space>& model, Workspace<Space, S>& w)
       : model_(&model),
         w_(w),
         at_(model.loops.size()),
         curves_(static_cast<std::size_t>(model.curves)),
+        pairs_(model.pairs.size()),
         driven_(model.motions.size()),
-        lost_(w.body.size()) {}
+        lost_(w.body.size()) {
+    for (const auto& equation : model.equations) equations_.emplace_back(*equation);
+    for (std::size_t i = 0; i < pairs_.size(); ++i)
+      pairs_[i].measures = model.pairs[i]->turns() ? 4 : 2;
+  }
 
   /// Points and axes in ground components; needs poses at (t, q).
   void place(double t, const S* q) {
@@ -60,6 +72,14 @@ class LoopRows {
     for (std::size_t i = 0; i < at_.size(); ++i) {
       const auto& l = model_->loops[i];
       auto& s = at_[i];
+      if (l.is_equation()) {
+        EquationRow<Space, S>& row = equation(l);
+        row.place(w_, t, q);
+        s.position = row.position();
+        for (std::size_t j = 0; j < l.joints.size(); ++j)
+          curve(l.joints[j]).slope = row.slope_of(j);
+        continue;
+      }
       if (l.is_coupler()) {
         s.position = -S(given(l));
         for (const auto& c : l.joints) {
@@ -82,14 +102,47 @@ class LoopRows {
         s.b[j] = l.motion < 0 ? to_ground(w_, l.axes_of_b(), l.axis_b[j])
                               : to_ground(w_, l.b, motion(l).axis_b[j]);
       }
+      if (l.is_pair())
+        law(l).evaluate(
+            {dot(s.b[0], s.D), dot(s.b[1], s.D), dot(s.a[0], s.b[0]), dot(s.a[0], s.b[1])},
+            pair(l).place, pair(l).terms);
     }
   }
+
+  /// The first pair or equation that the last place() found no numbers of, by place among the
+  /// loops; −1: none.
+  int lost_loop() const {
+    if (pairs_.empty() && equations_.empty()) return -1;
+    for (std::size_t i = 0; i < at_.size(); ++i) {
+      const auto& l = model_->loops[i];
+      if ((l.is_pair() && pair(l).place.lost != PairPlace::Lost::no) ||
+          (l.is_equation() && !equation(l).finite()))
+        return static_cast<int>(i);
+    }
+    return -1;
+  }
+  /// Calls act(body, wrench) for the unit impulse of an equation on each body with points of it;
+  /// of other loops nothing.
+  template <class Act>
+  void each_point_wrench(const Loop& l, Act&& act) const {
+    if (l.is_equation()) equation(l).each_wrench(w_, S(1.0), false, act);
+  }
+  /// Where the curves of a pair touched at the last place(), by place of its loop.
+  const PairPlace& pair_place(std::size_t loop) const { return pair(model_->loops[loop]).place; }
 
   /// Point and angular velocities; needs velocities. `u` null: zero rates.
   void move(const S* u) {
     for (std::size_t i = 0; i < at_.size(); ++i) {
       const auto& l = model_->loops[i];
       auto& s = at_[i];
+      if (l.is_equation()) {
+        EquationRow<Space, S>& row = equation(l);
+        row.move(w_, u);
+        s.rate = row.rate();
+        for (std::size_t j = 0; j < l.joints.size(); ++j)
+          curve(l.joints[j]).turning = row.turning_of(j);
+        continue;
+      }
       if (l.is_coupler()) {
         s.rate = -S(given_rate(l));
         s.bending = S(0.0);
@@ -105,20 +158,26 @@ class LoopRows {
       s.u_b = point_velocity(w_, l.b, s.x_b);
       s.w_a = angular_velocity(w_, l.a);
       s.w_b = angular_velocity(w_, l.axes_of_b());
-      if (l.motion < 0) continue;
-      const auto& m = motion(l);
-      s.u_b += to_ground(w_, l.b, m.v);
-      s.w_a += turning_in_ground(l.a, m.turning_a);
-      s.w_b += turning_in_ground(l.b, m.turning_b);
+      if (l.motion >= 0) {
+        const auto& m = motion(l);
+        s.u_b += to_ground(w_, l.b, m.v);
+        s.w_a += turning_in_ground(l.a, m.turning_a);
+        s.w_b += turning_in_ground(l.b, m.turning_b);
+      }
+      if (l.is_pair()) move_pair(l, s);
     }
   }
 
-  /// Accelerations of couplers; `udot` null: zero.
+  /// Accelerations of couplers and equations; `udot` null: zero. The latter need accelerations.
   void accelerate(const S* udot) {
     for (std::size_t i = 0; i < at_.size(); ++i) {
       const auto& l = model_->loops[i];
       if (!l.is_coupler()) continue;
       S& second = at_[i].second;
+      if (l.is_equation()) {
+        second = equation(l).second(w_, udot);
+        continue;
+      }
       second = l.motion < 0 ? S(0.0) : -S(motion(l).given_second);
       second += at_[i].bending;
       for (const auto& c : l.joints)
@@ -136,49 +195,56 @@ class LoopRows {
                phi[row] =
                    (dot(s.D, s.D) + (l.across2 - given(l) * given(l))) * (0.5 * l.per_length);
              },
-             [&](int row, const At& s) { phi[row] = s.position; });
+             [&](int row, const At& s) { phi[row] = s.position; },
+             [&](int row, const auto& l, const At&) { phi[row] = pair(l).terms.value; });
   }
 
   /// Φ̇ (m) for the velocities of the last move().
   void velocities(S* rate) const {
     each_row(
-        [&](int row, const auto&, const At& s, const Vector& b) {
-          rate[row] = dot(b, s.u_a - s.u_b) + dot(cross(s.w_b, b), s.D);
-        },
+        [&](int row, const auto&, const At& s, const Vector& b) { rate[row] = point_rate(s, b); },
         [&](int row, const auto&, const At& s, const Vector& a, const Vector& b) {
-          rate[row] = inner(cross(a, b), s.w_a - s.w_b);
+          rate[row] = axes_rate(s, a, b);
         },
         [&](int row, const auto& l, const At& s) {
           rate[row] = (dot(s.D, s.u_a - s.u_b) - given(l) * given_rate(l)) * l.per_length;
         },
-        [&](int row, const At& s) { rate[row] = s.rate; });
+        [&](int row, const At& s) { rate[row] = s.rate; },
+        [&](int row, const auto& l, const At&) {
+          const Pair& p = pair(l);
+          rate[row] = S(0.0);
+          for (std::size_t k = 0; k < p.measures; ++k) rate[row] += p.terms.slope[k] * p.rate[k];
+        });
   }
 
   /// Φ̈ (m) for the accelerations body[k].A and of accelerate(): with u̇ = 0 the bias (d/dt Φ_q) u +
   /// d/dt Φ_t.
   void accelerations(S* rate) const {
-    each_row(
-        [&](int row, const auto& l, const At& s, const Vector& b) {
-          const Vector bdot = cross(s.w_b, b);
-          const Vector bddot = cross(s.w_b, bdot) + cross(turning_b(l), b);
-          rate[row] =
-              dot(b, acceleration_apart(l, s)) + 2.0 * dot(bdot, s.u_a - s.u_b) + dot(bddot, s.D);
-        },
-        [&](int row, const auto& l, const At& s, const Vector& a, const Vector& b) {
-          const Vector adot = cross(s.w_a, a), bdot = cross(s.w_b, b);
-          rate[row] = inner(cross(a, b), turning_a(l) - turning_b(l)) + dot(cross(s.w_a, adot), b) +
-                      2.0 * dot(adot, bdot) + dot(a, cross(s.w_b, bdot));
-        },
-        [&](int row, const auto& l, const At& s) {
-          const Vector rel = s.u_a - s.u_b;
-          S second = dot(s.D, acceleration_apart(l, s)) + dot(rel, rel);
-          if (l.motion >= 0) {
-            const auto& m = motion(l);
-            second -= S(m.given_rate * m.given_rate + m.given * m.given_second);
-          }
-          rate[row] = second * l.per_length;
-        },
-        [&](int row, const At& s) { rate[row] = s.second; });
+    each_row([&](int row, const auto& l, const At& s,
+                 const Vector& b) { rate[row] = point_second(l, s, b); },
+             [&](int row, const auto& l, const At& s, const Vector& a, const Vector& b) {
+               rate[row] = axes_second(l, s, a, b);
+             },
+             [&](int row, const auto& l, const At& s) {
+               const Vector rel = s.u_a - s.u_b;
+               S second = dot(s.D, acceleration_apart(l, s)) + dot(rel, rel);
+               if (l.motion >= 0) {
+                 const auto& m = motion(l);
+                 second -= S(m.given_rate * m.given_rate + m.given * m.given_second);
+               }
+               rate[row] = second * l.per_length;
+             },
+             [&](int row, const At& s) { rate[row] = s.second; },
+             [&](int row, const auto& l, const At& s) {
+               const Pair& p = pair(l);
+               S second = p.terms.slope[0] * point_second(l, s, s.b[0]) +
+                          p.terms.slope[1] * point_second(l, s, s.b[1]);
+               if (p.measures == 4)
+                 second += p.terms.slope[2] * axes_second(l, s, s.a[0], s.b[0]) +
+                           p.terms.slope[3] * axes_second(l, s, s.a[0], s.b[1]);
+               for (std::size_t k = 0; k < p.measures; ++k) second += p.slope_rate[k] * p.rate[k];
+               rate[row] = second;
+             });
   }
 
   /// Adds the wrenches of the impulses `sigma`, times `factor`, to the bodies' forces chosen by
@@ -206,13 +272,14 @@ class LoopRows {
         true);
   }
 
-  /// Adds the impulses of couplers, times `factor`, to the momenta or forces of joints (nv).
+  /// Adds the impulses of couplers and equations on coordinates, times `factor`, to the momenta or
+  /// forces of joints (nv).
   void add_couplings(const S* sigma, double factor, S* on_joints) const {
     for (const auto& l : model_->loops)
       for (const auto& c : l.joints) on_joints[c.u] += (factor * ratio(c)) * sigma[l.row];
   }
 
-  /// Adds ṙ σ of couplers whose ratios change; needs move().
+  /// Adds ṙ σ of coordinates whose ratios change; needs move().
   void add_coupling_rates(const S* sigma, S* on_joints) const {
     if (curves_.empty()) return;
     for (const auto& l : model_->loops)
@@ -237,15 +304,22 @@ class LoopRows {
       if (l.b >= 0) add_force(w_, l.b, l.is_tie ? s.x_b : s.x_a, -f, on_b);
     };
     if (l.is_coupler()) return;
+    const auto twist = [&](const Angular& c) {
+      if (l.a >= 0) add_couple(w_, l.a, c, on_a);
+      if (l.b >= 0) add_couple(w_, l.b, Angular(-c), on_b);
+    };
     if (l.is_distance()) {
       push(S(l.per_length) * s.D);
     } else if (row_of_loop < l.n_points) {
       push(s.b[static_cast<std::size_t>(l.points[static_cast<std::size_t>(row_of_loop)])]);
+    } else if (l.is_pair()) {
+      const auto& slope = pair(l).terms.slope;
+      push(slope[0] * s.b[0] + slope[1] * s.b[1]);
+      if (pair(l).measures == 4)
+        twist(slope[2] * cross(s.a[0], s.b[0]) + slope[3] * cross(s.a[0], s.b[1]));
     } else {
       const auto [i, j] = l.axes[static_cast<std::size_t>(row_of_loop - l.n_points)];
-      const Angular c = cross(s.a[static_cast<std::size_t>(i)], s.b[static_cast<std::size_t>(j)]);
-      if (l.a >= 0) add_couple(w_, l.a, c, on_a);
-      if (l.b >= 0) add_couple(w_, l.b, Angular(-c), on_b);
+      twist(cross(s.a[static_cast<std::size_t>(i)], s.b[static_cast<std::size_t>(j)]));
     }
   }
 
@@ -263,13 +337,30 @@ class LoopRows {
   struct Curve {
     S slope{}, bend{}, turning{};
   };
+  /// Of a higher pair: F and its derivatives, ẏ, and d/dt ∂F/∂y.
+  struct Pair {
+    PairPlace place;
+    PairTerms<S> terms;
+    std::array<S, 4> rate{}, slope_rate{};
+    std::size_t measures = 0;  ///< that F depends on
+  };
   Curve& curve(const typename LoopModel<Space>::Coupled& c) {
     return curves_[static_cast<std::size_t>(c.curve)];
   }
   const Curve& curve(const typename LoopModel<Space>::Coupled& c) const {
     return curves_[static_cast<std::size_t>(c.curve)];
   }
-  using Loop = typename LoopModel<Space>::Loop;
+  EquationRow<Space, S>& equation(const Loop& l) {
+    return equations_[static_cast<std::size_t>(l.equation)];
+  }
+  const EquationRow<Space, S>& equation(const Loop& l) const {
+    return equations_[static_cast<std::size_t>(l.equation)];
+  }
+  Pair& pair(const Loop& l) { return pairs_[static_cast<std::size_t>(l.pair)]; }
+  const Pair& pair(const Loop& l) const { return pairs_[static_cast<std::size_t>(l.pair)]; }
+  const HigherPair& law(const Loop& l) const {
+    return *model_->pairs[static_cast<std::size_t>(l.pair)];
+  }
 
   /// Derivatives are right to their own size.
   static constexpr bool rounded = std::is_same_v<S, double>;
@@ -311,8 +402,42 @@ class LoopRows {
     return apart;
   }
 
-  template <class Point, class Axes, class Distance, class Coupling>
-  void each_row(Point&& point, Axes&& axes, Distance&& distance, Coupling&& coupling) const {
+  /// Φ̇ and Φ̈ of D_j and O_ij.
+  S point_rate(const At& s, const Vector& b) const {
+    return dot(b, s.u_a - s.u_b) + dot(cross(s.w_b, b), s.D);
+  }
+  S axes_rate(const At& s, const Vector& a, const Vector& b) const {
+    return inner(cross(a, b), s.w_a - s.w_b);
+  }
+  S point_second(const Loop& l, const At& s, const Vector& b) const {
+    const Vector bdot = cross(s.w_b, b);
+    const Vector bddot = cross(s.w_b, bdot) + cross(turning_b(l), b);
+    return dot(b, acceleration_apart(l, s)) + 2.0 * dot(bdot, s.u_a - s.u_b) + dot(bddot, s.D);
+  }
+  S axes_second(const Loop& l, const At& s, const Vector& a, const Vector& b) const {
+    const Vector adot = cross(s.w_a, a), bdot = cross(s.w_b, b);
+    return inner(cross(a, b), turning_a(l) - turning_b(l)) + dot(cross(s.w_a, adot), b) +
+           2.0 * dot(adot, bdot) + dot(a, cross(s.w_b, bdot));
+  }
+
+  void move_pair(const Loop& l, const At& s) {
+    Pair& p = pair(l);
+    p.rate[0] = point_rate(s, s.b[0]);
+    p.rate[1] = point_rate(s, s.b[1]);
+    if (p.measures == 4) {
+      p.rate[2] = axes_rate(s, s.a[0], s.b[0]);
+      p.rate[3] = axes_rate(s, s.a[0], s.b[1]);
+    }
+    for (std::size_t k = 0; k < p.measures; ++k) {
+      p.slope_rate[k] = S(0.0);
+      for (std::size_t j = 0; j < p.measures; ++j)
+        p.slope_rate[k] += p.terms.bend[k][j] * p.rate[j];
+    }
+  }
+
+  template <class Point, class Axes, class Distance, class Coupling, class Higher>
+  void each_row(Point&& point, Axes&& axes, Distance&& distance, Coupling&& coupling,
+                Higher&& higher) const {
     for (std::size_t i = 0; i < at_.size(); ++i) {
       const auto& l = model_->loops[i];
       const At& s = at_[i];
@@ -327,6 +452,7 @@ class LoopRows {
       }
       for (int j = 0; j < l.n_points; ++j)
         point(row++, l, s, s.b[static_cast<std::size_t>(l.points[static_cast<std::size_t>(j)])]);
+      if (l.is_pair()) higher(row++, l, s);
       for (int j = 0; j < l.n_axes; ++j) {
         const auto [x, y] = l.axes[static_cast<std::size_t>(j)];
         axes(row++, l, s, s.a[static_cast<std::size_t>(x)], s.b[static_cast<std::size_t>(y)]);
@@ -342,6 +468,10 @@ class LoopRows {
     for (std::size_t i = 0; i < at_.size(); ++i) {
       const auto& l = model_->loops[i];
       const At& s = at_[i];
+      if (l.is_equation())
+        equation(l).each_wrench(w_, S(factor * sigma[l.row]), rate, [&](int body, const Force& on) {
+          field(w_.body[static_cast<std::size_t>(body)]) += on;
+        });
       if (l.is_coupler()) continue;
       Vector force{}, impulse{};
       Angular couple{};
@@ -361,6 +491,23 @@ class LoopRows {
           const S scaled = factor * sigma[row];
           force += scaled * f;
           if (rate) impulse += scaled * w;
+        }
+        if (l.is_pair()) {
+          const Pair& p = pair(l);
+          const S given = factor * sigma[row++];
+          for (std::size_t k = 0; k < 2; ++k) {
+            const auto [f, w] = point(s, s.b[k]);
+            const S scaled = given * p.terms.slope[k];
+            force += scaled * f;
+            if (!rate) continue;
+            impulse += scaled * w;
+            force += (given * p.slope_rate[k]) * s.b[k];
+          }
+          for (std::size_t k = 2; k < p.measures; ++k) {
+            const Vector& b = s.b[k - 2];
+            couple += (given * p.terms.slope[k]) * axes(s, s.a[0], b);
+            if (rate) couple += (given * p.slope_rate[k]) * cross(s.a[0], b);
+          }
         }
         for (int j = 0; j < l.n_axes; ++j, ++row) {
           const auto [x, y] = l.axes[static_cast<std::size_t>(j)];
@@ -386,6 +533,8 @@ class LoopRows {
   Workspace<Space, S>& w_;
   std::vector<At> at_;
   std::vector<Curve> curves_;
+  std::vector<Pair> pairs_;
+  std::vector<EquationRow<Space, S>> equations_;
   std::vector<Driven> driven_;  ///< at the time of place()
   LostPlaces<Space> lost_;
 };

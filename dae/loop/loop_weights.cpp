@@ -1,3 +1,4 @@
+#include <momenta/dae/loop/higher_pair.h>
 #include <momenta/dae/loop/loop_weights.h>
 
 #include <algorithm>
@@ -22,13 +23,14 @@ class Scales {
       : tree_(tree), inertia_(inertia), poses_(tree.zero_poses()), length_(length) {}
 
   template <class Loop>
-  Weighed of(const Loop& l) const {
+  Weighed of(const Loop& l, const HigherPair* pair) const {
     Weighed w;
     if (l.is_coupler()) {
       for (const auto& c : l.joints) pass(c.body, length_, w);
       return w;
     }
     double way_a = std::sqrt(dot(l.at_a, l.at_a)), way_b = std::sqrt(dot(l.at_b, l.at_b));
+    if (pair) way_a += pair->reach_a(), way_b += pair->reach_b();
     for (int a = l.a, b = l.b; a != b;) {
       int& later = a > b ? a : b;
       double& way = a > b ? way_a : way_b;
@@ -72,7 +74,8 @@ LoopWeights weigh_loops(const LoopModel<Space>& loops, const Tree& tree,
   LoopWeights weights;
   double lightest = HUGE_VAL, heaviest = 0;
   for (const auto& l : loops.loops) {
-    const Weighed w = scales.of(l);
+    const Weighed w =
+        scales.of(l, l.is_pair() ? loops.pairs[static_cast<std::size_t>(l.pair)].get() : nullptr);
     weights.least_scales.push_back(l.is_coupler() ? 0 : least_lever * least_lever * w.mobility);
     if (w.lightest < 0) continue;
     lightest = std::min(lightest, w.of_lightest);

@@ -68,6 +68,15 @@ Json solids_of(const Picture& picture) {
   }
   return all;
 }
+Json strokes_of(const Picture& picture) {
+  Json all = Json::array();
+  for (const Picture::Stroke& s : picture.strokes) {
+    Json points = Json::array();
+    for (const auto& point : s.points) points.push_back(numbers_of(point));
+    all.push_back({{"body", s.body}, {"points", points}, {"closed", s.closed}});
+  }
+  return all;
+}
 std::string base64(const std::vector<std::int16_t>& numbers) {
   static constexpr char digits[] =
       "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -195,6 +204,7 @@ Json picture_json(const Picture& picture) {
             {"loads", loads_of(picture)},
             {"markers", markers}};
   if (!picture.meshes.empty()) json["meshes"] = meshes_of(picture);
+  if (!picture.strokes.empty()) json["strokes"] = strokes_of(picture);
   return json;
 }
 

@@ -136,7 +136,7 @@ class StateDocument {
       w_.numbers("phidot", s_.phidot.segment(first, count));
       w_.numbers("sigma", s_.sigma.segment(first, count));
       w_.numbers("lambda", s_.lambda.segment(first, count));
-      if (mechanism_.scene().loops[i].kind != LoopKind::coupler) wrench(r);
+      if (ties_bodies(mechanism_.scene().loops[i])) wrench(r);
       w_.close();
     }
     w_.close();

@@ -27,6 +27,7 @@ bool is_length(LoopKind kind, int i) {
   switch (kind) {
     case LoopKind::prismatic:
     case LoopKind::distance:
+    case LoopKind::slot:
       return true;
     case LoopKind::cylindrical:
       return i == 0;
@@ -78,7 +79,9 @@ bool drives_a_length(const Scene& scene, const DriveSpec& drive) {
 bool has_formulas(const Scene& scene) {
   return std::any_of(scene.forces.begin(), scene.forces.end(), has_formula) ||
          std::any_of(scene.drives.begin(), scene.drives.end(),
-                     [](const DriveSpec& d) { return d.kind == "formula"; });
+                     [](const DriveSpec& d) { return d.kind == "formula"; }) ||
+         std::any_of(scene.loops.begin(), scene.loops.end(),
+                     [](const LoopSpec& l) { return l.kind == LoopKind::equation; });
 }
 
 bool at_rest(const Scene& scene) {
@@ -153,6 +156,12 @@ Scene in_units(Scene scene, const Units& units) {
     l.origin_parent *= s;
     l.origin_child *= s;
     l.length *= s;
+    l.radius *= s;
+    for (CurveSpec* curve : {&l.curve, &l.child_curve}) {
+      curve->radius *= s;
+      for (double& axis : curve->semi_axes) axis *= s;
+      for (Eigen::Vector3d& point : curve->points) point *= s;
+    }
     for (std::size_t i = 0; i < l.joints.size(); ++i)
       if (const JointSpec* j = joint_named(scene, l.joints[i]);
           j && is_length(j->kind, i < l.coordinates.size() ? l.coordinates[i] : 0))

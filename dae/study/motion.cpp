@@ -1,10 +1,13 @@
 #include <momenta/core/poses.h>
 #include <momenta/core/scene/kinds.h>
+#include <momenta/dae/loop/loop_choice.h>
+#include <momenta/dae/loop/pair_of_loop.h>
 #include <momenta/dae/study/motion.h>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 
 namespace momenta {
 namespace {
@@ -57,22 +60,29 @@ class LoopGap {
     for (const DriveSpec& drive : scene.drives)
       if (drive.loop == loop.name) drives_.push_back({MotionLaw(drive), drive});
     const Vector3d axis = loop.axis.normalized();
-    Vector3d along = loop.direction.isZero() ? perpendicular_to(axis) : loop.direction;
-    along = (along - along.dot(axis) * axis).normalized();
+    const Eigen::Matrix3d frame = frame_across(loop);
     switch (loop.kind) {
+      case LoopKind::slot:
+      case LoopKind::cam:
+      case LoopKind::rack:
+        if (has_curves(loop))
+          pair_ = pair_of(loop);
+        else
+          free_ = {axis};
+        break;
       case LoopKind::prismatic:
       case LoopKind::cylindrical:
         free_ = {axis};
         break;
       case LoopKind::planar:
-        free_ = {along, axis.cross(along)};
+        free_ = {frame.col(0), frame.col(1)};
         break;
       default:
         break;
     }
   }
 
-  Vector3d gap(double t, const Isometry3d& parent, const Isometry3d& child) const {
+  Vector3d gap(double t, const Isometry3d& parent, const Isometry3d& child) {
     Vector3d at_parent = loop_.origin_parent;
     double length = loop_.length;
     std::vector<double> given(free_.size(), std::nan(""));
@@ -91,6 +101,7 @@ class LoopGap {
     if (loop_.kind == LoopKind::distance)
       return apart.norm() > 0 ? Vector3d(apart * (1 - length / apart.norm())) : apart;
     const Eigen::Matrix3d frame = parent.linear() * loop_.rotation.toRotationMatrix();
+    if (pair_) return of_pair(frame * frame_across(loop_), child, apart);
     for (std::size_t i = 0; i < free_.size(); ++i) {
       const Vector3d way = frame * free_[i];
       apart -= (std::isnan(given[i]) ? apart.dot(way) : given[i]) * way;
@@ -99,6 +110,18 @@ class LoopGap {
   }
 
  private:
+  /// F along its gradient in the plane; of a slot also what leads out of it. `axes`: columns e₁, e₂
+  /// and the normal.
+  Vector3d of_pair(const Eigen::Matrix3d& axes, const Isometry3d& child, const Vector3d& apart) {
+    const Vector3d in_axes = axes.transpose() * apart;
+    const Vector3d turned = axes.transpose() * (child.linear() * frame_across(loop_).col(0));
+    PairTerms<double> terms;
+    pair_->evaluate({in_axes[0], in_axes[1], turned[0], turned[1]}, place_, terms);
+    const double square = terms.slope[0] * terms.slope[0] + terms.slope[1] * terms.slope[1];
+    Vector3d gap = terms.value / square * Vector3d(terms.slope[0], terms.slope[1], 0);
+    if (loop_.kind == LoopKind::slot) gap[2] = in_axes[2];
+    return gap.allFinite() ? Vector3d(axes * gap) : Vector3d(Vector3d::Zero());
+  }
   struct Prescribed {
     MotionLaw law;
     DriveSpec drive;
@@ -106,6 +129,8 @@ class LoopGap {
   const LoopSpec& loop_;
   std::vector<Prescribed> drives_;
   std::vector<Vector3d> free_;  ///< directions in the joint frame, by coordinate
+  std::optional<HigherPair> pair_;
+  PairPlace place_;
 };
 
 void add_end(std::vector<Vector3d>& ends, const Vector3d& point) {
@@ -168,10 +193,20 @@ Picture picture_of(const Mechanism& mechanism) {
     hold(p.child, p.at_child);
     return p;
   };
+  const auto draw = [&](const std::string& body, DrawnCurves::Polyline& line) {
+    if (!line.points.empty())
+      picture.strokes.push_back({order.place.at(body), std::move(line.points), line.closed});
+  };
+  for (const LoopSpec& loop : scene.loops) {
+    if (loop.kind != LoopKind::slot && !has_curves(loop)) continue;
+    DrawnCurves curves = drawn_curves(loop, 0.5 * picture.length);
+    draw(loop.parent, curves.of_parent);
+    draw(loop.child, curves.of_child);
+  }
   for (const LoopSpec& loop : scene.loops)
-    if (loop.kind != LoopKind::coupler)
+    if (ties_bodies(loop))
       picture.loops.push_back(pair(loop, std::string(reading::name_of(loop.kind))));
-    else
+    else if (loop.kind == LoopKind::coupler)
       picture.couplers.push_back({loop.name, {}, loop.ratios});
   std::size_t coupler = 0;
   std::map<std::string, int> by_joint;
@@ -224,7 +259,7 @@ Motion motion_of(const Mechanism& mechanism, const Film& film) {
   std::vector<LoopGap> gaps;
   std::vector<std::pair<int, int>> sides;
   for (const LoopSpec& loop : mechanism.scene().loops)
-    if (loop.kind != LoopKind::coupler) {
+    if (ties_bodies(loop)) {
       gaps.emplace_back(mechanism.scene(), loop);
       sides.push_back({order.place.at(loop.parent), order.place.at(loop.child)});
     }

@@ -60,6 +60,12 @@ struct Picture {
     std::vector<Eigen::Vector3d> points;
     std::vector<std::array<std::uint32_t, 3>> corners;  ///< counter-clockwise from outside
   };
+  /// A curve fixed in a body, or −1: in the ground: a slot, an outline of a cam, a rack.
+  struct Stroke {
+    int body = -1;
+    std::vector<Eigen::Vector3d> points;  ///< in body axes [m]
+    bool closed = false;
+  };
   /// Bodies whose joints a coupler ties: Σ ratios[i] q_i.
   struct Coupler {
     std::string name;
@@ -88,6 +94,7 @@ struct Picture {
   std::vector<Pair> springs;  ///< between points of bodies: spring, damper or spring-damper
   std::vector<Solid> solids;
   std::vector<Triangles> meshes;
+  std::vector<Stroke> strokes;
   std::vector<Coupler> couplers;
   std::vector<Load> loads;
   std::vector<Marker> markers;

@@ -196,6 +196,26 @@ Eigen::Vector3d Fields::vector(std::string_view key, Quantity quantity,
   return has(key) ? vector(key, quantity) : otherwise;
 }
 
+std::vector<Eigen::Vector3d> Fields::vectors(std::string_view key, Quantity quantity) const {
+  const std::string expected = "an array of vectors, each " + expected_three(quantity);
+  const Value& value = required(key, expected);
+  if (value.type != Value::Type::array) mismatch(value, std::string(key), expected);
+  std::vector<Eigen::Vector3d> vectors;
+  for (const Value& item : value.items) {
+    const std::string which = std::string(key) + "[" + std::to_string(vectors.size()) + "]";
+    if (item.type != Value::Type::array) mismatch(item, which, expected_three(quantity));
+    if (item.items.size() != 3)
+      fail_at(item.at, which + " has " + std::to_string(item.items.size()) + " entries, expected " +
+                           expected_three(quantity));
+    Eigen::Vector3d v;
+    for (int i = 0; i < 3; ++i)
+      v[i] = number_of(item.items[static_cast<std::size_t>(i)],
+                       which + "[" + std::to_string(i) + "]", quantity);
+    vectors.push_back(v);
+  }
+  return vectors;
+}
+
 bool Fields::is_of_parameters(const std::string& formula) const {
   if (!parameters_ || formula.empty()) return true;
   try {

@@ -52,6 +52,8 @@ class Fields {
   Eigen::Vector3d vector(std::string_view key, Quantity quantity) const;
   Eigen::Vector3d vector(std::string_view key, Quantity quantity,
                          const Eigen::Vector3d& otherwise) const;
+  /// An array of vectors.
+  std::vector<Eigen::Vector3d> vectors(std::string_view key, Quantity quantity) const;
 
   /// A vector whose components may be formulas of the scene (core/scene/formula.h): those that
   /// parameters alone do not give go to `formulas`, the others to `numbers`; nothing where the key

@@ -10,16 +10,16 @@
 namespace momenta::reading {
 
 std::size_t read_kind(const Fields& table, std::span<const std::string_view> kinds,
-                      std::span<const std::string_view> others, std::string_view table_of_others) {
-  const std::string kind = table.text("kind");
+                      std::string_view key, std::span<const std::string_view> others,
+                      std::string_view table_of_others) {
+  const std::string kind = table.text(key);
   const auto found = std::find(kinds.begin(), kinds.end(), kind);
   if (found != kinds.end()) return static_cast<std::size_t>(found - kinds.begin());
 
   std::string sentence = "is " + in_quotes(kind);
   if (std::find(others.begin(), others.end(), kind) != others.end())
     sentence += ", which only a " + std::string(table_of_others) + " can be";
-  table.fail_key("kind",
-                 sentence + ", expected one of: " + listed(kinds) + did_you_mean(kind, kinds));
+  table.fail_key(key, sentence + ", expected one of: " + listed(kinds) + did_you_mean(kind, kinds));
 }
 
 Origins read_origins(const Fields& table) {

@@ -117,7 +117,8 @@ BodySpec read_body(const Fields& table) {
 JointSpec read_joint(const Fields& table) {
   JointSpec joint;
   joint.at = table.at();
-  joint.kind = static_cast<JointKind>(read_kind(table, joint_kinds, loop_kinds, "[[loop]]"));
+  joint.kind =
+      static_cast<JointKind>(read_kind(table, joint_kinds, "kind", loop_kinds, "[[loop]]"));
   const std::string kind(name_of(joint.kind));
   if (!has_axis(joint.kind))
     table.refuse("axis", "has no meaning for a " + kind +
@@ -231,22 +232,60 @@ void read_coupler(const Fields& table, LoopSpec& loop) {
   loop.offset = table.number("offset", {"rad or m"}, 0);
 }
 
+/// "left = right" as left − right. Names in quotes may have any characters.
+std::string as_difference(const Fields& table, const std::string& text) {
+  std::size_t sign = std::string::npos;
+  bool quoted = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] == '\'') quoted = !quoted;
+    if (quoted || text[i] != '=') continue;
+    const bool compares =
+        (i > 0 && std::string_view("=<>!").find(text[i - 1]) != std::string::npos) ||
+        (i + 1 < text.size() && text[i + 1] == '=');
+    if (compares) continue;
+    if (sign != std::string::npos)
+      table.fail_key("equation", "has two '=', expected one, or a formula that is to be zero");
+    sign = i;
+  }
+  if (sign == std::string::npos) return text;
+  return "(" + text.substr(0, sign) + ") - (" + text.substr(sign + 1) + ")";
+}
+
+/// The keys of an equation; its names are looked up once the whole scene is known.
+void read_equation(const Fields& table, LoopSpec& loop) {
+  table.allow({"name", "kind", "equation"});
+  loop.name = table.text("name");
+  loop.equation = as_difference(table, table.text("equation"));
+  if (loop.equation.empty())
+    table.fail_key("equation", "is empty, expected a formula that is to be zero");
+}
+
 }  // namespace
 
 LoopSpec read_loop(const Fields& table, std::span<const DriveSpec> drives) {
   LoopSpec loop;
   loop.at = table.at();
-  loop.kind = static_cast<LoopKind>(read_kind(table, loop_kinds, joint_kinds, "[[joint]]"));
+  loop.kind = static_cast<LoopKind>(read_kind(table, loop_kinds, "kind", joint_kinds, "[[joint]]"));
   const std::string kind(name_of(loop.kind));
   if (loop.kind == LoopKind::coupler) {
     read_coupler(table, loop);
     return loop;
   }
-  for (const std::string_view key : {"joints", "coordinates", "ratios", "powers", "offset"})
-    table.refuse(key, "has no meaning for a " + kind + " loop, expected on coupler only");
+  if (loop.kind == LoopKind::equation) {
+    read_equation(table, loop);
+    return loop;
+  }
   for (const std::string_view key : {"position", "velocity", "stiffness", "rest", "damping"})
     table.refuse(key,
                  "belongs to a [[joint]], expected none on a loop (a loop has no coordinates)");
+  if (loop.kind == LoopKind::slot || loop.kind == LoopKind::cam || loop.kind == LoopKind::rack) {
+    (loop.kind == LoopKind::slot  ? read_slot
+     : loop.kind == LoopKind::cam ? read_cam
+                                  : read_rack)(table, loop);
+    return loop;
+  }
+  for (const std::string_view key : {"joints", "coordinates", "ratios", "powers", "offset"})
+    table.refuse(key, "has no meaning for a " + kind + " loop, expected on coupler only");
   if (!has_axis(loop.kind))
     table.refuse("axis", "has no meaning for a " + kind +
                              " loop, expected on revolute, prismatic, "

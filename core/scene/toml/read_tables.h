@@ -15,6 +15,10 @@ BodySpec read_body(const Fields& table);
 JointSpec read_joint(const Fields& table);
 /// `drives`: those of the scene, which may stand for numbers of the loop.
 LoopSpec read_loop(const Fields& table, std::span<const DriveSpec> drives);
+/// What a slot, a cam and a rack have beside their kind.
+void read_slot(const Fields& table, LoopSpec& loop);
+void read_cam(const Fields& table, LoopSpec& loop);
+void read_rack(const Fields& table, LoopSpec& loop);
 DriveSpec read_drive(const Fields& table);
 ForceSpec read_force(const Fields& table);
 FunctionSpec read_function(const Fields& table);
@@ -27,12 +31,16 @@ RunDefaults read_run(const Fields& table);
 /// of the scene are read
 void read_formulas(const Fields& root, Scene& scene);
 
-/// The value of `kind`, one of `kinds`; else fails with the kinds there are. `others` are those of
+/// The value of `key`, one of `kinds`; else fails with the kinds there are. `others` are those of
 /// another table, whose name the sentence says when they are asked for here. @return its index in
 /// `kinds`
 std::size_t read_kind(const Fields& table, std::span<const std::string_view> kinds,
-                      std::span<const std::string_view> others = {},
+                      std::string_view key, std::span<const std::string_view> others = {},
                       std::string_view table_of_others = {});
+/// The same of the key `kind`.
+inline std::size_t read_kind(const Fields& table, std::span<const std::string_view> kinds) {
+  return read_kind(table, kinds, "kind");
+}
 
 /// joints, coordinates and ratios of a coupler or a coordinate spring.
 void read_sum(const Fields& table, std::vector<std::string>& joints, std::vector<int>& coordinates,

@@ -157,6 +157,47 @@ void write_sum(const Sum& sum, TomlText& t) {
     t.numbers("coordinates", {sum.coordinates.begin(), sum.coordinates.end()});
 }
 
+std::string list_of(const std::vector<Vector3d>& points) {
+  std::string all;
+  for (const Vector3d& p : points)
+    all += (all.empty() ? "" : ", ") + TomlText::list({p[0], p[1], p[2]});
+  return "[" + all + "]";
+}
+
+/// The outline of one body of a cam.
+std::string outline(const CurveSpec& curve) {
+  const Vector3d& d = curve.direction;
+  const auto along = [&](const char* key) {
+    return std::string(", ") + key + " = " + TomlText::list({d[0], d[1], d[2]});
+  };
+  std::string text = "{ kind = " + TomlText::quoted(curve.kind);
+  if (curve.kind == "circle") text += ", radius = " + TomlText::digits(curve.radius);
+  if (curve.kind == "ellipse") {
+    text += ", semi_axes = " + TomlText::list({curve.semi_axes[0], curve.semi_axes[1]});
+    if (!d.isZero(0)) text += along("direction");
+  }
+  if (curve.kind == "flat") text += along("normal");
+  if (curve.kind == "spline") text += ", points = " + list_of(curve.points);
+  return text + " }";
+}
+
+/// What loops with curves have beside their frames.
+void write_curves(const LoopSpec& loop, TomlText& t) {
+  if (loop.kind == LoopKind::slot && !loop.curve.kind.empty()) {
+    t.word("curve", loop.curve.kind);
+    if (loop.curve.kind == "circle") t.put("radius", TomlText::digits(loop.curve.radius));
+    if (loop.curve.kind == "spline") t.put("points", list_of(loop.curve.points));
+    if (loop.curve.closed) t.put("closed", "true");
+  }
+  if (loop.kind == LoopKind::cam)
+    t.put("profile",
+          "{ parent = " + outline(loop.curve) + ", child = " + outline(loop.child_curve) + " }");
+  if (loop.kind == LoopKind::rack) {
+    t.put("radius", TomlText::digits(loop.radius));
+    t.number("offset", loop.offset);
+  }
+}
+
 void write_loop(const LoopSpec& loop, TomlText& t) {
   t.open("[[loop]]");
   t.word("name", loop.name);
@@ -167,8 +208,10 @@ void write_loop(const LoopSpec& loop, TomlText& t) {
     t.number("offset", loop.offset);
     return;
   }
+  if (loop.kind == LoopKind::equation) return t.word("equation", loop.equation);
   write_frames(loop, reading::has_axis(loop.kind), t);
   if (loop.kind == LoopKind::distance) t.number("length", loop.length);
+  write_curves(loop, t);
 }
 
 void write_drive(const DriveSpec& drive, TomlText& t) {

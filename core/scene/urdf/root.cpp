@@ -65,7 +65,7 @@ class Branches {
       if (const std::string branch = of(joint.child); !branch.empty())
         tied_.emplace(branch, branch);
     for (const LoopSpec& loop : scene.loops)
-      if (loop.kind != LoopKind::coupler) tie(of(loop.parent), of(loop.child));
+      if (ties_bodies(loop)) tie(of(loop.parent), of(loop.child));
   }
   /// How many there are, those that are tied counted as one; none for those tied to the ground.
   int count() const {

@@ -94,6 +94,12 @@ class _LoopKeys(TypedDict, total=False):
     powers: Sequence[int]
     coordinates: Sequence[int]
     offset: float
+    curve: Literal["line", "circle", "spline"]
+    radius: float
+    points: Sequence[Sequence[float]]
+    closed: bool
+    profile: Mapping[str, Mapping[str, Any]]
+    equation: str
 
 class _DriveKeys(TypedDict, total=False):
     from_: float

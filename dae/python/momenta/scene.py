@@ -44,7 +44,9 @@ class Scene:
 
     def loop(self, name, kind, **keys):
         """Adds a joint that closes a loop, or a coupler: parent, child, origin [m], rotation, axis, axis2,
-        direction; length [m] of a distance; joints, ratios, powers, coordinates, offset of a coupler."""
+        direction; length [m] of a distance; joints, ratios, powers, coordinates, offset of a coupler;
+        curve, radius [m], points [m], closed of a slot; profile of a cam; radius [m], offset of a rack;
+        equation, a formula that is zero."""
         return self._add("loop", name=name, kind=kind, **keys)
 
     def drive(self, kind, **keys):

@@ -119,6 +119,12 @@ function stageOf(canvas, film, camera, show, magnified) {
       } });
     }
 
+    for (const line of picture.strokes ?? []) {  // slots and outlines
+      const way = line.points.map((p) => eye.project(pointOf(state, line.body, p)));
+      if (line.closed) way.push(way[0]);
+      const depth = way.reduce((m, p) => m + p[2], 0) / way.length;
+      items.push({ depth, draw: () => stroke(ctx, way, blend(colours.ink, colours.ground, 0.25 + fog(depth)), 1.8) });
+    }
     picture.bodies.forEach((body, k) => {
       const { bars, sheet } = solids[k];
       const place = (p) => pointOf(state, k, p);

@@ -32,6 +32,11 @@ struct SweptLoops {
 /// The plan of a model's loops; in space branches may be folded.
 template <class Space>
 LoopPlan plan_loops(const Model<Space>& model, const LoopModel<Space>& loops) {
+  if (!loops.swept()) {
+    LoopPlan none;
+    none.linear = false;
+    return none;
+  }
   std::vector<int> parents;
   for (const auto& b : model.bodies) parents.push_back(b.parent);
   std::vector<LoopShape> shapes;
@@ -39,9 +44,7 @@ LoopPlan plan_loops(const Model<Space>& model, const LoopModel<Space>& loops) {
     shapes.push_back({l.a, l.b, l.rows, l.n_points == 2 && l.n_axes == 0});
     for (const auto& c : l.joints) shapes.back().joints.emplace_back(c.body, c.ratio);
   }
-  LoopPlan plan = plan_loops(parents, shapes, Space::dimension == 6);
-  plan.linear = loops.curves == 0;
-  return plan;
+  return plan_loops(parents, shapes, Space::dimension == 6);
 }
 
 /// `loops` in the frames of the links and their plan. In space without the rows that no joint

@@ -58,7 +58,7 @@ struct LoopPlan {
   int slots = 0;                     ///< slots needed
   std::int64_t work = 0;             ///< Σ over the fronts of the squared number of open equations
   bool couples() const { return !couplings.empty(); }
-  /// Couplers with powers are not carried: their ratios change with q.
+  /// Couplers with powers, higher pairs and equations are not carried: then all else is empty.
   bool fits() const { return slots <= most_slots && linear; }
   bool linear = true;
 };

@@ -1,0 +1,73 @@
+#pragma once
+// What a loop model takes of an equation of a scene. Included only where loops are built.
+
+#include <momenta/core/kernel/take_formulas.h>
+#include <momenta/dae/loop/loop_equation.h>
+#include <momenta/dae/loop/loop_model.h>
+
+#include <algorithm>
+#include <memory>
+#include <set>
+
+namespace momenta {
+
+/// @pre the scene is valid. O(length of the formula · its names)
+template <class Space>
+void take_equation(const Scene& scene, const LoopSpec& spec, const Tree& tree,
+                   const Model<Space>& model, LoopModel<Space>& all,
+                   typename LoopModel<Space>::Loop& l) {
+  using Of = typename LoopEquation<Space>::Of;
+  const Formula formula = FormulaReader(scene).read(spec.equation);
+  std::vector<int> variables;
+  for (std::size_t v = 0; v < formula.signals.size(); ++v) variables.push_back(static_cast<int>(v));
+  LoopEquation<Space> e(formula.expression.with_second_derivatives(variables));
+  std::set<int, std::greater<>> way;
+  const auto climb = [&](int k) {
+    for (; k >= 0; k = tree.bodies[static_cast<std::size_t>(k)].parent) way.insert(k);
+  };
+  const auto last = [](const auto& list) { return static_cast<int>(list.size()) - 1; };
+  for (const Signal& s : formula.signals) {
+    const auto which = static_cast<std::size_t>(s.which);
+    if (s.kind == Signal::Kind::coordinate) {
+      const int k = part_of(tree, scene.joints[which].name, s.component);
+      const Tree::Body& b = tree.bodies[static_cast<std::size_t>(k)];
+      if (b.drive >= 0) {
+        e.laws.push_back(tree.drives[static_cast<std::size_t>(b.drive)]);
+        e.inputs.push_back({Of::law, last(e.laws)});
+        e.moves = true;
+        continue;
+      }
+      e.input_of_joint.push_back(static_cast<int>(e.inputs.size()));
+      e.joints.push_back({b.q, b.u});
+      e.inputs.push_back({Of::coordinate, last(e.joints)});
+      l.joints.push_back({k, b.q, b.u, 1, {}, all.curves++});
+      climb(k);
+    } else if (s.kind == Signal::Kind::position) {
+      const MarkerSpec& marker = scene.markers[which];
+      const int k = tree.body(marker.body);
+      const Eigen::Vector3d at = tree.point(k, marker.point);
+      typename LoopEquation<Space>::Point point;
+      point.body = k;
+      point.at = model.point(k, at);
+      point.along = model.direction(-1, Eigen::Vector3d::Unit(s.component));
+      if constexpr (Space::dimension == 3) {
+        const double height = k < 0 ? model.basis.col(2).dot(at)
+                                    : (model.frames[static_cast<std::size_t>(k)] * at).z();
+        point.across = model.basis(s.component, 2) * height;
+      }
+      e.points.push_back(point);
+      e.inputs.push_back({Of::point, last(e.points)});
+      climb(k);
+      if (k >= 0 && std::find(e.bodies.begin(), e.bodies.end(), k) == e.bodies.end())
+        e.bodies.push_back(k);
+    } else {
+      e.inputs.push_back({Of::time, -1});
+      e.moves = true;
+    }
+  }
+  e.way.assign(way.begin(), way.end());
+  l.equation = static_cast<int>(all.equations.size());
+  all.equations.push_back(std::make_shared<const LoopEquation<Space>>(std::move(e)));
+}
+
+}  // namespace momenta
