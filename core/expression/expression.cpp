@@ -1,6 +1,7 @@
 // The grammar of expression.h, one function a line of it.
 
 #include <momenta/core/expression/evaluate.h>
+#include <momenta/core/expression/simplify.h>
 #include <momenta/core/expression/tape.h>
 #include <momenta/core/scene/near_name.h>
 
@@ -320,6 +321,15 @@ Expression::Expression(std::string_view text, std::span<const std::string> names
   outputs_ = {t.at};
   tape_ = parser.tape().needed_for(outputs_);
   truth_ = t.truth;
+}
+
+Expression::Expression(const formula::Tape& tape, std::span<const int> outputs)
+    : outputs_(outputs.begin(), outputs.end()) {
+  const std::vector<Instruction> needed = tape.needed_for(outputs_);
+  formula::Tape simple;
+  const std::vector<int> place = formula::add_simplified(simple, needed, {});
+  for (int& i : outputs_) i = place[static_cast<std::size_t>(i)];
+  tape_ = simple.needed_for(outputs_);
 }
 
 Expression Expression::with_derivatives(std::span<const int> variables) const {

@@ -29,6 +29,10 @@
 
 namespace momenta {
 
+namespace formula {
+class Tape;  // core/expression/tape.h
+}
+
 /// A formula that is none: one sentence; the place counts characters from 0.
 class ExpressionError : public std::invalid_argument {
  public:
@@ -89,6 +93,8 @@ class Expression {
 
   /// The names of the variables x₀, x₁, … @throws ExpressionError. O(length) and lookups of names
   Expression(std::string_view text, std::span<const std::string> names);
+  /// The values at these places of a tape, simplified (core/expression/simplify.h). O(tape)
+  Expression(const formula::Tape& tape, std::span<const int> outputs);
 
   /// Whether the formula is a comparison or made of such: its value is then 1 or 0.
   bool is_truth() const { return truth_; }

@@ -1,5 +1,6 @@
 #include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/assembly/closing.h>
+#include <momenta/dae/joint_places.h>
 #include <momenta/dae/kkt/least_norm.h>
 #include <momenta/dae/kkt/loop_rank.h>
 #include <momenta/dae/kkt/loop_solver.h>
@@ -23,13 +24,12 @@ class Assembler {
         u_(std::move(u)),
         loops_(mechanism),
         steps_(loops_.pattern(), mechanism.m(), mechanism.nv()) {
+    if (mechanism.scene().held.empty()) return;
+    const std::vector<JointPlace> places = joint_places(mechanism);
     for (const auto& name : mechanism.scene().held) {
-      const Tree& tree = mechanism.tree();
-      const int last = tree.carried_by(name);
-      for (int k = last < 0 ? 0 : tree.first_part(last); k <= last; ++k) {
-        const auto& b = tree.bodies[static_cast<std::size_t>(k)];
-        for (int i = 0; i < b.nv; ++i) loops_.columns[static_cast<std::size_t>(b.u + i)] = false;
-      }
+      for (const JointPlace& joint : places)
+        if (joint.name == name)
+          for (const int i : joint.u) loops_.columns[static_cast<std::size_t>(i)] = false;
     }
   }
 
@@ -73,25 +73,30 @@ class Assembler {
     std::string open;
     Location at;
     int row = 0;
-    for (const auto& loop : scene.loops) {
+    const char* word = scene.lagrangian ? "constraint '" : "loop '";
+    const auto judge = [&](const std::string& name, Location place) {
       double largest = 0;
-      for (; row < mechanism_.m() &&
-             mechanism_.rows()[static_cast<std::size_t>(row)].loop == loop.name;
+      for (; row < mechanism_.m() && mechanism_.rows()[static_cast<std::size_t>(row)].loop == name;
            ++row)
         largest = std::max(largest, std::abs(phi[row]));
-      if (largest <= tolerance * row_[row - 1]) continue;
+      if (largest <= tolerance * row_[row - 1]) return;
       char text[32];
       std::snprintf(text, sizeof text, "%.3g", largest);
-      if (open.empty()) at = loop.at;
-      open += (open.empty() ? "loop '" : ", loop '") + loop.name + "' stays open by " + text;
-    }
+      if (open.empty()) at = place;
+      open += (open.empty() ? "" : ", ") + (word + name) + "' stays open by " + text;
+    };
+    for (const auto& loop : scene.loops) judge(loop.name, loop.at);
+    if (scene.lagrangian)
+      for (const auto& c : scene.lagrangian->constraints) judge(c.name, c.at);
     throw SceneError(
-        scene.where(at) + "the mechanism cannot be assembled from these positions: " + open +
+        scene.where(at) + (scene.lagrangian ? "the coordinates" : "the mechanism") +
+        " cannot be assembled from these positions: " + open +
         (scene.held.empty() ? "" : " while joints are held") +
         (stretched ? ", stretched: no motion closes it further" : "") + " (" +
         std::to_string(mechanism_.m()) + " equations, " +
         std::to_string(std::count(loops_.columns.begin(), loops_.columns.end(), true)) +
-        " free rates); expected loops that close");
+        " free rates); expected " +
+        (scene.lagrangian ? "constraints that can be met" : "loops that close"));
   }
 
   void close_velocities(Assembly& a) {
@@ -172,8 +177,10 @@ class Assembler {
   }
 
   [[noreturn]] void no_inertia(const Start& s, int rate) const {
-    throw SceneError(mechanism_.scene().where({}) + "the mechanism cannot move at its start: " +
-                     mechanism_.no_inertia(rate, s.t, s.q.data()));
+    throw SceneError(
+        mechanism_.scene().where({}) +
+        (mechanism_.scene().lagrangian ? "" : "the mechanism cannot move at its start: ") +
+        mechanism_.no_inertia(rate, s.t, s.q.data()));
   }
 
   [[noreturn]] void nothing_moves() const {

@@ -156,16 +156,18 @@ Json picture_json(const Picture& picture) {
   Json view = Json::array();
   for (int i = 0; i < 3; ++i)
     view.push_back({picture.view(0, i), picture.view(1, i), picture.view(2, i)});
-  return {{"planar", picture.planar},
-          {"length", picture.length},
-          {"view", view},
-          {"bodies", bodies},
-          {"loops", pairs_of(picture.loops)},
-          {"springs", pairs_of(picture.springs)},
-          {"solids", solids_of(picture)},
-          {"couplers", couplers_of(picture)},
-          {"loads", loads_of(picture)},
-          {"markers", markers}};
+  Json json{{"planar", picture.planar},
+            {"length", picture.length},
+            {"view", view},
+            {"bodies", bodies},
+            {"loops", pairs_of(picture.loops)},
+            {"springs", pairs_of(picture.springs)},
+            {"solids", solids_of(picture)},
+            {"couplers", couplers_of(picture)},
+            {"loads", loads_of(picture)},
+            {"markers", markers}};
+  if (picture.without_bodies) json["without_bodies"] = true;
+  return json;
 }
 
 Json motion_json(const Picture& picture, const Motion& motion) {

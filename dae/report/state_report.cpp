@@ -16,7 +16,7 @@ class StateDocument {
         given_(given),
         s_(s),
         loops_(mechanism.m() > 0),
-        places_(joint_places(mechanism.tree())) {}
+        places_(joint_places(mechanism)) {}
 
   std::string write() {
     w_.text("scene", mechanism_.scene().name);
@@ -47,7 +47,9 @@ class StateDocument {
     w_.number("V", s_.potential);
     w_.number("H", s_.hamiltonian);
     w_.close();
+    const bool bodies = !mechanism_.scene().lagrangian;
     for (const char* key : {"centroidal", "whole"}) {  // `whole`: deprecated
+      if (!bodies) break;
       w_.open(key);
       w_.number("mass", s_.centroidal.mass);
       w_.numbers("centre_of_mass", s_.centroidal.centre);
@@ -136,7 +138,8 @@ class StateDocument {
       w_.numbers("phidot", s_.phidot.segment(first, count));
       w_.numbers("sigma", s_.sigma.segment(first, count));
       w_.numbers("lambda", s_.lambda.segment(first, count));
-      if (mechanism_.scene().loops[i].kind != LoopKind::coupler) wrench(r);
+      if (!mechanism_.scene().lagrangian && mechanism_.scene().loops[i].kind != LoopKind::coupler)
+        wrench(r);
       w_.close();
     }
     w_.close();

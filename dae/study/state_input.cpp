@@ -23,7 +23,7 @@ constexpr std::array<std::string_view, 2> start_keys = {"q", "v"};
 class StateReader {
  public:
   StateReader(const Mechanism& mechanism, const std::string& state)
-      : mechanism_(mechanism), text_(state, state_keys), places_(joint_places(mechanism.tree())) {
+      : mechanism_(mechanism), text_(state, state_keys), places_(joint_places(mechanism)) {
     for (const JointPlace& joint : places_) by_name_[joint.name] = &joint;
   }
 
@@ -180,6 +180,21 @@ void follow_coupler(Scene& scene, const LoopSpec& coupler, std::set<std::string>
   given.insert(left->name);
 }
 
+void start_coordinates(const StateText& text, LagrangianSpec& spec) {
+  std::vector<std::string_view> names;
+  for (const auto& c : spec.coordinates) names.push_back(c.name);
+  for (const std::string key : {"q", "v"}) {
+    const auto* table = text.table(key);
+    if (!table) continue;
+    for (const auto& [name, value] : table->items()) {
+      const auto found = std::find(names.begin(), names.end(), name);
+      if (found == names.end()) text.unknown_joint(name, key, names);
+      auto& c = spec.coordinates[static_cast<std::size_t>(found - names.begin())];
+      text.numbers(value, place_in_state(key, name), 1, key == "q" ? &c.position : &c.velocity);
+    }
+  }
+}
+
 }  // namespace
 
 void start_at(const std::string& state, Scene& scene) {
@@ -187,6 +202,7 @@ void start_at(const std::string& state, Scene& scene) {
     throw SceneError(
         "--at: found -, expected a JSON file or the text itself");  // read again to go on
   const StateText text(state, start_keys);
+  if (scene.lagrangian) return start_coordinates(text, *scene.lagrangian);
   const auto put = [&](const std::string& key, int (*size_of)(const JointSpec&),
                        JointValues values) {
     const auto* table = text.table(key);

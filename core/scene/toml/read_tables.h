@@ -20,6 +20,7 @@ ForceSpec read_force(const Fields& table);
 MarkerSpec read_marker(const Fields& table);
 VisualSpec read_visual(const Fields& table);
 RunDefaults read_run(const Fields& table);
+LagrangianSpec read_lagrangian(const Fields& table);
 
 /// The value of `kind`, one of `kinds`; else fails with the kinds there are. `others` are those of
 /// another table, whose name the sentence says when they are asked for here. @return its index in
