@@ -4,6 +4,7 @@
 #include <momenta/dae/kkt/least_norm.h>
 #include <momenta/dae/kkt/loop_rank.h>
 #include <momenta/dae/kkt/loop_solver.h>
+#include <momenta/dae/loop_word.h>
 #include <momenta/dae/unheld_joints.h>
 
 #include <algorithm>
@@ -73,7 +74,7 @@ class Assembler {
     std::string open;
     Location at;
     int row = 0;
-    const char* word = scene.lagrangian ? "constraint '" : "loop '";
+    const std::string word = std::string(loop_word(mechanism_)) + " '";
     const auto judge = [&](const std::string& name, Location place) {
       double largest = 0;
       for (; row < mechanism_.m() && mechanism_.rows()[static_cast<std::size_t>(row)].loop == name;
@@ -83,7 +84,7 @@ class Assembler {
       char text[32];
       std::snprintf(text, sizeof text, "%.3g", largest);
       if (open.empty()) at = place;
-      open += (open.empty() ? "" : ", ") + (word + name) + "' stays open by " + text;
+      open += (open.empty() ? "" : ", ") + word + name + "' stays open by " + text;
     };
     for (const auto& loop : scene.loops) judge(loop.name, loop.at);
     if (scene.lagrangian)
@@ -91,7 +92,9 @@ class Assembler {
     throw SceneError(
         scene.where(at) + (scene.lagrangian ? "the coordinates" : "the mechanism") +
         " cannot be assembled from these positions: " + open +
-        (scene.held.empty() ? "" : " while joints are held") +
+        (scene.held.empty() ? ""
+         : scene.lagrangian ? " while coordinates are held"
+                            : " while joints are held") +
         (stretched ? ", stretched: no motion closes it further" : "") + " (" +
         std::to_string(mechanism_.m()) + " equations, " +
         std::to_string(std::count(loops_.columns.begin(), loops_.columns.end(), true)) +
@@ -130,8 +133,10 @@ class Assembler {
       throw SceneError(scene.where(scene.drives.front().at) + "drives cannot start: loop '" + name +
                        "' would open at a rate of " + text +
                        ", whatever the other joints do; expected drives that the loops allow");
-    throw SceneError(scene.where({}) + "the velocities of the held joints tear loop '" + name +
-                     "' apart at a rate of " + text + "; expected rates that the loops allow");
+    throw SceneError(scene.where({}) + "the velocities of the held " +
+                     (scene.lagrangian ? "coordinates" : "joints") + " tear " +
+                     loop_word(mechanism_) + " '" + name + "' apart at a rate of " + text +
+                     "; expected rates that the " + loop_word(mechanism_) + "s allow");
   }
 
   void judge_rank(Assembly& a) {
@@ -221,7 +226,7 @@ std::string residue_in_words(const Mechanism& mechanism, const Eigen::VectorXd& 
   if (others.size() > most_named) with += ", …";
   char size[32];
   std::snprintf(size, sizeof size, "%.2g", std::abs(phi[worst]));
-  return "loop '" + loop_of(worst) + "' stays open by " + size +
+  return loop_word(mechanism) + (" '" + loop_of(worst)) + "' stays open by " + size +
          (mechanism.angle_rows()[static_cast<std::size_t>(worst)] ? " rad" : " m") +
          ": its equations" + with +
          " are redundant and differ by that in the scene's numbers; closed in the least-squares "

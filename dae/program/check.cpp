@@ -121,20 +121,31 @@ nlohmann::ordered_json rank_json(const Mechanism& mechanism, const RankReport& r
   return j;
 }
 
+/// A formula over several lines in one, its spaces single.
+std::string in_one_line(const std::string& text) {
+  std::string line;
+  for (const char c : text) {
+    const bool space = c == ' ' || c == '\n' || c == '\t' || c == '\r';
+    if (!space) line += c;
+    if (space && !line.empty() && line.back() != ' ') line += ' ';
+  }
+  return line;
+}
+
 /// What the author wrote.
 void print_formulas(const LagrangianSpec& spec) {
   std::string names;
   for (const auto& c : spec.coordinates) names += (names.empty() ? "" : ", ") + c.name;
   std::printf("  coordinates %s\n", names.c_str());
   const auto print = [](const std::string& what, const std::string& text) {
-    if (!text.empty()) std::printf("  %s = %s\n", what.c_str(), text.c_str());
+    if (!text.empty()) std::printf("  %s = %s\n", what.c_str(), in_one_line(text).c_str());
   };
   print("L", spec.lagrangian.text);
   print("T", spec.kinetic.text);
   print("V", spec.potential.text);
   for (const auto& f : spec.forces) print("Q of " + f.coordinate, f.value.text);
   for (const auto& c : spec.constraints)
-    std::printf("  constraint %s: 0 = %s\n", c.name.c_str(), c.equation.text.c_str());
+    std::printf("  constraint %s: 0 = %s\n", c.name.c_str(), in_one_line(c.equation.text).c_str());
 }
 
 nlohmann::ordered_json cut_json(const Recut& r) {

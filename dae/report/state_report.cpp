@@ -37,7 +37,7 @@ class StateDocument {
     by_joint("free", s_.free);
     if (loops_) by_joint("constrained", s_.constrained);
     w_.close();
-    if (mechanism_.plan().drives) driven();
+    if (mechanism_.plan().drives && !mechanism_.scene().lagrangian) driven();
     if (loops_) loops();
     dense();
     if (!given_.residue.empty()) w_.text("residue", given_.residue);

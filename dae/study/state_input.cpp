@@ -2,6 +2,7 @@
 #include <momenta/core/scene/validate.h>
 #include <momenta/dae/assembly/drive_reach.h>
 #include <momenta/dae/joint_places.h>
+#include <momenta/dae/loop_word.h>
 #include <momenta/dae/study/state_input.h>
 #include <momenta/dae/study/state_text.h>
 #include <momenta/dae/text/number_text.h>
@@ -128,14 +129,14 @@ Start start_of(const std::string& state, const Mechanism& mechanism) {
   if (state.empty()) return assemble(mechanism).start;
   const GivenState given = read_state(state, mechanism);
   const StateValues s = evaluate_state(mechanism, given);
+  const std::string word = std::string("--at: ") + loop_word(mechanism) + " '";
   for (Eigen::Index i = 0; i < s.phi.size(); ++i) {
     const auto& loop = mechanism.rows()[static_cast<std::size_t>(i)].loop;
     if (!(std::abs(s.phi[i]) <= closed))
-      throw SceneError("--at: loop '" + loop + "' is open by " + compact(std::abs(s.phi[i]), 3) +
+      throw SceneError(word + loop + "' is open by " + compact(std::abs(s.phi[i]), 3) +
                        "; expected positions that close the loops to 1e-8");
     if (!(std::abs(s.phidot[i]) <= closed * (1 + s.v.cwiseAbs().maxCoeff())))
-      throw SceneError("--at: loop '" + loop + "' opens at a rate of " +
-                       compact(std::abs(s.phidot[i]), 3) +
+      throw SceneError(word + loop + "' opens at a rate of " + compact(std::abs(s.phidot[i]), 3) +
                        "; expected rates that the loops allow, as those from \"p\" are");
   }
   Start start;

@@ -130,7 +130,9 @@ class StateEvaluator {
     }
     s_.kinetic = e_->kinetic();
     s_.potential = e_->potential(q);
-    s_.hamiltonian = s_.p.dot(s_.v) - s_.kinetic + s_.potential;
+    // Of a Lagrangian p·v - L is Jacobi's T + V, whatever is linear in the rates.
+    s_.hamiltonian =
+        (mechanism_.scene().lagrangian ? s_.kinetic : s_.p.dot(s_.v) - s_.kinetic) + s_.potential;
     s_.markers.resize(6 * mechanism_.scene().markers.size());
     e_->markers(s_.markers.data());
     const double* sigma = loops ? s_.sigma.data() : nullptr;
