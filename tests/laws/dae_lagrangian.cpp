@@ -403,6 +403,24 @@ Scene cartesian_chain(int n) {
                "\"\nconstraints = [" + constraints + "]\n");
 }
 
+// M with zeros between entries: the factor's columns reach their ancestors.
+TEST(Lagrangian, SolvesASparseMassMatrix) {
+  const Mechanism mechanism(
+      typed("[lagrangian]\ncoordinates = [\"a\", \"b\", \"c\", \"d\", \"e\"]\nkinetic = "
+            "\"a.dot^2 + b.dot^2 + c.dot^2 + d.dot^2 + e.dot^2 + 0.3*c.dot*d.dot + "
+            "0.2*b.dot*c.dot + 0.4*a.dot*d.dot\"\n"));
+  MatrixXd M = 2 * MatrixXd::Identity(5, 5);
+  M(2, 3) = M(3, 2) = 0.3;
+  M(1, 2) = M(2, 1) = 0.2;
+  M(0, 3) = M(3, 0) = 0.4;
+  const VectorXd q = VectorXd::Zero(5), p = VectorXd::LinSpaced(5, 1, 3);
+  VectorXd u(5), pdot(5);
+  const auto e = mechanism.evaluation<double>();
+  ASSERT_TRUE(e->open_momentum_rates(0, q.data(), p.data(), u.data(), pdot.data()));
+  EXPECT_LT((M * u - p).norm(), 1e-14);
+  EXPECT_EQ(mechanism.kkt_pattern().mass.size(), 11U);  // e stands alone
+}
+
 // Dense and sparse matrices give the same motion, that of bodies on hinges.
 TEST(Lagrangian, ChainsInCartesianCoordinatesMoveAsBodiesOnHinges) {
   constexpr int n = 4;
