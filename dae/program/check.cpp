@@ -72,7 +72,7 @@ std::string in_words(const SimplerLoop& change) {
 
 void print_rank(const Mechanism& mechanism, const RankReport& r) {
   const int m = mechanism.m(), redundant = m - r.rank_nearby;
-  std::printf("\nLoop equations\n");
+  std::printf(mechanism.scene().lagrangian ? "\nConstraints\n" : "\nLoop equations\n");
   if (r.rank == m) {
     std::printf("  independent: smallest singular value %.3g, of Φ_q without units\n", r.kept);
     return;
@@ -92,7 +92,7 @@ void print_rank(const Mechanism& mechanism, const RankReport& r) {
                 in_words(mechanism, d).c_str());
   if (redundant > 0) {
     for (const SimplerLoop& change : r.simpler) std::printf("  %s\n", in_words(change).c_str());
-    if (r.simpler.empty())
+    if (r.simpler.empty() && !mechanism.scene().lagrangian)
       std::printf(
           "  no simpler kind of loop ties as much: how the loops share the load is not "
           "determined\n");
