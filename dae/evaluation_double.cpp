@@ -1,5 +1,6 @@
 // Evaluations in doubles, and the pattern of (7), which they write.
 
+#include <momenta/dae/lagrangian_evaluation.h>
 #include <momenta/dae/sweep_evaluation.h>
 
 namespace momenta {
@@ -7,6 +8,11 @@ namespace momenta {
 const KktPattern& Mechanism::kkt_pattern() const {
   constraint_pattern();
   std::call_once(mass_pattern_known_, [&] {
+    if (scene_.lagrangian) {
+      for (const auto& [row, column] : lagrangian().mass.places)
+        pattern_.mass.push_back({row, column});
+      return;
+    }
     visit([&]<class Space>(const Cast<Space>& cast) {
       SweepEvaluation<Space> e(*this, cast);
       e.place(0, tree_.q0.data());
@@ -18,6 +24,11 @@ const KktPattern& Mechanism::kkt_pattern() const {
 
 const std::vector<KktPattern::Entry>& Mechanism::constraint_pattern() const {
   std::call_once(constraint_pattern_known_, [&] {
+    if (scene_.lagrangian) {
+      for (const auto& [row, column] : lagrangian().constraint.places)
+        pattern_.constraint.push_back({row, column});
+      return;
+    }
     visit([&]<class Space>(const Cast<Space>& cast) {
       SweepEvaluation<Space> e(*this, cast);
       e.place(0, tree_.q0.data());
@@ -29,6 +40,7 @@ const std::vector<KktPattern::Entry>& Mechanism::constraint_pattern() const {
 
 template <>
 std::unique_ptr<Evaluation<double>> Mechanism::evaluation<double>() const {
+  if (scene_.lagrangian) return std::make_unique<LagrangianEvaluation>(lagrangian(), kkt_pattern());
   return visit([&]<class Space>(const Cast<Space>& cast) -> std::unique_ptr<Evaluation<double>> {
     return std::make_unique<SweepEvaluation<Space>>(*this, cast);
   });

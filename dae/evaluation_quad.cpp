@@ -1,6 +1,7 @@
 // Evaluations in quadruple precision: references made by the program itself.
 
 #include <momenta/core/expression/functions_quad.h>
+#include <momenta/core/scalar/quad.h>
 #include <momenta/dae/sweep_rows.h>
 
 namespace momenta {

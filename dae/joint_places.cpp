@@ -1,3 +1,4 @@
+#include <momenta/core/tree/tree.h>
 #include <momenta/dae/joint_places.h>
 
 #include <algorithm>
@@ -5,8 +6,13 @@
 
 namespace momenta {
 
-std::vector<JointPlace> joint_places(const Tree& tree) {
+std::vector<JointPlace> joint_places(const Mechanism& mechanism) {
+  const Tree& tree = mechanism.tree();
   std::vector<JointPlace> places;
+  if (const auto& lagrangian = mechanism.scene().lagrangian)
+    for (int i = 0; i < mechanism.nq(); ++i)
+      places.push_back(
+          {lagrangian->coordinates[static_cast<std::size_t>(i)].name, {i}, {i}, {}, {}, -1});
   std::map<std::string, std::size_t> index;
   std::vector<int> coordinate(tree.drives.size());  // that a drive prescribes
   for (std::size_t k = 0; k < tree.bodies.size(); ++k) {

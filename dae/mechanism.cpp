@@ -21,6 +21,15 @@ constexpr int dense_limit = 60;
 constexpr double deep_tree = 40;
 
 Plan plan_with_loops(const Tree& tree, const Scene& scene, Algebra algebra) {
+  if (scene.lagrangian) {
+    if (algebra != Algebra::automatic)
+      throw SceneError(scene.where(scene.lagrangian->at) +
+                       "lagrangian: a kernel was asked for, but it has no bodies to compute in a "
+                       "plane or in space; expected --algebra auto");
+    Plan plan;
+    plan.planar = true;
+    return plan;
+  }
   Plan plan = make_plan(tree, scene, algebra);
   if (!plan.planar) return plan;
   const std::string why = loops_leave_plane(scene, tree, plan.basis);
@@ -89,6 +98,18 @@ Mechanism::Mechanism(Scene scene, MechanismOptions options)
       tree_(open_or_closed(scene_)),
       plan_(plan_with_loops(tree_, scene_, options.algebra)),
       casts_(std::make_unique<Casts>()) {
+  if (scene_.lagrangian)
+    take_lagrangian();
+  else
+    take_bodies();
+  dense_ = options.kkt == KktChoice::dense ||
+           (options.kkt != KktChoice::sparse && tree_.nv + rows_ <= dense_limit);
+  if (rows_ == 0) return;
+  if (!scene_.lagrangian) take_weights();
+  choose_kkt(options.kkt);
+}
+
+void Mechanism::take_bodies() {
   const auto cast_into = [&](auto& cast, auto&& model) {
     cast.model = std::move(model);
     cast.loops = build_loops(scene_, tree_, cast.model);
@@ -105,8 +126,6 @@ Mechanism::Mechanism(Scene scene, MechanismOptions options)
     return !cast.loops.motions.empty() ||
            std::any_of(equations.begin(), equations.end(), [](const auto& e) { return e->moves; });
   });
-  dense_ = options.kkt == KktChoice::dense ||
-           (options.kkt != KktChoice::sparse && tree_.nv + rows_ <= dense_limit);
   const std::vector<bool> of_angles = couplers_of_angles(scene_, tree_);
   const auto group = [&](const auto& cast) {
     int index = 0;
@@ -121,9 +140,6 @@ Mechanism::Mechanism(Scene scene, MechanismOptions options)
     }
   };
   visit(group);
-  if (rows_ == 0) return;
-  take_weights();
-  choose_kkt(options.kkt);
 }
 
 const char* name_of(KktChoice choice) {
@@ -160,11 +176,14 @@ void Mechanism::choose_kkt(KktChoice asked) {
                                       : std::to_string(cast.swept.plan.slots)) +
           " loop equations are open at once, more than " + std::to_string(LoopPlan::most_slots);
   };
-  if (plan_.planar)
+  if (scene_.lagrangian)
+    kkt_reason_ = "formulas have no bodies for sweeps to pass";
+  else if (plan_.planar)
     plan(std::get<0>(casts_->cast));
   else
     plan(std::get<1>(casts_->cast));
   light_ = joint_without_inertia(kkt_reason_.empty());
+  if (scene_.lagrangian && !light_.empty()) kkt_reason_ = light_;
   const bool far_apart = light_.empty() && !(light_ = loops_missed(kkt_reason_.empty())).empty();
   kkt_ = dense_ ? KktChoice::dense : KktChoice::sparse;
   if (far_apart && asked == KktChoice::dense)
@@ -176,6 +195,7 @@ void Mechanism::choose_kkt(KktChoice asked) {
     kkt_ = KktChoice::sweeps;
     return;
   }
+  if (scene_.lagrangian && asked == KktChoice::automatic && light_.empty()) return;
   if (asked == KktChoice::sweeps)
     throw SceneError(scene_.where({}) + "the sweeps were asked to carry the loops, but " +
                      kkt_reason_ + "; expected --kkt sparse" + (far_apart ? "" : " or dense"));

@@ -18,7 +18,8 @@
 
 namespace momenta {
 
-class AxisScale;  // dae/factor/axis_scale.h
+class AxisScale;         // dae/factor/axis_scale.h
+struct LagrangianModel;  // core/lagrangian/lagrangian_model.h
 
 /// How (7) is solved: by sweeps that carry the loops, or by an assembled matrix.
 enum class KktChoice {
@@ -51,8 +52,9 @@ struct Column {
   std::string label() const { return name + " [" + unit + "]"; }
 };
 
-/// A mechanism, loops included. Immutable, so threads may share it; it must outlive everything made
-/// from it.
+/// A mechanism, loops included; or, of a scene with a Lagrangian, what its formulas say: then no
+/// bodies, the coordinates of the scene for joints, its constraints for loops. Immutable, so
+/// threads may share it; it must outlive everything made from it.
 class Mechanism {
  public:
   /// @throws SceneError
@@ -64,6 +66,8 @@ class Mechanism {
   const Scene& scene() const { return scene_; }                 ///< as given
   const MechanismOptions& options() const { return options_; }  ///< as given
   const Tree& tree() const { return tree_; }  ///< bodies in the order of the sweeps
+  /// The tapes of the scene's Lagrangian. @pre it has one
+  const LagrangianModel& lagrangian() const;
   const Plan& plan() const { return plan_; }  ///< what evaluations compute and leave out
   int nq() const { return tree_.nq; }         ///< coordinates
   int nv() const { return tree_.nv; }         ///< rates, momenta
@@ -137,6 +141,8 @@ class Mechanism {
   /// Lines of the plan: those of core and those of the loops.
   std::vector<std::pair<std::string, std::string>> plan_lines() const;
 
+  /// Whether energies tell how well a run keeps to the equations: no prescribed motion does work.
+  bool balances_energy() const;
   /// Why a solution failed at (t, q): one sentence naming the joints that neither inertia nor a
   /// loop holds (unheld_joints.h). `rate`: the place in u at which it failed; −1: not known.
   std::string no_inertia(int rate, double t, const double* q) const;
@@ -144,12 +150,15 @@ class Mechanism {
  private:
   /// What branches the sweeps take side by side; empty: none.
   std::string looped_branches_in_words() const;
+  std::vector<std::pair<std::string, std::string>> lagrangian_lines() const;
   template <class Space>
   struct Cast;
   struct Casts;
   template <class F>
   decltype(auto) visit(F&& f) const;
   void expect_sweeps() const;
+  void take_bodies();
+  void take_lagrangian();
   void choose_kkt(KktChoice asked);
   void take_weights();
   std::string joint_without_inertia(bool swept) const;

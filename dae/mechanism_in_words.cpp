@@ -2,6 +2,7 @@
 
 #include <momenta/core/kernel/branches/branches.h>
 #include <momenta/core/kernel/levels/open_sweeps.h>
+#include <momenta/core/lagrangian/lagrangian_formulas.h>
 #include <momenta/dae/mechanism_inside.h>
 #include <momenta/dae/sweeps/branches/looped_branches.h>
 #include <momenta/dae/unheld_joints.h>
@@ -19,6 +20,8 @@ std::string one_dof_column(const Tree::Body& b, const char* letter) {
 
 std::vector<Column> Mechanism::coordinate_columns() const {
   std::vector<Column> columns;
+  if (scene_.lagrangian)
+    for (const auto& c : scene_.lagrangian->coordinates) columns.push_back({c.name, c.unit});
   for (const auto& b : tree_.bodies) {
     if (b.nq == 1)
       columns.push_back({one_dof_column(b, "q"), b.kind == JointKind::prismatic ? "m" : "rad"});
@@ -33,6 +36,9 @@ std::vector<Column> Mechanism::coordinate_columns() const {
 
 std::vector<Column> Mechanism::rate_columns() const {
   std::vector<Column> columns;
+  if (scene_.lagrangian)
+    for (const auto& c : scene_.lagrangian->coordinates)
+      columns.push_back({LagrangianFormulas::rate_name(c.name), c.unit + "/s"});
   for (const auto& b : tree_.bodies) {
     if (b.nv == 1)
       columns.push_back({one_dof_column(b, "u"), b.kind == JointKind::prismatic ? "m/s" : "rad/s"});
@@ -53,6 +59,23 @@ std::vector<Column> Mechanism::marker_columns() const {
   return columns;
 }
 
+std::vector<std::pair<std::string, std::string>> Mechanism::lagrangian_lines() const {
+  const LagrangianModel& model = lagrangian();
+  std::vector<std::pair<std::string, std::string>> lines;
+  const auto count = [](const Expression& f) { return std::to_string(f.tape().size()); };
+  lines.emplace_back("equations",
+                     "formulas of a Lagrangian, with exact derivatives: " + count(model.momenta) +
+                         " instructions for p, " + count(model.momentum_rates) + " for ṗ");
+  lines.emplace_back("mass matrix", std::to_string(model.mass.places.size()) + " entries of " +
+                                        std::to_string(model.n * (model.n + 1) / 2) +
+                                        (model.linear ? "; L has terms linear in the rates" : ""));
+  lines.emplace_back("time", model.in_time ? "in the formulas" : "in no formula");
+  lines.emplace_back("forces", scene_.lagrangian->forces.empty()
+                                   ? "none beside the Lagrangian's"
+                                   : std::to_string(scene_.lagrangian->forces.size()));
+  return lines;
+}
+
 std::string Mechanism::looped_branches_in_words() const {
   if (plan_.planar) return "";
   const auto& cast = std::get<Cast<Spatial>>(casts_->cast);
@@ -61,7 +84,7 @@ std::string Mechanism::looped_branches_in_words() const {
 }
 
 std::vector<std::pair<std::string, std::string>> Mechanism::plan_lines() const {
-  auto lines = plan_.lines();
+  auto lines = scene_.lagrangian ? lagrangian_lines() : plan_.lines();
   if (!plan_.planar) {
     const LinkTree links = build_links(std::get<Cast<Spatial>>(casts_->cast).model);
     lines.emplace_back("joints", links_in_words(links));
@@ -72,11 +95,18 @@ std::vector<std::pair<std::string, std::string>> Mechanism::plan_lines() const {
     }
   }
   if (rows_ == 0) {
-    lines.emplace_back("loops", "none: no KKT system, no σ, forward dynamics by the two sweeps");
+    if (scene_.lagrangian)
+      lines.emplace_back("constraints",
+                         "none: no KKT system, no σ, forward dynamics by factors of M");
+    else
+      lines.emplace_back("loops", "none: no KKT system, no σ, forward dynamics by the two sweeps");
     return lines;
   }
-  lines.emplace_back("loops", std::to_string(scene_.loops.size()) + " with " +
-                                  std::to_string(rows_) + " equations");
+  if (scene_.lagrangian)
+    lines.emplace_back("constraints", std::to_string(rows_));
+  else
+    lines.emplace_back("loops", std::to_string(scene_.loops.size()) + " with " +
+                                    std::to_string(rows_) + " equations");
   const std::string looped_branches = looped_branches_in_words();
   std::string how = "dense: Cholesky of M, pivoted and filtered LDLᵀ of the loops";
   if (kkt_ == KktChoice::sweeps)
@@ -98,6 +128,14 @@ std::vector<std::pair<std::string, std::string>> Mechanism::plan_lines() const {
 }
 
 std::string Mechanism::no_inertia(int rate, double t, const double* q) const {
+  if (scene_.lagrangian) {
+    if (rate < 0)
+      return "the equations have no finite solution; expected formulas with values there, "
+             "and "
+             "constraints that hold every coordinate without inertia";
+    return light_before_loops(rate) + "; expected a mass matrix that is positive definite" +
+           (rows_ > 0 && dense_ ? ", or --kkt sparse where constraints hold it" : "");
+  }
   const auto e = evaluation<double>();
   const UnheldJoints unheld = unheld_joints(*this, *e, t, q, true, rate);
   if (!unheld.joints.empty()) return in_words(tree_, unheld.joints);
@@ -106,6 +144,10 @@ std::string Mechanism::no_inertia(int rate, double t, const double* q) const {
 }
 
 std::string Mechanism::light_before_loops(int rate) const {
+  if (scene_.lagrangian)
+    return "coordinate '" + scene_.lagrangian->coordinates[static_cast<std::size_t>(rate)].name +
+           "' has no inertia" + (rows_ > 0 ? " before its constraints hold it" : "") +
+           ", alone or with those before it";
   for (std::size_t k = 0; k < tree_.bodies.size(); ++k) {
     const Tree::Body& b = tree_.bodies[k];
     if (rate >= b.u && rate < b.u + b.nv)

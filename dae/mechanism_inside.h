@@ -5,10 +5,12 @@
 #include <momenta/core/kernel/link.h>
 #include <momenta/core/kernel/model.h>
 #include <momenta/core/kernel/planar_link.h>
+#include <momenta/core/lagrangian/lagrangian_model.h>
 #include <momenta/dae/loop/loop_model.h>
 #include <momenta/dae/mechanism.h>
 #include <momenta/dae/sweeps/levels/loop_sweeps.h>
 
+#include <optional>
 #include <utility>
 #include <variant>
 
@@ -23,7 +25,8 @@ struct Mechanism::Cast {
 };
 
 struct Mechanism::Casts {
-  std::variant<Cast<Planar>, Cast<Spatial>> cast;
+  std::variant<Cast<Planar>, Cast<Spatial>> cast;  ///< of no bodies where there is a Lagrangian
+  std::optional<LagrangianModel> lagrangian;
 };
 
 /// f of the one there is.

@@ -6,6 +6,7 @@
 #include <momenta/core/kernel/accelerations.h>
 #include <momenta/core/kernel/momentum_recursion.h>
 #include <momenta/core/scalar/power_series.h>
+#include <momenta/dae/lagrangian_rows.h>
 #include <momenta/dae/loop/loop_rows.h>
 #include <momenta/dae/mechanism_inside.h>
 
@@ -104,6 +105,7 @@ class Mechanism::SweepRows : public Evaluation<S> {
 
 template <class S>
 std::unique_ptr<Evaluation<S>> Mechanism::evaluation() const {
+  if (scene_.lagrangian) return std::make_unique<LagrangianRows<S>>(lagrangian());
   return visit([&]<class Space>(const Cast<Space>& cast) -> std::unique_ptr<Evaluation<S>> {
     return std::make_unique<SweepRows<Space, S>>(*this, cast);
   });

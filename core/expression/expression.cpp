@@ -1,5 +1,7 @@
 #include <momenta/core/expression/evaluate.h>
 #include <momenta/core/expression/parser.h>
+#include <momenta/core/expression/simplify.h>
+#include <momenta/core/expression/tape.h>
 #include <momenta/core/text/near_name.h>
 
 #include <algorithm>
@@ -63,6 +65,15 @@ Expression::Expression(std::string_view text, FormulaNames& names) {
   tape_ = parsed.tape.needed_for(outputs_);
   truth_ = parsed.truth;
   splines_ = std::move(parsed.splines);
+}
+
+Expression::Expression(const formula::Tape& tape, std::span<const int> outputs)
+    : outputs_(outputs.begin(), outputs.end()) {
+  const std::vector<Instruction> needed = tape.needed_for(outputs_);
+  formula::Tape simple;
+  const std::vector<int> place = formula::add_simplified(simple, needed, {});
+  for (int& i : outputs_) i = place[static_cast<std::size_t>(i)];
+  tape_ = simple.needed_for(outputs_);
 }
 
 Expression Expression::with_derivatives(std::span<const int> variables) const {

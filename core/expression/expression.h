@@ -34,6 +34,9 @@
 namespace momenta {
 
 class CubicSpline;  // core/expression/spline.h
+namespace formula {
+class Tape;  // core/expression/tape.h
+}
 
 /// A formula that is none: one sentence; the place counts characters from 0.
 class ExpressionError : public std::invalid_argument {
@@ -126,6 +129,8 @@ class Expression {
   Expression(std::string_view text, std::span<const std::string> names);
   /// Names of any meaning. @throws ExpressionError
   Expression(std::string_view text, FormulaNames& names);
+  /// The values at these places of a tape, simplified (core/expression/simplify.h). O(tape)
+  Expression(const formula::Tape& tape, std::span<const int> outputs);
 
   /// Whether the formula is a comparison or made of such: its value is then 1 or 0.
   bool is_truth() const { return truth_; }

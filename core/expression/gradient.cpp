@@ -20,7 +20,8 @@ class Backward {
   }
   int by_variable(int v) {
     for (int y = 0; y < static_cast<int>(bar_.size()); ++y)
-      if (tape_[y].operation == O::variable && tape_[y].a == v && of(y) >= 0) return of(y);
+      if (tape_[y].operation == O::variable && tape_[y].a == v)
+        return of(y) >= 0 ? of(y) : tape_.number(0);
     return tape_.number(0);
   }
 

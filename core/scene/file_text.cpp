@@ -32,6 +32,12 @@ std::string text_of(const std::filesystem::path& file, const std::string& kind) 
   return text;
 }
 
+Location place_in(std::string_view text, Location at, std::size_t character) {
+  if (text.find('\n') == std::string_view::npos && at.line > 0)
+    at.column += 1 + static_cast<int>(character);
+  return at;
+}
+
 void fail(const std::string& file, Location at, const std::string& sentence) {
   Scene scene;
   scene.file = file;

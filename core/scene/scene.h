@@ -4,6 +4,7 @@
 
 #include <momenta/core/scene/curve_spec.h>
 #include <momenta/core/scene/joint_kind.h>
+#include <momenta/core/scene/lagrangian.h>
 #include <momenta/core/scene/location.h>
 #include <momenta/core/scene/visual.h>
 
@@ -373,6 +374,7 @@ struct Scene {
   Eigen::Vector3d gravity = Eigen::Vector3d::Zero();  ///< [m/s²]
   std::vector<BodySpec> bodies;                       ///< without the ground
   std::vector<JointSpec> joints;                      ///< one for each body
+  std::optional<LagrangianSpec> lagrangian;           ///< instead of bodies, joints and loops
   std::vector<LoopSpec> loops;                        ///< empty: an open chain
   std::vector<DriveSpec> drives;                      ///< prescribed motion
   std::vector<ForceSpec> forces;          ///< forces besides gravity and those of joints

@@ -258,6 +258,9 @@ void check_rest(const Scene& scene, const Census& census) {
             ("names joint " + in_quotes(joint) + " twice").c_str());
   }
   require(scene.gravity.allFinite(), scene, {}, "gravity", "must be finite [m/s²]");
+}
+
+void check_run(const Scene& scene) {
   const RunDefaults& run = scene.run;
   require(std::isfinite(run.end_time) && run.end_time > 0, scene, {}, "[run]",
           "end must be finite and > 0 [s]");
@@ -272,6 +275,10 @@ void check_rest(const Scene& scene, const Census& census) {
 
 void validate(const Scene& scene) {
   const Census census(scene);
+  if (scene.lagrangian) {
+    reading::check_lagrangian(scene);
+    return check_run(scene);
+  }
   check_bodies(scene);
   check_joints(scene, census);
   check_loops(scene, census);
@@ -280,6 +287,7 @@ void validate(const Scene& scene) {
   reading::check_functions(scene);
   check_visuals(scene, census);
   check_rest(scene, census);
+  check_run(scene);
   reading::check_tree(scene);
   reading::check_formulas(scene);
 }

@@ -78,4 +78,8 @@ void check_formulas(const Scene& scene);
 /// known and unique
 void check_tree(const Scene& scene);
 
+/// Of a scene with a Lagrangian: no bodies beside it, names that formulas can take, L or T, forces
+/// on coordinates, constraints with names and equations.
+void check_lagrangian(const Scene& scene);
+
 }  // namespace momenta::reading

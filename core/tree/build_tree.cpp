@@ -243,13 +243,31 @@ class TreeBuilder {
 
 }  // namespace
 
+namespace {
+
+Tree without_bodies(const Scene& scene) {
+  const auto& coordinates = scene.lagrangian->coordinates;
+  Tree tree;
+  tree.name = scene.name;
+  tree.nq = tree.nv = static_cast<int>(coordinates.size());
+  tree.q0.resize(tree.nq);
+  tree.u0.resize(tree.nv);
+  for (int i = 0; i < tree.nq; ++i) {
+    tree.q0[i] = coordinates[static_cast<std::size_t>(i)].position;
+    tree.u0[i] = coordinates[static_cast<std::size_t>(i)].velocity;
+  }
+  return tree;
+}
+
+}  // namespace
+
 Tree build_tree(const Scene& scene) {
   validate(scene);
   return build_valid_tree(scene);
 }
 
 Tree build_valid_tree(const Scene& scene) {
-  return TreeBuilder(scene).build();
+  return scene.lagrangian ? without_bodies(scene) : TreeBuilder(scene).build();
 }
 
 int Tree::body(const std::string& scene_name) const {

@@ -96,7 +96,8 @@ struct Tree {
   Eigen::Vector3d direction(int body, const Eigen::Vector3d& scene_direction) const;
 };
 
-/// Builds the tree. @throws SceneError where validate() would. Cost O(bodies).
+/// Builds the tree. That of a Lagrangian has no bodies, only the layout and the start of its
+/// coordinates. @throws SceneError where validate() would. Cost O(bodies).
 Tree build_tree(const Scene& scene);
 /// The same of a scene that is known to be valid.
 Tree build_valid_tree(const Scene& scene);

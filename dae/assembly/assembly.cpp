@@ -1,8 +1,10 @@
 #include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/assembly/closing.h>
+#include <momenta/dae/joint_places.h>
 #include <momenta/dae/kkt/least_norm.h>
 #include <momenta/dae/kkt/loop_rank.h>
 #include <momenta/dae/kkt/loop_solver.h>
+#include <momenta/dae/loop_word.h>
 #include <momenta/dae/unheld_joints.h>
 
 #include <algorithm>
@@ -23,13 +25,12 @@ class Assembler {
         u_(std::move(u)),
         loops_(mechanism),
         steps_(loops_.pattern(), mechanism.m(), mechanism.nv()) {
+    if (mechanism.scene().held.empty()) return;
+    const std::vector<JointPlace> places = joint_places(mechanism);
     for (const auto& name : mechanism.scene().held) {
-      const Tree& tree = mechanism.tree();
-      const int last = tree.carried_by(name);
-      for (int k = last < 0 ? 0 : tree.first_part(last); k <= last; ++k) {
-        const auto& b = tree.bodies[static_cast<std::size_t>(k)];
-        for (int i = 0; i < b.nv; ++i) loops_.columns[static_cast<std::size_t>(b.u + i)] = false;
-      }
+      for (const JointPlace& joint : places)
+        if (joint.name == name)
+          for (const int i : joint.u) loops_.columns[static_cast<std::size_t>(i)] = false;
     }
   }
 
@@ -74,25 +75,32 @@ class Assembler {
     std::string open;
     Location at;
     int row = 0;
-    for (const auto& loop : scene.loops) {
+    const std::string word = std::string(loop_word(mechanism_)) + " '";
+    const auto judge = [&](const std::string& name, Location place) {
       double largest = 0;
-      for (; row < mechanism_.m() &&
-             mechanism_.rows()[static_cast<std::size_t>(row)].loop == loop.name;
+      for (; row < mechanism_.m() && mechanism_.rows()[static_cast<std::size_t>(row)].loop == name;
            ++row)
         largest = std::max(largest, std::abs(phi[row]));
-      if (largest <= tolerance * row_[row - 1]) continue;
+      if (largest <= tolerance * row_[row - 1]) return;
       char text[32];
       std::snprintf(text, sizeof text, "%.3g", largest);
-      if (open.empty()) at = loop.at;
-      open += (open.empty() ? "loop '" : ", loop '") + loop.name + "' stays open by " + text;
-    }
+      if (open.empty()) at = place;
+      open += (open.empty() ? "" : ", ") + word + name + "' stays open by " + text;
+    };
+    for (const auto& loop : scene.loops) judge(loop.name, loop.at);
+    if (scene.lagrangian)
+      for (const auto& c : scene.lagrangian->constraints) judge(c.name, c.at);
     throw SceneError(
-        scene.where(at) + "the mechanism cannot be assembled from these positions: " + open +
-        (scene.held.empty() ? "" : " while joints are held") +
+        scene.where(at) + (scene.lagrangian ? "the coordinates" : "the mechanism") +
+        " cannot be assembled from these positions: " + open +
+        (scene.held.empty() ? ""
+         : scene.lagrangian ? " while coordinates are held"
+                            : " while joints are held") +
         (stretched ? ", stretched: no motion closes it further" : "") + " (" +
         std::to_string(mechanism_.m()) + " equations, " +
         std::to_string(std::count(loops_.columns.begin(), loops_.columns.end(), true)) +
-        " free rates); expected loops that close");
+        " free rates); expected " +
+        (scene.lagrangian ? "constraints that can be met" : "loops that close"));
   }
 
   /// At the pose that was evaluated last.
@@ -134,8 +142,10 @@ class Assembler {
       throw SceneError(scene.where(scene.drives.front().at) + "drives cannot start: loop '" + name +
                        "' would open at a rate of " + text +
                        ", whatever the other joints do; expected drives that the loops allow");
-    throw SceneError(scene.where({}) + "the velocities of the held joints tear loop '" + name +
-                     "' apart at a rate of " + text + "; expected rates that the loops allow");
+    throw SceneError(scene.where({}) + "the velocities of the held " +
+                     (scene.lagrangian ? "coordinates" : "joints") + " tear " +
+                     loop_word(mechanism_) + " '" + name + "' apart at a rate of " + text +
+                     "; expected rates that the " + loop_word(mechanism_) + "s allow");
   }
 
   void judge_rank(Assembly& a) {
@@ -189,8 +199,10 @@ class Assembler {
 
   [[noreturn]] void no_inertia(const Start& s, int rate) {
     refuse_lost_loop();
-    throw SceneError(mechanism_.scene().where({}) + "the mechanism cannot move at its start: " +
-                     mechanism_.no_inertia(rate, s.t, s.q.data()));
+    throw SceneError(
+        mechanism_.scene().where({}) +
+        (mechanism_.scene().lagrangian ? "" : "the mechanism cannot move at its start: ") +
+        mechanism_.no_inertia(rate, s.t, s.q.data()));
   }
 
   [[noreturn]] void nothing_moves() const {
@@ -231,7 +243,7 @@ std::string residue_in_words(const Mechanism& mechanism, const Eigen::VectorXd& 
   if (others.size() > most_named) with += ", …";
   char size[32];
   std::snprintf(size, sizeof size, "%.2g", std::abs(phi[worst]));
-  return "loop '" + loop_of(worst) + "' stays open by " + size +
+  return loop_word(mechanism) + (" '" + loop_of(worst)) + "' stays open by " + size +
          (mechanism.angle_rows()[static_cast<std::size_t>(worst)] ? " rad" : " m") +
          ": its equations" + with +
          " are redundant and differ by that in the scene's numbers; closed in the least-squares "

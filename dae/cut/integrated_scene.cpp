@@ -27,8 +27,8 @@ bool may_fold(const Scene& scene) {
 IntegratedScene::IntegratedScene(const Mechanism& written, const Start& start, const Recut* known)
     : written_(written), written_start_(start) {
   const MechanismOptions& options = written.options();
-  if (options.cut == CutChoice::scene || options.kkt == KktChoice::dense ||
-      options.kkt == KktChoice::sparse)
+  if (written.scene().lagrangian || options.cut == CutChoice::scene ||
+      options.kkt == KktChoice::dense || options.kkt == KktChoice::sparse)
     return;
   try {
     if (may_fold(written.scene())) {

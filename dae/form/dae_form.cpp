@@ -1,8 +1,8 @@
+#include <momenta/dae/factor/tree_factor.h>
 #include <momenta/dae/form/dae_form.h>
 #include <momenta/dae/kkt/kkt.h>
 #include <momenta/dae/kkt/loop_rank.h>
 #include <momenta/dae/kkt/row_scales.h>
-#include <momenta/dae/kkt/tree_factor.h>
 #include <momenta/dae/loop/loop_weights.h>
 
 #include <algorithm>

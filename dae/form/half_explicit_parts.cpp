@@ -1,5 +1,6 @@
 #include <momenta/dae/form/half_explicit_parts.h>
 #include <momenta/dae/kkt/kkt.h>
+#include <momenta/dae/loop_word.h>
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -57,7 +58,7 @@ std::string HalfExplicitParts::dependent(double t, const double* y) {
   if (!kkt->factor(*w.e, t, y, weak) || kkt->faded() == 0) return "";
   const RowName& first = system_.rows()[static_cast<std::size_t>(kkt->faded_rows().front())];
   const int others = kkt->faded() - 1;
-  return "loop '" + first.loop + "' (" + first.what + ")" +
+  return loop_word(system_) + (" '" + first.loop) + "' (" + first.what + ")" +
          (others > 0 ? " and " + std::to_string(others) + " more of the " +
                            std::to_string(system_.m()) + " equations depend"
                      : std::string(" depends")) +

@@ -32,13 +32,15 @@ class MaximalCoordinates final : public AccelerationForm {
       : AccelerationForm("maximal-coordinates", mechanism, options,
                          feedback_of(mechanism, options, start)),
         feedback_(feedback_of(mechanism, options, start)) {
-    solver_ = make_maximal_solver(mechanism, *e_);
+    if (!mechanism.scene().lagrangian) solver_ = make_maximal_solver(mechanism, *e_);
   }
 
   SingularityHandling wanted_handling() const override { return SingularityHandling::none; }
 
-  /// Trees too are solved by their joints' multipliers.
+  /// Trees too are solved by their joints' multipliers. The coordinates of a Lagrangian stand for
+  /// those of bodies: it has no joints, and this is `baumgarte`.
   bool rhs(double t, const double* y, double* ydot) override {
+    if (mechanism_.scene().lagrangian) return AccelerationForm::rhs(t, y, ydot);
     const double *q = y, *u = y + mechanism_.nq();
     if (!solver_->acceleration(t, q, u, centre_.data(), feedback_.alpha, feedback_.beta,
                                ydot + mechanism_.nq(), multipliers_.data()))

@@ -4,9 +4,9 @@
 // M^(−1/2) vanishes, as small as any algorithm can make it: W squares the condition of σ, not of u.
 
 #include <momenta/dae/factor/axis_scale.h>
+#include <momenta/dae/factor/tree_factor.h>
 #include <momenta/dae/kkt/kkt.h>
 #include <momenta/dae/kkt/loop_matrix.h>
-#include <momenta/dae/kkt/tree_factor.h>
 
 #include <algorithm>
 #include <cmath>

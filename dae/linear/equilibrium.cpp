@@ -1,3 +1,4 @@
+#include <momenta/core/lagrangian/lagrangian_model.h>
 #include <momenta/core/scene/formula.h>
 #include <momenta/dae/kkt/row_scales.h>
 #include <momenta/dae/linear/downward_ways.h>
@@ -32,6 +33,14 @@ double whole_mass(const Mechanism& mechanism) {
   double mass = 0;
   for (const BodySpec& body : mechanism.scene().bodies) mass += body.mass;
   return mass;
+}
+
+/// Of a Lagrangian: the force on a coordinate where it stands, and what a rate of 1/s weighs.
+VectorXd formula_scales(const Mechanism& mechanism, Evaluation<double>& e) {
+  VectorXd scale(mechanism.nv()), force(mechanism.nv());
+  e.mass_diagonal(scale.data());
+  e.momentum_rates(nullptr, nullptr, nullptr, 0, force.data());
+  return (scale + force.cwiseAbs()).cwiseMax(1e-30);
 }
 
 class Searcher {
@@ -230,6 +239,11 @@ class Searcher {
   [[noreturn]] void refuse(const Pose& p, const std::string& what) const {
     Eigen::Index worst;
     p.force.cwiseQuotient(scale_).cwiseAbs().maxCoeff(&worst);
+    if (mechanism_.scene().lagrangian)
+      throw SceneError(mechanism_.scene().where({}) + what + ": coordinate '" +
+                       mechanism_.coordinate_columns()[static_cast<std::size_t>(worst)].name +
+                       "' is left with a force of " + compact(std::abs(p.force[worst]), 3) +
+                       "; expected a pose where all forces balance");
     std::string joint;
     bool shift = false;
     for (std::size_t k = 0; k < mechanism_.tree().bodies.size(); ++k) {
@@ -263,6 +277,7 @@ class Searcher {
 }  // namespace
 
 bool has_potential(const Mechanism& mechanism) {
+  if (mechanism.scene().lagrangian) return mechanism.lagrangian().balanced;
   return std::none_of(
       mechanism.scene().forces.begin(), mechanism.scene().forces.end(), [&](const ForceSpec& f) {
         return (has_formula(f) && f.kind != "potential") ||
@@ -272,6 +287,7 @@ bool has_potential(const Mechanism& mechanism) {
 }
 
 VectorXd force_scales(const Mechanism& mechanism, Evaluation<double>& e) {
+  if (mechanism.scene().lagrangian) return formula_scales(mechanism, e);
   const Scene& scene = mechanism.scene();
   const double mass = whole_mass(mechanism), length = length_of(scene);
   double force = scene.gravity.norm() * mass, torque = 0;

@@ -249,11 +249,18 @@ int number_of(const std::vector<RowName>& rows, int row) {
 std::string row_in_words(const Mechanism& mechanism, int row) {
   const auto& rows = mechanism.rows();
   const RowName& own = rows[static_cast<std::size_t>(row)];
+  if (mechanism.scene().lagrangian) return "constraint '" + own.loop + "'";
   return "loop '" + own.loop + "' row " + std::to_string(number_of(rows, row)) + ", " + own.what;
 }
 
 std::string in_words(const Mechanism& mechanism, const Dependency& dependency) {
   const auto& rows = mechanism.rows();
+  if (mechanism.scene().lagrangian && !dependency.on.empty()) {
+    std::string text = row_in_words(mechanism, dependency.row) + " follows from ";
+    for (std::size_t i = 0; i < dependency.on.size(); ++i)
+      text += (i > 0 ? ", '" : "'") + rows[static_cast<std::size_t>(dependency.on[i])].loop + "'";
+    return text;
+  }
   const auto number = [&](int row) { return number_of(rows, row); };
   std::string text = row_in_words(mechanism, dependency.row);
   if (dependency.on.empty()) return text + ", asks for nothing that the others do not grant";

@@ -91,7 +91,7 @@ Reactions in(const Mechanism& mechanism, const Model<Space>& model, double t,
   }
   Eigen::VectorXd unused(mechanism.nv());
   newton_euler_inward(w, q.data(), u.data(), unused.data());
-  for (const JointPlace& joint : joint_places(tree))
+  for (const JointPlace& joint : joint_places(mechanism))
     all.joints.push_back(transmitted(joint.name, w, joint.body, Eigen::Vector3d::Zero(),
                                      w.body[static_cast<std::size_t>(joint.body)].P));
   return all;
@@ -102,6 +102,12 @@ Reactions in(const Mechanism& mechanism, const Model<Space>& model, double t,
 Reactions reactions(const Mechanism& mechanism, double t, const Eigen::VectorXd& q,
                     const Eigen::VectorXd& u, const Eigen::VectorXd& udot,
                     const Eigen::VectorXd& lambda) {
+  if (const auto& lagrangian = mechanism.scene().lagrangian) {  // no body feels them
+    Reactions all;
+    const Eigen::Vector3d none = Eigen::Vector3d::Zero();
+    for (const auto& c : lagrangian->constraints) all.loops.push_back({c.name, none, none, none});
+    return all;
+  }
   const Tree& tree = mechanism.tree();
   const Plan& plan = mechanism.plan();
   if (plan.planar)

@@ -3,6 +3,7 @@
 #include <momenta/core/scene/rod_ends.h>
 #include <momenta/dae/cut/integrated_scene.h>
 #include <momenta/dae/cut/recut.h>
+#include <momenta/dae/joint_places.h>
 #include <momenta/dae/measure/rank.h>
 #include <momenta/dae/study/passed_limits.h>
 
@@ -72,7 +73,7 @@ std::string in_words(const SimplerLoop& change) {
 
 void print_rank(const Mechanism& mechanism, const RankReport& r) {
   const int m = mechanism.m(), redundant = m - r.rank_nearby;
-  std::printf("\nLoop equations\n");
+  std::printf(mechanism.scene().lagrangian ? "\nConstraints\n" : "\nLoop equations\n");
   if (r.rank == m) {
     std::printf("  independent: smallest singular value %.3g, of Φ_q without units\n", r.kept);
     return;
@@ -92,7 +93,7 @@ void print_rank(const Mechanism& mechanism, const RankReport& r) {
                 in_words(mechanism, d).c_str());
   if (redundant > 0) {
     for (const SimplerLoop& change : r.simpler) std::printf("  %s\n", in_words(change).c_str());
-    if (r.simpler.empty())
+    if (r.simpler.empty() && !mechanism.scene().lagrangian)
       std::printf(
           "  no simpler kind of loop ties as much: how the loops share the load is not "
           "determined\n");
@@ -121,6 +122,33 @@ nlohmann::ordered_json rank_json(const Mechanism& mechanism, const RankReport& r
   return j;
 }
 
+/// A formula over several lines in one, its spaces single.
+std::string in_one_line(const std::string& text) {
+  std::string line;
+  for (const char c : text) {
+    const bool space = c == ' ' || c == '\n' || c == '\t' || c == '\r';
+    if (!space) line += c;
+    if (space && !line.empty() && line.back() != ' ') line += ' ';
+  }
+  return line;
+}
+
+/// What the author wrote.
+void print_formulas(const LagrangianSpec& spec) {
+  std::string names;
+  for (const auto& c : spec.coordinates) names += (names.empty() ? "" : ", ") + c.name;
+  std::printf("  coordinates %s\n", names.c_str());
+  const auto print = [](const std::string& what, const std::string& text) {
+    if (!text.empty()) std::printf("  %s = %s\n", what.c_str(), in_one_line(text).c_str());
+  };
+  print("L", spec.lagrangian.text);
+  print("T", spec.kinetic.text);
+  print("V", spec.potential.text);
+  for (const auto& f : spec.forces) print("Q of " + f.coordinate, f.value.text);
+  for (const auto& c : spec.constraints)
+    std::printf("  constraint %s: 0 = %s\n", c.name.c_str(), in_one_line(c.equation.text).c_str());
+}
+
 nlohmann::ordered_json cut_json(const Recut& r) {
   const auto cost = [](const CutCost& c) {
     return nlohmann::ordered_json{{"open_equations", c.open},
@@ -143,6 +171,7 @@ int check(const Options& o) {
   const auto mechanism = load(o);
   const Assembly a = assemble(*mechanism);
   const Tree& tree = mechanism->tree();
+  const bool bodies = !mechanism->scene().lagrangian;
   const bool ranked = mechanism->m() > 0 && mechanism->m() <= most_equations;
   const RankReport rank = ranked ? rank_report(*mechanism, a.start) : RankReport{};
   const double end = mechanism->scene().run.end_time;
@@ -159,7 +188,7 @@ int check(const Options& o) {
     j["mobility"] = a.mobility;
     j["assembly"] = {{"moved", a.moved}, {"branch", a.branch}, {"residue", a.residue}};
     for (const auto& [what, how] : mechanism->plan_lines()) j["plan"][what] = how;
-    if (mechanism->m() == 0) {
+    if (bodies && mechanism->m() == 0) {
       const auto counted = [&](Recursion recursion) {
         const Operations n =
             count_operations(tree, mechanism->scene(), mechanism->plan(), recursion).executed;
@@ -178,14 +207,17 @@ int check(const Options& o) {
     }
     if (ranked) j["loops"] = rank_json(*mechanism, rank);
     if (has_reach(*mechanism)) j["drives"] = reach_json(reach);
-    const Recut cuts = recut(*mechanism, a.start);
-    if (mechanism->m() > 0) j["cuts"] = cut_json(cuts);
-    j["integrated"] = IntegratedScene(*mechanism, a.start, &cuts).in_words();
+    if (bodies) {
+      const Recut cuts = recut(*mechanism, a.start);
+      if (mechanism->m() > 0) j["cuts"] = cut_json(cuts);
+      j["integrated"] = IntegratedScene(*mechanism, a.start, &cuts).in_words();
+    }
     std::printf("%s\n", j.dump(2).c_str());
     return done;
   }
   if (o.quiet) return done;
-  std::printf("%s\n\nTree\n", tree.name.c_str());
+  std::printf("%s\n\n%s\n", tree.name.c_str(), bodies ? "Tree" : "Lagrangian");
+  if (!bodies) print_formulas(*mechanism->scene().lagrangian);
   std::map<std::string, JointKind> kinds;
   for (const auto& joint : mechanism->scene().joints) kinds[joint.name] = joint.kind;
   const int count = static_cast<int>(tree.bodies.size());
@@ -226,13 +258,18 @@ int check(const Options& o) {
   for (const ParameterSpec& p : mechanism->scene().parameters)
     std::printf("  parameter %s = %.10g%s\n", p.name.c_str(), p.value,
                 p.used ? "" : ", which no formula takes");
-  std::printf(
-      "\n  %zu bodies, %d coordinates, %d rates, %d loop equations of rank %d: mobility %d\n",
-      mechanism->scene().bodies.size(), mechanism->nq(), mechanism->nv(), mechanism->m(), a.rank,
-      a.mobility);
+  if (bodies)
+    std::printf(
+        "\n  %zu bodies, %d coordinates, %d rates, %d loop equations of rank %d: mobility %d\n",
+        mechanism->scene().bodies.size(), mechanism->nq(), mechanism->nv(), mechanism->m(), a.rank,
+        a.mobility);
+  else
+    std::printf("\n  %d coordinates, %d constraints of rank %d: mobility %d\n", mechanism->nq(),
+                mechanism->m(), a.rank, a.mobility);
   if (mechanism->m() > 0)
-    std::printf("  assembled with joints moved by at most %.3g from the guess%s%s\n", a.moved,
-                a.branch.empty() ? "" : ": ", a.branch.c_str());
+    std::printf("  assembled with %s moved by at most %.3g from the guess%s%s\n",
+                bodies ? "joints" : "coordinates", a.moved, a.branch.empty() ? "" : ": ",
+                a.branch.c_str());
   if (!a.residue.empty()) std::printf("  %s\n", a.residue.c_str());
   std::vector<PassedLimit> passed;
   PassedLimits(*mechanism).look(0, a.start.q.data(), passed);
@@ -250,13 +287,15 @@ int check(const Options& o) {
   std::printf("\nPlan\n");
   for (const auto& [what, how] : mechanism->plan_lines())
     std::printf("  %-17s %s\n", what.c_str(), how.c_str());
-  const Recut cuts = recut(*mechanism, a.start);
-  if (mechanism->m() > 0)
-    std::printf("  %-17s %s%s\n", "cuts", cuts_in_words(cuts).c_str(),
-                cuts.gains() ? " (momenta convert SCENE OUT --recut)" : "");
-  if (const IntegratedScene integrated(*mechanism, a.start, &cuts); integrated.anew())
-    std::printf("  %-17s %s\n", "runs integrate", integrated.in_words().c_str());
-  if (mechanism->m() == 0) {
+  if (bodies) {
+    const Recut cuts = recut(*mechanism, a.start);
+    if (mechanism->m() > 0)
+      std::printf("  %-17s %s%s\n", "cuts", cuts_in_words(cuts).c_str(),
+                  cuts.gains() ? " (momenta convert SCENE OUT --recut)" : "");
+    if (const IntegratedScene integrated(*mechanism, a.start, &cuts); integrated.anew())
+      std::printf("  %-17s %s\n", "runs integrate", integrated.in_words().c_str());
+  }
+  if (bodies && mechanism->m() == 0) {
     std::printf("\nOperations of one evaluation\n");
     const auto print = [&](const char* name, Recursion recursion) {
       const OperationCount n =
@@ -290,11 +329,12 @@ int assemble_verb(const Options& o) {
   j["residue"] = a.residue;
   j["iterations"] = a.iterations;
   j["mobility"] = a.mobility;
-  for (const auto& b : mechanism->tree().bodies) {
-    for (int i = 0; i < b.nq; ++i) j["q"][b.joint].push_back(a.start.q[b.q + i]);
-    for (int i = 0; i < b.nv; ++i) {
-      j["u"][b.joint].push_back(a.start.u[b.u + i]);
-      j["udot"][b.joint].push_back(a.start.udot[b.u + i]);
+  const std::vector<JointPlace> places = joint_places(*mechanism);
+  for (const JointPlace& joint : places) {
+    for (const int i : joint.q) j["q"][joint.name].push_back(a.start.q[i]);
+    for (const int i : joint.u) {
+      j["u"][joint.name].push_back(a.start.u[i]);
+      j["udot"][joint.name].push_back(a.start.udot[i]);
     }
   }
   for (int i = 0; i < mechanism->m(); ++i)
@@ -305,24 +345,19 @@ int assemble_verb(const Options& o) {
   }
   if (o.quiet) return done;
   std::printf(
-      "%s: assembled in %d iterations, |Φ| %.2g, |Φ̇| %.2g, joints moved by at most %.3g from the "
+      "%s: assembled in %d iterations, |Φ| %.2g, |Φ̇| %.2g, %s moved by at most %.3g from the "
       "guess\n",
       mechanism->scene().name.c_str(), a.iterations, a.position_residual, a.velocity_residual,
-      a.moved);
+      mechanism->scene().lagrangian ? "coordinates" : "joints", a.moved);
   for (const std::string* more : {&a.branch, &a.residue})
     if (!more->empty()) std::printf("  %s\n", more->c_str());
-  const Tree& tree = mechanism->tree();
-  for (int last = 0; last < static_cast<int>(tree.bodies.size()); ++last) {
-    if (!tree.carries_scene_body(last)) continue;
-    const auto& b = tree.bodies[static_cast<std::size_t>(last)];
-    const auto& first = tree.bodies[static_cast<std::size_t>(tree.first_part(last))];
-    std::printf("  %-16s", b.joint.c_str());
-    const int u_end = b.u + b.nv;
-    for (int i = first.q; i < b.q + b.nq; ++i) std::printf(" %.15g", a.start.q[i]);
-    if (first.u < u_end) std::printf("   rate");
-    for (int i = first.u; i < u_end; ++i) std::printf(" %.15g", a.start.u[i]);
-    if (first.u < u_end) std::printf("   acceleration");
-    for (int i = first.u; i < u_end; ++i) std::printf(" %.15g", a.start.udot[i]);
+  for (const JointPlace& joint : places) {
+    std::printf("  %-16s", joint.name.c_str());
+    for (const int i : joint.q) std::printf(" %.15g", a.start.q[i]);
+    if (!joint.u.empty()) std::printf("   rate");
+    for (const int i : joint.u) std::printf(" %.15g", a.start.u[i]);
+    if (!joint.u.empty()) std::printf("   acceleration");
+    for (const int i : joint.u) std::printf(" %.15g", a.start.udot[i]);
     std::printf("\n");
   }
   return done;

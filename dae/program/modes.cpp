@@ -18,7 +18,7 @@ constexpr std::size_t most_films = 12;
 
 /// The modes that a page shows swinging: as many as it holds.
 void film(StudyResult& study, const Mechanism& mechanism, const ModesResult& result) {
-  if (mechanism.scene().bodies.size() > most_bodies_drawn) return;
+  if (mechanism.scene().lagrangian || mechanism.scene().bodies.size() > most_bodies_drawn) return;
   const auto& modes = result.spectrum.modes;
   const std::size_t count = std::min(most_films, modes.size());
   if (count == 0 || film_intervals(picture_of(mechanism), count) == 0) return;

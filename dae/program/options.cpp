@@ -267,7 +267,9 @@ void print_integrated(const StudyResult& study) {
 }
 
 int film_intervals_of(const Mechanism& mechanism, const Options& o, std::size_t runs) {
-  if (o.out.empty() || mechanism.scene().bodies.size() > most_bodies_drawn) return 0;
+  if (o.out.empty() || mechanism.scene().lagrangian ||
+      mechanism.scene().bodies.size() > most_bodies_drawn)
+    return 0;
   return film_intervals(picture_of(mechanism), runs);
 }
 

@@ -55,6 +55,10 @@ int stress(const Options& o, const StressOptions& options) {
                                   "': no built-in ladder has that in its name");
   } else {
     Scene scene = read(o);
+    if (scene.lagrangian)
+      throw SceneError(scene.where(scene.lagrangian->at) +
+                       "lagrangian: its masses and lengths are parameters, which stress does not "
+                       "know; expected momenta sweep with --vary NAME=...");
     scene.run.end_time = o.end.value_or(scene.run.end_time);
     title = scene.name;
     request.ladders = ladders_of(scene, names_in(options.along));

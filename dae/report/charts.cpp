@@ -22,7 +22,7 @@ std::vector<double> sizes_of(std::vector<double> y) {
   return y;
 }
 
-Chart over_time(const char* key, const char* title, const std::string& y_title,
+Chart over_time(const std::string& key, const std::string& title, const std::string& y_title,
                 const std::string& unit) {
   Chart chart;
   chart.key = key;
@@ -119,9 +119,10 @@ std::vector<Chart> charts_of_run(const RunResult& run) {
       continue;
     by_unit[label.substr(bracket + 2, label.size() - bracket - 3)].push_back(c);
   }
-  for (const Quantity& q : quantities) {
-    Chart chart = over_time(q.key, q.title, std::string(q.axis) + " [" + q.unit + "]", q.unit);
-    for (const std::size_t c : by_unit[q.unit]) {
+  const auto add = [&](const std::string& key, const std::string& title, const std::string& axis,
+                       const std::string& unit) {
+    Chart chart = over_time(key, title, axis + " [" + unit + "]", unit);
+    for (const std::size_t c : by_unit[unit]) {
       const std::string& label = trajectory.columns[c];
       Curve curve{label.substr(0, label.rfind(" [")) + remark(run, label),
                   {},
@@ -134,8 +135,18 @@ std::vector<Chart> charts_of_run(const RunResult& run) {
       }
       if (any_finite(curve.y)) chart.curves.push_back(std::move(curve));
     }
+    by_unit.erase(unit);
     if (!chart.curves.empty()) charts.push_back(std::move(chart));
-  }
+  };
+  const bool quaternions = std::any_of(
+      by_unit["1"].begin(), by_unit["1"].end(),
+      [&](std::size_t c) { return trajectory.columns[c].find(".qw [") != std::string::npos; });
+  for (const Quantity& q : quantities)
+    if (quaternions || q.unit != std::string_view("1")) add(q.key, q.title, q.axis, q.unit);
+  std::vector<std::string> others;  // of a Lagrangian, in units of its own
+  for (const auto& [unit, columns] : by_unit) others.push_back(unit);
+  for (const std::string& unit : others)
+    add("coordinates_" + std::to_string(charts.size()), "In " + unit, "value", unit);
   return charts;
 }
 

@@ -205,6 +205,7 @@ Json picture_json(const Picture& picture) {
             {"markers", markers}};
   if (!picture.meshes.empty()) json["meshes"] = meshes_of(picture);
   if (!picture.strokes.empty()) json["strokes"] = strokes_of(picture);
+  if (picture.without_bodies) json["without_bodies"] = true;
   return json;
 }
 

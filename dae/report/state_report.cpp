@@ -16,7 +16,7 @@ class StateDocument {
         given_(given),
         s_(s),
         loops_(mechanism.m() > 0),
-        places_(joint_places(mechanism.tree())) {}
+        places_(joint_places(mechanism)) {}
 
   std::string write() {
     w_.text("scene", mechanism_.scene().name);
@@ -37,7 +37,7 @@ class StateDocument {
     by_joint("free", s_.free);
     if (loops_) by_joint("constrained", s_.constrained);
     w_.close();
-    if (mechanism_.plan().drives) driven();
+    if (mechanism_.plan().drives && !mechanism_.scene().lagrangian) driven();
     if (loops_) loops();
     dense();
     if (!given_.residue.empty()) w_.text("residue", given_.residue);
@@ -47,7 +47,9 @@ class StateDocument {
     w_.number("V", s_.potential);
     w_.number("H", s_.hamiltonian);
     w_.close();
+    const bool bodies = !mechanism_.scene().lagrangian;
     for (const char* key : {"centroidal", "whole"}) {  // `whole`: deprecated
+      if (!bodies) break;
       w_.open(key);
       w_.number("mass", s_.centroidal.mass);
       w_.numbers("centre_of_mass", s_.centroidal.centre);
@@ -136,7 +138,7 @@ class StateDocument {
       w_.numbers("phidot", s_.phidot.segment(first, count));
       w_.numbers("sigma", s_.sigma.segment(first, count));
       w_.numbers("lambda", s_.lambda.segment(first, count));
-      if (ties_bodies(mechanism_.scene().loops[i])) wrench(r);
+      if (!mechanism_.scene().lagrangian && ties_bodies(mechanism_.scene().loops[i])) wrench(r);
       w_.close();
     }
     w_.close();

@@ -37,6 +37,13 @@ Film driven_film(const Mechanism& mechanism, const Assembly& assembly) {
 
 std::string still_words(const Mechanism& mechanism, const Assembly& a) {
   const Scene& scene = mechanism.scene();
+  if (scene.lagrangian)
+    return counted(static_cast<std::size_t>(mechanism.nv()), "coordinate", "coordinates") + ", " +
+           counted(static_cast<std::size_t>(mechanism.m()), "constraint", "constraints") +
+           ", without bodies." +
+           (mechanism.m() > 0 ? " Assembly moved the coordinates by up to " + compact(a.moved, 2) +
+                                    " against the guess."
+                              : "");
   const auto couplers = static_cast<std::size_t>(
       std::count_if(scene.loops.begin(), scene.loops.end(),
                     [](const LoopSpec& l) { return l.kind == LoopKind::coupler; }));
@@ -59,6 +66,10 @@ std::string still_words(const Mechanism& mechanism, const Assembly& a) {
 }
 
 void expect_drawable(const Mechanism& mechanism) {
+  if (mechanism.scene().lagrangian)
+    throw std::invalid_argument(
+        "view: a system of formulas has no bodies to draw, expected momenta run, whose page has "
+        "its coordinates over time");
   const std::size_t bodies = mechanism.scene().bodies.size();
   if (bodies > most_bodies_drawn)
     throw std::invalid_argument("view: found " + std::to_string(bodies) +
@@ -67,7 +78,9 @@ void expect_drawable(const Mechanism& mechanism) {
 
 std::vector<std::string> show(StudyResult& study, const Mechanism& mechanism,
                               const Assembly& assembly, std::size_t mesh_bytes) {
-  if (mechanism.scene().bodies.size() > most_bodies_drawn) return {};
+  study.picture.without_bodies = mechanism.scene().lagrangian.has_value();
+  if (study.picture.without_bodies || mechanism.scene().bodies.size() > most_bodies_drawn)
+    return {};
   study.picture = picture_of(mechanism);
   std::vector<std::string> left_out =
       take_meshes(study.picture, mechanism.scene().file, mesh_bytes);

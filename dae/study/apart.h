@@ -11,6 +11,7 @@
 // margin; beyond it a form no longer holds Φ = 0.
 
 #include <momenta/dae/kkt/loop_units.h>
+#include <momenta/dae/loop_word.h>
 #include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/study/run_result.h>
 
@@ -63,7 +64,8 @@ class Apart {
         limit < most ? "where this form holds it within" : "the most a drift may be is", limit);
     char time[32];
     std::snprintf(time, sizeof time, "%.6g", t);
-    return std::string("at t = ") + time + " s the loops came apart: loop '" + loop + text;
+    return std::string("at t = ") + time + " s the " + loop_word(mechanism_) +
+           "s came apart: " + loop_word(mechanism_) + " '" + loop + text;
   }
 
  private:

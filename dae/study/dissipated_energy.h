@@ -4,7 +4,9 @@
 // evaluated at the five Gauss points of each step, and the polynomial through these values gives
 // the work up to any time inside the step.
 
+#include <momenta/core/lagrangian/lagrangian_model.h>
 #include <momenta/core/scene/formula.h>
+#include <momenta/dae/mechanism.h>
 #include <momenta/dae/solver/memory.h>
 
 #include <algorithm>
@@ -14,7 +16,9 @@ namespace momenta {
 
 class DissipatedEnergy {
  public:
-  explicit DissipatedEnergy(const Scene& scene) : any_(loses_energy(scene)) {}
+  explicit DissipatedEnergy(const Mechanism& mechanism)
+      : any_(mechanism.scene().lagrangian ? mechanism.lagrangian().has_power
+                                          : loses_energy(mechanism.scene())) {}
 
   /// Whether there is anything to integrate.
   bool any() const { return any_; }

@@ -1,3 +1,4 @@
+#include <momenta/core/lagrangian/lagrangian_model.h>
 #include <momenta/dae/linear/linearisation.h>
 #include <momenta/dae/linear/pose_motion.h>
 #include <momenta/dae/measure/rank.h>
@@ -16,6 +17,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 std::vector<Column> shape_columns(const Mechanism& mechanism) {
+  if (mechanism.scene().lagrangian) return mechanism.coordinate_columns();
   std::vector<Column> columns = mechanism.rate_columns();
   for (Column& c : columns) {
     const std::size_t dot = c.name.rfind('.');
@@ -55,6 +57,10 @@ void expect_constant(const Mechanism& mechanism, const Equilibrium& at) {
                        differs(first.M, other.M) || differs(first.K, other.K) ||
                        (!first.C.isZero(0) && differs(first.C, other.C)) ||
                        (mechanism.m() > 0 && differs(first.loops, other.loops));
+    if (moves && mechanism.scene().lagrangian)
+      throw SceneError(mechanism.scene().where(mechanism.scene().lagrangian->at) +
+                       "lagrangian: its formulas change the equations of small motions with time, "
+                       "expected formulas without t");
     if (moves)
       throw SceneError(mechanism.scene().where({}) +
                        "the drives change the equations of small motions with time: expected "
@@ -111,6 +117,7 @@ ModesResult find_modes(const Mechanism& mechanism, const Start& start,
   if (mechanism.plan().drives && mechanism.nv() > 0) {
     for (const DriveSpec& drive : mechanism.scene().drives)
       result.drives_run |= drive.kind != "polynomial" || drive.coefficients.size() > 1;
+    if (mechanism.scene().lagrangian) result.drives_run = mechanism.lagrangian().in_time;
     if (result.drives_run) expect_constant(mechanism, at);
   }
   if (!result.spectrum.dependent_rows.empty() && mechanism.m() <= 200 && mechanism.nv() <= 200) {

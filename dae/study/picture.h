@@ -85,6 +85,7 @@ struct Picture {
     Eigen::Vector3d at = Eigen::Vector3d::Zero();
   };
 
+  bool without_bodies = false;  ///< formulas: nothing is drawn
   bool planar = false;
   /// Columns: right, up and towards the viewer, ground axes; of a planar mechanism its plane.
   Eigen::Matrix3d view = Eigen::Matrix3d::Identity();

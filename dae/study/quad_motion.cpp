@@ -1,3 +1,4 @@
+#include <momenta/dae/study/quad_lagrangian.h>
 #include <momenta/dae/study/quad_motion.h>
 #include <momenta/dae/sweeps/levels/loop_sweeps.h>
 #include <momenta/dae/sweeps/planar_loop_sweeps.h>
@@ -104,6 +105,7 @@ class QuadSweeps final : public QuadMotion {
 }  // namespace
 
 std::unique_ptr<QuadMotion> make_quad_motion(const Mechanism& mechanism) {
+  if (mechanism.scene().lagrangian) return make_quad_lagrangian(mechanism);
   const Tree& tree = mechanism.tree();
   if (mechanism.plan().planar)
     return std::make_unique<QuadSweeps<Planar, PlanarTree>>(

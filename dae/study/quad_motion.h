@@ -20,6 +20,7 @@ class QuadMotion {
   virtual bool project(double t, Quad* y) = 0;
 };
 
+/// Of a Lagrangian: make_quad_lagrangian().
 /// @pre the mechanism stays where it is, and its loops fit into the sweeps. Cost of a call: about
 /// 100 evaluations in doubles.
 std::unique_ptr<QuadMotion> make_quad_motion(const Mechanism& mechanism);

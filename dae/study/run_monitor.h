@@ -48,7 +48,7 @@ class RunMonitor {
         phi_(mechanism.m()),
         middle_(mechanism.nq()),
         markers_(static_cast<std::size_t>(6 * static_cast<int>(mechanism.scene().markers.size()))),
-        dissipated_energy_(mechanism.scene()),
+        dissipated_energy_(mechanism),
         limits_(mechanism) {
     if (request.keep_trajectory) result.trajectory.columns = trajectory_columns(mechanism);
     if (mechanism.m() > 0) {
@@ -87,8 +87,9 @@ class RunMonitor {
     e_->velocities(phi_.data());
     const Drift velocity = drift_of(mechanism_, phi_);
     const double kinetic = e_->kinetic(), potential = e_->potential(now_.q.data());
-    const double energy =
-        mechanism_.plan().drives ? not_measured : kinetic + potential - dissipated_energy_.until(t);
+    const double energy = mechanism_.balances_energy()
+                              ? kinetic + potential - dissipated_energy_.until(t)
+                              : not_measured;
     if (!position.finite() || !velocity.finite()) {
       trouble_ = "at t = " + std::to_string(t) + " s the state is not finite";
       return false;

@@ -2,6 +2,7 @@
 #include <momenta/core/text/near_name.h>
 #include <momenta/dae/assembly/drive_reach.h>
 #include <momenta/dae/joint_places.h>
+#include <momenta/dae/loop_word.h>
 #include <momenta/dae/study/state_input.h>
 #include <momenta/dae/study/state_text.h>
 #include <momenta/dae/text/number_text.h>
@@ -23,7 +24,7 @@ constexpr std::array<std::string_view, 2> start_keys = {"q", "v"};
 class StateReader {
  public:
   StateReader(const Mechanism& mechanism, const std::string& state)
-      : mechanism_(mechanism), text_(state, state_keys), places_(joint_places(mechanism.tree())) {
+      : mechanism_(mechanism), text_(state, state_keys), places_(joint_places(mechanism)) {
     for (const JointPlace& joint : places_) by_name_[joint.name] = &joint;
   }
 
@@ -128,14 +129,14 @@ Start start_of(const std::string& state, const Mechanism& mechanism) {
   if (state.empty()) return assemble(mechanism).start;
   const GivenState given = read_state(state, mechanism);
   const StateValues s = evaluate_state(mechanism, given);
+  const std::string word = std::string("--at: ") + loop_word(mechanism) + " '";
   for (Eigen::Index i = 0; i < s.phi.size(); ++i) {
     const auto& loop = mechanism.rows()[static_cast<std::size_t>(i)].loop;
     if (!(std::abs(s.phi[i]) <= closed))
-      throw SceneError("--at: loop '" + loop + "' is open by " + compact(std::abs(s.phi[i]), 3) +
+      throw SceneError(word + loop + "' is open by " + compact(std::abs(s.phi[i]), 3) +
                        "; expected positions that close the loops to 1e-8");
     if (!(std::abs(s.phidot[i]) <= closed * (1 + s.v.cwiseAbs().maxCoeff())))
-      throw SceneError("--at: loop '" + loop + "' opens at a rate of " +
-                       compact(std::abs(s.phidot[i]), 3) +
+      throw SceneError(word + loop + "' opens at a rate of " + compact(std::abs(s.phidot[i]), 3) +
                        "; expected rates that the loops allow, as those from \"p\" are");
   }
   Start start;
@@ -180,6 +181,21 @@ void follow_coupler(Scene& scene, const LoopSpec& coupler, std::set<std::string>
   given.insert(left->name);
 }
 
+void start_coordinates(const StateText& text, LagrangianSpec& spec) {
+  std::vector<std::string_view> names;
+  for (const auto& c : spec.coordinates) names.push_back(c.name);
+  for (const std::string key : {"q", "v"}) {
+    const auto* table = text.table(key);
+    if (!table) continue;
+    for (const auto& [name, value] : table->items()) {
+      const auto found = std::find(names.begin(), names.end(), name);
+      if (found == names.end()) text.unknown_joint(name, key, names);
+      auto& c = spec.coordinates[static_cast<std::size_t>(found - names.begin())];
+      text.numbers(value, place_in_state(key, name), 1, key == "q" ? &c.position : &c.velocity);
+    }
+  }
+}
+
 }  // namespace
 
 void start_at(const std::string& state, Scene& scene) {
@@ -187,6 +203,7 @@ void start_at(const std::string& state, Scene& scene) {
     throw SceneError(
         "--at: found -, expected a JSON file or the text itself");  // read again to go on
   const StateText text(state, start_keys);
+  if (scene.lagrangian) return start_coordinates(text, *scene.lagrangian);
   const auto put = [&](const std::string& key, int (*size_of)(const JointSpec&),
                        JointValues values) {
     const auto* table = text.table(key);

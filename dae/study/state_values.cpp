@@ -1,6 +1,6 @@
 #include <momenta/dae/dense_blocks.h>
+#include <momenta/dae/factor/tree_factor.h>
 #include <momenta/dae/kkt/kkt.h>
-#include <momenta/dae/kkt/tree_factor.h>
 #include <momenta/dae/measure/rank.h>
 #include <momenta/dae/study/state_values.h>
 #include <momenta/dae/unheld_joints.h>
@@ -36,7 +36,8 @@ class StateEvaluator {
     forces();
     free_acceleration();
     if (m > 0) constrained_acceleration();
-    s_.centroidal = centroidal(mechanism_.tree(), mechanism_.scene(), given_.t, given_.q, s_.v);
+    if (!mechanism_.scene().lagrangian)
+      s_.centroidal = centroidal(mechanism_.tree(), mechanism_.scene(), given_.t, given_.q, s_.v);
     s_.reactions = reactions(mechanism_, given_.t, given_.q, s_.v, m > 0 ? s_.constrained : s_.free,
                              s_.lambda);
     if (s_.not_there.empty() && !all_finite()) refuse();
@@ -67,7 +68,10 @@ class StateEvaluator {
   void leave_out(int rate) {
     unheld_ = unheld_joints(mechanism_, *e_, given_.t, given_.q.data(), true, rate);
     if (!unheld_.joints.empty())
-      s_.not_there = in_words(mechanism_.tree(), unheld_.joints);
+      s_.not_there =
+          mechanism_.scene().lagrangian
+              ? mechanism_.no_inertia(unheld_.joints.front().rate, given_.t, given_.q.data())
+              : in_words(mechanism_.tree(), unheld_.joints);
     else if (rate < 0)
       refuse();
   }
@@ -126,7 +130,9 @@ class StateEvaluator {
     }
     s_.kinetic = e_->kinetic();
     s_.potential = e_->potential(q);
-    s_.hamiltonian = s_.p.dot(s_.v) - s_.kinetic + s_.potential;
+    // Of a Lagrangian p·v - L is Jacobi's T + V, whatever is linear in the rates.
+    s_.hamiltonian =
+        (mechanism_.scene().lagrangian ? s_.kinetic : s_.p.dot(s_.v) - s_.kinetic) + s_.potential;
     s_.markers.resize(6 * mechanism_.scene().markers.size());
     e_->markers(s_.markers.data());
     const double* sigma = loops ? s_.sigma.data() : nullptr;
@@ -189,6 +195,16 @@ class StateEvaluator {
     beside(unheld_, -s_.bias, {}, s_.free, nothing);
   }
 
+  std::string words_of(const std::vector<MasslessJoint>& joints) const {
+    if (!mechanism_.scene().lagrangian) return without_inertia(mechanism_.tree(), joints);
+    std::string words;
+    for (const MasslessJoint& joint : joints)
+      words +=
+          (words.empty() ? "coordinate '" : "', '") +
+          mechanism_.scene().lagrangian->coordinates[static_cast<std::size_t>(joint.rate)].name;
+    return words + "' without inertia";
+  }
+
   /// M = Lᵀ D L along the tree.
   void free_of_loops() {
     const auto& pattern = mechanism_.kkt_pattern();
@@ -199,7 +215,7 @@ class StateEvaluator {
     if (const int rate = factor.factor(values); rate >= 0) {
       unheld_free_ = unheld_joints(mechanism_, *e_, given_.t, given_.q.data(), false, rate);
       if (s_.not_there.empty())
-        s_.not_there = without_inertia(mechanism_.tree(), unheld_free_.joints) +
+        s_.not_there = words_of(unheld_free_.joints) +
                        " without the loops that hold what is on it: no acceleration.free";
       VectorXd nothing;
       beside(unheld_free_, -s_.bias, {}, s_.free, nothing);

@@ -47,6 +47,33 @@ inline std::string difference(const Scene& a, const Scene& b) {
 
   note(a.name == b.name && a.held == b.held, "name or held joints");
   numbers(a.gravity, b.gravity, "gravity");
+  note(a.lagrangian.has_value() == b.lagrangian.has_value(), "lagrangian");
+  if (a.lagrangian && b.lagrangian) {
+    const LagrangianSpec &x = *a.lagrangian, &y = *b.lagrangian;
+    each(x.coordinates, y.coordinates, "coordinate",
+         [&](const auto& one, const auto& other, const auto& what) {
+           note(one.name == other.name && one.unit == other.unit, what);
+           number(one.position, other.position, what + " position");
+           number(one.velocity, other.velocity, what + " velocity");
+         });
+    note(x.lagrangian.text == y.lagrangian.text && x.kinetic.text == y.kinetic.text &&
+             x.potential.text == y.potential.text,
+         "L, T or V");
+    each(x.forces, y.forces, "Q", [&](const auto& one, const auto& other, const auto& what) {
+      note(one.coordinate == other.coordinate && one.value.text == other.value.text, what);
+    });
+    each(x.constraints, y.constraints, "constraint",
+         [&](const auto& one, const auto& other, const auto& what) {
+           note(one.name == other.name && one.equation.text == other.equation.text &&
+                    one.angle == other.angle,
+                what);
+         });
+    each(a.parameters, b.parameters, "parameter",
+         [&](const auto& one, const auto& other, const auto& what) {
+           note(one.name == other.name, what);
+           number(one.value, other.value, what);
+         });
+  }
   each(a.bodies, b.bodies, "body", [&](const BodySpec& x, const BodySpec& y, const auto& what) {
     note(x.name == y.name && x.any_inertia == y.any_inertia && x.shape.kind == y.shape.kind, what);
     number(x.mass, y.mass, what + " mass");

@@ -123,7 +123,7 @@ class Pair {
     m.given.q = VectorXd::Zero(mechanism.nq());
     m.T = MatrixXd::Zero(mechanism.nv(), v.size());
     m.Tdot_v = VectorXd::Zero(mechanism.nv());
-    const auto places = joint_places(mechanism.tree());
+    const auto places = joint_places(mechanism);
     for (std::size_t i = 0; i < names_.size(); ++i) {
       const json& j = joints()[i];
       const auto place = std::find_if(places.begin(), places.end(),

@@ -95,8 +95,7 @@ class Resolver {
 }  // namespace
 
 Location place_in(const Value& text, std::size_t character) {
-  if (text.text.find('\n') != std::string::npos || text.at.line == 0) return text.at;
-  return {text.at.line, text.at.column + 1 + static_cast<int>(character)};
+  return place_in(text.text, text.at, character);
 }
 
 Parameters::Parameters(const Value& root, const std::string& file) {

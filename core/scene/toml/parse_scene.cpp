@@ -1,5 +1,6 @@
 // The tables of a scene, in the order of its members.
 
+#include <momenta/core/lagrangian/lagrangian_formulas.h>
 #include <momenta/core/scene/file_text.h>
 #include <momenta/core/scene/toml/parameters.h>
 #include <momenta/core/scene/toml/parse_scene.h>
@@ -22,7 +23,7 @@ Scene parse_scene(std::string_view text, const std::string& file,
   const reading::Parameters parameters(root, file);
   const reading::Fields table(root, "", file, &parameters);
   table.allow({"name", "gravity", "parameters", "require", "body", "joint", "loop", "drive",
-               "force", "function", "marker", "visual", "assembly", "run"});
+               "force", "function", "marker", "visual", "assembly", "run", "lagrangian"});
   reading::check_requirements(root, parameters, file);
 
   Scene scene;
@@ -50,6 +51,8 @@ Scene parse_scene(std::string_view text, const std::string& file,
     scene.held = assembly->texts("hold");
     if (const reading::Value* hold = assembly->find("hold")) scene.held_at = hold->at;
   }
+  if (const auto lagrangian = table.table("lagrangian"))
+    scene.lagrangian = reading::read_lagrangian(*lagrangian);
   if (const auto run = table.table("run")) scene.run = reading::read_run(*run);
 
   for (std::size_t i = 0; i < parameters.names().size(); ++i)
@@ -57,8 +60,14 @@ Scene parse_scene(std::string_view text, const std::string& file,
 
   reading::read_formulas(table, scene);
 
-  if (scene.bodies.empty()) reading::fail(file, {1, 1}, "no body, expected at least one [[body]]");
+  if (scene.bodies.empty() && !scene.lagrangian)
+    reading::fail(file, {1, 1}, "no body, expected at least one [[body]]");
   validate(scene);
+  if (scene.lagrangian) {
+    const LagrangianFormulas formulas(scene);
+    for (std::size_t i = 0; i < scene.parameters.size(); ++i)
+      scene.parameters[i].used |= formulas.uses_parameter[i];
+  }
   return scene;
 } catch (const std::bad_alloc&) {
   reading::fail(file, {}, "the scene does not fit into memory");

@@ -25,6 +25,7 @@ FunctionSpec read_function(const Fields& table);
 MarkerSpec read_marker(const Fields& table);
 VisualSpec read_visual(const Fields& table);
 RunDefaults read_run(const Fields& table);
+LagrangianSpec read_lagrangian(const Fields& table);
 
 /// The formulas of forces and drives, of which the tables above keep the text: judged, with numbers
 /// in place of parameters. `root` is the scene's table. @pre parameters, joints, markers and forces

@@ -312,6 +312,40 @@ void write_visual(const VisualSpec& visual, TomlText& t) {
   if (visual.colour) t.numbers("colour", {visual.colour->begin(), visual.colour->end()});
 }
 
+void write_lagrangian(const Scene& scene, TomlText& t) {
+  const LagrangianSpec& spec = *scene.lagrangian;
+  if (!scene.parameters.empty()) t.open("[parameters]");
+  for (const ParameterSpec& p : scene.parameters) t.put(p.name.c_str(), TomlText::digits(p.value));
+  t.open("[lagrangian]");
+  std::vector<std::string> names, units;
+  std::vector<double> position, velocity;
+  for (const auto& c : spec.coordinates) {
+    names.push_back(c.name), units.push_back(c.unit);
+    position.push_back(c.position), velocity.push_back(c.velocity);
+  }
+  t.put("coordinates", TomlText::words(names));
+  t.put("units", TomlText::words(units));
+  t.numbers("position", position);
+  t.numbers("velocity", velocity);
+  const auto formula = [&](const char* key, const FormulaSpec& f) {
+    if (!f.text.empty()) t.word(key, f.text);
+  };
+  formula("lagrangian", spec.lagrangian);
+  formula("kinetic", spec.kinetic);
+  formula("potential", spec.potential);
+  std::string forces;
+  for (const auto& f : spec.forces)
+    forces += (forces.empty() ? "{ " : ", ") + TomlText::quoted(f.coordinate) + " = " +
+              TomlText::quoted(f.value.text);
+  if (!forces.empty()) t.put("force", forces + " }");
+  for (const auto& c : spec.constraints) {
+    t.open("[[lagrangian.constraints]]");
+    t.word("name", c.name);
+    t.word("equation", c.equation.text);
+    if (c.angle) t.word("unit", "rad");
+  }
+}
+
 void write_run(const RunDefaults& run, TomlText& t) {
   const RunDefaults usual;
   t.open("[run]");
@@ -330,6 +364,7 @@ std::string scene_text(const Scene& scene) {
     t.text += "# " + reading::on_one_line(remark) + "\n";
   if (!scene.name.empty()) t.word("name", scene.name);
   t.vector("gravity", scene.gravity);
+  if (scene.lagrangian) write_lagrangian(scene, t);
   for (const BodySpec& body : scene.bodies) write_body(body, t);
   for (const JointSpec& joint : scene.joints) {
     if (joint.kind == JointKind::user)

@@ -50,6 +50,7 @@ class _SceneKeys(TypedDict, total=False):
     visual: Sequence[Mapping[str, Any]]
     assembly: Mapping[str, Any]
     run: Mapping[str, Any]
+    lagrangian: Mapping[str, Any]
 
 class _BodyKeys(TypedDict, total=False):
     mass: float
@@ -158,6 +159,16 @@ class _VisualKeys(TypedDict, total=False):
     rotation: _Rotation
     colour: _Vector
 
+class _LagrangianKeys(TypedDict, total=False):
+    units: Sequence[str]
+    position: Sequence[float | str]
+    velocity: Sequence[float | str]
+    lagrangian: Any
+    kinetic: Any
+    potential: Any
+    force: Mapping[str, Any]
+    constraints: Sequence[Mapping[str, str]]
+
 class _AssemblyKeys(TypedDict, total=False):
     hold: Sequence[str]
 
@@ -196,6 +207,8 @@ class Scene:
     def marker(self, name: str, body: str, **keys: Unpack[_MarkerKeys]) -> Scene: ...
     def function(self, name: str, x: Sequence[float], y: Sequence[float]) -> Scene: ...
     def visual(self, body: str, kind: str, **keys: Unpack[_VisualKeys]) -> Scene: ...
+    def lagrangian(self, coordinates: Sequence[str], **keys: Unpack[_LagrangianKeys]) -> Scene: ...
+    def constraint(self, name: str, equation: Any, unit: Literal["m", "rad"] | None = None) -> Scene: ...
     def assembly(self, **keys: Unpack[_AssemblyKeys]) -> Scene: ...
     def run(self, **keys: Unpack[_RunTableKeys]) -> Scene: ...
     @classmethod

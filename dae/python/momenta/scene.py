@@ -12,7 +12,7 @@ from . import _momenta
 
 # Keys of a scene whose value is a list of tables, and keys whose value is one table.
 _LISTS = ("body", "joint", "loop", "drive", "force", "function", "marker", "visual")
-_TABLES = ("assembly", "run")
+_TABLES = ("assembly", "run", "lagrangian")
 
 
 class Scene:
@@ -23,8 +23,8 @@ class Scene:
     s.joint('O', 'revolute', child='rod', position=0.5)
     run = s.load().run(end=10)
 
-    body, joint, loop, drive, force, spring, function, marker, visual, assembly and run return the scene, so that calls
-    can be chained. Keys that are None are left out, and an underscore
+    body, joint, loop, drive, force, spring, function, marker, visual, lagrangian, constraint, assembly and run return
+    the scene, so that calls can be chained. Keys that are None are left out, and an underscore
     at the end of one, as in from_, which Python keeps for itself. load() reports mistakes: a SceneError, one sentence.
     """
 
@@ -79,8 +79,25 @@ class Scene:
         length, radius [m] by its kind; file and scale of a mesh."""
         return self._add("visual", body=body, kind=kind, **keys)
 
+    def lagrangian(self, coordinates, **keys):
+        """Makes the scene a system of formulas, without bodies: units, position, velocity, by coordinate;
+        lagrangian, or kinetic and potential; force, a dict by coordinate; constraints, a list of dicts.
+
+        A formula is a string, a number, or a SymPy expression whose rates are symbols named 'x.dot'."""
+        for key in ("lagrangian", "kinetic", "potential"):
+            keys[key] = _formula(keys.get(key))
+        if keys.get("force") is not None:
+            keys["force"] = {name: _formula(x) for name, x in keys["force"].items()}
+        return self._put(self._keys.setdefault("lagrangian", {}), {"coordinates": coordinates, **keys})
+
+    def constraint(self, name, equation, unit=None):
+        """Adds a holonomic constraint of the formulas, equation = 0, in m or, with unit='rad', in rad."""
+        self._put(table := {}, {"name": name, "equation": _formula(equation), "unit": unit})
+        self._keys.setdefault("lagrangian", {}).setdefault("constraints", []).append(table)
+        return self
+
     def assembly(self, **keys):
-        """Sets keys of [assembly]: hold, the joints that assembly does not move."""
+        """Sets keys of [assembly]: hold, the joints, or coordinates of formulas, that assembly does not move."""
         return self._put(self._keys.setdefault("assembly", {}), keys)
 
     def run(self, **keys):
@@ -140,6 +157,13 @@ def _is_table(key, x):
     if key in _LISTS:
         return isinstance(x, list) and all(isinstance(table, dict) for table in x)
     return key in _TABLES and isinstance(x, dict)
+
+
+def _formula(x):
+    """A formula as scene files have it, of a string, a number or a SymPy expression."""
+    if hasattr(x, "free_symbols"):
+        return re.sub(r"\b(Abs|Max|Min)\(", lambda found: found[0].lower(), str(x)).replace("**", "^")
+    return repr(x) if isinstance(x, (int, float)) and not isinstance(x, bool) else x
 
 
 def _plain(x):

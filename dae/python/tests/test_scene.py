@@ -10,6 +10,11 @@ import unittest
 import momenta
 import numpy as np
 
+try:
+    import sympy
+except ImportError:
+    sympy = None
+
 EXAMPLES = pathlib.Path(os.environ["MOMENTA_EXAMPLES"])
 
 
@@ -120,6 +125,28 @@ class Built(unittest.TestCase):
         self.assertEqual(s.to_dict()["drive"][0]["from"], 0.5)
         self.assertIn("\nfrom = 0.5\n", s.to_toml())
 
+    def test_formulas_move_as_bodies_do(self):
+        hinge = momenta.Scene("pendulum", gravity=[0, -9.81, 0])
+        hinge.body("bob", mass=2, com=[1, 0, 0], inertia=0).joint("O", "revolute", child="bob", position=-0.5)
+        typed = momenta.Scene("pendulum", parameters={"m": 2, "g": 9.81})
+        typed.lagrangian(["x", "y"], position=["cos(0.5)", "-sin(0.5)"], kinetic="m/2*(x.dot^2 + y.dot^2)")
+        typed.lagrangian(["x", "y"], potential="m*g*y").constraint("rod", "hypot(x, y) - 1")
+        a = hinge.load().run(form="projected", rtol=1e-11, end=1)
+        b = typed.load().run(form="projected", rtol=1e-11, end=1)
+        self.assertAlmostEqual(np.cos(a["O.q"][-1]), b["x"][-1], 8)
+        m = typed.load()
+        self.assertEqual((m.nq, m.nv, m.m), (2, 2, 1))
+        np.testing.assert_allclose(m.momenta(0, [1, 0], [3, 4]), [6, 8])
+
+    @unittest.skipIf(sympy is None, "SymPy is not installed")
+    def test_formulas_are_taken_from_sympy(self):
+        x, rate, m = sympy.symbols("x x.dot m")
+        typed = momenta.Scene(parameters={"m": 2})
+        typed.lagrangian(["x"], lagrangian=m * rate**2 / 2 - sympy.Abs(x) ** 3 / 3, force={"x": -rate})
+        self.assertEqual(typed.to_dict()["lagrangian"]["force"], {"x": "-x.dot"})
+        self.assertNotIn("**", typed.to_toml())
+        np.testing.assert_allclose(typed.load().accelerations(0, [-2], [1])[0], [(4 - 1) / 2])
+
     def test_it_starts_elsewhere(self):
         m = momenta.load(EXAMPLES / "four_bar" / "scene.toml", at={"v": {"O": np.float64(0.5)}})
         self.assertEqual(m.u0[0], 0.5)
@@ -218,6 +245,7 @@ class Keys(unittest.TestCase):
         "_SpringKeys": ("force", ["spring-damper"], {"kind"}),
         "_MarkerKeys": ("marker", [None], {"name", "body"}),
         "_VisualKeys": ("visual", ["box", "capsule", "mesh"], {"body", "kind"}),
+        "_LagrangianKeys": ("lagrangian", [None], {"coordinates"}),
         "_AssemblyKeys": ("assembly", [None], set()),
         "_RunTableKeys": ("run", [None], set()),
         "_SceneKeys": (None, [None], {"name"}),
@@ -240,7 +268,7 @@ class Keys(unittest.TestCase):
         table = {"kind": kind, "xyzzy": 1} if kind else {"xyzzy": 1}
         body, joint = {"name": "b", "mass": 1, "inertia": 1}, {"name": "J", "kind": "weld", "child": "b"}
         keys = {"body": [body], "joint": [joint]}
-        keys |= {key: table if key in ("assembly", "run") else [table]} if key else table
+        keys |= {key: table if key in ("assembly", "run", "lagrangian") else [table]} if key else table
         with self.assertRaises(momenta.SceneError) as caught:
             momenta.load(keys)
         self.assertRegex(str(caught.exception), "unknown key '[a-z.]*xyzzy'")

@@ -13,9 +13,9 @@
 
   const left = element("div", { class: "left" });
   if (player) left.append(player.figure, element("p", { class: "caption" }, `${steeringWords()}.${magnified}`));
-  else left.append(element("p", { class: "caption" }, "The mechanism is not drawn: it has more bodies than a page holds."));
+  else if (!picture.without_bodies) left.append(element("p", { class: "caption" }, "The mechanism is not drawn: it has more bodies than a page holds."));
   const right = element("div", { class: "right" });
-  main.append(element("section", { class: "beside" + (study.timeline.length ? "" : " alone") }, left, right));
+  main.append(element("section", { class: "beside" + (study.timeline.length && !picture.without_bodies ? "" : " alone") }, ...(picture.without_bodies ? [right] : [left, right])));
   for (const chart of study.timeline) right.append(timelineChart(chart, clock));
 
   if (runs.length) {
@@ -38,7 +38,8 @@
     line("processor time", measured(run.time.cpu_s) ? `${number(run.time.cpu_s, 3)} s` : "");
     main.append(section("What was asked and what came out", "All samples are in trajectory.csv beside this page.", list));
   }
-  main.append(bodiesSection(), makingSection());
+  if (!picture.without_bodies) main.append(bodiesSection());
+  main.append(makingSection());
   clock.set(clock.start);
   followTheme();
 }

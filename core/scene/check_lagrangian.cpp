@@ -1,0 +1,134 @@
+// What validate() asks of a Lagrangian: that nothing of bodies stands beside it, that its names are
+// names in formulas, each of one thing, and that it has L or T.
+
+#include <momenta/core/scene/validate_parts.h>
+#include <momenta/core/text/near_name.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <set>
+
+namespace momenta::reading {
+namespace {
+
+/// Letters, digits and _, a letter first, with dots between such parts.
+bool is_formula_name(std::string_view name) {
+  const auto letter = [](char c) {
+    return std::isalpha(static_cast<unsigned char>(c)) || c == '_';
+  };
+  bool first = true;
+  for (const char c : name) {
+    if (c == '.') {
+      if (first) return false;
+      first = true;
+      continue;
+    }
+    if (!letter(c) && (first || !std::isdigit(static_cast<unsigned char>(c)))) return false;
+    first = false;
+  }
+  return !first;
+}
+
+void check_coordinates(const Scene& scene) {
+  const LagrangianSpec& spec = *scene.lagrangian;
+  std::set<std::string> names;
+  for (const ParameterSpec& p : scene.parameters) names.insert(p.name);
+  const std::size_t parameters = names.size();
+  require(!spec.coordinates.empty(), scene, spec.at, "lagrangian",
+          "has no coordinates, expected at least one");
+  for (const auto& c : spec.coordinates) {
+    const std::string who = "coordinate " + in_quotes(c.name);
+    const bool reserved = c.name == "t" || c.name == "pi" || c.name == "and" || c.name == "or" ||
+                          c.name == "not" || c.name == "if" || c.name == "dot" ||
+                          c.name.ends_with(".dot");
+    require(is_formula_name(c.name) && !reserved, scene, spec.at, who,
+            "has a name that formulas cannot take, expected letters, digits and _, a letter first, "
+            "and none of t, pi, and, or, not, if, dot");
+    require(
+        names.insert(c.name).second, scene, spec.at, who,
+        names.size() > parameters && std::none_of(scene.parameters.begin(), scene.parameters.end(),
+                                                  [&](const auto& p) { return p.name == c.name; })
+            ? "the name is taken by another coordinate, expected each once"
+            : "the name is taken by a parameter, expected another");
+    require(!c.unit.empty() && std::none_of(c.unit.begin(), c.unit.end(),
+                                            [](char x) {
+                                              return static_cast<unsigned char>(x) < 0x20 ||
+                                                     std::string_view(",\"[]\x7f").find(x) !=
+                                                         std::string_view::npos;
+                                            }),
+            scene, spec.at, who,
+            "must have a unit without commas, quotes, brackets and control characters");
+    require(std::isfinite(c.position) && std::isfinite(c.velocity), scene, spec.at, who,
+            "position and velocity must be finite");
+  }
+}
+
+std::vector<std::string_view> names_of_coordinates(const Scene& scene) {
+  std::vector<std::string_view> known;
+  for (const auto& c : scene.lagrangian->coordinates) known.push_back(c.name);
+  return known;
+}
+
+void check_held(const Scene& scene) {
+  const std::vector<std::string_view> known = names_of_coordinates(scene);
+  std::set<std::string> held;
+  for (const std::string& name : scene.held) {
+    if (std::find(known.begin(), known.end(), name) == known.end())
+      throw SceneError(scene.where(scene.held_at) + "[assembly] hold: " + in_quotes(name) +
+                       " is no coordinate, expected one of: " + listed(known));
+    require(held.insert(name).second, scene, scene.held_at, "[assembly] hold",
+            ("names coordinate " + in_quotes(name) + " twice").c_str());
+  }
+}
+
+void check_forces(const Scene& scene) {
+  const LagrangianSpec& spec = *scene.lagrangian;
+  const std::vector<std::string_view> known = names_of_coordinates(scene);
+  std::set<std::string> pushed;
+  for (const auto& f : spec.forces) {
+    const std::string who = "force on " + in_quotes(f.coordinate);
+    if (std::find(known.begin(), known.end(), f.coordinate) == known.end())
+      throw SceneError(scene.where(f.at) + who + ": is no coordinate, expected one of: " +
+                       listed(known) + did_you_mean(f.coordinate, known));
+    require(pushed.insert(f.coordinate).second, scene, f.at, who,
+            "is given twice, expected one formula for each coordinate");
+  }
+}
+
+}  // namespace
+
+void check_lagrangian(const Scene& scene) {
+  const LagrangianSpec& spec = *scene.lagrangian;
+  const bool alone = scene.bodies.empty() && scene.joints.empty() && scene.loops.empty() &&
+                     scene.drives.empty() && scene.forces.empty() && scene.markers.empty() &&
+                     scene.visuals.empty();
+  require(alone, scene, spec.at, "lagrangian",
+          "stands beside bodies, joints, loops, drives, forces, markers or visuals, "
+          "expected a system of its own");
+  require(scene.gravity.isZero(0), scene, spec.at, "gravity",
+          "has no bodies to act on, expected its potential in the Lagrangian");
+  check_coordinates(scene);
+  require(spec.lagrangian.text.empty() != spec.kinetic.text.empty(), scene, spec.at, "lagrangian",
+          spec.kinetic.text.empty() ? "has neither lagrangian nor kinetic, expected one of them"
+                                    : "has both lagrangian and kinetic, expected one of them");
+  require(
+      spec.lagrangian.text.empty() || spec.potential.text.empty(), scene, spec.at, "lagrangian",
+      "has potential beside lagrangian, which holds it already: expected potential with kinetic");
+  check_forces(scene);
+  check_held(scene);
+  std::set<std::string> names;
+  for (const auto& c : spec.constraints) {
+    const std::string who = "constraint " + in_quotes(c.name);
+    require(
+        !c.name.empty() &&
+            std::none_of(c.name.begin(), c.name.end(),
+                         [](char x) { return static_cast<unsigned char>(x) < 0x20 || x == 0x7f; }),
+        scene, c.at, who, "must have a name without control characters");
+    require(names.insert(c.name).second, scene, c.at, who,
+            "the name is taken, expected each once among constraints");
+    require(!c.equation.text.empty(), scene, c.at, who, "has no equation, expected a formula");
+  }
+}
+
+}  // namespace momenta::reading
