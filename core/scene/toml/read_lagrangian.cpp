@@ -6,7 +6,7 @@
 namespace momenta::reading {
 namespace {
 
-FormulaSpec read_formula(const Fields& table, std::string_view key) {
+FormulaSpec formula_of(const Fields& table, std::string_view key) {
   FormulaSpec formula;
   if (!table.has(key)) return formula;
   formula.text = table.text(key);
@@ -45,7 +45,7 @@ void read_forces(const Fields& table, LagrangianSpec& spec) {
   const std::optional<Fields> forces = table.table("force");
   if (!forces) return;
   for (const Entry& e : table.find("force")->entries)
-    spec.forces.push_back({e.key, read_formula(*forces, e.key), e.at});
+    spec.forces.push_back({e.key, formula_of(*forces, e.key), e.at});
 }
 
 LagrangianSpec::Constraint read_constraint(const Fields& table) {
@@ -54,7 +54,7 @@ LagrangianSpec::Constraint read_constraint(const Fields& table) {
   c.at = table.at();
   c.name = table.text("name");
   (void)table.text("equation");  // must be there
-  c.equation = read_formula(table, "equation");
+  c.equation = formula_of(table, "equation");
   const std::string unit = table.text("unit", "m");
   if (unit != "m" && unit != "rad")
     table.fail_key("unit", "is " + in_quotes(unit) + ", expected \"m\" or \"rad\"");
@@ -70,9 +70,9 @@ LagrangianSpec read_lagrangian(const Fields& table) {
   LagrangianSpec spec;
   spec.at = table.at();
   read_coordinates(table, spec);
-  spec.lagrangian = read_formula(table, "lagrangian");
-  spec.kinetic = read_formula(table, "kinetic");
-  spec.potential = read_formula(table, "potential");
+  spec.lagrangian = formula_of(table, "lagrangian");
+  spec.kinetic = formula_of(table, "kinetic");
+  spec.potential = formula_of(table, "potential");
   read_forces(table, spec);
   for (const Fields& t : table.tables("constraints", "constraint"))
     spec.constraints.push_back(read_constraint(t));
