@@ -101,7 +101,7 @@ TEST(MotionLaw, DerivativesOfDuals) {
       const auto dual = at(law, moved);
       const double tol = 64 * std::numeric_limits<double>::epsilon() *
                          (1 + std::abs(plain.fddot) + std::abs(plain.f));
-      EXPECT_EQ(dual.f.a, plain.f);
+      EXPECT_NEAR(dual.f.a, plain.f, spec.kind == "formula" ? tol : 0);  // it may divide
       EXPECT_NEAR(dual.f.b[0], plain.fdot, tol) << spec.kind << " at " << t;
       EXPECT_NEAR(dual.fdot.b[0], plain.fddot, tol) << spec.kind << " at " << t;
     }
