@@ -4,6 +4,7 @@
 #include <momenta/dae/cut/recut.h>
 
 #include <cstdio>
+#include <filesystem>
 
 #include "cut_words.h"
 #include "options.h"
@@ -18,17 +19,29 @@ Scene recut_scene(const Options& o, const ConvertOptions& c) {
   return found.scene;
 }
 
+/// Files of meshes are named from the folder of the scene, which is now that of `out`.
+void find_meshes_from(const std::filesystem::path& out, Scene& scene) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  const fs::path before = fs::weakly_canonical(fs::absolute(scene.file), error).parent_path(),
+                 now = fs::weakly_canonical(fs::absolute(out), error).parent_path();
+  for (VisualSpec& visual : scene.visuals)
+    if (!visual.file.empty())
+      visual.file = (before / visual.file).lexically_normal().lexically_relative(now).string();
+}
+
 }  // namespace
 
 int convert(const Options& o, const ConvertOptions& c) {
   if (!c.keep.empty() && !c.recut)
     throw std::invalid_argument("--keep says what --recut leaves as it is; expected both");
-  const std::string text = scene_text(c.recut ? recut_scene(o, c) : read(o));
-  if (c.out.empty() || c.out == "-")
-    std::fputs(text.c_str(), stdout);
-  else if (!write_results({{c.out, text}}))
-    return run_failed;
-  return done;
+  Scene scene = c.recut ? recut_scene(o, c) : read(o);
+  if (c.out.empty() || c.out == "-") {
+    std::fputs(scene_text(scene).c_str(), stdout);
+    return done;
+  }
+  find_meshes_from(c.out, scene);
+  return write_results({{c.out, scene_text(scene)}}) ? done : run_failed;
 }
 
 }  // namespace momenta::program

@@ -1,0 +1,72 @@
+// What the program says of robots: stops and limits, meshes of pages and where converted scenes
+// find them, controls of keys.
+
+#include <gtest/gtest.h>
+
+#include "golden/program.h"
+
+namespace momenta::golden::dae_program_robots {
+namespace {
+
+class Robots : public Program {
+ protected:
+  Robots() {
+    fs::create_directories(folder_ / "robot" / "meshes");
+    fs::create_directories(folder_ / "there");
+    write("robot/meshes/t.obj",
+          "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 "
+          "3 4\n");
+    robot_ = write("robot/r.urdf",
+                   "<robot name='r'><link name='b'/><link name='a'><inertial><mass value='1'/>"
+                   "<inertia ixx='1' iyy='1' izz='1'/></inertial><visual><geometry><mesh filename="
+                   "'package://robot/meshes/t.obj'/></geometry></visual></link><joint name='j' "
+                   "type='prismatic'><axis xyz='0 0 1'/><parent link='b'/><child link='a'/><limit "
+                   "lower='-1' upper='1'/></joint></robot>");
+  }
+  std::string robot() const { return "'" + robot_.string() + "'"; }
+  fs::path robot_;
+};
+
+/// The meshes of a page, as its data have them.
+std::string meshes_of(const std::string& page) {
+  const std::size_t at = page.find("\"meshes\":");
+  return at == std::string::npos ? "" : page.substr(at, page.find(']', at) - at);
+}
+
+TEST_F(Robots, MeshesAreDrawnWithinTheirBytes) {
+  const std::string page = call("view " + robot() + " --quiet").out;
+  EXPECT_NE(meshes_of(page).find("\"corners\":"), std::string::npos);
+  const Outcome none = call("view " + robot() + " --mesh-bytes 0");
+  EXPECT_EQ(meshes_of(none.out), "");
+  EXPECT_NE(none.err.find("left out of the page: meshes (1), by --mesh-bytes 0"), std::string::npos)
+      << none.err;
+  EXPECT_NE(call("view " + robot() + " --mesh-bytes 20").err.find("--mesh-bytes 20 does not hold"),
+            std::string::npos);
+  expect_refused("view " + robot() + " --mesh-bytes -1", "--mesh-bytes");
+  // The scene that it is converted to finds them from its own folder.
+  const fs::path scene = folder_ / "there" / "s.toml";
+  EXPECT_EQ(call("convert " + robot() + " '" + scene.string() + "'").status, 0);
+  EXPECT_NE(text_of(scene).find("file = \"../robot/meshes/t.obj\""), std::string::npos)
+      << text_of(scene);
+  EXPECT_EQ(meshes_of(call("view '" + scene.string() + "' --quiet").out), meshes_of(page));
+}
+
+TEST_F(Robots, LimitsAreToldAndStop) {
+  const std::string fall = "run " + robot() + " --end 1 --timing none --samples 1";
+  const Outcome passed = call(fall);
+  EXPECT_EQ(passed.status, 0) << passed.err;
+  EXPECT_NE(passed.err.find("joint 'j' is beyond its limits [-1, 1] m from t = 0.451"),
+            std::string::npos)
+      << passed.err;
+  EXPECT_EQ(call(fall + " --quiet").err, "");
+  const Outcome stopped = call(fall + " --stops 1e4,300");
+  EXPECT_NE(stopped.err.find("joint 'j' is at its stops beyond [-1, 1] m from t = 0.451"),
+            std::string::npos)
+      << stopped.err;
+  for (const std::string wrong : {"x", "-1", "0", "1,", "1,2,3", "1,-2", "nan"})
+    expect_refused("check " + robot() + " --stops=" + wrong,
+                   "--stops '" + wrong + "': expected STIFFNESS or STIFFNESS,DAMPING");
+}
+
+}  // namespace
+}  // namespace momenta::golden::dae_program_robots
