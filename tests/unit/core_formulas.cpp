@@ -179,8 +179,8 @@ TEST(Formulas, FunctionsAreSplines) {
     for (int i = 0; i < 3; ++i) EXPECT_NEAR(found[i], expected[i], 1e-14) << t;
     const double x[2]{t, 0.7};
     evaluate(gradient, x, line, slopes);
-    EXPECT_NEAR(slopes[1], 2 * expected[0] * expected[1] * 0.7, 1e-15);
-    EXPECT_NEAR(slopes[2], expected[0] * expected[0], 1e-15);
+    EXPECT_DOUBLE_EQ(slopes[1], 2 * expected[0] * expected[1] * 0.7);
+    EXPECT_DOUBLE_EQ(slopes[2], expected[0] * expected[0]);
     // a dual number's derivative is that of the derivative's tape
     Dual<double, 1> at(t), dual[3], duals[64];
     at.b[0] = 1;
