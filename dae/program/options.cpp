@@ -57,8 +57,8 @@ void add_scene_file(CLI::App& verb, Options& o, bool required) {
       ->allow_extra_args(false);
   verb.add_option("--key", o.reading.key, "Of an MJCF: start at this <key>, by name or number")
       ->type_name("KEY");
-  verb.add_option("--stops", o.stops, "Limits push back: stiffness, damping (SI units)")
-      ->type_name("K[,C]");
+  verb.add_option("--stops", o.stops, "Limits push back: STIFFNESS[,DAMPING], SI units")
+      ->type_name("STIFFNESS");
   verb.add_option("--at", o.at, "Start values: JSON {\"q\": {..}, \"v\": {..}}, or its file")
       ->type_name("STATE");
 }
