@@ -124,8 +124,8 @@ void add_run_options(CLI::App& verb, Options& o, const char* cpu_limit) {
 }
 
 void add_mesh_bytes(CLI::App& verb, Options& o) {
-  verb.add_option("--mesh-bytes", o.mesh_bytes, "Of meshes in a page; 0: none")
-      ->type_name("N")
+  within(verb.add_option("--mesh-bytes", o.mesh_bytes, "Of meshes in a page; 0: none"), "N", 0,
+         1'000'000'000)
       ->capture_default_str();
 }
 
