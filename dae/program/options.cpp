@@ -58,8 +58,8 @@ void add_scene_file(CLI::App& verb, Options& o, bool required) {
       ->allow_extra_args(false);
   verb.add_option("--key", o.reading.key, "Of an MJCF: start at this <key>, by name or number")
       ->type_name("KEY");
-  verb.add_option("--stops", o.stops, "Limits push back: stiffness, damping (SI units)")
-      ->type_name("K[,C]");
+  verb.add_option("--stops", o.stops, "Limits push back: STIFFNESS[,DAMPING], SI units")
+      ->type_name("STIFFNESS");
   verb.add_option("--at", o.at, "Start values: JSON {\"q\": {..}, \"v\": {..}}, or its file")
       ->type_name("STATE");
 }
@@ -125,8 +125,8 @@ void add_run_options(CLI::App& verb, Options& o, const char* cpu_limit) {
 }
 
 void add_mesh_bytes(CLI::App& verb, Options& o) {
-  verb.add_option("--mesh-bytes", o.mesh_bytes, "Of meshes in a page; 0: none")
-      ->type_name("N")
+  within(verb.add_option("--mesh-bytes", o.mesh_bytes, "Of meshes in a page; 0: none"), "N", 0,
+         1'000'000'000)
       ->capture_default_str();
 }
 

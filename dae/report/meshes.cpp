@@ -113,7 +113,9 @@ std::vector<std::string> take_meshes(Picture& picture, const std::string& scene_
   if (wanted > 0 && bytes == 0)
     return {"left out of the page: meshes (" + std::to_string(wanted) + "), by --mesh-bytes 0"};
   coarsen(meshes, picture.length, bytes);
-  if (!fit(meshes, bytes)) {
+  const bool none_left =
+      std::all_of(meshes.begin(), meshes.end(), [](const Mesh& m) { return m.triangles.empty(); });
+  if (!fit(meshes, bytes) || (none_left && !meshes.empty())) {
     for (Picture::Solid& solid : picture.solids) solid.mesh = -1;
     told.push_back("left out of the page: meshes (" + std::to_string(wanted) +
                    "), which --mesh-bytes " + std::to_string(bytes) + " does not hold");

@@ -30,7 +30,7 @@ class Robots : public Program {
 /// The meshes of a page, as its data have them.
 std::string meshes_of(const std::string& page) {
   const std::size_t at = page.find("\"meshes\":");
-  return at == std::string::npos ? "" : page.substr(at, page.find(']', at) - at);
+  return at == std::string::npos ? "" : page.substr(at, page.find("\"}]", at) - at);
 }
 
 TEST_F(Robots, MeshesAreDrawnWithinTheirBytes) {
