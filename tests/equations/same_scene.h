@@ -104,6 +104,17 @@ inline std::string difference(const Scene& a, const Scene& b) {
     number(x.offset, y.offset, what + " offset");
     numbers(x.ratios, y.ratios, what + " ratios");
     numbers(x.powers, y.powers, what + " powers");
+    number(x.radius, y.radius, what + " radius");
+    note(x.equation == y.equation, what + " equation");
+    const auto curve = [&](const CurveSpec& c, const CurveSpec& d, const std::string& of) {
+      note(c.kind == d.kind && c.closed == d.closed, of + " kind");
+      number(c.radius, d.radius, of + " radius");
+      for (std::size_t i = 0; i < 2; ++i)
+        number(c.semi_axes[i], d.semi_axes[i], of + " semi_axes");
+      note(c.direction == d.direction && c.points == d.points, of + " points");
+    };
+    curve(x.curve, y.curve, what + " curve");
+    curve(x.child_curve, y.child_curve, what + " child_curve");
     note(x.joints == y.joints && x.coordinates == y.coordinates, what + " joints");
   });
   each(a.drives, b.drives, "drive", [&](const DriveSpec& x, const DriveSpec& y, const auto& what) {

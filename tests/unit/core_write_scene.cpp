@@ -59,6 +59,71 @@ TEST(WriteScene, EveryModel) {
   }
 }
 
+TEST(WriteScene, CurvesAndEquations) {
+  const Scene scene = parse_scene(R"(
+[parameters]
+size = 0.3
+[[body]]
+name = "b"
+mass = 1
+inertia = 0.1
+[[joint]]
+name = "left-knee"
+kind = "planar"
+child = "b"
+[[marker]]
+name = "A"
+body = "b"
+[[loop]]
+name = "line"
+kind = "slot"
+child = "b"
+axis = [1, 1, 0]
+[[loop]]
+name = "ring"
+kind = "slot"
+child = "b"
+curve = "circle"
+radius = "size / 3"
+axis = [1, 2, 3]
+[[loop]]
+name = "groove"
+kind = "slot"
+child = "b"
+curve = "spline"
+closed = true
+points = [["size", 0, -0.0], [0.1, 1e-7, 0], [0.1, 0.7, 0]]
+rotation = { rpy = [0.1, 0.2, 0.3] }
+[[loop]]
+name = "cam"
+kind = "cam"
+child = "b"
+profile = { parent = { kind = "ellipse", semi_axes = [0.1, "2 * size"], direction = [1, 1, 0] }, child = { kind = "flat", normal = [0.28, 0.96, 0] } }
+[[loop]]
+name = "other cam"
+kind = "cam"
+child = "b"
+profile = { parent = { kind = "spline", points = [[1, 0, 0], [0, 1, 0], [-1, -1, 0]] }, child = { kind = "circle", radius = 0.1 } }
+[[loop]]
+name = "rack"
+kind = "rack"
+child = "b"
+radius = 0.1
+offset = -0.0
+direction = [1, 2, 0]
+[[loop]]
+name = "formula"
+kind = "equation"
+equation = "A.x^2 + sin('left-knee'.q2) = size"
+)",
+                                  "scene.toml");
+  EXPECT_TRUE(scene.loops[2].curve.closed);
+  EXPECT_EQ(scene.loops[2].curve.points[0].x(), 0.3);
+  EXPECT_EQ(scene.loops[3].curve.semi_axes[1], 0.6);
+  EXPECT_EQ(scene.loops[6].equation, "(A.x^2 + sin('left-knee'.q2) ) - ( 0.3)");
+  expect_exact(scene);
+}
+
 // Every key of the format, with numbers that are hard to write.
 TEST(WriteScene, EveryKey) {
   const Scene scene = parse_scene(R"(
