@@ -59,8 +59,10 @@ std::string modes_in_words(const ModesResult& r) {
   if (r.growing() > 0) text += ", " + counted_modes(r.growing(), "growing");
   if (r.rigid() > 0) text += ", " + counted_modes(r.rigid(), "rigid") + " that nothing holds";
   text += at.steps == 0 ? "; it is the assembled pose itself"
-                        : "; joints are up to " + compact(at.moved, 3) +
-                              " rad or m away from the assembled pose";
+                        : (r.of_formulas ? "; coordinates are up to " : "; joints are up to ") +
+                              compact(at.moved, 3) +
+                              (r.of_formulas ? " away from the start"
+                                             : " rad or m away from the assembled pose");
   text += ". ";
   const long all = static_cast<long>(modes.size());
   text += std::to_string(all) + (all == 1 ? " mode" : " modes") + " of " +

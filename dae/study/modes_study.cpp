@@ -96,6 +96,7 @@ ModesResult find_modes(const Mechanism& mechanism, const Start& start,
   constexpr double aside = 0.05;  // [rad or lengths of the scene]
   ModesResult result;
   result.scene = mechanism.scene().name;
+  result.of_formulas = mechanism.scene().lagrangian.has_value();
   result.coordinates = mechanism.coordinate_columns();
   result.shapes = shape_columns(mechanism);
   Equilibrium& at = result.equilibrium;

@@ -13,6 +13,7 @@ struct ModesRequest {
 };
 
 struct ModesResult {
+  bool of_formulas = false;  ///< of a Lagrangian: coordinates instead of joints
   std::string scene;
   Equilibrium equilibrium;
   Spectrum spectrum;

@@ -65,7 +65,7 @@ class StateReader {
     if (const auto it = by_name_.find(name); it != by_name_.end()) return *it->second;
     std::vector<std::string_view> names;
     for (const JointPlace& place : places_) names.push_back(place.name);
-    text_.unknown_joint(name, key, names);
+    text_.unknown_joint(name, key, names, mechanism_.scene().lagrangian ? "coordinate" : "joint");
   }
 
   Values values(const std::string& key, bool coordinates) const {
@@ -189,7 +189,7 @@ void start_coordinates(const StateText& text, LagrangianSpec& spec) {
     if (!table) continue;
     for (const auto& [name, value] : table->items()) {
       const auto found = std::find(names.begin(), names.end(), name);
-      if (found == names.end()) text.unknown_joint(name, key, names);
+      if (found == names.end()) text.unknown_joint(name, key, names, "coordinate");
       auto& c = spec.coordinates[static_cast<std::size_t>(found - names.begin())];
       text.numbers(value, place_in_state(key, name), 1, key == "q" ? &c.position : &c.velocity);
     }

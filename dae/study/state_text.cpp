@@ -143,10 +143,12 @@ void StateText::numbers(const Json& value, const std::string& where, std::size_t
 }
 
 void StateText::unknown_joint(const std::string& name, const std::string& key,
-                              std::span<const std::string_view> names) const {
+                              std::span<const std::string_view> names,
+                              const std::string& word) const {
   std::string which = reading::did_you_mean(name, names);
-  if (which.empty()) which = "; expected a joint of the scene";
-  fail("key '" + key + "': joint " + reading::in_quotes(name) + " is not in the scene" + which);
+  if (which.empty()) which = "; expected a " + word + " of the scene";
+  fail("key '" + key + "': " + word + " " + reading::in_quotes(name) + " is not in the scene" +
+       which);
 }
 
 std::string place_in_state(const std::string& key, const std::string& joint) {

@@ -24,9 +24,10 @@ class StateText {
   /// `size` numbers at `into`: an array, or one number where there is one.
   void numbers(const Json& value, const std::string& where, std::size_t size, double* into) const;
   [[noreturn]] void fail(const std::string& sentence) const;
-  /// Says that a joint is not in the scene; `names`: those that are.
+  /// Says that a joint, or a coordinate of formulas, is not in the scene; `names`: those that are.
   [[noreturn]] void unknown_joint(const std::string& name, const std::string& key,
-                                  std::span<const std::string_view> names) const;
+                                  std::span<const std::string_view> names,
+                                  const std::string& word = "joint") const;
 
  private:
   Json parse(const std::string& text) const;

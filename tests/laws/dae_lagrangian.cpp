@@ -11,6 +11,9 @@
 #include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/form/form.h>
 #include <momenta/dae/lagrangian_rows.h>
+#include <momenta/dae/report/chart.h>
+#include <momenta/dae/study/index_study.h>
+#include <momenta/dae/study/modes_study.h>
 #include <momenta/dae/study/own_reference.h>
 #include <momenta/dae/study/run_form.h>
 
@@ -419,6 +422,60 @@ TEST(Lagrangian, SolvesASparseMassMatrix) {
   ASSERT_TRUE(e->open_momentum_rates(0, q.data(), p.data(), u.data(), pdot.data()));
   EXPECT_LT((M * u - p).norm(), 1e-14);
   EXPECT_EQ(mechanism.kkt_pattern().mass.size(), 11U);  // e stands alone
+}
+
+ModesResult modes_of(const std::string& text) {
+  const Mechanism mechanism(typed(text));
+  return find_modes(mechanism, assemble(mechanism).start, {});
+}
+
+// m ẍ + c ẋ + k x = 0
+TEST(Lagrangian, SmallMotionsAreThoseOfADampedOscillator) {
+  const ModesResult found = modes_of(
+      "[lagrangian]\ncoordinates = [\"x\"]\nposition = [0.3]\nlagrangian = \"x.dot^2 - 25*(x - "
+      "1)^2\"\nforce = { x = \"-1.2*x.dot\" }\n");
+  ASSERT_EQ(found.spectrum.modes.size(), 1U);
+  EXPECT_NEAR(found.equilibrium.q[0], 1, 1e-9);
+  const auto s = found.spectrum.modes[0].s;
+  EXPECT_NEAR(s.real(), -1.2 / 4, 1e-12);
+  EXPECT_NEAR(s.imag(), std::sqrt(4 * 2 * 50 - 1.2 * 1.2) / 4, 1e-12);
+}
+
+// A point on an isotropic spring, seen from a frame that turns at w: ω₀ ± w.
+TEST(Lagrangian, SmallMotionsInATurningFrameSplit) {
+  const ModesResult found = modes_of(
+      "[lagrangian]\ncoordinates = [\"x\", \"y\"]\nlagrangian = \"((x.dot - 0.3*y)^2 + (y.dot + "
+      "0.3*x)^2 - x^2 - y^2)/2\"\n");
+  ASSERT_EQ(found.spectrum.modes.size(), 2U);
+  EXPECT_FALSE(found.spectrum.conservative);
+  EXPECT_NEAR(std::abs(found.spectrum.modes[0].s), 0.7, 1e-12);
+  EXPECT_NEAR(std::abs(found.spectrum.modes[1].s), 1.3, 1e-12);
+}
+
+// The index belongs to the form, whatever the constraint and its motion.
+TEST(Lagrangian, HasTheIndexOfItsForms) {
+  const Mechanism bodies(example("pendulum/cartesian.toml")), formulas(typed(shaken_pendulum));
+  const IndexStudy a = run_index_study(bodies, assemble(bodies).start, {}),
+                   b = run_index_study(formulas, assemble(formulas).start, {});
+  ASSERT_EQ(a.forms.size(), b.forms.size());
+  for (std::size_t i = 0; i < a.forms.size(); ++i)
+    EXPECT_EQ(a.forms[i].text(), b.forms[i].text()) << a.forms[i].form;
+}
+
+// Whatever the units: the page of a run has a curve for each column.
+TEST(Lagrangian, ChartsHaveEveryCoordinate) {
+  RunSettings s;
+  s.end_time = 0.1;
+  s.samples = 5;
+  const RunResult found = run(
+      typed("[lagrangian]\ncoordinates = [\"x\", \"y\"]\nunits = [\"1\", \"mol\"]\nvelocity = [1, "
+            "2]\nkinetic = \"x.dot^2 + y.dot^2\"\n"),
+      s);
+  std::vector<std::string> curves;
+  for (const Chart& chart : charts_of_run(found))
+    for (const Curve& curve : chart.curves) curves.push_back(curve.name + " " + chart.unit);
+  for (const char* name : {"x 1", "y mol", "x.dot 1/s", "y.dot mol/s"})
+    EXPECT_EQ(std::count(curves.begin(), curves.end(), name), 1) << name;
 }
 
 // Dense and sparse matrices give the same motion, that of bodies on hinges.

@@ -78,7 +78,7 @@
     left.append(element("p", { class: "caption" }, `${steeringWords()}. The swing is drawn far larger than small motions are, the loops closed throughout` +
       (filmed.length < modes.length ? `; the first ${filmed.length} modes are shown.` : ".")));
   } else {
-    left.append(element("p", { class: "caption" }, modes.length ? "The mechanism is not drawn: it has more bodies than a page holds." : "Nothing moves."));
+    left.append(element("p", { class: "caption" }, !modes.length ? "Nothing moves." : picture.without_bodies ? "A system of formulas: there are no bodies to draw." : "The mechanism is not drawn: it has more bodies than a page holds."));
   }
   main.append(makingSection());
   followTheme();
