@@ -60,7 +60,12 @@ class LagrangianEvaluation final : public LagrangianRows<double> {
   }
   double kinetic() override { return value(model_.kinetic); }
   double potential(const double*) override { return value(model_.potential); }
-  double dissipated_power(const double*) override { return value(model_.power); }
+  double dissipated_power(const double*, const double*) override { return value(model_.power); }
+  /// Forces of formulas beside those of bodies; a Lagrangian has no others.
+  double formula_size() override { return 0; }
+  std::string formula_without_value() override { return ""; }
+  std::string lost_loop() const override { return ""; }
+  void slot_places(double*) const override {}
   void markers(double*) override {}
 
  private:
