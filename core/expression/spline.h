@@ -45,13 +45,17 @@ class CubicSpline {
   /// Periodic. @pre the same, three points at least, x[0] + period beyond the last. O(points)
   CubicSpline(const std::vector<double>& x, const std::vector<double>& y, double period);
 
-  /// f, f' and f". O(log points)
+  /// f, f' and f" of a natural one. O(log points)
   template <class S>
   void evaluate(const S& x, S& f, S& first, S& second) const {
-    if (period_ > 0)
-      if (const double turns = std::floor((value_of(x) - knots_.front()) / period_); turns != 0)
-        return in_gap(S(x - S(turns) * S(period_)), f, first, second);
-    in_gap(x, f, first, second);
+    const Segment& segment = at(x);
+    horner(segment.c, 4, S(x - S(segment.from)), f, first, second);
+  }
+  /// The same of a periodic one.
+  template <class S>
+  void evaluate_round(const S& x, S& f, S& first, S& second) const {
+    const double turns = std::floor((value_of(x) - knots_.front()) / period_);
+    evaluate(turns == 0 ? x : S(x - S(turns) * S(period_)), f, first, second);
   }
   /// The derivative of an order from 0: f itself. @pre natural. O(log points)
   template <class S>
@@ -73,11 +77,6 @@ class CubicSpline {
     double from = 0;
     double c[4] = {0, 0, 0, 0};
   };
-  template <class S>
-  void in_gap(const S& x, S& f, S& first, S& second) const {
-    const Segment& segment = at(x);
-    horner(segment.c, 4, S(x - S(segment.from)), f, first, second);
-  }
   template <class S>
   const Segment& at(const S& x) const {
     // segments_[k] holds between knots k − 1 and k; find the number k of knots at or before x

@@ -70,7 +70,10 @@ class PlaneCurve {
     }
     CurvePoint<S> point;
     for (std::size_t i = 0; i < 2; ++i)
-      coordinates_[i].evaluate(s, point.p[i], point.d[i], point.dd[i]);
+      if (period_ > 0)
+        coordinates_[i].evaluate_round(s, point.p[i], point.d[i], point.dd[i]);
+      else
+        coordinates_[i].evaluate(s, point.p[i], point.d[i], point.dd[i]);
     return point;
   }
 

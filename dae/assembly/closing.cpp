@@ -228,12 +228,13 @@ Closing::Pose Closing::anywhere(const Eigen::VectorXd& guess, Pose open) {
     open.is_stretched = is_stretched(open.q);
     return open;
   }
-  char text[240];
-  std::snprintf(
-      text, sizeof text,
-      "one of several assemblies perhaps: short steps from the guess leave the loops open "
-      "by %.3g lengths or radians, this one was found %s, joints moved by at most %.3g",
-      open.gap, how, loops_.apart(found.q, guess));
+  char left[80] = "end where a loop has no value", text[240];
+  if (std::isfinite(open.gap))
+    std::snprintf(left, sizeof left, "leave the loops open by %.3g lengths or radians", open.gap);
+  std::snprintf(text, sizeof text,
+                "one of several assemblies perhaps: short steps from the guess %s, this one was "
+                "found %s, joints moved by at most %.3g",
+                left, how, loops_.apart(found.q, guess));
   branch_ = text;
   return found;
 }

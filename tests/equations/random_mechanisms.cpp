@@ -12,7 +12,12 @@ int rows_of(LoopKind kind, bool planar) {
   switch (kind) {
     case LoopKind::distance:
     case LoopKind::coupler:
+    case LoopKind::cam:
+    case LoopKind::rack:
+    case LoopKind::equation:
       return 1;
+    case LoopKind::slot:
+      return planar ? 1 : 2;
     case LoopKind::point:
     case LoopKind::spherical:
       return planar ? 2 : 3;

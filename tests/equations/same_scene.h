@@ -109,8 +109,7 @@ inline std::string difference(const Scene& a, const Scene& b) {
     const auto curve = [&](const CurveSpec& c, const CurveSpec& d, const std::string& of) {
       note(c.kind == d.kind && c.closed == d.closed, of + " kind");
       number(c.radius, d.radius, of + " radius");
-      for (std::size_t i = 0; i < 2; ++i)
-        number(c.semi_axes[i], d.semi_axes[i], of + " semi_axes");
+      for (std::size_t i = 0; i < 2; ++i) number(c.semi_axes[i], d.semi_axes[i], of + " semi_axes");
       note(c.direction == d.direction && c.points == d.points, of + " points");
     };
     curve(x.curve, y.curve, what + " curve");

@@ -56,6 +56,11 @@ double number(const RunResult& run, std::size_t row, const Mechanism& mechanism,
   return 0;
 }
 
+bool has_massless(const Scene& scene) {
+  return std::any_of(scene.bodies.begin(), scene.bodies.end(),
+                     [](const BodySpec& b) { return b.mass == 0; });
+}
+
 /// Every form that keeps to its velocities or positions moves both alike, and so closely keeps the
 /// energy.
 void expect_same_motion(const Scene& one, const Scene& other,
@@ -68,6 +73,7 @@ void expect_same_motion(const Scene& one, const Scene& other,
     SCOPED_TRACE(form);
     const RunResult first = run_of(a, form, end), second = run_of(b, form, end);
     ASSERT_EQ(first.status, "done") << first.reason;
+    if (form == "maximal-coordinates" && has_massless(other)) continue;  // no place for them
     ASSERT_EQ(second.status, "done") << second.reason;
     const double tolerance = is_dae_form(form) || form.starts_with("augmented") ? 2e-5 : 2e-7;
     for (const std::string& column : columns)
@@ -76,6 +82,11 @@ void expect_same_motion(const Scene& one, const Scene& other,
             << column;
     EXPECT_LT(first.energy_error_max, form == "baumgarte" ? 1e-4 : tolerance * 10);
   }
+}
+
+/// Starts are the same where assembly leaves the coordinate that the others follow.
+std::string held(const std::string& name) {
+  return "[assembly]\nhold = [\"" + name + "\"]\n";
 }
 
 const std::string yoke = body("crank", 1, "[0.1, 0, 0]") + body("yoke", 2) +
@@ -88,7 +99,7 @@ kind = "slot"
 parent = "yoke"
 child = "crank"
 origin = { child = [0.3, 0, 0] }
-axis = "y")"));
+axis = "y")") + held("O"));
   const Scene block =
       scene_of(yoke + body("block", 0) +
                joint("B", "prismatic", "block", "parent = \"yoke\"\naxis = \"y\"\nposition = 0.1") +
@@ -96,7 +107,8 @@ axis = "y")"));
 kind = "revolute"
 parent = "block"
 child = "crank"
-origin = { child = [0.3, 0, 0] })"));
+origin = { child = [0.3, 0, 0] })") +
+               held("O"));
   expect_same_motion(slot, block, {"O.q", "S.q", "O.u"}, 1);
 }
 
@@ -170,8 +182,10 @@ TEST(Cams, OfCirclesAreDistances) {
       "parent = \"a\"\nchild = \"b\"\norigin = { parent = [0.5, 0.1, 0], "
       "child = [0.3, 0, 0] }\n";
   const Scene cam = scene_of(arms + loop("L", ends + R"(kind = "cam"
-profile = { parent = { kind = "circle", radius = 0.25 }, child = { kind = "circle", radius = 0.2 } })"));
-  const Scene distance = scene_of(arms + loop("L", ends + "kind = \"distance\"\nlength = 0.45"));
+profile = { parent = { kind = "circle", radius = 0.25 }, child = { kind = "circle", radius = 0.2 } })") +
+                             held("A"));
+  const Scene distance =
+      scene_of(arms + loop("L", ends + "kind = \"distance\"\nlength = 0.45") + held("A"));
   expect_same_motion(cam, distance, {"A.q", "B.q", "B.u"}, 1);
 }
 
