@@ -29,7 +29,8 @@ Plan make_plan(const Tree& tree, const Scene& scene, Algebra algebra) {
     plan.joint_forces |= b.stiffness != 0 || b.damping != 0 || b.torque != 0 || b.friction != 0 ||
                          b.stop_stiffness != 0 || b.stop_damping != 0;
   }
-  for (const auto& force : scene.forces) plan.third_sweep |= force.kind != "torque" || !force.law.empty();
+  for (const auto& force : scene.forces)
+    plan.third_sweep |= force.kind != "torque" || !force.law.empty();
   return plan;
 }
 
