@@ -1,8 +1,10 @@
 // The verb `convert`: writes any scene as TOML, as it is or with other joints cut.
 
+#include <momenta/core/scene/near_name.h>
 #include <momenta/core/scene/toml/write_scene.h>
 #include <momenta/dae/cut/recut.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 
@@ -14,8 +16,19 @@ namespace {
 
 Scene recut_scene(const Options& o, const ConvertOptions& c) {
   const Mechanism mechanism(read(o));
-  const Recut found = recut(mechanism, assemble(mechanism).start, c.keep);
+  Recut found = recut(mechanism, assemble(mechanism).start, c.keep);
   if (!o.quiet) std::fprintf(stderr, "momenta: %s\n", cuts_in_words(found).c_str());
+  std::vector<std::string> lost;
+  for (const JointSpec& joint : mechanism.scene().joints)
+    if (joint.limits &&
+        std::find(found.cut.begin(), found.cut.end(), joint.name) != found.cut.end())
+      lost.push_back(joint.name);
+  if (!lost.empty()) {
+    const std::string remark =
+        "left out: limits of joints that became loops: " + reading::all_in_quotes(lost);
+    found.scene.remarks.push_back(remark);
+    if (!o.quiet) std::fprintf(stderr, "momenta: %s\n", remark.c_str());
+  }
   return found.scene;
 }
 

@@ -68,5 +68,20 @@ TEST_F(Robots, LimitsAreToldAndStop) {
                    "--stops '" + wrong + "': expected STIFFNESS or STIFFNESS,DAMPING");
 }
 
+// A joint that is cut has no coordinate: a scene that is cut anew tells whose limits that costs.
+TEST_F(Robots, LimitsOfJointsThatBecomeLoopsAreTold) {
+  std::string chain = call("make closed-chain --n 60").out;
+  const std::string joint = "\n[[joint]]\n";
+  for (std::size_t at = 0; (at = chain.find(joint, at)) != std::string::npos;)
+    chain.insert(at += joint.size(), "limits = [-9, 9]\n");
+  const fs::path scene = write("chain.toml", chain), anew = folder_ / "anew.toml";
+  const Outcome told = call("convert '" + scene.string() + "' '" + anew.string() + "' --recut");
+  EXPECT_EQ(told.status, 0) << told.err;
+  const std::string words = "left out: limits of joints that became loops: '";
+  EXPECT_NE(told.err.find(words), std::string::npos) << told.err;
+  EXPECT_NE(text_of(anew).find(words), std::string::npos);
+  EXPECT_EQ(call("convert '" + scene.string() + "'").err, "");
+}
+
 }  // namespace
 }  // namespace momenta::golden::dae_program_robots
