@@ -1,7 +1,7 @@
 // The verb `convert`: writes any scene as TOML, as it is or with other joints cut.
 
-#include <momenta/core/scene/near_name.h>
 #include <momenta/core/scene/toml/write_scene.h>
+#include <momenta/core/text/near_name.h>
 #include <momenta/dae/cut/recut.h>
 
 #include <algorithm>
