@@ -270,7 +270,7 @@ class Parser {
       const std::string_view name = whole.empty() ? word : std::string_view(whole);
       const std::string expected = names_.expected_in_brackets(word, name);
       if (!expected.empty()) {
-        const auto known = names_.meaning(name, from);
+        const auto known = whole.empty() ? std::nullopt : names_.meaning(name, from);
         if (!known) fail(from, "unknown name " + reading::in_quotes(name) + expected);
         at_ = text_.find(')', at_) + 1;
         return of_name(*known, from);

@@ -139,8 +139,9 @@ bool better(const CutCost& a, const CutCost& b) {
 /// two and a half branches (find_looped_branches).
 std::int64_t taken_one_by_one(const Model<Spatial>& model, const SweptLoops<Spatial>& swept) {
   constexpr int lanes = 8;
-  const LinkTree links = build_links(model);
   auto twice = 2 * static_cast<std::int64_t>(model.bodies.size());
+  if (!swept.plan.fits()) return twice / 2;
+  const LinkTree links = build_links(model);
   for (const LoopedBranchGroup& g :
        find_looped_branches(links, swept.loops, swept.plan, lanes).groups)
     twice -= (2 * g.count - 5) * g.bodies;

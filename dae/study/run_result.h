@@ -63,13 +63,14 @@ struct Trajectory {
 
 /// A joint that went beyond its limits.
 struct PassedLimit {
-  std::string joint;              ///< its name
-  double least = 0, largest = 0;  ///< its limits [rad or m]
-  double since = 0;               ///< when it was beyond for the first time [s]
-  double farthest = 0;            ///< the coordinate farthest beyond [rad or m]
-  double farthest_at = 0;         ///< when that was [s]
-  bool slides = false;            ///< in m, else rad
-  bool stops = false;             ///< its limits push back
+  std::string joint;       ///< its name
+  double least = 0;        ///< its lower limit [rad or m]
+  double largest = 0;      ///< its upper limit [rad or m]
+  double since = 0;        ///< when it was beyond for the first time [s]
+  double farthest = 0;     ///< the coordinate farthest beyond [rad or m]
+  double farthest_at = 0;  ///< when that was [s]
+  bool slides = false;     ///< in m, else rad
+  bool stops = false;      ///< its limits push back
 };
 
 /// The result of a run.

@@ -76,7 +76,7 @@ std::vector<std::vector<int>> open_loops(const Made& m) {
   return fronts;
 }
 
-TEST(Slots, AreAsManyAsLoopsAreOpenAtOnce) {
+TEST(SlotsOfFronts, AreAsManyAsLoopsAreOpenAtOnce) {
   int shared = 0;
   for (const int rows : {1, 2, 3, 5})
     for (unsigned seed = 0; seed < 500; ++seed) {
