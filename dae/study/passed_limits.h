@@ -1,5 +1,6 @@
 #pragma once
-// Joints beyond their `limits`: since when, and how far. Times between the samples come from the
+// Joints beyond their `limits`, and points beyond the ends of open slots: since when, and how far.
+// Times between the samples come from the
 // integrator's dense output: of each step its middle and its end are looked at, and the vertex of
 // the parabola through the three where that lies further out; the time at which a limit is passed
 // is bisected on the dense output.
@@ -10,6 +11,7 @@
 
 #include <array>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -19,9 +21,10 @@ class PassedLimits {
  public:
   /// Joints that are driven move as they are told, and are not looked at.
   explicit PassedLimits(const Mechanism& mechanism);
-  bool any() const { return !joints_.empty(); }
+  bool any() const { return !limited_.empty(); }
 
-  /// Takes q (nq) at t [s] without what was before: the start. O(joints with limits)
+  /// Takes q (nq) at t [s] without what was before: the start. O(joints with limits); with open
+  /// slots an evaluation of the loops.
   void look(double t, const double* q, std::vector<PassedLimit>& passed);
 
   /// Takes the step from where it was looked at last to t1; `q_at(t)` gives q within it, null: it
@@ -31,23 +34,28 @@ class PassedLimits {
   void carry(Memory& memory) { memory(last_time_), memory(last_.data(), last_.size()); }
 
  private:
+  /// A joint and its coordinate, or an open slot and the place of its point along the chords.
   struct Limited {
     std::string name;
     std::array<double, 2> limits;
-    int q;
-    bool slides, stops;
+    int q;  ///< place in q; of a slot that of its loop in the scene
+    bool slides, stops, is_slot;
   };
-  static double beyond(const Limited& joint, double q);
-  static PassedLimit& entry(const Limited& joint, double t, double q,
-                            std::vector<PassedLimit>& passed);
+  /// x of all of limited_ at (t, q).
+  void values(double t, const double* q, std::vector<double>& x);
+  static double beyond(const Limited& l, double x);
+  static PassedLimit& entry(const Limited& l, double t, double x, std::vector<PassedLimit>& passed);
 
-  std::vector<Limited> joints_;
+  std::vector<Limited> limited_;
+  std::unique_ptr<Evaluation<double>> e_;  ///< where there are open slots
+  std::vector<double> places_;             ///< by loop
   double last_time_ = 0;
-  std::vector<double> last_, middle_, end_;  ///< coordinates of joints_
+  std::vector<double> last_, middle_, end_, between_;  ///< of limited_
 };
 
 /// "joint 'k' is beyond its limits [-1, 2] rad from t = 0.3 s on, farthest at t = 0.4 s: 2.1 rad",
-/// one each, the first four; and how many more.
+/// "the point in slot 's' is beyond its ends [0, 2] m …", one each, the first four; and how many
+/// more.
 std::vector<std::string> in_words(const std::vector<PassedLimit>& passed);
 
 }  // namespace momenta

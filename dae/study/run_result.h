@@ -61,9 +61,9 @@ struct Trajectory {
   std::vector<std::vector<double>> rows;  ///< each of columns.size()
 };
 
-/// A joint that went beyond its limits.
+/// A joint that went beyond its limits, or a point that went beyond the ends of an open slot.
 struct PassedLimit {
-  std::string joint;       ///< its name
+  std::string joint;       ///< its name, or the slot's
   double least = 0;        ///< its lower limit [rad or m]
   double largest = 0;      ///< its upper limit [rad or m]
   double since = 0;        ///< when it was beyond for the first time [s]
@@ -71,6 +71,7 @@ struct PassedLimit {
   double farthest_at = 0;  ///< when that was [s]
   bool slides = false;     ///< in m, else rad
   bool stops = false;      ///< its limits push back
+  bool of_slot = false;    ///< of a slot: its limits are 0 and its length along the chords
 };
 
 /// The result of a run.

@@ -61,6 +61,43 @@ TEST(PassedLimits, AreToldBetweenTheSamples) {
   EXPECT_TRUE(run(slide("velocity = 3\nlimits = [-9, 0.46]\n"), 0.6, 1).passed_limits.empty());
 }
 
+// A body that glides along an open slot of 2 m, x = 0.5 + t, and on straight beyond its end.
+TEST(PassedLimits, EndsOfOpenSlotsAreToldBetweenTheSamples) {
+  const auto glide = [](double end) {
+    return run(parse_scene(R"(
+[[body]]
+name = "a"
+mass = 2
+shape = { kind = "sphere", radius = 0.1 }
+[[joint]]
+name = "A"
+kind = "planar"
+child = "a"
+position = [0.5, 0, 0]
+velocity = [1, 0, 0]
+[[loop]]
+name = "L"
+kind = "slot"
+curve = "spline"
+points = [[0, 0, 0], [1, 0, 0], [2, 0, 0]]
+child = "a"
+)",
+                           "slot.toml"),
+               end, 1);
+  };
+  EXPECT_TRUE(glide(1.4).passed_limits.empty());
+  const RunResult beyond = glide(2);
+  ASSERT_EQ(beyond.status, "done") << beyond.reason;
+  ASSERT_EQ(beyond.passed_limits.size(), 1U);
+  EXPECT_TRUE(beyond.passed_limits[0].of_slot);
+  constexpr double grid = 2.0 / (1 << 24);  // places are told on it (higher_pair.h)
+  EXPECT_NEAR(beyond.passed_limits[0].since, 1.5, grid);
+  EXPECT_NEAR(beyond.passed_limits[0].farthest, 2.5, grid);
+  EXPECT_EQ(in_words(beyond.passed_limits),
+            std::vector<std::string>{"the point in slot 'L' is beyond its ends [0, 2] m from "
+                                     "t = 1.5 s on, farthest at t = 2 s: 2.5 m"});
+}
+
 TEST(PassedLimits, CountFromTheStartWhereItIsBeyond) {
   const RunResult result = run(slide("position = 1\nlimits = [0, 0.5]\n"), 0.1, 4);
   ASSERT_EQ(result.passed_limits.size(), 1U);
