@@ -3,9 +3,6 @@
 #include <momenta/dae/cut/interchange.h>
 #include <momenta/dae/cut/recut.h>
 #include <momenta/dae/cut/root_order.h>
-#include <momenta/dae/factor/filtered_factor.h>
-#include <momenta/dae/kkt/kkt.h>
-#include <momenta/dae/sweeps/branches/looped_branches.h>
 #include <momenta/dae/sweeps/levels/loop_sweeps.h>
 
 #include <algorithm>
@@ -124,62 +121,12 @@ int rebuild(const Mechanism& mechanism, const Start& start, const SceneGraph& gr
   return none;
 }
 
-/// Less cost; or entries of M saved at next to none, as bodies nearer to the ground gather less
-/// rounding: loops that close at the ground count there once more.
-bool better(const CutCost& a, const CutCost& b) {
-  constexpr int most = LoopPlan::most_slots;
-  if ((a.open > most) != (b.open > most)) return a.open <= most;
-  // the bodies' own equations are the same whatever is cut
-  if (a.open > most) return a.factor_entries > 0 && 100 * a.factor_entries < 90 * b.factor_entries;
-  return 100 * a.sweeps < 98 * b.sweeps ||
-         (100 * a.sweeps < 102 * b.sweeps && 4 * a.mass_entries < 3 * b.mass_entries);
-}
-
-/// Bodies that the sweeps take one by one, where those of branches side by side in lanes count as
-/// two and a half branches (find_looped_branches).
-std::int64_t taken_one_by_one(const Model<Spatial>& model, const SweptLoops<Spatial>& swept) {
-  constexpr int lanes = 8;
-  auto twice = 2 * static_cast<std::int64_t>(model.bodies.size());
-  if (!swept.plan.fits()) return twice / 2;
-  const LinkTree links = build_links(model);
-  for (const LoopedBranchGroup& g :
-       find_looped_branches(links, swept.loops, swept.plan, lanes).groups)
-    twice -= (2 * g.count - 5) * g.bodies;
-  return twice / 2;
-}
-std::int64_t taken_one_by_one(const Model<Planar>& model, const SweptLoops<Planar>&) {
-  return static_cast<std::int64_t>(model.bodies.size());
-}
-
-/// How the loops of a scene lie in its tree, L left out.
-CutCost swept_cost(const Scene& scene, const Tree& tree, const Plan& plan) {
-  CutCost cost;
-  std::vector<int> depth;
-  for (const Tree::Body& b : tree.bodies) {
-    depth.push_back(b.parent < 0 ? 1 : 1 + depth[static_cast<std::size_t>(b.parent)]);
-    cost.depth = std::max(cost.depth, depth.back());
-    cost.mass_entries += depth.back();
-  }
-  if (scene.loops.empty()) return cost;
-  const auto take = [&](const auto& model) {
-    const auto swept = swept_loops(tree, model, build_loops(scene, tree, model));
-    cost.open = swept.plan.slots;
-    cost.work = swept.plan.work;
-    cost.sweeps = cost.work + taken_one_by_one(model, swept) * (plan.planar ? 4 : 15) *
-                                  lanes_for(cost.open, plan.planar);
-  };
-  if (plan.planar)
-    take(build_planar_model(tree, scene, plan.basis));
-  else
-    take(build_spatial_model(tree, scene));
-  return cost;
-}
-
 /// Takes the best of the scenes that enter, each with its trees on the ground in three orders.
 class Contest {
  public:
-  Contest(const Mechanism& given, Recut& best)
-      : given_(given), swept_(given.kkt() == KktChoice::sweeps), best_(best) {}
+  /// `edges`: the tree of the given scene.
+  Contest(const Mechanism& given, const std::vector<CutEdge>& edges, Recut& best)
+      : given_(given), swept_(given.kkt() == KktChoice::sweeps), best_(best), best_edges_(edges) {}
 
   /// Whether the sweeps carry its loops; `edges`: its tree.
   bool enter(const Recut& found, const std::vector<CutEdge>& edges) {
@@ -213,7 +160,7 @@ class Contest {
   bool enter_as_it_is(Recut found) {
     if (!found.gains()) return swept_;  // the given scene
     if (swept_) {  // most that enter are no better: that is seen without their sweeps
-      const CutCost cost = swept_cost(found.scene, build_valid_tree(found.scene), given_.plan());
+      const CutCost cost = swept_cost(found.scene, given_.plan());
       if (cost.open <= LoopPlan::most_slots && !better(cost, best_.after)) return true;
     }
     const Mechanism anew(found.scene, {given_.options().algebra});
@@ -232,6 +179,38 @@ class Contest {
   std::vector<CutEdge> best_edges_;
 };
 
+/// J knows nothing of lanes. Of small mechanisms the trees one exchange away from the best are
+/// tried themselves, where all that are open might go into fewer. `rebuilt`: rebuild() of a tree's
+/// edges.
+template <class Rebuilt>
+void try_neighbours(const SceneGraph& graph, bool planar, Rebuilt&& rebuilt, Contest& contest,
+                    const Recut& best) {
+  constexpr int most_tried = 700;  // times bodies
+  int tried = 0;
+  const auto one_better = [&](const std::vector<CutEdge>& from) {
+    const Cycles around(graph.vertices(), from);
+    for (std::size_t e = 0; e < from.size(); ++e) {
+      if (from[e].in_tree || from[e].fixed) continue;
+      for (const int f : around.cycle(static_cast<int>(e))) {
+        if ((tried += graph.vertices()) > most_tried) return false;
+        if (from[static_cast<std::size_t>(f)].fixed) continue;
+        std::vector<CutEdge> edges = from;
+        edges[e].in_tree = true;
+        edges[static_cast<std::size_t>(f)].in_tree = false;
+        Recut found;
+        if (edges == graph.edges || rebuilt(edges, found) != none) continue;
+        const std::int64_t before = best.after.sweeps;
+        contest.enter(found, edges);
+        if (best.after.sweeps < before) return true;
+      }
+    }
+    return false;
+  };
+  while (best.after.open <= LoopPlan::most_slots &&
+         lanes_for(best.after.open, planar) > lanes_for(1, planar) && one_better(contest.edges()))
+    continue;
+}
+
 }  // namespace
 
 std::string in_words(const Recut& recut) {
@@ -240,14 +219,6 @@ std::string in_words(const Recut& recut) {
   if (recut.cut.empty()) return "trees on the ground in another order";
   return "cut at " + reading::all_in_quotes(recut.cut, most_named) + ", with " +
          reading::all_in_quotes(recut.joined, most_named) + " in the tree";
-}
-
-CutCost cut_cost(const Mechanism& mechanism) {
-  CutCost cost = swept_cost(mechanism.scene(), mechanism.tree(), mechanism.plan());
-  if (mechanism.kkt() == KktChoice::sparse && filters_pivots(mechanism))
-    cost.factor_entries =
-        FilteredFactor(mechanism.kkt_pattern(), mechanism.nv(), mechanism.row_groups()).entries();
-  return cost;
 }
 
 Recut recut(const Mechanism& mechanism, const Start& start, const std::vector<std::string>& keep) {
@@ -261,7 +232,7 @@ Recut recut(const Mechanism& mechanism, const Start& start, const std::vector<st
   // Loops found to be no joints as their bodies stand are fixed, and the search is made once more.
   constexpr int most_searches = 50;
   int searches = 0;
-  Contest contest(mechanism, best);
+  Contest contest(mechanism, graph.edges, best);
   contest.enter(Recut(best), graph.edges);
   const auto rebuilt = [&](const std::vector<CutEdge>& edges, Recut& found) {
     if (!bodies) bodies.emplace(mechanism, start);
@@ -296,33 +267,7 @@ Recut recut(const Mechanism& mechanism, const Start& start, const std::vector<st
         if (now_swept || cycles.edges() == lowered) break;
       }
     }
-  // J knows nothing of lanes. Of small mechanisms the trees one exchange away are tried themselves,
-  // where all that are open might go into fewer.
-  constexpr int most_tried = 700;  // times bodies
-  int tried = 0;
-  const bool planar = mechanism.plan().planar;
-  for (bool improved = true; improved;) {
-    improved = false;
-    const std::vector<CutEdge> from = contest.edges().empty() ? graph.edges : contest.edges();
-    const int lanes = lanes_for(best.after.open, planar);
-    if (best.after.open > LoopPlan::most_slots || lanes == lanes_for(1, planar)) break;
-    const Cycles around(graph.vertices(), from);
-    for (std::size_t e = 0; e < from.size() && !improved; ++e) {
-      if (from[e].in_tree || from[e].fixed) continue;
-      for (const int f : around.cycle(static_cast<int>(e))) {
-        if (improved || (tried += graph.vertices()) > most_tried) break;
-        if (from[static_cast<std::size_t>(f)].fixed) continue;
-        std::vector<CutEdge> edges = from;
-        edges[e].in_tree = true;
-        edges[static_cast<std::size_t>(f)].in_tree = false;
-        Recut found;
-        if (edges == graph.edges || rebuilt(edges, found) != none) continue;
-        const std::int64_t before = best.after.sweeps;
-        contest.enter(found, edges);
-        improved = best.after.sweeps < before;
-      }
-    }
-  }
+  try_neighbours(graph, mechanism.plan().planar, rebuilt, contest, best);
   return best;
 }
 

@@ -13,24 +13,13 @@
 // coordinates of a universal joint then change places, and those of planar, spherical and free
 // joints are others, as remarks of the new scene tell.
 
+#include <momenta/dae/cut/cut_cost.h>
 #include <momenta/dae/form/form.h>
 
-#include <cstdint>
 #include <string>
 #include <vector>
 
 namespace momenta {
-
-struct CutCost {
-  int open = 0;           ///< equations open at once, at most
-  std::int64_t work = 0;  ///< LoopPlan::work: Σ over the fronts of their number squared
-  /// What an evaluation by the sweeps costs, in the units of `work`: that, and for each body and
-  /// lane of the fronts (lanes_for) 4 in the plane and 15 in space.
-  std::int64_t sweeps = 0;
-  std::int64_t mass_entries = 0;    ///< of M, upper triangle, one rate a body of the tree
-  std::int64_t factor_entries = 0;  ///< of L, where (7) is solved by the joints' sparse matrix
-  int depth = 0;                    ///< of the tree, bodies
-};
 
 struct Recut {
   std::vector<std::string> cut;     ///< joints that became loops, in the order of the scene
@@ -43,9 +32,6 @@ struct Recut {
 
 /// "cut at 'J3', with 'end' in the tree"; empty where nothing is gained.
 std::string in_words(const Recut& recut);
-
-/// How the loops of a mechanism lie in its tree. O(bodies + length of all loops).
-CutCost cut_cost(const Mechanism& mechanism);
 
 /// The best cuts found, and the best order of the trees on the ground: by descent from the given
 /// tree, from a shallow and from a deep one; those given where that lowers neither the cost of the

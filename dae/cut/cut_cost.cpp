@@ -1,0 +1,76 @@
+#include <momenta/dae/cut/cut_cost.h>
+#include <momenta/dae/factor/filtered_factor.h>
+#include <momenta/dae/kkt/kkt.h>
+#include <momenta/dae/sweeps/branches/looped_branches.h>
+#include <momenta/dae/sweeps/levels/loop_sweeps.h>
+
+#include <algorithm>
+#include <vector>
+
+namespace momenta {
+namespace {
+
+/// Bodies that the sweeps take one by one, where those of branches side by side in lanes count as
+/// two and a half branches (find_looped_branches).
+std::int64_t taken_one_by_one(const Model<Spatial>& model, const SweptLoops<Spatial>& swept) {
+  constexpr int lanes = 8;
+  auto twice = 2 * static_cast<std::int64_t>(model.bodies.size());
+  if (!swept.plan.fits()) return twice / 2;
+  const LinkTree links = build_links(model);
+  for (const LoopedBranchGroup& g :
+       find_looped_branches(links, swept.loops, swept.plan, lanes).groups)
+    twice -= (2 * g.count - 5) * g.bodies;
+  return twice / 2;
+}
+std::int64_t taken_one_by_one(const Model<Planar>& model, const SweptLoops<Planar>&) {
+  return static_cast<std::int64_t>(model.bodies.size());
+}
+
+/// How the loops of a scene lie in its tree, L left out.
+CutCost cost_in(const Tree& tree, const Scene& scene, const Plan& plan) {
+  CutCost cost;
+  std::vector<int> depth;
+  for (const Tree::Body& b : tree.bodies) {
+    depth.push_back(b.parent < 0 ? 1 : 1 + depth[static_cast<std::size_t>(b.parent)]);
+    cost.depth = std::max(cost.depth, depth.back());
+    cost.mass_entries += depth.back();
+  }
+  if (scene.loops.empty()) return cost;
+  const auto take = [&](const auto& model) {
+    const auto swept = swept_loops(tree, model, build_loops(scene, tree, model));
+    cost.open = swept.plan.slots;
+    cost.work = swept.plan.work;
+    cost.sweeps = cost.work + taken_one_by_one(model, swept) * (plan.planar ? 4 : 15) *
+                                  lanes_for(cost.open, plan.planar);
+  };
+  if (plan.planar)
+    take(build_planar_model(tree, scene, plan.basis));
+  else
+    take(build_spatial_model(tree, scene));
+  return cost;
+}
+
+}  // namespace
+
+CutCost cut_cost(const Mechanism& mechanism) {
+  CutCost cost = cost_in(mechanism.tree(), mechanism.scene(), mechanism.plan());
+  if (mechanism.kkt() == KktChoice::sparse && filters_pivots(mechanism))
+    cost.factor_entries =
+        FilteredFactor(mechanism.kkt_pattern(), mechanism.nv(), mechanism.row_groups()).entries();
+  return cost;
+}
+
+CutCost swept_cost(const Scene& scene, const Plan& plan) {
+  return cost_in(build_valid_tree(scene), scene, plan);
+}
+
+bool better(const CutCost& a, const CutCost& b) {
+  constexpr int most = LoopPlan::most_slots;
+  if ((a.open > most) != (b.open > most)) return a.open <= most;
+  // the bodies' own equations are the same whatever is cut
+  if (a.open > most) return a.factor_entries > 0 && 100 * a.factor_entries < 90 * b.factor_entries;
+  return 100 * a.sweeps < 98 * b.sweeps ||
+         (100 * a.sweeps < 102 * b.sweeps && 4 * a.mass_entries < 3 * b.mass_entries);
+}
+
+}  // namespace momenta
