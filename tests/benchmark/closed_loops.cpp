@@ -68,7 +68,7 @@ double error(const Eigen::VectorXd& x, const Eigen::VectorXd& exact) {
   return (x - exact).cwiseAbs().maxCoeff() / std::max(1.0, exact.cwiseAbs().maxCoeff());
 }
 
-void evaluate(benchmark::State& state, Row row) {
+void time_row(benchmark::State& state, Row row) {
   const Mechanism mechanism(row.model(static_cast<int>(state.range(0))), {row.algebra, row.kkt});
   const States16 s(mechanism);
   const bool momentum = std::string(row.form) == "momentum";
@@ -182,7 +182,7 @@ void register_closed_loops() {
       row.form = form;
       for (const long n : sizes)
         benchmark::RegisterBenchmark(("closed/" + std::string(form) + how + "/" + model).c_str(),
-                                     evaluate, row)
+                                     time_row, row)
             ->Arg(n);
     };
     const Row four{form, one_four_bar}, andrew{form, andrews}, chained{form, andrews_chained},
