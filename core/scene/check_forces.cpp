@@ -23,29 +23,28 @@ std::string owner_of(const ForceSpec& force) {
                             : "force " + in_quotes(force.name);
 }
 
+void check_ends(const Scene& scene, const Census& census, const ForceSpec& force,
+                const std::string& who) {
+  census.require_body(force.parent, true, force.at, who, "parent");
+  census.require_body(force.child, false, force.at, who, "child");
+  require(force.parent != force.child, scene, force.at, who, "parent and child must be two bodies");
+  require(force.origin_parent.allFinite() && force.origin_child.allFinite(), scene, force.at, who,
+          "origin must be finite [m]");
+}
+
 }  // namespace
 
 void check_forces(const Scene& scene, const Census& census) {
   for (const ForceSpec& force : scene.forces) {
     const std::string who = owner_of(force);
     if (force.kind == "spring-damper") {
-      census.require_body(force.parent, true, force.at, who, "parent");
-      census.require_body(force.child, false, force.at, who, "child");
-      require(force.parent != force.child, scene, force.at, who,
-              "parent and child must be two bodies");
-      require(force.origin_parent.allFinite() && force.origin_child.allFinite(), scene, force.at,
-              who, "origin must be finite [m]");
+      check_ends(scene, census, force, who);
       require(std::isfinite(force.stiffness) && std::isfinite(force.damping), scene, force.at, who,
               "stiffness [N/m] and damping [N s/m] must be finite");
       require(std::isfinite(force.rest) && force.rest >= 0, scene, force.at, who,
               "rest must be finite and >= 0 [m]");
     } else if (force.kind == "bushing") {
-      census.require_body(force.parent, true, force.at, who, "parent");
-      census.require_body(force.child, false, force.at, who, "child");
-      require(force.parent != force.child, scene, force.at, who,
-              "parent and child must be two bodies");
-      require(force.origin_parent.allFinite() && force.origin_child.allFinite(), scene, force.at,
-              who, "origin must be finite [m]");
+      check_ends(scene, census, force, who);
       require(std::abs(force.rotation.norm() - 1) <= norm_slack, scene, force.at, who,
               "rotation must be a unit quaternion within 1e-6");
       require(std::isfinite(force.stiffness) && std::isfinite(force.damping) &&

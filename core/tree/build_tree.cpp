@@ -241,10 +241,6 @@ class TreeBuilder {
   std::vector<const JointSpec*> joints_;
 };
 
-}  // namespace
-
-namespace {
-
 Tree without_bodies(const Scene& scene) {
   const auto& coordinates = scene.lagrangian->coordinates;
   Tree tree;

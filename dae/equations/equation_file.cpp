@@ -18,15 +18,6 @@ constexpr int most_unknowns = 450;
 
 using structure::at;
 
-bool is_name(std::string_view word) {
-  const auto letter = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
-  };
-  return !word.empty() && letter(word.front()) &&
-         std::all_of(word.begin(), word.end(),
-                     [&](char c) { return letter(c) || (c >= '0' && c <= '9'); });
-}
-
 class Reader {
  public:
   Reader(const Value& root, const std::string& file)
@@ -69,7 +60,7 @@ class Reader {
       const std::string& name = out_.variables[i];
       const Location place = list->items[i].at;
       const std::string what = "dae.variables[" + std::to_string(i) + "] is " + in_quotes(name);
-      if (!is_name(name) || name == "t" || name == "pi" || name == "der" || name == "and" ||
+      if (!is_plain_name(name) || name == "t" || name == "pi" || name == "der" || name == "and" ||
           name == "or" || name == "not" || name == "if")
         fail(file_, place,
              what +

@@ -1,8 +1,7 @@
 #pragma once
-// The work, along a run, of the forces without potential: dampers, moments, formulas; and of what
-// changes potentials with time. The power is
-// evaluated at the five Gauss points of each step, and the polynomial through these values gives
-// the work up to any time inside the step.
+// The work, along a run, of the forces without potential: dampers, stops, moments, formulas; and of
+// what changes potentials with time. The power is evaluated at the five Gauss points of each step,
+// and the polynomial through these values gives the work up to any time inside the step.
 
 #include <momenta/core/lagrangian/lagrangian_model.h>
 #include <momenta/core/scene/formula.h>

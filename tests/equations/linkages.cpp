@@ -61,6 +61,30 @@ Scene row_of_four_bars(int n, double angle, double rate) {
   return s;
 }
 
+Scene geared(Scene s, const Eigen::Vector3d& weight_at, double weight_turned) {
+  BodySpec weight = rod("weight", 0.2), wheel = rod("wheel", 0.3);
+  wheel.com.setZero();
+  s.bodies.insert(s.bodies.begin(), weight);
+  s.bodies.push_back(wheel);
+  JointSpec held;
+  held.name = "held";
+  held.kind = JointKind::weld;
+  held.parent = "rocker";
+  held.child = "weight";
+  held.origin_parent = weight_at;
+  held.rotation = Eigen::AngleAxisd(weight_turned, Eigen::Vector3d::UnitZ());
+  s.joints.push_back(held);
+  s.joints.push_back(hinge("shaft", "ground", "wheel", {-1, 0, 0}, 0.3));
+  LoopSpec gear;
+  gear.name = "gear";
+  gear.kind = LoopKind::coupler;
+  gear.joints = {"shaft", "O"};
+  gear.ratios = {1, 4};
+  gear.offset = 0.3 + 4 * s.joints.front().position.at(0);
+  s.loops.push_back(gear);
+  return s;
+}
+
 Scene bricard() {
   Scene s;
   s.name = "Bricard";

@@ -22,6 +22,10 @@ JointSpec hinge(const std::string& name, const std::string& parent, const std::s
 /// the x axis. Flat, and singular, at 0 and π.
 Scene row_of_four_bars(int n, double angle, double rate = 0);
 
+/// The four-bar of the examples with a weight welded to its rocker, at a point of it [m] and turned
+/// by an angle [rad], and a wheel on the ground geared to its crank.
+Scene geared(Scene four_bar, const Eigen::Vector3d& weight_at, double weight_turned);
+
 /// Bricard's linkage of five rods and six hinges at right angles: five loop equations of rank four.
 Scene bricard();
 

@@ -2,6 +2,7 @@
 // Jacobians against differences of their residuals; their starts against their own equations.
 
 #include "equations/ensemble.h"
+#include "equations/exact_jacobian.h"
 #include "equations/linkages.h"
 #include "equations/random_loops.h"
 #include "equations/tolerance.h"
@@ -168,34 +169,7 @@ void expect_exact_jacobians(const Mechanism& mechanism, const Start& start, unsi
     RandomTree random(seed);
     for (double& x : y) x += random.uniform(-0.3, 0.3);
     for (double& x : ydot) x += random.uniform(-1, 1);
-    const double c = 7.3, t = start.t;
-    const JacobianPattern& pattern = dae.pattern();
-    const bool sparse = !pattern.column_start.empty();
-    EXPECT_EQ(sparse, n > 60) << name;
-    std::vector<double> values(sparse ? pattern.row.size() : n * n);
-    ASSERT_TRUE(dae.jacobian(t, y.data(), ydot.data(), c, values.data()));
-    Eigen::MatrixXd exact = Eigen::MatrixXd::Zero(dae.size(), dae.size());
-    if (!sparse) exact = Eigen::Map<Eigen::MatrixXd>(values.data(), dae.size(), dae.size());
-    for (std::size_t j = 0; sparse && j < n; ++j)
-      for (auto k = pattern.column_start[j]; k < pattern.column_start[j + 1]; ++k)
-        exact(pattern.row[static_cast<std::size_t>(k)], static_cast<Eigen::Index>(j)) =
-            values[static_cast<std::size_t>(k)];
-    Eigen::MatrixXd differences(dae.size(), dae.size());
-    VectorXd ahead(dae.size()), behind(dae.size());
-    for (std::size_t j = 0; j < n; ++j) {
-      const double y0 = y[j], ydot0 = ydot[j], h = 1e-5;
-      y[j] = y0 + h;
-      ydot[j] = ydot0 + c * h;
-      ASSERT_TRUE(dae.residual(t, y.data(), ydot.data(), ahead.data()));
-      y[j] = y0 - h;
-      ydot[j] = ydot0 - c * h;
-      ASSERT_TRUE(dae.residual(t, y.data(), ydot.data(), behind.data()));
-      y[j] = y0;
-      ydot[j] = ydot0;
-      differences.col(static_cast<Eigen::Index>(j)) = (ahead - behind) / (2 * h);
-    }
-    // h² of the third derivative, ε/h of rounding
-    EXPECT_LT(relative_error(exact, differences), 1e-8) << name;
+    equations::expect_exact_jacobian(dae, start.t, y, ydot, name);
   }
 }
 

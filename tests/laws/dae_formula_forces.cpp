@@ -2,6 +2,7 @@
 // every form, energy and the work of formulas, exact Jacobians against differences, wherever loops
 // are cut and bodies folded, many states as one, quad precision, small motions, the index.
 
+#include "equations/exact_jacobian.h"
 #include "equations/large_scenes.h"
 #include "equations/linkages.h"
 #include "equations/other_trees.h"
@@ -165,33 +166,8 @@ void expect_exact_jacobians(const Mechanism& mechanism, unsigned seed) {
     RandomTree random(seed);
     for (double& x : y) x += random.uniform(-0.1, 0.1);
     for (double& x : ydot) x += random.uniform(-1, 1);
-    const double c = 7.3, t = 2.4;  // at other conditions than the start's
-    const JacobianPattern& pattern = dae.pattern();
-    const bool sparse = !pattern.column_start.empty();
-    EXPECT_EQ(sparse, n > 60) << name;
-    std::vector<double> values(sparse ? pattern.row.size() : n * n);
-    ASSERT_TRUE(dae.jacobian(t, y.data(), ydot.data(), c, values.data()));
-    Eigen::MatrixXd exact = Eigen::MatrixXd::Zero(dae.size(), dae.size());
-    if (!sparse) exact = Eigen::Map<Eigen::MatrixXd>(values.data(), dae.size(), dae.size());
-    for (std::size_t j = 0; sparse && j < n; ++j)
-      for (auto k = pattern.column_start[j]; k < pattern.column_start[j + 1]; ++k)
-        exact(pattern.row[static_cast<std::size_t>(k)], static_cast<Eigen::Index>(j)) =
-            values[static_cast<std::size_t>(k)];
-    Eigen::MatrixXd differences(dae.size(), dae.size());
-    VectorXd ahead(dae.size()), behind(dae.size());
-    for (std::size_t j = 0; j < n; ++j) {
-      const double y0 = y[j], ydot0 = ydot[j], h = 1e-5;
-      y[j] = y0 + h;
-      ydot[j] = ydot0 + c * h;
-      ASSERT_TRUE(dae.residual(t, y.data(), ydot.data(), ahead.data()));
-      y[j] = y0 - h;
-      ydot[j] = ydot0 - c * h;
-      ASSERT_TRUE(dae.residual(t, y.data(), ydot.data(), behind.data()));
-      y[j] = y0;
-      ydot[j] = ydot0;
-      differences.col(static_cast<Eigen::Index>(j)) = (ahead - behind) / (2 * h);
-    }
-    EXPECT_LT(relative_error(exact, differences), 1e-8) << name;
+    const double t = 2.4;  // at other conditions than the start's
+    equations::expect_exact_jacobian(dae, t, y, ydot, name);
   }
 }
 
@@ -204,32 +180,6 @@ TEST(FormulaForcesInLoops, ExactJacobians) {
   expect_exact_jacobians(Mechanism(row), 2);
 }
 
-/// A weight welded to the rocker, a wheel geared to the crank.
-Scene folded_four_bar() {
-  Scene s = example("four_bar");
-  BodySpec weight = rod("weight", 0.2), wheel = rod("wheel", 0.3);
-  wheel.com.setZero();
-  s.bodies.insert(s.bodies.begin(), weight);
-  s.bodies.push_back(wheel);
-  JointSpec held;
-  held.name = "held";
-  held.kind = JointKind::weld;
-  held.parent = "rocker";
-  held.child = "weight";
-  held.origin_parent = {0.5, 0.2, 0};
-  held.rotation = Eigen::AngleAxisd(0.4, Eigen::Vector3d::UnitZ());
-  s.joints.push_back(held);
-  s.joints.push_back(hinge("shaft", "ground", "wheel", {-1, 0, 0}, 0.3));
-  LoopSpec gear;
-  gear.name = "gear";
-  gear.kind = LoopKind::coupler;
-  gear.joints = {"shaft", "O"};
-  gear.ratios = {1, 4};
-  gear.offset = 0.3 + 4 * s.joints.front().position.at(0);
-  s.loops.push_back(gear);
-  return s;
-}
-
 /// Runs that fold bodies and cut elsewhere report the motion of the scene as it is written.
 TEST(FormulaForcesInLoops, SameMotionWhateverIsFoldedAndCut) {
   const auto same = [](const Scene& scene, double end, bool anew) {
@@ -239,7 +189,7 @@ TEST(FormulaForcesInLoops, SameMotionWhateverIsFoldedAndCut) {
     expect_same(run_of(scene, "momentum", end, 1e-11),
                 run_of(scene, "momentum", end, 1e-11, {.cut = CutChoice::scene}), 1e-7, scene.name);
   };
-  Scene welded = folded_four_bar();
+  Scene welded = equations::geared(example("four_bar"), {0.5, 0.2, 0}, 0.4);
   welded.markers = {marker("W", "weight", 0.1)};
   ForceSpec push;
   push.kind = "wrench";
@@ -249,12 +199,14 @@ TEST(FormulaForcesInLoops, SameMotionWhateverIsFoldedAndCut) {
   same(welded, 2, true);
   welded.forces[1].in_body_axes = true;  // the weight's axes stay
   same(welded, 2, true);
-  Scene wheel = folded_four_bar();  // the wheel stays, since formulas name its joint
+  Scene wheel = equations::geared(example("four_bar"), {0.5, 0.2, 0},
+                                  0.4);  // the wheel stays, since formulas name its joint
   wheel.forces = {torque("shaft", "-0.1 * u + sin(t)")};
   same(wheel, 2, true);
   wheel.forces = {by_law("potential", "cos(shaft.q)")};
   same(wheel, 2, true);
-  Scene measured = folded_four_bar();  // a spring with both ends on one body once it is folded
+  Scene measured = equations::geared(example("four_bar"), {0.5, 0.2, 0},
+                                     0.4);  // a spring with both ends on one body once it is folded
   ForceSpec gauge = by_law("spring-damper", "");
   gauge.name = "S";
   gauge.parent = "rocker";

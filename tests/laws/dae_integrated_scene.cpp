@@ -54,32 +54,6 @@ Scene bars_cut_in_the_middle(int n) {
   return written_otherwise(crossed_bars(n), exchanged);
 }
 
-/// A four-bar whose rocker has a weight welded to it and whose crank turns a wheel.
-Scene geared_four_bar() {
-  Scene s = example("four_bar");
-  s.joints.front().velocity = {3};
-  BodySpec weight = rod("weight", 0.2), wheel = rod("wheel", 0.3);
-  wheel.com.setZero();
-  s.bodies.insert(s.bodies.begin(), weight);
-  s.bodies.push_back(wheel);
-  JointSpec held;
-  held.name = "held";
-  held.kind = JointKind::weld;
-  held.parent = "rocker";
-  held.child = "weight";
-  held.origin_parent = {0.5, 0.2, 0};
-  s.joints.push_back(held);
-  s.joints.push_back(hinge("shaft", "ground", "wheel", {-1, 0, 0}, 0.3));
-  LoopSpec gear;
-  gear.name = "gear";
-  gear.kind = LoopKind::coupler;
-  gear.joints = {"shaft", "O"};
-  gear.ratios = {1, 4};
-  gear.offset = 0.3 + 4 * s.joints.front().position.at(0);
-  s.loops.push_back(gear);
-  return s;
-}
-
 /// A wheel on `carrier` that turns by `ratio` times the angle of a joint, which starts at `angle`.
 void add_rotor(Scene& s, const std::string& carrier, const std::string& joint, double ratio,
                double angle) {
@@ -149,6 +123,11 @@ Scene shuffled(Scene scene, unsigned seed) {
   return scene;
 }
 
+Scene turning(Scene scene, double rate) {
+  scene.joints.front().velocity = {rate};
+  return scene;
+}
+
 struct Case {
   Scene scene;
   double end;
@@ -157,7 +136,7 @@ std::vector<Case> cases() {
   return {{arch(20), 1},
           {chained_row(5), 1},
           {bars_cut_in_the_middle(4), 0.5},
-          {geared_four_bar(), 5},
+          {turning(equations::geared(example("four_bar"), {0.5, 0.2, 0}, 0), 3), 5},
           {shaken_pendulum_with_rotors(), 3},
           {written_otherwise(example("andrews"), {{"F", "E2"}}), 0.02}};
 }

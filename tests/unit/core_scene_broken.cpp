@@ -1,6 +1,8 @@
 // Scenes that are wrong: one line, where, what was found, what was expected. Each file of
 // broken_scenes/ opens with "# expect: " lines, the parts its sentence must contain.
 
+#include "equations/refusal.h"
+
 #include <gtest/gtest.h>
 #include <momenta/core/scene/files/read_scene.h>
 #include <momenta/core/text/near_name.h>
@@ -19,21 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The sentence `action` fails with. Fails the test when it does not, or fails with anything else.
-std::string sentence_of(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const SceneError& error) {
-    const std::string sentence = error.what();
-    EXPECT_EQ(sentence.find('\n'), std::string::npos) << sentence;
-    return sentence;
-  } catch (const std::exception& error) {
-    ADD_FAILURE() << "not a SceneError: " << error.what();
-    return "";
-  }
-  ADD_FAILURE() << "nothing was refused";
-  return "";
-}
+using equations::sentence_of;
 
 void expect_contains(const std::string& sentence, const std::string& part) {
   EXPECT_NE(sentence.find(part), std::string::npos)

@@ -1,6 +1,8 @@
 // Files of equations: what they say, and the sentences of those that are wrong. Each file of
 // broken_equations/ opens with "# expect: " lines, the parts its sentence must contain.
 
+#include "equations/refusal.h"
+
 #include <gtest/gtest.h>
 #include <momenta/core/scene/scene.h>
 #include <momenta/dae/equations/equation_start.h>
@@ -19,17 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string sentence_of(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const SceneError& error) {
-    const std::string sentence = error.what();
-    EXPECT_EQ(sentence.find('\n'), std::string::npos) << sentence;
-    return sentence;
-  }
-  ADD_FAILURE() << "nothing was refused";
-  return "";
-}
+using equations::sentence_of;
 
 std::vector<fs::path> broken_files() {
   std::vector<fs::path> files;

@@ -53,13 +53,9 @@ void refuse_fault(const Fields& table, const CurveSpec& curve, const Eigen::Vect
     table.fail_at(table.at(), what + fault);
 }
 
-void read_ends(const Fields& table, LoopSpec& loop) {
+void read_frame(const Fields& table, LoopSpec& loop) {
   loop.name = table.text("name");
-  loop.parent = table.text("parent", loop.parent);
-  loop.child = table.text("child");
-  const Origins origins = read_origins(table);
-  loop.origin_parent = origins.parent;
-  loop.origin_child = origins.child;
+  read_ends(table, loop);
   loop.rotation = read_rotation(table);
   loop.axis = table.direction("axis", loop.axis);
 }
@@ -78,7 +74,7 @@ void read_slot(const Fields& table, LoopSpec& loop) {
                  "has no meaning for a slot on a " + kind + ", expected on a circle only");
   table.allow({"name", "kind", "parent", "child", "origin", "rotation", "axis", "curve", "radius",
                "points", "closed"});
-  read_ends(table, loop);
+  read_frame(table, loop);
   if (kind == "line") return;
   loop.curve = read_curve(table, kind);
   refuse_fault(table, loop.curve, loop.axis, "");
@@ -86,7 +82,7 @@ void read_slot(const Fields& table, LoopSpec& loop) {
 
 void read_cam(const Fields& table, LoopSpec& loop) {
   table.allow({"name", "kind", "parent", "child", "origin", "rotation", "axis", "profile"});
-  read_ends(table, loop);
+  read_frame(table, loop);
   const auto profile = table.table("profile");
   if (!profile)
     table.fail_at(table.at(),
@@ -110,7 +106,7 @@ void read_cam(const Fields& table, LoopSpec& loop) {
 void read_rack(const Fields& table, LoopSpec& loop) {
   table.allow({"name", "kind", "parent", "child", "origin", "rotation", "axis", "direction",
                "radius", "offset"});
-  read_ends(table, loop);
+  read_frame(table, loop);
   loop.direction = table.direction("direction", loop.direction);
   if (table.has("direction") && loop.axis.cross(loop.direction).norm() < parallel_slack)
     table.fail_key("direction", "is parallel to axis, expected another direction");

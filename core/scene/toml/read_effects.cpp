@@ -96,11 +96,7 @@ ForceSpec read_force(const Fields& table) {
   if (force.kind == "spring-damper") {
     table.allow(
         {"name", "kind", "parent", "child", "origin", "stiffness", "damping", "rest", "law"});
-    force.parent = table.text("parent", force.parent);
-    force.child = table.text("child");
-    const Origins origins = read_origins(table);
-    force.origin_parent = origins.parent;
-    force.origin_child = origins.child;
+    read_ends(table, force);
     force.law = read_law(table, {"stiffness", "damping", "rest"});
     force.stiffness = table.number("stiffness", {"N/m"}, 0);
     force.damping = table.number("damping", {"N s/m"}, 0);
@@ -108,11 +104,7 @@ ForceSpec read_force(const Fields& table) {
   } else if (force.kind == "bushing") {
     table.allow({"name", "kind", "parent", "child", "origin", "rotation", "stiffness", "damping",
                  "rotational_stiffness", "rotational_damping"});
-    force.parent = table.text("parent", force.parent);
-    force.child = table.text("child");
-    const Origins origins = read_origins(table);
-    force.origin_parent = origins.parent;
-    force.origin_child = origins.child;
+    read_ends(table, force);
     force.rotation = read_rotation(table);
     force.stiffness = table.number("stiffness", {"N/m"}, 0);
     force.damping = table.number("damping", {"N s/m"}, 0);

@@ -87,6 +87,17 @@ void normalise_quaternion(const Fields& table, std::vector<double>& position) {
   if (!is_unit(quaternion)) quaternion /= norm;
 }
 
+template <class Spec>
+void read_axes(const Fields& table, Spec& spec) {
+  spec.rotation = read_rotation(table);
+  spec.axis = table.direction("axis", spec.axis);
+  spec.axis2 = table.direction("axis2", spec.axis2);
+  spec.direction = table.direction("direction", spec.direction);
+  for (const char* key : {"axis2", "direction"})
+    if (table.has(key) && spec.axis.cross(table.direction(key, {})).norm() < parallel_slack)
+      table.fail_key(key, "is parallel to axis, expected another direction");
+}
+
 }  // namespace
 
 BodySpec read_body(const Fields& table) {
@@ -150,18 +161,8 @@ JointSpec read_joint(const Fields& table) {
                "stop_damping", "stop_width"});
 
   joint.name = table.text("name");
-  joint.parent = table.text("parent", joint.parent);
-  joint.child = table.text("child");
-  const Origins origins = read_origins(table);
-  joint.origin_parent = origins.parent;
-  joint.origin_child = origins.child;
-  joint.rotation = read_rotation(table);
-  joint.axis = table.direction("axis", joint.axis);
-  joint.axis2 = table.direction("axis2", joint.axis2);
-  joint.direction = table.direction("direction", joint.direction);
-  for (const char* key : {"axis2", "direction"})
-    if (table.has(key) && joint.axis.cross(table.direction(key, {})).norm() < parallel_slack)
-      table.fail_key(key, "is parallel to axis, expected another direction");
+  read_ends(table, joint);
+  read_axes(table, joint);
   if (joint.kind == JointKind::helical) joint.pitch = table.number("pitch", {"m/rad"});
 
   const bool turns = joint.kind != JointKind::prismatic;
@@ -300,18 +301,8 @@ LoopSpec read_loop(const Fields& table, std::span<const DriveSpec> drives) {
                "direction", "length"});
 
   loop.name = table.text("name");
-  loop.parent = table.text("parent", loop.parent);
-  loop.child = table.text("child");
-  const Origins origins = read_origins(table);
-  loop.origin_parent = origins.parent;
-  loop.origin_child = origins.child;
-  loop.rotation = read_rotation(table);
-  loop.axis = table.direction("axis", loop.axis);
-  loop.axis2 = table.direction("axis2", loop.axis2);
-  loop.direction = table.direction("direction", loop.direction);
-  for (const char* key : {"axis2", "direction"})
-    if (table.has(key) && loop.axis.cross(table.direction(key, {})).norm() < parallel_slack)
-      table.fail_key(key, "is parallel to axis, expected another direction");
+  read_ends(table, loop);
+  read_axes(table, loop);
   const auto prescribes_length = [&](const DriveSpec& drive) {
     return drive.loop == loop.name && drive.origin.empty();
   };

@@ -54,6 +54,16 @@ struct Origins {
 };
 Origins read_origins(const Fields& table);
 
+/// The bodies and points of a joint, of a loop between two bodies, or of a force between them.
+template <class Spec>
+void read_ends(const Fields& table, Spec& spec) {
+  spec.parent = table.text("parent", spec.parent);
+  spec.child = table.text("child");
+  const Origins origins = read_origins(table);
+  spec.origin_parent = origins.parent;
+  spec.origin_child = origins.child;
+}
+
 /// rotation = { rpy = [roll, pitch, yaw] } | { quaternion = [w, x, y, z] } | { axis = .., angle =
 /// .. }; rpy means Rz(yaw) Ry(pitch) Rx(roll).
 Eigen::Quaterniond read_rotation(const Fields& table);
