@@ -185,7 +185,8 @@ class Contest {
 template <class Rebuilt>
 void try_neighbours(const SceneGraph& graph, bool planar, Rebuilt&& rebuilt, Contest& contest,
                     const Recut& best) {
-  constexpr int most_tried = 700;  // times bodies
+  constexpr int most_bodies = 30, most_tried = 700;  // tried: times bodies
+  if (graph.vertices() > most_bodies) return;
   int tried = 0;
   const auto one_better = [&](const std::vector<CutEdge>& from) {
     const Cycles around(graph.vertices(), from);
