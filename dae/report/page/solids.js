@@ -150,6 +150,8 @@ function extentOf(films) {
         }
       }
       for (const wheel of wheels) for (let i = 0; i < 4; ++i) points.push(pointOf(state, wheel.body, wheel.rim(i / 4, 1)));
+      for (const line of picture.strokes ?? [])
+        if (line.closed) for (const p of line.points) points.push(pointOf(state, line.body, p));  // others go on as far as is drawn
     }
   }
   for (const pair of picture.loops) if (pair.parent < 0) points.push(pair.at_parent);
