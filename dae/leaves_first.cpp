@@ -10,7 +10,8 @@ namespace momenta {
 namespace {
 
 constexpr int poses = 3;
-constexpr double way = 0.2;  // from pose to pose [rad, lengths of the scene]
+constexpr int motions_tried = 4;  // at each pose: of a single one rounding may happen to be small
+constexpr double way = 0.2;       // from pose to pose [rad, lengths of the scene]
 
 class LeavesFirstError {
  public:
@@ -39,7 +40,7 @@ class LeavesFirstError {
     bool there = close(q);
     double error = std::numeric_limits<double>::infinity();
     for (int pose = 0; there && pose < poses; ++pose) {
-      const double here = at(q.data());
+      const double here = worst_at(q.data());
       error = std::min(error, here);
       there = std::isfinite(here) && move(q);
     }
@@ -47,6 +48,13 @@ class LeavesFirstError {
   }
 
  private:
+  double worst_at(const double* q) {
+    double worst = 0;
+    for (int motion = 0; motion < motions_tried && std::isfinite(worst); ++motion)
+      worst = std::max(worst, at(q));
+    return worst;
+  }
+
   double at(const double* q) {
     e_.place(0, q);
     e_.mass_diagonal(inertia_.data());

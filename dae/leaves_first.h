@@ -20,7 +20,8 @@
 // To ω the solution is that of a mechanism whose numbers differ so much from this one's. A row that
 // is redundant, or lost at a singular pose, holds with the others: it has no part in ω. Next to
 // such a pose rows fade by half, whatever the masses are: so the least ω counts of the start, its
-// loops closed, and of two poses that motions lead to from there. Source: Oettli, Prager, Numer.
+// loops closed, and of two poses that motions lead to from there. ω at a pose is the largest of a
+// few motions: of a single one the roundings may cancel. Source: Oettli, Prager, Numer.
 // Math. 6 (1964) 405.
 
 #include <momenta/dae/mechanism.h>

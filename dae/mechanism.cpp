@@ -282,13 +282,20 @@ std::string Mechanism::loops_missed(bool swept) const {
     FilteredMatrix matrix(kkt_pattern(), axis_scale(), nv(), row_groups_);
     const auto own = evaluation<double>();
     std::vector<double> x(static_cast<std::size_t>(nv() + m()));
+    std::vector<double> place;  // of what is factorised, and its fade
     error = leaves_first_error(*this, *e,
                                [&](const double* q, const double* p, double beta, double fade,
                                    double* v, double* sigma) -> std::optional<bool> {
-                                 own->place(0, q);
-                                 own->mass_entries(matrix.mass());
-                                 own->constraint_entries(matrix.constraint());
-                                 if (!matrix.factor(nullptr, fade)) return false;
+                                 std::vector<double> here(q, q + nq());
+                                 here.push_back(fade);
+                                 if (here != place) {
+                                   place.clear();
+                                   own->place(0, q);
+                                   own->mass_entries(matrix.mass());
+                                   own->constraint_entries(matrix.constraint());
+                                   if (!matrix.factor(nullptr, fade)) return false;
+                                   place = here;
+                                 }
                                  own->positions(x.data() + nv());
                                  std::copy_n(p, nv(), x.data());
                                  for (int i = nv(); i < nv() + m(); ++i)
