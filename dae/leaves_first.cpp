@@ -42,7 +42,7 @@ class LeavesFirstError {
     for (int pose = 0; there && pose < poses; ++pose) {
       const double here = worst_at(q.data());
       error = std::min(error, here);
-      there = std::isfinite(here) && move(q);
+      there = std::isfinite(here) && error > most_leaves_first_error && move(q);
     }
     return error;
   }
@@ -100,23 +100,31 @@ class LeavesFirstError {
 
   /// Along v, and back onto the loops.
   bool move(Eigen::VectorXd& q) {
-    double fastest = 0;
-    for (std::size_t i = 0; i < v_.size(); ++i)
-      fastest = std::max(fastest, std::abs(v_[i]) / size_[i]);
-    if (!(fastest > 0)) return false;
-    step(q, way / fastest);
+    const double rate = fastest();
+    if (!(rate > 0)) return false;
+    step(q, way / rate);
     return close(q);
   }
 
-  /// By Newton's steps.
+  /// Of v; not a number where one is not.
+  double fastest() const {
+    double most = 0;
+    for (std::size_t i = 0; i < v_.size(); ++i)
+      most = std::abs(v_[i]) / size_[i] <= most ? most : std::abs(v_[i]) / size_[i];
+    return most;
+  }
+
+  /// By Newton's steps, until the next would be rounding.
   bool close(Eigen::VectorXd& q) {
     constexpr int corrections = 6;
+    constexpr double next_is_rounding = 1e-8;
     const std::vector<double> none(v_.size(), 0.0);
     for (int k = 0; k < corrections; ++k) {
       const auto solved =
           solve_(q.data(), none.data(), 1, fade_projection, v_.data(), sigma_.data());
       if (!solved || !*solved) return false;
       step(q, 1);
+      if (fastest() < next_is_rounding) break;
     }
     return q.allFinite();
   }

@@ -40,7 +40,8 @@ inline constexpr double most_leaves_first_error = 1e-9;
 using LeavesFirst = std::function<std::optional<bool>(const double* q, const double* p, double beta,
                                                       double fade, double* v, double* sigma)>;
 
-/// ω; infinite where there is no solution. A few solutions and O(bodies + length of all loops).
+/// ω, of the first pose where it is small enough; infinite where there is no solution. A few
+/// solutions and O(bodies + length of all loops).
 double leaves_first_error(const Mechanism& mechanism, Evaluation<double>& e,
                           const LeavesFirst& solve);
 
