@@ -42,13 +42,13 @@ S LoopSweeps<Planar, S, Rows, Momentum>::moving_bias(const Loop& l, const Place&
   S aw(0.0), bw(0.0);
   Vec2<S> u{}, accelerated{};  // of x_A − x_B, the bodies' own accelerations left out
   if (l.a >= 0) {
-    const LoopedRevolute<S, Rows>& A = revolutes_[static_cast<std::size_t>(l.a)];
+    const Revolute& A = revolutes_[static_cast<std::size_t>(l.a)];
     aw = A.omega;
     u = {{A.vx - aw * s.ay, A.vy + aw * s.ax}};
     accelerated = {{-(aw * aw * s.ax), -(aw * aw * s.ay)}};
   }
   if (l.b >= 0) {
-    const LoopedRevolute<S, Rows>& B = revolutes_[static_cast<std::size_t>(l.b)];
+    const Revolute& B = revolutes_[static_cast<std::size_t>(l.b)];
     bw = B.omega;
     const Vec2<S> arm{{s.bx - gap[0], s.by - gap[1]}};
     u -= Vec2<S>{{B.vx - bw * arm[1], B.vy + bw * arm[0]}};
@@ -95,7 +95,7 @@ MOMENTA_INLINE Vec2<S> LoopSweeps<Planar, S, Rows, Momentum>::tie_bias(
   if constexpr (Momentum) {
     return S(right.positions) * D;
   } else {
-    const LoopedRevolute<S, Rows>& w = revolutes_[k];
+    const Revolute& w = revolutes_[k];
     const S centripetal = -end.sign * (w.omega * w.omega);
     Vec2<S> bias{{centripetal * arm[0], centripetal * arm[1]}};
     if (right.alpha != 0) {
@@ -132,7 +132,7 @@ S LoopSweeps<Planar, S, Rows, Momentum>::row_bias(std::size_t loop, int row,
     const auto velocity = [&](int body, S& vx, S& vy, S& omega) {
       vx = vy = omega = zero;
       if (body < 0) return;
-      const LoopedRevolute<S, Rows>& w = revolutes_[static_cast<std::size_t>(body)];
+      const Revolute& w = revolutes_[static_cast<std::size_t>(body)];
       vx = w.vx;
       vy = w.vy;
       omega = w.omega;
@@ -194,42 +194,43 @@ MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::enter_pair(std::size_
                                                                       Blocks& o) {
   const End& end = ends_[i];
   const auto loop = static_cast<std::size_t>(end.loop);
-  // (fx, fy) and (−fy, fx) with their couples.
   const S sign(end.sign);
-  S fx = sign, fy(0.0), n0, n1;
-  Vec2<S> arm;
   if (end.tie) {
-    arm = turned(k, end.at);
+    const Vec2<S> arm = turned(k, end.at);
     arms_[i] = arm;
-    n0 = -(sign * arm[1]);
-    n1 = sign * arm[0];
-  } else {
-    const Place& s = places_[loop];
-    arm = end.on_a ? Vec2<S>{{s.ax, s.ay}} : Vec2<S>{{s.bx, s.by}};
-    fx = sign * s.Fx;
-    fy = sign * s.Fy;
-    n0 = arm[0] * fy - arm[1] * fx;
-    n1 = arm[0] * fx + arm[1] * fy;
+    const S nx = sign * arm[0], ny = sign * arm[1], zero(0.0);
+    o.C[0].add_pair(end.slot, sign, zero);
+    o.C[1].add_pair(end.slot, zero, sign);
+    o.C[2].add_pair(end.slot, -ny, nx);
+    if (right.centre) {
+      const S *centre = right.centre + end.row, x = centre[0], y = centre[1];
+      a.Dx = a.Dx + sign * x;
+      a.Dy = a.Dy + sign * y;
+      a.Dn = a.Dn + (nx * y - ny * x);
+    }
+    if (!asks(end, right)) return;
+    const Vec2<S> d = tie_bias(k, end, arm, right);
+    o.d.add_pair(end.slot, d[0], d[1]);
+    return;
   }
+  if (end.turns && end.first) place_turning(end);
+  // (fx, fy) and (−fy, fx) with their couples.
+  const Place& s = places_[loop];
+  const Vec2<S> arm = end.on_a ? Vec2<S>{{s.ax, s.ay}} : Vec2<S>{{s.bx, s.by}};
+  const S fx = sign * s.Fx, fy = sign * s.Fy;
+  const S n0 = arm[0] * fy - arm[1] * fx, n1 = arm[0] * fx + arm[1] * fy;
+  o.C[0].add_pair(end.slot, fx, -fy);
+  o.C[1].add_pair(end.slot, fy, fx);
+  o.C[2].add_pair(end.slot, n0, n1);
   if (right.centre) {
-    const S* centre = right.centre + end.row;
-    a.Dx = a.Dx + (centre[0] * fx - centre[1] * fy);
-    a.Dy = a.Dy + (centre[0] * fy + centre[1] * fx);
-    a.Dn = a.Dn + (centre[0] * n0 + centre[1] * n1);
+    const S *centre = right.centre + end.row, x = centre[0], y = centre[1];
+    a.Dx = a.Dx + (x * fx - y * fy);
+    a.Dy = a.Dy + (x * fy + y * fx);
+    a.Dn = a.Dn + (x * n0 + y * n1);
   }
-  const bool asked = asks(end, right);
-  at_slot<Rows>(end.slot, [&]<int Slot>() MOMENTA_INLINED {
-    o.C[0].template add_pair<Slot>(fx, -fy);
-    o.C[1].template add_pair<Slot>(fy, fx);
-    o.C[2].template add_pair<Slot>(n0, n1);
-    if (!asked) return;
-    Vec2<S> d;
-    if (end.tie)
-      d = tie_bias(k, end, arm, right);
-    else
-      d = {{row_bias(loop, 0, right), row_bias(loop, 1, right)}};
-    o.d.template add_pair<Slot>(d[0], d[1]);
-  });
+  if (!asks(end, right)) return;
+  const S d0 = row_bias(loop, 0, right), d1 = row_bias(loop, 1, right);
+  o.d.add_pair(end.slot, d0, d1);
 }
 
 template <class S, int Rows, bool Momentum>
@@ -244,6 +245,7 @@ void LoopSweeps<Planar, S, Rows, Momentum>::enter_rows(std::size_t k, std::size_
     arms_[i] = arm = turned(k, end.at);
     if (asked) d = tie_bias(k, end, arm, right);
   } else {
+    if (end.turns && end.first) place_turning(end);
     const Place& s = places_[loop];
     arm = end.on_a ? Vec2<S>{{s.ax, s.ay}} : Vec2<S>{{s.bx, s.by}};
   }

@@ -45,6 +45,10 @@ struct Slots {
   }
   MOMENTA_INLINE void set(int i, const S& x) { v[i] = x; }
   MOMENTA_INLINE void add(int i, const S& x) { v[i] = v[i] + x; }
+  MOMENTA_INLINE void add_pair(int i, const S& x, const S& y) {
+    add(i, x);
+    add(i + 1, y);
+  }
   template <int i>
   MOMENTA_INLINE void set_pair(const S& x, const S& y) {
     v[i] = x;
@@ -87,6 +91,13 @@ struct Slots<Pack<1, Level>, Rows> {
   MOMENTA_INLINE void add(int i, const S& x) {
     for (int k = 0; k < parts; ++k) v[k].v += places(k) == i ? Part(x.v).v : Part(0.0).v;
   }
+  /// x and y times unit vectors, which costs less than a choice.
+  MOMENTA_INLINE void add_pair(int i, const S& x, const S& y) {
+    const double *const at = units.of[i], *const next = units.of[i + 1];
+    each<parts>([&](auto k) MOMENTA_INLINED {
+      v[k] = v[k] + Part::load(at + k * width) * all(x) + Part::load(next + k * width) * all(y);
+    });
+  }
   template <int i>
   MOMENTA_INLINE void set_pair(const S& x, const S& y) {
     auto& part = v[i / width].v;
@@ -99,6 +110,14 @@ struct Slots<Pack<1, Level>, Rows> {
   }
 
  private:
+  struct Units {
+    alignas(64) double of[Rows][Rows];
+  };
+  static constexpr Units units = [] {
+    Units u{};
+    for (int i = 0; i < Rows; ++i) u.of[i][i] = 1;
+    return u;
+  }();
   static MOMENTA_INLINE typename Part::Lanes both(const S& x, const S& y) {
     Part p;
     for (int j = 0; j < width; j += 2) {
