@@ -80,8 +80,9 @@ void LoopSweeps<Planar, S, Rows, Momentum>::close_any(int loop, Open& open, doub
 template <class S, int Rows, bool Momentum>
 template <class In>
 S LoopSweeps<Planar, S, Rows, Momentum>::couple(std::size_t k, const In& r,
-                                                const RightSide<S>& right, Blocks& o) {
+                                                const RightSide<S>& right, Open& open) {
   const PlanarLink& l = tree_->links[k];
+  Blocks& o = open.blocks;
   S own = l.sign < 0 ? -r[l.u] : S(r[l.u]);
   each_coupling(*plan_, k, [&](const LoopPlan::Coupling& j, std::size_t loop, int slot) {
     const double ratio = l.sign < 0 ? -j.ratio : j.ratio;
@@ -92,7 +93,8 @@ S LoopSweeps<Planar, S, Rows, Momentum>::couple(std::size_t k, const In& r,
   return own;
 }
 template <class S, int Rows, bool Momentum>
-void LoopSweeps<Planar, S, Rows, Momentum>::uncouple(std::size_t k, Column& c) {
+void LoopSweeps<Planar, S, Rows, Momentum>::uncouple(std::size_t k, Open& open) {
+  Column& c = open.blocks.C[2];
   const double sign = tree_->links[k].sign;
   each_coupling(*plan_, k, [&](const LoopPlan::Coupling& j, std::size_t, int slot) {
     c.add(slot, S(sign < 0 ? j.ratio : -j.ratio));
@@ -104,6 +106,8 @@ template <class In>
 bool LoopSweeps<Planar, S, Rows, Momentum>::inward(const In& r, const RightSide<S>& right) {
   const PlanarLink* links = tree_->links.data();
   const OpenSlots::Front* fronts = open_slots_.fronts.data();
+  const Visit* visits = visits_.data();
+  Revolute* records = revolutes_.data();
   const Vec2<double>& g = tree_->model->gravity;
   const bool falls = !Momentum && tree_->model->has_gravity, couples = plan_->couples();
   PlanarArticulated<S> a{};
@@ -115,7 +119,8 @@ bool LoopSweeps<Planar, S, Rows, Momentum>::inward(const In& r, const RightSide<
   for (std::size_t k = revolutes_.size(); k-- > 0;) {
     const PlanarLink& l = links[k];
     const OpenSlots::Front& front = fronts[k];
-    Revolute& w = revolutes_[k];
+    const Visit& visit = visits[k];
+    Revolute& w = records[k];
     const S c = angles_.cosine(k), s = angles_.sine(k);
     const S kx = l.cx * c - l.cy * s, ky = l.cx * s + l.cy * c;
     const Vec2<S> way = way_from_parent(l);
@@ -146,8 +151,8 @@ bool LoopSweeps<Planar, S, Rows, Momentum>::inward(const In& r, const RightSide<
       Base::add(a, slot.articulated);
       o.add(slot.blocks, front.slot);
     }
-    enter(k, right, a, o);
-    const LoopPlan::Range closing = plan_->closings_of[k];
+    enter(k, visit.ends, right, a, o);
+    const LoopPlan::Range& closing = visit.closings;
     if (closing.first != closing.last) close<true>(closing, a, o, right.fade, front.all);
     if (!l.revolute) [[unlikely]] {
       Open here{a, o};
@@ -167,9 +172,10 @@ bool LoopSweeps<Planar, S, Rows, Momentum>::inward(const In& r, const RightSide<
       w.inverse = inverse;
       S pk;
       if (couples) [[unlikely]] {
-        Blocks here = o;
+        Open here{a, o};
         pk = couple(k, r, right, here);
-        o = here;
+        a = here.articulated;
+        o = here.blocks;
       } else {
         pk = l.sign < 0 ? -r[l.u] : S(r[l.u]);
       }
@@ -225,9 +231,10 @@ bool LoopSweeps<Planar, S, Rows, Momentum>::inward(const In& r, const RightSide<
         else
           Base::carry(a, rx, ry, pk);
         if (couples) [[unlikely]] {
-          Column here = o.C[2];
+          Open here{a, o};
           uncouple(k, here);
-          o.C[2] = here;
+          a = here.articulated;
+          o = here.blocks;
         }
       }
     }

@@ -48,10 +48,14 @@ void LoopSweeps<Planar, S, Rows, Momentum>::outward(const RightSide<S>& right, O
   const S zero(0.0);
   S vx = zero, vy = zero, omega = zero;
   Column sigma{}, at_ground{};
-  for (std::size_t k = 0; k < revolutes_.size(); ++k) {
+  const std::size_t n = revolutes_.size();
+  Revolute* records = revolutes_.data();
+  const OpenSlots::Front* fronts = open_slots_.fronts.data();
+  const Visit* visits = visits_.data();
+  for (std::size_t k = 0; k < n; ++k) {
     const PlanarLink& l = links[k];
-    const SlotGroups open = open_slots_.fronts[k].open;
-    Revolute& w = revolutes_[k];
+    const SlotGroups open = fronts[k].open;
+    Revolute& w = records[k];
     if (l.parent < 0) {
       const LoopPlan::Range last = plan_->ground_closings_of[k];
       if (last.first != last.last)
@@ -95,19 +99,18 @@ void LoopSweeps<Planar, S, Rows, Momentum>::outward(const RightSide<S>& right, O
         if (right.rates) {
           S turned = zero;
           if (l.parent >= 0) {
-            const S Px = plus_dot(w.Axx * vx + w.Axy * vy + w.fx, w.Cx, sigma, open),
-                    Py = plus_dot(w.Axy * vx + w.Ayy * vy + w.fy, w.Cy, sigma, open);
-            turned = vy * Px - vx * Py;
+            const S Px = w.Axx * vx + w.Axy * vy + w.fx, Py = w.Axy * vx + w.Ayy * vy + w.fy;
+            turned = plus_cross(vy * Px - vx * Py, vy, w.Cx, vx, w.Cy, sigma, open);
             if (l.has_rotor) turned = turned + l.rotor * before * (vy * w.hx - vx * w.hy);
           }
           rate[l.u] = turned;  // about the plane's normal, until the last sweep
         }
     }
-    const LoopPlan::Range closed = plan_->closings_of[k];
+    const LoopPlan::Range& closed = visits[k].closings;
     if (closed.first != closed.last)
       solve_loops<true>(closed, right, Planar::Motion<S>{{{vx, vy}}, omega}, sigma, impulse);
     if constexpr (Momentum)
-      if (right.rates) own_rates(k, right, impulse, vx, vy, omega);
+      if (right.rates) own_rates(k, visits[k].ends, right, impulse, vx, vy, omega, w);
     if (l.slot >= 0) outward_slots_[static_cast<std::size_t>(l.slot)] = {{vx, vy, omega}, sigma};
   }
 }
@@ -147,9 +150,8 @@ void LoopSweeps<Planar, S, Rows, Momentum>::general_outward(std::size_t k, bool 
 template <class S, int Rows, bool Momentum>
 template <class Out>
 MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::own_rates(
-    std::size_t k, const RightSide<S>& right, const Out& impulse, const S& vx, const S& vy,
-    const S& omega) {
-  Revolute& w = revolutes_[k];
+    std::size_t k, const LoopPlan::Range& ends, const RightSide<S>& right, const Out& impulse,
+    const S& vx, const S& vy, const S& omega, Revolute& w) {
   const S zero(0.0);
   Wrench T{zero, zero, zero};
   if (!weights_.empty()) {
@@ -162,7 +164,6 @@ MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::own_rates(
     w.vy = vy;
     w.omega = omega;
   }
-  const LoopPlan::Range ends = plan_->ends_of[k];
   for (int i = ends.first; i < ends.last; ++i) {
     const End& end = ends_[static_cast<std::size_t>(i)];
     if (!end.tie) {
@@ -237,9 +238,10 @@ void LoopSweeps<Planar, S, Rows, Momentum>::rates_inward(const In& q, const Righ
   const S zero(0.0);
   if (right.body_forces) gather_forces();
   Wrench T{zero, zero, zero};
+  const Revolute* records = revolutes_.data();
   for (std::size_t k = revolutes_.size(); k-- > 0;) {
     const PlanarLink& l = links[k];
-    const Revolute& w = revolutes_[k];
+    const Revolute& w = records[k];
     const Wrench own_share{w.fx, w.fy, w.fn};
     if (l.leaf)
       T = own_share;

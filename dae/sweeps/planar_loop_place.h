@@ -119,18 +119,25 @@ MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::place_ends(std::size_
   }
 }
 
-/// A pair of rows along axes of B, at the end that comes first on the way in.
+/// Pairs of rows along axes of B.
 template <class S, int Rows, bool Momentum>
-MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::place_turning(const End& end) {
-  const auto a = static_cast<std::size_t>(end.a), b = static_cast<std::size_t>(end.b);
-  Place& s = places_[static_cast<std::size_t>(end.loop)];
-  const Vec2<S> arm = turned(a, end.at), axis = turned(b, end.axis);
-  s.ax = arm[0];
-  s.ay = arm[1];
-  s.bx = (origins_[a][0] - origins_[b][0]) + arm[0];
-  s.by = (origins_[a][1] - origins_[b][1]) + arm[1];
-  s.Fx = axis[0];
-  s.Fy = axis[1];
+void LoopSweeps<Planar, S, Rows, Momentum>::place_turning(const RightSide<S>& right) {
+  const bool asked = biased(right);
+  for (const End& end : turning_) {
+    const auto a = static_cast<std::size_t>(end.a), b = static_cast<std::size_t>(end.b),
+               loop = static_cast<std::size_t>(end.loop);
+    Place& s = places_[loop];
+    const Vec2<S> arm = turned(a, end.at), axis = turned(b, end.axis);
+    s.ax = arm[0];
+    s.ay = arm[1];
+    s.bx = (origins_[a][0] - origins_[b][0]) + arm[0];
+    s.by = (origins_[a][1] - origins_[b][1]) + arm[1];
+    s.Fx = axis[0];
+    s.Fy = axis[1];
+    if (!asked) continue;
+    s.dx = row_bias(loop, 0, right);
+    s.dy = row_bias(loop, 1, right);
+  }
 }
 
 template <class S, int Rows, bool Momentum>
@@ -141,7 +148,7 @@ Vec2<S> LoopSweeps<Planar, S, Rows, Momentum>::in_ground(int body, const Vec2<do
 
 /// Loops that need both their bodies' places at once.
 template <class S, int Rows, bool Momentum>
-void LoopSweeps<Planar, S, Rows, Momentum>::place_other_loops() {
+void LoopSweeps<Planar, S, Rows, Momentum>::place_other_loops(const RightSide<S>& right) {
   const auto origin = [&](int body) {
     return body < 0 ? Vec2<S>{} : origins_[static_cast<std::size_t>(body)];
   };
@@ -152,11 +159,15 @@ void LoopSweeps<Planar, S, Rows, Momentum>::place_other_loops() {
     if (l.motion >= 0) place_moving(l);
     const Vec2<S> arm = in_ground(l.a, l.at_a), from_b = origin(l.a) - origin(l.b) + arm;
     Place& s = places_[loop];
-    s = {arm[0], arm[1], from_b[0], from_b[1], S(0.0), S(0.0)};
+    s = {arm[0], arm[1], from_b[0], from_b[1], S(0.0), S(0.0), S(0.0), S(0.0)};
     if (plan_->pair[loop]) {
       const Vec2<S> b = in_ground(l.b, l.axis_b[0]);
       s.Fx = b[0];
       s.Fy = b[1];
+      if (biased(right)) {
+        s.dx = row_bias(loop, 0, right);
+        s.dy = row_bias(loop, 1, right);
+      }
     } else {
       place_rows(l, loop);
     }

@@ -81,9 +81,7 @@ MOMENTA_INLINE bool LoopSweeps<Planar, S, Rows, Momentum>::asks(const End& end,
                                                                 const RightSide<S>& right) const {
   if (end.tie) return Momentum ? end.first && right.positions != 0 : true;
   if (!end.first) return false;
-  if (!Momentum || right.positions != 0) return true;
-  return !end.turns && loops_->loops[static_cast<std::size_t>(end.loop)].motion >= 0 &&
-         right.drives;
+  return biased(right);
 }
 
 /// What one end on body k brings to d of both rows of a tie: βΦ; in the acceleration form its own
@@ -169,10 +167,10 @@ S LoopSweeps<Planar, S, Rows, Momentum>::row_bias(std::size_t loop, int row,
 /// The loop ends on body k.
 template <class S, int Rows, bool Momentum>
 MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::enter(std::size_t k,
+                                                                 const LoopPlan::Range& range,
                                                                  const RightSide<S>& right,
                                                                  PlanarArticulated<S>& a,
                                                                  Blocks& o) {
-  const LoopPlan::Range range = plan_->ends_of[k];
   for (int n = range.first; n < range.last; ++n) {
     const auto i = static_cast<std::size_t>(n);
     if constexpr (pairs_in_registers)
@@ -187,20 +185,20 @@ MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::enter(std::size_t k,
   }
 }
 
+/// Without a call: whatever stays in registers would have to leave them.
 template <class S, int Rows, bool Momentum>
 MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::enter_pair(std::size_t k, std::size_t i,
                                                                       const RightSide<S>& right,
                                                                       PlanarArticulated<S>& a,
                                                                       Blocks& o) {
   const End& end = ends_[i];
-  const auto loop = static_cast<std::size_t>(end.loop);
   const S sign(end.sign);
   if (end.tie) {
     const Vec2<S> arm = turned(k, end.at);
     arms_[i] = arm;
-    const S nx = sign * arm[0], ny = sign * arm[1], zero(0.0);
-    o.C[0].add_pair(end.slot, sign, zero);
-    o.C[1].add_pair(end.slot, zero, sign);
+    const S nx = sign * arm[0], ny = sign * arm[1];
+    o.C[0].add_at(end.slot, sign);
+    o.C[1].add_at(end.slot + 1, sign);
     o.C[2].add_pair(end.slot, -ny, nx);
     if (right.centre) {
       const S *centre = right.centre + end.row, x = centre[0], y = centre[1];
@@ -213,12 +211,11 @@ MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::enter_pair(std::size_
     o.d.add_pair(end.slot, d[0], d[1]);
     return;
   }
-  if (end.turns && end.first) place_turning(end);
   // (fx, fy) and (−fy, fx) with their couples.
-  const Place& s = places_[loop];
-  const Vec2<S> arm = end.on_a ? Vec2<S>{{s.ax, s.ay}} : Vec2<S>{{s.bx, s.by}};
+  const Place& s = places_[static_cast<std::size_t>(end.loop)];
+  const S ax = end.on_a ? s.ax : s.bx, ay = end.on_a ? s.ay : s.by;
   const S fx = sign * s.Fx, fy = sign * s.Fy;
-  const S n0 = arm[0] * fy - arm[1] * fx, n1 = arm[0] * fx + arm[1] * fy;
+  const S n0 = ax * fy - ay * fx, n1 = ax * fx + ay * fy;
   o.C[0].add_pair(end.slot, fx, -fy);
   o.C[1].add_pair(end.slot, fy, fx);
   o.C[2].add_pair(end.slot, n0, n1);
@@ -228,9 +225,7 @@ MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::enter_pair(std::size_
     a.Dy = a.Dy + (x * fy + y * fx);
     a.Dn = a.Dn + (x * n0 + y * n1);
   }
-  if (!asks(end, right)) return;
-  const S d0 = row_bias(loop, 0, right), d1 = row_bias(loop, 1, right);
-  o.d.add_pair(end.slot, d0, d1);
+  if (end.first && biased(right)) o.d.add_pair(end.slot, s.dx, s.dy);
 }
 
 template <class S, int Rows, bool Momentum>
@@ -245,7 +240,6 @@ void LoopSweeps<Planar, S, Rows, Momentum>::enter_rows(std::size_t k, std::size_
     arms_[i] = arm = turned(k, end.at);
     if (asked) d = tie_bias(k, end, arm, right);
   } else {
-    if (end.turns && end.first) place_turning(end);
     const Place& s = places_[loop];
     arm = end.on_a ? Vec2<S>{{s.ax, s.ay}} : Vec2<S>{{s.bx, s.by}};
   }

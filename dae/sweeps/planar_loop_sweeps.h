@@ -116,6 +116,9 @@ class LoopSweeps<Planar, S, Rows, Momentum> : PlanarPlaces<S> {
     bool turns = false;  ///< two point rows along axes of B that no drive moves
     bool on_a = true, first = true, begins = false;
   };
+  struct Visit {
+    LoopPlan::Range ends, closings;
+  };
   struct Closing {
     int loop, row, slot;
     bool pair;
@@ -124,6 +127,7 @@ class LoopSweeps<Planar, S, Rows, Momentum> : PlanarPlaces<S> {
   struct Place {
     S ax, ay, bx, by;  ///< x_A − O_A and x_A − O_B
     S Fx, Fy;          ///< of a pair: first axis; the second stands across it
+    S dx, dy;          ///< of a pair: d, where the right-hand side asks for something
   };
   /// A row's unit impulse on body A: force at x_A, couple; of an axis row a_i · b_j too.
   struct RowPlace {
@@ -143,8 +147,12 @@ class LoopSweeps<Planar, S, Rows, Momentum> : PlanarPlaces<S> {
   template <class In>
   MOMENTA_INLINE void place_revolutes(const In& x);
   MOMENTA_INLINE void place_ends(std::size_t k, bool gap, const S& x, const S& y);
-  MOMENTA_INLINE void place_turning(const End& end);
-  __attribute__((noinline)) void place_other_loops();
+  void place_turning(const RightSide<S>& right);
+  __attribute__((noinline)) void place_other_loops(const RightSide<S>& right);
+  /// Whether d of rows that are no ties' has something in it.
+  bool biased(const RightSide<S>& right) const {
+    return !Momentum || right.positions != 0 || (right.drives && !moving_.empty());
+  }
   void place_rows(const Loop& l, std::size_t loop);
   void place_moving(const Loop& l);
   template <class In>
@@ -183,8 +191,8 @@ class LoopSweeps<Planar, S, Rows, Momentum> : PlanarPlaces<S> {
                                   const RightSide<S>& right) const;
   template <class In>
   bool inward(const In& r, const RightSide<S>& right);
-  MOMENTA_INLINE void enter(std::size_t k, const RightSide<S>& right, PlanarArticulated<S>& a,
-                            Blocks& o);
+  MOMENTA_INLINE void enter(std::size_t k, const LoopPlan::Range& range, const RightSide<S>& right,
+                            PlanarArticulated<S>& a, Blocks& o);
   MOMENTA_INLINE void enter_pair(std::size_t k, std::size_t i, const RightSide<S>& right,
                                  PlanarArticulated<S>& a, Blocks& o);
   __attribute__((noinline)) void enter_rows(std::size_t k, std::size_t i, const RightSide<S>& right,
@@ -195,8 +203,8 @@ class LoopSweeps<Planar, S, Rows, Momentum> : PlanarPlaces<S> {
   __attribute__((noinline)) void close_any(int loop, Open& open, double fade, SlotGroups all);
   template <class In>
   __attribute__((noinline)) S couple(std::size_t k, const In& r, const RightSide<S>& right,
-                                     Blocks& o);
-  __attribute__((noinline)) void uncouple(std::size_t k, Column& c);
+                                     Open& open);
+  __attribute__((noinline)) void uncouple(std::size_t k, Open& open);
   template <class In>
   __attribute__((noinline)) bool general_inward(std::size_t k, const In& r,
                                                 const RightSide<S>& right, Open& open);
@@ -217,8 +225,9 @@ class LoopSweeps<Planar, S, Rows, Momentum> : PlanarPlaces<S> {
     a.fn = a.fn + b.fn;
   }
   template <class Out>
-  MOMENTA_INLINE void own_rates(std::size_t k, const RightSide<S>& right, const Out& impulse,
-                                const S& vx, const S& vy, const S& omega);
+  MOMENTA_INLINE void own_rates(std::size_t k, const LoopPlan::Range& ends,
+                                const RightSide<S>& right, const Out& impulse, const S& vx,
+                                const S& vy, const S& omega, Revolute& w);
   template <class Out>
   MOMENTA_INLINE void add_other_rates(const End& end, const RightSide<S>& right,
                                       const Out& impulse, Wrench& T);
@@ -237,7 +246,9 @@ class LoopSweeps<Planar, S, Rows, Momentum> : PlanarPlaces<S> {
   OpenSlots open_slots_;
   std::vector<Revolute> revolutes_;
   std::vector<LoopedJoint<S, Rows>> looped_;
+  std::vector<Visit> visits_;        ///< by body
   std::vector<End> ends_;            ///< as in the plan
+  std::vector<End> turning_;         ///< one of each loop that turns with B
   std::vector<Closing> closings_;    ///< as in the plan
   std::vector<Vec2<S>> arms_;        ///< of ties, by end: x − O of its body, ground axes
   std::vector<Vec2<S>> gaps_;        ///< of ties, by loop: D, where equations ask for it
@@ -319,7 +330,10 @@ LoopSweeps<Planar, S, Rows, Momentum>::LoopSweeps(const PlanarTree& tree,
     e.first = end.first;
     e.begins = l.is_tie && (!end.first || l.a < 0 || l.b < 0);
     ends_.push_back(e);
+    if (e.turns && e.first) turning_.push_back(e);
   }
+  for (std::size_t k = 0; k < tree.links.size(); ++k)
+    visits_.push_back({plan.ends_of[k], plan.closings_of[k]});
   for (const int loop : plan.closings) {
     const auto i = static_cast<std::size_t>(loop);
     closings_.push_back({loop, loops.loops[i].row, plan.slot[i], plan.pair[i] != 0});
@@ -348,7 +362,8 @@ bool LoopSweeps<Planar, S, Rows, Momentum>::operator()(const S& t, const In& q, 
   else
     place_bodies(x, right);
   loops_ = &in_time_.at(value_of(t));
-  if (!others_.empty()) place_other_loops();
+  if (!turning_.empty()) place_turning(right);
+  if (!others_.empty()) place_other_loops(right);
   if (plan_->couples()) place_couplers(q, x, right);
   if (!Momentum && right.body_forces) gather_forces();
   if (!inward(Momentum ? x : tau, right)) return false;

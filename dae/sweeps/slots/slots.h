@@ -45,6 +45,7 @@ struct Slots {
   }
   MOMENTA_INLINE void set(int i, const S& x) { v[i] = x; }
   MOMENTA_INLINE void add(int i, const S& x) { v[i] = v[i] + x; }
+  MOMENTA_INLINE void add_at(int i, const S& x) { add(i, x); }
   MOMENTA_INLINE void add_pair(int i, const S& x, const S& y) {
     add(i, x);
     add(i + 1, y);
@@ -91,7 +92,12 @@ struct Slots<Pack<1, Level>, Rows> {
   MOMENTA_INLINE void add(int i, const S& x) {
     for (int k = 0; k < parts; ++k) v[k].v += places(k) == i ? Part(x.v).v : Part(0.0).v;
   }
-  /// x and y times unit vectors, which costs less than a choice.
+  /// Times unit vectors, which costs less than a choice where i is not known here.
+  MOMENTA_INLINE void add_at(int i, const S& x) {
+    const double* const at = units.of[i];
+    each<parts>([&](auto k)
+                    MOMENTA_INLINED { v[k] = v[k] + Part::load(at + k * width) * all(x); });
+  }
   MOMENTA_INLINE void add_pair(int i, const S& x, const S& y) {
     const double *const at = units.of[i], *const next = units.of[i + 1];
     each<parts>([&](auto k) MOMENTA_INLINED {
@@ -186,9 +192,11 @@ template <int W, int L>
 MOMENTA_INLINE Pack<1, L> sum_of(const Pack<W, L>& x) {
   const auto& v = x.v;
   if constexpr (W == 8)
-    return Pack<1, L>(((v[0] + v[4]) + (v[2] + v[6])) + ((v[1] + v[5]) + (v[3] + v[7])));
+    return sum_of(Pack<4, L>::of(__builtin_shufflevector(v, v, 0, 1, 2, 3) +
+                                 __builtin_shufflevector(v, v, 4, 5, 6, 7)));
   else if constexpr (W == 4)
-    return Pack<1, L>((v[0] + v[2]) + (v[1] + v[3]));
+    return sum_of(Pack<2, L>::of(__builtin_shufflevector(v, v, 0, 1) +
+                                 __builtin_shufflevector(v, v, 2, 3)));
   else
     return Pack<1, L>(v[0] + v[1]);
 }
@@ -209,6 +217,22 @@ MOMENTA_INLINE S plus_dot(S x, const Slots<S, Rows>& a, const Slots<S, Rows>& b,
     return x;
   } else {
     return x + dot(a, b);
+  }
+}
+/// x + (y a − z b)·c over the open slots.
+template <class S, int Rows>
+MOMENTA_INLINE S plus_cross(S x, const S& y, const Slots<S, Rows>& a, const S& z,
+                            const Slots<S, Rows>& b, const Slots<S, Rows>& c,
+                            [[maybe_unused]] SlotGroups open) {
+  using Here = Slots<S, Rows>;
+  if constexpr (Here::apart) {
+    return plus_dot(S(0.0), a, c, open) * y - plus_dot(S(0.0), b, c, open) * z + x;
+  } else {
+    Here across;
+    each<Here::parts>([&](auto k) MOMENTA_INLINED {
+      across.v[k] = a.v[k] * Here::all(y) - b.v[k] * Here::all(z);
+    });
+    return x + dot(across, c);
   }
 }
 /// x − a·b over the open slots.
