@@ -44,12 +44,16 @@ class PlanarPlaces {
   void place(const S& t, const In& q) {
     const PlanarLink* links = tree_->links.data();
     const std::size_t n = angles_.size();
+    S before(0.0);  // of the body before: along a chain one addition waits for the other
     for (std::size_t k = 0; k < n; ++k) {
       const PlanarLink& l = links[k];
       S angle(tree_->theta0[k]);
-      if (l.parent >= 0) angle += angles_[static_cast<std::size_t>(l.parent)];
+      if (l.revolute) angle = angle + l.sign * q[l.q];
+      if (l.parent >= 0)
+        angle = angle + (l.first ? before : S(angles_[static_cast<std::size_t>(l.parent)]));
+      before = angle;
       if (l.revolute) {
-        angles_.set(k, angle + l.sign * q[l.q]);
+        angles_.set(k, angle);
         continue;
       }
       const auto& b = body(k);
@@ -59,6 +63,7 @@ class PlanarPlaces {
                   x.drive_acceleration);
       x.value = b.drive >= 0 ? x.drive : b.nq == 1 ? S(q[b.q]) : S(0.0);
       if (b.kind == JointKind::revolute) angle += l.sign * x.value;
+      before = angle;
       angles_.set(k, angle);
     }
     angles_.turn();

@@ -148,14 +148,22 @@ MOMENTA_INLINE void close_pair(Front<S, Rows, Columns>& front, double fade,
       gb.v[i] = gb.v[i] - ga.v[i] * Here::all(l);
       pair.Ga.v[i] = ga.v[i] * Here::all(fa);
       pair.Gb.v[i] = gb.v[i] * Here::all(fb);
-      front.d.v[i] = front.d.v[i] - (pair.Ga.v[i] * Here::all(da) + pair.Gb.v[i] * Here::all(db));
+      front.d.v[i] = (front.d.v[i] - pair.Ga.v[i] * Here::all(da)) - pair.Gb.v[i] * Here::all(db);
       if constexpr (Moves)
         each<Columns>([&](auto k) MOMENTA_INLINED {
-          front.C[k].v[i] =
-              front.C[k].v[i] - (pair.Ga.v[i] * Here::all(ca[k]) + pair.Gb.v[i] * Here::all(cb[k]));
+          front.C[k].v[i] = (front.C[k].v[i] - pair.Ga.v[i] * Here::all(ca[k])) -
+                            pair.Gb.v[i] * Here::all(cb[k]);
         });
     });
-    front.subtract_products(pair.Ga, ga, pair.Gb, gb, beside);
+    if constexpr (Here::apart)
+      front.subtract_products(pair.Ga, ga, pair.Gb, gb, beside);
+    else
+      each<Rows * Here::parts>([&](auto n) MOMENTA_INLINED {
+        constexpr int i = n / Here::parts, k = n % Here::parts;
+        if constexpr (i != A && i != B)
+          front.W[i].v[k] = (front.W[i].v[k] - pair.Ga.v[k] * Here::all(ga.template at<i>())) -
+                            pair.Gb.v[k] * Here::all(gb.template at<i>());
+      });
   } else if constexpr (!Here::apart) {
     front = {};
   }

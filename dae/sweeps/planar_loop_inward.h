@@ -80,8 +80,9 @@ void LoopSweeps<Planar, S, Rows, Momentum>::close_any(int loop, Open& open, doub
 template <class S, int Rows, bool Momentum>
 template <class In>
 S LoopSweeps<Planar, S, Rows, Momentum>::couple(std::size_t k, const In& r,
-                                                const RightSide<S>& right, Blocks& o) {
+                                                const RightSide<S>& right, Open& open) {
   const PlanarLink& l = tree_->links[k];
+  Blocks& o = open.blocks;
   S own = l.sign < 0 ? -r[l.u] : S(r[l.u]);
   each_coupling(*plan_, k, [&](const LoopPlan::Coupling& j, std::size_t loop, int slot) {
     const double ratio = l.sign < 0 ? -j.ratio : j.ratio;
@@ -92,7 +93,8 @@ S LoopSweeps<Planar, S, Rows, Momentum>::couple(std::size_t k, const In& r,
   return own;
 }
 template <class S, int Rows, bool Momentum>
-void LoopSweeps<Planar, S, Rows, Momentum>::uncouple(std::size_t k, Column& c) {
+void LoopSweeps<Planar, S, Rows, Momentum>::uncouple(std::size_t k, Open& open) {
+  Column& c = open.blocks.C[2];
   const double sign = tree_->links[k].sign;
   each_coupling(*plan_, k, [&](const LoopPlan::Coupling& j, std::size_t, int slot) {
     c.add(slot, S(sign < 0 ? j.ratio : -j.ratio));
@@ -104,6 +106,8 @@ template <class In>
 bool LoopSweeps<Planar, S, Rows, Momentum>::inward(const In& r, const RightSide<S>& right) {
   const PlanarLink* links = tree_->links.data();
   const OpenSlots::Front* fronts = open_slots_.fronts.data();
+  const Visit* visits = visits_.data();
+  Revolute* records = revolutes_.data();
   const Vec2<double>& g = tree_->model->gravity;
   const bool falls = !Momentum && tree_->model->has_gravity, couples = plan_->couples();
   PlanarArticulated<S> a{};
@@ -115,14 +119,13 @@ bool LoopSweeps<Planar, S, Rows, Momentum>::inward(const In& r, const RightSide<
   for (std::size_t k = revolutes_.size(); k-- > 0;) {
     const PlanarLink& l = links[k];
     const OpenSlots::Front& front = fronts[k];
-    LoopedRevolute<S, Rows>& w = revolutes_[k];
+    const Visit& visit = visits[k];
+    Revolute& w = records[k];
     const S c = angles_.cosine(k), s = angles_.sine(k);
     const S kx = l.cx * c - l.cy * s, ky = l.cx * s + l.cy * c;
-    if constexpr (Momentum) {
-      const Vec2<S> way = way_from_parent(l);
-      w.rx = way[0];
-      w.ry = way[1];
-    }
+    const Vec2<S> way = way_from_parent(l);
+    w.rx = way[0];
+    w.ry = way[1];
     if (l.leaf) a = {};
     const SlotGroups born = l.revolute ? front.born : 0;
     o.begin(l.leaf, front.fresh, born);
@@ -148,8 +151,8 @@ bool LoopSweeps<Planar, S, Rows, Momentum>::inward(const In& r, const RightSide<
       Base::add(a, slot.articulated);
       o.add(slot.blocks, front.slot);
     }
-    enter(k, right, a, o);
-    const LoopPlan::Range closing = plan_->closings_of[k];
+    enter(k, visit.ends, right, a, o);
+    const LoopPlan::Range& closing = visit.closings;
     if (closing.first != closing.last) close<true>(closing, a, o, right.fade, front.all);
     if (!l.revolute) [[unlikely]] {
       Open here{a, o};
@@ -169,15 +172,17 @@ bool LoopSweeps<Planar, S, Rows, Momentum>::inward(const In& r, const RightSide<
       w.inverse = inverse;
       S pk;
       if (couples) [[unlikely]] {
-        Blocks here = o;
+        Open here{a, o};
         pk = couple(k, r, right, here);
-        o = here;
+        a = here.articulated;
+        o = here.blocks;
       } else {
         pk = l.sign < 0 ? -r[l.u] : S(r[l.u]);
       }
       const S e = pk - a.Dn;
-      w.y0 = e * inverse;
-      o.eliminate(o.C[2], inverse, w.y0, front.open, born, w.g);
+      const S y0 = e * inverse;
+      w.fn = y0;
+      o.eliminate(o.C[2], inverse, y0, front.open, born, w.g);
       each_open<S, Rows>(front.open, [&](auto i) MOMENTA_INLINED {
         Blocks::put(born, i, i, o.scale.v[i], o.C[2].v[i] * w.g.v[i]);
       });
@@ -190,7 +195,7 @@ bool LoopSweeps<Planar, S, Rows, Momentum>::inward(const In& r, const RightSide<
         a.Ayy = a.Ayy - a.Hy * hy;
         a.Dx = a.Dx + hx * e;
         a.Dy = a.Dy + hy * e;
-        const S rx = w.rx, ry = w.ry;
+        const S rx = way[0], ry = way[1];
         const S kept = l.rotor * inverse;
         each_open<S, Rows>(front.open, [&](auto i) MOMENTA_INLINED {
           const auto n = o.C[2].v[i], x = o.C[0].v[i] - n * Column::all(hx),
@@ -209,10 +214,10 @@ bool LoopSweeps<Planar, S, Rows, Momentum>::inward(const In& r, const RightSide<
           w.Axx = a.Axx;
           w.Axy = a.Axy;
           w.Ayy = a.Ayy;
-          w.Dx = a.Dx;
-          w.Dy = a.Dy;
+          w.fx = a.Dx;
+          w.fy = a.Dy;
         } else {
-          const LoopedRevolute<S, Rows>& from = revolutes_[static_cast<std::size_t>(l.parent)];
+          const Revolute& from = revolutes_[static_cast<std::size_t>(l.parent)];
           const S w2 = from.omega * from.omega, bx = -(w2 * rx), by = -(w2 * ry);
           if (l.has_rotor) bias = hx * bx + hy * by;
           a.Dx = a.Dx + (a.Axx * bx + a.Axy * by);
@@ -222,13 +227,14 @@ bool LoopSweeps<Planar, S, Rows, Momentum>::inward(const In& r, const RightSide<
           });
         }
         if (l.has_rotor) [[unlikely]]
-          Base::carry_with_rotor(a, l, hx, hy, inverse, rx, ry, pk - l.rotor * (w.y0 - bias));
+          Base::carry_with_rotor(a, l, hx, hy, inverse, rx, ry, pk - l.rotor * (y0 - bias));
         else
           Base::carry(a, rx, ry, pk);
         if (couples) [[unlikely]] {
-          Column here = o.C[2];
+          Open here{a, o};
           uncouple(k, here);
-          o.C[2] = here;
+          a = here.articulated;
+          o = here.blocks;
         }
       }
     }
@@ -260,7 +266,7 @@ bool LoopSweeps<Planar, S, Rows, Momentum>::general_inward(std::size_t k, const 
   const auto& b = Base::body(k);
   auto& x = joints_[static_cast<std::size_t>(l.record)];
   auto& y = looped_[static_cast<std::size_t>(l.record)];
-  LoopedRevolute<S, Rows>& w = revolutes_[k];
+  const Revolute& w = revolutes_[k];
   PlanarArticulated<S>& a = open.articulated;
   Blocks& o = open.blocks;
   const SlotGroups carried = open_slots_.fronts[k].open;

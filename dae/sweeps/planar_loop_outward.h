@@ -45,14 +45,17 @@ template <class Out>
 void LoopSweeps<Planar, S, Rows, Momentum>::outward(const RightSide<S>& right, Out u, Out impulse,
                                                     Out rate) {
   const PlanarLink* links = tree_->links.data();
-  const bool rates = Momentum && right.rates;
   const S zero(0.0);
   S vx = zero, vy = zero, omega = zero;
   Column sigma{}, at_ground{};
-  for (std::size_t k = 0; k < revolutes_.size(); ++k) {
+  const std::size_t n = revolutes_.size();
+  Revolute* records = revolutes_.data();
+  const OpenSlots::Front* fronts = open_slots_.fronts.data();
+  const Visit* visits = visits_.data();
+  for (std::size_t k = 0; k < n; ++k) {
     const PlanarLink& l = links[k];
-    const SlotGroups open = open_slots_.fronts[k].open;
-    LoopedRevolute<S, Rows>& w = revolutes_[k];
+    const SlotGroups open = fronts[k].open;
+    Revolute& w = records[k];
     if (l.parent < 0) {
       const LoopPlan::Range last = plan_->ground_closings_of[k];
       if (last.first != last.last)
@@ -70,12 +73,12 @@ void LoopSweeps<Planar, S, Rows, Momentum>::outward(const RightSide<S>& right, O
     if (!l.revolute) {
       PlanarMotion<S> here{vx, vy, omega};
       const Column carried = sigma;  // whose address is taken
-      general_outward(k, rates, u, rate, here, carried);
+      general_outward(k, Momentum && right.rates, u, rate, here, carried);
       vx = here.vx;
       vy = here.vy;
       omega = here.omega;
     } else {
-      S turning = minus_dot(w.y0, w.g, sigma, open), own = turning;
+      S turning = minus_dot(w.fn, w.g, sigma, open), own = turning;
       if (l.parent >= 0) {
         vx = vx - omega * w.ry;
         vy = vy + omega * w.rx;
@@ -89,28 +92,25 @@ void LoopSweeps<Planar, S, Rows, Momentum>::outward(const RightSide<S>& right, O
         if (l.has_rotor) turning = turning + l.rotor * w.inverse * omega;
         own = turning - omega;
       }
-      const S before = omega;
+      [[maybe_unused]] const S before = omega;
       omega = turning;
       u[l.u] = l.sign < 0 ? -own : own;
-      if (rates) {
-        S turned = zero;
-        if (l.parent >= 0) {
-          const S Px = plus_dot(w.Axx * vx + w.Axy * vy + w.Dx, w.Cx, sigma, open),
-                  Py = plus_dot(w.Axy * vx + w.Ayy * vy + w.Dy, w.Cy, sigma, open);
-          turned = vy * Px - vx * Py;
-          if (l.has_rotor) turned = turned + l.rotor * before * (vy * w.hx - vx * w.hy);
+      if constexpr (Momentum)
+        if (right.rates) {
+          S turned = zero;
+          if (l.parent >= 0) {
+            const S Px = w.Axx * vx + w.Axy * vy + w.fx, Py = w.Axy * vx + w.Ayy * vy + w.fy;
+            turned = plus_cross(vy * Px - vx * Py, vy, w.Cx, vx, w.Cy, sigma, open);
+            if (l.has_rotor) turned = turned + l.rotor * before * (vy * w.hx - vx * w.hy);
+          }
+          rate[l.u] = turned;  // about the plane's normal, until the last sweep
         }
-        rate[l.u] = turned;  // about the plane's normal, until the last sweep
-      }
     }
-    const LoopPlan::Range closed = plan_->closings_of[k];
+    const LoopPlan::Range& closed = visits[k].closings;
     if (closed.first != closed.last)
       solve_loops<true>(closed, right, Planar::Motion<S>{{{vx, vy}}, omega}, sigma, impulse);
-    if constexpr (Momentum) {
-      w.vx = vx;
-      w.vy = vy;
-      w.omega = omega;
-    }
+    if constexpr (Momentum)
+      if (right.rates) own_rates(k, visits[k].ends, right, impulse, vx, vy, omega, w);
     if (l.slot >= 0) outward_slots_[static_cast<std::size_t>(l.slot)] = {{vx, vy, omega}, sigma};
   }
 }
@@ -145,97 +145,58 @@ void LoopSweeps<Planar, S, Rows, Momentum>::general_outward(std::size_t k, bool 
   m = {V.v[0], V.v[1], V.w};
 }
 
-/// ṗ += Eᵀ T*: weights, springs and wrenches, N and leak.
-template <class S, int Rows, bool Momentum>
-template <class In, class Out>
-void LoopSweeps<Planar, S, Rows, Momentum>::rates_inward(const In& q, const RightSide<S>& right,
-                                                         const Out& u, const Out& impulse,
-                                                         Out rate) {
-  const PlanarLink* links = tree_->links.data();
-  const Vec2<double>& g = tree_->model->gravity;
-  const bool falls = tree_->model->has_gravity;
-  const S zero(0.0);
-  if (right.body_forces) gather_forces();
-  Wrench T{};
-  for (std::size_t k = revolutes_.size(); k-- > 0;) {
-    const PlanarLink& l = links[k];
-    if (l.leaf) T = {zero, zero, zero};
-    if (falls) {
-      const S c = angles_.cosine(k), s = angles_.sine(k);
-      T.fx = T.fx + l.m * g[0];
-      T.fy = T.fy + l.m * g[1];
-      T.fn = T.fn + (c * (l.cx * g[1] - l.cy * g[0]) - s * (l.cy * g[1] + l.cx * g[0]));
-    }
-    if (l.forced && right.body_forces) {
-      const Planar::Force<S>& own = forces_->on(k);
-      add(T, {own.f[0], own.f[1], own.n});
-    }
-    if (l.slot >= 0) add(T, wrench_slots_[static_cast<std::size_t>(l.slot)]);
-    const LoopPlan::Range ends = plan_->ends_of[k];
-    for (int i = ends.first; i < ends.last; ++i)
-      add_inertial_rates(k, static_cast<std::size_t>(i), right, impulse, T);
-    if (l.revolute) {
-      const S turned = S(rate[l.u]) + T.fn;
-      S own = l.sign < 0 ? -turned : turned;
-      if (l.has_force) own = own + joint_force(Base::body(k), S(q[l.q]), S(u[l.u]));
-      rate[l.u] = own;
-    } else if (const auto& b = Base::body(k); b.nv == 1) {
-      S along;
-      Joint<Planar>::project(b, joints_[static_cast<std::size_t>(l.record)].edge,
-                             Planar::Force<S>{{{T.fx, T.fy}}, T.fn}, &along);
-      rate[b.u] = S(rate[b.u]) + along + joint_force(b, S(q[b.q]), S(u[b.u]));
-    }
-    if (l.parent < 0) continue;
-    const LoopedRevolute<S, Rows>& w = revolutes_[k];
-    T.fn = T.fn + (w.rx * T.fy - w.ry * T.fx);
-    if (l.first) continue;
-    Wrench& to =
-        wrench_slots_[static_cast<std::size_t>(links[static_cast<std::size_t>(l.parent)].slot)];
-    if (l.opens)
-      to = T;
-    else
-      add(to, T);
-  }
-  if (plan_->couples() && right.leak != 0) leak_of_couplers<S>(*loops_, right.leak, impulse, rate);
-}
-
-/// N − κ w at an end on body k: of a tie each end's own, N = u × F.
+/// The body's own share of T: its weight, and at each end of a loop N − κ w. Of a tie each end has
+/// its own, N = u × F.
 template <class S, int Rows, bool Momentum>
 template <class Out>
-MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::add_inertial_rates(
-    std::size_t k, std::size_t i, const RightSide<S>& right, const Out& impulse, Wrench& T) {
-  const End& end = ends_[i];
-  if (!end.tie) {
-    add_other_rates(end, right, impulse, T);
-    return;
+MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::own_rates(
+    std::size_t k, const LoopPlan::Range& ends, const RightSide<S>& right, const Out& impulse,
+    const S& vx, const S& vy, const S& omega, Revolute& w) {
+  const S zero(0.0);
+  Wrench T{zero, zero, zero};
+  if (!weights_.empty()) {
+    const Weight& weight = weights_[k];
+    T = {S(weight.fx), S(weight.fy),
+         angles_.cosine(k) * weight.along + angles_.sine(k) * weight.across};
   }
-  const LoopedRevolute<S, Rows>& w = revolutes_[k];
-  const Vec2<S>& r = arms_[i];
-  const S fx = end.sign * S(impulse[end.row]), fy = end.sign * S(impulse[end.row + 1]),
-          leak(right.leak);
-  const S ux = w.vx - w.omega * r[1], uy = w.vy + w.omega * r[0];
-  T.fx = T.fx - leak * fx;
-  T.fy = T.fy - leak * fy;
-  T.fn = T.fn + (ux - leak * r[0]) * fy - (uy - leak * r[1]) * fx;
+  if (keeps_motions_) {
+    w.vx = vx;
+    w.vy = vy;
+    w.omega = omega;
+  }
+  for (int i = ends.first; i < ends.last; ++i) {
+    const End& end = ends_[static_cast<std::size_t>(i)];
+    if (!end.tie) {
+      if (end.first) add_other_rates(end, right, impulse, T);
+      continue;
+    }
+    const Vec2<S>& r = arms_[static_cast<std::size_t>(i)];
+    const S fx = end.sign * S(impulse[end.row]), fy = end.sign * S(impulse[end.row + 1]),
+            leak(right.leak);
+    const S ux = vx - omega * r[1], uy = vy + omega * r[0];
+    T.fx = T.fx - leak * fx;
+    T.fy = T.fy - leak * fy;
+    T.fn = T.fn + (ux - leak * r[0]) * fy - (uy - leak * r[1]) * fx;
+  }
+  w.fx = T.fx;
+  w.fy = T.fy;
+  w.fn = T.fn;
 }
 
-/// The same of any other loop, found at the end met first for both.
+/// The same of any other loop, at the end that is met last, for both: the other body's T waits in
+/// its record.
 template <class S, int Rows, bool Momentum>
 template <class Out>
 MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::add_other_rates(
     const End& end, const RightSide<S>& right, const Out& impulse, Wrench& T) {
   const auto loop = static_cast<std::size_t>(end.loop);
-  Wrench& other = wrenches_[loop];
-  if (!end.first) {
-    add(T, other);
-    return;
-  }
-  const Place& s = places_[loop];
   const Loop& l = loops_->loops[loop];
+  if (l.a == l.b) return;
+  const Place& s = places_[loop];
   const S zero(0.0);
   const auto motion_of = [&](int body) MOMENTA_INLINED {
     if (body < 0) return Planar::Motion<S>{};
-    const LoopedRevolute<S, Rows>& w = revolutes_[static_cast<std::size_t>(body)];
+    const Revolute& w = revolutes_[static_cast<std::size_t>(body)];
     return Planar::Motion<S>{{{w.vx, w.vy}}, w.omega};
   };
   const Planar::Motion<S> A = motion_of(l.a), B = motion_of(l.b);
@@ -255,14 +216,64 @@ MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::add_other_rates(
   N.fn = N.fn + (ux * w.fy - uy * w.fx);
   N.fx = N.fx - right.leak * w.fx;
   N.fy = N.fy - right.leak * w.fy;
-  const S on_a = N.fn + (s.ax * N.fy - s.ay * N.fx), on_b = N.fn + (s.bx * N.fy - s.by * N.fx);
-  if (end.on_a) {
-    add(T, {N.fx, N.fy, on_a});
-    other = {-N.fx, -N.fy, -on_b};
-  } else {
-    add(T, {-N.fx, -N.fy, -on_b});
-    other = {N.fx, N.fy, on_a};
+  const Wrench on_a{N.fx, N.fy, N.fn + (s.ax * N.fy - s.ay * N.fx)},
+      on_b{-N.fx, -N.fy, -(N.fn + (s.bx * N.fy - s.by * N.fx))};
+  add(T, end.on_a ? on_a : on_b);
+  const int other = end.on_a ? l.b : l.a;
+  if (other < 0) return;
+  Revolute& there = revolutes_[static_cast<std::size_t>(other)];
+  const Wrench& own = end.on_a ? on_b : on_a;
+  there.fx = there.fx + own.fx;
+  there.fy = there.fy + own.fy;
+  there.fn = there.fn + own.fn;
+}
+
+/// ṗ += Eᵀ T*, T with springs and wrenches.
+template <class S, int Rows, bool Momentum>
+template <class In, class Out>
+void LoopSweeps<Planar, S, Rows, Momentum>::rates_inward(const In& q, const RightSide<S>& right,
+                                                         const Out& u, const Out& impulse,
+                                                         Out rate) {
+  const PlanarLink* links = tree_->links.data();
+  const S zero(0.0);
+  if (right.body_forces) gather_forces();
+  Wrench T{zero, zero, zero};
+  const Revolute* records = revolutes_.data();
+  for (std::size_t k = revolutes_.size(); k-- > 0;) {
+    const PlanarLink& l = links[k];
+    const Revolute& w = records[k];
+    const Wrench own_share{w.fx, w.fy, w.fn};
+    if (l.leaf)
+      T = own_share;
+    else
+      add(T, own_share);
+    if (l.forced && right.body_forces) {
+      const Planar::Force<S>& own = forces_->on(k);
+      add(T, {own.f[0], own.f[1], own.n});
+    }
+    if (l.slot >= 0) add(T, wrench_slots_[static_cast<std::size_t>(l.slot)]);
+    if (l.revolute) {
+      const S turned = S(rate[l.u]) + T.fn;
+      S own = l.sign < 0 ? -turned : turned;
+      if (l.has_force) own = own + joint_force(Base::body(k), S(q[l.q]), S(u[l.u]));
+      rate[l.u] = own;
+    } else if (const auto& b = Base::body(k); b.nv == 1) {
+      S along;
+      Joint<Planar>::project(b, joints_[static_cast<std::size_t>(l.record)].edge,
+                             Planar::Force<S>{{{T.fx, T.fy}}, T.fn}, &along);
+      rate[b.u] = S(rate[b.u]) + along + joint_force(b, S(q[b.q]), S(u[b.u]));
+    }
+    if (l.parent < 0) continue;
+    T.fn = T.fn + (w.rx * T.fy - w.ry * T.fx);
+    if (l.first) continue;
+    Wrench& to =
+        wrench_slots_[static_cast<std::size_t>(links[static_cast<std::size_t>(l.parent)].slot)];
+    if (l.opens)
+      to = T;
+    else
+      add(to, T);
   }
+  if (plan_->couples() && right.leak != 0) leak_of_couplers<S>(*loops_, right.leak, impulse, rate);
 }
 
 /// w and N of a loop that is no tie, N without u_A × F, its couple with the leak.

@@ -16,12 +16,10 @@ void LoopSweeps<Planar, S, Rows, Momentum>::place_bodies(const In& x, const Righ
   S ox(0.0), oy(0.0);
   for (std::size_t k = 0; k < n; ++k) {
     const PlanarLink& l = links[k];
-    LoopedRevolute<S, Rows>& w = revolutes_[k];
+    Revolute& w = revolutes_[k];
     const Vec2<S> r = way_from_parent(l);
-    if constexpr (!Momentum) {
-      w.rx = r[0];
-      w.ry = r[1];
-    }
+    w.rx = r[0];
+    w.ry = r[1];
     const auto parent = static_cast<std::size_t>(l.parent);
     if (l.parent < 0) {
       ox = oy = S(0.0);
@@ -38,10 +36,10 @@ void LoopSweeps<Planar, S, Rows, Momentum>::place_bodies(const In& x, const Righ
     if constexpr (!Momentum) {
       S vx(0.0), vy(0.0), omega(0.0);
       if (l.parent >= 0) {
-        const LoopedRevolute<S, Rows>& from = revolutes_[parent];
+        const Revolute& from = revolutes_[parent];
         omega = from.omega;
-        vx = from.vx - omega * w.ry;
-        vy = from.vy + omega * w.rx;
+        vx = from.vx - omega * r[1];
+        vy = from.vy + omega * r[0];
       }
       if (l.revolute) {
         omega = l.sign < 0 ? omega - x[l.u] : omega + x[l.u];
@@ -72,6 +70,39 @@ void LoopSweeps<Planar, S, Rows, Momentum>::place_bodies(const In& x, const Righ
   }
 }
 
+/// The same where all joints are revolute and nobody asks for more: origins where some loop is no
+/// tie, in the acceleration form angular velocities alone.
+template <class S, int Rows, bool Momentum>
+template <class In>
+MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::place_revolutes(
+    [[maybe_unused]] const In& x) {
+  const PlanarLink* links = tree_->links.data();
+  if constexpr (Momentum) {
+    if (tied_) return;
+    Vec2<S> o{};
+    for (std::size_t k = 0; k < revolutes_.size(); ++k) {
+      const PlanarLink& l = links[k];
+      if (l.parent < 0)
+        o = {};
+      else if (!l.first)
+        o = origins_[static_cast<std::size_t>(l.parent)];
+      o += Base::step(l);
+      origins_[k] = o;
+    }
+  } else {
+    S omega(0.0);
+    for (std::size_t k = 0; k < revolutes_.size(); ++k) {
+      const PlanarLink& l = links[k];
+      if (l.parent < 0)
+        omega = S(0.0);
+      else if (!l.first)
+        omega = revolutes_[static_cast<std::size_t>(l.parent)].omega;
+      omega = omega + l.sign * x[l.u];
+      revolutes_[k].omega = omega;
+    }
+  }
+}
+
 /// Ends on body k with its joint at (x, y). A tie's D begins with the end that is placed first.
 template <class S, int Rows, bool Momentum>
 MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::place_ends(std::size_t k, bool gap,
@@ -79,7 +110,6 @@ MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::place_ends(std::size_
   const LoopPlan::Range range = plan_->ends_of[k];
   for (int i = range.first; i < range.last; ++i) {
     const End& end = ends_[static_cast<std::size_t>(i)];
-    if (end.turns) place_turning(k, end, x, y);
     if (!end.tie || !gap) continue;
     const Vec2<S> arm = turned(k, end.at);
     Vec2<S>& D = gaps_[static_cast<std::size_t>(end.loop)];
@@ -89,23 +119,25 @@ MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::place_ends(std::size_
   }
 }
 
-/// Of rows along axes of B. x_A − O_B = (O_A − O_B) + a waits with the joint of the end placed
-/// first.
+/// Pairs of rows along axes of B.
 template <class S, int Rows, bool Momentum>
-MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::place_turning(std::size_t k,
-                                                                         const End& end, const S& x,
-                                                                         const S& y) {
-  Place& s = places_[static_cast<std::size_t>(end.loop)];
-  const Vec2<S> v = turned(k, end.at);
-  (end.on_a ? s.ax : s.Fx) = v[0];
-  (end.on_a ? s.ay : s.Fy) = v[1];
-  S bx = x, by = y;
-  if (end.first) {
-    bx = (end.on_a ? x - s.bx : s.bx - x) + s.ax;
-    by = (end.on_a ? y - s.by : s.by - y) + s.ay;
+void LoopSweeps<Planar, S, Rows, Momentum>::place_turning(const RightSide<S>& right) {
+  const bool asked = biased(right);
+  for (const End& end : turning_) {
+    const auto a = static_cast<std::size_t>(end.a), b = static_cast<std::size_t>(end.b),
+               loop = static_cast<std::size_t>(end.loop);
+    Place& s = places_[loop];
+    const Vec2<S> arm = turned(a, end.at), axis = turned(b, end.axis);
+    s.ax = arm[0];
+    s.ay = arm[1];
+    s.bx = (origins_[a][0] - origins_[b][0]) + arm[0];
+    s.by = (origins_[a][1] - origins_[b][1]) + arm[1];
+    s.Fx = axis[0];
+    s.Fy = axis[1];
+    if (!asked) continue;
+    s.dx = row_bias(loop, 0, right);
+    s.dy = row_bias(loop, 1, right);
   }
-  s.bx = bx;
-  s.by = by;
 }
 
 template <class S, int Rows, bool Momentum>
@@ -116,7 +148,7 @@ Vec2<S> LoopSweeps<Planar, S, Rows, Momentum>::in_ground(int body, const Vec2<do
 
 /// Loops that need both their bodies' places at once.
 template <class S, int Rows, bool Momentum>
-void LoopSweeps<Planar, S, Rows, Momentum>::place_other_loops() {
+void LoopSweeps<Planar, S, Rows, Momentum>::place_other_loops(const RightSide<S>& right) {
   const auto origin = [&](int body) {
     return body < 0 ? Vec2<S>{} : origins_[static_cast<std::size_t>(body)];
   };
@@ -127,11 +159,15 @@ void LoopSweeps<Planar, S, Rows, Momentum>::place_other_loops() {
     if (l.motion >= 0) place_moving(l);
     const Vec2<S> arm = in_ground(l.a, l.at_a), from_b = origin(l.a) - origin(l.b) + arm;
     Place& s = places_[loop];
-    s = {arm[0], arm[1], from_b[0], from_b[1], S(0.0), S(0.0)};
+    s = {arm[0], arm[1], from_b[0], from_b[1], S(0.0), S(0.0), S(0.0), S(0.0)};
     if (plan_->pair[loop]) {
       const Vec2<S> b = in_ground(l.b, l.axis_b[0]);
       s.Fx = b[0];
       s.Fy = b[1];
+      if (biased(right)) {
+        s.dx = row_bias(loop, 0, right);
+        s.dy = row_bias(loop, 1, right);
+      }
     } else {
       place_rows(l, loop);
     }
@@ -164,7 +200,7 @@ void LoopSweeps<Planar, S, Rows, Momentum>::place_rows(const Loop& l, std::size_
 template <class S, int Rows, bool Momentum>
 void LoopSweeps<Planar, S, Rows, Momentum>::gather_forces() {
   forces_->gather([&](std::size_t k) -> typename PlanarBodyForces<S>::Known {
-    const LoopedRevolute<S, Rows>& w = revolutes_[k];
+    const Revolute& w = revolutes_[k];
     return {angles_.cosine(k), angles_.sine(k), w.rx, w.ry, w.vx, w.vy, w.omega};
   });
 }

@@ -42,13 +42,13 @@ S LoopSweeps<Planar, S, Rows, Momentum>::moving_bias(const Loop& l, const Place&
   S aw(0.0), bw(0.0);
   Vec2<S> u{}, accelerated{};  // of x_A − x_B, the bodies' own accelerations left out
   if (l.a >= 0) {
-    const LoopedRevolute<S, Rows>& A = revolutes_[static_cast<std::size_t>(l.a)];
+    const Revolute& A = revolutes_[static_cast<std::size_t>(l.a)];
     aw = A.omega;
     u = {{A.vx - aw * s.ay, A.vy + aw * s.ax}};
     accelerated = {{-(aw * aw * s.ax), -(aw * aw * s.ay)}};
   }
   if (l.b >= 0) {
-    const LoopedRevolute<S, Rows>& B = revolutes_[static_cast<std::size_t>(l.b)];
+    const Revolute& B = revolutes_[static_cast<std::size_t>(l.b)];
     bw = B.omega;
     const Vec2<S> arm{{s.bx - gap[0], s.by - gap[1]}};
     u -= Vec2<S>{{B.vx - bw * arm[1], B.vy + bw * arm[0]}};
@@ -81,9 +81,7 @@ MOMENTA_INLINE bool LoopSweeps<Planar, S, Rows, Momentum>::asks(const End& end,
                                                                 const RightSide<S>& right) const {
   if (end.tie) return Momentum ? end.first && right.positions != 0 : true;
   if (!end.first) return false;
-  if (!Momentum || right.positions != 0) return true;
-  return !end.turns && loops_->loops[static_cast<std::size_t>(end.loop)].motion >= 0 &&
-         right.drives;
+  return biased(right);
 }
 
 /// What one end on body k brings to d of both rows of a tie: βΦ; in the acceleration form its own
@@ -95,7 +93,7 @@ MOMENTA_INLINE Vec2<S> LoopSweeps<Planar, S, Rows, Momentum>::tie_bias(
   if constexpr (Momentum) {
     return S(right.positions) * D;
   } else {
-    const LoopedRevolute<S, Rows>& w = revolutes_[k];
+    const Revolute& w = revolutes_[k];
     const S centripetal = -end.sign * (w.omega * w.omega);
     Vec2<S> bias{{centripetal * arm[0], centripetal * arm[1]}};
     if (right.alpha != 0) {
@@ -132,7 +130,7 @@ S LoopSweeps<Planar, S, Rows, Momentum>::row_bias(std::size_t loop, int row,
     const auto velocity = [&](int body, S& vx, S& vy, S& omega) {
       vx = vy = omega = zero;
       if (body < 0) return;
-      const LoopedRevolute<S, Rows>& w = revolutes_[static_cast<std::size_t>(body)];
+      const Revolute& w = revolutes_[static_cast<std::size_t>(body)];
       vx = w.vx;
       vy = w.vy;
       omega = w.omega;
@@ -169,10 +167,10 @@ S LoopSweeps<Planar, S, Rows, Momentum>::row_bias(std::size_t loop, int row,
 /// The loop ends on body k.
 template <class S, int Rows, bool Momentum>
 MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::enter(std::size_t k,
+                                                                 const LoopPlan::Range& range,
                                                                  const RightSide<S>& right,
                                                                  PlanarArticulated<S>& a,
                                                                  Blocks& o) {
-  const LoopPlan::Range range = plan_->ends_of[k];
   for (int n = range.first; n < range.last; ++n) {
     const auto i = static_cast<std::size_t>(n);
     if constexpr (pairs_in_registers)
@@ -187,49 +185,47 @@ MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::enter(std::size_t k,
   }
 }
 
+/// Without a call: whatever stays in registers would have to leave them.
 template <class S, int Rows, bool Momentum>
 MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::enter_pair(std::size_t k, std::size_t i,
                                                                       const RightSide<S>& right,
                                                                       PlanarArticulated<S>& a,
                                                                       Blocks& o) {
   const End& end = ends_[i];
-  const auto loop = static_cast<std::size_t>(end.loop);
-  // (fx, fy) and (−fy, fx) with their couples.
   const S sign(end.sign);
-  S fx = sign, fy(0.0), n0, n1;
-  Vec2<S> arm;
   if (end.tie) {
-    arm = turned(k, end.at);
+    const Vec2<S> arm = turned(k, end.at);
     arms_[i] = arm;
-    n0 = -(sign * arm[1]);
-    n1 = sign * arm[0];
-  } else {
-    const Place& s = places_[loop];
-    arm = end.on_a ? Vec2<S>{{s.ax, s.ay}} : Vec2<S>{{s.bx, s.by}};
-    fx = sign * s.Fx;
-    fy = sign * s.Fy;
-    n0 = arm[0] * fy - arm[1] * fx;
-    n1 = arm[0] * fx + arm[1] * fy;
+    const S nx = sign * arm[0], ny = sign * arm[1];
+    o.C[0].add_at(end.slot, sign);
+    o.C[1].add_at(end.slot + 1, sign);
+    o.C[2].add_pair(end.slot, -ny, nx);
+    if (right.centre) {
+      const S *centre = right.centre + end.row, x = centre[0], y = centre[1];
+      a.Dx = a.Dx + sign * x;
+      a.Dy = a.Dy + sign * y;
+      a.Dn = a.Dn + (nx * y - ny * x);
+    }
+    if (!asks(end, right)) return;
+    const Vec2<S> d = tie_bias(k, end, arm, right);
+    o.d.add_pair(end.slot, d[0], d[1]);
+    return;
   }
+  // (fx, fy) and (−fy, fx) with their couples.
+  const Place& s = places_[static_cast<std::size_t>(end.loop)];
+  const S ax = end.on_a ? s.ax : s.bx, ay = end.on_a ? s.ay : s.by;
+  const S fx = sign * s.Fx, fy = sign * s.Fy;
+  const S n0 = ax * fy - ay * fx, n1 = ax * fx + ay * fy;
+  o.C[0].add_pair(end.slot, fx, -fy);
+  o.C[1].add_pair(end.slot, fy, fx);
+  o.C[2].add_pair(end.slot, n0, n1);
   if (right.centre) {
-    const S* centre = right.centre + end.row;
-    a.Dx = a.Dx + (centre[0] * fx - centre[1] * fy);
-    a.Dy = a.Dy + (centre[0] * fy + centre[1] * fx);
-    a.Dn = a.Dn + (centre[0] * n0 + centre[1] * n1);
+    const S *centre = right.centre + end.row, x = centre[0], y = centre[1];
+    a.Dx = a.Dx + (x * fx - y * fy);
+    a.Dy = a.Dy + (x * fy + y * fx);
+    a.Dn = a.Dn + (x * n0 + y * n1);
   }
-  const bool asked = asks(end, right);
-  at_slot<Rows>(end.slot, [&]<int Slot>() MOMENTA_INLINED {
-    o.C[0].template add_pair<Slot>(fx, -fy);
-    o.C[1].template add_pair<Slot>(fy, fx);
-    o.C[2].template add_pair<Slot>(n0, n1);
-    if (!asked) return;
-    Vec2<S> d;
-    if (end.tie)
-      d = tie_bias(k, end, arm, right);
-    else
-      d = {{row_bias(loop, 0, right), row_bias(loop, 1, right)}};
-    o.d.template add_pair<Slot>(d[0], d[1]);
-  });
+  if (end.first && biased(right)) o.d.add_pair(end.slot, s.dx, s.dy);
 }
 
 template <class S, int Rows, bool Momentum>

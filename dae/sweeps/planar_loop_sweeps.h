@@ -38,13 +38,21 @@
 namespace momenta {
 
 /// What bodies have for the way out and the last sweep.
-template <class S, int Rows>
+template <class S, int Rows, bool Momentum>
 struct LoopedRevolute {
   Slots<S, Rows> Cx, Cy, g;
-  S rx, ry;                         ///< O_K − O_L
-  S Axx, Axy, Ayy, Dx, Dy, hx, hy;  ///< M', D', h
-  S y0, inverse;                    ///< M_j⁻¹ e, M_j⁻¹
-  S vx, vy, omega;                  ///< Ω (momentum form); prescribed ones (acceleration)
+  S rx, ry;           ///< O_K − O_L
+  S Axx, Axy, Ayy;    ///< M'
+  S hx, hy, inverse;  ///< h, M_j⁻¹
+  S fx, fy, fn;       ///< D' and M_j⁻¹ e; once u is known, the body's own T in (8)
+  S vx, vy, omega;    ///< Ω, where others ask for it
+};
+template <class S, int Rows>
+struct LoopedRevolute<S, Rows, false> {
+  Slots<S, Rows> g;
+  S rx, ry, hx, hy, inverse;
+  S fn;             ///< M_j⁻¹ e
+  S vx, vy, omega;  ///< of the state
 };
 template <class S, int Rows>
 struct LoopedJoint {
@@ -62,6 +70,7 @@ class LoopSweeps<Planar, S, Rows, Momentum> : PlanarPlaces<S> {
   using Column = Slots<S, Rows>;
   using Blocks = Front<S, Rows, 3>;
   using Row = ClosedRow<S, Rows, 3>;
+  using Revolute = LoopedRevolute<S, Rows, Momentum>;
   using Pair = ClosedPair<S, Rows, 3>;
   /// Wider fronts close pairs of rows as they do all others.
   static constexpr bool pairs_in_registers = Rows <= 8;
@@ -82,8 +91,8 @@ class LoopSweeps<Planar, S, Rows, Momentum> : PlanarPlaces<S> {
 
   /// What an evaluation goes through in memory.
   static std::size_t bytes(const PlanarTree& tree, const LoopModel<Planar>& loops) {
-    return tree.links.size() * (sizeof(LoopedRevolute<S, Rows>) + 3 * sizeof(S)) +
-           loops.loops.size() * (sizeof(Place) + sizeof(Pair) + sizeof(Wrench));
+    return tree.links.size() * (sizeof(Revolute) + 3 * sizeof(S)) +
+           loops.loops.size() * (sizeof(Place) + sizeof(Pair));
   }
   using Base::singular_joint;
   static bool weak_looped_branch() { return false; }  ///< no branch is folded in a plane
@@ -97,13 +106,18 @@ class LoopSweeps<Planar, S, Rows, Momentum> : PlanarPlaces<S> {
 
   /// An end of a loop, by body: what all sweeps take of it, in one place.
   struct End {
-    Vec2<double> at;  ///< its point, body axes; on B of two rows along axes of B the first of these
-    Vec2<double> D;   ///< of a tie's end that begins its D: what an end on the ground has of it
-    double sign = 1;  ///< −1 on body B
+    Vec2<double> at;    ///< its point, body axes; on B of two rows along axes of B the first of these
+    Vec2<double> D;     ///< of a tie's end that begins its D: what an end on the ground has of it
+    Vec2<double> axis;  ///< of two rows along axes of B the first of these; then `at` is A's point
+    double sign = 1;    ///< −1 on body B
     int loop = 0, row = 0, slot = 0;
+    int a = -1, b = -1;
     bool pair = false, tie = false;
     bool turns = false;  ///< two point rows along axes of B that no drive moves
     bool on_a = true, first = true, begins = false;
+  };
+  struct Visit {
+    LoopPlan::Range ends, closings;
   };
   struct Closing {
     int loop, row, slot;
@@ -113,6 +127,7 @@ class LoopSweeps<Planar, S, Rows, Momentum> : PlanarPlaces<S> {
   struct Place {
     S ax, ay, bx, by;  ///< x_A − O_A and x_A − O_B
     S Fx, Fy;          ///< of a pair: first axis; the second stands across it
+    S dx, dy;          ///< of a pair: d, where the right-hand side asks for something
   };
   /// A row's unit impulse on body A: force at x_A, couple; of an axis row a_i · b_j too.
   struct RowPlace {
@@ -129,9 +144,15 @@ class LoopSweeps<Planar, S, Rows, Momentum> : PlanarPlaces<S> {
 
   template <class In>
   void place_bodies(const In& x, const RightSide<S>& right);
+  template <class In>
+  MOMENTA_INLINE void place_revolutes(const In& x);
   MOMENTA_INLINE void place_ends(std::size_t k, bool gap, const S& x, const S& y);
-  MOMENTA_INLINE void place_turning(std::size_t k, const End& end, const S& x, const S& y);
-  __attribute__((noinline)) void place_other_loops();
+  void place_turning(const RightSide<S>& right);
+  __attribute__((noinline)) void place_other_loops(const RightSide<S>& right);
+  /// Whether d of rows that are no ties' has something in it.
+  bool biased(const RightSide<S>& right) const {
+    return !Momentum || right.positions != 0 || (right.drives && !moving_.empty());
+  }
   void place_rows(const Loop& l, std::size_t loop);
   void place_moving(const Loop& l);
   template <class In>
@@ -170,8 +191,8 @@ class LoopSweeps<Planar, S, Rows, Momentum> : PlanarPlaces<S> {
                                   const RightSide<S>& right) const;
   template <class In>
   bool inward(const In& r, const RightSide<S>& right);
-  MOMENTA_INLINE void enter(std::size_t k, const RightSide<S>& right, PlanarArticulated<S>& a,
-                            Blocks& o);
+  MOMENTA_INLINE void enter(std::size_t k, const LoopPlan::Range& range, const RightSide<S>& right,
+                            PlanarArticulated<S>& a, Blocks& o);
   MOMENTA_INLINE void enter_pair(std::size_t k, std::size_t i, const RightSide<S>& right,
                                  PlanarArticulated<S>& a, Blocks& o);
   __attribute__((noinline)) void enter_rows(std::size_t k, std::size_t i, const RightSide<S>& right,
@@ -182,8 +203,8 @@ class LoopSweeps<Planar, S, Rows, Momentum> : PlanarPlaces<S> {
   __attribute__((noinline)) void close_any(int loop, Open& open, double fade, SlotGroups all);
   template <class In>
   __attribute__((noinline)) S couple(std::size_t k, const In& r, const RightSide<S>& right,
-                                     Blocks& o);
-  __attribute__((noinline)) void uncouple(std::size_t k, Column& c);
+                                     Open& open);
+  __attribute__((noinline)) void uncouple(std::size_t k, Open& open);
   template <class In>
   __attribute__((noinline)) bool general_inward(std::size_t k, const In& r,
                                                 const RightSide<S>& right, Open& open);
@@ -203,15 +224,16 @@ class LoopSweeps<Planar, S, Rows, Momentum> : PlanarPlaces<S> {
     a.fy = a.fy + b.fy;
     a.fn = a.fn + b.fn;
   }
+  template <class Out>
+  MOMENTA_INLINE void own_rates(std::size_t k, const LoopPlan::Range& ends,
+                                const RightSide<S>& right, const Out& impulse, const S& vx,
+                                const S& vy, const S& omega, Revolute& w);
+  template <class Out>
+  MOMENTA_INLINE void add_other_rates(const End& end, const RightSide<S>& right,
+                                      const Out& impulse, Wrench& T);
   template <class In, class Out>
   void rates_inward(const In& q, const RightSide<S>& right, const Out& u, const Out& impulse,
                     Out rate);
-  template <class Out>
-  MOMENTA_INLINE void add_inertial_rates(std::size_t k, std::size_t i, const RightSide<S>& right,
-                                         const Out& impulse, Wrench& T);
-  template <class Out>
-  MOMENTA_INLINE void add_other_rates(const End& end, const RightSide<S>& right, const Out& impulse,
-                                      Wrench& T);
   template <class Out>
   __attribute__((noinline)) void force_of_rows(std::size_t loop, const RightSide<S>& right,
                                                const Out& impulse, const Planar::Motion<S>& of_a,
@@ -222,19 +244,26 @@ class LoopSweeps<Planar, S, Rows, Momentum> : PlanarPlaces<S> {
   const LoopModel<Planar>* loops_;  ///< points and axes in the frames of the links, at the time
   const LoopPlan* plan_;
   OpenSlots open_slots_;
-  std::vector<LoopedRevolute<S, Rows>> revolutes_;
+  std::vector<Revolute> revolutes_;
   std::vector<LoopedJoint<S, Rows>> looped_;
+  std::vector<Visit> visits_;        ///< by body
   std::vector<End> ends_;            ///< as in the plan
+  std::vector<End> turning_;         ///< one of each loop that turns with B
   std::vector<Closing> closings_;    ///< as in the plan
   std::vector<Vec2<S>> arms_;        ///< of ties, by end: x − O of its body, ground axes
   std::vector<Vec2<S>> gaps_;        ///< of ties, by loop: D, where equations ask for it
   std::vector<int> others_;          ///< loops that are neither ties nor turn with B alone
-  bool far_reaching_ = false;        ///< some row takes more than where its own end is
+  bool tied_ = true;                 ///< all loops are ties
+  bool keeps_motions_ = false;       ///< somebody asks for bodies' Ω later
   std::vector<Place> places_;        ///< by loop
   std::vector<RowPlace> row_at_;     ///< by row of Φ; not of pairs
   std::vector<MovingPoint> moving_;  ///< by motion
   std::vector<S> coupled_;           ///< by loop: d of a coupler
   std::vector<Vec2<S>> origins_;     ///< by body, where loops are no ties: O_K
+  struct Weight {
+    double fx, fy, along, across;  ///< couple about O: along cos + across sin
+  };
+  std::vector<Weight> weights_;  ///< by body
   std::vector<Vec2<S>> origin_slots_;
   std::vector<Open> slots_;
   struct Outward {
@@ -242,7 +271,6 @@ class LoopSweeps<Planar, S, Rows, Momentum> : PlanarPlaces<S> {
     Column sigma;
   };
   std::vector<Outward> outward_slots_;
-  std::vector<Wrench> wrenches_;  ///< by loop, on its earlier body: N and leak
   std::vector<Wrench> wrench_slots_;
   Blocks front_, ground_;
   std::vector<Row> rows_;          ///< by row of Φ, in closing order within a loop
@@ -271,7 +299,6 @@ LoopSweeps<Planar, S, Rows, Momentum>::LoopSweeps(const PlanarTree& tree,
       origin_slots_(static_cast<std::size_t>(tree.slots)),
       slots_(static_cast<std::size_t>(tree.slots)),
       outward_slots_(static_cast<std::size_t>(tree.slots)),
-      wrenches_(loops.loops.size()),
       wrench_slots_(static_cast<std::size_t>(tree.slots)),
       rows_(static_cast<std::size_t>(loops.rows)),
       pairs_(loops.loops.size()) {
@@ -279,14 +306,15 @@ LoopSweeps<Planar, S, Rows, Momentum>::LoopSweeps(const PlanarTree& tree,
     const Loop& l = loops.loops[i];
     return plan.pair[i] && !l.is_tie && l.motion < 0 && l.a >= 0 && l.b >= 0 && l.a != l.b;
   };
-  for (std::size_t i = 0; i < loops.loops.size(); ++i)
+  for (std::size_t i = 0; i < loops.loops.size(); ++i) {
+    tied_ = tied_ && loops.loops[i].is_tie;
     if (!loops.loops[i].is_tie && !turns(i)) others_.push_back(static_cast<int>(i));
+  }
   for (const LoopPlan::End& end : plan.ends) {
     const auto i = static_cast<std::size_t>(end.loop);
     const Loop& l = loops.loops[i];
-    far_reaching_ = far_reaching_ || !l.is_tie;
     End e;
-    e.at = end.on_a ? l.at_a : l.is_tie ? l.at_b : l.axis_b[0];
+    e.at = l.is_tie && !end.on_a ? l.at_b : l.at_a;
     if (l.is_tie) e.D = l.a < 0 ? l.at_a : l.b < 0 ? -l.at_b : Vec2<double>{};
     e.sign = end.on_a ? 1.0 : -1.0;
     e.loop = end.loop;
@@ -294,18 +322,30 @@ LoopSweeps<Planar, S, Rows, Momentum>::LoopSweeps(const PlanarTree& tree,
     e.slot = plan.slot[i];
     e.pair = plan.pair[i];
     e.tie = l.is_tie;
+    e.a = l.a;
+    e.b = l.b;
+    e.axis = l.axis_b[0];
     e.turns = turns(i);
     e.on_a = end.on_a;
     e.first = end.first;
     e.begins = l.is_tie && (!end.first || l.a < 0 || l.b < 0);
     ends_.push_back(e);
+    if (e.turns && e.first) turning_.push_back(e);
   }
+  for (std::size_t k = 0; k < tree.links.size(); ++k)
+    visits_.push_back({plan.ends_of[k], plan.closings_of[k]});
   for (const int loop : plan.closings) {
     const auto i = static_cast<std::size_t>(loop);
     closings_.push_back({loop, loops.loops[i].row, plan.slot[i], plan.pair[i] != 0});
   }
-  if (!others_.empty()) origins_.resize(tree.links.size());
+  if (!tied_) origins_.resize(tree.links.size());
+  const Vec2<double>& g = tree.model->gravity;
+  if (Momentum && tree.model->has_gravity)
+    for (const PlanarLink& l : tree.links)
+      weights_.push_back(
+          {l.m * g[0], l.m * g[1], l.cx * g[1] - l.cy * g[0], -(l.cy * g[1] + l.cx * g[0])});
   if (tree.model->has_body_forces()) forces_.emplace(tree);
+  keeps_motions_ = !tied_ || forces_;
 }
 
 template <class S, int Rows, bool Momentum>
@@ -316,15 +356,20 @@ bool LoopSweeps<Planar, S, Rows, Momentum>::operator()(const S& t, const In& q, 
   Base::place(t, q);
   singular_joint_ = -1;
   compliance_ = right.compliance;
-  if (!Momentum || far_reaching_ || !joints_.empty() || asks_for_gaps(right))
+  const bool plain = joints_.empty() && !asks_for_gaps(right);
+  if (plain && (Momentum || (!keeps_motions_ && right.alpha == 0)))
+    place_revolutes(x);
+  else
     place_bodies(x, right);
   loops_ = &in_time_.at(value_of(t));
-  if (!others_.empty()) place_other_loops();
+  if (!turning_.empty()) place_turning(right);
+  if (!others_.empty()) place_other_loops(right);
   if (plan_->couples()) place_couplers(q, x, right);
   if (!Momentum && right.body_forces) gather_forces();
   if (!inward(Momentum ? x : tau, right)) return false;
   outward(right, u, sigma, rate);
-  if (Momentum && right.rates) rates_inward(q, right, u, sigma, rate);
+  if constexpr (Momentum)
+    if (right.rates) rates_inward(q, right, u, sigma, rate);
   return true;
 }
 

@@ -45,6 +45,11 @@ struct Slots {
   }
   MOMENTA_INLINE void set(int i, const S& x) { v[i] = x; }
   MOMENTA_INLINE void add(int i, const S& x) { v[i] = v[i] + x; }
+  MOMENTA_INLINE void add_at(int i, const S& x) { add(i, x); }
+  MOMENTA_INLINE void add_pair(int i, const S& x, const S& y) {
+    add(i, x);
+    add(i + 1, y);
+  }
   template <int i>
   MOMENTA_INLINE void set_pair(const S& x, const S& y) {
     v[i] = x;
@@ -87,6 +92,18 @@ struct Slots<Pack<1, Level>, Rows> {
   MOMENTA_INLINE void add(int i, const S& x) {
     for (int k = 0; k < parts; ++k) v[k].v += places(k) == i ? Part(x.v).v : Part(0.0).v;
   }
+  /// Times unit vectors, which costs less than a choice where i is not known here.
+  MOMENTA_INLINE void add_at(int i, const S& x) {
+    const double* const at = units.of[i];
+    each<parts>([&](auto k)
+                    MOMENTA_INLINED { v[k] = v[k] + Part::load(at + k * width) * all(x); });
+  }
+  MOMENTA_INLINE void add_pair(int i, const S& x, const S& y) {
+    const double *const at = units.of[i], *const next = units.of[i + 1];
+    each<parts>([&](auto k) MOMENTA_INLINED {
+      v[k] = v[k] + Part::load(at + k * width) * all(x) + Part::load(next + k * width) * all(y);
+    });
+  }
   template <int i>
   MOMENTA_INLINE void set_pair(const S& x, const S& y) {
     auto& part = v[i / width].v;
@@ -99,6 +116,14 @@ struct Slots<Pack<1, Level>, Rows> {
   }
 
  private:
+  struct Units {
+    alignas(64) double of[Rows][Rows];
+  };
+  static constexpr Units units = [] {
+    Units u{};
+    for (int i = 0; i < Rows; ++i) u.of[i][i] = 1;
+    return u;
+  }();
   static MOMENTA_INLINE typename Part::Lanes both(const S& x, const S& y) {
     Part p;
     for (int j = 0; j < width; j += 2) {
@@ -167,9 +192,11 @@ template <int W, int L>
 MOMENTA_INLINE Pack<1, L> sum_of(const Pack<W, L>& x) {
   const auto& v = x.v;
   if constexpr (W == 8)
-    return Pack<1, L>(((v[0] + v[4]) + (v[2] + v[6])) + ((v[1] + v[5]) + (v[3] + v[7])));
+    return sum_of(Pack<4, L>::of(__builtin_shufflevector(v, v, 0, 1, 2, 3) +
+                                 __builtin_shufflevector(v, v, 4, 5, 6, 7)));
   else if constexpr (W == 4)
-    return Pack<1, L>((v[0] + v[2]) + (v[1] + v[3]));
+    return sum_of(Pack<2, L>::of(__builtin_shufflevector(v, v, 0, 1) +
+                                 __builtin_shufflevector(v, v, 2, 3)));
   else
     return Pack<1, L>(v[0] + v[1]);
 }
@@ -190,6 +217,22 @@ MOMENTA_INLINE S plus_dot(S x, const Slots<S, Rows>& a, const Slots<S, Rows>& b,
     return x;
   } else {
     return x + dot(a, b);
+  }
+}
+/// x + (y a − z b)·c over the open slots.
+template <class S, int Rows>
+MOMENTA_INLINE S plus_cross(S x, const S& y, const Slots<S, Rows>& a, const S& z,
+                            const Slots<S, Rows>& b, const Slots<S, Rows>& c,
+                            [[maybe_unused]] SlotGroups open) {
+  using Here = Slots<S, Rows>;
+  if constexpr (Here::apart) {
+    return plus_dot(S(0.0), a, c, open) * y - plus_dot(S(0.0), b, c, open) * z + x;
+  } else {
+    Here across;
+    each<Here::parts>([&](auto k) MOMENTA_INLINED {
+      across.v[k] = a.v[k] * Here::all(y) - b.v[k] * Here::all(z);
+    });
+    return x + dot(across, c);
   }
 }
 /// x − a·b over the open slots.
