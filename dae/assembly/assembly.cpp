@@ -42,6 +42,7 @@ class Assembler {
     if (mechanism_.m() > 0) {
       if (mechanism_.nv() == 0) nothing_moves();
       close_positions(a);
+      loops_.rows.assign(loops_.rows.size(), true);
       judge_rank(a);
       close_velocities(a);
     }

@@ -43,7 +43,7 @@ constexpr FormIndex indices[] = {
 /// "ground - rocker", "A, B" of a coupler; and whether drives prescribe something of it.
 std::string loop_in_words(const Scene& scene, const LoopSpec& loop) {
   std::string words;
-  if (loop.kind == LoopKind::equation) return loop.equation + " = 0";
+  if (has_equation(loop)) return loop.equation + " = 0";
   if (loop.kind == LoopKind::coupler) {
     for (const std::string& joint : loop.joints) words += (words.empty() ? "" : ", ") + joint;
   } else {
