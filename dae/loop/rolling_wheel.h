@@ -75,8 +75,11 @@ struct RollingWheel {
     return dot(along[row], a_a - a_b + cross(w_a, moving - v_a) - cross(w_b, moving - v_b)) +
            dot(cross(w_b, along[row]), v_a - v_b);
   }
-  /// Whether there is a point of contact.
-  bool finite() const { return 0 * value_of(dot(at, at)) == 0; }
+  /// Whether there is one point of contact: less than 10⁻⁷ rad from flat it is rounding's.
+  bool touches(const Wheel& wheel) const {
+    constexpr double flat = 1e-7;
+    return 0 * value_of(dot(at, at)) == 0 && (wheel.circle == 0 || value_of(s_) > flat);
+  }
 
  private:
   Vector a_{}, m_{}, arm_{};
