@@ -156,6 +156,7 @@ Scene in_units(Scene scene, const Units& units) {
     l.origin_child *= s;
     l.length *= s;
     l.radius *= s;
+    l.crown_radius *= s;
     for (CurveSpec* curve : {&l.curve, &l.child_curve}) {
       curve->radius *= s;
       for (double& axis : curve->semi_axes) axis *= s;
