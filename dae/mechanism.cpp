@@ -127,6 +127,7 @@ void Mechanism::take_bodies() {
            std::any_of(equations.begin(), equations.end(), [](const auto& e) { return e->moves; });
   });
   const std::vector<bool> of_angles = couplers_of_angles(scene_, tree_);
+  nonholonomic_ = visit([](const auto& cast) { return cast.loops.nonholonomic(); });
   const auto group = [&](const auto& cast) {
     int index = 0;
     for (const auto& l : cast.loops.loops) {
@@ -165,11 +166,12 @@ void Mechanism::choose_kkt(KktChoice asked) {
       cast.as_given.plan = plan_loops(cast.model, cast.as_given.loops);
     }
     if (!cast.swept.plan.linear)
-      kkt_reason_ = !cast.loops.equations.empty()
-                        ? "a loop is an equation, which the sweeps do not carry"
-                    : !cast.loops.pairs.empty()
-                        ? "a loop is a pair of curves, which the sweeps do not carry"
-                        : "a coupler has powers of a coordinate, and the sweeps carry linear ones";
+      kkt_reason_ =
+          !cast.loops.equations.empty() ? "a loop is an equation, which the sweeps do not carry"
+          : !cast.loops.wheels.empty()  ? "a loop is a rolling wheel, which the sweeps do not carry"
+          : !cast.loops.pairs.empty()
+              ? "a loop is a pair of curves, which the sweeps do not carry"
+              : "a coupler has powers of a coordinate, and the sweeps carry linear ones";
     else if (!cast.swept.plan.fits())
       kkt_reason_ =
           (cast.swept.plan.slots > 64 ? std::string("more than 64")  // no more are counted
@@ -356,6 +358,9 @@ std::unique_ptr<LoopedSweeps> Mechanism::looped_sweeps_as_given() const {
 }
 bool Mechanism::pairs_anew() const {
   return visit([](const auto& cast) { return !cast.swept.shared.empty(); });
+}
+bool Mechanism::has_nonholonomic() const {
+  return std::find(nonholonomic_.begin(), nonholonomic_.end(), true) != nonholonomic_.end();
 }
 bool Mechanism::has_lengths() const {
   return std::find(angle_rows_.begin(), angle_rows_.end(), false) != angle_rows_.end();

@@ -111,6 +111,11 @@ class Mechanism {
   /// form a group: they share a unit and so a scale.
   const std::vector<int>& row_groups() const { return row_groups_; }
 
+  /// Whether each row is one of velocities, A(q) u = b, that no row of positions stands behind: its
+  /// Φ is 0, its Φ_q in all that is said of rows is A, its Φ̇ is A u − b (m).
+  const std::vector<bool>& nonholonomic() const { return nonholonomic_; }
+  /// Whether there are such.
+  bool has_nonholonomic() const;
   /// Whether each row is an angle [rad]: rows of axes, and couplers of angles alone. All others are
   /// lengths [m].
   const std::vector<bool>& angle_rows() const { return angle_rows_; }
@@ -185,6 +190,7 @@ class Mechanism {
   mutable std::once_flag mass_pattern_known_, constraint_pattern_known_;
   std::vector<RowName> row_names_;
   std::vector<int> row_groups_;
+  std::vector<bool> nonholonomic_;
   std::vector<bool> angle_rows_;
   std::vector<double> least_scales_;
 };

@@ -77,7 +77,7 @@ std::vector<std::pair<std::string, std::string>> Mechanism::lagrangian_lines() c
 }
 
 std::string Mechanism::looped_branches_in_words() const {
-  if (plan_.planar) return "";
+  if (plan_.planar || kkt_ != KktChoice::sweeps) return "";
   const auto& cast = std::get<Cast<Spatial>>(casts_->cast);
   return momenta::looped_branches_in_words(find_looped_branches(
       cast.links, cast.swept.loops, cast.swept.plan, looped_branch_lanes_at(best_level())));

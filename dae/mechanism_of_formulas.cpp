@@ -90,6 +90,7 @@ void Mechanism::take_lagrangian() {
   }
   rows_ = static_cast<int>(row_names_.size());
   least_scales_.assign(row_names_.size(), 0.0);
+  nonholonomic_.assign(row_names_.size(), false);
   plan_.loops = rows_ > 0;
   StartCheck{*this};
 }

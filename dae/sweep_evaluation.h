@@ -102,7 +102,9 @@ class Mechanism::SweepEvaluation final : public SweepRows<Space, double> {
     if (loop < 0) return "";
     const auto at = static_cast<std::size_t>(loop);
     const LoopSpec& spec = scene_.loops[at];
-    if (spec.kind == LoopKind::equation)
+    if (spec.kind == LoopKind::rolling)
+      return "loop '" + spec.name + "': its wheel lies flat on the plane and touches in no point";
+    if (has_equation(spec))
       return "loop '" + spec.name + "': its equation has no value or no derivatives here";
     const bool cam = spec.kind == LoopKind::cam;
     const std::string what =

@@ -57,16 +57,22 @@ void check_loop_drive(const Scene& scene, const Census& census, const DriveSpec&
   if (!drive.origin.empty()) {
     require(drive.origin == "x" || drive.origin == "y" || drive.origin == "z", scene, drive.at, who,
             "origin must be x, y or z");
-    require(loop.kind != LoopKind::equation, scene, drive.at, who,
+    require(!has_equation(loop), scene, drive.at, who,
             "origin has no meaning for an equation, expected a formula with t in it");
+    require(loop.kind != LoopKind::rolling, scene, drive.at, who,
+            "origin of a rolling loop cannot be driven, expected a driven joint of the body that "
+            "has the plane");
     require(loop.kind != LoopKind::coupler, scene, drive.at, who,
             "origin has no meaning for a coupler, expected none: a drive prescribes its offset");
     return;
   }
   const int count = has_curves(loop) ? 0 : driven_coordinates_of(loop.kind);
-  if (loop.kind == LoopKind::equation)
+  if (has_equation(loop))
     throw SceneError(scene.where(drive.at) + who +
                      ": an equation has no coordinate to drive, expected a formula with t in it");
+  if (loop.kind == LoopKind::rolling)
+    throw SceneError(scene.where(drive.at) + who +
+                     ": a rolling loop has no coordinate to drive, expected a driven joint");
   if (count == 0)
     throw SceneError(scene.where(drive.at) + who + ": a " + kind +
                      " loop has no coordinate to drive, expected origin = \"x\", \"y\" or \"z\"" +

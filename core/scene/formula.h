@@ -97,9 +97,9 @@ bool has_formula(const ForceSpec& force);
 /// Why a formula of a force cannot be one, in words; empty where it can.
 std::string formula_fault(const Scene& scene, const ForceSpec& force, const Formula& formula);
 
-/// Why a formula cannot be an equation that holds coordinates and points together, in words; empty
+/// Why a formula cannot be the equation of a loop, of positions or of velocities, in words; empty
 /// where it can.
-std::string equation_fault(const Scene& scene, const Formula& formula);
+std::string equation_fault(const Scene& scene, LoopKind kind, const Formula& formula);
 
 /// What the formulas of forces and equations name, their own names included. @pre the scene is
 /// valid

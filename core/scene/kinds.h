@@ -14,9 +14,11 @@ namespace momenta::reading {
 inline constexpr std::array<std::string_view, 9> joint_kinds{
     "revolute",  "prismatic", "helical", "cylindrical", "universal",
     "spherical", "planar",    "free",    "weld"};
-inline constexpr std::array<std::string_view, 14> loop_kinds{
-    "point",       "revolute", "spherical", "weld", "prismatic", "distance", "universal",
-    "cylindrical", "planar",   "coupler",   "slot", "cam",       "rack",     "equation"};
+inline constexpr std::array<std::string_view, 16> loop_kinds{
+    "point",    "revolute",  "spherical",   "weld",     "prismatic",
+    "distance", "universal", "cylindrical", "planar",   "coupler",
+    "slot",     "cam",       "rack",        "equation", "velocity-equation",
+    "rolling"};
 // Of slots a straight one has no curve to describe.
 inline constexpr std::array<std::string_view, 3> slot_curves{"line", "circle", "spline"};
 inline constexpr std::array<std::string_view, 4> cam_curves{"circle", "ellipse", "spline", "flat"};
@@ -30,7 +32,7 @@ inline constexpr std::array<std::string_view, 6> visual_kinds{"box",      "spher
                                                               "cylinder", "ellipsoid", "mesh"};
 
 static_assert(static_cast<std::size_t>(JointKind::user) == joint_kinds.size());
-static_assert(static_cast<std::size_t>(LoopKind::equation) + 1 == loop_kinds.size());
+static_assert(static_cast<std::size_t>(LoopKind::rolling) + 1 == loop_kinds.size());
 
 inline std::string_view name_of(JointKind kind) {
   return kind == JointKind::user ? "user" : joint_kinds.at(static_cast<std::size_t>(kind));
@@ -46,7 +48,7 @@ constexpr bool has_axis(JointKind kind) {
 constexpr bool has_axis(LoopKind kind) {
   return kind == LoopKind::revolute || kind == LoopKind::prismatic || kind == LoopKind::universal ||
          kind == LoopKind::cylindrical || kind == LoopKind::planar || kind == LoopKind::slot ||
-         kind == LoopKind::cam || kind == LoopKind::rack;
+         kind == LoopKind::cam || kind == LoopKind::rack || kind == LoopKind::rolling;
 }
 
 /// What drives prescribe, coordinate by coordinate, where all of them must be driven or none.

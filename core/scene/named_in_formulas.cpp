@@ -8,17 +8,18 @@
 namespace momenta {
 
 NamedInFormulas::NamedInFormulas(const Scene& scene) {
-  const auto is_equation = [](const LoopSpec& l) { return l.kind == LoopKind::equation; };
   if (std::none_of(scene.forces.begin(), scene.forces.end(), has_formula) &&
-      std::none_of(scene.loops.begin(), scene.loops.end(), is_equation))
+      std::none_of(scene.loops.begin(), scene.loops.end(), has_equation))
     return;
   const FormulaReader reader(scene);
   for (const LoopSpec& loop : scene.loops) {
-    if (!is_equation(loop)) continue;
+    if (!has_equation(loop)) continue;
     for (const Signal& s : reader.read(loop.equation).signals) {
       const auto which = static_cast<std::size_t>(s.which);
-      if (s.kind == Signal::Kind::coordinate) joints.insert(scene.joints[which].name);
-      if (s.kind == Signal::Kind::position) bodies.insert(scene.markers[which].body);
+      if (s.kind == Signal::Kind::coordinate || s.kind == Signal::Kind::rate)
+        joints.insert(scene.joints[which].name);
+      if (s.kind == Signal::Kind::position || s.kind == Signal::Kind::velocity)
+        bodies.insert(scene.markers[which].body);
     }
   }
   for (const ForceSpec& force : scene.forces) {

@@ -22,7 +22,7 @@ class Pins {
     };
     for (const JointSpec& joint : scene.joints) take(joint);
     for (const LoopSpec& loop : scene.loops)
-      if (loop.kind == LoopKind::slot)
+      if (loop.kind == LoopKind::slot || loop.kind == LoopKind::rolling)
         add(loop.child, loop.origin_child);
       else if (ties_bodies(loop) && !has_curves(loop))
         take(loop);

@@ -34,7 +34,11 @@ bool has_stops(const JointSpec& joint) {
 }
 
 bool ties_bodies(const LoopSpec& loop) {
-  return loop.kind != LoopKind::coupler && loop.kind != LoopKind::equation;
+  return loop.kind != LoopKind::coupler && !has_equation(loop);
+}
+
+bool has_equation(const LoopSpec& loop) {
+  return loop.kind == LoopKind::equation || loop.kind == LoopKind::velocity_equation;
 }
 
 bool has_curves(const LoopSpec& loop) {
@@ -87,6 +91,7 @@ double length_of(const Scene& scene) {
     length = std::max(length, l.length);
     if (!ties_bodies(l)) continue;
     ends(l);
+    if (l.kind == LoopKind::rolling) length = std::max(length, l.radius);
     if (!l.curve.kind.empty()) outline(l.parent, l.origin_parent, l.rotation, l.curve);
     if (!l.child_curve.kind.empty())
       outline(l.child, l.origin_child, Eigen::Quaterniond::Identity(), l.child_curve);

@@ -145,20 +145,22 @@ Eigen::Vector3d perpendicular_to(const Eigen::Vector3d& axis);
 
 /// The kinds of loops, with their number of equations; the equations: LoopSpec.
 enum class LoopKind {
-  point,        ///< 3 equations, 2 in a plane
-  revolute,     ///< 5
-  spherical,    ///< 3, as point
-  weld,         ///< 6
-  prismatic,    ///< 5
-  distance,     ///< 1
-  universal,    ///< 4
-  cylindrical,  ///< 4
-  planar,       ///< 3
-  coupler,      ///< 1, between coordinates of joints
-  slot,         ///< 2, in a plane 1
-  cam,          ///< 1
-  rack,         ///< 1
-  equation      ///< 1, between coordinates, positions of markers and the time
+  point,              ///< 3 equations, 2 in a plane
+  revolute,           ///< 5
+  spherical,          ///< 3, as point
+  weld,               ///< 6
+  prismatic,          ///< 5
+  distance,           ///< 1
+  universal,          ///< 4
+  cylindrical,        ///< 4
+  planar,             ///< 3
+  coupler,            ///< 1, between coordinates of joints
+  slot,               ///< 2, in a plane 1
+  cam,                ///< 1
+  rack,               ///< 1
+  equation,           ///< 1, between coordinates, positions of markers and the time
+  velocity_equation,  ///< 1, between rates and velocities of markers; nonholonomic
+  rolling             ///< 3: contact, and two of the slip, which are nonholonomic
 };
 
 /// A joint that closes a loop. It has the keys of a joint, but no coordinates and no forces along
@@ -181,6 +183,14 @@ enum class LoopKind {
 ///     held
 ///   - `equation`: the formula `equation` is zero, of joint coordinates, positions of markers and t
 ///     (core/scene/formula.h); it ties what its names stand for, and has no bodies of its own
+///   - `velocity_equation`: the formula `equation` is zero, linear in rates of joint coordinates
+///   and
+///     velocities of markers, with coefficients of coordinates, positions of markers and t
+///   - `rolling`: the wheel of the child rolls without slipping on the plane of the parent through
+///     origin_parent, on the side to which `normal` points: a circle about origin_child across
+///     `axis`, of radius `radius` − `crown_radius`, thickened by `crown_radius`. A crown radius of
+///     0 makes the wheel a disc with a sharp edge, one of `radius` a sphere. It pulls as well as
+///     pushes
 struct LoopSpec {
   std::string name;                                              ///< unique among joints and loops
   LoopKind kind = LoopKind::point;                               ///< point, revolute, …
@@ -203,12 +213,14 @@ struct LoopSpec {
   /// Of the second to fourth power of the last joint's coordinate, at most three; where one is not
   /// zero that joint's ratio may be.
   std::vector<double> powers;
-  double offset = 0;      ///< [rad or m]; no effect where a drive prescribes it
-  CurveSpec curve;        ///< slot: circle or spline, or none; cam: outline of the parent
-  CurveSpec child_curve;  ///< cam: outline of the child
-  double radius = 0;      ///< rack [m], > 0
-  std::string equation;   ///< equation: a formula, without corners
-  Location at;            ///< where the file has it
+  double offset = 0;        ///< [rad or m]; no effect where a drive prescribes it
+  CurveSpec curve;          ///< slot: circle or spline, or none; cam: outline of the parent
+  CurveSpec child_curve;    ///< cam: outline of the child
+  double radius = 0;        ///< rack, rolling: the largest [m], > 0
+  double crown_radius = 0;  ///< rolling [m], 0 to `radius`
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< rolling: unit vector in the loop frame
+  std::string equation;  ///< equation, velocity equation: a formula, without corners
+  Location at;           ///< where the file has it
 };
 
 /// Whether a coupler is not linear.
@@ -216,6 +228,9 @@ bool has_powers(const LoopSpec& loop);
 
 /// Whether a loop ties its parent and its child, and not what coordinates or formulas name.
 bool ties_bodies(const LoopSpec& loop);
+
+/// Whether a loop is a formula: of positions, or of velocities.
+bool has_equation(const LoopSpec& loop);
 
 /// Whether a loop is a higher pair of curves: a slot that is not straight, a cam, a rack.
 bool has_curves(const LoopSpec& loop);
@@ -241,6 +256,8 @@ constexpr int driven_coordinates_of(LoopKind kind) {
     case LoopKind::cam:
     case LoopKind::rack:
     case LoopKind::equation:
+    case LoopKind::velocity_equation:
+    case LoopKind::rolling:
       return 0;
   }
   return 0;

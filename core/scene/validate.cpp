@@ -186,12 +186,19 @@ void check_curves(const Scene& scene, const LoopSpec& loop, const std::string& w
   if (loop.kind == LoopKind::rack)
     require(std::isfinite(loop.radius) && loop.radius > 0 && std::isfinite(loop.offset), scene,
             loop.at, who, "radius must be finite and > 0 [m], and offset finite [rad]");
+  if (loop.kind == LoopKind::rolling)
+    require(std::isfinite(loop.radius) && loop.radius > 0 && loop.crown_radius >= 0 &&
+                loop.crown_radius <= loop.radius &&
+                std::abs(loop.normal.norm() - 1) <= reading::norm_slack,
+            scene, loop.at, who,
+            "radius must be finite and > 0 [m], crown_radius 0 to radius, normal a unit vector "
+            "within 1e-6");
 }
 
 void check_equation(const Scene& scene, const LoopSpec& loop, const std::string& who) {
   std::string fault;
   try {
-    fault = equation_fault(scene, FormulaReader(scene).read(loop.equation));
+    fault = equation_fault(scene, loop.kind, FormulaReader(scene).read(loop.equation));
   } catch (const ExpressionError& e) {
     fault = e.what();
   }
@@ -202,9 +209,9 @@ void check_equation(const Scene& scene, const LoopSpec& loop, const std::string&
 void check_loops(const Scene& scene, const Census& census) {
   for (const LoopSpec& loop : scene.loops) {
     const std::string who = "loop " + in_quotes(loop.name);
-    require((loop.kind == LoopKind::equation) != loop.equation.empty(), scene, loop.at, who,
-            "equation must be given for an equation, and for no other kind");
-    if (loop.kind == LoopKind::equation) {
+    require(has_equation(loop) != loop.equation.empty(), scene, loop.at, who,
+            "equation must be given for an equation or a velocity-equation, and for no other kind");
+    if (has_equation(loop)) {
       check_equation(scene, loop, who);
       continue;
     }

@@ -42,9 +42,16 @@ class Assembler {
     if (mechanism_.m() > 0) {
       if (mechanism_.nv() == 0) nothing_moves();
       close_positions(a);
+      const int of_positions =
+          mechanism_.has_nonholonomic()
+              ? steps_.judge(loops_.jacobian(), Judged::dependence).rank
+              : 0;
+      loops_.rows.assign(loops_.rows.size(), true);
       judge_rank(a);
       close_velocities(a);
+      a.free_positions = mechanism_.nv() - (mechanism_.has_nonholonomic() ? of_positions : a.rank);
     }
+    if (mechanism_.m() == 0) a.free_positions = mechanism_.nv();
     a.mobility = mechanism_.nv() - a.rank;
     if (what == Assembled::motion) accelerations(a);
     return a;

@@ -23,7 +23,10 @@ struct Assembly {
   double kept = 0;
   double dropped = 0;  ///< largest singular value that does not count; 0: the rows are independent
   std::vector<int> dependent_rows;  ///< rows of Φ that follow from the others at the start
-  int mobility = 0;                 ///< nv − rank
+  int mobility = 0;                 ///< nv − rank: how many rates are free
+  /// How many coordinates are free: nv less the rank of the rows that are not nonholonomic. Where
+  /// there are no nonholonomic rows, `mobility`.
+  int free_positions = 0;
   /// The sentence of residue_in_words() where redundant equations contradict each other because a
   /// file has rounded numbers, so that no pose closes their loops; else empty.
   std::string residue;

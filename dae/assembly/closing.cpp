@@ -103,7 +103,8 @@ Closing::Pose Closing::damped(Eigen::VectorXd q, int most) {
 }
 
 bool Closing::is_redundant(const std::vector<double>& j) {
-  return steps_.judge(j, Judged::dependence).rank < static_cast<int>(loops_.rows.size());
+  return steps_.judge(j, Judged::dependence).rank <
+         std::count(loops_.rows.begin(), loops_.rows.end(), true);
 }
 
 /// Whether what is open, no more than a file leaves by rounding, is of redundant equations alone.

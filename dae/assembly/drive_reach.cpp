@@ -108,7 +108,8 @@ bool Continuation::leave_free_groups(bool& all_determined) {
     for (std::size_t c = 0; c < columns; ++c)
       if (root_of(static_cast<int>(c)) == group) loops_.columns[c] = determined;
     for (std::size_t r = 0; r < loops_.rows.size(); ++r)
-      if (first[r] >= 0 && root_of(first[r]) == group) loops_.rows[r] = determined;
+      if (first[r] >= 0 && root_of(first[r]) == group)
+        loops_.rows[r] = determined && !mechanism_.nonholonomic()[r];
   }
   // Rows without columns tie drives to the ground: they hold or they do not.
   for (std::size_t r = 0; r < loops_.rows.size(); ++r) any = any || first[r] < 0;

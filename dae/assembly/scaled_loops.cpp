@@ -12,7 +12,10 @@ ScaledLoops::ScaledLoops(const Mechanism& mechanism)
       mechanism_(mechanism),
       e_(mechanism.evaluation<double>()),
       pattern_(mechanism.constraint_pattern()),
-      units_(mechanism) {}
+      units_(mechanism) {
+  const std::vector<bool>& of_velocities = mechanism.nonholonomic();
+  for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = !of_velocities[i];
+}
 
 Eigen::VectorXd ScaledLoops::gap(double t, const Eigen::VectorXd& q) {
   Eigen::VectorXd phi(mechanism_.m());
@@ -24,7 +27,9 @@ Eigen::VectorXd ScaledLoops::gap(double t, const Eigen::VectorXd& q) {
 std::vector<double> ScaledLoops::jacobian() {
   std::vector<double> values = scaled_entries(mechanism_, *e_, units_);
   for (std::size_t i = 0; i < values.size(); ++i)
-    if (!columns[static_cast<std::size_t>(pattern_[i].column)]) values[i] = 0;
+    if (!columns[static_cast<std::size_t>(pattern_[i].column)] ||
+        !rows[static_cast<std::size_t>(pattern_[i].row)])
+      values[i] = 0;
   return values;
 }
 

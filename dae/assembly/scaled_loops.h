@@ -16,7 +16,7 @@ class ScaledLoops {
   /// D⁻¹ Φ at time t [s] and q (nq), m; zero in rows that are left out. Places the evaluation.
   Eigen::VectorXd gap(double t, const Eigen::VectorXd& q);
   /// Entries of D⁻¹ Φ_q C where gap() was taken last, in the order of pattern(); zero in columns
-  /// that are left out.
+  /// and rows that are left out.
   std::vector<double> jacobian();
   /// q after a step δ (nv) from there.
   Eigen::VectorXd moved(const Eigen::VectorXd& q, const Eigen::VectorXd& step);
@@ -30,7 +30,8 @@ class ScaledLoops {
   const std::vector<KktPattern::Entry>& pattern() const { return pattern_; }
   const LoopUnits& units() const { return units_; }
 
-  std::vector<bool> columns, rows;  ///< that are in: all, until told otherwise
+  std::vector<bool> columns,
+      rows;  ///< that are in: all columns, and the rows of positions, until told otherwise
 
  private:
   const Mechanism& mechanism_;

@@ -128,7 +128,8 @@ LoopSpec folded(LoopSpec loop, const Places& places) {
       for (Vector3d& point : curve->points) point = child.turn * point;
     }
     loop.rotation = loop.rotation * child.turn.conjugate();
-    for (Vector3d* a : {&loop.axis, &loop.axis2, &loop.direction}) *a = child.turn * *a;
+    for (Vector3d* a : {&loop.axis, &loop.axis2, &loop.direction, &loop.normal})
+      *a = child.turn * *a;
   }
   if (loop.child == "ground") loop = turned_round(loop);
   return loop;

@@ -27,6 +27,8 @@ std::optional<JointKind> as_joint(LoopKind kind, bool planar) {
     case LoopKind::cam:
     case LoopKind::rack:
     case LoopKind::equation:
+    case LoopKind::velocity_equation:
+    case LoopKind::rolling:
       break;
   }
   return std::nullopt;

@@ -35,7 +35,10 @@ class SceneGraph {
       loop_at_.back() = static_cast<int>(edges.size());
       CutEdge& e = add(loop.parent, loop.child, false);
       const auto joint = as_joint(loop.kind, planar_);
-      e.rows = joint ? rows_of(*joint, planar_) : loop.kind == LoopKind::slot && !planar_ ? 2 : 1;
+      e.rows = joint                                     ? rows_of(*joint, planar_)
+               : loop.kind == LoopKind::rolling          ? 3
+               : loop.kind == LoopKind::slot && !planar_ ? 2
+                                                         : 1;
       e.fixed = !joint || said.driven_loops.contains(loop.name) || said.kept.contains(loop.name);
     }
   }

@@ -27,7 +27,7 @@ class AccelerationIndex3 final : public DaeFormOf<AccelerationIndex3>, public Se
 
   template <class S>
   void rows(DaeScratch<S>& s, double t, const S* y, const S* ydot, S* r) {
-    s.e->positions(acceleration_rows(s, t, y, ydot, r));
+    position_rows(s, acceleration_rows(s, t, y, ydot, r));
   }
 
   int coordinates() const override { return layout_.nq; }

@@ -182,6 +182,26 @@ class DaeFormOf : public DaeForm {
     static_cast<Derived*>(this)->rows(s, t, y, ydot, r);
   }
 
+  /// Φ = 0 (m), and of nonholonomic rows A u − b = 0. The evaluation is moved.
+  template <class S>
+  void position_rows(DaeScratch<S>& s, S* r) const {
+    s.e->positions(r);
+    if (!mechanism_.has_nonholonomic()) return;
+    s.e->velocities(s.a.data());
+    for (std::size_t i = 0; i < mechanism_.nonholonomic().size(); ++i)
+      if (mechanism_.nonholonomic()[i]) r[i] = s.a[i];
+  }
+  /// The rows of Φ̇ = 0 and Φ = 0 (2m); of nonholonomic rows, which have one level, μ = 0 in place
+  /// of the second. The evaluation is moved.
+  template <class S>
+  void both_levels(DaeScratch<S>& s, const S* y, S* r) const {
+    s.e->velocities(r);
+    s.e->positions(r + layout_.m);
+    for (int i = 0; i < layout_.m; ++i)
+      if (mechanism_.nonholonomic()[static_cast<std::size_t>(i)])
+        r[layout_.m + i] = y[layout_.mu() + i];
+  }
+
   /// The rows of (7) and (8) with u the rates of q̇, for forms in q, p; σ. Returns the place of the
   /// loops' rows; the evaluation is moved at u.
   template <class S>

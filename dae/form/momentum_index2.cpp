@@ -29,7 +29,7 @@ class MomentumIndex2 final : public DaeFormOf<MomentumIndex2>, public HalfExplic
 
   template <class S>
   void rows(DaeScratch<S>& s, double t, const S* y, const S* ydot, S* r) {
-    s.e->positions(momentum_rows(s, t, y, ydot, r));
+    position_rows(s, momentum_rows(s, t, y, ydot, r));
   }
 
   /// Φ̇ = 0: (7), and (8).

@@ -25,7 +25,7 @@ class MomentumIndex3 final : public DaeFormOf<MomentumIndex3> {
 
   template <class S>
   void rows(DaeScratch<S>& s, double t, const S* y, const S* ydot, S* r) {
-    s.e->positions(hamilton_rows(s, t, y, ydot, r));
+    position_rows(s, hamilton_rows(s, t, y, ydot, r));
   }
 
  protected:

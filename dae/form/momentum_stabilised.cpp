@@ -30,8 +30,7 @@ class MomentumStabilised final : public DaeFormOf<MomentumStabilised> {
     s.e->momentum_rates(q, v, sigma, leak(), s.b.data());
     for (int i = 0; i < layout_.nv; ++i) *r++ = pdot[i] - s.b[static_cast<std::size_t>(i)];
     for (int i = 0; i < layout_.nv; ++i) *r++ = s.a[static_cast<std::size_t>(i)] - p[i];
-    s.e->velocities(r);
-    s.e->positions(r + layout_.m);
+    both_levels(s, y, r);
   }
 };
 

@@ -54,6 +54,7 @@ class Partitioned final : public OdeForm {
         qdot_(mechanism.nq()),
         udot_(mechanism.nv()),
         rate_(mechanism.m()) {
+    expect_positions(mechanism);
     rate_values_.resize(jacobian_.rate_pattern().size());
     values_.resize(jacobian_.pattern().size());
     phi_.resize(jacobian_.rows());
@@ -146,6 +147,15 @@ class Partitioned final : public OdeForm {
   }
 
  private:
+  /// As many independent coordinates as rates.
+  static void expect_positions(const Mechanism& mechanism) {
+    for (std::size_t i = 0; i < mechanism.nonholonomic().size(); ++i)
+      if (mechanism.nonholonomic()[i])
+        throw NoStateAtStart("form 'partitioned': loop '" + mechanism.rows()[i].loop + "' (" +
+                             mechanism.rows()[i].what +
+                             ") ties rates and no coordinates, so that no coordinate follows from "
+                             "the others for it; expected another form");
+  }
   /// Of coordinates; the same as that of rates where there are no balls.
   CoordinateSplit& positions() const { return positions_ ? *positions_ : *rates_; }
   int freedom() const { return static_cast<int>(rates_->independent().size()); }

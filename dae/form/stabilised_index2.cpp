@@ -23,8 +23,7 @@ class StabilisedIndex2 final : public DaeFormOf<StabilisedIndex2> {
   template <class S>
   void rows(DaeScratch<S>& s, double t, const S* y, const S* ydot, S* r) {
     r = acceleration_rows(s, t, y, ydot, r);
-    s.e->velocities(r);
-    s.e->positions(r + layout_.m);
+    both_levels(s, y, r);
   }
 };
 

@@ -44,7 +44,7 @@ double rounding_of(const Tree& tree, double length) {
 std::vector<double> sizes_of_equations(const Mechanism& mechanism, const Eigen::VectorXd& rates) {
   std::set<std::string> names;
   for (const LoopSpec& l : mechanism.scene().loops)
-    if (l.kind == LoopKind::equation) names.insert(l.name);
+    if (has_equation(l)) names.insert(l.name);
   if (names.empty()) return {};
   std::vector<double> sizes(static_cast<std::size_t>(mechanism.m()), 0.0);
   const auto& pattern = mechanism.constraint_pattern();

@@ -20,6 +20,7 @@
 //   nearest   Newton's method, μ = 0, steps halved until the forces left fall: it ends at any kind
 //             of equilibrium, a saddle too.
 //   start     no step: the pose is one, or is refused.
+//   steady    none is looked for: the start's rates are those of a steady motion (steady_motion.h).
 
 #include <momenta/dae/form/form.h>
 
@@ -27,7 +28,7 @@
 
 namespace momenta {
 
-enum class Search { settle, nearest, start };
+enum class Search { settle, nearest, start, steady };
 
 struct Equilibrium {
   double t = 0;

@@ -12,14 +12,15 @@ using Eigen::VectorXd;
 
 constexpr int directions = 8;
 
-/// Derivatives of (r, Φ) at rest, eight directions at a time.
+/// Derivatives of (r, Φ̇) without accelerations, eight directions at a time.
 class Columns {
  public:
-  Columns(const Mechanism& mechanism, double t, const VectorXd& q, const VectorXd& lambda,
-          const MatrixXd& X)
+  Columns(const Mechanism& mechanism, double t, const VectorXd& q, const VectorXd& u,
+          const VectorXd& lambda, const MatrixXd& X)
       : mechanism_(mechanism),
         t_(t),
         q_(q),
+        u_(u),
         X_(X),
         plain_(mechanism.evaluation<double>()),
         dual_(mechanism.evaluation<Dual8>()),
@@ -28,28 +29,28 @@ class Columns {
         acceleration_(rate_.size()),
         r_(rate_.size()),
         lambda_(lambda.begin(), lambda.end()),
-        phi_(static_cast<std::size_t>(mechanism.m())) {
+        of_loops_(static_cast<std::size_t>(mechanism.m())) {
     plain_->place(t, q.data());
   }
 
   enum class By { poses, rates, accelerations };
 
-  /// Columns of ∂r, and of ∂Φ where `loops` is given.
+  /// Columns of ∂r, and of ∂Φ̇ where `loops` is given.
   void take(By by, MatrixXd& of_forces, MatrixXd* loops) {
     const int nv = mechanism_.nv(), m = mechanism_.m();
     for (Eigen::Index first = 0; first < X_.cols(); first += directions) {
       const Eigen::Index count = std::min<Eigen::Index>(directions, X_.cols() - first);
       seed(by, first, count);
       dual_->place(t_, place_.data());
-      if (loops) dual_->positions(phi_.data());
       dual_->move(rate_.data());
+      if (loops) dual_->velocities(of_loops_.data());
       dual_->joint_forces(place_.data(), rate_.data(), acceleration_.data(), lambda_.data(),
                           r_.data());
       for (Eigen::Index d = 0; d < count; ++d) {
         const auto k = static_cast<std::size_t>(d);
         for (int i = 0; i < nv; ++i) of_forces(i, first + d) = r_[static_cast<std::size_t>(i)].b[k];
         for (int i = 0; loops && i < m; ++i)
-          (*loops)(i, first + d) = phi_[static_cast<std::size_t>(i)].b[k];
+          (*loops)(i, first + d) = of_loops_[static_cast<std::size_t>(i)].b[k];
       }
     }
   }
@@ -57,7 +58,7 @@ class Columns {
  private:
   void seed(By by, Eigen::Index first, Eigen::Index count) {
     for (std::size_t i = 0; i < place_.size(); ++i) place_[i] = Dual8(q_[static_cast<long>(i)]);
-    std::fill(rate_.begin(), rate_.end(), Dual8(0.0));
+    for (std::size_t i = 0; i < rate_.size(); ++i) rate_[i] = Dual8(u_[static_cast<long>(i)]);
     std::fill(acceleration_.begin(), acceleration_.end(), Dual8(0.0));
     VectorXd x, way(mechanism_.nq());
     for (Eigen::Index d = 0; d < count; ++d) {
@@ -76,24 +77,69 @@ class Columns {
 
   const Mechanism& mechanism_;
   double t_;
-  const VectorXd& q_;
+  const VectorXd &q_, &u_;
   const MatrixXd& X_;
   std::unique_ptr<Evaluation<double>> plain_;
   std::unique_ptr<Evaluation<Dual8>> dual_;
-  std::vector<Dual8> place_, rate_, acceleration_, r_, lambda_, phi_;
+  std::vector<Dual8> place_, rate_, acceleration_, r_, lambda_, of_loops_;
 };
+
+/// B x: both derivatives along one direction each.
+VectorXd turning(const Mechanism& mechanism, const Evaluation<double>& plain,
+                 const Evaluation<Dual8>& dual, const VectorXd& q, const VectorXd& u,
+                 const VectorXd& x) {
+  const auto nq = static_cast<std::size_t>(mechanism.nq());
+  const auto derivative = [&](const VectorXd& along, const VectorXd& rates) {
+    VectorXd way = VectorXd::Zero(mechanism.nq());
+    plain.coordinate_rates(q.data(), along.data(), way.data());
+    std::vector<Dual8> place(nq), rate(rates.begin(), rates.end()), qdot(nq, Dual8(0.0));
+    for (std::size_t i = 0; i < nq; ++i) {
+      place[i] = Dual8(q[static_cast<long>(i)]);
+      place[i].b[0] = way[static_cast<long>(i)];
+    }
+    dual.coordinate_rates(place.data(), rate.data(), qdot.data());
+    VectorXd d(mechanism.nq());
+    for (std::size_t i = 0; i < nq; ++i) d[static_cast<long>(i)] = qdot[i].b[0];
+    return d;
+  };
+  const VectorXd qdot = derivative(x, u) - derivative(u, x);
+  VectorXd rates = VectorXd::Zero(mechanism.nv());
+  plain.joint_rates(q.data(), qdot.data(), rates.data());
+  return rates;
+}
+
+void take_all(const Mechanism& mechanism, double t, const VectorXd& q, const VectorXd& u,
+              const VectorXd& lambda, const MatrixXd& X, Linearisation& l, MatrixXd* loop_rates) {
+  for (MatrixXd* a : {&l.M, &l.C, &l.K}) a->setZero(mechanism.nv(), X.cols());
+  l.loops.setZero(mechanism.m(), X.cols());
+  Columns columns(mechanism, t, q, u, lambda, X);
+  columns.take(Columns::By::poses, l.K, loop_rates);
+  columns.take(Columns::By::rates, l.C, mechanism.m() > 0 ? &l.loops : nullptr);
+  columns.take(Columns::By::accelerations, l.M, nullptr);
+}
 
 }  // namespace
 
 Linearisation linearise(const Mechanism& mechanism, double t, const VectorXd& q,
                         const VectorXd& lambda, const MatrixXd& X) {
   Linearisation l;
-  for (MatrixXd* a : {&l.M, &l.C, &l.K}) a->setZero(mechanism.nv(), X.cols());
-  l.loops.setZero(mechanism.m(), X.cols());
-  Columns columns(mechanism, t, q, lambda, X);
-  columns.take(Columns::By::poses, l.K, mechanism.m() > 0 ? &l.loops : nullptr);
-  columns.take(Columns::By::rates, l.C, nullptr);
-  columns.take(Columns::By::accelerations, l.M, nullptr);
+  const VectorXd rest = VectorXd::Zero(mechanism.nv());
+  take_all(mechanism, t, q, rest, lambda, X, l, nullptr);
+  return l;
+}
+
+MovingLinearisation linearise_moving(const Mechanism& mechanism, double t, const VectorXd& q,
+                                     const VectorXd& u, const VectorXd& lambda, const MatrixXd& X) {
+  MovingLinearisation l;
+  l.loop_rates.setZero(mechanism.m(), X.cols());
+  take_all(mechanism, t, q, u, lambda, X, l, mechanism.m() > 0 ? &l.loop_rates : nullptr);
+  l.turning.setZero(mechanism.nv(), X.cols());
+  if (!mechanism.plan().quasi_velocities) return l;
+  const auto plain = mechanism.evaluation<double>();
+  const auto dual = mechanism.evaluation<Dual8>();
+  plain->place(t, q.data());
+  for (Eigen::Index j = 0; j < X.cols(); ++j)
+    l.turning.col(j) = turning(mechanism, *plain, *dual, q, u, X.col(j));
   return l;
 }
 

@@ -6,6 +6,14 @@
 //
 // K has the geometric part Σ λ_i ∂(∇Φ_i)/∂δ in it: what the loops' forces do when they turn. All
 // are exact to rounding, by dual numbers. Derivation: docs/theory/small-motions.md.
+//
+// About a motion at constant rates u*, in axes that move along with it,
+//
+//   δ̇ = δu + B δ,    M δu̇ + C δu + K δ + Aᵀ δλ = 0,    A δu + V δ = 0
+//   B δ: q̇ = H(q) u, H δ̇ = H δu + [∂(H u)/∂q] H δ − [∂(H δ)/∂q] H u;   zero where u = q̇
+//   V = ∂(A u − b)/∂δ
+//
+// A has the rows of all loops, nonholonomic ones too; all at (q*, u*, 0, λ*).
 
 #include <momenta/dae/mechanism.h>
 
@@ -15,13 +23,24 @@ namespace momenta {
 
 struct Linearisation {
   Eigen::MatrixXd M, C, K;  ///< M X, C X, K X, nv × columns of X
-  Eigen::MatrixXd loops;    ///< Φ_q X, m × columns
+  Eigen::MatrixXd loops;    ///< Φ_q X, m × columns; of nonholonomic rows A X
+};
+
+/// About a motion at constant rates.
+struct MovingLinearisation : Linearisation {
+  Eigen::MatrixXd loop_rates;  ///< V X, m × columns
+  Eigen::MatrixXd turning;     ///< B X, nv × columns
 };
 
 /// Along the columns of X (nv × any number), at (t, q), u = u̇ = 0, with λ (m). Cost O(bodies) a
 /// column.
 Linearisation linearise(const Mechanism& mechanism, double t, const Eigen::VectorXd& q,
                         const Eigen::VectorXd& lambda, const Eigen::MatrixXd& X);
+
+/// The same at rates u (nv), without accelerations.
+MovingLinearisation linearise_moving(const Mechanism& mechanism, double t, const Eigen::VectorXd& q,
+                                     const Eigen::VectorXd& u, const Eigen::VectorXd& lambda,
+                                     const Eigen::MatrixXd& X);
 
 /// The scene with every drive held where it is at t = 0, and no velocity.
 Scene held_at_start(Scene scene);

@@ -17,6 +17,7 @@ LocalPencil::LocalPencil(const Mechanism& mechanism)
       lambda_(static_cast<std::size_t>(mechanism.m())),
       qdot_(q_.size()),
       phi_(lambda_.size()),
+      of_rates_(lambda_.size()),
       out_(lambda_.size(), false) {}
 
 void LocalPencil::leave_out(const std::vector<int>& rows) {
@@ -32,6 +33,12 @@ bool LocalPencil::factor(double t, const VectorXd& q, const VectorXd& lambda, do
   for (std::size_t i = 0; i < nv; ++i) u_[i] = LocalDual::variable(0, static_cast<int>(i));
   local_->place(t, q_.data());
   local_->coordinate_rates(q_.data(), u_.data(), qdot_.data());
+  // A δ of nonholonomic rows, which have no Φ.
+  const bool of_rates = mechanism_.has_nonholonomic();
+  if (of_rates) {
+    local_->move(u_.data());
+    local_->velocities(of_rates_.data());
+  }
   for (std::size_t i = 0; i < q_.size(); ++i) q_[i] += qdot_[i];
   for (std::size_t i = 0; i < nv; ++i) {
     u_[i] = c == 0 ? LocalDual(0) : LocalDual::variable(0, static_cast<int>(i), c);
@@ -43,6 +50,8 @@ bool LocalPencil::factor(double t, const VectorXd& q, const VectorXd& lambda, do
   }
   local_->place(t, q_.data());
   local_->positions(phi_.data());
+  for (std::size_t i = 0; of_rates && i < m; ++i)
+    if (mechanism_.nonholonomic()[i]) phi_[i] = of_rates_[i];
   local_->move(u_.data());
   r_.resize(nv);
   local_->joint_forces(q_.data(), u_.data(), udot_.data(), lambda_.data(), r_.data());

@@ -35,7 +35,7 @@ class LocalPencil {
  private:
   const Mechanism& mechanism_;
   std::unique_ptr<Evaluation<LocalDual>> local_;
-  std::vector<LocalDual> q_, u_, udot_, lambda_, qdot_, r_, phi_;
+  std::vector<LocalDual> q_, u_, udot_, lambda_, qdot_, r_, phi_, of_rates_;
   std::vector<double> compliance_;
   std::vector<bool> out_;  ///< by loop equation
   Cuts cuts_;

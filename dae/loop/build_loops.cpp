@@ -127,7 +127,7 @@ LoopModel<Spatial> build_loops(const Scene& scene, const Tree& tree, const Model
     LoopModel<Spatial>::Loop l;
     LoopModel<Spatial>::Motion motion;
     take_rows(choice, l);
-    if (spec.kind == LoopKind::equation) {
+    if (has_equation(spec)) {
       take_equation(scene, spec, tree, model, all, l);
     } else if (spec.kind == LoopKind::coupler) {
       couple(spec, tree, all, l, motion);
@@ -152,6 +152,11 @@ LoopModel<Spatial> build_loops(const Scene& scene, const Tree& tree, const Model
     if (spec.kind == LoopKind::distance) {
       l.given = length_at_start(spec, own);
       l.per_length = 1 / l.given;
+    }
+    if (spec.kind == LoopKind::rolling) {
+      l.axis_a[2] = in_a(spec.axis.normalized());
+      l.wheel = static_cast<int>(all.wheels.size());
+      all.wheels.push_back({spec.radius - spec.crown_radius, spec.crown_radius});
     }
     if (has_curves(spec)) add_pair(spec, all, l);
     if (spec.kind == LoopKind::universal && !own.drives_coordinates()) {
@@ -181,7 +186,7 @@ LoopModel<Planar> build_loops(const Scene& scene, const Tree& tree, const Model<
     LoopModel<Planar>::Loop l;
     LoopModel<Planar>::Motion motion;
     take_rows(choice, l);
-    if (spec.kind == LoopKind::equation) {
+    if (has_equation(spec)) {
       take_equation(scene, spec, tree, model, all, l);
       append(std::move(l), all);
       continue;
@@ -313,11 +318,24 @@ std::string loops_leave_plane(const Scene& scene, const Tree& tree, const Eigen:
          (spec.kind != LoopKind::slot && (off_normal(axis_a) || axis_a.dot(axis_b) < 0))))
       return "the axis of loop '" + spec.name + "' is not normal to the plane of the joints";
     if (spec.kind == LoopKind::universal || spec.kind == LoopKind::cylindrical ||
-        spec.kind == LoopKind::planar)
+        spec.kind == LoopKind::planar || spec.kind == LoopKind::rolling)
       return "loop '" + spec.name + "' is of a kind that only space has";
   }
   return "";
 }
+
+template <class Space>
+std::vector<bool> LoopModel<Space>::nonholonomic() const {
+  std::vector<bool> rows_of_velocity;
+  for (const Loop& l : loops)
+    for (int i = 0; i < l.rows; ++i)
+      rows_of_velocity.push_back(
+          (l.is_wheel() && i > 0) ||
+          (l.is_equation() && equations[static_cast<std::size_t>(l.equation)]->of_rates));
+  return rows_of_velocity;
+}
+template struct LoopModel<Planar>;
+template struct LoopModel<Spatial>;
 
 std::vector<RowName> row_names(const Scene& scene, bool planar) {
   std::vector<RowName> names;

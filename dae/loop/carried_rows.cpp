@@ -70,9 +70,10 @@ CarriedRows::CarriedRows(const Tree& tree, const Model<Spatial>& model, LoopMode
     const int first = l.row, rows = l.rows;
     l.row = static_cast<int>(rows_.size());
     const auto keep = [&](int row) { rows_.push_back(first + row); };
-    const auto normal = l.is_distance() || l.is_coupler() || l.is_pair() || l.motion >= 0
-                            ? std::nullopt
-                            : zero.normal(l.a, l.b);
+    const auto normal =
+        l.is_distance() || l.is_coupler() || l.is_pair() || l.is_wheel() || l.motion >= 0
+            ? std::nullopt
+            : zero.normal(l.a, l.b);
     const auto across = [&](int body, const Vec3<double>& axis) {
       return parallel(zero.direction(body, axis), *normal);
     };

@@ -91,9 +91,14 @@ class Choosing {
       case LoopKind::rack:
         higher("rolling");
         break;
+      case LoopKind::rolling:
+        c_.frame = frame_about(loop_.normal);
+        c_.names = {"contact", "slip along axis 1", "slip along axis 2"};
+        break;
       case LoopKind::distance:
       case LoopKind::coupler:
       case LoopKind::equation:
+      case LoopKind::velocity_equation:
         break;
     }
     return c_;
@@ -129,9 +134,10 @@ class Choosing {
   }
 
   LoopChoice of_number() {
-    const std::string what = loop_.kind == LoopKind::distance  ? "distance"
-                             : loop_.kind == LoopKind::coupler ? "coupling"
-                                                               : "equation";
+    const std::string what = loop_.kind == LoopKind::distance   ? "distance"
+                             : loop_.kind == LoopKind::coupler  ? "coupling"
+                             : loop_.kind == LoopKind::equation ? "equation"
+                                                                : "velocity equation";
     c_.names.push_back(drives_.coordinate[0] ? what + ", driven" : what);
     return c_;
   }

@@ -10,6 +10,17 @@
 //   Φ̇ = Σ F_k ẋ_k,  Ḟ_k = Σ F_kl ẋ_l,  Φ̈ = Σ F_k ẍ_k + Σ Ḟ_k ẋ_k
 //
 // e is an axis of the ground, s the impulse σ of the row; N as in loop_rows.h.
+//
+// An equation of velocities is F(x, r) = 0, linear in r, the rates of some of these x: A u − b.
+//
+//   r = u_i       ṙ = u̇_i                  impulse p_i += F_r s, N: ṗ_i += (d/dt F_r) s
+//   r = e·v_P     ṙ = e·a_P                impulse on the body: force F_r s e at x_P
+//                                          N: force (d/dt F_r) s e at x_P, couple v_P × F_r s e
+//   r = ḟ(t)      ṙ = f̈                    none
+//
+//   d/dt F = Σ F_r ṙ + Σ F_x ẋ,  d/dt F_r = Σ F_rx ẋ
+//
+// It has no position: Φ = 0. N is Ȧᵀσ, and not (A u)_qᵀσ: docs/theory/higher-pairs.md, section 4.
 
 #include <momenta/core/expression/evaluate.h>
 #include <momenta/core/kernel/points.h>
@@ -22,7 +33,7 @@ namespace momenta {
 template <class Space>
 struct LoopEquation {
   using Vector = typename Space::template Vector<double>;
-  enum class Of { time, law, coordinate, point };
+  enum class Of { time, law, coordinate, point, law_rate, coordinate_rate, point_rate };
   struct Input {
     Of of = Of::time;
     int place = -1;  ///< of laws, joints or points
@@ -39,11 +50,12 @@ struct LoopEquation {
   std::vector<Input> inputs;
   std::vector<MotionLaw> laws;
   std::vector<Joint> joints;
-  std::vector<int> input_of_joint;
+  std::vector<int> input_of_joint;  ///< by place among the loop's joints
   std::vector<Point> points;
   std::vector<int> bodies;  ///< that have points, each once
-  std::vector<int> way;  ///< these and the joints' bodies, and all towards the ground, last first
-  bool moves = false;    ///< ∂F/∂t may be there
+  std::vector<int> way;   ///< these and the joints' bodies, and all towards the ground, last first
+  bool moves = false;     ///< ∂F/∂t may be there, or, of velocities, b other than zero
+  bool of_rates = false;  ///< an equation of velocities
 
   LoopEquation(Expression f) : formula(std::move(f)) {}
 };
@@ -97,6 +109,18 @@ class EquationRow {
         case Of::point:
           x_[k] = S(e_->points[place].across) + dot(along_[place], at_[place]);
           break;
+        case Of::law_rate: {
+          Time f{}, rate{}, second{};
+          e_->laws[place].evaluate(now, f, rate, second);
+          x_[k] = S(rate);
+          second_[k] = S(second);
+          rate_[k] = S(0.0);
+          break;
+        }
+        case Of::coordinate_rate:
+        case Of::point_rate:
+          x_[k] = rate_[k] = S(0.0);
+          break;
       }
     }
     evaluate(e_->formula, x_.data(), line_.data(), values_.data());
@@ -110,25 +134,33 @@ class EquationRow {
       const auto place = static_cast<std::size_t>(e_->inputs[k].place);
       if (e_->inputs[k].of == Of::coordinate) rate_[k] = u ? u[e_->joints[place].u] : S(0.0);
       if (e_->inputs[k].of == Of::point) rate_[k] = dot(along_[place], velocity_[place]);
+      if (e_->inputs[k].of == Of::coordinate_rate) x_[k] = u ? u[e_->joints[place].u] : S(0.0);
+      if (e_->inputs[k].of == Of::point_rate) x_[k] = dot(along_[place], velocity_[place]);
     }
+    if (e_->of_rates) evaluate(e_->formula, x_.data(), line_.data(), values_.data());
     for (std::size_t k = 0; k < x_.size(); ++k) {
       turning_[k] = S(0.0);
       for (std::size_t l = 0; l < x_.size(); ++l) turning_[k] += bend(k, l) * rate_[l];
     }
   }
 
-  S position() const { return values_[0]; }
+  S position() const { return e_->of_rates ? S(0.0) : values_[0]; }
   S rate() const {
+    if (e_->of_rates) return values_[0];
     return sum([&](std::size_t k) { return slope(k) * rate_[k]; });
   }
   /// Needs accelerations. `udot` null: zero.
   S second(const Workspace<Space, S>& w, const S* udot) const {
     return sum([&](std::size_t k) {
       const auto place = static_cast<std::size_t>(e_->inputs[k].place);
+      const Of of = e_->inputs[k].of;
+      if (e_->of_rates && !is_rate(of)) return slope(k) * rate_[k];
       S x = second_[k];
-      if (e_->inputs[k].of == Of::coordinate) x = udot ? udot[e_->joints[place].u] : S(0.0);
-      if (e_->inputs[k].of == Of::point)
+      if (of == Of::coordinate || of == Of::coordinate_rate)
+        x = udot ? udot[e_->joints[place].u] : S(0.0);
+      if (of == Of::point || of == Of::point_rate)
         x = dot(along_[place], point_acceleration(w, e_->points[place].body, at_[place]));
+      if (e_->of_rates) return slope(k) * x;
       return slope(k) * x + turning_[k] * rate_[k];
     });
   }
@@ -142,7 +174,7 @@ class EquationRow {
     for (const int body : e_->bodies) {
       Force on{};
       for (std::size_t k = 0; k < x_.size(); ++k) {
-        if (e_->inputs[k].of != Of::point) continue;
+        if (e_->inputs[k].of != (e_->of_rates ? Of::point_rate : Of::point)) continue;
         const auto place = static_cast<std::size_t>(e_->inputs[k].place);
         if (e_->points[place].body != body) continue;
         const Vector impulse = S(slope(k) * s) * along_[place];
@@ -162,6 +194,9 @@ class EquationRow {
 
  private:
   using Of = typename LoopEquation<Space>::Of;
+  static constexpr bool is_rate(Of of) {
+    return of == Of::law_rate || of == Of::coordinate_rate || of == Of::point_rate;
+  }
   std::size_t input(std::size_t joint) const {
     return static_cast<std::size_t>(e_->input_of_joint[joint]);
   }

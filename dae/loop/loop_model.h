@@ -10,12 +10,15 @@
 //                                      last of them, of couplers that are not linear
 //   F      F(b_1·D, b_2·D, a_1·b_1, a_1·b_2)    higher pairs: higher_pair.h
 //   E      any formula                 coordinates, positions of points, t: loop_equation.h
+//   V      any formula                 linear in rates: loop_equation.h; nonholonomic
+//   R      contact and slip of a wheel: rolling_wheel.h; the slip is nonholonomic
 //
 //   point, spherical  D1 D2 D3          revolute about axis 3   D1 D2 D3, O31 O32
 //   weld              D1 D2 D3, O12 O23 O31      prismatic along axis 3   D1 D2, O12 O23 O31
 //   universal, axes b_3, a_1  D1 D2 D3, O13          cylindrical along axis 3   D1 D2, O31 O32
 //   planar across axis 3      D3, O31 O32            distance                   L
 //   coupler                   Q                      equation                 E
+//   velocity-equation         V                      rolling on a plane across axis 3   R1 R2 R3
 //   slot on a line along axis 3  D1 D2
 //   slot on a circle or spline across axis 3  D3, F  cam, rack across axis 3            F
 // In a plane: point, spherical, revolute D1 D2; weld D1 D2 O12; prismatic D (across), O12; distance
@@ -42,6 +45,12 @@
 namespace momenta {
 
 struct HigherPair;  // dae/loop/higher_pair.h
+
+/// A wheel of the child: a circle across its axle, thickened.
+struct Wheel {
+  double circle = 0;  ///< radius of the circle [m]
+  double crown = 0;   ///< radius of the cross section [m]
+};
 template <class Space>
 struct LoopEquation;  // dae/loop/loop_equation.h
 
@@ -92,6 +101,7 @@ struct LoopModel {
     std::vector<Coupled> joints;  ///< coupler: then Q is the only row
     int pair = -1;                ///< place in `pairs`; then F follows the rows of points
     int equation = -1;            ///< place in `equations`; `joints` are its coordinates
+    int wheel = -1;               ///< place in `wheels`; then its rows are the only ones
     int motion = -1;              ///< place in `motions`; −1: nothing is prescribed
     double least_scale = 0;       ///< of rows of points: Mechanism::least_scales()
 
@@ -102,8 +112,10 @@ struct LoopModel {
     /// Of coordinates, or an equation: no two bodies.
     bool is_coupler() const { return !joints.empty() || is_equation(); }
     bool is_pair() const { return pair >= 0; }
+    bool is_wheel() const { return wheel >= 0; }
     /// Rows of the first unit: points, a distance, a coupling, a higher pair. Those of axes follow.
     int first_rows() const {
+      if (is_wheel()) return rows;
       if (is_distance() || is_coupler()) return 1;
       return pair < 0 ? n_points : n_points + 1;
     }
@@ -137,10 +149,13 @@ struct LoopModel {
   std::vector<Motion> motions;
   std::vector<std::shared_ptr<const HigherPair>> pairs;
   std::vector<std::shared_ptr<const LoopEquation<Space>>> equations;
-  int rows = 0;    ///< m, size of Φ
-  int curves = 0;  ///< coordinates whose column of Φ_q changes: of powers and equations
+  std::vector<Wheel> wheels;  ///< in space alone
+  int rows = 0;               ///< m, size of Φ
+  int curves = 0;             ///< coordinates whose column of Φ_q changes: of powers and equations
   /// Whether all rows are of the kinds that sweeps carry.
-  bool swept() const { return curves == 0 && pairs.empty() && equations.empty(); }
+  bool swept() const { return curves == 0 && pairs.empty() && equations.empty() && wheels.empty(); }
+  /// By row, whether it is one of velocities that no row of positions stands behind.
+  std::vector<bool> nonholonomic() const;
 };
 
 LoopModel<Spatial> build_loops(const Scene& scene, const Tree& tree, const Model<Spatial>& model);

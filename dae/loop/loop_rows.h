@@ -14,7 +14,8 @@
 //   F     Φ̇ = Σ F_k ẏ_k, Φ̈ = Σ F_k ÿ_k + Σ F_kl ẏ_k ẏ_l, F_k = ∂F/∂y_k, y of D_j and O_ij
 //         impulse on A: those of its measures, with s_k = F_k s
 //         N on A: those of its measures, and the impulses of ṡ_k = Σ F_kl ẏ_l s
-//   E     loop_equation.h
+//   E, V  loop_equation.h
+//   R     rolling_wheel.h
 //
 // N is the inertial rate of the impulse at fixed σ.
 //
@@ -30,6 +31,7 @@
 #include <momenta/dae/loop/higher_pair.h>
 #include <momenta/dae/loop/loop_equation.h>
 #include <momenta/dae/loop/lost_places.h>
+#include <momenta/dae/loop/rolling_wheel.h>
 
 namespace momenta {
 
@@ -57,6 +59,7 @@ class LoopRows {
         at_(model.loops.size()),
         curves_(static_cast<std::size_t>(model.curves)),
         pairs_(model.pairs.size()),
+        wheels_(model.wheels.size()),
         driven_(model.motions.size()),
         lost_(w.body.size()) {
     for (const auto& equation : model.equations) equations_.emplace_back(*equation);
@@ -102,6 +105,8 @@ class LoopRows {
         s.b[j] = l.motion < 0 ? to_ground(w_, l.axes_of_b(), l.axis_b[j])
                               : to_ground(w_, l.b, motion(l).axis_b[j]);
       }
+      if constexpr (in_space)
+        if (l.is_wheel()) wheel(l).place(law_of_wheel(l), s.b, s.a[2], s.x_a, s.D);
       if (l.is_pair())
         law(l).evaluate(
             {dot(s.b[0], s.D), dot(s.b[1], s.D), dot(s.a[0], s.b[0]), dot(s.a[0], s.b[1])},
@@ -112,11 +117,11 @@ class LoopRows {
   /// The first pair or equation that the last place() found no numbers of, by place among the
   /// loops; −1: none.
   int lost_loop() const {
-    if (pairs_.empty() && equations_.empty()) return -1;
+    if (pairs_.empty() && equations_.empty() && wheels_.empty()) return -1;
     for (std::size_t i = 0; i < at_.size(); ++i) {
       const auto& l = model_->loops[i];
       if ((l.is_pair() && pair(l).place.lost != PairPlace::Lost::no) ||
-          (l.is_equation() && !equation(l).finite()))
+          (l.is_equation() && !equation(l).finite()) || (l.is_wheel() && !wheel(l).touches(law_of_wheel(l))))
         return static_cast<int>(i);
     }
     return -1;
@@ -165,6 +170,13 @@ class LoopRows {
         s.w_b += turning_in_ground(l.b, m.turning_b);
       }
       if (l.is_pair()) move_pair(l, s);
+      if constexpr (in_space)
+        if (l.is_wheel()) {
+          auto& rolls = wheel(l);
+          rolls.move(law_of_wheel(l), s.u_a, s.w_a, s.w_b);
+          rolls.v_a = point_velocity(w_, l.a, rolls.at);
+          rolls.v_b = point_velocity(w_, l.b, rolls.at);
+        }
     }
   }
 
@@ -187,16 +199,17 @@ class LoopRows {
 
   /// Φ (m)
   void positions(S* phi) const {
-    each_row([&](int row, const auto&, const At& s, const Vector& b) { phi[row] = dot(b, s.D); },
-             [&](int row, const auto& l, const At&, const Vector& a, const Vector& b) {
-               phi[row] = dot(a, b) - l.gamma;
-             },
-             [&](int row, const auto& l, const At& s) {
-               phi[row] =
-                   (dot(s.D, s.D) + (l.across2 - given(l) * given(l))) * (0.5 * l.per_length);
-             },
-             [&](int row, const At& s) { phi[row] = s.position; },
-             [&](int row, const auto& l, const At&) { phi[row] = pair(l).terms.value; });
+    each_row(
+        [&](int row, const auto&, const At& s, const Vector& b) { phi[row] = dot(b, s.D); },
+        [&](int row, const auto& l, const At&, const Vector& a, const Vector& b) {
+          phi[row] = dot(a, b) - l.gamma;
+        },
+        [&](int row, const auto& l, const At& s) {
+          phi[row] = (dot(s.D, s.D) + (l.across2 - given(l) * given(l))) * (0.5 * l.per_length);
+        },
+        [&](int row, const At& s) { phi[row] = s.position; },
+        [&](int row, const auto& l, const At&) { phi[row] = pair(l).terms.value; },
+        [&](int row, std::size_t k, const auto& l) { phi[row] = k == 0 ? wheel(l).gap : S(0.0); });
   }
 
   /// Φ̇ (m) for the velocities of the last move().
@@ -214,7 +227,8 @@ class LoopRows {
           const Pair& p = pair(l);
           rate[row] = S(0.0);
           for (std::size_t k = 0; k < p.measures; ++k) rate[row] += p.terms.slope[k] * p.rate[k];
-        });
+        },
+        [&](int row, std::size_t k, const auto& l) { rate[row] = wheel(l).rate(k); });
   }
 
   /// Φ̈ (m) for the accelerations body[k].A and of accelerate(): with u̇ = 0 the bias (d/dt Φ_q) u +
@@ -244,6 +258,11 @@ class LoopRows {
                            p.terms.slope[3] * axes_second(l, s, s.a[0], s.b[1]);
                for (std::size_t k = 0; k < p.measures; ++k) second += p.slope_rate[k] * p.rate[k];
                rate[row] = second;
+             },
+             [&](int row, std::size_t k, const auto& l) {
+               const auto& rolls = wheel(l);
+               rate[row] = rolls.second(k, point_acceleration(w_, l.a, rolls.at),
+                                        point_acceleration(w_, l.b, rolls.at));
              });
   }
 
@@ -304,6 +323,14 @@ class LoopRows {
       if (l.b >= 0) add_force(w_, l.b, l.is_tie ? s.x_b : s.x_a, -f, on_b);
     };
     if (l.is_coupler()) return;
+    if constexpr (in_space)
+      if (l.is_wheel()) {
+        const auto& rolls = wheel(l);
+        const Vector& e = rolls.along[static_cast<std::size_t>(row_of_loop)];
+        if (l.a >= 0) add_force(w_, l.a, rolls.at, e, on_a);
+        if (l.b >= 0) add_force(w_, l.b, rolls.at, Vector(-e), on_b);
+        return;
+      }
     const auto twist = [&](const Angular& c) {
       if (l.a >= 0) add_couple(w_, l.a, c, on_a);
       if (l.b >= 0) add_couple(w_, l.b, Angular(-c), on_b);
@@ -355,6 +382,14 @@ class LoopRows {
   }
   const EquationRow<Space, S>& equation(const Loop& l) const {
     return equations_[static_cast<std::size_t>(l.equation)];
+  }
+  static constexpr bool in_space = Space::dimension == 6;
+  RollingWheel<S>& wheel(const Loop& l) { return wheels_[static_cast<std::size_t>(l.wheel)]; }
+  const RollingWheel<S>& wheel(const Loop& l) const {
+    return wheels_[static_cast<std::size_t>(l.wheel)];
+  }
+  const Wheel& law_of_wheel(const Loop& l) const {
+    return model_->wheels[static_cast<std::size_t>(l.wheel)];
   }
   Pair& pair(const Loop& l) { return pairs_[static_cast<std::size_t>(l.pair)]; }
   const Pair& pair(const Loop& l) const { return pairs_[static_cast<std::size_t>(l.pair)]; }
@@ -435,9 +470,9 @@ class LoopRows {
     }
   }
 
-  template <class Point, class Axes, class Distance, class Coupling, class Higher>
+  template <class Point, class Axes, class Distance, class Coupling, class Higher, class Rolling>
   void each_row(Point&& point, Axes&& axes, Distance&& distance, Coupling&& coupling,
-                Higher&& higher) const {
+                Higher&& higher, Rolling&& rolling) const {
     for (std::size_t i = 0; i < at_.size(); ++i) {
       const auto& l = model_->loops[i];
       const At& s = at_[i];
@@ -450,6 +485,11 @@ class LoopRows {
         coupling(row, s);
         continue;
       }
+      if constexpr (in_space)
+        if (l.is_wheel()) {
+          for (std::size_t k = 0; k < 3; ++k) rolling(row++, k, l);
+          continue;
+        }
       for (int j = 0; j < l.n_points; ++j)
         point(row++, l, s, s.b[static_cast<std::size_t>(l.points[static_cast<std::size_t>(j)])]);
       if (l.is_pair()) higher(row++, l, s);
@@ -473,6 +513,11 @@ class LoopRows {
           field(w_.body[static_cast<std::size_t>(body)]) += on;
         });
       if (l.is_coupler()) continue;
+      if constexpr (in_space)
+        if (l.is_wheel()) {
+          add_wrench_of_wheel(l, sigma, factor, field, rate);
+          continue;
+        }
       Vector force{}, impulse{};
       Angular couple{};
       int row = l.row;
@@ -529,11 +574,35 @@ class LoopRows {
     }
   }
 
+  template <class Field>
+  void add_wrench_of_wheel(const Loop& l, const S* sigma, double factor, Field field, bool rate) {
+    const auto& rolls = wheel(l);
+    Vector impulse{}, force{};
+    for (std::size_t k = 0; k < 3; ++k)
+      impulse += S(factor * sigma[l.row + static_cast<int>(k)]) * rolls.along[k];
+    Angular couple{};
+    if (rate) {
+      force = cross(rolls.w_b, impulse);
+      couple = cross(rolls.moving, impulse);
+    } else {
+      force = impulse;
+    }
+    const auto act = [&](int body, const Vector& f, const Angular& c) {
+      if (body < 0) return;
+      Force& on = field(w_.body[static_cast<std::size_t>(body)]);
+      add_force(w_, body, rolls.at, f, on);
+      if (rate) add_couple(w_, body, c, on);
+    };
+    act(l.a, force, couple);
+    act(l.b, Vector(-force), Angular(-couple));
+  }
+
   const LoopModel<Space>* model_;
   Workspace<Space, S>& w_;
   std::vector<At> at_;
   std::vector<Curve> curves_;
   std::vector<Pair> pairs_;
+  std::vector<RollingWheel<S>> wheels_;
   std::vector<EquationRow<Space, S>> equations_;
   std::vector<Driven> driven_;  ///< at the time of place()
   LostPlaces<Space> lost_;

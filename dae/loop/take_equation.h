@@ -7,9 +7,25 @@
 
 #include <algorithm>
 #include <memory>
+#include <random>
 #include <set>
 
 namespace momenta {
+
+/// Whether an equation of velocities has no term without a rate, b = 0: judged at some states. One
+/// that has no value there counts as having such a term.
+inline bool vanishes_at_rest(const Formula& formula) {
+  std::mt19937 random(1);  // the same states every time
+  std::vector<double> x(formula.signals.size());
+  for (int state = 0; state < 4; ++state) {
+    for (std::size_t k = 0; k < x.size(); ++k)
+      x[k] = is_rate(formula.signals[k].kind)
+                 ? 0
+                 : 0.25 + static_cast<double>(random()) / static_cast<double>(std::mt19937::max());
+    if (formula.expression(x) != 0) return false;
+  }
+  return true;
+}
 
 /// @pre the scene is valid. O(length of the formula · its names)
 template <class Space>
@@ -26,23 +42,27 @@ void take_equation(const Scene& scene, const LoopSpec& spec, const Tree& tree,
     for (; k >= 0; k = tree.bodies[static_cast<std::size_t>(k)].parent) way.insert(k);
   };
   const auto last = [](const auto& list) { return static_cast<int>(list.size()) - 1; };
+  e.of_rates = spec.kind == LoopKind::velocity_equation;
   for (const Signal& s : formula.signals) {
     const auto which = static_cast<std::size_t>(s.which);
-    if (s.kind == Signal::Kind::coordinate) {
+    const bool rate = is_rate(s.kind), acts = rate == e.of_rates;
+    if (s.kind == Signal::Kind::coordinate || s.kind == Signal::Kind::rate) {
       const int k = part_of(tree, scene.joints[which].name, s.component);
       const Tree::Body& b = tree.bodies[static_cast<std::size_t>(k)];
       if (b.drive >= 0) {
         e.laws.push_back(tree.drives[static_cast<std::size_t>(b.drive)]);
-        e.inputs.push_back({Of::law, last(e.laws)});
+        e.inputs.push_back({rate ? Of::law_rate : Of::law, last(e.laws)});
         e.moves = true;
         continue;
       }
-      e.input_of_joint.push_back(static_cast<int>(e.inputs.size()));
       e.joints.push_back({b.q, b.u});
-      e.inputs.push_back({Of::coordinate, last(e.joints)});
-      l.joints.push_back({k, b.q, b.u, 1, {}, all.curves++});
-      climb(k);
-    } else if (s.kind == Signal::Kind::position) {
+      if (acts) {
+        e.input_of_joint.push_back(static_cast<int>(e.inputs.size()));
+        l.joints.push_back({k, b.q, b.u, 1, {}, all.curves++});
+        climb(k);
+      }
+      e.inputs.push_back({rate ? Of::coordinate_rate : Of::coordinate, last(e.joints)});
+    } else if (s.kind == Signal::Kind::position || s.kind == Signal::Kind::velocity) {
       const MarkerSpec& marker = scene.markers[which];
       const int k = tree.body(marker.body);
       const Eigen::Vector3d at = tree.point(k, marker.point);
@@ -56,15 +76,17 @@ void take_equation(const Scene& scene, const LoopSpec& spec, const Tree& tree,
         point.across = model.basis(s.component, 2) * height;
       }
       e.points.push_back(point);
-      e.inputs.push_back({Of::point, last(e.points)});
+      e.inputs.push_back({rate ? Of::point_rate : Of::point, last(e.points)});
+      if (!acts) continue;
       climb(k);
       if (k >= 0 && std::find(e.bodies.begin(), e.bodies.end(), k) == e.bodies.end())
         e.bodies.push_back(k);
     } else {
       e.inputs.push_back({Of::time, -1});
-      e.moves = true;
+      e.moves = e.moves || !e.of_rates;
     }
   }
+  if (e.of_rates) e.moves = e.moves || !vanishes_at_rest(formula);
   e.way.assign(way.begin(), way.end());
   l.equation = static_cast<int>(all.equations.size());
   all.equations.push_back(std::make_shared<const LoopEquation<Space>>(std::move(e)));

@@ -7,6 +7,7 @@
 #include <momenta/dae/measure/rank.h>
 #include <momenta/dae/study/passed_limits.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <map>
 #include <vector>
@@ -43,7 +44,7 @@ constexpr FormIndex indices[] = {
 /// "ground - rocker", "A, B" of a coupler; and whether drives prescribe something of it.
 std::string loop_in_words(const Scene& scene, const LoopSpec& loop) {
   std::string words;
-  if (loop.kind == LoopKind::equation) return loop.equation + " = 0";
+  if (has_equation(loop)) return loop.equation + " = 0";
   if (loop.kind == LoopKind::coupler) {
     for (const std::string& joint : loop.joints) words += (words.empty() ? "" : ", ") + joint;
   } else {
@@ -52,6 +53,20 @@ std::string loop_in_words(const Scene& scene, const LoopSpec& loop) {
   for (const DriveSpec& drive : scene.drives)
     if (drive.loop == loop.name) return words + ", driven";
   return words;
+}
+
+int count_nonholonomic(const Mechanism& mechanism) {
+  const auto& all = mechanism.nonholonomic();
+  return static_cast<int>(std::count(all.begin(), all.end(), true));
+}
+
+/// Rows of positions are those that differ from form to form: without any, where all are A u = b,
+/// forms that have Φ = 0 have A u = b in its place.
+std::string index_of(const Mechanism& mechanism, const std::string& form, const char* index) {
+  if (count_nonholonomic(mechanism) < mechanism.m()) return index;
+  if (form == "momentum-index2" || form == "momentum-stabilised") return "1";
+  if (form == "momentum-index3" || form == "acceleration-index3") return "2";
+  return index;
 }
 
 /// Above this the singular value decompositions of the rank report take minutes.
@@ -186,6 +201,8 @@ int check(const Options& o) {
     j["loop_equations"] = mechanism->m();
     j["rank"] = a.rank;
     j["mobility"] = a.mobility;
+    j["nonholonomic_equations"] = count_nonholonomic(*mechanism);
+    j["free_positions"] = a.free_positions;
     j["assembly"] = {{"moved", a.moved}, {"branch", a.branch}, {"residue", a.residue}};
     for (const auto& [what, how] : mechanism->plan_lines()) j["plan"][what] = how;
     if (bodies && mechanism->m() == 0) {
@@ -266,6 +283,10 @@ int check(const Options& o) {
   else
     std::printf("\n  %d coordinates, %d constraints of rank %d: mobility %d\n", mechanism->nq(),
                 mechanism->m(), a.rank, a.mobility);
+  if (const int rates_alone = count_nonholonomic(*mechanism); rates_alone > 0)
+    std::printf("  %d of the equations %s: %d positions are free, and %d rates\n", rates_alone,
+                rates_alone == 1 ? "is nonholonomic" : "are nonholonomic", a.free_positions,
+                a.mobility);
   if (mechanism->m() > 0)
     std::printf("  assembled with %s moved by at most %.3g from the guess%s%s\n",
                 bodies ? "joints" : "coordinates", a.moved, a.branch.empty() ? "" : ": ",
@@ -313,7 +334,8 @@ int check(const Options& o) {
   for (const auto& form : indices)
     std::printf("  %-30s %s%s\n", form.form,
                 mechanism->m() == 0 || form.index[0] == 'O' ? "" : "index ",
-                mechanism->m() > 0 ? form.index : "ODE: no loops");
+                mechanism->m() > 0 ? index_of(*mechanism, form.form, form.index).c_str()
+                                   : "ODE: no loops");
   return done;
 }
 

@@ -137,9 +137,10 @@ int answer(int argc, char** argv) {
   modes_app->footer("Example: momenta modes examples/four_bar/scene.toml --out results");
   ModesOptions modes_options;
   add_scene(*modes_app, o);
-  one_of(modes_app->add_option("--equilibrium", modes_options.equilibrium,
-                               "Descend to a rest pose; Newton (also saddles); start pose"),
-         {"settle", "nearest", "start"})
+  one_of(modes_app->add_option(
+             "--equilibrium", modes_options.equilibrium,
+             "Descend to a rest pose; Newton (also saddles); start pose; start motion"),
+         {"settle", "nearest", "start", "steady"})
       ->capture_default_str();
   one_of(modes_app->add_option("--drives", modes_options.drives,
                                "As at t = 0, or at constant speed: a relative equilibrium"),

@@ -33,13 +33,15 @@ void film(StudyResult& study, const Mechanism& mechanism, const ModesResult& res
 
 int modes(const Options& o, const ModesOptions& m) {
   Scene scene = read(o);
-  if (m.drives == "held") scene = held_at_start(std::move(scene));
+  // A steady motion is that of all drives.
+  if (m.drives == "held" && m.equilibrium != "steady") scene = held_at_start(std::move(scene));
   // --kkt is the route to the modes here.
   const Mechanism mechanism(std::move(scene), {.algebra = mechanism_options(o).algebra});
   expect_own_results(o.out, "modes.csv");
   const Assembly a = assemble(mechanism);
   ModesRequest request;
-  request.search = m.equilibrium == "start"     ? Search::start
+  request.search = m.equilibrium == "steady"    ? Search::steady
+                   : m.equilibrium == "start"   ? Search::start
                    : m.equilibrium == "nearest" ? Search::nearest
                                                 : Search::settle;
   request.count = m.count.value_or(0);

@@ -174,7 +174,7 @@ struct SweepOptions {
 };
 int sweep(const Options& o, const SweepOptions& s);
 struct ModesOptions {
-  std::string equilibrium = "settle";  ///< settle, nearest or start
+  std::string equilibrium = "settle";  ///< settle, nearest, start or steady
   std::string drives = "held";         ///< held or running
   std::optional<int> count;
 };

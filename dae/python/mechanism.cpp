@@ -197,6 +197,8 @@ void bind_mechanism(py::module_& module) {
           "lambda_", [](const Assembly& a) { return a.start.lambda; }, "force multipliers (m)")
       .def_readonly("rank", &Assembly::rank, "rank of the loop equations")
       .def_readonly("mobility", &Assembly::mobility, "degrees of freedom: nv - rank")
+      .def_readonly("free_positions", &Assembly::free_positions,
+                    "how many coordinates are free: more than rates under nonholonomic equations")
       .def_readonly("dependent_rows", &Assembly::dependent_rows,
                     "loop equations that follow from the others, as indices of `equations`")
       .def_readonly("moved", &Assembly::moved,

@@ -13,7 +13,8 @@ Search search_named(const std::string& name) {
   if (name == "settle") return Search::settle;
   if (name == "nearest") return Search::nearest;
   if (name == "start") return Search::start;
-  throw py::value_error("equilibrium '" + name + "': expected settle, nearest or start");
+  if (name == "steady") return Search::steady;
+  throw py::value_error("equilibrium '" + name + "': expected settle, nearest, start or steady");
 }
 
 py::dict modes(const Bench& b, const std::string& equilibrium, const std::string& drives,
@@ -26,7 +27,7 @@ py::dict modes(const Bench& b, const std::string& equilibrium, const std::string
   ModesResult result;
   {
     const py::gil_scoped_release others_go_on;
-    if (drives == "running" || b.mechanism->scene().drives.empty()) {
+    if (drives == "running" || equilibrium == "steady" || b.mechanism->scene().drives.empty()) {
       result = find_modes(*b.mechanism, assemble(*b.mechanism).start, request);
     } else {
       const Mechanism held(held_at_start(b.mechanism->scene()));
@@ -73,8 +74,9 @@ void add_modes(py::class_<Bench, BenchPtr>& mechanism) {
       "An equilibrium and the modes of small motions about it, as a dict: nature, q (nq), "
       "lambda_ (m), potential [J], moved [rad or m], degrees_of_freedom, complete, "
       "singular; s [1/s], frequency [Hz] and damping_ratio, (modes) each; shapes (nv, "
-      "modes) with modal mass 1 kg m^2, shape_names. `equilibrium`: settle, nearest or "
-      "start; `drives`: held or running; `count`: how many modes, those nearest to s = 0 "
+      "modes) with modal mass 1 kg m^2, shape_names. `equilibrium`: settle, nearest, "
+      "start, or steady for the motion at the start's rates, which must be constant; `drives`: "
+      "held or running; `count`: how many modes, those nearest to s = 0 "
       "(0: all of up to 300, else 20). Raises SceneError where there is no equilibrium.");
 }
 

@@ -115,6 +115,11 @@ std::string index_table(const IndexStudy& study) {
       "open; "
       "the index is the first ν with none.\nconstraints: what they say of the unknowns alone. gap: "
       "smallest singular value that counts over largest that does not, the least of all ranks.\n";
+  if (study.nonholonomic > 0)
+    text += "nonholonomic: " + std::to_string(study.nonholonomic) + " of the " +
+            std::to_string(study.m) +
+            " equations. For them Φ_q is A, Φ̇ is A u − b and Φ̇_qᵀσ is Ȧᵀσ; they have no Φ: where "
+            "Φ = 0 is given, A u − b = 0 stands for it.\n";
   for (const auto& f : study.forms) text += details(f, study.m);
   return text + lambda_or_sigma(study);
 }
@@ -146,6 +151,7 @@ nlohmann::ordered_json index_json(const IndexStudy& study) {
   j["coordinates"] = study.nq;
   j["rates"] = study.nv;
   j["loop_equations"] = study.m;
+  j["nonholonomic_equations"] = study.nonholonomic;
   if (study.m > 0) j["loops"] = rank_json(study.loops, study.m);
   j["forms"] = Json::array();
   for (const auto& f : study.forms) {

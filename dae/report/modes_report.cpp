@@ -54,15 +54,21 @@ std::string modes_in_words(const ModesResult& r) {
   const auto& modes = r.spectrum.modes;
   const Equilibrium& at = r.equilibrium;
   if (r.spectrum.mobility == 0) return "Nothing moves: the loops leave no motion, so no mode.";
-  std::string text = std::string("The equilibrium is ") + r.nature();
+  std::string text =
+      std::string(r.steady ? "The steady motion is " : "The equilibrium is ") + r.nature();
   if (!r.spectrum.complete) text += " as far as these modes tell";
   if (r.growing() > 0) text += ", " + counted_modes(r.growing(), "growing");
   if (r.rigid() > 0) text += ", " + counted_modes(r.rigid(), "rigid") + " that nothing holds";
-  text += at.steps == 0 ? "; it is the assembled pose itself"
-                        : (r.of_formulas ? "; coordinates are up to " : "; joints are up to ") +
-                              compact(at.moved, 3) +
-                              (r.of_formulas ? " away from the start"
-                                             : " rad or m away from the assembled pose");
+  if (r.steady)
+    text += "; " + std::to_string(r.steady->left_out) + " of " +
+            std::to_string(r.steady->positions) +
+            " positions act on nothing and are left out of the modes";
+  else
+    text += at.steps == 0 ? "; it is the assembled pose itself"
+                          : (r.of_formulas ? "; coordinates are up to " : "; joints are up to ") +
+                                compact(at.moved, 3) +
+                                (r.of_formulas ? " away from the start"
+                                               : " rad or m away from the assembled pose");
   text += ". ";
   const long all = static_cast<long>(modes.size());
   text += std::to_string(all) + (all == 1 ? " mode" : " modes") + " of " +
@@ -143,26 +149,32 @@ Json modes_json(const ModesResult& r) {
                      {"damping_ratio", number_or_null(mode.damping_ratio())},
                      {"shape", shape}});
   }
-  return {{"scene", r.scene},
-          {"nature", r.nature()},
-          {"growing", r.growing()},
-          {"rigid", r.rigid()},
-          {"degrees_of_freedom", r.spectrum.mobility},
-          {"rank", r.spectrum.rank},
-          {"rank_nearby", r.rank_nearby > 0 ? Json(r.rank_nearby) : Json()},
-          {"singular", r.singular_here()},
-          {"conservative", r.spectrum.conservative},
-          {"complete", r.spectrum.complete},
-          {"drives", r.drives_run ? "running" : "held"},
-          {"route", r.spectrum.dense ? "dense" : "sparse"},
-          {"equilibrium",
-           {{"q", q},
-            {"lambda", std::vector<double>(at.lambda.begin(), at.lambda.end())},
-            {"potential", number_or_null(at.potential)},
-            {"moved", number_or_null(at.moved)},
-            {"left", number_or_null(at.left)},
-            {"steps", at.steps}}},
-          {"modes", modes}};
+  Json json{{"scene", r.scene},
+            {"nature", r.nature()},
+            {"growing", r.growing()},
+            {"rigid", r.rigid()},
+            {"degrees_of_freedom", r.spectrum.mobility},
+            {"rank", r.spectrum.rank},
+            {"rank_nearby", r.rank_nearby > 0 ? Json(r.rank_nearby) : Json()},
+            {"singular", r.singular_here()},
+            {"conservative", r.spectrum.conservative},
+            {"complete", r.spectrum.complete},
+            {"drives", r.drives_run ? "running" : "held"},
+            {"route", r.spectrum.dense ? "dense" : "sparse"},
+            {"equilibrium",
+             {{"q", q},
+              {"lambda", std::vector<double>(at.lambda.begin(), at.lambda.end())},
+              {"potential", number_or_null(at.potential)},
+              {"moved", number_or_null(at.moved)},
+              {"left", number_or_null(at.left)},
+              {"steps", at.steps}}},
+            {"modes", modes}};
+  if (r.steady)
+    json["steady_motion"] = {{"u", std::vector<double>(r.steady->u.begin(), r.steady->u.end())},
+                             {"positions", r.steady->positions},
+                             {"rates", r.steady->rates},
+                             {"left_out", r.steady->left_out}};
+  return json;
 }
 
 }  // namespace momenta

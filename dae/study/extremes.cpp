@@ -80,8 +80,7 @@ bool has_formulas(const Scene& scene) {
   return std::any_of(scene.forces.begin(), scene.forces.end(), has_formula) ||
          std::any_of(scene.drives.begin(), scene.drives.end(),
                      [](const DriveSpec& d) { return d.kind == "formula"; }) ||
-         std::any_of(scene.loops.begin(), scene.loops.end(),
-                     [](const LoopSpec& l) { return l.kind == LoopKind::equation; });
+         std::any_of(scene.loops.begin(), scene.loops.end(), has_equation);
 }
 
 bool at_rest(const Scene& scene) {
@@ -157,6 +156,7 @@ Scene in_units(Scene scene, const Units& units) {
     l.origin_child *= s;
     l.length *= s;
     l.radius *= s;
+    l.crown_radius *= s;
     for (CurveSpec* curve : {&l.curve, &l.child_curve}) {
       curve->radius *= s;
       for (double& axis : curve->semi_axes) axis *= s;

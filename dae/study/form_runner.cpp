@@ -14,7 +14,7 @@ namespace momenta {
 namespace {
 
 /// Why a method cannot take the form as it is set, one sentence; empty: it can.
-std::string refusal(const Integrator& method, const RunSettings& s) {
+std::string refusal(const Mechanism& mechanism, const Integrator& method, const RunSettings& s) {
   const bool dae = is_dae_form(s.form);
   const auto wanted = dae ? Integrator::Takes::dae : Integrator::Takes::ode;
   if (method.takes != wanted)
@@ -31,6 +31,17 @@ std::string refusal(const Integrator& method, const RunSettings& s) {
   if (!dae && method.multistep && (s.gauge == "reset" || s.gauge == "flip"))
     return "'" + method.name + "' is a multistep method: gauge " + s.gauge +
            " after each step would spoil its history; use leak or none";
+  const bool meets_positions = method.name == "rattle" || method.name == "generalised-alpha" ||
+                               method.name == "bayo-ledesma" ||
+                               (method.name == "hem5" && s.form == "momentum-index2");
+  if (mechanism.has_nonholonomic() && meets_positions) {
+    const auto& all = mechanism.nonholonomic();
+    const auto row =
+        static_cast<std::size_t>(std::find(all.begin(), all.end(), true) - all.begin());
+    return "loop '" + mechanism.rows()[row].loop + "' (" + mechanism.rows()[row].what +
+           ") ties rates and no coordinates, and '" + method.name + "' with form '" + s.form +
+           "' solves for positions alone: expected another integrator";
+  }
   return "";
 }
 
@@ -38,12 +49,12 @@ std::string refusal(const Integrator& method, const RunSettings& s) {
 
 FormRunner::FormRunner(const Mechanism& mechanism, const Start& start, RunSettings& s,
                        double max_cpu_seconds)
-    : start_(start) {
+    : mechanism_(mechanism), start_(start) {
   expect_numbers(s);
   const bool dae = is_dae_form(s.form);
   if (s.integrator.empty()) s.integrator = default_integrator(s.form, s.rtol);
   const Integrator& method = integrator(s.integrator);
-  if (const std::string reason = refusal(method, s); !reason.empty())
+  if (const std::string reason = refusal(mechanism, method, s); !reason.empty())
     throw std::invalid_argument(reason);
   if (s.integrator == "rattle") s.gauge = "reset";  // its last stage does it
   FormOptions options;
@@ -90,7 +101,7 @@ IntegrationResult FormRunner::integrate(const std::vector<double>& times,
 bool FormRunner::may_change(const RunSettings& s) {
   constexpr int most_unknowns = 500;  // a larger dense Newton matrix may cost more than short steps
   return !is_dae_form(s.form) && s.step == 0 && form_->ode()->size() <= most_unknowns &&
-         refusal(integrator(s.when_stiff), s).empty();
+         refusal(mechanism_, integrator(s.when_stiff), s).empty();
 }
 
 void FormRunner::go_on(IntegrationResult& run, const std::vector<double>& times,

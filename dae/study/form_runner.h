@@ -42,6 +42,7 @@ class FormRunner {
   void go_on(IntegrationResult& run, const std::vector<double>& times, const Observer& observer,
              double cpu_s);
 
+  const Mechanism& mechanism_;
   const Start& start_;
   std::unique_ptr<Form> form_;
   std::string integrator_, when_stiff_;

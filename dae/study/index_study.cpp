@@ -158,6 +158,8 @@ IndexStudy run_index_study(const Mechanism& mechanism, const Start& start,
   study.nq = mechanism.nq();
   study.nv = mechanism.nv();
   study.m = mechanism.m();
+  const auto& of_rates = mechanism.nonholonomic();
+  study.nonholonomic = static_cast<int>(std::count(of_rates.begin(), of_rates.end(), true));
   const Matrices at = matrices(mechanism, start);
   if (mechanism.m() > 0) study.loops = rank_of_loops(mechanism, start);
   const double time = time_scale(mechanism, start);

@@ -48,7 +48,8 @@ struct IndexStudy {
   std::string scene;
   double t = 0;
   int nq = 0, nv = 0, m = 0;
-  RankFound loops;  ///< of Φ_q, without loops all zero
+  int nonholonomic = 0;  ///< of the m rows
+  RankFound loops;       ///< of Φ_q, without loops all zero
   std::vector<FormIndex> forms;
 };
 

@@ -100,6 +100,14 @@ ModesResult find_modes(const Mechanism& mechanism, const Start& start,
   result.coordinates = mechanism.coordinate_columns();
   result.shapes = shape_columns(mechanism);
   Equilibrium& at = result.equilibrium;
+  if (request.search == Search::steady) {
+    result.spectrum = steady_spectrum(mechanism, start, result.steady.emplace());
+    at.t = start.t;
+    at.q = start.q;
+    at.lambda = start.lambda;
+    result.drives_run = mechanism.plan().drives;
+    return result;
+  }
   at = find_equilibrium(mechanism, start, request.search);
   for (int saddles = 0;; ++saddles) {
     result.spectrum = spectrum(mechanism, at, request.count, request.route);

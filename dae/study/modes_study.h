@@ -2,7 +2,10 @@
 // An equilibrium of a mechanism, the small motions about it, and pictures of them.
 
 #include <momenta/dae/linear/spectrum.h>
+#include <momenta/dae/linear/steady_motion.h>
 #include <momenta/dae/study/picture.h>
+
+#include <optional>
 
 namespace momenta {
 
@@ -16,6 +19,8 @@ struct ModesResult {
   bool of_formulas = false;  ///< of a Lagrangian: coordinates instead of joints
   std::string scene;
   Equilibrium equilibrium;
+  /// With Search::steady: then `equilibrium` has its q and λ alone.
+  std::optional<SteadyMotion> steady;
   Spectrum spectrum;
   std::vector<Column> coordinates;  ///< of q
   std::vector<Column> shapes;       ///< of φ: as q, but displacements and turns in child axes of

@@ -101,6 +101,7 @@ class LoopGap {
     if (loop_.kind == LoopKind::distance)
       return apart.norm() > 0 ? Vector3d(apart * (1 - length / apart.norm())) : apart;
     const Eigen::Matrix3d frame = parent.linear() * loop_.rotation.toRotationMatrix();
+    if (loop_.kind == LoopKind::rolling) return of_wheel(frame * loop_.normal, child, apart);
     if (pair_) return of_pair(frame * frame_across(loop_), child, apart);
     for (std::size_t i = 0; i < free_.size(); ++i) {
       const Vector3d way = frame * free_[i];
@@ -110,6 +111,12 @@ class LoopGap {
   }
 
  private:
+  /// Between the wheel and its plane.
+  Vector3d of_wheel(const Vector3d& normal, const Isometry3d& child, const Vector3d& apart) const {
+    const Vector3d axle = child.linear() * loop_.axis.normalized();
+    const double circle = loop_.radius - loop_.crown_radius;
+    return (normal.dot(apart) - loop_.crown_radius - circle * normal.cross(axle).norm()) * normal;
+  }
   /// F along its gradient in the plane; of a slot also what leads out of it. `axes`: columns e₁, e₂
   /// and the normal.
   Vector3d of_pair(const Eigen::Matrix3d& axes, const Isometry3d& child, const Vector3d& apart) {

@@ -15,6 +15,7 @@ int rows_of(LoopKind kind, bool planar) {
     case LoopKind::cam:
     case LoopKind::rack:
     case LoopKind::equation:
+    case LoopKind::velocity_equation:
       return 1;
     case LoopKind::slot:
       return planar ? 1 : 2;
@@ -22,6 +23,7 @@ int rows_of(LoopKind kind, bool planar) {
     case LoopKind::spherical:
       return planar ? 2 : 3;
     case LoopKind::planar:
+    case LoopKind::rolling:
       return 3;
     case LoopKind::universal:
     case LoopKind::cylindrical:

@@ -1,4 +1,4 @@
-// Loops with curves: slots, cams, racks.
+// Loops with curves: slots, cams, racks; and wheels.
 
 #include <momenta/core/scene/kinds.h>
 #include <momenta/core/scene/plane_curve.h>
@@ -112,6 +112,18 @@ void read_rack(const Fields& table, LoopSpec& loop) {
     table.fail_key("direction", "is parallel to axis, expected another direction");
   loop.radius = table.number("radius", {"m", Bound::positive});
   loop.offset = table.number("offset", {"rad"}, 0);
+}
+
+void read_rolling(const Fields& table, LoopSpec& loop) {
+  table.allow({"name", "kind", "parent", "child", "origin", "rotation", "axis", "normal", "radius",
+               "crown_radius"});
+  read_frame(table, loop);
+  loop.normal = table.direction("normal", loop.normal);
+  loop.radius = table.number("radius", {"m", Bound::positive});
+  loop.crown_radius = table.number("crown_radius", {"m", Bound::not_negative}, 0);
+  if (loop.crown_radius > loop.radius)
+    table.fail_key("crown_radius", "is " + digits(loop.crown_radius) + " m, expected at most the " +
+                                       "radius, " + digits(loop.radius) + " m, of a sphere");
 }
 
 }  // namespace momenta::reading

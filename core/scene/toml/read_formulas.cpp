@@ -76,10 +76,10 @@ void read_formulas(const Fields& root, Scene& scene) {
   which = 0;
   for (const Fields& table : root.tables("loop", "loop")) {
     LoopSpec& loop = scene.loops[which++];
-    if (loop.kind != LoopKind::equation) continue;
+    if (!has_equation(loop)) continue;
     const Formula formula = read_at(table, "equation", loop.equation, scene,
                                     [&](const auto& t) { return reader.read(t); });
-    if (const std::string fault = equation_fault(scene, formula); !fault.empty())
+    if (const std::string fault = equation_fault(scene, loop.kind, formula); !fault.empty())
       table.fail_at(value_at(table, "equation").at,
                     "equation, " + in_quotes(loop.equation) + ", " + fault);
     loop.equation = formula.text;

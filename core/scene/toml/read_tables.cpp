@@ -252,7 +252,8 @@ std::string as_difference(const Fields& table, const std::string& text) {
   return "(" + text.substr(0, sign) + ") - (" + text.substr(sign + 1) + ")";
 }
 
-/// The keys of an equation; its names are looked up once the whole scene is known.
+/// The keys of an equation, of positions or of velocities; its names are looked up once the whole
+/// scene is known.
 void read_equation(const Fields& table, LoopSpec& loop) {
   table.allow({"name", "kind", "equation"});
   loop.name = table.text("name");
@@ -272,7 +273,7 @@ LoopSpec read_loop(const Fields& table, std::span<const DriveSpec> drives) {
     read_coupler(table, loop);
     return loop;
   }
-  if (loop.kind == LoopKind::equation) {
+  if (has_equation(loop)) {
     read_equation(table, loop);
     return loop;
   }
@@ -283,6 +284,10 @@ LoopSpec read_loop(const Fields& table, std::span<const DriveSpec> drives) {
     (loop.kind == LoopKind::slot  ? read_slot
      : loop.kind == LoopKind::cam ? read_cam
                                   : read_rack)(table, loop);
+    return loop;
+  }
+  if (loop.kind == LoopKind::rolling) {
+    read_rolling(table, loop);
     return loop;
   }
   for (const std::string_view key : {"joints", "coordinates", "ratios", "powers", "offset"})

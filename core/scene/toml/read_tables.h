@@ -19,6 +19,7 @@ LoopSpec read_loop(const Fields& table, std::span<const DriveSpec> drives);
 void read_slot(const Fields& table, LoopSpec& loop);
 void read_cam(const Fields& table, LoopSpec& loop);
 void read_rack(const Fields& table, LoopSpec& loop);
+void read_rolling(const Fields& table, LoopSpec& loop);
 DriveSpec read_drive(const Fields& table);
 ForceSpec read_force(const Fields& table);
 FunctionSpec read_function(const Fields& table);

@@ -196,6 +196,11 @@ void write_curves(const LoopSpec& loop, TomlText& t) {
     t.put("radius", TomlText::digits(loop.radius));
     t.number("offset", loop.offset);
   }
+  if (loop.kind == LoopKind::rolling) {
+    t.vector("normal", loop.normal, Vector3d::UnitZ());
+    t.put("radius", TomlText::digits(loop.radius));
+    t.number("crown_radius", loop.crown_radius);
+  }
 }
 
 void write_loop(const LoopSpec& loop, TomlText& t) {
@@ -208,7 +213,7 @@ void write_loop(const LoopSpec& loop, TomlText& t) {
     t.number("offset", loop.offset);
     return;
   }
-  if (loop.kind == LoopKind::equation) return t.word("equation", loop.equation);
+  if (has_equation(loop)) return t.word("equation", loop.equation);
   write_frames(loop, reading::has_axis(loop.kind), t);
   if (loop.kind == LoopKind::distance) t.number("length", loop.length);
   write_curves(loop, t);

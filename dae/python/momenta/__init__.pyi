@@ -97,6 +97,8 @@ class _LoopKeys(TypedDict, total=False):
     offset: float
     curve: Literal["line", "circle", "spline"]
     radius: float
+    crown_radius: float
+    normal: _Direction
     points: Sequence[Sequence[float]]
     closed: bool
     profile: Mapping[str, Mapping[str, Any]]
@@ -245,6 +247,8 @@ class Start:
     def rank(self) -> int: ...
     @property
     def mobility(self) -> int: ...
+    @property
+    def free_positions(self) -> int: ...
     @property
     def dependent_rows(self) -> list[int]: ...
     @property

@@ -235,7 +235,7 @@ class Keys(unittest.TestCase):
     tables = {  # of the stub: key of the scene, its kinds, what the builder's methods take by name
         "_BodyKeys": ("body", [None], {"name"}),
         "_JointKeys": ("joint", ["revolute"], {"name", "kind"}),
-        "_LoopKeys": ("loop", ["distance", "coupler", "slot", "cam", "rack", "equation"], {"name", "kind"}),
+        "_LoopKeys": ("loop", ["distance", "coupler", "slot", "cam", "rack", "equation", "rolling"], {"name", "kind"}),
         "_DriveKeys": ("drive", ["polynomial", "harmonic", "step", "table", "formula"], {"kind"}),
         "_ForceKeys": (
             "force",
