@@ -126,7 +126,7 @@ class Angles<Pack<1, L>> {
   explicit Angles(std::size_t n)
       : size_(n), angle_((n + width - 1) / width), sine_(angle_.size()), cosine_(angle_.size()) {}
   MOMENTA_INLINE void set(std::size_t i, const One& x) {
-    __builtin_memcpy(reinterpret_cast<char*>(angle_.data()) + 8 * i, &x, 8);
+    reinterpret_cast<double*>(angle_.data())[i] = x.v;
   }
   MOMENTA_INLINE One operator[](std::size_t i) const { return at(angle_, i); }
   MOMENTA_INLINE One sine(std::size_t i) const { return at(sine_, i); }

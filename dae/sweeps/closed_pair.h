@@ -125,47 +125,60 @@ MOMENTA_INLINE void close_pair(Front<S, Rows, Columns>& front, double fade,
     weight(ca, pair.a, pair.da);
     weight(cb, pair.b, pair.db);
   }
-  if constexpr (Rows > 2) {
+  if constexpr (Rows <= 2) {
+    if constexpr (!Here::apart) front = {};
+  } else if constexpr (Here::apart) {
     Here ga, gb;
-    if constexpr (Here::apart) {
-      each_open<S, Rows>(beside, [&](auto i) MOMENTA_INLINED {
-        const S x = front.template w<A, i>(), y = front.template w<B, i>();
-        ga.v[i] = swapped(y, x);
-        gb.v[i] = swapped(-x, y);
-      });
-    } else {
-      front.W[A].template set_pair<A>(zero, zero);
-      front.W[B].template set_pair<A>(zero, zero);
-      ga = swapped(front.W[B], front.W[A]);
-      gb = swapped(-front.W[A], front.W[B]);
-      front.W[A] = front.W[B] = {};
-      each<Rows>([&](auto i) MOMENTA_INLINED { front.W[i].template set_pair<A>(zero, zero); });
-      each<Columns>([&](auto i) MOMENTA_INLINED { front.C[i].template set_pair<A>(zero, zero); });
-      front.d.template set_pair<A>(zero, zero);
-      front.scale.template set_pair<A>(zero, zero);
-    }
     each_open<S, Rows>(beside, [&](auto i) MOMENTA_INLINED {
-      gb.v[i] = gb.v[i] - ga.v[i] * Here::all(l);
-      pair.Ga.v[i] = ga.v[i] * Here::all(fa);
-      pair.Gb.v[i] = gb.v[i] * Here::all(fb);
-      front.d.v[i] = (front.d.v[i] - pair.Ga.v[i] * Here::all(da)) - pair.Gb.v[i] * Here::all(db);
+      const S x = front.template w<A, i>(), y = front.template w<B, i>();
+      ga.v[i] = swapped(y, x);
+      gb.v[i] = swapped(-x, y) - ga.v[i] * l;
+      pair.Ga.v[i] = ga.v[i] * fa;
+      pair.Gb.v[i] = gb.v[i] * fb;
+      front.d.v[i] = (front.d.v[i] - pair.Ga.v[i] * da) - pair.Gb.v[i] * db;
       if constexpr (Moves)
         each<Columns>([&](auto k) MOMENTA_INLINED {
-          front.C[k].v[i] = (front.C[k].v[i] - pair.Ga.v[i] * Here::all(ca[k])) -
-                            pair.Gb.v[i] * Here::all(cb[k]);
+          front.C[k].v[i] = (front.C[k].v[i] - pair.Ga.v[i] * ca[k]) - pair.Gb.v[i] * cb[k];
         });
     });
-    if constexpr (Here::apart)
-      front.subtract_products(pair.Ga, ga, pair.Gb, gb, beside);
-    else
-      each<Rows * Here::parts>([&](auto n) MOMENTA_INLINED {
-        constexpr int i = n / Here::parts, k = n % Here::parts;
-        if constexpr (i != A && i != B)
-          front.W[i].v[k] = (front.W[i].v[k] - pair.Ga.v[k] * Here::all(ga.template at<i>())) -
-                            pair.Gb.v[k] * Here::all(gb.template at<i>());
+    front.subtract_products(pair.Ga, ga, pair.Gb, gb, beside);
+  } else {
+    // What was there is read, changed and written once: a whole register read after a part of it
+    // was written waits for the memory.
+    Here Ga, Gb, ga, gb;
+    each<Here::parts>([&](auto k) MOMENTA_INLINED {
+      const auto x = Here::template without<A, k>(front.W[A].v[k]),
+                 y = Here::template without<A, k>(front.W[B].v[k]);
+      ga.v[k] = x;
+      gb.v[k] = y;
+    });
+    const Here x = swapped(gb, ga), y = swapped(-ga, gb);
+    each<Here::parts>([&](auto k) MOMENTA_INLINED {
+      ga.v[k] = x.v[k];
+      gb.v[k] = y.v[k] - x.v[k] * Here::all(l);
+      Ga.v[k] = ga.v[k] * Here::all(fa);
+      Gb.v[k] = gb.v[k] * Here::all(fb);
+    });
+    const auto closed = [&](Here& to, const S& a, const S& b) MOMENTA_INLINED {
+      each<Here::parts>([&](auto k) MOMENTA_INLINED {
+        to.v[k] = (Here::template without<A, k>(to.v[k]) - Ga.v[k] * Here::all(a)) -
+                  Gb.v[k] * Here::all(b);
       });
-  } else if constexpr (!Here::apart) {
-    front = {};
+    };
+    closed(front.d, da, db);
+    if constexpr (Moves)
+      each<Columns>([&](auto i) MOMENTA_INLINED { closed(front.C[i], ca[i], cb[i]); });
+    each<Rows>([&](auto i) MOMENTA_INLINED {
+      if constexpr (i == A || i == B)
+        front.W[i] = {};
+      else
+        closed(front.W[i], ga.template at<i>(), gb.template at<i>());
+    });
+    each<Here::parts>([&](auto k) MOMENTA_INLINED {
+      front.scale.v[k] = Here::template without<A, k>(front.scale.v[k]);
+    });
+    pair.Ga = Ga;
+    pair.Gb = Gb;
   }
 }
 

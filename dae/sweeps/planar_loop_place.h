@@ -70,35 +70,49 @@ void LoopSweeps<Planar, S, Rows, Momentum>::place_bodies(const In& x, const Righ
   }
 }
 
-/// The same where all joints are revolute and nobody asks for more: origins where some loop is no
-/// tie, in the acceleration form angular velocities alone.
+/// The same where all joints are revolute and no tie asks for D.
 template <class S, int Rows, bool Momentum>
 template <class In>
-MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::place_revolutes(
-    [[maybe_unused]] const In& x) {
+void LoopSweeps<Planar, S, Rows, Momentum>::place_revolutes([[maybe_unused]] const In& x,
+                                                            bool velocities) {
   const PlanarLink* links = tree_->links.data();
-  if constexpr (Momentum) {
-    if (tied_) return;
-    Vec2<S> o{};
-    for (std::size_t k = 0; k < revolutes_.size(); ++k) {
-      const PlanarLink& l = links[k];
-      if (l.parent < 0)
-        o = {};
-      else if (!l.first)
-        o = origins_[static_cast<std::size_t>(l.parent)];
-      o += Base::step(l);
-      origins_[k] = o;
-    }
-  } else {
+  Revolute* records = revolutes_.data();
+  const std::size_t n = revolutes_.size();
+  if constexpr (!Momentum) {
     S omega(0.0);
-    for (std::size_t k = 0; k < revolutes_.size(); ++k) {
+    for (std::size_t k = 0; k < n; ++k) {
       const PlanarLink& l = links[k];
       if (l.parent < 0)
         omega = S(0.0);
       else if (!l.first)
-        omega = revolutes_[static_cast<std::size_t>(l.parent)].omega;
+        omega = records[l.parent].omega;
       omega = omega + l.sign * x[l.u];
-      revolutes_[k].omega = omega;
+      records[k].omega = omega;
+    }
+  }
+  if (tied_ && !velocities) return;
+  Vec2<S>* origins = origins_.data();
+  Vec2<S> o{}, v{};
+  for (std::size_t k = 0; k < n; ++k) {
+    const PlanarLink& l = links[k];
+    const Vec2<S> r = Base::step(l);
+    if (l.parent < 0)
+      o = v = {};
+    else if (!l.first) {
+      if (!tied_) o = origins[l.parent];
+      if constexpr (!Momentum) v = {{records[l.parent].vx, records[l.parent].vy}};
+    }
+    if (!tied_) {
+      o += r;
+      origins[k] = o;
+    }
+    if constexpr (!Momentum) {
+      Revolute& w = records[k];
+      w.rx = r[0];
+      w.ry = r[1];
+      if (l.parent >= 0) v += cross(records[l.parent].omega, r);
+      w.vx = v[0];
+      w.vy = v[1];
     }
   }
 }
@@ -123,11 +137,10 @@ MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::place_ends(std::size_
 template <class S, int Rows, bool Momentum>
 void LoopSweeps<Planar, S, Rows, Momentum>::place_turning(const RightSide<S>& right) {
   const bool asked = biased(right);
-  for (const End& end : turning_) {
-    const auto a = static_cast<std::size_t>(end.a), b = static_cast<std::size_t>(end.b),
-               loop = static_cast<std::size_t>(end.loop);
-    Place& s = places_[loop];
-    const Vec2<S> arm = turned(a, end.at), axis = turned(b, end.axis);
+  for (const Turning& l : turning_) {
+    const std::size_t a = l.a, b = l.b;
+    Place& s = places_[l.loop];
+    const Vec2<S> arm = turned(a, l.at_a), axis = turned(b, l.axis);
     s.ax = arm[0];
     s.ay = arm[1];
     s.bx = (origins_[a][0] - origins_[b][0]) + arm[0];
@@ -135,8 +148,20 @@ void LoopSweeps<Planar, S, Rows, Momentum>::place_turning(const RightSide<S>& ri
     s.Fx = axis[0];
     s.Fy = axis[1];
     if (!asked) continue;
-    s.dx = row_bias(loop, 0, right);
-    s.dy = row_bias(loop, 1, right);
+    Vec2<S> d{}, rate{};
+    if constexpr (!Momentum) {
+      // b_j turn with B, and x_A − O_B by what A's point is faster than O_B.
+      const Revolute &A = revolutes_[a], &B = revolutes_[b];
+      const Vec2<S> u{{A.vx - A.omega * s.ay - B.vx, A.vy + A.omega * s.ax - B.vy}};
+      rate = u - cross(B.omega, Vec2<S>{{s.bx, s.by}});
+      d = cross(B.omega, u + rate) + (A.omega * A.omega) * arm;
+      d = -d;
+      if (right.alpha != 0) d += S(2 * right.alpha) * rate;
+    }
+    const double positions = Momentum ? right.positions : right.beta * right.beta;
+    if (positions != 0) d += S(positions) * (Vec2<S>{{s.bx, s.by}} - turned(b, l.at_b));
+    s.dx = s.Fx * d[0] + s.Fy * d[1];
+    s.dy = s.Fx * d[1] - s.Fy * d[0];
   }
 }
 

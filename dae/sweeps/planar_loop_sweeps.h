@@ -106,15 +106,18 @@ class LoopSweeps<Planar, S, Rows, Momentum> : PlanarPlaces<S> {
 
   /// An end of a loop, by body: what all sweeps take of it, in one place.
   struct End {
-    Vec2<double> at;    ///< its point, body axes; on B of two rows along axes of B the first of these
-    Vec2<double> D;     ///< of a tie's end that begins its D: what an end on the ground has of it
-    Vec2<double> axis;  ///< of two rows along axes of B the first of these; then `at` is A's point
-    double sign = 1;    ///< −1 on body B
+    Vec2<double> at;  ///< its point, body axes
+    Vec2<double> D;   ///< of a tie's end that begins its D: what an end on the ground has of it
+    double sign = 1;  ///< −1 on body B
     int loop = 0, row = 0, slot = 0;
-    int a = -1, b = -1;
     bool pair = false, tie = false;
     bool turns = false;  ///< two point rows along axes of B that no drive moves
     bool on_a = true, first = true, begins = false;
+  };
+  /// Two point rows along axes of B.
+  struct Turning {
+    Vec2<double> at_a, at_b, axis;  ///< points, the first axis
+    std::size_t a, b, loop;
   };
   struct Visit {
     LoopPlan::Range ends, closings;
@@ -145,7 +148,7 @@ class LoopSweeps<Planar, S, Rows, Momentum> : PlanarPlaces<S> {
   template <class In>
   void place_bodies(const In& x, const RightSide<S>& right);
   template <class In>
-  MOMENTA_INLINE void place_revolutes(const In& x);
+  void place_revolutes(const In& x, bool velocities);
   MOMENTA_INLINE void place_ends(std::size_t k, bool gap, const S& x, const S& y);
   void place_turning(const RightSide<S>& right);
   __attribute__((noinline)) void place_other_loops(const RightSide<S>& right);
@@ -229,8 +232,8 @@ class LoopSweeps<Planar, S, Rows, Momentum> : PlanarPlaces<S> {
                                 const RightSide<S>& right, const Out& impulse, const S& vx,
                                 const S& vy, const S& omega, Revolute& w);
   template <class Out>
-  MOMENTA_INLINE void add_other_rates(const End& end, const RightSide<S>& right,
-                                      const Out& impulse, Wrench& T);
+  MOMENTA_INLINE void add_other_rates(const End& end, const RightSide<S>& right, const Out& impulse,
+                                      Wrench& T);
   template <class In, class Out>
   void rates_inward(const In& q, const RightSide<S>& right, const Out& u, const Out& impulse,
                     Out rate);
@@ -248,7 +251,7 @@ class LoopSweeps<Planar, S, Rows, Momentum> : PlanarPlaces<S> {
   std::vector<LoopedJoint<S, Rows>> looped_;
   std::vector<Visit> visits_;        ///< by body
   std::vector<End> ends_;            ///< as in the plan
-  std::vector<End> turning_;         ///< one of each loop that turns with B
+  std::vector<Turning> turning_;     ///< loops that turn with B
   std::vector<Closing> closings_;    ///< as in the plan
   std::vector<Vec2<S>> arms_;        ///< of ties, by end: x − O of its body, ground axes
   std::vector<Vec2<S>> gaps_;        ///< of ties, by loop: D, where equations ask for it
@@ -308,13 +311,18 @@ LoopSweeps<Planar, S, Rows, Momentum>::LoopSweeps(const PlanarTree& tree,
   };
   for (std::size_t i = 0; i < loops.loops.size(); ++i) {
     tied_ = tied_ && loops.loops[i].is_tie;
-    if (!loops.loops[i].is_tie && !turns(i)) others_.push_back(static_cast<int>(i));
+    const Loop& l = loops.loops[i];
+    if (turns(i))
+      turning_.push_back({l.at_a, l.at_b, l.axis_b[0], static_cast<std::size_t>(l.a),
+                          static_cast<std::size_t>(l.b), i});
+    else if (!l.is_tie)
+      others_.push_back(static_cast<int>(i));
   }
   for (const LoopPlan::End& end : plan.ends) {
     const auto i = static_cast<std::size_t>(end.loop);
     const Loop& l = loops.loops[i];
     End e;
-    e.at = l.is_tie && !end.on_a ? l.at_b : l.at_a;
+    e.at = end.on_a ? l.at_a : l.at_b;
     if (l.is_tie) e.D = l.a < 0 ? l.at_a : l.b < 0 ? -l.at_b : Vec2<double>{};
     e.sign = end.on_a ? 1.0 : -1.0;
     e.loop = end.loop;
@@ -322,15 +330,11 @@ LoopSweeps<Planar, S, Rows, Momentum>::LoopSweeps(const PlanarTree& tree,
     e.slot = plan.slot[i];
     e.pair = plan.pair[i];
     e.tie = l.is_tie;
-    e.a = l.a;
-    e.b = l.b;
-    e.axis = l.axis_b[0];
     e.turns = turns(i);
     e.on_a = end.on_a;
     e.first = end.first;
     e.begins = l.is_tie && (!end.first || l.a < 0 || l.b < 0);
     ends_.push_back(e);
-    if (e.turns && e.first) turning_.push_back(e);
   }
   for (std::size_t k = 0; k < tree.links.size(); ++k)
     visits_.push_back({plan.ends_of[k], plan.closings_of[k]});
@@ -356,11 +360,10 @@ bool LoopSweeps<Planar, S, Rows, Momentum>::operator()(const S& t, const In& q, 
   Base::place(t, q);
   singular_joint_ = -1;
   compliance_ = right.compliance;
-  const bool plain = joints_.empty() && !asks_for_gaps(right);
-  if (plain && (Momentum || (!keeps_motions_ && right.alpha == 0)))
-    place_revolutes(x);
-  else
+  if (!joints_.empty() || asks_for_gaps(right))
     place_bodies(x, right);
+  else if (!Momentum || !tied_)
+    place_revolutes(x, !Momentum && (keeps_motions_ || right.alpha != 0));
   loops_ = &in_time_.at(value_of(t));
   if (!turning_.empty()) place_turning(right);
   if (!others_.empty()) place_other_loops(right);

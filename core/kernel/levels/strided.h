@@ -1,6 +1,6 @@
 #pragma once
 // Coordinates of a pack of states, loaded and stored by index: coordinate i of the pack's first
-// state is at base[i * stride].
+// state is at base[i * stride]. Of one state they stand one after the other.
 
 #include <momenta/core/scalar/pack.h>
 
@@ -24,6 +24,21 @@ struct StridedOut {
     MOMENTA_INLINE operator S() const { return S::load(at); }
   };
   MOMENTA_INLINE Place operator[](int i) const { return {base + i * stride}; }
+};
+template <class S>
+struct CoordinatesIn {
+  const double* base;
+  MOMENTA_INLINE S operator[](int i) const { return S(base[i]); }
+};
+template <class S>
+struct CoordinatesOut {
+  double* base;
+  struct Place {
+    double* at;
+    MOMENTA_INLINE void operator=(const S& x) const { *at = x.v; }
+    MOMENTA_INLINE operator S() const { return S(*at); }
+  };
+  MOMENTA_INLINE Place operator[](int i) const { return {base + i}; }
 };
 
 }  // namespace momenta

@@ -14,6 +14,8 @@ namespace momenta {
 template <class Tree, class Space, int Level, int Rows>
 class LoopedSweepsAt final : public LoopedSweeps {
   using One = Pack<1, Level>;
+  using In = CoordinatesIn<One>;
+  using Out = CoordinatesOut<One>;
   /// States side by side: one by one in the widest fronts, which fill the registers by themselves.
   using Many = Pack<(Rows > 8 ? 1 : native_width<Level>), Level>;
   static constexpr std::size_t abreast = Rows > 8 ? 1 : native_width<Level>;
@@ -31,9 +33,8 @@ class LoopedSweepsAt final : public LoopedSweeps {
 
   bool momentum(double t, const double* q, const double* p, const RightSide<double>& right,
                 double* u, double* sigma, double* pdot) override {
-    const bool ok = momentum_(One(t), StridedIn<One>{q, 1}, StridedIn<One>{p, 1},
-                              StridedIn<One>{p, 1}, one(right), StridedOut<One>{u, 1},
-                              StridedOut<One>{sigma, 1}, StridedOut<One>{pdot, 1});
+    const bool ok =
+        momentum_(One(t), In{q}, In{p}, In{p}, one(right), Out{u}, Out{sigma}, Out{pdot});
     to_given(sigma, 1, right.centre);
     singular_joint_ = momentum_.singular_joint();
     weak_looped_branch_ = momentum_.weak_looped_branch();
@@ -42,9 +43,8 @@ class LoopedSweepsAt final : public LoopedSweeps {
   bool acceleration(double t, const double* q, const double* u, const double* tau,
                     const RightSide<double>& right, double* udot, double* lambda) override {
     auto& sweeps = made(acceleration_);
-    const bool ok = sweeps(One(t), StridedIn<One>{q, 1}, StridedIn<One>{u, 1},
-                           StridedIn<One>{tau, 1}, one(right), StridedOut<One>{udot, 1},
-                           StridedOut<One>{lambda, 1}, StridedOut<One>{udot, 1});
+    const bool ok =
+        sweeps(One(t), In{q}, In{u}, In{tau}, one(right), Out{udot}, Out{lambda}, Out{udot});
     to_given(lambda, 1, right.centre);
     singular_joint_ = sweeps.singular_joint();
     weak_looped_branch_ = sweeps.weak_looped_branch();
@@ -124,17 +124,20 @@ class LoopedSweepsAt final : public LoopedSweeps {
                  double fade, double leak) {
     weak_looped_branch_ = false;
     bool all = true;
-    if (OfMany::bytes(tree_, loops_) > most_bytes) {
-      for (std::size_t i = 0; i < s.count; ++i) all &= taken<One>(one, t, s.part(i, 1), fade, leak);
-    } else {
+    if (abreast == 1 || OfMany::bytes(tree_, loops_) > most_bytes) {
+      for (std::size_t i = 0; i < s.count; ++i)
+        padded<1>(s.part(i, 1),
+                  [&](const LoopedStates& state) { all &= taken<One>(one, t, state, fade, leak); });
+    } else if constexpr (abreast > 1) {
       constexpr std::size_t width = abreast;
       OfMany& sweeps = made(many);
       std::size_t first = 0;
       for (; first + width <= s.count; first += width)
         all &= taken<Many>(sweeps, t, s.part(first, width), fade, leak);
       if (first < s.count)
-        padded(s.part(first, s.count - first),
-               [&](const LoopedStates& rest) { all &= taken<Many>(sweeps, t, rest, fade, leak); });
+        padded<width>(s.part(first, s.count - first), [&](const LoopedStates& rest) {
+          all &= taken<Many>(sweeps, t, rest, fade, leak);
+        });
     }
     if (!shared_.empty() || !carried_.all())
       for (std::size_t i = 0; i < s.count; ++i) to_given(s.sigma + i, s.stride, nullptr);
@@ -154,17 +157,21 @@ class LoopedSweepsAt final : public LoopedSweeps {
       forces_.resize((static_cast<std::size_t>(tree_.model->nv) + 1) * abreast);
       tau = joint_forces(*tree_.model, s.tau, s.stride, q, x, &forces_.data()->v);
     }
-    const bool ok = sweeps(X(t), q, x, tau, right, StridedOut<X>{s.u, s.stride},
-                           StridedOut<X>{s.sigma, s.stride},
-                           StridedOut<X>{Sweeps::of_momenta ? s.pdot : s.u, s.stride});
+    double* const rates = Sweeps::of_momenta ? s.pdot : s.u;
+    bool ok;
+    if constexpr (std::is_same_v<X, One>)
+      ok = sweeps(X(t), In{q.base}, In{x.base}, In{tau.base}, right, Out{s.u}, Out{s.sigma},
+                  Out{rates});
+    else
+      ok = sweeps(X(t), q, x, tau, right, StridedOut<X>{s.u, s.stride},
+                  StridedOut<X>{s.sigma, s.stride}, StridedOut<X>{rates, s.stride});
     if (!ok) singular_joint_ = sweeps.singular_joint();
     weak_looped_branch_ |= sweeps.weak_looped_branch();
     return ok;
   }
   /// Calls act on states that fill no pack, copied into one; its last slots repeat the last state.
-  template <class Act>
+  template <std::size_t width, class Act>
   void padded(const LoopedStates& s, Act&& act) {
-    constexpr std::size_t width = abreast;
     const auto nq = static_cast<std::size_t>(tree_.model->nq),
                nv = static_cast<std::size_t>(tree_.model->nv),
                m = static_cast<std::size_t>(loops_.rows);

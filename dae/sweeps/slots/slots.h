@@ -95,8 +95,7 @@ struct Slots<Pack<1, Level>, Rows> {
   /// Times unit vectors, which costs less than a choice where i is not known here.
   MOMENTA_INLINE void add_at(int i, const S& x) {
     const double* const at = units.of[i];
-    each<parts>([&](auto k)
-                    MOMENTA_INLINED { v[k] = v[k] + Part::load(at + k * width) * all(x); });
+    each<parts>([&](auto k) MOMENTA_INLINED { v[k] = v[k] + Part::load(at + k * width) * all(x); });
   }
   MOMENTA_INLINE void add_pair(int i, const S& x, const S& y) {
     const double *const at = units.of[i], *const next = units.of[i + 1];
@@ -108,6 +107,12 @@ struct Slots<Pack<1, Level>, Rows> {
   MOMENTA_INLINE void set_pair(const S& x, const S& y) {
     auto& part = v[i / width].v;
     part = (places(i / width) & ~1) == i ? both(x, y) : part;
+  }
+  /// Part k without the pair at slot i.
+  template <int i, int k>
+  static MOMENTA_INLINE Part without(Part part) {
+    if constexpr (i / width == k) part.v = (places(k) & ~1) == i ? Part(0.0).v : part.v;
+    return part;
   }
   template <int i>
   MOMENTA_INLINE void add_pair(const S& x, const S& y) {
@@ -195,8 +200,8 @@ MOMENTA_INLINE Pack<1, L> sum_of(const Pack<W, L>& x) {
     return sum_of(Pack<4, L>::of(__builtin_shufflevector(v, v, 0, 1, 2, 3) +
                                  __builtin_shufflevector(v, v, 4, 5, 6, 7)));
   else if constexpr (W == 4)
-    return sum_of(Pack<2, L>::of(__builtin_shufflevector(v, v, 0, 1) +
-                                 __builtin_shufflevector(v, v, 2, 3)));
+    return sum_of(
+        Pack<2, L>::of(__builtin_shufflevector(v, v, 0, 1) + __builtin_shufflevector(v, v, 2, 3)));
   else
     return Pack<1, L>(v[0] + v[1]);
 }
