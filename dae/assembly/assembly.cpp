@@ -42,10 +42,7 @@ class Assembler {
     if (mechanism_.m() > 0) {
       if (mechanism_.nv() == 0) nothing_moves();
       close_positions(a);
-      const int of_positions =
-          mechanism_.has_nonholonomic()
-              ? steps_.judge(loops_.jacobian(), Judged::dependence).rank
-              : 0;
+      const int of_positions = mechanism_.has_nonholonomic() ? rank_of_positions() : 0;
       loops_.rows.assign(loops_.rows.size(), true);
       judge_rank(a);
       close_velocities(a);
@@ -71,6 +68,7 @@ class Assembler {
     a.position_residual = phi.cwiseAbs().maxCoeff();
     a.moved = (a.start.q - guess).cwiseAbs().maxCoeff();
     if (!found.is_closed) refuse(phi, closing.tolerance(), found.is_stretched);
+    refuse_lost_loop();
     if (!found.is_least) return;
     a.start.residue = phi;
     a.residue = residue_in_words(mechanism_, phi);
@@ -153,6 +151,15 @@ class Assembler {
                      (scene.lagrangian ? "coordinates" : "joints") + " tear " +
                      loop_word(mechanism_) + " '" + name + "' apart at a rate of " + text +
                      "; expected rates that the " + loop_word(mechanism_) + "s allow");
+  }
+
+  /// Of the rows that are not nonholonomic, held joints or not.
+  int rank_of_positions() {
+    std::vector<double> values = scaled_entries(mechanism_, e(), loops_.units());
+    for (std::size_t i = 0; i < values.size(); ++i)
+      if (mechanism_.nonholonomic()[static_cast<std::size_t>(loops_.pattern()[i].row)])
+        values[i] = 0;
+    return steps_.judge(values, Judged::dependence).rank;
   }
 
   void judge_rank(Assembly& a) {
