@@ -99,8 +99,8 @@ class Evaluation<double> : public EquationRows<double> {
   virtual double dissipated_power(const double* q, const double* u) = 0;
   /// How large the forces of formulas are, whether they balance or not [N, N m]. After move().
   virtual double formula_size() = 0;
-  /// Of which force a formula is not finite, and which: "file:line:column: force 'motor': law".
-  /// Empty: all are. After move().
+  /// Of which force a formula is not finite, which, and what was expected, one sentence; empty: all
+  /// are. After move().
   virtual std::string formula_without_value() = 0;
   /// For each marker its position x y z [m] and its velocity [m/s], in ground axes. After move().
   virtual void markers(double* values) = 0;

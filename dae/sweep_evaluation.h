@@ -6,6 +6,7 @@
 #include <momenta/core/kernel/mass_matrix.h>
 #include <momenta/dae/sweep_rows.h>
 
+#include <algorithm>
 #include <optional>
 
 namespace momenta {
@@ -172,9 +173,16 @@ class Mechanism::SweepEvaluation final : public SweepRows<Space, double> {
     const auto* found = momenta::formula_without_value(w_);
     if (!found) return "";
     const ForceSpec& force = scene_.forces[static_cast<std::size_t>(found->force)];
+    const auto& tape = found->formula.tape();
+    const bool root = std::any_of(tape.begin(), tape.end(), [](const formula::Instruction& in) {
+      return in.operation == formula::Operation::sqrt || in.operation == formula::Operation::hypot;
+    });
     return scene_.where(force.at) +
            (force.name.empty() ? "force of kind '" + force.kind : "force '" + force.name) +
-           "': " + found->key;
+           "': " + found->key + ", or a derivative of it, is not finite at the start" +
+           (root ? ", and sqrt and hypot have no slope at 0; expected another start, or "
+                   "sqrt(x^2 + e^2) with a small e"
+                 : "; expected a start where it has a value");
   }
   double formula_size() override { return momenta::formula_size(w_); }
 

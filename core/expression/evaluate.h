@@ -5,6 +5,7 @@
 #include <momenta/core/expression/spline.h>
 
 #include <cmath>
+#include <type_traits>
 
 namespace momenta {
 
@@ -100,9 +101,13 @@ inline void execute(const Expression::Instruction& in, const S* x, const S* line
 /// scalar that has formula::Functions, compared by their values. No allocation. O(tape)
 template <class S>
 void evaluate(const Expression& formula, const S* x, S* line, S* values) {
-  S* next = line;
-  for (const Expression::Instruction& in : formula.tape()) formula::execute(in, x, line, *next++);
-  for (const int at : formula.outputs()) *values++ = line[at];
+  if constexpr (std::is_same_v<S, double>) {
+    formula::run(formula.steps(), x, line, values);
+  } else {
+    S* next = line;
+    for (const formula::Instruction& in : formula.tape()) formula::execute(in, x, line, *next++);
+    for (const int at : formula.outputs()) *values++ = line[at];
+  }
 }
 
 }  // namespace momenta

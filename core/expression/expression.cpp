@@ -1,6 +1,7 @@
 #include <momenta/core/expression/evaluate.h>
 #include <momenta/core/expression/parser.h>
 #include <momenta/core/expression/simplify.h>
+#include <momenta/core/expression/spline.h>
 #include <momenta/core/expression/tape.h>
 #include <momenta/core/text/near_name.h>
 
@@ -61,57 +62,60 @@ Expression::Expression(std::string_view text, std::span<const std::string> names
 
 Expression::Expression(std::string_view text, FormulaNames& names) {
   formula::Parsed parsed = formula::parse(text, names);
-  outputs_ = {parsed.at};
-  tape_ = parsed.tape.needed_for(outputs_);
+  keep(parsed.tape, {parsed.at});
   truth_ = parsed.truth;
   splines_ = std::move(parsed.splines);
 }
 
-Expression::Expression(const formula::Tape& tape, std::span<const int> outputs)
-    : outputs_(outputs.begin(), outputs.end()) {
-  const std::vector<Instruction> needed = tape.needed_for(outputs_);
+Expression::Expression(const formula::Tape& tape, std::span<const int> outputs) {
+  std::vector<int> at(outputs.begin(), outputs.end());
+  const std::vector<Instruction> needed = tape.needed_for(at);
   formula::Tape simple;
   const std::vector<int> place = formula::add_simplified(simple, needed, {});
-  for (int& i : outputs_) i = place[static_cast<std::size_t>(i)];
-  tape_ = simple.needed_for(outputs_);
+  for (int& i : at) i = place[static_cast<std::size_t>(i)];
+  keep(simple, std::move(at));
+}
+
+void Expression::keep(const formula::Tape& tape, std::vector<int> outputs) {
+  tape_ = tape.needed_for(outputs);
+  outputs_ = std::move(outputs);
+  steps_ = formula::steps_of(tape_, outputs_);
+}
+
+Expression Expression::with(const formula::Tape& tape, std::vector<int> outputs) const {
+  Expression all;
+  all.splines_ = splines_;
+  all.keep(tape, std::move(outputs));
+  return all;
 }
 
 Expression Expression::with_derivatives(std::span<const int> variables) const {
   formula::Tape tape(tape_);
-  Expression all;
-  all.splines_ = splines_;
-  all.outputs_ = {outputs_.front()};
+  std::vector<int> outputs{outputs_.front()};
   const std::vector<int> slopes = formula::add_gradient(tape, outputs_.front(), variables);
-  all.outputs_.insert(all.outputs_.end(), slopes.begin(), slopes.end());
-  all.tape_ = tape.needed_for(all.outputs_);
-  return all;
+  outputs.insert(outputs.end(), slopes.begin(), slopes.end());
+  return with(tape, std::move(outputs));
 }
 
 Expression Expression::with_two_derivatives(int variable) const {
   formula::Tape tape(tape_);
-  Expression all;
-  all.splines_ = splines_;
-  all.outputs_ = {outputs_.front()};
+  std::vector<int> outputs{outputs_.front()};
   for (int i = 0; i < 2; ++i)
-    all.outputs_.push_back(
-        formula::add_gradient(tape, all.outputs_.back(), std::span(&variable, 1)).front());
-  all.tape_ = tape.needed_for(all.outputs_);
-  return all;
+    outputs.push_back(formula::add_gradient(tape, outputs.back(), std::span(&variable, 1)).front());
+  return with(tape, std::move(outputs));
 }
 
 Expression Expression::with_second_derivatives(std::span<const int> variables) const {
   formula::Tape tape(tape_);
-  Expression all;
-  all.outputs_ = {outputs_.front()};
+  std::vector<int> outputs{outputs_.front()};
   const std::vector<int> slopes = formula::add_gradient(tape, outputs_.front(), variables);
-  all.outputs_.insert(all.outputs_.end(), slopes.begin(), slopes.end());
+  outputs.insert(outputs.end(), slopes.begin(), slopes.end());
   for (std::size_t v = 0; v < slopes.size(); ++v) {
     const std::vector<int> bends =
         formula::add_gradient(tape, slopes[v], variables.subspan(0, v + 1));
-    all.outputs_.insert(all.outputs_.end(), bends.begin(), bends.end());
+    outputs.insert(outputs.end(), bends.begin(), bends.end());
   }
-  all.tape_ = tape.needed_for(all.outputs_);
-  return all;
+  return with(tape, std::move(outputs));
 }
 
 std::vector<int> Expression::variables() const {
@@ -127,6 +131,10 @@ std::string_view Expression::corner() const {
                             Operation::max, Operation::choice})
     for (const Instruction& in : tape_)
       if (in.operation == o) return formula::function_name(o);
+  for (const Instruction& in : tape_)
+    if (in.operation == Operation::spline && in.spline->between() != Interpolation::cubic)
+      return in.spline->between() == Interpolation::linear ? "a linear function"
+                                                           : "a monotone function";
   return {};
 }
 

@@ -20,6 +20,8 @@
 // if() are computed and one is taken. Derivatives are tapes too, so that they have derivatives
 // again (evaluate.h computes a tape in any scalar).
 
+#include <momenta/core/expression/steps.h>
+
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -79,51 +81,8 @@ class FormulaNames {
 /// A formula read: y = f(x₀, x₁, …), or such with its derivatives.
 class Expression {
  public:
-  enum class Operation : std::uint8_t {
-    number,
-    variable,
-    negative,
-    add,
-    subtract,
-    multiply,
-    divide,
-    power,
-    whole_power,
-    less,
-    less_equal,
-    equal,
-    unequal,
-    both,
-    either,
-    opposite,
-    choice,
-    sin,
-    cos,
-    tan,
-    asin,
-    acos,
-    atan,
-    sinh,
-    cosh,
-    tanh,
-    exp,
-    log,
-    sqrt,
-    abs,
-    sign,
-    floor,
-    atan2,
-    hypot,
-    min,
-    max,
-    spline
-  };
-  struct Instruction {
-    Operation operation = Operation::number;
-    int a = -1, b = -1, c = -1;  ///< instructions before; of a variable a is its number
-    double number = 0;           ///< exponent of a whole power, order of a spline's derivative
-    const CubicSpline* spline = nullptr;  ///< kept by the formula
-  };
+  using Operation = formula::Operation;
+  using Instruction = formula::Instruction;
 
   /// The names of the variables x₀, x₁, … @throws ExpressionError. O(length) and lookups of names
   Expression(std::string_view text, std::span<const std::string> names);
@@ -139,6 +98,8 @@ class Expression {
   const std::vector<Instruction>& tape() const { return tape_; }
   /// Where its values stand on the tape: f, then its derivatives.
   const std::vector<int>& outputs() const { return outputs_; }
+  /// How the tape is run in plain numbers; their line is no longer than the tape.
+  const formula::Steps& steps() const { return steps_; }
 
   /// f and ∂f/∂x_v of each of these variables, exact: of abs, sign, floor, min, max and if() that
   /// of the piece they are on. O(tape) instructions for any number of variables.
@@ -147,8 +108,8 @@ class Expression {
   Expression with_two_derivatives(int variable) const;
   /// f, ∂f/∂x_v of each of these variables, and ∂²f/∂x_v∂x_w for w up to v, v by v.
   Expression with_second_derivatives(std::span<const int> variables) const;
-  /// A function in it that has corners or jumps, by its name; empty: none, f is smooth where it is
-  /// finite.
+  /// A function in it that has corners or jumps, by its name, or one by points that has them in f'
+  /// or f"; empty: none, f" is continuous where it is finite.
   std::string_view corner() const;
 
   /// Its value; infinite or not a number where arithmetic makes it so. O(tape)
@@ -156,9 +117,14 @@ class Expression {
 
  private:
   Expression() = default;
+  /// Keeps what these places of a tape need.
+  void keep(const formula::Tape& tape, std::vector<int> outputs);
+  /// The values at these places of a tape that goes on from this formula's.
+  Expression with(const formula::Tape& tape, std::vector<int> outputs) const;
   std::vector<Instruction> tape_;
   std::vector<int> outputs_;
   std::vector<std::shared_ptr<const CubicSpline>> splines_;  ///< those that it takes
+  formula::Steps steps_;
   bool truth_ = false;
 };
 

@@ -25,8 +25,6 @@
 
 namespace momenta::formula {
 
-using Operation = Expression::Operation;
-
 /// The functions of one number and of two, of a scalar S; and whether a number is exactly zero.
 template <class S>
 struct Functions;

@@ -28,18 +28,39 @@ class Backward {
  private:
   int& of(int y) { return bar_[static_cast<std::size_t>(y)]; }
   bool is(int i, double x) const { return tape_[i].operation == O::number && tape_[i].number == x; }
-  int times(int a, int b) { return is(a, 1) ? b : is(b, 1) ? a : tape_.add(O::multiply, a, b); }
+  /// Signs go outward: where two of them meet, or a sum is taken, they are gone.
+  int times(int a, int b) {
+    if (is(a, 1)) return b;
+    if (is(b, 1)) return a;
+    if (tape_[a].operation == O::negative) return negative(times(tape_[a].a, b));
+    if (tape_[b].operation == O::negative) return negative(times(a, tape_[b].a));
+    return tape_.add(O::multiply, a, b);
+  }
+  int over(int a, int b) {
+    if (tape_[a].operation == O::negative) return negative(over(tape_[a].a, b));
+    return tape_.add(O::divide, a, b);
+  }
   int power(int a, int n) {
     if (n == 0) return tape_.number(1);
     return n == 1 ? a : tape_.add({O::whole_power, a, -1, -1, static_cast<double>(n)});
   }
   int square(int a) { return power(a, 2); }
-  int negative(int a) { return tape_.add(O::negative, a); }
+  int negative(int a) {
+    const Instruction& in = tape_[a];
+    return in.operation == O::negative ? in.a : tape_.add(O::negative, a);
+  }
   int one_minus(int a) { return tape_.add(O::subtract, tape_.number(1), a); }
   void give(int to, int share) {
     if (tape_[to].operation == O::number) return;
     int& bar = of(to);
-    bar = bar < 0 ? share : tape_.add(O::add, bar, share);
+    if (bar < 0)
+      bar = share;
+    else if (tape_[share].operation == O::negative)
+      bar = tape_.add(O::subtract, bar, tape_[share].a);
+    else if (tape_[bar].operation == O::negative)
+      bar = tape_.add(O::subtract, share, tape_[bar].a);
+    else
+      bar = tape_.add(O::add, bar, share);
   }
   void give_where(int condition, int to, int share, bool where_true = true) {
     const int zero = tape_.number(0);
@@ -63,7 +84,7 @@ class Backward {
         give(a, times(bar, b));
         return give(b, times(bar, a));
       case O::divide: {
-        const int ratio = tape_.add(O::divide, bar, b);
+        const int ratio = over(bar, b);
         give(a, ratio);
         return give(b, negative(times(ratio, y)));
       }
@@ -94,12 +115,12 @@ class Backward {
         return give(a, tape_.add(O::choice, below, negative(bar), bar));
       }
       case O::atan2: {
-        const int share = tape_.add(O::divide, bar, tape_.add(O::add, square(a), square(b)));
+        const int share = over(bar, tape_.add(O::add, square(a), square(b)));
         give(a, times(share, b));
         return give(b, negative(times(share, a)));
       }
       case O::hypot: {
-        const int share = tape_.add(O::divide, bar, y);
+        const int share = over(bar, y);
         give(a, times(share, a));
         return give(b, times(share, b));
       }
@@ -118,16 +139,15 @@ class Backward {
       case O::exp:
         return give(a, times(bar, y));
       case O::log:
-        return give(a, tape_.add(O::divide, bar, a));
+        return give(a, over(bar, a));
       case O::sqrt:
-        return give(a, tape_.add(O::divide, times(bar, tape_.number(0.5)), y));
+        return give(a, over(times(bar, tape_.number(0.5)), y));
       case O::asin:
-        return give(a, tape_.add(O::divide, bar, tape_.add(O::sqrt, one_minus(square(a)))));
+        return give(a, over(bar, tape_.add(O::sqrt, one_minus(square(a)))));
       case O::acos:
-        return give(a,
-                    negative(tape_.add(O::divide, bar, tape_.add(O::sqrt, one_minus(square(a))))));
+        return give(a, negative(over(bar, tape_.add(O::sqrt, one_minus(square(a))))));
       case O::atan:
-        return give(a, tape_.add(O::divide, bar, tape_.add(O::add, tape_.number(1), square(a))));
+        return give(a, over(bar, tape_.add(O::add, tape_.number(1), square(a))));
       case O::spline:
         if (in.number < 3)
           give(a, times(bar, tape_.add({O::spline, a, -1, -1, in.number + 1, in.spline})));

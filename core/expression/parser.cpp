@@ -15,8 +15,8 @@ namespace momenta {
 namespace formula {
 namespace {
 
-constexpr std::size_t longest = 10'000;  // characters of a formula
-constexpr int deepest = 200;             // brackets and signs within each other
+constexpr std::size_t longest = 1'000'000;  // characters of a formula
+constexpr int deepest = 200;                // brackets and signs within each other
 
 struct Function {
   std::string_view name;

@@ -18,10 +18,74 @@ std::string spline_fault(const std::vector<double>& x, const std::vector<double>
   return "";
 }
 
-CubicSpline::CubicSpline(const std::vector<double>& x, const std::vector<double>& y) {
+namespace {
+
+int sign_of(double x) {
+  return x > 0 ? 1 : x < 0 ? -1 : 0;
+}
+
+/// The slope at an end from those of the two gaps beside it, h and next wide: of the parabola
+/// through three points, as far as it keeps the sign.
+double end_slope(double h, double next, double slope, double beyond) {
+  const double s = ((2 * h + next) * slope - h * beyond) / (h + next);
+  if (sign_of(s) != sign_of(slope)) return 0;
+  if (sign_of(slope) != sign_of(beyond) && std::abs(s) > 3 * std::abs(slope)) return 3 * slope;
+  return s;
+}
+
+std::vector<double> monotone_slopes(const std::vector<double>& x, const std::vector<double>& y) {
   const std::size_t n = x.size();
   const auto gap = [&](std::size_t i) { return x[i + 1] - x[i]; };
   const auto slope = [&](std::size_t i) { return (y[i + 1] - y[i]) / gap(i); };
+  if (n == 2) return {slope(0), slope(0)};
+  std::vector<double> s(n, 0.0);
+  for (std::size_t i = 1; i + 1 < n; ++i) {
+    const double before = slope(i - 1), after = slope(i);
+    if (sign_of(before) * sign_of(after) <= 0) continue;
+    const double w = 2 * gap(i) + gap(i - 1), v = gap(i) + 2 * gap(i - 1);
+    s[i] = (w + v) / (w / before + v / after);
+  }
+  s.front() = end_slope(gap(0), gap(1), slope(0), slope(1));
+  s.back() = end_slope(gap(n - 2), gap(n - 3), slope(n - 2), slope(n - 3));
+  return s;
+}
+
+}  // namespace
+
+/// Cubics of given slopes, and straight lines outside.
+void CubicSpline::go_through(const std::vector<double>& x, const std::vector<double>& y,
+                             const std::vector<double>& s) {
+  const std::size_t n = x.size();
+  knots_ = x;
+  segments_.resize(n + 1);
+  for (std::size_t i = 0; i + 1 < n; ++i) {
+    const double h = x[i + 1] - x[i], slope = (y[i + 1] - y[i]) / h;
+    segments_[i + 1] = {x[i],
+                        {y[i], s[i], (3 * slope - 2 * s[i] - s[i + 1]) / h,
+                         (s[i] + s[i + 1] - 2 * slope) / (h * h)}};
+  }
+  segments_.front() = {x.front(), {y.front(), s.front(), 0, 0}};
+  segments_.back() = {x.back(), {y.back(), s.back(), 0, 0}};
+}
+
+CubicSpline::CubicSpline(const std::vector<double>& x, const std::vector<double>& y,
+                         Interpolation between)
+    : between_(between) {
+  const std::size_t n = x.size();
+  if (between == Interpolation::monotone) {
+    go_through(x, y, monotone_slopes(x, y));
+    return;
+  }
+  const auto gap = [&](std::size_t i) { return x[i + 1] - x[i]; };
+  const auto slope = [&](std::size_t i) { return (y[i + 1] - y[i]) / gap(i); };
+  if (between == Interpolation::linear) {
+    knots_ = x;
+    segments_.resize(n + 1);
+    for (std::size_t i = 0; i + 1 < n; ++i) segments_[i + 1] = {x[i], {y[i], slope(i), 0, 0}};
+    segments_.front() = segments_[1];
+    segments_.back() = {x.back(), {y.back(), slope(n - 2), 0, 0}};
+    return;
+  }
 
   // the tridiagonal system of the inner second derivatives, eliminated forwards: mᵢ = right[i] −
   // upper[i] mᵢ₊₁. It is diagonally dominant, so no pivoting is needed.

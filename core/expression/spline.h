@@ -6,6 +6,13 @@
 //
 // Continuity of f': hᵢ₋₁ mᵢ₋₁ + 2 (hᵢ₋₁ + hᵢ) mᵢ + hᵢ mᵢ₊₁ = 6 (Δyᵢ/hᵢ − Δyᵢ₋₁/hᵢ₋₁).
 //
+// Others are cubics through given slopes sᵢ,
+//
+//   f = yᵢ + sᵢ z + (3Δ − 2sᵢ − sᵢ₊₁)/h z² + (sᵢ + sᵢ₊₁ − 2Δ)/h² z³,  Δ = (yᵢ₊₁ − yᵢ)/h
+//
+// Monotone: sᵢ is the weighted harmonic mean of both Δ, zero where they differ in sign (F. N.
+// Fritsch, J. Butland, SIAM J. Sci. Stat. Comput. 5 (1984) 300-304). Linear: straight gaps.
+//
 // Natural: m = 0 at both ends. Outside, the straight line of the end slope: f" is continuous there
 // too. Periodic: a last gap leads back to y₀ at x₀ + period, and the indices go round. Within a gap
 // the derivatives are exact; a dual number takes the gap of its value.
@@ -33,6 +40,13 @@ void horner(const double* c, std::size_t count, const S& x, S& p, S& pdot, S& pd
   pddot = half + half;
 }
 
+/// How a function goes between its points.
+enum class Interpolation {
+  cubic,     ///< f" is continuous
+  monotone,  ///< f' is, and f rises or falls where the points do
+  linear     ///< f is
+};
+
 /// Why points are none of a spline, in words with the names of both lists; empty where they are.
 std::string spline_fault(const std::vector<double>& x, const std::vector<double>& y,
                          const std::string& x_name, const std::string& y_name);
@@ -40,10 +54,13 @@ std::string spline_fault(const std::vector<double>& x, const std::vector<double>
 class CubicSpline {
  public:
   CubicSpline() = default;
-  /// Natural. @pre spline_fault() is empty. O(points)
-  CubicSpline(const std::vector<double>& x, const std::vector<double>& y);
+  /// Natural, or by another interpolation. @pre spline_fault() is empty. O(points)
+  CubicSpline(const std::vector<double>& x, const std::vector<double>& y,
+              Interpolation between = Interpolation::cubic);
   /// Periodic. @pre the same, three points at least, x[0] + period beyond the last. O(points)
   CubicSpline(const std::vector<double>& x, const std::vector<double>& y, double period);
+
+  Interpolation between() const { return between_; }
 
   /// f, f' and f" of a natural one. O(log points)
   template <class S>
@@ -91,6 +108,10 @@ class CubicSpline {
     return segments_[low];
   }
 
+  void go_through(const std::vector<double>& x, const std::vector<double>& y,
+                  const std::vector<double>& slopes);
+
+  Interpolation between_ = Interpolation::cubic;
   double period_ = 0;  ///< 0: natural
   std::vector<double> knots_;
   std::vector<Segment>

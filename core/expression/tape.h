@@ -8,9 +8,6 @@
 
 namespace momenta::formula {
 
-using Operation = Expression::Operation;
-using Instruction = Expression::Instruction;
-
 /// How many instructions before it an instruction takes.
 int operands_of(Operation operation);
 

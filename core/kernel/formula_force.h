@@ -5,10 +5,11 @@
 //   V(x):  −∂V/∂s along s for every s of x,  V̇ = Σ ∂V/∂s ṡ + ∂V/∂t
 //
 // The derivatives are tapes of their own (core/expression/gradient.cpp), so that forces have exact
-// derivatives again. Like motion laws, formulas are computed out of line for the numbers of a
-// level: packs lane by lane, directions from one state as eight derivatives of one evaluation.
+// derivatives again. Like motion laws, formulas are computed out of line for single numbers of a
+// level; directions from one state as eight derivatives of one evaluation.
 
 #include <momenta/core/expression/evaluate.h>
+#include <momenta/core/expression/run_steps.h>
 #include <momenta/core/kernel/signals.h>
 
 namespace momenta {
@@ -29,15 +30,17 @@ void formula_in_dual8(const Expression& formula, const double* x, int count, dou
 double* formula_room(std::size_t size);
 
 template <int W, int L>
-void formula_values(const Expression& formula, const Pack<W, L>* x, int count, Pack<W, L>*,
+void formula_values(const Expression& formula, const Pack<W, L>* x, int count, Pack<W, L>* line,
                     Pack<W, L>* values) {
-  const auto n = static_cast<std::size_t>(count);
-  const std::size_t outputs = formula.outputs().size();
-  double* const room = formula_room(n + outputs);
-  for (int lane = 0; lane < W; ++lane) {
-    for (std::size_t i = 0; i < n; ++i) room[i] = x[i].lane(lane);
+  if constexpr (W > 1) {
+    formula::run_steps(formula.steps(), x, line, values);
+  } else {
+    const auto n = static_cast<std::size_t>(count);
+    const std::size_t outputs = formula.outputs().size();
+    double* const room = formula_room(n + outputs);
+    for (std::size_t i = 0; i < n; ++i) room[i] = x[i].v;
     formula_in_doubles(formula, room, room + n);
-    for (std::size_t i = 0; i < outputs; ++i) values[i].set_lane(lane, room[n + i]);
+    for (std::size_t i = 0; i < outputs; ++i) values[i] = Pack<W, L>(room[n + i]);
   }
 }
 template <int W, int L>

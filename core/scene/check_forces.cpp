@@ -80,6 +80,8 @@ void check_functions(const Scene& scene) {
     require(is_plain_name(f.name) && !is_reserved_name(f.name), scene, f.at, who,
             "the name is none that formulas can call, expected letters, digits and _, a letter "
             "first, and no function of theirs");
+    require(std::find(function_kinds.begin(), function_kinds.end(), f.kind) != function_kinds.end(),
+            scene, f.at, who, "kind must be cubic, monotone or linear");
     const std::string fault = spline_fault(f.x, f.y, "x", "y");
     require(fault.empty(), scene, f.at, who, fault.c_str());
   }

@@ -1,13 +1,40 @@
 #include <momenta/core/scalar/all_finite.h>
 #include <momenta/core/scene/drive.h>
+#include <momenta/core/scene/formula.h>
 #include <momenta/core/text/near_name.h>
 
-#include <array>
+#include <optional>
 
 namespace momenta {
 namespace {
 
-const std::array<std::string, 1> of_time{"t"};
+/// t, and the functions that the drive brings.
+class OfTime final : public FormulaNames {
+ public:
+  explicit OfTime(const DriveSpec& drive) : drive_(drive) {}
+  std::optional<Meaning> meaning(std::string_view name, std::size_t) override {
+    return name == "t" ? std::optional(Meaning{0, 0}) : std::nullopt;
+  }
+  std::shared_ptr<const CubicSpline> function(std::string_view name) override {
+    for (const FunctionSpec& f : drive_.functions)
+      if (f.name == name && spline_fault(f.x, f.y, "x", "y").empty()) return curve_of(f);
+    return nullptr;
+  }
+  std::vector<std::string_view> functions() const override {
+    std::vector<std::string_view> all;
+    for (const FunctionSpec& f : drive_.functions) all.push_back(f.name);
+    return all;
+  }
+  std::string expected(std::string_view) const override { return ", expected t or pi"; }
+
+ private:
+  const DriveSpec& drive_;
+};
+
+Expression law_of(const DriveSpec& drive) {
+  OfTime names(drive);
+  return Expression(drive.law, names);
+}
 
 }  // namespace
 
@@ -29,7 +56,7 @@ std::string law_fault(const DriveSpec& spec) {
   }
   if (spec.kind == "table") return spline_fault(spec.times, spec.values, "times", "values");
   if (spec.kind == "formula") try {
-      if (!Expression(spec.law, of_time).is_truth()) return "";
+      if (!law_of(spec).is_truth()) return "";
       return "law, " + reading::in_quotes(spec.law) +
              ", is a comparison, expected a formula of a number";
     } catch (const ExpressionError& e) {
@@ -39,8 +66,7 @@ std::string law_fault(const DriveSpec& spec) {
 }
 
 std::string law_corner(const DriveSpec& spec) {
-  return spec.kind == "formula" ? std::string(Expression(spec.law, of_time).corner())
-                                : std::string();
+  return spec.kind == "formula" ? std::string(law_of(spec).corner()) : std::string();
 }
 
 MotionLaw::MotionLaw(const DriveSpec& spec)
@@ -65,7 +91,7 @@ MotionLaw::MotionLaw(const DriveSpec& spec)
   }
   if (spec.kind == "formula") {
     kind_ = Kind::formula;
-    formula_ = Expression(spec.law, of_time).with_two_derivatives(0);
+    formula_ = law_of(spec).with_two_derivatives(0);
   }
 }
 

@@ -50,6 +50,13 @@ bool is_coordinate(std::string_view component) {
 
 }  // namespace
 
+std::shared_ptr<const CubicSpline> curve_of(const FunctionSpec& function) {
+  const Interpolation between = function.kind == "linear"     ? Interpolation::linear
+                                : function.kind == "monotone" ? Interpolation::monotone
+                                                              : Interpolation::cubic;
+  return std::make_shared<const CubicSpline>(function.x, function.y, between);
+}
+
 FormulaReader::FormulaReader(const Scene& scene) : scene_(scene) {
   const auto take = [](const auto& all, Places& places) {
     for (std::size_t i = 0; i < all.size(); ++i)
@@ -59,9 +66,9 @@ FormulaReader::FormulaReader(const Scene& scene) : scene_(scene) {
   take(scene.markers, markers_);
   take(scene.forces, forces_);
   take(scene.parameters, parameters_);
+  take(scene.functions, functions_);
   for (const FunctionSpec& f : scene.functions)
-    if (spline_fault(f.x, f.y, "x", "y").empty())
-      functions_.emplace(f.name, std::make_shared<const CubicSpline>(f.x, f.y));
+    curves_.push_back(spline_fault(f.x, f.y, "x", "y").empty() ? curve_of(f) : nullptr);
 }
 
 /// What the names of one formula mean.
@@ -96,13 +103,14 @@ class FormulaReader::Names final : public FormulaNames {
   }
 
   std::shared_ptr<const CubicSpline> function(std::string_view name) override {
-    const auto found = r_.functions_.find(name);
-    return of_time_alone_ || found == r_.functions_.end() ? nullptr : found->second;
+    const int* found = find(r_.functions_, name);
+    if (!found) return nullptr;
+    functions_called.push_back(*found);
+    return r_.curves_[static_cast<std::size_t>(*found)];
   }
   std::vector<std::string_view> functions() const override {
     std::vector<std::string_view> all;
-    if (!of_time_alone_)
-      for (const FunctionSpec& f : r_.scene_.functions) all.push_back(f.name);
+    for (const FunctionSpec& f : r_.scene_.functions) all.push_back(f.name);
     return all;
   }
   std::string expected(std::string_view name) const override {
@@ -132,7 +140,7 @@ class FormulaReader::Names final : public FormulaNames {
   }
 
   std::vector<Signal> signals;
-  std::vector<int> parameters;
+  std::vector<int> parameters, functions_called;
   struct Replaced {
     std::size_t place, size;
     double value;
@@ -252,7 +260,7 @@ Formula FormulaReader::read(std::string_view text, Names& names) const {
   }
   with_numbers += text.substr(from);
   return {std::move(expression), std::move(names.signals), std::move(names.parameters),
-          std::move(with_numbers)};
+          std::move(names.functions_called), std::move(with_numbers)};
 }
 
 std::vector<OwnName> FormulaReader::own_names(const ForceSpec& force) const {

@@ -8,7 +8,7 @@
 //   C.l  C.rate                      the sum l of coordinate spring C and its rate
 //
 // A name with other characters than letters, digits and _ stands in single quotes: 'left-knee'.q.
-// [[function]] gives splines names: f(J.q).
+// [[function]] gives functions by points names: f(J.q).
 //
 // Joints are those whose coordinates are angles and displacements by themselves, driven or not.
 // Scenes keep formulas as text, so that they hold wherever joints stand in other order; numbers
@@ -53,6 +53,7 @@ struct Formula {
   Expression expression;
   std::vector<Signal> signals;  ///< of which its variables are
   std::vector<int> parameters;  ///< of the scene, those it takes
+  std::vector<int> functions;   ///< and those it calls
   std::string text;             ///< as written, numbers in place of parameters
 };
 
@@ -64,7 +65,7 @@ class FormulaReader {
 
   /// @throws ExpressionError: a formula that is none, a name that is unknown or has two meanings
   Formula read(std::string_view text, std::span<const OwnName> own = {}) const;
-  /// One that may name t and parameters alone. @throws ExpressionError
+  /// One that may name t, parameters and functions alone. @throws ExpressionError
   Formula read_of_time(std::string_view text) const;
   /// The names a force's formulas have for themselves: q and u of a torque's joint, length and rate
   /// of a spring-damper, l and rate of a coordinate spring.
@@ -75,9 +76,12 @@ class FormulaReader {
   Formula read(std::string_view text, Names& names) const;
   using Places = std::unordered_map<std::string_view, int>;
   const Scene& scene_;
-  Places joints_, markers_, forces_, parameters_;
-  std::unordered_map<std::string_view, std::shared_ptr<const CubicSpline>> functions_;
+  Places joints_, markers_, forces_, parameters_, functions_;
+  std::vector<std::shared_ptr<const CubicSpline>> curves_;  ///< null: its points are none
 };
+
+/// The curve of a function. @pre spline_fault() of its points is empty
+std::shared_ptr<const CubicSpline> curve_of(const FunctionSpec& function);
 
 /// The signal as formulas name it.
 std::string in_words(const Scene& scene, const Signal& signal);

@@ -263,6 +263,15 @@ constexpr int driven_coordinates_of(LoopKind kind) {
   return 0;
 }
 
+/// A function of one number by points, which formulas call by its name.
+struct FunctionSpec {
+  std::string name;  ///< letters, digits and _, a letter first; none of those formulas have
+  std::string kind = "cubic";  ///< cubic monotone linear: between the points; straight outside
+  std::vector<double> x;       ///< increasing, at least two
+  std::vector<double> y;       ///< one for each x
+  Location at;                 ///< where the file has it
+};
+
 /// A drive: one number of a joint or of a loop as a function of time.
 ///
 /// A drive of a joint prescribes a coordinate, counted from 0 as in the joint's q. In cylindrical,
@@ -287,19 +296,20 @@ struct DriveSpec {
   int coordinate = 0;  ///< which of that joint or loop, from 0
   std::string origin;  ///< loops: "x", "y" or "z" of origin_parent instead of a coordinate
   std::string kind;    ///< polynomial harmonic step table formula
-  std::vector<double> coefficients;  ///< polynomial: [rad or m, by s to the power]
-  double offset = 0;                 ///< harmonic [rad or m]
-  double amplitude = 0;              ///< harmonic [rad or m]
-  double frequency = 0;              ///< harmonic: ω [rad/s]
-  double phase = 0;                  ///< harmonic: φ [rad]
-  double from = 0;                   ///< step [rad or m]
-  double to = 0;                     ///< step [rad or m]
-  double start = 0;                  ///< step [s]
-  double duration = 0;               ///< step [s]
-  std::vector<double> times;         ///< table: ascending [s]
-  std::vector<double> values;        ///< table: one for each time [rad or m]
-  std::string law;                   ///< formula, of t [rad or m]
-  Location at;                       ///< where the file has it
+  std::vector<double> coefficients;     ///< polynomial: [rad or m, by s to the power]
+  double offset = 0;                    ///< harmonic [rad or m]
+  double amplitude = 0;                 ///< harmonic [rad or m]
+  double frequency = 0;                 ///< harmonic: ω [rad/s]
+  double phase = 0;                     ///< harmonic: φ [rad]
+  double from = 0;                      ///< step [rad or m]
+  double to = 0;                        ///< step [rad or m]
+  double start = 0;                     ///< step [s]
+  double duration = 0;                  ///< step [s]
+  std::vector<double> times;            ///< table: ascending [s]
+  std::vector<double> values;           ///< table: one for each time [rad or m]
+  std::string law;                      ///< formula, of t [rad or m]
+  std::vector<FunctionSpec> functions;  ///< formula: those of the scene that it calls
+  Location at;                          ///< where the file has it
 };
 
 /// A force on the mechanism; the name is optional.
@@ -362,15 +372,6 @@ struct ParameterSpec {
   std::string name;   ///< as formulas have it
   double value = 0;   ///< in the units of what is made of it
   bool used = false;  ///< whether a formula of the scene takes it
-};
-
-/// A function of one number that formulas of forces call by its name: the natural cubic spline
-/// through points, straight outside (core/expression/spline.h).
-struct FunctionSpec {
-  std::string name;       ///< letters, digits and _, a letter first; none of those formulas have
-  std::vector<double> x;  ///< increasing, at least two
-  std::vector<double> y;  ///< one for each x
-  Location at;            ///< where the file has it
 };
 
 /// The defaults of a run, for options that the command line does not give; also for `momenta

@@ -179,9 +179,7 @@ class Assembler {
     if (mechanism_.has_forces_apart()) {
       e().move(s.u.data());
       if (const std::string formula = e().formula_without_value(); !formula.empty())
-        throw SceneError(formula +
-                         ", or a derivative of it, is not finite at the start; expected "
-                         "a start where it has a value");
+        throw SceneError(formula);
     }
     if (mechanism_.m() == 0) {
       Eigen::VectorXd diagonal(mechanism_.nv());

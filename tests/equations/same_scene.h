@@ -147,6 +147,7 @@ inline std::string difference(const Scene& a, const Scene& b) {
   });
   each(a.functions, b.functions, "function",
        [&](const FunctionSpec& x, const FunctionSpec& y, const auto& what) {
+         note(x.kind == y.kind, what + " kind");
          numbers(x.x, y.x, what + " x");
          numbers(x.y, y.y, what + " y");
        });

@@ -214,7 +214,7 @@ TEST(Equations, OfTheExamplesHaveTheirIndices) {
         Expected{"suites/ivp/slider_crank.toml", 2, 2}, Expected{"suites/ivp/pendulum.toml", 3, 3},
         Expected{"suites/ivp/car_axis.toml", 3, 3},
         Expected{"suites/ivp/charge_pump.toml", 2, 2, false},
-        Expected{"suites/structure/pairs.toml", 1, 3},
+        Expected{"suites/ivp/fekete.toml", 2, 2}, Expected{"suites/structure/pairs.toml", 1, 3},
         Expected{"suites/structure/turned_pendulum.toml", 3, 1, false}}) {
     SCOPED_TRACE(e.file);
     const EquationStart found = equation_start(read_equations(example(e.file)));
@@ -413,12 +413,35 @@ TEST(EquationReferences, AreThePublishedEnds) {
       {"car_axis.toml",
        5e-12,
        {0.4934557842755629e-1, 0.4969894602303324, 0.1041742524885400e1, 0.3739110272652214,
-        -0.7705836840321485e-1, 0.7446866596327776e-2, 0.1755681574942899e-1, 0.7703410437794031}}};
+        -0.7705836840321485e-1, 0.7446866596327776e-2, 0.1755681574942899e-1, 0.7703410437794031}},
+      {"fekete.toml",
+       3e-12,
+       {-0.4070263380333202, 0.3463758772791802, 0.8451942450030429, 0.7752934752521549e-1,
+        -0.2628662719972299, 0.9617122871829146, 0.7100577833343567, 0.1212948055586120,
+        0.6936177005172217, 0.2348267744557627, 0.7449277976923311, 0.6244509285956391}}};
   for (const Published& p : all) {
     const EquationFile file = read_equations(example(std::string("suites/ivp/") + p.file));
     for (std::size_t j = 0; j < p.values.size(); ++j)
       EXPECT_NEAR(file.reference->values[j], p.values[j], p.error)
           << p.file << " " << file.variables[j];
+  }
+}
+
+/// Fekete's points rest in the end: on the sphere, and what the others push each with is radial.
+TEST(EquationReferences, FeketePointsRest) {
+  const EquationFile file = read_equations(example("suites/ivp/fekete.toml"));
+  const std::vector<double>& at = file.reference->values;
+  const auto point = [&](std::size_t i) {
+    return Eigen::Vector3d(at[3 * i], at[3 * i + 1], at[3 * i + 2]);
+  };
+  for (std::size_t i = 0; i < 20; ++i) {
+    Eigen::Vector3d push = Eigen::Vector3d::Zero();
+    for (std::size_t j = 0; j < 20; ++j)
+      if (j != i) push += (point(i) - point(j)) / (point(i) - point(j)).squaredNorm();
+    EXPECT_NEAR(point(i).norm(), 1, 4e-16);
+    EXPECT_LT(push.cross(point(i)).norm(), 3e-14) << i;
+    // Σ over pairs: each of the others has its half in the radial part
+    EXPECT_NEAR(push.dot(point(i)), 9.5, 3e-14);
   }
 }
 

@@ -38,6 +38,7 @@ class Fields {
   bool has(std::string_view key) const { return find(key) != nullptr; }
   const Value* find(std::string_view key) const;
   Location at() const { return value_.at; }
+  const std::string& file() const { return file_; }
 
   // Without `otherwise` the key must be there.
   double number(std::string_view key, Quantity quantity) const;

@@ -2,6 +2,7 @@
 
 #include <momenta/core/scene/drive.h>
 #include <momenta/core/scene/formula.h>
+#include <momenta/core/scene/kinds.h>
 #include <momenta/core/scene/toml/read_tables.h>
 #include <momenta/core/text/near_name.h>
 
@@ -42,10 +43,15 @@ bool takes_time(const Formula& formula) {
 }  // namespace
 
 FunctionSpec read_function(const Fields& table) {
-  table.allow({"name", "x", "y"});
+  table.allow({"name", "kind", "file", "x", "y"});
   FunctionSpec function;
   function.at = table.at();
   function.name = table.text("name");
+  if (table.has("kind")) function.kind = function_kinds[read_kind(table, function_kinds)];
+  if (table.has("file")) {
+    read_columns(table, function);
+    return function;
+  }
   function.x = table.numbers("x", {});
   function.y = table.numbers("y", {});
   if (const std::string fault = spline_fault(function.x, function.y, "x", "y"); !fault.empty())
@@ -91,6 +97,8 @@ void read_formulas(const Fields& root, Scene& scene) {
     const Formula formula = read_at(table, "law", drive.law, scene,
                                     [&](const auto& t) { return reader.read_of_time(t); });
     drive.law = formula.text;
+    for (const int f : formula.functions)
+      drive.functions.push_back(scene.functions[static_cast<std::size_t>(f)]);
     if (const std::string fault = law_fault(drive); !fault.empty())
       table.fail_at(value_at(table, "law").at, fault);
     if (const std::string corner = law_corner(drive); !corner.empty())
@@ -99,7 +107,8 @@ void read_formulas(const Fields& root, Scene& scene) {
                                                    : "joint " + in_quotes(drive.joint)) +
                               ": " + in_quotes(corner) +
                               " in its law may have corners or jumps, "
-                              "where no acceleration exists; expected a smooth law");
+                              "where no acceleration exists; expected a smooth law, and functions "
+                              "by points of kind cubic");
   }
 }
 

@@ -23,6 +23,8 @@ void read_rolling(const Fields& table, LoopSpec& loop);
 DriveSpec read_drive(const Fields& table);
 ForceSpec read_force(const Fields& table);
 FunctionSpec read_function(const Fields& table);
+/// Of a function given by `file`: its points from the columns `x` and `y` of that file.
+void read_columns(const Fields& table, FunctionSpec& function);
 MarkerSpec read_marker(const Fields& table);
 VisualSpec read_visual(const Fields& table);
 RunDefaults read_run(const Fields& table);

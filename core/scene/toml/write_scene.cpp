@@ -383,6 +383,7 @@ std::string scene_text(const Scene& scene) {
   for (const FunctionSpec& function : scene.functions) {
     t.open("[[function]]");
     t.word("name", function.name);
+    if (function.kind != "cubic") t.word("kind", function.kind);
     t.numbers("x", function.x);
     t.numbers("y", function.y);
   }
