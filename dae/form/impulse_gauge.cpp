@@ -57,7 +57,6 @@ void ImpulseGauge::measure_at(double t, const double* y, const double* ydot, dou
   Measure& w = measure();
   w.t = t;
   std::copy_n(y, w.q.size(), w.q.data());
-  w.e->place(t, y);
   w.e->joint_rates(y, ydot, w.u.data());
   const auto weight = [&](double x) { return 1 / (atol + rtol * std::abs(x)); };
   std::transform(w.q.begin(), w.q.end(), w.coordinate_weight.begin(), weight);

@@ -70,6 +70,7 @@ class BdfStep {
 
   Outcome correct(double t1, double c);
   double norm(const double* e);
+  double by_component(const double* e) const;
   void weigh(double t);
 
   DaeSystem& system_;

@@ -44,28 +44,30 @@ void PastValues::reset() {
   shift(c_.data());
 }
 
+/// ω = y_0 + Σ_{k>0} ℓ_k (y_k − y_0), ℓ_k Lagrange's polynomials, whose sum is one: roundings are
+/// those of the differences.
 void PastValues::interpolate(double t, int degree, double* y, double* ydot) const {
-  std::array<double, most> apart{};  // t − t_k
-  for (int k = 0; k <= degree; ++k) apart[static_cast<std::size_t>(k)] = t - time(k);
-  std::array<const double*, most> from{};
-  for (int k = 0; k <= degree; ++k) from[static_cast<std::size_t>(k)] = value(k);
-  const auto last = static_cast<std::size_t>(degree);
-  std::array<std::array<double, most>, most> over{};  // 1/(t_k − t_{k+j})
-  for (std::size_t j = 1; j <= last; ++j)
-    for (std::size_t k = 0; k + j <= last; ++k) over[j][k] = 1 / (apart[k + j] - apart[k]);
-  for (std::size_t i = 0; i < size_; ++i) {
-    std::array<double, most> d;
-    for (std::size_t k = 0; k <= last; ++k) d[k] = from[k][i];
-    for (std::size_t j = 1; j <= last; ++j)
-      for (std::size_t k = last; k >= j; --k) d[k] = (d[k - 1] - d[k]) * over[j][k - j];
-    // d[j] is the difference of order j at the newest; Horner's rule, and its derivative.
-    double sum = d[last], slope = 0;
-    for (std::size_t j = last; j-- > 0;) {
-      slope = slope * apart[j] + sum;
-      sum = sum * apart[j] + d[j];
+  const double* newest = value(0);
+  std::copy_n(newest, size_, y);
+  if (ydot != nullptr) std::fill_n(ydot, size_, 0.0);
+  for (int k = 1; k <= degree; ++k) {
+    double part = 1, slope = 0;  // ℓ_k(t), ℓ_k'(t)
+    for (int j = 0; j <= degree; ++j) {
+      if (j == k) continue;
+      const double over = 1 / (time(k) - time(j)), factor = (t - time(j)) * over;
+      slope = slope * factor + part * over;
+      part *= factor;
     }
-    y[i] = sum;
-    if (ydot != nullptr) ydot[i] = slope;
+    const double* from = value(k);
+    if (ydot == nullptr) {
+      for (std::size_t i = 0; i < size_; ++i) y[i] += part * (from[i] - newest[i]);
+      continue;
+    }
+    for (std::size_t i = 0; i < size_; ++i) {
+      const double apart = from[i] - newest[i];
+      y[i] += part * apart;
+      ydot[i] += slope * apart;
+    }
   }
 }
 

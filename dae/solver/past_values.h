@@ -1,8 +1,6 @@
 #pragma once
 // What a multistep method remembers: the last values y_{n−1}, y_{n−2}, … with their times, and the
-// polynomials through them in Newton's form,
-//
-//   ω(t) = Σ_j y[t_{n−1}, …, t_{n−1−j}] (t − t_{n−1}) … (t − t_{n−j}).
+// polynomials ω through them in Lagrange's form.
 //
 // Values and not differences, so that the gauge of σ can be changed for all of them at once:
 // (p_k, σ_k) → (p_k + Φ_q(q_k)ᵀc, σ_k + c) (gauge_symmetry.h). Entries of Φ_q(q_k) are kept beside
