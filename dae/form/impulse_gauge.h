@@ -23,8 +23,7 @@ class ImpulseGauge : public GaugeSymmetry {
   void gauge_directions(double t, const double* y, double* entries) override;
   void shift(const double* entries, const double* c, double* y) const override;
   void reset(double t, double* y, double* ydot) override;
-  void measure_at(double t, const double* y, const double* ydot, double rtol,
-                  double atol) override;
+  void measure_at(double t, const double* y, const double* ydot, double rtol, double atol) override;
   double coordinate_squares(const double* e) override;
   double motion_squares(const double* e) override;
 

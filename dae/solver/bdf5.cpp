@@ -3,9 +3,10 @@
 //
 // Order and step from E_j = ‖h^(j+1) y^(j+1)‖ over the tolerance, j = k − 2 … k + 1, as DASSL has
 // it: the order falls to k − 1 where E_{k−1} and E_{k−2} are no more than E_k; after k + 1 equal
-// steps it rises where E_{k+1} < E_k < E_{k−1}. The next step is h (2 E_j/(j + 1) + 10⁻⁴)^(−1/(j+1)),
-// taken if it is less, or more by a share that pays for a new matrix. At the start order and step
-// rise with each step until the error says otherwise. Multipliers are in no norm.
+// steps it rises where E_{k+1} < E_k < E_{k−1}. The next step is h (2 E_j/(j + 1) +
+// 10⁻⁴)^(−1/(j+1)), taken if it is less, or more by a share that pays for a new matrix. At the
+// start order and step rise with each step until the error says otherwise. Multipliers are in no
+// norm.
 //
 // Dense output: the polynomial through the newest values. Past singular poses: ode_restart.h.
 // Source: Brenan, Campbell, Petzold, Numerical Solution of Initial-Value Problems in
@@ -69,8 +70,8 @@ class Bdf5 {
     while (true) {
       const double t1 = t + 1.0001 * h_ >= end ? end : t + h_;
       if (t1 < end && h_ < 4 * epsilon * std::max(std::abs(t), 1e-9 * span_)) {
-        cause = "the step became as short as the rounding of t" +
-                (cause_.empty() ? "" : ": " + cause_);
+        cause =
+            "the step became as short as the rounding of t" + (cause_.empty() ? "" : ": " + cause_);
         return false;
       }
       h_ = t1 - t;
@@ -187,8 +188,8 @@ class Bdf5 {
       return;
     }
     // The order above needs one more value than this step's.
-    const bool can_rise = next == k && k < highest_ && steps_since_change_ > k + 1 &&
-                          step_->past().count() > k + 1;
+    const bool can_rise =
+        next == k && k < highest_ && steps_since_change_ > k + 1 && step_->past().count() > k + 1;
     if (can_rise) {
       const double here = step_->term(k), above = step_->term(k + 1);
       if (k == 1) {

@@ -6,7 +6,8 @@
 //   y' = ω^P'(t_n) + (α/h) (y_n − ω^P(t_n)),   α = 1 + 1/2 + … + 1/k,   h = t_n − t_{n−1},
 //
 // so that Newton's matrix ∂F/∂y + (α/h) ∂F/∂y' depends on the present step alone. With
-// a_i = h/(t_n − t_{n−i}) the local error is C (y_n − ω^P(t_n)), C = max(a_{k+1}, |a_{k+1} − α + Σ_{i ≤ k} a_i|).
+// a_i = h/(t_n − t_{n−i}) the local error is C (y_n − ω^P(t_n)), C = max(a_{k+1}, |a_{k+1} − α +
+// Σ_{i ≤ k} a_i|).
 //
 // Where F has a gauge (gauge_symmetry.h), all norms are of what moves, and gauge reset shifts the
 // past before each step so that the newest σ is zero: the step is then the same, but for rounding,
@@ -82,7 +83,7 @@ class BdfStep {
   std::vector<double> y_, ydot_, predicted_, change_, delta_, weight_, begin_ydot_;
   double t1_ = 0, h_ = 0, error_ = 0;
   std::array<double, highest_order + 2> terms_{};  ///< of the last attempt; −1: not yet known
-  double term_ratio_ = 0;  ///< of the norm of what moves to that of q alone, in the last attempt
+  double term_ratio_ = 0;   ///< of the norm of what moves to that of q alone, in the last attempt
   double made_for_ = 0;     ///< c of the matrix; 0: none
   double contraction_ = 0;  ///< of Newton's corrections with this matrix, as ρ/(1 − ρ)
   bool straight_ = false;   ///< the value one back stands for y' at the start

@@ -11,8 +11,8 @@ namespace momenta {
 IntegrationResult integrate_radau5(DaeSystem&, double t0, const std::vector<double>& output_times,
                                    const IntegrationOptions&, const Observer&);
 
-/// Backward differentiation formulas of orders 1 to 5 on past values, started as IDA is; takes gauge
-/// reset.
+/// Backward differentiation formulas of orders 1 to 5 on past values, started as IDA is; takes
+/// gauge reset.
 IntegrationResult integrate_bdf5(DaeSystem&, double t0, const std::vector<double>& output_times,
                                  const IntegrationOptions&, const Observer&);
 

@@ -8,7 +8,8 @@ PastValues::PastValues(int size, GaugeSymmetry* gauge)
     : size_(static_cast<std::size_t>(size)), gauge_(gauge) {
   for (Value& v : values_) {
     v.y.resize(size_);
-    if (gauge_ != nullptr) v.directions.resize(static_cast<std::size_t>(gauge_->direction_entries()));
+    if (gauge_ != nullptr)
+      v.directions.resize(static_cast<std::size_t>(gauge_->direction_entries()));
   }
   if (gauge_ != nullptr) c_.resize(static_cast<std::size_t>(gauge_->impulse_count()));
 }
