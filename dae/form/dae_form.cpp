@@ -25,9 +25,9 @@ DaeForm::DaeForm(std::string name, const Mechanism& mechanism, DaeLayout layout,
   plain_.e->mass_diagonal(inertia_.data());
   if (momentum_like()) {
     gauge_ = options.gauge;
-    if (gauge_.kind == Gauge::Kind::reset || gauge_.kind == Gauge::Kind::flip)
-      throw std::invalid_argument("gauge " + gauge_.text() + " alters p after each step; '" +
-                                  name_ + "' is integrated as a DAE: expected none or leak");
+    if (gauge_.kind == Gauge::Kind::flip)
+      throw std::invalid_argument("gauge flip is for symmetric methods; '" + name_ +
+                                  "' is integrated as a DAE: expected none, leak or reset");
     if (gauge_.kind == Gauge::Kind::leak && gauge_.kappa == 0)
       gauge_.kappa = default_leak(mechanism, start);
   }

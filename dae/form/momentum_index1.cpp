@@ -10,15 +10,17 @@
 // Source        paper, eqs. (6)-(8)
 
 #include <momenta/dae/form/dae_form.h>
+#include <momenta/dae/form/impulse_gauge.h>
 
 namespace momenta {
 namespace {
 
-class MomentumIndex1 final : public DaeFormOf<MomentumIndex1> {
+class MomentumIndex1 final : public DaeFormOf<MomentumIndex1>, public ImpulseGauge {
  public:
   MomentumIndex1(const Mechanism& mechanism, const FormOptions& options, const Start& start)
       : DaeFormOf("momentum-index1", mechanism, {mechanism.nq(), mechanism.nv(), mechanism.m()},
                   options, start, Unknowns::impulses),
+        ImpulseGauge(mechanism, layout_, gauge()),
         beta_(mechanism.m() > 0 ? options.beta : 0) {}
 
   double beta() const override { return beta_; }

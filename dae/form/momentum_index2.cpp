@@ -12,6 +12,7 @@
 
 #include <momenta/dae/form/dae_form.h>
 #include <momenta/dae/form/half_explicit_parts.h>
+#include <momenta/dae/form/impulse_gauge.h>
 
 #include <algorithm>
 #include <cmath>
@@ -20,12 +21,15 @@
 namespace momenta {
 namespace {
 
-class MomentumIndex2 final : public DaeFormOf<MomentumIndex2>, public HalfExplicitParts {
+class MomentumIndex2 final : public DaeFormOf<MomentumIndex2>,
+                             public HalfExplicitParts,
+                             public ImpulseGauge {
  public:
   MomentumIndex2(const Mechanism& mechanism, const FormOptions& options, const Start& start)
       : DaeFormOf("momentum-index2", mechanism, {mechanism.nq(), mechanism.nv(), mechanism.m()},
                   options, start, Unknowns::impulses),
-        HalfExplicitParts(mechanism) {}
+        HalfExplicitParts(mechanism),
+        ImpulseGauge(mechanism, layout_, gauge()) {}
 
   template <class S>
   void rows(DaeScratch<S>& s, double t, const S* y, const S* ydot, S* r) {

@@ -10,16 +10,18 @@
 //               Math. 12 (1985)
 
 #include <momenta/dae/form/dae_form.h>
+#include <momenta/dae/form/impulse_gauge.h>
 
 namespace momenta {
 namespace {
 
-class MomentumStabilised final : public DaeFormOf<MomentumStabilised> {
+class MomentumStabilised final : public DaeFormOf<MomentumStabilised>, public ImpulseGauge {
  public:
   MomentumStabilised(const Mechanism& mechanism, const FormOptions& options, const Start& start)
       : DaeFormOf("momentum-stabilised", mechanism,
                   {mechanism.nq(), mechanism.nv(), mechanism.m(), true, true}, options, start,
-                  Unknowns::impulses) {}
+                  Unknowns::impulses),
+        ImpulseGauge(mechanism, layout_, gauge()) {}
 
   template <class S>
   void rows(DaeScratch<S>& s, double t, const S* y, const S* ydot, S* r) {

@@ -11,6 +11,11 @@ namespace momenta {
 IntegrationResult integrate_radau5(DaeSystem&, double t0, const std::vector<double>& output_times,
                                    const IntegrationOptions&, const Observer&);
 
+/// Backward differentiation formulas of orders 1 to 5 on past values, started as IDA is; takes
+/// gauge reset.
+IntegrationResult integrate_bdf5(DaeSystem&, double t0, const std::vector<double>& output_times,
+                                 const IntegrationOptions&, const Observer&);
+
 /// Gauss collocation with steps of options.step; `stages` 2 or 3 for orders 4 and 6.
 IntegrationResult integrate_gauss(int stages, OdeSystem&, double t0, const std::vector<double>& y0,
                                   const std::vector<double>& output_times,

@@ -38,6 +38,14 @@ const std::vector<Integrator>& integrators() {
       {"gauss6", Takes::ode, Step::fixed, false, true, "Gauss collocation, 3 stages, order 6", {}},
       {"rattle", Takes::ode, Step::fixed, false, false, "RATTLE, order 2", {"momentum"}},
       {"ida", Takes::dae, Step::adaptive, true, false, "IDA, BDF of orders 1 to 5", {}},
+      {"bdf5",
+       Takes::dae,
+       Step::adaptive,
+       true,
+       false,
+       "BDF of orders 1 to 5 on past values, whose gauge moves",
+       {},
+       true},
       {"radau5", Takes::dae, Step::adaptive, false, false, "Radau IIA, order 5", {}},
       {"generalised-alpha",
        Takes::dae,
@@ -120,6 +128,7 @@ IntegrationResult integrate(const std::string& name, DaeSystem& system, double t
                             const IntegrationOptions& options, const Observer& observer) {
   if (system.size() == 0) return pass_time(t0, output_times, observer);
   if (name == "ida") return integrate_ida(system, t0, output_times, options, observer);
+  if (name == "bdf5") return integrate_bdf5(system, t0, output_times, options, observer);
   if (name == "radau5") return integrate_radau5(system, t0, output_times, options, observer);
   if (name == "generalised-alpha")
     return integrate_generalised_alpha(system, t0, output_times, options, observer);

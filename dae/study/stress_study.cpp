@@ -86,7 +86,7 @@ Ground prepare(const Rung& rung, const std::string& name, const StressRequest& r
 }
 
 /// Each contestant as the theory of its form recommends: a one-step method resets the gauge and
-/// corrects positions, a multistep one leaks.
+/// corrects positions, a multistep one leaks, or shifts what it remembers.
 RunSettings settings_of(const Contestant& c, const Mechanism& mechanism, double rtol) {
   const RunDefaults& defaults = mechanism.scene().run;
   const bool dae = is_dae_form(c.form), loops = mechanism.m() > 0;
@@ -95,7 +95,8 @@ RunSettings settings_of(const Contestant& c, const Mechanism& mechanism, double 
   s.form = c.form;
   s.integrator = c.integrator;
   const std::string leak = defaults.leak ? Gauge{Gauge::Kind::leak, *defaults.leak}.text() : "leak";
-  if (takes_gauge(c.form) && loops) s.gauge = dae || method.multistep ? leak : "reset";
+  if (takes_gauge(c.form) && loops)
+    s.gauge = (dae || method.multistep) && !method.shifts ? leak : "reset";
   s.project = !dae && loops && method.projects && c.form == "momentum";
   s.rtol = s.atol = rtol;
   if (method.step == Integrator::Step::fixed)

@@ -22,7 +22,9 @@ RunSettings ladder(const Mechanism& mechanism, const WorkRequest& request, const
   // What the theory of each recommends: a one-step method may reset the gauge and correct
   // positions, which makes `projected` of `acceleration`; others have feedback instead.
   if (takes_gauge(form) && loops)
-    s.gauge = !request.gauge.empty() ? request.gauge : one_step ? "reset" : "leak";
+    s.gauge = !request.gauge.empty()                  ? request.gauge
+              : one_step || integrator(method).shifts ? "reset"
+                                                      : "leak";
   s.project = !dae && integrator(method).projects && loops &&
               (form == "momentum" || form == "acceleration");
   return s;

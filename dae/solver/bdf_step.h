@@ -1,0 +1,94 @@
+#pragma once
+// One step of the backward differentiation formula of order k = 1 … 5 on F(t, y, y') = 0, in its
+// form of fixed leading coefficient: ω^P, of degree k, goes through the k + 1 newest values; the
+// new y_n and ω^P at t_n − h, …, t_n − kh lie on a polynomial of degree k, whose rate at t_n is
+//
+//   y' = ω^P'(t_n) + (α/h) (y_n − ω^P(t_n)),   α = 1 + 1/2 + … + 1/k,   h = t_n − t_{n−1},
+//
+// so that Newton's matrix ∂F/∂y + (α/h) ∂F/∂y' depends on the present step alone. With
+// a_i = h/(t_n − t_{n−i}) the local error is C (y_n − ω^P(t_n)), C = max(a_{k+1}, |a_{k+1} − α +
+// Σ_{i ≤ k} a_i|).
+//
+// Where F has a gauge (gauge_symmetry.h), all norms are of what moves, and gauge reset shifts the
+// past before each step so that the newest σ is zero: the step is then the same, but for rounding,
+// whatever constant was added to σ before. Newton stops at a fraction of the tolerance, on the rate
+// at which its corrections shrink, or where they shrink no more and are within a tenth of the
+// tolerance: rounding.
+//
+// Source: Brenan, Campbell, Petzold, Numerical Solution of Initial-Value Problems in
+// Differential-Algebraic Equations, ch. 5.
+
+#include <momenta/dae/solver/dae_newton.h>
+#include <momenta/dae/solver/integration.h>
+#include <momenta/dae/solver/past_values.h>
+
+#include <array>
+#include <vector>
+
+namespace momenta {
+
+class BdfStep {
+ public:
+  static constexpr int highest_order = 5;
+  enum class Outcome { solved, not_converged, singular, not_evaluated, not_finite };
+
+  /// Of a system that has started.
+  BdfStep(DaeSystem& system, double rtol, double atol);
+
+  const char* linear_solver() const { return newton_.linear_solver(); }
+  /// Forgets the past; y and y' at t, put into gauge σ = 0 where the gauge is reset.
+  void begin(double t, double* y, double* ydot);
+  PastValues& past() { return past_; }
+  const PastValues& past() const { return past_; }
+
+  /// Solves for y at t1 > past().time(0), by `order` < past().count(), or 1 after begin().
+  /// Derivatives are made anew where `renew`, or those at hand are of too different a step.
+  Outcome attempt(double t1, int order, bool renew);
+  /// Whether the last attempt made its own derivatives.
+  bool derivatives_are_new() const { return renewed_; }
+  /// After an attempt: the local error over its tolerance.
+  double error() const { return error_; }
+  /// After an attempt: ‖h^(j+1) y^(j+1)‖ over the tolerance, from y[t_n, …, t_{n−j−1}]; j <
+  /// past().count().
+  double term(int j);
+  /// y_n and y'_n join the past.
+  void accept();
+
+  const std::vector<double>& y() const { return y_; }
+  const std::vector<double>& ydot() const { return ydot_; }
+  const Counters& counters() const { return counters_; }
+
+ private:
+  /// Newton stops at this fraction of the tolerance, as IDA does here (ida.cpp).
+  static constexpr double newton_fraction = 0.03;
+  static constexpr int most_corrections = 5;
+  /// Corrections that shrink by less have converged, at rounding, or never will.
+  static constexpr double slowest = 0.9, rounding = 0.1;
+  /// Of a matrix just made they shrink faster than of an old one.
+  static constexpr double fastest = 0.02;
+  /// A matrix serves as long as c has changed by no more than this.
+  static constexpr double most_change = 1.25;
+
+  Outcome correct(double t1, double c);
+  double norm(const double* e);
+  double by_component(const double* e) const;
+  void weigh(double t);
+
+  DaeSystem& system_;
+  GaugeSymmetry* gauge_;  ///< null: norms by component
+  DaeNewton newton_;
+  PastValues past_;
+  double rtol_, atol_;
+  std::size_t n_;
+  std::vector<double> y_, ydot_, predicted_, change_, delta_, weight_, begin_ydot_;
+  double t1_ = 0, h_ = 0, error_ = 0;
+  std::array<double, highest_order + 2> terms_{};  ///< of the last attempt; −1: not yet known
+  double term_ratio_ = 0;   ///< of the norm of what moves to that of q alone, in the last attempt
+  double made_for_ = 0;     ///< c of the matrix; 0: none
+  double contraction_ = 0;  ///< of Newton's corrections with this matrix, as ρ/(1 − ρ)
+  bool straight_ = false;   ///< the value one back stands for y' at the start
+  bool renewed_ = false;
+  Counters counters_;
+};
+
+}  // namespace momenta
