@@ -1,5 +1,5 @@
 #pragma once
-// The work, along a run, of the forces without potential: dampers, stops, moments, formulas; and of
+// The work, along a run, of what has no potential: dampers, stops, moments, formulas; drives; and
 // what changes potentials with time. The power is evaluated at the five Gauss points of each step,
 // and the polynomial through these values gives the work up to any time inside the step.
 
@@ -13,14 +13,13 @@
 
 namespace momenta {
 
-class DissipatedEnergy {
+class IntegratedWork {
  public:
-  explicit DissipatedEnergy(const Mechanism& mechanism)
-      : any_(mechanism.scene().lagrangian ? mechanism.lagrangian().has_power
-                                          : loses_energy(mechanism.scene())) {}
-
-  /// Whether there is anything to integrate.
-  bool any() const { return any_; }
+  /// Whether forces of the mechanism, its drives apart, have no potential.
+  static bool has_any(const Mechanism& mechanism) {
+    return mechanism.scene().lagrangian ? mechanism.lagrangian().has_power
+                                        : loses_energy(mechanism.scene());
+  }
 
   /// `power(t, watts)` at times inside the step that was just taken; false: no value, and the step
   /// counts as it was last known.
@@ -85,7 +84,6 @@ class DissipatedEnergy {
     return sum;
   }
 
-  bool any_;
   double work_ = 0;  ///< up to from_ [J]
   double from_ = 0, end_ = 0;
   std::array<double, 5> power_{};  ///< at the points of the last step [W]
