@@ -3,6 +3,7 @@
 // trajectory columns.
 
 #include <filesystem>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -43,7 +44,8 @@ class Reference {
   struct Error {
     double position = 0;  ///< max |value − ref| / (1 + |ref|) over columns in rad and m
     double velocity = 0;  ///< the same over columns in rad/s and m/s
-    double force = 0;     ///< the same over columns in N and N m
+    /// The same over columns in N and N m; not a number where none is unique.
+    double force = std::numeric_limits<double>::quiet_NaN();
   };
   /// The error of a trajectory row at the reference time of index `row`, without the columns that
   /// are not unique there (places in the trajectory, ascending). After bind().

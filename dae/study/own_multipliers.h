@@ -6,9 +6,9 @@
 //
 // from σ of (7) at the Chebyshev-Lobatto points of a step, x_k = (1 − cos(kπ/n))/2 with n = 6: the
 // derivative of the polynomial through them. Within a step a gauge by jumps (reset, flip) is at
-// rest, and κ = 0 there. Errors of σ enter divided by the step length h: rounding of σ, some ε|σ|
-// with |σ| about h|λ| with `reset`, up to |λ| t without a gauge, becomes noise of up to
-// 2n² ε|σ|/h, and an error of σ of order h^(p+1) one of order h^p.
+// rest, and κ = 0 there. Errors of σ enter divided by the step length h: rounding of σ, some ε|p|
+// whatever the gauge, since σ is what (7) leaves of p, becomes noise of up to
+// 2n² ε|p|/h, and an error of σ of order h^(p+1) one of order h^p.
 
 #include <momenta/dae/form/form.h>
 #include <momenta/dae/solver/integration.h>

@@ -163,8 +163,8 @@ class RunMonitor {
             return read_coordinates(t) ? middle_.data() : nullptr;
           },
           result_.passed_limits);
-    if (own_ && sample_within(t1)) own_->step(t0, t1, between, state_);
-    if ((works_ || drives_->any()) && !work_.step(t0, t1, [&](double t, double& watts) {
+    if (own_ && sample_before(t1 * (1 + 1e-12))) own_->step(t0, t1, between, state_);
+    if ((works_ || drives_->any()) && !work_.step(t0, t1, sample_before(t1 * (1 - 1e-12)), [&](double t, double& watts) {
           between(t, state_.data());
           if (!read(t, state_.data(), nullptr)) return false;
           watts = 0;
@@ -332,12 +332,12 @@ class RunMonitor {
     at->to = t;
   }
 
-  /// Whether an output time may lie in the step that ends at t1.
-  bool sample_within(double t1) {
+  /// Whether an output time that is still to come lies before t or at it.
+  bool sample_before(double t) {
     const std::vector<double>& times = *output_times_;
     const std::vector<double>& seen = result_.series.t;
     while (next_ < times.size() && !seen.empty() && times[next_] <= seen.back()) ++next_;
-    return next_ < times.size() && times[next_] <= t1 * (1 + 1e-12);
+    return next_ < times.size() && times[next_] <= t;
   }
 
   /// The form's own λ against that of (3), and, in its place, against the reference.

@@ -240,28 +240,27 @@ TEST(ForcesOfRuns, TheBalanceOfDrivesHasTheOrderOfTheMethod) {
 /// against the λ of a run.
 TEST(ForcesOfRuns, MultipliersConvergeToThoseOfQuadruplePrecision) {
   for (const std::string name : {"andrews/scene.toml", "four_bar/scene.toml",
-                                 "spatial_slider_crank/scene.toml", "bricard/scene.toml"}) {
+                                 "spatial_slider_crank/scene.toml"}) {
     const Mechanism mechanism(example(name));
     const Start start = assemble(mechanism).start;
-    const double end = name[0] == 'a' ? 0.01 : 0.5;
-    const OwnReference own = own_reference(mechanism, start, end, 4);
+    const double end = name[0] == 'a' ? 0.004 : 0.2;
+    const OwnReference own = own_reference(mechanism, start, end, 2);
     const auto first = static_cast<std::size_t>(mechanism.nq() + mechanism.nv());
     ASSERT_TRUE(own.reference.has_forces());
     double size = 0;
     for (int i = 0; i < mechanism.m(); ++i)
       size = std::max(size, std::abs(start.lambda[i]));
-    if (name[0] != 'b')  // Bricard's are not unique
-      for (int i = 0; i < mechanism.m(); ++i)
-        EXPECT_NEAR(own.reference.values()[0][first + static_cast<std::size_t>(i)],
-                    start.lambda[i], 1e-10 * (1 + size))
-            << name << " " << i;
+    for (int i = 0; i < mechanism.m(); ++i)
+      EXPECT_NEAR(own.reference.values()[0][first + static_cast<std::size_t>(i)], start.lambda[i],
+                  1e-10 * (1 + size))
+          << name << " " << i;
     const auto errors = [&](const std::string& form, const std::string& gauge, double tolerance) {
       RunRequest request;
       request.settings.form = form;
       request.settings.gauge = gauge;
       request.settings.rtol = request.settings.atol = tolerance;
       request.settings.end_time = end;
-      request.settings.samples = 4;
+      request.settings.samples = 2;
       request.reference = &own.reference;
       const RunResult run = run_form(mechanism, start, request);
       EXPECT_EQ(run.status, "done") << name << form << run.reason;
@@ -269,10 +268,10 @@ TEST(ForcesOfRuns, MultipliersConvergeToThoseOfQuadruplePrecision) {
     };
     for (const auto& [form, gauge] : std::map<std::string, std::string>{
              {"momentum", "reset"}, {"projected", ""}, {"baumgarte", ""}}) {
-      const RunResult loose = errors(form, gauge, 1e-6), tight = errors(form, gauge, 1e-11);
-      EXPECT_LT(tight.force_error_max, 1e-6) << name << " " << form;
+      const RunResult loose = errors(form, gauge, 1e-5), tight = errors(form, gauge, 1e-11);
+      EXPECT_LT(tight.force_error_max, 1e-7) << name << " " << form;
       EXPECT_LT(tight.force_error_max, 1e-2 * loose.force_error_max) << name << " " << form;
-      EXPECT_GE(tight.force_error_max, 0) << name << " " << form;
+      EXPECT_LT(tight.multiplier_error_max, 1e-2) << name << " " << form;
     }
   }
 }
@@ -303,6 +302,27 @@ TEST(ForcesOfRuns, MultipliersOfImpulsesAreThoseOfTheSolution) {
     EXPECT_GT(coarse / fine, 4) << gauge << " " << coarse << " " << fine;
     EXPECT_GT(difference(1e-5), 1e-13 / 1e-5 * 1e-3) << gauge;  // noise, ε over the step
   }
+}
+
+/// Of loops all of whose forces are open nothing is compared: no error, not none.
+TEST(ForcesOfRuns, WhatIsNotUniqueHasNoError) {
+  const Mechanism mechanism(example("bricard/scene.toml"));
+  const Start start = start_of(mechanism);
+  std::vector<std::string> columns{"P1.q [rad]"};
+  for (const Column& c : mechanism.multiplier_columns()) columns.push_back(c.label());
+  const std::vector<double> zeros(columns.size());
+  Reference reference("zeros", columns, {0, 0.1}, {zeros, zeros});
+  reference.bind(trajectory_columns(mechanism));
+  RunRequest request;
+  request.settings.gauge = "reset";
+  request.settings.end_time = 0.1;
+  request.settings.samples = 1;
+  request.reference = &reference;
+  const RunResult run = run_form(mechanism, start, request);
+  ASSERT_EQ(run.status, "done") << run.reason;
+  EXPECT_FALSE(std::isnan(run.position_error_max));
+  EXPECT_TRUE(std::isnan(run.force_error_max)) << run.force_error_max;
+  EXPECT_TRUE(std::isnan(run.multiplier_difference_max)) << run.multiplier_difference_max;
 }
 
 /// Columns of efforts and reactions are those of one state; what is not unique is left out.
@@ -355,7 +375,7 @@ TEST(ForcesOfRuns, ColumnsAreTheForcesOfTheState) {
         EXPECT_NEAR(row[at("O.effort [N m]")], row[at("O.torque_z [N m]")], 1e-9);
       }
     }
-    EXPECT_GT(given_ones, 0) << name;
+    EXPECT_EQ(given_ones > 0, name[0] != 'e') << name;  // in three cranks every joint shares
     EXPECT_EQ(left_out > 0, name[0] == 'e') << name;
   }
 }
