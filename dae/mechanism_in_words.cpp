@@ -65,8 +65,7 @@ std::vector<Column> Mechanism::multiplier_columns() const {
   for (std::size_t i = 0; i < row_names_.size(); ++i) {
     const std::string& loop = row_names_[i].loop;
     number = i > 0 && row_names_[i - 1].loop == loop ? number + 1 : 1;
-    columns.push_back(
-        {loop + ".lambda" + std::to_string(number), angle_rows_[i] ? "N m" : "N"});
+    columns.push_back({loop + ".lambda" + std::to_string(number), angle_rows_[i] ? "N m" : "N"});
   }
   return columns;
 }

@@ -151,8 +151,8 @@ class Sweep final : public WrenchSweep {
         for (int k = tree.first_part(last); k <= last; ++k) {
           const Tree::Body& b = tree.bodies[static_cast<std::size_t>(k)];
           if (b.coordinate == coordinate && b.drive >= 0)
-            coupled_.push_back({b.drive, static_cast<std::size_t>(loop_model_.loops[i].row),
-                                spec.ratios[j]});
+            coupled_.push_back(
+                {b.drive, static_cast<std::size_t>(loop_model_.loops[i].row), spec.ratios[j]});
         }
       }
     }
@@ -188,10 +188,9 @@ std::unique_ptr<WrenchSweep> make_wrench_sweep(const Mechanism& mechanism) {
   const Tree& tree = mechanism.tree();
   const Plan& plan = mechanism.plan();
   if (plan.planar)
-    return std::make_unique<Sweep<Planar>>(
-        mechanism, build_planar_model(tree, mechanism.scene(), plan.basis));
-  return std::make_unique<Sweep<Spatial>>(mechanism,
-                                          build_spatial_model(tree, mechanism.scene()));
+    return std::make_unique<Sweep<Planar>>(mechanism,
+                                           build_planar_model(tree, mechanism.scene(), plan.basis));
+  return std::make_unique<Sweep<Spatial>>(mechanism, build_spatial_model(tree, mechanism.scene()));
 }
 
 void mark_undetermined(Reactions& all, const Mechanism& mechanism, double t,

@@ -106,7 +106,7 @@ void Reference::bind(const std::vector<std::string>& trajectory_columns) {
                        (trajectory_columns.size() > 1 ? trajectory_columns[1] : "") + "'");
     place_.push_back(static_cast<std::size_t>(found - trajectory_columns.begin()));
     const std::string unit = unit_of(column);
-    kind_.push_back(unit.ends_with("/s")               ? Kind::velocity
+    kind_.push_back(unit.ends_with("/s")           ? Kind::velocity
                     : unit == "N" || unit == "N m" ? Kind::force
                                                    : Kind::position);
   }
@@ -116,8 +116,7 @@ bool Reference::has_forces() const {
   return std::find(kind_.begin(), kind_.end(), Kind::force) != kind_.end();
 }
 
-Reference::Error Reference::error(std::size_t row,
-                                  const std::vector<double>& trajectory_row,
+Reference::Error Reference::error(std::size_t row, const std::vector<double>& trajectory_row,
                                   const std::vector<std::size_t>& not_unique) const {
   Error e;
   for (std::size_t i = 0; i < place_.size(); ++i) {

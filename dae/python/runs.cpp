@@ -226,13 +226,15 @@ void bind_runs(py::module_& module) {
       "error against the reference, max |err| / (1 + |ref|); nan without a reference");
   text(
       "force_error_max", [](const RunResult& r) { return r.force_error_max; },
-      "error of lambda solved from (3), and of other forces; nan without a reference that has them");
+      "error of lambda solved from (3), and of other forces; nan without a reference that has "
+      "them");
   text(
       "multiplier_error_max", [](const RunResult& r) { return r.multiplier_error_max; },
       "error of lambda as the form itself has it; nan without a reference that has it");
   text(
       "multiplier_difference_max", [](const RunResult& r) { return r.multiplier_difference_max; },
-      "lambda of the form itself against lambda solved from (3), max |difference| / (1 + |lambda|)");
+      "lambda of the form itself against lambda solved from (3), max |difference| / (1 + "
+      "|lambda|)");
   const auto series = [&](const char* name, std::vector<double> Series::*member, const char* doc) {
     run.def_property_readonly(
         name,
@@ -247,7 +249,8 @@ void bind_runs(py::module_& module) {
          "|Phi| of equations in rad, where others are in m, at the output times [rad]");
   series("angle_rate_drift", &Series::angle_rate_drift, "|Phidot| of the same equations [rad/s]");
   series("velocity_drift", &Series::velocity_drift, "|Phidot| at the output times");
-  series("energy", &Series::energy, "T + V less the work of drives and of forces without potential [J]");
+  series("energy", &Series::energy,
+         "T + V less the work of drives and of forces without potential [J]");
   series("energy_error", &Series::energy_error, "energy - energy(0) [J]");
   series("impulse", &Series::impulse, "|sigma| of momentum forms, |lambda| of the others");
   series("position_error", &Series::position_error,
@@ -320,7 +323,8 @@ void add_runs(py::class_<Bench, BenchPtr>& mechanism) {
         "progress"_a = py::none(),
         "Runs one form from the assembled start. Returns a Run; a failed one has all samples up to "
         "the failure. Arguments that are None, zero or empty take the default of the scene, the "
-        "form or the program. `reactions`: with those of joints as columns. `progress`: True for a line on standard error, or a function of "
+        "form or the program. `reactions`: with those of joints as columns. `progress`: True for a "
+        "line on standard error, or a function of "
         "(fraction, text).");
   });
   mechanism

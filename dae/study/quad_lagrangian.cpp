@@ -14,8 +14,7 @@ constexpr int newton_steps = 2;
 /// unknowns left are zero.
 class FullPivoting {
  public:
-  explicit FullPivoting(std::size_t n)
-      : n_(n), a_(n * n), b_(n), found_(n), row_(n), column_(n) {}
+  explicit FullPivoting(std::size_t n) : n_(n), a_(n * n), b_(n), found_(n), row_(n), column_(n) {}
 
   void clear() { std::fill(a_.begin(), a_.end(), Quad(0)); }
   Quad& a(std::size_t i, std::size_t j) { return a_[i * n_ + j]; }

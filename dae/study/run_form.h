@@ -26,11 +26,11 @@ struct RunRequest {
   const IntegratedScene* integrated = nullptr;
   /// Bound to trajectory_columns(mechanism), or to those with the reactions.
   const Reference* reference = nullptr;
-  bool keep_trajectory = false;          ///< RunResult::trajectory is filled
+  bool keep_trajectory = false;  ///< RunResult::trajectory is filled
   /// RunResult::multiplier_difference_max is measured. A reference with forces says so by itself.
   bool multipliers = false;
-  bool reactions = false;                ///< with the reactions of joints among its columns
-  int keep_every = 1;                    ///< keep every n-th row, from the first
+  bool reactions = false;  ///< with the reactions of joints among its columns
+  int keep_every = 1;      ///< keep every n-th row, from the first
   /// Called with every row of the trajectory, where a trajectory is kept; return false to stop the
   /// run.
   std::function<bool(const std::vector<double>& row)> on_row;

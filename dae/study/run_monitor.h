@@ -5,8 +5,8 @@
 
 #include <momenta/dae/cut/integrated_scene.h>
 #include <momenta/dae/cut/written_motion.h>
-#include <momenta/dae/measure/growth.h>
 #include <momenta/dae/measure/drive_power.h>
+#include <momenta/dae/measure/growth.h>
 #include <momenta/dae/study/apart.h>
 #include <momenta/dae/study/force_columns.h>
 #include <momenta/dae/study/integrated_work.h>
@@ -164,7 +164,8 @@ class RunMonitor {
           },
           result_.passed_limits);
     if (own_ && sample_before(t1 * (1 + 1e-12))) own_->step(t0, t1, between, state_);
-    if ((works_ || drives_->any()) && !work_.step(t0, t1, sample_before(t1 * (1 - 1e-12)), [&](double t, double& watts) {
+    if ((works_ || drives_->any()) &&
+        !work_.step(t0, t1, sample_before(t1 * (1 - 1e-12)), [&](double t, double& watts) {
           between(t, state_.data());
           if (!read(t, state_.data(), nullptr)) return false;
           watts = 0;

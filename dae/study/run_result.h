@@ -120,9 +120,9 @@ struct RunResult {
   double kinetic_energy_max = not_measured;  ///< largest T at the samples [J], the scale of rates
   /// Largest T + |V − V(0)| at the samples [J]: energy errors compare to it.
   double energy_scale = not_measured;
-  double position_error_max = not_measured;  ///< largest of Series::position_error
-  double velocity_error_max = not_measured;  ///< largest of Series::velocity_error
-  double force_error_max = not_measured;     ///< largest of Series::force_error
+  double position_error_max = not_measured;         ///< largest of Series::position_error
+  double velocity_error_max = not_measured;         ///< largest of Series::velocity_error
+  double force_error_max = not_measured;            ///< largest of Series::force_error
   double multiplier_error_max = not_measured;       ///< largest of Series::multiplier_error
   double multiplier_difference_max = not_measured;  ///< of Series::multiplier_difference
   /// What the run integrated in place of the scene as written (cut/integrated_scene.h); empty:

@@ -61,8 +61,7 @@ TEST(ForcesOfRuns, PowerOfDrivesIsWhatEnergyGains) {
     RandomTree random(seed);
     const bool flat = seed % 5 == 0;
     const Scene scene = driven_scene(random, seed, flat, {.bodies = 5});
-    const Mechanism mechanism(scene,
-                              {.algebra = flat ? Algebra::automatic : Algebra::spatial});
+    const Mechanism mechanism(scene, {.algebra = flat ? Algebra::automatic : Algebra::spatial});
     const int nv = mechanism.nv(), m = mechanism.m();
     if (m > nv || nv == 0 || !mechanism.plan().drives) continue;
     const auto e = mechanism.evaluation<double>();
@@ -192,17 +191,16 @@ TEST(ForcesOfRuns, EnergyBalancesWithDrivesInEveryForm) {
   std::erase_if(tree.bodies, [](const BodySpec& b) { return b.name == "rocker"; });
   for (const Scene& scene : {example("driven/scene.toml"), example("driven/swing.toml"), tree}) {
     const Mechanism mechanism(scene);
-    for (const Method& how :
-         {Method{"momentum", "vern9", "reset", 1e-13, 1e-12},
-          Method{"momentum", "dop853", "leak:3", 1e-12, 1e-10},
-          Method{"acceleration", "vern9", "", 1e-13, 1e-12},
-          Method{"projected", "vern9", "", 1e-13, 1e-12},
-          Method{"baumgarte", "dop853", "", 1e-12, 1e-10},
-          Method{"partitioned", "dop853", "", 1e-12, 1e-10},
-          Method{"momentum-index2", "ida", "leak:3", 1e-9, 1e-6},
-          Method{"stabilised-index2", "ida", "", 1e-9, 1e-6},
-          Method{"acceleration-index1", "ida", "", 1e-9, 1e-6},
-          Method{"momentum-index1", "ida", "leak:3", 1e-9, 1e-6}}) {
+    for (const Method& how : {Method{"momentum", "vern9", "reset", 1e-13, 1e-12},
+                              Method{"momentum", "dop853", "leak:3", 1e-12, 1e-10},
+                              Method{"acceleration", "vern9", "", 1e-13, 1e-12},
+                              Method{"projected", "vern9", "", 1e-13, 1e-12},
+                              Method{"baumgarte", "dop853", "", 1e-12, 1e-10},
+                              Method{"partitioned", "dop853", "", 1e-12, 1e-10},
+                              Method{"momentum-index2", "ida", "leak:3", 1e-9, 1e-6},
+                              Method{"stabilised-index2", "ida", "", 1e-9, 1e-6},
+                              Method{"acceleration-index1", "ida", "", 1e-9, 1e-6},
+                              Method{"momentum-index1", "ida", "leak:3", 1e-9, 1e-6}}) {
       if (mechanism.m() == 0 && how.form != "momentum" && how.form != "acceleration") continue;
       Method method = how;
       if (mechanism.m() == 0) method.gauge = "";
@@ -239,8 +237,8 @@ TEST(ForcesOfRuns, TheBalanceOfDrivesHasTheOrderOfTheMethod) {
 /// λ of the reference in quadruple precision against λ of (3) in doubles at the same state, and
 /// against the λ of a run.
 TEST(ForcesOfRuns, MultipliersConvergeToThoseOfQuadruplePrecision) {
-  for (const std::string name : {"andrews/scene.toml", "four_bar/scene.toml",
-                                 "spatial_slider_crank/scene.toml"}) {
+  for (const std::string name :
+       {"andrews/scene.toml", "four_bar/scene.toml", "spatial_slider_crank/scene.toml"}) {
     const Mechanism mechanism(example(name));
     const Start start = assemble(mechanism).start;
     const double end = name[0] == 'a' ? 0.004 : 0.2;
@@ -248,8 +246,7 @@ TEST(ForcesOfRuns, MultipliersConvergeToThoseOfQuadruplePrecision) {
     const auto first = static_cast<std::size_t>(mechanism.nq() + mechanism.nv());
     ASSERT_TRUE(own.reference.has_forces());
     double size = 0;
-    for (int i = 0; i < mechanism.m(); ++i)
-      size = std::max(size, std::abs(start.lambda[i]));
+    for (int i = 0; i < mechanism.m(); ++i) size = std::max(size, std::abs(start.lambda[i]));
     for (int i = 0; i < mechanism.m(); ++i)
       EXPECT_NEAR(own.reference.values()[0][first + static_cast<std::size_t>(i)], start.lambda[i],
                   1e-10 * (1 + size))
