@@ -142,12 +142,14 @@ class Mechanism {
   std::vector<Column> rate_columns() const;
   /// The same for the position and velocity of each marker.
   std::vector<Column> marker_columns() const;
+  /// The same for λ (m), by row of Φ.
+  std::vector<Column> multiplier_columns() const;
+  /// The same for the efforts of the drives of joints, in the order of Tree::drives.
+  std::vector<Column> effort_columns() const;
 
   /// Lines of the plan: those of core and those of the loops.
   std::vector<std::pair<std::string, std::string>> plan_lines() const;
 
-  /// Whether energies tell how well a run keeps to the equations: no prescribed motion does work.
-  bool balances_energy() const;
   /// Why a solution failed at (t, q): one sentence naming the joints that neither inertia nor a
   /// loop holds (unheld_joints.h). `rate`: the place in u at which it failed; −1: not known.
   std::string no_inertia(int rate, double t, const double* q) const;

@@ -59,6 +59,26 @@ std::vector<Column> Mechanism::marker_columns() const {
   return columns;
 }
 
+std::vector<Column> Mechanism::multiplier_columns() const {
+  std::vector<Column> columns;
+  int number = 0;
+  for (std::size_t i = 0; i < row_names_.size(); ++i) {
+    const std::string& loop = row_names_[i].loop;
+    number = i > 0 && row_names_[i - 1].loop == loop ? number + 1 : 1;
+    columns.push_back({loop + ".lambda" + std::to_string(number), angle_rows_[i] ? "N m" : "N"});
+  }
+  return columns;
+}
+
+std::vector<Column> Mechanism::effort_columns() const {
+  std::vector<Column> columns(tree_.drives.size());
+  for (const auto& b : tree_.bodies)
+    if (b.drive >= 0)
+      columns[static_cast<std::size_t>(b.drive)] = {one_dof_column(b, "effort"),
+                                                    b.kind == JointKind::prismatic ? "N" : "N m"};
+  return columns;
+}
+
 std::vector<std::pair<std::string, std::string>> Mechanism::lagrangian_lines() const {
   const LagrangianModel& model = lagrangian();
   std::vector<std::pair<std::string, std::string>> lines;

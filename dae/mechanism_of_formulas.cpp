@@ -95,8 +95,4 @@ void Mechanism::take_lagrangian() {
   StartCheck{*this};
 }
 
-bool Mechanism::balances_energy() const {
-  return scene_.lagrangian ? !lagrangian().moving : !plan_.drives;
-}
-
 }  // namespace momenta

@@ -26,6 +26,7 @@ UniqueMultipliers::UniqueMultipliers(const Mechanism& mechanism, Evaluation<doub
 const std::vector<bool>& UniqueMultipliers::find(double t, const double* q, const double* u,
                                                  const double* lambda) {
   unique_.assign(centre_.size(), true);
+  idle_.clear();
   if (tells_ && solver_.pivots().faded == 0) return unique_;
   // In accelerations, so that forces and moments compare: a row's λ times its W_ii.
   e_.place(t, q);
@@ -46,12 +47,15 @@ const std::vector<bool>& UniqueMultipliers::find(double t, const double* q, cons
   }
   double furthest = 0;
   for (std::size_t i = 0; i < scale.size(); ++i) {
-    moved_[i] = std::abs(moved_[i] - lambda[i]) * scale[i];
+    idle_.push_back(moved_[i] - lambda[i]);
+    moved_[i] = std::abs(idle_[i]) * scale[i];
     furthest = std::max(furthest, moved_[i]);
   }
   // What regular rows move by is rounding over their pivots, which are above those that fade.
   constexpr double takes_part = 1e-6;
-  if (furthest > takes_part * largest)
+  if (!(furthest > takes_part * largest))
+    idle_.clear();
+  else
     for (std::size_t i = 0; i < unique_.size(); ++i)
       unique_[i] = !(moved_[i] > takes_part * furthest);
   return unique_;

@@ -25,13 +25,16 @@ class UniqueMultipliers {
   /// on zero. All false where the second solution fails. Cost: as of `lambda` where rows have
   /// faded, or where (7) is solved by KLU, which can't tell; else nothing.
   const std::vector<bool>& find(double t, const double* q, const double* u, const double* lambda);
+  /// After find(): what one more solution differs by (m), multipliers that move nothing; empty
+  /// where all are unique, or where there is none.
+  const std::vector<double>& idle() const { return idle_; }
 
  private:
   const Mechanism& mechanism_;
   Evaluation<double>& e_;
   LoopSolver& solver_;
   bool tells_;  ///< the solver knows when rows have faded
-  std::vector<double> direction_, centre_, moved_, udot_;
+  std::vector<double> direction_, centre_, moved_, udot_, idle_;
   std::vector<bool> unique_;
 };
 

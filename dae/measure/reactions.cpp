@@ -4,6 +4,7 @@
 #include <momenta/dae/measure/reactions.h>
 
 #include <algorithm>
+#include <optional>
 
 namespace momenta {
 namespace {
@@ -53,27 +54,64 @@ Transmitted transmitted(const std::string& name, const Workspace<Space, double>&
 }
 
 template <class Space>
-Reactions in(const Mechanism& mechanism, const Model<Space>& model, double t,
-             const Eigen::VectorXd& q, const Eigen::VectorXd& u, const Eigen::VectorXd& udot,
-             const Eigen::VectorXd& lambda) {
+class Sweep final : public WrenchSweep {
+ public:
   using Force = typename Space::template Force<double>;
-  const Tree& tree = mechanism.tree();
-  const Scene& scene = mechanism.scene();
-  Workspace<Space, double> w(model);
-  poses_outward(w, t, q.data(), true);
-  velocities_outward(w, u.data());
-  accelerations_outward(w, u.data(), udot.data());
-  if (model.has_gravity) gravity_outward(w);
-  apply_forces(w, model.has_body_forces());
 
-  Reactions all;
-  if (mechanism.m() > 0) {
-    const LoopModel<Space> loop_model = build_loops(scene, tree, model);
-    LoopRows<Space, double> loops(loop_model, w);
-    loops.place(t, q.data());
-    loops.add_wrenches(lambda.data(), -1.0, [](auto& body) -> Force& { return body.T; });
+  Sweep(const Mechanism& mechanism, Model<Space> model)
+      : mechanism_(mechanism),
+        model_(std::move(model)),
+        w_(model_),
+        places_(joint_places(mechanism)),
+        lambda_(static_cast<std::size_t>(mechanism.m())),
+        unused_(static_cast<std::size_t>(mechanism.nv())) {
+    if (mechanism.m() == 0) return;
+    loop_model_ = build_loops(mechanism.scene(), mechanism.tree(), model_);
+    loops_.emplace(loop_model_, w_);
+    take_couplers();
+  }
+
+  void move(double t, const double* q, const double* u, const double* udot,
+            const double* lambda) override {
+    poses_outward(w_, t, q, true);
+    velocities_outward(w_, u);
+    accelerations_outward(w_, u, udot);
+    if (model_.has_gravity) gravity_outward(w_);
+    apply_forces(w_, model_.has_body_forces());
+    std::copy_n(lambda, lambda_.size(), lambda_.begin());
+    if (loops_) {
+      loops_->place(t, q);
+      loops_->add_wrenches(lambda_.data(), -1.0, [](auto& body) -> Force& { return body.T; });
+    }
+    newton_euler_inward(w_, q, u, unused_.data());
+  }
+
+  void efforts(double* by_drive) const override {
+    for (std::size_t k = 0; k < model_.bodies.size(); ++k) {
+      const auto& b = model_.bodies[k];
+      if (b.drive < 0) continue;
+      double& effort = by_drive[b.drive];
+      Joint<Space>::project(b, w_.body[k].edge, w_.body[k].P, &effort);
+    }
+    for (const Coupled& c : coupled_) by_drive[c.drive] += c.ratio * lambda_[c.row];
+  }
+
+  double prescribed_power() const override {
+    double power = 0;
+    for (std::size_t k = 0; k < model_.bodies.size(); ++k) {
+      typename Space::template Motion<double> prescribed{};
+      add_drive<Space, double>(model_.bodies[k], w_.body[k], prescribed);
+      power += Space::power(w_.body[k].P, prescribed);
+    }
+    return power;
+  }
+
+  Reactions reactions() override {
+    const Tree& tree = mechanism_.tree();
+    const Scene& scene = mechanism_.scene();
+    Reactions all;
     for (std::size_t i = 0; i < scene.loops.size(); ++i) {
-      const auto& l = loop_model.loops[i];
+      const auto& l = loop_model_.loops[i];
       if (l.is_coupler()) {  // no body feels it but through its joints
         const Eigen::Vector3d none = Eigen::Vector3d::Zero();
         all.loops.push_back({scene.loops[i].name, none, none, none});
@@ -82,20 +120,53 @@ Reactions in(const Mechanism& mechanism, const Model<Space>& model, double t,
       Force on_child{};
       for (int row = 0; row < l.rows; ++row) {
         Force a, b;
-        loops.unit_wrench(i, row, a, b);
-        for (int j = 0; j < Space::dimension; ++j) on_child[j] -= lambda[l.row + row] * a[j];
+        loops_->unit_wrench(i, row, a, b);
+        for (int j = 0; j < Space::dimension; ++j)
+          on_child[j] -= lambda_[static_cast<std::size_t>(l.row + row)] * a[j];
       }
-      all.loops.push_back(transmitted(scene.loops[i].name, w, l.a,
+      all.loops.push_back(transmitted(scene.loops[i].name, w_, l.a,
                                       tree.point(l.a, scene.loops[i].origin_child), on_child));
     }
+    for (const JointPlace& joint : places_)
+      all.joints.push_back(transmitted(joint.name, w_, joint.body, Eigen::Vector3d::Zero(),
+                                       w_.body[static_cast<std::size_t>(joint.body)].P));
+    return all;
   }
-  Eigen::VectorXd unused(mechanism.nv());
-  newton_euler_inward(w, q.data(), u.data(), unused.data());
-  for (const JointPlace& joint : joint_places(mechanism))
-    all.joints.push_back(transmitted(joint.name, w, joint.body, Eigen::Vector3d::Zero(),
-                                     w.body[static_cast<std::size_t>(joint.body)].P));
-  return all;
-}
+
+ private:
+  /// A driven coordinate of a coupler.
+  struct Coupled {
+    int drive;
+    std::size_t row;
+    double ratio;
+  };
+  void take_couplers() {
+    const Tree& tree = mechanism_.tree();
+    for (std::size_t i = 0; i < mechanism_.scene().loops.size(); ++i) {
+      const LoopSpec& spec = mechanism_.scene().loops[i];
+      if (spec.kind != LoopKind::coupler) continue;
+      for (std::size_t j = 0; j < spec.joints.size(); ++j) {
+        const int coordinate = spec.coordinates.empty() ? 0 : spec.coordinates[j];
+        const int last = tree.carried_by(spec.joints[j]);
+        for (int k = tree.first_part(last); k <= last; ++k) {
+          const Tree::Body& b = tree.bodies[static_cast<std::size_t>(k)];
+          if (b.coordinate == coordinate && b.drive >= 0)
+            coupled_.push_back(
+                {b.drive, static_cast<std::size_t>(loop_model_.loops[i].row), spec.ratios[j]});
+        }
+      }
+    }
+  }
+
+  const Mechanism& mechanism_;
+  Model<Space> model_;
+  Workspace<Space, double> w_;
+  LoopModel<Space> loop_model_;
+  std::optional<LoopRows<Space, double>> loops_;
+  std::vector<JointPlace> places_;
+  std::vector<Coupled> coupled_;
+  std::vector<double> lambda_, unused_;
+};
 
 }  // namespace
 
@@ -108,16 +179,22 @@ Reactions reactions(const Mechanism& mechanism, double t, const Eigen::VectorXd&
     for (const auto& c : lagrangian->constraints) all.loops.push_back({c.name, none, none, none});
     return all;
   }
+  const auto sweep = make_wrench_sweep(mechanism);
+  sweep->move(t, q.data(), u.data(), udot.data(), lambda.data());
+  return sweep->reactions();
+}
+
+std::unique_ptr<WrenchSweep> make_wrench_sweep(const Mechanism& mechanism) {
   const Tree& tree = mechanism.tree();
   const Plan& plan = mechanism.plan();
   if (plan.planar)
-    return in(mechanism, build_planar_model(tree, mechanism.scene(), plan.basis), t, q, u, udot,
-              lambda);
-  return in(mechanism, build_spatial_model(tree, mechanism.scene()), t, q, u, udot, lambda);
+    return std::make_unique<Sweep<Planar>>(mechanism,
+                                           build_planar_model(tree, mechanism.scene(), plan.basis));
+  return std::make_unique<Sweep<Spatial>>(mechanism, build_spatial_model(tree, mechanism.scene()));
 }
 
 void mark_undetermined(Reactions& all, const Mechanism& mechanism, double t,
-                       const Eigen::VectorXd& q, const Eigen::MatrixXd& idle) {
+                       const Eigen::VectorXd& q, const Eigen::MatrixXd& idle, double rounding) {
   // Reactions are affine in λ: what a column of `idle` adds, with nothing moving.
   const Eigen::VectorXd rest = Eigen::VectorXd::Zero(mechanism.nv());
   const double length = length_of(mechanism.scene());
@@ -133,7 +210,7 @@ void mark_undetermined(Reactions& all, const Mechanism& mechanism, double t,
       double largest = 0;
       for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, size(i));
       for (std::size_t i = 0; i < a.size(); ++i)
-        if (size(i) > 1e-9 * (largest + a[i].force.norm() * length + a[i].torque.norm()))
+        if (size(i) > rounding * (largest + a[i].force.norm() * length + a[i].torque.norm()))
           marked[i].unique = false;
     };
     mark(all.joints, with.joints, without.joints);

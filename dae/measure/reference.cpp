@@ -97,7 +97,7 @@ std::string Reference::csv() const {
 
 void Reference::bind(const std::vector<std::string>& trajectory_columns) {
   place_.clear();
-  is_rate_.clear();
+  kind_.clear();
   for (const auto& column : columns_) {
     const auto found = std::find(trajectory_columns.begin(), trajectory_columns.end(), column);
     if (found == trajectory_columns.end())
@@ -106,18 +106,27 @@ void Reference::bind(const std::vector<std::string>& trajectory_columns) {
                        (trajectory_columns.size() > 1 ? trajectory_columns[1] : "") + "'");
     place_.push_back(static_cast<std::size_t>(found - trajectory_columns.begin()));
     const std::string unit = unit_of(column);
-    is_rate_.push_back(unit.size() > 2 && unit.substr(unit.size() - 2) == "/s");
+    kind_.push_back(unit.ends_with("/s")           ? Kind::velocity
+                    : unit == "N" || unit == "N m" ? Kind::force
+                                                   : Kind::position);
   }
 }
 
-Reference::Error Reference::error(std::size_t row,
-                                  const std::vector<double>& trajectory_row) const {
+bool Reference::has_forces() const {
+  return std::find(kind_.begin(), kind_.end(), Kind::force) != kind_.end();
+}
+
+Reference::Error Reference::error(std::size_t row, const std::vector<double>& trajectory_row,
+                                  const std::vector<std::size_t>& not_unique) const {
   Error e;
   for (std::size_t i = 0; i < place_.size(); ++i) {
+    if (std::binary_search(not_unique.begin(), not_unique.end(), place_[i])) continue;
     const double reference = values_[row][i];
     const double difference =
         std::abs(trajectory_row[place_[i]] - reference) / (1 + std::abs(reference));
-    double& largest = is_rate_[i] ? e.velocity : e.position;
+    double& largest = kind_[i] == Kind::velocity ? e.velocity
+                      : kind_[i] == Kind::force  ? e.force
+                                                 : e.position;
     if (!(difference <= largest)) largest = difference;  // NaN too
   }
   return e;

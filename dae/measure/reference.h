@@ -3,6 +3,7 @@
 // trajectory columns.
 
 #include <filesystem>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -36,13 +37,20 @@ class Reference {
   /// The text of the CSV file that the constructor reads, with all digits of each number.
   std::string csv() const;
 
+  /// Whether there are columns in N or N m. After bind().
+  bool has_forces() const;
+
   /// The error of a row against the reference.
   struct Error {
     double position = 0;  ///< max |value − ref| / (1 + |ref|) over columns in rad and m
     double velocity = 0;  ///< the same over columns in rad/s and m/s
+    /// The same over columns in N and N m; not a number where none is unique.
+    double force = std::numeric_limits<double>::quiet_NaN();
   };
-  /// The error of a trajectory row at the reference time of index `row`. After bind().
-  Error error(std::size_t row, const std::vector<double>& trajectory_row) const;
+  /// The error of a trajectory row at the reference time of index `row`, without the columns that
+  /// are not unique there (places in the trajectory, ascending). After bind().
+  Error error(std::size_t row, const std::vector<double>& trajectory_row,
+              const std::vector<std::size_t>& not_unique = {}) const;
 
  private:
   std::string file_;
@@ -50,7 +58,8 @@ class Reference {
   std::vector<std::string> columns_;
   std::vector<std::vector<double>> values_;  ///< by time, by column
   std::vector<std::size_t> place_;           ///< of each column in a trajectory row
-  std::vector<bool> is_rate_;
+  enum class Kind { position, velocity, force };
+  std::vector<Kind> kind_;
 };
 
 }  // namespace momenta

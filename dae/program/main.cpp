@@ -59,6 +59,7 @@ int answer(int argc, char** argv) {
   add_timing(*run_verb, o);
   one_of(run_verb->add_option("--data", o.data, "Format of the trajectory"), {"csv", "hdf5"})
       ->capture_default_str();
+  run_verb->add_flag("--reactions", o.reactions, "With the reactions of joints as columns");
   CLI::App* drift_verb =
       app.add_subcommand("drift", "Every form side by side: drift, energy, error against run time");
   drift_verb->footer("Example: momenta drift examples/four_bar/scene.toml --end 5 --out results");

@@ -233,7 +233,7 @@ RunSettings run_settings(const Options& o, const RunDefaults& defaults) {
 std::unique_ptr<Reference> load_reference(const Options& o, const Mechanism& mechanism) {
   if (o.reference.empty()) return nullptr;
   auto reference = std::make_unique<Reference>(o.reference);
-  reference->bind(trajectory_columns(mechanism));
+  reference->bind(trajectory_columns(mechanism, o.reactions));
   return reference;
 }
 
@@ -333,7 +333,7 @@ std::unique_ptr<TrajectoryFile> trajectory_file(const Options& o, const Mechanis
   if (hdf5 && o.out.empty())
     throw std::invalid_argument("--data hdf5: expected --out DIR for run.h5");
   if (o.out.empty()) return nullptr;
-  const auto columns = trajectory_columns(mechanism);
+  const auto columns = trajectory_columns(mechanism, o.reactions);
   auto file = !hdf5 ? csv_trajectory(o.out / "trajectory.csv", columns, before)
                     : hdf5_trajectory(o.out / "run.h5", columns,
                                       {{"scene", scene_text(mechanism.scene())},

@@ -44,6 +44,7 @@ struct Options {
   std::filesystem::path reference, out;
   std::string figures;                        ///< svg or none
   std::string data = "csv";                   ///< of run: csv or hdf5
+  bool reactions = false;                     ///< of run: those of joints are columns
   std::size_t mesh_bytes = usual_mesh_bytes;  ///< of a page
   bool json = false, quiet = false;
 };

@@ -79,7 +79,7 @@ class RunFiles {
   /// @throws std::invalid_argument, std::runtime_error
   RunFiles(const Options& o, const Mechanism& mechanism, const RunSettings& settings)
       : o_(o),
-        kept_(o, trajectory_columns(mechanism).size()),
+        kept_(o, trajectory_columns(mechanism, o.reactions).size()),
         trajectory_(trajectory_file(o, mechanism, settings, kept_.trajectory())) {
     if (!trajectory_) return;
     summary_.emplace(o.out / "summary.json");
@@ -149,6 +149,8 @@ int run(const Options& o) {
   const RunSettings& s = request.settings;
   request.reference = reference.get();
   request.keep_trajectory = true;
+  request.reactions = o.reactions;
+  request.multipliers = true;
   request.max_cpu_seconds = o.cpu_limit.value_or(0);
   request.film_intervals = film_intervals_of(*mechanism, o, 1);
   expect_own_results(o.out, "trajectory.csv");

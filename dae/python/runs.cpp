@@ -42,10 +42,11 @@ py::array_t<double> view(const std::vector<double>& x, const py::object& owner) 
   return py::array_t<double>(static_cast<py::ssize_t>(x.size()), x.data(), owner);
 }
 
-std::unique_ptr<Reference> reference_of(const std::string& file, const Mechanism& mechanism) {
+std::unique_ptr<Reference> reference_of(const std::string& file, const Mechanism& mechanism,
+                                        bool reactions = false) {
   if (file.empty()) return nullptr;
   auto reference = std::make_unique<Reference>(file);
-  reference->bind(trajectory_columns(mechanism));
+  reference->bind(trajectory_columns(mechanism, reactions));
   return reference;
 }
 
@@ -54,16 +55,17 @@ RunPtr run(const Bench& bench, const std::string& form, const std::string& integ
            const Given& end, const std::optional<int>& samples, double spectral_radius,
            const std::optional<bool>& project, double baumgarte_alpha, double baumgarte_beta,
            double beta, double penalty, double cpu_limit, const std::string& reference,
-           const py::object& told) {
+           bool reactions, const py::object& told) {
   const Mechanism& mechanism = *bench.mechanism;
   const RunArguments asked{
       form,    integrator,      gauge,          rtol, atol,   step, end, samples, spectral_radius,
       project, baumgarte_alpha, baumgarte_beta, beta, penalty};
-  const auto given = reference_of(reference, mechanism);
+  const auto given = reference_of(reference, mechanism, reactions);
   RunRequest request;
   request.settings = asked.settings(mechanism.scene().run);
   request.reference = given.get();
-  request.keep_trajectory = true;
+  request.keep_trajectory = request.multipliers = true;
+  request.reactions = reactions;
   request.max_cpu_seconds = cpu_time(cpu_limit);
   Progress progress(told);
   request.progress = [&](double t) { return progress(t / request.settings.end_time, form); };
@@ -222,6 +224,17 @@ void bind_runs(py::module_& module) {
   text(
       "position_error_max", [](const RunResult& r) { return r.position_error_max; },
       "error against the reference, max |err| / (1 + |ref|); nan without a reference");
+  text(
+      "force_error_max", [](const RunResult& r) { return r.force_error_max; },
+      "error of lambda solved from (3), and of other forces; nan without a reference that has "
+      "them");
+  text(
+      "multiplier_error_max", [](const RunResult& r) { return r.multiplier_error_max; },
+      "error of lambda as the form itself has it; nan without a reference that has it");
+  text(
+      "multiplier_difference_max", [](const RunResult& r) { return r.multiplier_difference_max; },
+      "lambda of the form itself against lambda solved from (3), max |difference| / (1 + "
+      "|lambda|)");
   const auto series = [&](const char* name, std::vector<double> Series::*member, const char* doc) {
     run.def_property_readonly(
         name,
@@ -236,11 +249,18 @@ void bind_runs(py::module_& module) {
          "|Phi| of equations in rad, where others are in m, at the output times [rad]");
   series("angle_rate_drift", &Series::angle_rate_drift, "|Phidot| of the same equations [rad/s]");
   series("velocity_drift", &Series::velocity_drift, "|Phidot| at the output times");
-  series("energy", &Series::energy, "T + V less the dissipated energy [J]; nan with drives");
+  series("energy", &Series::energy,
+         "T + V less the work of drives and of forces without potential [J]");
   series("energy_error", &Series::energy_error, "energy - energy(0) [J]");
   series("impulse", &Series::impulse, "|sigma| of momentum forms, |lambda| of the others");
   series("position_error", &Series::position_error,
          "error against the reference, max |err| / (1 + |ref|); empty without a reference");
+  series("force_error", &Series::force_error,
+         "error of lambda solved from (3), and of other forces; empty without a reference of them");
+  series("multiplier_error", &Series::multiplier_error,
+         "error of lambda as the form itself has it; empty without a reference that has it");
+  series("multiplier_difference", &Series::multiplier_difference,
+         "lambda of the form itself against lambda solved from (3)");
   run.def_property_readonly(
          "columns", [](const Run& r) { return r.result.trajectory.columns; },
          "names of the trajectory's columns, with units")
@@ -299,10 +319,12 @@ void add_runs(py::class_<Bench, BenchPtr>& mechanism) {
   using namespace py::literals;
   with_run_arguments([&](const auto&... arguments) {
     mechanism.def(
-        "run", &run, py::kw_only(), arguments..., "reference"_a = "", "progress"_a = py::none(),
+        "run", &run, py::kw_only(), arguments..., "reference"_a = "", "reactions"_a = false,
+        "progress"_a = py::none(),
         "Runs one form from the assembled start. Returns a Run; a failed one has all samples up to "
         "the failure. Arguments that are None, zero or empty take the default of the scene, the "
-        "form or the program. `progress`: True for a line on standard error, or a function of "
+        "form or the program. `reactions`: with those of joints as columns. `progress`: True for a "
+        "line on standard error, or a function of "
         "(fraction, text).");
   });
   mechanism

@@ -91,6 +91,24 @@ std::vector<History> histories(const RunResult& run) {
        "1",
        &Series::position_error,
        {}},
+      {"force_error",
+       "Error of λ from (3) against the reference",
+       "error of λ, max |err|/(1+|ref|)",
+       "1",
+       &Series::force_error,
+       {}},
+      {"multiplier_error",
+       "Error of the form's own λ against the reference",
+       "error of λ, max |err|/(1+|ref|)",
+       "1",
+       &Series::multiplier_error,
+       {}},
+      {"multiplier_difference",
+       "The form's own λ against λ from (3)",
+       "difference, max |Δλ|/(1+|λ|)",
+       "1",
+       &Series::multiplier_difference,
+       {}},
       {"impulse", "Loop impulses", "loop impulses |σ| [N s]", "N s", &Series::impulse, {}}};
 }
 
@@ -122,7 +140,13 @@ std::vector<Chart> charts_of_run(const RunResult& run) {
   const auto add = [&](const std::string& key, const std::string& title, const std::string& axis,
                        const std::string& unit) {
     Chart chart = over_time(key, title, axis + " [" + unit + "]", unit);
-    for (const std::size_t c : by_unit[unit]) {
+    const auto& columns = by_unit[unit];
+    const auto of_loop = [&](std::size_t c) {
+      return trajectory.columns[c].find(".lambda") != std::string::npos;
+    };
+    if (title.ends_with("λ") && !std::all_of(columns.begin(), columns.end(), of_loop))
+      chart.title = unit == "N" ? "Forces" : "Moments";
+    for (const std::size_t c : columns) {
       const std::string& label = trajectory.columns[c];
       Curve curve{label.substr(0, label.rfind(" [")) + remark(run, label),
                   {},

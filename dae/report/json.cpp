@@ -74,7 +74,10 @@ Json summary_json(const RunResult& run, const Environment& environment) {
                    {"angle_rate_exponent", number_or_null(run.angle_rate_growth.exponent)}};
   json["energy"] = {{"error_max", number_or_null(run.energy_error_max)}};
   json["error"] = {{"position_max", number_or_null(run.position_error_max)},
-                   {"velocity_max", number_or_null(run.velocity_error_max)}};
+                   {"velocity_max", number_or_null(run.velocity_error_max)},
+                   {"force_max", number_or_null(run.force_error_max)},
+                   {"multiplier_max", number_or_null(run.multiplier_error_max)}};
+  json["multiplier_difference_max"] = number_or_null(run.multiplier_difference_max);
   json["integrated"] = run.integrated;
   json["rank"] = run.drift_unit.empty() ? Json(nullptr) : Json(run.rank);
   json["dependent_rows"] = Json::array();

@@ -108,6 +108,7 @@ std::vector<RunResult> run_drift_study(const Mechanism& mechanism, const Start& 
       run.settings = runs[i];
       run.integrated = &integrated;
       run.reference = request.reference;
+      run.multipliers = true;
       run.max_cpu_seconds = request.max_cpu_seconds;
       run.film_intervals = request.film_intervals;
       const std::string label = runs[i].form + (runs[i].gauge.empty() ? "" : " " + runs[i].gauge) +

@@ -46,7 +46,7 @@ bool is_stiff(const Mechanism& mechanism, const Start& start, double end,
       integrate("dop853", *form->ode(), start.t, y0, {end}, run, observer).stiff_from);
 }
 
-/// q and u at t = 0, end / count, …: as long a step of `method` as converges, never across an
+/// q, u and λ at t = 0, end / count, …: as long a step of `method` as converges, never across an
 /// output.
 template <class Method>
 Rows solve(const Mechanism& mechanism, const Start& start, double end, int count, double tolerance,
@@ -56,15 +56,17 @@ Rows solve(const Mechanism& mechanism, const Start& start, double end, int count
   std::vector<Quad> y(start.q.begin(), start.q.end());
   y.insert(y.end(), start.u.begin(), start.u.end());
   Rows rows;
-  const auto keep = [&] {
-    rows.emplace_back(size);
-    std::transform(y.begin(), y.end(), rows.back().begin(),
-                   [](const Quad& x) { return value_of(x); });
+  std::vector<Quad> rates(size);
+  const auto keep = [&](double t) {
+    if (!motion->rates(t, y.data(), rates.data())) give_up(t, "a joint has no inertia");
+    std::vector<double>& row = rows.emplace_back();
+    for (const Quad& x : y) row.push_back(value_of(x));
+    for (int i = 0; i < mechanism.m(); ++i) row.push_back(value_of(motion->multipliers()[i]));
   };
   const double interval = end / count;
   double t = start.t, h = interval;
   if (!motion->project(t, y.data())) give_up(t, "a joint has no inertia");
-  keep();
+  keep(t);
   for (int i = 1; i <= count; ++i) {
     const double next = i == count ? end : interval * i;
     while (t < next) {
@@ -82,7 +84,7 @@ Rows solve(const Mechanism& mechanism, const Start& start, double end, int count
       }
       if (going_on && !going_on(t)) give_up(t, "interrupted");
     }
-    keep();
+    keep(t);
   }
   return rows;
 }
@@ -96,6 +98,7 @@ OwnReference own_reference(const Mechanism& mechanism, const Start& start, doubl
   std::vector<std::string> columns;
   for (const auto& c : mechanism.coordinate_columns()) columns.push_back(c.label());
   for (const auto& c : mechanism.rate_columns()) columns.push_back(c.label());
+  for (const auto& c : mechanism.multiplier_columns()) columns.push_back(c.label());
   const auto size = static_cast<std::size_t>(mechanism.nq() + mechanism.nv());
   const bool in_time = mechanism.plan().drives,
              implicit = is_stiff(mechanism, start, end, going_on);

@@ -21,8 +21,8 @@ struct OwnReference {
   bool implicit = false;  ///< by the implicit method, for the motion is stiff
 };
 
-/// Joint coordinates and rates at `count` equal intervals up to `end` [s], bound to the mechanism's
-/// trajectory. `going_on` (may be empty) is told the time reached; false ends it.
+/// Joint coordinates, rates and multipliers λ at `count` equal intervals up to `end` [s], bound to
+/// the mechanism's trajectory. `going_on` (may be empty) is told the time reached; false ends it.
 /// @throws std::runtime_error with one sentence when there is no such solution.
 OwnReference own_reference(const Mechanism& mechanism, const Start& start, double end, int count,
                            const std::function<bool(double t)>& going_on = {});

@@ -14,12 +14,14 @@ constexpr int newton_steps = 2;
 /// unknowns left are zero.
 class FullPivoting {
  public:
-  explicit FullPivoting(std::size_t n) : n_(n), a_(n * n), b_(n), row_(n), column_(n) {}
+  explicit FullPivoting(std::size_t n) : n_(n), a_(n * n), b_(n), found_(n), row_(n), column_(n) {}
 
   void clear() { std::fill(a_.begin(), a_.end(), Quad(0)); }
   Quad& a(std::size_t i, std::size_t j) { return a_[i * n_ + j]; }
   Quad& b(std::size_t i) { return b_[i]; }
 
+  /// All unknowns of the last solution.
+  const Quad* found() const { return found_.data(); }
   /// The first `count` unknowns of x; false where it is not finite or they are not all determined.
   bool solve(std::size_t count, Quad* x) {
     constexpr double vanishes = 1e-20;  // of the largest pivot
@@ -93,6 +95,8 @@ class QuadLagrangian final : public QuadMotion {
     std::copy_n(u, n_, ydot);
     return solve(ydot + n_);
   }
+
+  const Quad* multipliers() const override { return matrix_.found() + n_; }
 
   bool project(double t, Quad* y) override {
     if (m_ == 0) return true;

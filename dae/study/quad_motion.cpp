@@ -53,6 +53,8 @@ class QuadSweeps final : public QuadMotion {
     return true;
   }
 
+  const Quad* multipliers() const override { return sigma_.data(); }
+
   bool project(double t, Quad* y) override {
     Quad *q = y, *u = y + mechanism_.nq();
     normalise(q);

@@ -16,6 +16,8 @@ class QuadMotion {
   virtual ~QuadMotion() = default;
   /// (q̇, u̇) at t [s] and y = (q, u), nq + nv each. False when a joint has no inertia.
   virtual bool rates(double t, const Quad* y, Quad* ydot) = 0;
+  /// λ of the last rates(), by row of Φ (m).
+  virtual const Quad* multipliers() const = 0;
   /// y onto Φ = 0, Φ̇ = 0 along the mass metric; quaternions to unit length.
   virtual bool project(double t, Quad* y) = 0;
 };

@@ -151,6 +151,7 @@ RunResult run_form(const Mechanism& mechanism, const Start& start, const RunRequ
     ode->watch_faded(&faded, integrated.m() - rank);
   }
   const std::vector<double> times = output_times(result.settings, request.reference, reach);
+  monitor.expect_samples_at(times);
   Observer observer{
       [&](double t, const double* y, const double* ydot) { return monitor.sample(t, y, ydot); },
       [&](double t0, double t1, const Interpolant& between) {

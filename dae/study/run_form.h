@@ -24,9 +24,13 @@ struct RunRequest {
   RunSettings settings;  ///< form, integrator, tolerances, times
   /// What the run integrates, made of the same mechanism and start; null: chosen for this run.
   const IntegratedScene* integrated = nullptr;
-  const Reference* reference = nullptr;  ///< bound to trajectory_columns(mechanism)
-  bool keep_trajectory = false;          ///< RunResult::trajectory is filled
-  int keep_every = 1;                    ///< keep every n-th row, from the first
+  /// Bound to trajectory_columns(mechanism), or to those with the reactions.
+  const Reference* reference = nullptr;
+  bool keep_trajectory = false;  ///< RunResult::trajectory is filled
+  /// RunResult::multiplier_difference_max is measured. A reference with forces says so by itself.
+  bool multipliers = false;
+  bool reactions = false;  ///< with the reactions of joints among its columns
+  int keep_every = 1;      ///< keep every n-th row, from the first
   /// Called with every row of the trajectory, where a trajectory is kept; return false to stop the
   /// run.
   std::function<bool(const std::vector<double>& row)> on_row;
@@ -46,8 +50,9 @@ struct RunRequest {
   const Checkpoint* from = nullptr;
 };
 
-/// Columns of trajectory.csv: t, q, u, markers, energy, drifts, loop forces.
-std::vector<std::string> trajectory_columns(const Mechanism& mechanism);
+/// Columns of trajectory.csv: t, q, u, markers, energy, drifts, loop forces, efforts of drives; and
+/// the reactions of joints where they are asked for.
+std::vector<std::string> trajectory_columns(const Mechanism& mechanism, bool reactions = false);
 
 /// Runs once and measures at every sample; all that is measured is of the scene as written,
 /// whatever joints the run cuts. A failure is in the result: status, reason and all samples up to

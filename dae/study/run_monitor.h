@@ -5,10 +5,12 @@
 
 #include <momenta/dae/cut/integrated_scene.h>
 #include <momenta/dae/cut/written_motion.h>
+#include <momenta/dae/measure/drive_power.h>
 #include <momenta/dae/measure/growth.h>
-#include <momenta/dae/measure/multipliers.h>
 #include <momenta/dae/study/apart.h>
-#include <momenta/dae/study/dissipated_energy.h>
+#include <momenta/dae/study/force_columns.h>
+#include <momenta/dae/study/integrated_work.h>
+#include <momenta/dae/study/own_multipliers.h>
 #include <momenta/dae/study/passed_limits.h>
 #include <momenta/dae/study/run_form.h>
 #include <momenta/dae/study/singular_crossings.h>
@@ -48,27 +50,35 @@ class RunMonitor {
         phi_(mechanism.m()),
         middle_(mechanism.nq()),
         markers_(static_cast<std::size_t>(6 * static_cast<int>(mechanism.scene().markers.size()))),
-        dissipated_energy_(mechanism),
+        columns_(trajectory_columns(mechanism, request.reactions)),
+        works_(IntegratedWork::has_any(mechanism)),
         limits_(mechanism) {
-    if (request.keep_trajectory) result.trajectory.columns = trajectory_columns(mechanism);
+    if (request.keep_trajectory) result.trajectory.columns = columns_;
     if (mechanism.m() > 0) {
       result.drift_unit = lengths_ ? "m" : "rad";
       apart_.emplace(mechanism, result.settings);
       solver_ = make_loop_solver(mechanism, *e_);
-      unique_.emplace(mechanism, *e_, *solver_);
-      all_unique_.assign(static_cast<std::size_t>(mechanism.m()), true);
     }
+    drives_.emplace(mechanism, *e_, solver_.get());
+    const bool compares_forces = request.reference && request.reference->has_forces();
+    if (request.keep_trajectory || compares_forces || request.multipliers)
+      forces_.emplace(mechanism, *e_, solver_.get(), request.reactions);
     const Mechanism& integrated = scene.mechanism();
     if (scene.anew()) {
       written_.emplace(mechanism, start, scene.folded(), integrated);
       of_form_.q.resize(integrated.nq());
       integrated_e_ = integrated.evaluation<double>();
       integrated_solver_ = make_loop_solver(integrated, *integrated_e_);
+    } else if (mechanism.m() > 0 && (compares_forces || request.multipliers)) {
+      own_.emplace(form, mechanism.m());
     }
     if (integrated.m() > 0 && (integrated.kkt() == KktChoice::sweeps || filters_pivots(integrated)))
       singular_crossings_.emplace(integrated, form, written_ ? *integrated_e_ : *e_,
                                   written_ ? *integrated_solver_ : *solver_, result);
   }
+
+  /// The times at which samples will be asked for; they must outlive this.
+  void expect_samples_at(const std::vector<double>& times) { output_times_ = &times; }
 
   bool sample(double t, const double* y, const double* ydot) {
     if (!read(t, y, ydot)) {
@@ -87,9 +97,7 @@ class RunMonitor {
     e_->velocities(phi_.data());
     const Drift velocity = drift_of(mechanism_, phi_);
     const double kinetic = e_->kinetic(), potential = e_->potential(now_.q.data());
-    const double energy = mechanism_.balances_energy()
-                              ? kinetic + potential - dissipated_energy_.until(t)
-                              : not_measured;
+    const double energy = kinetic + potential - work_.until(t);
     if (!position.finite() || !velocity.finite()) {
       trouble_ = "at t = " + std::to_string(t) + " s the state is not finite";
       return false;
@@ -113,8 +121,8 @@ class RunMonitor {
     s.energy.push_back(energy);
     s.energy_error.push_back(energy - energy_at_start_);
     s.impulse.push_back(now_.multipliers.norm());
-    const bool row_wanted = request_.keep_trajectory || request_.reference;
-    if (row_wanted) row(t, energy, position, velocity);
+    if (request_.keep_trajectory || request_.reference || own_) row(t, energy, position, velocity);
+    if (own_) compare_own(t);
     if (request_.reference) compare(t);
     if (request_.keep_trajectory) {
       if (request_.on_row && !request_.on_row(row_)) return false;
@@ -155,12 +163,18 @@ class RunMonitor {
             return read_coordinates(t) ? middle_.data() : nullptr;
           },
           result_.passed_limits);
-    if (dissipated_energy_.any() && !dissipated_energy_.step(t0, t1, [&](double t, double& watts) {
+    if (own_ && sample_before(t1 * (1 + 1e-12))) own_->step(t0, t1, between, state_);
+    if ((works_ || drives_->any()) &&
+        !work_.step(t0, t1, sample_before(t1 * (1 - 1e-12)), [&](double t, double& watts) {
           between(t, state_.data());
           if (!read(t, state_.data(), nullptr)) return false;
-          e_->place(t, now_.q.data());
-          e_->move(now_.u.data());
-          watts = e_->dissipated_power(now_.q.data(), now_.u.data());
+          watts = 0;
+          if (works_) {
+            e_->place(t, now_.q.data());
+            e_->move(now_.u.data());
+            watts = e_->dissipated_power(now_.q.data(), now_.u.data());
+          }
+          if (drives_->any()) watts += drives_->at(t, now_.q.data(), now_.u.data());
           return true;
         }))
       return true;
@@ -174,7 +188,7 @@ class RunMonitor {
   }
   /// Between two steps; beside what is in the result.
   void carry(Memory& memory) {
-    dissipated_energy_.carry(memory);
+    work_.carry(memory);
     if (singular_crossings_) singular_crossings_->carry(memory);
     if (written_) written_->carry(memory);
     memory(energy_at_start_), memory(potential_at_start_);
@@ -223,7 +237,10 @@ class RunMonitor {
     if (request_.reference && result_.status == "done" && compared_ > 0) {
       result_.position_error_max = largest(s.position_error);
       result_.velocity_error_max = largest(s.velocity_error);
+      result_.force_error_max = largest(s.force_error);
+      result_.multiplier_error_max = largest(s.multiplier_error);
     }
+    result_.multiplier_difference_max = largest(s.multiplier_difference);
   }
 
   const std::string& trouble() const { return trouble_; }
@@ -292,43 +309,60 @@ class RunMonitor {
     e_->markers(markers_.data());
     row_.insert(row_.end(), markers_.begin(), markers_.end());
     row_.push_back(energy);
-    if (mechanism_.m() == 0) return;
-    row_.push_back(named(position));
-    row_.push_back(named(velocity));
-    if (both_) row_.insert(row_.end(), {position.angles, velocity.angles});
-    if (request_.keep_trajectory) {
-      Eigen::VectorXd udot(mechanism_.nv()), lambda(mechanism_.m());
-      if (!solver_->acceleration(t, now_.q.data(), now_.u.data(), nullptr, 0, 0, udot.data(),
-                                 lambda.data()))
-        lambda.setConstant(not_measured);
-      loop_forces(t, lambda);
+    if (mechanism_.m() > 0) {
+      row_.push_back(named(position));
+      row_.push_back(named(velocity));
+      if (both_) row_.insert(row_.end(), {position.angles, velocity.angles});
     }
+    if (!forces_) return;
+    first_force_ = row_.size();
+    not_unique_.clear();
+    forces_->solve(t, now_.q, now_.u);
+    forces_->append(row_, not_unique_);
+    if (request_.keep_trajectory)
+      for (const std::size_t column : not_unique_) note_undetermined(column, t);
   }
 
-  /// λ of each loop, and how many of them are not unique.
-  void loop_forces(double t, const Eigen::VectorXd& lambda) {
-    const bool found = !std::isnan(lambda[0]);
-    const std::vector<bool>& unique =
-        found ? unique_->find(t, now_.q.data(), now_.u.data(), lambda.data()) : all_unique_;
-    const auto& rows = mechanism_.rows();
-    int not_unique = 0;
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-      if (!unique[i]) note_undetermined(row_.size(), t);
-      row_.push_back(lambda[static_cast<Eigen::Index>(i)]);
-      not_unique += !unique[i];
-      if (i + 1 < rows.size() && rows[i + 1].loop == rows[i].loop) continue;
-      row_.push_back(found ? not_unique : not_measured);
-      not_unique = 0;
-    }
-  }
   void note_undetermined(std::size_t column, double t) {
-    const std::string& label = result_.trajectory.columns[column];
+    const std::string& label = columns_[column];
     auto& all = result_.undetermined;
     auto at =
         std::find_if(all.begin(), all.end(), [&](const auto& u) { return u.column == label; });
     if (at == all.end()) at = all.insert(at, {label, 0, t, t});
     ++at->samples;
     at->to = t;
+  }
+
+  /// Whether an output time that is still to come lies before t or at it.
+  bool sample_before(double t) {
+    const std::vector<double>& times = *output_times_;
+    const std::vector<double>& seen = result_.series.t;
+    while (next_ < times.size() && !seen.empty() && times[next_] <= seen.back()) ++next_;
+    return next_ < times.size() && times[next_] <= t;
+  }
+
+  /// The form's own λ against that of (3), and, in its place, against the reference.
+  void compare_own(double t) {
+    Series& s = result_.series;
+    s.multiplier_difference.push_back(not_measured);
+    const Eigen::VectorXd& own = own_->at(t, now_.multipliers);
+    own_row_.clear();
+    if (own.size() == 0) return;
+    own_row_ = row_;
+    std::size_t column = first_force_;
+    double& difference = s.multiplier_difference.back();
+    for (Eigen::Index i = 0; i < own.size(); ++i, ++column) {
+      if (i > 0 && new_loop(i)) ++column;  // over `undetermined`
+      own_row_[column] = own[i];
+      const double solved = forces_->lambda()[i],
+                   apart = std::abs(own[i] - solved) / (1 + std::abs(solved));
+      if (forces_->unique()[static_cast<std::size_t>(i)] && !(apart <= difference))
+        difference = apart;
+    }
+  }
+  bool new_loop(Eigen::Index i) const {
+    const auto at = static_cast<std::size_t>(i);
+    return mechanism_.rows()[at].loop != mechanism_.rows()[at - 1].loop;
   }
 
   void compare(double t) {
@@ -339,12 +373,19 @@ class RunMonitor {
     Series& s = result_.series;
     s.position_error.push_back(not_measured);
     s.velocity_error.push_back(not_measured);
+    const bool with_forces = request_.reference->has_forces();
+    if (with_forces) s.force_error.push_back(not_measured);
+    if (with_forces && own_) s.multiplier_error.push_back(not_measured);
     if (!hit) return;
-    const auto error =
-        request_.reference->error(static_cast<std::size_t>(at - times.begin()), row_);
+    const auto row_of_reference = static_cast<std::size_t>(at - times.begin());
+    const auto error = request_.reference->error(row_of_reference, row_, not_unique_);
     s.position_error.back() = error.position;
     s.velocity_error.back() = error.velocity;
     ++compared_;
+    if (with_forces) s.force_error.back() = error.force;
+    if (with_forces && own_ && !own_row_.empty())
+      s.multiplier_error.back() =
+          request_.reference->error(row_of_reference, own_row_, not_unique_).force;
   }
 
   const Mechanism& mechanism_;
@@ -357,14 +398,22 @@ class RunMonitor {
   std::unique_ptr<Evaluation<double>> integrated_e_;
   std::unique_ptr<LoopSolver> integrated_solver_;
   Snapshot of_form_;  ///< of the integrated scene
-  std::optional<UniqueMultipliers> unique_;
-  std::vector<bool> all_unique_;
+  std::optional<DrivePower> drives_;
+  std::optional<ForceColumns> forces_;
+  std::optional<OwnMultipliers> own_;  ///< where the run integrates the scene as written
+  const std::vector<double>* output_times_ = nullptr;
+  std::size_t next_ = 0;         ///< of the output times that are left
+  std::size_t first_force_ = 0;  ///< column
+  std::vector<std::size_t> not_unique_;
+  std::vector<double> own_row_;
   bool lengths_, both_;      ///< rows in m; and others in rad
   Eigen::VectorXd residue_;  ///< Φ at the start where redundant equations leave it open, or empty
   Eigen::VectorXd phi_, drift_, middle_;
   std::vector<double> markers_, row_, state_;
   Snapshot now_;
-  DissipatedEnergy dissipated_energy_;
+  std::vector<std::string> columns_;  ///< of a trajectory
+  bool works_;                        ///< beside drives, what has no potential
+  IntegratedWork work_;
   PassedLimits limits_;
   std::optional<SingularCrossings> singular_crossings_;
   std::optional<Apart> apart_;

@@ -46,11 +46,14 @@ template <class Each>
 void list(const Each& each,
           auto&& s) requires std::is_same_v<std::remove_cvref_t<decltype(s)>, Series> {
   auto& [t, position_drift, velocity_drift, angle_drift, angle_rate_drift, energy, energy_error,
-         impulse, position_error, velocity_error] = s;
+         impulse, position_error, velocity_error, force_error, multiplier_error,
+         multiplier_difference] = s;
   each("t", t), each("position_drift", position_drift), each("velocity_drift", velocity_drift);
   each("angle_drift", angle_drift), each("angle_rate_drift", angle_rate_drift);
   each("energy", energy), each("energy_error", energy_error), each("impulse", impulse);
   each("position_error", position_error), each("velocity_error", velocity_error);
+  each("force_error", force_error), each("multiplier_error", multiplier_error);
+  each("multiplier_difference", multiplier_difference);
 }
 
 template <class Each>
@@ -105,9 +108,9 @@ void list(const Each& each,
          velocity_drift_max, between_steps_max, position_growth, velocity_growth, angle_drift_max,
          angle_rate_drift_max, angle_between_steps_max, angle_growth, angle_rate_growth,
          energy_error_max, kinetic_energy_max, energy_scale, position_error_max, velocity_error_max,
-         integrated, rank, dependent_rows, residue, weak_evaluations, faded_rows,
-         singular_crossings, least_pivot, undetermined, passed_limits, series, trajectory, film] =
-      s;
+         force_error_max, multiplier_error_max, multiplier_difference_max, integrated, rank,
+         dependent_rows, residue, weak_evaluations, faded_rows, singular_crossings, least_pivot,
+         undetermined, passed_limits, series, trajectory, film] = s;
   each("scene", scene), each("settings", settings), each("status", status), each("reason", reason);
   each("stopped_at", stopped_at), each("stiff_from", stiff_from), each("changed_at", changed_at),
       each("counters", counters), each("partitions", partitions);
@@ -123,6 +126,8 @@ void list(const Each& each,
   each("energy_error_max", energy_error_max), each("kinetic_energy_max", kinetic_energy_max);
   each("energy_scale", energy_scale);
   each("position_error_max", position_error_max), each("velocity_error_max", velocity_error_max);
+  each("force_error_max", force_error_max), each("multiplier_error_max", multiplier_error_max);
+  each("multiplier_difference_max", multiplier_difference_max);
   each("integrated", integrated), each("rank", rank), each("dependent_rows", dependent_rows),
       each("residue", residue);
   each("weak_evaluations", weak_evaluations);

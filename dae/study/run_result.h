@@ -46,13 +46,20 @@ struct Series {
   std::vector<double> velocity_drift;    ///< |Φ̇(q, q̇, t)|₂ of the same rows
   std::vector<double> angle_drift;       ///< of rows in rad, where others are in m [rad]
   std::vector<double> angle_rate_drift;  ///< [rad/s]
-  std::vector<double> energy;  ///< T + V less the work of dampers and of wrenches without potential
-                               ///< [J]; NaN with drives
+  std::vector<double> energy;  ///< T + V less the work of dampers, of wrenches without potential
+                               ///< and of drives [J]
   std::vector<double> energy_error;  ///< energy − energy(0) [J]
   std::vector<double> impulse;       ///< |σ|₂ of momentum forms, |λ|₂ of the others
   /// Position error against the reference, max |err|/(1+|ref|); empty without a reference.
   std::vector<double> position_error;
   std::vector<double> velocity_error;  ///< the same of rates
+  /// Error of λ from (3) at (t, q, u), and of other forces, against a reference that has them;
+  /// those alone that are unique.
+  std::vector<double> force_error;
+  /// Error of λ as the form itself has it: in its state, or σ̇ + κσ; else empty.
+  std::vector<double> multiplier_error;
+  /// λ of the form itself against that of (3), max |difference|/(1+|λ|); else empty.
+  std::vector<double> multiplier_difference;
 };
 
 /// trajectory.csv: one column per quantity, rows at the output times.
@@ -113,8 +120,11 @@ struct RunResult {
   double kinetic_energy_max = not_measured;  ///< largest T at the samples [J], the scale of rates
   /// Largest T + |V − V(0)| at the samples [J]: energy errors compare to it.
   double energy_scale = not_measured;
-  double position_error_max = not_measured;  ///< largest of Series::position_error
-  double velocity_error_max = not_measured;  ///< largest of Series::velocity_error
+  double position_error_max = not_measured;         ///< largest of Series::position_error
+  double velocity_error_max = not_measured;         ///< largest of Series::velocity_error
+  double force_error_max = not_measured;            ///< largest of Series::force_error
+  double multiplier_error_max = not_measured;       ///< largest of Series::multiplier_error
+  double multiplier_difference_max = not_measured;  ///< of Series::multiplier_difference
   /// What the run integrated in place of the scene as written (cut/integrated_scene.h); empty:
   /// that.
   std::string integrated;

@@ -1,8 +1,9 @@
+#include <momenta/dae/joint_places.h>
 #include <momenta/dae/study/run_form.h>
 
 namespace momenta {
 
-std::vector<std::string> trajectory_columns(const Mechanism& mechanism) {
+std::vector<std::string> trajectory_columns(const Mechanism& mechanism, bool reactions) {
   std::vector<std::string> columns{"t [s]"};
   const auto add = [&](const std::vector<Column>& more) {
     for (const auto& c : more) columns.push_back(c.label());
@@ -11,28 +12,30 @@ std::vector<std::string> trajectory_columns(const Mechanism& mechanism) {
   add(mechanism.rate_columns());
   add(mechanism.marker_columns());
   columns.emplace_back("energy [J]");
-  if (mechanism.m() == 0) return columns;
-  const bool lengths = mechanism.has_lengths();
-  columns.emplace_back(lengths ? "position_drift [m]" : "position_drift [rad]");
-  columns.emplace_back(lengths ? "velocity_drift [m/s]" : "velocity_drift [rad/s]");
-  if (lengths && mechanism.has_angles()) {
-    columns.emplace_back("angle_drift [rad]");
-    columns.emplace_back("angle_rate_drift [rad/s]");
+  if (mechanism.m() > 0) {
+    const bool lengths = mechanism.has_lengths();
+    columns.emplace_back(lengths ? "position_drift [m]" : "position_drift [rad]");
+    columns.emplace_back(lengths ? "velocity_drift [m/s]" : "velocity_drift [rad/s]");
+    if (lengths && mechanism.has_angles()) {
+      columns.emplace_back("angle_drift [rad]");
+      columns.emplace_back("angle_rate_drift [rad/s]");
+    }
+    const std::vector<Column> multipliers = mechanism.multiplier_columns();
+    const std::vector<RowName>& rows = mechanism.rows();
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      columns.push_back(multipliers[i].label());
+      if (i + 1 == rows.size() || rows[i + 1].loop != rows[i].loop)
+        columns.push_back(rows[i].loop + ".undetermined [1]");
+    }
   }
-  std::string loop;
-  int number = 0;
-  const auto end_loop = [&] {
-    if (number > 0) columns.push_back(loop + ".undetermined [1]");
-  };
-  for (std::size_t i = 0; i < mechanism.rows().size(); ++i) {
-    const RowName& row = mechanism.rows()[i];
-    if (row.loop != loop) end_loop();
-    number = row.loop == loop ? number + 1 : 1;
-    loop = row.loop;
-    columns.push_back(loop + ".lambda" + std::to_string(number) +
-                      (mechanism.angle_rows()[i] ? " [N m]" : " [N]"));
-  }
-  end_loop();
+  add(mechanism.effort_columns());
+  if (reactions && !mechanism.scene().lagrangian)
+    for (const JointPlace& joint : joint_places(mechanism)) {
+      for (const char* axis : {".force_x", ".force_y", ".force_z"})
+        columns.push_back(joint.name + axis + " [N]");
+      for (const char* axis : {".torque_x", ".torque_y", ".torque_z"})
+        columns.push_back(joint.name + axis + " [N m]");
+    }
   return columns;
 }
 

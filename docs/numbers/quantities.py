@@ -93,6 +93,9 @@ class Run:
     energy_error = property(lambda self: self._value("energy", "error_max"))
     error = property(lambda self: self._look(ERRORS, self.summary, "error", "position_max"))
     rate_error = property(lambda self: self._look(ERRORS, self.summary, "error", "velocity_max"))
+    force_error = property(lambda self: self._look(ERRORS, self.summary, "error", "force_max"))
+    multiplier_error = property(lambda self: self._look(ERRORS, self.summary, "error", "multiplier_max"))
+    multiplier_difference = property(lambda self: self._look(ERRORS, self.summary, "multiplier_difference_max"))
     steps = property(lambda self: self._count("steps"))
     evaluations = property(lambda self: self._count("evaluations"))
     solutions = property(lambda self: self._count("factorizations"))
@@ -117,7 +120,8 @@ class Run:
 COLUMNS = {  # header of a column, without units: the quantity of a run
     "position drift": "position_drift", "velocity drift": "velocity_drift", "growth": "growth",
     "grows like": "growth", "energy error": "energy_error", "of energy": "energy_error",
-    "error of positions": "accuracy", "of rates": "rate_error", "steps": "steps", "evaluations": "evaluations",
+    "error of positions": "accuracy", "of rates": "rate_error", "of λ": "force_error",
+    "of the form's own λ": "multiplier_error", "steps": "steps", "evaluations": "evaluations",
     "solutions": "solutions",
 }
 COUNTED = {"steps", "evaluations", "solutions"}

@@ -43,6 +43,15 @@ const told = {
     numeric("largest position error", "", (run) => run.error.position_max),
     optional(numeric("largest velocity error", "", (run) => run.error.velocity_max)),
   ]],
+  force_error: [largest("How far the loop forces λ are off, solved from (3) at the coordinates and rates of the run"), [
+    numeric("largest error of λ", "", (run) => run.error.force_max),
+  ]],
+  multiplier_error: [largest("How far λ is off as the form itself has it: in its state, or σ̇ + κσ of momentum forms"), [
+    numeric("largest error of its own λ", "", (run) => run.error.multiplier_max),
+  ]],
+  multiplier_difference: [largest("The form's own λ beside λ solved from (3) at the same state: noise of the one, which needs no reference"), [
+    optional(numeric("largest difference", "", (run) => run.multiplier_difference_max)),
+  ]],
   impulse: [largest("What a gauge keeps from growing: the multipliers σ of momentum forms"), []],
 };
 const histories = study.histories.map((history) => ({ ...history, caption: told[history.key][0], columns: told[history.key][1] }));

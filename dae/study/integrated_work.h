@@ -1,7 +1,9 @@
 #pragma once
-// The work, along a run, of the forces without potential: dampers, stops, moments, formulas; and of
-// what changes potentials with time. The power is evaluated at the five Gauss points of each step,
-// and the polynomial through these values gives the work up to any time inside the step.
+// The work, along a run, of what has no potential: dampers, stops, moments, formulas; drives; and
+// what changes potentials with time. The power is evaluated at the Gauss points of each step, and
+// the polynomial through these values gives the work up to any time inside the step: five points
+// give that of a whole step to order 10, up to a time inside it only to order 6, and that of nine
+// points is of order 10 there too.
 
 #include <momenta/core/lagrangian/lagrangian_model.h>
 #include <momenta/core/scene/formula.h>
@@ -13,44 +15,48 @@
 
 namespace momenta {
 
-class DissipatedEnergy {
+class IntegratedWork {
  public:
-  explicit DissipatedEnergy(const Mechanism& mechanism)
-      : any_(mechanism.scene().lagrangian ? mechanism.lagrangian().has_power
-                                          : loses_energy(mechanism.scene())) {}
-
-  /// Whether there is anything to integrate.
-  bool any() const { return any_; }
+  /// Whether forces of the mechanism, its drives apart, have no potential.
+  static bool has_any(const Mechanism& mechanism) {
+    return mechanism.scene().lagrangian ? mechanism.lagrangian().has_power
+                                        : loses_energy(mechanism.scene());
+  }
 
   /// `power(t, watts)` at times inside the step that was just taken; false: no value, and the step
-  /// counts as it was last known.
+  /// counts as it was last known. `inside`: the work up to times inside it will be asked for.
   template <class Power>
-  bool step(double t0, double t1, Power&& power) {
+  bool step(double t0, double t1, bool inside, Power&& power) {
     work_ = until(end_);
     from_ = t0;
     end_ = t1;
-    for (std::size_t i = 0; i < points.size(); ++i)
-      if (!power(t0 + points[i] * (t1 - t0), power_[i])) return false;
+    count_ = inside ? nine.size() : five.size();
+    for (std::size_t i = 0; i < count_; ++i)
+      if (!power(t0 + point(i) * (t1 - t0), power_[i])) return false;
     return true;
   }
 
   void carry(Memory& memory) {
-    memory(work_), memory(from_), memory(end_), memory(power_.data(), power_.size());
+    memory(work_), memory(from_), memory(end_), memory(count_);
+    memory(power_.data(), power_.size());
   }
 
   /// Up to a time in the last step [J].
   double until(double t) const {
     if (!(end_ > from_)) return work_;
     const double part = (t - from_) / (end_ - from_);
-    double mean = 0;  // of the power from from_ to t
-    for (std::size_t i = 0; i < points.size(); ++i) mean += weights[i] * power_at(part * points[i]);
+    double mean = 0;  // of the power from from_ to t: exact, the polynomial's degree is below 10
+    for (std::size_t i = 0; i < five.size(); ++i) mean += weights[i] * power_at(part * five[i]);
     return work_ + mean * (t - from_);
   }
 
  private:
   // On [0, 1].
-  static constexpr std::array<double, 5> points{0.046910077030668004, 0.23076534494715845, 0.5,
-                                                0.76923465505284155, 0.95308992296933200};
+  static constexpr std::array<double, 5> five{0.046910077030668004, 0.23076534494715845, 0.5,
+                                              0.76923465505284155, 0.95308992296933200};
+  static constexpr std::array<double, 9> nine{
+      0.015919880246186955, 0.08198444633668210, 0.19331428364970480, 0.33787328829809555, 0.5,
+      0.66212671170190445,  0.80668571635029520, 0.91801555366331790, 0.98408011975381304};
   static constexpr std::array<double, 5> weights{0.11846344252809454, 0.23931433524968324,
                                                  0.28444444444444444, 0.23931433524968324,
                                                  0.11846344252809454};
@@ -73,22 +79,23 @@ class DissipatedEnergy {
     return false;
   }
 
+  double point(std::size_t i) const { return count_ == five.size() ? five[i] : nine[i]; }
   /// The polynomial through the powers, at a fraction of the step.
   double power_at(double x) const {
     double sum = 0;
-    for (std::size_t i = 0; i < power_.size(); ++i) {
+    for (std::size_t i = 0; i < count_; ++i) {
       double term = power_[i];
-      for (std::size_t j = 0; j < power_.size(); ++j)
-        if (j != i) term *= (x - points[j]) / (points[i] - points[j]);
+      for (std::size_t j = 0; j < count_; ++j)
+        if (j != i) term *= (x - point(j)) / (point(i) - point(j));
       sum += term;
     }
     return sum;
   }
 
-  bool any_;
   double work_ = 0;  ///< up to from_ [J]
   double from_ = 0, end_ = 0;
-  std::array<double, 5> power_{};  ///< at the points of the last step [W]
+  std::size_t count_ = five.size();
+  std::array<double, 9> power_{};  ///< at the points of the last step [W]
 };
 
 }  // namespace momenta

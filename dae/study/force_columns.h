@@ -1,0 +1,54 @@
+#pragma once
+// The forces at a state of the motion, as columns of the trajectory: λ of the loops, the efforts of
+// drives, the reactions of joints where they are asked for. All with u̇ and λ of (3) at (t, q, u),
+// the same definition for every form.
+//
+// Where redundant loops leave λ open, its columns hold one of the solutions, beside how many of
+// them are not unique; efforts and reactions that differ between the solutions are left out (not a
+// number), those that are the same in all are given.
+
+#include <momenta/dae/kkt/loop_solver.h>
+#include <momenta/dae/measure/multipliers.h>
+#include <momenta/dae/measure/reactions.h>
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace momenta {
+
+class ForceColumns {
+ public:
+  /// `e` and, where there are loops, `solver` (else null) are used as workspaces.
+  ForceColumns(const Mechanism& mechanism, Evaluation<double>& e, LoopSolver* solver,
+               bool reactions);
+
+  /// Solves (3) at (t, q, u); what has no solution is not a number. Cost: that of a solution of
+  /// (3), twice where rows have faded.
+  void solve(double t, const Eigen::VectorXd& q, const Eigen::VectorXd& u);
+  /// λ (m), after solve().
+  const Eigen::VectorXd& lambda() const { return lambda_; }
+  /// Which of them are unique (m); all, where there is no solution.
+  const std::vector<bool>& unique() const { return unique_rows_; }
+  /// Appends the columns of trajectory_columns() after the drifts, and to `not_unique` the places
+  /// of those that are not. With reactions O(bodies + loops).
+  void append(std::vector<double>& row, std::vector<std::size_t>& not_unique);
+
+ private:
+  void append_efforts(std::vector<double>& row, std::vector<std::size_t>& not_unique);
+  void append_reactions(std::vector<double>& row, std::vector<std::size_t>& not_unique);
+
+  const Mechanism& mechanism_;
+  Evaluation<double>& e_;
+  LoopSolver* solver_;
+  bool reactions_;
+  std::optional<UniqueMultipliers> multipliers_;
+  std::unique_ptr<WrenchSweep> sweep_;  ///< null: neither drives of joints nor reactions
+  bool found_ = false;
+  double t_ = 0;
+  Eigen::VectorXd q_, u_, udot_, lambda_, rest_, idle_;
+  std::vector<bool> unique_rows_;
+  std::vector<double> efforts_, with_, without_;
+};
+
+}  // namespace momenta

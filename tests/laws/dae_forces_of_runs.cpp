@@ -1,0 +1,381 @@
+// Forces as results of runs: the power of what is prescribed is what T + V gains, efforts of drives
+// are the residuals of (1a) in the coordinates they prescribe, energies balance with drives in
+// every form, λ converges, and what is not unique is left out.
+
+#include "equations/ensemble.h"
+#include "equations/linkages.h"
+#include "equations/random_loops.h"
+#include "equations/random_tree.h"
+
+#include <gtest/gtest.h>
+#include <momenta/core/scene/files/read_scene.h>
+#include <momenta/dae/joint_places.h>
+#include <momenta/dae/kkt/loop_solver.h>
+#include <momenta/dae/measure/drive_power.h>
+#include <momenta/dae/measure/reactions.h>
+#include <momenta/dae/study/own_reference.h>
+#include <momenta/dae/study/run_form.h>
+#include <momenta/dae/study/state_values.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+
+namespace momenta::dae_forces_of_runs {
+namespace {
+
+using namespace equations;
+using Eigen::VectorXd;
+
+Scene example(const std::string& name) {
+  return read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples" / name);
+}
+
+VectorXd any(RandomTree& random, int size, double reach) {
+  VectorXd x(size);
+  for (int i = 0; i < size; ++i) x[i] = random.uniform(-reach, reach);
+  return x;
+}
+
+/// A tree with drives of joints, a loop with drives of its own, and a coupler of driven and free
+/// joints; in a plane or in space.
+Scene driven_scene(RandomTree& random, unsigned seed, bool flat, const TreeRecipe& recipe) {
+  Scene scene = flat ? random.planar_scene(recipe) : random.scene(recipe);
+  if (flat || seed % 4 == 0) return scene;
+  if (const auto coupler = random_coupler(random, scene); coupler && seed % 2 == 0) {
+    scene.loops.push_back(*coupler);
+    if (seed % 3 == 0) drive_loop(random, scene, *coupler, 1, 0);
+  }
+  scene.loops.push_back(random_loop(random, scene, loop_kinds[seed % loop_kinds.size()]));
+  drive_loop(random, scene, scene.loops.back(), random.below(8), random.below(8));
+  return scene;
+}
+
+/// The power of drives and of forces without potential against the rate of T + V along the motion,
+/// by a difference of fourth order.
+TEST(ForcesOfRuns, PowerOfDrivesIsWhatEnergyGains) {
+  int tried = 0, flat_ones = 0, trees = 0;
+  double largest = 0;
+  for (unsigned seed = 0; seed < 90; ++seed) {
+    RandomTree random(seed);
+    const bool flat = seed % 5 == 0;
+    const Scene scene = driven_scene(random, seed, flat, {.bodies = 5});
+    const Mechanism mechanism(scene, {.algebra = flat ? Algebra::automatic : Algebra::spatial});
+    const int nv = mechanism.nv(), m = mechanism.m();
+    if (m > nv || nv == 0 || !mechanism.plan().drives) continue;
+    const auto e = mechanism.evaluation<double>();
+    const auto solver = m > 0 ? make_loop_solver(mechanism, *e) : nullptr;
+    const TreeState s = random.state(mechanism.tree());
+    VectorXd u = s.u, sigma(m), udot(nv), lambda(m), qdot(mechanism.nq());
+    if (m > 0) {
+      ASSERT_TRUE(solver->momentum(s.t, s.q.data(), s.u.data(), nullptr, 1e-13, 0, u.data(),
+                                   sigma.data(), nullptr));
+      ASSERT_TRUE(solver->acceleration(s.t, s.q.data(), u.data(), nullptr, 0, 0, udot.data(),
+                                       lambda.data()));
+    } else {
+      ASSERT_TRUE(e->open_accelerations(s.t, s.q.data(), u.data(), udot.data()));
+    }
+    if (!(lambda.norm() < 300) || !(udot.norm() < 300)) continue;
+    ++tried;
+    flat_ones += mechanism.plan().planar;
+    trees += m == 0;
+    e->place(s.t, s.q.data());
+    e->move(u.data());
+    e->coordinate_rates(s.q.data(), u.data(), qdot.data());
+    const double lost = e->dissipated_power(s.q.data(), u.data());
+    DrivePower drives(mechanism, *e, solver.get());
+    ASSERT_TRUE(drives.any());
+    const double power = drives.at(s.t, s.q.data(), u.data());
+    const auto energy = [&](double h) {
+      const VectorXd q = s.q + h * qdot, v = u + h * udot;
+      e->place(s.t + h, q.data());
+      e->move(v.data());
+      return e->kinetic() + e->potential(q.data());
+    };
+    const double h = 2e-4;
+    const double rate =
+        (8 * (energy(h) - energy(-h)) - (energy(2 * h) - energy(-2 * h))) / (12 * h);
+    EXPECT_NEAR(rate, power + lost, 1e-6 * (1 + std::abs(power) + std::abs(lost) + udot.norm()))
+        << seed;
+    largest = std::max(largest, std::abs(power));
+  }
+  EXPECT_GT(tried, 30);
+  EXPECT_GT(flat_ones, 5);
+  EXPECT_GT(trees, 10);
+  EXPECT_GT(largest, 10);
+}
+
+/// The slow twin of efforts: the mechanism with the driven coordinates set free, and the residual
+/// of (1a) in them, at any accelerations and any multipliers.
+TEST(ForcesOfRuns, EffortsAreResidualsOfTheMechanismSetFree) {
+  int tried = 0, coupled = 0;
+  for (unsigned seed = 0; seed < 60; ++seed) {
+    RandomTree random(seed);
+    const bool flat = seed % 5 == 0;
+    const TreeRecipe recipe{.bodies = 5, .kinds = canonical_kinds, .rotors = false};
+    const Scene scene = driven_scene(random, seed, flat, recipe);
+    Scene set_free = scene;
+    std::erase_if(set_free.drives, [](const DriveSpec& d) { return !d.joint.empty(); });
+    const MechanismOptions options{.algebra = flat ? Algebra::automatic : Algebra::spatial};
+    const Mechanism mechanism(scene, options), twin(set_free, options);
+    const std::size_t drives = mechanism.tree().drives.size();
+    if (drives == 0) continue;
+    ASSERT_EQ(twin.m(), mechanism.m());
+    ++tried;
+    for (const LoopSpec& loop : scene.loops)
+      for (const std::string& joint : loop.joints)
+        coupled += std::any_of(scene.drives.begin(), scene.drives.end(),
+                               [&](const DriveSpec& d) { return d.joint == joint; });
+    const double t = 0.3;
+    const VectorXd q = any(random, mechanism.nq(), 1), u = any(random, mechanism.nv(), 1),
+                   udot = any(random, mechanism.nv(), 3), lambda = any(random, mechanism.m(), 5);
+    // Body by body: the trees are the same but for what is prescribed.
+    ASSERT_EQ(twin.tree().bodies.size(), mechanism.tree().bodies.size());
+    VectorXd q2(twin.nq()), u2(twin.nv()), udot2(twin.nv()), tau(twin.nv());
+    std::vector<int> place(drives);
+    for (std::size_t k = 0; k < twin.tree().bodies.size(); ++k) {
+      const Tree::Body &b = mechanism.tree().bodies[k], &c = twin.tree().bodies[k];
+      ASSERT_EQ(b.joint, c.joint);
+      if (b.drive >= 0) {
+        const auto drive = static_cast<std::size_t>(b.drive);
+        ASSERT_EQ(c.nv, 1);
+        mechanism.tree().drives[drive].evaluate(t, q2[c.q], u2[c.u], udot2[c.u]);
+        place[drive] = c.u;
+        continue;
+      }
+      for (int i = 0; i < b.nv; ++i) {
+        q2[c.q + i] = q[b.q + i];
+        u2[c.u + i] = u[b.u + i];
+        udot2[c.u + i] = udot[b.u + i];
+      }
+    }
+    const auto e = twin.evaluation<double>();
+    e->place(t, q2.data());
+    e->move(u2.data());
+    e->joint_forces(q2.data(), u2.data(), udot2.data(), lambda.data(), tau.data());
+    const auto sweep = make_wrench_sweep(mechanism);
+    std::vector<double> efforts(drives);
+    sweep->move(t, q.data(), u.data(), udot.data(), lambda.data());
+    sweep->efforts(efforts.data());
+    for (std::size_t i = 0; i < drives; ++i)
+      EXPECT_NEAR(efforts[i], tau[place[i]], 1e-10 * (1 + tau.norm())) << seed << " drive " << i;
+  }
+  EXPECT_GT(tried, 30);
+  EXPECT_GT(coupled, 3);
+}
+
+struct Method {
+  std::string form, integrator, gauge;
+  double tolerance, bound;  ///< of the energy error, relative
+};
+
+RunResult run_by(const Mechanism& mechanism, const Method& how, double end) {
+  RunRequest request;
+  request.settings.form = how.form;
+  request.settings.integrator = how.integrator;
+  request.settings.gauge = how.gauge;
+  request.settings.rtol = request.settings.atol = how.tolerance;
+  request.settings.end_time = end;
+  request.settings.samples = 50;
+  request.multipliers = true;
+  return run_form(mechanism, start_of(mechanism), request);
+}
+
+/// With the work of drives counted, energies of driven mechanisms balance as those of others do: a
+/// driven crank, a rope of prescribed length, a driven tree.
+TEST(ForcesOfRuns, EnergyBalancesWithDrivesInEveryForm) {
+  Scene tree = example("driven/scene.toml");
+  tree.loops.clear();
+  std::erase_if(tree.joints, [](const JointSpec& j) { return j.name == "C"; });
+  std::erase_if(tree.bodies, [](const BodySpec& b) { return b.name == "rocker"; });
+  for (const Scene& scene : {example("driven/scene.toml"), example("driven/swing.toml"), tree}) {
+    const Mechanism mechanism(scene);
+    for (const Method& how : {Method{"momentum", "vern9", "reset", 1e-13, 1e-12},
+                              Method{"momentum", "dop853", "leak:3", 1e-12, 1e-10},
+                              Method{"acceleration", "vern9", "", 1e-13, 1e-12},
+                              Method{"projected", "vern9", "", 1e-13, 1e-12},
+                              Method{"baumgarte", "dop853", "", 1e-12, 1e-10},
+                              Method{"partitioned", "dop853", "", 1e-12, 1e-10},
+                              Method{"momentum-index2", "ida", "leak:3", 1e-9, 1e-6},
+                              Method{"stabilised-index2", "ida", "", 1e-9, 1e-6},
+                              Method{"acceleration-index1", "ida", "", 1e-9, 1e-6},
+                              Method{"momentum-index1", "ida", "leak:3", 1e-9, 1e-6}}) {
+      if (mechanism.m() == 0 && how.form != "momentum" && how.form != "acceleration") continue;
+      Method method = how;
+      if (mechanism.m() == 0) method.gauge = "";
+      const RunResult run = run_by(mechanism, method, 3);
+      ASSERT_EQ(run.status, "done") << scene.name << " " << how.form << ": " << run.reason;
+      EXPECT_LE(run.energy_error_max, how.bound * run.energy_scale)
+          << scene.name << " " << how.form << " " << how.integrator;
+      // The drive has done work, or there was nothing to balance.
+      EXPECT_GT(run.energy_scale, 1);
+    }
+  }
+}
+
+/// The balance has the order of the method: with steps half as long its error falls by 2⁴ or more.
+TEST(ForcesOfRuns, TheBalanceOfDrivesHasTheOrderOfTheMethod) {
+  const Mechanism mechanism(example("driven/scene.toml"));
+  const auto error = [&](double step) {
+    RunRequest request;
+    request.settings.form = "momentum";
+    request.settings.integrator = "gauss4";
+    request.settings.gauge = "reset";
+    request.settings.step = step;
+    request.settings.end_time = 2;
+    request.settings.samples = 20;
+    const RunResult run = run_form(mechanism, start_of(mechanism), request);
+    EXPECT_EQ(run.status, "done") << run.reason;
+    return run.energy_error_max;
+  };
+  const double coarse = error(0.02), fine = error(0.01);
+  EXPECT_GT(coarse / fine, 11) << coarse << " " << fine;
+  EXPECT_LT(coarse / fine, 40) << coarse << " " << fine;
+}
+
+/// λ of the reference in quadruple precision against λ of (3) in doubles at the same state, and
+/// against the λ of a run.
+TEST(ForcesOfRuns, MultipliersConvergeToThoseOfQuadruplePrecision) {
+  for (const std::string name :
+       {"andrews/scene.toml", "four_bar/scene.toml", "spatial_slider_crank/scene.toml"}) {
+    const Mechanism mechanism(example(name));
+    const Start start = assemble(mechanism).start;
+    const double end = name[0] == 'a' ? 0.004 : 0.2;
+    const OwnReference own = own_reference(mechanism, start, end, 2);
+    const auto first = static_cast<std::size_t>(mechanism.nq() + mechanism.nv());
+    ASSERT_TRUE(own.reference.has_forces());
+    double size = 0;
+    for (int i = 0; i < mechanism.m(); ++i) size = std::max(size, std::abs(start.lambda[i]));
+    for (int i = 0; i < mechanism.m(); ++i)
+      EXPECT_NEAR(own.reference.values()[0][first + static_cast<std::size_t>(i)], start.lambda[i],
+                  1e-10 * (1 + size))
+          << name << " " << i;
+    const auto errors = [&](const std::string& form, const std::string& gauge, double tolerance) {
+      RunRequest request;
+      request.settings.form = form;
+      request.settings.gauge = gauge;
+      request.settings.rtol = request.settings.atol = tolerance;
+      request.settings.end_time = end;
+      request.settings.samples = 2;
+      request.reference = &own.reference;
+      const RunResult run = run_form(mechanism, start, request);
+      EXPECT_EQ(run.status, "done") << name << form << run.reason;
+      return run;
+    };
+    for (const auto& [form, gauge] : std::map<std::string, std::string>{
+             {"momentum", "reset"}, {"projected", ""}, {"baumgarte", ""}}) {
+      const RunResult loose = errors(form, gauge, 1e-5), tight = errors(form, gauge, 1e-11);
+      EXPECT_LT(tight.force_error_max, 1e-7) << name << " " << form;
+      EXPECT_LT(tight.force_error_max, 1e-2 * loose.force_error_max) << name << " " << form;
+      EXPECT_LT(tight.multiplier_error_max, 1e-2) << name << " " << form;
+    }
+  }
+}
+
+/// λ = σ̇ + κσ of the states alone: it is the λ of (3) but for the method's error, with every gauge,
+/// and its noise grows as the inverse of the step.
+TEST(ForcesOfRuns, MultipliersOfImpulsesAreThoseOfTheSolution) {
+  const Mechanism mechanism(example("four_bar/scene.toml"), {.cut = CutChoice::scene});
+  for (const char* gauge : {"none", "reset", "flip", "leak:3"}) {
+    const auto difference = [&](double step) {
+      RunRequest request;
+      request.settings.form = "momentum";
+      request.settings.integrator = "gauss6";
+      request.settings.gauge = gauge;
+      request.settings.step = step;
+      request.settings.end_time = 2;
+      request.settings.samples = 37;
+      request.multipliers = true;
+      const RunResult run = run_form(mechanism, start_of(mechanism), request);
+      EXPECT_EQ(run.status, "done") << run.reason;
+      EXPECT_EQ(run.series.multiplier_difference.size(), run.series.t.size());
+      EXPECT_TRUE(std::isnan(run.series.multiplier_difference[0]));  // no step has been taken
+      EXPECT_FALSE(std::isnan(run.series.multiplier_difference[1]));
+      return run.multiplier_difference_max;
+    };
+    const double coarse = difference(0.02), fine = difference(0.01);
+    EXPECT_LT(coarse, 0.1) << gauge;
+    EXPECT_GT(coarse / fine, 4) << gauge << " " << coarse << " " << fine;
+    EXPECT_GT(difference(1e-5), 1e-13 / 1e-5 * 1e-3) << gauge;  // noise, ε over the step
+  }
+}
+
+/// Of loops all of whose forces are open nothing is compared: no error, not none.
+TEST(ForcesOfRuns, WhatIsNotUniqueHasNoError) {
+  const Mechanism mechanism(example("bricard/scene.toml"));
+  const Start start = start_of(mechanism);
+  std::vector<std::string> columns{"P1.q [rad]"};
+  for (const Column& c : mechanism.multiplier_columns()) columns.push_back(c.label());
+  const std::vector<double> zeros(columns.size());
+  Reference reference("zeros", columns, {0, 0.1}, {zeros, zeros});
+  reference.bind(trajectory_columns(mechanism));
+  RunRequest request;
+  request.settings.gauge = "reset";
+  request.settings.end_time = 0.1;
+  request.settings.samples = 1;
+  request.reference = &reference;
+  const RunResult run = run_form(mechanism, start, request);
+  ASSERT_EQ(run.status, "done") << run.reason;
+  EXPECT_FALSE(std::isnan(run.position_error_max));
+  EXPECT_TRUE(std::isnan(run.force_error_max)) << run.force_error_max;
+  EXPECT_TRUE(std::isnan(run.multiplier_difference_max)) << run.multiplier_difference_max;
+}
+
+/// Columns of efforts and reactions are those of one state; what is not unique is left out.
+TEST(ForcesOfRuns, ColumnsAreTheForcesOfTheState) {
+  for (const std::string name :
+       {"driven/scene.toml", "spatial_slider_crank/scene.toml", "extremes/three_cranks.toml"}) {
+    const Mechanism mechanism(example(name));
+    RunRequest request;
+    request.settings.form = "momentum";
+    request.settings.gauge = "leak:3";
+    request.settings.end_time = 0.4;
+    request.settings.samples = 3;
+    request.keep_trajectory = request.reactions = true;
+    const RunResult run = run_form(mechanism, start_of(mechanism), request);
+    ASSERT_EQ(run.status, "done") << run.reason;
+    const auto& columns = run.trajectory.columns;
+    ASSERT_EQ(columns, trajectory_columns(mechanism, true));
+    const auto at = [&](const std::string& column) {
+      const auto found = std::find(columns.begin(), columns.end(), column);
+      EXPECT_NE(found, columns.end()) << column;
+      return static_cast<std::size_t>(found - columns.begin());
+    };
+    int left_out = 0, given_ones = 0;
+    for (const auto& row : run.trajectory.rows) {
+      ASSERT_EQ(row.size(), columns.size());
+      GivenState given;
+      given.t = row[0];
+      given.q.resize(mechanism.nq());
+      given.v.resize(mechanism.nv());
+      std::copy_n(row.begin() + 1, mechanism.nq(), given.q.begin());
+      std::copy_n(row.begin() + 1 + mechanism.nq(), mechanism.nv(), given.v.begin());
+      given.p = given.tau = VectorXd::Zero(mechanism.nv());
+      const StateValues state = evaluate_state(mechanism, given);
+      for (const Transmitted& r : state.reactions.joints)
+        for (int i = 0; i < 6; ++i) {
+          const char* parts[] = {".force_x [N]",    ".force_y [N]",    ".force_z [N]",
+                                 ".torque_x [N m]", ".torque_y [N m]", ".torque_z [N m]"};
+          const double expected = i < 3 ? r.force[i] : r.torque[i - 3],
+                       found = row[at(r.name + parts[i])];
+          EXPECT_EQ(std::isnan(found), !r.unique) << name << " " << r.name;
+          left_out += std::isnan(found);
+          given_ones += !std::isnan(found);
+          if (r.unique) {
+            EXPECT_NEAR(found, expected, 1e-8 * (1 + r.force.norm() + r.torque.norm()))
+                << name << " " << r.name << parts[i];
+          }
+        }
+      if (name[0] == 'd') {
+        // The planar drive of O: the moment of its reaction about its axis.
+        EXPECT_NEAR(row[at("O.effort [N m]")], row[at("O.torque_z [N m]")], 1e-9);
+      }
+    }
+    EXPECT_EQ(given_ones > 0, name[0] != 'e') << name;  // in three cranks every joint shares
+    EXPECT_EQ(left_out > 0, name[0] == 'e') << name;
+  }
+}
+
+}  // namespace
+}  // namespace momenta::dae_forces_of_runs
