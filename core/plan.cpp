@@ -25,10 +25,12 @@ Plan make_plan(const Tree& tree, const Scene& scene, Algebra algebra) {
   plan.drives = !tree.drives.empty();
   for (const auto& b : tree.bodies) {
     plan.quasi_velocities |= b.nq != b.nv;
-    plan.rotors += b.rotor != 0;
+    plan.rotors += b.rotor != 0 ? b.nv : 0;
     plan.joint_forces |= b.stiffness != 0 || b.damping != 0 || b.torque != 0 || b.friction != 0 ||
                          b.stop_stiffness != 0 || b.stop_damping != 0;
   }
+  for (const auto& joint : scene.joints)
+    plan.third_sweep |= joint.kind == JointKind::spherical && has_stops(joint);
   for (const auto& force : scene.forces)
     plan.third_sweep |= force.kind != "torque" || !force.law.empty();
   return plan;

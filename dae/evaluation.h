@@ -82,6 +82,8 @@ class Evaluation<double> : public EquationRows<double> {
   /// Where on its curve the point of each slot on a spline is, by place among the scene's loops
   /// [m, along the chords]; of other loops not a number. After place().
   virtual void slot_places(double* places) const = 0;
+  /// Of each spring-damper with limits, in the order of the scene, its length [m]. After place().
+  virtual void limited_lengths(double* /*lengths*/) const {}
 
   /// Place in u of the joint at which the last call of these two failed.
   virtual int singular_joint() const = 0;

@@ -127,6 +127,11 @@ class Mechanism::SweepEvaluation final : public SweepRows<Space, double> {
     }
   }
 
+  void limited_lengths(double* lengths) const override {
+    for (const auto& spring : model_.springs)
+      if (spring.limited) *lengths++ = SpringLine<Space, double>(w_, spring).length;
+  }
+
   int singular_joint() const override {
     return singular_joint_ < 0 ? -1 : model_.bodies[static_cast<std::size_t>(singular_joint_)].u;
   }

@@ -49,7 +49,8 @@ void accelerations_outward(Workspace<Space, S>& w, const S* u, const S* udot) {
                                          w.body[static_cast<std::size_t>(b.parent)].A);
     s.A += prescribed_acceleration(w, k, u);
     if (b.nv > 0 && udot) Joint<Space>::add_motion(b, s.edge, udot + b.u, s.A);
-    if (b.has_rotor()) s.rotor_acceleration = udot ? udot[b.u] : S(0.0);
+    if (b.has_rotor())
+      for (int i = 0; i < b.nv; ++i) s.rotor_acceleration[i] = udot ? udot[b.u + i] : S(0.0);
   }
 }
 
@@ -69,7 +70,7 @@ void newton_euler_inward(Workspace<Space, S>& w, const S* q, const S* u, S* tau)
   if (model.has_rotors)
     for (std::size_t k = 0; k < w.body.size(); ++k)
       if (const auto& b = model.bodies[k]; b.has_rotor())
-        tau[b.u] += b.rotor * w.body[k].rotor_acceleration;
+        for (int i = 0; i < b.nv; ++i) tau[b.u + i] += b.rotor * w.body[k].rotor_acceleration[i];
   if (model.has_joint_forces)
     for (const auto& b : model.bodies)
       if (b.nv == 1) tau[b.u] -= joint_force(b, q[b.q], u[b.u]);

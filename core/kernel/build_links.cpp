@@ -63,9 +63,9 @@ LinkTree build_links(const Model<Spatial>& model) {
   for (std::size_t k = 0; k < n; ++k) {
     const auto& b = model.bodies[k];
     Link& l = tree.links[k];
-    l.kind = b.kind == JointKind::revolute && b.drive < 0 ? LinkKind::revolute
-             : b.kind == JointKind::spherical             ? LinkKind::spherical
-                                                          : LinkKind::general;
+    l.kind = b.kind == JointKind::revolute && b.drive < 0       ? LinkKind::revolute
+             : b.kind == JointKind::spherical && !b.has_rotor() ? LinkKind::spherical
+                                                                : LinkKind::general;
     l.turn = turn_of(b.edge);
     l.ca = b.edge.cos_alpha;
     l.sa = b.edge.sin_alpha;
@@ -80,7 +80,7 @@ LinkTree build_links(const Model<Spatial>& model) {
     l.m = b.inertia.m;
     l.rotor = b.rotor;
     l.has_rotor = b.has_rotor();
-    if (l.has_rotor) tree.rotors.emplace_back(b.u, b.rotor);
+    for (int i = 0; l.has_rotor && i < b.nv; ++i) tree.rotors.emplace_back(b.u + i, b.rotor);
     for (int i = 0; i < 3; ++i) l.c[i] = b.inertia.mc[i];
     for (int i = 0; i < 3; ++i) l.moment[i] += b.inertia.mc[i];
     for (int i = 0; i < 6; ++i) l.J[i] = b.inertia.J.x[i];

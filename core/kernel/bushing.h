@@ -12,6 +12,9 @@
 // perpendicular to θ. Both couples act on whole relative motions, so what moves with both bodies
 // changes nothing, linear and angular momentum included. At |θ| = π the couple turns over.
 //
+// A stop at the largest angle of a spherical joint (joint_stop.h) is the couple −F(x, ẋ) θ/|θ| on
+// the child, x = |θ| − largest, ẋ = θ·ω/|θ|.
+//
 // θ from the quaternion (w, v) of the turn, w ≥ 0: θ = 2 v f(w), f(w) = acos w / √(1 − w²), and
 //   f(x) = f(y)/y,  y = √((1 + x)/2)                    half the angle
 //   f(x) = Σ a_k z^k,  z = (1 − x)/2,  a_0 = 1, a_{k+1}/a_k = (2k + 2)/(2k + 3)
@@ -100,7 +103,7 @@ class BushingMotion {
   Angular turn() const {
     Angular theta{};
     if constexpr (Space::dimension == 6) {
-      if (b_.rotational_stiffness == 0) return theta;
+      if (b_.rotational_stiffness == 0 && !b_.stop.acts()) return theta;
       Mat3<S> rest, turned;  // axes of the child without couple and as they are
       for (int j = 0; j < 3; ++j) {
         const Vec3<S> without = to_ground(w_, b_.parent, b_.rest_axes[static_cast<std::size_t>(j)]);
@@ -124,6 +127,20 @@ class BushingMotion {
     return theta;
   }
 
+  /// Whether θ is beyond the stop; then with(θ/|θ|, x, ẋ).
+  template <class With>
+  void at_stop(const Angular& theta, With&& with) const {
+    if constexpr (Space::dimension == 6) {
+      using std::sqrt;
+      const S square = dot(theta, theta);
+      const double largest = b_.stop.largest;
+      if (!b_.stop.acts() || !(value_of(square) > largest * largest)) return;
+      const S angle = sqrt(square);
+      const Vec3<S> along = (S(1.0) / angle) * theta;
+      with(along, S(angle - S(largest)), dot(along, spin()));
+    }
+  }
+
  private:
   const Workspace<Space, S>& w_;
   const Bushing& b_;
@@ -140,7 +157,13 @@ void add_bushings(Workspace<Space, S>& w) {
     const BushingMotion<Space, S> motion(w, b);
     const auto f = S(-b.stiffness) * motion.D - S(b.damping) * motion.velocity();
     auto n = S(-b.rotational_damping) * motion.spin();
-    if (b.rotational_stiffness != 0) n = n - S(b.rotational_stiffness) * motion.turn();
+    if (b.rotational_stiffness != 0 || b.stop.acts()) {
+      const auto theta = motion.turn();
+      n = n - S(b.rotational_stiffness) * theta;
+      motion.at_stop(theta, [&](const auto& along, const S& x, const S& rate) {
+        n = n - stop_push(b.stop, x, rate) * along;
+      });
+    }
     const auto act = [&](int k, const auto& force, const auto& couple) {
       if (k < 0) return;
       auto& T = w.body[static_cast<std::size_t>(k)].T;
@@ -169,13 +192,16 @@ S bushing_energy(const Workspace<Space, S>& w) {
   for (const auto& b : w.model->bushings) {
     const BushingMotion<Space, S> motion(w, b);
     twice += b.stiffness * (dot(motion.D, motion.D) + S(b.offset2));
-    if (b.rotational_stiffness != 0)
-      twice += b.rotational_stiffness * bushing_square(motion.turn());
+    if (b.rotational_stiffness == 0 && !b.stop.acts()) continue;
+    const auto theta = motion.turn();
+    twice += b.rotational_stiffness * bushing_square(theta);
+    motion.at_stop(
+        theta, [&](const auto&, const S& x, const S&) { twice += 2.0 * stop_energy(b.stop, x); });
   }
   return 0.5 * twice;
 }
 
-/// −c |u|² − c_r |ω|² of all bushings [W].
+/// −c |u|² − c_r |ω|² of all bushings, and what the dampers of stops take [W].
 template <class Space, class S>
 S bushing_power(const Workspace<Space, S>& w) {
   S power{};
@@ -183,6 +209,12 @@ S bushing_power(const Workspace<Space, S>& w) {
     const BushingMotion<Space, S> motion(w, b);
     const auto u = motion.velocity();
     power -= b.damping * dot(u, u) + b.rotational_damping * bushing_square(motion.spin());
+    if (!b.stop.acts()) continue;
+    JointStop damper = b.stop;
+    damper.stiffness = 0;
+    motion.at_stop(motion.turn(), [&](const auto&, const S& x, const S& rate) {
+      power -= stop_push(damper, x, rate) * rate;
+    });
   }
   return power;
 }

@@ -183,10 +183,10 @@ void CompositeSweeps<Spatial, S>::any_rows(std::size_t k, const CompositeMoments
     Joint<Spatial>::project(b, Spatial::Edge<S>{}, F, own);
     const auto above = static_cast<std::size_t>(dofs_[dof].depth - column);
     S* row = rows_.data() + start(dof) + above;
-    if (b.nv == 1) own[0] += b.rotor;
+    if (b.has_rotor()) own[column] += b.rotor;
     for (int i = 0; i <= column; ++i) row[i] = own[i];
     // What rounding may leave of an entry is as large as the joint's largest.
-    scale_[dof] = b.nv == 1 ? own[0] : b.nv == 6 && column < 3 ? mass : Jx + Jy + Jz;
+    scale_[dof] = b.nv == 1 ? own[0] : b.nv == 6 && column < 3 ? mass : Jx + Jy + Jz + b.rotor;
     if (b.parent < 0) continue;
     const auto turned = [&](const Vec3<S>& v) { return v[0] * w.X + v[1] * w.Y + v[2] * w.Z; };
     const Vec3<S> f = turned(F.f), n = turned(F.n);

@@ -1,12 +1,15 @@
 #pragma once
 // Springs and dampers along a sum of joint coordinates, l = Σ rᵢ qᵢ:
 //
-//   f = −k (l − rest) − c l̇,   Qᵢ = rᵢ f,   V = ½ k (l − rest)²
+//   f = −k s(l − rest) − c l̇,   Qᵢ = rᵢ f,   s(x) = x, V = ½ k (l − rest)²
+//
+// or, with a dead band, s and V of dead_band.h. Stops at limits of l as of joints: joint_stop.h.
 //
 // Q_i is handed to the bodies as a wrench on what joint i carries and its opposite on what carries
 // it, along the joint's axis: a force of a slide, a couple of an angle. Eᵀ of such a pair is Q_i at
 // joint i and zero at every other, so these springs go wherever wrenches on bodies do.
 
+#include <momenta/core/kernel/dead_band.h>
 #include <momenta/core/kernel/points.h>
 
 namespace momenta {
@@ -58,30 +61,34 @@ void add_along_joint(Workspace<Space, S>& w, int k, const S& value) {
 template <class Space, class S>
 void add_coordinate_springs(Workspace<Space, S>& w) {
   for (const auto& spring : w.model->coordinate_springs) {
-    const S tension = spring.stiffness * coordinate_stretch(w, spring) +
-                      spring.damping * coordinate_stretch_rate(w, spring);
+    const S stretch = coordinate_stretch(w, spring), rate = coordinate_stretch_rate(w, spring);
+    S tension = spring.stiffness * stretched(spring.band, stretch) + spring.damping * rate;
+    if (spring.stop.acts()) tension -= stop_force(spring.stop, S(stretch + spring.rest), rate);
     for (const auto& term : spring.terms) add_along_joint(w, term.body, S((-term.ratio) * tension));
   }
 }
 
-/// ½ k (l − rest)² of all [J].
+/// V of all [J].
 template <class Space, class S>
 S coordinate_spring_energy(const Workspace<Space, S>& w) {
-  S twice{};
+  S energy{};
   for (const auto& spring : w.model->coordinate_springs) {
     const S stretch = coordinate_stretch(w, spring);
-    twice += spring.stiffness * (stretch * stretch);
+    energy += spring.stiffness * stretched_energy(spring.band, stretch);
+    if (spring.stop.acts()) energy += stored_energy(spring.stop, S(stretch + spring.rest));
   }
-  return 0.5 * twice;
+  return energy;
 }
 
-/// −c l̇² of all [W].
+/// −c l̇² of all, and what dampers of stops take [W].
 template <class Space, class S>
 S coordinate_spring_power(const Workspace<Space, S>& w) {
   S power{};
   for (const auto& spring : w.model->coordinate_springs) {
     const S rate = coordinate_stretch_rate(w, spring);
     power -= spring.damping * (rate * rate);
+    if (spring.stop.acts())
+      power -= stop_loss(spring.stop, S(coordinate_stretch(w, spring) + spring.rest), rate);
   }
   return power;
 }

@@ -15,11 +15,12 @@ void add_body_forces(Workspace<Space, S>& w) {
     const SpringLine<Space, S> line(w, spring);
     if (!line.has_direction()) continue;  // a spring of zero length pulls nowhere
     const S inverse = S(1.0) / line.length;
-    S tension = spring.stiffness * (line.length - spring.rest);
+    S tension = spring.stiffness * stretched(spring.band, S(line.length - spring.rest));
     if (spring.damping != 0)
       tension += spring.damping * inverse *
                  dot(line.D, point_velocity(w, spring.child, line.child) -
                                  point_velocity(w, spring.parent, line.parent));
+    if (spring.stop.acts()) tension -= stop_force(spring.stop, line.length, line.rate(w, spring));
     line.pull(w, spring, S(tension * inverse));
   }
   add_bushings(w);
@@ -64,7 +65,7 @@ S kinetic_energy(const Workspace<Space, S>& w) {
   for (std::size_t k = 0; k < w.body.size(); ++k) {
     twice += Space::power(Space::momentum(w.inertia(k), w.body[k].V), w.body[k].V);
     if (const auto& b = w.model->bodies[k]; b.has_rotor())
-      twice += b.rotor * (w.body[k].rotor_rate * w.body[k].rotor_rate);
+      twice += b.rotor * dot(w.body[k].rotor_rate, w.body[k].rotor_rate);
   }
   return 0.5 * twice;
 }
@@ -90,8 +91,9 @@ S potential_energy(const Workspace<Space, S>& w, const S* q) {
     }
   }
   for (const auto& spring : model.springs) {
-    const S stretch = SpringLine<Space, S>(w, spring).length - spring.rest;
-    energy += 0.5 * spring.stiffness * (stretch * stretch);
+    const S length = SpringLine<Space, S>(w, spring).length;
+    energy += spring.stiffness * stretched_energy(spring.band, S(length - spring.rest));
+    if (spring.stop.acts()) energy += stored_energy(spring.stop, length);
   }
   energy += bushing_energy(w) + coordinate_spring_energy(w);
   if (!model.formula_forces.empty()) energy += formula_energy(w);

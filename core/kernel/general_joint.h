@@ -6,6 +6,11 @@
 //   e = r − Eᵀ D,   D' = D + M*E M_j⁻¹ e                     (48)
 //   u = M_j⁻¹ (e − EᵀM* W),  Ω = W + E u                     (45)
 //
+// A spherical joint with a rotor, with J = I + I_r 1 and h = H J⁻¹, keeps
+//
+//   A' = A − h Hᵀ,  H' = I_r h,  I' = I_r J⁻¹ I,  D' = (D_f + h e, D_n + I J⁻¹ e)
+//
+// (without one: spherical.h).
 // r is p in the momentum form and the joint force in the acceleration form; W is the motion the
 // joint would leave its body without u. A driven or welded joint has no u: M' = M*, D' = D.
 // User joints, whose E has up to six columns: user_elimination.h.
@@ -38,8 +43,8 @@ struct JointRecord<Spatial, S> {
   S pivot{}, e{};                                 ///< one dof: M_j⁻¹, r − Eᵀ D
   Vec3<S> moment;                                 ///< first moment of the subtree about O_K
   Mat3<S> H;                                      ///< several dofs: H I⁻¹ …
-  Sym3<S> I, A;                   ///< … I⁻¹, and of a free joint (A − H I⁻¹Hᵀ)⁻¹
-  Vec3<S> x, y;                   ///< … I⁻¹ e_ω, and of a free joint e_v − H I⁻¹ e_ω
+  Sym3<S> I, A;  ///< … I⁻¹ (J⁻¹ with a rotor), of a free joint (A − H I⁻¹Hᵀ)⁻¹
+  Vec3<S> x, y;  ///< … I⁻¹ e_ω, and of a free joint e_v − H I⁻¹ e_ω
   Spatial::Motion<S> c;           ///< acceleration form: what W has beside 𝒯ⱽ A_L
   UserRecord<S>* user = nullptr;  ///< of a user joint, owned beside the records
 };
@@ -100,6 +105,22 @@ bool eliminate_free(Spatial::ArticulatedInertia<S>& m, JointRecord<Spatial, S>& 
   return true;
 }
 
+/// Spherical joints with a rotor.
+template <class S>
+bool eliminate_turned(double rotor, Spatial::ArticulatedInertia<S>& m, JointRecord<Spatial, S>& x) {
+  auto with_rotor = m;
+  for (int i = 0; i < 3; ++i) with_rotor.I(i, i) += rotor;
+  if (!eliminate_angular(with_rotor, x.I, x.H)) return false;
+  for (int i = 0; i < 3; ++i)
+    for (int j = i; j < 3; ++j) {
+      m.A(i, j) -= x.H(i, 0) * m.H(j, 0) + x.H(i, 1) * m.H(j, 1) + x.H(i, 2) * m.H(j, 2);
+      m.I(i, j) =
+          rotor * (x.I(i, 0) * x.M.I(0, j) + x.I(i, 1) * x.M.I(1, j) + x.I(i, 2) * x.M.I(2, j));
+    }
+  for (std::size_t i = 0; i < 9; ++i) m.H.x[i] = rotor * x.H.x[i];
+  return true;
+}
+
 /// M' from x.M; false when M_j is not positive.
 template <class Space, class S>
 bool eliminate(const typename Model<Space>::Body& b, JointRecord<Space, S>& x,
@@ -118,7 +139,7 @@ bool eliminate(const typename Model<Space>::Body& b, JointRecord<Space, S>& x,
     return true;
   }
   if constexpr (Space::dimension == 6)
-    return eliminate_free<S>(reduced, x);
+    return b.nv == 3 ? eliminate_turned<S>(b.rotor, reduced, x) : eliminate_free<S>(reduced, x);
   else
     return false;
 }
@@ -134,7 +155,13 @@ typename Space::template Force<S> remainder(const typename Model<Space>::Body& b
     x.e = r[0] - Joint<Space>::along(b, x.edge, x.D);
     for (int i = 0; i < Space::dimension; ++i) D[i] += x.h[i] * x.e;
   } else if constexpr (Space::dimension == 6) {
-    if (b.nv == 6) {
+    if (b.nv == 3) {
+      Vec3<S> e;
+      for (int i = 0; i < 3; ++i) e[i] = r[i] - x.D.n[i];
+      x.x = x.I * e;
+      D.f += x.H * e;
+      D.n += x.M.I * x.x;
+    } else if (b.nv == 6) {
       Vec3<S> e;
       for (int i = 0; i < 3; ++i) e[i] = r[3 + i] - x.D.n[i];
       x.x = x.I * e;
@@ -153,8 +180,14 @@ typename Space::template Force<S> reduced_momentum(const typename Model<Space>::
                                                    const typename Space::template Motion<S>& c) {
   if constexpr (Space::dimension == 6) {
     if (b.law) return user_reduced_momentum<S>(b, *x.user, x.M, c);
-    if (b.nv == 6) return {};                                                     // M' = 0
-    if (b.nv == 3) return {x.M.A * c.v - x.H * transpose_times(x.M.H, c.v), {}};  // A' for v alone
+    if (b.nv == 6) return {};  // M' = 0
+    if (b.nv == 3) {
+      const Vec3<S> n = transpose_times(x.M.H, c.v) + x.M.I * c.w;
+      auto P = Space::momentum(x.M, c);
+      P.f -= x.H * n;
+      P.n -= x.M.I * (x.I * n);
+      return P;
+    }
   }
   auto P = Space::momentum(x.M, c);
   if (b.nv == 1) {
@@ -174,7 +207,13 @@ void solve_joint(const typename Model<Space>::Body& b, const JointRecord<Space, 
     u[0] = x.pivot * x.e - Space::power(x.h, W);
     Joint<Space>::add_motion(b, x.edge, u, W);
   } else if constexpr (Space::dimension == 6) {
-    if (b.nv < 6) return;
+    if (b.nv == 0) return;
+    if (b.nv == 3) {
+      const Vec3<S> own = x.x - transpose_times(x.H, W.v) - x.I * (x.M.I * W.w);
+      for (int i = 0; i < 3; ++i) u[i] = own[i];
+      W.w += own;
+      return;
+    }
     const Vec3<S> v = x.A * x.y, omega = x.x - transpose_times(x.H, v);
     for (int i = 0; i < 3; ++i) {
       u[i] = v[i] - W.v[i];

@@ -68,7 +68,8 @@ S stored_energy(const JointStop& stop, const S& q) {
 }
 
 /// What the dampers of the stops take [W].
-inline double stop_loss(const JointStop& stop, double q, double u) {
+template <class S>
+S stop_loss(const JointStop& stop, const S& q, const S& u) {
   JointStop damper = stop;
   damper.stiffness = 0;
   return -stop_force(damper, q, u) * u;

@@ -34,7 +34,7 @@ typename Space::template Force<S> composite_column(const Workspace<Space, S>& w,
   Joint<Space>::add_motion(b, w.body[k].edge, unit, motion);
   const auto force = Space::momentum(w.body[k].M, motion);
   Joint<Space>::project(b, w.body[k].edge, force, row);
-  if (b.nv == 1) row[0] += b.rotor;
+  if (b.has_rotor()) row[column] += b.rotor;
   return force;
 }
 

@@ -36,7 +36,7 @@ struct Model {
     double friction = 0, friction_rate = 1;  ///< joint_force() in sweeps.h
     bool is_curved = false;                  ///< its force is not linear: friction, stops
     int sprung = -1;   ///< place in Workspace::sprung, where a spring or signal looks at the joint
-    double rotor = 0;  ///< inertia on the joint's rate: rotor.h [kg m² or kg]
+    double rotor = 0;  ///< inertia on the joint's rate, a ball's three: rotor.h [kg m² or kg]
     bool has_rotor() const { return rotor != 0; }
     bool has_force() const {
       return nv == 1 && (stiffness != 0 || damping != 0 || torque != 0 || is_curved);
@@ -51,6 +51,9 @@ struct Model {
     int parent = -1, child = -1;
     Vector at_parent, at_child;
     double offset2 = 0, stiffness = 0, damping = 0, rest = 0;
+    double band = 0;  ///< dead_band.h
+    JointStop stop;   ///< of its length
+    bool limited = false;
   };
   /// bushing.h; offset2 as of a spring. rest_axes: the axes of the child's frame without couple, in
   /// the parent's; in space alone.
@@ -60,6 +63,7 @@ struct Model {
     std::array<Vector, 3> rest_axes;
     double offset2 = 0, stiffness = 0, damping = 0, rotational_stiffness = 0,
            rotational_damping = 0;
+    JointStop stop;  ///< of the angle |θ|, at its largest alone
   };
   /// coordinate_spring.h
   struct CoordinateSpring {
@@ -70,6 +74,8 @@ struct Model {
     };
     std::vector<Term> terms;
     double stiffness = 0, damping = 0, rest = 0;
+    double band = 0;  ///< dead_band.h
+    JointStop stop;   ///< of the sum
   };
   /// Constant wrench. `torque` in space; in a plane only its normal component `normal_torque`.
   struct Wrench {
@@ -123,12 +129,15 @@ struct Model {
   Vector gravity;
   int nq = 0, nv = 0;
   bool has_gravity = false, has_joint_forces = false, has_rotors = false;
+  bool has_corners = false;  ///< springs between points have dead bands or stops
 
   bool has_body_forces() const {
     return !springs.empty() || !wrenches.empty() || !bushings.empty() || has_forces_apart();
   }
   /// Those among them that the sweeps of packs and of loops do not take.
-  bool has_forces_apart() const { return !coordinate_springs.empty() || !formula_forces.empty(); }
+  bool has_forces_apart() const {
+    return !coordinate_springs.empty() || !formula_forces.empty() || has_corners;
+  }
 
   /// A point of a body, given in the tree's body frame (−1: ground axes), in this model's frame of
   /// the body.

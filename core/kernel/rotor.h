@@ -13,6 +13,9 @@
 //   P* = R W + D' + I_r W_z h across ẑ                                        (42)
 //
 // The pair (k, ẑ) goes to the parent as two wrenches do. ẑ is a couple: only H and I take from it.
+//
+// A spherical joint's rotor has I_r about every axis, ½ I_r u·u with u in child axes. As I_r u and
+// u are parallel, (35) needs no further term, u × I_r u = 0. Its elimination: general_joint.h.
 
 #include <momenta/core/kernel/revolute.h>
 

@@ -76,7 +76,8 @@ void move_body(Workspace<Space, S>& w, std::size_t k, const S* u) {
     add_drive<Space, S>(b, s, s.V);
   else
     Joint<Space>::add_motion(b, s.edge, u + b.u, s.V);
-  if (b.has_rotor()) s.rotor_rate = u[b.u];
+  if (b.has_rotor())
+    for (int i = 0; i < b.nv; ++i) s.rotor_rate[i] = u[b.u + i];
   if (b.sprung >= 0)
     w.sprung[static_cast<std::size_t>(b.sprung)].rate = b.drive >= 0 ? s.drive_rate : u[b.u];
   if (b.law) add_drive<Space, S>(b, s, s.V);
@@ -128,7 +129,8 @@ void momenta_inward(Workspace<Space, S>& w, S* p) {
   project_inward(w, p);
   if (!w.model->has_rotors || !p) return;
   for (std::size_t k = 0; k < w.body.size(); ++k)
-    if (const auto& b = w.model->bodies[k]; b.has_rotor()) p[b.u] += b.rotor * w.body[k].rotor_rate;
+    if (const auto& b = w.model->bodies[k]; b.has_rotor())
+      for (int i = 0; i < b.nv; ++i) p[b.u + i] += b.rotor * w.body[k].rotor_rate[i];
 }
 
 /// Generalised force of a joint's own spring, damper, torque, friction

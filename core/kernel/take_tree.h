@@ -49,7 +49,15 @@ void take_joints(const Tree& tree, Model<Space>& model) {
   }
 }
 
-/// Springs, bushings, wrenches and formulas; needs the frames of all bodies.
+/// The stops of what has limits: a joint, or a force along a length.
+template <class Spec>
+JointStop stop_of(const Spec& s) {
+  if (!s.limits) return {};
+  return {(*s.limits)[0], (*s.limits)[1], s.stop_stiffness, s.stop_damping, s.stop_width};
+}
+
+/// Springs, bushings, wrenches and formulas, stops of spherical joints; needs the frames of all
+/// bodies.
 template <class Space>
 void take_forces(const Tree& tree, const Scene& scene, Model<Space>& model) {
   constexpr bool in_plane = Space::dimension == 3;
@@ -60,36 +68,59 @@ void take_forces(const Tree& tree, const Scene& scene, Model<Space>& model) {
     between.stiffness = f.stiffness;
     between.damping = f.damping;
   };
+  const auto take_bushing = [&](const ForceSpec& f, const JointStop& stop) {
+    typename Model<Space>::Bushing bushing;
+    take_points(f, bushing);
+    bushing.rotational_stiffness = f.rotational_stiffness;
+    bushing.rotational_damping = f.rotational_damping;
+    bushing.stop = stop;
+    if constexpr (!in_plane) {
+      // Σ p_i c_iᵀ: p_i the axes of the child without couple, c_i those it has
+      const Eigen::Quaterniond turn = f.rotation.normalized();
+      for (int i = 0; i < 3; ++i) {
+        const Eigen::Vector3d unit = Eigen::Vector3d::Unit(i);
+        const auto on_parent =
+            model.direction(bushing.parent, tree.direction(bushing.parent, turn * unit));
+        const auto on_child = model.direction(bushing.child, tree.direction(bushing.child, unit));
+        for (int j = 0; j < 3; ++j)
+          bushing.rest_axes[static_cast<std::size_t>(j)] += on_child[j] * on_parent;
+      }
+    }
+    model.bushings.push_back(bushing);
+  };
+  for (const JointSpec& joint : scene.joints) {
+    if (joint.kind != JointKind::spherical || !has_stops(joint)) continue;
+    ForceSpec between;
+    between.parent = joint.parent;
+    between.child = joint.child;
+    between.origin_parent = joint.origin_parent;
+    between.origin_child = joint.origin_child;
+    between.rotation = joint.rotation;
+    take_bushing(between, stop_of(joint));
+  }
   for (const ForceSpec& f : scene.forces) {
     if (!f.law.empty()) continue;  // take_formulas.h
+    const bool of_length = f.kind == "spring-damper" || f.kind == "coordinate-spring";
+    const bool told = f.limits && f.kind == "spring-damper";  // its length is asked for
+    if (of_length && f.stiffness == 0 && f.damping == 0 && !stop_of(f).acts() && !told) continue;
     if (f.kind == "spring-damper") {
       typename Model<Space>::Spring spring;
       take_points(f, spring);
       spring.rest = f.rest;
+      spring.band = f.dead_band;
+      spring.stop = stop_of(f);
+      spring.limited = f.limits.has_value();
+      model.has_corners |= f.dead_band != 0 || spring.stop.acts();
       model.springs.push_back(spring);
     } else if (f.kind == "bushing") {
-      typename Model<Space>::Bushing bushing;
-      take_points(f, bushing);
-      bushing.rotational_stiffness = f.rotational_stiffness;
-      bushing.rotational_damping = f.rotational_damping;
-      if constexpr (!in_plane) {
-        // Σ p_i c_iᵀ: p_i the axes of the child without couple, c_i those it has
-        const Eigen::Quaterniond turn = f.rotation.normalized();
-        for (int i = 0; i < 3; ++i) {
-          const Eigen::Vector3d unit = Eigen::Vector3d::Unit(i);
-          const auto on_parent =
-              model.direction(bushing.parent, tree.direction(bushing.parent, turn * unit));
-          const auto on_child = model.direction(bushing.child, tree.direction(bushing.child, unit));
-          for (int j = 0; j < 3; ++j)
-            bushing.rest_axes[static_cast<std::size_t>(j)] += on_child[j] * on_parent;
-        }
-      }
-      model.bushings.push_back(bushing);
+      take_bushing(f, {});
     } else if (f.kind == "coordinate-spring") {
       typename Model<Space>::CoordinateSpring spring;
       spring.stiffness = f.stiffness;
       spring.damping = f.damping;
       spring.rest = f.rest;
+      spring.band = f.dead_band;
+      spring.stop = stop_of(f);
       spring.terms = taker.sum(f);
       model.coordinate_springs.push_back(spring);
     } else if (f.kind == "wrench") {

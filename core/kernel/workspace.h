@@ -25,8 +25,8 @@ struct Workspace {
     Vector step;  ///< with it, in space: from the parent's O to its own, ground axes
     S drive{}, drive_rate{}, drive_acceleration{};  ///< prescribed joint motion
     // velocities_outward, rates_outward
-    Motion V;                              ///< Ω_K
-    S rotor_rate{}, rotor_acceleration{};  ///< u and u̇ of a joint with a rotor
+    Motion V;                                ///< Ω_K
+    Vec3<S> rotor_rate, rotor_acceleration;  ///< u and u̇ of a joint with a rotor
     Motion A;  ///< dΩ_K/dt: derivative in body axes; in the plane, of ground components
     Vector g;  ///< gravity in body axes
     // articulated_masses_inward

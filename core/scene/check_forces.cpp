@@ -32,17 +32,29 @@ void check_ends(const Scene& scene, const Census& census, const ForceSpec& force
           "origin must be finite [m]");
 }
 
+/// What springs along a length may have.
+void check_length(const Scene& scene, const ForceSpec& force, const std::string& who) {
+  check_limits(scene, force, who);
+  require(std::isfinite(force.dead_band) && force.dead_band >= 0, scene, force.at, who,
+          "dead_band must be finite and >= 0 [m or rad]");
+}
+
 }  // namespace
 
 void check_forces(const Scene& scene, const Census& census) {
   for (const ForceSpec& force : scene.forces) {
     const std::string who = owner_of(force);
+    require(!force.limits || (force.law.empty() &&
+                              (force.kind == "spring-damper" || force.kind == "coordinate-spring")),
+            scene, force.at, who,
+            "limits are for spring-dampers and coordinate springs without a law only");
     if (force.kind == "spring-damper") {
       check_ends(scene, census, force, who);
       require(std::isfinite(force.stiffness) && std::isfinite(force.damping), scene, force.at, who,
               "stiffness [N/m] and damping [N s/m] must be finite");
       require(std::isfinite(force.rest) && force.rest >= 0, scene, force.at, who,
               "rest must be finite and >= 0 [m]");
+      check_length(scene, force, who);
     } else if (force.kind == "bushing") {
       check_ends(scene, census, force, who);
       require(std::abs(force.rotation.norm() - 1) <= norm_slack, scene, force.at, who,
@@ -58,6 +70,7 @@ void check_forces(const Scene& scene, const Census& census) {
       require(std::isfinite(force.stiffness) && std::isfinite(force.damping) &&
                   std::isfinite(force.rest),
               scene, force.at, who, "stiffness, damping and rest must be finite");
+      check_length(scene, force, who);
     } else if (force.kind == "torque") {
       census.require_one_coordinate(force.joint, force.at, who);
       require(std::isfinite(force.value), scene, force.at, who, "value must be finite [N m or N]");
@@ -101,10 +114,11 @@ void check_formulas(const Scene& scene) {
     require(force.law.empty() || (force.kind != "wrench" && force.kind != "bushing"), scene,
             force.at, who,
             "law is for torques, spring-dampers, coordinate springs and potentials only");
-    require(force.law.empty() ||
-                (force.stiffness == 0 && force.damping == 0 && force.rest == 0 && force.value == 0),
+    require(force.law.empty() || (force.stiffness == 0 && force.damping == 0 && force.rest == 0 &&
+                                  force.dead_band == 0 && force.value == 0),
             scene, force.at, who,
-            "law is given beside stiffness, damping, rest or value, expected one of them");
+            "law is given beside stiffness, damping, rest, dead_band or value, expected one of "
+            "them");
     const std::vector<OwnName> own = reader.own_names(force);
     each_formula(force, [&](const std::string& key, const std::string& text) {
       std::string fault;

@@ -24,7 +24,7 @@ std::string named(std::string_view owner, std::string_view component) {
 
 /// Coordinates that are angles and displacements by themselves.
 int scalar_coordinates(const JointSpec& joint) {
-  return joint.kind == JointKind::user ? 0 : static_cast<int>(rotors_of(joint.kind));
+  return joint.kind == JointKind::user ? 0 : static_cast<int>(scalar_coordinates_of(joint.kind));
 }
 
 /// q, u, or with several coordinates q0, u0, …

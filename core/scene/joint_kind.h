@@ -75,10 +75,16 @@ constexpr int rates_of(JointKind kind) {
   return 0;
 }
 
-/// How many of its rates can have a rotor's inertia (JointSpec::rotor_inertia): all where q̇ = u and
-/// the joint is one of, or a chain of, revolute, prismatic and helical ones.
-constexpr std::size_t rotors_of(JointKind kind) {
+/// How many coordinates are angles and displacements by themselves: all where q̇ = u and the joint
+/// is one of, or a chain of, revolute, prismatic and helical ones.
+constexpr std::size_t scalar_coordinates_of(JointKind kind) {
   return coordinates_of(kind) == rates_of(kind) ? static_cast<std::size_t>(rates_of(kind)) : 0;
+}
+
+/// How many numbers its rotors' inertia has (JointSpec::rotor_inertia): one for each of those
+/// coordinates; of a spherical joint one for all its rates.
+constexpr std::size_t rotors_of(JointKind kind) {
+  return kind == JointKind::spherical ? 1 : scalar_coordinates_of(kind);
 }
 
 /// Whether the joint has one coordinate, along which a spring, a damper or a torque can act.

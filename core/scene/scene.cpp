@@ -32,6 +32,9 @@ bool has_powers(const LoopSpec& loop) {
 bool has_stops(const JointSpec& joint) {
   return joint.limits && (joint.stop_stiffness != 0 || joint.stop_damping != 0);
 }
+bool has_stops(const ForceSpec& force) {
+  return force.limits && (force.stop_stiffness != 0 || force.stop_damping != 0);
+}
 
 bool ties_bodies(const LoopSpec& loop) {
   return loop.kind != LoopKind::coupler && !has_equation(loop);

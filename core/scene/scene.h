@@ -114,10 +114,12 @@ struct JointSpec {
   /// Inertia on each coordinate's rate, as of a motor's rotor behind its gear (gear ratio squared
   /// times its own): ½ I q̇² of kinetic energy beside that of the bodies. Of revolute and helical
   /// joints [kg m²], prismatic ones [kg], and of each coordinate of cylindrical, universal and
-  /// planar joints; empty: none. On a driven coordinate it has no effect on the motion.
+  /// planar joints. Of spherical joints one number [kg m²], ½ I u·u: the same about every axis.
+  /// Empty: none. On a driven coordinate it has no effect on the motion.
   std::vector<double> rotor_inertia;
-  /// Least and largest q of a revolute, helical [rad] or prismatic [m] joint. Without stops they
-  /// exert no force: programs tell when they are passed.
+  /// Least and largest q of a revolute, helical [rad] or prismatic [m] joint; of a spherical one 0
+  /// and the largest angle of its turn from q = (1, 0, 0, 0), below π. Without stops they exert no
+  /// force: programs tell when they are passed.
   std::optional<std::array<double, 2>> limits;
   /// Stops at the limits: beyond one by x the joint is pushed back by a spring stop_stiffness
   /// [N m/rad or N/m] and a damper stop_damping [N m s/rad or N s/m], both of which grow from 0 at
@@ -341,6 +343,14 @@ struct ForceSpec {
   double stiffness = 0;  ///< k [N/m]; coordinate-spring: [N m/rad or N/m] for a ratio of 1
   double damping = 0;    ///< c [N s/m]; coordinate-spring: [N m s/rad or N s/m] for a ratio of 1
   double rest = 0;       ///< spring-damper [m], coordinate-spring [rad or m]: l without force
+  /// Of both: no spring force from rest to rest + dead_band, corners rounded over a twentieth of it
+  /// to each side.
+  double dead_band = 0;
+  /// Of both: least and largest l [m or rad], told when passed, and stops there, as of a JointSpec.
+  std::optional<std::array<double, 2>> limits;
+  double stop_stiffness = 0;        ///< of the stops
+  double stop_damping = 0;          ///< of the stops
+  double stop_width = 0.01;         ///< of the stops, > 0
   double rotational_stiffness = 0;  ///< bushing: k_r [N m/rad]
   double rotational_damping = 0;    ///< bushing: c_r [N m s/rad]
   std::vector<std::string> joints;  ///< coordinate-spring: whose rates are their q̇
@@ -357,6 +367,9 @@ struct ForceSpec {
   std::array<std::string, 3> torque_law;  ///< wrench, likewise
   Location at;                            ///< where the file has it
 };
+
+/// Whether limits of its length push back.
+bool has_stops(const ForceSpec& force);
 
 /// A named point of a body, or of "ground", whose position and velocity are reported in ground
 /// axes.

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <set>
 #include <string_view>
 
@@ -17,6 +18,7 @@ namespace momenta {
 namespace {
 
 using reading::Census;
+using reading::check_limits;
 using reading::in_quotes;
 using reading::name_of;
 using reading::require;
@@ -133,23 +135,21 @@ void check_joints(const Scene& scene, const Census& census) {
             "friction must be finite and >= 0 [N m or N]");
     require(std::isfinite(joint.friction_rate) && joint.friction_rate > 0, scene, joint.at, who,
             "friction_rate must be finite and > 0 [rad/s or m/s]");
-    require(has_one_coordinate(joint.kind) || (joint.friction == 0 && !joint.limits), scene,
-            joint.at, who,
-            "friction and limits are for revolute, prismatic and helical joints only");
-    require(!joint.limits ||
-                (all_finite(joint.limits->data(), 2) && (*joint.limits)[0] < (*joint.limits)[1]),
-            scene, joint.at, who, "limits must be finite, the first below the second [rad or m]");
-    require(all_finite(
-                std::vector<double>{joint.stop_stiffness, joint.stop_damping, joint.stop_width}) &&
-                joint.stop_stiffness >= 0 && joint.stop_damping >= 0 && joint.stop_width > 0,
+    require(has_one_coordinate(joint.kind) || joint.friction == 0, scene, joint.at, who,
+            "friction is for revolute, prismatic and helical joints only");
+    require(has_one_coordinate(joint.kind) || joint.kind == JointKind::spherical || !joint.limits,
             scene, joint.at, who,
-            "stop_stiffness and stop_damping must be finite and >= 0, stop_width finite and > 0");
-    require(joint.limits || (joint.stop_stiffness == 0 && joint.stop_damping == 0), scene, joint.at,
-            who, "stop_stiffness and stop_damping are for joints with limits only");
+            "limits are for revolute, prismatic, helical and spherical joints only");
+    check_limits(scene, joint, who);
+    require(joint.kind != JointKind::spherical || !joint.limits ||
+                ((*joint.limits)[0] == 0 && (*joint.limits)[1] < std::numbers::pi),
+            scene, joint.at, who,
+            "limits of a spherical joint must be 0 and an angle below pi [rad]");
     require(joint.rotor_inertia.empty() || joint.rotor_inertia.size() == rotors_of(joint.kind),
             scene, joint.at, who,
-            "rotor_inertia must be empty or of one number for each coordinate of a revolute, "
-            "prismatic, helical, cylindrical, universal or planar joint");
+            "rotor_inertia must be empty, of one number for each coordinate of a revolute, "
+            "prismatic, helical, cylindrical, universal or planar joint, or of one number for a "
+            "spherical joint");
     require(std::all_of(joint.rotor_inertia.begin(), joint.rotor_inertia.end(),
                         [](double x) { return std::isfinite(x) && x >= 0; }),
             scene, joint.at, who, "rotor_inertia must be finite and >= 0 [kg m² or kg]");

@@ -4,6 +4,7 @@
 
 #include <momenta/core/scene/scene.h>
 
+#include <cmath>
 #include <map>
 #include <string>
 #include <string_view>
@@ -81,5 +82,20 @@ void check_tree(const Scene& scene);
 /// Of a scene with a Lagrangian: no bodies beside it, names that formulas can take, L or T, forces
 /// on coordinates, constraints with names and equations.
 void check_lagrangian(const Scene& scene);
+
+/// Limits and stops of a joint or of a force along a length. @throws SceneError
+template <class Spec>
+void check_limits(const Scene& scene, const Spec& s, const std::string& who) {
+  require(!s.limits || (std::isfinite((*s.limits)[0]) && std::isfinite((*s.limits)[1]) &&
+                        (*s.limits)[0] < (*s.limits)[1]),
+          scene, s.at, who, "limits must be finite, the first below the second [rad or m]");
+  require(std::isfinite(s.stop_stiffness) && std::isfinite(s.stop_damping) &&
+              std::isfinite(s.stop_width) && s.stop_stiffness >= 0 && s.stop_damping >= 0 &&
+              s.stop_width > 0,
+          scene, s.at, who,
+          "stop_stiffness and stop_damping must be finite and >= 0, stop_width finite and > 0");
+  require(s.limits || (s.stop_stiffness == 0 && s.stop_damping == 0), scene, s.at, who,
+          "stop_stiffness and stop_damping need limits");
+}
 
 }  // namespace momenta::reading

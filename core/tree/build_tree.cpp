@@ -198,7 +198,7 @@ class TreeBuilder {
         b.stop_damping = joint.stop_damping;
         b.stop_width = joint.stop_width;
       }
-      if (b.nv == 1 && !joint.rotor_inertia.empty())
+      if ((b.nv == 1 || b.nv == 3) && !joint.rotor_inertia.empty())
         b.rotor = joint.rotor_inertia[static_cast<std::size_t>(part.coordinate)];
 
       const bool last = i + 1 == parts.size();

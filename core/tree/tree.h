@@ -52,7 +52,7 @@ struct Tree {
     double stop_damping = 0;       ///< likewise
     double stop_width = 0.01;      ///< likewise
     double torque = 0;             ///< constant generalised force on such a joint [N m or N]
-    double rotor = 0;              ///< inertia on the rate of such a joint [kg m² or kg]
+    double rotor = 0;              ///< inertia on its rate, a ball's three [kg m² or kg]
     std::shared_ptr<const JointFormula> law;  ///< of a user joint
   };
 

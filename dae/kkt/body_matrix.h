@@ -114,7 +114,7 @@ class BodyMatrix {
         for (int e = 0; e < d; ++e)
           if (reaches(e, c)) entry(momentum(k, e), velocity(b.parent, c), carried[e]);
       }
-    if (b.has_rotor()) entry(rate(b.u), rate(b.u), b.rotor);
+    for (int j = 0; b.has_rotor() && j < b.nv; ++j) entry(rate(b.u + j), rate(b.u + j), b.rotor);
     for (int j = 0; j < b.nv; ++j) {
       double one[6] = {};
       one[j] = 1;

@@ -13,12 +13,13 @@
 #include <momenta/dae/kkt/maximal_tree.h>
 #include <momenta/dae/loop/loop_rows.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace momenta {
 namespace {
 
-template <class Space>
+template <class Space, int Spare>
 class MaximalSolver final : public LoopSolver {
  public:
   MaximalSolver(const Mechanism& mechanism, Evaluation<double>& e, Model<Space> model)
@@ -131,7 +132,7 @@ class MaximalSolver final : public LoopSolver {
   bool remembers() const override { return false; }
 
  private:
-  using Tree = MaximalTree<Space>;
+  using Tree = MaximalTree<Space, Spare>;
   using Columns = std::vector<typename Tree::Column>;
   /// h of a loop's row, zero but on the ways from its bodies to the ground.
   struct LoopColumn {
@@ -262,10 +263,13 @@ class MaximalSolver final : public LoopSolver {
 std::unique_ptr<LoopSolver> make_maximal_solver(const Mechanism& mechanism, Evaluation<double>& e) {
   const auto& plan = mechanism.plan();
   if (plan.planar)
-    return std::make_unique<MaximalSolver<Planar>>(
+    return std::make_unique<MaximalSolver<Planar, 1>>(
         mechanism, e, build_planar_model(mechanism.tree(), mechanism.scene(), plan.basis));
-  return std::make_unique<MaximalSolver<Spatial>>(
-      mechanism, e, build_spatial_model(mechanism.tree(), mechanism.scene()));
+  auto model = build_spatial_model(mechanism.tree(), mechanism.scene());
+  if (std::any_of(model.bodies.begin(), model.bodies.end(),
+                  [](const auto& b) { return b.nv == 3 && b.has_rotor(); }))
+    return std::make_unique<MaximalSolver<Spatial, 3>>(mechanism, e, std::move(model));
+  return std::make_unique<MaximalSolver<Spatial, 1>>(mechanism, e, std::move(model));
 }
 
 }  // namespace momenta

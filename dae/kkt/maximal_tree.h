@@ -20,7 +20,8 @@
 //
 // A rotor's inertia I_r (rotor.h) is a row of S that gives way, u = S_d (a − 𝒯ⱽ a_parent) =
 // y_d/I_r: YᵀY + diag(0, 1/I_r) = R Rᵀ, and h has one more number, g_d / (R_dd √I_r) with g = B L⁻¹
-// f, for the energy of u.
+// f, for the energy of u. A spherical joint's rotor gives way in three rows, and h has three more,
+// D^½ R⁻ᵀ g with D = diag(0, 1/I_r 1).
 
 #include <momenta/core/kernel/sweeps.h>
 #include <momenta/dae/kkt/inertia_blocks.h>
@@ -32,7 +33,8 @@
 
 namespace momenta {
 
-template <class Space>
+/// `Spare`: the numbers that h has beside d, 3 where a spherical joint has a rotor.
+template <class Space, int Spare = 1>
 class MaximalTree {
  public:
   static constexpr int d = Space::dimension;
@@ -40,8 +42,8 @@ class MaximalTree {
   using Motion = typename Space::template Motion<double>;
   using Force = typename Space::template Force<double>;
   using Inertia = typename Space::template ArticulatedInertia<double>;
-  /// Of a wrench, an acceleration, or h; its last number is of h alone.
-  using Column = std::array<double, d + 1>;
+  /// Of a wrench, an acceleration, or h; what follows the d first is of h alone.
+  using Column = std::array<double, d + Spare>;
 
   explicit MaximalTree(const Work& w) : w_(w), joint_(w.body.size()), a_(w.body.size()) {
     for (std::size_t k = 0; k < joint_.size(); ++k) {
@@ -116,16 +118,21 @@ class MaximalTree {
     int held[d];
     int moved = -1;
     double along = 1;
-    double give = 0;     ///< 1 / (R_dd √I_r) of a rotor
+    /// Of a rotor: the part of R⁻¹ in the rows that give way, over √I_r; 1 / (R_dd √I_r) of one.
+    double give[Spare][Spare];
     bool light = false;  ///< the body alone resists nothing in some direction
   };
 
-  /// Calls with the number of rows of S, and whether the last gives way, as constants.
+  /// Calls with the number of rows of S, and how many of the last give way, as constants.
   template <class F>
   void with_rows(std::size_t k, F&& f) const {
-    const std::false_type none;
-    if (w_.model->bodies[k].has_rotor())
-      return f(std::integral_constant<int, d>(), std::true_type());
+    const std::integral_constant<int, 0> none;
+    if (w_.model->bodies[k].has_rotor()) {
+      if constexpr (Spare == 3)
+        if (w_.model->bodies[k].nv == 3)
+          return f(std::integral_constant<int, d>(), std::integral_constant<int, 3>());
+      return f(std::integral_constant<int, d>(), std::integral_constant<int, 1>());
+    }
     switch (d - w_.model->bodies[k].nv) {
       case d - 1:
         return f(std::integral_constant<int, d - 1>(), none);
@@ -169,9 +176,9 @@ class MaximalTree {
       }
   }
 
-  template <int s, bool gives>
+  template <int s, int gives>
   bool eliminate(std::size_t k) {
-    constexpr int hard = gives ? s - 1 : s;
+    constexpr int hard = s - gives;
     const auto& b = w_.model->bodies[k];
     auto& j = joint_[k];
     if constexpr (hard == d) {
@@ -190,7 +197,9 @@ class MaximalTree {
           Y[j.held[i]][i] = 1;
           if (slanted) Y[j.moved][i] = j.slant[i];
         }
-        if constexpr (gives) Y[j.moved][hard] = j.along;
+        if constexpr (gives == 1) Y[j.moved][hard] = j.along;
+        if constexpr (gives == 3)
+          for (int i = hard; i < s; ++i) Y[j.held[i]][i] = 1;
         small::forward(j.L, Y);
         for (int i = 0; i < s; ++i)
           for (int l = 0; l <= i; ++l) {
@@ -198,9 +207,8 @@ class MaximalTree {
             for (int r = 0; r < d; ++r) sum += Y[r][i] * Y[r][l];
             R[i][l] = sum;
           }
-        if constexpr (gives) R[hard][hard] += 1 / b.rotor;
+        for (int i = hard; i < s; ++i) R[i][i] += 1 / b.rotor;
         if (!small::cholesky(R, 0)) return false;
-        if constexpr (gives) j.give = R[hard][hard] / std::sqrt(b.rotor);  // R holds 1/R_dd
         // what solutions need of it: B = R⁻¹Yᵀ, T = R⁻¹S
         for (int i = 0; i < s; ++i)
           for (int r = 0; r < d; ++r) j.B[i][r] = Y[r][i], j.T[i][r] = 0;
@@ -208,9 +216,12 @@ class MaximalTree {
         double inverse[s][s] = {};
         for (int i = 0; i < s; ++i) inverse[i][i] = 1;
         small::forward(R, inverse);
+        for (int i = 0; i < gives; ++i)
+          for (int l = 0; l <= i; ++l)
+            j.give[i][l] = inverse[hard + i][hard + l] / std::sqrt(b.rotor);
         for (int i = 0; i < s; ++i)
           for (int l = 0; l <= i; ++l) {
-            if (l == hard) {
+            if (gives == 1 && l == hard) {
               j.T[i][j.moved] += inverse[i][l] * j.along;
               continue;
             }
@@ -266,11 +277,11 @@ class MaximalTree {
     add_held<s>(j, sigma, 1, j.L);
   }
 
-  template <int s, bool gives>
+  template <int s, int gives>
   void inward(std::size_t k, Column* f, Column* h) const {
     const auto& j = joint_[k];
     const int parent = w_.model->bodies[k].parent;
-    if constexpr (s == d && !gives) {
+    if constexpr (s == d && gives == 0) {
       h[k] = {};
       if (parent >= 0) add(to_parent(k, f[k]), f[parent]);
     } else {
@@ -281,7 +292,11 @@ class MaximalTree {
         g[i] = 0;
         for (int r = 0; r < d; ++r) g[i] += j.B[i][r] * h[k][static_cast<std::size_t>(r)];
       }
-      if constexpr (gives) h[k][d] = j.give * g[d - 1];
+      for (int l = 0; l < gives; ++l) {
+        double spare = 0;
+        for (int i = l; i < gives; ++i) spare += j.give[i][l] * g[s - gives + i];
+        h[k][static_cast<std::size_t>(d + l)] = spare;
+      }
       Column left{};
       for (int i = 0; i < s; ++i)
         for (int r = 0; r < d; ++r) {
@@ -292,14 +307,14 @@ class MaximalTree {
     }
   }
 
-  template <int s, bool gives>
+  template <int s, int gives>
   void outward(std::size_t k, const Column* h, double* u) {
     const auto& b = w_.model->bodies[k];
     const auto& j = joint_[k];
     Column& a = a_[k];
     const Column carried =
         b.parent < 0 ? Column{} : to_child(k, a_[static_cast<std::size_t>(b.parent)]);
-    if constexpr (s == d && !gives) {
+    if constexpr (s == d && gives == 0) {
       a = carried;
     } else {
       a = h[k];

@@ -1,8 +1,10 @@
-// The mechanism as a figure: solids, bars where a body has none, signs of joints and loops, names.
+// The mechanism as a figure: solids, bars where a body has none, signs of joints and loops, limits
+// where there are few, names.
 // What is far is drawn first.
 
 #include <momenta/dae/report/figure.h>
 #include <momenta/dae/report/figure_eye.h>
+#include <momenta/dae/report/figure_limits.h>
 #include <momenta/dae/report/figure_names.h>
 #include <momenta/dae/report/meshes.h>
 #include <momenta/dae/report/solid_faces.h>
@@ -23,7 +25,7 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr const char *body_colour = "#8fa3bb", *rim = "#3c4653", *gap_colour = "#d55e00",
-                     *dark = "#17191d";
+                     *dark = "#17191d", *limit_colour = "#525a66";
 
 /// A thing to be drawn, the farthest first.
 struct Item {
@@ -197,6 +199,26 @@ void add_body(std::vector<Item>& items, const Picture::Body& body, const Isometr
   }
 }
 
+/// Limits, in front of everything.
+void add_limits(std::vector<Item>& items, const std::vector<LimitMark>& marks,
+                const FigureEye& eye) {
+  constexpr double in_front = -1e8;
+  for (const LimitMark& mark : marks) {
+    const auto line = [&](std::size_t i, const char* colour, double w) {
+      const Vector2d a = eye.project(mark.outline[i]).at, b = eye.project(mark.outline[i + 1]).at;
+      return svg::line(a.x(), a.y(), b.x(), b.y(), colour, w);
+    };
+    std::string markup;
+    const std::size_t last = mark.outline.size() - 2;
+    for (std::size_t i = 0; i <= last; ++i)
+      markup += line(i, limit_colour, i == 0 || i == last ? 1.6 : 1.2);
+    const Vector2d a = eye.project(mark.now[0]).at, b = eye.project(mark.now[1]).at;
+    markup += svg::line(a.x(), a.y(), b.x(), b.y(), mark.passed ? gap_colour : limit_colour,
+                        mark.passed ? 2.4 : 1.2);
+    items.push_back({in_front, markup});
+  }
+}
+
 /// A colour of eight bits each, darker by less light.
 std::string shaded(const std::optional<Vector3d>& colour, double light) {
   const Vector3d base = colour.value_or(Vector3d(0x8f, 0xa3, 0xbb) / 255);
@@ -279,6 +301,9 @@ std::string mechanism_svg(const Picture& whole, const Motion::Frame& frame) {
     items.push_back({b.depth - 2 * nearer, sign});
     name(b, "loop " + loop.name);
   }
+  constexpr std::size_t most_limits = 8;
+  if (const auto marks = limit_marks(picture, at, width); marks.size() <= most_limits)
+    add_limits(items, marks, eye);
   std::stable_sort(items.begin(), items.end(),
                    [](const Item& a, const Item& b) { return a.depth > b.depth; });
   std::string inside;

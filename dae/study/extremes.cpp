@@ -184,7 +184,11 @@ Scene in_units(Scene scene, const Units& units) {
       if (const JointSpec* of = joint_named(scene, f.joints[i]);
           of && is_length(of->kind, i < f.coordinates.size() ? f.coordinates[i] : 0))
         f.ratios[i] /= s;
-    if (!of_sum) f.rest *= s;
+    if (!of_sum) f.rest *= s, f.dead_band *= s, f.stop_width *= s;
+    if (!of_sum && f.limits)
+      for (double& limit : *f.limits) limit *= s;
+    f.stop_stiffness *= of_sum ? torque : force / s;
+    f.stop_damping *= of_sum ? torque * tau : force / speed;
     f.stiffness *= of_sum ? torque : force / s;
     f.damping *= of_sum ? torque * tau : force / speed;
     f.rotational_stiffness *= torque;

@@ -72,7 +72,8 @@ class IntegratedWork {
         return true;
     for (const auto& f : scene.forces)
       if ((has_formula(f) && (f.kind != "potential" || takes_time(scene, f))) ||
-          ((f.kind == "spring-damper" || f.kind == "coordinate-spring") && f.damping != 0) ||
+          ((f.kind == "spring-damper" || f.kind == "coordinate-spring") &&
+           (f.damping != 0 || f.stop_damping != 0)) ||
           (f.kind == "bushing" && (f.damping != 0 || f.rotational_damping != 0)) ||
           (f.kind == "wrench" && (f.in_body_axes || f.torque.norm() > 0)))
         return true;

@@ -14,29 +14,80 @@ PassedLimits::PassedLimits(const Mechanism& mechanism) {
     if (!joint.limits) continue;
     const auto& body =
         mechanism.tree().bodies[static_cast<std::size_t>(mechanism.tree().carried_by(joint.name))];
-    if (body.nq != 1) continue;  // driven
-    limited_.push_back({joint.name, *joint.limits, body.q, joint.kind == JointKind::prismatic,
-                        has_stops(joint), false});
+    if (body.nq == 0) continue;  // driven
+    limited_.push_back({joint.name, *joint.limits, body.nq == 4 ? Of::angle : Of::coordinate,
+                        body.q, joint.kind == JointKind::prismatic, has_stops(joint)});
   }
   for (std::size_t i = 0; i < scene.loops.size(); ++i) {
     const LoopSpec& loop = scene.loops[i];
     if (loop.kind != LoopKind::slot || loop.curve.kind != "spline" || loop.curve.closed) continue;
     const double length = pair_of(loop).of_b.samples().back();
-    limited_.push_back({loop.name, {0, length}, static_cast<int>(i), true, false, true});
-    if (!e_) e_ = mechanism.evaluation<double>();
+    limited_.push_back({loop.name, {0, length}, Of::slot, static_cast<int>(i), true, false});
+    places_.resize(scene.loops.size());
   }
-  if (e_) places_.resize(scene.loops.size());
+  for (const ForceSpec& force : scene.forces)
+    if (force.limits) add_force(mechanism, force);
+  if (!places_.empty() || !lengths_.empty()) e_ = mechanism.evaluation<double>();
   last_.resize(limited_.size());
+}
+
+void PassedLimits::add_force(const Mechanism& mechanism, const ForceSpec& force) {
+  const auto number = &force - mechanism.scene().forces.data();
+  const std::string name =
+      force.name.empty() ? force.kind + " " + std::to_string(number + 1) : force.name;
+  Limited l{name, *force.limits,   Of::length, static_cast<int>(lengths_.size()),
+            true, has_stops(force)};
+  if (force.kind == "spring-damper") {
+    limited_.push_back(std::move(l));
+    lengths_.push_back(0);
+    return;
+  }
+  const Tree& tree = mechanism.tree();
+  l.of = Of::sum;
+  l.slides = false;
+  for (std::size_t i = 0; i < force.joints.size(); ++i) {
+    const int coordinate = force.coordinates.empty() ? 0 : force.coordinates[i];
+    const int last = tree.carried_by(force.joints[i]);
+    for (int k = tree.first_part(last); k <= last; ++k) {
+      const Tree::Body& b = tree.bodies[static_cast<std::size_t>(k)];
+      if (b.coordinate != coordinate) continue;
+      if (b.nq == 0) return;  // driven
+      l.slides |= b.kind == JointKind::prismatic;
+      l.terms.emplace_back(b.q, force.ratios[i]);
+    }
+  }
+  limited_.push_back(std::move(l));
 }
 
 void PassedLimits::values(double t, const double* q, std::vector<double>& x) {
   if (e_) {
     e_->place(t, q);
-    e_->slot_places(places_.data());
+    if (!places_.empty()) e_->slot_places(places_.data());
+    e_->limited_lengths(lengths_.data());
   }
   x.clear();
-  for (const Limited& l : limited_)
-    x.push_back(l.is_slot ? places_[static_cast<std::size_t>(l.q)] : q[l.q]);
+  for (const Limited& l : limited_) {
+    const auto place = static_cast<std::size_t>(l.place);
+    switch (l.of) {
+      case Of::coordinate:
+        x.push_back(q[l.place]);
+        break;
+      case Of::angle:
+        x.push_back(2 * std::atan2(std::hypot(q[l.place + 1], q[l.place + 2], q[l.place + 3]),
+                                   std::abs(q[l.place])));
+        break;
+      case Of::slot:
+        x.push_back(places_[place]);
+        break;
+      case Of::sum:
+        x.push_back(0);
+        for (const auto& [at, ratio] : l.terms) x.back() += ratio * q[at];
+        break;
+      case Of::length:
+        x.push_back(lengths_[place]);
+        break;
+    }
+  }
 }
 
 /// By how much; not positive within the limits, nor where rounding alone is beyond.
@@ -46,12 +97,17 @@ double PassedLimits::beyond(const Limited& l, double x) {
   return std::max(past(l.limits[0] - x, l.limits[0]), past(x - l.limits[1], l.limits[1]));
 }
 
+bool PassedLimits::is_of(const PassedLimit& p, const Limited& l) {
+  return p.joint == l.name && p.of_force == (l.of == Of::sum || l.of == Of::length);
+}
+
 /// What is known of the joint, or the note that it passes at t.
 PassedLimit& PassedLimits::entry(const Limited& l, double t, double x,
                                  std::vector<PassedLimit>& passed) {
   for (PassedLimit& p : passed)
-    if (p.joint == l.name) return p;
-  passed.push_back({l.name, l.limits[0], l.limits[1], t, x, t, l.slides, l.stops, l.is_slot});
+    if (is_of(p, l)) return p;
+  passed.push_back({l.name, l.limits[0], l.limits[1], t, x, t, l.slides, l.stops, l.of == Of::slot,
+                    l.of == Of::sum || l.of == Of::length});
   return passed.back();
 }
 
@@ -88,7 +144,7 @@ void PassedLimits::step(double t1, const std::function<const double*(double)>& q
       take(t0 + s * h, between_[i]);
     if (!(beyond(l, far) > 0)) continue;
     const bool known = std::any_of(passed.begin(), passed.end(),
-                                   [&](const PassedLimit& p) { return p.joint == l.name; });
+                                   [&](const PassedLimit& p) { return is_of(p, l); });
     double since = at;
     if (!known && !(beyond(l, last_[i]) > 0)) {
       double within = t0;
@@ -114,7 +170,10 @@ std::vector<std::string> in_words(const std::vector<PassedLimit>& passed) {
   for (std::size_t i = 0; i < passed.size() && i < most; ++i) {
     const PassedLimit& p = passed[i];
     const std::string unit = p.slides ? " m" : " rad";
-    all.push_back((p.of_slot ? "the point in slot " : "joint ") + reading::in_quotes(p.joint) +
+    all.push_back((p.of_slot    ? "the point in slot "
+                   : p.of_force ? "the length of force "
+                                : "joint ") +
+                  reading::in_quotes(p.joint) +
                   (p.of_slot ? " is beyond its ends ["
                    : p.stops ? " is at its stops beyond ["
                              : " is beyond its limits [") +

@@ -1,9 +1,9 @@
 #pragma once
-// Joints beyond their `limits`, and points beyond the ends of open slots: since when, and how far.
-// Times between the samples come from the
-// integrator's dense output: of each step its middle and its end are looked at, and the vertex of
-// the parabola through the three where that lies further out; the time at which a limit is passed
-// is bisected on the dense output.
+// Joints and lengths along forces beyond their `limits`, and points beyond the ends of open slots:
+// since when, and how far. Of a spherical joint the angle of its turn counts, 2 atan2(|e|, |w|) of
+// its quaternion (w, e). Times between the samples come from the integrator's dense output: of each
+// step its middle and its end are looked at, and the vertex of the parabola through the three where
+// that lies further out; the time at which a limit is passed is bisected on the dense output.
 
 #include <momenta/dae/mechanism.h>
 #include <momenta/dae/solver/memory.h>
@@ -13,6 +13,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace momenta {
@@ -34,28 +35,35 @@ class PassedLimits {
   void carry(Memory& memory) { memory(last_time_), memory(last_.data(), last_.size()); }
 
  private:
-  /// A joint and its coordinate, or an open slot and the place of its point along the chords.
+  /// Whose value is looked at: a joint's coordinate, the angle of a spherical joint, the place of a
+  /// point along the chords of an open slot, a sum of coordinates, the length of a spring-damper.
+  enum class Of { coordinate, angle, slot, sum, length };
   struct Limited {
     std::string name;
     std::array<double, 2> limits;
-    int q;  ///< place in q; of a slot that of its loop in the scene
-    bool slides, stops, is_slot;
+    Of of;
+    int place;  ///< in q; of a slot that of its loop in the scene, of a length that among them
+    bool slides, stops;
+    std::vector<std::pair<int, double>> terms{};  ///< of a sum: places in q, ratios
   };
+  void add_force(const Mechanism& mechanism, const ForceSpec& force);
   /// x of all of limited_ at (t, q).
   void values(double t, const double* q, std::vector<double>& x);
   static double beyond(const Limited& l, double x);
+  static bool is_of(const PassedLimit& p, const Limited& l);
   static PassedLimit& entry(const Limited& l, double t, double x, std::vector<PassedLimit>& passed);
 
   std::vector<Limited> limited_;
-  std::unique_ptr<Evaluation<double>> e_;  ///< where there are open slots
+  std::unique_ptr<Evaluation<double>> e_;  ///< where there are open slots or lengths
   std::vector<double> places_;             ///< by loop
+  std::vector<double> lengths_;
   double last_time_ = 0;
   std::vector<double> last_, middle_, end_, between_;  ///< of limited_
 };
 
 /// "joint 'k' is beyond its limits [-1, 2] rad from t = 0.3 s on, farthest at t = 0.4 s: 2.1 rad",
-/// "the point in slot 's' is beyond its ends [0, 2] m …", one each, the first four; and how many
-/// more.
+/// "the point in slot 's' is beyond its ends [0, 2] m …", "the length of force 'f' …", one each,
+/// the first four; and how many more.
 std::vector<std::string> in_words(const std::vector<PassedLimit>& passed);
 
 }  // namespace momenta

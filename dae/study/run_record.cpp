@@ -94,10 +94,11 @@ void list(const Each& each, auto&& s) requires
 template <class Each>
 void list(const Each& each,
           auto&& s) requires std::is_same_v<std::remove_cvref_t<decltype(s)>, PassedLimit> {
-  auto& [joint, least, largest, since, farthest, farthest_at, slides, stops, of_slot] = s;
+  auto& [joint, least, largest, since, farthest, farthest_at, slides, stops, of_slot, of_force] = s;
   each("joint", joint), each("least", least), each("largest", largest), each("since", since);
   each("farthest", farthest), each("farthest_at", farthest_at);
   each("slides", slides), each("stops", stops), each("of_slot", of_slot);
+  each("of_force", of_force);
 }
 
 template <class Each>

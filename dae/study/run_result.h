@@ -68,9 +68,10 @@ struct Trajectory {
   std::vector<std::vector<double>> rows;  ///< each of columns.size()
 };
 
-/// A joint that went beyond its limits, or a point that went beyond the ends of an open slot.
+/// A joint or the length along a force that went beyond its limits, or a point that went beyond the
+/// ends of an open slot.
 struct PassedLimit {
-  std::string joint;       ///< its name, or the slot's
+  std::string joint;       ///< its name, the force's or the slot's
   double least = 0;        ///< its lower limit [rad or m]
   double largest = 0;      ///< its upper limit [rad or m]
   double since = 0;        ///< when it was beyond for the first time [s]
@@ -79,6 +80,7 @@ struct PassedLimit {
   bool slides = false;     ///< in m, else rad
   bool stops = false;      ///< its limits push back
   bool of_slot = false;    ///< of a slot: its limits are 0 and its length along the chords
+  bool of_force = false;   ///< of the length along a force
 };
 
 /// The result of a run.

@@ -26,8 +26,12 @@ DenseLagrangian::DenseLagrangian(const Scene& scene, const Tree& tree)
     p.quaternion =
         p.nv > 0 && (joint.kind == JointKind::spherical || joint.kind == JointKind::free);
     auto rate = static_cast<std::size_t>(p.u);  // driven coordinates have none
-    for (std::size_t i = 0; i < joint.rotor_inertia.size(); ++i)
-      if (!p.drives.contains(static_cast<int>(i))) rotors_[rate++] = joint.rotor_inertia[i];
+    if (joint.kind == JointKind::spherical)
+      for (int i = 0; i < p.nv && !joint.rotor_inertia.empty(); ++i)
+        rotors_[rate++] = joint.rotor_inertia[0];
+    else
+      for (std::size_t i = 0; i < joint.rotor_inertia.size(); ++i)
+        if (!p.drives.contains(static_cast<int>(i))) rotors_[rate++] = joint.rotor_inertia[i];
   }
   std::vector<bool> placed(places_.size(), false);
   while (order_.size() < places_.size())

@@ -1,7 +1,9 @@
-// Bushings, springs along sums of coordinates and friction of joints: energies against forces, both
+// Bushings, springs along sums of coordinates and between points, with dead bands and stops, stops
+// of a ball with a rotor, and friction of joints: energies against forces, both
 // recursions against each other, exact derivatives against differences, and single bodies against
 // their equations.
 
+#include "equations/four_bodies.h"
 #include "equations/random_tree.h"
 
 #include <gtest/gtest.h>
@@ -20,35 +22,14 @@ using Eigen::VectorXd;
 /// A tree with every kind of force; `c` scales what takes energy.
 Scene mixed(double c) {
   const auto number = [](double x) { return std::to_string(x); };
-  return parse_scene(
-      R"(
-[[body]]
-name = "a"
-mass = 2
-com = [0.1, 0.2, -0.1]
-inertia = [0.3, 0.4, 0.5, 0.02, 0.01, -0.03]
-[[body]]
-name = "b"
-mass = 1
-com = [0.2, 0, 0.1]
-inertia = [0.2, 0.3, 0.25]
-[[body]]
-name = "d"
-mass = 1.5
-com = [0, 0.3, 0]
-inertia = [0.1, 0.2, 0.15]
-[[body]]
-name = "e"
-mass = 0.7
-com = [0, 0.1, 0.2]
-inertia = [0.1, 0.1, 0.05]
+  return parse_scene(equations::four_bodies + R"(
 [[joint]]
 name = "A"
 kind = "revolute"
 child = "a"
 axis = [1, 2, 2]
-friction = )" +
-          number(0.8 * c) + R"(
+friction = )" + number(0.8 * c) +
+                         R"(
 friction_rate = 0.5
 [[joint]]
 name = "B"
@@ -57,14 +38,18 @@ parent = "a"
 child = "b"
 origin = { parent = [0.5, 0.1, 0], child = [0, -0.2, 0.1] }
 rotation = { rpy = [0.3, -0.5, 0.7] }
+rotor_inertia = 0.3
+limits = [0, 0.6]
+stop_stiffness = 6
+stop_width = 0.4
 [[joint]]
 name = "D"
 kind = "prismatic"
 parent = "b"
 child = "d"
 axis = [1, 0, 1]
-friction = )" +
-          number(0.5 * c) + R"(
+friction = )" + number(0.5 * c) +
+                         R"(
 [[joint]]
 name = "E"
 kind = "cylindrical"
@@ -80,15 +65,15 @@ origin = { parent = [0.4, 0.1, 0], child = [0.1, -0.2, 0.1] }
 rotation = { rpy = [-0.4, 0.6, 0.2] }
 stiffness = 7
 rotational_stiffness = 3
-damping = )" +
-          number(0.9 * c) + "\nrotational_damping = " + number(0.6 * c) + R"(
+damping = )" + number(0.9 * c) +
+                         "\nrotational_damping = " + number(0.6 * c) + R"(
 [[force]]
 kind = "bushing"
 child = "d"
 origin = { parent = [0.4, 0.3, 0.2], child = [0.1, 0, 0] }
 rotational_stiffness = 5
-damping = )" +
-          number(0.4 * c) + R"(
+damping = )" + number(0.4 * c) +
+                         R"(
 [[force]]
 kind = "coordinate-spring"
 joints = ["A", "D", "E"]
@@ -96,9 +81,25 @@ coordinates = [0, 0, 1]
 ratios = [1.5, -2, 0.7]
 stiffness = 4
 rest = 0.3
-damping = )" +
-          number(0.5 * c) + "\n",
-      "mixed.toml");
+dead_band = 0.8
+limits = [-0.5, 1.5]
+stop_stiffness = 5
+stop_width = 0.3
+damping = )" + number(0.5 * c) +
+                         R"(
+[[force]]
+kind = "spring-damper"
+parent = "e"
+child = "d"
+origin = { parent = [0, 0.1, 0.3], child = [0.1, 0, -0.2] }
+stiffness = 8
+rest = 0.5
+dead_band = 0.6
+limits = [0.4, 1.2]
+stop_stiffness = 5
+stop_width = 0.2
+)",
+                     "mixed.toml");
 }
 
 struct State {

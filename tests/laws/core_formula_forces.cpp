@@ -3,6 +3,7 @@
 // recursions and algebras against each other, exact derivatives against differences, batches
 // against single states.
 
+#include "equations/four_bodies.h"
 #include "equations/random_tree.h"
 
 #include <gtest/gtest.h>
@@ -26,26 +27,8 @@ gravity = [0.3, -9, 1]
 [parameters]
 k = 4
 c = 0.7
-[[body]]
-name = "a"
-mass = 2
-com = [0.1, 0.2, -0.1]
-inertia = [0.3, 0.4, 0.5, 0.02, 0.01, -0.03]
-[[body]]
-name = "b"
-mass = 1
-com = [0.2, 0, 0.1]
-inertia = [0.2, 0.3, 0.25]
-[[body]]
-name = "d"
-mass = 1.5
-com = [0, 0.3, 0]
-inertia = [0.1, 0.2, 0.15]
-[[body]]
-name = "e"
-mass = 0.7
-com = [0, 0.1, 0.2]
-inertia = [0.1, 0.1, 0.05]
+)toml" + equations::four_bodies +
+                         R"toml(
 [[joint]]
 name = "A"
 kind = "revolute"

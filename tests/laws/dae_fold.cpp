@@ -302,9 +302,9 @@ void add_forces(RandomTree& random, Scene& scene, JointSpec& joint) {
 Scene geared(RandomTree& random, int& wheels) {
   Scene scene = random.scene({.bodies = 4, .rotors = random.chance(0.5)});
   for (JointSpec& j : scene.joints) {
-    if (rotors_of(j.kind) == 0) continue;
-    j.position.assign(rotors_of(j.kind), random.uniform(-1, 1));
-    j.velocity.assign(rotors_of(j.kind), random.uniform(-1, 1));
+    if (scalar_coordinates_of(j.kind) == 0) continue;
+    j.position.assign(scalar_coordinates_of(j.kind), random.uniform(-1, 1));
+    j.velocity.assign(scalar_coordinates_of(j.kind), random.uniform(-1, 1));
   }
   BodySpec carriage;
   carriage.name = "carriage";
@@ -323,8 +323,8 @@ Scene geared(RandomTree& random, int& wheels) {
   const std::vector<JointSpec> leaders = scene.joints;
   wheels = 0;
   for (const JointSpec& leader : leaders) {
-    if (rotors_of(leader.kind) == 0) continue;
-    const int coordinate = random.below(static_cast<int>(rotors_of(leader.kind)));
+    if (scalar_coordinates_of(leader.kind) == 0) continue;
+    const int coordinate = random.below(static_cast<int>(scalar_coordinates_of(leader.kind)));
     std::string joint = leader.name;
     bool driven = false;
     for (const DriveSpec& d : scene.drives) driven |= d.joint == joint;

@@ -35,9 +35,9 @@ Scene anywhere(unsigned seed, bool flat) {
   const TreeRecipe recipe{.bodies = 5, .drives = false};
   Scene scene = flat ? random.planar_scene(recipe) : random.scene(recipe);
   for (JointSpec& j : scene.joints) {
-    if (rotors_of(j.kind) == 0) continue;
-    j.position.assign(rotors_of(j.kind), random.uniform(-1, 1));
-    j.velocity.assign(rotors_of(j.kind), random.uniform(-1, 1));
+    if (scalar_coordinates_of(j.kind) == 0) continue;
+    j.position.assign(scalar_coordinates_of(j.kind), random.uniform(-1, 1));
+    j.velocity.assign(scalar_coordinates_of(j.kind), random.uniform(-1, 1));
   }
   return scene;
 }

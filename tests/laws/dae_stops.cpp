@@ -7,6 +7,7 @@
 #include <momenta/dae/study/passed_limits.h>
 #include <momenta/dae/study/run_form.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace momenta::dae_stops {
@@ -135,6 +136,84 @@ TEST(Stops, BounceWithoutLoss) {
   EXPECT_EQ(result.status, "done");
   EXPECT_LE(result.energy_error_max, 1e-6);
   EXPECT_GT(result.kinetic_energy_max, 10);
+}
+
+/// A body on a joint at the origin, and forces; without gravity.
+Scene turning(const std::string& joint, const std::string& forces = "") {
+  return parse_scene(
+      "[[body]]\nname = \"a\"\nmass = 2\ninertia = [0.3, 0.3, 0.3]\n[[joint]]\n"
+      "name = \"A\"\nchild = \"a\"\n" +
+          joint + forces,
+      "turning.toml");
+}
+
+// The angle of a ball that turns about one axis grows like the time.
+TEST(PassedLimits, OfBallsAndLengths) {
+  const auto sentences = [](const Scene& scene) {
+    const RunResult result = run(scene, 1, 1);
+    EXPECT_EQ(result.status, "done") << result.reason;
+    return in_words(result.passed_limits);
+  };
+  EXPECT_EQ(
+      sentences(turning("kind = \"spherical\"\nvelocity = [0.6, 0, -0.8]\nlimits = [0, 0.25]\n")),
+      std::vector<std::string>{"joint 'A' is beyond its limits [0, 0.25] rad from t = 0.25 s "
+                               "on, farthest at t = 1 s: 1 rad"});
+  const std::string
+      sum = "[[force]]\nkind = \"coordinate-spring\"\njoints = [\"A\"]\nratios = [-2]\n",
+      length =
+          "[[force]]\nname = \"A\"\nkind = \"spring-damper\"\nchild = \"a\"\n"
+          "origin.child = [0, 0, 1]\norigin.parent = [0, 0, -1]\n",
+      slide = "kind = \"prismatic\"\nvelocity = [1]\n";
+  EXPECT_EQ(
+      sentences(turning("kind = \"revolute\"\nvelocity = [1]\n", sum + "limits = [-1, 1]\n")),
+      std::vector<std::string>{"the length of force 'coordinate-spring 1' is beyond its limits "
+                               "[-1, 1] rad from t = 0.5 s on, farthest at t = 1 s: -2 rad"});
+  // of a joint and a force with one name both are told
+  EXPECT_EQ(
+      sentences(turning(slide + "limits = [-1, 0.75]\n", length + "limits = [0, 2.5]\n")),
+      (std::vector<std::string>{"joint 'A' is beyond its limits [-1, 0.75] m from t = 0.75 s "
+                                "on, farthest at t = 1 s: 1 m",
+                                "the length of force 'A' is beyond its limits [0, 2.5] m from "
+                                "t = 0.5 s on, farthest at t = 1 s: 3 m"}));
+}
+
+// A stop is the same on a hinge, on a ball that turns about the hinge's axis, along a sum of
+// coordinates and along a length: what comes back, when, and what the damper took.
+TEST(Stops, OfBallsAndLengthsAreThoseOfHingesAndSlides) {
+  const std::string stops = "stop_stiffness = 40\nstop_damping = 0.7\nstop_width = 0.05\n",
+                    hinge = "kind = \"revolute\"\nvelocity = [1]\n",
+                    slide = "kind = \"prismatic\"\nvelocity = [1]\n";
+  const auto back = [](const Scene& scene, const std::string& column) {
+    const RunResult result = run(scene, 1.5, 40);
+    EXPECT_EQ(result.status, "done") << result.reason;
+    EXPECT_LE(result.energy_error_max, 1e-7);
+    const auto& columns = result.trajectory.columns;
+    const auto at = std::find_if(columns.begin(), columns.end(),
+                                 [&](const std::string& c) { return c.starts_with(column + " "); });
+    EXPECT_NE(at, columns.end());
+    std::vector<double> rates;
+    for (const auto& row : result.trajectory.rows)
+      rates.push_back(row[static_cast<std::size_t>(at - columns.begin())]);
+    return rates;
+  };
+  const auto same = [](const std::vector<double>& a, const std::vector<double>& b) {
+    ASSERT_EQ(a.size(), b.size());
+    EXPECT_LT(a.back(), -0.3);  // it went back, slower
+    EXPECT_GT(a.back(), -0.99);
+    for (std::size_t i = 0; i < a.size(); ++i) EXPECT_NEAR(a[i], b[i], 1e-7) << i;
+  };
+  const std::vector<double> on_hinge = back(turning(hinge + "limits = [-9, 0.4]\n" + stops), "A.u");
+  same(on_hinge,
+       back(turning("kind = \"spherical\"\nvelocity = [0, 0, 1]\nlimits = [0, 0.4]\n" + stops),
+            "A.wz"));
+  const std::string sum =
+      "[[force]]\nkind = \"coordinate-spring\"\njoints = [\"A\"]\nratios = [1]\n";
+  same(on_hinge, back(turning(hinge, sum + "rest = 0.2\nlimits = [-9, 0.4]\n" + stops), "A.u"));
+  const std::vector<double> on_slide = back(turning(slide + "limits = [-9, 0.4]\n" + stops), "A.u");
+  const std::string length =
+      "[[force]]\nkind = \"spring-damper\"\nchild = \"a\"\n"
+      "origin.parent = [0, 0, -1]\nrest = 0.3\n";
+  same(on_slide, back(turning(slide, length + "limits = [0, 1.4]\n" + stops), "A.u"));
 }
 
 // Eight equal arms with a loop each hang on a body that flies: where sweeps take such branches side

@@ -185,9 +185,40 @@ TEST_F(KnownElements, WhatDoesNotComeWithAnAttachedModelIsTold) {
                            "<mujoco><asset><model name='p' file='part.xml'/></asset><worldbody>"
                            "<attach model='p' body='b' prefix='x'/></worldbody></mujoco>");
   EXPECT_EQ(scene.remarks, (Remarks{"left out: <option> of attached models (1)",
-                                    "left out: keys of attached models (2)",
+                                    "left out: keys of models of which a part is attached (2)",
                                     "left out: <sensor> of attached models (1)",
                                     "left out: geoms as shapes to touch (1)"}));
+}
+
+// A key of a model that is attached as a whole is of its joints, wherever they stand among others.
+TEST_F(KnownElements, KeysOfAttachedModels) {
+  write("part.xml",
+        "<mujoco><worldbody><body name='b'><joint name='j' ref='90'/><joint name='k' type='ball'/>"
+        "<geom size='1'/></body></worldbody><keyframe><key name='up' qpos='1 0 3 0 4' qvel='5 6 7 "
+        "8'/>"
+        "<key qpos='2'/></keyframe></mujoco>");
+  const std::string whole =
+      "<mujoco><asset><model name='p' file='part.xml'/></asset><worldbody><body name='o'>"
+      "<joint name='own'/><geom size='1'/></body><attach model='p' prefix='x'/></worldbody>"
+      "<keyframe><key name='here' qpos='7 1 1 0 0 0'/></keyframe></mujoco>";
+  ReadOptions options;
+  options.key = "xup";
+  const Scene scene = read("whole.xml", whole, options);
+  const auto joint = [&](const std::string& name) -> const JointSpec& {
+    return *std::find_if(scene.joints.begin(), scene.joints.end(),
+                         [&](const JointSpec& j) { return j.name == name; });
+  };
+  EXPECT_TRUE(joint("own").position.empty());
+  EXPECT_NEAR(joint("xj").position.at(0), 1 - std::acos(0), 1e-15);
+  EXPECT_EQ(joint("xk").position, (std::vector<double>{0, 0.6, 0, 0.8}));
+  EXPECT_EQ(joint("xj").velocity, std::vector<double>{5});
+  EXPECT_EQ(joint("xk").velocity, (std::vector<double>{6, 7, 8}));
+  options.key = "here";
+  EXPECT_EQ(read("whole.xml", whole, options).joints[0].position, std::vector<double>{7});
+  options.key = "2";
+  EXPECT_NE(refused("whole.xml", whole, options)
+                .find("qpos has 1 numbers, expected 5 for the joints of the model"),
+            std::string::npos);
 }
 
 // ½ a |ω|² and ½ a |v|²: a on the diagonal of M, and no weight of a.
@@ -219,11 +250,42 @@ TEST_F(KnownElements, ArmatureOfBallsAndFreeJointsOnTheGround) {
     }
     EXPECT_LE(((M + A) * a + gyroscopic - M * b).norm(), 1e-12 * (M * b).norm()) << type;
   }
-  EXPECT_NE(refused("b.xml",
-                    "<mujoco><worldbody><body><joint/><geom size='1'/><body><joint name='n' "
-                    "type='ball' armature='1'/><geom size='1'/></body></body></worldbody></mujoco>")
-                .find("joint 'n': armature is 1 on a ball joint between bodies that move"),
-            std::string::npos);
+}
+
+// Between bodies that move, and with other joints of its body, M has a on the three rates of the
+// ball and nowhere else, and ½ a |u|² brings no force: Hamel's a u × u vanishes.
+TEST_F(KnownElements, ArmatureOfBallsBetweenMovingBodies) {
+  const auto model = [&](const std::string& armature) {
+    const std::string inertial =
+        "<inertial pos='.1 .2 .05' mass='2' fullinertia='.3 .4 .5 .01 .02 .03'/>";
+    return read("b.xml",
+                "<mujoco><compiler angle='radian'/><worldbody><body><joint axis='1 2 3'/>" +
+                    inertial + "<body pos='.1 .2 .3' euler='.3 .2 .1'><joint type='ball' " +
+                    armature + "/>" + inertial + "<body pos='1 0 0'><joint/>" + inertial +
+                    "</body></body></body><body pos='0 0 9'><joint type='slide' axis='1 0 0'/>"
+                    "<joint type='ball' pos='.2 0 0' " +
+                    armature + "/>" + inertial + "</body></worldbody></mujoco>");
+  };
+  OpenChain with(model("armature='0.7'")), without(model(""));
+  Eigen::VectorXd q = with.tree().q0, u(with.nv()), p(with.nv()), a(with.nv()), b(with.nv());
+  ASSERT_EQ(u.size(), 9);
+  Eigen::VectorXd on(9);
+  on << 0, 1, 1, 1, 0, 0, 1, 1, 1;
+  q.segment<4>(1) = Eigen::Vector4d(0.5, 0.1, -0.7, 0.3).normalized();
+  q.tail<4>() = Eigen::Vector4d(-0.2, 0.1, 0.6, 0.3).normalized();
+  for (Eigen::Index i = 0; i < u.size(); ++i) u[i] = 0.3 * static_cast<double>(i) - 0.5;
+  const Eigen::MatrixXd M = without.mass_matrix(0, q), A = 0.7 * Eigen::MatrixXd(on.asDiagonal());
+  EXPECT_LE((with.mass_matrix(0, q) - M - A).norm(), 1e-13);
+  ASSERT_TRUE(with.accelerations(0, q, u, a));
+  ASSERT_TRUE(without.accelerations(0, q, u, b));
+  EXPECT_LE(((M + A) * a - M * b).norm(), 1e-12 * (M * b).norm());
+  with.momenta(0, q, u, p);
+  EXPECT_LE((p - (M + A) * u).norm(), 1e-13 * p.norm());
+  Eigen::VectorXd qdot(with.nq()), pdot(with.nv()), own(with.nv());
+  ASSERT_TRUE(with.rates(0, q, p, qdot, pdot));
+  own = (M + A).ldlt().solve(p);
+  EXPECT_NEAR(qdot[0], own[0], 1e-13);
+  EXPECT_NEAR(with.energies(0, q, u).kinetic, 0.5 * u.dot(p), 1e-13 * u.dot(p));
 }
 
 // --- the table of docs/reference/formats.md ---

@@ -101,6 +101,37 @@ TEST_F(MjcfActs, LimitsAndFriction) {
   expect_refused("frictionloss is negative", "frictionloss='-1'");
 }
 
+// Tendons keep their range, counted as their length, and a dead band between two lengths; balls
+// keep the angle that their range allows.
+TEST_F(MjcfActs, LimitsOfTendonsAndBalls) {
+  using Limits = std::array<double, 2>;
+  const Scene s = scene("",
+                        "<tendon><fixed name='t' range='-1 3' stiffness='3' springlength='.5 2'>"
+                        "<joint joint='j' coef='2'/></fixed><fixed range='0 1'><joint joint='k' "
+                        "coef='1'/></fixed><spatial range='0 2'><site site='s'/><site site='w'/>"
+                        "</spatial><fixed range='0 1' limited='false'><joint joint='k' coef='1'/>"
+                        "</fixed></tendon>");
+  ASSERT_EQ(s.forces.size(), 3U);
+  EXPECT_EQ(s.forces[0].limits, (Limits{-1.5, 2.5}));
+  EXPECT_EQ(s.forces[0].rest, .5 - 2 * .25);
+  EXPECT_EQ(s.forces[0].dead_band, 1.5);
+  EXPECT_EQ(s.forces[1].limits, (Limits{0, 1}));
+  EXPECT_EQ(s.forces[1].stiffness, 0);
+  EXPECT_EQ(s.forces[2].kind, "spring-damper");
+  EXPECT_EQ(s.forces[2].limits, (Limits{0, 2}));
+  const auto ball = [&](const std::string& joint) {
+    std::ofstream(file_) << "<mujoco><worldbody><body><joint type='ball' " << joint
+                         << "/><geom size='1'/></body></worldbody></mujoco>";
+    ReadOptions options;
+    options.stops = {5, 0};
+    return read_scene(file_, options).joints[0];
+  };
+  EXPECT_EQ(ball("range='0 90'").limits, (Limits{0, pi / 2}));
+  EXPECT_EQ(ball("range='0 90'").stop_stiffness, 5);
+  EXPECT_FALSE(ball("range='0 180'").limits);  // beyond no turn can go
+  EXPECT_FALSE(ball("range='0 90' limited='false'").limits);
+}
+
 TEST_F(MjcfActs, PolynomialCoupling) {
   const Scene s = scene("",
                         "<equality><joint joint1='j' joint2='k' polycoef='.1 2 3 4 5'/><joint "
@@ -138,9 +169,6 @@ TEST_F(MjcfActs, Tendons) {
   expect_refused("goes by 3 sites, expected two", "",
                  "<tendon><spatial stiffness='5'><site site='s'/><site site='w'/><site "
                  "site='s'/></spatial></tendon>");
-  expect_refused("dead band", "",
-                 "<tendon><fixed stiffness='5' springlength='0 1'><joint "
-                 "joint='j' coef='1'/></fixed></tendon>");
   expect_refused("tendon1 is 'x', expected the name of a tendon", "",
                  "<equality><tendon tendon1='x'/></equality>");
 }

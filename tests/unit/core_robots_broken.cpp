@@ -173,10 +173,18 @@ const Case wrong_mjcf[] = {
      ":2: body 'b': <body> quat is zero"},
     {"body_twice", "<mujoco><worldbody><body name='b'/>\n<body name='b'/></worldbody></mujoco>",
      ":2: body 'b': <body> has a name that is taken"},
-    {"ball_armature",
-     "<mujoco><worldbody><body name='b'>\n<joint name='j' type='ball' "
-     "armature='1'/></body></worldbody></mujoco>",
-     ":2: joint 'j': armature is 1 on a ball joint between bodies that move"},
+    {"tendon_range",
+     "<mujoco><worldbody><body name='b'><joint name='j'/><geom "
+     "size='1'/></body></worldbody><tendon>"
+     "\n<fixed name='t' range='2 1'><joint joint='j' coef='1'/></fixed></tendon></mujoco>",
+     ":2: tendon 't': <fixed> range has its first number not below its second"},
+    {"tendon_lengths",
+     "<mujoco><worldbody><body name='b'><joint name='j'/><geom "
+     "size='1'/></body></worldbody><tendon>"
+     "\n<fixed name='t' stiffness='1' springlength='2 1'><joint joint='j' coef='1'/></fixed>"
+     "</tendon></mujoco>",
+     ":2: tendon 't': <fixed> springlength is no length and no two, expected one, or the least and "
+     "the largest without force"},
     {"size",
      "<mujoco><worldbody><body name='b'><joint/>\n<geom type='box' size='1 "
      "1'/></body></worldbody></mujoco>",

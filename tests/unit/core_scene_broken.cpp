@@ -244,11 +244,11 @@ TEST(BrokenHandmade, ScenesBuiltByHandAreChecked) {
        }},
       {"must be finite", [&](Scene& s) { s.joints[0].velocity = {nan}; }},
       {"stiffness, rest and damping must be finite", [&](Scene& s) { s.joints[0].rest = nan; }},
-      {"rotor_inertia must be empty or of one number for each coordinate",
+      {"rotor_inertia must be empty, of one number for each coordinate",
        [&](Scene& s) {
          s.joints[0].rotor_inertia = {1, 2};
        }},
-      {"rotor_inertia must be empty or of one number for each coordinate",
+      {"rotor_inertia must be empty, of one number for each coordinate",
        [&](Scene& s) {
          s.joints[1].kind = JointKind::spherical;
          s.joints[1].rotor_inertia = {1, 2, 3};

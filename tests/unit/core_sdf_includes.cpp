@@ -106,9 +106,9 @@ TEST_F(SdfIncludes, LimitsAndFrictionOfJoints) {
       "<model name='m'><link name='a'/><joint name='j' "
       "type='universal'><parent>world</parent><child>"
       "a</child><axis><xyz>1 0 0</xyz><limit><lower>-1</lower></limit></axis><axis2><xyz>0 1 "
-      "0</xyz>"
-      "</axis2></joint></model>");
-  EXPECT_EQ(universal.remarks.back(), "left out: limits of universal joints (1)");
+      "0</xyz><dynamics><friction>.5</friction></dynamics></axis2></joint></model>");
+  EXPECT_EQ(joint_of(universal, "j").limits, (Limits{-1, 1e16}));
+  EXPECT_EQ(joint_of(universal, "j axis2").friction, .5);
 }
 
 // A joint that closes a loop has no coordinate: its limits and its friction are told.

@@ -73,6 +73,11 @@ void stop_at_limits(Scene& scene, const std::array<double, 2>& stops) {
     joint.stop_stiffness = stops[0];
     joint.stop_damping = stops[1];
   }
+  for (ForceSpec& force : scene.forces) {
+    if (!force.limits || has_stops(force)) continue;
+    force.stop_stiffness = stops[0];
+    force.stop_damping = stops[1];
+  }
   validate(scene);
 }
 

@@ -16,6 +16,10 @@ Mesh read_mesh(const std::filesystem::path& file) {
                      : ending == ".obj" ? parse_obj
                      : ending == ".msh" ? parse_msh
                                         : nullptr;
+  if (ending == ".dae")
+    fail(name, {},
+         "is COLLADA, whose scenes of cameras, lights and units are not read; expected .stl, .obj "
+         "or .msh, which `assimp export` or Blender make of it");
   if (parse == nullptr)
     fail(name, {}, "its name ends in " + in_quotes(ending) + ", expected .stl, .obj or .msh");
   return parse(text_of(file, "mesh"), name);

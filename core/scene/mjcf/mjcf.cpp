@@ -62,6 +62,7 @@ void read_asset(const Node& asset, const MjcfFiles& files, MjcfModel& model) {
 /// What <compiler> and <default> of an attached model say.
 void read_attached(const Node& node, MjcfModel& model) {
   MjcfSettings& settings = model.attached[*node.element().find("model")];
+  settings.from_attached = *node.element().find("model");
   for (const Node& part : node.children("compiler")) read_compiler(part, settings);
   MjcfDefaults defaults;
   for (const Node& part : node.children("default")) defaults.take(part);

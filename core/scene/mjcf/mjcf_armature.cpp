@@ -5,11 +5,10 @@
 //   I + a 1   about its centre of mass,    and, of a free joint, with a mass a at the point of v,
 //
 // whose weight a constant force −a g there takes back. Against a parent that moves no body has such
-// an energy.
+// an energy: it is that of the joint's rotor_inertia.
 
 #include <momenta/core/scene/mjcf/mjcf_inertia.h>
 #include <momenta/core/scene/mjcf/mjcf_model.h>
-#include <momenta/core/text/near_name.h>
 
 #include <algorithm>
 
@@ -36,13 +35,12 @@ bool moves(const std::string& body, const Scene& scene) {
 void settle_ball_armatures(MjcfModel& model) {
   Scene& scene = model.scene;
   for (const auto& [name, a] : model.ball_armatures) {
-    const auto& joint = named(scene.joints, name, [](const JointSpec& j) { return j.name; });
+    auto& joint = named(scene.joints, name, [](const JointSpec& j) { return j.name; });
     BodySpec& body = named(scene.bodies, joint.child, [](const BodySpec& b) { return b.name; });
-    if (moves(joint.parent, scene) || body.mass == 0)
-      throw SceneError(scene.where(joint.at) + "joint " + in_quotes(name) + ": armature is " +
-                       digits(a) +
-                       " on a ball joint between bodies that move, or with other joints of its "
-                       "body; expected it on hinges and slides, or on a ball alone on the ground");
+    if (joint.kind == JointKind::spherical && (moves(joint.parent, scene) || body.mass == 0)) {
+      joint.rotor_inertia = {a};
+      continue;
+    }
     MjcfInertia sum{body.mass, body.com, body.inertia};
     sum.inertia += a * Eigen::Matrix3d::Identity();
     if (joint.kind == JointKind::free) {

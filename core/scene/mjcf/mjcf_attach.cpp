@@ -105,7 +105,8 @@ class Assembler {
     const auto everything = [](const std::string&, const std::string&) { return true; };
     rename(part, "", prefix, "", everything);
     element.children.clear();
-    if (part.name == "worldbody")
+    const bool whole = part.name == "worldbody";
+    if (whole)
       element.children = std::move(part.children);
     else
       element.children.push_back(std::move(part));
@@ -115,7 +116,11 @@ class Assembler {
         root.children.begin(), root.children.end(),
         [&](const Element& e) { return e.name == attached_model && *e.find("model") == key; });
     if (fresh) settings_of(model, key, prefix, root);
-    for (const Element& section : model.children) follow(section, prefix, key, fresh, inside, root);
+    for (const Element& section : model.children)
+      if (section.name == "keyframe")
+        take_keys(section, prefix, key, whole, root);
+      else
+        follow(section, prefix, key, fresh, inside, root);
   }
 
   /// The body or frame asked for, or the world, with the class that holds in it.
@@ -191,14 +196,30 @@ class Assembler {
 
   /// What does not come along with a part of the model.
   void tell_dropped(const Element& section, bool fresh) {
-    constexpr std::array<std::string_view, 10> along{
-        "tendon",  "equality", "contact",   "actuator", "asset",
-        "default", "compiler", "worldbody", "keyframe", attached_model};
-    if (section.name == "keyframe")
-      for ([[maybe_unused]] const Element& key : section.children)
-        remarks_.left_out("keys of attached models");
-    else if (fresh && std::find(along.begin(), along.end(), section.name) == along.end())
+    constexpr std::array<std::string_view, 9> along{"tendon",   "equality",  "contact",
+                                                    "actuator", "asset",     "default",
+                                                    "compiler", "worldbody", attached_model};
+    if (fresh && std::find(along.begin(), along.end(), section.name) == along.end())
       remarks_.left_out("<" + section.name + "> of attached models");
+  }
+
+  /// Keys of a model that is attached as a whole, named with the prefix. Their numbers are of the
+  /// joints of that model.
+  void take_keys(const Element& section, const std::string& prefix, const std::string& of,
+                 bool whole, Element& root) {
+    Element copy = section;
+    copy.children.clear();
+    for (Element key : section.children) {
+      if (!whole) {
+        remarks_.left_out("keys of models of which a part is attached");
+        continue;
+      }
+      if (const std::string* name = key.find("name")) set(key, "name", prefix + *name);
+      const std::string* const inner = key.find(of_model);
+      set(key, of_model, inner == nullptr ? of : prefix + *inner);
+      copy.children.push_back(std::move(key));
+    }
+    if (!copy.children.empty()) root.children.push_back(std::move(copy));
   }
 
   /// What a section of the model says of the part, to the root.

@@ -165,6 +165,8 @@ class BodyReader {
       }
       read_mechanics(node, joint, model_);
       if (has_axis(joint.kind)) joint.axis = joints[i].in.turn * joint.axis;
+      if (!model_.from_attached.empty())
+        model_.joint_of_attached[joint.name] = model_.from_attached;
       model_.refs[joint.name] =
           node.number("ref", 0) * (joint.kind == JointKind::revolute ? model_.angles.unit : 1);
       if (!last) {

@@ -20,7 +20,7 @@ namespace momenta::reading {
 /// No element of a file has such a name. Attributes: `model`, as the <attach> says it with
 /// prefixes, and `prefix` of its classes.
 inline constexpr const char* attached_model = "attached model";
-/// On an <asset> that came with an attached model: that `model`.
+/// On an <asset> and a <key> that came with an attached model: that `model`.
 inline constexpr const char* of_model = "of model";
 
 /// The model with its parts included, attached and replicated. @throws SceneError

@@ -1,11 +1,13 @@
 // What acts at a joint of MJCF: spring, damper, friction, armature, limits. Of hinges and slides
 // −k (q − springref) − c q̇, where the scene's q is the file's less `ref`; of ball and free joints
 // −k times the rotation vector (and displacement) from qpos0 and −c times all rates, which is a
-// bushing.
+// bushing. The `range` of a ball is 0 and the largest angle of its turn.
 
 #include <momenta/core/scene/kinds.h>
 #include <momenta/core/scene/mjcf/mjcf_model.h>
 #include <momenta/core/text/near_name.h>
+
+#include <numbers>
 
 namespace momenta::reading {
 namespace {
@@ -16,8 +18,10 @@ void read_limits(const Node& node, double unit, double ref, JointSpec& joint, Mj
   const std::size_t limited = node.word("limited", words, 0);
   if (limited == 1 || (limited == 0 && !model.auto_limits) || !node.has("range")) return;
   const std::vector<double> range = node.numbers("range", 2);
-  if (!has_one_coordinate(joint.kind)) {
-    if (range[1] > 0) model.remarks.left_out("limits of ball joints");
+  if (joint.kind == JointKind::free) return;
+  if (joint.kind == JointKind::spherical) {  // the angle of its turn; beyond π none
+    const double most = unit * range[1];
+    if (model.limits && most > 0 && most < std::numbers::pi) joint.limits = {0, most};
     return;
   }
   if (limited == 0 && range[0] == 0 && range[1] == 0) return;

@@ -1,4 +1,5 @@
 #include <momenta/core/scene/file_text.h>
+#include <momenta/core/scene/mjcf/mjcf_copies.h>
 #include <momenta/core/scene/mjcf/mjcf_keys.h>
 #include <momenta/core/text/near_name.h>
 
@@ -31,21 +32,28 @@ const Node& find(const std::vector<Node>& keys, const std::string& chosen, const
            did_you_mean(chosen, views));
 }
 
-/// The numbers of `attribute`, dealt out to the joints: `size(joint)` to each.
+/// The numbers of `attribute`, dealt out to the joints: `size(joint)` to each. A key that came with
+/// an attached model is of its joints alone.
 template <class Size, class Give>
 void deal(const Node& key, const char* attribute, MjcfModel& model, const Size& size,
           const Give& give) {
   if (!key.has(attribute)) return;
   const std::vector<double> numbers = key.numbers(attribute);
+  const std::string* const attached = key.element().find(of_model);
+  const auto meant = [&](const JointSpec& joint) {
+    if (attached == nullptr) return model.refs.contains(joint.name);
+    const auto of = model.joint_of_attached.find(joint.name);
+    return of != model.joint_of_attached.end() && of->second == *attached;
+  };
   std::size_t all = 0;
   for (const JointSpec& joint : model.scene.joints)
-    if (model.refs.contains(joint.name)) all += size(joint);
+    if (meant(joint)) all += size(joint);
   if (numbers.size() != all)
     key.fail(attribute, "has " + std::to_string(numbers.size()) + " numbers, expected " +
                             std::to_string(all) + " for the joints of the model");
   auto from = numbers.begin();
   for (JointSpec& joint : model.scene.joints)
-    if (model.refs.contains(joint.name)) {
+    if (meant(joint)) {
       const auto count = static_cast<std::ptrdiff_t>(size(joint));
       give(joint, std::vector<double>(from, from + count));
       from += count;
@@ -104,7 +112,8 @@ std::vector<double> controls_of_key(const std::vector<Node>& keyframes, const st
   if (chosen.empty()) return {};
   const std::vector<Node> keys = keys_in(keyframes);
   const Node& key = find(keys, chosen, model);
-  return key.has("ctrl") ? key.numbers("ctrl") : std::vector<double>{};
+  const bool whole = key.element().find(of_model) == nullptr;  // else of actuators of one part
+  return key.has("ctrl") && whole ? key.numbers("ctrl") : std::vector<double>{};
 }
 
 void read_keys(const std::vector<Node>& keyframes, const std::string& chosen, bool acts,
@@ -115,7 +124,9 @@ void read_keys(const std::vector<Node>& keyframes, const std::string& chosen, bo
     start_at(key, model);
     if (key.number("time", 0) != 0)
       model.remarks.left_out("time of the key: runs begin at 0, and nothing depends on time");
-    if (key.has("ctrl") && !acts)
+    if (key.has("ctrl") && key.element().find(of_model) != nullptr)
+      model.remarks.left_out("ctrl of the key of an attached model");
+    else if (key.has("ctrl") && !acts)
       model.remarks.left_out("ctrl of the key, which --control lets act");
     for (const char* other : {"act", "mpos", "mquat"})
       if (key.has(other)) model.remarks.left_out(std::string(other) + " of the key");

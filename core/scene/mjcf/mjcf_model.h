@@ -35,6 +35,8 @@ struct MjcfModel : MjcfSettings {
   std::map<std::string, Site> sites;
   /// `ref` of hinges and slides [rad or m]: q of the file less that of the scene; none: 0.
   std::map<std::string, double> refs;
+  /// Of joints that came with an attached model: the `model` of its <attach>.
+  std::map<std::string, std::string> joint_of_attached;
   /// `springref` less `ref`: q of the scene where tendons have their resting lengths; none: 0.
   std::map<std::string, double> rests;
   /// Of `springdamper`: until all inertias are known.

@@ -22,10 +22,12 @@ class Flattener {
         gather(node, in, active);
         settings_ = before;
         own_ = before_own;
-      } else if (what == "composite" || what == "flexcomp") {
+      } else if (what == "composite") {
         node.of("").fail(
-            "makes soft bodies, which are not read; expected the bodies, joints and constraints "
-            "that it stands for");
+            "makes bodies, joints and constraints by a count, which is not read; expected those it "
+            "stands for, as MuJoCo writes them when it saves the model (mj_saveLastXML)");
+      } else if (what == "flexcomp") {
+        node.of("").fail("makes a soft body, which is not read; expected rigid bodies");
       } else if (what == "inertial" && &around != first_) {
         node.of("").fail("stands in a <frame>, expected it in its <body>");
       } else {

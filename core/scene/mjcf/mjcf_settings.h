@@ -9,6 +9,7 @@
 namespace momenta::reading {
 
 struct MjcfSettings {
+  std::string from_attached;  ///< the `model` of the <attach> they came with; empty: none
   MjcfAngles angles;
   bool geoms_weigh = true, always_geoms = false;   ///< inertiafromgeom
   double least_group = -1e9, largest_group = 1e9;  ///< of geoms that weigh

@@ -45,7 +45,7 @@ class MassMatrix {
     for (const BodySpec& b : scene.bodies) add(b, m);
     for (const Way& way : ways_)
       if (!way.joint->rotor_inertia.empty())
-        m(way.first, way.first) += way.joint->rotor_inertia.front();
+        m.diagonal().segment(way.first, way.count).array() += way.joint->rotor_inertia.front();
     const Eigen::LDLT<MatrixXd> factors(m);
     positive_ = factors.info() == Eigen::Success && (factors.vectorD().array() > 0).all();
     if (positive_) inverse_ = factors.solve(MatrixXd::Identity(size(), size()));

@@ -1,13 +1,14 @@
 // <tendon>: a fixed tendon is a sum of joint coordinates, L = Σ coef q; where it has stiffness or
 // damping, a coordinate spring. A spatial tendon between two sites is a spring-damper. L of the
 // scene counts from qpos0: L_file − Σ coef ref. Without `springlength` a spring rests where every
-// joint is at its `springref`.
+// joint is at its `springref`; with two lengths it has a dead band between them.
 
 #include <momenta/core/scene/kinds.h>
 #include <momenta/core/scene/mjcf/mjcf_model.h>
 #include <momenta/core/text/near_name.h>
 
 #include <algorithm>
+#include <array>
 
 namespace momenta::reading {
 namespace {
@@ -24,9 +25,6 @@ class TendonReader {
     if (node_.number("armature", 0) != 0)
       node_.fail("armature", "is not zero, expected a tendon without inertia");
     if (node_.number("frictionloss", 0) != 0) model_.remarks.left_out("friction of tendons");
-    const std::string limited = node_.text("limited", "auto");
-    if (node_.has("range") && limited != "false" && (limited == "true" || model_.auto_limits))
-      model_.remarks.left_out("limits of tendons");
     const MjcfModel::Tendon tendon = node_.name() == "fixed" ? fixed() : spatial();
     const std::string name = node_.text("name", "");
     if (!name.empty() && !model_.tendons.emplace(name, tendon).second)
@@ -35,16 +33,37 @@ class TendonReader {
 
  private:
   bool acts() const { return stiffness_ != 0 || damping_ != 0; }
+  bool limited() const {
+    constexpr std::array<std::string_view, 3> words{"auto", "false", "true"};
+    const std::size_t limited = node_.word("limited", words, 0);
+    return model_.limits && node_.has("range") && limited != 1 &&
+           (limited == 2 || model_.auto_limits);
+  }
+  /// `range`, counted from `shift`.
+  void limits(double shift, ForceSpec& f) const {
+    if (!limited()) return;
+    const std::vector<double> range = node_.numbers("range", 2);
+    if (!(range[0] < range[1]))
+      node_.fail("range",
+                 "has its first number not below its second, expected limits of the tendon");
+    f.limits = {range[0] - shift, range[1] - shift};
+  }
 
-  /// `springlength`, or nothing where it is that at the springrefs.
-  std::optional<double> rest() const {
-    if (!node_.has("springlength")) return std::nullopt;
+  /// `springlength` less `shift` into the force; where it is not given, the length at the
+  /// springrefs, which is `otherwise`.
+  void rest(double shift, double otherwise, ForceSpec& f) {
+    f.rest = otherwise;
+    if (!node_.has("springlength")) return;
     const std::vector<double> x = node_.numbers("springlength");
-    if (x.empty() || x.size() > 2 || (x.size() == 2 && x[0] != x[1]))
+    if (x.empty() || x.size() > 2 || x.back() < x.front())
       node_.fail("springlength",
-                 "has a dead band between two lengths, expected one length: springs here have one");
-    if (x[0] == -1) return std::nullopt;
-    return x[0];
+                 "is no length and no two, expected one, or the least and the "
+                 "largest without force");
+    if (x[0] == -1 && x.back() == -1) return;
+    f.rest = x[0] - shift;
+    f.dead_band = x.back() - x[0];
+    if (f.dead_band > 0 && f.stiffness != 0)
+      model_.remarks.count("taken with corners rounded over a twentieth: dead bands of tendons");
   }
 
   ForceSpec force(const char* kind) const {
@@ -70,17 +89,18 @@ class TendonReader {
         tendon.ref += coef * ref->second;
     }
     std::erase_if(tendon.ratios, [](const auto& term) { return term.second == 0; });
-    if (!acts() || tendon.ratios.empty()) return tendon;
+    if ((!acts() && !limited()) || tendon.ratios.empty()) return tendon;
     ForceSpec f = force("coordinate-spring");
     for (const auto& [joint, ratio] : tendon.ratios) {
       f.joints.push_back(joint);
       f.ratios.push_back(ratio);
     }
-    const std::optional<double> length = rest();
-    f.rest = length ? *length - tendon.ref : 0;
+    double at_springrefs = 0;
     for (const auto& [joint, ratio] : tendon.ratios)
-      if (const auto at = model_.rests.find(joint); !length && at != model_.rests.end())
-        f.rest += ratio * at->second;
+      if (const auto at = model_.rests.find(joint); at != model_.rests.end())
+        at_springrefs += ratio * at->second;
+    rest(tendon.ref, at_springrefs, f);
+    limits(tendon.ref, f);
     model_.scene.forces.push_back(f);
     return tendon;
   }
@@ -129,10 +149,11 @@ class TendonReader {
       if (acts())
         node_.fail("has stiffness or damping and goes by " + std::to_string(sites.size()) +
                    " sites, expected two: a spring here is straight");
+      if (limited()) model_.remarks.left_out("limits of tendons by more than two sites");
       model_.remarks.left_out("spatial tendons without spring or damper");
       return tendon;
     }
-    if (!acts()) {
+    if (!acts() && !limited()) {
       model_.remarks.left_out("spatial tendons without spring or damper");
       return tendon;
     }
@@ -146,7 +167,8 @@ class TendonReader {
     f.child = MjcfModel::in_scene(two->body);
     f.origin_parent = one->frame.at;
     f.origin_child = two->frame.at;
-    f.rest = rest().value_or(length);
+    rest(0, length, f);
+    limits(0, f);
     model_.scene.forces.push_back(f);
     return tendon;
   }

@@ -134,8 +134,8 @@ void read_mimic(const Node& axis, int number, const std::string& scope, SdfJoint
   couplers.push_back(coupler);
 }
 
-/// A universal joint with springs or dampers is two revolute ones and a body without mass between,
-/// so that each axis has its own.
+/// A universal joint with springs, dampers, friction or limits is two revolute ones and a body
+/// without mass between, so that each axis has its own.
 void split(SdfJoint joint, const JointSpec& first, const JointSpec& second, SdfModel& model) {
   BodySpec cross;
   cross.at = joint.spec.at;
@@ -153,7 +153,8 @@ void split(SdfJoint joint, const JointSpec& first, const JointSpec& second, SdfM
   outer.axis = joint.axis2;
   outer.spec.name = model.edges.free(joint.spec.name + " axis2");
   outer.scoped += " axis2";
-  joint.carries = outer.carries = true;
+  const auto sprung = [](const JointSpec& s) { return s.damping != 0 || s.stiffness != 0; };
+  joint.carries = outer.carries = sprung(first) || sprung(second);
   model.joints.push_back(joint);
   model.joints.push_back(outer);
 }
@@ -209,12 +210,9 @@ void read_sdf_joint(const Node& node, const std::string& scope, SdfModel& model,
     node.fail("has axes that are parallel, expected two directions");
   if (node.text("type") == "continuous") springs[0].limits.reset();
   const auto sprung = [](const JointSpec& s) { return s.damping != 0 || s.stiffness != 0; };
-  if (two && (sprung(springs[0]) || sprung(springs[1])))
+  const auto own = [&](const JointSpec& s) { return sprung(s) || s.limits || s.friction != 0; };
+  if (two && (own(springs[0]) || own(springs[1])))
     return split(joint, springs[0], springs[1], model);
-  for (const JointSpec& s : springs) {
-    if (two && s.limits) model.remarks.left_out("limits of universal joints");
-    if (two && s.friction != 0) model.remarks.left_out("friction of universal joints");
-  }
   if (!two) {
     joint.spec.limits = springs[0].limits;
     joint.spec.friction = springs[0].friction;

@@ -94,13 +94,15 @@ ForceSpec read_force(const Fields& table) {
   force.at = table.at();
   force.kind = force_kinds.at(read_kind(table, force_kinds));
   if (force.kind == "spring-damper") {
-    table.allow(
-        {"name", "kind", "parent", "child", "origin", "stiffness", "damping", "rest", "law"});
+    table.allow({"name", "kind", "parent", "child", "origin", "stiffness", "damping", "rest",
+                 "dead_band", "limits", "stop_stiffness", "stop_damping", "stop_width", "law"});
     read_ends(table, force);
-    force.law = read_law(table, {"stiffness", "damping", "rest"});
+    force.law = read_law(table, {"stiffness", "damping", "rest", "dead_band", "limits"});
     force.stiffness = table.number("stiffness", {"N/m"}, 0);
     force.damping = table.number("damping", {"N s/m"}, 0);
     force.rest = table.number("rest", {"m", Bound::not_negative}, 0);
+    force.dead_band = table.number("dead_band", {"m", Bound::not_negative}, 0);
+    read_limits(table, "m", "N", force);
   } else if (force.kind == "bushing") {
     table.allow({"name", "kind", "parent", "child", "origin", "rotation", "stiffness", "damping",
                  "rotational_stiffness", "rotational_damping"});
@@ -111,13 +113,15 @@ ForceSpec read_force(const Fields& table) {
     force.rotational_stiffness = table.number("rotational_stiffness", {"N m/rad"}, 0);
     force.rotational_damping = table.number("rotational_damping", {"N m s/rad"}, 0);
   } else if (force.kind == "coordinate-spring") {
-    table.allow(
-        {"name", "kind", "joints", "coordinates", "ratios", "stiffness", "damping", "rest", "law"});
+    table.allow({"name", "kind", "joints", "coordinates", "ratios", "stiffness", "damping", "rest",
+                 "dead_band", "limits", "stop_stiffness", "stop_damping", "stop_width", "law"});
     read_sum(table, force.joints, force.coordinates, force.ratios);
-    force.law = read_law(table, {"stiffness", "damping", "rest"});
+    force.law = read_law(table, {"stiffness", "damping", "rest", "dead_band", "limits"});
     force.stiffness = table.number("stiffness", {"N m/rad or N/m"}, 0);
     force.damping = table.number("damping", {"N m s/rad or N s/m"}, 0);
     force.rest = table.number("rest", {"rad or m"}, 0);
+    force.dead_band = table.number("dead_band", {"rad or m", Bound::not_negative}, 0);
+    read_limits(table, "rad or m", "N m or N", force);
   } else if (force.kind == "torque") {
     table.allow({"name", "kind", "joint", "value", "law"});
     force.joint = table.text("joint");

@@ -136,10 +136,13 @@ JointSpec read_joint(const Fields& table) {
                              " joint, expected on revolute, prismatic, helical, cylindrical, "
                              "universal and planar only");
   if (!has_one_coordinate(joint.kind))
-    for (const std::string_view key : {"stiffness", "rest", "damping", "friction", "friction_rate",
-                                       "limits", "stop_stiffness", "stop_damping", "stop_width"})
+    for (const std::string_view key : {"stiffness", "rest", "damping", "friction", "friction_rate"})
       table.refuse(key, "has no meaning for a " + kind +
                             " joint, expected on revolute, prismatic and helical only");
+  if (!has_one_coordinate(joint.kind) && joint.kind != JointKind::spherical)
+    for (const std::string_view key : {"limits", "stop_stiffness", "stop_damping", "stop_width"})
+      table.refuse(key, "has no meaning for a " + kind +
+                            " joint, expected on revolute, prismatic, helical and spherical only");
   const auto only = [&](std::string_view key, JointKind owner) {
     if (joint.kind != owner)
       table.refuse(key, "has no meaning for a " + kind + " joint, expected on " +
@@ -152,7 +155,7 @@ JointSpec read_joint(const Fields& table) {
     table.refuse("rotor_inertia",
                  "has no meaning for a " + kind +
                      " joint, expected on revolute, prismatic, helical, cylindrical, "
-                     "universal and planar joints only");
+                     "universal, planar and spherical joints only");
   table.refuse("length", "belongs to a [[loop]] of kind distance, expected none on a joint");
   table.allow({"name",         "kind",          "parent",        "child",     "origin",
                "rotation",     "axis",          "axis2",         "direction", "pitch",
@@ -179,23 +182,7 @@ JointSpec read_joint(const Fields& table) {
   joint.friction = table.number("friction", {turns ? "N m" : "N", Bound::not_negative}, 0);
   joint.friction_rate = table.number("friction_rate", {turns ? "rad/s" : "m/s", Bound::positive},
                                      joint.friction_rate);
-  if (table.has("limits")) {
-    const std::vector<double> limits = table.numbers("limits", {turns ? "rad" : "m"});
-    if (limits.size() != 2 || !(limits[0] < limits[1]))
-      table.fail_key("limits", limits.size() == 2 ? "has its first number not below its second"
-                                                  : "has " + std::to_string(limits.size()) +
-                                                        " entries, expected the least and the "
-                                                        "largest coordinate");
-    joint.limits = {limits[0], limits[1]};
-  }
-  for (const char* key : {"stop_stiffness", "stop_damping", "stop_width"})
-    if (!joint.limits) table.refuse(key, "is there without limits, expected limits to stop at");
-  joint.stop_stiffness =
-      table.number("stop_stiffness", {turns ? "N m/rad" : "N/m", Bound::not_negative}, 0);
-  joint.stop_damping =
-      table.number("stop_damping", {turns ? "N m s/rad" : "N s/m", Bound::not_negative}, 0);
-  joint.stop_width =
-      table.number("stop_width", {turns ? "rad" : "m", Bound::positive}, joint.stop_width);
+  read_limits(table, turns ? "rad" : "m", turns ? "N m" : "N", joint);
   joint.rotor_inertia = read_state(table, "rotor_inertia", rotors_of(joint.kind), kind,
                                    {turns ? "kg m²" : "kg", Bound::not_negative});
   return joint;

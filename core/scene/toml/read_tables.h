@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <span>
+#include <string>
 #include <string_view>
 
 namespace momenta::reading {
@@ -49,6 +50,28 @@ inline std::size_t read_kind(const Fields& table, std::span<const std::string_vi
 /// joints, coordinates and ratios of a coupler or a coordinate spring.
 void read_sum(const Fields& table, std::vector<std::string>& joints, std::vector<int>& coordinates,
               std::vector<double>& ratios);
+
+/// limits = [least, largest] of a joint or of a force along a length, in `unit`, and its stops,
+/// that push back by `force`.
+template <class Spec>
+void read_limits(const Fields& table, const std::string& unit, const std::string& force,
+                 Spec& spec) {
+  if (table.has("limits")) {
+    const std::vector<double> limits = table.numbers("limits", {unit});
+    if (limits.size() != 2 || !(limits[0] < limits[1]))
+      table.fail_key("limits", limits.size() == 2 ? "has its first number not below its second"
+                                                  : "has " + std::to_string(limits.size()) +
+                                                        " entries, expected the least and the "
+                                                        "largest coordinate");
+    spec.limits = {limits[0], limits[1]};
+  }
+  for (const char* key : {"stop_stiffness", "stop_damping", "stop_width"})
+    if (!spec.limits) table.refuse(key, "is there without limits, expected limits to stop at");
+  const std::string spring = force + "/" + unit, damper = force + " s/" + unit;
+  spec.stop_stiffness = table.number("stop_stiffness", {spring, Bound::not_negative}, 0);
+  spec.stop_damping = table.number("stop_damping", {damper, Bound::not_negative}, 0);
+  spec.stop_width = table.number("stop_width", {unit, Bound::positive}, spec.stop_width);
+}
 
 /// origin = { parent = [..], child = [..] }, both zero by default.
 struct Origins {

@@ -128,6 +128,15 @@ void write_frames(const Edge& e, bool has_axis, TomlText& t) {
   t.vector("direction", e.direction);
 }
 
+/// Limits and stops of a joint or of a force along a length.
+template <class Spec>
+void write_limits(const Spec& spec, TomlText& t) {
+  if (spec.limits) t.numbers("limits", {(*spec.limits)[0], (*spec.limits)[1]});
+  t.number("stop_stiffness", spec.stop_stiffness);
+  t.number("stop_damping", spec.stop_damping);
+  t.number("stop_width", spec.stop_width, Spec{}.stop_width);
+}
+
 void write_joint(const JointSpec& joint, TomlText& t) {
   t.open("[[joint]]");
   t.word("name", joint.name);
@@ -142,10 +151,7 @@ void write_joint(const JointSpec& joint, TomlText& t) {
   t.number("friction", joint.friction);
   t.number("friction_rate", joint.friction_rate, JointSpec{}.friction_rate);
   if (!joint.rotor_inertia.empty()) t.numbers("rotor_inertia", joint.rotor_inertia);
-  if (joint.limits) t.numbers("limits", {(*joint.limits)[0], (*joint.limits)[1]});
-  t.number("stop_stiffness", joint.stop_stiffness);
-  t.number("stop_damping", joint.stop_damping);
-  t.number("stop_width", joint.stop_width, JointSpec{}.stop_width);
+  write_limits(joint, t);
 }
 
 /// Σ ratios q of joints.
@@ -273,6 +279,8 @@ void write_force(const ForceSpec& force, TomlText& t) {
     t.number("stiffness", force.stiffness);
     t.number("damping", force.damping);
     t.number("rest", force.rest);
+    t.number("dead_band", force.dead_band);
+    write_limits(force, t);
   } else if (force.kind == "bushing") {
     write_ends(force, t);
     t.rotation(force.rotation);
@@ -285,6 +293,8 @@ void write_force(const ForceSpec& force, TomlText& t) {
     t.number("stiffness", force.stiffness);
     t.number("damping", force.damping);
     t.number("rest", force.rest);
+    t.number("dead_band", force.dead_band);
+    write_limits(force, t);
   } else if (force.kind == "torque") {
     t.word("joint", force.joint);
     if (force.law.empty()) t.put("value", TomlText::digits(force.value));

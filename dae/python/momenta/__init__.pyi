@@ -130,6 +130,11 @@ class _SpringKeys(TypedDict, total=False):
     stiffness: float
     damping: float
     rest: float
+    dead_band: float
+    limits: Sequence[float]
+    stop_stiffness: float
+    stop_damping: float
+    stop_width: float
     law: str
 
 class _ForceKeys(_SpringKeys, total=False):

@@ -56,14 +56,14 @@ class Scene:
         return self._add("drive", kind=kind, **keys)
 
     def force(self, kind, **keys):
-        """Adds a spring-damper; a bushing; a coordinate-spring: joints, ratios, coordinates; a torque along a
-        joint: joint, value; a wrench on a body: body, point [m], force [N], torque [N m], axes; or a potential: V.
-        `law`, a formula, stands in place of the numbers of all but bushings and wrenches."""
+        """Adds a spring-damper; a bushing; a coordinate-spring: joints, ratios, coordinates, and what a
+        spring has; a torque along a joint: joint, value; a wrench on a body: body, point [m],
+        force [N], torque [N m], axes; or a potential: V. `law`, a formula, stands in place of the numbers of all but bushings and wrenches."""
         return self._add("force", kind=kind, **keys)
 
     def spring(self, **keys):
         """Adds a force of kind spring-damper: parent, child, origin [m], stiffness [N/m], damping
-        [N s/m], rest [m]."""
+        [N s/m], rest, dead_band, limits [m], stop_stiffness, stop_damping, stop_width."""
         return self.force("spring-damper", **keys)
 
     def function(self, name, x, y):
