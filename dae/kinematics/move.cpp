@@ -119,8 +119,10 @@ class Follower {
       std::vector<std::string> names;
       for (const int u : curve_->free_rates())
         names.push_back(result_.rates[static_cast<std::size_t>(u)].name);
-      throw SceneError("sweeping '" + first + "' leaves " + std::to_string(curve_->freedoms() - 1) +
-                       " more degrees of freedom; hold or sweep as many coordinates, such as " +
+      const int more = curve_->freedoms() - 1;
+      throw SceneError("sweeping '" + first + "' leaves " + std::to_string(more) +
+                       (more == 1 ? " more degree" : " more degrees") +
+                       " of freedom; hold or sweep as many coordinates, such as " +
                        reading::all_in_quotes(names));
     }
     if (request_.to && *request_.to < result_.start) {
@@ -379,7 +381,15 @@ int MoveResult::count(MovedPose::Kind kind) const {
 
 MoveResult move(const Mechanism& mechanism, double t, const VectorXd& q,
                 const MoveRequest& request) {
+  constexpr int most_rates = 2000;
   if (request.sweep.empty()) throw SceneError("no coordinate to sweep is named");
+  if (mechanism.nv() > most_rates)
+    throw SceneError("the mechanism has " + std::to_string(mechanism.nv()) +
+                     " rates; its curve of poses is followed by dense matrices, up to " +
+                     std::to_string(most_rates));
+  if (!(request.by >= 0) || !std::isfinite(request.by) ||
+      (request.to && !std::isfinite(*request.to)))
+    throw SceneError("poses are asked for at no finite place");
   return Follower(mechanism, t, request).follow(q);
 }
 
