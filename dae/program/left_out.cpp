@@ -36,6 +36,9 @@ int sweep(const Options&, const SweepOptions&) {
 int modes(const Options&, const ModesOptions&) {
   return left_out("modes");
 }
+int move(const Options&, const MoveOptions&) {
+  return left_out("move");
+}
 int evaluate(const Options&, const std::string&) {
   return left_out("evaluate");
 }

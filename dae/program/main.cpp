@@ -152,6 +152,33 @@ int answer(int argc, char** argv) {
          "N", 1, 1000);
   modes_app->add_option("--out", o.out, "Directory for modes.csv, modes.json, index.html")
       ->type_name("DIR");
+  CLI::App* move_app =
+      app.add_subcommand("move", "Poses, ratios and dead points as one coordinate is swept");
+  move_app->footer("Example: momenta move examples/four_bar/scene.toml --sweep O --out results");
+  MoveOptions move_options;
+  add_scene(*move_app, o);
+  for (const char* unused : {"--kkt", "--cut"})
+    move_app->remove_option(move_app->get_option(unused));
+  move_app
+      ->add_option("--sweep", move_options.sweep,
+                   "Coordinate to sweep; more of them in proportion: A=1,B=-0.5")
+      ->type_name("NAME,...")
+      ->required();
+  move_app
+      ->add_option("--hold", move_options.hold, "Coordinates that stay where they are at the start")
+      ->type_name("NAME,...");
+  move_app
+      ->add_option("--to", move_options.to,
+                   "Where the first ends [rad or m] (default: once along the curve of poses)")
+      ->type_name("X");
+  positive(move_app->add_option("--by", move_options.by,
+                                "From pose to pose [rad or m] (default: a degree, or a hundredth "
+                                "of the scene's length)"),
+           "X");
+  move_app->add_flag("--singular-values", move_options.singular_values,
+                     "Of the loop equations at each pose, smallest over largest");
+  move_app->add_option("--out", o.out, "Directory for move.csv, move.json, index.html")
+      ->type_name("DIR");
   CLI::App* view_verb =
       app.add_subcommand("view", "A page that shows the assembled mechanism, to turn and zoom");
   view_verb->footer(
@@ -299,6 +326,7 @@ int answer(int argc, char** argv) {
     if (*index_app)
       return equations ? index_of_equations(o) : index_verb(o, index_forms, index_state);
     if (*modes_app) return modes(o, modes_options);
+    if (*move_app) return move(o, move_options);
     if (*view_verb) return view(o);
     if (*stress_app) return stress(o, stress_options);
     if (*sweep_app) return sweep(o, sweep_options);

@@ -180,6 +180,12 @@ struct ModesOptions {
   std::optional<int> count;
 };
 int modes(const Options& o, const ModesOptions& m);
+struct MoveOptions {
+  std::string sweep, hold;       ///< comma-separated
+  std::optional<double> to, by;  ///< [rad or m]
+  bool singular_values = false;
+};
+int move(const Options& o, const MoveOptions& m);
 /// `state`: a JSON file, "-" for standard input, or text that starts with "{".
 int evaluate(const Options& o, const std::string& state);
 /// `forms`: comma-separated, empty: all. `state`: as for evaluate; empty: the start.

@@ -294,6 +294,7 @@ void bind_mechanism(py::module_& module) {
            "and M of small mechanisms. Arguments left out are those of the start of the scene, "
            "assembled where there are loops.");
   add_runs(mechanism);
+  add_move(mechanism);
   add_modes(mechanism);
 }
 

@@ -3,6 +3,7 @@
 #include <momenta/dae/report/embedded.h>
 #include <momenta/dae/report/json.h>
 #include <momenta/dae/report/modes_report.h>
+#include <momenta/dae/report/move_report.h>
 #include <momenta/dae/report/page.h>
 #include <momenta/dae/report/page_data.h>
 #include <momenta/dae/report/template.h>
@@ -144,6 +145,13 @@ std::string modes_page(const StudyResult& study, const ModesResult& result) {
   data["csv"] = modes_csv(result);
   return page(study, "Small motions", marked_up(modes_in_words(result)), "", data,
               script({embedded::modes_page_js()}));
+}
+
+std::string move_page(const StudyResult& study, const MoveResult& result) {
+  Json data = page_data(study);
+  data["timeline"] = move_charts(result);
+  return page(study, "Poses", marked_up(move_in_words(result)), "", data,
+              script({embedded::timeline_js(), embedded::run_page_js()}));
 }
 
 std::string view_page(const StudyResult& study, const std::string& words) {

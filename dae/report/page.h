@@ -1,6 +1,7 @@
 #pragma once
 // index.html of a study: one file that opens with the network off.
 
+#include <momenta/dae/kinematics/move.h>
 #include <momenta/dae/study/modes_study.h>
 #include <momenta/dae/study/run_result.h>
 
@@ -22,5 +23,8 @@ std::string view_page(const StudyResult&, const std::string& words);
 
 /// Of an equilibrium: the mechanism swinging in one mode at a time, and all modes as a table.
 std::string modes_page(const StudyResult&, const ModesResult&);
+
+/// Of a mechanism that is moved: its poses beside curves over the way of the swept coordinate.
+std::string move_page(const StudyResult&, const MoveResult&);
 
 }  // namespace momenta

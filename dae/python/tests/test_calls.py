@@ -94,6 +94,9 @@ class Round:
             ("energies", lambda: m.energies(t(), q, u)),
             ("evaluate", lambda: m.evaluate(**self.some(
                 {"t": [0.0, NAN, 1e300], "q": [q], "v": [u], "p": [p]}))),
+            ("move", lambda: m.move(**self.some(
+                {"sweep": ["A", "O", "", {"O": 1.0}, {"O": 0}, {}], "to": [None, 1.0, NAN, 1e300],
+                 "by": [0.1, 0, -1, NAN, 1e300], "hold": [[], ["A"], ["x"]]}))),
             ("modes", lambda: m.modes(**self.some(
                 {"equilibrium": ["settle", "nearest", "start", ""], "drives": ["held", "running", "x"],
                  "count": [0, 1, -1, 10**6]}))),

@@ -79,6 +79,23 @@ class Equations(unittest.TestCase):
         self.assertEqual(sigma.size, 0)
 
 
+class Poses(unittest.TestCase):
+    def test_a_crank_goes_round_and_its_rocker_swings(self):
+        m = load("four_bar")
+        found = m.move("O")
+        self.assertEqual((found["end"], found["dead_points"]), ("closed", []))
+        self.assertEqual(found["q"].shape, (361, m.nq))
+        u, way = found["ratios"], found["way"]
+        np.testing.assert_allclose(u[:, 0], 1)
+        np.testing.assert_allclose(np.gradient(found["q"][:, 2], way)[1:-1], u[1:-1, 2], atol=2e-4)
+        np.testing.assert_allclose(np.gradient(u[:, 2], way)[1:-1], found["ratio_rates"][1:-1, 2], atol=2e-3)
+        by_rocker = m.move({"C": 1.0})
+        self.assertEqual(len(by_rocker["dead_points"]), 2)
+        np.testing.assert_allclose(by_rocker["reach"]["C.q"], found["reach"]["C.q"], atol=1e-9)
+        with self.assertRaisesRegex(momenta.SceneError, "coordinate 'x' is not known"):
+            m.move("x")
+
+
 class SmallMotions(unittest.TestCase):
     def test_shapes_solve_the_linearised_equations_of_unit_mass(self):
         m = load("four_bar")

@@ -5,7 +5,7 @@
 function timelineChart(chart, clock) {
   const off = new Set(chart.curves.map((_, i) => i).filter((i) => i >= 8));
   const plot = element("div", { class: "plot", tabindex: "0", role: "img", "aria-label":
-    `${chart.title} over time: ${chart.curves.map((c) => c.name).slice(0, 20).join(", ")}.` });
+    `${chart.title} over ${chart.x_title ?? "time"}: ${chart.curves.map((c) => c.name).slice(0, 20).join(", ")}.` });
   const list = element("ul", { class: "legend" });
   const alone = chart.curves.length === 1;
   const axisTitle = element("p", { class: "axis-title" }, element("span", {}, `↑ ${chart.y_title}`));
@@ -25,7 +25,7 @@ function timelineChart(chart, clock) {
       y: chart.log ? { distr: 3, log: 10, range: wholeDecades } : { range: (plotted, low, high) => roomAround(low, high) },
     },
     axes: [
-      { ...axisStyle, splits: undefined, values: (plotted, ticks) => ticks.map(plain), filter: undefined, label: "time t [s]", labelSize: 22, size: 32, space: 70 },
+      { ...axisStyle, splits: undefined, values: (plotted, ticks) => ticks.map(plain), filter: undefined, label: chart.x_title ?? "time t [s]", labelSize: 22, size: 32, space: 70 },
       chart.log ? { ...axisStyle, size: 58 } : { ...axisStyle, splits: undefined, filter: undefined, values: (plotted, ticks) => ticks.map(plain), size: 58, space: 36 },
     ],
     series: [{}, ...chart.curves.map((curve, i) => ({

@@ -1,0 +1,396 @@
+#include <momenta/core/text/near_name.h>
+#include <momenta/dae/kinematics/move.h>
+#include <momenta/dae/kinematics/pose_curve.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+namespace momenta {
+namespace {
+
+using Eigen::VectorXd;
+constexpr double turn = 2 * std::numbers::pi;
+constexpr double longest_step = 0.1, shortest_step = 1e-9;  // in units
+// From here on s is given, not the distance: no step that bends by so little turns s round.
+constexpr double steep = 0.3;
+
+/// Where f changes its sign between a and b, by the Illinois rule; NaN where f fails.
+double zero_between(const std::function<double(double)>& f, double a, double fa, double b,
+                    double fb) {
+  constexpr int most = 60;
+  for (int k = 0; k < most && std::abs(b - a) > 1e-15 * (std::abs(a) + std::abs(b)); ++k) {
+    double c = b - fb * (b - a) / (fb - fa);
+    if (!(c > std::min(a, b) && c < std::max(a, b))) c = 0.5 * (a + b);
+    const double fc = f(c);
+    if (!std::isfinite(fc)) return fc;
+    if (fc == 0) return c;
+    if ((fc < 0) != (fb < 0)) {
+      a = b;
+      fa = fb;
+    } else {
+      fa *= 0.5;
+    }
+    b = c;
+    fb = fc;
+  }
+  return b;
+}
+
+class Follower {
+ public:
+  Follower(const Mechanism& mechanism, double t, const MoveRequest& request)
+      : mechanism_(mechanism), request_(request), t_(t), angles_(angles()) {
+    result_.scene = mechanism.scene().name;
+    result_.coordinates = mechanism.coordinate_columns();
+    result_.rates = mechanism.rate_columns();
+    result_.markers = mechanism.marker_columns();
+    const LoopUnits units(mechanism);
+    for (const auto& [name, amount] : request.sweep) {
+      const auto [q, u] = place_of(name);
+      if (swept_.empty()) unit_ = units.rates[u];
+      swept_.push_back({q, u, amount * unit_});
+    }
+    for (const std::string& name : request.hold) held_.push_back(place_of(name));
+    result_.swept = static_cast<std::size_t>(swept_.front().q);
+  }
+
+  MoveResult follow(const VectorXd& q) {
+    PoseCurve curve(mechanism_, t_, swept_, held_);
+    curve_ = &curve;
+    begin(q);
+    const double end = request_.to ? (*request_.to - result_.start) / unit_ : NAN;
+    while (result_.end == MoveResult::End::stopped && result_.why.empty()) {
+      if (static_cast<long>(result_.poses.size()) >= request_.most_rows)
+        result_.why = "after " + std::to_string(result_.poses.size()) + " rows";
+      else if (!advance(end))
+        result_.why = "the curve could not be followed beyond " +
+                      result_.coordinates[result_.swept].name + " = " +
+                      number(result_.start + unit_ * here_.s);
+    }
+    return std::move(result_);
+  }
+
+ private:
+  static std::string number(double x) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.9g", x);
+    return text;
+  }
+
+  /// Of each coordinate whether a full turn brings the pose back.
+  std::vector<bool> angles() const {
+    std::vector<bool> result(static_cast<std::size_t>(mechanism_.nq()), false);
+    for (const auto& body : mechanism_.tree().bodies)
+      for (int i = 0; i < body.nq; ++i)
+        result[static_cast<std::size_t>(body.q + i)] =
+            body.kind == JointKind::revolute || body.kind == JointKind::universal ||
+            (body.kind == JointKind::cylindrical && i == 0);
+    return result;
+  }
+
+  /// Places in q and u of a coordinate by its joint's name, or by that of its column.
+  std::pair<int, int> place_of(const std::string& name) const {
+    std::vector<std::string> known;
+    for (const auto& body : mechanism_.tree().bodies) {
+      if (body.nq != body.nv) continue;  // quaternions
+      for (int i = 0; i < body.nq; ++i) {
+        const std::string& column = result_.coordinates[static_cast<std::size_t>(body.q + i)].name;
+        known.push_back(column);
+        if (column == name || (body.nq == 1 && column == name + ".q"))
+          return {body.q + i, body.u + i};
+      }
+    }
+    throw SceneError("coordinate '" + name + "' is not known; expected " +
+                     reading::all_in_quotes(known));
+  }
+
+  void begin(const VectorXd& q) {
+    const std::string& first = request_.sweep.front().first;
+    result_.start = q[swept_.front().q];
+    result_.reach.resize(static_cast<std::size_t>(q.size()));
+    for (Eigen::Index i = 0; i < q.size(); ++i)
+      result_.reach[static_cast<std::size_t>(i)] = {q[i], q[i], 0};
+    if (!curve_->start(q, here_)) {
+      if (curve_->freedoms() == 0)
+        throw SceneError("coordinate '" + first +
+                         "' cannot be swept: what is held and the loops leave no motion");
+      std::vector<std::string> names;
+      for (const int u : curve_->free_rates())
+        names.push_back(result_.rates[static_cast<std::size_t>(u)].name);
+      const int more = curve_->freedoms() - 1;
+      throw SceneError("sweeping '" + first + "' leaves " + std::to_string(more) +
+                       (more == 1 ? " more degree" : " more degrees") +
+                       " of freedom; hold or sweep as many coordinates, such as " +
+                       reading::all_in_quotes(names));
+    }
+    if (request_.to && *request_.to < result_.start) {
+      here_.tangent = -here_.tangent;
+      here_.orientation = -here_.orientation;
+    }
+    angle_ = angles_[result_.swept];
+    by_ = request_.by > 0 ? request_.by / unit_ : angle_ ? turn / 360 : 0.01;
+    beginning_ = here_;
+    take(here_, MovedPose::Kind::sample);
+    if (request_.to && *request_.to == result_.start) result_.end = MoveResult::End::reached;
+  }
+
+  /// The next s that is a row: of the grid, where the start comes round again, or the end.
+  double next_s(double way, double end) const {
+    const double s = here_.s, near = 1e-9 * by_;
+    const auto after = [&](double spacing) {
+      double k = way > 0 ? std::floor(s / spacing) + 1 : std::ceil(s / spacing) - 1;
+      if (std::abs(k * spacing - s) <= near) k += way > 0 ? 1 : -1;
+      return k * spacing;
+    };
+    double next = after(by_);
+    const auto sooner = [&](double other) {
+      if ((other - s) * way > near && (other - next) * way < -near) next = other;
+    };
+    if (angle_) sooner(after(turn));
+    if (std::isfinite(end)) sooner(end);
+    if (std::abs(s) > near) sooner(0);
+    return next;
+  }
+
+  bool advance(double end) {
+    CurvePoint to;
+    const double way = here_.s_rate();
+    if (std::abs(way) >= steep) {
+      const double s = next_s(way, end);
+      if (std::abs((s - here_.s) / way) <= longest_step && curve_->step_to(here_, s, to)) {
+        arrive(to, end);
+        return true;
+      }
+    }
+    for (double h = step_; h > shortest_step; h *= 0.5) {
+      if (!curve_->step(here_, h, to)) continue;
+      step_ = std::min(longest_step, 1.5 * h);
+      cross(to, h, end);
+      return true;
+    }
+    return false;
+  }
+
+  /// The point at a distance h from here where `value` of it is zero.
+  template <class Value>
+  std::optional<CurvePoint> found(double h, double at_start, double at_end, Value value) {
+    CurvePoint point;
+    bool solved = true;
+    const double zero = zero_between(
+        [&](double x) {
+          solved = curve_->step(here_, x, point);
+          return solved ? value(point) : NAN;
+        },
+        0, at_start, h, at_end);
+    if (!std::isfinite(zero) || !curve_->step(here_, zero, point)) return std::nullopt;
+    return point;
+  }
+
+  /// A step by its length, which may pass rows or a dead point: there it ends.
+  void cross(const CurvePoint& to, double h, double end) {
+    const double way = here_.s_rate();
+    if (way != 0 && way * to.s_rate() < 0) {
+      const auto at = found(h, way, to.s_rate(), [](const CurvePoint& p) { return p.s_rate(); });
+      if (at) {
+        rows_before(*at, way, end);
+        if (result_.end != MoveResult::End::stopped) return;
+        take(*at, MovedPose::Kind::dead_point);
+        move_on(*at);
+        here_.tangent[here_.tangent.size() - 1] = 0;
+        return;
+      }
+    }
+    rows_before(to, to.s_rate(), end);
+    if (result_.end == MoveResult::End::stopped) move_on(to);
+  }
+
+  /// The rows between here and a point, s on one way.
+  void rows_before(const CurvePoint& to, double way, double end) {
+    while (result_.end == MoveResult::End::stopped) {
+      const double s = next_s(way, end);
+      if (!((to.s - s) * way > 0)) return;
+      const auto at = found(distance(here_, to), here_.s - s, to.s - s,
+                            [&](const CurvePoint& p) { return p.s - s; });
+      if (!at) return;
+      CurvePoint there = *at;
+      there.s = s;
+      arrive(there, end);
+    }
+  }
+
+  /// How far along τ of one point another is.
+  double distance(const CurvePoint& from, const CurvePoint& to) {
+    VectorXd rates(mechanism_.nv()), qdot = to.q - from.q;
+    Evaluation<double>& e = curve_->loops().evaluation();
+    e.place(t_, from.q.data());
+    e.joint_rates(from.q.data(), qdot.data(), rates.data());
+    const VectorXd step = rates.cwiseQuotient(curve_->loops().units().rates);
+    return step.dot(from.tangent.head(mechanism_.nv())) + (to.s - from.s) * from.s_rate();
+  }
+
+  /// A row whose s was asked for.
+  void arrive(const CurvePoint& to, double end) {
+    take(to, MovedPose::Kind::sample);
+    if (std::isfinite(end) && std::abs(to.s - end) <= 1e-9 * by_)
+      result_.end = MoveResult::End::reached;
+    else if (!std::isfinite(end) && is_beginning(to))
+      result_.end = MoveResult::End::closed;
+    move_on(to);
+  }
+
+  /// The same pose, passed the same way.
+  bool is_beginning(const CurvePoint& to) const {
+    constexpr double same = 1e-7;
+    for (Eigen::Index i = 0; i < to.q.size(); ++i) {
+      double apart = to.q[i] - beginning_.q[i];
+      if (angles_[static_cast<std::size_t>(i)]) apart = std::remainder(apart, turn);
+      if (std::abs(apart) > same * std::max(1.0, std::abs(beginning_.q[i]))) return false;
+    }
+    return to.tangent.dot(beginning_.tangent) > 0;
+  }
+
+  /// Limits of coordinates on the way; then from there.
+  void move_on(const CurvePoint& to) {
+    for (const auto& body : mechanism_.tree().bodies)
+      for (int i = 0; i < body.nq; ++i) {
+        Reach& reach = result_.reach[static_cast<std::size_t>(body.q + i)];
+        if (body.nq == body.nv && here_.tangent[body.u + i] * to.tangent[body.u + i] < 0) {
+          ++reach.turns_back;
+          const double h = distance(here_, to);
+          const auto at = found(h, here_.tangent[body.u + i], to.tangent[body.u + i],
+                                [&](const CurvePoint& p) { return p.tangent[body.u + i]; });
+          if (at) widen(reach, at->q[body.q + i]);
+        }
+        widen(reach, to.q[body.q + i]);
+      }
+    if (before_ && before_->pivot > here_.pivot && here_.pivot <= to.pivot) look_for_change(to);
+    before_ = here_;
+    here_ = to;
+    if (recalled_) here_ = *std::exchange(recalled_, std::nullopt);
+  }
+
+  /// The smallest pivot has passed a least value between the point before here and `to`: a change
+  /// point if it is zero, and that of all rows.
+  void look_for_change(const CurvePoint& to) {
+    constexpr double lost = 1e-7, golden = 0.6180339887498949;
+    const CurvePoint from = *before_;
+    double a = 0, b = distance(from, here_) + distance(here_, to);
+    CurvePoint point, least = here_;
+    const auto value = [&](double x) -> double {
+      if (!curve_->step(from, x, point)) return INFINITY;
+      if (point.pivot < least.pivot) least = point;
+      return point.pivot;
+    };
+    double x = b - golden * (b - a), y = a + golden * (b - a), fx = value(x), fy = value(y);
+    while (b - a > 1e-10) {
+      if (fx < fy) {
+        b = y;
+        y = x;
+        fy = fx;
+        x = b - golden * (b - a);
+        fx = value(x);
+      } else {
+        a = x;
+        x = y;
+        fx = fy;
+        y = a + golden * (b - a);
+        fy = value(y);
+      }
+    }
+    if (!(least.pivot < lost)) return;
+    if (curve_->conditioning(least.q) < lost) {
+      take(least, MovedPose::Kind::change_point);
+      return;
+    }
+    CurvePoint known = from, again;  // the rows were at fault
+    if (!curve_->choose_rows(least.q, known) || !curve_->step(known, distance(known, to), again))
+      return;
+    recalled_ = to;
+    recalled_->orientation = again.orientation;
+    recalled_->pivot = again.pivot;
+  }
+
+  static void widen(Reach& reach, double value) {
+    reach.least = std::min(reach.least, value);
+    reach.most = std::max(reach.most, value);
+  }
+
+  void take(const CurvePoint& at, MovedPose::Kind kind) {
+    MovedPose pose;
+    pose.kind = kind;
+    pose.s = unit_ * at.s;
+    pose.q = at.q;
+    Evaluation<double>& e = curve_->loops().evaluation();
+    if (kind == MovedPose::Kind::sample && curve_->derivatives(at, pose.u, pose.udot)) {
+      pose.u /= unit_;
+      pose.udot /= unit_ * unit_;
+    } else {
+      pose.u.resize(0);
+      pose.udot.resize(0);
+    }
+    pose.branch = pose.u.size() > 0 ? at.branch() : 0;
+    const std::size_t markers = result_.markers.size();
+    if (markers > 0) {
+      pose.markers.resize(markers);
+      e.place(t_, at.q.data());
+      e.move(pose.u.size() > 0 ? pose.u.data() : nullptr);
+      e.markers(pose.markers.data());
+      if (pose.u.size() == 0)
+        for (std::size_t i = 0; i < markers; ++i)
+          if (i % 6 >= 3) pose.markers[i] = NAN;
+    }
+    if (request_.singular_values) pose.conditioning = curve_->conditioning(at.q);
+    result_.poses.push_back(std::move(pose));
+  }
+
+  const Mechanism& mechanism_;
+  const MoveRequest& request_;
+  double t_;  ///< [s]
+  std::vector<bool> angles_;
+  std::vector<SweptCoordinate> swept_;
+  std::vector<std::pair<int, int>> held_;
+  PoseCurve* curve_ = nullptr;
+  CurvePoint here_, beginning_;
+  std::optional<CurvePoint> before_, recalled_;
+  // s of the curve is in units: pose.s = unit_ s.
+  double step_ = longest_step, by_ = 0, unit_ = 1;
+  bool angle_ = false;
+  MoveResult result_;
+};
+
+}  // namespace
+
+const char* name_of(MovedPose::Kind kind) {
+  return kind == MovedPose::Kind::sample       ? "sample"
+         : kind == MovedPose::Kind::dead_point ? "dead point"
+                                               : "change point";
+}
+
+const char* name_of(MoveResult::End end) {
+  return end == MoveResult::End::closed    ? "closed"
+         : end == MoveResult::End::reached ? "reached"
+                                           : "stopped";
+}
+
+int MoveResult::count(MovedPose::Kind kind) const {
+  return static_cast<int>(std::count_if(poses.begin(), poses.end(),
+                                        [&](const MovedPose& pose) { return pose.kind == kind; }));
+}
+
+MoveResult move(const Mechanism& mechanism, double t, const VectorXd& q,
+                const MoveRequest& request) {
+  constexpr int most_rates = 2000;
+  if (request.sweep.empty()) throw SceneError("no coordinate to sweep is named");
+  if (mechanism.nv() > most_rates)
+    throw SceneError("the mechanism has " + std::to_string(mechanism.nv()) +
+                     " rates; its curve of poses is followed by dense matrices, up to " +
+                     std::to_string(most_rates));
+  if (!(request.by >= 0) || !std::isfinite(request.by) ||
+      (request.to && !std::isfinite(*request.to)))
+    throw SceneError("poses are asked for at no finite place");
+  return Follower(mechanism, t, request).follow(q);
+}
+
+}  // namespace momenta

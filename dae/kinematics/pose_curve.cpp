@@ -1,0 +1,200 @@
+#include <momenta/dae/kinematics/pose_curve.h>
+
+#include <Eigen/QR>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+
+namespace momenta {
+namespace {
+
+constexpr double independent = 1e-9;  // pivots of J, beside the largest
+constexpr double most_bend = 0.25;    // [rad] between two tangents
+constexpr int corrections = 8;
+constexpr double closed = 1e-12;  // |F|∞ in units, at least
+
+}  // namespace
+
+PoseCurve::PoseCurve(const Mechanism& mechanism, double t, std::vector<SweptCoordinate> swept,
+                     std::vector<std::pair<int, int>> held)
+    : loops_(mechanism),
+      t_(t),
+      tolerance_(std::max(closed, loops_.units().rounding)),
+      n_(mechanism.nv()),
+      m_(mechanism.m()),
+      swept_(std::move(swept)),
+      held_(std::move(held)),
+      all_(m_ + static_cast<int>(swept_.size() + held_.size())),
+      jacobian_(Eigen::MatrixXd::Zero(all_.size(), n_ + 1)),
+      bordered_(n_ + 1, n_ + 1),
+      residual_(n_ + 1),
+      along_(n_ + 1),
+      lu_(n_ + 1) {
+  int row = m_;
+  for (const SweptCoordinate& c : swept_) {
+    jacobian_(row, c.u) = 1;
+    jacobian_(row++, n_) = -c.amount / loops_.units().rates[c.u];
+  }
+  for (const auto& [q, u] : held_) jacobian_(row++, u) = 1;
+}
+
+void PoseCurve::take_jacobian(const Eigen::VectorXd& q) {
+  loops_.gap(t_, q);  // places it
+  jacobian_.topRows(m_).setZero();
+  const std::vector<double> entries = loops_.jacobian();
+  for (std::size_t k = 0; k < entries.size(); ++k)
+    jacobian_(loops_.pattern()[k].row, loops_.pattern()[k].column) = entries[k];
+}
+
+double PoseCurve::take_residual(const Eigen::VectorXd& q, double s) {
+  all_.head(m_) = loops_.gap(t_, q);
+  int row = m_;
+  for (const SweptCoordinate& c : swept_)
+    all_[row++] = (q[c.q] - start_[c.q] - c.amount * s) / loops_.units().rates[c.u];
+  for (const auto& [at, u] : held_) all_[row++] = (q[at] - start_[at]) / loops_.units().rates[u];
+  for (int i = 0; i < n_; ++i) residual_[i] = all_[rows_[static_cast<std::size_t>(i)]];
+  residual_[n_] = 0;
+  return all_.size() > 0 ? all_.cwiseAbs().maxCoeff() : 0;
+}
+
+bool PoseCurve::choose_rows(const Eigen::VectorXd& q) {
+  take_jacobian(q);
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(jacobian_.transpose());
+  qr.setThreshold(independent);
+  const auto rank = static_cast<int>(qr.rank());
+  freedoms_ = n_ + 1 - rank;
+  free_rates_.clear();
+  if (freedoms_ > 1) {
+    // Pivots of J's columns, s the last to be free: what is not a pivot may be chosen.
+    Eigen::MatrixXd ordered(jacobian_.rows(), n_);
+    for (int i = 0; i < n_; ++i) ordered.col(i) = jacobian_.col(i);
+    Eigen::ColPivHouseholderQR<Eigen::MatrixXd> columns(ordered);
+    columns.setThreshold(independent);
+    for (auto i = columns.rank(); i < n_ && static_cast<int>(free_rates_.size()) < freedoms_ - 1;
+         ++i)
+      free_rates_.push_back(static_cast<int>(columns.colsPermutation().indices()[i]));
+  }
+  if (freedoms_ != 1) return false;
+  rows_.resize(static_cast<std::size_t>(n_));
+  for (int i = 0; i < n_; ++i)
+    rows_[static_cast<std::size_t>(i)] = static_cast<int>(qr.colsPermutation().indices()[i]);
+  std::sort(rows_.begin(), rows_.end());  // so that det B has one sign whoever chose them
+  return true;
+}
+
+bool PoseCurve::start(const Eigen::VectorXd& q, CurvePoint& point) {
+  start_ = q;
+  if (!choose_rows(q)) return false;
+  point.q = q;
+  point.s = 0;
+  // J has full rank: what is missing of it is τ.
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(jacobian_, Eigen::ComputeFullV);
+  Eigen::VectorXd way = svd.matrixV().col(n_);
+  if (way[n_] < 0) way = -way;
+  return take_tangent(way, point);
+}
+
+/// B with the last row `along`: τ with τ·along > 0, and det B for r = τ.
+bool PoseCurve::take_tangent(const Eigen::VectorXd& along, CurvePoint& point) {
+  for (int i = 0; i < n_; ++i) bordered_.row(i) = jacobian_.row(rows_[static_cast<std::size_t>(i)]);
+  bordered_.row(n_) = along;
+  lu_.compute(bordered_);
+  Eigen::VectorXd way = lu_.solve(Eigen::VectorXd::Unit(n_ + 1, n_));
+  const double length = way.norm();
+  if (!std::isfinite(length)) return false;
+  point.tangent = way / length;
+  // det B(τ) = det B(along) |way|, as along·way = 1: of one sign.
+  const auto pivots = lu_.matrixLU().diagonal();
+  int sign = sign_ * static_cast<int>(lu_.permutationP().determinant());
+  for (const double pivot : pivots) sign = pivot < 0 ? -sign : sign;
+  point.orientation = sign;
+  point.pivot = pivots.cwiseAbs().minCoeff() / pivots.cwiseAbs().maxCoeff();
+  return true;
+}
+
+/// Newton's method across `row`: row·(δ, s) stays.
+bool PoseCurve::correct(CurvePoint& point, const Eigen::VectorXd& row) {
+  double last = INFINITY;
+  for (int k = 0; k <= corrections; ++k) {
+    const double open = take_residual(point.q, point.s);
+    if (!std::isfinite(open)) return false;
+    if (open <= tolerance_) return true;
+    if (k > 1 && !(open < 0.5 * last)) return false;
+    last = open;
+    take_jacobian(point.q);
+    for (int i = 0; i < n_; ++i)
+      bordered_.row(i) = jacobian_.row(rows_[static_cast<std::size_t>(i)]);
+    bordered_.row(n_) = row;
+    lu_.compute(bordered_);
+    along_ = lu_.solve(-residual_);
+    if (!along_.allFinite()) return false;
+    point.q = loops_.moved(point.q, along_.head(n_));
+    point.s += along_[n_];
+  }
+  return false;
+}
+
+bool PoseCurve::step(const CurvePoint& from, double h, CurvePoint& to) {
+  to.q = loops_.moved(from.q, h * from.tangent.head(n_));
+  to.s = from.s + h * from.s_rate();
+  if (!correct(to, from.tangent)) return false;
+  take_jacobian(to.q);
+  return take_tangent(from.tangent, to) && to.tangent.dot(from.tangent) > std::cos(most_bend);
+}
+
+bool PoseCurve::step_to(const CurvePoint& from, double s, CurvePoint& to) {
+  const double h = (s - from.s) / from.s_rate();
+  if (!std::isfinite(h)) return false;
+  to.q = loops_.moved(from.q, h * from.tangent.head(n_));
+  to.s = s;
+  if (!correct(to, Eigen::VectorXd::Unit(n_ + 1, n_))) return false;
+  take_jacobian(to.q);
+  return take_tangent(from.tangent, to) && to.tangent.dot(from.tangent) > std::cos(most_bend);
+}
+
+bool PoseCurve::derivatives(const CurvePoint& at, Eigen::VectorXd& u, Eigen::VectorXd& udot) {
+  constexpr double dead = 1e-9;
+  if (std::abs(at.s_rate()) < dead) return false;
+  const Eigen::VectorXd& unit = loops_.units().rates;
+  u = at.tangent.head(n_).cwiseProduct(unit) / at.s_rate();
+  // Φ̈ = 0 with u̇ = 0 at first: J_R u̇ = −Φ̈, swept and held coordinates not accelerated.
+  Evaluation<double>& e = loops_.evaluation();
+  take_jacobian(at.q);
+  Eigen::VectorXd tau(n_), rate(m_);
+  const Eigen::VectorXd none = Eigen::VectorXd::Zero(n_);
+  e.place(t_, at.q.data());
+  e.move(u.data());
+  e.joint_forces(at.q.data(), u.data(), none.data(), nullptr, tau.data());
+  e.accelerations(rate.data());
+  all_.setZero();
+  all_.head(m_) = loops_.in_units(rate);
+  for (int i = 0; i < n_; ++i) {
+    const int row = rows_[static_cast<std::size_t>(i)];
+    bordered_.row(i) = jacobian_.row(row);
+    residual_[i] = -all_[row];
+  }
+  bordered_.row(n_) = Eigen::VectorXd::Unit(n_ + 1, n_);
+  residual_[n_] = 0;
+  lu_.compute(bordered_);
+  along_ = lu_.solve(residual_);
+  udot = along_.head(n_).cwiseProduct(unit);
+  return udot.allFinite();
+}
+
+double PoseCurve::conditioning(const Eigen::VectorXd& q) {
+  take_jacobian(q);
+  const Eigen::VectorXd values = jacobian_.jacobiSvd().singularValues();
+  return values.size() < n_ ? 0 : values[n_ - 1] / values[0];
+}
+
+bool PoseCurve::choose_rows(const Eigen::VectorXd& q, CurvePoint& known) {
+  if (!choose_rows(q)) return false;
+  const int before = known.orientation;
+  take_jacobian(known.q);
+  if (!take_tangent(Eigen::VectorXd(known.tangent), known)) return false;
+  if (known.orientation != before) sign_ = -sign_;
+  known.orientation = before;
+  return true;
+}
+
+}  // namespace momenta

@@ -1,0 +1,101 @@
+// Poses along a swept coordinate.
+
+#include <momenta/dae/kinematics/move.h>
+#include <momenta/dae/linear/linearisation.h>
+
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <variant>
+
+#include "bindings.h"
+
+namespace momenta::python {
+
+namespace {
+
+using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+py::dict move(const Bench& b, const std::variant<std::string, py::dict>& sweep,
+              std::optional<double> to, double by, const std::vector<std::string>& hold) {
+  MoveRequest request;
+  if (const auto* name = std::get_if<std::string>(&sweep)) {
+    request.sweep = {{*name, 1}};
+  } else {
+    for (const auto& [key, amount] : std::get<py::dict>(sweep)) {
+      request.sweep.emplace_back(py::cast<std::string>(key), py::cast<double>(amount));
+      if (!std::isfinite(request.sweep.back().second) || request.sweep.back().second == 0)
+        throw py::value_error("sweep of '" + request.sweep.back().first +
+                              "': expected an amount other than zero");
+    }
+    if (request.sweep.empty()) throw py::value_error("sweep is empty, expected a coordinate");
+    for (auto& part : request.sweep)
+      if (&part != &request.sweep.front()) part.second /= request.sweep.front().second;
+    request.sweep.front().second = 1;
+  }
+  if (!(by >= 0)) throw py::value_error("by is " + std::to_string(by) + ", expected 0 or more");
+  request.to = to;
+  request.by = by;
+  request.hold = hold;
+  MoveResult r;
+  {
+    const py::gil_scoped_release others_go_on;
+    const Mechanism held(held_at_start(b.mechanism->scene()), b.mechanism->options());
+    const Assembly a = assemble(held, Assembled::rates);
+    r = momenta::move(held, a.start.t, a.start.q, request);
+  }
+  const auto poses = static_cast<Eigen::Index>(r.poses.size());
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  Rows q(poses, b.mechanism->nq()), u(poses, b.mechanism->nv()), udot(poses, b.mechanism->nv());
+  Vector way(poses);
+  std::vector<int> branch, dead, change;
+  for (Eigen::Index i = 0; i < poses; ++i) {
+    const MovedPose& pose = r.poses[static_cast<std::size_t>(i)];
+    q.row(i) = pose.q;
+    way[i] = pose.s;
+    branch.push_back(pose.branch);
+    if (pose.u.size() > 0) {
+      u.row(i) = pose.u;
+      udot.row(i) = pose.udot;
+    } else {
+      u.row(i).setConstant(none);
+      udot.row(i).setConstant(none);
+    }
+    if (pose.kind == MovedPose::Kind::dead_point) dead.push_back(static_cast<int>(i));
+    if (pose.kind == MovedPose::Kind::change_point) change.push_back(static_cast<int>(i));
+  }
+  py::dict reach;
+  for (std::size_t i = 0; i < r.coordinates.size(); ++i)
+    reach[py::str(r.coordinates[i].name)] = py::make_tuple(r.reach[i].least, r.reach[i].most);
+  py::dict all;
+  all["end"] = name_of(r.end);
+  all["why"] = r.why;
+  all["way"] = std::move(way);
+  all["q"] = std::move(q);
+  all["ratios"] = std::move(u);
+  all["ratio_rates"] = std::move(udot);
+  all["branch"] = branch;
+  all["dead_points"] = dead;
+  all["change_points"] = change;
+  all["reach"] = reach;
+  return all;
+}
+
+}  // namespace
+
+void add_move(py::class_<Bench, BenchPtr>& mechanism) {
+  using namespace py::literals;
+  mechanism.def(
+      "move", &move, "sweep"_a, "to"_a = py::none(), "by"_a = 0.0,
+      "hold"_a = std::vector<std::string>(),
+      "Poses as a coordinate is swept from the start, loops closed, as a dict: way (poses) of it "
+      "[rad or m], q (poses, nq), ratios and ratio_rates (poses, nv), first and second "
+      "derivatives by it, not a number at dead and change points, branch (poses); places of "
+      "dead_points and change_points among the poses; reach, least and most of each coordinate; "
+      "end: closed, reached or stopped, then why. `sweep`: its name, or names with amounts in "
+      "proportion; `to`: where it ends (None: back at the start); `by`: from pose to pose (0: a "
+      "degree or a hundredth of the scene's length); `hold`: coordinates that stay. Raises "
+      "SceneError where more than one freedom is left.");
+}
+
+}  // namespace momenta::python

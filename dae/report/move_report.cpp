@@ -1,0 +1,226 @@
+#include <momenta/dae/report/csv.h>
+#include <momenta/dae/report/json.h>
+#include <momenta/dae/report/move_report.h>
+#include <momenta/dae/text/number_text.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace momenta {
+namespace {
+
+using Json = nlohmann::ordered_json;
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
+
+const Column& swept(const MoveResult& r) {
+  return r.coordinates[r.swept];
+}
+
+/// Least and largest of a rate for the swept coordinate at unit rate.
+std::pair<double, double> ratios(const MoveResult& r, std::size_t rate) {
+  double least = none, most = none;
+  for (const MovedPose& pose : r.poses)
+    if (pose.u.size() > 0) {
+      const double u = pose.u[static_cast<Eigen::Index>(rate)];
+      least = std::isnan(least) ? u : std::min(least, u);
+      most = std::isnan(most) ? u : std::max(most, u);
+    }
+  return {least, most};
+}
+
+/// "[rad/rad]".
+std::string by_swept(const MoveResult& r, const std::string& rate_unit, int order) {
+  std::string unit = rate_unit;
+  if (unit.ends_with("/s")) unit.resize(unit.size() - 2);
+  return " [" + unit + "/" + swept(r).unit + (order == 2 ? "^2]" : "]");
+}
+
+/// Ways of the swept coordinate from the start to each pose.
+std::vector<double> ways(const MoveResult& r) {
+  std::vector<double> way;
+  for (std::size_t i = 0; i < r.poses.size(); ++i)
+    way.push_back(i == 0 ? 0 : way.back() + std::abs(r.poses[i].s - r.poses[i - 1].s));
+  return way;
+}
+
+Json points(const MoveResult& r, MovedPose::Kind kind) {
+  Json all = Json::array();
+  for (const MovedPose& pose : r.poses)
+    if (pose.kind == kind) {
+      Json q = Json::object();
+      for (std::size_t i = 0; i < r.coordinates.size(); ++i)
+        q[r.coordinates[i].label()] = number_or_null(pose.q[static_cast<Eigen::Index>(i)]);
+      all.push_back({{"value", number_or_null(r.start + pose.s)}, {"q", q}});
+    }
+  return all;
+}
+
+std::string counted(long n, const std::string& what) {
+  return (n == 0 ? "no " : std::to_string(n) + " ") + what + (n == 1 ? "" : "s");
+}
+
+}  // namespace
+
+std::string move_in_words(const MoveResult& r) {
+  const Column& c = swept(r);
+  const Reach& reach = r.reach[r.swept];
+  const std::string unit = " " + c.unit;
+  const double round = 2 * std::numbers::pi;
+  const bool goes_round = r.end == MoveResult::End::closed && r.dead_points() == 0 &&
+                          std::abs(std::abs(r.poses.back().s) - round) < 1e-6;
+  std::string text = c.name;
+  if (goes_round)
+    text += " goes round";
+  else if (r.dead_points() > 0)
+    text += " swings between " + compact(reach.least, 6) + " and " + compact(reach.most, 6) + unit;
+  else
+    text += " goes from " + compact(r.start, 6) + " to " + compact(r.start + r.poses.back().s, 6) +
+            unit;
+  text += ": " + counted(static_cast<long>(r.poses.size()), "pose") + ", " +
+          counted(r.dead_points(), "dead point") + ", " +
+          counted(r.change_points(), "change point");
+  text += r.end == MoveResult::End::closed    ? "; back at the start."
+          : r.end == MoveResult::End::reached ? "."
+                                              : "; it stopped: " + r.why + ".";
+  if (r.change_points() > 0)
+    text += " At a change point another assembly is as near: it was passed straight on.";
+  return text;
+}
+
+std::string move_table(const MoveResult& r) {
+  std::string text = (r.scene.empty() ? "" : r.scene + ": ") + move_in_words(r) + "\n";
+  std::vector<std::vector<std::string>> rows{
+      {"coordinate", "least", "most", "range", "turns back", "least ratio", "largest ratio"}};
+  for (std::size_t i = 0; i < r.coordinates.size(); ++i) {
+    std::string least = "-", most = "-";
+    for (std::size_t k = 0; k < r.rates.size(); ++k)
+      if (r.rates[k].name == r.coordinates[i].name ||
+          (r.rates.size() == r.coordinates.size() && k == i)) {
+        const auto [low, high] = ratios(r, k);
+        least = compact(low, 4);
+        most = compact(high, 4);
+      }
+    const Reach& reach = r.reach[i];
+    rows.push_back({r.coordinates[i].label(), compact(reach.least, 6), compact(reach.most, 6),
+                    compact(reach.most - reach.least, 6), std::to_string(reach.turns_back), least,
+                    most});
+  }
+  return text + "\n" + in_columns(rows);
+}
+
+std::string move_csv(const MoveResult& r) {
+  std::vector<std::string> cells{"kind", "way [" + swept(r).unit + "]", "branch"};
+  const bool asked = !r.poses.empty() && r.poses.front().conditioning >= 0;
+  if (asked) cells.emplace_back("conditioning [1]");
+  for (const Column& c : r.coordinates) cells.push_back(csv_cell(c.label()));
+  for (const int order : {1, 2})
+    for (const Column& c : r.rates)
+      cells.push_back(
+          csv_cell(c.name + (order == 1 ? ".ratio" : ".ratio_rate") + by_swept(r, c.unit, order)));
+  for (std::size_t i = 0; i < r.markers.size(); ++i)
+    cells.push_back(csv_cell(i % 6 < 3 ? r.markers[i].label()
+                                       : r.markers[i].name + by_swept(r, r.markers[i].unit, 1)));
+  std::string text = csv_line(cells);
+  for (const MovedPose& pose : r.poses) {
+    cells = {name_of(pose.kind), round_trip(pose.s),
+             pose.branch == 0 ? "" : std::to_string(pose.branch)};
+    if (asked) cells.push_back(round_trip(pose.conditioning));
+    for (const double q : pose.q) cells.push_back(round_trip(q));
+    for (const Eigen::VectorXd* x : {&pose.u, &pose.udot})
+      for (std::size_t i = 0; i < r.rates.size(); ++i)
+        cells.push_back(x->size() > 0 ? round_trip((*x)[static_cast<Eigen::Index>(i)]) : "");
+    for (const double x : pose.markers) cells.push_back(round_trip(x));
+    text += csv_line(cells);
+  }
+  return text;
+}
+
+Json move_json(const MoveResult& r) {
+  Json reach = Json::object();
+  for (std::size_t i = 0; i < r.coordinates.size(); ++i)
+    reach[r.coordinates[i].label()] = {{"least", number_or_null(r.reach[i].least)},
+                                       {"most", number_or_null(r.reach[i].most)},
+                                       {"turns_back", r.reach[i].turns_back}};
+  Json ratio = Json::object();
+  for (std::size_t k = 0; k < r.rates.size(); ++k) {
+    const auto [least, most] = ratios(r, k);
+    ratio[r.rates[k].name + by_swept(r, r.rates[k].unit, 1)] = {{"least", number_or_null(least)},
+                                                                {"most", number_or_null(most)}};
+  }
+  return {{"scene", r.scene},
+          {"swept", swept(r).label()},
+          {"start", number_or_null(r.start)},
+          {"end", name_of(r.end)},
+          {"why", r.why.empty() ? Json() : Json(r.why)},
+          {"way", number_or_null(r.poses.empty() ? none : r.poses.back().s)},
+          {"poses", r.poses.size()},
+          {"reach", reach},
+          {"ratios", ratio},
+          {"dead_points", points(r, MovedPose::Kind::dead_point)},
+          {"change_points", points(r, MovedPose::Kind::change_point)}};
+}
+
+Film move_film(const MoveResult& r, int intervals) {
+  const std::vector<double> way = ways(r);
+  Film film;
+  if (way.empty() || intervals <= 0) return film;
+  film.every = way.back() / intervals;
+  std::size_t at = 0;
+  for (int k = 0; k <= intervals; ++k) {
+    const double there = film.every * k;
+    while (at + 2 < way.size() && way[at + 1] < there) ++at;
+    const std::size_t next = std::min(at + 1, way.size() - 1);
+    const double span = way[next] - way[at];
+    const double part = span > 0 ? std::clamp((there - way[at]) / span, 0.0, 1.0) : 0;
+    const Eigen::VectorXd q = (1 - part) * r.poses[at].q + part * r.poses[next].q;
+    film.frames.emplace_back(q.begin(), q.end());
+  }
+  return film;
+}
+
+Json move_charts(const MoveResult& r) {
+  const std::vector<double> way = ways(r);
+  Json charts = Json::array();
+  const auto add = [&](const std::string& key, const std::string& title, const std::string& unit,
+                       const std::vector<std::pair<std::string, std::vector<double>>>& curves) {
+    constexpr std::size_t most = 24;
+    if (curves.empty()) return;
+    Json all = Json::array();
+    for (std::size_t i = 0; i < std::min(most, curves.size()); ++i) {
+      Json y = Json::array();
+      for (const double value : curves[i].second) y.push_back(number_or_null(value));
+      all.push_back({{"name", curves[i].first},
+                     {"y", y},
+                     {"colour", i % 8},
+                     {"dash", i < 8 ? Json::array() : Json{6, 4}}});
+    }
+    Json chart = {{"key", key},       {"title", title}, {"x_title", "way of " + swept(r).label()},
+                  {"y_title", title}, {"unit", unit},   {"log", false},
+                  {"t", way},         {"curves", all}};
+    if (curves.size() > most) chart["left_out"] = curves.size() - most;
+    charts.push_back(chart);
+  };
+  for (const std::string unit : {"rad", "m"}) {
+    std::vector<std::pair<std::string, std::vector<double>>> curves;
+    for (std::size_t i = 0; i < r.coordinates.size(); ++i)
+      if (r.coordinates[i].unit == unit) {
+        curves.emplace_back(r.coordinates[i].name, std::vector<double>());
+        for (const MovedPose& pose : r.poses)
+          curves.back().second.push_back(pose.q[static_cast<Eigen::Index>(i)]);
+      }
+    add("q_" + unit, "coordinates [" + unit + "]", unit, curves);
+  }
+  std::vector<std::pair<std::string, std::vector<double>>> curves;
+  for (std::size_t k = 0; k < r.rates.size(); ++k) {
+    curves.emplace_back(r.rates[k].name, std::vector<double>());
+    for (const MovedPose& pose : r.poses)
+      curves.back().second.push_back(pose.u.size() > 0 ? pose.u[static_cast<Eigen::Index>(k)]
+                                                       : none);
+  }
+  add("ratios", "rates while " + swept(r).name + " has a rate of 1", "", curves);
+  return charts;
+}
+
+}  // namespace momenta

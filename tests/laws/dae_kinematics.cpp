@@ -1,0 +1,219 @@
+// Poses followed along their curve against trigonometry, against assembly pose by pose, and against
+// each other.
+
+#include "equations/linkages.h"
+
+#include <gtest/gtest.h>
+#include <momenta/core/scene/files/read_scene.h>
+#include <momenta/dae/assembly/assembly.h>
+#include <momenta/dae/kinematics/move.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+namespace momenta::dae_kinematics {
+namespace {
+
+using Eigen::VectorXd;
+using std::numbers::pi;
+
+struct FourBar {
+  double crank, coupler, rocker, ground;
+
+  /// Of the rocker, for the crank at θ; side ±1. Not a number where the links do not reach.
+  double rocker_angle(double theta, int side) const {
+    const double x = crank * std::cos(theta) - ground, y = crank * std::sin(theta);
+    const double d = std::hypot(x, y);
+    const double c = (d * d + rocker * rocker - coupler * coupler) / (2 * d * rocker);
+    return std::atan2(y, x) + side * std::acos(c);
+  }
+  /// Where the crank turns back, as distances of its tip from C: b + c and |b − c|.
+  bool is_dead_point(double theta) const {
+    const double d = std::hypot(crank * std::cos(theta) - ground, crank * std::sin(theta));
+    return std::min(std::abs(d - coupler - rocker), std::abs(d - std::abs(coupler - rocker))) <
+           1e-9;
+  }
+  bool reaches(double theta) const { return std::isfinite(rocker_angle(theta, 1)); }
+
+  Scene scene(double theta, int side) const {
+    Scene s;
+    s.name = "four-bar";
+    const double rocked = rocker_angle(theta, side);
+    const double ax = crank * std::cos(theta), ay = crank * std::sin(theta);
+    const double bx = ground + rocker * std::cos(rocked), by = rocker * std::sin(rocked);
+    s.bodies = {equations::rod("crank"), equations::rod("coupler"), equations::rod("rocker")};
+    s.joints = {equations::hinge("O", "ground", "crank", {0, 0, 0}, theta),
+                equations::hinge("A", "crank", "coupler", {crank, 0, 0},
+                                 std::atan2(by - ay, bx - ax) - theta),
+                equations::hinge("C", "ground", "rocker", {ground, 0, 0}, rocked)};
+    LoopSpec loop;
+    loop.name = "B";
+    loop.kind = LoopKind::revolute;
+    loop.parent = "coupler";
+    loop.child = "rocker";
+    loop.origin_parent = {coupler, 0, 0};
+    loop.origin_child = {rocker, 0, 0};
+    s.loops.push_back(loop);
+    return s;
+  }
+};
+
+MoveResult moved(const Scene& scene, const std::string& sweep, MoveRequest request = {}) {
+  const Mechanism mechanism(scene);
+  const Assembly a = assemble(mechanism, Assembled::rates);
+  request.sweep = {{sweep, 1}};
+  return move(mechanism, 0, a.start.q, request);
+}
+
+Scene example(const std::string& name) {
+  return read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples" / name / "scene.toml");
+}
+
+// Four-bars of any lengths that can be put together, swept by the crank and by the rocker: every
+// pose is the one of trigonometry, on the side that the branch tells, which changes at dead points
+// alone; the crank turns where the links are stretched or folded.
+TEST(Kinematics, FourBarsByTrigonometry) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> any(0.3, 2);
+  int dead = 0, round = 0;
+  for (int k = 0; k < 60;) {
+    const FourBar bars{any(random), any(random), any(random), any(random)};
+    const double theta = any(random);
+    // Near a change point the two sides are one pose to rounding.
+    const double longest = std::max({bars.crank, bars.coupler, bars.rocker, bars.ground}),
+                 shortest = std::min({bars.crank, bars.coupler, bars.rocker, bars.ground}),
+                 all = bars.crank + bars.coupler + bars.rocker + bars.ground;
+    if (!bars.reaches(theta) || std::abs(2 * (longest + shortest) - all) < 0.02) continue;
+    const int side = k++ % 2 == 0 ? 1 : -1;
+    const MoveResult r = moved(bars.scene(theta, side), "O");
+    ASSERT_EQ(r.end, MoveResult::End::closed) << r.why;
+    EXPECT_EQ(r.change_points(), 0);
+    dead += r.dead_points();
+    round += r.dead_points() == 0;
+    const int branch = r.poses.front().branch;
+    ASSERT_NE(branch, 0);
+    for (const MovedPose& pose : r.poses) {
+      if (pose.kind == MovedPose::Kind::dead_point) {
+        EXPECT_TRUE(bars.is_dead_point(pose.q[0])) << pose.q[0];
+        continue;
+      }
+      const int there = pose.branch == branch ? side : -side;
+      const auto rocked = [&](double at) { return bars.rocker_angle(at, there); };
+      const double h = 1e-5, before = rocked(pose.q[0] - h), after = rocked(pose.q[0] + h);
+      EXPECT_LT(std::abs(std::remainder(pose.q[2] - rocked(pose.q[0]), 2 * pi)), 1e-6);
+      if (!(std::abs(pose.u[2]) < 20) || std::isnan(before) || std::isnan(after)) continue;
+      const double middle = rocked(pose.q[0]);
+      const double ratio = std::remainder(after - before, 2 * pi) / (2 * h);
+      const double rate =
+          (std::remainder(after - middle, 2 * pi) - std::remainder(middle - before, 2 * pi)) /
+          (h * h);
+      EXPECT_NEAR(pose.u[2], ratio, 1e-5 * std::pow(1 + std::abs(ratio), 5));
+      EXPECT_NEAR(pose.udot[2], rate, 1e-4 * std::pow(1 + std::abs(ratio), 5));
+    }
+  }
+  EXPECT_GT(dead, 20);
+  EXPECT_GT(round, 5);
+}
+
+// Wherever it starts, whatever is swept and however finely, the curve is the same.
+TEST(Kinematics, TheCurveDoesNotDependOnItsStart) {
+  const Scene scene = example("four_bar");
+  const MoveResult by_crank = moved(scene, "O");
+  MoveRequest coarse;
+  coarse.by = 0.37;
+  Scene elsewhere = scene;
+  const VectorXd& q = by_crank.poses[123].q;
+  for (std::size_t i = 0; i < 3; ++i)
+    elsewhere.joints[i].position = {q[static_cast<Eigen::Index>(i)]};
+  for (const MoveResult& other :
+       {moved(scene, "C"), moved(elsewhere, "O"), moved(elsewhere, "A.q", coarse)}) {
+    EXPECT_EQ(other.end, MoveResult::End::closed) << other.why;
+    EXPECT_NEAR(other.reach[2].least, by_crank.reach[2].least, 1e-9);
+    EXPECT_NEAR(other.reach[2].most, by_crank.reach[2].most, 1e-9);
+  }
+  EXPECT_EQ(moved(scene, "C").dead_points(), 2);
+}
+
+// Each pose is the one that assembly finds from its neighbour with the swept joint held, and u̇ is
+// how u changes.
+TEST(Kinematics, PosesAreAssembledOnes) {
+  for (const std::string name : {"andrews", "spatial_slider_crank", "bricard"}) {
+    Scene scene = example(name);
+    MoveRequest request;
+    request.by = 1e-3;
+    const std::string first = scene.joints.front().name;
+    const Mechanism mechanism(scene);
+    const Assembly a = assemble(mechanism, Assembled::rates);
+    request.sweep = {{first, 1}};
+    const int at = mechanism.tree().bodies.front().q;
+    request.to = a.start.q[at] + 0.05;
+    const MoveResult r = move(mechanism, 0, a.start.q, request);
+    ASSERT_EQ(r.end, MoveResult::End::reached) << name << r.why;
+    ASSERT_EQ(r.poses.size(), 51u);
+    EXPECT_NEAR(r.poses.back().q[at], *request.to, 1e-13);
+    scene.held = {first};
+    const Mechanism holding(scene);
+    for (std::size_t k = 1; k + 1 < r.poses.size(); k += 7) {
+      VectorXd guess = r.poses[k - 1].q;
+      guess[at] = r.poses[k].q[at];
+      const Assembly there =
+          assemble(holding, 0, guess, VectorXd::Zero(mechanism.nv()), Assembled::rates);
+      EXPECT_LT((there.start.q - r.poses[k].q).cwiseAbs().maxCoeff(), 1e-9) << name;
+      const double h = request.by;
+      const VectorXd rate = (r.poses[k + 1].u - r.poses[k - 1].u) / (2 * h);
+      EXPECT_LT((rate - r.poses[k].udot).cwiseAbs().maxCoeff(),
+                100 * h * h * (1 + r.poses[k].udot.cwiseAbs().maxCoeff()))
+          << name;
+    }
+  }
+}
+
+// A row of parallelograms is flat at 0 and π, where every one of them may become crossed: passed
+// straight on.
+TEST(Kinematics, ChangePointsArePassedStraightOn) {
+  for (const int n : {1, 2, 5}) {
+    const MoveResult r = moved(equations::row_of_four_bars(n, 1), "O0");
+    ASSERT_EQ(r.end, MoveResult::End::closed) << r.why;
+    EXPECT_EQ(r.dead_points(), 0);
+    ASSERT_EQ(r.change_points(), 2) << n;
+    for (const MovedPose& pose : r.poses) {
+      if (pose.kind == MovedPose::Kind::change_point)
+        EXPECT_NEAR(std::remainder(pose.q[0], pi), 0, 1e-6);
+      else
+        EXPECT_NEAR(std::abs(pose.u[1]), 1, 1e-6);
+    }
+  }
+}
+
+// Two freedoms: one swept, one held, or both in proportion.
+TEST(Kinematics, WhatIsLeftFreeIsHeldOrNamed) {
+  Scene open = FourBar{1, 1.5, 1.2, 2}.scene(1, 1);
+  open.loops.front().kind = LoopKind::distance;
+  open.loops.front().length = 0.7;
+  open.loops.front().origin_parent = {1, 0, 0};
+  EXPECT_THROW(
+      {
+        try {
+          moved(open, "O");
+        } catch (const SceneError& e) {
+          EXPECT_NE(std::string(e.what()).find("leaves 1 more degree of freedom"),
+                    std::string::npos)
+              << e.what();
+          throw;
+        }
+      },
+      SceneError);
+  MoveRequest held;
+  held.hold = {"A"};
+  held.to = 1.1;
+  const MoveResult r = moved(open, "O", held);
+  ASSERT_EQ(r.end, MoveResult::End::reached) << r.why;
+  EXPECT_EQ(r.poses.back().q[1], r.poses.front().q[1]);
+  EXPECT_THROW(moved(open, "X"), SceneError);
+  held.hold = {"A", "C"};
+  EXPECT_THROW(moved(open, "O", held), SceneError);
+}
+
+}  // namespace
+}  // namespace momenta::dae_kinematics
