@@ -5,6 +5,7 @@
 #include <momenta/core/kernel/momentum_recursion.h>
 #include <momenta/core/open_chain.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <random>
@@ -190,6 +191,37 @@ TEST(Threads, OfABatchChangeNothing) {
       EXPECT_TRUE(same(udot, b.udot)) << seed << ", " << threads;
     }
     EXPECT_THROW(chain.rates_of_states(0.3, b.q, b.p, b.qdot, b.pdot, 0), std::invalid_argument);
+  }
+}
+
+/// A batch whose rows lie far apart is computed in copies of blocks: the same bits as of small
+/// batches of its columns, and a bad state spoils itself alone.
+TEST(Levels, LargeBatchesAreTheirPartsSideBySide) {
+  OpenChain chain(pendulums(40));
+  RandomTree random(5);
+  constexpr Eigen::Index count = 1403, part = 67;
+  Batch b(chain, random, count);
+  b.q(3, 1000) = std::numeric_limits<double>::quiet_NaN();
+  ASSERT_FALSE(chain.rates_of_states(0.3, b.q, b.p, b.qdot, b.pdot));
+  ASSERT_FALSE(chain.accelerations_of_states(0.3, b.q, b.u, b.tau, b.udot));
+  for (Eigen::Index first = 0; first < count; first += part) {
+    const Eigen::Index some = std::min(part, count - first);
+    const auto columns = [&](const StateMatrix& x) {
+      return StateMatrix(x.middleCols(first, some));
+    };
+    StateMatrix qdot = columns(b.q), pdot = columns(b.p), udot = columns(b.u);
+    const bool bad = first <= 1000 && 1000 < first + some;
+    EXPECT_NE(chain.rates_of_states(0.3, columns(b.q), columns(b.p), qdot, pdot), bad);
+    EXPECT_NE(chain.accelerations_of_states(0.3, columns(b.q), columns(b.u), columns(b.tau), udot),
+              bad);
+    for (Eigen::Index i = 0; i < some; ++i) {
+      const bool none = first + i == 1000;
+      EXPECT_TRUE(none ? b.pdot.col(first + i).array().isNaN().all()
+                       : pdot.col(i) == b.pdot.col(first + i) &&
+                             qdot.col(i) == b.qdot.col(first + i) &&
+                             udot.col(i) == b.udot.col(first + i))
+          << "state " << first + i;
+    }
   }
 }
 

@@ -94,17 +94,73 @@ class BatchSweepsAt final : public BatchSweeps {
     }
   }
 
-  /// Calls f on every full pack in place, and on the rest in a padded copy. A pack that fails is
-  /// repeated state by state, so that one bad state spoils no other.
+  /// Calls f on every full pack, in place or in a copy of a block of them, and on the rest in a
+  /// padded copy. A pack that fails is repeated state by state, so that one bad state spoils no
+  /// other.
   template <class F>
   bool each_pack(const States& s, F&& f) {
     bool all = true;
-    for (std::size_t first = 0; first < s.count; first += lanes) {
-      const States part = s.part(first, s.count - first < lanes ? s.count - first : lanes);
-      if (part.count == lanes ? f(part) : copied(part, f)) continue;
-      all &= one_by_one(part, first, f, all);
-    }
+    std::size_t first = 0;
+    const auto take = [&](const States& part) {
+      if (!(part.count == lanes ? f(part) : copied(part, f)))
+        all &= one_by_one(part, first, f, all);
+      first += part.count;
+    };
+    if (far_apart(s))
+      for (; first + lanes <= s.count;) {
+        const std::size_t full = (s.count - first) / lanes * lanes,
+                          count = full < most_in_block ? full : most_in_block;
+        in_block(s.part(first, count), take);
+      }
+    while (first < s.count) take(s.part(first, s.count - first < lanes ? s.count - first : lanes));
     return all;
+  }
+
+  /// Whether a pack in place reads and writes a line here and there in more memory than is near:
+  /// each row of a large batch starts a page of its own.
+  bool far_apart(const States& s) const {
+    constexpr std::ptrdiff_t near_by = 3 << 19;  // bytes
+    return s.stride * (2 * tree_.model->nq + 2 * tree_.model->nv) * 8 > near_by;
+  }
+  static constexpr std::size_t most_in_block = 64;
+  /// Rows of packs, `to_next` apart, from `from` or to `to`. Not inlined: as coordinate_rates().
+  [[gnu::noinline]] static void copy_rows(std::size_t count, std::size_t packs,
+                                          std::ptrdiff_t stride, double* block, std::size_t to_next,
+                                          const double* from, double* to) {
+    for (std::size_t i = 0; i < count; ++i)
+      for (std::size_t k = 0; k < packs; ++k) {
+        double* const here = block + k * to_next + i * lanes;
+        const std::ptrdiff_t there =
+            static_cast<std::ptrdiff_t>(i) * stride + static_cast<std::ptrdiff_t>(k * lanes);
+        if (from)
+          Many::load(from + there).store(here);
+        else
+          Many::load(here).store(to + there);
+      }
+  }
+  /// Calls take on the packs of a block of full packs, each in a copy: rows are read and written as
+  /// they stand in memory.
+  template <class Take>
+  void in_block(const States& s, Take&& take) {
+    const auto nq = static_cast<std::size_t>(tree_.model->nq);
+    const auto nv = static_cast<std::size_t>(tree_.model->nv);
+    const std::size_t packs = s.count / lanes, rows = 2 * nq + 3 * nv;
+    block_.resize(packs * rows * lanes);
+    // Of every pack q, p, q̇, ṗ, τ.
+    const auto rows_of = [&](std::size_t at, std::size_t count, const double* from, double* to) {
+      copy_rows(count, packs, s.stride, block_.data() + at * lanes, rows * lanes, from, to);
+    };
+    rows_of(0, nq, s.q, nullptr);
+    rows_of(nq, nv, s.p, nullptr);
+    if (s.tau) rows_of(2 * nq + 2 * nv, nv, s.tau, nullptr);
+    for (std::size_t k = 0; k < packs; ++k) {
+      double* const q = block_.data() + k * rows * lanes;
+      double *const p = q + nq * lanes, *const qdot = p + nv * lanes,
+                    *const pdot = qdot + nq * lanes, *const tau = pdot + nv * lanes;
+      take(States{q, p, s.qdot ? qdot : nullptr, pdot, lanes, lanes, s.tau ? tau : nullptr});
+    }
+    if (s.qdot) rows_of(nq + nv, nq, nullptr, s.qdot);
+    rows_of(2 * nq + nv, nv, nullptr, s.pdot);
   }
 
   /// The states copied into one pack, the last repeated.
@@ -166,7 +222,7 @@ class BatchSweepsAt final : public BatchSweeps {
   WhenAsked<MomentumSweeps<Space, Many>> momenta_;
   WhenAsked<AccelerationSweeps<Space, Many>> accelerations_;
   WhenAsked<JacobianPass<Space, Many>> jacobian_;
-  Buffer rates_, padded_, forces_;
+  Buffer rates_, padded_, forces_, block_;
   int singular_joint_ = -1, joint_ = -1;  ///< of the first state that failed, of the last
   std::size_t failed_state_ = 0;
   bool quasi_velocities_ = false;
