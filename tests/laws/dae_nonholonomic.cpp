@@ -657,44 +657,6 @@ crown_radius = 0.1
   }
 }
 
-/// A pendulum whose arm is turned at Ω: about hanging ω² = g/l − Ω². All positions act.
-TEST(Nonholonomic, SteadyMotionWithoutLoops) {
-  const Mechanism mechanism(parse_scene(R"(
-gravity = [0, 0, -9.81]
-[[body]]
-name = "arm"
-mass = 1
-inertia = [1, 1, 1]
-[[body]]
-name = "bob"
-mass = 2
-com = [0, 0, -0.5]
-shape = { kind = "point" }
-[[joint]]
-name = "A"
-kind = "revolute"
-child = "arm"
-[[joint]]
-name = "B"
-kind = "revolute"
-parent = "arm"
-child = "bob"
-axis = [1, 0, 0]
-[[drive]]
-joint = "A"
-kind = "polynomial"
-coefficients = [0, 3]
-)",
-                                        "bob.toml"));
-  ModesRequest request;
-  request.search = Search::steady;
-  const ModesResult result = find_modes(mechanism, assemble(mechanism).start, request);
-  EXPECT_EQ(result.steady->left_out, 0);
-  ASSERT_EQ(result.spectrum.modes.size(), 1u);
-  EXPECT_NEAR(result.spectrum.modes[0].s.real(), 0, 1e-12);
-  EXPECT_NEAR(result.spectrum.modes[0].s.imag(), std::sqrt(9.81 / 0.5 - 9), 1e-12);
-}
-
 /// Positions count apart from rates.
 TEST(Nonholonomic, PositionsAndRatesAreCountedApart) {
   const Assembly ball = assemble(Mechanism(everything()));
