@@ -129,10 +129,11 @@ std::vector<Mode> modes_of(const Reduced& r) {
     if (mode.s == 0.0) {
       mode.shape = r.N * w + r.S * y;
     } else {
-      // What is left out follows.
-      const MatrixXcd follows = mode.s * MatrixXcd::Identity(r.dropped.cols(), r.dropped.cols()) -
-                                MatrixXcd(r.dropped.transpose() * r.E * r.dropped);
-      y += r.dropped * follows.fullPivLu().solve(r.dropped.transpose() * (r.E * y + r.of_w * w));
+      if (r.dropped.cols() > 0) {  // they follow
+        const MatrixXcd follows = mode.s * MatrixXcd::Identity(r.dropped.cols(), r.dropped.cols()) -
+                                  MatrixXcd(r.dropped.transpose() * r.E * r.dropped);
+        y += r.dropped * follows.fullPivLu().solve(r.dropped.transpose() * (r.E * y + r.of_w * w));
+      }
       mode.shape = r.P * y;
     }
     normalise(mode, (mode.shape.adjoint() * (r.mass * mode.shape)).value().real());

@@ -897,6 +897,7 @@ TEST(Nonholonomic, AssemblyMovesAgainstTheSlip) {
   EXPECT_LE(a.position_residual, 1e-12);
   // Nothing but height and lean close it: least change of the contact's row alone.
   EXPECT_NEAR(a.start.q[0], 0, 1e-14);
+  EXPECT_NEAR(a.start.q[1], 0, 1e-14);
   EXPECT_LT(a.start.q[2], 0.35);
 }
 
