@@ -1,6 +1,7 @@
 // bdf5 and its moving gauge: the polynomials through past values, every order from 1 to 5 on steps
 // of changing length, the same motion in whatever gauge the past is told, what no leak allows.
 
+#include "equations/ensemble.h"
 #include "equations/linkages.h"
 
 #include <gtest/gtest.h>
