@@ -11,7 +11,7 @@ using Eigen::Isometry3d;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
-constexpr double turn = 2 * std::numbers::pi;
+constexpr double whole_turn = 2 * std::numbers::pi;
 
 LimitMark of_slide(const Picture::Body& body, const Isometry3d& parent, const Vector3d& centre,
                    double width) {
@@ -47,7 +47,7 @@ LimitMark of_turn(const Picture::Body& body, const Isometry3d& parent, const Iso
   mark.now = {centre, centre + 1.25 * radius * (at.linear() * out)};
   const Quaterniond own = axes.conjugate() * Quaterniond(at.linear());
   const double angle = 2 * std::atan2(own.vec().dot(body.axis), own.w());
-  const double off = std::remainder(angle - 0.5 * (low + high), turn);
+  const double off = std::remainder(angle - 0.5 * (low + high), whole_turn);
   constexpr double rounding = 1e-4;  // [rad]
   mark.passed = std::abs(off) > 0.5 * (high - low) + rounding;
   return mark;
@@ -67,7 +67,7 @@ std::vector<LimitMark> limit_marks(const Picture& picture, const std::vector<Iso
     const Vector3d centre = at[k] * body.at_child;
     if (body.joint_kind == "prismatic") {
       if (range <= 20 * picture.length) marks.push_back(of_slide(body, parent, centre, width));
-    } else if (body.turn == Picture::Turn::about_axis && range < turn) {
+    } else if (body.turn == Picture::Turn::about_axis && range < whole_turn) {
       marks.push_back(of_turn(body, parent, at[k], centre, width, 1e-6 * picture.length));
     }
   }
