@@ -153,17 +153,20 @@ SharedPoints::SharedPoints(const std::vector<int>& parents, const LoopModel<Spac
   count_ = rows_.size();
   all_.resize(empty() ? 0 : static_cast<std::size_t>(loops.rows));
   before_.resize(rows_.size());
-  after_.resize(rows_.size());
+  for (auto* terms : {&given_, &paired_})
+    std::stable_sort(terms->begin(), terms->end(),
+                     [](const Term& x, const Term& y) { return x.to < y.to; });
 }
 
 void SharedPoints::exchange(const std::vector<Term>& terms, double* sigma, std::ptrdiff_t stride) {
+  for (std::size_t i = 0; i < rows_.size(); ++i) before_[i] = sigma[rows_[i] * stride];
+  auto t = terms.begin();
   for (std::size_t i = 0; i < rows_.size(); ++i) {
-    before_[i] = sigma[rows_[i] * stride];
-    after_[i] = 0;
+    double sum = 0;
+    for (; t != terms.end() && static_cast<std::size_t>(t->to) == i; ++t)
+      sum += t->sign * before_[static_cast<std::size_t>(t->from)];
+    sigma[rows_[i] * stride] = sum;
   }
-  for (const Term& t : terms)
-    after_[static_cast<std::size_t>(t.to)] += t.sign * before_[static_cast<std::size_t>(t.from)];
-  for (std::size_t i = 0; i < rows_.size(); ++i) sigma[rows_[i] * stride] = after_[i];
 }
 
 void SharedPoints::to_given(double* sigma, std::ptrdiff_t stride) {

@@ -48,9 +48,9 @@ class SharedPoints {
   void exchange(const std::vector<Term>& terms, double* sigma, std::ptrdiff_t stride);
 
   std::size_t count_ = 0;
-  std::vector<int> rows_;  ///< of Φ that change
-  std::vector<Term> given_, paired_;
-  std::vector<double> before_, after_, all_;
+  std::vector<int> rows_;             ///< of Φ that change
+  std::vector<Term> given_, paired_;  ///< by where they go
+  std::vector<double> before_, all_;
 };
 
 }  // namespace momenta
