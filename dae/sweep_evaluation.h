@@ -155,7 +155,8 @@ class Mechanism::SweepEvaluation final : public SweepRows<Space, double> {
       const SpringLine<Space, double> line(w_, spring);
       if (!line.has_direction()) continue;
       const double rate = line.rate(w_, spring);
-      power -= spring.damping * (rate * rate);
+      power -= spring.damping * (rate * rate) +
+               (spring.stop.acts() ? stop_loss(spring.stop, line.length, rate) : 0);
     }
     for (const auto& wrench : model_.wrenches) {
       const int k = wrench.body;

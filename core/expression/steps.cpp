@@ -71,6 +71,7 @@ class Maker {
     if (right) absorbed_[index(y->b)] = 1;
     if (left == right) return;
     const Binary inner = *binary(left ? y->a : y->b);
+    if (inner.a == inner.b) return;  // a square takes its operand twice
     if (is_within(inner.a))
       absorbed_[index(inner.a)] = 1;
     else if (is_within(inner.b))

@@ -121,7 +121,8 @@ class LoopRows {
     for (std::size_t i = 0; i < at_.size(); ++i) {
       const auto& l = model_->loops[i];
       if ((l.is_pair() && pair(l).place.lost != PairPlace::Lost::no) ||
-          (l.is_equation() && !equation(l).finite()) || (l.is_wheel() && !wheel(l).touches(law_of_wheel(l))))
+          (l.is_equation() && !equation(l).finite()) ||
+          (l.is_wheel() && !wheel(l).touches(law_of_wheel(l))))
         return static_cast<int>(i);
     }
     return -1;

@@ -332,10 +332,9 @@ int check(const Options& o) {
   }
   std::printf("\nForms\n");
   for (const auto& form : indices)
-    std::printf("  %-30s %s%s\n", form.form,
-                mechanism->m() == 0 || form.index[0] == 'O' ? "" : "index ",
-                mechanism->m() > 0 ? index_of(*mechanism, form.form, form.index).c_str()
-                                   : "ODE: no loops");
+    std::printf(
+        "  %-30s %s%s\n", form.form, mechanism->m() == 0 || form.index[0] == 'O' ? "" : "index ",
+        mechanism->m() > 0 ? index_of(*mechanism, form.form, form.index).c_str() : "ODE: no loops");
   return done;
 }
 

@@ -49,13 +49,14 @@ std::string name_and_type(const CLI::Option& o) {
 }
 
 /// Options that have one row: the text of the first speaks of both.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 6> one_row{{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 7> one_row{{
     {"--project", "--no-project"},
     {"--baumgarte-alpha", "--baumgarte-beta"},
     {"--rtol", "--atol"},
     {"--out", "--mesh-bytes"},
     {"--control", "--key"},
     {"--json", "--quiet"},
+    {"--data", "--reactions"},
 }};
 
 /// The option in the row of this one; null: none.

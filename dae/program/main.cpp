@@ -57,7 +57,8 @@ int answer(int argc, char** argv) {
       ->type_name("FORM");
   add_run_options(*run_verb, o);
   add_timing(*run_verb, o);
-  one_of(run_verb->add_option("--data", o.data, "Format of the trajectory"), {"csv", "hdf5"})
+  one_of(run_verb->add_option("--data", o.data, "Format of the trajectory; reactions too"),
+         {"csv", "hdf5"})
       ->capture_default_str();
   run_verb->add_flag("--reactions", o.reactions, "With the reactions of joints as columns");
   CLI::App* drift_verb =

@@ -18,16 +18,15 @@ constexpr std::array<double, 3> at{0.37, 0.61, 1.3};
 constexpr std::array<int, 3> all{0, 1, 2};
 
 /// Every operation and function with all it takes changing, and where they lie within each other.
-const std::vector<std::string> smooth{
-    "-x + y - t * x / y",
-    "x^3 - y^-2 + t^1",
-    "x^y + t^2.5 + 2^x",
-    "sin(x) * cos(y) + tan(t * x)",
-    "asin(x * y) - acos(x / 2) + atan(t - y)",
-    "sinh(x) + cosh(y * t) - tanh(x - t)",
-    "exp(-x * y) * log(t + x^2) + sqrt(x + y)",
-    "atan2(x - t, y) + hypot(x, y * t)",
-    "sqrt(sin(x)^2 + exp(tanh(y) / (1 + t^2))) ^ (x / y)"};
+const std::vector<std::string> smooth{"-x + y - t * x / y",
+                                      "x^3 - y^-2 + t^1",
+                                      "x^y + t^2.5 + 2^x",
+                                      "sin(x) * cos(y) + tan(t * x)",
+                                      "asin(x * y) - acos(x / 2) + atan(t - y)",
+                                      "sinh(x) + cosh(y * t) - tanh(x - t)",
+                                      "exp(-x * y) * log(t + x^2) + sqrt(x + y)",
+                                      "atan2(x - t, y) + hypot(x, y * t)",
+                                      "sqrt(sin(x)^2 + exp(tanh(y) / (1 + t^2))) ^ (x / y)"};
 const std::vector<std::string> cornered{
     "if(x < y and not t <= 1, x^2 * y, t)", "if(x >= y or t == 2, x, y * t * y)",
     "min(x * t, y) + max(x^2, sin(y) * t)", "abs(x - t) * y + sign(x - y) * t + floor(9 * x) * y"};
@@ -121,8 +120,7 @@ TEST(FormulaDerivatives, SeriesGoAlongCurves) {
     const auto miss = [&](double s) {
       std::vector<Quad> there = point<Quad>();
       Quad sum(0.0), power(1.0);
-      for (std::size_t i = 0; i < 3; ++i)
-        there[i] += Quad(s) * (Quad(v[i]) + Quad(s) * Quad(w[i]));
+      for (std::size_t i = 0; i < 3; ++i) there[i] += Quad(s) * (Quad(v[i]) + Quad(s) * Quad(w[i]));
       for (std::size_t k = 0; k < Series::terms; ++k, power *= Quad(s))
         sum += Quad(series.c[k]) * power;
       return std::abs(value_of(values(f, there)[0] - sum));

@@ -38,6 +38,7 @@ RunResult run(const Scene& scene, double end, int samples, const std::string& fo
   request.settings.rtol = request.settings.atol = 1e-10;
   request.settings.end_time = end;
   request.settings.samples = samples;
+  request.keep_trajectory = true;
   if (form == "acceleration") request.settings.gauge.clear();
   return run_form(mechanism, assemble(mechanism).start, request);
 }

@@ -337,7 +337,8 @@ TEST_F(MjcfMeshes, WrongMeshes) {
   refused(file("curve.obj", "v 0 0 0\nsurf 0 1 0 1 1\n"), "curve.obj:2: has a line of kind 'surf'");
   refused(file("none.obj", "v 0 0 0\n"), "which has no triangles, expected a surface");
   refused(file("far.obj", "v 1e200 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\n"), "beyond 1e60");
-  refused(file("mesh.dae", "<x/>"), "its name ends in '.dae', expected .stl, .obj or .msh");
+  refused(file("mesh.dae", "<x/>"),
+          "is COLLADA, whose scenes of cameras, lights and units are not read; expected .stl");
   refused("<mesh name='m' file='gone.stl'/>", "<mesh> file is 'gone.stl', which does not exist");
   write("../" + folder.filename().string() + "_beside.stl", stl(whole));
   const std::string beside = "../" + folder.filename().string() + "_beside.stl";
