@@ -20,6 +20,7 @@
 
 namespace momenta {
 
+/// What is swept, and how far.
 struct MoveRequest {
   /// Coordinates "O" or "J.q2", and how far each goes while the first goes by one [rad or m]. The
   /// amount of the first is 1.
@@ -33,6 +34,7 @@ struct MoveRequest {
 
 /// A row of what was found.
 struct MovedPose {
+  /// Why a pose is a row.
   enum class Kind {
     sample,       ///< where s was asked for
     dead_point,   ///< s turns back
@@ -42,9 +44,11 @@ struct MovedPose {
   double s = 0;              ///< how far the first swept coordinate has come [rad or m]
   int branch = 0;            ///< sign of det B(e_s); 0: at a dead point
   Eigen::VectorXd q;         ///< nq
-  /// u and u̇ (nv) for the first swept coordinate at unit rate: transmission ratios, and how they
-  /// change [1/s of a coordinate of 1 rad/s or m/s]. Empty at dead and change points.
-  Eigen::VectorXd u, udot;
+  /// u (nv) for the first swept coordinate at unit rate: transmission ratios [rad/s or m/s]. Empty
+  /// at dead and change points.
+  Eigen::VectorXd u;
+  /// u̇ (nv) with it: how the ratios change, by the swept coordinate. Empty where u is.
+  Eigen::VectorXd udot;
   std::vector<double> markers;  ///< x y z [m] and its derivatives by s, of each; as q, u
   double conditioning = -1;     ///< smallest over largest singular value of J; −1: not asked
 };
@@ -58,7 +62,9 @@ struct Reach {
   int turns_back = 0;  ///< how often it comes to rest relative to s
 };
 
+/// The poses found, and what the coordinates do along them.
 struct MoveResult {
+  /// How following the curve ended.
   enum class End {
     closed,   ///< back at the start, moving the same way
     reached,  ///< where it was asked to go
