@@ -150,7 +150,7 @@ class SmallMotions(unittest.TestCase):
     def test_what_is_wrong_is_said(self):
         with self.assertRaisesRegex(momenta.SceneError, "no equilibrium: joint"):
             load("four_bar").modes(equilibrium="start")
-        with self.assertRaisesRegex(ValueError, "expected settle, nearest or start"):
+        with self.assertRaisesRegex(ValueError, "expected settle, nearest, start or steady"):
             load("four_bar").modes(equilibrium="up")
 
 
