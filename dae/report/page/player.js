@@ -50,13 +50,15 @@ function clockBar(clock) {
   const slide = element("input", { type: "range", min: 0, max: 10000, value: 0, step: 1, "aria-label": "Time" });
   slide.addEventListener("input", () => { clock.pause(); clock.set(clock.start + ((clock.end - clock.start) * slide.value) / 10000); });
   const time = element("output", { class: "time" });
+  // Of a page of poses the clock shows the way of the swept coordinate.
+  const [clockName, clockUnit] = study.timeline?.[0]?.x_title?.match(/^(.*) \[(.*)\]$/)?.slice(1) ?? ["t", "s"];
   const digits = Math.max(0, Math.min(6, 3 - Math.floor(Math.log10(Math.max(clock.end - clock.start, 1e-6)) + 1e-9)));
   const speed = element("select", { "aria-label": "Speed" },
     ...clock.speeds.map((s) => element("option", { value: s, ...(s === clock.speed ? { selected: "" } : {}) }, `${s}×`)));
   speed.addEventListener("change", () => { clock.speed = Number(speed.value); });
   clock.onTime((t) => {
     slide.value = clock.end > clock.start ? (10000 * (t - clock.start)) / (clock.end - clock.start) : 0;
-    time.textContent = `t = ${t.toFixed(digits)} s`;
+    time.textContent = `${clockName} = ${t.toFixed(digits)} ${clockUnit}`;
     slide.setAttribute("aria-valuetext", time.textContent);
   });
   clock.onState(() => {
