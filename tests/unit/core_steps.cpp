@@ -44,8 +44,10 @@ void expect_same(const Expression& f, const std::string& text) {
 
 /// Every way in which three operations can be one step, and more of them than fit into one.
 std::vector<std::string> arithmetic() {
-  std::vector<std::string> all{"a * a - b * b", "a^2 + b^2 + c^2 + d^2", "(a + b)^3 - a^5",
-                               "(a - b)^-2 + c^12 / d^13", "-(a * b) - (-c)"};
+  std::vector<std::string> all{
+      "a * a - b * b",    "a^2 + b^2 + c^2 + d^2", "(a + b)^3 - a^5", "(a - b)^-2 + c^12 / d^13",
+      "-(a * b) - (-c)",  "c * (a - b)^2",         "(a * b)^2 - c",   "d / ((a + b)^2 * c)",
+      "((a - b)^2)^2 + c"};
   for (const std::string x : {"+", "-", "*", "/"})
     for (const std::string y : {"+", "-", "*", "/"}) {
       const std::string first = "(a " + x + " b)";
