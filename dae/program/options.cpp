@@ -105,7 +105,7 @@ void add_run_options(CLI::App& verb, Options& o, const char* cpu_limit) {
   within(verb.add_option("--spectral-radius", o.spectral_radius, "Of generalised-alpha, below 1"),
          "X", 0.0, 1.0)
       ->capture_default_str();
-  positive(verb.add_option("--end", o.end, "End time [s]"), "S");
+  positive(verb.add_option("--end", o.end, "End time [s]; output intervals"), "S");
   within(verb.add_option("--samples", o.samples, "Output intervals"), "N", 1, most_samples);
   auto* project =
       verb.add_flag("--project", o.project, "Correct positions after each step, or not");
