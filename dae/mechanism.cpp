@@ -47,12 +47,8 @@ std::vector<bool> couplers_of_angles(const Scene& scene, const Tree& tree) {
   for (const LoopSpec& l : scene.loops) {
     bool slides = l.kind != LoopKind::coupler;
     for (std::size_t i = 0; i < l.joints.size(); ++i) {
-      const int last = tree.carried_by(l.joints[i]);
-      for (int k = tree.first_part(last); k <= last; ++k) {
-        const Tree::Body& b = tree.bodies[static_cast<std::size_t>(k)];
-        slides |= b.kind == JointKind::prismatic &&
-                  b.coordinate == (l.coordinates.empty() ? 0 : l.coordinates[i]);
-      }
+      const int k = tree.part_of(l.joints[i], l.coordinates.empty() ? 0 : l.coordinates[i]);
+      slides |= tree.bodies[static_cast<std::size_t>(k)].kind == JointKind::prismatic;
     }
     of_angles.push_back(!slides);
   }

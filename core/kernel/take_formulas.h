@@ -12,14 +12,6 @@
 
 namespace momenta {
 
-/// The part of a joint that moves one of its coordinates. @pre the scene is valid
-inline int part_of(const Tree& tree, const std::string& joint, int coordinate) {
-  const int last = tree.carried_by(joint);
-  for (int k = tree.first_part(last); k < last; ++k)
-    if (tree.bodies[static_cast<std::size_t>(k)].coordinate == coordinate) return k;
-  return last;
-}
-
 /// Signals of a scene in a model's frames. Needs the frames of all bodies.
 template <class Space>
 class SignalTaker {
@@ -120,7 +112,7 @@ class SignalTaker {
   static constexpr bool in_plane = Space::dimension == 3;
 
   Term term(const std::string& joint, int coordinate, double ratio) {
-    const int k = part_of(tree_, joint, coordinate);
+    const int k = tree_.part_of(joint, coordinate);
     int& place = model_.bodies[static_cast<std::size_t>(k)].sprung;
     if (place < 0) place = model_.sprung++;
     return {k, place, ratio};

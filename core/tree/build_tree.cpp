@@ -276,6 +276,13 @@ int Tree::carried_by(const std::string& joint_name) const {
   return found == joint_places.end() ? -1 : found->second;
 }
 
+int Tree::part_of(const std::string& joint_name, int coordinate) const {
+  const int last = carried_by(joint_name);
+  for (int k = first_part(last); k < last; ++k)
+    if (bodies[static_cast<std::size_t>(k)].coordinate == coordinate) return k;
+  return last;
+}
+
 std::string Tree::joint_in_words(int k) const {
   const Body& b = bodies[static_cast<std::size_t>(k)];
   const std::string joint = "joint '" + b.joint + "'";

@@ -76,6 +76,10 @@ struct Tree {
   /// Index of the first part of the joint that body `k` belongs to; k itself where that joint has
   /// one part.
   int first_part(int k) const { return k - bodies[static_cast<std::size_t>(k)].part; }
+  /// Index of the part that moves one coordinate of a joint, 0, 1, …; the last part where none
+  /// does.
+  /// @pre the scene has the joint. O(parts)
+  int part_of(const std::string& joint_name, int coordinate) const;
   /// Whether body `k` is the last part of a joint, which carries the scene's body.
   bool carries_scene_body(int k) const {
     const Body& b = bodies[static_cast<std::size_t>(k)];

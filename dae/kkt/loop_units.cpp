@@ -13,12 +13,9 @@ namespace {
 double size_of(const LoopSpec& l, const Tree& tree, const Eigen::VectorXd& rates) {
   double size = 0;
   for (std::size_t i = 0; i < l.joints.size(); ++i) {
-    const int last = tree.carried_by(l.joints[i]);
-    for (int k = tree.first_part(last); k <= last; ++k) {
-      const Tree::Body& b = tree.bodies[static_cast<std::size_t>(k)];
-      if (b.coordinate == (l.coordinates.empty() ? 0 : l.coordinates[i]))
-        size = std::max(size, std::abs(l.ratios[i]) * (b.nv > 0 ? rates[b.u] : 1));
-    }
+    const int k = tree.part_of(l.joints[i], l.coordinates.empty() ? 0 : l.coordinates[i]);
+    const Tree::Body& b = tree.bodies[static_cast<std::size_t>(k)];
+    size = std::max(size, std::abs(l.ratios[i]) * (b.nv > 0 ? rates[b.u] : 1));
   }
   return size > 0 ? size : 1;
 }

@@ -42,17 +42,12 @@ void couple(const LoopSpec& spec, const Tree& tree, LoopModel<Space>& all,
             typename LoopModel<Space>::Loop& l, typename LoopModel<Space>::Motion& motion) {
   l.given = spec.offset;
   for (std::size_t i = 0; i < spec.joints.size(); ++i) {
-    const int coordinate = spec.coordinates.empty() ? 0 : spec.coordinates[i];
-    const int last = tree.carried_by(spec.joints[i]);
-    for (int k = tree.first_part(last); k <= last; ++k) {
-      const Tree::Body& b = tree.bodies[static_cast<std::size_t>(k)];
-      if (b.coordinate != coordinate) continue;
-      if (b.drive >= 0)
-        motion.numbers.emplace_back(-spec.ratios[i],
-                                    tree.drives[static_cast<std::size_t>(b.drive)]);
-      else
-        l.joints.push_back({k, b.q, b.u, spec.ratios[i], {}, -1});
-    }
+    const int k = tree.part_of(spec.joints[i], spec.coordinates.empty() ? 0 : spec.coordinates[i]);
+    const Tree::Body& b = tree.bodies[static_cast<std::size_t>(k)];
+    if (b.drive >= 0)
+      motion.numbers.emplace_back(-spec.ratios[i], tree.drives[static_cast<std::size_t>(b.drive)]);
+    else
+      l.joints.push_back({k, b.q, b.u, spec.ratios[i], {}, -1});
   }
   if (!has_powers(spec)) return;
   typename LoopModel<Space>::Coupled& last = l.joints.back();

@@ -47,7 +47,7 @@ void take_equation(const Scene& scene, const LoopSpec& spec, const Tree& tree,
     const auto which = static_cast<std::size_t>(s.which);
     const bool rate = is_rate(s.kind), acts = rate == e.of_rates;
     if (s.kind == Signal::Kind::coordinate || s.kind == Signal::Kind::rate) {
-      const int k = part_of(tree, scene.joints[which].name, s.component);
+      const int k = tree.part_of(scene.joints[which].name, s.component);
       const Tree::Body& b = tree.bodies[static_cast<std::size_t>(k)];
       if (b.drive >= 0) {
         e.laws.push_back(tree.drives[static_cast<std::size_t>(b.drive)]);

@@ -146,14 +146,11 @@ class Sweep final : public WrenchSweep {
       const LoopSpec& spec = mechanism_.scene().loops[i];
       if (spec.kind != LoopKind::coupler) continue;
       for (std::size_t j = 0; j < spec.joints.size(); ++j) {
-        const int coordinate = spec.coordinates.empty() ? 0 : spec.coordinates[j];
-        const int last = tree.carried_by(spec.joints[j]);
-        for (int k = tree.first_part(last); k <= last; ++k) {
-          const Tree::Body& b = tree.bodies[static_cast<std::size_t>(k)];
-          if (b.coordinate == coordinate && b.drive >= 0)
-            coupled_.push_back(
-                {b.drive, static_cast<std::size_t>(loop_model_.loops[i].row), spec.ratios[j]});
-        }
+        const int k =
+            tree.part_of(spec.joints[j], spec.coordinates.empty() ? 0 : spec.coordinates[j]);
+        if (const int drive = tree.bodies[static_cast<std::size_t>(k)].drive; drive >= 0)
+          coupled_.push_back(
+              {drive, static_cast<std::size_t>(loop_model_.loops[i].row), spec.ratios[j]});
       }
     }
   }

@@ -46,15 +46,12 @@ void PassedLimits::add_force(const Mechanism& mechanism, const ForceSpec& force)
   l.of = Of::sum;
   l.slides = false;
   for (std::size_t i = 0; i < force.joints.size(); ++i) {
-    const int coordinate = force.coordinates.empty() ? 0 : force.coordinates[i];
-    const int last = tree.carried_by(force.joints[i]);
-    for (int k = tree.first_part(last); k <= last; ++k) {
-      const Tree::Body& b = tree.bodies[static_cast<std::size_t>(k)];
-      if (b.coordinate != coordinate) continue;
-      if (b.nq == 0) return;  // driven
-      l.slides |= b.kind == JointKind::prismatic;
-      l.terms.emplace_back(b.q, force.ratios[i]);
-    }
+    const int k =
+        tree.part_of(force.joints[i], force.coordinates.empty() ? 0 : force.coordinates[i]);
+    const Tree::Body& b = tree.bodies[static_cast<std::size_t>(k)];
+    if (b.nq == 0) return;  // driven
+    l.slides |= b.kind == JointKind::prismatic;
+    l.terms.emplace_back(b.q, force.ratios[i]);
   }
   limited_.push_back(std::move(l));
 }
@@ -98,7 +95,7 @@ double PassedLimits::beyond(const Limited& l, double x) {
 }
 
 bool PassedLimits::is_of(const PassedLimit& p, const Limited& l) {
-  return p.joint == l.name && p.of_force == (l.of == Of::sum || l.of == Of::length);
+  return p.joint == l.name && p.of_force == l.of_force();
 }
 
 /// What is known of the joint, or the note that it passes at t.
@@ -107,7 +104,7 @@ PassedLimit& PassedLimits::entry(const Limited& l, double t, double x,
   for (PassedLimit& p : passed)
     if (is_of(p, l)) return p;
   passed.push_back({l.name, l.limits[0], l.limits[1], t, x, t, l.slides, l.stops, l.of == Of::slot,
-                    l.of == Of::sum || l.of == Of::length});
+                    l.of_force()});
   return passed.back();
 }
 

@@ -45,6 +45,7 @@ class PassedLimits {
     int place;  ///< in q; of a slot that of its loop in the scene, of a length that among them
     bool slides, stops;
     std::vector<std::pair<int, double>> terms{};  ///< of a sum: places in q, ratios
+    bool of_force() const { return of == Of::sum || of == Of::length; }
   };
   void add_force(const Mechanism& mechanism, const ForceSpec& force);
   /// x of all of limited_ at (t, q).
