@@ -19,7 +19,7 @@ ImpulseGauge::Measure& ImpulseGauge::measure() {
 }
 
 int ImpulseGauge::direction_entries() const {
-  return static_cast<int>(of_.kkt_pattern().constraint.size());
+  return static_cast<int>(of_.constraint_pattern().size());
 }
 
 void ImpulseGauge::gauge_directions(double t, const double* y, double* entries) {
@@ -30,7 +30,7 @@ void ImpulseGauge::gauge_directions(double t, const double* y, double* entries) 
 
 void ImpulseGauge::shift(const double* entries, const double* c, double* y) const {
   double *p = y + places_.x(), *sigma = y + places_.s();
-  for (const auto& at : of_.kkt_pattern().constraint) p[at.column] += *entries++ * c[at.row];
+  for (const auto& at : of_.constraint_pattern()) p[at.column] += *entries++ * c[at.row];
   for (int i = 0; i < places_.m; ++i) sigma[i] += c[i];
 }
 

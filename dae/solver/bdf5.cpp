@@ -15,7 +15,6 @@
 #include <momenta/core/scalar/all_finite.h>
 #include <momenta/dae/solver/bdf_step.h>
 #include <momenta/dae/solver/implicit_methods.h>
-#include <momenta/dae/solver/multistep_run.h>
 #include <momenta/dae/solver/ode_restart.h>
 
 #include <algorithm>
@@ -237,11 +236,8 @@ IntegrationResult integrate_bdf5(DaeSystem& system, double t0,
     result.y.assign(method.y(), method.y() + system.size());
     return result;
   }
-  WithOdeRestarts<Bdf5> run(method, system, options);
-  MultistepRun<WithOdeRestarts<Bdf5>>(run, system.size(), t0, output_times, options, observer)
-      .run(result);
-  result.counters = method.counters();
-  run.count(result.counters);
+  run_with_ode_restarts(method, system, t0, output_times, options, observer, result);
+  result.counters += method.counters();
   return result;
 }
 

@@ -13,7 +13,6 @@
 #include <momenta/dae/solver/fixed_grid.h>
 #include <momenta/dae/solver/half_explicit.h>
 #include <momenta/dae/solver/implicit_methods.h>
-#include <momenta/dae/solver/multistep_run.h>
 #include <momenta/dae/solver/ode_restart.h>
 #include <momenta/dae/solver/step_control.h>
 #include <momenta/dae/solver/tableau_hem5.h>
@@ -252,11 +251,8 @@ IntegrationResult integrate_hem5(DaeSystem& system, double t0,
     result.y.assign(method.y(), method.y() + system.size());
     return result;
   }
-  WithOdeRestarts<Hem5> run(method, system, options);
-  MultistepRun<WithOdeRestarts<Hem5>>(run, system.size(), t0, output_times, options, observer)
-      .run(result);
-  result.counters = method.counters();
-  run.count(result.counters);
+  run_with_ode_restarts(method, system, t0, output_times, options, observer, result);
+  result.counters += method.counters();
   return result;
 }
 

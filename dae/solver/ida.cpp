@@ -15,7 +15,6 @@
 #include <momenta/core/scalar/all_finite.h>
 #include <momenta/dae/solver/ida_matrix.h>
 #include <momenta/dae/solver/integration.h>
-#include <momenta/dae/solver/multistep_run.h>
 #include <momenta/dae/solver/ode_restart.h>
 #include <momenta/dae/solver/rounding_floor.h>
 #include <momenta/dae/solver/sundials_handles.h>
@@ -306,11 +305,8 @@ IntegrationResult integrate_ida(DaeSystem& system, double t0,
   }
   const bool has_span = outputs.end() > t0;
   if (has_span) ida.initialise();
-  WithOdeRestarts<Ida> run(ida, system, options);
-  MultistepRun<WithOdeRestarts<Ida>>(run, system.size(), t0, output_times, options, observer)
-      .run(result);
-  if (has_span) result.counters = ida.counters();
-  run.count(result.counters);
+  run_with_ode_restarts(ida, system, t0, output_times, options, observer, result);
+  if (has_span) result.counters += ida.counters();
   return result;
 }
 

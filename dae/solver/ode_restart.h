@@ -13,6 +13,7 @@
 // The way is made in one go; then its steps are told to the run one by one.
 
 #include <momenta/dae/solver/integration.h>
+#include <momenta/dae/solver/multistep_run.h>
 
 #include <algorithm>
 #include <limits>
@@ -155,5 +156,18 @@ class WithOdeRestarts {
   double not_before_ = -std::numeric_limits<double>::infinity();  ///< after a way that failed [s]
   long steps_ = 0, evaluations_ = 0;
 };
+
+/// Steps of a method that has started, to the last output time, with ODE restarts: everything of
+/// the result but the method's own counters.
+template <class Method>
+void run_with_ode_restarts(Method& method, DaeSystem& system, double t0,
+                           const std::vector<double>& output_times,
+                           const IntegrationOptions& options, const Observer& observer,
+                           IntegrationResult& result) {
+  WithOdeRestarts<Method> run(method, system, options);
+  MultistepRun<WithOdeRestarts<Method>>(run, system.size(), t0, output_times, options, observer)
+      .run(result);
+  run.count(result.counters);
+}
 
 }  // namespace momenta

@@ -1,3 +1,4 @@
+#include <momenta/dae/solver/lagrange_basis.h>
 #include <momenta/dae/solver/past_values.h>
 
 #include <algorithm>
@@ -52,13 +53,7 @@ void PastValues::interpolate(double t, int degree, double* y, double* ydot) cons
   std::copy_n(newest, size_, y);
   if (ydot != nullptr) std::fill_n(ydot, size_, 0.0);
   for (int k = 1; k <= degree; ++k) {
-    double part = 1, slope = 0;  // ℓ_k(t), ℓ_k'(t)
-    for (int j = 0; j <= degree; ++j) {
-      if (j == k) continue;
-      const double over = 1 / (time(k) - time(j)), factor = (t - time(j)) * over;
-      slope = slope * factor + part * over;
-      part *= factor;
-    }
+    const auto [part, slope] = lagrange_basis(degree + 1, k, t, [this](int j) { return time(j); });
     const double* from = value(k);
     if (ydot == nullptr) {
       for (std::size_t i = 0; i < size_; ++i) y[i] += part * (from[i] - newest[i]);

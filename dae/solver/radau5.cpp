@@ -20,7 +20,6 @@
 #include <momenta/core/scalar/all_finite.h>
 #include <momenta/dae/solver/fixed_grid.h>
 #include <momenta/dae/solver/implicit_methods.h>
-#include <momenta/dae/solver/multistep_run.h>
 #include <momenta/dae/solver/ode_restart.h>
 #include <momenta/dae/solver/radau5_stages.h>
 
@@ -345,11 +344,8 @@ IntegrationResult integrate_radau5(DaeSystem& system, double t0,
     return result;
   }
   if (outputs.end() > t0) radau.initialise();
-  WithOdeRestarts<Radau5> run(radau, system, options);
-  MultistepRun<WithOdeRestarts<Radau5>>(run, system.size(), t0, output_times, options, observer)
-      .run(result);
-  result.counters = radau.counters();
-  run.count(result.counters);
+  run_with_ode_restarts(radau, system, t0, output_times, options, observer, result);
+  result.counters += radau.counters();
   return result;
 }
 

@@ -12,6 +12,7 @@
 
 #include <momenta/dae/form/form.h>
 #include <momenta/dae/solver/integration.h>
+#include <momenta/dae/solver/lagrange_basis.h>
 
 #include <array>
 #include <cmath>
@@ -52,14 +53,9 @@ class OwnMultipliers {
     const double kappa = form_.gauge().kind == Gauge::Kind::leak ? form_.gauge().kappa : 0;
     lambda_.setZero(m_);
     for (std::size_t k = 0; k <= n; ++k) {
-      // Lagrange's polynomial of point k, and its derivative by the product rule.
-      double value = 1, slope = 0;
-      for (std::size_t j = 0; j <= n; ++j) {
-        if (j == k) continue;
-        const double apart = points_[k] - points_[j], factor = (x - points_[j]) / apart;
-        slope = slope * factor + value / apart;
-        value *= factor;
-      }
+      const auto [value, slope] =
+          lagrange_basis(static_cast<int>(n) + 1, static_cast<int>(k), x,
+                         [this](int j) { return points_[static_cast<std::size_t>(j)]; });
       lambda_ += (slope / length + kappa * value) * sigma_[k];
     }
     return lambda_;

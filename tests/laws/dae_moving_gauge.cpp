@@ -173,6 +173,39 @@ TEST(Bdf5, TheSameMotionInEveryGauge) {
   }
 }
 
+// With a reset the newest σ is zero before each step, and so at its end what λ makes of one step;
+// without, ∫λ dt.
+TEST(Bdf5, ImpulsesAreThoseOfOneStep) {
+  for (const char* form : {"momentum-index2", "momentum-stabilised", "momentum-index1"}) {
+    SCOPED_TRACE(form);
+    constexpr double h = 0.005;
+    const auto largest = [&](const char* gauge) {
+      const Motion motion(example("four_bar"), form, gauge);
+      const auto made = motion.form();
+      DaeSystem& system = *made->dae();
+      const auto& symmetry = dynamic_cast<const GaugeSymmetry&>(system);
+      std::vector<double> y(static_cast<std::size_t>(system.size())), ydot(y.size());
+      EXPECT_TRUE(system.start(0, y.data(), ydot.data()));
+      BdfStep step(system, 1e-8, 1e-8);
+      step.begin(0, y.data(), ydot.data());
+      double impulse = 0;
+      const std::vector<double> ends = ends_of_steps(200, h);
+      for (std::size_t i = 1; i < ends.size(); ++i) {
+        EXPECT_EQ(step.attempt(ends[i], std::min<int>(static_cast<int>(i), 3), true),
+                  BdfStep::Outcome::solved)
+            << i;
+        step.accept();
+        const double* sigma = symmetry.impulses(step.y().data());
+        for (int k = 0; k < symmetry.impulse_count(); ++k)
+          impulse = std::max(impulse, std::abs(sigma[k]));
+      }
+      return impulse;
+    };
+    // λ has a mean under gravity: 200 steps without a reset add up.
+    EXPECT_LT(largest("reset"), 0.1 * largest("none"));
+  }
+}
+
 RunResult run(const Mechanism& mechanism, const std::string& form, const std::string& gauge,
               double tolerance, double end, int samples = 20) {
   RunRequest request;
