@@ -34,12 +34,7 @@ int publish_suite(const Options& o, SuiteResult& result, bool own_references,
                       {o.out / "bench.json", json},
                       {o.out / "index.html", suite_page(result, made, o.command)}}))
     return run_failed;
-  if (o.json)
-    std::fputs(json.c_str(), stdout);
-  else if (!o.quiet)
-    std::fputs(suite_table(result).c_str(), stdout);
-  if (!o.out.empty() && !o.quiet)
-    std::fprintf(stderr, "momenta: wrote %s\n", (o.out / "index.html").c_str());
+  tell(o, json, suite_table(result), "index.html");
   std::size_t ran = 0;
   for (const ProblemResult& p : result.problems)
     for (const EquationRun& r : p.runs) ran += r.done ? 1 : 0;

@@ -51,12 +51,7 @@ int index_of_equations(const Options& o) {
   const EquationStart start = equation_start(file);
   const std::string json = equation_index_json(file, start).dump(2) + "\n";
   if (!o.out.empty() && !write_results({{o.out / "index.json", json}})) return run_failed;
-  if (o.json)
-    std::fputs(json.c_str(), stdout);
-  else if (!o.quiet)
-    std::fputs(equation_index_table(file, start).c_str(), stdout);
-  if (!o.out.empty() && !o.quiet)
-    std::fprintf(stderr, "momenta: wrote %s\n", (o.out / "index.json").c_str());
+  tell(o, json, equation_index_table(file, start), "index.json");
   return start.point.why.empty() ? done : run_failed;
 }
 
@@ -97,10 +92,7 @@ int run_equation_file(const Options& o) {
            {o.out / "summary.json", json},
            {o.out / "index.html", equation_run_page(file, start, run, digits, made, o.command)}}))
     return run_failed;
-  if (o.json)
-    std::fputs(json.c_str(), stdout);
-  else if (!o.quiet)
-    std::fputs(equation_run_table(file, start, run, digits).c_str(), stdout);
+  tell(o, json, equation_run_table(file, start, run, digits));
   if (!run.done) std::fprintf(stderr, "momenta: the run stopped: %s\n", run.reason.c_str());
   return run.done ? done : run_failed;
 }

@@ -4,7 +4,6 @@
 #include <momenta/dae/study/state_input.h>
 #include <momenta/dae/text/number_text.h>
 
-#include <cstdio>
 #include <sstream>
 
 #include "options.h"
@@ -28,12 +27,7 @@ int index_verb(const Options& o, const std::string& forms, const std::string& st
   }
   const std::string json = index_json(study).dump(2) + "\n";
   if (!o.out.empty() && !write_results({{o.out / "index.json", json}})) return run_failed;
-  if (o.json)
-    std::fputs(json.c_str(), stdout);
-  else if (!o.quiet)
-    std::fputs(index_table(study).c_str(), stdout);
-  if (!o.out.empty() && !o.quiet)
-    std::fprintf(stderr, "momenta: wrote %s\n", (o.out / "index.json").c_str());
+  tell(o, json, index_table(study), "index.json");
   return interrupted() ? run_failed : done;
 }
 

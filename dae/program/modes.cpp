@@ -7,8 +7,6 @@
 #include <momenta/dae/study/environment.h>
 #include <momenta/dae/study/motion.h>
 
-#include <cstdio>
-
 #include "options.h"
 
 namespace momenta::program {
@@ -63,12 +61,7 @@ int modes(const Options& o, const ModesOptions& m) {
                         {o.out / "index.html", modes_page(study, result)}}))
       return run_failed;
   }
-  if (o.json)
-    std::fputs(text.c_str(), stdout);
-  else if (!o.quiet)
-    std::fputs(modes_table(result).c_str(), stdout);
-  if (!o.out.empty() && !o.quiet)
-    std::fprintf(stderr, "momenta: wrote %s\n", (o.out / "index.html").c_str());
+  tell(o, text, modes_table(result), "index.html");
   return done;
 }
 

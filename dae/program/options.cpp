@@ -354,6 +354,16 @@ void add_figures(std::vector<ResultFile>& files, std::vector<Figure> figures, co
     files.push_back({o.out / "figures" / (figure.name + ".svg"), std::move(figure.svg)});
 }
 
+void tell(const Options& o, const std::string& json, const std::string& table,
+          const std::string& file) {
+  if (o.json)
+    std::fputs(json.c_str(), stdout);
+  else if (!o.quiet)
+    std::fputs(table.c_str(), stdout);
+  if (!file.empty() && !o.out.empty() && !o.quiet)
+    std::fprintf(stderr, "momenta: wrote %s\n", (o.out / file).c_str());
+}
+
 int publish(const StudyResult& study, const std::string& words, const Options& o, Journal* journal,
             std::vector<ResultFile> files) {
   const std::string json = study_json(study).dump(2) + "\n";

@@ -103,6 +103,11 @@ void expect_place_for_figures(const Options& o);
 /// Adds them, as files of figures/ where --out says.
 void add_figures(std::vector<ResultFile>& files, std::vector<Figure> figures, const Options& o);
 
+/// The JSON document with --json, else, unless --quiet is given, the table on standard output; and
+/// which file of --out to look at, where one is named.
+void tell(const Options& o, const std::string& json, const std::string& table,
+          const std::string& file = "");
+
 /// The bytes of a file; empty where there is none.
 std::string content_of(const std::filesystem::path& file);
 /// What was asked, and which program was.

@@ -2,7 +2,6 @@
 #include <momenta/dae/solver/integrators.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <stdexcept>
 #include <thread>
 
@@ -95,10 +94,7 @@ int stress(const Options& o, const StressOptions& options) {
   for (const LadderResult& ladder : result.ladders)
     for (const auto& climb : ladder.runs) runs += climb.size();
   close(journal.get(), runs, result.complete, o);
-  if (o.json)
-    std::fputs(json.c_str(), stdout);
-  else if (!o.quiet)
-    std::fputs(stress_table(result).c_str(), stdout);
+  tell(o, json, stress_table(result));
   return result.complete ? done : run_failed;
 }
 

@@ -134,10 +134,7 @@ int sweep(const Options& o, const SweepOptions& s) {
                                         {o.out / "sweep.json", summary}}))
     return run_failed;
   close(journal.get(), count, true, o);
-  if (o.json)
-    std::fputs(summary.c_str(), stdout);
-  else if (!o.quiet)
-    std::fputs(sweep_table(request, finished.cases()).c_str(), stdout);
+  tell(o, summary, sweep_table(request, finished.cases()));
   const bool any = std::any_of(finished.cases().begin(), finished.cases().end(),
                                [](const SweepCase& c) { return c.status == "done"; });
   return any ? done : run_failed;
