@@ -47,10 +47,14 @@ class Follower {
     result_.rates = mechanism.rate_columns();
     result_.markers = mechanism.marker_columns();
     const LoopUnits units(mechanism);
+    const double first = request.sweep.front().second;
     for (const auto& [name, amount] : request.sweep) {
+      if (!std::isfinite(amount / first) || amount == 0)
+        throw SceneError("coordinate '" + name + "' is swept by " + reading::digits(amount) +
+                         "; expected amounts other than zero");
       const auto [q, u] = place_of(name);
       if (swept_.empty()) unit_ = units.rates[u];
-      swept_.push_back({q, u, amount * unit_});
+      swept_.push_back({q, u, amount / first * unit_});
     }
     for (const std::string& name : request.hold) held_.push_back(place_of(name));
     result_.swept = static_cast<std::size_t>(swept_.front().q);
@@ -67,18 +71,12 @@ class Follower {
       else if (!advance(end))
         result_.why = "the curve could not be followed beyond " +
                       result_.coordinates[result_.swept].name + " = " +
-                      number(result_.start + unit_ * here_.s);
+                      reading::digits(result_.start + unit_ * here_.s);
     }
     return std::move(result_);
   }
 
  private:
-  static std::string number(double x) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.9g", x);
-    return text;
-  }
-
   /// Of each coordinate whether a full turn brings the pose back.
   std::vector<bool> angles() const {
     std::vector<bool> result(static_cast<std::size_t>(mechanism_.nq()), false);
@@ -129,8 +127,7 @@ class Follower {
       here_.tangent = -here_.tangent;
       here_.orientation = -here_.orientation;
     }
-    angle_ = angles_[result_.swept];
-    by_ = request_.by > 0 ? request_.by / unit_ : angle_ ? turn / 360 : 0.01;
+    by_ = request_.by > 0 ? request_.by / unit_ : angles_[result_.swept] ? turn / 360 : 0.01;
     beginning_ = here_;
     take(here_, MovedPose::Kind::sample);
     if (request_.to && *request_.to == result_.start) result_.end = MoveResult::End::reached;
@@ -148,7 +145,7 @@ class Follower {
     const auto sooner = [&](double other) {
       if ((other - s) * way > near && (other - next) * way < -near) next = other;
     };
-    if (angle_) sooner(after(turn));
+    if (angles_[result_.swept]) sooner(after(turn));
     if (std::isfinite(end)) sooner(end);
     if (std::abs(s) > near) sooner(0);
     return next;
@@ -177,13 +174,9 @@ class Follower {
   template <class Value>
   std::optional<CurvePoint> found(double h, double at_start, double at_end, Value value) {
     CurvePoint point;
-    bool solved = true;
-    const double zero = zero_between(
-        [&](double x) {
-          solved = curve_->step(here_, x, point);
-          return solved ? value(point) : NAN;
-        },
-        0, at_start, h, at_end);
+    const double zero =
+        zero_between([&](double x) { return curve_->step(here_, x, point) ? value(point) : NAN; },
+                     0, at_start, h, at_end);
     if (!std::isfinite(zero) || !curve_->step(here_, zero, point)) return std::nullopt;
     return point;
   }
@@ -300,7 +293,7 @@ class Follower {
       }
     }
     if (!(least.pivot < lost)) return;
-    if (curve_->conditioning(least.q) < lost) {
+    if (curve_->reciprocal_condition(least.q) < lost) {
       take(least, MovedPose::Kind::change_point);
       return;
     }
@@ -341,8 +334,14 @@ class Follower {
         for (std::size_t i = 0; i < markers; ++i)
           if (i % 6 >= 3) pose.markers[i] = NAN;
     }
-    if (request_.singular_values) pose.conditioning = curve_->conditioning(at.q);
-    result_.poses.push_back(std::move(pose));
+    if (request_.singular_values) pose.reciprocal_condition = curve_->reciprocal_condition(at.q);
+    // A change point is found when the curve is beyond it.
+    auto place = result_.poses.end();
+    if (kind == MovedPose::Kind::change_point)
+      while (place != result_.poses.begin() && std::prev(place)->kind == MovedPose::Kind::sample &&
+             (std::prev(place)->s - pose.s) * at.s_rate() > 0)
+        --place;
+    result_.poses.insert(place, std::move(pose));
   }
 
   const Mechanism& mechanism_;
@@ -356,7 +355,6 @@ class Follower {
   std::optional<CurvePoint> before_, recalled_;
   // s of the curve is in units: pose.s = unit_ s.
   double step_ = longest_step, by_ = 0, unit_ = 1;
-  bool angle_ = false;
   MoveResult result_;
 };
 

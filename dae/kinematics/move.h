@@ -22,8 +22,7 @@ namespace momenta {
 
 /// What is swept, and how far.
 struct MoveRequest {
-  /// Coordinates "O" or "J.q2", and how far each goes while the first goes by one [rad or m]. The
-  /// amount of the first is 1.
+  /// Coordinates "O" or "J.q2", and how far they go in proportion [rad or m].
   std::vector<std::pair<std::string, double>> sweep;
   std::vector<std::string> hold;  ///< coordinates that stay where they are at the start
   std::optional<double> to;       ///< where the first ends [rad or m]; none: once along the curve
@@ -49,8 +48,8 @@ struct MovedPose {
   Eigen::VectorXd u;
   /// u̇ (nv) with it: how the ratios change, by the swept coordinate. Empty where u is.
   Eigen::VectorXd udot;
-  std::vector<double> markers;  ///< x y z [m] and its derivatives by s, of each; as q, u
-  double conditioning = -1;     ///< smallest over largest singular value of J; −1: not asked
+  std::vector<double> markers;       ///< x y z [m] and its derivatives by s, of each; as q, u
+  double reciprocal_condition = -1;  ///< smallest over largest singular value of J; −1: not asked
 };
 /// "sample", "dead point", "change point".
 const char* name_of(MovedPose::Kind kind);

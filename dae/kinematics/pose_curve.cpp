@@ -1,7 +1,7 @@
 #include <momenta/dae/kinematics/pose_curve.h>
 
+#include <momenta/dae/dense/singular_values.h>
 #include <Eigen/QR>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 
@@ -181,7 +181,7 @@ bool PoseCurve::derivatives(const CurvePoint& at, Eigen::VectorXd& u, Eigen::Vec
   return udot.allFinite();
 }
 
-double PoseCurve::conditioning(const Eigen::VectorXd& q) {
+double PoseCurve::reciprocal_condition(const Eigen::VectorXd& q) {
   take_jacobian(q);
   const Eigen::VectorXd values = jacobian_.jacobiSvd().singularValues();
   return values.size() < n_ ? 0 : values[n_ - 1] / values[0];

@@ -74,7 +74,7 @@ class PoseCurve {
   /// u = dq/ds and u̇ (nv) [rad or m], s in units. False at a dead point.
   bool derivatives(const CurvePoint& at, Eigen::VectorXd& u, Eigen::VectorXd& udot);
   /// The n-th singular value of J, of all its rows, over the first: zero at a change point.
-  double conditioning(const Eigen::VectorXd& q);
+  double reciprocal_condition(const Eigen::VectorXd& q);
   /// Chooses rows that are independent at q. `known`, a point where the old ones are as well, keeps
   /// its orientation. False where J has lost rank.
   bool choose_rows(const Eigen::VectorXd& q, CurvePoint& known);

@@ -177,7 +177,7 @@ int answer(int argc, char** argv) {
                                 "of the scene's length)"),
            "X");
   move_app->add_flag("--singular-values", move_options.singular_values,
-                     "Of the loop equations at each pose, smallest over largest");
+                     "Of the loop equations at each pose: the smallest over the largest");
   move_app->add_option("--out", o.out, "Directory for move.csv, move.json, index.html")
       ->type_name("DIR");
   CLI::App* view_verb =

@@ -7,34 +7,32 @@
 #include <momenta/dae/study/environment.h>
 #include <momenta/dae/study/motion.h>
 
-#include <cstdio>
+#include <charconv>
+#include <cmath>
 
 #include "options.h"
 
 namespace momenta::program {
 namespace {
 
-/// "A", or "A=1,B=-0.5": coordinates, and how far each goes with the first.
+/// "A", or "A=1,B=-0.5": coordinates, and how far they go in proportion.
 std::vector<std::pair<std::string, double>> swept_in(const std::string& text) {
   std::vector<std::pair<std::string, double>> swept;
   for (const std::string& part : names_in(text)) {
     const std::size_t equals = part.find('=');
     double amount = 1;
     if (equals != std::string::npos) {
-      const std::string number = part.substr(equals + 1);
-      char* end = nullptr;
-      amount = std::strtod(number.c_str(), &end);
-      if (number.empty() || *end != 0 || !std::isfinite(amount) || amount == 0)
-        throw std::invalid_argument("--sweep " + text + ": '" + number +
-                                    "' is no amount; expected a number other than zero");
+      const char *begin = part.data() + equals + 1, *end = part.data() + part.size();
+      const auto [read, error] = std::from_chars(begin, end, amount);
+      if (error != std::errc{} || read != end || !std::isfinite(amount) || amount == 0)
+        throw std::invalid_argument("--sweep '" + text +
+                                    "': expected NAME or NAME=AMOUNT, amounts other than zero, as "
+                                    "in A=1,B=-0.5");
     }
     swept.emplace_back(part.substr(0, equals), amount);
   }
   if (swept.empty())
     throw std::invalid_argument("--sweep is empty; expected the name of a coordinate");
-  for (auto& [name, amount] : swept)
-    if (&amount != &swept.front().second) amount /= swept.front().second;
-  swept.front().second = 1;
   return swept;
 }
 
@@ -66,12 +64,7 @@ int move(const Options& o, const MoveOptions& options) {
                         {o.out / "index.html", move_page(study, result)}}))
       return run_failed;
   }
-  if (o.json)
-    std::fputs(text.c_str(), stdout);
-  else if (!o.quiet)
-    std::fputs(move_table(result).c_str(), stdout);
-  if (!o.out.empty() && !o.quiet)
-    std::fprintf(stderr, "momenta: wrote %s\n", (o.out / "index.html").c_str());
+  tell(o, text, move_table(result), "index.html");
   return result.end == MoveResult::End::stopped ? run_failed : done;
 }
 

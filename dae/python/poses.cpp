@@ -3,7 +3,6 @@
 #include <momenta/dae/kinematics/move.h>
 #include <momenta/dae/linear/linearisation.h>
 
-#include <cmath>
 #include <limits>
 #include <optional>
 #include <variant>
@@ -22,16 +21,8 @@ py::dict move(const Bench& b, const std::variant<std::string, py::dict>& sweep,
   if (const auto* name = std::get_if<std::string>(&sweep)) {
     request.sweep = {{*name, 1}};
   } else {
-    for (const auto& [key, amount] : std::get<py::dict>(sweep)) {
+    for (const auto& [key, amount] : std::get<py::dict>(sweep))
       request.sweep.emplace_back(py::cast<std::string>(key), py::cast<double>(amount));
-      if (!std::isfinite(request.sweep.back().second) || request.sweep.back().second == 0)
-        throw py::value_error("sweep of '" + request.sweep.back().first +
-                              "': expected an amount other than zero");
-    }
-    if (request.sweep.empty()) throw py::value_error("sweep is empty, expected a coordinate");
-    for (auto& part : request.sweep)
-      if (&part != &request.sweep.front()) part.second /= request.sweep.front().second;
-    request.sweep.front().second = 1;
   }
   if (!(by >= 0)) throw py::value_error("by is " + std::to_string(by) + ", expected 0 or more");
   request.to = to;
@@ -47,12 +38,12 @@ py::dict move(const Bench& b, const std::variant<std::string, py::dict>& sweep,
   const auto poses = static_cast<Eigen::Index>(r.poses.size());
   const double none = std::numeric_limits<double>::quiet_NaN();
   Rows q(poses, b.mechanism->nq()), u(poses, b.mechanism->nv()), udot(poses, b.mechanism->nv());
-  Vector way(poses);
+  Vector displacement(poses);
   std::vector<int> branch, dead, change;
   for (Eigen::Index i = 0; i < poses; ++i) {
     const MovedPose& pose = r.poses[static_cast<std::size_t>(i)];
     q.row(i) = pose.q;
-    way[i] = pose.s;
+    displacement[i] = pose.s;
     branch.push_back(pose.branch);
     if (pose.u.size() > 0) {
       u.row(i) = pose.u;
@@ -70,7 +61,7 @@ py::dict move(const Bench& b, const std::variant<std::string, py::dict>& sweep,
   py::dict all;
   all["end"] = name_of(r.end);
   all["why"] = r.why;
-  all["way"] = std::move(way);
+  all["displacement"] = std::move(displacement);
   all["q"] = std::move(q);
   all["ratios"] = std::move(u);
   all["ratio_rates"] = std::move(udot);
@@ -88,7 +79,8 @@ void add_move(py::class_<Bench, BenchPtr>& mechanism) {
   mechanism.def(
       "move", &move, "sweep"_a, "to"_a = py::none(), "by"_a = 0.0,
       "hold"_a = std::vector<std::string>(),
-      "Poses as a coordinate is swept from the start, loops closed, as a dict: way (poses) of it "
+      "Poses as a coordinate is swept from the start, loops closed, as a dict: displacement "
+      "(poses) of it "
       "[rad or m], q (poses, nq), ratios and ratio_rates (poses, nv), first and second "
       "derivatives by it, not a number at dead and change points, branch (poses); places of "
       "dead_points and change_points among the poses; reach, least and most of each coordinate; "

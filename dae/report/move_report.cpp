@@ -37,12 +37,12 @@ std::string by_swept(const MoveResult& r, const std::string& rate_unit, int orde
   return " [" + unit + "/" + swept(r).unit + (order == 2 ? "^2]" : "]");
 }
 
-/// Ways of the swept coordinate from the start to each pose.
-std::vector<double> ways(const MoveResult& r) {
-  std::vector<double> way;
+/// How far the swept coordinate has travelled to each pose, back and forth.
+std::vector<double> travel_of(const MoveResult& r) {
+  std::vector<double> travel;
   for (std::size_t i = 0; i < r.poses.size(); ++i)
-    way.push_back(i == 0 ? 0 : way.back() + std::abs(r.poses[i].s - r.poses[i - 1].s));
-  return way;
+    travel.push_back(i == 0 ? 0 : travel.back() + std::abs(r.poses[i].s - r.poses[i - 1].s));
+  return travel;
 }
 
 Json points(const MoveResult& r, MovedPose::Kind kind) {
@@ -111,9 +111,9 @@ std::string move_table(const MoveResult& r) {
 }
 
 std::string move_csv(const MoveResult& r) {
-  std::vector<std::string> cells{"kind", "way [" + swept(r).unit + "]", "branch"};
-  const bool asked = !r.poses.empty() && r.poses.front().conditioning >= 0;
-  if (asked) cells.emplace_back("conditioning [1]");
+  std::vector<std::string> cells{"kind", "displacement [" + swept(r).unit + "]", "branch"};
+  const bool asked = !r.poses.empty() && r.poses.front().reciprocal_condition >= 0;
+  if (asked) cells.emplace_back("reciprocal_condition [1]");
   for (const Column& c : r.coordinates) cells.push_back(csv_cell(c.label()));
   for (const int order : {1, 2})
     for (const Column& c : r.rates)
@@ -126,7 +126,7 @@ std::string move_csv(const MoveResult& r) {
   for (const MovedPose& pose : r.poses) {
     cells = {name_of(pose.kind), round_trip(pose.s),
              pose.branch == 0 ? "" : std::to_string(pose.branch)};
-    if (asked) cells.push_back(round_trip(pose.conditioning));
+    if (asked) cells.push_back(round_trip(pose.reciprocal_condition));
     for (const double q : pose.q) cells.push_back(round_trip(q));
     for (const Eigen::VectorXd* x : {&pose.u, &pose.udot})
       for (std::size_t i = 0; i < r.rates.size(); ++i)
@@ -154,7 +154,7 @@ Json move_json(const MoveResult& r) {
           {"start", number_or_null(r.start)},
           {"end", name_of(r.end)},
           {"why", r.why.empty() ? Json() : Json(r.why)},
-          {"way", number_or_null(r.poses.empty() ? none : r.poses.back().s)},
+          {"displacement", number_or_null(r.poses.empty() ? none : r.poses.back().s)},
           {"poses", r.poses.size()},
           {"reach", reach},
           {"ratios", ratio},
@@ -163,17 +163,17 @@ Json move_json(const MoveResult& r) {
 }
 
 Film move_film(const MoveResult& r, int intervals) {
-  const std::vector<double> way = ways(r);
+  const std::vector<double> travel = travel_of(r);
   Film film;
-  if (way.empty() || intervals <= 0) return film;
-  film.every = way.back() / intervals;
+  if (travel.empty() || intervals <= 0) return film;
+  film.every = travel.back() / intervals;
   std::size_t at = 0;
   for (int k = 0; k <= intervals; ++k) {
     const double there = film.every * k;
-    while (at + 2 < way.size() && way[at + 1] < there) ++at;
-    const std::size_t next = std::min(at + 1, way.size() - 1);
-    const double span = way[next] - way[at];
-    const double part = span > 0 ? std::clamp((there - way[at]) / span, 0.0, 1.0) : 0;
+    while (at + 2 < travel.size() && travel[at + 1] < there) ++at;
+    const std::size_t next = std::min(at + 1, travel.size() - 1);
+    const double span = travel[next] - travel[at];
+    const double part = span > 0 ? std::clamp((there - travel[at]) / span, 0.0, 1.0) : 0;
     const Eigen::VectorXd q = (1 - part) * r.poses[at].q + part * r.poses[next].q;
     film.frames.emplace_back(q.begin(), q.end());
   }
@@ -181,7 +181,7 @@ Film move_film(const MoveResult& r, int intervals) {
 }
 
 Json move_charts(const MoveResult& r) {
-  const std::vector<double> way = ways(r);
+  const std::vector<double> travel = travel_of(r);
   Json charts = Json::array();
   const auto add = [&](const std::string& key, const std::string& title, const std::string& unit,
                        const std::vector<std::pair<std::string, std::vector<double>>>& curves) {
@@ -196,10 +196,14 @@ Json move_charts(const MoveResult& r) {
                      {"colour", i % 8},
                      {"dash", i < 8 ? Json::array() : Json{6, 4}}});
     }
-    Json chart = {{"key", key},       {"title", title}, {"x_title", "way of " + swept(r).label()},
-                  {"y_title", title}, {"unit", unit},   {"log", false},
-                  {"t", way},         {"curves", all}};
-    if (curves.size() > most) chart["left_out"] = curves.size() - most;
+    Json chart = {
+        {"key", key},       {"title", title}, {"x_title", "travel of " + swept(r).label()},
+        {"y_title", title}, {"unit", unit},   {"log", false},
+        {"t", travel},      {"curves", all}};
+    if (curves.size() > most) {
+      chart["left_out"] = curves.size() - most;
+      chart["file"] = "move.csv";
+    }
     charts.push_back(chart);
   };
   for (const std::string unit : {"rad", "m"}) {

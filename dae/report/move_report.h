@@ -16,17 +16,17 @@ std::string move_in_words(const MoveResult& result);
 /// What each coordinate does, as a table, with those words above it.
 std::string move_table(const MoveResult& result);
 
-/// A line a pose: kind, s, branch, coordinates, their first and second derivatives, markers; empty
-/// cells where there are no derivatives.
+/// A line a pose: kind, displacement of the swept coordinate, branch, coordinates, their first and
+/// second derivatives, markers; empty cells where there are no derivatives.
 std::string move_csv(const MoveResult& result);
 
 nlohmann::ordered_json move_json(const MoveResult& result);
 
-/// The poses at equal ways of the swept coordinate, at most so many intervals.
+/// The poses at equal travels of the swept coordinate, at most so many intervals.
 Film move_film(const MoveResult& result, int intervals);
 
-/// Curves of coordinates over the way of the swept one, one chart for each unit, as pages have them
-/// (dae/report/page/timeline.js).
+/// Curves of coordinates over the travel of the swept one, one chart for each unit, as pages have
+/// them (dae/report/page/timeline.js).
 nlohmann::ordered_json move_charts(const MoveResult& result);
 
 }  // namespace momenta

@@ -24,7 +24,7 @@ std::string view_page(const StudyResult&, const std::string& words);
 /// Of an equilibrium: the mechanism swinging in one mode at a time, and all modes as a table.
 std::string modes_page(const StudyResult&, const ModesResult&);
 
-/// Of a mechanism that is moved: its poses beside curves over the way of the swept coordinate.
+/// Of a mechanism that is moved: its poses beside curves over the travel of the swept coordinate.
 std::string move_page(const StudyResult&, const MoveResult&);
 
 }  // namespace momenta

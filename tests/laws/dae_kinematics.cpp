@@ -70,6 +70,16 @@ Scene example(const std::string& name) {
   return read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples" / name / "scene.toml");
 }
 
+/// Rows stand in the order in which the curve passes them: between dead points one way.
+void expect_in_order(const MoveResult& r) {
+  double way = 0;
+  for (std::size_t i = 1; i < r.poses.size(); ++i) {
+    const double ahead = r.poses[i].s - r.poses[i - 1].s;
+    EXPECT_GE(ahead * way, 0) << r.scene << ", row " << i;
+    way = r.poses[i].kind == MovedPose::Kind::dead_point ? 0 : ahead != 0 ? ahead : way;
+  }
+}
+
 // Four-bars of any lengths that can be put together, swept by the crank and by the rocker: every
 // pose is the one of trigonometry, on the side that the branch tells, which changes at dead points
 // alone; the crank turns where the links are stretched or folded.
@@ -89,6 +99,7 @@ TEST(Kinematics, FourBarsByTrigonometry) {
     const MoveResult r = moved(bars.scene(theta, side), "O");
     ASSERT_EQ(r.end, MoveResult::End::closed) << r.why;
     EXPECT_EQ(r.change_points(), 0);
+    expect_in_order(r);
     dead += r.dead_points();
     round += r.dead_points() == 0;
     const int branch = r.poses.front().branch;
@@ -177,6 +188,7 @@ TEST(Kinematics, ChangePointsArePassedStraightOn) {
     ASSERT_EQ(r.end, MoveResult::End::closed) << r.why;
     EXPECT_EQ(r.dead_points(), 0);
     ASSERT_EQ(r.change_points(), 2) << n;
+    expect_in_order(r);
     for (const MovedPose& pose : r.poses) {
       if (pose.kind == MovedPose::Kind::change_point)
         EXPECT_NEAR(std::remainder(pose.q[0], pi), 0, 1e-6);

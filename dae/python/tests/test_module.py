@@ -85,10 +85,10 @@ class Poses(unittest.TestCase):
         found = m.move("O")
         self.assertEqual((found["end"], found["dead_points"]), ("closed", []))
         self.assertEqual(found["q"].shape, (361, m.nq))
-        u, way = found["ratios"], found["way"]
+        u, s = found["ratios"], found["displacement"]
         np.testing.assert_allclose(u[:, 0], 1)
-        np.testing.assert_allclose(np.gradient(found["q"][:, 2], way)[1:-1], u[1:-1, 2], atol=2e-4)
-        np.testing.assert_allclose(np.gradient(u[:, 2], way)[1:-1], found["ratio_rates"][1:-1, 2], atol=2e-3)
+        np.testing.assert_allclose(np.gradient(found["q"][:, 2], s)[1:-1], u[1:-1, 2], atol=2e-4)
+        np.testing.assert_allclose(np.gradient(u[:, 2], s)[1:-1], found["ratio_rates"][1:-1, 2], atol=2e-3)
         by_rocker = m.move({"C": 1.0})
         self.assertEqual(len(by_rocker["dead_points"]), 2)
         np.testing.assert_allclose(by_rocker["reach"]["C.q"], found["reach"]["C.q"], atol=1e-9)

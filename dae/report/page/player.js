@@ -50,7 +50,7 @@ function clockBar(clock) {
   const slide = element("input", { type: "range", min: 0, max: 10000, value: 0, step: 1, "aria-label": "Time" });
   slide.addEventListener("input", () => { clock.pause(); clock.set(clock.start + ((clock.end - clock.start) * slide.value) / 10000); });
   const time = element("output", { class: "time" });
-  // Of a page of poses the clock shows the way of the swept coordinate.
+  // Of a page of poses the clock shows the travel of the swept coordinate.
   const [clockName, clockUnit] = study.timeline?.[0]?.x_title?.match(/^(.*) \[(.*)\]$/)?.slice(1) ?? ["t", "s"];
   const digits = Math.max(0, Math.min(6, 3 - Math.floor(Math.log10(Math.max(clock.end - clock.start, 1e-6)) + 1e-9)));
   const speed = element("select", { "aria-label": "Speed" },

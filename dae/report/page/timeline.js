@@ -35,7 +35,7 @@ function timelineChart(chart, clock) {
   }, data, plot);
   u.over.append(now);
 
-  if (chart.left_out) figure.append(element("p", { class: "axis-title" }, `${many(chart.left_out, "more curve")} in trajectory.csv`));
+  if (chart.left_out) figure.append(element("p", { class: "axis-title" }, `${many(chart.left_out, "more curve")} in ${chart.file ?? "trajectory.csv"}`));
   const values = chart.curves.map((curve, i) => {
     const value = element("span", { class: "value" });
     const svg = drawing("svg", { class: "swatch", width: 34, height: 16, viewBox: "0 0 34 16", "aria-hidden": "true" });
