@@ -81,19 +81,11 @@ class SpatialLoopSweeps {
   /// From its motion V, in its axes.
   template <class In, class Out>
   void looped_branches_outward(const In& q, const RightSide<S>& right, const Motion& V, Out u,
-                               Out impulse, Out rate) {
-    taken_[0] = V;
-    outward(q, right, u, impulse, rate);
-  }
+                               Out impulse, Out rate);
   /// From its velocities in ground axes; what the loops' N − κ w do to it.
   template <class Out>
   const Force& looped_branches_rates(const Vec3<S>& v, const Vec3<S>& w, const RightSide<S>& right,
-                                     const Out& impulse, Out rate) {
-    bodies_[0].v = v;
-    bodies_[0].w = w;
-    rates_inward(right, impulse, rate);
-    return wrenches_[0];
-  }
+                                     const Out& impulse, Out rate);
 
   int singular_joint() const { return singular_joint_; }
   /// Whether the last solution closed a folded branch on too weak a pivot: it is then wrong.
@@ -345,6 +337,29 @@ bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::looped_branches_inward(const S&
                                                                         const LoopBody<S>& onto) {
   bodies_[0] = onto;
   return place(t, q, x, right) && inward(Momentum ? x : tau, right);
+}
+
+template <class S, int Rows, bool Momentum, class Tree>
+template <class In, class Out>
+void SpatialLoopSweeps<S, Rows, Momentum, Tree>::looped_branches_outward(const In& q,
+                                                                         const RightSide<S>& right,
+                                                                         const Motion& V, Out u,
+                                                                         Out impulse, Out rate) {
+  taken_[0] = V;
+  outward(q, right, u, impulse, rate);
+}
+
+template <class S, int Rows, bool Momentum, class Tree>
+template <class Out>
+auto SpatialLoopSweeps<S, Rows, Momentum, Tree>::looped_branches_rates(const Vec3<S>& v,
+                                                                       const Vec3<S>& w,
+                                                                       const RightSide<S>& right,
+                                                                       const Out& impulse, Out rate)
+    -> const Force& {
+  bodies_[0].v = v;
+  bodies_[0].w = w;
+  rates_inward(right, impulse, rate);
+  return wrenches_[0];
 }
 
 }  // namespace momenta

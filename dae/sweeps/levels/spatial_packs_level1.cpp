@@ -1,0 +1,5 @@
+#include <momenta/dae/sweeps/levels/spatial_packs.h>
+
+namespace momenta {
+MOMENTA_SPATIAL_PACKS(, 1)
+}  // namespace momenta
