@@ -39,6 +39,9 @@ int modes(const Options&, const ModesOptions&) {
 int move(const Options&, const MoveOptions&) {
   return left_out("move");
 }
+int effort(const Options&, const EffortOptions&) {
+  return left_out("effort");
+}
 int evaluate(const Options&, const std::string&) {
   return left_out("evaluate");
 }

@@ -180,6 +180,41 @@ int answer(int argc, char** argv) {
                      "Of the loop equations at each pose: the smallest over the largest");
   move_app->add_option("--out", o.out, "Directory for move.csv, move.json, index.html")
       ->type_name("DIR");
+  CLI::App* effort_app =
+      app.add_subcommand("effort", "Inverse dynamics: efforts of drives along a given motion");
+  effort_app->footer("Example: momenta effort examples/motor/scene.toml --out results");
+  EffortOptions effort_options;
+  add_scene(*effort_app, o);
+  for (const char* unused : {"--kkt", "--cut"})
+    effort_app->remove_option(effort_app->get_option(unused));
+  effort_app
+      ->add_option("--motion", effort_options.motion,
+                   "CSV with columns of trajectory.csv: t and coordinates; rates and accelerations "
+                   "if it has them (default: the motion of the drives)")
+      ->type_name("FILE");
+  effort_app
+      ->add_option("--actuate", effort_options.actuate,
+                   "Actuated coordinates (default: the driven ones; without drives and loops all)")
+      ->type_name("NAME,...");
+  effort_app
+      ->add_option("--weights", effort_options.weights,
+                   "Of squared efforts, where actuators work against each other: A=1,B=2")
+      ->type_name("NAME=W,...");
+  effort_app
+      ->add_option("--hold", effort_options.hold,
+                   "Coordinates that stay where they are at the start")
+      ->type_name("NAME,...");
+  effort_app->add_flag("--static", effort_options.poses_alone,
+                       "Efforts that hold each pose at rest; without a motion: the start");
+  positive(effort_app->add_option("--within", effort_options.within,
+                                  "How far loops may move what is given, in lengths of the scene, "
+                                  "and which part of forces may be held by no actuator (default: "
+                                  "1e-6)"),
+           "X");
+  positive(effort_app->add_option("--end", o.end, "End time of the drives' motion [s]"), "S");
+  within(effort_app->add_option("--samples", o.samples, "Intervals of it"), "N", 1, 1000000);
+  effort_app->add_option("--out", o.out, "Directory for effort.csv, effort.json, index.html")
+      ->type_name("DIR");
   CLI::App* view_verb =
       app.add_subcommand("view", "A page that shows the assembled mechanism, to turn and zoom");
   view_verb->footer(
@@ -328,6 +363,7 @@ int answer(int argc, char** argv) {
       return equations ? index_of_equations(o) : index_verb(o, index_forms, index_state);
     if (*modes_app) return modes(o, modes_options);
     if (*move_app) return move(o, move_options);
+    if (*effort_app) return effort(o, effort_options);
     if (*view_verb) return view(o);
     if (*stress_app) return stress(o, stress_options);
     if (*sweep_app) return sweep(o, sweep_options);

@@ -280,9 +280,31 @@ std::vector<std::string> names_in(const std::string& list) {
   return names;
 }
 
+std::vector<std::pair<std::string, double>> amounts_in(const std::string& option,
+                                                       const std::string& list,
+                                                       const std::string& like) {
+  std::vector<std::pair<std::string, double>> all;
+  for (const std::string& part : names_in(list)) {
+    const std::size_t equals = part.find('=');
+    double amount = 1;
+    if (equals != std::string::npos) {
+      const char *begin = part.data() + equals + 1, *end = part.data() + part.size();
+      const auto [read, error] = std::from_chars(begin, end, amount);
+      if (error != std::errc{} || read != end || !std::isfinite(amount) || amount == 0)
+        throw std::invalid_argument(option + " '" + list +
+                                    "': expected NAME or NAME=AMOUNT, amounts other than zero, as "
+                                    "in " +
+                                    like);
+    }
+    all.emplace_back(part.substr(0, equals), amount);
+  }
+  return all;
+}
+
 void expect_own_results(const std::filesystem::path& out, std::string_view own) {
-  for (const std::string_view name : {"trajectory.csv", "run.h5", "study.csv", "stress.json",
-                                      "sweep.csv", "modes.csv", "move.csv", "bench.csv"})
+  for (const std::string_view name :
+       {"trajectory.csv", "run.h5", "study.csv", "stress.json", "sweep.csv", "modes.csv",
+        "move.csv", "effort.csv", "bench.csv"})
     if (name != own && !(name == "run.h5" && own == "trajectory.csv") && !out.empty() &&
         std::filesystem::exists(out / name))
       throw std::invalid_argument("--out " + out.string() + " holds the " + std::string(name) +

@@ -89,6 +89,12 @@ int film_intervals_of(const Mechanism& mechanism, const Options& o, std::size_t 
 /// "a,b,c" as a list.
 std::vector<std::string> names_in(const std::string& list);
 
+/// "A", or "A=1,B=-0.5": names and amounts other than zero, 1 where none stands. `like`: what was
+/// expected. @throws std::invalid_argument
+std::vector<std::pair<std::string, double>> amounts_in(const std::string& option,
+                                                       const std::string& list,
+                                                       const std::string& like);
+
 /// Writes result files, all or none; on failure prints the sentence and returns false.
 bool write_results(const std::vector<ResultFile>& files);
 
@@ -191,6 +197,14 @@ struct MoveOptions {
   bool singular_values = false;
 };
 int move(const Options& o, const MoveOptions& m);
+struct EffortOptions {
+  std::filesystem::path motion;  ///< a table; empty: that of the drives
+  std::string actuate, hold;     ///< comma-separated
+  std::string weights;           ///< A=1,B=2
+  bool poses_alone = false;      ///< at rest
+  std::optional<double> within;
+};
+int effort(const Options& o, const EffortOptions& e);
 /// `state`: a JSON file, "-" for standard input, or text that starts with "{".
 int evaluate(const Options& o, const std::string& state);
 /// `forms`: comma-separated, empty: all. `state`: as for evaluate; empty: the start.

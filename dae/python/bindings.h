@@ -97,6 +97,8 @@ std::string toml_of(const Bench& bench);
 void add_runs(py::class_<Bench, BenchPtr>& mechanism);
 /// The one that moves it through its poses.
 void add_move(py::class_<Bench, BenchPtr>& mechanism);
+/// efforts.cpp
+void add_effort(py::class_<Bench, BenchPtr>& mechanism);
 /// The one that finds its modes.
 void add_modes(py::class_<Bench, BenchPtr>& mechanism);
 

@@ -1,6 +1,7 @@
 #include <momenta/dae/report/csv.h>
 #include <momenta/dae/report/json.h>
 #include <momenta/dae/report/move_report.h>
+#include <momenta/dae/report/sampled_curves.h>
 #include <momenta/dae/text/number_text.h>
 
 #include <algorithm>
@@ -163,48 +164,18 @@ Json move_json(const MoveResult& r) {
 }
 
 Film move_film(const MoveResult& r, int intervals) {
-  const std::vector<double> travel = travel_of(r);
-  Film film;
-  if (travel.empty() || intervals <= 0) return film;
-  film.every = travel.back() / intervals;
-  std::size_t at = 0;
-  for (int k = 0; k <= intervals; ++k) {
-    const double there = film.every * k;
-    while (at + 2 < travel.size() && travel[at + 1] < there) ++at;
-    const std::size_t next = std::min(at + 1, travel.size() - 1);
-    const double span = travel[next] - travel[at];
-    const double part = span > 0 ? std::clamp((there - travel[at]) / span, 0.0, 1.0) : 0;
-    const Eigen::VectorXd q = (1 - part) * r.poses[at].q + part * r.poses[next].q;
-    film.frames.emplace_back(q.begin(), q.end());
-  }
-  return film;
+  return film_of(
+      travel_of(r), [&](std::size_t i) -> const Eigen::VectorXd& { return r.poses[i].q; },
+      intervals);
 }
 
 Json move_charts(const MoveResult& r) {
   const std::vector<double> travel = travel_of(r);
   Json charts = Json::array();
   const auto add = [&](const std::string& key, const std::string& title, const std::string& unit,
-                       const std::vector<std::pair<std::string, std::vector<double>>>& curves) {
-    constexpr std::size_t most = 24;
-    if (curves.empty()) return;
-    Json all = Json::array();
-    for (std::size_t i = 0; i < std::min(most, curves.size()); ++i) {
-      Json y = Json::array();
-      for (const double value : curves[i].second) y.push_back(number_or_null(value));
-      all.push_back({{"name", curves[i].first},
-                     {"y", y},
-                     {"colour", i % 8},
-                     {"dash", i < 8 ? Json::array() : Json{6, 4}}});
-    }
-    Json chart = {
-        {"key", key},       {"title", title}, {"x_title", "travel of " + swept(r).label()},
-        {"y_title", title}, {"unit", unit},   {"log", false},
-        {"t", travel},      {"curves", all}};
-    if (curves.size() > most) {
-      chart["left_out"] = curves.size() - most;
-      chart["file"] = "move.csv";
-    }
-    charts.push_back(chart);
+                       std::vector<std::pair<std::string, std::vector<double>>> curves) {
+    add_chart(charts, travel,
+              {key, title, "travel of " + swept(r).label(), unit, "move.csv", std::move(curves)});
   };
   for (const std::string unit : {"rad", "m"}) {
     std::vector<std::pair<std::string, std::vector<double>>> curves;

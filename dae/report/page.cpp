@@ -1,5 +1,6 @@
 #include <momenta/dae/report/advice.h>
 #include <momenta/dae/report/conclusion.h>
+#include <momenta/dae/report/effort_report.h>
 #include <momenta/dae/report/embedded.h>
 #include <momenta/dae/report/json.h>
 #include <momenta/dae/report/modes_report.h>
@@ -151,6 +152,14 @@ std::string move_page(const StudyResult& study, const MoveResult& result) {
   Json data = page_data(study);
   data["timeline"] = move_charts(result);
   return page(study, "Poses", marked_up(move_in_words(result)), "", data,
+              script({embedded::timeline_js(), embedded::run_page_js()}));
+}
+
+std::string effort_page(const StudyResult& study, const EffortResult& result) {
+  Json data = page_data(study);
+  data["timeline"] = effort_charts(result);
+  return page(study, result.poses_alone ? "Static balance" : "Inverse dynamics",
+              marked_up(effort_in_words(result)), "", data,
               script({embedded::timeline_js(), embedded::run_page_js()}));
 }
 

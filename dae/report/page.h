@@ -1,6 +1,7 @@
 #pragma once
 // index.html of a study: one file that opens with the network off.
 
+#include <momenta/dae/effort/effort.h>
 #include <momenta/dae/kinematics/move.h>
 #include <momenta/dae/study/modes_study.h>
 #include <momenta/dae/study/run_result.h>
@@ -26,5 +27,8 @@ std::string modes_page(const StudyResult&, const ModesResult&);
 
 /// Of a mechanism that is moved: its poses beside curves over the travel of the swept coordinate.
 std::string move_page(const StudyResult&, const MoveResult&);
+
+/// Of efforts along a motion: the mechanism moving beside their curves over time.
+std::string effort_page(const StudyResult&, const EffortResult&);
 
 }  // namespace momenta

@@ -301,6 +301,18 @@ class Mechanism:
         self, t: float = 0.0, q: ArrayLike | None = None, v: ArrayLike | None = None, p: ArrayLike | None = None
     ) -> dict[str, Any]: ...
     def move(self, sweep: str | dict[str, float], to: float | None = None, by: float = 0, hold: Sequence[str] = ()) -> dict[str, Any]: ...
+    def effort(
+        self,
+        *,
+        motion: dict[str, ArrayLike] | None = None,
+        actuate: Sequence[str] = (),
+        weights: dict[str, float] = ...,
+        hold: Sequence[str] = (),
+        static: bool = False,
+        end: float | None = None,
+        samples: int | None = None,
+        within: float = 1e-6,
+    ) -> dict[str, Any]: ...
     def modes(self, equilibrium: str = "settle", drives: str = "held", count: int = 0) -> dict[str, Any]: ...
     def run(
         self,

@@ -97,6 +97,12 @@ class Round:
             ("move", lambda: m.move(**self.some(
                 {"sweep": ["A", "O", "", {"O": 1.0}, {"O": 0}, {}], "to": [None, 1.0, NAN, 1e300],
                  "by": [0.1, 0, -1, NAN, 1e300], "hold": [[], ["A"], ["x"]]}))),
+            ("effort", lambda: m.effort(**self.some(
+                {"motion": [None, {}, {"t": [0, 1, 2, 3], "O.q": [1, 1.1, 1.2, 1.3]}, {"t": [0.0], "O.q": [NAN]},
+                            {"t": [1, 0], "O.q": [0, 1]}],
+                 "actuate": [[], ["O"], ["O", "A"], ["x"]], "weights": [{}, {"O": 2.0}, {"O": NAN}, {"x": 1}],
+                 "hold": [[], ["A"]], "static": [True, False], "end": [0.1, 0, NAN, 1e300],
+                 "samples": [1, 3, 0, -1], "within": [1e-6, 0, NAN]}))),
             ("modes", lambda: m.modes(**self.some(
                 {"equilibrium": ["settle", "nearest", "start", ""], "drives": ["held", "running", "x"],
                  "count": [0, 1, -1, 10**6]}))),

@@ -96,6 +96,33 @@ class Poses(unittest.TestCase):
             m.move("x")
 
 
+class Efforts(unittest.TestCase):
+    def test_of_a_motion_of_the_mechanism_itself_are_zero(self):
+        m = load("four_bar")
+        run = m.run(integrator="dop853", rtol=1e-11, atol=1e-11, end=1, samples=20)
+        q, u = (np.column_stack([run[f"{joint}.{letter}"] for joint in "OAC"]) for letter in "qu")
+        udot = [m.accelerations(*state)[0][0] for state in zip(run.t, q, u)]
+        motion = {"t": run.t, "O.q": q[:, 0], "O.u": u[:, 0], "O.udot [rad/s^2]": udot}
+        found = m.effort(motion=motion, actuate=["O"])
+        self.assertEqual(found["actuators"], ["O"])
+        self.assertEqual(found["effort"].shape, (21, 1))
+        np.testing.assert_allclose(found["effort"], 0, atol=1e-8)
+        shared = m.effort(motion=motion, actuate=["O", "C"], weights={"C": 2.0})
+        self.assertEqual(shared["redundant"], 1)
+        np.testing.assert_allclose(shared["effort"], 0, atol=1e-8)
+
+    def test_hold_a_pose(self):
+        m = load("four_bar")
+        held = m.effort(actuate=["O"], static=True)
+        self.assertEqual((held["u"].any(), held["t"].size), (False, 1))
+        with self.assertRaisesRegex(momenta.SceneError, "no coordinate is actuated"):
+            m.effort(static=True)
+        with self.assertRaisesRegex(ValueError, "no drives"):
+            m.effort(actuate=["O"])
+        with self.assertRaisesRegex(ValueError, "is not known"):
+            m.effort(actuate=["O"], motion={"t": [0, 1, 2], "x": [0, 0, 0]})
+
+
 class SmallMotions(unittest.TestCase):
     def test_shapes_solve_the_linearised_equations_of_unit_mass(self):
         m = load("four_bar")

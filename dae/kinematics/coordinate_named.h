@@ -1,0 +1,15 @@
+#pragma once
+// Coordinates that users name: "O", the only one of joint O, or the name of its column, "J.q2".
+
+#include <momenta/dae/mechanism.h>
+
+#include <string>
+#include <utility>
+
+namespace momenta {
+
+/// Places in q and u. @throws SceneError where no coordinate is called so, or where it is part of a
+/// quaternion: the sentence lists those that are. O(bodies)
+std::pair<int, int> coordinate_named(const Mechanism& mechanism, const std::string& name);
+
+}  // namespace momenta

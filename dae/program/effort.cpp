@@ -1,0 +1,76 @@
+// The verb `effort`: inverse dynamics along the motion of drives or of a table.
+
+#include <momenta/dae/report/effort_report.h>
+#include <momenta/dae/report/page.h>
+#include <momenta/dae/report/picture_data.h>
+#include <momenta/dae/study/environment.h>
+#include <momenta/dae/study/motion.h>
+
+#include "options.h"
+
+namespace momenta::program {
+namespace {
+
+/// Output times of the scene, or as asked for.
+std::vector<double> times_of(const Options& o, const RunDefaults& defaults) {
+  const double end = o.end.value_or(defaults.end_time);
+  const int samples = o.samples.value_or(defaults.samples);
+  std::vector<double> times;
+  for (int i = 0; i <= samples; ++i) times.push_back(end * i / samples);
+  return times;
+}
+
+}  // namespace
+
+int effort(const Options& o, const EffortOptions& options) {
+  const Scene driven = read(o);
+  const Mechanism mechanism(undriven(driven), {.algebra = mechanism_options(o).algebra});
+  expect_own_results(o.out, "effort.csv");
+  EffortRequest request;
+  std::optional<Reference> table;
+  if (!options.motion.empty()) {
+    if (!std::filesystem::is_regular_file(options.motion))
+      throw std::invalid_argument("--motion " + options.motion.string() +
+                                  ": cannot be read; expected a CSV with columns of "
+                                  "trajectory.csv");
+    table.emplace(options.motion);
+    request.motion.table = &*table;
+    if (o.end || o.samples)
+      throw std::invalid_argument(
+          "--end and --samples have no effect with --motion, whose times "
+          "are those of its file");
+  }
+  request.motion.drives = driven.drives;
+  request.motion.hold = names_in(options.hold);
+  request.motion.poses_alone = options.poses_alone;
+  const bool moves = !driven.drives.empty() || table;
+  if (!moves && !options.poses_alone)
+    throw std::invalid_argument(o.scene.string() +
+                                " has no drives, so no motion is given; expected --motion FILE, or "
+                                "--static for the efforts that hold its pose");
+  request.motion.times = moves ? times_of(o, driven.run) : std::vector<double>{0};
+  request.actuated = names_in(options.actuate);
+  request.weights = amounts_in("--weights", options.weights, "A=1,B=2");
+  if (options.within) request.within = *options.within;
+  const EffortResult result = momenta::effort(mechanism, request);
+  auto json = effort_json(result);
+  json["environment"] = environment_json(environment());
+  const std::string text = json.dump(2) + "\n";
+  if (!o.out.empty()) {
+    StudyResult study;
+    if (const int intervals = film_intervals_of(mechanism, o, 1);
+        intervals > 0 && result.rows.size() > 1) {
+      study.motions.push_back(motion_of(mechanism, effort_film(result, std::min(intervals, 720))));
+      study.motions.back().run = -1;
+    }
+    describe(study, o, mechanism, assemble(mechanism, Assembled::rates));
+    if (!write_results({{o.out / "effort.csv", effort_csv(result)},
+                        {o.out / "effort.json", text},
+                        {o.out / "index.html", effort_page(study, result)}}))
+      return run_failed;
+  }
+  tell(o, text, effort_table(result), "index.html");
+  return done;
+}
+
+}  // namespace momenta::program
