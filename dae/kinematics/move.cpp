@@ -1,4 +1,5 @@
 #include <momenta/core/text/near_name.h>
+#include <momenta/dae/kinematics/coordinate_place.h>
 #include <momenta/dae/kinematics/move.h>
 #include <momenta/dae/kinematics/pose_curve.h>
 
@@ -52,11 +53,11 @@ class Follower {
       if (!std::isfinite(amount / first) || amount == 0)
         throw SceneError("coordinate '" + name + "' is swept by " + reading::digits(amount) +
                          "; expected amounts other than zero");
-      const auto [q, u] = place_of(name);
+      const auto [q, u] = coordinate_place(mechanism, name);
       if (swept_.empty()) unit_ = units.rates[u];
       swept_.push_back({q, u, amount / first * unit_});
     }
-    for (const std::string& name : request.hold) held_.push_back(place_of(name));
+    for (const std::string& name : request.hold) held_.push_back(coordinate_place(mechanism, name));
     result_.swept = static_cast<std::size_t>(swept_.front().q);
   }
 
@@ -86,22 +87,6 @@ class Follower {
             body.kind == JointKind::revolute || body.kind == JointKind::universal ||
             (body.kind == JointKind::cylindrical && i == 0);
     return result;
-  }
-
-  /// Places in q and u of a coordinate by its joint's name, or by that of its column.
-  std::pair<int, int> place_of(const std::string& name) const {
-    std::vector<std::string> known;
-    for (const auto& body : mechanism_.tree().bodies) {
-      if (body.nq != body.nv) continue;  // quaternions
-      for (int i = 0; i < body.nq; ++i) {
-        const std::string& column = result_.coordinates[static_cast<std::size_t>(body.q + i)].name;
-        known.push_back(column);
-        if (column == name || (body.nq == 1 && column == name + ".q"))
-          return {body.q + i, body.u + i};
-      }
-    }
-    throw SceneError("coordinate '" + name + "' is not known; expected " +
-                     reading::all_in_quotes(known));
   }
 
   void begin(const VectorXd& q) {

@@ -39,6 +39,9 @@ int modes(const Options&, const ModesOptions&) {
 int move(const Options&, const MoveOptions&) {
   return left_out("move");
 }
+int fit(const Options&, const FitOptions&) {
+  return left_out("fit");
+}
 int evaluate(const Options&, const std::string&) {
   return left_out("evaluate");
 }
