@@ -1,28 +1,14 @@
 #include <momenta/core/scene/scene.h>
 #include <momenta/dae/measure/reference.h>
+#include <momenta/dae/text/csv_cells.h>
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <fstream>
-#include <string_view>
 
 namespace momenta {
 namespace {
-
-std::vector<std::string> split(std::string_view line) {
-  std::vector<std::string> cells;
-  while (true) {
-    const auto comma = line.find(',');
-    std::string_view cell = line.substr(0, comma);
-    while (!cell.empty() && (cell.front() == ' ' || cell.front() == '"')) cell.remove_prefix(1);
-    while (!cell.empty() && (cell.back() == ' ' || cell.back() == '\r' || cell.back() == '"'))
-      cell.remove_suffix(1);
-    cells.emplace_back(cell);
-    if (comma == std::string_view::npos) return cells;
-    line.remove_prefix(comma + 1);
-  }
-}
 
 std::string unit_of(const std::string& column) {
   const auto open = column.rfind('['), close = column.rfind(']');
@@ -43,7 +29,7 @@ Reference::Reference(const std::filesystem::path& file) : file_(file.string()) {
   };
   if (!std::getline(in, line))
     refuse("the file is empty; expected a header row starting with t [s]");
-  columns_ = split(line);
+  columns_ = csv_cells(line);
   if (columns_.front() != "t [s]")
     refuse("found '" + columns_.front().substr(0, 40) + "' as first column; expected t [s]");
   for (const auto& column : columns_)
@@ -53,7 +39,7 @@ Reference::Reference(const std::filesystem::path& file) : file_(file.string()) {
   while (std::getline(in, line)) {
     ++number;
     if (line.empty() || line == "\r") continue;
-    const auto cells = split(line);
+    const auto cells = csv_cells(line);
     if (cells.size() != columns_.size() + 1)
       refuse("found " + std::to_string(cells.size()) + " cells; expected " +
              std::to_string(columns_.size() + 1));

@@ -42,6 +42,9 @@ int move(const Options&, const MoveOptions&) {
 int effort(const Options&, const EffortOptions&) {
   return left_out("effort");
 }
+int fit(const Options&, const FitOptions&) {
+  return left_out("fit");
+}
 int evaluate(const Options&, const std::string&) {
   return left_out("evaluate");
 }

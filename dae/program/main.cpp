@@ -215,6 +215,41 @@ int answer(int argc, char** argv) {
   within(effort_app->add_option("--samples", o.samples, "Intervals of it"), "N", 1, 1000000);
   effort_app->add_option("--out", o.out, "Directory for effort.csv, effort.json, index.html")
       ->type_name("DIR");
+  CLI::App* fit_app =
+      app.add_subcommand("fit", "Parameters for which a mechanism does what is wanted of it");
+  fit_app->footer(
+      "Example: momenta fit examples/straight_line/scene.toml --vary coupler,rocker,reach "
+      "--sweep O --to examples/straight_line/line.csv");
+  FitOptions fit_options;
+  add_scene(*fit_app, o);
+  for (const char* unused : {"--kkt", "--cut", "--at"})
+    fit_app->remove_option(fit_app->get_option(unused));
+  fit_app
+      ->add_option("--vary", fit_options.vary,
+                   "Numbers of [parameters], each as it likes or within A=FROM:TO")
+      ->type_name("NAME,...")
+      ->required();
+  fit_app->add_option("--sweep", fit_options.sweep, "The coordinate that moves the mechanism")
+      ->type_name("NAME")
+      ->required();
+  fit_app
+      ->add_option("--to", fit_options.to,
+                   "What is wanted, a line a pose: coordinates and markers, as in move.csv, where "
+                   "the swept coordinate stands if that matters")
+      ->type_name("FILE")
+      ->required();
+  within(fit_app->add_option("--starts", fit_options.starts,
+                             "The scene's own and others drawn from the ranges"),
+         "N", 1, 100000)
+      ->capture_default_str();
+  fit_app->add_option("--seed", fit_options.seed, "Of these")
+      ->type_name("N")
+      ->capture_default_str();
+  within(fit_app->add_option("--iterations", fit_options.iterations, "Of each start, at the most"),
+         "N", 1, 1000000)
+      ->capture_default_str();
+  fit_app->add_option("--out", o.out, "Directory for fit.csv, fit.json, fitted.toml")
+      ->type_name("DIR");
   CLI::App* view_verb =
       app.add_subcommand("view", "A page that shows the assembled mechanism, to turn and zoom");
   view_verb->footer(
@@ -364,6 +399,7 @@ int answer(int argc, char** argv) {
     if (*modes_app) return modes(o, modes_options);
     if (*move_app) return move(o, move_options);
     if (*effort_app) return effort(o, effort_options);
+    if (*fit_app) return fit(o, fit_options);
     if (*view_verb) return view(o);
     if (*stress_app) return stress(o, stress_options);
     if (*sweep_app) return sweep(o, sweep_options);

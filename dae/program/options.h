@@ -12,6 +12,7 @@
 #include <momenta/dae/study/run_form.h>
 
 #include <CLI/CLI.hpp>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -205,6 +206,14 @@ struct EffortOptions {
   std::optional<double> within;
 };
 int effort(const Options& o, const EffortOptions& e);
+struct FitOptions {
+  std::string vary;          ///< NAME=FROM:TO, comma-separated
+  std::string sweep;         ///< a coordinate
+  std::filesystem::path to;  ///< the file of wanted poses
+  int starts = 1, iterations = 500;
+  std::uint64_t seed = 1;
+};
+int fit(const Options& o, const FitOptions& f);
 /// `state`: a JSON file, "-" for standard input, or text that starts with "{".
 int evaluate(const Options& o, const std::string& state);
 /// `forms`: comma-separated, empty: all. `state`: as for evaluate; empty: the start.

@@ -1,0 +1,94 @@
+#pragma once
+// Dimensional synthesis: parameters of a scene for which a mechanism does what is wanted of it,
+//
+//   min ½ |r(x)|²,   x = (θ, s) (wanted_error.h),   from ≤ θ ≤ to,
+//
+// by the method of Levenberg and Marquardt with bounds (Ceres Solver) and the derivatives of
+// pose_derivatives.h. Where no such mechanism can be assembled, or a wanted pose is not reached, a
+// step is taken back and a shorter one tried: [[require]] of the scene holds on the way as well.
+// A minimum so found is a local one. More starts, drawn with a seed from between the bounds, make
+// it likelier to be the least; they follow from the seed alone.
+// Source: Levenberg 1944; Marquardt 1963; Agarwal, Mierle et al., Ceres Solver.
+
+#include <momenta/dae/fit/wanted_error.h>
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace momenta {
+
+/// A parameter that is varied, and between what.
+struct FittedParameter {
+  std::string name;                            ///< of [parameters]
+  std::optional<std::array<double, 2>> range;  ///< least and largest; none: any number
+  /// "NAME" or "NAME=FROM:TO". @throws std::invalid_argument, one sentence
+  static FittedParameter from_text(const std::string& text);
+};
+
+/// What is varied, and how.
+struct FitRequest {
+  std::vector<FittedParameter> parameters;  ///< at least one
+  std::string sweep;                        ///< the swept coordinate, "O" or "J.q2"
+  int starts = 1;                           ///< the first is the scene's own
+  std::uint64_t seed = 1;                   ///< of the others; they need ranges
+  int most_iterations = 500;                ///< of each start
+  /// Called before each start, with its number and the least error so far; false ends the search.
+  std::function<bool(int, double)> progress;
+};
+
+/// How large residuals are.
+struct WantedErrors {
+  /// Not measured.
+  static constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  double cost = none;                          ///< ½ |r|² [1]
+  double length_rms = none;                    ///< over all wanted lengths [m]; NaN: there are none
+  double length_most = none;                   ///< the largest [m]
+  double angle_rms = none, angle_most = none;  ///< the same of angles [rad]
+};
+
+/// What came of one start.
+struct FitStart {
+  Eigen::VectorXd from, to;          ///< θ; `to` empty where the start is not possible
+  double cost = WantedErrors::none;  ///< ½ |r|² at its end
+  int iterations = 0;                ///< of the method
+  /// Of r with ∂r/∂x, as of LeastSquaresEnd: 0 at a minimum.
+  double cosine = WantedErrors::none;
+  bool converged = false;  ///< cosine ≤ 1e-4, or r is rounding
+  std::string why;         ///< why not, one sentence without its full stop; else empty
+};
+
+struct FitResult {
+  std::string scene;                        ///< its name
+  std::vector<FittedParameter> parameters;  ///< θ, as asked
+  Column swept;                             ///< the swept coordinate
+  std::uint64_t seed = 1;                   ///< as asked
+  Eigen::VectorXd own, found;               ///< θ of the scene, and the best
+  WantedErrors before, after;      ///< of the scene as it is: NaN where a pose is not reached
+  std::string why_not_before;      ///< which; else empty
+  WantedPoses wanted;              ///< as asked
+  std::vector<double> places;      ///< s of each pose [rad or m], of the best
+  Eigen::MatrixXd reached_before;  ///< poses × quantities; empty where one is not reached
+  Eigen::MatrixXd reached;         ///< of the best
+  std::vector<FitStart> starts;    ///< in their order
+  std::size_t best = 0;            ///< place among them
+  long evaluations = 0;            ///< of r, those with derivatives included
+  long derivatives = 0;            ///< of ∂r/∂x
+  bool stopped = false;            ///< by `progress`
+  /// Groups of parameters that can change together so that what is wanted does not, to first order:
+  /// one sentence; empty: each of them matters by itself.
+  std::string undetermined;
+};
+
+/// @throws SceneError where no start is possible: the sentence says why the first is not;
+/// std::invalid_argument for what is asked
+/// Cost: an evaluation of r follows each wanted pose along its curve; one of ∂r/∂x takes six
+/// mechanisms a parameter besides (pose_derivatives.h)
+FitResult fit(const ParametricMechanism& family, const WantedPoses& wanted,
+              const FitRequest& request);
+
+}  // namespace momenta

@@ -1,0 +1,38 @@
+#pragma once
+// min ½ |r(x)|² between bounds, by the method of Levenberg and Marquardt. Ceres Solver, which does
+// it, is seen by least_squares_search.cpp alone. Its steps are made without bounds and cut at them,
+// and come to a halt where one is met; so the search goes on from there with the unknowns left out
+// that a bound holds, those with x_j at it and the gradient Jᵀr pointing beyond, until the rest is
+// at its minimum and none is held that would go back.
+// Source: Levenberg 1944; Marquardt 1963; active sets: Nocedal, Wright, Numerical Optimization,
+// ch. 10, 16.
+
+#include <Eigen/Core>
+#include <functional>
+#include <limits>
+
+namespace momenta {
+
+/// r at x, and ∂r/∂x where it is not null; false: there is none here, and a shorter step is tried.
+using Residuals =
+    std::function<bool(const Eigen::VectorXd& x, Eigen::VectorXd& r, Eigen::MatrixXd* jacobian)>;
+
+struct LeastSquaresEnd {
+  bool began = false;  ///< r and ∂r/∂x could be evaluated where the search began
+  int iterations = 0;
+  Eigen::VectorXd r;  ///< at the best point
+  /// Largest cosine of the angle between r and a column of ∂r/∂x, of unknowns that no bound holds:
+  /// 0 at a minimum.
+  double cosine = std::numeric_limits<double>::quiet_NaN();
+};
+
+/// Above it no minimum is claimed.
+inline constexpr double converged_cosine = 1e-4;
+
+/// From x, between `least` and `most`, infinite where there is no bound; leaves the best point in
+/// x.
+LeastSquaresEnd least_squares_search(const Residuals& residuals, const Eigen::VectorXd& least,
+                                     const Eigen::VectorXd& most, int most_iterations,
+                                     Eigen::VectorXd& x);
+
+}  // namespace momenta

@@ -1,0 +1,58 @@
+#pragma once
+// How poses, and what is wanted of them, depend on the parameters θ of the scene and on the place s
+// of the swept coordinate. The pose q(θ, s) solves
+//
+//   F(q; θ, s) = ( D⁻¹ Φ(q; θ) ) = 0,    y = y(q; θ) a coordinate, or a position of a marker;
+//                (  c(q) − s   )
+//
+// by the implicit function theorem, with u for the change of q, q̇ = H u,
+//
+//   F_q u_j = −∂F/∂θ_j,      dy/dθ_j = y_q u_j + ∂y/∂θ_j
+//   F_q u_s = (0, 1),        dy/ds   = y_q u_s
+//
+// F_q and y_q are those of the sweeps, exact. Partial derivatives by θ at the same q are taken
+// from mechanisms of other θ, as the scene's numbers are plain numbers: central differences of
+// sixth order,
+//
+//   f' = [45 (f₁ − f₋₁) − 9 (f₂ − f₋₂) + (f₃ − f₋₃)] / 60h + O(h⁶),    f_k = f(θ_j + k h).
+//
+// With h = 2⁻⁸ of the parameter's size rounding and truncation leave about 1e-13 of f/θ: no pose is
+// solved for again, no iteration ends differently. Redundant rows of F are solved together by a QR
+// decomposition, as they agree. Where F_q loses rank (dead points, change points) there are no
+// derivatives.
+// Source: Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems, ch. 3; Fornberg,
+// Generation of finite difference formulas, Math. Comp. 51 (1988).
+
+#include <momenta/dae/fit/parametric_mechanism.h>
+#include <momenta/dae/fit/wanted_poses.h>
+
+#include <vector>
+
+namespace momenta {
+
+/// y of one pose [rad or m], in the order of the quantities. Places the evaluation at q; `markers`:
+/// how many the scene has.
+Eigen::VectorXd quantities_at(Evaluation<double>& e, const Eigen::VectorXd& q,
+                              const std::vector<WantedPoses::Quantity>& quantities, int markers);
+
+class PoseDerivatives {
+ public:
+  /// `sizes` of the parameters, > 0: of what h is a part. The family must outlive it.
+  PoseDerivatives(const ParametricMechanism& family, Eigen::VectorXd sizes,
+                  std::vector<WantedPoses::Quantity> quantities);
+
+  /// Of each pose q, at `values` whose mechanism is given, a matrix quantities × (parameters + 1),
+  /// by θ and, last, by s; `rate`: place in u of the swept coordinate. False where F_q loses rank:
+  /// `lost` is then the pose. @throws SceneError where a mechanism within 3h is none
+  /// Cost: six mechanisms a parameter, and for each pose their Φ and one QR decomposition of F_q
+  bool at(const Eigen::VectorXd& values, const Mechanism& mechanism, int rate,
+          const std::vector<Eigen::VectorXd>& poses, std::vector<Eigen::MatrixXd>& derivatives,
+          std::size_t& lost) const;
+
+ private:
+  const ParametricMechanism& family_;
+  Eigen::VectorXd sizes_;
+  std::vector<WantedPoses::Quantity> quantities_;
+};
+
+}  // namespace momenta
