@@ -14,18 +14,19 @@ verbs of the program: they take the same input and return what the program write
 """
 
 from ._momenta import Mechanism, Run, SceneError, Start, __version__, forms, integrators
+from .formulas import Formula
 from .plots import Study, plot_run
 from .scene import Scene
 from .sweeps import Sweep, sweep
 from .verbs import Page, evaluate, index, load, parse, run, view
 
 __all__ = [
-    "Mechanism", "Page", "Run", "Scene", "SceneError", "Start", "Study", "Sweep", "__version__",
+    "Formula", "Mechanism", "Page", "Run", "Scene", "SceneError", "Start", "Study", "Sweep", "__version__",
     "evaluate", "forms", "index", "integrators", "load", "parse", "run", "sweep", "view",
 ]  # fmt: skip
 
 Run.plot = plot_run
-for _public in (Page, Scene, Study, Sweep, evaluate, index, load, parse, plot_run, run, sweep, view):
+for _public in (Formula, Page, Scene, Study, Sweep, evaluate, index, load, parse, plot_run, run, sweep, view):
     _public.__module__ = __name__
 plot_run.__name__, plot_run.__qualname__ = "plot", "Run.plot"
 del _public, plot_run

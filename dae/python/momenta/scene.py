@@ -9,6 +9,7 @@ import os
 import re
 
 from . import _momenta
+from .formulas import is_formula, text_of
 
 # Keys of a scene whose value is a list of tables, and keys whose value is one table.
 _LISTS = ("body", "joint", "loop", "drive", "force", "function", "marker", "visual")
@@ -58,7 +59,8 @@ class Scene:
     def force(self, kind, **keys):
         """Adds a spring-damper; a bushing; a coordinate-spring: joints, ratios, coordinates, and what a
         spring has; a torque along a joint: joint, value; a wrench on a body: body, point [m],
-        force [N], torque [N m], axes; or a potential: V. `law`, a formula, stands in place of the numbers of all but bushings and wrenches."""
+        force [N], torque [N m], axes; or a potential: V. `law`, a formula as of `lagrangian`, stands in place of the
+        numbers of all but bushings and wrenches; its own names are q and u, length and rate, or l and rate."""
         return self._add("force", kind=kind, **keys)
 
     def spring(self, **keys):
@@ -83,7 +85,9 @@ class Scene:
         """Makes the scene a system of formulas, without bodies: units, position, velocity, by coordinate;
         lagrangian, or kinetic and potential; force, a dict by coordinate; constraints, a list of dicts.
 
-        A formula is a string, a number, or a SymPy expression whose rates are symbols named 'x.dot'."""
+        A formula is a string, a number, a function of coordinates x, rates x_dot, t and parameters by these names, a
+        Formula, or a SymPy expression in which x(t), or the symbol x, is a coordinate and x(t).diff(t), or the symbol
+        'x.dot', its rate."""
         for key in ("lagrangian", "kinetic", "potential"):
             keys[key] = _formula(keys.get(key))
         if keys.get("force") is not None:
@@ -160,15 +164,15 @@ def _is_table(key, x):
 
 
 def _formula(x):
-    """A formula as scene files have it, of a string, a number or a SymPy expression."""
-    if hasattr(x, "free_symbols"):
-        return re.sub(r"\b(Abs|Max|Min)\(", lambda found: found[0].lower(), str(x)).replace("**", "^")
-    return repr(x) if isinstance(x, (int, float)) and not isinstance(x, bool) else x
+    """A formula as scene files have it, of a string, a number, a Formula, a function or a SymPy expression."""
+    return x if isinstance(x, (str, bool)) or x is None else text_of(x)
 
 
 def _plain(x):
-    """Converts arrays and numbers of NumPy to Python's types; copies lists and dicts, so that no other
-    object shares them."""
+    """Converts arrays and numbers of NumPy to Python's types, formulas to their text; copies lists and dicts, so that
+    no other object shares them."""
+    if is_formula(x):
+        return text_of(x)
     if hasattr(x, "tolist"):
         x = x.tolist()
     if isinstance(x, dict):
