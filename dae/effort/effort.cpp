@@ -21,53 +21,61 @@ using Eigen::VectorXd;
 constexpr double rounding = 1e-6;  // of a change of multipliers
 constexpr double not_there = std::numeric_limits<double>::quiet_NaN();
 
-/// "O" of "O.u", "J.q1" of "J.u1", "J.wx" of itself.
-std::string name_of_rate(const Mechanism& mechanism, int rate) {
-  const std::string column = mechanism.rate_columns()[static_cast<std::size_t>(rate)].name;
-  if (mechanism.scene().lagrangian)
-    return mechanism.coordinate_columns()[static_cast<std::size_t>(rate)].name;
-  for (const auto& body : mechanism.tree().bodies)
-    if (body.nv == 1 && body.u == rate)
-      return body.parts == 1 ? body.joint : body.joint + ".q" + std::to_string(body.coordinate);
-  return column;
-}
-
-Actuator actuator_of(const Mechanism& mechanism, int rate) {
-  Actuator a;
-  a.rate = rate;
-  a.name = name_of_rate(mechanism, rate);
-  const std::string unit = mechanism.rate_columns()[static_cast<std::size_t>(rate)].unit;
-  a.effort = {a.name + ".effort", unit == "rad/s" ? "N m"
-                                  : unit == "m/s" ? "N"
-                                                  : "J/" + unit.substr(0, unit.find("/s"))};
-  for (const auto& body : mechanism.tree().bodies)
-    if (body.nv == 1 && body.u == rate && body.parts > 1)
-      a.effort.name = body.joint + ".effort" + std::to_string(body.coordinate);
-  const auto joints = joint_places(mechanism);
-  for (std::size_t i = 0; i < joints.size(); ++i) {
-    const int k = joints[i].body;
-    if (k >= 0 && mechanism.tree().bodies[static_cast<std::size_t>(k)].kind == JointKind::helical &&
-        mechanism.tree().bodies[static_cast<std::size_t>(k)].u == rate)
-      a.helical = static_cast<int>(i);
+/// An actuator at every rate. O(bodies)
+std::vector<Actuator> at_all_rates(const Mechanism& mechanism) {
+  const LoopUnits units(mechanism);
+  std::vector<Actuator> all;
+  for (const Column& rate : mechanism.rate_columns()) {
+    Actuator a;
+    a.name = rate.name;
+    a.rate = static_cast<int>(all.size());
+    a.effort.unit = rate.unit == "rad/s" ? "N m"
+                    : rate.unit == "m/s" ? "N"
+                                         : "J/" + rate.unit.substr(0, rate.unit.find("/s"));
+    a.weight = units.rates[a.rate] * units.rates[a.rate];
+    all.push_back(a);
   }
-  return a;
+  if (mechanism.scene().lagrangian) {
+    const std::vector<Column> coordinates = mechanism.coordinate_columns();
+    for (Actuator& a : all) a.name = coordinates[static_cast<std::size_t>(a.rate)].name;
+  }
+  for (const auto& body : mechanism.tree().bodies) {
+    if (body.nv != 1) continue;
+    Actuator& a = all[static_cast<std::size_t>(body.u)];
+    const std::string number = body.parts == 1 ? "" : std::to_string(body.coordinate);
+    a.name = body.joint + (body.parts == 1 ? "" : ".q" + number);
+    a.effort.name = body.joint + ".effort" + number;
+  }
+  for (Actuator& a : all)
+    if (a.effort.name.empty()) a.effort.name = a.name + ".effort";
+  const std::vector<JointPlace> joints = joint_places(mechanism);
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    if (joints[i].body < 0) continue;
+    const auto& body = mechanism.tree().bodies[static_cast<std::size_t>(joints[i].body)];
+    if (body.kind == JointKind::helical && body.nv == 1)
+      all[static_cast<std::size_t>(body.u)].helical = static_cast<int>(i);
+  }
+  return all;
 }
 
-int rate_named(const Mechanism& mechanism, const std::string& name) {
-  const auto rates = mechanism.rate_columns();
+int rate_named(const std::vector<Actuator>& all, const std::vector<Column>& rates,
+               const std::string& name) {
   std::vector<std::string> known;
-  for (int i = 0; i < mechanism.nv(); ++i) {
-    known.push_back(name_of_rate(mechanism, i));
-    const std::string& column = rates[static_cast<std::size_t>(i)].name;
-    if (name == known.back() || name == column || name == known.back() + ".q") return i;
+  for (const Actuator& a : all) {
+    if (name == a.name || name == rates[static_cast<std::size_t>(a.rate)].name ||
+        name == a.name + ".q")
+      return a.rate;
+    known.push_back(a.name);
   }
   throw SceneError("actuator '" + name + "' is not known; expected " +
                    reading::all_in_quotes(known));
 }
 
-std::vector<int> actuated_rates(const Mechanism& mechanism, const EffortRequest& request) {
+std::vector<int> actuated_rates(const Mechanism& mechanism, const EffortRequest& request,
+                                const std::vector<Actuator>& all,
+                                const std::vector<Column>& columns) {
   std::vector<int> rates;
-  for (const std::string& name : request.actuated) rates.push_back(rate_named(mechanism, name));
+  for (const std::string& name : request.actuated) rates.push_back(rate_named(all, columns, name));
   if (request.actuated.empty()) {
     const Tree& tree = mechanism.tree();
     for (const DriveSpec& drive : request.motion.drives)
@@ -77,10 +85,10 @@ std::vector<int> actuated_rates(const Mechanism& mechanism, const EffortRequest&
     if (rates.empty() && mechanism.m() > 0)
       throw SceneError(
           "no coordinate is actuated: the scene has no drives, and loops; expected "
-          "actuators, say '" +
-          name_of_rate(mechanism, 0) + "'");
+          "actuators" +
+          (all.empty() ? std::string() : ", say '" + all.front().name + "'"));
     if (rates.empty()) {
-      rates.resize(static_cast<std::size_t>(mechanism.nv()));
+      rates.resize(all.size());
       std::iota(rates.begin(), rates.end(), 0);
     }
   }
@@ -88,7 +96,7 @@ std::vector<int> actuated_rates(const Mechanism& mechanism, const EffortRequest&
   std::sort(sorted.begin(), sorted.end());
   const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
   if (twice != sorted.end())
-    throw SceneError("actuator '" + name_of_rate(mechanism, *twice) +
+    throw SceneError("actuator '" + all[static_cast<std::size_t>(*twice)].name +
                      "' is named twice; expected each once");
   return rates;
 }
@@ -180,14 +188,12 @@ EffortResult begin(const Mechanism& mechanism, const EffortRequest& request,
   result.coordinates = mechanism.coordinate_columns();
   result.rates = mechanism.rate_columns();
   result.poses_alone = request.motion.poses_alone;
-  const LoopUnits units(mechanism);
-  for (const int rate : actuated_rates(mechanism, request)) {
-    result.actuators.push_back(actuator_of(mechanism, rate));
-    result.actuators.back().weight = units.rates[rate] * units.rates[rate];
-  }
+  const std::vector<Actuator> all = at_all_rates(mechanism);
+  for (const int rate : actuated_rates(mechanism, request, all, result.rates))
+    result.actuators.push_back(all[static_cast<std::size_t>(rate)]);
   weights.assign(result.actuators.size(), 0);
   for (const auto& [name, weight] : request.weights) {
-    const int rate = rate_named(mechanism, name);
+    const int rate = rate_named(all, result.rates, name);
     const auto found = std::find_if(result.actuators.begin(), result.actuators.end(),
                                     [&](const Actuator& a) { return a.rate == rate; });
     if (found == result.actuators.end())

@@ -41,11 +41,12 @@ struct Actuator {
 
 /// The efforts at a time.
 struct EffortRow {
-  double t = 0;             ///< [s]
-  Eigen::VectorXd q;        ///< nq
-  Eigen::VectorXd u, udot;  ///< nv
-  Eigen::VectorXd effort;   ///< by actuator [N m or N]
-  Eigen::VectorXd power;    ///< effort × rate, by actuator [W]
+  double t = 0;            ///< [s]
+  Eigen::VectorXd q;       ///< nq
+  Eigen::VectorXd u;       ///< nv
+  Eigen::VectorXd udot;    ///< nv
+  Eigen::VectorXd effort;  ///< by actuator [N m or N]
+  Eigen::VectorXd power;   ///< effort × rate, by actuator [W]
   /// Axial force through a helical joint, on its child along its axis, by actuator [N]; not a
   /// number of other joints, and where loops leave it open. The torque about the axis that goes
   /// with it through the thread is effort − pitch × thrust.
@@ -54,13 +55,14 @@ struct EffortRow {
 
 /// Efforts along a motion.
 struct EffortResult {
-  std::string scene;                       ///< its name
-  std::vector<Column> coordinates, rates;  ///< of q and u
-  std::vector<Actuator> actuators;         ///< as named
-  std::vector<EffortRow> rows;             ///< by time
-  bool poses_alone = false;                ///< at rest
-  std::size_t given = 0;                   ///< how many rates the motion prescribes
-  int redundant = 0;   ///< the most actuators beyond what the motion needs, along it
+  std::string scene;                ///< its name
+  std::vector<Column> coordinates;  ///< of q
+  std::vector<Column> rates;        ///< of u
+  std::vector<Actuator> actuators;  ///< as named
+  std::vector<EffortRow> rows;      ///< by time
+  bool poses_alone = false;         ///< at rest
+  std::size_t given = 0;            ///< how many rates the motion prescribes
+  int redundant = 0;                ///< the most actuators beyond what the motion needs, along it
   int unactuated = 0;  ///< the most motions that no actuator acts on; they need no effort
   double gap = 0;      ///< how far loops moved what was given, at the most, in units of the scene
   double missing = 0;  ///< the largest force that no actuator gives, over the size of its terms

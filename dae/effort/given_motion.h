@@ -25,13 +25,15 @@ namespace momenta {
 
 /// Times, and what is given at each.
 struct GivenMotion {
+  /// What is given at one time.
   struct Row {
-    double t = 0;             ///< [s]
-    Eigen::VectorXd q;        ///< nq
-    Eigen::VectorXd u, udot;  ///< nv
+    double t = 0;          ///< [s]
+    Eigen::VectorXd q;     ///< nq
+    Eigen::VectorXd u;     ///< nv
+    Eigen::VectorXd udot;  ///< nv
   };
   std::vector<bool> given;  ///< by rate: whether rows have it; entries of others mean nothing
-  std::vector<Row> rows;
+  std::vector<Row> rows;    ///< by time
 };
 
 /// Where the motion comes from.

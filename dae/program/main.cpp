@@ -211,8 +211,10 @@ int answer(int argc, char** argv) {
                                   "and which part of forces may be held by no actuator (default: "
                                   "1e-6)"),
            "X");
-  positive(effort_app->add_option("--end", o.end, "End time of the drives' motion [s]"), "S");
-  within(effort_app->add_option("--samples", o.samples, "Intervals of it"), "N", 1, 1000000);
+  positive(effort_app->add_option("--end", o.end, "End time of the drives' motion [s]; intervals"),
+           "S");
+  within(effort_app->add_option("--samples", o.samples, "Intervals of the drives' motion"), "N", 1,
+         1000000);
   effort_app->add_option("--out", o.out, "Directory for effort.csv, effort.json, index.html")
       ->type_name("DIR");
   CLI::App* fit_app =

@@ -74,7 +74,10 @@ Column thrust_column(const Actuator& a) {
 
 std::string effort_in_words(const EffortResult& r) {
   const std::size_t n = r.actuators.size();
-  std::string text = number_of(n, "actuator") + (n == 1 ? " holds " : " hold ") +
+  std::string who = n > 0 && n <= 3 ? "" : number_of(n, "actuator");
+  for (std::size_t i = 0; i < n && n <= 3; ++i)
+    who += (i == 0 ? "" : i + 1 == n ? " and " : ", ") + r.actuators[i].name;
+  std::string text = who + (n == 1 ? " holds " : " hold ") +
                      (r.poses_alone ? number_of(r.rows.size(), "pose") + " at rest"
                                     : "the motion of " + number_of(r.given, "coordinate") + " at " +
                                           number_of(r.rows.size(), "time")) +
@@ -170,8 +173,9 @@ Json effort_charts(const EffortResult& r) {
   using Curves = std::vector<std::pair<std::string, std::vector<double>>>;
   const auto add = [&](const std::string& key, const std::string& title, const std::string& unit,
                        Curves curves) {
+    const std::string of = curves.size() == 1 ? " of " + curves.front().first : "s";
     add_chart(charts, times,
-              {key, title + " [" + unit + "]", "", unit, "effort.csv", std::move(curves)});
+              {key, title + of + " [" + unit + "]", "", unit, "effort.csv", std::move(curves)});
   };
   const auto curve = [&](auto value) {
     std::vector<double> y;
@@ -191,7 +195,7 @@ Json effort_charts(const EffortResult& r) {
         efforts.emplace_back(r.actuators[i].name,
                              curve([k](const EffortRow& row) { return row.effort[k]; }));
     }
-    add("effort_" + unit, "efforts", unit, efforts);
+    add("effort_" + unit, "effort", unit, efforts);
   }
   for (std::size_t i = 0; i < r.actuators.size(); ++i) {
     const auto k = static_cast<Eigen::Index>(i);
@@ -201,11 +205,11 @@ Json effort_charts(const EffortResult& r) {
       thrusts.emplace_back(r.actuators[i].name,
                            curve([k](const EffortRow& row) { return row.thrust[k]; }));
   }
-  add("thrust", "thrusts", "N", thrusts);
+  add("thrust", "thrust", "N", thrusts);
   if (!r.poses_alone) {
     if (powers.size() > 1)
       powers.emplace_back("all", curve([](const EffortRow& row) { return row.power.sum(); }));
-    add("power", "powers", "W", powers);
+    add("power", "power", "W", powers);
   }
   for (const std::string unit : {"rad", "m"}) {
     Curves places;
@@ -215,7 +219,7 @@ Json effort_charts(const EffortResult& r) {
         places.emplace_back(r.coordinates[i].name,
                             curve([k](const EffortRow& row) { return row.q[k]; }));
       }
-    add("q_" + unit, "coordinates", unit, places);
+    add("q_" + unit, "coordinate", unit, places);
   }
   return charts;
 }
