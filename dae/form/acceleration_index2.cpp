@@ -44,10 +44,10 @@ class AccelerationIndex2 final : public DaeFormOf<AccelerationIndex2>, public Ha
 
   /// q at the next stage does not depend on λ, and v does linearly:
   ///   M v̇ + Φ_qᵀλ = Q + L_q − Ṁ v,  Φ_q(q̄) v̇ = −(Φ_q(q̄) v_base + Φ_t)/w.
-  bool advance(double t, const double* y, double t_next, const double* base, double w, double* z,
-               double* f) override {
+  bool advance(double t, const double* y, double t_next, const double* base, double w,
+               bool /*exact: always*/, double* z, double* f) override {
     Work& work = this->work();
-    auto& e = *work.e;
+    auto &e = *work.e, &ahead = *work.ahead;
     const double *q = y, *v = y + layout_.x();
     double* vdot = f + layout_.x();
     if (layout_.m == 0) return consistent(t, y, z, f);
@@ -59,10 +59,10 @@ class AccelerationIndex2 final : public DaeFormOf<AccelerationIndex2>, public Ha
     e.coordinate_rates(q, v, f);
     for (int i = 0; i < layout_.nq; ++i)
       work.there[static_cast<std::size_t>(i)] = base[i] + w * f[i];
-    e.place(t_next, work.there.data());
-    work.kkt.meet_at(e);
-    e.move(base + layout_.x());
-    e.velocities(work.g.data());
+    ahead.place(t_next, work.there.data());
+    work.kkt.meet_at(ahead);
+    ahead.move(base + layout_.x());
+    ahead.velocities(work.g.data());
     for (double& g : work.g) g /= -w;
     work.kkt.add_compliance(-1, z, work.g.data());
     if (!work.kkt.factor()) return failed("the matrix of a half-explicit stage is singular");

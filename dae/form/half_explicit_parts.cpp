@@ -8,7 +8,9 @@
 namespace momenta {
 
 HalfExplicitParts::Work::Work(const Mechanism& mechanism, std::vector<double> compliance)
-    : e(mechanism.evaluation<double>()), kkt(mechanism, std::move(compliance)) {
+    : e(mechanism.evaluation<double>()),
+      ahead(mechanism.evaluation<double>()),
+      kkt(mechanism, std::move(compliance)) {
   if (mechanism.m() > 0) solver = make_loop_solver(mechanism, *e);
   const auto nv = static_cast<std::size_t>(mechanism.nv()),
              m = static_cast<std::size_t>(mechanism.m());

@@ -28,7 +28,8 @@ class HalfExplicitParts : public HalfExplicit {
   struct Work {
     Work(const Mechanism& mechanism, std::vector<double> compliance);
     std::unique_ptr<Evaluation<double>> e;
-    std::unique_ptr<LoopSolver> solver;  ///< null without loops
+    std::unique_ptr<Evaluation<double>> ahead;  ///< where a stage leads
+    std::unique_ptr<LoopSolver> solver;         ///< null without loops
     SplitKkt kkt;
     std::vector<double> there, u, delta, r, g, correction, centre;
   };

@@ -40,13 +40,9 @@ void ImpulseGauge::reset(double t, double* y, double* ydot) {
   w.e->place(t, y);
   w.e->joint_rates(y, ydot, w.u.data());
   w.e->move(w.u.data());
-  // Φ̇_qᵀσ is what (8) has with σ and has not without.
-  w.e->momenta(sigma, w.p.data());
-  w.e->momentum_rates(y, w.u.data(), sigma, 0, w.v.data());
-  for (std::size_t i = 0; i < w.v.size(); ++i) pdot[i] -= w.v[i];
+  // (8) without σ; what it lacks is Φ̇_qᵀσ.
   w.e->momenta(nullptr, w.p.data());
-  w.e->momentum_rates(y, w.u.data(), nullptr, 0, w.v.data());
-  for (std::size_t i = 0; i < w.v.size(); ++i) pdot[i] += w.v[i];
+  w.e->momentum_rates(y, w.u.data(), nullptr, 0, pdot);
   w.e->constraint_forces(sigma, w.p.data());
   for (std::size_t i = 0; i < w.p.size(); ++i) p[i] -= w.p[i];
   std::fill_n(sigma, places_.m, 0.0);

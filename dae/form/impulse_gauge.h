@@ -1,5 +1,5 @@
 #pragma once
-// The gauge symmetry of the DAE forms in q, p and σ, as methods with memory use it: shifts of past
+// The gauge symmetry of the DAE forms in q, p and σ, as methods use it: resets, shifts of past
 // values, and the norm of what moves (dae/solver/gauge_symmetry.h).
 
 #include <momenta/dae/form/dae_form.h>

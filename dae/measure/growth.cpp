@@ -1,3 +1,4 @@
+#include <momenta/dae/measure/fitted_slope.h>
 #include <momenta/dae/measure/growth.h>
 
 #include <algorithm>
@@ -10,19 +11,6 @@ constexpr double range =
     20;  // the fit looks at [T/20, T]: the first 5 % of a run are its transient
 constexpr double least_range = 4;
 constexpr int points = 60;  // log-spaced in that range
-
-double slope(const std::vector<double>& x, const std::vector<double>& y, std::size_t first,
-             std::size_t last) {
-  const auto n = static_cast<double>(last - first);
-  double sx = 0, sy = 0, sxx = 0, sxy = 0;
-  for (std::size_t i = first; i < last; ++i) {
-    sx += x[i];
-    sy += y[i];
-    sxx += x[i] * x[i];
-    sxy += x[i] * y[i];
-  }
-  return (n * sxy - sx * sy) / (n * sxx - sx * sx);
-}
 
 }  // namespace
 
@@ -48,11 +36,9 @@ Growth fit_growth(const std::vector<double>& t, const std::vector<double>& drift
     x.push_back(std::log(at));
     y.push_back(std::log(running));
   }
-  const std::size_t n = x.size();
-  const double whole = slope(x, y, 0, n), early = slope(x, y, 0, n / 2),
-               late = slope(x, y, n / 2, n);
+  const auto [whole, half_range] = fitted_slopes(x, y, x.size() / 2);
   growth.exponent = whole;
-  growth.half_range = 0.5 * (std::max({whole, early, late}) - std::min({whole, early, late}));
+  growth.half_range = half_range;
   return growth;
 }
 

@@ -88,7 +88,9 @@ int answer(int argc, char** argv) {
                                "Number of step sizes: 2*step, step, step/2 ..."),
          "N", 1, 40)
       ->capture_default_str();
-  work_verb->add_flag("--no-reference", w.no_reference, "Judge by the largest drift alone");
+  work_verb->add_flag("--no-reference", w.no_reference,
+                      "Judge by the largest drift alone; print orders");
+  work_verb->add_flag("--orders", w.orders, "Print observed orders in place of the conclusion");
   add_run_options(*work_verb, o, "10");
   add_timing(*work_verb, o);
   for (const char* unused :

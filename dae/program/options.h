@@ -168,6 +168,7 @@ struct WorkOptions {
   double per_decade = 1;
   int step_rungs = 6;         ///< of a ladder of fixed steps, each half of the last
   bool no_reference = false;  ///< judge by drift alone
+  bool orders = false;        ///< print observed orders in place of the conclusion
 };
 int work(const Options& o, const WorkOptions& w);
 /// 1e-4, 1e-5, … through the tolerances asked for. @throws std::invalid_argument

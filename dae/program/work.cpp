@@ -1,4 +1,5 @@
 #include <momenta/dae/report/advice.h>
+#include <momenta/dae/report/order_table.h>
 #include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/study/own_reference.h>
 #include <momenta/dae/study/run_record.h>
@@ -46,6 +47,9 @@ int work(const Options& o, const WorkOptions& w) {
   for (int i = 0; i < w.step_rungs; ++i) request.steps.push_back(std::ldexp(step, 1 - i));
   request.samples = o.samples.value_or(own_reference_rows);
   request.max_cpu_seconds = o.cpu_limit.value_or(10);
+  if (w.orders && w.no_reference)
+    throw std::invalid_argument(
+        "--orders --no-reference: observed orders are those of errors, expected a reference");
   request.timing = timing_named(o.timing);
   expect_own_results(o.out, "study.csv");
   const auto journal = keep_runs(o);
@@ -80,7 +84,8 @@ int work(const Options& o, const WorkOptions& w) {
   std::vector<ResultFile> files;
   const bool own = o.reference.empty() && reference;
   if (own && !o.out.empty()) files.push_back({o.out / "reference.csv", reference->csv()});
-  return publish(study, advice(study), o, journal.get(), std::move(files));
+  return publish(study, w.orders ? order_table(study) : advice(study), o, journal.get(),
+                 std::move(files));
 }
 
 }  // namespace momenta::program

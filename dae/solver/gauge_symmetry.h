@@ -1,5 +1,5 @@
 #pragma once
-// What a method with memory needs of a form with impulse multipliers σ to keep them small. For
+// What a method needs of a form with impulse multipliers σ to keep them small. For
 // constant c
 //
 //   (p, σ) → (p + Φ_qᵀ(q) c, σ + c)
@@ -26,7 +26,7 @@ class GaugeSymmetry {
   virtual void gauge_directions(double t, const double* y, double* entries) = 0;
   /// p += Φ_qᵀc, σ += c in y; `entries` are those of its q.
   virtual void shift(const double* entries, const double* c, double* y) const = 0;
-  /// The shift c = −σ of y and, by Φ̇_qᵀc, of y'.
+  /// The shift c = −σ of y and, by Φ̇_qᵀc, of y', which are consistent: y' is then that of (8).
   virtual void reset(double t, double* y, double* ydot) = 0;
 
   /// The norm of motion_squares() from now on: at (t, y, y'), weights 1/(atol + rtol size).

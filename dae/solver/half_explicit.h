@@ -17,10 +17,11 @@ class HalfExplicit {
 
   /// z from the hidden constraint d/dt g(t, y) = 0, and f(t, y, z).
   virtual bool consistent(double t, const double* y, double* z, double* f) = 0;
-  /// z and f(t, y, z) such that g(t_next, base + w f) = 0, w > 0 or < 0; `z` and `f` hold those of
-  /// the stage before.
+  /// z and f(t, y, z) such that g(t_next, base + w f) = 0, w > 0 or < 0. `z` holds that of the
+  /// stage before, `f` a prediction, off by O(h^r), r ≥ 1. g is met to rounding, or, not `exact`, z
+  /// is off by O(h^min(2r + 1, r + 3)).
   virtual bool advance(double t, const double* y, double t_next, const double* base, double w,
-                       double* z, double* f) = 0;
+                       bool exact, double* z, double* f) = 0;
   /// Quaternions of y back to unit length.
   virtual void normalise(double* y) = 0;
   /// Which equations 0 = g depend on others at (t, y), or nearly so, as a clause; empty: none.

@@ -2,15 +2,22 @@
 // no Jacobian, g at rounding after every step.
 //
 // One step: k_1 = f(t, y_0, Z_1) from the step before; for i = 1 … 5 the stage Y_{i+1} by a, and
-// its Z by ā_{i+1}, which gives k_{i+1}; then y_1 = Ȳ_6, and k_7 = f(t_1, y_1, Z_7). Local error: h
-// Σ (b_j − b̂_j) k_j, over y, in the norm of WeightedNorm. Quaternions return to unit length after
-// a step; inside it they move as the equations move them, and |q| = 1 + O(h⁶). z at a step's end is
-// Z_7, of the order of y. A sample inside a step is a step of its own from the step's start, of
-// full order and on the constraint; where that fails, Hermite's cubic. Step: options.step, without
-// error control, where given; else PI control as in dp5. Source: tableau_hem5.h.
+// its Z by ā_{i+1}, which gives k_{i+1}; then y_1 = Ȳ_6, and k_7 = f(t_1, y_1, Z_7). Where g is not
+// linear in z, the equations of a stage are linearised once, about what the stages before foresee
+// of k_{i+1}: Z is then off by O(h⁵) (of the second stage, by O(h³), as harmless as its order), and
+// y_1 by O(h⁶). The last stage alone is solved to rounding, so that g(y_1) = 0 is.
+//
+// Gauge reset: σ leaves p before each step, which is a step from another y_0 of the same motion.
+// Local error: h Σ (b_j − b̂_j) k_j, over y, in the norm of WeightedNorm. Quaternions return to unit
+// length after a step; inside it they move as the equations move them, and |q| = 1 + O(h⁶). z at a
+// step's end is Z_7, of the order of y. A sample inside a step is a step of its own from the step's
+// start, of full order and on the constraint; where that fails, Hermite's cubic. Step:
+// options.step, without error control, where given; else PI control as in dp5. Source:
+// tableau_hem5.h.
 
 #include <momenta/core/scalar/all_finite.h>
 #include <momenta/dae/solver/fixed_grid.h>
+#include <momenta/dae/solver/gauge_symmetry.h>
 #include <momenta/dae/solver/half_explicit.h>
 #include <momenta/dae/solver/implicit_methods.h>
 #include <momenta/dae/solver/ode_restart.h>
@@ -37,6 +44,7 @@ class Hem5 {
        const IntegrationOptions& options)
       : system_(system),
         parts_(parts),
+        gauge_(dynamic_cast<GaugeSymmetry*>(&system)),
         options_(options),
         norm_(system, options.rtol, options.atol),
         grid_(t0, options.step),
@@ -86,6 +94,7 @@ class Hem5 {
 
   bool step(double& t, double end, std::string& cause) {
     const bool fixed = options_.step > 0;
+    if (gauge_ != nullptr && gauge_->resets()) gauge_->reset(t, now_.y.data(), now_.ydot.data());
     std::swap(old_, now_);
     while (true) {
       const double t1 = step_end(t, end);
@@ -185,6 +194,14 @@ class Hem5 {
         for (std::size_t i = 0; i < n_; ++i) out[i] += h * row[j] * k_[j][i];
   }
 
+  /// k_i by the polynomial through stages before it, off by O(h), O(h²), O(h²), O(h³), O(h⁴).
+  void foresee(std::size_t i) {
+    std::fill(k_[i].begin(), k_[i].end(), 0.0);
+    for (std::size_t j = 0; j < i; ++j)
+      if (const double share = TableauHem5::foreseen[i][j]; share != 0)
+        for (std::size_t n = 0; n < n_; ++n) k_[i][n] += share * k_[j][n];
+  }
+
   /// One step from `from` at t over h to t1; k_ are its seven stages.
   bool advance(double t, double h, double t1, const State& from, State& to, Counters& counters) {
     std::copy_n(from.ydot.data(), n_, k_[0].data());
@@ -195,12 +212,12 @@ class Hem5 {
       const bool last = i + 1 == TableauHem5::stages;
       combine(from, h, TableauDp5::a[i], i, stage_.data());
       combine(from, h, row, i, base_.data());
-      k_[i] = k_[i - 1];
+      foresee(i);
       ++counters.evaluations;
       ++counters.factorizations;
       if (!parts_.advance(t + TableauDp5::c[i] * h, stage_.data(),
-                          last ? t1 : t + TableauHem5::c_bar[i] * h, base_.data(), h * row[i], z,
-                          k_[i].data()))
+                          last ? t1 : t + TableauHem5::c_bar[i] * h, base_.data(), h * row[i], last,
+                          z, k_[i].data()))
         return cause_ = parts_.half_explicit_failure(), false;
     }
     const auto& b = TableauHem5::a_bar[TableauHem5::stages - 1];
@@ -215,6 +232,7 @@ class Hem5 {
 
   DaeSystem& system_;
   HalfExplicit& parts_;
+  GaugeSymmetry* gauge_;  ///< null: there is none
   const IntegrationOptions& options_;
   WeightedNorm norm_;
   FixedGrid grid_;

@@ -67,7 +67,8 @@ const std::vector<Integrator>& integrators() {
        false,
        false,
        "half-explicit Runge-Kutta, order 5",
-       {"acceleration-index2", "momentum-index2"}},
+       {"acceleration-index2", "momentum-index2"},
+       true},
   };
   return all;
 }

@@ -30,7 +30,7 @@ struct Integrator {
   bool projects;       ///< states may be corrected onto the constraints after each step
   std::string method;  ///< its description, one line
   std::vector<std::string> forms;  ///< the forms it takes; empty: all of its kind
-  bool shifts = false;  ///< of DAE methods: takes gauge reset, by shifting the values it remembers
+  bool resets = false;             ///< of DAE methods: takes gauge reset
 
   /// Whether it takes the named form; `dae` says whether that form is a DAE.
   bool takes_form(const std::string& wanted, bool dae) const {

@@ -42,6 +42,30 @@ struct TableauHem5 {
        (1466359 + 346957 * root19) / 6264075, (-29745873 - 7794954 * root19) / 442661300, 0},
       explicit_rk::TableauDp5::a[6],
   }};
+
+  /// Stages before stage i whose values foresee f there: k_i ≈ Σ_j ℓ_j(c_i) k_j by the polynomial
+  /// through them. The second, off by O(h²), serves the third alone.
+  static constexpr std::array<std::array<bool, stages>, stages> foresees{{
+      {},
+      {true},
+      {true, true},
+      {true, false, true},
+      {true, false, true, true},
+      {true, false, true, true, true},
+  }};
+  /// ℓ_j(c_i), zero where stage j is none of those.
+  static constexpr std::array<std::array<double, stages>, stages> foreseen = [] {
+    std::array<std::array<double, stages>, stages> all{};
+    const auto& c = explicit_rk::TableauDp5::c;
+    for (std::size_t i = 1; i < stages; ++i)
+      for (std::size_t j = 0; j < i; ++j) {
+        if (!foresees[i][j]) continue;
+        all[i][j] = 1;
+        for (std::size_t k = 0; k < i; ++k)
+          if (foresees[i][k] && k != j) all[i][j] *= (c[i] - c[k]) / (c[j] - c[k]);
+      }
+    return all;
+  }();
 };
 
 }  // namespace momenta

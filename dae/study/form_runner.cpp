@@ -28,9 +28,9 @@ std::string refusal(const Mechanism& mechanism, const Integrator& method, const 
   if (s.project && !dae && !method.projects)
     return "'" + method.name + "' takes no correction after each step: expected no --project" +
            (method.multistep ? ", it would spoil the method's history" : "");
-  if (dae && takes_gauge(s.form) && s.gauge == "reset" && !method.shifts)
+  if (dae && takes_gauge(s.form) && s.gauge == "reset" && !method.resets)
     return "gauge reset alters p after each step, and '" + method.name +
-           "' cannot follow: expected integrator bdf5, or gauge none or leak";
+           "' cannot follow: expected integrator bdf5 or hem5, or gauge none or leak";
   if (!dae && method.multistep && (s.gauge == "reset" || s.gauge == "flip"))
     return "'" + method.name + "' is a multistep method: gauge " + s.gauge +
            " after each step would spoil its history; use leak or none";

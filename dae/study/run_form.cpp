@@ -1,10 +1,10 @@
 #include <momenta/core/arguments.h>
 #include <momenta/dae/assembly/drive_reach.h>
 #include <momenta/dae/form/ode_form.h>
-#include <momenta/dae/kkt/loop_rank.h>
 #include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/solver/stopping.h>
 #include <momenta/dae/study/form_runner.h>
+#include <momenta/dae/study/rank_at_start.h>
 #include <momenta/dae/study/run_monitor.h>
 #include <momenta/dae/study/run_settings.h>
 
@@ -61,12 +61,6 @@ void expect_start(const Mechanism& mechanism, const Start& s) {
       if (!std::isfinite(x[i]))
         throw std::invalid_argument("run_form: " + not_finite(name, i, x[i]));
   }
-}
-
-LoopRank rank_at(const Mechanism& mechanism, const Start& start) {
-  const auto e = mechanism.evaluation<double>();
-  e->place(start.t, start.q.data());
-  return loop_rank(mechanism, *e, Judged::dependence);
 }
 
 /// Rank, redundant rows and residue at the start.

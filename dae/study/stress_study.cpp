@@ -96,7 +96,7 @@ RunSettings settings_of(const Contestant& c, const Mechanism& mechanism, double 
   s.integrator = c.integrator;
   const std::string leak = defaults.leak ? Gauge{Gauge::Kind::leak, *defaults.leak}.text() : "leak";
   if (takes_gauge(c.form) && loops)
-    s.gauge = (dae || method.multistep) && !method.shifts ? leak : "reset";
+    s.gauge = (dae || method.multistep) && !method.resets ? leak : "reset";
   s.project = !dae && loops && method.projects && c.form == "momentum";
   s.rtol = s.atol = rtol;
   if (method.step == Integrator::Step::fixed)

@@ -1,5 +1,6 @@
 #include <momenta/dae/cut/integrated_scene.h>
 #include <momenta/dae/solver/integrators.h>
+#include <momenta/dae/study/rank_at_start.h>
 #include <momenta/dae/study/run_record.h>
 #include <momenta/dae/study/work_study.h>
 
@@ -10,8 +11,15 @@
 namespace momenta {
 namespace {
 
-RunSettings ladder(const Mechanism& mechanism, const WorkRequest& request, const std::string& form,
-                   const std::string& method) {
+/// Whether a method for DAEs had better reset the gauge than leak. Half-explicit stages on
+/// redundant loops keep σ near that of the stage before, which a reset takes away.
+bool had_better_reset(const Mechanism& mechanism, const Start& start, const Integrator& method) {
+  if (!method.resets || method.multistep) return method.resets;
+  return rank_at(mechanism, start).rank == mechanism.m();
+}
+
+RunSettings ladder(const Mechanism& mechanism, const Start& start, const WorkRequest& request,
+                   const std::string& form, const std::string& method) {
   const bool loops = mechanism.m() > 0, dae = is_dae_form(form),
              one_step = !dae && !integrator(method).multistep;
   RunSettings s;
@@ -22,16 +30,17 @@ RunSettings ladder(const Mechanism& mechanism, const WorkRequest& request, const
   // What the theory of each recommends: a one-step method may reset the gauge and correct
   // positions, which makes `projected` of `acceleration`; others have feedback instead.
   if (takes_gauge(form) && loops)
-    s.gauge = !request.gauge.empty()                  ? request.gauge
-              : one_step || integrator(method).shifts ? "reset"
-                                                      : "leak";
+    s.gauge = !request.gauge.empty()                                               ? request.gauge
+              : one_step || had_better_reset(mechanism, start, integrator(method)) ? "reset"
+                                                                                   : "leak";
   s.project = !dae && integrator(method).projects && loops &&
               (form == "momentum" || form == "acceleration");
   return s;
 }
 
 /// One ladder each: settings but for tolerance and step.
-std::vector<RunSettings> plan_ladders(const Mechanism& mechanism, const WorkRequest& request) {
+std::vector<RunSettings> plan_ladders(const Mechanism& mechanism, const Start& start,
+                                      const WorkRequest& request) {
   const bool loops = mechanism.m() > 0;
   // Of the methods asked for, those a form takes; its default where there is none among them.
   const auto methods_of = [&](const std::string& form) {
@@ -52,7 +61,7 @@ std::vector<RunSettings> plan_ladders(const Mechanism& mechanism, const WorkRequ
       // Not twice the same, and not what the method cannot take, unless asked for.
       if (!asked && loops && form == "acceleration" && one_step) continue;
       if (!asked && needs_one_step_method(form) && !one_step) continue;
-      ladders.push_back(ladder(mechanism, request, form, method));
+      ladders.push_back(ladder(mechanism, start, request, form, method));
     }
   }
   return ladders;
@@ -62,7 +71,7 @@ std::vector<RunSettings> plan_ladders(const Mechanism& mechanism, const WorkRequ
 
 std::vector<RunResult> run_work_study(const Mechanism& mechanism, const Start& start,
                                       const WorkRequest& request) {
-  auto ladders = plan_ladders(mechanism, request);
+  auto ladders = plan_ladders(mechanism, start, request);
   const IntegratedScene integrated(mechanism, start);
   std::vector<RunResult> results;
   bool going = true;
@@ -102,7 +111,7 @@ std::vector<RunResult> run_work_study(const Mechanism& mechanism, const Start& s
                                    [](const RunResult& r) { return !std::isnan(r.stiff_from); });
     if (stiff && request.integrators.empty() && !needs_one_step_method(ladders[i].form))
       ladders.insert(ladders.begin() + static_cast<long>(i) + 1,
-                     ladder(mechanism, request, ladders[i].form, "bdf"));
+                     ladder(mechanism, start, request, ladders[i].form, "bdf"));
   }
   if (going)
     time_runs(integrated.mechanism(), integrated.start(), results,

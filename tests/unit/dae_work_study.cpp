@@ -6,14 +6,19 @@
 #include <gtest/gtest.h>
 #include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/kkt/loop_solver.h>
+#include <momenta/dae/measure/observed_order.h>
 #include <momenta/dae/report/advice.h>
+#include <momenta/dae/report/order_table.h>
 #include <momenta/dae/solver/extrapolation.h>
 #include <momenta/dae/solver/radau_collocation.h>
 #include <momenta/dae/study/own_reference.h>
 #include <momenta/dae/study/quad_motion.h>
+#include <momenta/dae/study/run_form.h>
 #include <momenta/dae/study/work_study.h>
 
+#include <cmath>
 #include <filesystem>
+#include <sstream>
 
 namespace momenta::dae_work_study {
 namespace {
@@ -240,6 +245,129 @@ TEST(WorkStudy, LaddersHaveTheirRungsAndErrorsFollow) {
   }
   EXPECT_LT(runs[2].position_error_max, 1e-2 * runs[0].position_error_max);
   EXPECT_NEAR(std::log2(runs[3].position_error_max / runs[4].position_error_max), 4, 1);  // rk4
+}
+
+// C steps^−4 above a floor of rounding that grows with the steps: the floor is left out, and so are
+// rungs that do not yet converge, and what was not measured.
+TEST(ObservedOrder, IsThatOfAPowerAboveRounding) {
+  std::vector<double> steps, errors;
+  for (int i = 0; i < 14; ++i) {
+    const double n = 25 * std::pow(2, i);
+    steps.push_back(n);
+    errors.push_back(i < 2 ? 0.5 : 3e4 / std::pow(n, 4) + 1e-16 * n);
+  }
+  errors[4] = not_measured;
+  const ObservedOrder found = observed_order(steps, errors);
+  EXPECT_NEAR(found.order, 4, 0.1);
+  EXPECT_LT(found.half_range, 0.2);
+  EXPECT_GT(found.rungs, 5);
+  EXPECT_LT(found.rungs, 11);
+  EXPECT_TRUE(std::isnan(observed_order({10, 20}, {1e-3, 1e-4}).order));
+  EXPECT_TRUE(std::isnan(observed_order(steps, std::vector<double>(14, not_measured)).order));
+}
+
+/// Of one ladder of fixed steps on the four-bar for 1 s.
+std::vector<RunResult> rk4_ladder(const Mechanism& mechanism, const std::string& form,
+                                  const std::string& gauge, const Reference& reference) {
+  WorkRequest request;
+  request.forms = {form};
+  request.integrators = {"rk4"};
+  request.gauge = gauge;
+  request.steps = {0.02, 0.01, 0.005, 0.0025, 0.00125};
+  request.end_time = 1;
+  request.reference = &reference;
+  request.timing = Timing::none;
+  return run_work_study(mechanism, equations::start_of(mechanism), request);
+}
+
+// λ of (3) and σ have the order of the method, and so has an own λ by differences of the sixth
+// order; a table that says so has it.
+TEST(ObservedOrder, OfForcesAndImpulsesIsThatOfTheMethod) {
+  const Mechanism mechanism(read_scene(example("four_bar", "scene.toml")));
+  Reference reference(example("four_bar", "multipliers.csv"));
+  reference.bind(trajectory_columns(mechanism));
+  const auto runs = rk4_ladder(mechanism, "momentum", "none", reference);
+  std::vector<double> steps, forces, own;
+  for (const RunResult& run : runs) {
+    ASSERT_EQ(run.status, "done") << run.reason;
+    steps.push_back(static_cast<double>(run.counters.steps));
+    forces.push_back(run.force_error_max);
+    own.push_back(run.multiplier_error_max);
+  }
+  EXPECT_NEAR(observed_order(steps, forces).order, 4, 0.6);
+  EXPECT_NEAR(observed_order(steps, own).order, 4, 0.6);
+  StudyResult study;
+  study.drift_study = false;
+  study.runs = runs;
+  std::istringstream lines(order_table(study));
+  std::string line, form, method, gauge, q, u, force, form_own, sigma;
+  std::getline(lines, line);
+  lines >> form >> method >> gauge >> q >> u >> force >> form_own >> sigma;
+  EXPECT_EQ(form, "momentum+project");
+  EXPECT_EQ(gauge, "none");
+  EXPECT_NEAR(std::stod(force), observed_order(steps, forces).order, 0.051);
+  EXPECT_NEAR(std::stod(form_own), observed_order(steps, own).order, 0.051);
+  EXPECT_NEAR(std::stod(sigma), 4, 0.6);
+  // No impulse of a gauge that resets it, none of velocity forms.
+  study.runs = rk4_ladder(mechanism, "momentum", "reset", reference);
+  EXPECT_NE(order_table(study).find("  -\n"), std::string::npos) << order_table(study);
+}
+
+// What is said of a gauge reads back as that gauge, a leak without a rate too.
+TEST(WorkStudy, LeaksAtTheRateOfTheStart) {
+  for (const char* text : {"none", "reset", "flip", "leak", "leak:2.5"})
+    EXPECT_EQ(parse_gauge(text).text(), text);
+  const Mechanism mechanism(read_scene(example("four_bar", "scene.toml")));
+  WorkRequest request;
+  request.forms = {"momentum"};
+  request.gauge = parse_gauge("leak").text();
+  request.tolerances = {1e-5};
+  request.end_time = 0.1;
+  request.timing = Timing::none;
+  const auto runs = run_work_study(mechanism, equations::start_of(mechanism), request);
+  ASSERT_EQ(runs.size(), 1u);
+  EXPECT_EQ(runs.front().status, "done");
+  EXPECT_EQ(runs.front().settings.gauge.rfind("leak:", 0), 0u) << runs.front().settings.gauge;
+}
+
+// Reactions are linear in u̇ and λ of (3), and have their order.
+TEST(ObservedOrder, OfReactionsIsThatOfTheMethod) {
+  const Mechanism mechanism(read_scene(example("four_bar", "scene.toml")));
+  const auto run = [&](const std::string& integrator, double step, double tolerance) {
+    RunRequest request;
+    request.settings.integrator = integrator;
+    request.settings.gauge = "reset";
+    request.settings.step = step;
+    request.settings.rtol = request.settings.atol = tolerance;
+    request.settings.end_time = 1;
+    request.settings.samples = 20;
+    request.reactions = true;
+    request.keep_trajectory = true;
+    return run_form(mechanism, equations::start_of(mechanism), request).trajectory;
+  };
+  const Trajectory exact = run("vern9", 0, 1e-13);
+  std::vector<double> steps, errors;
+  std::size_t compared = 0;
+  for (const double h : {0.02, 0.01, 0.005, 0.0025}) {
+    const Trajectory found = run("rk4", h, 0);
+    double error = 0;
+    compared = 0;
+    for (std::size_t c = 0; c < found.columns.size(); ++c) {
+      const std::string& name = found.columns[c];
+      if (name.find("[N") == std::string::npos || name.find("lambda") != std::string::npos)
+        continue;
+      ++compared;
+      for (std::size_t i = 0; i < found.rows.size(); ++i) {
+        const double truth = exact.rows[i][c];
+        if (!std::isnan(truth))
+          error = std::max(error, std::abs(found.rows[i][c] - truth) / (1 + std::abs(truth)));
+      }
+    }
+    steps.push_back(1 / h);
+    errors.push_back(error);
+  }
+  EXPECT_GE(compared, 12u);
+  EXPECT_NEAR(observed_order(steps, errors).order, 4, 0.6);
 }
 
 }  // namespace

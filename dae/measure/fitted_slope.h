@@ -1,0 +1,39 @@
+#pragma once
+// The slope of a line through points by least squares, and how far slopes of the two halves differ
+// from it: what growth exponents and observed orders are.
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+namespace momenta {
+
+/// Of points first ≤ i < last; O(last − first).
+inline double fitted_slope(const std::vector<double>& x, const std::vector<double>& y,
+                           std::size_t first, std::size_t last) {
+  const auto n = static_cast<double>(last - first);
+  double sx = 0, sy = 0, sxx = 0, sxy = 0;
+  for (std::size_t i = first; i < last; ++i) {
+    sx += x[i];
+    sy += y[i];
+    sxx += x[i] * x[i];
+    sxy += x[i] * y[i];
+  }
+  return (n * sxy - sx * sy) / (n * sxx - sx * sx);
+}
+
+struct SlopeAndSpread {
+  double slope;       ///< of all points
+  double half_range;  ///< half the spread of the slopes of the whole and of its two halves
+};
+
+/// Of points whose first `half` are the first half; the second begins with point n − half.
+inline SlopeAndSpread fitted_slopes(const std::vector<double>& x, const std::vector<double>& y,
+                                    std::size_t half) {
+  const std::size_t n = x.size();
+  const double whole = fitted_slope(x, y, 0, n), early = fitted_slope(x, y, 0, half),
+               late = fitted_slope(x, y, n - half, n);
+  return {whole, 0.5 * (std::max({whole, early, late}) - std::min({whole, early, late}))};
+}
+
+}  // namespace momenta

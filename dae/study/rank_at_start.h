@@ -1,0 +1,17 @@
+#pragma once
+// The rank of the loop equations at a start.
+
+#include <momenta/dae/assembly/assembly.h>
+#include <momenta/dae/kkt/loop_rank.h>
+#include <momenta/dae/mechanism.h>
+
+namespace momenta {
+
+/// Of Φ_q at (t, q) of the start; singular values are not known. O(m² nv).
+inline LoopRank rank_at(const Mechanism& mechanism, const Start& start) {
+  const auto e = mechanism.evaluation<double>();
+  e->place(start.t, start.q.data());
+  return loop_rank(mechanism, *e, Judged::dependence);
+}
+
+}  // namespace momenta
