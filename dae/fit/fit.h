@@ -53,7 +53,7 @@ struct WantedErrors {
 
 /// What came of one start.
 struct FitStart {
-  Eigen::VectorXd from, to;  ///< θ; `to` empty where the start is not possible
+  Eigen::VectorXd from, to;          ///< θ; `to` empty where the start is not possible
   double cost = WantedErrors::none;  ///< ½ |r|² at its end
   int iterations = 0;                ///< of the method
   /// Of r with ∂r/∂x, as of LeastSquaresEnd: 0 at a minimum.
@@ -68,17 +68,17 @@ struct FitResult {
   Column swept;                             ///< the swept coordinate
   std::uint64_t seed = 1;                   ///< as asked
   Eigen::VectorXd own, found;               ///< θ of the scene, and the best
-  WantedErrors before, after;  ///< of the scene as it is: NaN where a pose is not reached
-  std::string why_not_before;  ///< which; else empty
+  WantedErrors before, after;      ///< of the scene as it is: NaN where a pose is not reached
+  std::string why_not_before;      ///< which; else empty
   WantedPoses wanted;              ///< as asked
   std::vector<double> places;      ///< s of each pose [rad or m], of the best
   Eigen::MatrixXd reached_before;  ///< poses × quantities; empty where one is not reached
   Eigen::MatrixXd reached;         ///< of the best
   std::vector<FitStart> starts;    ///< in their order
-  std::size_t best = 0;  ///< place among them
-  long evaluations = 0;  ///< of r, those with derivatives included
-  long derivatives = 0;  ///< of ∂r/∂x
-  bool stopped = false;  ///< by `progress`
+  std::size_t best = 0;            ///< place among them
+  long evaluations = 0;            ///< of r, those with derivatives included
+  long derivatives = 0;            ///< of ∂r/∂x
+  bool stopped = false;            ///< by `progress`
   /// Groups of parameters that can change together so that what is wanted does not, to first order:
   /// one sentence; empty: each of them matters by itself.
   std::string undetermined;

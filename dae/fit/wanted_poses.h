@@ -16,11 +16,11 @@ namespace momenta {
 struct WantedPoses {
   /// A column: a coordinate of q, or a component of the position of a marker.
   struct Quantity {
-    std::string name;        ///< "P.x"
-    std::string unit;        ///< "m"
-    int coordinate = -1;     ///< place in q; −1: of a marker
-    int marker = -1;         ///< place among the markers; −1: a coordinate
-    int component = 0;       ///< of the marker's position: 0, 1, 2 for x, y, z
+    std::string name;     ///< "P.x"
+    std::string unit;     ///< "m"
+    int coordinate = -1;  ///< place in q; −1: of a marker
+    int marker = -1;      ///< place among the markers; −1: a coordinate
+    int component = 0;    ///< of the marker's position: 0, 1, 2 for x, y, z
   };
   std::string file;                  ///< for messages
   std::vector<Quantity> quantities;  ///< without the swept coordinate

@@ -213,7 +213,7 @@ int answer(int argc, char** argv) {
   within(fit_app->add_option("--iterations", fit_options.iterations, "Of each start, at the most"),
          "N", 1, 1000000)
       ->capture_default_str();
-  fit_app->add_option("--out", o.out, "Directory for fit.csv, fit.json, fitted.toml")
+  fit_app->add_option("--out", o.out, "Directory for fitted.toml, fit.csv, fit.json, index.html")
       ->type_name("DIR");
   CLI::App* view_verb =
       app.add_subcommand("view", "A page that shows the assembled mechanism, to turn and zoom");

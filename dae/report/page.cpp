@@ -1,6 +1,8 @@
 #include <momenta/dae/report/advice.h>
 #include <momenta/dae/report/conclusion.h>
 #include <momenta/dae/report/embedded.h>
+#include <momenta/dae/report/fit_picture.h>
+#include <momenta/dae/report/fit_report.h>
 #include <momenta/dae/report/json.h>
 #include <momenta/dae/report/modes_report.h>
 #include <momenta/dae/report/move_report.h>
@@ -151,6 +153,16 @@ std::string move_page(const StudyResult& study, const MoveResult& result) {
   Json data = page_data(study);
   data["timeline"] = move_charts(result);
   return page(study, "Poses", marked_up(move_in_words(result)), "", data,
+              script({embedded::timeline_js(), embedded::run_page_js()}));
+}
+
+std::string fit_page(const StudyResult& study, const FitResult& result, double first) {
+  Json data = page_data(study);
+  data["timeline"] = fit_charts(result, first);
+  if (data.contains("picture") && data["picture"].contains("bodies"))
+    for (Json& body : data["picture"]["bodies"])
+      if (body["name"].get<std::string>().starts_with(before_mark)) body["pale"] = true;
+  return page(study, "Synthesis", marked_up(fit_in_words(result)), "", data,
               script({embedded::timeline_js(), embedded::run_page_js()}));
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 // index.html of a study: one file that opens with the network off.
 
+#include <momenta/dae/fit/fit.h>
 #include <momenta/dae/kinematics/move.h>
 #include <momenta/dae/study/modes_study.h>
 #include <momenta/dae/study/run_result.h>
@@ -26,5 +27,9 @@ std::string modes_page(const StudyResult&, const ModesResult&);
 
 /// Of a mechanism that is moved: its poses beside curves over the travel of the swept coordinate.
 std::string move_page(const StudyResult&, const MoveResult&);
+
+/// Of a fitted mechanism: it and the one before, moving on top of each other, beside what is
+/// wanted; `first` of FitPicture.
+std::string fit_page(const StudyResult&, const FitResult&, double first);
 
 }  // namespace momenta
