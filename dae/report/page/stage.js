@@ -140,7 +140,7 @@ function stageOf(canvas, film, camera, show, magnified) {
         } });
       }
       const metres = ["cylinder", "box", "sphere"].includes(body.shape) ? 0.5 * barWidth : barWidth;
-      const colour = body.pale ? blend(colours.body, colours.ground, 0.65) : colours.body;
+      const colour = body.pale ? colours.rule : colours.body;
       for (const [a, b] of bars) bar(place(a), place(b), colour, metres, 2, camera.planar ? 9 : 13);
       if (show.frames) {
         const origin = place([0, 0, 0]);
