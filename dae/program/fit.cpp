@@ -32,7 +32,9 @@ int fit(const Options& o, const FitOptions& options) {
   }
   const ParametricMechanism family(reading::text_of(o.scene), o.scene.string(), settings_of(o),
                                    names, {.algebra = mechanism_options(o).algebra});
-  const WantedPoses wanted = read_wanted(options.to, *family.at(family.own()), options.sweep);
+  const WantedPoses wanted =
+      read_wanted(options.to.empty() ? o.scene.parent_path() / "wanted.csv" : options.to,
+                  *family.at(family.own()), options.sweep);
   ProgressLine line(o.quiet);
   request.progress = [&](int start, double least) {
     line.show("start " + std::to_string(start + 1) + " of " + std::to_string(options.starts) +

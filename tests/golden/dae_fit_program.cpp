@@ -11,7 +11,7 @@ namespace {
 using FitOfTheProgram = Program;
 
 std::string line() {
-  return std::string(MOMENTA_SOURCE_DIR) + "/examples/straight_line/line.csv";
+  return std::string(MOMENTA_SOURCE_DIR) + "/examples/straight_line/wanted.csv";
 }
 
 TEST_F(FitOfTheProgram, FindsHoeckensLinkageAndWritesItsScene) {
