@@ -5,6 +5,7 @@
 #include <momenta/core/scalar/quad.h>
 #include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/fit/fit.h>
+#include <momenta/dae/kinematics/move.h>
 #include <momenta/dae/report/fit_picture.h>
 
 #include <cmath>
@@ -512,6 +513,21 @@ TEST(Fit, FreePlacesFollow) {
   const FitResult r = fit(turned, wanted, varied({"crank", "tilt"}));
   EXPECT_NEAR(r.found[0], 1.1, 1e-10);
   EXPECT_EQ(r.undetermined, "What is wanted does not depend on 'tilt'.");
+}
+
+// Poses are reached up to where the swept coordinate turns back, and no further.
+TEST(Fit, PosesAreReachedUpToDeadPoints) {
+  const ParametricMechanism family(four_bar(), "four-bar", {}, {"crank"});
+  const auto mechanism = family.at(family.own());
+  MoveRequest request;
+  request.sweep = {{"C", 1}};
+  const Assembly a = assemble(*mechanism, Assembled::rates);
+  const Reach reach = move(*mechanism, 0, a.start.q, request).reach[2];
+  SweptPoses poses(*mechanism, "C");
+  std::vector<VectorXd> q;
+  EXPECT_TRUE(poses.reach({reach.most - 1e-6, reach.least + 1e-6}, q)) << poses.why();
+  EXPECT_FALSE(poses.reach({reach.most + 1e-6}, q));
+  EXPECT_FALSE(poses.reach({reach.least - 1e-6}, q));
 }
 
 // The page's film: in every frame both mechanisms are closed, their cranks stand at one place, and
