@@ -67,7 +67,7 @@ class Search {
     result_.swept = own->coordinate_columns()[static_cast<std::size_t>(
         coordinate_named(*own, request_.sweep).first)];
     VectorXd x, r;
-    if (error_.start(family_.own(), x) && evaluate(x, r, nullptr)) {
+    if (error_.start(family_.own(), x) && settle_places(x) && evaluate(x, r, nullptr)) {
       result_.before = errors_of(result_.wanted, error_.reached(), r);
       result_.reached_before = error_.reached();
     } else {
@@ -102,6 +102,25 @@ class Search {
     const bool there_is = error_.evaluate(x, r, jacobian);
     if (!there_is) refused_ = error_.why();
     return there_is;
+  }
+
+  /// Free places to where the path is nearest, for the parameters as they are.
+  bool settle_places(VectorXd& x) {
+    const Eigen::Index free = x.size() - family_.own().size();
+    if (free == 0) return true;
+    VectorXd places = x.tail(free), whole = x;
+    const VectorXd most = VectorXd::Constant(free, INFINITY);
+    const LeastSquaresEnd end = least_squares_search(
+        [&](const VectorXd& at, VectorXd& r, MatrixXd* jacobian) {
+          whole.tail(free) = at;
+          MatrixXd all;
+          if (!evaluate(whole, r, jacobian ? &all : nullptr)) return false;
+          if (jacobian) *jacobian = all.rightCols(free);
+          return true;
+        },
+        -most, most, request_.most_iterations, places);
+    x.tail(free) = places;
+    return end.began;
   }
 
   /// Between the bounds; the same numbers on every machine.

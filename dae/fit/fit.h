@@ -45,15 +45,17 @@ struct FitRequest {
 struct WantedErrors {
   /// Not measured.
   static constexpr double none = std::numeric_limits<double>::quiet_NaN();
-  double cost = none;                          ///< ½ |r|² [1]
-  double length_rms = none;                    ///< over all wanted lengths [m]; NaN: there are none
-  double length_most = none;                   ///< the largest [m]
-  double angle_rms = none, angle_most = none;  ///< the same of angles [rad]
+  double cost = none;         ///< ½ |r|² [1]
+  double length_rms = none;   ///< over all wanted lengths [m]; NaN: there are none
+  double length_most = none;  ///< the largest [m]
+  double angle_rms = none;    ///< the same of angles [rad]
+  double angle_most = none;   ///< the largest [rad]
 };
 
 /// What came of one start.
 struct FitStart {
-  Eigen::VectorXd from, to;          ///< θ; `to` empty where the start is not possible
+  Eigen::VectorXd from;              ///< θ where it began
+  Eigen::VectorXd to;                ///< θ where it ended; empty where the start is not possible
   double cost = WantedErrors::none;  ///< ½ |r|² at its end
   int iterations = 0;                ///< of the method
   /// Of r with ∂r/∂x, as of LeastSquaresEnd: 0 at a minimum.
@@ -62,13 +64,16 @@ struct FitStart {
   std::string why;         ///< why not, one sentence without its full stop; else empty
 };
 
+/// What a fit found.
 struct FitResult {
   std::string scene;                        ///< its name
   std::vector<FittedParameter> parameters;  ///< θ, as asked
   Column swept;                             ///< the swept coordinate
   std::uint64_t seed = 1;                   ///< as asked
-  Eigen::VectorXd own, found;               ///< θ of the scene, and the best
-  WantedErrors before, after;      ///< of the scene as it is: NaN where a pose is not reached
+  Eigen::VectorXd own;                      ///< θ of the scene
+  Eigen::VectorXd found;                    ///< the best θ
+  WantedErrors before;             ///< of the scene as it is: NaN where a pose is not reached
+  WantedErrors after;              ///< of the best
   std::string why_not_before;      ///< which; else empty
   WantedPoses wanted;              ///< as asked
   std::vector<double> places;      ///< s of each pose [rad or m], of the best

@@ -221,9 +221,7 @@ int answer(int argc, char** argv) {
       ->type_name("DIR");
   CLI::App* fit_app =
       app.add_subcommand("fit", "Parameters for which a mechanism does what is wanted of it");
-  fit_app->footer(
-      "Example: momenta fit examples/straight_line/scene.toml --vary coupler,rocker,reach "
-      "--sweep O --to examples/straight_line/line.csv");
+  fit_app->footer("Example: momenta fit examples/straight_line/scene.toml --vary reach --sweep O");
   FitOptions fit_options;
   add_scene(*fit_app, o);
   for (const char* unused : {"--kkt", "--cut", "--at"})
@@ -239,9 +237,9 @@ int answer(int argc, char** argv) {
   fit_app
       ->add_option("--to", fit_options.to,
                    "What is wanted, a line a pose: coordinates and markers, as in move.csv, where "
-                   "the swept coordinate stands if that matters")
-      ->type_name("FILE")
-      ->required();
+                   "the swept coordinate stands if that matters (default: wanted.csv beside the "
+                   "scene)")
+      ->type_name("FILE");
   within(fit_app->add_option("--starts", fit_options.starts,
                              "The scene's own and others drawn from the ranges"),
          "N", 1, 100000)
@@ -252,7 +250,7 @@ int answer(int argc, char** argv) {
   within(fit_app->add_option("--iterations", fit_options.iterations, "Of each start, at the most"),
          "N", 1, 1000000)
       ->capture_default_str();
-  fit_app->add_option("--out", o.out, "Directory for fit.csv, fit.json, fitted.toml")
+  fit_app->add_option("--out", o.out, "Directory for fitted.toml, fit.csv, fit.json, index.html")
       ->type_name("DIR");
   CLI::App* view_verb =
       app.add_subcommand("view", "A page that shows the assembled mechanism, to turn and zoom");

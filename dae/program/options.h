@@ -210,7 +210,7 @@ int effort(const Options& o, const EffortOptions& e);
 struct FitOptions {
   std::string vary;          ///< NAME=FROM:TO, comma-separated
   std::string sweep;         ///< a coordinate
-  std::filesystem::path to;  ///< the file of wanted poses
+  std::filesystem::path to;  ///< the file of wanted poses; empty: wanted.csv beside the scene
   int starts = 1, iterations = 500;
   std::uint64_t seed = 1;
 };

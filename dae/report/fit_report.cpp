@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace momenta {
 namespace {
@@ -142,6 +143,41 @@ Json fit_json(const FitResult& r) {
           {"stopped", r.stopped},
           {"evaluations", r.evaluations},
           {"derivatives", r.derivatives}};
+}
+
+Json fit_charts(const FitResult& r, double first) {
+  std::vector<std::size_t> order(r.places.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return r.places[a] < r.places[b]; });
+  Json t = Json::array();
+  for (const std::size_t i : order) t.push_back(number_or_null(r.places[i] - first));
+  Json charts = Json::array();
+  for (Eigen::Index k = 0; k < r.wanted.values.cols(); ++k) {
+    const auto& quantity = r.wanted.quantities[static_cast<std::size_t>(k)];
+    Json curves = Json::array();
+    const auto add = [&](const char* name, const Eigen::MatrixXd& values, int colour, Json dash) {
+      Json y = Json::array();
+      for (const std::size_t i : order)
+        y.push_back(number_or_null(values(static_cast<Eigen::Index>(i), k)));
+      curves.push_back({{"name", name}, {"y", y}, {"colour", colour}, {"dash", dash}});
+    };
+    add("wanted", r.wanted.values, 1, Json::array());
+    add("found", r.reached, 0, Json{6, 4});
+    if (r.reached_before.size() > 0) add("before", r.reached_before, 2, Json{2, 4});
+    const std::string title = quantity.name + " [" + quantity.unit + "]";
+    charts.push_back({{"key", quantity.name},
+                      {"title", title},
+                      {"x_title", first == 0 ? r.swept.label()
+                                             : r.swept.name + " from " + compact(first, 6) + " [" +
+                                                   r.swept.unit + "]"},
+                      {"y_title", title},
+                      {"unit", quantity.unit},
+                      {"log", false},
+                      {"t", t},
+                      {"curves", curves}});
+  }
+  return charts;
 }
 
 }  // namespace momenta

@@ -21,4 +21,9 @@ std::string fit_csv(const FitResult& result);
 
 nlohmann::ordered_json fit_json(const FitResult& result);
 
+/// What is wanted, what the mechanism found does and what the one before does, pose by pose over
+/// the way of the swept coordinate from `first`, one chart a quantity, as pages have them
+/// (dae/report/page/timeline.js).
+nlohmann::ordered_json fit_charts(const FitResult& result, double first);
+
 }  // namespace momenta

@@ -2,6 +2,8 @@
 #include <momenta/dae/report/conclusion.h>
 #include <momenta/dae/report/effort_report.h>
 #include <momenta/dae/report/embedded.h>
+#include <momenta/dae/report/fit_picture.h>
+#include <momenta/dae/report/fit_report.h>
 #include <momenta/dae/report/json.h>
 #include <momenta/dae/report/modes_report.h>
 #include <momenta/dae/report/move_report.h>
@@ -160,6 +162,16 @@ std::string effort_page(const StudyResult& study, const EffortResult& result) {
   data["timeline"] = effort_charts(result);
   return page(study, result.poses_alone ? "Static balance" : "Inverse dynamics",
               marked_up(effort_in_words(result)), "", data,
+              script({embedded::timeline_js(), embedded::run_page_js()}));
+}
+
+std::string fit_page(const StudyResult& study, const FitResult& result, double first) {
+  Json data = page_data(study);
+  data["timeline"] = fit_charts(result, first);
+  if (data.contains("picture") && data["picture"].contains("bodies"))
+    for (Json& body : data["picture"]["bodies"])
+      if (body["name"].get<std::string>().starts_with(before_mark)) body["pale"] = true;
+  return page(study, "Synthesis", marked_up(fit_in_words(result)), "", data,
               script({embedded::timeline_js(), embedded::run_page_js()}));
 }
 

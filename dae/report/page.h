@@ -2,6 +2,7 @@
 // index.html of a study: one file that opens with the network off.
 
 #include <momenta/dae/effort/effort.h>
+#include <momenta/dae/fit/fit.h>
 #include <momenta/dae/kinematics/move.h>
 #include <momenta/dae/study/modes_study.h>
 #include <momenta/dae/study/run_result.h>
@@ -30,5 +31,9 @@ std::string move_page(const StudyResult&, const MoveResult&);
 
 /// Of efforts along a motion: the mechanism moving beside their curves over time.
 std::string effort_page(const StudyResult&, const EffortResult&);
+
+/// Of a fitted mechanism: it and the one before, moving on top of each other, beside what is
+/// wanted; `first` of FitPicture.
+std::string fit_page(const StudyResult&, const FitResult&, double first);
 
 }  // namespace momenta

@@ -5,6 +5,8 @@
 #include <momenta/core/scalar/quad.h>
 #include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/fit/fit.h>
+#include <momenta/dae/kinematics/move.h>
+#include <momenta/dae/report/fit_picture.h>
 
 #include <cmath>
 #include <fstream>
@@ -487,6 +489,82 @@ TEST(Fit, TheSceneKeepsItsText) {
   const Scene scene = parse_scene(heavy.text(VectorXd::Constant(1, 1.5)), "written", {});
   EXPECT_EQ(scene.bodies[0].mass, 7);
   EXPECT_EQ(scene.joints[1].origin_parent[0], 1.5);
+}
+
+// Where the path alone counts, places begin at the nearest of those a degree apart; and a turn of
+// the crank's zero changes no path of a point of the crank, once places follow.
+TEST(Fit, FreePlacesFollow) {
+  const ParametricMechanism family(four_bar(), "four-bar", {}, all_names);
+  const std::vector<double> places{-1.1, -0.2, 0.7, 1.9, 2.6};
+  WantedError error(family, "O", wanted_by_trigonometry(family.own(), places, false),
+                    family.own().cwiseAbs());
+  VectorXd x;
+  ASSERT_TRUE(error.start(family.own(), x)) << error.why();
+  for (std::size_t i = 0; i < places.size(); ++i)
+    EXPECT_NEAR(x[family.own().size() + static_cast<Eigen::Index>(i)], places[i], 0.51 * pi / 180);
+  const ParametricMechanism turned(
+      four_bar() + "[[marker]]\nname = \"K\"\nbody = \"crank\"\npoint = [\"crank\", 0, 0]\n",
+      "four-bar", {}, {"crank", "tilt"});
+  WantedPoses wanted;
+  wanted.quantities = {{"K.x", "m", -1, 1, 0}, {"K.y", "m", -1, 1, 1}};
+  wanted.values.resize(4, 2);
+  for (int i = 0; i < 4; ++i)
+    wanted.values.row(i) << 0.2 + 1.1 * std::cos(0.4 * i), -0.3 + 1.1 * std::sin(0.4 * i);
+  const FitResult r = fit(turned, wanted, varied({"crank", "tilt"}));
+  EXPECT_NEAR(r.found[0], 1.1, 1e-10);
+  EXPECT_EQ(r.undetermined, "What is wanted does not depend on 'tilt'.");
+}
+
+// Poses are reached up to where the swept coordinate turns back, and no further.
+TEST(Fit, PosesAreReachedUpToDeadPoints) {
+  const ParametricMechanism family(four_bar(), "four-bar", {}, {"crank"});
+  const auto mechanism = family.at(family.own());
+  MoveRequest request;
+  request.sweep = {{"C", 1}};
+  const Assembly a = assemble(*mechanism, Assembled::rates);
+  const Reach reach = move(*mechanism, 0, a.start.q, request).reach[2];
+  SweptPoses poses(*mechanism, "C");
+  std::vector<VectorXd> q;
+  EXPECT_TRUE(poses.reach({reach.most - 1e-6, reach.least + 1e-6}, q)) << poses.why();
+  EXPECT_FALSE(poses.reach({reach.most + 1e-6}, q));
+  EXPECT_FALSE(poses.reach({reach.least - 1e-6}, q));
+}
+
+// The page's film: in every frame both mechanisms are closed, their cranks stand at one place, and
+// a ball stands where the path is wanted.
+TEST(Fit, ThePictureHasBothMechanismsClosed) {
+  const ParametricMechanism family(four_bar(), "four-bar", {}, all_names);
+  VectorXd known = family.own();
+  known *= 1.05;
+  const FitResult r = fit(family, wanted_by_trigonometry(known, {0.2, 0.7, 1.2, 1.6, 2.0}, true),
+                          varied(all_names));
+  const FitPicture picture = fit_picture(family, r, 60);
+  const Mechanism& both = *picture.mechanism;
+  ASSERT_EQ(both.nq(), 6);
+  ASSERT_GT(picture.film.frames.size(), 50u);
+  const auto columns = both.coordinate_columns();
+  const auto place = [&](const std::string& name) {
+    for (std::size_t i = 0; i < columns.size(); ++i)
+      if (columns[i].name == name) return i;
+    ADD_FAILURE() << name;
+    return std::size_t{0};
+  };
+  const auto e = both.evaluation<double>();
+  VectorXd phi(both.m());
+  for (std::size_t k = 0; k < picture.film.frames.size(); ++k) {
+    const std::vector<double>& q = picture.film.frames[k];
+    e->place(0, q.data());
+    e->positions(phi.data());
+    EXPECT_LT(phi.cwiseAbs().maxCoeff(), 1e-10);
+    const double there = picture.first + static_cast<double>(k) * picture.film.every;
+    EXPECT_NEAR(q[place("O.q")], there, 1e-9);
+    EXPECT_NEAR(q[place("before: O.q")], there, 1e-9);
+  }
+  ASSERT_EQ(both.scene().visuals.size(), 5u);
+  for (Eigen::Index i = 0; i < 5; ++i)
+    for (Eigen::Index c = 0; c < 2; ++c)
+      EXPECT_EQ(both.scene().visuals[static_cast<std::size_t>(i)].position[c],
+                r.wanted.values(i, c));
 }
 
 /// The sentence of what is thrown.

@@ -140,7 +140,8 @@ function stageOf(canvas, film, camera, show, magnified) {
         } });
       }
       const metres = ["cylinder", "box", "sphere"].includes(body.shape) ? 0.5 * barWidth : barWidth;
-      for (const [a, b] of bars) bar(place(a), place(b), colours.body, metres, 2, camera.planar ? 9 : 13);
+      const colour = body.pale ? colours.rule : colours.body;
+      for (const [a, b] of bars) bar(place(a), place(b), colour, metres, 2, camera.planar ? 9 : 13);
       if (show.frames) {
         const origin = place([0, 0, 0]);
         ["#d55e00", "#009e73", "#0072b2"].forEach((colour, i) => {
@@ -195,7 +196,7 @@ function stageOf(canvas, film, camera, show, magnified) {
         const at = eye.project(pointOf(state, k, body.at_child));
         const ground = body.parent < 0;
         items.push({ depth: at[2] - nearer, draw: () => (ground ? groundSign(ctx, at, colours, small) : ring(ctx, at, 4.5 * small, colours.ink, colours.ground)) });
-        labels.push({ at, text: body.joint, quiet: false, off: 11 });
+        if (!body.pale) labels.push({ at, text: body.joint, quiet: false, off: 11 });
       });
     }
     if (show.loops) {
@@ -220,7 +221,7 @@ function stageOf(canvas, film, camera, show, magnified) {
           ctx.fillStyle = gapColour;
           ctx.fill();
         } });
-        labels.push({ at: end, text: `loop ${loop.name}`, quiet: false, off: 13 });
+        if (!picture.bodies[loop.child]?.pale) labels.push({ at: end, text: `loop ${loop.name}`, quiet: false, off: 13 });
       });
     }
     if (show.traces) {
@@ -235,10 +236,11 @@ function stageOf(canvas, film, camera, show, magnified) {
         stroke(ctx, [[at[0] - 6, at[1]], [at[0] + 6, at[1]]], traceColour(), 2.2);
         stroke(ctx, [[at[0], at[1] - 6], [at[0], at[1] + 6]], traceColour(), 2.2);
       } });
-      if (show.names) labels.push({ at, text: marker.name, quiet: false, off: 11 });
+      if (show.names && !picture.bodies[marker.body]?.pale) labels.push({ at, text: marker.name, quiet: false, off: 11 });
     });
     if (show.names) {
       picture.bodies.forEach((body, k) => {
+        if (body.pale) return;
         const { bars } = solids[k];
         const middle = bars.length === 1 ? mixed(...bars[0], 0.5) : scaled(body.ends.reduce(plus), 1 / body.ends.length);
         labels.push({ at: eye.project(pointOf(state, k, middle)), text: body.name, quiet: true, off: 10 });

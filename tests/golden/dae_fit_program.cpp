@@ -1,0 +1,72 @@
+// momenta fit as its users call it: text, files, sentences.
+
+#include "golden/program.h"
+
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+namespace momenta::golden::dae_fit_program {
+namespace {
+
+using FitOfTheProgram = Program;
+
+std::string line() {
+  return std::string(MOMENTA_SOURCE_DIR) + "/examples/straight_line/wanted.csv";
+}
+
+TEST_F(FitOfTheProgram, FindsHoeckensLinkageAndWritesItsScene) {
+  const std::string wanted = " --vary coupler,rocker,reach --sweep O --to '" + line() + "'",
+                    out = "'" + (folder_ / "f").string() + "'";
+  const Outcome o = call("fit '" + example("straight_line") + "'" + wanted + " --out " + out);
+  EXPECT_EQ(o.status, 0) << o.err;
+  EXPECT_NE(o.out.find("The largest error of 13 poses is 4.7 mm; as the scene is, 0.99 m. A "
+                       "minimum, of one start."),
+            std::string::npos)
+      << o.out;
+  const auto json = nlohmann::json::parse(text_of(folder_ / "f" / "fit.json"));
+  EXPECT_EQ(json["converged"], true);
+  EXPECT_EQ(json["places_given"], false);
+  EXPECT_NEAR(json["parameters"]["coupler"]["after"].get<double>(), 2.50770797, 1e-7);
+  EXPECT_NEAR(json["parameters"]["rocker"]["after"].get<double>(), 2.50214957, 1e-7);
+  EXPECT_NEAR(json["parameters"]["reach"]["after"].get<double>(), 4.99460112, 1e-7);
+  EXPECT_EQ(json["parameters"]["reach"]["before"], 6);
+  std::istringstream csv(text_of(folder_ / "f" / "fit.csv"));
+  std::string head;
+  std::getline(csv, head);
+  EXPECT_EQ(head,
+            "O.q [rad],P.x.wanted [m],P.x [m],P.x.before [m],P.y.wanted [m],P.y [m],"
+            "P.y.before [m]");
+  const std::string page = text_of(folder_ / "f" / "index.html");
+  EXPECT_NE(page.find("Synthesis"), std::string::npos);
+  EXPECT_NE(page.find("before: coupler"), std::string::npos);
+  EXPECT_EQ(page.find("http://"), page.find("http://www.w3.org"));
+
+  // The scene that was written is at the minimum already.
+  const Outcome again =
+      call("fit '" + (folder_ / "f" / "fitted.toml").string() + "'" + wanted + " --json");
+  EXPECT_EQ(again.status, 0) << again.err;
+  const auto same = nlohmann::json::parse(again.out);
+  EXPECT_NEAR(same["errors"]["before"]["cost"].get<double>(),
+              json["errors"]["after"]["cost"].get<double>(), 1e-14);
+}
+
+TEST_F(FitOfTheProgram, RefusesWhatItCannotDoInOneSentence) {
+  const std::string scene =
+      "fit '" + example("straight_line") + "' --sweep O --to '" + line() + "'";
+  expect_refused(scene + " --vary rokcer",
+                 "'rokcer': the scene has no parameter of that name; did you mean 'rocker'?");
+  expect_refused(scene + " --vary rocker --starts 3",
+                 "parameter 'rocker' has no range to draw starts from; expected rocker=FROM:TO");
+  expect_refused(
+      "fit '" + example("straight_line") + "' --vary rocker --sweep Q --to '" + line() + "'",
+      "coordinate 'Q' is not known; expected 'O.q', 'A.q', 'C.q'");
+  expect_refused("fit '" + example("straight_line") + "' --vary rocker --sweep O --to '" +
+                     write("wanted.csv", "P.x\n1\nx\n").string() + "'",
+                 "wanted.csv:3: found 'x'; expected a finite number");
+  const std::string model = std::string(MOMENTA_SOURCE_DIR) + "/examples/models/ur5/ur5_robot.urdf";
+  expect_refused("fit '" + model + "' --vary a --sweep O --to '" + line() + "'",
+                 "parameters are varied in scenes of TOML alone");
+}
+
+}  // namespace
+}  // namespace momenta::golden::dae_fit_program
