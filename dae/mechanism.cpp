@@ -180,10 +180,6 @@ void Mechanism::choose_kkt(KktChoice asked) {
     plan(std::get<0>(casts_->cast));
   else
     plan(std::get<1>(casts_->cast));
-  for (const Tree::Body& b : tree_.bodies)
-    if (rows_ > 0 && b.nv == 3 && b.rotor != 0 && kkt_reason_.empty())
-      kkt_reason_ = "joint '" + b.joint +
-                    "' is a ball with a rotor's inertia, which the sweeps do not carry past loops";
   light_ = joint_without_inertia(kkt_reason_.empty());
   if (scene_.lagrangian && !light_.empty()) kkt_reason_ = light_;
   const bool far_apart = light_.empty() && !(light_ = loops_missed(kkt_reason_.empty())).empty();

@@ -1,6 +1,6 @@
 #pragma once
-// Joints eliminated on the way inward in space: revolute joints, spherical joints, free ones;
-// others on one axis are in spatial_loop_axes.h. Part of spatial_loop_sweeps.h.
+// Joints eliminated on the way inward in space: revolute joints, spherical joints with a rotor or
+// without, free ones; others on one axis are in spatial_loop_axes.h. Part of spatial_loop_sweeps.h.
 
 #include <momenta/dae/sweeps/spatial_loop_sweeps.h>
 
@@ -187,7 +187,9 @@ bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::spherical_inward(std::size_t k,
   return true;
 }
 
-/// Free joints: nothing is left of a body, M' = 0, C' = 0, and D' is its own p.
+/// Free joints: nothing is left of a body, M' = 0, C' = 0, and D' is its own p. Spherical joints
+/// with a rotor, J = I + I_r 1 (general_joint.h): g = J⁻¹ C_n, C' = (C_f − H g, I_r g), and M' ≠ 0
+/// goes to the parent with D'.
 template <class S, int Rows, bool Momentum, class Tree>
 template <class In>
 bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::free_inward(std::size_t k, const In& r,
@@ -204,15 +206,43 @@ bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::free_inward(std::size_t k, cons
   x.moment = {{a.articulated.Gx, a.articulated.Gy, a.articulated.Gz}};
   for (int i = 0; i < 6; ++i) y.C[i] = o.C[i];
   S own[6];
-  for (int i = 0; i < 6; ++i) own[i] = S(r[b.u + i]);
+  for (int i = 0; i < b.nv; ++i) own[i] = S(r[b.u + i]);
   Spatial::ArticulatedInertia<S> M;
   if (!eliminate<Spatial>(b, x, M)) return false;
-  const Force D = remainder<Spatial>(b, x, own);
+  Force D = remainder<Spatial>(b, x, own);
   const auto eliminate_slots = [&](const Column& c, const Column& g, const S& e) {
     o.d += g * e;
     o.scale += c * g;
     o.add_product(g, c, open);
   };
+  if constexpr (!Momentum)
+    if (b.parent < 0) {
+      const auto& g = tree_->model->gravity;
+      y.given.v -=
+          Spatial::direction_to_child(b.edge, b.kind, x.edge, Vec3<S>{{S(g[0]), S(g[1]), S(g[2])}});
+    }
+  if (b.nv == 3) {
+    for (int i = 0; i < 3; ++i)
+      y.g[i] = o.C[3] * x.I(i, 0) + o.C[4] * x.I(i, 1) + o.C[5] * x.I(i, 2);
+    for (int i = 0; i < 3; ++i) eliminate_slots(o.C[3 + i], y.g[i], own[i] - x.D.n[i]);
+    for (int i = 0; i < 3; ++i)
+      o.C[i] -= o.C[3] * x.H(i, 0) + o.C[4] * x.H(i, 1) + o.C[5] * x.H(i, 2);
+    for (int i = 0; i < 3; ++i) o.C[3 + i] = y.g[i] * S(b.rotor);
+    if constexpr (!Momentum) {
+      for (int i = 0; i < 6; ++i) o.d += o.C[i] * y.given[i];
+      D += reduced_momentum<Spatial>(b, x, y.given);
+    }
+    Spatial::Pose<S> way;
+    way.axes = identity3<S>();
+    way = Spatial::pose_outward(b.edge, b.kind, x.edge, way);
+    each_open<S, Rows>(open, [&](auto i) MOMENTA_INLINED {
+      typename Column::Part C[6];
+      each<6>([&](auto j) MOMENTA_INLINED { C[j] = o.C[j].v[i]; });
+      columns_to_parent<Column>(way.axes, way.origin, C);
+      each<6>([&](auto j) MOMENTA_INLINED { o.C[j].v[i] = C[j]; });
+    });
+    return b.parent < 0 || hand_on(k, M, D, a);
+  }
   // Angular: I⁻¹ c_n; then A⁻¹ (c_f − H I⁻¹ c_n).
   Column left[3];
   for (int i = 0; i < 3; ++i) {
@@ -224,17 +254,21 @@ bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::free_inward(std::size_t k, cons
     y.g[i] = left[0] * x.A(i, 0) + left[1] * x.A(i, 1) + left[2] * x.A(i, 2);
   for (int i = 0; i < 3; ++i) eliminate_slots(left[i], y.g[i], x.y[i]);
   for (int i = 0; i < 6; ++i) o.C[i] = {};
-  if constexpr (!Momentum)
-    if (b.parent < 0) {
-      const auto& g = tree_->model->gravity;
-      y.given.v -=
-          Spatial::direction_to_child(b.edge, b.kind, x.edge, Vec3<S>{{S(g[0]), S(g[1]), S(g[2])}});
-    }
-  if (b.parent < 0) return true;
+  return b.parent < 0 || hand_on(k, M, D, a);
+}
+
+/// (M', D') and the first moment of the subtree to the parent.
+template <class S, int Rows, bool Momentum, class Tree>
+bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::hand_on(std::size_t k,
+                                                         const Spatial::ArticulatedInertia<S>& M,
+                                                         const Force& D, Carried& a) const {
+  const auto& b = body(k);
+  const auto& x = joints_[static_cast<std::size_t>(tree_->links[k].record)];
   Vec3<S> G{};
   if constexpr (Momentum)
     G = Spatial::moment_to_parent(b.edge, b.kind, x.edge, x.moment, b.subtree_mass);
-  set_articulated(a.articulated, M, Spatial::to_parent(b.edge, b.kind, x.edge, D), G);
+  set_articulated(a.articulated, Spatial::to_parent(b.edge, b.kind, x.edge, M),
+                  Spatial::to_parent(b.edge, b.kind, x.edge, D), G);
   return true;
 }
 

@@ -168,6 +168,13 @@ void SpatialLoopSweeps<S, Rows, Momentum, Tree>::free_outward(std::size_t k, boo
   if (b.parent >= 0) m.V = Spatial::to_child(b.edge, b.kind, x.edge, m.V);
   m.g = Spatial::direction_to_child(b.edge, b.kind, x.edge, m.g);
   m.V += y.given;
+  if (b.nv == 3) {
+    Vec3<S> own = x.x - transpose_times(x.H, m.V.v) - x.I * (x.M.I * m.V.w);
+    for (int i = 0; i < 3; ++i) u[b.u + i] = own[i] = own[i] - along(y.g[i]);
+    m.V.w += own;
+    if (rates) axes_rates(k, m, rate);
+    return;
+  }
   Vec3<S> v = x.A * x.y;
   for (int i = 0; i < 3; ++i) v[i] -= along(y.g[i]);
   Vec3<S> omega = x.x - transpose_times(x.H, v);
@@ -177,13 +184,23 @@ void SpatialLoopSweeps<S, Rows, Momentum, Tree>::free_outward(std::size_t k, boo
     u[b.u + 3 + i] = omega[i] - m.V.w[i];
   }
   m.V = {v, omega};
-  if (!rates) return;
+  if (rates) axes_rates(k, m, rate);
+}
+
+/// (35) with E = 1 or, of spherical joints, its angular half.
+template <class S, int Rows, bool Momentum, class Tree>
+template <class Out>
+void SpatialLoopSweeps<S, Rows, Momentum, Tree>::axes_rates(std::size_t k, const Moving& m,
+                                                            Out rate) const {
+  const auto& b = body(k);
+  const auto record = static_cast<std::size_t>(tree_->links[k].record);
+  const auto& x = joints_[record];
   Force net = Spatial::weight(S(b.subtree_mass), x.moment, m.g);
   Force P = Spatial::momentum(x.M, m.V);  // (42)
   P += x.D;
-  for (int i = 0; i < 6; ++i) P[i] += along(y.C[i]);
+  for (int i = 0; i < 6; ++i) P[i] += along_sigma(k, any_[record].C[i], m.sigma);
   net -= Spatial::cross_force(m.V, P);
-  for (int i = 0; i < 6; ++i) rate[b.u + i] = net[i];  // (35), E = 1
+  for (int i = 0; i < b.nv; ++i) rate[b.u + i] = net[6 - b.nv + i];
 }
 
 /// ṗ += Eᵀ T*: N − κ w of the loops below, in ground axes, where wrenches pass from O to O by a

@@ -183,6 +183,8 @@ class SpatialLoopSweeps {
                                              Carried& a);
   template <class In>
   __attribute__((noinline)) bool free_inward(std::size_t k, const In& r, Carried& a);
+  bool hand_on(std::size_t k, const Spatial::ArticulatedInertia<S>& M, const Force& D,
+               Carried& a) const;
   /// xᵀσ over the slots open above body k.
   MOMENTA_INLINE S along_sigma(std::size_t k, const Column& x, const Column& sigma) const {
     return plus_dot(S(0.0), x, sigma, open_slots_.fronts[k].open);
@@ -213,6 +215,8 @@ class SpatialLoopSweeps {
   template <class Out>
   __attribute__((noinline)) void free_outward(std::size_t k, bool rates, Moving& m, Out u,
                                               Out rate);
+  template <class Out>
+  void axes_rates(std::size_t k, const Moving& m, Out rate) const;
   template <class Out>
   void rates_inward(const RightSide<S>& right, const Out& impulse, Out rate);
 

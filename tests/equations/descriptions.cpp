@@ -320,6 +320,7 @@ void turn_rotors_into_wheels(RandomTree& random, Scene& scene) {
   const std::size_t joints = scene.joints.size();
   for (std::size_t i = 0; i < joints; ++i) {
     const JointSpec j = scene.joints[i];
+    if (j.kind == JointKind::spherical) continue;
     scene.joints[i].rotor_inertia.clear();
     for (std::size_t k = 0; k < j.rotor_inertia.size(); ++k) {
       const bool prescribed =

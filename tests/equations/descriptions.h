@@ -32,7 +32,8 @@ void split_bodies(RandomTree& random, Scene& scene);
 void add_base(RandomTree& random, Scene& scene);
 
 /// Each rotor inertia I as a wheel on the ground that turns n times as fast as its coordinate, with
-/// the inertia I/n², behind a coupler of n to one. In a plane it turns in the plane.
+/// the inertia I/n², behind a coupler of n to one. In a plane it turns in the plane. Rotors on
+/// balls stay: no wheel turns with them.
 void turn_rotors_into_wheels(RandomTree& random, Scene& scene);
 
 /// Couplers with their terms in another order, all times a factor.

@@ -187,8 +187,7 @@ double RandomTree::tilt() {
 
 /// Choices of its own: whether rotors are asked for changes nothing else.
 void RandomTree::rotors(JointSpec& j) {
-  // What is told by a wheel geared to a coordinate; balls have laws of their own.
-  const std::size_t count = j.kind == JointKind::spherical ? 0 : rotors_of(j.kind);
+  const std::size_t count = rotors_of(j.kind);
   if (count == 0) return;
   if (!bytes_.empty()) {
     if (chance(0.3)) j.rotor_inertia.assign(count, uniform(0, 2));

@@ -5,8 +5,8 @@
 
 A model is a file that a `reference.json` beside it names, as dae_models.cpp reads them. With
 `--tests build/dev/tests/momenta_dae_tests` the first table has the deviations from those values that
-dae_models.cpp finds: of M, the bias, the accelerations of the tree and with loops closed. Without
-MOMENTA_MODELS nothing is done. Exit status 1 where a run ends without a number and without a sentence.
+dae_models.cpp finds: of M, the bias, the accelerations of the tree and with loops closed. With
+`--no-times` no column has what another machine would not print again. Without MOMENTA_MODELS nothing is done. Exit status 1 where a run ends without a number and without a sentence.
 """
 
 import argparse
@@ -80,42 +80,44 @@ def fall(program, model, rates, form, seconds, cpu_limit):
 
 
 def number(value):
-    return "" if value is None else f"{value:.0e}".replace("e-0", "e-").replace("e+0", "e")
+    return "" if value is None else "0" if value == 0 else f"{value:.0e}".replace("e-0", "e-").replace("e+0", "e")
 
 
-def print_sizes(program, models, tests):
+def print_sizes(program, models, tests, times):
     found = deviations(tests) if tests else {}
     print("| model | rates | loop rows, rank | M | bias | accelerations of the tree | with loops closed "
-          "| read [s] | page [kB] |")
-    print("|---|---|---|---|---|---|---|---|---|")
+          f"| {'read [s] | ' if times else ''}page [kB] |")
+    print("|---|---|---|---|---|---|---|---|" + "---|" * times)
     for model, _ in models:
         name = f"{model.parent.name}/{model.name}"
         size, sentence = size_of(program, model)
         if sentence:
-            print(f"| `{name}` | {sentence} | | | | | | | |", flush=True)
+            print(f"| `{name}` | {sentence} | | | | | | |" + " |" * times, flush=True)
             continue
         rows = f"{size['loop_equations']}, {size['rank']}" if size["loop_equations"] else ""
         cells = found.get(name, [""] * 4)
-        times = f"{reading_time(program, model):.2f} | {page_size(program, model):.0f}"
-        print(f"| `{name}` | {size['rates']} | {rows} | {' | '.join(cells)} | {times} |", flush=True)
+        last = f"{reading_time(program, model):.2f} | " if times else ""
+        last += f"{page_size(program, model):.0f}"
+        print(f"| `{name}` | {size['rates']} | {rows} | {' | '.join(cells)} | {last} |", flush=True)
 
 
-def print_falls(program, models, seconds, cpu_limit):
+def print_falls(program, models, seconds, cpu_limit, times):
     """The number of runs without a number and without a sentence."""
     silent = 0
-    print("| model | form | drift | energy error [J] | steps | CPU [s] | stopped |")
-    print("|---|---|---|---|---|---|---|")
+    print(f"| model | form | drift | energy error [J] | steps | {'CPU [s] | ' if times else ''}stopped |")
+    print("|---|---|---|---|---|---|" + "---|" * times)
     for model, rates in models:
         for i, form in enumerate(FORMS):
             start = os.times()
             summary, sentence = fall(program, model, rates, form, seconds, cpu_limit)
             end = os.times()
             silent += summary is None and not sentence
-            cells = ["", "", "", ""]
+            cells = [""] * (3 + times)
             if summary:
                 spent = end.children_user + end.children_system - start.children_user - start.children_system
                 drift, energy = summary["drift"]["position_max"], summary["energy"]["error_max"]
-                cells = [number(drift), number(energy), str(summary["counters"]["steps"]), f"{spent:.1f}"]
+                cells = [number(drift), number(energy), str(summary["counters"]["steps"])]
+                cells += [f"{spent:.1f}"] if times else []
             name = f"`{model.parent.name}/{model.name}`" if i == 0 else ""
             print(f"| {name} | `{form}` | {' | '.join(cells)} | {sentence} |", flush=True)
     return silent
@@ -130,13 +132,14 @@ def main():
     parser.add_argument("--tests", help="momenta_dae_tests")
     parser.add_argument("--end", default="10", help="seconds of motion; 0: the first table alone")
     parser.add_argument("--cpu-limit", default="60", help="seconds of processor time of a run")
+    parser.add_argument("--no-times", action="store_true", help="without times of reading and of runs")
     o = parser.parse_args()
     models = list(models_below(folder))
-    print_sizes(o.program, models, o.tests)
+    print_sizes(o.program, models, o.tests, not o.no_times)
     if float(o.end) == 0:
         return 0
     print()
-    return 1 if print_falls(o.program, models, o.end, o.cpu_limit) else 0
+    return 1 if print_falls(o.program, models, o.end, o.cpu_limit, not o.no_times) else 0
 
 
 if __name__ == "__main__":

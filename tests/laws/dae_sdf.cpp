@@ -133,13 +133,14 @@ TEST_F(SdfLoops, FourBarAsInToml) {
 
 // θ2 = −ratio θ1 of a wheel's and an arm's angle about their axes, seen from the ground.
 TEST_F(SdfLoops, GearsTieAngles) {
-  const auto wheels = [&](const std::string& second_joint, const std::string& axis2) {
+  const auto wheels = [&](const std::string& second_joint, const std::string& axis2,
+                          const std::string& axis = "0 0 1") {
     return world(link({"one", 1, 1, 0, 0, 0.3}) + link({"two", 3, 0.5, 2, 0, -0.4}) +
                  hinge("j", "world", "one") + second_joint +
                  "<joint name='g' type='gearbox'><parent>one</parent><child>two</child>"
                  "<gearbox_ratio>3</gearbox_ratio><gearbox_reference_body>world"
-                 "</gearbox_reference_body><axis><xyz>0 0 1</xyz></axis><axis2><xyz>" +
-                 axis2 + "</xyz></axis2></joint>");
+                 "</gearbox_reference_body><axis><xyz>" +
+                 axis + "</xyz></axis><axis2><xyz>" + axis2 + "</xyz></axis2></joint>");
   };
   const auto speed = [&](const Scene& scene) {  // of the second joint, for 1 rad/s of the first
     const Mechanism mechanism(scene);
@@ -155,20 +156,29 @@ TEST_F(SdfLoops, GearsTieAngles) {
   const std::string ahead = hinge("k", "world", "two");
   EXPECT_EQ(speed(wheels(ahead, "0 0 1")), -3);
   EXPECT_EQ(speed(wheels(ahead, "0 0 -1")), 3);
+  EXPECT_EQ(speed(wheels(ahead, "0 0 1", "0 0 -1")), 3);
+  EXPECT_EQ(speed(wheels(ahead, "0 0 -1", "0 0 -1")), -3);
+  // The angles are those since the pose of the file.
+  const Mechanism turned(wheels(ahead, "0 0 1"));
+  EXPECT_LE(values_at(turned, VectorXd(Eigen::Vector2d(0.4, -1.2)), VectorXd::Zero(2)).phi.norm(),
+            1e-15);
   // An axis that is not given is that of the joint. A joint from the wheel to the reference body
   // counts the reference's angle seen from the wheel: the other sign.
-  const auto on_a_base = [&](const std::string& second_joint) {
+  const auto on_a_base = [&](const std::string& second_joint, const std::string& first_joint) {
     return world(link({"one", 1, 1, 0, 0, 0.3}) + link({"two", 3, 0.5, 2, 0, -0.4}) +
                  link({"base", 1, 1, 0, 0, 0}) +
                  "<joint name='f' type='fixed'><parent>world"
                  "</parent><child>base</child></joint>" +
-                 hinge("j", "base", "one") + second_joint +
+                 first_joint + second_joint +
                  "<joint name='g' type='gearbox'><parent>one</parent><child>two</child>"
                  "<gearbox_ratio>3</gearbox_ratio><gearbox_reference_body>base"
                  "</gearbox_reference_body></joint>");
   };
-  EXPECT_EQ(speed(on_a_base(hinge("k", "base", "two"))), -3);
-  EXPECT_EQ(speed(on_a_base(hinge("k", "two", "base"))), 3);
+  const std::string first = hinge("j", "base", "one"), first_back = hinge("j", "one", "base");
+  EXPECT_EQ(speed(on_a_base(hinge("k", "base", "two"), first)), -3);
+  EXPECT_EQ(speed(on_a_base(hinge("k", "two", "base"), first)), 3);
+  EXPECT_EQ(speed(on_a_base(hinge("k", "base", "two"), first_back)), 3);
+  EXPECT_EQ(speed(on_a_base(hinge("k", "two", "base"), first_back)), -3);
 }
 
 // q = multiplier (q_leader − reference) + offset, on axes of universal joints too.

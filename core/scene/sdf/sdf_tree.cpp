@@ -9,6 +9,7 @@
 // Where the tree goes from a child to its parent, the coordinates stay if the axes turn round:
 // (R(a1, q1) R(a2, q2))⁻¹ = R(−a2, q2) R(−a1, q1).
 
+#include <momenta/core/scene/kinds.h>
 #include <momenta/core/scene/sdf/sdf_model.h>
 #include <momenta/core/text/near_name.h>
 
