@@ -102,7 +102,7 @@ TEST_F(EquationProgram, ScoresASuiteOfMechanisms) {
             "name = \"none\"\nset = { \"body.none.mass\" = 1 }\n");
   const Outcome o = call("bench '" + suite.string() + "' --timing none" + out());
   ASSERT_EQ(o.status, 0) << o.err;
-  EXPECT_NE(o.out.find("rod: within 1e-3 with the fewest evaluations, "), std::string::npos)
+  EXPECT_NE(o.out.find("rod: within 0.001 with the fewest evaluations, "), std::string::npos)
       << o.out;
   const Json j = made("bench.json");
   ASSERT_EQ(j["problems"].size(), 2u);
