@@ -105,6 +105,7 @@ bool Reference::has_forces() const {
 Reference::Error Reference::error(std::size_t row, const std::vector<double>& trajectory_row,
                                   const std::vector<std::size_t>& not_unique) const {
   Error e;
+  bool any_force = false;
   for (std::size_t i = 0; i < place_.size(); ++i) {
     if (std::binary_search(not_unique.begin(), not_unique.end(), place_[i])) continue;
     const double reference = values_[row][i];
@@ -113,7 +114,10 @@ Reference::Error Reference::error(std::size_t row, const std::vector<double>& tr
     double& largest = kind_[i] == Kind::velocity ? e.velocity
                       : kind_[i] == Kind::force  ? e.force
                                                  : e.position;
-    if (!(difference <= largest)) largest = difference;  // NaN too
+    const bool first = kind_[i] == Kind::force && !any_force;
+    any_force |= first;
+    // NaN too, which stays.
+    if (first || (!std::isnan(largest) && !(difference <= largest))) largest = difference;
   }
   return e;
 }

@@ -1,6 +1,8 @@
-// The verb `bench`: a suite of files of equations, and what it shares with `work` on one of them.
+// The verb `bench`: a suite of mechanisms, or of files of equations, and what it shares with `work`
+// on one of them.
 
 #include <momenta/dae/report/equation_report.h>
+#include <momenta/dae/report/scene_suite_report.h>
 #include <momenta/dae/study/environment.h>
 
 #include <cstdio>
@@ -9,6 +11,47 @@
 #include "publish_suite.h"
 
 namespace momenta::program {
+namespace {
+
+/// Writes the files of a suite of either kind, where --out says, and prints its table. @return
+/// false where they cannot be written
+template <class Result>
+bool told(const Options& o, const Result& result) {
+  const Environment made = environment();
+  const std::string json = suite_json(result, made).dump(2) + "\n";
+  if (!o.out.empty() &&
+      !write_results({{o.out / "bench.csv", suite_csv(result)},
+                      {o.out / "bench.json", json},
+                      {o.out / "index.html", suite_page(result, made, o.command)}}))
+    return false;
+  tell(o, json, suite_table(result), "index.html");
+  return true;
+}
+
+int bench_scenes(const Options& o, bool own_references) {
+  const SceneSuite suite = read_scene_suite(o.scene);
+  expect_own_results(o.out, "bench.csv");
+  watch_signals();
+  SceneSuiteRequest request;
+  request.own_references = own_references;
+  request.max_cpu_seconds = o.cpu_limit.value_or(request.max_cpu_seconds);
+  request.timing = timing_named(o.timing);
+  SceneSuiteResult result;
+  {
+    ProgressLine line(o.quiet);
+    request.progress = [&](int number, int total, const std::string& what) {
+      return line.going(number, total, what, static_cast<double>(number - 1) / total);
+    };
+    result = run_suite(suite, request);
+  }
+  if (!told(o, result)) return run_failed;
+  std::size_t ran = 0;
+  for (const SceneProblemResult& p : result.problems)
+    for (const RunResult& r : p.runs) ran += r.status == "done" ? 1 : 0;
+  return ran > 0 && result.complete ? done : run_failed;
+}
+
+}  // namespace
 
 int publish_suite(const Options& o, SuiteResult& result, bool own_references,
                   const std::function<void(const SuiteRequest&)>& run) {
@@ -27,14 +70,7 @@ int publish_suite(const Options& o, SuiteResult& result, bool own_references,
     };
     run(request);
   }
-  const Environment made = environment();
-  const std::string json = suite_json(result, made).dump(2) + "\n";
-  if (!o.out.empty() &&
-      !write_results({{o.out / "bench.csv", suite_csv(result)},
-                      {o.out / "bench.json", json},
-                      {o.out / "index.html", suite_page(result, made, o.command)}}))
-    return run_failed;
-  tell(o, json, suite_table(result), "index.html");
+  if (!told(o, result)) return run_failed;
   std::size_t ran = 0;
   for (const ProblemResult& p : result.problems)
     for (const EquationRun& r : p.runs) ran += r.done ? 1 : 0;
@@ -42,6 +78,7 @@ int publish_suite(const Options& o, SuiteResult& result, bool own_references,
 }
 
 int bench(const Options& o, bool own_references) {
+  if (has_scenes(o.scene)) return bench_scenes(o, own_references);
   const Suite suite = read_suite(o.scene);
   SuiteResult result;
   return publish_suite(o, result, own_references,

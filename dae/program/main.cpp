@@ -97,10 +97,12 @@ int answer(int argc, char** argv) {
        {"--integrator", "--rtol", "--atol", "--spectral-radius", "--project", "--no-project",
         "--baumgarte-alpha", "--baumgarte-beta", "--beta", "--penalty"})
     work_verb->remove_option(work_verb->get_option(unused));
-  CLI::App* bench_verb = app.add_subcommand("bench", "A suite of files of equations, scored");
+  CLI::App* bench_verb =
+      app.add_subcommand("bench", "A suite of mechanisms or of files of equations, scored");
   bench_verb->footer("Example: momenta bench examples/suites/ivp/suite.toml --out results");
   bool own_references = false;
-  bench_verb->add_option("suite", o.scene, "TOML file that lists problems, methods, tolerances")
+  bench_verb
+      ->add_option("suite", o.scene, "TOML file that lists problems, forms or methods, tolerances")
       ->required()
       ->type_name("FILE");
   bench_verb->add_flag("--own-references", own_references,

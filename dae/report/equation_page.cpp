@@ -1,6 +1,6 @@
-#include <momenta/dae/report/embedded.h>
 #include <momenta/dae/report/equation_report.h>
 #include <momenta/dae/report/figure.h>
+#include <momenta/dae/report/plain_page.h>
 #include <momenta/dae/report/template.h>
 #include <momenta/dae/text/number_text.h>
 
@@ -10,37 +10,6 @@ namespace momenta {
 namespace {
 
 constexpr std::size_t curves_of_a_chart = 8;
-
-std::string section(const std::string& title, const std::string& inside) {
-  return "<section><h2>" + escape_html(title) + "</h2>" + inside + "</section>\n";
-}
-std::string preformatted(const std::string& text) {
-  return "<pre class=\"frame\" tabindex=\"0\">" + escape_html(text) + "</pre>";
-}
-
-std::string how_section(const Environment& environment, const std::string& command) {
-  const auto pair = [](const char* what, const std::string& value) {
-    return std::string("<dt>") + what + "</dt><dd>" + escape_html(value) + "</dd>";
-  };
-  std::string versions;
-  for (const auto& [name, version] : environment.versions)
-    versions += (versions.empty() ? "" : ", ") + name + " " + version;
-  return section("How it was made",
-                 "<dl>" + pair("Command", command) + pair("Versions", versions) +
-                     pair("Compiler", environment.compiler + ", " + environment.flags) +
-                     pair("Processor", environment.cpu) + pair("Date", environment.date) + "</dl>");
-}
-
-std::string page(const std::string& title, const char* kind, const std::string& answer,
-                 const std::string& main) {
-  return filled(embedded::stress_html(), {{"title", escape_html(title)},
-                                          {"kind", kind},
-                                          {"about", kind},
-                                          {"answer", answer},
-                                          {"main", main},
-                                          {"page_css", std::string(embedded::page_css())},
-                                          {"stress_css", std::string(embedded::stress_css())}});
-}
 
 }  // namespace
 
@@ -74,8 +43,8 @@ std::string equation_run_page(const EquationFile& file, const EquationStart& sta
           ? "Index " + std::to_string(start.point.found.index) + ", " + run.integrator + " with " +
                 std::to_string(run.counters.steps) + " steps to t = " + compact(run.end, 4) + "."
           : "The run stopped: " + escape_html(run.reason);
-  return page(file.name.empty() ? "Equations" : file.name, "equations", answer,
-              main + how_section(environment, command));
+  return plain_page(file.name.empty() ? "Equations" : file.name, "equations", answer,
+                    main + how_section(environment, command));
 }
 
 std::string suite_page(const SuiteResult& suite, const Environment& environment,
@@ -110,11 +79,11 @@ std::string suite_page(const SuiteResult& suite, const Environment& environment,
   std::size_t runs = 0, done = 0;
   for (const ProblemResult& p : suite.problems)
     for (const EquationRun& r : p.runs) ++runs, done += r.done ? 1 : 0;
-  return page(suite.name, "suite",
-              std::to_string(done) + " of " + std::to_string(runs) + " runs of " +
-                  std::to_string(suite.problems.size()) + " problems came to their end." +
-                  (suite.complete ? "" : " The suite was interrupted."),
-              main + how_section(environment, command));
+  return plain_page(suite.name, "suite",
+                    std::to_string(done) + " of " + std::to_string(runs) + " runs of " +
+                        std::to_string(suite.problems.size()) + " problems came to their end." +
+                        (suite.complete ? "" : " The suite was interrupted."),
+                    main + how_section(environment, command));
 }
 
 }  // namespace momenta

@@ -88,6 +88,7 @@ std::vector<RunResult> run_work_study(const Mechanism& mechanism, const Start& s
       (fixed ? run.settings.step : run.settings.rtol) = rung;
       if (!fixed) run.settings.atol = rung;
       run.reference = request.reference;
+      run.keep_trajectory = request.keep_trajectories;
       run.max_cpu_seconds = request.max_cpu_seconds;
       if (request.progress)
         run.progress = [&](double t) {

@@ -21,6 +21,7 @@ struct WorkRequest {
   double end_time = 10;                  ///< [s]
   int samples = 100;
   const Reference* reference = nullptr;  ///< bound; errors are largest over its times
+  bool keep_trajectories = false;        ///< RunResult::trajectory of each run is filled
   Timing timing = Timing::rounds;
   double max_cpu_seconds = 10;  ///< of one run; a ladder ends at the first rung that needs more
   Journal* journal = nullptr;   ///< finished runs are taken from it, and new ones recorded

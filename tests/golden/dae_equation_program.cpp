@@ -90,6 +90,36 @@ TEST_F(EquationProgram, ScoresASuite) {
   EXPECT_EQ(work["problems"][0]["runs"].size(), 8u);
 }
 
+TEST_F(EquationProgram, ScoresASuiteOfMechanisms) {
+  write("rod.toml",
+        "name = \"rod\"\ngravity = [0, -9.81, 0]\n[[body]]\nname = \"rod\"\nmass = 1\nshape = "
+        "{ kind = \"rod\", length = 1 }\n[[joint]]\nname = \"O\"\nkind = \"revolute\"\nchild = "
+        "\"rod\"\naxis = \"z\"\n");
+  const fs::path suite =
+      write("suite.toml",
+            "forms = [\"momentum\", \"acceleration\"]\ntolerances = [1e-4, 1e-8]\n[[problem]]\n"
+            "scene = \"rod.toml\"\nend = 1\nallowed = [1e-3]\n[[problem]]\nscene = \"rod.toml\"\n"
+            "name = \"none\"\nset = { \"body.none.mass\" = 1 }\n");
+  const Outcome o = call("bench '" + suite.string() + "' --timing none" + out());
+  ASSERT_EQ(o.status, 0) << o.err;
+  EXPECT_NE(o.out.find("rod: within 0.001 with the fewest evaluations, "), std::string::npos)
+      << o.out;
+  const Json j = made("bench.json");
+  ASSERT_EQ(j["problems"].size(), 2u);
+  const Json &rod = j["problems"][0], none = j["problems"][1];
+  ASSERT_EQ(rod["runs"].size(), 4u);
+  EXPECT_GT(rod["runs"][0]["error"], rod["runs"][1]["error"]);
+  EXPECT_LT(rod["runs"][1]["error"], 1e-6);
+  EXPECT_EQ(rod["columns"].dump(), "[\"O.q [rad]\",\"O.u [rad/s]\"]");
+  EXPECT_TRUE(rod["within"][0]["run"].is_number());
+  EXPECT_NE(none["why"].get<std::string>().find("body.none.mass"), std::string::npos);
+  const std::string csv = text_of(folder_ / "results/bench.csv");
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 5);
+  const std::string page = text_of(folder_ / "results/index.html");
+  EXPECT_NE(page.find("<svg"), std::string::npos);
+  EXPECT_EQ(page.find("{{"), std::string::npos);
+}
+
 TEST_F(EquationProgram, RefusesWhatIsOfMechanisms) {
   const std::string file = suite("ivp/pendulum.toml");
   expect_refused("run" + file + "--form acceleration", "found the option --form of mechanisms");

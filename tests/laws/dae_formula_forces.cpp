@@ -7,6 +7,7 @@
 #include "equations/linkages.h"
 #include "equations/other_trees.h"
 #include "equations/random_tree.h"
+#include "equations/refusal.h"
 #include "equations/tolerance.h"
 
 #include <gtest/gtest.h>
@@ -296,6 +297,39 @@ TEST(FormulaForcesInLoops, TheIndexStays) {
     return all;
   };
   EXPECT_EQ(indices(mechanism), indices(without));
+}
+
+TEST(FormulaForcesInLoops, WithoutAValueAtTheStartAreTold) {
+  const auto sentence = [](const std::string& force) {
+    const Mechanism rod(
+        parse_scene("gravity = [0, -9.81, 0]\n[[body]]\nname = \"rod\"\nmass = 1\n"
+                    "shape = { kind = \"rod\", length = 1 }\n[[joint]]\nname = "
+                    "\"O\"\nkind = \"revolute\"\nchild = \"rod\"\naxis = \"z\"\n"
+                    "[[marker]]\nname = \"P\"\nbody = \"rod\"\n[[force]]\n" +
+                        force,
+                    "rod.toml"));
+    return sentence_of([&] { (void)assemble(rod); });
+  };
+  const std::string potential = "kind = \"potential\"\nV = ", root = "sqrt(P.x^2 + P.y^2)",
+                    slope =
+                        ", or a derivative of it, is not finite at the start, and sqrt and hypot "
+                        "have no slope at 0; expected another start, or sqrt(x^2 + e^2) with a "
+                        "small e";
+  EXPECT_EQ(sentence(potential + "\"" + root + "\"\n"),
+            "rod.toml:14:1: force of kind 'potential': V" + slope);
+  EXPECT_EQ(sentence("name = \"pull\"\n" + potential + "\"2*hypot(P.x, P.y)\"\n"),
+            "rod.toml:14:1: force 'pull': V" + slope);
+  EXPECT_EQ(
+      sentence("kind = \"torque\"\njoint = \"O\"\nlaw = \"log(q)\"\n"),
+      "rod.toml:14:1: force of kind 'torque': law, or a derivative of it, is not finite at the "
+      "start; expected a start where it has a value");
+  // What the sentence advises has a slope.
+  const Mechanism smooth(parse_scene(
+      "[[body]]\nname = \"rod\"\nmass = 1\nshape = { kind = \"rod\", length = 1 }\n[[joint]]\nname "
+      "= \"O\"\nkind = \"revolute\"\nchild = \"rod\"\naxis = \"z\"\n[[marker]]\nname = "
+      "\"P\"\nbody = \"rod\"\n[[force]]\nkind = \"potential\"\nV = \"sqrt(P.x^2 + P.y^2 + "
+      "1e-6)\"\n"));
+  EXPECT_EQ(assemble(smooth).start.udot, VectorXd::Zero(1));
 }
 
 TEST(FormulaForcesInLoops, DrivesByFormulaAreTheBuiltInOnes) {

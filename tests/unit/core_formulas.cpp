@@ -285,6 +285,10 @@ TEST(Formulas, DrivesTellTheirCornersAndPotentialsTheTime) {
   EXPECT_EQ(scene.drives[0].law, "0.3333333333333333 * abs(t - 1)");
   ASSERT_EQ(scene.remarks.size(), 1U);
   EXPECT_EQ(scene.remarks[0].find("drive of joint 'hip.left': 'abs' in its law"), 0U);
+  const Scene again = parse_scene(scene_text(scene), "written.toml");
+  ASSERT_EQ(again.drives.size(), 1U);
+  EXPECT_EQ(again.drives[0].law, scene.drives[0].law);
+  EXPECT_EQ(equations::difference(scene, again), "");
 }
 
 }  // namespace

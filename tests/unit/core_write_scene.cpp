@@ -37,6 +37,42 @@ std::vector<fs::path> files_with(const std::vector<std::string>& endings) {
   return files;
 }
 
+// Coordinates with dots, both units of constraints, forces on some coordinates only.
+TEST(WriteScene, EveryKeyOfALagrangian) {
+  const Scene scene = parse_scene(R"toml(
+[parameters]
+k = 3
+[lagrangian]
+coordinates = ["x", "arm.angle"]
+units = ["m", "rad"]
+position = ["k / 2", 0.25]
+velocity = [0, -1]
+kinetic = "x.dot^2 + arm.angle.dot^2"
+potential = "k * x^2"
+force = { "arm.angle" = "-k * arm.angle.dot" }
+[[lagrangian.constraints]]
+name = "turn"
+equation = "arm.angle - t"
+unit = "rad"
+[[lagrangian.constraints]]
+name = "shift"
+equation = "x - k * sin(t)"
+)toml",
+                                  "typed.toml");
+  const std::string text = scene_text(scene);
+  const Scene again = parse_scene(text, "written.toml");
+  EXPECT_EQ(equations::difference(scene, again), "");
+  EXPECT_EQ(scene_text(again), text);
+  ASSERT_EQ(again.lagrangian->constraints.size(), 2U);
+  EXPECT_TRUE(again.lagrangian->constraints[0].angle);
+  EXPECT_FALSE(again.lagrangian->constraints[1].angle);
+  EXPECT_EQ(again.lagrangian->coordinates[0].position, 1.5);
+  EXPECT_EQ(again.lagrangian->coordinates[1].velocity, -1);
+  EXPECT_EQ(again.lagrangian->coordinates[1].unit, "rad");
+  ASSERT_EQ(again.lagrangian->forces.size(), 1U);
+  EXPECT_EQ(again.lagrangian->forces[0].coordinate, "arm.angle");
+}
+
 TEST(WriteScene, EveryExample) {
   const auto files = files_with({".toml"});
   EXPECT_GE(files.size(), 11U);

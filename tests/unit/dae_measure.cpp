@@ -125,6 +125,18 @@ TEST_F(ReferenceFile, IsRead) {
   EXPECT_TRUE(std::isnan(r.error(0, {0, 0, std::nan(""), 2}).position));
 }
 
+TEST(References, NotANumberStaysWhateverFollows) {
+  const double none = std::nan("");
+  Reference r("here", {"a [m]", "b [m]", "A.f [N]", "B.f [N]"}, {0}, {{0, 0, 0, 0}});
+  r.bind({"t [s]", "a [m]", "b [m]", "A.f [N]", "B.f [N]"});
+  EXPECT_TRUE(std::isnan(r.error(0, {0, none, 1, 2, 3}).position));
+  EXPECT_TRUE(std::isnan(r.error(0, {0, 1, none, 2, 3}).position));
+  EXPECT_TRUE(std::isnan(r.error(0, {0, 1, 1, none, 3}).force));
+  EXPECT_EQ(r.error(0, {0, 1, 1, 2, 3}).force, 3);
+  EXPECT_EQ(r.error(0, {0, 1, 1, none, 3}, {3}).force, 3);  // the first is not unique
+  EXPECT_TRUE(std::isnan(r.error(0, {0, 1, 1, 2, 3}, {3, 4}).force));
+}
+
 TEST_F(ReferenceFile, ErrorsNameFileLineAndWhatIsExpected) {
   expect_complaint("", ":1: ", "empty");
   expect_complaint("time,O.q [rad]\n0,1\n", ":1: ", "expected t [s]");

@@ -1,0 +1,92 @@
+#pragma once
+// A suite of mechanisms: scenes, each run in forms by integrators at tolerances, and judged by the
+// error that its source defines.
+//
+//   name = "…"
+//   forms = ["momentum", "projected"]
+//   tolerances = [1e-4, 1e-6]
+//   [[problem]]
+//   scene = "pendulum.toml"        # from the suite's folder
+//   reference = "pendulum.csv"     # without: made here, in quadruple precision
+//   error = "threshold"            # measure/benchmark_error.h
+//   threshold = 1e-3
+//   allowed = [1e-1, 1e-3]         # errors that the source accepts
+//
+// A suite of files of equations, dae/equations/suite.h, is another kind: its problems have a
+// `file`.
+
+#include <momenta/core/scene/toml/setting.h>
+#include <momenta/dae/measure/benchmark_error.h>
+#include <momenta/dae/study/work_study.h>
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace momenta {
+
+struct SceneProblem {
+  std::string scene, name;    ///< the file as it is to be opened; empty name: the scene's
+  std::vector<Setting> set;   ///< other numbers in it
+  std::string reference;      ///< CSV, as it is to be opened; empty: made in quadruple precision
+  std::optional<double> end;  ///< [s]; without: of the reference, or of the scene
+  int samples = 100;          ///< output intervals, where no file of a reference has its own
+  std::vector<std::string> columns;  ///< judged; empty: all of the reference but forces
+  BenchmarkError::Kind error = BenchmarkError::Kind::mixed;
+  double threshold = 1e-3;      ///< of Kind::threshold
+  std::vector<double> allowed;  ///< errors that the source accepts, falling
+  std::vector<std::string> forms, integrators;
+  std::vector<double> tolerances;  ///< rtol = atol
+};
+struct SceneSuite {
+  std::string file, name;
+  std::vector<SceneProblem> problems;
+};
+
+/// Whether the problems of a suite are scenes; false too for what is no suite.
+bool has_scenes(const std::filesystem::path& suite);
+
+/// @throws SceneError
+SceneSuite read_scene_suite(const std::filesystem::path& file);
+
+struct SceneProblemResult {
+  std::string scene, name, why;  ///< why: one sentence where there are no runs
+  int coordinates = 0, equations = 0;
+  double end = 0;  ///< [s]
+  int samples = 0;
+  BenchmarkError::Kind error = BenchmarkError::Kind::mixed;
+  double threshold = 0;
+  std::vector<double> allowed;
+  std::string reference;             ///< the file, or how it was made
+  std::vector<std::string> columns;  ///< judged
+  std::vector<RunResult> runs;
+  std::vector<double> errors;  ///< of each run; NaN: it did not come to its end
+};
+struct SceneSuiteResult {
+  std::string name;
+  std::vector<SceneProblemResult> problems;
+  bool complete = true;  ///< not interrupted
+};
+
+struct SceneSuiteRequest {
+  Timing timing = Timing::rounds;
+  bool own_references = false;  ///< made anew also where a problem has a file
+  double max_cpu_seconds = 60;  ///< of a run
+  /// Before and during each run (number of the problem, of how many, label); false ends the suite.
+  std::function<bool(int, int, const std::string&)> progress;
+};
+
+/// The error of a run with a trajectory against a reference whose times are its output times; NaN
+/// for a run that is not done. @throws SceneError for times that are not the run's
+double error_of(const RunResult& run, const Reference& reference,
+                const std::vector<std::string>& columns, BenchmarkError error);
+
+/// What cannot be run is told in its row; nothing of one problem keeps the others from running.
+SceneSuiteResult run_suite(const SceneSuite& suite, const SceneSuiteRequest& request);
+
+/// Which run meets an error with the fewest evaluations; none: errors.size().
+std::size_t cheapest_within(const SceneProblemResult& problem, double allowed);
+
+}  // namespace momenta
