@@ -60,21 +60,21 @@ struct JointRecord<Planar, S> {
   Planar::Motion<S> c;
 };
 
-/// Pivots d of L Δ Lᵀ with diagonal a, b, c: all positive, and their product more than rounding. A
-/// slender rod on a spherical joint has no inertia about itself, however it lies. Entries are as
-/// exact as the largest, so the determinant is as exact as the product of the two largest diagonals
-/// with the largest.
+/// Whether the determinant of a matrix with diagonal a, b, c is more than rounding. A slender rod
+/// on a spherical joint has no inertia about itself, however it lies. Entries are as exact as the
+/// largest, so the determinant is as exact as the product of the two largest diagonals with the
+/// largest.
 template <class S>
-MOMENTA_INLINE bool pivots_positive(const S& d0, const S& d1, const S& d2, const S& a, const S& b,
-                                    const S& c) {
+MOMENTA_INLINE bool determinant_positive(const S& determinant, const S& a, const S& b, const S& c) {
   constexpr double rounding = 4 * std::numeric_limits<double>::epsilon();
   const S bound = rounding * ((a * b + (b * c + c * a)) * (a + (b + c)));
-  return all_positive(d0) && all_positive(d1) && all_positive(d2) &&
-         all_positive(d0 * d1 * d2 - bound);
+  return all_positive(determinant - bound);
 }
+/// The same of the matrix's pivots d: all positive, and their product more than rounding.
 template <class S>
 bool pivots_positive(const Vec3<S>& d, const Sym3<S>& from) {
-  return pivots_positive(d[0], d[1], d[2], from.x[0], from.x[3], from.x[5]);
+  return all_positive(d[0]) && all_positive(d[1]) && all_positive(d[2]) &&
+         determinant_positive(d[0] * d[1] * d[2], from.x[0], from.x[3], from.x[5]);
 }
 
 /// I⁻¹ and h = H I⁻¹ of a joint that leaves ω free.

@@ -7,6 +7,9 @@ namespace momenta {
 
 /// (46)-(48) of a spherical joint by I = L Δ Lᵀ, which leaves A' = A − Z Δ⁻¹ Zᵀ with Z = H L⁻ᵀ, the
 /// whole of M', and D'_f = D_f + Z Δ⁻¹ L⁻¹ e. No inverse is formed: shorter, and backward stable.
+/// Pivots by minors, d₁ = m₁/I_xx and d₂ = m₂/(I_xx m₁) with m₁ = I_xx I_yy − I_xy² and
+/// m₂ = m₁ (I_xx I_zz − I_xz²) − (I_xx I_yz − I_xy I_xz)²: elimination of scaled rows, as exact,
+/// and no division waits for another.
 template <class S>
 struct SphericalPivot {
   S l10, l20, l21, i0, i1, i2;  ///< L, Δ⁻¹
@@ -15,15 +18,18 @@ struct SphericalPivot {
 
   /// False when I is not positive.
   MOMENTA_INLINE bool eliminate(const Full<S>& m, Sym3<S>& A) {
+    const S minor = m.Ixx * m.Iyy - m.Ixy * m.Ixy, below = m.Ixx * m.Iyz - m.Ixy * m.Ixz;
+    const S last = minor * (m.Ixx * m.Izz - m.Ixz * m.Ixz) - below * below;
     i0 = S(1.0) / m.Ixx;
+    const S r1 = S(1.0) / minor;
+    i1 = m.Ixx * r1;
+    i2 = m.Ixx * minor / last;
     l10 = m.Ixy * i0;
     l20 = m.Ixz * i0;
-    const S d1 = m.Iyy - l10 * m.Ixy, below = m.Iyz - l20 * m.Ixy;
-    i1 = S(1.0) / d1;
-    l21 = below * i1;
-    const S d2 = m.Izz - l20 * m.Ixz - l21 * below;
-    i2 = S(1.0) / d2;
-    if (!pivots_positive(m.Ixx, d1, d2, m.Ixx, m.Iyy, m.Izz)) return false;
+    l21 = below * r1;
+    if (!all_positive(m.Ixx) || !all_positive(minor) ||
+        !determinant_positive(last * i0, m.Ixx, m.Iyy, m.Izz))
+      return false;
     const S zx0 = m.Hxx, zx1 = m.Hxy - l10 * zx0, zx2 = m.Hxz - l20 * zx0 - l21 * zx1;
     const S zy0 = m.Hyx, zy1 = m.Hyy - l10 * zy0, zy2 = m.Hyz - l20 * zy0 - l21 * zy1;
     const S zz0 = m.Hzx, zz1 = m.Hzy - l10 * zz0, zz2 = m.Hzz - l20 * zz0 - l21 * zz1;

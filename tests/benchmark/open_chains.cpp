@@ -205,7 +205,8 @@ void add_batches(const char* name, const Row& row, Algorithm algorithm, std::vec
 
 void register_open_chains() {
   using namespace benchmark_models;
-  const std::vector<int> all = {1, 2, 4, 7, 16, 63, 1000, 10000, 100000}, some = {7, 63, 1000};
+  const std::vector<int> all = {1, 2, 4, 7, 16, 63, 1000, 10000, 100000}, some = {7, 63, 1000},
+                         balls = {1, 2, 4, 7, 8, 16, 63, 128, 1000};
   const Row rows[] = {
       {"random_chain", random_chain},       {"right_angle_chain", right_angle_chain},
       {"planar_chain", planar_chain},       {"rope", rope},
@@ -214,7 +215,10 @@ void register_open_chains() {
       {"helical_chain", helical_chain},     {"random_chain_with_drives", with_drives}};
   for (const auto algorithm : {Algorithm::momentum, Algorithm::acceleration}) {
     for (const Row& row : rows) {
-      add(row.name, row, algorithm, row.model == random_chain ? all : some);
+      add(row.name, row, algorithm,
+          row.model == random_chain      ? all
+          : row.model == spherical_chain ? balls
+                                         : some);
       add_batches(row.name, row, algorithm, some);
     }
     const Row person{"humanoid", humanoid};
