@@ -226,8 +226,10 @@ class Plots(unittest.TestCase):
 
 class Notebooks(unittest.TestCase):
     def test_they_run_and_hold_no_results(self):
-        notebooks = sorted((HERE / "examples").glob("*.ipynb"))
-        self.assertGreaterEqual(len(notebooks), 2)
+        lessons = sorted((HERE.parents[1] / "docs" / "index-reduction" / "notebooks").glob("*.ipynb"))
+        self.assertEqual([file.name[0] for file in lessons], list("12345678"))
+        notebooks = sorted((HERE / "examples").glob("*.ipynb")) + lessons
+        self.assertGreaterEqual(len(notebooks), 10)
         pyplot = types.ModuleType("matplotlib.pyplot")
         pyplot.subplots = lambda: (None, Axes())
         package = types.ModuleType("matplotlib")
@@ -238,7 +240,8 @@ class Notebooks(unittest.TestCase):
             self.assertEqual(notebook["nbformat"], 4)
             names = {}
             with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):
-                with unittest.mock.patch.dict(sys.modules, drawn), contextlib.redirect_stderr(io.StringIO()):
+                with unittest.mock.patch.dict(sys.modules, drawn), contextlib.redirect_stderr(io.StringIO()), \
+                        contextlib.redirect_stdout(io.StringIO()):
                     for number, cell in enumerate(notebook["cells"]):
                         if cell["cell_type"] != "code":
                             continue
