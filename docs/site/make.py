@@ -30,6 +30,20 @@ def title_of(page):
     return heading[1].replace("`", "") if heading else page.stem
 
 
+def stage_page(page, staging):
+    """Copies a page of HTML with the files that it is made of; its links to Markdown lead to what becomes of it."""
+    text = page.read_text(encoding="utf-8")
+    copy = staging / page.relative_to(TOP)
+    copy.parent.mkdir(parents=True, exist_ok=True)
+    copy.write_text(re.sub(r'(href="(?!\w+:)[^"]+)\.md"', r'\1.html"', text), encoding="utf-8")
+    for target in re.findall(r'(?:src|href)="([^"#:]+)"', text):
+        file = (page.parent / target).resolve()
+        if file.suffix in (".js", ".css"):
+            copy = staging / file.relative_to(TOP)
+            copy.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copyfile(file, copy)
+
+
 def staged(staging):
     """Copies the pages and what they link to, in place; links to folders become links to their pages."""
     folders = set()
@@ -43,6 +57,8 @@ def staged(staging):
             if file.is_dir():
                 folders.add(file)
                 text = text.replace(f"]({target})", f"]({target.rstrip('/')}/README.md)")
+            elif file.suffix == ".html":
+                stage_page(file, staging)
             elif file.suffix != ".md":
                 copy = staging / file.relative_to(TOP)
                 copy.parent.mkdir(parents=True, exist_ok=True)
