@@ -1,7 +1,7 @@
 #include <momenta/core/kernel/levels/open_sweeps.h>
 #include <momenta/dae/factor/faded_pivot.h>
-#include <momenta/dae/factor/filtered_matrix.h>
 #include <momenta/dae/leaves_first.h>
+#include <momenta/dae/leaves_first_matrix.h>
 #include <momenta/dae/loop/loop_equation.h>
 #include <momenta/dae/loop/loop_weights.h>
 #include <momenta/dae/mechanism_inside.h>
@@ -231,14 +231,11 @@ std::string Mechanism::joint_without_inertia(bool swept) const {
   const auto size = static_cast<std::size_t>(tree_.nv);
   std::vector<double> p(size, 0.0), u(size), sigma(row_names_.size());
   if (!swept) {
-    if (solved_by_bodies()) return "";  // pivots are sought there
-    FilteredMatrix matrix(kkt_pattern(), axis_scale(), nv(), row_groups_);
+    const auto matrix = leaves_first_matrix(*this);
     const auto e = evaluation<double>();
     e->place(0, tree_.q0.data());
-    e->mass_entries(matrix.mass());
-    e->constraint_entries(matrix.constraint());
-    const bool factorised = matrix.factor(nullptr, fade_evaluation);
-    const int rate = matrix.factors().singular_joint();
+    const bool factorised = matrix->factor(*e, 0, tree_.q0.data(), nullptr, fade_evaluation);
+    const int rate = matrix->singular_joint();
     return factorised || rate < 0 ? "" : light_before_loops(rate);
   }
   const auto sweeps = looped_sweeps();
@@ -274,10 +271,8 @@ std::string Mechanism::loops_missed(bool swept) const {
                                  if (sweeps->weak_looped_branch()) return std::nullopt;
                                  return ok;
                                });
-  } else if (solved_by_bodies()) {
-    return masses_apart_ > masses_far_apart ? furthest_apart_ : "";
   } else {
-    FilteredMatrix matrix(kkt_pattern(), axis_scale(), nv(), row_groups_);
+    const auto matrix = leaves_first_matrix(*this);
     const auto own = evaluation<double>();
     std::vector<double> x(static_cast<std::size_t>(nv() + m()));
     std::vector<double> place;  // of what is factorised, and its fade
@@ -289,16 +284,14 @@ std::string Mechanism::loops_missed(bool swept) const {
                                  if (here != place) {
                                    place.clear();
                                    own->place(0, q);
-                                   own->mass_entries(matrix.mass());
-                                   own->constraint_entries(matrix.constraint());
-                                   if (!matrix.factor(nullptr, fade)) return false;
+                                   if (!matrix->factor(*own, 0, q, nullptr, fade)) return false;
                                    place = here;
                                  }
                                  own->positions(x.data() + nv());
                                  std::copy_n(p, nv(), x.data());
                                  for (int i = nv(); i < nv() + m(); ++i)
                                    x[static_cast<std::size_t>(i)] *= -beta;
-                                 matrix.solve(x.data());
+                                 matrix->solve(x.data());
                                  std::copy_n(x.data(), nv(), v);
                                  std::copy_n(x.data() + nv(), m(), sigma);
                                  return true;

@@ -137,11 +137,13 @@ std::vector<std::pair<std::string, std::string>> Mechanism::plan_lines() const {
           (looped_branches.empty() ? "" : ", " + looped_branches);
   else if (kkt_ == KktChoice::sparse)
     how = std::string(
-              solved_by_bodies()
+              leaves_first() ? solved_by_bodies() ? "sparse: filtered LDLᵀ of the equations of the "
+                                                    "bodies, the tree being deep,"
+                                                  : "sparse: filtered LDLᵀ"
+              : solved_by_bodies()
                   ? "sparse: KLU on the equations of the bodies, the tree being deep; poses are "
                     "not filtered,"
-              : leaves_first() ? "sparse: filtered LDLᵀ"
-                               : "sparse: KLU") +
+                  : "sparse: KLU") +
           " on a pattern analysed once" + (kkt_reason_.empty() ? "" : " (" + kkt_reason_ + ")");
   lines.emplace_back("solving (7)", how + ", " + std::to_string(tree_.nv + rows_) + " unknowns");
   return lines;

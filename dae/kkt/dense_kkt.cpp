@@ -120,12 +120,13 @@ std::unique_ptr<Kkt> make_dense_kkt(const Mechanism& mechanism) {
 }
 
 bool filters_pivots(const Mechanism& mechanism) {
-  return mechanism.dense_kkt() || (mechanism.leaves_first() && !mechanism.solved_by_bodies());
+  return mechanism.dense_kkt() || mechanism.leaves_first();
 }
 
 std::unique_ptr<Kkt> make_kkt(const Mechanism& mechanism) {
   if (mechanism.dense_kkt()) return make_dense_kkt(mechanism);
-  if (mechanism.solved_by_bodies()) return make_body_kkt(mechanism);
+  if (mechanism.solved_by_bodies())
+    return mechanism.leaves_first() ? make_front_kkt(mechanism) : make_body_kkt(mechanism);
   return mechanism.leaves_first() ? make_sparse_kkt(mechanism) : make_klu_kkt(mechanism);
 }
 

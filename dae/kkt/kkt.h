@@ -69,7 +69,11 @@ std::unique_ptr<Kkt> make_dense_kkt(const Mechanism& mechanism);
 std::unique_ptr<Kkt> make_sparse_kkt(const Mechanism& mechanism);
 /// Where joints have no inertia before their loops close: LU of that matrix; no pivot fades.
 std::unique_ptr<Kkt> make_klu_kkt(const Mechanism& mechanism);
-/// For deep trees: LU of the matrix of the bodies' equations; no pivot fades.
+/// For deep trees: L D Lᵀ of the matrix of the bodies' equations by fronts, with the pivots of σ
+/// filtered; O(Σ over the bodies of the squared number of open equations).
+std::unique_ptr<Kkt> make_front_kkt(const Mechanism& mechanism);
+/// For deep trees where joints have no inertia before their loops close: LU of that matrix; no
+/// pivot fades.
 std::unique_ptr<Kkt> make_body_kkt(const Mechanism& mechanism);
 
 }  // namespace momenta

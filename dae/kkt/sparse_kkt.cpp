@@ -1,8 +1,8 @@
-// Large systems: L D Lᵀ of the assembled matrix of (7), every pivot of σ filtered as in the dense
-// form and in the sweeps, on a pattern analysed once.
+// Large systems: L D Lᵀ of the matrix of (7), every pivot of σ filtered as in the dense form and in
+// the sweeps, on a pattern analysed once.
 
-#include <momenta/dae/factor/filtered_matrix.h>
 #include <momenta/dae/kkt/kkt.h>
+#include <momenta/dae/leaves_first_matrix.h>
 
 #include <algorithm>
 #include <cmath>
@@ -12,10 +12,9 @@ namespace {
 
 class SparseKkt final : public Kkt {
  public:
-  explicit SparseKkt(const Mechanism& mechanism)
-      : pattern_(mechanism.kkt_pattern().constraint),
-        matrix_(mechanism.kkt_pattern(), mechanism.axis_scale(), mechanism.nv(),
-                mechanism.row_groups()),
+  SparseKkt(const Mechanism& mechanism, std::unique_ptr<LeavesFirstMatrix> matrix)
+      : pattern_(mechanism.constraint_pattern()),
+        matrix_(std::move(matrix)),
         n_(static_cast<std::size_t>(mechanism.nv())),
         m_(static_cast<std::size_t>(mechanism.m())),
         x_(n_ + m_) {
@@ -25,16 +24,14 @@ class SparseKkt final : public Kkt {
   bool factor(Evaluation<double>& e, double t, const double* q, double fade) override {
     ++factorizations_;
     e.place(t, q);
-    e.mass_entries(matrix_.mass());
-    e.constraint_entries(matrix_.constraint());
-    const bool ok = matrix_.factor(compliance_, fade);
-    singular_joint_ = matrix_.factors().singular_joint();
+    const bool ok = matrix_->factor(e, t, q, compliance_, fade);
+    singular_joint_ = matrix_->singular_joint();
     if (!ok) return false;
-    const std::vector<double>& tau = matrix_.fading();
+    const std::vector<double>& tau = matrix_->fading();
     faded_rows_.clear();
     weakest_ = 1;
     for (std::size_t i = 0; i < m_; ++i) {
-      const double w = matrix_.factors().pivots()[i];
+      const double w = matrix_->pivots()[i];
       if (!(w > 10 * tau[i]))
         faded_rows_.push_back(static_cast<int>(i));
       else if (tau[i] > 0)
@@ -50,8 +47,8 @@ class SparseKkt final : public Kkt {
     if (centre)
       for (std::size_t i = 0; i < pattern_.size(); ++i)
         x_[static_cast<std::size_t>(pattern_[i].column)] -=
-            matrix_.constraint()[i] * centre[pattern_[i].row];
-    matrix_.solve(x_.data());
+            matrix_->constraint()[i] * centre[pattern_[i].row];
+    matrix_->solve(x_.data());
     bool finite = true;
     for (const double x : x_) finite = finite && std::isfinite(x);
     std::copy_n(x_.begin(), n_, u);
@@ -61,7 +58,7 @@ class SparseKkt final : public Kkt {
 
  private:
   const std::vector<KktPattern::Entry>& pattern_;  ///< of Φ_q
-  FilteredMatrix matrix_;
+  std::unique_ptr<LeavesFirstMatrix> matrix_;
   std::size_t n_, m_;
   std::vector<double> x_;
 };
@@ -69,7 +66,11 @@ class SparseKkt final : public Kkt {
 }  // namespace
 
 std::unique_ptr<Kkt> make_sparse_kkt(const Mechanism& mechanism) {
-  return std::make_unique<SparseKkt>(mechanism);
+  return std::make_unique<SparseKkt>(mechanism, joint_matrix(mechanism));
+}
+
+std::unique_ptr<Kkt> make_front_kkt(const Mechanism& mechanism) {
+  return std::make_unique<SparseKkt>(mechanism, front_matrix(mechanism));
 }
 
 }  // namespace momenta

@@ -1,5 +1,6 @@
 #include <momenta/dae/loop/carried_rows.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -25,6 +26,11 @@ class ZeroPoses {
   Eigen::Vector3d direction(int body, const Vec3<double>& v) const {
     const Eigen::Vector3d own(v[0], v[1], v[2]);
     return body < 0 ? own : Eigen::Vector3d(from_model_[static_cast<std::size_t>(body)] * own);
+  }
+  /// The same, the other way.
+  Eigen::Vector3d in_model(int body, const Eigen::Vector3d& v) const {
+    return body < 0 ? v
+                    : Eigen::Vector3d(from_model_[static_cast<std::size_t>(body)].transpose() * v);
   }
 
   /// n of the cycle of bodies a and b (−1: ground); none where it is not planar.
@@ -57,6 +63,22 @@ class ZeroPoses {
   std::vector<Eigen::Matrix3d> from_model_;
 };
 
+/// b_j of the i-th row of points.
+Vec3<double>& axis_of_row(LoopModel<Spatial>::Loop& l, int i) {
+  return l.axis_b[static_cast<std::size_t>(l.points[static_cast<std::size_t>(i)])];
+}
+
+/// The b'_i (rows), of which the k-th is n, from the b_j.
+Eigen::Matrix3d axes_with(const Eigen::Matrix3d& b, const Eigen::Vector3d& n, Eigen::Index k) {
+  const Eigen::Index i = (k + 1) % 3, j = (k + 2) % 3;
+  const Eigen::Vector3d first = b.row(j).transpose().cross(n).normalized();
+  Eigen::Matrix3d axes;
+  axes.row(k) = n;
+  axes.row(i) = first;
+  axes.row(j) = n.cross(first);
+  return axes;
+}
+
 }  // namespace
 
 CarriedRows::CarriedRows() = default;
@@ -77,6 +99,19 @@ CarriedRows::CarriedRows(const Tree& tree, const Model<Spatial>& model, LoopMode
     const auto across = [&](int body, const Vec3<double>& axis) {
       return parallel(zero.direction(body, axis), *normal);
     };
+    if (normal && l.n_points == 3 && l.n_axes == 0 &&
+        std::none_of(l.axis_b.begin(), l.axis_b.end(),
+                     [&](const Vec3<double>& axis) { return across(l.b, axis); })) {
+      Eigen::Matrix3d b;
+      for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) b(i, j) = axis_of_row(l, i)[j];
+      const Eigen::Vector3d n = zero.in_model(l.b, *normal);
+      Eigen::Index nearest = 0;
+      (b * n).cwiseAbs().maxCoeff(&nearest);
+      const Eigen::Matrix3d axes = axes_with(b, n, nearest);
+      for (int i = 0; i < 3; ++i) axis_of_row(l, i) = {{axes(i, 0), axes(i, 1), axes(i, 2)}};
+      turned_.push_back({first, static_cast<int>(nearest), axes * b.transpose()});
+    }
     auto kept = l;
     kept.n_points = kept.n_axes = 0;
     std::vector<int> kept_rows;
@@ -124,13 +159,34 @@ void CarriedRows::to_given(double* sigma, std::ptrdiff_t stride, const double* c
     else
       sigma[row * stride] = centre ? centre[row] : 0.0;
   }
+  for (const Turned& turned : turned_) {
+    Eigen::Map<Eigen::Vector3d, 0, Eigen::InnerStride<>> own(sigma + turned.first * stride,
+                                                             Eigen::InnerStride<>(stride));
+    if (centre)
+      own[turned.nearest] =
+          turned.R.row(turned.nearest) * Eigen::Map<const Eigen::Vector3d>(centre + turned.first);
+    own = (turned.R.transpose() * own).eval();
+  }
 }
 
-const double* CarriedRows::to_carried(const double* x, int place) {
-  auto& to = places_[place];
-  to.resize(rows_.size());
-  for (std::size_t k = 0; k < rows_.size(); ++k) to[k] = x[rows_[k]];
-  return to.data();
+const double* CarriedRows::of_carried(const double* x) {
+  numbers_.resize(rows_.size());
+  for (std::size_t k = 0; k < rows_.size(); ++k) numbers_[k] = x[rows_[k]];
+  return numbers_.data();
+}
+
+const double* CarriedRows::to_carried(const double* sigma) {
+  impulses_.resize(rows_.size());
+  std::size_t k = 0;
+  for (; k < rows_.size(); ++k) impulses_[k] = sigma[rows_[k]];
+  k = 0;
+  for (const Turned& turned : turned_) {
+    const Eigen::Vector3d own = turned.R * Eigen::Map<const Eigen::Vector3d>(sigma + turned.first);
+    while (rows_[k] < turned.first) ++k;
+    for (int i = 0; i < 3; ++i)
+      if (i != turned.nearest) impulses_[k++] = own[i];
+  }
+  return impulses_.data();
 }
 
 }  // namespace momenta

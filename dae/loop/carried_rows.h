@@ -10,8 +10,17 @@
 //
 // Such a row says nothing and takes no impulse: σ = centre there, and the sweeps leave it out. A
 // four-bar in space, or a leg's linkage on a robot that flies, closes by two equations, not by
-// five. Joints that are driven move as others do. What turns the axes of a loop's own drive may
-// leave the plane: such loops are carried whole.
+// five. Joints that are driven move as others do.
+//
+// The axes of a ball's three rows may be anyhow. In axes b'_i = Σ_j R_ij b_j with b'_k = n they are
+//
+//   D' = R D,   σ = Rᵀ σ',   σ' = R σ        R constant, orthonormal
+//
+// the same equations, and D'_k is constant: a ball, too, closes by two. k is the axis nearest to
+// n; the three rows are softened alike, so that R leaves that alone.
+//
+// What turns the axes of a loop's own drive may leave
+// the plane: such loops are carried whole.
 
 #include <momenta/dae/loop/loop_model.h>
 
@@ -33,19 +42,28 @@ class CarriedRows {
 
   /// Whether all rows are carried.
   bool all() const { return left_out_.empty(); }
-  /// Of Φ, the rows that are left out.
+  /// Of Φ, the rows that are left out, or the nearest to what is.
   const std::vector<int>& left_out() const { return left_out_; }
   /// Of Φ, the row that the sweeps number so.
   int given(int carried) const;
   /// σ of the carried rows, in the first places of `sigma`, to all m places, in place; components
   /// `stride` apart. Of rows left out σ is that of `centre` (m); null: zero.
   void to_given(double* sigma, std::ptrdiff_t stride, const double* centre = nullptr) const;
-  /// Of m numbers, those of carried rows, until the next call with the same `place`.
-  const double* to_carried(const double* x, int place);
+  /// σ' of the carried rows from σ (m), until the next call.
+  const double* to_carried(const double* sigma);
+  /// Of m numbers that are alike for the rows of a ball, those of carried rows, until the next
+  /// call.
+  const double* of_carried(const double* x);
 
  private:
+  /// A ball whose three rows, from `first` on, stand along other axes.
+  struct Turned {
+    int first, nearest;  ///< rows of Φ; of the three, k
+    Eigen::Matrix3d R;
+  };
   std::vector<int> rows_, left_out_;
-  std::vector<double> places_[2];
+  std::vector<Turned> turned_;
+  std::vector<double> impulses_, numbers_;
 };
 
 }  // namespace momenta

@@ -57,6 +57,33 @@ TEST(CarriedRows, OfAPlanarCycleInSpaceAreTwo) {
   EXPECT_EQ(a.faded, (std::vector<int>{2, 3, 4}));
 }
 
+/// Three rows along any axes: two of them say what there is to say. The third direction is the
+/// plane's normal, along which the impulse is the centre's.
+TEST(CarriedRows, OfABallAreTwoInAnyAxes) {
+  for (const Eigen::Vector3d& turn :
+       {Eigen::Vector3d(0, 0, 0.4), Eigen::Vector3d(0.7, -0.3, 0.2), Eigen::Vector3d(-2, 1, 1.5)}) {
+    Scene scene = four_bar();
+    scene.loops[0].kind = LoopKind::spherical;
+    scene.loops[0].axis.setZero();
+    scene.loops[0].rotation = Eigen::AngleAxisd(turn.norm(), turn.normalized());
+    const Mechanism swept(scene, {.algebra = Algebra::spatial, .kkt = KktChoice::sweeps}),
+        dense(scene, {.algebra = Algebra::spatial, .kkt = KktChoice::dense});
+    ASSERT_EQ(swept.m(), 3);
+    const VectorXd q = start_of(swept).q;
+    VectorXd p(3), centre(3);
+    p << 0.3, -0.2, 0.1;
+    centre << 0.5, -0.25, 2;
+    const Solved a = solve(swept, q, p, centre), b = solve(dense, q, p, centre);
+    EXPECT_LT(relative_error(a.u, b.u), 1e-12);
+    EXPECT_LT(relative_error(a.pdot, b.pdot), 1e-10);
+    EXPECT_EQ(a.faded.size(), 1u);
+    const Eigen::Vector3d n = scene.loops[0].rotation.inverse() * Eigen::Vector3d::UnitZ();
+    EXPECT_NEAR(a.sigma.dot(n), centre.dot(n), 1e-14);
+    const auto across = [&](const VectorXd& sigma) -> VectorXd { return sigma - n * n.dot(sigma); };
+    EXPECT_LT(relative_error(across(a.sigma), across(b.sigma)), 1e-10);
+  }
+}
+
 /// On a body that flies, its crank free or driven: the cycle's first body need not be the ground.
 TEST(CarriedRows, OfALinkageThatFliesAreTwo) {
   for (const bool driven : {false, true}) {

@@ -11,7 +11,7 @@
 
 #include <gtest/gtest.h>
 #include <momenta/core/scene/files/read_scene.h>
-#include <momenta/dae/kkt/body_matrix.h>
+#include <momenta/dae/body_matrix.h>
 #include <momenta/dae/kkt/kkt.h>
 #include <momenta/dae/kkt/klu_solver.h>
 

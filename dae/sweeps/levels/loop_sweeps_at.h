@@ -86,8 +86,8 @@ class LoopedSweepsAt final : public LoopedSweeps {
     static_assert(sizeof(One) == sizeof(double));
     const double *centre = right.centre, *compliance = right.compliance;
     if (centre && !shared_.empty()) centre = shared_.to_paired(centre);
-    if (centre && !carried_.all()) centre = carried_.to_carried(centre, 0);
-    if (compliance && !carried_.all()) compliance = carried_.to_carried(compliance, 1);
+    if (centre && !carried_.all()) centre = carried_.to_carried(centre);
+    if (compliance && !carried_.all()) compliance = carried_.of_carried(compliance);
     return right.of_rows(reinterpret_cast<const One*>(centre),
                          reinterpret_cast<const One*>(compliance));
   }

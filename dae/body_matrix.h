@@ -12,6 +12,7 @@
 // ground in the plane.
 
 #include <momenta/core/kernel/sweeps.h>
+#include <momenta/dae/factor/body_fronts.h>
 #include <momenta/dae/loop/loop_rows.h>
 #include <momenta/dae/mechanism.h>
 
@@ -38,6 +39,18 @@ class BodyMatrix {
   /// One of each pair of places.
   const std::vector<KktPattern::Entry>& entries() const { return entries_; }
   int size() const { return impulse(loop_model_.rows); }
+  /// How the bodies are carried.
+  BodyFronts::Bodies tree() const {
+    BodyFronts::Bodies tree;
+    tree.d = d;
+    tree.nv = model_.nv;
+    for (const auto& b : model_.bodies) {
+      tree.parent.push_back(b.parent);
+      tree.rate.push_back(b.u);
+      tree.rates.push_back(b.nv);
+    }
+    return tree;
+  }
   /// Places of u_j and σ_i.
   int rate(int j) const { return 2 * d * bodies() + j; }
   int impulse(int i) const { return rate(model_.nv) + i; }
