@@ -149,8 +149,34 @@ std::vector<std::pair<std::string, std::string>> Mechanism::plan_lines() const {
   return lines;
 }
 
+namespace {
+
+/// A coordinate that nothing moves, in a sentence; empty: there is none.
+std::string free_coordinate(const LagrangianModel& model, const LagrangianSpec& spec) {
+  std::vector<bool> held(spec.coordinates.size(), false);
+  for (const auto& place : model.constraint.places)
+    held[static_cast<std::size_t>(place.column)] = true;
+  for (std::size_t k = 0; k < model.mass.places.size(); ++k) {
+    const auto& [row, column] = model.mass.places[k];
+    const auto& value =
+        model.mass.values.tape()[static_cast<std::size_t>(model.mass.values.outputs()[k])];
+    if (value.operation == formula::Operation::number && value.number == 0) continue;
+    held[static_cast<std::size_t>(row)] = held[static_cast<std::size_t>(column)] = true;
+  }
+  for (std::size_t i = 0; i < held.size(); ++i)
+    if (!held[i])
+      return "coordinate '" + spec.coordinates[i].name +
+             "' has no inertia: its rate is not in the Lagrangian, and it is in no constraint; "
+             "expected one of them";
+  return "";
+}
+
+}  // namespace
+
 std::string Mechanism::no_inertia(int rate, double t, const double* q) const {
   if (scene_.lagrangian) {
+    if (const std::string free = free_coordinate(lagrangian(), *scene_.lagrangian); !free.empty())
+      return free;
     if (rate < 0)
       return "the equations have no finite solution; expected formulas with values there, "
              "and "

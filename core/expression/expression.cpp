@@ -22,6 +22,11 @@ class Listed final : public FormulaNames {
   std::string expected(std::string_view name) const override {
     std::vector<std::string_view> near(names_.begin(), names_.end());
     near.push_back("pi");
+    if (name.ends_with(".dot")) {  // of files of equations
+      const std::string rate = "der(" + std::string(name.substr(0, name.size() - 4)) + ")";
+      if (std::find(near.begin(), near.end(), rate) != near.end())
+        return "; did you mean " + reading::in_quotes(rate) + "?";
+    }
     const std::string meant = reading::did_you_mean(name, near);
     return !meant.empty() ? meant : ", expected one of: " + reading::listed(near);
   }

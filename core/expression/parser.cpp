@@ -1,13 +1,21 @@
-// The grammar of expression.h, one function a line of it.
+// The grammar of expression.h, one function a line of it; and before the formula definitions of
+// names for its parts,
+//
+//   whole:      { name ":=" or ";" } or
+//
+// which the rest of the text may use: "r := hypot(x, y); 1/r - 1/r^2".
 
 #include <momenta/core/expression/evaluate.h>
+#include <momenta/core/expression/other_notation.h>
 #include <momenta/core/expression/parser.h>
 #include <momenta/core/expression/tape.h>
 #include <momenta/core/text/near_name.h>
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <charconv>
+#include <map>
 #include <numbers>
 #include <optional>
 
@@ -49,10 +57,10 @@ class Parser {
     if (text_.size() > longest)
       fail(0, "has " + std::to_string(text_.size()) + " characters, expected at most " +
                   std::to_string(longest));
+    while (const std::optional<std::string_view> name = defined_name()) define(*name);
     const Term t = any();
     skip();
-    if (at_ < text_.size())
-      fail(at_, "found " + reading::in_quotes(word_at(at_)) + ", expected an operator or the end");
+    if (at_ < text_.size()) fail_at_sign(", expected an operator or the end");
     return t;
   }
   const Tape& tape() const { return tape_; }
@@ -61,6 +69,22 @@ class Parser {
  private:
   [[noreturn]] void fail(std::size_t place, const std::string& sentence) const {
     throw ExpressionError(sentence, place);
+  }
+  /// Of what stands at at_: what it is here where it is another notation's, else the ending. A
+  /// comma between digits is one, where a comma is nothing else.
+  [[noreturn]] void fail_at_sign(const std::string& ending) const {
+    const std::string_view rest = text_.substr(at_);
+    if (rest.front() == ',' && at_ > 0 && digit(text_[at_ - 1]) && rest.size() > 1 &&
+        digit(rest[1]))
+      fail(at_, "found ',' in a number, expected '.'");
+    if (rest.front() == '=' && !rest.starts_with("=<") && !rest.starts_with("=>"))
+      fail(at_, "found '=', expected one formula, or '==' where two numbers are compared");
+    const std::string here = sign_elsewhere(rest);
+    std::string_view word = word_at(at_);
+    if (rest.starts_with("&&") || rest.starts_with("||") || rest.starts_with("=<") ||
+        rest.starts_with("=>"))
+      word = rest.substr(0, 2);
+    fail(at_, "found " + reading::in_quotes(word) + (here.empty() ? ending : ", expected " + here));
   }
   static bool letter(char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
@@ -101,6 +125,36 @@ class Parser {
     return true;
   }
 
+  /// The name before ":=", behind which the reading goes on; nothing: no definition stands here.
+  std::optional<std::string_view> defined_name() {
+    skip();
+    const std::size_t from = at_;
+    if (from == text_.size() || !letter(text_[from])) return {};
+    const std::string_view name = word_at(from);
+    at_ += name.size();
+    if (take(":=")) {
+      if (!is_plain_name(name) || is_reserved_name(name) || locals_.contains(name) ||
+          names_.meaning(name, from))
+        fail(from, reading::in_quotes(name) +
+                       " is no new name, expected letters, digits and _ for what ':=' defines");
+      return name;
+    }
+    at_ = from;
+    return {};
+  }
+  void define(std::string_view name) {
+    const Term t = any();
+    locals_.emplace(name, t);
+    skip();
+    if (at_ == text_.size() || text_[at_] != ';')
+      fail_at_sign_or_end(", expected ';' after the definition of " + reading::in_quotes(name));
+    ++at_;
+  }
+  [[noreturn]] void fail_at_sign_or_end(const std::string& ending) const {
+    if (at_ == text_.size()) fail(at_, "ends" + ending);
+    fail_at_sign(ending);
+  }
+
   int number(const Term& t) const {
     if (t.truth) fail(t.place, "a comparison stands where a number is expected");
     return t.at;
@@ -137,6 +191,7 @@ class Parser {
   }
   Term comparison() {
     const Term a = sum();
+    if (take("<>")) fail(at_ - 2, "found '<>', expected '!='");
     const auto compare = [&]() -> std::optional<Term> {
       if (take("<=")) return of_numbers(Operation::less_equal, a, sum(), true);
       if (take(">=")) return turned(of_numbers(Operation::less_equal, sum(), a, true), a);
@@ -213,7 +268,10 @@ class Parser {
       fail(at_, from == 0 ? "is empty, expected a formula" : "ends where a number is expected");
     if (take("(")) {
       Term t = any();
-      if (!take(")")) fail(from, "a bracket '(' is not closed");
+      if (!take(")")) {
+        if (at_ < text_.size()) fail_at_sign(", expected an operator or ')'");
+        fail(from, "a bracket '(' is not closed");
+      }
       t.place = from;
       return t;
     }
@@ -224,7 +282,7 @@ class Parser {
       if (word_at(at_).size() == 1) fail(from, "a quote ' is not closed");
       return named(from);
     }
-    fail(from, "found " + reading::in_quotes(word_at(from)) + ", expected a number or a name");
+    fail_at_sign(", expected a number or a name");
   }
   double written_number() {
     double x = 0;
@@ -260,6 +318,12 @@ class Parser {
     const bool called = at_ < text_.size() && text_[at_] == '(';
     const auto* function = std::find_if(functions.begin(), functions.end(),
                                         [&](const Function& f) { return f.name == word; });
+    if (const auto local = locals_.find(word); local != locals_.end()) {
+      if (called)
+        fail(from,
+             reading::in_quotes(word) + " is no function, expected an operator between it and '('");
+      return {local->second.at, local->second.truth, from};
+    }
     if (called && function != functions.end()) return call(*function, from);
     if (called)
       if (auto spline = names_.function(word)) return value_of(std::move(spline), word, from);
@@ -276,11 +340,25 @@ class Parser {
         return of_name(*known, from);
       }
     }
+    if (called && (names_.meaning(word, from) || word == "pi"))
+      fail(from,
+           reading::in_quotes(word) + " is no function, expected an operator between it and '('");
     if (word == "pi" && !called) return {tape_.number(std::numbers::pi), false, from};
     if (function != functions.end())
       fail(from,
            "function " + reading::in_quotes(word) + " stands without '(', expected its arguments");
-    if (!called) fail(from, "unknown name " + reading::in_quotes(word) + names_.expected(word));
+    if (!called) {
+      const std::string here = number_elsewhere(word);
+      fail(from, "unknown name " + reading::in_quotes(word) +
+                     (here.empty() ? names_.expected(word) : ", expected " + here));
+    }
+    if (const std::string here = function_elsewhere(word); !here.empty())
+      fail(from, "unknown function " + reading::in_quotes(word) + ", expected " + here);
+    std::string lower(word);
+    for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    if (is_function(lower))
+      fail(from, "unknown function " + reading::in_quotes(word) + "; did you mean " +
+                     reading::in_quotes(lower) + "?");
     std::vector<std::string_view> near;
     for (const Function& f : functions) near.push_back(f.name);
     for (const std::string_view name : names_.functions()) near.push_back(name);
@@ -294,10 +372,10 @@ class Parser {
     if (!take(")")) {
       do arguments.push_back(any());
       while (take(","));
-      if (!take(")"))
-        fail(at_, at_ < text_.size()
-                      ? "found " + reading::in_quotes(word_at(at_)) + ", expected ',' or ')'"
-                      : "the bracket of function " + reading::in_quotes(name) + " is not closed");
+      if (!take(")")) {
+        if (at_ < text_.size()) fail_at_sign(", expected ',' or ')'");
+        fail(at_, "the bracket of function " + reading::in_quotes(name) + " is not closed");
+      }
     }
     if (static_cast<int>(arguments.size()) != expected)
       fail(from, "function " + reading::in_quotes(name) + " has " +
@@ -349,6 +427,7 @@ class Parser {
   std::size_t at_ = 0;
   int depth_ = 0;
   Tape tape_;
+  std::map<std::string_view, Term> locals_;  ///< by ":="
   std::vector<std::shared_ptr<const CubicSpline>> splines_;
 };
 

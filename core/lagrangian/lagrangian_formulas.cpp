@@ -3,11 +3,65 @@
 #include <momenta/core/text/near_name.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace momenta {
 namespace {
 
 using reading::in_quotes;
+
+/// q, q̇, t and the parameters by their names.
+class LagrangianNames final : public FormulaNames {
+ public:
+  LagrangianNames(const std::vector<std::string>& names, std::size_t n) : names_(names), n_(n) {}
+  std::optional<Meaning> meaning(std::string_view name, std::size_t) override {
+    const std::size_t i = find(name);
+    if (i == names_.size()) return {};
+    return Meaning{static_cast<int>(i), 0};
+  }
+  std::string expected(std::string_view name) const override {
+    const std::size_t dot = name.rfind('.');
+    const std::string_view last = dot == name.npos ? "" : name.substr(dot + 1);
+    const std::size_t owner = find(name.substr(0, dot));
+    if (owner < 2 * n_ && (owner >= n_ ? last == "dot" : last == "ddot" || last == "dotdot"))
+      return ", an acceleration, expected coordinates and their rates";
+    if (last == "dot" && owner >= 2 * n_ && owner < names_.size())
+      return ": " + in_quotes(names_[owner]) +
+             (owner == 2 * n_ ? " is the time" : " is a parameter") +
+             " and has no rate, expected that of a coordinate: " + names(n_, 2 * n_);
+    std::vector<std::string_view> near(names_.begin(), names_.end());
+    near.push_back("pi");
+    const std::string meant = reading::did_you_mean(name, near);
+    return !meant.empty() ? meant : ", expected one of: " + reading::listed(near);
+  }
+  /// "der(x)" and the like of other notations.
+  std::string expected_in_brackets(std::string_view word, std::string_view) const override {
+    if (find(word) < names_.size()) return "";
+    for (const char* elsewhere : {"dot", "der", "diff", "d", "D", "ddt", "derivative"})
+      if (word == elsewhere) return ", expected the rate of a coordinate: " + names(n_, 2 * n_);
+    return "";
+  }
+
+ private:
+  std::size_t find(std::string_view name) const {
+    return static_cast<std::size_t>(std::find(names_.begin(), names_.end(), name) - names_.begin());
+  }
+  std::string names(std::size_t from, std::size_t to) const {
+    std::vector<std::string_view> some;
+    for (std::size_t i = from; i < to; ++i) some.push_back(names_[i]);
+    return reading::listed(some);
+  }
+
+  const std::vector<std::string>& names_;
+  std::size_t n_;
+};
+
+/// Whether a number on its tape, made when it was read, is none: 1/0.
+bool has_no_value(const Expression& formula) {
+  return std::any_of(formula.tape().begin(), formula.tape().end(), [](const auto& in) {
+    return in.operation == formula::Operation::number && !std::isfinite(in.number);
+  });
+}
 
 /// Reads formulas of one scene; sentences open with whose they are.
 class Reader {
@@ -18,7 +72,12 @@ class Reader {
   Expression read(const FormulaSpec& formula, const std::string& who) {
     const std::string told = who + ", " + in_quotes(formula.text) + ": ";
     try {
-      Expression read(formula.text, all_.names);
+      LagrangianNames names(all_.names, static_cast<std::size_t>(n_));
+      Expression read(formula.text, names);
+      if (has_no_value(read))
+        throw SceneError(scene_.where(formula.at) + told +
+                         "has a part that is infinite or no number whatever its names stand for, "
+                         "expected one with values");
       if (read.is_truth())
         throw SceneError(scene_.where(formula.at) + told + "is a comparison, expected a number");
       for (const int v : read.variables())

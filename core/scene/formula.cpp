@@ -123,6 +123,7 @@ class FormulaReader::Names final : public FormulaNames {
       return !meant.empty() ? meant : otherwise;
     };
     if (of_time_alone_) return ending(", expected t, pi or a parameter");
+    if (const std::string whose = of_an_owner(name); !whose.empty()) return whose;
     const auto add = [&](std::string_view owner, std::string_view component) {
       all.push_back(named(owner, component));
     };
@@ -137,6 +138,38 @@ class FormulaReader::Names final : public FormulaNames {
     return ending(
         ", expected t, pi, a parameter, J.q or J.u of a joint J, M.x to M.vz of a marker M, or "
         "S.length or S.rate of a spring-damper S");
+  }
+
+  /// "der(x)" and the like of other notations.
+  std::string expected_in_brackets(std::string_view word, std::string_view) const override {
+    if (of_time_alone_ || find(r_.parameters_, word)) return "";
+    for (const char* elsewhere : {"dot", "der", "diff", "d", "D", "ddt", "derivative"})
+      if (word == elsewhere) return ", expected a rate: J.u of a joint J, M.vx of a marker M";
+    return "";
+  }
+
+  /// Of a name that is a joint's or a marker's and says nothing of it, or the beginning of one that
+  /// needs quotes.
+  std::string of_an_owner(std::string_view name) const {
+    if (const int* joint = find(r_.joints_, name)) {
+      const JointSpec& j = r_.scene_.joints[static_cast<std::size_t>(*joint)];
+      if (scalar_coordinates(j) > 0)
+        return ": it is a joint, expected " + named(j.name, component_of(j, false, 0)) + " or " +
+               named(j.name, component_of(j, true, 0));
+    }
+    if (find(r_.markers_, name))
+      return ": it is a marker, expected " + named(name, "x") + " to " + named(name, "vz");
+    std::string whose;
+    const auto look = [&](const auto& all) {
+      for (const auto& one : all)
+        if (whose.empty() && !is_plain_name(one.name) && one.name.starts_with(name))
+          whose = ", expected quotes around " + in_quotes(one.name) +
+                  ", which has other characters than letters, digits and _";
+    };
+    look(r_.scene_.joints);
+    look(r_.scene_.markers);
+    look(r_.scene_.forces);
+    return whose;
   }
 
   std::vector<Signal> signals;

@@ -1,5 +1,6 @@
 # Installs a build of momenta to a prefix of its own, then configures, builds and runs the consumer
-# there, as a user would: every program of README.md and of docs/how-to/use-the-library.md, and every public header. Where an
+# there, as a user would: every program of README.md, of docs/how-to/use-the-library.md and of
+# examples/, and every public header. Where an
 # including script sets CONFIGURE, that build is made first.
 #
 #   cmake -D BUILD=<build folder> -D WORK=<folder to use> -D SOURCE=<top of the project>
@@ -50,6 +51,11 @@ endif()
 file(REMOVE_RECURSE ${WORK})
 take_programs(README.md)
 take_programs(docs/how-to/use-the-library.md)
+file(GLOB examples ${SOURCE}/examples/*/*.cpp)
+foreach(example IN LISTS examples)
+  cmake_path(GET example STEM name)
+  configure_file(${example} ${WORK}/from_documents/example_${name}.cpp COPYONLY)
+endforeach()
 include_public_headers()
 step(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix)
 step(${CMAKE_COMMAND} -S ${SOURCE}/tests/consumer -B ${WORK}/build -D CMAKE_PREFIX_PATH=${WORK}/prefix

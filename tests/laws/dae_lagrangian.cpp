@@ -335,8 +335,10 @@ TEST(Lagrangian, RefusesWhatIsNoMechanism) {
                  "in it, expected a formula quadratic in the rates");
   expect_refused(x + "kinetic = \"x.dot^2 + y.dot^2*sin(x.dot)\"\n",
                  "kinetic: its second derivative by 'x.dot' twice has 'x.dot' in it");
-  expect_refused(x + "kinetic = \"x.dot^2\"\n",
-                 "coordinate 'y' has no inertia, alone or with those before it");
+  expect_refused(
+      x + "kinetic = \"x.dot^2\"\n",
+      "coordinate 'y' has no inertia: its rate is not in the Lagrangian, and it is in no "
+      "constraint; expected one of them");
   expect_refused(x + "kinetic = \"(x.dot + y.dot)^2\"\n", "' has no inertia, alone or with");
   expect_refused(x + "kinetic = \"x.dot^2 - y.dot^2\"\n", "coordinate 'y' has no inertia");
   expect_refused(x + "kinetic = \"x.dot^2 + y.dot^2\"\npotential = \"log(x)\"\n",
@@ -350,7 +352,7 @@ TEST(Lagrangian, RefusesWhatIsNoMechanism) {
                      "= \"x^2 + y^2 + 1\" }]\n",
                  "constraint 'c' stays open by 1");
   expect_refused(x + "kinetic = \"x.dot^2\"\nconstraints = [{ name = \"c\", equation = \"x\" }]\n",
-                 "the equations have no finite solution");
+                 "coordinate 'y' has no inertia: its rate is not in the Lagrangian");
 }
 
 // A massless coordinate that a constraint holds, and constraints that say the same twice.

@@ -239,7 +239,12 @@ TEST(Expression, MistakesAreNamedWithTheirPlace) {
       {"µ + 1", 0, "found 'µ', expected a number or a name"},
       {"a.", 1, "found '.'"},
       {"$a", 0, "found '$'"},
-      {"pi(2)", 0, "unknown function 'pi'"},
+      {"pi(2)", 0, "'pi' is no function, expected an operator between it and '('"},
+      {"a(2)", 0, "'a' is no function, expected an operator between it and '('"},
+      {"ln(a)", 0, "unknown function 'ln', expected log(x)"},
+      {"a*1,5", 3, "found ',' in a number, expected '.'"},
+      {"if(a < 1 && a > 0, a, 1)", 9, "found '&&', expected 'and'"},
+      {"a²", 1, "found '²', expected '^2'"},
   };
   for (const Mistake& m : mistakes) {
     try {

@@ -35,6 +35,16 @@ Formula read_at(const Fields& table, const std::string& key, std::string& text, 
   }
 }
 
+/// Where a place of "(left) - (right)" stands in "left = right", of which it was made.
+std::size_t place_as_typed(const std::string& typed, const std::string& read, std::size_t place) {
+  if (typed == read) return place;
+  const std::size_t left = read.size() - typed.size();  // what ") - (" and the brackets add
+  std::size_t sign = 0;                                 // of '='
+  while (sign < typed.size() && typed[sign] == read[sign + 1]) ++sign;
+  return std::min(typed.size(), place <= sign + 1 ? std::max<std::size_t>(place, 1) - 1
+                                                  : place - std::min(place, left - 1));
+}
+
 bool takes_time(const Formula& formula) {
   return std::any_of(formula.signals.begin(), formula.signals.end(),
                      [](const Signal& s) { return s.kind == Signal::Kind::time; });
@@ -83,11 +93,17 @@ void read_formulas(const Fields& root, Scene& scene) {
   for (const Fields& table : root.tables("loop", "loop")) {
     LoopSpec& loop = scene.loops[which++];
     if (!has_equation(loop)) continue;
-    const Formula formula = read_at(table, "equation", loop.equation, scene,
-                                    [&](const auto& t) { return reader.read(t); });
+    std::string as_typed = table.text("equation");
+    const Formula formula = read_at(table, "equation", as_typed, scene, [&](const auto& t) {
+      try {
+        return reader.read(loop.equation);
+      } catch (const ExpressionError& e) {
+        throw ExpressionError(e.what(), place_as_typed(t, loop.equation, e.place()));
+      }
+    });
     if (const std::string fault = equation_fault(scene, loop.kind, formula); !fault.empty())
       table.fail_at(value_at(table, "equation").at,
-                    "equation, " + in_quotes(loop.equation) + ", " + fault);
+                    "equation, " + in_quotes(as_typed) + ", " + fault);
     loop.equation = formula.text;
   }
   which = 0;

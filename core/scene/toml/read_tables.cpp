@@ -227,6 +227,9 @@ std::string as_difference(const Fields& table, const std::string& text) {
   for (std::size_t i = 0; i < text.size(); ++i) {
     if (text[i] == '\'') quoted = !quoted;
     if (quoted || text[i] != '=') continue;
+    if (i > 0 && text[i - 1] == ':')
+      table.fail_key("equation",
+                     "has ':=' in it, which equations do not take, expected them whole");
     const bool compares =
         (i > 0 && std::string_view("=<>!").find(text[i - 1]) != std::string::npos) ||
         (i + 1 < text.size() && text[i + 1] == '=');
@@ -236,6 +239,12 @@ std::string as_difference(const Fields& table, const std::string& text) {
     sign = i;
   }
   if (sign == std::string::npos) return text;
+  const auto blank = [](std::string_view side) {
+    return side.find_first_not_of(" \t\n") == std::string_view::npos;
+  };
+  if (blank(std::string_view(text).substr(0, sign)) ||
+      blank(std::string_view(text).substr(sign + 1)))
+    table.fail_key("equation", "has nothing on one side of '=', expected a formula on either");
   return "(" + text.substr(0, sign) + ") - (" + text.substr(sign + 1) + ")";
 }
 

@@ -1,0 +1,81 @@
+#pragma once
+// A system whose L, Q and Φ are one class of the user, each a template over its number type:
+//
+//   struct Bead {
+//     double m = 1, g = 9.81, c = 0.1;
+//     template <class S> S lagrangian(const S* q, const S* v, const S& t) const;
+//     template <class S> void forces(const S* q, const S* v, const S& t, S* tau) const;   // optional
+//     template <class S> void constraints(const S* q, const S& t, S* phi) const;          // optional
+//   };
+//
+// It is called once, with numbers that write down what is done to them (core/expression/written.h):
+// the result is a Lagrangian of formulas, as if they had been typed. It has the same derivatives,
+// forms and measures, to the last bit where no definitions were needed, and may be written to a
+// file.
+
+#include <momenta/core/expression/written.h>
+#include <momenta/core/scene/lagrangian.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace momenta {
+
+/// The Lagrangian of a class as above. `coordinates` are those of q, in order, with units and
+/// start. `constraints` are the names, and whether it is an angle, of the values that
+/// system.constraints() gives, in order; its `equation` is not read. tau and phi come zeroed;
+/// a force that stays 0 is none.
+/// @throws std::logic_error: a constraint and a class without constraints(), or the reverse. What a
+/// scene asks of a Lagrangian, validate() and Mechanism ask, with their sentences. One call of each
+/// function, O(tape)
+template <class System>
+LagrangianSpec lagrangian_of(const System& system,
+                             std::vector<LagrangianSpec::Coordinate> coordinates,
+                             std::vector<LagrangianSpec::Constraint> constraints = {});
+
+/// Whether a class has forces, or constraints, as above.
+template <class System>
+concept WithForces = requires(const System& s, const Written* x, Written* y) {
+  s.forces(x, x, *x, y);
+};
+template <class System>
+concept WithConstraints = requires(const System& s, const Written* x, Written* y) {
+  s.constraints(x, *x, y);
+};
+
+/// What formulas call q, q̇ and t.
+std::vector<std::string> formula_names(const std::vector<LagrangianSpec::Coordinate>& coordinates);
+/// Refuses constraints without names or functions. @throws std::logic_error
+void expect_constraints(bool has_function, std::size_t names);
+
+template <class System>
+LagrangianSpec lagrangian_of(const System& system,
+                             std::vector<LagrangianSpec::Coordinate> coordinates,
+                             std::vector<LagrangianSpec::Constraint> constraints) {
+  expect_constraints(WithConstraints<System>, constraints.size());
+  const std::size_t n = coordinates.size();
+  const std::vector<Written> x = Written::variables(2 * static_cast<int>(n) + 1);  // q, q̇, t
+  const Written* const q = x.data();
+  const Written *const v = q + n, *const t = v + n;
+  LagrangianSpec spec;
+  const std::vector<std::string> names = formula_names(coordinates);
+  const Written lagrangian = system.lagrangian(q, v, *t);
+  spec.lagrangian.text = lagrangian.text(names);
+  if constexpr (WithForces<System>) {
+    std::vector<Written> tau(n);
+    system.forces(q, v, *t, tau.data());
+    for (std::size_t i = 0; i < n; ++i)
+      if (!tau[i].is(0)) spec.forces.push_back({coordinates[i].name, {tau[i].text(names), {}}, {}});
+  }
+  if constexpr (WithConstraints<System>) {
+    std::vector<Written> phi(constraints.size());
+    system.constraints(q, *t, phi.data());
+    for (std::size_t i = 0; i < phi.size(); ++i) constraints[i].equation.text = phi[i].text(names);
+  }
+  spec.coordinates = std::move(coordinates);
+  spec.constraints = std::move(constraints);
+  return spec;
+}
+
+}  // namespace momenta
