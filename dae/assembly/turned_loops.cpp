@@ -23,14 +23,16 @@ int first_axis_held(const LoopChoice& choice) {
   return choice.axes.size() == 3 ? 0 : choice.axes.size() == 2 ? 2 : 3;
 }
 
+double value_of(const DriveSpec& drive, double t) {
+  double value, rate, second;
+  MotionLaw(drive).evaluate(t, value, rate, second);
+  return value;
+}
 /// R₁(f₁) R₂(f₂) … at time t.
 Eigen::Matrix3d prescribed(const std::vector<LoopChoice::Along>& turns, double t) {
   Eigen::Matrix3d all = Eigen::Matrix3d::Identity();
-  for (const LoopChoice::Along& turn : turns) {
-    double angle, rate, second;
-    MotionLaw(*turn.drive).evaluate(t, angle, rate, second);
-    all = all * Eigen::AngleAxisd(angle, turn.axis);
-  }
+  for (const LoopChoice::Along& turn : turns)
+    all = all * Eigen::AngleAxisd(value_of(*turn.drive, t), turn.axis);
   return all;
 }
 
@@ -87,8 +89,11 @@ class LeadingBack {
       const bool longer = (way >> (k % 3) & 1) != 0;
       const double angle = longer ? turned.angle - 2 * std::numbers::pi : turned.angle;
       const Eigen::Vector3d& axis = way >= 4 ? turned.other : turned.axis;
-      Eigen::Quaterniond& rotation = scene.loops[turned.loop].rotation;
-      rotation = rotation * Eigen::Quaterniond(Eigen::AngleAxisd(s * angle, axis));
+      LoopSpec& loop = scene.loops[turned.loop];
+      const Eigen::Quaterniond whole = loop.rotation;
+      loop.rotation = whole * Eigen::Quaterniond(Eigen::AngleAxisd(s * angle, axis));
+      loop.origin_parent +=
+          s * turned.apart + whole * turned.driven - loop.rotation * turned.driven;
     }
     const Mechanism mechanism(std::move(scene), mechanism_.options());
     ScaledLoops loops(mechanism);
@@ -126,18 +131,22 @@ std::vector<TurnedLoop> turned_loops(const Mechanism& mechanism, double t,
     const int first = first_axis_held(choice);
     if (first == 3) continue;
     if (poses.empty()) poses = Poses(open_chain_of(scene))(t, q.data());
-    const auto scene_axes = [&](const std::string& name) -> Eigen::Matrix3d {
+    const auto pose = [&](const std::string& name) {
       const int body = tree.body(name);
-      if (body < 0) return Eigen::Matrix3d::Identity();
-      return poses[static_cast<std::size_t>(body)].linear();
+      return body < 0 ? Eigen::Isometry3d::Identity() : poses[static_cast<std::size_t>(body)];
     };
-    const Eigen::Matrix3d to_loop =
-        (scene_axes(spec.parent) * spec.rotation.toRotationMatrix()).transpose();
-    const Eigen::Matrix3d a =
-        to_loop * scene_axes(spec.child) * prescribed(choice.turns_a, t) * choice.frame;
+    const Eigen::Isometry3d in_parent = pose(spec.parent).inverse() * pose(spec.child);
+    const Eigen::Matrix3d a = spec.rotation.toRotationMatrix().transpose() * in_parent.linear() *
+                              prescribed(choice.turns_a, t) * choice.frame;
     const Eigen::Matrix3d b = prescribed(choice.turns_b, t) * choice.frame;
     if (std::optional<TurnedLoop> turned = turn_between(a, b, first)) {
       turned->loop = i;
+      for (const LoopChoice::Along& way : choice.translations)
+        turned->driven += value_of(*way.drive, t) * way.axis;
+      turned->apart =
+          in_parent * spec.origin_child - spec.origin_parent - spec.rotation * turned->driven;
+      for (int k = 0; k < 3; ++k)  // a driven component is not the loop's
+        if (drives[spec.name].origin[static_cast<std::size_t>(k)]) turned->apart[k] = 0;
       all.push_back(*turned);
     }
   }

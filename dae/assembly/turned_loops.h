@@ -13,9 +13,10 @@
 // another one. A turned loop is led back: with G the turn of the axes b_j that takes them to the
 // a_i, the pose closes the loop with b_j turned by G^s at s = 1, and is followed to s = 0,
 //
-//   Φ(q(s); G^s b) = 0,
+//   Φ(q(s); G^s b, x_B + s D) = 0,
 //
-// one way round, and if that ends the other, G^s with the angle θ − 2π in place of θ.
+// D being what the pose at s = 1 has along a slide or in a plane, whose axes G turns as well; one
+// way round, and if that ends the other, G^s with the angle θ − 2π in place of θ.
 
 #include <momenta/dae/mechanism.h>
 
@@ -31,6 +32,8 @@ struct TurnedLoop {
   std::size_t loop = 0;         ///< its place among the scene's
   Eigen::Vector3d axis, other;  ///< of G in the loop frame; of a hinge another one as well
   double angle = 0;             ///< of G [rad], above 0, at most π
+  Eigen::Vector3d driven = Eigen::Vector3d::Zero();  ///< displacement by drives, loop frame [m]
+  Eigen::Vector3d apart = Eigen::Vector3d::Zero();   ///< D in parent axes [m]
 };
 
 /// Those that the pose q (nq) at time t [s] closes turned, drives counted. @pre Φ(q, t) = 0.
