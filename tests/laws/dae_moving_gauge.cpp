@@ -264,7 +264,7 @@ TEST(Bdf5, EveryMatrixAndForm) {
 TEST(DaeForms, SoftenedRowsHoldAtTheStart) {
   Scene scene = read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) /
                            "examples/models/agility_cassie/cassie.xml");
-  double rate = 0.5;
+  double rate = -0.5;
   for (JointSpec& joint : scene.joints)
     if (joint.kind == JointKind::revolute) joint.velocity = {rate = -rate};
   const Mechanism mechanism(scene);
