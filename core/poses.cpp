@@ -3,6 +3,12 @@
 
 namespace momenta {
 
+Scene open_chain_of(Scene scene) {
+  scene.loops.clear();
+  std::erase_if(scene.drives, [](const DriveSpec& drive) { return !drive.loop.empty(); });
+  return scene;
+}
+
 struct Poses::Inside {
   Tree tree;
   Model<Spatial> model;

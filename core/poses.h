@@ -10,6 +10,10 @@
 
 namespace momenta {
 
+/// The open chain of a scene: it without its loops and their drives. q of a mechanism is laid out
+/// as its chain's.
+Scene open_chain_of(Scene scene);
+
 /// Owns its model and workspace; one object serves one thread.
 class Poses {
  public:

@@ -1,5 +1,6 @@
 #include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/assembly/closing.h>
+#include <momenta/dae/assembly/turned_loops.h>
 #include <momenta/dae/joint_places.h>
 #include <momenta/dae/kkt/least_norm.h>
 #include <momenta/dae/kkt/loop_rank.h>
@@ -60,9 +61,10 @@ class Assembler {
   void close_positions(Assembly& a) {
     Closing closing(loops_, steps_, t_);
     const Eigen::VectorXd guess = a.start.q;
-    const Closing::Pose found = closing.close(guess);
+    Closing::Pose found = closing.close(guess);
     a.iterations = closing.iterations();
-    a.branch = closing.branch();
+    if (found.is_closed) turn_back(closing, found, a);
+    if (a.branch.empty()) a.branch = closing.branch();
     a.start.q = found.q;
     const Eigen::VectorXd phi = loops_.gap(t_, a.start.q).cwiseProduct(row_);
     a.position_residual = phi.cwiseAbs().maxCoeff();
@@ -72,6 +74,33 @@ class Assembler {
     if (!found.is_least) return;
     a.start.residue = phi;
     a.residue = residue_in_words(mechanism_, phi);
+  }
+
+  /// Where axes that the loops hold in one are turned (turned_loops.h): to a pose where they are
+  /// not.
+  void turn_back(Closing& closing, Closing::Pose& found, Assembly& a) {
+    const std::vector<TurnedLoop> turned = turned_loops(mechanism_, t_, found.q);
+    if (turned.empty()) return;
+    const std::string sentence = in_words(mechanism_, turned);
+    if (const auto back = led_back(mechanism_, t_, found.q, turned, loops_.columns, a.iterations)) {
+      found = closing.close(*back);
+      a.iterations += closing.iterations();
+      a.branch = "one of several assemblies perhaps: from the guess " + sentence +
+                 ", and it was led back from there";
+      return;
+    }
+    const auto in_one = [&](const Closing::Pose& pose) {
+      return turned_loops(mechanism_, t_, pose.q).empty();
+    };
+    const int before = closing.iterations();
+    found = closing.from_seeds(a.start.q, in_one);
+    a.iterations += closing.iterations() - before;
+    if (!found.is_closed)
+      throw SceneError(mechanism_.scene().where(mechanism_.scene().loops[turned[0].loop].at) +
+                       "the mechanism cannot be assembled from these positions: " + sentence +
+                       " alone; expected axes that meet as the scene says, or another rotation");
+    a.branch = "one of several assemblies perhaps: from the guess " + sentence +
+               ", this one was found from one of several starts around it";
   }
 
   [[noreturn]] void refuse(const Eigen::VectorXd& phi, double tolerance, bool stretched) {

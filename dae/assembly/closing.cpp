@@ -15,7 +15,7 @@ constexpr double closed_gap = 1e-12;  // |Φ|∞, in units; at least
 constexpr int damped_iterations = 200;
 constexpr double largest_step = 0.4;  // [rad or lengths]: stay on the branch of the guess
 constexpr double far = 0.1;           // [rad or lengths]: Newton's steps may leave the branch
-constexpr int undamped_iterations = 40, seed_iterations = 60;
+constexpr int undamped_iterations = 40;
 constexpr double seed_distances[] = {0.3, 1, 3};
 constexpr int most_seeds = 8;            // at each distance
 constexpr double seed_entries = 100000;  // of Φ_q, all seeds of a distance together
@@ -182,7 +182,8 @@ Closing::Pose Closing::undamped(Eigen::VectorXd q) {
   return {q, largest_of(gap(q)), false};
 }
 
-Closing::Pose Closing::from_seeds(const Eigen::VectorXd& guess) {
+Closing::Pose Closing::from_seeds(const Eigen::VectorXd& guess,
+                                  const std::function<bool(const Pose&)>& wanted) {
   Pose nearest{guess, std::numeric_limits<double>::infinity(), false};
   double least = std::numeric_limits<double>::infinity();
   const auto entries = static_cast<double>(loops_.pattern().size());
@@ -198,6 +199,7 @@ Closing::Pose Closing::from_seeds(const Eigen::VectorXd& guess) {
       }
       gap(guess);
       Pose pose = damped(loops_.moved(guess, step), seed_iterations);
+      pose.is_closed = pose.is_closed && wanted(pose);
       const double way = loops_.apart(pose.q, guess);
       // Among closed ones the nearest, else the one that is open least.
       if (pose.is_closed ? way < least : !nearest.is_closed && pose.gap < nearest.gap) {
@@ -222,7 +224,7 @@ Closing::Pose Closing::anywhere(const Eigen::VectorXd& guess, Pose open) {
   Pose found = undamped(guess);
   if (!found.is_closed) {
     how = "from one of several starts around it";
-    found = from_seeds(guess);
+    found = from_seeds(guess, [](const Pose&) { return true; });
   }
   if (!found.is_closed) {
     if (found.gap < open.gap) open = std::move(found);

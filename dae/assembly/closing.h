@@ -21,6 +21,7 @@
 #include <momenta/dae/assembly/scaled_loops.h>
 #include <momenta/dae/kkt/least_norm.h>
 
+#include <functional>
 #include <string>
 
 namespace momenta {
@@ -40,6 +41,11 @@ class Closing {
   /// From the guess q. Cost: least-norm factorisations of Φ_q, 10 to 200 where it closes; up to
   /// 5000 where nothing does.
   Pose close(const Eigen::VectorXd& guess);
+  /// The nearest to the guess of the poses that close from starts around it, by the last of these
+  /// ways, and that are `wanted`; open where there is none.
+  Pose from_seeds(const Eigen::VectorXd& guess, const std::function<bool(const Pose&)>& wanted);
+  /// From q by damped steps alone: the pose beside it, where there is one.
+  Pose beside(const Eigen::VectorXd& q) { return damped(q, seed_iterations); }
 
   double tolerance() const { return tolerance_; }  ///< of |Φ|∞, in units
   int iterations() const { return iterations_; }
@@ -49,6 +55,7 @@ class Closing {
 
  private:
   struct Trial;
+  static constexpr int seed_iterations = 60;
   Eigen::VectorXd gap(const Eigen::VectorXd& q) { return loops_.gap(t_, q); }
   Trial along(const Eigen::VectorXd& q, double norm, Eigen::VectorXd step);
   Eigen::VectorXd damped_step(const std::vector<double>& j, const Eigen::VectorXd& phi);
@@ -59,7 +66,6 @@ class Closing {
   Pose bent(const Pose& open);
   bool follow(Eigen::VectorXd& q);
   Pose undamped(Eigen::VectorXd q);
-  Pose from_seeds(const Eigen::VectorXd& guess);
   Pose anywhere(const Eigen::VectorXd& guess, Pose open);
 
   ScaledLoops& loops_;

@@ -33,6 +33,7 @@ DaeForm::DaeForm(std::string name, const Mechanism& mechanism, DaeLayout layout,
   }
   if (unknowns != Unknowns::velocities)
     momentum_scales(*plain_.e, layout_.nv, scale_.data() + layout_.x());
+  softened_about_.assign(static_cast<std::size_t>(layout.m), 0.0);
   if (layout.m > 0) find_redundancy(start);
   for (int i = layout_.s(); i < layout_.size(); ++i)
     scale_[static_cast<std::size_t>(i)] = std::numeric_limits<double>::infinity();
@@ -101,6 +102,7 @@ std::vector<double> DaeForm::initial(const Start& start) {
 bool DaeForm::start(double t, double* y, double* ydot) {
   const auto y0 = initial(start_);
   std::copy(y0.begin(), y0.end(), y);
+  std::copy_n(y + layout_.s(), softened_about_.size(), softened_about_.begin());
   complete(t, start_.u.data(), start_.udot.data(), start_.lambda.data(), y, ydot);
   for (int i = 0; i < size(); ++i)
     if (!std::isfinite(y[i]) || !std::isfinite(ydot[i])) return fail("the start is not finite");

@@ -104,15 +104,18 @@ class DaeForm : public Form, public DaeSystem {
   const Mechanism& mechanism_;
 
  private:
-  /// Redundant or singular loops at the start: −ε s on the rows that determine s (and −10⁻³ ε μ),
-  /// so that the Newton matrix stays regular. The bias on u is ε s, which the gauge keeps small.
+  /// Redundant or singular loops at the start: −ε (s − s₀) on the rows that determine s (and
+  /// −10⁻³ ε μ), so that the Newton matrix stays regular; s₀ is s at the start, which is consistent
+  /// so. Its ε s₀ would open Φ there at once, and a first step h answer by u ~ ε s₀/h. The bias on
+  /// u is ε (s − s₀), which the gauge keeps small.
   template <class S>
   void regularise(const S* y, S* r) const {
     if (epsilon_.empty()) return;
     const int rows = layout_.position_multiplier ? 2 * layout_.m : layout_.m;
     for (int i = 0; i < layout_.m; ++i) {
       const double epsilon = epsilon_[static_cast<std::size_t>(i)];
-      r[layout_.size() - rows + i] -= epsilon * y[layout_.s() + i];
+      r[layout_.size() - rows + i] -=
+          epsilon * (y[layout_.s() + i] - softened_about_[static_cast<std::size_t>(i)]);
       if (layout_.position_multiplier)
         r[layout_.size() - layout_.m + i] -= (1e-3 * epsilon) * y[layout_.mu() + i];
     }
@@ -140,8 +143,9 @@ class DaeForm : public Form, public DaeSystem {
   DaeScratch<Jet> jet_;
   std::unique_ptr<LocalJacobian> local_;
   std::vector<double>
-      epsilon_;               ///< per row of Φ; empty when the loops are independent at the start
-  std::unique_ptr<Kkt> kkt_;  ///< for reading momentum states back
+      epsilon_;  ///< per row of Φ; empty when the loops are independent at the start
+  std::vector<double> softened_about_;  ///< s₀ (m)
+  std::unique_ptr<Kkt> kkt_;            ///< for reading momentum states back
   std::unique_ptr<LoopSolver> reader_;  ///< the same for large mechanisms
   FormOptions options_;
   /// Past singular poses: the momentum form, and a solver of (7) to see them come.

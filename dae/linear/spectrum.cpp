@@ -96,10 +96,7 @@ void refuse_springs_without_length(const Mechanism& mechanism, const Equilibrium
   const Scene& scene = mechanism.scene();
   const auto is_spring = [](const ForceSpec& f) { return f.kind == "spring-damper"; };
   if (std::none_of(scene.forces.begin(), scene.forces.end(), is_spring)) return;
-  Scene open = scene;
-  open.loops.clear();
-  std::erase_if(open.drives, [](const DriveSpec& drive) { return !drive.loop.empty(); });
-  const auto poses = Poses(open)(at.t, at.q.data());
+  const auto poses = Poses(open_chain_of(scene))(at.t, at.q.data());
   const auto place = [&](const std::string& body, const Eigen::Vector3d& point) -> Eigen::Vector3d {
     const int k = body == "ground" ? -1 : mechanism.tree().body(body);
     return k < 0 ? point : Eigen::Vector3d(poses[static_cast<std::size_t>(k)] * point);

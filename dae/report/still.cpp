@@ -58,6 +58,7 @@ std::string still_words(const Mechanism& mechanism, const Assembly& a) {
   if (mechanism.m() > 0)
     words += " Assembly moved the joints by up to " + compact(a.moved, 2) +
              " against the guess (rad or m).";
+  if (!a.branch.empty()) words += " This is " + a.branch + ".";
   if (!scene.drives.empty())
     words +=
         " It moves as its drives say, up to the end of its run; what they leave free moves as "

@@ -62,6 +62,12 @@ TEST_F(MjcfActs, SpringDamperIsOfTheJointsInertia) {
   EXPECT_EQ(s.joints[0].rest, -.25);  // springref 0 of the file
 }
 
+TEST_F(MjcfActs, SpringDampersOfNegativeNumbersAreRefused) {
+  expect_refused("joint 'j': <joint> springdamper has a negative number", "springdamper='-.2 .5'");
+  expect_refused("joint 'j': <joint> springdamper has a negative number", "springdamper='0 -1'");
+  EXPECT_EQ(scene("springdamper='0 0' stiffness='3'").joints[0].stiffness, 3);
+}
+
 TEST_F(MjcfActs, BallsAndFreeBodies) {
   std::ofstream(file_) << "<mujoco><worldbody><body name='a' pos='1 2 3' quat='0 1 0 0'><joint "
                           "type='free' damping='.5' springdamper='.2 .5'/><geom size='1'/></body>"
@@ -202,6 +208,25 @@ TEST_F(MjcfActs, ActuatorsAtConstantControls) {
                  "<actuator><muscle name='y' joint='j'/></actuator>", {"0"});
   expect_refused("has a state of its own", "",
                  "<actuator><general joint='j' dyntype='filter'/></actuator>", {"0"});
+}
+
+// What an actuator acts on is in the model, whether a control is given or not.
+TEST_F(MjcfActs, ActuatorsOnWhatIsNotThereAreRefused) {
+  for (const Strings& controls : {Strings{}, Strings{"0"}}) {
+    const auto refused = [&](const std::string& sentence, const std::string& actuator) {
+      expect_refused(sentence, "", "\n<actuator>\n<" + actuator + "/></actuator>", controls);
+    };
+    refused(":3: actuator: <motor> joint is 'jj', expected the name of a joint; did you mean 'j'?",
+            "motor joint='jj'");
+    refused(":3: actuator 'm': <motor> jointinparent is 'x'", "motor name='m' jointinparent='x'");
+    refused("tendon is 'u', expected the name of a tendon", "motor tendon='u'");
+    refused("site is 'nowhere', expected the name of a site", "general site='nowhere'");
+    refused("body is 'z', expected the name of a body", "adhesion body='z'");
+    refused("class is 'strong'", "motor joint='j' class='strong'");
+  }
+  for (const char* fine : {"motor joint='k'", "general site='s' refsite='w'", "adhesion body='a'"})
+    EXPECT_EQ(scene("", std::string("<actuator><") + fine + "/></actuator>").remarks.back(),
+              "left out: actuators, which --control lets act (1)");
 }
 
 TEST_F(MjcfActs, ActuatorsOfTendons) {

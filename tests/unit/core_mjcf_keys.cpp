@@ -80,7 +80,7 @@ TEST_F(MjcfKeys, WrongKeys) {
     options.key = key;
     expect_refused(bodies + keys, "m.xml", expected, options);
   };
-  const std::string two = "<keyframe><key name='home'/><key qpos='1'/></keyframe>";
+  const std::string two = "<keyframe><key name='home'/><key/></keyframe>";
   refused("hone", two,
           ": has no key 'hone', expected one of 'home', '1' or a number from 0 to 1; did you mean "
           "'home'?");
@@ -95,6 +95,14 @@ TEST_F(MjcfKeys, WrongKeys) {
           "qpos has a zero quaternion for joint 'ball', expected w x y z");
   refused("0", "<keyframe><key qpos='1 2 3 0 0 3 4 2 0 0 0 x 7'/></keyframe>",
           "qpos has 'x', expected finite numbers");
+  // Those that are not chosen are no less wrong.
+  refused("", "<keyframe><key/>\n<key name='a' qpos='1 2'/></keyframe>",
+          ":2: key 'a': <key> qpos has 2 numbers, expected 13 for the joints of the model");
+  refused("0", "<keyframe><key/>\n<key qvel='1'/></keyframe>",
+          ":2: key: <key> qvel has 1 numbers, expected 11");
+  refused("", "<keyframe><key time='soon'/></keyframe>", "time has 'soon'");
+  refused("", "<keyframe>\n<key ctrl='1 2'/></keyframe><actuator><motor joint='hinge'/></actuator>",
+          ":2: key: <key> ctrl has 2 numbers, expected 1 for the actuators of the model");
   ReadOptions options;
   options.key = "home";
   for (const char* other : {"r.urdf", "s.toml"}) try {

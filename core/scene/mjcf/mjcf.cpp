@@ -94,9 +94,10 @@ Scene read_mjcf(const Element& element, const std::string& file, const std::stri
   settle_ball_armatures(model);
   settle_spring_dampers(model);
   for (const Node& node : root.children("tendon")) read_tendons(node, model);
-  const std::vector<Node> keyframes = root.children("keyframe");
-  read_actuators(root.children("actuator"), controls, controls_of_key(keyframes, key, model),
-                 model);
+  const std::vector<Node> keyframes = root.children("keyframe"),
+                          actuators = root.children("actuator");
+  expect_keys_fit(keyframes, count_actuators(actuators), model);
+  read_actuators(actuators, controls, controls_of_key(keyframes, key, model), model);
   for (const Node& node : root.children("equality")) read_equality(node, model);
   read_keys(keyframes, key, !controls.empty(), model);
   for (const Node& node : root.children()) {

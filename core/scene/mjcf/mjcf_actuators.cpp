@@ -200,17 +200,44 @@ class ActuatorReader {
   MjcfModel& model_;
 };
 
+/// What an actuator that is left out acts on is in the model all the same.
+void expect_known(const Node& node, const MjcfModel& model) {
+  for (const char* key : {"joint", "jointinparent"}) {
+    if (!node.has(key)) continue;
+    const std::string name = node.text(key);
+    std::vector<std::string_view> known;
+    for (const JointSpec& joint : model.scene.joints) known.push_back(joint.name);
+    if (std::find(known.begin(), known.end(), name) == known.end())
+      node.fail(key, "is " + in_quotes(name) + ", expected the name of a joint" +
+                         did_you_mean(name, known));
+  }
+  const auto expect = [&](const char* key, const auto& all, const char* what) {
+    if (!node.has(key)) return;
+    const std::string name = node.text(key);
+    if (all.contains(name)) return;
+    std::vector<std::string_view> known;
+    for (const auto& one : all) known.push_back(one.first);
+    node.fail(key, "is " + in_quotes(name) + ", expected the name of a " + what +
+                       did_you_mean(name, known));
+  };
+  expect("tendon", model.tendons, "tendon");
+  for (const char* key : {"site", "refsite", "cranksite", "slidersite"})
+    expect(key, model.sites, "site");
+  expect("body", model.frames, "body");
+}
+
 }  // namespace
+
+std::size_t count_actuators(const std::vector<Node>& sections) {
+  std::size_t count = 0;
+  for (const Node& section : sections) count += section.children().size();
+  return count;
+}
 
 void read_actuators(const std::vector<Node>& sections, const std::vector<std::string>& given,
                     const std::vector<double>& of_key, MjcfModel& model) {
   Controls controls(given);
-  std::size_t count = 0;
-  for (const Node& section : sections) count += section.children().size();
-  if (controls.any() && !of_key.empty() && of_key.size() != count)
-    fail(model.scene.file, {},
-         "ctrl of the key has " + std::to_string(of_key.size()) + " numbers, expected " +
-             std::to_string(count) + " for the actuators of the model");
+  const std::size_t count = count_actuators(sections);
   if (controls.any() && count > 0 && (!model.actuates || model.disabled_groups))
     fail(model.scene.file, {},
          "the options of the model keep actuators from acting, by actuation or "
@@ -220,19 +247,22 @@ void read_actuators(const std::vector<Node>& sections, const std::vector<std::st
                                                   "general"};
   for (const Node& section : sections)
     for (const Node& part : section.children()) {
+      const std::string name = part.text("name", "");
+      const std::string who =
+          name.empty() ? std::string("actuator") : "actuator " + in_quotes(name);
+      const Element full =
+          model.defaults.with_defaults(part, part.name(), MjcfDefaults::main_class);
+      const Node actuator(full, who, model.scene.file);
+      expect_known(actuator, model);
       if (!controls.any()) {
         model.remarks.left_out("actuators, which --control lets act");
         continue;
       }
-      const std::string name = part.text("name", "");
-      const std::string who =
-          name.empty() ? std::string("actuator") : "actuator " + in_quotes(name);
       const double control = controls.of(name, of_key.empty() ? 0 : of_key[place]);
       ++place;
       if (std::find(kinds.begin(), kinds.end(), part.name()) == kinds.end())
         part.of(who).fail("is not read under --control, expected one of: " + listed(kinds));
-      Element full = model.defaults.with_defaults(part, part.name(), MjcfDefaults::main_class);
-      ActuatorReader(Node(full, who, model.scene.file), model).read(control);
+      ActuatorReader(actuator, model).read(control);
     }
   controls.refuse_unknown();
 }

@@ -80,6 +80,10 @@ void read_mechanics(const Node& node, JointSpec& joint, MjcfModel& model) {
   if (friction < 0) node.fail("frictionloss", "is negative, expected a number >= 0");
   if (node.has("springdamper")) {
     const std::vector<double> x = node.numbers("springdamper", 2);
+    if (x[0] < 0 || x[1] < 0)
+      node.fail("springdamper",
+                "has a negative number, expected a time constant and a damping ratio > 0, or 0 for "
+                "none");
     if (x[0] > 0 && x[1] > 0) model.spring_dampers.push_back({joint.name, x[0], x[1]});
   }
   if (!one) {

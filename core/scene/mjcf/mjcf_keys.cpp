@@ -32,11 +32,11 @@ const Node& find(const std::vector<Node>& keys, const std::string& chosen, const
            did_you_mean(chosen, views));
 }
 
-/// The numbers of `attribute`, dealt out to the joints: `size(joint)` to each. A key that came with
-/// an attached model is of its joints alone.
+/// The numbers of `attribute`, dealt out to `joints`, those of the model: `size(joint)` to each. A
+/// key that came with an attached model is of its joints alone.
 template <class Size, class Give>
-void deal(const Node& key, const char* attribute, MjcfModel& model, const Size& size,
-          const Give& give) {
+void deal(const Node& key, const char* attribute, const MjcfModel& model,
+          std::vector<JointSpec>& joints, const Size& size, const Give& give) {
   if (!key.has(attribute)) return;
   const std::vector<double> numbers = key.numbers(attribute);
   const std::string* const attached = key.element().find(of_model);
@@ -46,13 +46,13 @@ void deal(const Node& key, const char* attribute, MjcfModel& model, const Size& 
     return of != model.joint_of_attached.end() && of->second == *attached;
   };
   std::size_t all = 0;
-  for (const JointSpec& joint : model.scene.joints)
+  for (const JointSpec& joint : joints)
     if (meant(joint)) all += size(joint);
   if (numbers.size() != all)
     key.fail(attribute, "has " + std::to_string(numbers.size()) + " numbers, expected " +
                             std::to_string(all) + " for the joints of the model");
   auto from = numbers.begin();
-  for (JointSpec& joint : model.scene.joints)
+  for (JointSpec& joint : joints)
     if (meant(joint)) {
       const auto count = static_cast<std::ptrdiff_t>(size(joint));
       give(joint, std::vector<double>(from, from + count));
@@ -69,9 +69,10 @@ void normalise(const Node& key, const JointSpec& joint, std::vector<double>& q, 
   quaternion /= quaternion.norm();
 }
 
-void start_at(const Node& key, MjcfModel& model) {
+/// Makes the state of a key that of `joints`, those of the model.
+void start_at(const Node& key, const MjcfModel& model, std::vector<JointSpec>& joints) {
   deal(
-      key, "qpos", model,
+      key, "qpos", model, joints,
       [](const JointSpec& joint) { return static_cast<std::size_t>(coordinates_of(joint)); },
       [&](JointSpec& joint, std::vector<double> q) {
         if (joint.kind == JointKind::spherical) normalise(key, joint, q, 0);
@@ -80,7 +81,7 @@ void start_at(const Node& key, MjcfModel& model) {
         joint.position = std::move(q);
       });
   deal(
-      key, "qvel", model,
+      key, "qvel", model, joints,
       [](const JointSpec& joint) { return static_cast<std::size_t>(rates_of(joint)); },
       [](JointSpec& joint, std::vector<double> u) {
         if (joint.kind == JointKind::free) {
@@ -107,6 +108,19 @@ std::vector<Node> keys_in(const std::vector<Node>& keyframes) {
 
 }  // namespace
 
+void expect_keys_fit(const std::vector<Node>& keyframes, std::size_t actuators,
+                     const MjcfModel& model) {
+  for (const Node& key : keys_in(keyframes)) {
+    std::vector<JointSpec> joints = model.scene.joints;
+    start_at(key, model, joints);
+    key.number("time", 0);
+    if (!key.has("ctrl") || key.element().find(of_model) != nullptr) continue;
+    if (const std::size_t count = key.numbers("ctrl").size(); count != actuators)
+      key.fail("ctrl", "has " + std::to_string(count) + " numbers, expected " +
+                           std::to_string(actuators) + " for the actuators of the model");
+  }
+}
+
 std::vector<double> controls_of_key(const std::vector<Node>& keyframes, const std::string& chosen,
                                     const MjcfModel& model) {
   if (chosen.empty()) return {};
@@ -121,7 +135,7 @@ void read_keys(const std::vector<Node>& keyframes, const std::string& chosen, bo
   const std::vector<Node> keys = keys_in(keyframes);
   if (!chosen.empty()) {
     const Node& key = find(keys, chosen, model);
-    start_at(key, model);
+    start_at(key, model, model.scene.joints);
     if (key.number("time", 0) != 0)
       model.remarks.left_out("time of the key: runs begin at 0, and nothing depends on time");
     if (key.has("ctrl") && key.element().find(of_model) != nullptr)

@@ -6,6 +6,12 @@
 
 namespace momenta::reading {
 
+/// Every <key>, chosen or not, has as many numbers as the model has coordinates, rates and
+/// `actuators`; of one that came with an attached model the controls are not counted. After the
+/// bodies. @throws SceneError
+void expect_keys_fit(const std::vector<Node>& keyframes, std::size_t actuators,
+                     const MjcfModel& model);
+
 /// `ctrl` of the <key> that is chosen as below; empty: it says none. @throws SceneError for an
 /// unknown name
 std::vector<double> controls_of_key(const std::vector<Node>& keyframes, const std::string& chosen,

@@ -88,8 +88,12 @@ std::string coordinate_of(const Node& node, const char* key, const MjcfModel& mo
 /// <tendon>: springs. After all bodies.
 void read_tendons(const Node& tendons, MjcfModel& model);
 
-/// <actuator> sections at the controls that are given, as text; none: left out. Actuators without
-/// one have that of the <key>, `of_key` in the order of the file, else 0. After the tendons.
+/// How many there are in the <actuator> sections.
+std::size_t count_actuators(const std::vector<Node>& sections);
+
+/// <actuator> sections at the controls that are given, as text; none: left out, but what they act
+/// on has to be in the model all the same. Actuators without one have that of the <key>, `of_key`
+/// in the order of the file, one for each or empty, else 0. After the tendons.
 void read_actuators(const std::vector<Node>& sections, const std::vector<std::string>& controls,
                     const std::vector<double>& of_key, MjcfModel& model);
 

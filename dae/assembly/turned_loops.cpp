@@ -1,0 +1,183 @@
+#include <momenta/core/poses.h>
+#include <momenta/dae/assembly/closing.h>
+#include <momenta/dae/assembly/turned_loops.h>
+#include <momenta/dae/loop/loop_choice.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace momenta {
+namespace {
+
+// Of axes in one a_i · b_i = 1, of turned ones 0 or −1.
+constexpr double in_one = 0.5;
+constexpr double first_turning = 0.25, least_turning = 1.0 / 128;  // of the turn, a step
+constexpr double longest_turning = 1;                              // [rad or lengths] of any joint
+constexpr int most_turnings = 200;
+constexpr int most_ways_round = 8;  // which of the loops turn which way round
+
+/// Which axes 1, 2, 3 its rows of axes hold in one: three hold all, two the third; one alone, of a
+/// universal joint, holds none.
+int first_axis_held(const LoopChoice& choice) {
+  return choice.axes.size() == 3 ? 0 : choice.axes.size() == 2 ? 2 : 3;
+}
+
+double value_of(const DriveSpec& drive, double t) {
+  double value, rate, second;
+  MotionLaw(drive).evaluate(t, value, rate, second);
+  return value;
+}
+/// R₁(f₁) R₂(f₂) … at time t.
+Eigen::Matrix3d prescribed(const std::vector<LoopChoice::Along>& turns, double t) {
+  Eigen::Matrix3d all = Eigen::Matrix3d::Identity();
+  for (const LoopChoice::Along& turn : turns)
+    all = all * Eigen::AngleAxisd(value_of(*turn.drive, t), turn.axis);
+  return all;
+}
+
+/// Whether axes of the loop, in the loop frame, are not in one, and then the turn between them.
+std::optional<TurnedLoop> turn_between(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b,
+                                       int first) {
+  bool turned = false;
+  for (int i = first; i < 3; ++i) turned = turned || !(a.col(i).dot(b.col(i)) > in_one);
+  if (!turned) return {};
+  TurnedLoop loop;
+  if (first > 0) {  // a hinge: about any axis across it
+    loop.angle = std::acos(std::clamp(a.col(2).dot(b.col(2)), -1.0, 1.0));
+    const Eigen::Vector3d across = b.col(2).cross(a.col(2));
+    loop.axis = across.norm() > 1e-6 ? Eigen::Vector3d(across.normalized()) : b.col(0);
+    loop.other = b.col(2).cross(loop.axis);
+    return loop;
+  }
+  const Eigen::AngleAxisd turn(Eigen::Matrix3d(a * b.transpose()));
+  loop.angle = turn.angle();
+  loop.axis = loop.other = turn.axis();
+  return loop;
+}
+
+/// The loops turned by part s of what they are turned by, from s = 1 to s = 0.
+class LeadingBack {
+ public:
+  LeadingBack(const Mechanism& mechanism, double t, const std::vector<TurnedLoop>& turned,
+              const std::vector<bool>& columns)
+      : mechanism_(mechanism), t_(t), turned_(turned), columns_(columns) {}
+
+  /// From q, the k-th loop turning back the shorter way round where bit k mod 3 of `way` is 0.
+  std::optional<Eigen::VectorXd> follow(Eigen::VectorXd q, int way) {
+    double s = 1, part = first_turning;
+    for (int count = 0; count < most_turnings && part >= least_turning; ++count) {
+      const double next = s > part + least_turning ? s - part : 0;
+      if (std::optional<Eigen::VectorXd> reached = turned_by(q, next, way)) {
+        q = std::move(*reached);
+        if ((s = next) == 0) return q;
+        part = std::min(first_turning, 1.5 * part);
+      } else {
+        part *= 0.5;
+      }
+    }
+    return {};
+  }
+
+  int iterations() const { return iterations_; }
+
+ private:
+  std::optional<Eigen::VectorXd> turned_by(const Eigen::VectorXd& q, double s, int way) {
+    Scene scene = mechanism_.scene();
+    for (std::size_t k = 0; k < turned_.size(); ++k) {
+      const TurnedLoop& turned = turned_[k];
+      const bool longer = (way >> (k % 3) & 1) != 0;
+      const double angle = longer ? turned.angle - 2 * std::numbers::pi : turned.angle;
+      const Eigen::Vector3d& axis = way >= 4 ? turned.other : turned.axis;
+      LoopSpec& loop = scene.loops[turned.loop];
+      const Eigen::Quaterniond whole = loop.rotation;
+      loop.rotation = whole * Eigen::Quaterniond(Eigen::AngleAxisd(s * angle, axis));
+      loop.origin_parent +=
+          s * turned.apart + whole * turned.driven - loop.rotation * turned.driven;
+    }
+    const Mechanism mechanism(std::move(scene), mechanism_.options());
+    ScaledLoops loops(mechanism);
+    loops.columns = columns_;
+    LeastNorm steps(loops.pattern(), mechanism.m(), mechanism.nv());
+    Closing closing(loops, steps, t_);
+    const Closing::Pose pose = closing.beside(q);
+    iterations_ += closing.iterations();
+    if (!pose.is_closed || loops.apart(pose.q, q) > longest_turning ||
+        !turned_loops(mechanism, t_, pose.q).empty())
+      return {};
+    return pose.q;
+  }
+
+  const Mechanism& mechanism_;
+  double t_;
+  const std::vector<TurnedLoop>& turned_;
+  const std::vector<bool>& columns_;
+  int iterations_ = 0;
+};
+
+}  // namespace
+
+std::vector<TurnedLoop> turned_loops(const Mechanism& mechanism, double t,
+                                     const Eigen::VectorXd& q) {
+  const Scene& scene = mechanism.scene();
+  const Tree& tree = mechanism.tree();
+  std::vector<TurnedLoop> all;
+  std::vector<Eigen::Isometry3d> poses;
+  DrivesOfLoops drives = drives_of_loops(scene);
+  for (std::size_t i = 0; i < scene.loops.size(); ++i) {
+    const LoopSpec& spec = scene.loops[i];
+    if (!ties_bodies(spec)) continue;
+    const LoopChoice choice = choose_rows(spec, drives[spec.name], false);
+    const int first = first_axis_held(choice);
+    if (first == 3) continue;
+    if (poses.empty()) poses = Poses(open_chain_of(scene))(t, q.data());
+    const auto pose = [&](const std::string& name) {
+      const int body = tree.body(name);
+      return body < 0 ? Eigen::Isometry3d::Identity() : poses[static_cast<std::size_t>(body)];
+    };
+    const Eigen::Isometry3d in_parent = pose(spec.parent).inverse() * pose(spec.child);
+    const Eigen::Matrix3d a = spec.rotation.toRotationMatrix().transpose() * in_parent.linear() *
+                              prescribed(choice.turns_a, t) * choice.frame;
+    const Eigen::Matrix3d b = prescribed(choice.turns_b, t) * choice.frame;
+    if (std::optional<TurnedLoop> turned = turn_between(a, b, first)) {
+      turned->loop = i;
+      for (const LoopChoice::Along& way : choice.translations)
+        turned->driven += value_of(*way.drive, t) * way.axis;
+      turned->apart =
+          in_parent * spec.origin_child - spec.origin_parent - spec.rotation * turned->driven;
+      for (int k = 0; k < 3; ++k)  // a driven component is not the loop's
+        if (drives[spec.name].origin[static_cast<std::size_t>(k)]) turned->apart[k] = 0;
+      all.push_back(*turned);
+    }
+  }
+  return all;
+}
+
+std::optional<Eigen::VectorXd> led_back(const Mechanism& mechanism, double t,
+                                        const Eigen::VectorXd& q,
+                                        const std::vector<TurnedLoop>& turned,
+                                        const std::vector<bool>& columns, int& iterations) {
+  LeadingBack leading(mechanism, t, turned, columns);
+  std::optional<Eigen::VectorXd> found;
+  for (int way = 0; !found && way < most_ways_round; ++way) found = leading.follow(q, way);
+  iterations += leading.iterations();
+  return found;
+}
+
+std::string in_words(const Mechanism& mechanism, const std::vector<TurnedLoop>& turned) {
+  constexpr std::size_t most_named = 6;
+  const bool one = turned.size() == 1;
+  std::string sentence = one ? "loop" : "loops";
+  double largest = 0;
+  for (std::size_t i = 0; i < turned.size(); ++i) {
+    largest = std::max(largest, turned[i].angle);
+    if (i < most_named)
+      sentence += (i == 0 ? " '" : ", '") + mechanism.scene().loops[turned[i].loop].name + "'";
+  }
+  if (turned.size() > most_named) sentence += ", …";
+  const auto degrees = std::lround(largest * 180 / std::numbers::pi);
+  return sentence + (one ? " closes with its axes" : " close with their axes") + " turned by " +
+         std::to_string(degrees) + "°";
+}
+
+}  // namespace momenta
