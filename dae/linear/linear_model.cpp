@@ -85,10 +85,11 @@ class Model {
     const MatrixXd zdot = cholesky.solve(N.transpose() * left);
     f.a += N * zdot;
     left -= l_.M * N * zdot;
-    if (!c_.rows.empty())
-      f.lambda(c_.rows, all) =
-          Lu(MatrixXd(l_.loops(c_.rows, c_.dependent)).transpose())
-              .solve(MatrixXd(left(c_.dependent, all)));
+    if (!c_.rows.empty()) {
+      const MatrixXd block = MatrixXd(l_.loops(c_.rows, c_.dependent)).transpose();
+      const MatrixXd solution = Lu(block).solve(MatrixXd(left(c_.dependent, all)));
+      f.lambda(c_.rows, all) = solution;
+    }
     derivative.resize(y + z, f.v.cols());
     derivative << (f.v + l_.turning * f.delta)(c_.free_positions, all), zdot;
     return f;
@@ -192,7 +193,7 @@ class Model {
     if (!c_.rows.empty()) {
       const MatrixXd block = l.loops(c_.rows, c_.dependent);
       lu.compute(block);
-      transposed.compute(block.transpose());
+      transposed.compute(MatrixXd(block.transpose()));
       N(c_.dependent, all) = -lu.solve(l.loops(c_.rows, all) * N);
     }
     const Eigen::LLT<MatrixXd> cholesky(N.transpose() * l.M * N);
