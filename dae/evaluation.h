@@ -50,9 +50,6 @@ class EquationRows {
   /// `at_points` is false, those of springs, dampers and wrenches at points of bodies. Needs
   /// neither place() nor move(), and overwrites what they left.
   virtual void applied_forces(double t, const S* q, const S* u, S* tau, bool at_points = true) = 0;
-
-  /// For each marker its position x y z [m] and its velocity [m/s], in ground axes. After move().
-  virtual void markers(S* values) = 0;
 };
 
 /// What Mechanism::evaluation() returns. For scalars other than double it has the equations alone.
@@ -107,6 +104,8 @@ class Evaluation<double> : public EquationRows<double> {
   /// Of which force a formula is not finite, which, and what was expected, one sentence; empty: all
   /// are. After move().
   virtual std::string formula_without_value() = 0;
+  /// For each marker its position x y z [m] and its velocity [m/s], in ground axes. After move().
+  virtual void markers(double* values) = 0;
 };
 
 }  // namespace momenta

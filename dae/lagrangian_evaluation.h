@@ -66,6 +66,7 @@ class LagrangianEvaluation final : public LagrangianRows<double> {
   std::string formula_without_value() override { return ""; }
   std::string lost_loop() const override { return ""; }
   void slot_places(double*) const override {}
+  void markers(double*) override {}
 
  private:
   double value(const Expression& formula) {

@@ -69,8 +69,6 @@ class LagrangianRows : public Evaluation<S> {
     move(u);
     values(model_.applied, tau);
   }
-  /// A Lagrangian has no points of bodies.
-  void markers(S*) override {}
 
   /// Values of M and of Φ_q in the order of their patterns. After place().
   void mass_values(S* all) { values(model_.mass.values, all); }

@@ -4,6 +4,7 @@
 // instantiated.
 
 #include <momenta/core/kernel/mass_matrix.h>
+#include <momenta/dae/marker_points.h>
 #include <momenta/dae/sweep_rows.h>
 
 #include <algorithm>
@@ -21,7 +22,10 @@ class Mechanism::SweepEvaluation final : public SweepRows<Space, double> {
 
  public:
   SweepEvaluation(const Mechanism& mechanism, const Cast<Space>& cast)
-      : Rows(mechanism, cast), scene_(mechanism.scene()), links_(build_links(cast.model)) {
+      : Rows(mechanism, cast),
+        scene_(mechanism.scene()),
+        links_(build_links(cast.model)),
+        markers_(mechanism.scene(), mechanism.tree(), cast.model) {
     if (cast.loops.loops.empty()) {
       momentum_.emplace(links_);
       acceleration_.emplace(links_);
@@ -182,6 +186,8 @@ class Mechanism::SweepEvaluation final : public SweepRows<Space, double> {
   }
   double formula_size() override { return momenta::formula_size(w_); }
 
+  void markers(double* values) override { markers_.write(w_, values); }
+
  private:
   /// Forces at the points inward, and ratios where coordinates are: each joint on the ways once.
   template <class Entry>
@@ -212,6 +218,7 @@ class Mechanism::SweepEvaluation final : public SweepRows<Space, double> {
   std::optional<MomentumSweeps<Space, double>> momentum_;  ///< mechanisms without loops
   std::optional<AccelerationSweeps<Space, double>> acceleration_;
   int singular_joint_ = -1;
+  MarkerPoints<Space> markers_;
 };
 
 }  // namespace momenta

@@ -19,18 +19,7 @@ class Mechanism::SweepRows : public Evaluation<S> {
       : model_(cast.model),
         w_(cast.model),
         loops_(cast.loops, w_),
-        still_(static_cast<std::size_t>(mechanism.nv())) {
-    for (const auto& marker : mechanism.scene().markers) {
-      const Tree& tree = mechanism.tree();
-      const int body = tree.body(marker.body);
-      const Eigen::Vector3d at = tree.point(body, marker.point);
-      double height = 0;
-      if constexpr (Space::dimension == 3)
-        height = body < 0 ? model_.basis.col(2).dot(at)
-                          : (model_.frames[static_cast<std::size_t>(body)] * at).z();
-      markers_.push_back({body, model_.point(body, at), height});
-    }
-  }
+        still_(static_cast<std::size_t>(mechanism.nv())) {}
 
   void place(double t, const S* q) override {
     poses_outward(w_, Moment<S>::at(t), q, true);
@@ -94,24 +83,6 @@ class Mechanism::SweepRows : public Evaluation<S> {
     std::copy(w_.generalised.begin(), w_.generalised.end(), tau);
   }
 
-  void markers(S* values) override {
-    for (const Marker& marker : markers_) {
-      const auto x = point_position(w_, marker.body, marker.at);
-      const auto v = point_velocity(w_, marker.body, x);
-      for (int i = 0; i < 3; ++i) {
-        if constexpr (Space::dimension == 3) {
-          values[i] = model_.basis(i, 0) * x[0] + model_.basis(i, 1) * x[1] +
-                      S(model_.basis(i, 2) * marker.height);
-          values[3 + i] = model_.basis(i, 0) * v[0] + model_.basis(i, 1) * v[1];
-        } else {
-          values[i] = x[i];
-          values[3 + i] = v[i];
-        }
-      }
-      values += 6;
-    }
-  }
-
  protected:
   using Force = typename Space::template Force<S>;
 
@@ -128,14 +99,7 @@ class Mechanism::SweepRows : public Evaluation<S> {
     apply_forces(w_, model_.has_body_forces());
   }
 
-  struct Marker {
-    int body;
-    typename Space::template Vector<double> at;
-    double height;  ///< across the plane
-  };
-
   std::vector<S> still_;
-  std::vector<Marker> markers_;
   bool gravity_current_ = false;
 };
 

@@ -1,5 +1,6 @@
 #include <momenta/core/scene/drive.h>
 #include <momenta/dae/linear/linearisation.h>
+#include <momenta/dae/linear/marker_motion.h>
 
 #include <algorithm>
 #include <vector>
@@ -12,7 +13,7 @@ using Eigen::VectorXd;
 
 constexpr int directions = 8;
 
-/// Derivatives of (r, Φ̇, Φ̈) and of markers, eight directions at a time.
+/// Derivatives of (r, Φ̇, Φ̈), and of markers, eight directions at a time.
 class Columns {
  public:
   Columns(const Mechanism& mechanism, double t, const VectorXd& q, const VectorXd& u,
@@ -30,23 +31,19 @@ class Columns {
         acceleration_(rate_.size()),
         r_(rate_.size()),
         lambda_(lambda.begin(), lambda.end()),
-        of_loops_(static_cast<std::size_t>(mechanism.m())),
-        of_markers_(6 * mechanism.scene().markers.size()) {
+        of_loops_(static_cast<std::size_t>(mechanism.m())) {
     plain_->place(t, q.data());
   }
 
   enum class By { poses, rates, accelerations };
 
-  /// Columns of ∂r, and of ∂Φ̇, of ∂Φ̈ and of markers where these are given.
-  void take(By by, MatrixXd& of_forces, MatrixXd* loops, MatrixXd* second = nullptr,
-            MatrixXd* markers = nullptr) {
+  /// Columns of ∂r, and of ∂Φ̇ and ∂Φ̈ where these are given.
+  void take(By by, MatrixXd& of_forces, MatrixXd* loops, MatrixXd* second = nullptr) {
     for (Eigen::Index first = 0; first < X_.cols(); first += directions) {
       const Eigen::Index count = std::min<Eigen::Index>(directions, X_.cols() - first);
       seed(by, first, count);
       dual_->place(t_, place_.data());
       dual_->move(rate_.data());
-      if (markers) dual_->markers(of_markers_.data());
-      put(of_markers_, markers, first, count);
       if (loops) dual_->velocities(of_loops_.data());
       put(of_loops_, loops, first, count);
       dual_->joint_forces(place_.data(), rate_.data(), acceleration_.data(), lambda_.data(),
@@ -54,6 +51,17 @@ class Columns {
       put(r_, &of_forces, first, count);
       if (second) dual_->accelerations(of_loops_.data());
       put(of_loops_, second, first, count);
+    }
+  }
+
+  /// Columns of markers' positions and velocities.
+  void take_markers(MarkerMotion<Dual8>& markers, By by, MatrixXd& of_markers) {
+    std::vector<Dual8> values(static_cast<std::size_t>(of_markers.rows()));
+    for (Eigen::Index first = 0; first < X_.cols(); first += directions) {
+      const Eigen::Index count = std::min<Eigen::Index>(directions, X_.cols() - first);
+      seed(by, first, count);
+      markers.at(t_, place_.data(), rate_.data(), values.data());
+      put(values, &of_markers, first, count);
     }
   }
 
@@ -93,7 +101,7 @@ class Columns {
   const MatrixXd& X_;
   std::unique_ptr<Evaluation<double>> plain_;
   std::unique_ptr<Evaluation<Dual8>> dual_;
-  std::vector<Dual8> place_, rate_, acceleration_, r_, lambda_, of_loops_, of_markers_;
+  std::vector<Dual8> place_, rate_, acceleration_, r_, lambda_, of_loops_;
 };
 
 /// B x: both derivatives along one direction each.
@@ -173,9 +181,14 @@ StateLinearisation linearise_state(const Mechanism& mechanism, double t, const V
   for (MatrixXd* a : {&l.markers_by_rates, &l.markers_by_poses})
     a->setZero(6 * static_cast<Eigen::Index>(mechanism.scene().markers.size()), X.cols());
   Columns columns(mechanism, t, q, u, udot, lambda, X);
-  columns.take(Columns::By::poses, l.K, &l.loop_rates, &l.second_by_poses, &l.markers_by_poses);
-  columns.take(Columns::By::rates, l.C, &l.loops, &l.second_by_rates, &l.markers_by_rates);
+  columns.take(Columns::By::poses, l.K, &l.loop_rates, &l.second_by_poses);
+  columns.take(Columns::By::rates, l.C, &l.loops, &l.second_by_rates);
   columns.take(Columns::By::accelerations, l.M, nullptr);
+  if (l.markers_by_poses.size() > 0) {
+    const auto markers = make_marker_motion<Dual8>(mechanism);
+    columns.take_markers(*markers, Columns::By::poses, l.markers_by_poses);
+    columns.take_markers(*markers, Columns::By::rates, l.markers_by_rates);
+  }
   l.turning = turnings(mechanism, t, q, u, X);
   return l;
 }

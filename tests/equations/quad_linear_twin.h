@@ -11,6 +11,7 @@
 #include <momenta/core/expression/functions_quad.h>
 #include <momenta/core/scalar/quad.h>
 #include <momenta/dae/linear/independent_coordinates.h>
+#include <momenta/dae/linear/marker_motion.h>
 
 #include <Eigen/Core>
 #include <cmath>
@@ -24,7 +25,9 @@ class QuadLinearTwin {
   using Numbers = std::vector<Quad>;
 
   QuadLinearTwin(const OperatingPoint& at, const IndependentCoordinates& chosen)
-      : at_(at), c_(chosen), m_(*at.freed), e_(m_.evaluation<Quad>()) {}
+      : at_(at), c_(chosen), m_(*at.freed), e_(m_.evaluation<Quad>()) {
+    if (!m_.scene().markers.empty()) markers_ = make_marker_motion<Quad>(m_);
+  }
 
   /// [ẋ; y] by columns of x, then of w, both as linear_model() has them.
   Eigen::MatrixXd differences() {
@@ -158,7 +161,7 @@ class QuadLinearTwin {
     for (std::size_t i = 0; i < r; ++i) lambda[of(c_.rows[i])] += found[n + i];
     rows(r1, s1);
     Numbers markers(6 * m_.scene().markers.size());
-    e_->markers(markers.data());
+    if (!markers.empty()) markers_->at(at_.t, q.data(), u.data(), markers.data());
 
     Numbers all = picked(u, c_.free_positions);
     const auto add = [&](const Numbers& more) { all.insert(all.end(), more.begin(), more.end()); };
@@ -177,6 +180,7 @@ class QuadLinearTwin {
   const IndependentCoordinates& c_;
   const Mechanism& m_;
   std::unique_ptr<Evaluation<Quad>> e_;
+  std::unique_ptr<MarkerMotion<Quad>> markers_;
 };
 
 }  // namespace momenta::equations
