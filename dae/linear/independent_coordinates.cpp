@@ -56,10 +56,11 @@ void expect_followed(const OperatingPoint& at, const MatrixXd& a, const MatrixXd
   const Mechanism& m = *at.freed;
   const std::string name =
       m.rate_columns()[static_cast<std::size_t>(at.driven[static_cast<std::size_t>(drive)])].name;
-  throw SceneError(m.scene().where({}) + "the drive of '" + name.substr(0, name.rfind('.')) +
-                   "' cannot be varied by itself: " + row_in_words(m, static_cast<int>(row)) +
-                   " does not follow it; expected drives that the loops leave free, and a pose that "
-                   "is no dead point");
+  throw SceneError(
+      m.scene().where({}) + "the drive of '" + name.substr(0, name.rfind('.')) +
+      "' cannot be varied by itself: " + row_in_words(m, static_cast<int>(row)) +
+      " does not follow it; expected drives that the loops leave free, and a pose that "
+      "is no dead point");
 }
 
 void expect_determined(const OperatingPoint& at, const MatrixXd& block,
@@ -101,7 +102,8 @@ IndependentCoordinates independent_coordinates(const OperatingPoint& at,
     a = MatrixXd::Zero(whole.rows(), whole.cols());
     a(Eigen::all, at.free) = whole(Eigen::all, at.free);
     RankAndIdle found;
-    if (!of_positions.empty()) c.position_rows = basis_of_rows(a, of_positions, nonholonomic, found);
+    if (!of_positions.empty())
+      c.position_rows = basis_of_rows(a, of_positions, nonholonomic, found);
     c.rows = c.position_rows;
     if (of_positions.size() < all.size()) {
       std::vector<int> more = c.position_rows;
@@ -125,19 +127,18 @@ IndependentCoordinates independent_coordinates(const OperatingPoint& at,
                                    ? pivots(a(c.position_rows, Eigen::all), at.free, positions)
                                    : without(at.free, named);
   if (!named.empty())
-    expect_determined(at, dependent.size() == positions ? MatrixXd(a(c.position_rows, dependent))
-                                                        : MatrixXd(),
-                      named, at.free.size() - positions);
+    expect_determined(
+        at, dependent.size() == positions ? MatrixXd(a(c.position_rows, dependent)) : MatrixXd(),
+        named, at.free.size() - positions);
   c.free_positions = without(at.free, dependent);
   const std::vector<int> more(c.rows.begin() + static_cast<std::ptrdiff_t>(positions),
                               c.rows.end());
   if (!more.empty()) {
     MatrixXd left = a(more, Eigen::all);
     if (positions > 0)
-      left -= a(more, dependent) *
-              MatrixXd(a(c.position_rows, dependent))
-                  .fullPivLu()
-                  .solve(MatrixXd(a(c.position_rows, Eigen::all)));
+      left -= a(more, dependent) * MatrixXd(a(c.position_rows, dependent))
+                                       .fullPivLu()
+                                       .solve(MatrixXd(a(c.position_rows, Eigen::all)));
     for (const int i : pivots(left, c.free_positions, more.size())) dependent.push_back(i);
   }
   c.dependent = dependent;
@@ -151,8 +152,8 @@ void expect_regular(const Mechanism& mechanism, const Start& at) {
   if (!report.singular_here()) return;
   for (const Dependency& d : report.dependencies)
     if (d.only_here)
-      throw SceneError(mechanism.scene().where({}) + "the pose is singular: " +
-                       in_words(mechanism, d) +
+      throw SceneError(mechanism.scene().where({}) +
+                       "the pose is singular: " + in_words(mechanism, d) +
                        ", at this pose alone, so that motions part here and no linear model has "
                        "them; expected a pose away from it");
 }

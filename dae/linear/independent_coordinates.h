@@ -17,13 +17,13 @@
 namespace momenta {
 
 struct IndependentCoordinates {
-  std::vector<int> rows, position_rows;    ///< R, R_p: the first of R
-  std::vector<int> left_out;               ///< rows that follow from others
-  std::vector<int> dependent;              ///< D, D_p first, as places in u
-  std::vector<int> free_rates;             ///< I of rates
-  std::vector<int> free_positions;         ///< I of positions
-  std::vector<bool> unique;                ///< by row, whether λ is
-  double kept = 0;                         ///< smallest singular value that counts over the largest
+  std::vector<int> rows, position_rows;  ///< R, R_p: the first of R
+  std::vector<int> left_out;             ///< rows that follow from others
+  std::vector<int> dependent;            ///< D, D_p first, as places in u
+  std::vector<int> free_rates;           ///< I of rates
+  std::vector<int> free_positions;       ///< I of positions
+  std::vector<bool> unique;              ///< by row, whether λ is
+  double kept = 0;                       ///< smallest singular value that counts over the largest
 };
 
 /// `named`: places in u for free_positions; empty: chosen.

@@ -57,8 +57,8 @@ LinearColumns linear_columns(const OperatingPoint& at, const IndependentCoordina
     drives.push_back({name, places[k].unit});
     drives.push_back(rates[k]);
     drives.push_back(accelerations[k]);
-    efforts.push_back({before_point(name) + ".effort" + name.substr(name.rfind('.') + 2),
-                       forces[k].unit});
+    efforts.push_back(
+        {before_point(name) + ".effort" + name.substr(name.rfind('.') + 2), forces[k].unit});
   }
   add(c.inputs, drives, "drives");
   add(c.outputs, among(places, at.free), "coordinates");

@@ -15,10 +15,10 @@ struct GroupedColumn {
 };
 
 struct LinearColumns {
-  std::vector<Column> minimal, descriptor;      ///< states
-  std::vector<GroupedColumn> inputs, outputs;   ///< all there are
-  std::vector<std::string> left_out;            ///< rows, in words
-  std::vector<int> free;                        ///< places in u of the freed mechanism
+  std::vector<Column> minimal, descriptor;     ///< states
+  std::vector<GroupedColumn> inputs, outputs;  ///< all there are
+  std::vector<std::string> left_out;           ///< rows, in words
+  std::vector<int> free;                       ///< places in u of the freed mechanism
 };
 
 /// In the order in which linear_model() has them.

@@ -12,7 +12,6 @@
 namespace momenta {
 namespace {
 
-using Eigen::all;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using Lu = Eigen::PartialPivLU<MatrixXd>;
@@ -29,9 +28,9 @@ struct Functions {
         tau(delta) {}
 };
 
-class Model {
+class Eliminated {
  public:
-  Model(OperatingPoint point, IndependentCoordinates chosen)
+  Eliminated(OperatingPoint point, IndependentCoordinates chosen)
       : at_(std::move(point)),
         c_(std::move(chosen)),
         mechanism_(*at_.freed),
@@ -40,9 +39,9 @@ class Model {
     solve_state();
     const MatrixXd every = MatrixXd::Identity(nv_, nv_);
     l_ = linearise_state(mechanism_, at_.t, at_.q, at_.u, udot_, lambda_, every);
-    for (const MatrixXd* x : {&l_.M, &l_.C, &l_.K, &l_.loops, &l_.loop_rates, &l_.second_by_rates,
-                              &l_.second_by_poses, &l_.turning, &l_.markers_by_poses,
-                              &l_.markers_by_rates})
+    for (const MatrixXd* x :
+         {&l_.M, &l_.C, &l_.K, &l_.loops, &l_.loop_rates, &l_.second_by_rates, &l_.second_by_poses,
+          &l_.turning, &l_.markers_by_poses, &l_.markers_by_rates})
       if (!x->allFinite()) refuse("the linearised equations are not finite at this state");
   }
 
@@ -58,20 +57,22 @@ class Model {
     if (!c_.position_rows.empty()) {
       const std::vector<int> dependent(c_.dependent.begin(),
                                        c_.dependent.begin() + size(c_.position_rows));
-      f.delta(dependent, all) = -Lu(l_.loops(c_.position_rows, dependent))
-                                     .solve(MatrixXd(l_.loops(c_.position_rows, all) * f.delta));
+      f.delta(dependent, Eigen::all) =
+          -Lu(l_.loops(c_.position_rows, dependent))
+               .solve(MatrixXd(l_.loops(c_.position_rows, Eigen::all) * f.delta));
     }
     for (Eigen::Index i = 0; i < z; ++i) f.v(at(c_.free_rates, i), y + i) = 1;
     MatrixXd N = MatrixXd::Zero(nv_, z);
     for (Eigen::Index i = 0; i < z; ++i) N(at(c_.free_rates, i), i) = 1;
     if (!c_.rows.empty()) {
       const Lu lu(l_.loops(c_.rows, c_.dependent));
-      const MatrixXd rows = l_.loops(c_.rows, all), by_pose = l_.loop_rates(c_.rows, all),
-                     second_by_rate = l_.second_by_rates(c_.rows, all),
-                     second_by_pose = l_.second_by_poses(c_.rows, all);
+      const MatrixXd rows = l_.loops(c_.rows, Eigen::all),
+                     by_pose = l_.loop_rates(c_.rows, Eigen::all),
+                     second_by_rate = l_.second_by_rates(c_.rows, Eigen::all),
+                     second_by_pose = l_.second_by_poses(c_.rows, Eigen::all);
       const auto follow = [&](MatrixXd& x, const MatrixXd& asked) {
         const MatrixXd solution = lu.solve(asked);
-        x(c_.dependent, all) = -solution;
+        x(c_.dependent, Eigen::all) = -solution;
       };
       follow(f.v, rows * f.v + by_pose * f.delta);
       follow(f.a, rows * f.a + second_by_rate * f.v + second_by_pose * f.delta);
@@ -87,11 +88,11 @@ class Model {
     left -= l_.M * N * zdot;
     if (!c_.rows.empty()) {
       const MatrixXd block = MatrixXd(l_.loops(c_.rows, c_.dependent)).transpose();
-      const MatrixXd solution = Lu(block).solve(MatrixXd(left(c_.dependent, all)));
-      f.lambda(c_.rows, all) = solution;
+      const MatrixXd solution = Lu(block).solve(MatrixXd(left(c_.dependent, Eigen::all)));
+      f.lambda(c_.rows, Eigen::all) = solution;
     }
     derivative.resize(y + z, f.v.cols());
-    derivative << (f.v + l_.turning * f.delta)(c_.free_positions, all), zdot;
+    derivative << (f.v + l_.turning * f.delta)(c_.free_positions, Eigen::all), zdot;
     return f;
   }
 
@@ -109,15 +110,15 @@ class Model {
     for (Eigen::Index i = 0; i < r; ++i) f.lambda(at(c_.rows, i), 3 * n + i) = 1;
     E = MatrixXd::Zero(states, states);
     const Eigen::Index y = size(c_.free_positions), z = size(c_.free_rates);
-    E.topRows(y) = f.delta(c_.free_positions, all).leftCols(states);
-    E.middleRows(y + rp, z) = f.v(c_.free_rates, all).leftCols(states);
+    E.topRows(y) = f.delta(c_.free_positions, Eigen::all).leftCols(states);
+    E.middleRows(y + rp, z) = f.v(c_.free_rates, Eigen::all).leftCols(states);
     right.resize(states, states + inputs_);
-    right << (f.v + l_.turning * f.delta)(c_.free_positions, all),
-        l_.loops(c_.position_rows, all) * f.delta, f.a(c_.free_rates, all),
-        l_.loops(c_.rows, all) * f.v + l_.loop_rates(c_.rows, all) * f.delta,
-        forces(f)(at_.free, all),
-        l_.loops(c_.rows, all) * f.a + l_.second_by_rates(c_.rows, all) * f.v +
-            l_.second_by_poses(c_.rows, all) * f.delta;
+    right << (f.v + l_.turning * f.delta)(c_.free_positions, Eigen::all),
+        l_.loops(c_.position_rows, Eigen::all) * f.delta, f.a(c_.free_rates, Eigen::all),
+        l_.loops(c_.rows, Eigen::all) * f.v + l_.loop_rates(c_.rows, Eigen::all) * f.delta,
+        forces(f)(at_.free, Eigen::all),
+        l_.loops(c_.rows, Eigen::all) * f.a + l_.second_by_rates(c_.rows, Eigen::all) * f.v +
+            l_.second_by_poses(c_.rows, Eigen::all) * f.delta;
     return f;
   }
 
@@ -128,15 +129,17 @@ class Model {
     for (int i = 0; i < mechanism_.m(); ++i)
       if (c_.unique[static_cast<std::size_t>(i)]) unique.push_back(i);
     MatrixXd y(3 * size(at_.free) + markers + size(at_.driven) + size(unique), f.v.cols());
-    y << f.delta(at_.free, all), f.v(at_.free, all), f.a(at_.free, all),
-        marked(f), forces(f)(at_.driven, all), f.lambda(unique, all);
+    y << f.delta(at_.free, Eigen::all), f.v(at_.free, Eigen::all), f.a(at_.free, Eigen::all),
+        marked(f), forces(f)(at_.driven, Eigen::all), f.lambda(unique, Eigen::all);
     return y;
   }
 
   LinearColumns columns() const { return linear_columns(at_, c_); }
 
  private:
-  static Eigen::Index size(const std::vector<int>& x) { return static_cast<Eigen::Index>(x.size()); }
+  static Eigen::Index size(const std::vector<int>& x) {
+    return static_cast<Eigen::Index>(x.size());
+  }
   static Eigen::Index at(const std::vector<int>& x, Eigen::Index i) {
     return x[static_cast<std::size_t>(i)];
   }
@@ -194,7 +197,7 @@ class Model {
       const MatrixXd block = l.loops(c_.rows, c_.dependent);
       lu.compute(block);
       transposed.compute(MatrixXd(block.transpose()));
-      N(c_.dependent, all) = -lu.solve(l.loops(c_.rows, all) * N);
+      N(c_.dependent, Eigen::all) = -lu.solve(l.loops(c_.rows, Eigen::all) * N);
     }
     const Eigen::LLT<MatrixXd> cholesky(N.transpose() * l.M * N);
     if (cholesky.info() != Eigen::Success) refuse_massless();
@@ -226,8 +229,8 @@ LinearModel linear_model(const Mechanism& mechanism, const Start& start,
                          const LinearRequest& request) {
   const int unknowns = mechanism.nv() + mechanism.m();
   if (unknowns > most_of_linear_model)
-    throw SceneError(mechanism.scene().where({}) + "a linear model of " +
-                     std::to_string(unknowns) + " rates and loop equations is dense; expected " +
+    throw SceneError(mechanism.scene().where({}) + "a linear model of " + std::to_string(unknowns) +
+                     " rates and loop equations is dense; expected " +
                      std::to_string(most_of_linear_model) + " at the most");
   if (!std::isfinite(start.t) || !start.q.allFinite() || !start.u.allFinite())
     throw SceneError(mechanism.scene().where({}) +
@@ -240,7 +243,7 @@ LinearModel linear_model(const Mechanism& mechanism, const Start& start,
   result.kind = request.kind;
   result.scene = mechanism.scene().name;
   result.kept = chosen.kept;
-  const Model model(std::move(point), std::move(chosen));
+  const Eliminated model(std::move(point), std::move(chosen));
   LinearColumns columns = model.columns();
   const std::vector<int> w = picked(columns.inputs, request.inputs, "input"),
                          y = picked(columns.outputs, request.outputs, "output");
@@ -263,7 +266,7 @@ LinearModel linear_model(const Mechanism& mechanism, const Start& start,
   result.E = E;
   result.A = right.leftCols(states);
   result.B = right.rightCols(model.inputs())(all, w);
-  result.C = of_outputs.leftCols(states)(y, all);
+  result.C = of_outputs.leftCols(states)(y, Eigen::all);
   result.D = of_outputs.rightCols(model.inputs())(y, w);
   for (const MatrixXd* x : {&result.A, &result.B, &result.C, &result.D})
     if (!x->allFinite())

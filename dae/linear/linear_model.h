@@ -26,8 +26,8 @@
 //                more δ_I than δu_I.
 //
 // Both have one transfer function, input by input. Inputs: τ by rate; f, ḟ, f̈ of each driven joint,
-// three inputs of one signal: to a motion f(s) the model answers by G (1, s, s²)ᵀ f. Outputs: δ, δu,
-// δu̇, positions and velocities of markers, the efforts of drives, and δλ where it is unique.
+// three inputs of one signal: to a motion f(s) the model answers by G (1, s, s²)ᵀ f. Outputs: δ,
+// δu, δu̇, positions and velocities of markers, the efforts of drives, and δλ where it is unique.
 // Sources: Mattsson, Söderlind, SIAM J. Sci. Comput. 14 (1993) 677; docs/theory/linear-models.md.
 
 #include <momenta/dae/form/form.h>
@@ -69,7 +69,7 @@ struct LinearModel {
   Eigen::MatrixXd B;                                        ///< states × inputs
   Eigen::MatrixXd C;                                        ///< outputs × states
   Eigen::MatrixXd D;                                        ///< outputs × inputs
-  Eigen::VectorXcd poles;     ///< finite eigenvalues, by real part, the largest first [1/s]
+  Eigen::VectorXcd poles;             ///< finite eigenvalues, by real part, the largest first [1/s]
   std::vector<std::string> left_out;  ///< loop equations that follow from others
   double kept = 0;  ///< smallest singular value of Φ_q over the largest; 0 without loops
 };

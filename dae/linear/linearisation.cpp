@@ -71,8 +71,7 @@ class Columns {
     if (!into) return;
     for (Eigen::Index d = 0; d < count; ++d)
       for (std::size_t i = 0; i < values.size(); ++i)
-        (*into)(static_cast<Eigen::Index>(i), first + d) =
-            values[i].b[static_cast<std::size_t>(d)];
+        (*into)(static_cast<Eigen::Index>(i), first + d) = values[i].b[static_cast<std::size_t>(d)];
   }
 
   void seed(By by, Eigen::Index first, Eigen::Index count) {

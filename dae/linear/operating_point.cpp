@@ -51,8 +51,8 @@ OperatingPoint operating_point(const Mechanism& mechanism, const Start& at) {
     for (int i = 0; i < given.nv; ++i) point.u[b.u + i] = at.u[given.u + i];
     const bool prescribed = given.drive >= 0 && b.nv > 0;
     if (prescribed) {
-      from.drives[static_cast<std::size_t>(given.drive)].evaluate(
-          at.t, point.q[b.q], point.u[b.u], accelerations[b.u]);
+      from.drives[static_cast<std::size_t>(given.drive)].evaluate(at.t, point.q[b.q], point.u[b.u],
+                                                                  accelerations[b.u]);
     }
     for (int i = 0; i < b.nv && !prescribed; ++i) point.free.push_back(b.u + i);
   }
@@ -92,9 +92,10 @@ std::vector<Column> force_columns_of(const Mechanism& mechanism) {
     const std::size_t dot = c.name.rfind('.');
     const std::string rest = c.name.substr(dot + 2);
     const char letter = c.name[dot + 1];
-    c.name = c.name.substr(0, dot) + (letter == 'u'   ? ".tau"
-                                      : letter == 'v' ? ".force_"
-                                                      : ".torque_") +
+    c.name = c.name.substr(0, dot) +
+             (letter == 'u'   ? ".tau"
+              : letter == 'v' ? ".force_"
+                              : ".torque_") +
              rest;
     c.unit = c.unit == "m/s" ? "N" : "N m";
   }

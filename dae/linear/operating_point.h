@@ -1,8 +1,8 @@
 #pragma once
 // The state about which a linear model is taken, of the mechanism with its drives let loose.
 //
-// A drive prescribes a joint: q = f(t). What the equations owe to f, ḟ and f̈ is what they owe to the
-// coordinate, the rate and the acceleration of the joint were it free. So the joints that have
+// A drive prescribes a joint: q = f(t). What the equations owe to f, ḟ and f̈ is what they owe to
+// the coordinate, the rate and the acceleration of the joint were it free. So the joints that have
 // drives are freed, and their columns of M, C, K, A become inputs; their rows of (1a) are the
 // efforts of the drives. All of it stays exact to rounding, by the same dual numbers.
 //

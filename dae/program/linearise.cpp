@@ -57,8 +57,8 @@ int linearise_verb(const Options& o, const LineariseOptions& l) {
   const Mechanism mechanism(std::move(scene), {.algebra = mechanism_options(o).algebra});
   expect_own_results(o.out, "linear.json");
   LinearRequest request;
-  request.kind = l.kind == "descriptor" ? LinearRequest::Kind::descriptor
-                                        : LinearRequest::Kind::minimal;
+  request.kind =
+      l.kind == "descriptor" ? LinearRequest::Kind::descriptor : LinearRequest::Kind::minimal;
   request.inputs = names_in(l.inputs);
   request.outputs = names_in(l.outputs);
   request.independent = names_in(l.independent);

@@ -159,8 +159,8 @@ int answer(int argc, char** argv) {
   add_cpu_limit(*modes_app, o);
   modes_app->add_option("--out", o.out, "Directory for modes.csv, modes.json, index.html")
       ->type_name("DIR");
-  CLI::App* linearise_app = app.add_subcommand(
-      "linearise", "E, A, B, C, D of a linear model about a state, for control");
+  CLI::App* linearise_app =
+      app.add_subcommand("linearise", "E, A, B, C, D of a linear model about a state, for control");
   linearise_app->footer(
       "Example: momenta linearise examples/four_bar/scene.toml --equilibrium settle --out results");
   LineariseOptions linearise_options;

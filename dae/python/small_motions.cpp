@@ -88,8 +88,7 @@ py::dict linearise(const Bench& b, const std::string& kind, double t,
   if (!equilibrium.empty() && (q || u || t != 0))
     throw py::value_error("equilibrium and t, q or u are both given; expected one of them");
   LinearRequest request;
-  request.kind =
-      kind == "minimal" ? LinearRequest::Kind::minimal : LinearRequest::Kind::descriptor;
+  request.kind = kind == "minimal" ? LinearRequest::Kind::minimal : LinearRequest::Kind::descriptor;
   request.inputs = inputs;
   request.outputs = outputs;
   request.independent = independent;
@@ -113,8 +112,8 @@ py::dict linearise(const Bench& b, const std::string& kind, double t,
               .start,
           request);
     } else {
-      model = linear_model(*b.mechanism, assemble_at(*b.mechanism, t, Assembled::rates).start,
-                           request);
+      model =
+          linear_model(*b.mechanism, assemble_at(*b.mechanism, t, Assembled::rates).start, request);
     }
   }
   py::dict all;

@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::MatrixXd;
 
-const char* name_of(LinearRequest::Kind kind) {
+const char* word_for(LinearRequest::Kind kind) {
   return kind == LinearRequest::Kind::minimal ? "minimal" : "descriptor";
 }
 
@@ -25,16 +25,16 @@ std::vector<std::string> labels(const std::vector<Column>& columns) {
 std::array<std::pair<const char*, const MatrixXd*>, 5> matrices(const LinearModel& m) {
   return {{{"E", &m.E}, {"A", &m.A}, {"B", &m.B}, {"C", &m.C}, {"D", &m.D}}};
 }
-std::array<std::pair<const char*, const std::vector<Column>*>, 3> names(const LinearModel& m) {
+std::array<std::pair<const char*, const std::vector<Column>*>, 3> sides(const LinearModel& m) {
   return {{{"states", &m.states}, {"inputs", &m.inputs}, {"outputs", &m.outputs}}};
 }
 
-std::string counted(std::size_t n, const char* what) {
+std::string how_many(std::size_t n, const char* what) {
   return std::to_string(n) + " " + what + (n == 1 ? "" : "s");
 }
 
 /// A text in quotes, each `quote` in it preceded by `escape`.
-std::string quoted(const std::string& text, char quote, char escape) {
+std::string in_marks(const std::string& text, char quote, char escape) {
   std::string all(1, quote);
   for (const char c : text) {
     if (c == quote || c == escape) all += escape;
@@ -43,15 +43,15 @@ std::string quoted(const std::string& text, char quote, char escape) {
   return all + quote;
 }
 
-std::string heading(const LinearModel& m) {
+std::string first_line(const LinearModel& m) {
   std::string name;
   for (const char c : m.scene) name += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
   return (name.empty() ? "" : name + ": ") + "E x' = A x + B w, y = C x + D w, " +
-         name_of(m.kind) + ", at t = " + round_trip(m.t) + " s";
+         word_for(m.kind) + ", at t = " + round_trip(m.t) + " s";
 }
 
 /// Numbers of a row, `between` them.
-std::string row(const MatrixXd& a, Eigen::Index i, const char* between) {
+std::string numbers_of(const MatrixXd& a, Eigen::Index i, const char* between) {
   std::string line;
   for (Eigen::Index j = 0; j < a.cols(); ++j) line += (j == 0 ? "" : between) + round_trip(a(i, j));
   return line;
@@ -60,12 +60,11 @@ std::string row(const MatrixXd& a, Eigen::Index i, const char* between) {
 }  // namespace
 
 std::string linear_table(const LinearModel& m) {
-  std::string text = (m.scene.empty() ? "" : m.scene + ": ") + "linear model (" +
-                     name_of(m.kind) + ") about the state at t = " + compact(m.t, 6) + " s: " +
-                     counted(m.states.size(), "state") + ", " +
-                     counted(m.inputs.size(), "input") + ", " +
-                     counted(m.outputs.size(), "output") + ", " +
-                     counted(static_cast<std::size_t>(m.poles.size()), "pole") + ".\n";
+  std::string text =
+      (m.scene.empty() ? "" : m.scene + ": ") + "linear model (" + word_for(m.kind) +
+      ") about the state at t = " + compact(m.t, 6) + " s: " + how_many(m.states.size(), "state") +
+      ", " + how_many(m.inputs.size(), "input") + ", " + how_many(m.outputs.size(), "output") +
+      ", " + how_many(static_cast<std::size_t>(m.poles.size()), "pole") + ".\n";
   if (!m.left_out.empty()) {
     text += "Loop equations that follow from others: ";
     for (std::size_t i = 0; i < m.left_out.size(); ++i)
@@ -90,7 +89,7 @@ std::string linear_table(const LinearModel& m) {
 std::string linear_json(const LinearModel& m) {
   JsonWriter w;
   w.text("scene", m.scene);
-  w.text("kind", name_of(m.kind));
+  w.text("kind", word_for(m.kind));
   w.number("t", m.t);
   const auto by_name = [&](const char* key, const std::vector<Column>& columns,
                            const Eigen::VectorXd& values) {
@@ -102,7 +101,7 @@ std::string linear_json(const LinearModel& m) {
   by_name("q", m.coordinates, m.q);
   by_name("u", m.rates, m.u);
   w.numbers("udot", m.udot);
-  for (const auto& [key, columns] : names(m)) w.texts(key, labels(*columns));
+  for (const auto& [key, columns] : sides(m)) w.texts(key, labels(*columns));
   for (const auto& [key, matrix] : matrices(m)) w.rows(key, *matrix);
   MatrixXd poles(m.poles.size(), 2);
   poles << m.poles.real(), m.poles.imag();
@@ -113,11 +112,11 @@ std::string linear_json(const LinearModel& m) {
 }
 
 std::string linear_octave(const LinearModel& m) {
-  std::string text = "% " + heading(m) + "\n";
-  for (const auto& [key, columns] : names(m)) {
+  std::string text = "% " + first_line(m) + "\n";
+  for (const auto& [key, columns] : sides(m)) {
     text += std::string(key) + " = {";
     for (std::size_t i = 0; i < columns->size(); ++i)
-      text += (i == 0 ? "" : "; ") + quoted((*columns)[i].label(), '\'', '\'');
+      text += (i == 0 ? "" : "; ") + in_marks((*columns)[i].label(), '\'', '\'');
     text += "};\n";
   }
   for (const auto& [key, matrix] : matrices(m)) {
@@ -127,23 +126,24 @@ std::string linear_octave(const LinearModel& m) {
       continue;
     }
     text += std::string(key) + " = [\n";
-    for (Eigen::Index i = 0; i < matrix->rows(); ++i) text += row(*matrix, i, " ") + "\n";
+    for (Eigen::Index i = 0; i < matrix->rows(); ++i) text += numbers_of(*matrix, i, " ") + "\n";
     text += "];\n";
   }
   return text + "if exist('dss')\n  sys = dss(A, B, C, D, E);\nend\n";
 }
 
 std::string linear_python(const LinearModel& m) {
-  std::string text = "# " + heading(m) + "\n";
-  for (const auto& [key, columns] : names(m)) {
+  std::string text = "# " + first_line(m) + "\n";
+  for (const auto& [key, columns] : sides(m)) {
     text += std::string(key) + " = [";
     for (std::size_t i = 0; i < columns->size(); ++i)
-      text += (i == 0 ? "" : ", ") + quoted((*columns)[i].label(), '"', '\\');
+      text += (i == 0 ? "" : ", ") + in_marks((*columns)[i].label(), '"', '\\');
     text += "]\n";
   }
   for (const auto& [key, matrix] : matrices(m)) {
     text += std::string(key) + " = [\n";
-    for (Eigen::Index i = 0; i < matrix->rows(); ++i) text += "    [" + row(*matrix, i, ", ") + "],\n";
+    for (Eigen::Index i = 0; i < matrix->rows(); ++i)
+      text += "    [" + numbers_of(*matrix, i, ", ") + "],\n";
     text += "]\n";
   }
   text +=

@@ -14,9 +14,9 @@ Start state_after(const Mechanism& mechanism, const Start& start, const RunSetti
   request.max_cpu_seconds = max_cpu_seconds;
   const RunResult run = run_form(mechanism, start, request);
   if (run.status != "done")
-    throw SceneError(mechanism.scene().where({}) + "the run to t = " +
-                     compact(settings.end_time, 6) + " s ends at t = " +
-                     compact(run.stopped_at, 6) + " s (" + run.status +
+    throw SceneError(mechanism.scene().where({}) +
+                     "the run to t = " + compact(settings.end_time, 6) +
+                     " s ends at t = " + compact(run.stopped_at, 6) + " s (" + run.status +
                      (run.reason.empty() ? "" : ": " + run.reason) + "); expected it to be done");
   // trajectory_columns(): t, then q, then u.
   const std::vector<double>& row = run.trajectory.rows.back();

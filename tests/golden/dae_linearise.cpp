@@ -56,9 +56,9 @@ TEST_F(LinearModelsOfTheProgram, AreToldInATableAndInFiles) {
 }
 
 TEST_F(LinearModelsOfTheProgram, AtAnEquilibriumHaveItsModes) {
-  const Outcome o =
-      call("linearise '" + example("four_bar") + "' --equilibrium settle --json --inputs O "
-           "--outputs O.q");
+  const Outcome o = call("linearise '" + example("four_bar") +
+                         "' --equilibrium settle --json --inputs O "
+                         "--outputs O.q");
   ASSERT_EQ(o.status, 0) << o.err;
   const Json json = Json::parse(o.out);
   EXPECT_EQ(json["inputs"], Json({"O.tau [N m]"}));
@@ -85,8 +85,8 @@ TEST_F(LinearModelsOfTheProgram, EndWithASentenceAfterTheirTime) {
   EXPECT_NE(o.status, 0);
   EXPECT_EQ(std::count(o.err.begin(), o.err.end(), '\n'), 1) << o.err;
   EXPECT_FALSE(fs::exists(out / "linear.json"));
-  const Outcome effort = call("effort '" + example("motor") +
-                              "' --samples 1000000 --quiet --cpu-limit 0.2");
+  const Outcome effort =
+      call("effort '" + example("motor") + "' --samples 1000000 --quiet --cpu-limit 0.2");
   EXPECT_EQ(effort.status, 1);
   EXPECT_NE(effort.err.find("stopped after 0.2 s of CPU time"), std::string::npos) << effort.err;
 }

@@ -54,8 +54,7 @@ MatrixXd joined(const LinearModel& m) {
 
 MatrixXcd response(const LinearModel& m, Complex s) {
   const MatrixXcd inside = s * m.E.cast<Complex>() - m.A.cast<Complex>();
-  return m.C.cast<Complex>() * inside.fullPivLu().solve(m.B.cast<Complex>()) +
-         m.D.cast<Complex>();
+  return m.C.cast<Complex>() * inside.fullPivLu().solve(m.B.cast<Complex>()) + m.D.cast<Complex>();
 }
 
 /// Largest difference of entries, each against the largest of its column and of its row.
@@ -65,8 +64,8 @@ double apart(const MatrixXd& a, const MatrixXd& b) {
   double most = 0;
   for (Eigen::Index i = 0; i < a.rows(); ++i)
     for (Eigen::Index j = 0; j < a.cols(); ++j)
-      most = std::max(most, std::abs(a(i, j) - b(i, j)) /
-                                std::max({1e-300, b.row(i).cwiseAbs().maxCoeff()}));
+      most = std::max(
+          most, std::abs(a(i, j) - b(i, j)) / std::max({1e-300, b.row(i).cwiseAbs().maxCoeff()}));
   return most;
 }
 
@@ -150,8 +149,7 @@ TEST(LinearModels, OfBothKindsAreOneSystem) {
     }
     // Finite eigenvalues of the pencil: 1/(s − τ) of (τE − A)⁻¹E where that is not zero.
     const double shift = 1.7 + minimal.A.norm() / 100;
-    const MatrixXd inverse =
-        (descriptor.A - shift * descriptor.E).fullPivLu().solve(descriptor.E);
+    const MatrixXd inverse = (descriptor.A - shift * descriptor.E).fullPivLu().solve(descriptor.E);
     const VectorXcd all = Eigen::EigenSolver<MatrixXd>(inverse, false).eigenvalues();
     std::vector<Complex> finite;
     for (const Complex x : all)
@@ -283,8 +281,7 @@ TEST(LinearModels, OfBallsGrowAsNeighboursDo) {
 
 TEST(LinearModels, RefuseSingularPosesAndWhatIsNotThere) {
   const Mechanism flat(row_of_four_bars(2, 0));
-  const std::string singular =
-      sentence_of([&] { model_of(flat, equations::start_of(flat)); });
+  const std::string singular = sentence_of([&] { model_of(flat, equations::start_of(flat)); });
   EXPECT_NE(singular.find("the pose is singular: loop '"), std::string::npos) << singular;
   EXPECT_NE(singular.find("at this pose alone"), std::string::npos) << singular;
   const Mechanism four_bar(example("four_bar"));
