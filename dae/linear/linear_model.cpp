@@ -265,7 +265,7 @@ LinearModel linear_model(const Mechanism& mechanism, const Start& start,
   const MatrixXd of_outputs = model.outputs(f);
   result.E = E;
   result.A = right.leftCols(states);
-  result.B = right.rightCols(model.inputs())(all, w);
+  result.B = right.rightCols(model.inputs())(Eigen::all, w);
   result.C = of_outputs.leftCols(states)(y, Eigen::all);
   result.D = of_outputs.rightCols(model.inputs())(y, w);
   for (const MatrixXd* x : {&result.A, &result.B, &result.C, &result.D})
