@@ -28,7 +28,8 @@ using Eigen::VectorXd;
 using Complex = std::complex<double>;
 
 Scene example(const std::string& name) {
-  return read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples" / name / "scene.toml");
+  return read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples" /
+                    (name.ends_with(".toml") ? name : name + "/scene.toml"));
 }
 
 /// A state of the motion itself, away from rest.
@@ -112,8 +113,10 @@ std::vector<Case> moving() {
   all.push_back({"bricard", bricard(), 0.2});
   all.push_back({"row", row_of_four_bars(3, 1.1, 0.7), 0.2});
   all.push_back({"motor", example("motor"), 0.2});
-  all.push_back({"slots", example("slots_and_cams"), 0.1});
-  all.push_back({"lagrangian", example("lagrangian"), 0.3});
+  all.push_back({"whitworth", example("slots_and_cams/whitworth.toml"), 0.1});
+  all.push_back({"cam", example("slots_and_cams/disc_cam.toml"), 0.1});
+  all.push_back({"lagrangian", example("lagrangian/double_pendulum.toml"), 0.3});
+  all.push_back({"car axis", example("lagrangian/car_axis.toml"), 0.3});
   return all;
 }
 
@@ -245,14 +248,28 @@ TEST(LinearModels, OfAPendulumOnADrivenSlideAreThoseByHand) {
   EXPECT_LT(std::abs(residual), 1e-14);
 }
 
-/// Small steps of a run from neighbouring starts: of mechanisms with balls, whose u is not q̇.
-TEST(LinearModels, OfBallsGrowAsNeighboursDo) {
-  Scene scene = flying_rod();
-  const Mechanism mechanism(scene);
-  Start at = later(mechanism, 0.2);
+Scene two_rods_on_balls() {
+  Scene scene;
+  scene.gravity = {0, 0, -9.81};
+  for (const char* name : {"a", "b"}) {
+    scene.bodies.push_back(rod(name, 0.1));
+    JointSpec ball;
+    ball.name = std::string(name) + "_ball";
+    ball.kind = JointKind::spherical;
+    ball.parent = scene.bodies.size() == 1 ? "ground" : "a";
+    ball.child = name;
+    ball.origin_parent = {scene.bodies.size() == 1 ? 0.0 : 1.0, 0, 0};
+    ball.velocity = {0.4, -0.7, 1.1};
+    scene.joints.push_back(ball);
+  }
+  return scene;
+}
+
+/// Differences of u̇ along δ and δu, of balls, whose u is not q̇.
+TEST(LinearModels, OfBallsAreDifferencesOfAccelerations) {
+  const Mechanism mechanism(two_rods_on_balls());
+  const Start at = later(mechanism, 0.2);
   const LinearModel model = model_of(mechanism, at);
-  // d/dt of δ̇ = δu + Bδ and ż: by second differences in time of neighbours' rates would need a run;
-  // u̇ itself is differenced instead, along δ and δu.
   const auto e = mechanism.evaluation<double>();
   const int nv = mechanism.nv();
   ASSERT_EQ(mechanism.m(), 0);
@@ -286,14 +303,17 @@ TEST(LinearModels, RefuseSingularPosesAndWhatIsNotThere) {
   EXPECT_NE(singular.find("at this pose alone"), std::string::npos) << singular;
   const Mechanism four_bar(example("four_bar"));
   const Start at = equations::start_of(four_bar);
-  const auto refused = [&](const LinearRequest& request, const char* mentions) {
+  using Names = std::vector<std::string>;
+  const auto refused = [&](Names LinearRequest::*which, const Names& names, const char* mentions) {
+    LinearRequest request;
+    request.*which = names;
     const std::string sentence = sentence_of([&] { linear_model(four_bar, at, request); });
     EXPECT_NE(sentence.find(mentions), std::string::npos) << sentence;
   };
-  refused({.inputs = {"O.tua"}}, "did you mean 'O.tau'");
-  refused({.outputs = {"rates", "O.u"}}, "is chosen twice");
-  refused({.independent = {"O", "A"}}, "are 2, expected 1");
-  refused({.independent = {"X"}}, "independent coordinate 'X' is not known");
+  refused(&LinearRequest::inputs, {"O.tua"}, "did you mean 'O.tau'");
+  refused(&LinearRequest::outputs, {"rates", "O.u"}, "is chosen twice");
+  refused(&LinearRequest::independent, {"O", "A"}, "are 2, expected 1");
+  refused(&LinearRequest::independent, {"X"}, "independent coordinate 'X' is not known");
   Start lost = at;
   lost.u[0] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_NE(sentence_of([&] { model_of(four_bar, lost); }).find("the state is not finite"),
