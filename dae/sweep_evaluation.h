@@ -4,6 +4,7 @@
 // instantiated.
 
 #include <momenta/core/kernel/mass_matrix.h>
+#include <momenta/dae/marker_points.h>
 #include <momenta/dae/sweep_rows.h>
 
 #include <algorithm>
@@ -21,20 +22,13 @@ class Mechanism::SweepEvaluation final : public SweepRows<Space, double> {
 
  public:
   SweepEvaluation(const Mechanism& mechanism, const Cast<Space>& cast)
-      : Rows(mechanism, cast), scene_(mechanism.scene()), links_(build_links(cast.model)) {
+      : Rows(mechanism, cast),
+        scene_(mechanism.scene()),
+        links_(build_links(cast.model)),
+        markers_(mechanism.scene(), mechanism.tree(), cast.model) {
     if (cast.loops.loops.empty()) {
       momentum_.emplace(links_);
       acceleration_.emplace(links_);
-    }
-    for (const auto& marker : mechanism.scene().markers) {
-      const Tree& tree = mechanism.tree();
-      const int body = tree.body(marker.body);
-      const Eigen::Vector3d at = tree.point(body, marker.point);
-      double height = 0;
-      if constexpr (Space::dimension == 3)
-        height = body < 0 ? model_.basis.col(2).dot(at)
-                          : (model_.frames[static_cast<std::size_t>(body)] * at).z();
-      markers_.push_back({body, model_.point(body, at), height});
     }
   }
 
@@ -192,26 +186,7 @@ class Mechanism::SweepEvaluation final : public SweepRows<Space, double> {
   }
   double formula_size() override { return momenta::formula_size(w_); }
 
-  void markers(double* values) override {
-    for (const auto& marker : markers_) {
-      const auto x = point_position(w_, marker.body, marker.at);
-      const auto v = point_velocity(w_, marker.body, x);
-      for (int i = 0; i < 3; ++i) {
-        double position = 0, velocity = 0;
-        if constexpr (Space::dimension == 3) {
-          position = model_.basis(i, 0) * x[0] + model_.basis(i, 1) * x[1] +
-                     model_.basis(i, 2) * marker.height;
-          velocity = model_.basis(i, 0) * v[0] + model_.basis(i, 1) * v[1];
-        } else {
-          position = x[i];
-          velocity = v[i];
-        }
-        values[i] = position;
-        values[3 + i] = velocity;
-      }
-      values += 6;
-    }
-  }
+  void markers(double* values) override { markers_.write(w_, values); }
 
  private:
   /// Forces at the points inward, and ratios where coordinates are: each joint on the ways once.
@@ -238,18 +213,12 @@ class Mechanism::SweepEvaluation final : public SweepRows<Space, double> {
   }
   std::vector<Force> inward_;
 
-  struct Marker {
-    int body;
-    typename Space::template Vector<double> at;
-    double height;
-  };
-
   const Scene& scene_;
   decltype(build_links(std::declval<const Model<Space>&>())) links_;
   std::optional<MomentumSweeps<Space, double>> momentum_;  ///< mechanisms without loops
   std::optional<AccelerationSweeps<Space, double>> acceleration_;
   int singular_joint_ = -1;
-  std::vector<Marker> markers_;
+  MarkerPoints<Space> markers_;
 };
 
 }  // namespace momenta

@@ -1,5 +1,6 @@
 #include <momenta/core/scene/drive.h>
 #include <momenta/dae/linear/linearisation.h>
+#include <momenta/dae/linear/marker_motion.h>
 
 #include <algorithm>
 #include <vector>
@@ -12,15 +13,16 @@ using Eigen::VectorXd;
 
 constexpr int directions = 8;
 
-/// Derivatives of (r, Φ̇) without accelerations, eight directions at a time.
+/// Derivatives of (r, Φ̇, Φ̈), and of markers, eight directions at a time.
 class Columns {
  public:
   Columns(const Mechanism& mechanism, double t, const VectorXd& q, const VectorXd& u,
-          const VectorXd& lambda, const MatrixXd& X)
+          const VectorXd& udot, const VectorXd& lambda, const MatrixXd& X)
       : mechanism_(mechanism),
         t_(t),
         q_(q),
         u_(u),
+        udot_(udot),
         X_(X),
         plain_(mechanism.evaluation<double>()),
         dual_(mechanism.evaluation<Dual8>()),
@@ -35,31 +37,48 @@ class Columns {
 
   enum class By { poses, rates, accelerations };
 
-  /// Columns of ∂r, and of ∂Φ̇ where `loops` is given.
-  void take(By by, MatrixXd& of_forces, MatrixXd* loops) {
-    const int nv = mechanism_.nv(), m = mechanism_.m();
+  /// Columns of ∂r, and of ∂Φ̇ and ∂Φ̈ where these are given.
+  void take(By by, MatrixXd& of_forces, MatrixXd* loops, MatrixXd* second = nullptr) {
     for (Eigen::Index first = 0; first < X_.cols(); first += directions) {
       const Eigen::Index count = std::min<Eigen::Index>(directions, X_.cols() - first);
       seed(by, first, count);
       dual_->place(t_, place_.data());
       dual_->move(rate_.data());
       if (loops) dual_->velocities(of_loops_.data());
+      put(of_loops_, loops, first, count);
       dual_->joint_forces(place_.data(), rate_.data(), acceleration_.data(), lambda_.data(),
                           r_.data());
-      for (Eigen::Index d = 0; d < count; ++d) {
-        const auto k = static_cast<std::size_t>(d);
-        for (int i = 0; i < nv; ++i) of_forces(i, first + d) = r_[static_cast<std::size_t>(i)].b[k];
-        for (int i = 0; loops && i < m; ++i)
-          (*loops)(i, first + d) = of_loops_[static_cast<std::size_t>(i)].b[k];
-      }
+      put(r_, &of_forces, first, count);
+      if (second) dual_->accelerations(of_loops_.data());
+      put(of_loops_, second, first, count);
+    }
+  }
+
+  /// Columns of markers' positions and velocities.
+  void take_markers(MarkerMotion<Dual8>& markers, By by, MatrixXd& of_markers) {
+    std::vector<Dual8> values(static_cast<std::size_t>(of_markers.rows()));
+    for (Eigen::Index first = 0; first < X_.cols(); first += directions) {
+      const Eigen::Index count = std::min<Eigen::Index>(directions, X_.cols() - first);
+      seed(by, first, count);
+      markers.at(t_, place_.data(), rate_.data(), values.data());
+      put(values, &of_markers, first, count);
     }
   }
 
  private:
+  static void put(const std::vector<Dual8>& values, MatrixXd* into, Eigen::Index first,
+                  Eigen::Index count) {
+    if (!into) return;
+    for (Eigen::Index d = 0; d < count; ++d)
+      for (std::size_t i = 0; i < values.size(); ++i)
+        (*into)(static_cast<Eigen::Index>(i), first + d) = values[i].b[static_cast<std::size_t>(d)];
+  }
+
   void seed(By by, Eigen::Index first, Eigen::Index count) {
     for (std::size_t i = 0; i < place_.size(); ++i) place_[i] = Dual8(q_[static_cast<long>(i)]);
     for (std::size_t i = 0; i < rate_.size(); ++i) rate_[i] = Dual8(u_[static_cast<long>(i)]);
-    std::fill(acceleration_.begin(), acceleration_.end(), Dual8(0.0));
+    for (std::size_t i = 0; i < rate_.size(); ++i)
+      acceleration_[i] = Dual8(udot_[static_cast<long>(i)]);
     VectorXd x, way(mechanism_.nq());
     for (Eigen::Index d = 0; d < count; ++d) {
       const auto k = static_cast<std::size_t>(d);
@@ -77,7 +96,7 @@ class Columns {
 
   const Mechanism& mechanism_;
   double t_;
-  const VectorXd &q_, &u_;
+  const VectorXd &q_, &u_, &udot_;
   const MatrixXd& X_;
   std::unique_ptr<Evaluation<double>> plain_;
   std::unique_ptr<Evaluation<Dual8>> dual_;
@@ -108,11 +127,24 @@ VectorXd turning(const Mechanism& mechanism, const Evaluation<double>& plain,
   return rates;
 }
 
+MatrixXd turnings(const Mechanism& mechanism, double t, const VectorXd& q, const VectorXd& u,
+                  const MatrixXd& X) {
+  MatrixXd B = MatrixXd::Zero(mechanism.nv(), X.cols());
+  if (!mechanism.plan().quasi_velocities) return B;
+  const auto plain = mechanism.evaluation<double>();
+  const auto dual = mechanism.evaluation<Dual8>();
+  plain->place(t, q.data());
+  for (Eigen::Index j = 0; j < X.cols(); ++j)
+    B.col(j) = turning(mechanism, *plain, *dual, q, u, X.col(j));
+  return B;
+}
+
 void take_all(const Mechanism& mechanism, double t, const VectorXd& q, const VectorXd& u,
               const VectorXd& lambda, const MatrixXd& X, Linearisation& l, MatrixXd* loop_rates) {
   for (MatrixXd* a : {&l.M, &l.C, &l.K}) a->setZero(mechanism.nv(), X.cols());
   l.loops.setZero(mechanism.m(), X.cols());
-  Columns columns(mechanism, t, q, u, lambda, X);
+  const VectorXd unaccelerated = VectorXd::Zero(mechanism.nv());
+  Columns columns(mechanism, t, q, u, unaccelerated, lambda, X);
   columns.take(Columns::By::poses, l.K, loop_rates);
   columns.take(Columns::By::rates, l.C, mechanism.m() > 0 ? &l.loops : nullptr);
   columns.take(Columns::By::accelerations, l.M, nullptr);
@@ -133,13 +165,30 @@ MovingLinearisation linearise_moving(const Mechanism& mechanism, double t, const
   MovingLinearisation l;
   l.loop_rates.setZero(mechanism.m(), X.cols());
   take_all(mechanism, t, q, u, lambda, X, l, mechanism.m() > 0 ? &l.loop_rates : nullptr);
-  l.turning.setZero(mechanism.nv(), X.cols());
-  if (!mechanism.plan().quasi_velocities) return l;
-  const auto plain = mechanism.evaluation<double>();
-  const auto dual = mechanism.evaluation<Dual8>();
-  plain->place(t, q.data());
-  for (Eigen::Index j = 0; j < X.cols(); ++j)
-    l.turning.col(j) = turning(mechanism, *plain, *dual, q, u, X.col(j));
+  l.turning = turnings(mechanism, t, q, u, X);
+  return l;
+}
+
+StateLinearisation linearise_state(const Mechanism& mechanism, double t, const VectorXd& q,
+                                   const VectorXd& u, const VectorXd& udot, const VectorXd& lambda,
+                                   const MatrixXd& X) {
+  StateLinearisation l;
+  const Eigen::Index nv = mechanism.nv(), m = mechanism.m();
+  for (MatrixXd* a : {&l.M, &l.C, &l.K}) a->setZero(nv, X.cols());
+  for (MatrixXd* a : {&l.loops, &l.loop_rates, &l.second_by_rates, &l.second_by_poses})
+    a->setZero(m, X.cols());
+  for (MatrixXd* a : {&l.markers_by_rates, &l.markers_by_poses})
+    a->setZero(6 * static_cast<Eigen::Index>(mechanism.scene().markers.size()), X.cols());
+  Columns columns(mechanism, t, q, u, udot, lambda, X);
+  columns.take(Columns::By::poses, l.K, &l.loop_rates, &l.second_by_poses);
+  columns.take(Columns::By::rates, l.C, &l.loops, &l.second_by_rates);
+  columns.take(Columns::By::accelerations, l.M, nullptr);
+  if (l.markers_by_poses.size() > 0) {
+    const auto markers = make_marker_motion<Dual8>(mechanism);
+    columns.take_markers(*markers, Columns::By::poses, l.markers_by_poses);
+    columns.take_markers(*markers, Columns::By::rates, l.markers_by_rates);
+  }
+  l.turning = turnings(mechanism, t, q, u, X);
   return l;
 }
 

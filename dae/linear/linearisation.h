@@ -14,6 +14,11 @@
 //   V = ∂(A u − b)/∂δ
 //
 // A has the rows of all loops, nonholonomic ones too; all at (q*, u*, 0, λ*).
+//
+// About any state of a motion all are taken at (q*, u*, u̇*, λ*), and the rows of accelerations and
+// what the markers do stand beside them:
+//
+//   A δu̇ + C_a δu + K_a δ = 0,    C_a = ∂Φ̈/∂u,  K_a = ∂Φ̈/∂δ
 
 #include <momenta/dae/mechanism.h>
 
@@ -32,6 +37,13 @@ struct MovingLinearisation : Linearisation {
   Eigen::MatrixXd turning;     ///< B X, nv × columns
 };
 
+/// About a state of any motion.
+struct StateLinearisation : MovingLinearisation {
+  Eigen::MatrixXd second_by_rates, second_by_poses;    ///< C_a X, K_a X, m × columns
+  Eigen::MatrixXd markers_by_rates, markers_by_poses;  ///< of positions and velocities, in the
+                                                       ///< order of Mechanism::marker_columns()
+};
+
 /// Along the columns of X (nv × any number), at (t, q), u = u̇ = 0, with λ (m). Cost O(bodies) a
 /// column.
 Linearisation linearise(const Mechanism& mechanism, double t, const Eigen::VectorXd& q,
@@ -41,6 +53,11 @@ Linearisation linearise(const Mechanism& mechanism, double t, const Eigen::Vecto
 MovingLinearisation linearise_moving(const Mechanism& mechanism, double t, const Eigen::VectorXd& q,
                                      const Eigen::VectorXd& u, const Eigen::VectorXd& lambda,
                                      const Eigen::MatrixXd& X);
+
+/// The same at rates u and accelerations udot (nv).
+StateLinearisation linearise_state(const Mechanism& mechanism, double t, const Eigen::VectorXd& q,
+                                   const Eigen::VectorXd& u, const Eigen::VectorXd& udot,
+                                   const Eigen::VectorXd& lambda, const Eigen::MatrixXd& X);
 
 /// The scene with every drive held where it is at t = 0, and no velocity.
 Scene held_at_start(Scene scene);

@@ -6,6 +6,7 @@
 #include <momenta/dae/study/environment.h>
 #include <momenta/dae/study/motion.h>
 
+#include "cpu_limit.h"
 #include "options.h"
 
 namespace momenta::program {
@@ -23,6 +24,7 @@ std::vector<double> times_of(const Options& o, const RunDefaults& defaults) {
 }  // namespace
 
 int effort(const Options& o, const EffortOptions& options) {
+  const CpuLimit limit(o.cpu_limit.value_or(0));
   const Scene driven = read(o);
   const Mechanism mechanism(undriven(driven), {.algebra = mechanism_options(o).algebra});
   expect_own_results(o.out, "effort.csv");

@@ -10,6 +10,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "cpu_limit.h"
 #include "options.h"
 #include "publish_suite.h"
 
@@ -46,7 +47,8 @@ EquationStart start_or_sentence(const EquationFile& file) {
 }  // namespace
 
 int index_of_equations(const Options& o) {
-  expect_options(o, {"--set", "--out", "--json", "--quiet"});
+  expect_options(o, {"--set", "--cpu-limit", "--out", "--json", "--quiet"});
+  const CpuLimit limit(o.cpu_limit.value_or(0));
   const EquationFile file = read_file(o);
   const EquationStart start = equation_start(file);
   const std::string json = equation_index_json(file, start).dump(2) + "\n";

@@ -7,6 +7,7 @@
 #include <momenta/dae/study/environment.h>
 #include <momenta/dae/study/motion.h>
 
+#include <ctime>
 #include <stdexcept>
 
 #include "options.h"
@@ -39,7 +40,8 @@ int fit(const Options& o, const FitOptions& options) {
   request.progress = [&](int start, double least) {
     line.show("start " + std::to_string(start + 1) + " of " + std::to_string(options.starts) +
               (start > 0 ? ", least cost " + std::to_string(least) : ""));
-    return !interrupted();
+    const double spent = static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+    return !interrupted() && !(o.cpu_limit && spent > *o.cpu_limit);
   };
   const FitResult result = momenta::fit(family, wanted, request);
   line.show("");

@@ -6,11 +6,13 @@
 
 #include <sstream>
 
+#include "cpu_limit.h"
 #include "options.h"
 
 namespace momenta::program {
 
 int index_verb(const Options& o, const std::string& forms, const std::string& state) {
+  const CpuLimit limit(o.cpu_limit.value_or(0));
   const auto mechanism = load(o);
   std::vector<std::string> names;
   std::stringstream list(forms);

@@ -36,6 +36,9 @@ int sweep(const Options&, const SweepOptions&) {
 int modes(const Options&, const ModesOptions&) {
   return left_out("modes");
 }
+int linearise_verb(const Options&, const LineariseOptions&) {
+  return left_out("linearise");
+}
 int move(const Options&, const MoveOptions&) {
   return left_out("move");
 }

@@ -137,6 +137,7 @@ int answer(int argc, char** argv) {
   index_app
       ->add_option("--at", index_state, "Consistent state, as for evaluate (default: the start)")
       ->type_name("STATE");
+  add_cpu_limit(*index_app, o);
   index_app->add_option("--out", o.out, "Directory for index.json")->type_name("DIR");
   CLI::App* modes_app =
       app.add_subcommand("modes", "Equilibrium; natural frequencies, damping, mode shapes");
@@ -155,7 +156,47 @@ int answer(int argc, char** argv) {
   within(modes_app->add_option("--count", modes_options.count,
                                "Modes nearest to s = 0 (default: all of up to 300, else 20)"),
          "N", 1, 1000);
+  add_cpu_limit(*modes_app, o);
   modes_app->add_option("--out", o.out, "Directory for modes.csv, modes.json, index.html")
+      ->type_name("DIR");
+  CLI::App* linearise_app =
+      app.add_subcommand("linearise", "E, A, B, C, D of a linear model about a state, for control");
+  linearise_app->footer(
+      "Example: momenta linearise examples/four_bar/scene.toml --equilibrium settle --out results");
+  LineariseOptions linearise_options;
+  add_scene(*linearise_app, o);
+  for (const char* unused : {"--kkt", "--cut", "--at"})
+    linearise_app->remove_option(linearise_app->get_option(unused));
+  one_of(linearise_app->add_option("--kind", linearise_options.kind,
+                                   "States: independent coordinates and rates; all, with λ"),
+         {"minimal", "descriptor"})
+      ->capture_default_str();
+  linearise_app
+      ->add_option("--at", linearise_options.state, "State, as for evaluate (default: the start)")
+      ->type_name("STATE");
+  linearise_app
+      ->add_option("--time", linearise_options.time, "The start, with drives led to this time [s]")
+      ->type_name("S");
+  positive(linearise_app->add_option("--after", linearise_options.after,
+                                     "The end of a run of this length [s]"),
+           "S");
+  one_of(linearise_app->add_option("--equilibrium", linearise_options.equilibrium,
+                                   "At rest with drives held, found as modes finds it"),
+         {"settle", "nearest"});
+  linearise_app
+      ->add_option("--inputs", linearise_options.inputs,
+                   "By name, joint or group: efforts, drives (default: all)")
+      ->type_name("NAME,...");
+  linearise_app
+      ->add_option("--outputs", linearise_options.outputs,
+                   "Groups: coordinates, rates, accelerations, markers, efforts, multipliers")
+      ->type_name("NAME,...");
+  linearise_app
+      ->add_option("--independent", linearise_options.independent,
+                   "Coordinates that are states (default: chosen)")
+      ->type_name("NAME,...");
+  add_cpu_limit(*linearise_app, o, "60");
+  linearise_app->add_option("--out", o.out, "Directory for linear.json, linear.m, linear.py")
       ->type_name("DIR");
   CLI::App* move_app =
       app.add_subcommand("move", "Poses, ratios and dead points as one coordinate is swept");
@@ -182,6 +223,7 @@ int answer(int argc, char** argv) {
            "X");
   move_app->add_flag("--singular-values", move_options.singular_values,
                      "Of the loop equations at each pose: the smallest over the largest");
+  add_cpu_limit(*move_app, o);
   move_app->add_option("--out", o.out, "Directory for move.csv, move.json, index.html")
       ->type_name("DIR");
   CLI::App* effort_app =
@@ -219,6 +261,7 @@ int answer(int argc, char** argv) {
            "S");
   within(effort_app->add_option("--samples", o.samples, "Intervals of the drives' motion"), "N", 1,
          1000000);
+  add_cpu_limit(*effort_app, o);
   effort_app->add_option("--out", o.out, "Directory for effort.csv, effort.json, index.html")
       ->type_name("DIR");
   CLI::App* fit_app =
@@ -252,6 +295,7 @@ int answer(int argc, char** argv) {
   within(fit_app->add_option("--iterations", fit_options.iterations, "Of each start, at the most"),
          "N", 1, 1000000)
       ->capture_default_str();
+  add_cpu_limit(*fit_app, o);
   fit_app->add_option("--out", o.out, "Directory for fitted.toml, fit.csv, fit.json, index.html")
       ->type_name("DIR");
   CLI::App* view_verb =
@@ -401,6 +445,7 @@ int answer(int argc, char** argv) {
     if (*index_app)
       return equations ? index_of_equations(o) : index_verb(o, index_forms, index_state);
     if (*modes_app) return modes(o, modes_options);
+    if (*linearise_app) return linearise_verb(o, linearise_options);
     if (*move_app) return move(o, move_options);
     if (*effort_app) return effort(o, effort_options);
     if (*fit_app) return fit(o, fit_options);

@@ -7,6 +7,7 @@
 #include <momenta/dae/study/environment.h>
 #include <momenta/dae/study/motion.h>
 
+#include "cpu_limit.h"
 #include "options.h"
 
 namespace momenta::program {
@@ -30,6 +31,7 @@ void film(StudyResult& study, const Mechanism& mechanism, const ModesResult& res
 }  // namespace
 
 int modes(const Options& o, const ModesOptions& m) {
+  const CpuLimit limit(o.cpu_limit.value_or(0));
   Scene scene = read(o);
   // A steady motion is that of all drives.
   if (m.drives == "held" && m.equilibrium != "steady") scene = held_at_start(std::move(scene));

@@ -7,10 +7,12 @@
 #include <momenta/dae/study/environment.h>
 #include <momenta/dae/study/motion.h>
 
+#include "cpu_limit.h"
 #include "options.h"
 
 namespace momenta::program {
 int move(const Options& o, const MoveOptions& options) {
+  const CpuLimit limit(o.cpu_limit.value_or(0));
   const Mechanism mechanism(held_at_start(read(o)), {.algebra = mechanism_options(o).algebra});
   expect_own_results(o.out, "move.csv");
   const Assembly a = assemble(mechanism, Assembled::rates);

@@ -26,6 +26,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "cpu_limit.h"
 #include "values.h"
 
 namespace momenta::program {
@@ -122,6 +123,12 @@ void add_run_options(CLI::App& verb, Options& o, const char* cpu_limit) {
            "S");
   verb.add_option("--reference", o.reference, "CSV with a reference solution")->type_name("FILE");
   add_results(verb, o);
+}
+
+void add_cpu_limit(CLI::App& verb, Options& o, const char* usual) {
+  positive(verb.add_option("--cpu-limit", o.cpu_limit,
+                           std::string("CPU time of all of it [s] (default: ") + usual + ")"),
+           "S");
 }
 
 void add_mesh_bytes(CLI::App& verb, Options& o) {
@@ -304,7 +311,7 @@ std::vector<std::pair<std::string, double>> amounts_in(const std::string& option
 void expect_own_results(const std::filesystem::path& out, std::string_view own) {
   for (const std::string_view name :
        {"trajectory.csv", "run.h5", "study.csv", "stress.json", "sweep.csv", "modes.csv",
-        "move.csv", "effort.csv", "fit.csv", "bench.csv"})
+        "move.csv", "effort.csv", "fit.csv", "bench.csv", "linear.json"})
     if (name != own && !(name == "run.h5" && own == "trajectory.csv") && !out.empty() &&
         std::filesystem::exists(out / name))
       throw std::invalid_argument("--out " + out.string() + " holds the " + std::string(name) +
@@ -339,6 +346,7 @@ void close(Journal* journal, std::size_t runs, bool over, const Options& o) {
 }
 
 bool write_results(const std::vector<ResultFile>& files) {
+  CpuLimit::lift();
   const auto problem = atomic_write(files);
   if (problem) std::fprintf(stderr, "momenta: %s\n", problem->c_str());
   return !problem;

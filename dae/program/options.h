@@ -59,6 +59,8 @@ void add_timing(CLI::App& verb, Options& o);
 /// `cpu_limit`: that of a run of this verb, in words.
 void add_run_options(CLI::App& verb, Options& o, const char* cpu_limit = "none");
 void add_results(CLI::App& verb, Options& o);
+/// Of verbs without runs (cpu_limit.h); `usual`: theirs, in words.
+void add_cpu_limit(CLI::App& verb, Options& o, const char* usual = "none");
 /// Of verbs that write pages.
 void add_mesh_bytes(CLI::App& verb, Options& o);
 
@@ -193,6 +195,14 @@ struct ModesOptions {
   std::optional<int> count;
 };
 int modes(const Options& o, const ModesOptions& m);
+struct LineariseOptions {
+  std::string kind = "minimal";              ///< minimal or descriptor
+  std::string state;                         ///< as for evaluate; empty: the start
+  std::optional<double> time, after;         ///< [s]
+  std::string equilibrium;                   ///< settle, nearest, or empty
+  std::string inputs, outputs, independent;  ///< comma-separated; empty: all, and chosen
+};
+int linearise_verb(const Options& o, const LineariseOptions& l);
 struct MoveOptions {
   std::string sweep, hold;       ///< comma-separated
   std::optional<double> to, by;  ///< [rad or m]

@@ -101,5 +101,7 @@ void add_move(py::class_<Bench, BenchPtr>& mechanism);
 void add_effort(py::class_<Bench, BenchPtr>& mechanism);
 /// The one that finds its modes.
 void add_modes(py::class_<Bench, BenchPtr>& mechanism);
+/// The one that makes linear models of it.
+void add_linearise(py::class_<Bench, BenchPtr>& mechanism);
 
 }  // namespace momenta::python

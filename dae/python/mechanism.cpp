@@ -297,6 +297,7 @@ void bind_mechanism(py::module_& module) {
   add_move(mechanism);
   add_effort(mechanism);
   add_modes(mechanism);
+  add_linearise(mechanism);
 }
 
 }  // namespace momenta::python

@@ -1,5 +1,7 @@
-// Equilibria and modes.
+// Equilibria, modes and linear models.
 
+#include <momenta/dae/assembly/drive_reach.h>
+#include <momenta/dae/linear/linear_model.h>
 #include <momenta/dae/linear/linearisation.h>
 #include <momenta/dae/study/modes_study.h>
 
@@ -65,7 +67,83 @@ py::dict modes(const Bench& b, const std::string& equilibrium, const std::string
   return all;
 }
 
+std::vector<std::string> labels_of(const std::vector<Column>& columns) {
+  std::vector<std::string> names;
+  for (const Column& c : columns) names.push_back(c.label());
+  return names;
+}
+
+py::dict linearise(const Bench& b, const std::string& kind, double t,
+                   const std::optional<Vector>& q, const std::optional<Vector>& u,
+                   const std::string& equilibrium, const std::vector<std::string>& inputs,
+                   const std::vector<std::string>& outputs,
+                   const std::vector<std::string>& independent) {
+  if (kind != "minimal" && kind != "descriptor")
+    throw py::value_error("kind '" + kind + "': expected minimal or descriptor");
+  expect_time(t);
+  if (q) expect_size(*q, b.mechanism->nq(), "q", "nq");
+  if (u) expect_size(*u, b.mechanism->nv(), "u", "nv");
+  if (!equilibrium.empty() && equilibrium != "settle" && equilibrium != "nearest")
+    throw py::value_error("equilibrium '" + equilibrium + "': expected settle or nearest");
+  if (!equilibrium.empty() && (q || u || t != 0))
+    throw py::value_error("equilibrium and t, q or u are both given; expected one of them");
+  LinearRequest request;
+  request.kind = kind == "minimal" ? LinearRequest::Kind::minimal : LinearRequest::Kind::descriptor;
+  request.inputs = inputs;
+  request.outputs = outputs;
+  request.independent = independent;
+  LinearModel model;
+  {
+    const py::gil_scoped_release others_go_on;
+    if (!equilibrium.empty()) {
+      const Mechanism held(held_at_start(b.mechanism->scene()), b.mechanism->options());
+      const Equilibrium rest =
+          find_equilibrium(held, assemble(held).start, search_named(equilibrium));
+      Start at;
+      at.t = rest.t;
+      at.q = rest.q;
+      at.u = Vector::Zero(held.nv());
+      model = linear_model(held, at, request);
+    } else if (q || u) {
+      const Tree& tree = b.mechanism->tree();
+      model = linear_model(
+          *b.mechanism,
+          assemble(*b.mechanism, t, q.value_or(tree.q0), u.value_or(tree.u0), Assembled::rates)
+              .start,
+          request);
+    } else {
+      model =
+          linear_model(*b.mechanism, assemble_at(*b.mechanism, t, Assembled::rates).start, request);
+    }
+  }
+  py::dict all;
+  all["kind"] = kind;
+  all["t"] = model.t, all["q"] = model.q, all["u"] = model.u, all["udot"] = model.udot;
+  all["E"] = model.E, all["A"] = model.A, all["B"] = model.B, all["C"] = model.C;
+  all["D"] = model.D;
+  all["states"] = labels_of(model.states);
+  all["inputs"] = labels_of(model.inputs);
+  all["outputs"] = labels_of(model.outputs);
+  all["poles"] = model.poles;
+  all["left_out"] = model.left_out;
+  return all;
+}
+
 }  // namespace
+
+void add_linearise(py::class_<Bench, BenchPtr>& mechanism) {
+  using namespace py::literals;
+  mechanism.def(
+      "linearise", &linearise, "kind"_a = "minimal", "t"_a = 0.0, "q"_a = std::nullopt,
+      "u"_a = std::nullopt, "equilibrium"_a = "", "inputs"_a = std::vector<std::string>{},
+      "outputs"_a = std::vector<std::string>{}, "independent"_a = std::vector<std::string>{},
+      "E x' = A x + B w, y = C x + D w about a state, as a dict: E, A, B, C, D; states, inputs and "
+      "outputs (names with units); t, q, u, udot, the state; poles [1/s]; left_out (loop "
+      "equations that follow from others). `kind`: minimal or descriptor. The state: t, with the "
+      "loops closed from q and u (default: the scene's start, led to t), or `equilibrium`: settle "
+      "or nearest, drives held. `inputs`, `outputs`: names, joints or groups; `independent`: "
+      "coordinates that are states. Raises SceneError where the pose is singular.");
+}
 
 void add_modes(py::class_<Bench, BenchPtr>& mechanism) {
   using namespace py::literals;

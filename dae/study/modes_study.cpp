@@ -1,5 +1,6 @@
 #include <momenta/core/lagrangian/lagrangian_model.h>
 #include <momenta/dae/linear/linearisation.h>
+#include <momenta/dae/linear/operating_point.h>
 #include <momenta/dae/linear/pose_motion.h>
 #include <momenta/dae/measure/rank.h>
 #include <momenta/dae/study/modes_study.h>
@@ -15,18 +16,6 @@ namespace {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-std::vector<Column> shape_columns(const Mechanism& mechanism) {
-  if (mechanism.scene().lagrangian) return mechanism.coordinate_columns();
-  std::vector<Column> columns = mechanism.rate_columns();
-  for (Column& c : columns) {
-    const std::size_t dot = c.name.rfind('.');
-    char& letter = c.name[dot + 1];
-    letter = letter == 'u' ? 'q' : letter == 'v' ? 'd' : 'r';
-    c.unit.erase(c.unit.find('/'));
-  }
-  return columns;
-}
 
 /// Whether the linearised equations are those of any other time: along three directions.
 void expect_constant(const Mechanism& mechanism, const Equilibrium& at) {
@@ -98,7 +87,7 @@ ModesResult find_modes(const Mechanism& mechanism, const Start& start,
   result.scene = mechanism.scene().name;
   result.of_formulas = mechanism.scene().lagrangian.has_value();
   result.coordinates = mechanism.coordinate_columns();
-  result.shapes = shape_columns(mechanism);
+  result.shapes = displacement_columns(mechanism);
   Equilibrium& at = result.equilibrium;
   if (request.search == Search::steady) {
     result.spectrum = steady_spectrum(mechanism, start, result.steady.emplace());

@@ -5,7 +5,7 @@ from commands import STUDIES, TOP, verb_of, without
 
 PLACEHOLDER = re.compile(r"\b(SCENE|NAME|FAMILY|VERB|STATE|IN|OUT|SHELL|FOLDER|FILE|COLUMNS)\b|…|mine\.|robot\.|"
                          r"\bN\b|\[[A-Z-]|\{|sudo|/DIR")
-VERBS = "index|check|assemble|evaluate|run|drift|work|modes|make|convert|view|sweep"
+VERBS = "index|check|assemble|evaluate|run|drift|work|modes|linearise|make|convert|view|sweep"
 
 
 def links_lead_somewhere(file):

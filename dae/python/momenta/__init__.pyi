@@ -341,6 +341,17 @@ class Mechanism:
         within: float = 1e-6,
     ) -> dict[str, Any]: ...
     def modes(self, equilibrium: str = "settle", drives: str = "held", count: int = 0) -> dict[str, Any]: ...
+    def linearise(
+        self,
+        kind: str = "minimal",
+        t: float = 0.0,
+        q: ArrayLike | None = None,
+        u: ArrayLike | None = None,
+        equilibrium: str = "",
+        inputs: Sequence[str] = (),
+        outputs: Sequence[str] = (),
+        independent: Sequence[str] = (),
+    ) -> dict[str, Any]: ...
     def run(
         self,
         *,

@@ -106,6 +106,10 @@ class Round:
             ("modes", lambda: m.modes(**self.some(
                 {"equilibrium": ["settle", "nearest", "start", ""], "drives": ["held", "running", "x"],
                  "count": [0, 1, -1, 10**6]}))),
+            ("linearise", lambda: m.linearise(**self.some(
+                {"kind": ["minimal", "descriptor", ""], "t": [0.0, 0.1, NAN, 1e300], "q": [q], "u": [u],
+                 "equilibrium": ["", "settle", "x"], "inputs": [[], ["efforts"], ["x"], ["O", "O"]],
+                 "outputs": [[], ["rates"], ["x"]], "independent": [[], ["O"], ["A"], ["O", "A"], ["x"]]}))),
             ("assemble", lambda: m.assemble(*([self.number()] if r.random() < 0.3 else []))),
             ("run", lambda: m.run(**{**end, **limits, **self.some(
                 {**common, **gains, "form": forms, "integrator": methods + [""], "project": [True, False],
