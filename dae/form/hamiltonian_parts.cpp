@@ -1,4 +1,3 @@
-#include <momenta/dae/factor/faded_pivot.h>
 #include <momenta/dae/factor/tree_factor.h>
 #include <momenta/dae/form/hamiltonian_parts.h>
 #include <momenta/dae/kkt/kkt.h>
@@ -7,6 +6,10 @@
 
 namespace momenta {
 namespace {
+
+/// How weak a pivot of Φ_q M⁻¹ Φ_qᵀ may be, relative to its group's scale: what rounding leaves of
+/// rows that depend on others must ask for no multiplier.
+constexpr double dependent_rows = 1e-10;
 
 class MechanismPlace final : public HamiltonianPlace {
  public:
@@ -56,7 +59,7 @@ class MechanismPlace final : public HamiltonianPlace {
   }
 
   bool factor(double t, const double* q) override {
-    return !kkt_ || kkt_->factor(*e_, t, q, fade_projection);
+    return !kkt_ || kkt_->factor(*e_, t, q, dependent_rows);
   }
   bool correction(const double* g, double* delta, double* nu) override {
     for (std::size_t i = 0; i < right_.size(); ++i) right_[i] = -g[i];
