@@ -1,17 +1,86 @@
+#include <momenta/dae/factor/tree_factor.h>
 #include <momenta/dae/form/hamiltonian_parts.h>
+#include <momenta/dae/kkt/kkt.h>
+
+#include <algorithm>
 
 namespace momenta {
+namespace {
+
+/// How weak a pivot of Φ_q M⁻¹ Φ_qᵀ may be, relative to its group's scale: what rounding leaves of
+/// rows that depend on others must ask for no multiplier.
+constexpr double dependent_rows = 1e-10;
+
+class MechanismPlace final : public HamiltonianPlace {
+ public:
+  explicit MechanismPlace(const Mechanism& mechanism)
+      : system_(mechanism),
+        e_(mechanism.evaluation<double>()),
+        factor_(mechanism.kkt_pattern(), mechanism.nv()),
+        mass_(mechanism.kkt_pattern().mass.size()),
+        work_(static_cast<std::size_t>(mechanism.nv())),
+        prescribed_(work_.size()),
+        none_(work_.size()),
+        right_(static_cast<std::size_t>(mechanism.m())) {
+    if (mechanism.m() > 0) kkt_ = make_kkt(mechanism);
+  }
+
+  bool at(double t, const double* q) override {
+    e_->place(t, q);
+    e_->mass_entries(mass_.data());
+    if (factor_.factor(mass_) >= 0) return false;
+    if (!system_.plan().drives) return true;
+    e_->move(nullptr);
+    e_->momenta(nullptr, prescribed_.data());
+    return true;
+  }
+  void positions(double* phi) override { e_->positions(phi); }
+  void rates(const double* p, const double* sigma, double* u) override {
+    for (std::size_t i = 0; i < work_.size(); ++i) u[i] = p[i] - prescribed_[i];
+    if (sigma != nullptr) {
+      e_->constraint_forces(sigma, work_.data());
+      for (std::size_t i = 0; i < work_.size(); ++i) u[i] -= work_[i];
+    }
+    factor_.inward(u);
+    for (std::size_t i = 0; i < work_.size(); ++i) u[i] *= factor_.inverse_pivots()[i];
+    factor_.outward(u);
+  }
+  void velocities(const double* u, double* rate) override {
+    e_->move(u);
+    e_->velocities(rate);
+  }
+  void force(const double* q, const double* u, const double* sigma, double* g) override {
+    e_->move(u);
+    e_->momenta(sigma, work_.data());
+    e_->momentum_rates(q, u, sigma, 0, g);
+  }
+  void constraint_forces(const double* x, double* result) override {
+    e_->constraint_forces(x, result);
+  }
+
+  bool factor(double t, const double* q) override {
+    return !kkt_ || kkt_->factor(*e_, t, q, dependent_rows);
+  }
+  bool correction(const double* g, double* delta, double* nu) override {
+    for (std::size_t i = 0; i < right_.size(); ++i) right_[i] = -g[i];
+    return kkt_->solve(none_.data(), right_.data(), nullptr, delta, nu);
+  }
+
+ private:
+  const Mechanism& system_;
+  std::unique_ptr<Evaluation<double>> e_;
+  TreeFactor factor_;
+  std::unique_ptr<Kkt> kkt_;  ///< null without loops
+  std::vector<double> mass_, work_, prescribed_, none_, right_;
+};
+
+}  // namespace
 
 struct HamiltonianParts::Work {
   explicit Work(const Mechanism& mechanism)
-      : e(mechanism.evaluation<double>()),
-        motion(mechanism),
-        entries(std::max(mechanism.kkt_pattern().mass.size(),
-                         mechanism.kkt_pattern().constraint.size())),
-        p(static_cast<std::size_t>(mechanism.nv())) {}
+      : e(mechanism.evaluation<double>()), motion(mechanism) {}
   std::unique_ptr<Evaluation<double>> e;
   CoordinateMotion motion;
-  std::vector<double> entries, p;
 };
 
 HamiltonianParts::Work& HamiltonianParts::parts() {
@@ -19,32 +88,8 @@ HamiltonianParts::Work& HamiltonianParts::parts() {
   return *parts_;
 }
 
-void HamiltonianParts::place(double t, const double* q, PlacedHamiltonian& placed) {
-  Work& w = parts();
-  w.e->place(t, q);
-  w.e->mass_entries(w.entries.data());
-  placed.mass.setZero();
-  const double* value = w.entries.data();
-  for (const auto& entry : system_.kkt_pattern().mass)
-    placed.mass(entry.row, entry.column) = placed.mass(entry.column, entry.row) = *value++;
-  placed.constraint.setZero();
-  if (system_.m() > 0) {
-    w.e->constraint_entries(w.entries.data());
-    value = w.entries.data();
-    for (const auto& entry : system_.kkt_pattern().constraint)
-      placed.constraint(entry.row, entry.column) = *value++;
-    w.e->positions(placed.phi.data());
-  }
-  w.e->move(nullptr);
-  w.e->momenta(nullptr, placed.prescribed.data());
-  if (system_.m() > 0) w.e->velocities(placed.phi_t.data());
-}
-
-void HamiltonianParts::force(const double* q, const double* u, double* g) {
-  Work& w = parts();
-  w.e->move(u);
-  w.e->momenta(nullptr, w.p.data());
-  w.e->momentum_rates(q, u, nullptr, 0, g);
+std::unique_ptr<HamiltonianPlace> HamiltonianParts::place() const {
+  return std::make_unique<MechanismPlace>(system_);
 }
 
 void HamiltonianParts::coordinate_rates(const double* q, const double* u, double* qdot) {

@@ -4,6 +4,7 @@
 
 #include <momenta/core/scene/formula.h>
 #include <momenta/dae/form/dae_form.h>
+#include <momenta/dae/solver/second_order.h>
 
 #include <algorithm>
 #include <cmath>
@@ -17,7 +18,7 @@ constexpr int local_limit = 500;  // above which J itself is not formed
 
 }  // namespace
 
-class DaeForm::Local final : public LocalJacobian {
+class DaeForm::Local final : public LocalOfSecondOrder {
  public:
   explicit Local(DaeForm& form)
       : form_(form),
@@ -25,11 +26,24 @@ class DaeForm::Local final : public LocalJacobian {
         s_(form.mechanism_, form.size()) {}
 
   bool evaluate(double t, const double* y, const double* ydot, double c) override {
+    return fill(t, y, ydot, [c](std::size_t) { return c; });
+  }
+  bool evaluate(double t, const double* y, const double* ydot, const double* c) override {
+    return fill(t, y, ydot, [c](std::size_t i) { return c[i]; });
+  }
+  const JacobianPattern& pattern() const override { return rows_.pattern(); }
+  const std::vector<double>& values() const override { return rows_.values(); }
+  int version() const override { return rows_.version(); }
+  JacobianPattern eliminated() const { return rows_.eliminated(form_.size()); }
+
+ private:
+  template <class Factor>
+  bool fill(double t, const double* y, const double* ydot, Factor c) {
     cuts_.begin(form_.size(), !in_time_);
     for (int i = 0; i < form_.size(); ++i) {
       const auto at = static_cast<std::size_t>(i);
       s_.y[at] = LocalDual::variable(y[i], i);
-      s_.ydot[at] = LocalDual::variable(ydot[i], i, c);
+      s_.ydot[at] = LocalDual::variable(ydot[i], i, c(at));
     }
     form_.equations(s_, t, s_.y.data(), s_.ydot.data(), s_.r.data());
     form_.regularise(s_.y.data(), s_.r.data());
@@ -39,12 +53,6 @@ class DaeForm::Local final : public LocalJacobian {
       if (!std::isfinite(x)) return form_.fail("the Jacobian is not finite");
     return true;
   }
-  const JacobianPattern& pattern() const override { return rows_.pattern(); }
-  const std::vector<double>& values() const override { return rows_.values(); }
-  int version() const override { return rows_.version(); }
-  JacobianPattern eliminated() const { return rows_.eliminated(form_.size()); }
-
- private:
   static bool has_formulas(const Scene& scene) {
     return std::any_of(scene.forces.begin(), scene.forces.end(), has_formula);
   }

@@ -1,17 +1,36 @@
 #pragma once
-// What RATTLE needs of a system beside y = (q, p): the parts of H(q, p) = L's Legendre transform
-// under Φ(q, t) = 0, with p = M u + (prescribed part), no impulses σ in it.
+// What RATTLE needs of a system beside y = (q, p): the parts of H(q,
+// p) = L's Legendre transform under Φ(q, t) = 0, with p = M u + (prescribed part), no impulses σ in
+// it.
 
-#include <Eigen/Core>
+#include <memory>
 
 namespace momenta {
 
-/// At one (t, q): matrices for M u = p − prescribed and Φ_q.
-struct PlacedHamiltonian {
-  Eigen::MatrixXd mass;        ///< nv × nv, both triangles
-  Eigen::MatrixXd constraint;  ///< m × nv
-  Eigen::VectorXd prescribed;  ///< nv
-  Eigen::VectorXd phi, phi_t;  ///< m
+/// The parts at one (t, q), with factors of M, and of ( M Φ_qᵀ; Φ_q 0 ) where asked for. A method
+/// that iterates between places has one of these for each. After at(), no call allocates.
+class HamiltonianPlace {
+ public:
+  virtual ~HamiltonianPlace() = default;
+
+  /// Goes to (t, q). False where M is not positive definite.
+  virtual bool at(double t, const double* q) = 0;
+  /// Φ (m).
+  virtual void positions(double* phi) = 0;
+  /// u (nv) of M u + Φ_qᵀσ = p − prescribed part; `sigma` (m) null: zero.
+  virtual void rates(const double* p, const double* sigma, double* u) = 0;
+  /// Φ̇ (m) at rates u (nv).
+  virtual void velocities(const double* u, double* rate) = 0;
+  /// −∂H/∂q + Q = L_q + Q + Φ̇_qᵀσ (nv) at rates u (nv); `sigma` (m) null: zero.
+  virtual void force(const double* q, const double* u, const double* sigma, double* g) = 0;
+  /// Φ_qᵀ x (nv).
+  virtual void constraint_forces(const double* x, double* result) = 0;
+
+  /// Factorises the matrix at (t, q), where this is. False where it has no solution.
+  virtual bool factor(double t, const double* q) = 0;
+  /// δ (nv) and ν (m) of M δ + Φ_qᵀν = 0, Φ_q δ = −g (m), where the last factor() was. In rows that
+  /// depend on others ν fades to zero. False where a result is not finite.
+  virtual bool correction(const double* g, double* delta, double* nu) = 0;
 };
 
 class ConstrainedHamiltonian {
@@ -20,10 +39,7 @@ class ConstrainedHamiltonian {
   virtual int coordinates() const = 0;  ///< nq
   virtual int momenta() const = 0;      ///< nv
   virtual int multipliers() const = 0;  ///< m
-  /// Fills `placed`, of the right sizes; the calls below are at this place.
-  virtual void place(double t, const double* q, PlacedHamiltonian& placed) = 0;
-  /// −∂H/∂q + Q = L_q + Q (nv) at rates u (nv).
-  virtual void force(const double* q, const double* u, double* g) = 0;
+  virtual std::unique_ptr<HamiltonianPlace> place() const = 0;
   /// q' (nq) at rates u, and q ∘ exp δ, see SecondOrder.
   virtual void coordinate_rates(const double* q, const double* u, double* qdot) = 0;
   virtual void move(const double* q, const double* delta, double* moved) = 0;

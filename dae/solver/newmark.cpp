@@ -27,6 +27,7 @@ Newmark::Newmark(const char* name, const NewmarkRule& rule, DaeSystem& system, S
       rule_(rule),
       system_(system),
       order_(order),
+      local_(dynamic_cast<LocalOfSecondOrder*>(system.local())),
       grid_(t0, options.step),
       norm_(system, options.rtol, options.atol),
       nq_(static_cast<std::size_t>(order.coordinates())),
@@ -47,49 +48,19 @@ Newmark::Newmark(const char* name, const NewmarkRule& rule, DaeSystem& system, S
 bool Newmark::start() {
   if (!system_.start(t0_, now_.y.data(), now_.ydot.data())) return false;
   std::copy_n(now_.ydot.begin() + offset(nq_), nv_, now_.a.begin());
-  lay_out_matrix();
-  for (Factored* f : {&run_matrix_, &look_matrix_}) {
-    f->matrix = make_newton_matrix<double>(system_.size(), pattern_);
-    std::fill_n(f->matrix->values(), entry_count(system_.size(), pattern_), 0.0);
-  }
-  by_y_.resize(entry_count(system_.size(), system_.pattern()));
-  by_rate_.resize(by_y_.size());
   old_ = now_;
+  if (local_ != nullptr) {
+    rate_factors_.resize(n_);
+  } else {
+    lay_out_matrix();
+    for (Factored* f : {&run_matrix_, &look_matrix_}) {
+      f->matrix = make_newton_matrix<double>(system_.size(), pattern_);
+      std::fill_n(f->matrix->values(), entry_count(system_.size(), pattern_), 0.0);
+    }
+    by_y_.resize(entry_count(system_.size(), system_.pattern()));
+    by_rate_.resize(by_y_.size());
+  }
   return all_finite(now_.y.data(), n_) && all_finite(now_.ydot.data(), n_);
-}
-
-/// The pattern of the system, with places on the diagonal of λ where there is a penalty.
-void Newmark::lay_out_matrix() {
-  const JacobianPattern& given = system_.pattern();
-  pattern_ = given;
-  diagonal_.clear();
-  place_of_.clear();
-  const std::size_t first = nq_ + nv_;
-  if (given.column_start.empty()) {
-    for (std::size_t i = first; i < n_; ++i) diagonal_.push_back(i * n_ + i);
-    return;
-  }
-  if (!rule_.augmented) return;
-  pattern_ = {};
-  pattern_.column_start.push_back(0);
-  for (std::size_t column = 0; column < n_; ++column) {
-    bool has_diagonal = column < first;
-    for (auto k = given.column_start[column]; k < given.column_start[column + 1]; ++k) {
-      const long row = given.row[static_cast<std::size_t>(k)];
-      if (!has_diagonal && row >= static_cast<long>(column)) {
-        diagonal_.push_back(pattern_.row.size());
-        if (row > static_cast<long>(column)) pattern_.row.push_back(static_cast<long>(column));
-        has_diagonal = true;
-      }
-      place_of_.push_back(pattern_.row.size());
-      pattern_.row.push_back(row);
-    }
-    if (!has_diagonal) {
-      diagonal_.push_back(pattern_.row.size());
-      pattern_.row.push_back(static_cast<long>(column));
-    }
-    pattern_.column_start.push_back(static_cast<long>(pattern_.row.size()));
-  }
 }
 
 bool Newmark::step(double& t, double end, std::string& cause) {
@@ -212,41 +183,6 @@ bool Newmark::evaluation_failed() {
   return false;
 }
 
-/// The scaled matrix at the present guess.
-bool Newmark::differentiate(double t, double h, State& next, Factored& matrix, Counters& counters) {
-  place(h, next);
-  ++counters.jacobians;
-  ++counters.factorizations;
-  const double c_q = rule_.gamma / (rule_.beta * h), c_v = 1 / (h * rule_.gamma * rule_.kappa());
-  if (!system_.jacobian(t + h, next.y.data(), next.ydot.data(), 0, by_y_.data()) ||
-      !system_.jacobian(t + h, next.y.data(), next.ydot.data(), c_v, by_rate_.data()))
-    return evaluation_failed();
-  const JacobianPattern& given = system_.pattern();
-  double* values = matrix.matrix->values();
-  for (const std::size_t at : diagonal_) values[at] = 0;
-  for (std::size_t column = 0, k = 0; column < n_; ++column) {
-    // by_rate_ = J_0 + c_v J_1.
-    const double c = column < nq_ ? c_q / c_v : 1;
-    const std::size_t end = given.column_start.empty()
-                                ? (column + 1) * n_
-                                : static_cast<std::size_t>(given.column_start[column + 1]);
-    for (; k < end; ++k) {
-      const std::size_t row =
-          given.column_start.empty() ? k - column * n_ : static_cast<std::size_t>(given.row[k]);
-      values[place_of_.empty() ? k : place_of_[k]] =
-          row_scale(row, h) * (by_y_[k] + c * (by_rate_[k] - by_y_[k])) / column_scale(column, h);
-    }
-  }
-  if (rule_.augmented) {
-    const std::vector<double>& compliance = order_.compliance();
-    for (std::size_t i = 0; i < diagonal_.size(); ++i)
-      values[diagonal_[i]] -= rule_.beta * compliance[i];
-  }
-  matrix.step = matrix.matrix->factor() ? h : 0;
-  if (matrix.step == 0) cause_ = "the Newton matrix is singular";
-  return matrix.step != 0;
-}
-
 /// One Newton step on v̇ and λ; correction_ is that of y.
 bool Newmark::correct(double t, double h, State& next, NewtonMatrix<double>& matrix,
                       Counters& counters) {
@@ -258,7 +194,7 @@ bool Newmark::correct(double t, double h, State& next, NewtonMatrix<double>& mat
   if (rule_.augmented) order_.constraints(t + h, next.y.data(), residual_.data() + nq_ + nv_);
   for (std::size_t row = 0; row < n_; ++row)
     residual_[row] = row < nq_ ? 0 : -row_scale(row, h) * residual_[row];
-  matrix.solve(residual_.data());
+  solve_with(matrix, residual_.data());
   for (std::size_t i = 0; i < n_; ++i) residual_[i] /= column_scale(i, h);
   const double c_v = 1 / (h * rule_.gamma * rule_.kappa());
   for (std::size_t i = nq_; i < nq_ + nv_; ++i) next.ydot[i] += c_v * residual_[i];
@@ -282,7 +218,7 @@ bool Newmark::project(double t, State& next, NewtonMatrix<double>& matrix) {
         order_.constraint_accelerations(t, q, v, vdot, delta_.data());
       std::fill_n(residual_.begin(), nq_ + nv_, 0.0);
       for (std::size_t i = nq_ + nv_; i < n_; ++i) residual_[i] = -delta_[i - nq_ - nv_];
-      matrix.solve(residual_.data());
+      solve_with(matrix, residual_.data());
       double size = 0, largest = 0;
       for (std::size_t i = 0; i < nv_; ++i) {
         size = std::max(size, std::abs(factor * residual_[nq_ + i]));

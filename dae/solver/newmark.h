@@ -9,7 +9,8 @@
 // matrix is that of the system, ∂F/∂y + ∂F/∂y' diag(c), c = γ/(βh) in the columns of q and 1/(hγκ)
 // in those of v. Its kinematic rows are kept and met exactly. Rows of (1a) times h², kinematic rows
 // times h, unknowns (δq, h δv, h² δλ): its condition does not grow as h shrinks.
-// Φ holds to the Newton tolerance, 10⁻³ of the run's.
+// Φ holds to the Newton tolerance, 10⁻³ of the run's. Of large systems the local matrix is taken
+// (system.h), whose further unknowns have no scale.
 //
 // With a penalty, −β ε stands in place of the zero block, ε = 1/(penalty × effective mass) by row
 // of Φ: the step on q is that with Φ_qᵀαΦ_q added to the matrix and αΦ to λ, α = 1/(h²βε), and λ
@@ -38,7 +39,9 @@ class Newmark {
           double t0, const IntegrationOptions& options);
 
   const char* name() const { return name_; }
-  const char* linear_solver() const { return linear_solver_name(pattern_); }
+  const char* linear_solver() const {
+    return local_ != nullptr ? "KLU, local" : linear_solver_name(pattern_);
+  }
   double* y() { return now_.y.data(); }
   double* ydot() { return now_.ydot.data(); }
   const Counters& counters() const { return counters_; }
@@ -55,13 +58,17 @@ class Newmark {
   struct State {
     std::vector<double> y, ydot, a;
   };
-  /// The Newton matrix and the step it was made for; 0: none yet.
+  /// The Newton matrix, the version of the local pattern in it, and the step it was made for; 0:
+  /// none yet.
   struct Factored {
     std::unique_ptr<NewtonMatrix<double>> matrix;
+    int version = 0;
     double step = 0;
   };
 
+  const JacobianPattern& given() const;
   void lay_out_matrix();
+  bool take_local(double t, const State& next, double c_q, double c_v, Factored& matrix);
   bool solve(double t, double h, State& next, Factored& matrix, Counters& counters);
   void guess(State& next);
   void place(double h, State& next);
@@ -70,23 +77,28 @@ class Newmark {
   bool correct(double t, double h, State& next, NewtonMatrix<double>& matrix, Counters& counters);
   bool project(double t, State& next, NewtonMatrix<double>& matrix);
   bool evaluation_failed();
+  /// b (n) ← the part in y of A⁻¹ ( b; 0 ).
+  void solve_with(NewtonMatrix<double>& matrix, double* b);
   double row_scale(std::size_t row, double h) const {
     return row < nq_ ? h : (row < nq_ + nv_ ? h * h : 1);
   }
   double column_scale(std::size_t column, double h) const {
-    return column < nq_ ? 1 : (column < nq_ + nv_ ? h : h * h);
+    return column < nq_ ? 1 : (column < nq_ + nv_ ? h : (column < n_ ? h * h : 1));
   }
 
   const char* name_;
   NewmarkRule rule_;
   DaeSystem& system_;
   SecondOrder& order_;
+  LocalOfSecondOrder* local_;  ///< null: J itself
   FixedGrid grid_;
   WeightedNorm norm_;
   std::size_t nq_, nv_, n_;
   State old_, now_, look_;
   std::vector<double> residual_, correction_, delta_, by_y_, by_rate_;
-  JacobianPattern pattern_;            ///< the system's, with the diagonal of λ where augmented
+  std::vector<double> rate_factors_, padded_;  ///< with local_
+  int version_ = 0;                            ///< of the local pattern laid out
+  JacobianPattern pattern_;            ///< the given one, with the diagonal of λ where augmented
   std::vector<std::size_t> place_of_;  ///< of the system's entries among the matrix's
   std::vector<std::size_t> diagonal_;  ///< of the rows of λ
   Factored run_matrix_, look_matrix_;

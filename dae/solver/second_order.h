@@ -3,9 +3,19 @@
 // y = (q, v, λ), rows in the same order: q' = E(q) v, M v' + … + Φ_qᵀλ = 0, Φ(q, t) = 0. There may
 // be more coordinates than rates (quaternions).
 
+#include <momenta/dae/solver/system.h>
+
 #include <vector>
 
 namespace momenta {
+
+/// The local matrix with a factor for each unknown in place of one c, ∂F/∂y + ∂F/∂y' diag(c):
+/// LocalJacobian of such a system. c: n.
+class LocalOfSecondOrder : public LocalJacobian {
+ public:
+  using LocalJacobian::evaluate;
+  virtual bool evaluate(double t, const double* y, const double* ydot, const double* c) = 0;
+};
 
 class SecondOrder {
  public:
