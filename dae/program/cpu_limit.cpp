@@ -12,11 +12,11 @@
 namespace momenta::program {
 namespace {
 
-char sentence[160];  // what a signal handler may print
+char notice[160];  // what a signal handler may print
 
 extern "C" void end_here(int) {
-  const auto length = std::strlen(sentence);
-  const auto written = write(STDERR_FILENO, sentence, length);
+  const auto length = std::strlen(notice);
+  const auto written = write(STDERR_FILENO, notice, length);
   _exit(written < 0 ? 2 : 1);
 }
 
@@ -31,7 +31,7 @@ void set_timer(double seconds) {
 
 CpuLimit::CpuLimit(double seconds) {
   if (!(seconds > 0)) return;
-  std::snprintf(sentence, sizeof sentence,
+  std::snprintf(notice, sizeof notice,
                 "momenta: stopped after %g s of CPU time, with no result; expected it within "
                 "--cpu-limit\n",
                 seconds);

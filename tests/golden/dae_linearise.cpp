@@ -41,8 +41,9 @@ TEST_F(LinearModelsOfTheProgram, AreToldInATableAndInFiles) {
     const std::string script = text_of(out / "linear.m");
     for (const char* name : {"A", "B", "C", "D", "E"}) {
       const Json& rows = json[name];
-      if (!rows.empty() && !rows[0].empty())
+      if (!rows.empty() && !rows[0].empty()) {
         EXPECT_EQ(Json(matrix_in(script, name)), rows) << kind << " " << name;
+      }
     }
     EXPECT_EQ(json["C"].size(), json["outputs"].size());
     EXPECT_EQ(json["D"].size(), json["outputs"].size());
