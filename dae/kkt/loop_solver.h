@@ -23,8 +23,8 @@ class LoopSolver {
   /// From now on momentum() solves Φ_q u = −Φ_t − βΦ in the second row of (7), β in 1/s.
   void stabilise(double beta) { beta_ = beta; }
   /// From now on momentum() and acceleration() solve (M + Φ_qᵀ α Φ_q) x = r − Φ_qᵀ(centre − α g)
-  /// instead of their two rows, α⁻¹ the compliance (m) by row; multipliers are centre + α(Φ_q x −
-  /// g). `fade` is ignored.
+  /// instead of their two rows, α⁻¹ the compliance (m) by row, alike in a group of rows
+  /// (Mechanism::row_groups); multipliers are centre + α(Φ_q x − g). `fade` is ignored.
   virtual void soften(std::vector<double> compliance) = 0;
 
   /// From now on momentum() adds τ (nv) to ṗ and acceleration() to the joints' forces; null: none.

@@ -100,6 +100,8 @@ class SweepSolver final : public LoopSolver {
   }
 
   const std::vector<int>& faded_rows() override {
+    rows_.clear();
+    if (!compliance_.empty()) return rows_;
     rows_.resize(nu_.size());
     rows_.resize(sweeps_->faded_rows(rows_.data(), of_momentum_));
     return rows_;
@@ -107,7 +109,7 @@ class SweepSolver final : public LoopSolver {
 
   Pivots pivots() const override {
     const LoopedSweeps::Pivots p = sweeps_->pivots(of_momentum_);
-    return {p.weakest * fade_evaluation, p.faded};
+    return {p.weakest * fade_evaluation, compliance_.empty() ? p.faded : 0};
   }
   bool remembers() const override { return matrix_ && matrix_->remembers(); }
 

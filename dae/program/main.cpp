@@ -161,8 +161,7 @@ int answer(int argc, char** argv) {
       ->type_name("DIR");
   CLI::App* linearise_app =
       app.add_subcommand("linearise", "E, A, B, C, D of a linear model about a state, for control");
-  linearise_app->footer(
-      "Example: momenta linearise examples/four_bar/scene.toml --equilibrium settle --out results");
+  linearise_app->footer("Example: momenta linearise examples/four_bar/scene.toml --out results");
   LineariseOptions linearise_options;
   add_scene(*linearise_app, o);
   for (const char* unused : {"--kkt", "--cut", "--at"})

@@ -87,6 +87,8 @@ Scene marked_four_bar() {
 /// The crank by a law in time.
 Scene driven_four_bar() {
   Scene scene = marked_four_bar();
+  scene.joints[0].stiffness = scene.joints[0].rest = 0;
+  scene.joints[0].position.clear();
   DriveSpec drive;
   drive.joint = scene.joints[0].name;
   drive.kind = "harmonic";
@@ -147,7 +149,7 @@ TEST(LinearModels, OfBothKindsAreOneSystem) {
     for (const Complex s : {Complex(0.3, 2), Complex(0, 11), Complex(-2, 0.5)}) {
       const MatrixXcd a = response(minimal, s), b = response(descriptor, s);
       for (Eigen::Index i = 0; i < a.rows(); ++i)
-        EXPECT_LT((a - b).row(i).cwiseAbs().maxCoeff(), 1e-10 * b.row(i).cwiseAbs().maxCoeff())
+        EXPECT_LE((a - b).row(i).cwiseAbs().maxCoeff(), 1e-10 * b.row(i).cwiseAbs().maxCoeff())
             << minimal.outputs[static_cast<std::size_t>(i)].name;
     }
     // Finite eigenvalues of the pencil: 1/(s − τ) of (τE − A)⁻¹E where that is not zero.

@@ -238,6 +238,7 @@ TEST(TurnedLoops, TheDeltaRobotIsLedBackAndRuns) {
   EXPECT_NE(a.branch.find("turned by 180°, and it was led back"), std::string::npos) << a.branch;
   RunRequest request;
   request.settings.form = "momentum-index2";
+  request.settings.integrator = "ida";
   request.settings.end_time = 0.5;
   request.max_cpu_seconds = 10;
   const RunResult run = run_form(mechanism, a.start, request);

@@ -148,18 +148,18 @@ void expect_one_run(const Scene& typed, const Scene& written, const std::string&
   EXPECT_EQ(a.energy_error_max, b.energy_error_max);
 }
 
-class EveryForm : public testing::TestWithParam<std::string> {};
-INSTANTIATE_TEST_SUITE_P(WrittenLagrangian, EveryForm, testing::ValuesIn(form_names()),
+class EveryFormOfWritten : public testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(WrittenLagrangian, EveryFormOfWritten, testing::ValuesIn(form_names()),
                          [](const auto& form) {
                            std::string name = form.param;
                            std::replace(name.begin(), name.end(), '-', '_');
                            return name;
                          });
 
-TEST_P(EveryForm, MovesAWrittenFourBarAsTheTypedOne) {
+TEST_P(EveryFormOfWritten, MovesAWrittenFourBarAsTheTypedOne) {
   expect_one_run(parse_scene(four_bar), written_four_bar(), GetParam());
 }
-TEST_P(EveryForm, MovesWhatHasEverythingAsTheTypedOne) {
+TEST_P(EveryFormOfWritten, MovesWhatHasEverythingAsTheTypedOne) {
   expect_one_run(parse_scene(crowded), written_crowded(), GetParam());
 }
 

@@ -150,7 +150,7 @@ TEST_F(KnownElements, KeysHaveTimeAndControls) {
   const std::string text =
       "<mujoco><worldbody><body><joint name='h'/><geom size='1'/></body></worldbody><actuator>"
       "<motor name='p' joint='h'/><motor name='q' joint='h' ctrlrange='-1 1'/></actuator><keyframe>"
-      "<key name='k' time='3' ctrl='2 0.5'/><key name='short' ctrl='2'/></keyframe></mujoco>";
+      "<key name='k' time='3' ctrl='2 0.5'/></keyframe></mujoco>";
   const auto torque = [&](const std::vector<std::string>& controls, const std::string& key) {
     double sum = 0;
     ReadOptions o;
@@ -169,10 +169,11 @@ TEST_F(KnownElements, KeysHaveTimeAndControls) {
                      "left out: actuators, which --control lets act (2)",
                      "left out: time of the key: runs begin at 0, and nothing depends on time (1)",
                      "left out: ctrl of the key, which --control lets act (1)"}));
-  o.key = "short";
-  o.controls = {"p=1"};
-  EXPECT_NE(refused("k.xml", text, o)
-                .find("ctrl of the key has 1 numbers, expected 2 for the actuators of the model"),
+  // One that no run starts from is as wrong.
+  std::string of_another_model = text;
+  of_another_model.replace(text.find("</keyframe>"), 0, "<key name='short' ctrl='2'/>");
+  EXPECT_NE(refused("k.xml", of_another_model, o)
+                .find("key 'short': <key> ctrl has 1 numbers, expected 2 for the actuators"),
             std::string::npos);
 }
 
@@ -195,8 +196,7 @@ TEST_F(KnownElements, KeysOfAttachedModels) {
   write("part.xml",
         "<mujoco><worldbody><body name='b'><joint name='j' ref='90'/><joint name='k' type='ball'/>"
         "<geom size='1'/></body></worldbody><keyframe><key name='up' qpos='1 0 3 0 4' qvel='5 6 7 "
-        "8'/>"
-        "<key qpos='2'/></keyframe></mujoco>");
+        "8'/></keyframe></mujoco>");
   const std::string whole =
       "<mujoco><asset><model name='p' file='part.xml'/></asset><worldbody><body name='o'>"
       "<joint name='own'/><geom size='1'/></body><attach model='p' prefix='x'/></worldbody>"
@@ -215,9 +215,11 @@ TEST_F(KnownElements, KeysOfAttachedModels) {
   EXPECT_EQ(joint("xk").velocity, (std::vector<double>{6, 7, 8}));
   options.key = "here";
   EXPECT_EQ(read("whole.xml", whole, options).joints[0].position, std::vector<double>{7});
-  options.key = "2";
+  write("part.xml",
+        "<mujoco><worldbody><body name='b'><joint name='j'/><joint name='k' type='ball'/>"
+        "<geom size='1'/></body></worldbody><keyframe><key qpos='2'/></keyframe></mujoco>");
   EXPECT_NE(refused("whole.xml", whole, options)
-                .find("qpos has 1 numbers, expected 5 for the joints of the model"),
+                .find("part.xml:1: key: <key> qpos has 1 numbers, expected 5 for the joints"),
             std::string::npos);
 }
 

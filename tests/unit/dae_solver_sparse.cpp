@@ -190,9 +190,17 @@ TEST(SparseMatrices, OfNewmarksFamily) {
       };
       Whole sparse(*form, false), dense(*form, true);
       const auto local = run(*form->dae(), "KLU, local"), whole = run(sparse, "KLU");
-      EXPECT_LT(apart(whole.y, local.y), 1e-9) << scene.name;
+      // λ of an index-3 form hangs on the last digits of q by 1/h².
+      const auto motion = static_cast<std::ptrdiff_t>(mechanism.nq() + mechanism.nv());
+      const auto motions = [&](const auto& y) {
+        return std::vector<double>(y.begin(), y.begin() + motion);
+      };
+      EXPECT_LT(apart(motions(whole.y), motions(local.y)), 1e-11) << scene.name;
+      EXPECT_LT(apart(whole.y, local.y), 1e-6) << scene.name;
       EXPECT_EQ(whole.counters.newton_iterations, local.counters.newton_iterations) << scene.name;
-      EXPECT_LT(apart(run(dense, "dense LU").y, local.y), 1e-9) << scene.name;
+      const auto by_dense = run(dense, "dense LU");
+      EXPECT_LT(apart(motions(by_dense.y), motions(local.y)), 1e-11) << scene.name;
+      EXPECT_LT(apart(by_dense.y, local.y), 1e-6) << scene.name;
     }
   }
 }
