@@ -64,7 +64,7 @@ VectorXd any(RandomTree& random, int size) {
 }
 
 TEST(Kkt, RegularSystemsAgreeWithDenseLu) {
-  double worst_dense = 0, worst_sparse = 0, worst_klu = 0, worst_centre = 0;
+  double worst_dense = 0, worst_sparse = 0, worst_fronts = 0, worst_klu = 0, worst_centre = 0;
   int tried = 0;
   for (unsigned seed = 0; seed < 150; ++seed) {
     RandomTree random(seed);
@@ -113,6 +113,12 @@ TEST(Kkt, RegularSystemsAgreeWithDenseLu) {
         std::max(worst_centre, error(solve(*dense, *e, s.t, s.q, r, g, fade_evaluation, centre)));
     worst_sparse =
         std::max(worst_sparse, error(solve(*sparse, *e, s.t, s.q, r, g, fade_evaluation, centre)));
+    const auto fronts = make_front_kkt(mechanism);
+    for (const VectorXd& towards : {VectorXd(), centre}) {
+      const Solution found = solve(*fronts, *e, s.t, s.q, r, g, fade_evaluation, towards);
+      EXPECT_EQ(found.faded, 0);
+      worst_fronts = std::max(worst_fronts, error(found));
+    }
     // Pivots sought among all unknowns, of the joints or of the bodies.
     for (const auto& make : {make_klu_kkt, make_body_kkt}) {
       const auto kkt = make(mechanism);
@@ -129,6 +135,7 @@ TEST(Kkt, RegularSystemsAgreeWithDenseLu) {
   EXPECT_LT(worst_centre, algebra_tol(8));
   // ε of the sparse form is 1e-12 of the scale of Φ_q M⁻¹ Φ_qᵀ.
   EXPECT_LT(worst_sparse, 1e-12);
+  EXPECT_LT(worst_fronts, 1e-12);
   EXPECT_LT(worst_klu, 1e-12);
 }
 
@@ -160,7 +167,8 @@ void expect_least_squares(const Scene& scene, int rank, RandomTree& random) {
   const VectorXd consistent = a.J * any(random, mechanism.nv());
   const VectorXd r = any(random, mechanism.nv()), centre = any(random, mechanism.m());
   const auto [u, sigma] = least(a, r, consistent);
-  for (const auto& make : {make_dense_kkt, make_sparse_kkt, make_klu_kkt, make_body_kkt})
+  for (const auto& make :
+       {make_dense_kkt, make_sparse_kkt, make_front_kkt, make_klu_kkt, make_body_kkt})
     for (const bool centred : {false, true}) {
       const bool is_dense = make == make_dense_kkt;
       const auto kkt = make(mechanism);
@@ -175,7 +183,7 @@ void expect_least_squares(const Scene& scene, int rank, RandomTree& random) {
       EXPECT_LT(relative_error(VectorXd(a.J.transpose() * found.sigma),
                                VectorXd(a.J.transpose() * sigma)),
                 is_dense ? 1e-13 : 1e-10);
-      if (is_dense) {
+      if (is_dense || make == make_front_kkt) {
         EXPECT_EQ(found.faded, mechanism.m() - rank);
       }
     }
@@ -340,6 +348,7 @@ TEST(Kkt, DeepTreesAreSolvedByTheirBodies) {
       VectorXd u(p.size()), sigma(in_space.m());
       ASSERT_TRUE(spatial->momentum(0, s.q.data(), p.data(), nullptr, fade_evaluation, 0, u.data(),
                                     sigma.data(), nullptr));
+      EXPECT_EQ(spatial->pivots().faded, in_space.m() - by_sweeps.m()) << scene.name;
       const Result plain = solved(*sweeps, by_sweeps, s, p, VectorXd::Zero(by_sweeps.m()));
       EXPECT_LT(relative_error(u, plain.u), 1e-7) << scene.name;
       s.q += 1e-3 * any(random, by_sweeps.nv());
@@ -400,7 +409,8 @@ TEST(Kkt, ReportsWhatCannotBeFactorised) {
   q[1] = std::numeric_limits<double>::quiet_NaN();
   const Mechanism heavy(row_of_four_bars(1, 1));
   const auto f = heavy.evaluation<double>();
-  for (const auto& make : {make_dense_kkt, make_sparse_kkt, make_klu_kkt, make_body_kkt})
+  for (const auto& make :
+       {make_dense_kkt, make_sparse_kkt, make_front_kkt, make_klu_kkt, make_body_kkt})
     EXPECT_FALSE(make(heavy)->factor(*f, 0, q.data(), fade_evaluation));
 }
 
