@@ -41,6 +41,7 @@ namespace momenta {
 
 /// Which linear model.
 struct LinearRequest {
+  /// Independent coordinates and rates alone, or all of them beside λ.
   enum class Kind { minimal, descriptor };
   Kind kind = Kind::minimal;  ///< which of the two
   /// Columns by name ("O.q"), by what stands before the last point ("O"), or one of the groups
@@ -65,7 +66,8 @@ struct LinearModel {
   std::vector<Column> states;                               ///< of x
   std::vector<Column> inputs;                               ///< of w
   std::vector<Column> outputs;                              ///< of y
-  Eigen::MatrixXd E, A;                                     ///< states × states
+  Eigen::MatrixXd E;                                        ///< states × states
+  Eigen::MatrixXd A;                                        ///< states × states
   Eigen::MatrixXd B;                                        ///< states × inputs
   Eigen::MatrixXd C;                                        ///< outputs × states
   Eigen::MatrixXd D;                                        ///< outputs × inputs
