@@ -53,8 +53,6 @@ class BodyFronts {
   int singular_joint() const { return singular_joint_; }
   /// w of each row of Φ (m) when it was closed.
   const std::vector<double>& pivots() const { return pivot_; }
-  /// Numbers in the factors.
-  long entries() const { return static_cast<long>(column_.size()); }
 
  private:
   /// A front: of a body, or (d = 0) of the ground, once a root has come.

@@ -55,7 +55,7 @@ class Kkt {
 };
 
 /// A solver of (7): dense or sparse by size, or as the options of the mechanism say. A sparse one
-/// takes the equations of the bodies where the tree is deep, else KLU where joints have no inertia
+/// takes the equations of the bodies where the tree is deep, and KLU where joints have no inertia
 /// before their loops close. Needs loops (m > 0).
 std::unique_ptr<Kkt> make_kkt(const Mechanism& mechanism);
 /// Whether the matrix of make_kkt() has a pivot for each row of Φ, which can fade and be reported:
