@@ -86,7 +86,7 @@ void KeptRun::begin() {
 void KeptRun::note(TrajectoryFile& trajectory, const std::vector<double>& row,
                    const std::function<Checkpoint()>& make) {
   const auto began = Clock::now();
-  if (failed_ || began < next_ || row.empty() || !trajectory.flush() || trajectory.size() == 0)
+  if (failed_ || began < next_ || row.empty() || !trajectory.can_go_on() || !trajectory.flush())
     return;
   const nlohmann::json all{{"study", study_.digest},
                            {"build", study_.build},

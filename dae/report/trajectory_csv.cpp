@@ -38,6 +38,7 @@ class CsvTrajectory final : public TrajectoryFile {
     return problem_.empty();
   }
 
+  bool can_go_on() const override { return true; }
   std::size_t size() const override { return part_.size(); }
 
   bool finish(const std::string&) override {

@@ -37,7 +37,9 @@ class TrajectoryFile {
   /// After a problem: with the samples that are in it whole. False where not even that is possible.
   virtual bool finish(const std::string& summary) = 0;
   const std::string& problem() const { return problem_; }
-  /// Bytes in FILE.part, from which a run can go on; 0: not in this format. @pre flush()
+  /// Whether a run can go on from FILE.part.
+  virtual bool can_go_on() const { return false; }
+  /// Bytes in FILE.part. @pre flush(), can_go_on()
   virtual std::size_t size() const { return 0; }
 
  protected:

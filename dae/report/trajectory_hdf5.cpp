@@ -84,7 +84,7 @@ class Hdf5Trajectory final : public TrajectoryFile {
   bool write(const std::vector<double>& row) override {
     if (!problem_.empty()) return false;
     for (std::size_t i = 0; i < held_.size(); ++i) held_[i].push_back(row[i]);
-    return held_.front().size() < chunk_ || flush();
+    return (written_ + held_.front().size()) % chunk_ != 0 || flush();
   }
 
   bool flush() override {
