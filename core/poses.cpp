@@ -1,23 +1,21 @@
+#include <momenta/core/kernel/points.h>
 #include <momenta/core/kernel/pose_of.h>
 #include <momenta/core/poses.h>
 
 namespace momenta {
 
-Scene open_chain_of(Scene scene) {
-  scene.loops.clear();
-  std::erase_if(scene.drives, [](const DriveSpec& drive) { return !drive.loop.empty(); });
-  return scene;
-}
-
 struct Poses::Inside {
   Tree tree;
   Model<Spatial> model;
   Workspace<Spatial, double> w;
-  explicit Inside(const Scene& scene)
-      : tree(build_tree(scene)), model(build_spatial_model(tree, scene)), w(model) {}
+  Inside(Tree of, const Scene& scene)
+      : tree(std::move(of)), model(build_spatial_model(tree, scene)), w(model) {}
 };
 
-Poses::Poses(const Scene& open_chain) : inside_(std::make_unique<Inside>(open_chain)) {}
+Poses::Poses(const Scene& open_chain)
+    : inside_(std::make_unique<Inside>(build_tree(open_chain), open_chain)) {}
+Poses::Poses(const Tree& tree, const Scene& scene)
+    : inside_(std::make_unique<Inside>(tree, scene)) {}
 Poses::~Poses() = default;
 
 std::vector<Eigen::Isometry3d> Poses::operator()(double t, const double* q) {
@@ -27,6 +25,23 @@ std::vector<Eigen::Isometry3d> Poses::operator()(double t, const double* q) {
   for (std::size_t k = 0; k < tree.bodies.size(); ++k)
     all.push_back(pose_of(tree.bodies[k], model, w, k));
   return all;
+}
+
+void Poses::move(double t, const double* q, const double* u) {
+  poses_outward(inside_->w, t, q, true);
+  velocities_outward(inside_->w, u);
+}
+
+BodyMotion Poses::motion(int body) const {
+  const auto& [tree, model, w] = *inside_;
+  const auto k = static_cast<std::size_t>(body);
+  BodyMotion motion;
+  motion.pose = pose_of(tree.bodies[k], model, w, k);
+  Vec3<double> origin;
+  for (int i = 0; i < 3; ++i) origin[i] = motion.pose.translation()[i];
+  const Vec3<double> v = point_velocity(w, body, origin), omega = angular_velocity(w, body);
+  for (int i = 0; i < 3; ++i) motion.v[i] = v[i], motion.omega[i] = omega[i];
+  return motion;
 }
 
 }  // namespace momenta

@@ -1,6 +1,6 @@
 #pragma once
-// Where the bodies of an open chain are, and nothing else of it: for pictures and measures of
-// mechanisms, whose loops are cut or left out first.
+// Where the bodies of an open chain are and how they move, and nothing else of it: for pictures and
+// measures of mechanisms, whose loops are left out.
 
 #include <momenta/core/scene/scene.h>
 #include <momenta/core/tree/tree.h>
@@ -10,20 +10,30 @@
 
 namespace momenta {
 
-/// The open chain of a scene: it without its loops and their drives. q of a mechanism is laid out
-/// as its chain's.
-Scene open_chain_of(Scene scene);
+/// A body as its scene has it, in ground axes.
+struct BodyMotion {
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  ///< [m]
+  Eigen::Vector3d v = Eigen::Vector3d::Zero();             ///< of its origin [m/s]
+  Eigen::Vector3d omega = Eigen::Vector3d::Zero();         ///< [rad/s]
+};
 
 /// Owns its model and workspace; one object serves one thread.
 class Poses {
  public:
   explicit Poses(const Scene& open_chain);
+  /// Of a mechanism: its tree, made of `scene`. O(bodies)
+  Poses(const Tree& tree, const Scene& scene);
   ~Poses();
   Poses(const Poses&) = delete;
   Poses& operator=(const Poses&) = delete;
 
   /// Frame of each body of the tree in ground axes [m] at (t, q), q of nq numbers. O(bodies).
   std::vector<Eigen::Isometry3d> operator()(double t, const double* q);
+
+  /// Takes the state (t, q, u), q of nq and u of nv numbers. O(bodies)
+  void move(double t, const double* q, const double* u);
+  /// Of a body of the tree (Tree::body()). @pre move()
+  BodyMotion motion(int body) const;
 
  private:
   struct Inside;

@@ -24,7 +24,7 @@ std::string curve_fault(const CurveSpec& spec, const Eigen::Vector3d& axis);
 
 /// p, p' and p'' at one parameter.
 template <class S>
-struct CurvePoint {
+struct PlaneCurvePoint {
   std::array<S, 2> p, d, dd;
 };
 
@@ -42,7 +42,7 @@ class PlaneCurve {
   /// end to end. None of a line.
   const std::vector<double>& samples() const { return samples_; }
   /// Where the curve is there.
-  const std::vector<CurvePoint<double>>& sampled() const { return sampled_; }
+  const std::vector<PlaneCurvePoint<double>>& sampled() const { return sampled_; }
   /// Largest distance of its samples from the origin [m]; of a line 0.
   double reach() const { return reach_; }
   /// +1: what it bounds is to the right of p', −1: to the left.
@@ -50,7 +50,7 @@ class PlaneCurve {
 
   /// No allocation, O(log points).
   template <class S>
-  CurvePoint<S> at(const S& s) const {
+  PlaneCurvePoint<S> at(const S& s) const {
     using std::cos, std::sin;
     const auto along = [](const std::array<double, 2>& e, const S& x) {
       return std::array<S, 2>{e[0] * x, e[1] * x};
@@ -68,7 +68,7 @@ class PlaneCurve {
       case Kind::spline:
         break;
     }
-    CurvePoint<S> point;
+    PlaneCurvePoint<S> point;
     for (std::size_t i = 0; i < 2; ++i)
       if (period_ > 0)
         coordinates_[i].evaluate_round(s, point.p[i], point.d[i], point.dd[i]);
@@ -84,7 +84,7 @@ class PlaneCurve {
   std::array<double, 2> e_{1, 0}, semi_axes_{};
   std::vector<CubicSpline> coordinates_;
   std::vector<double> samples_;
-  std::vector<CurvePoint<double>> sampled_;
+  std::vector<PlaneCurvePoint<double>> sampled_;
 };
 
 }  // namespace momenta

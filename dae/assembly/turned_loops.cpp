@@ -130,7 +130,7 @@ std::vector<TurnedLoop> turned_loops(const Mechanism& mechanism, double t,
     const LoopChoice choice = choose_rows(spec, drives[spec.name], false);
     const int first = first_axis_held(choice);
     if (first == 3) continue;
-    if (poses.empty()) poses = Poses(open_chain_of(scene))(t, q.data());
+    if (poses.empty()) poses = Poses(tree, scene)(t, q.data());
     const auto pose = [&](const std::string& name) {
       const int body = tree.body(name);
       return body < 0 ? Eigen::Isometry3d::Identity() : poses[static_cast<std::size_t>(body)];

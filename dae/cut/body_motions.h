@@ -2,10 +2,8 @@
 // Poses and velocities of the bodies of a mechanism, by their names, from its q and u.
 
 #include <momenta/core/poses.h>
-#include <momenta/dae/cut/relative_motion.h>
 #include <momenta/dae/form/form.h>
 
-#include <memory>
 #include <set>
 #include <string>
 #include <unordered_map>
@@ -16,13 +14,14 @@ namespace momenta {
 /// Owns its workspace; one object serves one thread. The mechanism need not outlive it.
 class BodyMotions {
  public:
-  explicit BodyMotions(const Mechanism& mechanism);
+  explicit BodyMotions(const Mechanism& mechanism) : BodyMotions(mechanism, nullptr) {}
   /// At a start.
   BodyMotions(const Mechanism& mechanism, const Start& start) : BodyMotions(mechanism) {
     take(start.t, start.q, start.u);
   }
   /// Of some bodies alone; "ground" may be among them.
-  BodyMotions(const Mechanism& mechanism, const std::set<std::string>& wanted);
+  BodyMotions(const Mechanism& mechanism, const std::set<std::string>& wanted)
+      : BodyMotions(mechanism, &wanted) {}
 
   /// Takes the state at time t [s]: q (nq), u (nv). O(bodies)
   void take(double t, const Eigen::VectorXd& q, const Eigen::VectorXd& u);
@@ -32,14 +31,13 @@ class BodyMotions {
  private:
   struct Wanted {
     BodyMotion* motion;
-    std::size_t place;  ///< in the tree
+    int body;  ///< of the tree
   };
+  BodyMotions(const Mechanism& mechanism, const std::set<std::string>* wanted);
+
+  Poses poses_;
   std::unordered_map<std::string, BodyMotion> motion_;
   std::vector<Wanted> wanted_;
-  std::unique_ptr<Mechanism> tree_;
-  std::unique_ptr<Evaluation<double>> e_;
-  std::unique_ptr<Poses> poses_;
-  std::vector<double> points_;
 };
 
 }  // namespace momenta

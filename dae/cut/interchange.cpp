@@ -1,6 +1,7 @@
 #include <momenta/core/scene/formula.h>
 #include <momenta/core/text/near_name.h>
 #include <momenta/dae/cut/interchange.h>
+#include <momenta/dae/cut/relative_motion.h>
 
 namespace momenta {
 

@@ -142,14 +142,32 @@ class Contest {
   const std::vector<CutEdge>& edges() const { return best_edges_; }
 
  private:
+  /// The orders of least cost first: those behind one that is swept are no better.
   bool enter_in_three_orders(const Recut& found) {
-    bool now_swept = enter_as_it_is(found);
+    struct Entry {
+      Recut found;
+      CutCost cost;
+    };
+    std::vector<Entry> entries;
+    if (found.gains()) entries.push_back({found, {}});
     for (const RootOrder order : {RootOrder::from_an_end, RootOrder::from_the_centre}) {
       Recut other = found;
       other.scene = with_roots_ordered(found.scene, order);
       if (same_order(other.scene, found.scene)) continue;
       other.reordered = true;
-      now_swept |= enter_as_it_is(other);
+      entries.push_back({std::move(other), {}});
+    }
+    for (Entry& entry : entries) entry.cost = swept_cost(entry.found.scene, given_.plan());
+    const auto rank = [](const Entry& entry) {
+      return std::pair(entry.cost.open > LoopPlan::most_slots, entry.cost.sweeps);
+    };
+    std::stable_sort(entries.begin(), entries.end(),
+                     [&](const Entry& x, const Entry& y) { return rank(x) < rank(y); });
+    bool now_swept = !found.gains() && swept_;  // the given scene
+    for (Entry& entry : entries) {
+      const bool swept = enter_one(std::move(entry.found), entry.cost);
+      now_swept |= swept;
+      if (swept) break;
     }
     return now_swept;
   }
@@ -160,12 +178,9 @@ class Contest {
     return std::equal(a.joints.begin(), a.joints.end(), b.joints.begin(), same) &&
            std::equal(a.loops.begin(), a.loops.end(), b.loops.begin(), same);
   }
-  bool enter_as_it_is(Recut found) {
-    if (!found.gains()) return swept_;  // the given scene
-    if (swept_) {  // most that enter are no better: that is seen without their sweeps
-      const CutCost cost = swept_cost(found.scene, given_.plan());
-      if (cost.open <= LoopPlan::most_slots && !better(cost, best_.after)) return true;
-    }
+  bool enter_one(Recut found, const CutCost& cost) {
+    // most that enter are no better: that is seen without their sweeps
+    if (swept_ && cost.open <= LoopPlan::most_slots && !better(cost, best_.after)) return true;
     const Mechanism anew(found.scene, {given_.options().algebra});
     found.after = cut_cost(anew);
     const bool now_swept = anew.kkt() == KktChoice::sweeps;

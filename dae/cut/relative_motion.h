@@ -1,18 +1,12 @@
 #pragma once
 // Coordinates and rates of a joint from the motion of the two bodies it joins.
 
+#include <momenta/core/poses.h>
 #include <momenta/core/scene/scene.h>
 
 #include <vector>
 
 namespace momenta {
-
-/// A body in ground axes.
-struct BodyMotion {
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  Eigen::Vector3d v = Eigen::Vector3d::Zero();  ///< of its origin [m/s]
-  Eigen::Vector3d omega = Eigen::Vector3d::Zero();
-};
 
 struct JointMotion {
   std::vector<double> q, u;    ///< as JointSpec has them

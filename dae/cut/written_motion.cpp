@@ -1,22 +1,16 @@
+#include <momenta/dae/cut/relative_motion.h>
 #include <momenta/dae/cut/written_motion.h>
 
 #include <cmath>
 #include <numbers>
 #include <set>
-#include <stdexcept>
 
 namespace momenta {
 namespace {
 
 /// The part of a joint that moves a coordinate.
-const Tree::Body& part_of(const Tree& tree, const std::string& joint, int coordinate) {
-  const int last = tree.carried_by(joint);
-  for (int k = last; k >= 0 && k >= tree.first_part(last); --k) {
-    const Tree::Body& b = tree.bodies[static_cast<std::size_t>(k)];
-    if (b.coordinate == coordinate) return b;
-  }
-  throw std::logic_error("joint '" + joint + "' of '" + tree.name + "' has no coordinate " +
-                         std::to_string(coordinate));
+const Tree::Body& part(const Tree& tree, const std::string& joint, int coordinate) {
+  return tree.bodies[static_cast<std::size_t>(tree.part_of(joint, coordinate))];
 }
 
 }  // namespace
@@ -40,7 +34,7 @@ WrittenMotion::WrittenMotion(const Mechanism& written, const Start& start,
     if (found != in_integrated.end() && (!turned || keeps_coordinates(joint.kind))) {
       const bool places_changed = turned && joint.kind == JointKind::universal;
       const Tree::Body& from =
-          part_of(integrated.tree(), b.joint, places_changed ? 1 - b.coordinate : b.coordinate);
+          part(integrated.tree(), b.joint, places_changed ? 1 - b.coordinate : b.coordinate);
       copied_q_.push_back({from.q, b.q, b.nq});
       copied_u_.push_back({from.u, b.u, b.nv});
       continue;
@@ -50,8 +44,8 @@ WrittenMotion::WrittenMotion(const Mechanism& written, const Start& start,
     bodies.insert({joint.parent, joint.child});
   }
   for (const FollowingJoint& f : folded.following) {
-    const Tree::Body &own = part_of(written.tree(), f.joint, 0),
-                     &leader = part_of(written.tree(), f.leader, f.coordinate);
+    const Tree::Body &own = part(written.tree(), f.joint, 0),
+                     &leader = part(written.tree(), f.leader, f.coordinate);
     following_.push_back({own.q, own.u, leader.q, leader.u, f.ratio, f.offset, {}});
     if (leader.drive >= 0)
       following_.back().drive = written.tree().drives[static_cast<std::size_t>(leader.drive)];

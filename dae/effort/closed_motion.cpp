@@ -1,4 +1,5 @@
 #include <momenta/core/text/near_name.h>
+#include <momenta/dae/dense/decompositions.h>
 #include <momenta/dae/effort/closed_motion.h>
 #include <momenta/dae/loop_word.h>
 

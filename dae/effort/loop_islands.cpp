@@ -1,3 +1,4 @@
+#include <momenta/dae/dense/decompositions.h>
 #include <momenta/dae/effort/loop_islands.h>
 
 #include <numeric>

@@ -1,9 +1,9 @@
 #include <momenta/core/text/near_name.h>
+#include <momenta/dae/dense/decompositions.h>
 #include <momenta/dae/fit/fit.h>
 #include <momenta/dae/fit/least_squares_search.h>
 #include <momenta/dae/kinematics/coordinate_named.h>
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <charconv>
 #include <cmath>

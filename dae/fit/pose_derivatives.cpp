@@ -1,8 +1,8 @@
 #include <momenta/core/text/near_name.h>
 #include <momenta/dae/assembly/scaled_loops.h>
+#include <momenta/dae/dense/decompositions.h>
 #include <momenta/dae/fit/pose_derivatives.h>
 
-#include <Eigen/QR>
 #include <array>
 #include <cmath>
 

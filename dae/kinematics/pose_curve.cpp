@@ -1,7 +1,6 @@
+#include <momenta/dae/dense/decompositions.h>
 #include <momenta/dae/kinematics/pose_curve.h>
 
-#include <momenta/dae/dense/singular_values.h>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 

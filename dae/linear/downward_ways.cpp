@@ -1,6 +1,6 @@
+#include <momenta/dae/dense/decompositions.h>
 #include <momenta/dae/linear/downward_ways.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <random>

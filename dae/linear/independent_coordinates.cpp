@@ -1,11 +1,9 @@
 #include <momenta/core/text/near_name.h>
+#include <momenta/dae/dense/decompositions.h>
 #include <momenta/dae/kkt/loop_rank.h>
 #include <momenta/dae/linear/independent_coordinates.h>
 #include <momenta/dae/measure/rank.h>
 
-#include <Eigen/LU>
-#include <Eigen/QR>
-#include <Eigen/SVD>
 #include <algorithm>
 
 namespace momenta {

@@ -1,11 +1,9 @@
+#include <momenta/dae/dense/decompositions.h>
 #include <momenta/dae/linear/independent_coordinates.h>
 #include <momenta/dae/linear/linear_columns.h>
 #include <momenta/dae/linear/linear_model.h>
 #include <momenta/dae/linear/linearisation.h>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 

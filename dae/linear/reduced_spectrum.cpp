@@ -1,9 +1,7 @@
-#include <momenta/dae/dense/singular_values.h>
+#include <momenta/dae/dense/decompositions.h>
 #include <momenta/dae/linear/linearisation.h>
 #include <momenta/dae/linear/reduced_spectrum.h>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>

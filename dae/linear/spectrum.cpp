@@ -1,12 +1,11 @@
 #include <momenta/core/poses.h>
-#include <momenta/dae/dense/singular_values.h>
+#include <momenta/dae/dense/decompositions.h>
 #include <momenta/dae/kkt/least_norm.h>
 #include <momenta/dae/kkt/row_scales.h>
 #include <momenta/dae/linear/lanczos_spectrum.h>
 #include <momenta/dae/linear/local_pencil.h>
 #include <momenta/dae/linear/reduced_spectrum.h>
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -96,7 +95,7 @@ void refuse_springs_without_length(const Mechanism& mechanism, const Equilibrium
   const Scene& scene = mechanism.scene();
   const auto is_spring = [](const ForceSpec& f) { return f.kind == "spring-damper"; };
   if (std::none_of(scene.forces.begin(), scene.forces.end(), is_spring)) return;
-  const auto poses = Poses(open_chain_of(scene))(at.t, at.q.data());
+  const auto poses = Poses(mechanism.tree(), scene)(at.t, at.q.data());
   const auto place = [&](const std::string& body, const Eigen::Vector3d& point) -> Eigen::Vector3d {
     const int k = body == "ground" ? -1 : mechanism.tree().body(body);
     return k < 0 ? point : Eigen::Vector3d(poses[static_cast<std::size_t>(k)] * point);

@@ -1,13 +1,11 @@
 #include <momenta/dae/assembly/assembly.h>
-#include <momenta/dae/dense/singular_values.h>
+#include <momenta/dae/dense/decompositions.h>
 #include <momenta/dae/joint_places.h>
 #include <momenta/dae/kkt/loop_rank.h>
 #include <momenta/dae/linear/linearisation.h>
 #include <momenta/dae/linear/reduced_spectrum.h>
 #include <momenta/dae/linear/steady_motion.h>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -154,7 +154,7 @@ struct HigherPair {
 
   /// n and dn/ds of the left normal.
   template <class S>
-  static void normal(const CurvePoint<S>& at, Pair<S>& n, Pair<S>& rate) {
+  static void normal(const PlaneCurvePoint<S>& at, Pair<S>& n, Pair<S>& rate) {
     using std::sqrt;
     const S per = S(1.0) / sqrt(dot(at.d, at.d));
     const Pair<S> t{per * at.d[0], per * at.d[1]};
@@ -166,7 +166,7 @@ struct HigherPair {
   template <class S>
   void curve(const std::array<S, 4>& y, const PairPlace& place, PairTerms<S>& out) const {
     S s(place.of_b);
-    CurvePoint<S> b;
+    PlaneCurvePoint<S> b;
     S slope;
     Pair<S> e;
     for (int k = 0;; ++k) {
@@ -187,7 +187,7 @@ struct HigherPair {
   template <class S>
   void contact(const std::array<S, 4>& y, const PairPlace& place, PairTerms<S>& out) const {
     S s_a(place.of_a), s_b(place.of_b);
-    CurvePoint<S> a, b;
+    PlaneCurvePoint<S> a, b;
     Pair<S> g;
     S r11, r12, r21, r22, per;
     for (int k = 0;; ++k) {

@@ -2,6 +2,7 @@
 
 #include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/cut/interchange.h>
+#include <momenta/dae/cut/relative_motion.h>
 #include <momenta/dae/linear/pose_motion.h>
 #include <momenta/dae/study/extremes.h>
 

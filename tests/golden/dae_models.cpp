@@ -14,6 +14,7 @@
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 
 namespace momenta::dae_models {
 namespace {
@@ -23,29 +24,40 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using nlohmann::json;
 
+/// The values of a folder's models, by file name.
+json references(const fs::path& folder) {
+  return json::parse(std::ifstream(folder / "reference.json")).at("models");
+}
+
 struct Model {
   fs::path file;
   json reference;
 };
 
-/// Every model of the folders below `folder`.
-std::vector<Model> models_below(const fs::path& folder) {
-  std::vector<Model> all;
+/// The models of the folders below `folder`: files whose names, in quotes, the folder's values
+/// hold. Each test is a process that names all tests: the values are read by those that need them.
+std::vector<fs::path> models_below(const fs::path& folder) {
+  std::vector<fs::path> all;
   for (const auto& entry : fs::directory_iterator(folder)) {
-    const fs::path values = entry.path() / "reference.json";
-    if (!fs::exists(values)) continue;
-    const json reference = json::parse(std::ifstream(values));
-    for (const auto& [file, model] : reference.at("models").items())
-      all.push_back({entry.path() / file, model});
+    std::ifstream values(entry.path() / "reference.json");
+    if (!values) continue;
+    const std::string text{std::istreambuf_iterator<char>(values), {}};
+    for (const auto& file : fs::directory_iterator(entry))
+      if (text.find('"' + file.path().filename().string() + "\":") != std::string::npos)
+        all.push_back(file.path());
   }
-  std::sort(all.begin(), all.end(), [](const Model& a, const Model& b) { return a.file < b.file; });
+  std::sort(all.begin(), all.end());
   return all;
 }
 
-std::vector<Model> models() {
-  std::vector<Model> all = models_below(fs::path(MOMENTA_SOURCE_DIR) / "examples" / "models");
-  if (const char* more = std::getenv("MOMENTA_MODELS"))
-    for (Model& model : models_below(more)) all.push_back(std::move(model));
+const std::vector<fs::path>& models() {
+  static const std::vector<fs::path> all = [] {
+    std::vector<fs::path> found =
+        models_below(fs::path(MOMENTA_SOURCE_DIR) / "examples" / "models");
+    if (const char* more = std::getenv("MOMENTA_MODELS"))
+      for (fs::path& file : models_below(more)) found.push_back(std::move(file));
+    return found;
+  }();
   return all;
 }
 
@@ -181,8 +193,13 @@ MatrixXd mass_matrix(const json& lower, Eigen::Index n) {
 class Models : public testing::TestWithParam<std::size_t> {
  protected:
   static const Model& model() {
-    static const std::vector<Model> all = models();
-    return all.at(GetParam());
+    static std::map<std::size_t, Model> read;
+    const auto [at, first] = read.try_emplace(GetParam());
+    if (first) {
+      const fs::path& file = models().at(GetParam());
+      at->second = {file, references(file.parent_path()).at(file.filename().string())};
+    }
+    return at->second;
   }
   static double tolerance() { return model().reference.at("constraints").empty() ? 1e-12 : 1e-10; }
 };
@@ -309,10 +326,17 @@ TEST_P(Models, SpringsAndDampers) {
   }
 }
 
+TEST(ModelsByOthers, OfWhichValuesAreKeptAreAllTried) {
+  std::size_t kept = 0;
+  std::set<fs::path> folders;
+  for (const fs::path& file : models())
+    if (folders.insert(file.parent_path()).second) kept += references(file.parent_path()).size();
+  EXPECT_EQ(models().size(), kept);
+}
+
 INSTANTIATE_TEST_SUITE_P(ByOthers, Models, testing::Range(std::size_t{0}, models().size()),
                          [](const auto& one) {
-                           static const std::vector<Model> all = models();
-                           const fs::path file = all.at(one.param).file;
+                           const fs::path& file = models().at(one.param);
                            std::string name = std::to_string(one.param) + "_" +
                                               file.parent_path().filename().string() + "_" +
                                               file.stem().string();

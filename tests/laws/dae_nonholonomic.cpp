@@ -787,7 +787,8 @@ TEST(Nonholonomic, BicycleOfTheLiterature) {
     Eigen::Matrix4d system;
     system.topRows<2>() << Eigen::Matrix2d::Zero(), Eigen::Matrix2d::Identity();
     system.bottomRows<2>() << -M.inverse() * (9.81 * K0 + v * v * K2), -M.inverse() * v * C;
-    const Eigen::Vector4cd expected = Eigen::EigenSolver<Eigen::Matrix4d>(system).eigenvalues();
+    const Eigen::Vector4cd expected =
+        Eigen::EigenSolver<MatrixXd>(MatrixXd(system), false).eigenvalues();
     Scene at = scene;
     at.joints[0].velocity = {static_cast<double>(v), 0, 0, 0, 0, 0};
     const Mechanism mechanism(at);
