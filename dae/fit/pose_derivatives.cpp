@@ -1,9 +1,9 @@
+#include <momenta/core/scalar/sixth_order.h>
 #include <momenta/core/text/near_name.h>
 #include <momenta/dae/assembly/scaled_loops.h>
 #include <momenta/dae/dense/decompositions.h>
 #include <momenta/dae/fit/pose_derivatives.h>
 
-#include <array>
 #include <cmath>
 
 namespace momenta {
@@ -12,9 +12,7 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double part = 1.0 / 256;    // h beside the size of a parameter
 constexpr double independent = 1e-9;  // pivots of F_q, beside the largest
-constexpr std::array<double, 3> weights{45.0 / 60, -9.0 / 60, 1.0 / 60};
 
 /// ∂Φ/∂θ_j and ∂y/∂θ_j of one pose, at the same q.
 struct Partial {
@@ -54,27 +52,26 @@ bool PoseDerivatives::at(const VectorXd& values, const Mechanism& mechanism, int
       poses.size(), std::vector<Partial>(static_cast<std::size_t>(parameters),
                                          {VectorXd::Zero(m), VectorXd::Zero(count)}));
   for (int j = 0; j < parameters; ++j) {
-    const double h = part * sizes_[j];
-    for (int k = 1; k <= 3; ++k)
-      for (const double side : {-1.0, 1.0}) {
-        VectorXd near = values;
-        near[j] += side * k * h;
-        const std::unique_ptr<Mechanism> other = family_.at(near);
-        if (other->nq() != mechanism.nq() || other->nv() != nv || other->m() != m)
-          throw SceneError("with " + family_.names()[static_cast<std::size_t>(j)] + " = " +
-                           reading::digits(near[j]) +
-                           " the mechanism has other coordinates or equations; expected a "
-                           "parameter that changes numbers alone");
-        const auto e = other->evaluation<double>();
-        VectorXd phi(m);
-        const double weight = side * weights[static_cast<std::size_t>(k - 1)] / h;
-        for (std::size_t i = 0; i < poses.size(); ++i) {
-          Partial& partial = partials[i][static_cast<std::size_t>(j)];
-          partial.y += weight * quantities_at(*e, poses[i], quantities_, markers);
-          e->positions(phi.data());
-          partial.phi += weight * phi;
-        }
+    const double h = sixth_order::part * sizes_[j];
+    for (const auto& [k, of_point] : sixth_order::points) {
+      VectorXd near = values;
+      near[j] += k * h;
+      const std::unique_ptr<Mechanism> other = family_.at(near);
+      if (other->nq() != mechanism.nq() || other->nv() != nv || other->m() != m)
+        throw SceneError("with " + family_.names()[static_cast<std::size_t>(j)] + " = " +
+                         reading::digits(near[j]) +
+                         " the mechanism has other coordinates or equations; expected a "
+                         "parameter that changes numbers alone");
+      const auto e = other->evaluation<double>();
+      VectorXd phi(m);
+      const double weight = of_point / h;
+      for (std::size_t i = 0; i < poses.size(); ++i) {
+        Partial& partial = partials[i][static_cast<std::size_t>(j)];
+        partial.y += weight * quantities_at(*e, poses[i], quantities_, markers);
+        e->positions(phi.data());
+        partial.phi += weight * phi;
       }
+    }
   }
   // A coordinate is no function of θ at the same q: its differences are rounding.
   for (auto& of_pose : partials)

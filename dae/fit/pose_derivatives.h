@@ -10,18 +10,12 @@
 //   F_q u_j = −∂F/∂θ_j,      dy/dθ_j = y_q u_j + ∂y/∂θ_j
 //   F_q u_s = (0, 1),        dy/ds   = y_q u_s
 //
-// F_q and y_q are those of the sweeps, exact. Partial derivatives by θ at the same q are taken
-// from mechanisms of other θ, as the scene's numbers are plain numbers: central differences of
-// sixth order,
-//
-//   f' = [45 (f₁ − f₋₁) − 9 (f₂ − f₋₂) + (f₃ − f₋₃)] / 60h + O(h⁶),    f_k = f(θ_j + k h).
-//
-// With h = 2⁻⁸ of the parameter's size rounding and truncation leave about 1e-13 of f/θ: no pose is
-// solved for again, no iteration ends differently. Redundant rows of F are solved together by a QR
+// F_q and y_q are those of the sweeps, exact. Partial derivatives by θ at the same q are central
+// differences of mechanisms of other θ (core/scalar/sixth_order.h): no pose is solved for again,
+// no iteration ends differently. Redundant rows of F are solved together by a QR
 // decomposition, as they agree. Where F_q loses rank (dead points, change points) there are no
 // derivatives.
-// Source: Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems, ch. 3; Fornberg,
-// Generation of finite difference formulas, Math. Comp. 51 (1988).
+// Source: Haug, Computer Aided Kinematics and Dynamics of Mechanical Systems, ch. 3.
 
 #include <momenta/dae/fit/parametric_mechanism.h>
 #include <momenta/dae/fit/wanted_poses.h>

@@ -12,6 +12,12 @@ struct Feedback {
   double alpha = 0, beta = 0;
 };
 
+/// A repeated correction of positions ends with one of this size: its square is rounding [rad or
+/// m].
+inline constexpr double last_correction = 1e-8;
+/// And after so many.
+inline constexpr int most_corrections = 10;
+
 class AccelerationForm : public OdeForm {
  public:
   AccelerationForm(std::string name, const Mechanism& mechanism, const FormOptions& options,

@@ -35,6 +35,15 @@ class OdeForm : public Form, public OdeSystem {
   }
   long weak_evaluations() const { return weak_evaluations_; }
 
+  /// u (nv) and σ or λ (m) of the last evaluation or solution after a step: about what it can be
+  /// differentiated. Forms on accelerations have their u in the state.
+  const std::vector<double>& rates() const { return u_; }
+  const std::vector<double>& multipliers() const { return multipliers_; }
+  /// Of the last solution for loops.
+  LoopSolver::Pivots pivots() const { return solver_ ? solver_->pivots() : LoopSolver::Pivots{}; }
+  /// Whether positions are corrected after each step.
+  bool corrects_positions() const { return has_loops() && options_.project; }
+
   /// The σ or λ (m) of a moment ago, which the next step keeps where rows fade.
   void centre_on(const double* multipliers) {
     std::copy_n(multipliers, multipliers_.size(), multipliers_.begin());

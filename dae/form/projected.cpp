@@ -26,9 +26,6 @@
 namespace momenta {
 namespace {
 
-constexpr double last_correction = 1e-8;  // [rad or m]: its square is rounding
-constexpr int most_corrections = 10;
-
 class Projected final : public AccelerationForm {
  public:
   Projected(const Mechanism& mechanism, FormOptions options)

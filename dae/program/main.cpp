@@ -264,7 +264,7 @@ int answer(int argc, char** argv) {
   effort_app->add_option("--out", o.out, "Directory for effort.csv, effort.json, index.html")
       ->type_name("DIR");
   CLI::App* fit_app =
-      app.add_subcommand("fit", "Parameters for which a mechanism does what is wanted of it");
+      app.add_subcommand("fit", "Parameters for which a mechanism does what is wanted");
   fit_app->footer("Example: momenta fit examples/straight_line/scene.toml --vary reach --sweep O");
   FitOptions fit_options;
   add_scene(*fit_app, o);
@@ -297,6 +297,35 @@ int answer(int argc, char** argv) {
   add_cpu_limit(*fit_app, o);
   fit_app->add_option("--out", o.out, "Directory for fitted.toml, fit.csv, fit.json, index.html")
       ->type_name("DIR");
+  CLI::App* gradient_app =
+      app.add_subcommand("gradient", "How a run depends on parameters and on its start");
+  gradient_app->footer(
+      "Example: momenta gradient examples/pendulum/scene.toml --of P.y --by O.q --end 1");
+  GradientOptions gradient_options;
+  add_scene(*gradient_app, o);
+  for (const char* unused : {"--cut", "--at"})
+    gradient_app->remove_option(gradient_app->get_option(unused));
+  gradient_app
+      ->add_option(
+          "--of", gradient_options.of,
+          "A formula of t, parameters, energy and columns of trajectory.csv: O.q, O.u, P.x")
+      ->type_name("FORMULA")
+      ->required();
+  gradient_app->add_flag("--integral", gradient_options.integral,
+                         "Its integral over the run (default: its value at the end)");
+  gradient_app
+      ->add_option("--by", gradient_options.by, "Numbers of [parameters]; start values: O.q, O.u")
+      ->type_name("NAME,...")
+      ->required();
+  gradient_app->add_option("--form", o.form, "momentum, acceleration, projected or baumgarte")
+      ->capture_default_str()
+      ->type_name("FORM");
+  add_run_options(*gradient_app, o);
+  for (const char* unused :
+       {"--reference", "--figures", "--penalty", "--spectral-radius", "--mesh-bytes"})
+    gradient_app->remove_option(gradient_app->get_option(unused));
+  gradient_app->get_option("--integrator")->description("rk4, or dp5, dop853, vern9 (by --rtol)");
+  gradient_app->get_option("--out")->description("Directory for gradient.csv, gradient.json");
   CLI::App* view_verb =
       app.add_subcommand("view", "A page that shows the assembled mechanism, to turn and zoom");
   view_verb->footer(
@@ -448,6 +477,7 @@ int answer(int argc, char** argv) {
     if (*move_app) return move(o, move_options);
     if (*effort_app) return effort(o, effort_options);
     if (*fit_app) return fit(o, fit_options);
+    if (*gradient_app) return gradient_verb(o, gradient_options);
     if (*view_verb) return view(o);
     if (*stress_app) return stress(o, stress_options);
     if (*sweep_app) return sweep(o, sweep_options);

@@ -225,6 +225,12 @@ struct FitOptions {
   std::uint64_t seed = 1;
 };
 int fit(const Options& o, const FitOptions& f);
+struct GradientOptions {
+  std::string of;         ///< a formula
+  std::string by;         ///< comma-separated
+  bool integral = false;  ///< over the run
+};
+int gradient_verb(const Options& o, const GradientOptions& g);
 /// `state`: a JSON file, "-" for standard input, or text that starts with "{".
 int evaluate(const Options& o, const std::string& state);
 /// `forms`: comma-separated, empty: all. `state`: as for evaluate; empty: the start.

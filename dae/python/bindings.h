@@ -4,6 +4,7 @@
 
 #include <momenta/core/arguments.h>
 #include <momenta/core/open_chain.h>
+#include <momenta/core/scene/toml/setting.h>
 #include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/kkt/loop_solver.h>
 #include <pybind11/eigen.h>
@@ -77,6 +78,8 @@ class Bench {
 
   std::string algebra, kkt, cut;  ///< as asked for
   std::string text;               ///< TOML it was read from; empty: see toml_of()
+  std::string source;  ///< TOML it was read from with the numbers of `set` in place; empty: `text`
+  std::vector<Setting> set;
   std::shared_ptr<const Mechanism> mechanism;
   std::unique_ptr<Evaluation<double>> e;
   std::unique_ptr<LoopSolver> solver;
@@ -99,6 +102,8 @@ void add_runs(py::class_<Bench, BenchPtr>& mechanism);
 void add_move(py::class_<Bench, BenchPtr>& mechanism);
 /// efforts.cpp
 void add_effort(py::class_<Bench, BenchPtr>& mechanism);
+/// gradients.cpp
+void add_gradient(py::class_<Bench, BenchPtr>& mechanism);
 /// The one that finds its modes.
 void add_modes(py::class_<Bench, BenchPtr>& mechanism);
 /// The one that makes linear models of it.

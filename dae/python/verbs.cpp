@@ -39,12 +39,15 @@ std::vector<Setting> settings_from(const Numbers& set) {
   return settings;
 }
 
-/// `text`: the TOML of the scene; empty where it was in another format.
-BenchPtr ready(Scene scene, const std::string& text, const std::string& at,
+/// `text`: the TOML of the scene, `set` included; empty where it was in another format.
+BenchPtr ready(Scene scene, const std::string& text, const Numbers& set, const std::string& at,
                const std::string& algebra, const std::string& kkt, const std::string& cut) {
   if (!at.empty()) start_at(at, scene);
   auto bench = std::make_shared<Bench>(std::move(scene), algebra, kkt, cut);
-  if (at.empty()) bench->text = text;
+  if (!at.empty()) return bench;
+  if (set.empty()) bench->text = text;
+  bench->source = text;
+  bench->set = settings_from(set);
   return bench;
 }
 
@@ -131,10 +134,10 @@ void bind_verbs(py::module_& module) {
       [](const std::string& file, const std::string& loops, bool free_root, const std::string& key,
          const Names& controls, const Stops& stops, const Numbers& set, const std::string& at,
          const std::string& algebra, const std::string& kkt, const std::string& cut) {
-        // With numbers set, or stops, the text of the file is another scene.
-        const bool as_written = set.empty() && !stops && is_toml(file);
+        // With stops, the text of the file is another scene.
+        const bool as_written = !stops && is_toml(file);
         return ready(read_scene(file, {loops, free_root, key, controls, stops}, settings_from(set)),
-                     as_written ? reading::text_of(file) : "", at, algebra, kkt, cut);
+                     as_written ? reading::text_of(file) : "", set, at, algebra, kkt, cut);
       },
       "file"_a, "loops"_a, "free_root"_a, "key"_a, "controls"_a, "stops"_a, "set"_a, "at"_a,
       "algebra"_a, "kkt"_a, "cut"_a);
@@ -145,7 +148,7 @@ void bind_verbs(py::module_& module) {
          const std::string& cut) {
         Scene scene = parse_scene(text, name, settings_from(set));
         if (stops) stop_at_limits(scene, *stops);
-        return ready(std::move(scene), set.empty() && !stops ? text : "", at, algebra, kkt, cut);
+        return ready(std::move(scene), stops ? "" : text, set, at, algebra, kkt, cut);
       },
       "text"_a, "name"_a, "stops"_a, "set"_a, "at"_a, "algebra"_a, "kkt"_a, "cut"_a);
   module.def("toml_of", &toml_of, "mechanism"_a);

@@ -1,4 +1,6 @@
 #include <momenta/core/expression/expression.h>
+#include <momenta/core/scene/toml/number_at.h>
+#include <momenta/core/scene/toml/parameters.h>
 #include <momenta/core/scene/toml/set_numbers.h>
 #include <momenta/core/text/near_name.h>
 
@@ -20,6 +22,13 @@ class Way {
   explicit Way(const Setting& setting) : setting_(setting), rest_(setting.place) {}
 
   void set(Value& root) {
+    Value& at = find_in(root);
+    at.type = Value::Type::number;
+    at.number = setting_.value;
+  }
+
+  /// Where the number, or a formula of one, stands; a key that the text leaves out is added.
+  Value& find_in(Value& root) {
     Value* at = &root;
     if (Value* parameters = find(root, "parameters");
         parameters && parameters->type == Value::Type::table && rest_.find('.') == rest_.npos &&
@@ -37,8 +46,11 @@ class Way {
     }
     const bool formula = at->type == Value::Type::text && is_formula(root, at->text);
     if (!is_number(*at) && !formula) refuse("more keys", at->type);
-    at->type = Value::Type::number;
-    at->number = setting_.value;
+    return *at;
+  }
+  /// @throws std::invalid_argument where the text left it out
+  void expect_there() const {
+    if (added_) fail("the scene leaves it out, expected a number that it has");
   }
 
  private:
@@ -117,11 +129,13 @@ class Way {
     v.type = Value::Type::number;
     v.at = table.at;
     table.entries.push_back({std::string(key), table.at, v});
+    added_ = true;
     return table.entries.back().value;
   }
 
   const Setting& setting_;
   std::string_view rest_;
+  bool added_ = false;
 };
 
 }  // namespace
@@ -131,3 +145,18 @@ void set_numbers(Value& root, const std::vector<Setting>& settings) {
 }
 
 }  // namespace momenta::reading
+
+namespace momenta {
+
+double number_at(std::string_view text, const std::string& file, const std::string& place) {
+  reading::Value root = reading::parse_toml(text, file);
+  const reading::Parameters parameters(root, file);
+  const Setting setting{place, 0};
+  reading::Way way(setting);
+  const reading::Value& found = way.find_in(root);
+  way.expect_there();
+  return reading::is_number(found) ? found.number
+                                   : parameters.value(parameters.formula(found.text));
+}
+
+}  // namespace momenta

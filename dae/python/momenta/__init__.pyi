@@ -352,6 +352,28 @@ class Mechanism:
         outputs: Sequence[str] = (),
         independent: Sequence[str] = (),
     ) -> dict[str, Any]: ...
+    def gradient(
+        self,
+        of: str,
+        by: Sequence[str],
+        *,
+        integral: bool = False,
+        form: str = "momentum",
+        integrator: str = "",
+        gauge: str = "",
+        rtol: float = 1e-8,
+        atol: float | None = None,
+        step: float | None = None,
+        end: float | None = None,
+        samples: int | None = None,
+        project: bool | None = None,
+        baumgarte_alpha: float = 0.0,
+        baumgarte_beta: float = 0.0,
+        beta: float = 0.0,
+        cpu_limit: float = 0.0,
+        trajectory: bool = False,
+        progress: _Progress = None,
+    ) -> dict[str, Any]: ...
     def run(
         self,
         *,

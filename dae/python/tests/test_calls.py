@@ -110,6 +110,12 @@ class Round:
                 {"kind": ["minimal", "descriptor", ""], "t": [0.0, 0.1, NAN, 1e300], "q": [q], "u": [u],
                  "equilibrium": ["", "settle", "x"], "inputs": [[], ["efforts"], ["x"], ["O", "O"]],
                  "outputs": [[], ["rates"], ["x"]], "independent": [[], ["O"], ["A"], ["O", "A"], ["x"]]}))),
+            ("gradient", lambda: m.gradient(**{"of": "O.q", "by": ["O.q"], "end": 0.02, **self.some(
+                {"of": ["O.q", "energy", "O.q > 1", "x", "", "1/0"],
+                 "by": [["O.q"], ["O.u"], ["gravity.1", "O.q"], [], ["x"], ["O.q", "O.q"]],
+                 "integral": [True], "form": forms, "gauge": ["", "reset", "leak:nan"],
+                 "step": [0.01, 0, NAN], "end": [0.02, 0, NAN], "rtol": [1e-6, NAN, 0],
+                 "samples": [1, 0], "trajectory": [True]})})),
             ("assemble", lambda: m.assemble(*([self.number()] if r.random() < 0.3 else []))),
             ("run", lambda: m.run(**{**end, **limits, **self.some(
                 {**common, **gains, "form": forms, "integrator": methods + [""], "project": [True, False],

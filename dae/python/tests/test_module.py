@@ -123,6 +123,35 @@ class Efforts(unittest.TestCase):
             m.effort(actuate=["O"], motion={"t": [0, 1, 2], "x": [0, 0, 0]})
 
 
+class Gradients(unittest.TestCase):
+    def test_of_an_oscillator_is_that_of_the_formula(self):
+        m = momenta.load("""
+            [parameters]
+            k = 40
+            [[body]]
+            name = "cart"
+            mass = 1.6
+            shape = { kind = "point" }
+            [[joint]]
+            name = "S"
+            kind = "prismatic"
+            child = "cart"
+            axis = "x"
+            position = 0.3
+            stiffness = "k"
+            """)
+        found = m.gradient("S.q", ["k", "S.q", "S.u"], integrator="dop853", rtol=1e-12, end=1.1, samples=11,
+                           trajectory=True)
+        t = found["t"]
+        self.assertEqual(found["tangents"].shape, (12, 2, 3))
+        self.assertEqual(found["columns"], ["S.q", "S.u"])
+        expected = np.stack([-0.3 * t * np.sin(5 * t) * 5 / 80, np.cos(5 * t), np.sin(5 * t) / 5], axis=1)
+        np.testing.assert_allclose(found["tangents"][:, 0, :], expected, atol=1e-8)
+        np.testing.assert_allclose(found["gradient"], expected[-1], atol=1e-10)
+        with self.assertRaisesRegex(ValueError, "no parameter of the scene and no start value"):
+            m.gradient("S.q", ["x"])
+
+
 class SmallMotions(unittest.TestCase):
     def test_shapes_solve_the_linearised_equations_of_unit_mass(self):
         m = load("four_bar")

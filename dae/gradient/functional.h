@@ -1,0 +1,62 @@
+#pragma once
+// A quantity of a motion, g(t, q, u; θ), by a formula of the names that trajectory.csv has:
+// coordinates, rates, positions and velocities of markers, `energy`; and t and parameters. Its
+// derivative along directions,
+//
+//   dg = Σ ∂g/∂z dz + ∂g/∂θ,
+//
+// with ∂g/∂z by tapes (core/expression/gradient.cpp), dz of coordinates and rates as they are, of
+// markers by dual numbers, of the energy T + V by differences of sixth order along the direction.
+
+#include <momenta/core/expression/expression.h>
+#include <momenta/dae/gradient/row_derivatives.h>
+#include <momenta/dae/gradient/run_variable.h>
+#include <momenta/dae/linear/marker_motion.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace momenta {
+
+class Functional {
+ public:
+  /// Which must outlive it. @throws std::invalid_argument: one sentence on the formula
+  Functional(const std::string& formula, const Mechanism& mechanism,
+             const std::vector<RunVariable>& variables, const std::vector<OtherParameter>& others);
+  ~Functional();
+
+  /// g at t [s], q (nq), u (nv), and dg (variables) along dq, du (rows × variables). O(bodies) a
+  /// variable; no more than the formula where it takes neither markers nor the energy
+  double operator()(double t, const Eigen::VectorXd& q, const Eigen::VectorXd& u,
+                    const Eigen::MatrixXd& dq, const Eigen::MatrixXd& du, Eigen::VectorXd& dg);
+
+  /// A function in it that has corners or jumps, by its name; empty: none.
+  std::string corner() const { return corner_; }
+
+ private:
+  struct Name;
+  void take_markers(double t, const Eigen::VectorXd& q, const Eigen::VectorXd& u,
+                    const Eigen::MatrixXd& dq, const Eigen::MatrixXd& du);
+  void take_energy(double t, const Eigen::VectorXd& q, const Eigen::VectorXd& u,
+                   const Eigen::MatrixXd& dq, const Eigen::MatrixXd& du);
+  double energy(Evaluation<double>& e, double t, const Eigen::VectorXd& q,
+                const Eigen::VectorXd& u) const;
+
+  const Mechanism& mechanism_;
+  const std::vector<OtherParameter>& others_;
+  std::vector<Name> names_;  ///< of the variables of the formula
+  std::unique_ptr<Expression> formula_;
+  std::string corner_;
+  std::vector<int> used_;
+  std::unique_ptr<Evaluation<double>> e_;
+  std::unique_ptr<MarkerMotion<Dual8>> markers_;
+  Eigen::VectorXd marker_values_;
+  Eigen::MatrixXd marker_tangents_;
+  double energy_ = 0;
+  Eigen::VectorXd energy_tangents_;
+  bool takes_energy_ = false;
+  std::vector<double> x_, line_, values_;
+};
+
+}  // namespace momenta

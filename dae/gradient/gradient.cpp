@@ -1,0 +1,169 @@
+#include <momenta/core/scene/drive.h>
+#include <momenta/core/text/near_name.h>
+#include <momenta/dae/assembly/assembly.h>
+#include <momenta/dae/gradient/gradient.h>
+#include <momenta/dae/gradient/start_tangents.h>
+#include <momenta/dae/gradient/tangent_system.h>
+#include <momenta/dae/solver/integrators.h>
+#include <momenta/dae/study/form_runner.h>
+#include <momenta/dae/study/run_form.h>
+#include <momenta/dae/text/number_text.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <tuple>
+
+namespace momenta {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr int most_unknowns = 1000;  ///< nv + m: a dense matrix at each stage
+/// A variable has no effect where dJ/dθ times its size is below this part of J.
+constexpr double effect = 1e-10;
+
+void expect_differentiable(const RunSettings& s, const Mechanism& mechanism) {
+  const std::vector<std::string>& forms = differentiable_forms();
+  if (std::find(forms.begin(), forms.end(), s.form) == forms.end())
+    throw std::invalid_argument("form '" + s.form +
+                                "' has no gradient; expected one of: " + listed(forms));
+  const std::vector<std::string> methods{"rk4", "dp5", "dop853", "vern9"};
+  if (std::find(methods.begin(), methods.end(), s.integrator) == methods.end())
+    throw std::invalid_argument("integrator '" + s.integrator +
+                                "' has no gradient; expected one of: " + listed(methods));
+  if (const int unknowns = mechanism.nv() + mechanism.m(); unknowns > most_unknowns)
+    throw std::invalid_argument("the mechanism has " + std::to_string(unknowns) +
+                                " rates and loop equations; expected at most " +
+                                std::to_string(most_unknowns) + " for a gradient");
+}
+
+/// What of the scene is not smooth everywhere.
+std::vector<std::string> corners(const Scene& scene, const Functional& g) {
+  std::vector<std::string> remarks;
+  const std::string ending =
+      " has corners or jumps: the gradient is that of the pieces that the run was on, and what the "
+      "time of a jump depends on is not in it";
+  if (!g.corner().empty()) remarks.push_back("'" + g.corner() + "' in the functional" + ending);
+  for (const DriveSpec& drive : scene.drives)
+    if (const std::string corner = law_corner(drive); !corner.empty())
+      remarks.push_back("the drive of " +
+                        reading::in_quotes(drive.joint.empty() ? drive.loop : drive.joint) +
+                        ", by '" + corner + "'," + ending);
+  std::vector<std::string> names;
+  for (const ParameterSpec& p : scene.parameters) names.push_back(p.name);
+  for (const ForceSpec& force : scene.forces) {
+    std::vector<std::string> laws{force.law};
+    laws.insert(laws.end(), force.force_law.begin(), force.force_law.end());
+    laws.insert(laws.end(), force.torque_law.begin(), force.torque_law.end());
+    for (const std::string& law : laws)
+      for (const char* word : {"if(", "floor(", "sign(", "abs(", "min(", "max("})
+        if (law.find(word) != std::string::npos) {
+          remarks.push_back("a force by the formula " + reading::in_quotes(law) + ending);
+          break;
+        }
+  }
+  return remarks;
+}
+
+}  // namespace
+
+GradientResult gradient(const SceneText& scene, const GradientRequest& request) {
+  const Mechanism mechanism(scene.scene(), scene.options);
+  GradientResult result;
+  result.scene = mechanism.scene().name;
+  result.of = request.of;
+  result.integral = request.integral;
+  result.settings = request.settings;
+  result.variables = run_variables(scene, mechanism, request.by);
+  RunSettings& s = result.settings;
+  s.when_stiff.clear();
+  if (s.integrator.empty()) s.integrator = default_integrator(s.form, s.rtol);
+  expect_differentiable(s, mechanism);
+
+  const Start start = assemble(mechanism).start;
+  FormRunner runner(mechanism, start, s, request.max_cpu_seconds);  // completes the settings
+  auto& form = dynamic_cast<OdeForm&>(runner.form());
+  FormOptions options;
+  options.gauge = form.gauge();
+  options.project = form.corrects_positions();
+  std::tie(options.baumgarte_alpha, options.baumgarte_beta) = form.baumgarte_gains();
+  options.beta = form.beta();
+  const std::vector<OtherParameter> others = other_parameters(scene, mechanism, result.variables);
+  Functional functional(request.of, mechanism, result.variables, others);
+  const StartTangents at_start =
+      start_tangents(mechanism, s.form, options, result.variables, others);
+  result.remarks = at_start.broken;
+  for (std::string& remark : corners(mechanism.scene(), functional))
+    result.remarks.push_back(std::move(remark));
+
+  FormTangents tangents(mechanism, form, others);
+  const auto directions = static_cast<int>(result.variables.size());
+  TangentSystem system(form, tangents, request.integral ? &functional : nullptr, directions);
+  const std::vector<double> y0 = system.initial(form.initial(start), at_start.of_state);
+  IntegrationOptions integration;
+  integration.rtol = s.rtol * system.tolerance_factor();
+  integration.atol = s.atol * system.tolerance_factor();
+  integration.step = s.step;
+  integration.max_cpu_seconds = request.max_cpu_seconds;
+  std::vector<double> times;
+  const int samples = request.trajectory ? s.samples : 1;
+  for (int i = 0; i <= samples; ++i) times.push_back(s.end_time * i / samples);
+  for (const Column& c : mechanism.coordinate_columns()) result.columns.push_back(c.name);
+  for (const Column& c : mechanism.rate_columns()) result.columns.push_back(c.name);
+  Observer observer;
+  TangentSystem::Motion motion;
+  std::string lost;
+  if (request.trajectory)
+    observer.sample = [&](double t, const double* y, const double*) {
+      const Looking looking(system);
+      if (!system.motion(t, y, motion)) {
+        lost = system.failure();
+        return false;
+      }
+      MatrixXd& d = result.tangents.emplace_back(motion.q.size() + motion.u.size(), directions);
+      d << motion.dq, motion.du;
+      result.times.push_back(t);
+      return true;
+    };
+  if (request.progress)
+    observer.step = [&](double, double t, const Interpolant&) { return request.progress(t); };
+  const IntegrationResult run =
+      integrate(s.integrator, system, start.t, y0, times, integration, observer);
+  if (!run.done)
+    throw SceneError(mechanism.scene().where({}) + "the run has no gradient: " +
+                     (!lost.empty()           ? lost
+                      : system.lost().empty() ? run.reason
+                                              : system.lost()));
+  for (const double t : system.singular_passages())
+    result.remarks.push_back(
+        "about t = " + compact(t, 3) +
+        " s the run passes a singular pose, where another motion crosses or meets its own: the "
+        "gradient is that of changes which keep it on its own, and numbers that part the two have "
+        "none");
+  result.steps = run.counters.steps;
+  result.end_time = run.end_time;
+  if (request.integral) {
+    result.value = system.integral(run.y.data());
+    result.gradient = system.integral_tangents(run.y.data());
+  } else {
+    if (!system.motion(run.end_time, run.y.data(), motion))
+      throw SceneError(mechanism.scene().where({}) +
+                       "the run has no gradient: " + system.failure());
+    result.value =
+        functional(run.end_time, motion.q, motion.u, motion.dq, motion.du, result.gradient);
+  }
+  if (!std::isfinite(result.value) || !result.gradient.allFinite())
+    throw SceneError(mechanism.scene().where({}) + reading::in_quotes(request.of) +
+                     " or its gradient is not a finite number; expected a formula that has a value "
+                     "and derivatives along the motion");
+  for (int j = 0; j < directions; ++j) {
+    const RunVariable& v = result.variables[static_cast<std::size_t>(j)];
+    if (std::abs(result.gradient[j]) * v.size <= effect * std::abs(result.value))
+      result.without_effect.push_back(v.name);
+  }
+  return result;
+}
+
+}  // namespace momenta

@@ -1,0 +1,62 @@
+#pragma once
+// The gradient of a run: how a functional of a motion,
+//
+//   J = g(T, q(T), u(T); θ)   or   J = ∫ g(t, q, u; θ) dt,
+//
+// depends on parameters and start values θ. Forward: the run's own steps and stages are
+// differentiated (tangent_system.h, form_tangents.h), the assembly of its start too
+// (start_tangents.h), so that the gradient is that of the numbers a run computes, whatever the
+// accuracy of the run. Derivation: docs/theory/gradients.md.
+//
+// Held: the sizes of steps, and the gains of the form (κ, α, β), as they are at θ. Formulas with
+// corners are differentiated on the piece they are on. The mechanism is integrated as it is
+// written.
+
+#include <momenta/dae/gradient/run_variable.h>
+#include <momenta/dae/study/run_result.h>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace momenta {
+
+/// What is asked.
+struct GradientRequest {
+  std::string of;               ///< g, a formula of names of trajectory.csv
+  bool integral = false;        ///< ∫ g dt over the run; else g at its end
+  std::vector<std::string> by;  ///< θ: parameters, "a"; start values, "O.q", "O.u"
+  RunSettings settings;         ///< `samples`: of the derivatives of the trajectory
+  bool trajectory = false;      ///< they are kept
+  double max_cpu_seconds = 0;   ///< 0: none
+  /// Called after each step with the time reached; false ends it.
+  std::function<bool(double t)> progress;
+};
+
+/// What came out.
+struct GradientResult {
+  std::string scene;                        ///< its name
+  RunSettings settings;                     ///< as run, with the gains in force
+  std::string of;                           ///< as asked
+  bool integral = false;                    ///< as asked
+  double value = 0;                         ///< J
+  std::vector<RunVariable> variables;       ///< θ
+  Eigen::VectorXd gradient;                 ///< dJ/dθ, in the unit of J over that of θ
+  std::vector<std::string> without_effect;  ///< names of θ whose part of J is below 1e-10 of it
+  std::vector<std::string> remarks;         ///< sentences on what is not smooth
+  long steps = 0;                           ///< of the run
+  double end_time = 0;                      ///< T [s]
+  std::vector<std::string> columns;         ///< "O.q", …: coordinates, then rates
+  std::vector<double> times;                ///< [s]; of `trajectory`
+  /// At each time dq, du by θ: columns × variables.
+  std::vector<Eigen::MatrixXd> tangents;
+};
+
+/// @throws std::invalid_argument for what is asked; SceneError where the start or the run has no
+/// derivatives, or the run ends before its time, one sentence.
+/// Cost beside that of a run: a stage takes two evaluations in dual numbers for eight θ, the
+/// factorisation of a dense matrix of (7), and six plain evaluations of its rows for each
+/// parameter.
+GradientResult gradient(const SceneText& scene, const GradientRequest& request);
+
+}  // namespace momenta

@@ -1,0 +1,74 @@
+#pragma once
+// Total derivatives of rows of the equations, r(x; θ), along directions j:
+//
+//   dr_j = (∂r/∂x) dx_j + ∂r/∂θ_j,
+//
+// the first exact, by dual numbers, eight directions at a time; the second by sixth_order.h, from
+// evaluations of the mechanism with other θ_j at the same x.
+
+#include <momenta/core/scalar/sixth_order.h>
+#include <momenta/dae/mechanism.h>
+
+#include <Eigen/Core>
+#include <memory>
+#include <vector>
+
+namespace momenta {
+
+/// Evaluations at θ_j + k h, in the order of sixth_order::points; none: nothing depends on θ_j but
+/// where the motion starts.
+struct OtherParameter {
+  double h = 0;
+  std::vector<std::unique_ptr<Mechanism>> mechanisms;
+  std::vector<std::unique_ptr<Evaluation<double>>> evaluations;
+};
+
+class RowDerivatives {
+ public:
+  /// The mechanism and `others`, one a direction, must outlive it.
+  RowDerivatives(const Mechanism& mechanism, const std::vector<OtherParameter>& others)
+      : others_(others), dual_(mechanism.evaluation<Dual8>()) {}
+
+  Eigen::Index directions() const { return static_cast<Eigen::Index>(others_.size()); }
+
+  /// `rows(e, x, out)` for rows of any scalar, `size` of them; dx: x's size × directions. Cost: an
+  /// evaluation in dual numbers for eight directions, six plain ones for each parameter.
+  template <class Rows>
+  Eigen::MatrixXd operator()(const Rows& rows, const Eigen::VectorXd& x, const Eigen::MatrixXd& dx,
+                             Eigen::Index size) {
+    Eigen::MatrixXd d(size, directions());
+    x_.resize(static_cast<std::size_t>(x.size()));
+    out_.resize(static_cast<std::size_t>(size));
+    for (Eigen::Index first = 0; first < d.cols(); first += width) {
+      const Eigen::Index count = std::min(width, d.cols() - first);
+      for (std::size_t i = 0; i < x_.size(); ++i) {
+        const auto at = static_cast<Eigen::Index>(i);
+        x_[i] = Dual8(x[at]);
+        for (Eigen::Index k = 0; k < count; ++k)
+          x_[i].b[static_cast<std::size_t>(k)] = dx(at, first + k);
+      }
+      rows(static_cast<EquationRows<Dual8>&>(*dual_), x_.data(), out_.data());
+      for (std::size_t i = 0; i < out_.size(); ++i)
+        for (Eigen::Index k = 0; k < count; ++k)
+          d(static_cast<Eigen::Index>(i), first + k) = out_[i].b[static_cast<std::size_t>(k)];
+    }
+    plain_.resize(size);
+    for (Eigen::Index j = 0; j < d.cols(); ++j) {
+      const OtherParameter& other = others_[static_cast<std::size_t>(j)];
+      for (std::size_t k = 0; k < other.evaluations.size(); ++k) {
+        rows(static_cast<EquationRows<double>&>(*other.evaluations[k]), x.data(), plain_.data());
+        d.col(j) += sixth_order::points[k].weight / other.h * plain_;
+      }
+    }
+    return d;
+  }
+
+ private:
+  static constexpr Eigen::Index width = 8;
+  const std::vector<OtherParameter>& others_;
+  std::unique_ptr<Evaluation<Dual8>> dual_;
+  std::vector<Dual8> x_, out_;
+  Eigen::VectorXd plain_;
+};
+
+}  // namespace momenta

@@ -1,0 +1,84 @@
+#include <momenta/core/scene/toml/number_at.h>
+#include <momenta/core/text/near_name.h>
+#include <momenta/dae/gradient/run_variable.h>
+#include <momenta/dae/kkt/loop_units.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace momenta {
+namespace {
+
+/// Of a number of the text.
+RunVariable of_scene(const std::string& place, double value) {
+  return {RunVariable::Kind::parameter, place, "", -1, value, value != 0 ? std::abs(value) : 1};
+}
+
+/// Whether a name begins like the place of a number: "body.crank.mass".
+bool is_place(const std::string& name) {
+  for (const char* table : {"body.", "joint.", "loop.", "force.", "drive.", "marker.", "function.",
+                            "gravity.", "lagrangian."})
+    if (name.starts_with(table)) return true;
+  return false;
+}
+
+}  // namespace
+
+Scene SceneText::scene(const std::vector<Setting>& more) const {
+  std::vector<Setting> all = fixed;
+  all.insert(all.end(), more.begin(), more.end());
+  return parse_scene(text, file, all);
+}
+
+std::vector<RunVariable> run_variables(const SceneText& scene, const Mechanism& mechanism,
+                                       const std::vector<std::string>& names) {
+  using Kind = RunVariable::Kind;
+  std::vector<RunVariable> all;
+  for (const ParameterSpec& p : mechanism.scene().parameters)
+    all.push_back(of_scene(p.name, p.value));
+  const LoopUnits units(mechanism);
+  const std::vector<Column> coordinates = mechanism.coordinate_columns(),
+                            rates = mechanism.rate_columns();
+  const Tree& tree = mechanism.tree();
+  for (std::size_t i = 0; i < coordinates.size(); ++i) {
+    if (coordinates[i].unit == "1") continue;  // of a quaternion
+    const auto at = static_cast<Eigen::Index>(i);
+    // A length is a part of those of the scene; q and u differ by quaternions alone.
+    const double length = coordinates[i].unit == "m" && tree.nq == tree.nv ? units.rates[at] : 1;
+    all.push_back({Kind::position, coordinates[i].name, coordinates[i].unit, static_cast<int>(i),
+                   tree.q0[at], std::max(length, 0.1 * std::abs(tree.q0[at]))});
+  }
+  for (std::size_t i = 0; i < rates.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    all.push_back({Kind::rate, rates[i].name, rates[i].unit, static_cast<int>(i), tree.u0[at],
+                   std::max(units.rates[at], std::abs(tree.u0[at]))});
+  }
+  std::vector<RunVariable> chosen;
+  std::vector<std::string_view> known;
+  for (const RunVariable& v : all) known.push_back(v.name);
+  for (const std::string& name : names) {
+    if (std::any_of(chosen.begin(), chosen.end(),
+                    [&](const RunVariable& v) { return v.name == name; }))
+      throw std::invalid_argument(reading::in_quotes(name) + " is named twice; expected it once");
+    const auto found =
+        std::find_if(all.begin(), all.end(), [&](const RunVariable& v) { return v.name == name; });
+    if (found == all.end() && is_place(name)) {
+      chosen.push_back(of_scene(name, number_at(scene.text, scene.file, name)));
+      continue;
+    }
+    if (found == all.end()) {
+      const std::string near = reading::did_you_mean(name, known);
+      throw std::invalid_argument(
+          reading::in_quotes(name) + " is no parameter of the scene and no start value" +
+          (near.empty() ? ", expected one of: " + reading::listed(known) : near));
+    }
+    chosen.push_back(*found);
+  }
+  if (chosen.empty())
+    throw std::invalid_argument(
+        "no numbers are named that the gradient is by; expected parameters or start values");
+  return chosen;
+}
+
+}  // namespace momenta

@@ -1,0 +1,96 @@
+#include <momenta/core/text/near_name.h>
+#include <momenta/dae/assembly/assembly.h>
+#include <momenta/dae/assembly/scaled_loops.h>
+#include <momenta/dae/gradient/start_tangents.h>
+#include <momenta/dae/joint_places.h>
+#include <momenta/dae/kkt/least_norm.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace momenta {
+namespace {
+
+using Eigen::VectorXd;
+
+/// The start from this guess, loops closed to rounding.
+Start closed_start(const Mechanism& mechanism, const VectorXd& q, const VectorXd& u) {
+  Assembly a = assemble(mechanism, 0, q, u);
+  if (mechanism.m() == 0 || a.start.residue.size() > 0) return a.start;
+  ScaledLoops loops(mechanism);
+  for (const std::string& name : mechanism.scene().held)
+    for (const JointPlace& joint : joint_places(mechanism))
+      if (joint.name == name)
+        for (const int i : joint.u) loops.columns[static_cast<std::size_t>(i)] = false;
+  LeastNorm steps(loops.pattern(), mechanism.m(), mechanism.nv());
+  VectorXd pose = a.start.q;
+  for (int pass = 0; pass < 2; ++pass) {
+    const VectorXd gap = loops.gap(0, pose);
+    steps.factor(loops.jacobian());
+    pose = loops.moved(pose, -steps.solve(gap));
+  }
+  return assemble(mechanism, 0, pose, u).start;
+}
+
+}  // namespace
+
+std::vector<OtherParameter> other_parameters(const SceneText& scene, const Mechanism& mechanism,
+                                             const std::vector<RunVariable>& variables) {
+  std::vector<OtherParameter> all(variables.size());
+  for (std::size_t j = 0; j < variables.size(); ++j) {
+    const RunVariable& v = variables[j];
+    OtherParameter& other = all[j];
+    other.h = sixth_order::part * v.size;
+    if (v.kind != RunVariable::Kind::parameter) continue;
+    for (const auto& [k, weight] : sixth_order::points) {
+      const double value = v.value + k * other.h;
+      other.mechanisms.push_back(
+          std::make_unique<Mechanism>(scene.scene({{v.name, value}}), scene.options));
+      const Mechanism& made = *other.mechanisms.back();
+      if (made.nq() != mechanism.nq() || made.nv() != mechanism.nv() || made.m() != mechanism.m())
+        throw SceneError("with " + v.name + " = " + reading::digits(value) +
+                         " the mechanism has other coordinates or equations; expected a parameter "
+                         "that changes numbers alone");
+      other.evaluations.push_back(made.evaluation<double>());
+    }
+  }
+  return all;
+}
+
+StartTangents start_tangents(const Mechanism& mechanism, const std::string& form,
+                             const FormOptions& options, const std::vector<RunVariable>& variables,
+                             const std::vector<OtherParameter>& others) {
+  StartTangents tangents;
+  tangents.of_state.setZero(mechanism.nq() + mechanism.nv(),
+                            static_cast<Eigen::Index>(variables.size()));
+  for (std::size_t j = 0; j < variables.size(); ++j) {
+    const RunVariable& v = variables[j];
+    const OtherParameter& other = others[j];
+    VectorXd sixth = VectorXd::Zero(tangents.of_state.rows()), fourth = sixth;
+    double size = 1;
+    for (std::size_t k = 0; k < sixth_order::points.size(); ++k) {
+      const Mechanism& made = other.mechanisms.empty() ? mechanism : *other.mechanisms[k];
+      VectorXd q = made.tree().q0, u = made.tree().u0;
+      const double change = sixth_order::points[k].k * other.h;
+      if (v.kind == RunVariable::Kind::position) q[v.place] += change;
+      if (v.kind == RunVariable::Kind::rate) u[v.place] += change;
+      const Start start = closed_start(made, q, u);
+      const std::vector<double> y = make_form(form, made, options, start)->initial(start);
+      const Eigen::Map<const VectorXd> state(y.data(), sixth.size());
+      sixth += sixth_order::points[k].weight / other.h * state;
+      if (k < sixth_order::fourth.size()) fourth += sixth_order::fourth[k] / other.h * state;
+      size = std::max(size, state.cwiseAbs().maxCoeff());
+    }
+    tangents.of_state.col(static_cast<Eigen::Index>(j)) = sixth;
+    // Of a smooth start they differ by h⁴; another assembly is about 1/h away.
+    const double apart = (sixth - fourth).cwiseAbs().maxCoeff();
+    if (!(apart <= 1e-3 * (size / v.size + sixth.cwiseAbs().maxCoeff())))
+      tangents.broken.push_back("the start changes too abruptly with " +
+                                reading::in_quotes(v.name) + " for a derivative: within " +
+                                reading::digits(3 * other.h) +
+                                " of its value the scene is assembled otherwise");
+  }
+  return tangents;
+}
+
+}  // namespace momenta

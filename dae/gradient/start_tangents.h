@@ -1,0 +1,31 @@
+#pragma once
+// How the start of a form depends on the numbers of a run: y(0) = (q, p) or (q, u) of the assembled
+// scene, assembly included, its choice of the nearest pose, of rates, and p = M u + Φ_qᵀσ with what
+// the gauge begins with. Differences of sixth order of the start itself (sixth_order.h); loops are
+// closed to rounding on both sides, not to the tolerance of the assembly, so that these have 12
+// digits.
+
+#include <momenta/dae/form/form.h>
+#include <momenta/dae/gradient/row_derivatives.h>
+#include <momenta/dae/gradient/run_variable.h>
+
+namespace momenta {
+
+/// Mechanisms at other values of each variable; none of a start value. @throws SceneError where
+/// there is none within three differences, or it has other coordinates or equations. Cost: six
+/// scenes read for each parameter
+std::vector<OtherParameter> other_parameters(const SceneText& scene, const Mechanism& mechanism,
+                                             const std::vector<RunVariable>& variables);
+
+struct StartTangents {
+  Eigen::MatrixXd of_state;         ///< dy(0), size of y × variables
+  std::vector<std::string> broken;  ///< sentences on variables by which the start has no derivative
+};
+
+/// Of the form of this name; the gains of `options` are held. @throws SceneError. Cost: six to
+/// twelve assemblies for each variable
+StartTangents start_tangents(const Mechanism& mechanism, const std::string& form,
+                             const FormOptions& options, const std::vector<RunVariable>& variables,
+                             const std::vector<OtherParameter>& others);
+
+}  // namespace momenta

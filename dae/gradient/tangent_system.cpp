@@ -1,0 +1,133 @@
+#include <momenta/dae/gradient/tangent_system.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+namespace momenta {
+
+using Eigen::Map;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+TangentSystem::TangentSystem(OdeForm& form, FormTangents& tangents, Functional* integrand,
+                             int directions)
+    : form_(form),
+      tangents_(tangents),
+      integrand_(integrand),
+      n_(form.size()),
+      directions_(directions),
+      all_((n_ + extra()) * (1 + directions)),
+      always_faded_(std::numeric_limits<int>::max()),
+      before_(static_cast<std::size_t>(n_)) {}
+
+double TangentSystem::tolerance_factor() const {
+  return std::sqrt(static_cast<double>(n_) / all_);
+}
+
+double TangentSystem::scale(int i) const {
+  return i < n_ ? form_.scale(i) : std::numeric_limits<double>::infinity();
+}
+
+std::vector<double> TangentSystem::initial(const std::vector<double>& y0,
+                                           const MatrixXd& Y0) const {
+  std::vector<double> all(static_cast<std::size_t>(all_), 0.0);
+  std::copy(y0.begin(), y0.end(), all.begin());
+  Map<MatrixXd>(all.data() + n_ + extra(), n_, directions_) = Y0;
+  return all;
+}
+
+MatrixXd TangentSystem::tangents(const double* y) const {
+  return Map<const MatrixXd>(y + n_ + extra(), n_, directions_);
+}
+
+VectorXd TangentSystem::integral_tangents(const double* y) const {
+  return Map<const VectorXd>(y + (n_ + 1) + n_ * directions_, directions_);
+}
+
+bool TangentSystem::fail_at(double t, const std::string& why) {
+  char text[48];
+  std::snprintf(text, sizeof text, "at t = %.9g s: ", t);
+  lost_ = text + why;
+  return fail(lost_);
+}
+
+void TangentSystem::set_handling(SingularityHandling handling) {
+  corrected_stages_ = handling == SingularityHandling::position;
+  form_.set_handling(handling);
+}
+
+bool TangentSystem::rhs(double t, const double* y, double* ydot) {
+  lost_.clear();
+  if (!form_.rhs(t, y, ydot)) return fail(form_.failure());
+  if (corrected_stages_)
+    return fail_at(t,
+                   "the motion passes too near to a singular pose, where its loop equations "
+                   "become dependent, for derivatives");
+  if (looking_ == 0) {
+    const LoopSolver::Pivots pivots = form_.pivots();
+    always_faded_ = std::min(always_faded_, pivots.faded);
+    const double weakest = pivots.faded > always_faded_ ? 0 : pivots.weakest;
+    if (weakest < weakest_) weakest_at_ = t, weakest_ = weakest;
+    largest_ = std::max(largest_, weakest);
+  }
+  Y_ = tangents(y);
+  if (!tangents_.rates(t, y, ydot, Y_, Ydot_))
+    return fail_at(t,
+                   "the loop equations become dependent there, and the motion has no "
+                   "derivatives beyond such a pose");
+  Map<MatrixXd>(ydot + n_ + extra(), n_, directions_) = Ydot_;
+  if (!integrand_) return true;
+  const Eigen::Index nq = n_ - tangents_.u().size();
+  VectorXd slope;
+  ydot[n_] = (*integrand_)(t, Map<const VectorXd>(y, nq), tangents_.u(), Y_.topRows(nq),
+                           tangents_.velocity(), slope);
+  Map<VectorXd>(ydot + (n_ + 1) + n_ * directions_, directions_) = slope;
+  return true;
+}
+
+void TangentSystem::end_passage() {
+  constexpr double near = 1e-2;
+  const bool near_pose = weakest_ < near && weakest_ < near * largest_;
+  if (near_pose && !passing_) {
+    passages_.push_back(weakest_at_);
+    least_ = weakest_;
+  }
+  if (near_pose && weakest_ < least_) passages_.back() = weakest_at_, least_ = weakest_;
+  passing_ = near_pose;
+  weakest_ = 1;
+}
+
+std::vector<double> TangentSystem::singular_passages() {
+  end_passage();
+  return passages_;
+}
+
+bool TangentSystem::motion(double t, const double* y, Motion& out) {
+  std::vector<double> rates(static_cast<std::size_t>(all_));
+  if (!rhs(t, y, rates.data())) return false;
+  const Eigen::Index nq = n_ - tangents_.u().size();
+  out = {Map<const VectorXd>(y, nq), tangents_.u(), Y_.topRows(nq), tangents_.velocity()};
+  return true;
+}
+
+bool TangentSystem::after_step(double t, double* y, bool& changed) {
+  std::copy_n(y, n_, before_.begin());
+  if (!form_.after_step(t, y, changed)) return fail(form_.failure());
+  Y_ = tangents(y);
+  if (!tangents_.after_step(t, before_.data(), y, Y_))
+    return fail_at(t,
+                   "the loop equations become dependent there, and the motion has no "
+                   "derivatives beyond such a pose");
+  Map<MatrixXd>(y + n_ + extra(), n_, directions_) = Y_;
+  return true;
+}
+
+double TangentSystem::motion_error_squared(double t, const double* y, const double* error,
+                                           double rtol, double atol) {
+  return form_.motion_error_squared(t, y, error, rtol / tolerance_factor(),
+                                    atol / tolerance_factor());
+}
+
+}  // namespace momenta

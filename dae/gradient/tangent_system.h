@@ -1,0 +1,85 @@
+#pragma once
+// A form's system with its tangents: y, the integral J of a functional, and their derivatives along
+// directions, as one system that every explicit method integrates,
+//
+//   (y, J, Y, dJ)' = (f, g, f_y Y + f_θ, dg),
+//
+// by the method's own stages, so that Y is the derivative of the y that the method finds. Steps are
+// chosen by y alone, as in a run without tangents: the others have no part in the norm of the local
+// error, and the tolerance is that of n unknowns among all, tol √(n/N). Step sizes are held: their
+// own dependence on θ is as small as the local error.
+
+#include <momenta/dae/gradient/form_tangents.h>
+#include <momenta/dae/gradient/functional.h>
+
+namespace momenta {
+
+class TangentSystem final : public OdeSystem {
+ public:
+  /// `integrand` null: no J. All must outlive it.
+  TangentSystem(OdeForm& form, FormTangents& tangents, Functional* integrand, int directions);
+
+  int size() const override { return all_; }
+  /// What rtol and atol are to be multiplied by.
+  double tolerance_factor() const;
+  /// y, then its tangents column by column, J and its.
+  std::vector<double> initial(const std::vector<double>& y0, const Eigen::MatrixXd& Y0) const;
+  /// The tangents in a state of it: size of y × directions.
+  Eigen::MatrixXd tangents(const double* y) const;
+  /// Why the last trial of a step had no derivatives, one sentence; empty: it had.
+  const std::string& lost() const { return lost_; }
+  /// When stages came near to a singular pose, once for each passage: the weakest pivot of the
+  /// loops below a hundredth of its scale and of the largest so far. A pivot goes with the square
+  /// of the distance.
+  std::vector<double> singular_passages();
+  double integral(const double* y) const { return y[n_]; }
+  Eigen::VectorXd integral_tangents(const double* y) const;
+
+  /// q, u and their tangents at a state of it.
+  struct Motion {
+    Eigen::VectorXd q, u;
+    Eigen::MatrixXd dq, du;
+  };
+  bool motion(double t, const double* y, Motion& out);
+
+  bool rhs(double t, const double* y, double* ydot) override;
+  bool after_step(double t, double* y, bool& changed) override;
+  bool has_after_step() const override { return form_.has_after_step(); }
+  void begin_step(double t, const double* y) override {
+    end_passage();
+    form_.begin_step(t, y);
+  }
+  SingularityHandling wanted_handling() const override { return form_.wanted_handling(); }
+  void set_handling(SingularityHandling handling) override;
+  double motion_error_squared(double t, const double* y, const double* error, double rtol,
+                              double atol) override;
+  void look_on(bool looking) override {
+    looking_ += looking ? 1 : -1;
+    form_.look_on(looking);
+  }
+  double scale(int i) const override;
+
+ private:
+  int extra() const { return integrand_ ? 1 : 0; }
+  bool fail_at(double t, const std::string& why);
+  void end_passage();
+
+  OdeForm& form_;
+  FormTangents& tangents_;
+  Functional* integrand_;
+  int n_, directions_, all_;
+  bool corrected_stages_ = false;
+  int always_faded_;       ///< rows that are redundant in all stages
+  double weakest_ = 1;     ///< pivot in the step under way
+  double weakest_at_ = 0;  ///< and when
+  double least_ = 1;       ///< of the passage under way
+  double largest_ = 0;     ///< of the run
+  bool passing_ = false;
+  int looking_ = 0;  ///< depth
+  std::vector<double> passages_;
+  std::string lost_;
+  std::vector<double> before_;
+  Eigen::MatrixXd Y_, Ydot_;
+};
+
+}  // namespace momenta

@@ -1,0 +1,93 @@
+#include <momenta/core/text/near_name.h>
+#include <momenta/dae/report/csv.h>
+#include <momenta/dae/report/gradient_report.h>
+#include <momenta/dae/report/json.h>
+#include <momenta/dae/text/number_text.h>
+
+#include <cmath>
+
+namespace momenta {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// θ dJ/dθ over J: by how many times the relative change of θ J changes.
+double relative(const GradientResult& r, Eigen::Index j) {
+  return r.variables[static_cast<std::size_t>(j)].value * r.gradient[j] / r.value;
+}
+
+std::string label(const RunVariable& v) {
+  return v.unit.empty() ? v.name : v.name + " [" + v.unit + "]";
+}
+
+}  // namespace
+
+std::string gradient_in_words(const GradientResult& r) {
+  const RunSettings& s = r.settings;
+  std::string text =
+      (r.integral ? "The integral of " : "") + r.of + (r.integral ? " to t = " : " at t = ") +
+      compact(r.end_time, 6) + " s is " + compact(r.value, 9) + "; form " + s.form +
+      (s.gauge.empty() ? "" : ", gauge " + s.gauge) + ", " + s.integrator +
+      (s.step > 0 ? ", step " + compact(s.step, 6) + " s" : ", tolerance " + compact(s.rtol, 3)) +
+      ", " + std::to_string(r.steps) + (r.steps == 1 ? " step." : " steps.");
+  if (!r.without_effect.empty())
+    text += " Without effect: " + reading::all_in_quotes(r.without_effect) + ".";
+  for (const std::string& remark : r.remarks) text += "\nRemark: " + remark + ".";
+  return text;
+}
+
+std::string gradient_table(const GradientResult& r) {
+  std::vector<std::vector<std::string>> rows{{"by", "value", "derivative", "relative"}};
+  for (Eigen::Index j = 0; j < r.gradient.size(); ++j) {
+    const RunVariable& v = r.variables[static_cast<std::size_t>(j)];
+    const double part = relative(r, j);
+    rows.push_back({label(v), compact(v.value, 6), compact(r.gradient[j], 9),
+                    std::isfinite(part) ? compact(part, 3) : "-"});
+  }
+  return (r.scene.empty() ? "" : r.scene + ": ") + gradient_in_words(r) + "\n\n" + in_columns(rows);
+}
+
+std::string gradient_csv(const GradientResult& r) {
+  std::vector<std::string> cells{"t [s]"};
+  for (const RunVariable& v : r.variables)
+    for (const std::string& column : r.columns)
+      cells.push_back(csv_cell("d(" + column + ")/d(" + v.name + ")"));
+  std::string text = csv_line(cells);
+  for (std::size_t i = 0; i < r.times.size(); ++i) {
+    cells = {round_trip(r.times[i])};
+    for (const double x : r.tangents[i].reshaped()) cells.push_back(round_trip(x));
+    text += csv_line(cells);
+  }
+  return text;
+}
+
+Json gradient_json(const GradientResult& r) {
+  Json by = Json::object();
+  for (Eigen::Index j = 0; j < r.gradient.size(); ++j) {
+    const RunVariable& v = r.variables[static_cast<std::size_t>(j)];
+    const char* kind = v.kind == RunVariable::Kind::parameter  ? "parameter"
+                       : v.kind == RunVariable::Kind::position ? "start position"
+                                                               : "start rate";
+    by[v.name] = {{"kind", kind},
+                  {"value", number_or_null(v.value)},
+                  {"derivative", number_or_null(r.gradient[j])},
+                  {"relative", number_or_null(relative(r, j))}};
+  }
+  const RunSettings& s = r.settings;
+  return {{"scene", r.scene},
+          {"of", r.of},
+          {"integral", r.integral},
+          {"value", number_or_null(r.value)},
+          {"by", by},
+          {"without_effect", r.without_effect},
+          {"remarks", r.remarks},
+          {"form", s.form},
+          {"integrator", s.integrator},
+          {"gauge", s.gauge.empty() ? Json() : Json(s.gauge)},
+          {"rtol", s.rtol},
+          {"step", s.step > 0 ? Json(s.step) : Json()},
+          {"end", r.end_time},
+          {"steps", r.steps}};
+}
+
+}  // namespace momenta

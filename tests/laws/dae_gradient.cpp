@@ -1,0 +1,438 @@
+// Gradients of runs: against differences of the same runs, against runs in quadruple precision, and
+// against closed formulas.
+
+#include <gtest/gtest.h>
+#include <momenta/core/scene/file_text.h>
+#include <momenta/core/scene/toml/write_scene.h>
+#include <momenta/dae/gradient/gradient.h>
+#include <momenta/dae/study/run_form.h>
+
+#include <cmath>
+#include <fstream>
+#include <numbers>
+
+#include "equations/gradient_twin.h"
+#include "equations/linkages.h"
+
+namespace momenta::dae_gradient {
+namespace {
+
+using Eigen::VectorXd;
+
+/// A four-bar with a spring across it and a point P of its coupler.
+const std::string four_bar = R"toml(
+name = "four-bar"
+gravity = [0, "-g", 0]
+[parameters]
+g = 9.81
+crank = 0.5
+coupler = 2
+rocker = 1.5
+mass = 2
+k = 30
+idle = 3
+[assembly]
+hold = ["O"]
+[[body]]
+name = "crank"
+mass = 1
+shape = { kind = "rod", length = "crank", axis = "x" }
+[[body]]
+name = "coupler"
+mass = "mass"
+shape = { kind = "rod", length = "coupler", axis = "x" }
+[[body]]
+name = "rocker"
+mass = 1.5
+shape = { kind = "rod", length = "rocker", axis = "x" }
+[[joint]]
+name = "O"
+kind = "revolute"
+child = "crank"
+position = 1.2
+velocity = 0.7
+[[joint]]
+name = "A"
+kind = "revolute"
+parent = "crank"
+child = "coupler"
+origin = { parent = ["crank", 0, 0] }
+position = -1.0
+[[joint]]
+name = "C"
+kind = "revolute"
+child = "rocker"
+origin = { parent = [2, 0, 0] }
+position = 1.7
+[[loop]]
+name = "B"
+kind = "revolute"
+parent = "coupler"
+child = "rocker"
+origin = { parent = ["coupler", 0, 0], child = ["rocker", 0, 0] }
+[[force]]
+kind = "spring-damper"
+parent = "ground"
+child = "coupler"
+origin = { parent = [0, 1, 0], child = ["coupler/2", 0, 0] }
+stiffness = "k"
+damping = 0.4
+rest = 0.6
+[[marker]]
+name = "P"
+body = "coupler"
+point = [0.7, 0.4, 0]
+)toml";
+
+/// The pendulum of a driven four-bar, with the drive's numbers as parameters.
+std::string driven() {
+  std::string text = reading::text_of(MOMENTA_SOURCE_DIR "/examples/driven/scene.toml");
+  const auto put = [&](const std::string& from, const std::string& to) {
+    text.replace(text.find(from), from.size(), to);
+  };
+  put("amplitude = 2.5", "amplitude = \"swing\"");
+  put("length = 0.8", "length = \"long\"");
+  return text + "\n[parameters]\nswing = 2.5\nlong = 0.8\n";
+}
+
+SceneText of_text(const std::string& text) {
+  SceneText scene;
+  scene.text = text;
+  scene.file = "scene.toml";
+  scene.options.cut = CutChoice::scene;
+  return scene;
+}
+SceneText of_scene(const Scene& scene) {
+  return of_text(scene_text(scene));
+}
+
+GradientRequest asked(const std::string& of, const std::vector<std::string>& by,
+                      const std::string& form, const std::string& gauge, double end = 0.5,
+                      double step = 0.005) {
+  GradientRequest request;
+  request.of = of;
+  request.by = by;
+  request.settings.form = form;
+  request.settings.integrator = "rk4";
+  request.settings.gauge = gauge;
+  request.settings.step = step;
+  request.settings.end_time = end;
+  request.settings.samples = 1;
+  request.settings.baumgarte_alpha = request.settings.baumgarte_beta = 5;
+  return request;
+}
+
+/// The value alone, as if nothing were differentiated: of the scene with one number changed. Its
+/// gradient is not looked at.
+double value_at(const SceneText& scene, GradientRequest request, const RunVariable& v,
+                double value) {
+  SceneText other = scene;
+  if (v.kind == RunVariable::Kind::parameter) {
+    other.fixed.push_back({v.name, value});
+  } else {
+    const std::string joint = v.name.substr(0, v.name.rfind('.'));
+    other.fixed.push_back(
+        {"joint." + joint + (v.kind == RunVariable::Kind::position ? ".position" : ".velocity"),
+         value});
+  }
+  request.by = {v.name};
+  return gradient(other, request).value;
+}
+
+/// dJ/dθ by differences of runs, of the second order with step h.
+double difference(const SceneText& scene, const GradientRequest& request, const RunVariable& v,
+                  double h) {
+  return (value_at(scene, request, v, v.value + h) - value_at(scene, request, v, v.value - h)) /
+         (2 * h);
+}
+/// Of the sixth.
+double difference6(const SceneText& scene, const GradientRequest& request, const RunVariable& v) {
+  const double h = v.size / 512;
+  return (15 * difference(scene, request, v, h) - 6 * difference(scene, request, v, 2 * h) +
+          difference(scene, request, v, 3 * h)) /
+         10;
+}
+
+/// Every derivative within a part of the largest relative one, counted in sizes of the variables.
+void expect_differences(const SceneText& scene, const GradientRequest& request, double within) {
+  const GradientResult r = gradient(scene, request);
+  double largest = 0;
+  for (Eigen::Index j = 0; j < r.gradient.size(); ++j)
+    largest =
+        std::max(largest, std::abs(r.gradient[j]) * r.variables[static_cast<std::size_t>(j)].size);
+  ASSERT_GT(largest, 0);
+  for (Eigen::Index j = 0; j < r.gradient.size(); ++j) {
+    const RunVariable& v = r.variables[static_cast<std::size_t>(j)];
+    EXPECT_NEAR(r.gradient[j] * v.size, difference6(scene, request, v) * v.size, within * largest)
+        << request.settings.form << " " << request.settings.gauge << " by " << v.name;
+  }
+}
+
+const std::vector<std::string> all_of_four_bar{"g", "crank", "coupler", "mass",
+                                               "k", "O.q",   "O.u",     "body.rocker.mass"};
+
+TEST(Gradient, IsThatOfTheSameRunByDifferences) {
+  const SceneText scene = of_text(four_bar);
+  for (const auto& [form, gauge] :
+       std::vector<std::pair<std::string, std::string>>{{"momentum", "reset"},
+                                                        {"momentum", "leak:3"},
+                                                        {"momentum", "none"},
+                                                        {"momentum", "flip"},
+                                                        {"acceleration", ""},
+                                                        {"projected", ""},
+                                                        {"baumgarte", ""}})
+    // Starts are closed to 1e-12, which differences of runs divide by h.
+    expect_differences(scene, asked("P.x + 0.3*C.u^2 - P.vy", all_of_four_bar, form, gauge), 1e-8);
+}
+
+TEST(Gradient, IsThatOfCorrectedPositionsAndOfFeedback) {
+  const SceneText scene = of_text(four_bar);
+  GradientRequest request =
+      asked("P.x + 0.3*C.u^2", {"crank", "mass", "O.q", "O.u"}, "momentum", "reset", 0.5, 0.02);
+  request.settings.project = true;
+  expect_differences(scene, request, 1e-8);
+  request.settings.project = false;
+  request.settings.beta = 20;
+  request.settings.gauge = "leak:3";
+  expect_differences(scene, request, 1e-8);
+  // Where steps are long the corrections matter: repeated ones.
+  expect_differences(
+      scene, asked("P.x + 0.3*C.u^2", {"crank", "mass", "O.q", "O.u"}, "projected", "", 0.6, 0.2),
+      1e-8);
+}
+
+TEST(Gradient, IsThatOfDrivenLoops) {
+  const SceneText scene = of_text(driven());
+  for (const char* form : {"momentum", "projected", "acceleration"})
+    expect_differences(
+        scene,
+        asked("tip.x + 0.1*M.u", {"swing", "long", "body.pendulum.mass", "M.q", "M.u"}, form,
+              form[0] == 'm' ? "leak:3" : ""),
+        1e-8);
+}
+
+TEST(Gradient, IsThatOfTheIntegral) {
+  const SceneText scene = of_text(four_bar);
+  for (const char* form : {"momentum", "projected"}) {
+    GradientRequest request = asked("(P.x - 0.5*crank)^2 + 0.1*energy + t*O.u", all_of_four_bar,
+                                    form, form[0] == 'm' ? "reset" : "");
+    request.integral = true;
+    expect_differences(scene, request, 1e-8);
+  }
+}
+
+TEST(Gradient, DifferencesComeNearItLikeTheSquareOfTheirStep) {
+  const SceneText scene = of_text(four_bar);
+  const GradientRequest request = asked("P.x", {"coupler"}, "momentum", "reset");
+  const GradientResult r = gradient(scene, request);
+  const double far = difference(scene, request, r.variables[0], 0.04) - r.gradient[0],
+               near = difference(scene, request, r.variables[0], 0.02) - r.gradient[0];
+  EXPECT_NEAR(far / near, 4, 0.15);
+}
+
+TEST(Gradient, IsThatOfAdaptiveRunsUpToTheirTolerance) {
+  const SceneText scene = of_text(four_bar);
+  GradientRequest request = asked("P.x + 0.3*C.u^2", {"crank", "mass", "k", "O.q", "O.u"},
+                                  "momentum", "reset", 1, 0.0005);
+  const VectorXd fine = gradient(scene, request).gradient;
+  for (const char* method : {"dp5", "dop853", "vern9"}) {
+    request.settings.integrator = method;
+    request.settings.rtol = request.settings.atol = 1e-11;
+    const GradientResult r = gradient(scene, request);
+    EXPECT_LT((r.gradient - fine).norm(), 1e-8 * fine.norm()) << method;
+    // Steps are those of a run without tangents.
+    RunRequest plain;
+    plain.settings = r.settings;
+    const Mechanism mechanism(scene.scene(), scene.options);
+    const RunResult run = run_form(mechanism, assemble(mechanism).start, plain);
+    EXPECT_NEAR(static_cast<double>(run.counters.steps), static_cast<double>(r.steps), 1) << method;
+  }
+}
+
+/// q(T) and u(T) by θ against quadruple precision.
+void expect_quad(const SceneText& scene, const std::vector<std::string>& by,
+                 const std::string& gauge, double h, int steps, double within,
+                 double dependent = 1e-20) {
+  GradientRequest request = asked("t", by, "momentum", gauge, h * steps, h);
+  request.trajectory = true;
+  const GradientResult r = gradient(scene, request);
+  ASSERT_EQ(r.steps, steps);
+  const double leak = gauge.starts_with("leak:") ? std::stod(gauge.substr(5)) : 0;
+  const auto run = [&](const Mechanism& mechanism, VectorXd q) {
+    const Start start = assemble(mechanism, 0, q, VectorXd::Zero(mechanism.nv())).start;
+    const auto y =
+        equations::QuadRun(mechanism, gauge == "reset", leak, dependent)(start.q, h, steps);
+    VectorXd numbers(static_cast<Eigen::Index>(y.size()));
+    for (std::size_t i = 0; i < y.size(); ++i)
+      numbers[static_cast<Eigen::Index>(i)] = value_of(y[i]);
+    return numbers;
+  };
+  const Mechanism own(scene.scene(), scene.options);
+  for (std::size_t j = 0; j < by.size(); ++j) {
+    const RunVariable& v = r.variables[j];
+    const VectorXd exact = equations::differenced(
+        [&](double value) {
+          if (v.kind == RunVariable::Kind::position) {
+            VectorXd q = own.tree().q0;
+            q[v.place] = value;
+            return run(own, q);
+          }
+          const Mechanism other(scene.scene({{v.name, value}}), scene.options);
+          return run(other, other.tree().q0);
+        },
+        v.value, v.size / 256);
+    const VectorXd found = r.tangents.back().col(static_cast<Eigen::Index>(j));
+    ASSERT_GT(exact.norm(), 0) << v.name;
+    EXPECT_LT((found - exact).norm(), within * (1 / v.size + exact.norm())) << v.name;
+  }
+}
+
+TEST(Gradient, IsThatOfQuadruplePrecision) {
+  std::string at_rest = four_bar;
+  at_rest.replace(at_rest.find("velocity = 0.7"), 14, "velocity = 0.0");
+  expect_quad(of_text(at_rest), {"crank", "coupler", "mass", "k", "g", "O.q"}, "reset", 0.01, 40,
+              1e-10);
+  expect_quad(of_text(at_rest), {"crank", "mass", "k"}, "none", 0.01, 40, 1e-10);
+}
+
+TEST(Gradient, IsThatOfQuadruplePrecisionOfSpatialAndRedundantLoops) {
+  const std::string folder = MOMENTA_SOURCE_DIR "/examples/";
+  // Five rows of rank four.
+  expect_quad(of_text(reading::text_of(folder + "bricard/scene.toml")),
+              {"body.rod1.mass", "body.rod3.mass", "gravity.1"}, "reset", 0.005, 40, 1e-10, 1e-6);
+  expect_quad(of_text(reading::text_of(folder + "andrews/scene.toml")), {"body.crank.mass"},
+              "reset", 5e-5, 40, 1e-10);
+}
+
+TEST(Gradient, OfAnOscillatorIsThatOfTheFormula) {
+  // x = a cos ωt, ω² = k/m
+  const SceneText scene = of_text(R"toml(
+[parameters]
+k = 40
+m = 1.6
+[[body]]
+name = "cart"
+mass = "m"
+shape = { kind = "point" }
+[[joint]]
+name = "S"
+kind = "prismatic"
+child = "cart"
+axis = "x"
+position = 0.3
+stiffness = "k"
+)toml");
+  for (const char* form : {"momentum", "acceleration"}) {
+    GradientRequest request = asked("S.q", {"k", "m", "S.q", "S.u"}, form, "", 1.1, 5e-4);
+    const GradientResult r = gradient(scene, request);
+    const double w = 5, t = 1.1, a = 0.3, by_w = -a * t * std::sin(w * t);
+    EXPECT_NEAR(r.value, a * std::cos(w * t), 1e-11);
+    EXPECT_NEAR(r.gradient[0], by_w * w / (2 * 40), 1e-11);
+    EXPECT_NEAR(r.gradient[1], -by_w * w / (2 * 1.6), 1e-11);
+    EXPECT_NEAR(r.gradient[2], std::cos(w * t), 1e-11);
+    EXPECT_NEAR(r.gradient[3], std::sin(w * t) / w, 1e-11);
+  }
+}
+
+TEST(Gradient, OfTheEnergyThatIsKeptIsThatOfTheStart) {
+  std::string conservative = four_bar;
+  conservative.replace(conservative.find("damping = 0.4"), 13, "damping = 0.0");
+  const SceneText scene = of_text(conservative);
+  for (const char* form : {"momentum", "projected"}) {
+    GradientRequest request = asked("energy", {"g", "crank", "mass", "k", "O.q", "O.u"}, form,
+                                    form[0] == 'm' ? "reset" : "", 0.5, 5e-4);
+    const VectorXd last = gradient(scene, request).gradient;
+    request.settings.end_time = request.settings.step = 1e-9;
+    const VectorXd first = gradient(scene, request).gradient;
+    EXPECT_LT((last - first).norm(), 1e-7 * first.norm()) << form;
+  }
+}
+
+TEST(Gradient, PassesQuaternions) {
+  const SceneText scene = of_scene(equations::flying_rod());
+  const Mechanism mechanism(scene.scene(), scene.options);
+  const std::vector<Column> rates = mechanism.rate_columns();
+  for (const char* form : {"momentum", "acceleration"}) {
+    const GradientRequest request =
+        asked("energy + " + rates.front().name, {"body." + scene.scene().bodies[0].name + ".mass"},
+              form, form[0] == 'm' ? "reset" : "", 0.4, 0.01);
+    expect_differences(scene, request, 1e-8);
+  }
+}
+
+TEST(Gradient, ByANumberIsThatByTheParameterItIsMadeOf) {
+  const GradientResult r =
+      gradient(of_text(four_bar), asked("P.x", {"mass", "body.coupler.mass"}, "momentum", "reset"));
+  EXPECT_EQ(r.variables[1].value, 2);  // a formula there
+  EXPECT_NE(r.gradient[0], 0);
+  EXPECT_EQ(r.gradient[0], r.gradient[1]);
+}
+
+TEST(Gradient, TellsWhatDoesNotMatterAndWhatIsNotSmooth) {
+  const SceneText scene = of_text(four_bar);
+  const GradientResult r =
+      gradient(scene, asked("if(P.x > 0, P.x, 2*P.x)", {"crank", "idle"}, "momentum", "reset"));
+  EXPECT_EQ(r.without_effect, std::vector<std::string>{"idle"});
+  EXPECT_EQ(r.gradient[1], 0);
+  ASSERT_EQ(r.remarks.size(), 1u);
+  EXPECT_NE(r.remarks[0].find("'if' in the functional has corners or jumps"), std::string::npos)
+      << r.remarks[0];
+}
+
+/// The sentence with which it is refused.
+std::string refusal(const SceneText& scene, const GradientRequest& request) {
+  try {
+    gradient(scene, request);
+  } catch (const std::exception& e) {
+    return e.what();
+  }
+  return "";
+}
+
+TEST(Gradient, RefusesInOneSentence) {
+  const SceneText scene = of_text(four_bar);
+  EXPECT_EQ(refusal(scene, asked("P.x", {"crnk"}, "momentum", "reset")),
+            "'crnk' is no parameter of the scene and no start value; did you mean 'crank'?");
+  EXPECT_EQ(refusal(scene, asked("P.x", {"crank", "crank"}, "momentum", "reset")),
+            "'crank' is named twice; expected it once");
+  EXPECT_EQ(refusal(scene, asked("P.x > 1", {"crank"}, "momentum", "reset")),
+            "'P.x > 1' is a comparison; expected a formula with a value");
+  EXPECT_NE(refusal(scene, asked("P.z1", {"crank"}, "momentum", "reset")).find("P.z1"),
+            std::string::npos);
+  EXPECT_EQ(refusal(scene, asked("P.x", {"crank"}, "partitioned", "")),
+            "form 'partitioned' has no gradient; expected one of: momentum, acceleration, "
+            "projected or baumgarte");
+  EXPECT_NE(refusal(scene, asked("log(P.x - 100)", {"crank"}, "momentum", "reset"))
+                .find("is not a finite number"),
+            std::string::npos);
+  EXPECT_NE(refusal(scene, asked("P.x", {"body.crank.drag"}, "momentum", "reset"))
+                .find("the scene leaves it out"),
+            std::string::npos);
+}
+
+TEST(Gradient, TellsSingularPosesThatItPasses) {
+  // Equal links: the slider passes the crank's pivot, and a second motion crosses the wanted one.
+  const SceneText scene =
+      of_text(reading::text_of(MOMENTA_SOURCE_DIR "/examples/slider_crank/scene.toml"));
+  GradientRequest request = asked("B.x", {"O.u"}, "momentum", "reset", 0.2);
+  request.settings.project = true;
+  request.settings.step = 0.004;
+  request.settings.end_time = 0.8;
+  EXPECT_TRUE(gradient(scene, request).remarks.empty());
+  request.settings.end_time = 1.2;
+  const GradientResult r = gradient(scene, request);
+  ASSERT_EQ(r.remarks.size(), 1u);
+  EXPECT_NE(r.remarks[0].find("s the run passes a singular pose"), std::string::npos)
+      << r.remarks[0];
+}
+
+TEST(Gradient, HasNoneFromASingularStart) {
+  // Flat four-bars move in two ways from there.
+  EXPECT_NE(refusal(of_scene(equations::row_of_four_bars(1, 0, 1)),
+                    asked("energy", {"gravity.1"}, "momentum", "reset"))
+                .find("become dependent"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace momenta::dae_gradient
