@@ -353,7 +353,7 @@ int answer(int argc, char** argv) {
   add_scene(*sweep_app, o);
   sweep_app
       ->add_option("--vary", sweep_options.vary,
-                   "Say body.crank.mass=1,2 or gravity.1=0:10:5[:log] or, of a parameter, a=1,2")
+                   "a=1,2 or a=0:9:4[:log], sampled a=0:9, a=normal:5:1")
       ->type_name("PLACE=VALUES")
       ->required();
   sweep_app
@@ -367,7 +367,7 @@ int answer(int argc, char** argv) {
   for (const char* unused : {"--reference", "--figures"})
     sweep_app->remove_option(sweep_app->get_option(unused));
   within(sweep_app->add_option("--threads", sweep_options.threads,
-                               "Default: one a processor; under mpirun one a process"),
+                               "Default: one a processor, under MPI 1; part of cases"),
          "N", 1, 1024);
   CLI::App* convert_verb =
       app.add_subcommand("convert", "Writes a scene, URDF or MJCF as a scene in TOML");
@@ -379,6 +379,15 @@ int answer(int argc, char** argv) {
       ->add_option("out", convert_options.out, "TOML file to write (default: standard output)")
       ->type_name("FILE");
   convert_verb->add_flag("--recut", convert_options.recut,
+  one_of(sweep_app->add_option("--sample", sweep_options.sample,
+                               "Points instead of combinations (256)"),
+         {"random", "latin", "sobol"});
+  within(sweep_app->add_option("--points", sweep_options.points, "Of a sample (default: 256)"), "N",
+         std::size_t{1}, std::size_t{10'000'000});
+  sweep_app->add_option("--seed", sweep_options.seed, "Of the sample (1); with Sobol indices")
+      ->type_name("N");
+  sweep_app->add_flag("--indices", sweep_options.indices,
+                      "Sobol indices too, from points times quantities + 2 cases");
                          "Assemble it, and move loop cuts to where they cost less");
   convert_verb
       ->add_option("--keep", convert_options.keep,
@@ -392,6 +401,10 @@ int answer(int argc, char** argv) {
   make_verb->add_flag("--turned", turned, "Planar families: in a plane oblique to all axes");
   CLI::App* completion_verb =
       app.add_subcommand("completion", "Prints a script that completes this command line");
+  sweep_app
+      ->add_option("--task", sweep_options.task,
+                   "Part I of N of the cases, kept in --out; without it: joined")
+      ->type_name("I/N");
   completion_verb->footer("Example: momenta completion bash > momenta");
   std::string shell;
   one_of(completion_verb->add_option("shell", shell, "For which shell")->required(),
@@ -422,7 +435,8 @@ int answer(int argc, char** argv) {
       const std::string name = option->get_name();
       if (option->count() > 0 && name.starts_with("--")) o.given.push_back(name);
       if (option->count() == 0 || name == "scene" || name == "--reference" || name == "--out" ||
-          name == "--figures" || name == "--json" || name == "--quiet" || name == "--threads")
+          name == "--figures" || name == "--json" || name == "--quiet" || name == "--threads" ||
+          name == "--task")
         continue;
       for (const std::string& value : option->results()) o.asked += " " + name + "=" + value;
     }

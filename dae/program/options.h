@@ -122,7 +122,7 @@ std::string content_of(const std::filesystem::path& file);
 /// What was asked, and which program was.
 Journal::Study study_of(const Options& o);
 /// Finished runs of this study, kept beside its results until it is over; null without --out.
-std::unique_ptr<Journal> keep_runs(const Options& o);
+std::unique_ptr<Journal> keep_runs(const Options& o, const char* file = "runs.jsonl");
 
 /// Writes a study's files, `files` among them, where --out says, prints its table and `words`, or
 /// its JSON, and returns the exit status.
@@ -185,8 +185,13 @@ struct StressOptions {
 int stress(const Options& o, const StressOptions& options);
 struct SweepOptions {
   std::vector<std::string> vary;
-  std::string watch;  ///< comma-separated
-  int threads = 0;    ///< 0: one for each processor, of one process
+  std::string watch;   ///< comma-separated
+  std::string sample;  ///< random, latin or sobol; empty: every combination
+  std::optional<std::size_t> points;
+  std::optional<std::uint64_t> seed;
+  bool indices = false;
+  std::string task;  ///< I/N; empty: all cases
+  int threads = 0;   ///< 0: one for each processor, of one process
 };
 int sweep(const Options& o, const SweepOptions& s);
 struct ModesOptions {

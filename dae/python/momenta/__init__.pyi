@@ -491,6 +491,7 @@ class Sweep:
     def __getitem__(self, name: str) -> _Array | list[str]: ...
     def __len__(self) -> int: ...
     def plot(self, column: str = "position_drift_max", *, ax: Any = None) -> Any: ...
+    def plot_along_time(self, column: str, *, ax: Any = None) -> Any: ...
 
 class Page(str):
     def save(self, file: _Path) -> None: ...
@@ -523,6 +524,10 @@ def sweep(
     vary: Mapping[str, str | ArrayLike] | Iterable[str],
     *,
     watch: str | Iterable[str] = (),
+    sample: str = "",
+    points: int | None = None,
+    seed: int | None = None,
+    indices: bool = False,
     threads: int = 0,
     progress: _Progress = None,
     **run: Unpack[_RunKeys],
