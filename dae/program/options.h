@@ -157,6 +157,14 @@ class ProgressLine {
 
 int check(const Options& o);
 int assemble_verb(const Options& o);
+struct AssembliesOptions {
+  std::string hold;  ///< comma-separated
+  int starts = 1000;
+  std::uint64_t seed = 1;
+  int threads = 0;  ///< 0: one for each processor
+};
+/// `assemble --all`
+int assemblies(const Options& o, const AssembliesOptions& a);
 int run(const Options& o);
 /// The page of the assembled mechanism: a file with --out, else on standard output.
 int view(const Options& o);
@@ -210,6 +218,7 @@ struct LineariseOptions {
 int linearise_verb(const Options& o, const LineariseOptions& l);
 struct MoveOptions {
   std::string sweep, hold;       ///< comma-separated
+  std::string output;            ///< a coordinate; empty: none
   std::optional<double> to, by;  ///< [rad or m]
   bool singular_values = false;
 };

@@ -52,8 +52,8 @@ int binary_rank(std::vector<std::uint64_t> rows) {
 }
 
 /// Sobol's property A: of every 2^d points in turn one lies in each of the 2^d boxes with sides
-/// 1/2. It holds where the first bits of v_1 … v_d of the d dimensions have full rank; the numbers
-/// were chosen so that they have, and one wrong digit of the table spoils it sooner or later.
+/// 1/2. It holds where the first bits of v_1 … v_d of the d dimensions have full rank, and the
+/// numbers were chosen so that they have.
 TEST(SobolPoints, HavePropertyAInEveryDimension) {
   const SobolSequence sequence(32);
   for (int d = 1; d <= 32; ++d) {
@@ -66,6 +66,16 @@ TEST(SobolPoints, HavePropertyAInEveryDimension) {
     }
     EXPECT_EQ(binary_rank(rows), d);
   }
+}
+
+/// All direction numbers, by the FNV-1a digest of those that the published table gives (computed by
+/// the recurrence in integers of any length).
+TEST(SobolPoints, AreThoseOfTheTableInEveryDimension) {
+  const SobolSequence sequence(SobolSequence::most_dimensions);
+  std::uint64_t digest = 14695981039346656037ull;
+  for (int j = 0; j < SobolSequence::most_dimensions; ++j)
+    for (int k = 1; k <= 32; ++k) digest = (digest ^ sequence.direction(j, k)) * 1099511628211ull;
+  EXPECT_EQ(digest, 0x96e7b29433e2f043ull);
 }
 
 /// Each of the boxes of volume 2^(t-m), whatever its shape, holds 2^t of 2^m points, t the sum of
