@@ -135,6 +135,18 @@ TEST_F(Program, SaysWhenLoopsComeApart) {
   EXPECT_GT(std::count(rows.begin(), rows.end(), '\n'), 10);
 }
 
+TEST_F(Program, SaysWhenTooManyLoopsAreOpenForAReference) {
+  const fs::path grid = write("grid.toml", call("make grid --n 5").out);
+  const Outcome o =
+      call("work '" + grid.string() +
+           "' --forms momentum --integrators dop853 --from 1e-6 --to 1e-6 --end 0.01");
+  EXPECT_EQ(o.status, 1);
+  EXPECT_NE(o.err.find("a reference in quadruple precision takes at most 16 loop equations open at "
+                       "once, found 20"),
+            std::string::npos)
+      << o.err;
+}
+
 TEST_F(Program, TellsHowForceIsPassedToAnOutput) {
   const std::string move =
       "move '" + example("four_bar") + "' --sweep O --by 0.5 --output C --out '";
