@@ -2,11 +2,14 @@
 #include <momenta/dae/kinematics/coordinate_named.h>
 #include <momenta/dae/kinematics/move.h>
 #include <momenta/dae/kinematics/pose_curve.h>
+#include <momenta/dae/kinematics/transmission.h>
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <memory>
 #include <numbers>
+#include <tuple>
 
 namespace momenta {
 namespace {
@@ -60,6 +63,12 @@ class Follower {
     for (const std::string& name : request.hold)
       held_.push_back(coordinate_named(mechanism_, name));
     result_.swept = static_cast<std::size_t>(swept_.front().q);
+    if (request.output.empty()) return;
+    std::vector<int> inputs;
+    for (const SweptCoordinate& c : swept_) inputs.push_back(c.u);
+    for (const auto& [q, u] : held_) inputs.push_back(u);
+    transmission_ = std::make_unique<Transmission>(mechanism, t, request.output, inputs);
+    std::tie(result_.output, result_.output_rate) = coordinate_named(mechanism, request.output);
   }
 
   MoveResult follow(const VectorXd& q) {
@@ -320,6 +329,11 @@ class Follower {
         for (std::size_t i = 0; i < markers; ++i)
           if (i % 6 >= 3) pose.markers[i] = NAN;
     }
+    if (transmission_) {
+      const Transmitting passed = transmission_->at(at.q);
+      pose.transmission_angle = passed.angle;
+      pose.joint_force = passed.joint_force;
+    }
     if (request_.singular_values) pose.reciprocal_condition = curve_->reciprocal_condition(at.q);
     // A change point is found when the curve is beyond it.
     auto place = result_.poses.end();
@@ -336,6 +350,7 @@ class Follower {
   std::vector<bool> angles_;
   std::vector<SweptCoordinate> swept_;
   std::vector<std::pair<int, int>> held_;
+  std::unique_ptr<Transmission> transmission_;  ///< null: no output is asked for
   PoseCurve* curve_ = nullptr;
   CurvePoint here_, beginning_;
   std::optional<CurvePoint> before_, recalled_;

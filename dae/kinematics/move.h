@@ -25,7 +25,9 @@ struct MoveRequest {
   /// Coordinates "O" or "J.q2", and how far they go in proportion [rad or m].
   std::vector<std::pair<std::string, double>> sweep;
   std::vector<std::string> hold;  ///< coordinates that stay where they are at the start
-  std::optional<double> to;       ///< where the first ends [rad or m]; none: once along the curve
+  std::string
+      output;  ///< a coordinate: how well force is passed to it (transmission.h); empty: none
+  std::optional<double> to;  ///< where the first ends [rad or m]; none: once along the curve
   double by = 0;  ///< of the first from row to row [rad or m]; 0: a degree, or a 100th of a length
   bool singular_values = false;  ///< of J at each row
   long most_rows = 100000;       ///< poses, at the most
@@ -49,6 +51,8 @@ struct MovedPose {
   /// u̇ (nv) with it: how the ratios change, by the swept coordinate. Empty where u is.
   Eigen::VectorXd udot;
   std::vector<double> markers;       ///< x y z [m] and its derivatives by s, of each; as q, u
+  double transmission_angle = 0;     ///< of the output [rad]; NaN where there is none
+  double joint_force = 0;            ///< largest for a unit effort on the output; NaN: infinite
   double reciprocal_condition = -1;  ///< smallest over largest singular value of J; −1: not asked
 };
 /// "sample", "dead point", "change point".
@@ -76,6 +80,8 @@ struct MoveResult {
   std::vector<Column> rates;        ///< of u
   std::vector<Column> markers;      ///< of MovedPose::markers
   std::size_t swept = 0;            ///< place of the first among `coordinates`
+  int output = -1;                  ///< place of the output among `coordinates`; −1: none
+  int output_rate = -1;             ///< and among `rates`
   double start = 0;                 ///< its value at s = 0
   std::vector<MovedPose> poses;     ///< along the curve
   std::vector<Reach> reach;         ///< of each coordinate

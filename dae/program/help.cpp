@@ -49,7 +49,7 @@ std::string name_and_type(const CLI::Option& o) {
 }
 
 /// Options that have one row: the text of the first speaks of both.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 9> one_row{{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 12> one_row{{
     {"--project", "--no-project"},
     {"--baumgarte-alpha", "--baumgarte-beta"},
     {"--rtol", "--atol"},
@@ -59,6 +59,9 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 9> one_row{{
     {"--data", "--reactions"},
     {"--end", "--samples"},
     {"--no-reference", "--orders"},
+    {"--sample", "--points"},
+    {"--seed", "--indices"},
+    {"--threads", "--task"},
 }};
 
 /// The option in the row of this one; null: none.

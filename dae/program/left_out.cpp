@@ -24,6 +24,9 @@ int check(const Options&) {
 int assemble_verb(const Options&) {
   return left_out("assemble");
 }
+int assemblies(const Options&, const AssembliesOptions&) {
+  return left_out("assemble");
+}
 int work(const Options&, const WorkOptions&) {
   return left_out("work");
 }

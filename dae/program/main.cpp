@@ -49,6 +49,25 @@ int answer(int argc, char** argv) {
       app.add_subcommand("assemble", "A consistent start: positions, rates, accelerations, λ");
   assemble_app->footer("Example: momenta assemble examples/andrews/scene.toml");
   add_scene(*assemble_app, o);
+  AssembliesOptions assemblies_options;
+  bool all_assemblies = false;
+  assemble_app->add_flag("--all", all_assemblies,
+                         "Every pose that is found with the coordinates of --hold where they are");
+  const auto of_all = [&](CLI::Option* option) { option->needs("--all"); };
+  of_all(assemble_app
+             ->add_option("--hold", assemblies_options.hold,
+                          "With --all: coordinates, as many as leave no freedom")
+             ->type_name("NAME,..."));
+  of_all(within(assemble_app->add_option("--starts", assemblies_options.starts,
+                                         "With --all: starts drawn at random"),
+                "N", 1, 10'000'000)
+             ->capture_default_str());
+  of_all(assemble_app->add_option("--seed", assemblies_options.seed, "With --all: of these")
+             ->type_name("N")
+             ->capture_default_str());
+  of_all(within(assemble_app->add_option("--threads", assemblies_options.threads,
+                                         "With --all (default: one for each processor)"),
+                "N", 1, 1024));
   CLI::App* run_verb = app.add_subcommand("run", "One form, one integrator");
   run_verb->footer("Example: momenta run examples/four_bar/scene.toml --end 20 --out results");
   add_scene(*run_verb, o);
@@ -220,6 +239,10 @@ int answer(int argc, char** argv) {
                                 "From pose to pose [rad or m] (default: a degree, or a hundredth "
                                 "of the scene's length)"),
            "X");
+  move_app
+      ->add_option("--output", move_options.output,
+                   "Coordinate to which force is passed: transmission angle, joint forces")
+      ->type_name("NAME");
   move_app->add_flag("--singular-values", move_options.singular_values,
                      "Of the loop equations at each pose: the smallest over the largest");
   add_cpu_limit(*move_app, o);
@@ -382,9 +405,18 @@ int answer(int argc, char** argv) {
   add_scene(*sweep_app, o);
   sweep_app
       ->add_option("--vary", sweep_options.vary,
-                   "Say body.crank.mass=1,2 or gravity.1=0:10:5[:log] or, of a parameter, a=1,2")
+                   "a=1,2 or a=0:9:4[:log], sampled a=0:9, a=normal:5:1")
       ->type_name("PLACE=VALUES")
       ->required();
+  one_of(sweep_app->add_option("--sample", sweep_options.sample,
+                               "Points instead of combinations (256)"),
+         {"random", "latin", "sobol"});
+  within(sweep_app->add_option("--points", sweep_options.points, "Of a sample (default: 256)"), "N",
+         std::size_t{1}, std::size_t{10'000'000});
+  sweep_app->add_option("--seed", sweep_options.seed, "Of the sample (1); with Sobol indices")
+      ->type_name("N");
+  sweep_app->add_flag("--indices", sweep_options.indices,
+                      "Sobol indices too, from points times quantities + 2 cases");
   sweep_app
       ->add_option("--watch", sweep_options.watch,
                    "Columns of the trajectory: last, least and greatest")
@@ -396,8 +428,12 @@ int answer(int argc, char** argv) {
   for (const char* unused : {"--reference", "--figures"})
     sweep_app->remove_option(sweep_app->get_option(unused));
   within(sweep_app->add_option("--threads", sweep_options.threads,
-                               "Default: one a processor; under mpirun one a process"),
+                               "Default: one a processor, under MPI 1; part of cases"),
          "N", 1, 1024);
+  sweep_app
+      ->add_option("--task", sweep_options.task,
+                   "Part I of N of the cases, kept in --out; without it: joined")
+      ->type_name("I/N");
   CLI::App* convert_verb =
       app.add_subcommand("convert", "Writes a scene, URDF or MJCF as a scene in TOML");
   convert_verb->footer("Example: momenta convert examples/models/ur5/ur5_robot.urdf ur5.toml");
@@ -451,7 +487,8 @@ int answer(int argc, char** argv) {
       const std::string name = option->get_name();
       if (option->count() > 0 && name.starts_with("--")) o.given.push_back(name);
       if (option->count() == 0 || name == "scene" || name == "--reference" || name == "--out" ||
-          name == "--figures" || name == "--json" || name == "--quiet" || name == "--threads")
+          name == "--figures" || name == "--json" || name == "--quiet" || name == "--threads" ||
+          name == "--task")
         continue;
       for (const std::string& value : option->results()) o.asked += " " + name + "=" + value;
     }
@@ -464,7 +501,7 @@ int answer(int argc, char** argv) {
                                   " holds equations, expected a scene; run, "
                                   "index, work and, in a suite, bench take equations");
     if (*check_verb) return check(o);
-    if (*assemble_app) return assemble_verb(o);
+    if (*assemble_app) return all_assemblies ? assemblies(o, assemblies_options) : assemble_verb(o);
     if (*run_verb) return equations ? run_equation_file(o) : run(o);
     if (*drift_verb) return drift(o, d);
     if (*work_verb) return equations ? work_on_equations(o, w) : work(o, w);

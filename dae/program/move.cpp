@@ -21,6 +21,7 @@ int move(const Options& o, const MoveOptions& options) {
   if (request.sweep.empty())
     throw std::invalid_argument("--sweep is empty; expected the name of a coordinate");
   request.hold = names_in(options.hold);
+  request.output = options.output;
   request.to = options.to;
   request.by = options.by.value_or(0);
   request.singular_values = options.singular_values;

@@ -326,9 +326,9 @@ Journal::Study study_of(const Options& o) {
   return study;
 }
 
-std::unique_ptr<Journal> keep_runs(const Options& o) {
+std::unique_ptr<Journal> keep_runs(const Options& o, const char* file) {
   if (o.out.empty()) return nullptr;
-  auto journal = std::make_unique<Journal>(o.out / "runs.jsonl", study_of(o));
+  auto journal = std::make_unique<Journal>(o.out / file, study_of(o));
   if (!o.quiet && journal->of_another_build())
     std::fprintf(stderr, "momenta: %s is of another build of the program: begun anew\n",
                  journal->file().c_str());

@@ -122,7 +122,7 @@ std::string content_of(const std::filesystem::path& file);
 /// What was asked, and which program was.
 Journal::Study study_of(const Options& o);
 /// Finished runs of this study, kept beside its results until it is over; null without --out.
-std::unique_ptr<Journal> keep_runs(const Options& o);
+std::unique_ptr<Journal> keep_runs(const Options& o, const char* file = "runs.jsonl");
 
 /// Writes a study's files, `files` among them, where --out says, prints its table and `words`, or
 /// its JSON, and returns the exit status.
@@ -157,6 +157,14 @@ class ProgressLine {
 
 int check(const Options& o);
 int assemble_verb(const Options& o);
+struct AssembliesOptions {
+  std::string hold;  ///< comma-separated
+  int starts = 1000;
+  std::uint64_t seed = 1;
+  int threads = 0;  ///< 0: one for each processor
+};
+/// `assemble --all`
+int assemblies(const Options& o, const AssembliesOptions& a);
 int run(const Options& o);
 /// The page of the assembled mechanism: a file with --out, else on standard output.
 int view(const Options& o);
@@ -185,8 +193,13 @@ struct StressOptions {
 int stress(const Options& o, const StressOptions& options);
 struct SweepOptions {
   std::vector<std::string> vary;
-  std::string watch;  ///< comma-separated
-  int threads = 0;    ///< 0: one for each processor, of one process
+  std::string watch;   ///< comma-separated
+  std::string sample;  ///< random, latin or sobol; empty: every combination
+  std::optional<std::size_t> points;
+  std::optional<std::uint64_t> seed;
+  bool indices = false;
+  std::string task;  ///< I/N; empty: all cases
+  int threads = 0;   ///< 0: one for each processor, of one process
 };
 int sweep(const Options& o, const SweepOptions& s);
 struct ModesOptions {
@@ -205,6 +218,7 @@ struct LineariseOptions {
 int linearise_verb(const Options& o, const LineariseOptions& l);
 struct MoveOptions {
   std::string sweep, hold;       ///< comma-separated
+  std::string output;            ///< a coordinate; empty: none
   std::optional<double> to, by;  ///< [rad or m]
   bool singular_values = false;
 };

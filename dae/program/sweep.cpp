@@ -1,11 +1,13 @@
 #include <momenta/core/scene/file_text.h>
 #include <momenta/core/scene/toml/write_scene.h>
 #include <momenta/dae/report/json.h>
+#include <momenta/dae/report/sample_report.h>
 #include <momenta/dae/report/sweep_report.h>
 #include <momenta/dae/study/environment.h>
 #include <momenta/dae/study/run_record.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cstdio>
 #include <mutex>
 #include <stdexcept>
@@ -29,22 +31,85 @@ class Keys {
   std::string study_;
 };
 
+/// Of all cases those whose number leaves the rest `first` when divided by `tasks`.
+struct Task {
+  std::size_t first = 0, tasks = 1;
+
+  /// "3/100": I from 1 to N. @throws std::invalid_argument
+  explicit Task(const std::string& text) {
+    if (text.empty()) return;
+    const char* end = text.data() + text.size();
+    const auto [slash, error] = std::from_chars(text.data(), end, first);
+    bool good = error == std::errc{} && slash != end && *slash == '/';
+    if (good) {
+      const auto [stop, second] = std::from_chars(slash + 1, end, tasks);
+      good = second == std::errc{} && stop == end && first >= 1 && first <= tasks;
+    }
+    if (!good)
+      throw std::invalid_argument("--task '" + text +
+                                  "': expected I/N, I from 1 to N, as in 3/100");
+    --first;
+  }
+  bool has(std::size_t number) const { return number % tasks == first; }
+  std::string file() const {
+    return "task-" + std::to_string(first + 1) + "-of-" + std::to_string(tasks) + ".jsonl";
+  }
+};
+
+/// What tasks of this study left in its directory. @throws std::invalid_argument
+std::vector<std::unique_ptr<Journal>> parts_in(const Options& o) {
+  std::vector<std::unique_ptr<Journal>> parts;
+  if (o.out.empty() || !std::filesystem::is_directory(o.out)) return parts;
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::directory_iterator(o.out))
+    if (const std::string name = entry.path().filename().string();
+        name.starts_with("task-") && name.ends_with(".jsonl"))
+      files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  for (const auto& file : files) {
+    if (Journal::build_of(file) != build_digest())
+      throw std::invalid_argument(file.string() +
+                                  " was made by another build or on another processor, whose "
+                                  "numbers may differ; expected tasks of one build on processors "
+                                  "of one kind, or the file removed");
+    parts.push_back(std::make_unique<Journal>(file, study_of(o)));
+  }
+  return parts;
+}
+
+/// What an earlier sample left and this study did not write anew.
+void remove_other_statistics(const std::filesystem::path& out,
+                             const std::vector<ResultFile>& written) {
+  const bool sampled = std::filesystem::exists(out / "statistics.csv");
+  for (const char* name : {"statistics.csv", "curves.csv", "index.html"})
+    if (sampled && std::none_of(written.begin(), written.end(),
+                                [&](const ResultFile& file) { return file.path == out / name; }))
+      std::filesystem::remove(out / name);
+}
+
 /// Records of finished cases by number; several threads may keep them.
 class Finished {
  public:
   Finished(std::size_t count, Keys of_cases, Journal* journal, ProgressLine& line)
       : cases_(count), keys_(std::move(of_cases)), journal_(journal), line_(line) {}
 
-  /// Takes what the journal has; the numbers of all others.
-  std::vector<std::size_t> wanted() {
+  /// Takes what the journal and the parts have; the numbers of all others of this task.
+  std::vector<std::size_t> wanted(const Task& task,
+                                  const std::vector<std::unique_ptr<Journal>>& parts) {
     std::vector<std::size_t> numbers;
-    for (std::size_t i = 0; i < cases_.size(); ++i)
-      if (auto known = recall<SweepCase>(journal_, keys_.of(i))) {
+    for (std::size_t i = 0; i < cases_.size(); ++i) {
+      if (!task.has(i)) continue;
+      ++asked_;
+      auto known = recall<SweepCase>(journal_, keys_.of(i));
+      for (std::size_t k = 0; k < parts.size() && !known; ++k)
+        known = recall<SweepCase>(parts[k].get(), keys_.of(i));
+      if (known) {
         cases_[i] = std::move(*known);
         ++count_;
       } else {
         numbers.push_back(i);
       }
+    }
     return numbers;
   }
   void keep(std::size_t number, const std::string& text) {
@@ -56,16 +121,17 @@ class Finished {
     const std::lock_guard lock(turn_);
     cases_[number] = std::move(made);
     ++count_;
-    line_.show("[" + std::to_string(count_) + "/" + std::to_string(cases_.size()) + "] cases");
+    line_.show("[" + std::to_string(count_) + "/" + std::to_string(asked_) + "] cases");
   }
-  bool complete() const { return count_ == cases_.size(); }
+  bool complete() const { return count_ == asked_; }
+  std::size_t asked() const { return asked_; }
   std::size_t count() const { return count_; }
   const std::vector<SweepCase>& cases() const { return cases_; }
 
  private:
   std::vector<SweepCase> cases_;
   Keys keys_;
-  std::size_t count_ = 0;
+  std::size_t asked_ = 0, count_ = 0;
   Journal* journal_;
   ProgressLine& line_;
   std::mutex turn_;
@@ -90,7 +156,13 @@ int sweep(const Options& o, const SweepOptions& s) {
   request.file = o.scene.string();
   request.mechanism = mechanism_options(o);
   for (const std::string& text : s.vary) request.varied.emplace_back(text);
+  if (const auto settings = sample_settings(s.sample, s.points, s.seed, s.indices))
+    request.sample = std::make_shared<Sample>(*settings, request.varied.size());
   request.watched = names_in(s.watch);
+  const Task task(s.task);
+  if (!s.task.empty() && o.out.empty())
+    throw std::invalid_argument("--task " + s.task +
+                                ": expected --out DIR, the same for all tasks");
   request.max_cpu_seconds = o.cpu_limit.value_or(0);
   request.settings = [&](const RunDefaults& defaults) { return run_settings(o, defaults); };
   request.going_on = [] { return !interrupted(); };
@@ -101,9 +173,11 @@ int sweep(const Options& o, const SweepOptions& s) {
     return done;
   }
   std::unique_ptr<Journal> journal;
+  std::vector<std::unique_ptr<Journal>> parts;
   try {
     expect_own_results(o.out, "sweep.csv");
-    journal = keep_runs(o);
+    if (s.task.empty()) parts = parts_in(o);
+    journal = keep_runs(o, s.task.empty() ? "runs.jsonl" : task.file().c_str());
   } catch (...) {
     ranks.agreed(false);
     throw;
@@ -114,27 +188,57 @@ int sweep(const Options& o, const SweepOptions& s) {
   const int alone = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   const int threads = s.threads > 0 ? s.threads : ranks.count() > 1 ? 1 : alone;
   ranks.share(
-      finished.wanted(), threads, make,
+      finished.wanted(task, parts), threads, make,
       [&](std::size_t number, const std::string& record) { finished.keep(number, record); },
       [] { return !interrupted(); });
   line.show("");
   if (!finished.complete()) {
     close(journal.get(), finished.count(), false, o);
-    std::fprintf(stderr, "momenta: stopped after %zu of %zu cases%s\n", finished.count(), count,
-                 journal ? "; the same command goes on from there" : "");
+    std::fprintf(stderr, "momenta: stopped after %zu of %zu cases%s\n", finished.count(),
+                 finished.asked(), journal ? "; the same command goes on from there" : "");
     return run_failed;
   }
-  auto json = sweep_json(request, finished.cases());
+  if (!s.task.empty()) {
+    close(journal.get(), finished.count(), false, o);
+    if (!o.quiet)
+      std::fprintf(
+          stderr,
+          "momenta: task %s: %zu of %zu cases are in %s; once all tasks are done, the same "
+          "command without --task joins them\n",
+          s.task.c_str(), finished.count(), count, journal->file().c_str());
+    return journal->trouble().empty() ? done : run_failed;
+  }
+  std::optional<SweepStatistics> statistics;
+  if (request.sample) statistics = sweep_statistics(request, finished.cases());
+  const SweepStatistics* told = statistics ? &*statistics : nullptr;
+  auto json = sweep_json(request, finished.cases(), told);
   json["command"] = o.command;
   json["processes"] = ranks.count();
   json["threads"] = threads;
   json["environment"] = environment_json(environment());
   const std::string summary = json.dump(2) + "\n";
-  if (!o.out.empty() && !write_results({{o.out / "sweep.csv", sweep_csv(request, finished.cases())},
-                                        {o.out / "sweep.json", summary}}))
-    return run_failed;
+  if (!o.out.empty()) {
+    std::vector<ResultFile> files{{o.out / "sweep.csv", sweep_csv(request, finished.cases())},
+                                  {o.out / "sweep.json", summary}};
+    if (told) {
+      files.push_back({o.out / "statistics.csv", statistics_csv(request, *told)});
+      if (!told->curves.empty()) files.push_back({o.out / "curves.csv", curves_csv(*told)});
+      files.push_back({o.out / "index.html",
+                       sample_page(request, *told, finished.cases(), environment(), o.command)});
+    }
+    if (!write_results(files)) return run_failed;
+    remove_other_statistics(o.out, files);
+  }
   close(journal.get(), count, true, o);
-  tell(o, summary, sweep_table(request, finished.cases()));
+  int of_tasks = 0;
+  for (const auto& part : parts) {
+    of_tasks += part->runs_taken();
+    part->remove();
+  }
+  if (!parts.empty() && !o.quiet)
+    std::fprintf(stderr, "momenta: %d of %zu runs taken from %zu tasks\n", of_tasks, count,
+                 parts.size());
+  tell(o, summary, sweep_table(request, finished.cases(), told), told ? "index.html" : "");
   const bool any = std::any_of(finished.cases().begin(), finished.cases().end(),
                                [](const SweepCase& c) { return c.status == "done"; });
   return any ? done : run_failed;

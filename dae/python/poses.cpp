@@ -16,7 +16,8 @@ namespace {
 using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 py::dict move(const Bench& b, const std::variant<std::string, py::dict>& sweep,
-              std::optional<double> to, double by, const std::vector<std::string>& hold) {
+              std::optional<double> to, double by, const std::vector<std::string>& hold,
+              const std::string& output) {
   MoveRequest request;
   if (const auto* name = std::get_if<std::string>(&sweep)) {
     request.sweep = {{*name, 1}};
@@ -28,6 +29,7 @@ py::dict move(const Bench& b, const std::variant<std::string, py::dict>& sweep,
   request.to = to;
   request.by = by;
   request.hold = hold;
+  request.output = output;
   MoveResult r;
   {
     const py::gil_scoped_release others_go_on;
@@ -38,12 +40,14 @@ py::dict move(const Bench& b, const std::variant<std::string, py::dict>& sweep,
   const auto poses = static_cast<Eigen::Index>(r.poses.size());
   const double none = std::numeric_limits<double>::quiet_NaN();
   Rows q(poses, b.mechanism->nq()), u(poses, b.mechanism->nv()), udot(poses, b.mechanism->nv());
-  Vector displacement(poses);
+  Vector displacement(poses), angle(poses), joint_force(poses);
   std::vector<int> branch, dead, change;
   for (Eigen::Index i = 0; i < poses; ++i) {
     const MovedPose& pose = r.poses[static_cast<std::size_t>(i)];
     q.row(i) = pose.q;
     displacement[i] = pose.s;
+    angle[i] = pose.transmission_angle;
+    joint_force[i] = pose.joint_force;
     branch.push_back(pose.branch);
     if (pose.u.size() > 0) {
       u.row(i) = pose.u;
@@ -69,6 +73,10 @@ py::dict move(const Bench& b, const std::variant<std::string, py::dict>& sweep,
   all["dead_points"] = dead;
   all["change_points"] = change;
   all["reach"] = reach;
+  if (!output.empty()) {
+    all["transmission_angle"] = std::move(angle);
+    all["joint_force"] = std::move(joint_force);
+  }
   return all;
 }
 
@@ -78,7 +86,7 @@ void add_move(py::class_<Bench, BenchPtr>& mechanism) {
   using namespace py::literals;
   mechanism.def(
       "move", &move, "sweep"_a, "to"_a = py::none(), "by"_a = 0.0,
-      "hold"_a = std::vector<std::string>(),
+      "hold"_a = std::vector<std::string>(), "output"_a = "",
       "Poses as a coordinate is swept from the start, loops closed, as a dict: displacement "
       "(poses) of it "
       "[rad or m], q (poses, nq), ratios and ratio_rates (poses, nv), first and second "
@@ -86,7 +94,10 @@ void add_move(py::class_<Bench, BenchPtr>& mechanism) {
       "dead_points and change_points among the poses; reach, least and most of each coordinate; "
       "end: closed, reached or stopped, then why. `sweep`: its name, or names with amounts in "
       "proportion; `to`: where it ends (None: back at the start); `by`: from pose to pose (0: a "
-      "degree or a hundredth of the scene's length); `hold`: coordinates that stay. Raises "
+      "degree or a hundredth of the scene's length); `hold`: coordinates that stay; `output`: a "
+      "coordinate whose "
+      "transmission_angle [rad] and joint_force, the largest for a unit effort on it, are told. "
+      "Raises "
       "SceneError where more than one freedom is left.");
 }
 

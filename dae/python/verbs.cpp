@@ -84,13 +84,14 @@ class Cases {
  public:
   Cases(const std::string& text, const std::string& file, const std::string& algebra,
         const std::string& kkt, const std::string& cut, const Names& vary, const Names& watch,
-        double cpu_limit, const RunArguments& asked) {
+        const std::optional<SampleSettings>& sample, double cpu_limit, const RunArguments& asked) {
     const Scene scene = parse_scene(text, file);
     static_cast<void>(asked.settings(scene.run));  // what is wrong with every case is said once
     request_.text = text;
     request_.file = file;
     request_.mechanism = options_of(algebra, kkt, cut);
     for (const std::string& place : vary) request_.varied.emplace_back(place);
+    if (sample) request_.sample = std::make_shared<Sample>(*sample, vary.size());
     request_.watched = watch;
     request_.max_cpu_seconds = cpu_time(cpu_limit);
     request_.settings = [asked](const RunDefaults& defaults) { return asked.settings(defaults); };
@@ -101,18 +102,28 @@ class Cases {
   void make(std::size_t number) { cases_.at(number) = run_case(request_, number); }
   void stop() { stopped_ = true; }
   std::string csv() const { return sweep_csv(request_, cases_); }
-  std::string json() const { return sweep_json(request_, cases_).dump(); }
-  std::string table() const { return sweep_table(request_, cases_); }
+  std::string json() { return sweep_json(request_, cases_, statistics()).dump(); }
+  std::string table() { return sweep_table(request_, cases_, statistics()); }
 
  private:
+  /// Of all cases, once; null without a sample.
+  const SweepStatistics* statistics() {
+    if (!request_.sample) return nullptr;
+    if (!statistics_) statistics_ = sweep_statistics(request_, cases_);
+    return &*statistics_;
+  }
+
   SweepRequest request_;
   std::vector<SweepCase> cases_;
+  std::optional<SweepStatistics> statistics_;
   std::atomic<bool> stopped_{false};
 };
 
 std::unique_ptr<Cases> cases(const std::string& text, const std::string& file,
                              const std::string& algebra, const std::string& kkt,
                              const std::string& cut, const Names& vary, const Names& watch,
+                             const std::string& sample, const std::optional<std::size_t>& points,
+                             const std::optional<std::uint64_t>& seed, bool indices,
                              const std::string& form, const std::string& integrator,
                              const std::string& gauge, double rtol, const Given& atol,
                              const Given& step, const Given& end, const std::optional<int>& samples,
@@ -120,7 +131,8 @@ std::unique_ptr<Cases> cases(const std::string& text, const std::string& file,
                              double baumgarte_alpha, double baumgarte_beta, double beta,
                              double penalty, double cpu_limit) {
   return std::make_unique<Cases>(
-      text, file, algebra, kkt, cut, vary, watch, cpu_limit,
+      text, file, algebra, kkt, cut, vary, watch, sample_settings(sample, points, seed, indices),
+      cpu_limit,
       RunArguments{form, integrator, gauge, rtol, atol, step, end, samples, spectral_radius,
                    project, baumgarte_alpha, baumgarte_beta, beta, penalty});
 }
@@ -170,7 +182,7 @@ void bind_verbs(py::module_& module) {
   py::class_<Cases> all(module, "Cases");
   with_run_arguments([&](const auto&... arguments) {
     all.def(py::init(&cases), "text"_a, "file"_a, "algebra"_a, "kkt"_a, "cut"_a, "vary"_a,
-            "watch"_a, arguments...);
+            "watch"_a, "sample"_a, "points"_a, "seed"_a, "indices"_a, arguments...);
   });
   all.def("__len__", &Cases::count)
       .def("make", &Cases::make, "number"_a, py::call_guard<py::gil_scoped_release>())

@@ -46,6 +46,74 @@ std::vector<double> travel_of(const MoveResult& r) {
   return travel;
 }
 
+const Column& output(const MoveResult& r) {
+  return r.coordinates[static_cast<std::size_t>(r.output)];
+}
+/// "[1/m]" of a force for a unit moment, "[1]" for a unit force.
+std::string by_effort(const MoveResult& r) {
+  return output(r).unit == "rad" ? " [1/m]" : " [1]";
+}
+/// Effort on the output for a unit effort of the swept coordinate, nothing lost: dq/ds⁻¹.
+double advantage(const MoveResult& r, const MovedPose& pose) {
+  return pose.u.size() > 0 ? 1 / pose.u[r.output_rate] : none;
+}
+std::string advantage_heading(const MoveResult& r) {
+  return output(r).name + ".advantage [" + swept(r).unit + "/" + output(r).unit + "]";
+}
+
+/// Poses where a number of theirs is least and greatest; null where it is none everywhere.
+template <class Value>
+std::pair<const MovedPose*, const MovedPose*> extremes_of(const MoveResult& r, Value value) {
+  const MovedPose *least = nullptr, *most = nullptr;
+  for (const MovedPose& pose : r.poses) {
+    const double x = value(pose);
+    if (std::isnan(x)) continue;
+    if (!least || x < value(*least)) least = &pose;
+    if (!most || x > value(*most)) most = &pose;
+  }
+  return {least, most};
+}
+
+std::string place_of(const MoveResult& r, const MovedPose& pose) {
+  return swept(r).name + " = " + compact(r.start + pose.s, 5) + " " + swept(r).unit;
+}
+
+/// Where it comes to rest, and how well force is passed to the output.
+std::string transmission_in_words(const MoveResult& r) {
+  if (r.output < 0) return "";
+  const auto angle = [](const MovedPose& pose) { return pose.transmission_angle; };
+  const auto degrees = [&](const MovedPose& pose) {
+    return compact(angle(pose) * 180 / std::numbers::pi, 4) + "° at " + place_of(r, pose);
+  };
+  const auto [least, most] = extremes_of(r, angle);
+  std::string text = least ? "The transmission angle of " + output(r).name + " is least, " +
+                                 degrees(*least) + ", and largest, " + degrees(*most) + "."
+                           : "No one point of the output link of " + output(r).name +
+                                 " takes the whole force: it has no transmission angle.";
+  const auto hardest = extremes_of(r, [](const MovedPose& p) { return p.joint_force; }).second;
+  if (hardest)
+    text += " The largest joint force for " +
+            std::string(output(r).unit == "rad" ? "1 N m" : "1 N") + " on it is " +
+            compact(hardest->joint_force, 4) + " N, at " + place_of(r, *hardest) + ".";
+  return text;
+}
+
+/// The first few by name.
+std::string dead_points_in_words(const MoveResult& r) {
+  constexpr int most = 4;
+  std::string text;
+  int told = 0;
+  for (const MovedPose& pose : r.poses) {
+    if (pose.kind != MovedPose::Kind::dead_point) continue;
+    if (told++ == most) return text + " …";
+    text += (text.empty() ? " Dead points: " : "; ");
+    for (std::size_t i = 0; i < r.coordinates.size() && i < 6; ++i)
+      text += (i == 0 ? "" : ", ") + r.coordinates[i].name + " = " +
+              compact(pose.q[static_cast<Eigen::Index>(i)], 5);
+  }
+  return text.empty() ? text : text + ".";
+}
+
 Json points(const MoveResult& r, MovedPose::Kind kind) {
   Json all = Json::array();
   for (const MovedPose& pose : r.poses)
@@ -85,6 +153,7 @@ std::string move_in_words(const MoveResult& r) {
   text += r.end == MoveResult::End::closed    ? "; back at the start."
           : r.end == MoveResult::End::reached ? "."
                                               : "; it stopped: " + r.why + ".";
+  text += dead_points_in_words(r);
   if (r.change_points() > 0)
     text += " At a change point another assembly is as near: it was passed straight on.";
   return text;
@@ -108,13 +177,19 @@ std::string move_table(const MoveResult& r) {
                     compact(reach.most - reach.least, 6), std::to_string(reach.turns_back), least,
                     most});
   }
-  return text + "\n" + in_columns(rows);
+  const std::string passed = transmission_in_words(r);
+  return text + "\n" + in_columns(rows) + (passed.empty() ? "" : "\n" + passed + "\n");
 }
 
 std::string move_csv(const MoveResult& r) {
   std::vector<std::string> cells{"kind", "displacement [" + swept(r).unit + "]", "branch"};
   const bool asked = !r.poses.empty() && r.poses.front().reciprocal_condition >= 0;
   if (asked) cells.emplace_back("reciprocal_condition [1]");
+  if (r.output >= 0) {
+    cells.emplace_back("transmission_angle [rad]");
+    cells.push_back("joint_force" + by_effort(r));
+    cells.push_back(csv_cell(advantage_heading(r)));
+  }
   for (const Column& c : r.coordinates) cells.push_back(csv_cell(c.label()));
   for (const int order : {1, 2})
     for (const Column& c : r.rates)
@@ -128,6 +203,9 @@ std::string move_csv(const MoveResult& r) {
     cells = {name_of(pose.kind), round_trip(pose.s),
              pose.branch == 0 ? "" : std::to_string(pose.branch)};
     if (asked) cells.push_back(round_trip(pose.reciprocal_condition));
+    if (r.output >= 0)
+      for (const double x : {pose.transmission_angle, pose.joint_force, advantage(r, pose)})
+        cells.push_back(round_trip(x));
     for (const double q : pose.q) cells.push_back(round_trip(q));
     for (const Eigen::VectorXd* x : {&pose.u, &pose.udot})
       for (std::size_t i = 0; i < r.rates.size(); ++i)
@@ -150,7 +228,23 @@ Json move_json(const MoveResult& r) {
     ratio[r.rates[k].name + by_swept(r, r.rates[k].unit, 1)] = {{"least", number_or_null(least)},
                                                                 {"most", number_or_null(most)}};
   }
+  Json passed;
+  if (r.output >= 0) {
+    passed["coordinate"] = output(r).label();
+    const auto add = [&](const std::string& name, auto value) {
+      const auto [least, most] = extremes_of(r, value);
+      Json& entry = passed[name];
+      if (!least) return;
+      entry = {{"least", number_or_null(value(*least))},
+               {"least_at", number_or_null(r.start + least->s)},
+               {"most", number_or_null(value(*most))},
+               {"most_at", number_or_null(r.start + most->s)}};
+    };
+    add("transmission_angle", [](const MovedPose& pose) { return pose.transmission_angle; });
+    add("joint_force", [](const MovedPose& pose) { return pose.joint_force; });
+  }
   return {{"scene", r.scene},
+          {"output", passed},
           {"swept", swept(r).label()},
           {"start", number_or_null(r.start)},
           {"end", name_of(r.end)},
@@ -193,6 +287,17 @@ Json move_charts(const MoveResult& r) {
     for (const MovedPose& pose : r.poses)
       curves.back().second.push_back(pose.u.size() > 0 ? pose.u[static_cast<Eigen::Index>(k)]
                                                        : none);
+  }
+  if (r.output >= 0) {
+    std::vector<double> angles, forces;
+    for (const MovedPose& pose : r.poses) {
+      angles.push_back(pose.transmission_angle);
+      forces.push_back(pose.joint_force);
+    }
+    add("transmission", "transmission angle of " + output(r).name + " [rad]", "rad",
+        {{output(r).name, angles}});
+    add("joint_force", "largest joint force for a unit effort on " + output(r).name, "",
+        {{output(r).name, forces}});
   }
   add("ratios", "rates while " + swept(r).name + " has a rate of 1", "", curves);
   return charts;

@@ -1,5 +1,6 @@
 #include <momenta/dae/report/csv.h>
 #include <momenta/dae/report/json.h>
+#include <momenta/dae/report/sample_report.h>
 #include <momenta/dae/report/sweep_report.h>
 #include <momenta/dae/text/number_text.h>
 
@@ -11,22 +12,6 @@ namespace {
 
 constexpr std::size_t most_lines = 40;
 
-/// A measure of a case, by its name and as tables head it.
-struct Measure {
-  std::string name, heading;
-  double (*of)(const SweepCase&);
-};
-const std::vector<Measure>& measures() {
-  static const std::vector<Measure> all{
-      {"position_drift_max", "|Φ| [m]", [](const SweepCase& c) { return c.position_drift_max; }},
-      {"velocity_drift_max", "|Φ̇| [m/s]", [](const SweepCase& c) { return c.velocity_drift_max; }},
-      {"angle_drift_max", "|Φ| [rad]", [](const SweepCase& c) { return c.angle_drift_max; }},
-      {"angle_rate_drift_max", "|Φ̇| [rad/s]",
-       [](const SweepCase& c) { return c.angle_rate_drift_max; }},
-      {"energy_error_max", "energy [J]", [](const SweepCase& c) { return c.energy_error_max; }}};
-  return all;
-}
-
 std::map<std::string, std::size_t> counts(const std::vector<SweepCase>& cases) {
   std::map<std::string, std::size_t> all;
   for (const SweepCase& c : cases) ++all[c.status];
@@ -34,7 +19,7 @@ std::map<std::string, std::size_t> counts(const std::vector<SweepCase>& cases) {
 }
 
 /// The case where a measure is greatest; none where it was nowhere measured.
-const SweepCase* greatest(const std::vector<SweepCase>& cases, const Measure& measure) {
+const SweepCase* greatest(const std::vector<SweepCase>& cases, const SweepMeasure& measure) {
   const SweepCase* best = nullptr;
   for (const SweepCase& c : cases) {
     const double x = measure.of(c);
@@ -91,17 +76,27 @@ std::string sweep_csv(const SweepRequest& request, const std::vector<SweepCase>&
   return text;
 }
 
-nlohmann::ordered_json sweep_json(const SweepRequest& request,
-                                  const std::vector<SweepCase>& cases) {
+nlohmann::ordered_json sweep_json(const SweepRequest& request, const std::vector<SweepCase>& cases,
+                                  const SweepStatistics* statistics) {
   nlohmann::ordered_json json;
   json["scene"] = request.file;
   json["varied"] = nlohmann::ordered_json::array();
-  for (const Varied& v : request.varied)
-    json["varied"].push_back({{"place", v.place}, {"values", v.values}});
+  for (const Varied& v : request.varied) {
+    auto& entry = json["varied"].emplace_back();
+    entry["place"] = v.place;
+    if (!v.values().empty()) {
+      entry["values"] = v.values();
+    } else {
+      const bool normal = v.distribution.kind == Distribution::Kind::normal;
+      entry["distribution"] = v.distribution.name();
+      entry[normal ? "mean" : "from"] = v.distribution.a;
+      entry[normal ? "deviation" : "to"] = v.distribution.b;
+    }
+  }
   json["watched"] = request.watched;
   json["cases"] = cases.size();
   json["status"] = counts(cases);
-  for (const Measure& measure : measures()) {
+  for (const SweepMeasure& measure : sweep_measures()) {
     const SweepCase* worst = greatest(cases, measure);
     auto& entry = json["greatest"][measure.name];
     if (!worst) continue;
@@ -112,16 +107,18 @@ nlohmann::ordered_json sweep_json(const SweepRequest& request,
   double cpu = 0;
   for (const SweepCase& c : cases) cpu += c.cpu_s;
   json["cpu_s"] = number_or_null(cpu);
+  if (statistics) json.update(sample_json(request, *statistics));
   return json;
 }
 
-std::string sweep_table(const SweepRequest& request, const std::vector<SweepCase>& cases) {
+std::string sweep_table(const SweepRequest& request, const std::vector<SweepCase>& cases,
+                        const SweepStatistics* statistics) {
   std::string text;
   if (cases.size() <= most_lines) {
     std::vector<std::vector<std::string>> rows(1);
     for (const Varied& v : request.varied) rows[0].push_back(v.place);
     rows[0].emplace_back("status");
-    for (const Measure& measure : measures())
+    for (const SweepMeasure& measure : sweep_measures())
       if (greatest(cases, measure)) {
         rows[0].push_back(measure.heading);
         if (const auto at = measure.heading.find("[m"); at != std::string::npos)
@@ -133,7 +130,7 @@ std::string sweep_table(const SweepRequest& request, const std::vector<SweepCase
       auto& row = rows.emplace_back();
       for (const double value : c.values) row.push_back(compact(value, 6));
       row.push_back(c.status);
-      for (const Measure& measure : measures())
+      for (const SweepMeasure& measure : sweep_measures())
         if (greatest(cases, measure)) row.push_back(scientific(measure.of(c), 2));
       row.push_back(std::to_string(c.steps));
       for (const auto& w : c.watched) row.push_back(compact(w.last, 6));
@@ -148,11 +145,12 @@ std::string sweep_table(const SweepRequest& request, const std::vector<SweepCase
     }
     text += "\n";
   }
+  if (statistics) text += sample_table(request, *statistics);
   text += std::to_string(cases.size()) + " cases";
   for (const auto& [status, count] : counts(cases))
     text += ", " + std::to_string(count) + " " + status;
   text += ".\n";
-  for (const Measure& measure : measures())
+  for (const SweepMeasure& measure : sweep_measures())
     if (const SweepCase* worst = greatest(cases, measure))
       text += "Greatest " + measure.name + ": " + scientific(measure.of(*worst), 2) + " at " +
               values_in_words(request, *worst) + "\n";

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <fstream>
 #include <stdexcept>
 #include <system_error>
 
@@ -97,6 +98,14 @@ void Journal::read(const Study& study) {
     append(text_of({{"study", study.digest}, {"build", study.build}, {"command", study.command}}));
   if (!trouble_.empty()) throw std::runtime_error(trouble_);
   holds_runs_ = !records_.empty();
+}
+
+std::string Journal::build_of(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::string first;
+  std::getline(in, first);
+  const Line line = Line::parse(first, nullptr, false);
+  return line.is_object() ? text_at(line, "build") : "";
 }
 
 void Journal::append(const std::string& line) {

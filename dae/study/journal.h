@@ -40,6 +40,9 @@ class Journal {
   /// Appends a line. May be called from several threads.
   void add(const std::string& key, const nlohmann::json& record);
 
+  /// The build that made a file; empty where it has no first line, or is none.
+  static std::string build_of(const std::filesystem::path& file);
+
   const std::filesystem::path& file() const { return file_; }
   void take_run() { ++runs_taken_; }  ///< counts what a study did not make again
   int runs_taken() const { return runs_taken_; }

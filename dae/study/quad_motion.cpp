@@ -5,6 +5,8 @@
 #include <momenta/dae/sweeps/spatial_loop_sweeps.h>
 
 #include <algorithm>
+#include <stdexcept>
+#include <string>
 
 namespace momenta {
 namespace {
@@ -23,6 +25,15 @@ struct Out {
   Quad& operator[](int i) const { return x[i]; }
 };
 
+/// The plan. @throws std::runtime_error where more equations are open than the sweeps have slots
+LoopPlan fitting(LoopPlan plan) {
+  if (plan.slots > LoopPlan::most_slots)
+    throw std::runtime_error("a reference in quadruple precision takes at most " +
+                             std::to_string(LoopPlan::most_slots) +
+                             " loop equations open at once, found " + std::to_string(plan.slots));
+  return plan;
+}
+
 template <class Space, class Tree>
 class QuadSweeps final : public QuadMotion {
  public:
@@ -31,7 +42,7 @@ class QuadSweeps final : public QuadMotion {
         model_(std::move(model)),
         links_(build_links(model_)),
         loops_(in_link_frames(build_loops(mechanism.scene(), mechanism.tree(), model_), links_)),
-        plan_(plan_loops(model_, loops_)),
+        plan_(fitting(plan_loops(model_, loops_))),
         e_(mechanism.evaluation<Quad>()),
         accelerations_(links_, loops_, plan_),
         corrections_(links_, loops_, plan_),

@@ -23,8 +23,8 @@ class QuadMotion {
 };
 
 /// Of a Lagrangian: make_quad_lagrangian().
-/// @pre the mechanism stays where it is, and its loops fit into the sweeps. Cost of a call: about
-/// 100 evaluations in doubles.
+/// @pre the mechanism stays where it is. @throws std::runtime_error where more loop equations are
+/// open at once than the sweeps have slots. Cost of a call: about 100 evaluations in doubles.
 std::unique_ptr<QuadMotion> make_quad_motion(const Mechanism& mechanism);
 
 }  // namespace momenta

@@ -168,23 +168,24 @@ void list(const Each& each,
 template <class Each>
 void list(const Each& each,
           auto&& s) requires std::is_same_v<std::remove_cvref_t<decltype(s)>, SweepCase::Watched> {
-  auto& [last, least, greatest] = s;
+  auto& [last, least, greatest, label, curve] = s;
   each("last", last), each("least", least), each("greatest", greatest);
+  each("label", label), each("curve", curve);
 }
 
 template <class Each>
 void list(const Each& each,
           auto&& s) requires std::is_same_v<std::remove_cvref_t<decltype(s)>, SweepCase> {
   auto& [values, status, reason, stopped_at, drift_unit, position_drift_max, velocity_drift_max,
-         angle_drift_max, angle_rate_drift_max, energy_error_max, steps, evaluations, watched,
-         cpu_s] = s;
+         angle_drift_max, angle_rate_drift_max, energy_error_max, steps, evaluations, times,
+         watched, cpu_s] = s;
   each("values", values), each("status", status), each("reason", reason);
   each("stopped_at", stopped_at), each("drift_unit", drift_unit);
   each("position_drift_max", position_drift_max), each("velocity_drift_max", velocity_drift_max);
   each("angle_drift_max", angle_drift_max), each("angle_rate_drift_max", angle_rate_drift_max);
   each("energy_error_max", energy_error_max);
-  each("steps", steps), each("evaluations", evaluations), each("watched", watched);
-  each("cpu_s", cpu_s);
+  each("steps", steps), each("evaluations", evaluations), each("times", times);
+  each("watched", watched), each("cpu_s", cpu_s);
 }
 
 template <class Each>

@@ -8,13 +8,13 @@
 #include <charconv>
 #include <cmath>
 #include <new>
+#include <set>
 #include <stdexcept>
-#include <tuple>
 
 namespace momenta {
 namespace {
 
-constexpr std::size_t most_cases = 10'000'000;
+constexpr std::size_t most_cases = Sample::most_cases;
 
 std::vector<std::string> parts(const std::string& text, char between) {
   std::vector<std::string> all(1);
@@ -26,30 +26,66 @@ std::vector<std::string> parts(const std::string& text, char between) {
   return all;
 }
 
+/// Places with commas between; of "\\," the comma belongs to the place.
+std::vector<std::string> places_in(const std::string& text) {
+  std::vector<std::string> all(1);
+  for (std::size_t i = 0; i < text.size(); ++i)
+    if (text[i] == '\\' && i + 1 < text.size() && text[i + 1] == ',')
+      all.back() += text[++i];
+    else if (text[i] == ',')
+      all.emplace_back();
+    else
+      all.back() += text[i];
+  return all;
+}
+
 class VariedText {
  public:
   explicit VariedText(const std::string& text) : text_(text) {}
 
-  std::pair<std::string, std::vector<double>> read() const {
+  void read(Varied& varied) const {
     const std::size_t equals = text_.rfind('=');
     if (equals == std::string::npos || equals == 0) refuse();
-    const std::string place = text_.substr(0, equals), values = text_.substr(equals + 1);
-    const auto range = parts(values, ':');
-    if (range.size() == 1) {
-      std::vector<double> list;
-      for (const std::string& value : parts(values, ',')) list.push_back(number(value));
-      return {place, list};
-    }
-    const bool log = range.size() == 4 && range[3] == "log";
-    if (range.size() != 3 && !log) refuse();
-    return {place, spaced(number(range[0]), number(range[1]), range[2], log)};
+    varied.place = text_.substr(0, equals);
+    varied.places = places_in(varied.place);
+    for (const std::string& place : varied.places)
+      if (place.empty()) refuse();
+    varied.distribution = distribution(text_.substr(equals + 1));
   }
 
  private:
   [[noreturn]] void refuse() const {
-    throw std::invalid_argument("--vary '" + text_ +
-                                "': expected PLACE=FROM:TO:COUNT, PLACE=FROM:TO:COUNT:log or "
-                                "PLACE=VALUE,VALUE,…, as in body.crank.mass=1:10:100");
+    throw std::invalid_argument(
+        "--vary '" + text_ +
+        "': expected PLACE=FROM:TO:COUNT, PLACE=FROM:TO:COUNT:log or PLACE=VALUE,VALUE,…, as in "
+        "body.crank.mass=1:10:100, or with --sample PLACE=FROM:TO, PLACE=FROM:TO:log or "
+        "PLACE=normal:MEAN:DEVIATION");
+  }
+  Distribution distribution(const std::string& values) const {
+    using Kind = Distribution::Kind;
+    auto range = parts(values, ':');
+    if (range.size() == 1) {
+      Distribution list;
+      for (const std::string& value : parts(values, ',')) list.values.push_back(number(value));
+      return list;
+    }
+    if (range[0] == "normal") {
+      if (range.size() != 3) refuse();
+      const Distribution normal{Kind::normal, number(range[1]), number(range[2]), {}};
+      if (!(normal.b > 0))
+        throw std::invalid_argument("--vary '" + text_ + "': found a standard deviation of " +
+                                    range[2] + ", expected one above zero");
+      return normal;
+    }
+    const bool log = range.back() == "log";
+    if (log) range.pop_back();
+    if (range.size() != 2 && range.size() != 3) refuse();
+    const double from = number(range[0]), to = number(range[1]);
+    if (log && !(from > 0 && to > 0))
+      throw std::invalid_argument("--vary '" + text_ +
+                                  "': a logarithmic range needs both ends above zero");
+    if (range.size() == 3) return {Kind::choice, 0, 0, spaced(from, to, range[2], log)};
+    return {log ? Kind::log_uniform : Kind::uniform, from, to, {}};
   }
   double number(const std::string& text) const {
     double value = 0;
@@ -63,9 +99,6 @@ class VariedText {
     if (count < 1 || count != std::floor(count) || count > static_cast<double>(most_cases))
       throw std::invalid_argument("--vary '" + text_ + "': found " + count_text +
                                   " values, expected 1 to " + std::to_string(most_cases));
-    if (log && !(from > 0 && to > 0))
-      throw std::invalid_argument("--vary '" + text_ +
-                                  "': a logarithmic range needs both ends above zero");
     const auto n = static_cast<std::size_t>(count);
     std::vector<double> values(n, from);
     for (std::size_t i = 1; i < n; ++i) {
@@ -96,11 +129,16 @@ std::vector<std::size_t> columns_of(const SweepRequest& request,
   return places;
 }
 
-void watch(const RunResult& run, const std::vector<std::size_t>& columns, SweepCase& result) {
+void watch(const RunResult& run, const std::vector<std::size_t>& columns, bool curves,
+           SweepCase& result) {
+  if (curves && !columns.empty())
+    for (const auto& row : run.trajectory.rows) result.times.push_back(row.front());
   for (const std::size_t column : columns) {
     SweepCase::Watched w;
+    if (curves) w.label = run.trajectory.columns[column];
     for (const auto& row : run.trajectory.rows) {
       const double x = row[column];
+      if (curves) w.curve.push_back(x);
       w.last = x;
       if (!(x >= w.least)) w.least = x;
       if (!(x <= w.greatest)) w.greatest = x;
@@ -112,7 +150,8 @@ void watch(const RunResult& run, const std::vector<std::size_t>& columns, SweepC
 void make(const SweepRequest& request, SweepCase& result) {
   std::vector<Setting> settings = request.fixed;
   for (std::size_t i = 0; i < request.varied.size(); ++i)
-    settings.push_back({request.varied[i].place, result.values[i]});
+    for (const std::string& place : request.varied[i].places)
+      settings.push_back({place, result.values[i]});
   Scene scene = parse_scene(request.text, request.file, settings);
   const Mechanism mechanism(std::move(scene), request.mechanism);
   const auto columns = columns_of(request, trajectory_columns(mechanism));
@@ -134,30 +173,45 @@ void make(const SweepRequest& request, SweepCase& result) {
   result.energy_error_max = run.energy_error_max;
   result.steps = run.counters.steps;
   result.evaluations = run.counters.evaluations;
-  watch(run, columns, result);
+  watch(run, columns, request.sample != nullptr, result);
 }
 
 }  // namespace
 
 Varied::Varied(const std::string& text) {
-  std::tie(place, values) = VariedText(text).read();
+  VariedText(text).read(*this);
 }
 
 std::size_t SweepRequest::cases() const {
+  std::set<std::string> seen;
+  for (const Varied& v : varied)
+    for (const std::string& place : v.places)
+      if (!seen.insert(place).second)
+        throw std::invalid_argument("--vary: '" + place + "' is varied twice, expected once");
+  if (sample) return sample->cases();
   std::size_t count = 1;
   for (const Varied& v : varied) {
-    if (v.values.size() > most_cases / count)
+    if (v.values().empty())
+      throw std::invalid_argument("--vary '" + v.place + "': " + v.distribution.words() +
+                                  ", is a distribution: expected --sample random, latin or sobol, "
+                                  "or values, PLACE=FROM:TO:COUNT say");
+    if (v.values().size() > most_cases / count)
       throw std::invalid_argument("--vary: more than " + std::to_string(most_cases) +
                                   " combinations, expected fewer values");
-    count *= v.values.size();
+    count *= v.values().size();
   }
   return count;
 }
 
 std::vector<double> SweepRequest::values(std::size_t number) const {
   std::vector<double> all(varied.size());
+  if (sample) {
+    for (std::size_t i = 0; i < varied.size(); ++i)
+      all[i] = varied[i].distribution.quantile(sample->at(number, i));
+    return all;
+  }
   for (std::size_t i = varied.size(); i-- > 0;) {
-    const auto& values = varied[i].values;
+    const auto& values = varied[i].values();
     all[i] = values[number % values.size()];
     number /= values.size();
   }

@@ -135,6 +135,58 @@ TEST_F(Program, SaysWhenLoopsComeApart) {
   EXPECT_GT(std::count(rows.begin(), rows.end(), '\n'), 10);
 }
 
+TEST_F(Program, SaysWhenTooManyLoopsAreOpenForAReference) {
+  const fs::path grid = write("grid.toml", call("make grid --n 5").out);
+  const Outcome o =
+      call("work '" + grid.string() +
+           "' --forms momentum --integrators dop853 --from 1e-6 --to 1e-6 --end 0.01");
+  EXPECT_EQ(o.status, 1);
+  EXPECT_NE(o.err.find("a reference in quadruple precision takes at most 16 loop equations open at "
+                       "once, found 20"),
+            std::string::npos)
+      << o.err;
+}
+
+TEST_F(Program, TellsHowForceIsPassedToAnOutput) {
+  const std::string move =
+      "move '" + example("four_bar") + "' --sweep O --by 0.5 --output C --out '";
+  const Outcome o = call(move + (folder_ / "m").string() + "'");
+  EXPECT_EQ(o.status, 0) << o.err;
+  EXPECT_NE(o.out.find("The transmission angle of C.q is least, 48."), std::string::npos) << o.out;
+  const auto told = json::parse(text_of(folder_ / "m" / "move.json"));
+  EXPECT_EQ(told.at("output").at("coordinate"), "C.q [rad]");
+  const double least = told.at("output").at("transmission_angle").at("least");
+  EXPECT_GT(least, 0.84);
+  EXPECT_LT(least, 0.86);  // 0.841 between these poses
+  const std::string csv = text_of(folder_ / "m" / "move.csv");
+  EXPECT_NE(csv.find(",transmission_angle [rad],joint_force [1/m],C.q.advantage [rad/rad],"),
+            std::string::npos)
+      << csv;
+  EXPECT_NE(text_of(folder_ / "m" / "index.html").find("transmission angle of C.q"),
+            std::string::npos);
+  expect_refused("move '" + example("four_bar") + "' --sweep O --output O", "is swept or held");
+  const Outcome dead = call("move '" + example("four_bar") + "' --sweep C --by 0.5");
+  EXPECT_NE(dead.out.find("Dead points: O.q = 3.9827, A.q = -3.1416, C.q = 2.3005; O.q = "),
+            std::string::npos)
+      << dead.out;
+}
+
+TEST_F(Program, TellsAllAssemblies) {
+  const std::string all = "assemble '" + example("four_bar") + "' --all ";
+  const Outcome o = call(all + "--hold O --starts 50");
+  EXPECT_EQ(o.status, 0) << o.err;
+  EXPECT_NE(o.out.find("2 assemblies with O held, from 50 starts"), std::string::npos) << o.out;
+  EXPECT_NE(o.out.find("A search proves no completeness"), std::string::npos) << o.out;
+  const auto told = json::parse(call(all + "--hold O --starts 50 --json").out);
+  ASSERT_EQ(told.at("assemblies").size(), 2u);
+  EXPECT_EQ(told.at("assemblies").at(0).at("own"), true);
+  EXPECT_EQ(told.at("assemblies").at(1).at("own"), false);
+  const double other = told.at("assemblies").at(1).at("q").at("C.q [rad]");
+  EXPECT_NEAR(other, 4.05128, 1e-4);
+  expect_refused(all, "leaves 1 degree of freedom");
+  EXPECT_NE(call("assemble '" + example("four_bar") + "' --starts 5").status, 0);
+}
+
 TEST_F(Program, PrintsItsHelpWhereNothingIsAsked) {
   const Outcome o = call("");
   EXPECT_EQ(o.status, 2);

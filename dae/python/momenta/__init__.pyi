@@ -327,7 +327,7 @@ class Mechanism:
     def evaluate(
         self, t: float = 0.0, q: ArrayLike | None = None, v: ArrayLike | None = None, p: ArrayLike | None = None
     ) -> dict[str, Any]: ...
-    def move(self, sweep: str | dict[str, float], to: float | None = None, by: float = 0, hold: Sequence[str] = ()) -> dict[str, Any]: ...
+    def move(self, sweep: str | dict[str, float], to: float | None = None, by: float = 0, hold: Sequence[str] = (), output: str = "") -> dict[str, Any]: ...
     def effort(
         self,
         *,
@@ -513,6 +513,7 @@ class Sweep:
     def __getitem__(self, name: str) -> _Array | list[str]: ...
     def __len__(self) -> int: ...
     def plot(self, column: str = "position_drift_max", *, ax: Any = None) -> Any: ...
+    def plot_along_time(self, column: str, *, ax: Any = None) -> Any: ...
 
 class Page(str):
     def save(self, file: _Path) -> None: ...
@@ -545,6 +546,10 @@ def sweep(
     vary: Mapping[str, str | ArrayLike] | Iterable[str],
     *,
     watch: str | Iterable[str] = (),
+    sample: str = "",
+    points: int | None = None,
+    seed: int | None = None,
+    indices: bool = False,
     threads: int = 0,
     progress: _Progress = None,
     **run: Unpack[_RunKeys],

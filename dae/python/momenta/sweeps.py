@@ -19,12 +19,17 @@ _RUN_ARGUMENTS = set(re.findall(r"(\w+): ", _momenta.Mechanism.run.__doc__.parti
 _RUN_ARGUMENTS -= {"self", "reference", "progress"}
 
 
-def sweep(scene, vary, *, watch=(), threads=0, progress=None, **run):
-    """One run for each combination of varied numbers of a scene: docs/reference/sweep.md.
+def sweep(
+    scene, vary, *, watch=(), sample="", points=None, seed=None, indices=False, threads=0, progress=None, **run
+):
+    """One run for each combination of varied numbers of a scene, or for each point of a sample of
+    their distributions: docs/reference/sweep.md.
 
     `vary`: {'body.crank.mass': [1, 2], 'gravity.1': '0:-9.81:5'}, or strings 'PLACE=VALUES'; `watch`:
-    columns of the trajectory; `threads`: how many run at a time, 0: one for each processor. Further
-    arguments are those of Mechanism.run except `reference`. Returns a Sweep.
+    columns of the trajectory; `sample`: random, latin or sobol, of `points` points (256) with `seed`
+    (1), where vary may also be 'FROM:TO', 'FROM:TO:log' or 'normal:MEAN:DEVIATION'; `indices`: Sobol'
+    indices too; `threads`: how many run at a time, 0: one for each processor. Further arguments are
+    those of Mechanism.run except `reference`. Returns a Sweep.
     """
     mechanism = _ready(scene)
     name = mechanism.name if mechanism is scene else _text_of(scene)[1]
@@ -36,7 +41,7 @@ def sweep(scene, vary, *, watch=(), threads=0, progress=None, **run):
         names = ", ".join(sorted(unknown))
         raise TypeError(f"{names}: sweep takes the arguments of Mechanism.run but for reference")
     text, options = _momenta.toml_of(mechanism), mechanism.options | run
-    cases = _momenta.Cases(text, name, vary=_listed(vary), watch=_listed(watch), **options)
+    cases = _momenta.Cases(text, name, vary=_listed(vary), watch=_listed(watch), sample=sample, points=points, seed=seed, indices=indices, **options)
     total = len(cases)
     tell = teller(progress) or (lambda fraction, text: None)
     with concurrent.futures.ThreadPoolExecutor(threads or os.cpu_count()) as pool:
@@ -55,6 +60,7 @@ class Sweep:
     strings.
 
     `csv` and `json`: what the program writes into sweep.csv and sweep.json; `table`: what it prints.
+    Of a sample `json` has its statistics, indices and curves.
     """
 
     def __init__(self, csv_text, json_dict, table):
@@ -81,20 +87,39 @@ class Sweep:
         return self.table.rstrip()
 
     def plot(self, column="position_drift_max", *, ax=None):
-        """Draws a column over the first varied number, one line for each combination of the others.
-        Returns the axes."""
+        """Draws a column over the first varied number, one line for each combination of the others;
+        of a sample a point for each case. Returns the axes."""
         first, *others = [varied["place"] for varied in self.json["varied"]]
         ax = axes(ax)
         x, y = self[first], self[column]
+        if "sampling" in self.json:  # a point for each case: no two share what is varied
+            others = []
         groups = list(zip(*(self[place] for place in others))) or [()] * len(self)
         for group in dict.fromkeys(groups):
             of_it = [g == group for g in groups]
             name = ", ".join(f"{place} = {value:g}" for place, value in zip(others, group))
-            ax.plot(x[of_it], y[of_it], ".-", label=name)
+            ax.plot(x[of_it], y[of_it], "." if "sampling" in self.json else ".-", label=name)
         ax.set_xlabel(first)
         ax.set_ylabel(self._with_unit(column))
         if others:
             legend(ax)
+        return ax
+
+    def plot_along_time(self, column, *, ax=None):
+        """Draws what a sample says of a watched column: its mean, and the bands between its 5 % and
+        95 % and its 25 % and 75 % quantiles. Returns the axes."""
+        curve = self.json.get("along_time", {}).get(column)
+        if curve is None:
+            raise KeyError(f"no curve of '{column}': expected a column watched by a sample")
+        y = {name: numpy.array(curve[name], float) for name in ("mean", "q05", "q25", "q75", "q95")}
+        ax = axes(ax)
+        line = ax.plot(curve["t"], y["mean"], label="mean")[0]
+        for low, high in (("q05", "q95"), ("q25", "q75")):
+            name = f"{int(low[1:])} to {int(high[1:])} %"
+            ax.fill_between(curve["t"], y[low], y[high], color=line.get_color(), alpha=0.2, label=name)
+        ax.set_xlabel("t [s]")
+        ax.set_ylabel(curve["column"])
+        legend(ax)
         return ax
 
     def _with_unit(self, name):

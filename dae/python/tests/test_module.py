@@ -95,6 +95,13 @@ class Poses(unittest.TestCase):
         with self.assertRaisesRegex(momenta.SceneError, "coordinate 'x' is not known"):
             m.move("x")
 
+    def test_force_to_an_output_goes_by_the_transmission_angle(self):
+        m = load("four_bar")
+        found = m.move("O", by=0.2, output="C")
+        # One force goes through all pins: its moment about C, the rocker's length 1.5, is 1.
+        np.testing.assert_allclose(1.5 * found["joint_force"] * np.sin(found["transmission_angle"]), 1)
+        self.assertNotIn("joint_force", m.move("O", by=0.5))
+
 
 class Efforts(unittest.TestCase):
     def test_of_a_motion_of_the_mechanism_itself_are_zero(self):

@@ -59,6 +59,35 @@ class AsTheProgram(unittest.TestCase):
         again = momenta.sweep(momenta.load(FOUR_BAR), ["body.crank.mass=0.5,2"], threads=1, **options)
         np.testing.assert_array_equal(again["steps"], made["steps"][::3])
 
+    def test_sample(self):
+        with tempfile.TemporaryDirectory() as out:
+            asked = ["--vary", "body.crank.mass=normal:1:0.1", "--vary", "body.rocker.mass=1:2", "--end", 0.2]
+            asked += ["--samples", 4, "--sample", "sobol", "--points", 8, "--seed", 5, "--indices", "--watch", "B.y"]
+            program("sweep", FOUR_BAR, *asked, "--out", out, "--quiet")
+            table, summary = ((pathlib.Path(out) / f"sweep.{x}").read_text() for x in ("csv", "json"))
+        vary = {"body.crank.mass": "normal:1:0.1", "body.rocker.mass": "1:2"}
+        made = momenta.sweep(
+            FOUR_BAR, vary, watch="B.y", sample="sobol", points=8, seed=5, indices=True, end=0.2, samples=4
+        )
+        self.assertEqual(made.csv, table)
+        summary = json.loads(summary)
+        for key in made.json.keys() - {"cpu_s"}:
+            self.assertEqual(made.json[key], summary[key], key)
+        self.assertEqual(len(made), 8 * 4)
+        b = made["B.y last"].reshape(8, 4)[:, :2]
+        self.assertAlmostEqual(made.json["statistics"]["B.y last"]["mean"], b.mean(), 14)
+        self.assertAlmostEqual(made.json["statistics"]["B.y last"]["deviation"], b.std(ddof=1), 14)
+        q = np.quantile(b, 0.95)
+        self.assertAlmostEqual(made.json["statistics"]["B.y last"]["q95"], q, 14)
+        self.assertAlmostEqual(made.json["along_time"]["B.y"]["q95"][-1], q, 14)
+        for wrong, sentence in (
+            ({"points": 3}, "points asked for without a sample"),
+            ({"sample": "halton"}, "sample 'halton' is not known"),
+            ({"sample": "latin", "points": 0}, "a sample of 0 points"),
+        ):
+            with self.assertRaisesRegex(ValueError, sentence):
+                momenta.sweep(FOUR_BAR, vary, **wrong)
+
     def test_view(self):
         def study(page):
             island = re.search(r'<script type="application/json" id="study">(.*?)</script>', page, re.DOTALL)

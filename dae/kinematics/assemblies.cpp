@@ -1,0 +1,254 @@
+#include <momenta/core/text/near_name.h>
+#include <momenta/dae/assembly/closing.h>
+#include <momenta/dae/assembly/turned_loops.h>
+#include <momenta/dae/dense/singular_values.h>
+#include <momenta/dae/joint_places.h>
+#include <momenta/dae/kinematics/assemblies.h>
+#include <momenta/dae/kinematics/coordinate_named.h>
+#include <momenta/dae/sample/sample.h>
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <thread>
+
+namespace momenta {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+constexpr double full_turn = 2 * std::numbers::pi;
+constexpr double start_width = 1.5;  // of starts [lengths]
+constexpr double free_value = 1e-9;  // singular values, beside the largest
+constexpr double turned_gap = 1e-9;  // |Φ| that a full turn may leave, in units
+
+/// What the coordinates of q are to a search.
+enum class Place { angle, length, quaternion };
+
+class Search {
+ public:
+  Search(const Mechanism& mechanism, double t, const VectorXd& own,
+         const AssembliesRequest& request)
+      : mechanism_(mechanism), t_(t), own_(own), request_(request), loops_(mechanism) {
+    for (const std::string& name : request.hold) held_.push_back(coordinate_named(mechanism, name));
+    for (const auto& [q, u] : held_) loops_.columns[static_cast<std::size_t>(u)] = false;
+    expect_no_freedom();
+    sort_coordinates();
+  }
+
+  Assemblies run() {
+    Assemblies found;
+    found.starts = request_.starts;
+    std::vector<std::optional<VectorXd>> poses(static_cast<std::size_t>(request_.starts));
+    {
+      std::atomic<std::size_t> next{0};
+      std::vector<std::jthread> workers;
+      for (int k = 0; k < std::max(1, request_.threads); ++k)
+        workers.emplace_back([&] {
+          ScaledLoops loops(mechanism_);
+          loops.columns = loops_.columns;
+          LeastNorm steps(loops.pattern(), mechanism_.m(), mechanism_.nv());
+          Closing closing(loops, steps, t_);
+          for (std::size_t i; (i = next++) < poses.size();) {
+            const Closing::Pose pose = closing.beside(start(i));
+            if (pose.is_closed) poses[i] = pose.q;
+          }
+        });
+    }
+    add(found, own_, 0);
+    for (const auto& pose : poses) {
+      if (!pose) continue;
+      if (!turned_loops(mechanism_, t_, *pose).empty()) {
+        ++found.turned;
+        continue;
+      }
+      ++found.closed;
+      add(found, *pose, 1);
+    }
+    std::stable_sort(found.all.begin(), found.all.end(),
+                     [](const auto& a, const auto& b) { return a.apart < b.apart; });
+    return found;
+  }
+
+ private:
+  /// D⁻¹ Φ_q C in the columns that are free, and which these are.
+  MatrixXd free_columns(const VectorXd& q, std::vector<int>& rates) {
+    loops_.gap(t_, q);  // places it
+    const std::vector<double> entries = loops_.jacobian();
+    MatrixXd all = MatrixXd::Zero(mechanism_.m(), mechanism_.nv());
+    for (std::size_t k = 0; k < entries.size(); ++k)
+      all(loops_.pattern()[k].row, loops_.pattern()[k].column) = entries[k];
+    rates.clear();
+    for (int u = 0; u < mechanism_.nv(); ++u)
+      if (loops_.columns[static_cast<std::size_t>(u)]) rates.push_back(u);
+    MatrixXd chosen(mechanism_.m(), static_cast<int>(rates.size()));
+    for (std::size_t k = 0; k < rates.size(); ++k)
+      chosen.col(static_cast<int>(k)) = all.col(rates[k]);
+    return chosen;
+  }
+
+  void expect_no_freedom() {
+    std::vector<int> rates;
+    const MatrixXd j = free_columns(own_, rates);
+    if (j.cols() == 0) return;
+    MatrixXd null = MatrixXd::Identity(j.cols(), j.cols());
+    if (j.rows() > 0) {
+      const Eigen::BDCSVD<MatrixXd> svd(j, Eigen::ComputeFullV);
+      const VectorXd& values = svd.singularValues();
+      Eigen::Index rank = 0;
+      while (rank < values.size() && values[rank] > free_value * values[0]) ++rank;
+      null = svd.matrixV().rightCols(j.cols() - rank);
+    }
+    if (null.cols() == 0) return;
+    // Rates that span the freedoms: the pivots of what is left free.
+    const Eigen::ColPivHouseholderQR<MatrixXd> pivots(null.transpose());
+    std::vector<std::string> names;
+    for (Eigen::Index k = 0; k < null.cols(); ++k)
+      names.push_back(
+          coordinate_of(rates[static_cast<std::size_t>(pivots.colsPermutation().indices()[k])]));
+    throw SceneError("what is held leaves " + std::to_string(null.cols()) +
+                     (null.cols() == 1 ? " degree" : " degrees") +
+                     " of freedom, and assemblies that are no isolated poses; hold as many "
+                     "coordinates, such as " +
+                     reading::all_in_quotes(names));
+  }
+
+  /// The name of the coordinate that has this rate.
+  std::string coordinate_of(int u) const {
+    for (const auto& body : mechanism_.tree().bodies)
+      if (u >= body.u && u < body.u + body.nv)
+        return mechanism_.coordinate_columns()[static_cast<std::size_t>(body.q + u - body.u)].name;
+    return mechanism_.rate_columns()[static_cast<std::size_t>(u)].name;
+  }
+
+  /// Which are quaternions, which come back by a full turn with the loops closed, and lengths.
+  void sort_coordinates() {
+    const auto nq = static_cast<std::size_t>(mechanism_.nq());
+    places_.assign(nq, Place::length);
+    turns_.assign(nq, false);
+    lengths_ = VectorXd::Ones(mechanism_.nq());
+    const std::vector<Column> columns = mechanism_.coordinate_columns();
+    for (const JointPlace& joint : joint_places(mechanism_))
+      for (const int at : joint.quaternions) {
+        quaternions_.push_back(at);
+        for (int k = 0; k < 4; ++k) places_[static_cast<std::size_t>(at + k)] = Place::quaternion;
+      }
+    const double length = length_of(mechanism_.scene());
+    for (std::size_t i = 0; i < nq; ++i) {
+      if (places_[i] == Place::quaternion) continue;
+      const auto k = static_cast<Eigen::Index>(i);
+      if (columns[i].unit != "rad") {
+        lengths_[k] = length;
+        continue;
+      }
+      places_[i] = Place::angle;
+      VectorXd round = own_;
+      round[k] += full_turn;
+      turns_[i] = mechanism_.m() == 0 ||
+                  (loops_.gap(t_, round) - loops_.gap(t_, own_)).cwiseAbs().maxCoeff() < turned_gap;
+    }
+  }
+
+  bool is_held(std::size_t i) const {
+    return std::any_of(held_.begin(), held_.end(),
+                       [&](const auto& h) { return h.first == static_cast<int>(i); });
+  }
+
+  /// The pose from which number `i` starts.
+  VectorXd start(std::size_t i) const {
+    VectorXd q = own_;
+    const auto drawn = [&](std::size_t k) { return in_unit_interval(noise(request_.seed, k, i)); };
+    for (std::size_t k = 0; k < places_.size(); ++k) {
+      const auto at = static_cast<Eigen::Index>(k);
+      if (is_held(k) || places_[k] == Place::quaternion) continue;
+      const double wide = places_[k] == Place::length ? start_width * lengths_[at]
+                          : turns_[k]                 ? full_turn / 2
+                                                      : full_turn;
+      q[at] += wide * (2 * drawn(k) - 1);
+    }
+    for (const int at : quaternions_) {  // even over rotations: Shoemake, Graphics Gems III, 1992
+      const auto k = static_cast<std::size_t>(at);
+      const double a = drawn(k), b = full_turn * drawn(k + 1), c = full_turn * drawn(k + 2);
+      q.segment<4>(at) << std::sqrt(1 - a) * std::sin(b), std::sqrt(1 - a) * std::cos(b),
+          std::sqrt(a) * std::sin(c), std::sqrt(a) * std::cos(c);
+    }
+    return q;
+  }
+
+  /// Angles to within half a turn of those of the own pose, quaternions to its side.
+  VectorXd nearest(VectorXd q) const {
+    for (std::size_t k = 0; k < places_.size(); ++k) {
+      const auto at = static_cast<Eigen::Index>(k);
+      if (turns_[k]) q[at] = own_[at] + std::remainder(q[at] - own_[at], full_turn);
+    }
+    for (const int at : quaternions_)
+      if (q.segment<4>(at).dot(own_.segment<4>(at)) < 0) q.segment<4>(at) *= -1;
+    return q;
+  }
+
+  double apart(const VectorXd& a, const VectorXd& b) const {
+    double most = 0;
+    for (std::size_t k = 0; k < places_.size(); ++k) {
+      const auto at = static_cast<Eigen::Index>(k);
+      if (places_[k] == Place::quaternion) continue;
+      const double way = (a[at] - b[at]) / lengths_[at];
+      most = std::max(most, std::abs(turns_[k] ? std::remainder(way, full_turn) : way));
+    }
+    for (const int at : quaternions_) {
+      const auto x = a.segment<4>(at), y = b.segment<4>(at);
+      most = std::max(most, 2 * std::min((x - y).norm(), (x + y).norm()));
+    }
+    return most;
+  }
+
+  void add(Assemblies& found, const VectorXd& q, int met) {
+    for (FoundAssembly& known : found.all)
+      if (apart(known.q, q) < Assemblies::same) {
+        known.met += met;
+        return;
+      }
+    FoundAssembly other;
+    other.q = nearest(q);
+    other.met = met;
+    other.apart = apart(q, own_);
+    std::vector<int> rates;
+    const MatrixXd j = free_columns(q, rates);
+    if (j.cols() > 0) {
+      const VectorXd values = Eigen::JacobiSVD<MatrixXd>(j).singularValues();
+      other.most_value = values[0];
+      other.least_value = values[j.cols() - 1];
+    }
+    found.all.push_back(std::move(other));
+  }
+
+  const Mechanism& mechanism_;
+  double t_;
+  VectorXd own_;
+  const AssembliesRequest& request_;
+  ScaledLoops loops_;
+  std::vector<std::pair<int, int>> held_;
+  std::vector<Place> places_;  ///< of each coordinate
+  std::vector<bool> turns_;    ///< whether a full turn brings it back
+  VectorXd lengths_;  ///< what a coordinate is counted in: 1 rad, or the scene's length [m]
+  std::vector<int> quaternions_;
+};
+
+}  // namespace
+
+int Assemblies::met_once() const {
+  return static_cast<int>(
+      std::count_if(all.begin(), all.end(), [](const FoundAssembly& a) { return a.met == 1; }));
+}
+
+Assemblies find_assemblies(const Mechanism& mechanism, double t, const VectorXd& q,
+                           const AssembliesRequest& request) {
+  if (mechanism.has_nonholonomic())
+    throw SceneError(
+        "rows of rates alone hold no pose: expected loops of positions, whose assemblies are told");
+  return Search(mechanism, t, q, request).run();
+}
+
+}  // namespace momenta

@@ -1,0 +1,26 @@
+#pragma once
+// What a sample says of one quantity.
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+namespace momenta {
+
+inline constexpr std::array<double, 5> told_quantiles{0.05, 0.25, 0.5, 0.75, 0.95};
+
+struct Summary {
+  std::size_t count = 0;   ///< values that are numbers; of fewer than one all below is NaN
+  double mean, deviation;  ///< deviation: with n - 1, NaN of one value
+  double least, greatest;
+  std::array<double, told_quantiles.size()> quantiles;
+};
+
+/// Values that are no finite numbers are left out; `count` says how many there are. Cost: a sort.
+Summary summary_of(std::vector<double> values);
+
+/// x_(⌊h⌋) + (h - ⌊h⌋) (x_(⌊h⌋+1) - x_(⌊h⌋)), h = (n - 1) p, of sorted x_0 … x_(n-1): definition 7
+/// of R. Hyndman, Y. Fan, Amer. Statist. 50 (1996), 361-365. @pre not empty, 0 <= p <= 1
+double quantile_of(const std::vector<double>& sorted, double p);
+
+}  // namespace momenta
