@@ -10,6 +10,7 @@
 #include <momenta/dae/mechanism.h>
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <memory>
 #include <vector>
 
