@@ -62,8 +62,9 @@ MatrixXd FormTangents::joined(const MatrixXd& a, const MatrixXd& b, const Matrix
   return all;
 }
 
-/// du, dσ of (7) at u_, σ_.
-bool FormTangents::momentum(double t, const VectorXd& q, const MatrixXd& dq, const MatrixXd& dp) {
+/// du, dσ of (7) at u_, σ_; `of_rates`: explicit_ with the rows of (8) below.
+bool FormTangents::momentum(double t, const VectorXd& q, const MatrixXd& dq, const MatrixXd& dp,
+                            bool of_rates) {
   if (!place(t, q)) return false;
   const auto rows = [&](auto& e, const auto* x, auto* out) {
     using S = Of<decltype(*out)>;
@@ -77,10 +78,18 @@ bool FormTangents::momentum(double t, const VectorXd& q, const MatrixXd& dq, con
     e.positions(phi.data());
     for (Index i = 0; i < m_; ++i) out[nv_ + i] += beta_ * phi[static_cast<std::size_t>(i)];
   };
+  const auto with_rates = [&](auto& e, const auto* x, auto* out) {
+    rows(e, x, out);
+    e.momentum_rates(x, x + nq_, m_ > 0 ? x + nq_ + nv_ : nullptr, leak_, out + nv_ + m_);
+  };
   const Index k = derivatives_.directions();
+  const VectorXd x = momenta::joined(q, u_, sigma_);
+  explicit_ = of_rates ? derivatives_.by_parameters(with_rates, x, 2 * nv_ + m_)
+                       : derivatives_.by_parameters(rows, x, nv_ + m_);
   MatrixXd right =
-      -derivatives_(rows, momenta::joined(q, u_, sigma_),
-                    joined(dq, MatrixXd::Zero(nv_, k), MatrixXd::Zero(m_, k)), nv_ + m_);
+      -derivatives_.along(rows, x, joined(dq, MatrixXd::Zero(nv_, k), MatrixXd::Zero(m_, k)),
+                          nv_ + m_) -
+      explicit_.topRows(nv_ + m_);
   right.topRows(nv_) += dp;
   const MatrixXd found = matrix_.solve(right);
   du_ = found.topRows(nv_);
@@ -98,7 +107,7 @@ bool FormTangents::rates(double t, const double* y, const double* ydot, const Ma
   Ydot.resize(nq_ + nv_, k);
   if (momenta_) {
     u_ = Map<const VectorXd>(form_.rates().data(), nv_);
-    if (!momentum(t, q, dq, dx)) return false;
+    if (!momentum(t, q, dq, dx, true)) return false;
     const auto rows = [&](auto& e, const auto* x, auto* out) {
       const auto *u = x + nq_, *sigma = m_ > 0 ? x + nq_ + nv_ : nullptr;
       e.place(t, x);
@@ -110,7 +119,10 @@ bool FormTangents::rates(double t, const double* y, const double* ydot, const Ma
       else
         std::copy_n(u, nq_, out);
     };
-    Ydot = derivatives_(rows, momenta::joined(q, u_, sigma_), joined(dq, du_, dsigma_), nq_ + nv_);
+    // q̇ = H(q) u has no θ in it.
+    Ydot = derivatives_.along(rows, momenta::joined(q, u_, sigma_), joined(dq, du_, dsigma_),
+                              nq_ + nv_);
+    Ydot.bottomRows(nv_) += explicit_.bottomRows(nv_);
     return true;
   }
   u_ = Map<const VectorXd>(y + nq_, nv_);
@@ -255,7 +267,7 @@ bool FormTangents::after_step(double t, const double* before, const double* afte
     sigma_ = Map<const VectorXd>(form_.multipliers().data(), m_);
     if (kept != 0) sigma_ *= kept;  // the form has turned it
     q = Map<const VectorXd>(after, nq_);
-    if (!momentum(t, q, dq, dx)) return false;
+    if (!momentum(t, q, dq, dx, false)) return false;
     const auto rows = [&](auto& e, const auto* x, auto* out) {
       e.place(t, x);
       e.move(x + nq_);

@@ -50,7 +50,7 @@ class FormTangents {
  private:
   bool place(double t, const Eigen::VectorXd& q);
   bool momentum(double t, const Eigen::VectorXd& q, const Eigen::MatrixXd& dq,
-                const Eigen::MatrixXd& dp);
+                const Eigen::MatrixXd& dp, bool of_rates);
   bool correct_position(double t, Eigen::VectorXd& q, Eigen::MatrixXd& dq);
   bool correct_velocity(double t, const Eigen::VectorXd& q, const Eigen::VectorXd& u,
                         const Eigen::MatrixXd& dq, Eigen::MatrixXd& du);
@@ -69,6 +69,7 @@ class FormTangents {
   double leak_, beta_, alpha_;  ///< β of (7); of (3) β² and 2α: feedback_
   Eigen::VectorXd u_, sigma_;
   Eigen::MatrixXd du_, dsigma_;
+  Eigen::MatrixXd explicit_;  ///< ∂/∂θ of the rows of (7) and, where asked for, (8)
 };
 
 /// "momentum", …: forms whose runs can be differentiated.

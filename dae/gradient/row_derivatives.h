@@ -10,6 +10,7 @@
 #include <momenta/dae/mechanism.h>
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <memory>
 #include <vector>
 
@@ -31,11 +32,11 @@ class RowDerivatives {
 
   Eigen::Index directions() const { return static_cast<Eigen::Index>(others_.size()); }
 
-  /// `rows(e, x, out)` for rows of any scalar, `size` of them; dx: x's size × directions. Cost: an
-  /// evaluation in dual numbers for eight directions, six plain ones for each parameter.
+  /// (∂r/∂x) dx, size × directions, of `rows(e, x, out)`, rows of any scalar, `size` of them; dx:
+  /// x's size × directions. Cost: an evaluation in dual numbers for eight directions.
   template <class Rows>
-  Eigen::MatrixXd operator()(const Rows& rows, const Eigen::VectorXd& x, const Eigen::MatrixXd& dx,
-                             Eigen::Index size) {
+  Eigen::MatrixXd along(const Rows& rows, const Eigen::VectorXd& x, const Eigen::MatrixXd& dx,
+                        Eigen::Index size) {
     Eigen::MatrixXd d(size, directions());
     x_.resize(static_cast<std::size_t>(x.size()));
     out_.resize(static_cast<std::size_t>(size));
@@ -52,6 +53,13 @@ class RowDerivatives {
         for (Eigen::Index k = 0; k < count; ++k)
           d(static_cast<Eigen::Index>(i), first + k) = out_[i].b[static_cast<std::size_t>(k)];
     }
+    return d;
+  }
+
+  /// ∂r/∂θ, size × directions. Cost: six plain evaluations for each parameter.
+  template <class Rows>
+  Eigen::MatrixXd by_parameters(const Rows& rows, const Eigen::VectorXd& x, Eigen::Index size) {
+    Eigen::MatrixXd d = Eigen::MatrixXd::Zero(size, directions());
     plain_.resize(size);
     for (Eigen::Index j = 0; j < d.cols(); ++j) {
       const OtherParameter& other = others_[static_cast<std::size_t>(j)];
@@ -61,6 +69,13 @@ class RowDerivatives {
       }
     }
     return d;
+  }
+
+  /// Both.
+  template <class Rows>
+  Eigen::MatrixXd operator()(const Rows& rows, const Eigen::VectorXd& x, const Eigen::MatrixXd& dx,
+                             Eigen::Index size) {
+    return along(rows, x, dx, size) + by_parameters(rows, x, size);
   }
 
  private:

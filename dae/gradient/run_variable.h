@@ -12,15 +12,18 @@ namespace momenta {
 
 /// One of them.
 struct RunVariable {
-  /// Kinds: a number of the scene's text; the position or rate of a joint from which the scene is
-  /// assembled.
-  enum class Kind { parameter, position, rate };
-  Kind kind = Kind::parameter;
-  std::string name;  ///< "a", "body.crank.mass", "O.q", "O.u"
-  std::string unit;  ///< of a start value; of a parameter empty
-  int place = -1;    ///< in q or u of a start value
-  double value = 0;  ///< of the scene
-  double size = 1;   ///< > 0, of which the steps of differences are a part
+  /// Kinds.
+  enum class Kind {
+    parameter,  ///< a number of the scene's text
+    position,   ///< of a joint, from which the scene is assembled
+    rate        ///< of a joint, likewise
+  };
+  Kind kind = Kind::parameter;  ///< its kind
+  std::string name;             ///< "a", "body.crank.mass", "O.q", "O.u"
+  std::string unit;             ///< of a start value; of a parameter empty
+  int place = -1;               ///< in q or u of a start value
+  double value = 0;             ///< of the scene
+  double size = 1;              ///< > 0, of which the steps of differences are a part
 };
 
 /// A scene as text, of which parameters can be changed.
