@@ -96,7 +96,7 @@ class Round:
                 {"t": [0.0, NAN, 1e300], "q": [q], "v": [u], "p": [p]}))),
             ("move", lambda: m.move(**self.some(
                 {"sweep": ["A", "O", "", {"O": 1.0}, {"O": 0}, {}], "to": [None, 1.0, NAN, 1e300],
-                 "by": [0.1, 0, -1, NAN, 1e300], "hold": [[], ["A"], ["x"]], "output": ["", "C", "x"]}))),
+                 "by": [0.1, 0, -1, NAN, 1e300], "hold": [[], ["A"], ["x"]]}))),
             ("effort", lambda: m.effort(**self.some(
                 {"motion": [None, {}, {"t": [0, 1, 2, 3], "O.q": [1, 1.1, 1.2, 1.3]}, {"t": [0.0], "O.q": [NAN]},
                             {"t": [1, 0], "O.q": [0, 1]}],
