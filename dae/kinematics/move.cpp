@@ -118,6 +118,9 @@ class Follower {
                        " of freedom; hold or sweep as many coordinates, such as " +
                        reading::all_in_quotes(names));
     }
+    if (stays())
+      throw SceneError("coordinate '" + first +
+                       "' cannot be swept: the loops hold it where it is, whatever else moves");
     if (request_.to && *request_.to < result_.start) {
       here_.tangent = -here_.tangent;
       here_.orientation = -here_.orientation;
@@ -126,6 +129,15 @@ class Follower {
     beginning_ = here_;
     take(here_, MovedPose::Kind::sample);
     if (request_.to && *request_.to == result_.start) result_.end = MoveResult::End::reached;
+  }
+
+  /// Whether the first coordinate has no rate along the curve, not at a dead point alone.
+  bool stays() {
+    constexpr double no_rate = 1e-11;
+    CurvePoint to = here_;
+    for (const double h : {0.0, 0.03, 0.07})
+      if ((h > 0 && !curve_->step(here_, h, to)) || std::abs(to.s_rate()) > no_rate) return false;
+    return true;
   }
 
   /// The next s that is a row: of the grid, where the start comes round again, or the end.
