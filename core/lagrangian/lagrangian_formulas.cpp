@@ -99,6 +99,14 @@ class Reader {
                          expected);
     return read;
   }
+  /// One that changes.
+  Expression of_event(const FormulaSpec& formula, const std::string& who) {
+    Expression read = this->read(formula, who);
+    for (const int v : read.variables())
+      if (v <= 2 * n_) return read;
+    throw SceneError(scene_.where(formula.at) + who + ", " + in_quotes(formula.text) +
+                     ", takes nothing that changes, expected t, a coordinate or a rate in it");
+  }
   void expect_coordinate(const Expression& equation, const LagrangianSpec::Constraint& c,
                          const std::string& who) const {
     const std::vector<int> all = equation.variables();
@@ -140,6 +148,9 @@ LagrangianFormulas::LagrangianFormulas(const Scene& scene)
         reader.of_positions(c.equation, who, "a holonomic equation, of coordinates and t"));
     reader.expect_coordinate(constraints.back(), c, who);
   }
+  for (std::size_t i = 0; i < scene.events.size(); ++i)
+    events.push_back(
+        reader.of_event(scene.events[i].when, in_quotes(name_of(scene.events[i], i)) + ": when"));
 }
 
 }  // namespace momenta

@@ -21,8 +21,8 @@ struct LagrangianFormulas {
 
   std::vector<std::string> names;  ///< of the variables
   std::optional<Expression> lagrangian, kinetic, potential;
-  std::vector<Expression> forces, constraints;  ///< in the order of the scene
-  std::vector<bool> uses_parameter;             ///< by parameter of the scene
+  std::vector<Expression> forces, constraints, events;  ///< in the order of the scene
+  std::vector<bool> uses_parameter;                     ///< by parameter of the scene
 };
 
 }  // namespace momenta

@@ -76,6 +76,10 @@ Census::Census(const Scene& scene) : scene_(scene) {
   Names forces(scene, "forces");
   for (const ForceSpec& force : scene.forces)
     if (!force.name.empty()) forces.add("force", force.name, force.at);
+
+  Names events(scene, "events");
+  for (const EventSpec& event : scene.events)
+    if (!event.name.empty()) events.add("event", event.name, event.at);
 }
 
 void Census::require_body(const std::string& name, bool or_ground, Location at,

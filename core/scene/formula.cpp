@@ -354,6 +354,14 @@ std::string formula_fault(const Scene& scene, const ForceSpec& force, const Form
                   "force; expected one of them";
 }
 
+std::string event_fault(const Formula& formula) {
+  if (formula.expression.is_truth())
+    return "is a comparison, expected a number, which passes zero at the event";
+  if (formula.signals.empty())
+    return "takes nothing that changes, expected t, a coordinate, a marker or a length in it";
+  return "";
+}
+
 std::string equation_fault(const Scene& scene, LoopKind kind, const Formula& formula) {
   if (formula.expression.is_truth())
     return "is a comparison, expected a formula that is to be zero";

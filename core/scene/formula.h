@@ -101,12 +101,15 @@ bool has_formula(const ForceSpec& force);
 /// Why a formula of a force cannot be one, in words; empty where it can.
 std::string formula_fault(const Scene& scene, const ForceSpec& force, const Formula& formula);
 
+/// Why a formula cannot be that of an event, in words; empty where it can.
+std::string event_fault(const Formula& formula);
+
 /// Why a formula cannot be the equation of a loop, of positions or of velocities, in words; empty
 /// where it can.
 std::string equation_fault(const Scene& scene, LoopKind kind, const Formula& formula);
 
-/// What the formulas of forces and equations name, their own names included. @pre the scene is
-/// valid
+/// What the formulas of forces, equations and events name, their own names included. @pre the scene
+/// is valid
 struct NamedInFormulas {
   explicit NamedInFormulas(const Scene& scene);
   std::set<std::string> joints;   ///< whose coordinates or rates they take

@@ -21,6 +21,7 @@ inline constexpr std::array<std::string_view, 16> loop_kinds{
     "rolling"};
 // Of slots a straight one has no curve to describe.
 inline constexpr std::array<std::string_view, 3> function_kinds{"cubic", "monotone", "linear"};
+inline constexpr std::array<std::string_view, 3> event_directions{"both", "up", "down"};
 inline constexpr std::array<std::string_view, 3> slot_curves{"line", "circle", "spline"};
 inline constexpr std::array<std::string_view, 4> cam_curves{"circle", "ellipse", "spline", "flat"};
 inline constexpr std::array<std::string_view, 5> drive_kinds{"polynomial", "harmonic", "step",

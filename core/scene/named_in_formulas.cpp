@@ -1,5 +1,5 @@
-// What the formulas of a scene's forces and equations name: what may neither go nor change its
-// meaning where the scene is written in another way.
+// What the formulas of a scene's forces, equations and events name: what may neither go nor change
+// its meaning where the scene is written in another way.
 
 #include <momenta/core/scene/formula.h>
 
@@ -9,9 +9,22 @@ namespace momenta {
 
 NamedInFormulas::NamedInFormulas(const Scene& scene) {
   if (std::none_of(scene.forces.begin(), scene.forces.end(), has_formula) &&
-      std::none_of(scene.loops.begin(), scene.loops.end(), has_equation))
+      std::none_of(scene.loops.begin(), scene.loops.end(), has_equation) && scene.events.empty())
     return;
   const FormulaReader reader(scene);
+  for (const EventSpec& event : scene.events) {
+    if (scene.lagrangian) break;
+    for (const Signal& s : reader.read(event.when.text).signals) {
+      const auto which = static_cast<std::size_t>(s.which);
+      if (s.kind == Signal::Kind::coordinate || s.kind == Signal::Kind::rate)
+        joints.insert(scene.joints[which].name);
+      if (s.kind == Signal::Kind::position || s.kind == Signal::Kind::velocity)
+        bodies.insert(scene.markers[which].body);
+      if (s.kind != Signal::Kind::length && s.kind != Signal::Kind::length_rate) continue;
+      springs.insert(scene.forces[which].name);
+      joints.insert(scene.forces[which].joints.begin(), scene.forces[which].joints.end());
+    }
+  }
   for (const LoopSpec& loop : scene.loops) {
     if (!has_equation(loop)) continue;
     for (const Signal& s : reader.read(loop.equation).signals) {

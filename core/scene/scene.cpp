@@ -64,6 +64,10 @@ Eigen::Vector3d perpendicular_to(const Eigen::Vector3d& axis) {
   return (next - next.dot(a) * a).normalized();
 }
 
+std::string name_of(const EventSpec& event, std::size_t place) {
+  return event.name.empty() ? "event " + std::to_string(place + 1) : event.name;
+}
+
 double length_of(const Scene& scene) {
   struct Points {
     Eigen::Vector3d low, high;

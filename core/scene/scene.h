@@ -128,7 +128,10 @@ struct JointSpec {
   double stop_stiffness = 0;
   double stop_damping = 0;   ///< of the stops, at least 0
   double stop_width = 0.01;  ///< of the stops, w > 0
-  Location at;               ///< where the file has it
+  /// Rigid stops at the limits instead: the rate after an impact is −restitution times that before,
+  /// 0 to 1. Of revolute, helical and prismatic joints with limits; no number: no such stops.
+  std::optional<double> restitution;
+  Location at;  ///< where the file has it
 };
 
 /// Size of q of a joint: by its kind, or by its law.
@@ -380,6 +383,18 @@ struct MarkerSpec {
   Location at;                                      ///< where the file has it
 };
 
+/// A moment of a run to be told: where a formula passes zero.
+struct EventSpec {
+  std::string name;  ///< or empty: "event 1", by its place among the events
+  /// A number of the mechanism (core/scene/formula.h), or of a Lagrangian's names; no comparison.
+  FormulaSpec when;
+  std::string direction = "both";  ///< up: from below zero to above it; down; both
+  bool stop = false;               ///< the run ends there
+  Location at;                     ///< where the file has it
+};
+/// Its name, or "event 1" by its place.
+std::string name_of(const EventSpec& event, std::size_t place);
+
 /// A number with a name, of which the file made others; here its value.
 struct ParameterSpec {
   std::string name;   ///< as formulas have it
@@ -411,6 +426,7 @@ struct Scene {
   std::vector<ForceSpec> forces;          ///< forces besides gravity and those of joints
   std::vector<FunctionSpec> functions;    ///< what formulas may call
   std::vector<MarkerSpec> markers;        ///< points to be reported
+  std::vector<EventSpec> events;          ///< moments of runs to be told
   std::vector<VisualSpec> visuals;        ///< solids to be drawn; no effect on motion
   std::vector<std::string> held;          ///< [assembly] hold: joints whose q and u assembly keeps
   Location held_at;                       ///< where the file has that list

@@ -141,6 +141,12 @@ void check_joints(const Scene& scene, const Census& census) {
             scene, joint.at, who,
             "limits are for revolute, prismatic, helical and spherical joints only");
     check_limits(scene, joint, who);
+    require(!joint.restitution ||
+                (joint.limits && has_one_coordinate(joint.kind) && joint.stop_stiffness == 0 &&
+                 joint.stop_damping == 0 && *joint.restitution >= 0 && *joint.restitution <= 1),
+            scene, joint.at, who,
+            "restitution must be 0 to 1, of a revolute, prismatic or helical joint with limits and "
+            "without stop_stiffness and stop_damping");
     require(joint.kind != JointKind::spherical || !joint.limits ||
                 ((*joint.limits)[0] == 0 && (*joint.limits)[1] < std::numbers::pi),
             scene, joint.at, who,

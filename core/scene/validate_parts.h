@@ -18,8 +18,8 @@ inline void require(bool condition, const Scene& scene, Location at, const std::
 }
 
 /// Who is called what. Construction checks the names themselves: none empty, none twice among
-/// bodies, among joints and loops together, among markers, functions, named forces; none with
-/// control characters; no body called "ground".
+/// bodies, among joints and loops together, among markers, functions, named forces, named events;
+/// none with control characters; no body called "ground".
 class Census {
  public:
   explicit Census(const Scene& scene);

@@ -24,11 +24,17 @@ bool may_fold(const Scene& scene) {
 
 }  // namespace
 
+bool has_rigid_stops(const Scene& scene) {
+  return std::any_of(scene.joints.begin(), scene.joints.end(),
+                     [](const JointSpec& joint) { return joint.restitution.has_value(); });
+}
+
 IntegratedScene::IntegratedScene(const Mechanism& written, const Start& start, const Recut* known)
     : written_(written), written_start_(start) {
   const MechanismOptions& options = written.options();
-  if (written.scene().lagrangian || options.cut == CutChoice::scene ||
-      options.kkt == KktChoice::dense || options.kkt == KktChoice::sparse)
+  if (written.scene().lagrangian || has_rigid_stops(written.scene()) ||
+      options.cut == CutChoice::scene || options.kkt == KktChoice::dense ||
+      options.kkt == KktChoice::sparse)
     return;
   try {
     if (may_fold(written.scene())) {

@@ -50,6 +50,10 @@ class IntegratedScene {
   Start start_;
 };
 
+/// Whether joints of a scene have rigid stops (JointSpec::restitution): those hold coordinates as
+/// they are written, so that a run integrates the scene as written.
+bool has_rigid_stops(const Scene& scene);
+
 /// The scene that runs integrate, for programs with integrators of their own: ClosedChain and
 /// OpenChain take every scene as it is written, whatever its cuts cost. The same motion; joints
 /// keep their names, those that stay joints their coordinates, which joints and loops stand in each

@@ -217,7 +217,7 @@ int answer(int argc, char** argv) {
   linearise_app->add_option("--out", o.out, "Directory for linear.json, linear.m, linear.py")
       ->type_name("DIR");
   CLI::App* move_app =
-      app.add_subcommand("move", "Poses, ratios and dead points as one coordinate is swept");
+      app.add_subcommand("move", "Poses, ratios, dead points as one coordinate is swept");
   move_app->footer("Example: momenta move examples/four_bar/scene.toml --sweep O --out results");
   MoveOptions move_options;
   add_scene(*move_app, o);
@@ -434,6 +434,41 @@ int answer(int argc, char** argv) {
       ->add_option("--task", sweep_options.task,
                    "Part I of N of the cases, kept in --out; without it: joined")
       ->type_name("I/N");
+  CLI::App* section_app =
+      app.add_subcommand("section", "Poincaré section: where runs pass a surface");
+  SectionOptions section_options;
+  section_app->footer(
+      "Example: momenta section examples/section/scene.toml --when x --up --end 100");
+  add_scene(*section_app, o);
+  section_app->add_option("--when", section_options.when, "The surface: where this formula is zero")
+      ->type_name("FORMULA")
+      ->required();
+  auto* upwards =
+      section_app->add_flag("--up", section_options.up, "From below zero to above alone");
+  section_app->add_flag("--down", section_options.down, "From above zero to below alone")
+      ->excludes(upwards);
+  section_app
+      ->add_option("--axes", section_options.axes,
+                   "Two columns to be drawn (default: the last coordinate and rate)")
+      ->type_name("COLUMN,COLUMN");
+  section_app
+      ->add_option("--starts", section_options.starts,
+                   "A start value in turn: O.u=FROM:TO:COUNT or O.u=X,...")
+      ->type_name("NAME=VALUES");
+  section_app
+      ->add_option("--energy", section_options.led,
+                   "With --starts: the rate that is led so that the energy stays")
+      ->type_name("NAME");
+  section_app->add_option("--form", o.form, "Which equations")
+      ->capture_default_str()
+      ->type_name("FORM");
+  add_run_options(*section_app, o);
+  for (const char* unused :
+       {"--reference", "--figures", "--samples", "--mesh-bytes", "--spectral-radius",
+        "--baumgarte-alpha", "--baumgarte-beta", "--beta", "--penalty"})
+    section_app->remove_option(section_app->get_option(unused));
+  section_app->get_option("--end")->description("End time [s]");
+  section_app->get_option("--out")->description("Directory for section.csv, .json, index.html");
   CLI::App* convert_verb =
       app.add_subcommand("convert", "Writes a scene, URDF or MJCF as a scene in TOML");
   convert_verb->footer("Example: momenta convert examples/models/ur5/ur5_robot.urdf ur5.toml");
@@ -517,6 +552,7 @@ int answer(int argc, char** argv) {
     if (*gradient_app) return gradient_verb(o, gradient_options);
     if (*view_verb) return view(o);
     if (*stress_app) return stress(o, stress_options);
+    if (*section_app) return section(o, section_options);
     if (*sweep_app) return sweep(o, sweep_options);
     if (*convert_verb) return convert(o, convert_options);
     if (*completion_verb) return std::fputs(completion_script(app, shell).c_str(), stdout), done;

@@ -191,6 +191,12 @@ struct StressOptions {
 };
 /// Without a scene: the built-in ladders.
 int stress(const Options& o, const StressOptions& options);
+struct SectionOptions {
+  std::string when, axes, starts, led;
+  bool up = false, down = false;
+};
+int section(const Options& o, const SectionOptions& s);
+
 struct SweepOptions {
   std::vector<std::string> vary;
   std::string watch;   ///< comma-separated

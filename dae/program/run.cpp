@@ -57,6 +57,49 @@ void print_rank(const Mechanism& mechanism, const Assembly& a, const RunResult& 
         result.weak_evaluations, result.counters.evaluations);
 }
 
+/// Each event of the scene with how often it was met, and when.
+void print_events(const Scene& scene, const RunResult& result) {
+  constexpr std::size_t most = 8;
+  for (std::size_t i = 0; i < scene.events.size(); ++i) {
+    const std::string name = name_of(scene.events[i], i);
+    std::string times;
+    std::size_t count = 0;
+    for (const FoundEvent& e : result.events) {
+      if (e.name != name) continue;
+      if (count < most)
+        times += (count == 0 ? "" : ", ") + compact(e.t, 8) + (e.up ? " up" : " down");
+      ++count;
+    }
+    if (i == 0) std::printf("\n");
+    if (count == 0)
+      std::printf("Event '%s': not met\n", name.c_str());
+    else
+      std::printf("Event '%s': %zu, at t [s] = %s%s\n", name.c_str(), count, times.c_str(),
+                  count > most ? ", …" : "");
+  }
+  if (result.status == "event") std::printf("%s\n", result.reason.c_str());
+}
+
+/// What happened at each rigid stop: impacts, and from when to when it held its coordinate.
+void print_stops(const RunResult& result) {
+  std::map<std::pair<std::string, double>, std::vector<const StopContact*>> by_stop;
+  for (const StopContact& s : result.stops) by_stop[{s.joint, s.limit}].push_back(&s);
+  if (!by_stop.empty()) std::printf("\n");
+  for (const auto& [stop, all] : by_stop) {
+    std::size_t impacts = 0;
+    std::string first, held;
+    for (const StopContact* s : all) {
+      if (s->what == "impact" && impacts++ == 0) first = compact(s->t, 8);
+      if (s->what == "held") held += (held.empty() ? "" : ", ") + compact(s->t, 8) + " s";
+      if (s->what == "released") held += " to " + compact(s->t, 8) + " s";
+    }
+    std::printf("Stop of joint '%s' at %s: %zu impacts%s%s\n", stop.first.c_str(),
+                compact(stop.second, 6).c_str(), impacts,
+                first.empty() ? "" : (", the first at t = " + first + " s").c_str(),
+                held.empty() ? "" : ("; held from t = " + held).c_str());
+  }
+}
+
 /// "C.lambda1, C.lambda2", and of the samples that they are not unique at how many.
 void print_undetermined(const RunResult& result) {
   std::map<long, std::string> by_samples;
@@ -151,6 +194,7 @@ int run(const Options& o) {
   request.keep_trajectory = true;
   request.reactions = o.reactions;
   request.multipliers = true;
+  request.events = true;
   request.max_cpu_seconds = o.cpu_limit.value_or(0);
   request.film_intervals = film_intervals_of(*mechanism, o, 1);
   expect_own_results(o.out, "trajectory.csv");
@@ -180,15 +224,17 @@ int run(const Options& o) {
   const std::string there = " at t = " + std::to_string(result.stopped_at) + " s";
   if (!files.problem().empty())
     result.reason = there.substr(1) + ": " + files.problem();
-  else if (interrupted() && result.status != "done")
+  else if (interrupted() && !finished(result))
     result.reason = "interrupted" + there;
   auto json = summary_json(result, study.environment);
   json["assembly"] = {{"moved", a.moved}, {"branch", a.branch}, {"residue", a.residue}};
   const std::string summary = json.dump(2) + "\n";
   std::vector<ResultFile> others;
   if (!o.out.empty()) others.push_back({o.out / "index.html", run_page(study)});
+  if (!o.out.empty() && !mechanism->scene().events.empty())
+    others.push_back({o.out / "events.csv", events_csv(result)});
   if (!o.figures.empty()) add_figures(others, figures_of_run(study), o);
-  const bool over = files.problem().empty() && (result.status == "done" || !interrupted());
+  const bool over = files.problem().empty() && (finished(result) || !interrupted());
   const bool written = files.finish(summary, others, over);
   if (o.json) {
     std::fputs(summary.c_str(), stdout);
@@ -198,6 +244,8 @@ int run(const Options& o) {
     print_rank(*mechanism, a, result);
     print_singular_crossings(result);
     print_undetermined(result);
+    print_events(mechanism->scene(), result);
+    print_stops(result);
     if (const std::string stiff = stiffness_in_words(result); !stiff.empty())
       std::printf("\n%s\n", stiff.c_str());
     if (!a.branch.empty()) std::printf("Started from %s\n", a.branch.c_str());
@@ -205,9 +253,12 @@ int run(const Options& o) {
   for (const std::string& sentence :
        o.quiet ? std::vector<std::string>{} : in_words(result.passed_limits))
     std::fprintf(stderr, "momenta: %s\n", sentence.c_str());
-  if (result.status != "done")
+  if (!o.quiet)
+    for (const std::string& sentence : result.event_remarks)
+      std::fprintf(stderr, "momenta: %s\n", sentence.c_str());
+  if (!finished(result))
     std::fprintf(stderr, "momenta: the run stopped: %s\n", result.reason.c_str());
-  return written && result.status == "done" ? done : run_failed;
+  return written && finished(result) ? done : run_failed;
 }
 
 }  // namespace momenta::program

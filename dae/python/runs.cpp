@@ -66,6 +66,7 @@ RunPtr run(const Bench& bench, const std::string& form, const std::string& integ
   request.reference = given.get();
   request.keep_trajectory = request.multipliers = true;
   request.reactions = reactions;
+  request.events = true;
   request.max_cpu_seconds = cpu_time(cpu_limit);
   Progress progress(told);
   request.progress = [&](double t) { return progress(t / request.settings.end_time, form); };
@@ -87,6 +88,39 @@ RunPtr run_from(const py::tuple& kept) {
   run->rows.resize(rows.size() / sizeof(double));
   std::memcpy(run->rows.data(), rows.data(), run->rows.size() * sizeof(double));
   return run;
+}
+
+/// Each event by the names of its columns, units left off.
+py::list events(const RunResult& r) {
+  const Names& columns = r.trajectory.columns;
+  py::list all;
+  for (const FoundEvent& e : r.events) {
+    py::dict one;
+    one["name"] = e.name;
+    one["t"] = e.t;
+    one["direction"] = e.up ? "up" : "down";
+    for (std::size_t i = 1; i < e.row.size(); ++i)
+      one[py::str(columns[i].substr(0, columns[i].rfind(" [")))] = e.row[i];
+    all.append(one);
+  }
+  return all;
+}
+
+/// Contacts at rigid stops.
+py::list stops(const RunResult& r) {
+  py::list all;
+  for (const StopContact& s : r.stops) {
+    py::dict one;
+    one["joint"] = s.joint;
+    one["limit"] = s.limit;
+    one["t"] = s.t;
+    one["what"] = s.what;
+    one["before"] = s.before;
+    one["after"] = s.after;
+    one["impulse"] = s.impulse;
+    all.append(one);
+  }
+  return all;
 }
 
 /// The runs of a study as a Study of the package.
@@ -193,12 +227,22 @@ void bind_runs(py::module_& module) {
       "whether positions were corrected after each step");
   text(
       "status", [](const RunResult& r) { return r.status; },
-      "done, failed, time limit or came apart");
+      "done, event (one of the scene's ended it), failed, time limit or came apart");
   text(
       "reason", [](const RunResult& r) { return r.reason; }, "one sentence when not done");
   text(
       "stopped_at", [](const RunResult& r) { return r.stopped_at; },
       "time at which it stopped [s]");
+  text(
+      "events", events,
+      "events of the scene, in the order of time: dicts of name, t [s], direction (up or down) and "
+      "the trajectory's columns there, by their names without units");
+  text(
+      "event_remarks", [](const RunResult& r) { return r.event_remarks; },
+      "one sentence for each event whose formula had no value");
+  text("stops", stops,
+       "contacts at rigid stops, in the order of time: dicts of joint, limit, t [s], what (impact, "
+       "held, released), the rates before and after an impact, and its impulse");
   text("counters", counters, "numbers of steps, evaluations, ... by name");
   text(
       "cpu_s", [](const RunResult& r) { return r.cpu_s; }, "processor time [s]");

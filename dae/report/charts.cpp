@@ -121,8 +121,8 @@ std::vector<Chart> charts_of_run(const RunResult& run) {
     if (!any_but_zero(y) || (key == "impulse" && !takes_gauge(run.settings.form))) continue;
     Chart chart = over_time(history.key, history.title, history.axis, history.unit);
     chart.log_y = true;
-    chart.curves.push_back({history.title, run.series.t, sizes_of(y), sign_in_turn(charts.size()),
-                            run.status != "done"});
+    chart.curves.push_back(
+        {history.title, run.series.t, sizes_of(y), sign_in_turn(charts.size()), !finished(run)});
     charts.push_back(std::move(chart));
   }
   const Trajectory& trajectory = run.trajectory;
@@ -152,7 +152,7 @@ std::vector<Chart> charts_of_run(const RunResult& run) {
                   {},
                   {},
                   sign_in_turn(chart.curves.size()),
-                  run.status != "done"};
+                  !finished(run)};
       for (const auto& row : trajectory.rows) {
         curve.x.push_back(row[0]);
         curve.y.push_back(row[c]);
@@ -223,7 +223,7 @@ Chart scatter(const StudyResult& study, const Cost& cost, const std::vector<Sign
     Curve& curve = chart.curves[place[group]];
     curve.x.push_back(x);
     curve.y.push_back(std::max(y, rounding_floor));
-    curve.failed = run.status != "done";
+    curve.failed = !finished(run);
   }
   return chart;
 }
@@ -246,7 +246,7 @@ std::vector<Chart> charts_of_study(const StudyResult& study) {
       // |λ| is a force and |σ| an impulse: only forms with impulses share the axis.
       if (std::string(history.key) == "impulse" && !takes_gauge(run.settings.form)) continue;
       chart.curves.push_back({study.drift_study ? labels[i] : ladder_labels[i], run.series.t,
-                              sizes_of(y), signs[i], run.status != "done"});
+                              sizes_of(y), signs[i], !finished(run)});
     }
     if (!chart.curves.empty()) charts.push_back(std::move(chart));
   }

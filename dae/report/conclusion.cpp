@@ -42,10 +42,6 @@ void choose_drift(std::vector<Named>& runs) {
   for (Named& n : runs) n.by_angles = !lengths && angles;
 }
 
-bool finished(const RunResult& run) {
-  return run.status == "done";
-}
-
 bool same_method(const RunSettings& a, const RunSettings& b) {
   return a.integrator == b.integrator && a.step == b.step && a.rtol == b.rtol && a.atol == b.atol &&
          a.end_time == b.end_time;
@@ -92,7 +88,8 @@ std::string drift_text(const Named& n) {
 // "After 1000 s the position drift of `a` is 0.27 m, growing like t^1.98"
 std::string drift_clause(const Named& n) {
   const std::string start =
-      "After " + seconds(n.run->settings.end_time) + " the position drift of " + n.name;
+      "After " + seconds(n.run->status == "event" ? n.run->stopped_at : n.run->settings.end_time) +
+      " the position drift of " + n.name;
   if (judged(n) < rounding_level) return start + " is at " + drift_text(n);
   return start + (largest_at_the_end(n) ? " is " : " reached ") + amount(n) + growth_clause(n);
 }

@@ -139,6 +139,20 @@ std::string trajectory_head(const std::vector<std::string>& columns) {
   return csv_line(cells);
 }
 
+std::string events_csv(const RunResult& run) {
+  const std::vector<std::string>& columns = run.trajectory.columns;
+  std::vector<std::string> head{"t [s]", "event", "direction"};
+  for (std::size_t i = 1; i < columns.size(); ++i) head.push_back(csv_cell(columns[i]));
+  std::string text = csv_line(head);
+  for (const FoundEvent& e : run.events) {
+    std::vector<std::string> cells{round_trip(e.t), csv_cell(e.name), e.up ? "up" : "down"};
+    for (std::size_t i = 1; i < columns.size(); ++i)
+      cells.push_back(i < e.row.size() ? round_trip(e.row[i]) : "");
+    text += csv_line(cells);
+  }
+  return text;
+}
+
 bool read_trajectory_rows(std::string_view text, std::size_t columns,
                           std::vector<std::vector<double>>& rows) {
   rows.clear();

@@ -20,6 +20,9 @@ std::string trajectory_line(const std::vector<double>& row);
 bool read_trajectory_rows(std::string_view text, std::size_t columns,
                           std::vector<std::vector<double>>& rows);
 
+/// events.csv: t, name, direction, and the columns of the trajectory there.
+std::string events_csv(const RunResult& run);
+
 /// The text as one cell: quoted when it holds a comma, a quote or a line break, its quotes doubled.
 std::string csv_cell(std::string_view text);
 /// Cells with commas between and a line break behind.

@@ -107,6 +107,19 @@ Json summary_json(const RunResult& run, const Environment& environment) {
                                      {"since", p.since},
                                      {"farthest", p.farthest},
                                      {"farthest_at", p.farthest_at}});
+  json["events"] = Json::array();
+  for (const FoundEvent& e : run.events)
+    json["events"].push_back({{"name", e.name}, {"t", e.t}, {"direction", e.up ? "up" : "down"}});
+  json["event_remarks"] = run.event_remarks;
+  json["stops"] = Json::array();
+  for (const StopContact& contact : run.stops)
+    json["stops"].push_back({{"joint", contact.joint},
+                             {"limit", contact.limit},
+                             {"t", contact.t},
+                             {"what", contact.what},
+                             {"before", contact.before},
+                             {"after", contact.after},
+                             {"impulse", contact.impulse}});
   json["environment"] = environment_json(environment);
   return json;
 }

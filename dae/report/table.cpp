@@ -87,13 +87,13 @@ std::string drift_table(const StudyResult& study) {
   const auto labels = run_labels(study);
   const auto& runs = study.runs;
   const bool as_one =
-      runs.size() > 1 && runs.front().status != "done" &&
+      runs.size() > 1 && !finished(runs.front()) &&
       std::all_of(runs.begin(), runs.end(), [&](const RunResult& run) {
         return run.reason == runs.front().reason && run.stopped_at == runs.front().stopped_at;
       });
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const RunResult& run = runs[i];
-    if (run.status == "done" || (as_one && i > 0)) continue;
+    if (finished(run) || (as_one && i > 0)) continue;
     text += (as_one ? "all " + std::to_string(runs.size()) + " runs" : labels[i]) + " stopped at " +
             compact(run.stopped_at, 4) + " s: " + (run.reason.empty() ? run.status : run.reason) +
             '\n';

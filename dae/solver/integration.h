@@ -59,6 +59,9 @@ struct Observer {
   /// Called after each accepted step over [t0, t1]. The interpolant does not include changes made
   /// by after_step().
   std::function<bool(double t0, double t1, const Interpolant& between)> step;
+  /// Called once, before the first step, by methods whose steps' ends are more accurate than their
+  /// interpolant: with another one of the last step, of full order, whose every value costs a step.
+  std::function<void(const Interpolant& exact)> exact;
   /// Called before steps of explicit Runge-Kutta methods, where can_be_put_down() holds. `carry`
   /// writes all that the run carries at t, for IntegrationOptions::carried.
   std::function<void(double t, const std::function<void(Memory&)>& carry)> before_step;

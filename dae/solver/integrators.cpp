@@ -98,7 +98,12 @@ IntegrationResult pass_time(double t0, const std::vector<double>& output_times,
   IntegrationResult result;
   result.end_time = t0;
   const double nothing = 0;
+  const Interpolant between = [](double, double*) {};
   for (const double t : output_times) {
+    if (observer.step && t > result.end_time && !observer.step(result.end_time, t, between)) {
+      result.reason = "the observer ended the run";
+      return result;
+    }
     result.end_time = t;
     if (observer.sample && !observer.sample(t, &nothing, &nothing)) {
       result.reason = "stopped at t = " + std::to_string(t) + " s";

@@ -50,6 +50,10 @@ class MultistepRun {
     const Interpolant between = [this](double t, double* y) {
       if (!method_.at(t, y, nullptr)) interpolation_failed_ = true;
     };
+    if (observer_.exact)
+      observer_.exact([this](double t, double* y) {
+        if (!dense_output(t, y, ydot_.data())) interpolation_failed_ = true;
+      });
     for (long count = 0; t_ < end(); ++count) {
       if (count >= options_.max_steps)
         return stop(result,

@@ -26,6 +26,8 @@ class FormRunner {
     return ode ? ode->factorizations() : 0;
   }
 
+  /// The first step [s] of methods with error control; 0: chosen by the method.
+  void begin_with_step(double first_step) { options_.initial_step = first_step; }
   IntegrationResult integrate(const std::vector<double>& times, const Observer& observer);
   double changed_at() const { return changed_at_; }
   /// The next integration goes on with what another one carried.

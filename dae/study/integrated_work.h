@@ -41,6 +41,12 @@ class IntegratedWork {
     memory(power_.data(), power_.size());
   }
 
+  /// Adds work [J] that is done at once, at the end of what was looked at.
+  void add(double work) {
+    work_ = until(end_) + work;
+    from_ = end_;
+  }
+
   /// Up to a time in the last step [J].
   double until(double t) const {
     if (!(end_ > from_)) return work_;

@@ -1,3 +1,4 @@
+#include <momenta/dae/cut/integrated_scene.h>
 #include <momenta/dae/solver/extrapolation.h>
 #include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/solver/radau_collocation.h>
@@ -93,6 +94,10 @@ Rows solve(const Mechanism& mechanism, const Start& start, double end, int count
 
 OwnReference own_reference(const Mechanism& mechanism, const Start& start, double end, int count,
                            const std::function<bool(double)>& going_on) {
+  if (has_rigid_stops(mechanism.scene()))
+    throw std::invalid_argument(
+        "the scene has rigid stops (restitution), whose impacts a reference of its own knows "
+        "nothing of: expected --reference FILE, or stops that give way (stop_stiffness)");
   std::vector<double> times;
   for (int i = 0; i <= count; ++i) times.push_back(i == count ? end : end / count * i);
   std::vector<std::string> columns;

@@ -5,6 +5,7 @@
 #include <momenta/dae/solver/stopping.h>
 #include <momenta/dae/study/form_runner.h>
 #include <momenta/dae/study/rank_at_start.h>
+#include <momenta/dae/study/rigid_stops.h>
 #include <momenta/dae/study/run_monitor.h>
 #include <momenta/dae/study/run_settings.h>
 
@@ -118,16 +119,20 @@ RunResult run_form(const Mechanism& mechanism, const Start& start, const RunRequ
       request.integrated ? *request.integrated : chosen.emplace(mechanism, start);
   const Mechanism& integrated = scene.mechanism();
   result.integrated = scene.in_words();
+  RigidStops rigid(mechanism, result.settings.end_time - start.t);
+  RigidStops* stops = rigid.any() ? &rigid : nullptr;
+  Start begun = scene.start();  // of the phase
   std::optional<FormRunner> made;
   try {
-    made.emplace(integrated, scene.start(), result.settings, request.max_cpu_seconds);
+    if (stops) begun = stops->begin(begun, result);
+    made.emplace(stops ? stops->acting() : integrated, begun, result.settings,
+                 request.max_cpu_seconds);
   } catch (const NoStateAtStart& none) {
     result.status = "failed";
     result.reason = none.what();
     result.stopped_at = start.t;
     return result;
   }
-  FormRunner& runner = *made;
   judge_rank(mechanism, start, result);
   const double end = result.settings.end_time;
   const DriveReach reach = drive_reach(mechanism, start.t, start.q, end);
@@ -135,10 +140,10 @@ RunResult run_form(const Mechanism& mechanism, const Start& start, const RunRequ
   if (from) result = from->so_far;
   const double wall_start = wall_now() - (from ? result.wall_s : 0),
                cpu_start = thread_seconds() - (from ? result.cpu_s : 0);
-  RunMonitor monitor(mechanism, scene, runner.form(), start, request, result);
-  const auto y0 = runner.form().initial(scene.start());
+  RunMonitor monitor(mechanism, scene, made->form(), start, request, result, stops);
+  const auto y0 = made->form().initial(begun);
   if (!from) monitor.sample(start.t, y0.data(), nullptr);
-  auto* ode = dynamic_cast<OdeForm*>(&runner.form());
+  auto* ode = stops ? nullptr : dynamic_cast<OdeForm*>(&made->form());
   std::vector<long> faded(static_cast<std::size_t>(integrated.m()));
   if (ode && integrated.m() > 0) {
     const int rank = scene.anew() ? rank_at(integrated, scene.start()).rank : result.rank;
@@ -151,6 +156,7 @@ RunResult run_form(const Mechanism& mechanism, const Start& start, const RunRequ
       [&](double t0, double t1, const Interpolant& between) {
         return monitor.step(t0, t1, between);
       },
+      [&](const Interpolant& exact) { monitor.take_exact(exact); },
       {}};
   if (request.between_steps)
     observer.before_step = [&](double t, const std::function<void(Memory&)>& carry) {
@@ -172,10 +178,51 @@ RunResult run_form(const Mechanism& mechanism, const Start& start, const RunRequ
   if (from) {
     carried = Memory(from->memory);
     monitor.carry(carried);
-    runner.go_on_from(carried, result.cpu_s);
+    made->go_on_from(carried, result.cpu_s);
   }
   IntegrationResult run;
-  if (!times.empty()) run = runner.integrate(times, observer);
+  if (!times.empty()) run = made->integrate(times, observer);
+  long factorizations = 0;
+  double last_hit = start.t - 1;
+  int at_once = 0;
+  while (monitor.hit() && result.status == "done") {
+    const RunMonitor::Hit hit = *monitor.hit();
+    constexpr int most_at_once = 50;
+    at_once = hit.t > last_hit ? 0 : at_once + 1;
+    last_hit = hit.t;
+    if (at_once > most_at_once) {
+      run.reason = "at t = " + std::to_string(hit.t) + " s a rigid stop is met over and over";
+      break;
+    }
+    const Counters so_far = run.counters;
+    factorizations += made->factorizations();
+    run.end_time = hit.t;
+    try {
+      double taken = 0;
+      begun = stops->meet(hit.t, hit.q, hit.u, hit.stops, result, taken);
+      monitor.take_energy(taken);
+      RunSettings settings = result.settings;
+      const double spent = thread_seconds() - cpu_start;
+      made.emplace(
+          stops->acting(), begun, settings,
+          request.max_cpu_seconds > 0 ? std::max(1e-3, request.max_cpu_seconds - spent) : 0);
+    } catch (const std::runtime_error& none) {
+      run.reason = none.what();
+      break;
+    }
+    // No longer than what is left before the next impact: methods with memory begin at order 1.
+    made->begin_with_step(0.1 * stops->pause());
+    monitor.go_on(hit.t, made->form());
+    std::vector<double> left;
+    for (const double t : times)
+      if (t > hit.t) left.push_back(t);
+    if (left.empty()) {
+      run.done = true;
+      break;
+    }
+    run = made->integrate(left, observer);
+    run.counters += so_far;
+  }
   result.cpu_s = thread_seconds() - cpu_start;
   result.wall_s = wall_now() - wall_start;
   result.status =
@@ -186,14 +233,20 @@ RunResult run_form(const Mechanism& mechanism, const Start& start, const RunRequ
     result.status = "came apart";
     result.reason = monitor.came_apart();
   }
-  judge_drives(mechanism, reach, times, monitor.last_closed(), result);
+  if (!monitor.ended_by().empty()) {
+    result.status = "event";
+    result.reason = monitor.ended_by();
+    result.stopped_at = monitor.ended_at();
+  } else {
+    judge_drives(mechanism, reach, times, monitor.last_closed(), result);
+  }
   result.stiff_from = run.stiff_from;
-  result.changed_at = runner.changed_at();
+  result.changed_at = made->changed_at();
   result.counters = run.counters;
   result.jacobian = run.jacobian;
   result.linear_solver = run.linear_solver;
-  result.counters.factorizations += runner.factorizations();
-  result.partitions = runner.form().partitions();
+  result.counters.factorizations += factorizations + made->factorizations();
+  result.partitions = made->form().partitions();
   for (std::size_t row = 0; row < faded.size(); ++row)
     if (faded[row] > 0)
       result.faded_rows.push_back(

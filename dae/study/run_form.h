@@ -29,6 +29,7 @@ struct RunRequest {
   bool keep_trajectory = false;  ///< RunResult::trajectory is filled
   /// RunResult::multiplier_difference_max is measured. A reference with forces says so by itself.
   bool multipliers = false;
+  bool events = false;     ///< those of the scene are looked for, and may end the run
   bool reactions = false;  ///< with the reactions of joints among its columns
   int keep_every = 1;      ///< keep every n-th row, from the first
   /// Called with every row of the trajectory, where a trajectory is kept; return false to stop the

@@ -1,13 +1,14 @@
 #pragma once
 // The run monitor: measures drift, energy, errors and faded rows along a run, at the output times
-// and between the steps: those of the scene as written, whatever joints the run cuts. Only
-// run_form.cpp uses it.
+// and between the steps, and finds events: those of the scene as written, whatever joints the run
+// cuts. Only run_form.cpp uses it.
 
 #include <momenta/dae/cut/integrated_scene.h>
 #include <momenta/dae/cut/written_motion.h>
 #include <momenta/dae/measure/drive_power.h>
 #include <momenta/dae/measure/growth.h>
 #include <momenta/dae/study/apart.h>
+#include <momenta/dae/study/event_watch.h>
 #include <momenta/dae/study/force_columns.h>
 #include <momenta/dae/study/integrated_work.h>
 #include <momenta/dae/study/own_multipliers.h>
@@ -38,9 +39,9 @@ inline Drift drift_of(const Mechanism& mechanism, const Eigen::VectorXd& x) {
 class RunMonitor {
  public:
   RunMonitor(const Mechanism& mechanism, const IntegratedScene& scene, Form& form,
-             const Start& start, const RunRequest& request, RunResult& result)
+             const Start& start, const RunRequest& request, RunResult& result, RigidStops* stops)
       : mechanism_(mechanism),
-        form_(form),
+        form_(&form),
         request_(request),
         result_(result),
         e_(mechanism.evaluation<double>()),
@@ -69,12 +70,70 @@ class RunMonitor {
       of_form_.q.resize(integrated.nq());
       integrated_e_ = integrated.evaluation<double>();
       integrated_solver_ = make_loop_solver(integrated, *integrated_e_);
-    } else if (mechanism.m() > 0 && (compares_forces || request.multipliers)) {
+    } else if (mechanism.m() > 0 && !stops && (compares_forces || request.multipliers)) {
       own_.emplace(form, mechanism.m());
     }
-    if (integrated.m() > 0 && (integrated.kkt() == KktChoice::sweeps || filters_pivots(integrated)))
+    if (integrated.m() > 0 && !stops &&
+        (integrated.kkt() == KktChoice::sweeps || filters_pivots(integrated)))
       singular_crossings_.emplace(integrated, form, written_ ? *integrated_e_ : *e_,
                                   written_ ? *integrated_solver_ : *solver_, result);
+    const bool looks = request.events && !mechanism.scene().events.empty();
+    stops_ = stops;
+    if (looks || stops)
+      events_.emplace(
+          mechanism, looks ? mechanism.scene().events : std::vector<EventSpec>{},
+          result.settings.end_time - start.t,
+          [this](double t, bool exact, bool rates, const Eigen::VectorXd*& q,
+                 const Eigen::VectorXd*& u) { return read_at(t, exact, rates, q, u); },
+          stops);
+    if (stops) go_on(start.t, form);
+  }
+
+  /// The next phase of a run with rigid stops: `form` is of what acts from now on, whose forces and
+  /// power are measured. @pre there are stops
+  void go_on(double t, Form& form) {
+    form_ = &form;
+    exact_ = nullptr;
+    const Mechanism& acting = stops_->acting();
+    acting_e_ = acting.evaluation<double>();
+    acting_solver_ = acting.m() > 0 ? make_loop_solver(acting, *acting_e_) : nullptr;
+    drives_.emplace(acting, *acting_e_, acting_solver_.get());
+    if (forces_) {
+      forces_.emplace(acting, *acting_e_, acting_solver_.get(), request_.reactions);
+      force_places_.clear();
+      if (&acting != &mechanism_) {
+        const std::vector<std::string> all = trajectory_columns(acting, request_.reactions);
+        const std::size_t drifts = acting.m() == 0                               ? 0
+                                   : acting.has_lengths() && acting.has_angles() ? 4
+                                                                                 : 2;
+        const std::size_t own = mechanism_.m() == 0 ? 0 : both_ ? 4 : 2;
+        const std::size_t state =
+            static_cast<std::size_t>(mechanism_.nq() + mechanism_.nv()) + markers_.size() + 2;
+        for (std::size_t c = state + own; c < columns_.size(); ++c) {
+          const auto at = std::find(all.begin() + static_cast<std::ptrdiff_t>(state + drifts),
+                                    all.end(), columns_[c]);
+          force_places_.push_back(static_cast<std::size_t>(at - all.begin()) - state - drifts);
+        }
+      }
+    }
+    hit_.reset();
+    events_->restart(t);
+  }
+
+  /// Where a rigid stop was met, or one that held is to let go; and which.
+  struct Hit {
+    double t = 0;
+    Eigen::VectorXd q, u;
+    std::vector<std::size_t> stops;
+  };
+  const std::optional<Hit>& hit() const { return hit_; }
+  /// Energy that stops took at an impact [J].
+  void take_energy(double taken) { work_.add(-taken); }
+
+  /// Another output of the last step, of full order.
+  void take_exact(const Interpolant& exact) {
+    exact_ = exact;
+    if (events_) events_->has_exact();
   }
 
   /// The times at which samples will be asked for; they must outlive this.
@@ -121,7 +180,11 @@ class RunMonitor {
     s.energy.push_back(energy);
     s.energy_error.push_back(energy - energy_at_start_);
     s.impulse.push_back(now_.multipliers.norm());
-    if (request_.keep_trajectory || request_.reference || own_) row(t, energy, position, velocity);
+    if (request_.keep_trajectory || request_.reference || own_) {
+      row(t, energy, position, velocity);
+      if (request_.keep_trajectory && forces_)
+        for (const std::size_t column : not_unique_) note_undetermined(column, t);
+    }
     if (own_) compare_own(t);
     if (request_.reference) compare(t);
     if (request_.keep_trajectory) {
@@ -137,9 +200,30 @@ class RunMonitor {
     return !request_.progress || request_.progress(t);
   }
 
+  /// Looks at the step that was just taken, up to the event that ends the run.
   bool step(double t0, double t1, const Interpolant& between) {
     state_.resize(
-        static_cast<std::size_t>(form_.is_dae() ? form_.dae()->size() : form_.ode()->size()));
+        static_cast<std::size_t>(form_->is_dae() ? form_->dae()->size() : form_->ode()->size()));
+    if (!events_) return look_between(t0, t1, between, false);
+    between_ = &between;
+    const std::vector<EventWatch::Found>& found = events_->step(t0, t1, result_.event_remarks);
+    const bool ends = !found.empty() && events_->ends(found.back());
+    const double until = ends ? found.back().crossing.t : t1;
+    if (!look_between(t0, until, between, !found.empty())) return false;
+    for (const EventWatch::Found& f : found)
+      if (!events_->is_stop(f))
+        result_.events.push_back(
+            {events_->name(f.event), f.crossing.t, f.crossing.up, row_at(f.crossing.t)});
+    return !ends ||
+           (events_->is_stop(found.back()) ? meet(until, found) : end_at(until, found.back()));
+  }
+  /// The event that ended the run, in words; empty: none did.
+  const std::string& ended_by() const { return ended_by_; }
+  double ended_at() const { return ended_at_; }  ///< [s]
+
+ private:
+  /// `inside`: the energy at times inside the step will be asked for.
+  bool look_between(double t0, double t1, const Interpolant& between, bool inside) {
     if (request_.film_intervals > 0) film_until(t1, between);
     const double middle = 0.5 * (t0 + t1);
     if (mechanism_.m() > 0) {
@@ -148,8 +232,8 @@ class RunMonitor {
       e_->place(middle, middle_.data());
       e_->positions(phi_.data());
       const Drift drift = drift_of(mechanism_, beyond_residue());
-      if (!(drift.lengths <= between_.lengths)) between_.lengths = drift.lengths;
-      if (!(drift.angles <= between_.angles)) between_.angles = drift.angles;
+      if (!(drift.lengths <= largest_between_.lengths)) largest_between_.lengths = drift.lengths;
+      if (!(drift.angles <= largest_between_.angles)) largest_between_.angles = drift.angles;
       if (drift.finite()) came_apart_ = apart_->found(middle, phi_, false);
       if (!came_apart_.empty()) return false;
       keep_closed(middle, middle_);
@@ -165,25 +249,27 @@ class RunMonitor {
           result_.passed_limits);
     if (own_ && sample_before(t1 * (1 + 1e-12))) own_->step(t0, t1, between, state_);
     if ((works_ || drives_->any()) &&
-        !work_.step(t0, t1, sample_before(t1 * (1 - 1e-12)), [&](double t, double& watts) {
-          between(t, state_.data());
-          if (!read(t, state_.data(), nullptr)) return false;
-          watts = 0;
-          if (works_) {
-            e_->place(t, now_.q.data());
-            e_->move(now_.u.data());
-            watts = e_->dissipated_power(now_.q.data(), now_.u.data());
-          }
-          if (drives_->any()) watts += drives_->at(t, now_.q.data(), now_.u.data());
-          return true;
-        }))
+        !work_.step(t0, t1, inside || sample_before(t1 * (1 - 1e-12)),
+                    [&](double t, double& watts) {
+                      between(t, state_.data());
+                      if (!read(t, state_.data(), nullptr)) return false;
+                      watts = 0;
+                      if (works_) {
+                        e_->place(t, now_.q.data());
+                        e_->move(now_.u.data());
+                        watts = e_->dissipated_power(now_.q.data(), now_.u.data());
+                      }
+                      if (drives_->any()) watts += drives_->at(t, now_.q.data(), now_.u.data());
+                      return true;
+                    }))
       return true;
     return !request_.going_on || request_.going_on();
   }
 
+ public:
   /// Whether what is looked at does not depend on what was looked at before.
   bool can_be_put_down() const {
-    return (!solver_ || !solver_->remembers()) &&
+    return !stops_ && (!solver_ || !solver_->remembers()) &&
            (!integrated_solver_ || !integrated_solver_->remembers());
   }
   /// Between two steps; beside what is in the result.
@@ -192,9 +278,10 @@ class RunMonitor {
     if (singular_crossings_) singular_crossings_->carry(memory);
     if (written_) written_->carry(memory);
     memory(energy_at_start_), memory(potential_at_start_);
-    memory(between_.lengths), memory(between_.angles), memory(fastest_);
+    memory(largest_between_.lengths), memory(largest_between_.angles), memory(fastest_);
     memory(compared_), memory(rows_);
     limits_.carry(memory);
+    if (events_) events_->carry(memory);
     bool closed = closed_.q.size() > 0;
     memory(closed);
     if (!closed) return;
@@ -216,7 +303,7 @@ class RunMonitor {
     if (mechanism_.m() > 0) {
       result_.position_drift_max = largest(s.position_drift);
       result_.velocity_drift_max = largest(s.velocity_drift);
-      result_.between_steps_max = named(between_);
+      result_.between_steps_max = named(largest_between_);
       const auto growth = [&](const std::vector<double>& drift, double rounding) {
         return fit_growth(s.t, drift, std::max(rounding_level, rounding));
       };
@@ -229,7 +316,7 @@ class RunMonitor {
       if (both_) {
         result_.angle_drift_max = largest(s.angle_drift);
         result_.angle_rate_drift_max = largest(s.angle_rate_drift);
-        result_.angle_between_steps_max = between_.angles;
+        result_.angle_between_steps_max = largest_between_.angles;
         result_.angle_growth = growth(s.angle_drift, angles);
         result_.angle_rate_growth = growth(s.angle_rate_drift, angles * fastest_);
       }
@@ -257,7 +344,7 @@ class RunMonitor {
   /// The state as `now_`, with unit quaternions: interpolants leave them off by the tolerance.
   bool read(double t, const double* y, const double* ydot) {
     Snapshot& of_form = written_ ? of_form_ : now_;
-    if (!form_.read(t, y, ydot, of_form)) return false;
+    if (!form_->read(t, y, ydot, of_form)) return false;
     if (written_) {
       written_->read(t, of_form.q, of_form.u, now_.q, now_.u);
       now_.multipliers = of_form.multipliers;
@@ -268,9 +355,71 @@ class RunMonitor {
   /// The coordinates alone, of `state_`, as `middle_`.
   bool read_coordinates(double t) {
     Eigen::VectorXd& of_form = written_ ? of_form_.q : middle_;
-    if (!form_.read_coordinates(t, state_.data(), of_form)) return false;
+    if (!form_->read_coordinates(t, state_.data(), of_form)) return false;
     if (written_) written_->read_coordinates(t, of_form, middle_);
     return true;
+  }
+  /// A state inside the last step, for events: `u` null where rates are not asked for.
+  bool read_at(double t, bool exact, bool rates, const Eigen::VectorXd*& q,
+               const Eigen::VectorXd*& u) {
+    (exact ? exact_ : *between_)(t, state_.data());
+    if (!rates) {
+      if (!read_coordinates(t)) return false;
+      mechanism_.tree().normalise(middle_);
+      q = &middle_;
+      return true;
+    }
+    if (!read(t, state_.data(), nullptr)) return false;
+    q = &now_.q;
+    u = &now_.u;
+    return true;
+  }
+  /// The state at an event, as `state_`.
+  void take_state_at(double t) { (exact_ ? exact_ : *between_)(t, state_.data()); }
+  /// The row of the trajectory at an event; empty where none is kept or it cannot be read.
+  std::vector<double> row_at(double t) {
+    take_state_at(t);
+    if (!request_.keep_trajectory || !read(t, state_.data(), nullptr)) return {};
+    e_->place(t, now_.q.data());
+    e_->positions(phi_.data());
+    const Drift position = drift_of(mechanism_, beyond_residue());
+    e_->move(now_.u.data());
+    e_->velocities(phi_.data());
+    const double energy = e_->kinetic() + e_->potential(now_.q.data()) - work_.until(t);
+    row(t, energy, position, drift_of(mechanism_, phi_));
+    return row_;
+  }
+  /// The samples up to t, inside the last step. False: the run is to end.
+  bool sample_until(double t) {
+    while (sample_before(t)) {
+      const double at = (*output_times_)[next_];
+      take_state_at(at);
+      if (!sample(at, state_.data(), nullptr)) return false;
+    }
+    return true;
+  }
+  /// The samples up to stops that are met, and the state there. @return false
+  bool meet(double t, const std::vector<EventWatch::Found>& found) {
+    if (!sample_until(t)) return false;
+    take_state_at(t);
+    if (!read(t, state_.data(), nullptr)) return false;
+    hit_ = Hit{t, now_.q, now_.u, {}};
+    for (const EventWatch::Found& f : found)
+      if (events_->is_stop(f)) hit_->stops.push_back(f.event - events_->first_stop());
+    return false;
+  }
+  /// The samples up to the event that ends the run, and one there. @return false
+  bool end_at(double t, const EventWatch::Found& event) {
+    // An output time this near is the event.
+    const double near = 1e-9 * result_.settings.end_time / result_.settings.samples;
+    if (!sample_until(t - near)) return false;
+    take_state_at(t);
+    if (result_.series.t.back() < t - near && !sample(t, state_.data(), nullptr)) return false;
+    ended_at_ = t;
+    ended_by_ = "event '" + events_->name(event.event) + "' (" +
+                (event.crossing.up ? "up" : "down") + ") ended the run at t = " + compact(t, 8) +
+                " s";
+    return false;
   }
   /// Φ less what the start leaves open.
   const Eigen::VectorXd& beyond_residue() {
@@ -317,10 +466,18 @@ class RunMonitor {
     if (!forces_) return;
     first_force_ = row_.size();
     not_unique_.clear();
+    not_unique_acting_.clear();
     forces_->solve(t, now_.q, now_.u);
-    forces_->append(row_, not_unique_);
-    if (request_.keep_trajectory)
-      for (const std::size_t column : not_unique_) note_undetermined(column, t);
+    if (force_places_.empty()) return forces_->append(row_, not_unique_);
+    // Of what acts, beside whose loops there are those of stops that hold.
+    acting_row_.clear();
+    forces_->append(acting_row_, not_unique_acting_);
+    for (std::size_t k = 0; k < force_places_.size(); ++k)
+      row_.push_back(acting_row_[force_places_[k]]);
+    for (std::size_t k = 0; k < force_places_.size(); ++k)
+      if (std::find(not_unique_acting_.begin(), not_unique_acting_.end(), force_places_[k]) !=
+          not_unique_acting_.end())
+        not_unique_.push_back(first_force_ + k);
   }
 
   void note_undetermined(std::size_t column, double t) {
@@ -389,7 +546,7 @@ class RunMonitor {
   }
 
   const Mechanism& mechanism_;
-  Form& form_;
+  Form* form_;
   const RunRequest& request_;
   RunResult& result_;
   std::unique_ptr<Evaluation<double>> e_;
@@ -415,12 +572,24 @@ class RunMonitor {
   bool works_;                        ///< beside drives, what has no potential
   IntegratedWork work_;
   PassedLimits limits_;
+  std::optional<EventWatch> events_;
+  RigidStops* stops_ = nullptr;  ///< null: there are none
+  std::optional<Hit> hit_;
+  std::unique_ptr<Evaluation<double>> acting_e_;  ///< of runs with rigid stops
+  std::unique_ptr<LoopSolver> acting_solver_;
+  std::vector<std::size_t> force_places_;  ///< of the columns among those of what acts
+  std::vector<std::size_t> not_unique_acting_;
+  std::vector<double> acting_row_;
+  const Interpolant* between_ = nullptr;  ///< of the last step, while it is looked at
+  Interpolant exact_;
+  std::string ended_by_;
+  double ended_at_ = 0;
   std::optional<SingularCrossings> singular_crossings_;
   std::optional<Apart> apart_;
   std::string came_apart_;
   Closed closed_;
   double energy_at_start_ = 0, potential_at_start_ = 0;
-  Drift between_;
+  Drift largest_between_;
   double fastest_ = 0;  ///< rate of a joint at the samples, in lengths of the scene [1/s]
   int compared_ = 0;
   long rows_ = 0;  ///< of the trajectory

@@ -103,6 +103,21 @@ void list(const Each& each,
 
 template <class Each>
 void list(const Each& each,
+          auto&& s) requires std::is_same_v<std::remove_cvref_t<decltype(s)>, FoundEvent> {
+  auto& [name, t, up, row] = s;
+  each("name", name), each("t", t), each("up", up), each("row", row);
+}
+
+template <class Each>
+void list(const Each& each,
+          auto&& s) requires std::is_same_v<std::remove_cvref_t<decltype(s)>, StopContact> {
+  auto& [joint, limit, t, what, before, after, impulse] = s;
+  each("joint", joint), each("limit", limit), each("t", t), each("what", what);
+  each("before", before), each("after", after), each("impulse", impulse);
+}
+
+template <class Each>
+void list(const Each& each,
           auto&& s) requires std::is_same_v<std::remove_cvref_t<decltype(s)>, RunResult> {
   auto& [scene, settings, status, reason, stopped_at, stiff_from, changed_at, counters, partitions,
          jacobian, linear_solver, cpu_s, wall_s, repeats, drift_unit, position_drift_max,
@@ -111,7 +126,7 @@ void list(const Each& each,
          energy_error_max, kinetic_energy_max, energy_scale, position_error_max, velocity_error_max,
          force_error_max, multiplier_error_max, multiplier_difference_max, integrated, rank,
          dependent_rows, residue, weak_evaluations, faded_rows, singular_crossings, least_pivot,
-         undetermined, passed_limits, series, trajectory, film] = s;
+         undetermined, passed_limits, events, event_remarks, stops, series, trajectory, film] = s;
   each("scene", scene), each("settings", settings), each("status", status), each("reason", reason);
   each("stopped_at", stopped_at), each("stiff_from", stiff_from), each("changed_at", changed_at),
       each("counters", counters), each("partitions", partitions);
@@ -135,6 +150,8 @@ void list(const Each& each,
   each("faded_rows", faded_rows), each("singular_crossings", singular_crossings),
       each("least_pivot", least_pivot);
   each("undetermined", undetermined), each("passed_limits", passed_limits);
+  each("events", events), each("event_remarks", event_remarks);
+  each("stops", stops);
   each("series", series), each("film", film);
   static_cast<void>(trajectory);  // no study keeps one
 }

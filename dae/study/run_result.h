@@ -83,12 +83,32 @@ struct PassedLimit {
   bool of_force = false;   ///< of the length along a force
 };
 
+/// An event of the scene that a run met.
+struct FoundEvent {
+  std::string name;  ///< as of name_of()
+  double t = 0;      ///< [s]
+  bool up = false;   ///< its number is positive afterwards
+  /// A row of the trajectory there, where one is kept: by the columns of RunResult::trajectory.
+  std::vector<double> row;
+};
+
+/// What happened at a rigid stop.
+struct StopContact {
+  std::string joint;   ///< its name
+  double limit = 0;    ///< which of its limits [rad or m]
+  double t = 0;        ///< [s]
+  std::string what;    ///< impact; held: the stop begins to hold its coordinate; released
+  double before = 0;   ///< rate before an impact [rad/s or m/s]
+  double after = 0;    ///< and after it
+  double impulse = 0;  ///< of the stop, at least 0 [N m s or N s]
+};
+
 /// The result of a run.
 struct RunResult {
   std::string scene;     ///< its name
   RunSettings settings;  ///< as given, with defaults filled in
-  /// done, failed, time limit, or came apart: the loops opened by more than a form is allowed to
-  /// leave (apart.h)
+  /// done; event: one of the scene's ended it; failed, time limit, or came apart: the loops opened
+  /// by more than a form is allowed to leave (apart.h)
   std::string status = "done";
   std::string reason;     ///< one sentence when not done
   double stopped_at = 0;  ///< [s]
@@ -172,6 +192,9 @@ struct RunResult {
   };
   std::vector<Undetermined> undetermined;  ///< empty: all are unique
   std::vector<PassedLimit> passed_limits;  ///< joints beyond their limits, in the order of time
+  std::vector<FoundEvent> events;          ///< in the order of time
+  std::vector<std::string> event_remarks;  ///< one sentence for each event that had no value
+  std::vector<StopContact> stops;          ///< contacts at rigid stops, in the order of time
   Series series;                           ///< measures at the output times
   Trajectory trajectory;                   ///< empty where none was asked for
   Film film;                               ///< empty where none was asked for
@@ -184,6 +207,11 @@ inline std::string drift_unit(const RunResult& run) {
 /// Whether a run has drifts of angles besides those of lengths.
 inline bool has_both_drifts(const RunResult& run) {
   return !run.series.angle_drift.empty() || !std::isnan(run.angle_drift_max);
+}
+
+/// Whether a run went as far as it was meant to: to its end, or to an event that ends it.
+inline bool finished(const RunResult& run) {
+  return run.status == "done" || run.status == "event";
 }
 
 /// Whether a run changed its integrator on the way.

@@ -1,3 +1,4 @@
+#include <momenta/dae/cut/integrated_scene.h>
 #include <momenta/dae/study/run_record.h>
 #include <momenta/dae/study/timing.h>
 
@@ -46,6 +47,7 @@ void time_runs(const Mechanism& mechanism, const Start& start, std::vector<RunRe
     double spent = 0;
     bool over = false;
   };
+  if (has_rigid_stops(mechanism.scene())) return;  // timed runs know no impacts
   std::vector<Times> all(runs.size());
   const std::size_t rounds = request.how == Timing::rounds ? most_rounds
                              : request.how == Timing::once ? 1

@@ -96,6 +96,7 @@ inline std::string difference(const Scene& a, const Scene& b) {
     number(x.stop_stiffness, y.stop_stiffness, what + " stop_stiffness");
     number(x.stop_damping, y.stop_damping, what + " stop_damping");
     number(x.stop_width, y.stop_width, what + " stop_width");
+    number(x.restitution.value_or(-1), y.restitution.value_or(-1), what + " restitution");
     numbers(x.rotor_inertia, y.rotor_inertia, what + " rotor_inertia");
   });
   each(a.loops, b.loops, "loop", [&](const LoopSpec& x, const LoopSpec& y, const auto& what) {
@@ -156,6 +157,11 @@ inline std::string difference(const Scene& a, const Scene& b) {
          note(x.name == y.name && x.body == y.body, what);
          numbers(x.point, y.point, what);
        });
+  each(a.events, b.events, "event", [&](const EventSpec& x, const EventSpec& y, const auto& what) {
+    note(x.name == y.name && x.when.text == y.when.text && x.direction == y.direction &&
+             x.stop == y.stop,
+         what);
+  });
   each(a.visuals, b.visuals, "visual",
        [&](const VisualSpec& x, const VisualSpec& y, const auto& what) {
          note(x.body == y.body && x.kind == y.kind && x.file == y.file &&

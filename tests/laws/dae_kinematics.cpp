@@ -227,5 +227,20 @@ TEST(Kinematics, WhatIsLeftFreeIsHeldOrNamed) {
   EXPECT_THROW(moved(open, "O", held), SceneError);
 }
 
+// A four-bar with a driven crank carries a pendulum, which alone is free: the loop's own hinges stay.
+TEST(Kinematics, WhatTheLoopsHoldIsNotSwept) {
+  const Scene driven =
+      read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples/driven/scene.toml");
+  try {
+    moved(driven, "A");
+    ADD_FAILURE() << "swept";
+  } catch (const SceneError& e) {
+    EXPECT_NE(std::string(e.what()).find("the loops hold it where it is"), std::string::npos)
+        << e.what();
+  }
+  const MoveResult r = moved(driven, "M");
+  EXPECT_EQ(r.end, MoveResult::End::closed) << r.why;
+}
+
 }  // namespace
 }  // namespace momenta::dae_kinematics

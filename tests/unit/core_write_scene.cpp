@@ -216,6 +216,8 @@ kind = "helical"
 parent = "rod"
 child = "box"
 pitch = 0
+limits = [-1, 2]
+restitution = 0.25
 [[joint]]
 name = "C"
 kind = "universal"
@@ -350,6 +352,14 @@ axes = "body"
 name = "m"
 body = "rod"
 point = [0.1, 0, 0]
+[[event]]
+name = "up there"
+when = "m.y - 0.2"
+direction = "up"
+stop = true
+[[event]]
+when = "m.vx"
+direction = "down"
 [[visual]]
 body = "rod"
 kind = "box"

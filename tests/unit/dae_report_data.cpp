@@ -31,7 +31,8 @@ TEST(SummaryJson, HasThePublicKeys) {
                  "penalty",      "partitions",     "least_pivot",   "singular_crossings",
                  "undetermined", "passages",       "changed_to",    "changed_at",
                  "rank",         "dependent_rows", "residue",       "weak_evaluations",
-                 "stiffness",    "integrated",     "passed_limits", "multiplier_difference_max"};
+                 "stiffness",    "integrated",     "passed_limits", "multiplier_difference_max",
+                 "events",       "event_remarks",  "stops"};
   std::sort(expected.begin(), expected.end());
   EXPECT_EQ(keys(json), expected);
   EXPECT_EQ(keys(json["counters"]),

@@ -23,7 +23,7 @@ Scene parse_scene(std::string_view text, const std::string& file,
   const reading::Parameters parameters(root, file);
   const reading::Fields table(root, "", file, &parameters);
   table.allow({"name", "gravity", "parameters", "require", "body", "joint", "loop", "drive",
-               "force", "function", "marker", "visual", "assembly", "run", "lagrangian"});
+               "force", "function", "marker", "event", "visual", "assembly", "run", "lagrangian"});
   reading::check_requirements(root, parameters, file);
 
   Scene scene;
@@ -44,6 +44,8 @@ Scene parse_scene(std::string_view text, const std::string& file,
     scene.functions.push_back(reading::read_function(t));
   for (const reading::Fields& t : table.tables("marker", "marker"))
     scene.markers.push_back(reading::read_marker(t));
+  for (const reading::Fields& t : table.tables("event", "event"))
+    scene.events.push_back(reading::read_event(t));
   for (const reading::Fields& t : table.tables("visual", "visual"))
     scene.visuals.push_back(reading::read_visual(t));
   if (const auto assembly = table.table("assembly")) {

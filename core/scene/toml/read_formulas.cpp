@@ -1,4 +1,4 @@
-// Functions, and formulas of forces and drives, read when the whole scene is known.
+// Functions, and formulas of forces, loops, drives and events, read when the whole scene is known.
 
 #include <momenta/core/scene/drive.h>
 #include <momenta/core/scene/formula.h>
@@ -106,6 +106,16 @@ void read_formulas(const Fields& root, Scene& scene) {
                     "equation, " + in_quotes(as_typed) + ", " + fault);
     loop.equation = formula.text;
   }
+  which = 0;
+  if (!scene.lagrangian)  // whose formulas have names of their own (lagrangian_formulas.h)
+    for (const Fields& table : root.tables("event", "event")) {
+      std::string& text = scene.events[which++].when.text;
+      const Formula formula =
+          read_at(table, "when", text, scene, [&](const auto& t) { return reader.read(t); });
+      if (const std::string fault = event_fault(formula); !fault.empty())
+        table.fail_at(value_at(table, "when").at, "when, " + in_quotes(text) + ", " + fault);
+      text = formula.text;
+    }
   which = 0;
   for (const Fields& table : root.tables("drive", "drive")) {
     DriveSpec& drive = scene.drives[which++];

@@ -140,9 +140,14 @@ JointSpec read_joint(const Fields& table) {
       table.refuse(key, "has no meaning for a " + kind +
                             " joint, expected on revolute, prismatic and helical only");
   if (!has_one_coordinate(joint.kind) && joint.kind != JointKind::spherical)
-    for (const std::string_view key : {"limits", "stop_stiffness", "stop_damping", "stop_width"})
+    for (const std::string_view key :
+         {"limits", "stop_stiffness", "stop_damping", "stop_width", "restitution"})
       table.refuse(key, "has no meaning for a " + kind +
                             " joint, expected on revolute, prismatic, helical and spherical only");
+  if (joint.kind == JointKind::spherical)
+    table.refuse("restitution",
+                 "has no meaning for a spherical joint, expected on revolute, "
+                 "prismatic and helical only");
   const auto only = [&](std::string_view key, JointKind owner) {
     if (joint.kind != owner)
       table.refuse(key, "has no meaning for a " + kind + " joint, expected on " +
@@ -161,7 +166,7 @@ JointSpec read_joint(const Fields& table) {
                "rotation",     "axis",          "axis2",         "direction", "pitch",
                "position",     "velocity",      "stiffness",     "rest",      "damping",
                "friction",     "friction_rate", "rotor_inertia", "limits",    "stop_stiffness",
-               "stop_damping", "stop_width"});
+               "stop_damping", "stop_width",    "restitution"});
 
   joint.name = table.text("name");
   read_ends(table, joint);
@@ -183,6 +188,16 @@ JointSpec read_joint(const Fields& table) {
   joint.friction_rate = table.number("friction_rate", {turns ? "rad/s" : "m/s", Bound::positive},
                                      joint.friction_rate);
   read_limits(table, turns ? "rad" : "m", turns ? "N m" : "N", joint);
+  if (table.has("restitution")) {
+    if (!joint.limits)
+      table.refuse("restitution", "is there without limits, expected limits to stop at");
+    for (const char* key : {"stop_stiffness", "stop_damping", "stop_width"})
+      table.refuse(key, "is given beside restitution, expected stops that give way or rigid ones");
+    joint.restitution = table.number("restitution", {"", Bound::not_negative});
+    if (*joint.restitution > 1)
+      table.fail_key("restitution",
+                     "is above 1, expected the rate after an impact over that before, 0 to 1");
+  }
   joint.rotor_inertia = read_state(table, "rotor_inertia", rotors_of(joint.kind), kind,
                                    {turns ? "kg m²" : "kg", Bound::not_negative});
   return joint;
@@ -321,6 +336,21 @@ MarkerSpec read_marker(const Fields& table) {
   marker.body = table.text("body");
   marker.point = table.vector("point", {"m"}, marker.point);
   return marker;
+}
+
+EventSpec read_event(const Fields& table) {
+  table.allow({"name", "when", "direction", "stop"});
+  EventSpec event;
+  event.at = table.at();
+  event.name = table.text("name", "");
+  if (table.has("name") && event.name.empty())
+    table.fail_key("name", "is empty, expected a name or no such key");
+  event.when.text = table.text("when");
+  event.when.at = table.find("when")->at;
+  if (table.has("direction"))
+    event.direction = event_directions[read_kind(table, event_directions, "direction")];
+  event.stop = table.flag("stop", false);
+  return event;
 }
 
 RunDefaults read_run(const Fields& table) {

@@ -27,13 +27,14 @@ FunctionSpec read_function(const Fields& table);
 /// Of a function given by `file`: its points from the columns `x` and `y` of that file.
 void read_columns(const Fields& table, FunctionSpec& function);
 MarkerSpec read_marker(const Fields& table);
+EventSpec read_event(const Fields& table);
 VisualSpec read_visual(const Fields& table);
 RunDefaults read_run(const Fields& table);
 LagrangianSpec read_lagrangian(const Fields& table);
 
-/// The formulas of forces and drives, of which the tables above keep the text: judged, with numbers
-/// in place of parameters. `root` is the scene's table. @pre parameters, joints, markers and forces
-/// of the scene are read
+/// The formulas of forces, drives and events, of which the tables above keep the text: judged, with
+/// numbers in place of parameters. `root` is the scene's table. @pre parameters, joints, markers
+/// and forces of the scene are read
 void read_formulas(const Fields& root, Scene& scene);
 
 /// The value of `key`, one of `kinds`; else fails with the kinds there are. `others` are those of

@@ -152,6 +152,7 @@ void write_joint(const JointSpec& joint, TomlText& t) {
   t.number("friction_rate", joint.friction_rate, JointSpec{}.friction_rate);
   if (!joint.rotor_inertia.empty()) t.numbers("rotor_inertia", joint.rotor_inertia);
   write_limits(joint, t);
+  if (joint.restitution) t.put("restitution", TomlText::digits(*joint.restitution));
 }
 
 /// Σ ratios q of joints.
@@ -402,6 +403,13 @@ std::string scene_text(const Scene& scene) {
     t.word("name", marker.name);
     t.word("body", marker.body);
     t.vector("point", marker.point);
+  }
+  for (const EventSpec& event : scene.events) {
+    t.open("[[event]]");
+    if (!event.name.empty()) t.word("name", event.name);
+    t.word("when", event.when.text);
+    if (event.direction != "both") t.word("direction", event.direction);
+    if (event.stop) t.put("stop", "true");
   }
   for (const VisualSpec& visual : scene.visuals) write_visual(visual, t);
   if (!scene.held.empty()) {

@@ -47,6 +47,7 @@ class _SceneKeys(TypedDict, total=False):
     force: Sequence[Mapping[str, Any]]
     function: Sequence[Mapping[str, Any]]
     marker: Sequence[Mapping[str, Any]]
+    event: Sequence[Mapping[str, Any]]
     visual: Sequence[Mapping[str, Any]]
     assembly: Mapping[str, Any]
     run: Mapping[str, Any]
@@ -80,6 +81,7 @@ class _JointKeys(TypedDict, total=False):
     stop_stiffness: float
     stop_damping: float
     stop_width: float
+    restitution: float
 
 class _LoopKeys(TypedDict, total=False):
     parent: str
@@ -155,6 +157,11 @@ class _ForceKeys(_SpringKeys, total=False):
 
 class _MarkerKeys(TypedDict, total=False):
     point: _Vector
+
+class _EventKeys(TypedDict, total=False):
+    name: str
+    direction: Literal["up", "down", "both"]
+    stop: bool
 
 class _VisualKeys(TypedDict, total=False):
     size: _Vector
@@ -240,6 +247,7 @@ class Scene:
     def spring(self, **keys: Unpack[_SpringKeys]) -> Scene: ...
     def marker(self, name: str, body: str, **keys: Unpack[_MarkerKeys]) -> Scene: ...
     def function(self, name: str, x: Sequence[float], y: Sequence[float]) -> Scene: ...
+    def event(self, when: Any, **keys: Unpack[_EventKeys]) -> Scene: ...
     def visual(self, body: str, kind: str, **keys: Unpack[_VisualKeys]) -> Scene: ...
     def lagrangian(self, coordinates: Sequence[str], **keys: Unpack[_LagrangianKeys]) -> Scene: ...
     def constraint(self, name: str, equation: Any, unit: Literal["m", "rad"] | None = None) -> Scene: ...
@@ -438,6 +446,12 @@ class Run:
     def status(self) -> str: ...
     @property
     def reason(self) -> str: ...
+    @property
+    def events(self) -> list[dict[str, Any]]: ...
+    @property
+    def event_remarks(self) -> list[str]: ...
+    @property
+    def stops(self) -> list[dict[str, Any]]: ...
     @property
     def stopped_at(self) -> float: ...
     @property

@@ -12,7 +12,7 @@ from . import _momenta
 from .formulas import is_formula, text_of
 
 # Keys of a scene whose value is a list of tables, and keys whose value is one table.
-_LISTS = ("body", "joint", "loop", "drive", "force", "function", "marker", "visual")
+_LISTS = ("body", "joint", "loop", "drive", "force", "function", "marker", "event", "visual")
 _TABLES = ("assembly", "run", "lagrangian")
 
 
@@ -24,8 +24,8 @@ class Scene:
     s.joint('O', 'revolute', child='rod', position=0.5)
     run = s.load().run(end=10)
 
-    body, joint, loop, drive, force, spring, function, marker, visual, lagrangian, constraint, assembly and run return
-    the scene, so that calls can be chained. Keys that are None are left out, and an underscore
+    body, joint, loop, drive, force, spring, function, marker, event, visual, lagrangian, constraint, assembly and run
+    return the scene, so that calls can be chained. Keys that are None are left out, and an underscore
     at the end of one, as in from_, which Python keeps for itself. load() reports mistakes: a SceneError, one sentence.
     """
 
@@ -40,7 +40,7 @@ class Scene:
     def joint(self, name, kind, **keys):
         """Adds a joint of the tree: parent, child, origin [m], rotation, axis, position, velocity,
         stiffness, rest, damping, friction, friction_rate, limits, stop_stiffness, stop_damping,
-        stop_width, rotor_inertia, pitch, axis2, direction."""
+        stop_width, restitution, rotor_inertia, pitch, axis2, direction."""
         return self._add("joint", name=name, kind=kind, **keys)
 
     def loop(self, name, kind, **keys):
@@ -75,6 +75,11 @@ class Scene:
     def marker(self, name, body, **keys):
         """Adds a point of a body whose motion is recorded: point [m], in body axes."""
         return self._add("marker", name=name, body=body, **keys)
+
+    def event(self, when, **keys):
+        """Adds an event, told where the formula `when` passes zero: name, direction ("up", "down" or "both"), stop
+        (True: the run ends there). `when` is a formula as of `lagrangian`."""
+        return self._add("event", when=_formula(when), **keys)
 
     def visual(self, body, kind, **keys):
         """Adds a solid that is drawn and has no effect on motion: position [m], rotation, colour; size,

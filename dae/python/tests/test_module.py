@@ -3,6 +3,7 @@
 import gc
 import os
 import pathlib
+import pickle
 import runpy
 import signal
 import threading
@@ -255,6 +256,23 @@ class Runs(unittest.TestCase):
         ladder = m.work(forms=["momentum"], integrators=["dop853"], tolerances=[1e-5, 1e-8], end=1.0)
         self.assertEqual([r.rtol for r in ladder], [1e-5, 1e-8])
         self.assertLess(ladder[1].position_error_max, ladder[0].position_error_max)
+
+    def test_events_and_stops(self):
+        s = momenta.Scene("thrown", gravity=[0, 0, -10])
+        s.body("a", mass=2, shape={"kind": "sphere", "radius": 0.1})
+        s.joint("A", "prismatic", child="a", velocity=3, limits=[-1, 0.4], restitution=0.5)
+        s.event("A.q - 0.3", name="height").event("A.q + 0.5", direction="down", stop=True)
+        run = s.load().run(rtol=1e-12, end=2)
+        # 3 t - 5 t^2 = 0.3; at 0.4, after 0.2 s, the rate 1 is turned into -0.5
+        self.assertEqual(run.status, "event")
+        self.assertEqual([e["direction"] for e in run.events], ["up", "down", "down"])
+        self.assertAlmostEqual(run.events[0]["t"], (3 - np.sqrt(3)) / 10, places=10)
+        self.assertAlmostEqual(run.events[0]["A.u"], np.sqrt(3), places=9)
+        self.assertEqual(run.events[2]["name"], "event 2")
+        self.assertAlmostEqual(run["A.q"][-1], -0.5, places=9)
+        self.assertEqual([s["what"] for s in run.stops], ["impact"])
+        self.assertAlmostEqual(run.stops[0]["after"], -0.5, places=9)
+        self.assertEqual(pickle.loads(pickle.dumps(run)).events, run.events)
 
     def test_other_threads_go_on_during_a_run(self):
         counted, stop = [0], threading.Event()

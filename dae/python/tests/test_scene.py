@@ -244,6 +244,7 @@ class Keys(unittest.TestCase):
         ),
         "_SpringKeys": ("force", ["spring-damper"], {"kind"}),
         "_MarkerKeys": ("marker", [None], {"name", "body"}),
+        "_EventKeys": ("event", [None], {"when"}),
         "_VisualKeys": ("visual", ["box", "capsule", "mesh"], {"body", "kind"}),
         "_LagrangianKeys": ("lagrangian", [None], {"coordinates"}),
         "_AssemblyKeys": ("assembly", [None], set()),

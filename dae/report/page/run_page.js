@@ -26,7 +26,7 @@
     line("gauge", run.gauge);
     line("corrected after each step", run.project ? "yes" : "no");
     line("(7) is solved by", run.kkt);
-    line("status", run.status === "done" ? "done" : `${run.status} at ${number(run.stopped_at, 4)} s: ${run.reason}`);
+    line("status", run.status === "done" ? "done" : run.status === "event" ? run.reason : `${run.status} at ${number(run.stopped_at, 4)} s: ${run.reason}`);
     const drift = (value, unit) => (measured(value) ? `${number(value)} ${unit}` : "");
     line("largest position drift", drift(run.drift.position_max, run.drift.unit));
     line("largest velocity drift", drift(run.drift.velocity_max, `${run.drift.unit}/s`));

@@ -1,0 +1,238 @@
+// Rigid stops: impacts against dense matrices and against known motions, bounces that end in
+// holding, release, energy, in forms of every kind.
+
+#include <gtest/gtest.h>
+#include <momenta/core/scene/files/read_scene.h>
+#include <momenta/core/scene/toml/parse_scene.h>
+#include <momenta/dae/event/impact.h>
+#include <momenta/dae/form/form.h>
+#include <momenta/dae/study/rigid_stops.h>
+#include <momenta/dae/study/run_form.h>
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+#include <random>
+
+#include "equations/kkt_blocks.h"
+
+namespace momenta::dae_rigid_stops {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+struct Method {
+  const char *form, *integrator;
+  double step, bound;
+};
+constexpr Method methods[] = {{"momentum", "dop853", 0, 1e-8},
+                              {"acceleration", "rk4", 0.002, 1e-8},
+                              {"baumgarte", "dp5", 0, 1e-8},
+                              {"momentum-index2", "ida", 0, 1e-5},
+                              {"stabilised-index2", "radau5", 0, 1e-6},
+                              {"acceleration-index2", "hem5", 0, 1e-6},
+                              {"momentum-index1", "bdf5", 0, 1e-5}};
+
+RunResult run(const Scene& scene, const Method& m, double end, int samples = 100) {
+  const Mechanism mechanism(scene);
+  RunRequest request;
+  request.settings.form = m.form;
+  request.settings.integrator = m.integrator;
+  request.settings.gauge = takes_gauge(m.form) ? "none" : "";
+  request.settings.rtol = request.settings.atol = 1e-10;
+  request.settings.step = m.step;
+  request.settings.end_time = end;
+  request.settings.samples = samples;
+  request.keep_trajectory = true;
+  return run_form(mechanism, assemble(mechanism).start, request);
+}
+
+/// A slide above its lower stop.
+Scene slide(double restitution, const std::string& keys = "position = 0.6\n",
+            const std::string& rest = "gravity = [0, 0, -10]\n") {
+  return parse_scene(rest + R"(
+[[body]]
+name = "a"
+mass = 2
+shape = { kind = "sphere", radius = 0.1 }
+[[joint]]
+name = "A"
+kind = "prismatic"
+child = "a"
+limits = [0, 5]
+restitution = )" + std::to_string(restitution) +
+                         "\n" + keys,
+                     "slide.toml");
+}
+
+std::vector<StopContact> contacts(const RunResult& result, const std::string& what) {
+  std::vector<StopContact> all;
+  for (const StopContact& s : result.stops)
+    if (s.what == what) all.push_back(s);
+  return all;
+}
+
+// From h the first impact is after √(2h/g), each next one after 2 eᵏ v/g; they come to an end at
+// t₁ + 2 v e/(g (1 − e)), and the stop holds m g from then on.
+TEST(RigidStops, ABallBouncesAsItIsKnownToAndComesToRest) {
+  const double h = 0.6, g = 10, e = 0.5, v = std::sqrt(2 * g * h), first = std::sqrt(2 * h / g);
+  for (const Method& m : methods) {
+    const RunResult result = run(slide(e), m, 2);
+    ASSERT_EQ(result.status, "done") << m.form << result.reason;
+    const auto impacts = contacts(result, "impact");
+    ASSERT_GT(impacts.size(), 15U) << m.form;
+    double t = first;
+    for (std::size_t k = 0; k < 12; ++k) {
+      const double rate = v * std::pow(e, static_cast<double>(k));
+      EXPECT_NEAR(impacts[k].t, t, m.bound) << m.form << k;
+      EXPECT_NEAR(impacts[k].before, -rate, 10 * m.bound) << m.form << k;
+      EXPECT_NEAR(impacts[k].after, e * rate, 10 * m.bound) << m.form << k;
+      EXPECT_NEAR(impacts[k].impulse, 2 * (1 + e) * rate, 40 * m.bound) << m.form << k;
+      t += 2 * e * rate / g;
+    }
+    const auto held = contacts(result, "held");
+    ASSERT_EQ(held.size(), 1U) << m.form;
+    EXPECT_NEAR(held[0].t, first + 2 * v * e / (g * (1 - e)), m.bound + 1e-7) << m.form;
+    EXPECT_NEAR(result.trajectory.rows.back()[1], 0, 1e-9) << m.form;
+    EXPECT_NEAR(result.trajectory.rows.back()[2], 0, 1e-9) << m.form;
+    EXPECT_TRUE(contacts(result, "released").empty());
+    EXPECT_LE(result.energy_error_max, 1e3 * m.bound) << m.form;
+    EXPECT_TRUE(result.passed_limits.empty()) << m.form;
+  }
+}
+
+// The stop lets go where it would have to pull: with the force cos t against it from rest, at π/2,
+// and then x = π/2 − t − cos t below it.
+TEST(RigidStops, LetGoWhereTheyWouldPull) {
+  const Scene scene = slide(0.3,
+                            "position = 5\n[[force]]\nkind = \"torque\"\njoint = \"A\"\n"
+                            "law = \"2*cos(t)\"\n",
+                            "");
+  for (const Method& m : methods) {
+    const RunResult result = run(scene, m, 3);
+    ASSERT_EQ(result.status, "done") << m.form << result.reason;
+    ASSERT_EQ(contacts(result, "held").size(), 1U) << m.form;
+    EXPECT_EQ(contacts(result, "held")[0].t, 0);
+    const auto released = contacts(result, "released");
+    ASSERT_EQ(released.size(), 1U) << m.form;
+    EXPECT_NEAR(released[0].t, 0.5 * std::numbers::pi, 10 * m.bound) << m.form;
+    for (const auto& row : result.trajectory.rows)
+      EXPECT_NEAR(row[1],
+                  5 + (row[0] < 0.5 * std::numbers::pi
+                           ? 0
+                           : 0.5 * std::numbers::pi - row[0] - std::cos(row[0])),
+                  100 * m.bound)
+          << m.form << row[0];
+  }
+}
+
+Scene four_bar(const char* joint, double restitution, double low, double high) {
+  Scene scene = read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples" / "four_bar" /
+                           "scene.toml");
+  for (JointSpec& j : scene.joints)
+    if (j.name == joint) j.limits = {low, high}, j.restitution = restitution;
+  return scene;
+}
+
+// p⁺ = p⁻ − n Λ with all loops held, by elimination of one dense matrix; no energy is lost at e
+// = 1.
+TEST(RigidStops, ImpactsAreThoseOfDenseMatrices) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> any(-1, 1);
+  const Mechanism mechanism(four_bar("C", 1, -9, 9));
+  const auto e = mechanism.evaluation<double>();
+  Impact impact(mechanism);
+  const int nv = mechanism.nv(), m = mechanism.m();
+  for (const double restitution : {0.0, 0.4, 1.0})
+    for (int k = 0; k < 20; ++k) {
+      VectorXd guess = mechanism.tree().q0, rates(nv);
+      guess[0] += 2 * any(random);
+      for (double& x : rates) x = any(random);
+      const Start start = assemble(mechanism, 0, guess, rates).start;
+      const int coordinate = k % nv;
+      const double side = start.u[coordinate] > 0 ? 1 : -1;
+      e->place(0, start.q.data());
+      const equations::KktBlocks blocks(mechanism, *e);
+      MatrixXd whole = MatrixXd::Zero(nv + m + 1, nv + m + 1);
+      whole.topLeftCorner(nv, nv) = blocks.M;
+      whole.block(0, nv, nv, m) = blocks.J.transpose();
+      whole.block(nv, 0, m, nv) = blocks.J;
+      whole(coordinate, nv + m) = whole(nv + m, coordinate) = side;
+      VectorXd right(nv + m + 1);
+      right << blocks.M * start.u, VectorXd::Zero(m), -restitution * side * start.u[coordinate];
+      const VectorXd dense = whole.fullPivLu().solve(right);
+      VectorXd u = start.u;
+      std::vector<StopAtImpact> stops{{coordinate, side, restitution}};
+      const double taken = impact.jump(0, start.q, u, stops);
+      const double size = 1 + start.u.norm();
+      EXPECT_LE((u - dense.head(nv)).norm(), 1e-12 * size);
+      EXPECT_NEAR(stops[0].impulse, dense[nv + m], 1e-12 * size);
+      EXPECT_GE(stops[0].impulse, 0);
+      const double before = 0.5 * start.u.dot(blocks.M * start.u),
+                   after = 0.5 * u.dot(blocks.M * u);
+      EXPECT_NEAR(before - after, taken, 1e-13 * before);
+      if (restitution == 1) {
+        EXPECT_NEAR(after, before, 1e-14 * (1 + before));
+      }
+    }
+}
+
+// The rocker of a four-bar between stops: the same impacts in every form, and no energy lost at
+// e = 1 but what the integrators lose.
+TEST(RigidStops, OfAFourBarAreTheSameInEveryForm) {
+  const Scene scene = four_bar("C", 0.6, 1.5, 2.2);
+  const RunResult exact = run(scene, {"momentum", "vern9", 0, 0}, 4);
+  ASSERT_EQ(exact.status, "done") << exact.reason;
+  ASSERT_GE(contacts(exact, "impact").size(), 4U);
+  for (const Method& m : methods) {
+    const RunResult result = run(scene, m, 4);
+    ASSERT_EQ(result.status, "done") << m.form << result.reason;
+    const auto impacts = contacts(result, "impact"), known = contacts(exact, "impact");
+    ASSERT_GE(impacts.size(), 3U) << m.form;
+    for (std::size_t k = 0; k < 3; ++k) {
+      EXPECT_NEAR(impacts[k].t, known[k].t, 100 * m.bound) << m.form << k;
+      EXPECT_NEAR(impacts[k].after, known[k].after, 1e3 * m.bound) << m.form << k;
+      EXPECT_EQ(impacts[k].joint, "C");
+    }
+    EXPECT_LE(result.energy_error_max, 1e4 * m.bound) << m.form;
+  }
+  const RunResult elastic = run(four_bar("C", 1, 1.5, 2.2), {"momentum", "vern9", 0, 0}, 4);
+  EXPECT_LE(elastic.energy_error_max, 1e-7);
+  EXPECT_TRUE(contacts(elastic, "held").empty());
+}
+
+// Two slides that fall side by side meet their stops at one time.
+TEST(RigidStops, SeveralAtOnce) {
+  Scene scene = slide(0.5);
+  BodySpec body = scene.bodies[0];
+  body.name = "b";
+  JointSpec joint = scene.joints[0];
+  joint.name = "B";
+  joint.child = "b";
+  scene.bodies.push_back(body);
+  scene.joints.push_back(joint);
+  const RunResult result = run(scene, methods[0], 2);
+  ASSERT_EQ(result.status, "done") << result.reason;
+  const auto impacts = contacts(result, "impact");
+  ASSERT_GE(impacts.size(), 4U);
+  EXPECT_EQ(impacts[0].t, impacts[1].t);
+  EXPECT_NE(impacts[0].joint, impacts[1].joint);
+  EXPECT_EQ(contacts(result, "held").size(), 2U);
+}
+
+TEST(RigidStops, RefuseAStartBeyondThem) {
+  try {
+    run(slide(0.5, "position = -0.1\n"), methods[0], 1);
+    FAIL();
+  } catch (const SceneError& e) {
+    EXPECT_EQ(std::string(e.what()),
+              "slide.toml: joint 'A' starts at -0.1, beyond its rigid stop at 0, expected a start "
+              "within its limits");
+  }
+}
+
+}  // namespace
+}  // namespace momenta::dae_rigid_stops
