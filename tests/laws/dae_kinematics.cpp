@@ -227,7 +227,8 @@ TEST(Kinematics, WhatIsLeftFreeIsHeldOrNamed) {
   EXPECT_THROW(moved(open, "O", held), SceneError);
 }
 
-// A four-bar with a driven crank carries a pendulum, which alone is free: the loop's own hinges stay.
+// A four-bar with a driven crank carries a pendulum, which alone is free: the hinges of the loop
+// stay.
 TEST(Kinematics, WhatTheLoopsHoldIsNotSwept) {
   const Scene driven =
       read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples/driven/scene.toml");
