@@ -48,6 +48,12 @@ int move(const Options&, const MoveOptions&) {
 int effort(const Options&, const EffortOptions&) {
   return left_out("effort");
 }
+int gradient_verb(const Options&, const GradientOptions&) {
+  return left_out("gradient");
+}
+int section(const Options&, const SectionOptions&) {
+  return left_out("section");
+}
 int fit(const Options&, const FitOptions&) {
   return left_out("fit");
 }
