@@ -63,15 +63,18 @@ class EventWatch {
   /// and those of stops at that very time.
   const std::vector<Found>& step(double t0, double t1, std::vector<std::string>& remarks) {
     found_.clear();
-    // Behind an impact the next one may follow within the step.
-    const double pause = t0 + pause_;
-    if (pause_ > 0 && pause > t0 && pause < t1) {
-      interval(t0, pause, remarks);
-      interval(pause, t1, remarks);
+    // Behind an impact the next one may follow within the step, and not before the pause is over:
+    // what a dense output shows of that stop before is its error.
+    if (pause_until_ > t0 && pause_until_ < t1) {
+      const double until = pause_until_;
+      interval(t0, until, remarks);
+      for (std::size_t k = first_stop(); k < all_events_; ++k)
+        if (pausing(k)) crossings_[k].restart_below_zero(until);
+      pause_until_ = t0;
+      interval(until, t1, remarks);
     } else {
       interval(t0, t1, remarks);
     }
-    pause_ = 0;
     std::stable_sort(found_.begin(), found_.end(),
                      [](const Found& a, const Found& b) { return a.crossing.t < b.crossing.t; });
     const auto end =
@@ -94,7 +97,7 @@ class EventWatch {
         crossings_[k].restart_below_zero(t);
       else
         crossings_[k].restart();
-    pause_ = stops_->pause();
+    pause_until_ = t + stops_->pause();
   }
 
   void carry(Memory& memory) {
@@ -113,11 +116,14 @@ class EventWatch {
       of_one_.clear();
       crossings_[k].step(t0, t1, values, of_event_[k], of_one_);
       for (Crossing& c : of_one_) {
-        if (!wanted(k, c.up)) continue;
+        if (!wanted(k, c.up) || (c.t < pause_until_ && pausing(k))) continue;
         if (exact_) c.t = exact_root(c.t, k, t0, t1);
         found_.push_back({k, c});
       }
     }
+  }
+  bool pausing(std::size_t k) const {
+    return k >= first_stop() && stops_->was_met(k - first_stop());
   }
   bool wanted(std::size_t k, bool up) const {
     if (k >= events_.size()) return stops_->ends_upwards(k - events_.size()) == up;
@@ -175,7 +181,7 @@ class EventWatch {
   std::vector<EventSpec> events_;
   RigidStops* stops_;
   std::size_t all_events_;  ///< with the numbers of stops behind them
-  double pause_ = 0;        ///< before which no stop is met again [s]
+  double pause_until_ = 0;  ///< before which what was met is not met again [s]
   EventValues values_;
   double tolerance_;
   Read read_;

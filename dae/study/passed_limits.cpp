@@ -11,7 +11,7 @@ namespace momenta {
 PassedLimits::PassedLimits(const Mechanism& mechanism) {
   const Scene& scene = mechanism.scene();
   for (const JointSpec& joint : scene.joints) {
-    if (!joint.limits) continue;
+    if (!joint.limits || joint.restitution) continue;  // rigid stops hold them (rigid_stops.h)
     const auto& body =
         mechanism.tree().bodies[static_cast<std::size_t>(mechanism.tree().carried_by(joint.name))];
     if (body.nq == 0) continue;  // driven

@@ -26,6 +26,7 @@ RigidStops::RigidStops(const Mechanism& mechanism, double span)
       stops_.push_back(
           {joint.name, b.q, b.u, side, (*joint.limits)[side > 0 ? 1 : 0], *joint.restitution});
   }
+  slack_.assign(stops_.size(), 0);
 }
 
 std::string RigidStops::loop_name(std::size_t i) const {
@@ -64,7 +65,7 @@ double RigidStops::push(const Mechanism& acting, std::size_t i,
 double RigidStops::value(std::size_t i, double t, const Eigen::VectorXd& q,
                          const Eigen::VectorXd& u) {
   const Stop& stop = stops_[i];
-  if (!held_.contains(i)) return stop.side * (q[stop.q] - stop.limit);
+  if (!held_.contains(i)) return stop.side * (q[stop.q] - stop.limit) - slack_[i];
   udot_.resize(acting_->nv());
   lambda_.resize(acting_->m());
   if (!solving_->solver->acceleration(t, q.data(), u.data(), nullptr, 0, 0, udot_.data(),
@@ -111,6 +112,10 @@ Start RigidStops::meet(double t, const Eigen::VectorXd& q, const Eigen::VectorXd
 
 Start RigidStops::behind(double t, const Eigen::VectorXd& q, const Eigen::VectorXd& before,
                          const std::vector<std::size_t>& hit, RunResult& told, double& taken) {
+  if (!q.allFinite() || !before.allFinite())
+    throw std::runtime_error("at t = " + compact(t, 8) +
+                             " s, where a rigid stop is met, the state is not finite: the method's "
+                             "steps there are too short for its dense output");
   const std::set<std::size_t> held_before = held_;
   std::set<std::size_t> soft;  // taken with e = 0
   for (const std::size_t i : hit)
@@ -169,7 +174,11 @@ Start RigidStops::behind(double t, const Eigen::VectorXd& q, const Eigen::Vector
       if (!held_.contains(i)) tell(told, t, i, "released", 0, 0, 0);
     acting_ = held_.empty() ? &mechanism_ : &now;
     solving_ = &acting;
-    pause_ = std::isfinite(pause) ? pause : 0;
+    // Pulled off it, no next impact can be foreseen: some moments are enough for its first step.
+    pause_ = std::isfinite(pause) ? pause : hit.empty() ? 0 : 1e-6 * span_;
+    met_ = {hit.begin(), hit.end()};
+    for (std::size_t i = 0; i < stops_.size(); ++i)
+      slack_[i] = std::max(0.0, stops_[i].side * (start.q[stops_[i].q] - stops_[i].limit));
     return start;
   }
   throw std::runtime_error("at t = " + compact(t, 8) +

@@ -39,6 +39,8 @@ class RigidStops {
   const Mechanism& acting() const { return *acting_; }
   /// Time [s] after the last impact in which the next one cannot be.
   double pause() const { return pause_; }
+  /// Whether a stop was met at the last impact and is open.
+  bool was_met(std::size_t i) const { return met_.contains(i) && !held_.contains(i); }
 
   /// The start of the run: stops that are met there are taken as impacts. @throws SceneError for
   /// a start beyond a stop, std::runtime_error as meet()
@@ -82,6 +84,8 @@ class RigidStops {
   const Mechanism* acting_;
   Acting* solving_ = nullptr;
   double pause_ = 0;
+  std::set<std::size_t> met_;  ///< at the last impact
+  std::vector<double> slack_;  ///< what closing drift moved each beyond its stop [rad or m]
   std::map<std::size_t, double> last_;  ///< when each was met [s]
   Eigen::VectorXd udot_, lambda_;
 };
