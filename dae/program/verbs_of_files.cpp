@@ -27,12 +27,12 @@ Verb add_convert(CLI::App& app, Options& o) {
 }
 
 Verb add_make(CLI::App& app, Options&) {
-  struct Family {
+  struct Asked {
     std::string family;
     std::optional<int> n;
     bool turned = false;
   };
-  const auto own = std::make_shared<Family>();
+  const auto own = std::make_shared<Asked>();
   CLI::App* verb = app.add_subcommand("make", "Prints a scene of a family");
   verb->footer("Example: momenta make stewart --n 6 > stewart.toml");
   verb->add_option("family", own->family, "Which mechanism")->required()->type_name("FAMILY");

@@ -20,11 +20,11 @@ Verb add_check(CLI::App& app, Options& o) {
 }
 
 Verb add_assemble(CLI::App& app, Options& o) {
-  struct Assembled {
+  struct Asked {
     AssembliesOptions assemblies;
     bool all = false;
   };
-  const auto own = std::make_shared<Assembled>();
+  const auto own = std::make_shared<Asked>();
   CLI::App* verb =
       app.add_subcommand("assemble", "A consistent start: positions, rates, accelerations, λ");
   verb->footer("Example: momenta assemble examples/andrews/scene.toml");
