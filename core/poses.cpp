@@ -12,8 +12,6 @@ struct Poses::Inside {
       : tree(std::move(of)), model(build_spatial_model(tree, scene)), w(model) {}
 };
 
-Poses::Poses(const Scene& open_chain)
-    : inside_(std::make_unique<Inside>(build_tree(open_chain), open_chain)) {}
 Poses::Poses(const Tree& tree, const Scene& scene)
     : inside_(std::make_unique<Inside>(tree, scene)) {}
 Poses::~Poses() = default;

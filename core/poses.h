@@ -20,8 +20,7 @@ struct BodyMotion {
 /// Owns its model and workspace; one object serves one thread.
 class Poses {
  public:
-  explicit Poses(const Scene& open_chain);
-  /// Of a mechanism: its tree, made of `scene`. O(bodies)
+  /// The tree of a mechanism, made of `scene`. O(bodies)
   Poses(const Tree& tree, const Scene& scene);
   ~Poses();
   Poses(const Poses&) = delete;

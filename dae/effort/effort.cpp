@@ -108,18 +108,12 @@ class Thrusts {
       : mechanism_(mechanism),
         actuators_(actuators),
         joints_(joint_places(mechanism)),
-        sweep_(make_wrench_sweep(mechanism)) {
-    Scene open = mechanism.scene();
-    open.loops.clear();
-    open.markers.clear();
-    open.forces.clear();
-    open.functions.clear();
-    poses_.emplace(open);
-  }
+        sweep_(make_wrench_sweep(mechanism)),
+        poses_(mechanism.tree(), mechanism.scene()) {}
 
   VectorXd at(const EffortRow& row, const VectorXd& lambda, const LoopIslands& islands,
               const VectorXd& row_units) {
-    const std::vector<Eigen::Isometry3d> frames = (*poses_)(row.t, row.q.data());
+    const std::vector<Eigen::Isometry3d> frames = poses_(row.t, row.q.data());
     const auto through = [&](const VectorXd& u, const VectorXd& udot, const VectorXd& multipliers) {
       sweep_->move(row.t, row.q.data(), u.data(), udot.data(), multipliers.data());
       const Reactions all = sweep_->reactions();
@@ -158,7 +152,7 @@ class Thrusts {
   const std::vector<Actuator>& actuators_;
   std::vector<JointPlace> joints_;
   std::unique_ptr<WrenchSweep> sweep_;
-  std::optional<Poses> poses_;
+  Poses poses_;
 };
 
 /// "A (1), B (-0.3)": rates that move most in what is not held, the largest as 1.

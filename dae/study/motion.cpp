@@ -255,10 +255,7 @@ Picture picture_of(const Mechanism& mechanism) {
 }
 
 Motion motion_of(const Mechanism& mechanism, const Film& film) {
-  Scene open = mechanism.scene();
-  open.loops.clear();
-  std::erase_if(open.drives, [](const DriveSpec& drive) { return !drive.loop.empty(); });
-  Poses poses_at(open);
+  Poses poses_at(mechanism.tree(), mechanism.scene());
   const Order order(mechanism);
   std::vector<std::size_t> in_tree;
   for (const JointSpec* joint : order.joints)

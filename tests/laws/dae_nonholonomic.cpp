@@ -178,9 +178,7 @@ VectorXd random_vector(Eigen::Index n, equations::RandomTree& random) {
 TEST(Nonholonomic, WheelAgainstItsGeometry) {
   const Scene scene = everything();
   const Mechanism mechanism(scene);
-  Scene open = scene;
-  open.loops.clear();
-  Poses poses(open);
+  Poses poses(mechanism.tree(), scene);
   const int wheel_body = mechanism.tree().body("wheel"), tray = mechanism.tree().body("tray");
   const auto e = mechanism.evaluation<double>();
   CoordinateMotion motion(mechanism);
@@ -741,10 +739,8 @@ velocity = 5
   const Mechanism chain(parse_scene(gravity + massless + bodies, "chain.toml"));
   const Start one = assemble(chain).start;
   // The same pose and twist of the free wheel.
-  Scene open = chain.scene();
-  open.loops.clear();
   const int k = chain.tree().body("wheel");
-  const auto at = Poses(open)(0, one.q.data())[static_cast<std::size_t>(k)];
+  const auto at = Poses(chain.tree(), chain.scene())(0, one.q.data())[static_cast<std::size_t>(k)];
   const Eigen::Quaterniond turn(at.linear());
   const Eigen::Vector3d lean(one.u[4], 0, 0), spin(0, one.u[5], 0), yaw(0, 0, one.u[2]);
   const Eigen::AngleAxisd leaning(one.q[4], Eigen::Vector3d::UnitX());
