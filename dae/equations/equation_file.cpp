@@ -2,6 +2,7 @@
 #include <momenta/core/scene/toml/fields.h>
 #include <momenta/core/scene/toml/set_numbers.h>
 #include <momenta/core/text/near_name.h>
+#include <momenta/dae/equations/definitions.h>
 #include <momenta/dae/equations/equation_file.h>
 #include <momenta/dae/structure/assignment.h>
 
@@ -28,12 +29,14 @@ class Reader {
     check_requirements(root_, parameters_, file_);
     const auto dae = fields_.table("dae");
     if (!dae) fail(file_, {1, 1}, "key 'dae' is missing, expected a table [dae] of equations");
-    dae->allow({"name", "variables", "equations", "values", "rates", "scales", "hold"});
+    dae->allow(
+        {"name", "variables", "definitions", "equations", "values", "rates", "scales", "hold"});
     out_.file = file_;
     out_.name = dae->text("name", "");
     read_variables(*dae);
     for (std::size_t i = 0; i < parameters_.names().size(); ++i)
       out_.parameters.push_back(parameters_[i]);
+    read_definitions(*dae);
     read_equations(*dae);
     out_.values = by_variable(*dae, "values", {}, 0);
     out_.rates = by_variable(*dae, "rates", {}, 0);
@@ -60,23 +63,68 @@ class Reader {
       const std::string& name = out_.variables[i];
       const Location place = list->items[i].at;
       const std::string what = "dae.variables[" + std::to_string(i) + "] is " + in_quotes(name);
-      if (!is_plain_name(name) || name == "t" || name == "pi" || name == "der" || name == "and" ||
-          name == "or" || name == "not" || name == "if")
-        fail(file_, place,
-             what +
-                 ", expected letters, digits and _, a letter first, and none of t, pi, der, "
-                 "and, or, not, if");
+      expect_name(name, place, what);
       if (std::find(out_.variables.begin(), out_.variables.begin() + static_cast<long>(i), name) !=
           out_.variables.begin() + static_cast<long>(i))
         fail(file_, place, what + " for the second time, expected each variable once");
-      const auto& parameters = parameters_.names();
-      if (std::find(parameters.begin(), parameters.end(), name) != parameters.end())
-        fail(file_, place, what + ", and so is a parameter, expected another name");
     }
-    names_ = {"t"};
-    names_.insert(names_.end(), out_.variables.begin(), out_.variables.end());
-    for (const std::string& name : out_.variables) names_.push_back("der(" + name + ")");
-    names_.insert(names_.end(), parameters_.names().begin(), parameters_.names().end());
+    std::vector<std::string> names{"t"};
+    names.insert(names.end(), out_.variables.begin(), out_.variables.end());
+    for (const std::string& name : out_.variables) names.push_back("der(" + name + ")");
+    names.insert(names.end(), parameters_.names().begin(), parameters_.names().end());
+    definitions_ = Definitions(std::move(names));
+  }
+
+  void expect_name(const std::string& name, Location place, const std::string& what) const {
+    if (!is_plain_name(name) || name == "t" || name == "pi" || name == "der" || name == "and" ||
+        name == "or" || name == "not" || name == "if")
+      fail(file_, place,
+           what +
+               ", expected letters, digits and _, a letter first, and none of t, pi, der, "
+               "and, or, not, if");
+    const auto& parameters = parameters_.names();
+    if (std::find(parameters.begin(), parameters.end(), name) != parameters.end())
+      fail(file_, place, what + ", and so is a parameter, expected another name");
+  }
+
+  /// Each of those above it in the file.
+  void read_definitions(const Fields& dae) {
+    const Value* table = dae.find("definitions");
+    if (!table) return;
+    if (!dae.table("definitions")) return;  // complains of what is no table
+    for (std::size_t i = 0; i < table->entries.size(); ++i) {
+      const auto& [name, place, value] = table->entries[i];
+      const std::string what = "dae.definitions." + name;
+      expect_name(name, place, what + " is " + in_quotes(name));
+      if (std::find(out_.variables.begin(), out_.variables.end(), name) != out_.variables.end())
+        fail(file_, place, what + " is a variable too, expected another name");
+      if (value.type != Value::Type::text)
+        fail(file_, value.at,
+             what + " is " + std::string(described(value.type)) + ", expected a formula in quotes");
+      const std::string told = what + ", " + in_quotes(value.text);
+      try {
+        definitions_.add(name, side(value, value.text, 0, told));
+      } catch (const SceneError&) {
+        expect_none_below(*table, i, told);
+        throw;
+      }
+    }
+  }
+  /// The formula that could not be read may be of what is defined only below it.
+  void expect_none_below(const Value& table, std::size_t i, const std::string& told) const {
+    std::vector<std::string> names = definitions_.names();
+    for (std::size_t k = i; k < table.entries.size(); ++k) names.push_back(table.entries[k].key);
+    try {
+      const Expression formula(table.entries[i].value.text, names);
+      for (const int v : formula.variables())
+        if (const auto at = static_cast<std::size_t>(v); at >= definitions_.names().size())
+          fail(
+              file_, table.entries[i].value.at,
+              told + " takes " + in_quotes(names[at]) +
+                  (at == definitions_.names().size() ? ", itself" : ", which is defined below it") +
+                  ", expected what stands above");
+    } catch (const ExpressionError&) {
+    }
   }
 
   void read_equations(const Fields& dae) {
@@ -111,19 +159,20 @@ class Reader {
     const std::string& text = v.text;
     const std::string told = "equation " + std::to_string(number + 1) + ", " + in_quotes(text);
     const std::size_t equals = equals_in(text, 0);
-    if (equals == std::string::npos) return side(v, text, 0, told);
+    if (equals == std::string::npos) return definitions_.in_place(side(v, text, 0, told));
     if (const std::size_t more = equals_in(text, equals + 1); more != std::string::npos)
       fail(file_, place_in(v, more), told + ": a second '=', expected one at most");
     // Each alone, for sentences with the right places; then the difference.
     const std::string left = text.substr(0, equals), right = text.substr(equals + 1);
     side(v, left, 0, told);
     side(v, right, equals + 1, told);
-    return Expression("(" + left + ") - (" + right + ")", names_);
+    return definitions_.in_place(
+        Expression("(" + left + ") - (" + right + ")", definitions_.names()));
   }
   Expression side(const Value& v, const std::string& text, std::size_t begin,
                   const std::string& told) const {
     try {
-      Expression read(text, names_);
+      Expression read(text, definitions_.names());
       if (read.is_truth()) fail(file_, v.at, told + ": a comparison, expected numbers");
       return read;
     } catch (const ExpressionError& e) {
@@ -236,7 +285,7 @@ class Reader {
   const std::string& file_;
   Parameters parameters_;
   Fields fields_;
-  std::vector<std::string> names_;
+  Definitions definitions_{{}};
   EquationFile out_;
 };
 

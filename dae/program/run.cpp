@@ -217,7 +217,11 @@ int run(const Options& o) {
   if (!files.flush()) result.status = "failed";
   if (!interrupted())
     time_runs(integrated.mechanism(), integrated.start(), study.runs,
-              {timing_named(o.timing), 3, nullptr, {}, request.going_on});
+              {.how = timing_named(o.timing),
+               .budget = 3,
+               .max_cpu_seconds = request.max_cpu_seconds,
+               .going_on = {},
+               .at_step = request.going_on});
   line.show("");
   study.reference = o.reference.string();
   describe(study, o, *mechanism, a);

@@ -60,7 +60,8 @@ Json summary_json(const RunResult& run, const Environment& environment) {
                       {"detours", c.ode_restarts}};  // deprecated
   json["time"] = {{"cpu_s", number_or_null(run.cpu_s)},
                   {"wall_s", number_or_null(run.wall_s)},
-                  {"repeats", run.repeats}};
+                  {"repeats", run.repeats},
+                  {"untimed", run.untimed}};
   json["drift"] = {{"position_max", number_or_null(run.position_drift_max)},
                    {"velocity_max", number_or_null(run.velocity_drift_max)},
                    {"between_steps_max", number_or_null(run.between_steps_max)},

@@ -98,6 +98,8 @@ std::string drift_table(const StudyResult& study) {
             compact(run.stopped_at, 4) + " s: " + (run.reason.empty() ? run.status : run.reason) +
             '\n';
   }
+  for (std::size_t i = 0; i < runs.size(); ++i)
+    if (!runs[i].untimed.empty()) text += labels[i] + " is not timed: " + runs[i].untimed + '\n';
   return text;
 }
 

@@ -70,7 +70,7 @@ class ExplicitRun {
       result_.end_time = t_;
       result_.y.assign(step_.y(), step_.y() + sample_.size());
     }
-    result_.counters.evaluations = step_.evaluations();
+    result_.counters.evaluations = step_.evaluations() + again_evaluations_;
     result_.stiff_from = stiffness_.from();
     return std::move(result_);
   }
@@ -113,6 +113,7 @@ class ExplicitRun {
     stiffness_.carry(memory);
     outputs_.carry(memory);
     memory(t_), memory(h_), memory(handling_), memory(first_handled_), memory(lengthened_);
+    memory(again_evaluations_);
     memory(result_.counters.steps), memory(result_.counters.rejected);
     system_.carry(memory);
   }
@@ -137,14 +138,13 @@ class ExplicitRun {
       if (looks) step_.keep_last_stage();
       const double began = t_;
       bool altered = false;
+      const bool keeps_end = this->keeps_end();
+      if (keeps_end && t1 < end_) step_.have_end_derivative();
       if (!observe(t1)) return false;
       const double uncorrected = looks && corrected_ ? rate_of_change_at_end(t1) : 0;
       if (system_.wanted_handling() < handling_) take_handling(system_.wanted_handling());
       if (!correct(t1, altered)) return false;
-      // Without a correction f at the end is the next first stage wherever it is there; with one,
-      // only for methods that always have it, so that observing a run does not change it.
-      const bool keep_end = corrected_ ? Tableau::end_derivative_always && !altered : true;
-      const bool kept = step_.advance(keep_end) || step_.take_first_derivative();
+      const bool kept = step_.advance(keeps_end && !altered) || step_.take_first_derivative();
       t_ = t1;
       if (!sample_until(t1 + time_tolerance(t1))) return false;
       if (t_ >= end_) return true;
@@ -158,6 +158,14 @@ class ExplicitRun {
         return stop("the problem is stiff");
       }
     }
+  }
+
+  /// Whether f at this step's end becomes the next first stage. It is evaluated before anyone looks
+  /// and never taken from dense output, which would be another f wherever f depends on the step
+  /// under way (what faded rows are centred on): observing a run must not change it.
+  bool keeps_end() const {
+    if (Tableau::end_derivative_always) return true;
+    return !corrected_ && handling_ == SingularityHandling::none;
   }
 
   /// Where the step to be tried ends; sets h_ to the distance.
@@ -229,8 +237,11 @@ class ExplicitRun {
       for (std::size_t i = 0; i < sample_.size(); ++i)
         again_->y()[i] = step_.y()[i] * (i % 2 == 0 ? 1 + epsilon : 1 - epsilon);
       const double shorter = h_ * (1 - 1.0 / 64);
-      if (!again_->begin(t_) || again_->attempt(t_, t_ + shorter, shorter) != StageFailure::none)
-        return false;
+      const long before = again_->evaluations();
+      const bool there =
+          again_->begin(t_) && again_->attempt(t_, t_ + shorter, shorter) == StageFailure::none;
+      again_evaluations_ += again_->evaluations() - before;
+      if (!there) return false;
       again_->subtract_stages(step_);
       return again_->motion_error_squared() > 0.25 * error_squared;
     }
@@ -365,6 +376,7 @@ class ExplicitRun {
   ExplicitStep<Tableau> step_;
   std::optional<ExplicitStep<Tableau>> look_;   ///< for samples of steps with singularity handling
   std::optional<ExplicitStep<Tableau>> again_;  ///< from a start one rounding away
+  long again_evaluations_ = 0;                  ///< of those
   StepControl<Tableau> control_;
   CpuLimit cpu_;
   Interpolant between_;

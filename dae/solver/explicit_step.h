@@ -98,6 +98,12 @@ class ExplicitStep {
     return good ? StageFailure::none : StageFailure::not_finite;
   }
 
+  /// f at the step's end, where it is not there yet.
+  bool have_end_derivative() {
+    if (!have_end_) have_end_ = evaluate(t1_, y_new_.data(), stage(s));
+    return have_end_;
+  }
+
   /// Keeps the last stage and its argument, both at t1, for rate_of_change(). Right after
   /// attempt(), whose last argument is still there.
   void keep_last_stage() {
@@ -224,11 +230,6 @@ class ExplicitStep {
   template <std::size_t... i>
   bool dense_stages(std::index_sequence<i...>) {
     return (run_stage<s + 1 + i>() && ...);
-  }
-
-  bool have_end_derivative() {
-    if (!have_end_) have_end_ = evaluate(t1_, y_new_.data(), stage(s));
-    return have_end_;
   }
 
   bool prepare_dense() {

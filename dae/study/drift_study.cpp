@@ -133,6 +133,7 @@ std::vector<RunResult> run_drift_study(const Mechanism& mechanism, const Start& 
               {request.timing,
                0.8,
                request.journal,
+               request.max_cpu_seconds,
                [&](std::size_t i) { return tell(i, "timing " + results[i].settings.form, 1); },
                {}});
   return results;

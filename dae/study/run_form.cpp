@@ -265,10 +265,10 @@ std::string ambiguous_from(double t) {
 }
 
 TimedRun time_run(const Mechanism& mechanism, const Start& start, RunSettings settings,
-                  const std::function<bool()>& at_step) {
+                  double max_cpu_seconds, const std::function<bool()>& at_step) {
   Observer observer;
   if (at_step) observer.step = [&](double, double, const Interpolant&) { return at_step(); };
-  FormRunner runner(mechanism, start, settings, 0);
+  FormRunner runner(mechanism, start, settings, max_cpu_seconds);
   TimedRun timed;
   const double wall_start = wall_now(), cpu_start = thread_seconds();
   const IntegrationResult run = runner.integrate({settings.end_time}, observer);
@@ -276,6 +276,7 @@ TimedRun time_run(const Mechanism& mechanism, const Start& start, RunSettings se
   timed.wall_s = wall_now() - wall_start;
   timed.counters = run.counters;
   timed.counters.factorizations += runner.factorizations();
+  if (!run.done) timed.reason = run.reason;
   return timed;
 }
 

@@ -69,12 +69,13 @@ struct TimedRun {
   double cpu_s = not_measured;   ///< processor time of the integration alone [s]
   double wall_s = not_measured;  ///< elapsed time of it [s]
   Counters counters;             ///< without the work of measuring
+  std::string reason;            ///< why it did not arrive; empty: it did
 };
 /// Times a run without measuring, of a mechanism as it is written: to time one of run_form(), give
-/// IntegratedScene::mechanism() and start(). `settings`: those of a run that is done. `at_step` is
-/// called after each step; return false to end the run.
+/// IntegratedScene::mechanism() and start(). `settings`: those of a run that is done.
+/// `max_cpu_seconds`: 0: none. `at_step` is called after each step; return false to end the run.
 TimedRun time_run(const Mechanism& mechanism, const Start& start, RunSettings settings,
-                  const std::function<bool()>& at_step = {});
+                  double max_cpu_seconds = 0, const std::function<bool()>& at_step = {});
 
 /// The default integrator of a form. For DAE forms it is ida; for ODE forms the one whose order
 /// costs least at this tolerance: dp5 from 1e-4 up, vern9 from 1e-9 down, dop853 between.

@@ -120,7 +120,7 @@ template <class Each>
 void list(const Each& each,
           auto&& s) requires std::is_same_v<std::remove_cvref_t<decltype(s)>, RunResult> {
   auto& [scene, settings, status, reason, stopped_at, stiff_from, changed_at, counters, partitions,
-         jacobian, linear_solver, cpu_s, wall_s, repeats, drift_unit, position_drift_max,
+         jacobian, linear_solver, cpu_s, wall_s, repeats, untimed, drift_unit, position_drift_max,
          velocity_drift_max, between_steps_max, position_growth, velocity_growth, angle_drift_max,
          angle_rate_drift_max, angle_between_steps_max, angle_growth, angle_rate_growth,
          energy_error_max, kinetic_energy_max, energy_scale, position_error_max, velocity_error_max,
@@ -132,6 +132,7 @@ void list(const Each& each,
       each("counters", counters), each("partitions", partitions);
   each("jacobian", jacobian), each("linear_solver", linear_solver);
   each("cpu_s", cpu_s), each("wall_s", wall_s), each("repeats", repeats);
+  each("untimed", untimed);
   each("drift_unit", drift_unit);
   each("position_drift_max", position_drift_max), each("velocity_drift_max", velocity_drift_max);
   each("between_steps_max", between_steps_max);
@@ -159,8 +160,8 @@ void list(const Each& each,
 template <class Each>
 void list(const Each& each,
           auto&& s) requires std::is_same_v<std::remove_cvref_t<decltype(s)>, TimedRun> {
-  auto& [cpu_s, wall_s, counters] = s;
-  each("cpu_s", cpu_s), each("wall_s", wall_s), each("counters", counters);
+  auto& [cpu_s, wall_s, counters, reason] = s;
+  each("cpu_s", cpu_s), each("wall_s", wall_s), each("counters", counters), each("reason", reason);
 }
 
 template <class Each>

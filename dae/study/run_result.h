@@ -123,6 +123,7 @@ struct RunResult {
   double cpu_s = not_measured;   ///< median of repeats, integration alone
   double wall_s = not_measured;  ///< likewise
   int repeats = 0;               ///< how many
+  std::string untimed;           ///< why repeats gave no times; one clause, empty: they did
   /// Unit of the position drift: m, or rad where all rows of Φ are angles; empty without loops.
   std::string drift_unit;
   /// Largest |Φ|₂ at the samples.

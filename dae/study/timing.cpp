@@ -23,6 +23,16 @@ std::string key_of_time(const RunSettings& settings, std::size_t round) {
   return "time " + std::to_string(round) + " of " + key_of(settings);
 }
 
+/// Why the repeat does not time the run; empty: both took the same steps.
+std::string another_course(const Counters& run, const TimedRun& repeat) {
+  const Counters& again = repeat.counters;
+  if (!repeat.reason.empty()) return "a repeat without measuring stopped: " + repeat.reason;
+  if (again.steps == run.steps && again.rejected == run.rejected) return "";
+  return "a repeat without measuring took " + std::to_string(again.steps) + " steps and " +
+         std::to_string(again.rejected) + " rejected ones, not " + std::to_string(run.steps) +
+         " and " + std::to_string(run.rejected);
+}
+
 }  // namespace
 
 Timing timing_named(const std::string& name) {
@@ -61,9 +71,16 @@ void time_runs(const Mechanism& mechanism, const Start& start, std::vector<RunRe
         auto timed = recall<TimedRun>(request.journal, key);
         if (!timed) {
           if (request.going_on && !request.going_on(i)) return;
-          timed = time_run(mechanism, start, runs[i].settings, request.at_step);
+          timed = time_run(mechanism, start, runs[i].settings, request.max_cpu_seconds,
+                           request.at_step);
           if (request.at_step && !request.at_step()) return;
           if (request.journal) request.journal->add(key, record_of(*timed));
+        }
+        if (const std::string why = another_course(runs[i].counters, *timed); !why.empty()) {
+          runs[i].untimed = why;
+          times.cpu.clear();
+          times.over = true;
+          continue;
         }
         times.cpu.push_back(timed->cpu_s);
         times.wall.push_back(timed->wall_s);
@@ -75,7 +92,7 @@ void time_runs(const Mechanism& mechanism, const Start& start, std::vector<RunRe
   };
   measured();
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    if (request.how == Timing::none)
+    if (request.how == Timing::none || !runs[i].untimed.empty())
       runs[i].cpu_s = runs[i].wall_s = std::numeric_limits<double>::quiet_NaN();
     if (all[i].cpu.empty()) continue;
     runs[i].repeats = static_cast<int>(all[i].cpu.size());

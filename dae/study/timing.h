@@ -34,12 +34,15 @@ struct TimingRequest {
   double budget = 1;
   /// Every time is recorded in it, and taken from it when a study continues.
   Journal* journal = nullptr;
+  double max_cpu_seconds = 0;                 ///< of one run [s]; 0: none
   std::function<bool(std::size_t)> going_on;  ///< asked before each run, by number; false: stop
   std::function<bool()> at_step;              ///< asked after each step; false: stop
 };
 
 /// Sets cpu_s and wall_s of all runs that are done to their medians, and their counters to those of
-/// a run without measuring: without the stages and solutions that measuring takes.
+/// a run without measuring: without the stages and solutions that measuring takes. A run takes the
+/// same steps whether it is measured or not, unless its solver remembers earlier solutions
+/// (LoopSolver::remembers); where they differ its times are not_measured and `untimed` says so.
 void time_runs(const Mechanism& mechanism, const Start& start, std::vector<RunResult>& runs,
                const TimingRequest& request);
 

@@ -119,6 +119,7 @@ std::vector<RunResult> run_work_study(const Mechanism& mechanism, const Start& s
               {request.timing,
                1,
                request.journal,
+               request.max_cpu_seconds,
                [&](std::size_t i) {
                  return !request.progress ||
                         request.progress(static_cast<int>(i) + 1, static_cast<int>(results.size()),

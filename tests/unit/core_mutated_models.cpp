@@ -3,62 +3,19 @@
 // reads to a sentence with file and line, or to the same scene as before: never to another
 // mechanism in silence.
 
-#include "equations/same_scene.h"
-#include "equations/scene_folder.h"
+#include "equations/mutated_scene.h"
 
+#include <algorithm>
 #include <cstdlib>
-#include <fstream>
-#include <regex>
 #include <set>
-#include <sstream>
 
 namespace momenta::core_mutated_models {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// An attribute in a text: of which element, and where its value stands.
-struct Value {
-  std::string key;  ///< "joint axis"
-  std::size_t at = 0, name_at = 0, length = 0;
-};
-
-/// All attributes of the elements of a text, its comments left out.
-std::vector<Value> values_of(const std::string& text) {
-  std::vector<Value> all;
-  const std::regex attribute(R"(([A-Za-z_:][\w:.-]*)\s*=\s*("[^"]*"|'[^']*'))");
-  for (std::size_t at = 0; (at = text.find('<', at)) != text.npos;) {
-    if (text.compare(at, 4, "<!--") == 0) {
-      at = text.find("-->", at);
-      continue;
-    }
-    const std::size_t end = std::min(text.find('>', at), text.size());
-    const std::string tag = text.substr(at, end - at);
-    const std::string element = tag.substr(1, tag.find_first_of(" \t\r\n/>", 1) - 1);
-    if (element.find_first_of("?!") == element.npos)
-      for (std::sregex_iterator i(tag.begin(), tag.end(), attribute), none; i != none; ++i)
-        all.push_back({element + " " + (*i)[1].str(),
-                       at + static_cast<std::size_t>(i->position(2)) + 1,
-                       at + static_cast<std::size_t>(i->position(1)),
-                       static_cast<std::size_t>(i->length(2)) - 2});
-    at = end;
-  }
-  return all;
-}
-
-bool is_numbers(const std::string& text) {
-  std::istringstream in(text);
-  double x;
-  int count = 0;
-  while (in >> x) ++count;
-  return count > 0 && in.eof();
-}
-
-std::string text_of(const fs::path& file) {
-  std::ostringstream all;
-  all << std::ifstream(file).rdbuf();
-  return all.str();
-}
+using equations::is_numbers;
+using equations::Value;
+using equations::values_of;
 
 std::vector<fs::path> models() {
   std::vector<fs::path> folders{fs::path(MOMENTA_SOURCE_DIR) / "examples" / "models"}, all;
@@ -72,38 +29,15 @@ std::vector<fs::path> models() {
   return all;
 }
 
-class MutatedModels : public equations::SceneFolder {
+class MutatedModels : public equations::MutatedScene {
  protected:
-  enum class Outcome { refused, same, told, other };
-
   /// With the files that stand beside it.
   void take(const fs::path& model) {
-    name_ = model.filename().string();
-    text_ = text_of(model);
     for (const auto& entry : fs::directory_iterator(model.parent_path()))
       if (entry.path().extension() == ".yaml")
-        write(entry.path().filename().string(), text_of(entry.path()));
-    whole_ = read(name_, text_);
+        write(entry.path().filename().string(), equations::text_of(entry.path()));
+    MutatedScene::take(model.filename().string(), equations::text_of(model));
   }
-  Outcome outcome(const std::string& text) {
-    try {
-      const Scene scene = read(name_, text);
-      if (equations::difference(whole_, scene).empty())
-        return scene.remarks == whole_.remarks ? Outcome::same : Outcome::told;
-      return Outcome::other;
-    } catch (const SceneError& error) {
-      const std::string sentence = error.what();
-      EXPECT_EQ(sentence.find('\n'), std::string::npos) << sentence;
-      EXPECT_NE(sentence.find(name_), std::string::npos) << sentence;
-      return Outcome::refused;
-    }
-  }
-  std::string with(const Value& value, const std::string& now) const {
-    std::string text = text_;
-    return text.replace(value.at, value.length, now);
-  }
-  std::string name_, text_;
-  Scene whole_;
 };
 
 TEST_F(MutatedModels, NumbersThatAreNoneAreRefusedOrHaveNoEffect) {

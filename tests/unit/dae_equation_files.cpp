@@ -106,6 +106,41 @@ TEST(EquationFiles, AreReadAsTheyAreWritten) {
   EXPECT_EQ(r[2], 17 + 1.25);
 }
 
+// The same equations with what they have in common by name: the same bits, derivatives among them.
+TEST(EquationFiles, DefinitionsStandForTheirFormulas) {
+  const std::string head = "[dae]\nvariables = ['x', 'y', 'z']\n";
+  const EquationFile named = parse_equations(head + R"(
+equations = ["der(x) = s*y + a", "r = 2 + s", "der(z) = fall/r"]
+[dae.definitions]
+r = "sqrt(x^2 + y^2)"
+s = "sin(r - t)/r"
+fall = "-a*der(x)*s^2"
+unused = "z"
+[parameters]
+a = 3)",
+                                            "f.toml");
+  const std::string r = "sqrt(x^2 + y^2)", s = "(sin(" + r + " - t)/" + r + ")";
+  const EquationFile whole =
+      parse_equations(head + "equations = ['der(x) = " + s + "*y + a', '" + r + " = 2 + " + s +
+                          "', 'der(z) = -a*der(x)*" + s + "^2/" + r + "']\n[parameters]\na = 3\n",
+                      "f.toml");
+  for (int i = 0; i < 3; ++i) {
+    const Expression &a = named.equations[i].formula, &b = whole.equations[i].formula;
+    EXPECT_EQ(a.variables(), b.variables()) << i;
+    EXPECT_EQ(named.equations[i].text.find("sqrt"), std::string::npos);
+    std::vector<int> all(static_cast<std::size_t>(named.arguments()));
+    for (std::size_t v = 0; v < all.size(); ++v) all[v] = static_cast<int>(v);
+    const Expression da = a.with_derivatives(all), db = b.with_derivatives(all);
+    EXPECT_EQ(da.tape().size(), db.tape().size()) << i << ": what occurs twice is computed once";
+    const std::vector<double> x{0.3, 1.1, -0.7, 0.2, 2.1, 0.4, -1.3, 3};
+    EXPECT_EQ(a(x), b(x)) << i;
+    EXPECT_EQ(da(x), db(x)) << i;
+  }
+  const structure::Signature sa = named.signature(), sb = whole.signature();
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) EXPECT_EQ(sa.has(i, j), sb.has(i, j)) << i << " " << j;
+}
+
 TEST(EquationFiles, NumbersAreSetFromOutside) {
   const EquationFile file = parse_equations(pendulum, "p.toml", {{"a", 10}, {"run.end", 5}});
   EXPECT_EQ(file.values[0], 5);

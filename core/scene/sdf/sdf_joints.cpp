@@ -48,22 +48,27 @@ Vector3d read_axis(const Node& axis, const std::string& scope, const std::string
   return model.frames.world(in, axis).turn * along;
 }
 
-/// A bound of <limit>; nothing: there is none, which files write as an infinity or as 1e16.
-std::optional<double> bound(const Node& limit, const char* name) {
+/// A bound of <limit>; nothing: there is none, which files write as an infinity or as 1e16 on that
+/// side, `sign`.
+std::optional<double> bound(const Node& limit, const char* name, int sign) {
   const auto node = limit.child(name);
   if (!node) return std::nullopt;
   const std::string text = node->content();
-  for (const char* none : {"inf", "+inf", "-inf", "INF", "-INF", "infinity", "-infinity"})
-    if (text == none) return std::nullopt;
-  const double value = node->content_number();
-  if (std::abs(value) >= no_bound) return std::nullopt;
-  return value;
+  const bool minus = text.starts_with('-'), signed_ = minus || text.starts_with('+');
+  const std::string size = text.substr(signed_ ? 1 : 0);
+  const bool infinite = size == "inf" || size == "INF" || size == "infinity";
+  const double value = infinite ? (minus ? -no_bound : no_bound) : node->content_number();
+  if (std::abs(value) < no_bound) return value;
+  if (value * sign < 0)
+    node->fail("is " + in_quotes(text) + ", expected a number" +
+               (sign > 0 ? " above the lower limit" : " below the upper limit"));
+  return std::nullopt;
 }
 
 /// Least and largest coordinate; a range that is none is left out.
 void read_limits(const Node& limit, JointSpec& joint, Remarks& remarks) {
   if (limit.child("lower") || limit.child("upper")) {
-    const auto lower = bound(limit, "lower"), upper = bound(limit, "upper");
+    const auto lower = bound(limit, "lower", -1), upper = bound(limit, "upper", 1);
     if (!lower && !upper) return;
     const std::array<double, 2> limits{lower.value_or(-no_bound), upper.value_or(no_bound)};
     if (limits[0] < limits[1])

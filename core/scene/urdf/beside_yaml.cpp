@@ -95,12 +95,17 @@ class YamlBeside {
     fail(node, std::string(key) + " has " + in_quotes(name) + ", expected a joint of " +
                    on_one_line(scene_.file) + did_you_mean(name, known));
   }
+  /// Other keys, and one that is there twice: yaml-cpp takes the first of them.
   void refuse_other_keys() const {
-    for (const auto& entry : root_)
-      if (const std::string key = word(entry.first);
-          std::find(keys.begin(), keys.end(), key) == keys.end())
+    std::set<std::string> met;
+    for (const auto& entry : root_) {
+      const std::string key = word(entry.first);
+      if (std::find(keys.begin(), keys.end(), key) == keys.end())
         fail(entry.first, "key " + in_quotes(key) + " is not known, expected one of: " +
                               listed(keys) + did_you_mean(key, keys));
+      if (!met.insert(key).second)
+        fail(entry.first, "key " + in_quotes(key) + " is there twice, expected it once");
+    }
   }
 
  private:
@@ -176,8 +181,12 @@ void read_loops(const YamlBeside& file, Scene& scene, FreeNames& edges) {
 void read_yaml(const std::filesystem::path& path, bool asked, Scene& scene, FreeNames& edges,
                Remarks& remarks) try {
   const YAML::Node root = YAML::Load(text_of(path));
-  const auto has = [&](const char* key) { return root.IsMap() && root[key].IsDefined(); };
-  if (!asked && !has("closed_loop") && !has("joint_name") && !has("joint_type"))
+  const auto has = [&](std::string_view key) {
+    return root.IsMap() && root[std::string(key)].IsDefined();
+  };
+  // A file for something else has none of these keys; one with some of them and a misspelt one
+  // would be another mechanism.
+  if (!asked && std::none_of(keys.begin(), keys.end(), has))
     return remarks.left_out("the YAML file beside it, which has no closed_loop");
   if (!root.IsMap()) fail(path.string(), {}, "no map of keys, expected closed_loop and type");
   const YamlBeside file(path, root, scene);
