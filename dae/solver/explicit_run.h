@@ -61,11 +61,10 @@ class ExplicitRun {
     if (options_.carried) {
       Memory memory = *options_.carried;
       carry(memory);
-      system_.set_handling(handling_);
-      result_.done = steps();
-    } else {
-      result_.done = sample_until(t_) && (t_ == end_ || (start() && steps()));
     }
+    system_.set_handling(handling_);  // whatever the run before this one ended with
+    result_.done =
+        options_.carried ? steps() : sample_until(t_) && (t_ == end_ || (start() && steps()));
     if (!stopped_elsewhere_) {
       result_.end_time = t_;
       result_.y.assign(step_.y(), step_.y() + sample_.size());

@@ -137,8 +137,13 @@ class WithOdeRestarts {
       IntegrationOptions options = options_;
       options.initial_step = t - from.t;
       OdeSystem& ode = *system_.ode_restart(from.t, from.y.data(), state_.data());
+      // What the form has met so far is the run's, not that of looking at it.
+      Memory met;
+      ode.carry(met);
       const IntegrationResult run =
           integrate_explicit("dop853", ode, from.t, state_, {t}, options, {});
+      Memory back(met.numbers());
+      ode.carry(back);
       good = run.done && system_.rejoin(t, run.y.data(), y, look_rate_.data());
     }
     if (ydot) std::copy(look_rate_.begin(), look_rate_.end(), ydot);

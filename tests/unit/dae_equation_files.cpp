@@ -109,7 +109,7 @@ TEST(EquationFiles, AreReadAsTheyAreWritten) {
 // The same equations with what they have in common by name: the same bits, derivatives among them.
 TEST(EquationFiles, DefinitionsStandForTheirFormulas) {
   const std::string head = "[dae]\nvariables = ['x', 'y', 'z']\n";
-  const EquationFile named = parse_equations(head + R"(
+  const EquationFile named = parse_equations(head + R"--(
 equations = ["der(x) = s*y + a", "r = 2 + s", "der(z) = fall/r"]
 [dae.definitions]
 r = "sqrt(x^2 + y^2)"
@@ -117,8 +117,8 @@ s = "sin(r - t)/r"
 fall = "-a*der(x)*s^2"
 unused = "z"
 [parameters]
-a = 3)",
-                                            "f.toml");
+a = 3)--",
+                                             "f.toml");
   const std::string r = "sqrt(x^2 + y^2)", s = "(sin(" + r + " - t)/" + r + ")";
   const EquationFile whole =
       parse_equations(head + "equations = ['der(x) = " + s + "*y + a', '" + r + " = 2 + " + s +
