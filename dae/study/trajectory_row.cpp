@@ -1,0 +1,85 @@
+#include <momenta/dae/study/run_form.h>
+#include <momenta/dae/study/trajectory_row.h>
+
+#include <algorithm>
+
+namespace momenta {
+namespace {
+
+/// Columns of drifts of a mechanism.
+std::size_t drift_columns(const Mechanism& mechanism) {
+  if (mechanism.m() == 0) return 0;
+  return mechanism.has_lengths() && mechanism.has_angles() ? 4 : 2;
+}
+
+}  // namespace
+
+TrajectoryRow::TrajectoryRow(const Mechanism& mechanism, bool reactions)
+    : mechanism_(mechanism),
+      reactions_(reactions),
+      both_(mechanism.has_lengths() && mechanism.has_angles()),
+      columns_(trajectory_columns(mechanism, reactions)),
+      markers_(6 * mechanism.scene().markers.size()) {}
+
+void TrajectoryRow::take_forces_of(const Mechanism& acting, Evaluation<double>& e,
+                                   LoopSolver* solver) {
+  forces_.emplace(acting, e, solver, reactions_);
+  places_.clear();
+  if (&acting == &mechanism_) return;
+  const std::vector<std::string> all = trajectory_columns(acting, reactions_);
+  const std::size_t state =
+      static_cast<std::size_t>(mechanism_.nq() + mechanism_.nv()) + markers_.size() + 2;
+  const std::size_t before = state + drift_columns(acting);
+  for (std::size_t c = state + drift_columns(mechanism_); c < columns_.size(); ++c) {
+    const auto at =
+        std::find(all.begin() + static_cast<std::ptrdiff_t>(before), all.end(), columns_[c]);
+    places_.push_back(static_cast<std::size_t>(at - all.begin()) - before);
+  }
+}
+
+void TrajectoryRow::set(double t, const Snapshot& state, Evaluation<double>& e, double energy,
+                        const Drift& position, const Drift& velocity) {
+  row_.clear();
+  row_.push_back(t);
+  row_.insert(row_.end(), state.q.begin(), state.q.end());
+  row_.insert(row_.end(), state.u.begin(), state.u.end());
+  e.markers(markers_.data());
+  row_.insert(row_.end(), markers_.begin(), markers_.end());
+  row_.push_back(energy);
+  if (mechanism_.m() > 0) {
+    row_.push_back(position.named(mechanism_));
+    row_.push_back(velocity.named(mechanism_));
+    if (both_) row_.insert(row_.end(), {position.angles, velocity.angles});
+  }
+  if (forces_) append_forces(t, state);
+}
+
+void TrajectoryRow::append_forces(double t, const Snapshot& state) {
+  first_force_ = row_.size();
+  not_unique_.clear();
+  forces_->solve(t, state.q, state.u);
+  if (places_.empty()) return forces_->append(row_, not_unique_);
+  // Of what acts, beside whose loops there are those of stops that hold.
+  acting_.clear();
+  not_unique_acting_.clear();
+  forces_->append(acting_, not_unique_acting_);
+  for (std::size_t k = 0; k < places_.size(); ++k) {
+    row_.push_back(acting_[places_[k]]);
+    if (std::find(not_unique_acting_.begin(), not_unique_acting_.end(), places_[k]) !=
+        not_unique_acting_.end())
+      not_unique_.push_back(first_force_ + k);
+  }
+}
+
+void TrajectoryRow::note_undetermined(double t, std::vector<RunResult::Undetermined>& all) const {
+  for (const std::size_t column : not_unique_) {
+    const std::string& label = columns_[column];
+    auto at =
+        std::find_if(all.begin(), all.end(), [&](const auto& u) { return u.column == label; });
+    if (at == all.end()) at = all.insert(at, {label, 0, t, t});
+    ++at->samples;
+    at->to = t;
+  }
+}
+
+}  // namespace momenta

@@ -1,0 +1,52 @@
+#pragma once
+// The row of the trajectory at a state: its time, coordinates, rates, markers, energy and drifts,
+// and what acts at joints and loops.
+
+#include <momenta/dae/form/form.h>
+#include <momenta/dae/study/drift.h>
+#include <momenta/dae/study/force_columns.h>
+#include <momenta/dae/study/run_result.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace momenta {
+
+class TrajectoryRow {
+ public:
+  /// With the columns of trajectory_columns(); forces are left out until take_forces_of().
+  TrajectoryRow(const Mechanism& mechanism, bool reactions);
+
+  /// From now on with forces, as `acting` has them: the mechanism, or it with the loops of stops
+  /// that hold. `e` and `solver` (null without loops) are of `acting`, used as workspaces.
+  void take_forces_of(const Mechanism& acting, Evaluation<double>& e, LoopSolver* solver);
+  /// Null without forces.
+  const ForceColumns* forces() const { return forces_ ? &*forces_ : nullptr; }
+
+  /// @pre `e` of the mechanism is placed and moved to the state
+  void set(double t, const Snapshot& state, Evaluation<double>& e, double energy,
+           const Drift& position, const Drift& velocity);
+  const std::vector<double>& numbers() const { return row_; }
+  const std::vector<std::string>& columns() const { return columns_; }
+  /// Where forces begin.
+  std::size_t first_force() const { return first_force_; }
+  /// Columns of forces that are not unique at the state.
+  const std::vector<std::size_t>& not_unique() const { return not_unique_; }
+  /// Counts those at a sample.
+  void note_undetermined(double t, std::vector<RunResult::Undetermined>& all) const;
+
+ private:
+  void append_forces(double t, const Snapshot& state);
+
+  const Mechanism& mechanism_;
+  bool reactions_, both_;  ///< rows in m and rows in rad
+  std::vector<std::string> columns_;
+  std::optional<ForceColumns> forces_;
+  std::vector<std::size_t> places_;  ///< of the columns among those of what acts; empty: the same
+  std::vector<double> markers_, row_, acting_;
+  std::size_t first_force_ = 0;
+  std::vector<std::size_t> not_unique_, not_unique_acting_;
+};
+
+}  // namespace momenta
