@@ -6,7 +6,7 @@
 // steps it rises where E_{k+1} < E_k < E_{k−1}. The next step is h (2 E_j/(j + 1) +
 // 10⁻⁴)^(−1/(j+1)), taken if it is less, or more by a share that pays for a new matrix. At the
 // start order and step rise with each step until the error says otherwise. Multipliers are in no
-// norm.
+// norm. Long runs: local_share.h.
 //
 // Dense output: the polynomial through the newest values. Past singular poses: ode_restart.h.
 // Source: Brenan, Campbell, Petzold, Numerical Solution of Initial-Value Problems in
@@ -15,6 +15,7 @@
 #include <momenta/core/scalar/all_finite.h>
 #include <momenta/dae/solver/bdf_step.h>
 #include <momenta/dae/solver/implicit_methods.h>
+#include <momenta/dae/solver/local_share.h>
 #include <momenta/dae/solver/ode_restart.h>
 
 #include <algorithm>
@@ -29,7 +30,7 @@ namespace {
 class Bdf5 {
  public:
   Bdf5(DaeSystem& system, const IntegrationOptions& options, double span)
-      : system_(system), options_(options), span_(span) {
+      : system_(system), options_(options), span_(span), share_(span, options.rtol) {
     y_.resize(static_cast<std::size_t>(system.size()));
     ydot_.resize(y_.size());
     if (options.max_order > 0) highest_ = std::min(highest_, options.max_order);
@@ -58,7 +59,7 @@ class Bdf5 {
     h_ = std::min(h_, longest());
     order_ = degree_ = 1;
     steps_since_change_ = 0;
-    rising_ = true;
+    first_ = rising_ = true;
     renew_ = true;
     step_->begin(t, y_.data(), ydot_.data());
     return true;
@@ -82,7 +83,9 @@ class Bdf5 {
       }
       ++counters_.steps;
       choose();
+      share_.passed(h_);
       step_->accept();
+      first_ = false;
       std::copy(step_->y().begin(), step_->y().end(), y_.begin());
       std::copy(step_->ydot().begin(), step_->ydot().end(), ydot_.begin());
       t = t1;
@@ -111,7 +114,8 @@ class Bdf5 {
 
   /// One trial; false: h_, order and what is to be made anew are set.
   bool attempt(double t1) {
-    const BdfStep::Outcome outcome = step_->attempt(t1, order_, renew_);
+    const BdfStep::Outcome outcome =
+        step_->attempt(t1, order_, renew_, {share_.now(), first_ || failures_ > 0 ? 2 : 1});
     const bool fresh = step_->derivatives_are_new();
     renew_ = false;
     switch (outcome) {
@@ -209,9 +213,11 @@ class Bdf5 {
   std::unique_ptr<BdfStep> step_;
   std::vector<double> y_, ydot_;
   double span_, h_ = 0;
+  LocalShare share_;
   int highest_ = BdfStep::highest_order, order_ = 1;
   int degree_ = 1;  ///< of dense output
   int steps_since_change_ = 0, failures_ = 0;
+  bool first_ = true;  ///< no step since the start
   bool rising_ = true, renew_ = true;
   std::string cause_;
   Counters counters_;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace momenta {
 namespace {
@@ -22,7 +23,8 @@ BdfStep::BdfStep(DaeSystem& system, double rtol, double atol)
       rtol_(rtol),
       atol_(atol),
       n_(static_cast<std::size_t>(system.size())) {
-  for (auto* v : {&y_, &ydot_, &predicted_, &change_, &delta_, &weight_, &begin_ydot_})
+  for (auto* v :
+       {&y_, &ydot_, &predicted_, &change_, &delta_, &weight_, &begin_ydot_, &rate_, &rest_})
     v->resize(n_);
 }
 
@@ -36,7 +38,7 @@ void BdfStep::begin(double t, double* y, double* ydot) {
   made_for_ = 0;
 }
 
-BdfStep::Outcome BdfStep::attempt(double t1, int order, bool renew) {
+BdfStep::Outcome BdfStep::attempt(double t1, int order, bool renew, Test test) {
   past_.reset();
   t1_ = t1;
   h_ = t1 - past_.time(0);
@@ -47,7 +49,7 @@ BdfStep::Outcome BdfStep::attempt(double t1, int order, bool renew) {
   past_.interpolate(t1, order, y_.data(), ydot_.data());
   predicted_ = y_;
   std::fill(change_.begin(), change_.end(), 0.0);
-  weigh(t1);
+  weigh(t1, test.share);
   double alpha = 0, sum = 0;
   for (int i = 1; i <= order; ++i) {
     alpha += 1.0 / i;
@@ -76,6 +78,9 @@ BdfStep::Outcome BdfStep::attempt(double t1, int order, bool renew) {
   if (outcome != Outcome::solved) return outcome;
   const double next = h_ / (t1 - past_.time(order)), change = norm(change_.data());
   error_ = std::max(next, std::abs(next - alpha + sum)) * change;
+  left_ = error_ > 1 ? left(test.filters) / change : 1;
+  if (!(left_ < 1)) left_ = 1;
+  error_ *= left_;
   terms_.fill(-1);
   if (gauge_ != nullptr) {
     const double coordinates = std::sqrt(gauge_->coordinate_squares(change_.data()));
@@ -83,7 +88,7 @@ BdfStep::Outcome BdfStep::attempt(double t1, int order, bool renew) {
   }
   double factor = 1;
   for (int i = 0; i <= order; ++i) factor *= (i + 1) * h_ / (t1 - past_.time(i));
-  terms_[static_cast<std::size_t>(order)] = factor * change;
+  terms_[static_cast<std::size_t>(order)] = factor * left_ * change;
   return std::isfinite(error_) ? outcome : Outcome::not_finite;
 }
 
@@ -122,11 +127,26 @@ BdfStep::Outcome BdfStep::correct(double t1, double c) {
   return norm(delta_.data()) <= rounding ? Outcome::solved : Outcome::not_converged;
 }
 
+double BdfStep::left(int filters) {
+  counters_.evaluations += 1 + filters;
+  const double unknown = std::numeric_limits<double>::infinity();
+  if (!system_.residual(t1_, y_.data(), ydot_.data(), rest_.data())) return unknown;
+  delta_ = change_;
+  for (int k = 0; k < filters; ++k) {
+    for (std::size_t i = 0; i < n_; ++i) rate_[i] = ydot_[i] + made_for_ * delta_[i];
+    if (!system_.residual(t1_, y_.data(), rate_.data(), delta_.data())) return unknown;
+    for (std::size_t i = 0; i < n_; ++i) delta_[i] -= rest_[i];
+    newton_.solve(delta_.data());
+  }
+  return norm(delta_.data());
+}
+
 double BdfStep::term(int j) {
   double& known = terms_[static_cast<std::size_t>(j)];
   if (known >= 0) return known;
   double factor = 1;
   for (int i = 1; i <= j + 1; ++i) factor *= i * h_;
+  factor *= left_;
   past_.difference(t1_, y_.data(), j + 1, delta_.data());
   if (gauge_ == nullptr) return known = factor * norm(delta_.data());
   return known = factor * term_ratio_ * std::sqrt(gauge_->coordinate_squares(delta_.data()));
@@ -137,12 +157,14 @@ void BdfStep::accept() {
   straight_ = false;
 }
 
-void BdfStep::weigh(double t) {
-  if (gauge_ != nullptr) gauge_->measure_at(t, y_.data(), ydot_.data(), rtol_, atol_);
+void BdfStep::weigh(double t, double share) {
+  const double rtol = share * rtol_, atol = share * atol_;
+  if (gauge_ != nullptr) gauge_->measure_at(t, y_.data(), ydot_.data(), rtol, atol);
   for (std::size_t i = 0; i < n_; ++i) {
     const int at = static_cast<int>(i);
-    weight_[i] =
-        system_.differential(at) ? 1 / (atol_ * system_.scale(at) + rtol_ * std::abs(y_[i])) : 0;
+    weight_[i] = system_.differential(at)
+                     ? 1 / (atol * system_.scale(at) + rtol * std::abs(past_.value(0)[i]))
+                     : 0;
   }
 }
 

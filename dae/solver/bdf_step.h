@@ -9,6 +9,16 @@
 // a_i = h/(t_n − t_{n−i}) the local error is C (y_n − ω^P(t_n)), C = max(a_{k+1}, |a_{k+1} − α +
 // Σ_{i ≤ k} a_i|).
 //
+// Where that fails its test, stiff components may be to blame. Of a transient of size a and time
+// τ << h the past foresees y_n − ω^P = a h/τ. What implicit Euler leaves of a difference e,
+//
+//   J⁻¹ c ∂F/∂y' e = J⁻¹ (F(t, y, y' + c e) − F(t, y, y')) + O(e²),   c that of J,
+//
+// is e where h is short beside all times of F, and e τ/h in a component that decays, or swings, in
+// τ: one such filter leaves a, and two leave a τ/h, which is what y_n itself has of the transient.
+// So errors count as filtered, once, at the start and after a rejection twice; terms of other
+// orders in proportion. Weights are those of y_{n−1}: ω^P may be as far off.
+//
 // Where F has a gauge (gauge_symmetry.h), all norms are of what moves, and gauge reset shifts the
 // past before each step so that the newest σ is zero: the step is then the same, but for rounding,
 // whatever constant was added to σ before. Newton stops at a fraction of the tolerance, on the rate
@@ -16,7 +26,8 @@
 // tolerance: rounding.
 //
 // Source: Brenan, Campbell, Petzold, Numerical Solution of Initial-Value Problems in
-// Differential-Algebraic Equations, ch. 5.
+// Differential-Algebraic Equations, ch. 5; the filter: Shampine, Baca, Numer. Math. 43 (1984)
+// 171-183; Hairer, Wanner, Solving Ordinary Differential Equations II, IV.8.
 
 #include <momenta/dae/solver/dae_newton.h>
 #include <momenta/dae/solver/integration.h>
@@ -41,9 +52,14 @@ class BdfStep {
   PastValues& past() { return past_; }
   const PastValues& past() const { return past_; }
 
+  /// A step is judged at a share of the tolerance; where it fails, by what the filters leave.
+  struct Test {
+    double share = 1;
+    int filters = 1;
+  };
   /// Solves for y at t1 > past().time(0), by `order` < past().count(), or 1 after begin().
   /// Derivatives are made anew where `renew`, or those at hand are of too different a step.
-  Outcome attempt(double t1, int order, bool renew);
+  Outcome attempt(double t1, int order, bool renew, Test test);
   /// Whether the last attempt made its own derivatives.
   bool derivatives_are_new() const { return renewed_; }
   /// After an attempt: the local error over its tolerance.
@@ -70,9 +86,12 @@ class BdfStep {
   static constexpr double most_change = 1.25;
 
   Outcome correct(double t1, double c);
+  /// The norm of what `filters` filters leave of y_n − ω^P(t_n). Two evaluations of F, a solution
+  /// and a norm; for each further filter one evaluation and a solution.
+  double left(int filters);
   double norm(const double* e);
   double by_component(const double* e) const;
-  void weigh(double t);
+  void weigh(double t, double share);
 
   DaeSystem& system_;
   GaugeSymmetry* gauge_;  ///< null: norms by component
@@ -80,9 +99,10 @@ class BdfStep {
   PastValues past_;
   double rtol_, atol_;
   std::size_t n_;
-  std::vector<double> y_, ydot_, predicted_, change_, delta_, weight_, begin_ydot_;
+  std::vector<double> y_, ydot_, predicted_, change_, delta_, weight_, begin_ydot_, rate_, rest_;
   double t1_ = 0, h_ = 0, error_ = 0;
   std::array<double, highest_order + 2> terms_{};  ///< of the last attempt; −1: not yet known
+  double left_ = 1;         ///< share of the last attempt's error that its filter left
   double term_ratio_ = 0;   ///< of the norm of what moves to that of q alone, in the last attempt
   double made_for_ = 0;     ///< c of the matrix; 0: none
   double contraction_ = 0;  ///< of Newton's corrections with this matrix, as ρ/(1 − ρ)

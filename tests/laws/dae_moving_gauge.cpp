@@ -113,7 +113,7 @@ double error_of(const Motion& motion, int order, int count, double end) {
   const auto began = static_cast<std::size_t>(order);
   for (std::size_t i = 1; i <= began; ++i) step.past().add(ends[i], exact[i - 1].data());
   for (std::size_t i = began + 1; i < ends.size(); ++i) {
-    EXPECT_EQ(step.attempt(ends[i], order, true), BdfStep::Outcome::solved) << i;
+    EXPECT_EQ(step.attempt(ends[i], order, true, {}), BdfStep::Outcome::solved) << i;
     step.accept();
   }
   double error = 0;
@@ -161,7 +161,7 @@ TEST(Bdf5, TheSameMotionInEveryGauge) {
         for (double& x : c) x = any(chance);
         step.past().shift(c.data());
         const int order = std::min<int>(static_cast<int>(i), 4);
-        EXPECT_EQ(step.attempt(ends[i], order, i % 3 == 1), BdfStep::Outcome::solved) << i;
+        EXPECT_EQ(step.attempt(ends[i], order, i % 3 == 1, {}), BdfStep::Outcome::solved) << i;
         step.accept();
       }
       return step.y();
@@ -191,7 +191,7 @@ TEST(Bdf5, ImpulsesAreThoseOfOneStep) {
       double impulse = 0;
       const std::vector<double> ends = ends_of_steps(200, h);
       for (std::size_t i = 1; i < ends.size(); ++i) {
-        EXPECT_EQ(step.attempt(ends[i], std::min<int>(static_cast<int>(i), 3), true),
+        EXPECT_EQ(step.attempt(ends[i], std::min<int>(static_cast<int>(i), 3), true, {}),
                   BdfStep::Outcome::solved)
             << i;
         step.accept();

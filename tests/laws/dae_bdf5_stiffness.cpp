@@ -1,0 +1,138 @@
+// bdf5 where F is stiff: what a filter leaves of an error, starts beside dampers of any size, and
+// oscillations of many periods.
+
+#include "equations/ensemble.h"
+
+#include <gtest/gtest.h>
+#include <momenta/core/scene/files/read_scene.h>
+#include <momenta/dae/solver/bdf_step.h>
+#include <momenta/dae/solver/local_share.h>
+#include <momenta/dae/study/run_form.h>
+
+#include <cmath>
+#include <filesystem>
+
+namespace momenta::dae_bdf5_stiffness {
+namespace {
+
+/// y' = −(y − cos t)/τ, a off cos t at the start.
+class Relaxation final : public DaeSystem {
+ public:
+  Relaxation(double tau, double a) : tau_(tau), a_(a) {}
+  int size() const override { return 1; }
+  bool residual(double t, const double* y, const double* ydot, double* r) override {
+    r[0] = ydot[0] + (y[0] - std::cos(t)) / tau_;
+    return true;
+  }
+  bool jacobian(double, const double*, const double*, double c, double* j) override {
+    j[0] = 1 / tau_ + c;
+    return true;
+  }
+  const JacobianPattern& pattern() const override { return pattern_; }
+  bool start(double, double* y, double* ydot) override {
+    y[0] = 1 + a_, ydot[0] = -a_ / tau_;
+    return true;
+  }
+  bool differential(int) const override { return true; }
+  double scale(int) const override { return 1; }
+
+ private:
+  JacobianPattern pattern_;
+  double tau_, a_;
+};
+
+// One step of implicit Euler, by hand: y_1 − (y_0 + h y'_0), half of it the error, divided by
+// 1 + h/τ for each filter.
+TEST(Bdf5, WhatFiltersLeaveOfAnError) {
+  constexpr double tau = 1e-6, a = 1e-5, tol = 1e-8;
+  for (const double h : {1e-7, 1e-5, 1e-3})
+    for (const int filters : {1, 2}) {
+      Relaxation system(tau, a);
+      double y = 0, ydot = 0;
+      ASSERT_TRUE(system.start(0, &y, &ydot));
+      BdfStep step(system, tol, tol);
+      step.begin(0, &y, &ydot);
+      ASSERT_EQ(step.attempt(h, 1, true, {1, filters}), BdfStep::Outcome::solved);
+      const double end = (1 + a + h / tau * std::cos(h)) / (1 + h / tau),
+                   error = 0.5 * std::abs(end - (1 + a - h * a / tau)) / (tol * (2 + a)),
+                   left = error > 1 ? error / std::pow(1 + h / tau, filters) : error;
+      EXPECT_NEAR(step.error(), left, 1e-6 * left) << h << " " << filters;
+    }
+}
+
+Scene four_bar() {
+  return read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples/four_bar/scene.toml");
+}
+JointSpec& rocker_of(Scene& scene) {
+  for (JointSpec& joint : scene.joints)
+    if (joint.name == "C") return joint;
+  throw std::logic_error("no joint C");
+}
+
+RunResult run(const Scene& scene, const std::string& form, const std::string& integrator,
+              const std::string& gauge, double tolerance, double end) {
+  const Mechanism mechanism(scene);
+  RunRequest request;
+  request.settings.form = form;
+  request.settings.integrator = integrator;
+  request.settings.gauge = gauge;
+  request.settings.rtol = request.settings.atol = tolerance;
+  request.settings.end_time = end;
+  request.settings.samples = 20;
+  request.keep_trajectory = true;
+  request.max_cpu_seconds = 60;
+  return run_form(mechanism, equations::start_of(mechanism), request);
+}
+
+// A damper of 10⁸ N m s/rad stops the mechanism within 10⁻⁸ s: the transient is of the size of the
+// tolerance, and steps that would resolve it are of the size of rounding.
+TEST(Bdf5, StartsBesideADamperOfAnySize) {
+  for (const double damping : {1e5, 1e6, 1e7, 1e8, 1e9, 1e10}) {
+    Scene scene = four_bar();
+    rocker_of(scene).damping = damping;
+    const RunResult r = run(scene, "momentum-index2", "bdf5", "reset", 1e-8, 10),
+                    twin = run(scene, "momentum", "bdf", "leak", 1e-10, 10);
+    ASSERT_EQ(r.status, "done") << damping << ": " << r.reason;
+    ASSERT_EQ(twin.status, "done") << damping << ": " << twin.reason;
+    EXPECT_LT(r.counters.steps, 200) << damping;
+    const auto &end = r.trajectory.rows.back(), &same = twin.trajectory.rows.back();
+    for (int joint = 0; joint < 3; ++joint)
+      EXPECT_NEAR(end[static_cast<std::size_t>(joint)], same[static_cast<std::size_t>(joint)], 3e-8)
+          << damping;
+  }
+}
+
+// The error in energy of an undamped oscillation does not grow with its periods: 10⁴ tolerances of
+// the energy exchanged, after 10⁵ steps as after 4·10⁵.
+TEST(Bdf5, EnergyOfAnOscillationOverManyPeriods) {
+  Scene scene = four_bar();
+  rocker_of(scene).stiffness = 1e6;
+  rocker_of(scene).rest = 1.74;
+  constexpr double tolerance = 1e-7;
+  for (const double end : {20, 60}) {
+    const RunResult r = run(scene, "momentum-index2", "bdf5", "reset", tolerance, end);
+    ASSERT_EQ(r.status, "done") << r.reason;
+    EXPECT_GT(r.counters.steps, 100000);
+    EXPECT_LT(r.energy_error_max, 1.5e4 * tolerance * r.energy_scale) << end;
+  }
+}
+
+// N steps of T/N are held to N₀/N, whatever shorter steps are among the first, and never to less
+// than rounding.
+TEST(LocalShare, MeanOfTheLastSteps) {
+  constexpr double span = 7;
+  LocalShare share(span, 1e-8);
+  EXPECT_EQ(share.now(), 1);
+  for (int i = 0; i < 20; ++i) share.passed(1e-12);
+  EXPECT_GT(share.now(), 0.97);
+  for (int i = 0; i < 20000; ++i) share.passed(span / 5e3);
+  EXPECT_NEAR(share.now(), 1, 1e-6);
+  for (int i = 0; i < 20000; ++i) share.passed(span / 4e5);
+  EXPECT_NEAR(share.now(), 1e4 / 4e5, 1e-6);
+  for (int i = 0; i < 40000; ++i) share.passed(span / 1e15);
+  EXPECT_NEAR(share.now(), 2.2e-5, 1e-6);
+  EXPECT_EQ(LocalShare(span, 1e-14).now(), 1);
+}
+
+}  // namespace
+}  // namespace momenta::dae_bdf5_stiffness
