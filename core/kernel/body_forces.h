@@ -6,14 +6,25 @@
 
 namespace momenta {
 
+/// Body k at rest, in its own axes.
+template <class Space, class S>
+void stand_still(Workspace<Space, S>& w, std::size_t k) {
+  auto& s = w.body[k];
+  s.pose = {};
+  if constexpr (Space::dimension == 6) s.pose.axes = identity3<S>();
+  s.V = {};
+  s.T = {};
+}
+
 /// w.generalised (nv) = Eᵀ T* of springs, dampers and wrenches at (q, u, t). One outward sweep for
-/// poses and velocities, one inward, over the bodies that carry such forces and those below them:
-/// the others keep no meaning. O(these bodies + nv).
+/// poses and velocities, one inward, over the bodies of forced_bodies.h: the others keep no
+/// meaning. O(these bodies + nv).
 template <class Space, class S>
 void body_force_rates(Workspace<Space, S>& w, const S& t, const S* q, const S* u) {
   w.time = t;
-  for (const int at : w.forced) {
+  for (const auto& [at, from_rest] : w.forced) {
     const auto k = static_cast<std::size_t>(at);
+    if (from_rest) stand_still(w, static_cast<std::size_t>(w.model->bodies[k].parent));
     place_body(w, k, t, q, true);
     move_body(w, k, u);
     w.body[k].T = {};
@@ -21,11 +32,11 @@ void body_force_rates(Workspace<Space, S>& w, const S& t, const S* q, const S* u
   add_body_forces(w);
   for (auto& value : w.generalised) value = S(0.0);
   for (std::size_t i = w.forced.size(); i-- > 0;) {
-    const auto k = static_cast<std::size_t>(w.forced[i]);
+    const auto k = static_cast<std::size_t>(w.forced[i].body);
     const auto& b = w.model->bodies[k];
     auto& s = w.body[k];
     if (b.nv > 0) Joint<Space>::project(b, s.edge, s.T, w.generalised.data() + b.u);
-    if (b.parent >= 0)
+    if (b.parent >= 0 && !w.forced[i].from_rest)
       w.body[static_cast<std::size_t>(b.parent)].T += Space::to_parent(b.edge, b.kind, s.edge, s.T);
   }
 }

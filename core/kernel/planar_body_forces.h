@@ -13,8 +13,8 @@ template <class S>
 class PlanarBodyForces {
  public:
   explicit PlanarBodyForces(const PlanarTree& tree) : w_(*tree.model) {
-    for (const int k : w_.forced) {
-      const double turn = tree.frame_turn[static_cast<std::size_t>(k)];
+    for (const ForcedBody& at : w_.forced) {
+      const double turn = tree.frame_turn[static_cast<std::size_t>(at.body)];
       turns_.push_back({{std::cos(turn), std::sin(turn)}});
     }
   }
@@ -28,7 +28,7 @@ class PlanarBodyForces {
   template <class Sweep>
   void gather(Sweep&& known) {
     for (std::size_t i = 0; i < turns_.size(); ++i) {
-      const auto k = static_cast<std::size_t>(w_.forced[i]);
+      const auto k = static_cast<std::size_t>(w_.forced[i].body);
       const Known x = known(k);
       const double c = turns_[i][0], s = turns_[i][1];
       auto& body = w_.body[k];

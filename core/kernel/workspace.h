@@ -2,6 +2,7 @@
 // One flat array of everything a sweep computes, body by body in depth-first order. Sized once; no
 // sweep allocates.
 
+#include <momenta/core/kernel/forced_bodies.h>
 #include <momenta/core/kernel/model.h>
 #include <momenta/core/kernel/user_motion.h>
 
@@ -45,41 +46,16 @@ struct Workspace {
         generalised(static_cast<std::size_t>(m.nv)),
         sprung(static_cast<std::size_t>(m.sprung)),
         users(m.laws.size()),
-        formulas(room_of(m)) {
-    std::vector<char> carries(m.bodies.size());
-    const auto mark = [&](int k) {
-      for (; k >= 0 && !carries[static_cast<std::size_t>(k)];
-           k = m.bodies[static_cast<std::size_t>(k)].parent)
-        carries[static_cast<std::size_t>(k)] = 1;
-    };
-    for (const auto& spring : m.springs) {
-      mark(spring.child);
-      mark(spring.parent);
-    }
-    for (const auto& bushing : m.bushings) {
-      mark(bushing.child);
-      mark(bushing.parent);
-    }
-    for (const auto& spring : m.coordinate_springs)
-      for (const auto& term : spring.terms) mark(term.body);
-    for (const auto& wrench : m.wrenches) mark(wrench.body);
-    for (const auto& signal : m.signals) {
-      mark(signal.ends.child);
-      mark(signal.ends.parent);
-      for (const auto& term : signal.terms) mark(term.body);
-    }
-    for (std::size_t k = 0; k < carries.size(); ++k)
-      if (carries[k]) forced.push_back(static_cast<int>(k));
-  }
+        formulas(room_of(m)),
+        forced(forced_bodies(m)) {}
 
   const Model<Space>* model;
   std::vector<Body> body;
-  std::vector<S> generalised;  ///< scratch, nv: generalised forces
-  std::vector<Sprung> sprung;  ///< poses_outward, velocities_outward
-  std::vector<int>
-      forced;  ///< bodies with forces at points of theirs, and all on their ways to the ground
+  std::vector<S> generalised;        ///< scratch, nv: generalised forces
+  std::vector<Sprung> sprung;        ///< poses_outward, velocities_outward
   std::vector<UserMotion<S>> users;  ///< what the edges of user joints point to
   mutable std::vector<S> formulas;   ///< scratch: formula_force.h
+  std::vector<ForcedBody> forced;    ///< those that body_force_rates() places
   S time{};                          ///< poses_outward
 
   /// The rigid inertia of body k in the axes the sweeps work in.
