@@ -1,5 +1,6 @@
 #include <momenta/dae/form/acceleration_form.h>
 #include <momenta/dae/gradient/form_tangents.h>
+#include <momenta/dae/gradient/momentum_rows.h>
 
 #include <algorithm>
 #include <cmath>
@@ -16,12 +17,6 @@ using Eigen::VectorXd;
 /// The scalar of rows.
 template <class S>
 using Of = std::remove_cvref_t<S>;
-
-VectorXd joined(const VectorXd& a, const VectorXd& b, const VectorXd& c) {
-  VectorXd all(a.size() + b.size() + c.size());
-  all << a, b, c;
-  return all;
-}
 
 }  // namespace
 
@@ -66,22 +61,11 @@ MatrixXd FormTangents::joined(const MatrixXd& a, const MatrixXd& b, const Matrix
 bool FormTangents::momentum(double t, const VectorXd& q, const MatrixXd& dq, const MatrixXd& dp,
                             bool of_rates) {
   if (!place(t, q)) return false;
-  const auto rows = [&](auto& e, const auto* x, auto* out) {
-    using S = Of<decltype(*out)>;
-    e.place(t, x);
-    e.move(x + nq_);
-    e.momenta(m_ > 0 ? x + nq_ + nv_ : nullptr, out);
-    if (m_ == 0) return;
-    e.velocities(out + nv_);
-    if (beta_ == 0) return;
-    std::vector<S> phi(static_cast<std::size_t>(m_));
-    e.positions(phi.data());
-    for (Index i = 0; i < m_; ++i) out[nv_ + i] += beta_ * phi[static_cast<std::size_t>(i)];
-  };
-  const auto with_rates = [&](auto& e, const auto* x, auto* out) {
-    rows(e, x, out);
-    e.momentum_rates(x, x + nq_, m_ > 0 ? x + nq_ + nv_ : nullptr, leak_, out + nv_ + m_);
-  };
+  MomentumAndRateRows with_rates{{RowPlaces(mechanism_)}};
+  with_rates.t = t;
+  with_rates.beta = beta_;
+  with_rates.leak = leak_;
+  const MomentumRows& rows = with_rates;
   const Index k = derivatives_.directions();
   const VectorXd x = momenta::joined(q, u_, sigma_);
   explicit_ = of_rates ? derivatives_.by_parameters(with_rates, x, 2 * nv_ + m_)
@@ -172,21 +156,8 @@ bool FormTangents::correct_position(double t, VectorXd& q, MatrixXd& dq) {
     const VectorXd found = -matrix_.solve(right);
     const double length = nv_ > 0 ? found.head(nv_).cwiseAbs().maxCoeff() : 0;
     if (pass > 0 && !(length < 0.5 * before)) break;
-    const auto rows = [&](auto& e, const auto* x, auto* out) {
-      using S = Of<decltype(*out)>;
-      std::vector<S> still(static_cast<std::size_t>(nv_ + m_)), phi(static_cast<std::size_t>(m_));
-      const auto* delta = x + nq_;
-      e.place(t, x);
-      e.move(nullptr);
-      e.momenta(nullptr, still.data());
-      e.velocities(still.data() + nv_);
-      e.positions(phi.data());
-      e.move(delta);
-      e.momenta(delta + nv_, out);
-      e.velocities(out + nv_);
-      for (Index i = 0; i < nv_ + m_; ++i) out[i] -= still[static_cast<std::size_t>(i)];
-      for (Index i = 0; i < m_; ++i) out[nv_ + i] += phi[static_cast<std::size_t>(i)];
-    };
+    CorrectionRows rows{RowPlaces(mechanism_)};
+    rows.t = t;
     const MatrixXd d =
         derivatives_(rows, momenta::joined(q, found, VectorXd(0)),
                      joined(dq, MatrixXd::Zero(nv_ + m_, k), MatrixXd(0, k)), nv_ + m_);

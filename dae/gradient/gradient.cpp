@@ -1,6 +1,7 @@
 #include <momenta/core/scene/drive.h>
 #include <momenta/core/text/near_name.h>
 #include <momenta/dae/assembly/assembly.h>
+#include <momenta/dae/gradient/adjoint_run.h>
 #include <momenta/dae/gradient/gradient.h>
 #include <momenta/dae/gradient/start_tangents.h>
 #include <momenta/dae/gradient/tangent_system.h>
@@ -40,12 +41,13 @@ void expect_differentiable(const RunSettings& s, const Mechanism& mechanism) {
 }
 
 /// What of the scene is not smooth everywhere.
-std::vector<std::string> corners(const Scene& scene, const Functional& g) {
+std::vector<std::string> corners(const Scene& scene, const std::string& of_functional) {
   std::vector<std::string> remarks;
   const std::string ending =
       " has corners or jumps: the gradient is that of the pieces that the run was on, and what the "
       "time of a jump depends on is not in it";
-  if (!g.corner().empty()) remarks.push_back("'" + g.corner() + "' in the functional" + ending);
+  if (!of_functional.empty())
+    remarks.push_back("'" + of_functional + "' in the functional" + ending);
   for (const DriveSpec& drive : scene.drives)
     if (const std::string corner = law_corner(drive); !corner.empty())
       remarks.push_back("the drive of " +
@@ -67,46 +69,66 @@ std::vector<std::string> corners(const Scene& scene, const Functional& g) {
   return remarks;
 }
 
-}  // namespace
+/// Why a run has no adjoint, one sentence; empty: it has.
+std::string no_adjoint(const RunSettings& s, const Mechanism& mechanism, bool trajectory) {
+  const std::string instead = "; expected the mode 'forward'";
+  if (s.form != "momentum") return "form '" + s.form + "' has no adjoint" + instead;
+  if (mechanism.plan().quasi_velocities)
+    return "spherical and free joints, whose momenta are not canonical, have no adjoint" + instead;
+  if (mechanism.has_nonholonomic())
+    return "loops that roll or have an equation of velocities have no adjoint" + instead;
+  if (trajectory) return "an adjoint has no derivatives of the trajectory" + instead;
+  return "";
+}
 
-GradientResult gradient(const SceneText& scene, const GradientRequest& request) {
-  const Mechanism mechanism(scene.scene(), scene.options);
-  GradientResult result;
-  result.scene = mechanism.scene().name;
-  result.of = request.of;
-  result.integral = request.integral;
-  result.settings = request.settings;
-  result.variables = run_variables(scene, mechanism, request.by);
-  RunSettings& s = result.settings;
-  s.when_stiff.clear();
-  if (s.integrator.empty()) s.integrator = default_integrator(s.form, s.rtol);
-  expect_differentiable(s, mechanism);
+/// A gradient under way: what forward and adjoint share.
+struct Asked {
+  const GradientRequest& request;
+  const Mechanism& mechanism;
+  const Start& start;
+  OdeForm& form;
+  const std::vector<OtherParameter>& others;
+  const StartTangents& at_start;
+  GradientResult& result;
 
-  const Start start = assemble(mechanism).start;
-  FormRunner runner(mechanism, start, s, request.max_cpu_seconds);  // completes the settings
-  auto& form = dynamic_cast<OdeForm&>(runner.form());
-  FormOptions options;
-  options.gauge = form.gauge();
-  options.project = form.corrects_positions();
-  std::tie(options.baumgarte_alpha, options.baumgarte_beta) = form.baumgarte_gains();
-  options.beta = form.beta();
-  const std::vector<OtherParameter> others = other_parameters(scene, mechanism, result.variables);
+  IntegrationOptions options() const {
+    IntegrationOptions all;
+    all.rtol = result.settings.rtol;
+    all.atol = result.settings.atol;
+    all.step = result.settings.step;
+    all.max_cpu_seconds = request.max_cpu_seconds;
+    return all;
+  }
+  SceneError none(const std::string& why) const {
+    return SceneError(mechanism.scene().where({}) + "the run has no gradient: " + why);
+  }
+  void take(const IntegrationResult& run, const std::vector<double>& passages) {
+    for (const double t : passages)
+      result.remarks.push_back(
+          "about t = " + compact(t, 3) +
+          " s the run passes a singular pose, where another motion crosses or meets its own: the "
+          "gradient is that of changes which keep it on its own, and numbers that part the two "
+          "have "
+          "none");
+    result.steps = run.counters.steps;
+    result.end_time = run.end_time;
+  }
+  void forward();
+  void adjoint();
+};
+
+void Asked::forward() {
+  const RunSettings& s = result.settings;
   Functional functional(request.of, mechanism, result.variables, others);
-  const StartTangents at_start =
-      start_tangents(mechanism, s.form, options, result.variables, others);
-  result.remarks = at_start.broken;
-  for (std::string& remark : corners(mechanism.scene(), functional))
+  for (std::string& remark : corners(mechanism.scene(), functional.corner()))
     result.remarks.push_back(std::move(remark));
-
   FormTangents tangents(mechanism, form, others);
   const auto directions = static_cast<int>(result.variables.size());
   TangentSystem system(form, tangents, request.integral ? &functional : nullptr, directions);
   const std::vector<double> y0 = system.initial(form.initial(start), at_start.of_state);
-  IntegrationOptions integration;
-  integration.rtol = s.rtol * system.tolerance_factor();
-  integration.atol = s.atol * system.tolerance_factor();
-  integration.step = s.step;
-  integration.max_cpu_seconds = request.max_cpu_seconds;
+  IntegrationOptions integration = options();
+  integration.rtol *= system.tolerance_factor();
+  integration.atol *= system.tolerance_factor();
   std::vector<double> times;
   const int samples = request.trajectory ? s.samples : 1;
   for (int i = 0; i <= samples; ++i) times.push_back(s.end_time * i / samples);
@@ -132,35 +154,105 @@ GradientResult gradient(const SceneText& scene, const GradientRequest& request) 
   const IntegrationResult run =
       integrate(s.integrator, system, start.t, y0, times, integration, observer);
   if (!run.done)
-    throw SceneError(mechanism.scene().where({}) + "the run has no gradient: " +
-                     (!lost.empty()           ? lost
-                      : system.lost().empty() ? run.reason
-                                              : system.lost()));
-  for (const double t : system.singular_passages())
-    result.remarks.push_back(
-        "about t = " + compact(t, 3) +
-        " s the run passes a singular pose, where another motion crosses or meets its own: the "
-        "gradient is that of changes which keep it on its own, and numbers that part the two have "
-        "none");
-  result.steps = run.counters.steps;
-  result.end_time = run.end_time;
+    throw none(!lost.empty() ? lost : system.lost().empty() ? run.reason : system.lost());
+  take(run, system.singular_passages());
   if (request.integral) {
     result.value = system.integral(run.y.data());
     result.gradient = system.integral_tangents(run.y.data());
   } else {
-    if (!system.motion(run.end_time, run.y.data(), motion))
-      throw SceneError(mechanism.scene().where({}) +
-                       "the run has no gradient: " + system.failure());
+    if (!system.motion(run.end_time, run.y.data(), motion)) throw none(system.failure());
     result.value =
         functional(run.end_time, motion.q, motion.u, motion.dq, motion.du, result.gradient);
   }
+}
+
+void Asked::adjoint() {
+  const RunSettings& s = result.settings;
+  FunctionalSlopes functional(request.of, mechanism, result.variables, others);
+  for (std::string& remark : corners(mechanism.scene(), functional.corner()))
+    result.remarks.push_back(std::move(remark));
+  RecordedRun record(form, s.step, s.end_time);
+  Observer observer;
+  bool ended = false;
+  observer.step = [&](double t0, double t1, const Interpolant&) {
+    ended = request.progress && !request.progress(0.5 * t1);
+    return !ended && record.keep(t0, t1);
+  };
+  const IntegrationResult run = integrate(s.integrator, record, start.t, form.initial(start),
+                                          {start.t, s.end_time}, options(), observer);
+  if (!run.done) throw none(record.lost().empty() ? run.reason : record.lost());
+  take(run, record.singular_passages());
+  StageAdjoint stages(mechanism, form, others);
+  AdjointRun back(form, stages, functional, request.integral, s.integrator,
+                  static_cast<Eigen::Index>(others.size()));
+  const auto going = [&](double t) {
+    return !request.progress || request.progress(s.end_time - 0.5 * t);
+  };
+  if (!back.back(record, run.end_time, run.y.data(), going)) throw none(back.failure());
+  result.value = back.value();
+  result.gradient = back.by_parameters() + at_start.of_state.transpose() * back.by_start();
+  result.products = back.products();
+}
+
+}  // namespace
+
+const std::vector<std::string>& gradient_modes() {
+  static const std::vector<std::string> names{"automatic", "forward", "adjoint"};
+  return names;
+}
+
+GradientMode gradient_mode(const std::string& name) {
+  const auto found = std::find(gradient_modes().begin(), gradient_modes().end(), name);
+  if (found == gradient_modes().end())
+    throw std::invalid_argument("mode " + reading::in_quotes(name) +
+                                " is not known; expected one of: " + listed(gradient_modes()));
+  return static_cast<GradientMode>(found - gradient_modes().begin());
+}
+
+GradientResult gradient(const SceneText& scene, const GradientRequest& request) {
+  const Mechanism mechanism(scene.scene(), scene.options);
+  GradientResult result;
+  result.scene = mechanism.scene().name;
+  result.of = request.of;
+  result.integral = request.integral;
+  result.settings = request.settings;
+  result.variables = run_variables(scene, mechanism, request.by);
+  RunSettings& s = result.settings;
+  s.when_stiff.clear();
+  if (s.integrator.empty()) s.integrator = default_integrator(s.form, s.rtol);
+  expect_differentiable(s, mechanism);
+  const std::string refused = no_adjoint(s, mechanism, request.trajectory);
+  if (request.mode == GradientMode::adjoint && !refused.empty())
+    throw std::invalid_argument(refused);
+  result.adjoint = request.mode == GradientMode::adjoint ||
+                   (request.mode == GradientMode::automatic && refused.empty() &&
+                    result.variables.size() > most_forward);
+
+  const Start start = assemble(mechanism).start;
+  FormRunner runner(mechanism, start, s, request.max_cpu_seconds);  // completes the settings
+  auto& form = dynamic_cast<OdeForm&>(runner.form());
+  FormOptions options;
+  options.gauge = form.gauge();
+  options.project = form.corrects_positions();
+  std::tie(options.baumgarte_alpha, options.baumgarte_beta) = form.baumgarte_gains();
+  options.beta = form.beta();
+  const std::vector<OtherParameter> others = other_parameters(scene, mechanism, result.variables);
+  const StartTangents at_start =
+      start_tangents(mechanism, s.form, options, result.variables, others);
+  result.remarks = at_start.broken;
+  Asked asked{request, mechanism, start, form, others, at_start, result};
+  if (result.adjoint)
+    asked.adjoint();
+  else
+    asked.forward();
   if (!std::isfinite(result.value) || !result.gradient.allFinite())
     throw SceneError(mechanism.scene().where({}) + reading::in_quotes(request.of) +
                      " or its gradient is not a finite number; expected a formula that has a value "
                      "and derivatives along the motion");
-  for (int j = 0; j < directions; ++j) {
-    const RunVariable& v = result.variables[static_cast<std::size_t>(j)];
-    if (std::abs(result.gradient[j]) * v.size <= effect * std::abs(result.value))
+  for (std::size_t j = 0; j < result.variables.size(); ++j) {
+    const RunVariable& v = result.variables[j];
+    if (std::abs(result.gradient[static_cast<Eigen::Index>(j)]) * v.size <=
+        effect * std::abs(result.value))
       result.without_effect.push_back(v.name);
   }
   return result;

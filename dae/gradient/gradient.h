@@ -6,7 +6,9 @@
 // depends on parameters and start values θ. Forward: the run's own steps and stages are
 // differentiated (tangent_system.h, form_tangents.h), the assembly of its start too
 // (start_tangents.h), so that the gradient is that of the numbers a run computes, whatever the
-// accuracy of the run. Derivation: docs/theory/gradients.md.
+// accuracy of the run. Adjoint: the same derivative, backwards over the steps of the run
+// (adjoint_run.h, stage_adjoint.h), of which one sweep serves all θ. Derivation:
+// docs/theory/gradients.md.
 //
 // Held: the sizes of steps, and the gains of the form (κ, α, β), as they are at θ. Formulas with
 // corners are differentiated on the piece they are on. The mechanism is integrated as it is
@@ -21,14 +23,27 @@
 
 namespace momenta {
 
+/// In which order the chain rule is taken.
+enum class GradientMode {
+  automatic,  ///< adjoint for more than most_forward θ where there is one, else forward
+  forward,    ///< a tangent of the motion for each θ
+  adjoint     ///< one sweep back over the steps
+};
+inline constexpr int most_forward = 8;  ///< θ that an automatic mode takes forward
+/// "automatic", …: in the order of the enumeration.
+const std::vector<std::string>& gradient_modes();
+/// @throws std::invalid_argument with the names
+GradientMode gradient_mode(const std::string& name);
+
 /// What is asked.
 struct GradientRequest {
   std::string of;               ///< g, a formula of names of trajectory.csv
   bool integral = false;        ///< ∫ g dt over the run; else g at its end
   std::vector<std::string> by;  ///< θ: parameters, "a"; start values, "O.q", "O.u"
   RunSettings settings;         ///< `samples`: of the derivatives of the trajectory
-  bool trajectory = false;      ///< they are kept
-  double max_cpu_seconds = 0;   ///< 0: none
+  bool trajectory = false;      ///< they are kept: forward alone has them
+  GradientMode mode = GradientMode::automatic;
+  double max_cpu_seconds = 0;  ///< 0: none
   /// Called after each step with the time reached; false ends it.
   std::function<bool(double t)> progress;
 };
@@ -44,19 +59,22 @@ struct GradientResult {
   Eigen::VectorXd gradient;                 ///< dJ/dθ, in the unit of J over that of θ
   std::vector<std::string> without_effect;  ///< names of θ whose part of J is below 1e-10 of it
   std::vector<std::string> remarks;         ///< sentences on what is not smooth
-  long steps = 0;                           ///< of the run
-  double end_time = 0;                      ///< T [s]
-  std::vector<std::string> columns;         ///< "O.q", …: coordinates, then rates
-  std::vector<double> times;                ///< [s]; of `trajectory`
+  bool adjoint = false;                     ///< by a sweep back
+  long products = 0;                 ///< of it: with transposed derivatives of the right-hand side
+  long steps = 0;                    ///< of the run
+  double end_time = 0;               ///< T [s]
+  std::vector<std::string> columns;  ///< "O.q", …: coordinates, then rates
+  std::vector<double> times;         ///< [s]; of `trajectory`
   /// At each time dq, du by θ: columns × variables.
   std::vector<Eigen::MatrixXd> tangents;
 };
 
 /// @throws std::invalid_argument for what is asked; SceneError where the start or the run has no
 /// derivatives, or the run ends before its time, one sentence.
-/// Cost beside that of a run: a stage takes two evaluations in dual numbers for eight θ, the
-/// factorisation of a dense matrix of (7), and six plain evaluations of its rows for each
-/// parameter.
+/// Cost beside that of a run, forward: a stage takes two evaluations in dual numbers for eight θ,
+/// the factorisation of a dense matrix of (7), and six plain evaluations of its rows for each
+/// parameter. Adjoint: two evaluations in dual numbers and that factorisation for all θ, and the
+/// six plain ones; a state of memory a step.
 GradientResult gradient(const SceneText& scene, const GradientRequest& request);
 
 }  // namespace momenta

@@ -19,7 +19,6 @@ TangentSystem::TangentSystem(OdeForm& form, FormTangents& tangents, Functional* 
       n_(form.size()),
       directions_(directions),
       all_((n_ + extra()) * (1 + directions)),
-      always_faded_(std::numeric_limits<int>::max()),
       before_(static_cast<std::size_t>(n_)) {}
 
 double TangentSystem::tolerance_factor() const {
@@ -61,22 +60,10 @@ void TangentSystem::set_handling(SingularityHandling handling) {
 bool TangentSystem::rhs(double t, const double* y, double* ydot) {
   lost_.clear();
   if (!form_.rhs(t, y, ydot)) return fail(form_.failure());
-  if (corrected_stages_)
-    return fail_at(t,
-                   "the motion passes too near to a singular pose, where its loop equations "
-                   "become dependent, for derivatives");
-  if (looking_ == 0) {
-    const LoopSolver::Pivots pivots = form_.pivots();
-    always_faded_ = std::min(always_faded_, pivots.faded);
-    const double weakest = pivots.faded > always_faded_ ? 0 : pivots.weakest;
-    if (weakest < weakest_) weakest_at_ = t, weakest_ = weakest;
-    largest_ = std::max(largest_, weakest);
-  }
+  if (corrected_stages_) return fail_at(t, too_near_to_pose);
+  if (looking_ == 0) passages_.take(t, form_.pivots());
   Y_ = tangents(y);
-  if (!tangents_.rates(t, y, ydot, Y_, Ydot_))
-    return fail_at(t,
-                   "the loop equations become dependent there, and the motion has no "
-                   "derivatives beyond such a pose");
+  if (!tangents_.rates(t, y, ydot, Y_, Ydot_)) return fail_at(t, dependent_loops);
   Map<MatrixXd>(ydot + n_ + extra(), n_, directions_) = Ydot_;
   if (!integrand_) return true;
   const Eigen::Index nq = n_ - tangents_.u().size();
@@ -85,23 +72,6 @@ bool TangentSystem::rhs(double t, const double* y, double* ydot) {
                            tangents_.velocity(), slope);
   Map<VectorXd>(ydot + (n_ + 1) + n_ * directions_, directions_) = slope;
   return true;
-}
-
-void TangentSystem::end_passage() {
-  constexpr double near = 1e-2;
-  const bool near_pose = weakest_ < near && weakest_ < near * largest_;
-  if (near_pose && !passing_) {
-    passages_.push_back(weakest_at_);
-    least_ = weakest_;
-  }
-  if (near_pose && weakest_ < least_) passages_.back() = weakest_at_, least_ = weakest_;
-  passing_ = near_pose;
-  weakest_ = 1;
-}
-
-std::vector<double> TangentSystem::singular_passages() {
-  end_passage();
-  return passages_;
 }
 
 bool TangentSystem::motion(double t, const double* y, Motion& out) {
@@ -116,10 +86,7 @@ bool TangentSystem::after_step(double t, double* y, bool& changed) {
   std::copy_n(y, n_, before_.begin());
   if (!form_.after_step(t, y, changed)) return fail(form_.failure());
   Y_ = tangents(y);
-  if (!tangents_.after_step(t, before_.data(), y, Y_))
-    return fail_at(t,
-                   "the loop equations become dependent there, and the motion has no "
-                   "derivatives beyond such a pose");
+  if (!tangents_.after_step(t, before_.data(), y, Y_)) return fail_at(t, dependent_loops);
   Map<MatrixXd>(y + n_ + extra(), n_, directions_) = Y_;
   return true;
 }

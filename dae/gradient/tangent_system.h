@@ -11,6 +11,7 @@
 
 #include <momenta/dae/gradient/form_tangents.h>
 #include <momenta/dae/gradient/functional.h>
+#include <momenta/dae/gradient/singular_passages.h>
 
 namespace momenta {
 
@@ -28,10 +29,11 @@ class TangentSystem final : public OdeSystem {
   Eigen::MatrixXd tangents(const double* y) const;
   /// Why the last trial of a step had no derivatives, one sentence; empty: it had.
   const std::string& lost() const { return lost_; }
-  /// When stages came near to a singular pose, once for each passage: the weakest pivot of the
-  /// loops below a hundredth of its scale and of the largest so far. A pivot goes with the square
-  /// of the distance.
-  std::vector<double> singular_passages();
+  /// When stages came near to a singular pose.
+  const std::vector<double>& singular_passages() {
+    passages_.end_step();
+    return passages_.times();
+  }
   double integral(const double* y) const { return y[n_]; }
   Eigen::VectorXd integral_tangents(const double* y) const;
 
@@ -46,7 +48,7 @@ class TangentSystem final : public OdeSystem {
   bool after_step(double t, double* y, bool& changed) override;
   bool has_after_step() const override { return form_.has_after_step(); }
   void begin_step(double t, const double* y) override {
-    end_passage();
+    passages_.end_step();
     form_.begin_step(t, y);
   }
   SingularityHandling wanted_handling() const override { return form_.wanted_handling(); }
@@ -62,21 +64,14 @@ class TangentSystem final : public OdeSystem {
  private:
   int extra() const { return integrand_ ? 1 : 0; }
   bool fail_at(double t, const std::string& why);
-  void end_passage();
 
   OdeForm& form_;
   FormTangents& tangents_;
   Functional* integrand_;
   int n_, directions_, all_;
   bool corrected_stages_ = false;
-  int always_faded_;       ///< rows that are redundant in all stages
-  double weakest_ = 1;     ///< pivot in the step under way
-  double weakest_at_ = 0;  ///< and when
-  double least_ = 1;       ///< of the passage under way
-  double largest_ = 0;     ///< of the run
-  bool passing_ = false;
   int looking_ = 0;  ///< depth
-  std::vector<double> passages_;
+  SingularPassages passages_;
   std::string lost_;
   std::vector<double> before_;
   Eigen::MatrixXd Y_, Ydot_;

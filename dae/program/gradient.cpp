@@ -32,7 +32,8 @@ int gradient_verb(const Options& o, const GradientOptions& options) {
   request.integral = options.integral;
   request.by = names_in(options.by);
   request.settings = run_settings(o, defaults);
-  request.trajectory = !o.out.empty();
+  request.mode = gradient_mode(options.mode);
+  request.trajectory = !o.out.empty() && request.mode != GradientMode::adjoint;
   request.max_cpu_seconds = o.cpu_limit.value_or(0);
   ProgressLine line(o.quiet);
   request.progress = [&](double t) {
@@ -44,10 +45,12 @@ int gradient_verb(const Options& o, const GradientOptions& options) {
   json["command"] = o.command;
   json["environment"] = environment_json(environment());
   const std::string text = json.dump(2) + "\n";
-  if (!o.out.empty() && !write_results({{o.out / "gradient.csv", gradient_csv(result)},
-                                        {o.out / "gradient.json", text}}))
-    return run_failed;
-  tell(o, text, gradient_table(result), "gradient.csv");
+  if (!o.out.empty()) {
+    std::vector<ResultFile> files{{o.out / "gradient.json", text}};
+    if (request.trajectory) files.push_back({o.out / "gradient.csv", gradient_csv(result)});
+    if (!write_results(files)) return run_failed;
+  }
+  tell(o, text, gradient_table(result), request.trajectory ? "gradient.csv" : "gradient.json");
   return done;
 }
 

@@ -249,6 +249,7 @@ struct GradientOptions {
   std::string of;         ///< a formula
   std::string by;         ///< comma-separated
   bool integral = false;  ///< over the run
+  std::string mode = "automatic";
 };
 int gradient_verb(const Options& o, const GradientOptions& g);
 /// `state`: a JSON file, "-" for standard input, or text that starts with "{".

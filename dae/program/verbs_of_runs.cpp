@@ -109,6 +109,10 @@ Verb add_gradient(CLI::App& app, Options& o) {
   verb->add_option("--by", own->by, "Numbers of [parameters]; start values: O.q, O.u")
       ->type_name("NAME,...")
       ->required();
+  one_of(
+      verb->add_option("--mode", own->mode, "A tangent for each number, or one sweep back for all"),
+      {"automatic", "forward", "adjoint"})
+      ->capture_default_str();
   verb->add_option("--form", o.form, "momentum, acceleration, projected or baumgarte")
       ->capture_default_str()
       ->type_name("FORM");

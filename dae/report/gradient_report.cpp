@@ -27,7 +27,8 @@ std::string gradient_in_words(const GradientResult& r) {
   std::string text =
       (r.integral ? "The integral of " : "") + r.of + (r.integral ? " to t = " : " at t = ") +
       compact(r.end_time, 6) + " s is " + compact(r.value, 9) + "; form " + s.form +
-      (s.gauge.empty() ? "" : ", gauge " + s.gauge) + ", " + s.integrator +
+      (s.gauge.empty() ? "" : ", gauge " + s.gauge) + (r.adjoint ? ", adjoint, " : ", ") +
+      s.integrator +
       (s.step > 0 ? ", step " + compact(s.step, 6) + " s" : ", tolerance " + compact(s.rtol, 3)) +
       ", " + std::to_string(r.steps) + (r.steps == 1 ? " step." : " steps.");
   if (!r.without_effect.empty())
@@ -81,6 +82,8 @@ Json gradient_json(const GradientResult& r) {
           {"by", by},
           {"without_effect", r.without_effect},
           {"remarks", r.remarks},
+          {"mode", r.adjoint ? "adjoint" : "forward"},
+          {"products", r.adjoint ? Json(r.products) : Json()},
           {"form", s.form},
           {"integrator", s.integrator},
           {"gauge", s.gauge.empty() ? Json() : Json(s.gauge)},

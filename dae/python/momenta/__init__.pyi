@@ -380,6 +380,7 @@ class Mechanism:
         beta: float = 0.0,
         cpu_limit: float = 0.0,
         trajectory: bool = False,
+        mode: Literal["automatic", "forward", "adjoint"] = "automatic",
         progress: _Progress = None,
     ) -> dict[str, Any]: ...
     def run(

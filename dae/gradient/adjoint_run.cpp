@@ -1,0 +1,138 @@
+#include <momenta/dae/gradient/adjoint_run.h>
+
+#include <cstdio>
+
+namespace momenta {
+
+using Eigen::Index;
+using Eigen::Map;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+AdjointRun::AdjointRun(OdeForm& form, StageAdjoint& adjoint, FunctionalSlopes& g, bool integral,
+                       const std::string& method, Index parameters)
+    : form_(form),
+      adjoint_(adjoint),
+      g_(g),
+      integral_(integral),
+      tableau_(butcher_tableau(method)),
+      lambda_(VectorXd::Zero(form.size())),
+      by_parameters_(VectorXd::Zero(parameters)),
+      k_(form.size(), static_cast<Index>(tableau_.b.size())),
+      m_(k_.rows(), k_.cols()),
+      stages_(tableau_.b.size()) {}
+
+bool AdjointRun::fail_at(double t, const std::string& why) {
+  char text[48];
+  std::snprintf(text, sizeof text, "at t = %.9g s: ", t);
+  failure_ = text + why;
+  return false;
+}
+
+bool AdjointRun::rhs(double t, const double* y, double* ydot, AdjointState& at) {
+  if (!form_.rhs(t, y, ydot)) {
+    failure_ = form_.failure();
+    return false;
+  }
+  at.t = t;
+  at.q = Map<const VectorXd>(y, form_.size() / 2);
+  at.u = Map<const VectorXd>(form_.rates().data(), form_.size() / 2);
+  at.sigma = Map<const VectorXd>(form_.multipliers().data(),
+                                 static_cast<Index>(form_.multipliers().size()));
+  return true;
+}
+
+/// λ of g at the end.
+bool AdjointRun::end(double t, const double* y) {
+  AdjointState& at = stages_.front();
+  if (!rhs(t, y, k_.col(0).data(), at)) return false;
+  value_ = g_.at(t, at.q, at.u, by_q_, by_u_, by_theta_);
+  by_parameters_ += by_theta_;
+  w_ = VectorXd::Zero(form_.size());
+  w_.head(by_u_.size()) = by_u_;
+  ++products_;
+  if (!adjoint_.rates(at, w_, lambda_, by_parameters_)) return fail_at(t, dependent_loops);
+  lambda_.head(by_q_.size()) += by_q_;
+  return true;
+}
+
+/// λ behind what the form does after a step to λ before it, where the step itself led to y.
+bool AdjointRun::after_step(double t, const VectorXd& y) {
+  y_ = y;
+  bool changed = false;
+  if (!form_.after_step(t, y_.data(), changed)) {
+    failure_ = form_.failure();
+    return false;
+  }
+  const Index n = y.size() / 2;
+  AdjointState at{t, y_.head(n), Map<const VectorXd>(form_.rates().data(), n),
+                  Map<const VectorXd>(form_.multipliers().data(),
+                                      static_cast<Index>(form_.multipliers().size()))};
+  if (form_.gauge().kind == Gauge::Kind::flip) at.sigma = -at.sigma;  // the form has turned it
+  return (adjoint_.gauge(at, lambda_, by_parameters_) &&
+          (!form_.corrects_positions() ||
+           adjoint_.correction(t, y.head(n), lambda_, by_parameters_))) ||
+         fail_at(t, dependent_loops);
+}
+
+bool AdjointRun::step(const RecordedRun::Step& step, const double* start) {
+  const Map<const VectorXd> y(start, form_.size());
+  const auto s = static_cast<Index>(stages_.size());
+  form_.begin_step(step.t0, start);
+  for (Index i = 0; i < s; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    w_ = y;
+    for (Index j = 0; j < i; ++j)
+      if (const double a = tableau_.a[at][static_cast<std::size_t>(j)]; a != 0)
+        w_ += step.h * a * k_.col(j);
+    const double t = tableau_.c[at] == 1 ? step.t1 : step.t0 + tableau_.c[at] * step.h;
+    if (!rhs(t, w_.data(), k_.col(i).data(), stages_[at])) return false;
+  }
+  if (form_.has_after_step()) {
+    VectorXd reached = y;
+    for (Index j = 0; j < s; ++j)
+      reached += step.h * tableau_.b[static_cast<std::size_t>(j)] * k_.col(j);
+    if (!after_step(step.t1, reached)) return false;
+  }
+  VectorXd product;
+  for (Index i = s; i-- > 0;) {
+    const auto at = static_cast<std::size_t>(i);
+    w_ = step.h * tableau_.b[at] * lambda_;
+    for (Index j = i + 1; j < s; ++j)
+      if (const double a = tableau_.a[static_cast<std::size_t>(j)][at]; a != 0)
+        w_ += step.h * a * m_.col(j);
+    if (integral_) {
+      const double weight = step.h * tableau_.b[at];
+      value_ +=
+          weight * g_.at(stages_[at].t, stages_[at].q, stages_[at].u, by_q_, by_u_, by_theta_);
+      by_parameters_ += weight * by_theta_;
+      w_.head(by_u_.size()) += weight * by_u_;
+    }
+    if (w_.isZero(0)) {  // a stage that serves the error alone
+      product.setZero(w_.size());
+    } else {
+      ++products_;
+      if (!adjoint_.rates(stages_[at], w_, product, by_parameters_))
+        return fail_at(stages_[at].t, dependent_loops);
+    }
+    if (integral_) product.head(by_q_.size()) += step.h * tableau_.b[at] * by_q_;
+    m_.col(i) = product;
+  }
+  lambda_ += m_.rowwise().sum();
+  return true;
+}
+
+bool AdjointRun::back(const RecordedRun& run, double t, const double* y,
+                      const std::function<bool(double)>& going) {
+  if (!integral_ && !end(t, y)) return false;
+  for (std::size_t i = run.steps().size(); i-- > 0;) {
+    if (!step(run.steps()[i], run.start(i))) return false;
+    if (going && !going(run.steps()[i].t0)) {
+      failure_ = "the observer ended the run";
+      return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace momenta

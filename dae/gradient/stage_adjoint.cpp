@@ -1,0 +1,195 @@
+#include <momenta/dae/gradient/stage_adjoint.h>
+
+#include <type_traits>
+
+namespace momenta {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+/// L*_q less κ Φ_qᵀσ: ṗ without the forces that are differentiated by themselves.
+struct PotentialRates : MomentumAndRateRows {
+  bool forces = false, at_points = false;
+  template <class E, class S>
+  void operator()(E& e, const S* x, S* out) const {
+    e.place(t, x);
+    e.move(u(x));
+    e.momenta(sigma(x), out);
+    e.momentum_rates(x, u(x), sigma(x), leak, out);
+    if (!forces) return;
+    std::vector<S> tau(static_cast<std::size_t>(nv));
+    e.applied_forces(t, x, u(x), tau.data(), at_points);
+    for (Index i = 0; i < nv; ++i) out[i] -= tau[static_cast<std::size_t>(i)];
+  }
+};
+
+/// Φ_qᵀσ
+struct LoopForces : RowPlaces {
+  template <class E, class S>
+  void operator()(E& e, const S* x, S* out) const {
+    e.place(t, x);
+    e.constraint_forces(sigma(x), out);
+  }
+};
+
+/// r1, r2 and Φ_qᵀσ.
+struct MomentumAndLoopRows : MomentumRows {
+  template <class E, class S>
+  void operator()(E& e, const S* x, S* out) const {
+    MomentumRows::operator()(e, x, out);
+    e.constraint_forces(sigma(x), out + nv + m);
+  }
+};
+
+}  // namespace
+
+StageAdjoint::StageAdjoint(const Mechanism& mechanism, const OdeForm& form,
+                           const std::vector<OtherParameter>& others)
+    : mechanism_(mechanism),
+      others_(others),
+      e_(mechanism.evaluation<double>()),
+      dual_(mechanism.evaluation<Dual8>()),
+      matrix_(mechanism),
+      forces_(mechanism),
+      gauge_(form.gauge()),
+      rows_{{RowPlaces(mechanism)}},
+      nv_(mechanism.nv()),
+      m_(mechanism.m()),
+      driven_(mechanism.plan().drives) {
+  rows_.beta = form.beta();
+  rows_.leak = gauge_.kind == Gauge::Kind::leak ? gauge_.kappa : 0;
+}
+
+/// D rows along dx.
+template <class Rows>
+VectorXd StageAdjoint::along(const Rows& rows, const VectorXd& x, const VectorXd& dx, Index size) {
+  x_.resize(static_cast<std::size_t>(x.size()));
+  out_.resize(static_cast<std::size_t>(size));
+  for (std::size_t i = 0; i < x_.size(); ++i) {
+    x_[i] = Dual8(x[static_cast<Index>(i)]);
+    x_[i].b[0] = dx[static_cast<Index>(i)];
+  }
+  rows(static_cast<EquationRows<Dual8>&>(*dual_), x_.data(), out_.data());
+  VectorXd d(size);
+  for (std::size_t i = 0; i < out_.size(); ++i) d[static_cast<Index>(i)] = out_[i].b[0];
+  return d;
+}
+
+/// sum_j += weights · ∂rows/∂θ_j
+template <class Rows>
+void StageAdjoint::add_by_parameters(const Rows& rows, const VectorXd& x, const VectorXd& weights,
+                                     VectorXd& sum) {
+  plain_.resize(weights.size());
+  for (std::size_t j = 0; j < others_.size(); ++j) {
+    const OtherParameter& other = others_[j];
+    for (std::size_t k = 0; k < other.evaluations.size(); ++k) {
+      rows(static_cast<EquationRows<double>&>(*other.evaluations[k]), x.data(), plain_.data());
+      sum[static_cast<Index>(j)] += sixth_order::points[k].weight / other.h * weights.dot(plain_);
+    }
+  }
+}
+
+bool StageAdjoint::factor(double t, const VectorXd& q) {
+  rows_.t = t;
+  e_->place(t, q.data());
+  matrix_.factor(*e_);
+  return !matrix_.singular();
+}
+
+/// Φ_q u, at the place of the last factor().
+VectorXd StageAdjoint::loop_rates(const VectorXd& u) {
+  VectorXd moved(m_), still = VectorXd::Zero(m_);
+  if (driven_) {
+    e_->move(nullptr);
+    e_->velocities(still.data());
+  }
+  e_->move(u.data());
+  e_->velocities(moved.data());
+  return moved - still;
+}
+
+bool StageAdjoint::rates(const AdjointState& at, const VectorXd& w, VectorXd& product,
+                         VectorXd& by_parameters) {
+  if (!factor(at.t, at.q)) return false;
+  const VectorXd b = w.tail(nv_), x = joined(at.q, at.u, at.sigma);
+  VectorXd right = -along(static_cast<const MomentumRows&>(rows_), x,
+                          joined(-b, VectorXd::Zero(nv_), VectorXd::Zero(m_)), nv_ + m_);
+  right.head(nv_) += w.head(nv_);
+  VectorXd by_q = VectorXd::Zero(nv_);
+  if (forces_.any()) {
+    VectorXd by_u(nv_);
+    forces_.transposed(at.t, at.q, at.u, b, by_q, by_u);
+    right.head(nv_) += by_u;
+  }
+  const double fed_back = rows_.leak + rows_.beta;
+  if (m_ > 0 && fed_back != 0) right.tail(m_) -= fed_back * loop_rates(b);
+  const VectorXd mu = matrix_.solve(right);
+  const PotentialRates rates{rows_, forces_.any(), forces_.at_points()};
+  product.resize(2 * nv_);
+  product.head(nv_) = by_q - along(rates, x, joined(-b, mu.head(nv_), mu.tail(m_)), nv_);
+  if (m_ > 0 && fed_back != 0) {
+    const VectorXd impulses = mu.tail(m_);
+    VectorXd force(nv_);
+    e_->constraint_forces(impulses.data(), force.data());
+    product.head(nv_) -= fed_back * force;
+  }
+  product.tail(nv_) = mu.head(nv_);
+  add_by_parameters(rows_, x, joined(-mu.head(nv_), -mu.tail(m_), b), by_parameters);
+  return true;
+}
+
+bool StageAdjoint::gauge(const AdjointState& at, VectorXd& lambda, VectorXd& by_parameters) {
+  if (m_ == 0) return true;
+  const double c = gauge_.kind == Gauge::Kind::flip ? 2 : gauge_.kind == Gauge::Kind::reset ? 1 : 0;
+  if (c == 0) return true;
+  if (!factor(at.t, at.q)) return false;
+  const VectorXd of_p = lambda.tail(nv_), x = joined(at.q, at.u, at.sigma);
+  VectorXd right = VectorXd::Zero(nv_ + m_);
+  right.tail(m_) = loop_rates(of_p);
+  const VectorXd mu = matrix_.solve(right);
+  LoopForces loops{rows_};
+  PotentialRates rates{rows_, forces_.any(), forces_.at_points()};
+  rates.leak = 0;
+  const VectorXd impulses = mu.tail(m_), none = VectorXd::Zero(nv_ + m_);
+  VectorXd by_q = along(loops, x, joined(of_p, none, VectorXd(0)), nv_) -
+                  along(rates, x, joined(VectorXd::Zero(nv_), mu, VectorXd(0)), nv_);
+  if (rows_.beta != 0) {
+    VectorXd force(nv_);
+    e_->constraint_forces(impulses.data(), force.data());
+    by_q -= rows_.beta * force;
+  }
+  lambda.head(nv_) -= c * by_q;
+  lambda.tail(nv_) -= c * mu.head(nv_);
+  add_by_parameters(MomentumAndLoopRows{rows_}, x, joined(c * mu, -c * of_p, VectorXd(0)),
+                    by_parameters);
+  return true;
+}
+
+bool StageAdjoint::correction(double t, const VectorXd& q, VectorXd& lambda,
+                              VectorXd& by_parameters) {
+  if (!factor(t, q)) return false;
+  VectorXd right = VectorXd::Zero(nv_ + m_);
+  e_->positions(right.data() + nv_);
+  const VectorXd found = -matrix_.solve(right);
+  right.setZero();
+  right.head(nv_) = lambda.head(nv_);
+  const VectorXd mu = matrix_.solve(right), impulses = mu.tail(m_);
+  PotentialRates rates{rows_, forces_.any(), forces_.at_points()};
+  rates.leak = 0;
+  const VectorXd x = joined(q, found, VectorXd(0)),
+                 dx = joined(VectorXd::Zero(nv_), mu, VectorXd(0));
+  VectorXd by_q = along(rates, x, dx, nv_);
+  if (driven_) {
+    const VectorXd still = joined(q, VectorXd::Zero(nv_ + m_), VectorXd(0));
+    by_q -= along(rates, still, dx, nv_);
+  }
+  VectorXd force(nv_);
+  e_->constraint_forces(impulses.data(), force.data());
+  lambda.head(nv_) -= by_q + force;
+  CorrectionRows rows{rows_};
+  add_by_parameters(rows, x, -mu, by_parameters);
+  return true;
+}
+
+}  // namespace momenta

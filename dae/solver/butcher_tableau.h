@@ -1,0 +1,20 @@
+#pragma once
+// The coefficients of an explicit Runge-Kutta method as numbers, for sums over stages in another
+// order than a step's: its adjoint. Steps themselves have them as constants (explicit_step.h).
+
+#include <string>
+#include <vector>
+
+namespace momenta {
+
+/// c_i, a_ij (j < i) and b_j of k_i = f(t + c_i h, y + h Σ a_ij k_j), y + h Σ b_j k_j.
+struct ButcherTableau {
+  std::vector<double> c;               ///< by stage
+  std::vector<std::vector<double>> a;  ///< stages × stages, zero from the diagonal on
+  std::vector<double> b;               ///< by stage
+};
+
+/// Of rk4, dp5, dop853, vern9. @throws std::invalid_argument for another name
+ButcherTableau butcher_tableau(const std::string& method);
+
+}  // namespace momenta

@@ -1,0 +1,299 @@
+// The adjoint of runs: against tangents of the same runs, against products with a matrix of
+// derivatives that is made column by column, and against runs in quadruple precision.
+
+#include <gtest/gtest.h>
+#include <momenta/core/scene/file_text.h>
+#include <momenta/dae/assembly/assembly.h>
+#include <momenta/dae/gradient/form_tangents.h>
+#include <momenta/dae/gradient/stage_adjoint.h>
+
+#include <cmath>
+
+#include "equations/gradient_runs.h"
+#include "equations/gradient_twin.h"
+#include "equations/linkages.h"
+
+namespace momenta::dae_adjoint {
+namespace {
+
+using Eigen::Index;
+using Eigen::Map;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using equations::asked, equations::driven, equations::four_bar, equations::of_scene,
+    equations::of_text;
+
+SceneText example(const std::string& path) {
+  return of_text(reading::text_of(MOMENTA_SOURCE_DIR "/examples/" + path));
+}
+
+/// Scenes of every kind of force that an adjoint takes.
+std::vector<std::pair<std::string, SceneText>> scenes() {
+  return {{"four-bar with a spring and a damper", of_text(four_bar)},
+          {"driven", of_text(driven())},
+          {"chain", example("chain/scene.toml")},
+          {"slider-crank", example("slider_crank/scene.toml")},
+          {"Andrews", example("andrews/scene.toml")},
+          {"Bricard", example("bricard/scene.toml")},
+          {"spatial slider-crank", example("spatial_slider_crank/scene.toml")},
+          {"motor", example("motor/scene.toml")},
+          {"spring pendulum", example("extremes/spring_pendulum.toml")},
+          {"double pendulum by formulas", example("lagrangian/double_pendulum.toml")}};
+}
+
+/// The form at its start, pushed off it, with what is needed to differentiate it there.
+struct AtAState {
+  /// `leaves`: q is pushed off the loops too, where these are not redundant.
+  AtAState(const SceneText& scene, const FormOptions& options, Index directions, bool leaves)
+      : mechanism(scene.scene(), scene.options),
+        start(assemble(mechanism).start),
+        form(make_form("momentum", mechanism, options, start)),
+        others(static_cast<std::size_t>(directions)) {
+    y = form->ode() ? ode().initial(start) : std::vector<double>();
+    ode().begin_step(0, y.data());
+    srand(5);
+    const VectorXd away = VectorXd::Random(static_cast<Index>(y.size()));
+    for (std::size_t i = leaves ? 0 : static_cast<std::size_t>(mechanism.nq()); i < y.size(); ++i)
+      y[i] += 1e-2 * (std::abs(y[i]) + 0.1 * ode().scale(static_cast<int>(i))) *
+              away[static_cast<Index>(i)];
+  }
+  OdeForm& ode() { return dynamic_cast<OdeForm&>(*form); }
+  AdjointState state() {
+    const Index n = mechanism.nv();
+    return {0, Map<const VectorXd>(y.data(), n), Map<const VectorXd>(ode().rates().data(), n),
+            Map<const VectorXd>(ode().multipliers().data(), mechanism.m())};
+  }
+
+  Mechanism mechanism;
+  Start start;
+  std::unique_ptr<Form> form;
+  std::vector<OtherParameter> others;
+  std::vector<double> y;
+};
+
+FormOptions gauge(Gauge::Kind kind, double kappa = 0, double beta = 0) {
+  FormOptions options;
+  options.gauge.kind = kind;
+  options.gauge.kappa = kappa;
+  options.beta = beta;
+  return options;
+}
+
+TEST(Adjoint, OfTheRightHandSideIsItsDerivativeTransposed) {
+  for (const FormOptions& options : {gauge(Gauge::Kind::none), gauge(Gauge::Kind::leak, 3, 7)})
+    for (const auto& [name, scene] : scenes()) {
+      const Mechanism sizes(scene.scene(), scene.options);
+      const Index size = sizes.nq() + sizes.nv();
+      AtAState at(scene, options, size, name != "Bricard");
+      std::vector<double> f(at.y.size());
+      ASSERT_TRUE(at.ode().rhs(0, at.y.data(), f.data())) << at.ode().failure();
+      FormTangents tangents(at.mechanism, at.ode(), at.others);
+      MatrixXd fy;
+      ASSERT_TRUE(tangents.rates(0, at.y.data(), f.data(), MatrixXd::Identity(size, size), fy));
+      const std::vector<OtherParameter> none;
+      StageAdjoint adjoint(at.mechanism, at.ode(), none);
+      const VectorXd w = VectorXd::Random(size);
+      VectorXd product, by_nothing;
+      ASSERT_TRUE(adjoint.rates(at.state(), w, product, by_nothing));
+      const VectorXd expected = fy.transpose() * w;
+      for (Index i = 0; i < size; ++i)
+        EXPECT_NEAR(product[i], expected[i],
+                    1e-12 * (fy.col(i).cwiseAbs().dot(w.cwiseAbs()) + 1e-3 * expected.norm()))
+            << name << ", " << i;
+    }
+}
+
+TEST(Adjoint, OfWhatIsDoneAfterAStepIsItsDerivativeTransposed) {
+  for (const Gauge::Kind kind : {Gauge::Kind::reset, Gauge::Kind::flip})
+    for (const auto& [name, scene] : scenes()) {
+      FormOptions options = gauge(kind);
+      options.project = true;
+      const Mechanism sizes(scene.scene(), scene.options);
+      if (sizes.m() == 0) continue;
+      const Index size = sizes.nq() + sizes.nv(), n = sizes.nv();
+      AtAState at(scene, options, size, name != "Bricard");
+      std::vector<double> after = at.y;
+      bool changed = false;
+      ASSERT_TRUE(at.ode().after_step(0, after.data(), changed)) << at.ode().failure();
+      FormTangents tangents(at.mechanism, at.ode(), at.others);
+      MatrixXd Y = MatrixXd::Identity(size, size);
+      ASSERT_TRUE(tangents.after_step(0, at.y.data(), after.data(), Y));
+      AdjointState state = at.state();
+      state.q = Map<const VectorXd>(after.data(), n);
+      if (kind == Gauge::Kind::flip) state.sigma = -state.sigma;
+      const std::vector<OtherParameter> none;
+      StageAdjoint adjoint(at.mechanism, at.ode(), none);
+      const VectorXd w = VectorXd::Random(size);
+      VectorXd lambda = w, by_nothing;
+      ASSERT_TRUE(adjoint.gauge(state, lambda, by_nothing));
+      ASSERT_TRUE(adjoint.correction(0, Map<const VectorXd>(at.y.data(), n), lambda, by_nothing));
+      const VectorXd expected = Y.transpose() * w;
+      for (Index i = 0; i < size; ++i)
+        EXPECT_NEAR(lambda[i], expected[i],
+                    1e-11 * (Y.col(i).cwiseAbs().dot(w.cwiseAbs()) + 1e-2 * expected.norm()))
+            << name << ", " << i;
+    }
+}
+
+/// Both modes, every derivative, times the size of its variable, within a part of the value, of the
+/// largest of them, and of `whole`, of what the functional is a part of.
+void expect_same(const SceneText& scene, GradientRequest request, double within, double whole = 0) {
+  request.mode = GradientMode::forward;
+  const GradientResult forward = gradient(scene, request);
+  request.mode = GradientMode::adjoint;
+  const GradientResult adjoint = gradient(scene, request);
+  EXPECT_FALSE(forward.adjoint);
+  EXPECT_TRUE(adjoint.adjoint);
+  EXPECT_EQ(forward.steps, adjoint.steps);
+  EXPECT_NEAR(forward.value, adjoint.value, 1e-13 * (1 + std::abs(forward.value)));
+  double largest = whole + std::abs(forward.value);
+  for (std::size_t j = 0; j < forward.variables.size(); ++j)
+    largest = std::max(
+        largest, std::abs(forward.gradient[static_cast<Index>(j)]) * forward.variables[j].size);
+  ASSERT_GT(forward.gradient.norm(), 0);
+  for (std::size_t j = 0; j < forward.variables.size(); ++j) {
+    const auto at = static_cast<Index>(j);
+    EXPECT_NEAR(forward.gradient[at] * forward.variables[j].size,
+                adjoint.gradient[at] * forward.variables[j].size, within * largest)
+        << request.of << " by " << forward.variables[j].name << ", " << request.settings.gauge
+        << ", " << request.settings.integrator;
+  }
+}
+
+const std::vector<std::string> all_of_four_bar{"g", "crank", "coupler", "mass",
+                                               "k", "O.q",   "O.u",     "body.rocker.mass"};
+
+TEST(Adjoint, IsTheForwardGradientInEveryGauge) {
+  const SceneText scene = of_text(four_bar);
+  for (const char* rule : {"none", "reset", "flip", "leak:3"})
+    for (const bool project : {false, true}) {
+      GradientRequest request =
+          asked("P.x + 0.3*C.u^2 - P.vy", all_of_four_bar, "momentum", rule, 0.5, 0.01);
+      request.settings.project = project;
+      expect_same(scene, request, 1e-12);
+      request.settings.beta = 20;
+      expect_same(scene, request, 1e-12);
+    }
+}
+
+TEST(Adjoint, IsTheForwardGradientOfEveryMethodAndOfIntegrals) {
+  const SceneText scene = of_text(four_bar);
+  for (const char* method : {"rk4", "dp5", "dop853", "vern9"})
+    for (const bool integral : {false, true}) {
+      GradientRequest request =
+          asked("(P.x - 0.5*crank)^2 + t*O.u", all_of_four_bar, "momentum", "reset", 0.5, 0.01);
+      request.settings.integrator = method;
+      request.settings.project = true;
+      request.integral = integral;
+      expect_same(scene, request, 1e-12);
+      if (request.settings.integrator == "rk4") continue;
+      request.settings.step = 0;
+      request.settings.rtol = request.settings.atol = 1e-7;
+      GradientRequest forward = request;
+      forward.mode = GradientMode::forward;
+      if (gradient(scene, forward).steps > 1) expect_same(scene, request, 1e-11);
+    }
+}
+
+TEST(Adjoint, IsTheForwardGradientOfTheScenesOfTheTable) {
+  struct Row {
+    const char *scene, *of;
+    std::vector<std::string> by;
+    double end, step;
+    double whole = 0;
+  };
+  // Of the chain's last angle, which hardly moves at first, in radians.
+  for (const Row& row : std::vector<Row>{
+           {"chain/scene.toml", "J9.q", {"gravity.1", "J1.q"}, 0.5, 0.005, 1},
+           {"four_bar/scene.toml", "B.y", {"body.rocker.mass", "O.u"}, 0.5, 0.01},
+           {"slider_crank/scene.toml", "B.x", {"body.rod.mass"}, 0.2, 0.01},
+           {"andrews/scene.toml", "O.q", {"body.crank.mass"}, 0.01, 0.0001},
+           {"bricard/scene.toml", "P3.y", {"body.rod1.mass", "gravity.1"}, 0.3, 0.02},
+           {"spatial_slider_crank/scene.toml", "S.q", {"body.rod.mass"}, 0.3, 0.005},
+           {"driven/scene.toml", "tip.x", {"M.q"}, 0.4, 0.01},
+           {"extremes/spring_pendulum.toml", "bob.y", {"joint.spring.stiffness"}, 0.2, 0.002}})
+    for (const char* rule : {"none", "reset"})
+      expect_same(example(row.scene), asked(row.of, row.by, "momentum", rule, row.end, row.step),
+                  1e-12, row.whole);
+}
+
+TEST(Adjoint, IsThatOfQuadruplePrecision) {
+  std::string text = four_bar;
+  text.replace(text.find("velocity = 0.7"), 14, "velocity = 0.0");
+  const SceneText scene = of_text(text);
+  const std::vector<std::string> by{"crank", "coupler", "mass", "k", "g"};
+  const Mechanism own(scene.scene(), scene.options);
+  for (const char* rule : {"reset", "none"}) {
+    GradientRequest request = asked("C.q", by, "momentum", rule, 0.4, 0.01);
+    request.mode = GradientMode::adjoint;
+    const GradientResult r = gradient(scene, request);
+    for (std::size_t j = 0; j < by.size(); ++j) {
+      const RunVariable& v = r.variables[j];
+      const VectorXd exact = equations::differenced(
+          [&](double value) {
+            const Mechanism other(scene.scene({{v.name, value}}), scene.options);
+            const Start start = assemble(other, 0, other.tree().q0, VectorXd::Zero(3)).start;
+            const auto y = equations::QuadRun(other, std::string(rule) == "reset", 0, 1e-20)(
+                start.q, 0.01, 40);
+            VectorXd numbers(static_cast<Index>(y.size()));
+            for (std::size_t i = 0; i < y.size(); ++i)
+              numbers[static_cast<Index>(i)] = value_of(y[i]);
+            return numbers;
+          },
+          v.value, v.size / 256);
+      EXPECT_NEAR(r.gradient[static_cast<Index>(j)], exact[2],
+                  1e-10 * (1 / v.size + std::abs(exact[2])))
+          << v.name;
+    }
+  }
+}
+
+TEST(Adjoint, TakesAsManyProductsWhateverTheNumberOfParameters) {
+  const SceneText scene = of_text(four_bar);
+  GradientRequest request = asked("P.x", {"mass"}, "momentum", "reset", 0.5, 0.01);
+  request.mode = GradientMode::adjoint;
+  const GradientResult of_one = gradient(scene, request);
+  request.by = all_of_four_bar;
+  const GradientResult of_all = gradient(scene, request);
+  EXPECT_EQ(of_one.products, 4 * of_one.steps + 1);
+  EXPECT_EQ(of_all.products, of_one.products);
+  request.mode = GradientMode::automatic;
+  EXPECT_FALSE(gradient(scene, request).adjoint);
+  request.by.push_back("idle");
+  EXPECT_TRUE(gradient(scene, request).adjoint);
+}
+
+/// The sentence with which it is refused.
+std::string refusal(const SceneText& scene, GradientRequest request) {
+  request.mode = GradientMode::adjoint;
+  try {
+    gradient(scene, request);
+  } catch (const std::exception& e) {
+    return e.what();
+  }
+  return "";
+}
+
+TEST(Adjoint, RefusesInOneSentence) {
+  const SceneText scene = of_text(four_bar);
+  EXPECT_EQ(refusal(scene, asked("P.x", {"crank"}, "acceleration", "")),
+            "form 'acceleration' has no adjoint; expected the mode 'forward'");
+  GradientRequest request = asked("P.x", {"crank"}, "momentum", "reset");
+  request.trajectory = true;
+  EXPECT_EQ(refusal(scene, request),
+            "an adjoint has no derivatives of the trajectory; expected the mode 'forward'");
+  const SceneText rod = of_scene(equations::flying_rod());
+  const std::string mass = "body." + rod.scene().bodies[0].name + ".mass";
+  EXPECT_NE(refusal(rod, asked("energy", {mass}, "momentum", "reset")).find("are not canonical"),
+            std::string::npos);
+  EXPECT_NE(refusal(example("bicycle/scene.toml"), asked("energy", {"gravity.2"}, "momentum", ""))
+                .find("expected the mode 'forward'"),
+            std::string::npos);
+  EXPECT_NE(refusal(of_scene(equations::row_of_four_bars(1, 0, 1)),
+                    asked("energy", {"gravity.1"}, "momentum", "reset"))
+                .find("become dependent"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace momenta::dae_adjoint
