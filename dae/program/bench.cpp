@@ -3,9 +3,11 @@
 
 #include <momenta/dae/report/equation_report.h>
 #include <momenta/dae/report/scene_suite_report.h>
+#include <momenta/dae/report/submission.h>
 #include <momenta/dae/study/environment.h>
 
 #include <cstdio>
+#include <type_traits>
 
 #include "options.h"
 #include "publish_suite.h"
@@ -19,11 +21,13 @@ template <class Result>
 bool told(const Options& o, const Result& result) {
   const Environment made = environment();
   const std::string json = suite_json(result, made).dump(2) + "\n";
-  if (!o.out.empty() &&
-      !write_results({{o.out / "bench.csv", suite_csv(result)},
-                      {o.out / "bench.json", json},
-                      {o.out / "index.html", suite_page(result, made, o.command)}}))
-    return false;
+  std::vector<ResultFile> files{{o.out / "bench.csv", suite_csv(result)},
+                                {o.out / "bench.json", json},
+                                {o.out / "index.html", suite_page(result, made, o.command)}};
+  if constexpr (std::is_same_v<Result, SceneSuiteResult>)
+    for (const auto& [name, text] : submissions(result, made))
+      files.push_back({o.out / name, text});
+  if (!o.out.empty() && !write_results(files)) return false;
   tell(o, json, suite_table(result), "index.html");
   return true;
 }

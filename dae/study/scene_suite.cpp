@@ -132,6 +132,7 @@ SceneSuiteResult run_suite(const SceneSuite& suite, const SceneSuiteRequest& req
     SceneProblemResult& row = result.problems.emplace_back();
     row.scene = problem.scene;
     row.name = problem.name;
+    row.set = problem.set;
     row.error = problem.error;
     row.threshold = problem.threshold;
     row.allowed = problem.allowed;

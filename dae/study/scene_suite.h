@@ -53,6 +53,7 @@ SceneSuite read_scene_suite(const std::filesystem::path& file);
 
 struct SceneProblemResult {
   std::string scene, name, why;  ///< why: one sentence where there are no runs
+  std::vector<Setting> set;      ///< numbers that the suite sets in the scene
   int coordinates = 0, equations = 0;
   double end = 0;  ///< [s]
   int samples = 0;

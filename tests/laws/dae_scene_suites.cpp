@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/assembly/assembly.h>
+#include <momenta/dae/report/submission.h>
 #include <momenta/dae/study/own_reference.h>
 #include <momenta/dae/study/scene_suite.h>
 
@@ -156,6 +157,48 @@ TEST(SceneSuites, TheCheapestRunIsThatOfFewestEvaluations) {
   EXPECT_EQ(cheapest_within(problem, 1e-3), 3u);
   EXPECT_EQ(cheapest_within(problem, 1e-5), 1u);
   EXPECT_EQ(cheapest_within(problem, 1e-6), 4u);
+}
+
+// What is sent in is of the run that is named in the table, and its command makes that run again.
+TEST(SceneSuites, SubmissionsAreOfTheCheapestRunsWithinWhatSourcesAllow) {
+  SceneSuiteResult suite;
+  SceneProblemResult& p = suite.problems.emplace_back();
+  p.name = "A03: Andrews' squeezer";
+  p.scene = "some/andrews.toml";
+  p.set = {{"joint.O.position", -0.0620}};
+  p.end = 0.05;
+  p.samples = 100;
+  p.error = BenchmarkError::Kind::threshold;
+  p.threshold = 1e-3;
+  p.allowed = {1e-1, 1e-3, 1e-9};
+  p.reference = "andrews.csv";
+  for (const double error : {2e-2, 3e-4}) {
+    RunResult& run = p.runs.emplace_back();
+    p.errors.push_back(error);
+    run.settings = default_settings({}, "momentum", "dop853", error > 1e-3 ? 1e-4 : 1e-7);
+    run.settings.gauge = "reset";
+    run.settings.project = true;
+    run.counters.evaluations = error > 1e-3 ? 1000 : 3000;
+  }
+  p.runs[1].cpu_s = 2.5e-3;
+  Environment here;
+  here.cpu = "a processor";
+  const auto files = submissions(suite, here);
+  ASSERT_EQ(files.size(), 2u) << "no run meets 1e-9";
+  EXPECT_EQ(files[0].first, "submission-1-a03-andrews-squeezer-0.1.txt");
+  EXPECT_EQ(files[1].first, "submission-1-a03-andrews-squeezer-0.001.txt");
+  const auto has = [](const std::string& text, const std::string& part) {
+    return text.find(part) != text.npos;
+  };
+  EXPECT_TRUE(has(files[0].second, "\nAccuracy: 0.02 (mean error with threshold 0.001)"));
+  EXPECT_TRUE(has(files[0].second, "\nCPU time: not taken\n"));
+  EXPECT_TRUE(has(files[1].second, "\nCPU time: 0.0025 s\n")) << files[1].second;
+  EXPECT_TRUE(has(files[1].second, "a processor, one core"));
+  EXPECT_TRUE(has(files[1].second,
+                  "momenta run some/andrews.toml --set joint.O.position=-0.062 --form momentum "
+                  "--integrator dop853 --rtol 1e-7 --atol 1e-7 --end 0.05 --samples 100 --gauge "
+                  "reset --project --out solution\n"))
+      << files[1].second;
 }
 
 TEST(SceneSuites, MakeReferencesThatTheyHaveNot) {
