@@ -215,8 +215,14 @@ ConstrainedEnd constrained_search(const ConstrainedProblem& problem, const Vecto
     end.slope = left > 0 ? left / size : 0;
   };
   measure();
+  // Where nothing is gained the search is begun with shorter steps, as of an f with smaller
+  // gradients; at a minimum once, elsewhere four times.
   constexpr std::size_t most_without = 50;
-  for (int gained_nothing = 0; gained_nothing < 2 && !end.stopped &&
+  constexpr double shorter = 10;
+  const auto given_up = [&](int gained_nothing) {
+    return gained_nothing >= (end.kept && end.slope <= converged_slope ? 1 : 4);
+  };
+  for (int gained_nothing = 0; !given_up(gained_nothing) && !end.stopped &&
                                p.iterations() < most_iterations &&
                                p.without_gradients() < most_without;) {
     const double f = p.f, off = p.violation(true);
@@ -232,6 +238,7 @@ ConstrainedEnd constrained_search(const ConstrainedProblem& problem, const Vecto
     const bool gained = p.violation(true) < 0.5 * off || std::abs(p.f - f) > 1e-13 * std::abs(f) ||
                         p.without_gradients() > without;
     gained_nothing = gained ? 0 : gained_nothing + 1;
+    if (!gained) p.f_size *= shorter;
   }
   x = z.cwiseProduct(sizes).cwiseMax(least).cwiseMin(most);
   end.iterations = p.iterations();

@@ -153,11 +153,7 @@ class Search {
       refused_ = parts_.why();
       return INFINITY;
     }
-    double most = 0;
-    const std::vector<double> room = conditions_.room(values);
-    for (std::size_t i = 0; i < room.size(); ++i)
-      most = std::max(most, conditions_.condition(i).equal ? std::abs(room[i]) : -room[i]);
-    return most;
+    return conditions_.violation(values);
   }
 
   FitStart search(const VectorXd& from) {
@@ -216,30 +212,38 @@ class Search {
       return false;
     }
     conditions_.count(values);
+    const Eigen::Index whole = x.size(), more = conditions_.unknowns(), all = whole + more;
+    VectorXd sizes = VectorXd::Ones(all), low(all), high(all);  // of angles a radian
+    sizes.head(n) = sizes_;
+    low << least, VectorXd::Constant(more, -INFINITY);
+    high << most, VectorXd::Constant(more, INFINITY);
+    x.conservativeResize(all);
+    conditions_.start(values, x.tail(more), sizes.tail(more));
     ConstrainedProblem problem;
     problem.inequalities = conditions_.inequalities();
     problem.equalities = conditions_.equalities();
     problem.at = [&](const VectorXd& at, double& f, VectorXd& rows, VectorXd* df, MatrixXd* by) {
       VectorXd r;
       MatrixXd jacobian, of_theta;
-      if (!evaluate(at, r, df ? &jacobian : nullptr)) return false;
+      if (!evaluate(at.head(whole), r, df ? &jacobian : nullptr)) return false;
       if (!parts_.at(at.head(n), df != nullptr, values)) {
         refused_ = parts_.why();
         return false;
       }
       f = 0.5 * r.squaredNorm();
-      conditions_.at(values, rows, df ? &of_theta : nullptr);
+      conditions_.at(values, at.tail(more), rows, df ? &of_theta : nullptr);
       if (df) {
-        *df = jacobian.transpose() * r;
-        by->setZero(rows.size(), at.size());
-        by->leftCols(n) = of_theta;
+        df->setZero(all);
+        df->head(whole) = jacobian.transpose() * r;
+        by->setZero(rows.size(), all);
+        by->leftCols(n) = of_theta.leftCols(n);
+        by->rightCols(more) = of_theta.rightCols(more);
       }
       return true;
     };
-    VectorXd sizes = VectorXd::Ones(x.size());  // of angles a radian
-    sizes.head(n) = sizes_;
     const ConstrainedEnd end =
-        constrained_search(problem, least, most, sizes, request_.most_iterations, x);
+        constrained_search(problem, low, high, sizes, request_.most_iterations, x);
+    x.conservativeResize(whole);
     start.iterations += end.iterations;
     if (!end.began) {
       start.why = refused_;

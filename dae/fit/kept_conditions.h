@@ -1,9 +1,9 @@
 #pragma once
-// Conditions of users as rows c(θ) ≤ 0 and e(θ) = 0. One with a single extreme that it bounds from
-// outside, max(g) ≤ b or g ≤ b at every pose, is a row a pose, each smooth, where the extreme
-// itself has corners; others take the pose at which the extreme is.
+// Conditions of users as rows c(θ, τ) ≤ 0 and e(θ) = 0. One with a single extreme that it bounds
+// from outside, max(g) ≤ b or g ≤ b at every pose, is a row a pose, each smooth, where the extreme
+// itself has corners; one with several has unknowns τ in their place (bounded_function.h).
 
-#include <momenta/dae/fit/motion_parts.h>
+#include <momenta/dae/fit/bounded_function.h>
 
 #include <string>
 #include <vector>
@@ -25,15 +25,22 @@ class KeptConditions {
   /// `parts` take what the conditions are made of. @throws std::invalid_argument: one sentence
   KeptConditions(const std::vector<std::string>& texts, MotionParts& parts);
 
-  /// Counts rows for motions like this one.
+  /// Counts rows and unknowns for motions like this one.
   void count(const MotionValues& values);
   int inequalities() const { return inequalities_; }
   int equalities() const { return equalities_; }
-  /// Rows of c, then of e, and their derivatives by θ where these are asked for.
-  void at(const MotionValues& values, Eigen::VectorXd& rows, Eigen::MatrixXd* by) const;
+  Eigen::Index unknowns() const { return unknowns_; }  ///< of τ
+  /// τ where extremes are, and what it counts in, > 0.
+  void start(const MotionValues& values, Eigen::Ref<Eigen::VectorXd> tau,
+             Eigen::Ref<Eigen::VectorXd> sizes) const;
+  /// Rows of c, then of e, and their derivatives by (θ, τ) where these are asked for.
+  void at(const MotionValues& values, const Eigen::VectorXd& tau, Eigen::VectorXd& rows,
+          Eigen::MatrixXd* by) const;
   /// Room of each condition, as in KeptCondition.
   std::vector<double> room(const MotionValues& values) const;
-  /// Of each condition the sum of multipliers of its rows.
+  /// How far they are missed, the worst of them; 0: all are kept.
+  double violation(const MotionValues& values) const;
+  /// Of each condition the multiplier, that of all poses together.
   std::vector<double> multipliers(const Eigen::VectorXd& of_rows) const;
   std::size_t size() const { return conditions_.size(); }
   const MotionCondition& condition(std::size_t i) const { return conditions_[i].read; }
@@ -41,12 +48,14 @@ class KeptConditions {
  private:
   struct Condition {
     MotionCondition read;
-    MotionFunction gap;
-    int extreme = -1;  ///< the part of which each pose is a row; −1: one row
-    Eigen::Index rows = 1, first = 0;
+    std::unique_ptr<MotionFunction> gap;
+    int extreme = -1;  ///< the part of which each pose is a row; −1: one row, then those of bounds
+    BoundedFunction bounded;  ///< of several extremes
+    Eigen::Index rows = 1, first = 0, unknown = 0;
   };
   std::vector<Condition> conditions_;
   int inequalities_ = 0, equalities_ = 0;
+  Eigen::Index unknowns_ = 0;
 };
 
 }  // namespace momenta

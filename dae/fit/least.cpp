@@ -22,6 +22,7 @@ class LeastSearch {
         sizes_(sizes_of(family, request.parameters)),
         parts_(parts()),
         functional_(MotionFormula::from_text(request.least), *parts_),
+        bounded_(functional_),
         conditions_(request.keep, *parts_) {}
 
   LeastResult run() {
@@ -119,53 +120,35 @@ class LeastSearch {
       result_.curves[k].before = swept_->curve(curves_[k]);
   }
 
-  /// J with an unknown in the place of each extreme that it grows with, which bounds it.
-  ConstrainedProblem problem(const std::vector<std::size_t>& bounded, const MotionValues& first) {
+  /// Unknowns: θ, τ of J, τ of the conditions. Rows: of conditions, of bounds of J, of equations.
+  ConstrainedProblem problem() {
     ConstrainedProblem p;
-    conditions_.count(first);
-    int rows = 0;
-    for (const std::size_t k : bounded)
-      rows += static_cast<int>(first.parts[functional_.places()[k]].size());
-    p.inequalities = conditions_.inequalities() + rows;
-    p.equalities = conditions_.equalities();
-    p.at = [this, bounded, rows](const VectorXd& x, double& f, VectorXd& all, VectorXd* df,
-                                 MatrixXd* dall) {
-      const Index n = family_.own().size(), more = static_cast<Index>(bounded.size());
+    const Index n = family_.own().size(), of_j = bounded_.unknowns(), of_c = conditions_.unknowns(),
+                rows = bounded_.rows(), kept_rows = conditions_.inequalities(),
+                equal = conditions_.equalities();
+    p.inequalities = static_cast<int>(kept_rows + rows);
+    p.equalities = static_cast<int>(equal);
+    p.at = [=, this](const VectorXd& x, double& f, VectorXd& all, VectorXd* df, MatrixXd* dall) {
       MotionValues values;
       if (!motion(x.head(n), df != nullptr, values)) return false;
-      VectorXd taken = VectorXd::Constant(static_cast<Index>(functional_.parts().size()), NAN),
-               by_theta, by_parts, kept;
-      MatrixXd kept_by;
-      for (Index k = 0; k < more; ++k)
-        taken[static_cast<Index>(bounded[static_cast<std::size_t>(k)])] = x[n + k];
-      f = functional_.at(values, functional_.rows(values), taken, df ? &by_theta : nullptr,
-                         df ? &by_parts : nullptr);
-      conditions_.at(values, kept, df ? &kept_by : nullptr);
+      VectorXd by_theta, by_tau, kept;
+      MatrixXd kept_by, bounds_by_theta, bounds_by_tau;
+      const VectorXd tau = x.segment(n, of_j);
+      f = bounded_.at(values, tau, df ? &by_theta : nullptr, df ? &by_tau : nullptr);
+      conditions_.at(values, x.tail(of_c), kept, df ? &kept_by : nullptr);
       all.resize(kept.size() + rows);
-      const Index first_bound = conditions_.inequalities(), equal = conditions_.equalities();
-      all.head(first_bound) = kept.head(first_bound);
-      all.tail(equal) = kept.tail(equal);
-      if (df) {
-        df->resize(n + more);
-        df->head(n) = by_theta;
-        dall->setZero(all.size(), n + more);
-        dall->topLeftCorner(first_bound, n) = kept_by.topRows(first_bound);
-        dall->bottomLeftCorner(equal, n) = kept_by.bottomRows(equal);
-      }
-      Index row = first_bound;
-      for (Index k = 0; k < more; ++k) {
-        const std::size_t part = bounded[static_cast<std::size_t>(k)],
-                          place = functional_.places()[part];
-        const double sign = functional_.parts()[part].kind == MotionPart::Kind::most ? 1 : -1;
-        const VectorXd& g = values.parts[place];
-        all.segment(row, g.size()) = sign * (g.array() - x[n + k]);
-        if (df) {
-          (*df)[n + k] = by_parts[static_cast<Index>(part)];
-          dall->block(row, 0, g.size(), n) = sign * values.parts_by[place];
-          dall->block(row, n + k, g.size(), 1).setConstant(-sign);
-        }
-        row += g.size();
-      }
+      all << kept.head(kept_rows), VectorXd::Zero(rows), kept.tail(equal);
+      bounded_.bounds(values, tau, all.segment(kept_rows, rows), df ? &bounds_by_theta : nullptr,
+                      df ? &bounds_by_tau : nullptr);
+      if (!df) return true;
+      df->resize(x.size());
+      *df << by_theta, by_tau, VectorXd::Zero(of_c);
+      dall->setZero(all.size(), x.size());
+      dall->topLeftCorner(kept_rows, n) = kept_by.topLeftCorner(kept_rows, n);
+      dall->topRightCorner(kept_rows, of_c) = kept_by.topRightCorner(kept_rows, of_c);
+      dall->bottomLeftCorner(equal, n) = kept_by.bottomLeftCorner(equal, n);
+      dall->block(kept_rows, 0, rows, n) = bounds_by_theta;
+      dall->block(kept_rows, n, rows, of_j) = bounds_by_tau;
       return true;
     };
     return p;
@@ -185,8 +168,10 @@ class LeastSearch {
       start.why = refused_;
       return start;
     }
-    const std::vector<std::size_t> bounded = functional_.bounded(first);
-    const Index n = from.size(), more = static_cast<Index>(bounded.size());
+    bounded_.choose(first);
+    conditions_.count(first);
+    const Index n = from.size(), of_j = bounded_.unknowns(), of_c = conditions_.unknowns(),
+                more = of_j + of_c;
     VectorXd least, most, x(n + more), sizes(n + more);
     bounds_of(request_.parameters, least, most);
     least.conservativeResize(n + more);
@@ -195,15 +180,9 @@ class LeastSearch {
     most.tail(more).setConstant(INFINITY);
     x.head(n) = from;
     sizes.head(n) = sizes_;
-    const std::vector<Index> rows = functional_.rows(first);
-    for (Index k = 0; k < more; ++k) {
-      const std::size_t part = bounded[static_cast<std::size_t>(k)];
-      const VectorXd& g = first.parts[functional_.places()[part]];
-      x[n + k] = g[rows[part]];
-      const double size = g.cwiseAbs().maxCoeff();
-      sizes[n + k] = size > 0 ? size : 1;
-    }
-    ConstrainedProblem p = problem(bounded, first);
+    bounded_.start(first, x.segment(n, of_j), sizes.segment(n, of_j));
+    conditions_.start(first, x.tail(of_c), sizes.tail(of_c));
+    ConstrainedProblem p = problem();
     p.going = going;
     const ConstrainedEnd end =
         constrained_search(p, least, most, sizes, request_.most_iterations, x);
@@ -218,13 +197,8 @@ class LeastSearch {
     start.to = x.head(n);
     start.value = functional_.value(last);
     start.slope = end.slope;
-    VectorXd kept;
-    conditions_.at(last, kept, nullptr);
-    start.violation = 0;
-    for (Index i = 0; i < kept.size(); ++i)
-      start.violation =
-          std::max(start.violation, i < conditions_.inequalities() ? kept[i] : std::abs(kept[i]));
-    VectorXd of_rows(kept.size());
+    start.violation = conditions_.violation(last);
+    VectorXd of_rows(conditions_.inequalities() + conditions_.equalities());
     of_rows << end.multipliers.head(conditions_.inequalities()),
         end.multipliers.tail(conditions_.equalities());
     start.multipliers = conditions_.multipliers(of_rows);
@@ -264,6 +238,7 @@ class LeastSearch {
   RunParts* run_ = nullptr;
   std::unique_ptr<MotionParts> parts_;
   MotionFunction functional_;
+  BoundedFunction bounded_;
   KeptConditions conditions_;
   std::vector<std::size_t> curves_;  ///< parts of which result_.curves are
   bool has_best_ = false;

@@ -4,14 +4,9 @@
 //   min J(θ),   conditions kept,   from ≤ θ ≤ to,
 //
 // of a motion that is swept (swept_parts.h) or of a run (run_parts.h), by constrained_search.h. A
-// mechanism that does not close, or does not reach a pose, is no candidate: the step is cut. The
-// largest of many smooth functions has corners where two of them are equal; J(max_i g_i) is
-// therefore made less with a further unknown τ,
-//
-//   min J(τ),   g_i(θ) ≤ τ at each pose i,
-//
-// which is smooth and has the same solution wherever J grows with τ. A minimum so found is a local
-// one; starts are drawn as by fit(), and follow from the seed.
+// mechanism that does not close, or does not reach a pose, is no candidate: the step is cut.
+// Extremes are made smooth by bounded_function.h. A minimum so found is a local one; starts are
+// drawn as by fit(), and follow from the seed.
 
 #include <momenta/dae/fit/constrained_search.h>
 #include <momenta/dae/fit/fit.h>

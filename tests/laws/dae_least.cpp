@@ -250,6 +250,44 @@ TEST(Least, ATransmissionAngleIsKept) {
   EXPECT_LT(r.keep[0].before, -0.1);  // the start breaks it
 }
 
+// A condition with two extremes, where many poses are as high and as low as may be: no worse than
+// what a search over two parameters finds by cutting steps, and kept to 1e-10.
+TEST(Least, ConditionsWithSeveralExtremesAreKept) {
+  const ParametricMechanism family(four_bar(), "four-bar", {}, {"along", "across"});
+  LeastRequest request =
+      of_crank("-along - 0.3*across", {ranged("along", 0, 4), ranged("across", -3, 3)});
+  request.way = SweptWay{"O", std::nullopt, 25, 1};
+  request.keep = {"max(P.y) - min(P.y) <= 2.5", "max(P.x) - min(P.x) <= 2.2"};
+  const LeastResult r = least(family, request);
+  EXPECT_TRUE(r.starts.front().converged) << r.starts.front().why;
+  std::vector<double> v(all_names.size());
+  const ParametricMechanism all(four_bar(), "four-bar", {}, all_names);
+  for (std::size_t i = 0; i < v.size(); ++i) v[i] = all.own()[static_cast<Index>(i)];
+  const auto room = [&](double along, double across) {
+    double most[2]{-INFINITY, -INFINITY}, least[2]{INFINITY, INFINITY};
+    v[4] = along;
+    v[5] = across;
+    for (const double s : r.places) {
+      const auto y = by_trigonometry<double>(v, s);
+      for (int c = 0; c < 2; ++c) {
+        most[c] = std::max(most[c], y[static_cast<std::size_t>(c)]);
+        least[c] = std::min(least[c], y[static_cast<std::size_t>(c)]);
+      }
+    }
+    return std::min(2.2 - (most[0] - least[0]), 2.5 - (most[1] - least[1]));
+  };
+  EXPECT_LT(std::abs(room(r.found[0], r.found[1])), 1e-10);
+  double best[3]{0, 0, -INFINITY};  // along, across, what is to be most
+  for (int i = 0; i <= 400; ++i)
+    for (int k = 0; k <= 600; ++k) {
+      const double along = 0.01 * i, across = -3 + 0.01 * k, value = along + 0.3 * across;
+      if (value > best[2] && room(along, across) >= 0)
+        best[0] = along, best[1] = across, best[2] = value;
+    }
+  EXPECT_GE(-r.after, best[2] - 1e-10) << best[0] << ", " << best[1];
+  EXPECT_LT(-r.after, best[2] + 0.05);
+}
+
 // Wanted poses with a condition that holds: what Ceres finds with the bound that it amounts to.
 TEST(Least, ConditionsOfWantedPosesAsByBounds) {
   const std::vector<std::string> names{"crank", "coupler", "rocker"};
