@@ -2,7 +2,7 @@
 # shellcheck shell=bash disable=SC2034
 
 packages_to_build=(cmake make g++ libeigen3-dev libtomlplusplus-dev libtinyxml2-dev libyaml-cpp-dev
-                   libqhull-dev libsundials-dev libsuitesparse-dev libspectra-dev libceres-dev nlohmann-json3-dev libcli11-dev)
+                   libqhull-dev libsundials-dev libsuitesparse-dev libspectra-dev libceres-dev libnlopt-dev nlohmann-json3-dev libcli11-dev)
 packages_to_test=(libgtest-dev libbenchmark-dev librapidcheck-dev pybind11-dev python3-dev python3-numpy)
 packages_for_docs=(doxygen mkdocs)
 

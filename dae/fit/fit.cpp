@@ -1,27 +1,19 @@
-#include <momenta/core/text/near_name.h>
-#include <momenta/dae/dense/decompositions.h>
+#include <momenta/dae/fit/constrained_search.h>
 #include <momenta/dae/fit/fit.h>
 #include <momenta/dae/fit/least_squares_search.h>
+#include <momenta/dae/fit/start_record.h>
+#include <momenta/dae/fit/undetermined.h>
 #include <momenta/dae/kinematics/coordinate_named.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <random>
-#include <stdexcept>
+#include <optional>
 
 namespace momenta {
 namespace {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-/// What steps of differences, and of a start, are a part of.
-double size_of(const FittedParameter& parameter, double own) {
-  if (own != 0) return std::abs(own);
-  if (parameter.range) return (*parameter.range)[1] - (*parameter.range)[0];
-  return 1;
-}
 
 WantedErrors errors_of(const WantedPoses& wanted, const MatrixXd& reached, const VectorXd& r) {
   WantedErrors errors;
@@ -47,14 +39,21 @@ WantedErrors errors_of(const WantedPoses& wanted, const MatrixXd& reached, const
   return errors;
 }
 
+SweptWay way_of(const FitRequest& request) {
+  SweptWay way = request.way;
+  way.sweep = request.sweep;
+  return way;
+}
+
 class Search {
  public:
   Search(const ParametricMechanism& family, const WantedPoses& wanted, const FitRequest& request)
       : family_(family),
         request_(request),
-        sizes_(sizes(family, request)),
+        sizes_(sizes_of(family, request.parameters)),
         error_(family, request.sweep, wanted, sizes_),
-        random_(request.seed) {
+        parts_(family, sizes_, way_of(request)),
+        conditions_(request.keep, parts_) {
     result_.wanted = wanted;
     result_.parameters = request.parameters;
     result_.seed = request.seed;
@@ -73,14 +72,27 @@ class Search {
     } else {
       result_.why_not_before = error_.why();
     }
+    look_at_conditions_before();
+    DrawnStarts starts(family_, request_.parameters, request_.seed);
     for (int k = 0; k < request_.starts; ++k) {
-      if (request_.progress && !request_.progress(k, best_cost_)) {
+      if (request_.progress && !request_.progress(k, best_cost())) {
         result_.stopped = true;
         break;
       }
-      search(k == 0 ? family_.own() : drawn());
+      const VectorXd from = starts.next();
+      const std::string key = "start " + std::to_string(k);
+      std::optional<FitStart> start = recalled<FitStart>(request_.journal, key, from);
+      if (!start) {
+        start = search(from);
+        if (request_.journal) request_.journal->add(key, record_of_start(*start));
+      }
+      if (start->to.size() > 0 && (!has_best_ || is_better(*start, result_.starts[result_.best]))) {
+        has_best_ = true;
+        result_.best = result_.starts.size();
+      }
+      result_.starts.push_back(std::move(*start));
     }
-    if (!std::isfinite(best_cost_))
+    if (!has_best_)
       throw SceneError(result_.starts.empty() ? "the search was stopped before its first start"
                                               : "no start is possible; the first is not, as " +
                                                     result_.starts.front().why);
@@ -89,13 +101,6 @@ class Search {
   }
 
  private:
-  static VectorXd sizes(const ParametricMechanism& family, const FitRequest& request) {
-    VectorXd sizes(family.own().size());
-    for (Eigen::Index j = 0; j < sizes.size(); ++j)
-      sizes[j] = size_of(request.parameters[static_cast<std::size_t>(j)], family.own()[j]);
-    return sizes;
-  }
-
   bool evaluate(const VectorXd& x, VectorXd& r, MatrixXd* jacobian) {
     ++result_.evaluations;
     if (jacobian) ++result_.derivatives;
@@ -123,33 +128,51 @@ class Search {
     return end.began;
   }
 
-  /// Between the bounds; the same numbers on every machine.
-  VectorXd drawn() {
-    VectorXd values(family_.own().size());
-    for (Eigen::Index j = 0; j < values.size(); ++j) {
-      const auto& [from, to] = *request_.parameters[static_cast<std::size_t>(j)].range;
-      const double part = static_cast<double>(random_() >> 11) / 9007199254740992.0;
-      values[j] = from + (to - from) * part;
-    }
-    return values;
+  static bool is_better(const FitStart& a, const FitStart& b) {
+    const bool a_keeps = a.violation <= kept_within, b_keeps = b.violation <= kept_within;
+    if (a_keeps != b_keeps) return a_keeps;
+    return a_keeps ? a.cost < b.cost : a.violation < b.violation;
+  }
+  double best_cost() const { return has_best_ ? result_.starts[result_.best].cost : INFINITY; }
+
+  void look_at_conditions_before() {
+    if (conditions_.size() == 0) return;
+    MotionValues values;
+    std::vector<double> room(conditions_.size(), WantedErrors::none);
+    if (parts_.at(family_.own(), false, values)) room = conditions_.room(values);
+    for (std::size_t i = 0; i < room.size(); ++i)
+      result_.keep.push_back({conditions_.condition(i).text, conditions_.condition(i).equal,
+                              room[i], WantedErrors::none, 0});
   }
 
-  void search(const VectorXd& from) {
+  /// How far the conditions are missed, the worst of them; infinite where there is no motion.
+  double violation(const VectorXd& theta) {
+    if (conditions_.size() == 0) return 0;
+    MotionValues values;
+    if (!parts_.at(theta, false, values)) {
+      refused_ = parts_.why();
+      return INFINITY;
+    }
+    return conditions_.violation(values);
+  }
+
+  FitStart search(const VectorXd& from) {
     FitStart start;
     start.from = from;
     refused_.clear();
     VectorXd x;
     if (!error_.start(from, x)) {
       start.why = error_.why();
-      result_.starts.push_back(start);
-      return;
+      return start;
     }
-    VectorXd least = VectorXd::Constant(x.size(), -INFINITY), most = -least;
-    for (Eigen::Index j = 0; j < from.size(); ++j)
-      if (const auto& range = request_.parameters[static_cast<std::size_t>(j)].range) {
-        least[j] = (*range)[0];
-        most[j] = (*range)[1];
-      }
+    VectorXd least, most;
+    bounds_of(request_.parameters, least, most);
+    const Eigen::Index n = from.size(), free = x.size() - n;
+    least.conservativeResize(x.size());
+    most.conservativeResize(x.size());
+    least.tail(free).setConstant(-INFINITY);
+    most.tail(free).setConstant(INFINITY);
+    const VectorXd first = x;
     const LeastSquaresEnd end =
         least_squares_search([this](const VectorXd& at, VectorXd& r,
                                     MatrixXd* jacobian) { return evaluate(at, r, jacobian); },
@@ -157,133 +180,125 @@ class Search {
     start.iterations = end.iterations;
     if (!end.began) {
       start.why = refused_;
-      result_.starts.push_back(start);
-      return;
+      return start;
     }
-    start.to = x.head(from.size());
     start.cost = 0.5 * end.r.squaredNorm();
     start.cosine = end.cosine;
     constexpr double rounding = 1e-13;  // of r, as of its derivatives
     start.converged = start.cosine <= converged_cosine ||
                       end.r.norm() <= rounding * std::sqrt(static_cast<double>(end.r.size()));
-    if (!start.converged)
-      start.why = end.iterations >= request_.most_iterations
-                      ? "it came to no end within " + std::to_string(end.iterations) + " iterations"
-                  : refused_.empty()
-                      ? "steps became too short"
-                      : "steps became too short; the last that was taken back: " + refused_;
-    if (!(start.cost >= best_cost_)) {
-      best_cost_ = start.cost;
-      best_ = x;
-      result_.best = result_.starts.size();
+    start.violation = violation(x.head(n));
+    if (start.violation > kept_within && !keep(first, least, most, x, start)) return start;
+    start.to = x.head(n);
+    start.places = x.tail(free);
+    if (!start.converged && start.why.empty())
+      start.why =
+          start.violation > kept_within ? "no parameters near it keep the conditions"
+          : start.iterations >= request_.most_iterations
+              ? "it came to no end within " + std::to_string(start.iterations) + " iterations"
+          : refused_.empty() ? "steps became too short"
+                             : "steps became too short; the last that was taken back: " + refused_;
+    return start;
+  }
+
+  /// The search with conditions, from the start.
+  bool keep(const VectorXd& first, const VectorXd& least, const VectorXd& most, VectorXd& x,
+            FitStart& start) {
+    const Eigen::Index n = start.from.size();
+    MotionValues values;
+    x = first;
+    if (!parts_.at(x.head(n), true, values)) {
+      start.why = parts_.why();
+      return false;
     }
-    result_.starts.push_back(start);
+    conditions_.count(values);
+    const Eigen::Index whole = x.size(), more = conditions_.unknowns(), all = whole + more;
+    VectorXd sizes = VectorXd::Ones(all), low(all), high(all);  // of angles a radian
+    sizes.head(n) = sizes_;
+    low << least, VectorXd::Constant(more, -INFINITY);
+    high << most, VectorXd::Constant(more, INFINITY);
+    x.conservativeResize(all);
+    conditions_.start(values, x.tail(more), sizes.tail(more));
+    ConstrainedProblem problem;
+    problem.inequalities = conditions_.inequalities();
+    problem.equalities = conditions_.equalities();
+    problem.at = [&](const VectorXd& at, double& f, VectorXd& rows, VectorXd* df, MatrixXd* by) {
+      VectorXd r;
+      MatrixXd jacobian, of_theta;
+      if (!evaluate(at.head(whole), r, df ? &jacobian : nullptr)) return false;
+      if (!parts_.at(at.head(n), df != nullptr, values)) {
+        refused_ = parts_.why();
+        return false;
+      }
+      f = 0.5 * r.squaredNorm();
+      conditions_.at(values, at.tail(more), rows, df ? &of_theta : nullptr);
+      if (df) {
+        df->setZero(all);
+        df->head(whole) = jacobian.transpose() * r;
+        by->setZero(rows.size(), all);
+        by->leftCols(n) = of_theta.leftCols(n);
+        by->rightCols(more) = of_theta.rightCols(more);
+      }
+      return true;
+    };
+    const ConstrainedEnd end =
+        constrained_search(problem, low, high, sizes, request_.most_iterations, x);
+    x.conservativeResize(whole);
+    start.iterations += end.iterations;
+    if (!end.began) {
+      start.why = refused_;
+      return false;
+    }
+    start.cost = end.f;
+    start.slope = end.slope;
+    start.violation = violation(x.head(n));
+    start.multipliers = conditions_.multipliers(end.multipliers);
+    start.converged = end.kept && end.slope <= converged_slope;
+    return true;
   }
 
   void finish() {
     VectorXd r;
     MatrixXd jacobian;
-    evaluate(best_, r, &jacobian);
-    result_.found = best_.head(family_.own().size());
+    const FitStart& best = result_.starts[result_.best];
+    VectorXd x(best.to.size() + best.places.size());
+    x << best.to, best.places;
+    evaluate(x, r, &jacobian);
+    result_.found = best.to;
     result_.reached = error_.reached();
     result_.after = errors_of(result_.wanted, result_.reached, r);
-    result_.places = error_.free() ? std::vector<double>(best_.data() + result_.found.size(),
-                                                         best_.data() + best_.size())
+    result_.places = error_.free() ? std::vector<double>(best.places.begin(), best.places.end())
                                    : result_.wanted.swept;
-    name_undetermined(jacobian);
-  }
-
-  /// Null vectors of ∂r/∂θ, once s_i follow as they may.
-  void name_undetermined(const MatrixXd& jacobian) {
-    const Eigen::Index p = result_.found.size();
-    MatrixXd by = jacobian.leftCols(p) * sizes_.asDiagonal();
-    if (error_.free()) {
-      const MatrixXd along = jacobian.rightCols(jacobian.cols() - p);
-      for (Eigen::Index i = 0; i < along.cols(); ++i) {
-        const double squares = along.col(i).squaredNorm();
-        if (squares > 0) by -= along.col(i) * (along.col(i).transpose() * by) / squares;
+    MotionValues values;
+    if (conditions_.size() > 0 && parts_.at(best.to, false, values)) {
+      const std::vector<double> room = conditions_.room(values);
+      for (std::size_t i = 0; i < room.size(); ++i) {
+        result_.keep[i].after = room[i];
+        if (i < best.multipliers.size()) result_.keep[i].multiplier = best.multipliers[i];
       }
     }
-    constexpr double lost = 1e-8, takes_part = 0.01;
-    const Eigen::JacobiSVD<MatrixXd> svd(by, Eigen::ComputeFullV);
-    const VectorXd values = svd.singularValues();
-    std::vector<std::string> names;
-    Eigen::Index freedoms = 0;
-    VectorXd part = VectorXd::Zero(p);
-    for (Eigen::Index i = 0; i < p; ++i)
-      if (i >= values.size() || !(values[i] > lost * values[0])) {
-        ++freedoms;
-        part = part.cwiseMax(svd.matrixV().col(i).cwiseAbs());
-      }
-    for (Eigen::Index j = 0; j < p; ++j)
-      if (part[j] > takes_part) names.push_back(family_.names()[static_cast<std::size_t>(j)]);
-    if (freedoms == 0) return;
+    const Eigen::Index n = best.to.size();
     result_.undetermined =
-        names.size() == 1
-            ? "What is wanted does not depend on " + reading::all_in_quotes(names) + "."
-            : "Parameters " + reading::all_in_quotes(names) + " can change together in " +
-                  std::to_string(freedoms) + (freedoms == 1 ? " way" : " ways") +
-                  " without a change of what is wanted, to first order: others are as good.";
+        undetermined_in_words(family_.names(), jacobian.leftCols(n) * sizes_.asDiagonal(),
+                              jacobian.rightCols(error_.free() ? jacobian.cols() - n : 0));
   }
 
   const ParametricMechanism& family_;
   const FitRequest& request_;
   VectorXd sizes_;
   WantedError error_;
-  std::mt19937_64 random_;
-  double best_cost_ = INFINITY;
-  VectorXd best_;
+  SweptParts parts_;
+  KeptConditions conditions_;
+  bool has_best_ = false;
   std::string refused_;  ///< why the last step of this start that was taken back was
   FitResult result_;
 };
 
 }  // namespace
 
-FittedParameter FittedParameter::from_text(const std::string& text) {
-  const auto refuse = [&](const std::string& why) {
-    throw std::invalid_argument("--vary " + reading::in_quotes(text) + ": " + why);
-  };
-  FittedParameter parameter;
-  const std::size_t equals = text.find('=');
-  parameter.name = text.substr(0, equals);
-  if (parameter.name.empty()) refuse("expected NAME or NAME=FROM:TO");
-  if (equals == std::string::npos) return parameter;
-  const std::string range = text.substr(equals + 1);
-  const std::size_t colon = range.find(':');
-  if (colon == std::string::npos) refuse("expected NAME or NAME=FROM:TO, as in crank=0.1:2");
-  std::array<double, 2> ends{};
-  for (int i = 0; i < 2; ++i) {
-    const std::string end = i == 0 ? range.substr(0, colon) : range.substr(colon + 1);
-    const auto [read, error] =
-        std::from_chars(end.data(), end.data() + end.size(), ends[static_cast<std::size_t>(i)]);
-    if (error != std::errc{} || read != end.data() + end.size() ||
-        !std::isfinite(ends[static_cast<std::size_t>(i)]))
-      refuse("found " + reading::in_quotes(end) + ", expected a number");
-  }
-  if (!(ends[0] < ends[1])) refuse("expected the smaller end first");
-  parameter.range = ends;
-  return parameter;
-}
-
 FitResult fit(const ParametricMechanism& family, const WantedPoses& wanted,
               const FitRequest& request) {
-  if (request.parameters.empty()) throw std::invalid_argument("no parameter to vary is named");
-  if (request.parameters.size() != family.names().size())
-    throw std::invalid_argument("the parameters asked for are not those of the mechanism");
-  if (request.starts < 1) throw std::invalid_argument("found no starts, expected one or more");
-  for (std::size_t j = 0; j < request.parameters.size(); ++j) {
-    const FittedParameter& p = request.parameters[j];
-    const double own = family.own()[static_cast<Eigen::Index>(j)];
-    if (!p.range && request.starts > 1)
-      throw std::invalid_argument("parameter '" + p.name +
-                                  "' has no range to draw starts from; expected " + p.name +
-                                  "=FROM:TO");
-    if (p.range && !(own >= (*p.range)[0] && own <= (*p.range)[1]))
-      throw std::invalid_argument("parameter '" + p.name + "' is " + reading::digits(own) +
-                                  " in the scene, outside its range from " +
-                                  reading::digits((*p.range)[0]) + " to " +
-                                  reading::digits((*p.range)[1]));
-  }
+  expect_starts(family, request.parameters, request.starts);
   return Search(family, wanted, request).run();
 }
 

@@ -6,29 +6,25 @@
 // by the method of Levenberg and Marquardt with bounds (Ceres Solver) and the derivatives of
 // pose_derivatives.h. Where no such mechanism can be assembled, or a wanted pose is not reached, a
 // step is taken back and a shorter one tried: [[require]] of the scene holds on the way as well.
-// A minimum so found is a local one. More starts, drawn with a seed from between the bounds, make
-// it likelier to be the least; they follow from the seed alone.
+// Conditions, where they are named, are kept by constrained_search.h, where the method
+// without them breaks them. A minimum so found is a local one. More starts, drawn with a seed
+// from between the bounds, make it likelier to be the least; they follow from the seed alone.
 // Source: Levenberg 1944; Marquardt 1963; Agarwal, Mierle et al., Ceres Solver.
 
+#include <momenta/dae/fit/fitted_parameter.h>
+#include <momenta/dae/fit/kept_conditions.h>
+#include <momenta/dae/fit/swept_parts.h>
 #include <momenta/dae/fit/wanted_error.h>
 
-#include <array>
 #include <cstdint>
 #include <functional>
 #include <limits>
-#include <optional>
 #include <string>
 #include <vector>
 
 namespace momenta {
 
-/// A parameter that is varied, and between what.
-struct FittedParameter {
-  std::string name;                            ///< of [parameters]
-  std::optional<std::array<double, 2>> range;  ///< least and largest; none: any number
-  /// "NAME" or "NAME=FROM:TO". @throws std::invalid_argument, one sentence
-  static FittedParameter from_text(const std::string& text);
-};
+class Journal;  // dae/study/journal.h
 
 /// What is varied, and how.
 struct FitRequest {
@@ -37,6 +33,10 @@ struct FitRequest {
   int starts = 1;                           ///< the first is the scene's own
   std::uint64_t seed = 1;                   ///< of the others; they need ranges
   int most_iterations = 500;                ///< of each start
+  std::vector<std::string> keep;            ///< conditions, as MotionCondition takes them
+  SweptWay way;  ///< of conditions of a motion; `sweep` is its coordinate
+  /// Starts that are finished, and where they are kept; null: nowhere.
+  Journal* journal = nullptr;
   /// Called before each start, with its number and the least error so far; false ends the search.
   std::function<bool(int, double)> progress;
 };
@@ -60,8 +60,14 @@ struct FitStart {
   int iterations = 0;                ///< of the method
   /// Of r with ∂r/∂x, as of LeastSquaresEnd: 0 at a minimum.
   double cosine = WantedErrors::none;
-  bool converged = false;  ///< cosine ≤ 1e-4, or r is rounding
-  std::string why;         ///< why not, one sentence without its full stop; else empty
+  Eigen::VectorXd places;  ///< s_i at its end, where they are unknowns
+  /// Of ½ |r|² where conditions hold the search, as of ConstrainedEnd; else NaN.
+  double slope = WantedErrors::none;
+  double violation = 0;             ///< of conditions, the largest; 0: all are kept
+  std::vector<double> multipliers;  ///< of conditions, as of KeptCondition
+  /// Conditions are kept, and cosine ≤ 1e-4, or r is rounding, or slope ≤ 1e-6.
+  bool converged = false;
+  std::string why;  ///< why not, one sentence without its full stop; else empty
 };
 
 /// What a fit found.
@@ -72,18 +78,19 @@ struct FitResult {
   std::uint64_t seed = 1;                   ///< as asked
   Eigen::VectorXd own;                      ///< θ of the scene
   Eigen::VectorXd found;                    ///< the best θ
-  WantedErrors before;             ///< of the scene as it is: NaN where a pose is not reached
-  WantedErrors after;              ///< of the best
-  std::string why_not_before;      ///< which; else empty
-  WantedPoses wanted;              ///< as asked
-  std::vector<double> places;      ///< s of each pose [rad or m], of the best
-  Eigen::MatrixXd reached_before;  ///< poses × quantities; empty where one is not reached
-  Eigen::MatrixXd reached;         ///< of the best
-  std::vector<FitStart> starts;    ///< in their order
-  std::size_t best = 0;            ///< place among them
-  long evaluations = 0;            ///< of r, those with derivatives included
-  long derivatives = 0;            ///< of ∂r/∂x
-  bool stopped = false;            ///< by `progress`
+  WantedErrors before;              ///< of the scene as it is: NaN where a pose is not reached
+  WantedErrors after;               ///< of the best
+  std::string why_not_before;       ///< which; else empty
+  WantedPoses wanted;               ///< as asked
+  std::vector<double> places;       ///< s of each pose [rad or m], of the best
+  Eigen::MatrixXd reached_before;   ///< poses × quantities; empty where one is not reached
+  Eigen::MatrixXd reached;          ///< of the best
+  std::vector<KeptCondition> keep;  ///< in their order
+  std::vector<FitStart> starts;     ///< in their order
+  std::size_t best = 0;             ///< place among them
+  long evaluations = 0;             ///< of r, those with derivatives included
+  long derivatives = 0;             ///< of ∂r/∂x
+  bool stopped = false;             ///< by `progress`
   /// Groups of parameters that can change together so that what is wanted does not, to first order:
   /// one sentence; empty: each of them matters by itself.
   std::string undetermined;

@@ -59,7 +59,15 @@ bool SweptPoses::walk(CurvePoint& here, double s) {
 }
 
 bool SweptPoses::reach(const std::vector<double>& places, std::vector<Eigen::VectorXd>& q) {
-  q.resize(places.size());
+  std::vector<CurvePoint> points;
+  if (!reach(places, points)) return false;
+  q.clear();
+  for (CurvePoint& point : points) q.push_back(std::move(point.q));
+  return true;
+}
+
+bool SweptPoses::reach(const std::vector<double>& places, std::vector<CurvePoint>& points) {
+  points.resize(places.size());
   std::vector<std::size_t> order(places.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::sort(order.begin(), order.end(),
@@ -68,7 +76,7 @@ bool SweptPoses::reach(const std::vector<double>& places, std::vector<Eigen::Vec
                                                 [&](std::size_t i) { return places[i] < start_; });
   const auto go = [&, here = beginning_](std::size_t i) mutable {
     if (!walk(here, (places[i] - start_) / unit_)) return false;
-    q[i] = here.q;
+    points[i] = here;
     return true;
   };
   // Each way has a point of its own that walks from the start.
@@ -76,6 +84,18 @@ bool SweptPoses::reach(const std::vector<double>& places, std::vector<Eigen::Vec
   return std::all_of(first_above, order.end(), [&](std::size_t i) { return up(i); }) &&
          std::all_of(std::make_reverse_iterator(first_above), order.rend(),
                      [&](std::size_t i) { return down(i); });
+}
+
+bool SweptPoses::rates(const CurvePoint& at, double rate, Eigen::VectorXd& u,
+                       Eigen::VectorXd& udot) {
+  if (!curve_->derivatives(at, u, udot)) {
+    why_ = name_ + " = " + reading::digits(start_ + unit_ * at.s) +
+           " is a dead point, where other coordinates have no rates";
+    return false;
+  }
+  u *= rate / unit_;
+  udot *= (rate / unit_) * (rate / unit_);
+  return true;
 }
 
 void SweptPoses::sample(double by, int most, std::vector<double>& places,

@@ -23,6 +23,11 @@ class SweptPoses {
   /// q (nq) for each of these places [rad or m]; false where one is not reached: why() says which.
   /// Cost: a dense factorisation of nv + 1 for each tenth of a radian on the way
   bool reach(const std::vector<double>& places, std::vector<Eigen::VectorXd>& q);
+  /// The same, with tangents.
+  bool reach(const std::vector<double>& places, std::vector<CurvePoint>& points);
+  /// u and u̇ (nv) there while c has this rate [rad/s or m/s] and no acceleration; false at a dead
+  /// point: why() says so.
+  bool rates(const CurvePoint& at, double rate, Eigen::VectorXd& u, Eigen::VectorXd& udot);
   /// What can be reached: places `by` apart, at most half a turn of an angle to each side of the
   /// start, at most `most` of them, ascending, and their poses.
   void sample(double by, int most, std::vector<double>& places, std::vector<Eigen::VectorXd>& q);

@@ -14,12 +14,29 @@
 
 namespace momenta::program {
 
+SweptWay way_of(const FitOptions& options) {
+  SweptWay way;
+  way.sweep = options.sweep;
+  if (!options.over.empty())
+    way.between = range_from_text("--over '" + options.over + "'", options.over, "FROM:TO");
+  way.poses = options.poses.value_or(way.poses);
+  way.rate = options.rate.value_or(way.rate);
+  return way;
+}
+
 int fit(const Options& o, const FitOptions& options) {
   if (!is_toml(o.scene) || !o.at.empty())
     throw std::invalid_argument(o.scene.string() +
                                 ": parameters are varied in scenes of TOML alone, at their own "
                                 "start; expected a .toml file without --at");
   expect_own_results(o.out, "fit.csv");
+  if (options.sweep.empty() && options.least.empty())
+    throw std::invalid_argument(
+        "expected --sweep NAME, the coordinate that moves the mechanism, or --least FORMULA of a "
+        "run");
+  if (!options.to.empty() && !options.least.empty())
+    throw std::invalid_argument(
+        "found both --to and --least; expected wanted poses or a formula that is to be least");
   watch_signals();
   FitRequest request;
   request.sweep = options.sweep;
@@ -33,9 +50,12 @@ int fit(const Options& o, const FitOptions& options) {
   }
   const ParametricMechanism family(reading::text_of(o.scene), o.scene.string(), settings_of(o),
                                    names, {.algebra = mechanism_options(o).algebra});
-  const WantedPoses wanted =
-      read_wanted(options.to.empty() ? o.scene.parent_path() / "wanted.csv" : options.to,
-                  *family.at(family.own()), options.sweep);
+  if (!options.least.empty()) return least_verb(o, options, std::move(request.parameters), family);
+  const std::filesystem::path file =
+      options.to.empty() ? o.scene.parent_path() / "wanted.csv" : options.to;
+  const WantedPoses wanted = read_wanted(file, *family.at(family.own()), options.sweep);
+  request.keep = options.keep;
+  request.way = way_of(options);
   ProgressLine line(o.quiet);
   request.progress = [&](int start, double least) {
     line.show("start " + std::to_string(start + 1) + " of " + std::to_string(options.starts) +
@@ -43,6 +63,10 @@ int fit(const Options& o, const FitOptions& options) {
     const double spent = static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
     return !interrupted() && !(o.cpu_limit && spent > *o.cpu_limit);
   };
+  Options asked = o;
+  asked.reference = file;  // what a study is told by
+  const auto journal = keep_runs(asked);
+  request.journal = journal.get();
   const FitResult result = momenta::fit(family, wanted, request);
   line.show("");
   auto json = fit_json(result);
@@ -59,11 +83,13 @@ int fit(const Options& o, const FitOptions& options) {
     }
     describe(study, o, *picture.mechanism, assemble(*picture.mechanism, Assembled::rates));
     study.scene = result.scene;
-    if (!write_results({{o.out / "fit.csv", fit_csv(result)},
-                        {o.out / "fit.json", text},
-                        {o.out / "fitted.toml", family.text(result.found)},
-                        {o.out / "index.html", fit_page(study, result, picture.first)}}))
-      return run_failed;
+    const bool written =
+        write_results({{o.out / "fit.csv", fit_csv(result)},
+                       {o.out / "fit.json", text},
+                       {o.out / "fitted.toml", family.text(result.found)},
+                       {o.out / "index.html", fit_page(study, result, picture.first)}});
+    close(journal.get(), result.starts.size(), written && !result.stopped, o);
+    if (!written) return run_failed;
   }
   tell(o, text, fit_table(result), "index.html");
   return result.starts[result.best].converged && !result.stopped ? done : run_failed;

@@ -17,6 +17,12 @@
 #include <optional>
 #include <string>
 
+namespace momenta {
+struct FittedParameter;     // dae/fit/fitted_parameter.h
+struct SweptWay;            // dae/fit/swept_parts.h
+class ParametricMechanism;  // dae/fit/parametric_mechanism.h
+}  // namespace momenta
+
 namespace momenta::program {
 
 inline constexpr int done = 0, run_failed = 1, bad_input = 2;
@@ -238,13 +244,23 @@ struct EffortOptions {
 };
 int effort(const Options& o, const EffortOptions& e);
 struct FitOptions {
-  std::string vary;          ///< NAME=FROM:TO, comma-separated
-  std::string sweep;         ///< a coordinate
-  std::filesystem::path to;  ///< the file of wanted poses; empty: wanted.csv beside the scene
+  std::string vary;               ///< NAME=FROM:TO, comma-separated
+  std::string sweep;              ///< a coordinate; empty: a run
+  std::filesystem::path to;       ///< the file of wanted poses; empty: wanted.csv beside the scene
+  std::string least;              ///< a formula of the motion in place of wanted poses; empty: none
+  std::vector<std::string> keep;  ///< conditions
+  std::string over;               ///< FROM:TO of the swept coordinate; empty: a turn
+  std::optional<int> poses;
+  std::optional<double> rate;
   int starts = 1, iterations = 500;
   std::uint64_t seed = 1;
 };
 int fit(const Options& o, const FitOptions& f);
+/// The way that is asked for.
+SweptWay way_of(const FitOptions& f);
+/// `fit --least`
+int least_verb(const Options& o, const FitOptions& f, std::vector<FittedParameter> parameters,
+               const ParametricMechanism& family);
 struct GradientOptions {
   std::string of;         ///< a formula
   std::string by;         ///< comma-separated

@@ -102,6 +102,8 @@ void add_runs(py::class_<Bench, BenchPtr>& mechanism);
 void add_move(py::class_<Bench, BenchPtr>& mechanism);
 /// efforts.cpp
 void add_effort(py::class_<Bench, BenchPtr>& mechanism);
+/// fits.cpp
+void add_fit(py::class_<Bench, BenchPtr>& mechanism);
 /// gradients.cpp
 void add_gradient(py::class_<Bench, BenchPtr>& mechanism);
 /// The one that finds its modes.

@@ -296,6 +296,7 @@ void bind_mechanism(py::module_& module) {
   add_runs(mechanism);
   add_move(mechanism);
   add_effort(mechanism);
+  add_fit(mechanism);
   add_gradient(mechanism);
   add_modes(mechanism);
   add_linearise(mechanism);

@@ -2,6 +2,7 @@
 #include <momenta/dae/report/csv.h>
 #include <momenta/dae/report/fit_report.h>
 #include <momenta/dae/report/json.h>
+#include <momenta/dae/report/least_report.h>
 #include <momenta/dae/text/number_text.h>
 
 #include <algorithm>
@@ -86,7 +87,7 @@ std::string fit_table(const FitResult& r) {
     rows.push_back({r.parameters[j].name, compact(r.own[at], 6), compact(r.found[at], 6),
                     range ? compact((*range)[0], 6) : "-", range ? compact((*range)[1], 6) : "-"});
   }
-  return text + "\n" + in_columns(rows);
+  return text + "\n" + in_columns(rows) + kept_table(r.keep);
 }
 
 std::string fit_csv(const FitResult& r) {
@@ -124,6 +125,8 @@ Json fit_json(const FitResult& r) {
                       {"cost", number_or_null(s.cost)},
                       {"iterations", s.iterations},
                       {"cosine", number_or_null(s.cosine)},
+                      {"slope", number_or_null(s.slope)},
+                      {"violation", number_or_null(s.violation)},
                       {"converged", s.converged},
                       {"why", s.why.empty() ? Json() : Json(s.why)}});
   return {{"scene", r.scene},
@@ -133,6 +136,7 @@ Json fit_json(const FitResult& r) {
           {"places_given", !r.wanted.swept.empty()},
           {"parameters", parameters},
           {"errors", {{"before", errors_json(r.before)}, {"after", errors_json(r.after)}}},
+          {"keep", kept_json(r.keep)},
           {"converged", r.starts[r.best].converged},
           {"at_ends", at_ends(r)},
           {"undetermined", r.undetermined.empty() ? Json() : Json(r.undetermined)},

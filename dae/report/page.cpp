@@ -5,6 +5,7 @@
 #include <momenta/dae/report/fit_picture.h>
 #include <momenta/dae/report/fit_report.h>
 #include <momenta/dae/report/json.h>
+#include <momenta/dae/report/least_report.h>
 #include <momenta/dae/report/modes_report.h>
 #include <momenta/dae/report/move_report.h>
 #include <momenta/dae/report/page.h>
@@ -165,14 +166,27 @@ std::string effort_page(const StudyResult& study, const EffortResult& result) {
               script({embedded::timeline_js(), embedded::run_page_js()}));
 }
 
-std::string fit_page(const StudyResult& study, const FitResult& result, double first) {
+namespace {
+
+/// A mechanism and, pale, the one before, moving beside charts.
+std::string synthesis_page(const StudyResult& study, const std::string& words, Json charts) {
   Json data = page_data(study);
-  data["timeline"] = fit_charts(result, first);
+  data["timeline"] = std::move(charts);
   if (data.contains("picture") && data["picture"].contains("bodies"))
     for (Json& body : data["picture"]["bodies"])
       if (body["name"].get<std::string>().starts_with(before_mark)) body["pale"] = true;
-  return page(study, "Synthesis", marked_up(fit_in_words(result)), "", data,
+  return page(study, "Synthesis", marked_up(words), "", data,
               script({embedded::timeline_js(), embedded::run_page_js()}));
+}
+
+}  // namespace
+
+std::string fit_page(const StudyResult& study, const FitResult& result, double first) {
+  return synthesis_page(study, fit_in_words(result), fit_charts(result, first));
+}
+
+std::string least_page(const StudyResult& study, const LeastResult& result, double first) {
+  return synthesis_page(study, least_in_words(result), least_charts(result, first));
 }
 
 std::string view_page(const StudyResult& study, const std::string& words) {

@@ -2,7 +2,7 @@
 // index.html of a study: one file that opens with the network off.
 
 #include <momenta/dae/effort/effort.h>
-#include <momenta/dae/fit/fit.h>
+#include <momenta/dae/fit/least.h>
 #include <momenta/dae/kinematics/move.h>
 #include <momenta/dae/study/modes_study.h>
 #include <momenta/dae/study/run_result.h>
@@ -35,5 +35,8 @@ std::string effort_page(const StudyResult&, const EffortResult&);
 /// Of a fitted mechanism: it and the one before, moving on top of each other, beside what is
 /// wanted; `first` of FitPicture.
 std::string fit_page(const StudyResult&, const FitResult&, double first);
+
+/// Of a mechanism whose functional is least: the same, beside the formulas of single poses.
+std::string least_page(const StudyResult&, const LeastResult&, double first);
 
 }  // namespace momenta

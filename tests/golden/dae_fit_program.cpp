@@ -50,6 +50,40 @@ TEST_F(FitOfTheProgram, FindsHoeckensLinkageAndWritesItsScene) {
               json["errors"]["after"]["cost"].get<double>(), 1e-14);
 }
 
+TEST_F(FitOfTheProgram, MakesAFunctionalLeast) {
+  const std::string scene = "fit '" + example("straight_line") + "'",
+                    out = "'" + (folder_ / "f").string() + "'",
+                    half = " --sweep O --over 1.5707963267948966:4.71238898038469 --poses 61";
+  const Outcome o = call(scene + half +
+                         " --vary coupler=2:4,rocker=2:4,reach=4:7 --starts 2"
+                         " --least 'max(P.y) - min(P.y)' --keep 'max(P.x) - min(P.x) >= 4'"
+                         " --out " +
+                         out);
+  EXPECT_EQ(o.status, 0) << o.err;
+  const auto json = nlohmann::json::parse(text_of(folder_ / "f" / "fit.json"));
+  // Hoecken's linkage has the least deviation of all with crank 1 and ground 2.
+  EXPECT_NEAR(json["parameters"]["coupler"]["after"].get<double>(), 2.5, 1e-8);
+  EXPECT_NEAR(json["parameters"]["rocker"]["after"].get<double>(), 2.5, 1e-8);
+  EXPECT_NEAR(json["parameters"]["reach"]["after"].get<double>(), 5, 1e-8);
+  EXPECT_GE(json["keep"][0]["after"].get<double>(), -1e-10);
+  EXPECT_EQ(json["starts"].size(), 2u);
+  EXPECT_EQ(json["motion"], "swept");
+  EXPECT_TRUE(
+      text_of(folder_ / "f" / "fit.csv").starts_with("O.q [rad],P.y,P.y before,P.x,P.x before\n"));
+  EXPECT_NE(text_of(folder_ / "f" / "index.html").find("before: coupler"), std::string::npos);
+  EXPECT_NE(text_of(folder_ / "f" / "fitted.toml").find("coupler = 2.5"), std::string::npos);
+  EXPECT_FALSE(fs::exists(folder_ / "f" / "runs.jsonl"));
+
+  const std::string run = scene + " --vary coupler --end 0.5 --integrator rk4 --step 0.01";
+  expect_refused(run + " --least 'max(O.q)'", "of a run no largest, smallest or first value");
+  expect_refused(run + " --least 'last(O.q)' --poses 9", "--over, --poses and --rate are of a");
+  expect_refused(scene + " --vary coupler --to x.csv --sweep O --least coupler",
+                 "found both --to and --least");
+  expect_refused(scene + " --vary coupler", "expected --sweep NAME");
+  expect_refused(scene + half + " --vary coupler --least 'max(P.y)' --keep 'coupler'",
+                 "expected one comparison");
+}
+
 TEST_F(FitOfTheProgram, RefusesWhatItCannotDoInOneSentence) {
   const std::string scene =
       "fit '" + example("straight_line") + "' --sweep O --to '" + line() + "'";

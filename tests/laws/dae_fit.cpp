@@ -2,7 +2,6 @@
 // poses assembled anew, results against closed formulas and against mechanisms that are known.
 
 #include <gtest/gtest.h>
-#include <momenta/core/scalar/quad.h>
 #include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/fit/fit.h>
 #include <momenta/dae/kinematics/move.h>
@@ -14,110 +13,15 @@
 #include <numbers>
 #include <random>
 
+#include "equations/traced_four_bar.h"
+
 namespace momenta::dae_fit {
 namespace {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using std::numbers::pi;
-
-/// A four-bar at (x0, y0), turned by tilt, with a point P of its coupler: ξ along it, η across.
-std::string four_bar(const std::string& more = "") {
-  return R"toml(
-name = "four-bar"
-[parameters]
-crank = 1
-coupler = 2.6
-rocker = 2.2
-ground = 2.4
-along = 1.4
-across = 0.7
-x0 = 0.2
-y0 = -0.3
-tilt = 0.3
-)toml" + more +
-         R"toml(
-[assembly]
-hold = ["O"]
-[[body]]
-name = "crank"
-mass = 1
-shape = { kind = "rod", length = "crank", axis = "x" }
-[[body]]
-name = "coupler"
-mass = 1
-shape = { kind = "rod", length = "coupler", axis = "x" }
-[[body]]
-name = "rocker"
-mass = 1
-shape = { kind = "rod", length = "rocker", axis = "x" }
-[[joint]]
-name = "O"
-kind = "revolute"
-parent = "ground"
-child = "crank"
-origin = { parent = ["x0", "y0", 0] }
-rotation = { rpy = [0, 0, "tilt"] }
-axis = [0, 0, 1]
-position = 0.8
-[[joint]]
-name = "A"
-kind = "revolute"
-parent = "crank"
-child = "coupler"
-origin = { parent = ["crank", 0, 0] }
-axis = [0, 0, 1]
-position = -0.4
-[[joint]]
-name = "C"
-kind = "revolute"
-parent = "ground"
-child = "rocker"
-origin = { parent = ["x0 + ground*cos(tilt)", "y0 + ground*sin(tilt)", 0] }
-rotation = { rpy = [0, 0, "tilt"] }
-axis = [0, 0, 1]
-position = 1.4
-[[loop]]
-name = "B"
-kind = "revolute"
-parent = "coupler"
-child = "rocker"
-origin = { parent = ["coupler", 0, 0], child = ["rocker", 0, 0] }
-axis = [0, 0, 1]
-[[marker]]
-name = "P"
-body = "coupler"
-point = ["along", "across", 0]
-)toml";
-}
-
-const std::vector<std::string> all_names{"crank",  "coupler", "rocker", "ground", "along",
-                                         "across", "x0",      "y0",     "tilt"};
-
-double angle_of(double y, double x) {
-  return std::atan2(y, x);
-}
-Quad angle_of(const Quad& y, const Quad& x) {
-  return Quad::of(atan2q(y.v, x.v));
-}
-
-/// x, y of P and the rocker's angle, for the parameters in that order and the crank at s, by
-/// trigonometry; the assembly with the rocker's tip on the left of the way from crank to C.
-template <class S>
-std::array<S, 3> by_trigonometry(const std::vector<S>& v, S s) {
-  using std::cos, std::sin, std::sqrt;
-  const S crank = v[0], coupler = v[1], rocker = v[2], ground = v[3];
-  const S ax = crank * cos(s), ay = crank * sin(s), dx = ground - ax, dy = -ay;
-  const S squares = dx * dx + dy * dy, d = sqrt(squares);
-  // B: the part of the coupler along the way from A to C, and across it.
-  const S part = (coupler * coupler - rocker * rocker + squares) / (2 * d);
-  const S off = sqrt(coupler * coupler - part * part);
-  const S bx = ax + (part * dx - off * dy) / d, by = ay + (part * dy + off * dx) / d;
-  const S cx = (bx - ax) / coupler, cy = (by - ay) / coupler;
-  const S px = ax + v[4] * cx - v[5] * cy, py = ay + v[4] * cy + v[5] * cx;
-  return {v[6] + px * cos(v[8]) - py * sin(v[8]), v[7] + px * sin(v[8]) + py * cos(v[8]),
-          angle_of(by, bx - ground)};
-}
+using namespace equations;
 
 WantedPoses wanted_by_trigonometry(const VectorXd& values, const std::vector<double>& places,
                                    bool given) {
@@ -139,16 +43,6 @@ FitRequest varied(const std::vector<std::string>& names) {
   for (const std::string& name : names) request.parameters.push_back({name, std::nullopt});
   request.sweep = "O";
   return request;
-}
-
-/// Of f at x, by x_j, in quadruple precision: central differences whose error is below 1e-18.
-double slope(const std::function<Quad(const std::vector<Quad>&)>& f, std::vector<Quad> x,
-             std::size_t j) {
-  const Quad h = 1e-10, at = x[j];
-  x[j] = at + h;
-  const Quad above = f(x);
-  x[j] = at - h;
-  return value_of((above - f(x)) / (h + h));
 }
 
 // ∂y/∂θ of nine parameters and ∂y/∂s of a four-bar's coupler point and rocker, against its closed

@@ -18,7 +18,7 @@ file(MAKE_DIRECTORY ${WORK}/root)
 step(cpack --config ${BUILD}/CPackConfig.cmake -G DEB -B ${WORK} -D CPACK_CMAKE_GENERATOR=Ninja
      -D CPACK_DEBIAN_COMPRESSION_TYPE=none)
 
-set(libraries libeigen3-dev libtinyxml2-dev libyaml-cpp-dev libqhull-dev libsundials-dev libsuitesparse-dev libceres-dev nlohmann-json3-dev)
+set(libraries libeigen3-dev libtinyxml2-dev libyaml-cpp-dev libqhull-dev libsundials-dev libsuitesparse-dev libceres-dev libnlopt-dev nlohmann-json3-dev)
 set(needed_by_momenta libc6 libstdc++6 libsundials-ida6 libspqr2)
 set(needed_by_libmomenta-dev ${libraries})
 set(needed_by_python3-momenta python3 python3-numpy libc6)

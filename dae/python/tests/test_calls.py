@@ -116,6 +116,11 @@ class Round:
                  "integral": [True], "form": forms, "gauge": ["", "reset", "leak:nan"],
                  "step": [0.01, 0, NAN], "end": [0.02, 0, NAN], "rtol": [1e-6, NAN, 0],
                  "samples": [1, 0], "trajectory": [True]})})),
+            ("fit", lambda: m.fit(**{"vary": ["a"], "sweep": "O", "least": "mean(C.q)", "iterations": 2, **self.some(
+                {"vary": [["a"], ["a=0:1"], [], ["x"], ["a", "a"]], "sweep": ["O", "", "x"], "to": ["", "none.csv"],
+                 "least": ["", "mean(O.q)", "max(x)", "1/0", "last(O.q)"], "keep": [[], ["a < 1"], ["O.q"]],
+                 "over": [(0.0, 0.1), (NAN, 1.0)], "poses": [3, 0, -1], "rate": [1.0, NAN], "starts": [1, 2, 0],
+                 "end": [0.02, 0, NAN]})})),
             ("assemble", lambda: m.assemble(*([self.number()] if r.random() < 0.3 else []))),
             ("run", lambda: m.run(**{**end, **limits, **self.some(
                 {**common, **gains, "form": forms, "integrator": methods + [""], "project": [True, False],

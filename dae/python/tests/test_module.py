@@ -159,6 +159,20 @@ class Gradients(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "no parameter of the scene and no start value"):
             m.gradient("S.q", ["x"])
 
+    def test_fit_finds_what_the_program_finds(self):
+        folder = os.path.join(os.environ["MOMENTA_EXAMPLES"], "straight_line")
+        m = momenta.load(os.path.join(folder, "scene.toml"))
+        found = m.fit(["coupler", "rocker", "reach"], sweep="O", to=os.path.join(folder, "wanted.csv"))
+        self.assertTrue(found["converged"])
+        self.assertAlmostEqual(found["parameters"]["coupler"]["after"], 2.50770797, 7)
+        again = momenta.load(found["scene_text"])
+        least = again.fit(["reach=3:7"], sweep="O", over=(2.0, 4.0), least="max(P.y) - min(P.y)",
+                          keep=["reach <= 2*coupler - 0.1"])
+        self.assertTrue(least["converged"])
+        self.assertLessEqual(least["parameters"]["reach"]["after"], 2 * 2.50770797 - 0.1 + 1e-7)
+        with self.assertRaisesRegex(ValueError, "expected one comparison"):
+            m.fit(["reach"], sweep="O", least="reach", keep=["reach"])
+
 
 class SmallMotions(unittest.TestCase):
     def test_shapes_solve_the_linearised_equations_of_unit_mass(self):

@@ -1,0 +1,31 @@
+#pragma once
+// Parts of a run: last(g), integral(g) = ∫ g dt and mean(g), with the exact derivatives of the
+// run's own steps (dae/gradient/gradient.h). A run takes its largest and smallest values at times
+// that these derivatives do not tell: max and min are refused.
+
+#include <momenta/dae/fit/motion_parts.h>
+#include <momenta/dae/gradient/gradient.h>
+
+namespace momenta {
+
+class RunParts final : public MotionParts {
+ public:
+  /// `scene`: that of the family, as text. Steps of the same size make a function that is smooth:
+  /// `settings` had better name one.
+  RunParts(const ParametricMechanism& family, Eigen::VectorXd sizes, SceneText scene,
+           RunSettings settings);
+  std::size_t add(const MotionPart& part) override;
+  /// Cost: that of gradient(), for each part
+  bool at(const Eigen::VectorXd& theta, bool derivatives, MotionValues& values) override;
+
+  /// What gradients remarked, each sentence once.
+  const std::vector<std::string>& remarks() const { return remarks_; }
+
+ private:
+  SceneText scene_;
+  RunSettings settings_;
+  std::vector<MotionPart> parts_;
+  std::vector<std::string> remarks_;
+};
+
+}  // namespace momenta

@@ -1,0 +1,67 @@
+#pragma once
+// Parts of a motion that is swept: the mechanism goes through places s₁ … s_n of a coordinate c,
+// equally far apart, at a constant rate of c. At each pose there are
+//
+//   coordinates C.q, rates C.u, markers P.x … P.vz, and by name of a coordinate
+//   O.effort        that of the swept one, which keeps up the motion: by the power of all forces,
+//                   τ ċ = u·(M u̇ + bias − Q); joint forces of loops do no work
+//   C.transmission  the transmission angle of an output (dae/kinematics/transmission.h) [rad]
+//
+// An integral is ∫ g dc by the trapezoidal rule. Derivatives by θ are central differences of sixth
+// order of whole solutions: the poses of mechanisms with other θ, each closed to rounding.
+
+#include <momenta/dae/fit/motion_parts.h>
+#include <momenta/dae/mechanism.h>
+
+#include <array>
+#include <optional>
+
+namespace momenta {
+
+/// A way of a coordinate.
+struct SweptWay {
+  std::string sweep;                             ///< the coordinate, "O" or "J.q2"
+  std::optional<std::array<double, 2>> between;  ///< [rad or m]; none: a turn from the start
+  int poses = 73;                                ///< on the way, both ends among them
+  double rate = 1;                               ///< of it [rad/s or m/s]
+};
+
+class SweptParts final : public MotionParts {
+ public:
+  /// @throws std::invalid_argument for a way that is none; SceneError where the scene as it is
+  /// cannot be swept
+  SweptParts(const ParametricMechanism& family, Eigen::VectorXd sizes, SweptWay way);
+  /// @throws std::invalid_argument also for a way without ends of what is no angle
+  std::size_t add(const MotionPart& part) override;
+  /// Without parts it is not swept. Cost: a way of poses, six more a parameter with derivatives
+  bool at(const Eigen::VectorXd& theta, bool derivatives, MotionValues& values) override;
+
+  const std::vector<double>& places() const { return places_; }  ///< s [rad or m]
+  const Column& swept() const { return swept_; }
+  /// g of a part at each pose of the last motion; of any kind.
+  const Eigen::VectorXd& curve(std::size_t part) const { return curves_[part]; }
+
+ private:
+  struct Name {
+    enum class Of { coordinate, rate, marker, effort, transmission };
+    std::string name;
+    Of of = Of::coordinate;
+    int place = 0;  ///< in q, u, markers; of a transmission in q
+  };
+  struct Part {
+    MotionPart::Kind kind;
+    SmoothFormula g;  ///< of parameters, then names_
+  };
+  /// Columns that are used, poses × names.
+  bool take(const Eigen::VectorXd& theta, Eigen::MatrixXd& table);
+
+  SweptWay way_;
+  Column swept_;
+  std::vector<double> places_;
+  std::vector<Name> names_;
+  std::vector<bool> used_;
+  std::vector<Part> parts_;
+  std::vector<Eigen::VectorXd> curves_;
+};
+
+}  // namespace momenta

@@ -1,0 +1,81 @@
+// The verb `fit --least`: parameters for which a functional of a motion is least.
+
+#include <momenta/core/scene/file_text.h>
+#include <momenta/dae/report/fit_picture.h>
+#include <momenta/dae/report/least_report.h>
+#include <momenta/dae/report/page.h>
+#include <momenta/dae/study/environment.h>
+#include <momenta/dae/study/motion.h>
+
+#include <ctime>
+#include <stdexcept>
+
+#include "options.h"
+
+namespace momenta::program {
+
+int least_verb(const Options& o, const FitOptions& options, std::vector<FittedParameter> parameters,
+               const ParametricMechanism& family) {
+  LeastRequest request;
+  request.parameters = std::move(parameters);
+  request.least = options.least;
+  request.keep = options.keep;
+  request.starts = options.starts;
+  request.seed = options.seed;
+  request.most_iterations = options.iterations;
+  if (!options.sweep.empty()) {
+    request.way = way_of(options);
+  } else {
+    if (!options.over.empty() || options.poses || options.rate)
+      throw std::invalid_argument(
+          "--over, --poses and --rate are of a motion that is swept; expected --sweep NAME");
+    request.scene = {reading::text_of(o.scene), o.scene.string(), settings_of(o),
+                     mechanism_options(o)};
+    request.scene.options.cut = CutChoice::scene;
+    request.settings = run_settings(o, request.scene.scene().run);
+  }
+  ProgressLine line(o.quiet);
+  request.progress = [&](int start, double least) {
+    line.show("start " + std::to_string(start + 1) + " of " + std::to_string(options.starts) +
+              (start > 0 ? ", least so far " + std::to_string(least) : ""));
+    const double spent = static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+    return !interrupted() && !(o.cpu_limit && spent > *o.cpu_limit);
+  };
+  const auto journal = keep_runs(o);
+  request.journal = journal.get();
+  const LeastResult result = least(family, request);
+  line.show("");
+  auto json = least_json(result);
+  json["command"] = o.command;
+  json["environment"] = environment_json(environment());
+  const std::string text = json.dump(2) + "\n";
+  if (!o.out.empty()) {
+    std::vector<ResultFile> files{{o.out / "fit.json", text},
+                                  {o.out / "fitted.toml", family.text(result.found)}};
+    if (request.way) {
+      // The picture is that of a fit to which nothing is wanted.
+      FitResult fitted;
+      fitted.own = result.own;
+      fitted.found = result.found;
+      fitted.swept = *result.swept;
+      constexpr int frames = 240;
+      const FitPicture picture = fit_picture(family, fitted, frames);
+      StudyResult study;
+      if (film_intervals_of(*picture.mechanism, o, 1) >= frames) {
+        study.motions.push_back(motion_of(*picture.mechanism, picture.film));
+        study.motions.back().run = -1;
+      }
+      describe(study, o, *picture.mechanism, assemble(*picture.mechanism, Assembled::rates));
+      study.scene = result.scene;
+      files.push_back({o.out / "fit.csv", least_csv(result)});
+      files.push_back({o.out / "index.html", least_page(study, result, picture.first)});
+    }
+    const bool written = write_results(files);
+    close(journal.get(), result.starts.size(), written && !result.stopped, o);
+    if (!written) return run_failed;
+  }
+  tell(o, text, least_table(result), request.way ? "index.html" : "fit.json");
+  return result.starts[result.best].converged && !result.stopped ? done : run_failed;
+}
+
+}  // namespace momenta::program
