@@ -36,6 +36,7 @@ bool AdjointRun::rhs(double t, const double* y, double* ydot, AdjointState& at) 
   }
   at.t = t;
   at.q = Map<const VectorXd>(y, form_.size() / 2);
+  at.p = Map<const VectorXd>(y + form_.size() / 2, form_.size() / 2);
   at.u = Map<const VectorXd>(form_.rates().data(), form_.size() / 2);
   at.sigma = Map<const VectorXd>(form_.multipliers().data(),
                                  static_cast<Index>(form_.multipliers().size()));
@@ -65,7 +66,7 @@ bool AdjointRun::after_step(double t, const VectorXd& y) {
     return false;
   }
   const Index n = y.size() / 2;
-  AdjointState at{t, y_.head(n), Map<const VectorXd>(form_.rates().data(), n),
+  AdjointState at{t, y_.head(n), y.tail(n), Map<const VectorXd>(form_.rates().data(), n),
                   Map<const VectorXd>(form_.multipliers().data(),
                                       static_cast<Index>(form_.multipliers().size()))};
   if (form_.gauge().kind == Gauge::Kind::flip) at.sigma = -at.sigma;  // the form has turned it

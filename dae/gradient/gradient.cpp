@@ -88,7 +88,7 @@ struct Asked {
   const Start& start;
   OdeForm& form;
   const std::vector<OtherParameter>& others;
-  const StartTangents& at_start;
+  const FormOptions& gains;
   GradientResult& result;
 
   IntegrationOptions options() const {
@@ -113,6 +113,13 @@ struct Asked {
     result.steps = run.counters.steps;
     result.end_time = run.end_time;
   }
+  /// dy(0)/dθ
+  MatrixXd at_start() const {
+    StartTangents tangents =
+        start_tangents(mechanism, result.settings.form, gains, result.variables, others);
+    for (std::string& remark : tangents.broken) result.remarks.push_back(std::move(remark));
+    return std::move(tangents.of_state);
+  }
   void forward();
   void adjoint();
 };
@@ -120,12 +127,13 @@ struct Asked {
 void Asked::forward() {
   const RunSettings& s = result.settings;
   Functional functional(request.of, mechanism, result.variables, others);
+  const MatrixXd tangents_at_start = at_start();
   for (std::string& remark : corners(mechanism.scene(), functional.corner()))
     result.remarks.push_back(std::move(remark));
   FormTangents tangents(mechanism, form, others);
   const auto directions = static_cast<int>(result.variables.size());
   TangentSystem system(form, tangents, request.integral ? &functional : nullptr, directions);
-  const std::vector<double> y0 = system.initial(form.initial(start), at_start.of_state);
+  const std::vector<double> y0 = system.initial(form.initial(start), tangents_at_start);
   IntegrationOptions integration = options();
   integration.rtol *= system.tolerance_factor();
   integration.atol *= system.tolerance_factor();
@@ -169,6 +177,8 @@ void Asked::forward() {
 void Asked::adjoint() {
   const RunSettings& s = result.settings;
   FunctionalSlopes functional(request.of, mechanism, result.variables, others);
+  StageAdjoint stages(mechanism, form, others);
+  const MatrixXd tangents_at_start = at_start();
   for (std::string& remark : corners(mechanism.scene(), functional.corner()))
     result.remarks.push_back(std::move(remark));
   RecordedRun record(form, s.step, s.end_time);
@@ -182,7 +192,7 @@ void Asked::adjoint() {
                                           {start.t, s.end_time}, options(), observer);
   if (!run.done) throw none(record.lost().empty() ? run.reason : record.lost());
   take(run, record.singular_passages());
-  StageAdjoint stages(mechanism, form, others);
+  if (record.redundant()) stages.by_rows();
   AdjointRun back(form, stages, functional, request.integral, s.integrator,
                   static_cast<Eigen::Index>(others.size()));
   const auto going = [&](double t) {
@@ -190,8 +200,11 @@ void Asked::adjoint() {
   };
   if (!back.back(record, run.end_time, run.y.data(), going)) throw none(back.failure());
   result.value = back.value();
-  result.gradient = back.by_parameters() + at_start.of_state.transpose() * back.by_start();
+  result.gradient = back.by_parameters() + tangents_at_start.transpose() * back.by_start();
+  stages.start(start.t, start.q, start.u, back.by_start());
+  stages.finish(result.gradient);
   result.products = back.products();
+  result.at_once = stages.inertial();
 }
 
 }  // namespace
@@ -236,11 +249,14 @@ GradientResult gradient(const SceneText& scene, const GradientRequest& request) 
   options.project = form.corrects_positions();
   std::tie(options.baumgarte_alpha, options.baumgarte_beta) = form.baumgarte_gains();
   options.beta = form.beta();
-  const std::vector<OtherParameter> others = other_parameters(scene, mechanism, result.variables);
-  const StartTangents at_start =
-      start_tangents(mechanism, s.form, options, result.variables, others);
-  result.remarks = at_start.broken;
-  Asked asked{request, mechanism, start, form, others, at_start, result};
+  // The σ that a leak begins with depends on inertias in its own way, the energy on them itself.
+  std::unique_ptr<InertiaSlopes> inertia;
+  if (result.adjoint && form.gauge().kind != Gauge::Kind::leak && !mechanism.scene().lagrangian &&
+      request.of.find("energy") == std::string::npos)
+    inertia = make_inertia_slopes(mechanism);
+  const std::vector<OtherParameter> others =
+      other_parameters(scene, mechanism, result.variables, inertia.get());
+  Asked asked{request, mechanism, start, form, others, options, result};
   if (result.adjoint)
     asked.adjoint();
   else

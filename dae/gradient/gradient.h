@@ -60,9 +60,10 @@ struct GradientResult {
   std::vector<std::string> without_effect;  ///< names of θ whose part of J is below 1e-10 of it
   std::vector<std::string> remarks;         ///< sentences on what is not smooth
   bool adjoint = false;                     ///< by a sweep back
-  long products = 0;                 ///< of it: with transposed derivatives of the right-hand side
-  long steps = 0;                    ///< of the run
-  double end_time = 0;               ///< T [s]
+  long at_once = 0;     ///< of it: θ that are inertias or gravity, whose number costs nothing
+  long products = 0;    ///< of it: with transposed derivatives of the right-hand side
+  long steps = 0;       ///< of the run
+  double end_time = 0;  ///< T [s]
   std::vector<std::string> columns;  ///< "O.q", …: coordinates, then rates
   std::vector<double> times;         ///< [s]; of `trajectory`
   /// At each time dq, du by θ: columns × variables.
@@ -73,8 +74,9 @@ struct GradientResult {
 /// derivatives, or the run ends before its time, one sentence.
 /// Cost beside that of a run, forward: a stage takes two evaluations in dual numbers for eight θ,
 /// the factorisation of a dense matrix of (7), and six plain evaluations of its rows for each
-/// parameter. Adjoint: two evaluations in dual numbers and that factorisation for all θ, and the
-/// six plain ones; a state of memory a step.
+/// parameter. Adjoint: an evaluation of the sweeps in dual numbers of one direction, or where they
+/// do not carry the loops two of rows and that factorisation, for all θ; six plain evaluations for
+/// each parameter that is neither an inertia nor gravity; a state of memory a step.
 GradientResult gradient(const SceneText& scene, const GradientRequest& request);
 
 }  // namespace momenta

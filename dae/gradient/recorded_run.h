@@ -32,6 +32,8 @@ class RecordedRun final : public OdeSystem {
     passages_.end_step();
     return passages_.times();
   }
+  /// Whether loop equations depend on others, in all stages.
+  bool redundant() const { return faded_ > 0; }
   /// Why the last trial of a step had no derivatives, one sentence; empty: it had.
   const std::string& lost() const { return lost_; }
 

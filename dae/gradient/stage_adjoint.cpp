@@ -1,6 +1,6 @@
 #include <momenta/dae/gradient/stage_adjoint.h>
 
-#include <type_traits>
+#include <algorithm>
 
 namespace momenta {
 namespace {
@@ -59,6 +59,32 @@ StageAdjoint::StageAdjoint(const Mechanism& mechanism, const OdeForm& form,
       driven_(mechanism.plan().drives) {
   rows_.beta = form.beta();
   rows_.leak = gauge_.kind == Gauge::Kind::leak ? gauge_.kappa : 0;
+  if (rows_.leak == 0 && rows_.beta == 0) swept_ = make_swept_tangent(mechanism);
+  for (auto* x : {&by_q_, &by_u_, &along_q_, &along_p_, &still_, &rates_}) x->setZero(nv_);
+  if (swept_ && m_ > 0) kinetic_ = make_kinetic_rates(mechanism);
+  any_rows_ = std::any_of(others.begin(), others.end(),
+                          [](const OtherParameter& other) { return !other.evaluations.empty(); });
+  if (inertial() > 0) {
+    inertia_ = make_inertia_slopes(mechanism);
+    slopes_.setZero(inertia_->size());
+  }
+}
+
+Index StageAdjoint::inertial() const {
+  return std::count_if(others_.begin(), others_.end(),
+                       [](const OtherParameter& other) { return other.inertias.size() > 0; });
+}
+
+void StageAdjoint::start(double t, const VectorXd& q, const VectorXd& u, const VectorXd& lambda) {
+  still_.setZero();
+  if (inertia_)
+    inertia_->add(1, t, q.data(), u.data(), still_.data(), lambda.data() + nv_, slopes_);
+}
+
+void StageAdjoint::finish(VectorXd& by_parameters) const {
+  for (std::size_t j = 0; j < others_.size(); ++j)
+    if (others_[j].inertias.size() > 0)
+      by_parameters[static_cast<Index>(j)] += others_[j].inertias.dot(slopes_);
 }
 
 /// D rows along dx.
@@ -109,8 +135,42 @@ VectorXd StageAdjoint::loop_rates(const VectorXd& u) {
   return moved - still;
 }
 
+/// By the sweeps: no matrix, and nothing is allocated unless a θ is no inertia.
+bool StageAdjoint::sweep(const AdjointState& at, const VectorXd& w, VectorXd& product,
+                         VectorXd& by_parameters) {
+  const auto a = w.head(nv_), b = w.tail(nv_);
+  along_q_ = -b;
+  along_p_ = a;
+  if (forces_.any()) {
+    still_ = b;
+    forces_.transposed(at.t, at.q, at.u, still_, by_q_, by_u_);
+    along_p_ += by_u_;
+  }
+  SweptTangent& f = *swept_;
+  if (!f(at.t, at.q.data(), at.p.data(), along_q_.data(), along_p_.data())) return false;
+  const Eigen::Map<const VectorXd> du(f.du.data(), nv_), dpdot(f.dpdot.data(), nv_);
+  product.resize(2 * nv_);
+  product.head(nv_) = -dpdot;
+  product.tail(nv_) = du;
+  if (forces_.any()) {
+    // ṗ has Q in it: its derivative along the direction goes, its transposed product comes.
+    still_ = du;
+    forces_.along(at.t, at.q, at.u, along_q_, still_, by_u_);
+    product.head(nv_) += by_q_ + by_u_;
+  }
+  if (inertia_)
+    inertia_->add(-1, at.t, at.q.data(), f.u.data(), along_q_.data(), f.du.data(), slopes_);
+  if (!any_rows_) return true;
+  rows_.t = at.t;
+  VectorXd weights(2 * nv_ + m_);
+  weights << -du, -Eigen::Map<const VectorXd>(f.dsigma.data(), m_), b;
+  add_by_parameters(rows_, joined(at.q, at.u, at.sigma), weights, by_parameters);
+  return true;
+}
+
 bool StageAdjoint::rates(const AdjointState& at, const VectorXd& w, VectorXd& product,
                          VectorXd& by_parameters) {
+  if (swept_ && sweep(at, w, product, by_parameters)) return true;
   if (!factor(at.t, at.q)) return false;
   const VectorXd b = w.tail(nv_), x = joined(at.q, at.u, at.sigma);
   VectorXd right = -along(static_cast<const MomentumRows&>(rows_), x,
@@ -135,7 +195,50 @@ bool StageAdjoint::rates(const AdjointState& at, const VectorXd& w, VectorXd& pr
     product.head(nv_) -= fed_back * force;
   }
   product.tail(nv_) = mu.head(nv_);
+  if (inertia_) {
+    along_q_ = -b;
+    inertia_->add(-1, at.t, at.q.data(), at.u.data(), along_q_.data(), mu.data(), slopes_);
+  }
   add_by_parameters(rows_, x, joined(-mu.head(nv_), -mu.tail(m_), b), by_parameters);
+  return true;
+}
+
+/// p' = c M u − (c − 1) p by the sweeps.
+bool StageAdjoint::sweep_gauge(const AdjointState& at, double c, VectorXd& lambda,
+                               VectorXd& by_parameters) {
+  const auto of_p = lambda.tail(nv_);
+  along_q_ = of_p;
+  e_->place(at.t, at.q.data());
+  e_->move(along_q_.data());
+  e_->momenta(nullptr, along_p_.data());
+  if (driven_) {
+    e_->move(nullptr);
+    e_->momenta(nullptr, still_.data());
+    along_p_ -= still_;
+  }
+  still_.setZero();
+  SweptTangent& f = *swept_;
+  if (!f(at.t, at.q.data(), at.p.data(), still_.data(), along_p_.data())) return false;
+  const Eigen::Map<const VectorXd> du(f.du.data(), nv_), dpdot(f.dpdot.data(), nv_);
+  kinetic_->along(at.t, at.q.data(), at.u.data(), along_q_.data(), rates_.data());
+  rates_ -= dpdot;
+  if (forces_.any()) {
+    along_p_ = du;
+    forces_.along(at.t, at.q, at.u, still_, along_p_, by_u_);
+    rates_ += by_u_;
+  }
+  along_p_ = of_p - du;
+  if (inertia_)
+    inertia_->add(c, at.t, at.q.data(), at.u.data(), still_.data(), along_p_.data(), slopes_);
+  if (any_rows_) {
+    rows_.t = at.t;
+    VectorXd weights(2 * nv_ + m_);
+    weights << c * along_p_, -c * Eigen::Map<const VectorXd>(f.dsigma.data(), m_), -c * of_p;
+    add_by_parameters(MomentumAndLoopRows{rows_}, joined(at.q, at.u, at.sigma), weights,
+                      by_parameters);
+  }
+  lambda.head(nv_) += c * rates_;
+  lambda.tail(nv_) -= c * along_p_;
   return true;
 }
 
@@ -143,6 +246,7 @@ bool StageAdjoint::gauge(const AdjointState& at, VectorXd& lambda, VectorXd& by_
   if (m_ == 0) return true;
   const double c = gauge_.kind == Gauge::Kind::flip ? 2 : gauge_.kind == Gauge::Kind::reset ? 1 : 0;
   if (c == 0) return true;
+  if (swept_ && sweep_gauge(at, c, lambda, by_parameters)) return true;
   if (!factor(at.t, at.q)) return false;
   const VectorXd of_p = lambda.tail(nv_), x = joined(at.q, at.u, at.sigma);
   VectorXd right = VectorXd::Zero(nv_ + m_);
@@ -161,6 +265,8 @@ bool StageAdjoint::gauge(const AdjointState& at, VectorXd& lambda, VectorXd& by_
   }
   lambda.head(nv_) -= c * by_q;
   lambda.tail(nv_) -= c * mu.head(nv_);
+  still_.setZero();
+  if (inertia_) inertia_->add(c, at.t, at.q.data(), at.u.data(), still_.data(), mu.data(), slopes_);
   add_by_parameters(MomentumAndLoopRows{rows_}, x, joined(c * mu, -c * of_p, VectorXd(0)),
                     by_parameters);
   return true;
@@ -187,6 +293,11 @@ bool StageAdjoint::correction(double t, const VectorXd& q, VectorXd& lambda,
   VectorXd force(nv_);
   e_->constraint_forces(impulses.data(), force.data());
   lambda.head(nv_) -= by_q + force;
+  still_.setZero();
+  if (inertia_) {
+    inertia_->add(-1, t, q.data(), found.data(), still_.data(), mu.data(), slopes_);
+    if (driven_) inertia_->add(1, t, q.data(), still_.data(), still_.data(), mu.data(), slopes_);
+  }
   CorrectionRows rows{rows_};
   add_by_parameters(rows, x, -mu, by_parameters);
   return true;

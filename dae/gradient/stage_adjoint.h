@@ -21,26 +21,37 @@
 //
 // After a step, for λ of the state behind it, c = 1 of a reset, 2 of a flip, p' = p − c Φ_qᵀσ:
 //   K μ = (0, Φ_q λ_p),  λ_p − c μ_u,  λ_q − c D_λp(Φ_qᵀσ) + c (D_μ L*_q + β Φ_qᵀ μ_σ)
+// or, since p' = c M u − (c − 1) p and u = ∂H/∂p, with δu, δr of f along (0, M λ_p),
+//   c δu − (c − 1) λ_p,  λ_q − c δr + c D_λp T_q  at σ = 0,
 // and of a correction q' = q + δ, K (δ, ν) = (0, −Φ):
 //   K μ = (λ_q, 0),  λ_q − D_μ L*_q(q, δ, ν) − Φ_qᵀ μ_σ, of L* without V and drives
 // Here D_μ is the derivative by (u, σ) along μ, and K the matrix of (2).
+//
+// δu, δσ, δr come from the sweeps in dual numbers where they carry the mechanism (swept_tangent.h),
+// without leak and β, else from the rows and K. Of θ that are inertias, or masses and lengths that
+// inertias alone are made of, f_θᵀ w is that of all bodies at once (inertia_slopes.h); of others it
+// is made from the rows of mechanisms with neighbouring θ.
 //
 // Derivation: docs/theory/gradients.md, section 7. Compare Maciąg, Malczyk, Frączek, Int. J. Numer.
 // Methods Eng. 121 (2020), who integrate the adjoint system of (7), (8), and Multibody Syst. Dyn.
 // 56 (2022), who transpose a discrete scheme.
 
 #include <momenta/dae/form/ode_form.h>
+#include <momenta/dae/gradient/inertia_slopes.h>
+#include <momenta/dae/gradient/kinetic_rates.h>
 #include <momenta/dae/gradient/momentum_rows.h>
 #include <momenta/dae/gradient/row_derivatives.h>
 #include <momenta/dae/gradient/stage_matrix.h>
+#include <momenta/dae/gradient/swept_tangent.h>
 #include <momenta/dae/gradient/transposed_forces.h>
 
 namespace momenta {
 
-/// A state at which f is differentiated: its time [s], q (nq), and u (nv), σ (m) of (7) there.
+/// A state at which f is differentiated: its time [s], q (nq), p (nv), and u (nv), σ (m) of (7)
+/// there.
 struct AdjointState {
   double t = 0;
-  Eigen::VectorXd q, u, sigma;
+  Eigen::VectorXd q, p, u, sigma;
 };
 
 class StageAdjoint {
@@ -50,9 +61,10 @@ class StageAdjoint {
   StageAdjoint(const Mechanism& mechanism, const OdeForm& form,
                const std::vector<OtherParameter>& others);
 
-  /// f_yᵀ w (nq + nv) of w; by_parameters (others) += f_θᵀ w. False where the matrix is singular.
-  /// Cost: two evaluations of rows in dual numbers, one factorisation, six plain evaluations of
-  /// rows for each parameter.
+  /// f_yᵀ w (nq + nv) of w; by_parameters (others) += f_θᵀ w, of inertias at finish(). False where
+  /// the matrix is singular. Cost: one evaluation of the sweeps in dual numbers, or two of rows and
+  /// one factorisation; one sweep outward for all inertias; six plain evaluations of rows for each
+  /// other parameter.
   bool rates(const AdjointState& at, const Eigen::VectorXd& w, Eigen::VectorXd& product,
              Eigen::VectorXd& by_parameters);
 
@@ -61,8 +73,26 @@ class StageAdjoint {
   /// λ behind a correction of q to λ before it; q (nq) before it.
   bool correction(double t, const Eigen::VectorXd& q, Eigen::VectorXd& lambda,
                   Eigen::VectorXd& by_parameters);
+  /// λ at the start, (q, u) with σ = 0 there: what p(0) = M u has of inertias. Assemblies are
+  /// those of lengths alone.
+  void start(double t, const Eigen::VectorXd& q, const Eigen::VectorXd& u,
+             const Eigen::VectorXd& lambda);
+  /// What inertias have had so far is added, once, when the way back is over.
+  void finish(Eigen::VectorXd& by_parameters) const;
+
+  /// How many parameters are taken by inertia_slopes.h.
+  Eigen::Index inertial() const;
+  /// Whether the sweeps are differentiated; else rows.
+  bool swept() const { return swept_ != nullptr; }
+  /// Rows and K alone from now on: the slow way, and where rows of Φ are redundant the only one:
+  /// there the sweeps let them fade.
+  void by_rows() { swept_.reset(); }
 
  private:
+  bool sweep(const AdjointState& at, const Eigen::VectorXd& w, Eigen::VectorXd& product,
+             Eigen::VectorXd& by_parameters);
+  bool sweep_gauge(const AdjointState& at, double c, Eigen::VectorXd& lambda,
+                   Eigen::VectorXd& by_parameters);
   template <class Rows>
   Eigen::VectorXd along(const Rows& rows, const Eigen::VectorXd& x, const Eigen::VectorXd& dx,
                         Eigen::Index size);
@@ -78,12 +108,17 @@ class StageAdjoint {
   std::unique_ptr<Evaluation<Dual8>> dual_;
   StageMatrix matrix_;
   TransposedForces forces_;
+  std::unique_ptr<SweptTangent> swept_;     ///< null: by rows
+  std::unique_ptr<InertiaSlopes> inertia_;  ///< null: no θ is one
+  std::unique_ptr<KineticRates> kinetic_;   ///< where there are sweeps
+  Eigen::VectorXd slopes_;                  ///< by numbers of inertia_, so far
   Gauge gauge_;
   MomentumAndRateRows rows_;
   Eigen::Index nv_, m_;
   bool driven_;
+  bool any_rows_ = false;  ///< some θ is taken from the rows of other mechanisms
   std::vector<Dual8> x_, out_;
-  Eigen::VectorXd plain_;
+  Eigen::VectorXd plain_, by_q_, by_u_, along_q_, along_p_, still_, rates_;
 };
 
 }  // namespace momenta

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace momenta {
 namespace {
@@ -35,20 +36,32 @@ Start closed_start(const Mechanism& mechanism, const VectorXd& q, const VectorXd
 }  // namespace
 
 std::vector<OtherParameter> other_parameters(const SceneText& scene, const Mechanism& mechanism,
-                                             const std::vector<RunVariable>& variables) {
+                                             const std::vector<RunVariable>& variables,
+                                             const InertiaSlopes* inertia) {
   std::vector<OtherParameter> all(variables.size());
+  std::optional<InertiasAlone> same;
+  if (inertia) same.emplace(mechanism.scene());
   for (std::size_t j = 0; j < variables.size(); ++j) {
     const RunVariable& v = variables[j];
     OtherParameter& other = all[j];
     other.h = sixth_order::part * v.size;
     if (v.kind != RunVariable::Kind::parameter) continue;
-    for (const auto& [k, weight] : sixth_order::points) {
-      const double value = v.value + k * other.h;
-      other.mechanisms.push_back(
-          std::make_unique<Mechanism>(scene.scene({{v.name, value}}), scene.options));
+    std::vector<Scene> scenes;
+    for (const auto& [k, weight] : sixth_order::points)
+      scenes.push_back(scene.scene({{v.name, v.value + k * other.h}}));
+    if (same && std::all_of(scenes.begin(), scenes.end(),
+                            [&](const Scene& made) { return same->as(made); })) {
+      other.inertias = VectorXd::Zero(inertia->size());
+      for (std::size_t i = 0; i < scenes.size(); ++i)
+        other.inertias += sixth_order::points[i].weight / other.h * inertia->numbers(scenes[i]);
+      continue;
+    }
+    for (std::size_t i = 0; i < scenes.size(); ++i) {
+      other.mechanisms.push_back(std::make_unique<Mechanism>(std::move(scenes[i]), scene.options));
       const Mechanism& made = *other.mechanisms.back();
       if (made.nq() != mechanism.nq() || made.nv() != mechanism.nv() || made.m() != mechanism.m())
-        throw SceneError("with " + v.name + " = " + reading::digits(value) +
+        throw SceneError("with " + v.name + " = " +
+                         reading::digits(v.value + sixth_order::points[i].k * other.h) +
                          " the mechanism has other coordinates or equations; expected a parameter "
                          "that changes numbers alone");
       other.evaluations.push_back(made.evaluation<double>());
@@ -66,6 +79,7 @@ StartTangents start_tangents(const Mechanism& mechanism, const std::string& form
   for (std::size_t j = 0; j < variables.size(); ++j) {
     const RunVariable& v = variables[j];
     const OtherParameter& other = others[j];
+    if (other.inertias.size() > 0) continue;
     VectorXd sixth = VectorXd::Zero(tangents.of_state.rows()), fourth = sixth;
     double size = 1;
     for (std::size_t k = 0; k < sixth_order::points.size(); ++k) {

@@ -84,6 +84,7 @@ Json gradient_json(const GradientResult& r) {
           {"remarks", r.remarks},
           {"mode", r.adjoint ? "adjoint" : "forward"},
           {"products", r.adjoint ? Json(r.products) : Json()},
+          {"at_once", r.adjoint ? Json(r.at_once) : Json()},
           {"form", s.form},
           {"integrator", s.integrator},
           {"gauge", s.gauge.empty() ? Json() : Json(s.gauge)},

@@ -45,6 +45,30 @@ TEST_F(GradientOfTheProgram, TellsAndWrites) {
   EXPECT_NEAR(nlohmann::json::parse(integral.out)["value"].get<double>(), 9, 1e-12);
 }
 
+TEST_F(GradientOfTheProgram, GoesBackwards) {
+  const std::string run = "gradient '" + example("four_bar") +
+                          "' --of B.y --by O.q,body.coupler.mass,gravity.1 --gauge reset "
+                          "--integrator rk4 --step 0.01 --end 0.5 ";
+  const Outcome forward = call(run + "--json");
+  const Outcome back = call(run + "--mode adjoint --json --out '" + (folder_ / "b").string() + "'");
+  EXPECT_EQ(back.status, 0) << back.err;
+  EXPECT_TRUE(fs::exists(folder_ / "b" / "gradient.json"));
+  EXPECT_FALSE(fs::exists(folder_ / "b" / "gradient.csv"));
+  const auto a = nlohmann::json::parse(forward.out), b = nlohmann::json::parse(back.out);
+  EXPECT_EQ(a["mode"], "forward");
+  EXPECT_EQ(b["mode"], "adjoint");
+  EXPECT_TRUE(a["products"].is_null());
+  EXPECT_EQ(b["products"], 4 * 50 + 1);
+  EXPECT_EQ(b["at_once"], 2);
+  for (const char* name : {"O.q", "body.coupler.mass", "gravity.1"})
+    EXPECT_NEAR(a["by"][name]["derivative"].get<double>(),
+                b["by"][name]["derivative"].get<double>(), 1e-11)
+        << name;
+  expect_refused(
+      "gradient '" + example("four_bar") + "' --of B.y --by O.q --mode adjoint --form acceleration",
+      "form 'acceleration' has no adjoint; expected the mode 'forward'");
+}
+
 TEST_F(GradientOfTheProgram, RefusesInOneSentence) {
   const std::string scene = "gradient '" + example("four_bar") + "' --of B.y";
   expect_refused(scene + " --by body.crank.size",

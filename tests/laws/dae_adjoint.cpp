@@ -60,7 +60,8 @@ struct AtAState {
   OdeForm& ode() { return dynamic_cast<OdeForm&>(*form); }
   AdjointState state() {
     const Index n = mechanism.nv();
-    return {0, Map<const VectorXd>(y.data(), n), Map<const VectorXd>(ode().rates().data(), n),
+    return {0, Map<const VectorXd>(y.data(), n), Map<const VectorXd>(y.data() + n, n),
+            Map<const VectorXd>(ode().rates().data(), n),
             Map<const VectorXd>(ode().multipliers().data(), mechanism.m())};
   }
 
@@ -80,6 +81,7 @@ FormOptions gauge(Gauge::Kind kind, double kappa = 0, double beta = 0) {
 }
 
 TEST(Adjoint, OfTheRightHandSideIsItsDerivativeTransposed) {
+  int swept = 0;
   for (const FormOptions& options : {gauge(Gauge::Kind::none), gauge(Gauge::Kind::leak, 3, 7)})
     for (const auto& [name, scene] : scenes()) {
       const Mechanism sizes(scene.scene(), scene.options);
@@ -94,16 +96,24 @@ TEST(Adjoint, OfTheRightHandSideIsItsDerivativeTransposed) {
       StageAdjoint adjoint(at.mechanism, at.ode(), none);
       const VectorXd w = VectorXd::Random(size);
       VectorXd product, by_nothing;
-      ASSERT_TRUE(adjoint.rates(at.state(), w, product, by_nothing));
-      const VectorXd expected = fy.transpose() * w;
-      for (Index i = 0; i < size; ++i)
-        EXPECT_NEAR(product[i], expected[i],
-                    1e-12 * (fy.col(i).cwiseAbs().dot(w.cwiseAbs()) + 1e-3 * expected.norm()))
-            << name << ", " << i;
+      // By the sweeps, where they carry the mechanism and let no row fade, and by rows.
+      if (at.ode().pivots().faded > 0) adjoint.by_rows();
+      for (int way = 0; way < 2; ++way) {
+        swept += adjoint.swept();
+        ASSERT_TRUE(adjoint.rates(at.state(), w, product, by_nothing));
+        const VectorXd expected = fy.transpose() * w;
+        for (Index i = 0; i < size; ++i)
+          EXPECT_NEAR(product[i], expected[i],
+                      1e-12 * (fy.col(i).cwiseAbs().dot(w.cwiseAbs()) + 1e-3 * expected.norm()))
+              << name << ", " << i << (adjoint.swept() ? ", swept" : "");
+        adjoint.by_rows();
+      }
     }
+  EXPECT_GE(swept, 7);
 }
 
 TEST(Adjoint, OfWhatIsDoneAfterAStepIsItsDerivativeTransposed) {
+  int swept = 0;
   for (const Gauge::Kind kind : {Gauge::Kind::reset, Gauge::Kind::flip})
     for (const auto& [name, scene] : scenes()) {
       FormOptions options = gauge(kind);
@@ -124,15 +134,22 @@ TEST(Adjoint, OfWhatIsDoneAfterAStepIsItsDerivativeTransposed) {
       const std::vector<OtherParameter> none;
       StageAdjoint adjoint(at.mechanism, at.ode(), none);
       const VectorXd w = VectorXd::Random(size);
-      VectorXd lambda = w, by_nothing;
-      ASSERT_TRUE(adjoint.gauge(state, lambda, by_nothing));
-      ASSERT_TRUE(adjoint.correction(0, Map<const VectorXd>(at.y.data(), n), lambda, by_nothing));
+      VectorXd by_nothing;
       const VectorXd expected = Y.transpose() * w;
-      for (Index i = 0; i < size; ++i)
-        EXPECT_NEAR(lambda[i], expected[i],
-                    1e-11 * (Y.col(i).cwiseAbs().dot(w.cwiseAbs()) + 1e-2 * expected.norm()))
-            << name << ", " << i;
+      if (at.ode().pivots().faded > 0) adjoint.by_rows();
+      for (int way = 0; way < 2; ++way) {
+        VectorXd lambda = w;
+        swept += adjoint.swept();
+        ASSERT_TRUE(adjoint.gauge(state, lambda, by_nothing));
+        ASSERT_TRUE(adjoint.correction(0, Map<const VectorXd>(at.y.data(), n), lambda, by_nothing));
+        for (Index i = 0; i < size; ++i)
+          EXPECT_NEAR(lambda[i], expected[i],
+                      1e-11 * (Y.col(i).cwiseAbs().dot(w.cwiseAbs()) + 1e-2 * expected.norm()))
+              << name << ", " << i << (adjoint.swept() ? ", swept" : "");
+        adjoint.by_rows();
+      }
     }
+  EXPECT_GE(swept, 6);
 }
 
 /// Both modes, every derivative, times the size of its variable, within a part of the value, of the
@@ -261,6 +278,36 @@ TEST(Adjoint, TakesAsManyProductsWhateverTheNumberOfParameters) {
   EXPECT_FALSE(gradient(scene, request).adjoint);
   request.by.push_back("idle");
   EXPECT_TRUE(gradient(scene, request).adjoint);
+}
+
+TEST(Adjoint, TakesInertiasAndGravityAtOnce) {
+  const std::vector<std::string> inertias{"g", "mass", "body.crank.mass", "body.rocker.mass"};
+  for (const char* rule : {"none", "reset", "flip", "leak:3"}) {
+    GradientRequest request = asked("P.x + 0.3*C.u^2", inertias, "momentum", rule, 0.5, 0.01);
+    request.settings.project = true;
+    request.mode = GradientMode::adjoint;
+    // The σ that a leak begins with depends on them in its own way.
+    EXPECT_EQ(gradient(of_text(four_bar), request).at_once, rule[0] == 'l' ? 0 : 4);
+    expect_same(of_text(four_bar), request, 1e-12);
+    request =
+        asked("tip.x + 0.1*M.u", {"body.pendulum.mass", "swing"}, "momentum", rule, 0.4, 0.02);
+    request.settings.project = true;
+    expect_same(of_text(driven()), request, 1e-12);
+  }
+  // In space, and with products and centres of mass.
+  std::string text = reading::text_of(MOMENTA_SOURCE_DIR "/examples/bricard/scene.toml");
+  GradientRequest request = asked("P3.y + 0.1*P3.vx", {"gravity.0", "gravity.1", "gravity.2"},
+                                  "momentum", "reset", 0.3, 0.02);
+  for (const BodySpec& body : of_text(text).scene().bodies)
+    request.by.push_back("body." + body.name + ".mass");
+  request.mode = GradientMode::adjoint;
+  const GradientResult r = gradient(of_text(text), request);
+  EXPECT_EQ(r.at_once, static_cast<long>(request.by.size()));
+  expect_same(of_text(text), request, 1e-12);
+  // Lengths are more than inertias, though inertias are made of them.
+  request = asked("P.x", {"crank", "k", "idle", "O.q"}, "momentum", "reset");
+  request.mode = GradientMode::adjoint;
+  EXPECT_EQ(gradient(of_text(four_bar), request).at_once, 1);  // the one without effect
 }
 
 /// The sentence with which it is refused.

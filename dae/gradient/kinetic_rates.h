@@ -1,0 +1,24 @@
+#pragma once
+// The derivative of ∂T/∂q, at constant rates, along rates: D_v T_q at (q, u), with (8) in dual
+// numbers of one direction and neither forces nor σ. What the transposed derivative of p = M u asks
+// for.
+
+#include <momenta/dae/mechanism.h>
+
+#include <memory>
+
+namespace momenta {
+
+/// One object serves one thread; no call allocates.
+class KineticRates {
+ public:
+  virtual ~KineticRates() = default;
+  /// D_v T_q (nv) at t [s], q, u along v (nv each). O(bodies)
+  virtual void along(double t, const double* q, const double* u, const double* v,
+                     double* result) = 0;
+};
+
+/// @pre bodies, no quaternions
+std::unique_ptr<KineticRates> make_kinetic_rates(const Mechanism& mechanism);
+
+}  // namespace momenta
