@@ -155,7 +155,9 @@ template <class Space, class S>
 void add_bushings(Workspace<Space, S>& w) {
   for (const auto& b : w.model->bushings) {
     const BushingMotion<Space, S> motion(w, b);
-    const auto f = S(-b.stiffness) * motion.D - S(b.damping) * motion.velocity();
+    const bool pulls = b.stiffness != 0 || b.damping != 0;
+    auto f = S(-b.stiffness) * motion.D;
+    if (pulls) f = f - S(b.damping) * motion.velocity();
     auto n = S(-b.rotational_damping) * motion.spin();
     if (b.rotational_stiffness != 0 || b.stop.acts()) {
       const auto theta = motion.turn();
@@ -167,11 +169,11 @@ void add_bushings(Workspace<Space, S>& w) {
     const auto act = [&](int k, const auto& force, const auto& couple) {
       if (k < 0) return;
       auto& T = w.body[static_cast<std::size_t>(k)].T;
-      add_force(w, k, motion.x, force, T);
+      if (pulls) add_force(w, k, motion.x, force, T);
       add_couple(w, k, couple, T);
     };
     act(b.child, f, n);
-    act(b.parent, -f, decltype(n)(-n));
+    act(b.parent, decltype(f)(-f), decltype(n)(-n));
   }
 }
 

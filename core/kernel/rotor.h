@@ -39,17 +39,9 @@ MOMENTA_INLINE S rotor_rate(const RevoluteColumn<S>& h, const Inertia& rotor, co
   return rotor * oz * (vy * h.fx - vx * h.fy + oy * h.nx - ox * h.ny);
 }
 
-/// M_L += k ẑᵀ + ẑ kᵀ over the constant screws to the parent.
-template <class Edge, class S>
-__attribute__((noinline)) void carry_rotor(const Edge& e, Spatial::Force<S> k,
-                                           Articulated<S>& parent) {
-  using Constant = std::decay_t<decltype(e.cos_alpha)>;
-  Spatial::constants_inward(e, k);
-  Vec3<Constant> z{{Constant(0.0), Constant(0.0), Constant(1.0)}};
-  if (e.about_y) turn<1>(z, e.cos_beta, e.sin_beta);
-  if (e.about_x) turn<0>(z, e.cos_alpha, e.sin_alpha);
-  if (e.about_z) turn<2>(z, e.cos_gamma, e.sin_gamma);
-  Full<S>& m = parent.M;
+/// M += k zᵀ + z kᵀ, z a couple.
+template <class S, class C>
+MOMENTA_INLINE void add_rotor_pair(const Spatial::Force<S>& k, const Vec3<C>& z, Full<S>& m) {
   m.Hxx = m.Hxx + k.f[0] * z[0];
   m.Hxy = m.Hxy + k.f[0] * z[1];
   m.Hxz = m.Hxz + k.f[0] * z[2];
@@ -65,6 +57,44 @@ __attribute__((noinline)) void carry_rotor(const Edge& e, Spatial::Force<S> k,
   m.Iyy = m.Iyy + 2.0 * (k.n[1] * z[1]);
   m.Iyz = m.Iyz + (k.n[1] * z[2] + k.n[2] * z[1]);
   m.Izz = m.Izz + 2.0 * (k.n[2] * z[2]);
+}
+
+/// M_L += k ẑᵀ + ẑ kᵀ over the constant screws to the parent.
+template <class Edge, class S>
+__attribute__((noinline)) void carry_rotor(const Edge& e, Spatial::Force<S> k,
+                                           Articulated<S>& parent) {
+  using Constant = std::decay_t<decltype(e.cos_alpha)>;
+  Spatial::constants_inward(e, k);
+  Vec3<Constant> z{{Constant(0.0), Constant(0.0), Constant(1.0)}};
+  if (e.about_y) turn<1>(z, e.cos_beta, e.sin_beta);
+  if (e.about_x) turn<0>(z, e.cos_alpha, e.sin_alpha);
+  if (e.about_z) turn<2>(z, e.cos_gamma, e.sin_gamma);
+  add_rotor_pair(k, z, parent.M);
+}
+
+/// The same of a link, in place, where M_L is in memory anyway, with k in registers: written to
+/// memory number by number and copied from there in one, it would wait.
+template <class Link, class Edge, class S>
+MOMENTA_INLINE void carry_rotor_of(const Link& l, const Edge& e, Spatial::Force<S> k,
+                                   Articulated<S>& parent) {
+  if (l.turn == Turn::tilted) return carry_rotor(e, k, parent);
+  Spatial::force_inward<0>(k, l.ca, l.sa, l.a);
+  if (l.screwed) Spatial::force_inward<2>(k, e.cos_gamma, e.sin_gamma, e.delta);
+  Full<S>& m = parent.M;
+  if (l.turn == Turn::parallel) {  // ẑ stays on its line
+    const auto& c = l.ca;
+    m.Hxz = m.Hxz + c * k.f[0];
+    m.Hyz = m.Hyz + c * k.f[1];
+    m.Hzz = m.Hzz + c * k.f[2];
+    m.Ixz = m.Ixz + c * k.n[0];
+    m.Iyz = m.Iyz + c * k.n[1];
+    m.Izz = m.Izz + 2.0 * (c * k.n[2]);
+    return;
+  }
+  using Constant = std::decay_t<decltype(l.ca)>;
+  Vec3<Constant> z{{Constant(0.0), -l.sa, l.ca}};
+  if (l.screwed) turn<2>(z, e.cos_gamma, e.sin_gamma);
+  add_rotor_pair(k, z, m);
 }
 
 /// The same out of line and on a copy: the sweeps that call it keep their registers for joints

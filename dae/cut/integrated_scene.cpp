@@ -41,10 +41,12 @@ IntegratedScene::IntegratedScene(const Mechanism& written, const Start& start, c
       Scene there = written.scene();
       there.joints = joints_at(written, start);
       FoldedScene folded = fold(there);
-      if (folded.folds() && take(folded.scene)) folded_ = std::move(folded);
+      if (folded.folds() && take(made(folded.scene))) folded_ = std::move(folded);
     }
     Recut found = known && !anew() ? *known : recut(mechanism(), this->start());
-    if (!found.gains() || !pays(mechanism(), found) || !take(found.scene)) return;
+    if (!found.gains() || !pays(mechanism(), found)) return;
+    const bool as_asked = options.kkt == KktChoice::automatic;
+    if (!take(as_asked ? found.mechanism : made(found.scene))) return;
     cuts_ = std::move(found);
     if (!folded_.folds()) folded_.scene = written.scene();
   } catch (const SceneError&) {
@@ -58,8 +60,11 @@ std::string IntegratedScene::in_words() const {
   return words + (words.empty() || cuts.empty() ? "" : "; ") + cuts;
 }
 
-bool IntegratedScene::take(Scene scene) {
-  auto mechanism = std::make_unique<Mechanism>(std::move(scene), written_.options());
+std::shared_ptr<const Mechanism> IntegratedScene::made(const Scene& scene) const {
+  return std::make_shared<const Mechanism>(scene, written_.options());
+}
+
+bool IntegratedScene::take(std::shared_ptr<const Mechanism> mechanism) {
   const Tree& tree = mechanism->tree();
   Assembly assembly = assemble(*mechanism, written_start_.t, tree.q0, tree.u0);
   // Where equations contradict each other the pose is that of least squares, another one.

@@ -42,11 +42,12 @@ class IntegratedScene {
  private:
   const Mechanism& written_;
   const Start& written_start_;
-  bool take(Scene scene);
+  bool take(std::shared_ptr<const Mechanism> mechanism);
+  std::shared_ptr<const Mechanism> made(const Scene& scene) const;
 
   FoldedScene folded_;
   Recut cuts_;
-  std::unique_ptr<Mechanism> mechanism_;
+  std::shared_ptr<const Mechanism> mechanism_;
   Start start_;
 };
 

@@ -131,12 +131,19 @@ class Contest {
   Contest(const Mechanism& given, const std::vector<CutEdge>& edges, Recut& best)
       : given_(given), swept_(given.kkt() == KktChoice::sweeps), best_(best), best_edges_(edges) {}
 
-  /// Whether the sweeps carry its loops; `edges`: its tree.
+  /// Whether the sweeps carry its loops; `edges`: its tree, which enters once.
   bool enter(const Recut& found, const std::vector<CutEdge>& edges) {
     const auto best_before = best_.after;
     const bool swept = enter_in_three_orders(found);
     if (best_.after.sweeps != best_before.sweeps) best_edges_ = edges;
+    entered_.push_back({edges, swept});
     return swept;
+  }
+  /// Whether the sweeps carry the loops of a tree that has entered.
+  std::optional<bool> entered(const std::vector<CutEdge>& edges) const {
+    const auto found = std::find_if(entered_.begin(), entered_.end(),
+                                    [&](const Entered& e) { return e.edges == edges; });
+    return found == entered_.end() ? std::nullopt : std::optional(found->swept);
   }
   /// The tree of the best.
   const std::vector<CutEdge>& edges() const { return best_edges_; }
@@ -181,9 +188,10 @@ class Contest {
   bool enter_one(Recut found, const CutCost& cost) {
     // most that enter are no better: that is seen without their sweeps
     if (swept_ && cost.open <= LoopPlan::most_slots && !better(cost, best_.after)) return true;
-    const Mechanism anew(found.scene, {given_.options().algebra});
-    found.after = cut_cost(anew);
-    const bool now_swept = anew.kkt() == KktChoice::sweeps;
+    found.mechanism =
+        std::make_shared<const Mechanism>(found.scene, MechanismOptions{given_.options().algebra});
+    found.after = cut_cost(*found.mechanism);
+    const bool now_swept = found.mechanism->kkt() == KktChoice::sweeps;
     if ((now_swept && !swept_) || (now_swept == swept_ && better(found.after, best_.after))) {
       best_ = std::move(found);
       swept_ = now_swept;
@@ -191,10 +199,16 @@ class Contest {
     return now_swept;
   }
 
+  struct Entered {
+    std::vector<CutEdge> edges;
+    bool swept;
+  };
+
   const Mechanism& given_;
   bool swept_;
   Recut& best_;
   std::vector<CutEdge> best_edges_;
+  std::vector<Entered> entered_;
 };
 
 /// J knows nothing of lanes. Of small mechanisms the trees one exchange away from the best are
@@ -217,7 +231,8 @@ void try_neighbours(const SceneGraph& graph, bool planar, Rebuilt&& rebuilt, Con
         edges[e].in_tree = true;
         edges[static_cast<std::size_t>(f)].in_tree = false;
         Recut found;
-        if (edges == graph.edges || rebuilt(edges, found) != none) continue;
+        if (edges == graph.edges || contest.entered(edges) || rebuilt(edges, found) != none)
+          continue;
         const std::int64_t before = best.after.sweeps;
         contest.enter(found, edges);
         if (best.after.sweeps < before) return true;
@@ -278,12 +293,15 @@ Recut recut(const Mechanism& mechanism, const Start& start, const std::vector<st
       obstacle = none;
       for (const auto& edges : {cycles.edges(), lowered}) {
         if (edges == graph.edges) continue;
-        Recut found;
-        obstacle = rebuilt(edges, found);
-        if (obstacle >= 0) graph.edges[static_cast<std::size_t>(obstacle)].fixed = true;
-        if (obstacle != none) break;
-        const bool now_swept = contest.enter(found, edges);
-        if (now_swept || cycles.edges() == lowered) break;
+        std::optional<bool> now_swept = contest.entered(edges);
+        if (!now_swept) {
+          Recut found;
+          obstacle = rebuilt(edges, found);
+          if (obstacle >= 0) graph.edges[static_cast<std::size_t>(obstacle)].fixed = true;
+          if (obstacle != none) break;
+          now_swept = contest.enter(found, edges);
+        }
+        if (*now_swept || cycles.edges() == lowered) break;
       }
     }
   try_neighbours(graph, mechanism.plan().planar, rebuilt, contest, best);

@@ -16,6 +16,7 @@
 #include <momenta/dae/cut/cut_cost.h>
 #include <momenta/dae/form/form.h>
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,9 @@ struct Recut {
   bool reordered = false;           ///< trees on the ground stand in another order (root_order.h)
   CutCost before, after;
   Scene scene;  ///< with the remarks; the given one where nothing is gained
+  /// Of `scene` with the algebra of the given one, nothing else asked for; null where nothing is
+  /// gained.
+  std::shared_ptr<const Mechanism> mechanism;
   bool gains() const { return !cut.empty() || reordered; }
 };
 

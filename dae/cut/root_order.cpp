@@ -5,6 +5,7 @@
 #include <numeric>
 #include <string>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 namespace momenta {
@@ -136,8 +137,14 @@ Scene with_roots_ordered(const Scene& scene, RootOrder order) {
         !driven(scene, loop.name))
       loop = turned_round(loop);
   }
-  std::stable_sort(ordered.loops.begin(), ordered.loops.end(),
-                   [&](const LoopSpec& a, const LoopSpec& b) { return first(a) < first(b); });
+  std::vector<std::pair<std::size_t, std::size_t>> by_place;  // and place in the scene
+  for (const LoopSpec& loop : ordered.loops) by_place.emplace_back(first(loop), by_place.size());
+  if (std::is_sorted(by_place.begin(), by_place.end())) return ordered;
+  std::sort(by_place.begin(), by_place.end());
+  std::vector<LoopSpec> loops;
+  loops.reserve(by_place.size());
+  for (const auto& [place_of, i] : by_place) loops.push_back(std::move(ordered.loops[i]));
+  ordered.loops = std::move(loops);
   return ordered;
 }
 

@@ -1,14 +1,23 @@
 #pragma once
 // Singular crossings: where a run passes poses at which its loop equations lose rank. A crossing is
-// a least pivot below 1e-2 of its scale and below 1e-2 of the largest pivot of the run; there is
+// a least pivot w below 1e-2 of its scale and below 1e-2 of the largest pivot of the run; there is
 // one for each passage, with a mark where the motion may have changed to another one. A pivot is
 // proportional to the square of the distance to the singular pose. Loops that are weak during the
 // whole run have no crossing.
+//
+// Inside a step that may have come near such a pose, eighths of it are looked at by halving. √w is
+// that distance, up to a factor, and a distance changes no faster than what moves: between two
+// looks Δt apart
+//
+//   √w ≥ ½ (√w₁ + √w₂ − v Δt),     v twice the largest |Δ√w|/Δt seen on the run until then
+//
+// and where that is above √1e-2, and above the least of the run, nothing is looked for.
 
 #include <momenta/dae/form/ode_form.h>
 #include <momenta/dae/study/run_form.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -33,20 +42,22 @@ class SingularCrossings {
 
   /// Of the step just taken; `state`: work space of the form's size.
   void step(double t0, double t1, const Interpolant& between, std::vector<double>& state) {
-    constexpr int closer_looks = 8;
     const double end = pivot_at(t1, between, state);
     const bool handled =
         !form_.is_dae() && form_.ode()->wanted_handling() != SingularityHandling::none;
     if (passing_ || handled || end < 10 * near_singular)
-      for (int i = 1; i < closer_looks; ++i) {
-        const double t = t0 + (t1 - t0) * i / closer_looks;
-        note(t, pivot_at(t, between, state), between, state);
-      }
+      look_inside(t0, t1, end, between, state);
+    else
+      note_speed(before_, end, t1 - t0);
     note(t1, end, between, state);
+    before_ = end;
   }
 
   /// Between two steps; beside what is in the result.
-  void carry(Memory& memory) { memory(always_faded_), memory(largest_), memory(passing_); }
+  void carry(Memory& memory) {
+    memory(always_faded_), memory(largest_), memory(passing_);
+    memory(before_), memory(fastest_);
+  }
 
   /// After the last step.
   void finish() {
@@ -57,6 +68,57 @@ class SingularCrossings {
 
  private:
   static constexpr double near_singular = 1e-2;
+  static constexpr std::size_t eighths = 8;
+
+  /// The step's pivots at its eighths; not a number: not looked at, or not measured.
+  struct Looks {
+    double t0, eighth;
+    std::array<double, eighths + 1> pivot;
+    std::array<bool, eighths + 1> looked_at;
+  };
+
+  void look_inside(double t0, double t1, double end, const Interpolant& between,
+                   std::vector<double>& state) {
+    Looks looks{t0, (t1 - t0) / eighths, {}, {}};
+    looks.pivot.front() = before_;
+    looks.pivot.back() = end;
+    const auto look_at = [&](std::size_t i) {
+      looks.pivot[i] = pivot_at(time_of(looks, i, t1), between, state);
+      looks.looked_at[i] = true;
+    };
+    const auto halve = [&](const auto& self, std::size_t first, std::size_t last) -> void {
+      const std::size_t middle = (first + last) / 2;
+      const bool whole = last - first == eighths;
+      if (middle == first || (!whole && keeps_clear(looks, first, last))) return;
+      look_at(middle);
+      note_speed(looks.pivot[first], looks.pivot[middle],
+                 static_cast<double>(middle - first) * looks.eighth);
+      note_speed(looks.pivot[middle], looks.pivot[last],
+                 static_cast<double>(last - middle) * looks.eighth);
+      self(self, first, middle);
+      self(self, middle, last);
+    };
+    halve(halve, 0, eighths);
+    for (std::size_t i = 1; i < eighths; ++i)
+      if (looks.looked_at[i])
+        note(time_of(looks, i, t1), looks.pivot[i], between, state);
+      else
+        passing_ = false;
+  }
+  static double time_of(const Looks& looks, std::size_t i, double t1) {
+    return looks.t0 + (t1 - looks.t0) * static_cast<double>(i) / eighths;
+  }
+  void note_speed(double w1, double w2, double apart) {
+    const double speed = std::abs(std::sqrt(w2) - std::sqrt(w1)) / apart;
+    if (speed > fastest_ && std::isfinite(speed)) fastest_ = speed;
+  }
+  /// Whether what a pivot is between two looks is of no interest. False where one is not measured.
+  bool keeps_clear(const Looks& looks, std::size_t first, std::size_t last) const {
+    const double moved = 2 * fastest_ * static_cast<double>(last - first) * looks.eighth;
+    const double least =
+        0.5 * (std::sqrt(looks.pivot[first]) + std::sqrt(looks.pivot[last]) - moved);
+    return least > std::sqrt(near_singular) && least > std::sqrt(result_.least_pivot);
+  }
 
   /// The weakest pivot of the loops at a time within the last step; 0 where a row faded that is not
   /// redundant throughout.
@@ -92,12 +154,17 @@ class SingularCrossings {
   bool is_ambiguous(double t, double pivot, const Interpolant& between,
                     std::vector<double>& state) {
     constexpr double apart = 10;
+    const auto meets = [&](const Eigen::VectorXd& q) {
+      e_.place(t, q.data());
+      e_.positions(phi_.data());
+      const double gap = phi_.norm() / length_;
+      return gap > rounding_level && pivot < apart * gap;
+    };
     between(t, state.data());
-    if (!form_.read(t, state.data(), nullptr, here_)) return false;
-    e_.place(t, here_.q.data());
-    e_.positions(phi_.data());
-    const double gap = phi_.norm() / length_;
-    return gap > rounding_level && pivot < apart * gap;
+    // Corrections bring q nearer to the constraints: where it is near enough before, they are
+    // spared.
+    if (!form_.read_coordinates(t, state.data(), q_) || !meets(q_)) return false;
+    return form_.read(t, state.data(), nullptr, here_) && meets(here_.q);
   }
 
   Form& form_;
@@ -108,7 +175,9 @@ class SingularCrossings {
   Snapshot here_;
   double length_;  ///< of the scene [m]
   int always_faded_ = std::numeric_limits<int>::max();
-  double largest_ = 0;  ///< pivot on the run
+  double largest_ = 0;            ///< pivot on the run
+  double before_ = not_measured;  ///< pivot at the end of the step before
+  double fastest_ = 0;            ///< |Δ√w|/Δt on the run [1/s]
   bool passing_ = false;
 };
 

@@ -32,6 +32,26 @@ MOMENTA_INLINE void columns_to_parent(const Constants& e, Part* C6) {
   if (e.about_z) screw_columns<2>(C6, Part(e.cos_gamma), Part(e.sin_gamma), Part(e.delta));
 }
 
+/// The same of a revolute joint's link, by the work its turn about x needs.
+template <class Link, class Constants, class Part>
+MOMENTA_INLINE void columns_to_parent(const Link& l, const Constants& e, Part* C6) {
+  if (l.turn == Turn::general || l.turn == Turn::tilted) return columns_to_parent(e, C6);
+  if (l.turn == Turn::right) {
+    for (Part* v : {C6, C6 + 3}) {
+      const Part y = -v[2];
+      v[2] = v[1];
+      v[1] = y;
+    }
+  } else {
+    const Part sign(l.ca);
+    for (const int i : {1, 2, 4, 5}) C6[i] = C6[i] * sign;
+  }
+  const Part a(l.a);
+  C6[4] = C6[4] - C6[2] * a;
+  C6[5] = C6[5] + C6[1] * a;
+  if (l.screwed) screw_columns<2>(C6, Part(e.cos_gamma), Part(e.sin_gamma), Part(e.delta));
+}
+
 /// Rotation R and then step r of a joint that moves freely.
 template <class Here, class S>
 MOMENTA_INLINE void columns_to_parent(const Mat3<S>& R, const Vec3<S>& r, typename Here::Part* C6) {

@@ -29,7 +29,8 @@ bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::axis_inward(std::size_t k, cons
       x.M = blocks(m.M);
       x.D = remainder_of(m);
       x.moment = {{m.Gx, m.Gy, m.Gz}};
-      for (const int i : {0, 1, 3, 4}) y.C[i] = o.C[i];  // the rows of P* that ṗ asks for
+      if (open)
+        for (const int i : {0, 1, 3, 4}) y.C[i] = o.C[i];  // the rows of P* that ṗ asks for
     }
   }
   const bool slides = b.kind == JointKind::prismatic, only_turns = b.kind == JointKind::revolute;
@@ -40,6 +41,8 @@ bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::axis_inward(std::size_t k, cons
         own = own - j.ratio * right.centre[loops_->loops[loop].row];
       });
     if (!eliminate_axis(b, own, m, x)) return false;
+  }
+  if (b.nv > 0 && open) {
     Column c = slides ? o.C[2] : o.C[5];
     if (!slides && !only_turns) c += o.C[2] * S(b.pitch);
     each_coupling(*plan_, k, [&](const LoopPlan::Coupling& j, std::size_t loop, int slot) {
@@ -62,10 +65,12 @@ bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::axis_inward(std::size_t k, cons
   if (!Momentum || b.nv == 0) {  // D' += M'c, d' += C'ᵀ c of a motion that is given
     const Force P = Spatial::momentum(blocks(m.M), y.given);
     add_remainder(m, P);
-    for (int i = 0; i < 6; ++i) o.d += o.C[i] * y.given[i];
+    if (open)
+      for (int i = 0; i < 6; ++i) o.d += o.C[i] * y.given[i];
   }
   if (l.parent < 0) return true;
   carry_axis<Momentum>(l, b.edge, x.edge, b.subtree_mass, m);
+  if (!open) return true;
   each_open<S, Rows>(open, [&](auto i) MOMENTA_INLINED {
     typename Column::Part C[6];
     each<6>([&](auto j) MOMENTA_INLINED { C[j] = o.C[j].v[i]; });

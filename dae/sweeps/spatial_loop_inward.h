@@ -157,7 +157,7 @@ bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::inward(const In& r, const Right
     if (l.slot >= 0) {
       const Carried& slot = slots_[static_cast<std::size_t>(l.slot)];
       add<Momentum>(a.articulated, slot.articulated);
-      a.blocks.add(slot.blocks, front.slot);
+      if (front.slot) a.blocks.add(slot.blocks, front.slot);
     }
     if (plan_->takes_branches[k]) add<Momentum>(a.articulated, looped_branches_[k]);
     enter(k, right, a);
@@ -178,20 +178,18 @@ bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::inward(const In& r, const Right
     if (l.parent < 0 && plan_->folded_onto[k] >= 0) {
       fold(k, right, a);
     } else if (l.parent < 0) {
-      ground.blocks.add_at_ground(a.blocks, front.open, front.ground_fresh, front.ground);
+      if (Column::apart || front.open)
+        ground.blocks.add_at_ground(a.blocks, front.open, front.ground_fresh, front.ground);
       const LoopPlan::Range last = plan_->ground_closings_of[k];
       for (int i = last.first; i < last.last; ++i)
         close(plan_->closings[static_cast<std::size_t>(i)], ground, right.fade, front.ground);
     } else if (!l.first) {
       const auto parent = static_cast<std::size_t>(l.parent);
       Carried& slot = slots_[static_cast<std::size_t>(links[parent].slot)];
-      if (l.opens) {
-        slot.articulated = a.articulated;
-        slot.blocks.begin(true, open_slots_.fronts[parent].slot);
-      } else {
-        add<Momentum>(slot.articulated, a.articulated);
-      }
-      slot.blocks.add(a.blocks, front.open);
+      const SlotGroups brought = open_slots_.fronts[parent].slot;
+      leave<Momentum>(l, slot.articulated, a.articulated);
+      if (l.opens && brought) slot.blocks.begin(true, brought);
+      if (front.open) slot.blocks.add(a.blocks, front.open);
     }
   }
   return true;

@@ -46,47 +46,49 @@ bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::revolute_inward(std::size_t k, 
       w.c = {{{S(-g[0]), S(-g[1]), S(-g[2])}}, {}};
     }
   const S cosine = angles_.cosine(k), sine = angles_.sine(k);
+  const auto& edge = body(k).edge;
   // The loops.
   const SlotGroups open = open_slots_.fronts[k].open;
-  o.eliminate(o.C[5], inverse, w.y0, open, 0, w.g);
-  Column couplers{};
-  if (couples)
-    each_coupling(*plan_, k, [&](const LoopPlan::Coupling& j, std::size_t, int slot) {
-      couplers.add(slot, S(-j.ratio));
+  if (open) {
+    o.eliminate(o.C[5], inverse, w.y0, open, 0, w.g);
+    Column couplers{};
+    if (couples)
+      each_coupling(*plan_, k, [&](const LoopPlan::Coupling& j, std::size_t, int slot) {
+        couplers.add(slot, S(-j.ratio));
+      });
+    each_open<S, Rows>(open, [&](auto i) MOMENTA_INLINED {
+      using Part = typename Column::Part;
+      Part C[6];
+      each<6>([&](auto j) MOMENTA_INLINED { C[j] = o.C[j].v[i]; });
+      const Part c = C[5];
+      o.scale.v[i] = o.scale.v[i] + (C[3] * C[3] + C[4] * C[4] + c * c) * Column::all(inverse);
+      C[0] = C[0] - c * Column::all(w.h.fx);
+      C[1] = C[1] - c * Column::all(w.h.fy);
+      C[2] = C[2] - c * Column::all(w.h.fz);
+      C[3] = C[3] - c * Column::all(w.h.nx);
+      C[4] = C[4] - c * Column::all(w.h.ny);
+      C[5] = couplers.v[i];
+      if (l.has_rotor) C[5] = C[5] + c * Column::all(l.rotor * inverse);
+      if constexpr (Momentum) {
+        w.C[0].v[i] = C[0];
+        w.C[1].v[i] = C[1];
+        w.C[2].v[i] = C[3];
+        w.C[3].v[i] = C[4];
+      }
+      screw_columns<2>(C, Column::all(cosine), Column::all(sine), Part(l.d));
+      if constexpr (!Momentum) {
+        // d' += C'ᵀ c
+        const Motion& given = w.c;
+        o.d.v[i] = o.d.v[i] + (C[0] * Column::all(given.v[0]) + C[1] * Column::all(given.v[1]) +
+                               C[2] * Column::all(given.v[2]) + C[3] * Column::all(given.w[0]) +
+                               C[4] * Column::all(given.w[1]));
+      }
+      if (l.parent >= 0) {
+        columns_to_parent(l, edge, C);
+        each<6>([&](auto j) MOMENTA_INLINED { o.C[j].v[i] = C[j]; });
+      }
     });
-  const auto& edge = body(k).edge;
-  each_open<S, Rows>(open, [&](auto i) MOMENTA_INLINED {
-    using Part = typename Column::Part;
-    Part C[6];
-    each<6>([&](auto j) MOMENTA_INLINED { C[j] = o.C[j].v[i]; });
-    const Part c = C[5];
-    o.scale.v[i] = o.scale.v[i] + (C[3] * C[3] + C[4] * C[4] + c * c) * Column::all(inverse);
-    C[0] = C[0] - c * Column::all(w.h.fx);
-    C[1] = C[1] - c * Column::all(w.h.fy);
-    C[2] = C[2] - c * Column::all(w.h.fz);
-    C[3] = C[3] - c * Column::all(w.h.nx);
-    C[4] = C[4] - c * Column::all(w.h.ny);
-    C[5] = couplers.v[i];
-    if (l.has_rotor) C[5] = C[5] + c * Column::all(l.rotor * inverse);
-    if constexpr (Momentum) {
-      w.C[0].v[i] = C[0];
-      w.C[1].v[i] = C[1];
-      w.C[2].v[i] = C[3];
-      w.C[3].v[i] = C[4];
-    }
-    screw_columns<2>(C, Column::all(cosine), Column::all(sine), Part(l.d));
-    if constexpr (!Momentum) {
-      // d' += C'ᵀ c
-      const Motion& given = w.c;
-      o.d.v[i] = o.d.v[i] + (C[0] * Column::all(given.v[0]) + C[1] * Column::all(given.v[1]) +
-                             C[2] * Column::all(given.v[2]) + C[3] * Column::all(given.w[0]) +
-                             C[4] * Column::all(given.w[1]));
-    }
-    if (l.parent >= 0) {
-      columns_to_parent(edge, C);
-      each<6>([&](auto j) MOMENTA_INLINED { o.C[j].v[i] = C[j]; });
-    }
-  });
+  }
   w.M = turning_of(left.M);
   if constexpr (Momentum) {
     w.Dfx = left.fx;
@@ -121,32 +123,16 @@ bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::revolute_inward(std::size_t k, 
     if (l.parent < 0) return true;
   }
   carry_any<Momentum>(l, edge, left, m);
-  if (l.has_rotor) hand_on_rotor(edge, column, m);
+  if (l.has_rotor) carry_rotor_of(l, edge, column, m);
   return true;
 }
 
+/// L⁻¹ c, then as three revolute joints; `step`: to the joint, in the parent's axes.
 template <class S, int Rows, bool Momentum, class Tree>
-template <class In>
-bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::spherical_inward(std::size_t k, const In& r,
-                                                                  Carried& a) {
-  const auto& l = tree_->links[k];
-  const auto record = static_cast<std::size_t>(l.record);
-  SphericalRecord& w = sphericals_[record];
-  Articulated<S>& m = a.articulated;
-  Blocks& o = a.blocks;
-  w.p = {{S(r[l.u]), S(r[l.u + 1]), S(r[l.u + 2])}};
-  if (!w.pivot.eliminate(m.M, w.A)) return false;
-  w.G = {{m.Gx, m.Gy, m.Gz}};
-  w.Df = Vec3<S>{{m.Dfx, m.Dfy, m.Dfz}} + w.pivot.remainder(w.p - Vec3<S>{{m.Dnx, m.Dny, m.Dnz}});
-  // L⁻¹ c, then as three revolute joints.
-  if constexpr (!Momentum)
-    if (l.parent < 0) {
-      const auto& g = tree_->model->gravity;
-      w.c.v = transpose_times(w.R, Vec3<S>{{S(-g[0]), S(-g[1]), S(-g[2])}});
-    }
-  const SlotGroups open = open_slots_.fronts[static_cast<std::size_t>(k)].open;
-  const auto& at = tree_->sphericals[record].origin;
-  const Vec3<S> step{{S(at[0]), S(at[1]), S(at[2])}};
+void SpatialLoopSweeps<S, Rows, Momentum, Tree>::spherical_columns_inward(SphericalRecord& w,
+                                                                          const Vec3<S>& step,
+                                                                          SlotGroups open,
+                                                                          Blocks& o) {
   const auto times = [](const auto& part, const S& x)
                          MOMENTA_INLINED { return part * Column::all(x); };
   Column z[3];
@@ -174,6 +160,28 @@ bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::spherical_inward(std::size_t k,
     columns_to_parent<Column>(w.R, step, C);
     each<6>([&](auto j) MOMENTA_INLINED { o.C[j].v[i] = C[j]; });
   });
+}
+
+template <class S, int Rows, bool Momentum, class Tree>
+template <class In>
+bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::spherical_inward(std::size_t k, const In& r,
+                                                                  Carried& a) {
+  const auto& l = tree_->links[k];
+  const auto record = static_cast<std::size_t>(l.record);
+  SphericalRecord& w = sphericals_[record];
+  Articulated<S>& m = a.articulated;
+  w.p = {{S(r[l.u]), S(r[l.u + 1]), S(r[l.u + 2])}};
+  if (!w.pivot.eliminate(m.M, w.A)) return false;
+  w.G = {{m.Gx, m.Gy, m.Gz}};
+  w.Df = Vec3<S>{{m.Dfx, m.Dfy, m.Dfz}} + w.pivot.remainder(w.p - Vec3<S>{{m.Dnx, m.Dny, m.Dnz}});
+  if constexpr (!Momentum)
+    if (l.parent < 0) {
+      const auto& g = tree_->model->gravity;
+      w.c.v = transpose_times(w.R, Vec3<S>{{S(-g[0]), S(-g[1]), S(-g[2])}});
+    }
+  const auto& at = tree_->sphericals[record].origin;
+  if (const SlotGroups open = open_slots_.fronts[k].open)
+    spherical_columns_inward(w, {{S(at[0]), S(at[1]), S(at[2])}}, open, a.blocks);
   Vec3<S> force = w.Df;
   if constexpr (!Momentum) force += w.A * w.c.v;
   if (l.parent < 0) return true;
@@ -204,7 +212,8 @@ bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::free_inward(std::size_t k, cons
   x.M = blocks(a.articulated.M);
   x.D = remainder_of(a.articulated);
   x.moment = {{a.articulated.Gx, a.articulated.Gy, a.articulated.Gz}};
-  for (int i = 0; i < 6; ++i) y.C[i] = o.C[i];
+  if (open)
+    for (int i = 0; i < 6; ++i) y.C[i] = o.C[i];
   S own[6];
   for (int i = 0; i < b.nv; ++i) own[i] = S(r[b.u + i]);
   Spatial::ArticulatedInertia<S> M;
@@ -221,6 +230,11 @@ bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::free_inward(std::size_t k, cons
       y.given.v -=
           Spatial::direction_to_child(b.edge, b.kind, x.edge, Vec3<S>{{S(g[0]), S(g[1]), S(g[2])}});
     }
+  if (!open) {
+    if constexpr (!Momentum)
+      if (b.nv == 3) D += reduced_momentum<Spatial>(b, x, y.given);
+    return b.parent < 0 || hand_on(k, M, D, a);
+  }
   if (b.nv == 3) {
     for (int i = 0; i < 3; ++i)
       y.g[i] = o.C[3] * x.I(i, 0) + o.C[4] * x.I(i, 1) + o.C[5] * x.I(i, 2);

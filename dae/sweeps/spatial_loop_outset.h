@@ -50,13 +50,13 @@ void SpatialLoopSweeps<S, Rows, Momentum, Tree>::place_loops(const In& q, const 
   }
 }
 
-/// Poses of the bodies on the ways of loops, in ground axes.
+/// Poses of the bodies on the ways of loops, in the axes of what closes them.
 template <class S, int Rows, bool Momentum, class Tree>
 void SpatialLoopSweeps<S, Rows, Momentum, Tree>::pose_bodies() {
   Spatial::Pose<S> ground;
   ground.axes = identity3<S>();
   for (std::size_t k = 0; k < swept_; ++k) {
-    if (!plan_->posed[k] || elsewhere(k)) continue;
+    if (plan_->posed[k] != OnWay::moved || elsewhere(k)) continue;
     const auto& l = tree_->links[k];
     const auto& from = l.parent < 0 ? ground : bodies_[static_cast<std::size_t>(l.parent)].pose;
     Spatial::Pose<S> at{from.axes, Vec3<S>{{S(0.0), S(0.0), S(0.0)}}};  // from the parent's O
@@ -160,10 +160,7 @@ void SpatialLoopSweeps<S, Rows, Momentum, Tree>::move_bodies(const In& x,
         V += own;
       }
       velocity(k) = {V.v, V.w};
-      if (plan_->posed[k]) {
-        bodies_[k].v = bodies_[k].pose.axes * V.v;
-        bodies_[k].w = bodies_[k].pose.axes * V.w;
-      }
+      set_velocity(k, V);
     }
   }
 }

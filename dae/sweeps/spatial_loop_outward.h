@@ -65,10 +65,7 @@ void SpatialLoopSweeps<S, Rows, Momentum, Tree>::outward(const In& q, const Righ
     if (closed.first != closed.last) solve_loops(closed, right, &m.V, m.sigma, impulse);
     if (plan_->takes_branches[k]) taken_[k] = m.V;
     if constexpr (Momentum)
-      if (rates && plan_->posed[k]) {
-        bodies_[k].v = bodies_[k].pose.axes * m.V.v;
-        bodies_[k].w = bodies_[k].pose.axes * m.V.w;
-      }
+      if (rates) set_velocity(k, m.V);
     if (l.slot >= 0) outward_slots_[static_cast<std::size_t>(l.slot)] = m;
   }
 }
@@ -203,14 +200,14 @@ void SpatialLoopSweeps<S, Rows, Momentum, Tree>::axes_rates(std::size_t k, const
   for (int i = 0; i < b.nv; ++i) rate[b.u + i] = net[6 - b.nv + i];
 }
 
-/// ṗ += Eᵀ T*: N − κ w of the loops below, in ground axes, where wrenches pass from O to O by a
-/// shift alone.
+/// ṗ += Eᵀ T*: N − κ w of the loops below, in the axes of poses, where wrenches pass from O to O by
+/// a shift alone.
 template <class S, int Rows, bool Momentum, class Tree>
 template <class Out>
 void SpatialLoopSweeps<S, Rows, Momentum, Tree>::rates_inward(const RightSide<S>& right,
                                                               const Out& impulse, Out rate) {
   for (std::size_t k = 0; k < swept_; ++k)
-    if (plan_->posed[k]) wrenches_[k] = {};
+    if (plan_->posed[k] != OnWay::no) wrenches_[k] = {};
   if constexpr (takes_packs)
     if (branches_apart_)
       for (auto& pack : packs_) {
@@ -230,7 +227,7 @@ void SpatialLoopSweeps<S, Rows, Momentum, Tree>::rates_inward(const RightSide<S>
     if (l.b >= 0) wrenches_[static_cast<std::size_t>(l.b)] -= {force, couple + cross(s.rb, force)};
   }
   for (std::size_t k = swept_; k-- > 0;) {
-    if (!plan_->posed[k] || elsewhere(k)) continue;
+    if (plan_->posed[k] != OnWay::moved || elsewhere(k)) continue;
     const auto& l = tree_->links[k];
     const auto& b = body(k);
     const auto& axes = bodies_[k].pose.axes;

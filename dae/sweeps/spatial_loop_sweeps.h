@@ -6,9 +6,14 @@
 //
 // and C' takes the same screws to the parent as D'. Momentum form: P* = M'V + D' + C'σ before the
 // revolute joint's screw, ṗ = weight − Eᵀ(V × P*) + Eᵀ T*, T* the N − κ w of the loops below,
-// gathered by a last sweep over the bodies on their ways. A coupler's r joins C_nz where the
-// revolute joint is eliminated, and leaves it with the opposite sign, as the revolute joint is
-// eliminated by its absolute rate. Acceleration form: A = (acceleration of O, dω/dt) in body axes,
+// gathered by a last sweep over the bodies on their ways. A loop's points, axes and velocities are
+// in the axes of the body that closes it, as that stands, or of one nearer to the ground. Where no
+// loop is open a body is taken as in a tree.
+//
+// A coupler's r joins C_nz where the revolute joint is eliminated, and leaves it with the opposite
+// sign, as the revolute joint is eliminated by its absolute rate.
+//
+// Acceleration form: A = (acceleration of O, dω/dt) in body axes,
 // the ground falls upward with −g, c the velocity products of acceleration_sweeps.h.
 
 #include <momenta/core/kernel/place_links.h>
@@ -147,6 +152,15 @@ class SpatialLoopSweeps {
     return k < 0 ? nullptr : &bodies_[static_cast<std::size_t>(k)];
   }
 
+  /// Of a body on the way of a loop, its motion from its own axes to those of poses.
+  MOMENTA_INLINE void set_velocity(std::size_t k, const Motion& V) {
+    if (plan_->posed[k] == OnWay::no) return;
+    LoopBody<S>& to = bodies_[k];
+    const bool moved = plan_->posed[k] == OnWay::moved;
+    to.v = moved ? to.pose.axes * V.v : V.v;
+    to.w = moved ? to.pose.axes * V.w : V.w;
+  }
+
   const PrescribedMotion<S>& prescribed(const Loop& l) const {
     return moving_[static_cast<std::size_t>(l.motion)];
   }
@@ -178,6 +192,8 @@ class SpatialLoopSweeps {
   bool revolute_inward(std::size_t k, const In& r, const RightSide<S>& right, Carried& a);
   template <class In>
   __attribute__((noinline)) bool spherical_inward(std::size_t k, const In& r, Carried& a);
+  void spherical_columns_inward(SphericalRecord& w, const Vec3<S>& step, SlotGroups open,
+                                Blocks& o);
   template <class In>
   __attribute__((noinline)) bool axis_inward(std::size_t k, const In& r, const RightSide<S>& right,
                                              Carried& a);
@@ -187,11 +203,13 @@ class SpatialLoopSweeps {
                Carried& a) const;
   /// xᵀσ over the slots open above body k.
   MOMENTA_INLINE S along_sigma(std::size_t k, const Column& x, const Column& sigma) const {
-    return plus_dot(S(0.0), x, sigma, open_slots_.fronts[k].open);
+    const SlotGroups open = open_slots_.fronts[k].open;
+    return open ? plus_dot(S(0.0), x, sigma, open) : S(0.0);
   }
   /// −Eᵀ(W × C'σ) of a revolute joint.
   MOMENTA_INLINE S turning_along(std::size_t k, const Column (&C)[4], const Vec3<S>& v,
                                  const Vec3<S>& o, const Column& sigma) const {
+    if (!open_slots_.fronts[k].open) return S(0.0);
     Column turned;
     each_open<S, Rows>(open_slots_.fronts[k].open, [&](auto i) MOMENTA_INLINED {
       turned.v[i] = C[0].v[i] * Column::all(v[1]) - C[1].v[i] * Column::all(v[0]) +
@@ -232,7 +250,7 @@ class SpatialLoopSweeps {
   std::vector<UserRecord<S>> users_;
   std::vector<AnyRecord> any_;
   std::vector<LoopBody<S>> bodies_;
-  std::vector<Force> wrenches_;  ///< ground axes, about O; Ω of the bodies in acceleration form
+  std::vector<Force> wrenches_;  ///< as poses, about O; Ω of the bodies in acceleration form
   std::vector<SpatialLoopPlace<S>> places_;
   std::vector<PrescribedMotion<S>> moving_;  ///< by motion
   std::vector<S> coupled_;                   ///< by loop: d of a coupler
@@ -281,6 +299,7 @@ SpatialLoopSweeps<S, Rows, Momentum, Tree>::SpatialLoopSweeps(
       outward_slots_(static_cast<std::size_t>(tree.slots)),
       rows_(static_cast<std::size_t>(loops.rows)),
       swept_(tree.links.size()) {
+  for (LoopBody<S>& body : bodies_) body.pose.axes = identity3<S>();  // of what is at rest
   for (const char takes : plan.takes_branches)
     if (takes && looped_branches_.empty()) {
       looped_branches_.resize(tree.links.size());

@@ -3,6 +3,7 @@
 
 #include "equations/ensemble.h"
 #include "equations/linkages.h"
+#include "equations/other_trees.h"
 #include "equations/scissor.h"
 
 #include <gtest/gtest.h>
@@ -286,6 +287,45 @@ TEST(Extremes, SingularCrossingsAreListed) {
   for (std::size_t i = 0; i < expected.size(); ++i) {
     EXPECT_NEAR(crank.singular_crossings[i].t, expected[i], 0.02);
     EXPECT_LT(crank.singular_crossings[i].pivot, 1e-2);
+  }
+}
+
+// The uprights of a row of four-bars are a pendulum; its poses are singular where they lie flat,
+// whatever joints are cut, and every one is found inside the steps.
+TEST(Extremes, EveryFlatPoseOfARowIsACrossing) {
+  constexpr int n = 10;
+  constexpr double first_angle = 1.1, end = 10;
+  // φ'' = −k cos φ by RK4, and when it passes a multiple of π.
+  const double k = 9.81 * (0.5 * (n + 1) + n) / ((n + 1) / 3.0 + n);
+  std::vector<double> flat;
+  constexpr int steps = 100000;
+  constexpr double h = end / steps;
+  double at = first_angle, rate = 0;
+  for (int i = 0; i < steps; ++i) {
+    const auto f = [&](double x) { return -k * std::cos(x); };
+    const double k1 = f(at), k2 = f(at + h / 2 * rate), k3 = f(at + h / 2 * (rate + h / 2 * k1)),
+                 k4 = f(at + h * (rate + h / 2 * k2));
+    const double before = std::sin(at);
+    at += h * (rate + h / 6 * (k1 + k2 + k3));
+    rate += h / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
+    if ((std::sin(at) > 0) != (before > 0)) flat.push_back(h * (i + 1));
+  }
+  ASSERT_GT(flat.size(), 8u);
+  for (unsigned seed = 0; seed < 6; ++seed) {
+    Scene scene = equations::at_start(equations::row_of_four_bars(n, first_angle));
+    scene.run.project = true;
+    equations::RandomTree random(seed);
+    equations::cut_elsewhere(random, scene);
+    const Mechanism mechanism(scene);
+    RunRequest request;
+    request.settings = default_settings(scene.run, "momentum", "", 1e-8);
+    request.settings.end_time = end;
+    request.settings.samples = 1;
+    const RunResult run = run_form(mechanism, equations::start_of(mechanism), request);
+    ASSERT_EQ(run.status, "done") << run.reason;
+    ASSERT_EQ(run.singular_crossings.size(), flat.size()) << "tree " << seed;
+    for (std::size_t i = 0; i < flat.size(); ++i)
+      EXPECT_NEAR(run.singular_crossings[i].t, flat[i], 0.02) << "tree " << seed;
   }
 }
 

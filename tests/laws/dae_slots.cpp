@@ -1,5 +1,5 @@
 // Slots of loops in the sweeps: no two loops that are open in one front share one, and of loops of
-// one size there are no more slots than are open at once.
+// one size there are no more slots than are open at once. Of which bodies poses are wanted.
 
 #include "equations/random_tree.h"
 
@@ -49,6 +49,13 @@ int root(const Made& m, int k) {
   return k;
 }
 
+int closing_body(const std::set<int>& a, const std::set<int>& b) {
+  int closes_at = -1;
+  for (const int k : a)
+    if (b.contains(k)) closes_at = std::max(closes_at, k);
+  return closes_at;
+}
+
 /// By front, bodies and then roots at the ground: the loops that are open there, by what that
 /// means.
 std::vector<std::vector<int>> open_loops(const Made& m) {
@@ -57,9 +64,7 @@ std::vector<std::vector<int>> open_loops(const Made& m) {
   for (std::size_t i = 0; i < m.loops.size(); ++i) {
     const LoopShape& loop = m.loops[i];
     const std::set<int> a = ancestors(m, loop.a), b = ancestors(m, loop.b);
-    int closes_at = -1;
-    for (const int k : a)
-      if (b.contains(k)) closes_at = std::max(closes_at, k);
+    const int closes_at = closing_body(a, b);
     for (std::size_t k = 0; k < n; ++k) {
       const int body = static_cast<int>(k);
       if (a.contains(body) != b.contains(body) || body == closes_at)
@@ -74,6 +79,29 @@ std::vector<std::vector<int>> open_loops(const Made& m) {
         fronts[n + static_cast<std::size_t>(k)].push_back(static_cast<int>(i));
   }
   return fronts;
+}
+
+// Below the body that closes a loop alone, from its axes; what else loops close at stands still.
+TEST(Poses, AreWantedBelowWhereLoopsClose) {
+  int standing = 0, spared = 0;
+  for (unsigned seed = 0; seed < 3000; ++seed) {
+    const Made m = made(seed, 2);
+    const LoopPlan plan = plan_loops(m.parents, m.loops, false);
+    for (std::size_t k = 0; k < m.parents.size(); ++k) {
+      const int body = static_cast<int>(k);
+      OnWay expected = OnWay::no;
+      for (const LoopShape& loop : m.loops) {
+        const std::set<int> a = ancestors(m, loop.a), b = ancestors(m, loop.b);
+        if (a.contains(body) != b.contains(body)) expected = OnWay::moved;
+        if (closing_body(a, b) == body && expected == OnWay::no) expected = OnWay::at_rest;
+      }
+      ASSERT_EQ(plan.posed[k], expected) << "seed " << seed << ", body " << k;
+      standing += expected == OnWay::at_rest;
+      spared += expected == OnWay::no;
+    }
+  }
+  EXPECT_GT(standing, 100);
+  EXPECT_GT(spared, 100);
 }
 
 TEST(SlotsOfFronts, AreAsManyAsLoopsAreOpenAtOnce) {

@@ -167,7 +167,6 @@ LoopPlan planned(const std::vector<int>& parents, const std::vector<LoopShape>& 
                  std::vector<int> folded_onto) {
   const std::size_t n = parents.size();
   LoopPlan plan;
-  plan.posed.assign(n, 0);
   plan.takes_branches.assign(n, 0);
   for (const int k : folded_onto)
     if (k >= 0) plan.takes_branches[static_cast<std::size_t>(k)] = 1;
@@ -180,6 +179,7 @@ LoopPlan planned(const std::vector<int>& parents, const std::vector<LoopShape>& 
   for (std::size_t k = 0; k < n; ++k)
     if (parents[k] < 0) roots.push_back(static_cast<int>(k));
 
+  RelativeWays ways(parents);
   std::vector<Opened> opened;
   for (std::size_t i = 0; i < loops.size(); ++i) {
     const LoopShape& loop = loops[i];
@@ -210,10 +210,7 @@ LoopPlan planned(const std::vector<int>& parents, const std::vector<LoopShape>& 
     for (const auto& [body, ratio] : loop.joints)
       couplings[static_cast<std::size_t>(body)].push_back(
           {static_cast<int>(i), ratio, body == loop.joints.front().first});
-    for (int end : {loop.a, loop.b})
-      for (int k = end; k >= 0 && !plan.posed[static_cast<std::size_t>(k)];
-           k = parents[static_cast<std::size_t>(k)])
-        plan.posed[static_cast<std::size_t>(k)] = 1;
+    for (const int end : {loop.a, loop.b}) ways.up(end, looped_branch >= 0 ? -1 : way.closes_at);
     // The end that sweeps inward meet first brings the right-hand side along: that of the branch,
     // where there is one.
     if (open.a >= 0)
@@ -223,6 +220,7 @@ LoopPlan planned(const std::vector<int>& parents, const std::vector<LoopShape>& 
       ends[static_cast<std::size_t>(open.b)].push_back(
           {static_cast<int>(i), false, open.b > open.a});
   }
+  plan.posed = ways.found();
   take_slots(parents, loops, opened, plan, used, used_at_ground);
   for (const auto& fronts : {std::cref(used), std::cref(used_at_ground)})
     for (const std::uint64_t open : fronts.get()) {

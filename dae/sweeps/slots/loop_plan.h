@@ -14,6 +14,11 @@
 // the branch's own W the loops close into L at once, M*_L += J W⁻¹ Jᵀ, so that the slots of all
 // branches of a platform are the same. It needs a W that is regular by itself, in every pose: only
 // where slots would run out, and watched.
+//
+// Poses are wanted of the bodies below the one that closes a loop alone, in its axes: what a loop
+// asks for is the same seen from there, and its wrenches end there (relative_ways.h).
+
+#include <momenta/core/kernel/relative_ways.h>
 
 #include <cstdint>
 #include <utility>
@@ -54,7 +59,7 @@ struct LoopPlan {
   std::vector<char> pair;                 ///< per loop: two point rows and no other
   std::vector<int> folded_onto;  ///< per body: of a root, the body its branch folds into; or −1
   std::vector<char> takes_branches;  ///< per body: branches fold into it
-  std::vector<char> posed;           ///< per body: carries an end of a loop, near or far
+  std::vector<OnWay> posed;          ///< per body: on the way of a loop below where it closes
   int slots = 0;                     ///< slots needed
   std::int64_t work = 0;             ///< Σ over the fronts of the squared number of open equations
   bool couples() const { return !couplings.empty(); }

@@ -1,14 +1,14 @@
 #pragma once
-// A loop in space at one state, in ground axes: its points and axes, the force F at x_A and the
-// couple c of every row's unit impulse on body A (on B acts the exact negative), and what its
-// equations need of velocities. Rows as in dae/loop/loop_rows.h.
+// A loop in space at one state, in the axes of poses (loop_plan.h): its points and axes, the force
+// F at x_A and the couple c of every row's unit impulse on body A (on B acts the exact negative),
+// and what its equations need of velocities. Rows as in dae/loop/loop_rows.h.
 
 #include <momenta/core/kernel/spatial.h>
 #include <momenta/dae/loop/loop_model.h>
 
 namespace momenta {
 
-/// A body that carries an end of a loop, or lies on the way to one; ground axes.
+/// A body that carries an end of a loop, or lies on the way to one; axes of poses.
 template <class S>
 struct LoopBody {
   Spatial::Pose<S> pose;
