@@ -41,17 +41,6 @@ struct FitRequest {
   std::function<bool(int, double)> progress;
 };
 
-/// How large residuals are.
-struct WantedErrors {
-  /// Not measured.
-  static constexpr double none = std::numeric_limits<double>::quiet_NaN();
-  double cost = none;         ///< ½ |r|² [1]
-  double length_rms = none;   ///< over all wanted lengths [m]; NaN: there are none
-  double length_most = none;  ///< the largest [m]
-  double angle_rms = none;    ///< the same of angles [rad]
-  double angle_most = none;   ///< the largest [rad]
-};
-
 /// What came of one start.
 struct FitStart {
   Eigen::VectorXd from;              ///< θ where it began

@@ -127,4 +127,28 @@ bool WantedError::evaluate(const VectorXd& x, VectorXd& r, MatrixXd* jacobian) {
   }
 }
 
+WantedErrors errors_of(const WantedPoses& wanted, const MatrixXd& reached, const VectorXd& r) {
+  WantedErrors errors;
+  errors.cost = 0.5 * r.squaredNorm();
+  for (const bool angles : {false, true}) {
+    double squares = 0, most = 0;
+    long count = 0;
+    for (Eigen::Index k = 0; k < wanted.values.cols(); ++k) {
+      if ((wanted.quantities[static_cast<std::size_t>(k)].unit == "rad") != angles) continue;
+      for (Eigen::Index i = 0; i < wanted.poses(); ++i) {
+        const double off = reached(i, k) - wanted.values(i, k);
+        if (std::isnan(wanted.values(i, k))) continue;
+        squares += off * off;
+        most = std::max(most, std::abs(off));
+        ++count;
+      }
+    }
+    if (count == 0) continue;
+    (angles ? errors.angle_rms : errors.length_rms) =
+        std::sqrt(squares / static_cast<double>(count));
+    (angles ? errors.angle_most : errors.length_most) = most;
+  }
+  return errors;
+}
+
 }  // namespace momenta

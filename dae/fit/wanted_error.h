@@ -12,6 +12,7 @@
 #include <momenta/dae/fit/pose_derivatives.h>
 #include <momenta/dae/fit/swept_poses.h>
 
+#include <limits>
 #include <string>
 
 namespace momenta {
@@ -54,5 +55,20 @@ class WantedError {
   Eigen::MatrixXd reached_;
   std::string why_;
 };
+
+/// How large residuals are.
+struct WantedErrors {
+  /// Not measured.
+  static constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  double cost = none;         ///< ½ |r|² [1]
+  double length_rms = none;   ///< over all wanted lengths [m]; NaN: there are none
+  double length_most = none;  ///< the largest [m]
+  double angle_rms = none;    ///< the same of angles [rad]
+  double angle_most = none;   ///< the largest [rad]
+};
+
+/// Of what the poses come to (poses × quantities), with r there.
+WantedErrors errors_of(const WantedPoses& wanted, const Eigen::MatrixXd& reached,
+                       const Eigen::VectorXd& r);
 
 }  // namespace momenta

@@ -213,56 +213,49 @@ Verb add_fit(CLI::App& app, Options& o) {
       app.add_subcommand("fit", "Parameters for which a mechanism does what is wanted");
   verb->footer("Example: momenta fit examples/straight_line/scene.toml --vary reach --sweep O");
   add_scene(*verb, o);
-  for (const char* unused : {"--cut", "--at"}) verb->remove_option(verb->get_option(unused));
-  verb->add_option("--vary", own->vary,
-                   "Numbers of [parameters], each as it likes or within A=FROM:TO")
+  for (const char* unused :
+       {"--kkt", "--cut", "--at", "--loops", "--free-root", "--control", "--key"})
+    verb->remove_option(verb->get_option(unused));
+  verb->add_option("--vary", own->vary, "Numbers of [parameters], within A=FROM:TO")
       ->type_name("NAME,...")
       ->required();
-  verb->add_option("--sweep", own->sweep,
-                   "The coordinate that moves the mechanism (default, of --least: a run)")
+  verb->add_option("--sweep", own->sweep, "What moves it (default, of --least: a run)")
       ->type_name("NAME");
   verb->add_option("--to", own->to,
-                   "What is wanted, a line a pose: coordinates and markers, as in move.csv, where "
-                   "the swept coordinate stands if that matters (default: wanted.csv beside the "
+                   "Wanted, a line a pose, columns as in move.csv (default: wanted.csv beside the "
                    "scene)")
       ->type_name("FILE");
   verb->add_option("--least", own->least,
-                   "What is to be least in place of wanted poses: max, min, mean, integral, first "
-                   "and last of formulas of the motion, and parameters")
+                   "In place of it: max, min, mean, integral, first, last of formulas of the "
+                   "motion, and parameters")
       ->type_name("FORMULA");
   verb->add_option("--keep", own->keep,
-                   "What is to hold: 'a + d <= b + c', 'max(P.y) <= 2', at each pose "
-                   "'C.transmission >= 0.7'; may be given several times")
+                   "'a + d <= b + c', 'max(P.y) <= 2', at each pose 'C.transmission >= 0.7'; "
+                   "repeatable")
       ->type_name("CONDITION")
       ->expected(1)
       ->take_all();
-  verb->add_option("--over", own->over,
-                   "The way of the swept coordinate for formulas (default: a turn)")
+  verb->add_option("--over", own->over, "Way of the swept coordinate (default: a turn)")
       ->type_name("FROM:TO");
   within(verb->add_option("--poses", own->poses, "On this way (default: 73)"), "N", 2, 100000);
-  verb->add_option("--rate", own->rate,
-                   "Of the swept coordinate, for rates and efforts [rad/s or m/s] (default: 1)")
+  verb->add_option("--rate", own->rate, "On it, for rates and efforts (default: 1)")
       ->type_name("X");
-  within(
-      verb->add_option("--starts", own->starts, "The scene's own and others drawn from the ranges"),
-      "N", 1, 100000)
+  within(verb->add_option("--starts", own->starts, "The scene's own, others drawn"), "N", 1, 100000)
       ->capture_default_str();
   verb->add_option("--seed", own->seed, "Of these")->type_name("N")->capture_default_str();
   within(verb->add_option("--iterations", own->iterations, "Of each start, at the most"), "N", 1,
          1000000)
       ->capture_default_str();
-  verb->add_option("--form", o.form, "Of a run: momentum, acceleration, projected or baumgarte")
-      ->capture_default_str()
-      ->type_name("FORM");
+  verb->add_option("--form", o.form, "Of a run")->capture_default_str()->type_name("FORM");
   add_run_options(*verb, o);
   for (const char* unused :
-       {"--reference", "--figures", "--penalty", "--spectral-radius", "--mesh-bytes", "--samples"})
+       {"--reference", "--figures", "--penalty", "--spectral-radius", "--mesh-bytes", "--samples",
+        "--baumgarte-alpha", "--baumgarte-beta", "--beta"})
     verb->remove_option(verb->get_option(unused));
   verb->get_option("--end")->description("End time [s]");
-  verb->get_option("--integrator")->description("rk4, or dp5, dop853, vern9 (by --rtol)");
+  verb->get_option("--integrator")->description("rk4, dp5, dop853, vern9 (by --rtol)");
   verb->get_option("--cpu-limit")->description("CPU time of all of it [s] (default: none)");
-  verb->get_option("--out")->description(
-      "Directory for fitted.toml, fit.csv, fit.json, index.html");
+  verb->get_option("--out")->description("Directory for fitted.toml, fit.json, …");
   return {verb, [&o, own] { return fit(o, *own); }};
 }
 
