@@ -14,6 +14,7 @@
 
 namespace momenta {
 
+/// f(θ, τ) and its bounds.
 class BoundedFunction {
  public:
   /// Which must outlive it.

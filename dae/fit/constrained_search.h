@@ -24,7 +24,8 @@ namespace momenta {
 
 /// f and its conditions.
 struct ConstrainedProblem {
-  int inequalities = 0, equalities = 0;
+  int inequalities = 0;  ///< rows of c
+  int equalities = 0;    ///< rows of e
   /// f at x, and `conditions`: those of c, then those of e; with their gradients, rows × unknowns,
   /// where these are not null. False: there is no f here.
   std::function<bool(const Eigen::VectorXd& x, double& f, Eigen::VectorXd& conditions,
@@ -33,12 +34,13 @@ struct ConstrainedProblem {
   std::function<bool()> going;  ///< false ends the search
 };
 
+/// Where a search ended.
 struct ConstrainedEnd {
   bool began = false;    ///< f and gradients could be evaluated where the search began
   bool stopped = false;  ///< by `going`
   int iterations = 0;    ///< how often gradients were computed
-  double f = std::numeric_limits<double>::quiet_NaN();
-  Eigen::VectorXd conditions;   ///< at the end
+  double f = std::numeric_limits<double>::quiet_NaN();  ///< at the end
+  Eigen::VectorXd conditions;                           ///< at the end
   Eigen::VectorXd multipliers;  ///< of (a), by condition; 0 where one does not matter
   double violation = 0;         ///< the largest of c and |e|, 0 where all are kept
   bool kept = false;            ///< all conditions are, within kept_within

@@ -44,7 +44,7 @@ class DrawnStarts {
   DrawnStarts(const ParametricMechanism& family, const std::vector<FittedParameter>& parameters,
               std::uint64_t seed)
       : family_(family), parameters_(parameters), random_(seed) {}
-  Eigen::VectorXd next();
+  Eigen::VectorXd next();  ///< θ of the next one
 
  private:
   const ParametricMechanism& family_;

@@ -20,6 +20,7 @@ struct KeptCondition {
   double multiplier = 0;  ///< by how much less the best would be for a unit of room [1/unit]
 };
 
+/// Conditions, as rows and as they are told.
 class KeptConditions {
  public:
   /// `parts` take what the conditions are made of. @throws std::invalid_argument: one sentence
@@ -27,8 +28,8 @@ class KeptConditions {
 
   /// Counts rows and unknowns for motions like this one.
   void count(const MotionValues& values);
-  int inequalities() const { return inequalities_; }
-  int equalities() const { return equalities_; }
+  int inequalities() const { return inequalities_; }   ///< rows of c
+  int equalities() const { return equalities_; }       ///< rows of e
   Eigen::Index unknowns() const { return unknowns_; }  ///< of τ
   /// τ where extremes are, and what it counts in, > 0.
   void start(const MotionValues& values, Eigen::Ref<Eigen::VectorXd> tau,
@@ -42,7 +43,8 @@ class KeptConditions {
   double violation(const MotionValues& values) const;
   /// Of each condition the multiplier, that of all poses together.
   std::vector<double> multipliers(const Eigen::VectorXd& of_rows) const;
-  std::size_t size() const { return conditions_.size(); }
+  std::size_t size() const { return conditions_.size(); }  ///< how many there are
+  /// The i-th, as read.
   const MotionCondition& condition(std::size_t i) const { return conditions_[i].read; }
 
  private:

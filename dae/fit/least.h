@@ -41,7 +41,8 @@ struct LeastRequest {
 
 /// What came of one start.
 struct LeastStart {
-  Eigen::VectorXd from, to;               ///< θ; `to` is empty where the start is not possible
+  Eigen::VectorXd from;                   ///< θ where it began
+  Eigen::VectorXd to;                     ///< θ at its end; empty where the start is not possible
   double value = WantedErrors::none;      ///< J at its end
   double violation = WantedErrors::none;  ///< of conditions, the largest; 0: all are kept
   double slope = WantedErrors::none;      ///< as of ConstrainedEnd: 0 at a minimum
@@ -59,7 +60,8 @@ struct LeastResult {
   bool run = false;                         ///< of a run; else of a swept motion
   std::optional<Column> swept;              ///< the swept coordinate
   std::uint64_t seed = 1;                   ///< as asked
-  Eigen::VectorXd own, found;               ///< θ of the scene, and the best
+  Eigen::VectorXd own;                      ///< θ of the scene
+  Eigen::VectorXd found;                    ///< the best θ
   double before = WantedErrors::none;       ///< J of the scene as it is; NaN: it has none
   double after = WantedErrors::none;        ///< of the best
   std::string why_not_before;               ///< why none; else empty
@@ -68,8 +70,9 @@ struct LeastResult {
   std::vector<double> places;               ///< of a swept motion, s of its poses [rad or m]
   /// What the formulas are made of, over the places: before, where there is such, and after.
   struct Curve {
-    std::string formula;            ///< of single poses
-    Eigen::VectorXd before, after;  ///< at each place
+    std::string formula;     ///< of single poses
+    Eigen::VectorXd before;  ///< at each place; empty: there is none
+    Eigen::VectorXd after;   ///< at each place
   };
   std::vector<Curve> curves;         ///< of J, then of the conditions, each once
   std::vector<LeastStart> starts;    ///< in their order

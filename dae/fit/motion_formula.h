@@ -19,9 +19,10 @@ namespace momenta {
 
 /// A formula of single poses or times, and how it becomes a number.
 struct MotionPart {
+  /// How it becomes a number.
   enum class Kind { most, least, mean, integral, first, last };
-  Kind kind = Kind::most;
-  std::string formula;  ///< of columns and parameters
+  Kind kind = Kind::most;  ///< its kind
+  std::string formula;     ///< of columns and parameters
   /// Whether it is the largest or the smallest of all.
   bool is_extreme() const { return kind == Kind::most || kind == Kind::least; }
 };
@@ -43,9 +44,9 @@ class SmoothFormula {
 
 /// A formula of a motion, read.
 struct MotionFormula {
-  std::string text;   ///< as written
-  std::string outer;  ///< with name_of(k) in the place of part k
-  std::vector<MotionPart> parts;
+  std::string text;               ///< as written
+  std::string outer;              ///< with name_of(k) in the place of part k
+  std::vector<MotionPart> parts;  ///< in their order
 
   /// @throws std::invalid_argument: one sentence
   static MotionFormula from_text(const std::string& text);
@@ -55,9 +56,9 @@ struct MotionFormula {
 
 /// less ≤ more, or equal.
 struct MotionCondition {
-  std::string text;  ///< as written
-  bool equal = false;
-  MotionFormula gap;  ///< less − more: not positive where it is kept, or 0
+  std::string text;    ///< as written
+  bool equal = false;  ///< an equation
+  MotionFormula gap;   ///< less − more: not positive where it is kept, or 0
 
   /// `parameters`: names known without a motion. < and > count as ≤ and ≥. @throws
   /// std::invalid_argument: one sentence

@@ -19,6 +19,7 @@ struct MotionValues {
   std::vector<Eigen::MatrixXd> parts_by;  ///< of each, rows × θ
 };
 
+/// Numbers of a motion, by θ.
 class MotionParts {
  public:
   /// `sizes` of θ, > 0: of what steps of differences are a part. The family must outlive it.
@@ -40,9 +41,9 @@ class MotionParts {
   /// The same with derivatives by θ, differences for those that are formulas. @throws SceneError
   void take_parameters(const Eigen::VectorXd& theta, bool derivatives, MotionValues& values) const;
 
-  const ParametricMechanism& family_;
-  Eigen::VectorXd sizes_;
-  std::string why_;
+  const ParametricMechanism& family_;  ///< θ ↦ mechanism
+  Eigen::VectorXd sizes_;              ///< of θ
+  std::string why_;                    ///< as why()
 
  private:
   std::vector<std::string> parameter_names_;
@@ -56,6 +57,7 @@ class MotionFunction {
 
   /// Where its parts stand in MotionValues, and of what kind they are.
   const std::vector<std::size_t>& places() const { return places_; }
+  /// In their order.
   const std::vector<MotionPart>& parts() const { return parts_; }
   /// The poses at which extremes are taken; 0 of other parts.
   std::vector<Eigen::Index> rows(const MotionValues& values) const;

@@ -8,6 +8,7 @@
 
 namespace momenta {
 
+/// Numbers of a run, by θ.
 class RunParts final : public MotionParts {
  public:
   /// `scene`: that of the family, as text. Steps of the same size make a function that is smooth:

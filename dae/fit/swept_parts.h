@@ -26,6 +26,7 @@ struct SweptWay {
   double rate = 1;                               ///< of it [rad/s or m/s]
 };
 
+/// Numbers of a swept motion, by θ.
 class SweptParts final : public MotionParts {
  public:
   /// @throws std::invalid_argument for a way that is none; SceneError where the scene as it is
@@ -37,7 +38,7 @@ class SweptParts final : public MotionParts {
   bool at(const Eigen::VectorXd& theta, bool derivatives, MotionValues& values) override;
 
   const std::vector<double>& places() const { return places_; }  ///< s [rad or m]
-  const Column& swept() const { return swept_; }
+  const Column& swept() const { return swept_; }                 ///< the swept coordinate
   /// g of a part at each pose of the last motion; of any kind.
   const Eigen::VectorXd& curve(std::size_t part) const { return curves_[part]; }
 

@@ -84,6 +84,25 @@ TEST_F(FitOfTheProgram, MakesAFunctionalLeast) {
                  "expected one comparison");
 }
 
+// A search that was killed takes the starts it had finished and ends with the very same numbers.
+TEST_F(FitOfTheProgram, GoesOnWhereItWasKilled) {
+  const std::string search = "fit '" + example("straight_line") +
+                             "' --vary coupler=1.5:4,rocker=1.5:4,reach=2:8 --starts 6 --sweep O"
+                             " --over 1.5707963267948966:4.71238898038469 --poses 31"
+                             " --least 'max(P.y) - min(P.y)' --keep 'first(P.x) - last(P.x) >= 4'"
+                             " --out ";
+  const std::string killed = "'" + (folder_ / "killed").string() + "'",
+                    whole = "'" + (folder_ / "whole").string() + "'";
+  status_when_killed(search + killed, folder_ / "killed" / "runs.jsonl", 3);
+  const Outcome again = call(search + killed), once = call(search + whole);
+  EXPECT_EQ(again.status, once.status) << again.err;
+  EXPECT_NE(again.err.find("of 6 runs taken from"), std::string::npos) << again.err;
+  const auto a = nlohmann::json::parse(text_of(folder_ / "killed" / "fit.json")),
+             b = nlohmann::json::parse(text_of(folder_ / "whole" / "fit.json"));
+  for (const char* key : {"after", "parameters", "keep", "starts", "best"})
+    EXPECT_EQ(a[key], b[key]) << key;
+}
+
 TEST_F(FitOfTheProgram, RefusesWhatItCannotDoInOneSentence) {
   const std::string scene =
       "fit '" + example("straight_line") + "' --sweep O --to '" + line() + "'";
