@@ -13,6 +13,12 @@ ImpulseGauge::Measure::Measure(const Mechanism& mechanism) : e(mechanism.evaluat
   for (auto* x : {&u, &v, &p, &rate_weight}) x->resize(nv);
 }
 
+ImpulseGauge::ImpulseGauge(const Mechanism& mechanism, const DaeLayout& layout, Gauge gauge,
+                           const Start& start)
+    : of_(mechanism), places_(layout), rule_(gauge) {
+  if (mechanism.m() > 0) rate_ = std::min(1.0, default_leak(mechanism, start));
+}
+
 ImpulseGauge::Measure& ImpulseGauge::measure() {
   if (!measure_) measure_ = std::make_shared<Measure>(of_);
   return *measure_;
@@ -54,9 +60,11 @@ void ImpulseGauge::measure_at(double t, const double* y, const double* ydot, dou
   w.t = t;
   std::copy_n(y, w.q.size(), w.q.data());
   w.e->joint_rates(y, ydot, w.u.data());
-  const auto weight = [&](double x) { return 1 / (atol + rtol * std::abs(x)); };
-  std::transform(w.q.begin(), w.q.end(), w.coordinate_weight.begin(), weight);
-  std::transform(w.u.begin(), w.u.end(), w.rate_weight.begin(), weight);
+  const auto weight = [&](double size) {
+    return [=](double x) { return 1 / (atol * size + rtol * std::abs(x)); };
+  };
+  std::transform(w.q.begin(), w.q.end(), w.coordinate_weight.begin(), weight(1));
+  std::transform(w.u.begin(), w.u.end(), w.rate_weight.begin(), weight(rate_));
 }
 
 double ImpulseGauge::coordinate_squares(const double* e) {

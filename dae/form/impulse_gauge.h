@@ -13,8 +13,8 @@ namespace momenta {
 class ImpulseGauge : public GaugeSymmetry {
  public:
   /// Of a form with that layout and gauge.
-  ImpulseGauge(const Mechanism& mechanism, const DaeLayout& layout, Gauge gauge)
-      : of_(mechanism), places_(layout), rule_(gauge) {}
+  ImpulseGauge(const Mechanism& mechanism, const DaeLayout& layout, Gauge gauge,
+               const Start& start);
 
   bool resets() const override { return rule_.kind == Gauge::Kind::reset && places_.m > 0; }
   int impulse_count() const override { return places_.m; }
@@ -40,6 +40,7 @@ class ImpulseGauge : public GaugeSymmetry {
   const Mechanism& of_;
   DaeLayout places_;
   Gauge rule_;
+  double rate_ = 1;  ///< of a mechanism slower than 1/s, its own [1/s]: rates weigh atol times it
   std::shared_ptr<Measure> measure_;
 };
 

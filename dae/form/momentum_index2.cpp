@@ -29,7 +29,7 @@ class MomentumIndex2 final : public DaeFormOf<MomentumIndex2>,
       : DaeFormOf("momentum-index2", mechanism, {mechanism.nq(), mechanism.nv(), mechanism.m()},
                   options, start, Unknowns::impulses),
         HalfExplicitParts(mechanism),
-        ImpulseGauge(mechanism, layout_, gauge()) {}
+        ImpulseGauge(mechanism, layout_, gauge(), start) {}
 
   template <class S>
   void rows(DaeScratch<S>& s, double t, const S* y, const S* ydot, S* r) {

@@ -79,7 +79,7 @@ BdfStep::Outcome BdfStep::attempt(double t1, int order, bool renew, Test test) {
   const double next = h_ / (t1 - past_.time(order)), change = norm(change_.data());
   error_ = std::max(next, std::abs(next - alpha + sum)) * change;
   left_ = error_ > 1 ? left(test.filters) / change : 1;
-  if (!(left_ < 1)) left_ = 1;
+  if (!(left_ < stiff)) left_ = 1;
   error_ *= left_;
   terms_.fill(-1);
   if (gauge_ != nullptr) {

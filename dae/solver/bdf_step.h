@@ -16,8 +16,9 @@
 //
 // is e where h is short beside all times of F, and e τ/h in a component that decays, or swings, in
 // τ: one such filter leaves a, and two leave a τ/h, which is what y_n itself has of the transient.
-// So errors count as filtered, once, at the start and after a rejection twice; terms of other
-// orders in proportion. Weights are those of y_{n−1}: ω^P may be as far off.
+// So errors count as filtered, once, at the start and after a rejection twice, where that leaves
+// less than a tenth; terms of other orders in proportion. Weights are those of y_{n−1}: ω^P may be
+// as far off.
 //
 // Where F has a gauge (gauge_symmetry.h), all norms are of what moves, and gauge reset shifts the
 // past before each step so that the newest σ is zero: the step is then the same, but for rounding,
@@ -82,6 +83,8 @@ class BdfStep {
   static constexpr double slowest = 0.9, rounding = 0.1;
   /// Of a matrix just made they shrink faster than of an old one.
   static constexpr double fastest = 0.02;
+  /// A filter that leaves more says nothing of stiffness.
+  static constexpr double stiff = 0.1;
   /// A matrix serves as long as c has changed by no more than this.
   static constexpr double most_change = 1.25;
 

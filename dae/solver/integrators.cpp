@@ -46,7 +46,7 @@ const std::vector<Integrator>& integrators() {
        "BDF of orders 1 to 5 on past values, whose gauge moves",
        {},
        true},
-      {"radau5", Takes::dae, Step::adaptive, false, false, "Radau IIA, order 5", {}},
+      {"radau5", Takes::dae, Step::adaptive, false, false, "Radau IIA, order 5", {}, true},
       {"generalised-alpha",
        Takes::dae,
        Step::fixed,

@@ -8,10 +8,14 @@
 // variable of index 2 by h (DaeSystem::weight); multipliers are in neither norm.
 // Tolerances: error and estimate are of orders 5 and 3, so the estimate is held at 0.1 tol^(2/3).
 // Step: options.step, without error control, where given; else Gustafsson's prediction; kept, with
-// its factors, where it would grow by less than a fifth. Dense output: the collocation cubic
-// between steps; a sample is a step of its own from the last step's start, of full order and on all
-// constraints; where its iteration does not converge, the cubic. Looking on counts nothing and
-// changes nothing.
+// its factors, where it would grow by less than a fifth. In long runs each step has a share of the
+// tolerance (local_share.h), the estimate its power 2/3. Gauge reset (gauge_symmetry.h): σ leaves p
+// before each step, and by the same constant what the last step foresees of the next; any two
+// stages differ in the new gauge as in the old but by (Φ_q(q_i) − Φ_q(q_0))ᵀσ. Newton's corrections
+// that shrink no more are rounding where they leave the motion as it is. Dense output: the
+// collocation cubic between steps; a sample is a step of its own from the last step's start, of
+// full order and on all constraints; where its iteration does not converge, the cubic. Looking on
+// counts nothing and changes nothing.
 //
 // Order on y, on variables of index 2, of index 3: 5, 3 in index-2 systems; 4, 3, 2 in those of
 // index 3. Source: Hairer, Wanner, Solving Ordinary Differential Equations II, IV.8, VII.4, VII.6;
@@ -19,7 +23,9 @@
 
 #include <momenta/core/scalar/all_finite.h>
 #include <momenta/dae/solver/fixed_grid.h>
+#include <momenta/dae/solver/gauge_symmetry.h>
 #include <momenta/dae/solver/implicit_methods.h>
+#include <momenta/dae/solver/local_share.h>
 #include <momenta/dae/solver/ode_restart.h>
 #include <momenta/dae/solver/radau5_stages.h>
 
@@ -35,6 +41,7 @@ using StageValues = std::array<std::vector<double>, 3>;
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double first_step_fraction = 1e-4;  ///< of the span, as with IDA
 constexpr double safety = 0.9, shrink = 0.125, grow = 8;
+constexpr double moving_part = 1.0 / 3;
 constexpr int most_iterations = 7;
 constexpr int patient_iterations = 40;  ///< no shorter step can be tried
 /// Newton contracts this fast: the derivatives serve another step.
@@ -46,15 +53,20 @@ class Radau5 {
  public:
   Radau5(DaeSystem& system, const IntegrationOptions& options, double span)
       : system_(system),
+        gauge_(dynamic_cast<GaugeSymmetry*>(&system)),
         options_(options),
         span_(span),
+        share_(span, options.rtol),
         inner_(0.1 * std::pow(options.rtol, 2.0 / 3)),
         norm_(system, inner_, inner_ * options.atol / options.rtol),
         n_(static_cast<std::size_t>(system.size())) {
     for (auto* v : {&y_, &ydot_, &y0_, &ydot0_, &error_}) v->resize(n_);
     for (auto* z : {&z_, &trial_, &sample_})
       for (auto& v : *z) v.resize(n_);
-    fraction_ = std::max(norm_.rounding(), std::min(0.03, std::sqrt(inner_)));
+    if (gauge_ == nullptr || gauge_->impulse_count() == 0) gauge_ = nullptr;
+    if (gauge_ == nullptr) return;
+    directions_.resize(static_cast<std::size_t>(gauge_->direction_entries()));
+    constant_.resize(static_cast<std::size_t>(gauge_->impulse_count()));
   }
 
   static const char* name() { return "radau5"; }
@@ -87,8 +99,10 @@ class Radau5 {
   }
 
   bool step(double& t, double end, std::string& cause) {
+    if (gauge_ != nullptr && gauge_->resets()) reset(t);
     y0_ = y_;
     ydot0_ = ydot_;
+    t_ = t;
     norm_set_for_ = 0;
     while (true) {
       const double t1 = step_end(t, end);
@@ -132,6 +146,42 @@ class Radau5 {
   }
 
  private:
+  /// Whether the corrections that do not shrink any more are rounding: of the motion they change
+  /// no more than a tenth of its tolerance (as bdf_step.h has it). What is left of them is along
+  /// Φ_qᵀ, as large as the rounding of q makes it.
+  bool rounding_is_left() {
+    if (gauge_ == nullptr) return false;
+    const double share = 0.1 * share_.now();
+    gauge_->measure_at(t_, y0_.data(), ydot0_.data(), share * options_.rtol, share * options_.atol);
+    stages_->last_correction(error_.data());
+    return gauge_->motion_squares(error_.data()) <= 1;
+  }
+
+  /// y, y' and the last step's stages in the gauge in which σ is zero now.
+  void reset(double t) {
+    const double* sigma = gauge_->impulses(y_.data());
+    for (std::size_t i = 0; i < constant_.size(); ++i) constant_[i] = -sigma[i];
+    if (!first_) {
+      error_ = y0_;
+      shift(t0_, y0_);
+      for (std::size_t i = 0; i < z_.size(); ++i) {
+        for (std::size_t k = 0; k < n_; ++k) z_[i][k] += error_[k];
+        shift(t0_ + c[i] * done_, z_[i]);
+        for (std::size_t k = 0; k < n_; ++k) z_[i][k] -= y0_[k];
+      }
+    }
+    gauge_->reset(t, y_.data(), ydot_.data());
+  }
+  void shift(double t, std::vector<double>& y) {
+    gauge_->gauge_directions(t, y.data(), directions_.data());
+    gauge_->shift(directions_.data(), constant_.data(), y.data());
+  }
+
+  /// What Newton's method leaves, over the tolerance of the estimate.
+  double fraction() const { return std::max(norm_.rounding(), std::min(0.03, std::sqrt(inner_))); }
+  /// Of the tolerance of the estimate.
+  double share() const { return std::pow(share_.now(), 2.0 / 3); }
+
   double longest() const { return options_.max_step > 0 ? options_.max_step : span_; }
 
   double step_end(double t, double end) {
@@ -166,16 +216,17 @@ class Radau5 {
       have_factors_ = true;
       changed_ = false;
     }
-    if (norm_set_for_ != h_) norm_.set(y0_.data(), norm_set_for_ = h_);
+    if (norm_set_for_ != h_) norm_.set(y0_.data(), norm_set_for_ = h_, share());
     guess(trial_, h_, 1);
     const int most = options_.step > 0 ? patient_iterations : most_iterations;
     const Outcome outcome =
-        stages_->solve(*factors_, t, h_, y0_.data(), norm_, fraction_, most, trial_);
+        stages_->solve(*factors_, t, h_, y0_.data(), norm_, fraction(), most, trial_);
     switch (outcome) {
       case Outcome::converged:
         break;
       case Outcome::slow:
       case Outcome::diverged:
+        if (rounding_is_left()) break;
         return fail("Newton's method did not converge", 0.5);
       case Outcome::evaluation_failed:
         return fail(evaluation_cause(system_.failure()), 0.25);
@@ -209,16 +260,25 @@ class Radau5 {
       error_[k] = gamma0 * h_ * ydot0_[k] + error_weights[0] * trial_[0][k] +
                   error_weights[1] * trial_[1][k] + error_weights[2] * trial_[2][k];
     stages_->filter(*factors_, h_, error_.data());
-    double error = norm_.of(error_.data());
+    double error = size_of_error();
     if (error >= 1 && (first_ || rejected_)) {
       stages_->filter(*factors_, h_, error_.data());
-      error = norm_.of(error_.data());
+      error = size_of_error();
     }
     return error;
+  }
+  /// With gauge reset, of what moves alone, which is held at a third: about what it is of the whole
+  /// where σ is small.
+  double size_of_error() {
+    if (gauge_ == nullptr || !gauge_->resets()) return norm_.of(error_.data());
+    const double rtol = share() * inner_ * moving_part;
+    gauge_->measure_at(t_, y0_.data(), ydot0_.data(), rtol, rtol * options_.atol / options_.rtol);
+    return std::sqrt(gauge_->motion_squares(error_.data()));
   }
 
   void accept(double t, double t1, double error, double by_error) {
     ++counters_.steps;
+    share_.passed(h_);
     std::swap(z_, trial_);
     t0_ = t, t1_ = t1, done_ = h_;
     for (std::size_t k = 0; k < n_; ++k) y_[k] = y0_[k] + z_[2][k];
@@ -291,12 +351,12 @@ class Radau5 {
         !look_->differentiate(t0_, y0_.data(), ydot0_.data(), gamma / done_))
       return false;
     look_derivatives_ = t0_;
-    norm_.set(y0_.data(), h);
+    norm_.set(y0_.data(), h, share());
     norm_set_for_ = 0;
     guess(sample_, h, 0);
     look_->contraction = 1;
     const bool solved = look_->factor(*look_factors_, h) &&
-                        look_->solve(*look_factors_, t0_, h, y0_.data(), norm_, fraction_,
+                        look_->solve(*look_factors_, t0_, h, y0_.data(), norm_, fraction(),
                                      patient_iterations, sample_) == Outcome::converged;
     for (std::size_t k = 0; k < n_; ++k) y[k] = y0_[k] + sample_[2][k];
     look_->rate(2, h, sample_, ydot);
@@ -304,8 +364,11 @@ class Radau5 {
   }
 
   DaeSystem& system_;
+  GaugeSymmetry* gauge_;  ///< null: there is none
   const IntegrationOptions& options_;
-  double span_, inner_, fraction_ = 0;  ///< tolerance of the estimate; of Newton, relative to it
+  double span_;
+  LocalShare share_;
+  double inner_;  ///< tolerance of the estimate
   WeightedNorm norm_;
   std::size_t n_;
   std::unique_ptr<Stages> stages_, look_;  ///< of the run, and of samples
@@ -313,9 +376,11 @@ class Radau5 {
   double look_derivatives_ = std::numeric_limits<double>::quiet_NaN();  ///< taken at this t [s]
   std::vector<double> y_, ydot_, y0_, ydot0_, error_;  ///< at the step's end and start
   StageValues z_, trial_, sample_;
-  double start_ = 0;                   ///< of the run [s]
-  double t0_ = 0, t1_ = 0, done_ = 0;  ///< the last step [s]
-  double h_ = 0;                       ///< tried next [s]
+  std::vector<double> directions_, constant_;  ///< of a change of gauge
+  double start_ = 0;                           ///< of the run [s]
+  double t_ = 0;                               ///< where the step under way begins [s]
+  double t0_ = 0, t1_ = 0, done_ = 0;          ///< the last step [s]
+  double h_ = 0;                               ///< tried next [s]
   double old_step_ = 0, old_error_ = 1, norm_set_for_ = 0;
   bool first_ = true, rejected_ = false;
   bool changed_ = true;  ///< h_ is not that of the factors

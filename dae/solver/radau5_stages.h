@@ -119,6 +119,12 @@ class Stages {
   Outcome solve(const Factors& f, double t, double h, const double* y, const WeightedNorm& norm,
                 double fraction, int most, std::array<std::vector<double>, 3>& z);
 
+  /// After solve(): the last correction of Z_3.
+  void last_correction(double* z) const {
+    for (std::size_t k = 0; k < n_; ++k)
+      z[k] = t_(2, 0) * r_[0][k] + t_(2, 1) * r_[1][k] + t_(2, 2) * r_[2][k];
+  }
+
   /// Y'_i = Σ_j (A⁻¹)_ij Z_j / h.
   void rate(int i, double h, const std::array<std::vector<double>, 3>& z, double* ydot) const {
     for (std::size_t k = 0; k < n_; ++k)

@@ -23,9 +23,13 @@ class WeightedNorm {
       kept_ += kept;
     }
   }
-  void set(const double* y, double h) {
+  /// At a share of the tolerance.
+  void set(const double* y, double h, double share = 1) {
+    share_ = share;
     for (std::size_t i = 0; i < weight_.size(); ++i)
-      weight_[i] = power_[i] < 0 ? 0 : std::pow(h, power_[i]) / (atol_[i] + rtol_ * std::abs(y[i]));
+      weight_[i] = power_[i] < 0
+                       ? 0
+                       : std::pow(h, power_[i]) / (share * (atol_[i] + rtol_ * std::abs(y[i])));
   }
   /// Sum of the squares of the weighted values.
   double squares(const double* x) const {
@@ -37,10 +41,12 @@ class WeightedNorm {
   double of(const double* x) const { return std::sqrt(squares(x) / count()); }
   double count() const { return std::max(kept_, 1); }
   /// What roundings of y may come to.
-  double rounding() const { return 100 * std::numeric_limits<double>::epsilon() / rtol_; }
+  double rounding() const {
+    return 100 * std::numeric_limits<double>::epsilon() / (share_ * rtol_);
+  }
 
  private:
-  double rtol_;
+  double rtol_, share_ = 1;
   std::vector<double> weight_, atol_;
   std::vector<int> power_;
   int kept_ = 0;

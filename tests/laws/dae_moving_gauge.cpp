@@ -306,9 +306,9 @@ TEST(Bdf5, GaugesThatAMethodCannotTake) {
     }
     return std::string();
   };
-  for (const char* other : {"ida", "radau5"})
-    EXPECT_NE(refusal(other, "reset").find("expected integrator bdf5 or hem5"), std::string::npos)
-        << refusal(other, "reset");
+  EXPECT_NE(refusal("ida", "reset").find("expected integrator bdf5, radau5 or hem5"),
+            std::string::npos)
+      << refusal("ida", "reset");
   EXPECT_NE(refusal("bdf5", "flip").find("expected none, leak or reset"), std::string::npos);
 }
 
