@@ -16,7 +16,8 @@ ImpulseGauge::Measure::Measure(const Mechanism& mechanism) : e(mechanism.evaluat
 ImpulseGauge::ImpulseGauge(const Mechanism& mechanism, const DaeLayout& layout, Gauge gauge,
                            const Start& start)
     : of_(mechanism), places_(layout), rule_(gauge) {
-  if (mechanism.m() > 0) rate_ = std::min(1.0, default_leak(mechanism, start));
+  // The rate at the start may be that of a mechanism at rest, whose loops bear little.
+  if (mechanism.m() > 0) rate_ = std::clamp(default_leak(mechanism, start), least_rate, 1.0);
 }
 
 ImpulseGauge::Measure& ImpulseGauge::measure() {

@@ -39,6 +39,7 @@ class ImpulseGauge : public GaugeSymmetry {
 
   const Mechanism& of_;
   DaeLayout places_;
+  static constexpr double least_rate = 1e-3;
   Gauge rule_;
   double rate_ = 1;  ///< of a mechanism slower than 1/s, its own [1/s]: rates weigh atol times it
   std::shared_ptr<Measure> measure_;
