@@ -13,7 +13,7 @@
 namespace momenta::equations {
 
 /// A four-bar at (x0, y0), turned by tilt, with a point P of its coupler: ξ along it, η across.
-inline std::string four_bar(const std::string& more = "") {
+inline std::string traced_four_bar(const std::string& more = "") {
   return R"toml(
 name = "four-bar"
 [parameters]

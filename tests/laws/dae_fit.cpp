@@ -48,7 +48,7 @@ FitRequest varied(const std::vector<std::string>& names) {
 // ∂y/∂θ of nine parameters and ∂y/∂s of a four-bar's coupler point and rocker, against its closed
 // formulas in quadruple precision.
 TEST(Fit, DerivativesOfAFourBarInQuadruplePrecision) {
-  const ParametricMechanism family(four_bar(), "four-bar", {}, all_names);
+  const ParametricMechanism family(traced_four_bar(), "four-bar", {}, all_names);
   const VectorXd own = family.own();
   const auto mechanism = family.at(own);
   SweptPoses poses(*mechanism, "O");
@@ -190,7 +190,8 @@ TEST(Fit, DerivativesInSpaceAgainstPosesAssembledAnew) {
 // Freudenstein's equation, d/a cos φ − d/c cos θ + (a² − b² + c² + d²)/(2ac) = cos(θ − φ), is
 // linear in three numbers: three pairs of angles give the links in closed form.
 TEST(Fit, ThreePairsOfAnglesAsByFreudenstein) {
-  const ParametricMechanism family(four_bar(), "four-bar", {}, {"crank", "coupler", "rocker"});
+  const ParametricMechanism family(traced_four_bar(), "four-bar", {},
+                                   {"crank", "coupler", "rocker"});
   const std::vector<double> own(family.own().begin(), family.own().end());
   const double ground = 2.4, crank[] = {0.3, 0.9, 1.6}, change[] = {0.02, -0.03, 0.04};
   WantedPoses wanted;
@@ -220,7 +221,7 @@ TEST(Fit, ThreePairsOfAnglesAsByFreudenstein) {
 // A path that a known four-bar traces, with the crank's angles and without: its nine numbers are
 // found again from a start off by up to 8 %.
 TEST(Fit, AFourBarIsFoundAgainFromItsPath) {
-  const ParametricMechanism family(four_bar(), "four-bar", {}, all_names);
+  const ParametricMechanism family(traced_four_bar(), "four-bar", {}, all_names);
   std::mt19937 random(11);
   std::uniform_real_distribution<double> off(-0.08, 0.08);
   for (const bool given : {true, false}) {
@@ -261,7 +262,7 @@ TEST(Fit, HoeckensLengthAsByASearch) {
     const double a = low + (high - low) / 3, b = high - (high - low) / 3;
     (squares(a) < squares(b) ? high : low) = squares(a) < squares(b) ? b : a;
   }
-  std::string scene = four_bar();
+  std::string scene = traced_four_bar();
   const auto set = [&](const std::string& line, const std::string& by) {
     const std::size_t at = scene.find(line);
     ASSERT_NE(at, std::string::npos) << line;
@@ -290,7 +291,7 @@ TEST(Fit, HoeckensLengthAsByASearch) {
 // that is refused is told and does not end the search.
 TEST(Fit, StartsFollowFromTheSeed) {
   const std::vector<std::string> names{"crank", "coupler", "rocker"};
-  const ParametricMechanism family(four_bar(), "four-bar", {}, names);
+  const ParametricMechanism family(traced_four_bar(), "four-bar", {}, names);
   FitRequest request = varied(names);
   request.parameters[0].range = {0.5, 1.4};
   request.parameters[1].range = {0.8, 4.0};
@@ -328,7 +329,7 @@ TEST(Fit, StartsFollowFromTheSeed) {
 
 // A bound that the free minimum lies beyond holds, and is a minimum there.
 TEST(Fit, BoundsHold) {
-  const ParametricMechanism family(four_bar(), "four-bar", {}, {"coupler", "rocker"});
+  const ParametricMechanism family(traced_four_bar(), "four-bar", {}, {"coupler", "rocker"});
   VectorXd known(9);
   known << 1, 2.9, 2.0, 2.4, 1.4, 0.7, 0.2, -0.3, 0.3;
   FitRequest request = varied({"coupler", "rocker"});
@@ -349,7 +350,7 @@ TEST(Fit, BoundsHold) {
 
 // Only angles are wanted: no place of the mechanism matters, nor its size.
 TEST(Fit, WhatIsNotDeterminedIsSaid) {
-  const ParametricMechanism family(four_bar("idle = 1\n"), "four-bar", {},
+  const ParametricMechanism family(traced_four_bar("idle = 1\n"), "four-bar", {},
                                    {"crank", "coupler", "rocker", "ground"});
   WantedPoses wanted;
   wanted.quantities = {{"C.q", "rad", 2, -1, 0}};
@@ -362,14 +363,14 @@ TEST(Fit, WhatIsNotDeterminedIsSaid) {
   EXPECT_EQ(r.undetermined,
             "Parameters 'crank', 'coupler', 'rocker', 'ground' can change together in 1 way "
             "without a change of what is wanted, to first order: others are as good.");
-  const ParametricMechanism idle(four_bar("idle = 1\n"), "four-bar", {}, {"crank", "idle"});
+  const ParametricMechanism idle(traced_four_bar("idle = 1\n"), "four-bar", {}, {"crank", "idle"});
   EXPECT_EQ(fit(idle, wanted, varied({"crank", "idle"})).undetermined,
             "What is wanted does not depend on 'idle'.");
 }
 
 // The scene that is written has the numbers found and all else as it was.
 TEST(Fit, TheSceneKeepsItsText) {
-  const std::string text = four_bar("ratio = \"2 * crank\"  # kept\n");
+  const std::string text = traced_four_bar("ratio = \"2 * crank\"  # kept\n");
   const ParametricMechanism family(text, "four-bar", {}, {"tilt", "crank", "ratio"});
   const std::string written = family.text(Eigen::Vector3d(0.1, 1.25, -3e-9));
   std::string expected = text;
@@ -388,7 +389,7 @@ TEST(Fit, TheSceneKeepsItsText) {
 // Where the path alone counts, places begin at the nearest of those a degree apart; and a turn of
 // the crank's zero changes no path of a point of the crank, once places follow.
 TEST(Fit, FreePlacesFollow) {
-  const ParametricMechanism family(four_bar(), "four-bar", {}, all_names);
+  const ParametricMechanism family(traced_four_bar(), "four-bar", {}, all_names);
   const std::vector<double> places{-1.1, -0.2, 0.7, 1.9, 2.6};
   WantedError error(family, "O", wanted_by_trigonometry(family.own(), places, false),
                     family.own().cwiseAbs());
@@ -397,7 +398,7 @@ TEST(Fit, FreePlacesFollow) {
   for (std::size_t i = 0; i < places.size(); ++i)
     EXPECT_NEAR(x[family.own().size() + static_cast<Eigen::Index>(i)], places[i], 0.51 * pi / 180);
   const ParametricMechanism turned(
-      four_bar() + "[[marker]]\nname = \"K\"\nbody = \"crank\"\npoint = [\"crank\", 0, 0]\n",
+      traced_four_bar() + "[[marker]]\nname = \"K\"\nbody = \"crank\"\npoint = [\"crank\", 0, 0]\n",
       "four-bar", {}, {"crank", "tilt"});
   WantedPoses wanted;
   wanted.quantities = {{"K.x", "m", -1, 1, 0}, {"K.y", "m", -1, 1, 1}};
@@ -411,7 +412,7 @@ TEST(Fit, FreePlacesFollow) {
 
 // Poses are reached up to where the swept coordinate turns back, and no further.
 TEST(Fit, PosesAreReachedUpToDeadPoints) {
-  const ParametricMechanism family(four_bar(), "four-bar", {}, {"crank"});
+  const ParametricMechanism family(traced_four_bar(), "four-bar", {}, {"crank"});
   const auto mechanism = family.at(family.own());
   MoveRequest request;
   request.sweep = {{"C", 1}};
@@ -427,7 +428,7 @@ TEST(Fit, PosesAreReachedUpToDeadPoints) {
 // The page's film: in every frame both mechanisms are closed, their cranks stand at one place, and
 // a ball stands where the path is wanted.
 TEST(Fit, ThePictureHasBothMechanismsClosed) {
-  const ParametricMechanism family(four_bar(), "four-bar", {}, all_names);
+  const ParametricMechanism family(traced_four_bar(), "four-bar", {}, all_names);
   VectorXd known = family.own();
   known *= 1.05;
   const FitResult r = fit(family, wanted_by_trigonometry(known, {0.2, 0.7, 1.2, 1.6, 2.0}, true),
@@ -473,7 +474,7 @@ std::string refusal(const std::function<void()>& f) {
 
 // Files of wanted poses: what is read, and each thing that is wrong with one, by file and line.
 TEST(Fit, FilesOfWantedPoses) {
-  const ParametricMechanism family(four_bar(), "four-bar", {}, {"crank"});
+  const ParametricMechanism family(traced_four_bar(), "four-bar", {}, {"crank"});
   const auto mechanism = family.at(family.own());
   const auto file = std::filesystem::temp_directory_path() / "momenta_fit_wanted.csv";
   const auto read = [&](const std::string& text) {
@@ -513,10 +514,10 @@ TEST(Fit, FilesOfWantedPoses) {
 
 // What cannot be done is said in one sentence.
 TEST(Fit, WhatCannotBeDoneIsSaid) {
-  EXPECT_EQ(refusal([] { ParametricMechanism(four_bar(), "four-bar", {}, {"crnk"}); }),
+  EXPECT_EQ(refusal([] { ParametricMechanism(traced_four_bar(), "four-bar", {}, {"crnk"}); }),
             "'crnk': the scene has no parameter of that name; did you mean 'crank'?");
   EXPECT_EQ(refusal([] {
-              ParametricMechanism(four_bar(), "four-bar", {}, {"tilt", "tilt"});
+              ParametricMechanism(traced_four_bar(), "four-bar", {}, {"tilt", "tilt"});
             }),
             "'tilt' is varied twice");
   EXPECT_EQ(refusal([] { FittedParameter::from_text("crank=1"); }),
@@ -525,9 +526,9 @@ TEST(Fit, WhatCannotBeDoneIsSaid) {
             "--vary 'crank=2:1': expected the smaller end first");
   EXPECT_EQ(refusal([] { FittedParameter::from_text("crank=a:1"); }),
             "--vary 'crank=a:1': found 'a', expected a number");
-  const ParametricMechanism family(four_bar(), "four-bar", {}, {"crank"});
+  const ParametricMechanism family(traced_four_bar(), "four-bar", {}, {"crank"});
   const WantedPoses wanted = wanted_by_trigonometry(
-      ParametricMechanism(four_bar(), "four-bar", {}, all_names).own(), {0.3, 0.6}, true);
+      ParametricMechanism(traced_four_bar(), "four-bar", {}, all_names).own(), {0.3, 0.6}, true);
   FitRequest request = varied({"crank"});
   request.starts = 2;
   EXPECT_EQ(refusal([&] { fit(family, wanted, request); }),

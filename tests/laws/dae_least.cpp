@@ -116,7 +116,7 @@ std::vector<std::string> names_of(const std::vector<FittedParameter>& parameters
 // ∂J/∂θ by nine parameters of a four-bar, of functionals of positions, angles and rates of the
 // coupler point, against the closed formulas in quadruple precision; J itself as well.
 TEST(Least, GradientsOfSweptMotionsInQuadruplePrecision) {
-  const ParametricMechanism family(four_bar(), "four-bar", {}, all_names);
+  const ParametricMechanism family(traced_four_bar(), "four-bar", {}, all_names);
   const VectorXd own = family.own();
   constexpr int poses = 24;
   constexpr double from = -1.7, to = 2.9, rate = 1.3;
@@ -151,7 +151,7 @@ TEST(Least, GradientsOfSweptMotionsInQuadruplePrecision) {
 // eliminated by other means.
 TEST(Least, EffortsAsByInverseDynamics) {
   const ParametricMechanism family(
-      four_bar("\n") +
+      traced_four_bar("\n") +
           "[[force]]\nkind = \"spring-damper\"\nparent = \"ground\"\nchild = "
           "\"rocker\"\norigin = { parent = [0, 3, 0], child = [\"rocker\", 0, 0] }\n"
           "stiffness = 30\ndamping = 4\nrest = 1\n",
@@ -200,7 +200,7 @@ TEST(Least, TheSmallestLargestDeviationAsByASearch) {
     const double a = low + (high - low) / 3, b = high - (high - low) / 3;
     (deviation(a) < deviation(b) ? high : low) = deviation(a) < deviation(b) ? b : a;
   }
-  std::string scene = four_bar();
+  std::string scene = traced_four_bar();
   const auto set = [&](const std::string& line, const std::string& by) {
     const std::size_t at = scene.find(line);
     ASSERT_NE(at, std::string::npos) << line;
@@ -227,7 +227,7 @@ TEST(Least, TheSmallestLargestDeviationAsByASearch) {
 // A transmission angle that is kept: at the optimum it is met by the worst pose to 1e-10, by the
 // law of cosines; and the result is no worse than any four-bar near it that keeps it.
 TEST(Least, ATransmissionAngleIsKept) {
-  std::string scene = four_bar();
+  std::string scene = traced_four_bar();
   const ParametricMechanism family(scene, "four-bar", {}, {"crank"});
   LeastRequest request = of_crank("-crank", {{"crank", std::nullopt}});
   request.way = SweptWay{"O", std::nullopt, 73, 1};
@@ -253,7 +253,7 @@ TEST(Least, ATransmissionAngleIsKept) {
 // A condition with two extremes, where many poses are as high and as low as may be: no worse than
 // what a search over two parameters finds by cutting steps, and kept to 1e-10.
 TEST(Least, ConditionsWithSeveralExtremesAreKept) {
-  const ParametricMechanism family(four_bar(), "four-bar", {}, {"along", "across"});
+  const ParametricMechanism family(traced_four_bar(), "four-bar", {}, {"along", "across"});
   LeastRequest request =
       of_crank("-along - 0.3*across", {ranged("along", 0, 4), ranged("across", -3, 3)});
   request.way = SweptWay{"O", std::nullopt, 25, 1};
@@ -261,7 +261,7 @@ TEST(Least, ConditionsWithSeveralExtremesAreKept) {
   const LeastResult r = least(family, request);
   EXPECT_TRUE(r.starts.front().converged) << r.starts.front().why;
   std::vector<double> v(all_names.size());
-  const ParametricMechanism all(four_bar(), "four-bar", {}, all_names);
+  const ParametricMechanism all(traced_four_bar(), "four-bar", {}, all_names);
   for (std::size_t i = 0; i < v.size(); ++i) v[i] = all.own()[static_cast<Index>(i)];
   const auto room = [&](double along, double across) {
     double most[2]{-INFINITY, -INFINITY}, least[2]{INFINITY, INFINITY};
@@ -291,9 +291,9 @@ TEST(Least, ConditionsWithSeveralExtremesAreKept) {
 // Wanted poses with a condition that holds: what Ceres finds with the bound that it amounts to.
 TEST(Least, ConditionsOfWantedPosesAsByBounds) {
   const std::vector<std::string> names{"crank", "coupler", "rocker"};
-  const ParametricMechanism family(four_bar(), "four-bar", {}, names);
+  const ParametricMechanism family(traced_four_bar(), "four-bar", {}, names);
   std::vector<double> known(all_names.size());
-  const ParametricMechanism all(four_bar(), "four-bar", {}, all_names);
+  const ParametricMechanism all(traced_four_bar(), "four-bar", {}, all_names);
   for (std::size_t i = 0; i < known.size(); ++i) known[i] = all.own()[static_cast<Index>(i)];
   known[1] = 2.8;
   for (const bool given : {true, false}) {
@@ -405,7 +405,7 @@ TEST(Least, FunctionalsOfRuns) {
 TEST(Least, AStoppedSearchGoesOn) {
   const std::vector<FittedParameter> parameters{ranged("crank", 0.5, 1.4),
                                                 ranged("coupler", 2, 4.0)};
-  const ParametricMechanism family(four_bar(), "four-bar", {}, names_of(parameters));
+  const ParametricMechanism family(traced_four_bar(), "four-bar", {}, names_of(parameters));
   LeastRequest request = of_crank("mean((P.y - 1)^2) + 0.1*mean((P.x - 0.5)^2)", parameters);
   request.keep = {"coupler <= 3 - 0.1*crank"};
   request.starts = 4;
@@ -475,7 +475,7 @@ TEST(Least, AStoppedSearchGoesOn) {
 // A mechanism that does not close is no candidate: the search for a long crank ends where the crank
 // still comes round, by Grashof's rule, and says why; with that rule as a condition it is met.
 TEST(Least, MechanismsThatDoNotCloseAreNoCandidates) {
-  const ParametricMechanism family(four_bar(), "four-bar", {}, {"crank"});
+  const ParametricMechanism family(traced_four_bar(), "four-bar", {}, {"crank"});
   LeastRequest request = of_crank("-crank", {{"crank", std::nullopt}});
   request.way = SweptWay{"O", std::nullopt, 73, 1};
   request.keep = {"crank + 2*max(ground, max(coupler, rocker)) <= ground + coupler + rocker - 0.1"};
@@ -527,7 +527,7 @@ TEST(Least, FormulasOfMotions) {
       condition("P.x == a").starts_with("'P.x == a': an equation cannot hold at every pose"))
       << condition("P.x == a");
   EXPECT_EQ(MotionCondition::from_text("P.x >= a", {"a"}).gap.parts[0].formula, "(a) - (P.x)");
-  const ParametricMechanism family(four_bar(), "four-bar", {}, {"crank"});
+  const ParametricMechanism family(traced_four_bar(), "four-bar", {}, {"crank"});
   const std::vector<FittedParameter> crank{{"crank", std::nullopt}};
   EXPECT_EQ(refusal([&] { least(family, of_crank("max(Q.x)", crank)); }).substr(0, 25),
             "'Q.x': unknown name 'Q.x'");
