@@ -37,13 +37,13 @@ GradientMode gradient_mode(const std::string& name);
 
 /// What is asked.
 struct GradientRequest {
-  std::string of;               ///< g, a formula of names of trajectory.csv
-  bool integral = false;        ///< ∫ g dt over the run; else g at its end
-  std::vector<std::string> by;  ///< θ: parameters, "a"; start values, "O.q", "O.u"
-  RunSettings settings;         ///< `samples`: of the derivatives of the trajectory
-  bool trajectory = false;      ///< they are kept: forward alone has them
-  GradientMode mode = GradientMode::automatic;
-  double max_cpu_seconds = 0;  ///< 0: none
+  std::string of;                               ///< g, a formula of names of trajectory.csv
+  bool integral = false;                        ///< ∫ g dt over the run; else g at its end
+  std::vector<std::string> by;                  ///< θ: parameters, "a"; start values, "O.q", "O.u"
+  RunSettings settings;                         ///< `samples`: of the derivatives of the trajectory
+  bool trajectory = false;                      ///< they are kept: forward alone has them
+  GradientMode mode = GradientMode::automatic;  ///< forward, or one sweep back
+  double max_cpu_seconds = 0;                   ///< 0: none
   /// Called after each step with the time reached; false ends it.
   std::function<bool(double t)> progress;
 };

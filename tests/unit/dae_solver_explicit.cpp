@@ -392,7 +392,10 @@ TEST_P(EveryExplicit, AFailingCorrectionIsAFailure) {
 }
 
 TEST_P(EveryExplicit, AFailureOfDenseOutputAloneIsNoticed) {
-  // f exists at step ends and fails for good once the step is over: nothing to interpolate with.
+  // f exists at step ends and fails for good once the step is over: nothing to interpolate with for
+  // methods whose dense output takes stages of its own.
+  const std::string method = GetParam();
+  const bool has_stages = method == "dop853" || method == "vern9";
   bool refuse = false;
   Given system(1, [&](double, const double*, double* f) {
     f[0] = 1;
@@ -400,14 +403,14 @@ TEST_P(EveryExplicit, AFailureOfDenseOutputAloneIsNoticed) {
   });
   Observer observer;
   observer.step = [&](double t0, double t1, const Interpolant& between) {
-    refuse = std::string(GetParam()) != "dp5";
+    refuse = has_stages;
     double y;
     between((t0 + t1) / 2, &y);
     EXPECT_EQ(std::isnan(y), refuse);
     return true;
   };
   const IntegrationResult r = run(system, {0}, {1.0}, observer);
-  EXPECT_EQ(r.done, std::string(GetParam()) == "dp5");
+  EXPECT_EQ(r.done, !has_stages);
 }
 
 TEST_P(EveryExplicit, ObserversCanStopTheRun) {
