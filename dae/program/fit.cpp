@@ -1,7 +1,6 @@
 // The verb `fit`: parameters of a scene for which its mechanism does what is wanted.
 
 #include <momenta/core/scene/file_text.h>
-#include <momenta/dae/report/fit_picture.h>
 #include <momenta/dae/report/fit_report.h>
 #include <momenta/dae/report/page.h>
 #include <momenta/dae/study/environment.h>
@@ -10,7 +9,7 @@
 #include <ctime>
 #include <stdexcept>
 
-#include "options.h"
+#include "search.h"
 
 namespace momenta::program {
 
@@ -22,6 +21,30 @@ SweptWay way_of(const FitOptions& options) {
   way.poses = options.poses.value_or(way.poses);
   way.rate = options.rate.value_or(way.rate);
   return way;
+}
+
+std::function<bool(int, double)> search_progress(const Options& o, ProgressLine& line, int starts,
+                                                 const std::string& what) {
+  return [&o, &line, starts, what](int start, double least) {
+    line.show("start " + std::to_string(start + 1) + " of " + std::to_string(starts) +
+              (start > 0 ? ", " + what + std::to_string(least) : ""));
+    const double spent = static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+    return !interrupted() && !(o.cpu_limit && spent > *o.cpu_limit);
+  };
+}
+
+ShownSearch shown_search(const Options& o, const ParametricMechanism& family,
+                         const FitResult& found) {
+  constexpr int frames = 240;
+  const FitPicture picture = fit_picture(family, found, frames);
+  ShownSearch shown{{}, picture.first};
+  if (film_intervals_of(*picture.mechanism, o, 1) >= frames) {
+    shown.study.motions.push_back(motion_of(*picture.mechanism, picture.film));
+    shown.study.motions.back().run = -1;
+  }
+  describe(shown.study, o, *picture.mechanism, assemble(*picture.mechanism, Assembled::rates));
+  shown.study.scene = found.scene;
+  return shown;
 }
 
 int fit(const Options& o, const FitOptions& options) {
@@ -57,12 +80,7 @@ int fit(const Options& o, const FitOptions& options) {
   request.keep = options.keep;
   request.way = way_of(options);
   ProgressLine line(o.quiet);
-  request.progress = [&](int start, double least) {
-    line.show("start " + std::to_string(start + 1) + " of " + std::to_string(options.starts) +
-              (start > 0 ? ", least cost " + std::to_string(least) : ""));
-    const double spent = static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
-    return !interrupted() && !(o.cpu_limit && spent > *o.cpu_limit);
-  };
+  request.progress = search_progress(o, line, options.starts, "least cost ");
   Options asked = o;
   asked.reference = file;  // what a study is told by
   const auto journal = keep_runs(asked);
@@ -74,20 +92,12 @@ int fit(const Options& o, const FitOptions& options) {
   json["environment"] = environment_json(environment());
   const std::string text = json.dump(2) + "\n";
   if (!o.out.empty()) {
-    constexpr int frames = 240;
-    const FitPicture picture = fit_picture(family, result, frames);
-    StudyResult study;
-    if (film_intervals_of(*picture.mechanism, o, 1) >= frames) {
-      study.motions.push_back(motion_of(*picture.mechanism, picture.film));
-      study.motions.back().run = -1;
-    }
-    describe(study, o, *picture.mechanism, assemble(*picture.mechanism, Assembled::rates));
-    study.scene = result.scene;
+    const ShownSearch shown = shown_search(o, family, result);
     const bool written =
         write_results({{o.out / "fit.csv", fit_csv(result)},
                        {o.out / "fit.json", text},
                        {o.out / "fitted.toml", family.text(result.found)},
-                       {o.out / "index.html", fit_page(study, result, picture.first)}});
+                       {o.out / "index.html", fit_page(shown.study, result, shown.first)}});
     close(journal.get(), result.starts.size(), written && !result.stopped, o);
     if (!written) return run_failed;
   }

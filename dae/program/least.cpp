@@ -1,16 +1,13 @@
 // The verb `fit --least`: parameters for which a functional of a motion is least.
 
 #include <momenta/core/scene/file_text.h>
-#include <momenta/dae/report/fit_picture.h>
 #include <momenta/dae/report/least_report.h>
 #include <momenta/dae/report/page.h>
 #include <momenta/dae/study/environment.h>
-#include <momenta/dae/study/motion.h>
 
-#include <ctime>
 #include <stdexcept>
 
-#include "options.h"
+#include "search.h"
 
 namespace momenta::program {
 
@@ -35,12 +32,7 @@ int least_verb(const Options& o, const FitOptions& options, std::vector<FittedPa
     request.settings = run_settings(o, request.scene.scene().run);
   }
   ProgressLine line(o.quiet);
-  request.progress = [&](int start, double least) {
-    line.show("start " + std::to_string(start + 1) + " of " + std::to_string(options.starts) +
-              (start > 0 ? ", least so far " + std::to_string(least) : ""));
-    const double spent = static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
-    return !interrupted() && !(o.cpu_limit && spent > *o.cpu_limit);
-  };
+  request.progress = search_progress(o, line, options.starts, "least so far ");
   const auto journal = keep_runs(o);
   request.journal = journal.get();
   const LeastResult result = least(family, request);
@@ -58,17 +50,10 @@ int least_verb(const Options& o, const FitOptions& options, std::vector<FittedPa
       fitted.own = result.own;
       fitted.found = result.found;
       fitted.swept = *result.swept;
-      constexpr int frames = 240;
-      const FitPicture picture = fit_picture(family, fitted, frames);
-      StudyResult study;
-      if (film_intervals_of(*picture.mechanism, o, 1) >= frames) {
-        study.motions.push_back(motion_of(*picture.mechanism, picture.film));
-        study.motions.back().run = -1;
-      }
-      describe(study, o, *picture.mechanism, assemble(*picture.mechanism, Assembled::rates));
-      study.scene = result.scene;
+      fitted.scene = result.scene;
+      const ShownSearch shown = shown_search(o, family, fitted);
       files.push_back({o.out / "fit.csv", least_csv(result)});
-      files.push_back({o.out / "index.html", least_page(study, result, picture.first)});
+      files.push_back({o.out / "index.html", least_page(shown.study, result, shown.first)});
     }
     const bool written = write_results(files);
     close(journal.get(), result.starts.size(), written && !result.stopped, o);

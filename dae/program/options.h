@@ -17,12 +17,6 @@
 #include <optional>
 #include <string>
 
-namespace momenta {
-struct FittedParameter;     // dae/fit/fitted_parameter.h
-struct SweptWay;            // dae/fit/swept_parts.h
-class ParametricMechanism;  // dae/fit/parametric_mechanism.h
-}  // namespace momenta
-
 namespace momenta::program {
 
 inline constexpr int done = 0, run_failed = 1, bad_input = 2;
@@ -256,11 +250,6 @@ struct FitOptions {
   std::uint64_t seed = 1;
 };
 int fit(const Options& o, const FitOptions& f);
-/// The way that is asked for.
-SweptWay way_of(const FitOptions& f);
-/// `fit --least`
-int least_verb(const Options& o, const FitOptions& f, std::vector<FittedParameter> parameters,
-               const ParametricMechanism& family);
 struct GradientOptions {
   std::string of;         ///< a formula
   std::string by;         ///< comma-separated

@@ -25,9 +25,4 @@ nlohmann::ordered_json least_json(const LeastResult& result);
 /// `first`, as pages have them (dae/report/page/timeline.js).
 nlohmann::ordered_json least_charts(const LeastResult& result, double first);
 
-/// Of conditions: [{condition, before, after, multiplier}], as fit.json has them.
-nlohmann::ordered_json kept_json(const std::vector<KeptCondition>& keep);
-/// The same as a table; empty without conditions.
-std::string kept_table(const std::vector<KeptCondition>& keep);
-
 }  // namespace momenta

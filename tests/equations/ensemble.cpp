@@ -36,6 +36,20 @@ Start start_of(const Mechanism& mechanism) {
   return moved(assemble(mechanism).start, jitter());
 }
 
+RunResult run_of(const Mechanism& mechanism, const std::string& form, const std::string& integrator,
+                 const std::string& gauge, double tolerance, double end, double max_cpu_seconds) {
+  RunRequest request;
+  request.settings.form = form;
+  request.settings.integrator = integrator;
+  request.settings.gauge = gauge;
+  request.settings.rtol = request.settings.atol = tolerance;
+  request.settings.end_time = end;
+  request.settings.samples = 20;
+  request.keep_trajectory = true;
+  request.max_cpu_seconds = max_cpu_seconds;
+  return run_form(mechanism, start_of(mechanism), request);
+}
+
 std::vector<Start> starts_of(const Mechanism& mechanism, int members) {
   const Start start = assemble(mechanism).start;
   std::vector<Start> all;

@@ -14,7 +14,9 @@
 // pattern k: whatever fails then has drawn its bound around rounding.
 
 #include <momenta/dae/assembly/assembly.h>
+#include <momenta/dae/study/run_form.h>
 
+#include <string>
 #include <vector>
 
 namespace momenta::equations {
@@ -28,6 +30,10 @@ Start moved(Start start, int k);
 
 /// The start of a mechanism's runs: assembled, moved by MOMENTA_JITTER.
 Start start_of(const Mechanism& mechanism);
+/// A run from there at one tolerance, twenty samples, with its trajectory.
+RunResult run_of(const Mechanism& mechanism, const std::string& form, const std::string& integrator,
+                 const std::string& gauge, double tolerance, double end,
+                 double max_cpu_seconds = 0);
 /// `members` of them, the first as start_of() has it.
 std::vector<Start> starts_of(const Mechanism& mechanism, int members = 20);
 

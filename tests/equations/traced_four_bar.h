@@ -82,6 +82,24 @@ point = ["along", "across", 0]
 )toml";
 }
 
+/// Hoecken's linkage: crank 1 on a ground of 2 at height y0, coupler and rocker of one `length`,
+/// its point twice as far. `parameters` are put before, `length` among them.
+inline std::string hoecken(const std::string& parameters, const std::string& y0) {
+  std::string scene = traced_four_bar();
+  const auto set = [&](const std::string& line, const std::string& by) {
+    scene.replace(scene.find(line), line.size(), by);
+  };
+  set("coupler = 2.6", parameters + "coupler = \"length\"");
+  set("rocker = 2.2", "rocker = \"length\"");
+  set("ground = 2.4", "ground = 2");
+  set("along = 1.4", "along = \"2 * length\"");
+  set("across = 0.7", "across = 0");
+  set("x0 = 0.2", "x0 = 0");
+  set("y0 = -0.3", "y0 = " + y0);
+  set("tilt = 0.3", "tilt = 0");
+  return scene;
+}
+
 inline const std::vector<std::string> all_names{"crank",  "coupler", "rocker", "ground", "along",
                                                 "across", "x0",      "y0",     "tilt"};
 
@@ -108,6 +126,20 @@ std::array<S, 3> by_trigonometry(const std::vector<S>& v, S s) {
   const S px = ax + v[4] * cx - v[5] * cy, py = ay + v[4] * cy + v[5] * cx;
   return {v[6] + px * cos(v[8]) - py * sin(v[8]), v[7] + px * sin(v[8]) + py * cos(v[8]),
           angle_of(by, bx - ground)};
+}
+
+/// Height of the point of Hoecken's linkage on a ground at 0, the crank at s.
+inline double hoecken_height(double length, double s) {
+  return by_trigonometry<double>({1, length, length, 2, 2 * length, 0, 0, 0, 0}, s)[1];
+}
+/// Where a function with one minimum between two numbers has it, by thirds, to `within`.
+inline double place_of_least(const std::function<double(double)>& f, double low, double high,
+                             double within) {
+  while (high - low > within) {
+    const double a = low + (high - low) / 3, b = high - (high - low) / 3;
+    (f(a) < f(b) ? high : low) = f(a) < f(b) ? b : a;
+  }
+  return 0.5 * (low + high);
 }
 
 /// Of f at x, by x_j, in quadruple precision: central differences whose error is below 1e-18.

@@ -73,17 +73,7 @@ JointSpec& rocker_of(Scene& scene) {
 
 RunResult run(const Scene& scene, const std::string& form, const std::string& integrator,
               const std::string& gauge, double tolerance, double end) {
-  const Mechanism mechanism(scene);
-  RunRequest request;
-  request.settings.form = form;
-  request.settings.integrator = integrator;
-  request.settings.gauge = gauge;
-  request.settings.rtol = request.settings.atol = tolerance;
-  request.settings.end_time = end;
-  request.settings.samples = 20;
-  request.keep_trajectory = true;
-  request.max_cpu_seconds = 30;
-  return run_form(mechanism, equations::start_of(mechanism), request);
+  return equations::run_of(Mechanism(scene), form, integrator, gauge, tolerance, end, 30);
 }
 
 // A damper of 10⁸ N m s/rad stops the mechanism within 10⁻⁸ s: the transient is of the size of the

@@ -23,19 +23,6 @@ Scene example(const std::string& name) {
   return read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples" / name / "scene.toml");
 }
 
-RunResult run(const Mechanism& mechanism, const std::string& form, const std::string& integrator,
-              const std::string& gauge, double tolerance, double end) {
-  RunRequest request;
-  request.settings.form = form;
-  request.settings.integrator = integrator;
-  request.settings.gauge = gauge;
-  request.settings.rtol = request.settings.atol = tolerance;
-  request.settings.end_time = end;
-  request.settings.samples = 20;
-  request.keep_trajectory = true;
-  return run_form(mechanism, equations::start_of(mechanism), request);
-}
-
 /// Largest difference of q over the samples, relative to 1 + |q|.
 double apart(const RunResult& a, const RunResult& b, int nq) {
   double worst = 0;
@@ -50,11 +37,11 @@ double apart(const RunResult& a, const RunResult& b, int nq) {
 void expect_all_forms_agree(const Scene& scene, Algebra algebra, double end, double explicit_bound,
                             double ida_bound) {
   const Mechanism mechanism(scene, {.algebra = algebra});
-  const RunResult tight = run(mechanism, "momentum", "dop853", "leak", 1e-13, end);
+  const RunResult tight = equations::run_of(mechanism, "momentum", "dop853", "leak", 1e-13, end);
   ASSERT_EQ(tight.status, "done") << tight.reason;
   const auto expect_close = [&](const std::string& form, const std::string& integrator,
                                 const std::string& gauge, double tolerance, double bound) {
-    const RunResult found = run(mechanism, form, integrator, gauge, tolerance, end);
+    const RunResult found = equations::run_of(mechanism, form, integrator, gauge, tolerance, end);
     const std::string what = form + " " + integrator + " " + gauge;
     ASSERT_EQ(found.status, "done") << what << ": " << found.reason;
     const double error = apart(found, tight, mechanism.nq());
