@@ -1,4 +1,5 @@
 #include <momenta/core/expression/evaluate.h>
+#include <momenta/core/expression/function_names.h>
 #include <momenta/core/expression/parser.h>
 #include <momenta/core/expression/simplify.h>
 #include <momenta/core/expression/spline.h>
@@ -57,7 +58,7 @@ bool is_plain_name(std::string_view name) {
 
 bool is_reserved_name(std::string_view name) {
   return name == "pi" || name == "t" || name == "and" || name == "or" || name == "not" ||
-         formula::is_function(name);
+         formula::function_of_name(name);
 }
 
 Expression::Expression(std::string_view text, std::span<const std::string> names) {

@@ -1,5 +1,5 @@
 #include <momenta/core/expression/formula_text.h>
-#include <momenta/core/expression/parser.h>
+#include <momenta/core/expression/function_names.h>
 #include <momenta/core/text/near_name.h>
 
 #include <algorithm>

@@ -18,8 +18,4 @@ struct Parsed {
 /// @throws ExpressionError. O(length) and lookups of names
 Parsed parse(std::string_view text, FormulaNames& names);
 
-/// The name of a function, empty of another operation; and whether there is one of this name.
-std::string_view function_name(Operation operation);
-bool is_function(std::string_view name);
-
 }  // namespace momenta::formula
