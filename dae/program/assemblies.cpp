@@ -8,7 +8,9 @@
 #include <cstdio>
 #include <thread>
 
-#include "options.h"
+#include "answers.h"
+#include "loading.h"
+#include "results.h"
 
 namespace momenta::program {
 namespace {

@@ -9,8 +9,10 @@
 #include <cstdio>
 #include <type_traits>
 
-#include "options.h"
+#include "answers.h"
+#include "progress_line.h"
 #include "publish_suite.h"
+#include "results.h"
 
 namespace momenta::program {
 namespace {

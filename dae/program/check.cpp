@@ -12,8 +12,9 @@
 #include <map>
 #include <vector>
 
+#include "answers.h"
 #include "cut_words.h"
-#include "options.h"
+#include "loading.h"
 #include "reach_words.h"
 
 namespace momenta::program {

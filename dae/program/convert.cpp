@@ -8,8 +8,10 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "answers.h"
 #include "cut_words.h"
-#include "options.h"
+#include "loading.h"
+#include "results.h"
 
 namespace momenta::program {
 namespace {

@@ -5,7 +5,10 @@
 #include <algorithm>
 #include <thread>
 
-#include "options.h"
+#include "answers.h"
+#include "loading.h"
+#include "progress_line.h"
+#include "results.h"
 
 namespace momenta::program {
 

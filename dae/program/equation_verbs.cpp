@@ -10,9 +10,12 @@
 #include <limits>
 #include <stdexcept>
 
+#include "answers.h"
 #include "cpu_limit.h"
-#include "options.h"
+#include "loading.h"
+#include "progress_line.h"
 #include "publish_suite.h"
+#include "results.h"
 
 namespace momenta::program {
 namespace {

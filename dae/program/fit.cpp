@@ -9,6 +9,10 @@
 #include <ctime>
 #include <stdexcept>
 
+#include "answers.h"
+#include "loading.h"
+#include "progress_line.h"
+#include "results.h"
 #include "search.h"
 
 namespace momenta::program {

@@ -6,7 +6,10 @@
 #include <momenta/dae/report/gradient_report.h>
 #include <momenta/dae/study/environment.h>
 
-#include "options.h"
+#include "answers.h"
+#include "loading.h"
+#include "progress_line.h"
+#include "results.h"
 
 namespace momenta::program {
 

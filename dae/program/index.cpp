@@ -6,8 +6,11 @@
 
 #include <sstream>
 
+#include "answers.h"
 #include "cpu_limit.h"
-#include "options.h"
+#include "loading.h"
+#include "progress_line.h"
+#include "results.h"
 
 namespace momenta::program {
 

@@ -7,6 +7,9 @@
 #include <cstdio>
 #include <stdexcept>
 
+#include "loading.h"
+#include "results.h"
+
 namespace momenta::program {
 namespace {
 

@@ -2,6 +2,7 @@
 // A run that can continue after it was killed. While it runs, DIR/checkpoint.json has a checkpoint
 // and the length of the trajectory up to it; the file is replaced as a whole from time to time.
 
+#include <momenta/dae/report/trajectory_file.h>
 #include <momenta/dae/study/journal.h>
 #include <momenta/dae/study/run_form.h>
 

@@ -7,6 +7,10 @@
 
 #include <stdexcept>
 
+#include "answers.h"
+#include "loading.h"
+#include "progress_line.h"
+#include "results.h"
 #include "search.h"
 
 namespace momenta::program {

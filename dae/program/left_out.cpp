@@ -2,7 +2,7 @@
 
 #include <cstdio>
 
-#include "options.h"
+#include "answers.h"
 
 namespace momenta::program {
 namespace {

@@ -9,8 +9,10 @@
 
 #include <cmath>
 
+#include "answers.h"
 #include "cpu_limit.h"
-#include "options.h"
+#include "loading.h"
+#include "results.h"
 
 namespace momenta::program {
 namespace {

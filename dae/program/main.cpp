@@ -15,6 +15,7 @@
 #include <stdexcept>
 
 #include "help.h"
+#include "loading.h"
 #include "values.h"
 #include "verbs.h"
 

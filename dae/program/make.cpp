@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include "answers.h"
 #include "families.h"
-#include "options.h"
 
 namespace momenta::program {
 

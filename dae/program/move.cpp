@@ -7,8 +7,10 @@
 #include <momenta/dae/study/environment.h>
 #include <momenta/dae/study/motion.h>
 
+#include "answers.h"
 #include "cpu_limit.h"
-#include "options.h"
+#include "loading.h"
+#include "results.h"
 
 namespace momenta::program {
 int move(const Options& o, const MoveOptions& options) {

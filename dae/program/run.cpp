@@ -15,7 +15,11 @@
 #include <map>
 #include <stdexcept>
 
+#include "answers.h"
 #include "kept_run.h"
+#include "loading.h"
+#include "progress_line.h"
+#include "results.h"
 
 namespace momenta::program {
 namespace {

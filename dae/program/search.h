@@ -7,7 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "options.h"
+#include "answers.h"
+#include "progress_line.h"
 
 namespace momenta::program {
 

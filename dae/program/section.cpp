@@ -6,7 +6,10 @@
 #include <cstdio>
 #include <stdexcept>
 
-#include "options.h"
+#include "answers.h"
+#include "loading.h"
+#include "progress_line.h"
+#include "results.h"
 
 namespace momenta::program {
 namespace {

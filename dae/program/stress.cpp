@@ -5,7 +5,10 @@
 #include <stdexcept>
 #include <thread>
 
-#include "options.h"
+#include "answers.h"
+#include "loading.h"
+#include "progress_line.h"
+#include "results.h"
 #include "stress_ladders.h"
 
 namespace momenta::program {

@@ -13,8 +13,11 @@
 #include <stdexcept>
 #include <thread>
 
-#include "options.h"
+#include "answers.h"
+#include "loading.h"
+#include "progress_line.h"
 #include "ranks.h"
+#include "results.h"
 
 namespace momenta::program {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <functional>
 
-#include "options.h"
+#include "answers.h"
 
 namespace momenta::program {
 

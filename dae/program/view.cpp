@@ -3,7 +3,9 @@
 
 #include <cstdio>
 
-#include "options.h"
+#include "answers.h"
+#include "loading.h"
+#include "results.h"
 
 namespace momenta::program {
 

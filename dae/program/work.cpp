@@ -8,7 +8,10 @@
 
 #include <cmath>
 
-#include "options.h"
+#include "answers.h"
+#include "loading.h"
+#include "progress_line.h"
+#include "results.h"
 
 namespace momenta::program {
 namespace {
