@@ -195,8 +195,6 @@ const Case wrong_mjcf[] = {
      "<mujoco><worldbody><body name='b'>\n<inertial pos='0 0 0' "
      "mass='1'/></body></worldbody></mujoco>",
      ":2: body 'b': <inertial> has no diaginertia"},
-    {"total_mass", "<mujoco>\n<compiler settotalmass='3'/></mujoco>",
-     ":2: <compiler> settotalmass changes masses, expected none"},
     {"tendon_equality",
      "<mujoco><worldbody><body name='b'/></worldbody><equality>\n<tendon "
      "tendon1='t'/></equality></mujoco>",

@@ -67,6 +67,60 @@ class Sdf : public SceneFolder {
   }
 };
 
+// A link without gravity has a force at its centre of mass that takes its weight back.
+TEST_F(Sdf, LinksWithoutGravity) {
+  const std::string j = joint("j", "revolute", "a", "b", axis("1 2 2"));
+  const auto hung = [&](const std::string& a, const std::string& b) {
+    return sdf(link("a", std::string(body_a) + a) + link("b", std::string(body_b) + b) +
+               joint("i", "revolute", "world", "a", axis("0 1 0")) + j);
+  };
+  const std::string off = "<gravity>false</gravity>";
+  Scene floating = hung("", "");
+  floating.gravity.setZero();
+  EXPECT_LE(differs(hung(off, off), floating), rounding);
+  EXPECT_GE(differs(hung(off, ""), floating), 1e-3);
+  EXPECT_EQ(differs(hung("<gravity>1</gravity>", ""), hung("", "")), 0);
+}
+
+// The joints of a gear are known by axes that files round: 1.5708 is π/2 to 4e-6.
+TEST_F(Sdf, GearsKnowTheirJointsByRoundedAxes) {
+  const auto geared = [&](const std::string& pitch) {
+    const std::string out = "<pose>1 0 0 0 " + pitch + " 0</pose>";
+    return model(link("base", "") + link("in", "") + link("out", out) +
+                 joint("h", "fixed", "world", "base", "") +
+                 joint("i", "revolute", "base", "in", axis("1 0 0")) +
+                 joint("o", "revolute", "base", "out", axis("0 0 1")) +
+                 joint("g", "gearbox", "in", "out",
+                       axis("0 0 1") + axis("0 0 1", "", "axis2") +
+                           "<gearbox_ratio>5</gearbox_ratio><gearbox_reference_body>base"
+                           "</gearbox_reference_body>"));
+  };
+  const Scene scene = read("m.sdf", geared("1.5708"));
+  ASSERT_EQ(scene.loops.size(), 1U);
+  EXPECT_EQ(scene.loops[0].joints, (std::vector<std::string>{"i", "o"}));
+  EXPECT_EQ(scene.loops[0].ratios, (std::vector<double>{5, 1}));
+  EXPECT_NE(refused("m.sdf", geared("1.56")).find("has no revolute joint about the same axis"),
+            std::string::npos);
+}
+
+// A link called world without inertia is the ground, which holds the model where it stands;
+// versions from 1.7 on keep the name.
+TEST_F(Sdf, ALinkCalledWorldIsTheGround) {
+  const std::string held = joint("i", "revolute", "world", "a", axis("0 1 0"));
+  const auto sdf = [&](const std::string& inside) { return this->sdf(inside, "1.6"); };
+  const Scene own =
+      sdf("<link name='world'><pose>0 0 0.2 0 0 0</pose></link>" + link("a", body_a) + held);
+  EXPECT_EQ(differs(own, sdf(link("a", body_a) + held)), 0);
+  EXPECT_EQ(own.bodies.size(), 1U);
+  EXPECT_EQ(
+      own.remarks,
+      (std::vector<std::string>{"taken as the ground: links called world without <inertial> (1)"}));
+  for (const std::string& other : {model(link("world", "") + link("a", body_a) + held, "1.6"),
+                                   model("<link name='world'/>" + link("a", body_a) + held)})
+    EXPECT_NE(refused("m.sdf", other).find("is called 'world', which is the ground's name"),
+              std::string::npos);
+}
+
 TEST_F(Sdf, JointsOfEveryType) {
   const auto same = [&](const std::string& type, const std::string& more, const std::string& keys) {
     SCOPED_TRACE(type);
@@ -303,8 +357,6 @@ TEST_F(Sdf, WrongFiles) {
   wrong(joint("j", "screw", "world", "a", axis("0 0 1")), "has no <screw_thread_pitch>");
   wrong(joint("j", "universal", "world", "a", axis("0 0 1") + axis("0 0 2", "", "axis2")),
         "has axes that are parallel");
-  wrong(link("b", "<gravity>false</gravity>"),
-        "<gravity> is false, expected gravity on every link");
   wrong("<link name='b'><inertial auto='true'/></link>",
         "<inertial> auto is true, expected a mass");
   wrong(link("ground", ""), "ground");

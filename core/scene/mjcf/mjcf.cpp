@@ -63,7 +63,11 @@ void read_asset(const Node& asset, const MjcfFiles& files, MjcfModel& model) {
 void read_attached(const Node& node, MjcfModel& model) {
   MjcfSettings& settings = model.attached[*node.element().find("model")];
   settings.from_attached = *node.element().find("model");
-  for (const Node& part : node.children("compiler")) read_compiler(part, settings);
+  for (const Node& part : node.children("compiler")) {
+    read_compiler(part, settings);
+    if (settings.total_mass > 0)
+      part.fail("settotalmass", "is of an attached model, expected it of the whole");
+  }
   MjcfDefaults defaults;
   for (const Node& part : node.children("default")) defaults.take(part);
   model.defaults.take(defaults, *node.element().find("prefix"));
@@ -91,8 +95,12 @@ Scene read_mjcf(const Element& element, const std::string& file, const std::stri
   for (const Node& node : root.children(attached_model)) read_attached(node, model);
   for (const Node& node : root.children("asset")) read_asset(node, files, model);
   for (const Node& node : root.children("worldbody")) read_worldbody(node, model);
+  scale_to_total_mass(model);
   settle_ball_armatures(model);
   settle_spring_dampers(model);
+  for (const Node& node : root.children("equality"))
+    for (const Node& held : node.children("tendon"))
+      for (const char* end : {"tendon1", "tendon2"}) model.held_tendons.insert(held.text(end, ""));
   for (const Node& node : root.children("tendon")) read_tendons(node, model);
   const std::vector<Node> keyframes = root.children("keyframe"),
                           actuators = root.children("actuator");

@@ -45,15 +45,7 @@ void settle_ball_armatures(MjcfModel& model) {
     sum.inertia += a * Eigen::Matrix3d::Identity();
     if (joint.kind == JointKind::free) {
       sum.add({a, joint.origin_child, Eigen::Matrix3d::Zero()});
-      if (!scene.gravity.isZero()) {
-        ForceSpec lift;
-        lift.at = joint.at;
-        lift.kind = "wrench";
-        lift.body = body.name;
-        lift.point = joint.origin_child;
-        lift.force = -a * scene.gravity;
-        scene.forces.push_back(lift);
-      }
+      take_back_weight(body.name, joint.origin_child, a, joint.at, scene);
     }
     body.mass = sum.mass;
     body.com = sum.com;

@@ -88,16 +88,17 @@ class BodyReader {
     BodySpec spec;
     spec.name = name;
     spec.at = self.at();
-    weigh_body(spec, self, parts, inside);
+    weigh_body(spec, self, parts, frame, inside);
     hang(self, joints, frame, place, inside);
     model_.scene.bodies.push_back(spec);
-    if (self.number("gravcomp", 0) != 0) model_.remarks.left_out("gravity compensation of bodies");
+    if (const double lifted = self.number("gravcomp", 0); lifted != 0 && inside.moves)
+      take_back_weight(name, spec.com, lifted * spec.mass, self.at(), model_.scene);
     if (self.flag("mocap", false)) model_.remarks.count("left at rest: bodies of motion capture");
     children_of(parts, inside);
   }
 
   void weigh_body(BodySpec& spec, const Node& self, const std::vector<MjcfPart>& parts,
-                  const Place& inside) {
+                  const MjcfFrame& frame, const Place& inside) {
     const auto inertial = self.child("inertial");
     MjcfInertia sum;
     if (inertial && !model_.always_geoms) {
@@ -110,10 +111,12 @@ class BodyReader {
         const Node geom(full, self.owner(), model_.scene.file);
         const double group = geom.number("group", 0);
         if (group < model_.least_group || group > model_.largest_group) continue;
-        sum.add(part.in *
-                read_geom(geom, model_.angles, !inside.moves, model_.meshes, model_.remarks));
+        const bool counts = inside.moves || model_.total_mass > 0;
+        sum.add(part.in * read_geom(geom, model_.angles, !counts, model_.meshes, model_.remarks));
       }
     }
+    if (sum.mass == 0 && !inertial) sum.com = frame.at;  // where MuJoCo puts what is raised
+    sum = bounded(sum, model_);
     weigh(spec, sum.mass, sum.com, sum.inertia, inertial ? *inertial : self, model_.remarks);
   }
 

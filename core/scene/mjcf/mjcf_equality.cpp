@@ -1,4 +1,5 @@
-// <equality>: connect is a point, weld a weld, joint and tendon a coupler.
+// <equality>: connect is a point, weld a weld, joint and fixed tendon a coupler. A spatial tendon
+// between two sites is a distance: L = L(qpos0) + c0.
 
 #include <momenta/core/scene/mjcf/mjcf_model.h>
 #include <momenta/core/text/near_name.h>
@@ -29,9 +30,10 @@ class EqualityReader {
     loop_.name = model_.edges.free(node_.text("name", node_.name() + " equality"));
     if (node_.name() == "joint")
       couple_joints();
+    else if (node_.name() == "tendon" && !node_.has("tendon2") && tendon("tendon1").ends)
+      keep_length(*tendon("tendon1").ends);
     else if (node_.name() == "tendon")
-      couple(tendon("tendon1"),
-             node_.has("tendon2") ? tendon("tendon2") : std::map<std::string, double>{}, "tendon");
+      couple_tendons();
     else
       tie();
     model_.scene.loops.push_back(loop_);
@@ -153,14 +155,43 @@ class EqualityReader {
     couple({{one, 1.0}}, two, "joint");
   }
 
-  const std::map<std::string, double>& tendon(const char* key) const {
+  void couple_tendons() {
+    const std::map<std::string, double>& one = ratios("tendon1");
+    couple(one, node_.has("tendon2") ? ratios("tendon2") : std::map<std::string, double>{},
+           "tendon");
+  }
+
+  void keep_length(std::pair<MjcfModel::Site, MjcfModel::Site> ends) {
+    auto& [one, two] = ends;
+    if (one.body == two.body) node_.fail("keeps the length of a tendon in one body, expected two");
+    const auto place = [&](const MjcfModel::Site& s) -> Vector3d {
+      return model_.frames.at(s.body) * s.frame.at;
+    };
+    loop_.kind = LoopKind::distance;
+    loop_.length = (place(one) - place(two)).norm() + polynomial()[0];
+    if (!(loop_.length > 0))
+      node_.fail("keeps a tendon at the length " + digits(loop_.length) +
+                 ", expected one above 0, or a <connect>");
+    if (two.body == "world") std::swap(one, two);  // what does not move is the parent
+    loop_.parent = MjcfModel::in_scene(one.body);
+    loop_.child = MjcfModel::in_scene(two.body);
+    loop_.origin_parent = one.frame.at;
+    loop_.origin_child = two.frame.at;
+  }
+
+  const MjcfModel::Tendon& tendon(const char* key) const {
     const std::string name = node_.text(key);
     const auto found = model_.tendons.find(name);
     if (found == model_.tendons.end())
       node_.fail(key, "is " + in_quotes(name) + ", expected the name of a tendon");
-    if (found->second.ratios.empty())
-      node_.fail(key, "is " + in_quotes(name) + ", expected a fixed tendon");
-    return found->second.ratios;
+    return found->second;
+  }
+  const std::map<std::string, double>& ratios(const char* key) const {
+    const MjcfModel::Tendon& found = tendon(key);
+    if (found.ratios.empty())
+      node_.fail(key, "is " + in_quotes(node_.text(key)) +
+                          ", expected a fixed tendon, or alone one between two sites");
+    return found.ratios;
   }
 
   const Node& node_;

@@ -31,6 +31,9 @@ MjcfInertia operator*(const MjcfFrame& frame, const MjcfInertia& inner);
 /// <inertial pos mass (diaginertia, orientation | fullinertia)>.
 MjcfInertia read_inertial(const Node& node, const MjcfAngles& angles);
 
+/// A body with `boundmass`, `boundinertia` and `balanceinertia`, or as it was (mjcf_masses.cpp).
+MjcfInertia bounded(const MjcfInertia& body, const MjcfSettings& settings);
+
 /// A <geom> with its defaults, of its `mass` or of `density` (1000 kg/m³ where neither is given).
 /// Solid:
 ///   sphere r            V = 4/3 π r³                  2/5 m r²

@@ -8,6 +8,8 @@
 #include <momenta/core/scene/xml/made_scene.h>
 
 #include <map>
+#include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -51,13 +53,15 @@ struct MjcfModel : MjcfSettings {
     double inertia;  ///< a > 0 [kg m² and kg]
   };
   std::vector<BallArmature> ball_armatures;
-  /// A fixed tendon: L of the scene is Σ ratio · q; empty of a spatial one.
+  /// A fixed tendon: L of the scene is Σ ratio · q; a spatial one by two sites: their distance.
   struct Tendon {
-    std::map<std::string, double> ratios;  ///< by joint, none zero
-    double ref = 0;                        ///< L of the file less that of the scene
+    std::map<std::string, double> ratios;  ///< by joint, none zero; empty of a spatial one
+    std::optional<std::pair<Site, Site>> ends;
+    double ref = 0;  ///< L of the file less that of the scene
     Location at;
   };
   std::map<std::string, Tendon> tendons;
+  std::set<std::string> held_tendons;  ///< those that an <equality> names
 
   /// Geoms that can be drawn, and whether MuJoCo draws them by default.
   std::vector<std::pair<VisualSpec, bool>> drawn;
@@ -77,6 +81,9 @@ void add_spring_and_damper(const JointSpec& joint, double stiffness, double damp
                            MjcfModel& model);
 /// Stiffness and damping of the joints with `springdamper`. After all bodies.
 void settle_spring_dampers(MjcfModel& model);
+
+/// `settotalmass`: masses and inertias times one factor (mjcf_masses.cpp). After all bodies.
+void scale_to_total_mass(MjcfModel& model);
 
 /// The armature of ball and free joints, as inertia of their bodies (mjcf_armature.cpp). After all
 /// bodies. @throws SceneError where it is none

@@ -1,6 +1,8 @@
 #include <momenta/core/scene/mjcf/mjcf_settings.h>
 #include <momenta/core/text/near_name.h>
 
+#include <algorithm>
+
 namespace momenta::reading {
 
 void read_compiler(const Node& node, MjcfSettings& settings) {
@@ -29,11 +31,10 @@ void read_compiler(const Node& node, MjcfSettings& settings) {
   settings.auto_limits = node.flag("autolimits", settings.auto_limits);
   settings.exact_meshes = node.flag("exactmeshinertia", settings.exact_meshes);
   settings.bare_names = node.flag("strippath", settings.bare_names);
-  for (const char* key : {"boundmass", "boundinertia"})
-    if (node.number(key, 0) != 0) node.fail(key, "changes inertias, expected none");
-  if (node.number("settotalmass", -1) > 0)
-    node.fail("settotalmass", "changes masses, expected none");
-  if (node.flag("balanceinertia", false)) node.fail("balanceinertia", "is true, expected false");
+  settings.least_mass = node.number("boundmass", settings.least_mass);
+  settings.least_moment = node.number("boundinertia", settings.least_moment);
+  settings.balances = node.flag("balanceinertia", settings.balances);
+  settings.total_mass = std::max(0.0, node.number("settotalmass", settings.total_mass));
   if (node.text("coordinate", "local") != "local")
     node.fail("coordinate", "is not local, expected frames in their parents");
 }

@@ -14,12 +14,15 @@ struct MjcfSettings {
   bool geoms_weigh = true, always_geoms = false;   ///< inertiafromgeom
   double least_group = -1e9, largest_group = 1e9;  ///< of geoms that weigh
   std::filesystem::path meshes;                    ///< folder of meshes, from that of the model
+  double least_mass = 0, least_moment = 0;         ///< boundmass, boundinertia [kg, kg m²]
+  bool balances = false;                           ///< balanceinertia
+  double total_mass = 0;                           ///< settotalmass [kg]; none: 0
   bool exact_meshes = false;  ///< exactmeshinertia: meshes are solids as they are, not their hulls
   bool auto_limits = true;    ///< autolimits: a range limits where nothing else is said
   bool bare_names = false;    ///< strippath: names of files without folders
 };
 
-/// Takes what a <compiler> says over what is there. @throws SceneError for what would change masses
+/// Takes what a <compiler> says over what is there. @throws SceneError
 void read_compiler(const Node& node, MjcfSettings& settings);
 
 }  // namespace momenta::reading

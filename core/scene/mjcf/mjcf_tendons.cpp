@@ -153,8 +153,10 @@ class TendonReader {
       model_.remarks.left_out("spatial tendons without spring or damper");
       return tendon;
     }
+    tendon.ends = {*sites[0], *sites[1]};
     if (!acts() && !limited()) {
-      model_.remarks.left_out("spatial tendons without spring or damper");
+      if (!model_.held_tendons.contains(node_.text("name", "")))
+        model_.remarks.left_out("spatial tendons without spring or damper");
       return tendon;
     }
     const auto place = [&](const MjcfModel::Site& s) { return at_rest(s.body) * s.frame.at; };

@@ -70,14 +70,15 @@ void read_link(const Scoped& scoped, SdfModel& model) {
   BodySpec body;
   body.name = model.body_of.at(name);
   body.at = link.at();
-  if (const auto gravity = link.child("gravity"); gravity && !gravity->content_flag())
-    gravity->fail("is false, expected gravity on every link");
   if (flagged(link, "kinematic")) link.child("kinematic")->fail("is true, expected false");
   for (const char* kind : {"collision", "sensor", "plugin"})
     for (const Node& part : link.children(kind))
       model.remarks.left_out(part.name() + (part.name() == "collision" ? " shapes" : "s"));
   draw_sdf_link(link, body.name, model);
   weigh_link(link, body, model.remarks);
+  if (const auto gravity = link.child("gravity");
+      gravity && !gravity->content_flag() && !model.fixed.contains(body.name))
+    take_back_weight(body.name, body.com, body.mass, gravity->at(), model.scene);
   model.poses[body.name] = model.frames.world(name, link);
   model.scene.bodies.push_back(body);
 }
@@ -85,6 +86,13 @@ void read_link(const Scoped& scoped, SdfModel& model) {
 /// What names are relative to where nothing is said.
 const char* own_frame(const std::string& scope) {
   return scope.empty() ? "world" : "__model__";
+}
+
+/// A link `world` without inertia, a name that is kept for the ground from 1.7 on.
+bool is_ground(const Node& link, SdfModel& model) {
+  if (!model.older_than(7) || link.text("name") != "world" || link.child("inertial")) return false;
+  model.remarks.count("taken as the ground: links called world without <inertial>");
+  return true;
 }
 
 void take_frames(const Node& owner, const std::string& scope, bool still, SdfModel& model,
@@ -96,7 +104,9 @@ void take_model(const Node& node, const std::string& scope, bool still, SdfModel
   const std::string name = node.text("name"), inside = scope + name + "::";
   refuse(node, {"drake:joint", "drake:linear_bushing_rpy", "drake:ball_constraint"}, "<joint>s");
   still |= flagged(node, "static");
-  const std::vector<Node> links = node.children("link"), nested = node.children("model");
+  std::vector<Node> links = node.children("link");
+  const std::vector<Node> nested = node.children("model");
+  std::erase_if(links, [&](const Node& link) { return is_ground(link, model); });
   if (links.empty() && nested.empty()) node.fail("has no <link>, expected at least one");
 
   const std::string first = (links.empty() ? nested : links).front().text("name");

@@ -26,7 +26,8 @@ constexpr std::array kind_of_type{JointKind::revolute,  JointKind::revolute,  Jo
                                   JointKind::weld,      JointKind::spherical, JointKind::universal,
                                   JointKind::universal, JointKind::helical};
 
-constexpr double no_bound = 1e16;  // [rad or m]
+constexpr double same_axis = 1e-3;  // [rad] of a gear and its joint: files round angles
+constexpr double no_bound = 1e16;   // [rad or m]
 
 /// The direction in <axis> or <axis2>, in world axes.
 Vector3d read_axis(const Node& axis, const std::string& scope, const std::string& joint,
@@ -37,11 +38,7 @@ Vector3d read_axis(const Node& axis, const std::string& scope, const std::string
   if (model.older_than(5) || (whole_model && whole_model->content_flag()))
     in = scope.empty() ? "world" : model.frames.full(scope, "__model__", axis);
   if (const auto xyz = axis.child("xyz")) {
-    const std::vector<double> three = xyz->content_numbers(3);
-    along = {three[0], three[1], three[2]};
-    const double largest = along.lpNorm<Eigen::Infinity>();
-    if (largest == 0) xyz->fail("is the zero vector, expected a direction");
-    if (!is_unit(along)) along = (along / largest).normalized();
+    along = xyz->content_direction();
     if (const std::string frame = xyz->text("expressed_in", ""); !frame.empty())
       in = model.frames.full(scope, frame, *xyz);
   }
@@ -248,7 +245,7 @@ SdfCoupler read_sdf_gearbox(const Node& node, const std::string& scope, SdfModel
       const bool back = joint.parent == other && joint.child == body;
       if ((!ahead && !back) || joint.spec.kind != JointKind::revolute) continue;
       const Vector3d along = given ? read_axis(*given, scope, frame, model) : joint.axis;
-      if (joint.axis.cross(along).norm() > parallel_slack) continue;
+      if (joint.axis.cross(along).norm() > same_axis) continue;
       const double sign = (joint.axis.dot(along) > 0) == ahead ? 1 : -1;
       coupler.terms.push_back({joint.scoped, 0, sign * factor});
       return;

@@ -187,7 +187,7 @@ Scene read_urdf(const Element& element, const std::string& file, const ReadOptio
   const bool welded = hang_root(scene, robot, links, options.free_root, edges);
   for (const Node& joint : mimics)
     scene.loops.push_back(read_mimic(*joint.child("mimic"), joint.text("name"), edges));
-  std::vector<Node> transmissions;
+  std::vector<Node> transmissions, gazebo;
   for (const Node& node : robot.children()) {
     if (node.name() == "loop")
       read_loop_tag(owned(node, "loop"), scene, edges);
@@ -195,10 +195,13 @@ Scene read_urdf(const Element& element, const std::string& file, const ReadOptio
       read_coupling_tag(owned(node, "coupling"), scene, edges);
     else if (node.name() == "transmission")
       transmissions.push_back(owned(node, "transmission"));
+    else if (node.name() == "gazebo")
+      gazebo.push_back(node);
     else if (std::find(drake_ties.begin(), drake_ties.end(), node.name()) != drake_ties.end())
       node.fail("ties links and is not read, expected <loop>, or loops in a YAML file");
   }
   tell_unread(robot, urdf_elements(), remarks);
+  for (const Node& node : gazebo) read_gazebo_tag(node, scene, edges, remarks);
   read_beside(file, options, scene, edges, remarks);
   for (const Node& node : transmissions) read_transmission(node, scene, remarks);
   if (scene.bodies.empty()) robot.fail("has one link only, the ground, expected a body");

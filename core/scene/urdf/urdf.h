@@ -56,6 +56,10 @@ void draw_link(const Node& link, const LinkDrawing& drawing, std::vector<VisualS
 void read_loop_tag(const Node& loop, Scene& scene, FreeNames& edges);
 void read_coupling_tag(const Node& coupling, Scene& scene, FreeNames& edges);
 
+/// <gazebo>: loops by its <joint>s, springs of joints, weights that it takes back. What else it has
+/// is counted. `scene` has its links and joints already. @throws SceneError
+void read_gazebo_tag(const Node& tag, Scene& scene, FreeNames& edges, Remarks& remarks);
+
 /// A YAML file beside the URDF: `options.loops` or, where that is empty, the file under the URDF's
 /// name that has `closed_loop` or `joint_name`. It gives joints the types that a URDF cannot say,
 /// and loops: pairs of joints or links whose frames stay together, "3d" for their origins alone,

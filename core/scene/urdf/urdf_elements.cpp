@@ -8,7 +8,8 @@ namespace momenta::reading {
 namespace {
 
 constexpr std::array elements{
-    KnownElement{"robot", "name version link joint transmission loop coupling material", "", ""},
+    KnownElement{"robot", "name version link joint transmission loop coupling material gazebo", "",
+                 ""},
     KnownElement{"link", "name inertial visual collision", "type", ""},
     KnownElement{"inertial", "origin mass inertia", "", ""},
     KnownElement{"origin", "xyz rpy quat_xyzw", "", ""},

@@ -21,6 +21,18 @@ void weigh(BodySpec& body, double mass, const Eigen::Vector3d& com, const Eigen:
   remarks.count("taken as written: inertias that no rigid body has");
 }
 
+void take_back_weight(const std::string& body, const Eigen::Vector3d& point, double mass,
+                      const Location& at, Scene& scene) {
+  if (mass == 0 || scene.gravity.isZero()) return;
+  ForceSpec lift;
+  lift.at = at;
+  lift.kind = "wrench";
+  lift.body = body;
+  lift.point = point;
+  lift.force = -mass * scene.gravity;
+  scene.forces.push_back(lift);
+}
+
 Eigen::Matrix3d symmetric(double xx, double yy, double zz, double xy, double xz, double yz) {
   Eigen::Matrix3d m;
   m << xx, xy, xz, xy, yy, yz, xz, yz, zz;

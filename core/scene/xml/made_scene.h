@@ -26,6 +26,11 @@ class FreeNames {
 void weigh(BodySpec& body, double mass, const Eigen::Vector3d& com, const Eigen::Matrix3d& inertia,
            const Node& node, Remarks& remarks);
 
+/// The constant force −m g at a point of a body, which takes back the weight of a mass m there;
+/// none where that is zero.
+void take_back_weight(const std::string& body, const Eigen::Vector3d& point, double mass,
+                      const Location& at, Scene& scene);
+
 /// xx, yy, zz, xy, xz, yz as a matrix.
 Eigen::Matrix3d symmetric(double xx, double yy, double zz, double xy, double xz, double yz);
 

@@ -121,14 +121,29 @@ Eigen::Vector3d Node::vector(std::string_view attribute, const Eigen::Vector3d& 
   return has(attribute) ? vector(attribute) : otherwise;
 }
 
+namespace {
+
+/// Of unit length; zero stays zero.
+Eigen::Vector3d of_unit_length(const Eigen::Vector3d& along) {
+  const double largest = along.lpNorm<Eigen::Infinity>();
+  return largest == 0 || is_unit(along) ? along : (along / largest).normalized();
+}
+constexpr const char* no_direction = "is the zero vector, expected a direction";
+
+}  // namespace
+
 Eigen::Vector3d Node::direction(std::string_view attribute,
                                 const Eigen::Vector3d& otherwise) const {
   if (!has(attribute)) return otherwise;
-  const Eigen::Vector3d along = vector(attribute);
-  if (is_unit(along)) return along;
-  const double largest = along.lpNorm<Eigen::Infinity>();
-  if (largest == 0) fail(attribute, "is the zero vector, expected a direction");
-  return (along / largest).normalized();
+  const Eigen::Vector3d along = of_unit_length(vector(attribute));
+  if (along.isZero(0)) fail(attribute, no_direction);
+  return along;
+}
+Eigen::Vector3d Node::content_direction() const {
+  const std::vector<double> three = content_numbers(3);
+  const Eigen::Vector3d along = of_unit_length({three[0], three[1], three[2]});
+  if (along.isZero(0)) fail(no_direction);
+  return along;
 }
 
 std::size_t Node::word(std::string_view attribute, std::span<const std::string_view> words,

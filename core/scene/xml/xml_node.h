@@ -49,7 +49,8 @@ class Node {
   std::string content() const;
   double content_number() const;
   std::vector<double> content_numbers(std::size_t count) const;
-  bool content_flag() const;  ///< true, false, 1 or 0
+  Eigen::Vector3d content_direction() const;  ///< three numbers, made of unit length
+  bool content_flag() const;                  ///< true, false, 1 or 0
   std::size_t content_word(std::span<const std::string_view> words) const;
 
   /// The elements in this one, in the order of the file; they keep its owner.
