@@ -2,6 +2,7 @@
 #include <momenta/dae/dense/decompositions.h>
 #include <momenta/dae/kkt/loop_rank.h>
 #include <momenta/dae/linear/independent_coordinates.h>
+#include <momenta/dae/linear/loop_drives.h>
 #include <momenta/dae/measure/rank.h>
 
 #include <algorithm>
@@ -61,6 +62,25 @@ void expect_followed(const OperatingPoint& at, const MatrixXd& a, const MatrixXd
       "is no dead point");
 }
 
+/// Those drives of loops that the other loops follow when they are varied: νᵀΦ_f = 0.
+std::vector<int> followed(const OperatingPoint& at, const Eigen::VectorXd& row_factor,
+                          const MatrixXd& left) {
+  std::vector<int> drives = drives_of_loops_that_vary(at.freed->scene());
+  if (left.cols() == 0 || drives.empty()) return drives;
+  const Mechanism& m = *at.freed;
+  const Eigen::VectorXd none = Eigen::VectorXd::Zero(m.nv()), idle = Eigen::VectorXd::Zero(m.m());
+  const LoopDriveColumns columns = loop_drive_columns(m, drives, at.t, at.q, none, none, idle);
+  std::vector<int> kept;
+  for (std::size_t k = 0; k < drives.size(); ++k) {
+    const Eigen::VectorXd asked =
+        row_factor.cwiseProduct(columns.loops.col(static_cast<Eigen::Index>(k)));
+    if ((left.transpose() * asked).cwiseAbs().maxCoeff() <=
+        rank_tolerance * asked.cwiseAbs().maxCoeff())
+      kept.push_back(drives[k]);
+  }
+  return kept;
+}
+
 void expect_determined(const OperatingPoint& at, const MatrixXd& block,
                        const std::vector<int>& named, std::size_t expected) {
   const Mechanism& m = *at.freed;
@@ -96,7 +116,8 @@ IndependentCoordinates independent_coordinates(const OperatingPoint& at,
   if (mechanism.m() > 0) {
     const auto e = mechanism.evaluation<double>();
     e->place(at.t, at.q.data());
-    const MatrixXd whole = scaled_jacobian(mechanism, *e).a;
+    const ScaledJacobian scaled = scaled_jacobian(mechanism, *e);
+    const MatrixXd& whole = scaled.a;
     a = MatrixXd::Zero(whole.rows(), whole.cols());
     a(Eigen::all, at.free) = whole(Eigen::all, at.free);
     RankAndIdle found;
@@ -110,6 +131,7 @@ IndependentCoordinates independent_coordinates(const OperatingPoint& at,
     }
     found = rank_and_idle(a, 0, static_cast<int>(c.rows.size()));
     expect_followed(at, whole, found.left);
+    c.loop_drives = followed(at, scaled.row_factor, found.left);
     constexpr double takes_part = 1e-9;
     for (int i = 0; i < mechanism.m(); ++i)
       c.unique[static_cast<std::size_t>(i)] =

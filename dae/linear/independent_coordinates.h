@@ -7,6 +7,9 @@
 //   rates    D_p: as many as R_p, pivots of a QR decomposition, or the complement of those named;
 //            D: D_p completed to as many as R on what D_p leaves of the nonholonomic rows
 //
+// A drive of a loop can be varied by itself where the loops follow, νᵀΦ_f = 0 with Φ_f of
+// loop_drives.h and ν the forces that move nothing. Others stay functions of time.
+//
 // The block Φ_q of R and D is regular, and so is that of R_p and D_p.
 
 #include <momenta/dae/linear/operating_point.h>
@@ -23,6 +26,7 @@ struct IndependentCoordinates {
   std::vector<int> free_rates;           ///< I of rates
   std::vector<int> free_positions;       ///< I of positions
   std::vector<bool> unique;              ///< by row, whether λ is
+  std::vector<int> loop_drives;          ///< drives of loops that can be varied, in the scene
   double kept = 0;                       ///< smallest singular value that counts over the largest
 };
 

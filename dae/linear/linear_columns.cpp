@@ -1,6 +1,7 @@
 #include <momenta/core/text/near_name.h>
 #include <momenta/dae/effort/given_motion.h>
 #include <momenta/dae/linear/linear_columns.h>
+#include <momenta/dae/linear/loop_drives.h>
 #include <momenta/dae/measure/rank.h>
 
 #include <algorithm>
@@ -60,6 +61,7 @@ LinearColumns linear_columns(const OperatingPoint& at, const IndependentCoordina
     efforts.push_back(
         {before_point(name) + ".effort" + name.substr(name.rfind('.') + 2), forces[k].unit});
   }
+  for (const int drive : chosen.loop_drives) add(drives, columns_of_loop_drive(m.scene(), drive));
   add(c.inputs, drives, "drives");
   add(c.outputs, among(places, at.free), "coordinates");
   add(c.outputs, among(rates, at.free), "rates");

@@ -3,6 +3,7 @@
 #include <momenta/dae/linear/linear_columns.h>
 #include <momenta/dae/linear/linear_model.h>
 #include <momenta/dae/linear/linearisation.h>
+#include <momenta/dae/linear/loop_drives.h>
 
 #include <algorithm>
 #include <cmath>
@@ -14,8 +15,8 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using Lu = Eigen::PartialPivLU<MatrixXd>;
 
-/// δ, δu, δu̇ (rates of the freed mechanism), δλ (all rows) and τ as linear functions, by row, of
-/// what the columns are: x, then w.
+/// δ, δu, δu̇ (rates of the freed mechanism, then drives of loops), δλ (all rows) and τ as linear
+/// functions, by row, of what the columns are: x, then w.
 struct Functions {
   MatrixXd delta, v, a, lambda, tau;
   Functions(Eigen::Index n, Eigen::Index m, Eigen::Index columns)
@@ -33,7 +34,10 @@ class Eliminated {
         c_(std::move(chosen)),
         mechanism_(*at_.freed),
         nv_(mechanism_.nv()),
-        inputs_(static_cast<Eigen::Index>(at_.free.size() + 3 * at_.driven.size())) {
+        drives_(at_.driven) {
+    for (int k = 0; k < size(c_.loop_drives); ++k) drives_.push_back(static_cast<int>(nv_) + k);
+    places_ = nv_ + size(c_.loop_drives);
+    inputs_ = size(at_.free) + 3 * size(drives_);
     solve_state();
     const MatrixXd every = MatrixXd::Identity(nv_, nv_);
     l_ = linearise_state(mechanism_, at_.t, at_.q, at_.u, udot_, lambda_, every);
@@ -41,6 +45,7 @@ class Eliminated {
          {&l_.M, &l_.C, &l_.K, &l_.loops, &l_.loop_rates, &l_.second_by_rates, &l_.second_by_poses,
           &l_.turning, &l_.markers_by_poses, &l_.markers_by_rates})
       if (!x->allFinite()) refuse("the linearised equations are not finite at this state");
+    append_loop_drives();
   }
 
   const VectorXd& udot() const { return udot_; }
@@ -49,7 +54,7 @@ class Eliminated {
   /// Columns: δ_I, δu_I, w.
   Functions minimal(MatrixXd& derivative) const {
     const Eigen::Index y = size(c_.free_positions), z = size(c_.free_rates);
-    Functions f(nv_, mechanism_.m(), y + z + inputs_);
+    Functions f(places_, mechanism_.m(), y + z + inputs_);
     put_inputs(f, y + z);
     for (Eigen::Index i = 0; i < y; ++i) f.delta(at(c_.free_positions, i), i) = 1;
     if (!c_.position_rows.empty()) {
@@ -60,7 +65,7 @@ class Eliminated {
                .solve(MatrixXd(l_.loops(c_.position_rows, Eigen::all) * f.delta));
     }
     for (Eigen::Index i = 0; i < z; ++i) f.v(at(c_.free_rates, i), y + i) = 1;
-    MatrixXd N = MatrixXd::Zero(nv_, z);
+    MatrixXd N = MatrixXd::Zero(places_, z);
     for (Eigen::Index i = 0; i < z; ++i) N(at(c_.free_rates, i), i) = 1;
     if (!c_.rows.empty()) {
       const Lu lu(l_.loops(c_.rows, c_.dependent));
@@ -98,7 +103,7 @@ class Eliminated {
   Functions descriptor(MatrixXd& E, MatrixXd& right) const {
     const Eigen::Index n = size(at_.free), r = size(c_.rows), rp = size(c_.position_rows);
     const Eigen::Index states = 3 * n + r;
-    Functions f(nv_, mechanism_.m(), states + inputs_);
+    Functions f(places_, mechanism_.m(), states + inputs_);
     put_inputs(f, states);
     for (Eigen::Index i = 0; i < n; ++i) {
       f.delta(at(at_.free, i), i) = 1;
@@ -152,10 +157,36 @@ class Eliminated {
 
   void put_inputs(Functions& f, Eigen::Index from) const {
     for (Eigen::Index i = 0; i < size(at_.free); ++i) f.tau(at(at_.free, i), from + i) = 1;
-    for (Eigen::Index k = 0; k < size(at_.driven); ++k) {
-      const Eigen::Index column = from + size(at_.free) + 3 * k, rate = at(at_.driven, k);
+    for (Eigen::Index k = 0; k < size(drives_); ++k) {
+      const Eigen::Index column = from + size(at_.free) + 3 * k, rate = at(drives_, k);
       f.delta(rate, column) = f.v(rate, column + 1) = f.a(rate, column + 2) = 1;
     }
+  }
+
+  /// Columns of drives of loops behind those of rates: each is a coordinate f with δ, δu and δu̇
+  /// given. Their rows of (1a) are nobody's.
+  void append_loop_drives() {
+    const Eigen::Index more = size(c_.loop_drives);
+    const LoopDriveColumns columns =
+        loop_drive_columns(mechanism_, c_.loop_drives, at_.t, at_.q, at_.u, udot_, lambda_);
+    const auto beside = [&](MatrixXd& all, const MatrixXd& own) {
+      MatrixXd wide(all.rows(), all.cols() + more);
+      wide << all, own;
+      all = std::move(wide);
+    };
+    beside(l_.loops, columns.loops);
+    beside(l_.loop_rates, columns.loop_rates);
+    beside(l_.second_by_rates, 2 * columns.loop_rates);
+    beside(l_.second_by_poses, columns.second_by_poses);
+    beside(l_.K, columns.forces);
+    for (MatrixXd* a : {&l_.M, &l_.C, &l_.turning, &l_.markers_by_poses, &l_.markers_by_rates})
+      beside(*a, MatrixXd::Zero(a->rows(), more));
+    for (MatrixXd* a : {&l_.M, &l_.C, &l_.K, &l_.turning}) {
+      a->conservativeResize(places_, Eigen::NoChange);
+      a->bottomRows(more).setZero();
+    }
+    for (const MatrixXd* x : {&l_.loops, &l_.loop_rates, &l_.second_by_poses, &l_.K})
+      if (!x->allFinite()) refuse("the linearised equations are not finite at this state");
   }
 
   /// M δu̇ + C δu + K δ + Aᵀ δλ − τ
@@ -216,7 +247,9 @@ class Eliminated {
   OperatingPoint at_;
   IndependentCoordinates c_;
   const Mechanism& mechanism_;
-  Eigen::Index nv_, inputs_;
+  Eigen::Index nv_, places_ = 0;
+  std::vector<int> drives_;  ///< places of those that drives give: joints, then loops
+  Eigen::Index inputs_ = 0;
   VectorXd udot_, lambda_;
   StateLinearisation l_;
 };

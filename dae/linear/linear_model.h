@@ -25,8 +25,8 @@
 //                where S and a have the second derivatives of Φ. With nonholonomic rows there are
 //                more δ_I than δu_I.
 //
-// Both have one transfer function, input by input. Inputs: τ by rate; f, ḟ, f̈ of each driven joint,
-// three inputs of one signal: to a motion f(s) the model answers by G (1, s, s²)ᵀ f. Outputs: δ,
+// Both have one transfer function, input by input. Inputs: τ by rate; f, ḟ, f̈ of each driven joint
+// and loop (loop_drives.h), three inputs of one signal: to a motion f(s) the model answers by G (1, s, s²)ᵀ f. Outputs: δ,
 // δu, δu̇, positions and velocities of markers, the efforts of drives, and δλ where it is unique.
 // Sources: Mattsson, Söderlind, SIAM J. Sci. Comput. 14 (1993) 677; docs/theory/linear-models.md.
 

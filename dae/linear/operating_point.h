@@ -10,7 +10,8 @@
 //
 //   r(t, q, u, u̇) + Φ_qᵀλ = 0 at free rates,   Φ̈ = 0
 //
-// Drives of loops, of spherical and of free joints stay what they are, functions of time.
+// Drives of spherical and of free joints stay what they are, functions of time; those of loops are
+// varied where they are (loop_drives.h).
 
 #include <momenta/dae/form/form.h>
 

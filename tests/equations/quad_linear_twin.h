@@ -29,18 +29,24 @@ class QuadLinearTwin {
     if (!m_.scene().markers.empty()) markers_ = make_marker_motion<Quad>(m_);
   }
 
-  /// [ẋ; y] by columns of x, then of w, both as linear_model() has them.
+  /// [ẋ; y] at the state itself.
+  std::vector<double> at_state() {
+    const Numbers all = values(Numbers(columns(), Quad(0)));
+    std::vector<double> some;
+    for (const Quad& x : all) some.push_back(value_of(x));
+    return some;
+  }
+
+  /// [ẋ; y] by columns of x, then of w without drives of loops, both as linear_model() has them.
   Eigen::MatrixXd differences() {
-    const std::size_t y = c_.free_positions.size(), z = c_.free_rates.size();
-    const std::size_t columns = y + z + at_.free.size() + 3 * at_.driven.size();
     const double h = std::ldexp(1.0, -33);
     Eigen::MatrixXd all;
-    for (std::size_t j = 0; j < columns; ++j) {
-      Numbers ahead(columns, Quad(0)), behind = ahead;
+    for (std::size_t j = 0; j < columns(); ++j) {
+      Numbers ahead(columns(), Quad(0)), behind = ahead;
       ahead[j] = h;
       behind[j] = -h;
       const Numbers a = values(ahead), b = values(behind);
-      if (all.size() == 0) all.resize(static_cast<long>(a.size()), static_cast<long>(columns));
+      if (all.size() == 0) all.resize(static_cast<long>(a.size()), static_cast<long>(columns()));
       for (std::size_t i = 0; i < a.size(); ++i)
         all(static_cast<long>(i), static_cast<long>(j)) =
             value_of((a[i] - b[i]) / (Quad(2) * Quad(h)));
@@ -50,6 +56,11 @@ class QuadLinearTwin {
 
  private:
   using Matrix = std::vector<Numbers>;
+
+  std::size_t columns() const {
+    return c_.free_positions.size() + c_.free_rates.size() + at_.free.size() +
+           3 * at_.driven.size();
+  }
 
   static Numbers solve(Matrix a, Numbers b) {
     const std::size_t n = b.size();

@@ -99,7 +99,7 @@ Scene driven_four_bar() {
   return scene;
 }
 
-constexpr double rounding = 1e-12;  // of a row's largest entry
+constexpr double rounding = 1e-13;  // of a row's largest entry
 
 struct Case {
   const char* name;
