@@ -54,9 +54,10 @@ struct Numbers {
   std::size_t n = 0;
 };
 
-/// The sentence for the first number of these that is not finite.
-[[gnu::cold]] inline std::string first_not_finite(double t, const Numbers& a, const Numbers& b,
-                                                  const Numbers& c, const Numbers& d) {
+/// The sentence for the first number of these that is not finite. Lists by value, here alone: those
+/// of the calls that ask stay in registers.
+[[gnu::cold, gnu::noinline]] inline std::string first_not_finite(double t, Numbers a, Numbers b,
+                                                                 Numbers c, Numbers d) {
   if (!std::isfinite(t)) return "t is not finite, expected a time in seconds";
   for (const Numbers* list : {&a, &b, &c, &d})
     for (std::size_t i = 0; i < list->n; ++i)
@@ -66,9 +67,10 @@ struct Numbers {
 }
 
 /// Whether t [s] and all numbers that a call is given are finite. `failure` names the first that is
-/// not; else it is empty.
-inline bool given_finite(std::string& failure, double t, const Numbers& a, const Numbers& b = {},
-                         const Numbers& c = {}, const Numbers& d = {}) {
+/// not; else it is empty. Inlined, as of lists that are not there nothing is left then.
+[[gnu::always_inline]] inline bool given_finite(std::string& failure, double t, const Numbers& a,
+                                                const Numbers& b = {}, const Numbers& c = {},
+                                                const Numbers& d = {}) {
   FiniteSum sum;
   sum.take(t);
   sum.take(a.x, a.n), sum.take(b.x, b.n), sum.take(c.x, c.n), sum.take(d.x, d.n);
@@ -89,7 +91,7 @@ inline void expect_given_finite(const char* call, std::string& failure, double t
 /// Whether all numbers of what was found are finite; else `failure` says that they are not. Lists
 /// have data() and size().
 template <class... Lists>
-bool found_finite(std::string& failure, const Lists&... lists) {
+[[gnu::always_inline]] inline bool found_finite(std::string& failure, const Lists&... lists) {
   FiniteSum sum;
   (sum.take(lists.data(), static_cast<std::size_t>(lists.size())), ...);
   if (sum.finite()) [[likely]]

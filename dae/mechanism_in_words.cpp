@@ -16,6 +16,21 @@ std::string one_dof_column(const Tree::Body& b, const char* letter) {
   return b.joint + "." + letter + (b.parts > 1 ? std::to_string(b.coordinate) : "");
 }
 
+/// What spherical joints of a tree without loops leave out: the elimination of bodies that carry
+/// nothing, and the sweeps where there is nothing else.
+std::string tops_in_words(const LinkTree& tree) {
+  std::size_t ends = 0, tops = 0;
+  for (const Link& l : tree.links) {
+    ends += l.kind == LinkKind::spherical && l.leaf;
+    tops += l.kind == LinkKind::spherical && l.leaf && l.parent < 0;
+  }
+  if (ends == 0) return "";
+  return tops == tree.links.size()
+             ? "; their bodies carry nothing: ω = I⁻¹ p with I constant, no sweeps"
+             : "; spherical joints of bodies that carry nothing, eliminated once: " +
+                   std::to_string(ends);
+}
+
 }  // namespace
 
 std::vector<Column> Mechanism::coordinate_columns() const {
@@ -107,7 +122,7 @@ std::vector<std::pair<std::string, std::string>> Mechanism::plan_lines() const {
   auto lines = scene_.lagrangian ? lagrangian_lines() : plan_.lines();
   if (!plan_.planar) {
     const LinkTree links = build_links(std::get<Cast<Spatial>>(casts_->cast).model);
-    lines.emplace_back("joints", links_in_words(links));
+    lines.emplace_back("joints", links_in_words(links) + (rows_ == 0 ? tops_in_words(links) : ""));
     if (rows_ == 0) {
       const std::string branches = branches_in_words(links, branch_lanes_at(best_level()));
       lines.emplace_back("branches",

@@ -13,18 +13,20 @@ bool AccelerationSweeps<Spatial, S>::spherical_inward(std::size_t k, const InTau
                                                       Articulated<S>& articulated) {
   const Link& l = tree_->links[k];
   SphericalAcceleration<S>& w = sphericals_[static_cast<std::size_t>(l.record)];
-  if (l.leaf) articulated = {};
-  add_body(articulated.M, l);
-  if (l.slot >= 0) add<false>(articulated, slots_[static_cast<std::size_t>(l.slot)]);
-  Sym3<S> A;
-  if (!w.pivot.eliminate(articulated.M, A)) return false;
   const Vec3<S> forces{{S(tau[l.u]), S(tau[l.u + 1]), S(tau[l.u + 2])}};
-  const Vec3<S> e = forces - w.bn - Vec3<S>{{articulated.Dnx, articulated.Dny, articulated.Dnz}};
-  const Vec3<S> reaction = w.pivot.remainder(e);
+  Vec3<S> e = forces - w.bn, f = w.bf;
+  if (!w.constant) {
+    if (l.leaf) articulated = {};
+    add_body(articulated.M, l);
+    if (l.slot >= 0) add<false>(articulated, slots_[static_cast<std::size_t>(l.slot)]);
+    if (!w.pivot.eliminate(articulated.M, w.A)) return false;
+    e -= Vec3<S>{{articulated.Dnx, articulated.Dny, articulated.Dnz}};
+    f += Vec3<S>{{articulated.Dfx, articulated.Dfy, articulated.Dfz}};
+  }
+  f += w.pivot.remainder(e);
   if (l.parent < 0) return true;
-  const Vec3<S> f =
-      w.bf + Vec3<S>{{articulated.Dfx, articulated.Dfy, articulated.Dfz}} + reaction + A * w.cl;
-  carry_spherical(tree_->sphericals[static_cast<std::size_t>(l.record)].origin, w.R, A, f, forces,
+  f += w.A * w.cl;
+  carry_spherical(tree_->sphericals[static_cast<std::size_t>(l.record)].origin, w.R, w.A, f, forces,
                   articulated);
   if (!l.first) leave<false>(l, slot_of_parent(l), articulated);
   return true;

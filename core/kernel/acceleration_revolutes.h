@@ -64,32 +64,48 @@ MOMENTA_INLINE S rotor_bias(const Spatial::Force<S>& k, const RevoluteAccelerati
   return k.f[0] * w.clx + k.f[1] * w.cly + k.f[2] * w.clz + k.n[0] * w.cox + k.n[1] * w.coy;
 }
 
+/// M' and D' of a revolute joint whose M*, D are complete.
+template <class S>
+MOMENTA_INLINE void eliminate_revolute(const Articulated<S>& articulated, const S& tau,
+                                       RevoluteAcceleration<S>& w, Eliminated<S>& r) {
+  const S inverse = S(1.0) / articulated.M.Izz;
+  RevoluteColumn<S> h;
+  eliminate_revolute(articulated.M, inverse, h, r.M);
+  w.h = h;
+  eliminate_bias(articulated, tau, inverse, w, r);
+}
+
 template <class S>
 template <Turn turn, class InTau>
 std::size_t AccelerationSweeps<Spatial, S>::chain_inward(std::size_t end, const InTau& tau,
                                                          Articulated<S>& from) {
-  Articulated<S> articulated = from;
+  Articulated<S> articulated;
+  Eliminated<S> r;
   const Link* links = tree_->links.data();
   std::size_t k = end - 1;
-  add_body(articulated.M, links[k]);
-  add_bias(articulated, revolutes_[k]);
-  change_signs<turn>(articulated);
-  for (;;) {
-    const Link& l = links[k];
+  if (links[k].leaf) {
+    const Leaf& leaf = tree_->leaves[static_cast<std::size_t>(links[k].record)];
     RevoluteAcceleration<S>& w = revolutes_[k];
-    change_signs<turn>(articulated);
+    set_bias(articulated, w);
+    RevoluteColumn<S> h;
+    set_leaf(leaf, h, r.M);
+    w.h = h;
+    eliminate_bias(articulated, S(tau[links[k].u]), S(leaf.inverse), w, r);
+  } else {
+    articulated = from;
+    add_body(articulated.M, links[k]);
+    add_bias(articulated, revolutes_[k]);
     if (!all_positive(articulated.M.Izz)) {
       singular_joint_ = static_cast<int>(k);
       return k;
     }
-    Eliminated<S> r;
-    const S inverse = S(1.0) / articulated.M.Izz;
-    RevoluteColumn<S> h;
-    eliminate_revolute(articulated.M, inverse, h, r.M);
-    w.h = h;
-    eliminate_bias(articulated, S(tau[l.u]), inverse, w, r);
-    turn_revolute(r, angles_.cosine(k), angles_.sine(k), l.d, w);
-    if (links[k - 1].path != static_cast<Path>(turn)) {
+    eliminate_revolute(articulated, S(tau[links[k].u]), revolutes_[k], r);
+  }
+  for (;;) {
+    const Link& l = links[k];
+    turn_revolute(r, angles_.cosine(k), angles_.sine(k), l.d, revolutes_[k]);
+    const Path next = links[k - 1].path;
+    if (next != static_cast<Path>(turn) && next != Path::root) {
       const Eliminated<S> last = r;  // whose address is taken
       carry_last<turn, false>(last, l, from);
       return k;
@@ -98,7 +114,12 @@ std::size_t AccelerationSweeps<Spatial, S>::chain_inward(std::size_t end, const 
     --k;
     add_body(articulated.M, links[k]);
     add_bias(articulated, revolutes_[k]);
-    change_signs<turn>(articulated);
+    if (!all_positive(articulated.M.Izz)) {
+      singular_joint_ = static_cast<int>(k);
+      return k;
+    }
+    eliminate_revolute(articulated, S(tau[links[k].u]), revolutes_[k], r);
+    if (next == Path::root) return k;  // nothing is passed on
   }
 }
 
@@ -106,8 +127,9 @@ template <class S>
 template <class InTau>
 std::size_t AccelerationSweeps<Spatial, S>::revolutes_inward(std::size_t end, const InTau& tau,
                                                              Articulated<S>& from) {
-  Articulated<S> articulated = from;
+  Articulated<S> articulated;
   const Link* links = tree_->links.data();
+  if (!links[end - 1].leaf && !links[end - 1].carries_branches_alone) articulated = from;
   std::size_t k = end;
   do {
     --k;
@@ -149,8 +171,8 @@ std::size_t AccelerationSweeps<Spatial, S>::revolutes_inward(std::size_t end, co
     if (l.has_rotor) [[unlikely]]
       hand_on_rotor(body(k).edge, column, articulated);
     if (!l.first) leave<false>(l, slot_of_parent(l), articulated);
-  } while (k > 0 && links[k - 1].path == Path::any && links[k - 1].kind == LinkKind::revolute);
-  from = articulated;
+  } while (k > 0 && alone(links[k - 1]) && links[k - 1].kind == LinkKind::revolute);
+  if (k > 0) from = articulated;
   return k;
 }
 

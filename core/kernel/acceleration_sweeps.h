@@ -30,7 +30,9 @@ template <class S>
 struct SphericalAcceleration {
   Mat3<S> R;
   SphericalPivot<S> pivot;
+  Sym3<S> A;  ///< M' = (A, 0; 0, 0)
   Vec3<S> bf, bn, cl, co;
+  bool constant = false;  ///< pivot and A are: eliminate_leaves()
 };
 
 template <class Space, class S>
@@ -48,7 +50,9 @@ class AccelerationSweeps<Spatial, S> {
         joints_(static_cast<std::size_t>(tree.records)),
         users_(static_cast<std::size_t>(tree.users)),
         slots_(static_cast<std::size_t>(tree.slots)),
-        outward_slots_(static_cast<std::size_t>(tree.slots)) {}
+        outward_slots_(static_cast<std::size_t>(tree.slots)) {
+    eliminate_leaves<S>(tree, sphericals_);
+  }
 
   /// u̇ (nv) from (q, u, t) and all generalised forces τ (nv) but the weights'. In and Out index
   /// like pointers to S. False when a joint's articulated inertia is not positive:
@@ -131,7 +135,7 @@ template <class S>
 template <class InTau>
 bool AccelerationSweeps<Spatial, S>::inward(const InTau& tau) {
   const Link* links = tree_->links.data();
-  Articulated<S> articulated{};
+  Articulated<S> articulated;  // nothing at a leaf
   for (std::size_t k = angles_.size(); k > 0;) {
     switch (links[k - 1].path) {
       case Path::chain_general:
@@ -143,6 +147,7 @@ bool AccelerationSweeps<Spatial, S>::inward(const InTau& tau) {
       case Path::chain_parallel:
         k = chain_inward<Turn::parallel>(k, tau, articulated);
         break;
+      case Path::root:
       case Path::any:
         if (links[k - 1].kind == LinkKind::revolute) {
           k = revolutes_inward(k, tau, articulated);

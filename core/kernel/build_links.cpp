@@ -33,7 +33,7 @@ SphericalPlace spherical_of(const Model<Spatial>::Body& b) {
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) axes(i, j) = at.axes(i, j);
   const Eigen::Quaterniond turn(axes);
-  return {{turn.w(), turn.x(), turn.y(), turn.z()}, at.origin};
+  return {{turn.w(), turn.x(), turn.y(), turn.z()}, turn.vec().norm() > 0, at.origin};
 }
 
 Leaf leaf_of(const Link& l) {
@@ -91,6 +91,7 @@ LinkTree build_links(const Model<Spatial>& model) {
     l.leaf = k + 1 == n || model.bodies[k + 1].parent != static_cast<int>(k);
     l.has_force = b.has_force();
     tree.theta0[k] = b.theta0;
+    tree.has_angles |= l.kind != LinkKind::spherical;
     if (l.kind == LinkKind::general) l.record = tree.records++;
     l.one_axis = l.kind == LinkKind::general && b.nv <= 1 && !b.law;
     tree.users += b.law != nullptr;
@@ -107,20 +108,36 @@ LinkTree build_links(const Model<Spatial>& model) {
       }
     } else {
       Spatial::Edge<double> at_zero;
+      if (l.kind == LinkKind::spherical) {
+        at_zero.cos_theta = std::cos(b.theta0);
+        at_zero.sin_theta = std::sin(b.theta0);
+      }
       tree.weight[k] = Spatial::direction_to_child(b.edge, JointKind::weld, at_zero, model.gravity);
     }
   }
   for (std::size_t k = n; k-- > 0;) {
     Link& l = tree.links[k];
-    l.path = path_of(l);
     if (!l.leaf || l.kind != LinkKind::revolute) continue;
     l.record = static_cast<int>(tree.leaves.size());
     tree.leaves.push_back(leaf_of(l));
     if (!(l.J[5] + l.rotor > 0) && tree.singular_joint < 0)
       tree.singular_joint = static_cast<int>(k);
   }
+  set_paths(tree.links);
   mark_openers(tree.links);
   return tree;
+}
+
+void set_paths(std::vector<Link>& links) {
+  for (std::size_t k = 0; k < links.size(); ++k) {
+    Link& l = links[k];
+    l.path = Path::any;
+    if (l.kind != LinkKind::revolute || l.slot >= 0 || l.has_rotor) continue;
+    if (l.parent < 0 && !l.leaf) l.path = Path::root;
+    if (!l.first || l.screwed || l.turn == Turn::tilted) continue;
+    const Path turn = static_cast<Path>(l.turn), before = links[k - 1].path;
+    if (!l.leaf || before == turn || before == Path::root) l.path = turn;
+  }
 }
 
 std::string links_in_words(const LinkTree& tree) {

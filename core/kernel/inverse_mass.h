@@ -68,8 +68,11 @@ void MomentumSweeps<Spatial, S>::inverse_mass_times(MassSolution<Spatial, X>& so
       if (l.kind == LinkKind::spherical) {
         SphericalRecord<S>& w = sphericals_[static_cast<std::size_t>(l.record)];
         const Vec3<S> n{{x[l.u], x[l.u + 1], x[l.u + 2]}}, e = n - D.n;
+        if (l.parent < 0) {
+          w.pivot.take(e);
+          continue;
+        }
         const Vec3<S> force = D.f + w.pivot.remainder(e);
-        if (l.parent < 0) continue;
         const auto& r = tree_->sphericals[static_cast<std::size_t>(l.record)].origin;
         D = {w.R * force, w.R * n};
         D.n += cross(Vec3<S>{{S(r[0]), S(r[1]), S(r[2])}}, D.f);
@@ -117,9 +120,14 @@ void MomentumSweeps<Spatial, S>::inverse_mass_times(MassSolution<Spatial, X>& so
       if (l.kind == LinkKind::spherical) {
         const SphericalRecord<S>& w = sphericals_[static_cast<std::size_t>(l.record)];
         const auto& r = tree_->sphericals[static_cast<std::size_t>(l.record)].origin;
-        V.v += cross(V.w, Vec3<S>{{S(r[0]), S(r[1]), S(r[2])}});
-        V = {transpose_times(w.R, V.v), transpose_times(w.R, V.w)};
-        const Vec3<S> omega = w.pivot.omega(V.v);
+        Vec3<S> omega;
+        if (l.parent < 0) {
+          omega = w.pivot.omega();
+        } else {
+          V.v += cross(V.w, Vec3<S>{{S(r[0]), S(r[1]), S(r[2])}});
+          V = {transpose_times(w.R, V.v), transpose_times(w.R, V.w)};
+          omega = w.pivot.omega(V.v);
+        }
         for (int i = 0; i < 3; ++i) result[l.u + i] = omega[i] - V.w[i];
         V.w = omega;
       } else {

@@ -9,8 +9,17 @@
 
 namespace momenta {
 
+/// q̇ = ½ q ∘ (0, ω) of a quaternion, ω in child axes.
+template <class S>
+MOMENTA_INLINE void quaternion_rates(const S* q, const S* w, S* qdot) {
+  qdot[0] = -0.5 * (q[1] * w[0] + q[2] * w[1] + q[3] * w[2]);
+  qdot[1] = 0.5 * (q[0] * w[0] + q[2] * w[2] - q[3] * w[1]);
+  qdot[2] = 0.5 * (q[0] * w[1] + q[3] * w[0] - q[1] * w[2]);
+  qdot[3] = 0.5 * (q[0] * w[2] + q[1] * w[1] - q[2] * w[0]);
+}
+
 /// Rates of the coordinates of one joint: q̇ = u, or the kinematics of position and quaternion.
-/// q̇_quaternion = ½ q ∘ (0, ω), position rate = R v, with ω and v in child axes.
+/// position rate = R v, v in child axes too.
 template <class S>
 void coordinate_rates(JointKind kind, const S* q, const S* u, S* qdot) {
   switch (kind) {
@@ -30,10 +39,7 @@ void coordinate_rates(JointKind kind, const S* q, const S* u, S* qdot) {
       [[fallthrough]];
     }
     case JointKind::spherical:
-      qdot[0] = -0.5 * (q[1] * u[0] + q[2] * u[1] + q[3] * u[2]);
-      qdot[1] = 0.5 * (q[0] * u[0] + q[2] * u[2] - q[3] * u[1]);
-      qdot[2] = 0.5 * (q[0] * u[1] + q[3] * u[0] - q[1] * u[2]);
-      qdot[3] = 0.5 * (q[0] * u[2] + q[1] * u[1] - q[2] * u[0]);
+      quaternion_rates(q, u, qdot);
       return;
   }
 }

@@ -30,8 +30,9 @@ enum class Turn : std::uint8_t { general, right, parallel, tilted };
 
 /// How the inward sweep takes a link. Most lie inside a chain: a revolute joint with one child,
 /// itself the first of its parent, without a screw about the parent's z and without a rotor.
-/// Neighbours of one kind of turn run through a loop without branches; the others go one by one.
-enum class Path : std::uint8_t { chain_general, chain_right, chain_parallel, any };
+/// Neighbours of one kind of turn run through a loop without branches, from a joint that carries
+/// nothing to one on the ground where they reach that far; the others go one by one.
+enum class Path : std::uint8_t { chain_general, chain_right, chain_parallel, root, any };
 
 struct Link {
   double ca = 1, sa = 0, a = 0;  ///< cosine and sine of α, shift along x [m]
@@ -62,11 +63,9 @@ struct Link {
   Path path = Path::any;
 };
 
-/// Of a revolute joint with one child on it and none before it: see Path.
-inline Path path_of(const Link& l) {
-  const bool in_chain = l.kind == LinkKind::revolute && l.first && !l.leaf && l.slot < 0 &&
-                        !l.screwed && l.turn != Turn::tilted && !l.has_rotor;
-  return in_chain ? static_cast<Path>(l.turn) : Path::any;
+/// Whether the sweep takes it one by one.
+inline bool alone(const Link& l) {
+  return l.path == Path::root || l.path == Path::any;
 }
 
 /// What is constant of a revolute joint that carries nothing.
@@ -79,6 +78,7 @@ struct Leaf {
 /// The constant way to a spherical joint as one rotation and one step.
 struct SphericalPlace {
   double turn[4]{1, 0, 0, 0};  ///< joint frame in the parent's axes, quaternion w x y z
+  bool turned = false;         ///< it is not the unit quaternion
   Vec3<double> origin;         ///< of the joint in the parent's frame [m]
 };
 
@@ -90,10 +90,11 @@ struct LinkTree {
   std::vector<SphericalPlace> sphericals;
   std::vector<double>
       theta0;  ///< by link: of a revolute joint, the angle of its frame at q = 0 [rad]
-  std::vector<Vec3<double>> weight;  ///< by link: for revolute joints on the ground, gravity in
-                                     ///< their frame before the turn [m/s²]
+  std::vector<Vec3<double>> weight;  ///< by link: for revolute and spherical joints on the ground,
+                                     ///< gravity in their frame before the turn [m/s²]
   std::vector<std::pair<int, double>> rotors;  ///< place in u and inertia: rotor.h
   int slots = 0, records = 0, users = 0;
+  bool has_angles = false;  ///< joints other than spherical ones: there are sines and cosines
   /// Joint whose reduced or joint inertia is not positive although constant: a leaf without inertia
   /// about its revolute joint; −1: none.
   int singular_joint = -1;
@@ -101,6 +102,9 @@ struct LinkTree {
 
 /// @pre the model stays where it is for as long as the tree is used.
 LinkTree build_links(const Model<Spatial>& model);
+
+/// Chooses the Path of every link.
+void set_paths(std::vector<Link>& links);
 
 /// How many links take which way: "12 revolute joints at right angles, 3 parallel, 1 of another
 /// kind".

@@ -1,71 +1,10 @@
 #pragma once
-// Joints other than revolute ones in the momentum recursion, both ways: spherical joints, joints on
-// one axis, and free and user joints.
+// Joints on one axis, and free and user joints, in the momentum recursion, both ways.
 
 #include <momenta/core/kernel/axis_joint.h>
 #include <momenta/core/kernel/momentum_sweeps.h>
 
 namespace momenta {
-
-// A spherical joint leaves its body no angular inertia towards the parent: M' = (A', 0; 0, 0) with
-// A' = A − H I⁻¹ Hᵀ, D' = (D_f + H I⁻¹ e, p). What arrives at the parent is A' turned, and what its
-// step r makes of it: H = −A r̃, I = r̃ H.
-template <class S>
-template <bool Gravity, class In>
-bool MomentumSweeps<Spatial, S>::spherical_inward(std::size_t k, const In& p,
-                                                  Articulated<S>& articulated) {
-  const Link& l = tree_->links[k];
-  SphericalRecord<S>& w = sphericals_[static_cast<std::size_t>(l.record)];
-  if (l.leaf) articulated = {};
-  add_body<Gravity>(articulated, l);
-  if (l.slot >= 0) add<Gravity>(articulated, slots_[static_cast<std::size_t>(l.slot)]);
-  if constexpr (Gravity) w.G = {{articulated.Gx, articulated.Gy, articulated.Gz}};
-  w.p = {{p[l.u], p[l.u + 1], p[l.u + 2]}};
-  if (!w.pivot.eliminate(articulated.M, w.A)) return false;
-  const Vec3<S> e{{w.p[0] - articulated.Dnx, w.p[1] - articulated.Dny, w.p[2] - articulated.Dnz}};
-  w.Df = Vec3<S>{{articulated.Dfx, articulated.Dfy, articulated.Dfz}} + w.pivot.remainder(e);
-  if (l.parent < 0) return true;
-
-  carry_spherical(tree_->sphericals[static_cast<std::size_t>(l.record)].origin, w.R, w.A, w.Df, w.p,
-                  articulated);
-  if constexpr (Gravity) {
-    const Vec3<S> G = w.R * w.G;
-    articulated.Gx = G[0];
-    articulated.Gy = G[1];
-    articulated.Gz = G[2];
-  }
-  if (!l.first) leave<Gravity>(l, slot_of_parent(l), articulated);
-  return true;
-}
-
-template <class S>
-template <bool Gravity, class Out>
-void MomentumSweeps<Spatial, S>::spherical_outward(std::size_t k, Out u, Out pdot,
-                                                   OutwardMotion<S>& c) {
-  const Link& l = tree_->links[k];
-  const SphericalRecord<S>& w = sphericals_[static_cast<std::size_t>(l.record)];
-  Vec3<S> v{}, o{}, g{};
-  if (l.parent >= 0) {
-    const auto& r = tree_->sphericals[static_cast<std::size_t>(l.record)].origin;
-    v = transpose_times(w.R,
-                        Vec3<S>{{c.vx + c.oy * r[2] - c.oz * r[1], c.vy + c.oz * r[0] - c.ox * r[2],
-                                 c.vz + c.ox * r[1] - c.oy * r[0]}});
-    o = transpose_times(w.R, Vec3<S>{{c.ox, c.oy, c.oz}});
-    if constexpr (Gravity) g = transpose_times(w.R, Vec3<S>{{c.gx, c.gy, c.gz}});
-  } else if constexpr (Gravity) {
-    const auto& at = tree_->model->gravity;
-    g = transpose_times(w.R, Vec3<S>{{S(at[0]), S(at[1]), S(at[2])}});
-  }
-  const Vec3<S> omega = w.pivot.omega(v);
-  const Vec3<S> Pf = w.A * v + w.Df;
-  Vec3<S> net = -(cross(v, Pf) + cross(omega, w.p));
-  if constexpr (Gravity) net += cross(w.G, g);
-  for (int i = 0; i < 3; ++i) {
-    u[l.u + i] = omega[i] - o[i];
-    pdot[l.u + i] = net[i];
-  }
-  set_articulated(c, Spatial::Motion<S>{v, omega}, g);
-}
 
 template <class S>
 template <bool Gravity, class In>
@@ -144,7 +83,10 @@ bool MomentumSweeps<Spatial, S>::general_inward(std::size_t k, const In& p,
   if (!eliminate<Spatial>(b, x, M)) return false;
   auto D = remainder<Spatial>(b, x, r);
   if (b.law) D += reduced_momentum<Spatial>(b, x, x.user->motion.drift);
-  if (b.parent < 0) return true;
+  if (b.parent < 0) {
+    x.h = D;
+    return true;
+  }
   Vec3<S> G{};
   if constexpr (Gravity)
     G = Spatial::moment_to_parent(b.edge, b.kind, x.edge, x.moment, b.subtree_mass);
@@ -176,8 +118,13 @@ void MomentumSweeps<Spatial, S>::general_outward(std::size_t k, const In& q, Out
     solve_joint<Spatial>(b, x, V, own);
     Spatial::Force<S> net{};
     if constexpr (Gravity) net = Spatial::weight(S(b.subtree_mass), x.moment, g);
-    auto P = Spatial::momentum(x.M, V);  // (42)
-    P += x.D;
+    Spatial::Force<S> P;
+    if (b.kind == JointKind::free && b.parent < 0) {
+      P = x.h;  // p is all of P*
+    } else {
+      P = Spatial::momentum(x.M, V);  // (42)
+      P += x.D;
+    }
     net -= Spatial::cross_force(V, P);
     S rate[6];
     Joint<Spatial>::project(b, x.edge, net, rate);  // (35)

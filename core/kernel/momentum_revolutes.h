@@ -76,50 +76,91 @@ MOMENTA_INLINE void turn_revolute(Eliminated<S>& r, const S& c, const S& s, cons
   }
 }
 
-/// Revolute joints inside a chain from `end` − 1 down, as far as their turns are of one kind;
-/// returns the end of what is left. All that passes from body to body stays in registers. The next
-/// body joins what arrives at it in the same breath: products and signs of the turn before go into
-/// its sums.
+/// What is found at a revolute joint on the ground: nothing is passed on.
+template <bool Gravity, class S>
+MOMENTA_INLINE void eliminate_root(const Articulated<S>& articulated, const S& p, const S& pivot,
+                                   RevoluteRecord<S>& w) {
+  w.inverse = S(1.0) / pivot;
+  w.y0 = (p - articulated.Dnz) * w.inverse;
+  if constexpr (Gravity) {
+    w.Gx = articulated.Gx;
+    w.Gy = articulated.Gy;
+  }
+}
+
+/// (46)-(48) of a joint that carries nothing, by its link.
+template <bool Gravity, class S>
+MOMENTA_INLINE void hand_on_leaf(const LinkTree& tree, const Link& l, const S& p,
+                                 RevoluteRecord<S>& w, Eliminated<S>& r) {
+  const Leaf& leaf = tree.leaves[static_cast<std::size_t>(l.record)];
+  RevoluteColumn<S> h;
+  Reduced<S> M;
+  set_leaf(leaf, h, M);
+  hand_on_leaf<Gravity>(h, M, S(leaf.inverse), l.moment, p, w, r);
+}
+
+/// Revolute joints inside a chain from `end` − 1 down, as far as their turns are of one kind, and
+/// the joint on the ground that they end at; returns the end of what is left. All that passes from
+/// body to body stays in registers. The next body joins what arrives at it in the same breath:
+/// products and signs of the turn before go into its sums.
 template <class S>
 template <Turn turn, bool Gravity, class In>
 std::size_t MomentumSweeps<Spatial, S>::chain_inward(std::size_t end, const In& p,
                                                      Articulated<S>& from) {
-  Articulated<S> articulated = from;
+  Articulated<S> articulated;
+  Eliminated<S> r;
   const Link* links = tree_->links.data();
   std::size_t k = end - 1;
-  add_body<Gravity>(articulated, links[k]);
-  change_signs<turn>(articulated);
-  for (;;) {
-    const Link& l = links[k];
-    RevoluteRecord<S>& w = revolutes_[k];
-    change_signs<turn>(articulated);
+  if (links[k].leaf) {
+    hand_on_leaf<Gravity, S>(*tree_, links[k], p[links[k].u], revolutes_[k], r);
+  } else {
+    articulated = from;
+    add_body<Gravity>(articulated, links[k]);
     if (!all_positive(articulated.M.Izz)) {
       singular_joint_ = static_cast<int>(k);
       return k;
     }
-    Eliminated<S> r;
-    eliminate_revolute<Gravity>(articulated, p[l.u], S(1.0) / articulated.M.Izz, w, r);
-    turn_revolute<Gravity>(r, angles_.cosine(k), angles_.sine(k), l.d, w);
-    if (links[k - 1].path != static_cast<Path>(turn)) {
+    eliminate_revolute<Gravity, S>(articulated, p[links[k].u], S(1.0) / articulated.M.Izz,
+                                   revolutes_[k], r);
+  }
+  for (;;) {
+    const Link& l = links[k];
+    turn_revolute<Gravity>(r, angles_.cosine(k), angles_.sine(k), l.d, revolutes_[k]);
+    const Path next = links[k - 1].path;
+    if (next != static_cast<Path>(turn)) {
+      if (next == Path::root) {
+        carry<turn, Gravity>(r, l, articulated);
+        add_body<Gravity>(articulated, links[--k]);
+        if (all_positive(articulated.M.Izz))
+          eliminate_root<Gravity, S>(articulated, p[links[k].u], articulated.M.Izz, revolutes_[k]);
+        else
+          singular_joint_ = static_cast<int>(k);
+        return k;
+      }
       const Eliminated<S> last = r;  // whose address is taken
       carry_last<turn, Gravity>(last, l, from);
       return k;
     }
     carry<turn, Gravity>(r, l, articulated);
     add_body<Gravity>(articulated, links[--k]);
-    change_signs<turn>(articulated);
+    if (!all_positive(articulated.M.Izz)) {
+      singular_joint_ = static_cast<int>(k);
+      return k;
+    }
+    eliminate_revolute<Gravity, S>(articulated, p[links[k].u], S(1.0) / articulated.M.Izz,
+                                   revolutes_[k], r);
   }
 }
 
-/// Other revolute joints from `end` − 1 down, one after another: at leaves, at branches, on the
-/// ground, beside a first child. What passes from a first child to its parent stays in registers
-/// here too.
+/// Other revolute joints from `end` − 1 down, one after another: at branches, on the ground, beside
+/// a first child. What passes from a first child to its parent stays in registers here too.
 template <class S>
 template <bool Gravity, class In>
 std::size_t MomentumSweeps<Spatial, S>::revolutes_inward(std::size_t end, const In& p,
                                                          Articulated<S>& from) {
-  Articulated<S> articulated = from;
+  Articulated<S> articulated;
   const Link* links = tree_->links.data();
+  if (!links[end - 1].leaf && !links[end - 1].carries_branches_alone) articulated = from;
   std::size_t k = end;
   do {
     --k;
@@ -128,11 +169,7 @@ std::size_t MomentumSweeps<Spatial, S>::revolutes_inward(std::size_t end, const 
     const S pk = p[l.u];
     Eliminated<S> r;
     if (l.leaf) {
-      const Leaf& leaf = tree_->leaves[static_cast<std::size_t>(l.record)];
-      RevoluteColumn<S> h;
-      Reduced<S> M;
-      set_leaf(leaf, h, M);
-      hand_on_leaf<Gravity>(h, M, S(leaf.inverse), l.moment, pk, w, r);
+      hand_on_leaf<Gravity>(*tree_, l, pk, w, r);
       if (l.parent < 0) continue;
     } else {
       if (l.carries_branches_alone) articulated = {};
@@ -143,17 +180,11 @@ std::size_t MomentumSweeps<Spatial, S>::revolutes_inward(std::size_t end, const 
         singular_joint_ = static_cast<int>(k);
         return k;
       }
-      const S inverse = S(1.0) / pivot;
-      if (l.parent < 0) {  // nothing is passed on to the ground
-        w.inverse = inverse;
-        w.y0 = (pk - articulated.Dnz) * inverse;
-        if constexpr (Gravity) {
-          w.Gx = articulated.Gx;
-          w.Gy = articulated.Gy;
-        }
+      if (l.parent < 0) {
+        eliminate_root<Gravity>(articulated, pk, pivot, w);
         continue;
       }
-      eliminate_revolute<Gravity>(articulated, pk, inverse, w, r);
+      eliminate_revolute<Gravity>(articulated, pk, S(1.0) / pivot, w, r);
     }
     const S c = angles_.cosine(k), s = angles_.sine(k);
     if (l.has_rotor) r.nz = pk - l.rotor * w.y0;
@@ -162,8 +193,8 @@ std::size_t MomentumSweeps<Spatial, S>::revolutes_inward(std::size_t end, const 
     if (l.has_rotor) [[unlikely]]
       hand_on_rotor(body(k).edge, turned_rotor(l, w.h, w.inverse, c, s), articulated);
     if (!l.first) leave<Gravity>(l, slot_of_parent(l), articulated);
-  } while (k > 0 && links[k - 1].path == Path::any && links[k - 1].kind == LinkKind::revolute);
-  from = articulated;
+  } while (k > 0 && alone(links[k - 1]) && links[k - 1].kind == LinkKind::revolute);
+  if (k > 0) from = articulated;
   return k;
 }
 

@@ -35,13 +35,15 @@ struct RevoluteRecord {
   S Gx, Gy;              ///< across the revolute joint
 };
 
-/// What it needs of a spherical joint. R: child components to the parent's.
+/// What it needs of a spherical joint. R: child components to the parent's. Of a joint on the
+/// ground R, A and Df are not found: its origin rests, and gravity turns by the quaternion.
 template <class S>
 struct SphericalRecord {
   Mat3<S> R;
   SphericalPivot<S> pivot;
-  Sym3<S> A;         ///< M' = (A, 0; 0, 0)
-  Vec3<S> Df, p, G;  ///< D' = (Df, p); first moment of the subtree
+  Sym3<S> A;              ///< M' = (A, 0; 0, 0)
+  Vec3<S> Df, p, G;       ///< D' = (Df, p); first moment of the subtree
+  bool constant = false;  ///< pivot and A are: eliminate_leaves()
 };
 
 template <class Space, class S>
@@ -60,20 +62,28 @@ class MomentumSweeps<Spatial, S> {
         users_(static_cast<std::size_t>(tree.users)),
         slots_(static_cast<std::size_t>(tree.slots)),
         outward_slots_(static_cast<std::size_t>(tree.slots)),
-        solution_(tree) {}
+        solution_(tree) {
+    eliminate_leaves<S>(tree, sphericals_);
+    tops_alone_ = tops_alone();
+  }
 
   /// u (nv) and the open chain's ṗ (nv), forces between points of bodies left out. In and Out index
   /// like pointers to S. False when a joint's articulated inertia is not positive:
   /// singular_joint().
   template <class In, class Out>
   bool operator()(const S& t, const In& q, const In& p, Out u, Out pdot) {
-    place_links(
-        *tree_, t, q, angles_, joints_,
-        users_, [&](std::size_t record) -> auto& { return sphericals_[record].R; });
+    if (tops_alone_) {
+      if (tree_->model->has_gravity)
+        turn_tops<true>(q, p, u, pdot);
+      else
+        turn_tops<false>(q, p, u, pdot);
+      return true;
+    }
+    place_links(*tree_, t, q, angles_, joints_, users_, WhereMet());
     singular_joint_ = tree_->singular_joint;
     if (singular_joint_ >= 0) return false;
-    return tree_->model->has_gravity ? inward<true>(p) && outward<true>(q, u, pdot)
-                                     : inward<false>(p) && outward<false>(q, u, pdot);
+    return tree_->model->has_gravity ? inward<true>(q, p) && outward<true>(q, u, pdot)
+                                     : inward<false>(q, p) && outward<false>(q, u, pdot);
   }
 
   /// M⁻¹ x (nv) at the configuration of the last evaluation, prescribed motion left out:
@@ -95,9 +105,13 @@ class MomentumSweeps<Spatial, S> {
 
  private:
   template <bool Gravity, class In>
-  bool inward(const In& p);
+  bool inward(const In& q, const In& p);
   template <bool Gravity, class In, class Out>
   bool outward(const In& q, Out u, Out pdot);
+
+  bool tops_alone() const;
+  template <bool Gravity, class In, class Out>
+  void turn_tops(const In& q, const In& p, Out u, Out pdot);
 
   // Out of line: what the loop over a chain holds in registers must have no address.
   template <Turn turn, bool Gravity, class In>
@@ -107,11 +121,11 @@ class MomentumSweeps<Spatial, S> {
   __attribute__((noinline)) std::size_t revolutes_inward(std::size_t end, const In& p,
                                                          Articulated<S>& articulated);
   template <bool Gravity, class In>
-  __attribute__((noinline)) bool spherical_inward(std::size_t k, const In& p,
-                                                  Articulated<S>& articulated);
-  template <bool Gravity, class Out>
-  __attribute__((noinline)) void spherical_outward(std::size_t k, Out u, Out pdot,
-                                                   OutwardMotion<S>& articulated);
+  __attribute__((noinline)) std::size_t sphericals_inward(std::size_t end, const In& q, const In& p,
+                                                          Articulated<S>& articulated);
+  template <bool Gravity, class In, class Out>
+  __attribute__((noinline)) std::size_t sphericals_outward(std::size_t k, const In& q, Out u,
+                                                           Out pdot, OutwardMotion<S>& articulated);
   template <bool Gravity, class In>
   __attribute__((noinline)) bool axis_inward(std::size_t k, const In& p,
                                              Articulated<S>& articulated);
@@ -139,6 +153,7 @@ class MomentumSweeps<Spatial, S> {
   std::vector<OutwardMotion<S>> outward_slots_;
   MassSolution<Spatial, S> solution_;
   int singular_joint_ = -1;
+  bool tops_alone_ = false;
 };
 
 /// A revolute joint's outward step: Ω and g from the parent's frame to its own but for its own
@@ -164,9 +179,9 @@ MOMENTA_INLINE void move_revolute(const Link& l, const Edge& edge, const Revolut
 
 template <class S>
 template <bool Gravity, class In>
-bool MomentumSweeps<Spatial, S>::inward(const In& p) {
+bool MomentumSweeps<Spatial, S>::inward(const In& q, const In& p) {
   const Link* links = tree_->links.data();
-  Articulated<S> articulated{};  // of the body after the next one
+  Articulated<S> articulated;  // of the body after the next one: nothing at a leaf
   for (std::size_t k = angles_.size(); k > 0;) {
     switch (links[k - 1].path) {
       case Path::chain_general:
@@ -178,15 +193,19 @@ bool MomentumSweeps<Spatial, S>::inward(const In& p) {
       case Path::chain_parallel:
         k = chain_inward<Turn::parallel, Gravity>(k, p, articulated);
         break;
+      case Path::root:
       case Path::any:
         if (links[k - 1].kind == LinkKind::revolute) {
           k = revolutes_inward<Gravity>(k, p, articulated);
           break;
         }
+        if (links[k - 1].kind == LinkKind::spherical) {
+          k = sphericals_inward<Gravity>(k, q, p, articulated);
+          break;
+        }
         --k;
-        if (!(links[k].kind == LinkKind::spherical ? spherical_inward<Gravity>(k, p, articulated)
-              : links[k].one_axis                  ? axis_inward<Gravity>(k, p, articulated)
-                                                   : general_inward<Gravity>(k, p, articulated)))
+        if (!(links[k].one_axis ? axis_inward<Gravity>(k, p, articulated)
+                                : general_inward<Gravity>(k, p, articulated)))
           singular_joint_ = static_cast<int>(k);
         break;
     }
@@ -224,7 +243,7 @@ bool MomentumSweeps<Spatial, S>::outward(const In& q, Out u, Out pdot) {
     if (l.kind != LinkKind::revolute) {
       OutwardMotion<S> here{vx, vy, vz, ox, oy, oz, gx, gy, gz};
       if (l.kind == LinkKind::spherical)
-        spherical_outward<Gravity>(k, u, pdot, here);
+        k = sphericals_outward<Gravity>(k, q, u, pdot, here);
       else if (l.one_axis)
         axis_outward<Gravity>(k, q, u, pdot, here);
       else
@@ -265,8 +284,9 @@ bool MomentumSweeps<Spatial, S>::outward(const In& q, Out u, Out pdot) {
       u[l.u] = own;
       pdot[l.u] = rate;
     }
-    if (l.slot >= 0)
-      outward_slots_[static_cast<std::size_t>(l.slot)] = {vx, vy, vz, ox, oy, oz, gx, gy, gz};
+    if (links[k].slot >= 0)
+      outward_slots_[static_cast<std::size_t>(links[k].slot)] = {vx, vy, vz, ox, oy,
+                                                                 oz, gx, gy, gz};
   }
   return true;
 }
@@ -275,3 +295,4 @@ bool MomentumSweeps<Spatial, S>::outward(const In& q, Out u, Out pdot) {
 
 #include <momenta/core/kernel/momentum_joints.h>
 #include <momenta/core/kernel/momentum_revolutes.h>
+#include <momenta/core/kernel/momentum_sphericals.h>

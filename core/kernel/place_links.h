@@ -5,6 +5,8 @@
 #include <momenta/core/kernel/general_joint.h>
 #include <momenta/core/kernel/link.h>
 
+#include <type_traits>
+
 namespace momenta {
 
 /// Angle about z of the screw of a joint on one axis at its coordinate [rad], and shift along it
@@ -23,25 +25,28 @@ MOMENTA_INLINE S shift_at(const Model<Spatial>::Body& b, const S& value) {
 /// Axes of a spherical joint: the constant turn c and the joint's own as one quaternion c ∘ q.
 template <class S, class In>
 MOMENTA_INLINE Mat3<S> spherical_axes(const SphericalPlace& place, const In& q, int first) {
+  const S w = q[first], x = q[first + 1], y = q[first + 2], z = q[first + 3];
+  if (!place.turned) return rotation_by(w, x, y, z);
   const double* c = place.turn;
-  const S at[4] = {q[first], q[first + 1], q[first + 2], q[first + 3]};
-  const S both[4] = {c[0] * at[0] - c[1] * at[1] - c[2] * at[2] - c[3] * at[3],
-                     c[0] * at[1] + c[1] * at[0] + c[2] * at[3] - c[3] * at[2],
-                     c[0] * at[2] + c[2] * at[0] + c[3] * at[1] - c[1] * at[3],
-                     c[0] * at[3] + c[3] * at[0] + c[1] * at[2] - c[2] * at[1]};
-  return rotation_of(both);
+  return rotation_by<S>(
+      c[0] * w - c[1] * x - c[2] * y - c[3] * z, c[0] * x + c[1] * w + c[2] * z - c[3] * y,
+      c[0] * y + c[2] * w + c[3] * x - c[1] * z, c[0] * z + c[3] * w + c[1] * y - c[2] * x);
 }
 
+/// In place of their axes: spherical joints are placed where they are met.
+struct WhereMet {};
+
 /// Sines and cosines of the first n links that are revolute joints, turned axes of spherical joints
-/// (`axes(record)`), edges of the others.
+/// (`axes(record)`, unless WhereMet), edges of the others.
 template <class S, class In, class Axes>
 void place_links(const LinkTree& tree, const S& t, const In& q, Angles<S>& angles,
                  std::vector<JointRecord<Spatial, S>>& joints, std::vector<UserRecord<S>>& users,
                  Axes&& axes, std::size_t n) {
   const Link* links = tree.links.data();
   const double* theta0 = tree.theta0.data();
+  constexpr bool where_met = std::is_same_v<std::remove_cvref_t<Axes>, WhereMet>;
   const bool revolutes_alone = joints.empty();
-  for (std::size_t k = 0; k < n; ++k) {
+  for (std::size_t k = 0; tree.has_angles && k < n; ++k) {
     if (links[k].kind == LinkKind::revolute) {
       angles.set(k, q[links[k].q] + theta0[k]);
     } else if (revolutes_alone || !links[k].one_axis) {
@@ -61,14 +66,14 @@ void place_links(const LinkTree& tree, const S& t, const In& q, Angles<S>& angle
       angles.set(k, angle_at(b, value));
     }
   }
-  angles.turn(n);
-  if (revolutes_alone && tree.sphericals.empty()) return;
+  if (tree.has_angles) angles.turn(n);
+  if (revolutes_alone && (where_met || tree.sphericals.empty())) return;
   for (std::size_t k = 0; k < n; ++k) {
     if (links[k].kind == LinkKind::revolute) continue;
     const auto& b = tree.model->bodies[k];
     const auto record = static_cast<std::size_t>(links[k].record);
     if (links[k].kind == LinkKind::spherical) {
-      axes(record) = spherical_axes<S>(tree.sphericals[record], q, b.q);
+      if constexpr (!where_met) axes(record) = spherical_axes<S>(tree.sphericals[record], q, b.q);
       continue;
     }
     auto& x = joints[record];

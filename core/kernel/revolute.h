@@ -155,19 +155,6 @@ MOMENTA_INLINE void carry(const Eliminated<S>& r, const Link& l, Articulated<S>&
   }
 }
 
-/// A right turn changes signs. A chain carries these numbers with those they had before it, so that
-/// the next body's sums subtract them: no sign is changed by itself.
-template <Turn turn, class S>
-MOMENTA_INLINE void change_signs(Articulated<S>& articulated) {
-  if constexpr (turn == Turn::right) {
-    articulated.M.Axy = -articulated.M.Axy;
-    articulated.M.Ayz = -articulated.M.Ayz;
-    articulated.M.Hyx = -articulated.M.Hyx;
-    articulated.Dfy = -articulated.Dfy;
-    articulated.Dny = -articulated.Dny;
-  }
-}
-
 /// To the parent where a chain ends.
 template <Turn turn, bool Gravity, class Link, class S>
 __attribute__((noinline)) void carry_last(const Eliminated<S>& r, const Link& l,

@@ -1,7 +1,11 @@
 #pragma once
-// How a spherical joint is eliminated and passes on what is left, in both recursions.
+// How a spherical joint is eliminated and passes on what is left, in both recursions. What carries
+// nothing is eliminated once, as M* is constant there; a joint on the ground passes nothing on, and
+// its origin rests: there ω = I⁻¹ e is all, with neither Z nor A'.
 
 #include <momenta/core/kernel/revolute.h>
+
+#include <vector>
 
 namespace momenta {
 
@@ -16,8 +20,8 @@ struct SphericalPivot {
   Mat3<S> s;                    ///< Z Δ⁻¹
   Vec3<S> e;                    ///< L⁻¹ e
 
-  /// False when I is not positive.
-  MOMENTA_INLINE bool eliminate(const Full<S>& m, Sym3<S>& A) {
+  /// L and Δ⁻¹ alone: all that a joint on the ground needs. False when I is not positive.
+  MOMENTA_INLINE bool factor(const Full<S>& m) {
     const S minor = m.Ixx * m.Iyy - m.Ixy * m.Ixy, below = m.Ixx * m.Iyz - m.Ixy * m.Ixz;
     const S last = minor * (m.Ixx * m.Izz - m.Ixz * m.Ixz) - below * below;
     i0 = S(1.0) / m.Ixx;
@@ -27,9 +31,12 @@ struct SphericalPivot {
     l10 = m.Ixy * i0;
     l20 = m.Ixz * i0;
     l21 = below * r1;
-    if (!all_positive(m.Ixx) || !all_positive(minor) ||
-        !determinant_positive(last * i0, m.Ixx, m.Iyy, m.Izz))
-      return false;
+    return all_positive(m.Ixx) && all_positive(minor) &&
+           determinant_positive(last * i0, m.Ixx, m.Iyy, m.Izz);
+  }
+  /// The same, and A'.
+  MOMENTA_INLINE bool eliminate(const Full<S>& m, Sym3<S>& A) {
+    if (!factor(m)) return false;
     const S zx0 = m.Hxx, zx1 = m.Hxy - l10 * zx0, zx2 = m.Hxz - l20 * zx0 - l21 * zx1;
     const S zy0 = m.Hyx, zy1 = m.Hyy - l10 * zy0, zy2 = m.Hyz - l20 * zy0 - l21 * zy1;
     const S zz0 = m.Hzx, zz1 = m.Hzy - l10 * zz0, zz2 = m.Hzz - l20 * zz0 - l21 * zz1;
@@ -43,12 +50,22 @@ struct SphericalPivot {
     A.x[5] = m.Azz - (s.x[6] * zz0 + s.x[7] * zz1 + s.x[8] * zz2);
     return true;
   }
-  /// D'_f − D_f from e = r − D_n.
-  MOMENTA_INLINE Vec3<S> remainder(const Vec3<S>& right) {
+  /// Takes e = r − D_n.
+  MOMENTA_INLINE void take(const Vec3<S>& right) {
     e[0] = right[0];
     e[1] = right[1] - l10 * e[0];
     e[2] = right[2] - l20 * e[0] - l21 * e[1];
+  }
+  /// D'_f − D_f from e = r − D_n.
+  MOMENTA_INLINE Vec3<S> remainder(const Vec3<S>& right) {
+    take(right);
     return s * e;
+  }
+  /// ω = I⁻¹ e of a body whose origin rests.
+  MOMENTA_INLINE Vec3<S> omega() const {
+    const S z = e[2] * i2;
+    const S y = e[1] * i1 - l21 * z;
+    return {{e[0] * i0 - l10 * y - l20 * z, y, z}};
   }
   /// ω = L⁻ᵀ (Δ⁻¹ L⁻¹ e − (Z Δ⁻¹)ᵀ v) of the body, v the velocity of its origin.
   MOMENTA_INLINE Vec3<S> omega(const Vec3<S>& v) const {
@@ -58,6 +75,19 @@ struct SphericalPivot {
     return {{e[0] * i0 - g[0] - l10 * y - l20 * z, y, z}};
   }
 };
+
+/// Eliminates the spherical joints that carry nothing, in their records' `pivot` and `A`, and marks
+/// them `constant`. One without inertia is left to its sweep, which tells of it.
+template <class S, class Record>
+void eliminate_leaves(const LinkTree& tree, std::vector<Record>& records) {
+  for (const Link& l : tree.links) {
+    if (l.kind != LinkKind::spherical || !l.leaf || l.slot >= 0) continue;
+    Record& w = records[static_cast<std::size_t>(l.record)];
+    Full<S> m;
+    set_body(m, l);
+    w.constant = w.pivot.eliminate(m, w.A);
+  }
+}
 
 /// M' = (A, 0; 0, 0) and D' = (f, n) of a spherical joint in the parent's frame: A turned by R, and
 /// what the step r makes of it, H = −A r̃, I = r̃ H.

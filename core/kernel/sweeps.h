@@ -179,6 +179,8 @@ void coordinate_rates(const Model<Space>& model, const S* q, const S* u, S* qdot
       for (int i = 0; i < b.nv; ++i) qdot[b.q + i] = u[b.u + i];
     else if (b.nv == 1)
       qdot[b.q] = u[b.u];
+    else if (b.kind == JointKind::spherical)
+      quaternion_rates(q + b.q, u + b.u, qdot + b.q);
     else if (b.nv > 0)
       coordinate_rates(b.kind, q + b.q, u + b.u, qdot + b.q);
 }

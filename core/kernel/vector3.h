@@ -2,6 +2,8 @@
 // Vectors, symmetric and general 3 × 3 matrices of any scalar, as plain aggregates whose elements
 // stay in registers, and how each turns about a coordinate axis. Eigen stays outside the kernels.
 
+#include <momenta/core/scalar/pack.h>
+
 #include <cmath>
 
 namespace momenta {
@@ -188,8 +190,7 @@ void turn(Mat3<S>& m, const C& c, const C& s) {
 /// formula is homogeneous of degree zero, so a quaternion that has drifted off unit length still
 /// gives a rotation.
 template <class S>
-Mat3<S> rotation_of(const S* quaternion) {
-  const S w = quaternion[0], x = quaternion[1], y = quaternion[2], z = quaternion[3];
+MOMENTA_INLINE Mat3<S> rotation_by(const S& w, const S& x, const S& y, const S& z) {
   const S two = S(2.0) / (w * w + x * x + y * y + z * z);
   Mat3<S> r;
   r(0, 0) = S(1.0) - two * (y * y + z * z);
@@ -202,6 +203,21 @@ Mat3<S> rotation_of(const S* quaternion) {
   r(2, 1) = two * (y * z + w * x);
   r(2, 2) = S(1.0) - two * (x * x + y * y);
   return r;
+}
+template <class S>
+Mat3<S> rotation_of(const S* quaternion) {
+  return rotation_by(quaternion[0], quaternion[1], quaternion[2], quaternion[3]);
+}
+/// Rᵀ g of that rotation without R, for one direction: with v = (x, y, z) and t = 2 v × g / |q|²,
+/// Rᵀ g = g − w t + v × t.
+template <class S>
+MOMENTA_INLINE Vec3<S> turned_back_by(const S& w, const S& x, const S& y, const S& z,
+                                      const Vec3<double>& g) {
+  const S two = S(2.0) / (w * w + x * x + y * y + z * z);
+  const S tx = two * (y * g[2] - z * g[1]), ty = two * (z * g[0] - x * g[2]),
+          tz = two * (x * g[1] - y * g[0]);
+  return {{g[0] - w * tx + (y * tz - z * ty), g[1] - w * ty + (z * tx - x * tz),
+           g[2] - w * tz + (x * ty - y * tx)}};
 }
 
 }  // namespace momenta

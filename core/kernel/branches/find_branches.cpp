@@ -243,8 +243,8 @@ void build_remaining_tree(const LinkTree& tree, const std::vector<char>& in_bran
                       remaining_tree.links[k + 1].parent != static_cast<int>(k);
     l.carries_branches_alone = bare && reached[k];
     if (l.carries_branches_alone && l.kind != LinkKind::revolute) l.leaf = true;
-    l.path = path_of(l);
   }
+  set_paths(remaining_tree.links);
 }
 
 }  // namespace
