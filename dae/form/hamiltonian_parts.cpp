@@ -1,3 +1,4 @@
+#include <momenta/core/lagrangian/lagrangian_model.h>
 #include <momenta/dae/factor/tree_factor.h>
 #include <momenta/dae/form/hamiltonian_parts.h>
 #include <momenta/dae/kkt/kkt.h>
@@ -58,6 +59,17 @@ class MechanismPlace final : public HamiltonianPlace {
     e_->constraint_forces(x, result);
   }
 
+  void momentum(const double* u, double* p) override {
+    e_->move(u);
+    e_->momenta(nullptr, p);
+  }
+  double energy(const double* q, const double* u) override {
+    e_->move(u);
+    return e_->kinetic() + e_->potential(q);
+  }
+  double kinetic() override { return e_->kinetic(); }
+  double power(const double* q, const double* u) override { return e_->dissipated_power(q, u); }
+
   bool factor(double t, const double* q) override {
     return !kkt_ || kkt_->factor(*e_, t, q, dependent_rows);
   }
@@ -86,6 +98,10 @@ struct HamiltonianParts::Work {
 HamiltonianParts::Work& HamiltonianParts::parts() {
   if (!parts_) parts_ = std::make_shared<Work>(system_);
   return *parts_;
+}
+
+bool HamiltonianParts::prescribed() const {
+  return system_.scene().lagrangian ? system_.lagrangian().moving : system_.plan().drives;
 }
 
 std::unique_ptr<HamiltonianPlace> HamiltonianParts::place() const {

@@ -1,7 +1,8 @@
 #pragma once
-// The parts of the Hamiltonian of a mechanism, for RATTLE: a base class of the form `momentum`.
-// M⁻¹ by the factors of M along the tree, Σ depth²; multipliers by the matrix of (7), dense or
-// sparse by size, as everywhere (kkt.h). It takes no memory before its first use.
+// The parts of the Hamiltonian of a mechanism, for RATTLE and the energy-momentum scheme: a base
+// class of the form `momentum`. M⁻¹ by the factors of M along the tree, Σ depth²; multipliers by
+// the matrix of (7), dense or sparse by size, as everywhere (kkt.h). It takes no memory before its
+// first use.
 
 #include <momenta/dae/form/coordinate_motion.h>
 #include <momenta/dae/solver/constrained_hamiltonian.h>
@@ -17,6 +18,7 @@ class HamiltonianParts : public ConstrainedHamiltonian {
   int coordinates() const override { return system_.nq(); }
   int momenta() const override { return system_.nv(); }
   int multipliers() const override { return system_.m(); }
+  bool prescribed() const override;
   std::unique_ptr<HamiltonianPlace> place() const override;
   void coordinate_rates(const double* q, const double* u, double* qdot) override;
   void move(const double* q, const double* delta, double* moved) override;

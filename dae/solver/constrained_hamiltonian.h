@@ -1,7 +1,7 @@
 #pragma once
-// What RATTLE needs of a system beside y = (q, p): the parts of H(q,
-// p) = L's Legendre transform under Φ(q, t) = 0, with p = M u + (prescribed part), no impulses σ in
-// it.
+// What RATTLE and the energy-momentum scheme need of a system beside y = (q, p): the parts of
+// H(q, p), L's Legendre transform, under Φ(q, t) = 0, with p = M u + (prescribed part), no impulses
+// σ in it.
 
 #include <memory>
 
@@ -25,6 +25,13 @@ class HamiltonianPlace {
   virtual void force(const double* q, const double* u, const double* sigma, double* g) = 0;
   /// Φ_qᵀ x (nv).
   virtual void constraint_forces(const double* x, double* result) = 0;
+  /// M u + prescribed part (nv).
+  virtual void momentum(const double* u, double* p) = 0;
+  /// T + V [J] at rates u (nv), and T there.
+  virtual double energy(const double* q, const double* u) = 0;
+  virtual double kinetic() = 0;
+  /// Power of forces without potential [W], at rates u (nv) of the last force().
+  virtual double power(const double* q, const double* u) = 0;
 
   /// Factorises the matrix at (t, q), where this is. False where it has no solution.
   virtual bool factor(double t, const double* q) = 0;
@@ -39,6 +46,8 @@ class ConstrainedHamiltonian {
   virtual int coordinates() const = 0;  ///< nq
   virtual int momenta() const = 0;      ///< nv
   virtual int multipliers() const = 0;  ///< m
+  /// Whether anything is prescribed: drives, constraints that take the time.
+  virtual bool prescribed() const = 0;
   virtual std::unique_ptr<HamiltonianPlace> place() const = 0;
   /// q' (nq) at rates u, and q ∘ exp δ, see SecondOrder.
   virtual void coordinate_rates(const double* q, const double* u, double* qdot) = 0;

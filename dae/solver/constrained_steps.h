@@ -34,9 +34,11 @@ struct State {
 class Convergence {
  public:
   enum class Is { under_way, reached, failed };
+  /// `slack`: by how much what rounding leaves may be larger than the unknowns' own.
+  explicit Convergence(double slack = 1) : rounding_(slack * rounding) {}
   /// After each iteration, with the size of its changes relative to the unknowns'.
   Is after(double size) {
-    if (size >= last_ && size <= rounding) ++stalls_;
+    if (size >= last_ && size <= rounding_) ++stalls_;
     if (size <= reached || stalls_ == patience) return Is::reached;
     if (++count_ == most_iterations || !std::isfinite(size) || size > 1e6 * last_)
       return Is::failed;
@@ -49,6 +51,7 @@ class Convergence {
   static constexpr double reached = 4 * std::numeric_limits<double>::epsilon();
   static constexpr double rounding = 1e-13;  ///< below this, changes that do not shrink are noise
   static constexpr int patience = 3;         ///< times they may not
+  double rounding_;
   double last_ = std::numeric_limits<double>::infinity();
   int stalls_ = 0, count_ = 0;
 };

@@ -27,6 +27,13 @@ IntegrationResult integrate_rattle(OdeSystem&, double t0, const std::vector<doub
                                    const std::vector<double>& output_times,
                                    const IntegrationOptions&, const Observer&);
 
+/// The energy-momentum scheme with steps of options.step, for systems that are
+/// ConstrainedHamiltonian; any σ of y0 is taken out of its p. @throws std::invalid_argument where
+/// anything is prescribed, too.
+IntegrationResult integrate_energy_momentum(OdeSystem&, double t0, const std::vector<double>& y0,
+                                            const std::vector<double>& output_times,
+                                            const IntegrationOptions&, const Observer&);
+
 /// Generalised-α with steps of options.step and its spectral radius, for systems that are
 /// SecondOrder.
 IntegrationResult integrate_generalised_alpha(DaeSystem&, double t0,

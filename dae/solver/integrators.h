@@ -31,11 +31,25 @@ struct Integrator {
   std::string method;  ///< its description, one line
   std::vector<std::string> forms;  ///< the forms it takes; empty: all of its kind
   bool resets = false;             ///< of DAE methods: takes gauge reset
+  /// Gauges that DAE methods take where none is asked for.
+  enum class Preferred {
+    leak,
+    reset,
+    reset_of_independent  ///< reset, or leak where loops are redundant
+  };
+  Preferred gauge = Preferred::leak;  ///< of DAE methods, for studies of cost
+  /// The forms of which it solves Φ = 0 for positions alone, so that rows of rates have no place.
+  std::vector<std::string> closes = {};
+  bool without_impulses = false;  ///< no σ is in its p: runs say gauge reset
 
   /// Whether it takes the named form; `dae` says whether that form is a DAE.
   bool takes_form(const std::string& wanted, bool dae) const {
     return (takes == Takes::dae) == dae &&
            (forms.empty() || std::find(forms.begin(), forms.end(), wanted) != forms.end());
+  }
+  /// Whether it is one of `closes`.
+  bool closes_form(const std::string& form) const {
+    return std::find(closes.begin(), closes.end(), form) != closes.end();
   }
 };
 

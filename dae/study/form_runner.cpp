@@ -34,10 +34,7 @@ std::string refusal(const Mechanism& mechanism, const Integrator& method, const 
   if (!dae && method.multistep && (s.gauge == "reset" || s.gauge == "flip"))
     return "'" + method.name + "' is a multistep method: gauge " + s.gauge +
            " after each step would spoil its history; use leak or none";
-  const bool meets_positions = method.name == "rattle" || method.name == "generalised-alpha" ||
-                               method.name == "bayo-ledesma" ||
-                               (method.name == "hem5" && s.form == "momentum-index2");
-  if (mechanism.has_nonholonomic() && meets_positions) {
+  if (mechanism.has_nonholonomic() && method.closes_form(s.form)) {
     const auto& all = mechanism.nonholonomic();
     const auto row =
         static_cast<std::size_t>(std::find(all.begin(), all.end(), true) - all.begin());
@@ -59,7 +56,7 @@ FormRunner::FormRunner(const Mechanism& mechanism, const Start& start, RunSettin
   const Integrator& method = integrator(s.integrator);
   if (const std::string reason = refusal(mechanism, method, s); !reason.empty())
     throw std::invalid_argument(reason);
-  if (s.integrator == "rattle") s.gauge = "reset";  // its last stage does it
+  if (method.without_impulses) s.gauge = "reset";
   FormOptions options;
   options.gauge = parse_gauge(s.gauge.empty() ? "none" : s.gauge);
   options.project = s.project;

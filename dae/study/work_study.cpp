@@ -11,13 +11,11 @@
 namespace momenta {
 namespace {
 
-/// Whether a method for DAEs had better reset the gauge than leak. Half-explicit stages on
-/// redundant loops keep σ near that of the stage before, which a reset takes away. Of radau5 either
-/// gauge is the better one on some mechanisms; it has the leak of the other implicit methods.
+/// Whether a method for DAEs had better reset the gauge than leak, as it says itself.
 bool had_better_reset(const Mechanism& mechanism, const Start& start, const Integrator& method) {
-  if (!method.resets || method.name == "radau5") return false;
-  if (method.multistep) return true;
-  return rank_at(mechanism, start).rank == mechanism.m();
+  if (method.gauge == Integrator::Preferred::reset_of_independent)
+    return rank_at(mechanism, start).rank == mechanism.m();
+  return method.gauge == Integrator::Preferred::reset;
 }
 
 RunSettings ladder(const Mechanism& mechanism, const Start& start, const WorkRequest& request,

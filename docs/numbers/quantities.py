@@ -16,7 +16,7 @@ singular poses say, have a "within FACTOR" of their own. Processor times are not
 import math
 import re
 
-FIXED = {"rk4", "gauss4", "gauss6", "rattle"}
+FIXED = {"rk4", "gauss4", "gauss6", "rattle", "energy-momentum"}
 IMPLICIT = {"ida", "radau5", "hem5", "bdf", "adams", "generalised-alpha", "bayo-ledesma"}
 VALUES = {"fixed": 1.1, "adaptive": 2.0, "implicit": 10.0}  # factor that two machines may differ by
 ERRORS = {"fixed": 1.1, "adaptive": 2.0, "implicit": 30.0}  # of what is held against a reference

@@ -408,8 +408,9 @@ TEST(Nonholonomic, PositionsAndRatesAreCountedApart) {
 TEST(Nonholonomic, IntegratorsOfPositionsAreRefused) {
   const Mechanism mechanism(sleigh(0.2, "[0, 0, 0]", "[1, 0, 0.5]"));
   const Start start = assemble(mechanism).start;
-  const std::array<std::array<const char*, 2>, 4> refused{
+  const std::array<std::array<const char*, 2>, 5> refused{
       {{"momentum", "rattle"},
+       {"momentum", "energy-momentum"},
        {"acceleration-index3", "generalised-alpha"},
        {"acceleration-index3", "bayo-ledesma"},
        {"momentum-index2", "hem5"}}};

@@ -1,0 +1,257 @@
+// What the energy-momentum scheme keeps, and that it takes the step of its equations.
+//
+//   Φ, Φ̇, T + V at rounding however many steps, in the plane and in space, with redundant loops and
+//   with joints whose q' is not u; momenta of cyclic coordinates; the way back; the work of dampers
+//   to order 2. The twin: unknowns q_1, p_1, λ, σ, α, whole matrices, Newton's method by
+//   differences.
+
+#include <gtest/gtest.h>
+#include <momenta/core/scene/files/read_scene.h>
+#include <momenta/dae/form/form.h>
+#include <momenta/dae/solver/implicit_methods.h>
+#include <momenta/dae/study/run_form.h>
+
+#include "equations/ensemble.h"
+#include "equations/linkages.h"
+
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+
+namespace momenta::dae_energy_momentum {
+namespace {
+
+using namespace equations;
+using Eigen::VectorXd;
+
+Scene four_bar() {
+  return read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples" / "four_bar" /
+                    "scene.toml");
+}
+
+/// The four-bar on a table that turns about the vertical, off its axis.
+Scene turntable(double rate) {
+  Scene s = four_bar();
+  for (JointSpec& j : s.joints)
+    if (j.parent == "ground") {
+      j.parent = "table";
+      j.origin_parent += Eigen::Vector3d(0.3, 0, 0.2);
+    }
+  s.bodies.push_back(rod("table", 0.4));
+  JointSpec axle = hinge("T", "ground", "table", {0, 0, 0}, 0.4);
+  axle.axis = {0, 1, 0};
+  axle.velocity = {rate};
+  s.joints.push_back(axle);
+  s.held.push_back("T");
+  s.name = "turntable";
+  return s;
+}
+
+/// A rod on a hinge of level axis on a hinge of vertical axis: a pendulum in space.
+Scene pendulum(double lift, double rate) {
+  Scene s;
+  s.name = "pendulum in space";
+  s.gravity = {0, -9.81, 0};
+  s.bodies = {rod("fork", 0.1), rod("bob", 0.1)};
+  JointSpec axle = hinge("T", "ground", "fork", {0, 0, 0}, 0.3);
+  axle.axis = {0, 1, 0};
+  axle.velocity = {rate};
+  s.joints = {axle, hinge("A", "fork", "bob", {0, 0, 0}, lift)};
+  return s;
+}
+
+RunResult run(const Scene& scene, double step, double end) {
+  const Mechanism mechanism(scene);
+  RunRequest request;
+  request.settings.form = "momentum";
+  request.settings.integrator = "energy-momentum";
+  request.settings.step = step;
+  request.settings.end_time = end;
+  request.settings.samples = 77;
+  return run_form(mechanism, equations::start_of(mechanism), request);
+}
+
+/// A start, and steps from it.
+struct Stepped {
+  Mechanism mechanism;
+  Start start;
+  std::unique_ptr<Form> form;
+  explicit Stepped(const Scene& scene)
+      : mechanism(scene),
+        start(equations::start_of(mechanism)),
+        form(make_form("momentum", mechanism, {}, start)) {}
+  std::vector<double> y0() { return form->initial(start); }
+  std::vector<double> steps(const std::vector<double>& y, double h, int count) {
+    IntegrationOptions options;
+    options.step = h;
+    const auto run = integrate_energy_momentum(*form->ode(), 0, y, {h * count}, options, {});
+    EXPECT_TRUE(run.done) << run.reason;
+    return run.y;
+  }
+};
+
+TEST(EnergyMomentum, KeepsConstraintsAndEnergyAtRounding) {
+  const Eigen::Quaterniond turn(Eigen::AngleAxisd(1.3, Eigen::Vector3d(1, 2, -1).normalized()));
+  // The second has redundant equations, the last is an open chain.
+  for (const Scene& scene :
+       {four_bar(), turned(four_bar(), turn), turntable(2), flying_rod(), pendulum(-0.5, 3)}) {
+    const RunResult r = run(scene, 0.0101, 50);
+    ASSERT_EQ(r.status, "done") << scene.name << ": " << r.reason;
+    if (!scene.loops.empty()) {
+      EXPECT_LT(r.position_drift_max, 1e-13) << scene.name;
+      EXPECT_LT(r.velocity_drift_max, 1e-12) << scene.name;
+    }
+    EXPECT_LT(r.energy_error_max, 2e-14 * r.energy_scale) << scene.name;
+  }
+}
+
+TEST(EnergyMomentum, MomentaOfCyclicCoordinates) {
+  for (const Scene& scene : {turntable(2), pendulum(-0.5, 3)}) {
+    Stepped c(scene);
+    const auto y0 = c.y0();
+    const auto y = c.steps(y0, 0.01, 5000);
+    int axle = -1;
+    for (const auto& b : c.mechanism.tree().bodies)
+      if (b.parent < 0) axle = b.u;
+    ASSERT_GE(axle, 0);
+    const auto at = static_cast<std::size_t>(c.mechanism.nq() + axle);
+    EXPECT_GT(std::abs(y0[at]), 0.1) << scene.name;
+    EXPECT_NEAR(y[at], y0[at], 1e-12 * std::abs(y0[at])) << scene.name;
+  }
+}
+
+// A steady precession, and rest: no direction in which energy could be given or taken.
+TEST(EnergyMomentum, RelativeEquilibria) {
+  // ½ rate² dI/dlift = dV/dlift, I about the vertical.
+  const double lift = -0.7, across = 1.01 / 12, along = 0.01 / 6,
+               rate = std::sqrt(-9.81 / (2 * std::sin(lift) * (across + 0.25 - along)));
+  Stepped turning(pendulum(lift, rate)), hanging(pendulum(-std::numbers::pi / 2, 0));
+  const auto y = turning.steps(turning.y0(), 0.01, 500);
+  EXPECT_NEAR(y[1], lift, 1e-9);
+  const auto rest = hanging.steps(hanging.y0(), 0.01, 500), before = hanging.y0();
+  for (std::size_t i = 0; i < rest.size(); ++i) EXPECT_NEAR(rest[i], before[i], 1e-13);
+}
+
+TEST(EnergyMomentum, ReturnsToItsStart) {
+  for (const Scene& scene : {four_bar(), flying_rod()}) {
+    Stepped c(scene);
+    const auto start = c.y0();
+    const auto turn = [&](std::vector<double> y) {
+      for (std::size_t i = static_cast<std::size_t>(c.mechanism.nq()); i < y.size(); ++i)
+        y[i] = -y[i];
+      return y;
+    };
+    const auto back = turn(c.steps(turn(c.steps(start, 0.01, 50)), 0.01, 50));
+    for (std::size_t i = 0; i < back.size(); ++i)
+      EXPECT_NEAR(back[i], start[i], 1e-8 * (1 + std::abs(start[i]))) << scene.name;
+  }
+}
+
+TEST(EnergyMomentum, WorkOfADamperToOrderTwo) {
+  Scene scene = four_bar();
+  for (JointSpec& j : scene.joints)
+    if (j.name == "C") j.damping = 2;
+  const auto off = [&](double h) { return run(scene, h, 4).energy_error_max; };
+  const double coarse = off(0.02), fine = off(0.005);
+  EXPECT_NEAR(std::log2(coarse / fine) / 2, 2, 0.3) << coarse << " " << fine;
+}
+
+TEST(EnergyMomentum, RefusesWhatIsPrescribed) {
+  const Scene driven =
+      read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples" / "driven" / "scene.toml");
+  try {
+    run(driven, 0.01, 1);
+    ADD_FAILURE();
+  } catch (const std::invalid_argument& e) {
+    EXPECT_NE(std::string(e.what()).find("expected no prescribed motion"), std::string::npos)
+        << e.what();
+  }
+}
+
+// The last equation is one of energies, of which α is a small part: Newton's method by differences
+// has a step for each unknown.
+TEST(EnergyMomentum, TakesTheStepOfItsEquations) {
+  const double h = 0.02;
+  for (const Scene& scene : {row_of_four_bars(3, 1.2, 1), turntable(2)}) {
+    Stepped c(scene);
+    const auto y0 = c.steps(c.y0(), h, 30), y1 = c.steps(y0, h, 1);
+    const Eigen::Index n = c.mechanism.nv(), m = c.mechanism.m();
+    const auto e = c.mechanism.evaluation<double>();
+    const VectorXd q0 = Eigen::Map<const VectorXd>(y0.data(), n),
+                   p0 = Eigen::Map<const VectorXd>(y0.data() + n, n);
+    const auto mass = [&](const VectorXd& q) {
+      Eigen::MatrixXd columns(n, n);
+      e->place(0, q.data());
+      for (Eigen::Index i = 0; i < n; ++i) {
+        const VectorXd unit = VectorXd::Unit(n, i);
+        e->move(unit.data());
+        e->momenta(nullptr, columns.col(i).data());
+      }
+      return columns;
+    };
+    const auto loop_force = [&](const VectorXd& q, const VectorXd& x) {
+      VectorXd result(n);
+      e->place(0, q.data());
+      e->constraint_forces(x.data(), result.data());
+      return result;
+    };
+    const auto energy = [&](const VectorXd& q, const VectorXd& p) {
+      const VectorXd u = mass(q).ldlt().solve(p);
+      e->move(u.data());
+      return e->kinetic() + e->potential(q.data());
+    };
+    // M v of δ: along the axle, where there is one, no momentum.
+    const auto push = [&](const Eigen::MatrixXd& inertia, VectorXd delta) {
+      for (const auto& b : c.mechanism.tree().bodies)
+        if (scene.name == "turntable" && b.parent < 0)
+          delta[b.u] -= inertia.row(b.u).dot(delta) / inertia(b.u, b.u);
+      return VectorXd(inertia * delta);
+    };
+    const double start = energy(q0, p0);
+    const auto equations = [&](const VectorXd& x) {
+      const VectorXd q1 = x.head(n), p1 = x.segment(n, n), lambda = x.segment(2 * n, m),
+                     sigma = x.segment(2 * n + m, m), qm = 0.5 * (q0 + q1), pm = 0.5 * (p0 + p1);
+      const double alpha = x[2 * n + 2 * m];
+      const Eigen::MatrixXd inertia = mass(qm);
+      const auto inverse = inertia.ldlt();
+      const VectorXd u = inverse.solve(pm - loop_force(qm, sigma)), force = loop_force(qm, lambda);
+      VectorXd g(n), p(n), phi(m), rate(m);
+      e->move(u.data());
+      e->momenta(sigma.data(), p.data());
+      e->momentum_rates(qm.data(), u.data(), sigma.data(), 0, g.data());
+      VectorXd r(x.size());
+      r.head(n) = q1 - q0 - h * (u + alpha * inverse.solve(p1 - p0));
+      r.segment(n, n) = p1 - p0 - h * (g - force) + alpha / h * push(inertia, q1 - q0);
+      r[2 * n + 2 * m] = energy(q1, p1) - start;
+      const VectorXd u1 = mass(q1).ldlt().solve(p1);
+      e->positions(phi.data());
+      e->move(u1.data());
+      e->velocities(rate.data());
+      r.segment(2 * n, m) = phi;
+      r.segment(2 * n + m, m) = rate;
+      return r;
+    };
+    VectorXd x = VectorXd::Zero(2 * n + 2 * m + 1);
+    x.head(n) = q0 + h * VectorXd(mass(q0).ldlt().solve(p0));
+    x.segment(n, n) = p0;
+    x.segment(2 * n, m) = c.start.lambda;
+    for (int k = 0; k < 12; ++k) {
+      const VectorXd r = equations(x);
+      Eigen::MatrixXd jacobian(x.size(), x.size());
+      for (Eigen::Index i = 0; i < x.size(); ++i) {
+        VectorXd ahead = x;
+        ahead[i] += 1e-6;
+        jacobian.col(i) = (equations(ahead) - r) / 1e-6;
+      }
+      x -= jacobian.fullPivLu().solve(r);
+    }
+    ASSERT_LT(equations(x).norm(), 1e-11) << scene.name;
+    EXPECT_GT(std::abs(x[2 * n + 2 * m]), 1e-7) << scene.name;  // α does something
+    EXPECT_LT((Eigen::Map<const VectorXd>(y1.data(), n) - x.head(n)).norm(), 1e-11) << scene.name;
+    EXPECT_LT((Eigen::Map<const VectorXd>(y1.data() + n, n) - x.segment(n, n)).norm(), 1e-10)
+        << scene.name;
+  }
+}
+
+}  // namespace
+}  // namespace momenta::dae_energy_momentum
