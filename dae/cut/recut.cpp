@@ -1,4 +1,5 @@
 #include <momenta/core/text/near_name.h>
+#include <momenta/dae/cut/child_order.h>
 #include <momenta/dae/cut/cycles.h>
 #include <momenta/dae/cut/interchange.h>
 #include <momenta/dae/cut/recut.h>
@@ -124,7 +125,8 @@ int rebuild(const Mechanism& mechanism, const Start& start, const SceneGraph& gr
   return none;
 }
 
-/// Takes the best of the scenes that enter, each with its trees on the ground in three orders.
+/// Takes the best of the scenes that enter, each with its trees on the ground in three orders, and
+/// with children in two.
 class Contest {
  public:
   /// `edges`: the tree of the given scene.
@@ -132,9 +134,9 @@ class Contest {
       : given_(given), swept_(given.kkt() == KktChoice::sweeps), best_(best), best_edges_(edges) {}
 
   /// Whether the sweeps carry its loops; `edges`: its tree, which enters once.
-  bool enter(const Recut& found, const std::vector<CutEdge>& edges) {
+  bool enter(Recut found, const std::vector<CutEdge>& edges) {
     const auto best_before = best_.after;
-    const bool swept = enter_in_three_orders(found);
+    const bool swept = enter_in_every_order(std::move(found));
     if (best_.after.sweeps != best_before.sweeps) best_edges_ = edges;
     entered_.push_back({edges, swept});
     return swept;
@@ -150,48 +152,48 @@ class Contest {
 
  private:
   /// The orders of least cost first: those behind one that is swept are no better.
-  bool enter_in_three_orders(const Recut& found) {
+  bool enter_in_every_order(Recut found) {
     struct Entry {
-      Recut found;
+      Scene scene;
+      bool reordered, children_reordered;
       CutCost cost;
     };
     std::vector<Entry> entries;
-    if (found.gains()) entries.push_back({found, {}});
-    for (const RootOrder order : {RootOrder::from_an_end, RootOrder::from_the_centre}) {
-      Recut other = found;
-      other.scene = with_roots_ordered(found.scene, order);
-      if (same_order(other.scene, found.scene)) continue;
-      other.reordered = true;
-      entries.push_back({std::move(other), {}});
-    }
-    for (Entry& entry : entries) entry.cost = swept_cost(entry.found.scene, given_.plan());
+    std::optional<Scene> arranged = with_children_ordered(found.scene);
+    const bool children = arranged.has_value();
+    std::vector<Scene> others = with_roots_ordered(children ? *arranged : found.scene);
+    if (found.gains()) entries.push_back({std::move(found.scene), false, false, {}});
+    if (children) entries.push_back({std::move(*arranged), false, true, {}});
+    for (Scene& other : others) entries.push_back({std::move(other), true, children, {}});
+    for (Entry& entry : entries) entry.cost = swept_cost(entry.scene, given_.plan());
     const auto rank = [](const Entry& entry) {
       return std::pair(entry.cost.open > LoopPlan::most_slots, entry.cost.sweeps);
     };
     std::stable_sort(entries.begin(), entries.end(),
                      [&](const Entry& x, const Entry& y) { return rank(x) < rank(y); });
     bool now_swept = !found.gains() && swept_;  // the given scene
+    found.scene = {};
     for (Entry& entry : entries) {
-      const bool swept = enter_one(std::move(entry.found), entry.cost);
+      // most that enter are no better: that is seen without their sweeps
+      bool swept =
+          swept_ && entry.cost.open <= LoopPlan::most_slots && !better(entry.cost, best_.after);
+      if (!swept) {
+        Recut one = found;
+        one.scene = std::move(entry.scene);
+        one.reordered = entry.reordered;
+        one.children_reordered = entry.children_reordered;
+        swept = enter_one(std::move(one), entry.cost);
+      }
       now_swept |= swept;
       if (swept) break;
     }
     return now_swept;
   }
-  static bool same_order(const Scene& a, const Scene& b) {
-    const auto same = [](const auto& x, const auto& y) {
-      return x.name == y.name && x.parent == y.parent;
-    };
-    return std::equal(a.joints.begin(), a.joints.end(), b.joints.begin(), same) &&
-           std::equal(a.loops.begin(), a.loops.end(), b.loops.begin(), same);
-  }
   bool enter_one(Recut found, const CutCost& cost) {
-    // most that enter are no better: that is seen without their sweeps
-    if (swept_ && cost.open <= LoopPlan::most_slots && !better(cost, best_.after)) return true;
     found.mechanism =
         std::make_shared<const Mechanism>(found.scene, MechanismOptions{given_.options().algebra});
-    found.after = cut_cost(*found.mechanism);
     const bool now_swept = found.mechanism->kkt() == KktChoice::sweeps;
+    found.after = now_swept ? cost : cut_cost(*found.mechanism);
     if ((now_swept && !swept_) || (now_swept == swept_ && better(found.after, best_.after))) {
       best_ = std::move(found);
       swept_ = now_swept;
@@ -234,7 +236,7 @@ void try_neighbours(const SceneGraph& graph, bool planar, Rebuilt&& rebuilt, Con
         if (edges == graph.edges || contest.entered(edges) || rebuilt(edges, found) != none)
           continue;
         const std::int64_t before = best.after.sweeps;
-        contest.enter(found, edges);
+        contest.enter(std::move(found), edges);
         if (best.after.sweeps < before) return true;
       }
     }
@@ -250,7 +252,10 @@ void try_neighbours(const SceneGraph& graph, bool planar, Rebuilt&& rebuilt, Con
 std::string in_words(const Recut& recut) {
   constexpr std::size_t most_named = 4;
   if (!recut.gains()) return "";
-  if (recut.cut.empty()) return "trees on the ground in another order";
+  if (recut.cut.empty())
+    return !recut.children_reordered ? "trees on the ground in another order"
+           : !recut.reordered        ? "children of bodies in another order"
+                                     : "trees on the ground and children in another order";
   return "cut at " + reading::all_in_quotes(recut.cut, most_named) + ", with " +
          reading::all_in_quotes(recut.joined, most_named) + " in the tree";
 }
@@ -299,7 +304,7 @@ Recut recut(const Mechanism& mechanism, const Start& start, const std::vector<st
           obstacle = rebuilt(edges, found);
           if (obstacle >= 0) graph.edges[static_cast<std::size_t>(obstacle)].fixed = true;
           if (obstacle != none) break;
-          now_swept = contest.enter(found, edges);
+          now_swept = contest.enter(std::move(found), edges);
         }
         if (*now_swept || cycles.edges() == lowered) break;
       }

@@ -1,5 +1,6 @@
 #include <momenta/dae/cut/interchange.h>
 #include <momenta/dae/cut/root_order.h>
+#include <momenta/dae/cut/tie_graph.h>
 
 #include <algorithm>
 #include <numeric>
@@ -30,23 +31,16 @@ class Trees {
       }
       ++count_;
     }
-    ties_.resize(count_);
+    graph_ = TieGraph(count_);
     for (const LoopSpec& loop : scene.loops) {
       const std::vector<std::size_t> tied = of(loop);
-      for (std::size_t i = 1; i < tied.size(); ++i)
-        if (tied[i] != tied[0]) {
-          ties_[tied[0]].push_back(tied[i]);
-          ties_[tied[i]].push_back(tied[0]);
-        }
+      for (std::size_t i = 1; i < tied.size(); ++i) graph_.tie(tied[0], tied[i]);
     }
-    for (auto& list : ties_) {
-      std::sort(list.begin(), list.end());
-      list.erase(std::unique(list.begin(), list.end()), list.end());
-    }
+    graph_.settle();
   }
 
   std::size_t count() const { return count_; }
-  const std::vector<std::size_t>& ties(std::size_t tree) const { return ties_[tree]; }
+  const TieGraph& graph() const { return graph_; }
 
   /// The trees that a loop ties, the ground left out.
   std::vector<std::size_t> of(const LoopSpec& loop) const {
@@ -60,27 +54,9 @@ class Trees {
     return trees;
   }
 
-  /// All that is tied to `first`, breadth first, of few ties first.
-  std::vector<std::size_t> breadth_first(std::size_t first) const {
-    std::vector<char> seen(count_, 0);
-    std::vector<std::size_t> reached{first};
-    seen[first] = 1;
-    for (std::size_t i = 0; i < reached.size(); ++i) {
-      std::vector<std::size_t> next;
-      for (const std::size_t tree : ties(reached[i]))
-        if (!seen[tree]) next.push_back(tree);
-      std::stable_sort(next.begin(), next.end(), [&](std::size_t a, std::size_t b) {
-        return ties(a).size() < ties(b).size();
-      });
-      for (const std::size_t tree : next) seen[tree] = 1;
-      reached.insert(reached.end(), next.begin(), next.end());
-    }
-    return reached;
-  }
-
  private:
   std::unordered_map<std::string, std::size_t> of_body_, of_joint_;
-  std::vector<std::vector<std::size_t>> ties_;
+  TieGraph graph_;
   std::size_t count_ = 0;
 };
 
@@ -89,6 +65,8 @@ bool driven(const Scene& scene, const std::string& loop) {
                      [&](const DriveSpec& drive) { return drive.loop == loop; });
 }
 
+enum class RootOrder { from_an_end, from_the_centre };
+
 /// The place of each tree.
 std::vector<std::size_t> places(const Trees& trees, RootOrder order) {
   std::vector<std::size_t> place(trees.count());
@@ -96,13 +74,14 @@ std::vector<std::size_t> places(const Trees& trees, RootOrder order) {
   std::size_t next = 0;
   for (std::size_t tree = 0; tree < trees.count(); ++tree) {
     if (placed[tree]) continue;
-    std::vector<std::size_t> all = trees.breadth_first(tree);
+    const TieGraph& graph = trees.graph();
+    std::vector<std::size_t> all = graph.breadth_first(tree);
     if (order == RootOrder::from_an_end)
-      all = trees.breadth_first(trees.breadth_first(all.back()).back());
+      all = graph.from_an_end(tree);
     else
-      all = trees.breadth_first(
+      all = graph.breadth_first(
           *std::max_element(all.begin(), all.end(), [&](std::size_t a, std::size_t b) {
-            return trees.ties(a).size() < trees.ties(b).size();
+            return graph.ties(a).size() < graph.ties(b).size();
           }));
     for (const std::size_t one : all) {
       placed[one] = 1;
@@ -114,37 +93,76 @@ std::vector<std::size_t> places(const Trees& trees, RootOrder order) {
 
 }  // namespace
 
-Scene with_roots_ordered(const Scene& scene, RootOrder order) {
-  const Trees trees(scene);
-  const std::vector<std::size_t> place = places(trees, order);
+namespace {
+
+/// The loops of a scene once its trees have places: in which order, and which are turned round.
+struct OrderedLoops {
+  std::vector<std::size_t> order;  ///< places in the scene; empty: as there
+  std::vector<char> turned;
+};
+
+OrderedLoops ordered_loops(const Scene& scene, const std::vector<std::vector<std::size_t>>& tied,
+                           const std::vector<char>& may_turn,
+                           const std::vector<std::size_t>& place) {
+  OrderedLoops loops;
+  loops.turned.assign(scene.loops.size(), 0);
+  std::vector<std::pair<std::size_t, std::size_t>> by_place;  // of its first tree, in the scene
+  for (std::size_t i = 0; i < scene.loops.size(); ++i) {
+    std::size_t least = place.size();
+    for (const std::size_t one : tied[i]) least = std::min(least, place[one]);
+    by_place.emplace_back(least, i);
+    // Branches of one shape go side by side if their loops are written alike.
+    loops.turned[i] = may_turn[i] && place[tied[i][1]] < place[tied[i][0]];
+  }
+  if (std::is_sorted(by_place.begin(), by_place.end())) return loops;
+  std::sort(by_place.begin(), by_place.end());
+  for (const auto& [place_of, i] : by_place) loops.order.push_back(i);
+  return loops;
+}
+
+Scene in_order(const Scene& scene, const std::vector<std::size_t>& place,
+               const OrderedLoops& loops) {
   Scene ordered = scene;
-  std::vector<const JointSpec*> roots(trees.count());
+  std::vector<const JointSpec*> roots(place.size());
   std::size_t tree = 0;
   for (const JointSpec& joint : scene.joints)
     if (joint.parent == "ground") roots[place[tree++]] = &joint;
   tree = 0;
   for (JointSpec& joint : ordered.joints)
     if (joint.parent == "ground") joint = *roots[tree++];
-  const auto first = [&](const LoopSpec& loop) {
-    std::size_t least = trees.count();
-    for (const std::size_t one : trees.of(loop)) least = std::min(least, place[one]);
-    return least;
-  };
-  // Branches of one shape go side by side if their loops are written alike.
-  for (LoopSpec& loop : ordered.loops) {
-    const std::vector<std::size_t> tied = trees.of(loop);
-    if (can_turn_round(loop) && tied.size() == 2 && place[tied[1]] < place[tied[0]] &&
-        !driven(scene, loop.name))
-      loop = turned_round(loop);
+  for (std::size_t i = 0; i < loops.turned.size(); ++i)
+    if (loops.turned[i]) ordered.loops[i] = turned_round(scene.loops[i]);
+  if (loops.order.empty()) return ordered;
+  std::vector<LoopSpec> sorted;
+  sorted.reserve(loops.order.size());
+  for (const std::size_t i : loops.order) sorted.push_back(std::move(ordered.loops[i]));
+  ordered.loops = std::move(sorted);
+  return ordered;
+}
+
+}  // namespace
+
+std::vector<Scene> with_roots_ordered(const Scene& scene) {
+  std::vector<Scene> ordered;
+  const Trees trees(scene);
+  std::vector<std::vector<std::size_t>> tied;
+  std::vector<char> may_turn;
+  for (const LoopSpec& loop : scene.loops) {
+    tied.push_back(trees.of(loop));
+    may_turn.push_back(can_turn_round(loop) && tied.back().size() == 2 &&
+                       !driven(scene, loop.name));
   }
-  std::vector<std::pair<std::size_t, std::size_t>> by_place;  // and place in the scene
-  for (const LoopSpec& loop : ordered.loops) by_place.emplace_back(first(loop), by_place.size());
-  if (std::is_sorted(by_place.begin(), by_place.end())) return ordered;
-  std::sort(by_place.begin(), by_place.end());
-  std::vector<LoopSpec> loops;
-  loops.reserve(by_place.size());
-  for (const auto& [place_of, i] : by_place) loops.push_back(std::move(ordered.loops[i]));
-  ordered.loops = std::move(loops);
+  std::vector<std::size_t> as_given(trees.count()), before;
+  std::iota(as_given.begin(), as_given.end(), std::size_t{0});
+  for (const RootOrder order : {RootOrder::from_an_end, RootOrder::from_the_centre}) {
+    const std::vector<std::size_t> place = places(trees, order);
+    if (place == before) continue;
+    before = place;
+    const OrderedLoops loops = ordered_loops(scene, tied, may_turn, place);
+    const bool turns = std::find(loops.turned.begin(), loops.turned.end(), 1) != loops.turned.end();
+    if (place != as_given || turns || !loops.order.empty())
+      ordered.push_back(in_order(scene, place, loops));
+  }
   return ordered;
 }
 

@@ -11,13 +11,13 @@
 
 #include <momenta/core/scene/scene.h>
 
+#include <vector>
+
 namespace momenta {
 
-enum class RootOrder { from_an_end, from_the_centre };
-
-/// The joints of the ground in that order, and the loops in the order of the first tree they tie,
-/// seen from it.
+/// The scene in either order, where that is another than its own and than the one before: the
+/// joints of the ground, and the loops in the order of the first tree they tie, seen from it.
 /// O((bodies + loops) log)
-Scene with_roots_ordered(const Scene& scene, RootOrder order);
+std::vector<Scene> with_roots_ordered(const Scene& scene);
 
 }  // namespace momenta

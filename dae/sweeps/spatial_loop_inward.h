@@ -6,11 +6,10 @@
 
 namespace momenta {
 
-/// The loop ends on body k.
+/// Ends of loops on body k.
 template <class S, int Rows, bool Momentum, class Tree>
-void SpatialLoopSweeps<S, Rows, Momentum, Tree>::enter(std::size_t k, const RightSide<S>& right,
-                                                       Carried& a) {
-  const LoopPlan::Range range = plan_->ends_of[k];
+void SpatialLoopSweeps<S, Rows, Momentum, Tree>::enter(std::size_t k, const LoopPlan::Range& range,
+                                                       const RightSide<S>& right, Carried& a) {
   for (int i = range.first; i < range.last; ++i)
     enter(k, plan_->ends[static_cast<std::size_t>(i)], right, a);
 }
@@ -95,7 +94,7 @@ template <class S, int Rows, bool Momentum, class Tree>
 void SpatialLoopSweeps<S, Rows, Momentum, Tree>::fold(std::size_t root, const RightSide<S>& right,
                                                       Carried& looped_branch) {
   const auto onto = static_cast<std::size_t>(plan_->folded_onto[root]);
-  const LoopPlan::Range range = plan_->ground_closings_of[root];
+  const LoopPlan::Range range = plan_->gathered_closings_of[root];
   looped_branch.articulated = {};
   for (Column& c : looped_branch.blocks.C) c = {};
   for (int i = range.first; i < range.last; ++i) {
@@ -160,7 +159,7 @@ bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::inward(const In& r, const Right
       if (front.slot) a.blocks.add(slot.blocks, front.slot);
     }
     if (plan_->takes_branches[k]) add<Momentum>(a.articulated, looped_branches_[k]);
-    enter(k, right, a);
+    enter(k, plan_->own_ends_of[k], right, a);
     const LoopPlan::Range closing = plan_->closings_of[k];
     for (int i = closing.first; i < closing.last; ++i)
       close(plan_->closings[static_cast<std::size_t>(i)], a, right.fade, front.all);
@@ -179,17 +178,21 @@ bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::inward(const In& r, const Right
       fold(k, right, a);
     } else if (l.parent < 0) {
       if (Column::apart || front.open)
-        ground.blocks.add_at_ground(a.blocks, front.open, front.ground_fresh, front.ground);
-      const LoopPlan::Range last = plan_->ground_closings_of[k];
+        ground.blocks.add_at_ground(a.blocks, front.open, front.gathered_fresh, front.gathered);
+      const LoopPlan::Range last = plan_->gathered_closings_of[k];
       for (int i = last.first; i < last.last; ++i)
-        close(plan_->closings[static_cast<std::size_t>(i)], ground, right.fade, front.ground);
+        close(plan_->closings[static_cast<std::size_t>(i)], ground, right.fade, front.gathered);
     } else if (!l.first) {
       const auto parent = static_cast<std::size_t>(l.parent);
       Carried& slot = slots_[static_cast<std::size_t>(links[parent].slot)];
-      const SlotGroups brought = open_slots_.fronts[parent].slot;
       leave<Momentum>(l, slot.articulated, a.articulated);
-      if (l.opens && brought) slot.blocks.begin(true, brought);
+      slot.blocks.begin(l.opens && open_slots_.fronts[parent].brought, front.gathered_fresh);
       if (front.open) slot.blocks.add(a.blocks, front.open);
+      const LoopPlan::Range last = plan_->gathered_closings_of[k];
+      if (last.first == last.last) continue;
+      enter(parent, plan_->gathered_ends_of[k], right, slot);
+      for (int i = last.first; i < last.last; ++i)
+        close(plan_->closings[static_cast<std::size_t>(i)], slot, right.fade, front.gathered);
     }
   }
   return true;

@@ -42,14 +42,18 @@ void SpatialLoopSweeps<S, Rows, Momentum, Tree>::outward(const In& q, const Righ
       for (int i = 0; i < 3; ++i) m.g[i] = S(gravity[i]);
       if (const int onto = plan_->folded_onto[k]; onto >= 0) {
         m.sigma = {};
-        solve_loops(plan_->ground_closings_of[k], right, &taken_[static_cast<std::size_t>(onto)],
+        solve_loops(plan_->gathered_closings_of[k], right, &taken_[static_cast<std::size_t>(onto)],
                     m.sigma, impulse);
       } else {
-        solve_loops(plan_->ground_closings_of[k], right, nullptr, at_ground, impulse);
+        solve_loops(plan_->gathered_closings_of[k], right, nullptr, at_ground, impulse);
         m.sigma = at_ground;
       }
     } else if (!l.first) {
-      m = outward_slots_[static_cast<std::size_t>(links[static_cast<std::size_t>(l.parent)].slot)];
+      Moving& from =
+          outward_slots_[static_cast<std::size_t>(links[static_cast<std::size_t>(l.parent)].slot)];
+      const LoopPlan::Range closed = plan_->gathered_closings_of[k];
+      if (closed.first != closed.last) solve_loops(closed, right, &from.V, from.sigma, impulse);
+      m = from;
     }
     if (l.kind == LinkKind::revolute)
       revolute_outward(k, q, rates, m, u, rate);

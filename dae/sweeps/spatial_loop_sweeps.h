@@ -156,9 +156,13 @@ class SpatialLoopSweeps {
   MOMENTA_INLINE void set_velocity(std::size_t k, const Motion& V) {
     if (plan_->posed[k] == OnWay::no) return;
     LoopBody<S>& to = bodies_[k];
-    const bool moved = plan_->posed[k] == OnWay::moved;
-    to.v = moved ? to.pose.axes * V.v : V.v;
-    to.w = moved ? to.pose.axes * V.w : V.w;
+    if (plan_->posed[k] == OnWay::moved) {
+      to.v = to.pose.axes * V.v;
+      to.w = to.pose.axes * V.w;
+    } else {
+      to.v = V.v;
+      to.w = V.w;
+    }
   }
 
   const PrescribedMotion<S>& prescribed(const Loop& l) const {
@@ -182,7 +186,7 @@ class SpatialLoopSweeps {
   void pose_bodies();
   template <class In>
   bool inward(const In& r, const RightSide<S>& right);
-  void enter(std::size_t k, const RightSide<S>& right, Carried& a);
+  void enter(std::size_t k, const LoopPlan::Range& range, const RightSide<S>& right, Carried& a);
   void enter(std::size_t k, const LoopPlan::End& end, const RightSide<S>& right, Carried& a);
   void enter_right_side(std::size_t loop, const RightSide<S>& right, Column& d);
   __attribute__((noinline)) void fold(std::size_t root, const RightSide<S>& right,

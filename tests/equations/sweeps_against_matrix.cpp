@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 #include <momenta/dae/kkt/assembled_solver.h>
 #include <momenta/dae/kkt/sweep_solver.h>
+#include <momenta/dae/sweeps/levels/loop_sweeps.h>
 
 #include <Eigen/Dense>
 
@@ -94,6 +95,44 @@ void expect_rounding(const Worst& w, int bodies) {
   EXPECT_LT(w.lambda, tolerance);
   EXPECT_LT(w.delta, tolerance);
   EXPECT_LT(w.sparse, 1e-12);  // its block −ε is 1e-10 of the scale, refined once
+}
+
+int compare_batches(const Mechanism& mechanism, RandomTree& random, int count) {
+  int compared = 0;
+  const int nq = mechanism.nq(), nv = mechanism.nv(), m = mechanism.m();
+  using States = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  States q(nq, count), p(nv, count), u(nv, count), pdot(nv, count), sigma(m, count);
+  for (int i = 0; i < count; ++i) {
+    q.col(i) = random.state(mechanism.tree()).q;
+    for (int k = 0; k < nv; ++k) p(k, i) = random.uniform(-2, 2);
+  }
+  RightSide<double> right;
+  right.fade = fade_evaluation;
+  right.leak = 0.5;
+  right.rates = true;
+  for (const int level : {1, 3, 4}) {
+    if (level_at_most(level) != level) continue;
+    const auto sweeps = mechanism.looped_sweeps(level);
+    EXPECT_TRUE(sweeps->momentum(0,
+                                 {q.data(), p.data(), u.data(), sigma.data(), pdot.data(), count,
+                                  static_cast<std::size_t>(count)},
+                                 right.fade, right.leak));
+    for (int i = 0; i < count; ++i) {
+      const VectorXd qi = q.col(i), pi = p.col(i);
+      VectorXd ui(nv), si(m), ri(nv);
+      EXPECT_TRUE(
+          sweeps->momentum(0, qi.data(), pi.data(), right, ui.data(), si.data(), ri.data()));
+      std::vector<int> faded(static_cast<std::size_t>(m));
+      if (sweeps->faded_rows(faded.data(), true) > 0) continue;  // which row gives way is open
+      if (sweeps->pivots(true).weakest < 1e3) continue;  // fades by more than rounding: (τ/w)⁴
+      ++compared;
+      const double size = 1 + si.cwiseAbs().maxCoeff() + ui.cwiseAbs().maxCoeff();
+      EXPECT_LT(relative_error(VectorXd(u.col(i)), ui), 1e-10 * size) << level;
+      EXPECT_LT(relative_error(VectorXd(sigma.col(i)), si), 1e-9 * size) << level;
+      EXPECT_LT(relative_error(VectorXd(pdot.col(i)), ri), 1e-9 * size) << level;
+    }
+  }
+  return compared;
 }
 
 }  // namespace momenta::equations

@@ -29,4 +29,8 @@ void compare(const Scene& scene, RandomTree& random, const MechanismOptions& opt
 
 void expect_rounding(const Worst& worst, int bodies);
 
+/// Batches of random states against the same states one by one, at every level; how many states
+/// were compared.
+int compare_batches(const Mechanism& mechanism, RandomTree& random, int count);
+
 }  // namespace momenta::equations

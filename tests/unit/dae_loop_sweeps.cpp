@@ -236,45 +236,6 @@ TEST(LoopSweeps, RedundantRows) {
   }
 }
 
-/// Batches of random states against the same states one by one, at every level; how many states
-/// were compared.
-int compare_batches(const Mechanism& mechanism, RandomTree& random, int count) {
-  int compared = 0;
-  const int nq = mechanism.nq(), nv = mechanism.nv(), m = mechanism.m();
-  using States = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  States q(nq, count), p(nv, count), u(nv, count), pdot(nv, count), sigma(m, count);
-  for (int i = 0; i < count; ++i) {
-    q.col(i) = random.state(mechanism.tree()).q;
-    for (int k = 0; k < nv; ++k) p(k, i) = random.uniform(-2, 2);
-  }
-  RightSide<double> right;
-  right.fade = fade_evaluation;
-  right.leak = 0.5;
-  right.rates = true;
-  for (const int level : {1, 3, 4}) {
-    if (level_at_most(level) != level) continue;
-    const auto sweeps = mechanism.looped_sweeps(level);
-    EXPECT_TRUE(sweeps->momentum(0,
-                                 {q.data(), p.data(), u.data(), sigma.data(), pdot.data(), count,
-                                  static_cast<std::size_t>(count)},
-                                 right.fade, right.leak));
-    for (int i = 0; i < count; ++i) {
-      const VectorXd qi = q.col(i), pi = p.col(i);
-      VectorXd ui(nv), si(m), ri(nv);
-      EXPECT_TRUE(
-          sweeps->momentum(0, qi.data(), pi.data(), right, ui.data(), si.data(), ri.data()));
-      std::vector<int> faded(static_cast<std::size_t>(m));
-      if (sweeps->faded_rows(faded.data(), true) > 0) continue;  // which row gives way is open
-      ++compared;
-      const double size = 1 + si.cwiseAbs().maxCoeff() + ui.cwiseAbs().maxCoeff();
-      EXPECT_LT(relative_error(VectorXd(u.col(i)), ui), 1e-10 * size) << level;
-      EXPECT_LT(relative_error(VectorXd(sigma.col(i)), si), 1e-9 * size) << level;
-      EXPECT_LT(relative_error(VectorXd(pdot.col(i)), ri), 1e-9 * size) << level;
-    }
-  }
-  return compared;
-}
-
 /// Every level computes the same, and a batch what single states do.
 TEST(LoopSweeps, LevelsAndBatchesAgree) {
   int compared = 0;

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <bit>
-#include <functional>
 #include <numeric>
 #include <set>
+#include <utility>
 
 namespace momenta {
 namespace {
@@ -14,6 +14,16 @@ struct Way {
   std::vector<int> fronts;
   int closes_at = -1;
   int root_a = -1, root_b = -1;
+
+  /// The child of the closing body whose front brings the last end; −1: the first child, whose
+  /// front goes on as the body's own, or none.
+  int closing_child(const std::vector<int>& parents) const {
+    int child = -1;
+    for (const int k : fronts)
+      if (k != closes_at && parents[static_cast<std::size_t>(k)] == closes_at)
+        child = child < 0 ? k : std::min(child, k);
+    return closes_at < 0 || child == closes_at + 1 ? -1 : child;
+  }
 };
 
 Way way_of(const std::vector<int>& parents, const LoopShape& loop) {
@@ -119,28 +129,35 @@ std::vector<int> foldable_looped_branches(const std::vector<int>& parents,
   return onto;
 }
 
-/// The fronts that a loop is open in: bodies, and roots where fronts are gathered at the ground.
+/// The fronts that a loop is open in: bodies, and those where a body's front is gathered with its
+/// later siblings', at its parent or the ground.
 struct Opened {
   std::vector<int> fronts, gathered;
   int closes_at = -1;
+  int child = -1;  ///< where it closes there: closing_child()
+  int root = -1;   ///< where it closes at the ground
 };
 
-/// Colours the fronts. They are vertices of a tree, roots one behind the other above their own
-/// fronts, and each loop is open in a part of it that hangs together: taken from the top, a loop
-/// meets at its topmost front all that were taken before and are open anywhere with it, so that as
-/// many slots do as are open at once (of loops of one size: their graph is chordal; Gavril, J.
-/// Combin. Theory B 16 (1974) 47).
+/// Colours the fronts. They are vertices of a tree: above the fronts of its children, a body's own,
+/// beside the first child's, and one below the other those where the others are gathered; roots one
+/// behind the other above their own fronts. Each loop is open in a part of it that hangs together:
+/// taken from the top, a loop meets at its topmost front all that were taken before and are open
+/// anywhere with it, so that as many slots do as are open at once (of loops of one size: their
+/// graph is chordal; Gavril, J. Combin. Theory B 16 (1974) 47).
 void take_slots(const std::vector<int>& parents, const std::vector<LoopShape>& loops,
                 const std::vector<Opened>& opened, LoopPlan& plan, std::vector<std::uint64_t>& used,
-                std::vector<std::uint64_t>& used_at_ground) {
+                std::vector<std::uint64_t>& used_gathered) {
   const auto n = static_cast<int>(parents.size());
-  std::vector<int> depth;
-  for (const int parent : parents)
-    depth.push_back(parent < 0 ? n : 1 + depth[static_cast<std::size_t>(parent)]);
+  // Of child i, i = 1, 2 …: its parent's and i more, as it is gathered i − 1 below its parent.
+  std::vector<int> depth, deepest;
+  for (const int parent : parents) {
+    depth.push_back(parent < 0 ? n : ++deepest[static_cast<std::size_t>(parent)]);
+    deepest.push_back(depth.back());
+  }
   const auto top = [&](const Opened& o) {
-    return o.closes_at >= 0     ? depth[static_cast<std::size_t>(o.closes_at)]
-           : o.gathered.empty() ? 0  // of a folded branch: within it alone
-                                : o.gathered.front();
+    return o.child >= 0       ? depth[static_cast<std::size_t>(o.child)] - 1
+           : o.closes_at >= 0 ? depth[static_cast<std::size_t>(o.closes_at)]
+                              : std::max(o.root, 0);  // none of a folded branch: within it alone
   };
   std::vector<std::size_t> from_the_top(loops.size());
   std::iota(from_the_top.begin(), from_the_top.end(), std::size_t{0});
@@ -150,7 +167,7 @@ void take_slots(const std::vector<int>& parents, const std::vector<LoopShape>& l
   for (const std::size_t i : from_the_top) {
     const auto each_front = [&](auto&& act) {
       for (const int k : opened[i].fronts) act(used[static_cast<std::size_t>(k)]);
-      for (const int k : opened[i].gathered) act(used_at_ground[static_cast<std::size_t>(k)]);
+      for (const int k : opened[i].gathered) act(used_gathered[static_cast<std::size_t>(k)]);
     };
     std::uint64_t taken = 0;
     each_front([&](std::uint64_t of_front) { taken |= of_front; });
@@ -163,18 +180,29 @@ void take_slots(const std::vector<int>& parents, const std::vector<LoopShape>& l
   }
 }
 
+/// Per body that is no first child, the child of its parent before it; else −1.
+std::vector<int> siblings_before(const std::vector<int>& parents) {
+  std::vector<int> before(parents.size(), -1), last(parents.size(), -1);
+  for (std::size_t k = 0; k < parents.size(); ++k)
+    if (parents[k] >= 0)
+      before[k] = std::exchange(last[static_cast<std::size_t>(parents[k])], static_cast<int>(k));
+  return before;
+}
+
+/// `gathers`: loops close where children are gathered, not only in bodies' own fronts.
 LoopPlan planned(const std::vector<int>& parents, const std::vector<LoopShape>& loops,
-                 std::vector<int> folded_onto) {
+                 std::vector<int> folded_onto, bool gathers) {
   const std::size_t n = parents.size();
   LoopPlan plan;
   plan.takes_branches.assign(n, 0);
   for (const int k : folded_onto)
     if (k >= 0) plan.takes_branches[static_cast<std::size_t>(k)] = 1;
-  std::vector<std::uint64_t> used(n, 0), used_at_ground(n, 0);
-  std::vector<std::vector<LoopPlan::End>> ends(n);
+  std::vector<std::uint64_t> used(n, 0), used_gathered(n, 0);
+  std::vector<std::vector<LoopPlan::End>> own_ends(n), gathered_ends(n);
   std::vector<std::vector<LoopPlan::Coupling>> couplings(n);
-  std::vector<std::vector<int>> closings(n), ground_closings(n);
-  const Roots root(parents);
+  std::vector<std::vector<int>> closings(n), gathered_closings(n);
+  const std::vector<int> before = siblings_before(parents);
+  const Roots above(parents);
   std::vector<int> roots;  // ascending
   for (std::size_t k = 0; k < n; ++k)
     if (parents[k] < 0) roots.push_back(static_cast<int>(k));
@@ -183,7 +211,7 @@ LoopPlan planned(const std::vector<int>& parents, const std::vector<LoopShape>& 
   std::vector<Opened> opened;
   for (std::size_t i = 0; i < loops.size(); ++i) {
     const LoopShape& loop = loops[i];
-    const int root_a = root.of(loop.a), root_b = root.of(loop.b);
+    const int root_a = above.of(loop.a), root_b = above.of(loop.b);
     // The branch of a folded loop: its root; the loop is open in the branch alone.
     int looped_branch = -1;
     if (root_a != root_b)
@@ -192,20 +220,34 @@ LoopPlan planned(const std::vector<int>& parents, const std::vector<LoopShape>& 
           looped_branch = std::max(looped_branch, end);
     LoopShape open = loop;
     if (looped_branch >= 0) (looped_branch == root_a ? open.b : open.a) = -1;
-    const Way way = loop.joints.empty() ? way_of(parents, open) : way_of_coupler(parents, loop);
+    Way way = loop.joints.empty() ? way_of(parents, open) : way_of_coupler(parents, loop);
     std::vector<int> gathered;
-    if (way.closes_at < 0) {
+    const int child = gathers ? way.closing_child(parents) : -1;
+    if (child >= 0) {
+      gathered_closings[static_cast<std::size_t>(child)].push_back(static_cast<int>(i));
+      way.fronts.pop_back();
+    } else if (way.closes_at < 0) {
       const int a = way.root_a < 0 ? way.root_b : way.root_a,
                 b = way.root_b < 0 ? way.root_a : way.root_b;
       const auto from = std::lower_bound(roots.begin(), roots.end(), std::min(a, b));
       const auto to = std::upper_bound(roots.begin(), roots.end(), std::max(a, b));
       gathered.assign(from, to);
-      ground_closings[static_cast<std::size_t>(gathered.front())].push_back(static_cast<int>(i));
+      gathered_closings[static_cast<std::size_t>(gathered.front())].push_back(static_cast<int>(i));
     } else {
       closings[static_cast<std::size_t>(way.closes_at)].push_back(static_cast<int>(i));
     }
     if (looped_branch >= 0) gathered.clear();
-    opened.push_back({way.fronts, std::move(gathered), way.closes_at});
+    const int root = gathered.empty() ? -1 : gathered.front();
+    if (gathers)
+      for (const int front : way.fronts) {
+        if (front == way.closes_at) continue;
+        for (int k = front; before[static_cast<std::size_t>(k)] >= 0;
+             k = before[static_cast<std::size_t>(k)]) {
+          gathered.push_back(k);
+          if (k == child) break;
+        }
+      }
+    opened.push_back({way.fronts, std::move(gathered), way.closes_at, child, root});
     plan.pair.push_back(loop.pair);
     for (const auto& [body, ratio] : loop.joints)
       couplings[static_cast<std::size_t>(body)].push_back(
@@ -213,39 +255,83 @@ LoopPlan planned(const std::vector<int>& parents, const std::vector<LoopShape>& 
     for (const int end : {loop.a, loop.b}) ways.up(end, looped_branch >= 0 ? -1 : way.closes_at);
     // The end that sweeps inward meet first brings the right-hand side along: that of the branch,
     // where there is one.
-    if (open.a >= 0)
-      ends[static_cast<std::size_t>(open.a)].push_back(
-          {static_cast<int>(i), true, open.a >= open.b});
-    if (open.b >= 0)
-      ends[static_cast<std::size_t>(open.b)].push_back(
-          {static_cast<int>(i), false, open.b > open.a});
+    const auto end = [&](int body, bool on_a, bool first) {
+      if (body < 0) return;
+      const bool waits = child >= 0 && body == way.closes_at;
+      (waits ? gathered_ends[static_cast<std::size_t>(child)]
+             : own_ends[static_cast<std::size_t>(body)])
+          .push_back({static_cast<int>(i), on_a, first});
+    };
+    end(open.a, true, open.a >= open.b);
+    end(open.b, false, open.b > open.a);
   }
   plan.posed = ways.found();
-  take_slots(parents, loops, opened, plan, used, used_at_ground);
-  for (const auto& fronts : {std::cref(used), std::cref(used_at_ground)})
-    for (const std::uint64_t open : fronts.get()) {
-      const std::int64_t equations = std::popcount(open);
-      plan.work += equations * equations;
-    }
-  plan.ends_of = ranges(ends, plan.ends);
+  take_slots(parents, loops, opened, plan, used, used_gathered);
+  const auto add_work = [&](std::uint64_t open) {
+    const std::int64_t equations = std::popcount(open);
+    plan.work += equations * equations;
+  };
+  for (std::size_t k = 0; k < n; ++k) {
+    add_work(used[k]);
+    if (parents[k] < 0 || !gathered_closings[k].empty()) add_work(used_gathered[k]);
+  }
+  plan.ends_of.resize(n);
+  plan.own_ends_of.resize(n);
+  plan.gathered_ends_of.resize(n);
+  const auto append = [&](const std::vector<LoopPlan::End>& some) {
+    const int first = static_cast<int>(plan.ends.size());
+    plan.ends.insert(plan.ends.end(), some.begin(), some.end());
+    return LoopPlan::Range{first, static_cast<int>(plan.ends.size())};
+  };
+  std::vector<std::vector<std::size_t>> others(n);  // children but the first
+  for (std::size_t k = 0; k < n; ++k)
+    if (before[k] >= 0) others[static_cast<std::size_t>(parents[k])].push_back(k);
+  for (std::size_t k = 0; k < n; ++k) {
+    plan.own_ends_of[k] = append(own_ends[k]);
+    for (const std::size_t child : others[k])
+      plan.gathered_ends_of[child] = append(gathered_ends[child]);
+    plan.ends_of[k] = {plan.own_ends_of[k].first, static_cast<int>(plan.ends.size())};
+  }
   plan.couplings_of = ranges(couplings, plan.couplings);
   plan.closings_of = ranges(closings, plan.closings);
-  plan.ground_closings_of = ranges(ground_closings, plan.closings);
+  plan.gathered_closings_of = ranges(gathered_closings, plan.closings);
   plan.folded_onto = std::move(folded_onto);
   return plan;
+}
+
+/// Whether a loop closes where children are gathered.
+bool gathers(const LoopPlan& plan, const std::vector<int>& parents) {
+  for (std::size_t k = 0; k < parents.size(); ++k)
+    if (const auto& r = plan.gathered_closings_of[k]; parents[k] >= 0 && r.first != r.last)
+      return true;
+  return false;
+}
+
+/// Registers are filled with all lanes, open or not: fewer slots in as many lanes are no gain.
+int width(const LoopPlan& plan) {
+  return plan.slots > LoopPlan::most_slots ? plan.slots : lanes_for(plan.slots, true);
+}
+
+/// The one of narrower fronts.
+LoopPlan of_narrower_fronts(const std::vector<int>& parents, const std::vector<LoopShape>& loops,
+                            const std::vector<int>& folded_onto) {
+  LoopPlan gathered = planned(parents, loops, folded_onto, true);
+  if (!gathers(gathered, parents)) return gathered;
+  LoopPlan plan = planned(parents, loops, folded_onto, false);
+  return width(gathered) < width(plan) ? gathered : plan;
 }
 
 }  // namespace
 
 LoopPlan plan_loops(const std::vector<int>& parents, const std::vector<LoopShape>& loops,
                     bool may_fold) {
-  LoopPlan plan = planned(parents, loops, std::vector<int>(parents.size(), -1));
+  LoopPlan plan = of_narrower_fronts(parents, loops, std::vector<int>(parents.size(), -1));
   if (plan.fits() || !may_fold || plan.couples()) return plan;
   return plan_folded(parents, loops);
 }
 
 LoopPlan plan_folded(const std::vector<int>& parents, const std::vector<LoopShape>& loops) {
-  return planned(parents, loops, foldable_looped_branches(parents, loops));
+  return of_narrower_fronts(parents, loops, foldable_looped_branches(parents, loops));
 }
 
 }  // namespace momenta

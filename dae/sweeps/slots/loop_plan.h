@@ -5,10 +5,15 @@
 // A coupler has no ends. It is open where its joints are eliminated and above, and closes once all
 // of them are: at the lowest common ancestor of their parents.
 //
+// The fronts of a body's children are gathered one after the other, last child first; the first
+// child's own goes on as the body's. What a loop asks for at the body that closes it, r = CᵀΩ − W σ
+// + d, is complete as soon as its last end has come: what other children bring later has no share
+// in its C, d and row of W, and is added. So it may close there, before they come, and its slots
+// are free for theirs. Roots are gathered at the ground likewise, where C no longer matters; a loop
+// between them is open there from the later root to the earlier one.
+//
 // Two loops that are open in one front need different slots: greedy colouring of the fronts, the
-// loops that close nearest to the ground first. At the ground, fronts of the tree's roots are
-// gathered one after the other, last root first; a loop between roots is open there from the later
-// root to the earlier one.
+// loops that close nearest to the ground first.
 //
 // A branch may be folded: a root's subtree that all its open loops tie to one other body L. With
 // the branch's own W the loops close into L at once, M*_L += J W⁻¹ Jᵀ, so that the slots of all
@@ -48,15 +53,19 @@ struct LoopPlan {
     int first = 0, last = 0;  ///< [first, last)
   };
 
-  std::vector<End> ends;                  ///< by body
-  std::vector<Range> ends_of;             ///< per body, into ends
-  std::vector<Coupling> couplings;        ///< by body, of its joint
-  std::vector<Range> couplings_of;        ///< per body, into couplings
-  std::vector<int> closings;              ///< loops, by the body that closes them, in closing order
-  std::vector<Range> closings_of;         ///< per body, into closings
-  std::vector<Range> ground_closings_of;  ///< per body: only roots have some
-  std::vector<int> slot;                  ///< per loop: its first slot
-  std::vector<char> pair;                 ///< per loop: two point rows and no other
+  std::vector<End> ends;                ///< by body
+  std::vector<Range> ends_of;           ///< per body, into ends
+  std::vector<Range> own_ends_of;       ///< of these, those that enter the body's own front
+  std::vector<Range> gathered_ends_of;  ///< per body: those on its parent that wait for it
+  std::vector<Coupling> couplings;      ///< by body, of its joint
+  std::vector<Range> couplings_of;      ///< per body, into couplings
+  std::vector<int> closings;            ///< loops, by where they close, in closing order
+  std::vector<Range> closings_of;       ///< per body, into closings: in its own front
+  /// Per body, a root or not the first child: those that close where its front has been gathered
+  /// with its later siblings'.
+  std::vector<Range> gathered_closings_of;
+  std::vector<int> slot;         ///< per loop: its first slot
+  std::vector<char> pair;        ///< per loop: two point rows and no other
   std::vector<int> folded_onto;  ///< per body: of a root, the body its branch folds into; or −1
   std::vector<char> takes_branches;  ///< per body: branches fold into it
   std::vector<OnWay> posed;          ///< per body: on the way of a loop below where it closes
@@ -76,9 +85,10 @@ struct LoopShape {
   std::vector<std::pair<int, double>> joints{};
 };
 
-/// `parents` in depth-first order, −1 for roots. O(bodies + length of all loops). Branches are
-/// folded where that is allowed (`may_fold`) and slots run out without. Where more than most_slots
-/// are needed all the same, `slots` says so.
+/// `parents` in depth-first order, −1 for roots. O(bodies + length of all loops). Loops close where
+/// children are gathered if fewer lanes do then, else in the bodies' own fronts, which stay in
+/// registers. Branches are folded where that is allowed (`may_fold`) and slots run out without.
+/// Where more than most_slots are needed all the same, `slots` says so.
 LoopPlan plan_loops(const std::vector<int>& parents, const std::vector<LoopShape>& loops,
                     bool may_fold);
 /// With every branch folded that can be.

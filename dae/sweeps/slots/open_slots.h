@@ -10,12 +10,15 @@ using SlotGroups = unsigned;  ///< bit g: slots 2g and 2g + 1
 
 struct OpenSlots {
   struct Front {
-    SlotGroups all = 0;                       ///< of loops open at the body, those it closes too
-    SlotGroups open = 0;                      ///< of those that go on to its parent
-    SlotGroups fresh = 0;                     ///< of those its first child did not bring
-    SlotGroups slot = 0;                      ///< of those its other children bring
-    SlotGroups born = 0;                      ///< of those no child brought, where no loop closes
-    SlotGroups ground = 0, ground_fresh = 0;  ///< at the ground, when this root arrives
+    SlotGroups all = 0;    ///< of loops open at the body, those it closes too
+    SlotGroups open = 0;   ///< of those that go on to its parent
+    SlotGroups fresh = 0;  ///< of those its first child did not bring
+    SlotGroups slot = 0;   ///< of those its other children bring
+    SlotGroups born = 0;   ///< of those no child brought, where no loop closes
+    bool brought = false;  ///< its other children bring some, or close them
+    /// Where it is gathered with its later siblings, of roots at the ground: of those open when it
+    /// has arrived, and of these those that they did not bring.
+    SlotGroups gathered = 0, gathered_fresh = 0;
   };
   std::vector<Front> fronts;       ///< per body
   std::vector<SlotGroups> beside;  ///< per loop: of those still open once it has closed
