@@ -6,6 +6,7 @@
 #include <momenta/core/open_chain.h>
 #include <momenta/core/scene/toml/setting.h>
 #include <momenta/dae/assembly/assembly.h>
+#include <momenta/dae/chain/closed_chain.h>
 #include <momenta/dae/kkt/loop_solver.h>
 #include <pybind11/eigen.h>
 #include <pybind11/pybind11.h>
@@ -60,6 +61,12 @@ class Bench {
     }
     return *chain_;
   }
+  /// The mechanism as ClosedChain evaluates it: with joint forces, and many states at once.
+  ClosedChain& closed() {
+    if (!closed_)
+      closed_ = std::make_unique<ClosedChain>(mechanism->scene(), options_of(algebra, kkt, cut));
+    return *closed_;
+  }
   void expect(double t, const In* q, const In* u, const char* rates = "u") const {
     expect_time(t);
     if (q) expect_size(*q, mechanism->nq(), "q", "nq");
@@ -86,6 +93,7 @@ class Bench {
 
  private:
   std::unique_ptr<OpenChain> chain_;
+  std::unique_ptr<ClosedChain> closed_;
 };
 using BenchPtr = std::shared_ptr<Bench>;
 
@@ -100,6 +108,8 @@ std::string toml_of(const Bench& bench);
 void add_runs(py::class_<Bench, BenchPtr>& mechanism);
 /// The one that moves it through its poses.
 void add_move(py::class_<Bench, BenchPtr>& mechanism);
+/// batches.cpp
+void add_batches(py::class_<Bench, BenchPtr>& mechanism);
 /// efforts.cpp
 void add_effort(py::class_<Bench, BenchPtr>& mechanism);
 /// fits.cpp

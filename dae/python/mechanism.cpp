@@ -50,9 +50,11 @@ std::vector<std::string> labels(const std::vector<Column>& columns) {
 
 /// (u, σ, ṗ) of (7)-(8).
 py::tuple momentum_rates(Bench& b, double t, const In& q, const In& p,
-                         const std::optional<Vector>& centre, double leak) {
+                         const std::optional<Vector>& centre, double leak,
+                         const std::optional<Vector>& tau) {
   const int nv = b.mechanism->nv(), m = b.mechanism->m();
   b.expect(t, &q, &p, "p");
+  if (tau) expect_size(*tau, nv, "tau", "nv");
   Vector u(nv), pdot(nv), sigma(m);
   if (centre) expect_size(*centre, m, "centre", "m");
   expect_leak("momentum_rates", leak);
@@ -61,15 +63,23 @@ py::tuple momentum_rates(Bench& b, double t, const In& q, const In& p,
              : b.solver->momentum(t, q.data(), p.data(), centre ? centre->data() : nullptr,
                                   fade_evaluation, leak, u.data(), sigma.data(), pdot.data());
   if (!ok) b.fail(t, q);
+  if (tau) pdot += *tau;  // u and sigma follow from p alone
   b.expect_finite(u, sigma, pdot);
   return py::make_tuple(std::move(u), std::move(sigma), std::move(pdot));
 }
 
 /// (u̇, λ) of (3).
-py::tuple accelerations(Bench& b, double t, const In& q, const In& u) {
+py::tuple accelerations(Bench& b, double t, const In& q, const In& u,
+                        const std::optional<Vector>& tau) {
   const int nv = b.mechanism->nv(), m = b.mechanism->m();
   b.expect(t, &q, &u);
   Vector udot(nv), lambda(m);
+  if (tau) {
+    expect_size(*tau, nv, "tau", "nv");
+    if (!b.closed().accelerations(t, q, u, *tau, udot, lambda))
+      throw SceneError(b.closed().failure());
+    return py::make_tuple(std::move(udot), std::move(lambda));
+  }
   const bool ok = m == 0 ? b.e->open_accelerations(t, q.data(), u.data(), udot.data())
                          : b.solver->acceleration(t, q.data(), u.data(), nullptr, 0, 0, udot.data(),
                                                   lambda.data());
@@ -275,11 +285,13 @@ void bind_mechanism(py::module_& module) {
           "A Start: closes the loops, beginning at q0 and u0. Raises SceneError where they stay "
           "open.")
       .def("momentum_rates", &momentum_rates, "t"_a, "q"_a, "p"_a, "centre"_a = py::none(),
-           "leak"_a = 0.0,
+           "leak"_a = 0.0, "tau"_a = py::none(),
            "(u, sigma, pdot) from (t, q, p): eqs. (7), (8). `centre` (m): the value towards which "
-           "sigma fades in weak equations; `leak` [1/s]: kappa. O(bodies).")
-      .def("accelerations", &accelerations, "t"_a, "q"_a, "u"_a,
-           "(udot, lambda_) from (t, q, u): eq. (3). O(bodies).")
+           "sigma fades in weak equations; `leak` [1/s]: kappa; `tau` (nv): joint forces in "
+           "addition to those of the scene [N m or N]. O(bodies).")
+      .def("accelerations", &accelerations, "t"_a, "q"_a, "u"_a, "tau"_a = py::none(),
+           "(udot, lambda_) from (t, q, u): eq. (3). `tau` (nv): joint forces in addition to those "
+           "of the scene [N m or N]. O(bodies).")
       .def("momenta", &momenta_of, "t"_a, "q"_a, "u"_a, "sigma"_a = py::none(),
            "p = M u + Phi_q' sigma, plus the part of prescribed motion (nv). O(bodies).")
       .def("constraints", &constraints, "t"_a, "q"_a, "u"_a, "(Phi, Phidot), both (m).")
@@ -293,6 +305,7 @@ void bind_mechanism(py::module_& module) {
            "reactions on the child (force [N], torque [N m] about the joint's point, ground axes), "
            "and M of small mechanisms. Arguments left out are those of the start of the scene, "
            "assembled where there are loops.");
+  add_batches(mechanism);
   add_runs(mechanism);
   add_move(mechanism);
   add_effort(mechanism);

@@ -85,8 +85,9 @@ class Round:
         limits = {"cpu_limit": 0.3}
         return [
             ("momentum_rates", lambda: m.momentum_rates(t(), q, p, **self.some(
-                {"centre": [None, self.array(m.m)], "leak": [0.0, 3.0, NAN, INF, 1e300]}))),
-            ("accelerations", lambda: m.accelerations(t(), q, u)),
+                {"centre": [None, self.array(m.m)], "leak": [0.0, 3.0, NAN, INF, 1e300],
+                 "tau": [None, self.array(m.nv)]}))),
+            ("accelerations", lambda: m.accelerations(t(), q, u, **self.some({"tau": [None, self.array(m.nv)]}))),
             ("momenta", lambda: m.momenta(t(), q, u, **self.some({"sigma": [None, self.array(m.m)]}))),
             ("constraints", lambda: m.constraints(t(), q, u)),
             ("kkt", lambda: m.kkt(t(), q)),

@@ -40,6 +40,48 @@ class Equations(unittest.TestCase):
         np.testing.assert_allclose(J @ udot, 0, atol=1e-9 * np.abs(udot).max())
         np.testing.assert_allclose(udot, self.start.udot, rtol=1e-8, atol=1e-8)
 
+    def test_joint_forces_in_both_forms_and_of_many_states(self):
+        chain = momenta.load(str(EXAMPLES / "chain" / "scene.toml"))
+        for m, q0 in (self.m, self.start.q), (chain, chain.q0):
+            tau = self.rng.normal(size=m.nv) * 1e-3
+            u = np.asarray(m.u0) + 0.1
+            M, J = m.kkt(0.0, q0)
+            p = m.momenta(0.0, q0, u)
+            free, pushed = m.momentum_rates(0.0, q0, p), m.momentum_rates(0.0, q0, p, tau=tau)
+            np.testing.assert_allclose(pushed[2] - free[2], tau, atol=1e-12 * np.abs(free[2]).max() + 1e-15)
+            np.testing.assert_array_equal(pushed[0], free[0])
+            still, moved = m.accelerations(0.0, q0, u), m.accelerations(0.0, q0, u, tau=tau)
+            change, load = moved[0] - still[0], moved[1] - still[1]
+            size = np.abs(M).max() * np.abs(moved[0]).max()
+            np.testing.assert_allclose(M @ change + J.T @ load, tau, atol=1e-9 * size)
+            self.assertGreater(np.abs(change).max(), 0)
+
+            turns = np.linspace(0, 1e-3, 11)  # more than a register holds, and no multiple of it
+            q = np.ascontiguousarray(q0[:, None] + turns)
+            ps, us = np.repeat(p[:, None], 11, 1), np.repeat(u[:, None], 11, 1)
+            taus = tau[:, None] * (1 + turns)
+            for leak, threads in (0.0, 1), (3.0, 2):
+                qdot, pdot = m.rates_of_states(0.0, q, ps, tau=taus, leak=leak, threads=threads)
+                udot, lam = m.accelerations_of_states(0.0, q, us, tau=taus, threads=threads)
+                self.assertEqual((qdot.shape, pdot.shape, udot.shape, lam.shape),
+                                 ((m.nq, 11), (m.nv, 11), (m.nv, 11), (m.m, 11)))
+                for i in range(11):
+                    one = m.momentum_rates(0.0, q[:, i], p, leak=leak, tau=taus[:, i])
+                    np.testing.assert_allclose(qdot[:, i], one[0], atol=1e-10 * np.abs(one[0]).max())
+                    np.testing.assert_allclose(pdot[:, i], one[2], atol=1e-10 * np.abs(one[2]).max())
+                    one = m.accelerations(0.0, q[:, i], u, tau=taus[:, i])
+                    np.testing.assert_allclose(udot[:, i], one[0], atol=1e-9 * np.abs(one[0]).max())
+            plain = m.rates_of_states(0.0, q, ps)
+            np.testing.assert_allclose(m.rates_of_states(0.0, q, ps, tau=taus)[1] - plain[1], taus,
+                                       atol=1e-12 * np.abs(plain[1]).max() + 1e-15)
+            with self.assertRaisesRegex(ValueError, "a column of p has 1 number, expected"):
+                m.rates_of_states(0.0, q, ps[:1])
+            with self.assertRaisesRegex(ValueError, "tau has 1 number"):
+                m.accelerations(0.0, q0, u, tau=tau[:1])
+            ps[0, 4] = np.nan
+            with self.assertRaisesRegex(momenta.SceneError, "state 4: p\\[0\\] is not a number"):
+                m.rates_of_states(0.0, q, ps)
+
     def test_inverse_mass(self):
         M, _ = self.m.kkt(0.0, self.start.q)
         x = self.rng.normal(size=self.m.nv)
