@@ -3,6 +3,7 @@
 #include <momenta/dae/loop/loop_choice.h>
 #include <momenta/dae/loop/pair_of_loop.h>
 #include <momenta/dae/study/motion.h>
+#include <momenta/dae/study/upright.h>
 
 #include <algorithm>
 #include <cmath>
@@ -154,7 +155,7 @@ Picture picture_of(const Mechanism& mechanism) {
   picture.planar = mechanism.plan().planar;
   picture.length = length_of(scene);
   if (picture.planar)
-    picture.view = mechanism.plan().basis;
+    picture.view = upright(mechanism.plan().basis, scene.gravity);
   else
     picture.view = (Eigen::Matrix3d() << 1, 0, 0, 0, 0, -1, 0, 1, 0).finished();  // z is up
   const Order order(mechanism);

@@ -43,6 +43,19 @@ TEST_F(MjcfMasses, SmallMassesAndMomentsAreRaised) {
             0);
 }
 
+// With inertiafromgeom="true" geoms go before <inertial>, which stays where they weigh nothing: no
+// geoms, none in the range of groups, or of no mass.
+TEST_F(MjcfMasses, GeomsThatWeighNothingLeaveTheInertial) {
+  const std::string a = inertial("1", ".1 .2 .25"), b = inertial("2", ".1 .3 .25", skew);
+  const std::string range = "inertiafromgeom='true' inertiagrouprange='0 1'";
+  EXPECT_EQ(differs(arm(range, a + "<geom size='1' mass='0'/>", b + "<geom size='1' group='2'/>"),
+                    arm("", a, b)),
+            0);
+  EXPECT_LE(differs(arm(range, a + "<geom size='1' mass='5'/>", b),
+                    arm("", "<inertial pos='0 0 0' mass='5' diaginertia='2 2 2'/>", b)),
+            rounding);
+}
+
 // At the point of the body that its own pos names in its parent.
 TEST_F(MjcfMasses, WhatHasNoMassIsRaisedAsMuJoCoRaisesIt) {
   const auto hung = [&](const std::string& compiler, const std::string& c) {

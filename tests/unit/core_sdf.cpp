@@ -82,6 +82,25 @@ TEST_F(Sdf, LinksWithoutGravity) {
   EXPECT_EQ(differs(hung("<gravity>1</gravity>", ""), hung("", "")), 0);
 }
 
+// A revolute or sliding joint between 0 and 0 is a fixed one; about two axes, or as a mimic, it is
+// not.
+TEST_F(Sdf, JointsLockedByTheirLimitsAreFixed) {
+  const std::string lock = "<limit><lower>0</lower><upper>0</upper></limit>",
+                    sprung = "<dynamics><damping>3</damping></dynamics>";
+  const Scene welded = chain(joint("j", "fixed", "a", "b", ""));
+  for (const char* type : {"revolute", "prismatic"}) {
+    const Scene locked = chain(joint("j", type, "a", "b", axis("1 2 2", lock + sprung)));
+    EXPECT_EQ(differs(locked, welded), 0);
+    EXPECT_EQ(locked.remarks,
+              (std::vector<std::string>{"welded: joints whose limits are both 0 (1)"}));
+  }
+  EXPECT_EQ(OpenChain(chain(joint("j", "continuous", "a", "b", axis("1 2 2", lock)))).nv(), 2);
+  const Scene two =
+      chain(joint("j", "universal", "a", "b", axis("1 0 0", lock) + axis("0 1 0", lock, "axis2")));
+  EXPECT_EQ(OpenChain(two).nv(), 3);
+  EXPECT_EQ(two.remarks, (std::vector<std::string>{"left out: joint limits without a range (2)"}));
+}
+
 // The joints of a gear are known by axes that files round: 1.5708 is π/2 to 4e-6.
 TEST_F(Sdf, GearsKnowTheirJointsByRoundedAxes) {
   const auto geared = [&](const std::string& pitch) {

@@ -8,6 +8,7 @@
 #include <momenta/dae/report/picture_data.h>
 #include <momenta/dae/study/motion.h>
 #include <momenta/dae/study/run_form.h>
+#include <momenta/dae/study/upright.h>
 
 #include <array>
 #include <cmath>
@@ -363,6 +364,48 @@ TEST(Film, LargeMechanismsStayWithinTheirShareOfAPage) {
         EXPECT_LT(runs * motion_json(picture, motion).dump().size(), 1'100'000u) << bodies;
       }
     }
+  }
+}
+
+// A pendulum in the plane of x and z hangs down, x to the right; whatever the plane and gravity
+// are, the viewer stands before the plane and sees gravity act downwards.
+TEST(Picture, PlanesAreSeenWithGravityDown) {
+  const auto view = [](const std::string& axis, const std::string& gravity) {
+    return picture_of(
+               Mechanism(parse_scene(
+                   "gravity = " + gravity +
+                   "\n[[body]]\nname = 'a'\nmass = 1\nshape = { kind = 'rod', length = 1, axis "
+                   "= '" +
+                   (axis == "z" ? "x" : "z") +
+                   "' }\n[[joint]]\nname = 'j'\nkind = 'revolute'\nchild = 'a'\naxis = '" + axis +
+                   "'\n")))
+        .view;
+  };
+  Eigen::Matrix3d of_xz, of_yz;
+  of_xz << 1, 0, 0, 0, 0, -1, 0, 1, 0;
+  of_yz << 0, 0, 1, 1, 0, 0, 0, 1, 0;
+  EXPECT_EQ(view("y", "[0, 0, -9.81]"), of_xz);
+  EXPECT_EQ(view("x", "[0, 0, -9.81]"), of_yz);
+  EXPECT_EQ(view("y", "[0, -9.81, 0]"), of_xz);  // across the plane
+  EXPECT_EQ(view("z", "[0, -9.81, 0]"), Eigen::Matrix3d::Identity());
+  EXPECT_EQ(view("z", "[0, 0, 0]"), Eigen::Matrix3d::Identity());
+  std::mt19937 random(3);
+  std::normal_distribution<double> any;
+  const auto direction = [&] {
+    return Vector3d(any(random), any(random), any(random)).normalized();
+  };
+  for (int i = 0; i < 60; ++i) {
+    Eigen::Matrix3d basis = Eigen::AngleAxisd(3 * any(random), direction()).toRotationMatrix();
+    if (i < 30)
+      basis << Vector3d::Unit(i % 3), Vector3d::Unit((i + 1) % 3), Vector3d::Unit((i + 2) % 3);
+    const Vector3d gravity = 9.81 * direction();
+    const Eigen::Matrix3d seen = upright(basis, gravity);
+    EXPECT_LE((seen.transpose() * seen - Eigen::Matrix3d::Identity()).norm(), 1e-14);
+    EXPECT_GT(seen.determinant(), 0);
+    EXPECT_LE(seen.col(2).cross(basis.col(2)).norm(), 1e-14);
+    EXPECT_LT(seen.col(1).dot(gravity), 0);
+    EXPECT_LE(std::abs(seen.col(0).dot(gravity)), -seen.col(1).dot(gravity));
+    EXPECT_GT(seen.col(0).maxCoeff(), -seen.col(0).minCoeff());
   }
 }
 

@@ -115,6 +115,7 @@ class BodyReader {
         sum.add(part.in * read_geom(geom, model_.angles, !counts, model_.meshes, model_.remarks));
       }
     }
+    if (sum.mass == 0 && inertial) sum = read_inertial(*inertial, model_.angles);
     if (sum.mass == 0 && !inertial) sum.com = frame.at;  // where MuJoCo puts what is raised
     sum = bounded(sum, model_);
     weigh(spec, sum.mass, sum.com, sum.inertia, inertial ? *inertial : self, model_.remarks);

@@ -27,7 +27,8 @@ constexpr std::array kind_of_type{JointKind::revolute,  JointKind::revolute,  Jo
                                   JointKind::universal, JointKind::helical};
 
 constexpr double same_axis = 1e-3;  // [rad] of a gear and its joint: files round angles
-constexpr double no_bound = 1e16;   // [rad or m]
+constexpr std::array<double, 2> locked{0, 0};
+constexpr double no_bound = 1e16;  // [rad or m]
 
 /// The direction in <axis> or <axis2>, in world axes.
 Vector3d read_axis(const Node& axis, const std::string& scope, const std::string& joint,
@@ -62,13 +63,13 @@ std::optional<double> bound(const Node& limit, const char* name, int sign) {
   return std::nullopt;
 }
 
-/// Least and largest coordinate; a range that is none is left out.
+/// Least and largest coordinate; a range that is none is left out, unless it is one value, 0.
 void read_limits(const Node& limit, JointSpec& joint, Remarks& remarks) {
   if (limit.child("lower") || limit.child("upper")) {
     const auto lower = bound(limit, "lower", -1), upper = bound(limit, "upper", 1);
     if (!lower && !upper) return;
     const std::array<double, 2> limits{lower.value_or(-no_bound), upper.value_or(no_bound)};
-    if (limits[0] < limits[1])
+    if (limits[0] < limits[1] || limits == locked)
       joint.limits = limits;
     else
       remarks.left_out("joint limits without a range");
@@ -134,6 +135,14 @@ void read_mimic(const Node& axis, int number, const std::string& scope, SdfJoint
                              static_cast<int>(mimic->word("axis", axes, 0)), -multiplier});
   coupler.offset = value("offset", 0) - multiplier * value("reference", 0);
   couplers.push_back(coupler);
+}
+
+/// A joint whose limits are both 0 does not move, as files had it before there were fixed ones.
+void weld(SdfJoint& joint, JointSpec& springs, Remarks& remarks) {
+  joint.spec.kind = JointKind::weld;
+  joint.spec.rotor_inertia.clear();
+  springs = {};
+  remarks.count("welded: joints whose limits are both 0");
 }
 
 /// A universal joint with springs, dampers, friction or limits is two revolute ones and a body
@@ -211,6 +220,14 @@ void read_sdf_joint(const Node& node, const std::string& scope, SdfModel& model,
   if (two && joint.axis.cross(joint.axis2).norm() < parallel_slack)
     node.fail("has axes that are parallel, expected two directions");
   if (node.text("type") == "continuous") springs[0].limits.reset();
+  for (JointSpec& s : springs) {
+    if (s.limits != locked) continue;
+    s.limits.reset();
+    if (two || node.required("axis").child("mimic"))
+      model.remarks.left_out("joint limits without a range");
+    else
+      weld(joint, s, model.remarks);
+  }
   const auto sprung = [](const JointSpec& s) { return s.damping != 0 || s.stiffness != 0; };
   const auto own = [&](const JointSpec& s) { return sprung(s) || s.limits || s.friction != 0; };
   if (two && (own(springs[0]) || own(springs[1])))
