@@ -2,8 +2,6 @@
 // Vectors, symmetric and general 3 × 3 matrices of any scalar, as plain aggregates whose elements
 // stay in registers, and how each turns about a coordinate axis. Eigen stays outside the kernels.
 
-#include <momenta/core/scalar/pack.h>
-
 #include <cmath>
 
 namespace momenta {
@@ -190,7 +188,7 @@ void turn(Mat3<S>& m, const C& c, const C& s) {
 /// formula is homogeneous of degree zero, so a quaternion that has drifted off unit length still
 /// gives a rotation.
 template <class S>
-MOMENTA_INLINE Mat3<S> rotation_by(const S& w, const S& x, const S& y, const S& z) {
+[[gnu::always_inline]] inline Mat3<S> rotation_by(const S& w, const S& x, const S& y, const S& z) {
   const S two = S(2.0) / (w * w + x * x + y * y + z * z);
   Mat3<S> r;
   r(0, 0) = S(1.0) - two * (y * y + z * z);
@@ -211,8 +209,8 @@ Mat3<S> rotation_of(const S* quaternion) {
 /// Rᵀ g of that rotation without R, for one direction: with v = (x, y, z) and t = 2 v × g / |q|²,
 /// Rᵀ g = g − w t + v × t.
 template <class S>
-MOMENTA_INLINE Vec3<S> turned_back_by(const S& w, const S& x, const S& y, const S& z,
-                                      const Vec3<double>& g) {
+[[gnu::always_inline]] inline Vec3<S> turned_back_by(const S& w, const S& x, const S& y, const S& z,
+                                                     const Vec3<double>& g) {
   const S two = S(2.0) / (w * w + x * x + y * y + z * z);
   const S tx = two * (y * g[2] - z * g[1]), ty = two * (z * g[0] - x * g[2]),
           tz = two * (x * g[1] - y * g[0]);

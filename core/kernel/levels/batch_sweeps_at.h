@@ -117,10 +117,12 @@ class BatchSweepsAt final : public BatchSweeps {
   }
 
   /// Whether a pack in place reads and writes a line here and there in more memory than is near:
-  /// each row of a large batch starts a page of its own.
+  /// each row of a large batch starts a page of its own. Shorter rows are near enough: what they
+  /// share a page with is wanted next, and a copy would take longer.
   bool far_apart(const States& s) const {
-    constexpr std::ptrdiff_t near_by = 3 << 19;  // bytes
-    return s.stride * (2 * tree_.model->nq + 2 * tree_.model->nv) * 8 > near_by;
+    constexpr std::ptrdiff_t near_by = 3 << 19, page = 4096;  // bytes
+    return s.stride * 8 >= page &&
+           s.stride * (2 * tree_.model->nq + 2 * tree_.model->nv) * 8 > near_by;
   }
   static constexpr std::size_t most_in_block = 64;
   /// Rows of packs, `to_next` apart, from `from` or to `to`. Not inlined: as coordinate_rates().
