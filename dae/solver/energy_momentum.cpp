@@ -27,8 +27,8 @@
 //
 //   λ += W⁻¹Φ̇/h,   σ += W⁻¹Φ/h − W⁻¹Φ̇/2,   α += (H − H_wanted)/(u_1·Mv/h + ΔpᵀM⁻¹Δp).
 //
-// One factorisation of (7) a step, dense or sparse by size. Rows that depend on others get
-// multipliers that fade to zero.
+// One factorisation of (7) a step, dense or sparse by size. In rows that depend on others the
+// multipliers fade to zero.
 // Source: Kinon, Betsch, Schneider, Nonlinear Dynamics 111 (2023) 14231-14261; Gonzalez, J.
 // Nonlinear Sci. 6 (1996) 449-467, and Comput. Methods Appl. Mech. Eng. 174 (1999) 453-472.
 

@@ -1,5 +1,6 @@
-// radau5 with gauge reset: its order, steps that do not depend on how fast a mechanism turns, and
-// bodies so heavy that rounding of their loops is all that Newton's corrections have.
+// radau5 with gauge reset: its order, steps that do not depend on how fast a mechanism turns,
+// bodies so heavy that rounding of their loops is all that Newton's corrections have, and
+// oscillations of many periods.
 
 #include "equations/ensemble.h"
 
@@ -100,6 +101,25 @@ TEST(Radau5, HeavyCoupler) {
     EXPECT_LT(r.energy_error_max, 1e-5 * r.energy_scale) << factor;
     EXPECT_LT(r.counters.steps, 20000) << factor;
   }
+}
+
+// What the formula takes from an undamped oscillation adds up over its periods: an energy error
+// four times as large after four times as long, unless a step's share of the tolerance shrinks as
+// their number grows (local_share.h).
+TEST(Radau5, EnergyOfAnOscillationOverManyPeriods) {
+  Scene scene = four_bar();
+  for (JointSpec& joint : scene.joints)
+    if (joint.name == "C") joint.stiffness = 1e6, joint.rest = 1.74;
+  const auto after = [&](double end) {
+    const RunResult r =
+        equations::run_of(Mechanism(scene), "momentum-index2", "radau5", "reset", 1e-6, end, 60);
+    EXPECT_EQ(r.status, "done") << r.reason;
+    return r;
+  };
+  const RunResult shorter = after(10), longer = after(40);
+  EXPECT_GT(shorter.counters.steps, 20000);
+  EXPECT_GT(longer.counters.steps, 100000);
+  EXPECT_LT(longer.energy_error_max, 2 * shorter.energy_error_max);
 }
 
 }  // namespace

@@ -108,6 +108,19 @@ TEST(Integrators, DefaultGoesByTolerance) {
   EXPECT_EQ(default_integrator("momentum-index2", 1e-4), "ida");
 }
 
+TEST(Integrators, PropertiesFitEachOther) {
+  for (const Integrator& method : integrators()) {
+    if (method.gauge != Integrator::Preferred::leak) {
+      EXPECT_TRUE(method.resets) << method.name;
+    }
+    for (const std::string& form : method.closes)
+      EXPECT_TRUE(method.takes_form(form, is_dae_form(form))) << method.name << ' ' << form;
+  }
+  EXPECT_EQ(integrator("radau5").gauge, Integrator::Preferred::leak);
+  EXPECT_EQ(integrator("bdf5").gauge, Integrator::Preferred::reset);
+  EXPECT_EQ(integrator("hem5").gauge, Integrator::Preferred::reset_of_independent);
+}
+
 TEST(Bdf, ProjectedKeepsTheLoopsShut) {
   const Mechanism mechanism(four_bar());
   for (const char* form : {"momentum", "acceleration"}) {
