@@ -295,6 +295,7 @@ void bind_mechanism(py::module_& module) {
            "assembled where there are loops.");
   add_runs(mechanism);
   add_move(mechanism);
+  add_assemblies(mechanism);
   add_effort(mechanism);
   add_fit(mechanism);
   add_gradient(mechanism);
