@@ -5,6 +5,8 @@
 #include <momenta/dae/joint_places.h>
 #include <momenta/dae/kinematics/assemblies.h>
 #include <momenta/dae/kinematics/coordinate_named.h>
+#include <momenta/dae/kinematics/homotopy.h>
+#include <momenta/dae/kinematics/loop_polynomials.h>
 #include <momenta/dae/sample/sample.h>
 
 #include <Eigen/QR>
@@ -40,6 +42,44 @@ class Search {
   }
 
   Assemblies run() {
+    Assemblies found = request_.by_homotopy ? by_homotopy() : by_search();
+    std::stable_sort(found.all.begin(), found.all.end(),
+                     [](const auto& a, const auto& b) { return a.apart < b.apart; });
+    return found;
+  }
+
+ private:
+  Assemblies by_homotopy() {
+    std::vector<bool> held(static_cast<std::size_t>(mechanism_.nv()), false);
+    for (const auto& [q, u] : held_) held[static_cast<std::size_t>(u)] = true;
+    const auto polynomials = loop_polynomials(mechanism_, t_, own_, held);
+    const HomotopyEnds ends =
+        solve_by_homotopy(polynomials->system(), request_.seed, request_.threads);
+    Assemblies found;
+    PathCount count{ends.paths,    static_cast<long>(ends.finite.size()),
+                    ends.infinite, ends.singular,
+                    ends.lost,     0};
+    add(found, own_, 0);
+    LeastNorm steps(loops_.pattern(), mechanism_.m(), mechanism_.nv());
+    Closing closing(loops_, steps, t_);
+    constexpr double moved_on = 1e-5;  // by Newton's method, at the most
+    for (const Eigen::VectorXcd& x : ends.finite) {
+      const std::optional<VectorXd> pose = polynomials->pose(x);
+      if (!pose) continue;
+      const Closing::Pose closed = closing.beside(*pose);
+      if (!closed.is_closed || apart(closed.q, *pose) > moved_on ||
+          !turned_loops(mechanism_, t_, closed.q).empty()) {
+        ++count.lost;  // a solution that is no assembly proves an error
+        continue;
+      }
+      ++count.real;
+      add(found, closed.q, 1);
+    }
+    found.paths = count;
+    return found;
+  }
+
+  Assemblies by_search() {
     Assemblies found;
     found.starts = request_.starts;
     std::vector<std::optional<VectorXd>> poses(static_cast<std::size_t>(request_.starts));
@@ -68,12 +108,9 @@ class Search {
       ++found.closed;
       add(found, *pose, 1);
     }
-    std::stable_sort(found.all.begin(), found.all.end(),
-                     [](const auto& a, const auto& b) { return a.apart < b.apart; });
     return found;
   }
 
- private:
   /// D⁻¹ Φ_q C in the columns that are free, and which these are.
   MatrixXd free_columns(const VectorXd& q, std::vector<int>& rates) {
     loops_.gap(t_, q);  // places it

@@ -14,11 +14,16 @@
 // A search proves no completeness. If n starts closed and n₁ of the assemblies were met once, the
 // chance that the next start that closes meets a new one is about n₁/n (I. J. Good, Biometrika 40
 // (1953), 237-264), of starts drawn like these: an assembly with a small basin is met late.
+//
+// Where loops can be written as polynomials (loop_polynomials.h) a homotopy finds all of them, with
+// the number of solutions over the complex numbers: complete where no path is lost or ends at a
+// singular solution. `met` is then how many solutions led to it.
 
 #include <momenta/dae/mechanism.h>
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,6 +35,19 @@ struct AssembliesRequest {
   int starts = 1000;              ///< drawn at random
   std::uint64_t seed = 1;         ///< of these
   int threads = 1;                ///< without effect on what is found
+  bool by_homotopy = false;       ///< all of them by paths in complex numbers, in place of starts
+};
+
+/// What paths of a homotopy led to (homotopy.h).
+struct PathCount {
+  long paths = 0;     ///< as many as the Bézout number
+  long finite = 0;    ///< regular solutions over the complex numbers
+  long infinite = 0;  ///< no solutions: at infinity, or no displacements
+  long singular = 0;  ///< multiple solutions, or of curves
+  long lost = 0;      ///< not followed to the end
+  long real = 0;      ///< finite ones that are assemblies
+  /// Whether the assemblies are all there are.
+  bool is_complete() const { return singular == 0 && lost == 0; }
 };
 
 /// One of them.
@@ -49,6 +67,7 @@ struct Assemblies {
   int starts = 0;                  ///< how many there were
   int closed = 0;                  ///< starts that led to an assembly
   int turned = 0;                  ///< that led to a loop with turned axes
+  std::optional<PathCount> paths;  ///< by homotopy; then there are no starts
   /// How many assemblies were met once.
   int met_once() const;
 };

@@ -12,6 +12,7 @@ struct AssembliesOptions {
   int starts = 1000;
   std::uint64_t seed = 1;
   int threads = 0;  ///< 0: one for each processor
+  std::string by = "search";  ///< or homotopy
 };
 /// `assemble --all`
 int assemblies(const Options& o, const AssembliesOptions& a);

@@ -45,6 +45,13 @@ Verb add_assemble(CLI::App& app, Options& o) {
   of_all(within(verb->add_option("--threads", own->assemblies.threads,
                                  "With --all (default: one for each processor)"),
                 "N", 1, 1024));
+  of_all(one_of(verb->add_option("--by", own->assemblies.by,
+                                 "With --all: random starts; all solutions of polynomials"),
+                {"search", "homotopy"})
+             ->capture_default_str());
+  of_all(verb->add_option("--out", o.out,
+                          "With --all: directory for assemblies.csv, assemblies.json, index.html")
+             ->type_name("DIR"));
   return {verb, [&o, own] { return own->all ? assemblies(o, own->assemblies) : assemble_verb(o); }};
 }
 

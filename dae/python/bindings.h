@@ -106,6 +106,8 @@ void bind_verbs(py::module_& module);
 std::string toml_of(const Bench& bench);
 /// Methods of Mechanism that run it.
 void add_runs(py::class_<Bench, BenchPtr>& mechanism);
+/// The one that finds its assemblies.
+void add_assemblies(py::class_<Bench, BenchPtr>& mechanism);
 /// The one that moves it through its poses.
 void add_move(py::class_<Bench, BenchPtr>& mechanism);
 /// batches.cpp

@@ -308,6 +308,7 @@ void bind_mechanism(py::module_& module) {
   add_batches(mechanism);
   add_runs(mechanism);
   add_move(mechanism);
+  add_assemblies(mechanism);
   add_effort(mechanism);
   add_fit(mechanism);
   add_gradient(mechanism);

@@ -1,10 +1,13 @@
-// Poses along a swept coordinate.
+// Poses along a swept coordinate, and assemblies.
 
+#include <momenta/dae/kinematics/assemblies.h>
 #include <momenta/dae/kinematics/move.h>
 #include <momenta/dae/linear/linearisation.h>
 
+#include <algorithm>
 #include <limits>
 #include <optional>
+#include <thread>
 #include <variant>
 
 #include "bindings.h"
@@ -80,7 +83,81 @@ py::dict move(const Bench& b, const std::variant<std::string, py::dict>& sweep,
   return all;
 }
 
+py::dict assemblies(const Bench& b, const std::vector<std::string>& hold, const std::string& by,
+                    int starts, std::uint64_t seed, int threads) {
+  if (by != "search" && by != "homotopy")
+    throw py::value_error("by is '" + by + "', expected 'search' or 'homotopy'");
+  if (starts < 1)
+    throw py::value_error("starts is " + std::to_string(starts) + ", expected 1 or more");
+  if (threads < 0)
+    throw py::value_error("threads is " + std::to_string(threads) + ", expected 0 or more");
+  AssembliesRequest request;
+  request.hold = hold;
+  request.by_homotopy = by == "homotopy";
+  request.starts = starts;
+  request.seed = seed;
+  request.threads =
+      threads > 0 ? threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  Assemblies found;
+  {
+    const py::gil_scoped_release others_go_on;
+    const Mechanism held(held_at_start(b.mechanism->scene()), b.mechanism->options());
+    const Assembly a = assemble(held, Assembled::rates);
+    found = find_assemblies(held, a.start.t, a.start.q, request);
+  }
+  const auto count = static_cast<Eigen::Index>(found.all.size());
+  Rows q(count, b.mechanism->nq());
+  Vector apart(count), least(count), most(count);
+  std::vector<int> met;
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const FoundAssembly& one = found.all[static_cast<std::size_t>(i)];
+    q.row(i) = one.q;
+    apart[i] = one.apart;
+    least[i] = one.least_value;
+    most[i] = one.most_value;
+    met.push_back(one.met);
+  }
+  py::dict all;
+  all["q"] = std::move(q);
+  all["apart"] = std::move(apart);
+  all["met"] = met;
+  all["least_singular_value"] = std::move(least);
+  all["largest_singular_value"] = std::move(most);
+  if (found.paths) {
+    py::dict paths;
+    paths["followed"] = found.paths->paths;
+    paths["finite"] = found.paths->finite;
+    paths["infinite"] = found.paths->infinite;
+    paths["singular"] = found.paths->singular;
+    paths["lost"] = found.paths->lost;
+    paths["real"] = found.paths->real;
+    paths["complete"] = found.paths->is_complete();
+    all["paths"] = std::move(paths);
+  } else {
+    all["starts"] = found.starts;
+    all["closed"] = found.closed;
+    all["turned"] = found.turned;
+    all["met_once"] = found.met_once();
+  }
+  return all;
+}
+
 }  // namespace
+
+void add_assemblies(py::class_<Bench, BenchPtr>& mechanism) {
+  using namespace py::literals;
+  mechanism.def(
+      "assemblies", &assemblies, "hold"_a = std::vector<std::string>(), "by"_a = "search",
+      "starts"_a = 1000, "seed"_a = std::uint64_t{1}, "threads"_a = 0,
+      "Poses that close the loops while the coordinates of `hold` stay, as a dict: q (assemblies, "
+      "nq), the scene's own first, apart [rad or lengths of the scene] from it, "
+      "least_singular_value and largest_singular_value (assemblies) of the loop equations in the "
+      "free coordinates, met. By search from `starts` random starts, which proves no completeness: "
+      "starts, closed, turned, met_once. By homotopy, all solutions of polynomials: paths, a dict "
+      "of followed, finite (solutions over the complex numbers), infinite, singular, lost, real "
+      "and complete. `threads`: 0, one for each processor. Raises SceneError where more than what "
+      "is held is free, or where the loops are no polynomials.");
+}
 
 void add_move(py::class_<Bench, BenchPtr>& mechanism) {
   using namespace py::literals;

@@ -184,6 +184,21 @@ TEST_F(Program, TellsAllAssemblies) {
   const double other = told.at("assemblies").at(1).at("q").at("C.q [rad]");
   EXPECT_NEAR(other, 4.05128, 1e-4);
   expect_refused(all, "leaves 1 degree of freedom");
+  const Outcome every =
+      call(all + "--hold O --by homotopy --out '" + (folder_ / "all").string() + "'");
+  EXPECT_EQ(every.status, 0) << every.err;
+  EXPECT_NE(every.out.find("2 assemblies with O held, of 2 solutions over the complex numbers; 2 "
+                           "paths: 2 to these, 0 to infinity"),
+            std::string::npos)
+      << every.out;
+  const auto written = json::parse(text_of(folder_ / "all" / "assemblies.json"));
+  EXPECT_EQ(written.at("paths").at("complete"), true);
+  EXPECT_NEAR(written.at("assemblies").at(1).at("q").at("C.q [rad]").get<double>(), other, 1e-9);
+  EXPECT_NE(text_of(folder_ / "all" / "assemblies.csv").find("assembly,met,apart,"),
+            std::string::npos);
+  const std::string page = text_of(folder_ / "all" / "index.html");
+  EXPECT_NE(page.find("<figcaption>own</figcaption>"), std::string::npos);
+  EXPECT_NE(page.find("<figcaption>1</figcaption>"), std::string::npos);
   EXPECT_NE(call("assemble '" + example("four_bar") + "' --starts 5").status, 0);
 }
 

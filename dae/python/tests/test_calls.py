@@ -98,6 +98,9 @@ class Round:
             ("move", lambda: m.move(**self.some(
                 {"sweep": ["A", "O", "", {"O": 1.0}, {"O": 0}, {}], "to": [None, 1.0, NAN, 1e300],
                  "by": [0.1, 0, -1, NAN, 1e300], "hold": [[], ["A"], ["x"]]}))),
+            ("assemblies", lambda: m.assemblies(**{"starts": 5, **self.some(
+                {"hold": [[], ["A"], ["O"], ["x"]], "by": ["search", "homotopy", ""], "starts": [1, 0, -1],
+                 "seed": [1, 2**63], "threads": [0, 1, -1]})})),
             ("effort", lambda: m.effort(**self.some(
                 {"motion": [None, {}, {"t": [0, 1, 2, 3], "O.q": [1, 1.1, 1.2, 1.3]}, {"t": [0.0], "O.q": [NAN]},
                             {"t": [1, 0], "O.q": [0, 1]}],

@@ -146,6 +146,25 @@ class Poses(unittest.TestCase):
         self.assertNotIn("joint_force", m.move("O", by=0.5))
 
 
+class Assemblies(unittest.TestCase):
+    def test_of_a_four_bar_are_two_by_search_and_by_homotopy(self):
+        m = load("four_bar")
+        found = m.assemblies(["O"], starts=50)
+        every = m.assemblies(["O"], by="homotopy")
+        self.assertEqual((found["starts"], found["q"].shape), (50, (2, m.nq)))
+        np.testing.assert_allclose(every["q"], found["q"], atol=1e-9)
+        self.assertEqual(
+            every["paths"],
+            {"followed": 2, "finite": 2, "infinite": 0, "singular": 0, "lost": 0, "real": 2, "complete": True},
+        )
+        for q in every["q"]:
+            np.testing.assert_allclose(m.constraints(0, q, np.zeros(m.nv))[0], 0, atol=1e-12)
+        with self.assertRaisesRegex(momenta.SceneError, "leaves 1 degree of freedom"):
+            m.assemblies()
+        with self.assertRaisesRegex(ValueError, "expected 'search' or 'homotopy'"):
+            m.assemblies(["O"], by="x")
+
+
 class Efforts(unittest.TestCase):
     def test_of_a_motion_of_the_mechanism_itself_are_zero(self):
         m = load("four_bar")

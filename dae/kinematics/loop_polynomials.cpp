@@ -1,0 +1,65 @@
+#include <momenta/core/scene/drive.h>
+#include <momenta/dae/kinematics/loop_polynomials.h>
+#include <momenta/dae/kinematics/planar_polynomials.h>
+#include <momenta/dae/kinematics/platform_polynomials.h>
+
+#include <algorithm>
+#include <string>
+
+namespace momenta {
+
+using Eigen::Isometry3d;
+using Eigen::Vector3d;
+
+std::vector<Isometry3d> poses_of_polynomials(const Mechanism& mechanism, double t,
+                                             const Eigen::VectorXd& q) {
+  const Tree& tree = mechanism.tree();
+  std::vector<Isometry3d> poses;
+  for (const Tree::Body& b : tree.bodies) {
+    Isometry3d moved = Isometry3d::Identity();
+    double value = 0, rate, second;
+    if (b.drive >= 0)
+      tree.drives[static_cast<std::size_t>(b.drive)].evaluate(t, value, rate, second);
+    else if (b.nq == 1)
+      value = q[b.q];
+    if (b.kind == JointKind::revolute) moved.rotate(Eigen::AngleAxisd(value, Vector3d::UnitZ()));
+    if (b.kind == JointKind::prismatic) moved.translate(value * Vector3d::UnitZ());
+    if (b.kind == JointKind::free && b.nq == 7) {
+      moved.translate(q.segment<3>(b.q));
+      moved.rotate(Eigen::Quaterniond(q[b.q + 3], q[b.q + 4], q[b.q + 5], q[b.q + 6]));
+    }
+    const Isometry3d placed = b.placement * moved;
+    poses.push_back(b.parent < 0 ? placed : poses[static_cast<std::size_t>(b.parent)] * placed);
+  }
+  return poses;
+}
+
+Vector3d origin_of_loop(const Scene& scene, const LoopSpec& loop, double t) {
+  Vector3d origin = loop.origin_parent;
+  for (const DriveSpec& drive : scene.drives) {
+    if (drive.loop != loop.name || drive.origin.empty()) continue;
+    double rate, second;
+    MotionLaw(drive).evaluate(t, origin[drive.origin[0] - 'x'], rate, second);
+  }
+  return origin;
+}
+
+std::unique_ptr<LoopPolynomials> loop_polynomials(const Mechanism& mechanism, double t,
+                                                  const Eigen::VectorXd& own,
+                                                  const std::vector<bool>& held) {
+  std::unique_ptr<LoopPolynomials> found;
+  if (!mechanism.scene().lagrangian && mechanism.plan().planar)
+    found = planar_polynomials(mechanism, t, own, held);
+  else if (is_platform(mechanism, held))
+    found = platform_polynomials(mechanism, t, own);
+  else
+    throw SceneError(mechanism.scene().where({}) +
+                     "its loops are not written as polynomials; expected a mechanism in a plane, "
+                     "or one free body on six loops of kind distance from the ground");
+  if (found->system().bezout(most_paths) > most_paths)
+    throw SceneError(mechanism.scene().where({}) + "more than " + std::to_string(most_paths) +
+                     " paths would have to be followed; expected fewer loops");
+  return found;
+}
+
+}  // namespace momenta

@@ -1,0 +1,43 @@
+#pragma once
+// The loop equations of a mechanism with some coordinates held as polynomials, all of whose
+// solutions can be found (homotopy.h). Two kinds of mechanisms are written so:
+//
+//   in a plane   joints that turn and slide: planar_polynomials.h
+//   platforms    one free body on six rods with balls at their ends: platform_polynomials.h
+
+#include <momenta/dae/kinematics/polynomial_system.h>
+#include <momenta/dae/mechanism.h>
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace momenta {
+
+class LoopPolynomials {
+ public:
+  virtual ~LoopPolynomials() = default;
+  virtual const PolynomialSystem& system() const = 0;
+  /// The pose (nq) of a finite solution, where that is real.
+  virtual std::optional<Eigen::VectorXd> pose(const Eigen::VectorXcd& x) const = 0;
+};
+
+/// What Φ = 0 asks at time t [s] of the coordinates that are not held (by rate, nv), `own` (nq)
+/// being a pose that closes the loops.
+/// @throws SceneError for other mechanisms, and where there are more equations than unknowns, or
+/// more than `most_paths` paths
+std::unique_ptr<LoopPolynomials> loop_polynomials(const Mechanism& mechanism, double t,
+                                                  const Eigen::VectorXd& own,
+                                                  const std::vector<bool>& held);
+
+inline constexpr long most_paths = 20'000;
+/// Imaginary parts of real solutions, of what has size one.
+inline constexpr double real_enough = 1e-7;
+
+/// Every body frame in ground axes. @pre joints turn, slide or are free
+std::vector<Eigen::Isometry3d> poses_of_polynomials(const Mechanism& mechanism, double t,
+                                                    const Eigen::VectorXd& q);
+/// The point of a loop on its parent in the axes of that body, driven components at time t.
+Eigen::Vector3d origin_of_loop(const Scene& scene, const LoopSpec& loop, double t);
+
+}  // namespace momenta
