@@ -3,6 +3,7 @@
 #include <momenta/dae/kinematics/assemblies.h>
 #include <momenta/dae/linear/linearisation.h>
 #include <momenta/dae/report/assemblies_report.h>
+#include <momenta/dae/study/environment.h>
 
 #include <algorithm>
 #include <thread>

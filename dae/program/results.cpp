@@ -59,7 +59,8 @@ int film_intervals_of(const Mechanism& mechanism, const Options& o, std::size_t 
 void expect_own_results(const std::filesystem::path& out, std::string_view own) {
   for (const std::string_view name :
        {"trajectory.csv", "run.h5", "study.csv", "stress.json", "sweep.csv", "modes.csv",
-        "move.csv", "effort.csv", "fit.csv", "bench.csv", "linear.json", "gradient.json"})
+        "move.csv", "effort.csv", "fit.csv", "bench.csv", "linear.json", "gradient.json",
+        "assemblies.csv"})
     if (name != own && !(name == "run.h5" && own == "trajectory.csv") && !out.empty() &&
         std::filesystem::exists(out / name))
       throw std::invalid_argument("--out " + out.string() + " holds the " + std::string(name) +
