@@ -16,7 +16,7 @@ namespace momenta::reading {
 
 MjcfInertia bounded(const MjcfInertia& body, const MjcfSettings& settings) {
   MjcfInertia kept = body;
-  kept.mass = std::max(body.mass, settings.least_mass);
+  if (body.mass >= 0) kept.mass = std::max(body.mass, settings.least_mass);
   if (settings.least_moment <= 0 && !settings.balances) return kept;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> principal(body.inertia);
   const Eigen::Vector3d own = principal.eigenvalues();  // the least first
