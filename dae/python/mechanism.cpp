@@ -1,5 +1,6 @@
 // Mechanism: the data of a scene, its consistent start, and the equations at one state.
 
+#include <momenta/core/scene/bearings_refused.h>
 #include <momenta/core/scene/toml/parse_scene.h>
 #include <momenta/core/scene/toml/write_scene.h>
 #include <momenta/dae/assembly/drive_reach.h>
@@ -53,6 +54,7 @@ py::tuple momentum_rates(Bench& b, double t, const In& q, const In& p,
                          const std::optional<Vector>& centre, double leak) {
   const int nv = b.mechanism->nv(), m = b.mechanism->m();
   b.expect(t, &q, &p, "p");
+  refuse_bearings(b.mechanism->scene(), "momentum_rates");
   Vector u(nv), pdot(nv), sigma(m);
   if (centre) expect_size(*centre, m, "centre", "m");
   expect_leak("momentum_rates", leak);
@@ -69,6 +71,7 @@ py::tuple momentum_rates(Bench& b, double t, const In& q, const In& p,
 py::tuple accelerations(Bench& b, double t, const In& q, const In& u) {
   const int nv = b.mechanism->nv(), m = b.mechanism->m();
   b.expect(t, &q, &u);
+  refuse_bearings(b.mechanism->scene(), "accelerations");
   Vector udot(nv), lambda(m);
   const bool ok = m == 0 ? b.e->open_accelerations(t, q.data(), u.data(), udot.data())
                          : b.solver->acceleration(t, q.data(), u.data(), nullptr, 0, 0, udot.data(),

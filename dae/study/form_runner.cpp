@@ -1,3 +1,4 @@
+#include <momenta/core/scene/bearings_refused.h>
 #include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/solver/stopping.h>
 #include <momenta/dae/study/form_runner.h>
@@ -34,6 +35,10 @@ std::string refusal(const Mechanism& mechanism, const Integrator& method, const 
   if (!dae && method.multistep && (s.gauge == "reset" || s.gauge == "flip"))
     return "'" + method.name + "' is a multistep method: gauge " + s.gauge +
            " after each step would spoil its history; use leak or none";
+  if (const JointSpec* joint = with_bearing(mechanism.scene()); joint && method.name == "rattle")
+    return "joint '" + joint->name +
+           "' has a bearing, whose friction has no potential, and 'rattle' is for forces that have "
+           "one: expected another integrator";
   const bool meets_positions = method.name == "rattle" || method.name == "generalised-alpha" ||
                                method.name == "bayo-ledesma" ||
                                (method.name == "hem5" && s.form == "momentum-index2");
