@@ -1,4 +1,5 @@
 #include <momenta/core/open_chain_inside.h>
+#include <momenta/core/scene/bearings_refused.h>
 
 #include <algorithm>
 #include <stdexcept>
@@ -20,6 +21,7 @@ Tree checked_tree(const Scene& scene) {
 }  // namespace
 
 OpenChain::OpenChain(const Scene& scene, Algebra algebra, int level, bool branches_side_by_side) {
+  refuse_bearings(scene, "OpenChain");
   Tree tree = checked_tree(scene);
   Plan plan = make_plan(tree, scene, algebra);
   inside_ = std::make_unique<Inside>(std::move(tree), std::move(plan), scene,

@@ -38,6 +38,10 @@ class EquationRows {
   /// Φ̈ (m), eq. (2), with the accelerations of the last joint_forces().
   virtual void accelerations(S* rate) = 0;
 
+  /// Adds to `tau` (nv), a residual as that of the last joint_forces(), the friction of bearings
+  /// under the reactions found there (friction/bearings.h). `u` as in move().
+  virtual void bearing_friction(const S* /*u*/, S* /*tau*/) {}
+
   /// Φ_qᵀ x (nv).
   virtual void constraint_forces(const S* x, S* result) = 0;
 
@@ -75,6 +79,13 @@ class Evaluation<double> : public EquationRows<double> {
                                    double* pdot) = 0;
   /// (q, u, t) → u̇ by the articulated recursion: mechanisms without loops only.
   virtual bool open_accelerations(double t, const double* q, const double* u, double* udot) = 0;
+  /// From now on open_accelerations() adds τ (nv) to the joints' forces; null: none. Kept by
+  /// reference.
+  virtual void push(const double* /*tau*/) {}
+
+  /// The forces in each bearing, four numbers (friction/bearings.h), in the order of the scene's
+  /// joints. After joint_forces().
+  virtual void bearing_loads(double* /*forces*/) {}
 
   /// Why a slot, a cam or an equation has no value or no derivatives at the last place(), one
   /// sentence that names it; empty where all have them.

@@ -1,4 +1,5 @@
 #include <momenta/core/kernel/levels/open_sweeps.h>
+#include <momenta/core/scene/bearings_refused.h>
 #include <momenta/dae/factor/faded_pivot.h>
 #include <momenta/dae/leaves_first.h>
 #include <momenta/dae/leaves_first_matrix.h>
@@ -117,6 +118,7 @@ void Mechanism::take_bodies() {
   row_names_ = row_names(scene_, plan_.planar);
   rows_ = static_cast<int>(row_names_.size());
   plan_.loops = rows_ > 0;
+  plan_.joint_forces |= with_bearing(scene_) != nullptr;
   plan_.drives |= visit([](const auto& cast) {
     const auto& equations = cast.loops.equations;
     return !cast.loops.motions.empty() ||

@@ -15,6 +15,7 @@ namespace momenta {
 template <class Space>
 class Mechanism::SweepEvaluation final : public SweepRows<Space, double> {
   using Rows = SweepRows<Space, double>;
+  using Rows::bearings_;
   using Rows::loops_;
   using Rows::model_;
   using Rows::w_;
@@ -82,10 +83,16 @@ class Mechanism::SweepEvaluation final : public SweepRows<Space, double> {
     return ok;
   }
   bool open_accelerations(double t, const double* q, const double* u, double* udot) override {
-    const bool ok = acceleration_recursion(*acceleration_, w_, t, q, u, udot);
+    applied_forces(w_, t, q, u);
+    if (pushed_)
+      for (std::size_t i = 0; i < w_.generalised.size(); ++i) w_.generalised[i] += pushed_[i];
+    const bool ok = (*acceleration_)(t, q, u, w_.generalised.data(), udot);
     singular_joint_ = ok ? -1 : acceleration_->singular_joint();
     return ok;
   }
+  void push(const double* tau) override { pushed_ = tau; }
+
+  void bearing_loads(double* forces) override { bearings_.loads(w_, forces); }
 
   void body_forces(double t, const double* q, const double* u, double* tau) override {
     body_force_rates(w_, t, q, u);
@@ -217,6 +224,7 @@ class Mechanism::SweepEvaluation final : public SweepRows<Space, double> {
   decltype(build_links(std::declval<const Model<Space>&>())) links_;
   std::optional<MomentumSweeps<Space, double>> momentum_;  ///< mechanisms without loops
   std::optional<AccelerationSweeps<Space, double>> acceleration_;
+  const double* pushed_ = nullptr;
   int singular_joint_ = -1;
   MarkerPoints<Space> markers_;
 };

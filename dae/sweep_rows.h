@@ -6,6 +6,7 @@
 #include <momenta/core/kernel/accelerations.h>
 #include <momenta/core/kernel/momentum_recursion.h>
 #include <momenta/core/scalar/power_series.h>
+#include <momenta/dae/bearings.h>
 #include <momenta/dae/lagrangian_rows.h>
 #include <momenta/dae/loop/loop_rows.h>
 #include <momenta/dae/mechanism_inside.h>
@@ -19,6 +20,7 @@ class Mechanism::SweepRows : public Evaluation<S> {
       : model_(cast.model),
         w_(cast.model),
         loops_(cast.loops, w_),
+        bearings_(mechanism.scene(), mechanism.tree()),
         still_(static_cast<std::size_t>(mechanism.nv())) {}
 
   void place(double t, const S* q) override {
@@ -62,6 +64,7 @@ class Mechanism::SweepRows : public Evaluation<S> {
     loops_.accelerate(udot);
   }
   void accelerations(S* rate) override { loops_.accelerations(rate); }
+  void bearing_friction(const S* u, S* tau) override { bearings_.add_friction(w_, u, tau); }
 
   void constraint_forces(const S* x, S* result) override {
     for (auto& body : w_.body) body.P = {};
@@ -89,6 +92,7 @@ class Mechanism::SweepRows : public Evaluation<S> {
   const Model<Space>& model_;
   Workspace<Space, S> w_;
   LoopRows<Space, S> loops_;
+  Bearings<Space> bearings_;
 
  private:
   void apply() {

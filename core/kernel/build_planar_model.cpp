@@ -71,6 +71,9 @@ PlaneFinding find_plane(const Tree& tree, const Scene& scene) {
   for (const ForceSpec& f : scene.forces)
     if (f.kind == "bushing" && f.rotational_stiffness != 0)
       return {{}, "bushing '" + f.name + "' has a rotational stiffness, which only space has"};
+  for (const JointSpec& joint : scene.joints)
+    if (joint.bearing && joint.kind == JointKind::revolute && joint.bearing->length > 0)
+      return {{}, "the bearing of joint '" + joint.name + "' carries moments out of the plane"};
   for (std::size_t k = 0; k < poses.size(); ++k) {
     const Tree::Body& b = tree.bodies[k];
     const Eigen::Vector3d z = poses[k].linear().col(2);

@@ -2,6 +2,7 @@
 // A scene: the mechanism as its author wrote it, before any analysis. Plain data, SI units, angles
 // in rad. Readers (read_scene) fill it from files; programs may fill it by hand.
 
+#include <momenta/core/scene/bearing_spec.h>
 #include <momenta/core/scene/curve_spec.h>
 #include <momenta/core/scene/joint_kind.h>
 #include <momenta/core/scene/lagrangian.h>
@@ -111,6 +112,8 @@ struct JointSpec {
   /// joints [N m], prismatic ones [N]; else 0.
   double friction = 0;
   double friction_rate = 0.1;  ///< rate at which it has 0.7 of its force [rad/s or m/s], > 0
+  /// Friction by the joint's own reaction: of revolute and prismatic joints that no drive moves.
+  std::optional<BearingSpec> bearing;
   /// Inertia on each coordinate's rate, as of a motor's rotor behind its gear (gear ratio squared
   /// times its own): ½ I q̇² of kinetic energy beside that of the bodies. Of revolute and helical
   /// joints [kg m²], prismatic ones [kg], and of each coordinate of cylindrical, universal and

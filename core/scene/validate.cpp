@@ -108,6 +108,29 @@ void check_quaternion(const Scene& scene, const JointSpec& joint, const std::str
           "position must hold a unit quaternion within 1e-6");
 }
 
+void check_bearing(const Scene& scene, const JointSpec& joint, const std::string& who) {
+  if (!joint.bearing) return;
+  const BearingSpec& b = *joint.bearing;
+  const bool turns = joint.kind == JointKind::revolute;
+  require(turns || joint.kind == JointKind::prismatic, scene, joint.at, who,
+          "bearing is for revolute and prismatic joints only");
+  require(std::isfinite(b.dynamic_friction) && b.dynamic_friction >= 0 &&
+              std::isfinite(b.static_friction) && b.static_friction >= b.dynamic_friction,
+          scene, joint.at, who, "bearing must have finite dynamic >= 0 and static >= dynamic");
+  require(std::isfinite(b.transition_velocity) && b.transition_velocity > 0, scene, joint.at, who,
+          "bearing must have a finite transition > 0 [m/s]");
+  require(std::isfinite(b.radius) && (turns ? b.radius > 0 : b.radius == 0), scene, joint.at, who,
+          "bearing must have a finite radius > 0 [m] on a revolute joint, and none on a prismatic "
+          "one");
+  require(std::isfinite(b.length) && b.length >= 0, scene, joint.at, who,
+          "bearing must have a finite length >= 0 [m]");
+  for (const JointSpec& other : scene.joints)
+    require(!other.restitution, scene, joint.at, who,
+            ("has a bearing, whose friction is not determined at the impacts of joint " +
+             in_quotes(other.name) + ", expected no restitution there")
+                .c_str());
+}
+
 void check_joints(const Scene& scene, const Census& census) {
   for (const JointSpec& joint : scene.joints) {
     const std::string who = "joint " + in_quotes(joint.name);
@@ -137,6 +160,7 @@ void check_joints(const Scene& scene, const Census& census) {
             "friction_rate must be finite and > 0 [rad/s or m/s]");
     require(has_one_coordinate(joint.kind) || joint.friction == 0, scene, joint.at, who,
             "friction is for revolute, prismatic and helical joints only");
+    check_bearing(scene, joint, who);
     require(has_one_coordinate(joint.kind) || joint.kind == JointKind::spherical || !joint.limits,
             scene, joint.at, who,
             "limits are for revolute, prismatic, helical and spherical joints only");

@@ -222,15 +222,15 @@ class TreeBuilder {
 
   /// A driven joint moves as it is told; a force along it would change nothing but the drive.
   void refuse_forces(const JointSpec& joint) const {
-    bool forced =
-        joint.stiffness != 0 || joint.damping != 0 || joint.friction != 0 || has_stops(joint);
+    bool forced = joint.stiffness != 0 || joint.damping != 0 || joint.friction != 0 ||
+                  joint.bearing || has_stops(joint);
     for (const auto& force : scene_.forces)
       forced |= force.kind == "torque" && force.joint == joint.name;
     if (forced)
-      throw SceneError(
-          scene_.where(joint.at) + "joint '" + joint.name +
-          "' is driven, so a spring, damper, friction, stop or torque on it has no effect; "
-          "expected none");
+      throw SceneError(scene_.where(joint.at) + "joint '" + joint.name +
+                       "' is driven, so a spring, damper, friction, bearing, stop or torque on it "
+                       "has no effect; "
+                       "expected none");
   }
 
   const Scene& scene_;

@@ -2,6 +2,7 @@
 #include <momenta/dae/assembly/closing.h>
 #include <momenta/dae/assembly/turned_loops.h>
 #include <momenta/dae/joint_places.h>
+#include <momenta/dae/kkt/bearing_friction.h>
 #include <momenta/dae/kkt/least_norm.h>
 #include <momenta/dae/kkt/loop_rank.h>
 #include <momenta/dae/kkt/loop_solver.h>
@@ -210,6 +211,23 @@ class Assembler {
       if (const std::string formula = e().formula_without_value(); !formula.empty())
         throw SceneError(formula);
     }
+    const auto friction = bearing_friction(mechanism_);
+    if (friction) {
+      const std::string joint = friction->undetermined(s.t, s.q.data(), s.u.data());
+      if (!joint.empty())
+        throw SceneError(mechanism_.scene().where({}) + "joint '" + joint +
+                         "' has a bearing, and the force in it is not unique, as loop equations "
+                         "depend on each other: expected loops that tie less (momenta check names "
+                         "them), or no bearing");
+      if (!friction->at(s.t, s.q.data(), s.u.data()))
+        throw SceneError(mechanism_.scene().where({}) + friction->failure());
+      e().push(friction->forces());
+    }
+    accelerations(s, friction ? friction->forces() : nullptr);
+    e().push(nullptr);
+  }
+
+  void accelerations(Start& s, const double* tau) {
     if (mechanism_.m() == 0) {
       Eigen::VectorXd diagonal(mechanism_.nv());
       e().mass_diagonal(diagonal.data());
@@ -222,6 +240,7 @@ class Assembler {
     }
     if (mechanism_.kkt() == KktChoice::sweeps && !mechanism_.dense_kkt()) {
       const auto solver = make_loop_solver(mechanism_, e());
+      solver->push(tau);
       if (!solver->acceleration(s.t, s.q.data(), s.u.data(), nullptr, 0, 0, s.udot.data(),
                                 s.lambda.data()))
         no_inertia(s, solver->singular_joint());
@@ -234,6 +253,7 @@ class Assembler {
     e().joint_forces(s.q.data(), s.u.data(), nullptr, nullptr, r.data());
     e().accelerations(g.data());
     r = -r;
+    if (tau) r += Eigen::Map<const Eigen::VectorXd>(tau, mechanism_.nv());
     g = -g;
     if (!kkt->solve(r.data(), g.data(), nullptr, s.udot.data(), s.lambda.data())) no_inertia(s, -1);
   }

@@ -1,3 +1,4 @@
+#include <momenta/core/scene/bearings_refused.h>
 #include <momenta/dae/chain/closed_chain_inside.h>
 
 #include <limits>
@@ -5,7 +6,9 @@
 namespace momenta {
 
 ClosedChain::ClosedChain(const Scene& scene, MechanismOptions options)
-    : inside_(std::make_unique<Inside>(scene, options)) {}
+    : inside_(std::make_unique<Inside>(scene, options)) {
+  refuse_bearings(scene, "ClosedChain");
+}
 ClosedChain::~ClosedChain() = default;
 ClosedChain::ClosedChain(ClosedChain&&) noexcept = default;
 ClosedChain& ClosedChain::operator=(ClosedChain&&) noexcept = default;

@@ -131,8 +131,8 @@ class RotorFold {
   std::optional<Gear> gear_of(std::size_t i) {
     const JointSpec& j = joint(i);
     if (j.kind != JointKind::revolute || couplers_[i].size() != 1 || tied_.contains(j.child) ||
-        driven_.contains(j.name) || j.friction != 0 || has_stops(j) || sprung_.contains(j.name) ||
-        !balanced(j, body(j.child)))
+        driven_.contains(j.name) || j.friction != 0 || j.bearing || has_stops(j) ||
+        sprung_.contains(j.name) || !balanced(j, body(j.child)))
       return std::nullopt;
     const std::size_t coupler = couplers_[i].front();
     const LoopSpec& loop = result_.scene.loops[coupler];

@@ -67,8 +67,8 @@ int rows_of(JointKind kind, bool planar) {
 Sayings::Sayings(const Scene& scene, const std::vector<std::string>& keep)
     : kept(keep.begin(), keep.end()) {
   for (const JointSpec& joint : scene.joints)
-    if (joint.stiffness != 0 || joint.damping != 0 || joint.friction != 0 || has_stops(joint) ||
-        has_rotor(joint))
+    if (joint.stiffness != 0 || joint.damping != 0 || joint.friction != 0 || joint.bearing ||
+        has_stops(joint) || has_rotor(joint))
       of_coordinates.insert(joint.name);
   for (const DriveSpec& drive : scene.drives)
     (drive.joint.empty() ? driven_loops.insert(drive.loop) : of_coordinates.insert(drive.joint));
@@ -188,6 +188,7 @@ std::vector<JointSpec> joints_at(const Mechanism& mechanism, const Start& start)
 }
 
 bool turn_round(JointSpec& joint, Scene& scene, const Sayings& said, const BodyMotions& bodies) {
+  if (joint.bearing && joint.bearing->length > 0) return false;  // they lie on the child
   if (!keeps_coordinates(joint.kind)) {
     if (said.of_coordinates.contains(joint.name)) return false;
     joint = turned_round(joint);

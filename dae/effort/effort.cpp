@@ -1,4 +1,5 @@
 #include <momenta/core/poses.h>
+#include <momenta/core/scene/bearings_refused.h>
 #include <momenta/core/scene/drive.h>
 #include <momenta/core/text/near_name.h>
 #include <momenta/dae/assembly/assembly.h>
@@ -232,6 +233,7 @@ Scene undriven(Scene scene, double t) {
 }
 
 EffortResult effort(const Mechanism& mechanism, const EffortRequest& request) {
+  refuse_bearings(mechanism.scene(), "inverse dynamics");
   if (!(request.within > 0) || !std::isfinite(request.within))
     throw SceneError("motion is to be followed within " + reading::digits(request.within) +
                      "; expected a number above zero");

@@ -12,6 +12,7 @@ AccelerationForm::AccelerationForm(std::string name, const Mechanism& mechanism,
       solutions_(solutions),
       nu_(multipliers_.size()),
       at_rest_(u_.size()) {
+  push_friction();
   approaching_ = 0.05;  // no gauge hides in q and u: the plain norm serves longer
 }
 
@@ -27,6 +28,7 @@ bool AccelerationForm::rhs(double t, const double* y, double* ydot) {
   const double *q = y, *u = y + mechanism_.nq();
   double* udot = ydot + mechanism_.nq();
   if (!has_loops()) {
+    if (!rub(t, q, u)) return false;
     if (!e_->open_accelerations(t, q, u, udot))
       return fail_at(t, mechanism_.no_inertia(e_->singular_joint(), t, q));
     coordinate_rates(q, u, ydot);
@@ -39,6 +41,7 @@ bool AccelerationForm::rhs(double t, const double* y, double* ydot) {
     q = near_q;
     u = near_u;
   }
+  if (!rub(t, q, u)) return false;
   const double* centre = centre_.data();
   for (int k = 0; k < solutions_; ++k) {
     if (!solver_->acceleration(t, q, u, centre, feedback_.alpha, feedback_.beta, udot,

@@ -32,6 +32,7 @@ class AccelerationIndex2 final : public DaeFormOf<AccelerationIndex2>, public Ha
     Work& w = work();
     const double *q = y, *v = y + layout_.x();
     double* vdot = f + layout_.x();
+    if (!rub(t, q, v)) return false;
     if (!w.solver) {
       if (!w.e->open_accelerations(t, q, v, vdot))
         return failed(mechanism_.no_inertia(w.e->singular_joint(), t, q));
@@ -51,11 +52,13 @@ class AccelerationIndex2 final : public DaeFormOf<AccelerationIndex2>, public Ha
     const double *q = y, *v = y + layout_.x();
     double* vdot = f + layout_.x();
     if (layout_.m == 0) return consistent(t, y, z, f);
+    if (!rub(t, q, v)) return false;
     e.place(t, q);
     work.kkt.act_at(e);
     e.move(v);
     e.joint_forces(q, v, nullptr, nullptr, work.r.data());
-    for (double& r : work.r) r = -r;
+    for (std::size_t i = 0; i < work.r.size(); ++i)
+      work.r[i] = (work.friction ? work.friction->forces()[i] : 0) - work.r[i];
     e.coordinate_rates(q, v, f);
     for (int i = 0; i < layout_.nq; ++i)
       work.there[static_cast<std::size_t>(i)] = base[i] + w * f[i];

@@ -145,6 +145,7 @@ bool DaeForm::near_singular(double t, const double* y) {
   OdeRestart& d = ode_restart_;
   if (!d.solver) {
     d.solver = make_loop_solver(mechanism_, *plain_.e);
+    d.friction = bearing_friction(mechanism_);
     d.always_faded = layout_.m;
     for (auto* v : {&d.u, &d.udot}) v->resize(static_cast<std::size_t>(layout_.nv));
     for (auto* v : {&d.sigma, &d.lambda}) v->assign(static_cast<std::size_t>(layout_.m), 0.0);
@@ -188,7 +189,10 @@ bool DaeForm::rejoin(double t, const double* state, double* y, double* ydot) {
   const double* centre = momentum_like() ? y + layout_.s() : nullptr;
   if (!d.solver->momentum(t, state, p, centre, fade_evaluation, 0, d.u.data(), d.sigma.data(),
                           nullptr) ||
-      !d.solver->acceleration(t, state, d.u.data(), momentum_like() ? nullptr : y + layout_.s(), 0,
+      (d.friction && !d.friction->at(t, state, d.u.data())))
+    return fail("the state past a singular pose is not finite");
+  d.solver->push(d.friction ? d.friction->forces() : nullptr);
+  if (!d.solver->acceleration(t, state, d.u.data(), momentum_like() ? nullptr : y + layout_.s(), 0,
                               0, d.udot.data(), d.lambda.data()))
     return fail("the state past a singular pose is not finite");
   std::copy_n(state, layout_.nq + layout_.nv, y);

@@ -152,6 +152,7 @@ class DaeForm : public Form, public DaeSystem {
   struct OdeRestart {
     std::unique_ptr<OdeForm> form;
     std::unique_ptr<LoopSolver> solver;
+    std::unique_ptr<BearingFriction> friction;
     std::vector<double> u, udot, sigma, lambda;
     double strongest = 0;  ///< largest of the weakest pivots so far
     int always_faded = 0;
@@ -260,6 +261,7 @@ class DaeFormOf : public DaeForm {
   S* acceleration_rows(DaeScratch<S>& s, double t, const S* y, const S* ydot, S* r) const {
     r = kinematic_rows(s, t, y, ydot, r);
     s.e->joint_forces(y, y + layout_.v(), ydot + layout_.v(), y + layout_.s(), r);
+    s.e->bearing_friction(y + layout_.v(), r);
     return r + layout_.nv;
   }
 

@@ -1,3 +1,4 @@
+#include <momenta/core/scene/bearings_refused.h>
 #include <momenta/dae/form/dae_form.h>
 #include <momenta/dae/form/ode_form.h>
 
@@ -114,6 +115,14 @@ std::unique_ptr<Form> make_form(const std::string& name, const Mechanism& mechan
   if (e.kind == Kind::dae && options.project)
     throw std::invalid_argument("position correction after steps needs a one-step method; '" +
                                 name + "' is integrated by IDA");
+  if (const JointSpec* joint = with_bearing(mechanism.scene());
+      joint && (e.name == "maximal-coordinates" ||
+                (e.kind == Kind::dae && (e.impulses || e.name == "momentum-index3"))))
+    throw std::invalid_argument(
+        "joint '" + joint->name + "' has a bearing, whose friction takes accelerations and " +
+        "forces of loops: form '" + name + "' has " +
+        (e.kind == Kind::dae ? "no accelerations among its unknowns" : "no place for it") +
+        "; expected 'momentum', 'acceleration' or another form");
   return e.make(mechanism, options, start);
 }
 

@@ -12,6 +12,11 @@ HalfExplicitParts::Work::Work(const Mechanism& mechanism, std::vector<double> co
       ahead(mechanism.evaluation<double>()),
       kkt(mechanism, std::move(compliance)) {
   if (mechanism.m() > 0) solver = make_loop_solver(mechanism, *e);
+  friction = bearing_friction(mechanism);
+  if (friction) {
+    e->push(friction->forces());
+    if (solver) solver->push(friction->forces());
+  }
   const auto nv = static_cast<std::size_t>(mechanism.nv()),
              m = static_cast<std::size_t>(mechanism.m());
   there.resize(static_cast<std::size_t>(mechanism.nq()));
@@ -35,6 +40,11 @@ HalfExplicitParts::Work& HalfExplicitParts::work() {
 bool HalfExplicitParts::failed(std::string sentence) {
   why_ = std::move(sentence);
   return false;
+}
+
+bool HalfExplicitParts::rub(double t, const double* q, const double* u) {
+  BearingFriction* friction = work().friction.get();
+  return !friction || friction->at(t, q, u) || failed(friction->failure());
 }
 
 const double* HalfExplicitParts::centre(const double* z) {

@@ -4,6 +4,7 @@
 // right-hand side of the ODE form; SplitKkt solves for the z that lead onto the constraint at the
 // next stage.
 
+#include <momenta/dae/kkt/bearing_friction.h>
 #include <momenta/dae/kkt/loop_solver.h>
 #include <momenta/dae/kkt/split_kkt.h>
 #include <momenta/dae/solver/half_explicit.h>
@@ -30,6 +31,7 @@ class HalfExplicitParts : public HalfExplicit {
     std::unique_ptr<Evaluation<double>> e;
     std::unique_ptr<Evaluation<double>> ahead;  ///< where a stage leads
     std::unique_ptr<LoopSolver> solver;         ///< null without loops
+    std::unique_ptr<BearingFriction> friction;  ///< null without bearings; pushed to both
     SplitKkt kkt;
     std::vector<double> there, u, delta, r, g, correction, centre;
   };
@@ -38,6 +40,8 @@ class HalfExplicitParts : public HalfExplicit {
 
   Work& work();
   bool failed(std::string sentence);
+  /// Finds the friction of bearings at (t, q, u), where there are such.
+  bool rub(double t, const double* q, const double* u);
   /// Copies z as what faded rows keep, for a solution that writes into z.
   const double* centre(const double* z);
 

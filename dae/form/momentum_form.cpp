@@ -50,7 +50,15 @@ bool MomentumForm::rhs(double t, const double* y, double* ydot) {
     if (!solve(t, q, p, pdot)) return false;
     note_pivots();
   }
+  if (!add_friction(t, q, pdot)) return false;
   coordinate_rates(q, u_.data(), ydot);
+  return true;
+}
+
+bool MomentumForm::add_friction(double t, const double* q, double* pdot) {
+  if (!friction_) return true;
+  if (!rub(t, q, u_.data())) return false;
+  for (std::size_t i = 0; i < u_.size(); ++i) pdot[i] += friction_->forces()[i];
   return true;
 }
 
@@ -69,6 +77,7 @@ bool MomentumForm::after_step(double t, double* y, bool& changed) {
     e_->momenta(nullptr, work_.data());
     // (7) at the new state gives the same u, and σ = 0.
     e_->momentum_rates(q, u_.data(), nullptr, 0, work_.data());
+    if (!add_friction(t, q, work_.data())) return false;
     coordinate_rates(q, u_.data(), correction_.data());
     changed = true;
     reset_ = solutions_ == 1;

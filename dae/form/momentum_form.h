@@ -44,6 +44,8 @@ class MomentumForm : public OdeForm {
   double leak() const { return gauge_.kind == Gauge::Kind::leak ? gauge_.kappa : 0.0; }
   /// (7): u_ and multipliers_; with `pdot` (8) too.
   bool solve(double t, const double* q, const double* p, double* pdot);
+  /// Adds the friction of bearings at u_, whose reactions are forces: by λ and u̇ of (3), not by σ.
+  bool add_friction(double t, const double* q, double* pdot);
 
   Gauge gauge_;
   double beta_;

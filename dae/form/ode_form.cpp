@@ -15,6 +15,7 @@ OdeForm::OdeForm(std::string name, const Mechanism& mechanism, const FormOptions
              m = static_cast<std::size_t>(mechanism.m());
   always_faded_ = mechanism.m();
   if (has_loops()) solver_ = make_loop_solver(mechanism, *e_);
+  friction_ = bearing_friction(mechanism);
   u_.resize(nv);
   delta_.resize(nv);
   work_.resize(nv);

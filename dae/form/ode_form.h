@@ -3,6 +3,7 @@
 // the position correction.
 
 #include <momenta/dae/form/form.h>
+#include <momenta/dae/kkt/bearing_friction.h>
 #include <momenta/dae/kkt/loop_solver.h>
 
 #include <stdexcept>
@@ -70,6 +71,16 @@ class OdeForm : public Form, public OdeSystem {
     else
       std::copy_n(u, mechanism_.nv(), qdot);
   }
+  /// Finds the friction of bearings at (t, q, u), where the mechanism has such.
+  bool rub(double t, const double* q, const double* u) {
+    return !friction_ || friction_->at(t, q, u) || fail_at(t, friction_->failure());
+  }
+  /// From now on solutions of (3) have that friction.
+  void push_friction() {
+    if (!friction_) return;
+    e_->push(friction_->forces());
+    if (solver_) solver_->push(friction_->forces());
+  }
   /// The cause by name when the solver failed to solve `what` at (t, q).
   bool solver_failed(double t, const double* q, const std::string& what);
   /// One Newton step on q in the mass metric: δ of M δ + Φ_qᵀν = 0, Φ_q δ = −Φ.
@@ -104,7 +115,8 @@ class OdeForm : public Form, public OdeSystem {
   const Mechanism& mechanism_;
   FormOptions options_;
   std::unique_ptr<Evaluation<double>> e_;
-  std::unique_ptr<LoopSolver> solver_;  ///< null without loops
+  std::unique_ptr<LoopSolver> solver_;         ///< null without loops
+  std::unique_ptr<BearingFriction> friction_;  ///< null without bearings
   std::vector<double> u_, multipliers_, centre_, delta_, work_, correction_;
   std::vector<double> scale_;
 };

@@ -55,6 +55,7 @@ class Partitioned final : public OdeForm {
         udot_(mechanism.nv()),
         rate_(mechanism.m()) {
     expect_positions(mechanism);
+    push_friction();
     rate_values_.resize(jacobian_.rate_pattern().size());
     values_.resize(jacobian_.pattern().size());
     phi_.resize(jacobian_.rows());
@@ -271,6 +272,7 @@ class Partitioned final : public OdeForm {
   }
 
   bool accelerate(double t) {
+    if (!rub(t, q_.data(), u_.data())) return false;
     if (!has_loops())
       return e_->open_accelerations(t, q_.data(), u_.data(), udot_.data()) ||
              fail_at(t, mechanism_.no_inertia(e_->singular_joint(), t, q_.data()));

@@ -1,3 +1,4 @@
+#include <momenta/core/scene/bearings_refused.h>
 #include <momenta/core/scene/drive.h>
 #include <momenta/core/text/near_name.h>
 #include <momenta/dae/assembly/assembly.h>
@@ -225,6 +226,7 @@ GradientMode gradient_mode(const std::string& name) {
 GradientResult gradient(const SceneText& scene, const GradientRequest& request) {
   const Mechanism mechanism(scene.scene(), scene.options);
   GradientResult result;
+  refuse_bearings(mechanism.scene(), "a gradient");
   result.scene = mechanism.scene().name;
   result.of = request.of;
   result.integral = request.integral;

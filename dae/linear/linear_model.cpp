@@ -1,3 +1,4 @@
+#include <momenta/core/scene/bearings_refused.h>
 #include <momenta/dae/dense/decompositions.h>
 #include <momenta/dae/linear/independent_coordinates.h>
 #include <momenta/dae/linear/linear_columns.h>
@@ -258,6 +259,7 @@ class Eliminated {
 
 LinearModel linear_model(const Mechanism& mechanism, const Start& start,
                          const LinearRequest& request) {
+  refuse_bearings(mechanism.scene(), "linearisation");
   const int unknowns = mechanism.nv() + mechanism.m();
   if (unknowns > most_of_linear_model)
     throw SceneError(mechanism.scene().where({}) + "a linear model of " + std::to_string(unknowns) +

@@ -9,6 +9,7 @@ DrivePower::DrivePower(const Mechanism& mechanism, Evaluation<double>& e, LoopSo
     : mechanism_(mechanism),
       e_(e),
       solver_(solver),
+      friction_(bearing_friction(mechanism)),
       any_(mechanism.scene().lagrangian ? mechanism.lagrangian().moving : mechanism.plan().drives),
       udot_(static_cast<std::size_t>(mechanism.nv())),
       lambda_(static_cast<std::size_t>(mechanism.m())),
@@ -19,8 +20,8 @@ DrivePower::DrivePower(const Mechanism& mechanism, Evaluation<double>& e, LoopSo
 
 double DrivePower::at(double t, const double* q, const double* u) {
   const bool solved =
-      solver_ ? solver_->acceleration(t, q, u, nullptr, 0, 0, udot_.data(), lambda_.data())
-              : udot_.empty() || e_.open_accelerations(t, q, u, udot_.data());
+      (!solver_ && udot_.empty()) ||
+      rubbed_accelerations(friction_.get(), e_, solver_, t, q, u, udot_.data(), lambda_.data());
   if (!solved) return std::numeric_limits<double>::quiet_NaN();
   double power = 0;
   if (sweep_) {

@@ -12,7 +12,7 @@
 //
 // u̇ and λ are those of (3) at (t, q, u), whatever the form.
 
-#include <momenta/dae/kkt/loop_solver.h>
+#include <momenta/dae/kkt/bearing_friction.h>
 #include <momenta/dae/measure/reactions.h>
 
 #include <memory>
@@ -35,6 +35,7 @@ class DrivePower {
   const Mechanism& mechanism_;
   Evaluation<double>& e_;
   LoopSolver* solver_;
+  std::unique_ptr<BearingFriction> friction_;
   bool any_;
   std::unique_ptr<WrenchSweep> sweep_;  ///< null: a Lagrangian
   std::vector<double> udot_, lambda_, none_, moving_;

@@ -1,5 +1,6 @@
 // Mechanism: the data of a scene, its consistent start, and the equations at one state.
 
+#include <momenta/core/scene/bearings_refused.h>
 #include <momenta/core/scene/toml/parse_scene.h>
 #include <momenta/core/scene/toml/write_scene.h>
 #include <momenta/dae/assembly/drive_reach.h>
@@ -54,6 +55,7 @@ py::tuple momentum_rates(Bench& b, double t, const In& q, const In& p,
                          const std::optional<Vector>& tau) {
   const int nv = b.mechanism->nv(), m = b.mechanism->m();
   b.expect(t, &q, &p, "p");
+  refuse_bearings(b.mechanism->scene(), "momentum_rates");
   if (tau) expect_size(*tau, nv, "tau", "nv");
   Vector u(nv), pdot(nv), sigma(m);
   if (centre) expect_size(*centre, m, "centre", "m");
@@ -73,6 +75,7 @@ py::tuple accelerations(Bench& b, double t, const In& q, const In& u,
                         const std::optional<Vector>& tau) {
   const int nv = b.mechanism->nv(), m = b.mechanism->m();
   b.expect(t, &q, &u);
+  refuse_bearings(b.mechanism->scene(), "accelerations");
   Vector udot(nv), lambda(m);
   if (tau) {
     expect_size(*tau, nv, "tau", "nv");

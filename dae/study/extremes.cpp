@@ -142,6 +142,11 @@ Scene in_units(Scene scene, const Units& units) {
     j.damping *= slides ? force / speed : torque * tau;
     j.friction *= slides ? force : torque;
     j.friction_rate *= slides ? speed : 1 / tau;
+    if (j.bearing) {
+      j.bearing->transition_velocity *= speed;
+      j.bearing->radius *= s;
+      j.bearing->length *= s;
+    }
     if (slides) j.rest *= s;
     j.stop_stiffness *= slides ? force / s : torque;
     j.stop_damping *= slides ? force / speed : torque * tau;

@@ -19,6 +19,7 @@ ForceColumns::ForceColumns(const Mechanism& mechanism, Evaluation<double>& e, Lo
       e_(e),
       solver_(solver),
       reactions_(reactions && !mechanism.scene().lagrangian),
+      friction_(bearing_friction(mechanism)),
       udot_(mechanism.nv()),
       lambda_(mechanism.m()),
       rest_(Eigen::VectorXd::Zero(mechanism.nv())),
@@ -32,9 +33,9 @@ ForceColumns::ForceColumns(const Mechanism& mechanism, Evaluation<double>& e, Lo
 
 void ForceColumns::solve(double t, const Eigen::VectorXd& q, const Eigen::VectorXd& u) {
   t_ = t, q_ = q, u_ = u;
-  found_ = solver_ ? solver_->acceleration(t, q.data(), u.data(), nullptr, 0, 0, udot_.data(),
-                                           lambda_.data())
-                   : u.size() == 0 || e_.open_accelerations(t, q.data(), u.data(), udot_.data());
+  found_ =
+      (!solver_ && u.size() == 0) || rubbed_accelerations(friction_.get(), e_, solver_, t, q.data(),
+                                                          u.data(), udot_.data(), lambda_.data());
   unique_rows_.assign(unique_rows_.size(), true);
   idle_.resize(0);
   if (!found_) lambda_.setConstant(not_there);

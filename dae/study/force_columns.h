@@ -7,8 +7,8 @@
 // them are not unique; efforts and reactions that differ between the solutions are left out (not a
 // number), those that are the same in all are given.
 
-#include <momenta/dae/kkt/loop_solver.h>
-#include <momenta/dae/measure/multipliers.h>
+#include <momenta/dae/kkt/bearing_friction.h>
+#include <momenta/dae/kkt/multipliers.h>
 #include <momenta/dae/measure/reactions.h>
 
 #include <memory>
@@ -42,6 +42,7 @@ class ForceColumns {
   Evaluation<double>& e_;
   LoopSolver* solver_;
   bool reactions_;
+  std::unique_ptr<BearingFriction> friction_;
   std::optional<UniqueMultipliers> multipliers_;
   std::unique_ptr<WrenchSweep> sweep_;  ///< null: neither drives of joints nor reactions
   bool found_ = false;

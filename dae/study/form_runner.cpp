@@ -1,3 +1,4 @@
+#include <momenta/core/scene/bearings_refused.h>
 #include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/solver/stopping.h>
 #include <momenta/dae/study/form_runner.h>
@@ -34,6 +35,12 @@ std::string refusal(const Mechanism& mechanism, const Integrator& method, const 
   if (!dae && method.multistep && (s.gauge == "reset" || s.gauge == "flip"))
     return "'" + method.name + "' is a multistep method: gauge " + s.gauge +
            " after each step would spoil its history; use leak or none";
+  if (const JointSpec* joint = with_bearing(mechanism.scene());
+      joint && (method.name == "rattle" || method.name == "energy-momentum"))
+    return "joint '" + joint->name + "' has a bearing, whose friction has no potential, and '" +
+           method.name +
+           "' is for forces that have "
+           "one: expected another integrator";
   if (mechanism.has_nonholonomic() && method.closes_form(s.form)) {
     const auto& all = mechanism.nonholonomic();
     const auto row =

@@ -74,7 +74,8 @@ class IntegratedWork {
   }
   static bool loses_energy(const Scene& scene) {
     for (const auto& joint : scene.joints)
-      if (joint.damping != 0 || joint.friction != 0 || (joint.limits && joint.stop_damping != 0))
+      if (joint.damping != 0 || joint.friction != 0 || joint.bearing ||
+          (joint.limits && joint.stop_damping != 0))
         return true;
     for (const auto& f : scene.forces)
       if ((has_formula(f) && (f.kind != "potential" || takes_time(scene, f))) ||

@@ -1,4 +1,5 @@
 #include <momenta/core/lagrangian/lagrangian_model.h>
+#include <momenta/core/scene/bearings_refused.h>
 #include <momenta/dae/linear/linearisation.h>
 #include <momenta/dae/linear/operating_point.h>
 #include <momenta/dae/linear/pose_motion.h>
@@ -81,6 +82,7 @@ const char* ModesResult::nature() const {
 
 ModesResult find_modes(const Mechanism& mechanism, const Start& start,
                        const ModesRequest& request) {
+  refuse_bearings(mechanism.scene(), "an analysis of small motions");
   constexpr int most_saddles = 8;
   constexpr double aside = 0.05;  // [rad or lengths of the scene]
   ModesResult result;

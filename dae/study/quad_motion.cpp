@@ -1,3 +1,4 @@
+#include <momenta/core/scene/bearings_refused.h>
 #include <momenta/dae/study/quad_lagrangian.h>
 #include <momenta/dae/study/quad_motion.h>
 #include <momenta/dae/sweeps/levels/loop_sweeps.h>
@@ -118,6 +119,7 @@ class QuadSweeps final : public QuadMotion {
 }  // namespace
 
 std::unique_ptr<QuadMotion> make_quad_motion(const Mechanism& mechanism) {
+  refuse_bearings(mechanism.scene(), "integration in quadruple precision");
   if (mechanism.scene().lagrangian) return make_quad_lagrangian(mechanism);
   const Tree& tree = mechanism.tree();
   if (mechanism.plan().planar)

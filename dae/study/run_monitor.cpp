@@ -29,6 +29,7 @@ RunMonitor::RunMonitor(const Mechanism& mechanism, const IntegratedScene& scene,
     solver_ = make_loop_solver(mechanism, *e_);
   }
   drives_.emplace(mechanism, *e_, solver_.get());
+  friction_ = bearing_friction(mechanism);
   const bool compares_forces = request.reference && request.reference->has_forces();
   if (request.keep_trajectory || compares_forces || request.multipliers)
     row_.take_forces_of(mechanism, *e_, solver_.get());

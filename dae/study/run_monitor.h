@@ -133,6 +133,7 @@ class RunMonitor {
   std::unique_ptr<Evaluation<double>> acting_e_;  ///< of runs with rigid stops
   std::unique_ptr<LoopSolver> acting_solver_;
   std::optional<DrivePower> drives_;
+  std::unique_ptr<BearingFriction> friction_;  ///< null without bearings
 
   Snapshot now_, of_form_;  ///< of the scene as written, of the integrated one
   std::vector<double> state_;

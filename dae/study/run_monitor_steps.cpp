@@ -68,6 +68,10 @@ bool RunMonitor::power(double t, const Interpolant& between, double& watts) {
     e_->place(t, now_.q.data());
     e_->move(now_.u.data());
     watts = e_->dissipated_power(now_.q.data(), now_.u.data());
+    if (friction_) {
+      if (!friction_->at(t, now_.q.data(), now_.u.data())) return false;
+      watts += friction_->power(now_.u.data());
+    }
   }
   if (drives_->any()) watts += drives_->at(t, now_.q.data(), now_.u.data());
   return true;

@@ -183,7 +183,7 @@ struct RunResult {
   };
   std::vector<SingularCrossing> singular_crossings;  ///< in the order of time
   double least_pivot = not_measured;                 ///< of the whole run
-  /// Loop forces of the trajectory that are not unique (measure/multipliers.h), where a trajectory
+  /// Loop forces of the trajectory that are not unique (kkt/multipliers.h), where a trajectory
   /// is kept.
   struct Undetermined {
     std::string column;  ///< of the trajectory

@@ -1,3 +1,4 @@
+#include <momenta/core/scene/bearings_refused.h>
 #include <momenta/dae/dense_blocks.h>
 #include <momenta/dae/factor/tree_factor.h>
 #include <momenta/dae/kkt/kkt.h>
@@ -21,6 +22,7 @@ class StateEvaluator {
       : mechanism_(mechanism), given_(given), e_(mechanism.evaluation<double>()) {}
 
   StateValues run() {
+    refuse_bearings(mechanism_.scene(), "an evaluation at one state");
     const int nv = mechanism_.nv(), m = mechanism_.m();
     for (VectorXd* x : {&s_.v, &s_.p, &s_.pdot, &s_.bias, &s_.free}) x->setZero(nv);
     for (VectorXd* x : {&s_.phi, &s_.phidot, &s_.sigma, &s_.lambda}) x->setZero(m);

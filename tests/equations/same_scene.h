@@ -92,6 +92,15 @@ inline std::string difference(const Scene& a, const Scene& b) {
     number(x.damping, y.damping, what + " damping");
     number(x.friction, y.friction, what + " friction");
     number(x.friction_rate, y.friction_rate, what + " friction_rate");
+    note(x.bearing.has_value() == y.bearing.has_value(), what + " bearing");
+    if (x.bearing && y.bearing) {
+      number(x.bearing->static_friction, y.bearing->static_friction, what + " bearing.static");
+      number(x.bearing->dynamic_friction, y.bearing->dynamic_friction, what + " bearing.dynamic");
+      number(x.bearing->transition_velocity, y.bearing->transition_velocity,
+             what + " bearing.transition");
+      number(x.bearing->radius, y.bearing->radius, what + " bearing.radius");
+      number(x.bearing->length, y.bearing->length, what + " bearing.length");
+    }
     note(x.limits == y.limits, what + " limits");
     number(x.stop_stiffness, y.stop_stiffness, what + " stop_stiffness");
     number(x.stop_damping, y.stop_damping, what + " stop_damping");

@@ -73,6 +73,39 @@ equation = "x - k * sin(t)"
   EXPECT_EQ(again.lagrangian->forces[0].coordinate, "arm.angle");
 }
 
+TEST(WriteScene, EveryKeyOfABearing) {
+  const Scene scene = parse_scene(R"toml(
+[[body]]
+name = "a"
+mass = 1
+inertia = 0.1
+[[body]]
+name = "b"
+mass = 1
+inertia = 0.1
+[[joint]]
+name = "A"
+kind = "revolute"
+child = "a"
+bearing = { dynamic = 0.1, static = 0.3, transition = 0.02, radius = 0.01, length = 0.4 }
+[[joint]]
+name = "B"
+kind = "prismatic"
+child = "b"
+bearing = { dynamic = 0.2 }
+)toml",
+                                  "typed.toml");
+  expect_exact(scene);
+  const BearingSpec &pin = *scene.joints[0].bearing, &slide = *scene.joints[1].bearing;
+  EXPECT_EQ(pin.dynamic_friction, 0.1);
+  EXPECT_EQ(pin.static_friction, 0.3);
+  EXPECT_EQ(pin.transition_velocity, 0.02);
+  EXPECT_EQ(pin.radius, 0.01);
+  EXPECT_EQ(pin.length, 0.4);
+  EXPECT_EQ(slide.static_friction, 0.2);
+  EXPECT_EQ(slide.transition_velocity, 0.01);
+}
+
 TEST(WriteScene, EveryExample) {
   const auto files = files_with({".toml"});
   EXPECT_GE(files.size(), 11U);

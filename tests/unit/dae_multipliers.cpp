@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 #include <momenta/core/scene/files/read_scene.h>
-#include <momenta/dae/measure/multipliers.h>
+#include <momenta/dae/kkt/multipliers.h>
 #include <momenta/dae/measure/rank.h>
 #include <momenta/dae/report/chart.h>
 #include <momenta/dae/report/json.h>

@@ -125,6 +125,28 @@ BodySpec read_body(const Fields& table) {
   return body;
 }
 
+namespace {
+
+BearingSpec read_bearing(const Fields& table, bool turns) {
+  table.allow({"static", "dynamic", "transition", "radius", "length"});
+  if (!turns)
+    table.refuse("radius", "has no meaning for a prismatic joint, expected on revolute only");
+  BearingSpec bearing;
+  bearing.dynamic_friction = table.number("dynamic", {"", Bound::not_negative});
+  bearing.static_friction = table.number("static", {""}, bearing.dynamic_friction);
+  if (bearing.static_friction < bearing.dynamic_friction)
+    table.fail_key("static",
+                   "is " + digits(bearing.static_friction) +
+                       ", below dynamic, expected a number >= " + digits(bearing.dynamic_friction));
+  bearing.transition_velocity =
+      table.number("transition", {"m/s", Bound::positive}, bearing.transition_velocity);
+  if (turns) bearing.radius = table.number("radius", {"m", Bound::positive});
+  if (table.has("length")) bearing.length = table.number("length", {"m", Bound::positive});
+  return bearing;
+}
+
+}  // namespace
+
 JointSpec read_joint(const Fields& table) {
   JointSpec joint;
   joint.at = table.at();
@@ -148,6 +170,9 @@ JointSpec read_joint(const Fields& table) {
     table.refuse("restitution",
                  "has no meaning for a spherical joint, expected on revolute, "
                  "prismatic and helical only");
+  if (joint.kind != JointKind::revolute && joint.kind != JointKind::prismatic)
+    table.refuse("bearing", "has no meaning for a " + kind +
+                                " joint, expected on revolute and prismatic only");
   const auto only = [&](std::string_view key, JointKind owner) {
     if (joint.kind != owner)
       table.refuse(key, "has no meaning for a " + kind + " joint, expected on " +
@@ -166,7 +191,7 @@ JointSpec read_joint(const Fields& table) {
                "rotation",     "axis",          "axis2",         "direction", "pitch",
                "position",     "velocity",      "stiffness",     "rest",      "damping",
                "friction",     "friction_rate", "rotor_inertia", "limits",    "stop_stiffness",
-               "stop_damping", "stop_width",    "restitution"});
+               "stop_damping", "stop_width",    "restitution",   "bearing"});
 
   joint.name = table.text("name");
   read_ends(table, joint);
@@ -187,6 +212,7 @@ JointSpec read_joint(const Fields& table) {
   joint.friction = table.number("friction", {turns ? "N m" : "N", Bound::not_negative}, 0);
   joint.friction_rate = table.number("friction_rate", {turns ? "rad/s" : "m/s", Bound::positive},
                                      joint.friction_rate);
+  if (const auto bearing = table.table("bearing")) joint.bearing = read_bearing(*bearing, turns);
   read_limits(table, turns ? "rad" : "m", turns ? "N m" : "N", joint);
   if (table.has("restitution")) {
     if (!joint.limits)

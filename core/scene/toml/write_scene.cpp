@@ -137,6 +137,15 @@ void write_limits(const Spec& spec, TomlText& t) {
   t.number("stop_width", spec.stop_width, Spec{}.stop_width);
 }
 
+void write_bearing(const BearingSpec& bearing, TomlText& t) {
+  std::string text = "{ static = " + TomlText::digits(bearing.static_friction) +
+                     ", dynamic = " + TomlText::digits(bearing.dynamic_friction) +
+                     ", transition = " + TomlText::digits(bearing.transition_velocity);
+  if (bearing.radius != 0) text += ", radius = " + TomlText::digits(bearing.radius);
+  if (bearing.length != 0) text += ", length = " + TomlText::digits(bearing.length);
+  t.put("bearing", text + " }");
+}
+
 void write_joint(const JointSpec& joint, TomlText& t) {
   t.open("[[joint]]");
   t.word("name", joint.name);
@@ -150,6 +159,7 @@ void write_joint(const JointSpec& joint, TomlText& t) {
   t.number("damping", joint.damping);
   t.number("friction", joint.friction);
   t.number("friction_rate", joint.friction_rate, JointSpec{}.friction_rate);
+  if (joint.bearing) write_bearing(*joint.bearing, t);
   if (!joint.rotor_inertia.empty()) t.numbers("rotor_inertia", joint.rotor_inertia);
   write_limits(joint, t);
   if (joint.restitution) t.put("restitution", TomlText::digits(*joint.restitution));

@@ -53,6 +53,13 @@ class _SceneKeys(TypedDict, total=False):
     run: Mapping[str, Any]
     lagrangian: Mapping[str, Any]
 
+class _Bearing(TypedDict, total=False):
+    static: float
+    dynamic: float
+    transition: float
+    radius: float
+    length: float
+
 class _BodyKeys(TypedDict, total=False):
     mass: float
     shape: _Shape
@@ -77,6 +84,7 @@ class _JointKeys(TypedDict, total=False):
     rotor_inertia: float | Sequence[float]
     friction: float
     friction_rate: float
+    bearing: _Bearing
     limits: Sequence[float]
     stop_stiffness: float
     stop_damping: float

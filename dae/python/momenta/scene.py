@@ -39,8 +39,8 @@ class Scene:
 
     def joint(self, name, kind, **keys):
         """Adds a joint of the tree: parent, child, origin [m], rotation, axis, position, velocity,
-        stiffness, rest, damping, friction, friction_rate, limits, stop_stiffness, stop_damping,
-        stop_width, restitution, rotor_inertia, pitch, axis2, direction."""
+        stiffness, rest, damping, friction, friction_rate, bearing, limits, stop_stiffness,
+        stop_damping, stop_width, restitution, rotor_inertia, pitch, axis2, direction."""
         return self._add("joint", name=name, kind=kind, **keys)
 
     def loop(self, name, kind, **keys):

@@ -1,5 +1,5 @@
+#include <momenta/dae/kkt/multipliers.h>
 #include <momenta/dae/kkt/row_scales.h>
-#include <momenta/dae/measure/multipliers.h>
 
 #include <algorithm>
 #include <cmath>
