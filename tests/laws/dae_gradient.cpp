@@ -308,6 +308,18 @@ TEST(Gradient, RefusesInOneSentence) {
             std::string::npos);
 }
 
+TEST(Gradient, RefusesMechanismsThatAreTooLarge) {
+  const auto row = [](int n) {
+    return refusal(of_scene(equations::row_of_four_bars(n, 1.1, 1)),
+                   asked("energy", {"gravity.1"}, "momentum", "reset", 0.01));
+  };
+  const std::string sentence = row(300);
+  EXPECT_NE(sentence.find("rates and loop equations; expected at most 1000 for a gradient"),
+            std::string::npos)
+      << sentence;
+  EXPECT_EQ(row(3), "");
+}
+
 TEST(Gradient, TellsSingularPosesThatItPasses) {
   // Equal links: the slider passes the crank's pivot, and a second motion crosses the wanted one.
   const SceneText scene =
