@@ -132,7 +132,16 @@ template <class S, int Rows, bool Momentum, class Tree>
 template <class In>
 bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::inward(const In& r, const RightSide<S>& right) {
   const auto* links = tree_->links.data();
-  Carried a{}, ground{};
+  // Of packs a front is thousands of bytes: what leaves do not begin anew is not read, and at the
+  // ground C is to stay zero, whatever came before.
+  Carried &a = front_, &ground = ground_;
+  if constexpr (!of_looped_branches) {
+    ground.articulated = {};
+    if constexpr (Column::apart)
+      for (Column& c : ground.blocks.C) c = {};
+    else
+      ground.blocks = {};
+  }
   for (std::size_t k = swept_; k-- > 0;) {
     if (elsewhere(k)) continue;
     const auto& l = links[k];

@@ -156,13 +156,9 @@ class SpatialLoopSweeps {
   MOMENTA_INLINE void set_velocity(std::size_t k, const Motion& V) {
     if (plan_->posed[k] == OnWay::no) return;
     LoopBody<S>& to = bodies_[k];
-    if (plan_->posed[k] == OnWay::moved) {
-      to.v = to.pose.axes * V.v;
-      to.w = to.pose.axes * V.w;
-    } else {
-      to.v = V.v;
-      to.w = V.w;
-    }
+    const bool moved = plan_->posed[k] == OnWay::moved;
+    to.v = moved ? to.pose.axes * V.v : V.v;
+    to.w = moved ? to.pose.axes * V.w : V.w;
   }
 
   const PrescribedMotion<S>& prescribed(const Loop& l) const {
@@ -258,6 +254,7 @@ class SpatialLoopSweeps {
   std::vector<SpatialLoopPlace<S>> places_;
   std::vector<PrescribedMotion<S>> moving_;  ///< by motion
   std::vector<S> coupled_;                   ///< by loop: d of a coupler
+  Carried front_{}, ground_{};  ///< of the sweep under way, and where roots are gathered
   std::vector<Carried> slots_;
   std::vector<Moving> outward_slots_;
   std::vector<Row> rows_;
