@@ -63,16 +63,6 @@ MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::close(const LoopPlan:
   }
 }
 
-/// The loops that close where the front of body k has been gathered at its parent.
-template <class S, int Rows, bool Momentum>
-void LoopSweeps<Planar, S, Rows, Momentum>::close_gathered(std::size_t k, const RightSide<S>& right,
-                                                           Open& slot) {
-  const auto parent = static_cast<std::size_t>(tree_->links[k].parent);
-  enter(parent, visits_[k].gathered_ends, right, slot.articulated, slot.blocks);
-  close<true>(visits_[k].gathered, slot.articulated, slot.blocks, right.fade,
-              open_slots_.fronts[k].gathered);
-}
-
 template <class S, int Rows, bool Momentum>
 void LoopSweeps<Planar, S, Rows, Momentum>::close_any(int loop, Open& open, double fade,
                                                       SlotGroups all) {
@@ -250,15 +240,18 @@ bool LoopSweeps<Planar, S, Rows, Momentum>::inward(const In& r, const RightSide<
     }
     if (l.parent < 0) {
       ground.add_at_ground(o, front.open, front.gathered_fresh, front.gathered);
-      const LoopPlan::Range& last = visit.gathered;
+      const LoopPlan::Range last = plan_->gathered_closings_of[k];
       if (last.first != last.last) close<false>(last, a, ground, right.fade, front.gathered);
     } else if (!l.first) {
       const auto parent = static_cast<std::size_t>(l.parent);
       Open& slot = slots_[static_cast<std::size_t>(links[parent].slot)];
-      Base::leave(l, slot.articulated, a);
-      slot.blocks.begin(l.opens, front.gathered_fresh);
+      if (l.opens) {
+        slot.articulated = a;
+        slot.blocks.begin(true, fronts[parent].slot);
+      } else {
+        Base::add(slot.articulated, a);
+      }
       slot.blocks.add(o, front.open);
-      if (visit.gathered.first != visit.gathered.last) close_gathered(k, right, slot);
     }
   }
   return true;

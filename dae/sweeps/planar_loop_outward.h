@@ -40,26 +40,6 @@ MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::solve_loops(
   }
 }
 
-/// The loops that close where the front of body k was gathered at its parent, which moves as `from`
-/// says.
-template <class S, int Rows, bool Momentum>
-template <class Out>
-void LoopSweeps<Planar, S, Rows, Momentum>::solve_gathered(std::size_t k, const RightSide<S>& right,
-                                                           Outward& from, Out& out) {
-  const PlanarMotion<S>& m = from.motion;
-  solve_loops<true>(visits_[k].gathered, right, Planar::Motion<S>{{{m.vx, m.vy}}, m.omega},
-                    from.sigma, out);
-  if constexpr (Momentum) {
-    if (!right.rates) return;
-    Revolute& w = revolutes_[static_cast<std::size_t>(tree_->links[k].parent)];
-    Wrench T{w.fx, w.fy, w.fn};
-    add_rates(visits_[k].gathered_ends, right, out, m.vx, m.vy, m.omega, T);
-    w.fx = T.fx;
-    w.fy = T.fy;
-    w.fn = T.fn;
-  }
-}
-
 template <class S, int Rows, bool Momentum>
 template <class Out>
 void LoopSweeps<Planar, S, Rows, Momentum>::outward(const RightSide<S>& right, Out u, Out impulse,
@@ -77,16 +57,14 @@ void LoopSweeps<Planar, S, Rows, Momentum>::outward(const RightSide<S>& right, O
     const SlotGroups open = fronts[k].open;
     Revolute& w = records[k];
     if (l.parent < 0) {
-      const LoopPlan::Range& last = visits[k].gathered;
+      const LoopPlan::Range last = plan_->gathered_closings_of[k];
       if (last.first != last.last)
         solve_loops<false>(last, right, Planar::Motion<S>{}, at_ground, impulse);
       vx = vy = omega = zero;
       sigma = at_ground;
     } else if (!l.first) {
-      Outward& from =
+      const Outward& from =
           outward_slots_[static_cast<std::size_t>(links[static_cast<std::size_t>(l.parent)].slot)];
-      if (visits[k].gathered.first != visits[k].gathered.last)
-        solve_gathered(k, right, from, impulse);
       vx = from.motion.vx;
       vy = from.motion.vy;
       omega = from.motion.omega;
@@ -186,20 +164,6 @@ MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::own_rates(
     w.vy = vy;
     w.omega = omega;
   }
-  add_rates(ends, right, impulse, vx, vy, omega, T);
-  w.fx = T.fx;
-  w.fy = T.fy;
-  w.fn = T.fn;
-}
-
-/// What loops do at their ends on a body: at each of a tie, for both bodies at the last of others.
-template <class S, int Rows, bool Momentum>
-template <class Out>
-MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::add_rates(const LoopPlan::Range& ends,
-                                                                     const RightSide<S>& right,
-                                                                     const Out& impulse,
-                                                                     const S& vx, const S& vy,
-                                                                     const S& omega, Wrench& T) {
   for (int i = ends.first; i < ends.last; ++i) {
     const End& end = ends_[static_cast<std::size_t>(i)];
     if (!end.tie) {
@@ -214,6 +178,9 @@ MOMENTA_INLINE void LoopSweeps<Planar, S, Rows, Momentum>::add_rates(const LoopP
     T.fy = T.fy - leak * fy;
     T.fn = T.fn + (ux - leak * r[0]) * fy - (uy - leak * r[1]) * fx;
   }
+  w.fx = T.fx;
+  w.fy = T.fy;
+  w.fn = T.fn;
 }
 
 /// The same of any other loop, at the end that is met last, for both: the other body's T waits in

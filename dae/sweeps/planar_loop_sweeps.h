@@ -120,8 +120,7 @@ class LoopSweeps<Planar, S, Rows, Momentum> : PlanarPlaces<S> {
     std::size_t a, b, loop;
   };
   struct Visit {
-    LoopPlan::Range ends, closings;           ///< of its own front
-    LoopPlan::Range gathered_ends, gathered;  ///< on its parent, where its front is gathered
+    LoopPlan::Range ends, closings;
   };
   struct Closing {
     int loop, row, slot;
@@ -204,8 +203,6 @@ class LoopSweeps<Planar, S, Rows, Momentum> : PlanarPlaces<S> {
   template <bool Moves>
   MOMENTA_INLINE void close(const LoopPlan::Range& range, PlanarArticulated<S>& a, Blocks& o,
                             double fade, SlotGroups all);
-  __attribute__((noinline)) void close_gathered(std::size_t k, const RightSide<S>& right,
-                                                Open& slot);
   __attribute__((noinline)) void close_any(int loop, Open& open, double fade, SlotGroups all);
   template <class In>
   __attribute__((noinline)) S couple(std::size_t k, const In& r, const RightSide<S>& right,
@@ -222,13 +219,6 @@ class LoopSweeps<Planar, S, Rows, Momentum> : PlanarPlaces<S> {
   template <class Out>
   __attribute__((noinline)) void general_outward(std::size_t k, bool rates, Out u, Out rate,
                                                  PlanarMotion<S>& m, const Column& sigma);
-  struct Outward {
-    PlanarMotion<S> motion;
-    Column sigma;
-  };
-  template <class Out>
-  __attribute__((noinline)) void solve_gathered(std::size_t k, const RightSide<S>& right,
-                                                Outward& from, Out& out);
   struct Wrench {
     S fx, fy, fn;
   };
@@ -241,10 +231,6 @@ class LoopSweeps<Planar, S, Rows, Momentum> : PlanarPlaces<S> {
   MOMENTA_INLINE void own_rates(std::size_t k, const LoopPlan::Range& ends,
                                 const RightSide<S>& right, const Out& impulse, const S& vx,
                                 const S& vy, const S& omega, Revolute& w);
-  template <class Out>
-  MOMENTA_INLINE void add_rates(const LoopPlan::Range& ends, const RightSide<S>& right,
-                                const Out& impulse, const S& vx, const S& vy, const S& omega,
-                                Wrench& T);
   template <class Out>
   MOMENTA_INLINE void add_other_rates(const End& end, const RightSide<S>& right, const Out& impulse,
                                       Wrench& T);
@@ -283,6 +269,10 @@ class LoopSweeps<Planar, S, Rows, Momentum> : PlanarPlaces<S> {
   std::vector<Weight> weights_;  ///< by body
   std::vector<Vec2<S>> origin_slots_;
   std::vector<Open> slots_;
+  struct Outward {
+    PlanarMotion<S> motion;
+    Column sigma;
+  };
   std::vector<Outward> outward_slots_;
   std::vector<Wrench> wrench_slots_;
   Blocks front_, ground_;
@@ -347,8 +337,7 @@ LoopSweeps<Planar, S, Rows, Momentum>::LoopSweeps(const PlanarTree& tree,
     ends_.push_back(e);
   }
   for (std::size_t k = 0; k < tree.links.size(); ++k)
-    visits_.push_back({plan.own_ends_of[k], plan.closings_of[k], plan.gathered_ends_of[k],
-                       plan.gathered_closings_of[k]});
+    visits_.push_back({plan.ends_of[k], plan.closings_of[k]});
   for (const int loop : plan.closings) {
     const auto i = static_cast<std::size_t>(loop);
     closings_.push_back({loop, loops.loops[i].row, plan.slot[i], plan.pair[i] != 0});

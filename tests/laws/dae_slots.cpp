@@ -124,7 +124,7 @@ TEST(Poses, AreWantedBelowWhereLoopsClose) {
   int standing = 0, spared = 0;
   for (unsigned seed = 0; seed < 3000; ++seed) {
     const Made m = made(seed, 2);
-    const LoopPlan plan = plan_loops(m.parents, m.loops, false);
+    const LoopPlan plan = plan_loops(m.parents, m.loops, false, true);
     for (std::size_t k = 0; k < m.parents.size(); ++k) {
       const int body = static_cast<int>(k);
       OnWay expected = OnWay::no;
@@ -147,7 +147,7 @@ TEST(SlotsOfFronts, AreAsManyAsLoopsAreOpenAtOnce) {
   for (const int rows : {1, 2, 3, 5})
     for (unsigned seed = 0; seed < 500; ++seed) {
       const Made m = made(seed, rows);
-      const LoopPlan plan = plan_loops(m.parents, m.loops, false);
+      const LoopPlan plan = plan_loops(m.parents, m.loops, false, true);
       const auto most = [](const Sets& sets) {
         std::size_t open = 0;
         for (const Together& here : sets.places()) open = std::max(open, here.loops.size());
@@ -193,14 +193,14 @@ TEST(SlotsOfFronts, AreThoseOfOneLoopedChild) {
       m.parents.insert(m.parents.end(), {1, first, 1});
       m.loops.push_back({first + 1, first + 2, 2, true});
     }
-    EXPECT_EQ(plan_loops(m.parents, m.loops, false).slots, 2);
+    EXPECT_EQ(plan_loops(m.parents, m.loops, false, true).slots, 2);
     for (LoopShape& l : m.loops) l.b = 1;
-    EXPECT_EQ(plan_loops(m.parents, m.loops, false).slots, 2);
+    EXPECT_EQ(plan_loops(m.parents, m.loops, false, true).slots, 2);
     m.loops.push_back({2, -1, 2, true});  // from the first finger, which comes last
-    EXPECT_EQ(plan_loops(m.parents, m.loops, false).slots, 4);
+    EXPECT_EQ(plan_loops(m.parents, m.loops, false, true).slots, 4);
   }
   const std::vector<int> leg{-1, 0, 0, 2, 3, 4, 4, 6, 4};
-  const LoopPlan foot = plan_loops(leg, {{7, 8, 2, true}, {1, 5, 3}}, false);
+  const LoopPlan foot = plan_loops(leg, {{7, 8, 2, true}, {1, 5, 3}}, false, true);
   EXPECT_EQ(foot.slots, 3);
 }
 

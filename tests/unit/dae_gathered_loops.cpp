@@ -1,6 +1,6 @@
 // Loops that close where the fronts of a body's children are gathered, against the assembled
-// matrix: trees of which one body has several children tied to each other, to it and to others, in
-// the plane and in space, one state and batches.
+// matrix: trees in space of which one body has several children tied to each other, to it and to
+// others, one state and batches.
 
 #include "equations/random_loops.h"
 #include "equations/sweeps_against_matrix.h"
@@ -41,7 +41,7 @@ std::string below(RandomTree& random, const Tree& tree, int k) {
 
 /// Ties neighbouring children of the body that has most, some of them to the body itself and one to
 /// the ground.
-void tie_children(RandomTree& random, Scene& scene, bool in_plane) {
+void tie_children(RandomTree& random, Scene& scene) {
   const Tree tree = build_tree(scene);
   const std::vector<int> parents = parents_of(tree);
   std::vector<std::vector<int>> children(parents.size());
@@ -52,17 +52,11 @@ void tie_children(RandomTree& random, Scene& scene, bool in_plane) {
       std::max_element(children.begin(), children.end(),
                        [](const auto& a, const auto& b) { return a.size() < b.size(); });
   const auto body = static_cast<std::size_t>(most - children.begin());
-  Eigen::Vector3d normal(0, 0, 1);
-  if (in_plane) normal = find_plane(tree, scene).basis->col(2);
   const auto tie = [&](const std::string& child, const std::string& parent) {
-    LoopSpec l = random_loop(random, scene,
-                             in_plane || random.chance(0.3) ? LoopKind::point : LoopKind::distance);
+    LoopSpec l =
+        random_loop(random, scene, random.chance(0.3) ? LoopKind::point : LoopKind::distance);
     l.child = child;
     l.parent = parent;
-    if (in_plane) {
-      l = into_plane(random, scene, l, normal);
-      level(l, scene, tree, normal);
-    }
     scene.loops.push_back(l);
   };
   for (std::size_t i = 0; i + 1 < most->size(); i += random.chance(0.5) ? 1 : 2)
@@ -73,8 +67,9 @@ void tie_children(RandomTree& random, Scene& scene, bool in_plane) {
 }
 
 /// Whether the plan of a scene closes loops where children are gathered.
-template <class Space>
-bool gathers(const Scene& scene, const Tree& tree, const Model<Space>& model) {
+bool gathers(const Scene& scene) {
+  const Tree tree = build_tree(scene);
+  const auto model = build_spatial_model(tree, scene);
   const std::vector<int> parents = parents_of(tree);
   const LoopPlan plan = swept_loops(tree, model, build_loops(scene, tree, model)).plan;
   for (std::size_t k = 0; plan.fits() && k < parents.size(); ++k)
@@ -82,50 +77,40 @@ bool gathers(const Scene& scene, const Tree& tree, const Model<Space>& model) {
       return true;
   return false;
 }
-bool gathers(const Scene& scene, bool in_plane) {
-  const Tree tree = build_tree(scene);
-  if (!in_plane) return gathers(scene, tree, build_spatial_model(tree, scene));
-  return gathers(scene, tree, build_planar_model(tree, scene, *find_plane(tree, scene).basis));
-}
 
-Scene hand(RandomTree& random, bool in_plane) {
-  const TreeRecipe recipe{.bodies = 11, .branching = Branching::random};
-  Scene scene = in_plane ? random.planar_scene(recipe) : random.scene(recipe);
-  tie_children(random, scene, in_plane);
+Scene hand(RandomTree& random) {
+  Scene scene = random.scene({.bodies = 11, .branching = Branching::random});
+  tie_children(random, scene);
   return scene;
 }
 
 TEST(GatheredLoops, AgreeWithTheAssembledMatrix) {
-  for (const bool in_plane : {true, false}) {
-    Worst worst;
-    int gathered = 0;
-    for (unsigned seed = 0; seed < 1500; ++seed) {
-      RandomTree random(seed + 40000);
-      const Scene scene = hand(random, in_plane);
-      if (scene.loops.empty() || !gathers(scene, in_plane)) continue;
-      const int before = worst.tried;
-      compare(scene, random, {.algebra = in_plane ? Algebra::planar : Algebra::spatial}, worst);
-      gathered += worst.tried > before;
-    }
-    EXPECT_GT(gathered, 60) << in_plane;
-    expect_rounding(worst, 11);
+  Worst worst;
+  int gathered = 0;
+  for (unsigned seed = 0; seed < 1500; ++seed) {
+    RandomTree random(seed + 40000);
+    const Scene scene = hand(random);
+    if (scene.loops.empty() || !gathers(scene)) continue;
+    const int before = worst.tried;
+    compare(scene, random, {.algebra = Algebra::spatial}, worst);
+    gathered += worst.tried > before;
   }
+  EXPECT_GT(gathered, 60);
+  expect_rounding(worst, 11);
 }
 
 TEST(GatheredLoops, BatchesAgree) {
-  for (const bool in_plane : {true, false}) {
-    int compared = 0;
-    for (unsigned seed = 0; seed < 600; ++seed) {
-      RandomTree random(seed + 60000);
-      Scene scene = hand(random, in_plane);
-      if (!in_plane) scene.forces.clear();
-      if (scene.loops.empty() || !gathers(scene, in_plane)) continue;
-      const Mechanism mechanism(scene);
-      if (mechanism.m() > mechanism.nv() || mechanism.kkt() != KktChoice::sweeps) continue;
-      compared += compare_batches(mechanism, random, 9);
-    }
-    EXPECT_GT(compared, 150) << in_plane;
+  int compared = 0;
+  for (unsigned seed = 0; seed < 600; ++seed) {
+    RandomTree random(seed + 60000);
+    Scene scene = hand(random);
+    scene.forces.clear();
+    if (scene.loops.empty() || !gathers(scene)) continue;
+    const Mechanism mechanism(scene);
+    if (mechanism.m() > mechanism.nv() || mechanism.kkt() != KktChoice::sweeps) continue;
+    compared += compare_batches(mechanism, random, 9);
   }
+  EXPECT_GT(compared, 150);
 }
 
 }  // namespace

@@ -324,8 +324,10 @@ LoopPlan of_narrower_fronts(const std::vector<int>& parents, const std::vector<L
 }  // namespace
 
 LoopPlan plan_loops(const std::vector<int>& parents, const std::vector<LoopShape>& loops,
-                    bool may_fold) {
-  LoopPlan plan = of_narrower_fronts(parents, loops, std::vector<int>(parents.size(), -1));
+                    bool may_fold, bool may_gather) {
+  const std::vector<int> none(parents.size(), -1);
+  LoopPlan plan =
+      may_gather ? of_narrower_fronts(parents, loops, none) : planned(parents, loops, none, false);
   if (plan.fits() || !may_fold || plan.couples()) return plan;
   return plan_folded(parents, loops);
 }

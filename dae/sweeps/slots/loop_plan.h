@@ -85,12 +85,12 @@ struct LoopShape {
   std::vector<std::pair<int, double>> joints{};
 };
 
-/// `parents` in depth-first order, −1 for roots. O(bodies + length of all loops). Loops close where
-/// children are gathered if fewer lanes do then, else in the bodies' own fronts, which stay in
-/// registers. Branches are folded where that is allowed (`may_fold`) and slots run out without.
-/// Where more than most_slots are needed all the same, `slots` says so.
+/// `parents` in depth-first order, −1 for roots. O(bodies + length of all loops). Where that is
+/// allowed, loops close where children are gathered (`may_gather`) if fewer lanes do then, else in
+/// the bodies' own fronts, which stay in registers; branches are folded (`may_fold`) where slots
+/// run out without. Where more than most_slots are needed all the same, `slots` says so.
 LoopPlan plan_loops(const std::vector<int>& parents, const std::vector<LoopShape>& loops,
-                    bool may_fold);
+                    bool may_fold, bool may_gather);
 /// With every branch folded that can be.
 LoopPlan plan_folded(const std::vector<int>& parents, const std::vector<LoopShape>& loops);
 
