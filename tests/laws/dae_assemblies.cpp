@@ -1,12 +1,10 @@
 // Assemblies found by a search, against trigonometry, against the roots of a polynomial and of a
 // function of one angle, and against mirror images.
 
+#include "equations/assembled_linkages.h"
 #include "equations/decompositions.h"
-#include "equations/linkages.h"
 
 #include <gtest/gtest.h>
-#include <momenta/dae/assembly/assembly.h>
-#include <momenta/dae/kinematics/assemblies.h>
 
 #include <cmath>
 #include <complex>
@@ -19,68 +17,19 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
+using equations::along;
+using equations::angle_of;
+using equations::found_in;
+using equations::four_bar;
+using equations::pin;
+using equations::rod_between;
 using std::numbers::pi;
-
-Vector2d along(double angle) {
-  return {std::cos(angle), std::sin(angle)};
-}
-double angle_of(const Vector2d& x) {
-  return std::atan2(x.y(), x.x());
-}
-
-Assemblies found_in(const Scene& scene, const AssembliesRequest& request) {
-  const Mechanism mechanism(scene);
-  const Assembly own = assemble(mechanism, Assembled::rates);
-  return find_assemblies(mechanism, 0, own.start.q, request);
-}
 
 /// Whether an angle is among others, modulo full turns.
 bool is_among(double angle, const std::vector<double>& all, double within = 1e-7) {
   return std::any_of(all.begin(), all.end(), [&](double other) {
     return std::abs(std::remainder(angle - other, 2 * pi)) < within;
   });
-}
-
-LoopSpec rod_between(const std::string& name, const std::string& body, const Vector3d& foot,
-                     const Vector3d& seat, double length) {
-  LoopSpec loop;
-  loop.name = name;
-  loop.kind = LoopKind::distance;
-  loop.parent = "ground";
-  loop.child = body;
-  loop.origin_parent = foot;
-  loop.origin_child = seat;
-  loop.length = length;
-  return loop;
-}
-
-LoopSpec pin(const std::string& name, const std::string& parent, const std::string& child,
-             const Vector3d& at_parent, const Vector3d& at_child) {
-  LoopSpec loop;
-  loop.name = name;
-  loop.kind = LoopKind::revolute;
-  loop.parent = parent;
-  loop.child = child;
-  loop.origin_parent = at_parent;
-  loop.origin_child = at_child;
-  return loop;
-}
-
-Scene four_bar(double theta) {
-  const double a = 1, b = 2, c = 1.8, d = 2.2;
-  const Vector2d A = a * along(theta), C(d, 0);
-  const double reach = (A - C).norm(),
-               inside = std::acos((reach * reach + c * c - b * b) / (2 * reach * c));
-  const double rocker = angle_of(A - C) - inside;
-  const Vector2d B = C + c * along(rocker);
-  Scene s;
-  s.name = "four-bar";
-  s.bodies = {equations::rod("crank"), equations::rod("coupler"), equations::rod("rocker")};
-  s.joints = {equations::hinge("O", "ground", "crank", {0, 0, 0}, theta),
-              equations::hinge("A", "crank", "coupler", {a, 0, 0}, angle_of(B - A) - theta),
-              equations::hinge("C", "ground", "rocker", {d, 0, 0}, rocker)};
-  s.loops = {pin("B", "coupler", "rocker", {b, 0, 0}, {c, 0, 0})};
-  return s;
 }
 
 TEST(Assemblies, OfAFourBarAreTwo) {

@@ -1,11 +1,9 @@
 // All solutions of polynomials and all assemblies by paths: roots that are known, Bézout numbers,
 // the counts of the literature, and what a search finds.
 
-#include "equations/linkages.h"
+#include "equations/assembled_linkages.h"
 
 #include <gtest/gtest.h>
-#include <momenta/dae/assembly/assembly.h>
-#include <momenta/dae/kinematics/assemblies.h>
 #include <momenta/dae/kinematics/homotopy.h>
 
 #include <cmath>
@@ -18,14 +16,13 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
+using equations::along;
+using equations::angle_of;
+using equations::found_in;
+using equations::four_bar;
+using equations::pin;
+using equations::rod_between;
 using std::numbers::pi;
-
-Vector2d along(double angle) {
-  return {std::cos(angle), std::sin(angle)};
-}
-double angle_of(const Vector2d& x) {
-  return std::atan2(x.y(), x.x());
-}
 
 /// Π (x − r_k)
 Polynomial with_roots(const std::vector<Complex>& roots) {
@@ -81,12 +78,6 @@ TEST(Homotopy, TellsMultipleRootsApart) {
   EXPECT_FALSE(ends.proved());
 }
 
-Assemblies found_in(const Scene& scene, const AssembliesRequest& request) {
-  const Mechanism mechanism(scene);
-  const Assembly own = assemble(mechanism, Assembled::rates);
-  return find_assemblies(mechanism, 0, own.start.q, request);
-}
-
 /// Every pose of either is one of the other, and closes the loops.
 void expect_same(const Scene& scene, const Assemblies& all, const Assemblies& searched) {
   const Mechanism mechanism(scene);
@@ -104,48 +95,6 @@ void expect_same(const Scene& scene, const Assemblies& all, const Assemblies& se
       nearest = std::min(nearest, std::abs(a.apart - s.apart) + (a.q - s.q).cwiseAbs().maxCoeff());
     EXPECT_LT(nearest, 1e-7);
   }
-}
-
-LoopSpec rod_between(const std::string& name, const std::string& body, const Vector3d& foot,
-                     const Vector3d& seat, double length) {
-  LoopSpec loop;
-  loop.name = name;
-  loop.kind = LoopKind::distance;
-  loop.parent = "ground";
-  loop.child = body;
-  loop.origin_parent = foot;
-  loop.origin_child = seat;
-  loop.length = length;
-  return loop;
-}
-
-LoopSpec pin(const std::string& name, const std::string& parent, const std::string& child,
-             const Vector2d& at_parent, const Vector2d& at_child) {
-  LoopSpec loop;
-  loop.name = name;
-  loop.kind = LoopKind::revolute;
-  loop.parent = parent;
-  loop.child = child;
-  loop.origin_parent = {at_parent.x(), at_parent.y(), 0};
-  loop.origin_child = {at_child.x(), at_child.y(), 0};
-  return loop;
-}
-
-Scene four_bar(double theta) {
-  const double a = 1, b = 2, c = 1.8, d = 2.2;
-  const Vector2d A = a * along(theta), C(d, 0);
-  const double reach = (A - C).norm(),
-               inside = std::acos((reach * reach + c * c - b * b) / (2 * reach * c));
-  const double rocker = angle_of(A - C) - inside;
-  const Vector2d B = C + c * along(rocker);
-  Scene s;
-  s.name = "four-bar";
-  s.bodies = {equations::rod("crank"), equations::rod("coupler"), equations::rod("rocker")};
-  s.joints = {equations::hinge("O", "ground", "crank", {0, 0, 0}, theta),
-              equations::hinge("A", "crank", "coupler", {a, 0, 0}, angle_of(B - A) - theta),
-              equations::hinge("C", "ground", "rocker", {d, 0, 0}, rocker)};
-  s.loops = {pin("B", "coupler", "rocker", {b, 0}, {c, 0})};
-  return s;
 }
 
 TEST(CountedAssemblies, OfAFourBarAreTwo) {
@@ -183,7 +132,7 @@ TEST(CountedAssemblies, OfASliderCrankAreTwo) {
   scene.joints = {equations::hinge("O", "ground", "crank", {0, 0, 0}, theta),
                   equations::hinge("A", "crank", "coupler", {a, 0, 0}, angle_of(P - A) - theta),
                   slide};
-  scene.loops = {pin("P", "coupler", "slider", {b, 0}, {0, 0})};
+  scene.loops = {pin("P", "coupler", "slider", {b, 0, 0}, {0, 0, 0})};
   for (const char* held : {"O", "S"}) {
     AssembliesRequest request;
     request.hold = {held};
@@ -215,8 +164,8 @@ Scene six_bar(std::mt19937& random, bool of_watt) {
               equations::hinge("P", "coupler", "link", {p.x(), p.y(), 0}, link - coupler),
               equations::hinge("C", "ground", "rocker", {C.x(), C.y(), 0}, angle_of(B - C)),
               equations::hinge("E", "ground", "lever", {E.x(), E.y(), 0}, angle_of(D - E))};
-  s.loops = {pin("B", "coupler", "rocker", {(B - A).norm(), 0}, {(B - C).norm(), 0}),
-             pin("D", "link", "lever", {(D - P).norm(), 0}, {(D - E).norm(), 0})};
+  s.loops = {pin("B", "coupler", "rocker", {(B - A).norm(), 0, 0}, {(B - C).norm(), 0, 0}),
+             pin("D", "link", "lever", {(D - P).norm(), 0, 0}, {(D - E).norm(), 0, 0})};
   return s;
 }
 
