@@ -52,7 +52,7 @@ inline LoopSpec pin(const std::string& name, const std::string& parent, const st
 }
 
 /// A four-bar whose crank, joint O, stands at θ, closed; 1, 2, 1.8 on a ground of 2.2.
-inline Scene four_bar(double theta) {
+inline Scene closed_four_bar(double theta) {
   const double a = 1, b = 2, c = 1.8, d = 2.2;
   const Eigen::Vector2d A = a * along(theta), C(d, 0);
   const double reach = (A - C).norm(),

@@ -19,8 +19,8 @@ using Eigen::Vector3d;
 using Eigen::VectorXd;
 using equations::along;
 using equations::angle_of;
+using equations::closed_four_bar;
 using equations::found_in;
-using equations::four_bar;
 using equations::pin;
 using equations::rod_between;
 using std::numbers::pi;
@@ -37,7 +37,7 @@ TEST(Assemblies, OfAFourBarAreTwo) {
     AssembliesRequest request;
     request.hold = {"O"};
     request.starts = 200;
-    const Assemblies found = found_in(four_bar(theta), request);
+    const Assemblies found = found_in(closed_four_bar(theta), request);
     ASSERT_EQ(found.all.size(), 2u) << theta;
     const Vector2d A = along(theta), C(2.2, 0);
     const double reach = (A - C).norm(), from = angle_of(A - C),
@@ -59,11 +59,11 @@ TEST(Assemblies, DoNotDependOnThreadsNorSeeds) {
   AssembliesRequest request;
   request.hold = {"C"};
   request.starts = 100;
-  const Assemblies one = found_in(four_bar(0.9), request);
+  const Assemblies one = found_in(closed_four_bar(0.9), request);
   request.threads = 3;
-  const Assemblies three = found_in(four_bar(0.9), request);
+  const Assemblies three = found_in(closed_four_bar(0.9), request);
   request.seed = 5;
-  const Assemblies other = found_in(four_bar(0.9), request);
+  const Assemblies other = found_in(closed_four_bar(0.9), request);
   ASSERT_EQ(one.all.size(), 2u);
   ASSERT_EQ(three.all.size(), 2u);
   ASSERT_EQ(other.all.size(), 2u);
@@ -78,7 +78,7 @@ TEST(Assemblies, DoNotDependOnThreadsNorSeeds) {
 TEST(Assemblies, AreRefusedWhereAFreedomIsLeft) {
   const auto says = [](const AssembliesRequest& request) {
     try {
-      found_in(four_bar(1), request);
+      found_in(closed_four_bar(1), request);
     } catch (const SceneError& e) {
       return std::string(e.what());
     }

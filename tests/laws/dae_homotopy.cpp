@@ -18,8 +18,8 @@ using Eigen::Vector3d;
 using Eigen::VectorXd;
 using equations::along;
 using equations::angle_of;
+using equations::closed_four_bar;
 using equations::found_in;
-using equations::four_bar;
 using equations::pin;
 using equations::rod_between;
 using std::numbers::pi;
@@ -102,7 +102,7 @@ TEST(CountedAssemblies, OfAFourBarAreTwo) {
     AssembliesRequest request;
     request.hold = {"O"};
     request.by_homotopy = true;
-    const Assemblies all = found_in(four_bar(theta), request);
+    const Assemblies all = found_in(closed_four_bar(theta), request);
     ASSERT_TRUE(all.paths.has_value());
     EXPECT_TRUE(all.paths->is_complete());
     EXPECT_EQ(all.paths->paths, 2);
@@ -110,7 +110,7 @@ TEST(CountedAssemblies, OfAFourBarAreTwo) {
     EXPECT_EQ(all.paths->real, 2);
     request.by_homotopy = false;
     request.starts = 200;
-    expect_same(four_bar(theta), all, found_in(four_bar(theta), request));
+    expect_same(closed_four_bar(theta), all, found_in(closed_four_bar(theta), request));
   }
 }
 
@@ -279,12 +279,12 @@ TEST(CountedAssemblies, AreRefusedOfLoopsThatAreNoPolynomials) {
   request.by_homotopy = true;
   AssembliesRequest free;
   free.by_homotopy = true;
-  Scene doubled = four_bar(0.3);
+  Scene doubled = closed_four_bar(0.3);
   doubled.loops.push_back(doubled.loops[0]);
   doubled.loops[1].name = "again";
   EXPECT_NE(says(doubled, request).find("loop equations are redundant"), std::string::npos)
       << says(doubled, request);
-  Scene geared = four_bar(0.3);
+  Scene geared = closed_four_bar(0.3);
   LoopSpec gear;
   gear.name = "gear";
   gear.kind = LoopKind::coupler;
