@@ -61,7 +61,7 @@ int lanes(const Scene& scene) {
   }
   std::vector<LoopShape> loops;
   for (const LoopSpec& l : scene.loops) loops.push_back({number[l.child], number[l.parent], 2});
-  return lanes_for(plan_loops(parents, loops, false).slots, true);
+  return lanes_for(plan_loops(parents, loops, false, true).slots, true);
 }
 
 /// The fewest lanes of all orders of the fingers.
