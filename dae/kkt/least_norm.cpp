@@ -1,3 +1,4 @@
+#include <momenta/core/scalar/all_finite.h>
 #include <momenta/dae/dense/least_squares.h>
 #include <momenta/dae/kkt/least_norm.h>
 #include <suitesparse/SuiteSparseQR.hpp>
@@ -199,6 +200,7 @@ bool clearly_independent(const MatrixXd& a) {
 
 LoopRank LeastNorm::judge(const std::vector<double>& values, Judged judged) {
   LoopRank rows;
+  if (!all_finite(values)) return rows;
   if (dense_) {
     const MatrixXd a = filled(pattern_, values, rows_, columns_);
     if (judged == Judged::dependence && rows_ > 0 && clearly_independent(a)) {

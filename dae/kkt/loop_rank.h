@@ -72,7 +72,8 @@ enum class Judged { singular_values, dependence };
 
 /// The verdict where `e` is placed: LeastNorm::judge() of A. Up to 10⁵ numbers of A by singular
 /// values; of more, and where dependence alone is asked for and is far away, by the pivots of a QR
-/// factorisation of Aᵀ, which far from the border tell the same.
+/// factorisation of Aᵀ, which far from the border tell the same. Where a number of A is not finite
+/// nothing is known: rank 0, no dependent rows.
 LoopRank loop_rank(const Mechanism& mechanism, Evaluation<double>& e,
                    Judged judged = Judged::singular_values);
 

@@ -18,6 +18,7 @@
 #include <momenta/dae/study/state_values.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <set>
 
@@ -282,6 +283,20 @@ TEST(LoopRank, LoopsThatNothingMovesHaveNone) {
     EXPECT_EQ(a.rank, 0) << seed;
     EXPECT_EQ(a.moved, 0) << seed;
     EXPECT_EQ(a.mobility, 2) << seed;
+  }
+}
+
+// Where Φ_q has entries that are not finite, nothing follows from anything.
+TEST(LoopRank, OfWhatIsNotFiniteNothingIsKnown) {
+  const Mechanism mechanism(three_cranks());
+  const auto e = mechanism.evaluation<double>();
+  Eigen::VectorXd q = assemble(mechanism).start.q;
+  q[0] = std::nan("");
+  e->place(0, q.data());
+  for (const Judged judged : {Judged::singular_values, Judged::dependence}) {
+    const LoopRank rank = loop_rank(mechanism, *e, judged);
+    EXPECT_EQ(rank.rank, 0);
+    EXPECT_TRUE(rank.dependent.empty());
   }
 }
 
