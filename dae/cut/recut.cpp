@@ -159,7 +159,9 @@ class Contest {
       CutCost cost;
     };
     std::vector<Entry> entries;
-    std::optional<Scene> arranged = with_children_ordered(found.scene);
+    // In a plane loops close in the bodies' own fronts: no order of children has fewer lanes there.
+    std::optional<Scene> arranged;
+    if (!given_.plan().planar) arranged = with_children_ordered(found.scene);
     const bool children = arranged.has_value();
     std::vector<Scene> others = with_roots_ordered(children ? *arranged : found.scene);
     if (found.gains()) entries.push_back({std::move(found.scene), false, false, {}});

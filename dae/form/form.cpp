@@ -21,28 +21,29 @@ struct Entry {
   Kind kind;
   bool impulses;   ///< σ among its unknowns or solved for: takes a gauge
   bool positions;  ///< Φ = 0 among its equations, or met after each step
+  bool bearings;   ///< u̇ and forces of loops are found, as friction by reaction needs them
   Maker make;
 };
 
 const std::vector<Entry>& registry() {
   static const std::vector<Entry> entries{
-      {"momentum", Kind::ode, true, false, make_momentum},
-      {"momentum-index1", Kind::dae, true, false, make_momentum_index1},
-      {"momentum-index2", Kind::dae, true, true, make_momentum_index2},
-      {"momentum-stabilised", Kind::dae, true, true, make_momentum_stabilised},
-      {"momentum-index3", Kind::dae, false, true, make_momentum_index3},
-      {"augmented-lagrangian-canonical", Kind::ode, true, false,
+      {"momentum", Kind::ode, true, false, true, make_momentum},
+      {"momentum-index1", Kind::dae, true, false, false, make_momentum_index1},
+      {"momentum-index2", Kind::dae, true, true, false, make_momentum_index2},
+      {"momentum-stabilised", Kind::dae, true, true, false, make_momentum_stabilised},
+      {"momentum-index3", Kind::dae, false, true, false, make_momentum_index3},
+      {"augmented-lagrangian-canonical", Kind::ode, true, false, true,
        make_augmented_lagrangian_canonical},
-      {"acceleration", Kind::ode, false, false, make_acceleration},
-      {"projected", Kind::ode_one_step, false, true, make_projected},
-      {"partitioned", Kind::ode_one_step, false, true, make_partitioned},
-      {"baumgarte", Kind::ode, false, false, make_baumgarte},
-      {"maximal-coordinates", Kind::ode, false, false, make_maximal_coordinates},
-      {"augmented-lagrangian", Kind::ode, false, false, make_augmented_lagrangian},
-      {"acceleration-index1", Kind::dae, false, false, make_acceleration_index1},
-      {"acceleration-index2", Kind::dae, false, false, make_acceleration_index2},
-      {"acceleration-index3", Kind::dae, false, true, make_acceleration_index3},
-      {"stabilised-index2", Kind::dae, false, true, make_stabilised_index2},
+      {"acceleration", Kind::ode, false, false, true, make_acceleration},
+      {"projected", Kind::ode_one_step, false, true, true, make_projected},
+      {"partitioned", Kind::ode_one_step, false, true, true, make_partitioned},
+      {"baumgarte", Kind::ode, false, false, true, make_baumgarte},
+      {"maximal-coordinates", Kind::ode, false, false, false, make_maximal_coordinates},
+      {"augmented-lagrangian", Kind::ode, false, false, true, make_augmented_lagrangian},
+      {"acceleration-index1", Kind::dae, false, false, true, make_acceleration_index1},
+      {"acceleration-index2", Kind::dae, false, false, true, make_acceleration_index2},
+      {"acceleration-index3", Kind::dae, false, true, true, make_acceleration_index3},
+      {"stabilised-index2", Kind::dae, false, true, true, make_stabilised_index2},
   };
   return entries;
 }
@@ -115,9 +116,7 @@ std::unique_ptr<Form> make_form(const std::string& name, const Mechanism& mechan
   if (e.kind == Kind::dae && options.project)
     throw std::invalid_argument("position correction after steps needs a one-step method; '" +
                                 name + "' is integrated by IDA");
-  if (const JointSpec* joint = with_bearing(mechanism.scene());
-      joint && (e.name == "maximal-coordinates" ||
-                (e.kind == Kind::dae && (e.impulses || e.name == "momentum-index3"))))
+  if (const JointSpec* joint = with_bearing(mechanism.scene()); joint && !e.bearings)
     throw std::invalid_argument(
         "joint '" + joint->name + "' has a bearing, whose friction takes accelerations and " +
         "forces of loops: form '" + name + "' has " +

@@ -11,7 +11,7 @@ struct AssembliesOptions {
   std::string hold;  ///< comma-separated
   int starts = 1000;
   std::uint64_t seed = 1;
-  int threads = 0;  ///< 0: one for each processor
+  int threads = 0;            ///< 0: one for each processor
   std::string by = "search";  ///< or homotopy
 };
 /// `assemble --all`

@@ -5,9 +5,6 @@
 #include <momenta/dae/report/assemblies_report.h>
 #include <momenta/dae/study/environment.h>
 
-#include <algorithm>
-#include <thread>
-
 #include "answers.h"
 #include "loading.h"
 #include "results.h"
@@ -23,9 +20,7 @@ int assemblies(const Options& o, const AssembliesOptions& a) {
   request.starts = a.starts;
   request.seed = a.seed;
   request.by_homotopy = a.by == "homotopy";
-  request.threads = a.threads > 0
-                        ? a.threads
-                        : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  request.threads = threads_of(a.threads);
   const Assemblies found = find_assemblies(mechanism, own.start.t, own.start.q, request);
   auto json = assemblies_json(mechanism, request, found);
   const Environment here = environment();

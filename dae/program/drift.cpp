@@ -1,9 +1,7 @@
 #include <momenta/dae/report/conclusion.h>
 #include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/study/drift_study.h>
-
-#include <algorithm>
-#include <thread>
+#include <momenta/dae/study/environment.h>
 
 #include "answers.h"
 #include "loading.h"
@@ -42,7 +40,7 @@ int drift(const Options& o, const DriftOptions& d) {
   // One form that grinds to a halt must not keep the others' results from the user.
   request.max_cpu_seconds = o.cpu_limit.value_or(60);
   request.timing = timing_named(o.timing);
-  request.threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  request.threads = threads_of(0);
   constexpr std::size_t runs_at_most = 24;
   request.film_intervals = film_intervals_of(
       *mechanism, o, request.forms.empty() ? runs_at_most : 3 * request.forms.size());

@@ -1,9 +1,8 @@
 #include <momenta/dae/report/stress_report.h>
 #include <momenta/dae/solver/integrators.h>
+#include <momenta/dae/study/environment.h>
 
-#include <algorithm>
 #include <stdexcept>
-#include <thread>
 
 #include "answers.h"
 #include "loading.h"
@@ -69,9 +68,7 @@ int stress(const Options& o, const StressOptions& options) {
   request.bound = options.within;
   request.cpu_limit = o.cpu_limit.value_or(20);
   request.reference_cpu_limit = options.reference_seconds;
-  request.threads = options.threads > 0
-                        ? options.threads
-                        : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  request.threads = threads_of(options.threads);
   expect_own_results(o.out, "stress.json");
   const auto journal = keep_runs(o);
   watch_signals();

@@ -11,7 +11,6 @@
 #include <cstdio>
 #include <mutex>
 #include <stdexcept>
-#include <thread>
 
 #include "answers.h"
 #include "loading.h"
@@ -188,8 +187,7 @@ int sweep(const Options& o, const SweepOptions& s) {
   ranks.agreed(true);
   ProgressLine line(o.quiet);
   Finished finished(count, Keys(o, request), journal.get(), line);
-  const int alone = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  const int threads = s.threads > 0 ? s.threads : ranks.count() > 1 ? 1 : alone;
+  const int threads = s.threads == 0 && ranks.count() > 1 ? 1 : threads_of(s.threads);
   ranks.share(
       finished.wanted(task, parts), threads, make,
       [&](std::size_t number, const std::string& record) { finished.keep(number, record); },

@@ -3,11 +3,10 @@
 #include <momenta/dae/kinematics/assemblies.h>
 #include <momenta/dae/kinematics/move.h>
 #include <momenta/dae/linear/linearisation.h>
+#include <momenta/dae/study/environment.h>
 
-#include <algorithm>
 #include <limits>
 #include <optional>
-#include <thread>
 #include <variant>
 
 #include "bindings.h"
@@ -96,8 +95,7 @@ py::dict assemblies(const Bench& b, const std::vector<std::string>& hold, const 
   request.by_homotopy = by == "homotopy";
   request.starts = starts;
   request.seed = seed;
-  request.threads =
-      threads > 0 ? threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  request.threads = threads_of(threads);
   Assemblies found;
   {
     const py::gil_scoped_release others_go_on;

@@ -23,6 +23,7 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <string>
 
 namespace momenta::constrained {
 
@@ -73,6 +74,17 @@ class OntoVelocities {
     state.p -= force_;
     place.rates(state.p.data(), nullptr, state.u.data());
     return true;
+  }
+  /// The same where a step ends, with the matrix of (7) there. False: `cause` says why, where it is
+  /// the matrix.
+  bool at_end(HamiltonianPlace& place, double t, State& state, Counters& counters,
+              std::string& cause) {
+    ++counters.factorizations;
+    if (!place.factor(t, state.q.data())) {
+      cause = "the matrix of (7) could not be factorised";
+      return false;
+    }
+    return (*this)(place, state) && state.p.allFinite() && state.q.allFinite();
   }
 
  private:

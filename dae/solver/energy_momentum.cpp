@@ -110,12 +110,7 @@ class EnergyMomentum {
       if (std::isfinite(change)) cause_ = "the implicit equations of the step did not converge";
       return false;
     }
-    ++counters.factorizations;
-    if (!there_->factor(t + h, to.q.data())) {
-      cause_ = "the matrix of (7) could not be factorised";
-      return false;
-    }
-    return onto_velocities_(*there_, to) && to.p.allFinite() && to.q.allFinite();
+    return onto_velocities_.at_end(*there_, t + h, to, counters, cause_);
   }
 
  private:

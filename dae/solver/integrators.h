@@ -40,7 +40,9 @@ struct Integrator {
   Preferred gauge = Preferred::leak;  ///< of DAE methods, for studies of cost
   /// The forms of which it solves Φ = 0 for positions alone, so that rows of rates have no place.
   std::vector<std::string> closes = {};
-  bool without_impulses = false;  ///< no σ is in its p: runs say gauge reset
+  /// Steps on the parts of H(q, p): no σ is in its p, so that runs say gauge reset, and no
+  /// accelerations are found, which friction by reaction takes.
+  bool hamiltonian = false;
 
   /// Whether it takes the named form; `dae` says whether that form is a DAE.
   bool takes_form(const std::string& wanted, bool dae) const {

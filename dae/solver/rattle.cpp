@@ -70,12 +70,7 @@ class Rattle {
     ++counters.evaluations;
     there_->force(to.q.data(), u1_.data(), nullptr, g_.data());
     to.p += 0.5 * h * g_;
-    ++counters.factorizations;
-    if (!there_->factor(t + h, to.q.data())) {
-      cause_ = "the matrix of (7) could not be factorised";
-      return false;
-    }
-    return onto_velocities_(*there_, to) && to.p.allFinite() && to.q.allFinite();
+    return onto_velocities_.at_end(*there_, t + h, to, counters, cause_);
   }
 
  private:

@@ -8,11 +8,13 @@
 #include <gnu/libc-version.h>
 #endif
 
+#include <algorithm>
 #include <cstdint>
 #include <cstdio>
 #include <ctime>
 #include <fstream>
 #include <iterator>
+#include <thread>
 
 namespace momenta {
 
@@ -63,6 +65,10 @@ std::string build_digest() {
   std::ifstream program("/proc/self/exe", std::ios::binary);
   all.append(std::istreambuf_iterator<char>(program), {});
   return digest(all);
+}
+
+int threads_of(int asked) {
+  return asked > 0 ? asked : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
 }
 
 std::string digest(std::string_view text) {

@@ -15,6 +15,9 @@ Environment environment();
 /// digits.
 std::string build_digest();
 
+/// How many threads to run: those asked for, or with 0 one for each processor.
+int threads_of(int asked);
+
 /// 64-bit FNV-1a digest of a text, in hexadecimal: tells one scene from another, nothing more.
 std::string digest(std::string_view text);
 

@@ -35,12 +35,10 @@ std::string refusal(const Mechanism& mechanism, const Integrator& method, const 
   if (!dae && method.multistep && (s.gauge == "reset" || s.gauge == "flip"))
     return "'" + method.name + "' is a multistep method: gauge " + s.gauge +
            " after each step would spoil its history; use leak or none";
-  if (const JointSpec* joint = with_bearing(mechanism.scene());
-      joint && (method.name == "rattle" || method.name == "energy-momentum"))
-    return "joint '" + joint->name + "' has a bearing, whose friction has no potential, and '" +
-           method.name +
-           "' is for forces that have "
-           "one: expected another integrator";
+  if (const JointSpec* joint = with_bearing(mechanism.scene()); joint && method.hamiltonian)
+    return "joint '" + joint->name +
+           "' has a bearing, whose friction takes accelerations and forces of loops, and '" +
+           method.name + "' finds none: expected another integrator";
   if (mechanism.has_nonholonomic() && method.closes_form(s.form)) {
     const auto& all = mechanism.nonholonomic();
     const auto row =
@@ -63,7 +61,7 @@ FormRunner::FormRunner(const Mechanism& mechanism, const Start& start, RunSettin
   const Integrator& method = integrator(s.integrator);
   if (const std::string reason = refusal(mechanism, method, s); !reason.empty())
     throw std::invalid_argument(reason);
-  if (method.without_impulses) s.gauge = "reset";
+  if (method.hamiltonian) s.gauge = "reset";
   FormOptions options;
   options.gauge = parse_gauge(s.gauge.empty() ? "none" : s.gauge);
   options.project = s.project;

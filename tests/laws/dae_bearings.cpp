@@ -365,5 +365,25 @@ TEST(Bearings, FormsWithoutAccelerationsRefuse) {
   }
 }
 
+TEST(Bearings, IntegratorsOfHamiltoniansRefuse) {
+  const Mechanism mechanism(four_bar());
+  const Start start = assemble(mechanism).start;
+  for (const std::string integrator : {"rattle", "energy-momentum"}) {
+    RunRequest request;
+    request.settings.integrator = integrator;
+    request.settings.step = 1e-3;
+    std::string reason;
+    try {
+      run_form(mechanism, start, request);
+    } catch (const std::invalid_argument& e) {
+      reason = e.what();
+    }
+    EXPECT_EQ(reason,
+              "joint 'O' has a bearing, whose friction takes accelerations and forces of loops, "
+              "and '" +
+                  integrator + "' finds none: expected another integrator");
+  }
+}
+
 }  // namespace
 }  // namespace momenta::dae_bearings

@@ -1,10 +1,9 @@
 // Transmission angles and joint forces against trigonometry, and against three forces that meet in
 // one point; the scenes have weights, which are no part of either.
 
-#include "equations/linkages.h"
+#include "equations/assembled_linkages.h"
 
 #include <gtest/gtest.h>
-#include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/kinematics/move.h>
 
 #include <cmath>
@@ -15,26 +14,13 @@ namespace momenta::dae_transmission {
 namespace {
 
 using Eigen::Vector2d;
+using equations::angle_of;
+using equations::pin;
 using std::numbers::pi;
 
-double angle_of(const Vector2d& x) {
-  return std::atan2(x.y(), x.x());
-}
 /// |sin| of the angle between two directions.
 double sine(const Vector2d& a, const Vector2d& b) {
   return std::abs(a.x() * b.y() - a.y() * b.x()) / (a.norm() * b.norm());
-}
-
-LoopSpec pin(const std::string& name, const std::string& parent, const std::string& child,
-             const Eigen::Vector3d& at_parent, const Eigen::Vector3d& at_child) {
-  LoopSpec loop;
-  loop.name = name;
-  loop.kind = LoopKind::revolute;
-  loop.parent = parent;
-  loop.child = child;
-  loop.origin_parent = at_parent;
-  loop.origin_child = at_child;
-  return loop;
 }
 
 /// Crank a from O(0, 0), coupler b, rocker c from C(d, 0), at the crank's angle θ. `cut_at_a`: A is
