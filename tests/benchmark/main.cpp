@@ -9,6 +9,9 @@ void register_planning();
 #ifdef MOMENTA_WITH_MUJOCO
 void register_mujoco();
 #endif
+#ifdef MOMENTA_WITH_SIMBODY
+void register_simbody();
+#endif
 void register_threads();
 }  // namespace momenta
 
@@ -18,6 +21,9 @@ int main(int argc, char** argv) {
   momenta::register_robots();
 #ifdef MOMENTA_WITH_MUJOCO
   momenta::register_mujoco();
+#endif
+#ifdef MOMENTA_WITH_SIMBODY
+  momenta::register_simbody();
 #endif
   momenta::register_descriptions();
   momenta::register_planning();
