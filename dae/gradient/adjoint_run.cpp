@@ -57,30 +57,38 @@ bool AdjointRun::end(double t, const double* y) {
   return true;
 }
 
-/// λ behind what the form does after a step to λ before it, where the step itself led to y.
-bool AdjointRun::after_step(double t, const VectorXd& y) {
+/// λ behind what the form does after a step to λ before it, where the stages led to y, and the form
+/// from there to `behind`; null: not known.
+bool AdjointRun::after_step(double t, const VectorXd& y, const double* behind) {
+  const Index n = y.size() / 2;
+  const auto corrected = [&] {
+    return !form_.corrects_positions() ||
+           adjoint_.correction(t, y.head(n), lambda_, by_parameters_);
+  };
+  if (behind) {
+    const AdjointState at{t, Map<const VectorXd>(behind, n), y.tail(n), {}, {}};
+    if (adjoint_.gauge(at, lambda_, by_parameters_))
+      return corrected() || fail_at(t, dependent_loops);
+  }
   y_ = y;
   bool changed = false;
   if (!form_.after_step(t, y_.data(), changed)) {
     failure_ = form_.failure();
     return false;
   }
-  const Index n = y.size() / 2;
   AdjointState at{t, y_.head(n), y.tail(n), Map<const VectorXd>(form_.rates().data(), n),
                   Map<const VectorXd>(form_.multipliers().data(),
                                       static_cast<Index>(form_.multipliers().size()))};
   if (form_.gauge().kind == Gauge::Kind::flip) at.sigma = -at.sigma;  // the form has turned it
-  return (adjoint_.gauge(at, lambda_, by_parameters_) &&
-          (!form_.corrects_positions() ||
-           adjoint_.correction(t, y.head(n), lambda_, by_parameters_))) ||
+  return (adjoint_.gauge(at, lambda_, by_parameters_) && corrected()) ||
          fail_at(t, dependent_loops);
 }
 
-bool AdjointRun::step(const RecordedRun::Step& step, const double* start) {
+/// The stages of a step and their slopes, from its start.
+bool AdjointRun::stages_again(const RecordedRun::Step& step, const double* start) {
   const Map<const VectorXd> y(start, form_.size());
-  const auto s = static_cast<Index>(stages_.size());
   form_.begin_step(step.t0, start);
-  for (Index i = 0; i < s; ++i) {
+  for (Index i = 0; i < k_.cols(); ++i) {
     const auto at = static_cast<std::size_t>(i);
     w_ = y;
     for (Index j = 0; j < i; ++j)
@@ -89,13 +97,50 @@ bool AdjointRun::step(const RecordedRun::Step& step, const double* start) {
     const double t = tableau_.c[at] == 1 ? step.t1 : step.t0 + tableau_.c[at] * step.h;
     if (!rhs(t, w_.data(), k_.col(i).data(), stages_[at])) return false;
   }
-  if (form_.has_after_step()) {
-    VectorXd reached = y;
-    for (Index j = 0; j < s; ++j)
-      reached += step.h * tableau_.b[static_cast<std::size_t>(j)] * k_.col(j);
-    if (!after_step(step.t1, reached)) return false;
+  return true;
+}
+
+/// product_ = f_yᵀ w_ at a stage.
+bool AdjointRun::times_slopes(std::size_t stage) {
+  AdjointState& at = stages_[stage];
+  ++products_;
+  if (adjoint_.rates(at, w_, product_, by_parameters_)) return true;
+  if (at.u.size() == 0) {  // kept without its solution, which the sweeps did not need
+    y_.resize(form_.size());
+    y_ << at.q, at.p;
+    if (!rhs(at.t, y_.data(), k_.col(0).data(), at)) return false;
+    if (adjoint_.rates(at, w_, product_, by_parameters_)) return true;
   }
-  VectorXd product;
+  return fail_at(at.t, dependent_loops);
+}
+
+bool AdjointRun::step(const RecordedRun& run, std::size_t number, const double* behind) {
+  const RecordedRun::Step& step = run.steps()[number];
+  const auto s = static_cast<Index>(stages_.size());
+  const bool kept = run.has_stages(number) && !integral_ && !adjoint_.needs_solutions();
+  if (kept) {
+    const Index n = form_.size() / 2;
+    for (std::size_t i = 0; i < stages_.size(); ++i) {
+      AdjointState& at = stages_[i];
+      at.t = tableau_.c[i] == 1 ? step.t1 : step.t0 + tableau_.c[i] * step.h;
+      at.q = Map<const VectorXd>(run.stage(number, i), n);
+      at.p = Map<const VectorXd>(run.stage(number, i) + n, n);
+      at.u.resize(0);
+      at.sigma.resize(0);
+    }
+    if (form_.has_after_step()) {
+      const Map<const VectorXd> reached(run.reached(number), form_.size());
+      if (!after_step(step.t1, reached, behind)) return false;
+    }
+  } else {
+    if (!stages_again(step, run.start(number))) return false;
+    if (form_.has_after_step()) {
+      VectorXd reached = Map<const VectorXd>(run.start(number), form_.size());
+      for (Index j = 0; j < s; ++j)
+        reached += step.h * tableau_.b[static_cast<std::size_t>(j)] * k_.col(j);
+      if (!after_step(step.t1, reached, nullptr)) return false;
+    }
+  }
   for (Index i = s; i-- > 0;) {
     const auto at = static_cast<std::size_t>(i);
     w_ = step.h * tableau_.b[at] * lambda_;
@@ -109,15 +154,12 @@ bool AdjointRun::step(const RecordedRun::Step& step, const double* start) {
       by_parameters_ += weight * by_theta_;
       w_.head(by_u_.size()) += weight * by_u_;
     }
-    if (w_.isZero(0)) {  // a stage that serves the error alone
-      product.setZero(w_.size());
-    } else {
-      ++products_;
-      if (!adjoint_.rates(stages_[at], w_, product, by_parameters_))
-        return fail_at(stages_[at].t, dependent_loops);
-    }
-    if (integral_) product.head(by_q_.size()) += step.h * tableau_.b[at] * by_q_;
-    m_.col(i) = product;
+    if (w_.isZero(0))  // a stage that serves the error alone
+      product_.setZero(w_.size());
+    else if (!times_slopes(at))
+      return false;
+    if (integral_) product_.head(by_q_.size()) += step.h * tableau_.b[at] * by_q_;
+    m_.col(i) = product_;
   }
   lambda_ += m_.rowwise().sum();
   return true;
@@ -127,7 +169,8 @@ bool AdjointRun::back(const RecordedRun& run, double t, const double* y,
                       const std::function<bool(double)>& going) {
   if (!integral_ && !end(t, y)) return false;
   for (std::size_t i = run.steps().size(); i-- > 0;) {
-    if (!step(run.steps()[i], run.start(i))) return false;
+    const double* behind = i + 1 < run.steps().size() ? run.start(i + 1) : y;
+    if (!step(run, i, behind)) return false;
     if (going && !going(run.steps()[i].t0)) {
       failure_ = "the observer ended the run";
       return false;

@@ -5,12 +5,12 @@
 //   w_i = h b_i λ' + h Σ_{j>i} a_ji m_j,  m_i = f_yᵀ w_i,
 //   λ = λ' + Σ m_i,  dJ/dθ += Σ f_θᵀ w_i                                                      (6)
 //
-// with stages from the last to the first, computed once more from the state in which the step
-// began; what was done after the step comes first. With J = ∫ g dt by the stages, h b_i g_u joins
-// the part of q in w_i, since dq̇ = du, and h b_i g_q the product. It is the derivative of the very
-// steps: dJ/dθ = λ(0)ᵀ dy(0)/dθ + Σ.
-// Source: Hager, Runge-Kutta methods in optimal control and the transformed adjoint system, Numer.
-// Math. 87 (2000); Griewank, Walther, Evaluating Derivatives.
+// with stages from the last to the first, as the run has kept them, or computed once more from the
+// state in which the step began; what was done after the step comes first. With J = ∫ g dt by the
+// stages, h b_i g_u joins the part of q in w_i, since dq̇ = du, and h b_i g_q the product. It is the
+// derivative of the very steps: dJ/dθ = λ(0)ᵀ dy(0)/dθ + Σ. Source: Hager, Runge-Kutta methods in
+// optimal control and the transformed adjoint system, Numer. Math. 87 (2000); Griewank, Walther,
+// Evaluating Derivatives.
 
 #include <momenta/dae/gradient/functional_slopes.h>
 #include <momenta/dae/gradient/recorded_run.h>
@@ -45,9 +45,11 @@ class AdjointRun {
 
  private:
   bool end(double t, const double* y);
-  bool step(const RecordedRun::Step& step, const double* y);
-  bool after_step(double t, const Eigen::VectorXd& y);
+  bool step(const RecordedRun& run, std::size_t i, const double* behind);
+  bool stages_again(const RecordedRun::Step& step, const double* start);
+  bool after_step(double t, const Eigen::VectorXd& y, const double* behind);
   bool rhs(double t, const double* y, double* ydot, AdjointState& at);
+  bool times_slopes(std::size_t stage);
   bool fail_at(double t, const std::string& why);
 
   OdeForm& form_;
@@ -58,7 +60,7 @@ class AdjointRun {
   double value_ = 0;
   long products_ = 0;
   std::string failure_;
-  Eigen::VectorXd lambda_, by_parameters_, y_, w_, by_q_, by_u_, by_theta_;
+  Eigen::VectorXd lambda_, by_parameters_, y_, w_, product_, by_q_, by_u_, by_theta_;
   Eigen::MatrixXd k_, m_;             ///< size of y × stages
   std::vector<AdjointState> stages_;  ///< of the step under way
 };

@@ -76,7 +76,8 @@ struct GradientResult {
 /// the factorisation of a dense matrix of (7), and six plain evaluations of its rows for each
 /// parameter. Adjoint: an evaluation of the sweeps in dual numbers of one direction, or where they
 /// do not carry the loops two of rows and that factorisation, for all θ; six plain evaluations for
-/// each parameter that is neither an inertia nor gravity; a state of memory a step.
+/// each parameter that is neither an inertia nor gravity; a state of memory a stage
+/// (recorded_run.h).
 GradientResult gradient(const SceneText& scene, const GradientRequest& request);
 
 }  // namespace momenta

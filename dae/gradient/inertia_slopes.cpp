@@ -1,17 +1,12 @@
-#include <momenta/core/kernel/points.h>
-#include <momenta/core/kernel/sweeps.h>
 #include <momenta/core/scene/toml/write_scene.h>
 #include <momenta/dae/gradient/inertia_slopes.h>
-
-#include <algorithm>
-#include <vector>
+#include <momenta/dae/gradient/levels/tangent_sweeps.h>
 
 namespace momenta {
 namespace {
 
 using Eigen::Index;
 using Eigen::VectorXd;
-using Tangent = Dual<double, 1>;
 
 template <class Space>
 Model<Space> built(const Tree& tree, const Scene& scene, const Plan& plan) {
@@ -30,51 +25,19 @@ class InertiaSlopesOf final : public InertiaSlopes {
   explicit InertiaSlopesOf(const Mechanism& mechanism)
       : mechanism_(mechanism),
         model_(built<Space>(mechanism.tree(), mechanism.scene(), mechanism.plan())),
-        w_(model_),
-        q_(static_cast<std::size_t>(mechanism.nv())),
-        u_(q_.size()) {}
+        sweep_(make_inertia_sweep(model_)) {}
 
   Index size() const override { return of_body * static_cast<Index>(model_.bodies.size()) + axes; }
+  Range of(const std::string& body) const override {
+    const auto& bodies = mechanism_.tree().bodies;
+    for (std::size_t k = 0; k < bodies.size(); ++k)
+      if (bodies[k].name == body) return {of_body * static_cast<Index>(k), of_body};
+    return {};
+  }
 
   void add(double factor, double t, const double* q, const double* u, const double* dq,
            const double* du, VectorXd& slopes) override {
-    for (std::size_t i = 0; i < q_.size(); ++i) {
-      q_[i].a = q[i], q_[i].b[0] = dq[i];
-      u_[i].a = u[i], u_[i].b[0] = du[i];
-    }
-    poses_outward(w_, Tangent(t), q_.data(), true);
-    velocities_outward(w_, u_.data());
-    double* to = slopes.data();
-    typename Space::template Vector<Tangent> moment;
-    for (std::size_t k = 0; k < w_.body.size(); ++k, to += of_body) {
-      const auto body = static_cast<int>(k);
-      const auto& b = model_.bodies[k].inertia;
-      const auto& v = w_.body[k].V;
-      const auto at = origin(w_, body), center = to_ground(w_, body, b.mc);
-      Tangent height;
-      for (int i = 0; i < axes; ++i) {
-        height += model_.gravity[i] * at[i];
-        moment[i] += b.m * at[i] + center[i];
-      }
-      to[0] += factor * (0.5 * dot(v.v, v.v) + height).b[0];
-      if constexpr (in_space) {
-        typename Space::template Vector<Tangent> g;
-        for (int i = 0; i < 3; ++i) g[i] = Tangent(model_.gravity[i]);
-        const auto first = cross(v.v, v.w) + from_ground(w_, body, g);
-        for (int i = 0; i < 3; ++i) to[1 + i] += factor * first[i].b[0];
-        int place = 4;
-        for (int i = 0; i < 3; ++i)
-          for (int j = i; j < 3; ++j)
-            to[place++] += factor * ((i == j ? 0.5 : 1.0) * (v.w[i] * v.w[j])).b[0];
-      } else {
-        const Tangent x = v.w * v.v[1] + model_.gravity[0], y = model_.gravity[1] - v.w * v.v[0];
-        const auto& pose = w_.body[k].pose;
-        to[1] += factor * (pose.c * x + pose.s * y).b[0];
-        to[2] += factor * (pose.c * y - pose.s * x).b[0];
-        to[3] += factor * (0.5 * (v.w * v.w)).b[0];
-      }
-    }
-    for (int i = 0; i < axes; ++i) to[i] += factor * moment[i].b[0];
+    sweep_->add(factor, t, q, u, dq, du, slopes.data());
   }
 
   VectorXd numbers(const Scene& other) const override {
@@ -99,8 +62,7 @@ class InertiaSlopesOf final : public InertiaSlopes {
  private:
   const Mechanism& mechanism_;
   Model<Space> model_;
-  Workspace<Space, Tangent> w_;
-  std::vector<Tangent> q_, u_;
+  std::unique_ptr<InertiaSweep> sweep_;
 };
 
 /// Whether a string of the text has the name as a word: a formula may, and what it then is is no

@@ -16,12 +16,18 @@
 
 namespace momenta {
 
-/// One object serves one thread; add() does not allocate.
+/// One object serves one thread; add() does not allocate (levels/tangent_sweeps.h). Directions may
+/// be null: nothing moves along them.
 class InertiaSlopes {
  public:
   virtual ~InertiaSlopes() = default;
   /// How many numbers there are: of a body m, m c, J, in space 10, in a plane 4; g.
   virtual Eigen::Index size() const = 0;
+  /// Where the numbers of a body stand, and how many they are; none where there is no such body.
+  struct Range {
+    Eigen::Index first = 0, count = 0;
+  };
+  virtual Range of(const std::string& body) const = 0;
   /// slopes (size) += factor D ∂(T − V)/∂number at (t, q, u) along (dq, du), nv each. O(bodies)
   virtual void add(double factor, double t, const double* q, const double* u, const double* dq,
                    const double* du, Eigen::VectorXd& slopes) = 0;

@@ -1,6 +1,11 @@
 #pragma once
-// A form's run whose steps are kept, for a sweep back over them: where each began, and how long it
-// was. The steps are those of the run alone. Memory: a state a step.
+// A form's run whose steps are kept, for a sweep back over them: where each began, how long it was,
+// and, as long as there is memory for them, the states of its stages, which need not be computed
+// again then. The steps are those of the run alone. Memory: a state a stage, up to 1 GB, from there
+// on a state a step, up to 4 GB.
+//
+// Stages are told from other evaluations by their times: of a step they are the last s − 1 in a row
+// at t0 + c_i h. Where none are, trials of singular poses lie between.
 
 #include <momenta/dae/form/ode_form.h>
 #include <momenta/dae/gradient/singular_passages.h>
@@ -18,13 +23,20 @@ class RecordedRun final : public OdeSystem {
     double t0 = 0, t1 = 0, h = 0;
   };
 
-  /// `fixed_step`: 0 with error control. `end`: of the run [s].
-  RecordedRun(OdeForm& form, double fixed_step, double end)
-      : form_(form), fixed_step_(fixed_step), end_(end) {}
+  /// `fixed_step`: 0 with error control. `end`: of the run [s]. `c`: the method's abscissas.
+  RecordedRun(OdeForm& form, double fixed_step, double end, std::vector<double> c)
+      : form_(form), fixed_step_(fixed_step), end_(end), c_(std::move(c)), last_(c_.size()) {}
 
   const std::vector<Step>& steps() const { return steps_; }
   /// The state in which step i began.
-  const double* start(std::size_t i) const { return starts_.data() + i * width(); }
+  const double* start(std::size_t i) const { return states_[i].data(); }
+  /// Whether the states of its stages are kept too.
+  bool has_stages(std::size_t i) const { return states_[i].size() > width(); }
+  /// Stage j of step i, 0 its start. @pre has_stages(i)
+  const double* stage(std::size_t i, std::size_t j) const { return start(i) + j * width(); }
+  /// The state to which the stages of step i led, before what the form does after it. @pre
+  /// has_stages(i), has_after_step()
+  const double* reached(std::size_t i) const { return stage(i, c_.size()); }
   /// To be told of each step taken, before the next begins. False where no more can be kept.
   bool keep(double t0, double t1);
   /// When stages came near to a singular pose.
@@ -39,12 +51,11 @@ class RecordedRun final : public OdeSystem {
 
   int size() const override { return form_.size(); }
   bool rhs(double t, const double* y, double* ydot) override;
-  bool after_step(double t, double* y, bool& changed) override {
-    return form_.after_step(t, y, changed) || fail(form_.failure());
-  }
+  bool after_step(double t, double* y, bool& changed) override;
   bool has_after_step() const override { return form_.has_after_step(); }
   void begin_step(double t, const double* y) override {
     passages_.end_step();
+    evaluated_ = 0;
     form_.begin_step(t, y);
     start_.assign(y, y + width());
   }
@@ -67,16 +78,27 @@ class RecordedRun final : public OdeSystem {
  private:
   std::size_t width() const { return static_cast<std::size_t>(form_.size()); }
   bool lost_at(double t, const char* why);
+  void keep_stages(const Step& step, std::vector<double>& states);
 
   OdeForm& form_;
   double fixed_step_, end_;
+  std::vector<double> c_;
+  /// The last evaluations, as many as the method has stages, and where the next one goes.
+  struct Evaluated {
+    double t = 0;
+    std::vector<double> y;
+  };
+  std::vector<Evaluated> last_;
+  std::size_t next_ = 0, evaluated_ = 0;  ///< of this step
   bool corrected_stages_ = false;
   int looking_ = 0;  ///< depth
   int faded_ = -1;   ///< rows that are redundant in the first stage, and so in all
   SingularPassages passages_;
   std::string lost_;
   std::vector<Step> steps_;
-  std::vector<double> start_, starts_;
+  std::vector<double> start_;
+  std::vector<std::vector<double>> states_;  ///< by step: start, stages, what they led to
+  std::size_t numbers_ = 0;                  ///< kept
 };
 
 }  // namespace momenta

@@ -56,6 +56,7 @@ std::vector<RunVariable> run_variables(const SceneText& scene, const Mechanism& 
   }
   std::vector<RunVariable> chosen;
   std::vector<std::string_view> known;
+  std::function<double(const std::string&)> number_at;
   for (const RunVariable& v : all) known.push_back(v.name);
   for (const std::string& name : names) {
     if (std::any_of(chosen.begin(), chosen.end(),
@@ -64,7 +65,8 @@ std::vector<RunVariable> run_variables(const SceneText& scene, const Mechanism& 
     const auto found =
         std::find_if(all.begin(), all.end(), [&](const RunVariable& v) { return v.name == name; });
     if (found == all.end() && is_place(name)) {
-      chosen.push_back(of_scene(name, number_at(scene.text, scene.file, name)));
+      if (!number_at) number_at = numbers_of(scene.text, scene.file);
+      chosen.push_back(of_scene(name, number_at(name)));
       continue;
     }
     if (found == all.end()) {

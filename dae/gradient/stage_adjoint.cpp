@@ -76,9 +76,7 @@ Index StageAdjoint::inertial() const {
 }
 
 void StageAdjoint::start(double t, const VectorXd& q, const VectorXd& u, const VectorXd& lambda) {
-  still_.setZero();
-  if (inertia_)
-    inertia_->add(1, t, q.data(), u.data(), still_.data(), lambda.data() + nv_, slopes_);
+  if (inertia_) inertia_->add(1, t, q.data(), u.data(), nullptr, lambda.data() + nv_, slopes_);
 }
 
 void StageAdjoint::finish(VectorXd& by_parameters) const {
@@ -171,7 +169,7 @@ bool StageAdjoint::sweep(const AdjointState& at, const VectorXd& w, VectorXd& pr
 bool StageAdjoint::rates(const AdjointState& at, const VectorXd& w, VectorXd& product,
                          VectorXd& by_parameters) {
   if (swept_ && sweep(at, w, product, by_parameters)) return true;
-  if (!factor(at.t, at.q)) return false;
+  if (at.u.size() == 0 || !factor(at.t, at.q)) return false;
   const VectorXd b = w.tail(nv_), x = joined(at.q, at.u, at.sigma);
   VectorXd right = -along(static_cast<const MomentumRows&>(rows_), x,
                           joined(-b, VectorXd::Zero(nv_), VectorXd::Zero(m_)), nv_ + m_);
@@ -219,8 +217,9 @@ bool StageAdjoint::sweep_gauge(const AdjointState& at, double c, VectorXd& lambd
   still_.setZero();
   SweptTangent& f = *swept_;
   if (!f(at.t, at.q.data(), at.p.data(), still_.data(), along_p_.data())) return false;
-  const Eigen::Map<const VectorXd> du(f.du.data(), nv_), dpdot(f.dpdot.data(), nv_);
-  kinetic_->along(at.t, at.q.data(), at.u.data(), along_q_.data(), rates_.data());
+  const Eigen::Map<const VectorXd> u(f.u.data(), nv_), du(f.du.data(), nv_),
+      dpdot(f.dpdot.data(), nv_);
+  kinetic_->along(at.t, at.q.data(), u.data(), along_q_.data(), rates_.data());
   rates_ -= dpdot;
   if (forces_.any()) {
     along_p_ = du;
@@ -228,8 +227,7 @@ bool StageAdjoint::sweep_gauge(const AdjointState& at, double c, VectorXd& lambd
     rates_ += by_u_;
   }
   along_p_ = of_p - du;
-  if (inertia_)
-    inertia_->add(c, at.t, at.q.data(), at.u.data(), still_.data(), along_p_.data(), slopes_);
+  if (inertia_) inertia_->add(c, at.t, at.q.data(), u.data(), nullptr, along_p_.data(), slopes_);
   if (any_rows_) {
     rows_.t = at.t;
     VectorXd weights(2 * nv_ + m_);
@@ -247,7 +245,7 @@ bool StageAdjoint::gauge(const AdjointState& at, VectorXd& lambda, VectorXd& by_
   const double c = gauge_.kind == Gauge::Kind::flip ? 2 : gauge_.kind == Gauge::Kind::reset ? 1 : 0;
   if (c == 0) return true;
   if (swept_ && sweep_gauge(at, c, lambda, by_parameters)) return true;
-  if (!factor(at.t, at.q)) return false;
+  if (at.u.size() == 0 || !factor(at.t, at.q)) return false;
   const VectorXd of_p = lambda.tail(nv_), x = joined(at.q, at.u, at.sigma);
   VectorXd right = VectorXd::Zero(nv_ + m_);
   right.tail(m_) = loop_rates(of_p);
@@ -265,8 +263,7 @@ bool StageAdjoint::gauge(const AdjointState& at, VectorXd& lambda, VectorXd& by_
   }
   lambda.head(nv_) -= c * by_q;
   lambda.tail(nv_) -= c * mu.head(nv_);
-  still_.setZero();
-  if (inertia_) inertia_->add(c, at.t, at.q.data(), at.u.data(), still_.data(), mu.data(), slopes_);
+  if (inertia_) inertia_->add(c, at.t, at.q.data(), at.u.data(), nullptr, mu.data(), slopes_);
   add_by_parameters(MomentumAndLoopRows{rows_}, x, joined(c * mu, -c * of_p, VectorXd(0)),
                     by_parameters);
   return true;
@@ -295,8 +292,8 @@ bool StageAdjoint::correction(double t, const VectorXd& q, VectorXd& lambda,
   lambda.head(nv_) -= by_q + force;
   still_.setZero();
   if (inertia_) {
-    inertia_->add(-1, t, q.data(), found.data(), still_.data(), mu.data(), slopes_);
-    if (driven_) inertia_->add(1, t, q.data(), still_.data(), still_.data(), mu.data(), slopes_);
+    inertia_->add(-1, t, q.data(), found.data(), nullptr, mu.data(), slopes_);
+    if (driven_) inertia_->add(1, t, q.data(), still_.data(), nullptr, mu.data(), slopes_);
   }
   CorrectionRows rows{rows_};
   add_by_parameters(rows, x, -mu, by_parameters);

@@ -48,7 +48,7 @@
 namespace momenta {
 
 /// A state at which f is differentiated: its time [s], q (nq), p (nv), and u (nv), σ (m) of (7)
-/// there.
+/// there, both empty where they are not known.
 struct AdjointState {
   double t = 0;
   Eigen::VectorXd q, p, u, sigma;
@@ -82,6 +82,9 @@ class StageAdjoint {
 
   /// How many parameters are taken by inertia_slopes.h.
   Eigen::Index inertial() const;
+  /// Whether states must have their u and σ; else the sweeps find them, and where they do not
+  /// carry a state, products without them are false.
+  bool needs_solutions() const { return !swept_ || forces_.any() || any_rows_; }
   /// Whether the sweeps are differentiated; else rows.
   bool swept() const { return swept_ != nullptr; }
   /// Rows and K alone from now on: the slow way, and where rows of Φ are redundant the only one:

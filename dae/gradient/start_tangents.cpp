@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <set>
 
 namespace momenta {
 namespace {
@@ -33,6 +34,58 @@ Start closed_start(const Mechanism& mechanism, const VectorXd& q, const VectorXd
   return assemble(mechanism, 0, pose, u).start;
 }
 
+/// The body whose mass, centre of mass or inertia a place of the text is in, or makes; empty: none.
+/// Formulas know parameters alone, so that such a number is in no other body.
+std::string inertia_of_body(const Scene& scene, const std::string& place) {
+  for (const BodySpec& body : scene.bodies)
+    for (const char* key : {"mass", "com", "inertia", "shape"}) {
+      const std::string whole = "body." + body.name + "." + key;
+      if (place == whole || place.starts_with(whole + ".")) return body.name;
+    }
+  return "";
+}
+
+/// Takes the derivatives of inertias by numbers of bodies' own, of as many bodies as there are by
+/// six readings of the scene, in which all of them have moved. What a reading refuses, or what
+/// changes more than inertias, is left to be taken alone.
+void take_inertias_of_bodies(const SceneText& scene, const Mechanism& mechanism,
+                             const std::vector<RunVariable>& variables,
+                             const InertiaSlopes& inertia, const InertiasAlone& same,
+                             std::vector<OtherParameter>& all) {
+  std::vector<std::string> body_of(variables.size());
+  for (std::size_t j = 0; j < variables.size(); ++j)
+    if (variables[j].kind == RunVariable::Kind::parameter)
+      body_of[j] = inertia_of_body(mechanism.scene(), variables[j].name);
+  while (true) {
+    std::vector<std::size_t> together;  // one of a body
+    std::set<std::string> bodies;
+    for (std::size_t j = 0; j < variables.size(); ++j)
+      if (!body_of[j].empty() && bodies.insert(body_of[j]).second) together.push_back(j);
+    if (together.size() < 2) return;
+    std::vector<VectorXd> numbers;
+    try {
+      for (const auto& [k, weight] : sixth_order::points) {
+        std::vector<Setting> moved;
+        for (const std::size_t j : together)
+          moved.push_back({variables[j].name, variables[j].value + k * all[j].h});
+        const Scene made = scene.scene(moved);
+        if (!same.as(made)) return;
+        numbers.push_back(inertia.numbers(made));
+      }
+    } catch (const std::exception&) {  // which of them it is, its own reading tells
+      return;
+    }
+    for (const std::size_t j : together) {
+      const InertiaSlopes::Range its = inertia.of(body_of[j]);
+      all[j].inertias = VectorXd::Zero(inertia.size());
+      for (std::size_t i = 0; i < numbers.size(); ++i)
+        all[j].inertias.segment(its.first, its.count) +=
+            sixth_order::points[i].weight / all[j].h * numbers[i].segment(its.first, its.count);
+      body_of[j].clear();
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<OtherParameter> other_parameters(const SceneText& scene, const Mechanism& mechanism,
@@ -41,11 +94,13 @@ std::vector<OtherParameter> other_parameters(const SceneText& scene, const Mecha
   std::vector<OtherParameter> all(variables.size());
   std::optional<InertiasAlone> same;
   if (inertia) same.emplace(mechanism.scene());
+  for (std::size_t j = 0; j < variables.size(); ++j)
+    all[j].h = sixth_order::part * variables[j].size;
+  if (inertia) take_inertias_of_bodies(scene, mechanism, variables, *inertia, *same, all);
   for (std::size_t j = 0; j < variables.size(); ++j) {
     const RunVariable& v = variables[j];
     OtherParameter& other = all[j];
-    other.h = sixth_order::part * v.size;
-    if (v.kind != RunVariable::Kind::parameter) continue;
+    if (v.kind != RunVariable::Kind::parameter || other.inertias.size() > 0) continue;
     std::vector<Scene> scenes;
     for (const auto& [k, weight] : sixth_order::points)
       scenes.push_back(scene.scene({{v.name, v.value + k * other.h}}));

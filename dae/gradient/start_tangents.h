@@ -14,7 +14,8 @@ namespace momenta {
 
 /// Mechanisms at other values of each variable; none of a start value, and, with `inertia`, none of
 /// what inertias and gravity alone depend on. @throws SceneError where there is none within three
-/// differences, or it has other coordinates or equations. Cost: six scenes read for each parameter
+/// differences, or it has other coordinates or equations. Cost: six scenes read for each parameter;
+/// with `inertia` six for numbers of bodies' own inertias together, one of each body
 std::vector<OtherParameter> other_parameters(const SceneText& scene, const Mechanism& mechanism,
                                              const std::vector<RunVariable>& variables,
                                              const InertiaSlopes* inertia = nullptr);

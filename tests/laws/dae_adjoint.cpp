@@ -5,7 +5,11 @@
 #include <momenta/core/scene/file_text.h>
 #include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/gradient/form_tangents.h>
+#include <momenta/dae/gradient/recorded_run.h>
 #include <momenta/dae/gradient/stage_adjoint.h>
+#include <momenta/dae/gradient/start_tangents.h>
+#include <momenta/dae/solver/butcher_tableau.h>
+#include <momenta/dae/solver/integrators.h>
 
 #include <cmath>
 
@@ -181,16 +185,21 @@ const std::vector<std::string> all_of_four_bar{"g", "crank", "coupler", "mass",
                                                "k", "O.q",   "O.u",     "body.rocker.mass"};
 
 TEST(Adjoint, IsTheForwardGradientInEveryGauge) {
-  const SceneText scene = of_text(four_bar);
-  for (const char* rule : {"none", "reset", "flip", "leak:3"})
-    for (const bool project : {false, true}) {
-      GradientRequest request =
-          asked("P.x + 0.3*C.u^2 - P.vy", all_of_four_bar, "momentum", rule, 0.5, 0.01);
-      request.settings.project = project;
-      expect_same(scene, request, 1e-12);
-      request.settings.beta = 20;
-      expect_same(scene, request, 1e-12);
-    }
+  // Without the damper stages need no solution of (7) before the sweeps, and are not computed
+  // again.
+  std::string undamped = four_bar;
+  undamped.replace(undamped.find("damping = 0.4"), 13, "damping = 0.0");
+  const std::vector<std::string> inertial{"g", "mass", "O.q", "O.u", "body.rocker.mass"};
+  for (const auto& [scene, by] :
+       {std::pair{of_text(four_bar), all_of_four_bar}, std::pair{of_text(undamped), inertial}})
+    for (const char* rule : {"none", "reset", "flip", "leak:3"})
+      for (const bool project : {false, true}) {
+        GradientRequest request = asked("P.x + 0.3*C.u^2 - P.vy", by, "momentum", rule, 0.5, 0.01);
+        request.settings.project = project;
+        expect_same(scene, request, 1e-12);
+        request.settings.beta = 20;
+        expect_same(scene, request, 1e-12);
+      }
 }
 
 TEST(Adjoint, IsTheForwardGradientOfEveryMethodAndOfIntegrals) {
@@ -312,6 +321,75 @@ TEST(Adjoint, TakesInertiasAndGravityAtOnce) {
   request = asked("P.x", {"crank", "k", "idle", "O.q"}, "momentum", "reset");
   request.mode = GradientMode::adjoint;
   EXPECT_EQ(gradient(of_text(four_bar), request).at_once, 1);  // the one without effect
+}
+
+/// A run that is recorded, and the stages of its steps computed from their starts.
+TEST(Adjoint, KeepsTheStagesOfARun) {
+  const SceneText scene = of_text(four_bar);
+  for (const char* method : {"rk4", "dp5", "dop853", "vern9"})
+    for (const Gauge::Kind kind : {Gauge::Kind::none, Gauge::Kind::reset}) {
+      AtAState at(scene, gauge(kind), 1, false);
+      const ButcherTableau tableau = butcher_tableau(method);
+      IntegrationOptions options;
+      options.rtol = options.atol = 1e-6;
+      if (std::string(method) == "rk4") options.step = 0.02;
+      RecordedRun record(at.ode(), options.step, 0.4, tableau.c);
+      Observer observer;
+      std::vector<std::vector<double>> reached;
+      observer.step = [&](double t0, double t1, const Interpolant& between) {
+        between(t1, reached.emplace_back(at.y.size()).data());
+        return record.keep(t0, t1);
+      };
+      const IntegrationResult run =
+          integrate(method, record, 0, at.ode().initial(at.start), {0, 0.4}, options, observer);
+      ASSERT_TRUE(run.done) << run.reason;
+      ASSERT_EQ(record.steps().size(), reached.size());
+      const auto n = static_cast<Index>(at.y.size());
+      MatrixXd k(n, static_cast<Index>(tableau.b.size()));
+      for (std::size_t i = 0; i < reached.size(); ++i) {
+        ASSERT_TRUE(record.has_stages(i)) << method << ", step " << i;
+        const RecordedRun::Step& step = record.steps()[i];
+        at.ode().begin_step(step.t0, record.start(i));
+        for (std::size_t j = 0; j < tableau.b.size(); ++j) {
+          VectorXd y = Map<const VectorXd>(record.start(i), n);
+          for (std::size_t l = 0; l < j; ++l)
+            y += step.h * tableau.a[j][l] * k.col(static_cast<Index>(l));
+          EXPECT_LT((y - Map<const VectorXd>(record.stage(i, j), n)).norm(), 1e-13 * y.norm())
+              << method << ", step " << i << ", stage " << j;
+          const double t = tableau.c[j] == 1 ? step.t1 : step.t0 + tableau.c[j] * step.h;
+          ASSERT_TRUE(at.ode().rhs(t, y.data(), k.col(static_cast<Index>(j)).data()));
+        }
+        if (kind == Gauge::Kind::none) continue;
+        const Map<const VectorXd> end(reached[i].data(), n);
+        EXPECT_LT((end - Map<const VectorXd>(record.reached(i), n)).norm(), 1e-13 * end.norm());
+      }
+    }
+}
+
+TEST(Adjoint, ReadsASceneOnceForInertiasOfAllBodies) {
+  const SceneText scene = of_text(four_bar);
+  const Mechanism mechanism(scene.scene(), scene.options);
+  const std::unique_ptr<InertiaSlopes> inertia = make_inertia_slopes(mechanism);
+  const auto inertias = [&](const std::vector<std::string>& names) {
+    return other_parameters(scene, mechanism, run_variables(scene, mechanism, names),
+                            inertia.get());
+  };
+  // Two numbers of one body, and one whose scene has other lengths.
+  const std::vector<std::string> names{"body.crank.mass", "body.rocker.mass", "mass",
+                                       "body.crank.shape.length", "crank"};
+  const std::vector<OtherParameter> together = inertias(names);
+  const InertiaSlopes::Range crank = inertia->of("crank");
+  EXPECT_EQ(crank.count, 4);
+  EXPECT_EQ(inertia->of("nobody").count, 0);
+  for (std::size_t j = 0; j < names.size(); ++j) {
+    const VectorXd alone = inertias({names[j]}).front().inertias;
+    ASSERT_EQ(together[j].inertias.size(), alone.size()) << names[j];
+    EXPECT_EQ(alone.size() > 0, names[j] != "crank") << names[j];
+    if (alone.size() > 0) {
+      EXPECT_LT((together[j].inertias - alone).norm(), 1e-12 * alone.norm()) << names[j];
+    }
+  }
+  EXPECT_GT(together[0].inertias.segment(crank.first, crank.count).norm(), 0);
 }
 
 /// The sentence with which it is refused.

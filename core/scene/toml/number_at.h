@@ -1,13 +1,16 @@
 #pragma once
-// The number at a place of a scene's text (setting.h), before another takes its place.
+// Numbers at places of a scene's text (setting.h), before others take their places.
 
+#include <functional>
 #include <string>
 #include <string_view>
 
 namespace momenta {
 
-/// The number that stands at a place of a TOML text; a formula there has its value. @throws
-/// std::invalid_argument where there is none; SceneError for a text that is no TOML
-double number_at(std::string_view text, const std::string& file, const std::string& place);
+/// Tells the number that stands at a place of this TOML text, which is read once; a formula there
+/// has its value. @throws SceneError for a text that is no TOML; what it returns
+/// std::invalid_argument where there is none
+std::function<double(const std::string& place)> numbers_of(std::string_view text,
+                                                           const std::string& file);
 
 }  // namespace momenta

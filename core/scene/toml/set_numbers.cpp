@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <memory>
 #include <stdexcept>
 
 namespace momenta::reading {
@@ -148,15 +149,23 @@ void set_numbers(Value& root, const std::vector<Setting>& settings) {
 
 namespace momenta {
 
-double number_at(std::string_view text, const std::string& file, const std::string& place) {
+std::function<double(const std::string&)> numbers_of(std::string_view text,
+                                                     const std::string& file) {
+  struct Read {
+    reading::Value root;
+    reading::Parameters parameters;
+  };
   reading::Value root = reading::parse_toml(text, file);
   const reading::Parameters parameters(root, file);
-  const Setting setting{place, 0};
-  reading::Way way(setting);
-  const reading::Value& found = way.find_in(root);
-  way.expect_there();
-  return reading::is_number(found) ? found.number
-                                   : parameters.value(parameters.formula(found.text));
+  const auto read = std::make_shared<Read>(Read{std::move(root), parameters});
+  return [read](const std::string& place) {
+    const Setting setting{place, 0};
+    reading::Way way(setting);
+    const reading::Value& found = way.find_in(read->root);
+    way.expect_there();
+    return reading::is_number(found) ? found.number
+                                     : read->parameters.value(read->parameters.formula(found.text));
+  };
 }
 
 }  // namespace momenta

@@ -1,0 +1,9 @@
+#include <momenta/dae/gradient/levels/tangent_sweeps_at.h>
+
+namespace momenta {
+template std::unique_ptr<TangentSweeps> tangent_sweeps_at<1>(const LinkTree&,
+                                                             const SweptLoops<Spatial>&, double,
+                                                             bool);
+template std::unique_ptr<InertiaSweep> inertia_sweep_at<1>(const Model<Spatial>&);
+template std::unique_ptr<KineticSweep> kinetic_sweep_at<1>(const Model<Spatial>&);
+}  // namespace momenta

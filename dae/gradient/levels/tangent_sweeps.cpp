@@ -1,0 +1,74 @@
+#include <momenta/core/kernel/levels/level.h>
+#include <momenta/dae/gradient/levels/tangent_sweeps.h>
+
+#include <stdexcept>
+
+namespace momenta {
+
+template <int Level, class Space, class Tree>
+std::unique_ptr<TangentSweeps> tangent_sweeps_at(const Tree& tree, const SweptLoops<Space>& swept,
+                                                 double fade, bool body_forces);
+template <int Level, class Space>
+std::unique_ptr<InertiaSweep> inertia_sweep_at(const Model<Space>& model);
+template <int Level, class Space>
+std::unique_ptr<KineticSweep> kinetic_sweep_at(const Model<Space>& model);
+
+namespace {
+
+/// act of the best level, as a constant.
+template <class Act>
+auto at_best_level(Act&& act) {
+  [[maybe_unused]] const int level = best_level();
+#ifdef MOMENTA_LEVEL4
+  if (level >= 4) return act.template operator()<4>();
+#endif
+#ifdef MOMENTA_LEVEL3
+  if (level >= 3) return act.template operator()<3>();
+#endif
+#ifdef MOMENTA_LEVEL1
+  if (level >= 1) return act.template operator()<1>();
+#endif
+  throw std::logic_error("no kernels of this level");
+}
+
+template <class Tree, class Space>
+std::unique_ptr<TangentSweeps> tangents(const Tree& tree, const SweptLoops<Space>& swept,
+                                        double fade, bool body_forces) {
+  return at_best_level(
+      [&]<int Level>() { return tangent_sweeps_at<Level>(tree, swept, fade, body_forces); });
+}
+template <class Space>
+std::unique_ptr<InertiaSweep> inertias(const Model<Space>& model) {
+  return at_best_level([&]<int Level>() { return inertia_sweep_at<Level>(model); });
+}
+template <class Space>
+std::unique_ptr<KineticSweep> kinetic(const Model<Space>& model) {
+  return at_best_level([&]<int Level>() { return kinetic_sweep_at<Level>(model); });
+}
+
+}  // namespace
+
+std::unique_ptr<TangentSweeps> make_tangent_sweeps(const PlanarTree& tree,
+                                                   const SweptLoops<Planar>& swept, double fade,
+                                                   bool body_forces) {
+  return tangents(tree, swept, fade, body_forces);
+}
+std::unique_ptr<TangentSweeps> make_tangent_sweeps(const LinkTree& tree,
+                                                   const SweptLoops<Spatial>& swept, double fade,
+                                                   bool body_forces) {
+  return tangents(tree, swept, fade, body_forces);
+}
+std::unique_ptr<InertiaSweep> make_inertia_sweep(const Model<Planar>& model) {
+  return inertias(model);
+}
+std::unique_ptr<InertiaSweep> make_inertia_sweep(const Model<Spatial>& model) {
+  return inertias(model);
+}
+std::unique_ptr<KineticSweep> make_kinetic_sweep(const Model<Planar>& model) {
+  return kinetic(model);
+}
+std::unique_ptr<KineticSweep> make_kinetic_sweep(const Model<Spatial>& model) {
+  return kinetic(model);
+}
+
+}  // namespace momenta

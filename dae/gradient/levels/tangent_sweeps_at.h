@@ -1,0 +1,198 @@
+#pragma once
+// TangentSweeps, InertiaSweep and KineticSweep at one level; included by the files that are
+// compiled for it, and nowhere else, as core/kernel/levels/open_sweeps_at.h says why.
+
+#include <momenta/core/kernel/points.h>
+#include <momenta/core/kernel/sweeps.h>
+#include <momenta/dae/gradient/levels/direction_slots.h>
+#include <momenta/dae/gradient/levels/tangent_sweeps.h>
+#include <momenta/dae/sweeps/planar_loop_sweeps.h>
+#include <momenta/dae/sweeps/spatial_loop_sweeps.h>
+
+#include <vector>
+
+namespace momenta {
+
+/// x + δx ε of plain arrays.
+template <int L>
+struct DirectionsIn {
+  const double *x, *dx;
+  MOMENTA_INLINE Directions<1, L> operator[](int i) const {
+    Directions<1, L> s;
+    s.a = Pack<1, L>(x[i]);
+    s.b[0] = Pack<1, L>(dx[i]);
+    return s;
+  }
+};
+template <int L>
+struct DirectionsOut {
+  Directions<1, L>* x;
+  MOMENTA_INLINE Directions<1, L>& operator[](int i) const { return x[i]; }
+};
+
+template <class Tree, class Space, int Level, int Rows>
+class TangentSweepsAt final : public TangentSweeps {
+  using S = Directions<1, Level>;
+
+ public:
+  TangentSweepsAt(const Tree& tree, const SweptLoops<Space>& swept, double fade, bool body_forces)
+      : sweeps_(tree, swept.loops, swept.plan),
+        nv_(tree.model->nv),
+        m_(swept.loops.rows),
+        numbers_(static_cast<std::size_t>(2 * nv_ + m_)) {
+    right_.fade = fade;
+    right_.rates = true;
+    right_.body_forces = body_forces;
+  }
+
+  bool operator()(double t, const double* q, const double* p, const double* dq, const double* dp,
+                  const Result& to) override {
+    S *const u = numbers_.data(), *const pdot = u + nv_, *const sigma = pdot + nv_;
+    const DirectionsIn<Level> momenta{p, dp};
+    if (!sweeps_(S(t), DirectionsIn<Level>{q, dq}, momenta, momenta, right_,
+                 DirectionsOut<Level>{u}, DirectionsOut<Level>{sigma},
+                 DirectionsOut<Level>{pdot}) ||
+        sweeps_.weak_looped_branch())
+      return false;
+    for (int i = 0; i < nv_; ++i) {
+      to.u[i] = u[i].a.v;
+      to.du[i] = u[i].b[0].v;
+      to.dpdot[i] = pdot[i].b[0].v;
+    }
+    for (int i = 0; i < m_; ++i) {
+      to.sigma[i] = sigma[i].a.v;
+      to.dsigma[i] = sigma[i].b[0].v;
+    }
+    return true;
+  }
+
+ private:
+  LoopSweeps<Space, S, Rows, true> sweeps_;
+  RightSide<S> right_;
+  int nv_, m_;
+  std::vector<S> numbers_;  ///< u, ṗ, σ
+};
+
+/// A state and a direction as the sweeps of bodies take them.
+template <class Space, int Level>
+struct PlacedAlong {
+  using S = Directions<1, Level>;
+  explicit PlacedAlong(const Model<Space>& model)
+      : w(model), q(static_cast<std::size_t>(model.nv)), u(q.size()) {}
+  /// Poses and velocities at (t, q, u); dq and du may be null: nothing moves along them.
+  void at(double t, const double* from_q, const double* from_u, const double* dq, const double* du,
+          bool with_poses) {
+    for (std::size_t i = 0; i < q.size(); ++i) {
+      q[i].a = Pack<1, Level>(from_q[i]);
+      q[i].b[0] = Pack<1, Level>(dq ? dq[i] : 0.0);
+      u[i].a = Pack<1, Level>(from_u[i]);
+      u[i].b[0] = Pack<1, Level>(du ? du[i] : 0.0);
+    }
+    poses_outward(w, S(t), q.data(), with_poses);
+    velocities_outward(w, u.data());
+  }
+  Workspace<Space, S> w;
+  std::vector<S> q, u;
+};
+
+template <class Space, int Level>
+class InertiaSweepAt final : public InertiaSweep {
+  static constexpr int axes = Space::dimension == 6 ? 3 : 2;
+  using S = Directions<1, Level>;
+
+ public:
+  explicit InertiaSweepAt(const Model<Space>& model) : model_(model), place_(model) {}
+
+  void add(double factor, double t, const double* q, const double* u, const double* dq,
+           const double* du, double* to) override {
+    place_.at(t, q, u, dq, du, true);
+    const auto& w = place_.w;
+    const auto put = [&](const S& slope) MOMENTA_INLINED { *to++ += factor * slope.b[0].v; };
+    typename Space::template Vector<S> moment;
+    for (std::size_t k = 0; k < w.body.size(); ++k) {
+      const auto body = static_cast<int>(k);
+      const auto& b = model_.bodies[k].inertia;
+      const auto& v = w.body[k].V;
+      const auto at = origin(w, body), center = to_ground(w, body, b.mc);
+      S height(0.0);
+      for (int i = 0; i < axes; ++i) {
+        height += model_.gravity[i] * at[i];
+        moment[i] += b.m * at[i] + center[i];
+      }
+      put(0.5 * dot(v.v, v.v) + height);
+      if constexpr (axes == 3) {
+        typename Space::template Vector<S> g;
+        for (int i = 0; i < 3; ++i) g[i] = S(model_.gravity[i]);
+        const auto first = cross(v.v, v.w) + from_ground(w, body, g);
+        for (int i = 0; i < 3; ++i) put(first[i]);
+        for (int i = 0; i < 3; ++i)
+          for (int j = i; j < 3; ++j) put((i == j ? 0.5 : 1.0) * (v.w[i] * v.w[j]));
+      } else {
+        const S x = v.w * v.v[1] + model_.gravity[0], y = model_.gravity[1] - v.w * v.v[0];
+        const auto& pose = w.body[k].pose;
+        put(pose.c * x + pose.s * y);
+        put(pose.c * y - pose.s * x);
+        put(0.5 * (v.w * v.w));
+      }
+    }
+    for (int i = 0; i < axes; ++i) put(moment[i]);
+  }
+
+ private:
+  const Model<Space>& model_;
+  PlacedAlong<Space, Level> place_;
+};
+
+template <class Space, int Level>
+class KineticSweepAt final : public KineticSweep {
+ public:
+  explicit KineticSweepAt(const Model<Space>& model)
+      : model_(model), place_(model), p_(place_.q.size()) {}
+
+  void along(double t, const double* q, const double* u, const double* v, double* result) override {
+    place_.at(t, q, u, nullptr, v, false);
+    auto& w = place_.w;
+    body_momenta(w);
+    momenta_inward(w, p_.data());
+    for (auto& body : w.body) body.T = {};
+    momentum_rates_inward(w, place_.q.data(), place_.u.data(), p_.data());
+    for (const auto& b : model_.bodies)
+      if (b.nv == 1) {
+        const auto at = static_cast<std::size_t>(b.u);
+        p_[at] -= joint_force(b, place_.q[static_cast<std::size_t>(b.q)], place_.u[at]);
+      }
+    for (std::size_t i = 0; i < p_.size(); ++i) result[i] = p_[i].b[0].v;
+  }
+
+ private:
+  const Model<Space>& model_;
+  PlacedAlong<Space, Level> place_;
+  std::vector<Directions<1, Level>> p_;
+};
+
+/// The narrowest fronts that hold the plan's slots.
+template <int Level, class Space, class Tree>
+std::unique_ptr<TangentSweeps> tangent_sweeps_at(const Tree& tree, const SweptLoops<Space>& swept,
+                                                 double fade, bool body_forces) {
+  constexpr bool planar = Space::dimension == 3;
+  const int lanes = lanes_for(swept.plan.slots, planar);
+  const auto make = [&]<int Rows>() -> std::unique_ptr<TangentSweeps> {
+    return std::make_unique<TangentSweepsAt<Tree, Space, Level, Rows>>(tree, swept, fade,
+                                                                       body_forces);
+  };
+  if constexpr (planar)
+    if (lanes == 2) return make.template operator()<2>();
+  if (lanes == 4) return make.template operator()<4>();
+  if (lanes == 8) return make.template operator()<8>();
+  return make.template operator()<16>();
+}
+template <int Level, class Space>
+std::unique_ptr<InertiaSweep> inertia_sweep_at(const Model<Space>& model) {
+  return std::make_unique<InertiaSweepAt<Space, Level>>(model);
+}
+template <int Level, class Space>
+std::unique_ptr<KineticSweep> kinetic_sweep_at(const Model<Space>& model) {
+  return std::make_unique<KineticSweepAt<Space, Level>>(model);
+}
+
+}  // namespace momenta
