@@ -43,6 +43,8 @@ class AccelerationIndex2 final : public DaeFormOf<AccelerationIndex2>, public Ha
     return true;
   }
 
+  bool meet(double t, double* y) override { return meet_velocities(t, y, y + layout_.x()); }
+
   /// q at the next stage does not depend on λ, and v does linearly:
   ///   M v̇ + Φ_qᵀλ = Q + L_q − Ṁ v,  Φ_q(q̄) v̇ = −(Φ_q(q̄) v_base + Φ_t)/w.
   bool advance(double t, const double* y, double t_next, const double* base, double w,

@@ -1,9 +1,12 @@
+#include <momenta/dae/form/acceleration_form.h>
 #include <momenta/dae/form/half_explicit_parts.h>
 #include <momenta/dae/kkt/kkt.h>
 #include <momenta/dae/loop_word.h>
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace momenta {
 
@@ -45,6 +48,43 @@ bool HalfExplicitParts::failed(std::string sentence) {
 bool HalfExplicitParts::rub(double t, const double* q, const double* u) {
   BearingFriction* friction = work().friction.get();
   return !friction || friction->at(t, q, u) || failed(friction->failure());
+}
+
+/// A correction below last_correction leaves its square. One that does not shrink is no way there:
+/// the step was too long.
+bool HalfExplicitParts::meet_positions(double t, double* q) {
+  Work& w = work();
+  if (!w.solver) return true;
+  normalise(q);
+  double before = std::numeric_limits<double>::infinity();
+  for (int count = 0; count < most_corrections; ++count) {
+    if (!w.solver->position_correction(t, q, w.delta.data()))
+      return failed("the correction of positions is not finite");
+    w.e->coordinate_rates(q, w.delta.data(), w.there.data());
+    double size = 1, change = 0;
+    for (std::size_t i = 0; i < w.there.size(); ++i) {
+      q[i] += w.there[i];
+      size = std::max(size, std::abs(q[i]));
+    }
+    for (const double d : w.delta) change = std::max(change, std::abs(d) / size);
+    if (change <= last_correction) return true;
+    if (!(change < 0.5 * before)) break;
+    before = change;
+  }
+  return failed("the correction of positions does not converge");
+}
+
+bool HalfExplicitParts::meet_velocities(double t, const double* q, double* v) {
+  Work& w = work();
+  if (!w.solver) return true;
+  w.e->place(t, q);
+  w.e->move(v);
+  w.e->momenta(nullptr, w.r.data());
+  if (!w.solver->momentum(t, q, w.r.data(), nullptr, fade_projection, 0, w.u.data(), w.g.data(),
+                          nullptr))
+    return failed("the correction of velocities is not finite");
+  std::copy(w.u.begin(), w.u.end(), v);
+  return true;
 }
 
 const double* HalfExplicitParts::centre(const double* z) {

@@ -42,6 +42,10 @@ class HalfExplicitParts : public HalfExplicit {
   bool failed(std::string sentence);
   /// Finds the friction of bearings at (t, q, u), where there are such.
   bool rub(double t, const double* q, const double* u);
+  /// Φ(q, t) = 0 by q + δ, M δ + Φ_qᵀν = 0, Newton's method.
+  bool meet_positions(double t, double* q);
+  /// Φ_q v + Φ_t = 0 by M v + Φ_qᵀν = M v_before, linear.
+  bool meet_velocities(double t, const double* q, double* v);
   /// Copies z as what faded rows keep, for a solution that writes into z.
   const double* centre(const double* z);
 

@@ -52,6 +52,8 @@ class MomentumIndex2 final : public DaeFormOf<MomentumIndex2>,
     return true;
   }
 
+  bool meet(double t, double* y) override { return meet_positions(t, y); }
+
   /// Newton's method for u and σ in
   ///   M u + Φ_qᵀσ = p,  Φ(q̄) = 0,  q̄ = q_base + w q̇(u),
   /// from the u predicted, with the Φ_q(q̄) of its first q̄: row 1 holds at every iteration. A u off

@@ -4,16 +4,12 @@
 //   k_i = f(t + c_i h, y + h Σ_{j<i} a_ij k_j),   y_new = y + h Σ_j b_j k_j.
 //
 // Stages 0 … s-1 make y_new; stage s is f at the end (t + h, y_new); further ones serve dense
-// output alone and are evaluated only when somebody interpolates. With Δ = y_new - y, θ = (t' -
-// t)/h:
-//
-//   y(θ) = r_0 + θ(r_1 + (1-θ)(r_2 + θ(r_3 + (1-θ)(r_4 + …)))),
-//   r_0 = y, r_1 = Δ, r_2 = h k_0 - Δ, r_3 = Δ - h k_s - r_2, r_{4+i} = h Σ_j d_ij k_j;
-//
-// the first four terms are the Hermite cubic. Source: Hairer, Norsett, Wanner, Solving Ordinary
-// Differential Equations I, II.4 (error norm), II.6 (dense output), II.10 (the norm of DOP853).
+// output alone (dense_output.h) and are evaluated only when somebody interpolates. Source: Hairer,
+// Norsett, Wanner, Solving Ordinary Differential Equations I, II.4 (error norm), II.10 (the norm of
+// DOP853).
 
 #include <momenta/dae/solver/aligned_array.h>
+#include <momenta/dae/solver/dense_output.h>
 #include <momenta/dae/solver/integration.h>
 #include <momenta/dae/solver/stage_sum.h>
 
@@ -31,7 +27,6 @@ template <class Tableau>
 class ExplicitStep {
   static constexpr std::size_t s = Tableau::stages;
   static constexpr std::size_t stored = s + 1 + Tableau::dense_stages;
-  static constexpr std::size_t terms = 4 + Tableau::dense_rows;
 
  public:
   ExplicitStep(OdeSystem& system, double rtol, double atol, const double* y0)
@@ -46,7 +41,7 @@ class ExplicitStep {
         lost_new_(stride_),
         argument_(stride_),
         k_(stored * stride_),
-        r_(terms * stride_),
+        dense_(n_),
         last_argument_(n_),
         last_stage_(n_),
         relative_(atol) {
@@ -175,13 +170,7 @@ class ExplicitStep {
       std::fill_n(out, n_, std::numeric_limits<double>::quiet_NaN());
       return false;
     }
-    const double theta = (t - t_) / h_, rest = 1 - theta;
-    for (std::size_t i = 0; i < n_; ++i) {
-      double value = r_[(terms - 1) * stride_ + i];
-      for (std::size_t j = terms - 1; j-- > 0;)
-        value = r_[j * stride_ + i] + (j % 2 == 0 ? theta : rest) * value;
-      out[i] = value;
-    }
+    dense_.at((t - t_) / h_, out);
     return true;
   }
   bool interpolation_failed() const { return interpolation_failed_; }
@@ -239,28 +228,10 @@ class ExplicitStep {
       interpolation_failed_ = true;
       return false;
     }
-    for (std::size_t i = 0; i < stride_; ++i) {
-      const double delta = y_new_[i] - y_[i];
-      const double bend = h_ * stage(0)[i] - delta;
-      r_[i] = y_[i];
-      r_[stride_ + i] = delta;
-      r_[2 * stride_ + i] = bend;
-      r_[3 * stride_ + i] = delta - h_ * stage(s)[i] - bend;
-    }
-    dense_terms(std::make_index_sequence<Tableau::dense_rows>{});
-    have_dense_ = finite(r_.data(), terms * stride_);
+    dense_.set(y_.data(), y_new_.data(), h_, k_.data());
+    have_dense_ = finite(dense_.entries(), dense_.size());
     interpolation_failed_ = !have_dense_;
     return have_dense_;
-  }
-  template <std::size_t... row>
-  void dense_terms(std::index_sequence<row...>) {
-    (dense_term<row>(), ...);
-  }
-  template <std::size_t row>
-  void dense_term() {
-    for (std::size_t i = 0; i < stride_; i += width)
-      store(r_.data() + (4 + row) * stride_ + i,
-            h_ * stage_sum<Tableau::d, row>(k_.data() + i, stride_));
   }
 
   static double total(Pack v) {
@@ -281,9 +252,9 @@ class ExplicitStep {
   double rtol_;
   AlignedArray atol_, y_, y_new_, lost_, lost_new_, argument_;  ///< stride_ each
   AlignedArray k_;                                              ///< stages, stored × stride_
-  AlignedArray r_;                                              ///< dense output, terms × stride_
-  std::vector<double> last_argument_, last_stage_;              ///< n_, where they were kept
-  double relative_;                                             ///< atol of an unknown of scale 1
+  DenseOutput<Tableau> dense_;
+  std::vector<double> last_argument_, last_stage_;  ///< n_, where they were kept
+  double relative_;                                 ///< atol of an unknown of scale 1
   double t_ = 0, t1_ = 0, h_ = 0;
   long evaluations_ = 0;
   bool have_end_ = false, have_dense_ = false, interpolation_failed_ = false;

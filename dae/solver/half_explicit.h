@@ -22,6 +22,9 @@ class HalfExplicit {
   /// is off by O(h^min(2r + 1, r + 3)).
   virtual bool advance(double t, const double* y, double t_next, const double* base, double w,
                        bool exact, double* z, double* f) = 0;
+  /// y onto g(t, y) = 0, to rounding, from near it: by the change of q or of v that is least in the
+  /// mass metric. Equations that depend on others there count for nothing.
+  virtual bool meet(double t, double* y) = 0;
   /// Quaternions of y back to unit length.
   virtual void normalise(double* y) = 0;
   /// Which equations 0 = g depend on others at (t, y), or nearly so, as a clause; empty: none.

@@ -51,4 +51,8 @@ IntegrationResult integrate_bayo_ledesma(DaeSystem&, double t0,
 IntegrationResult integrate_hem5(DaeSystem&, double t0, const std::vector<double>& output_times,
                                  const IntegrationOptions&, const Observer&);
 
+/// The half-explicit method of order 8, as integrate_hem5.
+IntegrationResult integrate_hem8(DaeSystem&, double t0, const std::vector<double>& output_times,
+                                 const IntegrationOptions&, const Observer&);
+
 }  // namespace momenta

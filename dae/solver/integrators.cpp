@@ -148,6 +148,16 @@ const std::vector<Integrator>& integrators() {
        .resets = true,
        .gauge = Gauge::reset_of_independent,
        .closes = {"momentum-index2"}},
+      {.name = "hem8",
+       .takes = Takes::dae,
+       .step = Step::adaptive,
+       .multistep = false,
+       .projects = false,
+       .method = "half-explicit Runge-Kutta on the hidden constraint, order 8",
+       .forms = {"acceleration-index2", "momentum-index2"},
+       .resets = true,
+       .gauge = Gauge::reset,
+       .closes = {"momentum-index2"}},
   };
   return all;
 }
@@ -165,6 +175,13 @@ std::string integrator_names(Takes takes) {
   std::vector<std::string> names;
   for (const Integrator& i : integrators())
     if (i.takes == takes) names.push_back(i.name);
+  return listed(names);
+}
+
+std::string resetting_names() {
+  std::vector<std::string> names;
+  for (const Integrator& i : integrators())
+    if (i.takes == Takes::dae && i.resets) names.push_back(i.name);
   return listed(names);
 }
 
@@ -222,6 +239,7 @@ IntegrationResult integrate(const std::string& name, DaeSystem& system, double t
   if (name == "bayo-ledesma")
     return integrate_bayo_ledesma(system, t0, output_times, options, observer);
   if (name == "hem5") return integrate_hem5(system, t0, output_times, options, observer);
+  if (name == "hem8") return integrate_hem8(system, t0, output_times, options, observer);
   throw std::invalid_argument("no method \"" + name +
                               "\" for DAEs: " + integrator_names(Takes::dae) + " are known");
 }

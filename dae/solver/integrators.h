@@ -63,6 +63,8 @@ const Integrator& integrator(const std::string& name);
 std::string listed(const std::vector<std::string>& names);
 /// The names of the integrators that take such systems, listed.
 std::string integrator_names(Integrator::Takes takes);
+/// The names of those for DAEs that take gauge reset, listed.
+std::string resetting_names();
 
 /// Integrates y' = f(t, y) from y0 by the named method. @throws std::invalid_argument for a method
 /// that takes DAEs.

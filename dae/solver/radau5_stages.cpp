@@ -4,8 +4,7 @@
 namespace momenta::radau5 {
 
 Outcome Stages::solve(const Factors& f, double t, double h, const double* y,
-                      const WeightedNorm& norm, double fraction, int most,
-                      std::array<std::vector<double>, 3>& z) {
+                      const WeightedNorm& norm, double fraction, int most, StageValues& z) {
   for (std::size_t k = 0; k < n_; ++k)
     for (int i = 0; i < 3; ++i)
       w_[static_cast<std::size_t>(i)][k] =

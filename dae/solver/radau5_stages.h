@@ -13,56 +13,17 @@
 // the same with M replaced by ∂F/∂y' and −J by ∂F/∂y.
 
 #include <momenta/dae/solver/newton_matrix.h>
+#include <momenta/dae/solver/radau5_tableau.h>
 #include <momenta/dae/solver/sundials_handles.h>
 #include <momenta/dae/solver/weighted_norm.h>
 
 #include <Eigen/Core>
-#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
 
 namespace momenta::radau5 {
-
-inline constexpr double root6 = 2.4494897427831780982;
-inline constexpr std::array<double, 3> c{(4 - root6) / 10, (4 + root6) / 10, 1.0};
-
-/// Runge-Kutta matrix.
-inline Eigen::Matrix3d coefficients() {
-  Eigen::Matrix3d a;
-  a << (88 - 7 * root6) / 360, (296 - 169 * root6) / 1800, (-2 + 3 * root6) / 225,
-      (296 + 169 * root6) / 1800, (88 + 7 * root6) / 360, (-2 - 3 * root6) / 225, (16 - root6) / 36,
-      (16 + root6) / 36, 1.0 / 9;
-  return a;
-}
-
-/// Eigenvalues of A⁻¹: γ and α ± iβ, in terms of ∛9.
-inline constexpr double root9 = 2.0800838230519041145;
-inline constexpr double gamma0 = (6 + root9 * (root9 - 1)) / 30;  ///< 1/γ
-inline constexpr double inverse_alpha = (12 - root9 * (root9 - 1)) / 60;
-inline constexpr double inverse_beta = root9 * (root9 + 1) * 1.7320508075688772935 / 60;
-inline constexpr double modulus = inverse_alpha * inverse_alpha + inverse_beta * inverse_beta;
-inline constexpr double gamma = 1 / gamma0, alpha = inverse_alpha / modulus,
-                        beta = inverse_beta / modulus;
-
-/// T: the real eigenvector of A⁻¹, then real and (negative) imaginary part of a complex one, scaled
-/// to T_32 = 1, T_33 = 0. An eigenvector of A = integration is the values at c of a cubic x(θ) with
-/// x(0) = 0 whose derivative is μ x up to a multiple of the nodes' polynomial: found by solving.
-inline Eigen::Matrix3d transformation() {
-  const Eigen::Matrix3d inverse = coefficients().inverse();
-  Eigen::Matrix3d t;
-  // (A⁻¹ − μ) x = 0 with x_3 = 1, from the first two rows; real and imaginary parts for α + iβ.
-  const Eigen::Matrix2d block = inverse.topLeftCorner<2, 2>();
-  const Eigen::Vector2d right = -inverse.topRightCorner<2, 1>();
-  t.col(0) << (block - gamma * Eigen::Matrix2d::Identity()).inverse() * right, 1.0;
-  using C = std::complex<double>;
-  const Eigen::Matrix2cd shifted = block.cast<C>() - C(alpha, beta) * Eigen::Matrix2cd::Identity();
-  const Eigen::Vector2cd x = shifted.inverse() * right.cast<C>();
-  t.col(1) << x.real(), 1.0;
-  t.col(2) << -x.imag(), 0.0;
-  return t;
-}
 
 /// J(γ/h) and J((α + iβ)/h), factorised.
 struct Factors {
@@ -72,6 +33,9 @@ struct Factors {
   std::unique_ptr<NewtonMatrix<double>> real;
   std::unique_ptr<NewtonMatrix<std::complex<double>>> complex;
 };
+
+/// Of Newton's method, where no shorter step can be tried.
+inline constexpr int patient_iterations = 40;
 
 enum class Outcome { converged, slow, diverged, evaluation_failed, not_finite };
 
@@ -117,7 +81,7 @@ class Stages {
   /// Newton iterations on z (3 of n values each, a guess on entry). They stop at `fraction` of the
   /// tolerance, or when `most` would not be enough.
   Outcome solve(const Factors& f, double t, double h, const double* y, const WeightedNorm& norm,
-                double fraction, int most, std::array<std::vector<double>, 3>& z);
+                double fraction, int most, StageValues& z);
 
   /// After solve(): the last correction of Z_3.
   void last_correction(double* z) const {
@@ -126,7 +90,7 @@ class Stages {
   }
 
   /// Y'_i = Σ_j (A⁻¹)_ij Z_j / h.
-  void rate(int i, double h, const std::array<std::vector<double>, 3>& z, double* ydot) const {
+  void rate(int i, double h, const StageValues& z, double* ydot) const {
     for (std::size_t k = 0; k < n_; ++k)
       ydot[k] =
           (inverse_(i, 0) * z[0][k] + inverse_(i, 1) * z[1][k] + inverse_(i, 2) * z[2][k]) / h;
@@ -140,7 +104,7 @@ class Stages {
   std::size_t n_, entries_;
   Eigen::Matrix3d inverse_, t_, t_inverse_;
   std::vector<double> by_y_, by_rate_, argument_, rate_;
-  std::array<std::vector<double>, 3> r_, w_;
+  StageValues r_, w_;
   std::vector<std::complex<double>> complex_;
 };
 

@@ -27,9 +27,9 @@ class WeightedNorm {
   void set(const double* y, double h, double share = 1) {
     share_ = share;
     for (std::size_t i = 0; i < weight_.size(); ++i)
-      weight_[i] = power_[i] < 0
-                       ? 0
-                       : std::pow(h, power_[i]) / (share * (atol_[i] + rtol_ * std::abs(y[i])));
+      weight_[i] = power_[i] < 0 ? 0
+                                 : (power_[i] == 0 ? 1 : std::pow(h, power_[i])) /
+                                       (share * (atol_[i] + rtol_ * std::abs(y[i])));
   }
   /// Sum of the squares of the weighted values.
   double squares(const double* x) const {

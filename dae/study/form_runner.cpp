@@ -31,7 +31,7 @@ std::string refusal(const Mechanism& mechanism, const Integrator& method, const 
            (method.multistep ? ", it would spoil the method's history" : "");
   if (dae && takes_gauge(s.form) && s.gauge == "reset" && !method.resets)
     return "gauge reset alters p after each step, and '" + method.name +
-           "' cannot follow: expected integrator bdf5, radau5 or hem5, or gauge none or leak";
+           "' cannot follow: expected integrator " + resetting_names() + ", or gauge none or leak";
   if (!dae && method.multistep && (s.gauge == "reset" || s.gauge == "flip"))
     return "'" + method.name + "' is a multistep method: gauge " + s.gauge +
            " after each step would spoil its history; use leak or none";

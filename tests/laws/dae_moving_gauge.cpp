@@ -306,7 +306,7 @@ TEST(Bdf5, GaugesThatAMethodCannotTake) {
     }
     return std::string();
   };
-  EXPECT_NE(refusal("ida", "reset").find("expected integrator bdf5, radau5 or hem5"),
+  EXPECT_NE(refusal("ida", "reset").find("expected integrator bdf5, radau5, hem5 or hem8"),
             std::string::npos)
       << refusal("ida", "reset");
   EXPECT_NE(refusal("bdf5", "flip").find("expected none, leak or reset"), std::string::npos);

@@ -3,21 +3,17 @@
 // the order of what one linear solution a stage leaves; the same motion in every gauge.
 
 #include "equations/ensemble.h"
+#include "equations/half_explicit.h"
 #include "equations/index2_trees.h"
 #include "equations/linkages.h"
 
 #include <gtest/gtest.h>
-#include <momenta/core/scene/files/read_scene.h>
-#include <momenta/dae/solver/gauge_symmetry.h>
-#include <momenta/dae/solver/half_explicit.h>
 #include <momenta/dae/solver/implicit_methods.h>
 #include <momenta/dae/solver/tableau_hem5.h>
 #include <momenta/dae/study/run_form.h>
 
 #include <array>
-#include <filesystem>
 #include <numbers>
-#include <random>
 
 namespace momenta::dae_order_half_explicit {
 namespace {
@@ -94,82 +90,18 @@ TEST(HalfExplicitOrder, EveryConditionOfOrderFive) {
   EXPECT_GT(missed_embedded[5], 0);
 }
 
-struct Errors {
-  double q, x, multiplier;  ///< x: u or p
-};
-
-/// At the end of so many steps, against a run of dop853 at 1e-14 on the ODE form of the same
-/// unknowns, with the same gauge.
-class Halving {
- public:
-  Halving(const Scene& scene, const std::string& form, double end, const char* gauge = "leak")
-      : mechanism_(scene), start_(equations::start_of(mechanism_)), form_(form), end_(end) {
-    if (form == "momentum-index2") options_.gauge = parse_gauge(gauge);
-    const auto ode = make_form(form == "momentum-index2" ? "momentum" : "acceleration", mechanism_,
-                               options_, start_);
-    IntegrationOptions tight;
-    tight.rtol = tight.atol = 1e-14;
-    const auto truth =
-        integrate_explicit("dop853", *ode->ode(), 0, ode->initial(start_), {end}, tight, {});
-    EXPECT_TRUE(truth.done) << truth.reason;
-    exact_ = truth.y;
-    EXPECT_TRUE(ode->read(end, exact_.data(), nullptr, read_));
-  }
-  Errors with(int steps) const {
-    const auto form = make_form(form_, mechanism_, options_, start_);
-    IntegrationOptions options;
-    options.step = end_ / steps;
-    const auto run = integrate_hem5(*form->dae(), 0, {end_}, options, {});
-    EXPECT_TRUE(run.done) << run.reason;
-    EXPECT_EQ(run.counters.steps, steps);
-    const auto largest = [&](int from, int to, const double* exact) {
-      double error = 0;
-      for (int i = from; i < to; ++i)
-        error = std::max(error, std::abs(run.y[static_cast<std::size_t>(i)] - *exact++));
-      return error;
-    };
-    const int nq = mechanism_.nq(), n = nq + mechanism_.nv();
-    return {largest(0, nq, exact_.data()), largest(nq, n, exact_.data() + nq),
-            largest(n, n + mechanism_.m(), read_.multipliers.data())};
-  }
-
- private:
-  Mechanism mechanism_;
-  Start start_;
-  std::string form_;
-  double end_;
-  FormOptions options_;
-  std::vector<double> exact_;
-  Snapshot read_;
-};
-
-Scene example(const char* name) {
-  return read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) / "examples" / name / "scene.toml");
-}
-
-/// The four-bar's crank turned by a prescribed motion, cut at the crank's hinge.
-Scene driven_crank() {
-  Scene scene = example("four_bar");
-  DriveSpec d;
-  d.kind = "polynomial";
-  d.coefficients = {1.5707963267948966, 4, 0.5};
-  d.joint = "O";
-  scene.drives.push_back(d);
-  scene.held.clear();
-  return scene;
-}
-
 TEST(HalfExplicitOrder, HalvedStepsOnMechanisms) {
   struct Case {
     Scene scene;
     double end;
     int coarse;
   };
-  for (const Case& c : {Case{example("four_bar"), 1, 200}, Case{example("andrews"), 0.01, 100},
-                        Case{driven_crank(), 1, 60}, Case{flying_rod(), 1, 100}})
+  for (const Case& c :
+       {Case{example_of("four_bar"), 1, 200}, Case{example_of("andrews"), 0.01, 100},
+        Case{driven_crank(), 1, 60}, Case{flying_rod(), 1, 100}})
     for (const std::string form : {"acceleration-index2", "momentum-index2"}) {
       SCOPED_TRACE(c.scene.name + " " + form);
-      const Halving halving(c.scene, form, c.end);
+      const Halving halving("hem5", c.scene, form, c.end);
       const Errors a = halving.with(c.coarse), b = halving.with(4 * c.coarse);
       // Below this rounding counts; the driven crank leaves no freedom, with Φ = 0 its q is exact.
       const auto expect_five = [](const char* what, double coarse, double fine) {
@@ -192,10 +124,10 @@ TEST(HalfExplicitOrder, HalvedStepsWithAReset) {
     double end;
     int coarse;
   };
-  for (const Case& c : {Case{example("four_bar"), 1, 200}, Case{example("andrews"), 0.01, 100},
-                        Case{flying_rod(), 1, 100}}) {
+  for (const Case& c : {Case{example_of("four_bar"), 1, 200},
+                        Case{example_of("andrews"), 0.01, 100}, Case{flying_rod(), 1, 100}}) {
     SCOPED_TRACE(c.scene.name);
-    const Halving halving(c.scene, "momentum-index2", c.end, "reset");
+    const Halving halving("hem5", c.scene, "momentum-index2", c.end, "reset");
     const double coarse = halving.with(c.coarse).q, fine = halving.with(4 * c.coarse).q;
     if (fine < 1e-12)
       EXPECT_LT(coarse, std::pow(2, 2 * 5.6) * 1e-12);
@@ -206,7 +138,7 @@ TEST(HalfExplicitOrder, HalvedStepsWithAReset) {
 
 // From rates foreseen with an error h^r d, one linear solution has σ up to O(h^(2r+1)).
 TEST(HalfExplicitOrder, OneLinearSolutionAStage) {
-  const Mechanism mechanism(example("four_bar"));
+  const Mechanism mechanism(example_of("four_bar"));
   const Start start = equations::start_of(mechanism);
   FormOptions options;
   options.gauge = parse_gauge("reset");
@@ -242,82 +174,12 @@ TEST(HalfExplicitOrder, OneLinearSolutionAStage) {
   }
 }
 
-/// momentum-index2 whose p is put into another gauge after each step, by a constant of any size.
-class InAnyGauge : public DaeSystem, public HalfExplicit, public GaugeSymmetry {
- public:
-  InAnyGauge(DaeSystem& system, double size)
-      : system_(system),
-        parts_(dynamic_cast<HalfExplicit&>(system)),
-        gauge_(dynamic_cast<GaugeSymmetry&>(system)),
-        any_(-size, size),
-        entries_(static_cast<std::size_t>(gauge_.direction_entries())),
-        c_(static_cast<std::size_t>(gauge_.impulse_count())) {}
-
-  /// hem5 calls it where a step ends, and finds σ + c by itself.
-  void normalise(double* y) override {
-    parts_.normalise(y);
-    for (double& c : c_) c = any_(chance_);
-    gauge_.gauge_directions(0, y, entries_.data());
-    gauge_.shift(entries_.data(), c_.data(), y);
-  }
-
-  int size() const override { return system_.size(); }
-  bool residual(double t, const double* y, const double* ydot, double* r) override {
-    return system_.residual(t, y, ydot, r);
-  }
-  bool jacobian(double t, const double* y, const double* ydot, double c, double* v) override {
-    return system_.jacobian(t, y, ydot, c, v);
-  }
-  const JacobianPattern& pattern() const override { return system_.pattern(); }
-  bool start(double t, double* y, double* ydot) override { return system_.start(t, y, ydot); }
-  bool differential(int i) const override { return system_.differential(i); }
-  double scale(int i) const override { return system_.scale(i); }
-  int differential_unknowns() const override { return parts_.differential_unknowns(); }
-  int multipliers() const override { return parts_.multipliers(); }
-  bool consistent(double t, const double* y, double* z, double* f) override {
-    return parts_.consistent(t, y, z, f);
-  }
-  bool advance(double t, const double* y, double t_next, const double* base, double w, bool exact,
-               double* z, double* f) override {
-    return parts_.advance(t, y, t_next, base, w, exact, z, f);
-  }
-  std::string dependent(double t, const double* y) override { return parts_.dependent(t, y); }
-  const std::string& half_explicit_failure() const override {
-    return parts_.half_explicit_failure();
-  }
-  bool resets() const override { return gauge_.resets(); }
-  int impulse_count() const override { return gauge_.impulse_count(); }
-  const double* impulses(const double* y) const override { return gauge_.impulses(y); }
-  int direction_entries() const override { return gauge_.direction_entries(); }
-  void gauge_directions(double t, const double* y, double* entries) override {
-    gauge_.gauge_directions(t, y, entries);
-  }
-  void shift(const double* entries, const double* c, double* y) const override {
-    gauge_.shift(entries, c, y);
-  }
-  void reset(double t, double* y, double* ydot) override { gauge_.reset(t, y, ydot); }
-  void measure_at(double t, const double* y, const double* ydot, double rtol,
-                  double atol) override {
-    gauge_.measure_at(t, y, ydot, rtol, atol);
-  }
-  double coordinate_squares(const double* e) override { return gauge_.coordinate_squares(e); }
-  double motion_squares(const double* e) override { return gauge_.motion_squares(e); }
-
- private:
-  DaeSystem& system_;
-  HalfExplicit& parts_;
-  GaugeSymmetry& gauge_;
-  std::mt19937 chance_{7};
-  std::uniform_real_distribution<double> any_;
-  std::vector<double> entries_, c_;
-};
-
 // With a reset a step is the same, but for rounding, whatever constant was added to σ before it.
 TEST(HalfExplicit, TheSameMotionInEveryGauge) {
   for (const char* name : {"four_bar", "andrews"}) {
     SCOPED_TRACE(name);
     const bool fast = name[0] == 'a';
-    const Mechanism mechanism(example(name));
+    const Mechanism mechanism(example_of(name));
     const Start start = equations::start_of(mechanism);
     const auto run = [&](double size) {
       FormOptions options;
@@ -353,7 +215,7 @@ RunResult run_hem5(const Mechanism& mechanism, const std::string& form, double t
 // The constraint that stands in the equations, at every sample inside steps too; the other one
 // drifts with the local error.
 TEST(HalfExplicit, KeepsItsConstraint) {
-  const Mechanism mechanism(example("four_bar"));
+  const Mechanism mechanism(example_of("four_bar"));
   const RunResult p = run_hem5(mechanism, "momentum-index2", 1e-6, 5, 500);
   ASSERT_EQ(p.status, "done") << p.reason;
   EXPECT_LE(p.position_drift_max, 1e-14);
@@ -380,7 +242,7 @@ TEST(HalfExplicit, RedundantAndSparse) {
 
 // Looking on changes nothing of the run.
 TEST(HalfExplicit, SamplesDoNotChangeTheRun) {
-  const Mechanism mechanism(example("four_bar"));
+  const Mechanism mechanism(example_of("four_bar"));
   for (const std::string form : {"acceleration-index2", "momentum-index2"}) {
     const RunResult few = run_hem5(mechanism, form, 1e-7, 2, 1),
                     many = run_hem5(mechanism, form, 1e-7, 2, 200);
@@ -413,7 +275,7 @@ TEST(HalfExplicit, NamesTheDependentEquationWhereItStops) {
   }
   EXPECT_EQ(stopped, 1);
   // Where all equations are independent nothing is named: a step too long for any solution.
-  const Mechanism regular(example("four_bar"));
+  const Mechanism regular(example_of("four_bar"));
   const Start start = equations::start_of(regular);
   const auto form = make_form("momentum-index2", regular, {}, start);
   IntegrationOptions options;
@@ -424,7 +286,7 @@ TEST(HalfExplicit, NamesTheDependentEquationWhereItStops) {
 }
 
 TEST(HalfExplicit, RefusesOtherForms) {
-  const Mechanism mechanism(example("four_bar"));
+  const Mechanism mechanism(example_of("four_bar"));
   for (const char* form : {"acceleration-index3", "momentum-index1", "stabilised-index2"}) try {
       run_hem5(mechanism, form, 1e-7, 1, 1);
       FAIL() << form;

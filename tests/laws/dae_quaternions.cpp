@@ -107,7 +107,7 @@ TEST(Quaternions, StayUnitInLoops) {
     EXPECT_LT(worst(scene, form, default_integrator(form, 1e-6), 0.01, 0.5), rounding) << form;
   for (const char* integrator : {"rk4", "dp5", "vern9", "adams", "bdf", "gauss4"})
     EXPECT_LT(worst(scene, "momentum", integrator, 0.005, 0.5), rounding) << integrator;
-  for (const char* integrator : {"radau5", "hem5"})
+  for (const char* integrator : {"radau5", "hem5", "hem8"})
     EXPECT_LT(worst(scene, "momentum-index2", integrator, 0.005, 0.5), rounding) << integrator;
   for (const char* integrator : {"generalised-alpha", "bayo-ledesma"})
     EXPECT_LT(worst(scene, "acceleration-index3", integrator, 0.001, 0.5), rounding) << integrator;

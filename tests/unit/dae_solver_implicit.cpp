@@ -119,6 +119,7 @@ TEST(Integrators, PropertiesFitEachOther) {
   EXPECT_EQ(integrator("radau5").gauge, Integrator::Preferred::leak);
   EXPECT_EQ(integrator("bdf5").gauge, Integrator::Preferred::reset);
   EXPECT_EQ(integrator("hem5").gauge, Integrator::Preferred::reset_of_independent);
+  EXPECT_EQ(integrator("hem8").gauge, Integrator::Preferred::reset);
 }
 
 TEST(Bdf, ProjectedKeepsTheLoopsShut) {

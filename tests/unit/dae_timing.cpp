@@ -195,7 +195,8 @@ TEST_P(Repeats, TakeTheStepsOfTheMeasuredRun) {
 
 INSTANTIATE_TEST_SUITE_P(Timing, Repeats,
                          testing::Values("dp5", "dop853", "vern9", "rk4", "adams", "bdf", "gauss4",
-                                         "ida", "bdf5", "radau5", "hem5", "generalised-alpha"));
+                                         "ida", "bdf5", "radau5", "hem5", "hem8",
+                                         "generalised-alpha"));
 
 TEST(Timing, NamesWhatItKnows) {
   EXPECT_EQ(timing_named("once"), Timing::once);

@@ -1,0 +1,264 @@
+// hem8: a step against its equations as they stand, with dense matrices; order 8 in q, u, p and in
+// the multiplier by halved steps; the same motion in every gauge; the constraint at rounding;
+// redundant loops at the steps of the ODE form.
+
+#include "equations/ensemble.h"
+#include "equations/half_explicit.h"
+#include "equations/kkt_blocks.h"
+#include "equations/linkages.h"
+
+#include <gtest/gtest.h>
+#include <momenta/dae/solver/tableau_dop853.h>
+#include <momenta/dae/study/run_form.h>
+
+#include <Eigen/LU>
+
+namespace momenta::dae_order_hem8 {
+namespace {
+
+using namespace equations;
+using explicit_rk::TableauDop853;
+
+/// The slow twin: (7), (8) or (3) and the corrections by full pivoting, every sum written out.
+class SlowStep {
+ public:
+  SlowStep(const Mechanism& mechanism, bool momenta)
+      : e_(mechanism.evaluation<double>()),
+        of_(mechanism),
+        momenta_(momenta),
+        nq_(mechanism.nq()),
+        nv_(mechanism.nv()),
+        m_(mechanism.m()) {}
+
+  Eigen::VectorXd operator()(double t, double h, const Eigen::VectorXd& y0) {
+    constexpr int s = TableauDop853::stages;
+    std::vector<Eigen::VectorXd> k;
+    for (int i = 0; i <= s; ++i) {
+      const auto row = static_cast<std::size_t>(i);
+      Eigen::VectorXd y = y0;
+      for (std::size_t j = 0; j < row; ++j) y += h * TableauDop853::a[row][j] * k[j];
+      if (i == s) return met(t + h, y);
+      k.push_back(rate(t + TableauDop853::c[row] * h, y));
+    }
+    return y0;
+  }
+
+ private:
+  /// (x, s) of M x + Φ_qᵀ s = r, Φ_q x = g where e_ is.
+  Eigen::VectorXd solved(const Eigen::VectorXd& r, const Eigen::VectorXd& g) {
+    const KktBlocks blocks(of_, *e_);
+    Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(nv_ + m_, nv_ + m_);
+    matrix.topLeftCorner(nv_, nv_) = blocks.M;
+    matrix.topRightCorner(nv_, m_) = blocks.J.transpose();
+    matrix.bottomLeftCorner(m_, nv_) = blocks.J;
+    Eigen::VectorXd right(nv_ + m_);
+    right << r, g;
+    return matrix.fullPivLu().solve(right);
+  }
+  Eigen::VectorXd prescribed_rates() {
+    Eigen::VectorXd rate(m_);
+    e_->move(nullptr);
+    e_->velocities(rate.data());
+    return rate;
+  }
+  Eigen::VectorXd rate(double t, const Eigen::VectorXd& y) {
+    Eigen::VectorXd f(nq_ + nv_), u(nv_), r(nv_), g(m_);
+    e_->place(t, y.data());
+    if (momenta_) {
+      g = prescribed_rates();
+      e_->momenta(nullptr, r.data());
+      const Eigen::VectorXd x = solved(y.tail(nv_) - r, -g);
+      u = x.head(nv_);
+      const Eigen::VectorXd sigma = x.tail(m_);
+      e_->move(u.data());
+      e_->momenta(sigma.data(), r.data());
+      e_->momentum_rates(y.data(), u.data(), sigma.data(), 0, f.data() + nq_);
+    } else {
+      u = y.tail(nv_);
+      e_->move(u.data());
+      e_->joint_forces(y.data(), u.data(), nullptr, nullptr, r.data());
+      e_->accelerations(g.data());
+      f.tail(nv_) = solved(-r, -g).head(nv_);
+    }
+    e_->coordinate_rates(y.data(), u.data(), f.data());
+    return f;
+  }
+  Eigen::VectorXd met(double t, Eigen::VectorXd y) {
+    const Eigen::VectorXd zero = Eigen::VectorXd::Zero(nv_);
+    for (int count = 0; count < (momenta_ ? 20 : 1); ++count) {
+      e_->place(t, y.data());
+      if (!momenta_) {
+        const Eigen::VectorXd v = y.tail(nv_);
+        y.tail(nv_) = solved(KktBlocks(of_, *e_).M * v, -prescribed_rates()).head(nv_);
+        break;
+      }
+      Eigen::VectorXd g(m_), change(nq_);
+      e_->positions(g.data());
+      const Eigen::VectorXd x = solved(zero, -g);
+      e_->coordinate_rates(y.data(), x.data(), change.data());
+      y.head(nq_) += change;
+    }
+    return y;
+  }
+
+  std::unique_ptr<Evaluation<double>> e_;
+  const Mechanism& of_;
+  bool momenta_;
+  Eigen::Index nq_, nv_, m_;
+};
+
+TEST(Hem8, AStepIsThatOfItsEquations) {
+  for (const auto& [scene, h] :
+       {std::pair{example_of("four_bar"), 0.05}, std::pair{example_of("andrews"), 5e-4},
+        std::pair{example_of("driven"), 0.05}, std::pair{flying_rod(), 0.05}})
+    for (const std::string form : {"acceleration-index2", "momentum-index2"}) {
+      SCOPED_TRACE(scene.name + " " + form);
+      const Mechanism mechanism(scene);
+      const Start start = equations::start_of(mechanism);
+      FormOptions options;
+      options.gauge = parse_gauge("none");
+      const auto dae = make_form(form, mechanism, options, start);
+      const auto size = static_cast<std::size_t>(dae->dae()->size());
+      std::vector<double> y(size), ydot(size);
+      ASSERT_TRUE(dae->dae()->start(0, y.data(), ydot.data()));
+      IntegrationOptions fixed;
+      fixed.step = h;
+      const auto run = integrate("hem8", *dae->dae(), 0, {h}, fixed, {});
+      ASSERT_TRUE(run.done) << run.reason;
+      const Eigen::Index nq = mechanism.nq(), n = nq + mechanism.nv();
+      Eigen::VectorXd slow = SlowStep(mechanism, form == "momentum-index2")(
+          0, h, Eigen::Map<const Eigen::VectorXd>(y.data(), n));
+      if (mechanism.plan().quasi_velocities)
+        for (const auto& b : mechanism.tree().bodies)
+          if (b.nq >= 4) slow.segment(b.q + b.nq - 4, 4).normalize();
+      const double size_of_p = std::max(1.0, slow.tail(n - nq).cwiseAbs().maxCoeff());
+      for (Eigen::Index i = 0; i < n; ++i)
+        EXPECT_NEAR(run.y[static_cast<std::size_t>(i)], slow[i], 2e-12 * (i < nq ? 1 : size_of_p))
+            << i;
+    }
+}
+
+// From steps short enough for the order to show to steps that leave more than rounding. The driven
+// crank leaves no freedom: with Φ = 0 its q is exact.
+TEST(Hem8, OrderEightByShorterSteps) {
+  struct Case {
+    Scene scene;
+    double end;
+    int coarse, shorter;
+  };
+  for (const Case& c :
+       {Case{example_of("four_bar"), 1, 48, 4}, Case{example_of("andrews"), 0.01, 24, 2},
+        Case{driven_crank(), 1, 16, 2}, Case{flying_rod(), 1, 48, 4}})
+    for (const std::string form : {"acceleration-index2", "momentum-index2"}) {
+      SCOPED_TRACE(c.scene.name + " " + form);
+      const Halving halving("hem8", c.scene, form, c.end, "leak", "vern9");
+      const Errors a = halving.with(c.coarse), b = halving.with(c.shorter * c.coarse);
+      const auto expect_eight = [&](const char* what, double coarse, double fine) {
+        const double order = std::log(coarse / fine) / std::log(c.shorter);
+        EXPECT_GT(order, 7.2) << what << ": " << coarse << ", " << fine;
+        EXPECT_LT(order, 9.2) << what << ": " << coarse << ", " << fine;
+      };
+      if (a.q > 1e-14) expect_eight("q", a.q, b.q);
+      expect_eight("u or p", a.x, b.x);
+      expect_eight("multiplier", a.multiplier, b.multiplier);
+    }
+}
+
+// The end a third into the last step: there the order is 7, of dense output, and that of a step's
+// errors added up.
+TEST(Hem8, OrderOfDenseOutput) {
+  for (const std::string form : {"acceleration-index2", "momentum-index2"}) {
+    SCOPED_TRACE(form);
+    const Halving halving("hem8", example_of("four_bar"), form, 1, "leak", "vern9");
+    const Errors a = halving.with(30, 1.0 / 3), b = halving.with(60, 1.0 / 3);
+    for (const auto& [coarse, fine] :
+         {std::pair{a.q, b.q}, std::pair{a.x, b.x}, std::pair{a.multiplier, b.multiplier}})
+      EXPECT_GT(std::log2(coarse / fine), 6.5) << coarse << ", " << fine;
+  }
+}
+
+// With a reset a step is the same, but for rounding, whatever constant was added to σ before it.
+TEST(Hem8, TheSameMotionInEveryGauge) {
+  for (const char* name : {"four_bar", "andrews"}) {
+    SCOPED_TRACE(name);
+    const bool fast = name[0] == 'a';
+    const Mechanism mechanism(example_of(name));
+    const Start start = equations::start_of(mechanism);
+    const auto run = [&](double size) {
+      FormOptions options;
+      options.gauge = parse_gauge("reset");
+      const auto form = make_form("momentum-index2", mechanism, options, start);
+      InAnyGauge shifted(*form->dae(), size);
+      IntegrationOptions fixed;
+      fixed.step = fast ? 2e-4 : 0.02;
+      const auto result = integrate("hem8", shifted, 0, {50 * fixed.step}, fixed, {});
+      EXPECT_TRUE(result.done) << result.reason;
+      return result.y;
+    };
+    const auto still = run(0), moved = run(fast ? 1 : 10);
+    for (std::size_t i = 0; i < static_cast<std::size_t>(mechanism.nq()); ++i)
+      EXPECT_NEAR(still[i], moved[i], 1e-11) << i;
+  }
+}
+
+RunResult run_hem8(const Mechanism& mechanism, const std::string& form, const std::string& gauge,
+                   double tolerance, double end, int samples) {
+  RunRequest request;
+  request.settings.form = form;
+  request.settings.integrator = "hem8";
+  request.settings.gauge = form == "momentum-index2" ? gauge : "";
+  request.settings.rtol = request.settings.atol = tolerance;
+  request.settings.end_time = end;
+  request.settings.samples = samples;
+  request.keep_trajectory = true;
+  return run_form(mechanism, equations::start_of(mechanism), request);
+}
+
+// The constraint that stands in the equations, at every sample inside steps too and at a loose
+// tolerance; the other one drifts with the local error. Looking on changes nothing.
+TEST(Hem8, KeepsItsConstraint) {
+  const Mechanism mechanism(example_of("four_bar"));
+  const RunResult p = run_hem8(mechanism, "momentum-index2", "reset", 1e-4, 5, 500);
+  ASSERT_EQ(p.status, "done") << p.reason;
+  EXPECT_LE(p.position_drift_max, 1e-14);
+  const RunResult u = run_hem8(mechanism, "acceleration-index2", "", 1e-4, 5, 500);
+  ASSERT_EQ(u.status, "done") << u.reason;
+  EXPECT_LE(u.velocity_drift_max, 1e-13);
+  EXPECT_GE(u.position_drift_max, 1e-10);
+  const RunResult few = run_hem8(mechanism, "momentum-index2", "reset", 1e-4, 5, 1);
+  EXPECT_EQ(few.counters.steps, p.counters.steps);
+  EXPECT_EQ(few.trajectory.rows.back(), p.trajectory.rows.back());
+}
+
+// Redundant equations fade, as in the ODE form: no more steps than it takes, at any tolerance.
+TEST(Hem8, RedundantEquationsCostNoSteps) {
+  const Mechanism mechanism(example_of("bricard"));
+  for (const double tolerance : {1e-5, 1e-8, 1e-11}) {
+    SCOPED_TRACE(tolerance);
+    const RunResult ode = run_of(mechanism, "momentum", "dop853", "reset", tolerance, 5);
+    ASSERT_EQ(ode.status, "done") << ode.reason;
+    for (const char* gauge : {"leak", "reset"}) {
+      const RunResult dae = run_hem8(mechanism, "momentum-index2", gauge, tolerance, 5, 20);
+      ASSERT_EQ(dae.status, "done") << gauge << dae.reason;
+      EXPECT_LE(dae.position_drift_max, 1e-13) << gauge;
+      EXPECT_LE(static_cast<double>(dae.counters.steps),
+                1.3 * static_cast<double>(ode.counters.steps))
+          << gauge;
+    }
+  }
+}
+
+TEST(Hem8, RefusesOtherForms) {
+  const Mechanism mechanism(example_of("four_bar"));
+  for (const char* form : {"acceleration-index3", "momentum-index1", "stabilised-index2"}) try {
+      run_hem8(mechanism, form, "", 1e-7, 1, 1);
+      FAIL() << form;
+    } catch (const std::invalid_argument& e) {
+      EXPECT_NE(std::string(e.what()).find("acceleration-index2 or momentum-index2"),
+                std::string::npos)
+          << e.what();
+    }
+}
+
+}  // namespace
+}  // namespace momenta::dae_order_hem8
