@@ -3,6 +3,7 @@
 #include <momenta/dae/text/csv_cells.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <fstream>
@@ -15,6 +16,20 @@ std::string unit_of(const std::string& column) {
   return open == std::string::npos || close == std::string::npos || close < open
              ? ""
              : column.substr(open + 1, close - open - 1);
+}
+
+Reference::Kind kind_of(const std::string& column) {
+  using Kind = Reference::Kind;
+  const auto named = [&](const char* part) { return column.find(part) != std::string::npos; };
+  const std::string unit = unit_of(column);
+  if (unit == "N" || unit == "N m")
+    return named(".effort")                        ? Kind::effort
+           : named(".force_") || named(".torque_") ? Kind::reaction
+                                                   : Kind::force;
+  if (named(".impulse")) return Kind::impulse;
+  if (unit == "N s" || unit == "N m s" || unit.starts_with("J s/")) return Kind::momentum;
+  if (column == "work [J]") return Kind::work;
+  return unit.ends_with("/s") ? Kind::velocity : Kind::position;
 }
 
 }  // namespace
@@ -81,43 +96,51 @@ std::string Reference::csv() const {
   return text;
 }
 
-void Reference::bind(const std::vector<std::string>& trajectory_columns) {
+void Reference::bind(const std::vector<std::string>& measured_columns) {
   place_.clear();
   kind_.clear();
   for (const auto& column : columns_) {
-    const auto found = std::find(trajectory_columns.begin(), trajectory_columns.end(), column);
-    if (found == trajectory_columns.end())
+    const auto found = std::find(measured_columns.begin(), measured_columns.end(), column);
+    if (found == measured_columns.end())
       throw SceneError(file_ + ":1: column '" + column +
                        "' is not one of the trajectory's; expected for instance '" +
-                       (trajectory_columns.size() > 1 ? trajectory_columns[1] : "") + "'");
-    place_.push_back(static_cast<std::size_t>(found - trajectory_columns.begin()));
-    const std::string unit = unit_of(column);
-    kind_.push_back(unit.ends_with("/s")           ? Kind::velocity
-                    : unit == "N" || unit == "N m" ? Kind::force
-                                                   : Kind::position);
+                       (measured_columns.size() > 1 ? measured_columns[1] : "") + "'");
+    place_.push_back(static_cast<std::size_t>(found - measured_columns.begin()));
+    kind_.push_back(kind_of(column));
   }
 }
 
-bool Reference::has_forces() const {
-  return std::find(kind_.begin(), kind_.end(), Kind::force) != kind_.end();
+bool Reference::has(Kind kind) const {
+  return std::find(kind_.begin(), kind_.end(), kind) != kind_.end();
 }
 
-Reference::Error Reference::error(std::size_t row, const std::vector<double>& trajectory_row,
+std::size_t Reference::column_at(std::size_t place) const {
+  return static_cast<std::size_t>(std::find(place_.begin(), place_.end(), place) - place_.begin());
+}
+
+Reference::Error Reference::error(std::size_t row, const std::vector<double>& measured,
                                   const std::vector<std::size_t>& not_unique) const {
   Error e;
-  bool any_force = false;
+  const auto of = [&e](Kind kind) -> double& {
+    return kind == Kind::velocity   ? e.velocity
+           : kind == Kind::force    ? e.force
+           : kind == Kind::effort   ? e.effort
+           : kind == Kind::reaction ? e.reaction
+           : kind == Kind::impulse  ? e.impulse
+           : kind == Kind::work     ? e.work
+                                    : e.position;
+  };
+  std::array<bool, 8> met{true, true};  // positions and velocities begin at 0
   for (std::size_t i = 0; i < place_.size(); ++i) {
+    if (kind_[i] == Kind::momentum) continue;
     if (std::binary_search(not_unique.begin(), not_unique.end(), place_[i])) continue;
     const double reference = values_[row][i];
-    const double difference =
-        std::abs(trajectory_row[place_[i]] - reference) / (1 + std::abs(reference));
-    double& largest = kind_[i] == Kind::velocity ? e.velocity
-                      : kind_[i] == Kind::force  ? e.force
-                                                 : e.position;
-    const bool first = kind_[i] == Kind::force && !any_force;
-    any_force |= first;
+    const double difference = std::abs(measured[place_[i]] - reference) / (1 + std::abs(reference));
+    double& largest = of(kind_[i]);
+    bool& any = met[static_cast<std::size_t>(kind_[i])];
     // NaN too, which stays.
-    if (first || (!std::isnan(largest) && !(difference <= largest))) largest = difference;
+    if (!any || (!std::isnan(largest) && !(difference <= largest))) largest = difference;
+    any = true;
   }
   return e;
 }

@@ -1,6 +1,7 @@
 #pragma once
 // A reference solution: a CSV whose first column is `t [s]` and whose other columns are named like
-// trajectory columns.
+// measured columns: those of the trajectory with reactions, momenta M u, loop impulses ∫λ dt, and
+// the work of drives and of what has no potential (study/measured_columns.h).
 
 #include <filesystem>
 #include <limits>
@@ -30,26 +31,39 @@ class Reference {
   const std::vector<std::string>& columns() const { return columns_; }
   const std::vector<std::vector<double>>& values() const { return values_; }  ///< by time, column
 
-  /// Matches the columns with those of a trajectory ("t [s]" first). @throws SceneError naming a
-  /// column that the trajectory does not have.
-  void bind(const std::vector<std::string>& trajectory_columns);
+  /// Matches the columns with those of a row ("t [s]" first). @throws SceneError naming a column
+  /// that is none of them.
+  void bind(const std::vector<std::string>& measured_columns);
 
   /// The text of the CSV file that the constructor reads, with all digits of each number.
   std::string csv() const;
 
-  /// Whether there are columns in N or N m. After bind().
-  bool has_forces() const;
+  /// What a column is, by its name and unit.
+  enum class Kind { position, velocity, force, effort, reaction, momentum, impulse, work };
+  /// Whether there are such columns. After bind().
+  bool has(Kind kind) const;
+  /// Whether there are λ, efforts or reactions. After bind().
+  bool has_forces() const { return has(Kind::force) || has(Kind::effort) || has(Kind::reaction); }
+  /// Which of the reference's columns is the one at a place among those it is bound to; columns()'
+  /// size where none is. After bind(). Cost O(columns).
+  std::size_t column_at(std::size_t place) const;
 
   /// The error of a row against the reference.
   struct Error {
+    static constexpr double none = std::numeric_limits<double>::quiet_NaN();
     double position = 0;  ///< max |value − ref| / (1 + |ref|) over columns in rad and m
     double velocity = 0;  ///< the same over columns in rad/s and m/s
-    /// The same over columns in N and N m; not a number where none is unique.
-    double force = std::numeric_limits<double>::quiet_NaN();
+    // The same over others; not a number where none is unique.
+    double force = none;     ///< λ of loops [N, N m]
+    double effort = none;    ///< of drives [N, N m]
+    double reaction = none;  ///< of joints [N, N m]
+    double impulse = none;   ///< ∫λ dt [N s, N m s]
+    double work = none;      ///< [J]
   };
-  /// The error of a trajectory row at the reference time of index `row`, without the columns that
-  /// are not unique there (places in the trajectory, ascending). After bind().
-  Error error(std::size_t row, const std::vector<double>& trajectory_row,
+  /// The error of a row at the reference time of index `row`, without the columns that are not
+  /// unique there (places, ascending), and without momenta, whose error is not that of their
+  /// columns (study/momentum_error.h). After bind().
+  Error error(std::size_t row, const std::vector<double>& measured,
               const std::vector<std::size_t>& not_unique = {}) const;
 
  private:
@@ -57,8 +71,7 @@ class Reference {
   std::vector<double> times_;
   std::vector<std::string> columns_;
   std::vector<std::vector<double>> values_;  ///< by time, by column
-  std::vector<std::size_t> place_;           ///< of each column in a trajectory row
-  enum class Kind { position, velocity, force };
+  std::vector<std::size_t> place_;           ///< of each column in a row
   std::vector<Kind> kind_;
 };
 

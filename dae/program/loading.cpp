@@ -2,6 +2,7 @@
 
 #include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/equations/holds_equations.h>
+#include <momenta/dae/study/measured_columns.h>
 #include <momenta/dae/study/motion.h>
 #include <momenta/dae/study/state_input.h>
 
@@ -118,7 +119,7 @@ RunSettings run_settings(const Options& o, const RunDefaults& defaults) {
 std::unique_ptr<Reference> load_reference(const Options& o, const Mechanism& mechanism) {
   if (o.reference.empty()) return nullptr;
   auto reference = std::make_unique<Reference>(o.reference);
-  reference->bind(trajectory_columns(mechanism, o.reactions));
+  reference->bind(measured_columns(mechanism));
   return reference;
 }
 

@@ -1,6 +1,7 @@
 #include <momenta/dae/report/advice.h>
 #include <momenta/dae/report/order_table.h>
 #include <momenta/dae/solver/integrators.h>
+#include <momenta/dae/study/measured_columns.h>
 #include <momenta/dae/study/own_reference.h>
 #include <momenta/dae/study/run_record.h>
 #include <momenta/dae/study/work_study.h>
@@ -65,14 +66,15 @@ int work(const Options& o, const WorkOptions& w) {
     ProgressLine line(o.quiet);
     if (!reference && !w.no_reference) {
       auto known = recall<OwnReference>(journal.get(), "reference");
-      if (known) known->reference.bind(trajectory_columns(*mechanism));
-      OwnReference own = known
-                             ? *std::move(known)
-                             : own_reference(*mechanism, a.start, request.end_time,
-                                             own_reference_rows, [&](double t) {
-                                               line.show("reference  t = " + compact(t, 4) + " s");
-                                               return !interrupted();
-                                             });
+      if (known) known->reference.bind(measured_columns(*mechanism));
+      OwnReference own = known ? *std::move(known)
+                               : own_reference(
+                                     *mechanism, a.start, request.end_time, own_reference_rows,
+                                     [&](double t) {
+                                       line.show("reference  t = " + compact(t, 4) + " s");
+                                       return !interrupted();
+                                     },
+                                     true);
       if (journal && !known) journal->add("reference", record_of(own));
       study.reference = in_words(own);
       reference = std::make_unique<Reference>(std::move(own.reference));

@@ -5,6 +5,7 @@
 #include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/study/column_named.h>
 #include <momenta/dae/study/drift_study.h>
+#include <momenta/dae/study/measured_columns.h>
 #include <momenta/dae/study/own_reference.h>
 #include <momenta/dae/study/run_record.h>
 #include <momenta/dae/study/work_study.h>
@@ -42,11 +43,10 @@ py::array_t<double> view(const std::vector<double>& x, const py::object& owner) 
   return py::array_t<double>(static_cast<py::ssize_t>(x.size()), x.data(), owner);
 }
 
-std::unique_ptr<Reference> reference_of(const std::string& file, const Mechanism& mechanism,
-                                        bool reactions = false) {
+std::unique_ptr<Reference> reference_of(const std::string& file, const Mechanism& mechanism) {
   if (file.empty()) return nullptr;
   auto reference = std::make_unique<Reference>(file);
-  reference->bind(trajectory_columns(mechanism, reactions));
+  reference->bind(measured_columns(mechanism));
   return reference;
 }
 
@@ -60,7 +60,7 @@ RunPtr run(const Bench& bench, const std::string& form, const std::string& integ
   const RunArguments asked{
       form,    integrator,      gauge,          rtol, atol,   step, end, samples, spectral_radius,
       project, baumgarte_alpha, baumgarte_beta, beta, penalty};
-  const auto given = reference_of(reference, mechanism, reactions);
+  const auto given = reference_of(reference, mechanism);
   RunRequest request;
   request.settings = asked.settings(mechanism.scene().run);
   request.reference = given.get();
@@ -270,8 +270,7 @@ void bind_runs(py::module_& module) {
       "error against the reference, max |err| / (1 + |ref|); nan without a reference");
   text(
       "force_error_max", [](const RunResult& r) { return r.force_error_max; },
-      "error of lambda solved from (3), and of other forces; nan without a reference that has "
-      "them");
+      "error of lambda solved from (3); nan without a reference that has it");
   text(
       "multiplier_error_max", [](const RunResult& r) { return r.multiplier_error_max; },
       "error of lambda as the form itself has it; nan without a reference that has it");
@@ -279,6 +278,38 @@ void bind_runs(py::module_& module) {
       "multiplier_difference_max", [](const RunResult& r) { return r.multiplier_difference_max; },
       "lambda of the form itself against lambda solved from (3), max |difference| / (1 + "
       "|lambda|)");
+  text(
+      "momentum_error_max", [](const RunResult& r) { return r.momentum_error_max; },
+      "error of p without its gauge; nan without a reference that has M u");
+  text(
+      "impulse_error_max", [](const RunResult& r) { return r.impulse_error_max; },
+      "error of the loops' impulses, the integral of lambda; nan without a reference that has "
+      "them");
+  text(
+      "effort_error_max", [](const RunResult& r) { return r.effort_error_max; },
+      "error of the efforts of drives; nan without a reference that has them");
+  text(
+      "reaction_error_max", [](const RunResult& r) { return r.reaction_error_max; },
+      "error of the reactions of joints, where unique; nan without a reference that has them");
+  text(
+      "work_error_max", [](const RunResult& r) { return r.work_error_max; },
+      "error of the work of drives and of forces without potential; nan without a reference of it");
+  run.def_property_readonly(
+      "reaction_errors",
+      [](const Run& r) {
+        py::list all;
+        for (const RunResult::ReactionError& joint : r.result.reaction_errors) {
+          py::dict one;
+          one["joint"] = joint.joint;
+          one["error_max"] = joint.error_max;
+          one["not_unique"] = joint.not_unique;
+          all.append(one);
+        }
+        return all;
+      },
+      "by joint, against a reference with reactions: dicts with joint, error_max (nan: none) and "
+      "at "
+      "how many of its times the reaction is not unique");
   const auto series = [&](const char* name, std::vector<double> Series::*member, const char* doc) {
     run.def_property_readonly(
         name,
@@ -300,11 +331,22 @@ void bind_runs(py::module_& module) {
   series("position_error", &Series::position_error,
          "error against the reference, max |err| / (1 + |ref|); empty without a reference");
   series("force_error", &Series::force_error,
-         "error of lambda solved from (3), and of other forces; empty without a reference of them");
+         "error of lambda solved from (3); empty without a reference that has it");
   series("multiplier_error", &Series::multiplier_error,
          "error of lambda as the form itself has it; empty without a reference that has it");
   series("multiplier_difference", &Series::multiplier_difference,
          "lambda of the form itself against lambda solved from (3)");
+  series("momentum_error", &Series::momentum_error,
+         "error of p without its gauge; empty without a reference that has M u");
+  series("impulse_error", &Series::impulse_error,
+         "error of the integral of lambda; empty without a reference that has it");
+  series("effort_error", &Series::effort_error,
+         "error of the efforts of drives; empty without a reference that has them");
+  series("reaction_error", &Series::reaction_error,
+         "error of the reactions of joints; empty without a reference that has them");
+  series("work_error", &Series::work_error,
+         "error of the work of drives and of forces without potential; empty without a reference "
+         "that has it");
   run.def_property_readonly(
          "columns", [](const Run& r) { return r.result.trajectory.columns; },
          "names of the trajectory's columns, with units")

@@ -77,7 +77,17 @@ Json summary_json(const RunResult& run, const Environment& environment) {
   json["error"] = {{"position_max", number_or_null(run.position_error_max)},
                    {"velocity_max", number_or_null(run.velocity_error_max)},
                    {"force_max", number_or_null(run.force_error_max)},
-                   {"multiplier_max", number_or_null(run.multiplier_error_max)}};
+                   {"multiplier_max", number_or_null(run.multiplier_error_max)},
+                   {"momentum_max", number_or_null(run.momentum_error_max)},
+                   {"impulse_max", number_or_null(run.impulse_error_max)},
+                   {"effort_max", number_or_null(run.effort_error_max)},
+                   {"reaction_max", number_or_null(run.reaction_error_max)},
+                   {"work_max", number_or_null(run.work_error_max)}};
+  json["reaction_errors"] = Json::array();
+  for (const auto& joint : run.reaction_errors)
+    json["reaction_errors"].push_back({{"joint", joint.joint},
+                                       {"error_max", number_or_null(joint.error_max)},
+                                       {"not_unique", joint.not_unique}});
   json["multiplier_difference_max"] = number_or_null(run.multiplier_difference_max);
   json["integrated"] = run.integrated;
   json["rank"] = run.drift_unit.empty() ? Json(nullptr) : Json(run.rank);

@@ -4,6 +4,7 @@
 #include <momenta/dae/text/number_text.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -45,11 +46,35 @@ std::string order_of_impulses(const Rungs& ladder) {
   return order_of(steps, changes);
 }
 
+/// Errors whose orders are told where any run has them.
+struct OrderedError {
+  const char* title;
+  double RunResult::*error;
+  bool always;
+};
+constexpr std::array<OrderedError, 9> ordered_errors{
+    {{"q", &RunResult::position_error_max, true},
+     {"u", &RunResult::velocity_error_max, true},
+     {"p", &RunResult::momentum_error_max, false},
+     {"λ of (3)", &RunResult::force_error_max, true},
+     {"reactions", &RunResult::reaction_error_max, false},
+     {"efforts", &RunResult::effort_error_max, false},
+     {"work", &RunResult::work_error_max, false},
+     {"own λ", &RunResult::multiplier_error_max, true},
+     {"∫λ", &RunResult::impulse_error_max, false}}};
+
 }  // namespace
 
 std::string order_table(const StudyResult& study) {
-  std::vector<std::vector<std::string>> rows{
-      {"observed order of", "", "", "q", "u", "λ of (3)", "own λ", "σ"}};
+  std::vector<OrderedError> told;
+  for (const OrderedError& column : ordered_errors)
+    if (column.always ||
+        std::any_of(study.runs.begin(), study.runs.end(),
+                    [&](const RunResult& run) { return !std::isnan(run.*column.error); }))
+      told.push_back(column);
+  std::vector<std::vector<std::string>> rows{{"observed order of", "", ""}};
+  for (const OrderedError& column : told) rows.front().emplace_back(column.title);
+  rows.front().emplace_back("σ");
   const auto first = ladders(study);
   for (std::size_t i = 0; i < study.runs.size(); ++i) {
     if (first[i] != i) continue;
@@ -58,12 +83,10 @@ std::string order_table(const StudyResult& study) {
       if (first[j] == i && study.runs[j].status == "done") ladder.push_back(&study.runs[j]);
     if (ladder.empty()) continue;
     const RunSettings& s = ladder.front()->settings;
-    rows.push_back({s.form + (s.project ? "+project" : ""), s.integrator,
-                    s.gauge.empty() ? "-" : s.gauge,
-                    order_of(ladder, &RunResult::position_error_max),
-                    order_of(ladder, &RunResult::velocity_error_max),
-                    order_of(ladder, &RunResult::force_error_max),
-                    order_of(ladder, &RunResult::multiplier_error_max), order_of_impulses(ladder)});
+    std::vector<std::string>& row = rows.emplace_back();
+    row = {s.form + (s.project ? "+project" : ""), s.integrator, s.gauge.empty() ? "-" : s.gauge};
+    for (const OrderedError& column : told) row.push_back(order_of(ladder, column.error));
+    row.push_back(order_of_impulses(ladder));
   }
   return in_columns(rows) +
          "Errors fall like steps^-order, ± half the spread of slopes of parts of the ladder. λ of "

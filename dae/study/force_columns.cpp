@@ -45,6 +45,12 @@ void ForceColumns::solve(double t, const Eigen::VectorXd& q, const Eigen::Vector
   idle_ = Eigen::Map<const Eigen::VectorXd>(idle.data(), static_cast<Eigen::Index>(idle.size()));
 }
 
+void ForceColumns::take(const Eigen::VectorXd& udot, const Eigen::VectorXd& lambda) {
+  if (!found_) return;
+  udot_ = udot;
+  lambda_ = lambda;
+}
+
 void ForceColumns::append(std::vector<double>& row, std::vector<std::size_t>& not_unique) {
   const auto& rows = mechanism_.rows();
   int open = 0;

@@ -26,6 +26,8 @@ class ForceColumns {
   /// Solves (3) at (t, q, u); what has no solution is not a number. Cost: that of a solution of
   /// (3), twice where rows have faded.
   void solve(double t, const Eigen::VectorXd& q, const Eigen::VectorXd& u);
+  /// After solve(): u̇ (nv) and λ (m) known to more digits, in place of those found.
+  void take(const Eigen::VectorXd& udot, const Eigen::VectorXd& lambda);
   /// λ (m), after solve().
   const Eigen::VectorXd& lambda() const { return lambda_; }
   /// Which of them are unique (m); all, where there is no solution.

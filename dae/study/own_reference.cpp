@@ -2,13 +2,16 @@
 #include <momenta/dae/solver/extrapolation.h>
 #include <momenta/dae/solver/integrators.h>
 #include <momenta/dae/solver/radau_collocation.h>
+#include <momenta/dae/study/measured_columns.h>
 #include <momenta/dae/study/own_reference.h>
+#include <momenta/dae/study/own_reference_forces.h>
 #include <momenta/dae/study/quad_motion.h>
-#include <momenta/dae/study/run_form.h>
+#include <momenta/dae/study/rank_at_start.h>
 #include <momenta/dae/text/number_text.h>
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 
 namespace momenta {
@@ -47,22 +50,37 @@ bool is_stiff(const Mechanism& mechanism, const Start& start, double end,
       integrate("dop853", *form->ode(), start.t, y0, {end}, run, observer).stiff_from);
 }
 
-/// q, u and λ at t = 0, end / count, …: as long a step of `method` as converges, never across an
-/// output.
+/// `count` quads as doubles.
+Eigen::VectorXd rounded(const Quad* x, Eigen::Index count) {
+  Eigen::VectorXd values(count);
+  for (Eigen::Index i = 0; i < count; ++i) values[i] = value_of(x[i]);
+  return values;
+}
+
+/// q, u, λ and the first `impulses` of ∫λ dt at t = 0, end / count, …: as long a step of `method`
+/// as converges, never across an output. `forces` (may be null) is told each of these states.
 template <class Method>
 Rows solve(const Mechanism& mechanism, const Start& start, double end, int count, double tolerance,
-           Method&& method, const std::function<bool(double)>& going_on) {
+           Method&& method, std::size_t impulses, OwnReferenceForces* forces,
+           const std::function<bool(double)>& going_on) {
   const auto motion = make_quad_motion(mechanism);
   const auto size = static_cast<std::size_t>(mechanism.nq() + mechanism.nv());
   std::vector<Quad> y(start.q.begin(), start.q.end());
   y.insert(y.end(), start.u.begin(), start.u.end());
+  y.resize(size + impulses, Quad(0));
   Rows rows;
   std::vector<Quad> rates(size);
   const auto keep = [&](double t) {
     if (!motion->rates(t, y.data(), rates.data())) give_up(t, "a joint has no inertia");
+    const Eigen::VectorXd q = rounded(y.data(), mechanism.nq()),
+                          u = rounded(y.data() + q.size(), mechanism.nv()),
+                          udot = rounded(rates.data() + q.size(), mechanism.nv()),
+                          lambda = rounded(motion->multipliers(), mechanism.m()),
+                          sums = rounded(y.data() + size, static_cast<Eigen::Index>(impulses));
     std::vector<double>& row = rows.emplace_back();
-    for (const Quad& x : y) row.push_back(value_of(x));
-    for (int i = 0; i < mechanism.m(); ++i) row.push_back(value_of(motion->multipliers()[i]));
+    for (const Eigen::VectorXd& part : {q, u, lambda, sums})
+      row.insert(row.end(), part.begin(), part.end());
+    if (forces) forces->add(t, q, u, udot, lambda);
   };
   const double interval = end / count;
   double t = start.t, h = interval;
@@ -74,7 +92,9 @@ Rows solve(const Mechanism& mechanism, const Start& start, double end, int count
       const bool reaches = t + h >= next * (1 - 1e-14);
       const double step = reaches ? next - t : h;
       if (method.step(t, step, y, tolerance, [&](double at, const Quad* x, Quad* rate) {
-            return motion->rates(at, x, rate);
+            if (!motion->rates(at, x, rate)) return false;
+            std::copy_n(motion->multipliers(), impulses, rate + size);
+            return true;
           })) {
         t = reaches ? next : t + step;
         if (!motion->project(t, y.data())) give_up(t, "the projection failed");
@@ -93,7 +113,7 @@ Rows solve(const Mechanism& mechanism, const Start& start, double end, int count
 }  // namespace
 
 OwnReference own_reference(const Mechanism& mechanism, const Start& start, double end, int count,
-                           const std::function<bool(double)>& going_on) {
+                           const std::function<bool(double)>& going_on, bool forces) {
   if (has_rigid_stops(mechanism.scene()))
     throw std::invalid_argument(
         "the scene has rigid stops (restitution), whose impacts a reference of its own knows "
@@ -104,18 +124,28 @@ OwnReference own_reference(const Mechanism& mechanism, const Start& start, doubl
   for (const auto& c : mechanism.coordinate_columns()) columns.push_back(c.label());
   for (const auto& c : mechanism.rate_columns()) columns.push_back(c.label());
   for (const auto& c : mechanism.multiplier_columns()) columns.push_back(c.label());
-  const auto size = static_cast<std::size_t>(mechanism.nq() + mechanism.nv());
+  // Of redundant rows λ need not be continuous.
+  const bool impulses =
+      forces && mechanism.m() > 0 && rank_at(mechanism, start).rank == mechanism.m();
+  if (impulses)
+    for (const auto& c : impulse_columns(mechanism)) columns.push_back(c.label());
+  const auto more = impulses ? static_cast<std::size_t>(mechanism.m()) : 0,
+             size = static_cast<std::size_t>(mechanism.nq() + mechanism.nv()) + more;
   const bool in_time = mechanism.plan().drives,
              implicit = is_stiff(mechanism, start, end, going_on);
-  const auto solved = [&](double quad, double in_steps, double of_time) {
+  const auto solved = [&](double quad, double in_steps, double of_time, OwnReferenceForces* told) {
     const double least = in_time ? of_time : 0;
     return implicit ? solve(mechanism, start, end, count, std::max(in_steps, least),
-                            RadauCollocation<Quad>(size), going_on)
+                            RadauCollocation<Quad>(size), more, told, going_on)
                     : solve(mechanism, start, end, count, std::max(quad, least),
-                            Extrapolation<Quad>(size), going_on);
+                            Extrapolation<Quad>(size), more, told, going_on);
   };
-  const Rows rows = solved(tight, tight_implicit, tight_in_time),
-             check = solved(loose, loose_implicit, loose_in_time);
+  std::optional<OwnReferenceForces> others;
+  if (forces) others.emplace(mechanism);
+  Rows rows = solved(tight, tight_implicit, tight_in_time, others ? &*others : nullptr);
+  Rows check = solved(loose, loose_implicit, loose_in_time, nullptr);
+  const std::size_t compared = columns.size();
+  if (others) others->append(columns, rows);
   OwnReference own{Reference("quadruple precision", columns, times, rows), 0, implicit};
   std::vector<std::string> bound{"t [s]"};
   bound.insert(bound.end(), columns.begin(), columns.end());
@@ -123,9 +153,10 @@ OwnReference own_reference(const Mechanism& mechanism, const Start& start, doubl
   for (std::size_t i = 0; i < check.size(); ++i) {
     std::vector<double> row{times[i]};
     row.insert(row.end(), check[i].begin(), check[i].end());
+    row.resize(row.size() + columns.size() - compared);
     own.accuracy = std::max(own.accuracy, own.reference.error(i, row).position);
   }
-  own.reference.bind(trajectory_columns(mechanism));
+  own.reference.bind(measured_columns(mechanism));
   return own;
 }
 

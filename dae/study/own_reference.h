@@ -22,10 +22,12 @@ struct OwnReference {
 };
 
 /// Joint coordinates, rates and multipliers λ at `count` equal intervals up to `end` [s], bound to
-/// the mechanism's trajectory. `going_on` (may be empty) is told the time reached; false ends it.
+/// measured_columns(). With `forces` also ∫λ dt, integrated beside q and u, where the loop
+/// equations are independent at the start; and efforts, reactions, momenta and work
+/// (own_reference_forces.h). `going_on` (may be empty) is told the time reached; false ends it.
 /// @throws std::runtime_error with one sentence when there is no such solution.
 OwnReference own_reference(const Mechanism& mechanism, const Start& start, double end, int count,
-                           const std::function<bool(double t)>& going_on = {});
+                           const std::function<bool(double t)>& going_on = {}, bool forces = false);
 
 /// "quadruple precision: acceleration form …; two tolerances agree to 2e-17"
 std::string in_words(const OwnReference& own);

@@ -18,11 +18,12 @@ RunMonitor::RunMonitor(const Mechanism& mechanism, const IntegratedScene& scene,
       residue_(start.residue),
       phi_(mechanism.m()),
       middle_(mechanism.nq()),
-      row_(mechanism, request.reactions),
       errors_(mechanism, request.reference, result.settings.end_time, result.series),
+      row_(mechanism, request.reactions || errors_.takes_reactions()),
       works_(IntegratedWork::has_any(mechanism)),
       limits_(mechanism) {
-  if (request.keep_trajectory) result.trajectory.columns = row_.columns();
+  if (request.keep_trajectory)
+    result.trajectory.columns = trajectory_columns(mechanism, request.reactions);
   if (mechanism.m() > 0) {
     result.drift_unit = mechanism.has_lengths() ? "m" : "rad";
     apart_.emplace(mechanism, result.settings);
@@ -30,7 +31,11 @@ RunMonitor::RunMonitor(const Mechanism& mechanism, const IntegratedScene& scene,
   }
   drives_.emplace(mechanism, *e_, solver_.get());
   friction_ = bearing_friction(mechanism);
-  const bool compares_forces = request.reference && request.reference->has_forces();
+  const bool compares_forces =
+      request.reference && (request.reference->has_forces() || errors_.takes_reactions() ||
+                            request.reference->has(Reference::Kind::impulse));
+  if (request.reference && request.reference->has(Reference::Kind::momentum))
+    errors_.measure_momenta(*e_, solver_.get());
   if (request.keep_trajectory || compares_forces || request.multipliers)
     row_.take_forces_of(mechanism, *e_, solver_.get());
   const Mechanism& integrated = scene.mechanism();
@@ -155,12 +160,21 @@ void RunMonitor::note(double t, const Measured& now) {
 bool RunMonitor::keep_row(double t, const Measured& now) {
   if (!request_.keep_trajectory && !request_.reference && !errors_.measures_own()) return true;
   row_.set(t, now_, *e_, now.energy, now.position, now.velocity);
-  if (request_.keep_trajectory) row_.note_undetermined(t, result_.undetermined);
-  errors_.sample(t, row_, now_.multipliers);
+  if (request_.keep_trajectory)
+    row_.note_undetermined(t, result_.trajectory.columns.size(), result_.undetermined);
+  errors_.sample(t, now_, row_, work_.until(t));
   if (!request_.keep_trajectory) return true;
-  if (request_.on_row && !request_.on_row(row_.numbers())) return false;
-  if (rows_++ % request_.keep_every == 0) result_.trajectory.rows.push_back(row_.numbers());
+  std::vector<double> kept = kept_row();
+  if (request_.on_row && !request_.on_row(kept)) return false;
+  if (rows_++ % request_.keep_every == 0) result_.trajectory.rows.push_back(std::move(kept));
   return true;
+}
+
+/// Reactions that only the reference asks for stand behind the trajectory's columns.
+std::vector<double> RunMonitor::kept_row() const {
+  std::vector<double> row = row_.numbers();
+  row.resize(result_.trajectory.columns.size());
+  return row;
 }
 
 void RunMonitor::keep_closed(double t, const Eigen::VectorXd& q) {
@@ -198,11 +212,17 @@ void RunMonitor::finish() {
   if (singular_crossings_) singular_crossings_->finish();
   result_.energy_error_max = largest(s.energy_error);
   result_.multiplier_difference_max = largest(s.multiplier_difference);
+  result_.reaction_errors = errors_.of_reactions();
   if (request_.reference && result_.status == "done" && errors_.compared() > 0) {
     result_.position_error_max = largest(s.position_error);
     result_.velocity_error_max = largest(s.velocity_error);
     result_.force_error_max = largest(s.force_error);
     result_.multiplier_error_max = largest(s.multiplier_error);
+    result_.momentum_error_max = largest(s.momentum_error);
+    result_.impulse_error_max = largest(s.impulse_error);
+    result_.effort_error_max = largest(s.effort_error);
+    result_.reaction_error_max = largest(s.reaction_error);
+    result_.work_error_max = largest(s.work_error);
   }
   if (mechanism_.m() == 0) return;
   const bool lengths = mechanism_.has_lengths();

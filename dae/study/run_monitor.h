@@ -99,6 +99,7 @@ class RunMonitor {
   Measured measure(double t, const Drift& position);
   void note(double t, const Measured& now);
   bool keep_row(double t, const Measured& now);
+  std::vector<double> kept_row() const;
   /// The row of the trajectory at an event; empty where none is kept or it cannot be read.
   std::vector<double> row_at(double t);
   /// @pre phi_ is Φ at (t, q)
@@ -139,8 +140,8 @@ class RunMonitor {
   std::vector<double> state_;
   Eigen::VectorXd residue_;  ///< Φ at the start where redundant equations leave it open, or empty
   Eigen::VectorXd phi_, drift_, middle_;
-  TrajectoryRow row_;
   SampleErrors errors_;
+  TrajectoryRow row_;
 
   const std::vector<double>* output_times_ = nullptr;
   std::size_t next_ = 0;  ///< of the output times that are left

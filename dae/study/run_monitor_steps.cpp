@@ -39,7 +39,7 @@ bool RunMonitor::look_between(double t0, double t1, const Interpolant& between, 
           return read_coordinates(t) ? middle_.data() : nullptr;
         },
         result_.passed_limits);
-  if (errors_.measures_own() && sample_before(t1 * (1 + 1e-12)))
+  if (errors_.measures_own() && (errors_.sees_every_step() || sample_before(t1 * (1 + 1e-12))))
     errors_.step(t0, t1, between, state_);
   if ((works_ || drives_->any()) &&
       !work_.step(t0, t1, inside || sample_before(t1 * (1 - 1e-12)),
@@ -104,7 +104,7 @@ std::vector<double> RunMonitor::row_at(double t) {
   if (!request_.keep_trajectory || !read(t, state_.data(), nullptr)) return {};
   const Measured now = measure(t, position_drift(t, now_.q));
   row_.set(t, now_, *e_, now.energy, now.position, now.velocity);
-  return row_.numbers();
+  return kept_row();
 }
 
 bool RunMonitor::sample_before(double t) {

@@ -47,13 +47,24 @@ void list(const Each& each,
           auto&& s) requires std::is_same_v<std::remove_cvref_t<decltype(s)>, Series> {
   auto& [t, position_drift, velocity_drift, angle_drift, angle_rate_drift, energy, energy_error,
          impulse, position_error, velocity_error, force_error, multiplier_error,
-         multiplier_difference] = s;
+         multiplier_difference, momentum_error, impulse_error, effort_error, reaction_error,
+         work_error] = s;
   each("t", t), each("position_drift", position_drift), each("velocity_drift", velocity_drift);
   each("angle_drift", angle_drift), each("angle_rate_drift", angle_rate_drift);
   each("energy", energy), each("energy_error", energy_error), each("impulse", impulse);
   each("position_error", position_error), each("velocity_error", velocity_error);
   each("force_error", force_error), each("multiplier_error", multiplier_error);
   each("multiplier_difference", multiplier_difference);
+  each("momentum_error", momentum_error), each("impulse_error", impulse_error);
+  each("effort_error", effort_error), each("reaction_error", reaction_error);
+  each("work_error", work_error);
+}
+
+template <class Each>
+void list(const Each& each, auto&& s) requires
+    std::is_same_v<std::remove_cvref_t<decltype(s)>, RunResult::ReactionError> {
+  auto& [joint, error_max, not_unique] = s;
+  each("joint", joint), each("error_max", error_max), each("not_unique", not_unique);
 }
 
 template <class Each>
@@ -124,9 +135,11 @@ void list(const Each& each,
          velocity_drift_max, between_steps_max, position_growth, velocity_growth, angle_drift_max,
          angle_rate_drift_max, angle_between_steps_max, angle_growth, angle_rate_growth,
          energy_error_max, kinetic_energy_max, energy_scale, position_error_max, velocity_error_max,
-         force_error_max, multiplier_error_max, multiplier_difference_max, integrated, rank,
-         dependent_rows, residue, weak_evaluations, faded_rows, singular_crossings, least_pivot,
-         undetermined, passed_limits, events, event_remarks, stops, series, trajectory, film] = s;
+         force_error_max, multiplier_error_max, multiplier_difference_max, momentum_error_max,
+         impulse_error_max, effort_error_max, reaction_error_max, work_error_max, reaction_errors,
+         integrated, rank, dependent_rows, residue, weak_evaluations, faded_rows,
+         singular_crossings, least_pivot, undetermined, passed_limits, events, event_remarks, stops,
+         series, trajectory, film] = s;
   each("scene", scene), each("settings", settings), each("status", status), each("reason", reason);
   each("stopped_at", stopped_at), each("stiff_from", stiff_from), each("changed_at", changed_at),
       each("counters", counters), each("partitions", partitions);
@@ -145,6 +158,9 @@ void list(const Each& each,
   each("position_error_max", position_error_max), each("velocity_error_max", velocity_error_max);
   each("force_error_max", force_error_max), each("multiplier_error_max", multiplier_error_max);
   each("multiplier_difference_max", multiplier_difference_max);
+  each("momentum_error_max", momentum_error_max), each("impulse_error_max", impulse_error_max);
+  each("effort_error_max", effort_error_max), each("reaction_error_max", reaction_error_max);
+  each("work_error_max", work_error_max), each("reaction_errors", reaction_errors);
   each("integrated", integrated), each("rank", rank), each("dependent_rows", dependent_rows),
       each("residue", residue);
   each("weak_evaluations", weak_evaluations);

@@ -60,6 +60,12 @@ struct Series {
   std::vector<double> multiplier_error;
   /// λ of the form itself against that of (3), max |difference|/(1+|λ|); else empty.
   std::vector<double> multiplier_difference;
+  // Errors against a reference that has these columns (study/measured_columns.h); else empty.
+  std::vector<double> momentum_error;  ///< of p without its gauge (study/momentum_error.h)
+  std::vector<double> impulse_error;   ///< of ∫λ dt
+  std::vector<double> effort_error;    ///< of drives, where they are unique
+  std::vector<double> reaction_error;  ///< of joints, where they are unique
+  std::vector<double> work_error;      ///< of the work of drives and of what has no potential
 };
 
 /// trajectory.csv: one column per quantity, rows at the output times.
@@ -148,6 +154,19 @@ struct RunResult {
   double force_error_max = not_measured;            ///< largest of Series::force_error
   double multiplier_error_max = not_measured;       ///< largest of Series::multiplier_error
   double multiplier_difference_max = not_measured;  ///< of Series::multiplier_difference
+  double momentum_error_max = not_measured;         ///< of Series::momentum_error
+  double impulse_error_max = not_measured;          ///< of Series::impulse_error
+  double effort_error_max = not_measured;           ///< of Series::effort_error
+  double reaction_error_max = not_measured;         ///< of Series::reaction_error
+  double work_error_max = not_measured;             ///< of Series::work_error
+  /// A joint whose reaction is compared with a reference's, or is not unique.
+  struct ReactionError {
+    std::string joint;                ///< its name
+    double error_max = not_measured;  ///< largest |error|/(1+|ref|) of its columns; NaN: none
+    long not_unique = 0;              ///< at how many of the reference's times
+  };
+  /// In the order of joint_places(); empty without a reference of reactions.
+  std::vector<ReactionError> reaction_errors;
   /// What the run integrated in place of the scene as written (cut/integrated_scene.h); empty:
   /// that.
   std::string integrated;

@@ -71,8 +71,10 @@ void TrajectoryRow::append_forces(double t, const Snapshot& state) {
   }
 }
 
-void TrajectoryRow::note_undetermined(double t, std::vector<RunResult::Undetermined>& all) const {
+void TrajectoryRow::note_undetermined(double t, std::size_t columns,
+                                      std::vector<RunResult::Undetermined>& all) const {
   for (const std::size_t column : not_unique_) {
+    if (column >= columns) return;
     const std::string& label = columns_[column];
     auto at =
         std::find_if(all.begin(), all.end(), [&](const auto& u) { return u.column == label; });

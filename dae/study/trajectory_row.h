@@ -33,8 +33,9 @@ class TrajectoryRow {
   std::size_t first_force() const { return first_force_; }
   /// Columns of forces that are not unique at the state.
   const std::vector<std::size_t>& not_unique() const { return not_unique_; }
-  /// Counts those at a sample.
-  void note_undetermined(double t, std::vector<RunResult::Undetermined>& all) const;
+  /// Counts those at a sample, among the first `columns`.
+  void note_undetermined(double t, std::size_t columns,
+                         std::vector<RunResult::Undetermined>& all) const;
 
  private:
   void append_forces(double t, const Snapshot& state);

@@ -95,6 +95,11 @@ class Run:
     rate_error = property(lambda self: self._look(ERRORS, self.summary, "error", "velocity_max"))
     force_error = property(lambda self: self._look(ERRORS, self.summary, "error", "force_max"))
     multiplier_error = property(lambda self: self._look(ERRORS, self.summary, "error", "multiplier_max"))
+    momentum_error = property(lambda self: self._look(ERRORS, self.summary, "error", "momentum_max"))
+    impulse_error = property(lambda self: self._look(ERRORS, self.summary, "error", "impulse_max"))
+    effort_error = property(lambda self: self._look(ERRORS, self.summary, "error", "effort_max"))
+    reaction_error = property(lambda self: self._look(ERRORS, self.summary, "error", "reaction_max"))
+    work_error = property(lambda self: self._look(ERRORS, self.summary, "error", "work_max"))
     multiplier_difference = property(lambda self: self._look(ERRORS, self.summary, "multiplier_difference_max"))
     steps = property(lambda self: self._count("steps"))
     evaluations = property(lambda self: self._count("evaluations"))
@@ -121,7 +126,8 @@ COLUMNS = {  # header of a column, without units: the quantity of a run
     "position drift": "position_drift", "velocity drift": "velocity_drift", "growth": "growth",
     "grows like": "growth", "energy error": "energy_error", "of energy": "energy_error",
     "error of positions": "accuracy", "of rates": "rate_error", "of λ": "force_error",
-    "of the form's own λ": "multiplier_error", "steps": "steps", "evaluations": "evaluations",
+    "of the form's own λ": "multiplier_error", "of p": "momentum_error", "of ∫λ dt": "impulse_error",
+    "of efforts": "effort_error", "of reactions": "reaction_error", "of work": "work_error", "steps": "steps", "evaluations": "evaluations",
     "solutions": "solutions",
 }
 COUNTED = {"steps", "evaluations", "solutions"}

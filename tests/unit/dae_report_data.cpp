@@ -32,7 +32,7 @@ TEST(SummaryJson, HasThePublicKeys) {
                  "undetermined", "passages",       "changed_to",    "changed_at",
                  "rank",         "dependent_rows", "residue",       "weak_evaluations",
                  "stiffness",    "integrated",     "passed_limits", "multiplier_difference_max",
-                 "events",       "event_remarks",  "stops"};
+                 "events",       "event_remarks",  "stops",         "reaction_errors"};
   std::sort(expected.begin(), expected.end());
   EXPECT_EQ(keys(json), expected);
   EXPECT_EQ(keys(json["counters"]),
@@ -45,7 +45,8 @@ TEST(SummaryJson, HasThePublicKeys) {
                    "unit", "velocity_exponent", "velocity_max"}));
   EXPECT_EQ(keys(json["energy"]), (Names{"error_max"}));
   EXPECT_EQ(keys(json["error"]),
-            (Names{"force_max", "multiplier_max", "position_max", "velocity_max"}));
+            (Names{"effort_max", "force_max", "impulse_max", "momentum_max", "multiplier_max",
+                   "position_max", "reaction_max", "velocity_max", "work_max"}));
   EXPECT_EQ(json["environment"]["versions"]["SUNDIALS"], "6.4.1");
   EXPECT_EQ(json["counters"]["steps"], 43000);
 }

@@ -52,6 +52,21 @@ const told = {
   multiplier_difference: [largest("The form's own λ beside λ solved from (3) at the same state: noise of the one, which needs no reference"), [
     optional(numeric("largest difference", "", (run) => run.multiplier_difference_max)),
   ]],
+  momentum_error: [largest("How far p is off in what moves: without Φ_qᵀσ, which a gauge chooses"), [
+    numeric("largest error of p", "", (run) => run.error.momentum_max),
+  ]],
+  impulse_error: [largest("How far the impulses of the loops since the start are off, ∫λ dt, whatever the gauge"), [
+    numeric("largest error of ∫λ dt", "", (run) => run.error.impulse_max),
+  ]],
+  effort_error: [largest("How far the efforts of drives are off"), [
+    numeric("largest error of efforts", "", (run) => run.error.effort_max),
+  ]],
+  reaction_error: [largest("How far the reactions of joints are off, of those that are unique"), [
+    numeric("largest error of reactions", "", (run) => run.error.reaction_max),
+  ]],
+  work_error: [largest("How far the work of drives, and of what has no potential, is off"), [
+    numeric("largest error of work", "", (run) => run.error.work_max),
+  ]],
   impulse: [largest("What a gauge keeps from growing: the multipliers σ of momentum forms"), []],
 };
 const histories = study.histories.map((history) => ({ ...history, caption: told[history.key][0], columns: told[history.key][1] }));

@@ -1,0 +1,69 @@
+#pragma once
+// Errors of reactions joint by joint: the largest |error|/(1 + |reference|) over a joint's six
+// columns and the reference's times; and at how many of these times redundant loops leave the
+// joint's reaction open, where there is nothing to compare.
+
+#include <momenta/dae/joint_places.h>
+#include <momenta/dae/measure/reference.h>
+#include <momenta/dae/study/run_form.h>
+#include <momenta/dae/study/trajectory_row.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace momenta {
+
+class ReactionErrors {
+ public:
+  /// `reference` is bound to measured_columns(). Joints that it has no column of are told only
+  /// where their reactions are not unique.
+  ReactionErrors(const Mechanism& mechanism, const Reference& reference) : reference_(reference) {
+    if (mechanism.scene().lagrangian) return;
+    const std::vector<JointPlace> places = joint_places(mechanism);
+    first_ = trajectory_columns(mechanism, true).size() - of_one * places.size();
+    for (std::size_t i = 0; i < of_one * places.size(); ++i)
+      columns_.push_back(reference.column_at(first_ + i));
+    for (const JointPlace& joint : places) all_.push_back({joint.name, not_measured, 0});
+  }
+
+  /// At the reference's time of index `at`; the row has reactions.
+  void sample(std::size_t at, const TrajectoryRow& row) {
+    const auto& open = row.not_unique();
+    for (std::size_t j = 0; j < all_.size(); ++j) {
+      RunResult::ReactionError& joint = all_[j];
+      if (std::binary_search(open.begin(), open.end(), first_ + of_one * j)) {
+        ++joint.not_unique;
+        continue;
+      }
+      for (std::size_t i = of_one * j; i < of_one * (j + 1); ++i) {
+        if (columns_[i] == reference_.columns().size()) continue;
+        const double reference = reference_.values()[at][columns_[i]],
+                     error = std::abs(row.numbers()[first_ + i] - reference) /
+                             (1 + std::abs(reference));
+        if (!(error <= joint.error_max)) joint.error_max = error;
+      }
+    }
+  }
+
+  /// Of joints that have an error or are not unique.
+  std::vector<RunResult::ReactionError> told() const {
+    std::vector<RunResult::ReactionError> some;
+    for (const RunResult::ReactionError& joint : all_)
+      if (!std::isnan(joint.error_max) || joint.not_unique > 0) some.push_back(joint);
+    return some;
+  }
+  void carry(Memory& memory) {
+    for (RunResult::ReactionError& joint : all_) memory(joint.error_max), memory(joint.not_unique);
+  }
+
+ private:
+  static constexpr std::size_t of_one = 6;
+
+  const Reference& reference_;
+  std::size_t first_ = 0;  ///< place of the first reaction
+  std::vector<std::size_t> columns_;
+  std::vector<RunResult::ReactionError> all_;
+};
+
+}  // namespace momenta
