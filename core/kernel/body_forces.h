@@ -16,11 +16,43 @@ void stand_still(Workspace<Space, S>& w, std::size_t k) {
   s.T = {};
 }
 
+/// Place in u of the spherical joint between its two bodies that a bushing damps and does nothing
+/// else; −1: none. On the child acts n = −c ω, on the parent −n: they cancel in T* of the parent
+/// and below the child there is nothing, so that Q = −c u at this joint, u = ω in the child's axes,
+/// and 0 at all others. No body need be placed for that.
+template <class Space>
+int damped_ball(const Model<Space>& model, const typename Model<Space>::Bushing& b) {
+  if (b.child < 0 || b.stiffness != 0 || b.damping != 0 || b.rotational_stiffness != 0 ||
+      b.stop.acts())
+    return -1;
+  const auto& child = model.bodies[static_cast<std::size_t>(b.child)];
+  const bool between = child.kind == JointKind::spherical && child.nv == 3;
+  return between && child.parent == b.parent ? child.u : -1;
+}
+
+/// Q of bushings, where there are no other forces between bodies and these all damp balls alone;
+/// else false, and nothing is done.
+template <class Space, class S>
+bool ball_damper_rates(Workspace<Space, S>& w, const S* u) {
+  const auto& model = *w.model;
+  if (!model.springs.empty() || !model.wrenches.empty() || model.has_forces_apart()) return false;
+  for (const auto& b : model.bushings)
+    if (damped_ball(model, b) < 0) return false;
+  for (auto& value : w.generalised) value = S(0.0);
+  for (const auto& b : model.bushings) {
+    const int first = damped_ball(model, b);
+    for (int i = first; i < first + 3; ++i)
+      w.generalised[static_cast<std::size_t>(i)] -= b.rotational_damping * u[i];
+  }
+  return true;
+}
+
 /// w.generalised (nv) = Eᵀ T* of springs, dampers and wrenches at (q, u, t). One outward sweep for
 /// poses and velocities, one inward, over the bodies of forced_bodies.h: the others keep no
-/// meaning. O(these bodies + nv).
+/// meaning. O(these bodies + nv). Dampers of balls alone: O(these + nv), and no body has a meaning.
 template <class Space, class S>
 void body_force_rates(Workspace<Space, S>& w, const S& t, const S* q, const S* u) {
+  if (ball_damper_rates(w, u)) return;
   w.time = t;
   for (const auto& [at, from_rest] : w.forced) {
     const auto k = static_cast<std::size_t>(at);

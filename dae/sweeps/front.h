@@ -218,6 +218,60 @@ MOMENTA_INLINE void close_row(int slot, Front<S, Rows, Columns>& front, const S&
   weight(c, row.c, row.d);
 }
 
+/// What is open beside a loop that closes. Alone, only its own rows that are left are worked on,
+/// and nothing after the last; at the ground, which does not move, neither C nor what a row weighs.
+enum class Beside { others, none, none_at_ground };
+
+/// close_row() of a loop of `rows` rows at `first` beside which no other is open; `left`: ones in
+/// the slots of those still to be closed, `slot` already without. Slots of rows that are closed are
+/// not read again, and hold anything.
+template <bool Moves, class S, int Rows, int Columns, class Weight>
+MOMENTA_INLINE void close_row_alone(int slot, int first, int rows, const bool* closed, bool last,
+                                    const Slots<S, Rows>& left, Front<S, Rows, Columns>& front,
+                                    const S& tau, ClosedRow<S, Rows, Columns>& row,
+                                    Weight&& weight) {
+  using Here = Slots<S, Rows>;
+  const S w = front.w(slot, slot), f = faded_inverse(w, tau), d = front.d[slot];
+  S c[Columns];
+  if constexpr (Moves)
+    for (int i = 0; i < Columns; ++i) {
+      c[i] = front.C[i][slot];
+      row.c[i] = f * c[i];
+    }
+  if constexpr (Here::apart) {
+    row.G = {};
+    for (int j = 0; j < rows; ++j) {
+      if (closed[j]) continue;
+      const int at = first + j;
+      const S G = front.w(slot, at) * f;
+      row.G.v[at] = G;
+      if constexpr (Moves)
+        for (int i = 0; i < Columns; ++i) front.C[i].v[at] = front.C[i].v[at] - G * c[i];
+      front.d.v[at] = front.d.v[at] - G * d;
+      for (int k = j; k < rows; ++k) {
+        if (closed[k]) continue;
+        S& entry = front.W[at].v[first + k];
+        entry = entry - G * front.w(slot, first + k);
+      }
+    }
+  } else {
+    const Here own = front.W[slot] * left, G = own * f;
+    row.G = G;
+    if (!last) {
+      if constexpr (Moves)
+        for (int i = 0; i < Columns; ++i) front.C[i] -= G * c[i];
+      front.d -= G * d;
+      for (int j = 0; j < rows; ++j)
+        if (!closed[j]) front.W[first + j] -= G * own[first + j];
+    }
+  }
+  row.d = f * d;
+  row.w = w;
+  row.tau = tau;
+  row.slot = slot;
+  if constexpr (Moves) weight(c, row.c, row.d);
+}
+
 /// Whether a pivot faded: one of 10 τ keeps all but 1e-4 of itself.
 inline bool has_faded(double w, double tau) {
   return !(w > 10 * tau);
@@ -243,7 +297,7 @@ constexpr bool keeps_pivots<Pack<W, L>> = W == 1;
 /// least, then `others`. Records them in closing order. Of a pack all states are closed in one
 /// order: false where that takes, of some state, a pivot below a hundredth of the largest that is
 /// left, or a weak one, before which each should go in its own order.
-template <class S, int Rows, int Columns, class Weight>
+template <Beside beside = Beside::others, class S, int Rows, int Columns, class Weight>
 bool close_loop(Front<S, Rows, Columns>& front, int slot, int points, int others,
                 const S& least_scale, double fade, ClosedRow<S, Rows, Columns>* records,
                 Weight&& weight) {
@@ -266,6 +320,9 @@ bool close_loop(Front<S, Rows, Columns>& front, int slot, int points, int others
   }
   constexpr double least_share = 1e-2, weak = 1e-4;
   bool closed[6] = {}, even = true;
+  [[maybe_unused]] Slots<S, Rows> left{};
+  if constexpr (beside != Beside::others && !Slots<S, Rows>::apart)
+    for (int i = 0; i < rows; ++i) left.set(slot + i, S(1.0));
   for (int k = 0; k < rows; ++k) {
     int best = -1;
     double largest = -1;
@@ -289,9 +346,18 @@ bool close_loop(Front<S, Rows, Columns>& front, int slot, int points, int others
              all_positive(pivot * per_unit[best] - least_share * largest_of_each);
     }
     closed[best] = true;
-    close_row(slot + best, front, tau[best], records[k], weight);
+    if constexpr (beside == Beside::others) {
+      close_row(slot + best, front, tau[best], records[k], weight);
+    } else {
+      if constexpr (!Slots<S, Rows>::apart) left.set(slot + best, S(0.0));
+      close_row_alone<beside == Beside::none>(slot + best, slot, rows, closed, k + 1 == rows, left,
+                                              front, tau[best], records[k], weight);
+    }
   }
-  for (int i = 0; i < rows; ++i) front.scale.set(slot + i, S(0.0));
+  if constexpr (beside == Beside::others)
+    for (int i = 0; i < rows; ++i) front.scale.set(slot + i, S(0.0));
+  else if constexpr (!Slots<S, Rows>::apart)
+    front = {};  // slots of no open loop hold zero
   return even;
 }
 

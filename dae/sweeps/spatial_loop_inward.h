@@ -122,10 +122,20 @@ void SpatialLoopSweeps<S, Rows, Momentum, Tree>::close(int loop, Carried& a, dou
   a.blocks.begin(false, ~all);
   if (compliance_)
     soften(a.blocks, plan_->slot[static_cast<std::size_t>(loop)], l.rows, compliance_ + l.row);
-  even_ &=
-      close_loop(a.blocks, plan_->slot[static_cast<std::size_t>(loop)], points, l.rows - points,
-                 S(l.least_scale), fade, &rows_[static_cast<std::size_t>(l.row)],
-                 SpatialWeight<S, Articulated<S>>{a.articulated});
+  const int slot = plan_->slot[static_cast<std::size_t>(loop)];
+  Row* const records = &rows_[static_cast<std::size_t>(l.row)];
+  const SpatialWeight<S, Articulated<S>> weight{a.articulated};
+  const auto closed_beside = [&]<Beside beside>() {
+    return close_loop<beside>(a.blocks, slot, points, l.rows - points, S(l.least_scale), fade,
+                              records, weight);
+  };
+  const bool alone = open_slots_.beside[static_cast<std::size_t>(loop)] == 0;
+  if (alone && &a == &ground_)
+    even_ &= closed_beside.template operator()<Beside::none_at_ground>();
+  else if (alone && Column::apart)
+    even_ &= closed_beside.template operator()<Beside::none>();
+  else  // one state's rows go in all lanes at once: nothing is saved
+    even_ &= closed_beside.template operator()<Beside::others>();
 }
 
 template <class S, int Rows, bool Momentum, class Tree>
@@ -146,9 +156,14 @@ bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::inward(const In& r, const Right
     if (elsewhere(k)) continue;
     const auto& l = links[k];
     const OpenSlots::Front& front = open_slots_.fronts[k];
-    if (l.leaf) a.articulated = {};
     a.blocks.begin(l.leaf, front.fresh);
-    add_body(a.articulated.M, l);
+    if (l.leaf) {
+      Articulated<S>& m = a.articulated;
+      set_body(m.M, l);
+      m.Dfx = m.Dfy = m.Dfz = m.Dnx = m.Dny = m.Dnz = m.Gx = m.Gy = m.Gz = S(0.0);
+    } else {
+      add_body(a.articulated.M, l);
+    }
     if constexpr (Momentum) {
       a.articulated.Gx = a.articulated.Gx + l.moment[0];
       a.articulated.Gy = a.articulated.Gy + l.moment[1];

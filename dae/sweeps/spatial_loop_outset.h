@@ -50,6 +50,39 @@ void SpatialLoopSweeps<S, Rows, Momentum, Tree>::place_loops(const In& q, const 
   }
 }
 
+/// The pose of a body on a joint about or along one axis, by the screws of its edge `k` and then
+/// its own (c, s, d). Each screw mixes two of three columns, so that each row goes by itself, in
+/// registers.
+template <class Constants, class S>
+MOMENTA_INLINE void pose_on_axis(const Constants& k, const S& c, const S& s, const S& d,
+                                 const Spatial::Pose<S>& from, LoopBody<S>& to) {
+  for (int i = 0; i < 3; ++i) {
+    S x = from.axes(i, 0), y = from.axes(i, 1), z = from.axes(i, 2), step(0.0);
+    const auto turn = [](S& first, S& second, const auto& cosine, const auto& sine)
+                          MOMENTA_INLINED {
+                            const S turned = cosine * first + sine * second;
+                            second = cosine * second - sine * first;
+                            first = turned;
+                          };
+    if (k.about_z) {
+      step = step + k.delta * z;
+      turn(x, y, k.cos_gamma, k.sin_gamma);
+    }
+    if (k.about_x) {
+      step = step + k.a * x;
+      turn(y, z, k.cos_alpha, k.sin_alpha);
+    }
+    if (k.about_y) turn(z, x, k.cos_beta, k.sin_beta);
+    step = step + d * z;
+    turn(x, y, c, s);
+    to.pose.axes(i, 0) = x;
+    to.pose.axes(i, 1) = y;
+    to.pose.axes(i, 2) = z;
+    to.step[i] = step;
+    to.pose.origin[i] = from.origin[i] + step;
+  }
+}
+
 /// Poses of the bodies on the ways of loops, in the axes of what closes them.
 template <class S, int Rows, bool Momentum, class Tree>
 void SpatialLoopSweeps<S, Rows, Momentum, Tree>::pose_bodies() {
@@ -59,25 +92,26 @@ void SpatialLoopSweeps<S, Rows, Momentum, Tree>::pose_bodies() {
     if (plan_->posed[k] != OnWay::moved || elsewhere(k)) continue;
     const auto& l = tree_->links[k];
     const auto& from = l.parent < 0 ? ground : bodies_[static_cast<std::size_t>(l.parent)].pose;
-    Spatial::Pose<S> at{from.axes, Vec3<S>{{S(0.0), S(0.0), S(0.0)}}};  // from the parent's O
-    if (l.kind == LinkKind::revolute) {
-      Spatial::Edge<S> e;
-      e.cos_theta = angles_.cosine(k);
-      e.sin_theta = angles_.sine(k);
-      e.d = S(l.d);
-      at = Spatial::pose_outward(body(k).edge, JointKind::revolute, e, at);
-    } else if (!of_looped_branches && l.kind == LinkKind::spherical) {
-      const auto record = static_cast<std::size_t>(l.record);
-      const auto& r = tree_->sphericals[record].origin;
-      at = {from.axes * sphericals_[record].R, from.axes * Vec3<S>{{S(r[0]), S(r[1]), S(r[2])}}};
-    } else {
-      at = Spatial::pose_outward(body(k).edge, body(k).kind,
-                                 joints_[static_cast<std::size_t>(l.record)].edge, at);
-    }
     LoopBody<S>& to = bodies_[k];
-    to.step = at.origin;
-    to.pose.axes = at.axes;
-    to.pose.origin = from.origin + at.origin;
+    if (l.kind == LinkKind::revolute) {
+      pose_on_axis(body(k).edge, angles_.cosine(k), angles_.sine(k), S(l.d), from, to);
+    } else if (of_looped_branches || l.one_axis) {
+      const auto& e = joints_[static_cast<std::size_t>(l.record)].edge;
+      pose_on_axis(body(k).edge, e.cos_theta, e.sin_theta, e.d, from, to);
+    } else {
+      Spatial::Pose<S> at{from.axes, Vec3<S>{{S(0.0), S(0.0), S(0.0)}}};  // from the parent's O
+      if (l.kind == LinkKind::spherical) {
+        const auto record = static_cast<std::size_t>(l.record);
+        const auto& r = tree_->sphericals[record].origin;
+        at = {from.axes * sphericals_[record].R, from.axes * Vec3<S>{{S(r[0]), S(r[1]), S(r[2])}}};
+      } else {
+        at = Spatial::pose_outward(body(k).edge, body(k).kind,
+                                   joints_[static_cast<std::size_t>(l.record)].edge, at);
+      }
+      to.step = at.origin;
+      to.pose.axes = at.axes;
+      to.pose.origin = from.origin + at.origin;
+    }
   }
 }
 

@@ -225,7 +225,7 @@ void SpatialLoopSweeps<S, Rows, Momentum, Tree>::rates_inward(const RightSide<S>
     const SpatialLoopPlace<S>& s = places_[i];
     Vec3<S> force, couple;
     s.inertial_rate(
-        l, rates_of(l, s), [&](int row) { return S(impulse[l.row + row]); }, right.leak, force,
+        l, motion_of(l, s), [&](int row) { return S(impulse[l.row + row]); }, right.leak, force,
         couple);
     if (l.a >= 0) wrenches_[static_cast<std::size_t>(l.a)] += {force, couple + cross(s.ra, force)};
     if (l.b >= 0) wrenches_[static_cast<std::size_t>(l.b)] -= {force, couple + cross(s.rb, force)};

@@ -152,9 +152,11 @@ class SpatialLoopSweeps {
     return k < 0 ? nullptr : &bodies_[static_cast<std::size_t>(k)];
   }
 
-  /// Of a body on the way of a loop, its motion from its own axes to those of poses.
+  /// Of a body that carries ends of loops, or takes branches that do, its motion from its own axes
+  /// to those of poses.
   MOMENTA_INLINE void set_velocity(std::size_t k, const Motion& V) {
-    if (plan_->posed[k] == OnWay::no) return;
+    const LoopPlan::Range ends = plan_->ends_of[k];
+    if (ends.first == ends.last && !plan_->takes_branches[k]) return;
     LoopBody<S>& to = bodies_[k];
     const bool moved = plan_->posed[k] == OnWay::moved;
     to.v = moved ? to.pose.axes * V.v : V.v;
@@ -165,7 +167,16 @@ class SpatialLoopSweeps {
     return moving_[static_cast<std::size_t>(l.motion)];
   }
   typename SpatialLoopPlace<S>::Rates rates_of(const Loop& l, const SpatialLoopPlace<S>& s) const {
-    auto rates = s.rates(loop_body(l.a), loop_body(l.b));
+    auto rates = s.motion(loop_body(l.a), loop_body(l.b));
+    s.add_points(loop_body(l.b), rates);
+    if (l.motion >= 0) s.add_prescribed(prescribed(l), rates);
+    return rates;
+  }
+  /// What N asks of these.
+  MOMENTA_INLINE typename SpatialLoopPlace<S>::Rates motion_of(const Loop& l,
+                                                               const SpatialLoopPlace<S>& s) const {
+    auto rates = s.motion(loop_body(l.a), loop_body(l.b));
+    if (l.is_distance()) s.add_points(loop_body(l.b), rates);
     if (l.motion >= 0) s.add_prescribed(prescribed(l), rates);
     return rates;
   }

@@ -1,7 +1,7 @@
 // What acts between two bodies is computed below their lowest common ancestor alone
 // (core/kernel/forced_bodies.h): the generalised forces of random trees against those of a twin
 // that places every body from the ground and gathers the wrenches of all; and how many bodies are
-// placed.
+// placed. Dampers of balls alone are forces of these joints, and place none.
 
 #include "equations/random_tree.h"
 
@@ -102,6 +102,78 @@ TEST(ForcesBetweenBodies, AreThoseSeenFromTheGround) {
     }
   }
   EXPECT_GT(fewer, 60);
+}
+
+/// Dampers of the balls between moving bodies, or on the ground.
+int damp_balls(RandomTree& random, Scene& scene) {
+  int balls = 0;
+  for (const JointSpec& joint : scene.joints) {
+    if (joint.kind != JointKind::spherical) continue;
+    ForceSpec damper;
+    damper.kind = "bushing";
+    damper.parent = joint.parent;
+    damper.child = joint.child;
+    damper.origin_child = random.vector(1);
+    damper.rotational_damping = random.uniform(0.1, 2);
+    scene.forces.push_back(damper);
+    ++balls;
+  }
+  return balls;
+}
+
+TEST(ForcesBetweenBodies, OfDampedBallsAreTheirRates) {
+  equations::TreeRecipe recipe;
+  recipe.bodies = 9;
+  recipe.drives = false;
+  int balls = 0;
+  for (unsigned seed = 0; seed < 60; ++seed) {
+    RandomTree random(seed);
+    recipe.branching = seed % 2 == 0 ? equations::Branching::serial : equations::Branching::random;
+    Scene scene = random.scene(recipe);
+    scene.forces.clear();
+    balls += damp_balls(random, scene);
+    const bool mixed = seed % 3 == 0;  // with others: all go the general way
+    if (mixed) add_forces(random, scene);
+    const Tree tree = build_tree(scene);
+    const auto model = build_spatial_model(tree, scene);
+    Workspace<Spatial, double> w(model);
+    const equations::TreeState s = random.state(tree);
+    ASSERT_TRUE(mixed || ball_damper_rates(w, s.u.data())) << "seed " << seed;
+    const std::vector<double> expected = from_the_ground(model, s);
+    body_force_rates(w, s.t, s.q.data(), s.u.data());
+    for (std::size_t k = 0; k < expected.size(); ++k)
+      ASSERT_NEAR(w.generalised[k], expected[k], 1e-11) << "seed " << seed << ", rate " << k;
+  }
+  EXPECT_GT(balls, 40);
+}
+
+TEST(ForcesBetweenBodies, OfMoreThanABallGoTheGeneralWay) {
+  equations::TreeRecipe recipe;
+  recipe.bodies = 6;
+  recipe.drives = false;
+  int tried = 0;
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    RandomTree random(seed);
+    Scene scene = random.scene(recipe);
+    scene.forces.clear();
+    if (damp_balls(random, scene) == 0) continue;
+    const auto taken = [&](auto&& change) {
+      Scene other = scene;
+      change(other.forces.back());
+      const Tree tree = build_tree(other);
+      const auto model = build_spatial_model(tree, other);
+      return damped_ball(model, model.bushings.back()) >= 0;
+    };
+    ++tried;
+    EXPECT_TRUE(taken([](ForceSpec&) {}));
+    EXPECT_FALSE(taken([](ForceSpec& f) { f.damping = 1; }));
+    EXPECT_FALSE(taken([](ForceSpec& f) { f.stiffness = 1; }));
+    EXPECT_FALSE(taken([](ForceSpec& f) { f.rotational_stiffness = 1; }));
+    if (scene.forces.back().parent == "ground") continue;
+    EXPECT_FALSE(taken([](ForceSpec& f) { f.parent = "ground"; }));
+    EXPECT_FALSE(taken([](ForceSpec& f) { std::swap(f.parent, f.child); }));
+  }
+  EXPECT_GT(tried, 5);
 }
 
 /// Bodies placed for the forces at points.

@@ -67,9 +67,16 @@ struct SpatialLoopPlace {
       F[0] = S(l.per_length) * gap;
       return;
     }
-    for (std::size_t j = 0; j < 3; ++j) b[j] = in_ground(B, l.axis_b[j]);
-    if (l.n_axes > 0)
-      for (std::size_t j = 0; j < 3; ++j) a[j] = in_ground(A, l.axis_a[j]);
+    if (l.n_axes == 0) {  // a and b are asked for by rows of axes alone
+      for (int j = 0; j < l.n_points; ++j)
+        F[j] =
+            in_ground(B, l.axis_b[static_cast<std::size_t>(l.points[static_cast<std::size_t>(j)])]);
+      return;
+    }
+    for (std::size_t j = 0; j < 3; ++j) {
+      b[j] = in_ground(B, l.axis_b[j]);
+      a[j] = in_ground(A, l.axis_a[j]);
+    }
     for (int j = 0; j < l.n_points; ++j) F[j] = b[l.points[static_cast<std::size_t>(j)]];
     for (int j = 0; j < l.n_axes; ++j) {
       const auto [x, y] = l.axes[static_cast<std::size_t>(j)];
@@ -90,7 +97,8 @@ struct SpatialLoopPlace {
     Vec3<S> wa{}, wb{}, u{}, at_a{}, at_b{}, vb{};
     S given{};  ///< l l̇ / l₀
   };
-  Rates rates(const LoopBody<S>* A, const LoopBody<S>* B) const {
+  /// All but the points of B.
+  MOMENTA_INLINE Rates motion(const LoopBody<S>* A, const LoopBody<S>* B) const {
     Rates r;
     if (A) {
       r.wa = A->w;
@@ -99,10 +107,13 @@ struct SpatialLoopPlace {
     if (B) {
       r.wb = B->w;
       r.vb = B->v;
-      r.at_a = B->v + cross(B->w, rb);
-      r.at_b = B->v + cross(B->w, rb - gap);
     }
     return r;
+  }
+  MOMENTA_INLINE void add_points(const LoopBody<S>* B, Rates& r) const {
+    if (!B) return;
+    r.at_a = B->v + cross(B->w, rb);
+    r.at_b = B->v + cross(B->w, rb - gap);
   }
 
   /// The frame of B moves on B, that of A turns on A.
@@ -171,8 +182,8 @@ struct SpatialLoopPlace {
 
   /// N − κ w of the impulses σ(row), as force at x_A and couple on A.
   template <class Loop, class Sigma>
-  void inertial_rate(const Loop& l, const Rates& r, const Sigma& sigma, double leak, Vec3<S>& force,
-                     Vec3<S>& couple) const {
+  MOMENTA_INLINE void inertial_rate(const Loop& l, const Rates& r, const Sigma& sigma, double leak,
+                                    Vec3<S>& force, Vec3<S>& couple) const {
     Vec3<S> f{}, n{}, turning{};
     for (int row = 0; row < l.rows; ++row) {
       const S s = sigma(row);
