@@ -25,23 +25,21 @@ int body_of(const Tree& tree, int rate) {
 std::vector<bool> weightless(const Tree& tree, const Eigen::VectorXd& diagonal) {
   constexpr double off_axis = 64 * std::numeric_limits<double>::epsilon();
   constexpr double lost = off_axis * off_axis;
-  const auto slides = [&](const Tree::Body& b, int i) {
-    return (b.nv == 1 && b.kind == JointKind::prismatic) || (b.nv == 6 && i < 3);
-  };
   double largest[2]{};
   for (const Tree::Body& b : tree.bodies)
     for (int i = 0; i < b.nv; ++i)
-      largest[slides(b, i)] = std::max(largest[slides(b, i)], diagonal[b.u + i]);
+      largest[b.is_length(i)] = std::max(largest[b.is_length(i)], diagonal[b.u + i]);
   std::vector<bool> none(static_cast<std::size_t>(diagonal.size()));
   for (const Tree::Body& b : tree.bodies)
     for (int i = 0; i < b.nv; ++i)
-      none[static_cast<std::size_t>(b.u + i)] = !(diagonal[b.u + i] > lost * largest[slides(b, i)]);
+      none[static_cast<std::size_t>(b.u + i)] =
+          !(diagonal[b.u + i] > lost * largest[b.is_length(i)]);
   return none;
 }
 
 /// "its axis" of one coordinate, or what joints of several have.
 const char* along(const Tree::Body& b) {
-  if (b.nv > 1)
+  if (b.nv > 1 || b.law)
     return b.kind == JointKind::spherical ? "about some axis through it" : "in some direction";
   return b.kind == JointKind::prismatic ? "along its axis" : "about its axis";
 }

@@ -24,7 +24,8 @@ Plan make_plan(const Tree& tree, const Scene& scene, Algebra algebra) {
   plan.gravity = plan.planar ? in_plane.head<2>().norm() > 0 : tree.gravity.norm() > 0;
   plan.drives = !tree.drives.empty();
   for (const auto& b : tree.bodies) {
-    plan.quasi_velocities |= b.nq != b.nv;
+    plan.quasi_velocities |= b.has_quaternion();
+    plan.drives |= b.law != nullptr;  // its pose may depend on t
     plan.rotors += b.rotor != 0 ? b.nv : 0;
     plan.joint_forces |= b.stiffness != 0 || b.damping != 0 || b.torque != 0 || b.friction != 0 ||
                          b.stop_stiffness != 0 || b.stop_damping != 0;

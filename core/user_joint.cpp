@@ -24,5 +24,8 @@ void UserJoint::move(const Dual<double, 1>* u, UserMotion<Dual<double, 1>>& m) c
 void UserJoint::move(const Dual8* u, UserMotion<Dual8>& m) const {
   law_->move(u, m);
 }
+void UserJoint::move(const Jet* u, UserMotion<Jet>& m) const {
+  law_->move(u, m);
+}
 
 }  // namespace momenta

@@ -21,6 +21,7 @@
 #include <momenta/core/kernel/user_motion.h>
 
 #include <cmath>
+#include <initializer_list>
 #include <memory>
 #include <utility>
 
@@ -51,14 +52,20 @@ Mat3<S> turn_about(const Vec3<S>& a, const S& angle) {
 /// The formula of a user joint as the law of that joint; immutable, shared by chains and threads.
 class UserJoint final : public UserFormula {
  public:
-  /// `formula(t, q)` gives a `JointPose<S>` for any S; q has `coordinates` numbers.
+  /// `formula(t, q)` gives a `JointPose<S>` for any S; q has `coordinates` numbers. `lengths`:
+  /// which of them, from 0 on, are lengths [m]; the others are angles [rad]. Units of results and
+  /// the scales by which solutions are judged follow; others than 0 … n − 1 mean nothing.
   template <class Formula>
-  UserJoint(int coordinates, Formula formula)
+  UserJoint(int coordinates, Formula formula, std::initializer_list<int> lengths = {})
       : coordinates_(coordinates),
-        law_(std::make_shared<LawOf<Formula>>(coordinates, std::move(formula))) {}
+        law_(std::make_shared<LawOf<Formula>>(coordinates, std::move(formula))) {
+    for (const int i : lengths) lengths_ |= i >= 0 && i < 6 ? 1u << i : 0u;
+  }
 
   /// n, from 1 to 6.
   int coordinates() const override { return coordinates_; }
+  /// Whether coordinate i is a length [m]; else an angle [rad].
+  bool is_length(int i) const override { return (lengths_ >> i & 1u) != 0; }
   /// The pose at (t, q): the rotation, nine numbers by columns, and the position, three numbers.
   void pose(double t, const double* q, double* rotation, double* position) const override;
 
@@ -69,6 +76,8 @@ class UserJoint final : public UserFormula {
   void move(const Dual<double, 1>* u, UserMotion<Dual<double, 1>>& m) const override;
   /// The same with eight directional derivatives.
   void move(const Dual8* u, UserMotion<Dual8>& m) const override;
+  /// The same along a curve in t and q, with two directions from it.
+  void move(const Jet* u, UserMotion<Jet>& m) const override;
 
  private:
   class Law {
@@ -77,6 +86,7 @@ class UserJoint final : public UserFormula {
     virtual void move(const double* u, UserMotion<double>& m) const = 0;
     virtual void move(const Dual<double, 1>* u, UserMotion<Dual<double, 1>>& m) const = 0;
     virtual void move(const Dual8* u, UserMotion<Dual8>& m) const = 0;
+    virtual void move(const Jet* u, UserMotion<Jet>& m) const = 0;
   };
   template <class Formula>
   class LawOf final : public Law {
@@ -87,6 +97,7 @@ class UserJoint final : public UserFormula {
       along(u, m);
     }
     void move(const Dual8* u, UserMotion<Dual8>& m) const override { along(u, m); }
+    void move(const Jet* u, UserMotion<Jet>& m) const override { along(u, m); }
 
    private:
     /// E and Ω_t at (m.t, m.q); where u is not null also their rates along (q̇, ṫ) = (u, 1).
@@ -100,6 +111,7 @@ class UserJoint final : public UserFormula {
   };
 
   int coordinates_;
+  unsigned lengths_ = 0;  ///< bit i: of coordinate i
   std::shared_ptr<const Law> law_;
 };
 

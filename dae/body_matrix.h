@@ -155,6 +155,8 @@ class BodyMatrix {
         return c == 2 || c == 5;
       case JointKind::spherical:
         return c == 3 + j;
+      case JointKind::user:
+        return true;
       default:
         return c == j;  // free
     }

@@ -22,7 +22,7 @@ std::vector<JointPlace> joint_places(const Mechanism& mechanism) {
     JointPlace& place = places[found->second];
     for (int i = 0; i < b.nq; ++i) place.q.push_back(b.q + i);
     for (int i = 0; i < b.nv; ++i) place.u.push_back(b.u + i);
-    if (b.nq >= 4) place.quaternions.push_back(b.q + b.nq - 4);
+    if (b.has_quaternion()) place.quaternions.push_back(b.q + b.nq - 4);
     if (b.drive >= 0) {
       place.drives.push_back(b.drive);
       coordinate[static_cast<std::size_t>(b.drive)] = b.coordinate;

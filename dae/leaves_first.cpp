@@ -31,8 +31,7 @@ class LeavesFirstError {
     const double length = length_of(mechanism.scene());
     for (const auto& b : mechanism.tree().bodies)
       for (int i = 0; i < b.nv; ++i)
-        if (b.nv == 6 ? i < 3 : b.nv == 1 && b.kind == JointKind::prismatic)
-          size_[static_cast<std::size_t>(b.u + i)] = length;
+        if (b.is_length(i)) size_[static_cast<std::size_t>(b.u + i)] = length;
   }
 
   double least() {

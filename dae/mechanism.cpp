@@ -78,21 +78,12 @@ bool carries_on_no_mass(const Tree& tree) {
   return false;
 }
 
-/// User joints move in open chains alone.
-Tree open_or_closed(const Scene& scene) {
-  for (const JointSpec& joint : scene.joints)
-    if (joint.kind == JointKind::user)
-      throw SceneError(scene.where(joint.at) + "joint '" + joint.name +
-                       "' is a user joint, which an OpenChain can move but no Mechanism");
-  return build_tree(scene);
-}
-
 }  // namespace
 
 Mechanism::Mechanism(Scene scene, MechanismOptions options)
     : scene_(std::move(scene)),
       options_(options),
-      tree_(open_or_closed(scene_)),
+      tree_(build_tree(scene_)),
       plan_(plan_with_loops(tree_, scene_, options.algebra)),
       casts_(std::make_unique<Casts>()) {
   if (scene_.lagrangian)

@@ -10,10 +10,11 @@
 namespace momenta {
 namespace {
 
-/// What a one-dof joint adds to the name of its scene joint: "q", or the number of its coordinate
-/// behind it where the scene's joint has several.
-std::string one_dof_column(const Tree::Body& b, const char* letter) {
-  return b.joint + "." + letter + (b.parts > 1 ? std::to_string(b.coordinate) : "");
+/// What coordinate i of a joint without a quaternion adds to the name of its scene joint: "q", or
+/// the number of its coordinate behind it where the scene's joint has several.
+std::string one_dof_column(const Tree::Body& b, const char* letter, int i = 0) {
+  const bool several = b.parts > 1 || b.nv > 1;
+  return b.joint + "." + letter + (several ? std::to_string(b.coordinate + i) : "");
 }
 
 /// What spherical joints of a tree without loops leave out: the elimination of bodies that carry
@@ -38,13 +39,14 @@ std::vector<Column> Mechanism::coordinate_columns() const {
   if (scene_.lagrangian)
     for (const auto& c : scene_.lagrangian->coordinates) columns.push_back({c.name, c.unit});
   for (const auto& b : tree_.bodies) {
-    if (b.nq == 1)
-      columns.push_back({one_dof_column(b, "q"), b.kind == JointKind::prismatic ? "m" : "rad"});
+    if (!b.has_quaternion()) {
+      for (int i = 0; i < b.nq; ++i)
+        columns.push_back({one_dof_column(b, "q", i), b.is_length(i) ? "m" : "rad"});
+      continue;
+    }
     if (b.nq == 7)
       for (const char* axis : {".x", ".y", ".z"}) columns.push_back({b.joint + axis, "m"});
-    if (b.nq >= 4)
-      for (const char* part : {".qw", ".qx", ".qy", ".qz"})
-        columns.push_back({b.joint + part, "1"});
+    for (const char* part : {".qw", ".qx", ".qy", ".qz"}) columns.push_back({b.joint + part, "1"});
   }
   return columns;
 }
@@ -55,12 +57,14 @@ std::vector<Column> Mechanism::rate_columns() const {
     for (const auto& c : scene_.lagrangian->coordinates)
       columns.push_back({LagrangianFormulas::rate_name(c.name), c.unit + "/s"});
   for (const auto& b : tree_.bodies) {
-    if (b.nv == 1)
-      columns.push_back({one_dof_column(b, "u"), b.kind == JointKind::prismatic ? "m/s" : "rad/s"});
+    if (!b.has_quaternion()) {
+      for (int i = 0; i < b.nv; ++i)
+        columns.push_back({one_dof_column(b, "u", i), b.is_length(i) ? "m/s" : "rad/s"});
+      continue;
+    }
     if (b.nv == 6)
       for (const char* axis : {".vx", ".vy", ".vz"}) columns.push_back({b.joint + axis, "m/s"});
-    if (b.nv >= 3)
-      for (const char* axis : {".wx", ".wy", ".wz"}) columns.push_back({b.joint + axis, "rad/s"});
+    for (const char* axis : {".wx", ".wy", ".wz"}) columns.push_back({b.joint + axis, "rad/s"});
   }
   return columns;
 }

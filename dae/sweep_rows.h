@@ -77,8 +77,7 @@ class Mechanism::SweepRows : public Evaluation<S> {
     momenta::coordinate_rates(model_, q, u, qdot);
   }
   void joint_rates(const S* q, const S* qdot, S* u) const override {
-    for (const auto& b : model_.bodies)
-      if (b.nv > 0) momenta::joint_rates(b.kind, q + b.q, qdot + b.q, u + b.u);
+    momenta::joint_rates(model_, q, qdot, u);
   }
 
   void applied_forces(double t, const S* q, const S* u, S* tau, bool at_points) override {

@@ -18,7 +18,8 @@ MOMENTA_INLINE void quaternion_rates(const S* q, const S* w, S* qdot) {
   qdot[3] = 0.5 * (q[0] * w[2] + q[1] * w[1] - q[2] * w[0]);
 }
 
-/// Rates of the coordinates of one joint: q̇ = u, or the kinematics of position and quaternion.
+/// Rates of the coordinates of one built-in joint: q̇ = u, or the kinematics of position and
+/// quaternion.
 /// position rate = R v, v in child axes too.
 template <class S>
 void coordinate_rates(JointKind kind, const S* q, const S* u, S* qdot) {

@@ -185,4 +185,14 @@ void coordinate_rates(const Model<Space>& model, const S* q, const S* u, S* qdot
       coordinate_rates(b.kind, q + b.q, u + b.u, qdot + b.q);
 }
 
+/// The inverse: u of the whole tree from q̇.
+template <class Space, class S>
+void joint_rates(const Model<Space>& model, const S* q, const S* qdot, S* u) {
+  for (const auto& b : model.bodies)
+    if (b.law)
+      for (int i = 0; i < b.nv; ++i) u[b.u + i] = qdot[b.q + i];
+    else if (b.nv > 0)
+      joint_rates(b.kind, q + b.q, qdot + b.q, u + b.u);
+}
+
 }  // namespace momenta

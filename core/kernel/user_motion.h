@@ -5,15 +5,21 @@
 //   E_j = (Rᵀ ∂r/∂q_j, vee(Rᵀ ∂R/∂q_j)),   Ω_t = (Rᵀ ∂r/∂t, vee(Rᵀ ∂R/∂t))          (13)
 //   Ė, dΩ_t/dt: the derivatives of these along (q̇, ṫ) = (u, 1)                       (35)
 //
-// The formula is evaluated for double, Dual<double, 1> and Dual8, whose derivatives are exact, one
-// direction at a time for other dual numbers, and lane by lane for packs: out of line, by
-// code compiled once for any machine. Directions from one state go through Dual8. Every other
-// scalar goes through double: long double has the digits of a double there, a Counted does not see
-// the operations of the formula.
+// The formula is evaluated for double, Dual<double, 1>, Dual8 and Jet, whose derivatives are exact,
+// one direction at a time for other dual numbers, and lane by lane for packs: out of line, by code
+// compiled once for any machine. Directions from one state go through Dual8. Of a LocalDual the
+// derivatives by the twelve numbers q and u come from Dual8, and the chain rule gives the rest,
+//
+//   y = y(q, u),   dy = Σ_j ∂y/∂q_j dq_j + ∂y/∂u_j du_j,   t a constant.
+//
+// Every other scalar goes through double: long double has the digits of a double there, a Counted
+// does not see the operations of the formula.
 
 #include <momenta/core/kernel/spatial.h>
 #include <momenta/core/scalar/dual.h>
+#include <momenta/core/scalar/local_dual.h>
 #include <momenta/core/scalar/pack.h>
+#include <momenta/core/scalar/power_series.h>
 #include <momenta/core/scene/joint_formula.h>
 
 namespace momenta {
@@ -41,7 +47,8 @@ void each_number(UserMotion<S>& m, F&& f) {
   for (auto& column : m.E_rate) motions(column);
   motions(m.drift_rate);
 }
-constexpr int user_numbers = 12 + 2 * 7 * 6;
+constexpr int user_numbers_without_rates = 12 + 7 * 6;
+constexpr int user_numbers = user_numbers_without_rates + 7 * 6;
 
 /// What the recursions take of the formula: the pose, E, Ω_t and their rates along u (null: no
 /// rates), in each of their scalars.
@@ -53,6 +60,8 @@ class UserFormula : public JointFormula {
   virtual void move(const Dual<double, 1>* u, UserMotion<Dual<double, 1>>& m) const = 0;
   /// With eight.
   virtual void move(const Dual8* u, UserMotion<Dual8>& m) const = 0;
+  /// Along a curve in t and q, with two directions from it.
+  virtual void move(const Jet* u, UserMotion<Jet>& m) const = 0;
 };
 
 /// R, r, E and Ω_t at (m.t, m.q); with u not null their rates along (u, 1), else zeros there.
@@ -60,6 +69,8 @@ void user_motion(const UserFormula& joint, const double* u, UserMotion<double>& 
 void user_motion(const UserFormula& joint, const Dual<double, 1>* u,
                  UserMotion<Dual<double, 1>>& m);
 void user_motion(const UserFormula& joint, const Dual8* u, UserMotion<Dual8>& m);
+void user_motion(const UserFormula& joint, const Jet* u, UserMotion<Jet>& m);
+void user_motion(const UserFormula& joint, const LocalDual* u, UserMotion<LocalDual>& m);
 /// The same in plain arrays: six q and u, and user_numbers results.
 void user_motion(const UserFormula& joint, double t, const double* q, const double* u,
                  double* numbers);
@@ -102,13 +113,18 @@ void user_motion(const UserFormula& joint, const Pack<W, L>* u, UserMotion<Pack<
 }
 
 template <class T>
+constexpr bool is_series = false;
+template <int K>
+constexpr bool is_series<PowerSeries<K>> = true;
+template <class T>
 constexpr bool is_dual = false;
 template <class T, int N>
 constexpr bool is_dual<Dual<T, N>> = true;
 
 template <class T, int N>
 void user_motion(const UserFormula& joint, const Dual<T, N>* u, UserMotion<Dual<T, N>>& m) {
-  static_assert(!is_dual<T>, "a user joint has no second derivatives");
+  static_assert(!is_dual<T> && !is_series<T>,
+                "a user joint has no second derivatives beside those of Jet");
   using D = Dual<double, 1>;
   const int n = joint.coordinates();
   for (std::size_t direction = 0; direction < N; ++direction) {
@@ -137,6 +153,7 @@ void user_motion(const UserFormula& joint, const Dual<T, N>* u, UserMotion<Dual<
 
 template <class S>
 void user_motion(const UserFormula& joint, const S* u, UserMotion<S>& m) {
+  static_assert(!is_series<S>, "a user joint has no series beside those of Jet");
   const int n = joint.coordinates();
   double q[6]{}, rates[6]{}, numbers[user_numbers];
   for (int i = 0; i < n; ++i) {

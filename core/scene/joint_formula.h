@@ -1,6 +1,6 @@
 #pragma once
-// What a scene knows of a user joint: its number of coordinates and its pose. The recursions take
-// derivatives of the same formula (core/kernel/user_motion.h).
+// What a scene knows of a user joint: its number of coordinates, their units and its
+// pose. The recursions take derivatives of the same formula (core/kernel/user_motion.h).
 
 namespace momenta {
 
@@ -12,6 +12,9 @@ class JointFormula {
 
   /// n, from 1 to 6.
   virtual int coordinates() const = 0;
+
+  /// Whether coordinate i is a length [m]; else it is an angle [rad].
+  virtual bool is_length(int i) const = 0;
 
   /// The pose of the child's joint frame in the parent's at (t, q): the rotation, nine numbers by
   /// columns, and the position, three numbers.

@@ -73,7 +73,7 @@ void check_second_direction(const Scene& scene, const Edge& joint, const Eigen::
                      " is parallel to axis, expected another direction");
 }
 
-/// The law of a user joint, which no other joint has and no loop stands beside.
+/// The law of a user joint, which no other joint has.
 void check_law(const Scene& scene, const JointSpec& joint, const std::string& who) {
   if (joint.kind != JointKind::user)
     return require(!joint.law, scene, joint.at, who, "law is for user joints only");
@@ -81,8 +81,6 @@ void check_law(const Scene& scene, const JointSpec& joint, const std::string& wh
   const int n = joint.law->coordinates();
   require(n >= 1 && n <= 6, scene, joint.at, who,
           ("law has " + std::to_string(n) + " coordinates, expected 1 to 6").c_str());
-  require(scene.loops.empty(), scene, joint.at, who,
-          "a user joint needs an open chain, but the scene has loops");
 }
 
 /// R Rᵀ = 1 and det R > 0 at the start, t = 0. @pre position is finite and of its size

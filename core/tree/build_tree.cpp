@@ -1,3 +1,4 @@
+#include <momenta/core/scene/joint_formula.h>
 #include <momenta/core/scene/validate.h>
 #include <momenta/core/tree/tree.h>
 
@@ -287,6 +288,11 @@ std::string Tree::joint_in_words(int k) const {
   const Body& b = bodies[static_cast<std::size_t>(k)];
   const std::string joint = "joint '" + b.joint + "'";
   return b.parts == 1 ? joint : "coordinate " + std::to_string(b.coordinate) + " of " + joint;
+}
+
+bool Tree::Body::is_length(int i) const {
+  if (law) return law->is_length(i);
+  return nv == 6 ? i < 3 : nv == 1 && kind == JointKind::prismatic;
 }
 
 std::vector<Eigen::Isometry3d> Tree::zero_poses() const {

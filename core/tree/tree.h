@@ -54,6 +54,13 @@ struct Tree {
     double torque = 0;             ///< constant generalised force on such a joint [N m or N]
     double rotor = 0;              ///< inertia on its rate, a ball's three [kg m² or kg]
     std::shared_ptr<const JointFormula> law;  ///< of a user joint
+
+    /// Whether the last four of its coordinates are a unit quaternion w x y z. Then, and only then,
+    /// nq ≠ nv and q̇ ≠ u.
+    bool has_quaternion() const { return nq != nv; }
+    /// Whether rate i is that of a length [m/s]: slides, shifts of free bodies, and what a user
+    /// joint says; else [rad/s].
+    bool is_length(int i) const;
   };
 
   std::string name;               ///< of the scene
@@ -90,7 +97,7 @@ struct Tree {
   /// Normalises the quaternions in q (nq).
   void normalise(Eigen::VectorXd& q) const {
     for (const Body& b : bodies)
-      if (b.nq >= 4) q.segment<4>(b.q + b.nq - 4).normalize();
+      if (b.has_quaternion()) q.segment<4>(b.q + b.nq - 4).normalize();
   }
   /// Every body frame in ground axes with all joints at zero, driven ones too.
   std::vector<Eigen::Isometry3d> zero_poses() const;

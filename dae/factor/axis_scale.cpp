@@ -16,9 +16,7 @@ AxisScale::AxisScale(const Tree& tree, const std::vector<KktPattern::Entry>& con
       apart_(apart) {
   std::vector<bool> turns(static_cast<std::size_t>(tree.nv), false);
   for (const auto& b : tree.bodies) {
-    const int angular = b.nv == 6 ? 3 : 0;
-    if (b.nv == 1 && b.kind == JointKind::prismatic) continue;
-    for (int i = angular; i < b.nv; ++i) turns[static_cast<std::size_t>(b.u + i)] = true;
+    for (int i = 0; i < b.nv; ++i) turns[static_cast<std::size_t>(b.u + i)] = !b.is_length(i);
   }
   for (const auto& entry : pattern_) {
     const auto row = static_cast<std::size_t>(entry.row),

@@ -39,7 +39,7 @@ class CoordinateMotion {
       }
     }
     for (const auto& b : mechanism_.tree().bodies) {
-      if (b.nq < 4) continue;
+      if (!b.has_quaternion()) continue;
       Eigen::Map<Eigen::Vector4d>(moved + b.q + (b.nq - 4)).normalize();
     }
   }

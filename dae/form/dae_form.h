@@ -271,7 +271,7 @@ class DaeFormOf : public DaeForm {
   S* quaternion_rows(const S* q, const S* qdot, S* r) const {
     if (!mechanism_.plan().quasi_velocities) return r;
     for (const auto& b : mechanism_.tree().bodies) {
-      if (b.nq < 4) continue;
+      if (!b.has_quaternion()) continue;
       const int first = b.q + b.nq - 4;
       S row = S(-0.5);
       for (int i = first; i < first + 4; ++i) row += q[i] * qdot[i] + 0.5 * (q[i] * q[i]);

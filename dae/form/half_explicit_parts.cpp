@@ -96,7 +96,7 @@ const double* HalfExplicitParts::centre(const double* z) {
 void HalfExplicitParts::normalise(double* y) {
   if (!system_.plan().quasi_velocities) return;
   for (const auto& b : system_.tree().bodies) {
-    if (b.nq < 4) continue;
+    if (!b.has_quaternion()) continue;
     Eigen::Map<Eigen::Vector4d>(y + b.q + (b.nq - 4)).normalize();
   }
 }

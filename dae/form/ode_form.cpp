@@ -106,7 +106,7 @@ void OdeForm::take_correction(double* q) {
 void OdeForm::normalise(double* q) const {
   if (!mechanism_.plan().quasi_velocities) return;
   for (const auto& b : mechanism_.tree().bodies) {
-    if (b.nq < 4) continue;
+    if (!b.has_quaternion()) continue;
     double* quaternion = q + b.q + (b.nq - 4);
     double norm = 0;
     for (int i = 0; i < 4; ++i) norm += quaternion[i] * quaternion[i];

@@ -212,7 +212,7 @@ bool FormTangents::correct_velocity(double t, const VectorXd& q, const VectorXd&
 void FormTangents::normalise(VectorXd& q, MatrixXd& dq) const {
   if (!mechanism_.plan().quasi_velocities) return;
   for (const auto& b : mechanism_.tree().bodies) {
-    if (b.nq < 4) continue;
+    if (!b.has_quaternion()) continue;
     const Index first = b.q + b.nq - 4;
     const double norm = q.segment<4>(first).norm();
     const Eigen::Vector4d unit = q.segment<4>(first) / norm;

@@ -9,10 +9,10 @@ CoordinateJacobian::CoordinateJacobian(const Mechanism& mechanism)
       ball(coordinate.size(), -1);
   for (const auto& b : tree_.bodies) {
     for (int i = 0; i < b.nv; ++i) {
-      coordinate[static_cast<std::size_t>(b.u + i)] = b.q;
-      if (b.nq >= 4) ball[static_cast<std::size_t>(b.u + i)] = balls();
+      coordinate[static_cast<std::size_t>(b.u + i)] = b.has_quaternion() ? b.q : b.q + i;
+      if (b.has_quaternion()) ball[static_cast<std::size_t>(b.u + i)] = balls();
     }
-    if (b.nq >= 4) balls_.push_back({b.q, b.nq, b.u, b.nv, Eigen::MatrixXd(b.nv, b.nq)});
+    if (b.has_quaternion()) balls_.push_back({b.q, b.nq, b.u, b.nv, Eigen::MatrixXd(b.nv, b.nq)});
   }
   for (std::size_t i = 0; i < rate_pattern_.size(); ++i) {
     const auto column = static_cast<std::size_t>(rate_pattern_[i].column);
@@ -30,7 +30,7 @@ CoordinateJacobian::CoordinateJacobian(const Mechanism& mechanism)
 Eigen::VectorXd CoordinateJacobian::weights(const Eigen::VectorXd& of_rates) const {
   Eigen::VectorXd weights(qdot_.size());
   for (const auto& b : tree_.bodies)
-    if (b.nv == 1) weights[b.q] = of_rates[b.u];
+    if (!b.has_quaternion()) weights.segment(b.q, b.nq) = of_rates.segment(b.u, b.nv);
   for (const Ball& b : balls_) {
     weights.segment(b.q, b.nq - 4) = of_rates.segment(b.u, b.nq - 4);
     weights.segment<4>(b.quaternion()).setConstant(2 * of_rates.segment<3>(b.u + b.nv - 3).mean());

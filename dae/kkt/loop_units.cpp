@@ -65,10 +65,9 @@ LoopUnits::LoopUnits(const Mechanism& mechanism) {
   const double length = length_of(mechanism.scene());
   rounding = rounding_of(tree, length);
   rates.setOnes(mechanism.nv());
-  for (const auto& b : tree.bodies) {
-    if (b.kind == JointKind::prismatic && b.nv == 1) rates[b.u] = length;
-    if (b.nv == 6) rates.segment<3>(b.u).setConstant(length);
-  }
+  for (const auto& b : tree.bodies)
+    for (int i = 0; i < b.nv; ++i)
+      if (b.is_length(i)) rates[b.u + i] = length;
   equations.setOnes(mechanism.m());
   const std::vector<double> of_equations = sizes_of_equations(mechanism, rates);
   std::map<std::string, const LoopSpec*> couplers;

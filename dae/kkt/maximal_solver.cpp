@@ -15,6 +15,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
+#include <string>
 
 namespace momenta {
 namespace {
@@ -265,6 +267,11 @@ std::unique_ptr<LoopSolver> make_maximal_solver(const Mechanism& mechanism, Eval
   if (plan.planar)
     return std::make_unique<MaximalSolver<Planar, 1>>(
         mechanism, e, build_planar_model(mechanism.tree(), mechanism.scene(), plan.basis));
+  for (const auto& b : mechanism.tree().bodies)
+    if (b.law && b.nv > 1)
+      throw std::invalid_argument(
+          "maximal coordinates take user joints of one coordinate, but joint '" + b.joint +
+          "' has " + std::to_string(b.nv) + "; expected another form");
   auto model = build_spatial_model(mechanism.tree(), mechanism.scene());
   if (std::any_of(model.bodies.begin(), model.bodies.end(),
                   [](const auto& b) { return b.nv == 3 && b.has_rotor(); }))

@@ -151,6 +151,8 @@ class MaximalTree {
     j.moved = d;
     j.along = 1;
     double slope = 0;  // of what moves with the moved direction, in the one before it or after
+    if constexpr (d == 6)
+      if (b.law) return set_user_axes(k);
     if (b.nv == 1) {
       if constexpr (d == 3) {
         j.moved = 2;
@@ -173,6 +175,23 @@ class MaximalTree {
         const bool slanted = d == 3 ? i < 2 : i == 2;
         j.held[row] = i;
         j.slant[row++] = slanted ? -slope : 0;
+      }
+  }
+
+  /// Of a user joint of one coordinate, E = (E_i): the largest moves, e_i − (E_i / E_moved) e_moved
+  /// are held.
+  void set_user_axes(std::size_t k) {
+    auto& j = joint_[k];
+    const auto& E = w_.body[k].edge.own->E[0];
+    j.moved = 0;
+    for (int i = 1; i < d; ++i)
+      if (std::abs(E[i]) > std::abs(E[j.moved])) j.moved = i;
+    j.along = 1 / E[j.moved];
+    int row = 0;
+    for (int i = 0; i < d; ++i)
+      if (i != j.moved) {
+        j.held[row] = i;
+        j.slant[row++] = -E[i] * j.along;
       }
   }
 

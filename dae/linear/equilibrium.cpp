@@ -24,11 +24,6 @@ constexpr double longest_step = 0.4;    // [rad or lengths of the scene]
 constexpr double gone = 1e3;            // lengths of the scene: it falls
 constexpr double neutral_floor = 1e-9;  // least μ against the natural one: keeps neutral directions
 
-/// Rates that are lengths: of slides and of free bodies.
-bool is_shift(const Tree::Body& b, int i) {
-  return b.nv == 6 ? i < 3 : b.nv == 1 && b.kind == JointKind::prismatic;
-}
-
 double whole_mass(const Mechanism& mechanism) {
   double mass = 0;
   for (const BodySpec& body : mechanism.scene().bodies) mass += body.mass;
@@ -250,7 +245,7 @@ class Searcher {
       const Tree::Body& b = mechanism_.tree().bodies[k];
       if (worst < b.u || worst >= b.u + b.nv) continue;
       joint = mechanism_.tree().joint_in_words(static_cast<int>(k));
-      shift = is_shift(b, static_cast<int>(worst) - b.u);
+      shift = b.is_length(static_cast<int>(worst) - b.u);
     }
     const char* force = shift ? " N" : " N m";
     const char* rate = shift ? " m/s²" : " rad/s²";
@@ -311,7 +306,7 @@ VectorXd force_scales(const Mechanism& mechanism, Evaluation<double>& e) {
   for (const Tree::Body& b : mechanism.tree().bodies)
     for (int i = 0; i < b.nv; ++i) {
       double& s = scale[b.u + i];  // M_ii
-      const double lever = is_shift(b, i) ? 1 : mass > 0 ? std::sqrt(std::max(s, 0.0) / mass) : 1;
+      const double lever = b.is_length(i) ? 1 : mass > 0 ? std::sqrt(std::max(s, 0.0) / mass) : 1;
       s = std::max({force * lever + torque, 1e-12 * s, 1e-30});
     }
   return scale;
@@ -322,7 +317,7 @@ VectorXd natural_units(const Mechanism& mechanism) {
   VectorXd unit = VectorXd::Ones(mechanism.nv());
   for (const Tree::Body& b : mechanism.tree().bodies)
     for (int i = 0; i < b.nv; ++i)
-      if (is_shift(b, i)) unit[b.u + i] = length;
+      if (b.is_length(i)) unit[b.u + i] = length;
   return unit;
 }
 

@@ -43,17 +43,14 @@ class Scales {
   }
 
  private:
-  static bool slides(const Tree::Body& b, int i) {
-    return b.nv == 6 ? i < 3 : b.nv == 1 && b.kind == JointKind::prismatic;
-  }
   void pass(int k, double lever, Weighed& w) const {
     const Tree::Body& b = tree_.bodies[static_cast<std::size_t>(k)];
     for (int i = 0; i < b.nv; ++i) {
       const double along = inertia_[static_cast<std::size_t>(b.u + i)];
       if (!(along > 0)) continue;
-      w.mobility += slides(b, i) ? 1 / along : length_ * length_ / along;
-      if (!slides(b, i) && !(lever > least_lever * length_)) continue;
-      const double mass = slides(b, i) ? along : along / (lever * lever);
+      w.mobility += b.is_length(i) ? 1 / along : length_ * length_ / along;
+      if (!b.is_length(i) && !(lever > least_lever * length_)) continue;
+      const double mass = b.is_length(i) ? along : along / (lever * lever);
       if (w.lightest < 0 || mass < w.of_lightest) w.lightest = k, w.of_lightest = mass;
       if (w.heaviest < 0 || mass > w.of_heaviest) w.heaviest = k, w.of_heaviest = mass;
     }

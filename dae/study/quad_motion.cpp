@@ -96,7 +96,7 @@ class QuadSweeps final : public QuadMotion {
   }
   void normalise(Quad* q) const {
     for (const auto& b : mechanism_.tree().bodies) {
-      if (b.nq < 4) continue;
+      if (!b.has_quaternion()) continue;
       Quad* quaternion = q + b.q + (b.nq - 4);
       Quad norm = 0;
       for (int i = 0; i < 4; ++i) norm += quaternion[i] * quaternion[i];
@@ -122,6 +122,11 @@ std::unique_ptr<QuadMotion> make_quad_motion(const Mechanism& mechanism) {
   refuse_bearings(mechanism.scene(), "integration in quadruple precision");
   if (mechanism.scene().lagrangian) return make_quad_lagrangian(mechanism);
   const Tree& tree = mechanism.tree();
+  for (const auto& b : tree.bodies)
+    if (b.law)
+      throw std::runtime_error("joint '" + b.joint +
+                               "' is a user joint, whose formula has no values in quadruple "
+                               "precision; expected a reference from a file");
   if (mechanism.plan().planar)
     return std::make_unique<QuadSweeps<Planar, PlanarTree>>(
         mechanism, build_planar_model(tree, mechanism.scene(), mechanism.plan().basis));

@@ -24,7 +24,8 @@ class QuadMotion {
 
 /// Of a Lagrangian: make_quad_lagrangian().
 /// @pre the mechanism stays where it is. @throws std::runtime_error where more loop equations are
-/// open at once than the sweeps have slots. Cost of a call: about 100 evaluations in doubles.
+/// open at once than the sweeps have slots, or a joint is a user joint. Cost of a call: about 100
+/// evaluations in doubles.
 std::unique_ptr<QuadMotion> make_quad_motion(const Mechanism& mechanism);
 
 }  // namespace momenta

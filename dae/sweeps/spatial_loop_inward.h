@@ -193,7 +193,9 @@ bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::inward(const In& r, const Right
     else if (of_looped_branches || l.one_axis)
       moves = axis_inward(k, r, right, a);
     else if constexpr (!of_looped_branches)
-      moves = l.kind == LinkKind::spherical ? spherical_inward(k, r, a) : free_inward(k, r, a);
+      moves = l.kind == LinkKind::spherical ? spherical_inward(k, r, a)
+              : body(k).law                 ? user_inward(k, r, a)
+                                            : free_inward(k, r, a);
     if (!moves) {
       singular_joint_ = static_cast<int>(k);
       return false;

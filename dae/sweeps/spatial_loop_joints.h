@@ -246,15 +246,7 @@ bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::free_inward(std::size_t k, cons
       for (int i = 0; i < 6; ++i) o.d += o.C[i] * y.given[i];
       D += reduced_momentum<Spatial>(b, x, y.given);
     }
-    Spatial::Pose<S> way;
-    way.axes = identity3<S>();
-    way = Spatial::pose_outward(b.edge, b.kind, x.edge, way);
-    each_open<S, Rows>(open, [&](auto i) MOMENTA_INLINED {
-      typename Column::Part C[6];
-      each<6>([&](auto j) MOMENTA_INLINED { C[j] = o.C[j].v[i]; });
-      columns_to_parent<Column>(way.axes, way.origin, C);
-      each<6>([&](auto j) MOMENTA_INLINED { o.C[j].v[i] = C[j]; });
-    });
+    columns_inward(k, open, o);
     return b.parent < 0 || hand_on(k, M, D, a);
   }
   // Angular: I⁻¹ c_n; then A⁻¹ (c_f − H I⁻¹ c_n).
@@ -269,6 +261,23 @@ bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::free_inward(std::size_t k, cons
   for (int i = 0; i < 3; ++i) eliminate_slots(left[i], y.g[i], x.y[i]);
   for (int i = 0; i < 6; ++i) o.C[i] = {};
   return b.parent < 0 || hand_on(k, M, D, a);
+}
+
+/// C' by the whole way to the parent, of joints whose own is a rotation and a position.
+template <class S, int Rows, bool Momentum, class Tree>
+void SpatialLoopSweeps<S, Rows, Momentum, Tree>::columns_inward(std::size_t k, SlotGroups open,
+                                                                Blocks& o) const {
+  const auto& b = body(k);
+  Spatial::Pose<S> way;
+  way.axes = identity3<S>();
+  way = Spatial::pose_outward(b.edge, b.kind,
+                              joints_[static_cast<std::size_t>(tree_->links[k].record)].edge, way);
+  each_open<S, Rows>(open, [&](auto i) MOMENTA_INLINED {
+    typename Column::Part C[6];
+    each<6>([&](auto j) MOMENTA_INLINED { C[j] = o.C[j].v[i]; });
+    columns_to_parent<Column>(way.axes, way.origin, C);
+    each<6>([&](auto j) MOMENTA_INLINED { o.C[j].v[i] = C[j]; });
+  });
 }
 
 /// (M', D') and the first moment of the subtree to the parent.

@@ -132,6 +132,7 @@ void SpatialLoopSweeps<S, Rows, Momentum, Tree>::move_bodies(const In& x,
         if (body(k).drive >= 0 && right.drives)
           Joint<Spatial>::add_motion(body(k), joints_[record].edge, &joints_[record].drive_rate,
                                      any_[record].given);
+        if (body(k).law && right.drives) any_[record].given += joints_[record].user->motion.drift;
       }
   } else {
     // Ω in body axes, kept where the bodies' wrenches will be.
@@ -180,16 +181,23 @@ void SpatialLoopSweeps<S, Rows, Momentum, Tree>::move_bodies(const In& x,
         auto& j = joints_[static_cast<std::size_t>(l.record)];
         V = Spatial::to_child(b.edge, b.kind, j.edge, V);
         turning = Spatial::to_child(b.edge, b.kind, j.edge, turning);
+        [[maybe_unused]] S rates[6]{};
         if constexpr (of_looped_branches) {
           own.v[2] = x[b.u];
         } else {
-          S rates[6]{};
           for (int i = 0; i < b.nv; ++i) rates[i] = x[b.u + i];
           Joint<Spatial>::add_motion(b, j.edge, b.drive >= 0 ? &j.drive_rate : rates, own);
+          if (b.law) {
+            own += j.user->motion.drift;
+            Joint<Spatial>::move(b, j.edge, static_cast<const S*>(rates));
+          }
         }
         product = {cross(V.w, turning.v) + cross(S(2.0) * V.w + own.w, own.v), cross(V.w, own.w)};
-        if constexpr (!of_looped_branches)
+        if constexpr (!of_looped_branches) {
           if (b.drive >= 0) Joint<Spatial>::add_motion(b, j.edge, &j.drive_acceleration, product);
+          if (b.law)
+            Joint<Spatial>::add_motion_rate(b, j.edge, static_cast<const S*>(rates), product);
+        }
         any_[static_cast<std::size_t>(l.record)].given = product;
         V += own;
       }

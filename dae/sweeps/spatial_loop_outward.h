@@ -62,6 +62,8 @@ void SpatialLoopSweeps<S, Rows, Momentum, Tree>::outward(const In& q, const Righ
     else if constexpr (!of_looped_branches) {
       if (l.kind == LinkKind::spherical)
         spherical_outward(k, rates, m, u, rate);
+      else if (body(k).law)
+        user_outward(k, rates, m, u, rate);
       else
         free_outward(k, rates, m, u, rate);
     }
@@ -188,19 +190,29 @@ void SpatialLoopSweeps<S, Rows, Momentum, Tree>::free_outward(std::size_t k, boo
   if (rates) axes_rates(k, m, rate);
 }
 
+/// The weight less Ω × P* of (35), and P* with the impulses of the loops below.
+template <class S, int Rows, bool Momentum, class Tree>
+auto SpatialLoopSweeps<S, Rows, Momentum, Tree>::net_wrench(std::size_t k, const Moving& m,
+                                                            Force& P) const -> Force {
+  const auto& b = body(k);
+  const auto record = static_cast<std::size_t>(tree_->links[k].record);
+  const auto& x = joints_[record];
+  Force net = Spatial::weight(S(b.subtree_mass), x.moment, m.g);
+  P = Spatial::momentum(x.M, m.V);  // (42)
+  P += x.D;
+  for (int i = 0; i < 6; ++i) P[i] += along_sigma(k, any_[record].C[i], m.sigma);
+  net -= Spatial::cross_force(m.V, P);
+  return net;
+}
+
 /// (35) with E = 1 or, of spherical joints, its angular half.
 template <class S, int Rows, bool Momentum, class Tree>
 template <class Out>
 void SpatialLoopSweeps<S, Rows, Momentum, Tree>::axes_rates(std::size_t k, const Moving& m,
                                                             Out rate) const {
   const auto& b = body(k);
-  const auto record = static_cast<std::size_t>(tree_->links[k].record);
-  const auto& x = joints_[record];
-  Force net = Spatial::weight(S(b.subtree_mass), x.moment, m.g);
-  Force P = Spatial::momentum(x.M, m.V);  // (42)
-  P += x.D;
-  for (int i = 0; i < 6; ++i) P[i] += along_sigma(k, any_[record].C[i], m.sigma);
-  net -= Spatial::cross_force(m.V, P);
+  Force P;
+  const Force net = net_wrench(k, m, P);
   for (int i = 0; i < b.nv; ++i) rate[b.u + i] = net[6 - b.nv + i];
 }
 

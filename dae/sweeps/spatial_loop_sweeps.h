@@ -210,6 +210,9 @@ class SpatialLoopSweeps {
                                              Carried& a);
   template <class In>
   __attribute__((noinline)) bool free_inward(std::size_t k, const In& r, Carried& a);
+  template <class In>
+  __attribute__((noinline)) bool user_inward(std::size_t k, const In& r, Carried& a);
+  void columns_inward(std::size_t k, SlotGroups open, Blocks& o) const;
   bool hand_on(std::size_t k, const Spatial::ArticulatedInertia<S>& M, const Force& D,
                Carried& a) const;
   /// xᵀσ over the slots open above body k.
@@ -244,6 +247,10 @@ class SpatialLoopSweeps {
   template <class Out>
   __attribute__((noinline)) void free_outward(std::size_t k, bool rates, Moving& m, Out u,
                                               Out rate);
+  template <class Out>
+  __attribute__((noinline)) void user_outward(std::size_t k, bool rates, Moving& m, Out u,
+                                              Out rate);
+  Force net_wrench(std::size_t k, const Moving& m, Force& P) const;
   template <class Out>
   void axes_rates(std::size_t k, const Moving& m, Out rate) const;
   template <class Out>
@@ -404,3 +411,4 @@ auto SpatialLoopSweeps<S, Rows, Momentum, Tree>::looped_branches_rates(const Vec
 #include <momenta/dae/sweeps/spatial_loop_joints.h>
 #include <momenta/dae/sweeps/spatial_loop_outset.h>
 #include <momenta/dae/sweeps/spatial_loop_outward.h>
+#include <momenta/dae/sweeps/spatial_loop_user.h>

@@ -161,5 +161,57 @@ TEST(UserJoint, EulerAnglesAreTheSphericalJoint) {
   }
 }
 
+/// The derivatives of x by 2n numbers, what was cut put back.
+Eigen::VectorXd derivatives(const LocalDual& x, const Cuts& cuts, int count) {
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(count + cuts.size());
+  for (int k = 0; k < x.terms; ++k)
+    sum[x.at[static_cast<std::size_t>(k)]] += x.b[static_cast<std::size_t>(k)];
+  for (int z = cuts.size(); z-- > 0;)
+    for (std::size_t k = cuts.first(z); k < cuts.last(z); ++k)
+      sum[cuts.columns()[k]] += sum[count + z] * cuts.values()[k];
+  return sum.head(count);
+}
+
+TEST(UserJoint, SparseDualNumbersHaveTheSameDerivatives) {
+  const Chain six{{{slide, X}, {slide, Y}, {slide, Z}, {hinge, slanted}, {hinge, Y}, {hinge, X}}};
+  for (const UserJoint& law : {UserJoint(2, Moving{}), UserJoint(6, six)})
+    for (const bool moves : {true, false}) {
+      const int n = law.coordinates();
+      const State s(n, 31);
+      UserMotion<LocalDual> sparse;
+      LocalDual rates[6];
+      sparse.t = LocalDual(s.t);
+      for (int i = 0; i < n; ++i) {
+        sparse.q[i] = LocalDual::variable(s.q[i], i);
+        rates[i] = LocalDual::variable(s.u[i], n + i);
+      }
+      Cuts cuts;
+      cuts.begin(2 * n, true);
+      user_motion(law, moves ? static_cast<const LocalDual*>(rates) : nullptr, sparse);
+      cuts.stop();
+      using D = Dual<double, 1>;
+      std::vector<LocalDual> all;
+      each_number(sparse, [&](const LocalDual& x) { all.push_back(x); });
+      for (int direction = 0; direction < 2 * n; ++direction) {
+        UserMotion<D> one;
+        D along[6];
+        one.t = D(s.t);
+        for (int i = 0; i < n; ++i) {
+          one.q[i] = D(s.q[i]), along[i] = D(s.u[i]);
+          if (direction == i) one.q[i].b[0] = 1;
+          if (direction == n + i) along[i].b[0] = 1;
+        }
+        user_motion(law, moves ? static_cast<const D*>(along) : nullptr, one);
+        std::size_t k = 0;
+        each_number(one, [&](const D& x) {
+          EXPECT_NEAR(all[k].a, x.a, 1e-14) << k;
+          EXPECT_NEAR(derivatives(all[k], cuts, 2 * n)[direction], x.b[0], 1e-12)
+              << k << " " << direction;
+          ++k;
+        });
+      }
+    }
+}
+
 }  // namespace
 }  // namespace momenta::core_user_joint

@@ -2,6 +2,7 @@
 // the impulses' rates against differences of Φ in quad precision, in a plane and in space, with
 // moving origins; Jacobians in every scalar; what has no derivatives is told.
 
+#include "equations/carried.h"
 #include "equations/random_tree.h"
 
 #include <gtest/gtest.h>
@@ -334,6 +335,34 @@ TEST(HigherPairs, SlotsInSpaceOnBodiesThatTilt) {
     EXPECT_EQ(mechanism.m(), 2);
     equations::RandomTree random(9);
     compare_with_differences(mechanism, 0, random);
+  }
+}
+
+/// All of them where their plane goes with a body in space: on three slides and three hinges.
+TEST(HigherPairs, PlanesThatMoveInSpace) {
+  for (const Case& c : all_pairs()) {
+    SCOPED_TRACE(c.name);
+    std::vector<BodySpec> bodies;
+    std::vector<JointSpec> joints;
+    std::string parent = "ground";
+    for (int i = 0; i < 6; ++i) {
+      const std::string child = i == 5 ? "base" : "base" + std::to_string(i);
+      bodies.push_back(equations::massless(child));
+      joints.push_back(equations::base_joint("J" + std::to_string(i),
+                                             i < 3 ? JointKind::prismatic : JointKind::revolute,
+                                             parent, child, Eigen::Vector3d::Unit(i % 3)));
+      parent = child;
+    }
+    bodies.back().mass = 3;
+    bodies.back().com = {0.1, 0.3, -0.2};
+    bodies.back().inertia.diagonal() = Eigen::Vector3d(0.2, 0.3, 0.4);
+    const Mechanism mechanism(equations::on_base(arms(c.loop), bodies, joints));
+    ASSERT_FALSE(mechanism.plan().planar);
+    equations::RandomTree random(17);
+    for (int i = 0; i < 3; ++i) {
+      compare_with_differences(mechanism, 0, random);
+      if (HasFatalFailure()) return;
+    }
   }
 }
 
