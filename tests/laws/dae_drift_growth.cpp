@@ -8,6 +8,8 @@
 #include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/study/run_form.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 namespace momenta::dae_drift_growth {
@@ -79,7 +81,12 @@ TEST(DriftGrowth, CorrectedPositionsStayAtRounding) {
     ASSERT_EQ(r.status, "done") << r.reason;
     EXPECT_LT(r.position_drift_max, 1e-14) << form << gauge;
     EXPECT_LT(r.velocity_drift_max, 1e-12) << form << gauge;
+    EXPECT_GT(r.position_drift_max, 0) << form << gauge;  // rounding: it was looked at
+    EXPECT_GT(r.velocity_drift_max, 0) << form << gauge;
     EXPECT_LT(r.energy_error_max, 0.1) << form << gauge;  // 1e-3 of what moves
+    double largest = 0;  // in size, whether energy is gained or lost
+    for (const double e : r.series.energy_error) largest = std::max(largest, std::abs(e));
+    EXPECT_EQ(r.energy_error_max, largest) << form << gauge;
   }
 }
 
