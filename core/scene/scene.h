@@ -76,7 +76,7 @@ struct BodySpec {
 ///   - spherical: quaternion w x y z of the child axes in the joint frame
 ///   - free: position x y z [m] of the child point in the joint frame, then that quaternion
 ///   - user: what the formula in `law` takes; the two frames need not coincide at q = 0. A file has
-///     no such kind. No springs, dampers, torques or drives on it, and no loops in the scene
+///     no such kind. No springs, dampers, torques, drives or couplers on it
 ///
 /// u, by kind:
 ///   - q̇ where no quaternion is in q; weld: none
