@@ -37,6 +37,7 @@ class Search {
       : mechanism_(mechanism), t_(t), own_(own), request_(request), loops_(mechanism) {
     for (const std::string& name : request.hold) held_.push_back(coordinate_named(mechanism, name));
     for (const auto& [q, u] : held_) loops_.columns[static_cast<std::size_t>(u)] = false;
+    if (request.by_homotopy) spins_ = idle_spins(mechanism, held_rates());
     expect_no_freedom();
     sort_coordinates();
   }
@@ -49,10 +50,14 @@ class Search {
   }
 
  private:
-  Assemblies by_homotopy() {
+  std::vector<bool> held_rates() const {
     std::vector<bool> held(static_cast<std::size_t>(mechanism_.nv()), false);
     for (const auto& [q, u] : held_) held[static_cast<std::size_t>(u)] = true;
-    const auto polynomials = loop_polynomials(mechanism_, t_, own_, held);
+    return held;
+  }
+
+  Assemblies by_homotopy() {
+    const auto polynomials = loop_polynomials(mechanism_, t_, own_, held_rates());
     const HomotopyEnds ends =
         solve_by_homotopy(polynomials->system(), request_.seed, request_.threads);
     Assemblies found;
@@ -139,7 +144,7 @@ class Search {
       while (rank < values.size() && values[rank] > free_value * values[0]) ++rank;
       null = svd.matrixV().rightCols(j.cols() - rank);
     }
-    if (null.cols() == 0) return;
+    if (null.cols() <= spins_) return;
     // Rates that span the freedoms: the pivots of what is left free.
     const Eigen::ColPivHouseholderQR<MatrixXd> pivots(null.transpose());
     std::vector<std::string> names;
@@ -256,7 +261,7 @@ class Search {
     if (j.cols() > 0) {
       const VectorXd values = Eigen::JacobiSVD<MatrixXd>(j).singularValues();
       other.most_value = values[0];
-      other.least_value = values[j.cols() - 1];
+      other.least_value = values[j.cols() - 1 - spins_];
     }
     found.all.push_back(std::move(other));
   }
@@ -267,6 +272,7 @@ class Search {
   const AssembliesRequest& request_;
   ScaledLoops loops_;
   std::vector<std::pair<int, int>> held_;
+  int spins_ = 0;              ///< freedoms of legs that solutions are not about
   std::vector<Place> places_;  ///< of each coordinate
   std::vector<bool> turns_;    ///< whether a full turn brings it back
   VectorXd lengths_;  ///< what a coordinate is counted in: 1 rad, or the scene's length [m]

@@ -17,7 +17,9 @@
 //
 // Where loops can be written as polynomials (loop_polynomials.h) a homotopy finds all of them, with
 // the number of solutions over the complex numbers: complete where no path is lost or ends at a
-// singular solution. `met` is then how many solutions led to it.
+// singular solution. `met` is then how many solutions led to it. Of a platform on legs its poses
+// are counted, not those of the legs (platform_legs.h): what spins between two balls is no freedom
+// then.
 
 #include <momenta/dae/mechanism.h>
 

@@ -1,5 +1,6 @@
 #include <momenta/core/scene/drive.h>
 #include <momenta/dae/kinematics/loop_polynomials.h>
+#include <momenta/dae/kinematics/pieces.h>
 #include <momenta/dae/kinematics/planar_polynomials.h>
 #include <momenta/dae/kinematics/platform_polynomials.h>
 
@@ -22,11 +23,14 @@ std::vector<Isometry3d> poses_of_polynomials(const Mechanism& mechanism, double 
       tree.drives[static_cast<std::size_t>(b.drive)].evaluate(t, value, rate, second);
     else if (b.nq == 1)
       value = q[b.q];
-    if (b.kind == JointKind::revolute) moved.rotate(Eigen::AngleAxisd(value, Vector3d::UnitZ()));
+    if (b.kind == JointKind::helical) moved.translate(b.pitch * value * Vector3d::UnitZ());
+    if (b.kind == JointKind::revolute || b.kind == JointKind::helical)
+      moved.rotate(Eigen::AngleAxisd(value, Vector3d::UnitZ()));
     if (b.kind == JointKind::prismatic) moved.translate(value * Vector3d::UnitZ());
-    if (b.kind == JointKind::free && b.nq == 7) {
-      moved.translate(q.segment<3>(b.q));
-      moved.rotate(Eigen::Quaterniond(q[b.q + 3], q[b.q + 4], q[b.q + 5], q[b.q + 6]));
+    if (b.kind == JointKind::free && b.nq == 7) moved.translate(q.segment<3>(b.q));
+    if (b.nq >= 4) {
+      const int at = b.q + b.nq - 4;
+      moved.rotate(Eigen::Quaterniond(q[at], q[at + 1], q[at + 2], q[at + 3]));
     }
     const Isometry3d placed = b.placement * moved;
     poses.push_back(b.parent < 0 ? placed : poses[static_cast<std::size_t>(b.parent)] * placed);
@@ -50,16 +54,20 @@ std::unique_ptr<LoopPolynomials> loop_polynomials(const Mechanism& mechanism, do
   std::unique_ptr<LoopPolynomials> found;
   if (!mechanism.scene().lagrangian && mechanism.plan().planar)
     found = planar_polynomials(mechanism, t, own, held);
-  else if (is_platform(mechanism, held))
-    found = platform_polynomials(mechanism, t, own);
+  else if (!mechanism.scene().lagrangian)
+    found = platform_polynomials(mechanism, t, own, held);
   else
     throw SceneError(mechanism.scene().where({}) +
-                     "its loops are not written as polynomials; expected a mechanism in a plane, "
-                     "or one free body on six loops of kind distance from the ground");
+                     "its loops are not written as polynomials; expected joints, not a Lagrangian");
   if (found->system().bezout(most_paths) > most_paths)
     throw SceneError(mechanism.scene().where({}) + "more than " + std::to_string(most_paths) +
                      " paths would have to be followed; expected fewer loops");
   return found;
+}
+
+int idle_spins(const Mechanism& mechanism, const std::vector<bool>& held) {
+  if (mechanism.scene().lagrangian || mechanism.plan().planar) return 0;
+  return Pieces(mechanism, held).spins();
 }
 
 }  // namespace momenta

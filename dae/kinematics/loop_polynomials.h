@@ -3,7 +3,7 @@
 // solutions can be found (homotopy.h). Two kinds of mechanisms are written so:
 //
 //   in a plane   joints that turn and slide: planar_polynomials.h
-//   platforms    one free body on six rods with balls at their ends: platform_polynomials.h
+//   platforms    a body on six rods or legs with balls at their ends: platform_polynomials.h
 
 #include <momenta/dae/kinematics/polynomial_system.h>
 #include <momenta/dae/mechanism.h>
@@ -30,11 +30,14 @@ std::unique_ptr<LoopPolynomials> loop_polynomials(const Mechanism& mechanism, do
                                                   const Eigen::VectorXd& own,
                                                   const std::vector<bool>& held);
 
+/// How many legs can turn about the line between two balls: freedoms that no solution is about.
+int idle_spins(const Mechanism& mechanism, const std::vector<bool>& held);
+
 inline constexpr long most_paths = 20'000;
 /// Imaginary parts of real solutions, of what has size one.
 inline constexpr double real_enough = 1e-7;
 
-/// Every body frame in ground axes. @pre joints turn, slide or are free
+/// Every body frame in ground axes. @pre no joint of kind user
 std::vector<Eigen::Isometry3d> poses_of_polynomials(const Mechanism& mechanism, double t,
                                                     const Eigen::VectorXd& q);
 /// The point of a loop on its parent in the axes of that body, driven components at time t.

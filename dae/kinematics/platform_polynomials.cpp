@@ -1,12 +1,14 @@
+#include <momenta/dae/kinematics/platform_legs.h>
 #include <momenta/dae/kinematics/platform_polynomials.h>
 
-#include <algorithm>
 #include <cmath>
 
 namespace momenta {
 namespace {
 
+using Eigen::AngleAxisd;
 using Eigen::Isometry3d;
+using Eigen::Matrix3d;
 using Eigen::Matrix4d;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
@@ -35,23 +37,18 @@ Matrix4d from_right(const Vector3d& v) {
 
 class Platform final : public LoopPolynomials {
  public:
-  Platform(const Mechanism& mechanism, double t, const VectorXd& own)
+  Platform(const Mechanism& mechanism, double t, const VectorXd& own, const std::vector<bool>& held)
       : mechanism_(mechanism),
         own_(own),
         poses_(poses_of_polynomials(mechanism, t, own)),
+        legs_(platform_legs(mechanism, t, poses_, held)),
         length_(length_of(mechanism.scene())) {
-    const Tree& tree = mechanism.tree();
-    while (tree.bodies[body_].nv == 0) ++body_;
     std::vector<Polynomial> equations;
     Polynomial study;
     for (int i = 0; i < 4; ++i) study.push_back({1, {i, 4 + i}});
     equations.push_back(std::move(study));
-    for (const LoopSpec& l : mechanism.scene().loops) {
-      const Vector3d on_child = in_ground(tree.body(l.child), l.origin_child),
-                     on_parent =
-                         in_ground(tree.body(l.parent), origin_of_loop(mechanism.scene(), l, t));
-      const bool is_child = tree.body(l.child) == static_cast<int>(body_);
-      const Vector3d p = is_child ? on_child : on_parent, b = is_child ? on_parent : on_child;
+    for (const PlatformRod& leg : legs_.rods) {
+      const Vector3d p = leg.on_platform / length_, b = leg.on_base / length_;
       const double rest = p.squaredNorm() + b.squaredNorm() - (p - b).squaredNorm();
       const Matrix4d mixed = 4 * (from_right(p) - from_left(b)),
                      turned = -2 * from_left(b).transpose() * from_right(p) +
@@ -82,56 +79,69 @@ class Platform final : public LoopPolynomials {
     Isometry3d displacement = Isometry3d::Identity();
     displacement.translate(2 * length_ / e.squaredNorm() * (dual * rotation.conjugate()).vec());
     displacement.rotate(rotation.normalized());
-    const Tree::Body& b = mechanism_.tree().bodies[body_];
-    const Isometry3d before =
-        b.parent < 0 ? Isometry3d::Identity() : poses_[static_cast<std::size_t>(b.parent)];
-    const Isometry3d in_joint = (before * b.placement).inverse() * displacement * poses_[body_];
-    const Quaterniond now(in_joint.linear());
-    VectorXd q = own_;
-    q.segment<7>(b.q) << in_joint.translation(), now.w(), now.vec();
-    return q;
+    return with_platform(displacement);
   }
 
  private:
-  Vector3d in_ground(int body, const Vector3d& scene_point) const {
-    const Vector3d at = mechanism_.tree().point(body, scene_point);
-    return (body < 0 ? at : Vector3d(poses_[static_cast<std::size_t>(body)] * at)) / length_;
+  /// The pose with the platform displaced from the own one, where the legs can follow.
+  std::optional<VectorXd> with_platform(const Isometry3d& displacement) const {
+    std::vector<Isometry3d> displaced(poses_.size() + 1, Isometry3d::Identity());
+    displaced[static_cast<std::size_t>(legs_.platform)] = displacement;
+    for (const PlatformRod& rod : legs_.rods) {
+      if (rod.leg < 0) continue;
+      const std::optional<Isometry3d> leg = rod.displaced(displacement);
+      if (!leg) return std::nullopt;
+      displaced[static_cast<std::size_t>(rod.leg)] = *leg;
+    }
+    VectorXd q = own_;
+    const Tree& tree = mechanism_.tree();
+    for (const JointSpec& joint : mechanism_.scene().joints) {
+      const int child = tree.body(joint.child), first = tree.first_part(child),
+                parent = tree.bodies[static_cast<std::size_t>(first)].parent;
+      if (legs_.pieces.of(parent) == legs_.pieces.of(child)) continue;
+      const auto now = [&](int body) {
+        const Isometry3d before =
+            body < 0 ? Isometry3d::Identity() : poses_[static_cast<std::size_t>(body)];
+        return Isometry3d(displaced[static_cast<std::size_t>(legs_.pieces.of(body))] * before);
+      };
+      take_coordinates(first, child, now(parent).inverse() * now(child), q);
+    }
+    return q;
+  }
+
+  /// Those of a free, spherical or universal joint whose child stands so beside its parent.
+  void take_coordinates(int first, int last, const Isometry3d& child, VectorXd& q) const {
+    const Tree::Body& outer = mechanism_.tree().bodies[static_cast<std::size_t>(first)];
+    const Isometry3d in_joint = outer.placement.inverse() * child;
+    if (first == last) {
+      const Quaterniond rotation(in_joint.linear());
+      if (outer.kind == JointKind::free) q.segment<3>(outer.q) = in_joint.translation();
+      q.segment<4>(outer.q + outer.nq - 4) << rotation.w(), rotation.vec();
+      return;
+    }
+    // R_z(q₁) P R_z(q₂), and so R_z(q₁) P z is where it turns z to.
+    const Tree::Body& inner = mechanism_.tree().bodies[static_cast<std::size_t>(last)];
+    const Matrix3d p = inner.placement.linear(), r = in_joint.linear();
+    const double q1 = std::atan2(r(1, 2), r(0, 2)) - std::atan2(p(1, 2), p(0, 2));
+    const Matrix3d rest = p.transpose() * AngleAxisd(-q1, Vector3d::UnitZ()) * r;
+    q[outer.q] = q1;
+    q[inner.q] = std::atan2(rest(1, 0), rest(0, 0));
   }
 
   const Mechanism& mechanism_;
   VectorXd own_;
   std::vector<Isometry3d> poses_;
+  PlatformLegs legs_;
   double length_;
-  std::size_t body_ = 0;  ///< the one that moves
   std::optional<PolynomialSystem> system_;
 };
 
 }  // namespace
 
-bool is_platform(const Mechanism& mechanism, const std::vector<bool>& held) {
-  if (mechanism.scene().lagrangian) return false;
-  const Tree& tree = mechanism.tree();
-  int moving = -1;
-  for (std::size_t k = 0; k < tree.bodies.size(); ++k) {
-    const Tree::Body& b = tree.bodies[k];
-    if (b.nv == 0) {
-      if (b.parent >= 0 && b.parent == moving) return false;
-      continue;
-    }
-    if (b.kind != JointKind::free || moving >= 0) return false;
-    moving = static_cast<int>(k);
-  }
-  if (moving < 0 || std::any_of(held.begin(), held.end(), [](bool h) { return h; })) return false;
-  const auto& loops = mechanism.scene().loops;
-  return loops.size() == 6 && std::all_of(loops.begin(), loops.end(), [&](const LoopSpec& l) {
-           return l.kind == LoopKind::distance &&
-                  (tree.body(l.child) == moving) != (tree.body(l.parent) == moving);
-         });
-}
-
 std::unique_ptr<LoopPolynomials> platform_polynomials(const Mechanism& mechanism, double t,
-                                                      const VectorXd& own) {
-  return std::make_unique<Platform>(mechanism, t, own);
+                                                      const VectorXd& own,
+                                                      const std::vector<bool>& held) {
+  return std::make_unique<Platform>(mechanism, t, own, held);
 }
 
 }  // namespace momenta

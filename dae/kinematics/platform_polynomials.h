@@ -1,5 +1,5 @@
 #pragma once
-// A body on six rods with balls at their ends, as polynomials in Study's coordinates: its
+// A platform on six rods or legs (platform_legs.h), as polynomials in Study's coordinates: its
 // displacement D from the own pose as a dual quaternion e + ε g up to a factor (C. W. Wampler,
 // Mech. Mach. Theory 31 (1996) 331-337). With R p = e p ē/(e·e) and the translation 2 g ē/(e·e), a
 // rod of length l from b to the point at p in the own pose says
@@ -14,12 +14,9 @@
 
 namespace momenta {
 
-/// Whether all that moves is one free body, none of it held, on six loops of kind distance from
-/// what stands.
-bool is_platform(const Mechanism& mechanism, const std::vector<bool>& held);
-
-/// @pre is_platform()
+/// @throws SceneError where platform_legs() would
 std::unique_ptr<LoopPolynomials> platform_polynomials(const Mechanism& mechanism, double t,
-                                                      const Eigen::VectorXd& own);
+                                                      const Eigen::VectorXd& own,
+                                                      const std::vector<bool>& held);
 
 }  // namespace momenta
