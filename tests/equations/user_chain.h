@@ -153,8 +153,8 @@ struct Answer {
 inline const Eigen::Vector3d slanted = Eigen::Vector3d(0.3, -0.5, 0.8).normalized();
 inline const Eigen::Vector3d X = Eigen::Vector3d::UnitX(), Y = Eigen::Vector3d::UnitY(),
                              Z = Eigen::Vector3d::UnitZ();
-inline constexpr auto hinge = JointKind::revolute;
-inline constexpr auto slide = JointKind::prismatic;
+inline constexpr auto a_turn = JointKind::revolute;
+inline constexpr auto a_slide = JointKind::prismatic;
 
 inline Scene rheonomic() {
   const auto law = std::make_shared<UserJoint>(2, Moving{});
@@ -165,7 +165,7 @@ inline Scene rheonomic() {
 inline Scene alone(const Chain& law) {
   Scene scene;
   scene.bodies = {body("a", 1, 1)};
-  scene.joints = {user(joint("U", hinge, "ground", "a", 11),
+  scene.joints = {user(joint("U", a_turn, "ground", "a", 11),
                        std::make_shared<UserJoint>(static_cast<int>(law.steps.size()), law))};
   return scene;
 }

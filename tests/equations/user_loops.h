@@ -184,16 +184,17 @@ inline std::vector<Pair> pairs() {
   };
   const Scene crank = spatial_slider_crank(), screw = spatial_screw_crank();
   Scene carried = spatial_slider_crank();
-  const auto hinge_z = law(1, {{{hinge, Z}}});
+  const auto hinge_z = law(1, {{{a_turn, Z}}});
   return {
       {"revolute", crank, with_user(crank, "O", hinge_z)},
-      {"universal", crank, with_user(crank, "U", law(2, {{{hinge, Z}, {hinge, Y}}}))},
-      {"prismatic", crank, with_user(crank, "S", law(1, {{{slide, X}}}, {0}))},
+      {"universal", crank, with_user(crank, "U", law(2, {{{a_turn, Z}, {a_turn, Y}}}))},
+      {"prismatic", crank, with_user(crank, "S", law(1, {{{a_slide, X}}}, {0}))},
       {"helical", screw,
        with_user(screw, "S", law(1, {{{JointKind::helical, X}}, screw.joints[2].pitch}))},
       {"all", crank,
-       with_user(with_user(with_user(crank, "O", hinge_z), "U", law(2, {{{hinge, Z}, {hinge, Y}}})),
-                 "S", law(1, {{{slide, X}}}, {0}))},
+       with_user(
+           with_user(with_user(crank, "O", hinge_z), "U", law(2, {{{a_turn, Z}, {a_turn, Y}}})),
+           "S", law(1, {{{a_slide, X}}}, {0}))},
       {"carried", carried_slider_crank(),
        with_user(carried, "O", std::make_shared<UserJoint>(1, Carried{}))},
   };

@@ -74,8 +74,8 @@ void compare(const Chain& law, std::optional<JointSpec> whole = {}) {
 }
 
 TEST(UserJoint, RevoluteAndPrismatic) {
-  compare({{{hinge, slanted}}});
-  compare({{{slide, slanted}}});
+  compare({{{a_turn, slanted}}});
+  compare({{{a_slide, slanted}}});
 }
 
 TEST(UserJoint, Helical) {
@@ -90,7 +90,7 @@ TEST(UserJoint, Cylindrical) {
   JointSpec whole;
   whole.kind = JointKind::cylindrical;
   whole.axis = slanted;
-  compare({{{slide, slanted}, {hinge, slanted}}}, whole);
+  compare({{{a_slide, slanted}, {a_turn, slanted}}}, whole);
 }
 
 TEST(UserJoint, Universal) {
@@ -98,18 +98,18 @@ TEST(UserJoint, Universal) {
   whole.kind = JointKind::universal;
   whole.axis = slanted;
   whole.axis2 = Y;
-  compare({{{hinge, slanted}, {hinge, Y}}}, whole);
+  compare({{{a_turn, slanted}, {a_turn, Y}}}, whole);
 }
 
 TEST(UserJoint, EulerAnglesAndSixCoordinates) {
-  compare({{{hinge, Z}, {hinge, Y}, {hinge, X}}});
-  compare({{{slide, slanted}, {hinge, Z}, {slide, X}, {hinge, Y}, {hinge, X}}});
-  compare({{{slide, X}, {slide, Y}, {slide, Z}, {hinge, Z}, {hinge, Y}, {hinge, X}}});
+  compare({{{a_turn, Z}, {a_turn, Y}, {a_turn, X}}});
+  compare({{{a_slide, slanted}, {a_turn, Z}, {a_slide, X}, {a_turn, Y}, {a_turn, X}}});
+  compare({{{a_slide, X}, {a_slide, Y}, {a_slide, Z}, {a_turn, Z}, {a_turn, Y}, {a_turn, X}}});
 }
 
 TEST(UserJoint, EulerAnglesAreTheSphericalJoint) {
   // With ω = E u and p = Eᵀ p_ω, energies and the motion of the other joints are the same.
-  const Chain euler{{{hinge, Z}, {hinge, Y}, {hinge, X}}};
+  const Chain euler{{{a_turn, Z}, {a_turn, Y}, {a_turn, X}}};
   const auto law = std::make_shared<UserJoint>(3, euler);
   OpenChain mine(
       tree_of([&](Scene& s, const JointSpec& j) { s.joints.push_back(user(j, law)); }, true));
@@ -173,7 +173,8 @@ Eigen::VectorXd derivatives(const LocalDual& x, const Cuts& cuts, int count) {
 }
 
 TEST(UserJoint, SparseDualNumbersHaveTheSameDerivatives) {
-  const Chain six{{{slide, X}, {slide, Y}, {slide, Z}, {hinge, slanted}, {hinge, Y}, {hinge, X}}};
+  const Chain six{
+      {{a_slide, X}, {a_slide, Y}, {a_slide, Z}, {a_turn, slanted}, {a_turn, Y}, {a_turn, X}}};
   for (const UserJoint& law : {UserJoint(2, Moving{}), UserJoint(6, six)})
     for (const bool moves : {true, false}) {
       const int n = law.coordinates();

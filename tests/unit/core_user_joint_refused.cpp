@@ -57,8 +57,8 @@ TEST(UserJoint, WithoutInertiaItIsNamed) {
       "joint 'U' has no inertia: body 'a' and what it carries have none in some direction; "
       "expected "
       "a mass, a rotor's inertia, or a fixed joint";
-  EXPECT_EQ(failure(alone({{{hinge, slanted}, {hinge, slanted}}})), expected);
-  Scene rod = alone({{{hinge, Z}, {hinge, Y}, {hinge, X}}});
+  EXPECT_EQ(failure(alone({{{a_turn, slanted}, {a_turn, slanted}}})), expected);
+  Scene rod = alone({{{a_turn, Z}, {a_turn, Y}, {a_turn, X}}});
   rod.bodies[0].com = rod.joints[0].origin_child + slanted;
   rod.bodies[0].inertia = 0.1 * (Eigen::Matrix3d::Identity() - slanted * slanted.transpose());
   EXPECT_EQ(failure(rod), expected);
@@ -66,7 +66,7 @@ TEST(UserJoint, WithoutInertiaItIsNamed) {
 
 TEST(UserJoint, WhatIsRefused) {
   const auto message = [](const auto& change) -> std::string {
-    Scene scene = alone({{{hinge, slanted}}});
+    Scene scene = alone({{{a_turn, slanted}}});
     change(scene, scene.joints[0]);
     try {
       OpenChain chain(scene);
@@ -82,7 +82,7 @@ TEST(UserJoint, WhatIsRefused) {
     EXPECT_EQ(
         message([&](Scene&, JointSpec& j) { j.law = std::make_shared<UserJoint>(n, Chain{}); }),
         "scene: joint 'U': law has " + std::to_string(n) + " coordinates, expected 1 to 6");
-  EXPECT_EQ(message([](Scene&, JointSpec& j) { j.kind = hinge; }),
+  EXPECT_EQ(message([](Scene&, JointSpec& j) { j.kind = a_turn; }),
             "scene: joint 'U': law is for user joints only");
   EXPECT_EQ(message([](Scene&, JointSpec& j) {
               j.position = {1, 2};
@@ -93,7 +93,7 @@ TEST(UserJoint, WhatIsRefused) {
             }),
             "scene: joint 'U': velocity must be empty or of the size of its kind");
   EXPECT_EQ(message([](Scene&, JointSpec& j) {
-              j.law = std::make_shared<UserJoint>(1, Chain{{{hinge, 1.1 * slanted}}});
+              j.law = std::make_shared<UserJoint>(1, Chain{{{a_turn, 1.1 * slanted}}});
               j.position = {0.5};
             }),
             "scene: joint 'U': law gives a matrix at the start that is no rotation within 1e-10");
@@ -112,11 +112,11 @@ TEST(UserJoint, WhatIsRefused) {
               s.loops = {loop};
             }),
             "");
-  EXPECT_THROW(OpenChain(alone({{{hinge, Z}}}), Algebra::planar), SceneError);
+  EXPECT_THROW(OpenChain(alone({{{a_turn, Z}}}), Algebra::planar), SceneError);
 }
 
 TEST(UserJoint, StartsWhereTheSceneSays) {
-  Scene scene = alone({{{hinge, Z}, {hinge, Y}, {hinge, X}, {slide, Z}}});
+  Scene scene = alone({{{a_turn, Z}, {a_turn, Y}, {a_turn, X}, {a_slide, Z}}});
   scene.joints[0].position = {0.1, 0.2, 0.3, 2};
   scene.joints[0].velocity = {1, 2, 3, 4};
   OpenChain chain(scene);
