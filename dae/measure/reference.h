@@ -50,6 +50,7 @@ class Reference {
 
   /// The error of a row against the reference.
   struct Error {
+    /// Where nothing is compared.
     static constexpr double none = std::numeric_limits<double>::quiet_NaN();
     double position = 0;  ///< max |value − ref| / (1 + |ref|) over columns in rad and m
     double velocity = 0;  ///< the same over columns in rad/s and m/s

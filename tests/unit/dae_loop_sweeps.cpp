@@ -335,7 +335,9 @@ TEST(LoopSweeps, LargeBatchesGoStateByState) {
 
 TEST(LoopSweeps, CodeOfALevelIsItsOwn) {
   expect_own_symbols(MOMENTA_BINARY_DIR "/dae", "*_level[134].cpp.o",
-                     {"Pack<", "LoopedSweepsAt<", "looped_sweeps_at<"});
+                     {"Pack<", "LoopedSweepsAt<", "looped_sweeps_at<", "TangentSweepsAt<",
+                      "tangent_sweeps_at<", "KineticSweepAt<", "kinetic_sweep_at<",
+                      "InertiaSweepAt<", "inertia_sweep_at<", "PlacedAlong<"});
 }
 
 /// Legs folded onto a platform; the same loops as more slots than there are go to the matrix.
