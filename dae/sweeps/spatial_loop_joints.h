@@ -195,6 +195,37 @@ bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::spherical_inward(std::size_t k,
   return true;
 }
 
+/// What joints without one axis have in common inward: the record of body k with its open columns,
+/// its own momenta (forces) `own` and, of the tree alone, M' and D'. At the ground gravity becomes
+/// a given acceleration.
+template <class S, int Rows, bool Momentum, class Tree>
+template <class In>
+MOMENTA_INLINE bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::tree_inward(
+    std::size_t k, const In& r, Carried& a, S* own, Spatial::ArticulatedInertia<S>& M, Force& D) {
+  const auto& b = body(k);
+  const auto record = static_cast<std::size_t>(tree_->links[k].record);
+  auto& x = joints_[record];
+  auto& y = any_[record];
+  Blocks& o = a.blocks;
+  const SlotGroups open = open_slots_.fronts[k].open;
+  o.begin(false, ~open);
+  x.M = blocks(a.articulated.M);
+  x.D = remainder_of(a.articulated);
+  x.moment = {{a.articulated.Gx, a.articulated.Gy, a.articulated.Gz}};
+  if (open)
+    for (int i = 0; i < 6; ++i) y.C[i] = o.C[i];
+  for (int i = 0; i < b.nv; ++i) own[i] = S(r[b.u + i]);
+  if (!eliminate<Spatial>(b, x, M)) return false;
+  D = remainder<Spatial>(b, x, own);
+  if constexpr (!Momentum)
+    if (b.parent < 0) {
+      const auto& g = tree_->model->gravity;
+      y.given.v -=
+          Spatial::direction_to_child(b.edge, b.kind, x.edge, Vec3<S>{{S(g[0]), S(g[1]), S(g[2])}});
+    }
+  return true;
+}
+
 /// Free joints: nothing is left of a body, M' = 0, C' = 0, and D' is its own p. Spherical joints
 /// with a rotor, J = I + I_r 1 (general_joint.h): g = J⁻¹ C_n, C' = (C_f − H g, I_r g), and M' ≠ 0
 /// goes to the parent with D'.
@@ -208,28 +239,15 @@ bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::free_inward(std::size_t k, cons
   auto& y = any_[record];
   Blocks& o = a.blocks;
   const SlotGroups open = open_slots_.fronts[k].open;
-  o.begin(false, ~open);
-  x.M = blocks(a.articulated.M);
-  x.D = remainder_of(a.articulated);
-  x.moment = {{a.articulated.Gx, a.articulated.Gy, a.articulated.Gz}};
-  if (open)
-    for (int i = 0; i < 6; ++i) y.C[i] = o.C[i];
   S own[6];
-  for (int i = 0; i < b.nv; ++i) own[i] = S(r[b.u + i]);
   Spatial::ArticulatedInertia<S> M;
-  if (!eliminate<Spatial>(b, x, M)) return false;
-  Force D = remainder<Spatial>(b, x, own);
+  Force D;
+  if (!tree_inward(k, r, a, own, M, D)) return false;
   const auto eliminate_slots = [&](const Column& c, const Column& g, const S& e) {
     o.d += g * e;
     o.scale += c * g;
     o.add_product(g, c, open);
   };
-  if constexpr (!Momentum)
-    if (b.parent < 0) {
-      const auto& g = tree_->model->gravity;
-      y.given.v -=
-          Spatial::direction_to_child(b.edge, b.kind, x.edge, Vec3<S>{{S(g[0]), S(g[1]), S(g[2])}});
-    }
   if (!open) {
     if constexpr (!Momentum)
       if (b.nv == 3) D += reduced_momentum<Spatial>(b, x, y.given);

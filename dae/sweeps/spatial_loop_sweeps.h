@@ -209,6 +209,9 @@ class SpatialLoopSweeps {
   __attribute__((noinline)) bool axis_inward(std::size_t k, const In& r, const RightSide<S>& right,
                                              Carried& a);
   template <class In>
+  bool tree_inward(std::size_t k, const In& r, Carried& a, S* own,
+                   Spatial::ArticulatedInertia<S>& M, Force& D);
+  template <class In>
   __attribute__((noinline)) bool free_inward(std::size_t k, const In& r, Carried& a);
   template <class In>
   __attribute__((noinline)) bool user_inward(std::size_t k, const In& r, Carried& a);

@@ -26,23 +26,10 @@ bool SpatialLoopSweeps<S, Rows, Momentum, Tree>::user_inward(std::size_t k, cons
   auto& y = any_[record];
   Blocks& o = a.blocks;
   const SlotGroups open = open_slots_.fronts[k].open;
-  o.begin(false, ~open);
-  x.M = blocks(a.articulated.M);
-  x.D = remainder_of(a.articulated);
-  x.moment = {{a.articulated.Gx, a.articulated.Gy, a.articulated.Gz}};
-  if (open)
-    for (int i = 0; i < 6; ++i) y.C[i] = o.C[i];
   S own[6];
-  for (int i = 0; i < b.nv; ++i) own[i] = S(r[b.u + i]);
   Spatial::ArticulatedInertia<S> M;
-  if (!eliminate<Spatial>(b, x, M)) return false;
-  Force D = remainder<Spatial>(b, x, own);
-  if constexpr (!Momentum)
-    if (b.parent < 0) {
-      const auto& g = tree_->model->gravity;
-      y.given.v -=
-          Spatial::direction_to_child(b.edge, b.kind, x.edge, Vec3<S>{{S(g[0]), S(g[1]), S(g[2])}});
-    }
+  Force D;
+  if (!tree_inward(k, r, a, own, M, D)) return false;
   D += reduced_momentum<Spatial>(b, x, y.given);
   if (open) {
     const UserRecord<S>& e = *x.user;
