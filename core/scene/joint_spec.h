@@ -1,0 +1,110 @@
+#pragma once
+// A joint of the tree of a scene: its frames, coordinates, forces along them, and limits.
+
+#include <momenta/core/scene/bearing_spec.h>
+#include <momenta/core/scene/joint_kind.h>
+#include <momenta/core/scene/location.h>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <array>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace momenta {
+
+class JointFormula;  // core/scene/joint_formula.h
+
+/// A joint of the tree; its child is a body, its parent a body or "ground". It has two joint
+/// frames. The one in the parent has its origin at `origin_parent` and is turned by `rotation`; the
+/// one in the child has its origin at `origin_child` and is parallel to the child's axes. At q = 0
+/// (quaternion 1, 0, 0, 0) the two coincide.
+///
+/// q, by kind:
+///   - revolute, helical [rad], prismatic [m]; weld: none
+///   - cylindrical: displacement along `axis` [m], then angle about it [rad]
+///   - universal: angle about `axis`, which the joint frame holds, then about `axis2`, which the
+///     child holds [rad]: child axes = R(axis, q1) R(axis2, q2) in the joint frame
+///   - planar: displacements along `direction` and along axis × direction [m], then angle about
+///     `axis` [rad]
+///   - spherical: quaternion w x y z of the child axes in the joint frame
+///   - free: position x y z [m] of the child point in the joint frame, then that quaternion
+///   - user: what the formula in `law` takes; the two frames need not coincide at q = 0. A file has
+///     no such kind. No springs, dampers, torques, drives or couplers on it
+///
+/// u, by kind:
+///   - q̇ where no quaternion is in q; weld: none
+///   - spherical: angular velocity [rad/s], child axes
+///   - free: velocity of the child point [m/s], then angular velocity [rad/s], both in child axes
+///
+/// In a file, rotation is { rpy = [r, p, y] }, meaning Rz(y) Ry(p) Rx(r), or
+/// { quaternion = [w, x, y, z] }, or { axis = .., angle = .. }; an axis is three numbers, which are
+/// normalised, or "x", "-x", "y", ...
+struct JointSpec {
+  std::string name;                      ///< unique among joints and loops
+  JointKind kind = JointKind::revolute;  ///< which coordinates it has
+  std::string parent = "ground";         ///< a body, or "ground"
+  std::string child;                     ///< a body, the child of this joint alone
+  Eigen::Vector3d origin_parent = Eigen::Vector3d::Zero();       ///< in parent axes [m]
+  Eigen::Vector3d origin_child = Eigen::Vector3d::Zero();        ///< in child axes [m]
+  Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();  ///< joint frame in parent axes
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();               ///< unit vector in the joint frame
+  /// Universal: the second axis, a unit vector, not parallel to `axis`; zero means
+  /// perpendicular_to(axis).
+  Eigen::Vector3d axis2 = Eigen::Vector3d::Zero();
+  /// Planar: q1 counts along the part of this that is perpendicular to `axis`; zero means
+  /// perpendicular_to(axis). A unit vector in the joint frame, not parallel to `axis`.
+  Eigen::Vector3d direction = Eigen::Vector3d::Zero();
+  double pitch = 0;  ///< helical: displacement along `axis` per angle about it [m/rad]
+  std::shared_ptr<const JointFormula> law;  ///< user: a UserJoint, its pose as a formula of t and q
+  std::vector<double> position;             ///< start value or first guess, size nq (empty: q = 0)
+  std::vector<double> velocity;             ///< start value or first guess, size nv (empty: zero)
+  double stiffness = 0;  ///< revolute, helical [N m/rad], prismatic [N/m]; else 0
+  double rest = 0;       ///< revolute, helical [rad], prismatic [m]; else 0
+  double damping = 0;    ///< revolute, helical [N m s/rad], prismatic [N s/m]; else 0
+  /// Coulomb friction made smooth, −friction · u / √(u² + friction_rate²): of revolute, helical
+  /// joints [N m], prismatic ones [N]; else 0.
+  double friction = 0;
+  double friction_rate = 0.1;  ///< rate at which it has 0.7 of its force [rad/s or m/s], > 0
+  /// Friction by the joint's own reaction: of revolute and prismatic joints that no drive moves.
+  std::optional<BearingSpec> bearing;
+  /// Inertia on each coordinate's rate, as of a motor's rotor behind its gear (gear ratio squared
+  /// times its own): ½ I q̇² of kinetic energy beside that of the bodies. Of revolute and helical
+  /// joints [kg m²], prismatic ones [kg], and of each coordinate of cylindrical, universal and
+  /// planar joints. Of spherical joints one number [kg m²], ½ I u·u: the same about every axis.
+  /// Empty: none. On a driven coordinate it has no effect on the motion.
+  std::vector<double> rotor_inertia;
+  /// Least and largest q of a revolute, helical [rad] or prismatic [m] joint; of a spherical one 0
+  /// and the largest angle of its turn from q = (1, 0, 0, 0), below π. Without stops they exert no
+  /// force: programs tell when they are passed.
+  std::optional<std::array<double, 2>> limits;
+  /// Stops at the limits: beyond one by x the joint is pushed back by a spring stop_stiffness
+  /// [N m/rad or N/m] and a damper stop_damping [N m s/rad or N s/m], both of which grow from 0 at
+  /// the limit to all of it at x = stop_width [rad or m], with a continuous derivative:
+  /// k x²/2w for x < w, then k (x − w/2). Of joints with limits.
+  double stop_stiffness = 0;
+  double stop_damping = 0;   ///< of the stops, at least 0
+  double stop_width = 0.01;  ///< of the stops, w > 0
+  /// Rigid stops at the limits instead: the rate after an impact is −restitution times that before,
+  /// 0 to 1. Of revolute, helical and prismatic joints with limits; no number: no such stops.
+  std::optional<double> restitution;
+  Location at;  ///< where the file has it
+};
+
+/// Size of q of a joint: by its kind, or by its law.
+int coordinates_of(const JointSpec& joint);
+/// Size of u and p of a joint.
+int rates_of(const JointSpec& joint);
+/// Whether a rotor turns with one of its coordinates.
+bool has_rotor(const JointSpec& joint);
+/// Whether its limits push back.
+bool has_stops(const JointSpec& joint);
+
+/// The default direction of a joint. Of the coordinate axes, find the one nearest to `axis` (the
+/// first of equally near ones), take the next in the order x y z x, and make it perpendicular to
+/// `axis`: x for an axis along z, y for one along x, z for one along y.
+Eigen::Vector3d perpendicular_to(const Eigen::Vector3d& axis);
+
+}  // namespace momenta

@@ -1,0 +1,133 @@
+#pragma once
+// A loop of a scene: what closes it, or the equation it is.
+
+#include <momenta/core/scene/curve_spec.h>
+#include <momenta/core/scene/location.h>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <string>
+#include <vector>
+
+namespace momenta {
+
+/// The kinds of loops, with their number of equations; the equations: LoopSpec.
+enum class LoopKind {
+  point,              ///< 3 equations, 2 in a plane
+  revolute,           ///< 5
+  spherical,          ///< 3, as point
+  weld,               ///< 6
+  prismatic,          ///< 5
+  distance,           ///< 1
+  universal,          ///< 4
+  cylindrical,        ///< 4
+  planar,             ///< 3
+  coupler,            ///< 1, between coordinates of joints
+  slot,               ///< 2, in a plane 1
+  cam,                ///< 1
+  rack,               ///< 1
+  equation,           ///< 1, between coordinates, positions of markers and the time
+  velocity_equation,  ///< 1, between rates and velocities of markers; nonholonomic
+  rolling             ///< 3: contact, and two of the slip, which are nonholonomic
+};
+
+/// A joint that closes a loop. It has the keys of a joint, but no coordinates and no forces along
+/// them. Its child is a body, its parent another body or "ground".
+///   - `point` and `spherical` are the same three equations
+///   - `distance` keeps |origin_parent − origin_child| = length
+///   - `universal` keeps the points together and `axis`, held by the parent, at its angle to
+///     `axis2`, held by the child
+///   - `planar` keeps the child's point in the plane across `axis`, and `axis` common
+///   - `coupler` ties coordinates of joints, not bodies: Σ ratios[i] q_i + Σ powers[k] x^(k+2) =
+///     offset, x the coordinate of the last joint
+///   - `slot` keeps the child's point on a curve of the parent: without `curve` on the line along
+///     `axis`, else on a circle or spline in the plane across `axis`
+///   - `cam` keeps the outlines `curve` of the parent and `child_curve` of the child, both in the
+///     plane across `axis`, in contact: no gap along their common normal. It pulls as well as
+///     pushes. Both bodies move across `axis`
+///   - `rack`: the circle of the child with `radius` about origin_child rolls on the parent's line
+///     through origin_parent along `direction`, on its side axis × direction: the angle of the
+///     child about `axis` is `offset` − displacement / radius. The distance from the line is not
+///     held
+///   - `equation`: the formula `equation` is zero, of joint coordinates, positions of markers and t
+///     (core/scene/formula.h); it ties what its names stand for, and has no bodies of its own
+///   - `velocity_equation`: the formula `equation` is zero, linear in rates of joint coordinates
+///     and velocities of markers, with coefficients of coordinates, positions of markers and t
+///   - `rolling`: the wheel of the child rolls without slipping on the plane of the parent through
+///     origin_parent, on the side to which `normal` points: a circle about origin_child across
+///     `axis`, of radius `radius` − `crown_radius`, thickened by `crown_radius`. A crown radius of
+///     0 makes the wheel a disc with a sharp edge, one of `radius` a sphere. It pulls as well as
+///     pushes
+struct LoopSpec {
+  std::string name;                                              ///< unique among joints and loops
+  LoopKind kind = LoopKind::point;                               ///< point, revolute, …
+  std::string parent = "ground";                                 ///< a body, or "ground"
+  std::string child;                                             ///< a body, not the parent
+  Eigen::Vector3d origin_parent = Eigen::Vector3d::Zero();       ///< in parent axes [m]
+  Eigen::Vector3d origin_child = Eigen::Vector3d::Zero();        ///< in child axes [m]
+  Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();  ///< loop frame in parent axes
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();               ///< unit vector in the loop frame
+  /// Universal: as for a joint; zero means perpendicular_to(axis).
+  Eigen::Vector3d axis2 = Eigen::Vector3d::Zero();
+  /// Planar: as for a joint, used where drives prescribe coordinates; rack: its line; zero means
+  /// perpendicular_to(axis).
+  Eigen::Vector3d direction = Eigen::Vector3d::Zero();
+  double length = 0;  ///< distance [m]; no effect where a drive prescribes it
+  /// Coupler: joints whose rates are their q̇, driven or not; no coordinate occurs twice.
+  std::vector<std::string> joints;
+  std::vector<int> coordinates;  ///< counted as for a drive, one for each joint; empty: all 0
+  std::vector<double> ratios;    ///< [1, rad/m or m/rad], not zero, one for each joint
+  /// Of the second to fourth power of the last joint's coordinate, at most three; where one is not
+  /// zero that joint's ratio may be.
+  std::vector<double> powers;
+  double offset = 0;        ///< [rad or m]; no effect where a drive prescribes it
+  CurveSpec curve;          ///< slot: circle or spline, or none; cam: outline of the parent
+  CurveSpec child_curve;    ///< cam: outline of the child
+  double radius = 0;        ///< rack, rolling: the largest [m], > 0
+  double crown_radius = 0;  ///< rolling [m], 0 to `radius`
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< rolling: unit vector in the loop frame
+  std::string equation;  ///< equation, velocity equation: a formula, without corners
+  Location at;           ///< where the file has it
+};
+
+/// Whether a coupler is not linear.
+bool has_powers(const LoopSpec& loop);
+
+/// Whether a loop ties its parent and its child, and not what coordinates or formulas name.
+bool ties_bodies(const LoopSpec& loop);
+
+/// Whether a loop is a formula: of positions, or of velocities.
+bool has_equation(const LoopSpec& loop);
+
+/// Whether a loop is a higher pair of curves: a slot that is not straight, a cam, a rack.
+bool has_curves(const LoopSpec& loop);
+
+/// How many coordinates of a loop drives can prescribe: the coordinates of a joint of the same
+/// kind, the length of a distance, the offset of a coupler, the displacement in a straight slot.
+constexpr int driven_coordinates_of(LoopKind kind) {
+  switch (kind) {
+    case LoopKind::revolute:
+    case LoopKind::prismatic:
+    case LoopKind::distance:
+    case LoopKind::coupler:
+    case LoopKind::slot:
+      return 1;
+    case LoopKind::universal:
+    case LoopKind::cylindrical:
+      return 2;
+    case LoopKind::spherical:
+    case LoopKind::planar:
+      return 3;
+    case LoopKind::point:
+    case LoopKind::weld:
+    case LoopKind::cam:
+    case LoopKind::rack:
+    case LoopKind::equation:
+    case LoopKind::velocity_equation:
+    case LoopKind::rolling:
+      return 0;
+  }
+  return 0;
+}
+
+}  // namespace momenta
