@@ -1,10 +1,13 @@
 # Debian packages the project needs, in one place; sourced by examples/run and tests/run.
 # shellcheck shell=bash disable=SC2034
 
-packages_to_build=(cmake make g++ libeigen3-dev libtomlplusplus-dev libtinyxml2-dev libyaml-cpp-dev
+packages_to_build=(cmake ninja-build g++ libeigen3-dev libtomlplusplus-dev libtinyxml2-dev libyaml-cpp-dev
                    libqhull-dev libsundials-dev libsuitesparse-dev libspectra-dev libceres-dev libnlopt-dev nlohmann-json3-dev libcli11-dev)
 packages_to_test=(libgtest-dev libbenchmark-dev librapidcheck-dev pybind11-dev python3-dev python3-numpy)
 packages_for_docs=(doxygen mkdocs)
+
+# Ninja leaves no core idle between targets; a build folder that has another generator keeps it.
+export CMAKE_GENERATOR=${CMAKE_GENERATOR-Ninja}
 
 # Installs those of its arguments that are missing: as root, or through a sudo that asks nothing;
 # otherwise prints the one line to type and ends the script.
