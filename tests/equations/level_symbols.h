@@ -2,11 +2,12 @@
 // Code compiled for one instruction level must not be shared with the rest of a program: whatever
 // such an object file defines for others to share has to carry the level in its name.
 
+#include "equations/output_of.h"
+
 #include <gtest/gtest.h>
 
-#include <array>
-#include <cstdio>
 #include <initializer_list>
+#include <sstream>
 #include <string>
 
 namespace momenta::equations {
@@ -21,12 +22,9 @@ inline void expect_own_symbols(const char* folder, const char* pattern,
   std::string command = "for f in $(find '";
   command.append(folder).append("' -name '").append(pattern);
   command.append("'); do nm -C \"$f\"; done 2>/dev/null");
-  FILE* pipe = popen(command.c_str(), "r");
-  ASSERT_NE(pipe, nullptr);
-  std::array<char, 8192> line{};
+  std::istringstream lines(output_of(command));
   int symbols = 0;
-  while (std::fgets(line.data(), line.size(), pipe)) {
-    const std::string text = line.data();
+  for (std::string text; std::getline(lines, text);) {
     if (text.size() < 20 || (text[17] != 'W' && text[17] != 'V' && text[17] != 'u')) continue;
     ++symbols;
     bool fine = false;
@@ -36,7 +34,6 @@ inline void expect_own_symbols(const char* folder, const char* pattern,
       fine |= text.find(data) != std::string::npos;
     EXPECT_TRUE(fine) << text;
   }
-  pclose(pipe);
 #ifdef __OPTIMIZE__
   EXPECT_GT(symbols, 20);
 #endif

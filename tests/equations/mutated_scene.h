@@ -2,6 +2,7 @@
 // Models with one thing in them made wrong, and what becomes of them: a sentence with file and
 // line, the same scene as before, the same with other remarks, or another scene.
 
+#include "equations/output_of.h"
 #include "equations/same_scene.h"
 #include "equations/scene_folder.h"
 
@@ -47,12 +48,6 @@ inline bool is_numbers(const std::string& text) {
   int count = 0;
   while (in >> x) ++count;
   return count > 0 && in.eof();
-}
-
-inline std::string text_of(const std::filesystem::path& file) {
-  std::ostringstream all;
-  all << std::ifstream(file).rdbuf();
-  return all.str();
 }
 
 /// One model in a folder of its own, read again and again with another text.

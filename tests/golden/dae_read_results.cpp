@@ -45,12 +45,7 @@ class Results : public Program {
   }
   /// What a snippet prints; skips the test where `interpreter` is not there.
   static std::string printed(const std::string& command) {
-    std::string text;
-    FILE* pipe = popen((command + " 2>&1").c_str(), "r");
-    char block[512];
-    while (pipe && std::fgets(block, sizeof block, pipe)) text += block;
-    if (pipe) pclose(pipe);
-    return text;
+    return equations::output_of(command + " 2>&1");
   }
   static bool answers(const std::string& command) {
     return std::system((command + " >/dev/null 2>&1").c_str()) == 0;  // NOLINT: this test's own

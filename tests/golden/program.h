@@ -1,6 +1,8 @@
 #pragma once
 // The program called as its users call it, from a folder that is gone after the test.
 
+#include "equations/output_of.h"
+
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -9,17 +11,13 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <string>
 
 namespace momenta::golden {
 
 namespace fs = std::filesystem;
 
-inline std::string text_of(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
+using equations::text_of;
 
 struct Outcome {
   int status = -1;

@@ -2,6 +2,8 @@
 // the library: same form, same method, same step, on both its mechanisms. Its scripts are run by
 // node, or by Chromium; skipped where neither is installed.
 
+#include "equations/output_of.h"
+
 #include <gtest/gtest.h>
 #include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/assembly/assembly.h>
@@ -10,7 +12,6 @@
 #include <momenta/dae/solver/integrators.h>
 
 #include <array>
-#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -39,23 +40,7 @@ for (const s of [pendulum, fourBar]) {
 }
 )";
 
-std::string text_of(const fs::path& file) {
-  std::ifstream stream(file);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  return text.str();
-}
-
-std::string output_of(const std::string& command) {
-  std::string text;
-  FILE* pipe = popen(command.c_str(), "r");
-  if (pipe == nullptr) return text;
-  std::array<char, 4096> block{};
-  for (std::size_t n = 0; (n = fread(block.data(), 1, block.size(), pipe)) > 0;)
-    text.append(block.data(), n);
-  pclose(pipe);
-  return text;
-}
+using equations::output_of, equations::text_of;
 
 bool installed(const std::string& program) {
   return std::system(("command -v " + program + " >/dev/null 2>&1").c_str()) == 0;

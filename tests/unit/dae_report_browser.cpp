@@ -1,6 +1,7 @@
 // The page in a real browser: no console message, no horizontal scroll, every chart and table
 // there. In Chromium and in Firefox, skipped where one is not installed.
 #include "equations/ensemble.h"
+#include "equations/output_of.h"
 
 #include <gtest/gtest.h>
 #include <momenta/core/scene/files/read_scene.h>
@@ -12,8 +13,6 @@
 #include <unit/page/firefox.h>
 #include <unit/page/synthetic_study.h>
 
-#include <array>
-#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <string>
@@ -25,16 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string output_of(const std::string& command) {
-  std::string text;
-  FILE* pipe = popen(command.c_str(), "r");
-  if (pipe == nullptr) return text;
-  std::array<char, 4096> block{};
-  for (std::size_t n = 0; (n = fread(block.data(), 1, block.size(), pipe)) > 0;)
-    text.append(block.data(), n);
-  pclose(pipe);
-  return text;
-}
+using equations::output_of;
 
 // The page tells what it measures of itself to the frame around it, whose root element --dump-dom
 // shows. A frame, because a window of Chromium is not made as narrow as a telephone. It measures

@@ -2,6 +2,7 @@
 // gives, and no run of another study, scene or build gets in.
 
 #include "equations/ensemble.h"
+#include "equations/output_of.h"
 
 #include <gtest/gtest.h>
 #include <momenta/core/scene/files/read_scene.h>
@@ -22,10 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string text_of(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
+using equations::text_of;
 
 /// Everything but times, to the last bit; counters of what was timed are those of any such run.
 std::string told(RunResult run) {
