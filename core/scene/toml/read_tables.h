@@ -95,4 +95,16 @@ void read_ends(const Fields& table, Spec& spec) {
 /// .. }; rpy means Rz(yaw) Ry(pitch) Rx(roll).
 Eigen::Quaterniond read_rotation(const Fields& table);
 
+/// What turns the frame of a joint or a loop, and its axes.
+template <class Spec>
+void read_axes(const Fields& table, Spec& spec) {
+  spec.rotation = read_rotation(table);
+  spec.axis = table.direction("axis", spec.axis);
+  spec.axis2 = table.direction("axis2", spec.axis2);
+  spec.direction = table.direction("direction", spec.direction);
+  for (const char* key : {"axis2", "direction"})
+    if (table.has(key) && spec.axis.cross(table.direction(key, {})).norm() < parallel_slack)
+      table.fail_key(key, "is parallel to axis, expected another direction");
+}
+
 }  // namespace momenta::reading
