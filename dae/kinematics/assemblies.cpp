@@ -37,7 +37,7 @@ class Search {
       : mechanism_(mechanism), t_(t), own_(own), request_(request), loops_(mechanism) {
     for (const std::string& name : request.hold) held_.push_back(coordinate_named(mechanism, name));
     for (const auto& [q, u] : held_) loops_.columns[static_cast<std::size_t>(u)] = false;
-    if (request.by_homotopy) spins_ = idle_spins(mechanism, held_rates());
+    if (request.by_homotopy) spins_ = idle_spins(mechanism, t, own, held_rates());
     expect_no_freedom();
     sort_coordinates();
   }
@@ -61,14 +61,17 @@ class Search {
     const HomotopyEnds ends =
         solve_by_homotopy(polynomials->system(), request_.seed, request_.threads);
     Assemblies found;
-    PathCount count{ends.paths,    static_cast<long>(ends.finite.size()),
-                    ends.infinite, ends.singular,
-                    ends.lost,     0};
+    PathCount count{ends.paths, 0, ends.infinite, ends.singular, ends.lost, 0};
     add(found, own_, 0);
     LeastNorm steps(loops_.pattern(), mechanism_.m(), mechanism_.nv());
     Closing closing(loops_, steps, t_);
     constexpr double moved_on = 1e-5;  // by Newton's method, at the most
     for (const Eigen::VectorXcd& x : ends.finite) {
+      if (!polynomials->is_solution(x)) {
+        ++count.infinite;
+        continue;
+      }
+      ++count.finite;
       const std::optional<VectorXd> pose = polynomials->pose(x);
       if (!pose) continue;
       const Closing::Pose closed = closing.beside(*pose);
@@ -80,6 +83,7 @@ class Search {
       ++count.real;
       add(found, closed.q, 1);
     }
+    count.count_copies_once(polynomials->copies());
     found.paths = count;
     return found;
   }
@@ -280,6 +284,12 @@ class Search {
 };
 
 }  // namespace
+
+void PathCount::count_copies_once(long copies) {
+  lost += finite % copies;
+  finite /= copies;
+  real /= copies;
+}
 
 int Assemblies::met_once() const {
   return static_cast<int>(

@@ -18,7 +18,7 @@
 // Where loops can be written as polynomials (loop_polynomials.h) a homotopy finds all of them, with
 // the number of solutions over the complex numbers: complete where no path is lost or ends at a
 // singular solution. `met` is then how many solutions led to it. Of a platform on legs its poses
-// are counted, not those of the legs (platform_legs.h): what spins between two balls is no freedom
+// are counted, not those of the legs (platform_rod.h): what spins between two balls is no freedom
 // then.
 
 #include <momenta/dae/mechanism.h>
@@ -50,6 +50,8 @@ struct PathCount {
   long real = 0;      ///< finite ones that are assemblies
   /// Whether the assemblies are all there are.
   bool is_complete() const { return singular == 0 && lost == 0; }
+  /// Of solutions that were all found so many times; where one was not a path is lost.
+  void count_copies_once(long copies);
 };
 
 /// One of them.

@@ -1,8 +1,10 @@
 #include <momenta/core/scene/drive.h>
 #include <momenta/dae/kinematics/loop_polynomials.h>
-#include <momenta/dae/kinematics/pieces.h>
+#include <momenta/dae/kinematics/loop_screws.h>
 #include <momenta/dae/kinematics/planar_polynomials.h>
 #include <momenta/dae/kinematics/platform_polynomials.h>
+#include <momenta/dae/kinematics/platform_rod.h>
+#include <momenta/dae/kinematics/space_loop_polynomials.h>
 
 #include <algorithm>
 #include <string>
@@ -48,6 +50,25 @@ Vector3d origin_of_loop(const Scene& scene, const LoopSpec& loop, double t) {
   return origin;
 }
 
+namespace {
+
+/// Whether the pieces that move are one ring with the base.
+bool is_one_loop(const Pieces& pieces) {
+  const std::vector<TieChain> chains = tie_chains(pieces);
+  return chains.size() == 1 && chains[0].from == pieces.base() && chains[0].to == pieces.base();
+}
+
+std::unique_ptr<LoopPolynomials> polynomials_in_space(const Mechanism& mechanism, double t,
+                                                      const Eigen::VectorXd& own,
+                                                      const std::vector<bool>& held) {
+  const std::vector<Isometry3d> poses = poses_of_polynomials(mechanism, t, own);
+  return is_one_loop(Pieces(mechanism, t, poses, held))
+             ? space_loop_polynomials(mechanism, t, own, held)
+             : platform_polynomials(mechanism, t, own, held);
+}
+
+}  // namespace
+
 std::unique_ptr<LoopPolynomials> loop_polynomials(const Mechanism& mechanism, double t,
                                                   const Eigen::VectorXd& own,
                                                   const std::vector<bool>& held) {
@@ -55,7 +76,7 @@ std::unique_ptr<LoopPolynomials> loop_polynomials(const Mechanism& mechanism, do
   if (!mechanism.scene().lagrangian && mechanism.plan().planar)
     found = planar_polynomials(mechanism, t, own, held);
   else if (!mechanism.scene().lagrangian)
-    found = platform_polynomials(mechanism, t, own, held);
+    found = polynomials_in_space(mechanism, t, own, held);
   else
     throw SceneError(mechanism.scene().where({}) +
                      "its loops are not written as polynomials; expected joints, not a Lagrangian");
@@ -65,9 +86,17 @@ std::unique_ptr<LoopPolynomials> loop_polynomials(const Mechanism& mechanism, do
   return found;
 }
 
-int idle_spins(const Mechanism& mechanism, const std::vector<bool>& held) {
+int idle_spins(const Mechanism& mechanism, double t, const Eigen::VectorXd& own,
+               const std::vector<bool>& held) {
   if (mechanism.scene().lagrangian || mechanism.plan().planar) return 0;
-  return Pieces(mechanism, held).spins();
+  const std::vector<Isometry3d> poses = poses_of_polynomials(mechanism, t, own);
+  const Pieces pieces(mechanism, t, poses, held);
+  const double length = length_of(mechanism.scene());
+  if (is_one_loop(pieces)) return LoopScrews(tie_chains(pieces).front(), length).idle();
+  int idle = 0;
+  for (const TieChain& chain : tie_chains(pieces))
+    if (const auto rod = PlatformRod::of(chain, length)) idle += rod->idle();
+  return idle;
 }
 
 }  // namespace momenta

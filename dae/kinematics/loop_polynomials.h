@@ -1,9 +1,10 @@
 #pragma once
 // The loop equations of a mechanism with some coordinates held as polynomials, all of whose
-// solutions can be found (homotopy.h). Two kinds of mechanisms are written so:
+// solutions can be found (homotopy.h). Three kinds of mechanisms are written so:
 //
 //   in a plane   joints that turn and slide: planar_polynomials.h
-//   platforms    a body on six rods or legs with balls at their ends: platform_polynomials.h
+//   platforms    a body on six rods or legs: platform_polynomials.h
+//   one loop     of hinges, slides and balls in space: space_loop_polynomials.h
 
 #include <momenta/dae/kinematics/polynomial_system.h>
 #include <momenta/dae/mechanism.h>
@@ -18,7 +19,11 @@ class LoopPolynomials {
  public:
   virtual ~LoopPolynomials() = default;
   virtual const PolynomialSystem& system() const = 0;
-  /// The pose (nq) of a finite solution, where that is real.
+  /// How many finite solutions there are of each pose over the complex numbers.
+  virtual long copies() const { return 1; }
+  /// Whether a finite solution closes the loops.
+  virtual bool is_solution(const Eigen::VectorXcd&) const { return true; }
+  /// The pose (nq) of one that does, where that is real.
   virtual std::optional<Eigen::VectorXd> pose(const Eigen::VectorXcd& x) const = 0;
 };
 
@@ -30,8 +35,9 @@ std::unique_ptr<LoopPolynomials> loop_polynomials(const Mechanism& mechanism, do
                                                   const Eigen::VectorXd& own,
                                                   const std::vector<bool>& held);
 
-/// How many legs can turn about the line between two balls: freedoms that no solution is about.
-int idle_spins(const Mechanism& mechanism, const std::vector<bool>& held);
+/// Freedoms that no solution is about: of rods and legs that turn about the line of their ends.
+int idle_spins(const Mechanism& mechanism, double t, const Eigen::VectorXd& own,
+               const std::vector<bool>& held);
 
 inline constexpr long most_paths = 20'000;
 /// Imaginary parts of real solutions, of what has size one.

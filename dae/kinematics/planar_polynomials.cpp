@@ -73,7 +73,7 @@ class PlanarLoops final : public LoopPolynomials {
 
   std::optional<VectorXd> pose(const VectorXcd& x) const override {
     const auto value = [&](int variable) {
-      const int one = system_->groups()[of(groups_[of(variable)])].proper[0];
+      const int one = system_->groups()[of(groups_[of(variable)])].proper[0][0];
       return x[variable] / x[one];
     };
     const auto pair = [&](const std::pair<int, int>& of_both) -> std::optional<Complex> {

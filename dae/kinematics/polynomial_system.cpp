@@ -51,7 +51,7 @@ PolynomialSystem::PolynomialSystem(std::vector<Polynomial> equations, const std:
   std::vector<int> group_of = of;
   for (int g = 0; g < groups; ++g) {
     groups_[static_cast<std::size_t>(g)].variables.push_back(variables_);
-    groups_[static_cast<std::size_t>(g)].proper = {variables_};
+    groups_[static_cast<std::size_t>(g)].proper = {{variables_}};
     group_of.push_back(g);
     ++variables_;
   }
@@ -64,7 +64,7 @@ PolynomialSystem::PolynomialSystem(std::vector<Polynomial> equations, const std:
       };
       std::ptrdiff_t degree = 0;
       for (const Monomial& m : whole) degree = std::max(degree, degree_of(m));
-      const int one = groups_[static_cast<std::size_t>(g)].proper[0];
+      const int one = groups_[static_cast<std::size_t>(g)].proper[0][0];
       for (Monomial& m : whole)
         for (std::ptrdiff_t k = degree_of(m); k < degree; ++k) m.variables.push_back(one);
     }

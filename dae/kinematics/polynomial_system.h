@@ -5,7 +5,7 @@
 // A group of n_g + 1 variables is a projective space of dimension n_g; there are as many equations
 // as dimensions, n = Σ n_g. Of affine equations each group has a variable that makes it
 // homogeneous, `one`; a solution with one = 0 stands at infinity. A group without it is projective
-// by nature; its solutions are at infinity where all variables of `proper` vanish.
+// by nature; its solutions are at infinity where all variables of a set of `proper` vanish.
 //
 // The number of isolated solutions is at most the multihomogeneous Bézout number: the coefficient
 // of Π α_g^{n_g} in Π_i Σ_g d_ig α_g. Source: A. P. Morgan, A. J. Sommese, Appl. Math. Comput. 24
@@ -34,8 +34,8 @@ Polynomial scaled(Polynomial a, Complex c);
 Polynomial gathered(const Polynomial& p);
 
 struct VariableGroup {
-  std::vector<int> variables;  ///< all of them, `one` too
-  std::vector<int> proper;     ///< of which one is not zero in finite solutions
+  std::vector<int> variables;            ///< all of them, `one` too
+  std::vector<std::vector<int>> proper;  ///< of each of these one is not zero in finite solutions
 };
 
 class PolynomialSystem {

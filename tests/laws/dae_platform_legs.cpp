@@ -143,6 +143,104 @@ void make_leg(Scene& s, int i, Leg leg, std::mt19937& random) {
   s.joints.push_back(below);
 }
 
+/// The same legs written with other joints, in the axes of make_leg().
+enum class Written {
+  two_hinges,    // a universal joint as two hinges with a cross between them
+  three_hinges,  // a ball as three hinges
+  swivel,        // universal, prismatic, swivel along the leg, universal loop
+  telescope,     // universal, cylindrical joint along the leg that is held to turn alone, universal
+  welded,        // a leg of two bodies
+  loops          // a free leg on two loops of kind revolute, a cross between
+};
+
+JointSpec joint_of(JointKind kind, const std::string& name, const std::string& parent,
+                   const std::string& child, const Vector3d& at, const Vector3d& axis) {
+  JointSpec joint;
+  joint.kind = kind;
+  joint.name = name;
+  joint.parent = parent;
+  joint.child = child;
+  joint.origin_parent = at;
+  joint.axis = axis;
+  return joint;
+}
+
+void write_leg(Scene& s, int i, Written how, std::mt19937& random) {
+  const std::string n = std::to_string(i);
+  const LoopSpec rod = s.loops[static_cast<std::size_t>(i)];
+  const Vector3d foot = rod.origin_parent, way = place_of(s) + turn_of(s) * rod.origin_child - foot;
+  const Vector3d second = any_across(random, way), first = any_across(random, second),
+                 third = any_across(random, second);
+  const auto body = [&](const std::string& name) {
+    s.bodies.push_back(equations::rod(name + n));
+    return name + n;
+  };
+  LoopSpec end = rod;
+  end.kind = LoopKind::spherical;
+  end.parent = "platform";
+  end.origin_parent = rod.origin_child;
+  end.origin_child = way;
+  const auto hinge = JointKind::revolute;
+  const Vector3d none = Vector3d::Zero();
+  if (how == Written::two_hinges || how == Written::three_hinges) {
+    s.joints.push_back(joint_of(hinge, "A" + n, "ground", body("cross"), foot, first));
+    s.joints.push_back(joint_of(hinge, "B" + n, "cross" + n, body("leg"), none, second));
+    end.child = "leg" + n;
+    if (how == Written::three_hinges) {
+      s.joints.push_back(joint_of(hinge, "C" + n, "leg" + n, body("third"), none, third));
+      end.child = "third" + n;
+    }
+  } else if (how == Written::loops) {
+    JointSpec flies = joint_of(JointKind::free, "F" + n, "ground", body("leg"), none, first);
+    flies.position = {foot.x(), foot.y(), foot.z(), 1, 0, 0, 0};
+    s.joints.push_back(flies);
+    s.joints.push_back(joint_of(hinge, "A" + n, "ground", body("cross"), foot, first));
+    LoopSpec turns = rod;
+    turns.name = "H" + n;
+    turns.kind = LoopKind::revolute;
+    turns.parent = "leg" + n;
+    turns.child = "cross" + n;
+    turns.origin_parent = turns.origin_child = none;
+    turns.axis = second;
+    s.loops.push_back(turns);
+    end.child = "leg" + n;
+  } else {
+    JointSpec below = joint_of(JointKind::universal, "U" + n, "ground", body("leg"), foot, first);
+    below.axis2 = second;
+    s.joints.push_back(below);
+    if (how == Written::welded) {
+      s.joints.push_back(
+          joint_of(JointKind::weld, "S" + n, "leg" + n, body("top"), any_vector(random), first));
+      end.child = "top" + n;
+      end.origin_child = way - s.joints.back().origin_parent;
+    } else {
+      const Vector3d along = any_vector(random).normalized();
+      JointSpec slide = joint_of(JointKind::prismatic, "S" + n, "leg" + n, body("upper"), none,
+                                 how == Written::swivel ? along : way.normalized());
+      slide.position = {0.4};
+      if (how == Written::telescope) {
+        slide.kind = JointKind::cylindrical;
+        slide.position = {0.4, 0};
+      }
+      s.joints.push_back(slide);
+      end.child = "upper" + n;
+      end.origin_child = way - 0.4 * slide.axis;
+      if (how == Written::swivel) {  // its line through both centres
+        const Vector3d at = 0.3 * way - 0.4 * slide.axis;
+        s.joints.push_back(
+            joint_of(hinge, "T" + n, "upper" + n, body("top"), at, way.normalized()));
+        end.child = "top" + n;
+        end.origin_child = 0.7 * way;
+      }
+      end.kind = LoopKind::universal;
+      end.rotation = turn_of(s).conjugate();
+      end.axis2 = any_across(random, way);
+      end.axis = any_across(random, end.axis2);
+    }
+  }
+  s.loops[static_cast<std::size_t>(i)] = end;
+}
+
 double angle_between(const Vector3d& a, const Vector3d& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
 }
@@ -276,6 +374,22 @@ TEST(PlatformLegs, OfEveryKindAreRods) {
   }
 }
 
+/// Hinges that make a universal joint or a ball by where their lines cross, legs with a swivel or a
+/// telescope between two universal joints, bodies cut in two: the same rods.
+TEST(PlatformLegs, AreTheSameHoweverWritten) {
+  std::mt19937 random(17);
+  const Scene rods = on_rods(random);
+  const Assemblies on_rods = found_in(rods, all_of({}));
+  Scene legs = rods;
+  int i = 0;
+  for (const Written how : {Written::two_hinges, Written::three_hinges, Written::swivel,
+                            Written::telescope, Written::welded, Written::loops})
+    write_leg(legs, i++, how, random);
+  const Assemblies on_legs = found_in(legs, all_of({"S2", "S3.q0"}));
+  EXPECT_EQ(on_legs.paths->finite, 40);
+  expect_same(legs, on_legs, rods, on_rods);
+}
+
 /// A leg carries the platform, which has no free joint then.
 TEST(PlatformLegs, MayCarryThePlatform) {
   std::mt19937 random(7);
@@ -346,7 +460,7 @@ TEST(PlatformLegs, AreRefusedByTheJointThatMakesThemNone) {
   const Scene platform = equations::platform(6);
   expect_refused(platform, {}, "leaves 6 degrees of freedom");
   expect_refused(platform, {"U0.q0", "S1", "S2", "S3", "S4", "S5"},
-                 "joint 'U0' of kind universal has coordinates that are held");
+                 "joint 'S0' of kind prismatic moves; expected it held");
   expect_refused(platform, {"U0.q0", "U0.q1", "S1", "S2", "S3", "S4", "S5"},
                  "joint 'S0' of kind prismatic moves; expected it held");
   std::mt19937 random(3);
@@ -355,11 +469,19 @@ TEST(PlatformLegs, AreRefusedByTheJointThatMakesThemNone) {
   make_leg(turned, 0, Leg::universal, random);
   turned.joints[1].kind = JointKind::revolute;
   turned.joints[1].axis2 = Vector3d::Zero();
-  expect_refused(turned, {}, "joint 'U0' of kind revolute moves");
+  expect_refused(turned, {},
+                 "joint 'U0' of kind revolute and loop 'L0' of kind spherical make no leg");
   make_leg(twice, 0, Leg::universal, random);
   twice.loops[0].kind = LoopKind::universal;
   twice.loops[0].rotation = turn_of(rods).conjugate();
-  expect_refused(twice, {}, "joint 'U0' of kind universal and loop 'L0' of kind universal stand");
+  expect_refused(twice, {},
+                 "joint 'U0' of kind universal and loop 'L0' of kind universal make no leg");
+  // Lines that miss each other by a micrometre cross nowhere.
+  Scene missed = rods;
+  write_leg(missed, 0, Written::two_hinges, random);
+  missed.joints[2].origin_parent += 1e-6 * missed.joints[1].axis.cross(missed.joints[2].axis);
+  missed.loops[0].origin_child -= missed.joints[2].origin_parent;
+  expect_refused(missed, {}, "joint 'A0' of kind revolute, joint 'B0' of kind revolute and loop");
   make_leg(tied, 0, Leg::universal, random);
   make_leg(tied, 1, Leg::universal, random);
   tied.loops.push_back(rod_between("T", "leg0", {0, 0, 0}, {0, 0, 1}, 1));

@@ -164,6 +164,22 @@ class Assemblies(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "expected 'search' or 'homotopy'"):
             m.assemblies(["O"], by="x")
 
+    def test_of_a_platform_and_of_an_arm_in_space_are_counted(self):
+        legs = [f"L{i}" for i in range(1, 7)]
+        for name, hold, paths, finite, real in [("platform", legs, 128, 40, 8), ("arm", [], 32, 16, 16)]:
+            m = momenta.load(str(EXAMPLES / "assemblies" / f"{name}.toml"))
+            found = m.assemblies(hold, by="homotopy", threads=2)
+            counts = found["paths"]
+            self.assertEqual(
+                (counts["followed"], counts["finite"], counts["real"], counts["complete"]), (paths, finite, real, True)
+            )
+            self.assertEqual(found["q"].shape, (real, m.nq))
+            np.testing.assert_allclose(found["q"][0], m.assemble().q, atol=1e-12)
+            for q in found["q"]:
+                np.testing.assert_allclose(m.constraints(0, q, np.zeros(m.nv))[0], 0, atol=1e-11)
+        with self.assertRaisesRegex(momenta.SceneError, "leaves 6 degrees of freedom"):
+            momenta.load(str(EXAMPLES / "assemblies" / "platform.toml")).assemblies(by="homotopy")
+
 
 class Efforts(unittest.TestCase):
     def test_of_a_motion_of_the_mechanism_itself_are_zero(self):
