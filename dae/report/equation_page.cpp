@@ -33,7 +33,7 @@ std::string equation_run_page(const EquationFile& file, const EquationStart& sta
       chart.title += (chart.title.empty() ? "" : ", ") + curve.name;
       chart.curves.push_back(std::move(curve));
     }
-    charts += "<figure>" + chart_svg(chart) + "</figure>";
+    charts += drawn(chart_svg(chart));
   }
   main += section("Solution", charts);
   main += section("The run", preformatted(equation_run_table(file, start, run, digits)));
@@ -72,8 +72,8 @@ std::string suite_page(const SuiteResult& suite, const Environment& environment,
                         " unknowns, to t = " + compact(p.t, 4) + ".";
     if (p.structural_index != p.index)
       words += " The structural index is " + std::to_string(p.structural_index) + ".";
-    main += section(p.name, "<p class=\"caption\">" + escape_html(words) + "</p><figure>" +
-                                chart_svg(chart) + "</figure>");
+    main += section(
+        p.name, "<p class=\"caption\">" + escape_html(words) + "</p>" + drawn(chart_svg(chart)));
   }
   main += section("All runs", preformatted(suite_table(suite)));
   std::size_t runs = 0, done = 0;

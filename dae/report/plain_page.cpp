@@ -10,6 +10,9 @@ std::string section(const std::string& title, const std::string& inside) {
 std::string preformatted(const std::string& text) {
   return "<pre class=\"frame\" tabindex=\"0\">" + escape_html(text) + "</pre>";
 }
+std::string drawn(const std::string& svg) {
+  return "<figure class=\"frame\" tabindex=\"0\">" + svg + "</figure>";
+}
 
 std::string how_section(const Environment& environment, const std::string& command) {
   const auto pair = [](const char* what, const std::string& value) {

@@ -11,6 +11,8 @@ namespace momenta {
 std::string section(const std::string& title, const std::string& inside);
 /// A table as printed.
 std::string preformatted(const std::string& text);
+/// A chart at its size; windows that are narrower scroll it.
+std::string drawn(const std::string& svg);
 /// Command, versions, compiler, processor and date.
 std::string how_section(const Environment& environment, const std::string& command);
 /// The page. `kind`: one word beside the name of the program; `answer` and `main` are HTML.

@@ -221,8 +221,7 @@ std::string sample_page(const SweepRequest& request, const SweepStatistics& all,
   std::string main = section("What is varied", preformatted(how_sampled(request)));
   for (const SweepCurve& curve : all.curves)
     if (!curve.times.empty())
-      main += section(curve.label + " along time", "<figure class=\"frame\" tabindex=\"0\">" +
-                                                       chart_svg(chart_of(curve)) + "</figure>");
+      main += section(curve.label + " along time", drawn(chart_svg(chart_of(curve))));
   main += section("Statistics", preformatted(in_columns(statistics_rows(all))));
   const auto indices = index_rows(request, all);
   if (!indices.empty()) main += section("Parts of the variance", preformatted(in_columns(indices)));

@@ -193,8 +193,7 @@ std::string suite_page(const SceneSuiteResult& suite, const Environment& environ
     for (const RunResult& r : p.runs) ++runs, done += r.status == "done" ? 1 : 0;
     std::string inside = caption(number_of(p.coordinates, "coordinate") + ", " +
                                  number_of(p.equations, "loop equation"));
-    if (!p.runs.empty())
-      inside += "<figure class=\"frame\" tabindex=\"0\">" + chart_svg(chart_of(p)) + "</figure>";
+    if (!p.runs.empty()) inside += drawn(chart_svg(chart_of(p)));
     for (const std::string& line : remarks(p)) inside += caption(line);
     main += section(p.name, inside);
   }

@@ -151,9 +151,7 @@ std::string section_page(const SectionPicture& p, const std::vector<SectionOrbit
   const std::string picture = section_svg(p, orbits);
   return plain_page(
       p.scene.empty() ? "Section" : p.scene, "section", escape_html(in_words(p, orbits)),
-      section("Points", picture.empty()
-                            ? "<p>No point was found.</p>"
-                            : "<style>svg { max-width: 100%; height: auto; }</style>" + picture) +
+      section("Points", picture.empty() ? "<p>No point was found.</p>" : drawn(picture)) +
           section("Starts", preformatted(section_table(p, orbits))) +
           how_section(environment, command));
 }
