@@ -16,7 +16,7 @@ namespace momenta {
 std::unique_ptr<OdeForm> make_acceleration(const Mechanism& mechanism, const FormOptions& options,
                                            const Start& start) {
   if (options.project) return make_projected(mechanism, options, start);
-  return std::make_unique<AccelerationForm>("acceleration", mechanism, options);
+  return std::make_unique<AccelerationForm>("acceleration", mechanism, options, start);
 }
 
 }  // namespace momenta

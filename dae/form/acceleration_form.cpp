@@ -6,7 +6,8 @@
 namespace momenta {
 
 AccelerationForm::AccelerationForm(std::string name, const Mechanism& mechanism,
-                                   const FormOptions& options, Feedback feedback, int solutions)
+                                   const FormOptions& options, const Start& start,
+                                   Feedback feedback, int solutions)
     : OdeForm(std::move(name), mechanism, options),
       feedback_(feedback),
       solutions_(solutions),
@@ -14,6 +15,9 @@ AccelerationForm::AccelerationForm(std::string name, const Mechanism& mechanism,
       at_rest_(u_.size()) {
   push_friction();
   approaching_ = 0.05;  // no gauge hides in q and u: the plain norm serves longer
+  solves([&mechanism, options, start, feedback] {
+    return make_acceleration_index1_with(feedback, mechanism, options, start);
+  });
 }
 
 std::vector<double> AccelerationForm::initial(const Start& start) {

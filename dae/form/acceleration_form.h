@@ -21,7 +21,7 @@ inline constexpr int most_corrections = 10;
 class AccelerationForm : public OdeForm {
  public:
   AccelerationForm(std::string name, const Mechanism& mechanism, const FormOptions& options,
-                   Feedback feedback = {}, int solutions = 1);
+                   const Start& start, Feedback feedback = {}, int solutions = 1);
 
   bool momentum_like() const override { return false; }
   std::pair<double, double> baumgarte_gains() const override {
@@ -64,6 +64,10 @@ class AccelerationForm : public OdeForm {
   std::vector<double> state_;    ///< (q, u) where f is taken, with singularity handling
   std::vector<double> at_rest_;  ///< no rates
 };
+
+/// The DAE of index 1 that (3) with feedback solves: acceleration-index1, with that of Φ and Φ̇.
+std::unique_ptr<Form> make_acceleration_index1_with(Feedback feedback, const Mechanism& mechanism,
+                                                    const FormOptions& options, const Start& start);
 
 /// The gains given, or critically damped ones at the mechanism's own rate, default_leak's.
 Feedback feedback_of(const Mechanism& mechanism, const FormOptions& options, const Start& start);

@@ -30,7 +30,7 @@ namespace {
 class AugmentedLagrangian final : public AccelerationForm {
  public:
   AugmentedLagrangian(const Mechanism& mechanism, const FormOptions& options, const Start& start)
-      : AccelerationForm("augmented-lagrangian", mechanism, options,
+      : AccelerationForm("augmented-lagrangian", mechanism, options, start,
                          feedback_of(mechanism, options, start), penalty_iterations),
         penalty_(soften(mechanism, *e_, solver_.get(), options, start)) {}
 

@@ -19,7 +19,7 @@ namespace momenta {
 
 std::unique_ptr<OdeForm> make_baumgarte(const Mechanism& mechanism, const FormOptions& options,
                                         const Start& start) {
-  return std::make_unique<AccelerationForm>("baumgarte", mechanism, options,
+  return std::make_unique<AccelerationForm>("baumgarte", mechanism, options, start,
                                             feedback_of(mechanism, options, start));
 }
 

@@ -29,7 +29,7 @@ namespace {
 class MaximalCoordinates final : public AccelerationForm {
  public:
   MaximalCoordinates(const Mechanism& mechanism, const FormOptions& options, const Start& start)
-      : AccelerationForm("maximal-coordinates", mechanism, options,
+      : AccelerationForm("maximal-coordinates", mechanism, options, start,
                          feedback_of(mechanism, options, start)),
         feedback_(feedback_of(mechanism, options, start)) {
     if (!mechanism.scene().lagrangian) solver_ = make_maximal_solver(mechanism, *e_);

@@ -1,3 +1,4 @@
+#include <momenta/dae/form/dae_form.h>
 #include <momenta/dae/form/momentum_form.h>
 
 #include <algorithm>
@@ -20,6 +21,12 @@ MomentumForm::MomentumForm(std::string name, const Mechanism& mechanism, const F
   if (solutions_ > 1 && start.residue.size() > 0) not_closed_.assign(multipliers_.size(), 0.0);
   e_->place(start.t, start.q.data());
   momentum_scales(*e_, mechanism.nv(), scale_.data() + mechanism.nq());
+  if (friction_) return;  // by λ and u̇, which momentum-index1 does not have
+  FormOptions equations = options;
+  equations.gauge = leak() > 0 ? gauge_ : Gauge{};  // what happens after steps is not in f
+  equations.beta = beta_;
+  solves(
+      [&mechanism, equations, start] { return make_momentum_index1(mechanism, equations, start); });
 }
 
 std::vector<double> MomentumForm::initial(const Start& start) {

@@ -1,10 +1,18 @@
 #include <momenta/dae/form/ode_form.h>
+#include <momenta/dae/form/solved_equations.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 
 namespace momenta {
+namespace {
+
+/// Entries of a dense matrix that are solved with in the time of one of a local matrix, whose
+/// factors fill up, one after another in memory.
+constexpr double dense_entries = 3;
+
+}  // namespace
 
 OdeForm::OdeForm(std::string name, const Mechanism& mechanism, const FormOptions& options)
     : name_(std::move(name)),
@@ -23,6 +31,17 @@ OdeForm::OdeForm(std::string name, const Mechanism& mechanism, const FormOptions
   centre_.assign(m, 0.0);
   correction_.assign(static_cast<std::size_t>(mechanism.nq()), 0.0);
   scale_.assign(static_cast<std::size_t>(size()), 1.0);
+}
+
+void OdeForm::solves(std::function<std::unique_ptr<Form>()> equations) {
+  solved_ = std::make_unique<SolvedEquations>(std::move(equations), multipliers_);
+}
+
+LocalJacobian* OdeForm::local() {
+  if (!solved_) return nullptr;
+  const double dense = static_cast<double>(size()) * size();
+  const auto entries = static_cast<double>(solved_->pattern().row.size());
+  return dense_entries * entries < dense ? solved_.get() : nullptr;
 }
 
 bool OdeForm::fail_at(double t, const std::string& why) {

@@ -6,6 +6,7 @@
 #include <momenta/dae/kkt/bearing_friction.h>
 #include <momenta/dae/kkt/loop_solver.h>
 
+#include <functional>
 #include <stdexcept>
 
 namespace momenta {
@@ -49,6 +50,10 @@ class OdeForm : public Form, public OdeSystem {
   void centre_on(const double* multipliers) {
     std::copy_n(multipliers, multipliers_.size(), multipliers_.begin());
   }
+  /// Of large mechanisms.
+  LocalJacobian* local() override;
+  /// The same whatever the size; null: the form is not known to solve a DAE form's equations.
+  LocalJacobian* local_jacobian() { return solved_.get(); }
   void begin_step(double t, const double* y) override;
   SingularityHandling wanted_handling() const override { return handling_; }
   void look_on(bool looking) override;
@@ -63,6 +68,8 @@ class OdeForm : public Form, public OdeSystem {
   static constexpr double near = 1e-4;
   double approaching_ = 0.2;
 
+  /// Right-hand sides are the solutions of that DAE form of index 1, made when first asked for.
+  void solves(std::function<std::unique_ptr<Form>()> equations);
   bool has_loops() const { return mechanism_.m() > 0; }
   /// q̇ of u: u itself unless there are quaternions.
   void coordinate_rates(const double* q, const double* u, double* qdot) const {
@@ -117,6 +124,7 @@ class OdeForm : public Form, public OdeSystem {
   std::unique_ptr<Evaluation<double>> e_;
   std::unique_ptr<LoopSolver> solver_;         ///< null without loops
   std::unique_ptr<BearingFriction> friction_;  ///< null without bearings
+  std::unique_ptr<LocalJacobian> solved_;      ///< see local_jacobian
   std::vector<double> u_, multipliers_, centre_, delta_, work_, correction_;
   std::vector<double> scale_;
 };

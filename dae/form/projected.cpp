@@ -28,8 +28,8 @@ namespace {
 
 class Projected final : public AccelerationForm {
  public:
-  Projected(const Mechanism& mechanism, FormOptions options)
-      : AccelerationForm("projected", mechanism, always(std::move(options))) {}
+  Projected(const Mechanism& mechanism, FormOptions options, const Start& start)
+      : AccelerationForm("projected", mechanism, always(std::move(options)), start) {}
 
  protected:
   bool correct(double t, double* q, double* u) override {
@@ -56,8 +56,8 @@ class Projected final : public AccelerationForm {
 }  // namespace
 
 std::unique_ptr<OdeForm> make_projected(const Mechanism& mechanism, const FormOptions& options,
-                                        const Start&) {
-  return std::make_unique<Projected>(mechanism, options);
+                                        const Start& start) {
+  return std::make_unique<Projected>(mechanism, options, start);
 }
 
 }  // namespace momenta

@@ -1,5 +1,4 @@
 #include <momenta/dae/linear/local_pencil.h>
-#include <momenta/dae/solver/local_newton.h>
 
 #include <algorithm>
 #include <cmath>

@@ -232,19 +232,9 @@ IntegrationResult integrate_bdf5(DaeSystem& system, double t0,
     throw std::invalid_argument("rtol and atol of bdf5 must be positive");
   const OutputCursor outputs(t0, output_times);
   Bdf5 method(system, options, outputs.end() - t0);
-  IntegrationResult result;
-  result.jacobian = "dual numbers";
-  result.end_time = t0;
   const bool started = method.start(t0);
-  result.linear_solver = method.linear_solver();
-  if (!started) {
-    result.reason = stop_sentence("bdf5", t0, evaluation_cause(system.failure()));
-    result.y.assign(method.y(), method.y() + system.size());
-    return result;
-  }
-  run_with_ode_restarts(method, system, t0, output_times, options, observer, result);
-  result.counters += method.counters();
-  return result;
+  return run_from_start(method, started, system.failure(), system, t0, output_times, options,
+                        observer);
 }
 
 }  // namespace momenta

@@ -57,6 +57,31 @@ class Convergence {
   int stalls_ = 0, count_ = 0;
 };
 
+/// Iterations to rounding. `once(change)` is one of them: how much it changed, relative to the
+/// unknowns' size; false: `cause` says why, or a value is not finite. `unsolved`: the cause where
+/// changes do not shrink.
+template <class Once>
+bool to_rounding(Convergence convergence, Counters& counters, std::string& cause,
+                 const char* unsolved, Once&& once) {
+  cause = "a value that is not a finite number came up";
+  for (;;) {
+    ++counters.evaluations;
+    ++counters.newton_iterations;
+    double change = 0;
+    if (!once(change)) return false;
+    const auto is = convergence.after(change);
+    if (is == Convergence::Is::reached) return true;
+    if (is == Convergence::Is::under_way) continue;
+    if (std::isfinite(change)) cause = unsolved;
+    return false;
+  }
+}
+
+/// To (t, q) of a step's start, with the factors of (7) there.
+inline bool go(HamiltonianPlace& place, double t, const State& state) {
+  return place.at(t, state.q.data()) && place.factor(t, state.q.data());
+}
+
 /// p onto Φ_q u + Φ_t = 0 at `place`, where it was last factorised, and u with it.
 class OntoVelocities {
  public:

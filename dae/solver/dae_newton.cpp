@@ -4,7 +4,6 @@
 
 #include <momenta/core/scalar/all_finite.h>
 #include <momenta/dae/solver/dae_newton.h>
-#include <momenta/dae/solver/local_newton.h>
 
 #include <algorithm>
 #include <cmath>

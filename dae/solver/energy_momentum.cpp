@@ -41,7 +41,6 @@
 namespace momenta {
 namespace {
 
-using constrained::Convergence;
 using constrained::State;
 using Eigen::VectorXd;
 
@@ -73,7 +72,7 @@ class EnergyMomentum {
   const std::string& cause() const { return cause_; }
 
   bool start(double t, State& state) {
-    if (!go(t, state) || !onto_velocities_(*here_, state)) return false;
+    if (!constrained::go(*here_, t, state) || !onto_velocities_(*here_, state)) return false;
     set_cyclic(cyclic_coordinates(parts_, t, state.q));
     energy_before_ = energy_ = here_->energy(state.q.data(), state.u.data());
     return std::isfinite(energy_);
@@ -87,36 +86,29 @@ class EnergyMomentum {
     lambda_ = last.lambda_, sigma_ = last.sigma_;
     if (cyclic_ != last.cyclic_) set_cyclic(last.cyclic_);
     energy_ = last.energy_before_;
-    return go(t, from);
+    return constrained::go(*here_, t, from);
   }
 
   bool advance(double t, double h, const State& from, State& to, Counters& counters) {
-    cause_ = "a value that is not a finite number came up";
     delta_ = h * from.u;
     u1_ = from.u;
     to.p = from.p;
     alpha_ = 0;
     // Angles that have turned many times are rounded by ε |q|; h |u| of them is rounded by less.
-    Convergence convergence(std::max(1.0, 0.01 * from.q.cwiseAbs().maxCoeff()));
+    const constrained::Convergence convergence(std::max(1.0, 0.01 * from.q.cwiseAbs().maxCoeff()));
     int count = 0;
-    for (auto is = Convergence::Is::under_way; is != Convergence::Is::reached;) {
-      ++counters.evaluations;
-      ++counters.newton_iterations;
-      double change = 0;
-      if (!iterate(t, h, from, to, change)) return false;
-      balance(++count, change, h, to);
-      is = convergence.after(change);
-      if (is != Convergence::Is::failed) continue;
-      if (std::isfinite(change)) cause_ = "the implicit equations of the step did not converge";
+    if (!constrained::to_rounding(convergence, counters, cause_,
+                                  "the implicit equations of the step did not converge",
+                                  [&](double& change) {
+                                    if (!iterate(t, h, from, to, change)) return false;
+                                    balance(++count, change, h, to);
+                                    return true;
+                                  }))
       return false;
-    }
     return onto_velocities_.at_end(*there_, t + h, to, counters, cause_);
   }
 
  private:
-  bool go(double t, const State& state) {
-    return here_->at(t, state.q.data()) && here_->factor(t, state.q.data());
-  }
   bool no_mass() {
     cause_ = "the mass matrix is not positive definite";
     return false;

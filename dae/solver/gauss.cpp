@@ -97,11 +97,12 @@ class Gauss {
     return true;
   }
 
+  const OdeSlopes& slopes() const { return stages_.newton.slopes(); }
   Counters counters() const {
     Counters c = counters_;
-    c.evaluations = stages_.evaluations;
-    c.jacobians = stages_.jacobians;
-    c.factorizations = stages_.factorizations;
+    c.evaluations = stages_.evaluations + slopes().evaluations();
+    c.jacobians = stages_.newton.jacobians;
+    c.factorizations = stages_.newton.factorizations;
     c.newton_iterations = stages_.newton_iterations;
     return c;
   }
@@ -153,8 +154,8 @@ IntegrationResult run(OdeSystem& system, double t0, const std::vector<double>& y
   MultistepRun<Gauss<s>>(method, system.size(), t0, output_times, options, observer).run(result);
   result.counters = method.counters();
   if (result.counters.jacobians > 0) {
-    result.linear_solver = "dense LU";
-    result.jacobian = "difference quotient";
+    result.linear_solver = method.slopes().linear_solver();
+    result.jacobian = method.slopes().jacobian();
   }
   return result;
 }

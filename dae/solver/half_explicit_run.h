@@ -261,16 +261,9 @@ IntegrationResult integrate_half_explicit(DaeSystem& system, double t0,
                                 " must be positive");
   const OutputCursor outputs(t0, output_times);
   HalfExplicitRun<Stages> method(system, *parts, t0, outputs.end() - t0, options);
-  IntegrationResult result;
-  result.end_time = t0;
-  if (!method.start()) {
-    result.reason = stop_sentence(method.name(), t0, evaluation_cause(method.failure()));
-    result.y.assign(method.y(), method.y() + system.size());
-    return result;
-  }
-  run_with_ode_restarts(method, system, t0, output_times, options, observer, result);
-  result.counters += method.counters();
-  return result;
+  const bool started = method.start();
+  return run_from_start(method, started, method.failure(), system, t0, output_times, options,
+                        observer);
 }
 
 }  // namespace momenta

@@ -12,10 +12,6 @@
 
 namespace momenta {
 
-/// As KLU takes it best; factors of a ladder of crossed bars then grow like its bars. The pattern
-/// must outlive the matrix.
-std::unique_ptr<NewtonMatrix<double>> make_local_matrix(const JacobianPattern& pattern);
-
 class LocalNewton {
  public:
   /// `size`: of J.

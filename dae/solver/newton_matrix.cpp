@@ -3,7 +3,6 @@
 // Source of KLU: Davis, Palamadai Natarajan, ACM TOMS 37 (2010) 36.
 
 #include <klu.h>
-#include <momenta/dae/solver/local_newton.h>
 #include <momenta/dae/solver/newton_matrix.h>
 
 #include <Eigen/LU>
@@ -160,8 +159,9 @@ std::unique_ptr<NewtonMatrix<Scalar>> make_newton_matrix(int size, const Jacobia
 }
 
 /// Zeros all over the diagonal: AMD's order is for pivots on it, and those KLU then takes fill.
-std::unique_ptr<NewtonMatrix<double>> make_local_matrix(const JacobianPattern& pattern) {
-  using Matrix = SparseMatrix<double>;
+template <class Scalar>
+std::unique_ptr<NewtonMatrix<Scalar>> make_local_matrix(const JacobianPattern& pattern) {
+  using Matrix = SparseMatrix<Scalar>;
   const auto size = static_cast<int>(pattern.column_start.size()) - 1;
   return std::make_unique<Matrix>(size, pattern, Matrix::Order::columns);
 }
@@ -169,5 +169,8 @@ std::unique_ptr<NewtonMatrix<double>> make_local_matrix(const JacobianPattern& p
 template std::unique_ptr<NewtonMatrix<double>> make_newton_matrix(int, const JacobianPattern&);
 template std::unique_ptr<NewtonMatrix<std::complex<double>>> make_newton_matrix(
     int, const JacobianPattern&);
+template std::unique_ptr<NewtonMatrix<double>> make_local_matrix(const JacobianPattern&);
+template std::unique_ptr<NewtonMatrix<std::complex<double>>> make_local_matrix(
+    const JacobianPattern&);
 
 }  // namespace momenta

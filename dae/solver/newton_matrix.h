@@ -28,6 +28,11 @@ class NewtonMatrix {
 template <class Scalar>
 std::unique_ptr<NewtonMatrix<Scalar>> make_newton_matrix(int size, const JacobianPattern& pattern);
 
+/// KLU with columns in COLAMD's order, as a matrix of LocalJacobian takes it best; factors of a
+/// ladder of crossed bars then grow like its bars. The pattern must outlive the matrix.
+template <class Scalar = double>
+std::unique_ptr<NewtonMatrix<Scalar>> make_local_matrix(const JacobianPattern& pattern);
+
 /// Number of stored values.
 inline std::size_t entry_count(int size, const JacobianPattern& pattern) {
   const auto n = static_cast<std::size_t>(size);

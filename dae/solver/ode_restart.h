@@ -14,6 +14,7 @@
 
 #include <momenta/dae/solver/integration.h>
 #include <momenta/dae/solver/multistep_run.h>
+#include <momenta/dae/solver/stopping.h>
 
 #include <algorithm>
 #include <limits>
@@ -173,6 +174,29 @@ void run_with_ode_restarts(Method& method, DaeSystem& system, double t0,
   MultistepRun<WithOdeRestarts<Method>>(run, system.size(), t0, output_times, options, observer)
       .run(result);
   run.count(result.counters);
+}
+
+/// The same, and the counters, of a method whose start() said `started`; where it did not, why, in
+/// the words of `failure`. A method that is implicit has linear_solver(), with the exact Jacobian.
+template <class Method>
+IntegrationResult run_from_start(Method& method, bool started, const std::string& failure,
+                                 DaeSystem& system, double t0,
+                                 const std::vector<double>& output_times,
+                                 const IntegrationOptions& options, const Observer& observer) {
+  IntegrationResult result;
+  result.end_time = t0;
+  if constexpr (requires { method.linear_solver(); }) {
+    result.linear_solver = method.linear_solver();
+    result.jacobian = "dual numbers";
+  }
+  if (!started) {
+    result.reason = stop_sentence(method.name(), t0, evaluation_cause(failure));
+    result.y.assign(method.y(), method.y() + system.size());
+    return result;
+  }
+  run_with_ode_restarts(method, system, t0, output_times, options, observer, result);
+  result.counters += method.counters();
+  return result;
 }
 
 }  // namespace momenta

@@ -288,20 +288,10 @@ IntegrationResult integrate_radau5(DaeSystem& system, double t0,
     throw std::invalid_argument("rtol and atol of radau5 must be positive");
   const OutputCursor outputs(t0, output_times);
   Radau5 radau(system, options, outputs.end() - t0);
-  IntegrationResult result;
-  result.jacobian = "dual numbers";
-  result.end_time = t0;
   const bool started = radau.start(t0);
-  result.linear_solver = radau.linear_solver();
-  if (!started) {
-    result.reason = stop_sentence("radau5", t0, evaluation_cause(system.failure()));
-    result.y.assign(radau.y(), radau.y() + system.size());
-    return result;
-  }
-  if (outputs.end() > t0) radau.initialise();
-  run_with_ode_restarts(radau, system, t0, output_times, options, observer, result);
-  result.counters += radau.counters();
-  return result;
+  if (started && outputs.end() > t0) radau.initialise();
+  return run_from_start(radau, started, system.failure(), system, t0, output_times, options,
+                        observer);
 }
 
 }  // namespace momenta

@@ -25,7 +25,6 @@
 namespace momenta {
 namespace {
 
-using constrained::Convergence;
 using constrained::State;
 using Eigen::VectorXd;
 
@@ -45,28 +44,25 @@ class Rattle {
   static const char* name() { return "rattle"; }
   const std::string& cause() const { return cause_; }
 
-  bool start(double t, State& state) { return go(t, state) && onto_velocities_(*here_, state); }
+  bool start(double t, State& state) {
+    return constrained::go(*here_, t, state) && onto_velocities_(*here_, state);
+  }
   void accept() { std::swap(here_, there_); }
   bool repeat(const Rattle& last, double t, const State& from) {
     lambda_ = last.lambda_;
-    return go(t, from);
+    return constrained::go(*here_, t, from);
   }
 
   bool advance(double t, double h, const State& from, State& to, Counters& counters) {
-    cause_ = "a value that is not a finite number came up";
     u0_ = u1_ = from.u;
     const double size = 1 + from.q.cwiseAbs().maxCoeff();
-    Convergence convergence;
-    for (auto is = Convergence::Is::under_way; is != Convergence::Is::reached;) {
-      ++counters.evaluations;
-      ++counters.newton_iterations;
-      double change = 0;
-      if (!iterate(t, h, from, to, change)) return false;
-      is = convergence.after(change / size);
-      if (is != Convergence::Is::failed) continue;
-      if (std::isfinite(change)) cause_ = "the implicit stages did not converge";
+    if (!constrained::to_rounding(constrained::Convergence(), counters, cause_,
+                                  "the implicit stages did not converge", [&](double& change) {
+                                    if (!iterate(t, h, from, to, change)) return false;
+                                    change /= size;
+                                    return true;
+                                  }))
       return false;
-    }
     ++counters.evaluations;
     there_->force(to.q.data(), u1_.data(), nullptr, g_.data());
     to.p += 0.5 * h * g_;
@@ -74,10 +70,6 @@ class Rattle {
   }
 
  private:
-  bool go(double t, const State& state) {
-    return here_->at(t, state.q.data()) && here_->factor(t, state.q.data());
-  }
-
   /// The first two lines once, p_½ in to.p; `change`: the largest of q.
   bool iterate(double t, double h, const State& from, State& to, double& change) {
     here_->force(from.q.data(), u0_.data(), nullptr, g_.data());

@@ -16,6 +16,8 @@ namespace momenta {
 /// corrected position.
 enum class SingularityHandling { none, norm, position };
 
+class LocalJacobian;
+
 /// y' = f(t, y). One object serves one thread.
 class OdeSystem {
  public:
@@ -68,6 +70,11 @@ class OdeSystem {
   /// Typical size of y_i, for absolute tolerances: the error weight is atol · scale_i + rtol ·
   /// |y_i|.
   virtual double scale(int /*i*/) const { return 1.0; }
+
+  /// The matrix of equations F(t, (y, x), f) = 0 that f and further unknowns x solve, in place of
+  /// ∂f/∂y where that is large and full; null: there is none. evaluate() takes the y and f of the
+  /// last rhs().
+  virtual LocalJacobian* local() { return nullptr; }
 
   /// One sentence on the last call that returned false.
   const std::string& failure() const { return failure_; }
