@@ -205,7 +205,7 @@ void Asked::adjoint() {
   stages.start(start.t, start.q, start.u, back.by_start());
   stages.finish(result.gradient);
   result.products = back.products();
-  result.at_once = stages.inertial();
+  result.at_once = stages.at_once();
 }
 
 }  // namespace
@@ -252,12 +252,12 @@ GradientResult gradient(const SceneText& scene, const GradientRequest& request) 
   std::tie(options.baumgarte_alpha, options.baumgarte_beta) = form.baumgarte_gains();
   options.beta = form.beta();
   // The σ that a leak begins with depends on inertias in its own way, the energy on them itself.
-  std::unique_ptr<InertiaSlopes> inertia;
+  std::unique_ptr<NumberSlopes> slopes;
   if (result.adjoint && form.gauge().kind != Gauge::Kind::leak && !mechanism.scene().lagrangian &&
       request.of.find("energy") == std::string::npos)
-    inertia = make_inertia_slopes(mechanism);
+    slopes = make_number_slopes(mechanism, false);
   const std::vector<OtherParameter> others =
-      other_parameters(scene, mechanism, result.variables, inertia.get());
+      other_parameters(scene, mechanism, result.variables, slopes.get());
   Asked asked{request, mechanism, start, form, others, options, result};
   if (result.adjoint)
     asked.adjoint();

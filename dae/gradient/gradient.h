@@ -60,7 +60,7 @@ struct GradientResult {
   std::vector<std::string> without_effect;  ///< names of θ whose part of J is below 1e-10 of it
   std::vector<std::string> remarks;         ///< sentences on what is not smooth
   bool adjoint = false;                     ///< by a sweep back
-  long at_once = 0;     ///< of it: θ that are inertias or gravity, whose number costs nothing
+  long at_once = 0;     ///< of it: θ of numbers taken together, whose count costs nothing
   long products = 0;    ///< of it: with transposed derivatives of the right-hand side
   long steps = 0;       ///< of the run
   double end_time = 0;  ///< T [s]
@@ -76,7 +76,7 @@ struct GradientResult {
 /// the factorisation of a dense matrix of (7), and six plain evaluations of its rows for each
 /// parameter. Adjoint: an evaluation of the sweeps in dual numbers of one direction, or where they
 /// do not carry the loops two of rows and that factorisation, for all θ; six plain evaluations for
-/// each parameter that is neither an inertia nor gravity; a state of memory a stage
+/// each parameter that is no number of number_slopes.h; a state of memory a stage
 /// (recorded_run.h).
 GradientResult gradient(const SceneText& scene, const GradientRequest& request);
 

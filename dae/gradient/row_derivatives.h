@@ -17,11 +17,11 @@
 namespace momenta {
 
 /// Evaluations at θ_j + k h, in the order of sixth_order::points; none: nothing depends on θ_j but
-/// where the motion starts, or inertias, whose derivatives by θ_j are then in `inertias`
-/// (inertia_slopes.h).
+/// where the motion starts, or inertias and forces. `numbers`: derivatives by θ_j of the numbers of
+/// number_slopes.h, where θ_j changes these alone; else empty.
 struct OtherParameter {
   double h = 0;
-  Eigen::VectorXd inertias;
+  Eigen::VectorXd numbers;
   std::vector<std::unique_ptr<Mechanism>> mechanisms;
   std::vector<std::unique_ptr<Evaluation<double>>> evaluations;
 };

@@ -62,27 +62,37 @@ StageAdjoint::StageAdjoint(const Mechanism& mechanism, const OdeForm& form,
   if (rows_.leak == 0 && rows_.beta == 0) swept_ = make_swept_tangent(mechanism);
   for (auto* x : {&by_q_, &by_u_, &along_q_, &along_p_, &still_, &rates_}) x->setZero(nv_);
   if (swept_ && m_ > 0) kinetic_ = make_kinetic_rates(mechanism);
-  any_rows_ = std::any_of(others.begin(), others.end(),
-                          [](const OtherParameter& other) { return !other.evaluations.empty(); });
-  if (inertial() > 0) {
-    inertia_ = make_inertia_slopes(mechanism);
-    slopes_.setZero(inertia_->size());
-  }
+  any_rows_ = std::any_of(others.begin(), others.end(), [](const OtherParameter& other) {
+    return !other.evaluations.empty() && other.numbers.size() == 0;
+  });
+  if (at_once() == 0) return;
+  placed_ = std::any_of(others.begin(), others.end(), [](const OtherParameter& other) {
+    return !other.evaluations.empty() && other.numbers.size() > 0;
+  });
+  numbers_ = make_number_slopes(mechanism, placed_);
+  slopes_.setZero(numbers_->size());
+  slopes_at_start_ = slopes_;
 }
 
-Index StageAdjoint::inertial() const {
+Index StageAdjoint::at_once() const {
   return std::count_if(others_.begin(), others_.end(),
-                       [](const OtherParameter& other) { return other.inertias.size() > 0; });
+                       [](const OtherParameter& other) { return other.numbers.size() > 0; });
 }
 
 void StageAdjoint::start(double t, const VectorXd& q, const VectorXd& u, const VectorXd& lambda) {
-  if (inertia_) inertia_->add(1, t, q.data(), u.data(), nullptr, lambda.data() + nv_, slopes_);
+  if (numbers_)
+    numbers_->add(1, {t, q.data(), u.data(), nullptr, nullptr, lambda.data() + nv_, nullptr},
+                  slopes_at_start_);
 }
 
 void StageAdjoint::finish(VectorXd& by_parameters) const {
-  for (std::size_t j = 0; j < others_.size(); ++j)
-    if (others_[j].inertias.size() > 0)
-      by_parameters[static_cast<Index>(j)] += others_[j].inertias.dot(slopes_);
+  for (std::size_t j = 0; j < others_.size(); ++j) {
+    const OtherParameter& other = others_[j];
+    if (other.numbers.size() == 0) continue;
+    double& sum = by_parameters[static_cast<Index>(j)];
+    sum += other.numbers.dot(slopes_);
+    if (other.mechanisms.empty()) sum += other.numbers.dot(slopes_at_start_);
+  }
 }
 
 /// D rows along dx.
@@ -107,6 +117,7 @@ void StageAdjoint::add_by_parameters(const Rows& rows, const VectorXd& x, const 
   plain_.resize(weights.size());
   for (std::size_t j = 0; j < others_.size(); ++j) {
     const OtherParameter& other = others_[j];
+    if (other.numbers.size() > 0) continue;
     for (std::size_t k = 0; k < other.evaluations.size(); ++k) {
       rows(static_cast<EquationRows<double>&>(*other.evaluations[k]), x.data(), plain_.data());
       sum[static_cast<Index>(j)] += sixth_order::points[k].weight / other.h * weights.dot(plain_);
@@ -133,7 +144,7 @@ VectorXd StageAdjoint::loop_rates(const VectorXd& u) {
   return moved - still;
 }
 
-/// By the sweeps: no matrix, and nothing is allocated unless a θ is no inertia.
+/// By the sweeps: no matrix, and nothing is allocated unless a θ is taken from rows.
 bool StageAdjoint::sweep(const AdjointState& at, const VectorXd& w, VectorXd& product,
                          VectorXd& by_parameters) {
   const auto a = w.head(nv_), b = w.tail(nv_);
@@ -156,8 +167,11 @@ bool StageAdjoint::sweep(const AdjointState& at, const VectorXd& w, VectorXd& pr
     forces_.along(at.t, at.q, at.u, along_q_, still_, by_u_);
     product.head(nv_) += by_q_ + by_u_;
   }
-  if (inertia_)
-    inertia_->add(-1, at.t, at.q.data(), f.u.data(), along_q_.data(), f.du.data(), slopes_);
+  if (numbers_)
+    numbers_->add(-1,
+                  {at.t, at.q.data(), f.u.data(), f.sigma.data(), along_q_.data(), f.du.data(),
+                   f.dsigma.data()},
+                  slopes_);
   if (!any_rows_) return true;
   rows_.t = at.t;
   VectorXd weights(2 * nv_ + m_);
@@ -193,12 +207,29 @@ bool StageAdjoint::rates(const AdjointState& at, const VectorXd& w, VectorXd& pr
     product.head(nv_) -= fed_back * force;
   }
   product.tail(nv_) = mu.head(nv_);
-  if (inertia_) {
+  if (numbers_) {
     along_q_ = -b;
-    inertia_->add(-1, at.t, at.q.data(), at.u.data(), along_q_.data(), mu.data(), slopes_);
+    const double* dsigma = mu.data() + nv_;
+    numbers_->add(
+        -1, {at.t, at.q.data(), at.u.data(), at.sigma.data(), along_q_.data(), mu.data(), dsigma},
+        slopes_);
+    if (placed_ && rows_.beta != 0)
+      numbers_->add_loops(-rows_.beta, at.t, at.q.data(), dsigma, slopes_);
   }
   add_by_parameters(rows_, x, joined(-mu.head(nv_), -mu.tail(m_), b), by_parameters);
   return true;
+}
+
+/// What numbers have of a gauge: c (D_μ L*_θ + β (μ_σᵀΦ)_θ − D_λp (σᵀΦ̇)_θ).
+void StageAdjoint::add_gauge(double c, const NumberSweep::Motion& along_mu, const double* of_p) {
+  numbers_->add(c, along_mu, slopes_);
+  if (!placed_) return;
+  NumberSweep::Motion along_p = along_mu;
+  along_p.du = of_p;
+  along_p.dsigma = nullptr;
+  numbers_->add_loop_rates(-c, along_p, slopes_);
+  if (rows_.beta != 0)
+    numbers_->add_loops(c * rows_.beta, along_mu.t, along_mu.q, along_mu.dsigma, slopes_);
 }
 
 /// p' = c M u − (c − 1) p by the sweeps.
@@ -227,7 +258,14 @@ bool StageAdjoint::sweep_gauge(const AdjointState& at, double c, VectorXd& lambd
     rates_ += by_u_;
   }
   along_p_ = of_p - du;
-  if (inertia_) inertia_->add(c, at.t, at.q.data(), u.data(), nullptr, along_p_.data(), slopes_);
+  if (numbers_) {
+    for (double& x : f.dsigma) x = -x;
+    add_gauge(
+        c,
+        {at.t, at.q.data(), f.u.data(), f.sigma.data(), nullptr, along_p_.data(), f.dsigma.data()},
+        of_p.data());
+    for (double& x : f.dsigma) x = -x;
+  }
   if (any_rows_) {
     rows_.t = at.t;
     VectorXd weights(2 * nv_ + m_);
@@ -263,7 +301,10 @@ bool StageAdjoint::gauge(const AdjointState& at, VectorXd& lambda, VectorXd& by_
   }
   lambda.head(nv_) -= c * by_q;
   lambda.tail(nv_) -= c * mu.head(nv_);
-  if (inertia_) inertia_->add(c, at.t, at.q.data(), at.u.data(), nullptr, mu.data(), slopes_);
+  if (numbers_)
+    add_gauge(
+        c, {at.t, at.q.data(), at.u.data(), at.sigma.data(), nullptr, mu.data(), mu.data() + nv_},
+        of_p.data());
   add_by_parameters(MomentumAndLoopRows{rows_}, x, joined(c * mu, -c * of_p, VectorXd(0)),
                     by_parameters);
   return true;
@@ -291,9 +332,13 @@ bool StageAdjoint::correction(double t, const VectorXd& q, VectorXd& lambda,
   e_->constraint_forces(impulses.data(), force.data());
   lambda.head(nv_) -= by_q + force;
   still_.setZero();
-  if (inertia_) {
-    inertia_->add(-1, t, q.data(), found.data(), nullptr, mu.data(), slopes_);
-    if (driven_) inertia_->add(1, t, q.data(), still_.data(), nullptr, mu.data(), slopes_);
+  if (numbers_) {
+    const double *du = mu.data(), *dsigma = mu.data() + nv_;
+    numbers_->add(-1, {t, q.data(), found.data(), found.data() + nv_, nullptr, du, dsigma},
+                  slopes_);
+    if (placed_) numbers_->add_loops(-1, t, q.data(), dsigma, slopes_);
+    if (driven_)
+      numbers_->add(1, {t, q.data(), still_.data(), nullptr, nullptr, du, dsigma}, slopes_);
   }
   CorrectionRows rows{rows_};
   add_by_parameters(rows, x, -mu, by_parameters);

@@ -28,18 +28,20 @@
 // Here D_μ is the derivative by (u, σ) along μ, and K the matrix of (2).
 //
 // δu, δσ, δr come from the sweeps in dual numbers where they carry the mechanism (swept_tangent.h),
-// without leak and β, else from the rows and K. Of θ that are inertias, or masses and lengths that
-// inertias alone are made of, f_θᵀ w is that of all bodies at once (inertia_slopes.h); of others it
-// is made from the rows of mechanisms with neighbouring θ.
+// without leak and β, else from the rows and K. Of θ that numbers of bodies, joints, loops and
+// springs alone are made of, f_θᵀ w is that of all these at once (number_slopes.h): of L* with z,
+// of βΦ with −δσ, behind a gauge c (D_μ L*_θ + β (μ_σᵀΦ)_θ − D_λp (σᵀΦ̇)_θ), behind a correction
+// −D_μ (T + νᵀΦ̇)_θ − (μ_σᵀΦ)_θ; of others it is made from the rows of mechanisms with neighbouring
+// θ.
 //
 // Derivation: docs/theory/gradients.md, section 7. Compare Maciąg, Malczyk, Frączek, Int. J. Numer.
 // Methods Eng. 121 (2020), who integrate the adjoint system of (7), (8), and Multibody Syst. Dyn.
 // 56 (2022), who transpose a discrete scheme.
 
 #include <momenta/dae/form/ode_form.h>
-#include <momenta/dae/gradient/inertia_slopes.h>
 #include <momenta/dae/gradient/kinetic_rates.h>
 #include <momenta/dae/gradient/momentum_rows.h>
+#include <momenta/dae/gradient/number_slopes.h>
 #include <momenta/dae/gradient/row_derivatives.h>
 #include <momenta/dae/gradient/stage_matrix.h>
 #include <momenta/dae/gradient/swept_tangent.h>
@@ -61,10 +63,10 @@ class StageAdjoint {
   StageAdjoint(const Mechanism& mechanism, const OdeForm& form,
                const std::vector<OtherParameter>& others);
 
-  /// f_yᵀ w (nq + nv) of w; by_parameters (others) += f_θᵀ w, of inertias at finish(). False where
-  /// the matrix is singular. Cost: one evaluation of the sweeps in dual numbers, or two of rows and
-  /// one factorisation; one sweep outward for all inertias; six plain evaluations of rows for each
-  /// other parameter.
+  /// f_yᵀ w (nq + nv) of w; by_parameters (others) += f_θᵀ w, of those taken at once at finish().
+  /// False where the matrix is singular. Cost: one evaluation of the sweeps in dual numbers, or two
+  /// of rows and one factorisation; one sweep outward and inward for all numbers of tables; six
+  /// plain evaluations of rows for each other parameter.
   bool rates(const AdjointState& at, const Eigen::VectorXd& w, Eigen::VectorXd& product,
              Eigen::VectorXd& by_parameters);
 
@@ -74,14 +76,14 @@ class StageAdjoint {
   bool correction(double t, const Eigen::VectorXd& q, Eigen::VectorXd& lambda,
                   Eigen::VectorXd& by_parameters);
   /// λ at the start, (q, u) with σ = 0 there: what p(0) = M u has of inertias. Assemblies are
-  /// those of lengths alone.
+  /// those of lengths alone, and of these dy(0)/dθ is known otherwise.
   void start(double t, const Eigen::VectorXd& q, const Eigen::VectorXd& u,
              const Eigen::VectorXd& lambda);
-  /// What inertias have had so far is added, once, when the way back is over.
+  /// What numbers have had so far is added, once, when the way back is over.
   void finish(Eigen::VectorXd& by_parameters) const;
 
-  /// How many parameters are taken by inertia_slopes.h.
-  Eigen::Index inertial() const;
+  /// How many parameters are taken by number_slopes.h.
+  Eigen::Index at_once() const;
   /// Whether states must have their u and σ; else the sweeps find them, and where they do not
   /// carry a state, products without them are false.
   bool needs_solutions() const { return !swept_ || forces_.any() || any_rows_; }
@@ -102,6 +104,7 @@ class StageAdjoint {
   template <class Rows>
   void add_by_parameters(const Rows& rows, const Eigen::VectorXd& x, const Eigen::VectorXd& weights,
                          Eigen::VectorXd& sum);
+  void add_gauge(double c, const NumberSweep::Motion& along_mu, const double* of_p);
   bool factor(double t, const Eigen::VectorXd& q);
   Eigen::VectorXd loop_rates(const Eigen::VectorXd& u);
 
@@ -111,10 +114,11 @@ class StageAdjoint {
   std::unique_ptr<Evaluation<Dual8>> dual_;
   StageMatrix matrix_;
   TransposedForces forces_;
-  std::unique_ptr<SweptTangent> swept_;     ///< null: by rows
-  std::unique_ptr<InertiaSlopes> inertia_;  ///< null: no θ is one
-  std::unique_ptr<KineticRates> kinetic_;   ///< where there are sweeps
-  Eigen::VectorXd slopes_;                  ///< by numbers of inertia_, so far
+  std::unique_ptr<SweptTangent> swept_;       ///< null: by rows
+  std::unique_ptr<NumberSlopes> numbers_;     ///< null: no θ is taken so
+  std::unique_ptr<KineticRates> kinetic_;     ///< where there are sweeps
+  Eigen::VectorXd slopes_, slopes_at_start_;  ///< by these numbers, so far
+  bool placed_ = false;                       ///< some θ changes places
   Gauge gauge_;
   MomentumAndRateRows rows_;
   Eigen::Index nv_, m_;

@@ -1,6 +1,7 @@
 #include <momenta/core/text/near_name.h>
 #include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/assembly/scaled_loops.h>
+#include <momenta/dae/gradient/numbers_alone.h>
 #include <momenta/dae/gradient/start_tangents.h>
 #include <momenta/dae/joint_places.h>
 #include <momenta/dae/kkt/least_norm.h>
@@ -34,33 +35,37 @@ Start closed_start(const Mechanism& mechanism, const VectorXd& q, const VectorXd
   return assemble(mechanism, 0, pose, u).start;
 }
 
-/// The body whose mass, centre of mass or inertia a place of the text is in, or makes; empty: none.
-/// Formulas know parameters alone, so that such a number is in no other body.
-std::string inertia_of_body(const Scene& scene, const std::string& place) {
-  for (const BodySpec& body : scene.bodies)
-    for (const char* key : {"mass", "com", "inertia", "shape"}) {
-      const std::string whole = "body." + body.name + "." + key;
-      if (place == whole || place.starts_with(whole + ".")) return body.name;
-    }
-  return "";
+/// The derivative of the numbers made of these scenes, at θ + k h; empty where a difference of
+/// fourth order has another: at θ they jump, as where a frame is chosen anew.
+VectorXd numbers_by(const NumberSlopes& slopes, double h, const std::vector<Scene>& scenes) {
+  VectorXd sixth = VectorXd::Zero(slopes.size()), fourth = sixth;
+  for (std::size_t i = 0; i < scenes.size(); ++i) {
+    const VectorXd made = slopes.numbers(scenes[i]);
+    if (made.size() != sixth.size()) return {};
+    sixth += sixth_order::points[i].weight / h * made;
+    if (i < sixth_order::fourth.size()) fourth += sixth_order::fourth[i] / h * made;
+  }
+  if (!((sixth - fourth).cwiseAbs().maxCoeff() <= 1e-4 * sixth.cwiseAbs().maxCoeff())) return {};
+  return sixth;
 }
 
-/// Takes the derivatives of inertias by numbers of bodies' own, of as many bodies as there are by
-/// six readings of the scene, in which all of them have moved. What a reading refuses, or what
-/// changes more than inertias, is left to be taken alone.
-void take_inertias_of_bodies(const SceneText& scene, const Mechanism& mechanism,
-                             const std::vector<RunVariable>& variables,
-                             const InertiaSlopes& inertia, const InertiasAlone& same,
-                             std::vector<OtherParameter>& all) {
-  std::vector<std::string> body_of(variables.size());
+/// Takes the derivatives by numbers of bodies', joints' and springs' own, of as many of these as
+/// there are by six readings of the scene, in which all of them have moved. Formulas know
+/// parameters alone, so that such a number is in no other body. What a reading refuses, or what
+/// changes more, is left to be taken alone.
+void take_own_numbers(const SceneText& scene, const std::vector<RunVariable>& variables,
+                      const NumberSlopes& slopes, const NumbersAlone& same,
+                      std::vector<OtherParameter>& all) {
+  using Range = NumberSlopes::Range;
+  std::vector<Range> range_of(variables.size());
   for (std::size_t j = 0; j < variables.size(); ++j)
     if (variables[j].kind == RunVariable::Kind::parameter)
-      body_of[j] = inertia_of_body(mechanism.scene(), variables[j].name);
+      range_of[j] = slopes.of(variables[j].name);
   while (true) {
-    std::vector<std::size_t> together;  // one of a body
-    std::set<std::string> bodies;
+    std::vector<std::size_t> together;  // one of a body, joint or spring
+    std::set<Eigen::Index> parts;
     for (std::size_t j = 0; j < variables.size(); ++j)
-      if (!body_of[j].empty() && bodies.insert(body_of[j]).second) together.push_back(j);
+      if (range_of[j].count > 0 && parts.insert(range_of[j].first).second) together.push_back(j);
     if (together.size() < 2) return;
     std::vector<VectorXd> numbers;
     try {
@@ -69,19 +74,20 @@ void take_inertias_of_bodies(const SceneText& scene, const Mechanism& mechanism,
         for (const std::size_t j : together)
           moved.push_back({variables[j].name, variables[j].value + k * all[j].h});
         const Scene made = scene.scene(moved);
-        if (!same.as(made)) return;
-        numbers.push_back(inertia.numbers(made));
+        if (same.of(made) != Change::inertias_and_forces) return;
+        numbers.push_back(slopes.numbers(made));
+        if (numbers.back().size() != slopes.size()) return;
       }
     } catch (const std::exception&) {  // which of them it is, its own reading tells
       return;
     }
     for (const std::size_t j : together) {
-      const InertiaSlopes::Range its = inertia.of(body_of[j]);
-      all[j].inertias = VectorXd::Zero(inertia.size());
+      const Range its = range_of[j];
+      all[j].numbers = VectorXd::Zero(slopes.size());
       for (std::size_t i = 0; i < numbers.size(); ++i)
-        all[j].inertias.segment(its.first, its.count) +=
+        all[j].numbers.segment(its.first, its.count) +=
             sixth_order::points[i].weight / all[j].h * numbers[i].segment(its.first, its.count);
-      body_of[j].clear();
+      range_of[j] = {};
     }
   }
 }
@@ -90,26 +96,25 @@ void take_inertias_of_bodies(const SceneText& scene, const Mechanism& mechanism,
 
 std::vector<OtherParameter> other_parameters(const SceneText& scene, const Mechanism& mechanism,
                                              const std::vector<RunVariable>& variables,
-                                             const InertiaSlopes* inertia) {
+                                             const NumberSlopes* slopes) {
   std::vector<OtherParameter> all(variables.size());
-  std::optional<InertiasAlone> same;
-  if (inertia) same.emplace(mechanism.scene());
+  std::optional<NumbersAlone> same;
+  if (slopes) same.emplace(mechanism.scene(), slopes->of_places());
   for (std::size_t j = 0; j < variables.size(); ++j)
     all[j].h = sixth_order::part * variables[j].size;
-  if (inertia) take_inertias_of_bodies(scene, mechanism, variables, *inertia, *same, all);
+  if (slopes) take_own_numbers(scene, variables, *slopes, *same, all);
   for (std::size_t j = 0; j < variables.size(); ++j) {
     const RunVariable& v = variables[j];
     OtherParameter& other = all[j];
-    if (v.kind != RunVariable::Kind::parameter || other.inertias.size() > 0) continue;
+    if (v.kind != RunVariable::Kind::parameter || other.numbers.size() > 0) continue;
     std::vector<Scene> scenes;
     for (const auto& [k, weight] : sixth_order::points)
       scenes.push_back(scene.scene({{v.name, v.value + k * other.h}}));
-    if (same && std::all_of(scenes.begin(), scenes.end(),
-                            [&](const Scene& made) { return same->as(made); })) {
-      other.inertias = VectorXd::Zero(inertia->size());
-      for (std::size_t i = 0; i < scenes.size(); ++i)
-        other.inertias += sixth_order::points[i].weight / other.h * inertia->numbers(scenes[i]);
-      continue;
+    if (slopes) {
+      Change change = Change::inertias_and_forces;
+      for (const Scene& made : scenes) change = std::max(change, same->of(made));
+      if (change != Change::more) other.numbers = numbers_by(*slopes, other.h, scenes);
+      if (change == Change::inertias_and_forces && other.numbers.size() > 0) continue;
     }
     for (std::size_t i = 0; i < scenes.size(); ++i) {
       other.mechanisms.push_back(std::make_unique<Mechanism>(std::move(scenes[i]), scene.options));
@@ -134,7 +139,7 @@ StartTangents start_tangents(const Mechanism& mechanism, const std::string& form
   for (std::size_t j = 0; j < variables.size(); ++j) {
     const RunVariable& v = variables[j];
     const OtherParameter& other = others[j];
-    if (other.inertias.size() > 0) continue;
+    if (other.numbers.size() > 0 && other.mechanisms.empty()) continue;
     VectorXd sixth = VectorXd::Zero(tangents.of_state.rows()), fourth = sixth;
     double size = 1;
     for (std::size_t k = 0; k < sixth_order::points.size(); ++k) {

@@ -12,6 +12,7 @@
 #include <momenta/dae/solver/integrators.h>
 
 #include <cmath>
+#include <tuple>
 
 #include "equations/gradient_runs.h"
 #include "equations/gradient_twin.h"
@@ -250,6 +251,7 @@ TEST(Adjoint, IsTheForwardGradientOfTheScenesOfTheTable) {
 TEST(Adjoint, IsThatOfQuadruplePrecision) {
   std::string text = four_bar;
   text.replace(text.find("velocity = 0.7"), 14, "velocity = 0.0");
+  text.replace(text.find("damping = 0.4"), 13, "damping = 0.0");  // lengths are taken at once
   const SceneText scene = of_text(text);
   const std::vector<std::string> by{"crank", "coupler", "mass", "k", "g"};
   const Mechanism own(scene.scene(), scene.options);
@@ -257,6 +259,7 @@ TEST(Adjoint, IsThatOfQuadruplePrecision) {
     GradientRequest request = asked("C.q", by, "momentum", rule, 0.4, 0.01);
     request.mode = GradientMode::adjoint;
     const GradientResult r = gradient(scene, request);
+    EXPECT_EQ(r.at_once, 5);
     for (std::size_t j = 0; j < by.size(); ++j) {
       const RunVariable& v = r.variables[j];
       const VectorXd exact = equations::differenced(
@@ -317,10 +320,229 @@ TEST(Adjoint, TakesInertiasAndGravityAtOnce) {
   const GradientResult r = gradient(of_text(text), request);
   EXPECT_EQ(r.at_once, static_cast<long>(request.by.size()));
   expect_same(of_text(text), request, 1e-12);
-  // Lengths are more than inertias, though inertias are made of them.
+  // Dampers between points have no potential: places are then taken from rows, springs are not.
   request = asked("P.x", {"crank", "k", "idle", "O.q"}, "momentum", "reset");
   request.mode = GradientMode::adjoint;
-  EXPECT_EQ(gradient(of_text(four_bar), request).at_once, 1);  // the one without effect
+  EXPECT_EQ(gradient(of_text(four_bar), request).at_once, 2);
+}
+
+/// A four-bar in a plane, with forces of every kind that numbers are taken of at once.
+std::string sprung_four_bar() {
+  std::string text = four_bar;
+  const auto put = [&](const std::string& from, const std::string& to) {
+    text.replace(text.find(from), from.size(), to);
+  };
+  put("damping = 0.4\n", "name = \"S\"\n");
+  put("velocity = 0.7\n",
+      "velocity = 0.7\nstiffness = 3\nrest = 0.2\ndamping = 0.4\nfriction = 0.2\n"
+      "rotor_inertia = 0.1\n");
+  return text + R"toml(
+[[force]]
+name = "T"
+kind = "torque"
+joint = "C"
+value = 1.5
+[[force]]
+name = "sum"
+kind = "coordinate-spring"
+joints = ["O", "A"]
+ratios = [1, 0.5]
+stiffness = 2
+damping = 0.3
+rest = 0.2
+)toml";
+}
+
+/// A chain on a line of given length, with a slide, a coupler, and a turned joint.
+const std::string slide_and_coupler = R"toml(
+name = "slide and coupler"
+gravity = [0, -9.81, 0]
+[parameters]
+turn = 0.3
+[[body]]
+name = "a"
+mass = 1
+com = [0.3, 0.1, 0]
+inertia = 0.1
+[[body]]
+name = "b"
+mass = 2
+com = [0.1, -0.05, 0]
+inertia = 0.2
+[[body]]
+name = "c"
+mass = 2
+com = [0.2, 0, 0]
+inertia = 0.2
+[[joint]]
+name = "J"
+kind = "revolute"
+child = "a"
+origin = { parent = [0.1, 0, 0], child = [-0.1, 0.02, 0] }
+position = 0.3
+velocity = 0.4
+[[joint]]
+name = "W"
+kind = "prismatic"
+parent = "a"
+child = "b"
+axis = [0.9, 0.1, 0]
+rotation = { axis = "z", angle = "turn" }
+origin = { parent = [0.4, 0.1, 0], child = [0, 0, 0] }
+position = 0.2
+[[joint]]
+name = "K"
+kind = "revolute"
+parent = "b"
+child = "c"
+origin = { parent = [0.2, 0.1, 0], child = [0, 0, 0] }
+position = 0.2
+[[loop]]
+name = "D"
+kind = "distance"
+parent = "ground"
+child = "c"
+origin = { parent = [1.3, 0.4, 0], child = [0.4, 0.05, 0] }
+length = 1.1
+[[loop]]
+name = "Q"
+kind = "coupler"
+joints = ["J", "K"]
+ratios = [1, 0.7]
+offset = 0.1
+)toml";
+
+/// In space: a tree of several kinds of joints and two loops of points, axes and a distance.
+const std::string in_space = R"toml(
+name = "in space"
+gravity = [0, 0, -9.81]
+[parameters]
+tilt = 0.4
+end_tilt = 0.2
+[[body]]
+name = "a"
+mass = 1
+com = [0.3, 0.1, 0]
+inertia = [0.1, 0.12, 0.13]
+[[body]]
+name = "b"
+mass = 2
+com = [0.1, -0.05, 0.03]
+inertia = [0.1, 0.12, 0.13]
+[[body]]
+name = "c"
+mass = 2
+com = [0.2, 0, 0.1]
+inertia = [0.1, 0.12, 0.13]
+[[body]]
+name = "d"
+mass = 2
+com = [0.2, 0, 0.1]
+inertia = [0.1, 0.12, 0.13]
+[[joint]]
+name = "J1"
+kind = "revolute"
+child = "a"
+axis = "y"
+origin = { parent = [0.1, 0, 0.2], child = [-0.1, 0.02, 0] }
+position = 0.3
+velocity = 0.4
+rotor_inertia = 0.3
+[[joint]]
+name = "J2"
+kind = "cylindrical"
+parent = "a"
+child = "b"
+axis = [0.9, 0.1, 0.2]
+rotation = { axis = "z", angle = "tilt" }
+origin = { parent = [0.6, 0.1, 0.1], child = [0, 0.05, 0] }
+position = [0.2, 0.1]
+[[joint]]
+name = "J3"
+kind = "revolute"
+parent = "b"
+child = "c"
+axis = "x"
+origin = { parent = [0.5, 0.1, 0], child = [0, 0, 0] }
+position = 0.2
+friction = 0.2
+[[joint]]
+name = "J4"
+kind = "universal"
+parent = "c"
+child = "d"
+axis = "y"
+axis2 = "z"
+origin = { parent = [0.5, 0.1, 0.1], child = [0, 0, 0] }
+position = [0.2, 0.1]
+[[loop]]
+name = "D"
+kind = "distance"
+parent = "ground"
+child = "c"
+origin = { parent = [1.3, 0.4, 1], child = [0.4, 0.05, 0.1] }
+length = 1.2
+[[loop]]
+name = "L"
+kind = "universal"
+parent = "ground"
+child = "d"
+axis = "y"
+axis2 = "z"
+rotation = { axis = "x", angle = "end_tilt" }
+origin = { parent = [2.1, 0.95, -0.1], child = [0.4, 0.05, 0.1] }
+[[force]]
+name = "S"
+kind = "spring-damper"
+parent = "a"
+child = "c"
+origin = { parent = [0, 1, 0], child = [0.3, 0, 0.1] }
+stiffness = 20
+rest = 0.3
+)toml";
+
+TEST(Adjoint, TakesLengthsSpringsAndPlacesAtOnce) {
+  struct Row {
+    std::string text, of;
+    std::vector<std::string> by;
+    double step;
+  };
+  for (const Row& row : std::vector<Row>{
+           {sprung_four_bar(),
+            "P.x + 0.3*C.u^2",
+            {"crank", "coupler", "rocker", "k", "mass", "joint.O.stiffness", "joint.O.rest",
+             "joint.O.damping", "joint.O.friction", "joint.O.rotor_inertia", "force.S.rest",
+             "force.S.stiffness", "force.S.origin.parent.0", "force.S.origin.child.1",
+             "force.T.value", "force.sum.stiffness", "force.sum.damping", "force.sum.rest",
+             "joint.C.origin.parent.1"},
+            0.01},
+           {slide_and_coupler,
+            "J.q + 0.1*W.u",
+            {"turn", "loop.D.length", "loop.Q.offset", "loop.D.origin.parent.0",
+             "loop.D.origin.child.1", "joint.J.origin.child.0", "joint.W.origin.parent.1",
+             "joint.K.origin.parent.0", "body.b.com.0"},
+            0.01},
+           {in_space,
+            "J2.q1 + 0.1*J1.u",
+            {"tilt", "end_tilt", "joint.J2.origin.parent.2", "joint.J2.origin.child.1",
+             "joint.J4.origin.parent.1", "loop.L.origin.child.2", "loop.L.origin.parent.0",
+             "loop.D.length", "loop.D.origin.child.0", "force.S.origin.child.0",
+             "force.S.stiffness", "joint.J1.rotor_inertia", "joint.J3.friction"},
+            0.01},
+           {reading::text_of(MOMENTA_SOURCE_DIR "/examples/chain/scene.toml"),
+            "J9.q",
+            {"joint.J3.origin.parent.0", "joint.J7.origin.parent.1", "body.rod5.mass"},
+            0.005}}) {
+    for (const auto& [rule, project, beta] :
+         {std::tuple{"none", false, 0.0}, {"reset", true, 0.0}, {"flip", true, 20.0}}) {
+      GradientRequest request = asked(row.of, row.by, "momentum", rule, 4 * row.step, row.step);
+      request.settings.project = project;
+      request.settings.beta = beta;
+      request.mode = GradientMode::adjoint;
+      EXPECT_EQ(gradient(of_text(row.text), request).at_once, static_cast<long>(row.by.size()));
+      expect_same(of_text(row.text), request, 1e-12, 1);
+    }
+  }
 }
 
 /// A run that is recorded, and the stages of its steps computed from their starts.
@@ -366,30 +588,39 @@ TEST(Adjoint, KeepsTheStagesOfARun) {
     }
 }
 
-TEST(Adjoint, ReadsASceneOnceForInertiasOfAllBodies) {
-  const SceneText scene = of_text(four_bar);
+TEST(Adjoint, ReadsASceneOnceForOwnNumbersOfAllParts) {
+  const SceneText scene = of_text(sprung_four_bar());
   const Mechanism mechanism(scene.scene(), scene.options);
-  const std::unique_ptr<InertiaSlopes> inertia = make_inertia_slopes(mechanism);
-  const auto inertias = [&](const std::vector<std::string>& names) {
-    return other_parameters(scene, mechanism, run_variables(scene, mechanism, names),
-                            inertia.get());
+  const std::unique_ptr<NumberSlopes> slopes = make_number_slopes(mechanism, false);
+  ASSERT_TRUE(slopes->of_places());
+  const auto taken = [&](const std::vector<std::string>& names) {
+    return other_parameters(scene, mechanism, run_variables(scene, mechanism, names), slopes.get());
   };
   // Two numbers of one body, and one whose scene has other lengths.
-  const std::vector<std::string> names{"body.crank.mass", "body.rocker.mass", "mass",
-                                       "body.crank.shape.length", "crank"};
-  const std::vector<OtherParameter> together = inertias(names);
-  const InertiaSlopes::Range crank = inertia->of("crank");
+  const std::vector<std::string> names{"body.crank.mass",
+                                       "body.rocker.mass",
+                                       "mass",
+                                       "body.crank.shape.length",
+                                       "crank",
+                                       "joint.O.rest",
+                                       "joint.O.damping",
+                                       "force.S.stiffness",
+                                       "force.sum.rest"};
+  const std::vector<OtherParameter> together = taken(names);
+  const NumberSlopes::Range crank = slopes->of("body.crank.mass");
   EXPECT_EQ(crank.count, 4);
-  EXPECT_EQ(inertia->of("nobody").count, 0);
+  EXPECT_EQ(slopes->of("force.S.rest").count, 8);
+  EXPECT_EQ(slopes->of("body.nobody.mass").count, 0);
+  EXPECT_EQ(slopes->of("joint.O.origin.parent.0").count, 0);
   for (std::size_t j = 0; j < names.size(); ++j) {
-    const VectorXd alone = inertias({names[j]}).front().inertias;
-    ASSERT_EQ(together[j].inertias.size(), alone.size()) << names[j];
-    EXPECT_EQ(alone.size() > 0, names[j] != "crank") << names[j];
-    if (alone.size() > 0) {
-      EXPECT_LT((together[j].inertias - alone).norm(), 1e-12 * alone.norm()) << names[j];
-    }
+    const VectorXd alone = taken({names[j]}).front().numbers;
+    ASSERT_EQ(together[j].numbers.size(), alone.size()) << names[j];
+    EXPECT_GT(alone.norm(), 0) << names[j];
+    EXPECT_LT((together[j].numbers - alone).norm(), 1e-12 * alone.norm()) << names[j];
+    // A length is where the start is assembled from.
+    EXPECT_EQ(together[j].mechanisms.size(), names[j] == "crank" ? 6u : 0u) << names[j];
   }
-  EXPECT_GT(together[0].inertias.segment(crank.first, crank.count).norm(), 0);
+  EXPECT_GT(together[0].numbers.segment(crank.first, crank.count).norm(), 0);
 }
 
 /// The sentence with which it is refused.

@@ -337,7 +337,7 @@ TEST(LoopSweeps, CodeOfALevelIsItsOwn) {
   expect_own_symbols(MOMENTA_BINARY_DIR "/dae", "*_level[134].cpp.o",
                      {"Pack<", "LoopedSweepsAt<", "looped_sweeps_at<", "TangentSweepsAt<",
                       "tangent_sweeps_at<", "KineticSweepAt<", "kinetic_sweep_at<",
-                      "InertiaSweepAt<", "inertia_sweep_at<", "PlacedAlong<"});
+                      "NumberSweepAt<", "number_sweep_at<", "LoopNumbers<", "PlacedAlong<"});
 }
 
 /// Legs folded onto a platform; the same loops as more slots than there are go to the matrix.

@@ -4,6 +4,7 @@ namespace momenta {
 template std::unique_ptr<TangentSweeps> tangent_sweeps_at<4>(const PlanarTree&,
                                                              const SweptLoops<Planar>&, double,
                                                              bool);
-template std::unique_ptr<InertiaSweep> inertia_sweep_at<4>(const Model<Planar>&);
+template std::unique_ptr<NumberSweep> number_sweep_at<4>(const Model<Planar>&,
+                                                         const LoopModel<Planar>&, bool);
 template std::unique_ptr<KineticSweep> kinetic_sweep_at<4>(const Model<Planar>&);
 }  // namespace momenta

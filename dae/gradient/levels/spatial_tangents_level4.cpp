@@ -4,6 +4,7 @@ namespace momenta {
 template std::unique_ptr<TangentSweeps> tangent_sweeps_at<4>(const LinkTree&,
                                                              const SweptLoops<Spatial>&, double,
                                                              bool);
-template std::unique_ptr<InertiaSweep> inertia_sweep_at<4>(const Model<Spatial>&);
+template std::unique_ptr<NumberSweep> number_sweep_at<4>(const Model<Spatial>&,
+                                                         const LoopModel<Spatial>&, bool);
 template std::unique_ptr<KineticSweep> kinetic_sweep_at<4>(const Model<Spatial>&);
 }  // namespace momenta

@@ -8,6 +8,7 @@
 #include <momenta/core/kernel/planar_link.h>
 #include <momenta/dae/sweeps/levels/loop_sweeps.h>
 
+#include <Eigen/Core>
 #include <memory>
 
 namespace momenta {
@@ -26,13 +27,54 @@ class TangentSweeps {
                           const double* dp, const Result& result) = 0;
 };
 
-/// The derivative of ∂(T − V)/∂(number of a body) along (δq, δu): inertia_slopes.h.
-class InertiaSweep {
+/// Where the numbers of a mechanism's tables stand among the slopes, in this order:
+///   - of each body m, m c, J, in space 10, in a plane 4; gravity
+///   - of each joint its place, in space a screw at the parent's origin (shift, turn), in a plane
+///     the shift and the direction of a slide; stiffness, rest, damping, torque, friction; rotor
+///   - of each loop x_A, x_B, and by j axes a_j, b_j, in body axes; 1/l₀, l or c, square of the
+///     offset across the plane, γ
+///   - of each spring between points both ends, stiffness, rest, damping, square of the offset; of
+///     each spring of coordinates stiffness, rest, damping
+template <class Space>
+struct NumberPlaces {
+  static constexpr int axes = Space::dimension == 6 ? 3 : 2;
+  static constexpr Eigen::Index of_body = Space::dimension == 6 ? 10 : 4,
+                                of_joint = (Space::dimension == 6 ? 6 : 4) + 6,
+                                of_loop = 2 * axes * (1 + axes) + 4, of_spring = 2 * axes + 4,
+                                of_sum = 3;
+  Eigen::Index joints = 0, loops = 0, springs = 0, sums = 0, size = 0;
+};
+/// Of a model with so many loops.
+template <class Space>
+NumberPlaces<Space> number_places(const Model<Space>& model, std::size_t loops) {
+  using Places = NumberPlaces<Space>;
+  const auto n = static_cast<Eigen::Index>(model.bodies.size());
+  Places at;
+  at.joints = Places::of_body * n + Places::axes;
+  at.loops = at.joints + Places::of_joint * n;
+  at.springs = at.loops + Places::of_loop * static_cast<Eigen::Index>(loops);
+  at.sums = at.springs + Places::of_spring * static_cast<Eigen::Index>(model.springs.size());
+  at.size = at.sums + Places::of_sum * static_cast<Eigen::Index>(model.coordinate_springs.size());
+  return at;
+}
+
+/// Derivatives by numbers of L* = T − V + σᵀΦ̇ and of σᵀΦ: number_slopes.h. All add `factor` times
+/// theirs to slopes.
+class NumberSweep {
  public:
-  virtual ~InertiaSweep() = default;
-  /// slopes += factor times it; arrays of nv, and of as many slopes as there are numbers. O(bodies)
-  virtual void add(double factor, double t, const double* q, const double* u, const double* dq,
-                   const double* du, double* slopes) = 0;
+  /// Arrays of nv and m numbers at t [s]; of u, σ, dq, du, dσ those that are null are zero.
+  struct Motion {
+    double t;
+    const double *q, *u, *sigma, *dq, *du, *dsigma;
+  };
+  virtual ~NumberSweep() = default;
+  /// D ∂L*/∂number along (dq, du, dσ). O(bodies + m)
+  virtual void add(double factor, const Motion& at, double* slopes) = 0;
+  /// D ∂(σᵀΦ̇)/∂number alone. O(bodies + m)
+  virtual void add_loop_rates(double factor, const Motion& at, double* slopes) = 0;
+  /// ∂(νᵀΦ)/∂number. O(bodies + m)
+  virtual void add_loops(double factor, double t, const double* q, const double* nu,
+                         double* slopes) = 0;
 };
 
 /// D_v T_q, kinetic_rates.h.
@@ -52,8 +94,11 @@ std::unique_ptr<TangentSweeps> make_tangent_sweeps(const PlanarTree& tree,
 std::unique_ptr<TangentSweeps> make_tangent_sweeps(const LinkTree& tree,
                                                    const SweptLoops<Spatial>& swept, double fade,
                                                    bool body_forces);
-std::unique_ptr<InertiaSweep> make_inertia_sweep(const Model<Planar>& model);
-std::unique_ptr<InertiaSweep> make_inertia_sweep(const Model<Spatial>& model);
+/// `of_places` false: without the places of joints and the numbers of loops, at less cost.
+std::unique_ptr<NumberSweep> make_number_sweep(const Model<Planar>& model,
+                                               const LoopModel<Planar>& loops, bool of_places);
+std::unique_ptr<NumberSweep> make_number_sweep(const Model<Spatial>& model,
+                                               const LoopModel<Spatial>& loops, bool of_places);
 std::unique_ptr<KineticSweep> make_kinetic_sweep(const Model<Planar>& model);
 std::unique_ptr<KineticSweep> make_kinetic_sweep(const Model<Spatial>& model);
 

@@ -1,10 +1,10 @@
 #pragma once
-// TangentSweeps, InertiaSweep and KineticSweep at one level; included by the files that are
+// TangentSweeps and KineticSweep at one level; included by the files that are
 // compiled for it, and nowhere else, as core/kernel/levels/open_sweeps_at.h says why.
 
-#include <momenta/core/kernel/points.h>
 #include <momenta/core/kernel/sweeps.h>
 #include <momenta/dae/gradient/levels/direction_slots.h>
+#include <momenta/dae/gradient/levels/number_sweep_at.h>
 #include <momenta/dae/gradient/levels/tangent_sweeps.h>
 #include <momenta/dae/sweeps/planar_loop_sweeps.h>
 #include <momenta/dae/sweeps/spatial_loop_sweeps.h>
@@ -73,76 +73,6 @@ class TangentSweepsAt final : public TangentSweeps {
   std::vector<S> numbers_;  ///< u, ṗ, σ
 };
 
-/// A state and a direction as the sweeps of bodies take them.
-template <class Space, int Level>
-struct PlacedAlong {
-  using S = Directions<1, Level>;
-  explicit PlacedAlong(const Model<Space>& model)
-      : w(model), q(static_cast<std::size_t>(model.nv)), u(q.size()) {}
-  /// Poses and velocities at (t, q, u); dq and du may be null: nothing moves along them.
-  void at(double t, const double* from_q, const double* from_u, const double* dq, const double* du,
-          bool with_poses) {
-    for (std::size_t i = 0; i < q.size(); ++i) {
-      q[i].a = Pack<1, Level>(from_q[i]);
-      q[i].b[0] = Pack<1, Level>(dq ? dq[i] : 0.0);
-      u[i].a = Pack<1, Level>(from_u[i]);
-      u[i].b[0] = Pack<1, Level>(du ? du[i] : 0.0);
-    }
-    poses_outward(w, S(t), q.data(), with_poses);
-    velocities_outward(w, u.data());
-  }
-  Workspace<Space, S> w;
-  std::vector<S> q, u;
-};
-
-template <class Space, int Level>
-class InertiaSweepAt final : public InertiaSweep {
-  static constexpr int axes = Space::dimension == 6 ? 3 : 2;
-  using S = Directions<1, Level>;
-
- public:
-  explicit InertiaSweepAt(const Model<Space>& model) : model_(model), place_(model) {}
-
-  void add(double factor, double t, const double* q, const double* u, const double* dq,
-           const double* du, double* to) override {
-    place_.at(t, q, u, dq, du, true);
-    const auto& w = place_.w;
-    const auto put = [&](const S& slope) MOMENTA_INLINED { *to++ += factor * slope.b[0].v; };
-    typename Space::template Vector<S> moment;
-    for (std::size_t k = 0; k < w.body.size(); ++k) {
-      const auto body = static_cast<int>(k);
-      const auto& b = model_.bodies[k].inertia;
-      const auto& v = w.body[k].V;
-      const auto at = origin(w, body), center = to_ground(w, body, b.mc);
-      S height(0.0);
-      for (int i = 0; i < axes; ++i) {
-        height += model_.gravity[i] * at[i];
-        moment[i] += b.m * at[i] + center[i];
-      }
-      put(0.5 * dot(v.v, v.v) + height);
-      if constexpr (axes == 3) {
-        typename Space::template Vector<S> g;
-        for (int i = 0; i < 3; ++i) g[i] = S(model_.gravity[i]);
-        const auto first = cross(v.v, v.w) + from_ground(w, body, g);
-        for (int i = 0; i < 3; ++i) put(first[i]);
-        for (int i = 0; i < 3; ++i)
-          for (int j = i; j < 3; ++j) put((i == j ? 0.5 : 1.0) * (v.w[i] * v.w[j]));
-      } else {
-        const S x = v.w * v.v[1] + model_.gravity[0], y = model_.gravity[1] - v.w * v.v[0];
-        const auto& pose = w.body[k].pose;
-        put(pose.c * x + pose.s * y);
-        put(pose.c * y - pose.s * x);
-        put(0.5 * (v.w * v.w));
-      }
-    }
-    for (int i = 0; i < axes; ++i) put(moment[i]);
-  }
-
- private:
-  const Model<Space>& model_;
-  PlacedAlong<Space, Level> place_;
-};
-
 template <class Space, int Level>
 class KineticSweepAt final : public KineticSweep {
  public:
@@ -185,10 +115,6 @@ std::unique_ptr<TangentSweeps> tangent_sweeps_at(const Tree& tree, const SweptLo
   if (lanes == 4) return make.template operator()<4>();
   if (lanes == 8) return make.template operator()<8>();
   return make.template operator()<16>();
-}
-template <int Level, class Space>
-std::unique_ptr<InertiaSweep> inertia_sweep_at(const Model<Space>& model) {
-  return std::make_unique<InertiaSweepAt<Space, Level>>(model);
 }
 template <int Level, class Space>
 std::unique_ptr<KineticSweep> kinetic_sweep_at(const Model<Space>& model) {

@@ -1,0 +1,451 @@
+#pragma once
+// NumberSweep at one level: number_slopes.h says what is derived here. A number that places a
+// joint, an end of a loop or of a spring moves what hangs there by a small screw ξ, fixed in the
+// axes of the body that carries it. With Ω the motion of that body, the velocities of what is moved
+// change by Ω × ξ, so that
+//
+//   ∂L*/∂ξ = T* − Ω × P*
+//
+// of the forces T* and momenta P* that are handed through there, loop impulses with them: of a
+// joint those of (26), (27), summed over all that it carries.
+
+#include <momenta/core/kernel/signals.h>
+#include <momenta/core/kernel/sweeps.h>
+#include <momenta/dae/gradient/levels/tangent_sweeps.h>
+
+#include <optional>
+#include <vector>
+
+namespace momenta {
+
+/// A state and a direction as the sweeps of bodies take them.
+template <class Space, int Level>
+struct PlacedAlong {
+  using S = Directions<1, Level>;
+  explicit PlacedAlong(const Model<Space>& model)
+      : w(model), q(static_cast<std::size_t>(model.nv)), u(q.size()) {}
+  /// Poses and velocities at (t, q, u); dq and du may be null: nothing moves along them.
+  void at(double t, const double* from_q, const double* from_u, const double* dq, const double* du,
+          bool with_poses) {
+    for (std::size_t i = 0; i < q.size(); ++i) {
+      q[i].a = Pack<1, Level>(from_q[i]);
+      q[i].b[0] = Pack<1, Level>(dq ? dq[i] : 0.0);
+      u[i].a = Pack<1, Level>(from_u ? from_u[i] : 0.0);
+      u[i].b[0] = Pack<1, Level>(du ? du[i] : 0.0);
+    }
+    poses_outward(w, S(t), q.data(), with_poses);
+    velocities_outward(w, u.data());
+  }
+  Workspace<Space, S> w;
+  std::vector<S> q, u;
+};
+
+/// A vector in ground axes in those of body k.
+template <class Space, class S>
+auto in_body_axes(const Workspace<Space, S>& w, int k,
+                  const typename Space::template Vector<S>& v) {
+  if (k < 0) return v;
+  if constexpr (Space::dimension == 3) {
+    const auto& pose = w.body[static_cast<std::size_t>(k)].pose;
+    return typename Space::template Vector<S>{
+        {pose.c * v[0] + pose.s * v[1], pose.c * v[1] - pose.s * v[0]}};
+  } else {
+    return from_ground(w, k, v);
+  }
+}
+
+/// The impulses σ of loops that are not driven, of points, axes and distances, as loop_rows.h has
+/// them, and what σᵀΦ̇ and σᵀΦ have by the numbers of these loops.
+template <class Space, class S>
+class LoopNumbers {
+  using Vector = typename Space::template Vector<S>;
+  using Angular = decltype(cross(Vector{}, Vector{}));
+  static constexpr std::size_t axes = Space::dimension == 3 ? 2 : 3;
+
+ public:
+  LoopNumbers(const LoopModel<Space>& model, Workspace<Space, S>& w)
+      : model_(model), w_(w), at_(model.loops.size()) {}
+
+  /// Points and axes, and what the rows of each loop sum up to; needs poses and velocities.
+  void place(const S* sigma) {
+    for (std::size_t i = 0; i < at_.size(); ++i) {
+      const auto& l = model_.loops[i];
+      At& s = at_[i];
+      s.force = s.force_rate = {};
+      s.couple = s.couple_rate = {};
+      if (l.is_coupler()) continue;
+      s.x_a = point_position(w_, l.a, l.at_a);
+      s.x_b = point_position(w_, l.b, l.at_b);
+      s.u_a = point_velocity(w_, l.a, s.x_a);
+      s.u_b = point_velocity(w_, l.b, s.x_b);
+      const Vector D = s.x_a - s.x_b;
+      int row = l.row;
+      if (l.is_distance()) {
+        const S scaled = l.per_length * sigma[row];
+        s.force = scaled * D;
+        s.force_rate = scaled * (s.u_a - s.u_b);
+        continue;
+      }
+      s.w_a = angular_velocity(w_, l.a);
+      s.w_b = angular_velocity(w_, l.axes_of_b());
+      for (std::size_t j = 0; j < axes; ++j) {
+        s.a[j] = to_ground(w_, l.a, l.axis_a[j]);
+        s.b[j] = to_ground(w_, l.axes_of_b(), l.axis_b[j]);
+      }
+      for (int j = 0; j < l.n_points; ++j, ++row) {
+        const Vector& b = s.b[place_of(l.points, j)];
+        s.force += sigma[row] * b;
+        s.force_rate += sigma[row] * cross(s.w_b, b);
+      }
+      for (int j = 0; j < l.n_axes; ++j, ++row) {
+        const auto [x, y] = l.axes[static_cast<std::size_t>(j)];
+        const Vector &a = s.a[static_cast<std::size_t>(x)], &b = s.b[static_cast<std::size_t>(y)];
+        s.couple += sigma[row] * cross(a, b);
+        s.couple_rate += sigma[row] * (cross(cross(s.w_a, a), b) + cross(a, cross(s.w_b, b)));
+      }
+    }
+  }
+
+  /// Adds impulses to body[k].P and their inertial rates to body[k].T.
+  void hand_to_bodies() {
+    for (std::size_t i = 0; i < at_.size(); ++i) {
+      const auto& l = model_.loops[i];
+      if (l.is_coupler()) continue;
+      const At& s = at_[i];
+      hand(l.a, s.x_a, s.u_a, s.force, s.force_rate, s.couple, s.couple_rate);
+      const bool at_b = l.is_tie;
+      hand(l.b, at_b ? s.x_b : s.x_a, at_b ? s.u_b : s.u_a, -s.force, -s.force_rate,
+           Angular(-s.couple), Angular(-s.couple_rate));
+    }
+  }
+
+  /// put(∂(σᵀΦ̇)/∂number), or of σᵀΦ, of the numbers of all loops. With f = Σ σ b that of x_A is
+  /// ḟ − ω_A × f, and f.
+  template <class Put>
+  void each(const S* sigma, bool of_rates, Put&& put) const {
+    for (std::size_t i = 0; i < at_.size(); ++i) {
+      const auto& l = model_.loops[i];
+      const At& s = at_[i];
+      std::array<Vector, 3> by_a{}, by_b{};
+      S per_length(0.0), given(0.0), across(0.0), gamma(0.0);
+      const Vector apart = s.u_a - s.u_b, D = s.x_a - s.x_b;
+      int row = l.row;
+      if (l.is_coupler()) {
+        given = -sigma[row];
+      } else if (l.is_distance()) {
+        per_length =
+            sigma[row] *
+            (of_rates ? dot(D, apart) : S(0.5 * (dot(D, D) + S(l.across2 - l.given * l.given))));
+        given = (-l.per_length * l.given) * sigma[row];
+        across = (0.5 * l.per_length) * sigma[row];
+      } else {
+        for (int j = 0; j < l.n_points; ++j, ++row)
+          by_b[place_of(l.points, j)] +=
+              sigma[row] * (of_rates ? Vector(apart - cross(s.w_b, D)) : D);
+        for (int j = 0; j < l.n_axes; ++j, ++row) {
+          const auto [x, y] = l.axes[static_cast<std::size_t>(j)];
+          const auto at_x = static_cast<std::size_t>(x), at_y = static_cast<std::size_t>(y);
+          const Angular turning = s.w_a - s.w_b;
+          by_a[at_x] += sigma[row] * (of_rates ? Vector(-cross(turning, s.b[at_y])) : s.b[at_y]);
+          by_b[at_y] += sigma[row] * (of_rates ? Vector(cross(turning, s.a[at_x])) : s.a[at_x]);
+          gamma -= sigma[row];
+        }
+      }
+      const auto put_in = [&](int body, const Vector& v) {
+        const Vector in = in_body_axes(w_, body, v);
+        for (const S& x : in.x) put(x);
+      };
+      const auto end = [&](int body) {
+        return of_rates ? Vector(s.force_rate - cross(angular_velocity(w_, body), s.force))
+                        : s.force;
+      };
+      if (l.is_coupler()) {
+        put.skip(static_cast<Eigen::Index>(2 * axes * (1 + axes)));
+      } else {
+        put_in(l.a, end(l.a));
+        put_in(l.b, -end(l.b));
+        for (std::size_t j = 0; j < axes; ++j) {
+          put_in(l.a, by_a[j]);
+          put_in(l.axes_of_b(), by_b[j]);
+        }
+      }
+      put(per_length);
+      if (of_rates) {
+        put.skip(3);
+        continue;
+      }
+      for (const S* x : {&given, &across, &gamma}) put(*x);
+    }
+  }
+
+ private:
+  struct At {
+    Vector x_a{}, x_b{}, u_a{}, u_b{}, force{}, force_rate{};
+    Angular w_a{}, w_b{}, couple{}, couple_rate{};
+    std::array<Vector, 3> a{}, b{};
+  };
+  static std::size_t place_of(const std::array<int, 3>& points, int j) {
+    return static_cast<std::size_t>(points[static_cast<std::size_t>(j)]);
+  }
+  void hand(int k, const Vector& x, const Vector& u, const Vector& force, const Vector& rate,
+            const Angular& couple, const Angular& couple_rate) {
+    if (k < 0) return;
+    auto& body = w_.body[static_cast<std::size_t>(k)];
+    add_force(w_, k, x, force, body.P);
+    add_couple(w_, k, couple, body.P);
+    add_force(w_, k, x, rate, body.T);
+    add_couple(w_, k, Angular(couple_rate + cross(u, force)), body.T);
+  }
+
+  const LoopModel<Space>& model_;
+  Workspace<Space, S>& w_;
+  std::vector<At> at_;
+};
+
+template <class Space, int Level>
+class NumberSweepAt final : public NumberSweep {
+  static constexpr int axes = Space::dimension == 6 ? 3 : 2;
+  using S = Directions<1, Level>;
+  using Vector = typename Space::template Vector<S>;
+  using Force = typename Space::template Force<S>;
+
+ public:
+  NumberSweepAt(const Model<Space>& model, const LoopModel<Space>& loops, bool of_places)
+      : model_(model), places_(number_places(model, loops.loops.size())), place_(model) {
+    if (!of_places) return;
+    loops_.emplace(loops, place_.w);
+    sigma_.resize(static_cast<std::size_t>(loops.rows));
+  }
+
+  void add(double factor, const Motion& at, double* slopes) override {
+    put_ = {factor, true, slopes};
+    place_.at(at.t, at.q, at.u, at.dq, at.du, true);
+    put_inertias();
+    if (loops_) {
+      body_momenta(place_.w);
+      weights_and_springs();
+      take(at.sigma, at.dsigma);
+      project_inward(place_.w, static_cast<S*>(nullptr));
+    }
+    put_joints(true, true);
+    if (loops_) loops_->each(sigma_.data(), true, put_);
+    put_.to = slopes + places_.springs;
+    put_springs();
+  }
+  void add_loop_rates(double factor, const Motion& at, double* slopes) override {
+    put_ = {factor, true, slopes};
+    if (!loops_) return;
+    place_.at(at.t, at.q, at.u, at.dq, at.du, true);
+    put_loops_alone(at.sigma, at.dsigma);
+  }
+  void add_loops(double factor, double t, const double* q, const double* nu,
+                 double* slopes) override {
+    put_ = {factor, false, slopes};
+    if (!loops_) return;
+    place_.at(t, q, nullptr, nullptr, nullptr, true);
+    put_loops_alone(nu, nullptr);
+  }
+
+ private:
+  /// Adds the derivative, or of what has none the value, to the next slope.
+  struct Put {
+    double factor = 0;
+    bool derivative = true;
+    double* to = nullptr;
+    void operator()(const S& x) { *to++ += factor * (derivative ? x.b[0].v : x.a.v); }
+    void skip(Eigen::Index numbers) { to += numbers; }
+  };
+  /// What loops hand to the bodies.
+  void take(const double* sigma, const double* dsigma) {
+    for (std::size_t i = 0; i < sigma_.size(); ++i) {
+      sigma_[i].a = Pack<1, Level>(sigma ? sigma[i] : 0.0);
+      sigma_[i].b[0] = Pack<1, Level>(dsigma ? dsigma[i] : 0.0);
+    }
+    loops_->place(sigma_.data());
+    loops_->hand_to_bodies();
+  }
+  void put_loops_alone(const double* sigma, const double* dsigma) {
+    for (auto& body : place_.w.body) {
+      body.P = {};
+      body.T = {};
+    }
+    take(sigma, dsigma);
+    project_inward(place_.w, static_cast<S*>(nullptr));
+    put_.to += places_.joints;
+    put_joints(put_.derivative, false);
+    loops_->each(sigma_.data(), put_.derivative, put_);
+  }
+
+  /// Bodies' numbers, then gravity's: D ∂(T − V), which is linear in them.
+  void put_inertias() {
+    const auto& w = place_.w;
+    Vector moment;
+    for (std::size_t k = 0; k < w.body.size(); ++k) {
+      const auto body = static_cast<int>(k);
+      const auto& b = model_.bodies[k].inertia;
+      const auto& v = w.body[k].V;
+      const auto at = origin(w, body), center = to_ground(w, body, b.mc);
+      S height(0.0);
+      for (int i = 0; i < axes; ++i) {
+        height += model_.gravity[i] * at[i];
+        moment[i] += b.m * at[i] + center[i];
+      }
+      put_(0.5 * dot(v.v, v.v) + height);
+      if constexpr (axes == 3) {
+        Vector g;
+        for (int i = 0; i < 3; ++i) g[i] = S(model_.gravity[i]);
+        const auto first = cross(v.v, v.w) + from_ground(w, body, g);
+        for (int i = 0; i < 3; ++i) put_(first[i]);
+        for (int i = 0; i < 3; ++i)
+          for (int j = i; j < 3; ++j) put_((i == j ? 0.5 : 1.0) * (v.w[i] * v.w[j]));
+      } else {
+        const S x = v.w * v.v[1] + model_.gravity[0], y = model_.gravity[1] - v.w * v.v[0];
+        const auto& pose = w.body[k].pose;
+        put_(pose.c * x + pose.s * y);
+        put_(pose.c * y - pose.s * x);
+        put_(0.5 * (v.w * v.w));
+      }
+    }
+    for (int i = 0; i < axes; ++i) put_(moment[i]);
+  }
+
+  /// body[k].T of weights and springs.
+  void weights_and_springs() {
+    auto& w = place_.w;
+    if (model_.has_gravity) gravity_outward(w);
+    for (std::size_t k = 0; k < w.body.size(); ++k) {
+      w.body[k].T = {};
+      if (!model_.has_gravity) continue;
+      const auto& inertia = w.inertia(k);
+      Vector mc;
+      for (int i = 0; i < axes; ++i) mc[i] = S(inertia.mc[i]);
+      w.body[k].T = Space::weight(S(inertia.m), mc, w.body[k].g);
+    }
+    for (const auto& spring : model_.springs) {
+      const SpringLine<Space, S> line(w, spring);
+      if (line.has_direction())
+        line.pull(w, spring, S(spring.stiffness * (line.length - spring.rest) / line.length));
+    }
+  }
+  /// The numbers of joints; T* is summed on the way.
+  void put_joints(bool of_rates, bool of_forces) {
+    auto& w = place_.w;
+    double* const first = put_.to;
+    constexpr auto stride = NumberPlaces<Space>::of_joint;
+    for (std::size_t k = w.body.size(); k-- > 0;) {
+      put_.to = first + stride * static_cast<Eigen::Index>(k);
+      const auto& b = model_.bodies[k];
+      const auto& s = w.body[k];
+      const bool moves = b.nv == 1;
+      const S q = moves ? place_.q[static_cast<std::size_t>(b.q)] : s.drive,
+              u = moves ? place_.u[static_cast<std::size_t>(b.u)] : s.drive_rate;
+      if (loops_)
+        put_place(k, q, u, of_rates);
+      else
+        put_.skip(axes == 3 ? 6 : 4);
+      if (!of_forces) continue;
+      if (moves) {
+        using std::sqrt;
+        const S stretch = q - b.rest;
+        put_(-0.5 * (stretch * stretch));
+        put_(b.stiffness * stretch);
+        put_along(-u, q);
+        put_(q);
+        put_along(-(u / sqrt(u * u + S(b.friction_rate * b.friction_rate))), q);
+      } else {
+        put_.skip(5);
+      }
+      S twice(0.0);
+      for (int i = 0; i < b.nv; ++i) {
+        const S& rate = place_.u[static_cast<std::size_t>(b.u + i)];
+        twice += rate * rate;
+      }
+      put_(0.5 * twice);
+    }
+    put_.to = first + stride * static_cast<Eigen::Index>(w.body.size());
+  }
+  /// Where joint k is in its parent: T* − Ω × P*, in the parent's frame.
+  void put_place(std::size_t k, const S& q, const S& u, bool of_rates) {
+    auto& w = place_.w;
+    const auto& b = model_.bodies[k];
+    const auto& s = w.body[k];
+    Force net = s.P;
+    if (of_rates) {
+      net = s.T;
+      if (b.parent >= 0) {
+        auto& parent = w.body[static_cast<std::size_t>(b.parent)];
+        net -= Space::cross_force(Space::to_child(b.edge, b.kind, s.edge, parent.V), s.P);
+        parent.T += Space::to_parent(b.edge, b.kind, s.edge, s.T);
+      }
+    }
+    const Force there = Space::to_parent(b.edge, b.kind, s.edge, net);
+    if constexpr (axes == 2) {
+      const Vector f = in_body_axes(w, b.parent, there.f);
+      for (int i = 0; i < 2; ++i) put_(f[i]);
+      // A slide's direction e: its body is moved by q e and moves on by u e.
+      if (b.kind != JointKind::prismatic) {
+        put_.skip(2);
+        return;
+      }
+      const Vector p = in_body_axes(w, b.parent, s.P.f);
+      for (int i = 0; i < 2; ++i) put_(of_rates ? S(q * f[i] + u * p[i]) : S(q * f[i]));
+    } else {
+      for (int i = 0; i < 6; ++i) put_(there[i]);
+    }
+  }
+  /// Of a force without potential: its value times what its coordinate does along the direction.
+  void put_along(const S& force, const S& coordinate) {
+    S along(0.0);
+    along.b[0] = force.a * coordinate.b[0];
+    put_(along);
+  }
+
+  /// Springs between points: ends, k, rest, c and the square of the offset; springs of coordinates:
+  /// k, rest, c.
+  void put_springs() {
+    const auto& w = place_.w;
+    for (const auto& spring : model_.springs) {
+      const SpringLine<Space, S> line(w, spring);
+      if (!line.has_direction()) {
+        put_.skip(NumberPlaces<Space>::of_spring);
+        continue;
+      }
+      const S stretch = line.length - spring.rest, tension = spring.stiffness * stretch;
+      const Vector pull = S(tension / line.length) * line.D;
+      const Vector on_parent = in_body_axes(w, spring.parent, pull),
+                   on_child = in_body_axes(w, spring.child, Vector(-pull));
+      for (const S& x : on_parent.x) put_(x);
+      for (const S& x : on_child.x) put_(x);
+      put_(-0.5 * (stretch * stretch));
+      put_(tension);
+      put_along(-line.rate(w, spring), line.length);
+      put_(-0.5 * (tension / line.length));
+    }
+    for (const auto& spring : model_.coordinate_springs) {
+      S stretch(-spring.rest), rate(0.0);
+      for (const auto& term : spring.terms) {
+        const auto& joint = w.sprung[static_cast<std::size_t>(term.place)];
+        stretch += term.ratio * joint.coordinate;
+        rate += term.ratio * joint.rate;
+      }
+      put_(-0.5 * (stretch * stretch));
+      put_(spring.stiffness * stretch);
+      put_along(-rate, stretch);
+    }
+  }
+
+  const Model<Space>& model_;
+  NumberPlaces<Space> places_;
+  PlacedAlong<Space, Level> place_;
+  std::optional<LoopNumbers<Space, S>> loops_;  ///< none: no places
+  std::vector<S> sigma_;
+  Put put_;
+};
+
+template <int Level, class Space>
+std::unique_ptr<NumberSweep> number_sweep_at(const Model<Space>& model,
+                                             const LoopModel<Space>& loops, bool of_places) {
+  return std::make_unique<NumberSweepAt<Space, Level>>(model, loops, of_places);
+}
+
+}  // namespace momenta

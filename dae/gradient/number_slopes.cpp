@@ -1,0 +1,190 @@
+#include <momenta/dae/gradient/number_slopes.h>
+#include <momenta/dae/gradient/numbers_alone.h>
+
+#include <algorithm>
+#include <array>
+
+namespace momenta {
+namespace {
+
+using Eigen::Index;
+using Eigen::Isometry3d;
+using Eigen::VectorXd;
+
+template <class Space>
+Model<Space> built(const Tree& tree, const Scene& scene, const Plan& plan) {
+  if constexpr (Space::dimension == 6)
+    return build_spatial_model(tree, scene);
+  else
+    return build_planar_model(tree, scene, plan.basis);
+}
+
+template <class Space>
+class NumberSlopesOf final : public NumberSlopes {
+  static constexpr bool in_space = Space::dimension == 6;
+  static constexpr int axes = in_space ? 3 : 2;
+  using Places = NumberPlaces<Space>;
+
+ public:
+  NumberSlopesOf(const Mechanism& mechanism, bool with_places)
+      : mechanism_(mechanism),
+        model_(built<Space>(mechanism.tree(), mechanism.scene(), mechanism.plan())),
+        loops_(build_loops(mechanism.scene(), mechanism.tree(), model_)),
+        places_(number_places(model_, loops_.loops.size())),
+        placed_(placed(mechanism.tree(), model_)),
+        sweep_(make_number_sweep(model_, loops_, with_places)) {}
+
+  Index size() const override { return places_.size; }
+  Index beyond_inertias() const override { return places_.joints; }
+
+  Range of(const std::string& place) const override {
+    const auto is_of = [&](const std::string& table, const std::string& name,
+                           std::initializer_list<const char*> keys) {
+      return std::any_of(keys.begin(), keys.end(), [&](const char* key) {
+        const std::string whole = table + "." + name + "." + key;
+        return place == whole || place.starts_with(whole + ".");
+      });
+    };
+    const auto& bodies = mechanism_.tree().bodies;
+    for (std::size_t k = 0; k < bodies.size(); ++k) {
+      const auto at = static_cast<Index>(k);
+      if (is_of("body", bodies[k].name, {"mass", "com", "inertia", "shape"}))
+        return {Places::of_body * at, Places::of_body};
+      if (is_of("joint", bodies[k].joint, {"stiffness", "rest", "damping", "friction"}))
+        return {places_.joints + Places::of_joint * at, Places::of_joint};
+    }
+    Index spring = 0, sum = 0;
+    for (const ForceSpec& f : mechanism_.scene().forces) {
+      const bool here = is_of("force", f.name, {"stiffness", "rest", "damping"});
+      if (!is_plain_spring(f)) {
+        if (f.kind == "spring-damper" || f.kind == "coordinate-spring") return {};
+        continue;
+      }
+      const bool acts = f.stiffness != 0 || f.damping != 0 || f.limits;
+      if (here)
+        return !acts ? Range()
+               : f.kind == "spring-damper"
+                   ? Range{places_.springs + Places::of_spring * spring, Places::of_spring}
+                   : Range{places_.sums + Places::of_sum * sum, Places::of_sum};
+      if (acts) ++(f.kind == "spring-damper" ? spring : sum);
+    }
+    return {};
+  }
+
+  bool of_places() const override {
+    return model_.bushings.empty() && model_.wrenches.empty() && model_.signals.empty() &&
+           model_.formula_forces.empty() && !model_.has_corners &&
+           std::all_of(model_.springs.begin(), model_.springs.end(),
+                       [](const auto& spring) { return spring.damping == 0; }) &&
+           loops_.motions.empty() && loops_.pairs.empty() && loops_.equations.empty() &&
+           loops_.wheels.empty() && loops_.curves == 0;
+  }
+
+  void add(double factor, const NumberSweep::Motion& at, VectorXd& slopes) override {
+    sweep_->add(factor, at, slopes.data());
+  }
+  void add_loop_rates(double factor, const NumberSweep::Motion& at, VectorXd& slopes) override {
+    sweep_->add_loop_rates(factor, at, slopes.data());
+  }
+  void add_loops(double factor, double t, const double* q, const double* nu,
+                 VectorXd& slopes) override {
+    sweep_->add_loops(factor, t, q, nu, slopes.data());
+  }
+
+  VectorXd numbers(const Scene& other) const override {
+    const Tree tree = build_valid_tree(other);
+    const Model<Space> model = built<Space>(tree, other, mechanism_.plan());
+    const LoopModel<Space> loops = build_loops(other, tree, model);
+    if (model.bodies.size() != model_.bodies.size() ||
+        model.springs.size() != model_.springs.size() ||
+        model.coordinate_springs.size() != model_.coordinate_springs.size() ||
+        loops.loops.size() != loops_.loops.size())
+      return {};
+    VectorXd all(places_.size);
+    Index at = 0;
+    const auto put = [&](double number) { all[at++] = number; };
+    const auto put_vector = [&](const auto& v) {
+      for (int i = 0; i < axes; ++i) put(v[i]);
+    };
+    for (const auto& body : model.bodies) {
+      const auto& b = body.inertia;
+      put(b.m);
+      put_vector(b.mc);
+      if constexpr (in_space) {
+        for (int i = 0; i < 3; ++i)
+          for (int j = i; j < 3; ++j) put(b.J(i, j));
+      } else {
+        put(b.J);
+      }
+    }
+    put_vector(model.gravity);
+    const std::vector<Isometry3d> there = placed(tree, model);
+    for (std::size_t k = 0; k < model.bodies.size(); ++k) {
+      const auto& b = model.bodies[k];
+      const Eigen::Matrix3d turn = there[k].linear() * placed_[k].linear().transpose();
+      const Eigen::Vector3d angle =
+          0.5 * Eigen::Vector3d(turn(2, 1) - turn(1, 2), turn(0, 2) - turn(2, 0),
+                                turn(1, 0) - turn(0, 1));
+      const Eigen::Vector3d from = placed_[k].translation(),
+                            shift = there[k].translation() - from - angle.cross(from);
+      put_vector(shift);
+      if constexpr (in_space) {
+        put_vector(angle);
+      } else {
+        put(b.edge.prismatic_x);
+        put(b.edge.prismatic_y);
+      }
+      for (const double number : {b.stiffness, b.rest, b.damping, b.torque, b.friction, b.rotor})
+        put(number);
+    }
+    for (const auto& l : loops.loops) {
+      put_vector(l.at_a);
+      put_vector(l.at_b);
+      for (std::size_t j = 0; j < axes; ++j) {
+        put_vector(l.axis_a[j]);
+        put_vector(l.axis_b[j]);
+      }
+      for (const double number : {l.per_length, l.given, l.across2, l.gamma}) put(number);
+    }
+    for (const auto& spring : model.springs) {
+      put_vector(spring.at_parent);
+      put_vector(spring.at_child);
+      for (const double number : {spring.stiffness, spring.rest, spring.damping, spring.offset2})
+        put(number);
+    }
+    for (const auto& spring : model.coordinate_springs)
+      for (const double number : {spring.stiffness, spring.rest, spring.damping}) put(number);
+    return all;
+  }
+
+ private:
+  /// Every body at zero, in its parent's frame, frames of the model.
+  static std::vector<Isometry3d> placed(const Tree& tree, const Model<Space>& model) {
+    Isometry3d ground = Isometry3d::Identity();
+    ground.linear() = model.basis.transpose();
+    std::vector<Isometry3d> all;
+    for (std::size_t k = 0; k < tree.bodies.size(); ++k) {
+      const int parent = tree.bodies[k].parent;
+      all.push_back((parent < 0 ? ground : model.frames[static_cast<std::size_t>(parent)]) *
+                    tree.bodies[k].placement * model.frames[k].inverse());
+    }
+    return all;
+  }
+
+  const Mechanism& mechanism_;
+  Model<Space> model_;
+  LoopModel<Space> loops_;
+  Places places_;
+  std::vector<Isometry3d> placed_;
+  std::unique_ptr<NumberSweep> sweep_;
+};
+
+}  // namespace
+
+std::unique_ptr<NumberSlopes> make_number_slopes(const Mechanism& mechanism, bool with_places) {
+  if (mechanism.plan().planar)
+    return std::make_unique<NumberSlopesOf<Planar>>(mechanism, with_places);
+  return std::make_unique<NumberSlopesOf<Spatial>>(mechanism, with_places);
+}
+
+}  // namespace momenta
