@@ -40,6 +40,12 @@ HalfExplicitParts::Work& HalfExplicitParts::work() {
   return *work_;
 }
 
+HalfExplicit::Pivots HalfExplicitParts::pivots() const {
+  if (!work_ || !work_->solver) return {};
+  const LoopSolver::Pivots last = work_->solver->pivots();
+  return {last.weakest, last.faded};
+}
+
 bool HalfExplicitParts::failed(std::string sentence) {
   why_ = std::move(sentence);
   return false;

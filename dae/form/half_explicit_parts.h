@@ -23,6 +23,7 @@ class HalfExplicitParts : public HalfExplicit {
   int multipliers() const override { return system_.m(); }
   void normalise(double* y) override;
   std::string dependent(double t, const double* y) override;
+  Pivots pivots() const override;
   const std::string& half_explicit_failure() const override { return why_; }
 
  protected:

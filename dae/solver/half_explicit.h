@@ -30,6 +30,13 @@ class HalfExplicit {
   /// Which equations 0 = g depend on others at (t, y), or nearly so, as a clause; empty: none.
   /// There stages have no solution, or many.
   virtual std::string dependent(double t, const double* y) = 0;
+  /// Of the equations of the last consistent(): the weakest pivot of those that count, relative to
+  /// what it would be without the others, and how many depend on others and count for nothing.
+  struct Pivots {
+    double weakest = 1;
+    int faded = 0;
+  };
+  virtual Pivots pivots() const = 0;
   /// Why one of them failed.
   virtual const std::string& half_explicit_failure() const = 0;
 };

@@ -16,11 +16,11 @@
 #include <momenta/dae/solver/fixed_grid.h>
 #include <momenta/dae/solver/gauge_symmetry.h>
 #include <momenta/dae/solver/half_explicit.h>
+#include <momenta/dae/solver/half_explicit_error.h>
 #include <momenta/dae/solver/integration.h>
 #include <momenta/dae/solver/ode_restart.h>
 #include <momenta/dae/solver/step_control.h>
 #include <momenta/dae/solver/stopping.h>
-#include <momenta/dae/solver/weighted_norm.h>
 
 #include <algorithm>
 #include <cmath>
@@ -39,7 +39,7 @@ struct HalfExplicitState {
 ///   name; first_step, a part of the span; Control, a tableau with exponents of step control
 ///   Stages(HalfExplicit&)
 ///   bool step(t, h, t1, from, to, counters)   (y_1, z) of `to` from `from`, g(t_1, y_1) = 0
-///   double error(from, to, h, norm)           square of the local error over its tolerance;
+///   double error(from, to, h, measure)          square of the local error over its tolerance;
 ///                                             `to` has its rates
 /// and where it has dense output, from accepted steps alone
 ///   bool between(t, h, t1, fraction, from, to, y)
@@ -52,7 +52,7 @@ class HalfExplicitRun {
         parts_(parts),
         gauge_(dynamic_cast<GaugeSymmetry*>(&system)),
         options_(options),
-        norm_(system, options.rtol, options.atol),
+        measure_(system, parts, gauge_, options),
         grid_(t0, options.step),
         stages_(parts),
         n_(static_cast<std::size_t>(parts.differential_unknowns())),
@@ -93,6 +93,7 @@ class HalfExplicitRun {
   /// From y, z and y' as they stand; the step is what it was before.
   bool restart(double) {
     control_ = {};
+    measure_.restart();
     return true;
   }
 
@@ -106,8 +107,8 @@ class HalfExplicitRun {
       double squares = 0;
       bool good = advance(t, h, t1, old_, now_, counters_) && finite(now_);
       if (good && !fixed) {
-        norm_.set(old_.y.data(), h);
-        squares = stages_.error(old_, now_, h, norm_);
+        measure_.at(t, old_.y.data(), old_.ydot.data(), h);
+        squares = stages_.error(old_, now_, h, measure_);
         good = std::isfinite(squares);
       }
       if (good && squares <= 1) {
@@ -116,6 +117,7 @@ class HalfExplicitRun {
           h_ = h * control_.accepted(squares);
           if (options_.max_step > 0) h_ = std::min(h_, options_.max_step);
         }
+        measure_.accept();
         t0_ = t, t1_ = t1;
         t = t1;
         return true;
@@ -230,7 +232,7 @@ class HalfExplicitRun {
   HalfExplicit& parts_;
   GaugeSymmetry* gauge_;  ///< null: there is none
   const IntegrationOptions& options_;
-  WeightedNorm norm_;
+  HalfExplicitError measure_;
   FixedGrid grid_;
   Stages stages_;
   explicit_rk::StepControl<typename Stages::Control> control_;

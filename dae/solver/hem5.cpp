@@ -61,13 +61,13 @@ class Hem5 {
   }
 
   double error(const HalfExplicitState&, const HalfExplicitState& to, double h,
-               const WeightedNorm& norm) {
+               const HalfExplicitError& measure) {
     const auto& e = TableauDp5::e[0];
     for (std::size_t i = 0; i < n_; ++i) {
       error_[i] = h * e[k_.size()] * to.ydot[i];
       for (std::size_t j = 0; j < k_.size(); ++j) error_[i] += h * e[j] * k_[j][i];
     }
-    return norm.squares(error_.data()) / norm.count();
+    return measure(error_.data());
   }
 
  private:

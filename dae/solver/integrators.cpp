@@ -156,8 +156,7 @@ const std::vector<Integrator>& integrators() {
        .method = "half-explicit Runge-Kutta on the hidden constraint, order 8",
        .forms = {"acceleration-index2", "momentum-index2"},
        .resets = true,
-       .gauge = Gauge::reset,
-       .closes = {"momentum-index2"}},
+       .gauge = Gauge::reset},
   };
   return all;
 }

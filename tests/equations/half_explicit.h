@@ -151,6 +151,7 @@ class InAnyGauge : public DaeSystem, public HalfExplicit, public GaugeSymmetry {
     return parts_.advance(t, y, t_next, base, w, exact, z, f);
   }
   std::string dependent(double t, const double* y) override { return parts_.dependent(t, y); }
+  Pivots pivots() const override { return parts_.pivots(); }
   const std::string& half_explicit_failure() const override {
     return parts_.half_explicit_failure();
   }

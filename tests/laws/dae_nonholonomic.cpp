@@ -408,13 +408,12 @@ TEST(Nonholonomic, PositionsAndRatesAreCountedApart) {
 TEST(Nonholonomic, IntegratorsOfPositionsAreRefused) {
   const Mechanism mechanism(sleigh(0.2, "[0, 0, 0]", "[1, 0, 0.5]"));
   const Start start = assemble(mechanism).start;
-  const std::array<std::array<const char*, 2>, 6> refused{
+  const std::array<std::array<const char*, 2>, 5> refused{
       {{"momentum", "rattle"},
        {"momentum", "energy-momentum"},
        {"acceleration-index3", "generalised-alpha"},
        {"acceleration-index3", "bayo-ledesma"},
-       {"momentum-index2", "hem5"},
-       {"momentum-index2", "hem8"}}};
+       {"momentum-index2", "hem5"}}};
   for (const auto& [form, integrator] : refused) {
     RunRequest request;
     request.settings.form = form;
@@ -429,9 +428,12 @@ TEST(Nonholonomic, IntegratorsOfPositionsAreRefused) {
           << e.what();
     }
   }
-  for (const char* integrator : {"hem5", "hem8"}) {
+  const std::array<std::array<const char*, 2>, 3> taken{{{"acceleration-index2", "hem5"},
+                                                         {"acceleration-index2", "hem8"},
+                                                         {"momentum-index2", "hem8"}}};
+  for (const auto& [form, integrator] : taken) {
     RunRequest request;
-    request.settings.form = "acceleration-index2";
+    request.settings.form = form;
     request.settings.integrator = integrator;
     request.settings.end_time = 1;
     EXPECT_EQ(run_form(mechanism, start, request).status, "done") << integrator;

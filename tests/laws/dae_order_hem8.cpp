@@ -1,11 +1,12 @@
 // hem8: a step against its equations as they stand, with dense matrices; order 8 in q, u, p and in
 // the multiplier by halved steps; the same motion in every gauge; the constraint at rounding;
-// redundant loops at the steps of the ODE form.
+// redundant loops and singular poses at the steps of the ODE form; rows of rates.
 
 #include "equations/ensemble.h"
 #include "equations/half_explicit.h"
 #include "equations/kkt_blocks.h"
 #include "equations/linkages.h"
+#include "equations/rolling.h"
 
 #include <gtest/gtest.h>
 #include <momenta/dae/solver/tableau_dop853.h>
@@ -107,10 +108,23 @@ class SlowStep {
   Eigen::Index nq_, nv_, m_;
 };
 
+/// One equation of rates and no other.
+Scene blade() {
+  return sleigh(0.3, "[0.4, -2, 0]", "[1, 0, 0.8]");
+}
+/// A contact, of positions, and two equations of rates beside it.
+Scene rolling() {
+  return parse_scene(wheel("[0, 0, -9.81]", 0.3, 0.05,
+                           "position = [0, 0, 0.35, 0.98, 0.1989974874213240, 0, 0]\n"
+                           "velocity = [1, 0, 0, 0.3, 2, 0.5]"),
+                     "rolling.toml");
+}
+
 TEST(Hem8, AStepIsThatOfItsEquations) {
   for (const auto& [scene, h] :
        {std::pair{example_of("four_bar"), 0.05}, std::pair{example_of("andrews"), 5e-4},
-        std::pair{example_of("driven"), 0.05}, std::pair{flying_rod(), 0.05}})
+        std::pair{example_of("driven"), 0.05}, std::pair{flying_rod(), 0.05},
+        std::pair{blade(), 0.05}, std::pair{rolling(), 0.05}})
     for (const std::string form : {"acceleration-index2", "momentum-index2"}) {
       SCOPED_TRACE(scene.name + " " + form);
       const Mechanism mechanism(scene);
@@ -148,7 +162,8 @@ TEST(Hem8, OrderEightByShorterSteps) {
   };
   for (const Case& c :
        {Case{example_of("four_bar"), 1, 48, 4}, Case{example_of("andrews"), 0.01, 24, 2},
-        Case{driven_crank(), 1, 16, 2}, Case{flying_rod(), 1, 48, 4}})
+        Case{driven_crank(), 1, 16, 2}, Case{flying_rod(), 1, 48, 4}, Case{blade(), 1, 4, 2},
+        Case{rolling(), 0.5, 20, 4}})
     for (const std::string form : {"acceleration-index2", "momentum-index2"}) {
       SCOPED_TRACE(c.scene.name + " " + form);
       const Halving halving("hem8", c.scene, form, c.end, "leak", "vern9");
@@ -245,6 +260,80 @@ TEST(Hem8, RedundantEquationsCostNoSteps) {
                 1.3 * static_cast<double>(ode.counters.steps))
           << gauge;
     }
+  }
+}
+
+// A stage on a singular pose: its weak row says nothing and keeps the multiplier that it is given,
+// for every stage that of the step's start. With that of the stage before the step is another one.
+TEST(Hem8, StagesFadeToTheMultiplierOfTheStart) {
+  constexpr double h = 0.02;
+  constexpr std::size_t s = TableauDop853::stages, on_the_pose = 7;
+  // The angle from which that stage's is zero, to O(h³): rods of a row turn by -1 rad/s.
+  constexpr double until = h * TableauDop853::c[on_the_pose];
+  double angle = until;
+  for (int count = 0; count < 3; ++count) {
+    const Start start = equations::start_of(Mechanism(row_of_four_bars(1, angle, -1)));
+    angle = until - 0.5 * start.udot[0] * until * until;
+  }
+  const Mechanism mechanism(row_of_four_bars(1, angle, -1));
+  const Start start = equations::start_of(mechanism);
+  FormOptions options;
+  options.gauge = parse_gauge("none");
+  const auto form = make_form("momentum-index2", mechanism, options, start);
+  const auto n = static_cast<std::size_t>(mechanism.nq() + mechanism.nv()),
+             nq = static_cast<std::size_t>(mechanism.nq());
+  std::vector<double> y(static_cast<std::size_t>(form->dae()->size())), ydot(y.size());
+  ASSERT_TRUE(form->dae()->start(0, y.data(), ydot.data()));
+  auto& parts = dynamic_cast<HalfExplicit&>(*form->dae());
+  ASSERT_TRUE(parts.consistent(0, y.data(), y.data() + n, ydot.data()));
+  const auto step = [&](bool from_the_stage_before) {
+    std::vector<std::vector<double>> k{{ydot.begin(), ydot.begin() + static_cast<long>(n)}};
+    std::vector<double> stage, z(y.begin() + static_cast<long>(n), y.end());
+    for (std::size_t i = 1;; ++i) {
+      stage.assign(y.begin(), y.begin() + static_cast<long>(n));
+      for (std::size_t j = 0; j < i; ++j)
+        for (std::size_t at = 0; at < n; ++at) stage[at] += h * TableauDop853::a[i][j] * k[j][at];
+      if (i == s) return stage;
+      if (!from_the_stage_before) z.assign(y.begin() + static_cast<long>(n), y.end());
+      k.emplace_back(n);
+      EXPECT_TRUE(
+          parts.consistent(TableauDop853::c[i] * h, stage.data(), z.data(), k.back().data()));
+      EXPECT_EQ(parts.pivots().faded, i == on_the_pose ? 1 : 0) << i;
+    }
+  };
+  const auto same = step(false), other = step(true);
+  IntegrationOptions fixed;
+  fixed.step = h;
+  const auto run = integrate("hem8", *form->dae(), 0, {h}, fixed, {});
+  ASSERT_TRUE(run.done) << run.reason;
+  double apart = 0;
+  // q goes onto Φ = 0 yet. A pivot near what is lost to fading, 1e-8, divides rounding of the
+  // stage.
+  for (std::size_t i = nq; i < n; ++i) {
+    EXPECT_NEAR(run.y[i], same[i], 1e-9) << i;
+    apart = std::max(apart, std::abs(other[i] - same[i]));
+  }
+  EXPECT_GT(apart, 1e-5) << apart;
+}
+
+// Near singular poses σ asks for steps that the motion does not need: errors are those of the
+// motion there, and index 2 takes the steps of the ODE form and of accelerations.
+TEST(Hem8, SingularPosesCostNoSteps) {
+  const Mechanism mechanism(example_of("n_four_bar"));
+  double ode = 0, accelerations = 0, leak = 0, reset = 0;  // steps tried, at three tolerances
+  for (const double tolerance : {1e-6, 1e-7, 1e-8}) {
+    const auto tried = [](const RunResult& run) {
+      EXPECT_EQ(run.status, "done") << run.reason;
+      return static_cast<double>(run.counters.steps + run.counters.rejected);
+    };
+    ode += tried(run_of(mechanism, "momentum", "dop853", "reset", tolerance, 10));
+    accelerations += tried(run_hem8(mechanism, "acceleration-index2", "", tolerance, 10, 1));
+    leak += tried(run_hem8(mechanism, "momentum-index2", "leak", tolerance, 10, 1));
+    reset += tried(run_hem8(mechanism, "momentum-index2", "reset", tolerance, 10, 1));
+  }
+  for (const double momenta : {leak, reset}) {
+    EXPECT_LE(momenta, 1.3 * ode);
+    EXPECT_LE(momenta, 1.1 * accelerations);
   }
 }
 
