@@ -1,5 +1,6 @@
 #include <momenta/core/poses.h>
 #include <momenta/dae/assembly/closing.h>
+#include <momenta/dae/assembly/displacement_of_mass.h>
 #include <momenta/dae/assembly/turned_loops.h>
 #include <momenta/dae/loop/loop_choice.h>
 
@@ -15,7 +16,9 @@ constexpr double in_one = 0.5;
 constexpr double first_turning = 0.25, least_turning = 1.0 / 128;  // of the turn, a step
 constexpr double longest_turning = 1;                              // [rad or lengths] of any joint
 constexpr int most_turnings = 200;
-constexpr int most_ways_round = 8;  // which of the loops turn which way round
+constexpr double half_turn_within = 1e-6;  // [rad]
+constexpr double level = 1e-6;             // apart, components that count as equal
+constexpr int most_ways_round = 8;         // which of the loops turn which way round
 
 /// Which axes 1, 2, 3 its rows of axes hold in one: three hold all, two the third; one alone, of a
 /// universal joint, holds none.
@@ -34,6 +37,33 @@ Eigen::Matrix3d prescribed(const std::vector<LoopChoice::Along>& turns, double t
   for (const LoopChoice::Along& turn : turns)
     all = all * Eigen::AngleAxisd(value_of(*turn.drive, t), turn.axis);
   return all;
+}
+
+/// A line's direction: of its components the first that is among the largest is positive.
+Eigen::Vector3d with_sense(const Eigen::Vector3d& way) {
+  const double largest = way.cwiseAbs().maxCoeff();
+  int k = 0;
+  while (std::abs(way[k]) < largest - level) ++k;
+  return way[k] < 0 ? Eigen::Vector3d(-way) : way;
+}
+
+bool is_half_turn(const TurnedLoop& loop) {
+  return loop.angle > std::numbers::pi - half_turn_within;
+}
+
+/// At half a turn both ways round are as short, and a hinge may turn about any axis across it: what
+/// rounding or the loop frame would decide is decided in the axes of the ground, in which the loop
+/// frame is `frame`.
+void decide_half_turn(TurnedLoop& loop, const Eigen::Matrix3d& frame, bool of_hinge,
+                      const Eigen::Vector3d& hinge) {
+  if (!is_half_turn(loop)) return;
+  if (of_hinge) {
+    const Eigen::Vector3d line = with_sense(frame * hinge), across = perpendicular_to(line);
+    loop.axis = frame.transpose() * across;
+    loop.other = frame.transpose() * line.cross(across);
+  } else {
+    loop.axis = loop.other = frame.transpose() * with_sense(frame * loop.axis);
+  }
 }
 
 /// Whether axes of the loop, in the loop frame, are not in one, and then the turn between them.
@@ -80,6 +110,15 @@ class LeadingBack {
   }
 
   int iterations() const { return iterations_; }
+
+  /// Whether a way is one of smaller number, as there are few loops and one axis of each.
+  bool is_another(int way) const {
+    const bool one_axis = std::all_of(turned_.begin(), turned_.end(), [](const TurnedLoop& loop) {
+      return loop.axis == loop.other;
+    });
+    const int loops = static_cast<int>(turned_.size());
+    return (loops < 2 && (way & 2)) || (loops < 3 && one_axis && (way & 4));
+  }
 
  private:
   std::optional<Eigen::VectorXd> turned_by(const Eigen::VectorXd& q, double s, int way) {
@@ -135,12 +174,15 @@ std::vector<TurnedLoop> turned_loops(const Mechanism& mechanism, double t,
       const int body = tree.body(name);
       return body < 0 ? Eigen::Isometry3d::Identity() : poses[static_cast<std::size_t>(body)];
     };
-    const Eigen::Isometry3d in_parent = pose(spec.parent).inverse() * pose(spec.child);
+    const Eigen::Isometry3d parent = pose(spec.parent);
+    const Eigen::Isometry3d in_parent = parent.inverse() * pose(spec.child);
     const Eigen::Matrix3d a = spec.rotation.toRotationMatrix().transpose() * in_parent.linear() *
                               prescribed(choice.turns_a, t) * choice.frame;
     const Eigen::Matrix3d b = prescribed(choice.turns_b, t) * choice.frame;
     if (std::optional<TurnedLoop> turned = turn_between(a, b, first)) {
       turned->loop = i;
+      decide_half_turn(*turned, parent.linear() * spec.rotation.toRotationMatrix(), first > 0,
+                       b.col(2));
       for (const LoopChoice::Along& way : choice.translations)
         turned->driven += value_of(*way.drive, t) * way.axis;
       turned->apart =
@@ -157,9 +199,19 @@ std::optional<Eigen::VectorXd> led_back(const Mechanism& mechanism, double t,
                                         const Eigen::VectorXd& q,
                                         const std::vector<TurnedLoop>& turned,
                                         const std::vector<bool>& columns, int& iterations) {
+  const bool undecided = std::any_of(turned.begin(), turned.end(), is_half_turn);
   LeadingBack leading(mechanism, t, turned, columns);
   std::optional<Eigen::VectorXd> found;
-  for (int way = 0; !found && way < most_ways_round; ++way) found = leading.follow(q, way);
+  double least = 0;
+  for (int way = 0; way < most_ways_round && (undecided || !found); ++way) {
+    if (leading.is_another(way)) continue;
+    const std::optional<Eigen::VectorXd> reached = leading.follow(q, way);
+    if (!reached) continue;
+    const double moved = displacement_of_mass(mechanism, t, q, *reached);
+    if (found && !(moved < (1 - level) * least)) continue;
+    found = reached;
+    least = moved;
+  }
   iterations += leading.iterations();
   return found;
 }

@@ -16,7 +16,11 @@
 //   Φ(q(s); G^s b, x_B + s D) = 0,
 //
 // D being what the pose at s = 1 has along a slide or in a plane, whose axes G turns as well; one
-// way round, and if that ends the other, G^s with the angle θ − 2π in place of θ.
+// way round, and if that ends the other, G^s with the angle θ − 2π in place of θ. At half a turn
+// the two ways are as long, and which is called the one is a matter of writing (of rounding, of
+// which body is the parent, in a plane or in space): all are gone then, and the pose is taken that
+// moves the mass least (displacement_of_mass.h). Where they move it alike the axes of the ground
+// decide.
 
 #include <momenta/dae/mechanism.h>
 
@@ -42,9 +46,10 @@ std::vector<TurnedLoop> turned_loops(const Mechanism& mechanism, double t,
                                      const Eigen::VectorXd& q);
 
 /// A pose that closes them with all axes in one, q led there as said above: the first that is
-/// reached, the shorter ways round before the longer ones. `columns` (nv): rates of joints that may
-/// move. `iterations`: those of Newton's method are added. None where every way ends: there may be
-/// no such pose. Cost: some 10 to 100 mechanisms made and as many solutions of Newton's method.
+/// reached, the shorter ways round before the longer ones; of half turns the nearest. `columns`
+/// (nv): rates of joints that may move. `iterations`: those of Newton's method are added. None
+/// where every way ends: there may be no such pose. Cost: some 10 to 100 mechanisms made and as
+/// many solutions of Newton's method.
 std::optional<Eigen::VectorXd> led_back(const Mechanism& mechanism, double t,
                                         const Eigen::VectorXd& q,
                                         const std::vector<TurnedLoop>& turned,

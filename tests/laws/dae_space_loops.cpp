@@ -196,6 +196,25 @@ TEST(SpaceLoops, OfAnArmWithAWristAreEight) {
   }
 }
 
+/// Lines that cross one after the other but for the last, so that no choice of halves has two pairs
+/// apart.
+TEST(SpaceLoops, WhoseLinesCrossOneByOneAreCounted) {
+  std::mt19937 random(21);
+  for (int k = 0; k < 2; ++k) {
+    Vector3d corners[5];
+    for (Vector3d& corner : corners) corner = any_vector(random);
+    std::vector<Line> lines{{corners[0], any_vector(random)}};
+    for (int i = 0; i < 3; ++i) lines.push_back({corners[i], corners[i + 1] - corners[i]});
+    lines.push_back({corners[3], any_vector(random)});
+    lines.push_back({corners[4], any_vector(random)});
+    const Scene scene = ring(lines);
+    const Assemblies all = all_of(scene);
+    EXPECT_EQ(all.paths->paths, 40);
+    EXPECT_EQ(all.paths->finite, 16);
+    expect_searched(scene, all, 200);
+  }
+}
+
 /// Four hinges, one of them held, lines through one point: two (as of a four-bar in a plane), by
 /// R(a, α) R(b, β) v = v' as a quadratic equation. The loop equations are redundant.
 TEST(SpaceLoops, OfASphericalFourBarAreTwo) {

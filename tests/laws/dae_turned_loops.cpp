@@ -16,6 +16,7 @@
 #include <gtest/gtest.h>
 #include <momenta/core/scene/files/read_scene.h>
 #include <momenta/dae/assembly/assembly.h>
+#include <momenta/dae/assembly/displacement_of_mass.h>
 #include <momenta/dae/assembly/turned_loops.h>
 #include <momenta/dae/study/run_form.h>
 
@@ -243,6 +244,81 @@ TEST(TurnedLoops, TheDeltaRobotIsLedBackAndRuns) {
   request.max_cpu_seconds = 10;
   const RunResult run = run_form(mechanism, a.start, request);
   EXPECT_EQ(run.status, "done") << run.reason;
+}
+
+/// A body of six points of mass, displaced: Σ m |x − x'|².
+TEST(TurnedLoops, DisplacementOfMassIsThatOfItsPoints) {
+  RandomTree random(4);
+  const Quaterniond axes = random.turn();
+  BodySpec body = brick("a");
+  body.mass = 0;
+  body.inertia = Matrix3d::Zero();
+  std::vector<std::pair<double, Vector3d>> points;
+  for (int k = 0; k < 3; ++k)
+    for (const double side : {0.1, -0.1}) {
+      const Vector3d arm = side * (k + 1) * (axes * Vector3d::Unit(k));
+      points.push_back({k + 0.5, body.com + arm});
+      body.mass += k + 0.5;
+      body.inertia +=
+          (k + 0.5) * (arm.squaredNorm() * Matrix3d::Identity() - arm * arm.transpose());
+    }
+  Scene scene;
+  scene.bodies = {body};
+  JointSpec joint;
+  joint.name = "J";
+  joint.kind = JointKind::free;
+  joint.child = "a";
+  scene.joints = {joint};
+  const Mechanism mechanism(scene);
+  VectorXd q[2];
+  Eigen::Isometry3d poses[2];
+  for (int i = 0; i < 2; ++i) {
+    const Vector3d at = random.vector(1);
+    const Quaterniond turn = random.turn();
+    q[i].resize(7);
+    q[i] << at, turn.w(), turn.vec();
+    poses[i] = Eigen::Translation3d(at) * turn;
+  }
+  double sum = 0;
+  for (const auto& [mass, x] : points) sum += mass * (poses[0] * x - poses[1] * x).squaredNorm();
+  EXPECT_NEAR(displacement_of_mass(mechanism, 0, q[0], q[1]), sum, 1e-13 * sum);
+}
+
+/// Of the ways back from half a turn none is shorter: computed in a plane or in space, with a
+/// loop's bodies exchanged, its frame turned, the whole turned in the ground, the delta robot comes
+/// out the same, every point of its mass.
+TEST(TurnedLoops, TheDeltaRobotIsTheSameHoweverWritten) {
+  const Scene scene = read_scene(std::filesystem::path(MOMENTA_SOURCE_DIR) /
+                                 "examples/models/epr_robot_delta/robot.urdf");
+  const Mechanism own(scene);
+  const VectorXd q = assemble(own, Assembled::rates).start.q;
+  const double size = displacement_of_mass(own, 0, q, own.tree().q0);
+  EXPECT_GT(size, 1e-5);
+  const auto off = [&](const Scene& other, Algebra algebra, double sense = 1) {
+    MechanismOptions options;
+    options.algebra = algebra;
+    const Mechanism mechanism(other, options);
+    const VectorXd found = sense * assemble(mechanism, Assembled::rates).start.q;
+    return displacement_of_mass(own, 0, q, found) / size;
+  };
+  EXPECT_LT(off(scene, Algebra::spatial), 1e-12);
+  Scene reversed = scene;
+  for (JointSpec& joint : reversed.joints)
+    if (joint.kind == JointKind::revolute) {
+      joint.axis = -joint.axis;
+      for (double& x : joint.position) x = -x;
+    }
+  EXPECT_LT(off(reversed, Algebra::automatic, -1), 1e-12);
+  EXPECT_LT(off(reversed, Algebra::spatial, -1), 1e-12);
+  Scene turned = scene;  // about any axis
+  const Quaterniond by(AngleAxisd(2.2, Vector3d(0.3, -0.5, 0.7).normalized()));
+  for (JointSpec& joint : turned.joints)
+    if (joint.parent == "ground") {
+      joint.origin_parent = by * joint.origin_parent;
+      joint.rotation = by * joint.rotation;
+    }
+  EXPECT_LT(off(turned, Algebra::automatic), 1e-12);
+  EXPECT_LT(off(turned, Algebra::spatial), 1e-12);
 }
 
 /// A free start is not taken where it is half a turn off; what is held there is told.
