@@ -192,28 +192,8 @@ TEST(Hem8, OrderOfDenseOutput) {
   }
 }
 
-// With a reset a step is the same, but for rounding, whatever constant was added to σ before it.
 TEST(Hem8, TheSameMotionInEveryGauge) {
-  for (const char* name : {"four_bar", "andrews"}) {
-    SCOPED_TRACE(name);
-    const bool fast = name[0] == 'a';
-    const Mechanism mechanism(example_of(name));
-    const Start start = equations::start_of(mechanism);
-    const auto run = [&](double size) {
-      FormOptions options;
-      options.gauge = parse_gauge("reset");
-      const auto form = make_form("momentum-index2", mechanism, options, start);
-      InAnyGauge shifted(*form->dae(), size);
-      IntegrationOptions fixed;
-      fixed.step = fast ? 2e-4 : 0.02;
-      const auto result = integrate("hem8", shifted, 0, {50 * fixed.step}, fixed, {});
-      EXPECT_TRUE(result.done) << result.reason;
-      return result.y;
-    };
-    const auto still = run(0), moved = run(fast ? 1 : 10);
-    for (std::size_t i = 0; i < static_cast<std::size_t>(mechanism.nq()); ++i)
-      EXPECT_NEAR(still[i], moved[i], 1e-11) << i;
-  }
+  expect_the_same_motion_in_every_gauge("hem8", 0.02);
 }
 
 RunResult run_hem8(const Mechanism& mechanism, const std::string& form, const std::string& gauge,
