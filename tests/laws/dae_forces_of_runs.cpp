@@ -218,7 +218,9 @@ TEST(ForcesOfRuns, EnergyBalancesWithDrivesInEveryForm) {
 
 /// To 1e-12 of the energies where the method is that good: implicit Runge-Kutta methods for ODEs
 /// and DAEs, and feedback and penalties, which leave the loops open by the tolerance. Others as far
-/// as their steps and error tests go.
+/// as their steps and error tests go. Balances of radau5 are three times its errors of velocities,
+/// whatever the tolerance: they are of the motion, not of the quadrature of the power. At 1e-14
+/// what is left on accelerations no longer goes with it.
 TEST(ForcesOfRuns, EnergyBalancesWithDrivesByImplicitMethods) {
   for (const std::string name : {"driven/scene.toml", "driven/swing.toml"}) {
     const Mechanism mechanism(example(name));
@@ -226,11 +228,11 @@ TEST(ForcesOfRuns, EnergyBalancesWithDrivesByImplicitMethods) {
          {Method{"momentum", "gauss6", "reset", 0, 1e-13, 0.002},
           Method{"momentum", "gauss4", "flip", 0, 1e-11, 0.001},
           Method{"momentum", "rattle", "reset", 0, 1e-4, 0.001},
-          Method{"momentum-index1", "radau5", "leak:3", 1e-13, 3e-11},
-          Method{"momentum-index2", "radau5", "reset", 1e-13, 3e-12},
-          Method{"momentum-stabilised", "radau5", "leak:3", 1e-13, 3e-12},
-          Method{"acceleration-index2", "radau5", "", 1e-13, 3e-12},
-          Method{"stabilised-index2", "radau5", "", 1e-13, 3e-12},
+          Method{"momentum-index1", "radau5", "leak:3", 1e-14, 5e-12},
+          Method{"momentum-index2", "radau5", "reset", 1e-14, 1e-12},
+          Method{"momentum-stabilised", "radau5", "leak:3", 1e-14, 1e-12},
+          Method{"acceleration-index2", "radau5", "", 1e-14, 3e-12},
+          Method{"stabilised-index2", "radau5", "", 1e-14, 3e-12},
           Method{"momentum-index2", "hem5", "reset", 1e-12, 1e-9},
           Method{"acceleration-index2", "hem5", "", 1e-12, 1e-9},
           Method{"momentum-index2", "bdf5", "reset", 1e-11, 1e-9},
