@@ -1,13 +1,11 @@
 #include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/assembly/closing.h>
+#include <momenta/dae/assembly/start_accelerations.h>
 #include <momenta/dae/assembly/turned_loops.h>
 #include <momenta/dae/joint_places.h>
-#include <momenta/dae/kkt/bearing_friction.h>
 #include <momenta/dae/kkt/least_norm.h>
 #include <momenta/dae/kkt/loop_rank.h>
-#include <momenta/dae/kkt/loop_solver.h>
 #include <momenta/dae/loop_word.h>
-#include <momenta/dae/unheld_joints.h>
 
 #include <algorithm>
 #include <cmath>
@@ -52,7 +50,7 @@ class Assembler {
     }
     if (mechanism_.m() == 0) a.free_positions = mechanism_.nv();
     a.mobility = mechanism_.nv() - a.rank;
-    if (what == Assembled::motion) accelerations(a);
+    if (what == Assembled::motion) start_accelerations(mechanism_, e(), a.start);
     return a;
   }
 
@@ -71,7 +69,7 @@ class Assembler {
     a.position_residual = phi.cwiseAbs().maxCoeff();
     a.moved = (a.start.q - guess).cwiseAbs().maxCoeff();
     if (!found.is_closed) refuse(phi, closing.tolerance(), found.is_stretched);
-    refuse_lost_loop();
+    expect_no_lost_loop(mechanism_, e());
     if (!found.is_least) return;
     a.start.residue = phi;
     a.residue = residue_in_words(mechanism_, phi);
@@ -106,7 +104,7 @@ class Assembler {
 
   [[noreturn]] void refuse(const Eigen::VectorXd& phi, double tolerance, bool stretched) {
     const Scene& scene = mechanism_.scene();
-    refuse_lost_loop();
+    expect_no_lost_loop(mechanism_, e());
     std::string open;
     Location at;
     int row = 0;
@@ -136,14 +134,6 @@ class Assembler {
         std::to_string(std::count(loops_.columns.begin(), loops_.columns.end(), true)) +
         " free rates); expected " +
         (scene.lagrangian ? "constraints that can be met" : "loops that close"));
-  }
-
-  /// At the pose that was evaluated last.
-  void refuse_lost_loop() {
-    if (const std::string lost = e().lost_loop(); !lost.empty())
-      throw SceneError(mechanism_.scene().where({}) +
-                       "the mechanism cannot be assembled from these positions: " + lost +
-                       "; expected a start where it has both");
   }
 
   void close_velocities(Assembly& a) {
@@ -198,72 +188,6 @@ class Assembler {
     a.kept = judged.kept;
     a.dropped = judged.dropped;
     a.dependent_rows = std::move(judged.dependent);
-  }
-
-  void accelerations(Assembly& a) {
-    Start& s = a.start;
-    s.udot = Eigen::VectorXd::Zero(mechanism_.nv());
-    s.lambda = Eigen::VectorXd::Zero(mechanism_.m());
-    if (mechanism_.nv() == 0) return;
-    e().place(s.t, s.q.data());
-    if (mechanism_.has_forces_apart()) {
-      e().move(s.u.data());
-      if (const std::string formula = e().formula_without_value(); !formula.empty())
-        throw SceneError(formula);
-    }
-    const auto friction = bearing_friction(mechanism_);
-    if (friction) {
-      const std::string joint = friction->undetermined(s.t, s.q.data(), s.u.data());
-      if (!joint.empty())
-        throw SceneError(mechanism_.scene().where({}) + "joint '" + joint +
-                         "' has a bearing, and the force in it is not unique, as loop equations "
-                         "depend on each other: expected loops that tie less (momenta check names "
-                         "them), or no bearing");
-      if (!friction->at(s.t, s.q.data(), s.u.data()))
-        throw SceneError(mechanism_.scene().where({}) + friction->failure());
-      e().push(friction->forces());
-    }
-    accelerations(s, friction ? friction->forces() : nullptr);
-    e().push(nullptr);
-  }
-
-  void accelerations(Start& s, const double* tau) {
-    if (mechanism_.m() == 0) {
-      Eigen::VectorXd diagonal(mechanism_.nv());
-      e().mass_diagonal(diagonal.data());
-      // Rounding may leave a pivot above zero of what has no inertia.
-      if (diagonal.allFinite() && !massless_joints(mechanism_.tree(), diagonal, {}).empty())
-        no_inertia(s, -1);
-      if (!e().open_accelerations(s.t, s.q.data(), s.u.data(), s.udot.data()))
-        no_inertia(s, e().singular_joint());
-      return;
-    }
-    if (mechanism_.kkt() == KktChoice::sweeps && !mechanism_.dense_kkt()) {
-      const auto solver = make_loop_solver(mechanism_, e());
-      solver->push(tau);
-      if (!solver->acceleration(s.t, s.q.data(), s.u.data(), nullptr, 0, 0, s.udot.data(),
-                                s.lambda.data()))
-        no_inertia(s, solver->singular_joint());
-      return;
-    }
-    const auto kkt = make_kkt(mechanism_);
-    if (!kkt->factor(e(), s.t, s.q.data(), fade_evaluation)) no_inertia(s, kkt->singular_joint());
-    e().move(s.u.data());
-    Eigen::VectorXd r(mechanism_.nv()), g(mechanism_.m());
-    e().joint_forces(s.q.data(), s.u.data(), nullptr, nullptr, r.data());
-    e().accelerations(g.data());
-    r = -r;
-    if (tau) r += Eigen::Map<const Eigen::VectorXd>(tau, mechanism_.nv());
-    g = -g;
-    if (!kkt->solve(r.data(), g.data(), nullptr, s.udot.data(), s.lambda.data())) no_inertia(s, -1);
-  }
-
-  [[noreturn]] void no_inertia(const Start& s, int rate) {
-    refuse_lost_loop();
-    throw SceneError(
-        mechanism_.scene().where({}) +
-        (mechanism_.scene().lagrangian ? "" : "the mechanism cannot move at its start: ") +
-        mechanism_.no_inertia(rate, s.t, s.q.data()));
   }
 
   [[noreturn]] void nothing_moves() const {

@@ -2,18 +2,15 @@
 #include <momenta/dae/assembly/closing.h>
 #include <momenta/dae/assembly/turned_loops.h>
 #include <momenta/dae/dense/singular_values.h>
-#include <momenta/dae/joint_places.h>
 #include <momenta/dae/kinematics/assemblies.h>
 #include <momenta/dae/kinematics/coordinate_named.h>
 #include <momenta/dae/kinematics/homotopy.h>
 #include <momenta/dae/kinematics/loop_polynomials.h>
-#include <momenta/dae/sample/sample.h>
+#include <momenta/dae/kinematics/pose_space.h>
 
 #include <Eigen/QR>
 #include <algorithm>
 #include <atomic>
-#include <cmath>
-#include <numbers>
 #include <optional>
 #include <thread>
 
@@ -22,13 +19,7 @@ namespace {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-constexpr double full_turn = 2 * std::numbers::pi;
-constexpr double start_width = 1.5;  // of starts [lengths]
 constexpr double free_value = 1e-9;  // singular values, beside the largest
-constexpr double turned_gap = 1e-9;  // |Φ| that a full turn may leave, in units
-
-/// What the coordinates of q are to a search.
-enum class Place { angle, length, quaternion };
 
 class Search {
  public:
@@ -39,7 +30,7 @@ class Search {
     for (const auto& [q, u] : held_) loops_.columns[static_cast<std::size_t>(u)] = false;
     if (request.by_homotopy) spins_ = idle_spins(mechanism, t, own, held_rates());
     expect_no_freedom();
-    sort_coordinates();
+    space_.emplace(mechanism, t, own, loops_);
   }
 
   Assemblies run() {
@@ -75,7 +66,7 @@ class Search {
       const std::optional<VectorXd> pose = polynomials->pose(x);
       if (!pose) continue;
       const Closing::Pose closed = closing.beside(*pose);
-      if (!closed.is_closed || apart(closed.q, *pose) > moved_on ||
+      if (!closed.is_closed || space_->apart(closed.q, *pose) > moved_on ||
           !turned_loops(mechanism_, t_, closed.q).empty()) {
         ++count.lost;  // a solution that is no assembly proves an error
         continue;
@@ -91,6 +82,8 @@ class Search {
   Assemblies by_search() {
     Assemblies found;
     found.starts = request_.starts;
+    std::vector<bool> held(static_cast<std::size_t>(mechanism_.nq()), false);
+    for (const auto& [q, u] : held_) held[static_cast<std::size_t>(q)] = true;
     std::vector<std::optional<VectorXd>> poses(static_cast<std::size_t>(request_.starts));
     {
       std::atomic<std::size_t> next{0};
@@ -102,7 +95,7 @@ class Search {
           LeastNorm steps(loops.pattern(), mechanism_.m(), mechanism_.nv());
           Closing closing(loops, steps, t_);
           for (std::size_t i; (i = next++) < poses.size();) {
-            const Closing::Pose pose = closing.beside(start(i));
+            const Closing::Pose pose = closing.beside(space_->start(request_.seed, i, held));
             if (pose.is_closed) poses[i] = pose.q;
           }
         });
@@ -170,96 +163,16 @@ class Search {
     return mechanism_.rate_columns()[static_cast<std::size_t>(u)].name;
   }
 
-  /// Which are quaternions, which come back by a full turn with the loops closed, and lengths.
-  void sort_coordinates() {
-    const auto nq = static_cast<std::size_t>(mechanism_.nq());
-    places_.assign(nq, Place::length);
-    turns_.assign(nq, false);
-    lengths_ = VectorXd::Ones(mechanism_.nq());
-    const std::vector<Column> columns = mechanism_.coordinate_columns();
-    for (const JointPlace& joint : joint_places(mechanism_))
-      for (const int at : joint.quaternions) {
-        quaternions_.push_back(at);
-        for (int k = 0; k < 4; ++k) places_[static_cast<std::size_t>(at + k)] = Place::quaternion;
-      }
-    const double length = length_of(mechanism_.scene());
-    for (std::size_t i = 0; i < nq; ++i) {
-      if (places_[i] == Place::quaternion) continue;
-      const auto k = static_cast<Eigen::Index>(i);
-      if (columns[i].unit != "rad") {
-        lengths_[k] = length;
-        continue;
-      }
-      places_[i] = Place::angle;
-      VectorXd round = own_;
-      round[k] += full_turn;
-      turns_[i] = mechanism_.m() == 0 ||
-                  (loops_.gap(t_, round) - loops_.gap(t_, own_)).cwiseAbs().maxCoeff() < turned_gap;
-    }
-  }
-
-  bool is_held(std::size_t i) const {
-    return std::any_of(held_.begin(), held_.end(),
-                       [&](const auto& h) { return h.first == static_cast<int>(i); });
-  }
-
-  /// The pose from which number `i` starts.
-  VectorXd start(std::size_t i) const {
-    VectorXd q = own_;
-    const auto drawn = [&](std::size_t k) { return in_unit_interval(noise(request_.seed, k, i)); };
-    for (std::size_t k = 0; k < places_.size(); ++k) {
-      const auto at = static_cast<Eigen::Index>(k);
-      if (is_held(k) || places_[k] == Place::quaternion) continue;
-      const double wide = places_[k] == Place::length ? start_width * lengths_[at]
-                          : turns_[k]                 ? full_turn / 2
-                                                      : full_turn;
-      q[at] += wide * (2 * drawn(k) - 1);
-    }
-    for (const int at : quaternions_) {  // even over rotations: Shoemake, Graphics Gems III, 1992
-      const auto k = static_cast<std::size_t>(at);
-      const double a = drawn(k), b = full_turn * drawn(k + 1), c = full_turn * drawn(k + 2);
-      q.segment<4>(at) << std::sqrt(1 - a) * std::sin(b), std::sqrt(1 - a) * std::cos(b),
-          std::sqrt(a) * std::sin(c), std::sqrt(a) * std::cos(c);
-    }
-    return q;
-  }
-
-  /// Angles to within half a turn of those of the own pose, quaternions to its side.
-  VectorXd nearest(VectorXd q) const {
-    for (std::size_t k = 0; k < places_.size(); ++k) {
-      const auto at = static_cast<Eigen::Index>(k);
-      if (turns_[k]) q[at] = own_[at] + std::remainder(q[at] - own_[at], full_turn);
-    }
-    for (const int at : quaternions_)
-      if (q.segment<4>(at).dot(own_.segment<4>(at)) < 0) q.segment<4>(at) *= -1;
-    return q;
-  }
-
-  double apart(const VectorXd& a, const VectorXd& b) const {
-    double most = 0;
-    for (std::size_t k = 0; k < places_.size(); ++k) {
-      const auto at = static_cast<Eigen::Index>(k);
-      if (places_[k] == Place::quaternion) continue;
-      const double way = (a[at] - b[at]) / lengths_[at];
-      most = std::max(most, std::abs(turns_[k] ? std::remainder(way, full_turn) : way));
-    }
-    for (const int at : quaternions_) {
-      const auto x = a.segment<4>(at), y = b.segment<4>(at);
-      most = std::max(most, 2 * std::min((x - y).norm(), (x + y).norm()));
-    }
-    return most;
-  }
-
   void add(Assemblies& found, const VectorXd& q, int met) {
     for (FoundAssembly& known : found.all)
-      if (apart(known.q, q) < Assemblies::same) {
+      if (space_->apart(known.q, q) < Assemblies::same) {
         known.met += met;
         return;
       }
     FoundAssembly other;
-    other.q = nearest(q);
+    other.q = space_->nearest(q);
     other.met = met;
-    other.apart = apart(q, own_);
+    other.apart = space_->apart(q, own_);
     std::vector<int> rates;
     const MatrixXd j = free_columns(q, rates);
     if (j.cols() > 0) {
@@ -276,11 +189,8 @@ class Search {
   const AssembliesRequest& request_;
   ScaledLoops loops_;
   std::vector<std::pair<int, int>> held_;
-  int spins_ = 0;              ///< freedoms of legs that solutions are not about
-  std::vector<Place> places_;  ///< of each coordinate
-  std::vector<bool> turns_;    ///< whether a full turn brings it back
-  VectorXd lengths_;  ///< what a coordinate is counted in: 1 rad, or the scene's length [m]
-  std::vector<int> quaternions_;
+  int spins_ = 0;  ///< freedoms of legs that solutions are not about
+  std::optional<PoseSpace> space_;
 };
 
 }  // namespace

@@ -1,15 +1,12 @@
 #include <momenta/core/text/near_name.h>
 #include <momenta/dae/kinematics/coordinate_named.h>
-#include <momenta/dae/kinematics/move.h>
-#include <momenta/dae/kinematics/pose_curve.h>
-#include <momenta/dae/kinematics/transmission.h>
+#include <momenta/dae/kinematics/least_pivot.h>
+#include <momenta/dae/kinematics/move_rows.h>
+#include <momenta/dae/kinematics/zero_between.h>
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <memory>
 #include <numbers>
-#include <tuple>
 
 namespace momenta {
 namespace {
@@ -20,37 +17,12 @@ constexpr double longest_step = 0.1, shortest_step = 1e-9;  // in units
 // From here on s is given, not the distance: no step that bends by so little turns s round.
 constexpr double steep = 0.3;
 
-/// Where f changes its sign between a and b, by the Illinois rule; NaN where f fails.
-double zero_between(const std::function<double(double)>& f, double a, double fa, double b,
-                    double fb) {
-  constexpr int most = 60;
-  for (int k = 0; k < most && std::abs(b - a) > 1e-15 * (std::abs(a) + std::abs(b)); ++k) {
-    double c = b - fb * (b - a) / (fb - fa);
-    if (!(c > std::min(a, b) && c < std::max(a, b))) c = 0.5 * (a + b);
-    const double fc = f(c);
-    if (!std::isfinite(fc)) return fc;
-    if (fc == 0) return c;
-    if ((fc < 0) != (fb < 0)) {
-      a = b;
-      fa = fb;
-    } else {
-      fa *= 0.5;
-    }
-    b = c;
-    fb = fc;
-  }
-  return b;
-}
-
 class Follower {
  public:
   Follower(const Mechanism& mechanism, double t, const MoveRequest& request)
       : mechanism_(mechanism), request_(request), t_(t), angles_(angles()) {
-    result_.scene = mechanism.scene().name;
-    result_.coordinates = mechanism.coordinate_columns();
-    result_.rates = mechanism.rate_columns();
-    result_.markers = mechanism.marker_columns();
     const LoopUnits units(mechanism);
+    std::vector<int> inputs;
     const double first = request.sweep.front().second;
     for (const auto& [name, amount] : request.sweep) {
       if (!std::isfinite(amount / first) || amount == 0)
@@ -59,16 +31,14 @@ class Follower {
       const auto [q, u] = coordinate_named(mechanism_, name);
       if (swept_.empty()) unit_ = units.rates[u];
       swept_.push_back({q, u, amount / first * unit_});
+      inputs.push_back(u);
     }
-    for (const std::string& name : request.hold)
+    for (const std::string& name : request.hold) {
       held_.push_back(coordinate_named(mechanism_, name));
+      inputs.push_back(held_.back().second);
+    }
     result_.swept = static_cast<std::size_t>(swept_.front().q);
-    if (request.output.empty()) return;
-    std::vector<int> inputs;
-    for (const SweptCoordinate& c : swept_) inputs.push_back(c.u);
-    for (const auto& [q, u] : held_) inputs.push_back(u);
-    transmission_ = std::make_unique<Transmission>(mechanism, t, request.output, inputs);
-    std::tie(result_.output, result_.output_rate) = coordinate_named(mechanism, request.output);
+    rows_.emplace(mechanism, t, request, inputs, unit_, result_);
   }
 
   MoveResult follow(const VectorXd& q) {
@@ -127,7 +97,7 @@ class Follower {
     }
     by_ = request_.by > 0 ? request_.by / unit_ : angles_[result_.swept] ? turn / 360 : 0.01;
     beginning_ = here_;
-    take(here_, MovedPose::Kind::sample);
+    rows_->take(*curve_, here_, MovedPose::Kind::sample);
     if (request_.to && *request_.to == result_.start) result_.end = MoveResult::End::reached;
   }
 
@@ -196,7 +166,7 @@ class Follower {
       if (at) {
         rows_before(*at, way, end);
         if (result_.end != MoveResult::End::stopped) return;
-        take(*at, MovedPose::Kind::dead_point);
+        rows_->take(*curve_, *at, MovedPose::Kind::dead_point);
         move_on(*at);
         here_.tangent[here_.tangent.size() - 1] = 0;
         return;
@@ -232,7 +202,7 @@ class Follower {
 
   /// A row whose s was asked for.
   void arrive(const CurvePoint& to, double end) {
-    take(to, MovedPose::Kind::sample);
+    rows_->take(*curve_, to, MovedPose::Kind::sample);
     if (std::isfinite(end) && std::abs(to.s - end) <= 1e-9 * by_)
       result_.end = MoveResult::End::reached;
     else if (!std::isfinite(end) && is_beginning(to))
@@ -274,34 +244,13 @@ class Follower {
   /// The smallest pivot has passed a least value between the point before here and `to`: a change
   /// point if it is zero, and that of all rows.
   void look_for_change(const CurvePoint& to) {
-    constexpr double lost = 1e-7, golden = 0.6180339887498949;
+    constexpr double lost = 1e-7;
     const CurvePoint from = *before_;
-    double a = 0, b = distance(from, here_) + distance(here_, to);
-    CurvePoint point, least = here_;
-    const auto value = [&](double x) -> double {
-      if (!curve_->step(from, x, point)) return INFINITY;
-      if (point.pivot < least.pivot) least = point;
-      return point.pivot;
-    };
-    double x = b - golden * (b - a), y = a + golden * (b - a), fx = value(x), fy = value(y);
-    while (b - a > 1e-10) {
-      if (fx < fy) {
-        b = y;
-        y = x;
-        fy = fx;
-        x = b - golden * (b - a);
-        fx = value(x);
-      } else {
-        a = x;
-        x = y;
-        fx = fy;
-        y = a + golden * (b - a);
-        fy = value(y);
-      }
-    }
+    const CurvePoint least =
+        least_pivot(*curve_, from, distance(from, here_) + distance(here_, to), here_);
     if (!(least.pivot < lost)) return;
     if (curve_->reciprocal_condition(least.q) < lost) {
-      take(least, MovedPose::Kind::change_point);
+      rows_->take(*curve_, least, MovedPose::Kind::change_point);
       return;
     }
     CurvePoint known = from, again;  // the rows were at fault
@@ -317,52 +266,13 @@ class Follower {
     reach.most = std::max(reach.most, value);
   }
 
-  void take(const CurvePoint& at, MovedPose::Kind kind) {
-    MovedPose pose;
-    pose.kind = kind;
-    pose.s = unit_ * at.s;
-    pose.q = at.q;
-    Evaluation<double>& e = curve_->loops().evaluation();
-    if (kind == MovedPose::Kind::sample && curve_->derivatives(at, pose.u, pose.udot)) {
-      pose.u /= unit_;
-      pose.udot /= unit_ * unit_;
-    } else {
-      pose.u.resize(0);
-      pose.udot.resize(0);
-    }
-    pose.branch = pose.u.size() > 0 ? at.branch() : 0;
-    const std::size_t markers = result_.markers.size();
-    if (markers > 0) {
-      pose.markers.resize(markers);
-      e.place(t_, at.q.data());
-      e.move(pose.u.size() > 0 ? pose.u.data() : nullptr);
-      e.markers(pose.markers.data());
-      if (pose.u.size() == 0)
-        for (std::size_t i = 0; i < markers; ++i)
-          if (i % 6 >= 3) pose.markers[i] = NAN;
-    }
-    if (transmission_) {
-      const Transmitting passed = transmission_->at(at.q);
-      pose.transmission_angle = passed.angle;
-      pose.joint_force = passed.joint_force;
-    }
-    if (request_.singular_values) pose.reciprocal_condition = curve_->reciprocal_condition(at.q);
-    // A change point is found when the curve is beyond it.
-    auto place = result_.poses.end();
-    if (kind == MovedPose::Kind::change_point)
-      while (place != result_.poses.begin() && std::prev(place)->kind == MovedPose::Kind::sample &&
-             (std::prev(place)->s - pose.s) * at.s_rate() > 0)
-        --place;
-    result_.poses.insert(place, std::move(pose));
-  }
-
   const Mechanism& mechanism_;
   const MoveRequest& request_;
   double t_;  ///< [s]
   std::vector<bool> angles_;
   std::vector<SweptCoordinate> swept_;
   std::vector<std::pair<int, int>> held_;
-  std::unique_ptr<Transmission> transmission_;  ///< null: no output is asked for
+  std::optional<MoveRows> rows_;
   PoseCurve* curve_ = nullptr;
   CurvePoint here_, beginning_;
   std::optional<CurvePoint> before_, recalled_;
@@ -372,23 +282,6 @@ class Follower {
 };
 
 }  // namespace
-
-const char* name_of(MovedPose::Kind kind) {
-  return kind == MovedPose::Kind::sample       ? "sample"
-         : kind == MovedPose::Kind::dead_point ? "dead point"
-                                               : "change point";
-}
-
-const char* name_of(MoveResult::End end) {
-  return end == MoveResult::End::closed    ? "closed"
-         : end == MoveResult::End::reached ? "reached"
-                                           : "stopped";
-}
-
-int MoveResult::count(MovedPose::Kind kind) const {
-  return static_cast<int>(std::count_if(poses.begin(), poses.end(),
-                                        [&](const MovedPose& pose) { return pose.kind == kind; }));
-}
 
 MoveResult move(const Mechanism& mechanism, double t, const VectorXd& q,
                 const MoveRequest& request) {

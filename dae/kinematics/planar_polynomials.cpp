@@ -1,5 +1,6 @@
 #include <momenta/core/scene/kinds.h>
 #include <momenta/core/text/near_name.h>
+#include <momenta/dae/kinematics/isotropic.h>
 #include <momenta/dae/kinematics/planar_polynomials.h>
 
 #include <algorithm>
@@ -13,23 +14,6 @@ using Eigen::Isometry3d;
 using Eigen::Vector3d;
 using Eigen::VectorXcd;
 using Eigen::VectorXd;
-
-/// A vector of the plane as a polynomial, and its conjugate.
-struct Isotropic {
-  Polynomial z, w;
-};
-Isotropic operator+(const Isotropic& a, const Isotropic& b) {
-  return {a.z + b.z, a.w + b.w};
-}
-Isotropic operator-(const Isotropic& a, const Isotropic& b) {
-  return {a.z + scaled(b.z, -1), a.w + scaled(b.w, -1)};
-}
-Isotropic operator*(const Isotropic& a, const Isotropic& b) {
-  return {a.z * b.z, a.w * b.w};
-}
-Isotropic constant(Complex c) {
-  return {{{c, {}}}, {{std::conj(c), {}}}};
-}
 
 bool is_written(LoopKind kind) {
   switch (kind) {

@@ -1,0 +1,89 @@
+#include <momenta/dae/assembly/start_accelerations.h>
+#include <momenta/dae/kkt/bearing_friction.h>
+#include <momenta/dae/kkt/loop_solver.h>
+#include <momenta/dae/unheld_joints.h>
+
+#include <string>
+
+namespace momenta {
+namespace {
+
+[[noreturn]] void refuse_without_inertia(const Mechanism& mechanism, Evaluation<double>& e,
+                                         const Start& s, int rate) {
+  expect_no_lost_loop(mechanism, e);
+  throw SceneError(
+      mechanism.scene().where({}) +
+      (mechanism.scene().lagrangian ? "" : "the mechanism cannot move at its start: ") +
+      mechanism.no_inertia(rate, s.t, s.q.data()));
+}
+
+/// With forces of friction `tau` (nv), or null.
+void solve_for_accelerations(const Mechanism& mechanism, Evaluation<double>& e, Start& s,
+                             const double* tau) {
+  const auto no_inertia = [&](int rate) { refuse_without_inertia(mechanism, e, s, rate); };
+  if (mechanism.m() == 0) {
+    Eigen::VectorXd diagonal(mechanism.nv());
+    e.mass_diagonal(diagonal.data());
+    // Rounding may leave a pivot above zero of what has no inertia.
+    if (diagonal.allFinite() && !massless_joints(mechanism.tree(), diagonal, {}).empty())
+      no_inertia(-1);
+    if (!e.open_accelerations(s.t, s.q.data(), s.u.data(), s.udot.data()))
+      no_inertia(e.singular_joint());
+    return;
+  }
+  if (mechanism.kkt() == KktChoice::sweeps && !mechanism.dense_kkt()) {
+    const auto solver = make_loop_solver(mechanism, e);
+    solver->push(tau);
+    if (!solver->acceleration(s.t, s.q.data(), s.u.data(), nullptr, 0, 0, s.udot.data(),
+                              s.lambda.data()))
+      no_inertia(solver->singular_joint());
+    return;
+  }
+  const auto kkt = make_kkt(mechanism);
+  if (!kkt->factor(e, s.t, s.q.data(), fade_evaluation)) no_inertia(kkt->singular_joint());
+  e.move(s.u.data());
+  Eigen::VectorXd r(mechanism.nv()), g(mechanism.m());
+  e.joint_forces(s.q.data(), s.u.data(), nullptr, nullptr, r.data());
+  e.accelerations(g.data());
+  r = -r;
+  if (tau) r += Eigen::Map<const Eigen::VectorXd>(tau, mechanism.nv());
+  g = -g;
+  if (!kkt->solve(r.data(), g.data(), nullptr, s.udot.data(), s.lambda.data())) no_inertia(-1);
+}
+
+}  // namespace
+
+void expect_no_lost_loop(const Mechanism& mechanism, Evaluation<double>& e) {
+  if (const std::string lost = e.lost_loop(); !lost.empty())
+    throw SceneError(mechanism.scene().where({}) +
+                     "the mechanism cannot be assembled from these positions: " + lost +
+                     "; expected a start where it has both");
+}
+
+void start_accelerations(const Mechanism& mechanism, Evaluation<double>& e, Start& s) {
+  s.udot = Eigen::VectorXd::Zero(mechanism.nv());
+  s.lambda = Eigen::VectorXd::Zero(mechanism.m());
+  if (mechanism.nv() == 0) return;
+  e.place(s.t, s.q.data());
+  if (mechanism.has_forces_apart()) {
+    e.move(s.u.data());
+    if (const std::string formula = e.formula_without_value(); !formula.empty())
+      throw SceneError(formula);
+  }
+  const auto friction = bearing_friction(mechanism);
+  if (friction) {
+    const std::string joint = friction->undetermined(s.t, s.q.data(), s.u.data());
+    if (!joint.empty())
+      throw SceneError(mechanism.scene().where({}) + "joint '" + joint +
+                       "' has a bearing, and the force in it is not unique, as loop equations "
+                       "depend on each other: expected loops that tie less (momenta check names "
+                       "them), or no bearing");
+    if (!friction->at(s.t, s.q.data(), s.u.data()))
+      throw SceneError(mechanism.scene().where({}) + friction->failure());
+    e.push(friction->forces());
+  }
+  solve_for_accelerations(mechanism, e, s, friction ? friction->forces() : nullptr);
+  e.push(nullptr);
+}
+
+}  // namespace momenta

@@ -1,0 +1,18 @@
+#pragma once
+// What of a start follows from its positions and rates: accelerations u̇ and multipliers λ, by the
+// equations of motion with the loops' accelerations zero, Φ̈ = 0, friction in bearings counted.
+
+#include <momenta/dae/form/form.h>
+
+namespace momenta {
+
+/// Fills udot (nv) and lambda (m) of a start whose t, q and u are consistent. Of a mechanism
+/// without rates both are zero.
+/// @throws SceneError naming a joint without inertia, a formula without value, a force in a bearing
+/// that is not unique, or a loop without value
+void start_accelerations(const Mechanism& mechanism, Evaluation<double>& e, Start& s);
+
+/// @throws SceneError where a loop has no value at the pose that was evaluated last
+void expect_no_lost_loop(const Mechanism& mechanism, Evaluation<double>& e);
+
+}  // namespace momenta

@@ -1,0 +1,26 @@
+#pragma once
+// Vectors of a plane as polynomials, in isotropic coordinates: a complex number z, and in place of
+// its conjugate a number w that counts as independent.
+
+#include <momenta/dae/kinematics/polynomial_system.h>
+
+namespace momenta {
+
+/// A vector of the plane as a polynomial, and its conjugate.
+struct Isotropic {
+  Polynomial z, w;
+};
+inline Isotropic operator+(const Isotropic& a, const Isotropic& b) {
+  return {a.z + b.z, a.w + b.w};
+}
+inline Isotropic operator-(const Isotropic& a, const Isotropic& b) {
+  return {a.z + scaled(b.z, -1), a.w + scaled(b.w, -1)};
+}
+inline Isotropic operator*(const Isotropic& a, const Isotropic& b) {
+  return {a.z * b.z, a.w * b.w};
+}
+inline Isotropic constant(Complex c) {
+  return {{{c, {}}}, {{std::conj(c), {}}}};
+}
+
+}  // namespace momenta
