@@ -113,7 +113,7 @@ TEST(SpaceLoops, OfSixHingesInGeneralAreSixteen) {
     EXPECT_EQ(all.paths->infinite, 16) << k;
     EXPECT_EQ(all.paths->real % 2, 0);
     EXPECT_EQ(all.paths->real, static_cast<long>(all.all.size()));
-    expect_searched(scene, all, 200);
+    expect_searched(scene, all, 150);
     most = std::max(most, all.paths->real);
   }
   EXPECT_GE(most, 4);
@@ -192,7 +192,7 @@ TEST(SpaceLoops, OfAnArmWithAWristAreEight) {
     const Scene scene = ring(lines);
     const Assemblies all = all_of(scene);
     EXPECT_EQ(all.paths->finite, 8) << k;
-    expect_searched(scene, all, 200);
+    expect_searched(scene, all, 150);
   }
 }
 
@@ -200,19 +200,17 @@ TEST(SpaceLoops, OfAnArmWithAWristAreEight) {
 /// apart.
 TEST(SpaceLoops, WhoseLinesCrossOneByOneAreCounted) {
   std::mt19937 random(21);
-  for (int k = 0; k < 2; ++k) {
-    Vector3d corners[5];
-    for (Vector3d& corner : corners) corner = any_vector(random);
-    std::vector<Line> lines{{corners[0], any_vector(random)}};
-    for (int i = 0; i < 3; ++i) lines.push_back({corners[i], corners[i + 1] - corners[i]});
-    lines.push_back({corners[3], any_vector(random)});
-    lines.push_back({corners[4], any_vector(random)});
-    const Scene scene = ring(lines);
-    const Assemblies all = all_of(scene);
-    EXPECT_EQ(all.paths->paths, 40);
-    EXPECT_EQ(all.paths->finite, 16);
-    expect_searched(scene, all, 200);
-  }
+  Vector3d corners[5];
+  for (Vector3d& corner : corners) corner = any_vector(random);
+  std::vector<Line> lines{{corners[0], any_vector(random)}};
+  for (int i = 0; i < 3; ++i) lines.push_back({corners[i], corners[i + 1] - corners[i]});
+  lines.push_back({corners[3], any_vector(random)});
+  lines.push_back({corners[4], any_vector(random)});
+  const Scene scene = ring(lines);
+  const Assemblies all = all_of(scene);
+  EXPECT_EQ(all.paths->paths, 40);
+  EXPECT_EQ(all.paths->finite, 16);
+  expect_searched(scene, all, 150);
 }
 
 /// Four hinges, one of them held, lines through one point: two (as of a four-bar in a plane), by
@@ -300,44 +298,41 @@ Scene rssr(std::mt19937& random, int writing) {
 }
 
 TEST(SpaceLoops, OfACrankARodAndARockerAreTwo) {
-  for (const unsigned seed : {1u, 2u}) {
-    std::vector<double> angles[3];
-    for (const int writing : {0, 1, 2}) {
-      std::mt19937 random(seed);
-      const Scene scene = rssr(random, writing);
-      const Assemblies all = all_of(scene, {"J0"});
-      // Two pairs of angles of a universal joint are two poses.
-      EXPECT_EQ(all.paths->finite, writing == 2 ? 4 : 2) << writing;
-      EXPECT_EQ(all.paths->real, writing == 2 ? 4 : 2) << writing;
-      EXPECT_TRUE(all.paths->is_complete()) << writing;
-      const Mechanism mechanism(scene);
-      const int rocker =
-          mechanism.tree().bodies[static_cast<std::size_t>(mechanism.tree().carried_by("R"))].q;
-      for (const FoundAssembly& found : all.all) angles[writing].push_back(found.q[rocker]);
-      std::sort(angles[writing].begin(), angles[writing].end());
-      if (writing != 1) expect_searched(scene, all, 60, {"J0"});
-    }
-    ASSERT_EQ(angles[0].size(), 2u);
-    ASSERT_EQ(angles[1].size(), 2u);
-    ASSERT_EQ(angles[2].size(), 4u);
-    for (std::size_t k = 0; k < 2; ++k) {
-      EXPECT_NEAR(angles[0][k], angles[1][k], 1e-10);
-      EXPECT_NEAR(angles[0][k], angles[2][2 * k], 1e-10);
-    }
+  std::vector<double> angles[3];
+  for (const int writing : {0, 1, 2}) {
+    std::mt19937 random(1);
+    const Scene scene = rssr(random, writing);
+    const Assemblies all = all_of(scene, {"J0"});
+    // Two pairs of angles of a universal joint are two poses.
+    EXPECT_EQ(all.paths->finite, writing == 2 ? 4 : 2) << writing;
+    EXPECT_EQ(all.paths->real, writing == 2 ? 4 : 2) << writing;
+    EXPECT_TRUE(all.paths->is_complete()) << writing;
+    const Mechanism mechanism(scene);
+    const int rocker =
+        mechanism.tree().bodies[static_cast<std::size_t>(mechanism.tree().carried_by("R"))].q;
+    for (const FoundAssembly& found : all.all) angles[writing].push_back(found.q[rocker]);
+    std::sort(angles[writing].begin(), angles[writing].end());
+    if (writing != 1) expect_searched(scene, all, 60, {"J0"});
+  }
+  ASSERT_EQ(angles[0].size(), 2u);
+  ASSERT_EQ(angles[1].size(), 2u);
+  ASSERT_EQ(angles[2].size(), 4u);
+  for (std::size_t k = 0; k < 2; ++k) {
+    EXPECT_NEAR(angles[0][k], angles[1][k], 1e-10);
+    EXPECT_NEAR(angles[0][k], angles[2][2 * k], 1e-10);
   }
 }
 
 /// Slides among hinges: what a search finds, too.
 TEST(SpaceLoops, WithSlidesAreWhatASearchFinds) {
   std::mt19937 random(12);
-  for (const std::vector<std::size_t>& slides :
-       {std::vector<std::size_t>{0}, {2}, {1, 4}, {0, 2, 4}}) {
+  for (const std::vector<std::size_t>& slides : {std::vector<std::size_t>{2}, {1, 4}, {0, 2, 4}}) {
     std::vector<Line> lines = any_lines(random, 6);
     for (const std::size_t k : slides) lines[k].slides = true;
     const Scene scene = ring(lines);
     const Assemblies all = all_of(scene);
     EXPECT_EQ(all.paths->finite, slides.size() == 1 ? 16 : slides.size() == 2 ? 8 : 2);
-    expect_searched(scene, all, 300);
+    expect_searched(scene, all, 150);
   }
 }
 
