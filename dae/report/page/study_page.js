@@ -101,7 +101,7 @@ const costs = {
 // A ladder is judged along three more axes: what it does not see of the machine, and what its error hides.
 const furtherCosts = [
   {
-    title: "Error against evaluations", xTitle: "evaluations of the right-hand side or the residual", xUnit: "",
+    title: "Error against evaluations", xTitle: "evaluations of right-hand side or residual", xUnit: "",
     cost: (run) => run.counters.evaluations,
     caption: "The same runs without the speed of this machine; an implicit method's Jacobians are not among them.",
     yTitle: costs.yTitle, unit: costs.unit, value: costs.value, columns: [],
