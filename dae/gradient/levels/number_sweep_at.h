@@ -60,7 +60,7 @@ template <class Space, class S>
 class LoopNumbers {
   using Vector = typename Space::template Vector<S>;
   using Angular = decltype(cross(Vector{}, Vector{}));
-  static constexpr std::size_t axes = Space::dimension == 3 ? 2 : 3;
+  static constexpr int axes = Space::dimension == 3 ? 2 : 3;
 
  public:
   LoopNumbers(const LoopModel<Space>& model, Workspace<Space, S>& w)
@@ -88,8 +88,8 @@ class LoopNumbers {
       }
       s.w_a = angular_velocity(w_, l.a);
       s.w_b = angular_velocity(w_, l.axes_of_b());
-      for (std::size_t j = 0; j < axes; ++j) {
-        s.a[j] = to_ground(w_, l.a, l.axis_a[j]);
+      for (std::size_t j = 0; j < static_cast<std::size_t>(axes); ++j) {
+        if (l.n_axes > 0) s.a[j] = to_ground(w_, l.a, l.axis_a[j]);
         s.b[j] = to_ground(w_, l.axes_of_b(), l.axis_b[j]);
       }
       for (int j = 0; j < l.n_points; ++j, ++row) {
@@ -139,9 +139,10 @@ class LoopNumbers {
         given = (-l.per_length * l.given) * sigma[row];
         across = (0.5 * l.per_length) * sigma[row];
       } else {
-        for (int j = 0; j < l.n_points; ++j, ++row)
+        for (int j = 0; j < l.n_points && !l.is_tie; ++j)
           by_b[place_of(l.points, j)] +=
-              sigma[row] * (of_rates ? Vector(apart - cross(s.w_b, D)) : D);
+              sigma[row + j] * (of_rates ? Vector(apart - cross(s.w_b, D)) : D);
+        row += l.n_points;
         for (int j = 0; j < l.n_axes; ++j, ++row) {
           const auto [x, y] = l.axes[static_cast<std::size_t>(j)];
           const auto at_x = static_cast<std::size_t>(x), at_y = static_cast<std::size_t>(y);
@@ -160,13 +161,19 @@ class LoopNumbers {
                         : s.force;
       };
       if (l.is_coupler()) {
-        put.skip(static_cast<Eigen::Index>(2 * axes * (1 + axes)));
+        put.skip(2 * axes * (1 + axes));
       } else {
         put_in(l.a, end(l.a));
         put_in(l.b, -end(l.b));
-        for (std::size_t j = 0; j < axes; ++j) {
-          put_in(l.a, by_a[j]);
-          put_in(l.axes_of_b(), by_b[j]);
+        for (std::size_t j = 0; j < static_cast<std::size_t>(axes); ++j) {
+          if (l.n_axes > 0)
+            put_in(l.a, by_a[j]);
+          else
+            put.skip(axes);
+          if (l.n_axes > 0 || !l.is_tie)  // axes of the ground stay
+            put_in(l.axes_of_b(), by_b[j]);
+          else
+            put.skip(axes);
         }
       }
       put(per_length);
