@@ -4,7 +4,7 @@
 
 namespace momenta {
 
-void SolvedEquations::make() {
+void SolvedEquations::make() const {
   form_.reset(&dynamic_cast<DaeForm&>(*make_().release()));
   y_.resize(static_cast<std::size_t>(form_->size()));
   ydot_.resize(y_.size());
@@ -12,9 +12,8 @@ void SolvedEquations::make() {
 
 const JacobianPattern& SolvedEquations::pattern() const {
   if (!form_) {
-    auto& self = const_cast<SolvedEquations&>(*this);
-    self.make();
-    form_->start(0, self.y_.data(), self.ydot_.data());
+    make();
+    form_->start(0, y_.data(), ydot_.data());
     form_->local_jacobian().evaluate(0, y_.data(), ydot_.data(), 1);
   }
   return form_->local_jacobian().pattern();

@@ -28,12 +28,12 @@ class SolvedEquations final : public LocalJacobian {
   int version() const override { return form_->local_jacobian().version(); }
 
  private:
-  void make();
+  void make() const;
 
   Maker make_;
   const std::vector<double>& multipliers_;
-  std::unique_ptr<DaeForm> form_;  ///< null until asked for
-  std::vector<double> y_, ydot_;   ///< with multipliers
+  mutable std::unique_ptr<DaeForm> form_;  ///< null until asked for
+  mutable std::vector<double> y_, ydot_;   ///< with multipliers
 };
 
 }  // namespace momenta

@@ -17,6 +17,11 @@ std::string Tie::in_words() const {
          std::string(joint ? reading::name_of(joint->kind) : reading::name_of(loop->kind));
 }
 
+void refuse_in_space(const Mechanism& mechanism, Location at, const std::string& why) {
+  throw SceneError(mechanism.scene().where(at) +
+                   "its loops, in space, are not written as polynomials: " + why);
+}
+
 Pieces::Pieces(const Mechanism& mechanism, double t, const std::vector<Isometry3d>& poses,
                const std::vector<bool>& held)
     : mechanism_(mechanism), poses_(poses), number_(mechanism.tree().bodies.size() + 1) {

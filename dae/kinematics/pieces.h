@@ -36,6 +36,9 @@ struct Tie {
   Location at() const { return joint ? joint->at : loop->at; }
 };
 
+/// @throws SceneError: a mechanism in space that is not written as polynomials, and why
+[[noreturn]] void refuse_in_space(const Mechanism& mechanism, Location at, const std::string& why);
+
 class Pieces {
  public:
   /// At time t [s], in the pose `poses` of the bodies (poses_of_polynomials) that closes the loops.

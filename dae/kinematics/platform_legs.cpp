@@ -33,8 +33,7 @@ class LegReader {
 
  private:
   [[noreturn]] void refuse(Location at, const std::string& why) const {
-    throw SceneError(mechanism_.scene().where(at) +
-                     "its loops, in space, are not written as polynomials: " + why);
+    refuse_in_space(mechanism_, at, why);
   }
 
   void expect_known(const Tie& tie) const {

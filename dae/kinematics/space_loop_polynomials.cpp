@@ -30,7 +30,8 @@ struct Half {
   bool leads;                        ///< whether the one alone stands before the two
   DualProduct times;                 ///< by its L, from its side
   Span span;
-  double moment;  ///< of the two
+  Eigen::Matrix<double, 4, 8> parts;  ///< what a member of the span is made of
+  double moment;                      ///< of the two
 };
 
 Half half_of(const std::vector<LoopScrew>& screws, double length,
@@ -48,6 +49,7 @@ Half half_of(const std::vector<LoopScrew>& screws, double length,
   h.span.col(1) = a;
   h.span.col(2) = b;
   h.span.col(3) = times_from_left(a) * b;
+  h.parts = h.span.completeOrthogonalDecomposition().pseudoInverse();
   const Eigen::Vector4d values = Eigen::JacobiSVD<Span>(h.span).singularValues();
   h.moment = values[3] < dependent * values[0]
                  ? -1
@@ -84,8 +86,7 @@ class SpaceLoop final : public LoopPolynomials {
     } else {
       const auto h = static_cast<std::size_t>(met - halves_.begin());
       const std::array<Polynomial, 8> moved = moved_by(h);
-      const Eigen::Matrix<double, 4, 8> parts = inverse_of(h);
-      const auto part = [&](int k) { return combined(parts.row(k).transpose(), moved); };
+      const auto part = [&](int k) { return combined(halves_[h].parts.row(k).transpose(), moved); };
       equations.push_back(part(0) * part(3) + scaled(part(1) * part(2), -1));
     }
     std::vector<VariableGroup> groups(3);
@@ -137,8 +138,7 @@ class SpaceLoop final : public LoopPolynomials {
   const LoopScrew& screw(std::size_t k) const { return loop_.screws()[k]; }
 
   [[noreturn]] void refuse(Location at, const std::string& why) const {
-    throw SceneError(mechanism_.scene().where(at) +
-                     "its loops, in space, are not written as polynomials: " + why);
+    refuse_in_space(mechanism_, at, why);
   }
 
   TieChain known_chain() const {
@@ -196,10 +196,6 @@ class SpaceLoop final : public LoopPolynomials {
     return sum;
   }
 
-  Eigen::Matrix<double, 4, 8> inverse_of(std::size_t h) const {
-    return halves_[h].span.completeOrthogonalDecomposition().pseudoInverse();
-  }
-
   /// c and s of all six.
   std::array<Pair, 6> pairs_of(const VectorXcd& x) const {
     std::array<Pair, 6> pairs;
@@ -214,7 +210,7 @@ class SpaceLoop final : public LoopPolynomials {
       pairs[half.alone] = {c, s};
       const VectorXcd whole = x.segment(4, 8);
       const VectorXcd parts =
-          inverse_of(h).cast<Complex>() * (c * whole - s * (half.times.cast<Complex>() * whole));
+          half.parts.cast<Complex>() * (c * whole - s * (half.times.cast<Complex>() * whole));
       // (c, s) of the first times (c, s) of the second, a matrix of rank one.
       Eigen::Matrix2cd both;
       both << parts[0], parts[2], parts[1], parts[3];

@@ -293,8 +293,7 @@ std::vector<Chart> charts_of_study(const StudyResult& study) {
       {"error_cost", "Error against processor time", time, error, unit, processor_time, y}};
   if (!study.drift_study) {
     costs.push_back({"error_evaluations", "Error against evaluations",
-                     "evaluations of right-hand side or residual", error, unit, evaluations,
-                     y});
+                     "evaluations of right-hand side or residual", error, unit, evaluations, y});
     costs.push_back({"drift_cost", "Position drift against processor time", time, drift, drift_in,
                      processor_time, position_drift});
     costs.push_back({"energy_cost", "Energy error against processor time", time,

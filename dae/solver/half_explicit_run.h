@@ -39,7 +39,7 @@ struct HalfExplicitState {
 ///   name; first_step, a part of the span; Control, a tableau with exponents of step control
 ///   Stages(HalfExplicit&)
 ///   bool step(t, h, t1, from, to, counters)   (y_1, z) of `to` from `from`, g(t_1, y_1) = 0
-///   double error(from, to, h, measure)          square of the local error over its tolerance;
+///   double error(from, to, h, measure)        square of the local error over its tolerance;
 ///                                             `to` has its rates
 /// and where it has dense output, from accepted steps alone
 ///   bool between(t, h, t1, fraction, from, to, y)
