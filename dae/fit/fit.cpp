@@ -1,7 +1,7 @@
 #include <momenta/dae/fit/constrained_search.h>
 #include <momenta/dae/fit/fit.h>
 #include <momenta/dae/fit/least_squares_search.h>
-#include <momenta/dae/fit/start_record.h>
+#include <momenta/dae/fit/starts.h>
 #include <momenta/dae/fit/undetermined.h>
 #include <momenta/dae/kinematics/coordinate_named.h>
 
@@ -49,29 +49,14 @@ class Search {
       result_.why_not_before = error_.why();
     }
     look_at_conditions_before();
-    DrawnStarts starts(family_, request_.parameters, request_.seed);
-    for (int k = 0; k < request_.starts; ++k) {
-      if (request_.progress && !request_.progress(k, best_cost())) {
-        result_.stopped = true;
-        break;
-      }
-      const VectorXd from = starts.next();
-      const std::string key = "start " + std::to_string(k);
-      std::optional<FitStart> start = recalled<FitStart>(request_.journal, key, from);
-      if (!start) {
-        start = search(from);
-        if (request_.journal) request_.journal->add(key, record_of_start(*start));
-      }
-      if (start->to.size() > 0 && (!has_best_ || is_better(*start, result_.starts[result_.best]))) {
-        has_best_ = true;
-        result_.best = result_.starts.size();
-      }
-      result_.starts.push_back(std::move(*start));
-    }
-    if (!has_best_)
-      throw SceneError(result_.starts.empty() ? "the search was stopped before its first start"
-                                              : "no start is possible; the first is not, as " +
-                                                    result_.starts.front().why);
+    take_starts(
+        family_, request_, result_,
+        [this](int k, const VectorXd& from) -> std::optional<FitStart> {
+          result_.stopped = request_.progress && !request_.progress(k, best_cost());
+          if (result_.stopped) return std::nullopt;
+          return search(from);
+        },
+        is_better);
     finish();
     return std::move(result_);
   }
@@ -109,7 +94,9 @@ class Search {
     if (a_keeps != b_keeps) return a_keeps;
     return a_keeps ? a.cost < b.cost : a.violation < b.violation;
   }
-  double best_cost() const { return has_best_ ? result_.starts[result_.best].cost : INFINITY; }
+  double best_cost() const {
+    return has_best(result_) ? result_.starts[result_.best].cost : INFINITY;
+  }
 
   void look_at_conditions_before() {
     if (conditions_.size() == 0) return;
@@ -265,7 +252,6 @@ class Search {
   WantedError error_;
   SweptParts parts_;
   KeptConditions conditions_;
-  bool has_best_ = false;
   std::string refused_;  ///< why the last step of this start that was taken back was
   FitResult result_;
 };

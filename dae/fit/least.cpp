@@ -1,7 +1,6 @@
 #include <momenta/core/text/near_name.h>
 #include <momenta/dae/fit/least.h>
-#include <momenta/dae/fit/start_record.h>
-#include <momenta/dae/study/journal.h>
+#include <momenta/dae/fit/starts.h>
 
 #include <algorithm>
 #include <cmath>
@@ -34,27 +33,9 @@ class LeastSearch {
     result_.seed = request_.seed;
     result_.own = family_.own();
     look_before();
-    DrawnStarts starts(family_, request_.parameters, request_.seed);
-    for (int k = 0; k < request_.starts && !result_.stopped; ++k) {
-      const VectorXd from = starts.next();
-      const std::string key = "start " + std::to_string(k);
-      std::optional<LeastStart> start = recalled<LeastStart>(request_.journal, key, from);
-      if (!start) {
-        start = search(k, from);
-        if (request_.journal && !result_.stopped)
-          request_.journal->add(key, record_of_start(*start));
-      }
-      if (start->to.size() > 0 && (!has_best_ || is_better(*start, result_.starts[result_.best]))) {
-        has_best_ = true;
-        result_.best = result_.starts.size();
-      }
-      result_.starts.push_back(std::move(*start));
-    }
-    if (!has_best_)
-      throw SceneError(result_.starts.front().to.size() == 0
-                           ? "no start is possible; the first is not, as " +
-                                 result_.starts.front().why
-                           : "the search was stopped before its first start");
+    take_starts(
+        family_, request_, result_,
+        [this](int k, const VectorXd& from) { return std::optional(search(k, from)); }, is_better);
     finish();
     return std::move(result_);
   }
@@ -158,7 +139,8 @@ class LeastSearch {
     LeastStart start;
     start.from = from;
     refused_.clear();
-    const double least_so_far = has_best_ ? result_.starts[result_.best].value : WantedErrors::none;
+    const double least_so_far =
+        has_best(result_) ? result_.starts[result_.best].value : WantedErrors::none;
     const auto going = [&] {
       result_.stopped |= request_.progress && !request_.progress(number, least_so_far);
       return !result_.stopped;
@@ -241,8 +223,7 @@ class LeastSearch {
   BoundedFunction bounded_;
   KeptConditions conditions_;
   std::vector<std::size_t> curves_;  ///< parts of which result_.curves are
-  bool has_best_ = false;
-  std::string refused_;  ///< why the last step of this start that was taken back was
+  std::string refused_;              ///< why the last step of this start that was taken back was
   LeastResult result_;
 };
 

@@ -1,4 +1,4 @@
-#include <momenta/core/scene/toml/toml_values.h>
+#include <momenta/core/scene/toml/number_at.h>
 #include <momenta/core/scene/toml/write_scene.h>
 #include <momenta/core/text/near_name.h>
 #include <momenta/dae/fit/parametric_mechanism.h>
@@ -9,12 +9,6 @@
 
 namespace momenta {
 namespace {
-
-const ParameterSpec* parameter_of(const Scene& scene, const std::string& name) {
-  const auto found = std::find_if(scene.parameters.begin(), scene.parameters.end(),
-                                  [&](const ParameterSpec& p) { return p.name == name; });
-  return found == scene.parameters.end() ? nullptr : &*found;
-}
 
 /// Where the line `at.line` has its character `at.column` [byte]; npos: nowhere.
 std::size_t byte_of(const std::string& text, Location at) {
@@ -44,7 +38,7 @@ bool put_number(std::string& text, Location at, double number) {
     if (end == std::string::npos) return false;
     ++end;
   } else {
-    end = text.find_first_of(" \t\r\n,}#", begin);
+    end = text.find_first_of(" \t\r\n,]}#", begin);
     if (end == std::string::npos) end = text.size();
   }
   text.replace(begin, end - begin, reading::digits(number));
@@ -62,23 +56,33 @@ ParametricMechanism::ParametricMechanism(std::string text, std::string file,
       names_(std::move(names)),
       options_(options) {
   const Scene own = parse_scene(text_, file_, fixed_);
-  std::vector<std::string_view> known;
-  for (const ParameterSpec& p : own.parameters) known.push_back(p.name);
   own_.resize(static_cast<Eigen::Index>(names_.size()));
   for (std::size_t i = 0; i < names_.size(); ++i) {
-    const ParameterSpec* p = parameter_of(own, names_[i]);
-    if (!p) {
-      const std::string near = reading::did_you_mean(names_[i], known);
-      throw std::invalid_argument(
-          reading::in_quotes(names_[i]) + ": the scene has no parameter of that name" +
-          (!near.empty()   ? near
-           : known.empty() ? ", expected a table [parameters] with numbers to vary"
-                           : ", expected one of: " + reading::listed(known)));
-    }
     if (std::count(names_.begin(), names_.end(), names_[i]) > 1)
       throw std::invalid_argument(reading::in_quotes(names_[i]) + " is varied twice");
-    own_[static_cast<Eigen::Index>(i)] = p->value;
+    own_[static_cast<Eigen::Index>(i)] = own_number(own, names_[i]);
   }
+}
+
+/// Of a parameter, or at a place of the text.
+double ParametricMechanism::own_number(const Scene& own, const std::string& name) const {
+  std::vector<std::string_view> known;
+  for (const ParameterSpec& p : own.parameters) {
+    if (p.name == name) return p.value;
+    known.push_back(p.name);
+  }
+  if (name.find('.') != std::string::npos) {
+    const auto fixed = std::find_if(fixed_.rbegin(), fixed_.rend(),
+                                    [&](const Setting& s) { return s.place == name; });
+    return fixed != fixed_.rend() ? fixed->value : numbers_of(text_, file_)(name);
+  }
+  const std::string near = reading::did_you_mean(name, known);
+  throw std::invalid_argument(
+      reading::in_quotes(name) + ": the scene has no parameter of that name" +
+      (!near.empty()   ? near
+       : known.empty() ? ", expected a number by its place, as in body.crank.mass, or a table "
+                         "[parameters] with numbers to vary"
+                       : ", expected one of: " + reading::listed(known)));
 }
 
 std::vector<Setting> ParametricMechanism::settings(const Eigen::VectorXd& values) const {
@@ -99,25 +103,18 @@ std::unique_ptr<Mechanism> ParametricMechanism::at(const Eigen::VectorXd& values
 std::string ParametricMechanism::text(const Eigen::VectorXd& values) const {
   std::string text = text_;
   bool put = true;
-  for (const Setting& setting : settings(values)) {
-    const reading::Value root = reading::parse_toml(text, file_);
-    const reading::Value* parameters = reading::find(root, "parameters");
-    const reading::Value* value = parameters ? reading::find(*parameters, setting.place) : nullptr;
-    put = put && value && put_number(text, value->at, setting.value);
-  }
+  for (const Setting& setting : settings(values)) try {
+      put = put && put_number(text, location_of(text, file_, setting.place), setting.value);
+    } catch (const std::invalid_argument&) {  // the text leaves it out
+      put = false;
+    }
+  const std::string meant = scene_text(scene(values));
   // What was put in is read again: a text that does not say the same is written anew.
-  const auto same = [&] {
-    const Scene read = parse_scene(text, file_, {}), meant = scene(values);
-    return std::equal(read.parameters.begin(), read.parameters.end(), meant.parameters.begin(),
-                      meant.parameters.end(), [](const ParameterSpec& a, const ParameterSpec& b) {
-                        return a.name == b.name && a.value == b.value;
-                      });
-  };
   try {
-    if (put && same()) return text;
+    if (put && scene_text(parse_scene(text, file_, {})) == meant) return text;
   } catch (const SceneError&) {  // no scene: written anew
   }
-  return scene_text(scene(values));
+  return meant;
 }
 
 }  // namespace momenta

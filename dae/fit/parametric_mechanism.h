@@ -16,8 +16,8 @@ namespace momenta {
 class ParametricMechanism {
  public:
   /// `text`: a scene in TOML, which messages call `file`; `fixed`: numbers that are the same for
-  /// all θ; `names`: of [parameters], in the order of θ. @throws std::invalid_argument for names
-  /// that the scene does not have, one sentence
+  /// all θ; `names`: of [parameters], or places (setting.h), in the order of θ. @throws
+  /// std::invalid_argument for names that the scene does not have, one sentence
   ParametricMechanism(std::string text, std::string file, std::vector<Setting> fixed,
                       std::vector<std::string> names, MechanismOptions options = {});
 
@@ -34,6 +34,7 @@ class ParametricMechanism {
 
  private:
   std::vector<Setting> settings(const Eigen::VectorXd& values) const;
+  double own_number(const Scene& own, const std::string& name) const;
   std::string text_, file_;
   std::vector<Setting> fixed_;
   std::vector<std::string> names_;

@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 #include <tuple>
 
@@ -127,31 +128,54 @@ struct Asked {
 
 void Asked::forward() {
   const RunSettings& s = result.settings;
-  Functional functional(request.of, mechanism, result.variables, others);
+  std::optional<Functional> functional;
+  if (!request.of.empty()) functional.emplace(request.of, mechanism, result.variables, others);
+  std::vector<std::unique_ptr<Functional>> outputs;
+  for (const std::string& formula : request.outputs)
+    outputs.push_back(std::make_unique<Functional>(formula, mechanism, result.variables, others));
   const MatrixXd tangents_at_start = at_start();
-  for (std::string& remark : corners(mechanism.scene(), functional.corner()))
+  for (std::string& remark :
+       corners(mechanism.scene(), functional ? functional->corner() : std::string()))
     result.remarks.push_back(std::move(remark));
   FormTangents tangents(mechanism, form, others);
   const auto directions = static_cast<int>(result.variables.size());
-  TangentSystem system(form, tangents, request.integral ? &functional : nullptr, directions);
+  TangentSystem system(form, tangents, request.integral ? &*functional : nullptr, directions);
   const std::vector<double> y0 = system.initial(form.initial(start), tangents_at_start);
   IntegrationOptions integration = options();
   integration.rtol *= system.tolerance_factor();
   integration.atol *= system.tolerance_factor();
-  std::vector<double> times;
-  const int samples = request.trajectory ? s.samples : 1;
-  for (int i = 0; i <= samples; ++i) times.push_back(s.end_time * i / samples);
+  std::vector<double> times = request.times;
+  if (!outputs.empty()) {
+    if (times.front() > start.t) times.insert(times.begin(), start.t);
+    result.outputs.resize(static_cast<Eigen::Index>(request.times.size()),
+                          static_cast<Eigen::Index>(outputs.size()));
+  } else {
+    const int samples = request.trajectory ? s.samples : 1;
+    for (int i = 0; i <= samples; ++i) times.push_back(s.end_time * i / samples);
+  }
   for (const Column& c : mechanism.coordinate_columns()) result.columns.push_back(c.name);
   for (const Column& c : mechanism.rate_columns()) result.columns.push_back(c.name);
   Observer observer;
   TangentSystem::Motion motion;
   std::string lost;
-  if (request.trajectory)
+  if (request.trajectory || !outputs.empty())
     observer.sample = [&](double t, const double* y, const double*) {
+      if (!outputs.empty() && t < request.times.front()) return true;
       const Looking looking(system);
       if (!system.motion(t, y, motion)) {
         lost = system.failure();
         return false;
+      }
+      if (!outputs.empty()) {
+        const auto row = static_cast<Eigen::Index>(result.output_slopes.size());
+        MatrixXd& slopes = result.output_slopes.emplace_back(result.outputs.cols(), directions);
+        VectorXd by;
+        for (Eigen::Index k = 0; k < slopes.rows(); ++k) {
+          result.outputs(row, k) = (*outputs[static_cast<std::size_t>(k)])(
+              t, motion.q, motion.u, motion.dq, motion.du, by);
+          slopes.row(k) = by.transpose();
+        }
+        return true;
       }
       MatrixXd& d = result.tangents.emplace_back(motion.q.size() + motion.u.size(), directions);
       d << motion.dq, motion.du;
@@ -168,10 +192,10 @@ void Asked::forward() {
   if (request.integral) {
     result.value = system.integral(run.y.data());
     result.gradient = system.integral_tangents(run.y.data());
-  } else {
+  } else if (functional) {
     if (!system.motion(run.end_time, run.y.data(), motion)) throw none(system.failure());
     result.value =
-        functional(run.end_time, motion.q, motion.u, motion.dq, motion.du, result.gradient);
+        (*functional)(run.end_time, motion.q, motion.u, motion.dq, motion.du, result.gradient);
   }
 }
 
@@ -236,7 +260,18 @@ GradientResult gradient(const SceneText& scene, const GradientRequest& request) 
   s.when_stiff.clear();
   if (s.integrator.empty()) s.integrator = default_integrator(s.form, s.rtol);
   expect_differentiable(s, mechanism);
-  const std::string refused = no_adjoint(s, mechanism, request.trajectory);
+  if (!request.outputs.empty()) {
+    if (request.of.empty() && request.integral)
+      throw std::invalid_argument("an integral without its formula; expected one");
+    if (request.times.empty() || !std::is_sorted(request.times.begin(), request.times.end()) ||
+        request.times.front() < 0)
+      throw std::invalid_argument(
+          "times of the outputs are missing, before the start or not in their order; expected "
+          "ascending times from 0 on");
+    s.end_time = request.times.back();
+  }
+  const std::string refused =
+      no_adjoint(s, mechanism, request.trajectory || !request.outputs.empty());
   if (request.mode == GradientMode::adjoint && !refused.empty())
     throw std::invalid_argument(refused);
   result.adjoint = request.mode == GradientMode::adjoint ||
@@ -269,8 +304,9 @@ GradientResult gradient(const SceneText& scene, const GradientRequest& request) 
                      "and derivatives along the motion");
   for (std::size_t j = 0; j < result.variables.size(); ++j) {
     const RunVariable& v = result.variables[j];
-    if (std::abs(result.gradient[static_cast<Eigen::Index>(j)]) * v.size <=
-        effect * std::abs(result.value))
+    if (result.gradient.size() > 0 &&
+        std::abs(result.gradient[static_cast<Eigen::Index>(j)]) * v.size <=
+            effect * std::abs(result.value))
       result.without_effect.push_back(v.name);
   }
   return result;

@@ -37,11 +37,15 @@ GradientMode gradient_mode(const std::string& name);
 
 /// What is asked.
 struct GradientRequest {
-  std::string of;                               ///< g, a formula of names of trajectory.csv
-  bool integral = false;                        ///< ∫ g dt over the run; else g at its end
-  std::vector<std::string> by;                  ///< θ: parameters, "a"; start values, "O.q", "O.u"
-  RunSettings settings;                         ///< `samples`: of the derivatives of the trajectory
-  bool trajectory = false;                      ///< they are kept: forward alone has them
+  std::string of;               ///< g, a formula of names of trajectory.csv; empty: `outputs` alone
+  bool integral = false;        ///< ∫ g dt over the run; else g at its end
+  std::vector<std::string> by;  ///< θ: parameters, "a"; start values, "O.q", "O.u"
+  RunSettings settings;         ///< `samples`: of the derivatives of the trajectory
+  bool trajectory = false;      ///< they are kept: forward alone has them
+  /// Formulas like g, to be taken at `times` with their derivatives: forward alone, in the place of
+  /// the trajectory.
+  std::vector<std::string> outputs;
+  std::vector<double> times;  ///< of `outputs`, ascending from 0 on; the last ends the run [s]
   GradientMode mode = GradientMode::automatic;  ///< forward, or one sweep back
   double max_cpu_seconds = 0;                   ///< 0: none
   /// Called after each step with the time reached; false ends it.
@@ -68,6 +72,8 @@ struct GradientResult {
   std::vector<double> times;         ///< [s]; of `trajectory`
   /// At each time dq, du by θ: columns × variables.
   std::vector<Eigen::MatrixXd> tangents;
+  Eigen::MatrixXd outputs;                     ///< times × outputs, as asked
+  std::vector<Eigen::MatrixXd> output_slopes;  ///< at each time: outputs × variables
 };
 
 /// @throws std::invalid_argument for what is asked; SceneError where the start or the run has no

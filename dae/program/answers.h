@@ -89,10 +89,12 @@ struct EffortOptions {
 };
 int effort(const Options& o, const EffortOptions& e);
 struct FitOptions {
-  std::string vary;               ///< NAME=FROM:TO, comma-separated
-  std::string sweep;              ///< a coordinate; empty: a run
-  std::filesystem::path to;       ///< the file of wanted poses; empty: wanted.csv beside the scene
-  std::string least;              ///< a formula of the motion in place of wanted poses; empty: none
+  std::string vary;   ///< NAME=FROM:TO, comma-separated
+  std::string sweep;  ///< a coordinate; empty: a run
+  /// The file of wanted poses, or without `sweep` of a measured motion; empty: wanted.csv or
+  /// measured.csv beside the scene.
+  std::filesystem::path to;
+  std::string least;              ///< a formula of the motion in place of a file; empty: none
   std::vector<std::string> keep;  ///< conditions
   std::string over;               ///< FROM:TO of the swept coordinate; empty: a turn
   std::optional<int> poses;

@@ -37,18 +37,23 @@ std::function<bool(int, double)> search_progress(const Options& o, ProgressLine&
   };
 }
 
-ShownSearch shown_search(const Options& o, const ParametricMechanism& family,
-                         const FitResult& found) {
-  constexpr int frames = 240;
-  const FitPicture picture = fit_picture(family, found, frames);
-  ShownSearch shown{{}, picture.first};
-  if (film_intervals_of(*picture.mechanism, o, 1) >= frames) {
-    shown.study.motions.push_back(motion_of(*picture.mechanism, picture.film));
-    shown.study.motions.back().run = -1;
+StudyResult shown_search(const Options& o, const FitPicture& picture, int frames,
+                         const std::string& name) {
+  StudyResult shown;
+  if (film_intervals_of(*picture.mechanism, o, 1) >= frames && !picture.film.frames.empty()) {
+    shown.motions.push_back(motion_of(*picture.mechanism, picture.film));
+    shown.motions.back().run = -1;
   }
-  describe(shown.study, o, *picture.mechanism, assemble(*picture.mechanism, Assembled::rates));
-  shown.study.scene = found.scene;
+  describe(shown, o, *picture.mechanism, assemble(*picture.mechanism, Assembled::rates));
+  shown.scene = name;
   return shown;
+}
+
+SceneText run_text(const Options& o) {
+  SceneText scene{reading::text_of(o.scene), o.scene.string(), settings_of(o),
+                  mechanism_options(o)};
+  scene.options.cut = CutChoice::scene;
+  return scene;
 }
 
 int fit(const Options& o, const FitOptions& options) {
@@ -57,13 +62,9 @@ int fit(const Options& o, const FitOptions& options) {
                                 ": parameters are varied in scenes of TOML alone, at their own "
                                 "start; expected a .toml file without --at");
   expect_own_results(o.out, "fit.csv");
-  if (options.sweep.empty() && options.least.empty())
-    throw std::invalid_argument(
-        "expected --sweep NAME, the coordinate that moves the mechanism, or --least FORMULA of a "
-        "run");
   if (!options.to.empty() && !options.least.empty())
     throw std::invalid_argument(
-        "found both --to and --least; expected wanted poses or a formula that is to be least");
+        "found both --to and --least; expected a file or a formula that is to be least");
   watch_signals();
   FitRequest request;
   request.sweep = options.sweep;
@@ -78,6 +79,8 @@ int fit(const Options& o, const FitOptions& options) {
   const ParametricMechanism family(reading::text_of(o.scene), o.scene.string(), settings_of(o),
                                    names, {.algebra = mechanism_options(o).algebra});
   if (!options.least.empty()) return least_verb(o, options, std::move(request.parameters), family);
+  if (options.sweep.empty())
+    return identify_verb(o, options, std::move(request.parameters), family);
   const std::filesystem::path file =
       options.to.empty() ? o.scene.parent_path() / "wanted.csv" : options.to;
   const WantedPoses wanted = read_wanted(file, *family.at(family.own()), options.sweep);
@@ -96,12 +99,14 @@ int fit(const Options& o, const FitOptions& options) {
   json["environment"] = environment_json(environment());
   const std::string text = json.dump(2) + "\n";
   if (!o.out.empty()) {
-    const ShownSearch shown = shown_search(o, family, result);
+    constexpr int frames = 240;
+    const FitPicture picture = fit_picture(family, result, frames);
+    const StudyResult shown = shown_search(o, picture, frames, result.scene);
     const bool written =
         write_results({{o.out / "fit.csv", fit_csv(result)},
                        {o.out / "fit.json", text},
                        {o.out / "fitted.toml", family.text(result.found)},
-                       {o.out / "index.html", fit_page(shown.study, result, shown.first)}});
+                       {o.out / "index.html", fit_page(shown, result, picture.first)}});
     close(journal.get(), result.starts.size(), written && !result.stopped, o);
     if (!written) return run_failed;
   }

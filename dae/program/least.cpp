@@ -30,9 +30,7 @@ int least_verb(const Options& o, const FitOptions& options, std::vector<FittedPa
     if (!options.over.empty() || options.poses || options.rate)
       throw std::invalid_argument(
           "--over, --poses and --rate are of a motion that is swept; expected --sweep NAME");
-    request.scene = {reading::text_of(o.scene), o.scene.string(), settings_of(o),
-                     mechanism_options(o)};
-    request.scene.options.cut = CutChoice::scene;
+    request.scene = run_text(o);
     request.settings = run_settings(o, request.scene.scene().run);
   }
   ProgressLine line(o.quiet);
@@ -55,9 +53,11 @@ int least_verb(const Options& o, const FitOptions& options, std::vector<FittedPa
       fitted.found = result.found;
       fitted.swept = *result.swept;
       fitted.scene = result.scene;
-      const ShownSearch shown = shown_search(o, family, fitted);
+      constexpr int frames = 240;
+      const FitPicture picture = fit_picture(family, fitted, frames);
+      const StudyResult shown = shown_search(o, picture, frames, result.scene);
       files.push_back({o.out / "fit.csv", least_csv(result)});
-      files.push_back({o.out / "index.html", least_page(shown.study, result, shown.first)});
+      files.push_back({o.out / "index.html", least_page(shown, result, picture.first)});
     }
     const bool written = write_results(files);
     close(journal.get(), result.starts.size(), written && !result.stopped, o);

@@ -1,5 +1,6 @@
 #pragma once
-// What `fit` does alike for wanted poses and for a formula that is to be least.
+// What `fit` does alike for wanted poses, for a measured motion and for a formula that is to be
+// least.
 
 #include <momenta/dae/report/fit_picture.h>
 
@@ -14,6 +15,11 @@ namespace momenta::program {
 
 /// The way that is asked for.
 SweptWay way_of(const FitOptions& options);
+/// The scene as text, of runs: integrated as it is written.
+SceneText run_text(const Options& o);
+/// `fit` with a measured motion.
+int identify_verb(const Options& o, const FitOptions& options,
+                  std::vector<FittedParameter> parameters, const ParametricMechanism& family);
 /// `fit --least`
 int least_verb(const Options& o, const FitOptions& options, std::vector<FittedParameter> parameters,
                const ParametricMechanism& family);
@@ -23,13 +29,9 @@ int least_verb(const Options& o, const FitOptions& options, std::vector<FittedPa
 std::function<bool(int, double)> search_progress(const Options& o, ProgressLine& line, int starts,
                                                  const std::string& what);
 
-/// What the page shows: the mechanism found and the one before. `first` as of FitPicture.
-struct ShownSearch {
-  StudyResult study;
-  double first = 0;
-};
-/// Of `found`, its parameters, swept coordinate, wanted poses and places are taken.
-ShownSearch shown_search(const Options& o, const ParametricMechanism& family,
-                         const FitResult& found);
+/// What the page shows: the mechanism found and the one before, `frames` of them. `name`: of the
+/// scene.
+StudyResult shown_search(const Options& o, const FitPicture& picture, int frames,
+                         const std::string& name);
 
 }  // namespace momenta::program

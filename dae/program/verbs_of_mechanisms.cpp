@@ -216,21 +216,21 @@ Verb add_effort(CLI::App& app, Options& o) {
 
 Verb add_fit(CLI::App& app, Options& o) {
   const auto own = std::make_shared<FitOptions>();
-  CLI::App* verb =
-      app.add_subcommand("fit", "Parameters for which a mechanism does what is wanted");
+  CLI::App* verb = app.add_subcommand(
+      "fit", "Parameters for which a mechanism does what is wanted, or was measured");
   verb->footer("Example: momenta fit examples/straight_line/scene.toml --vary reach --sweep O");
   add_scene(*verb, o);
   for (const char* unused :
        {"--kkt", "--cut", "--at", "--loops", "--free-root", "--control", "--key"})
     verb->remove_option(verb->get_option(unused));
-  verb->add_option("--vary", own->vary, "Numbers of [parameters], within A=FROM:TO")
+  verb->add_option("--vary", own->vary, "Numbers of the scene, within A=FROM:TO")
       ->type_name("NAME,...")
       ->required();
-  verb->add_option("--sweep", own->sweep, "What moves it (default, of --least: a run)")
+  verb->add_option("--sweep", own->sweep, "The coordinate that moves it (default: a run)")
       ->type_name("NAME");
   verb->add_option("--to", own->to,
-                   "Wanted, a line a pose, columns as in move.csv (default: wanted.csv beside the "
-                   "scene)")
+                   "CSV: wanted, columns as in move.csv; without --sweep measured, as in "
+                   "trajectory.csv (default: wanted.csv, measured.csv beside the scene)")
       ->type_name("FILE");
   verb->add_option("--least", own->least,
                    "In place of it: max, min, mean, integral, first, last of formulas of the "

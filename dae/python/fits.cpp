@@ -1,7 +1,10 @@
-// Parameters for which a mechanism does what is wanted, or a functional of its motion is least.
+// Parameters for which a mechanism does what is wanted or was measured, or a functional of its
+// motion is least.
 
+#include <momenta/dae/fit/identification.h>
 #include <momenta/dae/fit/least.h>
 #include <momenta/dae/report/fit_report.h>
+#include <momenta/dae/report/identification_report.h>
 #include <momenta/dae/report/least_report.h>
 
 #include "progress.h"
@@ -23,9 +26,8 @@ py::dict fit(const Bench& b, const Names& vary, const std::string& sweep, const 
   const std::string file = b.mechanism->scene().file,
                     text = b.source.empty() ? toml_of(b) : b.source;
   if (to.empty() == least.empty())
-    throw py::value_error("fit: expected either `to`, a file of wanted poses, or `least`");
-  if (sweep.empty() && least.empty())
-    throw py::value_error("fit: expected `sweep`, the coordinate that moves the mechanism");
+    throw py::value_error(
+        "fit: expected either `to`, a file of wanted poses or of a measured motion, or `least`");
   std::vector<FittedParameter> parameters;
   Names names;
   for (const std::string& one : vary) {
@@ -40,17 +42,21 @@ py::dict fit(const Bench& b, const Names& vary, const std::string& sweep, const 
     return progress(static_cast<double>(start) / starts, "fit");
   };
   std::string json, found;
+  SceneText scene{text, file, b.set, b.mechanism->options()};
+  scene.options.cut = CutChoice::scene;
+  const auto settings = [&] {
+    const RunArguments asked{form, integrator, gauge,           rtol,           atol, step, end, {},
+                             0.8,  project,    baumgarte_alpha, baumgarte_beta, beta, 0};
+    return asked.settings(b.mechanism->scene().run);
+  };
   if (!least.empty()) {
-    RunArguments asked{form, integrator, gauge,           rtol,           atol, step, end, {},
-                       0.8,  project,    baumgarte_alpha, baumgarte_beta, beta, 0};
     LeastRequest request;
     request.parameters = parameters;
     request.least = least;
     request.keep = keep;
     if (!sweep.empty()) request.way = way;
-    request.scene = {text, file, b.set, b.mechanism->options()};
-    request.scene.options.cut = CutChoice::scene;
-    request.settings = asked.settings(b.mechanism->scene().run);
+    request.scene = scene;
+    request.settings = settings();
     request.starts = starts;
     request.seed = seed;
     request.most_iterations = iterations;
@@ -58,6 +64,22 @@ py::dict fit(const Bench& b, const Names& vary, const std::string& sweep, const 
     progress.during([&] {
       const LeastResult result = momenta::least(family, request);
       json = least_json(result).dump();
+      found = family.text(result.found);
+    });
+  } else if (sweep.empty()) {
+    if (!keep.empty()) throw py::value_error("fit: `keep` does not go with a measured motion");
+    IdentificationRequest request;
+    request.parameters = parameters;
+    request.scene = scene;
+    request.settings = settings();
+    request.starts = starts;
+    request.seed = seed;
+    request.most_iterations = iterations;
+    request.progress = going;
+    const MeasuredMotion measured = read_measured(to, Mechanism(scene.scene(), scene.options));
+    progress.during([&] {
+      const Identification result = identify(family, measured, request);
+      json = identification_json(result).dump();
       found = family.text(result.found);
     });
   } else {
@@ -93,11 +115,11 @@ void add_fit(py::class_<Bench, BenchPtr>& mechanism) {
       "gauge"_a = "", "rtol"_a = 1e-8, "atol"_a = py::none(), "step"_a = py::none(),
       "end"_a = py::none(), "project"_a = py::none(), "baumgarte_alpha"_a = 0.0,
       "baumgarte_beta"_a = 0.0, "beta"_a = 0.0, "progress"_a = py::none(),
-      "Numbers of [parameters] for which the mechanism does what is wanted, as a dict with the "
-      "keys "
-      "of fit.json, and scene_text: the scene with these numbers. `vary`: 'NAME' or "
-      "'NAME=FROM:TO'. `to`: a file of wanted poses; or `least`: a formula of the motion that is "
-      "to be least, of a motion by `sweep` over (from, to) [rad or m] in so many `poses` at a "
+      "Numbers of the scene for which the mechanism does what is wanted or was measured, as a dict "
+      "with the keys of fit.json, and scene_text: the scene with these numbers. `vary`: 'NAME' or "
+      "'NAME=FROM:TO'. `to`: a file of wanted poses, or, without `sweep`, of a measured motion; or "
+      "`least`: a formula of the motion that is to be least, of a motion by `sweep` over (from, "
+      "to) [rad or m] in so many `poses` at a "
       "`rate`, or, without `sweep`, of a run. `keep`: conditions, 'a + d <= b + c', "
       "'C.transmission >= 0.7'. Other arguments are those of gradient(). Raises SceneError where "
       "no start is possible, ValueError for what is asked.");

@@ -1,5 +1,6 @@
 #include <momenta/dae/fit/swept_poses.h>
 #include <momenta/dae/report/fit_picture.h>
+#include <momenta/dae/study/run_form.h>
 
 #include <algorithm>
 #include <cmath>
@@ -125,14 +126,62 @@ void common_places(SweptPoses& after, SweptPoses* before, int frames, std::vecto
   q = std::move(poses);
 }
 
+/// The mechanism, and the one before where it has poses, in one picture. Frames from `first` on,
+/// `every` apart.
+FitPicture overlaid(Scene scene, const Mechanism& after, const std::vector<VectorXd>& q,
+                    const Mechanism* before, const std::vector<VectorXd>& q_before, double first,
+                    double every) {
+  scene.forces.clear();
+  if (!q_before.empty()) Renamed(before_mark).add(before->scene(), scene);
+  FitPicture picture;
+  picture.mechanism = std::make_unique<Mechanism>(std::move(scene), MechanismOptions{});
+  std::map<std::string, std::size_t> place;
+  const std::vector<Column> columns = picture.mechanism->coordinate_columns();
+  for (std::size_t i = 0; i < columns.size(); ++i) place[columns[i].name] = i;
+  const auto put = [&](const Mechanism& from, const std::string& with, const VectorXd& pose,
+                       std::vector<double>& frame) {
+    const std::vector<Column> own = from.coordinate_columns();
+    for (std::size_t i = 0; i < own.size(); ++i)
+      frame[place.at(with + own[i].name)] = pose[static_cast<Eigen::Index>(i)];
+  };
+  picture.first = first;
+  picture.film.every = every;
+  for (std::size_t i = 0; i < q.size(); ++i) {
+    picture.film.frames.emplace_back(columns.size());
+    put(after, "", q[i], picture.film.frames.back());
+    if (!q_before.empty()) put(*before, before_mark, q_before[i], picture.film.frames.back());
+  }
+  return picture;
+}
+
+/// Whether its parts keep their meaning under other names.
+bool can_be_renamed(const Scene& scene) {
+  return !scene.lagrangian && std::none_of(scene.loops.begin(), scene.loops.end(),
+                                           [](const LoopSpec& loop) { return has_equation(loop); });
+}
+
+/// The run of a scene and its poses at equal times; none where it fails on its way.
+std::unique_ptr<Mechanism> run_of(Scene scene, const RunSettings& settings, int frames,
+                                  std::vector<VectorXd>& q) {
+  auto mechanism = std::make_unique<Mechanism>(std::move(scene), MechanismOptions{});
+  RunRequest request;
+  request.settings = settings;
+  request.settings.samples = 1;
+  request.film_intervals = frames;
+  const RunResult run = run_form(*mechanism, assemble(*mechanism).start, request);
+  for (const std::vector<double>& frame : run.film.frames)
+    q.emplace_back(Eigen::Map<const VectorXd>(frame.data(), mechanism->nq()));
+  if (static_cast<int>(q.size()) <= frames) q.clear();
+  return mechanism;
+}
+
 }  // namespace
 
 FitPicture fit_picture(const ParametricMechanism& family, const FitResult& r, int frames) {
   const auto after = family.at(r.found);
   std::unique_ptr<Mechanism> before;
   std::unique_ptr<SweptPoses> of_before;
-  const auto equation = [](const LoopSpec& loop) { return has_equation(loop); };
-  if (std::none_of(after->scene().loops.begin(), after->scene().loops.end(), equation)) try {
+  if (can_be_renamed(after->scene())) try {
       before = family.at(r.own);
       of_before = std::make_unique<SweptPoses>(*before, r.swept.name);
     } catch (const SceneError&) {  // the fitted one alone
@@ -143,30 +192,22 @@ FitPicture fit_picture(const ParametricMechanism& family, const FitResult& r, in
   common_places(of_after, of_before.get(), frames, places, q, q_before);
 
   Scene both = after->scene();
-  both.forces.clear();
   add_wanted(family, r, both);
-  if (!q_before.empty()) Renamed(before_mark).add(before->scene(), both);
-  FitPicture picture;
-  picture.mechanism = std::make_unique<Mechanism>(std::move(both), MechanismOptions{});
-  std::map<std::string, std::size_t> place;
-  const std::vector<Column> columns = picture.mechanism->coordinate_columns();
-  for (std::size_t i = 0; i < columns.size(); ++i) place[columns[i].name] = i;
-  const auto put = [&](const Mechanism& from, const std::string& with, const VectorXd& pose,
-                       std::vector<double>& frame) {
-    const std::vector<Column> own = from.coordinate_columns();
-    for (std::size_t i = 0; i < own.size(); ++i)
-      frame[place.at(with + own[i].name)] = pose[static_cast<Eigen::Index>(i)];
-  };
-  picture.first = places.front();
-  picture.film.every =
+  const double every =
       places.size() > 1 ? (places.back() - places.front()) / static_cast<double>(places.size() - 1)
                         : 0;
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    picture.film.frames.emplace_back(columns.size());
-    put(*after, "", q[i], picture.film.frames.back());
-    if (!q_before.empty()) put(*before, before_mark, q_before[i], picture.film.frames.back());
-  }
-  return picture;
+  return overlaid(std::move(both), *after, q, before.get(), q_before, places.front(), every);
+}
+
+FitPicture identification_picture(const ParametricMechanism& family, const Identification& r,
+                                  int frames) {
+  std::vector<VectorXd> q, q_before;
+  const auto after = run_of(family.scene(r.found), r.settings, frames, q);
+  std::unique_ptr<Mechanism> before;
+  if (r.why_not_before.empty() && can_be_renamed(after->scene()))
+    before = run_of(family.scene(r.own), r.settings, frames, q_before);
+  return overlaid(after->scene(), *after, q, before.get(), q_before, 0,
+                  r.settings.end_time / frames);
 }
 
 }  // namespace momenta

@@ -64,17 +64,6 @@ std::string fit_csv(const FitResult& r) {
 }
 
 Json fit_json(const FitResult& r) {
-  Json starts = Json::array();
-  for (const FitStart& s : r.starts)
-    starts.push_back({{"from", values_json(r.parameters, s.from)},
-                      {"to", values_json(r.parameters, s.to)},
-                      {"cost", number_or_null(s.cost)},
-                      {"iterations", s.iterations},
-                      {"cosine", number_or_null(s.cosine)},
-                      {"slope", number_or_null(s.slope)},
-                      {"violation", number_or_null(s.violation)},
-                      {"converged", s.converged},
-                      {"why", s.why.empty() ? Json() : Json(s.why)}});
   return {{"scene", r.scene},
           {"swept", r.swept.label()},
           {"wanted", r.wanted.file},
@@ -88,7 +77,7 @@ Json fit_json(const FitResult& r) {
           {"undetermined", r.undetermined.empty() ? Json() : Json(r.undetermined)},
           {"why_not_before", r.why_not_before.empty() ? Json() : Json(r.why_not_before)},
           {"seed", r.seed},
-          {"starts", starts},
+          {"starts", starts_json(r.parameters, r.starts)},
           {"best", r.best},
           {"stopped", r.stopped},
           {"evaluations", r.evaluations},

@@ -4,6 +4,7 @@
 #include <momenta/dae/report/embedded.h>
 #include <momenta/dae/report/fit_picture.h>
 #include <momenta/dae/report/fit_report.h>
+#include <momenta/dae/report/identification_report.h>
 #include <momenta/dae/report/json.h>
 #include <momenta/dae/report/least_report.h>
 #include <momenta/dae/report/modes_report.h>
@@ -169,13 +170,14 @@ std::string effort_page(const StudyResult& study, const EffortResult& result) {
 namespace {
 
 /// A mechanism and, pale, the one before, moving beside charts.
-std::string synthesis_page(const StudyResult& study, const std::string& words, Json charts) {
+std::string synthesis_page(const StudyResult& study, const std::string& words, Json charts,
+                           const char* title = "Synthesis") {
   Json data = page_data(study);
   data["timeline"] = std::move(charts);
   if (data.contains("picture") && data["picture"].contains("bodies"))
     for (Json& body : data["picture"]["bodies"])
       if (body["name"].get<std::string>().starts_with(before_mark)) body["pale"] = true;
-  return page(study, "Synthesis", marked_up(words), "", data,
+  return page(study, title, marked_up(words), "", data,
               script({embedded::timeline_js(), embedded::run_page_js()}));
 }
 
@@ -187,6 +189,11 @@ std::string fit_page(const StudyResult& study, const FitResult& result, double f
 
 std::string least_page(const StudyResult& study, const LeastResult& result, double first) {
   return synthesis_page(study, least_in_words(result), least_charts(result, first));
+}
+
+std::string identification_page(const StudyResult& study, const Identification& result) {
+  return synthesis_page(study, identification_in_words(result), identification_charts(result),
+                        "Identification");
 }
 
 std::string view_page(const StudyResult& study, const std::string& words) {

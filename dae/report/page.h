@@ -2,6 +2,7 @@
 // index.html of a study: one file that opens with the network off.
 
 #include <momenta/dae/effort/effort.h>
+#include <momenta/dae/fit/identification.h>
 #include <momenta/dae/fit/least.h>
 #include <momenta/dae/kinematics/move.h>
 #include <momenta/dae/study/modes_study.h>
@@ -38,5 +39,9 @@ std::string fit_page(const StudyResult&, const FitResult&, double first);
 
 /// Of a mechanism whose functional is least: the same, beside the formulas of single poses.
 std::string least_page(const StudyResult&, const LeastResult&, double first);
+
+/// Of a mechanism identified: its run and the one before, moving on top of each other, beside what
+/// was measured.
+std::string identification_page(const StudyResult&, const Identification&);
 
 }  // namespace momenta

@@ -36,19 +36,24 @@ std::string at_ends_in_words(const std::vector<FittedParameter>& parameters,
 }
 
 std::string parameters_table(const std::vector<FittedParameter>& parameters,
-                             const Eigen::VectorXd& own, const Eigen::VectorXd& found) {
+                             const Eigen::VectorXd& own, const Eigen::VectorXd& found,
+                             const Eigen::VectorXd& deviations) {
   std::vector<std::vector<std::string>> rows{{"parameter", "before", "after", "from", "to"}};
+  if (deviations.size() > 0) rows.front().insert(rows.front().begin() + 3, "std. deviation");
   for (std::size_t j = 0; j < parameters.size(); ++j) {
     const auto at = static_cast<Eigen::Index>(j);
     const auto& range = parameters[j].range;
     rows.push_back({parameters[j].name, compact(own[at], 6), compact(found[at], 6),
                     range ? compact((*range)[0], 6) : "-", range ? compact((*range)[1], 6) : "-"});
+    if (deviations.size() > 0)
+      rows.back().insert(rows.back().begin() + 3,
+                         std::isnan(deviations[at]) ? "-" : compact(deviations[at], 2));
   }
   return in_columns(rows);
 }
 
 Json parameters_json(const std::vector<FittedParameter>& parameters, const Eigen::VectorXd& own,
-                     const Eigen::VectorXd& found) {
+                     const Eigen::VectorXd& found, const Eigen::VectorXd& deviations) {
   Json all = Json::object();
   for (std::size_t j = 0; j < parameters.size(); ++j) {
     const auto at = static_cast<Eigen::Index>(j);
@@ -57,7 +62,25 @@ Json parameters_json(const std::vector<FittedParameter>& parameters, const Eigen
                                {"after", number_or_null(found[at])},
                                {"from", range ? number_or_null((*range)[0]) : Json()},
                                {"to", range ? number_or_null((*range)[1]) : Json()}};
+    if (deviations.size() > 0)
+      all[parameters[j].name]["deviation"] = number_or_null(deviations[at]);
   }
+  return all;
+}
+
+Json starts_json(const std::vector<FittedParameter>& parameters,
+                 const std::vector<FitStart>& starts) {
+  Json all = Json::array();
+  for (const FitStart& s : starts)
+    all.push_back({{"from", values_json(parameters, s.from)},
+                   {"to", values_json(parameters, s.to)},
+                   {"cost", number_or_null(s.cost)},
+                   {"iterations", s.iterations},
+                   {"cosine", number_or_null(s.cosine)},
+                   {"slope", number_or_null(s.slope)},
+                   {"violation", number_or_null(s.violation)},
+                   {"converged", s.converged},
+                   {"why", s.why.empty() ? Json() : Json(s.why)}});
   return all;
 }
 

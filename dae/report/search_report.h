@@ -35,12 +35,18 @@ std::vector<std::string> at_ends(const std::vector<FittedParameter>& parameters,
 std::string at_ends_in_words(const std::vector<FittedParameter>& parameters,
                              const Eigen::VectorXd& found);
 
-/// Parameters of the scene and found, with their ranges, as a table.
+/// Parameters of the scene and found, with their ranges, as a table; with standard deviations where
+/// there are some.
 std::string parameters_table(const std::vector<FittedParameter>& parameters,
-                             const Eigen::VectorXd& own, const Eigen::VectorXd& found);
-/// The same by name: {"a": {before, after, from, to}}.
+                             const Eigen::VectorXd& own, const Eigen::VectorXd& found,
+                             const Eigen::VectorXd& deviations = {});
+/// The same by name: {"a": {before, after, deviation, from, to}}.
 nlohmann::ordered_json parameters_json(const std::vector<FittedParameter>& parameters,
-                                       const Eigen::VectorXd& own, const Eigen::VectorXd& found);
+                                       const Eigen::VectorXd& own, const Eigen::VectorXd& found,
+                                       const Eigen::VectorXd& deviations = {});
+/// [{from, to, cost, iterations, cosine, slope, violation, converged, why}]
+nlohmann::ordered_json starts_json(const std::vector<FittedParameter>& parameters,
+                                   const std::vector<FitStart>& starts);
 /// Values by name: {"a": 1.5}; null where there are none.
 nlohmann::ordered_json values_json(const std::vector<FittedParameter>& parameters,
                                    const Eigen::VectorXd& values);

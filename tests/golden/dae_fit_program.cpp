@@ -50,6 +50,39 @@ TEST_F(FitOfTheProgram, FindsHoeckensLinkageAndWritesItsScene) {
               json["errors"]["after"]["cost"].get<double>(), 1e-14);
 }
 
+TEST_F(FitOfTheProgram, FindsParametersOfAMeasuredMotion) {
+  const std::string scene = "fit '" + example("identification") + "'",
+                    out = "'" + (folder_ / "f").string() + "'";
+  const Outcome o = call(scene + " --vary stiffness=1:20,damping,centre --out " + out);
+  EXPECT_EQ(o.status, 0) << o.err;
+  EXPECT_NE(o.out.find("Of 202 numbers measured at 101 times the rms error is 0.0049 rad"),
+            std::string::npos)
+      << o.out;
+  const auto json = nlohmann::json::parse(text_of(folder_ / "f" / "fit.json"));
+  EXPECT_EQ(json["converged"], true);
+  EXPECT_EQ(json["motion"], "measured");
+  for (const auto& [name, truth] : {std::pair{"stiffness", 6.2}, {"damping", 0.23}}) {
+    const auto& parameter = json["parameters"][name];
+    EXPECT_NEAR(parameter["after"].get<double>(), truth, 2 * parameter["deviation"].get<double>());
+  }
+  EXPECT_TRUE(text_of(folder_ / "f" / "fit.csv")
+                  .starts_with("t [s],O.q.measured [rad],O.q [rad],O.q.before [rad],"
+                               "C.q.measured [rad],C.q [rad],C.q.before [rad]\n0,0.4064,"));
+  const std::string page = text_of(folder_ / "f" / "index.html");
+  EXPECT_NE(page.find("Identification"), std::string::npos);
+  EXPECT_NE(page.find("before: coupler"), std::string::npos);
+  EXPECT_NE(text_of(folder_ / "f" / "fitted.toml").find("# N m s, at O"), std::string::npos);
+
+  expect_refused(scene + " --vary centre --poses 9", "--over, --poses and --rate are of a motion");
+  expect_refused(scene + " --vary centre --keep 'centre < 1'",
+                 "--keep does not go with a measured motion");
+  expect_refused(scene + " --vary centre --form index3", "form 'index3'");
+  expect_refused(scene + " --vary body.crank.mas",
+                 "'body.crank.mas': the scene leaves it out, expected a number that it has");
+  expect_refused(scene + " --vary centre --to '" + line() + "'",
+                 "column 'P.x [m]' is no time, coordinate, rate or marker");
+}
+
 TEST_F(FitOfTheProgram, MakesAFunctionalLeast) {
   const std::string scene = "fit '" + example("straight_line") + "'",
                     out = "'" + (folder_ / "f").string() + "'",

@@ -168,4 +168,13 @@ std::function<double(const std::string&)> numbers_of(std::string_view text,
   };
 }
 
+Location location_of(std::string_view text, const std::string& file, const std::string& place) {
+  reading::Value root = reading::parse_toml(text, file);
+  const Setting setting{place, 0};
+  reading::Way way(setting);
+  const Location at = way.find_in(root).at;
+  way.expect_there();
+  return at;
+}
+
 }  // namespace momenta

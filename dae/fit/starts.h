@@ -1,0 +1,47 @@
+#pragma once
+// The starts of a search, one after another, and which is the best.
+
+#include <momenta/dae/fit/start_record.h>
+
+#include <optional>
+#include <string>
+#include <utility>
+
+namespace momenta {
+
+/// Whether one of the starts so far was possible; `Result` is FitResult, LeastResult or
+/// Identification.
+template <class Result>
+bool has_best(const Result& result) {
+  return !result.starts.empty() && result.starts[result.best].to.size() > 0;
+}
+
+/// Starts that the journal has are recalled, others come of `search(number, from)`, which gives
+/// none where it is to go no further. The best, by `is_better(a, b)`, is left in result.best.
+/// @throws SceneError where no start is possible
+template <class Request, class Result, class Search, class Better>
+void take_starts(const ParametricMechanism& family, const Request& request, Result& result,
+                 const Search& search, const Better& is_better) {
+  using Start = typename decltype(result.starts)::value_type;
+  DrawnStarts starts(family, request.parameters, request.seed);
+  for (int k = 0; k < request.starts && !result.stopped; ++k) {
+    const Eigen::VectorXd from = starts.next();
+    const std::string key = "start " + std::to_string(k);
+    std::optional<Start> start = recalled<Start>(request.journal, key, from);
+    if (!start) {
+      start = search(k, from);
+      if (!start) break;
+      if (request.journal && !result.stopped) request.journal->add(key, record_of_start(*start));
+    }
+    if (start->to.size() > 0 &&
+        (!has_best(result) || is_better(*start, result.starts[result.best])))
+      result.best = result.starts.size();
+    result.starts.push_back(std::move(*start));
+  }
+  if (!has_best(result))
+    throw SceneError(result.starts.empty() ? "the search was stopped before its first start"
+                                           : "no start is possible; the first is not, as " +
+                                                 result.starts.front().why);
+}
+
+}  // namespace momenta
