@@ -2,6 +2,7 @@
 #include <momenta/core/text/near_name.h>
 #include <momenta/dae/fit/swept_parts.h>
 #include <momenta/dae/fit/swept_poses.h>
+#include <momenta/dae/fit/swept_reactions.h>
 #include <momenta/dae/kinematics/coordinate_named.h>
 #include <momenta/dae/kinematics/transmission.h>
 
@@ -9,6 +10,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <stdexcept>
 
 namespace momenta {
@@ -63,6 +65,8 @@ SweptParts::SweptParts(const ParametricMechanism& family, VectorXd sizes, SweptW
     if (static_cast<int>(i) != swept)
       names_.push_back(
           {by_joint(q[i].name) + ".transmission", Of::transmission, static_cast<int>(i)});
+  for (const std::string& name : SweptReactions::names(*mechanism))
+    names_.push_back({name, Of::reaction, reactions_++});
   used_.assign(names_.size(), false);
 }
 
@@ -90,9 +94,11 @@ bool SweptParts::take(const VectorXd& theta, MatrixXd& table) {
   }
   bool moves = false;
   std::map<std::size_t, Transmission> transmissions;
+  std::optional<SweptReactions> reactions;
   for (std::size_t k = 0; k < names_.size(); ++k) {
     if (!used_[k]) continue;
     moves |= names_[k].of != Of::coordinate && names_[k].of != Of::transmission;
+    if (names_[k].of == Of::reaction && !reactions) reactions.emplace(*mechanism, poses.rate());
     if (names_[k].of != Of::transmission) continue;
     const std::string& name = names_[k].name;
     transmissions.try_emplace(k, *mechanism, 0.0, name.substr(0, name.rfind('.')),
@@ -105,6 +111,7 @@ bool SweptParts::take(const VectorXd& theta, MatrixXd& table) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     const VectorXd& q = points[i].q;
     double effort = 0;
+    VectorXd transmitted;
     if (moves) {
       if (!poses.rates(points[i], 1, way, none) || !poses.rates(points[i], way_.rate, u, udot)) {
         why_ = poses.why();
@@ -115,6 +122,7 @@ bool SweptParts::take(const VectorXd& theta, MatrixXd& table) {
       e->markers(markers.data());
       e->joint_forces(q.data(), u.data(), udot.data(), nullptr, r.data());
       effort = r.dot(way);
+      if (reactions) transmitted = reactions->at(q, u, udot);
     }
     for (std::size_t k = 0; k < names_.size(); ++k) {
       if (!used_[k]) continue;
@@ -136,10 +144,14 @@ bool SweptParts::take(const VectorXd& theta, MatrixXd& table) {
         case Of::transmission:
           to = transmissions.at(k).at(q).angle;
           break;
+        case Of::reaction:
+          to = transmitted[name.place];
+          break;
       }
       if (!std::isfinite(to)) {
         why_ = "at " + swept_.name + " = " + reading::digits(places_[i]) + " " + name.name +
-               " has no value";
+               (name.of == Of::reaction ? " is not unique: loop equations are redundant"
+                                        : " has no value");
         return false;
       }
     }

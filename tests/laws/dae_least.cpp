@@ -3,6 +3,7 @@
 // against the formulas they stand for, searches that go on against those that were not stopped.
 
 #include <gtest/gtest.h>
+#include <momenta/core/scene/file_text.h>
 #include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/effort/effort.h>
 #include <momenta/dae/fit/least.h>
@@ -178,6 +179,89 @@ TEST(Least, EffortsAsByInverseDynamics) {
   for (std::size_t i = 0; i < slow.rows.size(); ++i)
     EXPECT_NEAR(values.parts[0][static_cast<Index>(i + skipped)], slow.rows[i].effort[0], 1e-9)
         << i;
+}
+
+/// A crank-rocker whose crank and rocker have their centres of mass as asked, and markers at all.
+std::string balanced(const std::string& crank, const std::string& rocker) {
+  std::string text = reading::text_of(MOMENTA_SOURCE_DIR "/examples/balancing/scene.toml");
+  text.replace(text.find("crank_centre = 0.0"), 18, "crank_centre = " + crank);
+  text.replace(text.find("rocker_centre = 0.0"), 19, "rocker_centre = " + rocker);
+  return text +
+         "[[marker]]\nname = \"K\"\nbody = \"crank\"\npoint = [\"crank_centre\", 0, 0]\n"
+         "[[marker]]\nname = \"L\"\nbody = \"coupler\"\npoint = [0.2, 0, 0]\n"
+         "[[marker]]\nname = \"R\"\nbody = \"rocker\"\npoint = [\"rocker_centre\", 0, 0]\n";
+}
+
+// Newton's equation of all bodies and of the crank: what joints transmit is the rate of momentum.
+TEST(Least, ReactionsAreTheRatesOfMomentum) {
+  constexpr int poses = 401;
+  constexpr double rate = 3, to = 2;
+  const std::string text = balanced("0.03", "0.07");
+  const ParametricMechanism family(text, "balanced", {}, {"crank_centre"});
+  SweptParts parts(family, family.own(), {"O", {{0, to}}, poses, rate});
+  for (const char* of : {"ground.force_x", "ground.force_y", "O.force_x - A.force_x",
+                         "4*K.vx + L.vx + 4*R.vx", "4*K.vy + L.vy + 4*R.vy", "4*K.vx",
+                         "ground.torque_z - 0.4*C.force_y - C.torque_z - O.effort",
+                         "O.force^2 - O.force_x^2 - O.force_y^2 - O.force_z^2"})
+    parts.add({MotionPart::Kind::most, of});
+  MotionValues values;
+  ASSERT_TRUE(parts.at(family.own(), false, values)) << parts.why();
+  double worst = 0, largest = 0;
+  const double h = to / (poses - 1) / rate;  // [s]
+  for (Index i = 2; i + 2 < poses; ++i)
+    for (Index k = 0; k < 3; ++k) {
+      const VectorXd& momentum = values.parts[static_cast<std::size_t>(3 + k)];
+      const double slope =
+          (8 * (momentum[i + 1] - momentum[i - 1]) - momentum[i + 2] + momentum[i - 2]) / (12 * h);
+      const double force = values.parts[static_cast<std::size_t>(k)][i];
+      largest = std::max(largest, std::abs(force));
+      worst = std::max(worst, std::abs(force - slope));
+    }
+  EXPECT_LT(worst, 1e-7 * largest);
+  // About the origin, where O lies: the effort, and what C has.
+  EXPECT_LT(values.parts[6].cwiseAbs().maxCoeff(), 1e-12);
+  EXPECT_LT(values.parts[7].cwiseAbs().maxCoeff(), 1e-9);
+}
+
+// Complete force balance of an in-line four-bar, in closed form (Berkof, Lowen 1969):
+// m₁ r₁ = −m₂ (1 − r₂/a₂) a₁, m₃ r₃ = −m₂ (r₂/a₂) a₃; and found as what shakes least.
+TEST(Least, TheShakingForceOfABalancedFourBarVanishes) {
+  const std::vector<std::string> names{"crank_centre", "rocker_centre"};
+  const auto largest = [&](const std::string& crank, const std::string& rocker) {
+    const ParametricMechanism family(balanced(crank, rocker), "balanced", {}, names);
+    SweptParts parts(family, VectorXd::Ones(2), {"O", std::nullopt, 37, 10});
+    parts.add({MotionPart::Kind::most, "ground.force"});
+    MotionValues values;
+    EXPECT_TRUE(parts.at(family.own(), false, values)) << parts.why();
+    return values.parts[0].maxCoeff();
+  };
+  EXPECT_LT(largest("-0.0125", "-0.0375"), 1e-12 * largest("0", "0"));
+  LeastRequest request;
+  request.least = "max(ground.force)";
+  request.parameters = {{"crank_centre", {{-0.1, 0.1}}}, {"rocker_centre", {{-0.2, 0.2}}}};
+  request.way = SweptWay{"O", std::nullopt, 37, 10};
+  const LeastResult found =
+      least(ParametricMechanism(balanced("0.0", "0.0"), "balanced", {}, names), request);
+  EXPECT_NEAR(found.found[0], -0.0125, 1e-6);
+  EXPECT_NEAR(found.found[1], -0.0375, 1e-6);
+}
+
+// In space the loop of a planar four-bar is redundant: forces across its plane are nobody's.
+TEST(Least, ReactionsThatAreNotUniqueAreRefused) {
+  MechanismOptions options;
+  options.algebra = Algebra::spatial;
+  const ParametricMechanism family(balanced("0.03", "0.07"), "balanced", {}, {"crank_centre"},
+                                   options);
+  SweptParts in_plane(family, family.own(), {"O", std::nullopt, 9, 3});
+  in_plane.add({MotionPart::Kind::most, "A.force_x"});
+  MotionValues values;
+  EXPECT_TRUE(in_plane.at(family.own(), false, values)) << in_plane.why();
+  SweptParts across(family, family.own(), {"O", std::nullopt, 9, 3});
+  across.add({MotionPart::Kind::most, "A.force_z"});
+  EXPECT_FALSE(across.at(family.own(), false, values));
+  EXPECT_NE(across.why().find("A.force_z is not unique: loop equations are redundant"),
+            std::string::npos)
+      << across.why();
 }
 
 // Hoecken's straight line by its largest deviation, not by squares: ℓ of the smallest difference

@@ -1,0 +1,49 @@
+#pragma once
+// The wrenches in joints and loops along a swept motion, by name as in trajectory.csv. With τ the
+// effort of the swept coordinate c that keeps up the motion (dae/effort/actuation.h),
+//
+//   Φ_qᵀλ = e_c τ − (M u̇ + bias − Q),
+//
+// λ is found by the islands of loops, and from it the wrenches of reactions.h. What ground
+// transmits,
+//
+//   F = Σ F_j,     N = Σ (N_j + x_j × F_j)      about the origin, over joints and loops on ground,
+//
+// is the negative of the shaking force and the shaking moment.
+// Source: Berkof, Lowen, A new method for completely force balancing simple linkages, J. Eng. Ind.
+// 91 (1969), for what those are.
+
+#include <momenta/dae/effort/actuation.h>
+#include <momenta/dae/measure/reactions.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace momenta {
+
+class SweptReactions {
+ public:
+  /// "O.force" and "O.torque", sizes, "O.force_x" … "O.torque_z" in ground axes, for each joint,
+  /// each loop between bodies, and "ground" [N, N m]. None of a Lagrangian.
+  static std::vector<std::string> names(const Mechanism& mechanism);
+
+  /// `rate`: of the swept coordinate, place in u. The mechanism must outlive it.
+  SweptReactions(const Mechanism& mechanism, int rate);
+  /// In the order of names(); NaN where redundant loop equations leave a component open. Drives
+  /// stand. Cost: O(bodies), of each such equation too, and a dense QR of each island of loops
+  Eigen::VectorXd at(const Eigen::VectorXd& q, const Eigen::VectorXd& u,
+                     const Eigen::VectorXd& udot);
+
+ private:
+  Eigen::VectorXd transmitted(const Eigen::VectorXd& q, const Eigen::VectorXd& u,
+                              const Eigen::VectorXd& udot, const Eigen::VectorXd& lambda);
+
+  const Mechanism& mechanism_;
+  ScaledLoops loops_;
+  LoopIslands islands_;
+  Actuation actuation_;
+  std::unique_ptr<WrenchSweep> sweep_;
+};
+
+}  // namespace momenta
