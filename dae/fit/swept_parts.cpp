@@ -1,8 +1,8 @@
 #include <momenta/core/scalar/sixth_order.h>
 #include <momenta/core/text/near_name.h>
+#include <momenta/dae/effort/motion_reactions.h>
 #include <momenta/dae/fit/swept_parts.h>
 #include <momenta/dae/fit/swept_poses.h>
-#include <momenta/dae/fit/swept_reactions.h>
 #include <momenta/dae/kinematics/coordinate_named.h>
 #include <momenta/dae/kinematics/transmission.h>
 
@@ -65,7 +65,7 @@ SweptParts::SweptParts(const ParametricMechanism& family, VectorXd sizes, SweptW
     if (static_cast<int>(i) != swept)
       names_.push_back(
           {by_joint(q[i].name) + ".transmission", Of::transmission, static_cast<int>(i)});
-  for (const std::string& name : SweptReactions::names(*mechanism))
+  for (const std::string& name : MotionReactions::names(*mechanism))
     names_.push_back({name, Of::reaction, reactions_++});
   used_.assign(names_.size(), false);
 }
@@ -94,7 +94,7 @@ bool SweptParts::take(const VectorXd& theta, MatrixXd& table) {
   }
   bool moves = false;
   std::map<std::size_t, Transmission> transmissions;
-  std::optional<SweptReactions> reactions;
+  std::optional<MotionReactions> reactions;
   for (std::size_t k = 0; k < names_.size(); ++k) {
     if (!used_[k]) continue;
     moves |= names_[k].of != Of::coordinate && names_[k].of != Of::transmission;

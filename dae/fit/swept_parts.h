@@ -6,7 +6,7 @@
 //   O.effort        that of the swept one, which keeps up the motion: by the power of all forces,
 //                   τ ċ = u·(M u̇ + bias − Q); joint forces of loops do no work
 //   C.transmission  the transmission angle of an output (dae/kinematics/transmission.h) [rad]
-//   A.force, ground.torque_z, …   what joints, loops and the ground transmit (swept_reactions.h)
+//   A.force, ground.torque_z, …   what joints, loops and the ground transmit (motion_reactions.h)
 //
 // An integral is ∫ g dc by the trapezoidal rule. Derivatives by θ are central differences of sixth
 // order of whole solutions: the poses of mechanisms with other θ, each closed to rounding.
@@ -48,7 +48,7 @@ class SweptParts final : public MotionParts {
     enum class Of { coordinate, rate, marker, effort, transmission, reaction };
     std::string name;
     Of of = Of::coordinate;
-    int place = 0;  ///< in q, u, markers, SweptReactions::names(); of a transmission in q
+    int place = 0;  ///< in q, u, markers, MotionReactions::names(); of a transmission in q
   };
   struct Part {
     MotionPart::Kind kind;

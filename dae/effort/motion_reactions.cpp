@@ -1,4 +1,4 @@
-#include <momenta/dae/fit/swept_reactions.h>
+#include <momenta/dae/effort/motion_reactions.h>
 #include <momenta/dae/joint_places.h>
 
 #include <algorithm>
@@ -34,7 +34,7 @@ void take_sizes(VectorXd& values) {
 
 }  // namespace
 
-std::vector<std::string> SweptReactions::names(const Mechanism& mechanism) {
+std::vector<std::string> MotionReactions::names(const Mechanism& mechanism) {
   if (mechanism.scene().lagrangian) return {};
   std::vector<std::string> all;
   for (const JointPlace& joint : joint_places(mechanism)) all.push_back(joint.name);
@@ -46,7 +46,7 @@ std::vector<std::string> SweptReactions::names(const Mechanism& mechanism) {
   return names;
 }
 
-SweptReactions::SweptReactions(const Mechanism& mechanism, int rate)
+MotionReactions::MotionReactions(const Mechanism& mechanism, int rate)
     : mechanism_(mechanism),
       loops_(mechanism),
       islands_(mechanism),
@@ -56,8 +56,8 @@ SweptReactions::SweptReactions(const Mechanism& mechanism, int rate)
 }
 
 /// Components of all wrenches, sizes left out.
-VectorXd SweptReactions::transmitted(const VectorXd& q, const VectorXd& u, const VectorXd& udot,
-                                     const VectorXd& lambda) {
+VectorXd MotionReactions::transmitted(const VectorXd& q, const VectorXd& u, const VectorXd& udot,
+                                      const VectorXd& lambda) {
   sweep_->move(0, q.data(), u.data(), udot.data(), lambda.data());
   const Reactions all = sweep_->reactions();
   VectorXd values =
@@ -76,7 +76,7 @@ VectorXd SweptReactions::transmitted(const VectorXd& q, const VectorXd& u, const
   return values;
 }
 
-VectorXd SweptReactions::at(const VectorXd& q, const VectorXd& u, const VectorXd& udot) {
+VectorXd MotionReactions::at(const VectorXd& q, const VectorXd& u, const VectorXd& udot) {
   (void)loops_.gap(0, q);
   islands_.factor(loops_);
   VectorXd tau;

@@ -1,6 +1,6 @@
 #pragma once
-// The wrenches in joints and loops along a swept motion, by name as in trajectory.csv. With τ the
-// effort of the swept coordinate c that keeps up the motion (dae/effort/actuation.h),
+// The wrenches in joints and loops along a motion by one coordinate, named as in trajectory.csv.
+// With τ the effort of that coordinate c, which keeps up the motion (dae/effort/actuation.h),
 //
 //   Φ_qᵀλ = e_c τ − (M u̇ + bias − Q),
 //
@@ -22,14 +22,14 @@
 
 namespace momenta {
 
-class SweptReactions {
+class MotionReactions {
  public:
   /// "O.force" and "O.torque", sizes, "O.force_x" … "O.torque_z" in ground axes, for each joint,
   /// each loop between bodies, and "ground" [N, N m]. None of a Lagrangian.
   static std::vector<std::string> names(const Mechanism& mechanism);
 
   /// `rate`: of the swept coordinate, place in u. The mechanism must outlive it.
-  SweptReactions(const Mechanism& mechanism, int rate);
+  MotionReactions(const Mechanism& mechanism, int rate);
   /// In the order of names(); NaN where redundant loop equations leave a component open. Drives
   /// stand. Cost: O(bodies), of each such equation too, and a dense QR of each island of loops
   Eigen::VectorXd at(const Eigen::VectorXd& q, const Eigen::VectorXd& u,
