@@ -138,19 +138,28 @@ void Crossings::take(double t, double g) {
   }
   const int sign = sign_of(g);
   if (sign == 0) {
-    if (!at_zero_) zero_ = t;
+    zero_ = t;
     at_zero_ = true;
     return;
   }
   if (sign_ == -sign) {
     if (at_zero_)
-      found_->push_back({zero_, sign > 0});
+      found_->push_back({end_of_zero(zero_, t), sign > 0});
     else
       cross(last_->t, last_->g, t, g, sign > 0);  // of this step: its first place is none or zero
   }
   sign_ = sign;
   at_zero_ = false;
   last_ = {t, g};
+}
+
+double Crossings::end_of_zero(double zero, double after) const {
+  while (after - zero > tolerance_) {
+    const double middle = 0.5 * (zero + after);
+    if (!(zero < middle && middle < after)) break;
+    ((*g_)(middle) == 0 ? zero : after) = middle;
+  }
+  return zero;
 }
 
 void Crossings::cross(double t0, double g0, double t1, double g1, bool up) {

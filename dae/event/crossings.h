@@ -71,6 +71,8 @@ class Crossings {
   void look_at(double t0, double t1, const Values& values);
   void take(double t, double g);
   void cross(double t0, double g0, double t1, double g1, bool up);
+  /// Where g is zero last, between a place where it is and one where it is not.
+  double end_of_zero(double zero, double after) const;
   /// The minimum of sign · g between two places, or the first place found beyond zero.
   Place lowest(double t0, double t1, double sign) const;
 
@@ -78,7 +80,7 @@ class Crossings {
   bool begun_ = false;
   int sign_ = 0;               ///< of g where it was not zero last; 0: not known
   bool at_zero_ = false;       ///< g has been zero since
-  double zero_ = 0;            ///< from here on
+  double zero_ = 0;            ///< and is so here, the last place that was looked at
   std::optional<Place> last_;  ///< where it was not zero last, in this step
   const std::function<double(double)>* g_ = nullptr;
   std::vector<Crossing>* found_ = nullptr;

@@ -76,14 +76,19 @@ double Impact::jump(double t, const Eigen::VectorXd& q, Eigen::VectorXd& u,
     }
     active.erase(active.begin() + least);
   }
+  const Eigen::VectorXd mean = u - 0.5 * w * impulse;
   u -= w * impulse;
-  double taken = 0;
-  for (Eigen::Index i = 0; i < n; ++i) {
-    StopAtImpact& s = stops[static_cast<std::size_t>(i)];
-    s.impulse = impulse[i];
-    taken += 0.5 * impulse[i] * (before[i] + s.side * u[s.u]);
+  for (Eigen::Index i = 0; i < n; ++i) stops[static_cast<std::size_t>(i)].impulse = impulse[i];
+  if (mechanism_.scene().drives.empty()) {
+    double taken = 0;
+    for (const StopAtImpact& s : stops) taken += s.impulse * s.side * mean[s.u];
+    return taken;
   }
-  return taken;
+  Eigen::VectorXd p(u.size());
+  e_->place(t, q.data());
+  e_->move(mean.data());
+  e_->momenta(nullptr, p.data());
+  return (w * impulse).dot(p);
 }
 
 }  // namespace momenta

@@ -11,11 +11,12 @@
 //
 //   u⁺ = u⁻ − Σ w_i Λ_i,   W Λ = (1 + e) γ⁻,   W_ik = n_iᵀ w_k,   ΔT = −½ Σ Λ_i (γ_i⁺ + γ_i⁻)
 //
-// (ΔT without what moving drives do). Where several stops meet, those whose Λ would be negative are
-// left out one by one, the most negative first, and stops that depend on each other share their
-// impulse by least squares. Sources: F. Pfeiffer, C. Glocker, Multibody Dynamics with Unilateral
-// Contacts, Wiley 1996, chapters 6 to 8; J. J. Moreau, Unilateral contact and dry friction in
-// finite freedom dynamics, 1988.
+// where nothing is driven. Drives that move at an impact do work by it: then ΔT = −Σ Λ_i w_iᵀ p̄, p̄
+// = M ½(u⁺ + u⁻) + prescribed part, which is the above less Σ Λ_i (ν_iᵀΦ_t + w_iᵀ p_t). Where
+// several stops meet, those whose Λ would be negative are left out one by one, the most negative
+// first, and stops that depend on each other share their impulse by least squares. Sources: F.
+// Pfeiffer, C. Glocker, Multibody Dynamics with Unilateral Contacts, Wiley 1996, chapters 6 to 8;
+// J. J. Moreau, Unilateral contact and dry friction in finite freedom dynamics, 1988.
 
 #include <momenta/dae/kkt/loop_solver.h>
 
@@ -40,8 +41,9 @@ class Impact {
  public:
   explicit Impact(const Mechanism& mechanism);
 
-  /// u⁻ becomes u⁺ at (t, q), the impulses of the stops are found. Returns the energy that the
-  /// stops take [J], not negative for e ≤ 1. Cost: a solution of (7) for each stop. @throws
+  /// u⁻ becomes u⁺ at (t, q), the impulses of the stops are found. Returns the kinetic energy that
+  /// is lost [J]: to the stops, not negative for e ≤ 1, and to drives, by the work that an impact
+  /// does on what they move. Cost: a solution of (7) for each stop. @throws
   /// std::runtime_error where a coordinate cannot move, one sentence
   double jump(double t, const Eigen::VectorXd& q, Eigen::VectorXd& u,
               std::vector<StopAtImpact>& stops);

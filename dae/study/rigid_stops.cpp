@@ -158,7 +158,8 @@ Start RigidStops::behind(double t, const Eigen::VectorXd& q, const Eigen::Vector
         continue;
       }
       again = true;
-      if (!soft.insert(i).second) held_.insert(i);  // with e = 0 already
+      // With e = 0 already it holds, and what is left of its rate, on either side, is an error.
+      if (!soft.insert(i).second) held_.insert(i), stuck.insert(i);
     }
     for (const std::size_t i : holding)
       if (push(now, i, start.lambda) < 0) again |= held_.erase(i) > 0;

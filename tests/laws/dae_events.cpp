@@ -121,10 +121,31 @@ TEST(Crossings, AreNoneAtTheStartAtPolesAndWhereZeroIsTouched) {
   // a jump, a root at a step's end, zero for a while
   expect_same(found_in({0, 1, 2}, [](double t) { return t < 1.3 ? -1 : 2; }), {{1.3, true}}, 1e-12);
   expect_same(found_in({0, 1, 2}, [](double t) { return 1 - t; }), {{1, false}}, 0);
-  const auto held = found_in({0, 1, 2, 3}, [](double t) {
-    return t < 1 ? t - 1 : t < 2 ? 0 : t - 2;
-  });
-  expect_same(held, {{1, true}}, 1e-12);
+}
+
+// A number that stays zero for some steps crosses where it leaves zero, in the step in which that
+// is told: of steps before it no dense output is left.
+TEST(Crossings, OfANumberThatStaysZeroAreWhereItLeavesIt) {
+  for (const double end : {2.0, 2.3, 2.99}) {
+    const Number g = [&](double t) { return t < 1 ? t - 1 : t <= end ? 0 : t - end; };
+    expect_same(found_in({0, 1, 2, 3}, g), {{end, true}}, 1e-12);
+    expect_same(found_in({0, 0.7, 3}, g), {{end, true}}, 1e-12);
+    expect_same(found_in({0, 1, 2, 3}, [&](double t) { return -g(t); }), {{end, false}}, 1e-12);
+    EXPECT_TRUE(found_in({0, 1, 2, 3}, [&](double t) { return std::abs(g(t)); }).empty());
+  }
+  for (const double left : {0.1, 1.2, 2.7}) {
+    Crossings behind(1e-14);
+    behind.restart_below_zero(0);
+    for (int k = 0; k < 3; ++k) {
+      const Number g = [&](double t) { return t <= left ? 0 : t - left; };
+      Crossings::Values values;
+      for (std::size_t i = 0; i < values.size(); ++i) values[i] = g(Crossings::point(k, k + 1, i));
+      std::vector<Crossing> found;
+      behind.step(k, k + 1, values, g, found);
+      ASSERT_EQ(found.size(), left > k && left < k + 1 ? 1U : 0U) << left << " " << k;
+      for (const Crossing& c : found) EXPECT_NEAR(c.t, left, 1e-12);
+    }
+  }
 }
 
 // A correction after a step that moves g through zero: the crossing is there; one that moves it
