@@ -2,7 +2,6 @@
 #include <momenta/dae/assembly/closing.h>
 #include <momenta/dae/assembly/start_accelerations.h>
 #include <momenta/dae/assembly/turned_loops.h>
-#include <momenta/dae/joint_places.h>
 #include <momenta/dae/kkt/least_norm.h>
 #include <momenta/dae/kkt/loop_rank.h>
 #include <momenta/dae/loop_word.h>
@@ -25,13 +24,7 @@ class Assembler {
         u_(std::move(u)),
         loops_(mechanism),
         steps_(loops_.pattern(), mechanism.m(), mechanism.nv()) {
-    if (mechanism.scene().held.empty()) return;
-    const std::vector<JointPlace> places = joint_places(mechanism);
-    for (const auto& name : mechanism.scene().held) {
-      for (const JointPlace& joint : places)
-        if (joint.name == name)
-          for (const int i : joint.u) loops_.columns[static_cast<std::size_t>(i)] = false;
-    }
+    loops_.hold_joints();
   }
 
   Assembly run(Assembled what) {

@@ -42,14 +42,16 @@ Closing::Closing(ScaledLoops& loops, LeastNorm& steps, double t)
 struct Closing::Trial {
   Eigen::VectorXd q;
   double norm = std::numeric_limits<double>::infinity();
+  NewtonStep taken;
 };
 
 Closing::Trial Closing::along(const Eigen::VectorXd& q, double norm, Eigen::VectorXd step) {
   Trial best;
   if (!step.allFinite()) return best;
   const double length = largest_of(step);
-  if (length > largest_step) step *= largest_step / length;
-  for (int halving = 0; halving < 12; ++halving, step *= 0.5) {
+  best.taken = {q, step, 1, length > largest_step};
+  if (best.taken.is_cut) step *= (best.taken.part = largest_step) / length;
+  for (int halving = 0; halving < 12; ++halving, step *= 0.5, best.taken.part *= 0.5) {
     Eigen::VectorXd next = loops_.moved(q, step);
     if (const double reached = gap(next).norm(); reached < norm) {
       best.q = std::move(next);
@@ -71,6 +73,7 @@ Closing::Pose Closing::damped(Eigen::VectorXd q, int most) {
   Eigen::VectorXd phi = gap(q);
   double norm = phi.norm();
   int stalled = 0;
+  newton_.emplace();
   std::vector<double> j;
   // Factorised where the loops are closed: J changes by rounding from there.
   bool settled = false;
@@ -84,11 +87,16 @@ Closing::Pose Closing::damped(Eigen::VectorXd q, int most) {
     // Redundant rows are redundant only where the loops are closed: off it they ask, through
     // pivots as small as the gap, for steps that lead nowhere. Damping by the gap is harmless
     // near the end, where it vanishes faster than what is left to do.
+    bool is_damped = false;
     if (!settled && !contradicts && !(next.norm < 0.5 * norm))
-      if (Trial damped = along(q, norm, damped_step(j, phi)); damped.norm < next.norm)
+      if (Trial damped = along(q, norm, damped_step(j, phi)); damped.norm < next.norm) {
         next = std::move(damped);
+        is_damped = true;
+      }
     const double next_norm = next.norm;
     if (!(next_norm < norm)) break;
+    if (is_damped) newton_.reset();
+    if (newton_) newton_->push_back(std::move(next.taken));
     stalled = next_norm > 0.5 * norm && norm < tolerance_ ? stalled + 1 : 0;
     q = next.q;
     phi = gap(q);
@@ -248,9 +256,11 @@ Closing::Pose Closing::close(const Eigen::VectorXd& guess) {
   Pose found = damped(guess, damped_iterations);
   const double way = loops_.apart(found.q, guess);
   if (found.is_closed && way <= far) return found;
+  std::optional<std::vector<NewtonStep>> newton = std::move(newton_);
   Pose followed{guess, 0, false};
   const bool arrived = follow(followed.q);
   followed = damped(followed.q, damped_iterations);
+  newton_.reset();
   const double other = loops_.apart(followed.q, guess);
   if (followed.is_closed && (!found.is_closed || other < 0.7 * way - far)) {
     char text[160];
@@ -261,7 +271,12 @@ Closing::Pose Closing::close(const Eigen::VectorXd& guess) {
     if (found.is_closed) branch_ = text;
     return followed;
   }
-  if (!found.is_closed) return anywhere(guess, followed.gap < found.gap ? followed : found);
+  if (!found.is_closed) {
+    found = anywhere(guess, followed.gap < found.gap ? followed : found);
+    newton_.reset();
+    return found;
+  }
+  newton_ = std::move(newton);
   if (!arrived)
     branch_ =
         "one of several assemblies, the guess does not tell which: on the way from there the "

@@ -22,7 +22,9 @@
 #include <momenta/dae/kkt/least_norm.h>
 
 #include <functional>
+#include <optional>
 #include <string>
+#include <vector>
 
 namespace momenta {
 
@@ -38,6 +40,13 @@ class Closing {
     bool is_least = false;      ///< closed in the least-squares sense alone
     bool is_stretched = false;  ///< open, and no motion closes it further
   };
+  /// One of Newton's steps, q ← moved(q, s δ) with the whole δ = −J⁺φ: s = part, and where δ was
+  /// cut to a longest length part / |δ|∞.
+  struct NewtonStep {
+    Eigen::VectorXd q, whole;
+    double part = 1;
+    bool is_cut = false;
+  };
   /// From the guess q. Cost: least-norm factorisations of Φ_q, 10 to 200 where it closes; up to
   /// 5000 where nothing does.
   Pose close(const Eigen::VectorXd& guess);
@@ -47,6 +56,8 @@ class Closing {
   /// From q by damped steps alone: the pose beside it, where there is one.
   Pose beside(const Eigen::VectorXd& q) { return damped(q, seed_iterations); }
 
+  /// The steps of the last close(), from the guess to the pose; none where others were among them.
+  const std::optional<std::vector<NewtonStep>>& newton_steps() const { return newton_; }
   double tolerance() const { return tolerance_; }  ///< of |Φ|∞, in units
   int iterations() const { return iterations_; }
   /// Which of several assemblies this is, where the guess does not decide it at once: one sentence,
@@ -73,6 +84,7 @@ class Closing {
   double t_, tolerance_;
   int iterations_ = 0;
   std::string branch_;
+  std::optional<std::vector<NewtonStep>> newton_;  ///< of the last damped()
 };
 
 }  // namespace momenta

@@ -1,4 +1,5 @@
 #include <momenta/dae/assembly/scaled_loops.h>
+#include <momenta/dae/joint_places.h>
 #include <momenta/dae/kkt/loop_rank.h>
 
 #include <algorithm>
@@ -15,6 +16,14 @@ ScaledLoops::ScaledLoops(const Mechanism& mechanism)
       units_(mechanism) {
   const std::vector<bool>& of_velocities = mechanism.nonholonomic();
   for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = !of_velocities[i];
+}
+
+void ScaledLoops::hold_joints() {
+  const std::vector<std::string>& held = mechanism_.scene().held;
+  if (held.empty()) return;
+  for (const JointPlace& joint : joint_places(mechanism_))
+    if (std::find(held.begin(), held.end(), joint.name) != held.end())
+      for (const int i : joint.u) columns[static_cast<std::size_t>(i)] = false;
 }
 
 Eigen::VectorXd ScaledLoops::gap(double t, const Eigen::VectorXd& q) {

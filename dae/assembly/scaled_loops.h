@@ -13,6 +13,9 @@ class ScaledLoops {
  public:
   explicit ScaledLoops(const Mechanism& mechanism);
 
+  /// Leaves out the columns of joints that the scene's assembly holds.
+  void hold_joints();
+
   /// D⁻¹ Φ at time t [s] and q (nq), m; zero in rows that are left out. Places the evaluation.
   Eigen::VectorXd gap(double t, const Eigen::VectorXd& q);
   /// Entries of D⁻¹ Φ_q C where gap() was taken last, in the order of pattern(); zero in columns

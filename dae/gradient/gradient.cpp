@@ -4,6 +4,7 @@
 #include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/gradient/adjoint_run.h>
 #include <momenta/dae/gradient/gradient.h>
+#include <momenta/dae/gradient/start_adjoint.h>
 #include <momenta/dae/gradient/start_tangents.h>
 #include <momenta/dae/gradient/tangent_system.h>
 #include <momenta/dae/solver/integrators.h>
@@ -91,6 +92,7 @@ struct Asked {
   OdeForm& form;
   const std::vector<OtherParameter>& others;
   const FormOptions& gains;
+  StartAdjoint* start_adjoint;  ///< null: the start is differenced
   GradientResult& result;
 
   IntegrationOptions options() const {
@@ -122,6 +124,13 @@ struct Asked {
     for (std::string& remark : tangents.broken) result.remarks.push_back(std::move(remark));
     return std::move(tangents.of_state);
   }
+  /// What the start has that is taken at once: rows are those of y(0), or λᵀ.
+  void add_start(const MatrixXd& slopes, MatrixXd& rows) {
+    for (std::size_t j = 0; j < others.size(); ++j)
+      if (others[j].starts_at_once)
+        rows.col(static_cast<Eigen::Index>(j)) +=
+            start_adjoint->by(result.variables[j], others[j], slopes);
+  }
   void forward();
   void adjoint();
 };
@@ -133,7 +142,8 @@ void Asked::forward() {
   std::vector<std::unique_ptr<Functional>> outputs;
   for (const std::string& formula : request.outputs)
     outputs.push_back(std::make_unique<Functional>(formula, mechanism, result.variables, others));
-  const MatrixXd tangents_at_start = at_start();
+  MatrixXd tangents_at_start = at_start();
+  if (start_adjoint) add_start(start_adjoint->rows(form.name() == "momentum"), tangents_at_start);
   for (std::string& remark :
        corners(mechanism.scene(), functional ? functional->corner() : std::string()))
     result.remarks.push_back(std::move(remark));
@@ -226,8 +236,12 @@ void Asked::adjoint() {
   if (!back.back(record, run.end_time, run.y.data(), going)) throw none(back.failure());
   result.value = back.value();
   result.gradient = back.by_parameters() + tangents_at_start.transpose() * back.by_start();
-  stages.start(start.t, start.q, start.u, back.by_start());
   stages.finish(result.gradient);
+  if (start_adjoint) {
+    MatrixXd of_start = MatrixXd::Zero(1, result.gradient.size());
+    add_start(start_adjoint->back(back.by_start()).transpose(), of_start);
+    result.gradient += of_start.transpose();
+  }
   result.products = back.products();
   result.at_once = stages.at_once();
 }
@@ -286,14 +300,23 @@ GradientResult gradient(const SceneText& scene, const GradientRequest& request) 
   options.project = form.corrects_positions();
   std::tie(options.baumgarte_alpha, options.baumgarte_beta) = form.baumgarte_gains();
   options.beta = form.beta();
-  // The σ that a leak begins with depends on inertias in its own way, the energy on them itself.
-  std::unique_ptr<NumberSlopes> slopes;
-  if (result.adjoint && form.gauge().kind != Gauge::Kind::leak && !mechanism.scene().lagrangian &&
-      request.of.find("energy") == std::string::npos)
-    slopes = make_number_slopes(mechanism, false);
+  // The σ that a leak begins with depends on inertias in its own way.
+  std::optional<StartAdjoint> start_adjoint;
+  TakenAtOnce at_once;
+  if (form.gauge().kind != Gauge::Kind::leak && !mechanism.scene().lagrangian &&
+      !mechanism.plan().quasi_velocities && !mechanism.has_nonholonomic()) {
+    start_adjoint.emplace(mechanism, start);
+    at_once.slopes = &start_adjoint->numbers();
+    at_once.starts = start_adjoint->follows_assembly();
+    at_once.makes_all = !result.adjoint || request.of.find("energy") != std::string::npos;
+    for (const Column& marker : mechanism.marker_columns())
+      at_once.makes_places |= request.of.find(marker.name) != std::string::npos;
+  }
   const std::vector<OtherParameter> others =
-      other_parameters(scene, mechanism, result.variables, slopes.get());
-  Asked asked{request, mechanism, start, form, others, options, result};
+      other_parameters(scene, mechanism, result.variables, at_once);
+  Asked asked{
+      request, mechanism, start, form, others, options, start_adjoint ? &*start_adjoint : nullptr,
+      result};
   if (result.adjoint)
     asked.adjoint();
   else

@@ -32,40 +32,53 @@ class NumberSlopesOf final : public NumberSlopes {
         loops_(build_loops(mechanism.scene(), mechanism.tree(), model_)),
         places_(number_places(model_, loops_.loops.size())),
         placed_(placed(mechanism.tree(), model_)),
+        slides_(any_slides(mechanism.tree())),
         sweep_(make_number_sweep(model_, loops_, with_places)) {}
 
-  Index size() const override { return places_.size; }
+  Index size() const override { return guess() + 2 * mechanism_.nv() + 1; }
   Index beyond_inertias() const override { return places_.joints; }
+  Index guess() const override { return places_.size; }
 
-  Range of(const std::string& place) const override {
-    const auto is_of = [&](const std::string& table, const std::string& name,
+  Share of(const std::string& place) const override {
+    const auto is_of = [&](const char* table, const std::string& name,
                            std::initializer_list<const char*> keys) {
-      return std::any_of(keys.begin(), keys.end(), [&](const char* key) {
-        const std::string whole = table + "." + name + "." + key;
-        return place == whole || place.starts_with(whole + ".");
-      });
+      const std::string whole = std::string(table) + "." + name + ".";
+      return place.starts_with(whole) &&
+             std::any_of(keys.begin(), keys.end(), [&](const std::string& key) {
+               const std::string rest = place.substr(whole.size());
+               return rest == key || rest.starts_with(key + ".");
+             });
     };
     const auto& bodies = mechanism_.tree().bodies;
     for (std::size_t k = 0; k < bodies.size(); ++k) {
-      const auto at = static_cast<Index>(k);
-      if (is_of("body", bodies[k].name, {"mass", "com", "inertia", "shape"}))
-        return {Places::of_body * at, Places::of_body};
+      if (is_of("body", bodies[k].name, {"mass", "com", "inertia", "shape"})) return {{of_body(k)}};
       if (is_of("joint", bodies[k].joint, {"stiffness", "rest", "damping", "friction"}))
-        return {places_.joints + Places::of_joint * at, Places::of_joint};
+        return {{of_joint(k)}};
+      if (is_of("joint", bodies[k].joint, {"origin", "rotation", "axis", "axis2", "direction"}))
+        return of_frames(bodies[k].joint);
+      if (is_of("joint", bodies[k].joint, {"position", "velocity"}))
+        return of_guess(bodies[k].joint);
     }
+    const auto& loops = mechanism_.scene().loops;
+    for (std::size_t i = 0; i < loops.size() && loops.size() == loops_.loops.size(); ++i)
+      if (is_of("loop", loops[i].name,
+                {"origin", "rotation", "axis", "axis2", "direction", "length", "offset"}))
+        return {{of_loop(i)}, true};
     Index spring = 0, sum = 0;
     for (const ForceSpec& f : mechanism_.scene().forces) {
-      const bool here = is_of("force", f.name, {"stiffness", "rest", "damping"});
       if (!is_plain_spring(f)) {
         if (f.kind == "spring-damper" || f.kind == "coordinate-spring") return {};
         continue;
       }
-      const bool acts = f.stiffness != 0 || f.damping != 0 || f.limits;
-      if (here)
-        return !acts ? Range()
-               : f.kind == "spring-damper"
-                   ? Range{places_.springs + Places::of_spring * spring, Places::of_spring}
-                   : Range{places_.sums + Places::of_sum * sum, Places::of_sum};
+      const bool acts = f.stiffness != 0 || f.damping != 0 || f.limits,
+                 moved = is_of("force", f.name, {"origin"});
+      if (moved || is_of("force", f.name, {"stiffness", "rest", "damping"})) {
+        if (!acts) return {};
+        return {{f.kind == "spring-damper"
+                     ? of_spring(spring)
+                     : Range{places_.sums + Places::of_sum * sum, Places::of_sum}},
+                moved};
+      }
       if (acts) ++(f.kind == "spring-damper" ? spring : sum);
     }
     return {};
@@ -100,7 +113,7 @@ class NumberSlopesOf final : public NumberSlopes {
         model.coordinate_springs.size() != model_.coordinate_springs.size() ||
         loops.loops.size() != loops_.loops.size())
       return {};
-    VectorXd all(places_.size);
+    VectorXd all(size());
     Index at = 0;
     const auto put = [&](double number) { all[at++] = number; };
     const auto put_vector = [&](const auto& v) {
@@ -154,10 +167,64 @@ class NumberSlopesOf final : public NumberSlopes {
     }
     for (const auto& spring : model.coordinate_springs)
       for (const double number : {spring.stiffness, spring.rest, spring.damping}) put(number);
+    if (tree.q0.size() != mechanism_.nv() || tree.u0.size() != mechanism_.nv()) return {};
+    all.segment(at, tree.q0.size()) = tree.q0;
+    all.segment(at + tree.q0.size(), tree.u0.size()) = tree.u0;
+    all[all.size() - 1] = slides_ ? length_of(other) : 0;
     return all;
   }
 
  private:
+  Range of_body(std::size_t k) const {
+    return {Places::of_body * static_cast<Index>(k), Places::of_body};
+  }
+  Range of_joint(std::size_t k) const {
+    return {places_.joints + Places::of_joint * static_cast<Index>(k), Places::of_joint};
+  }
+  Range of_loop(std::size_t i) const {
+    return {places_.loops + Places::of_loop * static_cast<Index>(i), Places::of_loop};
+  }
+  Range of_spring(Index i) const {
+    return {places_.springs + Places::of_spring * i, Places::of_spring};
+  }
+  Share of_guess(const std::string& joint) const {
+    Share all{{}, true};
+    for (const auto& body : mechanism_.tree().bodies)
+      if (body.joint == joint && body.nv > 0)
+        for (const Index first : {guess() + body.q, guess() + mechanism_.nv() + body.u})
+          all.ranges.push_back({first, body.nv});
+    return all;
+  }
+  /// All that is counted in the frames of the bodies that a joint joins: these may move with it.
+  Share of_frames(const std::string& joint) const {
+    const auto& bodies = mechanism_.tree().bodies;
+    std::vector<bool> moves(bodies.size() + 1, false);  // the ground last: it stays
+    const auto at = [&](int body) {
+      return body < 0 ? bodies.size() : static_cast<std::size_t>(body);
+    };
+    for (std::size_t k = 0; k < bodies.size(); ++k)
+      if (bodies[k].joint == joint) moves[k] = moves[at(bodies[k].parent)] = true;
+    moves[bodies.size()] = false;
+    Share all{{}, true};
+    for (std::size_t k = 0; k < bodies.size(); ++k) {
+      if (moves[k]) all.ranges.push_back(of_body(k));
+      if (moves[k] || moves[at(bodies[k].parent)]) all.ranges.push_back(of_joint(k));
+    }
+    for (std::size_t i = 0; i < loops_.loops.size(); ++i)
+      if (moves[at(loops_.loops[i].a)] || moves[at(loops_.loops[i].b)])
+        all.ranges.push_back(of_loop(i));
+    for (std::size_t i = 0; i < model_.springs.size(); ++i)
+      if (moves[at(model_.springs[i].parent)] || moves[at(model_.springs[i].child)])
+        all.ranges.push_back(of_spring(static_cast<Index>(i)));
+    return all;
+  }
+  static bool any_slides(const Tree& tree) {
+    return std::any_of(tree.bodies.begin(), tree.bodies.end(), [](const Tree::Body& body) {
+      for (int i = 0; i < body.nv; ++i)
+        if (body.is_length(i)) return true;
+      return false;
+    });
+  }
   /// Every body at zero, in its parent's frame, frames of the model.
   static std::vector<Isometry3d> placed(const Tree& tree, const Model<Space>& model) {
     Isometry3d ground = Isometry3d::Identity();
@@ -176,6 +243,7 @@ class NumberSlopesOf final : public NumberSlopes {
   LoopModel<Space> loops_;
   Places places_;
   std::vector<Isometry3d> placed_;
+  bool slides_;
   std::unique_ptr<NumberSweep> sweep_;
 };
 

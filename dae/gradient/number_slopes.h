@@ -25,6 +25,7 @@
 #include <Eigen/Core>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace momenta {
 
@@ -33,17 +34,26 @@ namespace momenta {
 class NumberSlopes {
  public:
   virtual ~NumberSlopes() = default;
-  /// How many numbers there are.
+  /// How many numbers there are: those of the tables, then the guess of the start.
   virtual Eigen::Index size() const = 0;
   /// Where places of joints and all that follows begins: bodies and gravity stand before.
   virtual Eigen::Index beyond_inertias() const = 0;
-  /// Where the numbers of a part stand, and how many they are; none where there is no such part.
+  /// Where q and u (nv each) stand that the scene is assembled from; behind them the length that
+  /// slides are counted in there, 0 without slides.
+  virtual Eigen::Index guess() const = 0;
+  /// Where the numbers of a part stand, and how many they are.
   struct Range {
     Eigen::Index first = 0, count = 0;
   };
-  /// Of the number at this place of the text, "body.crank.mass": those of its body; of a joint or
-  /// spring those that a number of its forces changes.
-  virtual Range of(const std::string& place) const = 0;
+  /// What a number of the text changes.
+  struct Share {
+    std::vector<Range> ranges;  ///< none: not known
+    bool of_places = false;     ///< places are among them
+  };
+  /// Of the number at this place of the text: of "body.crank.mass" the numbers of its body; of
+  /// "joint.A.origin.parent.0" all that is counted in the frames of the two bodies it joins; of a
+  /// loop or spring its own.
+  virtual Share of(const std::string& place) const = 0;
   /// Whether places and lengths are among what the derivatives are right of: not where forces at
   /// points of bodies have no potential or are no plain springs, or loops are driven, of curves or
   /// formulas.

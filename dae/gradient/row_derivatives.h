@@ -17,11 +17,13 @@
 namespace momenta {
 
 /// Evaluations at θ_j + k h, in the order of sixth_order::points; none: nothing depends on θ_j but
-/// where the motion starts, or inertias and forces. `numbers`: derivatives by θ_j of the numbers of
-/// number_slopes.h, where θ_j changes these alone; else empty.
+/// where the motion starts, or numbers that are taken at once. `numbers`: derivatives by θ_j of the
+/// numbers of number_slopes.h, where θ_j changes these alone; else empty.
 struct OtherParameter {
   double h = 0;
   Eigen::VectorXd numbers;
+  bool of_places = false;       ///< places of joints, loops or springs are among these
+  bool starts_at_once = false;  ///< what the start has of θ_j is that of start_adjoint.h
   std::vector<std::unique_ptr<Mechanism>> mechanisms;
   std::vector<std::unique_ptr<Evaluation<double>>> evaluations;
 };

@@ -66,12 +66,10 @@ StageAdjoint::StageAdjoint(const Mechanism& mechanism, const OdeForm& form,
     return !other.evaluations.empty() && other.numbers.size() == 0;
   });
   if (at_once() == 0) return;
-  placed_ = std::any_of(others.begin(), others.end(), [](const OtherParameter& other) {
-    return !other.evaluations.empty() && other.numbers.size() > 0;
-  });
+  placed_ = std::any_of(others.begin(), others.end(),
+                        [](const OtherParameter& other) { return other.of_places; });
   numbers_ = make_number_slopes(mechanism, placed_);
   slopes_.setZero(numbers_->size());
-  slopes_at_start_ = slopes_;
 }
 
 Index StageAdjoint::at_once() const {
@@ -79,19 +77,11 @@ Index StageAdjoint::at_once() const {
                        [](const OtherParameter& other) { return other.numbers.size() > 0; });
 }
 
-void StageAdjoint::start(double t, const VectorXd& q, const VectorXd& u, const VectorXd& lambda) {
-  if (numbers_)
-    numbers_->add(1, {t, q.data(), u.data(), nullptr, nullptr, lambda.data() + nv_, nullptr},
-                  slopes_at_start_);
-}
-
 void StageAdjoint::finish(VectorXd& by_parameters) const {
   for (std::size_t j = 0; j < others_.size(); ++j) {
     const OtherParameter& other = others_[j];
-    if (other.numbers.size() == 0) continue;
-    double& sum = by_parameters[static_cast<Index>(j)];
-    sum += other.numbers.dot(slopes_);
-    if (other.mechanisms.empty()) sum += other.numbers.dot(slopes_at_start_);
+    if (other.numbers.size() > 0)
+      by_parameters[static_cast<Index>(j)] += other.numbers.dot(slopes_);
   }
 }
 

@@ -75,10 +75,6 @@ class StageAdjoint {
   /// λ behind a correction of q to λ before it; q (nq) before it.
   bool correction(double t, const Eigen::VectorXd& q, Eigen::VectorXd& lambda,
                   Eigen::VectorXd& by_parameters);
-  /// λ at the start, (q, u) with σ = 0 there: what p(0) = M u has of inertias. Assemblies are
-  /// those of lengths alone, and of these dy(0)/dθ is known otherwise.
-  void start(double t, const Eigen::VectorXd& q, const Eigen::VectorXd& u,
-             const Eigen::VectorXd& lambda);
   /// What numbers have had so far is added, once, when the way back is over.
   void finish(Eigen::VectorXd& by_parameters) const;
 
@@ -114,11 +110,11 @@ class StageAdjoint {
   std::unique_ptr<Evaluation<Dual8>> dual_;
   StageMatrix matrix_;
   TransposedForces forces_;
-  std::unique_ptr<SweptTangent> swept_;       ///< null: by rows
-  std::unique_ptr<NumberSlopes> numbers_;     ///< null: no θ is taken so
-  std::unique_ptr<KineticRates> kinetic_;     ///< where there are sweeps
-  Eigen::VectorXd slopes_, slopes_at_start_;  ///< by these numbers, so far
-  bool placed_ = false;                       ///< some θ changes places
+  std::unique_ptr<SweptTangent> swept_;    ///< null: by rows
+  std::unique_ptr<NumberSlopes> numbers_;  ///< null: no θ is taken so
+  std::unique_ptr<KineticRates> kinetic_;  ///< where there are sweeps
+  Eigen::VectorXd slopes_;                 ///< by these numbers, so far
+  bool placed_ = false;                    ///< some θ changes places
   Gauge gauge_;
   MomentumAndRateRows rows_;
   Eigen::Index nv_, m_;

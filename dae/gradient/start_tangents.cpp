@@ -1,15 +1,11 @@
 #include <momenta/core/text/near_name.h>
 #include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/assembly/scaled_loops.h>
-#include <momenta/dae/gradient/numbers_alone.h>
 #include <momenta/dae/gradient/start_tangents.h>
-#include <momenta/dae/joint_places.h>
 #include <momenta/dae/kkt/least_norm.h>
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
-#include <set>
 
 namespace momenta {
 namespace {
@@ -21,10 +17,7 @@ Start closed_start(const Mechanism& mechanism, const VectorXd& q, const VectorXd
   Assembly a = assemble(mechanism, 0, q, u);
   if (mechanism.m() == 0 || a.start.residue.size() > 0) return a.start;
   ScaledLoops loops(mechanism);
-  for (const std::string& name : mechanism.scene().held)
-    for (const JointPlace& joint : joint_places(mechanism))
-      if (joint.name == name)
-        for (const int i : joint.u) loops.columns[static_cast<std::size_t>(i)] = false;
+  loops.hold_joints();
   LeastNorm steps(loops.pattern(), mechanism.m(), mechanism.nv());
   VectorXd pose = a.start.q;
   for (int pass = 0; pass < 2; ++pass) {
@@ -35,100 +28,7 @@ Start closed_start(const Mechanism& mechanism, const VectorXd& q, const VectorXd
   return assemble(mechanism, 0, pose, u).start;
 }
 
-/// The derivative of the numbers made of these scenes, at θ + k h; empty where a difference of
-/// fourth order has another: at θ they jump, as where a frame is chosen anew.
-VectorXd numbers_by(const NumberSlopes& slopes, double h, const std::vector<Scene>& scenes) {
-  VectorXd sixth = VectorXd::Zero(slopes.size()), fourth = sixth;
-  for (std::size_t i = 0; i < scenes.size(); ++i) {
-    const VectorXd made = slopes.numbers(scenes[i]);
-    if (made.size() != sixth.size()) return {};
-    sixth += sixth_order::points[i].weight / h * made;
-    if (i < sixth_order::fourth.size()) fourth += sixth_order::fourth[i] / h * made;
-  }
-  if (!((sixth - fourth).cwiseAbs().maxCoeff() <= 1e-4 * sixth.cwiseAbs().maxCoeff())) return {};
-  return sixth;
-}
-
-/// Takes the derivatives by numbers of bodies', joints' and springs' own, of as many of these as
-/// there are by six readings of the scene, in which all of them have moved. Formulas know
-/// parameters alone, so that such a number is in no other body. What a reading refuses, or what
-/// changes more, is left to be taken alone.
-void take_own_numbers(const SceneText& scene, const std::vector<RunVariable>& variables,
-                      const NumberSlopes& slopes, const NumbersAlone& same,
-                      std::vector<OtherParameter>& all) {
-  using Range = NumberSlopes::Range;
-  std::vector<Range> range_of(variables.size());
-  for (std::size_t j = 0; j < variables.size(); ++j)
-    if (variables[j].kind == RunVariable::Kind::parameter)
-      range_of[j] = slopes.of(variables[j].name);
-  while (true) {
-    std::vector<std::size_t> together;  // one of a body, joint or spring
-    std::set<Eigen::Index> parts;
-    for (std::size_t j = 0; j < variables.size(); ++j)
-      if (range_of[j].count > 0 && parts.insert(range_of[j].first).second) together.push_back(j);
-    if (together.size() < 2) return;
-    std::vector<VectorXd> numbers;
-    try {
-      for (const auto& [k, weight] : sixth_order::points) {
-        std::vector<Setting> moved;
-        for (const std::size_t j : together)
-          moved.push_back({variables[j].name, variables[j].value + k * all[j].h});
-        const Scene made = scene.scene(moved);
-        if (same.of(made) != Change::inertias_and_forces) return;
-        numbers.push_back(slopes.numbers(made));
-        if (numbers.back().size() != slopes.size()) return;
-      }
-    } catch (const std::exception&) {  // which of them it is, its own reading tells
-      return;
-    }
-    for (const std::size_t j : together) {
-      const Range its = range_of[j];
-      all[j].numbers = VectorXd::Zero(slopes.size());
-      for (std::size_t i = 0; i < numbers.size(); ++i)
-        all[j].numbers.segment(its.first, its.count) +=
-            sixth_order::points[i].weight / all[j].h * numbers[i].segment(its.first, its.count);
-      range_of[j] = {};
-    }
-  }
-}
-
 }  // namespace
-
-std::vector<OtherParameter> other_parameters(const SceneText& scene, const Mechanism& mechanism,
-                                             const std::vector<RunVariable>& variables,
-                                             const NumberSlopes* slopes) {
-  std::vector<OtherParameter> all(variables.size());
-  std::optional<NumbersAlone> same;
-  if (slopes) same.emplace(mechanism.scene(), slopes->of_places());
-  for (std::size_t j = 0; j < variables.size(); ++j)
-    all[j].h = sixth_order::part * variables[j].size;
-  if (slopes) take_own_numbers(scene, variables, *slopes, *same, all);
-  for (std::size_t j = 0; j < variables.size(); ++j) {
-    const RunVariable& v = variables[j];
-    OtherParameter& other = all[j];
-    if (v.kind != RunVariable::Kind::parameter || other.numbers.size() > 0) continue;
-    std::vector<Scene> scenes;
-    for (const auto& [k, weight] : sixth_order::points)
-      scenes.push_back(scene.scene({{v.name, v.value + k * other.h}}));
-    if (slopes) {
-      Change change = Change::inertias_and_forces;
-      for (const Scene& made : scenes) change = std::max(change, same->of(made));
-      if (change != Change::more) other.numbers = numbers_by(*slopes, other.h, scenes);
-      if (change == Change::inertias_and_forces && other.numbers.size() > 0) continue;
-    }
-    for (std::size_t i = 0; i < scenes.size(); ++i) {
-      other.mechanisms.push_back(std::make_unique<Mechanism>(std::move(scenes[i]), scene.options));
-      const Mechanism& made = *other.mechanisms.back();
-      if (made.nq() != mechanism.nq() || made.nv() != mechanism.nv() || made.m() != mechanism.m())
-        throw SceneError("with " + v.name + " = " +
-                         reading::digits(v.value + sixth_order::points[i].k * other.h) +
-                         " the mechanism has other coordinates or equations; expected a parameter "
-                         "that changes numbers alone");
-      other.evaluations.push_back(made.evaluation<double>());
-    }
-  }
-  return all;
-}
 
 StartTangents start_tangents(const Mechanism& mechanism, const std::string& form,
                              const FormOptions& options, const std::vector<RunVariable>& variables,
@@ -139,7 +39,7 @@ StartTangents start_tangents(const Mechanism& mechanism, const std::string& form
   for (std::size_t j = 0; j < variables.size(); ++j) {
     const RunVariable& v = variables[j];
     const OtherParameter& other = others[j];
-    if (other.numbers.size() > 0 && other.mechanisms.empty()) continue;
+    if (other.starts_at_once) continue;
     VectorXd sixth = VectorXd::Zero(tangents.of_state.rows()), fourth = sixth;
     double size = 1;
     for (std::size_t k = 0; k < sixth_order::points.size(); ++k) {

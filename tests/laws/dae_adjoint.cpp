@@ -7,6 +7,7 @@
 #include <momenta/dae/gradient/form_tangents.h>
 #include <momenta/dae/gradient/recorded_run.h>
 #include <momenta/dae/gradient/stage_adjoint.h>
+#include <momenta/dae/gradient/start_adjoint.h>
 #include <momenta/dae/gradient/start_tangents.h>
 #include <momenta/dae/solver/butcher_tableau.h>
 #include <momenta/dae/solver/integrators.h>
@@ -594,7 +595,8 @@ TEST(Adjoint, ReadsASceneOnceForOwnNumbersOfAllParts) {
   const std::unique_ptr<NumberSlopes> slopes = make_number_slopes(mechanism, false);
   ASSERT_TRUE(slopes->of_places());
   const auto taken = [&](const std::vector<std::string>& names) {
-    return other_parameters(scene, mechanism, run_variables(scene, mechanism, names), slopes.get());
+    return other_parameters(scene, mechanism, run_variables(scene, mechanism, names),
+                            {slopes.get()});
   };
   // Two numbers of one body, and one whose scene has other lengths.
   const std::vector<std::string> names{"body.crank.mass",
@@ -607,11 +609,12 @@ TEST(Adjoint, ReadsASceneOnceForOwnNumbersOfAllParts) {
                                        "force.S.stiffness",
                                        "force.sum.rest"};
   const std::vector<OtherParameter> together = taken(names);
-  const NumberSlopes::Range crank = slopes->of("body.crank.mass");
+  const NumberSlopes::Range crank = slopes->of("body.crank.mass").ranges.at(0);
   EXPECT_EQ(crank.count, 4);
-  EXPECT_EQ(slopes->of("force.S.rest").count, 8);
-  EXPECT_EQ(slopes->of("body.nobody.mass").count, 0);
-  EXPECT_EQ(slopes->of("joint.O.origin.parent.0").count, 0);
+  EXPECT_EQ(slopes->of("force.S.rest").ranges.at(0).count, 8);
+  EXPECT_FALSE(slopes->of("force.S.rest").of_places);
+  EXPECT_TRUE(slopes->of("body.nobody.mass").ranges.empty());
+  EXPECT_TRUE(slopes->of("loop.B.origin.child.0").of_places);
   for (std::size_t j = 0; j < names.size(); ++j) {
     const VectorXd alone = taken({names[j]}).front().numbers;
     ASSERT_EQ(together[j].numbers.size(), alone.size()) << names[j];
@@ -621,6 +624,108 @@ TEST(Adjoint, ReadsASceneOnceForOwnNumbersOfAllParts) {
     EXPECT_EQ(together[j].mechanisms.size(), names[j] == "crank" ? 6u : 0u) << names[j];
   }
   EXPECT_GT(together[0].numbers.segment(crank.first, crank.count).norm(), 0);
+}
+
+/// Of places that stand in several frames, by six readings for as many as share nothing.
+TEST(Adjoint, ReadsASceneOnceForPlacesThatShareNothing) {
+  for (const auto& [text, names] : std::vector<std::pair<std::string, std::vector<std::string>>>{
+           {in_space,
+            {"joint.J1.origin.parent.0", "joint.J1.origin.child.1", "joint.J2.origin.parent.2",
+             "joint.J2.origin.child.1", "joint.J3.origin.parent.1", "joint.J4.origin.parent.1",
+             "loop.D.length", "loop.L.origin.child.2", "loop.L.origin.parent.0",
+             "force.S.origin.child.0", "joint.J3.position", "body.a.com.1"}},
+           {sprung_four_bar(),
+            {"joint.A.origin.parent.1", "joint.C.origin.parent.0", "loop.B.origin.parent.0",
+             "loop.B.origin.child.1", "joint.O.velocity", "body.rocker.mass"}}}) {
+    const SceneText scene = of_text(text);
+    const Mechanism mechanism(scene.scene(), scene.options);
+    const std::unique_ptr<NumberSlopes> slopes = make_number_slopes(mechanism, true);
+    const auto taken = [&](const std::vector<std::string>& of) {
+      return other_parameters(scene, mechanism, run_variables(scene, mechanism, of),
+                              {slopes.get(), true});
+    };
+    const std::vector<OtherParameter> together = taken(names);
+    for (std::size_t j = 0; j < names.size(); ++j) {
+      const std::vector<OtherParameter> own = taken({names[j]});
+      const OtherParameter& alone = own.front();
+      ASSERT_EQ(together[j].numbers.size(), alone.numbers.size()) << names[j];
+      EXPECT_GT(alone.numbers.norm(), 0) << names[j];
+      EXPECT_LT((together[j].numbers - alone.numbers).norm(), 1e-12 * alone.numbers.norm())
+          << names[j];
+      EXPECT_EQ(together[j].of_places, alone.of_places) << names[j];
+      EXPECT_TRUE(together[j].mechanisms.empty()) << names[j];
+    }
+  }
+}
+
+/// Against the differences of whole assemblies: of guesses that close and others, in a plane and in
+/// space, with and without loops, slides, held joints and drives.
+TEST(Adjoint, OfTheStartIsTheDifferenceOfItsAssemblies) {
+  std::string far = four_bar;  // Newton's first steps are cut
+  far.replace(far.find("damping = 0.4"), 13, "damping = 0.0");
+  far.replace(far.find("position = 1.7"), 14, "position = 2.6");
+  struct Row {
+    SceneText scene;
+    std::vector<std::string> by;
+  };
+  for (const Row& row : std::vector<Row>{
+           {of_text(sprung_four_bar()),
+            {"crank", "coupler", "rocker", "mass", "joint.C.origin.parent.1", "O.q", "C.q", "A.u",
+             "O.u"}},
+           {of_text(far), {"crank", "coupler", "rocker", "C.q", "A.q", "O.u"}},
+           {of_text(slide_and_coupler),
+            {"turn", "loop.D.length", "loop.Q.offset", "loop.D.origin.parent.0",
+             "joint.K.origin.parent.0", "joint.W.position", "body.b.com.0", "W.q", "J.q", "K.u"}},
+           {of_text(in_space),
+            {"tilt", "end_tilt", "joint.J2.origin.parent.2", "loop.L.origin.child.2",
+             "loop.D.length", "body.c.mass", "J2.q0", "J1.q", "J3.u"}},
+           {example("andrews/scene.toml"),
+            {"loop.E4.origin.child.1", "body.crank.mass", "O.q", "O.u"}},
+           {example("chain/scene.toml"), {"joint.J3.origin.parent.0", "J1.q", "J9.u"}},
+           {of_scene(equations::row_of_four_bars(3, 1.2, 0.7)),
+            {"loop.C1.origin.child.0", "loop.C2.origin.parent.0", "joint.B1.origin.parent.0"}},
+           {of_text(driven()), {"M.q", "M.u", "body.pendulum.mass"}}}) {
+    const Mechanism mechanism(row.scene.scene(), row.scene.options);
+    const std::vector<RunVariable> by = run_variables(row.scene, mechanism, row.by);
+    std::vector<RunVariable> near = by;  // so that differences have their digits in bent scenes
+    for (RunVariable& v : near) v.size /= 4;
+    const std::vector<OtherParameter> nearby = other_parameters(row.scene, mechanism, near);
+    StartAdjoint start(mechanism, assemble(mechanism).start);
+    ASSERT_TRUE(start.follows_assembly()) << mechanism.scene().name;
+    const std::vector<OtherParameter> others =
+        other_parameters(row.scene, mechanism, by, {&start.numbers(), true});
+    for (const char* form : {"momentum", "acceleration"}) {
+      const MatrixXd expected =
+          start_tangents(mechanism, form, gauge(Gauge::Kind::none), near, nearby).of_state;
+      const MatrixXd slopes = start.rows(form[0] == 'm');
+      for (std::size_t j = 0; j < by.size(); ++j) {
+        EXPECT_TRUE(others[j].mechanisms.empty()) << by[j].name;
+        const VectorXd found = start.by(by[j], others[j], slopes),
+                       column = expected.col(static_cast<Index>(j));
+        EXPECT_LT((found - column).norm(), 1e-10 * (1 / by[j].size + column.norm()))
+            << mechanism.scene().name << ", " << form << ", by " << by[j].name;
+      }
+    }
+  }
+}
+
+/// Where equations are redundant, or the way to the pose is another one, it is differenced.
+TEST(Adjoint, OfTheStartIsNotThatOfRedundantLoops) {
+  SceneText scene = example("bricard/scene.toml");
+  scene.fixed = {{"joint." + scene.scene().joints[0].name + ".velocity", 0.5}};
+  const Mechanism mechanism(scene.scene(), scene.options);
+  StartAdjoint start(mechanism, assemble(mechanism).start);
+  EXPECT_FALSE(start.follows_assembly());
+  const std::vector<RunVariable> by = run_variables(scene, mechanism, {"body.rod1.mass"});
+  const std::vector<OtherParameter> differenced = other_parameters(scene, mechanism, by),
+                                    others =
+                                        other_parameters(scene, mechanism, by, {&start.numbers()});
+  ASSERT_TRUE(others[0].starts_at_once);  // p = M u has inertias all the same
+  const VectorXd column =
+      start_tangents(mechanism, "momentum", gauge(Gauge::Kind::none), by, differenced)
+          .of_state.col(0);
+  EXPECT_GT(column.norm(), 0);
+  EXPECT_LT((start.by(by[0], others[0], start.rows(true)) - column).norm(), 1e-10 * column.norm());
 }
 
 /// The sentence with which it is refused.

@@ -1,0 +1,176 @@
+#include <momenta/core/text/near_name.h>
+#include <momenta/dae/gradient/numbers_alone.h>
+#include <momenta/dae/gradient/other_parameters.h>
+
+#include <algorithm>
+#include <optional>
+#include <set>
+
+namespace momenta {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+/// The derivative of the numbers made of these scenes, at θ + k h; empty where a difference of
+/// fourth order has another: at θ they jump, as where a frame is chosen anew.
+VectorXd numbers_by(const NumberSlopes& slopes, double h, const std::vector<Scene>& scenes) {
+  VectorXd sixth = VectorXd::Zero(slopes.size()), fourth = sixth;
+  for (std::size_t i = 0; i < scenes.size(); ++i) {
+    const VectorXd made = slopes.numbers(scenes[i]);
+    if (made.size() != sixth.size()) return {};
+    sixth += sixth_order::points[i].weight / h * made;
+    if (i < sixth_order::fourth.size()) fourth += sixth_order::fourth[i] / h * made;
+  }
+  if (!((sixth - fourth).cwiseAbs().maxCoeff() <= 1e-4 * sixth.cwiseAbs().maxCoeff())) return {};
+  return sixth;
+}
+
+/// Numbers of bodies', joints', loops' and springs' own, of as many of these as share nothing by
+/// six readings of the scene in which all of them have moved. Formulas know parameters alone, so
+/// that such a number is in no other body. What a reading refuses, and what changes more than it
+/// is known to, is left to be taken alone.
+class OwnNumbers {
+ public:
+  OwnNumbers(const SceneText& scene, const NumberSlopes& slopes, const NumbersAlone& same,
+             const Scene& own)
+      : scene_(scene), slopes_(slopes), same_(same), own_(slopes.numbers(own)) {}
+
+  void take(const std::vector<RunVariable>& variables, std::vector<OtherParameter>& all) {
+    std::vector<NumberSlopes::Share> shares(variables.size());
+    for (std::size_t j = 0; j < variables.size(); ++j)
+      if (variables[j].kind == RunVariable::Kind::parameter)
+        shares[j] = slopes_.of(variables[j].name);
+    while (true) {
+      std::vector<std::size_t> together;
+      std::set<Index> parts;
+      for (std::size_t j = 0; j < variables.size(); ++j)
+        if (is_apart(shares[j], parts)) together.push_back(j);
+      if (together.size() < 2 || !read(variables, together, shares, all)) return;
+      for (const std::size_t j : together) {
+        all[j].of_places = shares[j].of_places;
+        shares[j] = {};
+      }
+    }
+  }
+
+ private:
+  /// Whether a share has nothing in common with these parts, to which it is added then.
+  static bool is_apart(const NumberSlopes::Share& share, std::set<Index>& parts) {
+    if (share.ranges.empty()) return false;
+    for (const auto& range : share.ranges)
+      if (parts.contains(range.first)) return false;
+    for (const auto& range : share.ranges) parts.insert(range.first);
+    return true;
+  }
+
+  bool read(const std::vector<RunVariable>& variables, const std::vector<std::size_t>& together,
+            const std::vector<NumberSlopes::Share>& shares, std::vector<OtherParameter>& all) {
+    std::vector<bool> moves(static_cast<std::size_t>(own_.size()), false);
+    bool of_places = false;
+    for (const std::size_t j : together) {
+      of_places = of_places || shares[j].of_places;
+      for (const auto& range : shares[j].ranges)
+        std::fill_n(moves.begin() + range.first, range.count, true);
+    }
+    std::vector<VectorXd> numbers;
+    try {
+      for (const auto& [k, weight] : sixth_order::points) {
+        std::vector<Setting> moved;
+        for (const std::size_t j : together)
+          moved.push_back({variables[j].name, variables[j].value + k * all[j].h});
+        const Scene made = scene_.scene(moved);
+        if (same_.of(made) > (of_places ? Change::places : Change::inertias_and_forces))
+          return false;
+        const VectorXd& n = numbers.emplace_back(slopes_.numbers(made));
+        if (n.size() != own_.size()) return false;
+        for (Index i = 0; i < n.size(); ++i)
+          if (!moves[static_cast<std::size_t>(i)] && n[i] != own_[i]) return false;
+      }
+    } catch (const std::exception&) {  // which of them it is, its own reading tells
+      return false;
+    }
+    const VectorXd none = VectorXd::Zero(own_.size());
+    std::vector<VectorXd> taken(together.size(), none);
+    for (std::size_t a = 0; a < together.size(); ++a) {
+      const std::size_t j = together[a];
+      VectorXd fourth = none;
+      for (std::size_t i = 0; i < numbers.size(); ++i)
+        for (const auto& range : shares[j].ranges) {
+          const auto its = numbers[i].segment(range.first, range.count);
+          taken[a].segment(range.first, range.count) +=
+              sixth_order::points[i].weight / all[j].h * its;
+          if (i < sixth_order::fourth.size())
+            fourth.segment(range.first, range.count) += sixth_order::fourth[i] / all[j].h * its;
+        }
+      // Where it jumps it is taken alone, and the rest with it.
+      if (!((taken[a] - fourth).cwiseAbs().maxCoeff() <= 1e-4 * taken[a].cwiseAbs().maxCoeff()))
+        return false;
+    }
+    for (std::size_t a = 0; a < together.size(); ++a)
+      all[together[a]].numbers = std::move(taken[a]);
+    return true;
+  }
+
+  const SceneText& scene_;
+  const NumberSlopes& slopes_;
+  const NumbersAlone& same_;
+  VectorXd own_;
+};
+
+}  // namespace
+
+std::vector<OtherParameter> other_parameters(const SceneText& scene, const Mechanism& mechanism,
+                                             const std::vector<RunVariable>& variables,
+                                             const TakenAtOnce& at_once) {
+  std::vector<OtherParameter> all(variables.size());
+  const NumberSlopes* const slopes = at_once.slopes;
+  std::optional<NumbersAlone> same;
+  for (std::size_t j = 0; j < variables.size(); ++j)
+    all[j].h = sixth_order::part * variables[j].size;
+  if (slopes) {
+    same.emplace(mechanism.scene(), slopes->of_places());
+    if (!at_once.makes_all)
+      OwnNumbers(scene, *slopes, *same, mechanism.scene()).take(variables, all);
+  }
+  for (std::size_t j = 0; j < variables.size(); ++j) {
+    const RunVariable& v = variables[j];
+    OtherParameter& other = all[j];
+    if (v.kind != RunVariable::Kind::parameter) {
+      other.starts_at_once = at_once.starts;
+      continue;
+    }
+    std::vector<Scene> scenes;
+    const auto read = [&] {
+      for (const auto& [k, weight] : sixth_order::points)
+        scenes.push_back(scene.scene({{v.name, v.value + k * other.h}}));
+    };
+    if (slopes && other.numbers.size() == 0) {
+      read();
+      Change change = Change::inertias_and_forces;
+      for (const Scene& made : scenes) change = std::max(change, same->of(made));
+      if (change != Change::more) other.numbers = numbers_by(*slopes, other.h, scenes);
+      other.of_places = change == Change::places && other.numbers.size() > 0;
+    }
+    if (other.numbers.size() > 0) {
+      other.starts_at_once = !other.of_places || at_once.starts;
+      const bool makes =
+          at_once.makes_all || (other.of_places && (at_once.makes_places || !at_once.starts));
+      if (!makes) continue;
+    }
+    if (scenes.empty()) read();
+    for (std::size_t i = 0; i < scenes.size(); ++i) {
+      other.mechanisms.push_back(std::make_unique<Mechanism>(std::move(scenes[i]), scene.options));
+      const Mechanism& made = *other.mechanisms.back();
+      if (made.nq() != mechanism.nq() || made.nv() != mechanism.nv() || made.m() != mechanism.m())
+        throw SceneError("with " + v.name + " = " +
+                         reading::digits(v.value + sixth_order::points[i].k * other.h) +
+                         " the mechanism has other coordinates or equations; expected a parameter "
+                         "that changes numbers alone");
+      other.evaluations.push_back(made.evaluation<double>());
+    }
+  }
+  return all;
+}
+
+}  // namespace momenta

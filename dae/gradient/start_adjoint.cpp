@@ -1,0 +1,199 @@
+#include <momenta/dae/gradient/start_adjoint.h>
+
+#include <cmath>
+
+namespace momenta {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// Of (10): D⁻¹w, D⁻¹y (m), C v, C x (nv).
+struct StartAdjoint::Pulled {
+  VectorXd w, y, v, x;
+};
+
+StartAdjoint::StartAdjoint(const Mechanism& mechanism, Start start)
+    : mechanism_(mechanism),
+      start_(std::move(start)),
+      nv_(mechanism.nv()),
+      m_(mechanism.m()),
+      loops_(mechanism),
+      numbers_(make_number_slopes(mechanism, false)),
+      dual_(mechanism.evaluation<Dual8>()),
+      kinetic_(make_kinetic_rates(mechanism)),
+      driven_(mechanism.plan().drives) {
+  for (const auto& body : mechanism.tree().bodies)
+    for (int i = 0; i < body.nv; ++i) slides_.push_back(body.is_length(i));
+  loops_.hold_joints();
+  follows_ = m_ == 0 || (start_.residue.size() == 0 && follow());
+  placed_ = follows_ && numbers_->of_places();
+  if (placed_) numbers_ = make_number_slopes(mechanism, true);
+}
+
+/// Whether the start is where Newton's steps lead, all at poses where the rows are independent.
+bool StartAdjoint::follow() {
+  constexpr double same = 1e-9;  // [rad or lengths]: of two ways of closing to rounding
+  LeastNorm steps(loops_.pattern(), mechanism_.m(), mechanism_.nv());
+  Closing closing(loops_, steps, 0);
+  const Closing::Pose pose = closing.close(mechanism_.tree().q0);
+  if (!pose.is_closed || pose.is_least || !closing.newton_steps() ||
+      !(loops_.apart(pose.q, start_.q) <= same))
+    return false;
+  std::vector<Closing::NewtonStep> all = *closing.newton_steps();
+  // What is left is closed by one more step, so that derivatives are.
+  all.push_back({start_.q, VectorXd::Zero(nv_), 1, false});
+  for (Closing::NewtonStep& taken : all) {
+    loops_.gap(0, taken.q);
+    const std::vector<double> entries = loops_.jacobian();
+    if (steps.judge(entries, Judged::dependence).rank != mechanism_.m()) return false;
+    Step& step = steps_.emplace_back();
+    static_cast<Closing::NewtonStep&>(step) = std::move(taken);
+    step.transposed.setZero(nv_, m_);
+    for (std::size_t k = 0; k < entries.size(); ++k)
+      step.transposed(loops_.pattern()[k].column, loops_.pattern()[k].row) += entries[k];
+    step.factors.compute_full_rank(step.transposed);
+  }
+  return true;
+}
+
+StartAdjoint::Pulled StartAdjoint::pull(const Step& at, const VectorXd& x, VectorXd x_bar) {
+  const VectorXd& unit = loops_.units().rates;
+  for (Index i = 0; i < nv_; ++i)
+    if (!loops_.columns[static_cast<std::size_t>(i)]) x_bar[i] = 0;
+  const VectorXd w = at.factors.solve(x_bar), y = at.factors.solve(x), of_rows = at.transposed * w,
+                 v = x_bar - of_rows;
+  for (Index i = 0; i < nv_; ++i)
+    if (slides_[static_cast<std::size_t>(i)])
+      by_length_ += (x[i] * v[i] - of_rows[i] * x[i]) / unit[i];
+  const VectorXd& row = loops_.units().equations;
+  return {w.cwiseQuotient(row), y.cwiseQuotient(row), v.cwiseProduct(unit), x.cwiseProduct(unit)};
+}
+
+/// D_along(Φ_qᵀσ) at q.
+VectorXd StartAdjoint::turned(const VectorXd& q, const VectorXd& along, const VectorXd& sigma) {
+  x_.resize(static_cast<std::size_t>(nv_ + m_));
+  out_.resize(static_cast<std::size_t>(nv_));
+  for (Index i = 0; i < nv_; ++i) {
+    Dual8& x = x_[static_cast<std::size_t>(i)];
+    x = Dual8(q[i]);
+    x.b[0] = along[i];
+  }
+  for (Index i = 0; i < m_; ++i) x_[static_cast<std::size_t>(nv_ + i)] = Dual8(sigma[i]);
+  dual_->place(0, x_.data());
+  dual_->constraint_forces(x_.data() + nv_, out_.data());
+  VectorXd d(nv_);
+  for (Index i = 0; i < nv_; ++i) d[i] = out_[static_cast<std::size_t>(i)].b[0];
+  return d;
+}
+
+/// u = u₀ + C x at the pose.
+void StartAdjoint::through_rates(VectorXd& of_q, VectorXd& of_u) {
+  const VectorXd &unit = loops_.units().rates, &q = start_.q, &u = start_.u;
+  const VectorXd x = (u - mechanism_.tree().u0).cwiseQuotient(unit);
+  loops_.gap(0, q);
+  for (Index i = 0; i < nv_; ++i)
+    if (slides_[static_cast<std::size_t>(i)]) by_length_ += of_u[i] * x[i];
+  const Pulled by = pull(steps_.back(), x, of_u.cwiseProduct(unit));
+  const VectorXd w = -by.w;
+  if (placed_)
+    numbers_->add_loop_rates(
+        1, {0, q.data(), u.data(), by.y.data(), nullptr, by.v.data(), w.data()}, slopes_);
+  of_q += turned(q, by.v, by.y);
+  // ∂(wᵀΦ̇)/∂q = Φ̇_qᵀw, with what drives have in it: of ṗ, which is linear in w.
+  x_.resize(static_cast<std::size_t>(2 * nv_ + m_));
+  out_.resize(static_cast<std::size_t>(nv_));
+  for (Index i = 0; i < nv_; ++i) {
+    x_[static_cast<std::size_t>(i)] = Dual8(q[i]);
+    x_[static_cast<std::size_t>(nv_ + i)] = Dual8(u[i]);
+  }
+  for (Index i = 0; i < m_; ++i) {
+    Dual8& sigma = x_[static_cast<std::size_t>(2 * nv_ + i)];
+    sigma = Dual8(0.0);
+    sigma.b[0] = w[i];
+  }
+  const Dual8 *at_q = x_.data(), *at_u = at_q + nv_, *sigma = at_u + nv_;
+  dual_->place(0, at_q);
+  dual_->move(at_u);
+  dual_->momenta(sigma, out_.data());
+  dual_->momentum_rates(at_q, at_u, sigma, 0, out_.data());
+  for (Index i = 0; i < nv_; ++i) of_q[i] += out_[static_cast<std::size_t>(i)].b[0];
+  VectorXd force(nv_);
+  loops_.evaluation().constraint_forces(w.data(), force.data());
+  of_u += force;
+}
+
+/// q + C s x, from behind the step to before it.
+void StartAdjoint::through_step(const Step& step, VectorXd& of_q) {
+  const VectorXd &unit = loops_.units().rates, &x = step.whole;
+  loops_.gap(0, step.q);
+  const VectorXd of_taken = of_q.cwiseProduct(unit);
+  Index longest = 0;
+  const double length = step.is_cut ? x.cwiseAbs().maxCoeff(&longest) : 1, s = step.part / length;
+  for (Index i = 0; i < nv_; ++i)
+    if (slides_[static_cast<std::size_t>(i)]) by_length_ += of_q[i] * s * x[i];
+  VectorXd x_bar = s * of_taken;
+  if (step.is_cut) x_bar[longest] -= s / x[longest] * of_taken.dot(x);
+  const Pulled by = pull(step, x, x_bar);
+  const VectorXd w = -by.w;
+  if (placed_) {
+    numbers_->add_loops(1, 0, step.q.data(), w.data(), slopes_);
+    numbers_->add_loop_rates(
+        1, {0, step.q.data(), by.x.data(), by.y.data(), nullptr, by.v.data(), w.data()}, slopes_);
+    if (driven_)  // a step is no motion: what drives have in wᵀΦ̇ goes
+      numbers_->add_loop_rates(-1, {0, step.q.data(), nullptr, nullptr, nullptr, nullptr, w.data()},
+                               slopes_);
+  }
+  VectorXd force(nv_);
+  loops_.evaluation().constraint_forces(w.data(), force.data());
+  of_q += force + turned(step.q, by.x, w) + turned(step.q, by.v, by.y);
+}
+
+/// p = M u: λ of p handed on.
+void StartAdjoint::through_momenta(const VectorXd& of_p, VectorXd& of_q, VectorXd& of_u) {
+  const VectorXd &q = start_.q, &u = start_.u;
+  numbers_->add(1, {0, q.data(), u.data(), nullptr, nullptr, of_p.data(), nullptr}, slopes_);
+  VectorXd change(nv_);
+  kinetic_->along(0, q.data(), u.data(), of_p.data(), change.data());
+  of_q += change;
+  Evaluation<double>& e = loops_.evaluation();
+  e.place(0, q.data());
+  e.move(of_p.data());
+  e.momenta(nullptr, of_u.data());
+  if (!driven_) return;
+  e.move(nullptr);
+  e.momenta(nullptr, change.data());
+  of_u -= change;
+}
+
+VectorXd StartAdjoint::back(const VectorXd& lambda, bool of_momenta) {
+  slopes_.setZero(numbers_->size());
+  by_length_ = 0;
+  VectorXd of_q = lambda.head(nv_), of_u = lambda.tail(nv_);
+  if (of_momenta) through_momenta(lambda.tail(nv_), of_q, of_u);
+  if (!follows_) return slopes_;
+  if (m_ > 0) {
+    through_rates(of_q, of_u);
+    for (std::size_t i = steps_.size(); i-- > 0;) through_step(steps_[i], of_q);
+  }
+  slopes_.segment(numbers_->guess(), nv_) += of_q;
+  slopes_.segment(numbers_->guess() + nv_, nv_) += of_u;
+  slopes_[slopes_.size() - 1] += by_length_;
+  return slopes_;
+}
+
+MatrixXd StartAdjoint::rows(bool of_momenta) {
+  MatrixXd all(2 * nv_, numbers_->size());
+  for (Index i = 0; i < all.rows(); ++i)
+    all.row(i) = back(VectorXd::Unit(all.rows(), i), of_momenta).transpose();
+  return all;
+}
+
+VectorXd StartAdjoint::by(const RunVariable& variable, const OtherParameter& other,
+                          const MatrixXd& slopes) const {
+  if (variable.kind == RunVariable::Kind::parameter) return slopes * other.numbers;
+  const bool is_rate = variable.kind == RunVariable::Kind::rate;
+  return slopes.col(numbers_->guess() + variable.place + (is_rate ? nv_ : 0));
+}
+
+}  // namespace momenta

@@ -1,0 +1,85 @@
+#pragma once
+// The transposed derivative of the start y(0) = (q, p) of the momentum form, σ(0) = 0: of λ at the
+// start, λᵀ dy(0)/dn by all numbers n that it is made of (number_slopes.h), its guess among them.
+// Backwards through what the assembly did:
+//
+//   p = M u (7)                   λ_q + D_λp T_q,  ū = M λ_p
+//   u = u₀ + C x,  A x = −D⁻¹Φ̇(q, u₀)                 rates: the least change that the loops allow
+//   q_{k+1} = q_k + C s x,  A x = −φ,  φ = D⁻¹Φ       Newton's steps from the guess, s cut or not
+//
+// with A = D⁻¹Φ_q C of full rank, and x = Aᵀy the shortest. Differentiated, A dx = −dφ − dA x and
+// dx = Aᵀdy + dAᵀ y. Of the adjoint x̄ of x, w the solution of least |x̄ − Aᵀw| and v = x̄ − Aᵀw,
+//
+//   x̄ᵀ dx = −wᵀ(dφ + dA x) + yᵀ dA v,                                                       (10)
+//
+// since A v = 0: one derivative of wᵀΦ, wᵀΦ̇ and yᵀΦ̇ by q and by all numbers at once. By q these
+// are symmetric: ∂(σᵀΦ_q d)/∂q = D_d(Φ_qᵀσ). D drops out, and C is the length of the scene where
+// joints slide. The pose is a limit: behind the last step loops are closed to rounding, dq too by
+// one more step of x = 0. What steps leave of the guess, v, is not a projection at the pose alone,
+// since each step is the shortest at its own.
+//
+// Where another way was gone than by these steps, or equations are redundant, there is no such
+// derivative: start_tangents.h.
+
+#include <momenta/dae/assembly/closing.h>
+#include <momenta/dae/dense/least_squares.h>
+#include <momenta/dae/form/form.h>
+#include <momenta/dae/gradient/kinetic_rates.h>
+#include <momenta/dae/gradient/number_slopes.h>
+#include <momenta/dae/gradient/row_derivatives.h>
+#include <momenta/dae/gradient/run_variable.h>
+
+#include <deque>
+
+namespace momenta {
+
+class StartAdjoint {
+ public:
+  /// Of the assembled start at t = 0. @pre neither quaternions nor nonholonomic rows, bodies. The
+  /// mechanism must outlive it. Cost: the assembly once more, and a QR factorisation of A for each
+  /// of its steps, O(nv m²)
+  StartAdjoint(const Mechanism& mechanism, Start start);
+  /// The numbers.
+  const NumberSlopes& numbers() const { return *numbers_; }
+  /// Whether the assembly is differentiated; else back() takes (q, u) as given.
+  bool follows_assembly() const { return follows_; }
+  /// λᵀ dy(0)/dn by the numbers of NumberSlopes, λ of 2 nv, of y = (q, p), or else of (q, u). Cost:
+  /// two sweeps and a solution by kept factors, O(nv m), for each step of the assembly.
+  Eigen::VectorXd back(const Eigen::VectorXd& lambda, bool of_momenta = true);
+  /// By unit vectors λ: dy(0)/dn, 2 nv × numbers.
+  Eigen::MatrixXd rows(bool of_momenta);
+  /// dy(0) by a variable, of the numbers' slopes that back() returns or of rows of them: columns of
+  /// `slopes` are numbers. @pre other.starts_at_once
+  Eigen::VectorXd by(const RunVariable& variable, const OtherParameter& other,
+                     const Eigen::MatrixXd& slopes) const;
+
+ private:
+  struct Step : Closing::NewtonStep {
+    Eigen::MatrixXd transposed;  ///< Aᵀ at its q
+    DenseLeastSquares factors;   ///< of it
+  };
+  struct Pulled;
+  bool follow();
+  Pulled pull(const Step& at, const Eigen::VectorXd& x, Eigen::VectorXd x_bar);
+  void through_momenta(const Eigen::VectorXd& of_p, Eigen::VectorXd& of_q, Eigen::VectorXd& of_u);
+  void through_rates(Eigen::VectorXd& of_q, Eigen::VectorXd& of_u);
+  void through_step(const Step& step, Eigen::VectorXd& of_q);
+  Eigen::VectorXd turned(const Eigen::VectorXd& q, const Eigen::VectorXd& along,
+                         const Eigen::VectorXd& sigma);
+
+  const Mechanism& mechanism_;
+  Start start_;
+  Eigen::Index nv_, m_;
+  ScaledLoops loops_;
+  std::deque<Step> steps_;  ///< the last of x = 0, at the pose
+  std::unique_ptr<NumberSlopes> numbers_;
+  std::unique_ptr<Evaluation<Dual8>> dual_;
+  std::unique_ptr<KineticRates> kinetic_;
+  bool follows_ = false, placed_ = false, driven_;
+  std::vector<bool> slides_;  ///< by rate
+  Eigen::VectorXd slopes_;
+  double by_length_ = 0;
+  std::vector<Dual8> x_, out_;
+};
+
+}  // namespace momenta
