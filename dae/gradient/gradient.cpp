@@ -2,8 +2,10 @@
 #include <momenta/core/scene/drive.h>
 #include <momenta/core/text/near_name.h>
 #include <momenta/dae/assembly/assembly.h>
+#include <momenta/dae/gradient/acceleration_adjoint.h>
 #include <momenta/dae/gradient/adjoint_run.h>
 #include <momenta/dae/gradient/gradient.h>
+#include <momenta/dae/gradient/stage_adjoint.h>
 #include <momenta/dae/gradient/start_tangents.h>
 #include <momenta/dae/gradient/tangent_system.h>
 #include <momenta/dae/solver/integrators.h>
@@ -71,15 +73,22 @@ std::vector<std::string> corners(const Scene& scene, const std::string& of_funct
 }
 
 /// Why a run has no adjoint, one sentence; empty: it has.
-std::string no_adjoint(const RunSettings& s, const Mechanism& mechanism, bool trajectory) {
+std::string no_adjoint(const Mechanism& mechanism, bool trajectory) {
   const std::string instead = "; expected the mode 'forward'";
-  if (s.form != "momentum") return "form '" + s.form + "' has no adjoint" + instead;
   if (mechanism.plan().quasi_velocities)
-    return "spherical and free joints, whose momenta are not canonical, have no adjoint" + instead;
+    return "spherical and free joints, whose rates are no derivatives of coordinates, have no "
+           "adjoint" +
+           instead;
   if (mechanism.has_nonholonomic())
     return "loops that roll or have an equation of velocities have no adjoint" + instead;
   if (trajectory) return "an adjoint has no derivatives of the trajectory" + instead;
   return "";
+}
+
+std::unique_ptr<FormAdjoint> form_adjoint(const Mechanism& mechanism, const OdeForm& form,
+                                          const std::vector<OtherParameter>& others) {
+  if (form.momentum_like()) return std::make_unique<StageAdjoint>(mechanism, form, others);
+  return std::make_unique<AccelerationAdjoint>(mechanism, form, others);
 }
 
 /// A gradient under way: what forward and adjoint share.
@@ -178,7 +187,7 @@ void Asked::forward() {
 void Asked::adjoint() {
   const RunSettings& s = result.settings;
   FunctionalSlopes functional(request.of, mechanism, result.variables, others);
-  StageAdjoint stages(mechanism, form, others);
+  const std::unique_ptr<FormAdjoint> stages = form_adjoint(mechanism, form, others);
   const MatrixXd tangents_at_start = at_start();
   for (std::string& remark : corners(mechanism.scene(), functional.corner()))
     result.remarks.push_back(std::move(remark));
@@ -193,8 +202,8 @@ void Asked::adjoint() {
                                           {start.t, s.end_time}, options(), observer);
   if (!run.done) throw none(record.lost().empty() ? run.reason : record.lost());
   take(run, record.singular_passages());
-  if (record.redundant()) stages.by_rows();
-  AdjointRun back(form, stages, functional, request.integral, s.integrator,
+  if (record.redundant()) stages->by_rows();
+  AdjointRun back(form, *stages, functional, request.integral, s.integrator,
                   static_cast<Eigen::Index>(others.size()));
   const auto going = [&](double t) {
     return !request.progress || request.progress(s.end_time - 0.5 * t);
@@ -202,10 +211,10 @@ void Asked::adjoint() {
   if (!back.back(record, run.end_time, run.y.data(), going)) throw none(back.failure());
   result.value = back.value();
   result.gradient = back.by_parameters() + tangents_at_start.transpose() * back.by_start();
-  stages.start(start.t, start.q, start.u, back.by_start());
-  stages.finish(result.gradient);
+  stages->start(start.t, start.q, start.u, back.by_start());
+  stages->finish(result.gradient);
   result.products = back.products();
-  result.at_once = stages.at_once();
+  result.at_once = stages->at_once();
 }
 
 }  // namespace
@@ -236,7 +245,7 @@ GradientResult gradient(const SceneText& scene, const GradientRequest& request) 
   s.when_stiff.clear();
   if (s.integrator.empty()) s.integrator = default_integrator(s.form, s.rtol);
   expect_differentiable(s, mechanism);
-  const std::string refused = no_adjoint(s, mechanism, request.trajectory);
+  const std::string refused = no_adjoint(mechanism, request.trajectory);
   if (request.mode == GradientMode::adjoint && !refused.empty())
     throw std::invalid_argument(refused);
   result.adjoint = request.mode == GradientMode::adjoint ||
@@ -251,9 +260,11 @@ GradientResult gradient(const SceneText& scene, const GradientRequest& request) 
   options.project = form.corrects_positions();
   std::tie(options.baumgarte_alpha, options.baumgarte_beta) = form.baumgarte_gains();
   options.beta = form.beta();
-  // The σ that a leak begins with depends on inertias in its own way, the energy on them itself.
+  // The σ that a leak begins with depends on inertias in its own way, the energy on them itself; on
+  // accelerations their second derivatives have no part in time.
   std::unique_ptr<NumberSlopes> slopes;
   if (result.adjoint && form.gauge().kind != Gauge::Kind::leak && !mechanism.scene().lagrangian &&
+      (form.momentum_like() || !mechanism.plan().drives) &&
       request.of.find("energy") == std::string::npos)
     slopes = make_number_slopes(mechanism, false);
   const std::vector<OtherParameter> others =
