@@ -9,7 +9,7 @@ using Eigen::Map;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-AdjointRun::AdjointRun(OdeForm& form, StageAdjoint& adjoint, FunctionalSlopes& g, bool integral,
+AdjointRun::AdjointRun(OdeForm& form, FormAdjoint& adjoint, FunctionalSlopes& g, bool integral,
                        const std::string& method, Index parameters)
     : form_(form),
       adjoint_(adjoint),
@@ -37,7 +37,11 @@ bool AdjointRun::rhs(double t, const double* y, double* ydot, AdjointState& at) 
   at.t = t;
   at.q = Map<const VectorXd>(y, form_.size() / 2);
   at.p = Map<const VectorXd>(y + form_.size() / 2, form_.size() / 2);
-  at.u = Map<const VectorXd>(form_.rates().data(), form_.size() / 2);
+  if (form_.momentum_like())
+    at.u = Map<const VectorXd>(form_.rates().data(), form_.size() / 2);
+  else
+    at.u = at.p;
+  at.slope = Map<const VectorXd>(ydot + form_.size() / 2, form_.size() / 2);
   at.sigma = Map<const VectorXd>(form_.multipliers().data(),
                                  static_cast<Index>(form_.multipliers().size()));
   return true;
@@ -84,8 +88,9 @@ bool AdjointRun::after_step(double t, const VectorXd& y, const double* behind) {
          fail_at(t, dependent_loops);
 }
 
-/// The stages of a step and their slopes, from its start.
-bool AdjointRun::stages_again(const RecordedRun::Step& step, const double* start) {
+/// The stages of a step and their slopes, from its start; f of the first was taken at `first`.
+bool AdjointRun::stages_again(const RecordedRun::Step& step, const double* start,
+                              const double* first) {
   const Map<const VectorXd> y(start, form_.size());
   form_.begin_step(step.t0, start);
   for (Index i = 0; i < k_.cols(); ++i) {
@@ -95,7 +100,7 @@ bool AdjointRun::stages_again(const RecordedRun::Step& step, const double* start
       if (const double a = tableau_.a[at][static_cast<std::size_t>(j)]; a != 0)
         w_ += step.h * a * k_.col(j);
     const double t = tableau_.c[at] == 1 ? step.t1 : step.t0 + tableau_.c[at] * step.h;
-    if (!rhs(t, w_.data(), k_.col(i).data(), stages_[at])) return false;
+    if (!rhs(t, i == 0 ? first : w_.data(), k_.col(i).data(), stages_[at])) return false;
   }
   return true;
 }
@@ -116,6 +121,10 @@ bool AdjointRun::times_slopes(std::size_t stage) {
 
 bool AdjointRun::step(const RecordedRun& run, std::size_t number, const double* behind) {
   const RecordedRun::Step& step = run.steps()[number];
+  // Before a correction that does not count as a change, if it is kept.
+  const bool is_end = tableau_.first_is_end && form_.has_after_step() && number > 0 &&
+                      !run.steps()[number - 1].altered && run.has_stages(number - 1);
+  const double* first = is_end ? run.reached(number - 1) : run.start(number);
   const auto s = static_cast<Index>(stages_.size());
   const bool kept = run.has_stages(number) && !integral_ && !adjoint_.needs_solutions();
   if (kept) {
@@ -123,8 +132,9 @@ bool AdjointRun::step(const RecordedRun& run, std::size_t number, const double* 
     for (std::size_t i = 0; i < stages_.size(); ++i) {
       AdjointState& at = stages_[i];
       at.t = tableau_.c[i] == 1 ? step.t1 : step.t0 + tableau_.c[i] * step.h;
-      at.q = Map<const VectorXd>(run.stage(number, i), n);
-      at.p = Map<const VectorXd>(run.stage(number, i) + n, n);
+      const double* y = i == 0 ? first : run.stage(number, i);
+      at.q = Map<const VectorXd>(y, n);
+      at.p = Map<const VectorXd>(y + n, n);
       at.u.resize(0);
       at.sigma.resize(0);
     }
@@ -133,7 +143,7 @@ bool AdjointRun::step(const RecordedRun& run, std::size_t number, const double* 
       if (!after_step(step.t1, reached, behind)) return false;
     }
   } else {
-    if (!stages_again(step, run.start(number))) return false;
+    if (!stages_again(step, run.start(number), first)) return false;
     if (form_.has_after_step()) {
       VectorXd reached = Map<const VectorXd>(run.start(number), form_.size());
       for (Index j = 0; j < s; ++j)
@@ -141,6 +151,8 @@ bool AdjointRun::step(const RecordedRun& run, std::size_t number, const double* 
       if (!after_step(step.t1, reached, nullptr)) return false;
     }
   }
+  if (ahead_.size() > 0) lambda_ += ahead_;
+  ahead_.resize(0);
   for (Index i = s; i-- > 0;) {
     const auto at = static_cast<std::size_t>(i);
     w_ = step.h * tableau_.b[at] * lambda_;
@@ -160,6 +172,10 @@ bool AdjointRun::step(const RecordedRun& run, std::size_t number, const double* 
       return false;
     if (integral_) product_.head(by_q_.size()) += step.h * tableau_.b[at] * by_q_;
     m_.col(i) = product_;
+  }
+  if (is_end) {
+    ahead_ = m_.col(0);
+    m_.col(0).setZero();
   }
   lambda_ += m_.rowwise().sum();
   return true;

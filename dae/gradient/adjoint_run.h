@@ -6,15 +6,16 @@
 //   λ = λ' + Σ m_i,  dJ/dθ += Σ f_θᵀ w_i                                                      (6)
 //
 // with stages from the last to the first, as the run has kept them, or computed once more from the
-// state in which the step began; what was done after the step comes first. With J = ∫ g dt by the
-// stages, h b_i g_u joins the part of q in w_i, since dq̇ = du, and h b_i g_q the product. It is the
-// derivative of the very steps: dJ/dθ = λ(0)ᵀ dy(0)/dθ + Σ. Source: Hager, Runge-Kutta methods in
-// optimal control and the transformed adjoint system, Numer. Math. 87 (2000); Griewank, Walther,
-// Evaluating Derivatives.
+// state in which the step began; what was done after the step comes first. Where the first stage is
+// the last of the step before, taken ahead of a correction of y, its m_1 goes there. With J = ∫ g
+// dt by the stages, h b_i g_u joins the part of q in w_i, since dq̇ = du, and h b_i g_q the product.
+// It is the derivative of the very steps: dJ/dθ = λ(0)ᵀ dy(0)/dθ + Σ. Source: Hager, Runge-Kutta
+// methods in optimal control and the transformed adjoint system, Numer. Math. 87 (2000); Griewank,
+// Walther, Evaluating Derivatives.
 
+#include <momenta/dae/gradient/form_adjoint.h>
 #include <momenta/dae/gradient/functional_slopes.h>
 #include <momenta/dae/gradient/recorded_run.h>
-#include <momenta/dae/gradient/stage_adjoint.h>
 #include <momenta/dae/solver/butcher_tableau.h>
 
 #include <functional>
@@ -25,7 +26,7 @@ class AdjointRun {
  public:
   /// Of a run of this form by this method, whose functional is g at its end or, `integral`, over
   /// it. All must outlive it.
-  AdjointRun(OdeForm& form, StageAdjoint& adjoint, FunctionalSlopes& g, bool integral,
+  AdjointRun(OdeForm& form, FormAdjoint& adjoint, FunctionalSlopes& g, bool integral,
              const std::string& method, Eigen::Index parameters);
 
   /// J of the run, which ended at (t, y).
@@ -46,14 +47,14 @@ class AdjointRun {
  private:
   bool end(double t, const double* y);
   bool step(const RecordedRun& run, std::size_t i, const double* behind);
-  bool stages_again(const RecordedRun::Step& step, const double* start);
+  bool stages_again(const RecordedRun::Step& step, const double* start, const double* first);
   bool after_step(double t, const Eigen::VectorXd& y, const double* behind);
   bool rhs(double t, const double* y, double* ydot, AdjointState& at);
   bool times_slopes(std::size_t stage);
   bool fail_at(double t, const std::string& why);
 
   OdeForm& form_;
-  StageAdjoint& adjoint_;
+  FormAdjoint& adjoint_;
   FunctionalSlopes& g_;
   bool integral_;
   ButcherTableau tableau_;
@@ -61,7 +62,8 @@ class AdjointRun {
   long products_ = 0;
   std::string failure_;
   Eigen::VectorXd lambda_, by_parameters_, y_, w_, product_, by_q_, by_u_, by_theta_;
-  Eigen::MatrixXd k_, m_;             ///< size of y × stages
+  Eigen::VectorXd ahead_;  ///< m_1 of the step behind, where it is of the end of this one
+  Eigen::MatrixXd k_, m_;  ///< size of y × stages
   std::vector<AdjointState> stages_;  ///< of the step under way
 };
 

@@ -1,9 +1,11 @@
 #include <momenta/core/scene/bearings_refused.h>
-#include <momenta/core/scene/drive.h>
 #include <momenta/core/text/near_name.h>
 #include <momenta/dae/assembly/assembly.h>
+#include <momenta/dae/gradient/acceleration_adjoint.h>
 #include <momenta/dae/gradient/adjoint_run.h>
+#include <momenta/dae/gradient/differentiable.h>
 #include <momenta/dae/gradient/gradient.h>
+#include <momenta/dae/gradient/stage_adjoint.h>
 #include <momenta/dae/gradient/start_adjoint.h>
 #include <momenta/dae/gradient/start_tangents.h>
 #include <momenta/dae/gradient/tangent_system.h>
@@ -24,64 +26,13 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr int most_unknowns = 1000;  ///< nv + m: a dense matrix at each stage
 /// A variable has no effect where dJ/dθ times its size is below this part of J.
 constexpr double effect = 1e-10;
 
-void expect_differentiable(const RunSettings& s, const Mechanism& mechanism) {
-  const std::vector<std::string>& forms = differentiable_forms();
-  if (std::find(forms.begin(), forms.end(), s.form) == forms.end())
-    throw std::invalid_argument("form '" + s.form +
-                                "' has no gradient; expected one of: " + listed(forms));
-  const std::vector<std::string> methods{"rk4", "dp5", "dop853", "vern9"};
-  if (std::find(methods.begin(), methods.end(), s.integrator) == methods.end())
-    throw std::invalid_argument("integrator '" + s.integrator +
-                                "' has no gradient; expected one of: " + listed(methods));
-  if (const int unknowns = mechanism.nv() + mechanism.m(); unknowns > most_unknowns)
-    throw std::invalid_argument("the mechanism has " + std::to_string(unknowns) +
-                                " rates and loop equations; expected at most " +
-                                std::to_string(most_unknowns) + " for a gradient");
-}
-
-/// What of the scene is not smooth everywhere.
-std::vector<std::string> corners(const Scene& scene, const std::string& of_functional) {
-  std::vector<std::string> remarks;
-  const std::string ending =
-      " has corners or jumps: the gradient is that of the pieces that the run was on, and what the "
-      "time of a jump depends on is not in it";
-  if (!of_functional.empty())
-    remarks.push_back("'" + of_functional + "' in the functional" + ending);
-  for (const DriveSpec& drive : scene.drives)
-    if (const std::string corner = law_corner(drive); !corner.empty())
-      remarks.push_back("the drive of " +
-                        reading::in_quotes(drive.joint.empty() ? drive.loop : drive.joint) +
-                        ", by '" + corner + "'," + ending);
-  std::vector<std::string> names;
-  for (const ParameterSpec& p : scene.parameters) names.push_back(p.name);
-  for (const ForceSpec& force : scene.forces) {
-    std::vector<std::string> laws{force.law};
-    laws.insert(laws.end(), force.force_law.begin(), force.force_law.end());
-    laws.insert(laws.end(), force.torque_law.begin(), force.torque_law.end());
-    for (const std::string& law : laws)
-      for (const char* word : {"if(", "floor(", "sign(", "abs(", "min(", "max("})
-        if (law.find(word) != std::string::npos) {
-          remarks.push_back("a force by the formula " + reading::in_quotes(law) + ending);
-          break;
-        }
-  }
-  return remarks;
-}
-
-/// Why a run has no adjoint, one sentence; empty: it has.
-std::string no_adjoint(const RunSettings& s, const Mechanism& mechanism, bool trajectory) {
-  const std::string instead = "; expected the mode 'forward'";
-  if (s.form != "momentum") return "form '" + s.form + "' has no adjoint" + instead;
-  if (mechanism.plan().quasi_velocities)
-    return "spherical and free joints, whose momenta are not canonical, have no adjoint" + instead;
-  if (mechanism.has_nonholonomic())
-    return "loops that roll or have an equation of velocities have no adjoint" + instead;
-  if (trajectory) return "an adjoint has no derivatives of the trajectory" + instead;
-  return "";
+std::unique_ptr<FormAdjoint> form_adjoint(const Mechanism& mechanism, const OdeForm& form,
+                                          const std::vector<OtherParameter>& others) {
+  if (form.momentum_like()) return std::make_unique<StageAdjoint>(mechanism, form, others);
+  return std::make_unique<AccelerationAdjoint>(mechanism, form, others);
 }
 
 /// A gradient under way: what forward and adjoint share.
@@ -212,7 +163,7 @@ void Asked::forward() {
 void Asked::adjoint() {
   const RunSettings& s = result.settings;
   FunctionalSlopes functional(request.of, mechanism, result.variables, others);
-  StageAdjoint stages(mechanism, form, others);
+  const std::unique_ptr<FormAdjoint> stages = form_adjoint(mechanism, form, others);
   const MatrixXd tangents_at_start = at_start();
   for (std::string& remark : corners(mechanism.scene(), functional.corner()))
     result.remarks.push_back(std::move(remark));
@@ -227,8 +178,8 @@ void Asked::adjoint() {
                                           {start.t, s.end_time}, options(), observer);
   if (!run.done) throw none(record.lost().empty() ? run.reason : record.lost());
   take(run, record.singular_passages());
-  if (record.redundant()) stages.by_rows();
-  AdjointRun back(form, stages, functional, request.integral, s.integrator,
+  if (record.redundant()) stages->by_rows();
+  AdjointRun back(form, *stages, functional, request.integral, s.integrator,
                   static_cast<Eigen::Index>(others.size()));
   const auto going = [&](double t) {
     return !request.progress || request.progress(s.end_time - 0.5 * t);
@@ -236,14 +187,14 @@ void Asked::adjoint() {
   if (!back.back(record, run.end_time, run.y.data(), going)) throw none(back.failure());
   result.value = back.value();
   result.gradient = back.by_parameters() + tangents_at_start.transpose() * back.by_start();
-  stages.finish(result.gradient);
+  stages->finish(result.gradient);
   if (start_adjoint) {
     MatrixXd of_start = MatrixXd::Zero(1, result.gradient.size());
-    add_start(start_adjoint->back(back.by_start()).transpose(), of_start);
+    add_start(start_adjoint->back(back.by_start(), form.momentum_like()).transpose(), of_start);
     result.gradient += of_start.transpose();
   }
   result.products = back.products();
-  result.at_once = stages.at_once();
+  result.at_once = stages->at_once();
 }
 
 }  // namespace
@@ -284,8 +235,7 @@ GradientResult gradient(const SceneText& scene, const GradientRequest& request) 
           "ascending times from 0 on");
     s.end_time = request.times.back();
   }
-  const std::string refused =
-      no_adjoint(s, mechanism, request.trajectory || !request.outputs.empty());
+  const std::string refused = no_adjoint(mechanism, request.trajectory || !request.outputs.empty());
   if (request.mode == GradientMode::adjoint && !refused.empty())
     throw std::invalid_argument(refused);
   result.adjoint = request.mode == GradientMode::adjoint ||
@@ -300,11 +250,13 @@ GradientResult gradient(const SceneText& scene, const GradientRequest& request) 
   options.project = form.corrects_positions();
   std::tie(options.baumgarte_alpha, options.baumgarte_beta) = form.baumgarte_gains();
   options.beta = form.beta();
-  // The σ that a leak begins with depends on inertias in its own way.
+  // The σ that a leak begins with depends on inertias in its own way; on accelerations second
+  // derivatives by all numbers have no part in time.
   std::optional<StartAdjoint> start_adjoint;
   TakenAtOnce at_once;
   if (form.gauge().kind != Gauge::Kind::leak && !mechanism.scene().lagrangian &&
-      !mechanism.plan().quasi_velocities && !mechanism.has_nonholonomic()) {
+      !mechanism.plan().quasi_velocities && !mechanism.has_nonholonomic() &&
+      (form.momentum_like() || !result.adjoint || !mechanism.plan().drives)) {
     start_adjoint.emplace(mechanism, start);
     at_once.slopes = &start_adjoint->numbers();
     at_once.starts = start_adjoint->follows_assembly();

@@ -3,7 +3,8 @@
 //
 //   r1 = M u + Φ_qᵀσ,  r2 = Φ_q u + Φ_t + βΦ,  r3 = ṗ                                     (7), (8)
 //
-// and those of a position correction, at x = (q, δ, ν): M δ + Φ_qᵀν, Φ_q δ + Φ.
+// those of a position correction, at x = (q, δ, ν): M δ + Φ_qᵀν, Φ_q δ + Φ; and the derivatives of
+// L* = T − V + σᵀΦ̇ by u and by q, without the forces that have no potential.
 
 #include <momenta/dae/mechanism.h>
 
@@ -63,6 +64,23 @@ struct MomentumAndRateRows : MomentumRows {
   void operator()(E& e, const S* x, S* out) const {
     MomentumRows::operator()(e, x, out);
     e.momentum_rates(x, u(x), sigma(x), leak, out + nv + m);
+  }
+};
+
+/// (L*_u, L*_q), 2 nv: M u + Φ_qᵀσ, and ṗ without the forces that have no potential.
+struct LagrangianSlopes : RowPlaces {
+  bool forces = false;     ///< there are such
+  bool at_points = false;  ///< at points of bodies too: then all forces but weights are left out
+  template <class E, class S>
+  void operator()(E& e, const S* x, S* out) const {
+    e.place(t, x);
+    e.move(u(x));
+    e.momenta(sigma(x), out);
+    e.momentum_rates(x, u(x), sigma(x), leak, out + nv);
+    if (!forces) return;
+    std::vector<S> tau(static_cast<std::size_t>(nv));
+    e.applied_forces(t, x, u(x), tau.data(), at_points);
+    for (Eigen::Index i = 0; i < nv; ++i) out[nv + i] -= tau[static_cast<std::size_t>(i)];
   }
 };
 

@@ -93,6 +93,19 @@ class NumberSlopesOf final : public NumberSlopes {
            loops_.wheels.empty() && loops_.curves == 0;
   }
 
+  std::vector<Index> without_potential() const override {
+    // Of a joint stiffness, rest, damping, torque, friction and rotor stand last; of a spring
+    // stiffness, rest, damping and, between points, the offset.
+    std::vector<Index> all;
+    for (Index k = places_.joints; k < places_.loops; k += Places::of_joint)
+      for (const Index i : {4, 2}) all.push_back(k + Places::of_joint - i);
+    for (Index k = places_.springs; k < places_.sums; k += Places::of_spring)
+      all.push_back(k + Places::of_spring - 2);
+    for (Index k = places_.sums; k < places_.size; k += Places::of_sum)
+      all.push_back(k + Places::of_sum - 1);
+    return all;
+  }
+
   void add(double factor, const NumberSweep::Motion& at, VectorXd& slopes) override {
     sweep_->add(factor, at, slopes.data());
   }

@@ -58,6 +58,8 @@ class NumberSlopes {
   /// points of bodies have no potential or are no plain springs, or loops are driven, of curves or
   /// formulas.
   virtual bool of_places() const = 0;
+  /// Where the numbers of dampers and friction stand.
+  virtual std::vector<Eigen::Index> without_potential() const = 0;
   /// slopes (size) += factor D ∂L*/∂number. O(bodies + m)
   virtual void add(double factor, const NumberSweep::Motion& at, Eigen::VectorXd& slopes) = 0;
   /// The same of σᵀΦ̇ alone.

@@ -54,7 +54,9 @@ bool RecordedRun::after_step(double t, double* y, bool& changed) {
     states_.back().insert(states_.back().end(), y, y + width());
     numbers_ += width();
   }
-  return form_.after_step(t, y, changed) || fail(form_.failure());
+  if (!form_.after_step(t, y, changed)) return fail(form_.failure());
+  if (!steps_.empty()) steps_.back().altered = changed;
+  return true;
 }
 
 bool RecordedRun::lost_at(double t, const char* why) {

@@ -18,9 +18,11 @@ namespace momenta {
 
 class RecordedRun final : public OdeSystem {
  public:
-  /// A step over [t0, t1], h = t1 - t0 as the method took it [s].
+  /// A step over [t0, t1], h = t1 - t0 as the method took it [s]; whether what the form did after
+  /// it changes f.
   struct Step {
     double t0 = 0, t1 = 0, h = 0;
+    bool altered = false;
   };
 
   /// `fixed_step`: 0 with error control. `end`: of the run [s]. `c`: the method's abscissas.

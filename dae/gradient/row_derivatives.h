@@ -28,6 +28,23 @@ struct OtherParameter {
   std::vector<std::unique_ptr<Evaluation<double>>> evaluations;
 };
 
+/// sum_j += weightsᵀ ∂r/∂θ_j of those that are not taken by numbers. `plain`: a workspace.
+template <class Rows>
+void add_by_parameters(const std::vector<OtherParameter>& others, const Rows& rows,
+                       const Eigen::VectorXd& x, const Eigen::VectorXd& weights,
+                       Eigen::VectorXd& plain, Eigen::VectorXd& sum) {
+  plain.resize(weights.size());
+  for (std::size_t j = 0; j < others.size(); ++j) {
+    const OtherParameter& other = others[j];
+    if (other.numbers.size() > 0) continue;
+    for (std::size_t k = 0; k < other.evaluations.size(); ++k) {
+      rows(static_cast<EquationRows<double>&>(*other.evaluations[k]), x.data(), plain.data());
+      sum[static_cast<Eigen::Index>(j)] +=
+          sixth_order::points[k].weight / other.h * weights.dot(plain);
+    }
+  }
+}
+
 class RowDerivatives {
  public:
   /// The mechanism and `others`, one a direction, must outlive it.

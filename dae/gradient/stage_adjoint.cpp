@@ -52,6 +52,7 @@ StageAdjoint::StageAdjoint(const Mechanism& mechanism, const OdeForm& form,
       dual_(mechanism.evaluation<Dual8>()),
       matrix_(mechanism),
       forces_(mechanism),
+      corrections_(mechanism, others, forces_),
       gauge_(form.gauge()),
       rows_{{RowPlaces(mechanism)}},
       nv_(mechanism.nv()),
@@ -104,15 +105,7 @@ VectorXd StageAdjoint::along(const Rows& rows, const VectorXd& x, const VectorXd
 template <class Rows>
 void StageAdjoint::add_by_parameters(const Rows& rows, const VectorXd& x, const VectorXd& weights,
                                      VectorXd& sum) {
-  plain_.resize(weights.size());
-  for (std::size_t j = 0; j < others_.size(); ++j) {
-    const OtherParameter& other = others_[j];
-    if (other.numbers.size() > 0) continue;
-    for (std::size_t k = 0; k < other.evaluations.size(); ++k) {
-      rows(static_cast<EquationRows<double>&>(*other.evaluations[k]), x.data(), plain_.data());
-      sum[static_cast<Index>(j)] += sixth_order::points[k].weight / other.h * weights.dot(plain_);
-    }
-  }
+  momenta::add_by_parameters(others_, rows, x, weights, plain_, sum);
 }
 
 bool StageAdjoint::factor(double t, const VectorXd& q) {
@@ -302,37 +295,8 @@ bool StageAdjoint::gauge(const AdjointState& at, VectorXd& lambda, VectorXd& by_
 
 bool StageAdjoint::correction(double t, const VectorXd& q, VectorXd& lambda,
                               VectorXd& by_parameters) {
-  if (!factor(t, q)) return false;
-  VectorXd right = VectorXd::Zero(nv_ + m_);
-  e_->positions(right.data() + nv_);
-  const VectorXd found = -matrix_.solve(right);
-  right.setZero();
-  right.head(nv_) = lambda.head(nv_);
-  const VectorXd mu = matrix_.solve(right), impulses = mu.tail(m_);
-  PotentialRates rates{rows_, forces_.any(), forces_.at_points()};
-  rates.leak = 0;
-  const VectorXd x = joined(q, found, VectorXd(0)),
-                 dx = joined(VectorXd::Zero(nv_), mu, VectorXd(0));
-  VectorXd by_q = along(rates, x, dx, nv_);
-  if (driven_) {
-    const VectorXd still = joined(q, VectorXd::Zero(nv_ + m_), VectorXd(0));
-    by_q -= along(rates, still, dx, nv_);
-  }
-  VectorXd force(nv_);
-  e_->constraint_forces(impulses.data(), force.data());
-  lambda.head(nv_) -= by_q + force;
-  still_.setZero();
-  if (numbers_) {
-    const double *du = mu.data(), *dsigma = mu.data() + nv_;
-    numbers_->add(-1, {t, q.data(), found.data(), found.data() + nv_, nullptr, du, dsigma},
-                  slopes_);
-    if (placed_) numbers_->add_loops(-1, t, q.data(), dsigma, slopes_);
-    if (driven_)
-      numbers_->add(1, {t, q.data(), still_.data(), nullptr, nullptr, du, dsigma}, slopes_);
-  }
-  CorrectionRows rows{rows_};
-  add_by_parameters(rows, x, -mu, by_parameters);
-  return true;
+  return corrections_.positions(t, q, false, {numbers_.get(), placed_, &slopes_}, lambda,
+                                by_parameters);
 }
 
 }  // namespace momenta

@@ -23,22 +23,22 @@
 //   K μ = (0, Φ_q λ_p),  λ_p − c μ_u,  λ_q − c D_λp(Φ_qᵀσ) + c (D_μ L*_q + β Φ_qᵀ μ_σ)
 // or, since p' = c M u − (c − 1) p and u = ∂H/∂p, with δu, δr of f along (0, M λ_p),
 //   c δu − (c − 1) λ_p,  λ_q − c δr + c D_λp T_q  at σ = 0,
-// and of a correction q' = q + δ, K (δ, ν) = (0, −Φ):
-//   K μ = (λ_q, 0),  λ_q − D_μ L*_q(q, δ, ν) − Φ_qᵀ μ_σ, of L* without V and drives
-// Here D_μ is the derivative by (u, σ) along μ, and K the matrix of (2).
+// and of corrections correction_adjoint.h. Here D_μ is the derivative by (u, σ) along μ, and K the
+// matrix of (2).
 //
 // δu, δσ, δr come from the sweeps in dual numbers where they carry the mechanism (swept_tangent.h),
 // without leak and β, else from the rows and K. Of θ that numbers of bodies, joints, loops and
 // springs alone are made of, f_θᵀ w is that of all these at once (number_slopes.h): of L* with z,
-// of βΦ with −δσ, behind a gauge c (D_μ L*_θ + β (μ_σᵀΦ)_θ − D_λp (σᵀΦ̇)_θ), behind a correction
-// −D_μ (T + νᵀΦ̇)_θ − (μ_σᵀΦ)_θ; of others it is made from the rows of mechanisms with neighbouring
-// θ.
+// of βΦ with −δσ, behind a gauge c (D_μ L*_θ + β (μ_σᵀΦ)_θ − D_λp (σᵀΦ̇)_θ); of others it is made
+// from the rows of mechanisms with neighbouring θ.
 //
 // Derivation: docs/theory/gradients.md, section 7. Compare Maciąg, Malczyk, Frączek, Int. J. Numer.
 // Methods Eng. 121 (2020), who integrate the adjoint system of (7), (8), and Multibody Syst. Dyn.
 // 56 (2022), who transpose a discrete scheme.
 
 #include <momenta/dae/form/ode_form.h>
+#include <momenta/dae/gradient/correction_adjoint.h>
+#include <momenta/dae/gradient/form_adjoint.h>
 #include <momenta/dae/gradient/kinetic_rates.h>
 #include <momenta/dae/gradient/momentum_rows.h>
 #include <momenta/dae/gradient/number_slopes.h>
@@ -49,14 +49,7 @@
 
 namespace momenta {
 
-/// A state at which f is differentiated: its time [s], q (nq), p (nv), and u (nv), σ (m) of (7)
-/// there, both empty where they are not known.
-struct AdjointState {
-  double t = 0;
-  Eigen::VectorXd q, p, u, sigma;
-};
-
-class StageAdjoint {
+class StageAdjoint final : public FormAdjoint {
  public:
   /// @pre the form is `momentum`, the mechanism has neither quaternions nor nonholonomic rows. All
   /// must outlive it.
@@ -68,26 +61,30 @@ class StageAdjoint {
   /// of rows and one factorisation; one sweep outward and inward for all numbers of tables; six
   /// plain evaluations of rows for each other parameter.
   bool rates(const AdjointState& at, const Eigen::VectorXd& w, Eigen::VectorXd& product,
-             Eigen::VectorXd& by_parameters);
+             Eigen::VectorXd& by_parameters) override;
 
   /// λ behind a reset or flip to λ before it, at the state where (7) was solved for it.
-  bool gauge(const AdjointState& at, Eigen::VectorXd& lambda, Eigen::VectorXd& by_parameters);
+  bool gauge(const AdjointState& at, Eigen::VectorXd& lambda,
+             Eigen::VectorXd& by_parameters) override;
   /// λ behind a correction of q to λ before it; q (nq) before it.
   bool correction(double t, const Eigen::VectorXd& q, Eigen::VectorXd& lambda,
-                  Eigen::VectorXd& by_parameters);
+                  Eigen::VectorXd& by_parameters) override;
   /// What numbers have had so far is added, once, when the way back is over.
-  void finish(Eigen::VectorXd& by_parameters) const;
+  void finish(Eigen::VectorXd& by_parameters) const override;
 
   /// How many parameters are taken by number_slopes.h.
-  Eigen::Index at_once() const;
+  Eigen::Index at_once() const override;
   /// Whether states must have their u and σ; else the sweeps find them, and where they do not
   /// carry a state, products without them are false.
-  bool needs_solutions() const { return !swept_ || forces_.any() || any_rows_; }
+  bool needs_solutions() const override { return !swept_ || forces_.any() || any_rows_; }
   /// Whether the sweeps are differentiated; else rows.
   bool swept() const { return swept_ != nullptr; }
   /// Rows and K alone from now on: the slow way, and where rows of Φ are redundant the only one:
   /// there the sweeps let them fade.
-  void by_rows() { swept_.reset(); }
+  void by_rows() override {
+    swept_.reset();
+    corrections_.system().by_matrix();
+  }
 
  private:
   bool sweep(const AdjointState& at, const Eigen::VectorXd& w, Eigen::VectorXd& product,
@@ -110,6 +107,7 @@ class StageAdjoint {
   std::unique_ptr<Evaluation<Dual8>> dual_;
   StageMatrix matrix_;
   TransposedForces forces_;
+  CorrectionAdjoint corrections_;
   std::unique_ptr<SweptTangent> swept_;    ///< null: by rows
   std::unique_ptr<NumberSlopes> numbers_;  ///< null: no θ is taken so
   std::unique_ptr<KineticRates> kinetic_;  ///< where there are sweeps

@@ -81,7 +81,7 @@ void add_gradient(py::class_<Bench, BenchPtr>& mechanism) {
       "trajectory; `by`: parameters, places of numbers, start values such as 'O.q', 'O.u'; "
       "`integral`: of the formula over the run, in place of its value at the end. `mode`: "
       "'forward', "
-      "'adjoint' (momentum form, many numbers), or 'automatic'. Other arguments "
+      "'adjoint' (many numbers), or 'automatic'. Other arguments "
       "are those of run(); forms momentum, acceleration, projected and baumgarte by rk4, dp5, "
       "dop853 "
       "or vern9, of the mechanism as it is written. Raises SceneError where there is no "

@@ -18,6 +18,7 @@ ButcherTableau numbers_of() {
     tableau.a.emplace_back(s, 0.0);
     for (std::size_t j = 0; j < i; ++j) tableau.a[i][j] = Tableau::a[i][j];
   }
+  tableau.first_is_end = Tableau::end_derivative_always;
   for (std::size_t j = 0; j < s; ++j) tableau.b.push_back(Tableau::a[s][j]);
   return tableau;
 }

@@ -12,6 +12,8 @@ struct ButcherTableau {
   std::vector<double> c;               ///< by stage
   std::vector<std::vector<double>> a;  ///< stages × stages, zero from the diagonal on
   std::vector<double> b;               ///< by stage
+  /// Whether k_1 is f at the end of the step before, also where y is corrected then.
+  bool first_is_end = false;
 };
 
 /// Of rk4, dp5, dop853, vern9. @throws std::invalid_argument for another name

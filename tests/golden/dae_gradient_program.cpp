@@ -64,9 +64,11 @@ TEST_F(GradientOfTheProgram, GoesBackwards) {
     EXPECT_NEAR(a["by"][name]["derivative"].get<double>(),
                 b["by"][name]["derivative"].get<double>(), 1e-11)
         << name;
-  expect_refused(
-      "gradient '" + example("four_bar") + "' --of B.y --by O.q --mode adjoint --form acceleration",
-      "form 'acceleration' has no adjoint; expected the mode 'forward'");
+  expect_refused("gradient '" + example("bicycle") +
+                     "' --of energy --by gravity.2 --mode adjoint --form acceleration",
+                 "spherical and free joints, whose rates are no derivatives of coordinates, have "
+                 "no adjoint; expected the "
+                 "mode 'forward'");
 }
 
 TEST_F(GradientOfTheProgram, RefusesInOneSentence) {

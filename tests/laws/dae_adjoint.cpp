@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <momenta/core/scene/file_text.h>
 #include <momenta/dae/assembly/assembly.h>
+#include <momenta/dae/gradient/acceleration_adjoint.h>
 #include <momenta/dae/gradient/form_tangents.h>
 #include <momenta/dae/gradient/recorded_run.h>
 #include <momenta/dae/gradient/stage_adjoint.h>
@@ -50,10 +51,11 @@ std::vector<std::pair<std::string, SceneText>> scenes() {
 /// The form at its start, pushed off it, with what is needed to differentiate it there.
 struct AtAState {
   /// `leaves`: q is pushed off the loops too, where these are not redundant.
-  AtAState(const SceneText& scene, const FormOptions& options, Index directions, bool leaves)
+  AtAState(const SceneText& scene, const FormOptions& options, Index directions, bool leaves,
+           const std::string& form_name = "momentum")
       : mechanism(scene.scene(), scene.options),
         start(assemble(mechanism).start),
-        form(make_form("momentum", mechanism, options, start)),
+        form(make_form(form_name, mechanism, options, start)),
         others(static_cast<std::size_t>(directions)) {
     y = form->ode() ? ode().initial(start) : std::vector<double>();
     ode().begin_step(0, y.data());
@@ -223,27 +225,32 @@ TEST(Adjoint, IsTheForwardGradientOfEveryMethodAndOfIntegrals) {
     }
 }
 
+struct TableRow {
+  const char *scene, *of;
+  std::vector<std::string> by;
+  double end, step;
+  double whole = 0;
+};
+
+/// The scenes of docs/theory/gradients.md, section 5. Of the chain's last angle, which hardly moves
+/// at first, in radians.
+std::vector<TableRow> table() {
+  return {{"chain/scene.toml", "J9.q", {"gravity.1", "J1.q"}, 0.5, 0.005, 1},
+          {"four_bar/scene.toml", "B.y", {"body.rocker.mass", "O.u"}, 0.5, 0.01},
+          {"slider_crank/scene.toml", "B.x", {"body.rod.mass"}, 0.2, 0.01},
+          {"andrews/scene.toml",
+           "O.q",
+           {"body.crank.mass", "loop.E4.origin.child.1", "loop.E6.origin.child.0"},
+           0.003,
+           0.0001},
+          {"bricard/scene.toml", "P3.y", {"body.rod1.mass", "gravity.1"}, 0.3, 0.02},
+          {"spatial_slider_crank/scene.toml", "S.q", {"body.rod.mass"}, 0.3, 0.005},
+          {"driven/scene.toml", "tip.x", {"M.q"}, 0.4, 0.01},
+          {"extremes/spring_pendulum.toml", "bob.y", {"joint.spring.stiffness"}, 0.2, 0.002}};
+}
+
 TEST(Adjoint, IsTheForwardGradientOfTheScenesOfTheTable) {
-  struct Row {
-    const char *scene, *of;
-    std::vector<std::string> by;
-    double end, step;
-    double whole = 0;
-  };
-  // Of the chain's last angle, which hardly moves at first, in radians.
-  for (const Row& row : std::vector<Row>{
-           {"chain/scene.toml", "J9.q", {"gravity.1", "J1.q"}, 0.5, 0.005, 1},
-           {"four_bar/scene.toml", "B.y", {"body.rocker.mass", "O.u"}, 0.5, 0.01},
-           {"slider_crank/scene.toml", "B.x", {"body.rod.mass"}, 0.2, 0.01},
-           {"andrews/scene.toml",
-            "O.q",
-            {"body.crank.mass", "loop.E4.origin.child.1", "loop.E6.origin.child.0"},
-            0.003,
-            0.0001},
-           {"bricard/scene.toml", "P3.y", {"body.rod1.mass", "gravity.1"}, 0.3, 0.02},
-           {"spatial_slider_crank/scene.toml", "S.q", {"body.rod.mass"}, 0.3, 0.005},
-           {"driven/scene.toml", "tip.x", {"M.q"}, 0.4, 0.01},
-           {"extremes/spring_pendulum.toml", "bob.y", {"joint.spring.stiffness"}, 0.2, 0.002}})
+  for (const TableRow& row : table())
     for (const char* rule : {"none", "reset"})
       expect_same(example(row.scene), asked(row.of, row.by, "momentum", rule, row.end, row.step),
                   1e-12, row.whole);
@@ -543,6 +550,14 @@ TEST(Adjoint, TakesLengthsSpringsAndPlacesAtOnce) {
       EXPECT_EQ(gradient(of_text(row.text), request).at_once, static_cast<long>(row.by.size()));
       expect_same(of_text(row.text), request, 1e-12, 1);
     }
+    for (const auto& [form, project] :
+         {std::pair{"acceleration", false}, {"projected", true}, {"baumgarte", true}}) {
+      GradientRequest request = asked(row.of, row.by, form, "", 4 * row.step, row.step);
+      request.settings.project = project;
+      request.mode = GradientMode::adjoint;
+      EXPECT_EQ(gradient(of_text(row.text), request).at_once, static_cast<long>(row.by.size()));
+      expect_same(of_text(row.text), request, 1e-12, 1);
+    }
   }
 }
 
@@ -728,6 +743,140 @@ TEST(Adjoint, OfTheStartIsNotThatOfRedundantLoops) {
   EXPECT_LT((start.by(by[0], others[0], start.rows(true)) - column).norm(), 1e-10 * column.norm());
 }
 
+/// Of w, by each part of y: the transposed derivative, and the column by column one.
+void expect_transposed(const VectorXd& found, const MatrixXd& Y, const VectorXd& w, double within,
+                       const std::string& what) {
+  const VectorXd expected = Y.transpose() * w;
+  for (Index i = 0; i < found.size(); ++i)
+    EXPECT_NEAR(
+        found[i], expected[i],
+        within * (Y.col(i).cwiseAbs().dot(w.cwiseAbs()) + expected.norm() + 1e-2 * w.norm()))
+        << what << ", " << i;
+}
+
+FormOptions fed_back(double alpha, double beta) {
+  FormOptions options;
+  options.baumgarte_alpha = alpha;
+  options.baumgarte_beta = beta;
+  return options;
+}
+
+TEST(Adjoint, OfAccelerationsIsTheirDerivativeTransposed) {
+  for (const char* form : {"acceleration", "baumgarte"})
+    for (const auto& [name, scene] : scenes()) {
+      const Mechanism sizes(scene.scene(), scene.options);
+      const Index size = sizes.nq() + sizes.nv(), n = sizes.nv();
+      AtAState at(scene, fed_back(3, 7), size, name != "Bricard", form);
+      std::vector<double> f(at.y.size());
+      ASSERT_TRUE(at.ode().rhs(0, at.y.data(), f.data())) << at.ode().failure();
+      FormTangents tangents(at.mechanism, at.ode(), at.others);
+      MatrixXd fy;
+      ASSERT_TRUE(tangents.rates(0, at.y.data(), f.data(), MatrixXd::Identity(size, size), fy));
+      AdjointState state = at.state();
+      state.u = state.p;
+      state.slope = Map<const VectorXd>(f.data() + n, n);
+      const std::vector<OtherParameter> none;
+      AccelerationAdjoint adjoint(at.mechanism, at.ode(), none);
+      const VectorXd w = VectorXd::Random(size);
+      VectorXd product, by_nothing;
+      if (at.ode().pivots().faded > 0) adjoint.by_rows();
+      for (const char* way : {"recursion", "matrix"}) {
+        ASSERT_TRUE(adjoint.rates(state, w, product, by_nothing));
+        expect_transposed(product, fy, w, 1e-12, name + ", " + form + ", by " + way);
+        adjoint.by_rows();
+      }
+    }
+}
+
+TEST(Adjoint, OfCorrectionsOfAccelerationsIsTheirDerivativeTransposed) {
+  for (const char* form : {"projected", "baumgarte"})
+    for (const auto& [name, scene] : scenes()) {
+      FormOptions options = fed_back(3, 7);
+      options.project = true;
+      const Mechanism sizes(scene.scene(), scene.options);
+      if (sizes.m() == 0) continue;
+      const Index size = sizes.nq() + sizes.nv(), n = sizes.nv();
+      AtAState at(scene, options, size, name != "Bricard", form);
+      std::vector<double> after = at.y;
+      bool changed = false;
+      ASSERT_TRUE(at.ode().after_step(0, after.data(), changed)) << at.ode().failure();
+      FormTangents tangents(at.mechanism, at.ode(), at.others);
+      MatrixXd Y = MatrixXd::Identity(size, size);
+      ASSERT_TRUE(tangents.after_step(0, at.y.data(), after.data(), Y));
+      AdjointState state = at.state();
+      state.q = Map<const VectorXd>(after.data(), n);
+      const std::vector<OtherParameter> none;
+      AccelerationAdjoint adjoint(at.mechanism, at.ode(), none);
+      const VectorXd w = VectorXd::Random(size);
+      VectorXd by_nothing;
+      if (at.ode().pivots().faded > 0) adjoint.by_rows();
+      for (const char* way : {"recursion", "matrix"}) {
+        VectorXd lambda = w;
+        ASSERT_TRUE(adjoint.gauge(state, lambda, by_nothing));
+        ASSERT_TRUE(adjoint.correction(0, Map<const VectorXd>(at.y.data(), n), lambda, by_nothing));
+        expect_transposed(lambda, Y, w, 1e-11, name + ", " + form + ", by " + way);
+        adjoint.by_rows();
+      }
+    }
+}
+
+/// Second derivatives by differences of rows of degree two, and by series.
+TEST(Adjoint, TakesSecondDerivativesInTwoWays) {
+  for (const auto& [name, scene] : scenes()) {
+    const Mechanism mechanism(scene.scene(), scene.options);
+    if (mechanism.plan().drives) continue;
+    const Index n = mechanism.nv(), m = mechanism.m();
+    const TransposedForces forces(mechanism);
+    MixedRates mixed(mechanism, 3, 7, forces.any(), forces.at_points());
+    srand(7);
+    const VectorXd q = assemble(mechanism).start.q + 0.1 * VectorXd::Random(n);
+    for (const double size : {0.0, 1e-3, 1.0, 1e3}) {
+      const VectorXd u = size * VectorXd::Random(n), udot = 10 * VectorXd::Random(n),
+                     lambda = VectorXd::Random(m), nu = 1e-4 * VectorXd::Random(n),
+                     mu = VectorXd::Random(m);
+      const MixedRates::At at{0.1, q, u, udot, lambda};
+      mixed.by_series(at, nu, mu);
+      const VectorXd by_q = mixed.by_q, by_u = mixed.by_u;
+      mixed(at, nu, mu);
+      EXPECT_GT(by_q.norm(), 0) << name;
+      EXPECT_LT((mixed.by_q - by_q).norm(), 1e-12 * by_q.norm()) << name << ", u of " << size;
+      EXPECT_LT((mixed.by_u - by_u).norm(), 1e-12 * (by_u.norm() + 1e-2 * by_q.norm()))
+          << name << ", u of " << size;
+    }
+  }
+}
+
+TEST(Adjoint, IsTheForwardGradientOnAccelerations) {
+  for (const TableRow& row : table())
+    for (const auto& [form, project] :
+         {std::pair{"acceleration", false}, {"projected", true}, {"baumgarte", false}}) {
+      GradientRequest request = asked(row.of, row.by, form, "", row.end, row.step);
+      request.settings.project = project;
+      expect_same(example(row.scene), request, 1e-12, row.whole);
+    }
+  for (const char* method : {"rk4", "dp5", "vern9"})
+    for (const bool integral : {false, true}) {
+      GradientRequest request =
+          asked("(P.x - 0.5*crank)^2 + t*O.u", all_of_four_bar, "baumgarte", "", 0.5, 0.05);
+      request.settings.integrator = method;
+      request.settings.project = integral;
+      request.integral = integral;
+      expect_same(of_text(four_bar), request, 1e-12);
+    }
+  // The last stage of dp5 is the first of the next step, before what corrects it.
+  GradientRequest loose = asked("P.x + 0.3*C.u^2", {"g", "crank", "O.q"}, "momentum", "none", 0.5);
+  loose.settings.integrator = "dp5";
+  loose.settings.project = true;
+  loose.settings.step = 0.1;
+  expect_same(of_text(four_bar), loose, 1e-12);
+  // What is prescribed has a part in time, and numbers are taken from rows.
+  for (const char* form : {"acceleration", "projected", "baumgarte"}) {
+    const GradientRequest request = asked(
+        "tip.x + 0.1*M.u", {"body.pendulum.mass", "swing", "long", "M.q"}, form, "", 0.4, 0.02);
+    expect_same(of_text(driven()), request, 1e-12);
+  }
+}
+
 /// The sentence with which it is refused.
 std::string refusal(const SceneText& scene, GradientRequest request) {
   request.mode = GradientMode::adjoint;
@@ -741,8 +890,10 @@ std::string refusal(const SceneText& scene, GradientRequest request) {
 
 TEST(Adjoint, RefusesInOneSentence) {
   const SceneText scene = of_text(four_bar);
-  EXPECT_EQ(refusal(scene, asked("P.x", {"crank"}, "acceleration", "")),
-            "form 'acceleration' has no adjoint; expected the mode 'forward'");
+  EXPECT_EQ(
+      refusal(scene, asked("P.x", {"crank"}, "partitioned", "")),
+      "form 'partitioned' has no gradient; expected one of: momentum, acceleration, projected "
+      "or baumgarte");
   try {
     gradient_mode("backwards");
     ADD_FAILURE();
@@ -756,7 +907,8 @@ TEST(Adjoint, RefusesInOneSentence) {
             "an adjoint has no derivatives of the trajectory; expected the mode 'forward'");
   const SceneText rod = of_scene(equations::flying_rod());
   const std::string mass = "body." + rod.scene().bodies[0].name + ".mass";
-  EXPECT_NE(refusal(rod, asked("energy", {mass}, "momentum", "reset")).find("are not canonical"),
+  EXPECT_NE(refusal(rod, asked("energy", {mass}, "momentum", "reset"))
+                .find("are no derivatives of coordinates"),
             std::string::npos);
   EXPECT_NE(refusal(example("bicycle/scene.toml"), asked("energy", {"gravity.2"}, "momentum", ""))
                 .find("expected the mode 'forward'"),

@@ -1,0 +1,72 @@
+#include <momenta/core/scene/drive.h>
+#include <momenta/core/text/near_name.h>
+#include <momenta/dae/gradient/differentiable.h>
+#include <momenta/dae/gradient/form_tangents.h>
+#include <momenta/dae/solver/integrators.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace momenta {
+namespace {
+
+constexpr int most_unknowns = 1000;  ///< nv + m: a dense matrix at each stage
+
+}  // namespace
+
+void expect_differentiable(const RunSettings& s, const Mechanism& mechanism) {
+  const std::vector<std::string>& forms = differentiable_forms();
+  if (std::find(forms.begin(), forms.end(), s.form) == forms.end())
+    throw std::invalid_argument("form '" + s.form +
+                                "' has no gradient; expected one of: " + listed(forms));
+  const std::vector<std::string> methods{"rk4", "dp5", "dop853", "vern9"};
+  if (std::find(methods.begin(), methods.end(), s.integrator) == methods.end())
+    throw std::invalid_argument("integrator '" + s.integrator +
+                                "' has no gradient; expected one of: " + listed(methods));
+  if (const int unknowns = mechanism.nv() + mechanism.m(); unknowns > most_unknowns)
+    throw std::invalid_argument("the mechanism has " + std::to_string(unknowns) +
+                                " rates and loop equations; expected at most " +
+                                std::to_string(most_unknowns) + " for a gradient");
+}
+
+std::vector<std::string> corners(const Scene& scene, const std::string& of_functional) {
+  std::vector<std::string> remarks;
+  const std::string ending =
+      " has corners or jumps: the gradient is that of the pieces that the run was on, and what the "
+      "time of a jump depends on is not in it";
+  if (!of_functional.empty())
+    remarks.push_back("'" + of_functional + "' in the functional" + ending);
+  for (const DriveSpec& drive : scene.drives)
+    if (const std::string corner = law_corner(drive); !corner.empty())
+      remarks.push_back("the drive of " +
+                        reading::in_quotes(drive.joint.empty() ? drive.loop : drive.joint) +
+                        ", by '" + corner + "'," + ending);
+  std::vector<std::string> names;
+  for (const ParameterSpec& p : scene.parameters) names.push_back(p.name);
+  for (const ForceSpec& force : scene.forces) {
+    std::vector<std::string> laws{force.law};
+    laws.insert(laws.end(), force.force_law.begin(), force.force_law.end());
+    laws.insert(laws.end(), force.torque_law.begin(), force.torque_law.end());
+    for (const std::string& law : laws)
+      for (const char* word : {"if(", "floor(", "sign(", "abs(", "min(", "max("})
+        if (law.find(word) != std::string::npos) {
+          remarks.push_back("a force by the formula " + reading::in_quotes(law) + ending);
+          break;
+        }
+  }
+  return remarks;
+}
+
+std::string no_adjoint(const Mechanism& mechanism, bool along) {
+  const std::string instead = "; expected the mode 'forward'";
+  if (mechanism.plan().quasi_velocities)
+    return "spherical and free joints, whose rates are no derivatives of coordinates, have no "
+           "adjoint" +
+           instead;
+  if (mechanism.has_nonholonomic())
+    return "loops that roll or have an equation of velocities have no adjoint" + instead;
+  if (along) return "an adjoint has no derivatives of the trajectory" + instead;
+  return "";
+}
+
+}  // namespace momenta
