@@ -1,5 +1,6 @@
 #include <momenta/dae/assembly/assembly.h>
 #include <momenta/dae/assembly/closing.h>
+#include <momenta/dae/assembly/ordered_ends.h>
 #include <momenta/dae/assembly/start_accelerations.h>
 #include <momenta/dae/assembly/turned_loops.h>
 #include <momenta/dae/kkt/least_norm.h>
@@ -51,30 +52,47 @@ class Assembler {
   Evaluation<double>& e() { return loops_.evaluation(); }
 
   void close_positions(Assembly& a) {
-    Closing closing(loops_, steps_, t_);
     const Eigen::VectorXd guess = a.start.q;
-    Closing::Pose found = closing.close(guess);
-    a.iterations = closing.iterations();
-    if (found.is_closed) turn_back(closing, found, a);
-    if (a.branch.empty()) a.branch = closing.branch();
+    Closing::Pose found;
+    double tolerance = 0;
+    if (std::optional<Scene> scene = with_ordered_ends(mechanism_.scene())) {
+      const Mechanism ordered(std::move(*scene), mechanism_.options());
+      ScaledLoops loops(ordered);
+      loops.columns = loops_.columns;
+      LeastNorm steps(loops.pattern(), ordered.m(), ordered.nv());
+      found = closed(loops, steps, a, tolerance);
+    } else {
+      found = closed(loops_, steps_, a, tolerance);
+    }
     a.start.q = found.q;
     const Eigen::VectorXd phi = loops_.gap(t_, a.start.q).cwiseProduct(row_);
     a.position_residual = phi.cwiseAbs().maxCoeff();
     a.moved = (a.start.q - guess).cwiseAbs().maxCoeff();
-    if (!found.is_closed) refuse(phi, closing.tolerance(), found.is_stretched);
+    if (!found.is_closed) refuse(phi, tolerance, found.is_stretched);
     expect_no_lost_loop(mechanism_, e());
     if (!found.is_least) return;
     a.start.residue = phi;
     a.residue = residue_in_words(mechanism_, phi);
   }
 
+  /// The pose from the guess, by the loops as they are written or with their ends in order.
+  Closing::Pose closed(ScaledLoops& loops, LeastNorm& steps, Assembly& a, double& tolerance) {
+    Closing closing(loops, steps, t_);
+    Closing::Pose found = closing.close(a.start.q);
+    a.iterations = closing.iterations();
+    if (found.is_closed) turn_back(loops.mechanism(), closing, found, a);
+    if (a.branch.empty()) a.branch = closing.branch();
+    tolerance = closing.tolerance();
+    return found;
+  }
+
   /// Where axes that the loops hold in one are turned (turned_loops.h): to a pose where they are
   /// not.
-  void turn_back(Closing& closing, Closing::Pose& found, Assembly& a) {
-    const std::vector<TurnedLoop> turned = turned_loops(mechanism_, t_, found.q);
+  void turn_back(const Mechanism& mechanism, Closing& closing, Closing::Pose& found, Assembly& a) {
+    const std::vector<TurnedLoop> turned = turned_loops(mechanism, t_, found.q);
     if (turned.empty()) return;
-    const std::string sentence = in_words(mechanism_, turned);
-    if (const auto back = led_back(mechanism_, t_, found.q, turned, loops_.columns, a.iterations)) {
+    const std::string sentence = in_words(mechanism, turned);
+    if (const auto back = led_back(mechanism, t_, found.q, turned, loops_.columns, a.iterations)) {
       found = closing.close(*back);
       a.iterations += closing.iterations();
       a.branch = "one of several assemblies perhaps: from the guess " + sentence +
@@ -82,13 +100,13 @@ class Assembler {
       return;
     }
     const auto in_one = [&](const Closing::Pose& pose) {
-      return turned_loops(mechanism_, t_, pose.q).empty();
+      return turned_loops(mechanism, t_, pose.q).empty();
     };
     const int before = closing.iterations();
     found = closing.from_seeds(a.start.q, in_one);
     a.iterations += closing.iterations() - before;
     if (!found.is_closed)
-      throw SceneError(mechanism_.scene().where(mechanism_.scene().loops[turned[0].loop].at) +
+      throw SceneError(mechanism.scene().where(mechanism.scene().loops[turned[0].loop].at) +
                        "the mechanism cannot be assembled from these positions: " + sentence +
                        " alone; expected axes that meet as the scene says, or another rotation");
     a.branch = "one of several assemblies perhaps: from the guess " + sentence +

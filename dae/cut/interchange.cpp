@@ -144,24 +144,6 @@ LoopSpec loop_of(const JointSpec& joint) {
   return loop;
 }
 
-bool can_turn_round(const LoopSpec& loop) {
-  return loop.kind == LoopKind::distance || as_joint(loop.kind, false);
-}
-
-LoopSpec turned_round(const LoopSpec& loop) {
-  LoopSpec turned = loop;
-  std::swap(turned.parent, turned.child);
-  std::swap(turned.origin_parent, turned.origin_child);
-  const auto kind = as_joint(loop.kind, false);
-  if (!kind) return turned;
-  const JointSpec joint = turned_round(with_frames_of(loop, *kind));
-  turned.rotation = joint.rotation;
-  turned.axis = joint.axis;
-  turned.axis2 = joint.axis2;
-  turned.direction = joint.direction;
-  return turned;
-}
-
 std::vector<JointSpec> joints_at(const Mechanism& mechanism, const Start& start) {
   std::vector<JointSpec> joints = mechanism.scene().joints;
   std::unordered_map<std::string, JointSpec*> by_name;

@@ -2,6 +2,7 @@
 // Joints and loops in each other's place: which kind of loop a joint would be and the other way
 // round, where its bodies stand then, and what of a scene is said of coordinates that would go.
 
+#include <momenta/core/scene/turned_round.h>
 #include <momenta/dae/cut/body_motions.h>
 
 #include <optional>
@@ -34,10 +35,6 @@ struct Sayings {
 std::optional<JointSpec> joint_of(const LoopSpec& loop, const Mechanism& mechanism,
                                   const BodyMotions& bodies, double length);
 LoopSpec loop_of(const JointSpec& joint);
-/// Whether a loop has a child and a parent that can change places.
-bool can_turn_round(const LoopSpec& loop);
-/// The same loop seen from its child. @pre not driven, can_turn_round(loop)
-LoopSpec turned_round(const LoopSpec& loop);
 
 /// The joints of the scene with the q and u of the start.
 std::vector<JointSpec> joints_at(const Mechanism& mechanism, const Start& start);

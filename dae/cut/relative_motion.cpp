@@ -1,7 +1,6 @@
 #include <momenta/dae/cut/relative_motion.h>
 
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <cmath>
 
 namespace momenta {
@@ -103,34 +102,6 @@ JointMotion joint_motion(const JointSpec& joint, const BodyMotion& parent,
   m.shift = (d - slid).norm();
   m.tilt = (C - turned).cwiseAbs().maxCoeff();
   return m;
-}
-
-bool keeps_coordinates(JointKind kind) {
-  return kind == JointKind::revolute || kind == JointKind::prismatic ||
-         kind == JointKind::helical || kind == JointKind::cylindrical ||
-         kind == JointKind::universal || kind == JointKind::weld;
-}
-
-JointSpec turned_round(const JointSpec& joint) {
-  JointSpec t = joint;
-  std::swap(t.parent, t.child);
-  std::swap(t.origin_parent, t.origin_child);
-  t.rotation = joint.rotation.conjugate();
-  // The new joint frame has the axes of the old parent; there the old joint frame is `rotation`.
-  t.axis = -(joint.rotation * joint.axis);
-  if (joint.kind == JointKind::universal) {
-    const Eigen::Vector3d second =
-        joint.axis2.isZero() ? perpendicular_to(joint.axis) : joint.axis2;
-    t.axis2 = t.axis;
-    t.axis = -(joint.rotation * second);
-    std::reverse(t.position.begin(), t.position.end());
-    std::reverse(t.velocity.begin(), t.velocity.end());
-    std::reverse(t.rotor_inertia.begin(), t.rotor_inertia.end());
-  } else if (joint.kind == JointKind::planar && !joint.direction.isZero()) {
-    t.direction = joint.rotation * joint.direction;
-  }
-  if (!keeps_coordinates(joint.kind)) t.position = t.velocity = {};
-  return t;
 }
 
 }  // namespace momenta

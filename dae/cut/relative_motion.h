@@ -3,6 +3,7 @@
 
 #include <momenta/core/poses.h>
 #include <momenta/core/scene/scene.h>
+#include <momenta/core/scene/turned_round.h>
 
 #include <vector>
 
@@ -15,12 +16,5 @@ struct JointMotion {
 
 /// @pre Not a user joint; a helical one as a hinge alone.
 JointMotion joint_motion(const JointSpec& joint, const BodyMotion& parent, const BodyMotion& child);
-
-/// The joint seen from its child: the same q and u of kinds with one axis and of welds; of a
-/// universal joint its two coordinates have changed places. Of others q and u are others: theirs
-/// are left empty.
-JointSpec turned_round(const JointSpec& joint);
-/// Whether q and u of a joint mean the same, but for their order, once it is turned round.
-bool keeps_coordinates(JointKind kind);
 
 }  // namespace momenta

@@ -1,0 +1,83 @@
+#pragma once
+// Joints and loops seen from their child: parent and child change places, the motion they allow
+// stays. The new frame has the axes of the old parent; there the old frame is `rotation`.
+
+#include <momenta/core/scene/joint_spec.h>
+#include <momenta/core/scene/loop_spec.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace momenta {
+
+/// Whether q and u of a joint mean the same, but for their order, once it is turned round.
+inline bool keeps_coordinates(JointKind kind) {
+  return kind == JointKind::revolute || kind == JointKind::prismatic ||
+         kind == JointKind::helical || kind == JointKind::cylindrical ||
+         kind == JointKind::universal || kind == JointKind::weld;
+}
+
+/// Whether a loop has a child and a parent that can change places.
+inline bool can_turn_round(const LoopSpec& loop) {
+  switch (loop.kind) {
+    case LoopKind::point:
+    case LoopKind::spherical:
+    case LoopKind::revolute:
+    case LoopKind::weld:
+    case LoopKind::prismatic:
+    case LoopKind::universal:
+    case LoopKind::cylindrical:
+    case LoopKind::planar:
+    case LoopKind::distance:
+      return true;
+    case LoopKind::coupler:
+    case LoopKind::slot:
+    case LoopKind::cam:
+    case LoopKind::rack:
+    case LoopKind::equation:
+    case LoopKind::velocity_equation:
+    case LoopKind::rolling:
+      break;
+  }
+  return false;
+}
+
+/// Bodies, points and axes of a joint or a loop turned round.
+template <class Spec>
+Spec with_ends_exchanged(const Spec& spec, bool universal, bool planar) {
+  Spec t = spec;
+  std::swap(t.parent, t.child);
+  std::swap(t.origin_parent, t.origin_child);
+  t.rotation = spec.rotation.conjugate();
+  t.axis = -(spec.rotation * spec.axis);
+  if (universal) {
+    const Eigen::Vector3d second = spec.axis2.isZero() ? perpendicular_to(spec.axis) : spec.axis2;
+    t.axis2 = t.axis;
+    t.axis = -(spec.rotation * second);
+  } else if (planar && !spec.direction.isZero()) {
+    t.direction = spec.rotation * spec.direction;
+  }
+  return t;
+}
+
+/// The joint seen from its child: the same q and u of kinds with one axis and of welds; of a
+/// universal joint its two coordinates have changed places. Of others q and u are others: theirs
+/// are left empty.
+inline JointSpec turned_round(const JointSpec& joint) {
+  const bool universal = joint.kind == JointKind::universal;
+  JointSpec t = with_ends_exchanged(joint, universal, joint.kind == JointKind::planar);
+  if (universal) {
+    std::reverse(t.position.begin(), t.position.end());
+    std::reverse(t.velocity.begin(), t.velocity.end());
+    std::reverse(t.rotor_inertia.begin(), t.rotor_inertia.end());
+  }
+  if (!keeps_coordinates(joint.kind)) t.position = t.velocity = {};
+  return t;
+}
+
+/// The same loop seen from its child. @pre not driven, can_turn_round(loop)
+inline LoopSpec turned_round(const LoopSpec& loop) {
+  return with_ends_exchanged(loop, loop.kind == LoopKind::universal, loop.kind == LoopKind::planar);
+}
+
+}  // namespace momenta
