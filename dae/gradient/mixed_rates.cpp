@@ -24,11 +24,36 @@ MixedRates::MixedRates(const Mechanism& mechanism, double alpha, double beta, bo
       alpha_(alpha),
       beta_(beta),
       driven_(mechanism.plan().drives),
-      dual_(mechanism.evaluation<Dual8>()),
       x_(at(2 * rows_.nv + rows_.m)),
       out_(at(2 * rows_.nv)),
       mu_(at(rows_.m)),
-      force_(at(rows_.nv)) {}
+      force_(at(rows_.nv)),
+      force_rate_(rows_.nv),
+      loop_force_(rows_.nv) {
+  if (mechanism.scene().lagrangian || mechanism.plan().quasi_velocities || driven_) return;
+  const Tree& tree = mechanism.tree();
+  swept_ = mechanism.plan().planar
+               ? made(mechanism,
+                      build_planar_model(tree, mechanism.scene(), mechanism.plan().basis), !forces)
+               : made(mechanism, build_spatial_model(tree, mechanism.scene()), !forces);
+}
+
+template <class Space>
+struct MixedRates::SweptOf final : Swept {
+  SweptOf(const Mechanism& mechanism, Model<Space> built)
+      : model(std::move(built)), loops(build_loops(mechanism.scene(), mechanism.tree(), model)) {}
+  Model<Space> model;
+  LoopModel<Space> loops;
+};
+
+template <class Space>
+std::unique_ptr<MixedRates::Swept> MixedRates::made(const Mechanism& mechanism, Model<Space> model,
+                                                    bool joint_forces) {
+  auto swept = std::make_unique<SweptOf<Space>>(mechanism, std::move(model));
+  if (!mixed_sweep_fits(swept->model, swept->loops)) return nullptr;
+  swept->sweep = make_mixed_sweep(swept->model, swept->loops, joint_forces);
+  return swept;
+}
 
 double MixedRates::reach(const At& at, const VectorXd& nu) {
   const double size = nu.size() > 0 ? nu.cwiseAbs().maxCoeff() : 0;
@@ -41,8 +66,17 @@ double MixedRates::reach(const At& at, const VectorXd& nu) {
 void MixedRates::operator()(const At& at, const VectorXd& nu, const VectorXd& mu) {
   if (driven_)
     by_series(at, nu, mu);
+  else if (swept_)
+    sweep(at, nu, mu);
   else
     polarised(at, nu, mu);
+}
+
+void MixedRates::sweep(const At& x, const VectorXd& nu, const VectorXd& mu) {
+  (*swept_->sweep)({x.t, x.q.data(), x.u.data(), x.udot.data(), x.lambda.data(), nu.data(),
+                    mu.data(), reach(x, nu)},
+                   {by_q.data(), by_u.data(), loop_force_.data(), force_rate_.data()});
+  if (alpha_ != 0 || beta_ != 0) feed_back(loop_force_, force_rate_);
 }
 
 /// 2α Φ̇_qᵀμ + β² Φ_qᵀμ and 2α Φ_qᵀμ, of Φ_qᵀμ and its rate along the motion.
@@ -54,6 +88,7 @@ void MixedRates::feed_back(const VectorXd& force, const VectorXd& rate) {
 void MixedRates::polarised(const At& x, const VectorXd& nu, const VectorXd& mu) {
   const Index n = rows_.nv, m = rows_.m;
   rows_.t = x.t;
+  if (!dual_) dual_ = mechanism_.evaluation<Dual8>();
   const double s = reach(x, nu);
   const auto evaluate = [&] {
     rows_(static_cast<EquationRows<Dual8>&>(*dual_), x_.data(), out_.data());
@@ -99,13 +134,13 @@ void MixedRates::polarised(const At& x, const VectorXd& nu, const VectorXd& mu) 
   for (Index i = 0; i < m; ++i) mu_[at(i)] = Dual8(mu[i]);
   dual_->place(x.t, x_.data());
   dual_->constraint_forces(mu_.data(), force_.data());
-  rate_.resize(n);
-  shifted_.resize(n);
+  force_rate_.resize(n);
+  loop_force_.resize(n);
   for (Index i = 0; i < n; ++i) {
-    shifted_[i] = force_[at(i)].a;
-    rate_[i] = force_[at(i)].b[1];
+    loop_force_[i] = force_[at(i)].a;
+    force_rate_[i] = force_[at(i)].b[1];
   }
-  feed_back(shifted_, rate_);
+  feed_back(loop_force_, force_rate_);
 }
 
 void MixedRates::by_series(const At& x, const VectorXd& nu, const VectorXd& mu) {
@@ -138,13 +173,13 @@ void MixedRates::by_series(const At& x, const VectorXd& nu, const VectorXd& mu) 
   const std::vector<Jet> along(mu.begin(), mu.end());
   e.place(x.t, y.data());
   e.constraint_forces(along.data(), out.data());
-  rate_.resize(n);
-  shifted_.resize(n);
+  force_rate_.resize(n);
+  loop_force_.resize(n);
   for (Index i = 0; i < n; ++i) {
-    shifted_[i] = out[at(i)].a.c[0];
-    rate_[i] = out[at(i)].a.c[1];
+    loop_force_[i] = out[at(i)].a.c[0];
+    force_rate_[i] = out[at(i)].a.c[1];
   }
-  feed_back(shifted_, rate_);
+  feed_back(loop_force_, force_rate_);
 }
 
 }  // namespace momenta

@@ -7,7 +7,7 @@
 //   by_u = D_c D_(0,ν,μ) P + D_(0,ν,μ) R − D_(ν,0,0) P + 2α Φ_qᵀμ
 //
 // are the gradients of S = νᵀr1 + μᵀr2 of acceleration_adjoint.h, directions those of (q, u, σ).
-// Two ways:
+// Ways:
 //
 //   series     rows in power series along the curve with dual directions (0, ν, μ), (ν, 0, 0)
 //   polarised  P and R are of degree two in (u, σ) together, so that differences are exact,
@@ -16,9 +16,14 @@
 //              there: only where nothing is prescribed. s brings sν to the size of u and of √u̇,
 //              what the forces at rest are.
 //
-// The second takes 3 evaluations of rows in dual numbers, a quarter of the time of the first.
+//   swept      the same in four lanes of one sweep (levels/mixed_sweep.h), where nothing else acts
+//              than weights, forces of joints, and loops of points, axes and distances
+//
+// Polarised it takes 3 evaluations of rows in dual numbers, a fraction of the time of series, and
+// swept a fraction of that.
 
 #include <momenta/core/scalar/power_series.h>
+#include <momenta/dae/gradient/levels/mixed_sweep.h>
 #include <momenta/dae/gradient/momentum_rows.h>
 
 #include <memory>
@@ -44,6 +49,8 @@ class MixedRates {
   /// @pre nothing is prescribed
   void polarised(const At& at, const Eigen::VectorXd& nu, const Eigen::VectorXd& mu);
 
+  /// Whether the third way is taken.
+  bool swept() const { return swept_ != nullptr; }
   /// s: sν and sμ are to u, u̇ what a polarised difference takes.
   static double reach(const At& at, const Eigen::VectorXd& nu);
 
@@ -51,16 +58,28 @@ class MixedRates {
   Eigen::VectorXd by_q, by_u;
 
  private:
+  /// The sweep and what it is made of, which stays where it is.
+  struct Swept {
+    virtual ~Swept() = default;
+    std::unique_ptr<MixedSweep> sweep;
+  };
+  template <class Space>
+  struct SweptOf;
+  template <class Space>
+  static std::unique_ptr<Swept> made(const Mechanism& mechanism, Model<Space> model,
+                                     bool joint_forces);
+  void sweep(const At& at, const Eigen::VectorXd& nu, const Eigen::VectorXd& mu);
   void feed_back(const Eigen::VectorXd& force, const Eigen::VectorXd& rate);
 
   const Mechanism& mechanism_;
   LagrangianSlopes rows_;
   double alpha_, beta_;
   bool driven_;
-  std::unique_ptr<Evaluation<Dual8>> dual_;
-  std::unique_ptr<Evaluation<Jet>> series_;  ///< made when first asked for
+  std::unique_ptr<Swept> swept_;             ///< null: it does not fit
+  std::unique_ptr<Evaluation<Dual8>> dual_;  ///< these two made when first asked for
+  std::unique_ptr<Evaluation<Jet>> series_;
   std::vector<Dual8> x_, out_, mu_, force_;
-  Eigen::VectorXd rate_, shifted_;
+  Eigen::VectorXd force_rate_, loop_force_;
 };
 
 }  // namespace momenta

@@ -820,8 +820,9 @@ TEST(Adjoint, OfCorrectionsOfAccelerationsIsTheirDerivativeTransposed) {
     }
 }
 
-/// Second derivatives by differences of rows of degree two, and by series.
-TEST(Adjoint, TakesSecondDerivativesInTwoWays) {
+/// Second derivatives by differences of rows of degree two, swept or not, and by series.
+TEST(Adjoint, TakesSecondDerivativesInThreeWays) {
+  int swept = 0;
   for (const auto& [name, scene] : scenes()) {
     const Mechanism mechanism(scene.scene(), scene.options);
     if (mechanism.plan().drives) continue;
@@ -837,13 +838,20 @@ TEST(Adjoint, TakesSecondDerivativesInTwoWays) {
       const MixedRates::At at{0.1, q, u, udot, lambda};
       mixed.by_series(at, nu, mu);
       const VectorXd by_q = mixed.by_q, by_u = mixed.by_u;
-      mixed(at, nu, mu);
       EXPECT_GT(by_q.norm(), 0) << name;
-      EXPECT_LT((mixed.by_q - by_q).norm(), 1e-12 * by_q.norm()) << name << ", u of " << size;
-      EXPECT_LT((mixed.by_u - by_u).norm(), 1e-12 * (by_u.norm() + 1e-2 * by_q.norm()))
-          << name << ", u of " << size;
+      for (const bool by_rows : {true, false}) {
+        if (by_rows)
+          mixed.polarised(at, nu, mu);
+        else
+          mixed(at, nu, mu);
+        EXPECT_LT((mixed.by_q - by_q).norm(), 1e-12 * by_q.norm()) << name << ", u of " << size;
+        EXPECT_LT((mixed.by_u - by_u).norm(), 1e-12 * (by_u.norm() + 1e-2 * by_q.norm()))
+            << name << ", u of " << size;
+      }
     }
+    swept += mixed.swept();
   }
+  EXPECT_GE(swept, 4);
 }
 
 TEST(Adjoint, IsTheForwardGradientOnAccelerations) {
