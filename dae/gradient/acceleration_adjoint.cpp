@@ -53,6 +53,7 @@ AccelerationAdjoint::AccelerationAdjoint(const Mechanism& mechanism, const OdeFo
                         [](const OtherParameter& other) { return other.of_places; });
   if (at_once() == 0) return;
   numbers_ = make_number_slopes(mechanism, placed_);
+  mixed_numbers_ = make_number_slopes(mechanism, placed_);
   slopes_.setZero(numbers_->size());
   mixed_slopes_ = slopes_;
 }
@@ -62,8 +63,10 @@ Index AccelerationAdjoint::at_once() const {
                        [](const OtherParameter& other) { return other.numbers.size() > 0; });
 }
 
-void AccelerationAdjoint::finish(VectorXd& by_parameters) const {
+void AccelerationAdjoint::finish(VectorXd& by_parameters) {
   if (!numbers_) return;
+  numbers_->finish(slopes_);
+  mixed_numbers_->finish(mixed_slopes_);
   // A sweep takes Q_θ of dampers times its direction of q: of D_c L*_θ that is none of S.
   VectorXd all = mixed_slopes_;
   for (const Index i : numbers_->without_potential()) all[i] = 0;
@@ -81,15 +84,14 @@ void AccelerationAdjoint::add_numbers(const AdjointState& at) {
   for (const double sign : {1.0, -1.0}) {
     shifted_ = at.p + sign * s * nu_;
     sigma_ = sign * s * mu_;
-    numbers_->add(-sign / (2 * s), {at.t, q, shifted_.data(), sigma_.data(), u, udot, lambda},
-                  mixed_slopes_);
+    mixed_numbers_->add(-sign / (2 * s),
+                        {at.t, q, shifted_.data(), sigma_.data(), u, udot, lambda});
   }
-  numbers_->add(1, {at.t, q, u, nullptr, nu_.data(), nullptr, nullptr}, slopes_);
+  numbers_->add(1, {at.t, q, u, nullptr, nu_.data(), nullptr, nullptr});
   if (!placed_) return;
   if (alpha_ != 0)
-    numbers_->add_loop_rates(-2 * alpha_, {at.t, q, u, nullptr, nullptr, nullptr, mu_.data()},
-                             slopes_);
-  if (beta_ != 0) numbers_->add_loops(-beta_ * beta_, at.t, q, mu_.data(), slopes_);
+    numbers_->add_loop_rates(-2 * alpha_, {at.t, q, u, nullptr, nullptr, nullptr, mu_.data()});
+  if (beta_ != 0) numbers_->add_loops(-beta_ * beta_, at.t, q, mu_.data());
 }
 
 bool AccelerationAdjoint::rates(const AdjointState& at, const VectorXd& w, VectorXd& product,

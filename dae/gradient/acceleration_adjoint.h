@@ -54,15 +54,17 @@ class AccelerationAdjoint final : public FormAdjoint {
              Eigen::VectorXd& by_parameters) override;
   bool correction(double t, const Eigen::VectorXd& q, Eigen::VectorXd& lambda,
                   Eigen::VectorXd& by_parameters) override;
-  void finish(Eigen::VectorXd& by_parameters) const override;
+  void finish(Eigen::VectorXd& by_parameters) override;
 
   Eigen::Index at_once() const override;
   bool needs_solutions() const override { return true; }
+  bool needs_rates() const override { return false; }
+  bool solved(const AdjointState&) const override { return true; }
   void by_rows() override { corrections_.system().by_matrix(); }
 
  private:
   void add_numbers(const AdjointState& at);
-  CorrectionAdjoint::Numbers numbers() { return {numbers_.get(), placed_, &slopes_}; }
+  CorrectionAdjoint::Numbers numbers() { return {numbers_.get(), placed_}; }
 
   const Mechanism& mechanism_;
   const std::vector<OtherParameter>& others_;
@@ -72,8 +74,8 @@ class AccelerationAdjoint final : public FormAdjoint {
   TransposedForces forces_;
   MixedRates mixed_;
   CorrectionAdjoint corrections_;
-  std::unique_ptr<NumberSlopes> numbers_;  ///< null: no θ is taken so
-  bool placed_ = false;                    ///< some θ changes places
+  std::unique_ptr<NumberSlopes> numbers_, mixed_numbers_;  ///< null: no θ is taken so
+  bool placed_ = false;                                    ///< some θ changes places
   bool any_rows_ = false;                  ///< some θ is taken from rows of other mechanisms
   Eigen::VectorXd slopes_, mixed_slopes_;  ///< by numbers, so far; of D_c D_(0,ν,μ) L*_θ apart
   Eigen::VectorXd nu_, mu_, plain_, by_q_, by_u_, shifted_, sigma_, x_, weights_;

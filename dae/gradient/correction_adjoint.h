@@ -28,7 +28,6 @@ class CorrectionAdjoint {
   struct Numbers {
     NumberSlopes* of = nullptr;
     bool placed = false;
-    Eigen::VectorXd* slopes = nullptr;
   };
   /// λ (of q, then p or u) behind the correction of q at t [s] to λ before it; `repeated`: until
   /// consistent, as the form `projected` does. False where the matrix is singular. Of each

@@ -33,12 +33,18 @@ class FormAdjoint {
   virtual bool correction(double t, const Eigen::VectorXd& q, Eigen::VectorXd& lambda,
                           Eigen::VectorXd& by_parameters) = 0;
   /// What numbers have had so far is added, once, when the way back is over.
-  virtual void finish(Eigen::VectorXd& by_parameters) const = 0;
+  virtual void finish(Eigen::VectorXd& by_parameters) = 0;
 
   /// How many parameters are taken by number_slopes.h.
   virtual Eigen::Index at_once() const = 0;
   /// Whether states must have their u, multipliers and slopes.
   virtual bool needs_solutions() const = 0;
+  /// Whether they must have u, if nothing else.
+  virtual bool needs_rates() const = 0;
+  /// Whether a state has all that may be asked for.
+  virtual bool solved(const AdjointState& at) const = 0;
+  /// u (nv) at the state of the last rates(), where that had none; null: not found.
+  virtual const double* found_rates() const { return nullptr; }
   /// By matrices alone from now on: where rows of Φ are redundant the only way.
   virtual void by_rows() = 0;
 };

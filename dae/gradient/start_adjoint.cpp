@@ -97,8 +97,8 @@ void StartAdjoint::through_rates(VectorXd& of_q, VectorXd& of_u) {
   const Pulled by = pull(steps_.back(), x, of_u.cwiseProduct(unit));
   const VectorXd w = -by.w;
   if (placed_)
-    numbers_->add_loop_rates(
-        1, {0, q.data(), u.data(), by.y.data(), nullptr, by.v.data(), w.data()}, slopes_);
+    numbers_->add_loop_rates(1,
+                             {0, q.data(), u.data(), by.y.data(), nullptr, by.v.data(), w.data()});
   of_q += turned(q, by.v, by.y);
   // ∂(wᵀΦ̇)/∂q = Φ̇_qᵀw, with what drives have in it: of ṗ, which is linear in w.
   x_.resize(static_cast<std::size_t>(2 * nv_ + m_));
@@ -137,12 +137,12 @@ void StartAdjoint::through_step(const Step& step, VectorXd& of_q) {
   const Pulled by = pull(step, x, x_bar);
   const VectorXd w = -by.w;
   if (placed_) {
-    numbers_->add_loops(1, 0, step.q.data(), w.data(), slopes_);
+    numbers_->add_loops(1, 0, step.q.data(), w.data());
     numbers_->add_loop_rates(
-        1, {0, step.q.data(), by.x.data(), by.y.data(), nullptr, by.v.data(), w.data()}, slopes_);
+        1, {0, step.q.data(), by.x.data(), by.y.data(), nullptr, by.v.data(), w.data()});
     if (driven_)  // a step is no motion: what drives have in wᵀΦ̇ goes
-      numbers_->add_loop_rates(-1, {0, step.q.data(), nullptr, nullptr, nullptr, nullptr, w.data()},
-                               slopes_);
+      numbers_->add_loop_rates(-1,
+                               {0, step.q.data(), nullptr, nullptr, nullptr, nullptr, w.data()});
   }
   VectorXd force(nv_);
   loops_.evaluation().constraint_forces(w.data(), force.data());
@@ -152,18 +152,10 @@ void StartAdjoint::through_step(const Step& step, VectorXd& of_q) {
 /// p = M u: λ of p handed on.
 void StartAdjoint::through_momenta(const VectorXd& of_p, VectorXd& of_q, VectorXd& of_u) {
   const VectorXd &q = start_.q, &u = start_.u;
-  numbers_->add(1, {0, q.data(), u.data(), nullptr, nullptr, of_p.data(), nullptr}, slopes_);
+  numbers_->add(1, {0, q.data(), u.data(), nullptr, nullptr, of_p.data(), nullptr});
   VectorXd change(nv_);
-  kinetic_->along(0, q.data(), u.data(), of_p.data(), change.data());
+  kinetic_->along(0, q.data(), u.data(), of_p.data(), change.data(), of_u.data());
   of_q += change;
-  Evaluation<double>& e = loops_.evaluation();
-  e.place(0, q.data());
-  e.move(of_p.data());
-  e.momenta(nullptr, of_u.data());
-  if (!driven_) return;
-  e.move(nullptr);
-  e.momenta(nullptr, change.data());
-  of_u -= change;
 }
 
 VectorXd StartAdjoint::back(const VectorXd& lambda, bool of_momenta) {
@@ -171,11 +163,12 @@ VectorXd StartAdjoint::back(const VectorXd& lambda, bool of_momenta) {
   by_length_ = 0;
   VectorXd of_q = lambda.head(nv_), of_u = lambda.tail(nv_);
   if (of_momenta) through_momenta(lambda.tail(nv_), of_q, of_u);
-  if (!follows_) return slopes_;
-  if (m_ > 0) {
+  if (follows_ && m_ > 0) {
     through_rates(of_q, of_u);
     for (std::size_t i = steps_.size(); i-- > 0;) through_step(steps_[i], of_q);
   }
+  numbers_->finish(slopes_);
+  if (!follows_) return slopes_;
   slopes_.segment(numbers_->guess(), nv_) += of_q;
   slopes_.segment(numbers_->guess() + nv_, nv_) += of_u;
   slopes_[slopes_.size() - 1] += by_length_;
